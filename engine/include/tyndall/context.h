@@ -1,0 +1,131 @@
+// context.h -- record a volumetric pass into a host's own Vulkan frame. Tier 3.
+//
+// The host owns instance, device, queue, command buffers and images. It makes a tyn_device on its
+// VkDevice and a tyn_context per volume scene, calls tyn_context_prepare when sizes change, and
+// tyn_context_record once a frame with its own command buffer.
+//
+// Contract:
+//  (a) Clobbered on `cmd`: compute pipeline, compute descriptor sets, push constants.
+//  (b) `before` of a host image is trusted, `after` is guaranteed; any layout, any stage. There is no
+//      queue family transfer.
+//  (c) If record fails, nothing was appended and host images are in their `before` state.
+//  (d) The call i + frames_in_flight is made after the GPU finished call i.
+//  (e) record never submits, waits, or allocates memory; prepare does the last two.
+#pragma once
+#include "device.h"
+#include "scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct tyn_context tyn_context;
+typedef struct tyn_settings tyn_settings; // values of pass parameters; see registry.h
+
+typedef struct tyn_context_params {
+    size_t struct_size;
+    const char *method;           // "pop" (NULL), "pop-paper", "single", "path"
+    const tyn_settings *settings; // NULL = defaults; copied
+    uint32_t frames_in_flight;    // 1..8; 0 = 2
+} tyn_context_params;
+#define tyn_context_params(...) \
+    (&(tyn_context_params){.struct_size = sizeof(tyn_context_params), __VA_ARGS__})
+TYN_API tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params,
+                                      tyn_context **out);
+TYN_API void tyn_context_destroy(tyn_context **ctx); // the GPU must be done with our work
+
+// What a frame can give back, as a set.
+typedef enum tyn_output {
+    TYN_OUTPUT_RADIANCE = 1 << 0,      // RGBA32F; RGB radiance, A as in docs/scene-format.md, "Output"
+    TYN_OUTPUT_TRANSMITTANCE = 1 << 1, // RGBA32F
+    TYN_OUTPUT_DEPTH = 1 << 2,         // RGBA32F: depth, depth_t50, 0, 0
+    TYN_OUTPUT_SINGLE = 1 << 3,        // RGBA32F
+    TYN_OUTPUT_MULTIPLE = 1 << 4,      // RGBA32F
+    TYN_OUTPUT_ERROR = 1 << 5,         // RGBA32F: standard error of the mean (path)
+    TYN_OUTPUT_DISPLAY = 1 << 6,       // RGBA8: tone mapped, sRGB encoded
+    TYN_OUTPUT_PROBE = 1 << 7,         // buffer of tyn_probe_result, one a point
+    TYN_OUTPUT_BALANCE = 1 << 8,       // buffer: tyn_balance
+    TYN_OUTPUT_COMPOSITE = 1 << 9,     // into tyn_frame.color
+} tyn_output;
+
+typedef struct tyn_probe_result {
+    float fluence[3];        // W/m^2
+    float flux[9];           // net flux, x_r x_g x_b y_r ... z_b, W/m^2
+    float fluence_se[3], flux_se[9]; // standard errors (path), else 0
+} tyn_probe_result;
+
+typedef struct tyn_balance { // W, per channel
+    double entering[3], emitted[3], absorbed_media[3], absorbed_surfaces[3], escaped[3], imbalance[3];
+} tyn_balance;
+
+// What to compute and from where.
+typedef struct tyn_view {
+    tyn_camera camera;
+    uint32_t width, height;   // pixels, 1..16384
+    uint32_t outputs;         // set of tyn_output; 0 = RADIANCE
+    bool no_background;       // RGB is the medium alone, premultiplied
+    float exposure_ev;        // for DISPLAY
+    uint32_t seed;
+    // Progressive methods (path): this record adds samples [first_sample, first_sample + num_samples)
+    // of every pixel or point to what the context has accumulated; first_sample 0 starts anew.
+    uint32_t first_sample, num_samples;
+    uint32_t max_depth;       // path: longest path in scatterings; 0 = no limit but the safety cap
+    uint32_t rr_depth;        // path: Russian roulette from this depth on; 0 = default
+    const float (*points)[3]; // PROBE: world positions
+    uint32_t num_points;
+    bool scattered_only;      // PROBE: without the uncollided light
+    uint64_t time_index;      // frame number of a sequence
+} tyn_view;
+
+typedef struct tyn_frame {
+    size_t struct_size;
+    VkCommandBuffer cmd;     // Required: recording, outside a render pass
+    const tyn_scene *scene;  // Required: same counts and sizes as prepared; values may differ
+    const tyn_view *view;    // Required: same size, outputs and point count as prepared
+    const tyn_image *densities;         // one per volume whose data is NULL, in order
+    const uint64_t *density_versions;   // NULL = they may have changed every frame
+    const tyn_image *depth;  // COMPOSITE: may be NULL; hardware depth of the host's surfaces
+    float view_to_clip[16];  // Required with depth: how depth was made (Vulkan clip z in [0, 1])
+    const tyn_image *color;  // COMPOSITE: Required; rgba16f or rgba32f with STORAGE usage
+    bool recompute;          // run every node, changed or not (for timing)
+} tyn_frame;
+#define tyn_frame(...) (&(tyn_frame){.struct_size = sizeof(tyn_frame), __VA_ARGS__})
+
+// Allocates for this scene and view. Cheap if nothing structural changed. The GPU must be done with
+// earlier records. `frame.cmd` is not used; images must have their formats and extents.
+TYN_API tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame);
+TYN_API tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame);
+
+// Host memory of an output of the last record, once the GPU has finished it: 4 floats a pixel (DISPLAY:
+// 4 bytes), or the probe and balance structs. NULL if it was not asked for. Valid until the next call.
+TYN_API const void *tyn_context_output(tyn_context *ctx, tyn_output output);
+
+// ---- what happened --------------------------------------------------------------------------
+
+typedef struct tyn_node_report {
+    const char *name;
+    const char *state; // "ran", "unchanged", "culled", "empty"
+    double gpu_ms, cpu_ms;
+    uint32_t dispatches, barriers;
+    uint64_t bytes;
+    double flops;
+    struct { const char *name; double amount; } work[8];
+    uint32_t num_work;
+} tyn_node_report;
+
+typedef struct tyn_report {
+    const tyn_node_report *nodes;
+    uint32_t num_nodes;
+    uint64_t persistent_bytes, transient_bytes;
+    const char *const *warnings; // what the method left out or approximated, one line each
+    uint32_t num_warnings;
+} tyn_report;
+// Of the last finished record. Valid until the next call on the context.
+TYN_API void tyn_context_report(tyn_context *ctx, tyn_report *report);
+
+// The compiled graph as text or Graphviz; freed with free().
+TYN_API char *tyn_context_graph(tyn_context *ctx, bool dot);
+
+#ifdef __cplusplus
+}
+#endif

@@ -1,0 +1,95 @@
+// device.h -- Tyndall on a Vulkan device: a host's, or one of its own. Tier 1.
+#pragma once
+#include "base.h"
+#include <vulkan/vulkan_core.h> // types only; functions come from get_instance_proc_addr
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Pipelines and memory on a VkDevice. Thread-safety: Unsafe; one device object per thread, several
+// device objects on one VkDevice are fine.
+typedef struct tyn_device tyn_device;
+
+// What to enable before vkCreateDevice. Static data; tyn_device_create checks it again and names
+// what is missing.
+typedef struct tyn_requirements {
+    uint32_t api_version;                      // lowest accepted
+    const VkPhysicalDeviceFeatures2 *features; // chain of what must be enabled
+    const char *const *extensions;             // NULL-terminated (none today)
+} tyn_requirements;
+TYN_API const tyn_requirements *tyn_requirements_get(void);
+
+typedef struct tyn_device_params {
+    size_t struct_size; // sizeof; set by the macro
+    VkInstance instance;             // Required, borrowed
+    VkPhysicalDevice physical_device; // Required
+    VkDevice device;                  // Required, borrowed
+    PFN_vkGetInstanceProcAddr get_instance_proc_addr; // Required
+    uint32_t api_version;             // Required: as given in VkApplicationInfo
+    const VkPhysicalDeviceFeatures2 *features; // Required: as enabled on `device`
+    uint32_t queue_family;            // of the command buffers we will be given
+    bool debug_names;                 // VK_EXT_debug_utils is enabled: name objects, label nodes
+    const void *pipeline_cache;       // from an earlier tyn_device_pipeline_cache; may be NULL
+    size_t pipeline_cache_size;
+    tyn_log log;
+} tyn_device_params;
+#define tyn_device_params(...) \
+    (&(tyn_device_params){.struct_size = sizeof(tyn_device_params), __VA_ARGS__})
+TYN_API tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out);
+TYN_API void tyn_device_destroy(tyn_device **dev); // the GPU must be done with our work
+
+// A device of our own: loads the Vulkan loader at run time, makes instance, device and queue.
+typedef struct tyn_device_open_params {
+    size_t struct_size;
+    const char *select;   // index or part of the name; NULL = the first discrete, integrated, then any
+    bool validation;      // validation and synchronization validation; messages go to the log as errors
+    const void *pipeline_cache;
+    size_t pipeline_cache_size;
+    tyn_log log;
+} tyn_device_open_params;
+#define tyn_device_open_params(...) \
+    (&(tyn_device_open_params){.struct_size = sizeof(tyn_device_open_params), __VA_ARGS__})
+TYN_API tyn_result tyn_device_open(const tyn_device_open_params *params, tyn_device **out);
+
+// Validation messages since the device was opened (0 without validation).
+TYN_API uint32_t tyn_device_validation_messages(const tyn_device *dev);
+
+TYN_API const char *tyn_device_name(const tyn_device *dev);
+TYN_API const char *tyn_device_driver(const tyn_device *dev);
+
+// Lists devices of this machine: fills up to `max` entries, returns how many there are (or < 0).
+typedef struct tyn_device_info {
+    char name[256], driver[256], missing[256]; // missing: first unmet requirement, "" = usable
+    uint32_t api_version;
+    const char *type; // "discrete", "integrated", "virtual", "cpu", "other"
+    uint64_t heap_bytes;
+} tyn_device_info;
+TYN_API int tyn_devices_list(tyn_device_info *infos, uint32_t max, const tyn_log *log);
+
+// The pipeline cache's bytes, for a file. Freed with free(). NULL if there is none.
+TYN_API void *tyn_device_pipeline_cache(tyn_device *dev, size_t *size);
+
+// ---- host images ----------------------------------------------------------------------------
+
+// An exact synchronisation state.
+typedef struct tyn_sync {
+    VkPipelineStageFlags2 stages;
+    VkAccessFlags2 access;
+    VkImageLayout layout;
+} tyn_sync;
+
+// A host image: never destroyed by us; alive until the GPU work is done.
+typedef struct tyn_image {
+    VkImage image;
+    VkImageView view;  // of mip 0, layer 0; for a depth image a depth-only view
+    VkFormat format;
+    VkExtent3D extent;
+    VkImageUsageFlags usage;
+    VkImageAspectFlags aspect; // 0 = colour
+    tyn_sync before, after;    // state on entry, trusted; state left behind, guaranteed
+} tyn_image;
+
+#ifdef __cplusplus
+}
+#endif

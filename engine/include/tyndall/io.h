@@ -1,0 +1,55 @@
+// io.h -- files in and out: scenes, volumes, environments, images. No Vulkan. Tier 1.
+//
+// Every fault of a file is one log line (file, place, value, what would be right) and a negative
+// result; nothing is left half-loaded. Files are written under a temporary name and renamed.
+#pragma once
+#include "scene.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Loads a scene: .gltf, .glb, or a bare volume (.nvdb, .vdb), which is framed and given a sun and a
+// sky. `environment` (may be NULL) replaces the scene's map.
+TYN_API tyn_result tyn_scene_load(tyn_scene *scene, const char *path, const char *environment,
+                                  const tyn_log *log);
+
+// Loads one grid of a volume file by its extension; `grid` NULL = "density", else the first float
+// grid. Negative values are clamped and counted.
+TYN_API tyn_result tyn_volume_load(tyn_volume *volume, const char *path, const char *grid,
+                                   uint64_t *clamped_negative, const tyn_log *log);
+TYN_API void tyn_volume_finish(tyn_volume *volume);
+
+// Loads a latitude-longitude map (.exr, .hdr) into `size` and `data`; the rest of `env` is kept.
+TYN_API tyn_result tyn_environment_load(tyn_environment *env, const char *path, const tyn_log *log);
+
+// A float image of named channels, planar, row 0 at the top.
+typedef struct tyn_channel {
+    char name[48]; // "R", "transmittance.R", "depth.Z", ...
+    float *data;   // width * height
+} tyn_channel;
+typedef struct tyn_image_file {
+    uint32_t width, height;
+    uint32_t num_channels;
+    tyn_channel *channels;
+} tyn_image_file;
+TYN_API tyn_result tyn_exr_read(tyn_image_file *image, const char *path, const tyn_log *log);
+// `full_float` false: half (values beyond 65504 saturate and are counted in one warning).
+TYN_API tyn_result tyn_exr_write(const tyn_image_file *image, const char *path, bool full_float,
+                                 const tyn_log *log);
+TYN_API void tyn_image_file_finish(tyn_image_file *image);
+TYN_API float *tyn_image_file_channel(const tyn_image_file *image, const char *name); // NULL: not there
+
+// 8-bit RGB(A), row 0 at the top.
+TYN_API tyn_result tyn_png_write(const char *path, uint32_t width, uint32_t height,
+                                 uint32_t channels, const uint8_t *pixels, const tyn_log *log);
+
+// Whole files; `size` in bytes; freed with free(). Refuses files above `limit` bytes.
+TYN_API tyn_result tyn_file_read(const char *path, uint64_t limit, void **data, size_t *size,
+                                 const tyn_log *log);
+TYN_API tyn_result tyn_file_write(const char *path, const void *data, size_t size,
+                                  const tyn_log *log); // temporary name, then rename
+
+#ifdef __cplusplus
+}
+#endif

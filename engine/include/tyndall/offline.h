@@ -1,0 +1,40 @@
+// offline.h -- render to host memory with a device of our own. Tier 4: built on context.h only.
+//
+// For tools, tests and researchers; a host renderer uses context.h.
+#pragma once
+#include "registry.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct tyn_offline tyn_offline;
+
+typedef struct tyn_offline_params {
+    size_t struct_size;
+    const char *method;
+    const tyn_settings *settings;
+} tyn_offline_params;
+#define tyn_offline_params(...) \
+    (&(tyn_offline_params){.struct_size = sizeof(tyn_offline_params), __VA_ARGS__})
+
+// `dev` must come from tyn_device_open; borrowed.
+TYN_API tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params *params,
+                                      tyn_offline **out);
+TYN_API void tyn_offline_destroy(tyn_offline **off);
+
+// Prepares if needed, records one frame, submits and waits. Progressive methods: one call adds
+// view->num_samples samples, split into dispatches that respect the time limit of the device.
+TYN_API tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn_view *view,
+                                     bool recompute);
+// A foreign density image, depth or composite target cannot be given here.
+
+TYN_API const void *tyn_offline_output(tyn_offline *off, tyn_output output);
+TYN_API void tyn_offline_report(tyn_offline *off, tyn_report *report);
+TYN_API tyn_context *tyn_offline_context(tyn_offline *off);
+TYN_API double tyn_offline_setup_ms(const tyn_offline *off); // pipelines, uploads, media-only nodes
+TYN_API double tyn_offline_frame_ms(const tyn_offline *off); // wall clock of the last frame, fence to fence
+
+#ifdef __cplusplus
+}
+#endif

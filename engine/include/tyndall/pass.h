@@ -1,0 +1,166 @@
+// pass.h -- how a pass module is written. Tier 2.
+//
+// A pass is static data plus a few pure functions: which images and buffers it reads and writes
+// (ports), its compute kernels and what each of their bindings is (kernels), its parameters with
+// units, ranges and defaults (params), the shapes of its outputs (declare), and its dispatches
+// (record). Descriptor layouts, pipelines, image usage, layouts and every barrier are derived.
+// No pass writes a barrier, allocates, or sees a Vulkan object.
+//
+// Barriers: the recorder looks at what each dispatch reads and writes and puts the needed barrier in
+// front of it, inside a node and between nodes alike. Two dispatches that touch the same resource,
+// one of them writing, are ordered; so put independent work in one dispatch.
+#pragma once
+#include "base.h"
+#include <vulkan/vulkan_core.h> // types only
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { TYN_MAX_PORTS = 32, TYN_MAX_BINDINGS = 16, TYN_MAX_SPEC = 8, TYN_MAX_ARGS = 128 };
+
+// ---- shapes ---------------------------------------------------------------------------------
+
+typedef enum tyn_dim { TYN_BUFFER = 0, TYN_IMAGE_2D, TYN_IMAGE_3D } tyn_dim;
+
+typedef struct tyn_extent {
+    uint32_t x, y, z; // texels; a 2D image has z = 1; a buffer has x = size in bytes
+} tyn_extent;
+
+// ---- ports ----------------------------------------------------------------------------------
+
+typedef enum tyn_port_dir {
+    TYN_IN = 0,  // read; comes from an earlier node or from outside
+    TYN_OUT,     // written; made by this node
+    TYN_INOUT,   // read and changed; goes in as one version and comes out as the next
+    TYN_SCRATCH, // private to this node, contents undefined at its start
+} tyn_port_dir;
+
+typedef struct tyn_port {
+    const char *name; // "density", "radiance": for dumps, messages and tests, never looked up in a frame
+    tyn_port_dir dir;
+    tyn_dim dim;
+    VkFormat format;  // of images this pass makes (OUT, SCRATCH) or stores to; 0 for buffers and for
+                      // images that are only sampled (any float format)
+    bool optional;    // IN only: when nothing is connected a 1x1(x1) zero image or a zeroed
+                      // 256-byte buffer is bound
+    const char *meaning; // "extinction at cell centres, 1/m": printed by the dumps
+} tyn_port;
+
+// ---- kernels --------------------------------------------------------------------------------
+
+typedef enum tyn_use {
+    TYN_USE_SAMPLED = 1,   // combined image sampler, linear, clamp to edge (texelFetch works too)
+    TYN_USE_STORAGE_READ,  // readonly image or buffer
+    TYN_USE_STORAGE_WRITE, // writeonly image or buffer
+    TYN_USE_STORAGE_RW,    // read and written in one dispatch (atomics, in-place)
+    TYN_USE_UNIFORM,       // uniform buffer (std140 or scalar block layout)
+    TYN_USE_INDIRECT,      // implied by dispatch_indirect; not for bindings
+    TYN_USE_TRANSFER_SRC,  // implied by the recorder's copies; not for bindings
+    TYN_USE_TRANSFER_DST,
+} tyn_use;
+
+// Binding b of set 0 is element b of this table.
+typedef struct tyn_binding {
+    uint8_t port; // index into ports; a dispatch may point it at another port of equal kind
+    tyn_use use;
+    bool repeat;  // SAMPLED: wrap instead of clamp (latitude-longitude maps: x wraps, y clamps)
+} tyn_binding;
+
+typedef struct tyn_kernel {
+    const char *name;
+    const uint32_t *spirv; // embedded at build time (see passes/meson.build)
+    size_t spirv_size;     // bytes
+    uint32_t args_size;    // push constants, bytes, <= 128
+    uint32_t local_size[3];
+    const tyn_binding *bindings;
+    uint32_t num_bindings;
+    uint32_t num_spec;     // specialisation constants 0..n-1, 32 bits each, given per dispatch
+} tyn_kernel;
+
+// ---- parameters -----------------------------------------------------------------------------
+
+typedef enum tyn_param_type { TYN_PARAM_FLOAT = 0, TYN_PARAM_INT, TYN_PARAM_BOOL, TYN_PARAM_ENUM } tyn_param_type;
+
+// One user-visible field of the params struct: float, int32_t (INT, ENUM) or uint32_t 0/1 (BOOL).
+typedef struct tyn_param {
+    const char *name; // `-D pass.name=value`
+    tyn_param_type type;
+    size_t offset;
+    double def, min, max; // default and inclusive range; for ENUM min = 0, max = count - 1
+    const char *unit;     // "1/m", "cells", "" for none
+    const char *doc;      // one line
+    const char *const *names; // ENUM: the values' names
+} tyn_param;
+
+// ---- the pass -------------------------------------------------------------------------------
+
+typedef struct tyn_builder tyn_builder;   // answers and collects shapes while a node is declared
+typedef struct tyn_recorder tyn_recorder; // collects the dispatches of a node
+
+typedef struct tyn_pass_desc {
+    const char *name, *summary;
+    const tyn_port *ports;
+    uint32_t num_ports;
+    const tyn_kernel *kernels;
+    uint32_t num_kernels;
+    const tyn_param *params; // user-visible; the struct may hold further fields that the method sets
+    uint32_t num_params;
+    size_t params_size; // the struct must have no uninitialised padding: start from tyn_pass_defaults
+    // Gives every OUT and SCRATCH port its extent (tyn_build_*). Depends only on params and on the
+    // extents of the inputs. An OUT port that is given none does not exist in this configuration.
+    tyn_result (*declare)(tyn_builder *b, const void *params);
+    // Dispatches only. Must use the same kernels, bindings and specialisations whenever the shapes
+    // and the params marked by `declare` are the same.
+    void (*record)(tyn_recorder *r, const void *params);
+    // The debug view: the OUT port whose middle slice `tyndall graph --view` shows, and a word on it.
+    uint8_t debug_port;
+    const char *debug_meaning;
+} tyn_pass_desc;
+
+// Fills params with zeros, then the defaults of the table.
+TYN_API void tyn_pass_defaults(const tyn_pass_desc *pass, void *params);
+
+// ---- declare --------------------------------------------------------------------------------
+
+TYN_API bool tyn_build_has(const tyn_builder *b, uint8_t port);         // is the input connected?
+TYN_API tyn_extent tyn_build_extent(const tyn_builder *b, uint8_t port); // of an input, or one set before
+TYN_API void tyn_build_image(tyn_builder *b, uint8_t port, tyn_extent extent, uint32_t mips);
+TYN_API void tyn_build_buffer(tyn_builder *b, uint8_t port, uint64_t bytes);
+// Overrides the port's format for this node (a pass with half and float variants whose kernels
+// differ by binding tables).
+TYN_API void tyn_build_format(tyn_builder *b, uint8_t port, VkFormat format);
+// An OUT whose content is kept between frames even if the node is not run (all OUTs are, today).
+TYN_API const tyn_log *tyn_build_log(const tyn_builder *b);
+
+// ---- record ---------------------------------------------------------------------------------
+
+TYN_API bool tyn_rec_has(const tyn_recorder *r, uint8_t port);
+TYN_API tyn_extent tyn_rec_extent(const tyn_recorder *r, uint8_t port);
+
+// One dispatch: enough workgroups of the kernel's local size to cover `cells` threads.
+typedef struct tyn_dispatch {
+    uint32_t kernel;        // index into kernels
+    tyn_extent cells;       // threads; a component 0 counts as 1
+    const void *args;       // args_size bytes of push constants, NULL if args_size is 0
+    const uint8_t *ports;   // NULL = the table's; else num_bindings port indices (ping-pong)
+    const uint8_t *mips;    // NULL = 0; else num_bindings mip levels (storage uses; sampled see all)
+    const uint32_t *spec;   // num_spec values, NULL = zeros
+    const char *label;      // for captures and dumps; NULL = the kernel's name
+} tyn_dispatch;
+TYN_API void tyn_rec_dispatch(tyn_recorder *r, const tyn_dispatch *d);
+// Workgroup counts from `offset` bytes into a buffer port (3 x uint32).
+TYN_API void tyn_rec_dispatch_indirect(tyn_recorder *r, const tyn_dispatch *d, uint8_t port,
+                                       uint64_t offset);
+// Inline data, <= 65536 bytes, multiple of 4, into a buffer port.
+TYN_API void tyn_rec_update(tyn_recorder *r, uint8_t port, uint64_t offset, const void *data,
+                            size_t size);
+TYN_API void tyn_rec_fill(tyn_recorder *r, uint8_t port, uint32_t value); // whole buffer
+TYN_API void tyn_rec_clear(tyn_recorder *r, uint8_t port); // image (mip 0..) to zero
+TYN_API void tyn_rec_copy_buffer(tyn_recorder *r, uint8_t src, uint8_t dst, uint64_t bytes);
+// Work done, for the stats: "steps", "cells", "flops", "bytes" are known names.
+TYN_API void tyn_rec_work(tyn_recorder *r, const char *name, double amount);
+
+#ifdef __cplusplus
+}
+#endif

@@ -1,0 +1,130 @@
+// scene.h -- what is rendered: media, lights, environment, cameras. Plain data, no Vulkan. Tier 1.
+//
+// A scene is a tree of plain structs that may be filled by hand, by `tyndall/io.h`, or changed in
+// place between frames. World space is right-handed, Y up, metres (docs/scene-format.md).
+#pragma once
+#include "base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { TYN_MAX_MEDIA = 16, TYN_MAX_SHAPES = 64, TYN_MAX_LIGHTS = 64 };
+
+// A dense density grid. Values sit at voxel centres, trilinear between them, clamped to the edge
+// value in the outer half voxel. `data` is x fastest, then y, z; >= 0 and finite.
+typedef struct tyn_volume {
+    char *name;              // for messages; may be NULL
+    uint32_t size[3];        // voxels, >= 1
+    float *data;             // size[0]*size[1]*size[2]; owned by the scene. NULL: the host brings an
+                             // image each frame (tyn_frame.densities), and max_density is Required
+    float max_density;       // largest value
+    double index_to_world[16]; // of the file (voxel index -> its own world); used by shape "grid" at load
+    uint64_t hash;           // content hash of data, for change tracking
+} tyn_volume;
+
+// Coefficients at density 1, linear RGB.
+typedef struct tyn_medium {
+    char *name;
+    float sigma_s[3];    // scattering, 1/m, >= 0
+    float sigma_a[3];    // absorption, 1/m, >= 0
+    float g[3];          // Henyey-Greenstein mean cosine, (-1, 1)
+    float emission[3];   // W/(m^3 sr), >= 0
+    float density_scale; // multiplies the grid's density; 1 after load, >= 0
+    int32_t volume;      // index into scene.volumes; -1: homogeneous, density 1
+} tyn_medium;
+
+typedef enum tyn_shape_kind { TYN_SHAPE_BOX = 0, TYN_SHAPE_SPHERE = 1 } tyn_shape_kind;
+
+// Where a medium is: the unit box [-0.5, 0.5]^3, or the sphere of radius 0.5 in it, under a matrix.
+// The medium's grid fills the unit box.
+typedef struct tyn_shape {
+    tyn_shape_kind kind;
+    uint32_t medium;
+    float to_world[16]; // affine, invertible, column-major
+    bool repeat[3];     // periodic along local axes (box only)
+} tyn_shape;
+
+typedef enum tyn_light_kind { TYN_LIGHT_DIRECTIONAL = 0, TYN_LIGHT_POINT, TYN_LIGHT_SPOT } tyn_light_kind;
+
+typedef struct tyn_light {
+    char *name;
+    tyn_light_kind kind;
+    float color[3];     // directional: irradiance on a perpendicular plane, W/m^2; point and spot: W/sr
+    float position[3];  // world, metres (point, spot)
+    float direction[3]; // unit, direction of travel (directional, spot axis)
+    float cos_inner, cos_outer; // spot: cosines of the cone half angles, cos_inner >= cos_outer
+} tyn_light;
+
+// A latitude-longitude map, or a constant. Mapping: docs/scene-format.md.
+typedef struct tyn_environment {
+    bool present;
+    uint32_t size[2];    // texels; {0,0}: constant
+    float *data;         // RGB float triples, row 0 is up (+Y); owned by the scene
+    float radiance[3];   // scales the map, or is the constant radiance, W/(m^2 sr)
+    float rotation[4];   // quaternion x, y, z, w: turns the map in the world; {0,0,0,0} = identity
+    float strength;      // multiplies everything; 1 after load
+    uint64_t hash;       // content hash of data
+} tyn_environment;
+
+typedef enum tyn_projection { TYN_PERSPECTIVE = 0, TYN_ORTHOGRAPHIC = 1 } tyn_projection;
+
+typedef struct tyn_camera {
+    char *name;           // node's name; may be NULL
+    char *camera_name;    // glTF camera's name; may be NULL
+    tyn_projection projection;
+    float position[3];    // world, metres
+    float right[3], up[3], back[3]; // orthonormal, right-handed; looks along -back
+    float yfov;           // perspective: full vertical field of view, radians, (0, pi)
+    float ymag;           // orthographic: half height, metres, > 0
+    float aspect;         // width / height as stored in the file; 0 = not given
+} tyn_camera;
+
+typedef struct tyn_scene {
+    char *name;
+    tyn_volume *volumes;
+    uint32_t num_volumes;
+    tyn_medium media[TYN_MAX_MEDIA];
+    uint32_t num_media;
+    tyn_shape shapes[TYN_MAX_SHAPES];
+    uint32_t num_shapes;
+    tyn_light lights[TYN_MAX_LIGHTS];
+    uint32_t num_lights;
+    tyn_environment environment;
+    tyn_camera *cameras;
+    uint32_t num_cameras;
+    uint32_t num_meshes;       // surfaces in the file, which no method draws yet
+    uint64_t clamped_negative; // negative densities that were set to 0 at load
+    char **warnings;           // one line each, e.g. "mesh 'wall': surfaces are not drawn yet"
+    uint32_t num_warnings;
+} tyn_scene;
+
+TYN_API void tyn_scene_init(tyn_scene *scene); // an empty scene; call before filling by hand
+TYN_API void tyn_scene_finish(tyn_scene *scene); // frees everything it owns, leaves an empty scene
+TYN_API void tyn_scene_warn(tyn_scene *scene, const char *format, ...) TYN_PRINTF(2, 3);
+
+// Checks every number of the scene; the first fault is one log line.
+TYN_API tyn_result tyn_scene_check(const tyn_scene *scene, const tyn_log *log);
+
+// Union of the world boxes of all shapes. False (and zeros) if there is none.
+TYN_API bool tyn_scene_bounds(const tyn_scene *scene, float lo[3], float hi[3]);
+
+// The camera used when a scene has none: the media's bounding sphere framed at 40 degrees from a
+// little above.
+TYN_API void tyn_camera_frame_scene(tyn_camera *camera, const tyn_scene *scene);
+
+// Looks from `from` at `at`; up is +Y, -Z where the view is parallel to it.
+TYN_API tyn_result tyn_camera_look_at(tyn_camera *camera, const float from[3], const float at[3]);
+
+// Overrides of every medium (`--sigma-s`, ...). NULL fields are left. albedo is applied last, keeping
+// sigma_t. density_scale <= 0 means "not given".
+typedef struct tyn_medium_override {
+    const float *sigma_s, *sigma_a, *g, *albedo; // 3 floats each
+    float density_scale;
+} tyn_medium_override;
+TYN_API tyn_result tyn_scene_override(tyn_scene *scene, const tyn_medium_override *override,
+                                      const tyn_log *log);
+
+#ifdef __cplusplus
+}
+#endif

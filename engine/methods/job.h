@@ -1,0 +1,64 @@
+// job.h -- what a method is given and the helpers that every method uses.
+//
+// A method is one file: it turns a job into graph nodes. It is called for every frame and must be
+// cheap and deterministic: no GPU calls, no allocation.
+#pragma once
+#include <tyndall/context.h>
+#include "graph/graph.h"
+#include "scene_args.h"
+
+// The scene in the medium frame, made once per frame by the engine.
+typedef struct tyn_frame_scene {
+    struct medium_block medium;
+    struct shape_block shapes[TYN_MAX_SHAPES];
+    struct light_block lights[TYN_MAX_LIGHTS];
+    uint32_t num_lights, num_suns; // suns = directional lights, first in `lights`
+    struct camera_block camera;
+    struct env_block environment;
+    bool direct;    // one unsheared box: the atlas is the density texture, `medium` need not resample
+    bool grey;      // sigma_s, sigma_a, g equal in all channels (and no coefficient textures)
+    bool emissive;
+    bool empty;     // no medium at all, or no coefficient above 0
+    float m_from_world[16]; // rigid
+} tyn_frame_scene;
+
+// Resources every method starts from; a {0} ref does not exist in this scene.
+typedef struct tyn_scene_refs {
+    tyn_ref atlas;       // 3D R16F or R32F, all density grids (sampled)
+    tyn_ref medium;      // struct medium_block
+    tyn_ref shapes;      // struct shape_block[]
+    tyn_ref lights;      // struct light_block[]
+    tyn_ref camera;      // struct camera_block
+    tyn_ref environment; // struct env_block
+    tyn_ref env_map;     // 2D RGBA32F; {0} if constant
+    tyn_ref env_cdf;     // path: buffer, see tyn_env_cdf in job.c; {0} if constant
+    tyn_ref points;      // PROBE: vec3 in M, scalar
+    tyn_ref depth;       // COMPOSITE: host depth
+    tyn_ref color;       // COMPOSITE: host colour
+} tyn_scene_refs;
+
+typedef struct tyn_job {
+    const tyn_scene *scene;
+    const tyn_view *view;
+    const tyn_settings *settings;
+    const tyn_frame_scene *frame;
+    tyn_scene_refs refs;
+    uint32_t outputs;       // set of tyn_output that is wanted
+    float view_to_clip[16]; // of the host's depth
+    const tyn_log *log;
+    void (*warn)(void *user, const char *line); // goes to the report's warnings, once per text
+    void *warn_user;
+} tyn_job;
+
+typedef struct tyn_method {
+    const char *name, *summary;
+    const tyn_pass_desc *const *passes; // NULL-terminated, frame order
+    uint32_t outputs;                   // set of tyn_output it can make
+    bool progressive;                   // uses view.first_sample, num_samples
+    // Largest work a single record may be given (view.num_samples) to keep a dispatch short; NULL if
+    // not progressive.
+    uint32_t (*batch)(const tyn_job *job);
+    tyn_result (*declare)(tyn_graph *g, const tyn_job *job);
+} tyn_method;
+
+extern const tyn_method tyn_method_pop, tyn_method_pop_paper, tyn_method_single, tyn_method_path;

@@ -1,0 +1,26 @@
+// shared.h -- lets one header describe a struct to C and to GLSL (scalar block layout on both sides).
+#ifndef TYN_SHARED_H
+#define TYN_SHARED_H
+
+#ifdef __STDC__
+#include <stdint.h>
+#include <assert.h>
+typedef uint32_t tyn_uint;
+typedef float tyn_vec2[2];
+typedef float tyn_vec3[3];
+typedef float tyn_vec4[4];
+typedef uint32_t tyn_uvec2[2];
+typedef uint32_t tyn_uvec3[3];
+// Size in bytes that scalar layout gives the struct.
+#define TYN_ASSERT_SIZE(type, bytes) static_assert(sizeof(struct type) == (bytes), #type)
+#else
+#define tyn_uint uint
+#define tyn_vec2 vec2
+#define tyn_vec3 vec3
+#define tyn_vec4 vec4
+#define tyn_uvec2 uvec2
+#define tyn_uvec3 uvec3
+#define TYN_ASSERT_SIZE(type, bytes)
+#endif
+
+#endif
