@@ -1,0 +1,154 @@
+#!/bin/sh
+# floors.sh SOURCE_ROOT -- checks the layering of the tree from its #include lines.
+#
+# Floors, bottom to top: base < gpu, scene, io < graph < passes < methods < plugin < frame < tools,
+# samples, tests. A file includes its own folder and lower floors only; passes do not include each
+# other; tools and samples see nothing but <tyndall/...>; public headers include lower tiers only.
+set -eu
+
+# check ROOT: prints one line a fault; status 1 if there is any.
+check()
+(
+    cd "$1"
+    find engine passes shaders tools samples -type f \
+        \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.hpp' -o -name '*.comp' -o -name '*.glsl' \) \
+        2>/dev/null | sort | xargs awk '
+    function exists(path,   line, r) {
+        if (!(path in seen)) {
+            r = (getline line < path)
+            close(path)
+            seen[path] = r >= 0
+        }
+        return seen[path]
+    }
+    function plain(path) { # without "x/../"
+        while (sub(/[^\/.]+\/\.\.\//, "", path)) { }
+        return path
+    }
+    # Where the compiler would find it; "" = not ours (system, third party).
+    function resolve(file, name, quoted,   dir, n, i, roots) {
+        dir = file
+        sub(/[^\/]*$/, "", dir)
+        if (quoted && exists(dir name)) { return plain(dir name) }
+        n = split("engine/include/ engine/ ./ shaders/", roots, " ")
+        for (i = 1; i <= n; i++) {
+            if (exists(roots[i] name)) {
+                sub(/^\.\//, "", roots[i])
+                return roots[i] name
+            }
+        }
+        if (name ~ /\.comp\.h$/ && exists(dir substr(name, 1, length(name) - 2))) {
+            return dir name # made from the shader beside it
+        }
+        return ""
+    }
+    # The folder that is one unit of the layering.
+    function unit(path,   p, n) {
+        n = split(path, p, "/")
+        if (p[1] == "engine" && p[2] == "include") { return "public/" p[n] }
+        if (p[1] == "engine" || p[1] == "passes" || p[1] == "samples") { return p[1] "/" p[2] }
+        return p[1]
+    }
+    function floor_of(u) {
+        if (u ~ /^passes\//) { return 3 }
+        if (u ~ /^samples\//) { return 7 }
+        return (u in level) ? level[u] : -1
+    }
+    function fault(text) {
+        print FILENAME ":" FNR ": " text
+        faults++
+    }
+    BEGIN {
+        level["engine/base"] = 0
+        level["engine/gpu"] = level["engine/scene"] = level["engine/io"] = 1
+        level["engine/graph"] = 2
+        level["engine/methods"] = 4
+        level["engine/plugin"] = 5
+        level["engine/frame"] = 6
+        level["tools"] = 7
+        # Lowest floor that may see a public header, and the tier of the header itself.
+        lowest["base.h"] = 0
+        lowest["device.h"] = lowest["scene.h"] = lowest["io.h"] = 1
+        lowest["pass.h"] = 2
+        lowest["context.h"] = lowest["registry.h"] = lowest["offline.h"] = 4
+        tier["base.h"] = 0
+        tier["device.h"] = tier["scene.h"] = 1
+        tier["io.h"] = tier["pass.h"] = 2
+        tier["context.h"] = 3
+        tier["registry.h"] = 4
+        tier["offline.h"] = 5
+    }
+    /^[ \t]*#[ \t]*include[ \t]*["<]/ {
+        quoted = /include[ \t]*"/
+        name = $0
+        sub(/^[^"<]*["<]/, "", name)
+        sub(/[">].*$/, "", name)
+        target = resolve(FILENAME, name, quoted)
+        from = unit(FILENAME)
+        if (target == "") {
+            if (name ~ /^tyndall\// || (quoted && from != "engine/io")) { fault("no such header: " name) }
+            next
+        }
+        to = unit(target)
+        if (from == to) { next }
+        if (from ~ /^public\//) {
+            a = tier[substr(from, 8)]
+            b = to ~ /^public\// ? tier[substr(to, 8)] : 99
+            if (b >= a) { fault("a public header includes " name ", which is not of a lower tier") }
+        } else if (from == "tools" || from ~ /^samples\//) {
+            if (to !~ /^public\//) { fault(from " sees public headers only, not " name) }
+        } else if (from == "shaders") {
+            fault("shaders include only each other, not " name)
+        } else if (floor_of(from) < 0) {
+            fault("no floor is known for " from)
+        } else if (to ~ /^public\//) {
+            if (lowest[substr(to, 8)] > floor_of(from)) { fault(from " is below <" name ">") }
+        } else if (to == "shaders") {
+            if (floor_of(from) < 3 && from != "engine/graph") { fault(from " is below the shaders") }
+        } else if (from ~ /^passes\// && to ~ /^passes\//) {
+            fault("passes do not include each other: " name)
+        } else if (floor_of(to) < 0) {
+            fault("no floor is known for " to)
+        } else if (floor_of(to) >= floor_of(from)) {
+            fault(from " includes " name " of " to ", which is not below it")
+        }
+    }
+    END { exit faults > 0 }'
+)
+
+# The check must find what it is for: every line below is a fault, and nothing else is.
+self=$(mktemp -d)
+trap 'rm -rf "$self"' EXIT
+mkdir -p "$self/engine/include/tyndall" "$self/engine/base" "$self/engine/gpu" "$self/engine/scene" \
+    "$self/engine/graph" "$self/passes/a" "$self/passes/b" "$self/shaders" "$self/tools"
+cd "$self"
+for f in base device scene pass context; do : > engine/include/tyndall/$f.h; done
+: > engine/base/hash.h; : > engine/gpu/gpu.h; : > engine/scene/s.h; : > engine/graph/graph.h
+: > passes/a/a.h; : > passes/b/b.h; : > shaders/args.h; : > passes/a/a_go.comp
+printf '%s\n' '#include "gpu/gpu.h"' '#include <tyndall/device.h>' > engine/base/bad.c
+printf '%s\n' '#include "scene/s.h"' '#include "graph/graph.h"' '#include "args.h"' > engine/gpu/bad.c
+printf '%s\n' '#include "passes/b/b.h"' '#include "../b/b.h"' '#include <tyndall/context.h>' \
+    '#include "none.h"' '#include "b_go.comp.h"' > passes/a/bad.c
+printf '%s\n' '#include "context.h"' > engine/include/tyndall/scene.h
+printf '%s\n' '#include "base/hash.h"' '#include <passes/a/a.h>' > tools/bad.c
+printf '%s\n' '#include "passes/a/a.h"' > shaders/bad.glsl
+printf '%s\n' '#include "a.h"' '#include "a_go.comp.h"' '#include "args.h"' '#include <tyndall/pass.h>' \
+    '#include "base/hash.h"' '#include <math.h>' > passes/a/good.c
+cd - > /dev/null
+status=0
+found=$(check "$self") || status=$?
+lines=$(printf '%s\n' "$found" | wc -l)
+if [ "$status" = 0 ] || [ "$lines" != 14 ] || printf '%s\n' "$found" | grep -q good.c; then
+    printf 'the check itself is broken: 14 faults expected, found %s:\n%s\n' "$lines" "$found"
+    exit 1
+fi
+
+check "$1"
+
+# Every public header is compiled alone by the test beside this one.
+for header in "$1"/engine/include/tyndall/*.h; do
+    grep -q "'$(basename "$header" .h)'" "$1/tests/unit/meson.build" || {
+        echo "tests/unit/meson.build: $(basename "$header") is missing from public_headers"
+        exit 1
+    }
+done
