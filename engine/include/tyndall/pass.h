@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-enum { TYN_MAX_PORTS = 32, TYN_MAX_BINDINGS = 16, TYN_MAX_SPEC = 8, TYN_MAX_ARGS = 128 };
+enum { TYN_MAX_PORTS = 32, TYN_MAX_BINDINGS = 32, TYN_MAX_SPEC = 8, TYN_MAX_ARGS = 128 };
 
 // ---- shapes ---------------------------------------------------------------------------------
 

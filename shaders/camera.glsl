@@ -1,0 +1,69 @@
+// camera.glsl -- rays of image positions, and where a ray is inside a box.
+#ifndef TYN_CAMERA_GLSL
+#define TYN_CAMERA_GLSL
+#include "scene_args.h"
+
+struct camera_ray {
+    vec3 origin;    // M, m
+    vec3 direction; // unit, away from the camera
+};
+
+// Ray through image position `pixel` (column + u, row + v), row 0 on top, (u, v) in [0, 1)^2.
+camera_ray camera_ray_through(camera_block camera, vec2 pixel)
+{
+    vec2 s = 2.0 * pixel / vec2(camera.size) - 1.0;
+    vec3 across = (s.x + camera.shift.x) * camera.half_width * camera.right +
+                  (camera.shift.y - s.y) * camera.half_height * camera.up;
+    if (camera.orthographic != 0u) {
+        return camera_ray(camera.origin + across, camera.forward);
+    }
+    return camera_ray(camera.origin, normalize(camera.forward + across));
+}
+
+// 1 / direction with components that are never infinite, so that a ray within a face of a box gives
+// no 0 * inf.
+vec3 ray_inverse(vec3 direction)
+{
+    vec3 sign_of = mix(vec3(-1.0), vec3(1.0), greaterThanEqual(direction, vec3(0.0)));
+    return sign_of / max(abs(direction), vec3(1e-18));
+}
+
+// Distances at which the ray enters and leaves the box [lo, hi]; empty if x >= y.
+vec2 ray_box(vec3 origin, vec3 inverse_direction, vec3 lo, vec3 hi)
+{
+    vec3 a = (lo - origin) * inverse_direction;
+    vec3 b = (hi - origin) * inverse_direction;
+    vec3 enter = min(a, b), leave = max(a, b);
+    return vec2(max(max(enter.x, enter.y), enter.z), min(min(leave.x, leave.y), leave.z));
+}
+
+// The same for the sphere of radius r about 0; `direction` need not be unit.
+vec2 ray_sphere(vec3 origin, vec3 direction, float r)
+{
+    // Distance of the line to the centre first: stable for origins far away.
+    float dd = dot(direction, direction);
+    float closest = -dot(origin, direction) / dd;
+    vec3 nearest = origin + closest * direction;
+    float h2 = r * r - dot(nearest, nearest);
+    if (h2 <= 0.0) {
+        return vec2(1.0, 0.0);
+    }
+    float half_chord = sqrt(h2 / dd);
+    return vec2(closest - half_chord, closest + half_chord);
+}
+
+// Span of a ray in a shape of the scene.
+vec2 ray_shape(shape_block shape, vec3 origin, vec3 direction)
+{
+    vec3 o = vec3(dot(shape.rows[0].xyz, origin), dot(shape.rows[1].xyz, origin),
+                  dot(shape.rows[2].xyz, origin)) +
+             vec3(shape.rows[0].w, shape.rows[1].w, shape.rows[2].w);
+    vec3 d = vec3(dot(shape.rows[0].xyz, direction), dot(shape.rows[1].xyz, direction),
+                  dot(shape.rows[2].xyz, direction));
+    if (shape.kind == TYN_SHAPE_KIND_SPHERE) {
+        return ray_sphere(o, d, 0.5);
+    }
+    return ray_box(o, ray_inverse(d), vec3(-0.5), vec3(0.5));
+}
+
+#endif
