@@ -1,0 +1,100 @@
+// lattice.h -- the light that has scattered: one solve on a lattice of cubic cells for all lights.
+//
+// Three passes, so that what does not change is not done again:
+//   lattice_cells   the medium averaged over the cells         (again when the medium changes)
+//   lattice_source  unscattered sunlight per cell              (... or a sun changes)
+//   lattice         fluence and flux of the scattered light    (... or the environment changes)
+// None of them depends on the camera.
+//
+// Coefficients are those of delta scaling: f = g^2 for g > 0, else 0; g' = (g - f) / (1 - f),
+// sigma_s' = (1 - f) sigma_s, sigma_t' = sigma_a + sigma_s'. Light scattered into the forward peak f
+// counts as not scattered (Joseph, Wiscombe and Weinman 1976).
+#pragma once
+#include <tyndall/pass.h>
+#include "scene_args.h"
+
+enum { TYN_LATTICE_MAX_CELLS = 64, TYN_LATTICE_MAX_SUNS = 4 };
+
+// What all passes of a lattice have in common; a method fills it once.
+typedef struct tyn_lattice_shape {
+    float extent[3];   // medium_block.extent, m
+    int32_t cells;     // along the longest side: the param "lattice.cells"
+    uint32_t channels; // 1 or 3 that are solved
+    float tint[3];     // of the one channel (see tyn_lattice_tint), else 1, 1, 1
+} tyn_lattice_shape;
+
+// Cells along each axis: cubes of longest side / cells; the box they fill holds the medium's.
+tyn_extent tyn_lattice_dims(const float extent[3], int32_t cells);
+
+// True if `n` colours (lights, emission, mean of the environment) are multiples of one colour, its
+// `tint` with a largest component of 1. With a grey medium one channel is then enough: shaders solve for
+// dot(color, tint) / dot(tint, tint), and merge and probe multiply by the tint. Else (1, 1, 1).
+bool tyn_lattice_tint(const float (*colors)[3], uint32_t n, float tint[3]);
+
+// ---- lattice_cells ----------------------------------------------------------------------------
+
+typedef struct tyn_lattice_cells_params {
+    tyn_lattice_shape shape;
+    uint32_t mode; // TYN_MEDIUM_*
+} tyn_lattice_cells_params;
+
+enum {
+    LATTICE_CELLS_PORT_MEDIUM,   // IN buffer struct medium_block
+    LATTICE_CELLS_PORT_DENSITY,  // IN optional 3D: mode DENSITY
+    LATTICE_CELLS_PORT_SIGMA_S,  // IN optional 3D: mode COEFFICIENTS, as the three below
+    LATTICE_CELLS_PORT_SIGMA_A,
+    LATTICE_CELLS_PORT_G,
+    LATTICE_CELLS_PORT_EMISSION, // also optional there
+    LATTICE_CELLS_PORT_CELLS,    // OUT 3D RGBA32F, channels stacked along z: sigma_s', sigma_a, g', emission
+    LATTICE_CELLS_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_lattice_cells;
+
+// ---- lattice_source ---------------------------------------------------------------------------
+
+typedef struct tyn_lattice_source_params {
+    tyn_lattice_shape shape;
+    uint32_t mode;     // TYN_MEDIUM_*
+    uint32_t num_suns; // 0..4; 0: the pass need not be added
+} tyn_lattice_source_params;
+
+enum {
+    LATTICE_SOURCE_PORT_MEDIUM,  // IN buffer struct medium_block
+    LATTICE_SOURCE_PORT_LIGHTS,  // IN buffer struct light_block[]
+    LATTICE_SOURCE_PORT_CELLS,   // IN 3D
+    LATTICE_SOURCE_PORT_DENSITY, // IN optional 3D: mode DENSITY
+    LATTICE_SOURCE_PORT_SIGMA_S, // IN optional 3D: mode COEFFICIENTS, as g
+    LATTICE_SOURCE_PORT_G,
+    LATTICE_SOURCE_PORT_BEAMS,   // IN buffer struct beam_block[]
+    LATTICE_SOURCE_PORT_COLUMN,  // IN optional 3D: mode DENSITY
+    LATTICE_SOURCE_PORT_TAU_S,   // IN optional 3D: mode COEFFICIENTS, as the two below
+    LATTICE_SOURCE_PORT_TAU_A,
+    LATTICE_SOURCE_PORT_TAU_P,
+    LATTICE_SOURCE_PORT_SOURCE,  // OUT 3D RGBA32F, stacked: sum E T' over the suns, sum E T' direction (W/m^2)
+    LATTICE_SOURCE_PORT_POWER,   // OUT buffer: per sun the power that enters and that its beam loses, for balance
+    LATTICE_SOURCE_PORT_SUNLIT,  // SCRATCH
+    LATTICE_SOURCE_PORT_SUMS,    // SCRATCH
+    LATTICE_SOURCE_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_lattice_source;
+
+// ---- lattice ----------------------------------------------------------------------------------
+
+typedef struct tyn_lattice_params {
+    tyn_lattice_shape shape; // shape.cells is the user's "lattice.cells"
+    int32_t sweeps;          // 1..64
+    int32_t cycles;          // V-cycles of the diffusion correction after each sweep, 0..8
+    uint32_t anderson;       // 1: mix the last three sweeps
+} tyn_lattice_params;
+
+enum {
+    LATTICE_PORT_MEDIUM,      // IN buffer struct medium_block
+    LATTICE_PORT_CELLS,       // IN 3D, of lattice_cells
+    LATTICE_PORT_SOURCE,      // IN optional 3D, of lattice_source
+    LATTICE_PORT_ENVIRONMENT, // IN optional buffer struct env_block: its mean enters at the box
+    LATTICE_PORT_MOMENTS,     // OUT 3D RGBA32F, stacked: fluence phi and net flux (x, y, z) of the light that
+                              // has scattered, came from the environment or was emitted, W/m^2
+    LATTICE_PORT_LEAKS,       // OUT buffer: what left the box in the last sweep, for balance
+    LATTICE_PORT_FIRST_SCRATCH,
+};
+extern const tyn_pass_desc tyn_pass_lattice;

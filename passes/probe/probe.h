@@ -1,0 +1,46 @@
+// probe.h -- the light field of the lattice at points, and where the energy goes.
+#pragma once
+#include <tyndall/pass.h>
+
+typedef struct tyn_probe_params {
+    uint32_t mode;           // TYN_MEDIUM_*
+    uint32_t channels;       // of `moments`: 1 or 3
+    float tint[3];           // of the one channel (tyn_lattice_shape.tint)
+    uint32_t num_suns;       // 0..4
+    uint32_t scattered_only; // 1: without the light that has not scattered
+} tyn_probe_params;
+
+enum {
+    PROBE_PORT_MEDIUM,  // IN buffer struct medium_block
+    PROBE_PORT_LIGHTS,  // IN buffer struct light_block[]
+    PROBE_PORT_MOMENTS, // IN 3D, of lattice
+    PROBE_PORT_BEAMS,   // IN optional buffer struct beam_block[]
+    PROBE_PORT_COLUMN,  // IN optional 3D: mode DENSITY
+    PROBE_PORT_TAU_S,   // IN optional 3D: mode COEFFICIENTS, as the two below
+    PROBE_PORT_TAU_A,
+    PROBE_PORT_TAU_P,
+    PROBE_PORT_POINTS,  // IN buffer vec3[], M, m
+    PROBE_PORT_RESULTS, // OUT buffer tyn_probe_result[]
+    PROBE_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_probe;
+
+typedef struct tyn_balance_params {
+    uint32_t channels;
+    float tint[3];
+    uint32_t num_suns;
+} tyn_balance_params;
+
+enum {
+    BALANCE_PORT_MEDIUM,      // IN buffer struct medium_block
+    BALANCE_PORT_ENVIRONMENT, // IN optional buffer struct env_block
+    BALANCE_PORT_CELLS,       // IN 3D, of lattice_cells
+    BALANCE_PORT_MOMENTS,     // IN 3D, of lattice
+    BALANCE_PORT_SOURCE,      // IN optional 3D, of lattice_source
+    BALANCE_PORT_POWER,       // IN optional buffer, of lattice_source
+    BALANCE_PORT_LEAKS,       // IN buffer, of lattice
+    BALANCE_PORT_BALANCE,     // OUT buffer tyn_balance
+    BALANCE_PORT_PARTIALS,    // SCRATCH
+    BALANCE_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_balance;
