@@ -1,0 +1,20 @@
+// scatter_lut.h -- table of the light scattered forward any number of times along a beam.
+#pragma once
+#include <tyndall/pass.h>
+#include "scene_args.h"
+#include "scatter_lut_args.h"
+
+typedef struct tyn_scatter_lut_params {
+    uint32_t mode; // TYN_MEDIUM_*
+    float g[3];    // DENSITY: of the colour channels, in (-1, 1)
+    float g_max;   // COEFFICIENTS: largest g of any medium
+} tyn_scatter_lut_params;
+
+enum {
+    SCATTER_LUT_PORT_LUT,       // OUT 3D RG32F: K_tms and K_lobe over depth, angle and row, in the form
+                                // that scatter_lut.glsl reads
+    SCATTER_LUT_PORT_LUT_BLOCK, // OUT buffer struct lut_block
+    SCATTER_LUT_PORT_MOMENTS,   // SCRATCH buffer: Legendre moments F_l and g^l - F_l of the rows
+    SCATTER_LUT_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_scatter_lut;

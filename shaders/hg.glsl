@@ -1,0 +1,89 @@
+// hg.glsl -- the Henyey-Greenstein phase function and its delta scaling. No bindings.
+//
+// p(mu) = (1 - g^2) / (4 pi s^3),  s^2 = 1 + g^2 - 2 g mu,  -1 < g < 1,  mu = cosine of the scattering
+// angle. Every form below is free of the cancellations of the textbook forms at g -> 0 and |g| -> 1:
+// s^2 = (1 - |g|)^2 + 2 |g| (1 -+ mu) has only non-negative terms.
+#ifndef TYN_HG_GLSL
+#define TYN_HG_GLSL
+
+const float HG_PI = 3.14159265358979;
+const float HG_MAX = 0.995; // narrowest lobe that the solvers resolve; see similarity_clamp
+
+// s from 1 - mu, which a caller may know better than mu itself.
+float hg_s(float g, float one_minus_mu)
+{
+    float a = abs(g);
+    float away = g >= 0.0 ? one_minus_mu : 2.0 - one_minus_mu;
+    return sqrt((1.0 - a) * (1.0 - a) + 2.0 * a * max(away, 0.0));
+}
+
+// Phase function, 1/sr. Near the peak of a narrow lobe give 1 - mu = |v - d|^2 / 2, not a rounded mu.
+float hg_near(float g, float one_minus_mu)
+{
+    float s = hg_s(g, one_minus_mu);
+    return (1.0 - g) * (1.0 + g) / (4.0 * HG_PI * s * s * s);
+}
+
+float hg(float g, float mu)
+{
+    return hg_near(g, 1.0 - mu);
+}
+
+// Fraction scattered to cosines below mu: 2 pi int_-1^mu p. Limits: g -> 1 gives 0 for mu < 1, g -> -1
+// gives 1 for mu > -1.
+float hg_below(float g, float mu)
+{
+    float s = hg_s(g, 1.0 - mu);
+    return (1.0 - g) * (1.0 + mu) / (s * (s + 1.0 + g));
+}
+
+// 1 - hg_below without the cancellation at the front.
+float hg_above(float g, float mu)
+{
+    float s = hg_s(g, 1.0 - mu);
+    return (1.0 + g) * (1.0 - mu) / (s * (s + 1.0 - g));
+}
+
+// 1 - mu of a scattering angle with hg_below(g, mu) = u, u in [0, 1]. The usual inverse
+// (1 + g^2 - ((1 - g^2) / (1 - g + 2 g u))^2) / (2 g) multiplied out, so that g = 0 is no special case
+// and a narrow lobe keeps its relative precision.
+float hg_sample(float g, float u)
+{
+    float d = (1.0 - g) + 2.0 * g * u;
+    float q = (1.0 - g) / d;
+    return 2.0 * (1.0 - u) * q * q * (1.0 + g * u);
+}
+
+// ---- delta scaling ------------------------------------------------------------------------------
+
+// Part of the scattering that counts as going straight on: f = g^2, so that the remaining
+// p = f delta + (1 - f) p' has the right first two moments (Joseph, Wiscombe and Weinman 1976); none
+// for backward scattering.
+vec3 delta_fraction(vec3 g)
+{
+    vec3 forward = max(g, vec3(0.0));
+    return forward * forward;
+}
+
+float delta_fraction(float g)
+{
+    float forward = max(g, 0.0);
+    return forward * forward;
+}
+
+// Mean cosine of what is left, (g - f) / (1 - f): g / (1 + g) for g > 0, else g.
+vec3 delta_cosine(vec3 g)
+{
+    return g / (1.0 + max(g, vec3(0.0)));
+}
+
+// A lobe narrower than HG_MAX is replaced by that one with as much less scattering that the transport
+// coefficient sigma_s (1 - g) stays: the widths differ by a third of a degree. What is seen *through*
+// the medium (transmittance, background) keeps the true sigma_s.
+void similarity_clamp(inout vec3 sigma_s, inout vec3 g)
+{
+    sigma_s *= min(vec3(1.0), (1.0 - g) / (1.0 - HG_MAX));
+    g = min(g, vec3(HG_MAX));
+}
+
+#endif

@@ -1,0 +1,24 @@
+// scatter_lut_args.h -- the table of multiple forward scattering. Included by C and GLSL; scalar layout.
+#ifndef TYN_SCATTER_LUT_ARGS_H
+#define TYN_SCATTER_LUT_ARGS_H
+#include "shared.h"
+
+#define TYN_LUT_MAX_ROWS 16
+#define TYN_LUT_DEPTHS 64  // texels along the scattering depth
+#define TYN_LUT_ANGLES 128 // texels along the angle
+
+struct lut_block { // storage buffer "lut_block"
+    tyn_uint num_rows;
+    tyn_uint spread;        // 0: a row per distinct g; 1: rows evenly spread in -ln(1 - g)
+    float log_first;        // spread: -ln(1 - g) of the first row
+    float log_step;         // spread: ... from row to row
+    tyn_uvec3 channel_row;  // not spread: row of each colour channel
+    tyn_uint num_terms;     // of the longest series
+    float g[TYN_LUT_MAX_ROWS];
+    float theta_1[TYN_LUT_MAX_ROWS]; // half width of the forward lobe, radians; 0 = no lobe
+    tyn_uint terms[TYN_LUT_MAX_ROWS]; // length of the row's series
+    tyn_uint first_term[TYN_LUT_MAX_ROWS]; // where it starts in the buffer "moments"
+};
+TYN_ASSERT_SIZE(lut_block, 288);
+
+#endif

@@ -1,0 +1,67 @@
+// scatter_lut_map.glsl -- where in the table a depth, an angle and a g are. No bindings.
+#ifndef TYN_SCATTER_LUT_MAP_GLSL
+#define TYN_SCATTER_LUT_MAP_GLSL
+#include "scatter_lut_args.h"
+
+// Largest depth in the table: the beam is e^-20 of itself there. Beyond it the sums go as
+// e^{-tau (1 - f)}, which is not in the table.
+float lut_depth_max(float f)
+{
+    return 20.0 / (1.0 - f);
+}
+
+// Texture u per ln(1 + tau), texel centres at both ends.
+float lut_depth_scale(float f)
+{
+    return float(TYN_LUT_DEPTHS - 1) / (float(TYN_LUT_DEPTHS) * log(1.0 + lut_depth_max(f)));
+}
+
+float lut_u(float tau, float scale)
+{
+    return 0.5 / float(TYN_LUT_DEPTHS) + min(log(1.0 + max(tau, 0.0)) * scale,
+                                             float(TYN_LUT_DEPTHS - 1) / float(TYN_LUT_DEPTHS));
+}
+
+float lut_depth(uint texel, float f)
+{
+    return exp(float(texel) / float(TYN_LUT_DEPTHS - 1) * log(1.0 + lut_depth_max(f))) - 1.0;
+}
+
+// Width of twice scattered light, p * p = Henyey-Greenstein of g^2, radians.
+float lut_width(float g)
+{
+    return 2.0 * (1.0 - abs(g));
+}
+
+float lut_v(float theta, float g)
+{
+    float width = lut_width(g);
+    float t = log(1.0 + theta / width) / log(1.0 + 3.14159265358979 / width);
+    return (0.5 + t * float(TYN_LUT_ANGLES - 1)) / float(TYN_LUT_ANGLES);
+}
+
+float lut_theta(uint texel, float g)
+{
+    float width = lut_width(g);
+    float t = float(texel) / float(TYN_LUT_ANGLES - 1);
+    return width * (exp(t * log(1.0 + 3.14159265358979 / width)) - 1.0);
+}
+
+// Fractional row of a spread table.
+float lut_row(float log_first, float log_step, uint num_rows, float g)
+{
+    float row = (-log(1.0 - max(g, 0.0)) - log_first) / max(log_step, 1e-6);
+    return clamp(row, 0.0, float(num_rows - 1u));
+}
+
+// h: 1 inside theta_1 / 2, 0 outside 3 theta_1 / 2, smooth between.
+float lut_window(float theta, float theta_1)
+{
+    if (theta_1 <= 0.0) {
+        return 0.0;
+    }
+    float x = clamp(theta / theta_1 - 0.5, 0.0, 1.0);
+    return 1.0 - x * x * (3.0 - 2.0 * x);
+}
+
+#endif
