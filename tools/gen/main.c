@@ -1,0 +1,54 @@
+// main.c -- `tyndall-scenes FOLDER`: writes the sample scenes, the same bytes on every machine.
+//
+// The arithmetic is + - * / and sqrt, which IEEE 754 rounds exactly; there is no call into the
+// transcendental half of libm, whose last digit is the platform's, and no contraction to fused
+// multiply-add (see meson.build).
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "scenes.h"
+
+// A clear sky without its sun: radiance from the zenith over the horizon to the ground.
+static bool write_sky(const char *folder)
+{
+    enum { WIDTH = 64, HEIGHT = 32 };
+    static float rgb[HEIGHT * WIDTH * 3];
+    const float zenith[3] = {0.06f, 0.14f, 0.36f}, horizon[3] = {0.42f, 0.52f, 0.62f};
+    const float ground[3] = {0.10f, 0.09f, 0.08f};
+    for (int y = 0; y < HEIGHT; y++) {
+        // From +1 at the zenith to -1 at the nadir, linear in the polar angle.
+        const float h = 1.0f - 2.0f * ((float)y + 0.5f) / HEIGHT;
+        const float up = 1.0f - (1.0f - h) * (1.0f - h), down = h < -0.2f ? 1.0f : -5.0f * h;
+        for (int x = 0; x < WIDTH; x++) {
+            for (int k = 0; k < 3; k++) {
+                rgb[(y * WIDTH + x) * 3 + k] = h >= 0
+                                                   ? horizon[k] + (zenith[k] - horizon[k]) * up
+                                                   : horizon[k] + (ground[k] - horizon[k]) * down;
+            }
+        }
+    }
+    return gen_write_hdr(folder, "sky.hdr", WIDTH, HEIGHT, rgb);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 2) {
+        fprintf(stderr, "usage: tyndall-scenes FOLDER    writes the sample scenes there\n");
+        return 2;
+    }
+    const char *folder = argv[1];
+    bool ok = write_sky(folder);
+    for (int i = 0; i < gen_num_scenes; i++) {
+        ok = gen_write_gltf(folder, &gen_scenes[i]) && ok;
+    }
+    gen_grid blobs = gen_blobs();
+    ok = gen_write_u8(folder, "blobs.raw", &blobs) && ok;
+    gen_grid_free(&blobs);
+    gen_grid cumulus = gen_cumulus();
+    ok = gen_write_u8(folder, "cloud.raw", &cumulus) && ok;
+    gen_grid_free(&cumulus);
+    gen_grid plume = gen_plume();
+    ok = gen_write_f16(folder, "smoke.raw", &plume) && ok;
+    gen_grid_free(&plume);
+    return ok ? EXIT_SUCCESS : EXIT_FAILURE;
+}
