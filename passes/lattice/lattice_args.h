@@ -1,0 +1,57 @@
+// lattice_args.h -- push constants and buffers of the lattice kernels. Included by C and GLSL.
+#ifndef TYN_LATTICE_ARGS_H
+#define TYN_LATTICE_ARGS_H
+#include "shared.h"
+
+struct lattice_cells_args {
+    tyn_uvec3 dims; // cells
+    tyn_uint channels;
+    tyn_vec3 tint;
+    tyn_uvec3 samples; // per cell along each axis
+};
+
+struct lattice_source_args {
+    tyn_uvec3 dims;
+    tyn_uint channels;
+    tyn_vec3 tint;
+    tyn_uint samples; // per cell along each axis
+    tyn_uint num_suns;
+};
+
+// Power of sun n in channel c at [n * channels + c], W; everything is per unit of the sun's colour but
+// `scale`, which is a factor.
+struct lattice_power {
+    float entering; // through the medium's box
+    float lost;     // by the beam on its way through, from the optical depths where it leaves
+    float collided; // the same summed over the cells, after scaling
+    float scale;    // that makes the cells lose what the beam loses
+};
+TYN_ASSERT_SIZE(lattice_power, 16);
+
+struct lattice_args { // kernels on the whole lattice
+    tyn_uvec3 dims;
+    tyn_uint channels;
+    tyn_vec3 tint;
+    float dx;        // m
+    tyn_uint lines;  // sweep: threads per direction and channel
+    tyn_uint history; // residual, weights, mix: earlier sweeps to mix in, 0..2
+};
+
+struct lattice_level_args { // kernels on one level of the diffusion grid
+    tyn_uvec3 dims;  // of level 0
+    tyn_uint level;
+    tyn_uint levels; // how many there are
+    tyn_uint colour; // relax: 0 or 1
+    float dx;        // of level 0, m
+    float floor_;    // least sigma_tr, 1/m
+};
+
+#define LATTICE_DIRECTIONS 14
+#define LATTICE_GROUP 128        // threads of a reducing workgroup
+#define LATTICE_NUM_DOTS 5       // dot products of Anderson mixing
+#define LATTICE_MAX_LEVELS 6
+#define LATTICE_COARSE_CELLS 4096 // a level of at most so many cells is solved inside one workgroup
+#define LATTICE_COARSE_GROUP 256
+#define LATTICE_SUN_GROUP 256
+
+#endif
