@@ -39,13 +39,12 @@ typedef struct tyn_lattice_cells_params {
 } tyn_lattice_cells_params;
 
 enum {
-    LATTICE_CELLS_PORT_MEDIUM,   // IN buffer struct medium_block
-    LATTICE_CELLS_PORT_DENSITY,  // IN optional 3D: mode DENSITY
-    LATTICE_CELLS_PORT_SIGMA_S,  // IN optional 3D: mode COEFFICIENTS, as the three below
-    LATTICE_CELLS_PORT_SIGMA_A,
+    LATTICE_CELLS_PORT_MEDIUM,  // IN buffer struct medium_block
+    LATTICE_CELLS_PORT_DENSITY, // IN 3D: density, or sigma_s in mode COEFFICIENTS
+    LATTICE_CELLS_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as the two below
     LATTICE_CELLS_PORT_G,
-    LATTICE_CELLS_PORT_EMISSION, // also optional there
-    LATTICE_CELLS_PORT_CELLS,    // OUT 3D RGBA32F, channels stacked along z: sigma_s', sigma_a, g', emission
+    LATTICE_CELLS_PORT_EMISSION,
+    LATTICE_CELLS_PORT_CELLS, // OUT 3D RGBA32F, channels stacked along z: sigma_s', sigma_a, g', emission
     LATTICE_CELLS_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_lattice_cells;
@@ -62,18 +61,16 @@ enum {
     LATTICE_SOURCE_PORT_MEDIUM,  // IN buffer struct medium_block
     LATTICE_SOURCE_PORT_LIGHTS,  // IN buffer struct light_block[]
     LATTICE_SOURCE_PORT_CELLS,   // IN 3D
-    LATTICE_SOURCE_PORT_DENSITY, // IN optional 3D: mode DENSITY
-    LATTICE_SOURCE_PORT_SIGMA_S, // IN optional 3D: mode COEFFICIENTS, as g
-    LATTICE_SOURCE_PORT_G,
+    LATTICE_SOURCE_PORT_DENSITY, // IN 3D: density, or sigma_s in mode COEFFICIENTS
+    LATTICE_SOURCE_PORT_G,       // IN optional 3D: mode COEFFICIENTS
     LATTICE_SOURCE_PORT_BEAMS,   // IN buffer struct beam_block[]
-    LATTICE_SOURCE_PORT_COLUMN,  // IN optional 3D: mode DENSITY
-    LATTICE_SOURCE_PORT_TAU_S,   // IN optional 3D: mode COEFFICIENTS, as the two below
-    LATTICE_SOURCE_PORT_TAU_A,
+    LATTICE_SOURCE_PORT_COLUMN,  // IN 3D: column, or tau_s in mode COEFFICIENTS
+    LATTICE_SOURCE_PORT_TAU_A,   // IN optional 3D: mode COEFFICIENTS, as the one below
     LATTICE_SOURCE_PORT_TAU_P,
-    LATTICE_SOURCE_PORT_SOURCE,  // OUT 3D RGBA32F, stacked: sum E T' over the suns, sum E T' direction (W/m^2)
-    LATTICE_SOURCE_PORT_POWER,   // OUT buffer: per sun the power that enters and that its beam loses, for balance
-    LATTICE_SOURCE_PORT_SUNLIT,  // SCRATCH
-    LATTICE_SOURCE_PORT_SUMS,    // SCRATCH
+    LATTICE_SOURCE_PORT_SOURCE, // OUT 3D RGBA32F, stacked: sum E T' over the suns, sum E T' direction (W/m^2)
+    LATTICE_SOURCE_PORT_POWER, // OUT buffer: per sun the power that enters and that its beam loses, for balance
+    LATTICE_SOURCE_PORT_SUNLIT, // SCRATCH
+    LATTICE_SOURCE_PORT_SUMS,   // SCRATCH
     LATTICE_SOURCE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_lattice_source;
@@ -92,9 +89,10 @@ enum {
     LATTICE_PORT_CELLS,       // IN 3D, of lattice_cells
     LATTICE_PORT_SOURCE,      // IN optional 3D, of lattice_source
     LATTICE_PORT_ENVIRONMENT, // IN optional buffer struct env_block: its mean enters at the box
-    LATTICE_PORT_MOMENTS,     // OUT 3D RGBA32F, stacked: fluence phi and net flux (x, y, z) of the light that
-                              // has scattered, came from the environment or was emitted, W/m^2
-    LATTICE_PORT_LEAKS,       // OUT buffer: what left the box in the last sweep, for balance
+    LATTICE_PORT_MOMENTS, // OUT 3D RGBA32F, stacked: fluence phi and net flux (x, y, z) of the light that
+                          // has scattered, came from the environment or was emitted, W/m^2
+    LATTICE_PORT_COUNTERS, // OUT buffer struct counters_block
+    LATTICE_PORT_LEAKS,    // OUT buffer: what left the box in the last sweep, for balance
     LATTICE_PORT_FIRST_SCRATCH,
 };
 extern const tyn_pass_desc tyn_pass_lattice;

@@ -32,13 +32,13 @@ struct lattice_args { // kernels on the whole lattice
     tyn_uvec3 dims;
     tyn_uint channels;
     tyn_vec3 tint;
-    float dx;        // m
-    tyn_uint lines;  // sweep: threads per direction and channel
+    float dx;         // m
+    tyn_uint lines;   // sweep: threads per direction and channel
     tyn_uint history; // residual, weights, mix: earlier sweeps to mix in, 0..2
 };
 
 struct lattice_level_args { // kernels on one level of the diffusion grid
-    tyn_uvec3 dims;  // of level 0
+    tyn_uvec3 dims;         // of level 0
     tyn_uint level;
     tyn_uint levels; // how many there are
     tyn_uint colour; // relax: 0 or 1
@@ -47,8 +47,8 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
 };
 
 #define LATTICE_DIRECTIONS 14
-#define LATTICE_GROUP 128        // threads of a reducing workgroup
-#define LATTICE_NUM_DOTS 5       // dot products of Anderson mixing
+#define LATTICE_GROUP 128  // threads of a reducing workgroup
+#define LATTICE_NUM_DOTS 5 // dot products of Anderson mixing
 #define LATTICE_MAX_LEVELS 6
 #define LATTICE_COARSE_CELLS 4096 // a level of at most so many cells is solved inside one workgroup
 #define LATTICE_COARSE_GROUP 256

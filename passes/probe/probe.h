@@ -14,10 +14,10 @@ enum {
     PROBE_PORT_MEDIUM,  // IN buffer struct medium_block
     PROBE_PORT_LIGHTS,  // IN buffer struct light_block[]
     PROBE_PORT_MOMENTS, // IN 3D, of lattice
+    PROBE_PORT_DENSITY, // IN 3D: density, or sigma_s in mode COEFFICIENTS
     PROBE_PORT_BEAMS,   // IN optional buffer struct beam_block[]
-    PROBE_PORT_COLUMN,  // IN optional 3D: mode DENSITY
-    PROBE_PORT_TAU_S,   // IN optional 3D: mode COEFFICIENTS, as the two below
-    PROBE_PORT_TAU_A,
+    PROBE_PORT_COLUMN,  // IN optional 3D: column, or tau_s in mode COEFFICIENTS
+    PROBE_PORT_TAU_A,   // IN optional 3D: mode COEFFICIENTS, as the one below
     PROBE_PORT_TAU_P,
     PROBE_PORT_POINTS,  // IN buffer vec3[], M, m
     PROBE_PORT_RESULTS, // OUT buffer tyn_probe_result[]

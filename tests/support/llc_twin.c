@@ -150,7 +150,8 @@ static double dot(const double (*a)[4], const double (*b)[4], int n)
 
 // Anderson mixing: from up to three pairs (result x of an iteration, change r it made), newest first,
 // the combination of results whose combined change is least.
-static void mix(double (*const x[3])[4], double (*const r[3])[4], int pairs, int n, double (*out)[4])
+static void mix(double (*const x[3])[4], double (*const r[3])[4], int pairs, int n,
+                double (*out)[4])
 {
     double g[2] = {0, 0};
     double(*d[2])[4] = {calloc(n, sizeof *d[0]), calloc(n, sizeof *d[1])};

@@ -53,9 +53,8 @@ static int neighbour(const level *l, const int c[3], int face)
 }
 
 #define FOR_CELLS(l, c, id)                                                                        \
-    for (int c[3] = {0}, id = 0; id < count(l);                                                    \
-         id++, c[0] = id % (l)->n[0], c[1] = id / (l)->n[0] % (l)->n[1],                           \
-             c[2] = id / (l)->n[0] / (l)->n[1])
+    for (int c[3] = {0}, id = 0; id < count(l); id++, c[0] = id % (l)->n[0],                       \
+             c[1] = id / (l)->n[0] % (l)->n[1], c[2] = id / (l)->n[0] / (l)->n[1])
 
 static void finest(const llc_twin *t, level *l)
 {
@@ -65,7 +64,8 @@ static void finest(const llc_twin *t, level *l)
     for (int i = 0; i < count(l); i++) {
         double tau = (t->sigma_s[i] + t->sigma_a[i]) * dx;
         double transport = t->sigma_s[i] + t->sigma_a[i] - t->g[i] * t->sigma_s[i];
-        d[i] = 1 / (3 * fmax(transport, 0.3 / t->longest)) + t->dense_term * dx * fmin(1, tau * tau);
+        d[i] =
+            1 / (3 * fmax(transport, 0.3 / t->longest)) + t->dense_term * dx * fmin(1, tau * tau);
         l->sigma[i] = t->sigma_a[i] * dx * dx * dx;
     }
     FOR_CELLS(l, c, id)
@@ -73,8 +73,8 @@ static void finest(const llc_twin *t, level *l)
         l->diagonal[id] = l->sigma[id];
         for (int f = 0; f < 6; f++) {
             int q = neighbour(l, c, f);
-            l->k[id][f] = q >= 0 ? dx * 2 * d[id] * d[q] / (d[id] + d[q])
-                                 : dx * dx / (2 + dx / (2 * d[id]));
+            l->k[id][f] =
+                q >= 0 ? dx * 2 * d[id] * d[q] / (d[id] + d[q]) : dx * dx / (2 + dx / (2 * d[id]));
             l->diagonal[id] += l->k[id][f];
         }
     }
@@ -92,7 +92,8 @@ static void coarsen(const level *f, double fine_dx, level *l)
         for (int face = 0; face < 6; face++) {
             int axis = face / 2;
             if (neighbour(f, c, face) < 0) {
-                l->k[q][face] += area / (2 * (area / f->k[id][face]) - 2); // half cell twice as long
+                l->k[q][face] +=
+                    area / (2 * (area / f->k[id][face]) - 2); // half cell twice as long
             } else if (c[axis] % 2 == face % 2) {
                 l->k[q][face] += 0.5 * f->k[id][face];
             }
