@@ -55,6 +55,13 @@ tyn_ref tyn_graph_history_buffer(tyn_graph *g, const char *name, uint64_t bytes,
 // memory when it changes (tyn_graph_map).
 void tyn_graph_output(tyn_graph *g, const char *name, tyn_ref ref, bool readback);
 
+// The resource depends on the media alone; nodes that read nothing else are not part of a frame's
+// cost and are spared by tyn_graph_recompute.
+void tyn_graph_mark_media(tyn_graph *g, tyn_ref ref);
+
+// This frame runs every node that depends on more than the media, changed or not (for timing).
+void tyn_graph_recompute(tyn_graph *g);
+
 tyn_extent tyn_graph_extent(const tyn_graph *g, tyn_ref ref);
 const tyn_log *tyn_graph_log(const tyn_graph *g);
 

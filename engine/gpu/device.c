@@ -1,0 +1,271 @@
+// device.c -- tyn_device on a host's VkDevice: requirements, function tables, samplers.
+#include "gpu/device.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---- requirements -----------------------------------------------------------------------------
+
+static const VkPhysicalDeviceVulkan13Features required13 = {
+    .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
+    .synchronization2 = VK_TRUE,
+    .maintenance4 = VK_TRUE, // LocalSizeId and relaxed interfaces that current glslang may emit
+};
+static const VkPhysicalDeviceVulkan12Features required12 = {
+    .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
+    .pNext = (void *)&required13,
+    .scalarBlockLayout = VK_TRUE, // one struct definition for C and GLSL
+};
+static const VkPhysicalDeviceFeatures2 required = {
+    .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+    .pNext = (void *)&required12,
+    .features = {.shaderStorageImageExtendedFormats = VK_TRUE}, // rg32f storage images
+};
+
+const tyn_requirements *tyn_requirements_get(void)
+{
+    static const char *const none[] = {NULL};
+    static const tyn_requirements requirements = {VK_API_VERSION_1_3, &required, none};
+    return &requirements;
+}
+
+static const void *find_in_chain(const void *chain, VkStructureType type)
+{
+    for (const VkBaseInStructure *s = chain; s; s = s->pNext) {
+        if (s->sType == type) {
+            return s;
+        }
+    }
+    return NULL;
+}
+
+const char *tyn_missing_feature(const VkPhysicalDeviceFeatures2 *enabled)
+{
+    const VkPhysicalDeviceVulkan12Features *v12 =
+        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
+    const VkPhysicalDeviceVulkan13Features *v13 =
+        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
+    // A host may chain the promoted structs instead of the core ones.
+    const VkPhysicalDeviceScalarBlockLayoutFeatures *scalar =
+        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SCALAR_BLOCK_LAYOUT_FEATURES);
+    const VkPhysicalDeviceSynchronization2Features *sync2 =
+        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES);
+    const VkPhysicalDeviceMaintenance4Features *maint4 =
+        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES);
+    if (!enabled || !enabled->features.shaderStorageImageExtendedFormats) {
+        return "shaderStorageImageExtendedFormats";
+    }
+    if (!(v12 && v12->scalarBlockLayout) && !(scalar && scalar->scalarBlockLayout)) {
+        return "scalarBlockLayout";
+    }
+    if (!(v13 && v13->synchronization2) && !(sync2 && sync2->synchronization2)) {
+        return "synchronization2";
+    }
+    if (!(v13 && v13->maintenance4) && !(maint4 && maint4->maintenance4)) {
+        return "maintenance4";
+    }
+    return NULL;
+}
+
+// ---- small helpers ----------------------------------------------------------------------------
+
+tyn_result tyn_vk_check(const tyn_device *dev, VkResult result, const char *what)
+{
+    if (result == VK_SUCCESS) {
+        return TYN_OK;
+    }
+    bool memory =
+        result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY;
+    tyn_log_print(&dev->log, TYN_LOG_ERROR, "%s failed with VkResult %d%s", what, (int)result,
+                  memory                               ? " (out of memory)"
+                  : result == VK_ERROR_DEVICE_LOST ? " (device lost)"
+                                                       : "");
+    return memory ? TYN_ERR_MEMORY : TYN_ERR_DEVICE;
+}
+
+void tyn_device_name_object(tyn_device *dev, VkObjectType type, uint64_t handle, const char *name)
+{
+    if (!dev->debug_names || !dev->vk.SetDebugUtilsObjectNameEXT || !name) {
+        return;
+    }
+    dev->vk.SetDebugUtilsObjectNameEXT(
+        dev->device, &(VkDebugUtilsObjectNameInfoEXT){
+                         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+                         .objectType = type,
+                         .objectHandle = handle,
+                         .pObjectName = name,
+                     });
+}
+
+const char *tyn_device_name(const tyn_device *dev)
+{
+    return dev->properties.deviceName;
+}
+
+const char *tyn_device_driver(const tyn_device *dev)
+{
+    return dev->driver;
+}
+
+uint32_t tyn_device_validation_messages(const tyn_device *dev)
+{
+    return dev->validation_messages;
+}
+
+// ---- create, destroy --------------------------------------------------------------------------
+
+static tyn_result load_procs(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa)
+{
+    const char *missing = NULL;
+#define X(name)                                                                                    \
+    dev->vk.name = (PFN_vk##name)gipa(dev->instance, "vk" #name);                                  \
+    missing = dev->vk.name ? missing : "vk" #name;
+    TYN_INSTANCE_PROCS(X)
+#undef X
+    if (!missing) {
+#define X(name)                                                                                    \
+    dev->vk.name = (PFN_vk##name)dev->vk.GetDeviceProcAddr(dev->device, "vk" #name);               \
+    missing = dev->vk.name ? missing : "vk" #name;
+        TYN_DEVICE_PROCS(X)
+#undef X
+    }
+    if (missing) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR,
+                      "get_instance_proc_addr does not know %s; Tyndall needs Vulkan 1.3", missing);
+        return TYN_ERR_UNSUPPORTED;
+    }
+    if (dev->debug_names) {
+#define X(name) dev->vk.name = (PFN_vk##name)gipa(dev->instance, "vk" #name);
+        TYN_DEBUG_PROCS(X)
+#undef X
+        dev->debug_names = dev->vk.SetDebugUtilsObjectNameEXT && dev->vk.CmdBeginDebugUtilsLabelEXT;
+    }
+    return TYN_OK;
+}
+
+static VkResult create_sampler(tyn_device *dev, VkSamplerAddressMode u, VkSampler *out)
+{
+    return dev->vk.CreateSampler(dev->device,
+                                 &(VkSamplerCreateInfo){
+                                     .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                     .magFilter = VK_FILTER_LINEAR,
+                                     .minFilter = VK_FILTER_LINEAR,
+                                     .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
+                                     .addressModeU = u,
+                                     .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                     .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                     .maxLod = VK_LOD_CLAMP_NONE,
+                                 },
+                                 NULL, out);
+}
+
+tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa, const void *cache,
+                           size_t cache_size)
+{
+    dev->get_instance_proc_addr = gipa;
+    tyn_result result = load_procs(dev, gipa);
+    if (result != TYN_OK) {
+        return result;
+    }
+    VkPhysicalDeviceDriverProperties driver = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+    VkPhysicalDeviceProperties2 properties = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
+    dev->vk.GetPhysicalDeviceProperties2(dev->physical_device, &properties);
+    dev->properties = properties.properties;
+    snprintf(dev->driver, sizeof dev->driver, "%.127s %.126s", driver.driverName, driver.driverInfo);
+    dev->vk.GetPhysicalDeviceMemoryProperties(dev->physical_device, &dev->memory);
+
+    uint32_t count = 0;
+    dev->vk.GetPhysicalDeviceQueueFamilyProperties(dev->physical_device, &count, NULL);
+    if (dev->queue_family >= count) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR, "queue_family is %u; the device has %u families",
+                      dev->queue_family, count);
+        return TYN_ERR_PARAMS;
+    }
+    VkQueueFamilyProperties *families = calloc(count, sizeof *families);
+    if (!families) {
+        return TYN_ERR_MEMORY;
+    }
+    dev->vk.GetPhysicalDeviceQueueFamilyProperties(dev->physical_device, &count, families);
+    VkQueueFamilyProperties family = families[dev->queue_family];
+    free(families);
+    dev->timestamp_bits = family.timestampValidBits;
+    if (!(family.queueFlags & VK_QUEUE_COMPUTE_BIT)) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR, "queue_family %u has no compute", dev->queue_family);
+        return TYN_ERR_PARAMS;
+    }
+
+    if (tyn_vk_check(dev, create_sampler(dev, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, &dev->clamp),
+                     "vkCreateSampler") != TYN_OK ||
+        tyn_vk_check(dev, create_sampler(dev, VK_SAMPLER_ADDRESS_MODE_REPEAT, &dev->repeat_x),
+                     "vkCreateSampler") != TYN_OK) {
+        return TYN_ERR_DEVICE;
+    }
+    VkResult made = dev->vk.CreatePipelineCache(
+        dev->device,
+        &(VkPipelineCacheCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
+                                     .initialDataSize = cache_size,
+                                     .pInitialData = cache},
+        NULL, &dev->cache);
+    return tyn_vk_check(dev, made, "vkCreatePipelineCache");
+}
+
+tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out)
+{
+    *out = NULL;
+    const tyn_log *log = params ? &params->log : NULL;
+    if (!params || params->struct_size < sizeof *params || !params->instance ||
+        !params->physical_device || !params->device || !params->get_instance_proc_addr) {
+        tyn_log_print(log, TYN_LOG_ERROR,
+                      "tyn_device_create: instance, physical_device, device and "
+                      "get_instance_proc_addr are required (use the tyn_device_params() macro)");
+        return TYN_ERR_PARAMS;
+    }
+    if (params->api_version < VK_API_VERSION_1_3) {
+        tyn_log_print(log, TYN_LOG_ERROR, "tyn_device_create: api_version is %u.%u; 1.3 is needed",
+                      VK_API_VERSION_MAJOR(params->api_version),
+                      VK_API_VERSION_MINOR(params->api_version));
+        return TYN_ERR_UNSUPPORTED;
+    }
+    const char *missing = tyn_missing_feature(params->features);
+    if (missing) {
+        tyn_log_print(log, TYN_LOG_ERROR,
+                      "tyn_device_create: feature %s is not enabled on the device; "
+                      "tyn_requirements_get() lists what is needed",
+                      missing);
+        return TYN_ERR_UNSUPPORTED;
+    }
+    tyn_device *dev = calloc(1, sizeof *dev);
+    if (!dev) {
+        return TYN_ERR_MEMORY;
+    }
+    dev->log = params->log;
+    dev->instance = params->instance;
+    dev->physical_device = params->physical_device;
+    dev->device = params->device;
+    dev->queue_family = params->queue_family;
+    dev->debug_names = params->debug_names;
+    tyn_result result = tyn_device_init(dev, params->get_instance_proc_addr, params->pipeline_cache,
+                                        params->pipeline_cache_size);
+    if (result != TYN_OK) {
+        tyn_device_destroy(&dev);
+        return result;
+    }
+    *out = dev;
+    return TYN_OK;
+}
+
+void *tyn_device_pipeline_cache(tyn_device *dev, size_t *size)
+{
+    *size = 0;
+    if (dev->vk.GetPipelineCacheData(dev->device, dev->cache, size, NULL) != VK_SUCCESS || !*size) {
+        return NULL;
+    }
+    void *data = malloc(*size);
+    if (data && dev->vk.GetPipelineCacheData(dev->device, dev->cache, size, data) != VK_SUCCESS) {
+        free(data);
+        data = NULL;
+    }
+    return data;
+}

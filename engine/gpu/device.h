@@ -1,0 +1,64 @@
+// device.h -- the inside of tyn_device: functions, limits, samplers, pipelines.
+#pragma once
+#include <tyndall/device.h>
+#include <tyndall/pass.h>
+#include "gpu/procs.h"
+
+// A kernel's layouts, and one pipeline per set of specialisation constants.
+typedef struct tyn_pipeline {
+    const tyn_kernel *kernel;
+    VkDescriptorSetLayout set_layout;
+    VkPipelineLayout layout;
+    struct {
+        uint32_t spec[TYN_MAX_SPEC];
+        VkPipeline pipeline;
+    } *variants;
+    uint32_t num_variants;
+} tyn_pipeline;
+
+struct tyn_device {
+    tyn_log log;
+    VkInstance instance;
+    VkPhysicalDevice physical_device;
+    VkDevice device;
+    uint32_t queue_family;
+    tyn_procs vk;
+    VkPhysicalDeviceProperties properties;
+    char driver[256];
+    VkPhysicalDeviceMemoryProperties memory;
+    uint32_t timestamp_bits; // 0: no timestamps
+    bool debug_names;
+    VkSampler clamp, repeat_x; // linear
+    VkPipelineCache cache;
+    tyn_pipeline **pipelines;
+    uint32_t num_pipelines;
+    // Only of a device opened by ourselves:
+    void *loader;
+    PFN_vkGetInstanceProcAddr get_instance_proc_addr;
+    VkDebugUtilsMessengerEXT messenger;
+    VkQueue queue;
+    uint32_t validation_messages;
+};
+
+// Logs "what: VkResult" and gives the matching tyn_result. TYN_OK for VK_SUCCESS.
+tyn_result tyn_vk_check(const tyn_device *dev, VkResult result, const char *what);
+void tyn_device_name_object(tyn_device *dev, VkObjectType type, uint64_t handle, const char *name);
+
+// The first required feature that `enabled` lacks, or NULL.
+const char *tyn_missing_feature(const VkPhysicalDeviceFeatures2 *enabled);
+
+// Shared by tyn_device_create and tyn_device_open: loads functions, makes samplers and cache.
+tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa, const void *cache,
+                           size_t cache_size);
+
+// Finds or makes the layouts of a kernel, then its pipeline for `spec` (kernel->num_spec values).
+tyn_result tyn_pipeline_get(tyn_device *dev, const tyn_pass_desc *pass, uint32_t kernel,
+                            tyn_pipeline **out);
+tyn_result tyn_pipeline_variant(tyn_device *dev, tyn_pipeline *pipeline, const uint32_t *spec,
+                                VkPipeline *out);
+// The descriptor type of a binding.
+VkDescriptorType tyn_descriptor_type(const tyn_pass_desc *pass, const tyn_binding *binding);
+
+// Finds only; VK_NULL_HANDLE if it was never made.
+VkPipeline tyn_pipeline_find(const tyn_pipeline *pipeline, const uint32_t *spec);
+void tyn_pipelines_destroy(tyn_device *dev);

@@ -1,0 +1,29 @@
+// memory.h -- device memory in few large blocks, given out linearly, freed all at once.
+#pragma once
+#include "gpu/device.h"
+
+typedef struct tyn_block {
+    VkDeviceMemory memory;
+    uint32_t type;
+    VkDeviceSize size, used;
+    void *mapped; // host-visible blocks
+} tyn_block;
+
+typedef struct tyn_heap {
+    tyn_block *blocks;
+    uint32_t num_blocks;
+    VkDeviceSize total;
+} tyn_heap;
+
+typedef enum tyn_memory_kind {
+    TYN_MEMORY_DEVICE = 0,
+    TYN_MEMORY_UPLOAD,   // host-visible and coherent
+    TYN_MEMORY_READBACK, // host-visible and coherent, cached where there is such a type
+} tyn_memory_kind;
+
+// `expected` is what will still be asked for of this kind: the next block is made that large.
+tyn_result tyn_heap_bind_buffer(tyn_device *dev, tyn_heap *heap, VkBuffer buffer,
+                                tyn_memory_kind kind, VkDeviceSize expected, void **mapped);
+tyn_result tyn_heap_bind_image(tyn_device *dev, tyn_heap *heap, VkImage image,
+                               VkDeviceSize expected);
+void tyn_heap_finish(tyn_device *dev, tyn_heap *heap);

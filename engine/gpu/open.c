@@ -1,0 +1,405 @@
+// open.c -- a device of our own: the loader at run time, instance, validation, choice of device.
+#include "gpu/device.h"
+#include <ctype.h>
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct instance_procs {
+    PFN_vkGetInstanceProcAddr gipa;
+    PFN_vkCreateInstance CreateInstance;
+    PFN_vkEnumerateInstanceLayerProperties EnumerateInstanceLayerProperties;
+    PFN_vkEnumerateInstanceExtensionProperties EnumerateInstanceExtensionProperties;
+    PFN_vkEnumerateInstanceVersion EnumerateInstanceVersion;
+} instance_procs;
+
+static tyn_result load_loader(void **loader, instance_procs *procs, const tyn_log *log)
+{
+    *loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
+    if (!*loader) {
+        tyn_log_print(log, TYN_LOG_ERROR, "no Vulkan loader: %s", dlerror());
+        return TYN_ERR_DEVICE;
+    }
+    *(void **)&procs->gipa = dlsym(*loader, "vkGetInstanceProcAddr");
+    if (procs->gipa) {
+#define X(name) procs->name = (PFN_vk##name)procs->gipa(NULL, "vk" #name);
+        X(CreateInstance)
+        X(EnumerateInstanceLayerProperties)
+        X(EnumerateInstanceExtensionProperties)
+        X(EnumerateInstanceVersion)
+#undef X
+    }
+    uint32_t version = 0;
+    if (!procs->CreateInstance || !procs->EnumerateInstanceVersion ||
+        procs->EnumerateInstanceVersion(&version) != VK_SUCCESS || version < VK_API_VERSION_1_3) {
+        tyn_log_print(log, TYN_LOG_ERROR, "the Vulkan loader is older than 1.3");
+        return TYN_ERR_DEVICE;
+    }
+    return TYN_OK;
+}
+
+static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                                 VkDebugUtilsMessageTypeFlagsEXT types,
+                                                 const VkDebugUtilsMessengerCallbackDataEXT *data,
+                                                 void *user)
+{
+    (void)severity;
+    (void)types;
+    tyn_device *dev = user;
+    dev->validation_messages++;
+    tyn_log_print(&dev->log, TYN_LOG_ERROR, "validation: %s", data->pMessage);
+    return VK_FALSE;
+}
+
+static bool has_layer(const instance_procs *procs, const char *name)
+{
+    uint32_t count = 0;
+    procs->EnumerateInstanceLayerProperties(&count, NULL);
+    VkLayerProperties *layers = calloc(count ? count : 1, sizeof *layers);
+    bool found = false;
+    if (layers && procs->EnumerateInstanceLayerProperties(&count, layers) >= 0) {
+        for (uint32_t i = 0; i < count; i++) {
+            found |= !strcmp(layers[i].layerName, name);
+        }
+    }
+    free(layers);
+    return found;
+}
+
+static tyn_result create_instance(const instance_procs *procs, bool validation, tyn_device *user,
+                                  VkInstance *out, const tyn_log *log)
+{
+    static const char layer[] = "VK_LAYER_KHRONOS_validation";
+    if (validation && !has_layer(procs, layer)) {
+        tyn_log_print(log, TYN_LOG_ERROR, "validation was asked for, but %s is not installed", layer);
+        return TYN_ERR_UNSUPPORTED;
+    }
+    const VkDebugUtilsMessengerCreateInfoEXT messenger = {
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                           VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
+                       VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
+        .pfnUserCallback = on_message,
+        .pUserData = user,
+    };
+    const VkValidationFeaturesEXT features = {
+        .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+        .pNext = &messenger,
+        .enabledValidationFeatureCount = 1,
+        .pEnabledValidationFeatures =
+            (const VkValidationFeatureEnableEXT[]){
+                VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT},
+    };
+    const VkResult made = procs->CreateInstance(
+        &(VkInstanceCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+            .pNext = validation ? &features : NULL,
+            .pApplicationInfo =
+                &(VkApplicationInfo){.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                     .pApplicationName = "tyndall",
+                                     .applicationVersion = TYN_VERSION,
+                                     .apiVersion = VK_API_VERSION_1_3},
+            .enabledLayerCount = validation ? 1 : 0,
+            .ppEnabledLayerNames = (const char *const[]){layer},
+            .enabledExtensionCount = validation ? 1 : 0,
+            .ppEnabledExtensionNames = (const char *const[]){VK_EXT_DEBUG_UTILS_EXTENSION_NAME},
+        },
+        NULL, out);
+    if (made != VK_SUCCESS) {
+        tyn_log_print(log, TYN_LOG_ERROR, "vkCreateInstance failed with VkResult %d", (int)made);
+        return TYN_ERR_DEVICE;
+    }
+    return TYN_OK;
+}
+
+// ---- choosing ---------------------------------------------------------------------------------
+
+typedef struct candidate {
+    VkPhysicalDevice device;
+    VkPhysicalDeviceProperties properties;
+    const char *missing; // NULL = usable
+    uint32_t queue_family;
+} candidate;
+
+static candidate inspect(const tyn_procs *vk, VkPhysicalDevice device)
+{
+    candidate c = {.device = device, .queue_family = UINT32_MAX};
+    VkPhysicalDeviceProperties2 properties = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    vk->GetPhysicalDeviceProperties2(device, &properties);
+    c.properties = properties.properties;
+    if (c.properties.apiVersion < VK_API_VERSION_1_3) {
+        c.missing = "Vulkan 1.3";
+        return c;
+    }
+    VkPhysicalDeviceVulkan13Features v13 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+    VkPhysicalDeviceVulkan12Features v12 = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, .pNext = &v13};
+    VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                          .pNext = &v12};
+    vk->GetPhysicalDeviceFeatures2(device, &features);
+    c.missing = tyn_missing_feature(&features);
+    VkQueueFamilyProperties families[16];
+    uint32_t count = 16;
+    vk->GetPhysicalDeviceQueueFamilyProperties(device, &count, families);
+    for (uint32_t i = 0; i < count && c.queue_family == UINT32_MAX; i++) {
+        if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) {
+            c.queue_family = i;
+        }
+    }
+    if (c.queue_family == UINT32_MAX && !c.missing) {
+        c.missing = "a compute queue";
+    }
+    return c;
+}
+
+static int rank(const candidate *c)
+{
+    switch (c->properties.deviceType) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+        return 3;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+        return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+        return 1;
+    default:
+        return 0;
+    }
+}
+
+static bool contains_ignoring_case(const char *text, const char *part)
+{
+    size_t n = strlen(part);
+    for (; *text; text++) {
+        size_t i = 0;
+        while (i < n && text[i] && tolower((uint8_t)text[i]) == tolower((uint8_t)part[i])) {
+            i++;
+        }
+        if (i == n) {
+            return true;
+        }
+    }
+    return n == 0;
+}
+
+enum { MAX_DEVICES = 16 };
+
+static tyn_result choose(tyn_device *dev, const char *select, candidate *out)
+{
+    VkPhysicalDevice devices[MAX_DEVICES];
+    uint32_t count = MAX_DEVICES;
+    VkResult listed = dev->vk.EnumeratePhysicalDevices(dev->instance, &count, devices);
+    if (listed < 0 || !count) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR,
+                      "no Vulkan device; a software one comes with Debian's mesa-vulkan-drivers");
+        return TYN_ERR_DEVICE;
+    }
+    char *end = NULL;
+    unsigned long index = select ? strtoul(select, &end, 10) : 0;
+    bool by_index = select && *select && !*end;
+    int best = -1;
+    for (uint32_t i = 0; i < count; i++) {
+        candidate c = inspect(&dev->vk, devices[i]);
+        bool wanted = !select || (by_index ? i == index
+                                           : contains_ignoring_case(c.properties.deviceName, select));
+        int score = (c.missing ? 0 : 10) + rank(&c);
+        if (wanted && score > best) {
+            best = score;
+            *out = c;
+        }
+    }
+    if (best < 0) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR,
+                      "device '%s' is not there; the %u devices are listed by `tyndall info --devices`",
+                      select, count);
+        return TYN_ERR_PARAMS;
+    }
+    if (out->missing) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR, "device '%s' lacks %s", out->properties.deviceName,
+                      out->missing);
+        return TYN_ERR_DEVICE;
+    }
+    return TYN_OK;
+}
+
+static void load_instance_procs(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa)
+{
+#define X(name) dev->vk.name = (PFN_vk##name)gipa(dev->instance, "vk" #name);
+    TYN_INSTANCE_PROCS(X)
+#undef X
+}
+
+static tyn_result open_device(tyn_device *dev, const tyn_device_open_params *params)
+{
+    instance_procs procs = {0};
+    tyn_result result = load_loader(&dev->loader, &procs, &dev->log);
+    if (result == TYN_OK) {
+        result = create_instance(&procs, params->validation, dev, &dev->instance, &dev->log);
+    }
+    if (result != TYN_OK) {
+        return result;
+    }
+    load_instance_procs(dev, procs.gipa);
+    if (params->validation) {
+        dev->debug_names = true;
+        PFN_vkCreateDebugUtilsMessengerEXT create =
+            (PFN_vkCreateDebugUtilsMessengerEXT)procs.gipa(dev->instance,
+                                                           "vkCreateDebugUtilsMessengerEXT");
+        VkResult made = create(
+            dev->instance,
+            &(VkDebugUtilsMessengerCreateInfoEXT){
+                .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+                .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                                   VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+                .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
+                               VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
+                .pfnUserCallback = on_message,
+                .pUserData = dev,
+            },
+            NULL, &dev->messenger);
+        if (made != VK_SUCCESS) {
+            return tyn_vk_check(dev, made, "vkCreateDebugUtilsMessengerEXT");
+        }
+    }
+    candidate c = {0};
+    result = choose(dev, params->select, &c);
+    if (result != TYN_OK) {
+        return result;
+    }
+    dev->physical_device = c.device;
+    dev->queue_family = c.queue_family;
+    VkResult made = dev->vk.CreateDevice(
+        dev->physical_device,
+        &(VkDeviceCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+            .pNext = tyn_requirements_get()->features,
+            .queueCreateInfoCount = 1,
+            .pQueueCreateInfos =
+                &(VkDeviceQueueCreateInfo){.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                           .queueFamilyIndex = dev->queue_family,
+                                           .queueCount = 1,
+                                           .pQueuePriorities = (const float[]){1.0f}},
+        },
+        NULL, &dev->device);
+    result = tyn_vk_check(dev, made, "vkCreateDevice");
+    if (result == TYN_OK) {
+        result = tyn_device_init(dev, procs.gipa, params->pipeline_cache,
+                                 params->pipeline_cache_size);
+    }
+    if (result == TYN_OK) {
+        dev->vk.GetDeviceQueue(dev->device, dev->queue_family, 0, &dev->queue);
+    }
+    return result;
+}
+
+tyn_result tyn_device_open(const tyn_device_open_params *params, tyn_device **out)
+{
+    *out = NULL;
+    if (!params || params->struct_size < sizeof *params) {
+        return TYN_ERR_PARAMS;
+    }
+    tyn_device *dev = calloc(1, sizeof *dev);
+    if (!dev) {
+        return TYN_ERR_MEMORY;
+    }
+    dev->log = params->log;
+    tyn_result result = open_device(dev, params);
+    if (result != TYN_OK) {
+        tyn_device_destroy(&dev);
+    }
+    *out = dev;
+    return result;
+}
+
+void tyn_device_destroy(tyn_device **device)
+{
+    tyn_device *dev = device ? *device : NULL;
+    if (!dev) {
+        return;
+    }
+    *device = NULL;
+    bool own = dev->loader != NULL;
+    if (dev->device && dev->vk.DestroyDevice) {
+        if (own && dev->vk.DeviceWaitIdle) {
+            dev->vk.DeviceWaitIdle(dev->device);
+        }
+        if (dev->vk.DestroyPipelineCache) {
+            tyn_pipelines_destroy(dev);
+            dev->vk.DestroyPipelineCache(dev->device, dev->cache, NULL);
+            dev->vk.DestroySampler(dev->device, dev->clamp, NULL);
+            dev->vk.DestroySampler(dev->device, dev->repeat_x, NULL);
+        }
+        if (own) {
+            dev->vk.DestroyDevice(dev->device, NULL);
+        }
+    }
+    if (own && dev->instance) {
+        if (dev->messenger) {
+            PFN_vkDestroyDebugUtilsMessengerEXT destroy =
+                (PFN_vkDestroyDebugUtilsMessengerEXT)dev->get_instance_proc_addr(
+                    dev->instance, "vkDestroyDebugUtilsMessengerEXT");
+            destroy(dev->instance, dev->messenger, NULL);
+        }
+        dev->vk.DestroyInstance(dev->instance, NULL);
+    }
+    if (own) {
+        dlclose(dev->loader);
+    }
+    free(dev);
+}
+
+// ---- listing ----------------------------------------------------------------------------------
+
+static const char *type_name(VkPhysicalDeviceType type)
+{
+    static const char *const names[] = {"other", "integrated", "discrete", "virtual", "cpu"};
+    return (unsigned)type < 5 ? names[type] : "other";
+}
+
+int tyn_devices_list(tyn_device_info *infos, uint32_t max, const tyn_log *log)
+{
+    tyn_device dev = {0};
+    if (log) {
+        dev.log = *log;
+    }
+    instance_procs procs = {0};
+    tyn_result result = load_loader(&dev.loader, &procs, log);
+    if (result == TYN_OK) {
+        result = create_instance(&procs, false, NULL, &dev.instance, log);
+    }
+    if (result != TYN_OK) {
+        if (dev.loader) {
+            dlclose(dev.loader);
+        }
+        return (int)result;
+    }
+    load_instance_procs(&dev, procs.gipa);
+    VkPhysicalDevice devices[MAX_DEVICES];
+    uint32_t count = MAX_DEVICES;
+    if (dev.vk.EnumeratePhysicalDevices(dev.instance, &count, devices) < 0) {
+        count = 0;
+    }
+    for (uint32_t i = 0; i < count && i < max; i++) {
+        candidate c = inspect(&dev.vk, devices[i]);
+        VkPhysicalDeviceDriverProperties driver = {
+            .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+        VkPhysicalDeviceProperties2 properties = {
+            .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
+        dev.vk.GetPhysicalDeviceProperties2(devices[i], &properties);
+        VkPhysicalDeviceMemoryProperties memory;
+        dev.vk.GetPhysicalDeviceMemoryProperties(devices[i], &memory);
+        infos[i] = (tyn_device_info){.api_version = c.properties.apiVersion,
+                                     .type = type_name(c.properties.deviceType),
+                                     .heap_bytes = memory.memoryHeaps[0].size};
+        snprintf(infos[i].name, sizeof infos[i].name, "%s", c.properties.deviceName);
+        snprintf(infos[i].driver, sizeof infos[i].driver, "%.127s %.126s", driver.driverName,
+                 driver.driverInfo);
+        snprintf(infos[i].missing, sizeof infos[i].missing, "%s", c.missing ? c.missing : "");
+    }
+    dev.vk.DestroyInstance(dev.instance, NULL);
+    dlclose(dev.loader);
+    return (int)count;
+}

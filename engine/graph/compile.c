@@ -1,0 +1,445 @@
+// compile.c -- cull, survey, allocate, make pipelines.
+#include "graph/internal.h"
+#include "base/hash.h"
+#include <stdlib.h>
+#include <string.h>
+
+uint32_t graph_texel_size(VkFormat format)
+{
+    switch (format) {
+    case VK_FORMAT_R8_UNORM:
+        return 1;
+    case VK_FORMAT_R16_SFLOAT:
+        return 2;
+    case VK_FORMAT_R32_SFLOAT:
+    case VK_FORMAT_R32_UINT:
+    case VK_FORMAT_R16G16_SFLOAT:
+    case VK_FORMAT_R8G8B8A8_UNORM:
+        return 4;
+    case VK_FORMAT_R32G32_SFLOAT:
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+        return 8;
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+        return 16;
+    default:
+        return 16;
+    }
+}
+
+static uint64_t resource_bytes(const resource *r)
+{
+    if (r->dim == TYN_BUFFER) {
+        return r->extent.x;
+    }
+    uint64_t bytes = 0;
+    for (uint32_t m = 0; m < r->mips; m++) {
+        uint64_t x = r->extent.x >> m, y = r->extent.y >> m, z = r->extent.z >> m;
+        bytes += (x ? x : 1) * (y ? y : 1) * (z ? z : 1) * graph_texel_size(r->format);
+    }
+    return bytes;
+}
+
+// ---- cull -------------------------------------------------------------------------------------
+
+// A node is needed if an output or a needed node reads a version that it wrote, or a later version of
+// a resource that it changed.
+static void need_writers(tyn_graph *g, uint32_t resource_id, uint32_t version)
+{
+    if (!resource_id) {
+        return;
+    }
+    const resource *r = &g->resources[resource_id - 1];
+    for (uint32_t v = 0; v <= version; v++) {
+        if (r->writers[v]) {
+            g->nodes[r->writers[v] - 1].needed = true;
+        }
+    }
+}
+
+void graph_cull(tyn_graph *g)
+{
+    for (uint32_t i = 0; i < g->num_nodes; i++) {
+        g->nodes[i].needed = false;
+    }
+    for (uint32_t i = 0; i < g->num_outputs; i++) {
+        need_writers(g, g->outputs[i].ref.resource, g->outputs[i].ref.version);
+    }
+    for (uint32_t i = g->num_nodes; i-- > 0;) {
+        const node *n = &g->nodes[i];
+        for (uint32_t p = 0; n->needed && p < n->pass->num_ports; p++) {
+            tyn_port_dir dir = n->pass->ports[p].dir;
+            if (dir == TYN_IN || dir == TYN_INOUT) {
+                need_writers(g, n->res[p], n->versions[p]);
+            }
+        }
+    }
+}
+
+// ---- survey -----------------------------------------------------------------------------------
+
+tyn_result graph_survey(tyn_graph *g, survey *s, phys *usage)
+{
+    *s = (survey){.hash = TYN_HASH_SEED};
+    for (uint32_t i = 0; i < g->num_nodes; i++) {
+        if (!g->nodes[i].needed) {
+            continue;
+        }
+        tyn_recorder r = {.g = g, .node = i, .mode = RECORD_SURVEY, .survey = s, .usage = usage};
+        g->nodes[i].pass->record(&r, g->nodes[i].params);
+        if (r.result != TYN_OK) {
+            return r.result;
+        }
+    }
+    return TYN_OK;
+}
+
+uint64_t graph_structure(const tyn_graph *g, const survey *s)
+{
+    uint64_t h = s->hash;
+    for (uint32_t i = 0; i < g->num_resources; i++) {
+        const resource *r = &g->resources[i];
+        h = tyn_hash_u64(h, (uint64_t)r->kind << 32 | (uint64_t)r->dim << 16 | r->mips);
+        h = tyn_hash_u64(h, r->format);
+        h = tyn_hash_bytes(h, &r->extent, sizeof r->extent);
+    }
+    for (uint32_t i = 0; i < g->num_nodes; i++) {
+        const node *n = &g->nodes[i];
+        h = tyn_hash_u64(h, (uint64_t)(uintptr_t)n->pass + n->needed);
+        h = tyn_hash_bytes(h, n->res, n->pass->num_ports * sizeof n->res[0]);
+    }
+    for (uint32_t i = 0; i < g->num_outputs; i++) {
+        h = tyn_hash_u64(h, (uint64_t)g->outputs[i].ref.resource << 1 | g->outputs[i].readback);
+    }
+    return h ? h : 1;
+}
+
+bool graph_uploads_staged(const tyn_graph *g)
+{
+    for (uint32_t i = 0; i < g->num_resources; i++) {
+        const resource *r = &g->resources[i];
+        bool big = r->kind == RESOURCE_UPLOAD && (r->fill || r->extent.x > INLINE_UPLOAD);
+        if (big && g->phys[i].content != r->content && g->phys[i].staged != r->content) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool same_structure(tyn_graph *g)
+{
+    survey s;
+    graph_cull(g);
+    return g->structure && graph_survey(g, &s, NULL) == TYN_OK &&
+           graph_structure(g, &s) == g->structure;
+}
+
+bool tyn_graph_matches(const tyn_graph *graph)
+{
+    tyn_graph *g = (tyn_graph *)graph; // culling writes flags of the declaration only
+    return g->status == TYN_OK && same_structure(g) && graph_uploads_staged(g);
+}
+
+// ---- allocate ---------------------------------------------------------------------------------
+
+static tyn_result create_image(tyn_graph *g, const resource *r, phys *p, VkDeviceSize expected)
+{
+    tyn_device *dev = g->dev;
+    const VkPhysicalDeviceLimits *limits = &dev->properties.limits;
+    uint32_t limit = r->dim == TYN_IMAGE_3D ? limits->maxImageDimension3D : limits->maxImageDimension2D;
+    if (r->extent.x > limit || r->extent.y > limit || r->extent.z > limit) {
+        return graph_fail(g, TYN_ERR_UNSUPPORTED,
+                          "image '%s' of %u x %u x %u: the device's limit is %u per axis", r->name,
+                          r->extent.x, r->extent.y, r->extent.z, limit);
+    }
+    VkImageType type = r->dim == TYN_IMAGE_3D ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
+    VkResult made = dev->vk.CreateImage(
+        dev->device,
+        &(VkImageCreateInfo){.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                             .imageType = type,
+                             .format = r->format,
+                             .extent = {r->extent.x, r->extent.y, r->extent.z},
+                             .mipLevels = r->mips,
+                             .arrayLayers = 1,
+                             .samples = VK_SAMPLE_COUNT_1_BIT,
+                             .tiling = VK_IMAGE_TILING_OPTIMAL,
+                             .usage = p->image_usage ? p->image_usage : VK_IMAGE_USAGE_SAMPLED_BIT,
+                             .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED},
+        NULL, &p->image);
+    tyn_result result = tyn_vk_check(dev, made, r->name);
+    if (result == TYN_OK) {
+        result = tyn_heap_bind_image(dev, &g->heap, p->image, expected);
+    }
+    // View 0 sees all mips, the others one each.
+    for (uint32_t v = 0; result == TYN_OK && v < (r->mips > 1 ? r->mips + 1 : 1); v++) {
+        VkImageSubresourceRange range = {VK_IMAGE_ASPECT_COLOR_BIT, 0, r->mips, 0, 1};
+        if (v) {
+            range.baseMipLevel = v - 1;
+            range.levelCount = 1;
+        }
+        made = dev->vk.CreateImageView(
+            dev->device,
+            &(VkImageViewCreateInfo){.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                     .image = p->image,
+                                     .viewType = r->dim == TYN_IMAGE_3D ? VK_IMAGE_VIEW_TYPE_3D
+                                                                        : VK_IMAGE_VIEW_TYPE_2D,
+                                     .format = r->format,
+                                     .subresourceRange = range},
+            NULL, v ? &p->mip_views[v - 1] : &p->view);
+        result = tyn_vk_check(dev, made, r->name);
+    }
+    tyn_device_name_object(dev, VK_OBJECT_TYPE_IMAGE, (uint64_t)p->image, r->name);
+    return result;
+}
+
+static tyn_result create_buffer(tyn_graph *g, tyn_heap *heap, VkDeviceSize size,
+                                VkBufferUsageFlags usage, tyn_memory_kind kind,
+                                VkDeviceSize expected, const char *name, VkBuffer *out, void **mapped)
+{
+    VkResult made = g->dev->vk.CreateBuffer(
+        g->dev->device,
+        &(VkBufferCreateInfo){.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                              .size = size,
+                              .usage = usage ? usage : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT},
+        NULL, out);
+    tyn_result result = tyn_vk_check(g->dev, made, name);
+    if (result == TYN_OK) {
+        tyn_device_name_object(g->dev, VK_OBJECT_TYPE_BUFFER, (uint64_t)*out, name);
+        result = tyn_heap_bind_buffer(g->dev, heap, *out, kind, expected, mapped);
+    }
+    return result;
+}
+
+static tyn_result create_resources(tyn_graph *g)
+{
+    VkDeviceSize expected = 0;
+    for (uint32_t i = 0; i < g->num_resources; i++) {
+        expected += g->resources[i].kind == RESOURCE_IMPORT
+                        ? 0
+                        : resource_bytes(&g->resources[i]) + (64u << 10);
+    }
+    g->persistent_bytes = g->transient_bytes = 0;
+    tyn_result result = TYN_OK;
+    for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
+        const resource *r = &g->resources[i];
+        phys *p = &g->phys[i];
+        p->bytes = resource_bytes(r);
+        if (r->kind == RESOURCE_IMPORT) {
+            p->image = r->image.image;
+            continue;
+        }
+        *(r->kind == RESOURCE_SCRATCH ? &g->transient_bytes : &g->persistent_bytes) += p->bytes;
+        if (r->kind == RESOURCE_UPLOAD || r->kind == RESOURCE_HISTORY) {
+            p->buffer_usage |= VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+            p->image_usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        }
+        result = r->dim == TYN_BUFFER
+                     ? create_buffer(g, &g->heap, p->bytes ? p->bytes : 4, p->buffer_usage,
+                                     TYN_MEMORY_DEVICE, expected, r->name, &p->buffer, NULL)
+                     : create_image(g, r, p, expected);
+        expected -= expected > p->bytes ? p->bytes : expected;
+    }
+    for (uint32_t i = 0; result == TYN_OK && i < g->num_outputs; i++) {
+        if (g->outputs[i].readback) {
+            phys *p = &g->phys[g->outputs[i].ref.resource - 1];
+            if (!p->readback) {
+                result = create_buffer(g, &g->heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                       TYN_MEMORY_READBACK, p->bytes, "readback", &p->readback,
+                                       &p->readback_ptr);
+            }
+        }
+    }
+    return result;
+}
+
+// Zero-filled stand-ins for optional inputs that nothing is connected to.
+static tyn_result create_dummies(tyn_graph *g)
+{
+    tyn_result result =
+        create_buffer(g, &g->heap, 256,
+                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                          VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                      TYN_MEMORY_DEVICE, 0, "none", &g->dummy[TYN_BUFFER].buffer, NULL);
+    for (tyn_dim dim = TYN_IMAGE_2D; result == TYN_OK && dim <= TYN_IMAGE_3D; dim++) {
+        g->dummy[dim].image_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        result = create_image(g,
+                              &(resource){.name = "none",
+                                          .dim = dim,
+                                          .format = VK_FORMAT_R32G32B32A32_SFLOAT,
+                                          .extent = {1, 1, 1},
+                                          .mips = 1},
+                              &g->dummy[dim], 0);
+    }
+    g->dummy_ready = false;
+    return result;
+}
+
+static tyn_result stage_uploads(tyn_graph *g)
+{
+    tyn_result result = TYN_OK;
+    for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
+        const resource *r = &g->resources[i];
+        phys *p = &g->phys[i];
+        bool big = r->kind == RESOURCE_UPLOAD && (r->fill || r->extent.x > INLINE_UPLOAD);
+        if (!big || p->content == r->content) {
+            continue;
+        }
+        result = create_buffer(g, &g->staging_heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                               TYN_MEMORY_UPLOAD, p->bytes, "staging", &p->staging, &p->staging_ptr);
+        if (result == TYN_OK) {
+            if (r->fill) {
+                r->fill(r->user, p->staging_ptr);
+            } else {
+                memcpy(p->staging_ptr, r->data, r->key);
+            }
+            p->staged = r->content;
+        }
+    }
+    return result;
+}
+
+static tyn_result create_slots(tyn_graph *g, const survey *s)
+{
+    const VkDescriptorPoolSize sizes[] = {
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, s->uniform_buffers + 1},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, s->storage_buffers + 1},
+        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, s->storage_images + 1},
+        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, s->sampled_images + 1},
+    };
+    tyn_device *dev = g->dev;
+    tyn_result result = TYN_OK;
+    for (uint32_t i = 0; result == TYN_OK && i < g->num_slots; i++) {
+        frame_slot *slot = &g->slots[i];
+        result = tyn_vk_check(
+            dev,
+            dev->vk.CreateDescriptorPool(
+                dev->device,
+                &(VkDescriptorPoolCreateInfo){
+                    .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                    .maxSets = s->sets + 1,
+                    .poolSizeCount = sizeof sizes / sizeof sizes[0],
+                    .pPoolSizes = sizes},
+                NULL, &slot->pool),
+            "vkCreateDescriptorPool");
+        if (result == TYN_OK && dev->timestamp_bits && g->num_nodes) {
+            result = tyn_vk_check(
+                dev,
+                dev->vk.CreateQueryPool(dev->device,
+                                        &(VkQueryPoolCreateInfo){
+                                            .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                            .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                            .queryCount = g->num_nodes * 2},
+                                        NULL, &slot->queries),
+                "vkCreateQueryPool");
+        }
+        slot->timed = calloc(g->num_nodes ? g->num_nodes : 1, 1);
+        result = slot->timed ? result : TYN_ERR_MEMORY;
+    }
+    return result;
+}
+
+static tyn_result create_pipelines(tyn_graph *g)
+{
+    for (uint32_t i = 0; i < g->num_nodes; i++) {
+        if (g->nodes[i].needed) {
+            tyn_recorder r = {.g = g, .node = i, .mode = RECORD_PIPELINES};
+            g->nodes[i].pass->record(&r, g->nodes[i].params);
+            if (r.result != TYN_OK) {
+                return r.result;
+            }
+        }
+    }
+    return TYN_OK;
+}
+
+// ---- release ----------------------------------------------------------------------------------
+
+static void destroy_phys(tyn_graph *g, phys *p, bool imported)
+{
+    const tyn_device *dev = g->dev;
+    for (uint32_t m = 0; m < MAX_MIPS; m++) {
+        dev->vk.DestroyImageView(dev->device, p->mip_views[m], NULL);
+    }
+    dev->vk.DestroyImageView(dev->device, p->view, NULL);
+    if (!imported) {
+        dev->vk.DestroyImage(dev->device, p->image, NULL);
+    }
+    dev->vk.DestroyBuffer(dev->device, p->buffer, NULL);
+    dev->vk.DestroyBuffer(dev->device, p->readback, NULL);
+    *p = (phys){0};
+}
+
+void graph_free_staging(tyn_graph *g)
+{
+    for (uint32_t i = 0; i < g->num_phys; i++) {
+        g->dev->vk.DestroyBuffer(g->dev->device, g->phys[i].staging, NULL);
+        g->phys[i].staging = VK_NULL_HANDLE;
+        g->phys[i].staged = 0;
+    }
+    tyn_heap_finish(g->dev, &g->staging_heap);
+}
+
+void graph_release(tyn_graph *g)
+{
+    graph_free_staging(g);
+    for (uint32_t i = 0; i < g->num_phys; i++) {
+        // `view` is only set on images of our own.
+        destroy_phys(g, &g->phys[i], g->phys[i].image && !g->phys[i].view);
+    }
+    for (int d = 0; d < 3; d++) {
+        destroy_phys(g, &g->dummy[d], false);
+    }
+    for (uint32_t i = 0; i < g->num_slots; i++) {
+        g->dev->vk.DestroyDescriptorPool(g->dev->device, g->slots[i].pool, NULL);
+        g->dev->vk.DestroyQueryPool(g->dev->device, g->slots[i].queries, NULL);
+        free(g->slots[i].timed);
+        g->slots[i] = (frame_slot){0};
+    }
+    tyn_heap_finish(g->dev, &g->heap);
+    free(g->phys);
+    free(g->runs);
+    g->phys = NULL;
+    g->runs = NULL;
+    g->num_phys = g->num_runs = 0;
+    g->structure = 0;
+}
+
+// ---- compile ----------------------------------------------------------------------------------
+
+tyn_result tyn_graph_compile(tyn_graph *g)
+{
+    if (g->status != TYN_OK) {
+        return g->status;
+    }
+    if (same_structure(g)) { // only new data
+        graph_free_staging(g);
+        return stage_uploads(g);
+    }
+    graph_release(g);
+    g->num_phys = g->num_resources;
+    g->num_runs = g->num_nodes;
+    g->phys = calloc(g->num_phys ? g->num_phys : 1, sizeof *g->phys);
+    g->runs = calloc(g->num_runs ? g->num_runs : 1, sizeof *g->runs);
+    if (!g->phys || !g->runs) {
+        return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
+    }
+    for (uint32_t i = 0; i < g->num_outputs; i++) {
+        if (g->outputs[i].readback) {
+            phys *p = &g->phys[g->outputs[i].ref.resource - 1];
+            p->image_usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+            p->buffer_usage |= VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+        }
+    }
+    survey s;
+    tyn_result result = graph_survey(g, &s, g->phys);
+    result = result == TYN_OK ? create_resources(g) : result;
+    result = result == TYN_OK ? create_dummies(g) : result;
+    result = result == TYN_OK ? create_slots(g, &s) : result;
+    result = result == TYN_OK ? create_pipelines(g) : result;
+    result = result == TYN_OK ? stage_uploads(g) : result;
+    if (result != TYN_OK) {
+        graph_release(g);
+        return result;
+    }
+    g->structure = graph_structure(g, &s);
+    return TYN_OK;
+}

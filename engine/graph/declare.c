@@ -1,0 +1,383 @@
+// declare.c -- building the two lists: resources and nodes.
+#include "graph/internal.h"
+#include "base/hash.h"
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct tyn_builder {
+    tyn_graph *g;
+    node *node;
+    VkFormat formats[TYN_MAX_PORTS]; // overrides
+};
+
+tyn_result graph_fail(tyn_graph *g, tyn_result result, const char *format, ...)
+{
+    char line[512];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(line, sizeof line, format, args);
+    va_end(args);
+    tyn_log_print(&g->dev->log, TYN_LOG_ERROR, "%s", line);
+    if (g->status == TYN_OK) {
+        g->status = result;
+    }
+    return result;
+}
+
+const tyn_log *tyn_graph_log(const tyn_graph *g)
+{
+    return &g->dev->log;
+}
+
+tyn_result tyn_graph_status(const tyn_graph *g)
+{
+    return g->status;
+}
+
+void tyn_graph_begin(tyn_graph *g)
+{
+    g->status = TYN_OK;
+    g->num_resources = 0;
+    g->num_nodes = 0;
+    g->num_outputs = 0;
+    g->params_used = 0;
+    g->recompute = false;
+}
+
+void tyn_graph_recompute(tyn_graph *g)
+{
+    g->recompute = true;
+}
+
+static void *grow(void *array, uint32_t count, uint32_t *cap, size_t element)
+{
+    if (count < *cap) {
+        return array;
+    }
+    uint32_t more = *cap ? *cap * 2 : 32;
+    void *grown = realloc(array, more * element);
+    if (grown) {
+        *cap = more;
+    }
+    return grown;
+}
+
+static tyn_ref add_resource(tyn_graph *g, const resource *r)
+{
+    resource *grown =
+        grow(g->resources, g->num_resources, &g->cap_resources, sizeof *g->resources);
+    if (!grown) {
+        graph_fail(g, TYN_ERR_MEMORY, "out of memory while declaring '%s'", r->name);
+        return (tyn_ref){0};
+    }
+    g->resources = grown;
+    g->resources[g->num_resources++] = *r;
+    return (tyn_ref){g->num_resources, 0};
+}
+
+static resource *find(tyn_graph *g, tyn_ref ref)
+{
+    return ref.resource && ref.resource <= g->num_resources ? &g->resources[ref.resource - 1] : NULL;
+}
+
+tyn_extent tyn_graph_extent(const tyn_graph *g, tyn_ref ref)
+{
+    const resource *r = find((tyn_graph *)g, ref);
+    return r ? r->extent : (tyn_extent){0, 0, 0};
+}
+
+// ---- resources from outside -------------------------------------------------------------------
+
+tyn_ref tyn_graph_import_image(tyn_graph *g, const char *name, tyn_dim dim, const tyn_image *image,
+                               uint64_t version)
+{
+    uint64_t content = version ? tyn_hash_u64(version, (uint64_t)image->image) : ++g->unique;
+    return add_resource(
+        g, &(resource){.name = name,
+                       .owner = "",
+                       .kind = RESOURCE_IMPORT,
+                       .dim = dim,
+                       .format = image->format,
+                       .extent = {image->extent.width, image->extent.height, image->extent.depth},
+                       .mips = 1,
+                       .content = tyn_hash_string(content, name),
+                       .image = *image});
+}
+
+tyn_ref tyn_graph_upload_buffer(tyn_graph *g, const char *name, const void *data, size_t size,
+                                uint64_t hash)
+{
+    if (!hash) {
+        hash = tyn_hash_bytes(tyn_hash_string(TYN_HASH_SEED, name), data, size);
+    }
+    return add_resource(g, &(resource){.name = name,
+                                       .owner = "",
+                                       .kind = RESOURCE_UPLOAD,
+                                       .dim = TYN_BUFFER,
+                                       .extent = {(uint32_t)((size + 3) & ~(size_t)3), 1, 1},
+                                       .mips = 1,
+                                       .content = hash,
+                                       .key = size,
+                                       .data = data});
+}
+
+tyn_ref tyn_graph_upload_image(tyn_graph *g, const char *name, tyn_dim dim, VkFormat format,
+                               tyn_extent extent, tyn_fill_fn fill, void *user, uint64_t hash)
+{
+    return add_resource(g, &(resource){.name = name,
+                                       .owner = "",
+                                       .kind = RESOURCE_UPLOAD,
+                                       .dim = dim,
+                                       .format = format,
+                                       .extent = extent,
+                                       .mips = 1,
+                                       .content = hash ? hash : 1,
+                                       .fill = fill,
+                                       .user = user});
+}
+
+tyn_ref tyn_graph_history_image(tyn_graph *g, const char *name, tyn_dim dim, VkFormat format,
+                                tyn_extent extent, uint64_t key)
+{
+    return add_resource(g, &(resource){.name = name,
+                                       .owner = "",
+                                       .kind = RESOURCE_HISTORY,
+                                       .dim = dim,
+                                       .format = format,
+                                       .extent = extent,
+                                       .mips = 1,
+                                       .content = tyn_hash_u64(TYN_HASH_SEED, key),
+                                       .key = key});
+}
+
+tyn_ref tyn_graph_history_buffer(tyn_graph *g, const char *name, uint64_t bytes, uint64_t key)
+{
+    return tyn_graph_history_image(g, name, TYN_BUFFER, VK_FORMAT_UNDEFINED,
+                                   (tyn_extent){(uint32_t)bytes, 1, 1}, key);
+}
+
+void tyn_graph_mark_media(tyn_graph *g, tyn_ref ref)
+{
+    resource *r = find(g, ref);
+    if (r) {
+        r->media_only = true;
+    }
+}
+
+void tyn_graph_output(tyn_graph *g, const char *name, tyn_ref ref, bool readback)
+{
+    const resource *r = find(g, ref);
+    if (!r) {
+        graph_fail(g, TYN_ERR_PARAMS, "output '%s' is not a resource", name);
+    } else if (g->num_outputs == sizeof g->outputs / sizeof g->outputs[0]) {
+        graph_fail(g, TYN_ERR_PARAMS, "output '%s' is one too many", name);
+    } else {
+        g->outputs[g->num_outputs++] = (output){name, ref, readback};
+    }
+}
+
+// ---- nodes ------------------------------------------------------------------------------------
+
+bool tyn_build_has(const tyn_builder *b, uint8_t port)
+{
+    return b->node->res[port] != 0;
+}
+
+tyn_extent tyn_build_extent(const tyn_builder *b, uint8_t port)
+{
+    uint32_t res = b->node->res[port];
+    return res ? b->g->resources[res - 1].extent : (tyn_extent){0, 0, 0};
+}
+
+const tyn_log *tyn_build_log(const tyn_builder *b)
+{
+    return &b->g->dev->log;
+}
+
+void tyn_build_format(tyn_builder *b, uint8_t port, VkFormat format)
+{
+    b->formats[port] = format;
+}
+
+static void build(tyn_builder *b, uint8_t port, tyn_extent extent, uint32_t mips)
+{
+    const tyn_pass_desc *pass = b->node->pass;
+    const tyn_port *p = &pass->ports[port];
+    if (p->dir != TYN_OUT && p->dir != TYN_SCRATCH) {
+        graph_fail(b->g, TYN_ERR_PARAMS, "pass '%s' gives a shape to '%s', which is an input",
+                   pass->name, p->name);
+        return;
+    }
+    tyn_ref ref = add_resource(
+        b->g, &(resource){.name = p->name,
+                          .owner = pass->name,
+                          .kind = p->dir == TYN_OUT ? RESOURCE_OUT : RESOURCE_SCRATCH,
+                          .dim = p->dim,
+                          .format = b->formats[port] ? b->formats[port] : p->format,
+                          .extent = extent,
+                          .mips = mips});
+    b->node->res[port] = ref.resource;
+}
+
+void tyn_build_image(tyn_builder *b, uint8_t port, tyn_extent extent, uint32_t mips)
+{
+    extent.x = extent.x ? extent.x : 1;
+    extent.y = extent.y ? extent.y : 1;
+    extent.z = extent.z ? extent.z : 1;
+    build(b, port, extent, mips ? mips : 1);
+}
+
+void tyn_build_buffer(tyn_builder *b, uint8_t port, uint64_t bytes)
+{
+    const VkPhysicalDeviceLimits *limits = &b->g->dev->properties.limits;
+    if (bytes > limits->maxStorageBufferRange || bytes > UINT32_MAX - 3) {
+        graph_fail(b->g, TYN_ERR_UNSUPPORTED, "pass '%s' needs a buffer '%s' of %.1f MiB; "
+                   "the device binds at most %.1f MiB", b->node->pass->name,
+                   b->node->pass->ports[port].name, (double)bytes / (1 << 20),
+                   (double)limits->maxStorageBufferRange / (1 << 20));
+        return;
+    }
+    build(b, port, (tyn_extent){(uint32_t)((bytes + 3) & ~3ull), 1, 1}, 1);
+}
+
+static void connect_inputs(tyn_graph *g, node *n, const tyn_ref *refs)
+{
+    for (uint32_t p = 0; p < n->pass->num_ports; p++) {
+        const tyn_port *port = &n->pass->ports[p];
+        if (port->dir != TYN_IN && port->dir != TYN_INOUT) {
+            continue;
+        }
+        const resource *r = find(g, refs[p]);
+        if (!r) {
+            if (!port->optional || port->dir == TYN_INOUT) {
+                graph_fail(g, TYN_ERR_PARAMS, "node '%s': input '%s' (%s) is not connected",
+                           n->pass->name, port->name, port->meaning ? port->meaning : "");
+            }
+            continue;
+        }
+        if (refs[p].version != r->version) {
+            graph_fail(g, TYN_ERR_PARAMS,
+                       "node '%s': input '%s' is version %u of '%s', which was overwritten; the "
+                       "newest is %u",
+                       n->pass->name, port->name, refs[p].version, r->name, r->version);
+        }
+        if (r->dim != port->dim) {
+            graph_fail(g, TYN_ERR_PARAMS, "node '%s': input '%s' and '%s' differ in kind (%d, %d)",
+                       n->pass->name, port->name, r->name, port->dim, r->dim);
+        }
+        n->res[p] = refs[p].resource;
+        n->versions[p] = refs[p].version;
+    }
+}
+
+// Identifies what the node will write: its pass, params, and the content of what it reads.
+static void hash_node(const tyn_graph *g, node *n)
+{
+    const tyn_pass_desc *pass = n->pass;
+    uint64_t h = tyn_hash_string(TYN_HASH_SEED, pass->name);
+    h = tyn_hash_bytes(h, n->params, pass->params_size);
+    n->media_only = true;
+    for (uint32_t p = 0; p < pass->num_ports; p++) {
+        const resource *r = n->res[p] ? &g->resources[n->res[p] - 1] : NULL;
+        tyn_port_dir dir = pass->ports[p].dir;
+        if (!r) {
+            continue;
+        }
+        h = tyn_hash_u64(h, p);
+        if (dir == TYN_IN || dir == TYN_INOUT) {
+            // What a history holds is the node's own doing; only a new start changes it.
+            h = tyn_hash_u64(h, r->kind == RESOURCE_HISTORY && r->version == 0 ? r->key : r->content);
+            n->media_only = n->media_only && r->media_only;
+        } else {
+            h = tyn_hash_bytes(h, &r->extent, sizeof r->extent);
+            h = tyn_hash_u64(h, r->format);
+        }
+    }
+    n->hash = h ? h : 1;
+}
+
+static void publish_outputs(tyn_graph *g, node *n, uint32_t index, tyn_ref *refs)
+{
+    for (uint32_t p = 0; p < n->pass->num_ports; p++) {
+        tyn_port_dir dir = n->pass->ports[p].dir;
+        if (dir != TYN_OUT && dir != TYN_INOUT) {
+            continue;
+        }
+        resource *r = n->res[p] ? &g->resources[n->res[p] - 1] : NULL;
+        refs[p] = (tyn_ref){0};
+        if (!r) {
+            continue;
+        }
+        if (dir == TYN_INOUT && ++r->version == MAX_VERSIONS) {
+            graph_fail(g, TYN_ERR_PARAMS, "'%s' is changed by more than %d nodes", r->name,
+                       MAX_VERSIONS - 1);
+            r->version--;
+        }
+        r->writers[r->version] = index + 1;
+        r->content = tyn_hash_u64(n->hash, p + 1);
+        r->media_only = n->media_only;
+        refs[p] = (tyn_ref){n->res[p], r->version};
+    }
+}
+
+tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *params, tyn_ref *refs)
+{
+    node *grown = grow(g->nodes, g->num_nodes, &g->cap_nodes, sizeof *g->nodes);
+    size_t need = g->params_used + (pass->params_size + 15) / 16 * 16;
+    if (grown) {
+        g->nodes = grown;
+    }
+    if (grown && need > g->params_cap) {
+        uint8_t *more = realloc(g->params, need * 2);
+        if (more) {
+            g->params = more;
+            g->params_cap = need * 2;
+            for (uint32_t i = 0; i < g->num_nodes; i++) {
+                g->nodes[i].params = g->params + g->nodes[i].params_offset;
+            }
+        }
+    }
+    if (!grown || need > g->params_cap) {
+        return graph_fail(g, TYN_ERR_MEMORY, "out of memory while declaring '%s'", pass->name);
+    }
+    uint32_t index = g->num_nodes++;
+    node *n = &g->nodes[index];
+    *n = (node){.pass = pass,
+                .params = g->params + g->params_used,
+                .params_offset = g->params_used};
+    if (pass->params_size) {
+        memcpy(n->params, params, pass->params_size);
+    }
+    g->params_used = need;
+
+    connect_inputs(g, n, refs);
+    if (g->status != TYN_OK) {
+        return g->status;
+    }
+    tyn_builder b = {.g = g, .node = n};
+    tyn_result result = pass->declare(&b, n->params);
+    if (result != TYN_OK && g->status == TYN_OK) {
+        g->status = result; // declare has said why
+    }
+    if (g->status == TYN_OK) {
+        hash_node(g, n);
+        publish_outputs(g, n, index, refs);
+    }
+    return g->status;
+}
+
+void tyn_pass_defaults(const tyn_pass_desc *pass, void *params)
+{
+    memset(params, 0, pass->params_size);
+    for (uint32_t i = 0; i < pass->num_params; i++) {
+        const tyn_param *p = &pass->params[i];
+        void *field = (uint8_t *)params + p->offset;
+        if (p->type == TYN_PARAM_FLOAT) {
+            *(float *)field = (float)p->def;
+        } else {
+            *(int32_t *)field = (int32_t)p->def;
+        }
+    }
+}

@@ -1,0 +1,160 @@
+// internal.h -- the inside of the render graph, shared by declare.c, compile.c, recorder.c, record.c
+// and dump.c.
+//
+// A declaration is two lists, resources and nodes, rebuilt for every frame. What was compiled is kept
+// beside it, index by index: `phys` belongs to `resources`, `runs` to `nodes`. Both agree as long as
+// the structure hash of the declaration equals the one that was compiled.
+#pragma once
+#include "graph/graph.h"
+#include "graph/plan.h"
+#include "gpu/memory.h"
+
+enum { MAX_VERSIONS = 8, MAX_MIPS = 14, MAX_SLOTS = 8, INLINE_UPLOAD = 65536 };
+
+typedef enum resource_kind {
+    RESOURCE_OUT = 0, // made by a node, kept between frames
+    RESOURCE_SCRATCH, // private to a node
+    RESOURCE_IMPORT,  // the host's
+    RESOURCE_UPLOAD,  // filled from host memory
+    RESOURCE_HISTORY, // lives across frames, starts as zeros
+} resource_kind;
+
+typedef struct resource {
+    const char *name;
+    const char *owner; // pass that made it, or ""
+    resource_kind kind;
+    tyn_dim dim;
+    VkFormat format;
+    tyn_extent extent; // buffers: x = bytes
+    uint32_t mips;
+    uint32_t version;               // newest
+    uint32_t writers[MAX_VERSIONS]; // node index + 1 that wrote the version; 0 = from outside
+    uint64_t content;               // identifies the newest version's content
+    uint64_t key;                   // HISTORY: other key = start from zeros; UPLOAD: content hash
+    bool media_only; // depends on nothing but the media: not part of a frame's cost
+    // UPLOAD: one of them
+    const void *data;
+    tyn_fill_fn fill;
+    void *user;
+    tyn_image image; // IMPORT
+} resource;
+
+typedef struct node {
+    const tyn_pass_desc *pass;
+    void *params; // in the arena of params
+    size_t params_offset;
+    uint32_t res[TYN_MAX_PORTS];      // resource index + 1; 0 = none
+    uint32_t versions[TYN_MAX_PORTS]; // IN, INOUT: version read
+    uint64_t hash;
+    bool media_only, needed;
+} node;
+
+typedef struct output {
+    const char *name;
+    tyn_ref ref;
+    bool readback;
+} output;
+
+// The Vulkan side of a resource.
+typedef struct phys {
+    VkImage image;
+    VkImageView view; // all mips
+    VkImageView mip_views[MAX_MIPS];
+    VkBuffer buffer;
+    VkDeviceSize bytes;
+    VkImageUsageFlags image_usage;
+    VkBufferUsageFlags buffer_usage;
+    tyn_track track;
+    uint64_t content; // what is in it; 0 = nothing
+    uint64_t key;     // HISTORY
+    VkBuffer staging; // UPLOAD, big: host memory waiting to be copied
+    void *staging_ptr;
+    uint64_t staged; // content hash in staging; 0 = none
+    VkBuffer readback;
+    void *readback_ptr;
+    uint64_t read; // content in readback
+} phys;
+
+typedef struct node_run { // of a node
+    uint64_t hash; // when it last ran; 0 = never
+    tyn_node_stats stats;
+} node_run;
+
+typedef struct frame_slot { // one per frame in flight
+    VkDescriptorPool pool;
+    VkQueryPool queries;
+    bool pending;         // timestamps were written
+    uint8_t *timed;       // per node: it ran in this slot's last record
+} frame_slot;
+
+// What a dry run of the recorder learns.
+typedef struct survey {
+    uint64_t hash; // of all kernels, bindings and specialisations: the structure of the dispatches
+    uint32_t sets, uniform_buffers, storage_buffers, storage_images, sampled_images;
+} survey;
+
+typedef struct set_key {
+    uint64_t hash;
+    VkDescriptorSet set;
+} set_key;
+
+struct tyn_graph {
+    tyn_device *dev;
+    uint32_t num_slots;
+    // declaration
+    tyn_result status;
+    resource *resources;
+    uint32_t num_resources, cap_resources;
+    node *nodes;
+    uint32_t num_nodes, cap_nodes;
+    uint8_t *params; // bytes of all nodes' params
+    size_t params_used, params_cap;
+    output outputs[32];
+    uint32_t num_outputs;
+    uint64_t unique; // ever-changing content
+    bool recompute;
+    // compiled
+    uint64_t structure; // 0 = nothing compiled
+    phys *phys;
+    uint32_t num_phys;
+    node_run *runs;
+    uint32_t num_runs;
+    phys dummy[3]; // by tyn_dim: bound where an optional input is absent
+    bool dummy_ready;
+    tyn_heap heap, staging_heap;
+    VkDeviceSize persistent_bytes, transient_bytes;
+    frame_slot slots[MAX_SLOTS];
+    uint64_t frame;
+    set_key sets[256]; // of the current record
+    tyn_node_stats *stats;
+};
+
+typedef enum recorder_mode { RECORD_SURVEY = 0, RECORD_PIPELINES, RECORD_PLAN, RECORD_LIVE } recorder_mode;
+
+struct tyn_recorder {
+    tyn_graph *g;
+    uint32_t node;
+    recorder_mode mode;
+    tyn_result result;
+    VkCommandBuffer cmd;       // LIVE
+    survey *survey;            // SURVEY
+    phys *usage;               // SURVEY: collects usage flags; may be NULL
+    tyn_track *tracks;         // PLAN: per resource
+    void (*print)(void *user, const char *line); // PLAN
+    void *print_user;
+    uint32_t dispatches, barriers;
+    struct { const char *name; double amount; } work[TYN_MAX_WORK];
+    uint32_t num_work;
+};
+
+tyn_result graph_fail(tyn_graph *g, tyn_result result, const char *format, ...) TYN_PRINTF(3, 4);
+void graph_cull(tyn_graph *g);
+tyn_result graph_survey(tyn_graph *g, survey *s, phys *usage);
+uint64_t graph_structure(const tyn_graph *g, const survey *s);
+void graph_release(tyn_graph *g); // everything compiled
+void graph_free_staging(tyn_graph *g);
+bool graph_uploads_staged(const tyn_graph *g);
+uint32_t graph_texel_size(VkFormat format);
+
+// Records a barrier for one access outside any node (uploads, readback, host images).
+void recorder_access(tyn_recorder *r, uint32_t resource_index, tyn_access access);

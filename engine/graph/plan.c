@@ -1,0 +1,159 @@
+// plan.c -- the barrier planner.
+#include "graph/plan.h"
+#include <stdio.h>
+#include <string.h>
+
+tyn_access tyn_access_join(tyn_access a, tyn_access b)
+{
+    return (tyn_access){
+        .stages = a.stages | b.stages,
+        .access = a.access | b.access,
+        .read = a.read || b.read,
+        .write = a.write || b.write,
+        .layout = a.layout == b.layout ? a.layout : VK_IMAGE_LAYOUT_GENERAL,
+    };
+}
+
+bool tyn_plan(tyn_track *t, tyn_access a, tyn_barrier *out)
+{
+    bool transition = a.layout != t->layout;
+    bool invisible = a.read && t->write_stages &&
+                     ((a.stages & ~t->visible_stages) || (a.access & ~t->visible_access));
+    bool needed;
+    *out = (tyn_barrier){.dst_stages = a.stages,
+                         .dst_access = a.access,
+                         .old_layout = t->layout,
+                         .new_layout = a.layout};
+    if (transition) {
+        // Reads since the last write already waited for it, but the transition changes memory under
+        // them, so it waits for both.
+        needed = true;
+        out->src_stages = t->write_stages | t->read_stages;
+        out->src_access = t->write_access;
+    } else if (a.write) {
+        bool after_reads = t->read_stages != 0;
+        bool full = t->write_stages && (a.read ? invisible : !after_reads);
+        needed = after_reads || t->write_stages;
+        out->src_stages = t->read_stages | (full ? t->write_stages : 0);
+        out->src_access = full ? t->write_access : 0;
+        out->dst_access = full ? a.access : 0;
+    } else {
+        needed = invisible;
+        out->src_stages = t->write_stages;
+        out->src_access = t->write_access;
+    }
+    if (needed && !out->src_stages) {
+        out->src_stages = VK_PIPELINE_STAGE_2_NONE; // first use: nothing to wait for
+    }
+
+    if (a.write) {
+        *t = (tyn_track){.write_stages = a.stages,
+                         .write_access = a.access & (VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+                                                     VK_ACCESS_2_TRANSFER_WRITE_BIT |
+                                                     VK_ACCESS_2_HOST_WRITE_BIT |
+                                                     VK_ACCESS_2_MEMORY_WRITE_BIT),
+                         .layout = a.layout};
+    } else if (transition) {
+        // Later readers chain to the transition through the stage that waited for it; its memory is
+        // available.
+        *t = (tyn_track){.write_stages = a.stages,
+                         .visible_stages = a.stages,
+                         .visible_access = a.access,
+                         .read_stages = a.stages,
+                         .layout = a.layout};
+    } else {
+        t->read_stages |= a.stages;
+        if (needed) {
+            // Visibility is a set of pairs; keeping the product would claim pairs that no barrier
+            // made. Each barrier makes its own pair visible, so widen only when one side is equal.
+            bool widen = t->visible_stages == 0 || t->visible_stages == a.stages ||
+                         t->visible_access == a.access;
+            t->visible_stages = widen ? t->visible_stages | a.stages : a.stages;
+            t->visible_access = widen ? t->visible_access | a.access : a.access;
+        }
+    }
+    return needed;
+}
+
+// ---- names ------------------------------------------------------------------------------------
+
+typedef struct bit_name {
+    uint64_t bit;
+    const char *name;
+} bit_name;
+
+static void print_bits(char *text, size_t size, uint64_t bits, const bit_name *names)
+{
+    size_t at = 0;
+    text[0] = 0;
+    for (const bit_name *n = names; n->name && at < size; n++) {
+        if (bits & n->bit) {
+            at += (size_t)snprintf(text + at, size - at, "%s%s", at ? "|" : "", n->name);
+            bits &= ~n->bit;
+        }
+    }
+    if (bits && at < size) {
+        at += (size_t)snprintf(text + at, size - at, "%s0x%llx", at ? "|" : "",
+                               (unsigned long long)bits);
+    }
+    if (!at) {
+        snprintf(text, size, "NONE");
+    }
+}
+
+void tyn_print_stages(char *text, size_t size, VkPipelineStageFlags2 stages)
+{
+    static const bit_name names[] = {
+        {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, "COMPUTE"},
+        {VK_PIPELINE_STAGE_2_COPY_BIT, "COPY"},
+        {VK_PIPELINE_STAGE_2_CLEAR_BIT, "CLEAR"},
+        {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, "TRANSFER"},
+        {VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, "INDIRECT"},
+        {VK_PIPELINE_STAGE_2_HOST_BIT, "HOST"},
+        {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, "FRAGMENT"},
+        {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, "COLOR_OUTPUT"},
+        {VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, "LATE_TESTS"},
+        {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, "ALL"},
+        {0, NULL}};
+    print_bits(text, size, stages, names);
+}
+
+void tyn_print_access(char *text, size_t size, VkAccessFlags2 access)
+{
+    static const bit_name names[] = {
+        {VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, "SAMPLED_READ"},
+        {VK_ACCESS_2_SHADER_STORAGE_READ_BIT, "STORAGE_READ"},
+        {VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, "STORAGE_WRITE"},
+        {VK_ACCESS_2_UNIFORM_READ_BIT, "UNIFORM_READ"},
+        {VK_ACCESS_2_TRANSFER_READ_BIT, "TRANSFER_READ"},
+        {VK_ACCESS_2_TRANSFER_WRITE_BIT, "TRANSFER_WRITE"},
+        {VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, "INDIRECT_READ"},
+        {VK_ACCESS_2_HOST_READ_BIT, "HOST_READ"},
+        {VK_ACCESS_2_HOST_WRITE_BIT, "HOST_WRITE"},
+        {VK_ACCESS_2_MEMORY_READ_BIT, "MEMORY_READ"},
+        {VK_ACCESS_2_MEMORY_WRITE_BIT, "MEMORY_WRITE"},
+        {0, NULL}};
+    print_bits(text, size, access, names);
+}
+
+const char *tyn_layout_name(VkImageLayout layout)
+{
+    switch (layout) {
+    case VK_IMAGE_LAYOUT_UNDEFINED:
+        return "UNDEFINED";
+    case VK_IMAGE_LAYOUT_GENERAL:
+        return "GENERAL";
+    case VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL:
+        return "READ_ONLY";
+    case VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL:
+        return "TRANSFER_SRC";
+    case VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL:
+        return "TRANSFER_DST";
+    case VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL:
+        return "COLOR_ATTACHMENT";
+    case VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL:
+        return "DEPTH_READ_ONLY";
+    default:
+        return "OTHER";
+    }
+}

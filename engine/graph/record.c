@@ -1,0 +1,430 @@
+// record.c -- one frame: uploads, the nodes that must run, readbacks; then what happened.
+#include "graph/internal.h"
+#include "base/hash.h"
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+tyn_result tyn_graph_create(tyn_device *dev, uint32_t frames_in_flight, tyn_graph **out)
+{
+    *out = calloc(1, sizeof **out);
+    if (!*out) {
+        return TYN_ERR_MEMORY;
+    }
+    (*out)->dev = dev;
+    (*out)->num_slots = frames_in_flight < 1           ? 1
+                        : frames_in_flight > MAX_SLOTS ? MAX_SLOTS
+                                                       : frames_in_flight;
+    return TYN_OK;
+}
+
+void tyn_graph_destroy(tyn_graph **graph)
+{
+    tyn_graph *g = graph ? *graph : NULL;
+    if (!g) {
+        return;
+    }
+    graph_release(g);
+    free(g->resources);
+    free(g->nodes);
+    free(g->params);
+    free(g->stats);
+    free(g);
+    *graph = NULL;
+}
+
+static double now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+// ---- uploads and first contents ---------------------------------------------------------------
+
+static tyn_access transfer(const resource *r, bool write)
+{
+    return (tyn_access){VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                        write ? VK_ACCESS_2_TRANSFER_WRITE_BIT : VK_ACCESS_2_TRANSFER_READ_BIT,
+                        !write, write,
+                        r->dim == TYN_BUFFER ? VK_IMAGE_LAYOUT_UNDEFINED
+                        : write              ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL
+                                             : VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
+}
+
+static VkBufferImageCopy whole_image(const resource *r)
+{
+    return (VkBufferImageCopy){.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                               .imageExtent = {r->extent.x, r->extent.y, r->extent.z}};
+}
+
+static void record_upload(tyn_recorder *rec, uint32_t index)
+{
+    tyn_graph *g = rec->g;
+    const resource *r = &g->resources[index];
+    phys *p = &g->phys[index];
+    const tyn_procs *vk = &g->dev->vk;
+    recorder_access(rec, index, transfer(r, true));
+    if (r->fill) {
+        VkBufferImageCopy copy = whole_image(r);
+        vk->CmdCopyBufferToImage(rec->cmd, p->staging, p->image,
+                                 VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &copy);
+    } else if (r->extent.x > INLINE_UPLOAD) {
+        vk->CmdCopyBuffer(rec->cmd, p->staging, p->buffer, 1, &(VkBufferCopy){0, 0, p->bytes});
+    } else if (r->extent.x == r->key) {
+        vk->CmdUpdateBuffer(rec->cmd, p->buffer, 0, r->key, r->data);
+    } else { // size is not a multiple of 4
+        uint8_t padded[INLINE_UPLOAD] = {0};
+        memcpy(padded, r->data, r->key);
+        vk->CmdUpdateBuffer(rec->cmd, p->buffer, 0, r->extent.x, padded);
+    }
+    p->content = r->content;
+}
+
+static void record_zeros(tyn_recorder *rec, uint32_t index)
+{
+    tyn_graph *g = rec->g;
+    const resource *r = &g->resources[index];
+    phys *p = &g->phys[index];
+    recorder_access(rec, index, transfer(r, true));
+    if (r->dim == TYN_BUFFER) {
+        g->dev->vk.CmdFillBuffer(rec->cmd, p->buffer, 0, VK_WHOLE_SIZE, 0);
+    } else {
+        g->dev->vk.CmdClearColorImage(
+            rec->cmd, p->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &(VkClearColorValue){{0}}, 1,
+            &(VkImageSubresourceRange){VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1});
+    }
+    p->key = r->key;
+    p->content = 1; // zeros
+}
+
+static void record_dummies(tyn_graph *g, VkCommandBuffer cmd)
+{
+    if (g->dummy_ready) {
+        return;
+    }
+    VkImageMemoryBarrier2 images[2];
+    for (int d = 0; d < 2; d++) {
+        images[d] = (VkImageMemoryBarrier2){
+            .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+            .dstStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+            .dstAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+            .newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+            .image = g->dummy[TYN_IMAGE_2D + d].image,
+            .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1},
+        };
+    }
+    VkDependencyInfo barrier = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                .imageMemoryBarrierCount = 2,
+                                .pImageMemoryBarriers = images};
+    g->dev->vk.CmdPipelineBarrier2(cmd, &barrier);
+    g->dev->vk.CmdFillBuffer(cmd, g->dummy[TYN_BUFFER].buffer, 0, VK_WHOLE_SIZE, 0);
+    for (int d = 0; d < 2; d++) {
+        g->dev->vk.CmdClearColorImage(cmd, images[d].image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                      &(VkClearColorValue){{0}}, 1, &images[d].subresourceRange);
+        images[d].srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
+        images[d].srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+        images[d].dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+        images[d].dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+        images[d].oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+        images[d].newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    }
+    barrier.bufferMemoryBarrierCount = 1;
+    barrier.pBufferMemoryBarriers = &(VkBufferMemoryBarrier2){
+        .sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
+        .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+        .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+        .dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+        .dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT,
+        .buffer = g->dummy[TYN_BUFFER].buffer,
+        .size = VK_WHOLE_SIZE};
+    g->dev->vk.CmdPipelineBarrier2(cmd, &barrier);
+    g->dummy_ready = true;
+}
+
+static void record_sources(tyn_recorder *rec)
+{
+    tyn_graph *g = rec->g;
+    for (uint32_t i = 0; i < g->num_resources; i++) {
+        const resource *r = &g->resources[i];
+        phys *p = &g->phys[i];
+        if (r->kind == RESOURCE_IMPORT) {
+            p->image = r->image.image;
+            p->track = (tyn_track){.write_stages = r->image.before.stages,
+                                   .write_access = r->image.before.access,
+                                   .layout = r->image.before.layout};
+        } else if (r->kind == RESOURCE_UPLOAD && p->content != r->content) {
+            record_upload(rec, i);
+        } else if (r->kind == RESOURCE_HISTORY && (!p->content || p->key != r->key)) {
+            record_zeros(rec, i);
+        }
+    }
+}
+
+// ---- nodes ------------------------------------------------------------------------------------
+
+static bool outputs_current(const tyn_graph *g, const node *n, uint32_t index)
+{
+    for (uint32_t p = 0; p < n->pass->num_ports; p++) {
+        tyn_port_dir dir = n->pass->ports[p].dir;
+        if (!n->res[p] || (dir != TYN_OUT && dir != TYN_INOUT)) {
+            continue;
+        }
+        const resource *r = &g->resources[n->res[p] - 1];
+        // Of a resource that later nodes change as well, only the last content can be compared.
+        bool last = r->writers[r->version] == index + 1;
+        if (last && g->phys[n->res[p] - 1].content != r->content) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Which needed nodes run: those whose inputs or params changed, and, for a resource that is changed in
+// place, all earlier writers of one that runs.
+static void choose_nodes(const tyn_graph *g, bool *run_node)
+{
+    for (uint32_t i = 0; i < g->num_nodes; i++) {
+        const node *n = &g->nodes[i];
+        run_node[i] = n->needed && ((g->recompute && !n->media_only) || g->runs[i].hash != n->hash ||
+                                    !outputs_current(g, n, i));
+    }
+    for (uint32_t i = g->num_nodes; i-- > 0;) {
+        const node *n = &g->nodes[i];
+        for (uint32_t p = 0; run_node[i] && p < n->pass->num_ports; p++) {
+            if (!n->res[p] || n->pass->ports[p].dir != TYN_INOUT) {
+                continue;
+            }
+            const resource *r = &g->resources[n->res[p] - 1];
+            if (r->kind != RESOURCE_HISTORY && r->kind != RESOURCE_IMPORT &&
+                r->writers[n->versions[p]]) {
+                run_node[r->writers[n->versions[p]] - 1] = true;
+            }
+        }
+    }
+}
+
+static void timestamp(tyn_graph *g, VkCommandBuffer cmd, uint32_t query)
+{
+    const frame_slot *slot = &g->slots[g->frame % g->num_slots];
+    if (slot->queries) {
+        g->dev->vk.CmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot->queries,
+                                      query);
+    }
+}
+
+static tyn_result run_one(tyn_graph *g, VkCommandBuffer cmd, uint32_t index)
+{
+    const node *n = &g->nodes[index];
+    node_run *run = &g->runs[index];
+    const tyn_device *dev = g->dev;
+    double start = now_ms();
+    if (dev->debug_names) {
+        dev->vk.CmdBeginDebugUtilsLabelEXT(
+            cmd, &(VkDebugUtilsLabelEXT){.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
+                                         .pLabelName = n->pass->name});
+    }
+    // Scratch starts undefined: forget its layout, keep its dependencies.
+    for (uint32_t p = 0; p < n->pass->num_ports; p++) {
+        if (n->res[p] && n->pass->ports[p].dir == TYN_SCRATCH) {
+            g->phys[n->res[p] - 1].track.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+        }
+    }
+    timestamp(g, cmd, index * 2);
+    tyn_recorder r = {.g = g, .node = index, .mode = RECORD_LIVE, .cmd = cmd};
+    n->pass->record(&r, n->params);
+    timestamp(g, cmd, index * 2 + 1);
+    if (dev->debug_names) {
+        dev->vk.CmdEndDebugUtilsLabelEXT(cmd);
+    }
+
+    for (uint32_t p = 0; p < n->pass->num_ports; p++) {
+        tyn_port_dir dir = n->pass->ports[p].dir;
+        if (n->res[p] && (dir == TYN_OUT || dir == TYN_INOUT)) {
+            g->phys[n->res[p] - 1].content = tyn_hash_u64(n->hash, p + 1);
+        }
+    }
+    run->hash = n->hash;
+    run->stats.state = r.dispatches ? TYN_NODE_RAN : TYN_NODE_EMPTY;
+    run->stats.cpu_ms = now_ms() - start;
+    run->stats.dispatches = r.dispatches;
+    run->stats.barriers = r.barriers;
+    run->stats.num_work = r.num_work;
+    memcpy(run->stats.work, r.work, sizeof r.work);
+    return r.result;
+}
+
+// ---- readback ---------------------------------------------------------------------------------
+
+static void record_readbacks(tyn_recorder *rec)
+{
+    tyn_graph *g = rec->g;
+    bool any = false;
+    for (uint32_t i = 0; i < g->num_outputs; i++) {
+        uint32_t index = g->outputs[i].ref.resource - 1;
+        const resource *r = &g->resources[index];
+        phys *p = &g->phys[index];
+        if (!g->outputs[i].readback || !p->readback || (p->read && p->read == p->content)) {
+            continue;
+        }
+        recorder_access(rec, index, transfer(r, false));
+        if (r->dim == TYN_BUFFER) {
+            g->dev->vk.CmdCopyBuffer(rec->cmd, p->buffer, p->readback, 1,
+                                     &(VkBufferCopy){0, 0, p->bytes});
+        } else {
+            VkBufferImageCopy copy = whole_image(r);
+            g->dev->vk.CmdCopyImageToBuffer(rec->cmd, p->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                                            p->readback, 1, &copy);
+        }
+        p->read = p->content;
+        any = true;
+    }
+    if (any) {
+        g->dev->vk.CmdPipelineBarrier2(
+            rec->cmd,
+            &(VkDependencyInfo){
+                .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                .memoryBarrierCount = 1,
+                .pMemoryBarriers = &(VkMemoryBarrier2){
+                    .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                    .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                    .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                    .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                    .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT}});
+    }
+}
+
+// Leaves host images as promised.
+static void record_imports_after(tyn_recorder *rec)
+{
+    tyn_graph *g = rec->g;
+    for (uint32_t i = 0; i < g->num_resources; i++) {
+        const resource *r = &g->resources[i];
+        if (r->kind == RESOURCE_IMPORT) {
+            // As a read-modify-write: whatever the host does next is ordered behind us.
+            recorder_access(rec, i, (tyn_access){r->image.after.stages, r->image.after.access, true,
+                                                 true, r->image.after.layout});
+        }
+    }
+}
+
+// ---- record -----------------------------------------------------------------------------------
+
+static void collect_timestamps(tyn_graph *g, frame_slot *slot)
+{
+    if (!slot->pending || !slot->queries) {
+        return;
+    }
+    slot->pending = false;
+    uint64_t mask = g->dev->timestamp_bits == 64 ? UINT64_MAX
+                                                 : (1ull << g->dev->timestamp_bits) - 1;
+    for (uint32_t i = 0; i < g->num_runs; i++) {
+        uint64_t t[2];
+        if (slot->timed[i] &&
+            g->dev->vk.GetQueryPoolResults(g->dev->device, slot->queries, i * 2, 2, sizeof t, t, 8,
+                                           VK_QUERY_RESULT_64_BIT) == VK_SUCCESS) {
+            g->runs[i].stats.gpu_ms = (double)((t[1] - t[0]) & mask) *
+                                      (double)g->dev->properties.limits.timestampPeriod * 1e-6;
+        }
+    }
+}
+
+tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
+{
+    if (g->status != TYN_OK) {
+        return g->status;
+    }
+    if (!tyn_graph_matches(g)) {
+        tyn_log_print(&g->dev->log, TYN_LOG_ERROR,
+                      "the frame differs in structure from what was prepared; prepare it first");
+        return TYN_ERR_PARAMS;
+    }
+    bool *run_node = calloc(g->num_nodes ? g->num_nodes : 1, sizeof *run_node);
+    if (!run_node) {
+        return TYN_ERR_MEMORY;
+    }
+    frame_slot *slot = &g->slots[g->frame % g->num_slots];
+    collect_timestamps(g, slot);
+    g->dev->vk.ResetDescriptorPool(g->dev->device, slot->pool, 0);
+    memset(g->sets, 0, sizeof g->sets);
+    if (slot->queries) {
+        g->dev->vk.CmdResetQueryPool(cmd, slot->queries, 0, g->num_nodes * 2);
+    }
+
+    tyn_recorder rec = {.g = g, .mode = RECORD_LIVE, .cmd = cmd};
+    record_dummies(g, cmd);
+    record_sources(&rec);
+    choose_nodes(g, run_node);
+    tyn_result result = TYN_OK;
+    for (uint32_t i = 0; i < g->num_nodes; i++) {
+        slot->timed[i] = run_node[i];
+        if (run_node[i]) {
+            tyn_result ran = run_one(g, cmd, i);
+            result = result == TYN_OK ? ran : result;
+        } else {
+            g->runs[i].stats.state = g->nodes[i].needed ? TYN_NODE_UNCHANGED : TYN_NODE_CULLED;
+            g->runs[i].stats.cpu_ms = 0;
+        }
+    }
+    record_readbacks(&rec);
+    record_imports_after(&rec);
+    slot->pending = true;
+    g->frame++;
+    free(run_node);
+    return result;
+}
+
+const void *tyn_graph_map(tyn_graph *g, const char *name, tyn_extent *extent, VkFormat *format)
+{
+    for (uint32_t i = 0; i < g->num_outputs; i++) {
+        if (g->outputs[i].readback && !strcmp(g->outputs[i].name, name)) {
+            const resource *r = &g->resources[g->outputs[i].ref.resource - 1];
+            if (extent) {
+                *extent = r->extent;
+            }
+            if (format) {
+                *format = r->format;
+            }
+            return g->phys ? g->phys[g->outputs[i].ref.resource - 1].readback_ptr : NULL;
+        }
+    }
+    return NULL;
+}
+
+// ---- what happened ----------------------------------------------------------------------------
+
+uint32_t tyn_graph_stats(tyn_graph *g, const tyn_node_stats **stats)
+{
+    *stats = NULL;
+    if (!g->structure || g->num_runs != g->num_nodes) {
+        return 0;
+    }
+    if (g->frame) {
+        collect_timestamps(g, &g->slots[(g->frame - 1) % g->num_slots]);
+    }
+    tyn_node_stats *grown = realloc(g->stats, (g->num_nodes ? g->num_nodes : 1) * sizeof *grown);
+    if (!grown) {
+        return 0;
+    }
+    g->stats = grown;
+    for (uint32_t i = 0; i < g->num_nodes; i++) {
+        const node *n = &g->nodes[i];
+        g->stats[i] = g->runs[i].stats;
+        g->stats[i].name = n->pass->name;
+        g->stats[i].bytes = 0;
+        for (uint32_t p = 0; p < n->pass->num_ports; p++) {
+            tyn_port_dir dir = n->pass->ports[p].dir;
+            if (n->res[p] && (dir == TYN_OUT || dir == TYN_SCRATCH)) {
+                g->stats[i].bytes += g->phys[n->res[p] - 1].bytes;
+            }
+        }
+    }
+    *stats = g->stats;
+    return g->num_nodes;
+}
+
+void tyn_graph_memory(const tyn_graph *g, uint64_t *persistent, uint64_t *transient)
+{
+    *persistent = g->persistent_bytes;
+    *transient = g->transient_bytes;
+}

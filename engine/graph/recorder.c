@@ -1,0 +1,486 @@
+// recorder.c -- what a pass records: dispatches and small transfers. The same code surveys (what will
+// be needed), makes pipelines, plans (for dumps) and records.
+#include "graph/internal.h"
+#include "base/hash.h"
+#include <stdio.h>
+#include <string.h>
+
+static const VkPipelineStageFlags2 COMPUTE = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+
+typedef struct touch { // one resource in one dispatch
+    uint32_t resource;
+    tyn_access access;
+} touch;
+
+static node *node_of(const tyn_recorder *r)
+{
+    return &r->g->nodes[r->node];
+}
+
+static resource *resource_at(const tyn_recorder *r, uint8_t port)
+{
+    uint32_t res = node_of(r)->res[port];
+    return res ? &r->g->resources[res - 1] : NULL;
+}
+
+bool tyn_rec_has(const tyn_recorder *r, uint8_t port)
+{
+    return resource_at(r, port) != NULL;
+}
+
+tyn_extent tyn_rec_extent(const tyn_recorder *r, uint8_t port)
+{
+    const resource *res = resource_at(r, port);
+    return res ? res->extent : (tyn_extent){0, 0, 0};
+}
+
+void tyn_rec_work(tyn_recorder *r, const char *name, double amount)
+{
+    for (uint32_t i = 0; i < r->num_work; i++) {
+        if (!strcmp(r->work[i].name, name)) {
+            r->work[i].amount += amount;
+            return;
+        }
+    }
+    if (r->num_work < TYN_MAX_WORK) {
+        r->work[r->num_work].name = name;
+        r->work[r->num_work++].amount = amount;
+    }
+}
+
+static void fail(tyn_recorder *r, tyn_result result, const char *what, const char *which)
+{
+    if (r->result == TYN_OK) {
+        r->result = result;
+        tyn_log_print(&r->g->dev->log, TYN_LOG_ERROR, "node '%s': %s '%s'", node_of(r)->pass->name,
+                      what, which);
+    }
+}
+
+// ---- barriers ---------------------------------------------------------------------------------
+
+typedef struct barrier_batch {
+    VkBufferMemoryBarrier2 buffers[TYN_MAX_BINDINGS + 1];
+    VkImageMemoryBarrier2 images[TYN_MAX_BINDINGS + 1];
+    uint32_t num_buffers, num_images;
+} barrier_batch;
+
+static void add_barrier(tyn_graph *g, barrier_batch *batch, uint32_t index, const tyn_barrier *b)
+{
+    const phys *p = &g->phys[index];
+    if (g->resources[index].dim == TYN_BUFFER) {
+        batch->buffers[batch->num_buffers++] = (VkBufferMemoryBarrier2){
+            .sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
+            .srcStageMask = b->src_stages,
+            .srcAccessMask = b->src_access,
+            .dstStageMask = b->dst_stages,
+            .dstAccessMask = b->dst_access,
+            .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+            .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+            .buffer = p->buffer,
+            .size = VK_WHOLE_SIZE,
+        };
+        return;
+    }
+    const resource *r = &g->resources[index];
+    VkImageAspectFlags aspect = r->kind == RESOURCE_IMPORT && r->image.aspect
+                                    ? r->image.aspect
+                                    : VK_IMAGE_ASPECT_COLOR_BIT;
+    batch->images[batch->num_images++] = (VkImageMemoryBarrier2){
+        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+        .srcStageMask = b->src_stages,
+        .srcAccessMask = b->src_access,
+        .dstStageMask = b->dst_stages,
+        .dstAccessMask = b->dst_access,
+        .oldLayout = b->old_layout,
+        .newLayout = b->new_layout,
+        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .image = p->image,
+        .subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS},
+    };
+}
+
+static void print_barrier(tyn_recorder *r, uint32_t index, const tyn_barrier *b)
+{
+    char src[128], dst[128], src_access[128], dst_access[128], line[640];
+    tyn_print_stages(src, sizeof src, b->src_stages);
+    tyn_print_stages(dst, sizeof dst, b->dst_stages);
+    tyn_print_access(src_access, sizeof src_access, b->src_access);
+    tyn_print_access(dst_access, sizeof dst_access, b->dst_access);
+    int n = snprintf(line, sizeof line, "    barrier %s: %s %s -> %s %s", r->g->resources[index].name,
+                     src, src_access, dst, dst_access);
+    if (b->old_layout != b->new_layout) {
+        snprintf(line + n, sizeof line - (size_t)n, ", %s -> %s", tyn_layout_name(b->old_layout),
+                 tyn_layout_name(b->new_layout));
+    }
+    r->print(r->print_user, line);
+}
+
+// Puts the barriers that the touched resources need into the stream.
+static void synchronise(tyn_recorder *r, const touch *touches, uint32_t count)
+{
+    barrier_batch batch = {.num_buffers = 0};
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t index = touches[i].resource;
+        tyn_track *track = r->mode == RECORD_PLAN ? &r->tracks[index] : &r->g->phys[index].track;
+        tyn_barrier barrier;
+        if (!tyn_plan(track, touches[i].access, &barrier)) {
+            continue;
+        }
+        r->barriers++;
+        if (r->mode == RECORD_PLAN) {
+            print_barrier(r, index, &barrier);
+        } else {
+            add_barrier(r->g, &batch, index, &barrier);
+        }
+    }
+    if (batch.num_buffers + batch.num_images) {
+        r->g->dev->vk.CmdPipelineBarrier2(
+            r->cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                        .bufferMemoryBarrierCount = batch.num_buffers,
+                                        .pBufferMemoryBarriers = batch.buffers,
+                                        .imageMemoryBarrierCount = batch.num_images,
+                                        .pImageMemoryBarriers = batch.images});
+    }
+}
+
+void recorder_access(tyn_recorder *r, uint32_t index, tyn_access access)
+{
+    synchronise(r, &(touch){index, access}, 1);
+}
+
+static void add_touch(touch *touches, uint32_t *count, uint32_t index, tyn_access access)
+{
+    for (uint32_t i = 0; i < *count; i++) {
+        if (touches[i].resource == index) {
+            touches[i].access = tyn_access_join(touches[i].access, access);
+            return;
+        }
+    }
+    touches[(*count)++] = (touch){index, access};
+}
+
+static tyn_access access_of(const tyn_port *port, tyn_use use)
+{
+    const VkAccessFlags2 reads = VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
+    const VkAccessFlags2 writes = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+    bool image = port->dim != TYN_BUFFER;
+    VkImageLayout general = image ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED;
+    switch (use) {
+    case TYN_USE_SAMPLED:
+        // A port that its own node writes stays in GENERAL: it would flip at every dispatch.
+        return (tyn_access){COMPUTE, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, true, false,
+                            port->dir == TYN_IN ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
+                                                : VK_IMAGE_LAYOUT_GENERAL};
+    case TYN_USE_UNIFORM:
+        return (tyn_access){COMPUTE, VK_ACCESS_2_UNIFORM_READ_BIT, true, false, general};
+    case TYN_USE_STORAGE_READ:
+        return (tyn_access){COMPUTE, reads, true, false, general};
+    case TYN_USE_STORAGE_WRITE:
+        return (tyn_access){COMPUTE, writes, false, true, general};
+    default:
+        return (tyn_access){COMPUTE, reads | writes, true, true, general};
+    }
+}
+
+// ---- descriptors ------------------------------------------------------------------------------
+
+static const phys *physical(const tyn_recorder *r, uint8_t port)
+{
+    uint32_t res = node_of(r)->res[port];
+    return res ? &r->g->phys[res - 1] : &r->g->dummy[node_of(r)->pass->ports[port].dim];
+}
+
+static VkImageView view_of(const tyn_recorder *r, uint8_t port, uint8_t mip, bool sampled)
+{
+    const resource *res = resource_at(r, port);
+    if (res && res->kind == RESOURCE_IMPORT) {
+        return res->image.view;
+    }
+    const phys *p = physical(r, port);
+    return sampled || !p->mip_views[mip] ? p->view : p->mip_views[mip];
+}
+
+static VkDescriptorSet find_or_make_set(tyn_recorder *r, const tyn_dispatch *d, tyn_pipeline *pl,
+                                        const uint8_t *ports, const touch *touches, uint32_t count)
+{
+    tyn_graph *g = r->g;
+    const tyn_kernel *k = pl->kernel;
+    uint64_t h = tyn_hash_u64(TYN_HASH_SEED, (uint64_t)(uintptr_t)k);
+    VkDescriptorImageInfo images[TYN_MAX_BINDINGS];
+    VkDescriptorBufferInfo buffers[TYN_MAX_BINDINGS];
+    VkWriteDescriptorSet writes[TYN_MAX_BINDINGS];
+    for (uint32_t i = 0; i < k->num_bindings; i++) {
+        const tyn_port *port = &node_of(r)->pass->ports[ports[i]];
+        tyn_use use = k->bindings[i].use;
+        writes[i] = (VkWriteDescriptorSet){
+            .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+            .dstBinding = i,
+            .descriptorCount = 1,
+            .descriptorType = tyn_descriptor_type(node_of(r)->pass, &k->bindings[i]),
+        };
+        if (port->dim == TYN_BUFFER) {
+            buffers[i] = (VkDescriptorBufferInfo){physical(r, ports[i])->buffer, 0, VK_WHOLE_SIZE};
+            writes[i].pBufferInfo = &buffers[i];
+            h = tyn_hash_u64(h, (uint64_t)buffers[i].buffer);
+        } else {
+            // The layout that this dispatch has the image in (two bindings may share it).
+            VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+            for (uint32_t t = 0; t < count; t++) {
+                if (touches[t].resource + 1 == node_of(r)->res[ports[i]]) {
+                    layout = touches[t].access.layout;
+                }
+            }
+            uint8_t mip = d->mips ? d->mips[i] : 0;
+            images[i] = (VkDescriptorImageInfo){
+                use != TYN_USE_SAMPLED     ? VK_NULL_HANDLE
+                : k->bindings[i].repeat ? g->dev->repeat_x
+                                        : g->dev->clamp,
+                view_of(r, ports[i], mip, use == TYN_USE_SAMPLED), layout};
+            writes[i].pImageInfo = &images[i];
+            h = tyn_hash_u64(h, (uint64_t)images[i].imageView);
+            h = tyn_hash_u64(h, layout);
+        }
+    }
+    const uint32_t mask = sizeof g->sets / sizeof g->sets[0] - 1;
+    set_key *entry = &g->sets[h & mask];
+    if (entry->set && entry->hash == h) {
+        return entry->set;
+    }
+    VkDescriptorSet set;
+    VkResult made = g->dev->vk.AllocateDescriptorSets(
+        g->dev->device,
+        &(VkDescriptorSetAllocateInfo){.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                       .descriptorPool = g->slots[g->frame % g->num_slots].pool,
+                                       .descriptorSetCount = 1,
+                                       .pSetLayouts = &pl->set_layout},
+        &set);
+    if (made != VK_SUCCESS) {
+        fail(r, TYN_ERR_DEVICE, "no descriptor set left for kernel", k->name);
+        return VK_NULL_HANDLE;
+    }
+    for (uint32_t i = 0; i < k->num_bindings; i++) {
+        writes[i].dstSet = set;
+    }
+    g->dev->vk.UpdateDescriptorSets(g->dev->device, k->num_bindings, writes, 0, NULL);
+    *entry = (set_key){h, set};
+    return set;
+}
+
+// ---- surveying --------------------------------------------------------------------------------
+
+static void survey_dispatch(tyn_recorder *r, const tyn_dispatch *d, const uint8_t *ports)
+{
+    const node *n = node_of(r);
+    const tyn_kernel *k = &n->pass->kernels[d->kernel];
+    survey *s = r->survey;
+    s->hash = tyn_hash_u64(s->hash, (uint64_t)(uintptr_t)k);
+    s->hash = tyn_hash_bytes(s->hash, ports, k->num_bindings);
+    if (d->spec) {
+        s->hash = tyn_hash_bytes(s->hash, d->spec, k->num_spec * 4);
+    }
+    s->sets++;
+    for (uint32_t i = 0; i < k->num_bindings; i++) {
+        tyn_use use = k->bindings[i].use;
+        bool buffer = n->pass->ports[ports[i]].dim == TYN_BUFFER;
+        s->uniform_buffers += use == TYN_USE_UNIFORM;
+        s->sampled_images += use == TYN_USE_SAMPLED;
+        s->storage_buffers += buffer && use != TYN_USE_UNIFORM;
+        s->storage_images += !buffer && use != TYN_USE_SAMPLED;
+        if (r->usage && n->res[ports[i]]) {
+            phys *p = &r->usage[n->res[ports[i]] - 1];
+            p->image_usage |= use == TYN_USE_SAMPLED ? VK_IMAGE_USAGE_SAMPLED_BIT
+                                                     : VK_IMAGE_USAGE_STORAGE_BIT;
+            p->buffer_usage |= use == TYN_USE_UNIFORM ? VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT
+                                                      : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+        }
+    }
+}
+
+static void survey_transfer(tyn_recorder *r, uint8_t port, bool source)
+{
+    uint32_t res = node_of(r)->res[port];
+    r->survey->hash = tyn_hash_u64(r->survey->hash, port);
+    if (r->usage && res) {
+        r->usage[res - 1].buffer_usage |=
+            source ? VK_BUFFER_USAGE_TRANSFER_SRC_BIT : VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+        r->usage[res - 1].image_usage |=
+            source ? VK_IMAGE_USAGE_TRANSFER_SRC_BIT : VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    }
+}
+
+static void make_pipeline(tyn_recorder *r, const tyn_dispatch *d)
+{
+    static const uint32_t zeros[TYN_MAX_SPEC];
+    tyn_pipeline *pl;
+    VkPipeline pipeline;
+    tyn_result result = tyn_pipeline_get(r->g->dev, node_of(r)->pass, d->kernel, &pl);
+    if (result == TYN_OK) {
+        result = tyn_pipeline_variant(r->g->dev, pl, d->spec ? d->spec : zeros, &pipeline);
+    }
+    if (result != TYN_OK) {
+        fail(r, result, "no pipeline for kernel", node_of(r)->pass->kernels[d->kernel].name);
+    }
+}
+
+// ---- dispatching ------------------------------------------------------------------------------
+
+static void dispatch(tyn_recorder *r, const tyn_dispatch *d, int indirect_port, uint64_t offset)
+{
+    const node *n = node_of(r);
+    const tyn_kernel *k = &n->pass->kernels[d->kernel];
+    uint8_t ports[TYN_MAX_BINDINGS];
+    for (uint32_t i = 0; i < k->num_bindings; i++) {
+        ports[i] = d->ports ? d->ports[i] : k->bindings[i].port;
+    }
+    r->dispatches++;
+    if (r->mode == RECORD_SURVEY) {
+        survey_dispatch(r, d, ports);
+        if (indirect_port >= 0 && r->usage && n->res[indirect_port]) {
+            r->usage[n->res[indirect_port] - 1].buffer_usage |= VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+        }
+        return;
+    }
+    if (r->mode == RECORD_PIPELINES) {
+        make_pipeline(r, d);
+        return;
+    }
+
+    touch touches[TYN_MAX_BINDINGS + 1];
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < k->num_bindings; i++) {
+        if (n->res[ports[i]]) {
+            add_touch(touches, &count, n->res[ports[i]] - 1,
+                      access_of(&n->pass->ports[ports[i]], k->bindings[i].use));
+        }
+    }
+    if (indirect_port >= 0 && n->res[indirect_port]) {
+        add_touch(touches, &count, n->res[indirect_port] - 1,
+                  (tyn_access){VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+                               VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, true, false,
+                               VK_IMAGE_LAYOUT_UNDEFINED});
+    }
+    synchronise(r, touches, count);
+
+    const uint32_t cells[3] = {d->cells.x ? d->cells.x : 1, d->cells.y ? d->cells.y : 1,
+                               d->cells.z ? d->cells.z : 1};
+    uint32_t groups[3];
+    for (int a = 0; a < 3; a++) {
+        uint32_t local = k->local_size[a] ? k->local_size[a] : 1;
+        groups[a] = (cells[a] + local - 1) / local;
+    }
+    if (r->mode == RECORD_PLAN) {
+        char line[160];
+        snprintf(line, sizeof line, "    dispatch %s %u x %u x %u", d->label ? d->label : k->name,
+                 groups[0], groups[1], groups[2]);
+        r->print(r->print_user, line);
+        return;
+    }
+
+    static const uint32_t zeros[TYN_MAX_SPEC];
+    const tyn_procs *vk = &r->g->dev->vk;
+    tyn_pipeline *pl;
+    tyn_result result = tyn_pipeline_get(r->g->dev, n->pass, d->kernel, &pl);
+    VkPipeline pipeline =
+        result == TYN_OK ? tyn_pipeline_find(pl, d->spec ? d->spec : zeros) : VK_NULL_HANDLE;
+    if (!pipeline) {
+        fail(r, TYN_ERR_PARAMS, "a pipeline was not prepared for kernel", k->name);
+        return;
+    }
+    VkDescriptorSet set = find_or_make_set(r, d, pl, ports, touches, count);
+    if (!set) {
+        return;
+    }
+    vk->CmdBindPipeline(r->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
+    vk->CmdBindDescriptorSets(r->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pl->layout, 0, 1, &set, 0,
+                              NULL);
+    if (k->args_size) {
+        vk->CmdPushConstants(r->cmd, pl->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, k->args_size,
+                             d->args);
+    }
+    if (indirect_port >= 0) {
+        vk->CmdDispatchIndirect(r->cmd, physical(r, (uint8_t)indirect_port)->buffer, offset);
+    } else {
+        vk->CmdDispatch(r->cmd, groups[0], groups[1], groups[2]);
+    }
+}
+
+void tyn_rec_dispatch(tyn_recorder *r, const tyn_dispatch *d)
+{
+    dispatch(r, d, -1, 0);
+}
+
+void tyn_rec_dispatch_indirect(tyn_recorder *r, const tyn_dispatch *d, uint8_t port, uint64_t offset)
+{
+    dispatch(r, d, port, offset);
+}
+
+// ---- transfers --------------------------------------------------------------------------------
+
+static const tyn_access transfer_write = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                          VK_ACCESS_2_TRANSFER_WRITE_BIT, false, true,
+                                          VK_IMAGE_LAYOUT_UNDEFINED};
+static const tyn_access transfer_read = {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                         VK_ACCESS_2_TRANSFER_READ_BIT, true, false,
+                                         VK_IMAGE_LAYOUT_UNDEFINED};
+
+// Surveys or synchronises; true if the command itself is to be recorded.
+static bool begin_transfer(tyn_recorder *r, uint8_t port, bool source, const char *what)
+{
+    uint32_t res = node_of(r)->res[port];
+    if (!res) {
+        return false;
+    }
+    if (r->mode == RECORD_SURVEY) {
+        survey_transfer(r, port, source);
+        return false;
+    }
+    if (r->mode == RECORD_PIPELINES) {
+        return false;
+    }
+    tyn_access access = source ? transfer_read : transfer_write;
+    if (r->g->resources[res - 1].dim != TYN_BUFFER) {
+        access.layout = VK_IMAGE_LAYOUT_GENERAL;
+    }
+    synchronise(r, &(touch){res - 1, access}, 1);
+    if (r->mode == RECORD_PLAN) {
+        char line[160];
+        snprintf(line, sizeof line, "    %s %s", what, r->g->resources[res - 1].name);
+        r->print(r->print_user, line);
+        return false;
+    }
+    return true;
+}
+
+void tyn_rec_update(tyn_recorder *r, uint8_t port, uint64_t offset, const void *data, size_t size)
+{
+    if (begin_transfer(r, port, false, "update")) {
+        r->g->dev->vk.CmdUpdateBuffer(r->cmd, physical(r, port)->buffer, offset, size, data);
+    }
+}
+
+void tyn_rec_fill(tyn_recorder *r, uint8_t port, uint32_t value)
+{
+    if (begin_transfer(r, port, false, "fill")) {
+        r->g->dev->vk.CmdFillBuffer(r->cmd, physical(r, port)->buffer, 0, VK_WHOLE_SIZE, value);
+    }
+}
+
+void tyn_rec_clear(tyn_recorder *r, uint8_t port)
+{
+    if (begin_transfer(r, port, false, "clear")) {
+        r->g->dev->vk.CmdClearColorImage(
+            r->cmd, physical(r, port)->image, VK_IMAGE_LAYOUT_GENERAL, &(VkClearColorValue){{0}}, 1,
+            &(VkImageSubresourceRange){VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1});
+    }
+}
+
+void tyn_rec_copy_buffer(tyn_recorder *r, uint8_t src, uint8_t dst, uint64_t bytes)
+{
+    bool live = begin_transfer(r, src, true, "copy from");
+    if (begin_transfer(r, dst, false, "copy to") && live) {
+        r->g->dev->vk.CmdCopyBuffer(r->cmd, physical(r, src)->buffer, physical(r, dst)->buffer, 1,
+                                    &(VkBufferCopy){0, 0, bytes});
+    }
+}

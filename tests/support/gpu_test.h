@@ -1,0 +1,43 @@
+// gpu_test.h -- runs single passes on the device, with validation and synchronization validation on.
+//
+// A test declares nodes on `t.graph`, asks for outputs with tyn_graph_output(..., true), calls
+// gpu_run and looks at gpu_map. gpu_run fails the test on any validation message.
+#pragma once
+#include "graph/graph.h"
+#include "gpu/device.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+typedef struct gpu_test {
+    tyn_device *dev;
+    tyn_graph *graph;
+    tyn_log log;
+    VkCommandPool pool;
+    VkCommandBuffer cmd;
+    VkFence fence;
+    uint32_t errors;      // log lines of level error
+    char last_error[512]; // the newest one
+    bool quiet;           // expected errors: count, don't print
+} gpu_test;
+
+// cmocka group setup and teardown: *state is a gpu_test. Exits with 77 where there is no device, unless
+// the environment variable CI is set.
+int gpu_setup(void **state);
+int gpu_teardown(void **state);
+
+// Compiles if needed, records, submits, waits; fails on a result or a validation message.
+void gpu_run(gpu_test *t);
+// The same, but gives the result back (validation messages still fail).
+tyn_result gpu_try(gpu_test *t);
+const void *gpu_map(gpu_test *t, const char *name);
+
+// Uploads float data as an image (format R32F, RG32F, RGBA32F by channels 1, 2, 4; R16F: channels = -1).
+tyn_ref gpu_image(gpu_test *t, const char *name, tyn_dim dim, tyn_extent extent, int channels,
+                  const float *data);
+tyn_ref gpu_buffer(gpu_test *t, const char *name, const void *data, size_t size);
+
+// Milliseconds the node took in the last run (0 without timestamps).
+double gpu_ms(gpu_test *t, const char *node);
