@@ -74,12 +74,11 @@ tyn_result tyn_vk_check(const tyn_device *dev, VkResult result, const char *what
     if (result == VK_SUCCESS) {
         return TYN_OK;
     }
-    bool memory =
-        result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY;
+    bool memory = result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY;
     tyn_log_print(&dev->log, TYN_LOG_ERROR, "%s failed with VkResult %d%s", what, (int)result,
-                  memory                               ? " (out of memory)"
+                  memory                           ? " (out of memory)"
                   : result == VK_ERROR_DEVICE_LOST ? " (device lost)"
-                                                       : "");
+                                                   : "");
     return memory ? TYN_ERR_MEMORY : TYN_ERR_DEVICE;
 }
 
@@ -173,7 +172,8 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa, cons
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
     dev->vk.GetPhysicalDeviceProperties2(dev->physical_device, &properties);
     dev->properties = properties.properties;
-    snprintf(dev->driver, sizeof dev->driver, "%.127s %.126s", driver.driverName, driver.driverInfo);
+    snprintf(dev->driver, sizeof dev->driver, "%.127s %.126s", driver.driverName,
+             driver.driverInfo);
     dev->vk.GetPhysicalDeviceMemoryProperties(dev->physical_device, &dev->memory);
 
     uint32_t count = 0;
@@ -192,7 +192,8 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa, cons
     free(families);
     dev->timestamp_bits = family.timestampValidBits;
     if (!(family.queueFlags & VK_QUEUE_COMPUTE_BIT)) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR, "queue_family %u has no compute", dev->queue_family);
+        tyn_log_print(&dev->log, TYN_LOG_ERROR, "queue_family %u has no compute",
+                      dev->queue_family);
         return TYN_ERR_PARAMS;
     }
 

@@ -12,7 +12,7 @@ typedef struct tyn_pipeline {
     struct {
         uint32_t spec[TYN_MAX_SPEC];
         VkPipeline pipeline;
-    } *variants;
+    } * variants;
     uint32_t num_variants;
 } tyn_pipeline;
 

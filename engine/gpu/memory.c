@@ -34,12 +34,12 @@ static tyn_block *add_block(tyn_device *dev, tyn_heap *heap, uint32_t type, VkDe
     }
     heap->blocks = grown;
     tyn_block block = {.type = type, .size = size};
-    VkResult made =
-        dev->vk.AllocateMemory(dev->device,
-                               &(VkMemoryAllocateInfo){.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                                       .allocationSize = size,
-                                                       .memoryTypeIndex = type},
-                               NULL, &block.memory);
+    VkResult made = dev->vk.AllocateMemory(
+        dev->device,
+        &(VkMemoryAllocateInfo){.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                .allocationSize = size,
+                                .memoryTypeIndex = type},
+        NULL, &block.memory);
     if (made != VK_SUCCESS) {
         tyn_log_print(&dev->log, TYN_LOG_ERROR, "out of device memory: %.1f MiB more were needed",
                       (double)size / (1 << 20));
@@ -71,14 +71,18 @@ static tyn_result allocate(tyn_device *dev, tyn_heap *heap, const VkMemoryRequir
     for (uint32_t i = 0; i < heap->num_blocks; i++) {
         tyn_block *b = &heap->blocks[i];
         VkDeviceSize at = (b->used + align - 1) / align * align;
-        if (b->type == (uint32_t)type && at + need->size <= b->size) {
+        bool host = kind != TYN_MEMORY_DEVICE;
+        if (b->type == (uint32_t)type && host == (b->mapped != NULL) &&
+            at + need->size <= b->size) {
             b->used = at + need->size;
             *out = b;
             *offset = at;
             return TYN_OK;
         }
     }
-    VkDeviceSize size = expected < MIN_BLOCK ? MIN_BLOCK : expected > MAX_BLOCK ? MAX_BLOCK : expected;
+    VkDeviceSize size = expected < MIN_BLOCK   ? MIN_BLOCK
+                        : expected > MAX_BLOCK ? MAX_BLOCK
+                                               : expected;
     size = size < need->size ? need->size : size;
     tyn_block *b = add_block(dev, heap, (uint32_t)type, size, kind != TYN_MEMORY_DEVICE);
     if (!b) {
@@ -108,7 +112,8 @@ tyn_result tyn_heap_bind_buffer(tyn_device *dev, tyn_heap *heap, VkBuffer buffer
                         "vkBindBufferMemory");
 }
 
-tyn_result tyn_heap_bind_image(tyn_device *dev, tyn_heap *heap, VkImage image, VkDeviceSize expected)
+tyn_result tyn_heap_bind_image(tyn_device *dev, tyn_heap *heap, VkImage image,
+                               VkDeviceSize expected)
 {
     VkMemoryRequirements need;
     dev->vk.GetImageMemoryRequirements(dev->device, image, &need);

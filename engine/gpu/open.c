@@ -72,7 +72,8 @@ static tyn_result create_instance(const instance_procs *procs, bool validation, 
 {
     static const char layer[] = "VK_LAYER_KHRONOS_validation";
     if (validation && !has_layer(procs, layer)) {
-        tyn_log_print(log, TYN_LOG_ERROR, "validation was asked for, but %s is not installed", layer);
+        tyn_log_print(log, TYN_LOG_ERROR, "validation was asked for, but %s is not installed",
+                      layer);
         return TYN_ERR_UNSUPPORTED;
     }
     const VkDebugUtilsMessengerCreateInfoEXT messenger = {
@@ -96,11 +97,10 @@ static tyn_result create_instance(const instance_procs *procs, bool validation, 
         &(VkInstanceCreateInfo){
             .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
             .pNext = validation ? &features : NULL,
-            .pApplicationInfo =
-                &(VkApplicationInfo){.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                     .pApplicationName = "tyndall",
-                                     .applicationVersion = TYN_VERSION,
-                                     .apiVersion = VK_API_VERSION_1_3},
+            .pApplicationInfo = &(VkApplicationInfo){.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                                     .pApplicationName = "tyndall",
+                                                     .applicationVersion = TYN_VERSION,
+                                                     .apiVersion = VK_API_VERSION_1_3},
             .enabledLayerCount = validation ? 1 : 0,
             .ppEnabledLayerNames = (const char *const[]){layer},
             .enabledExtensionCount = validation ? 1 : 0,
@@ -126,8 +126,8 @@ typedef struct candidate {
 static candidate inspect(const tyn_procs *vk, VkPhysicalDevice device)
 {
     candidate c = {.device = device, .queue_family = UINT32_MAX};
-    VkPhysicalDeviceProperties2 properties = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
+    VkPhysicalDeviceProperties2 properties = {.sType =
+                                                  VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
     vk->GetPhysicalDeviceProperties2(device, &properties);
     c.properties = properties.properties;
     if (c.properties.apiVersion < VK_API_VERSION_1_3) {
@@ -203,8 +203,9 @@ static tyn_result choose(tyn_device *dev, const char *select, candidate *out)
     int best = -1;
     for (uint32_t i = 0; i < count; i++) {
         candidate c = inspect(&dev->vk, devices[i]);
-        bool wanted = !select || (by_index ? i == index
-                                           : contains_ignoring_case(c.properties.deviceName, select));
+        bool wanted =
+            !select ||
+            (by_index ? i == index : contains_ignoring_case(c.properties.deviceName, select));
         int score = (c.missing ? 0 : 10) + rank(&c);
         if (wanted && score > best) {
             best = score;
@@ -212,9 +213,10 @@ static tyn_result choose(tyn_device *dev, const char *select, candidate *out)
         }
     }
     if (best < 0) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR,
-                      "device '%s' is not there; the %u devices are listed by `tyndall info --devices`",
-                      select, count);
+        tyn_log_print(
+            &dev->log, TYN_LOG_ERROR,
+            "device '%s' is not there; the %u devices are listed by `tyndall info --devices`",
+            select, count);
         return TYN_ERR_PARAMS;
     }
     if (out->missing) {
@@ -245,21 +247,20 @@ static tyn_result open_device(tyn_device *dev, const tyn_device_open_params *par
     load_instance_procs(dev, procs.gipa);
     if (params->validation) {
         dev->debug_names = true;
-        PFN_vkCreateDebugUtilsMessengerEXT create =
-            (PFN_vkCreateDebugUtilsMessengerEXT)procs.gipa(dev->instance,
-                                                           "vkCreateDebugUtilsMessengerEXT");
-        VkResult made = create(
-            dev->instance,
-            &(VkDebugUtilsMessengerCreateInfoEXT){
-                .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
-                .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
-                                   VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-                .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
-                               VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
-                .pfnUserCallback = on_message,
-                .pUserData = dev,
-            },
-            NULL, &dev->messenger);
+        PFN_vkCreateDebugUtilsMessengerEXT create = (PFN_vkCreateDebugUtilsMessengerEXT)procs.gipa(
+            dev->instance, "vkCreateDebugUtilsMessengerEXT");
+        VkResult made =
+            create(dev->instance,
+                   &(VkDebugUtilsMessengerCreateInfoEXT){
+                       .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+                       .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                                          VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+                       .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
+                                      VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
+                       .pfnUserCallback = on_message,
+                       .pUserData = dev,
+                   },
+                   NULL, &dev->messenger);
         if (made != VK_SUCCESS) {
             return tyn_vk_check(dev, made, "vkCreateDebugUtilsMessengerEXT");
         }
@@ -286,8 +287,8 @@ static tyn_result open_device(tyn_device *dev, const tyn_device_open_params *par
         NULL, &dev->device);
     result = tyn_vk_check(dev, made, "vkCreateDevice");
     if (result == TYN_OK) {
-        result = tyn_device_init(dev, procs.gipa, params->pipeline_cache,
-                                 params->pipeline_cache_size);
+        result =
+            tyn_device_init(dev, procs.gipa, params->pipeline_cache, params->pipeline_cache_size);
     }
     if (result == TYN_OK) {
         dev->vk.GetDeviceQueue(dev->device, dev->queue_family, 0, &dev->queue);

@@ -145,7 +145,8 @@ static tyn_result create_image(tyn_graph *g, const resource *r, phys *p, VkDevic
 {
     tyn_device *dev = g->dev;
     const VkPhysicalDeviceLimits *limits = &dev->properties.limits;
-    uint32_t limit = r->dim == TYN_IMAGE_3D ? limits->maxImageDimension3D : limits->maxImageDimension2D;
+    uint32_t limit =
+        r->dim == TYN_IMAGE_3D ? limits->maxImageDimension3D : limits->maxImageDimension2D;
     if (r->extent.x > limit || r->extent.y > limit || r->extent.z > limit) {
         return graph_fail(g, TYN_ERR_UNSUPPORTED,
                           "image '%s' of %u x %u x %u: the device's limit is %u per axis", r->name,
@@ -193,7 +194,8 @@ static tyn_result create_image(tyn_graph *g, const resource *r, phys *p, VkDevic
 
 static tyn_result create_buffer(tyn_graph *g, tyn_heap *heap, VkDeviceSize size,
                                 VkBufferUsageFlags usage, tyn_memory_kind kind,
-                                VkDeviceSize expected, const char *name, VkBuffer *out, void **mapped)
+                                VkDeviceSize expected, const char *name, VkBuffer *out,
+                                void **mapped)
 {
     VkResult made = g->dev->vk.CreateBuffer(
         g->dev->device,
@@ -283,8 +285,9 @@ static tyn_result stage_uploads(tyn_graph *g)
         if (!big || p->content == r->content) {
             continue;
         }
-        result = create_buffer(g, &g->staging_heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                               TYN_MEMORY_UPLOAD, p->bytes, "staging", &p->staging, &p->staging_ptr);
+        result =
+            create_buffer(g, &g->staging_heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                          TYN_MEMORY_UPLOAD, p->bytes, "staging", &p->staging, &p->staging_ptr);
         if (result == TYN_OK) {
             if (r->fill) {
                 r->fill(r->user, p->staging_ptr);
@@ -311,24 +314,23 @@ static tyn_result create_slots(tyn_graph *g, const survey *s)
         frame_slot *slot = &g->slots[i];
         result = tyn_vk_check(
             dev,
-            dev->vk.CreateDescriptorPool(
-                dev->device,
-                &(VkDescriptorPoolCreateInfo){
-                    .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                    .maxSets = s->sets + 1,
-                    .poolSizeCount = sizeof sizes / sizeof sizes[0],
-                    .pPoolSizes = sizes},
-                NULL, &slot->pool),
+            dev->vk.CreateDescriptorPool(dev->device,
+                                         &(VkDescriptorPoolCreateInfo){
+                                             .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                             .maxSets = s->sets + 1,
+                                             .poolSizeCount = sizeof sizes / sizeof sizes[0],
+                                             .pPoolSizes = sizes},
+                                         NULL, &slot->pool),
             "vkCreateDescriptorPool");
         if (result == TYN_OK && dev->timestamp_bits && g->num_nodes) {
             result = tyn_vk_check(
                 dev,
-                dev->vk.CreateQueryPool(dev->device,
-                                        &(VkQueryPoolCreateInfo){
-                                            .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-                                            .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                            .queryCount = g->num_nodes * 2},
-                                        NULL, &slot->queries),
+                dev->vk.CreateQueryPool(
+                    dev->device,
+                    &(VkQueryPoolCreateInfo){.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                             .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                             .queryCount = g->num_nodes * 2},
+                    NULL, &slot->queries),
                 "vkCreateQueryPool");
         }
         slot->timed = calloc(g->num_nodes ? g->num_nodes : 1, 1);

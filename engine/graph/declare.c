@@ -66,8 +66,7 @@ static void *grow(void *array, uint32_t count, uint32_t *cap, size_t element)
 
 static tyn_ref add_resource(tyn_graph *g, const resource *r)
 {
-    resource *grown =
-        grow(g->resources, g->num_resources, &g->cap_resources, sizeof *g->resources);
+    resource *grown = grow(g->resources, g->num_resources, &g->cap_resources, sizeof *g->resources);
     if (!grown) {
         graph_fail(g, TYN_ERR_MEMORY, "out of memory while declaring '%s'", r->name);
         return (tyn_ref){0};
@@ -79,7 +78,8 @@ static tyn_ref add_resource(tyn_graph *g, const resource *r)
 
 static resource *find(tyn_graph *g, tyn_ref ref)
 {
-    return ref.resource && ref.resource <= g->num_resources ? &g->resources[ref.resource - 1] : NULL;
+    return ref.resource && ref.resource <= g->num_resources ? &g->resources[ref.resource - 1]
+                                                            : NULL;
 }
 
 tyn_extent tyn_graph_extent(const tyn_graph *g, tyn_ref ref)
@@ -210,14 +210,14 @@ static void build(tyn_builder *b, uint8_t port, tyn_extent extent, uint32_t mips
                    pass->name, p->name);
         return;
     }
-    tyn_ref ref = add_resource(
-        b->g, &(resource){.name = p->name,
-                          .owner = pass->name,
-                          .kind = p->dir == TYN_OUT ? RESOURCE_OUT : RESOURCE_SCRATCH,
-                          .dim = p->dim,
-                          .format = b->formats[port] ? b->formats[port] : p->format,
-                          .extent = extent,
-                          .mips = mips});
+    tyn_ref ref =
+        add_resource(b->g, &(resource){.name = p->name,
+                                       .owner = pass->name,
+                                       .kind = p->dir == TYN_OUT ? RESOURCE_OUT : RESOURCE_SCRATCH,
+                                       .dim = p->dim,
+                                       .format = b->formats[port] ? b->formats[port] : p->format,
+                                       .extent = extent,
+                                       .mips = mips});
     b->node->res[port] = ref.resource;
 }
 
@@ -233,9 +233,10 @@ void tyn_build_buffer(tyn_builder *b, uint8_t port, uint64_t bytes)
 {
     const VkPhysicalDeviceLimits *limits = &b->g->dev->properties.limits;
     if (bytes > limits->maxStorageBufferRange || bytes > UINT32_MAX - 3) {
-        graph_fail(b->g, TYN_ERR_UNSUPPORTED, "pass '%s' needs a buffer '%s' of %.1f MiB; "
-                   "the device binds at most %.1f MiB", b->node->pass->name,
-                   b->node->pass->ports[port].name, (double)bytes / (1 << 20),
+        graph_fail(b->g, TYN_ERR_UNSUPPORTED,
+                   "pass '%s' needs a buffer '%s' of %.1f MiB; "
+                   "the device binds at most %.1f MiB",
+                   b->node->pass->name, b->node->pass->ports[port].name, (double)bytes / (1 << 20),
                    (double)limits->maxStorageBufferRange / (1 << 20));
         return;
     }
@@ -288,7 +289,8 @@ static void hash_node(const tyn_graph *g, node *n)
         h = tyn_hash_u64(h, p);
         if (dir == TYN_IN || dir == TYN_INOUT) {
             // What a history holds is the node's own doing; only a new start changes it.
-            h = tyn_hash_u64(h, r->kind == RESOURCE_HISTORY && r->version == 0 ? r->key : r->content);
+            h = tyn_hash_u64(h,
+                             r->kind == RESOURCE_HISTORY && r->version == 0 ? r->key : r->content);
             n->media_only = n->media_only && r->media_only;
         } else {
             h = tyn_hash_bytes(h, &r->extent, sizeof r->extent);
@@ -344,9 +346,8 @@ tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *pa
     }
     uint32_t index = g->num_nodes++;
     node *n = &g->nodes[index];
-    *n = (node){.pass = pass,
-                .params = g->params + g->params_used,
-                .params_offset = g->params_used};
+    *n =
+        (node){.pass = pass, .params = g->params + g->params_used, .params_offset = g->params_used};
     if (pass->params_size) {
         memcpy(n->params, params, pass->params_size);
     }

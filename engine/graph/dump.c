@@ -122,18 +122,18 @@ static char *dump_text(tyn_graph *g)
     if (!tracks) {
         return NULL;
     }
-    put(&t, "graph: %u nodes, %u resources, persistent %.2f MiB, transient %.2f MiB\n", g->num_nodes,
-        g->num_resources, (double)g->persistent_bytes / (1 << 20),
+    put(&t, "graph: %u nodes, %u resources, persistent %.2f MiB, transient %.2f MiB\n",
+        g->num_nodes, g->num_resources, (double)g->persistent_bytes / (1 << 20),
         (double)g->transient_bytes / (1 << 20));
     for (uint32_t i = 0; i < g->num_resources; i++) {
         const resource *r = &g->resources[i];
         bool outside = r->kind == RESOURCE_UPLOAD || r->kind == RESOURCE_IMPORT;
         if (r->kind == RESOURCE_UPLOAD) {
-            tracks[i] = (tyn_track){.write_stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                    .write_access = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                    .layout = r->dim == TYN_BUFFER
-                                                  ? VK_IMAGE_LAYOUT_UNDEFINED
-                                                  : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
+            tracks[i] =
+                (tyn_track){.write_stages = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                            .write_access = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                            .layout = r->dim == TYN_BUFFER ? VK_IMAGE_LAYOUT_UNDEFINED
+                                                           : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
         } else if (r->kind == RESOURCE_IMPORT) {
             tracks[i] = (tyn_track){.write_stages = r->image.before.stages,
                                     .write_access = r->image.before.access,

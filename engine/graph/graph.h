@@ -29,8 +29,8 @@ void tyn_graph_begin(tyn_graph *g);
 
 // A host image, with the state it is in and the state it must be left in. `version` 0 = its content
 // may have changed; else it identifies the content.
-tyn_ref tyn_graph_import_image(tyn_graph *g, const char *name, tyn_dim dim,
-                               const tyn_image *image, uint64_t version);
+tyn_ref tyn_graph_import_image(tyn_graph *g, const char *name, tyn_dim dim, const tyn_image *image,
+                               uint64_t version);
 
 // Data that the host side fills: recorded as a copy when `hash` differs from the last one. The data
 // is read during compile (big uploads, staged) or record (<= 64 KiB, inline).
@@ -43,7 +43,8 @@ tyn_ref tyn_graph_upload_image(tyn_graph *g, const char *name, tyn_dim dim, VkFo
 // Adds a node. `refs` has pass->num_ports elements: IN and INOUT are filled by the caller ({0} for an
 // absent optional one), OUT and INOUT are set to their new versions (OUT that does not exist: {0}).
 // `params` is copied.
-tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *params, tyn_ref *refs);
+tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *params,
+                         tyn_ref *refs);
 
 // A persistent image or buffer that starts as zeros and lives across frames: the INOUT of
 // accumulating passes. `key` changes = start from zeros again.
@@ -86,18 +87,24 @@ const void *tyn_graph_map(tyn_graph *g, const char *name, tyn_extent *extent, Vk
 // ---- what happened --------------------------------------------------------------------------
 
 typedef enum tyn_node_state {
-    TYN_NODE_RAN = 0, TYN_NODE_UNCHANGED, TYN_NODE_CULLED, TYN_NODE_EMPTY,
+    TYN_NODE_RAN = 0,
+    TYN_NODE_UNCHANGED,
+    TYN_NODE_CULLED,
+    TYN_NODE_EMPTY,
 } tyn_node_state;
 
 enum { TYN_MAX_WORK = 6 };
 typedef struct tyn_node_stats {
     const char *name;
     tyn_node_state state;
-    double gpu_ms;      // of the last finished record that ran it; 0 where timestamps are missing
-    double cpu_ms;      // recording
+    double gpu_ms; // of the last finished record that ran it; 0 where timestamps are missing
+    double cpu_ms; // recording
     uint32_t dispatches, barriers;
-    uint64_t bytes;     // memory of the node's OUT and SCRATCH resources
-    struct { const char *name; double amount; } work[TYN_MAX_WORK];
+    uint64_t bytes; // memory of the node's OUT and SCRATCH resources
+    struct {
+        const char *name;
+        double amount;
+    } work[TYN_MAX_WORK];
     uint32_t num_work;
 } tyn_node_stats;
 // Collects the timestamps of the last finished record; call after its fence.

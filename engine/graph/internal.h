@@ -31,7 +31,7 @@ typedef struct resource {
     uint32_t writers[MAX_VERSIONS]; // node index + 1 that wrote the version; 0 = from outside
     uint64_t content;               // identifies the newest version's content
     uint64_t key;                   // HISTORY: other key = start from zeros; UPLOAD: content hash
-    bool media_only; // depends on nothing but the media: not part of a frame's cost
+    bool media_only;                // depends on nothing but the media: not part of a frame's cost
     // UPLOAD: one of them
     const void *data;
     tyn_fill_fn fill;
@@ -76,15 +76,15 @@ typedef struct phys {
 } phys;
 
 typedef struct node_run { // of a node
-    uint64_t hash; // when it last ran; 0 = never
+    uint64_t hash;        // when it last ran; 0 = never
     tyn_node_stats stats;
 } node_run;
 
 typedef struct frame_slot { // one per frame in flight
     VkDescriptorPool pool;
     VkQueryPool queries;
-    bool pending;         // timestamps were written
-    uint8_t *timed;       // per node: it ran in this slot's last record
+    bool pending;   // timestamps were written
+    uint8_t *timed; // per node: it ran in this slot's last record
 } frame_slot;
 
 // What a dry run of the recorder learns.
@@ -129,21 +129,29 @@ struct tyn_graph {
     tyn_node_stats *stats;
 };
 
-typedef enum recorder_mode { RECORD_SURVEY = 0, RECORD_PIPELINES, RECORD_PLAN, RECORD_LIVE } recorder_mode;
+typedef enum recorder_mode {
+    RECORD_SURVEY = 0,
+    RECORD_PIPELINES,
+    RECORD_PLAN,
+    RECORD_LIVE
+} recorder_mode;
 
 struct tyn_recorder {
     tyn_graph *g;
     uint32_t node;
     recorder_mode mode;
     tyn_result result;
-    VkCommandBuffer cmd;       // LIVE
-    survey *survey;            // SURVEY
-    phys *usage;               // SURVEY: collects usage flags; may be NULL
-    tyn_track *tracks;         // PLAN: per resource
+    VkCommandBuffer cmd;                         // LIVE
+    survey *survey;                              // SURVEY
+    phys *usage;                                 // SURVEY: collects usage flags; may be NULL
+    tyn_track *tracks;                           // PLAN: per resource
     void (*print)(void *user, const char *line); // PLAN
     void *print_user;
     uint32_t dispatches, barriers;
-    struct { const char *name; double amount; } work[TYN_MAX_WORK];
+    struct {
+        const char *name;
+        double amount;
+    } work[TYN_MAX_WORK];
     uint32_t num_work;
 };
 

@@ -186,8 +186,8 @@ static void choose_nodes(const tyn_graph *g, bool *run_node)
 {
     for (uint32_t i = 0; i < g->num_nodes; i++) {
         const node *n = &g->nodes[i];
-        run_node[i] = n->needed && ((g->recompute && !n->media_only) || g->runs[i].hash != n->hash ||
-                                    !outputs_current(g, n, i));
+        run_node[i] = n->needed && ((g->recompute && !n->media_only) ||
+                                    g->runs[i].hash != n->hash || !outputs_current(g, n, i));
     }
     for (uint32_t i = g->num_nodes; i-- > 0;) {
         const node *n = &g->nodes[i];
@@ -273,24 +273,24 @@ static void record_readbacks(tyn_recorder *rec)
                                      &(VkBufferCopy){0, 0, p->bytes});
         } else {
             VkBufferImageCopy copy = whole_image(r);
-            g->dev->vk.CmdCopyImageToBuffer(rec->cmd, p->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                                            p->readback, 1, &copy);
+            g->dev->vk.CmdCopyImageToBuffer(
+                rec->cmd, p->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, p->readback, 1, &copy);
         }
         p->read = p->content;
         any = true;
     }
     if (any) {
         g->dev->vk.CmdPipelineBarrier2(
-            rec->cmd,
-            &(VkDependencyInfo){
-                .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                .memoryBarrierCount = 1,
-                .pMemoryBarriers = &(VkMemoryBarrier2){
-                    .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                    .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                    .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                    .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                    .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT}});
+            rec->cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                          .memoryBarrierCount = 1,
+                                          .pMemoryBarriers = &(VkMemoryBarrier2){
+                                              .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                              .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                              .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                              .dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT |
+                                                              VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                              .dstAccessMask = VK_ACCESS_2_HOST_READ_BIT |
+                                                               VK_ACCESS_2_TRANSFER_WRITE_BIT}});
     }
 }
 
@@ -302,8 +302,9 @@ static void record_imports_after(tyn_recorder *rec)
         const resource *r = &g->resources[i];
         if (r->kind == RESOURCE_IMPORT) {
             // As a read-modify-write: whatever the host does next is ordered behind us.
-            recorder_access(rec, i, (tyn_access){r->image.after.stages, r->image.after.access, true,
-                                                 true, r->image.after.layout});
+            recorder_access(rec, i,
+                            (tyn_access){r->image.after.stages, r->image.after.access, true, true,
+                                         r->image.after.layout});
         }
     }
 }
@@ -316,8 +317,8 @@ static void collect_timestamps(tyn_graph *g, frame_slot *slot)
         return;
     }
     slot->pending = false;
-    uint64_t mask = g->dev->timestamp_bits == 64 ? UINT64_MAX
-                                                 : (1ull << g->dev->timestamp_bits) - 1;
+    uint64_t mask =
+        g->dev->timestamp_bits == 64 ? UINT64_MAX : (1ull << g->dev->timestamp_bits) - 1;
     for (uint32_t i = 0; i < g->num_runs; i++) {
         uint64_t t[2];
         if (slot->timed[i] &&

@@ -83,9 +83,8 @@ static void add_barrier(tyn_graph *g, barrier_batch *batch, uint32_t index, cons
         return;
     }
     const resource *r = &g->resources[index];
-    VkImageAspectFlags aspect = r->kind == RESOURCE_IMPORT && r->image.aspect
-                                    ? r->image.aspect
-                                    : VK_IMAGE_ASPECT_COLOR_BIT;
+    VkImageAspectFlags aspect =
+        r->kind == RESOURCE_IMPORT && r->image.aspect ? r->image.aspect : VK_IMAGE_ASPECT_COLOR_BIT;
     batch->images[batch->num_images++] = (VkImageMemoryBarrier2){
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
         .srcStageMask = b->src_stages,
@@ -108,8 +107,8 @@ static void print_barrier(tyn_recorder *r, uint32_t index, const tyn_barrier *b)
     tyn_print_stages(dst, sizeof dst, b->dst_stages);
     tyn_print_access(src_access, sizeof src_access, b->src_access);
     tyn_print_access(dst_access, sizeof dst_access, b->dst_access);
-    int n = snprintf(line, sizeof line, "    barrier %s: %s %s -> %s %s", r->g->resources[index].name,
-                     src, src_access, dst, dst_access);
+    int n = snprintf(line, sizeof line, "    barrier %s: %s %s -> %s %s",
+                     r->g->resources[index].name, src, src_access, dst, dst_access);
     if (b->old_layout != b->new_layout) {
         snprintf(line + n, sizeof line - (size_t)n, ", %s -> %s", tyn_layout_name(b->old_layout),
                  tyn_layout_name(b->new_layout));
@@ -233,11 +232,11 @@ static VkDescriptorSet find_or_make_set(tyn_recorder *r, const tyn_dispatch *d, 
                 }
             }
             uint8_t mip = d->mips ? d->mips[i] : 0;
-            images[i] = (VkDescriptorImageInfo){
-                use != TYN_USE_SAMPLED     ? VK_NULL_HANDLE
-                : k->bindings[i].repeat ? g->dev->repeat_x
-                                        : g->dev->clamp,
-                view_of(r, ports[i], mip, use == TYN_USE_SAMPLED), layout};
+            images[i] =
+                (VkDescriptorImageInfo){use != TYN_USE_SAMPLED  ? VK_NULL_HANDLE
+                                        : k->bindings[i].repeat ? g->dev->repeat_x
+                                                                : g->dev->clamp,
+                                        view_of(r, ports[i], mip, use == TYN_USE_SAMPLED), layout};
             writes[i].pImageInfo = &images[i];
             h = tyn_hash_u64(h, (uint64_t)images[i].imageView);
             h = tyn_hash_u64(h, layout);
@@ -290,8 +289,8 @@ static void survey_dispatch(tyn_recorder *r, const tyn_dispatch *d, const uint8_
         s->storage_images += !buffer && use != TYN_USE_SAMPLED;
         if (r->usage && n->res[ports[i]]) {
             phys *p = &r->usage[n->res[ports[i]] - 1];
-            p->image_usage |= use == TYN_USE_SAMPLED ? VK_IMAGE_USAGE_SAMPLED_BIT
-                                                     : VK_IMAGE_USAGE_STORAGE_BIT;
+            p->image_usage |=
+                use == TYN_USE_SAMPLED ? VK_IMAGE_USAGE_SAMPLED_BIT : VK_IMAGE_USAGE_STORAGE_BIT;
             p->buffer_usage |= use == TYN_USE_UNIFORM ? VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT
                                                       : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
         }
@@ -411,7 +410,8 @@ void tyn_rec_dispatch(tyn_recorder *r, const tyn_dispatch *d)
     dispatch(r, d, -1, 0);
 }
 
-void tyn_rec_dispatch_indirect(tyn_recorder *r, const tyn_dispatch *d, uint8_t port, uint64_t offset)
+void tyn_rec_dispatch_indirect(tyn_recorder *r, const tyn_dispatch *d, uint8_t port,
+                               uint64_t offset)
 {
     dispatch(r, d, port, offset);
 }
@@ -470,9 +470,10 @@ void tyn_rec_fill(tyn_recorder *r, uint8_t port, uint32_t value)
 void tyn_rec_clear(tyn_recorder *r, uint8_t port)
 {
     if (begin_transfer(r, port, false, "clear")) {
-        r->g->dev->vk.CmdClearColorImage(
-            r->cmd, physical(r, port)->image, VK_IMAGE_LAYOUT_GENERAL, &(VkClearColorValue){{0}}, 1,
-            &(VkImageSubresourceRange){VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1});
+        r->g->dev->vk.CmdClearColorImage(r->cmd, physical(r, port)->image, VK_IMAGE_LAYOUT_GENERAL,
+                                         &(VkClearColorValue){{0}}, 1,
+                                         &(VkImageSubresourceRange){VK_IMAGE_ASPECT_COLOR_BIT, 0,
+                                                                    VK_REMAINING_MIP_LEVELS, 0, 1});
     }
 }
 

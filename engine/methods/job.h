@@ -15,10 +15,10 @@ typedef struct tyn_frame_scene {
     uint32_t num_lights, num_suns; // suns = directional lights, first in `lights`
     struct camera_block camera;
     struct env_block environment;
-    bool direct;    // one unsheared box: the atlas is the density texture, `medium` need not resample
-    bool grey;      // sigma_s, sigma_a, g equal in all channels (and no coefficient textures)
+    bool direct; // one unsheared box: the atlas is the density texture, `medium` need not resample
+    bool grey;   // sigma_s, sigma_a, g equal in all channels (and no coefficient textures)
     bool emissive;
-    bool empty;     // no medium at all, or no coefficient above 0
+    bool empty;             // no medium at all, or no coefficient above 0
     float m_from_world[16]; // rigid
 } tyn_frame_scene;
 

@@ -78,13 +78,12 @@ tyn_result gpu_try(gpu_test *t)
         vk->EndCommandBuffer(t->cmd);
         vk->QueueSubmit2(
             t->dev->queue, 1,
-            &(VkSubmitInfo2){
-                .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
-                .commandBufferInfoCount = 1,
-                .pCommandBufferInfos =
-                    &(VkCommandBufferSubmitInfo){
-                        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
-                        .commandBuffer = t->cmd}},
+            &(VkSubmitInfo2){.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+                             .commandBufferInfoCount = 1,
+                             .pCommandBufferInfos =
+                                 &(VkCommandBufferSubmitInfo){
+                                     .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                     .commandBuffer = t->cmd}},
             t->fence);
         vk->WaitForFences(t->dev->device, 1, &t->fence, VK_TRUE, UINT64_MAX);
         vk->ResetFences(t->dev->device, 1, &t->fence);
