@@ -18,8 +18,8 @@ enum {
     NY = 80,
     NZ = 48,
     CELLS = NX * NY * NZ,
-    STEPS = 170,
-    TRACED = 60, // last steps, even
+    STEPS = 120,
+    TRACED = 40, // last steps, even
     RELAXATIONS = 24,
     FINE = 2, // voxels a cell
     SAMPLES = 4,
@@ -31,8 +31,9 @@ typedef float vec4 __attribute__((vector_size(16)));
 typedef struct fluid {
     vec4 *state, *forward, *back;
     float *pressure, *divergence;
-    vec4 *curl;    // and its length
-    vec4 *history; // state of every second one of the traced steps
+    vec4 *curl;             // and its length
+    vec4 *history;          // state of every second one of the traced steps
+    float source[STEPS][2]; // x and z of the source's centre, cells
 } fluid;
 
 static inline size_t cell(int x, int y, int z)
@@ -73,23 +74,24 @@ static inline vec4 sample(const vec4 *field, float x, float y, float z)
     return e + (f - e) * s.fz;
 }
 
+#define SOURCE 7.5f // radius of the source, cells
+
 // How far inside the source a point is: 1 in its middle, 0 outside. The source wanders a little.
-static float source(float x, float y, float z, int step)
+static float source(const fluid *f, float x, float y, float z, int step)
 {
-    const float t = (float)step * 0.06f;
-    const float dx = x - NX * 0.5f - 1.5f * gen_perlin(t, 0.3f, 0.7f, 11);
-    const float dy = (y - 5.0f) * 1.3f;
-    const float dz = z - NZ * 0.5f - 1.5f * gen_perlin(t, 0.6f, 0.2f, 12);
-    const float r2 = (dx * dx + dy * dy + dz * dz) / (5.0f * 5.0f);
+    const float dx = x - f->source[step][0];
+    const float dy = (y - 0.65f * SOURCE) * 1.7f;
+    const float dz = z - f->source[step][1];
+    const float r2 = (dx * dx + dy * dy + dz * dz) / (SOURCE * SOURCE);
     return r2 < 1.0f ? 1.0f - r2 * r2 : 0.0f;
 }
 
 static void add_source(fluid *f, int step)
 {
     for (int z = 0; z < NZ; z++) {
-        for (int y = 0; y < 14; y++) {
+        for (int y = 0; y < 16; y++) {
             for (int x = 0; x < NX; x++) {
-                const float s = source((float)x, (float)y, (float)z, step);
+                const float s = source(f, (float)x, (float)y, (float)z, step);
                 if (s <= 0.0f) {
                     continue;
                 }
@@ -98,7 +100,8 @@ static void add_source(fluid *f, int step)
                 const float px = (float)x * 0.21f, py = (float)y * 0.21f, pz = (float)z * 0.21f;
                 const vec4 gust = {gen_perlin(px, py + t, pz, 21), gen_perlin(px, py + t, pz, 22),
                                    gen_perlin(px, py + t, pz, 23), 0.0f};
-                *u += gust * (0.22f * s);
+                *u += gust * (0.25f * s);
+                (*u)[1] += (0.7f - (*u)[1]) * s * 0.3f;
                 const float heat = 0.8f + 0.4f * gen_perlin(px, py, pz + t, 24);
                 (*u)[3] += (heat - (*u)[3]) * s * 0.5f;
             }
@@ -108,7 +111,7 @@ static void add_source(fluid *f, int step)
 
 static void add_forces(fluid *f)
 {
-    const float buoyancy = 0.055f, confinement = 0.16f;
+    const float buoyancy = 0.03f, confinement = 0.1f;
     const size_t sx = 1, sy = NX, sz = (size_t)NX * NY;
     for (int z = 1; z < NZ - 1; z++) {
         for (int y = 1; y < NY - 1; y++) {
@@ -261,8 +264,8 @@ static float trace(const fluid *f, float x, float y, float z)
         x -= 2.0f * u[0];
         y -= 2.0f * u[1];
         z -= 2.0f * u[2];
-        if (y < 11.0f) {
-            const float s = source(x, y, z, STEPS - TRACED + 2 * i);
+        if (y < 2.0f * SOURCE) {
+            const float s = source(f, x, y, z, STEPS - TRACED + 2 * i);
             smoke = smoke > s ? smoke : s;
         }
     }
@@ -291,6 +294,9 @@ gen_grid gen_plume(void)
         .history = zeroed((size_t)CELLS * (TRACED / 2), sizeof(vec4)),
     };
     for (int step = 0; step < STEPS; step++) {
+        const float t = (float)step * 0.06f;
+        f.source[step][0] = NX * 0.5f + 1.5f * gen_perlin(t, 0.3f, 0.7f, 11);
+        f.source[step][1] = NZ * 0.5f + 1.5f * gen_perlin(t, 0.6f, 0.2f, 12);
         add_source(&f, step);
         add_forces(&f);
         project(&f);

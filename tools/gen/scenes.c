@@ -131,7 +131,7 @@ const gen_scene gen_scenes[] = {
         .media =
             {{.name = "smoke", .scattering = {24, 24, 24}, .anisotropy = 0.7f, .density = PLUME}},
         .shapes = {{.name = "smoke", .translation = {0, 1, 0}, .scale = {1.2f, 2, 1.2f}}},
-        .cameras = {{.name = "view", .from = {0, 1, 4.2f}, .at = {0, 1, 0}, .yfov = 0.5f}},
+        .cameras = {{.name = "view", .from = {0, 1.02f, 4.2f}, .at = {0, 1.02f, 0}, .yfov = 0.4f}},
         .environment = true,
         .environment_radiance = {1, 1, 1},
     },
@@ -153,7 +153,7 @@ const gen_scene gen_scenes[] = {
                    .density = PLUME}},
         .shapes = {{.name = "smoke", .translation = {0, 1, 0}, .scale = {1.2f, 2, 1.2f}}},
         .suns = {{.direction = {-0.75f, -0.5f, -0.45f}, .irradiance = 8}},
-        .cameras = {{.name = "view", .from = {0, 1, 4.2f}, .at = {0, 1, 0}, .yfov = 0.5f}},
+        .cameras = {{.name = "view", .from = {0, 1.02f, 4.2f}, .at = {0, 1.02f, 0}, .yfov = 0.4f}},
     },
     {
         .name = "cloud",
