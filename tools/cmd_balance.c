@@ -1,0 +1,98 @@
+// cmd_balance.c -- `tyndall balance`: where the energy goes.
+#include "session.h"
+#include "stats.h"
+#include <stdio.h>
+
+typedef struct balance_args {
+    scene_options scene;
+    method_options method;
+    machine_options machine;
+    bool json;
+} balance_args;
+
+static int print_balance(app *a, const tyn_balance *balance, bool json)
+{
+    const struct {
+        const char *name;
+        const double *values;
+    } rows[] = {
+        {"entering", balance->entering},
+        {"emitted", balance->emitted},
+        {"absorbed_media", balance->absorbed_media},
+        {"absorbed_surfaces", balance->absorbed_surfaces},
+        {"escaped", balance->escaped},
+        {"imbalance", balance->imbalance},
+    };
+    cJSON *object = json ? cJSON_CreateObject() : NULL;
+    for (size_t i = 0; i < ARRAY_SIZE(rows); i++) {
+        const double *v = rows[i].values;
+        if (json) {
+            cJSON_AddItemToObject(object, rows[i].name, cJSON_CreateDoubleArray(v, 3));
+        } else {
+            printf("%-18s %14.7g %14.7g %14.7g%s\n", rows[i].name, v[0], v[1], v[2],
+                   v == balance->imbalance ? "" : " W");
+        }
+    }
+    return json ? json_write(a, object, NULL) : EXIT_DONE;
+}
+
+static int balance_scene(app *a, const balance_args *args, session *s)
+{
+    tyn_view view = {.width = 1, .height = 1, .outputs = TYN_OUTPUT_BALANCE};
+    tyn_camera_frame_scene(&view.camera, &s->scene);
+    method_view(&args->method, &view);
+    int code = session_start(a, &args->machine, s);
+    if (code == EXIT_DONE) {
+        code = renderer_frame(a, &s->renderer, &s->scene, &view, false, "balance");
+    }
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    renderer_warn(a, &s->renderer);
+    const tyn_balance *balance = tyn_offline_output(s->renderer.offline, TYN_OUTPUT_BALANCE);
+    if (!balance) {
+        app_error(a, "the method gave no balance");
+        return EXIT_FAILED;
+    }
+    return print_balance(a, balance, args->json);
+}
+
+static int run_balance(app *a, const void *arguments)
+{
+    const balance_args *args = arguments;
+    a->quiet = args->machine.quiet;
+    session s;
+    int code = session_open(a, &args->scene, &args->method, TYN_OUTPUT_BALANCE, &s);
+    if (code == EXIT_DONE) {
+        code = balance_scene(a, args, &s);
+    }
+    session_close(&s);
+    return code;
+}
+
+static const opt_positional positionals[] = {SCENE_POSITIONALS(balance_args, scene)};
+
+#define AT(field) offsetof(balance_args, field)
+static const option balance_table[] = {
+    {0, "json", OPT_FLAG, AT(json), NULL, "print JSON"},
+};
+static const opt_group groups[] = {
+    {"balance", balance_table, ARRAY_SIZE(balance_table), 0},
+    {"method", method_table, METHOD_TABLE_SIZE, AT(method)},
+    {"scene", scene_table, SCENE_TABLE_SIZE, AT(scene)},
+    {"machine", machine_table, MACHINE_TABLE_SIZE, AT(machine)},
+};
+
+const command cmd_balance = {
+    .name = "balance",
+    .summary = "Where the energy goes, in W, for R, G and B.",
+    .details =
+        "entering: through the surface of the media's shapes together; emitted: by media and by\n"
+        "lamps inside; imbalance = 1 - (absorbed + escaped) / (entering + emitted).",
+    .positionals = positionals,
+    .num_positionals = ARRAY_SIZE(positionals),
+    .groups = groups,
+    .num_groups = ARRAY_SIZE(groups),
+    .args_size = sizeof(balance_args),
+    .run = run_balance,
+};

@@ -1,0 +1,266 @@
+// cmd_info.c -- `tyndall info`: what is in a file, what this machine has, what the passes take.
+#include "app.h"
+#include "scene_setup.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <tyndall/registry.h>
+
+typedef struct info_args {
+    scene_options scene;
+    bool devices, passes, methods, quiet;
+} info_args;
+
+// ---- the machine ------------------------------------------------------------------------------
+
+enum { MAX_DEVICES = 16 };
+
+static int print_devices(app *a)
+{
+    tyn_device_info *infos = calloc(MAX_DEVICES, sizeof *infos);
+    int count = infos ? tyn_devices_list(infos, MAX_DEVICES, &a->log) : TYN_ERR_MEMORY;
+    if (count <= 0) {
+        if (count == 0) {
+            app_error(a,
+                      "no Vulkan device; a software one is Mesa's lavapipe (mesa-vulkan-drivers)");
+        }
+        free(infos);
+        return count ? app_exit_code(a, (tyn_result)count, false) : EXIT_FAILED;
+    }
+    for (int i = 0; i < count && i < MAX_DEVICES; i++) {
+        const tyn_device_info *d = &infos[i];
+        printf("%d  %s\n   %s, Vulkan %u.%u.%u, driver %s, heap %.1f GiB\n   %s%s\n", i, d->name,
+               d->type, VK_API_VERSION_MAJOR(d->api_version), VK_API_VERSION_MINOR(d->api_version),
+               VK_API_VERSION_PATCH(d->api_version), d->driver, (double)d->heap_bytes / (1u << 30),
+               d->missing[0] ? "cannot be used, it lacks: " : "usable", d->missing);
+    }
+    free(infos);
+    return EXIT_DONE;
+}
+
+// ---- passes and methods -----------------------------------------------------------------------
+
+static void print_range(const tyn_param *p)
+{
+    switch (p->type) {
+    case TYN_PARAM_BOOL:
+        printf("0 or 1, default %g", p->def);
+        break;
+    case TYN_PARAM_ENUM:
+        for (int i = 0; i <= (int)p->max; i++) {
+            printf("%s%s", i ? "|" : "", p->names[i]);
+        }
+        printf(", default %s", p->names[(int)p->def]);
+        break;
+    case TYN_PARAM_INT:
+    case TYN_PARAM_FLOAT:
+        printf("%.7g to %.7g%s%s, default %.7g", p->min, p->max, p->unit[0] ? " " : "", p->unit,
+               p->def);
+        break;
+    }
+}
+
+static void print_ports(const tyn_pass_desc *pass, tyn_port_dir dir, const char *title)
+{
+    const char *separator = title;
+    for (uint32_t i = 0; i < pass->num_ports; i++) {
+        if (pass->ports[i].dir == dir) {
+            printf("%s%s%s", separator, pass->ports[i].name, pass->ports[i].optional ? "?" : "");
+            separator = ", ";
+        }
+    }
+    if (separator != title) {
+        printf("\n");
+    }
+}
+
+static void print_passes(void)
+{
+    for (uint32_t i = 0; i < tyn_num_passes(); i++) {
+        const tyn_pass_desc *pass = tyn_pass_at(i);
+        printf("%s%s\n    %s\n", i ? "\n" : "", pass->name, pass->summary);
+        print_ports(pass, TYN_IN, "    reads    ");
+        print_ports(pass, TYN_INOUT, "    changes  ");
+        print_ports(pass, TYN_OUT, "    makes    ");
+        for (uint32_t k = 0; k < pass->num_params; k++) {
+            const tyn_param *p = &pass->params[k];
+            printf("    -D %s.%s=  ", pass->name, p->name);
+            print_range(p);
+            printf("\n        %s\n", p->doc);
+        }
+        if (pass->debug_meaning && pass->debug_port < pass->num_ports) {
+            printf("    debug view: %s, %s\n", pass->ports[pass->debug_port].name,
+                   pass->debug_meaning);
+        }
+    }
+}
+
+static void print_methods(void)
+{
+    for (uint32_t i = 0; i < tyn_num_methods(); i++) {
+        tyn_method_info m;
+        tyn_method_at(i, &m);
+        printf("%-10s %s\n%-10s passes:", m.name, m.summary, "");
+        for (const tyn_pass_desc *const *pass = m.passes; *pass; pass++) {
+            printf(" %s", (*pass)->name);
+        }
+        printf("\n");
+    }
+}
+
+// ---- a scene ----------------------------------------------------------------------------------
+
+static const char *name_or(const char *name)
+{
+    return name ? name : "(no name)";
+}
+
+static void print_color(const char *title, const float v[3], const char *unit)
+{
+    printf("  %s %g %g %g%s%s", title, v[0], v[1], v[2], unit[0] ? " " : "", unit);
+}
+
+static void print_media(const tyn_scene *scene)
+{
+    for (uint32_t i = 0; i < scene->num_volumes; i++) {
+        const tyn_volume *v = &scene->volumes[i];
+        printf("volume %u '%s': %ux%ux%u voxels, density up to %g\n", i, name_or(v->name),
+               v->size[0], v->size[1], v->size[2], v->max_density);
+    }
+    for (uint32_t i = 0; i < scene->num_media; i++) {
+        const tyn_medium *m = &scene->media[i];
+        printf("medium %u '%s': ", i, name_or(m->name));
+        if (m->volume < 0) {
+            printf("homogeneous");
+        } else {
+            printf("density of volume %d x %g", m->volume, m->density_scale);
+        }
+        print_color("\n  scattering", m->sigma_s, "1/m\n");
+        print_color("absorption", m->sigma_a, "1/m\n");
+        print_color("mean cosine", m->g, "\n");
+        if (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0) {
+            print_color("emission", m->emission, "W/(m^3 sr)\n");
+        }
+    }
+    for (uint32_t i = 0; i < scene->num_shapes; i++) {
+        const tyn_shape *s = &scene->shapes[i];
+        const float *m = s->to_world;
+        printf("shape %u: %s of medium %u, at %g %g %g, edges %g %g %g m%s\n", i,
+               s->kind == TYN_SHAPE_SPHERE ? "sphere" : "box", s->medium, m[12], m[13], m[14],
+               sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]),
+               sqrt(m[4] * m[4] + m[5] * m[5] + m[6] * m[6]),
+               sqrt(m[8] * m[8] + m[9] * m[9] + m[10] * m[10]),
+               s->repeat[0] || s->repeat[1] || s->repeat[2] ? ", periodic" : "");
+    }
+}
+
+static void print_lights(const tyn_scene *scene)
+{
+    static const char *const kinds[] = {"directional", "point", "spot"};
+    for (uint32_t i = 0; i < scene->num_lights; i++) {
+        const tyn_light *l = &scene->lights[i];
+        bool sun = l->kind == TYN_LIGHT_DIRECTIONAL;
+        printf("light %u '%s': %s,", i, name_or(l->name), kinds[l->kind]);
+        print_color("", l->color, sun ? "W/m^2," : "W/sr,");
+        const float *v = sun ? l->direction : l->position;
+        printf(" %s %g %g %g\n", sun ? "travels along" : "at", v[0], v[1], v[2]);
+    }
+    const tyn_environment *env = &scene->environment;
+    if (env->present && env->data) {
+        printf("environment: %ux%u texels,", env->size[0], env->size[1]);
+    } else if (env->present) {
+        printf("environment: constant,");
+    }
+    if (env->present) {
+        print_color("radiance", env->radiance, "");
+        printf(" x %g\n", env->strength);
+    }
+}
+
+static void print_cameras(const tyn_scene *scene)
+{
+    for (uint32_t i = 0; i < scene->num_cameras; i++) {
+        const tyn_camera *c = &scene->cameras[i];
+        printf("camera %u '%s': ", i, name_or(c->name ? c->name : c->camera_name));
+        if (c->projection == TYN_PERSPECTIVE) {
+            printf("perspective, vertical field of view %g deg", c->yfov * 180 / 3.14159265358979);
+        } else {
+            printf("orthographic, half height %g m", c->ymag);
+        }
+        printf(", at %g %g %g, looks along %g %g %g\n", c->position[0], c->position[1],
+               c->position[2], 0 - c->back[0], 0 - c->back[1], 0 - c->back[2]);
+    }
+}
+
+static int print_scene(app *a, const scene_options *options)
+{
+    tyn_scene scene;
+    int code = scene_open(a, options, &scene);
+    if (code == EXIT_DONE) {
+        print_media(&scene);
+        print_lights(&scene);
+        print_cameras(&scene);
+        float lo[3], hi[3];
+        if (tyn_scene_bounds(&scene, lo, hi)) {
+            printf("bounds of the media: %g %g %g to %g %g %g m\n", lo[0], lo[1], lo[2], hi[0],
+                   hi[1], hi[2]);
+        }
+        if (scene.clamped_negative) {
+            printf("negative densities set to 0: %llu\n",
+                   (unsigned long long)scene.clamped_negative);
+        }
+    }
+    tyn_scene_finish(&scene);
+    return code;
+}
+
+static int run_info(app *a, const void *arguments)
+{
+    const info_args *args = arguments;
+    a->quiet = args->quiet;
+    int asked = args->devices + args->passes + args->methods + (args->scene.scene != NULL);
+    if (asked != 1) {
+        app_error(a, "one of SCENE, --devices, --passes, --methods; %d were given", asked);
+        return EXIT_WRONG;
+    }
+    if (args->devices) {
+        return print_devices(a);
+    }
+    if (args->passes) {
+        print_passes();
+    } else if (args->methods) {
+        print_methods();
+    } else {
+        return print_scene(a, &args->scene);
+    }
+    return EXIT_DONE;
+}
+
+#define AT(field) offsetof(info_args, field)
+static const opt_positional positionals[] = {
+    {"SCENE", "a .gltf or .glb scene, or a volume (.nvdb, .vdb)", false, AT(scene.scene)},
+    {"ENVIRONMENT", "a latitude-longitude map (.exr, .hdr), as --env", false,
+     AT(scene.environment)},
+};
+static const option info_table[] = {
+    {0, "devices", OPT_FLAG, AT(devices), NULL, "the Vulkan devices of this machine"},
+    {0, "passes", OPT_FLAG, AT(passes), NULL, "every pass with its parameters"},
+    {0, "methods", OPT_FLAG, AT(methods), NULL, "every method with its passes"},
+    {'q', "quiet", OPT_FLAG, AT(quiet), NULL, "no warnings"},
+};
+static const opt_group groups[] = {
+    {"what", info_table, ARRAY_SIZE(info_table), 0},
+    {"scene", scene_table, SCENE_TABLE_SIZE, AT(scene)},
+};
+
+const command cmd_info = {
+    .name = "info",
+    .summary = "What is in a file; what this machine has; every pass with its parameters.",
+    .positionals = positionals,
+    .num_positionals = ARRAY_SIZE(positionals),
+    .groups = groups,
+    .num_groups = ARRAY_SIZE(groups),
+    .args_size = sizeof(info_args),
+    .run = run_info,
+};

@@ -1,0 +1,288 @@
+// cmd_render.c -- `tyndall render`: a scene to pictures and stats.
+#include "app.h"
+#include "machine.h"
+#include "method_setup.h"
+#include "output.h"
+#include "renderer.h"
+#include "scene_setup.h"
+#include "sequence.h"
+#include "stats.h"
+#include "timing.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct render_args {
+    scene_options scene;
+    view_options view;
+    method_options method;
+    machine_options machine;
+    opt_list outputs;
+    const char *aov, *stats, *frames, *change;
+    bool no_background, full_float;
+    float exposure;
+} render_args;
+
+// What stays the same over the pictures of a sequence.
+typedef struct render_job {
+    const render_args *args;
+    const method *method;
+    const output_plan *plan;
+    uint32_t repeat; // timing frames
+    machine machine; // opened for the first picture, when its scene has been read
+    renderer renderer;
+} render_job;
+
+static int open_renderer(app *a, render_job *job)
+{
+    if (job->renderer.offline) {
+        return EXIT_DONE;
+    }
+    int code = machine_open(a, &job->args->machine, false, &job->machine);
+    return code == EXIT_DONE ? renderer_open(a, job->machine.device, job->method, &job->renderer)
+                             : code;
+}
+
+// The paths of one picture, with its number in them: new strings.
+typedef struct picture_paths {
+    opt_list outputs;
+    char *scene, *environment, *stats;
+} picture_paths;
+
+static char *path_of(const char *path, bool numbered, uint32_t number)
+{
+    if (!path) {
+        return NULL;
+    }
+    return numbered ? sequence_path(path, number) : text_format("%s", path);
+}
+
+static void paths_make(const render_args *args, const opt_list *outputs, bool numbered,
+                       uint32_t number, picture_paths *p)
+{
+    const char *environment = args->scene.env ? args->scene.env : args->scene.environment;
+    *p = (picture_paths){.scene = path_of(args->scene.scene, numbered, number),
+                         .environment = path_of(environment, numbered, number),
+                         .stats = path_of(args->stats, numbered, number)};
+    for (uint32_t i = 0; i < outputs->count; i++) {
+        p->outputs.items[p->outputs.count++] = path_of(outputs->items[i], numbered, number);
+    }
+}
+
+static void paths_finish(picture_paths *p)
+{
+    for (uint32_t i = 0; i < p->outputs.count; i++) {
+        free((char *)p->outputs.items[i]);
+    }
+    free(p->scene);
+    free(p->environment);
+    free(p->stats);
+}
+
+// --frames N: the timing frames after the picture. `scene` is changed by --change light.
+static int time_frames(app *a, render_job *job, tyn_scene *scene, const tyn_view *view, stats *s)
+{
+    const char *change = job->args->change;
+    timing_change what = TIMING_COLD;
+    double *median = &s->cold_ms;
+    if (change && strcmp(change, "camera") == 0) {
+        what = TIMING_CAMERA;
+        median = &s->camera_moved_ms;
+    } else if (change && strcmp(change, "light") == 0) {
+        what = TIMING_LIGHT;
+        median = &s->light_moved_ms;
+    } else if (change) {
+        what = TIMING_UNCHANGED;
+        median = &s->unchanged_ms;
+    }
+    return timing_run(a, &job->renderer, scene, view, what, job->repeat, median);
+}
+
+static int write_outputs(app *a, const render_job *job, const tyn_view *view, const opt_list *files)
+{
+    for (uint32_t i = 0; i < files->count; i++) {
+        int code = output_write(a, job->plan, job->renderer.offline, view, files->items[i]);
+        if (code != EXIT_DONE) {
+            return code;
+        }
+    }
+    return EXIT_DONE;
+}
+
+// What the run gave, in a line for people.
+static void note_result(app *a, const stats *s, const opt_list *files)
+{
+    app_note(a, "%s: %ux%u, %s on %s, %.0f ms a cold frame, %.0f ms set-up", files->items[0],
+             s->view->width, s->view->height, s->method->info.name, s->device, s->cold_ms,
+             s->setup_ms);
+}
+
+// Renders, writes and times one picture. `scene` has been loaded.
+static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t number,
+                          const picture_paths *paths)
+{
+    tyn_view view = {.outputs = job->plan->outputs,
+                     .no_background = job->args->no_background,
+                     .exposure_ev = job->args->exposure,
+                     .time_index = number};
+    method_view(&job->args->method, &view);
+    int code = view_setup(a, &job->args->view, scene, &view);
+    if (code == EXIT_DONE) {
+        code = open_renderer(a, job);
+    }
+    if (code == EXIT_DONE) {
+        code = renderer_frame(a, &job->renderer, scene, &view, false, job->method->info.name);
+    }
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    renderer_warn(a, &job->renderer);
+    code = write_outputs(a, job, &view, &paths->outputs);
+    stats s = {.device = tyn_device_name(job->machine.device),
+               .method = job->method,
+               .scene = scene,
+               .view = &view,
+               .setup_ms = tyn_offline_setup_ms(job->renderer.offline),
+               .cold_ms = job->renderer.frame_ms,
+               .camera_moved_ms = NAN,
+               .light_moved_ms = NAN,
+               .unchanged_ms = NAN,
+               .inputs = {paths->scene, paths->environment}};
+    if (code == EXIT_DONE && job->repeat > 0) {
+        code = time_frames(a, job, scene, &view, &s);
+    }
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    note_result(a, &s, &paths->outputs);
+    if (paths->stats) {
+        tyn_report report = {0};
+        tyn_offline_report(job->renderer.offline, &report);
+        s.report = &report;
+        code = json_write(a, stats_make(&s), paths->stats);
+    }
+    return code;
+}
+
+static int load_and_render(app *a, render_job *job, const opt_list *outputs, bool numbered,
+                           uint32_t number)
+{
+    picture_paths p;
+    paths_make(job->args, outputs, numbered, number, &p);
+    scene_options options = job->args->scene;
+    options.scene = p.scene;
+    if (options.env) {
+        options.env = p.environment;
+    } else {
+        options.environment = p.environment;
+    }
+    tyn_scene scene;
+    int code = scene_open(a, &options, &scene);
+    if (code == EXIT_DONE) {
+        code = render_picture(a, job, &scene, number, &p);
+    }
+    tyn_scene_finish(&scene);
+    paths_finish(&p);
+    return code;
+}
+
+static int check_sequence(app *a, const render_args *args, const opt_list *outputs, sequence *s)
+{
+    if (!sequence_parse(args->frames, s)) {
+        app_error(a, "--frames: '%s' is neither a number of frames N nor a range A-B, up to 100000",
+                  args->frames);
+        return EXIT_WRONG;
+    }
+    if (args->change && !s->repeat) {
+        app_error(a, "--change needs --frames N, the number of frames to time");
+        return EXIT_WRONG;
+    }
+    for (uint32_t i = 0; s->numbered && i <= outputs->count; i++) {
+        const char *path = i < outputs->count ? outputs->items[i] : args->stats;
+        if (path && !sequence_has_number(path)) {
+            app_error(a, "'%s' holds no %%04d or #### for the numbers of --frames %s", path,
+                      args->frames);
+            return EXIT_WRONG;
+        }
+    }
+    return EXIT_DONE;
+}
+
+static int render_all(app *a, const render_args *args, const opt_list *outputs)
+{
+    sequence s;
+    method meth = {0};
+    output_plan plan;
+    int code = check_sequence(a, args, outputs, &s);
+    if (code == EXIT_DONE) {
+        code = method_open(a, &args->method, &meth);
+    }
+    if (code == EXIT_DONE) {
+        code = output_plan_make(a, &meth.info, outputs, args->aov, args->full_float, &plan);
+    }
+    render_job job = {.args = args, .method = &meth, .plan = &plan, .repeat = s.repeat};
+    uint32_t first = s.numbered ? s.first : 0, last = s.numbered ? s.last : 0;
+    for (uint32_t number = first; code == EXIT_DONE && number <= last; number++) {
+        code = load_and_render(a, &job, outputs, s.numbered, number);
+    }
+    renderer_close(&job.renderer);
+    machine_close(&job.machine);
+    method_finish(&meth);
+    return code;
+}
+
+static int run_render(app *a, const void *arguments)
+{
+    const render_args *args = arguments;
+    a->quiet = args->machine.quiet;
+    opt_list outputs = args->outputs;
+    char *stem = text_stem(args->scene.scene),
+         *by_name = text_format("%s.png", stem ? stem : "out");
+    if (outputs.count == 0) {
+        outputs.items[outputs.count++] = by_name;
+    }
+    int code = render_all(a, args, &outputs);
+    free(stem);
+    free(by_name);
+    return code;
+}
+
+static const char *const changes[] = {"none", "camera", "light", NULL};
+static const opt_positional positionals[] = {SCENE_POSITIONALS(render_args, scene)};
+
+#define AT(field) offsetof(render_args, field)
+static const option output_table[] = {
+    {'o', "output", OPT_LIST, AT(outputs), "FILE",
+     ".exr or .png, repeatable; else the scene's name with .png"},
+    {0, "aov", OPT_TEXT, AT(aov), "LIST",
+     "layers of the .exr: transmittance,depth,depth_t50,single,multiple,error"},
+    {0, "no-background", OPT_FLAG, AT(no_background), NULL,
+     "the medium alone, premultiplied; A = 1 - mean transmittance"},
+    {0, "exposure", OPT_NUMBER, AT(exposure), "EV", "of the .png", 0, -64, 64},
+    {0, "float", OPT_FLAG, AT(full_float), NULL, "32-bit .exr instead of 16-bit"},
+    {0, "stats", OPT_TEXT, AT(stats), "FILE.json", "times, memory and work of every node"},
+    {0, "frames", OPT_TEXT, AT(frames), "N|A-B",
+     "N: time N frames that recompute every node; A-B: a sequence, %04d or #### in names"},
+    {0, "change", OPT_TEXT, AT(change), "none|camera|light",
+     "with --frames N: time frames in which only this changes", .names = changes},
+};
+
+static const opt_group groups[] = {
+    {"output", output_table, ARRAY_SIZE(output_table), 0},
+    {"method", method_table, METHOD_TABLE_SIZE, AT(method)},
+    {"view", view_table, VIEW_TABLE_SIZE, AT(view)},
+    {"scene", scene_table, SCENE_TABLE_SIZE, AT(scene)},
+    {"machine", machine_table, MACHINE_TABLE_SIZE, AT(machine)},
+};
+
+const command cmd_render = {
+    .name = "render",
+    .summary = "Render a scene, or a bare volume, to .exr and .png.",
+    .positionals = positionals,
+    .num_positionals = ARRAY_SIZE(positionals),
+    .groups = groups,
+    .num_groups = ARRAY_SIZE(groups),
+    .args_size = sizeof(render_args),
+    .run = run_render,
+};

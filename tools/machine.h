@@ -1,0 +1,22 @@
+// machine.h -- the device that --device names, with its pipelines cached on disk.
+#pragma once
+#include "app.h"
+#include <tyndall/device.h>
+
+typedef struct machine_options {
+    const char *device, *plugin;
+    bool quiet;
+} machine_options;
+extern const option machine_table[];
+enum { MACHINE_TABLE_SIZE = 3 };
+
+typedef struct machine {
+    tyn_device *device;
+    char *cache_path; // NULL: no place for a cache
+    uint64_t cache_hash;
+} machine;
+
+// Opens the device and applies --quiet and --plugin. Gives the exit code; `m` may be closed after a
+// failure as well.
+int machine_open(app *a, const machine_options *options, bool validation, machine *m);
+void machine_close(machine *m); // writes the cache if it has grown; a failure of that is silent

@@ -1,0 +1,96 @@
+// main.c -- the tyndall tool: picks the subcommand.
+#include "app.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const command *const commands[] = {
+    &cmd_render, &cmd_compare, &cmd_probe,    &cmd_balance, &cmd_bench,
+    &cmd_graph,  &cmd_info,    &cmd_selftest, &cmd_view,
+};
+
+static void print_help(FILE *to)
+{
+    fprintf(to, "usage: tyndall COMMAND [arguments]\n\n"
+                "Light in participating media (smoke, cloud, fog, milk) with Vulkan compute.\n\n");
+    for (size_t i = 0; i < ARRAY_SIZE(commands); i++) {
+        fprintf(to, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
+    }
+    fprintf(to, "\n'tyndall COMMAND --help' lists the arguments; 'tyndall --version' the version.\n"
+                "Exit codes: 0 done; 2 the arguments or the input are wrong; 1 anything else;\n"
+                "130 interrupted.\n");
+}
+
+static void print_markdown(void)
+{
+    printf(
+        "# The command line\n\n"
+        "This page is made by `tyndall --help-markdown` from the tables behind `--help`.\n\n"
+        "Progress goes to stderr, results to stdout or to files; machine-readable results are "
+        "JSON. Files are\nwritten under a temporary name and renamed. The same inputs, seed and "
+        "device give the same bytes.\n\n"
+        "Exit codes: 0 done; 2 the arguments or the input are wrong (one line: what, where, what "
+        "would be right);\n1 anything else; 130 interrupted, and then nothing is written.\n\n");
+    for (size_t i = 0; i < ARRAY_SIZE(commands); i++) {
+        options_markdown(commands[i]);
+    }
+}
+
+static int run_command(app *a, const command *cmd, int argc, char **argv)
+{
+    a->command = cmd->name;
+    void *args = calloc(1, cmd->args_size);
+    if (!args) {
+        app_error(a, "out of memory");
+        return EXIT_FAILED;
+    }
+    int code = EXIT_WRONG;
+    switch (options_parse(cmd, argc, argv, args, &a->log)) {
+    case OPT_HELP:
+        options_help(cmd);
+        code = EXIT_DONE;
+        break;
+    case OPT_RUN:
+        code = cmd->run(a, args);
+        break;
+    case OPT_WRONG:
+        break;
+    }
+    progress_clear(&a->bar);
+    free(args);
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        app_error(a, "the results cannot be written to stdout");
+        code = code == EXIT_DONE ? EXIT_FAILED : code;
+    }
+    return code;
+}
+
+int main(int argc, char **argv)
+{
+    app a;
+    app_init(&a);
+    const char *name = argc > 1 ? argv[1] : "";
+    for (size_t i = 0; i < ARRAY_SIZE(commands); i++) {
+        if (strcmp(name, commands[i]->name) == 0) {
+            return run_command(&a, commands[i], argc - 2, argv + 2);
+        }
+    }
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
+        print_help(stdout);
+        return EXIT_DONE;
+    }
+    if (strcmp(name, "--version") == 0) {
+        printf("tyndall %s\n", tyn_version_string());
+        return EXIT_DONE;
+    }
+    if (strcmp(name, "--help-markdown") == 0) {
+        print_markdown();
+        return EXIT_DONE;
+    }
+    if (argc < 2) {
+        print_help(stderr);
+    } else {
+        app_error(&a, "unknown command '%s'; 'tyndall --help' lists them", name);
+    }
+    return EXIT_WRONG;
+}

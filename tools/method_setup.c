@@ -1,0 +1,88 @@
+// method_setup.c -- --method, --quality, -D and the options of sampling methods.
+#include "method_setup.h"
+#include <stdio.h>
+#include <string.h>
+
+static const char *const qualities[] = {"draft", "normal", "high", NULL};
+
+#define AT(field) offsetof(method_options, field)
+const option method_table[METHOD_TABLE_SIZE] = {
+    {'m', "method", OPT_TEXT, AT(method), "NAME",
+     "how to compute it, default pop ('tyndall info --methods')"},
+    {0, "quality", OPT_TEXT, AT(quality), "draft|normal|high", "preset of all parameters",
+     .names = qualities},
+    {'D', NULL, OPT_LIST, AT(defines), "PASS.PARAM=VALUE",
+     "set one parameter ('tyndall info --passes'); repeatable, after --quality"},
+    {0, "spp", OPT_UINT, AT(spp), "N", "samples a pixel or point, of methods that sample", 64, 1,
+     16777216},
+    {0, "seed", OPT_UINT, AT(seed), "N", "of the random numbers", 0, 0, 4294967295.0},
+    {0, "max-depth", OPT_UINT, AT(max_depth), "N", "longest path in scatterings; 0 = no limit", 0},
+    {0, "rr-depth", OPT_UINT, AT(rr_depth), "N",
+     "Russian roulette from this many scatterings on; 0 = the method's choice", 0},
+};
+
+bool method_find(app *a, const char *name, tyn_method_info *info)
+{
+    char line[512] = "";
+    size_t used = 0;
+    for (uint32_t i = 0; i < tyn_num_methods(); i++) {
+        tyn_method_at(i, info);
+        if (strcmp(info->name, name ? name : "pop") == 0) {
+            return true;
+        }
+        if (used < sizeof line) {
+            used += (size_t)snprintf(line + used, sizeof line - used, "%s %s", i ? "," : "",
+                                     info->name);
+        }
+    }
+    app_error(a, "--method: there is no method '%s'; there are:%s", name ? name : "pop", line);
+    return false;
+}
+
+bool method_define(app *a, tyn_settings *settings, const char *define)
+{
+    const char *equals = strchr(define, '=');
+    char name[128];
+    if (!equals || equals == define || !equals[1] || (size_t)(equals - define) >= sizeof name) {
+        app_error(a,
+                  "-D: '%s' is not PASS.PARAM=VALUE; 'tyndall info --passes' lists the parameters",
+                  define);
+        return false;
+    }
+    snprintf(name, sizeof name, "%.*s", (int)(equals - define), define);
+    return tyn_settings_set(settings, name, equals + 1, &a->log) == TYN_OK;
+}
+
+int method_open(app *a, const method_options *options, method *m)
+{
+    *m = (method){0};
+    if (!method_find(a, options->method, &m->info)) {
+        return EXIT_WRONG;
+    }
+    tyn_result result = tyn_settings_create(&m->settings);
+    if (result == TYN_OK && options->quality) {
+        result = tyn_settings_quality(m->settings, options->quality, &a->log);
+    }
+    if (result != TYN_OK) {
+        return app_exit_code(a, result, false);
+    }
+    for (uint32_t i = 0; i < options->defines.count; i++) {
+        if (!method_define(a, m->settings, options->defines.items[i])) {
+            return EXIT_WRONG;
+        }
+    }
+    return EXIT_DONE;
+}
+
+void method_finish(method *m)
+{
+    tyn_settings_destroy(&m->settings);
+}
+
+void method_view(const method_options *options, tyn_view *view)
+{
+    view->num_samples = options->spp;
+    view->seed = options->seed;
+    view->max_depth = options->max_depth;
+    view->rr_depth = options->rr_depth;
+}

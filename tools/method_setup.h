@@ -1,0 +1,30 @@
+// method_setup.h -- --method, --quality, -D and the options of sampling methods.
+#pragma once
+#include "app.h"
+#include <tyndall/registry.h>
+
+typedef struct method_options {
+    const char *method, *quality;
+    opt_list defines; // pass.param=value
+    uint32_t spp, seed, max_depth, rr_depth;
+} method_options;
+extern const option method_table[];
+enum { METHOD_TABLE_SIZE = 7 };
+
+typedef struct method {
+    tyn_method_info info;
+    tyn_settings *settings;
+} method;
+
+// Finds a method by its name, NULL = pop. False: one line that lists those there are.
+bool method_find(app *a, const char *name, tyn_method_info *info);
+
+// Gives the exit code; method_finish is due in any case.
+int method_open(app *a, const method_options *options, method *m);
+void method_finish(method *m);
+
+// "pass.param=value" into settings. False: said.
+bool method_define(app *a, tyn_settings *settings, const char *define);
+
+// Seed, samples and depths into the view.
+void method_view(const method_options *options, tyn_view *view);

@@ -1,0 +1,183 @@
+// output.c -- the pictures a frame gives: EXR layers and display-ready PNG.
+#include "output.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <tyndall/io.h>
+#include <unistd.h>
+
+// A layer is some components of an output image.
+typedef struct layer {
+    const char *name;
+    tyn_output output;
+    uint32_t num_channels;
+    struct {
+        const char *name;
+        uint32_t component;
+    } channels[4];
+} layer;
+
+static const layer layers[] = {
+    {"color", TYN_OUTPUT_RADIANCE, 4, {{"R", 0}, {"G", 1}, {"B", 2}, {"A", 3}}},
+    {"transmittance",
+     TYN_OUTPUT_TRANSMITTANCE,
+     3,
+     {{"transmittance.R", 0}, {"transmittance.G", 1}, {"transmittance.B", 2}}},
+    {"depth", TYN_OUTPUT_DEPTH, 1, {{"depth.Z", 0}}},
+    {"depth_t50", TYN_OUTPUT_DEPTH, 1, {{"depth_t50.Z", 1}}},
+    {"single", TYN_OUTPUT_SINGLE, 3, {{"single.R", 0}, {"single.G", 1}, {"single.B", 2}}},
+    {"multiple", TYN_OUTPUT_MULTIPLE, 3, {{"multiple.R", 0}, {"multiple.G", 1}, {"multiple.B", 2}}},
+    {"error", TYN_OUTPUT_ERROR, 3, {{"error.R", 0}, {"error.G", 1}, {"error.B", 2}}},
+};
+enum { COLOR_LAYER = 0, MAX_CHANNELS = 20 };
+
+// ---- planning ---------------------------------------------------------------------------------
+
+static void list_layers(uint32_t outputs, char *text, size_t size)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (uint32_t i = COLOR_LAYER + 1; i < ARRAY_SIZE(layers) && used < size; i++) {
+        if (layers[i].output & outputs) {
+            used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "",
+                                     layers[i].name);
+        }
+    }
+}
+
+static bool add_layer(app *a, const tyn_method_info *method, const char *name, size_t length,
+                      output_plan *plan)
+{
+    char known[256];
+    for (uint32_t i = COLOR_LAYER + 1; i < ARRAY_SIZE(layers); i++) {
+        if (strlen(layers[i].name) != length || strncmp(layers[i].name, name, length) != 0) {
+            continue;
+        }
+        if (!(method->outputs & layers[i].output)) {
+            list_layers(method->outputs, known, sizeof known);
+            app_error(a, "--aov: method '%s' does not make the layer '%s'; it makes: %s",
+                      method->name, layers[i].name, known[0] ? known : "none");
+            return false;
+        }
+        plan->layers |= 1u << i;
+        plan->outputs |= layers[i].output;
+        return true;
+    }
+    list_layers(UINT32_MAX, known, sizeof known);
+    app_error(a, "--aov: there is no layer '%.*s'; there are: %s", (int)length, name, known);
+    return false;
+}
+
+// A file that cannot be written is said before the work, not after it.
+static bool folder_is_writable(app *a, const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *folder = slash ? text_format("%.*s", slash == path ? 1 : (int)(slash - path), path)
+                         : text_format(".");
+    struct stat status;
+    bool there = folder && stat(folder, &status) == 0 && S_ISDIR(status.st_mode);
+    bool writable = there && access(folder, W_OK) == 0;
+    if (!writable) {
+        app_error(a, "%s: cannot be written: the folder '%s' %s", path, folder ? folder : "",
+                  there ? "is not writable" : "is not there");
+    }
+    free(folder);
+    return writable;
+}
+
+int output_plan_make(app *a, const tyn_method_info *method, const opt_list *files, const char *aov,
+                     bool full_float, output_plan *plan)
+{
+    *plan = (output_plan){.layers = 1u << COLOR_LAYER, .full_float = full_float};
+    for (uint32_t i = 0; i < files->count; i++) {
+        bool exr = text_ends_with(files->items[i], ".exr");
+        if (!exr && !text_ends_with(files->items[i], ".png")) {
+            app_error(a, "-o: '%s' is neither .exr nor .png", files->items[i]);
+            return EXIT_WRONG;
+        }
+        plan->outputs |= exr ? TYN_OUTPUT_RADIANCE : TYN_OUTPUT_DISPLAY;
+    }
+    if (aov && !(plan->outputs & TYN_OUTPUT_RADIANCE)) {
+        app_error(a, "--aov: layers need an .exr file; give one with -o");
+        return EXIT_WRONG;
+    }
+    while (aov && *aov) {
+        size_t length = strcspn(aov, ",");
+        if (!add_layer(a, method, aov, length, plan)) {
+            return EXIT_WRONG;
+        }
+        aov += length + (aov[length] == ',');
+    }
+    for (uint32_t i = 0; i < files->count; i++) {
+        if (!folder_is_writable(a, files->items[i])) {
+            return EXIT_FAILED;
+        }
+    }
+    return EXIT_DONE;
+}
+
+// ---- writing ----------------------------------------------------------------------------------
+
+static int write_exr(app *a, const output_plan *plan, tyn_offline *offline, const tyn_view *view,
+                     const char *path)
+{
+    const size_t num = (size_t)view->width * view->height;
+    tyn_channel channels[MAX_CHANNELS];
+    tyn_image_file image = {.width = view->width, .height = view->height, .channels = channels};
+    float *planes = malloc(num * MAX_CHANNELS * sizeof *planes);
+    if (!planes) {
+        app_error(a, "out of memory");
+        return EXIT_FAILED;
+    }
+    for (uint32_t i = 0; i < ARRAY_SIZE(layers); i++) {
+        const float *pixels = NULL;
+        if (plan->layers & 1u << i) {
+            pixels = tyn_offline_output(offline, layers[i].output);
+            if (!pixels) {
+                app_error(a, "the method gave no layer '%s'", layers[i].name);
+                free(planes);
+                return EXIT_FAILED;
+            }
+        }
+        for (uint32_t c = 0; pixels && c < layers[i].num_channels; c++) {
+            tyn_channel *channel = &channels[image.num_channels];
+            channel->data = planes + num * image.num_channels++;
+            snprintf(channel->name, sizeof channel->name, "%s", layers[i].channels[c].name);
+            for (size_t k = 0; k < num; k++) {
+                channel->data[k] = pixels[4 * k + layers[i].channels[c].component];
+            }
+        }
+    }
+    tyn_result result = tyn_exr_write(&image, path, plan->full_float, &a->log);
+    free(planes);
+    return app_exit_code(a, result, false);
+}
+
+// The display image is opaque: the medium over the background, or over black without one.
+static int write_png(app *a, tyn_offline *offline, const tyn_view *view, const char *path)
+{
+    const size_t num = (size_t)view->width * view->height;
+    const uint8_t *rgba = tyn_offline_output(offline, TYN_OUTPUT_DISPLAY);
+    uint8_t *rgb = rgba ? malloc(3 * num) : NULL;
+    if (!rgb) {
+        app_error(a, rgba ? "out of memory" : "the method gave no display image");
+        return EXIT_FAILED;
+    }
+    for (size_t k = 0; k < num; k++) {
+        memcpy(rgb + 3 * k, rgba + 4 * k, 3);
+    }
+    tyn_result result = tyn_png_write(path, view->width, view->height, 3, rgb, &a->log);
+    free(rgb);
+    return app_exit_code(a, result, false);
+}
+
+int output_write(app *a, const output_plan *plan, tyn_offline *offline, const tyn_view *view,
+                 const char *path)
+{
+    if (app_interrupted()) {
+        return EXIT_INTERRUPTED;
+    }
+    return text_ends_with(path, ".png") ? write_png(a, offline, view, path)
+                                        : write_exr(a, plan, offline, view, path);
+}

@@ -1,0 +1,18 @@
+// output.h -- the pictures a frame gives: EXR layers and display-ready PNG.
+#pragma once
+#include "app.h"
+#include <tyndall/offline.h>
+
+typedef struct output_plan {
+    uint32_t outputs; // set of tyn_output to ask the method for
+    uint32_t layers;  // set of indices into the table of layers
+    bool full_float;
+} output_plan;
+
+// Gives the exit code. `files` are the names of -o; `method` says what it can make.
+int output_plan_make(app *a, const tyn_method_info *method, const opt_list *files, const char *aov,
+                     bool full_float, output_plan *plan);
+
+// Writes one file of the last frame. Gives the exit code.
+int output_write(app *a, const output_plan *plan, tyn_offline *offline, const tyn_view *view,
+                 const char *path);

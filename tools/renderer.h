@@ -1,0 +1,24 @@
+// renderer.h -- one frame of a method, in portions that can be interrupted.
+#pragma once
+#include "app.h"
+#include "machine.h"
+#include "method_setup.h"
+#include <tyndall/offline.h>
+
+typedef struct renderer {
+    tyn_offline *offline;
+    bool progressive;
+    double frame_ms; // of the last frame, all its portions
+} renderer;
+
+// Gives the exit code; renderer_close is due in any case.
+int renderer_open(app *a, tyn_device *device, const method *m, renderer *r);
+void renderer_close(renderer *r);
+
+// Computes one frame with view->num_samples samples (progressive methods) from sample 0. `label` is
+// what the progress bar says; NULL = no bar. Gives the exit code, EXIT_INTERRUPTED at Ctrl-C.
+int renderer_frame(app *a, renderer *r, const tyn_scene *scene, const tyn_view *view,
+                   bool recompute, const char *label);
+
+// The report of the last frame: warnings of the method, once each, to stderr.
+void renderer_warn(app *a, renderer *r);

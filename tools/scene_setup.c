@@ -1,0 +1,200 @@
+// scene_setup.c -- SCENE and the options that change it: coefficients, environment, camera, size.
+#include "scene_setup.h"
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <tyndall/io.h>
+
+#define SCENE_AT(field) offsetof(scene_options, field)
+const option scene_table[SCENE_TABLE_SIZE] = {
+    {0, "env", OPT_TEXT, SCENE_AT(env), "FILE", "replace the scene's environment (.exr, .hdr)"},
+    {0, "env-rotate", OPT_NUMBER, SCENE_AT(env_rotate), "DEG",
+     "turn the environment about +Y, right-handed", 0},
+    {0, "env-strength", OPT_NUMBER, SCENE_AT(env_strength), "S", "multiply the environment", 1, 0,
+     1e9},
+    {0, "sigma-s", OPT_COLOR, SCENE_AT(sigma_s), "R,G,B", "scattering of every medium, 1/m"},
+    {0, "sigma-a", OPT_COLOR, SCENE_AT(sigma_a), "R,G,B", "absorption of every medium, 1/m"},
+    {0, "g", OPT_COLOR, SCENE_AT(g), "R,G,B",
+     "Henyey-Greenstein mean cosine of every medium, -1 to 1"},
+    {0, "albedo", OPT_COLOR, SCENE_AT(albedo), "R,G,B",
+     "albedo of every medium, 0 to 1; last, keeping sigma_s + sigma_a"},
+    {0, "density-scale", OPT_NUMBER, SCENE_AT(density_scale), "S", "multiply every density", NAN, 0,
+     1e30},
+};
+
+#define VIEW_AT(field) offsetof(view_options, field)
+const option view_table[VIEW_TABLE_SIZE] = {
+    {0, "size", OPT_SIZE, VIEW_AT(size), "WxH",
+     "pixels; else height 512, width from the camera's aspect ratio, else 16:9"},
+    {0, "camera", OPT_TEXT, VIEW_AT(camera), "NAME|INDEX",
+     "which camera: index, name of its node, name of the camera; else the first"},
+    {0, "fov", OPT_NUMBER, VIEW_AT(fov), "DEG", "vertical field of view", NAN, 1e-3, 179.9},
+    {0, "look-from", OPT_VECTOR, VIEW_AT(look_from), "X,Y,Z", "position of the camera, m"},
+    {0, "look-at", OPT_VECTOR, VIEW_AT(look_at), "X,Y,Z",
+     "what it looks at, m; up is +Y, -Z if parallel"},
+};
+
+// ---- the scene --------------------------------------------------------------------------------
+
+// The rotation by `degrees` about +Y after `q` (x, y, z, w; all zero = identity).
+static void rotate_about_y(float q[4], float degrees)
+{
+    const double half = degrees * 3.14159265358979323846 / 360, s = sin(half), c = cos(half);
+    bool zero = q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0;
+    const double x = q[0], y = q[1], z = q[2], w = zero ? 1 : q[3];
+    q[0] = (float)(c * x + s * z); // (0, s, 0, c) * (x, y, z, w)
+    q[1] = (float)(c * y + s * w);
+    q[2] = (float)(c * z - s * x);
+    q[3] = (float)(c * w - s * y);
+}
+
+static void change_environment(app *a, const scene_options *options, tyn_environment *env)
+{
+    bool changed = options->env_rotate != 0 || options->env_strength != 1;
+    if (changed && !env->present) {
+        app_warn(a, "--env-rotate and --env-strength change nothing: the scene has no environment");
+        return;
+    }
+    if (options->env_rotate != 0) {
+        rotate_about_y(env->rotation, options->env_rotate);
+    }
+    env->strength *= options->env_strength;
+}
+
+static const float *given(const opt_vector *v)
+{
+    return v->given ? v->v : NULL;
+}
+
+int scene_open(app *a, const scene_options *options, tyn_scene *scene)
+{
+    tyn_scene_init(scene);
+    if (options->env && options->environment) {
+        app_error(a, "the environment is given twice: '%s' and --env '%s'", options->environment,
+                  options->env);
+        return EXIT_WRONG;
+    }
+    const char *environment = options->env ? options->env : options->environment;
+    tyn_result result = tyn_scene_load(scene, options->scene, environment, &a->log);
+    if (result != TYN_OK) {
+        return app_exit_code(a, result, true);
+    }
+    for (uint32_t i = 0; i < scene->num_warnings; i++) {
+        app_warn(a, "%s", scene->warnings[i]);
+    }
+    change_environment(a, options, &scene->environment);
+    const tyn_medium_override override = {
+        .sigma_s = given(&options->sigma_s),
+        .sigma_a = given(&options->sigma_a),
+        .g = given(&options->g),
+        .albedo = given(&options->albedo),
+        .density_scale = isnan(options->density_scale) ? 0 : options->density_scale,
+    };
+    result = tyn_scene_override(scene, &override, &a->log);
+    for (uint32_t i = 0; i < scene->num_media && options->density_scale == 0; i++) {
+        scene->media[i].density_scale = 0; // the override takes 0 for "not given"
+    }
+    if (result == TYN_OK) {
+        result = tyn_scene_check(scene, &a->log);
+    }
+    return app_exit_code(a, result, true);
+}
+
+// ---- the camera -------------------------------------------------------------------------------
+
+static bool same_name(const char *a, const char *b)
+{
+    return a && strcmp(a, b) == 0;
+}
+
+// INDEX|NAME -> index into scene->cameras, or -1. A number is an index where there is one.
+static int find_camera(const tyn_scene *scene, const char *name)
+{
+    char *end;
+    unsigned long index = strtoul(name, &end, 10);
+    if (isdigit((unsigned char)*name) && *end == '\0' && index < scene->num_cameras) {
+        return (int)index;
+    }
+    for (uint32_t i = 0; i < scene->num_cameras; i++) {
+        if (same_name(scene->cameras[i].name, name)) {
+            return (int)i;
+        }
+    }
+    for (uint32_t i = 0; i < scene->num_cameras; i++) {
+        if (same_name(scene->cameras[i].camera_name, name)) {
+            return (int)i;
+        }
+    }
+    return -1;
+}
+
+static void say_which_cameras(app *a, const tyn_scene *scene, const char *name)
+{
+    char line[1024] = " none";
+    size_t used = 0;
+    for (uint32_t i = 0; i < scene->num_cameras && used < sizeof line; i++) {
+        const tyn_camera *c = &scene->cameras[i];
+        const char *title = c->name ? c->name : c->camera_name ? c->camera_name : "";
+        used +=
+            (size_t)snprintf(line + used, sizeof line - used, "%s %u '%s'", i ? "," : "", i, title);
+    }
+    app_error(a, "--camera: there is no camera '%s'; the scene has:%s", name, line);
+}
+
+// The options' camera position and target; where one is missing, the camera's own position and the
+// middle of the scene.
+static tyn_result aim(app *a, const view_options *options, const tyn_scene *scene,
+                      tyn_camera *camera)
+{
+    float lo[3], hi[3], from[3], at[3];
+    tyn_scene_bounds(scene, lo, hi);
+    for (int i = 0; i < 3; i++) {
+        from[i] = options->look_from.given ? options->look_from.v[i] : camera->position[i];
+        at[i] = options->look_at.given ? options->look_at.v[i] : 0.5f * (lo[i] + hi[i]);
+    }
+    tyn_result result = tyn_camera_look_at(camera, from, at);
+    if (result != TYN_OK) {
+        app_error(a, "--look-from and --look-at: %g,%g,%g and %g,%g,%g do not give a direction",
+                  from[0], from[1], from[2], at[0], at[1], at[2]);
+    }
+    return result;
+}
+
+int view_setup(app *a, const view_options *options, const tyn_scene *scene, tyn_view *view)
+{
+    if (scene->num_cameras > 0) {
+        int index = options->camera ? find_camera(scene, options->camera) : 0;
+        if (index < 0) {
+            say_which_cameras(a, scene, options->camera);
+            return EXIT_WRONG;
+        }
+        view->camera = scene->cameras[index];
+    } else if (options->camera && strcmp(options->camera, "0") != 0) {
+        say_which_cameras(a, scene, options->camera);
+        return EXIT_WRONG;
+    } else {
+        tyn_camera_frame_scene(&view->camera, scene);
+    }
+    if (!isnan(options->fov)) {
+        if (view->camera.projection != TYN_PERSPECTIVE) {
+            app_error(a, "--fov: the camera is orthographic and has no field of view");
+            return EXIT_WRONG;
+        }
+        view->camera.yfov = options->fov * 3.14159265f / 180;
+    }
+    if ((options->look_from.given || options->look_at.given) &&
+        aim(a, options, scene, &view->camera) != TYN_OK) {
+        return EXIT_WRONG;
+    }
+    if (options->size.width) {
+        view->width = options->size.width;
+        view->height = options->size.height;
+    } else {
+        float aspect = view->camera.aspect > 0 ? view->camera.aspect : 16.0f / 9;
+        view->height = 512;
+        view->width = (uint32_t)fminf(fmaxf(roundf(512 * aspect), 1), 16384);
+    }
+    return EXIT_DONE;
+}

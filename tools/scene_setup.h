@@ -1,0 +1,36 @@
+// scene_setup.h -- SCENE and the options that change it: coefficients, environment, camera, size.
+#pragma once
+#include "app.h"
+#include <tyndall/context.h>
+
+typedef struct scene_options {
+    const char *scene, *environment; // positional
+    const char *env;
+    float env_rotate, env_strength;
+    opt_vector sigma_s, sigma_a, g, albedo;
+    float density_scale;
+} scene_options;
+extern const option scene_table[];
+enum { SCENE_TABLE_SIZE = 8 };
+#define SCENE_POSITIONALS(args, member)                                                            \
+    {"SCENE", "a .gltf or .glb scene, or a volume (.nvdb, .vdb)", true,                            \
+     offsetof(args, member.scene)},                                                                \
+    {                                                                                              \
+        "ENVIRONMENT", "a latitude-longitude map (.exr, .hdr), as --env", false,                   \
+            offsetof(args, member.environment)                                                     \
+    }
+
+typedef struct view_options {
+    opt_size size;
+    const char *camera;
+    float fov;
+    opt_vector look_from, look_at;
+} view_options;
+extern const option view_table[];
+enum { VIEW_TABLE_SIZE = 5 };
+
+// Loads and changes the scene. Gives the exit code; tyn_scene_finish is due in any case.
+int scene_open(app *a, const scene_options *options, tyn_scene *scene);
+
+// Fills camera, width and height.
+int view_setup(app *a, const view_options *options, const tyn_scene *scene, tyn_view *view);

@@ -1,0 +1,27 @@
+// stats.h -- what a run did, as JSON.
+#pragma once
+#include "app.h"
+#include "method_setup.h"
+#include <cjson/cJSON.h>
+#include <tyndall/offline.h>
+
+typedef struct stats {
+    const char *device;
+    const method *method;
+    const tyn_scene *scene;
+    const tyn_view *view;
+    double setup_ms;
+    double cold_ms, camera_moved_ms, light_moved_ms, unchanged_ms; // medians; NaN = not run
+    const tyn_report *report;
+    const char *inputs[4]; // paths; NULL = none
+} stats;
+
+cJSON *stats_make(const stats *s);
+cJSON *stats_report_nodes(const tyn_report *report); // the "nodes" of the stats
+
+// Writes an object to a file, or to stdout with path NULL; deletes it. Gives the exit code.
+int json_write(app *a, cJSON *object, const char *path);
+
+// A float as it is written shortest ("0.1", not 0.100000001490116), null if it is not finite.
+void json_add_float(cJSON *object, const char *name, double value);
+cJSON *json_floats(const float *values, int count);

@@ -1,0 +1,81 @@
+// timing.c -- medians of frame times: everything anew, or only what a change needs.
+#include "timing.h"
+#include <math.h>
+#include <stdlib.h>
+
+static const double step_angle = 0.5 * 3.14159265358979323846 / 180; // each frame, about +Y
+
+static void turn(float v[3])
+{
+    const double c = cos(step_angle), s = sin(step_angle), x = v[0], z = v[2];
+    v[0] = (float)(c * x + s * z);
+    v[2] = (float)(c * z - s * x);
+}
+
+static void step_camera(const tyn_scene *scene, tyn_camera *camera)
+{
+    float lo[3], hi[3], offset[3];
+    tyn_scene_bounds(scene, lo, hi);
+    for (int i = 0; i < 3; i++) {
+        offset[i] = camera->position[i] - 0.5f * (lo[i] + hi[i]);
+    }
+    turn(offset);
+    turn(camera->right);
+    turn(camera->up);
+    turn(camera->back);
+    for (int i = 0; i < 3; i++) {
+        camera->position[i] = offset[i] + 0.5f * (lo[i] + hi[i]);
+    }
+}
+
+static void step_lights(tyn_scene *scene)
+{
+    for (uint32_t i = 0; i < scene->num_lights; i++) {
+        turn(scene->lights[i].direction);
+    }
+}
+
+static int by_value(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+double timing_median(double *values, uint32_t count)
+{
+    if (count == 0) {
+        return NAN;
+    }
+    qsort(values, count, sizeof *values, by_value);
+    return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+}
+
+int timing_run(app *a, renderer *r, tyn_scene *scene, const tyn_view *view, timing_change change,
+               uint32_t frames, double *median_ms)
+{
+    if (change == TIMING_LIGHT && scene->num_lights == 0) {
+        app_warn(a, "there is no light that could change");
+    }
+    double *values = calloc(frames, sizeof *values);
+    int code = values ? EXIT_DONE : app_exit_code(a, TYN_ERR_MEMORY, false);
+    tyn_view moving = *view;
+    progress_start(&a->bar, "timing", a->quiet);
+    for (uint32_t i = 0; i < frames && code == EXIT_DONE; i++) {
+        if (change == TIMING_CAMERA) {
+            step_camera(scene, &moving.camera);
+        } else if (change == TIMING_LIGHT) {
+            step_lights(scene);
+        }
+        code = renderer_frame(a, r, scene, &moving, change == TIMING_COLD, NULL);
+        if (code == EXIT_DONE) {
+            values[i] = r->frame_ms;
+            progress_update(&a->bar, (i + 1.0) / frames);
+        }
+    }
+    progress_clear(&a->bar);
+    if (code == EXIT_DONE) {
+        *median_ms = timing_median(values, frames);
+    }
+    free(values);
+    return code;
+}
