@@ -1,0 +1,77 @@
+// composite.c -- lays the medium over the host's picture: color = color x transmittance + radiance.
+#include "composite.h"
+#include "composite_half.comp.h"
+#include "composite_float.comp.h"
+
+static const tyn_port ports[COMPOSITE_NUM_PORTS] = {
+    [COMPOSITE_PORT_RADIANCE] = {"radiance", TYN_IN, TYN_IMAGE_2D, 0, false,
+                                 "radiance of the medium alone, W/(m^2 sr)"},
+    [COMPOSITE_PORT_TRANSMITTANCE] = {"transmittance", TYN_IN, TYN_IMAGE_2D, 0, false,
+                                      "transmittance to the host's surface"},
+    [COMPOSITE_PORT_COLOR] = {"color", TYN_INOUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                              false, "the host's picture, linear; alpha is kept"},
+};
+
+static const tyn_binding bindings[] = {
+    {COMPOSITE_PORT_RADIANCE, TYN_USE_SAMPLED, false},
+    {COMPOSITE_PORT_TRANSMITTANCE, TYN_USE_SAMPLED, false},
+    {COMPOSITE_PORT_COLOR, TYN_USE_STORAGE_RW, false},
+};
+
+enum { KERNEL_FLOAT = 0, KERNEL_HALF, NUM_KERNELS };
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_FLOAT] = {.name = "composite_float",
+                      .spirv = composite_float_spirv,
+                      .spirv_size = sizeof(composite_float_spirv),
+                      .local_size = {8, 8, 1},
+                      .bindings = bindings,
+                      .num_bindings = 3},
+    [KERNEL_HALF] = {.name = "composite_half",
+                     .spirv = composite_half_spirv,
+                     .spirv_size = sizeof(composite_half_spirv),
+                     .local_size = {8, 8, 1},
+                     .bindings = bindings,
+                     .num_bindings = 3},
+};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const composite_params *p = params;
+    tyn_extent radiance = tyn_build_extent(b, COMPOSITE_PORT_RADIANCE);
+    tyn_extent color = tyn_build_extent(b, COMPOSITE_PORT_COLOR);
+    if (radiance.x != color.x || radiance.y != color.y) {
+        tyn_log_print(
+            tyn_build_log(b), TYN_LOG_ERROR,
+            "composite: the host's colour image is %ux%u, the view %ux%u: make them equal", color.x,
+            color.y, radiance.x, radiance.y);
+        return TYN_ERR_PARAMS;
+    }
+    if (p->half_color) {
+        tyn_build_format(b, COMPOSITE_PORT_COLOR, VK_FORMAT_R16G16B16A16_SFLOAT);
+    }
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const composite_params *p = params;
+    tyn_rec_dispatch(r, &(tyn_dispatch){
+                            .kernel = p->half_color ? KERNEL_HALF : KERNEL_FLOAT,
+                            .cells = tyn_rec_extent(r, COMPOSITE_PORT_COLOR),
+                        });
+}
+
+const tyn_pass_desc tyn_pass_composite = {
+    .name = "composite",
+    .summary = "lays the medium over the host's picture",
+    .ports = ports,
+    .num_ports = COMPOSITE_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params_size = sizeof(composite_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = COMPOSITE_PORT_COLOR,
+    .debug_meaning = "the composited picture",
+};

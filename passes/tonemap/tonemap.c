@@ -1,0 +1,75 @@
+// tonemap.c -- the display transform: exposure, filmic curve, sRGB encoding, ordered dither.
+#include "tonemap.h"
+#include "tonemap_args.h"
+#include "tonemap_display.comp.h"
+#include <math.h>
+
+static const tyn_port ports[TONEMAP_NUM_PORTS] = {
+    [TONEMAP_PORT_RADIANCE] = {"radiance", TYN_IN, TYN_IMAGE_2D, 0, false,
+                               "scene-linear radiance, premultiplied, W/(m^2 sr)"},
+    [TONEMAP_PORT_DISPLAY] = {"display", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R8G8B8A8_UNORM, false,
+                              "sRGB-encoded picture, straight alpha"},
+};
+
+static const tyn_binding bindings[] = {
+    {TONEMAP_PORT_RADIANCE, TYN_USE_SAMPLED, false},
+    {TONEMAP_PORT_DISPLAY, TYN_USE_STORAGE_WRITE, false},
+};
+
+static const tyn_kernel kernels[] = {
+    {.name = "tonemap_display",
+     .spirv = tonemap_display_spirv,
+     .spirv_size = sizeof(tonemap_display_spirv),
+     .args_size = sizeof(struct tonemap_args),
+     .local_size = {8, 8, 1},
+     .bindings = bindings,
+     .num_bindings = 2},
+};
+
+static const char *const curve_names[TONEMAP_NUM_CURVES] = {"filmic", "linear"};
+
+static const tyn_param params_table[] = {
+    {"curve", TYN_PARAM_ENUM, offsetof(tonemap_params, curve), 0, 0, TONEMAP_NUM_CURVES - 1, "",
+     "filmic: ACES-like shoulder and toe; linear: clipped at 1", curve_names},
+    {"dither", TYN_PARAM_BOOL, offsetof(tonemap_params, dither), 1, 0, 1, "",
+     "hide the steps of 8 bits by an 8x8 ordered pattern", NULL},
+};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    (void)params;
+    tyn_build_image(b, TONEMAP_PORT_DISPLAY, tyn_build_extent(b, TONEMAP_PORT_RADIANCE), 1);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tonemap_params *p = params;
+    struct tonemap_args args = {
+        .scale = exp2f(p->exposure_ev),
+        .filmic = p->curve == TONEMAP_CURVE_FILMIC,
+        .dither = p->dither,
+        .opaque = p->opaque,
+    };
+    tyn_rec_dispatch(r, &(tyn_dispatch){
+                            .kernel = 0,
+                            .cells = tyn_rec_extent(r, TONEMAP_PORT_DISPLAY),
+                            .args = &args,
+                        });
+}
+
+const tyn_pass_desc tyn_pass_tonemap = {
+    .name = "tonemap",
+    .summary = "scene-linear radiance to 8-bit sRGB",
+    .ports = ports,
+    .num_ports = TONEMAP_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 1,
+    .params = params_table,
+    .num_params = sizeof(params_table) / sizeof(params_table[0]),
+    .params_size = sizeof(tonemap_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = TONEMAP_PORT_DISPLAY,
+    .debug_meaning = "the picture as shown",
+};

@@ -1,0 +1,16 @@
+// tonemap.h -- scene-linear radiance to 8-bit sRGB for a screen or a PNG.
+#pragma once
+#include <tyndall/pass.h>
+
+typedef struct tonemap_params {
+    int32_t curve;     // TONEMAP_CURVE_*
+    uint32_t dither;   // 1: ordered dither of +- half a step before rounding
+    float exposure_ev; // set by the method: radiance is scaled by 2^exposure_ev
+    uint32_t opaque;   // set by the method: alpha is 1; else colour is unpremultiplied
+} tonemap_params;
+
+enum { TONEMAP_CURVE_FILMIC = 0, TONEMAP_CURVE_LINEAR, TONEMAP_NUM_CURVES };
+
+enum { TONEMAP_PORT_RADIANCE = 0, TONEMAP_PORT_DISPLAY, TONEMAP_NUM_PORTS };
+
+extern const tyn_pass_desc tyn_pass_tonemap;

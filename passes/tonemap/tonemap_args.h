@@ -1,0 +1,14 @@
+// tonemap_args.h -- push constants of tonemap. Included by C and GLSL.
+#ifndef TONEMAP_ARGS_H
+#define TONEMAP_ARGS_H
+#include "shared.h"
+
+struct tonemap_args {
+    float scale;     // 2^exposure
+    tyn_uint filmic; // 0: linear, clipped at 1
+    tyn_uint dither;
+    tyn_uint opaque;
+};
+TYN_ASSERT_SIZE(tonemap_args, 16);
+
+#endif
