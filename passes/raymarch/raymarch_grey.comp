@@ -1,0 +1,25 @@
+// raymarch_grey.comp -- one thread a pixel; a medium that is the same in all channels.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define RAYMARCH_GREY
+#include "raymarch_bindings.glsl"
+#include "camera.glsl"
+#include "environment.glsl"
+#include "display.glsl"
+#include "medium.glsl"
+#include "beam.glsl"
+#include "scatter_lut.glsl"
+#include "lattice.glsl"
+#include "raymarch.glsl"
+#include "raymarch_pixel.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+void main()
+{
+    ivec2 pixel = pixel_of_thread(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
+    if (all(lessThan(uvec2(pixel), camera.size))) {
+        shade_pixel(pixel);
+    }
+}

@@ -1,0 +1,323 @@
+// raymarch.glsl -- the light that reaches the eye along one ray.
+//
+//   L = int { e^-tau'(s) [sigma_s' J + emission]
+//             + sigma_s sum_n E_n e^-tau_a(n) [K_tms e^-tau'(s) + K_lobe e^-tau(s)] } ds
+//       + e^-tau' L_mean + e^-tau (L_behind - L_mean)
+//
+// tau is the true optical depth along the view ray, tau' the one in which forward scattering counts as
+// not scattered (delta scaling), (n) are depths along sun n. J is the light that has scattered out of
+// the suns' forward peaks (texture inscatter), K_tms and K_lobe hold the first and all forward orders
+// exactly (scatter_lut.glsl). The mean of the environment comes in through the lattice; what is seen
+// of it directly is attenuated by tau', or a uniform surrounding would not look uniform.
+//
+// Every step integrates the attenuation exactly: int_0^ds e^(-sigma t) dt = ds (1 - e^-x) / x with
+// x = sigma ds; all else is taken at the middle of the step.
+//
+// Include after camera, environment, medium, beam, scatter_lut and lattice. RAYMARCH_GREY: all channels
+// of the medium are equal, so optical depths are scalars.
+#ifndef TYN_RAYMARCH_GLSL
+#define TYN_RAYMARCH_GLSL
+
+#ifdef RAYMARCH_GREY
+#define spectrum float
+#define spectrum_of(v) (v).r
+float spectrum_max(float x)
+{
+    return x;
+}
+float spectrum_mean(float x)
+{
+    return x;
+}
+#else
+#define spectrum vec3
+#define spectrum_of(v) (v)
+float spectrum_max(vec3 x)
+{
+    return max(max(x.r, x.g), x.b);
+}
+float spectrum_mean(vec3 x)
+{
+    return (x.r + x.g + x.b) * (1.0 / 3.0);
+}
+#endif
+
+const float raymarch_infinity = uintBitsToFloat(0x7f800000u);
+const int RAYMARCH_CHUNK = 8; // steps between two looks at the distance map
+
+bool raymarch_has(uint feature)
+{
+    return (raymarch_features & feature) != 0u;
+}
+
+// (1 - e^-x) / x with e = e^-x, x >= 0; the series where the difference would lose digits.
+float mean_attenuation(float x, float e)
+{
+    return x > 0.03 ? (1.0 - e) / x : 1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0)));
+}
+
+vec3 mean_attenuation(vec3 x, vec3 e)
+{
+    return vec3(mean_attenuation(x.r, e.r), mean_attenuation(x.g, e.g), mean_attenuation(x.b, e.b));
+}
+
+// The medium at one point, delta scaled.
+struct march_medium {
+    spectrum scattering;        // sigma_s
+    spectrum extinction;        // sigma_t
+    spectrum scaled_scattering; // sigma_s' = (1 - f) sigma_s
+    spectrum scaled_extinction; // sigma_t' = sigma_t - f sigma_s
+    spectrum absorption;
+    spectrum hidden; // scattering into lobes too narrow to resolve: only what is behind loses it
+    spectrum g;
+    vec3 emission;
+};
+
+march_medium march_medium_of(medium_point point)
+{
+    vec3 sigma_s = point.sigma_s, g = point.g;
+    similarity_clamp(sigma_s, g);
+    march_medium m;
+    m.g = spectrum_of(g);
+    m.scattering = spectrum_of(sigma_s);
+    m.absorption = spectrum_of(point.sigma_a);
+    m.hidden = spectrum_of(point.sigma_s) - m.scattering;
+    m.extinction = m.scattering + m.absorption;
+    m.scaled_scattering = (1.0 - delta_fraction(m.g)) * m.scattering;
+    m.scaled_extinction = m.scaled_scattering + m.absorption;
+    m.emission = point.emission;
+    return m;
+}
+
+march_medium march_scale(march_medium unit, float density)
+{
+    return march_medium(unit.scattering * density, unit.extinction * density,
+                        unit.scaled_scattering * density, unit.scaled_extinction * density,
+                        unit.absorption * density, unit.hidden * density, unit.g,
+                        unit.emission * density);
+}
+
+// At a texture coordinate; `unit` is the medium at texture value 1 (mode DENSITY).
+march_medium march_medium_at(march_medium unit, vec3 uvw)
+{
+#ifndef RAYMARCH_GREY
+    if (medium_mode == TYN_MEDIUM_COEFFICIENTS) {
+        vec3 emission = vec3(0.0);
+        if (raymarch_has(RAYMARCH_EMISSION)) {
+            emission = textureLod(medium_emission_tex, uvw, 0.0).rgb;
+        }
+        return march_medium_of(medium_point(textureLod(medium_density_tex, uvw, 0.0).rgb,
+                                            textureLod(medium_sigma_a_tex, uvw, 0.0).rgb,
+                                            textureLod(medium_g_tex, uvw, 0.0).rgb, emission));
+    }
+#endif
+    return march_scale(unit, max(textureLod(medium_density_tex, uvw, 0.0).r, 0.0));
+}
+
+// A sun as one view ray sees it: its grid's coordinates are linear along the ray.
+struct march_sun {
+    vec3 uvw0, uvw1;       // texture coordinate at distance s: uvw0 + s uvw1
+    vec3 length0, length1; // path of the light in the box: least component of length0 + s length1
+    vec3 irradiance;       // W/m^2
+#ifdef RAYMARCH_GREY
+    scatter_angle angle;
+#else
+    scatter_angle angle[3];
+    vec3 direction;
+#endif
+};
+
+struct march_result {
+    vec3 radiance; // of the medium alone
+    vec3 single;   // its first-order part
+    vec3 transmittance;
+    vec3 scaled_transmittance; // e^-tau'
+    float half_distance;       // where the mean transmittance falls to 1/2, or infinity
+    uint steps;
+};
+
+march_sun march_sun_of(uint n, vec3 origin, vec3 direction)
+{
+    beam_block beam = beams[n];
+    light_block light = lights[beam.light];
+    march_sun sun;
+    for (int i = 0; i < 3; i++) {
+        sun.uvw0[i] = dot(beam.rows[i].xyz, origin) + beam.rows[i].w;
+        sun.uvw1[i] = dot(beam.rows[i].xyz, direction);
+    }
+    sun.length0 = beam.clip_offset + origin * beam.clip_scale;
+    sun.length1 = direction * beam.clip_scale;
+    sun.irradiance = light.color;
+#ifdef RAYMARCH_GREY
+    sun.angle = scatter_angle_of(0u, -direction, light.direction);
+#else
+    sun.direction = light.direction;
+    if (medium_mode == TYN_MEDIUM_DENSITY) {
+        for (uint c = 0u; c < 3u; c++) {
+            sun.angle[c] = scatter_angle_of(c, -direction, light.direction);
+        }
+    }
+#endif
+    return sun;
+}
+
+// Light of one sun that is scattered towards the eye at distance s of the ray. `weight` and
+// `weight_scaled`: integrals of e^-tau and e^-tau' over the step, m. `first`: the part that has
+// scattered once, W/(m^2 sr), as the result.
+vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 view, float s,
+                    spectrum weight, spectrum weight_scaled, inout vec3 first)
+{
+    vec3 uvw = sun.uvw0 + s * sun.uvw1;
+    vec3 lengths = sun.length0 + s * sun.length1;
+    float path = max(min(min(lengths.x, lengths.y), lengths.z), 0.0);
+    spectrum tau_s, tau_a, phase, k_tms, k_lobe;
+#ifdef RAYMARCH_GREY
+    float column = path * textureLod(beam_column_tex, uvw, 0.0).r;
+    tau_s = unit.scattering * column;
+    tau_a = unit.absorption * column;
+    phase = sun.angle.first.x + sun.angle.first.y;
+    if (raymarch_has(RAYMARCH_FIELD)) {
+        vec2 k = scatter_kernels(sun.angle, tau_s);
+        k_tms = k.x;
+        k_lobe = k.y;
+    }
+#else
+    if (medium_mode == TYN_MEDIUM_DENSITY) {
+        float column = path * textureLod(beam_column_tex, uvw, 0.0).r;
+        tau_s = unit.scattering * column;
+        tau_a = unit.absorption * column;
+        for (int c = 0; c < 3; c++) {
+            phase[c] = sun.angle[c].first.x + sun.angle[c].first.y;
+        }
+        if (raymarch_has(RAYMARCH_FIELD)) {
+            for (int c = 0; c < 3; c++) {
+                vec2 k = scatter_kernels(sun.angle[c], tau_s[c]);
+                k_tms[c] = k.x;
+                k_lobe[c] = k.y;
+            }
+        }
+    } else {
+        tau_s = path * textureLod(beam_column_tex, uvw, 0.0).rgb;
+        tau_a = path * textureLod(beam_tau_a_tex, uvw, 0.0).rgb;
+        vec3 turn = view - sun.direction;
+        for (int c = 0; c < 3; c++) {
+            phase[c] = hg_near(m.g[c], 0.5 * dot(turn, turn));
+        }
+        if (raymarch_has(RAYMARCH_FIELD)) {
+            vec3 tau_p = path * textureLod(beam_tau_p_tex, uvw, 0.0).rgb;
+            for (int c = 0; c < 3; c++) {
+                vec2 k = scatter_kernels_mixed(view, sun.direction, m.g[c], tau_s[c], tau_p[c]);
+                k_tms[c] = k.x;
+                k_lobe[c] = k.y;
+            }
+        }
+    }
+#endif
+    vec3 light = m.scattering * exp(-tau_a) * sun.irradiance;
+    vec3 once = light * (phase * exp(-tau_s) * weight);
+    first += once;
+    if (!raymarch_has(RAYMARCH_FIELD)) {
+        return once;
+    }
+    return light * (k_tms * weight_scaled + k_lobe * weight);
+}
+
+// Marches from distance `begin` to `end`. `offset` in (0, 1] is the length of the first step in steps.
+march_result march_ray(vec3 origin, vec3 direction, float begin, float end, float offset)
+{
+    march_result result;
+    result.radiance = vec3(0.0);
+    result.single = vec3(0.0);
+    result.half_distance = raymarch_infinity;
+    result.steps = 0u;
+
+    march_sun suns[max(raymarch_num_suns, 1u)];
+    for (uint n = 0u; n < raymarch_num_suns; n++) {
+        suns[n] = march_sun_of(n, origin, direction);
+    }
+    march_medium unit = march_medium_of(medium_of_density(1.0));
+    vec3 inverse = ray_inverse(direction);
+    // Texture coordinates are linear along the ray.
+    vec3 medium0 = origin / medium.extent, medium1 = direction / medium.extent;
+    ivec3 field_size = textureSize(inscatter_tex, 0);
+    vec3 field0 = lattice_inscatter_uvw(medium.extent, field_size, origin);
+    vec3 field1 = lattice_inscatter_uvw(medium.extent, field_size, origin + direction) - field0;
+
+    spectrum through = spectrum(1.0), through_scaled = spectrum(1.0); // e^-tau, e^-tau'
+    spectrum hidden = spectrum(0.0);
+    vec3 before = vec3(0.0);                // radiance before the last step
+    spectrum through_before = spectrum(1.0); // through_scaled before it
+    float s = begin, length_next = offset * args.step;
+
+    while (s < end && spectrum_max(through_scaled) > args.stop) {
+        s = march_skip(origin, direction, inverse, s, end);
+        for (int i = 0; i < RAYMARCH_CHUNK; i++) {
+            if (s >= end || spectrum_max(through_scaled) <= args.stop) {
+                break;
+            }
+            float ds = min(length_next, end - s);
+            float middle = s + 0.5 * ds;
+            length_next = args.step;
+
+            march_medium m = march_medium_at(unit, medium0 + middle * medium1);
+            spectrum x = m.extinction * ds, x_scaled = m.scaled_extinction * ds;
+            spectrum e = exp(-x), e_scaled = exp(-x_scaled);
+            spectrum weight = ds * through * mean_attenuation(x, e);
+            spectrum weight_scaled = ds * through_scaled * mean_attenuation(x_scaled, e_scaled);
+            before = result.radiance;
+            through_before = through_scaled;
+
+            if (raymarch_has(RAYMARCH_FIELD)) {
+                vec3 J = textureLod(inscatter_tex, field0 + middle * field1, 0.0).rgb;
+                result.radiance += m.scaled_scattering * weight_scaled * J;
+            }
+            if (raymarch_has(RAYMARCH_EMISSION)) {
+                result.radiance += m.emission * weight_scaled;
+            }
+            for (uint n = 0u; n < raymarch_num_suns; n++) {
+                result.radiance += march_sunlight(suns[n], unit, m, -direction, middle,
+                                                  weight, weight_scaled, result.single);
+            }
+            if (raymarch_has(RAYMARCH_DEPTH)) {
+                float t0 = spectrum_mean(through * exp(-hidden));
+                float t1 = spectrum_mean(through * e * exp(-hidden - m.hidden * ds));
+                if (t0 > 0.5 && t1 <= 0.5) {
+                    result.half_distance = s + ds * log(2.0 * t0) / log(t0 / t1);
+                }
+            }
+            through *= e;
+            through_scaled *= e_scaled;
+            hidden += m.hidden * ds;
+            s += ds;
+            result.steps++;
+        }
+    }
+
+    if (s < end && result.steps > 0u) {
+        // The rest is nearly opaque: as bright as a medium that goes on as it was in the last step.
+        vec3 gone = vec3(through_before - through_scaled);
+        result.radiance += (result.radiance - before) * min(vec3(through_scaled) / max(gone, 1e-6), 1.0);
+        if (raymarch_has(RAYMARCH_BEHIND)) {
+            // What is behind may be a thousand times brighter: its attenuation needs the whole way.
+            spectrum tau = spectrum(0.0), tau_scaled = spectrum(0.0);
+            while (s < end && spectrum_max(tau_scaled) < 16.0) {
+                s = march_skip(origin, direction, inverse, s, end);
+                for (int i = 0; i < RAYMARCH_CHUNK; i++) {
+                    float ds = min(args.step, end - s);
+                    march_medium m = march_medium_at(unit, medium0 + (s + 0.5 * ds) * medium1);
+                    tau += m.extinction * ds;
+                    tau_scaled += m.scaled_extinction * ds;
+                    hidden += m.hidden * ds;
+                    s += ds;
+                }
+            }
+            through *= exp(-tau);
+            through_scaled *= exp(-tau_scaled);
+        }
+    }
+    result.transmittance = vec3(through * exp(-hidden));
+    result.scaled_transmittance = vec3(through_scaled);
+    return result;
+}
+
+#endif

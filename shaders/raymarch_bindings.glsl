@@ -1,0 +1,60 @@
+// raymarch_bindings.glsl -- what the kernels of the ray march read and write, and their constants.
+#ifndef TYN_RAYMARCH_BINDINGS_GLSL
+#define TYN_RAYMARCH_BINDINGS_GLSL
+#include "scene_args.h"
+#include "counters.h"
+#include "raymarch_args.h"
+
+// Specialisation constant 0 is the medium's mode (medium.glsl).
+layout(constant_id = 1) const uint raymarch_num_suns = 1u;
+layout(constant_id = 2) const uint raymarch_features = RAYMARCH_FIELD;
+
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 1
+#define BEAM_BLOCKS 2
+#define BEAM_COLUMN 3
+#define SCATTER_LUT 4
+#define SCATTER_LUT_BLOCK 5
+layout(binding = 6) uniform sampler3D distance_tex;
+layout(binding = 7) uniform sampler3D inscatter_tex;
+layout(binding = 8, scalar) readonly buffer shape_buffer
+{
+    shape_block shapes[];
+};
+layout(binding = 9, scalar) readonly buffer light_buffer
+{
+    light_block lights[];
+};
+layout(binding = 10, scalar) uniform camera_uniform
+{
+    camera_block camera;
+};
+layout(binding = 11, scalar) uniform env_uniform
+{
+    env_block environment;
+};
+layout(binding = 12) uniform sampler2D environment_tex;
+layout(binding = 13) uniform sampler2D host_depth_tex;
+layout(binding = 14, rgba32f) uniform writeonly image2D radiance_image;
+layout(binding = 15, rgba32f) uniform writeonly image2D transmittance_image;
+layout(binding = 16, rgba32f) uniform writeonly image2D depth_image;
+layout(binding = 17, rgba32f) uniform writeonly image2D single_image;
+layout(binding = 18, rgba32f) uniform writeonly image2D multiple_image;
+layout(binding = 19, scalar) buffer counter_buffer
+{
+    counters_block counters;
+};
+#ifndef RAYMARCH_GREY
+#define MEDIUM_SIGMA_A 20
+#define MEDIUM_G 21
+#define MEDIUM_EMISSION 22
+#define BEAM_TAU_A 23
+#define BEAM_TAU_P 24
+#endif
+
+layout(push_constant, scalar) uniform Args
+{
+    raymarch_args args;
+};
+
+#endif
