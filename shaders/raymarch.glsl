@@ -42,7 +42,7 @@ float spectrum_mean(vec3 x)
 }
 #endif
 
-const float raymarch_infinity = uintBitsToFloat(0x7f800000u);
+#define RAYMARCH_INFINITY uintBitsToFloat(0x7f800000u)
 const int RAYMARCH_CHUNK = 8; // steps between two looks at the distance map
 
 bool raymarch_has(uint feature)
@@ -176,7 +176,7 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 view,
     tau_s = unit.scattering * column;
     tau_a = unit.absorption * column;
     phase = sun.angle.first.x + sun.angle.first.y;
-    if (raymarch_has(RAYMARCH_FIELD)) {
+    if (raymarch_has(RAYMARCH_KERNELS)) {
         vec2 k = scatter_kernels(sun.angle, tau_s);
         k_tms = k.x;
         k_lobe = k.y;
@@ -189,7 +189,7 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 view,
         for (int c = 0; c < 3; c++) {
             phase[c] = sun.angle[c].first.x + sun.angle[c].first.y;
         }
-        if (raymarch_has(RAYMARCH_FIELD)) {
+        if (raymarch_has(RAYMARCH_KERNELS)) {
             for (int c = 0; c < 3; c++) {
                 vec2 k = scatter_kernels(sun.angle[c], tau_s[c]);
                 k_tms[c] = k.x;
@@ -203,7 +203,7 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 view,
         for (int c = 0; c < 3; c++) {
             phase[c] = hg_near(m.g[c], 0.5 * dot(turn, turn));
         }
-        if (raymarch_has(RAYMARCH_FIELD)) {
+        if (raymarch_has(RAYMARCH_KERNELS)) {
             vec3 tau_p = path * textureLod(beam_tau_p_tex, uvw, 0.0).rgb;
             for (int c = 0; c < 3; c++) {
                 vec2 k = scatter_kernels_mixed(view, sun.direction, m.g[c], tau_s[c], tau_p[c]);
@@ -216,22 +216,44 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 view,
     vec3 light = m.scattering * exp(-tau_a) * sun.irradiance;
     vec3 once = light * (phase * exp(-tau_s) * weight);
     first += once;
-    if (!raymarch_has(RAYMARCH_FIELD)) {
+    if (!raymarch_has(RAYMARCH_KERNELS)) {
         return once;
     }
     return light * (k_tms * weight_scaled + k_lobe * weight);
 }
 
-// Marches from distance `begin` to `end`. `offset` in (0, 1] is the length of the first step in steps.
-march_result march_ray(vec3 origin, vec3 direction, float begin, float end, float offset)
+// Moves `s` on to the next brick that is not empty, or to `end`.
+float march_skip(vec3 origin, vec3 direction, vec3 inverse, float s, float end)
+{
+    float smallest = min(min(medium.brick_size.x, medium.brick_size.y), medium.brick_size.z);
+    vec3 per_brick = 1.0 / medium.brick_size;
+    ivec3 last = ivec3(medium.bricks) - 1;
+    while (s < end) {
+        ivec3 brick = clamp(ivec3((origin + s * direction) * per_brick), ivec3(0), last);
+        float away = texelFetch(distance_tex, brick, 0).r;
+        if (away < 0.5) {
+            return s;
+        }
+        // All bricks less than `away` apart are empty.
+        vec3 lo = (vec3(brick) + 1.0 - away) * medium.brick_size;
+        vec3 hi = (vec3(brick) + away) * medium.brick_size;
+        s = max(s, ray_box(origin, inverse, lo, hi).y);
+        s += max(1e-4 * smallest, 1e-6 * s);
+    }
+    return end;
+}
+
+// Marches from `origin`, which is inside the box, over the distance `end`. `offset` in (0, 1] is the
+// length of the first step in steps.
+march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
 {
     march_result result;
     result.radiance = vec3(0.0);
     result.single = vec3(0.0);
-    result.half_distance = raymarch_infinity;
+    result.half_distance = RAYMARCH_INFINITY;
     result.steps = 0u;
 
-    march_sun suns[max(raymarch_num_suns, 1u)];
+    march_sun suns[TYN_BEAM_MAX_SUNS];
     for (uint n = 0u; n < raymarch_num_suns; n++) {
         suns[n] = march_sun_of(n, origin, direction);
     }
@@ -247,7 +269,7 @@ march_result march_ray(vec3 origin, vec3 direction, float begin, float end, floa
     spectrum hidden = spectrum(0.0);
     vec3 before = vec3(0.0);                // radiance before the last step
     spectrum through_before = spectrum(1.0); // through_scaled before it
-    float s = begin, length_next = offset * args.step;
+    float s = 0.0, length_next = offset * args.step;
 
     while (s < end && spectrum_max(through_scaled) > args.stop) {
         s = march_skip(origin, direction, inverse, s, end);

@@ -7,7 +7,7 @@
 
 // Specialisation constant 0 is the medium's mode (medium.glsl).
 layout(constant_id = 1) const uint raymarch_num_suns = 1u;
-layout(constant_id = 2) const uint raymarch_features = RAYMARCH_FIELD;
+layout(constant_id = 2) const uint raymarch_features = 0u;
 
 #define MEDIUM_BLOCK 0
 #define MEDIUM_DENSITY 1

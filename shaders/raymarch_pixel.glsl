@@ -55,7 +55,7 @@ float host_distance(ivec2 pixel, camera_ray ray)
     float below = depth * args.depth.z - args.depth.x;
     float z = (args.depth.y - depth * args.depth.w) / below;
     // An infinite far plane divides by zero.
-    return abs(below) > 1e-12 ? abs(z) / dot(ray.direction, camera.forward) : raymarch_infinity;
+    return abs(below) > 1e-12 ? abs(z) / dot(ray.direction, camera.forward) : RAYMARCH_INFINITY;
 }
 
 bool is_finite(vec3 v)
@@ -66,10 +66,9 @@ bool is_finite(vec3 v)
 void shade_pixel(ivec2 pixel)
 {
     vec3 radiance = vec3(0.0), single = vec3(0.0), multiple = vec3(0.0), transmittance = vec3(0.0);
-    float surface = raymarch_infinity, half_distance = raymarch_infinity;
+    float surface = RAYMARCH_INFINITY, half_distance = RAYMARCH_INFINITY;
     uint steps = 0u, num_rays = rays_of_pixel(pixel);
     bool met = false;
-    bool shows_behind = camera.background != 0u && raymarch_has(RAYMARCH_BEHIND);
     for (uint i = 0u; i < num_rays; i++) {
         vec2 where = num_rays == 1u ? vec2(0.5) : quarter_pixel(i);
         camera_ray ray = camera_ray_through(camera, vec2(pixel) + where);
@@ -80,12 +79,13 @@ void shade_pixel(ivec2 pixel)
             span.y = min(span.y, surface);
         }
         met = met || span.x < span.y;
-        march_result r = march_ray(ray.origin, ray.direction, span.x, span.y,
-                                   display_bayer(uvec2(pixel)));
+        // Distances from where the ray enters: the camera may be far away.
+        march_result r = march_ray(ray.origin + span.x * ray.direction, ray.direction,
+                                   max(span.y - span.x, 0.0), display_bayer(uvec2(pixel)));
         steps += r.steps;
         transmittance += r.transmittance;
         single += r.single;
-        half_distance = min(half_distance, r.half_distance);
+        half_distance = min(half_distance, span.x + r.half_distance);
         // What went through or was scattered forward of the part of the environment that the field
         // holds: L_mean (e^-tau' - e^-tau) counts as scattered.
         vec3 scattered = r.radiance - r.single;
@@ -94,7 +94,7 @@ void shade_pixel(ivec2 pixel)
         }
         multiple += max(scattered, 0.0);
         radiance += r.single + scattered;
-        if (shows_behind && surface == raymarch_infinity) {
+        if (raymarch_has(RAYMARCH_BACKGROUND) && surface == RAYMARCH_INFINITY) {
             radiance += r.transmittance *
                         environment_radiance(environment, environment_tex, ray.direction);
         }
@@ -111,7 +111,7 @@ void shade_pixel(ivec2 pixel)
         atomicAdd(counters.steps, steps);
         atomicAdd(counters.pixels, 1u);
     }
-    float cover = shows_behind ? 1.0 : 1.0 - dot(transmittance, vec3(1.0 / 3.0));
+    float cover = raymarch_has(RAYMARCH_BACKGROUND) ? 1.0 : 1.0 - dot(transmittance, vec3(1.0 / 3.0));
     imageStore(radiance_image, pixel, vec4(max(radiance, 0.0), cover));
     if (raymarch_has(RAYMARCH_TRANSMITTANCE)) {
         imageStore(transmittance_image, pixel, vec4(transmittance, 1.0));

@@ -37,7 +37,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
-    const composite_params *p = params;
+    const tyn_composite_params *p = params;
     tyn_extent radiance = tyn_build_extent(b, COMPOSITE_PORT_RADIANCE);
     tyn_extent color = tyn_build_extent(b, COMPOSITE_PORT_COLOR);
     if (radiance.x != color.x || radiance.y != color.y) {
@@ -55,7 +55,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 
 static void record(tyn_recorder *r, const void *params)
 {
-    const composite_params *p = params;
+    const tyn_composite_params *p = params;
     tyn_rec_dispatch(r, &(tyn_dispatch){
                             .kernel = p->half_color ? KERNEL_HALF : KERNEL_FLOAT,
                             .cells = tyn_rec_extent(r, COMPOSITE_PORT_COLOR),
@@ -69,7 +69,7 @@ const tyn_pass_desc tyn_pass_composite = {
     .num_ports = COMPOSITE_NUM_PORTS,
     .kernels = kernels,
     .num_kernels = NUM_KERNELS,
-    .params_size = sizeof(composite_params),
+    .params_size = sizeof(tyn_composite_params),
     .declare = declare,
     .record = record,
     .debug_port = COMPOSITE_PORT_COLOR,

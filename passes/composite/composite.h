@@ -2,9 +2,9 @@
 #pragma once
 #include <tyndall/pass.h>
 
-typedef struct composite_params {
+typedef struct tyn_composite_params {
     uint32_t half_color; // 1: the host's image is rgba16f, 0: rgba32f
-} composite_params;
+} tyn_composite_params;
 
 enum {
     COMPOSITE_PORT_RADIANCE = 0,

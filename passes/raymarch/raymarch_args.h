@@ -4,22 +4,24 @@
 #include "shared.h"
 
 // Bits of the specialisation constant "features".
-#define RAYMARCH_FIELD 1u         // light that has scattered more than once: texture inscatter, kernels
-#define RAYMARCH_EMISSION 2u
-#define RAYMARCH_MEAN 4u          // the mean of the environment came in through the field
-#define RAYMARCH_HOST_DEPTH 8u
-#define RAYMARCH_BEHIND 16u       // what is behind the medium matters: follow every ray to its end
-#define RAYMARCH_TRANSMITTANCE 32u // layers
-#define RAYMARCH_DEPTH 64u
-#define RAYMARCH_SINGLE 128u
-#define RAYMARCH_MULTIPLE 256u
+#define RAYMARCH_KERNELS 1u // sunlight scattered forward any number of times, else once only
+#define RAYMARCH_FIELD 2u   // light of the texture inscatter
+#define RAYMARCH_EMISSION 4u
+#define RAYMARCH_MEAN 8u // the mean of the environment came in through the field
+#define RAYMARCH_HOST_DEPTH 16u
+#define RAYMARCH_BACKGROUND 32u // the environment behind the medium is seen
+#define RAYMARCH_BEHIND 64u     // follow every ray to its end: what is behind the medium matters
+#define RAYMARCH_TRANSMITTANCE 128u // layers
+#define RAYMARCH_DEPTH 256u
+#define RAYMARCH_SINGLE 512u
+#define RAYMARCH_MULTIPLE 1024u
 
 struct raymarch_args {
-    float step;      // longest step, m
-    float stop;      // a ray ends where the transmittance is below this
+    float step;           // longest step, m
+    float stop;           // a ray ends where the transmittance is below this
     tyn_uint supersample; // 1: four rays where they disagree on which shapes they hit
     tyn_uint pad;
-    tyn_vec4 depth;  // p10, p14, p11, p15 of the host's view_to_clip
+    tyn_vec4 depth; // p10, p14, p11, p15 of the host's view_to_clip
 };
 TYN_ASSERT_SIZE(raymarch_args, 32);
 

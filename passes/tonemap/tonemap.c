@@ -29,9 +29,9 @@ static const tyn_kernel kernels[] = {
 static const char *const curve_names[TONEMAP_NUM_CURVES] = {"filmic", "linear"};
 
 static const tyn_param params_table[] = {
-    {"curve", TYN_PARAM_ENUM, offsetof(tonemap_params, curve), 0, 0, TONEMAP_NUM_CURVES - 1, "",
+    {"curve", TYN_PARAM_ENUM, offsetof(tyn_tonemap_params, curve), 0, 0, TONEMAP_NUM_CURVES - 1, "",
      "filmic: ACES-like shoulder and toe; linear: clipped at 1", curve_names},
-    {"dither", TYN_PARAM_BOOL, offsetof(tonemap_params, dither), 1, 0, 1, "",
+    {"dither", TYN_PARAM_BOOL, offsetof(tyn_tonemap_params, dither), 1, 0, 1, "",
      "hide the steps of 8 bits by an 8x8 ordered pattern", NULL},
 };
 
@@ -44,7 +44,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 
 static void record(tyn_recorder *r, const void *params)
 {
-    const tonemap_params *p = params;
+    const tyn_tonemap_params *p = params;
     struct tonemap_args args = {
         .scale = exp2f(p->exposure_ev),
         .filmic = p->curve == TONEMAP_CURVE_FILMIC,
@@ -67,7 +67,7 @@ const tyn_pass_desc tyn_pass_tonemap = {
     .num_kernels = 1,
     .params = params_table,
     .num_params = sizeof(params_table) / sizeof(params_table[0]),
-    .params_size = sizeof(tonemap_params),
+    .params_size = sizeof(tyn_tonemap_params),
     .declare = declare,
     .record = record,
     .debug_port = TONEMAP_PORT_DISPLAY,

@@ -2,12 +2,12 @@
 #pragma once
 #include <tyndall/pass.h>
 
-typedef struct tonemap_params {
+typedef struct tyn_tonemap_params {
     int32_t curve;     // TONEMAP_CURVE_*
     uint32_t dither;   // 1: ordered dither of +- half a step before rounding
     float exposure_ev; // set by the method: radiance is scaled by 2^exposure_ev
     uint32_t opaque;   // set by the method: alpha is 1; else colour is unpremultiplied
-} tonemap_params;
+} tyn_tonemap_params;
 
 enum { TONEMAP_CURVE_FILMIC = 0, TONEMAP_CURVE_LINEAR, TONEMAP_NUM_CURVES };
 

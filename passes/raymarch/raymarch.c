@@ -1,0 +1,212 @@
+// raymarch.c -- the picture: light of the medium gathered along the rays of a camera.
+#include "raymarch.h"
+#include "raymarch_args.h"
+#include "counters.h"
+#include "raymarch_grey.comp.h"
+#include "raymarch_colour.comp.h"
+#include <math.h>
+
+#define IMAGE2 TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT
+
+static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
+    [RAYMARCH_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "medium_block"},
+    [RAYMARCH_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, false,
+                               "density, or sigma_s of unequal media, 1/m"},
+    [RAYMARCH_PORT_SIGMA_A] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, 0, true, "of unequal media, 1/m"},
+    [RAYMARCH_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "of unequal media"},
+    [RAYMARCH_PORT_EMISSION] = {"emission", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                "of unequal media, W/(m^3 sr)"},
+    [RAYMARCH_PORT_DISTANCE] = {"distance", TYN_IN, TYN_IMAGE_3D, 0, false,
+                                "bricks to the nearest one that is not empty"},
+    [RAYMARCH_PORT_SHAPES] = {"shapes", TYN_IN, TYN_BUFFER, 0, false, "shape_block[]"},
+    [RAYMARCH_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "light_block[]"},
+    [RAYMARCH_PORT_BEAMS] = {"beams", TYN_IN, TYN_BUFFER, 0, true, "beam_block[]"},
+    [RAYMARCH_PORT_COLUMN] = {"column", TYN_IN, TYN_IMAGE_3D, 0, true,
+                              "mean density (or sigma_s) along the suns"},
+    [RAYMARCH_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "mean sigma_a along the suns"},
+    [RAYMARCH_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true,
+                             "mean (1 - f) sigma_s along the suns"},
+    [RAYMARCH_PORT_LUT] = {"lut", TYN_IN, TYN_IMAGE_3D, 0, true, "forward scattering"},
+    [RAYMARCH_PORT_LUT_BLOCK] = {"lut_block", TYN_IN, TYN_BUFFER, 0, true, "lut_block"},
+    [RAYMARCH_PORT_INSCATTER] = {"inscatter", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                 "radiance scattered towards the eye, W/(m^2 sr)"},
+    [RAYMARCH_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "camera_block"},
+    [RAYMARCH_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, false, "env_block"},
+    [RAYMARCH_PORT_ENV_MAP] = {"env_map", TYN_IN, TYN_IMAGE_2D, 0, true,
+                               "latitude-longitude map, W/(m^2 sr)"},
+    [RAYMARCH_PORT_HOST_DEPTH] = {"host_depth", TYN_IN, TYN_IMAGE_2D, 0, true,
+                                  "hardware depth of the host's surfaces"},
+    [RAYMARCH_PORT_RADIANCE] = {"radiance", TYN_OUT, IMAGE2, false,
+                                "radiance, W/(m^2 sr); a = 1 - mean transmittance"},
+    [RAYMARCH_PORT_TRANSMITTANCE] = {"transmittance", TYN_OUT, IMAGE2, false,
+                                     "transmittance to the first surface or out of the scene"},
+    [RAYMARCH_PORT_DEPTH] = {"depth", TYN_OUT, IMAGE2, false,
+                             "distance to the surface and to mean transmittance 1/2, m"},
+    [RAYMARCH_PORT_SINGLE] = {"single", TYN_OUT, IMAGE2, false, "light that has scattered once"},
+    [RAYMARCH_PORT_MULTIPLE] = {"multiple", TYN_OUT, IMAGE2, false,
+                                "light that has scattered more often, or was emitted"},
+    [RAYMARCH_PORT_COUNTERS] = {"counters", TYN_OUT, TYN_BUFFER, 0, false, "counters_block"},
+};
+
+// The order of raymarch_bindings.glsl.
+static const tyn_binding bindings[] = {
+    {RAYMARCH_PORT_MEDIUM, TYN_USE_UNIFORM, false},
+    {RAYMARCH_PORT_DENSITY, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_BEAMS, TYN_USE_STORAGE_READ, false},
+    {RAYMARCH_PORT_COLUMN, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_LUT, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_LUT_BLOCK, TYN_USE_STORAGE_READ, false},
+    {RAYMARCH_PORT_DISTANCE, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_INSCATTER, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_SHAPES, TYN_USE_STORAGE_READ, false},
+    {RAYMARCH_PORT_LIGHTS, TYN_USE_STORAGE_READ, false},
+    {RAYMARCH_PORT_CAMERA, TYN_USE_UNIFORM, false},
+    {RAYMARCH_PORT_ENVIRONMENT, TYN_USE_UNIFORM, false},
+    {RAYMARCH_PORT_ENV_MAP, TYN_USE_SAMPLED, true},
+    {RAYMARCH_PORT_HOST_DEPTH, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_RADIANCE, TYN_USE_STORAGE_WRITE, false},
+    {RAYMARCH_PORT_TRANSMITTANCE, TYN_USE_STORAGE_WRITE, false},
+    {RAYMARCH_PORT_DEPTH, TYN_USE_STORAGE_WRITE, false},
+    {RAYMARCH_PORT_SINGLE, TYN_USE_STORAGE_WRITE, false},
+    {RAYMARCH_PORT_MULTIPLE, TYN_USE_STORAGE_WRITE, false},
+    {RAYMARCH_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
+    {RAYMARCH_PORT_SIGMA_A, TYN_USE_SAMPLED, false}, // from here on colour only
+    {RAYMARCH_PORT_G, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_EMISSION, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_TAU_A, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_TAU_P, TYN_USE_SAMPLED, false},
+};
+enum {
+    NUM_BINDINGS = sizeof(bindings) / sizeof(bindings[0]),
+    NUM_GREY_BINDINGS = NUM_BINDINGS - 5,
+    NUM_SPEC = 3, // mode, number of suns, features
+};
+
+enum { KERNEL_GREY = 0, KERNEL_COLOUR, NUM_KERNELS };
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_GREY] = {.name = "raymarch_grey",
+                     .spirv = raymarch_grey_spirv,
+                     .spirv_size = sizeof(raymarch_grey_spirv),
+                     .args_size = sizeof(struct raymarch_args),
+                     .local_size = {8, 8, 1},
+                     .bindings = bindings,
+                     .num_bindings = NUM_GREY_BINDINGS,
+                     .num_spec = NUM_SPEC},
+    [KERNEL_COLOUR] = {.name = "raymarch_colour",
+                       .spirv = raymarch_colour_spirv,
+                       .spirv_size = sizeof(raymarch_colour_spirv),
+                       .args_size = sizeof(struct raymarch_args),
+                       .local_size = {8, 8, 1},
+                       .bindings = bindings,
+                       .num_bindings = NUM_BINDINGS,
+                       .num_spec = NUM_SPEC},
+};
+
+static const tyn_param params_table[] = {
+    {"step", TYN_PARAM_FLOAT, offsetof(tyn_raymarch_params, step), 1, 0.05, 4, "voxels",
+     "longest step along a ray", NULL},
+    {"stop", TYN_PARAM_FLOAT, offsetof(tyn_raymarch_params, stop), 1e-3, 0, 0.1, "",
+     "transmittance at which a ray ends; the rest is extrapolated", NULL},
+    {"antialias", TYN_PARAM_BOOL, offsetof(tyn_raymarch_params, antialias), 1, 0, 1, "",
+     "four rays a pixel where they disagree on which shapes they hit", NULL},
+};
+
+// Layers by their bit in `layers`.
+static const struct {
+    uint32_t layer, feature;
+    uint8_t port;
+} layers[] = {
+    {RAYMARCH_LAYER_TRANSMITTANCE, RAYMARCH_TRANSMITTANCE, RAYMARCH_PORT_TRANSMITTANCE},
+    {RAYMARCH_LAYER_DEPTH, RAYMARCH_DEPTH, RAYMARCH_PORT_DEPTH},
+    {RAYMARCH_LAYER_SINGLE, RAYMARCH_SINGLE, RAYMARCH_PORT_SINGLE},
+    {RAYMARCH_LAYER_MULTIPLE, RAYMARCH_MULTIPLE, RAYMARCH_PORT_MULTIPLE},
+};
+enum { NUM_LAYERS = sizeof(layers) / sizeof(layers[0]) };
+
+float tyn_raymarch_longest_step(float sigma_t, float dx, const float extent[3])
+{
+    float side = fmaxf(extent[0], fmaxf(extent[1], extent[2]));
+    // In the middle of a step of depth x, light that falls off as e^-x is x^2 / 24 too dark.
+    float by_depth = sigma_t > 0.0f ? fmaxf(0.2f / sigma_t, side / 512.0f) : side;
+    return fminf(fminf(by_depth, side / 8.0f), dx > 0.0f ? dx : side);
+}
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_raymarch_params *p = params;
+    tyn_extent size = {p->width, p->height, 1};
+    tyn_build_image(b, RAYMARCH_PORT_RADIANCE, size, 1);
+    for (uint32_t i = 0; i < NUM_LAYERS; i++) {
+        if (p->layers & layers[i].layer) {
+            tyn_build_image(b, layers[i].port, size, 1);
+        }
+    }
+    tyn_build_buffer(b, RAYMARCH_PORT_COUNTERS, sizeof(struct counters_block));
+    return TYN_OK;
+}
+
+static float shortest_voxel(tyn_extent size, const float extent[3])
+{
+    return fminf(fminf(extent[0] / (float)size.x, extent[1] / (float)size.y),
+                 extent[2] / (float)size.z);
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_raymarch_params *p = params;
+    uint32_t features = 0;
+    uint8_t ports_of[NUM_BINDINGS];
+    for (uint32_t i = 0; i < NUM_BINDINGS; i++) {
+        ports_of[i] = bindings[i].port;
+        // A layer that is not made: its binding is not written to, so any image will do.
+        for (uint32_t k = 0; k < NUM_LAYERS; k++) {
+            if (bindings[i].port == layers[k].port && !(p->layers & layers[k].layer)) {
+                ports_of[i] = RAYMARCH_PORT_RADIANCE;
+            }
+        }
+    }
+    for (uint32_t k = 0; k < NUM_LAYERS; k++) {
+        features |= p->layers & layers[k].layer ? layers[k].feature : 0;
+    }
+    features |= p->kernels ? RAYMARCH_KERNELS : 0;
+    features |= tyn_rec_has(r, RAYMARCH_PORT_INSCATTER) ? RAYMARCH_FIELD : 0;
+    features |= p->emissive ? RAYMARCH_EMISSION : 0;
+    features |= p->mean ? RAYMARCH_MEAN : 0;
+    features |= tyn_rec_has(r, RAYMARCH_PORT_HOST_DEPTH) ? RAYMARCH_HOST_DEPTH : 0;
+    features |= p->background ? RAYMARCH_BACKGROUND : 0;
+    bool follow = p->background || p->layers & RAYMARCH_LAYER_TRANSMITTANCE;
+    features |= follow ? RAYMARCH_BEHIND : 0;
+
+    float voxel = p->step * shortest_voxel(tyn_rec_extent(r, RAYMARCH_PORT_DENSITY), p->extent);
+    struct raymarch_args args = {
+        .step = fminf(voxel, p->longest_step),
+        .stop = p->stop,
+        .supersample = p->antialias,
+        .depth = {p->depth[0], p->depth[1], p->depth[2], p->depth[3]},
+    };
+    tyn_rec_fill(r, RAYMARCH_PORT_COUNTERS, 0);
+    tyn_rec_dispatch(r, &(tyn_dispatch){
+                            .kernel = p->grey ? KERNEL_GREY : KERNEL_COLOUR,
+                            .cells = {p->width, p->height, 1},
+                            .args = &args,
+                            .ports = ports_of,
+                            .spec = (const uint32_t[]){p->mode, p->num_suns, features},
+                        });
+}
+
+const tyn_pass_desc tyn_pass_raymarch = {
+    .name = "raymarch",
+    .summary = "light of the medium gathered along the rays of a camera",
+    .ports = ports,
+    .num_ports = RAYMARCH_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params = params_table,
+    .num_params = sizeof(params_table) / sizeof(params_table[0]),
+    .params_size = sizeof(tyn_raymarch_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = RAYMARCH_PORT_RADIANCE,
+    .debug_meaning = "radiance, exposed by its own mean",
+};

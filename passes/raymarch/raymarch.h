@@ -1,0 +1,67 @@
+// raymarch.h -- the picture: light of the medium gathered along the rays of a camera.
+#pragma once
+#include <tyndall/pass.h>
+#include "scene_args.h"
+
+typedef struct tyn_raymarch_params {
+    float step;         // "raymarch.step": longest step in voxels of the medium
+    float stop;         // "raymarch.stop": transmittance at which a ray ends
+    uint32_t antialias; // "raymarch.antialias": four rays a pixel where they disagree
+    // Set by the method.
+    uint32_t grey;       // 1: one medium (mode DENSITY), equal in all channels
+    uint32_t mode;       // TYN_MEDIUM_*
+    uint32_t num_suns;   // 0..4
+    uint32_t kernels;    // 1: sunlight scattered forward any number of times (lut); else once only
+    uint32_t mean;       // 1: the mean of the environment came in through the field
+    uint32_t emissive;   // 1: media emit light
+    uint32_t background; // 1: the environment behind the medium is seen
+    uint32_t layers;     // set of RAYMARCH_LAYER_*
+    uint32_t width, height;
+    float extent[3];    // medium_block.extent, m
+    float longest_step; // m; a step is no longer than this
+    float depth[4];     // p10, p14, p11, p15 of the host's view_to_clip
+} tyn_raymarch_params;
+
+// The longest step in metres for a medium whose majorant is `sigma_t` (1/m), marched through a lattice
+// of cells of `dx` metres (0 = none): the light changes no faster than cells and depth allow.
+// Steps are bounded by voxels as well, so this matters for homogeneous media only.
+float tyn_raymarch_longest_step(float sigma_t, float dx, const float extent[3]);
+
+enum {
+    RAYMARCH_LAYER_TRANSMITTANCE = 1 << 0,
+    RAYMARCH_LAYER_DEPTH = 1 << 1,
+    RAYMARCH_LAYER_SINGLE = 1 << 2,
+    RAYMARCH_LAYER_MULTIPLE = 1 << 3,
+};
+
+enum {
+    RAYMARCH_PORT_MEDIUM,  // IN buffer struct medium_block
+    RAYMARCH_PORT_DENSITY, // IN 3D: density, or sigma_s in mode COEFFICIENTS
+    RAYMARCH_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as the two below
+    RAYMARCH_PORT_G,
+    RAYMARCH_PORT_EMISSION,
+    RAYMARCH_PORT_DISTANCE, // IN 3D: distance of empty bricks
+    RAYMARCH_PORT_SHAPES,   // IN buffer struct shape_block[]
+    RAYMARCH_PORT_LIGHTS,   // IN buffer struct light_block[]
+    RAYMARCH_PORT_BEAMS,    // IN optional buffer struct beam_block[]: with suns, as the next
+    RAYMARCH_PORT_COLUMN,   // IN optional 3D: column, or tau_s in mode COEFFICIENTS
+    RAYMARCH_PORT_TAU_A,    // IN optional 3D: mode COEFFICIENTS, as the one below
+    RAYMARCH_PORT_TAU_P,
+    RAYMARCH_PORT_LUT,         // IN optional 3D: with `kernels` and suns, as the next
+    RAYMARCH_PORT_LUT_BLOCK,   // IN buffer struct lut_block (optional without suns)
+    RAYMARCH_PORT_INSCATTER,   // IN optional 3D: of merge; without it suns and emission only
+    RAYMARCH_PORT_CAMERA,      // IN buffer struct camera_block
+    RAYMARCH_PORT_ENVIRONMENT, // IN buffer struct env_block
+    RAYMARCH_PORT_ENV_MAP,     // IN optional 2D
+    RAYMARCH_PORT_HOST_DEPTH,  // IN optional 2D: hardware depth; rays end there
+    RAYMARCH_PORT_RADIANCE, // OUT 2D RGBA32F: radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where
+                            // an environment is seen
+    RAYMARCH_PORT_TRANSMITTANCE, // OUT 2D RGBA32F, asked for by `layers`, as all below
+    RAYMARCH_PORT_DEPTH,    // OUT 2D RGBA32F: distance to the host's surface, and to where the mean
+                            // transmittance is 1/2, m; infinity if there is none
+    RAYMARCH_PORT_SINGLE,   // OUT 2D RGBA32F: light that has scattered once
+    RAYMARCH_PORT_MULTIPLE, // OUT 2D RGBA32F: more often, from the environment's mean, or emitted
+    RAYMARCH_PORT_COUNTERS, // OUT buffer struct counters_block
+    RAYMARCH_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_raymarch;
