@@ -1,0 +1,244 @@
+// nodes.c -- parts of a frame that several methods have in common.
+#include "methods/nodes.h"
+#include "passes/medium/medium.h"
+#include "passes/beam/beam.h"
+#include "passes/composite/composite.h"
+#include "passes/tonemap/tonemap.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+void tyn_method_warn(const tyn_job *job, const char *format, ...)
+{
+    char line[256];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(line, sizeof line, format, args);
+    va_end(args);
+    if (job->warn) {
+        job->warn(job->warn_user, line);
+    }
+}
+
+tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method)
+{
+    for (uint32_t i = 0; i < job->scene->num_shapes; i++) {
+        const bool *repeat = job->scene->shapes[i].repeat;
+        if (repeat[0] || repeat[1] || repeat[2]) {
+            tyn_log_print(job->log, TYN_LOG_ERROR,
+                          "shape %u: method '%s' cannot do periodic media (\"repeat\"); "
+                          "'path' can",
+                          i, method);
+            return TYN_ERR_PARAMS;
+        }
+    }
+    return TYN_OK;
+}
+
+uint32_t tyn_method_suns(const tyn_job *job)
+{
+    const tyn_frame_scene *frame = job->frame;
+    uint32_t lamps = frame->num_lights - frame->num_suns;
+    if (lamps) {
+        tyn_method_warn(job, "%u point or spot light%s left out: only directional lights are done",
+                        lamps, lamps > 1 ? "s are" : " is");
+    }
+    if (frame->num_suns > TYN_METHOD_MAX_SUNS) {
+        tyn_method_warn(job, "%u directional lights: the first %d are used", frame->num_suns,
+                        TYN_METHOD_MAX_SUNS);
+        return TYN_METHOD_MAX_SUNS;
+    }
+    return frame->num_suns;
+}
+
+tyn_result tyn_add_medium(tyn_graph *g, const tyn_job *job, tyn_media_refs *media)
+{
+    const struct medium_block *block = &job->frame->medium;
+    tyn_medium_params params;
+    tyn_settings_params(job->settings, &tyn_pass_medium, &params);
+    params.mode = block->mode;
+    params.direct = job->frame->direct;
+    params.emissive = job->frame->emissive;
+    memcpy(params.size, block->size, sizeof params.size);
+    memcpy(params.bricks, block->bricks, sizeof params.bricks);
+
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [MEDIUM_PORT_ATLAS] = job->refs.atlas,
+        [MEDIUM_PORT_SHAPES] = job->refs.shapes,
+        [MEDIUM_PORT_MEDIUM] = job->refs.medium,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_medium, &params, refs);
+    bool coefficients = block->mode == TYN_MEDIUM_COEFFICIENTS;
+    *media = (tyn_media_refs){
+        .density = coefficients         ? refs[MEDIUM_PORT_SIGMA_S]
+                   : job->frame->direct ? job->refs.atlas
+                                        : refs[MEDIUM_PORT_DENSITY],
+        .sigma_a = refs[MEDIUM_PORT_SIGMA_A],
+        .g = refs[MEDIUM_PORT_G],
+        .emission = refs[MEDIUM_PORT_EMISSION],
+        .bricks = refs[MEDIUM_PORT_BRICKS],
+        .distance = refs[MEDIUM_PORT_DISTANCE],
+    };
+    return result;
+}
+
+tyn_result tyn_add_beams(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
+                         uint32_t num_suns, tyn_beam_refs *beams)
+{
+    *beams = (tyn_beam_refs){{0}};
+    if (num_suns == 0) {
+        return TYN_OK;
+    }
+    const struct medium_block *block = &job->frame->medium;
+    bool coefficients = block->mode == TYN_MEDIUM_COEFFICIENTS;
+    tyn_beam_params params;
+    tyn_settings_params(job->settings, &tyn_pass_beam, &params);
+    tyn_beam_plan(&params, block, job->frame->lights, num_suns);
+
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [BEAM_PORT_MEDIUM] = job->refs.medium,
+        [BEAM_PORT_DENSITY] = media->density,
+        [BEAM_PORT_SIGMA_A] = media->sigma_a,
+        [BEAM_PORT_G] = media->g,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_beam, &params, refs);
+    *beams = (tyn_beam_refs){
+        .beams = refs[BEAM_PORT_BEAMS],
+        .column = coefficients ? refs[BEAM_PORT_TAU_S] : refs[BEAM_PORT_COLUMN],
+        .tau_a = refs[BEAM_PORT_TAU_A],
+        .tau_p = refs[BEAM_PORT_TAU_P],
+    };
+    return result;
+}
+
+// ---- the picture ------------------------------------------------------------------------------
+
+static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
+                             const tyn_picture_inputs *in)
+{
+    const tyn_frame_scene *frame = job->frame;
+    const struct medium_block *block = &frame->medium;
+    tyn_settings_params(job->settings, &tyn_pass_raymarch, params);
+    params->grey = frame->grey && block->mode == TYN_MEDIUM_DENSITY;
+    params->mode = block->mode;
+    params->num_suns = in->num_suns;
+    params->kernels = in->lut.resource != 0;
+    params->mean = in->mean_in_field;
+    params->emissive = frame->emissive;
+    params->width = job->view->width;
+    params->height = job->view->height;
+    memcpy(params->extent, block->extent, sizeof params->extent);
+    params->longest_step =
+        tyn_raymarch_longest_step(block->sigma_t_max * block->max_density, in->cell, block->extent);
+
+    const struct env_block *env = &frame->environment;
+    bool surroundings =
+        env->has_map || env->radiance[0] + env->radiance[1] + env->radiance[2] > 0.0f;
+    // Over a host's picture only the medium is laid.
+    params->background =
+        surroundings && !job->view->no_background && !(job->outputs & TYN_OUTPUT_COMPOSITE);
+    if (job->outputs & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_COMPOSITE)) {
+        params->layers |= RAYMARCH_LAYER_TRANSMITTANCE;
+    }
+    params->layers |= job->outputs & TYN_OUTPUT_DEPTH ? RAYMARCH_LAYER_DEPTH : 0;
+    params->layers |= job->outputs & TYN_OUTPUT_SINGLE ? RAYMARCH_LAYER_SINGLE : 0;
+    params->layers |= job->outputs & TYN_OUTPUT_MULTIPLE ? RAYMARCH_LAYER_MULTIPLE : 0;
+    if (job->refs.depth.resource) {
+        const float *m = job->view_to_clip;
+        const float depth[4] = {m[10], m[14], m[11], m[15]};
+        memcpy(params->depth, depth, sizeof depth);
+    }
+}
+
+static tyn_result add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance)
+{
+    tyn_tonemap_params params;
+    tyn_settings_params(job->settings, &tyn_pass_tonemap, &params);
+    params.exposure_ev = job->view->exposure_ev;
+    params.opaque = !job->view->no_background;
+    tyn_ref refs[TYN_MAX_PORTS] = {[TONEMAP_PORT_RADIANCE] = radiance};
+    tyn_result result = tyn_graph_add(g, &tyn_pass_tonemap, &params, refs);
+    if (result == TYN_OK) {
+        tyn_graph_output(g, "display", refs[TONEMAP_PORT_DISPLAY], true);
+    }
+    return result;
+}
+
+static tyn_result add_composite(tyn_graph *g, const tyn_job *job, tyn_ref radiance,
+                                tyn_ref transmittance)
+{
+    tyn_composite_params params = {
+        .half_color = tyn_graph_format(g, job->refs.color) == VK_FORMAT_R16G16B16A16_SFLOAT,
+    };
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [COMPOSITE_PORT_RADIANCE] = radiance,
+        [COMPOSITE_PORT_TRANSMITTANCE] = transmittance,
+        [COMPOSITE_PORT_COLOR] = job->refs.color,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_composite, &params, refs);
+    if (result == TYN_OK) {
+        tyn_graph_output(g, "color", refs[COMPOSITE_PORT_COLOR], false);
+    }
+    return result;
+}
+
+tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_inputs *in)
+{
+    static const tyn_picture_inputs nothing = {.num_suns = 0};
+    if (!in) {
+        in = &nothing;
+    }
+    tyn_raymarch_params params;
+    set_march_params(&params, job, in);
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [RAYMARCH_PORT_MEDIUM] = job->refs.medium,
+        [RAYMARCH_PORT_DENSITY] = in->media.density,
+        [RAYMARCH_PORT_SIGMA_A] = in->media.sigma_a,
+        [RAYMARCH_PORT_G] = in->media.g,
+        [RAYMARCH_PORT_EMISSION] = in->media.emission,
+        [RAYMARCH_PORT_DISTANCE] = in->media.distance,
+        [RAYMARCH_PORT_SHAPES] = job->refs.shapes,
+        [RAYMARCH_PORT_LIGHTS] = job->refs.lights,
+        [RAYMARCH_PORT_BEAMS] = in->beams.beams,
+        [RAYMARCH_PORT_COLUMN] = in->beams.column,
+        [RAYMARCH_PORT_TAU_A] = in->beams.tau_a,
+        [RAYMARCH_PORT_TAU_P] = in->beams.tau_p,
+        [RAYMARCH_PORT_LUT] = in->lut,
+        [RAYMARCH_PORT_LUT_BLOCK] = in->lut_block,
+        [RAYMARCH_PORT_INSCATTER] = in->inscatter,
+        [RAYMARCH_PORT_CAMERA] = job->refs.camera,
+        [RAYMARCH_PORT_ENVIRONMENT] = job->refs.environment,
+        [RAYMARCH_PORT_ENV_MAP] = job->refs.env_map,
+        [RAYMARCH_PORT_HOST_DEPTH] = job->refs.depth,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_raymarch, &params, refs);
+    if (result != TYN_OK) {
+        return result;
+    }
+    static const struct {
+        uint32_t output;
+        uint8_t port;
+        const char *name;
+    } images[] = {
+        {TYN_OUTPUT_RADIANCE, RAYMARCH_PORT_RADIANCE, "radiance"},
+        {TYN_OUTPUT_TRANSMITTANCE, RAYMARCH_PORT_TRANSMITTANCE, "transmittance"},
+        {TYN_OUTPUT_DEPTH, RAYMARCH_PORT_DEPTH, "depth"},
+        {TYN_OUTPUT_SINGLE, RAYMARCH_PORT_SINGLE, "single"},
+        {TYN_OUTPUT_MULTIPLE, RAYMARCH_PORT_MULTIPLE, "multiple"},
+    };
+    for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
+        if (job->outputs & images[i].output) {
+            tyn_graph_output(g, images[i].name, refs[images[i].port], true);
+        }
+    }
+    tyn_graph_output(g, "counters", refs[RAYMARCH_PORT_COUNTERS], true);
+    if (result == TYN_OK && job->outputs & TYN_OUTPUT_DISPLAY) {
+        result = add_display(g, job, refs[RAYMARCH_PORT_RADIANCE]);
+    }
+    if (result == TYN_OK && job->outputs & TYN_OUTPUT_COMPOSITE) {
+        result =
+            add_composite(g, job, refs[RAYMARCH_PORT_RADIANCE], refs[RAYMARCH_PORT_TRANSMITTANCE]);
+    }
+    return result;
+}

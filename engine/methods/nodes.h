@@ -1,0 +1,49 @@
+// nodes.h -- parts of a frame that several methods have in common.
+#pragma once
+#include "methods/job.h"
+#include "passes/raymarch/raymarch.h"
+
+enum { TYN_METHOD_MAX_SUNS = 4 }; // suns that have their own aligned grid
+
+// The medium as textures. In mode COEFFICIENTS `density` is sigma_s.
+typedef struct tyn_media_refs {
+    tyn_ref density, sigma_a, g, emission, bricks, distance;
+} tyn_media_refs;
+tyn_result tyn_add_medium(tyn_graph *g, const tyn_job *job, tyn_media_refs *media);
+
+// Optical depth along the suns. In mode COEFFICIENTS `column` is tau_s. {0} without suns.
+typedef struct tyn_beam_refs {
+    tyn_ref beams, column, tau_a, tau_p;
+} tyn_beam_refs;
+tyn_result tyn_add_beams(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
+                         uint32_t num_suns, tyn_beam_refs *beams);
+
+// What the picture is gathered from; {0} refs are left out.
+typedef struct tyn_picture_inputs {
+    tyn_media_refs media;
+    tyn_beam_refs beams;
+    tyn_ref lut, lut_block; // given: all forward orders of the suns, else the first
+    tyn_ref inscatter;
+    uint32_t num_suns;
+    float cell;         // of the lattice behind inscatter, m; 0 = none
+    bool mean_in_field; // the environment's mean came in through inscatter
+} tyn_picture_inputs;
+
+// Marches, and makes what the job wants of the result: layers, the host's picture, the display image.
+// `in` may be NULL: an empty scene.
+tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_inputs *in);
+
+// Outputs that tyn_add_picture makes.
+#define TYN_PICTURE_OUTPUTS                                                                        \
+    (TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_SINGLE |       \
+     TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_DISPLAY | TYN_OUTPUT_COMPOSITE)
+
+// Suns that the method treats, at most TYN_METHOD_MAX_SUNS; one warning for each kind of light that is
+// left out.
+uint32_t tyn_method_suns(const tyn_job *job);
+
+// A line among the report's warnings.
+void tyn_method_warn(const tyn_job *job, const char *format, ...) TYN_PRINTF(2, 3);
+
+// TYN_ERR_PARAMS with a log line if a shape of the scene is periodic.
+tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method);

@@ -1,0 +1,316 @@
+// pop.c -- method "pop": principal ordinates with one lattice for everything that has scattered.
+//
+// The light of each sun that has not scattered, and what it scattered forward, is followed exactly in
+// the sun's own aligned grid; what has left the beam goes into one solve on a lattice of cubic cells for
+// all lights together, seen from the camera by merge and raymarch. A node that a scene does not need
+// is not declared.
+#include "methods/nodes.h"
+#include "passes/medium/medium.h"
+#include "passes/beam/beam.h"
+#include "passes/scatter_lut/scatter_lut.h"
+#include "passes/lattice/lattice.h"
+#include "passes/merge/merge.h"
+#include "passes/probe/probe.h"
+#include "passes/composite/composite.h"
+#include "passes/tonemap/tonemap.h"
+#include <tyndall/registry.h>
+#include <math.h>
+#include <string.h>
+
+static const uint32_t field_outputs = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE;
+
+// Twice scattered light is about half the scaled scattering depth of that which scattered once: below
+// this depth along the longest way through the box the lattice is left out.
+static const float thin_depth = 0.05f;
+
+// What the nodes of one frame share.
+typedef struct field {
+    tyn_lattice_shape shape;
+    tyn_picture_inputs picture;
+    tyn_ref cells, source, power, moments, leaks;
+    bool lit_by_environment;
+} field;
+
+static bool any_positive(const float v[3])
+{
+    return v[0] > 0.0f || v[1] > 0.0f || v[2] > 0.0f;
+}
+
+// Largest g of any medium, and a warning where media of different g may overlap.
+static float largest_g(const tyn_job *job)
+{
+    float least = 1.0f, most = -1.0f;
+    for (uint32_t m = 0; m < job->scene->num_media; m++) {
+        for (int c = 0; c < 3; c++) {
+            least = fminf(least, job->scene->media[m].g[c]);
+            most = fmaxf(most, job->scene->media[m].g[c]);
+        }
+    }
+    if (job->frame->medium.mode == TYN_MEDIUM_COEFFICIENTS && least < most) {
+        tyn_method_warn(job,
+                        "media of different anisotropy: where they overlap their mean weighted "
+                        "with sigma_s is used");
+    }
+    return most;
+}
+
+static bool is_thin(const tyn_frame_scene *frame)
+{
+    const struct medium_block *m = &frame->medium;
+    if (m->mode != TYN_MEDIUM_DENSITY) {
+        return false;
+    }
+    float longest = sqrtf(m->extent[0] * m->extent[0] + m->extent[1] * m->extent[1] +
+                          m->extent[2] * m->extent[2]);
+    float scattering = 0.0f;
+    for (int c = 0; c < 3; c++) {
+        float forward = fmaxf(m->g[c], 0.0f);
+        scattering = fmaxf(scattering, (1.0f - forward * forward) * m->sigma_s[c]);
+    }
+    return scattering * m->max_density * longest < thin_depth;
+}
+
+// One channel is solved if medium and light allow it.
+static void choose_channels(field *f, const tyn_frame_scene *frame, uint32_t num_suns)
+{
+    float colors[TYN_METHOD_MAX_SUNS + 2][3];
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < num_suns; i++) {
+        memcpy(colors[count++], frame->lights[i].color, sizeof colors[0]);
+    }
+    memcpy(colors[count++], frame->environment.mean, sizeof colors[0]);
+    memcpy(colors[count++], frame->medium.emission, sizeof colors[0]);
+    bool one = tyn_lattice_tint((const float(*)[3])colors, count, f->shape.tint);
+    f->shape.channels = one && frame->grey ? 1 : 3;
+    if (f->shape.channels == 3) {
+        f->shape.tint[0] = f->shape.tint[1] = f->shape.tint[2] = 1.0f;
+    }
+}
+
+static tyn_result add_lut(tyn_graph *g, const tyn_job *job, field *f)
+{
+    const struct medium_block *m = &job->frame->medium;
+    tyn_scatter_lut_params params;
+    tyn_settings_params(job->settings, &tyn_pass_scatter_lut, &params);
+    params.mode = m->mode;
+    memcpy(params.g, m->g, sizeof params.g);
+    params.g_max = largest_g(job);
+    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+    tyn_result result = tyn_graph_add(g, &tyn_pass_scatter_lut, &params, refs);
+    f->picture.lut = refs[SCATTER_LUT_PORT_LUT];
+    f->picture.lut_block = refs[SCATTER_LUT_PORT_LUT_BLOCK];
+    return result;
+}
+
+static tyn_result add_cells(tyn_graph *g, const tyn_job *job, field *f)
+{
+    tyn_lattice_cells_params params;
+    tyn_settings_params(job->settings, &tyn_pass_lattice_cells, &params);
+    params.shape = f->shape;
+    params.mode = job->frame->medium.mode;
+    const tyn_media_refs *media = &f->picture.media;
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [LATTICE_CELLS_PORT_MEDIUM] = job->refs.medium,
+        [LATTICE_CELLS_PORT_DENSITY] = media->density,
+        [LATTICE_CELLS_PORT_SIGMA_A] = media->sigma_a,
+        [LATTICE_CELLS_PORT_G] = media->g,
+        [LATTICE_CELLS_PORT_EMISSION] = media->emission,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_cells, &params, refs);
+    f->cells = refs[LATTICE_CELLS_PORT_CELLS];
+    return result;
+}
+
+static tyn_result add_source(tyn_graph *g, const tyn_job *job, field *f)
+{
+    tyn_lattice_source_params params;
+    tyn_settings_params(job->settings, &tyn_pass_lattice_source, &params);
+    params.shape = f->shape;
+    params.mode = job->frame->medium.mode;
+    params.num_suns = f->picture.num_suns;
+    const tyn_beam_refs *beams = &f->picture.beams;
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [LATTICE_SOURCE_PORT_MEDIUM] = job->refs.medium,
+        [LATTICE_SOURCE_PORT_LIGHTS] = job->refs.lights,
+        [LATTICE_SOURCE_PORT_CELLS] = f->cells,
+        [LATTICE_SOURCE_PORT_DENSITY] = f->picture.media.density,
+        [LATTICE_SOURCE_PORT_G] = f->picture.media.g,
+        [LATTICE_SOURCE_PORT_BEAMS] = beams->beams,
+        [LATTICE_SOURCE_PORT_COLUMN] = beams->column,
+        [LATTICE_SOURCE_PORT_TAU_A] = beams->tau_a,
+        [LATTICE_SOURCE_PORT_TAU_P] = beams->tau_p,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_source, &params, refs);
+    f->source = refs[LATTICE_SOURCE_PORT_SOURCE];
+    f->power = refs[LATTICE_SOURCE_PORT_POWER];
+    return result;
+}
+
+static tyn_result add_solve(tyn_graph *g, const tyn_job *job, field *f)
+{
+    tyn_lattice_params params;
+    tyn_settings_params(job->settings, &tyn_pass_lattice, &params);
+    params.shape = f->shape;
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [LATTICE_PORT_MEDIUM] = job->refs.medium,
+        [LATTICE_PORT_CELLS] = f->cells,
+        [LATTICE_PORT_SOURCE] = f->source,
+        [LATTICE_PORT_ENVIRONMENT] = f->lit_by_environment ? job->refs.environment : (tyn_ref){0},
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_lattice, &params, refs);
+    f->moments = refs[LATTICE_PORT_MOMENTS];
+    f->leaks = refs[LATTICE_PORT_LEAKS];
+    return result;
+}
+
+static tyn_result add_merge(tyn_graph *g, const tyn_job *job, field *f)
+{
+    tyn_merge_params params;
+    tyn_settings_params(job->settings, &tyn_pass_merge, &params);
+    params.channels = f->shape.channels;
+    memcpy(params.tint, f->shape.tint, sizeof params.tint);
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [MERGE_PORT_MEDIUM] = job->refs.medium,
+        [MERGE_PORT_CAMERA] = job->refs.camera,
+        [MERGE_PORT_CELLS] = f->cells,
+        [MERGE_PORT_MOMENTS] = f->moments,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_merge, &params, refs);
+    f->picture.inscatter = refs[MERGE_PORT_INSCATTER];
+    return result;
+}
+
+static tyn_result add_probe(tyn_graph *g, const tyn_job *job, field *f)
+{
+    tyn_probe_params params;
+    tyn_settings_params(job->settings, &tyn_pass_probe, &params);
+    params.mode = job->frame->medium.mode;
+    params.channels = f->shape.channels;
+    memcpy(params.tint, f->shape.tint, sizeof params.tint);
+    params.num_suns = f->picture.num_suns;
+    params.scattered_only = job->view->scattered_only;
+    const tyn_beam_refs *beams = &f->picture.beams;
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [PROBE_PORT_MEDIUM] = job->refs.medium, [PROBE_PORT_LIGHTS] = job->refs.lights,
+        [PROBE_PORT_MOMENTS] = f->moments,      [PROBE_PORT_BEAMS] = beams->beams,
+        [PROBE_PORT_COLUMN] = beams->column,    [PROBE_PORT_TAU_A] = beams->tau_a,
+        [PROBE_PORT_TAU_P] = beams->tau_p,      [PROBE_PORT_POINTS] = job->refs.points,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_probe, &params, refs);
+    if (result == TYN_OK) {
+        tyn_graph_output(g, "probe", refs[PROBE_PORT_RESULTS], true);
+    }
+    return result;
+}
+
+static tyn_result add_balance(tyn_graph *g, const tyn_job *job, field *f)
+{
+    tyn_balance_params params;
+    tyn_settings_params(job->settings, &tyn_pass_balance, &params);
+    params.channels = f->shape.channels;
+    memcpy(params.tint, f->shape.tint, sizeof params.tint);
+    params.num_suns = f->picture.num_suns;
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [BALANCE_PORT_MEDIUM] = job->refs.medium,
+        [BALANCE_PORT_ENVIRONMENT] = f->lit_by_environment ? job->refs.environment : (tyn_ref){0},
+        [BALANCE_PORT_CELLS] = f->cells,
+        [BALANCE_PORT_MOMENTS] = f->moments,
+        [BALANCE_PORT_SOURCE] = f->source,
+        [BALANCE_PORT_POWER] = f->power,
+        [BALANCE_PORT_LEAKS] = f->leaks,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_balance, &params, refs);
+    if (result == TYN_OK) {
+        tyn_graph_output(g, "balance", refs[BALANCE_PORT_BALANCE], true);
+    }
+    return result;
+}
+
+// Runs the steps in order until one fails.
+typedef tyn_result (*step_fn)(tyn_graph *g, const tyn_job *job, field *f);
+
+static tyn_result add_lattice(tyn_graph *g, const tyn_job *job, field *f)
+{
+    const bool suns = f->picture.num_suns > 0, picture = job->outputs & TYN_PICTURE_OUTPUTS;
+    const struct {
+        bool wanted;
+        step_fn add;
+    } steps[] = {
+        {true, add_cells},
+        {suns, add_source},
+        {true, add_solve},
+        {picture, add_merge},
+        {(job->outputs & TYN_OUTPUT_PROBE) != 0, add_probe},
+        {(job->outputs & TYN_OUTPUT_BALANCE) != 0, add_balance},
+    };
+    tyn_result result = TYN_OK;
+    for (size_t i = 0; result == TYN_OK && i < sizeof steps / sizeof steps[0]; i++) {
+        result = steps[i].wanted ? steps[i].add(g, job, f) : TYN_OK;
+    }
+    return result;
+}
+
+static tyn_result declare(tyn_graph *g, const tyn_job *job)
+{
+    const tyn_frame_scene *frame = job->frame;
+    tyn_result result = tyn_method_refuse_repeat(job, "pop");
+    if (result != TYN_OK) {
+        return result;
+    }
+    bool picture = job->outputs & TYN_PICTURE_OUTPUTS;
+    if (frame->empty && !(job->outputs & field_outputs)) {
+        return tyn_add_picture(g, job, NULL);
+    }
+
+    field f = {.picture.num_suns = tyn_method_suns(job)};
+    f.lit_by_environment = any_positive(frame->environment.mean);
+    if (f.lit_by_environment && frame->environment.has_map) {
+        tyn_method_warn(job,
+                        "the environment lights the medium with its mean only; it is seen whole");
+    }
+    result = tyn_add_medium(g, job, &f.picture.media);
+    if (result == TYN_OK) {
+        result = tyn_add_beams(g, job, &f.picture.media, f.picture.num_suns, &f.picture.beams);
+    }
+    if (result == TYN_OK && f.picture.num_suns && picture) {
+        result = add_lut(g, job, &f);
+    }
+    bool scattered_light = f.picture.num_suns || f.lit_by_environment || frame->emissive;
+    bool solve = scattered_light && (f.lit_by_environment || !is_thin(frame));
+    if (result == TYN_OK && (solve || job->outputs & field_outputs)) {
+        tyn_lattice_params lattice;
+        tyn_settings_params(job->settings, &tyn_pass_lattice, &lattice);
+        memcpy(f.shape.extent, frame->medium.extent, sizeof f.shape.extent);
+        f.shape.cells = lattice.shape.cells;
+        choose_channels(&f, frame, f.picture.num_suns);
+        float longest = fmaxf(f.shape.extent[0], fmaxf(f.shape.extent[1], f.shape.extent[2]));
+        f.picture.cell = longest / (float)f.shape.cells;
+        f.picture.mean_in_field = f.lit_by_environment;
+        result = add_lattice(g, job, &f);
+    }
+    return result == TYN_OK && picture ? tyn_add_picture(g, job, &f.picture) : result;
+}
+
+static const tyn_pass_desc *const passes[] = {
+    &tyn_pass_medium,
+    &tyn_pass_beam,
+    &tyn_pass_scatter_lut,
+    &tyn_pass_lattice_cells,
+    &tyn_pass_lattice_source,
+    &tyn_pass_lattice,
+    &tyn_pass_merge,
+    &tyn_pass_raymarch,
+    &tyn_pass_composite,
+    &tyn_pass_tonemap,
+    &tyn_pass_probe,
+    &tyn_pass_balance,
+    NULL,
+};
+
+const tyn_method tyn_method_pop = {
+    .name = "pop",
+    .summary = "principal ordinates: exact beams, one lattice for scattered light",
+    .passes = passes,
+    .outputs = TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE,
+    .declare = declare,
+};

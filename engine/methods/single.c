@@ -1,0 +1,42 @@
+// single.c -- method "single": light that has scattered exactly once, and emission.
+#include "methods/nodes.h"
+#include "passes/medium/medium.h"
+#include "passes/beam/beam.h"
+#include "passes/composite/composite.h"
+#include "passes/tonemap/tonemap.h"
+#include <tyndall/registry.h>
+
+static tyn_result declare(tyn_graph *g, const tyn_job *job)
+{
+    tyn_result result = tyn_method_refuse_repeat(job, "single");
+    if (result != TYN_OK) {
+        return result;
+    }
+    if (job->frame->empty) {
+        return tyn_add_picture(g, job, NULL);
+    }
+    if (job->frame->environment.mean[0] + job->frame->environment.mean[1] +
+            job->frame->environment.mean[2] >
+        0.0f) {
+        tyn_method_warn(job, "the environment is seen, but does not light the medium");
+    }
+    tyn_picture_inputs in = {.num_suns = tyn_method_suns(job)};
+    result = tyn_add_medium(g, job, &in.media);
+    if (result == TYN_OK) {
+        result = tyn_add_beams(g, job, &in.media, in.num_suns, &in.beams);
+    }
+    return result == TYN_OK ? tyn_add_picture(g, job, &in) : result;
+}
+
+static const tyn_pass_desc *const passes[] = {
+    &tyn_pass_medium,    &tyn_pass_beam,    &tyn_pass_raymarch,
+    &tyn_pass_composite, &tyn_pass_tonemap, NULL,
+};
+
+const tyn_method tyn_method_single = {
+    .name = "single",
+    .summary = "light that has scattered exactly once",
+    .passes = passes,
+    .outputs = TYN_PICTURE_OUTPUTS,
+    .declare = declare,
+};
