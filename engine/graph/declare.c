@@ -88,6 +88,12 @@ tyn_extent tyn_graph_extent(const tyn_graph *g, tyn_ref ref)
     return r ? r->extent : (tyn_extent){0, 0, 0};
 }
 
+VkFormat tyn_graph_format(const tyn_graph *g, tyn_ref ref)
+{
+    const resource *r = find((tyn_graph *)g, ref);
+    return r ? r->format : VK_FORMAT_UNDEFINED;
+}
+
 // ---- resources from outside -------------------------------------------------------------------
 
 tyn_ref tyn_graph_import_image(tyn_graph *g, const char *name, tyn_dim dim, const tyn_image *image,

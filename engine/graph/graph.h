@@ -64,6 +64,7 @@ void tyn_graph_mark_media(tyn_graph *g, tyn_ref ref);
 void tyn_graph_recompute(tyn_graph *g);
 
 tyn_extent tyn_graph_extent(const tyn_graph *g, tyn_ref ref);
+VkFormat tyn_graph_format(const tyn_graph *g, tyn_ref ref);
 const tyn_log *tyn_graph_log(const tyn_graph *g);
 
 // ---- compile, record ------------------------------------------------------------------------

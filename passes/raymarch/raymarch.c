@@ -10,13 +10,13 @@
 
 static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
     [RAYMARCH_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "medium_block"},
-    [RAYMARCH_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, false,
+    [RAYMARCH_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, true,
                                "density, or sigma_s of unequal media, 1/m"},
     [RAYMARCH_PORT_SIGMA_A] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, 0, true, "of unequal media, 1/m"},
     [RAYMARCH_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "of unequal media"},
     [RAYMARCH_PORT_EMISSION] = {"emission", TYN_IN, TYN_IMAGE_3D, 0, true,
                                 "of unequal media, W/(m^3 sr)"},
-    [RAYMARCH_PORT_DISTANCE] = {"distance", TYN_IN, TYN_IMAGE_3D, 0, false,
+    [RAYMARCH_PORT_DISTANCE] = {"distance", TYN_IN, TYN_IMAGE_3D, 0, true,
                                 "bricks to the nearest one that is not empty"},
     [RAYMARCH_PORT_SHAPES] = {"shapes", TYN_IN, TYN_BUFFER, 0, false, "shape_block[]"},
     [RAYMARCH_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "light_block[]"},
@@ -148,8 +148,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
 
 static float shortest_voxel(tyn_extent size, const float extent[3])
 {
-    return fminf(fminf(extent[0] / (float)size.x, extent[1] / (float)size.y),
-                 extent[2] / (float)size.z);
+    return fminf(fminf(extent[0] / fmaxf((float)size.x, 1), extent[1] / fmaxf((float)size.y, 1)),
+                 extent[2] / fmaxf((float)size.z, 1));
 }
 
 static void record(tyn_recorder *r, const void *params)
