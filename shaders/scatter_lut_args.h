@@ -5,7 +5,7 @@
 
 #define TYN_LUT_MAX_ROWS 16
 #define TYN_LUT_DEPTHS 64  // texels along the scattering depth
-#define TYN_LUT_ANGLES 128 // texels along the angle
+#define TYN_LUT_ANGLES 192 // texels along the angle
 
 struct lut_block { // storage buffer "lut_block"
     tyn_uint num_rows;

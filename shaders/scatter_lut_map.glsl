@@ -27,10 +27,11 @@ float lut_depth(uint texel, float f)
     return exp(float(texel) / float(TYN_LUT_DEPTHS - 1) * log(1.0 + lut_depth_max(f))) - 1.0;
 }
 
-// Width of twice scattered light, p * p = Henyey-Greenstein of g^2, radians.
+// Angle around which the texels go from even to geometric spacing, radians: a few times the width of
+// the twice scattered light, p * p = Henyey-Greenstein of g^2.
 float lut_width(float g)
 {
-    return 2.0 * (1.0 - abs(g));
+    return 8.0 * (1.0 - max(g, 0.0));
 }
 
 float lut_v(float theta, float g)

@@ -1,0 +1,184 @@
+// medium.c -- resamples the shapes where they are not one grid already; bricks and distances.
+#include "medium.h"
+#include "medium_args.h"
+#include "medium_bricks.comp.h"
+#include "medium_coefficients.comp.h"
+#include "medium_density.comp.h"
+#include "medium_distance.comp.h"
+#include "medium_emission.comp.h"
+
+static const tyn_port ports[MEDIUM_NUM_PORTS] = {
+    [MEDIUM_PORT_ATLAS] = {"atlas", TYN_IN, TYN_IMAGE_3D, 0, false, "density grids of all media"},
+    [MEDIUM_PORT_SHAPES] = {"shapes", TYN_IN, TYN_BUFFER, 0, false, "shape_block per shape"},
+    [MEDIUM_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "the scene's medium_block"},
+    [MEDIUM_PORT_DENSITY] = {"density", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
+                             "mean density per voxel"},
+    [MEDIUM_PORT_SIGMA_S] = {"sigma_s", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
+                             "scattering, 1/m; a = mean of the channels"},
+    [MEDIUM_PORT_SIGMA_A] = {"sigma_a", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
+                             "absorption, 1/m; a = mean of the channels"},
+    [MEDIUM_PORT_G] = {"g", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
+                       "mean cosine, weighted with sigma_s; a = over the channels"},
+    [MEDIUM_PORT_EMISSION] = {"emission", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                              false, "emission, W/(m^3 sr)"},
+    [MEDIUM_PORT_BRICKS] = {"bricks", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32_SFLOAT, false,
+                            "least and largest density, or sigma_t in 1/m, over 8^3 voxels"},
+    [MEDIUM_PORT_DISTANCE] = {"distance", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
+                              "Chebyshev distance in bricks to the nearest one that is not empty"},
+    [MEDIUM_PORT_DISTANCE_SCRATCH] = {"distance_scratch", TYN_SCRATCH, TYN_IMAGE_3D,
+                                      VK_FORMAT_R32_SFLOAT, false, "distance over two axes"},
+};
+
+enum {
+    KERNEL_DENSITY,
+    KERNEL_COEFFICIENTS,
+    KERNEL_EMISSION,
+    KERNEL_BRICKS,
+    KERNEL_DISTANCE,
+    NUM_KERNELS
+};
+
+static const tyn_binding density_bindings[] = {
+    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
+    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},
+    {MEDIUM_PORT_DENSITY, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding coefficients_bindings[] = {
+    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},        {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
+    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},         {MEDIUM_PORT_SIGMA_S, TYN_USE_STORAGE_WRITE},
+    {MEDIUM_PORT_SIGMA_A, TYN_USE_STORAGE_WRITE}, {MEDIUM_PORT_G, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding emission_bindings[] = {
+    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
+    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},
+    {MEDIUM_PORT_EMISSION, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding bricks_bindings[] = {
+    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},  {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
+    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},   {MEDIUM_PORT_SIGMA_S, TYN_USE_SAMPLED},
+    {MEDIUM_PORT_SIGMA_A, TYN_USE_SAMPLED}, {MEDIUM_PORT_BRICKS, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding distance_bindings[] = {
+    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {MEDIUM_PORT_BRICKS, TYN_USE_SAMPLED},
+    {MEDIUM_PORT_DISTANCE, TYN_USE_STORAGE_WRITE},
+};
+
+#define KERNEL(name, args, ...)                                                                    \
+    {                                                                                              \
+#name, medium_##name##_spirv, sizeof(medium_##name##_spirv), sizeof(struct args),          \
+            {__VA_ARGS__ }, name##_bindings, sizeof(name##_bindings) / sizeof(name##_bindings[0]), \
+             0                                                                                     \
+    }
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_DENSITY] = KERNEL(density, resample_args, 4, 4, 4),
+    [KERNEL_COEFFICIENTS] = KERNEL(coefficients, resample_args, 4, 4, 4),
+    [KERNEL_EMISSION] = KERNEL(emission, resample_args, 4, 4, 4),
+    [KERNEL_BRICKS] = KERNEL(bricks, bricks_args, TYN_BRICK_THREADS, 1, 1),
+    [KERNEL_DISTANCE] = KERNEL(distance, distance_args, 4, 4, 4),
+};
+
+static const tyn_param params_table[] = {
+    {"samples", TYN_PARAM_INT, offsetof(tyn_medium_params, samples), 4, 1, 8, "",
+     "points along each axis of a voxel at the edge of a shape that its mean is taken over", NULL},
+};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_medium_params *p = params;
+    tyn_extent size = {p->size[0], p->size[1], p->size[2]};
+    tyn_extent bricks = {p->bricks[0], p->bricks[1], p->bricks[2]};
+    for (int i = 0; i < 3; i++) {
+        if (p->size[i] == 0 || p->bricks[i] != (p->size[i] + TYN_BRICK - 1) / TYN_BRICK) {
+            tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                          "medium: %u bricks of %d for %u voxels along axis %d", p->bricks[i],
+                          TYN_BRICK, p->size[i], i);
+            return TYN_ERR_PARAMS;
+        }
+    }
+    if (p->mode == TYN_MEDIUM_COEFFICIENTS) {
+        tyn_build_image(b, MEDIUM_PORT_SIGMA_S, size, 1);
+        tyn_build_image(b, MEDIUM_PORT_SIGMA_A, size, 1);
+        tyn_build_image(b, MEDIUM_PORT_G, size, 1);
+        if (p->emissive) {
+            tyn_build_image(b, MEDIUM_PORT_EMISSION, size, 1);
+        }
+    } else if (!p->direct) {
+        tyn_build_image(b, MEDIUM_PORT_DENSITY, size, 1);
+    }
+    tyn_build_image(b, MEDIUM_PORT_BRICKS, bricks, 1);
+    tyn_build_image(b, MEDIUM_PORT_DISTANCE, bricks, 1);
+    tyn_build_image(b, MEDIUM_PORT_DISTANCE_SCRATCH, bricks, 1);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_medium_params *p = params;
+    bool coefficients = p->mode == TYN_MEDIUM_COEFFICIENTS;
+    tyn_extent size = {p->size[0], p->size[1], p->size[2]};
+    tyn_extent bricks = {p->bricks[0], p->bricks[1], p->bricks[2]};
+    struct resample_args resample = {(uint32_t)p->samples};
+    if (coefficients) {
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = KERNEL_COEFFICIENTS, .cells = size, .args = &resample});
+        if (p->emissive) {
+            tyn_rec_dispatch(
+                r, &(tyn_dispatch){.kernel = KERNEL_EMISSION, .cells = size, .args = &resample});
+        }
+    } else if (!p->direct) {
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = KERNEL_DENSITY, .cells = size, .args = &resample});
+    }
+
+    uint8_t first = coefficients ? MEDIUM_PORT_SIGMA_S
+                    : p->direct  ? MEDIUM_PORT_ATLAS
+                                 : MEDIUM_PORT_DENSITY;
+    uint8_t second = coefficients ? MEDIUM_PORT_SIGMA_A : MEDIUM_PORT_ATLAS;
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){
+               .kernel = KERNEL_BRICKS,
+               .cells = {bricks.x * TYN_BRICK_THREADS, bricks.y, bricks.z},
+               .args = &(struct bricks_args){coefficients ? 2
+                                             : p->direct  ? 0
+                                                          : 1},
+               .ports = (const uint8_t[]){MEDIUM_PORT_MEDIUM, MEDIUM_PORT_SHAPES, MEDIUM_PORT_ATLAS,
+                                          first, second, MEDIUM_PORT_BRICKS},
+           });
+
+    // x: bricks -> distance, y: distance -> scratch, z: scratch -> distance.
+    static const uint8_t chain[] = {MEDIUM_PORT_BRICKS, MEDIUM_PORT_DISTANCE,
+                                    MEDIUM_PORT_DISTANCE_SCRATCH, MEDIUM_PORT_DISTANCE};
+    for (uint32_t axis = 0; axis < 3; axis++) {
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){
+                   .kernel = KERNEL_DISTANCE,
+                   .cells = bricks,
+                   .args = &(struct distance_args){axis},
+                   .ports = (const uint8_t[]){MEDIUM_PORT_MEDIUM, chain[axis], chain[axis + 1]},
+               });
+    }
+    double voxels = (double)size.x * size.y * size.z;
+    double written = coefficients ? (p->emissive ? 64 : 48) : p->direct ? 0 : 4;
+    tyn_rec_work(r, "cells", voxels);
+    tyn_rec_work(r, "bytes", voxels * (4 + 2 * written)); // atlas, textures written and read again
+}
+
+const tyn_pass_desc tyn_pass_medium = {
+    .name = "medium",
+    .summary = "textures of all media together, ranges over bricks, distances through empty space",
+    .ports = ports,
+    .num_ports = MEDIUM_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params = params_table,
+    .num_params = sizeof(params_table) / sizeof(params_table[0]),
+    .params_size = sizeof(tyn_medium_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = MEDIUM_PORT_BRICKS,
+    .debug_meaning = "least (red) and largest (green) density or sigma_t of the bricks",
+};

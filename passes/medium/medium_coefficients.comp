@@ -1,0 +1,42 @@
+// medium_coefficients.comp -- summed coefficients of all shapes per voxel.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define MEDIUM_BLOCK 0
+#define SHAPES 1
+#define ATLAS 2
+#include "medium_shapes.glsl"
+#include "medium_args.h"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+layout(set = 0, binding = 3, rgba32f) writeonly uniform image3D sigma_s_image;
+layout(set = 0, binding = 4, rgba32f) writeonly uniform image3D sigma_a_image;
+layout(set = 0, binding = 5, rgba32f) writeonly uniform image3D g_image;
+layout(push_constant, scalar) uniform push { resample_args args; };
+
+float mean_of(vec3 v)
+{
+    return (v.x + v.y + v.z) / 3.0;
+}
+
+void main()
+{
+    uvec3 voxel = gl_GlobalInvocationID;
+    if (any(greaterThanEqual(voxel, medium.size))) {
+        return;
+    }
+    vec3 p = (vec3(voxel) + 0.5) * medium.voxel;
+    vec3 sigma_s = vec3(0.0), sigma_a = vec3(0.0), weighted = vec3(0.0);
+    for (uint i = 0u; i < medium.num_shapes; i++) {
+        float value = shape_mean(shapes[i], p, int(args.samples));
+        sigma_s += value * shapes[i].sigma_s;
+        sigma_a += value * shapes[i].sigma_a;
+        weighted += value * shapes[i].sigma_s * shapes[i].g;
+    }
+    vec3 g = mix(vec3(0.0), weighted / max(sigma_s, vec3(1e-30)), greaterThan(sigma_s, vec3(0.0)));
+    float mean_s = mean_of(sigma_s);
+    float mean_g = mean_s > 0.0 ? mean_of(weighted) / mean_s : 0.0;
+    imageStore(sigma_s_image, ivec3(voxel), vec4(sigma_s, mean_s));
+    imageStore(sigma_a_image, ivec3(voxel), vec4(sigma_a, mean_of(sigma_a)));
+    imageStore(g_image, ivec3(voxel), vec4(g, mean_g));
+}

@@ -1,0 +1,27 @@
+// medium_density.comp -- mean texture value of all shapes per voxel.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define MEDIUM_BLOCK 0
+#define SHAPES 1
+#define ATLAS 2
+#include "medium_shapes.glsl"
+#include "medium_args.h"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+layout(set = 0, binding = 3, r32f) writeonly uniform image3D density_image;
+layout(push_constant, scalar) uniform push { resample_args args; };
+
+void main()
+{
+    uvec3 voxel = gl_GlobalInvocationID;
+    if (any(greaterThanEqual(voxel, medium.size))) {
+        return;
+    }
+    vec3 p = (vec3(voxel) + 0.5) * medium.voxel;
+    float density = 0.0;
+    for (uint i = 0u; i < medium.num_shapes; i++) {
+        density += shape_scale(shapes[i]) * shape_mean(shapes[i], p, int(args.samples));
+    }
+    imageStore(density_image, ivec3(voxel), vec4(density));
+}

@@ -1,0 +1,73 @@
+// medium_bricks.glsl -- least and largest value over a brick, for the exact shapes and for a texture.
+// One workgroup per brick. Include after medium_shapes.glsl and medium_args.h.
+#ifndef TYN_MEDIUM_BRICKS_GLSL
+#define TYN_MEDIUM_BRICKS_GLSL
+
+shared vec2 brick_ranges[TYN_BRICK_THREADS];
+
+// (least, largest) over the workgroup of each thread's range.
+vec2 brick_reduce(vec2 range)
+{
+    uint thread = gl_LocalInvocationIndex;
+    barrier();
+    brick_ranges[thread] = range;
+    for (uint reach = TYN_BRICK_THREADS / 2u; reach > 0u; reach /= 2u) {
+        barrier();
+        if (thread < reach) {
+            vec2 other = brick_ranges[thread + reach];
+            range = vec2(min(range.x, other.x), max(range.y, other.y));
+            brick_ranges[thread] = range;
+        }
+    }
+    barrier();
+    return brick_ranges[0];
+}
+
+const vec2 BRICK_NOTHING = vec2(3.4e38, 0.0);
+
+vec2 brick_add(vec2 range, float value)
+{
+    value = value >= 0.0 && !isinf(value) ? value : 0.0;
+    return vec2(min(range.x, value), max(range.y, value));
+}
+
+// Atlas values that interpolation reads anywhere in the M box [lo, hi] of a shape: all texels that its
+// image touches, and one more around. A value outside the shape counts as 0.
+vec2 brick_of_shape(shape_block s, vec3 lo, vec3 hi)
+{
+    vec3 centre = shape_local(s, 0.5 * (lo + hi));
+    vec3 local_half = shape_local_half(s, 0.5 * (hi - lo));
+    if (shape_misses(s, centre, local_half + 1e-6)) {
+        return vec2(0.0); // the same for the whole workgroup
+    }
+    ivec3 size = ivec3(s.size);
+    // Rounding of the affine map is covered by a thousandth of a texel.
+    ivec3 first = ivec3(floor((centre - local_half + 0.5) * vec3(size) - 0.501));
+    ivec3 last = ivec3(floor((centre + local_half + 0.5) * vec3(size) - 0.499)) + 1;
+    first = clamp(first, ivec3(0), size - 1);
+    last = clamp(last, ivec3(0), size - 1);
+    uvec3 count = uvec3(last - first + 1);
+    vec2 range = BRICK_NOTHING;
+    for (uint i = gl_LocalInvocationIndex; i < count.x * count.y * count.z; i += TYN_BRICK_THREADS) {
+        ivec3 texel = first + ivec3(i % count.x, i / count.x % count.y, i / (count.x * count.y));
+        range = brick_add(range, texelFetch(atlas_tex, texel + ivec3(s.offset), 0).r);
+    }
+    range = brick_reduce(range);
+    return shape_contains(s, centre, local_half) ? range : vec2(0.0, range.y);
+}
+
+// All shapes together, in what a brick holds: texture values (DENSITY) or 1/m of the largest channel.
+vec2 brick_of_shapes(vec3 lo, vec3 hi)
+{
+    vec3 least = vec3(0.0), largest = vec3(0.0);
+    for (uint i = 0u; i < medium.num_shapes; i++) {
+        vec3 weight = medium.mode == TYN_MEDIUM_DENSITY ? vec3(shape_scale(shapes[i]))
+                                                        : shapes[i].sigma_s + shapes[i].sigma_a;
+        vec2 range = brick_of_shape(shapes[i], lo, hi);
+        least += range.x * weight;
+        largest += range.y * weight;
+    }
+    return vec2(max(max(least.x, least.y), least.z), max(max(largest.x, largest.y), largest.z));
+}
+
+#endif
