@@ -1,0 +1,315 @@
+// gltf.c -- from a glTF file to a scene: checks, tinygltf, then a walk over the nodes.
+#include "io/gltf.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "io/gltf_check.h"
+#include "io/gltf_media.h"
+#include "io/gltf_shim.h"
+#include "io/uri.h"
+#include "scene/matrix.h"
+
+// ---- the container --------------------------------------------------------------------------
+
+static uint32_t load_u32(const uint8_t *p)
+{
+    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+
+// Finds the JSON text of a .gltf or .glb.
+static tyn_result find_json(const uint8_t *bytes, size_t size, const char *file, const char **json,
+                            size_t *json_size, bool *glb, const tyn_log *log)
+{
+    *glb = size >= 4 && memcmp(bytes, "glTF", 4) == 0;
+    *json = (const char *)bytes;
+    *json_size = size;
+    if (size > 0x7fffffff) {
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: has %zu bytes, at most 2 GiB are read", file, size);
+        return TYN_ERR_PARAMS;
+    }
+    if (!*glb) {
+        return TYN_OK;
+    }
+    if (size < 20 || load_u32(bytes + 4) != 2) {
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: not a binary glTF of version 2", file);
+        return TYN_ERR_PARAMS;
+    }
+    uint64_t total = load_u32(bytes + 8), chunk = load_u32(bytes + 12);
+    if (total > size || 20 + chunk > total || memcmp(bytes + 16, "JSON", 4) != 0) {
+        tyn_log_print(log, TYN_LOG_ERROR,
+                      "%s: binary glTF of %llu bytes with %llu bytes of JSON, but the file has %zu",
+                      file, (unsigned long long)total, (unsigned long long)chunk, size);
+        return TYN_ERR_PARAMS;
+    }
+    *json = (const char *)bytes + 20;
+    *json_size = (size_t)chunk;
+    return TYN_OK;
+}
+
+static size_t count_external_buffers(const json_doc *doc)
+{
+    size_t count = 0;
+    const cJSON *buffer;
+    cJSON_ArrayForEach(buffer, tyn_json_member(doc->root, "buffers"))
+    {
+        const cJSON *uri = tyn_json_member(buffer, "uri");
+        count += uri && strncmp(uri->valuestring, "data:", 5) != 0;
+    }
+    return count;
+}
+
+// tinygltf drops what it does not like, for instance an index written as 1.0: nothing may be missing.
+static tyn_result check_model(const gltf_model *model, const json_doc *doc)
+{
+    const cJSON *node = NULL, *nodes = tyn_json_member(doc->root, "nodes");
+    bool whole = (int)model->num_nodes == cJSON_GetArraySize(nodes);
+    const gltf_node *read = model->nodes;
+    if (whole) {
+        cJSON_ArrayForEach(node, nodes)
+        {
+            if ((int)read->num_children != cJSON_GetArraySize(tyn_json_member(node, "children")) ||
+                (read->camera >= 0) != (tyn_json_member(node, "camera") != NULL) ||
+                (read->mesh >= 0) != (tyn_json_member(node, "mesh") != NULL)) {
+                return tyn_json_fault(doc, node, "indices must be written without a decimal point");
+            }
+            read++;
+        }
+        return TYN_OK;
+    }
+    return tyn_json_fault(doc, doc->root, "nodes are damaged: only %u can be read",
+                          model->num_nodes);
+}
+
+// ---- the walk -------------------------------------------------------------------------------
+
+typedef struct walk {
+    tyn_scene *scene;
+    const gltf_model *model;
+    const json_doc *doc;
+    const gltf_media *media;
+    const cJSON **nodes;    // JSON of every node
+    double (*to_world)[16]; // of every node
+    const char *first_mesh; // name of the first node with a mesh
+} walk;
+
+static void local_matrix(double m[16], const gltf_node *node)
+{
+    if (node->has_matrix) {
+        memcpy(m, node->matrix, 16 * sizeof *m);
+        return;
+    }
+    const double *q = node->rotation;
+    double n = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    double x = q[0], y = q[1], z = q[2], w = q[3], s = 2.0 / n;
+    const double r[9] = {1 - s * (y * y + z * z), s * (x * y + w * z),     s * (x * z - w * y),
+                         s * (x * y - w * z),     1 - s * (x * x + z * z), s * (y * z + w * x),
+                         s * (x * z + w * y),     s * (y * z - w * x),     1 - s * (x * x + y * y)};
+    mat_identity(m);
+    for (int c = 0; c < 3; c++) {
+        for (int i = 0; i < 3; i++) {
+            m[c * 4 + i] = r[c * 3 + i] * node->scale[c];
+        }
+        m[12 + c] = node->translation[c];
+    }
+}
+
+static char *name_or_null(const char *name)
+{
+    return name[0] ? strdup(name) : NULL;
+}
+
+static tyn_result add_camera(walk *w, uint32_t n)
+{
+    const gltf_camera *from = &w->model->cameras[w->model->nodes[n].camera];
+    const double *m = w->to_world[n];
+    double back[3] = {m[8], m[9], m[10]}, y[3] = {m[4], m[5], m[6]}, right[3], up[3];
+    vec_cross(right, y, back);
+    if (!vec_normalize(back) || !vec_normalize(right)) {
+        return tyn_json_fault(w->doc, w->nodes[n], "the camera's node is flat: its axes are lost");
+    }
+    vec_cross(up, back, right);
+    tyn_camera *grown =
+        realloc(w->scene->cameras, (w->scene->num_cameras + 1) * sizeof *w->scene->cameras);
+    if (!grown) {
+        tyn_log_print(w->doc->log, TYN_LOG_ERROR, "%s: no memory for its cameras", w->doc->file);
+        return TYN_ERR_MEMORY;
+    }
+    w->scene->cameras = grown;
+    tyn_camera *camera = &grown[w->scene->num_cameras++];
+    *camera = (tyn_camera){
+        .name = name_or_null(w->model->nodes[n].name),
+        .camera_name = name_or_null(from->name),
+        .projection = from->orthographic ? TYN_ORTHOGRAPHIC : TYN_PERSPECTIVE,
+        .yfov = from->orthographic ? 0.0f : (float)from->yfov,
+        .ymag = from->orthographic ? (float)from->ymag : 0.0f,
+        .aspect = (float)(from->orthographic ? from->xmag / from->ymag : from->aspect),
+    };
+    for (int a = 0; a < 3; a++) {
+        camera->position[a] = (float)m[12 + a];
+        camera->right[a] = (float)right[a];
+        camera->up[a] = (float)up[a];
+        camera->back[a] = (float)back[a];
+    }
+    return TYN_OK;
+}
+
+static tyn_result add_light(walk *w, uint32_t n)
+{
+    const gltf_light *from = &w->model->lights[w->model->nodes[n].light];
+    const double *m = w->to_world[n];
+    double direction[3] = {-m[8], -m[9], -m[10]};
+    if (w->scene->num_lights == TYN_MAX_LIGHTS) {
+        return tyn_json_fault(w->doc, w->nodes[n], "there may be %d lights", TYN_MAX_LIGHTS);
+    }
+    if (!vec_normalize(direction)) {
+        return tyn_json_fault(w->doc, w->nodes[n], "the light's node is flat: its axis is lost");
+    }
+    tyn_light *light = &w->scene->lights[w->scene->num_lights++];
+    *light = (tyn_light){
+        .name = name_or_null(w->model->nodes[n].name[0] ? w->model->nodes[n].name : from->name),
+        .kind = (tyn_light_kind)from->kind,
+    };
+    for (int a = 0; a < 3; a++) {
+        light->color[a] = (float)(from->color[a] * from->intensity);
+        light->position[a] = (float)m[12 + a];
+        light->direction[a] = (float)direction[a];
+    }
+    if (light->kind == TYN_LIGHT_SPOT) {
+        light->cos_inner = (float)cos(from->inner);
+        light->cos_outer = (float)cos(from->outer);
+    }
+    return TYN_OK;
+}
+
+static tyn_result visit(walk *w, uint32_t n, const double parent[16])
+{
+    const gltf_node *node = &w->model->nodes[n];
+    double local[16];
+    local_matrix(local, node);
+    mat_mul(w->to_world[n], parent, local);
+    const double *m = w->to_world[n];
+    if (m[3] != 0.0 || m[7] != 0.0 || m[11] != 0.0 || m[15] != 1.0) {
+        return tyn_json_fault(w->doc, tyn_json_member(w->nodes[n], "matrix"),
+                              "its last row must be 0, 0, 0, 1");
+    }
+    if (node->mesh >= 0 && w->scene->num_meshes++ == 0) {
+        w->first_mesh = node->name;
+    }
+    tyn_result r = tyn_gltf_read_shape(w->scene, w->media, w->doc, w->nodes[n], m);
+    if (!r && node->camera >= 0) {
+        r = add_camera(w, n);
+    }
+    if (!r && node->light >= 0) {
+        r = add_light(w, n);
+    }
+    return r;
+}
+
+static tyn_result walk_nodes(walk *w)
+{
+    const gltf_model *model = w->model;
+    const cJSON *node;
+    uint32_t *stack = calloc((size_t)model->num_nodes + 1, sizeof *stack), top = 0, i = 0;
+    uint32_t *parents = calloc((size_t)model->num_nodes + 1, sizeof *parents);
+    double identity[16];
+    tyn_result r = TYN_OK;
+    w->nodes = calloc((size_t)model->num_nodes + 1, sizeof *w->nodes);
+    w->to_world = calloc((size_t)model->num_nodes + 1, sizeof *w->to_world);
+    if (!stack || !parents || !w->nodes || !w->to_world) {
+        tyn_log_print(w->doc->log, TYN_LOG_ERROR, "%s: no memory for its nodes", w->doc->file);
+        r = TYN_ERR_MEMORY;
+        goto done;
+    }
+    cJSON_ArrayForEach(node, tyn_json_member(w->doc->root, "nodes"))
+    {
+        w->nodes[i++] = node;
+    }
+    // Depth first, children in order; each node is pushed once because nodes form trees.
+    mat_identity(identity);
+    for (i = model->num_roots; i-- > 0;) {
+        parents[model->roots[i]] = UINT32_MAX;
+        stack[top++] = model->roots[i];
+    }
+    while (!r && top > 0) {
+        uint32_t n = stack[--top];
+        r = visit(w, n, parents[n] == UINT32_MAX ? identity : w->to_world[parents[n]]);
+        for (i = model->nodes[n].num_children; i-- > 0;) {
+            parents[model->nodes[n].children[i]] = n;
+            stack[top++] = model->nodes[n].children[i];
+        }
+    }
+    if (w->scene->num_meshes > 0) {
+        tyn_scene_warn(w->scene, "mesh '%s'%s: surfaces are not drawn yet", w->first_mesh,
+                       w->scene->num_meshes > 1 ? " and others" : "");
+    }
+done:
+    free(stack);
+    free(parents);
+    free(w->nodes);
+    free(w->to_world);
+    return r;
+}
+
+// ---- all together ---------------------------------------------------------------------------
+
+static tyn_result check_scene(const tyn_scene *scene, const json_doc *doc)
+{
+    tyn_capture capture;
+    tyn_capture_init(&capture);
+    tyn_result r = tyn_scene_check(scene, &capture.log);
+    return r ? tyn_capture_fault(&capture, doc, doc->root, r) : TYN_OK;
+}
+
+static tyn_result build_scene(tyn_scene *scene, const gltf_model *model, const json_doc *doc,
+                              const char *environment)
+{
+    gltf_media media;
+    tyn_result r = tyn_gltf_read_media(scene, &media, doc);
+    if (!r) {
+        walk w = {.scene = scene, .model = model, .doc = doc, .media = &media};
+        r = walk_nodes(&w);
+    }
+    if (!r && environment) {
+        r = tyn_environment_load(&scene->environment, environment, doc->log);
+    } else if (!r && model->scene >= 0) {
+        const cJSON *scenes = tyn_json_member(doc->root, "scenes");
+        r = tyn_gltf_read_environment(scene, doc, cJSON_GetArrayItem(scenes, model->scene));
+    }
+    scene->name = name_or_null(model->scene_name);
+    return r ? r : check_scene(scene, doc);
+}
+
+tyn_result tyn_gltf_parse(tyn_scene *scene, const void *bytes, size_t size, const char *file,
+                          const char *environment, const tyn_log *log)
+{
+    const char *text;
+    size_t text_size;
+    bool glb;
+    json_doc doc = {0};
+    gltf_model model = {0};
+    char *directory = tyn_path_directory(file);
+    tyn_result r = find_json(bytes, size, file, &text, &text_size, &glb, log);
+    if (!r) {
+        r = tyn_json_parse(&doc, text, text_size, file, log);
+    }
+    if (!r) {
+        r = tyn_gltf_check(&doc, glb);
+    }
+    if (!r) {
+        gltf_source source = {bytes, size, glb, count_external_buffers(&doc), directory, file};
+        r = directory ? gltf_model_read(&model, &source, log) : TYN_ERR_MEMORY;
+    }
+    if (!r) {
+        r = check_model(&model, &doc);
+    }
+    if (!r) {
+        r = build_scene(scene, &model, &doc, environment);
+    }
+    if (r) {
+        tyn_scene_finish(scene);
+    }
+    gltf_model_finish(&model);
+    tyn_json_finish(&doc);
+    free(directory);
+    return r;
+}

@@ -1,0 +1,310 @@
+// gltf_media.c -- reads TYN_participating_media and TYN_environment_map.
+#include "io/gltf_media.h"
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include "io/raw.h"
+#include "io/uri.h"
+#include "io/volume.h"
+#include "scene/matrix.h"
+
+#define TRY(call)                                                                                  \
+    do {                                                                                           \
+        tyn_result r_ = (call);                                                                    \
+        if (r_) {                                                                                  \
+            return r_;                                                                             \
+        }                                                                                          \
+    } while (0)
+
+static const double g_limit = 0.99999994; // the largest float below 1
+
+// ---- media ----------------------------------------------------------------------------------
+
+static bool has_extension(const char *path, const char *extension)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcasecmp(dot, extension) == 0;
+}
+
+static tyn_result load_raw(tyn_volume *volume, const char *path, const json_doc *doc,
+                           const cJSON *density, uint64_t *clamped, const tyn_log *log)
+{
+    static const char *const types[] = {"f32", "f16", "u8"};
+    double size[3] = {0};
+    const char *name = "";
+    int type = 0;
+    TRY(tyn_json_numbers(doc, density, "size", 3, 1, 65536, "a number of voxels, 1 to 65536",
+                         size));
+    TRY(tyn_json_string(doc, density, "type", &name));
+    while (type < 3 && strcmp(name, types[type]) != 0) {
+        type++;
+    }
+    if (size[0] == 0.0 || type == 3) {
+        return tyn_json_fault(doc, density,
+                              "a .raw grid needs \"size\": [nx, ny, nz] and \"type\": \"f32\", "
+                              "\"f16\" or \"u8\"");
+    }
+    void *bytes;
+    size_t num_bytes;
+    TRY(tyn_file_read(path, TYN_MAX_FILE_BYTES, &bytes, &num_bytes, log));
+    tyn_result r = tyn_raw_parse(volume, bytes, num_bytes,
+                                 (int64_t[]){(int64_t)size[0], (int64_t)size[1], (int64_t)size[2]},
+                                 (tyn_raw_type)type, path, clamped, log);
+    free(bytes);
+    return r;
+}
+
+static tyn_result add_volume(tyn_scene *scene, const tyn_volume *volume, uint64_t clamped,
+                             const json_doc *doc, int32_t *index)
+{
+    for (uint32_t i = 0; i < scene->num_volumes; i++) { // two media may share a grid
+        const tyn_volume *other = &scene->volumes[i];
+        if (other->hash == volume->hash &&
+            memcmp(other->size, volume->size, sizeof other->size) == 0 &&
+            memcmp(other->index_to_world, volume->index_to_world, sizeof other->index_to_world) ==
+                0) {
+            tyn_volume extra = *volume;
+            tyn_volume_finish(&extra);
+            *index = (int32_t)i;
+            return TYN_OK;
+        }
+    }
+    tyn_volume *grown = realloc(scene->volumes, (scene->num_volumes + 1) * sizeof *grown);
+    if (!grown) {
+        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its volumes", doc->file);
+        return TYN_ERR_MEMORY;
+    }
+    scene->volumes = grown;
+    *index = (int32_t)scene->num_volumes;
+    grown[scene->num_volumes++] = *volume;
+    if (clamped) {
+        scene->clamped_negative += clamped;
+        tyn_scene_warn(scene, "%s: %llu negative densities were set to 0",
+                       volume->name ? volume->name : "volume", (unsigned long long)clamped);
+    }
+    return TYN_OK;
+}
+
+static tyn_result read_density(tyn_scene *scene, tyn_medium *medium, bool *own_transform,
+                               const json_doc *doc, const cJSON *density)
+{
+    double scale = 1.0;
+    const char *grid = NULL;
+    uint64_t clamped = 0;
+    tyn_volume volume = {0};
+    const cJSON *uri = tyn_json_member(density, "uri");
+    TRY(tyn_json_number(doc, density, "scale", 0.0, FLT_MAX, "a number >= 0", &scale));
+    TRY(tyn_json_string(doc, density, "grid", &grid));
+    if (!uri) {
+        return tyn_json_fault(doc, density, "uri is missing: a .nvdb, .vdb or .raw file");
+    }
+    char *path = tyn_uri_path(doc, uri);
+    if (!path) {
+        return TYN_ERR_PARAMS;
+    }
+    tyn_capture capture;
+    tyn_capture_init(&capture);
+    bool raw = has_extension(path, ".raw");
+    tyn_result r = raw ? load_raw(&volume, path, doc, density, &clamped, &capture.log)
+                       : tyn_volume_load(&volume, path, grid, &clamped, &capture.log);
+    free(path);
+    if (r) {
+        return capture.message[0] ? tyn_capture_fault(&capture, doc, uri, r) : r;
+    }
+    medium->density_scale = (float)scale;
+    *own_transform = !raw;
+    r = add_volume(scene, &volume, clamped, doc, &medium->volume);
+    if (r) {
+        tyn_volume_finish(&volume);
+    }
+    return r;
+}
+
+static tyn_result read_medium(tyn_scene *scene, gltf_media *media, const json_doc *doc,
+                              const cJSON *from)
+{
+    const char *name = NULL;
+    cJSON *density;
+    if (scene->num_media == TYN_MAX_MEDIA) {
+        return tyn_json_fault(doc, from, "there may be %d media", TYN_MAX_MEDIA);
+    }
+    tyn_medium *medium = &scene->media[scene->num_media];
+    *medium = (tyn_medium){.volume = -1, .density_scale = 1.0f};
+    TRY(tyn_json_string(doc, from, "name", &name));
+    TRY(tyn_json_color(doc, from, "scattering", 0.0, FLT_MAX, ">= 0, in 1/m", medium->sigma_s));
+    TRY(tyn_json_color(doc, from, "absorption", 0.0, FLT_MAX, ">= 0, in 1/m", medium->sigma_a));
+    TRY(tyn_json_color(doc, from, "anisotropy", -g_limit, g_limit,
+                       "between -1 and 1, both excluded", medium->g));
+    TRY(tyn_json_color(doc, from, "emission", 0.0, FLT_MAX, ">= 0, in W/(m^3 sr)",
+                       medium->emission));
+    TRY(tyn_json_object(doc, from, "density", &density));
+    if (density) {
+        TRY(read_density(scene, medium, &media->own_transform[scene->num_media], doc, density));
+    }
+    medium->name = name ? strdup(name) : NULL;
+    scene->num_media++;
+    return TYN_OK;
+}
+
+tyn_result tyn_gltf_read_media(tyn_scene *scene, gltf_media *media, const json_doc *doc)
+{
+    cJSON *extensions, *extension, *list;
+    const cJSON *element;
+    memset(media, 0, sizeof *media);
+    TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
+    TRY(tyn_json_object(doc, extensions, "TYN_participating_media", &extension));
+    TRY(tyn_json_array(doc, extension, "media", &list));
+    cJSON_ArrayForEach(element, list)
+    {
+        if (!cJSON_IsObject(element)) {
+            return tyn_json_fault(doc, element, "must be an object");
+        }
+        TRY(read_medium(scene, media, doc, element));
+    }
+    return TYN_OK;
+}
+
+// ---- shapes ---------------------------------------------------------------------------------
+
+// The unit box around a grid: first voxel's outer corner at -0.5, last voxel's at +0.5.
+static void box_to_index(double m[16], const uint32_t size[3])
+{
+    mat_identity(m);
+    for (int a = 0; a < 3; a++) {
+        m[a * 5] = size[a];
+        m[12 + a] = 0.5 * (size[a] - 1.0);
+    }
+}
+
+static tyn_result read_repeat(tyn_shape *shape, const json_doc *doc, const cJSON *extension)
+{
+    cJSON *repeat;
+    TRY(tyn_json_array(doc, extension, "repeat", &repeat));
+    if (!repeat) {
+        return TYN_OK;
+    }
+    if (cJSON_GetArraySize(repeat) != 3 || shape->kind != TYN_SHAPE_BOX) {
+        return tyn_json_fault(doc, repeat, "must be three of true or false, on a box");
+    }
+    for (int a = 0; a < 3; a++) {
+        const cJSON *flag = cJSON_GetArrayItem(repeat, a);
+        if (!cJSON_IsBool(flag)) {
+            return tyn_json_fault(doc, flag, "must be true or false");
+        }
+        shape->repeat[a] = cJSON_IsTrue(flag);
+    }
+    return TYN_OK;
+}
+
+tyn_result tyn_gltf_read_shape(tyn_scene *scene, const gltf_media *media, const json_doc *doc,
+                               const cJSON *node, const double to_world[16])
+{
+    cJSON *extensions, *extension;
+    const char *kind = "box";
+    int64_t medium = 0;
+    double m[16], box[16];
+    TRY(tyn_json_object(doc, node, "extensions", &extensions));
+    TRY(tyn_json_object(doc, extensions, "TYN_participating_media", &extension));
+    if (!extension) {
+        return TYN_OK;
+    }
+    const cJSON *index = tyn_json_member(extension, "medium");
+    if (!index) {
+        return tyn_json_fault(doc, extension, "medium is missing: an index of the list of media");
+    }
+    TRY(tyn_json_index(doc, index, scene->num_media, "media", &medium));
+    TRY(tyn_json_string(doc, extension, "shape", &kind));
+    if (scene->num_shapes == TYN_MAX_SHAPES) {
+        return tyn_json_fault(doc, extension, "there may be %d nodes with a medium",
+                              TYN_MAX_SHAPES);
+    }
+    tyn_shape *shape = &scene->shapes[scene->num_shapes];
+    *shape = (tyn_shape){.medium = (uint32_t)medium};
+    memcpy(m, to_world, sizeof m);
+    if (strcmp(kind, "sphere") == 0) {
+        shape->kind = TYN_SHAPE_SPHERE;
+    } else if (strcmp(kind, "grid") == 0) {
+        if (!media->own_transform[medium]) {
+            return tyn_json_fault(
+                doc, tyn_json_member(extension, "shape"),
+                "only media with a .vdb or .nvdb density have a grid of their own");
+        }
+        const tyn_volume *volume = &scene->volumes[scene->media[medium].volume];
+        mat_mul(m, m, volume->index_to_world);
+        box_to_index(box, volume->size);
+        mat_mul(m, m, box);
+    } else if (strcmp(kind, "box") != 0) {
+        return tyn_json_fault(doc, tyn_json_member(extension, "shape"),
+                              "must be \"box\", \"sphere\" or \"grid\"");
+    }
+    if (!mat_invertible(m)) {
+        return tyn_json_fault(doc, extension,
+                              "the node's world matrix must be invertible, its determinant is %g",
+                              mat_det3(m));
+    }
+    for (int i = 0; i < 16; i++) {
+        shape->to_world[i] = (float)m[i];
+    }
+    TRY(read_repeat(shape, doc, extension));
+    scene->num_shapes++;
+    return TYN_OK;
+}
+
+// ---- environment ----------------------------------------------------------------------------
+
+static tyn_result read_map(tyn_environment *env, const json_doc *doc, const cJSON *from)
+{
+    double q[4] = {0, 0, 0, 1};
+    const cJSON *uri = tyn_json_member(from, "uri");
+    TRY(tyn_json_color(doc, from, "radiance", 0.0, FLT_MAX, ">= 0, in W/(m^2 sr)", env->radiance));
+    TRY(tyn_json_numbers(doc, from, "rotation", 4, -1.001, 1.001, "-1 to 1", q));
+    double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (!(fabs(length - 1.0) < 0.01)) {
+        return tyn_json_fault(doc, tyn_json_member(from, "rotation"),
+                              "must be a unit quaternion x, y, z, w");
+    }
+    for (int i = 0; i < 4; i++) {
+        env->rotation[i] = (float)(q[i] / length);
+    }
+    env->present = true;
+    if (!uri) {
+        return tyn_json_member(from, "radiance")
+                   ? TYN_OK
+                   : tyn_json_fault(doc, from, "needs a uri (.exr or .hdr), a radiance, or both");
+    }
+    char *path = tyn_uri_path(doc, uri);
+    if (!path) {
+        return TYN_ERR_PARAMS;
+    }
+    tyn_capture capture;
+    tyn_capture_init(&capture);
+    tyn_result r = tyn_environment_load(env, path, &capture.log);
+    free(path);
+    return r ? tyn_capture_fault(&capture, doc, uri, r) : TYN_OK;
+}
+
+tyn_result tyn_gltf_read_environment(tyn_scene *scene, const json_doc *doc, const cJSON *gltf_scene)
+{
+    cJSON *extensions, *extension, *list;
+    int64_t index = 0;
+    TRY(tyn_json_object(doc, gltf_scene, "extensions", &extensions));
+    TRY(tyn_json_object(doc, extensions, "TYN_environment_map", &extension));
+    const cJSON *at = tyn_json_member(extension, "environment");
+    if (!extension || !at) {
+        return extension ? tyn_json_fault(doc, extension,
+                                          "environment is missing: an index of the "
+                                          "list of environments")
+                         : TYN_OK;
+    }
+    TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
+    TRY(tyn_json_object(doc, extensions, "TYN_environment_map", &extension));
+    TRY(tyn_json_array(doc, extension, "environments", &list));
+    TRY(tyn_json_index(doc, at, cJSON_GetArraySize(list), "environments", &index));
+    const cJSON *from = cJSON_GetArrayItem(list, (int)index);
+    if (!cJSON_IsObject(from)) {
+        return tyn_json_fault(doc, from, "must be an object");
+    }
+    return read_map(&scene->environment, doc, from);
+}

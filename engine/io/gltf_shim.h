@@ -1,0 +1,55 @@
+// gltf_shim.h -- tinygltf behind a C interface: what a scene needs of a glTF file, as plain data.
+#pragma once
+#include <tyndall/io.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct gltf_node {
+    char *name;                                   // "" if none
+    double matrix[16];                            // if has_matrix, column-major; else:
+    double translation[3], rotation[4], scale[3]; // rotation: quaternion x, y, z, w
+    bool has_matrix;
+    int32_t camera, mesh, light; // -1: none
+    uint32_t *children, num_children;
+} gltf_node;
+
+typedef struct gltf_camera {
+    char *name;
+    bool orthographic;
+    double yfov, aspect, xmag, ymag; // aspect 0: not given
+} gltf_camera;
+
+typedef struct gltf_light {
+    char *name;
+    int32_t kind; // tyn_light_kind
+    double color[3], intensity, inner, outer;
+} gltf_light;
+
+typedef struct gltf_model {
+    char *scene_name; // of the scene that is shown
+    int32_t scene;    // its index; -1: the file has none, every root node is shown
+    uint32_t *roots, num_roots;
+    gltf_node *nodes;
+    gltf_camera *cameras;
+    gltf_light *lights;
+    uint32_t num_nodes, num_cameras, num_lights;
+} gltf_model;
+
+typedef struct gltf_source {
+    const void *bytes; // have passed tyn_gltf_check
+    size_t size;       // < 2^31
+    bool glb;
+    size_t num_external_buffers; // with a uri that is not data
+    const char *directory;       // where uris start
+    const char *file;            // for messages
+} gltf_source;
+
+// Buffers are read and their sizes compared, images are not. No exception leaves; faults are one line.
+tyn_result gltf_model_read(gltf_model *model, const gltf_source *source, const tyn_log *log);
+void gltf_model_finish(gltf_model *model);
+
+#ifdef __cplusplus
+}
+#endif

@@ -1,0 +1,65 @@
+// load.c -- any scene by its file extension.
+#include <tyndall/io.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include "io/bare.h"
+#include "io/gltf.h"
+
+static bool is_one_of(const char *path, const char *const *extensions)
+{
+    const char *dot = strrchr(path, '.');
+    for (; dot && *extensions; extensions++) {
+        if (strcasecmp(dot, *extensions) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static tyn_result load_gltf(tyn_scene *scene, const char *path, const char *environment,
+                            const tyn_log *log)
+{
+    void *bytes;
+    size_t size;
+    tyn_result r = tyn_file_read(path, 0x7fffffff, &bytes, &size, log);
+    if (!r) {
+        r = tyn_gltf_parse(scene, bytes, size, path, environment, log);
+        free(bytes);
+    }
+    return r;
+}
+
+static tyn_result load_bare(tyn_scene *scene, const char *path, const char *environment,
+                            const tyn_log *log)
+{
+    tyn_volume volume;
+    uint64_t clamped = 0;
+    tyn_result r = tyn_volume_load(&volume, path, NULL, &clamped, log);
+    if (r) {
+        return r;
+    }
+    r = tyn_bare_scene(scene, &volume, environment, log);
+    if (!r && clamped) {
+        scene->clamped_negative = clamped;
+        tyn_scene_warn(scene, "%s: %llu negative densities were set to 0", path,
+                       (unsigned long long)clamped);
+    }
+    return r;
+}
+
+tyn_result tyn_scene_load(tyn_scene *scene, const char *path, const char *environment,
+                          const tyn_log *log)
+{
+    tyn_scene_init(scene);
+    if (is_one_of(path, (const char *const[]){".gltf", ".glb", NULL})) {
+        return load_gltf(scene, path, environment, log);
+    }
+    if (is_one_of(path, (const char *const[]){".nvdb", ".vdb", NULL})) {
+        return load_bare(scene, path, environment, log);
+    }
+    tyn_log_print(log, TYN_LOG_ERROR,
+                  "%s: unknown kind of scene: must be .gltf, .glb, or a volume (.nvdb, .vdb)",
+                  path);
+    return TYN_ERR_PARAMS;
+}

@@ -1,0 +1,515 @@
+// nvdb.c -- NanoVDB files: the segments, the codecs, and from the sparse tree to a dense grid.
+//
+// A file is a row of segments; a segment is a header, one record of metadata for each grid, then the
+// grids. A grid is one block of memory that is used as it is: PNanoVDB.h knows its layout. Every read
+// goes through PNanoVDB's bounds check, and every node is checked to lie inside the block.
+#include "io/nvdb.h"
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+#ifdef TYN_HAVE_BLOSC
+#include <blosc.h>
+#endif
+#define PNANOVDB_C
+#define PNANOVDB_BUF_BOUNDS_CHECK
+#include <nanovdb/PNanoVDB.h>
+#include "base/half.h"
+#include "io/volume.h"
+
+enum { HEADER_BYTES = 16, META_BYTES = 176, CODEC_NONE = 0, CODEC_ZIP = 1, CODEC_BLOSC = 2 };
+
+typedef struct input {
+    const char *file;
+    const tyn_log *log;
+} input;
+
+#define LOG(in, ...) tyn_log_print((in)->log, TYN_LOG_ERROR, __VA_ARGS__)
+#define FAULT(in, ...) (LOG(in, __VA_ARGS__), TYN_ERR_PARAMS)
+
+// ---- the table of contents ------------------------------------------------------------------
+
+// A grid as the file lists it.
+typedef struct entry {
+    const char *name;    // in the file
+    const uint8_t *data; // in the file
+    uint64_t file_size, grid_size;
+    uint32_t type, grid_class;
+    uint16_t codec;
+} entry;
+
+typedef struct contents {
+    entry *grids;
+    uint32_t count;
+} contents;
+
+static uint64_t load(const uint8_t *p, int bytes)
+{
+    uint64_t v = 0;
+    for (int i = 0; i < bytes; i++) {
+        v |= (uint64_t)p[i] << (8 * i);
+    }
+    return v;
+}
+
+// Files and grids start with "NanoVDB0" to "NanoVDB2"; the ABI is the major version 32, in the upper
+// 11 bits of the version.
+static bool known(const uint8_t *magic, uint64_t version)
+{
+    return memcmp(magic, "NanoVDB", 7) == 0 && magic[7] >= '0' && magic[7] <= '2' &&
+           version >> 21 == PNANOVDB_MAJOR_VERSION_NUMBER;
+}
+
+// One segment; returns its size, 0 after a fault.
+static uint64_t read_segment(contents *list, const uint8_t *p, uint64_t size, const input *in)
+{
+    if (size < HEADER_BYTES || memcmp(p, "NanoVDB", 7) != 0) {
+        LOG(in, "%s: not a NanoVDB file (%s): must start with \"NanoVDB\"", in->file,
+            list->count ? "damaged behind a grid" : "wrong magic number");
+        return 0;
+    }
+    if (!known(p, load(p + 8, 4))) {
+        LOG(in, "%s: NanoVDB version %llu: only version %d can be read", in->file,
+            (unsigned long long)(load(p + 8, 4) >> 21), PNANOVDB_MAJOR_VERSION_NUMBER);
+        return 0;
+    }
+    uint32_t count = (uint32_t)load(p + 12, 2);
+    entry *grown = realloc(list->grids, (list->count + count + 1) * sizeof *grown);
+    if (!grown) {
+        LOG(in, "%s: no memory to read it", in->file);
+        return 0;
+    }
+    list->grids = grown;
+    uint64_t at = HEADER_BYTES;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint8_t *meta = p + at;
+        uint64_t name_size = size - at < META_BYTES ? 0 : load(meta + 136, 4);
+        if (size - at < META_BYTES || name_size < 1 || name_size > size - at - META_BYTES ||
+            meta[META_BYTES + name_size - 1] != 0) {
+            LOG(in, "%s: cut short or damaged in the metadata of its grids", in->file);
+            return 0;
+        }
+        grown[list->count + i] = (entry){
+            .name = (const char *)meta + META_BYTES,
+            .grid_size = load(meta, 8),
+            .file_size = load(meta + 8, 8),
+            .type = (uint32_t)load(meta + 32, 4),
+            .grid_class = (uint32_t)load(meta + 36, 4),
+            .codec = (uint16_t)load(meta + 168, 2),
+        };
+        at += META_BYTES + name_size;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        entry *e = &grown[list->count + i];
+        if (e->file_size > size - at) {
+            LOG(in, "%s: grid \"%.100s\" is cut short: has %llu of %llu bytes", in->file, e->name,
+                (unsigned long long)(size - at), (unsigned long long)e->file_size);
+            return 0;
+        }
+        e->data = p + at;
+        at += e->file_size;
+    }
+    list->count += count;
+    return at;
+}
+
+static const char *type_name(const entry *e)
+{
+    static const char *const names[PNANOVDB_GRID_TYPE_END] = {
+        "unknown", "float", "double", "int16",  "int32", "int64", "vec3f",
+        "vec3d",   "mask",  "half",   "uint32", "bool",  "rgba8", "fp4",
+        "fp8",     "fp16",  "fpn",    "vec4f",  "vec4d", "index"};
+    return e->grid_class == PNANOVDB_GRID_CLASS_LEVEL_SET ? "level set"
+           : e->type < PNANOVDB_GRID_TYPE_END             ? names[e->type]
+                                                          : "unknown";
+}
+
+static bool is_readable(const entry *e)
+{
+    return e->grid_class != PNANOVDB_GRID_CLASS_LEVEL_SET &&
+           (e->type == PNANOVDB_GRID_TYPE_FLOAT || e->type == PNANOVDB_GRID_TYPE_HALF ||
+            (e->type >= PNANOVDB_GRID_TYPE_FP4 && e->type <= PNANOVDB_GRID_TYPE_FPN));
+}
+
+static const entry *choose(const contents *list, const char *grid, const input *in)
+{
+    const char **names = calloc(list->count + 1, sizeof *names);
+    const char **types = calloc(list->count + 1, sizeof *types);
+    bool *readable = calloc(list->count + 1, sizeof *readable);
+    int chosen = -1;
+    for (uint32_t i = 0; names && types && readable && i < list->count; i++) {
+        names[i] = list->grids[i].name;
+        types[i] = type_name(&list->grids[i]);
+        readable[i] = is_readable(&list->grids[i]);
+    }
+    if (names && types && readable) {
+        chosen = tyn_volume_choose(names, types, readable, list->count, grid, in->file, in->log);
+    }
+    free(names);
+    free(types);
+    free(readable);
+    return chosen < 0 ? NULL : &list->grids[chosen];
+}
+
+// ---- codecs ---------------------------------------------------------------------------------
+
+static bool unzip(uint8_t *out, const entry *e)
+{
+    uint64_t packed = e->file_size < 8 ? 0 : load(e->data, 8);
+    uLongf size = (uLongf)e->grid_size;
+    return packed > 0 && packed <= e->file_size - 8 &&
+           uncompress(out, &size, e->data + 8, (uLong)packed) == Z_OK && size == e->grid_size;
+}
+
+#ifdef TYN_HAVE_BLOSC
+// Blocks of 1 GiB of the grid, each with its packed size before it.
+static bool unblosc(uint8_t *out, const entry *e)
+{
+    uint64_t at = 0, done = 0;
+    while (done < e->grid_size) {
+        uint64_t left = e->file_size - at, chunk = e->grid_size - done, packed;
+        size_t unpacked = 0;
+        chunk = chunk < (1ull << 30) ? chunk : 1ull << 30;
+        if (left < 8 || (packed = load(e->data + at, 8)) > left - 8 ||
+            blosc_cbuffer_validate(e->data + at + 8, (size_t)packed, &unpacked) != 0 ||
+            unpacked != chunk ||
+            blosc_decompress_ctx(e->data + at + 8, out + done, (size_t)chunk, 1) != (int)chunk) {
+            return false;
+        }
+        at += 8 + packed;
+        done += chunk;
+    }
+    return true;
+}
+#endif
+
+// The grid's memory, aligned for PNanoVDB and padded to whole words; NULL after a fault.
+static tyn_result unpack(const entry *e, const input *in, uint8_t **out)
+{
+    // No codec packs better than about 1 : 1030.
+    if (e->grid_size < PNANOVDB_GRID_SIZE + PNANOVDB_TREE_SIZE ||
+        e->grid_size / 1100 > e->file_size || e->grid_size > TYN_MAX_FILE_BYTES ||
+        (e->codec == CODEC_NONE && e->grid_size != e->file_size)) {
+        return FAULT(in, "%s: grid \"%.100s\" of %llu bytes stored in %llu cannot be", in->file,
+                     e->name, (unsigned long long)e->grid_size, (unsigned long long)e->file_size);
+    }
+    if (e->codec > CODEC_BLOSC) {
+        return FAULT(in,
+                     "%s: grid \"%.100s\" is packed by the unknown codec %u: must be none, ZIP "
+                     "or BLOSC",
+                     in->file, e->name, e->codec);
+    }
+#ifndef TYN_HAVE_BLOSC
+    if (e->codec == CODEC_BLOSC) {
+        tyn_log_print(in->log, TYN_LOG_ERROR,
+                      "%s: grid \"%.100s\" is packed by BLOSC: build with -Dblosc=enabled (needs "
+                      "c-blosc), or save the file with ZIP",
+                      in->file, e->name);
+        return TYN_ERR_UNSUPPORTED;
+    }
+#endif
+    uint8_t *memory = calloc(1, (size_t)e->grid_size + 64);
+    if (!memory) {
+        tyn_log_print(in->log, TYN_LOG_ERROR, "%s: no memory for a grid of %llu bytes", in->file,
+                      (unsigned long long)e->grid_size);
+        return TYN_ERR_MEMORY;
+    }
+    bool ok = true;
+    if (e->codec == CODEC_NONE) {
+        memcpy(memory, e->data, (size_t)e->grid_size);
+    } else if (e->codec == CODEC_ZIP) {
+        ok = unzip(memory, e);
+    } else {
+#ifdef TYN_HAVE_BLOSC
+        ok = unblosc(memory, e);
+#endif
+    }
+    if (!ok) {
+        free(memory);
+        return FAULT(in, "%s: grid \"%.100s\" cannot be unpacked: its data are damaged", in->file,
+                     e->name);
+    }
+    *out = memory;
+    return TYN_OK;
+}
+
+// ---- from the tree to a dense grid ----------------------------------------------------------
+
+typedef struct extraction {
+    pnanovdb_buf_t buf;
+    uint64_t size; // bytes of the grid
+    uint32_t type;
+    const pnanovdb_grid_type_constants_t *layout;
+    int64_t lo[3]; // index coordinates of the first voxel of the volume
+    tyn_volume *volume;
+    uint64_t budget[3]; // how many leaf, lower, upper nodes the memory can hold
+} extraction;
+
+// The part of a cube of index space that lies in the volume, in voxels of the volume.
+typedef struct region {
+    uint32_t begin[3], end[3];
+} region;
+
+static bool clip(const extraction *x, const int64_t origin[3], int64_t side, region *out)
+{
+    for (int a = 0; a < 3; a++) {
+        int64_t begin = origin[a] - x->lo[a], end = begin + side, size = x->volume->size[a];
+        begin = begin < 0 ? 0 : begin;
+        end = end > size ? size : end;
+        if (begin >= end) {
+            return false;
+        }
+        out->begin[a] = (uint32_t)begin;
+        out->end[a] = (uint32_t)end;
+    }
+    return true;
+}
+
+static float *voxel(const extraction *x, uint32_t i, uint32_t j, uint32_t k)
+{
+    const uint32_t *n = x->volume->size;
+    return x->volume->data + ((size_t)k * n[1] + j) * n[0] + i;
+}
+
+static void fill(const extraction *x, const region *r, float value)
+{
+    for (uint32_t k = r->begin[2]; k < r->end[2]; k++) {
+        for (uint32_t j = r->begin[1]; j < r->end[1]; j++) {
+            float *row = voxel(x, 0, j, k);
+            for (uint32_t i = r->begin[0]; i < r->end[0]; i++) {
+                row[i] = value;
+            }
+        }
+    }
+}
+
+// A value of a tile or the background (float for the quantised types).
+static float tile_value(const extraction *x, pnanovdb_address_t address)
+{
+    return x->type == PNANOVDB_GRID_TYPE_HALF
+               ? tyn_half_to_float((uint16_t)pnanovdb_read_half(x->buf, address))
+               : pnanovdb_read_float(x->buf, address);
+}
+
+static float leaf_value(const extraction *x, pnanovdb_leaf_handle_t leaf, pnanovdb_coord_t ijk)
+{
+    pnanovdb_address_t at = pnanovdb_leaf_get_value_address(x->type, x->buf, leaf, &ijk);
+    switch (x->type) {
+    case PNANOVDB_GRID_TYPE_FP4:
+        return pnanovdb_leaf_fp4_read_float(x->buf, at, &ijk);
+    case PNANOVDB_GRID_TYPE_FP8:
+        return pnanovdb_leaf_fp8_read_float(x->buf, at, &ijk);
+    case PNANOVDB_GRID_TYPE_FP16:
+        return pnanovdb_leaf_fp16_read_float(x->buf, at, &ijk);
+    case PNANOVDB_GRID_TYPE_FPN:
+        return pnanovdb_leaf_fpn_read_float(x->buf, at, &ijk);
+    default:
+        return tile_value(x, at);
+    }
+}
+
+// A node of `bytes` at `address` lies behind the tree header and inside the memory, is aligned, and is
+// not one too many (a damaged file may hang the same node below many parents).
+static bool node_fits(extraction *x, pnanovdb_address_t address, uint64_t bytes, int level)
+{
+    uint64_t at = address.byte_offset;
+    return at >= PNANOVDB_GRID_SIZE + PNANOVDB_TREE_SIZE && at % 8 == 0 && at <= x->size &&
+           bytes <= x->size - at && x->budget[level]-- > 0;
+}
+
+static bool copy_leaf(extraction *x, pnanovdb_leaf_handle_t leaf, const int64_t origin[3])
+{
+    region r;
+    uint64_t bytes = x->layout->leaf_size;
+    if (!node_fits(x, leaf.address, bytes, 0)) {
+        return false;
+    }
+    if (x->type == PNANOVDB_GRID_TYPE_FPN) {
+        // Bits of a value are a power of two, 1 to 16, with the exponent in the upper three flag bits.
+        uint32_t log_bits = pnanovdb_leaf_get_bbox_dif_and_flags(x->buf, leaf) >> 29;
+        if (log_bits > 4 || bytes + (64ull << log_bits) > x->size - leaf.address.byte_offset) {
+            return false;
+        }
+    }
+    if (!clip(x, origin, 8, &r)) {
+        return true;
+    }
+    for (uint32_t k = r.begin[2]; k < r.end[2]; k++) {
+        for (uint32_t j = r.begin[1]; j < r.end[1]; j++) {
+            for (uint32_t i = r.begin[0]; i < r.end[0]; i++) {
+                pnanovdb_coord_t ijk = {(int32_t)(i + x->lo[0] - origin[0]),
+                                        (int32_t)(j + x->lo[1] - origin[1]),
+                                        (int32_t)(k + x->lo[2] - origin[2])};
+                *voxel(x, i, j, k) = leaf_value(x, leaf, ijk);
+            }
+        }
+    }
+    return true;
+}
+
+static bool copy_lower(extraction *x, pnanovdb_lower_handle_t lower, const int64_t origin[3])
+{
+    region r;
+    if (!node_fits(x, lower.address, x->layout->lower_size, 1)) {
+        return false;
+    }
+    for (uint32_t n = 0; n < PNANOVDB_LOWER_TABLE_COUNT; n++) {
+        const int64_t at[3] = {origin[0] + 8 * (n >> 8), origin[1] + 8 * (n >> 4 & 15),
+                               origin[2] + 8 * (n & 15)};
+        if (!clip(x, at, 8, &r)) {
+            continue;
+        }
+        if (!pnanovdb_lower_get_child_mask(x->buf, lower, n)) {
+            fill(x, &r, tile_value(x, pnanovdb_lower_get_table_address(x->type, x->buf, lower, n)));
+        } else if (!copy_leaf(x, pnanovdb_lower_get_child(x->type, x->buf, lower, n), at)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool copy_upper(extraction *x, pnanovdb_upper_handle_t upper, const int64_t origin[3])
+{
+    region r;
+    if (!node_fits(x, upper.address, x->layout->upper_size, 2)) {
+        return false;
+    }
+    for (uint32_t n = 0; n < PNANOVDB_UPPER_TABLE_COUNT; n++) {
+        const int64_t at[3] = {origin[0] + 128 * (n >> 10), origin[1] + 128 * (n >> 5 & 31),
+                               origin[2] + 128 * (n & 31)};
+        if (!clip(x, at, 128, &r)) {
+            continue;
+        }
+        if (!pnanovdb_upper_get_child_mask(x->buf, upper, n)) {
+            fill(x, &r, tile_value(x, pnanovdb_upper_get_table_address(x->type, x->buf, upper, n)));
+        } else if (!copy_lower(x, pnanovdb_upper_get_child(x->type, x->buf, upper, n), at)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Origin of a root tile: its key holds the upper 20 bits of each coordinate.
+static void tile_origin(uint64_t key, int64_t origin[3])
+{
+    const int shifts[3] = {42, 21, 0};
+    for (int a = 0; a < 3; a++) {
+        origin[a] = (int32_t)((uint32_t)(key >> shifts[a]) << 12);
+    }
+}
+
+static bool copy_root(extraction *x, pnanovdb_root_handle_t root)
+{
+    uint64_t at = root.address.byte_offset, room = x->size - at - x->layout->root_size;
+    uint32_t tiles = pnanovdb_root_get_tile_count(x->buf, root);
+    region r;
+    if (tiles > room / x->layout->root_tile_size || tiles > 65536) {
+        return false;
+    }
+    pnanovdb_address_t background =
+        pnanovdb_address_offset(root.address, x->layout->root_off_background);
+    if (clip(x, x->lo, 65536, &r)) {
+        fill(x, &r, tile_value(x, background));
+    }
+    for (uint32_t n = 0; n < tiles; n++) {
+        pnanovdb_root_tile_handle_t tile = pnanovdb_root_get_tile(x->type, root, n);
+        int64_t origin[3];
+        tile_origin(pnanovdb_root_tile_get_key(x->buf, tile), origin);
+        if (!clip(x, origin, 4096, &r)) {
+            continue;
+        }
+        if (pnanovdb_root_tile_get_child(x->buf, tile) == 0) {
+            fill(x, &r,
+                 tile_value(x,
+                            pnanovdb_address_offset(tile.address, x->layout->root_tile_off_value)));
+        } else if (!copy_upper(x, pnanovdb_root_get_child(x->type, x->buf, root, tile), origin)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Index to world: the file's map is row-major, and the volume starts at lo.
+static void copy_map(extraction *x, pnanovdb_grid_handle_t grid)
+{
+    pnanovdb_map_handle_t map = pnanovdb_grid_get_map(x->buf, grid);
+    double *m = x->volume->index_to_world;
+    for (uint32_t row = 0; row < 3; row++) {
+        m[12 + row] = pnanovdb_map_get_vecd(x->buf, map, row);
+        for (uint32_t col = 0; col < 3; col++) {
+            m[col * 4 + row] = pnanovdb_map_get_matd(x->buf, map, row * 3 + col);
+            m[12 + row] += m[col * 4 + row] * (double)x->lo[col];
+        }
+    }
+}
+
+static tyn_result extract(tyn_volume *volume, uint8_t *memory, const entry *e, const input *in)
+{
+    pnanovdb_grid_handle_t grid = {{0}};
+    extraction x = {
+        .buf = pnanovdb_make_buf((uint32_t *)(void *)memory, (e->grid_size + 7) / 8 * 2),
+        .size = e->grid_size,
+        .type = e->type,
+        .layout = &pnanovdb_grid_type_constants[e->type],
+        .volume = volume,
+    };
+    x.budget[0] = e->grid_size / x.layout->leaf_size;
+    x.budget[1] = e->grid_size / x.layout->lower_size;
+    x.budget[2] = e->grid_size / x.layout->upper_size;
+    pnanovdb_root_handle_t root =
+        pnanovdb_tree_get_root(x.buf, pnanovdb_grid_get_tree(x.buf, grid));
+    uint64_t at = root.address.byte_offset;
+    if (!known(memory, pnanovdb_grid_get_version(x.buf, grid)) ||
+        pnanovdb_grid_get_grid_type(x.buf, grid) != e->type || at % 8 != 0 ||
+        at < PNANOVDB_GRID_SIZE + PNANOVDB_TREE_SIZE || at > x.size ||
+        x.size - at < x.layout->root_size) {
+        return FAULT(in, "%s: grid \"%.100s\" is damaged in its header", in->file, e->name);
+    }
+    pnanovdb_coord_t lo = pnanovdb_root_get_bbox_min(x.buf, root);
+    pnanovdb_coord_t hi = pnanovdb_root_get_bbox_max(x.buf, root);
+    if (lo.x > hi.x || lo.y > hi.y || lo.z > hi.z) {
+        return FAULT(in, "%s: grid \"%.100s\" has no active voxels", in->file, e->name);
+    }
+    const int64_t size[3] = {(int64_t)hi.x - lo.x + 1, (int64_t)hi.y - lo.y + 1,
+                             (int64_t)hi.z - lo.z + 1};
+    tyn_result r = tyn_volume_alloc(volume, size, in->file, in->log);
+    if (r) {
+        return r;
+    }
+    x.lo[0] = lo.x, x.lo[1] = lo.y, x.lo[2] = lo.z;
+    if (!copy_root(&x, root)) {
+        tyn_volume_finish(volume);
+        return FAULT(in, "%s: grid \"%.100s\" is damaged: nodes of its tree lie outside of it",
+                     in->file, e->name);
+    }
+    copy_map(&x, grid);
+    return TYN_OK;
+}
+
+tyn_result tyn_nvdb_parse(tyn_volume *volume, const void *bytes, size_t size, const char *grid,
+                          const char *file, uint64_t *clamped_negative, const tyn_log *log)
+{
+    const input in = {file, log};
+    contents list = {0};
+    uint8_t *memory = NULL;
+    tyn_result r = TYN_OK;
+    memset(volume, 0, sizeof *volume);
+    uint64_t at = 0;
+    do {
+        uint64_t length = read_segment(&list, (const uint8_t *)bytes + at, size - at, &in);
+        if (length == 0) {
+            r = TYN_ERR_PARAMS;
+        }
+        at += length;
+    } while (!r && at < size);
+    const entry *e = r ? NULL : choose(&list, grid, &in);
+    if (e) {
+        r = unpack(e, &in, &memory);
+        r = r ? r : extract(volume, memory, e, &in);
+        r = r ? r : tyn_volume_seal(volume, file, e->name, clamped_negative, log);
+    } else {
+        r = TYN_ERR_PARAMS;
+    }
+    free(memory);
+    free(list.grids);
+    return r;
+}

@@ -1,0 +1,48 @@
+// raw.c -- reads .raw grids.
+#include "io/raw.h"
+#include <string.h>
+#include "base/half.h"
+#include "io/volume.h"
+
+static uint32_t load_u32(const uint8_t *p)
+{
+    return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+
+tyn_result tyn_raw_parse(tyn_volume *volume, const void *bytes, size_t num_bytes,
+                         const int64_t size[3], tyn_raw_type type, const char *file,
+                         uint64_t *clamped_negative, const tyn_log *log)
+{
+    static const char *const names[] = {"f32", "f16", "u8"};
+    static const uint8_t widths[] = {4, 2, 1};
+    const uint8_t *p = bytes;
+    tyn_result r = tyn_volume_alloc(volume, size, file, log);
+    if (r) {
+        return r;
+    }
+    uint64_t voxels = (uint64_t)size[0] * (uint64_t)size[1] * (uint64_t)size[2];
+    if (num_bytes != voxels * widths[type]) {
+        tyn_log_print(log, TYN_LOG_ERROR,
+                      "%s: has %zu bytes, a grid of %lld x %lld x %lld %s values has %llu", file,
+                      num_bytes, (long long)size[0], (long long)size[1], (long long)size[2],
+                      names[type], (unsigned long long)(voxels * widths[type]));
+        tyn_volume_finish(volume);
+        return TYN_ERR_PARAMS;
+    }
+    for (uint64_t i = 0; i < voxels; i++, p += widths[type]) {
+        uint32_t word;
+        switch (type) {
+        case TYN_RAW_F32:
+            word = load_u32(p);
+            memcpy(&volume->data[i], &word, 4);
+            break;
+        case TYN_RAW_F16:
+            volume->data[i] = tyn_half_to_float((uint16_t)(p[0] | p[1] << 8));
+            break;
+        case TYN_RAW_U8:
+            volume->data[i] = (float)p[0] / 255.0f;
+            break;
+        }
+    }
+    return tyn_volume_seal(volume, file, NULL, clamped_negative, log);
+}

@@ -1,0 +1,79 @@
+// uri.c -- resolves uris; joins what a reader says with the place that named its file.
+#include "io/uri.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int hex(char c)
+{
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
+}
+
+char *tyn_path_directory(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    size_t length = slash ? (size_t)(slash - path) : 0;
+    if (slash == path) {
+        return strdup("/");
+    }
+    return length ? strndup(path, length) : strdup(".");
+}
+
+char *tyn_uri_path(const json_doc *doc, const cJSON *uri)
+{
+    if (!cJSON_IsString(uri) || !uri->valuestring[0]) {
+        tyn_json_fault(doc, uri, "must be the name of a file");
+        return NULL;
+    }
+    const char *p = uri->valuestring;
+    if (strncmp(p, "data:", 5) == 0 || strstr(p, "://")) {
+        tyn_json_fault(doc, uri, "must be a file beside the scene, not data or a web address");
+        return NULL;
+    }
+    const char *slash = strrchr(doc->file, '/');
+    size_t base = slash && p[0] != '/' ? (size_t)(slash - doc->file) + 1 : 0;
+    char *path = malloc(base + strlen(p) + 1), *out = path + base;
+    if (!path) {
+        tyn_json_fault(doc, uri, "no memory for its path");
+        return NULL;
+    }
+    memcpy(path, doc->file, base);
+    for (; *p; p++) {
+        if (*p == '%' && hex(p[1]) >= 0 && hex(p[2]) >= 0) {
+            *out = (char)(hex(p[1]) * 16 + hex(p[2]));
+            p += 2;
+        } else {
+            *out = *p;
+        }
+        if (!*out++) {
+            tyn_json_fault(doc, uri, "a file name holds no zero byte");
+            free(path);
+            return NULL;
+        }
+    }
+    *out = 0;
+    return path;
+}
+
+static void keep(void *user, tyn_log_level level, const char *message)
+{
+    tyn_capture *capture = user;
+    if (level == TYN_LOG_ERROR && !capture->message[0]) {
+        snprintf(capture->message, sizeof capture->message, "%s", message);
+    }
+}
+
+void tyn_capture_init(tyn_capture *capture)
+{
+    *capture = (tyn_capture){.log = {keep, capture, TYN_LOG_ERROR}};
+}
+
+tyn_result tyn_capture_fault(const tyn_capture *capture, const json_doc *doc, const cJSON *uri,
+                             tyn_result r)
+{
+    tyn_json_fault(doc, uri, "%.400s", capture->message);
+    return r;
+}

@@ -1,0 +1,21 @@
+// uri.h -- from uris in a scene to files beside it.
+#pragma once
+#include "io/json.h"
+
+// The path that a uri of the document means: relative to the document, %XX decoded. NULL after a fault;
+// else freed with free().
+char *tyn_uri_path(const json_doc *doc, const cJSON *uri);
+
+// Everything up to the last '/', without it; "." if there is none. Freed with free(); NULL: no memory.
+char *tyn_path_directory(const char *path);
+
+// A log that keeps the first error, so that what a reader said can be told together with the place of
+// the scene that named the file.
+typedef struct tyn_capture {
+    tyn_log log;
+    char message[1024];
+} tyn_capture;
+void tyn_capture_init(tyn_capture *capture);
+// Faults at `uri` with the kept message; returns r.
+tyn_result tyn_capture_fault(const tyn_capture *capture, const json_doc *doc, const cJSON *uri,
+                             tyn_result r);

@@ -1,2 +1,0 @@
-// version.c -- keeps libtyndall-io linkable before it has formats.
-int tyn_io_version_unused;

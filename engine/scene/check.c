@@ -1,0 +1,210 @@
+// check.c -- is every number of a scene one that the solvers can take?
+#include <tyndall/scene.h>
+#include <math.h>
+#include "scene/matrix.h"
+
+#define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
+
+static bool finite3(const float v[3])
+{
+    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
+}
+
+static bool unit3(const float v[3])
+{
+    float length2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    return length2 > 0.999f && length2 < 1.001f;
+}
+
+static float dot3(const float a[3], const float b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// Every component >= 0 and finite.
+static bool amount3(const float v[3])
+{
+    return finite3(v) && v[0] >= 0.0f && v[1] >= 0.0f && v[2] >= 0.0f;
+}
+
+static tyn_result check_volume(const tyn_volume *volume, uint32_t i, const tyn_log *log)
+{
+    uint64_t voxels = 1;
+    for (int a = 0; a < 3; a++) {
+        if (volume->size[a] < 1 || volume->size[a] > 65536) {
+            FAULT("volumes[%u].size[%d] = %u: must be 1 to 65536 voxels", i, a, volume->size[a]);
+        }
+        voxels *= volume->size[a];
+    }
+    if (!isfinite(volume->max_density) || volume->max_density < 0.0f) {
+        FAULT("volumes[%u].max_density = %g: must be >= 0 and finite", i, volume->max_density);
+    }
+    if (!volume->data) {
+        if (volume->max_density <= 0.0f) {
+            FAULT("volumes[%u].max_density = 0: required (> 0) where data is NULL", i);
+        }
+        return TYN_OK;
+    }
+    for (uint64_t v = 0; v < voxels; v++) {
+        float density = volume->data[v];
+        if (!(density >= 0.0f && density <= volume->max_density)) {
+            FAULT("volumes[%u].data[%llu] = %g: density must be between 0 and max_density = %g", i,
+                  (unsigned long long)v, density, volume->max_density);
+        }
+    }
+    return TYN_OK;
+}
+
+static tyn_result check_medium(const tyn_scene *scene, uint32_t i, const tyn_log *log)
+{
+    const tyn_medium *m = &scene->media[i];
+    const struct {
+        const char *name;
+        const float *v;
+    } amounts[] = {{"sigma_s", m->sigma_s}, {"sigma_a", m->sigma_a}, {"emission", m->emission}};
+    for (int k = 0; k < 3; k++) {
+        const float *v = amounts[k].v;
+        if (!amount3(v)) {
+            FAULT("media[%u].%s = %g, %g, %g: must be >= 0 and finite", i, amounts[k].name, v[0],
+                  v[1], v[2]);
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        if (!(m->g[c] > -1.0f && m->g[c] < 1.0f)) {
+            FAULT("media[%u].g[%d] = %g: must be between -1 and 1, both excluded", i, c, m->g[c]);
+        }
+    }
+    if (!(m->density_scale >= 0.0f && isfinite(m->density_scale))) {
+        FAULT("media[%u].density_scale = %g: must be >= 0 and finite", i, m->density_scale);
+    }
+    if (m->volume < -1 || (m->volume >= 0 && (uint32_t)m->volume >= scene->num_volumes)) {
+        FAULT("media[%u].volume = %d: there are %u volumes (-1 = homogeneous)", i, m->volume,
+              scene->num_volumes);
+    }
+    return TYN_OK;
+}
+
+static tyn_result check_shape(const tyn_scene *scene, uint32_t i, const tyn_log *log)
+{
+    const tyn_shape *s = &scene->shapes[i];
+    double m[16];
+    for (int k = 0; k < 16; k++) {
+        m[k] = s->to_world[k];
+    }
+    if (s->kind != TYN_SHAPE_BOX && s->kind != TYN_SHAPE_SPHERE) {
+        FAULT("shapes[%u].kind = %d: must be a box or a sphere", i, (int)s->kind);
+    }
+    if (s->medium >= scene->num_media) {
+        FAULT("shapes[%u].medium = %u: there are %u media", i, s->medium, scene->num_media);
+    }
+    if (m[3] != 0.0 || m[7] != 0.0 || m[11] != 0.0 || m[15] != 1.0 || !mat_invertible(m)) {
+        FAULT("shapes[%u].to_world: must be affine and invertible, its determinant is %g", i,
+              mat_det3(m));
+    }
+    if (s->kind == TYN_SHAPE_SPHERE && (s->repeat[0] || s->repeat[1] || s->repeat[2])) {
+        FAULT("shapes[%u].repeat: only a box can be periodic", i);
+    }
+    return TYN_OK;
+}
+
+static tyn_result check_light(const tyn_light *l, uint32_t i, const tyn_log *log)
+{
+    if (l->kind != TYN_LIGHT_DIRECTIONAL && l->kind != TYN_LIGHT_POINT &&
+        l->kind != TYN_LIGHT_SPOT) {
+        FAULT("lights[%u].kind = %d: must be directional, point or spot", i, (int)l->kind);
+    }
+    if (!amount3(l->color)) {
+        FAULT("lights[%u].color = %g, %g, %g: must be >= 0 and finite", i, l->color[0], l->color[1],
+              l->color[2]);
+    }
+    if (l->kind != TYN_LIGHT_DIRECTIONAL && !finite3(l->position)) {
+        FAULT("lights[%u].position = %g, %g, %g: must be finite", i, l->position[0], l->position[1],
+              l->position[2]);
+    }
+    if (l->kind != TYN_LIGHT_POINT && !unit3(l->direction)) {
+        FAULT("lights[%u].direction = %g, %g, %g: must have length 1", i, l->direction[0],
+              l->direction[1], l->direction[2]);
+    }
+    if (l->kind == TYN_LIGHT_SPOT &&
+        !(l->cos_outer >= -1.0f && l->cos_outer <= l->cos_inner && l->cos_inner <= 1.0f)) {
+        FAULT("lights[%u]: cosines of its cone are %g (inner), %g (outer): must be -1 <= outer <= "
+              "inner <= 1",
+              i, l->cos_inner, l->cos_outer);
+    }
+    return TYN_OK;
+}
+
+static tyn_result check_camera(const tyn_camera *c, uint32_t i, const tyn_log *log)
+{
+    if (!finite3(c->position)) {
+        FAULT("cameras[%u].position = %g, %g, %g: must be finite", i, c->position[0],
+              c->position[1], c->position[2]);
+    }
+    if (!unit3(c->right) || !unit3(c->up) || !unit3(c->back) ||
+        fabsf(dot3(c->right, c->up)) > 1e-3f || fabsf(dot3(c->right, c->back)) > 1e-3f ||
+        fabsf(dot3(c->up, c->back)) > 1e-3f) {
+        FAULT("cameras[%u]: right, up and back must be orthonormal", i);
+    }
+    if (c->projection == TYN_PERSPECTIVE && !(c->yfov > 0.0f && c->yfov < 3.14159f)) {
+        FAULT("cameras[%u].yfov = %g: must be between 0 and pi radians, both excluded", i, c->yfov);
+    }
+    if (c->projection == TYN_ORTHOGRAPHIC && !(c->ymag > 0.0f && isfinite(c->ymag))) {
+        FAULT("cameras[%u].ymag = %g: must be > 0 and finite, metres", i, c->ymag);
+    }
+    return TYN_OK;
+}
+
+static tyn_result check_environment(const tyn_environment *e, const tyn_log *log)
+{
+    if (!e->present) {
+        return TYN_OK;
+    }
+    if (!amount3(e->radiance)) {
+        FAULT("environment.radiance = %g, %g, %g: must be >= 0 and finite", e->radiance[0],
+              e->radiance[1], e->radiance[2]);
+    }
+    if (!(e->strength >= 0.0f && isfinite(e->strength))) {
+        FAULT("environment.strength = %g: must be >= 0 and finite", e->strength);
+    }
+    float n = e->rotation[0] * e->rotation[0] + e->rotation[1] * e->rotation[1] +
+              e->rotation[2] * e->rotation[2] + e->rotation[3] * e->rotation[3];
+    if (n != 0.0f && !(n > 0.999f && n < 1.001f)) {
+        FAULT("environment.rotation: must be a unit quaternion, its squared length is %g", n);
+    }
+    if (!e->data != (e->size[0] == 0 || e->size[1] == 0)) {
+        FAULT("environment: a map needs both data and a size, a constant has neither (%ux%u)",
+              e->size[0], e->size[1]);
+    }
+    for (size_t t = 0; e->data && t < 3 * (size_t)e->size[0] * e->size[1]; t++) {
+        if (!(e->data[t] >= 0.0f && isfinite(e->data[t]))) {
+            FAULT("environment.data[%zu] = %g: must be >= 0 and finite", t, e->data[t]);
+        }
+    }
+    return TYN_OK;
+}
+
+tyn_result tyn_scene_check(const tyn_scene *scene, const tyn_log *log)
+{
+    tyn_result r = TYN_OK;
+    if (scene->num_media > TYN_MAX_MEDIA || scene->num_shapes > TYN_MAX_SHAPES ||
+        scene->num_lights > TYN_MAX_LIGHTS) {
+        FAULT("scene: %u media, %u shapes, %u lights: at most %d, %d, %d", scene->num_media,
+              scene->num_shapes, scene->num_lights, TYN_MAX_MEDIA, TYN_MAX_SHAPES, TYN_MAX_LIGHTS);
+    }
+    for (uint32_t i = 0; !r && i < scene->num_volumes; i++) {
+        r = check_volume(&scene->volumes[i], i, log);
+    }
+    for (uint32_t i = 0; !r && i < scene->num_media; i++) {
+        r = check_medium(scene, i, log);
+    }
+    for (uint32_t i = 0; !r && i < scene->num_shapes; i++) {
+        r = check_shape(scene, i, log);
+    }
+    for (uint32_t i = 0; !r && i < scene->num_lights; i++) {
+        r = check_light(&scene->lights[i], i, log);
+    }
+    for (uint32_t i = 0; !r && i < scene->num_cameras; i++) {
+        r = check_camera(&scene->cameras[i], i, log);
+    }
+    return r ? r : check_environment(&scene->environment, log);
+}
