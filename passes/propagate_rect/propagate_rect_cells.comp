@@ -1,0 +1,68 @@
+// propagate_rect_cells.comp -- the medium's mean coefficients over each cell (the paper's section 4.2
+// asks for a downscaled medium).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 1
+#define MEDIUM_SIGMA_A 2
+#define MEDIUM_G 3
+#include "medium.glsl"
+#include "propagate.glsl"
+#include "propagate_rect_args.h"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+layout(set = 0, binding = 4, scalar) readonly buffer grids_buffer { propagate_grid grids[]; };
+layout(set = 0, binding = 5, rgba32f) uniform writeonly image3D out_sigma_s;
+layout(set = 0, binding = 6, rgba32f) uniform writeonly image3D out_sigma_a;
+layout(set = 0, binding = 7, rgba32f) uniform writeonly image3D out_g;
+layout(push_constant, scalar) uniform push { propagate_rect_args args; };
+
+// Samples along each edge of a cell. A trilinear fetch is a mean over two voxels, so one per two voxels
+// misses nothing. A cell no larger than a voxel takes one: a grid that coincides with the voxels reads
+// them as they are.
+int samples_along(float cell)
+{
+    float voxels = cell / min(medium.voxel.x, min(medium.voxel.y, medium.voxel.z)) - 1e-3;
+    return voxels <= 1.0 ? 1 : clamp(int(ceil(0.5 * voxels)), 2, 16);
+}
+
+void main()
+{
+    ivec3 texel = ivec3(gl_GlobalInvocationID), cell;
+    uint index;
+    if (!propagate_cell_of(texel, args.cells, index, cell) || index >= args.num_suns) {
+        return;
+    }
+    propagate_grid grid = grids[index];
+    vec3 sigma_s = vec3(0.0), sigma_a = vec3(0.0), g = vec3(0.0);
+    if (propagate_inside(grid, cell)) {
+        int n = samples_along(grid.cell);
+        // Half the extent along M's axes of the cube that a sample stands for.
+        vec3 reach = 0.5 * grid.cell / float(n) *
+                     (abs(grid.across_u) + abs(grid.across_v) + abs(grid.direction));
+        for (int k = 0; k < n; k++) {
+            for (int j = 0; j < n; j++) {
+                for (int i = 0; i < n; i++) {
+                    vec3 p = propagate_to_m(grid, vec3(cell) + (vec3(i, j, k) + 0.5) / float(n));
+                    vec3 part = clamp((min(p + reach, medium.extent) - max(p - reach, 0.0)) /
+                                      (2.0 * reach), 0.0, 1.0);
+                    float covered = part.x * part.y * part.z;
+                    if (covered > 0.0) {
+                        medium_point m = medium_sample(clamp(p, vec3(0.0), medium.extent));
+                        sigma_s += covered * m.sigma_s;
+                        sigma_a += covered * m.sigma_a;
+                        g += covered * m.sigma_s * m.g;
+                    }
+                }
+            }
+        }
+        g /= max(sigma_s, vec3(1e-30));
+        float each = 1.0 / float(n * n * n);
+        sigma_s *= each;
+        sigma_a *= each;
+    }
+    imageStore(out_sigma_s, texel, vec4(sigma_s, 0.0));
+    imageStore(out_sigma_a, texel, vec4(sigma_a, 0.0));
+    imageStore(out_g, texel, vec4(g, 0.0));
+}

@@ -1,0 +1,95 @@
+// upsample.c -- see upsample.h.
+#include "upsample.h"
+#include "upsample_args.h"
+#include "upsample_field.comp.h"
+#include "scene_args.h"
+#include <math.h>
+
+#define PORT(name) UPSAMPLE_PORT_##name
+
+static const tyn_port ports[UPSAMPLE_NUM_PORTS] = {
+    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
+    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
+    [PORT(GRIDS)] = {"grids", TYN_IN, TYN_BUFFER, .meaning = "struct propagate_grid[]"},
+    [PORT(CELL_SIGMA_S)] = {"cell_sigma_s", TYN_IN, TYN_IMAGE_3D,
+                            .meaning = "mean scattering of the aligned cells, 1/m"},
+    [PORT(SEEN)] = {"seen", TYN_IN, TYN_IMAGE_3D,
+                    .meaning = "L_acc of the aligned cells, W/(m^2 sr)"},
+    [PORT(INSCATTER)] = {"inscatter", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                         .meaning = "light towards the eye per unit of sigma_s, W/(m^2 sr)"},
+};
+
+static const tyn_binding field_bindings[] = {
+    {PORT(MEDIUM), TYN_USE_UNIFORM},     {PORT(DENSITY), TYN_USE_SAMPLED},
+    {PORT(GRIDS), TYN_USE_STORAGE_READ}, {PORT(CELL_SIGMA_S), TYN_USE_SAMPLED},
+    {PORT(SEEN), TYN_USE_SAMPLED},       {PORT(INSCATTER), TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_kernel kernels[] = {
+    {.name = "upsample_field",
+     .spirv = upsample_field_spirv,
+     .spirv_size = sizeof upsample_field_spirv,
+     .args_size = sizeof(struct upsample_args),
+     .local_size = {4, 4, 4},
+     .bindings = field_bindings,
+     .num_bindings = sizeof field_bindings / sizeof *field_bindings,
+     .num_spec = 1},
+};
+
+static const tyn_param params[] = {
+    {"cells", TYN_PARAM_INT, offsetof(tyn_upsample_params, cells), 64, 8, 256, "cells",
+     "most cubic cells along the longest side; needless ones beyond the resolution of the medium "
+     "and "
+     "twice that of the aligned grids are not made"},
+    {"range", TYN_PARAM_FLOAT, offsetof(tyn_upsample_params, range), 0.25, 0, 10, "",
+     "relative difference of sigma_s that counts as another kind of place; 0 = plain trilinear"},
+};
+
+// Cells of the result: cubes, as fine as the medium's voxels and as half a cell of the aligned grids,
+// which lie askew in the box (section 5.3), but not more than asked for.
+static tyn_extent dims_of(const tyn_upsample_params *p)
+{
+    float longest = fmaxf(p->extent[0], fmaxf(p->extent[1], p->extent[2]));
+    float finest = 2.0f * (float)p->grid_cells;
+    for (int i = 0; i < 3; i++) {
+        finest = fmaxf(finest, ceilf((float)p->size[i] * longest / p->extent[i] - 1e-3f));
+    }
+    float dx = longest / fminf((float)p->cells, finest);
+    uint32_t dims[3];
+    for (int i = 0; i < 3; i++) {
+        dims[i] = (uint32_t)fmaxf(1.0f, ceilf(p->extent[i] / dx - 1e-3f));
+    }
+    return (tyn_extent){dims[0], dims[1], dims[2]};
+}
+
+static tyn_result declare(tyn_builder *b, const void *data)
+{
+    tyn_extent dims = dims_of(data);
+    tyn_build_image(b, PORT(INSCATTER), (tyn_extent){dims.x + 2, dims.y + 2, dims.z + 2}, 1);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *data)
+{
+    const tyn_upsample_params *p = data;
+    tyn_extent dims = dims_of(p), texels = tyn_rec_extent(r, PORT(INSCATTER));
+    struct upsample_args args = {{dims.x, dims.y, dims.z}, p->num_suns, p->range};
+    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = texels, .args = &args, .spec = &p->mode});
+    tyn_rec_work(r, "cells", (double)texels.x * texels.y * texels.z * p->num_suns);
+}
+
+const tyn_pass_desc tyn_pass_upsample = {
+    .name = "upsample",
+    .summary = "joint bilateral upsampling of the aligned grids' light onto the medium's axes",
+    .ports = ports,
+    .num_ports = UPSAMPLE_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 1,
+    .params = params,
+    .num_params = sizeof params / sizeof *params,
+    .params_size = sizeof(tyn_upsample_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = PORT(INSCATTER),
+    .debug_meaning = "light towards the eye, middle slice of the medium's box",
+};

@@ -1,0 +1,151 @@
+// propagate.glsl -- light in a grid aligned with its direction of travel: two numbers a cell.
+//
+// Elek, Ritschel, Dachsbacher, Seidel: Principal-Ordinates Propagation for Real-Time Rendering of
+// Participating Media, 2014, section 4. A cell holds the power L of its light per face area and the
+// mean cosine a of its directions about the grid's axis d: radiance L hg(omega . d, a). An iteration
+// moves all light of a cell into its six neighbours; scattering lowers a, absorption lowers L.
+// No bindings.
+#ifndef TYN_PROPAGATE_GLSL
+#define TYN_PROPAGATE_GLSL
+#include "scene_args.h"
+#include "propagate_args.h"
+#include "hg.glsl"
+
+// ---- the grid -----------------------------------------------------------------------------------
+
+// The box around the medium's box with one axis along the light, in cubes of its longest side / cells.
+// Across the light what the last cells reach beyond the medium is split evenly.
+propagate_grid propagate_grid_of(vec3 extent, light_block light, uint index, uint cells)
+{
+    propagate_grid grid;
+    vec3 d = normalize(light.direction);
+    vec3 steepness = abs(d); // start from the axis least along d: grids of axis-parallel light are aligned
+    vec3 start = steepness.x <= steepness.y && steepness.x <= steepness.z ? vec3(1.0, 0.0, 0.0)
+               : steepness.y <= steepness.z                               ? vec3(0.0, 1.0, 0.0)
+                                                                          : vec3(0.0, 0.0, 1.0);
+    vec3 u = normalize(start - dot(start, d) * d);
+    vec3 v = cross(d, u);
+    vec3 side = vec3(dot(abs(u), extent), dot(abs(v), extent), dot(abs(d), extent));
+    vec3 low = vec3(dot(min(u, 0.0), extent), dot(min(v, 0.0), extent), dot(min(d, 0.0), extent));
+    grid.cell = max(side.x, max(side.y, side.z)) / float(cells);
+    grid.size = uvec3(clamp(ceil(side / grid.cell - 1e-3), vec3(1.0), vec3(cells)));
+    vec2 surplus = vec2(grid.size.xy) * grid.cell - side.xy;
+    low.xy -= 0.5 * surplus;
+    grid.origin = u * low.x + v * low.y + d * low.z;
+    grid.across_u = u;
+    grid.across_v = v;
+    grid.direction = d;
+    grid.irradiance = light.color;
+    grid.light = index;
+    grid.first_layer = index * cells;
+    grid.pad = 0u;
+    return grid;
+}
+
+// Cell units <-> M. Cell i spans [i, i + 1].
+vec3 propagate_to_m(propagate_grid grid, vec3 cell)
+{
+    cell *= grid.cell;
+    return grid.origin + grid.across_u * cell.x + grid.across_v * cell.y + grid.direction * cell.z;
+}
+
+vec3 propagate_from_m(propagate_grid grid, vec3 p)
+{
+    p -= grid.origin;
+    return vec3(dot(grid.across_u, p), dot(grid.across_v, p), dot(grid.direction, p)) / grid.cell;
+}
+
+// Which grid and cell a texel of the stacked images is; false: none.
+bool propagate_cell_of(ivec3 texel, uint cells, out uint index, out ivec3 cell)
+{
+    index = uint(texel.z) / cells;
+    cell = ivec3(texel.xy, uint(texel.z) % cells);
+    return all(lessThan(uvec2(texel.xy), uvec2(cells)));
+}
+
+bool propagate_inside(propagate_grid grid, ivec3 cell)
+{
+    return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(uvec3(cell), grid.size));
+}
+
+// ---- one hop (Eqs 1-4) ----------------------------------------------------------------------------
+//
+// What is kept of a is its complement, the spread 1 - a: light that has hardly scattered has a next to
+// 1, and the fractions that go sideways are proportional to 1 - a, which a rounded a would lose.
+
+// Fractions of a cell's light that go to the neighbour in front, to each of the four beside, and to
+// the one behind: the distribution integrated over the cones of Eq 3 (45 and 135 degrees). With
+// s^2 = 1 + a^2 - 2 a mu the integral of Eq 1 below mu is (1 - a) (1 + mu) / (s (s + 1 + a)), which has
+// no division by a; what is ahead is the rest, so that the six sum to 1. A lobe that points backward is
+// the mirror image.
+struct propagate_split {
+    float front, side, back;
+};
+
+propagate_split propagate_split_of(float spread)
+{
+    const float edge = 0.70710678;            // cos 45 degrees
+    float narrow = min(spread, 2.0 - spread); // 1 - |a|
+    float s_ahead = sqrt(narrow * narrow + 2.0 * (1.0 - narrow) * (1.0 - edge));
+    float s_behind = sqrt(narrow * narrow + 2.0 * (1.0 - narrow) * (1.0 + edge));
+    float outside = narrow * (1.0 + edge) / (s_ahead * (s_ahead + 2.0 - narrow));
+    float behind = narrow * (1.0 - edge) / (s_behind * (s_behind + 2.0 - narrow));
+    float side = 0.25 * (outside - behind);
+    return spread <= 1.0 ? propagate_split(1.0 - outside, side, behind)
+                         : propagate_split(behind, side, 1.0 - outside);
+}
+
+float propagate_fraction(float spread, int layers) // layers: steps along d from source to destination
+{
+    propagate_split split = propagate_split_of(spread);
+    return layers > 0 ? split.front : layers < 0 ? split.back : split.side;
+}
+
+// -ln g for 0 < g < 1; the series where a rounded ln would lose digits: -ln g = 2 artanh((1-g)/(1+g)).
+float propagate_minus_log(float g)
+{
+    float y = (1.0 - g) / (1.0 + g);
+    return g > 0.8 ? y * (2.0 + y * y * (2.0 / 3.0 + y * y * (0.4 + y * y * 2.0 / 7.0))) : -log(g);
+}
+
+// 1 - e^-x, x >= 0.
+float propagate_loss(float x)
+{
+    return x < 0.05 ? x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0)))) : 1.0 - exp(-x);
+}
+
+// The spread after the scattering depth tau (Eq 4): a' = a r. The flight has a Poisson number of
+// events, so the exact mean of g^n is r = exp(-(1 - g) tau); the paper takes g to the mean number
+// instead, which has no meaning for g < 0: the exact rate is used there.
+float propagate_scatter(float spread, float g, float tau, uint rate)
+{
+    float loss = 1.0; // 1 - r
+    if (rate == TYN_PROPAGATE_RATE_EXACT || g < 0.0) {
+        loss = propagate_loss((1.0 - g) * tau);
+    } else if (g > 0.0) {
+        loss = propagate_loss(tau * propagate_minus_log(g));
+    } else if (tau <= 0.0) {
+        loss = 0.0;
+    }
+    return spread + (1.0 - spread) * loss;
+}
+
+// ---- what the eye gets (Eq 8) -----------------------------------------------------------------------
+
+// The direction from a cell to the eye.
+vec3 propagate_to_eye(camera_block camera, vec3 p)
+{
+    vec3 v = camera.origin - p;
+    float r = length(v);
+    return camera.orthographic != 0u || r < 1e-9 ? -camera.forward : v / r;
+}
+
+// Light of a cell towards the eye per unit L, 1/sr. Radiance in flight has mean cosine a; with
+// `last_event` it is scattered once more on its way to the eye, which by the self-convolution of the
+// phase function makes it g a. A delta (a = 1) is not radiance: the lobe is never narrower than 0.995.
+float propagate_towards_eye(float mu, float a, float g, bool last_event)
+{
+    return hg(clamp(last_event ? g * a : a, -HG_MAX, HG_MAX), mu);
+}
+
+#endif

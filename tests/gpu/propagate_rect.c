@@ -1,0 +1,390 @@
+// propagate_rect.c -- the six-neighbour propagation against reference states, a CPU twin in double
+// precision, and what must hold for any reading of the paper.
+#include "gpu_test.h"
+#include "propagate_twin.h"
+#include "passes/propagate_rect/propagate_rect.h"
+#include "scene_args.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PORT(name) PROPAGATE_RECT_PORT_##name
+
+enum { MAX_SUNS = 2 };
+
+typedef struct setup {
+    struct medium_block medium;
+    const float *density;
+    struct light_block suns[MAX_SUNS];
+    struct camera_block camera;
+    tyn_propagate_rect_params params;
+} setup;
+
+typedef struct texel {
+    float c[4];
+} texel;
+
+typedef struct outcome {
+    const texel *light, *spread, *seen, *sigma_s, *sigma_a, *g; // of all grids, stacked
+    const struct propagate_grid *grids;
+} outcome;
+
+static void set_medium(setup *s, const float extent[3], const uint32_t size[3],
+                       const float *density)
+{
+    s->density = density;
+    for (int i = 0; i < 3; i++) {
+        s->medium.extent[i] = extent[i];
+        s->medium.size[i] = size[i];
+        s->medium.voxel[i] = extent[i] / (float)size[i];
+    }
+}
+
+// The unit cube of 16^3 voxels under a sun of unit irradiance along +z, seen from `to_eye`.
+static setup unit_cube(const float *density, float sigma_s, float g, const float to_eye[3])
+{
+    setup s = {.suns[0] = {.color = {1, 1, 1}, .direction = {0, 0, 1}}};
+    set_medium(&s, (float[]){1, 1, 1}, (uint32_t[]){STATE_CELLS, STATE_CELLS, STATE_CELLS},
+               density);
+    tyn_pass_defaults(&tyn_pass_propagate_rect, &s.params);
+    s.params.cells = STATE_CELLS;
+    s.params.num_suns = 1;
+    s.camera.orthographic = 1;
+    for (int i = 0; i < 3; i++) {
+        s.medium.sigma_s[i] = sigma_s;
+        s.medium.g[i] = g;
+        s.camera.forward[i] = -to_eye[i];
+    }
+    return s;
+}
+
+static outcome run(gpu_test *t, const setup *s)
+{
+    const uint32_t *size = s->medium.size;
+    tyn_ref refs[PROPAGATE_RECT_NUM_PORTS] = {0};
+    tyn_graph_begin(t->graph);
+    refs[PORT(MEDIUM)] = gpu_buffer(t, "medium", &s->medium, sizeof s->medium);
+    refs[PORT(LIGHTS)] = gpu_buffer(t, "lights", s->suns, sizeof s->suns);
+    refs[PORT(CAMERA)] = gpu_buffer(t, "camera", &s->camera, sizeof s->camera);
+    refs[PORT(DENSITY)] = gpu_image(t, "density", TYN_IMAGE_3D,
+                                    (tyn_extent){size[0], size[1], size[2]}, 1, s->density);
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_propagate_rect, &s->params, refs), TYN_OK);
+    for (int port = PORT(GRIDS); port <= PORT(SEEN); port++) {
+        tyn_graph_output(t->graph, tyn_pass_propagate_rect.ports[port].name, refs[port], true);
+    }
+    gpu_run(t);
+    return (outcome){
+        gpu_map(t, "light"),        gpu_map(t, "spread"),       gpu_map(t, "seen"),
+        gpu_map(t, "cell_sigma_s"), gpu_map(t, "cell_sigma_a"), gpu_map(t, "cell_g"),
+        gpu_map(t, "grids"),
+    };
+}
+
+// Largest relative difference (of values below 1e-6: absolute, in 1e-6) where `weight` > 1e-6 of its
+// maximum.
+static double worst(const double *found, const double *expected, int n, const double *weight)
+{
+    double top = 0, result = 0;
+    for (int i = 0; i < n; i++) {
+        top = fmax(top, weight[i]);
+    }
+    for (int i = 0; i < n; i++) {
+        if (weight[i] > 1e-6 * top) {
+            double scale = fmax(fabs(expected[i]), 1e-6);
+            result = fmax(result, fabs(found[i] - expected[i]) / scale);
+        }
+    }
+    return result;
+}
+
+// ---- reference states -------------------------------------------------------------------------
+
+static double values[6][STATE_TOTAL];
+
+static void state_density(const state_record *records, int num, const state_record *r,
+                          float *density)
+{
+    const state_record *blobs = states_find(records, num, "sigma_t", "blobs_g60", 0);
+    for (int q = 0; q < STATE_TOTAL; q++) {
+        density[q] = r->sigma_t < 0 ? blobs->values[0][q] : (float)r->sigma_t;
+    }
+}
+
+static void reference_states(void **state)
+{
+    static float density[STATE_TOTAL];
+    const float to_eye[3] = {sqrtf(0.5f), 0, sqrtf(0.5f)};
+    state_record *records;
+    int num = states_load(&records), compared = 0;
+    for (int i = 0; i < num; i++) {
+        const state_record *r = &records[i];
+        bool inscatter = strcmp(r->kind, "inscatter") == 0;
+        if (strcmp(r->kind, "sigma_t") == 0) {
+            continue;
+        }
+        state_density(records, num, r, density);
+        setup s = unit_cube(density, 1, (float)r->g, to_eye);
+        s.params.iterations = r->iteration;
+        outcome o = run(*state, &s);
+        for (int q = 0; q < STATE_TOTAL; q++) {
+            values[0][q] = inscatter ? o.seen[q].c[0] : o.light[q].c[0];
+            values[1][q] = 1.0 - (double)o.spread[q].c[0];
+            values[2][q] = r->values[0][q];
+            values[3][q] = r->values[1][q];
+        }
+        double light = worst(values[0], values[2], STATE_TOTAL, values[2]);
+        double cosine = inscatter ? 0 : worst(values[1], values[3], STATE_TOTAL, values[2]);
+        print_message("%-9s %s, iteration %2d: largest difference of L %.1e, of a %.1e\n", r->kind,
+                      r->name, r->iteration, light, cosine);
+        assert_true(light < 1e-4 && cosine < 1e-4);
+        compared++;
+    }
+    assert_int_equal(compared, 13);
+    free(records);
+}
+
+// ---- all readings, oblique coloured light, perspective -----------------------------------------
+
+enum { N = 12, CELLS = N * N * N };
+
+static setup oblique(float *density)
+{
+    static const uint32_t size[3] = {12, 16, 10};
+    static const float extent[3] = {1.0f, 1.4f, 0.8f};
+    setup s = {
+        .suns = {{.color = {1, 2, 3}, .direction = {0.48f, 0.6f, 0.64f}},
+                 {.color = {4, 0.5f, 1}, .direction = {0, -1, 0}}},
+        .camera = {.origin = {0.3f, 0.9f, 3}, .forward = {0, 0, -1}},
+        .medium = {.sigma_s = {2, 5, 9}, .sigma_a = {0.5f, 0.1f, 0}, .g = {0.8f, 0, -0.3f}},
+    };
+    srand(7);
+    for (uint32_t q = 0; q < size[0] * size[1] * size[2]; q++) {
+        density[q] = rand() % 4 ? (float)(rand() % 1000) * 1e-3f : 0;
+    }
+    set_medium(&s, extent, size, density);
+    tyn_pass_defaults(&tyn_pass_propagate_rect, &s.params);
+    s.params.cells = N;
+    s.params.iterations = 7;
+    s.params.num_suns = MAX_SUNS;
+    return s;
+}
+
+static void to_m(const struct propagate_grid *grid, const double cell[3], double p[3])
+{
+    for (int i = 0; i < 3; i++) {
+        p[i] = grid->origin[i] +
+               grid->cell * (grid->across_u[i] * cell[0] + grid->across_v[i] * cell[1] +
+                             grid->direction[i] * cell[2]);
+    }
+}
+
+// One channel of one sun against the twin. The aligned grid is that of the device, whose cells the
+// test `grids_span_the_medium` checks.
+static double compare_channel(const setup *s, const outcome *o, int sun, int c)
+{
+    static double sigma_s[CELLS], sigma_a[CELLS], g[CELLS], mu[CELLS], light[CELLS], cosine[CELLS],
+        seen[CELLS], found[3][CELLS], spread[CELLS];
+    const struct propagate_grid *grid = &o->grids[sun];
+    const int n[3] = {(int)grid->size[0], (int)grid->size[1], (int)grid->size[2]};
+    int total = n[0] * n[1] * n[2], texels[CELLS];
+    for (int q = 0; q < total; q++) {
+        int i = q % n[0], j = q / n[0] % n[1], k = q / (n[0] * n[1]);
+        int at = texels[q] = ((sun * N + k) * N + j) * N + i;
+        double p[3], to_eye[3], r = 0;
+        to_m(grid, (double[]){i + 0.5, j + 0.5, k + 0.5}, p);
+        mu[q] = 0;
+        for (int x = 0; x < 3; x++) {
+            to_eye[x] = s->camera.origin[x] - p[x];
+            r += to_eye[x] * to_eye[x];
+            mu[q] += to_eye[x] * s->suns[sun].direction[x];
+        }
+        mu[q] /= sqrt(r);
+        sigma_s[q] = o->sigma_s[at].c[c];
+        sigma_a[q] = o->sigma_a[at].c[c];
+        g[q] = o->g[at].c[c];
+    }
+    twin_grid twin = {{n[0], n[1], n[2]},
+                      grid->cell,
+                      sigma_s,
+                      sigma_a,
+                      g,
+                      (twin_init)s->params.init,
+                      s->params.rate == TYN_PROPAGATE_RATE_EXACT,
+                      s->params.last_event != 0,
+                      mu};
+    twin_propagate(&twin, s->params.iterations, light, cosine, seen);
+    for (int q = 0; q < total; q++) {
+        double color = s->suns[sun].color[c];
+        found[0][q] = o->light[texels[q]].c[c] / color;
+        found[1][q] = o->spread[texels[q]].c[c];
+        found[2][q] = o->seen[texels[q]].c[c] / color;
+        spread[q] = 1 - cosine[q];
+    }
+    return fmax(fmax(worst(found[0], light, total, light), worst(found[1], spread, total, light)),
+                worst(found[2], seen, total, seen));
+}
+
+static void every_reading(void **state)
+{
+    static float density[12 * 16 * 10];
+    setup s = oblique(density);
+    for (int reading = 0; reading < 16; reading++) {
+        s.params.init = reading & 3;
+        s.params.rate = reading >> 2 & 1;
+        s.params.last_event = (uint32_t)(reading >> 3);
+        outcome o = run(*state, &s);
+        double difference = 0;
+        for (int sun = 0; sun < MAX_SUNS; sun++) {
+            for (int c = 0; c < 3; c++) {
+                difference = fmax(difference, compare_channel(&s, &o, sun, c));
+            }
+        }
+        print_message("init %d, rate %d, last event %u: largest difference %.1e\n", s.params.init,
+                      s.params.rate, s.params.last_event, difference);
+        assert_true(difference < 1e-4);
+    }
+}
+
+// ---- the grids --------------------------------------------------------------------------------
+
+static void grids_span_the_medium(void **state)
+{
+    static float density[12 * 16 * 10];
+    setup s = oblique(density);
+    outcome o = run(*state, &s);
+    for (int sun = 0; sun < MAX_SUNS; sun++) {
+        const struct propagate_grid *grid = &o.grids[sun];
+        const float *axes[3] = {grid->across_u, grid->across_v, grid->direction};
+        double side[3], longest = 0;
+        for (int a = 0; a < 3; a++) {
+            double lo = 1e9, hi = -1e9;
+            for (int corner = 0; corner < 8; corner++) {
+                double at = 0;
+                for (int x = 0; x < 3; x++) {
+                    double p = corner >> x & 1 ? s.medium.extent[x] : 0;
+                    at += axes[a][x] * (p - grid->origin[x]);
+                }
+                lo = fmin(lo, at);
+                hi = fmax(hi, at);
+            }
+            assert_true(lo > -1e-5 && hi < grid->size[a] * grid->cell + 1e-5);
+            side[a] = hi - lo;
+            longest = fmax(longest, side[a]);
+            assert_true((grid->size[a] - 1) * grid->cell < side[a]); // no layer too many
+        }
+        assert_float_equal(grid->cell * N, longest, 1e-5);
+        for (int x = 0; x < 3; x++) {
+            assert_float_equal(grid->direction[x], s.suns[sun].direction[x], 1e-6);
+        }
+        // The cells hold all of the medium. White noise is the hardest case for the samples in a cell.
+        double cells = 0, voxels = 0;
+        for (int q = 0; q < CELLS; q++) {
+            cells += o.sigma_s[sun * CELLS + q].c[1] * pow(grid->cell, 3);
+        }
+        for (int q = 0; q < 12 * 16 * 10; q++) {
+            voxels += density[q] * s.medium.sigma_s[1] * s.medium.voxel[0] * s.medium.voxel[1] *
+                      s.medium.voxel[2];
+        }
+        print_message("sun %d: medium in the cells / in the voxels = %.4f\n", sun, cells / voxels);
+        assert_float_equal(cells / voxels, 1, 0.05);
+    }
+}
+
+static double total(const texel *cells, int n)
+{
+    double sum = 0;
+    for (int q = 0; q < n; q++) {
+        sum += cells[q].c[0];
+    }
+    return sum;
+}
+
+// The six fractions sum to 1: one cell of light in the middle, all of it is in its neighbours after one
+// hop, whatever its mean cosine.
+static void fractions_sum_to_one(void **state)
+{
+    static float density[STATE_TOTAL];
+    const float cosines[] = {-0.999f, -0.5f, -1e-8f, 0, 1e-8f, 1e-3f, 0.5f, 0.9f, 0.999f, 0.99999f};
+    memset(density, 0, sizeof density);
+    density[(8 * STATE_CELLS + 8) * STATE_CELLS + 8] = 1;
+    for (size_t i = 0; i < sizeof cosines / sizeof *cosines; i++) {
+        setup s = unit_cube(density, 0.5f, cosines[i], (float[]){1, 0, 0});
+        s.params.iterations = 1;
+        s.params.init = TYN_PROPAGATE_INIT_FIRST_COLLISION;
+        outcome o = run(*state, &s);
+        double injected = -expm1(-0.5 / STATE_CELLS);
+        double sum = total(o.light, STATE_TOTAL) / injected;
+        print_message("a = %g: sum of fractions - 1 = %.1e\n", cosines[i], sum - 1);
+        assert_float_equal(sum, 1, 1e-6);
+    }
+}
+
+// What enters is the light's irradiance times the area of the grid, and stays so in vacuum.
+static void injected_power_is_one(void **state)
+{
+    static float density[STATE_TOTAL];
+    memset(density, 0, sizeof density);
+    setup s = unit_cube(density, 1, 0.6f, (float[]){1, 0, 0});
+    for (s.params.iterations = 1; s.params.iterations < STATE_CELLS; s.params.iterations += 7) {
+        outcome o = run(*state, &s);
+        assert_float_equal(total(o.light, STATE_TOTAL) / (STATE_CELLS * STATE_CELLS), 1, 1e-6);
+    }
+}
+
+// Extreme media: nothing but finite, non-negative numbers, and no light gained.
+static void extremes(void **state)
+{
+    static float density[STATE_TOTAL];
+    const float sigmas[] = {1e-6f, 1, 1e3f, 1e5f, 1e8f};
+    const float cosines[] = {-0.999f, -0.5f, 0, 1e-8f, 0.9f, 0.9999f};
+    for (int q = 0; q < STATE_TOTAL; q++) {
+        density[q] = (q ^ q >> 4 ^ q >> 8) & 1; // checkerboard
+    }
+    for (int i = 0; i < 5 * 6; i++) {
+        setup s = unit_cube(density, sigmas[i % 5], cosines[i / 5], (float[]){0, 0, 1});
+        s.medium.sigma_a[1] = sigmas[i % 5];
+        s.params.rate = i & 1;
+        outcome o = run(*state, &s);
+        for (int q = 0; q < STATE_TOTAL; q++) {
+            for (int c = 0; c < 3; c++) {
+                assert_true(o.light[q].c[c] >= 0 && isfinite(o.light[q].c[c]));
+                assert_true(o.spread[q].c[c] >= 0 && o.spread[q].c[c] <= 2.00001f);
+                assert_true(o.seen[q].c[c] >= 0 && isfinite(o.seen[q].c[c]));
+            }
+        }
+        assert_true(total(o.light, STATE_TOTAL) <= STATE_CELLS * STATE_CELLS * (1 + 1e-5));
+    }
+}
+
+static void too_many_layers(void **state)
+{
+    gpu_test *t = *state;
+    tyn_propagate_rect_params params;
+    tyn_ref refs[PROPAGATE_RECT_NUM_PORTS] = {0};
+    tyn_pass_defaults(&tyn_pass_propagate_rect, &params);
+    params.cells = 64;
+    params.num_suns = 5;
+    float zeros[64] = {0};
+    tyn_graph_begin(t->graph);
+    refs[PORT(MEDIUM)] = refs[PORT(LIGHTS)] = refs[PORT(CAMERA)] =
+        gpu_buffer(t, "zeros", zeros, sizeof zeros);
+    refs[PORT(DENSITY)] = gpu_image(t, "density", TYN_IMAGE_3D, (tyn_extent){1, 1, 1}, 1, zeros);
+    t->quiet = true;
+    uint32_t errors = t->errors;
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_propagate_rect, &params, refs),
+                     TYN_ERR_PARAMS);
+    assert_true(t->errors > errors);
+    t->quiet = false;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reference_states),      cmocka_unit_test(every_reading),
+        cmocka_unit_test(grids_span_the_medium), cmocka_unit_test(fractions_sum_to_one),
+        cmocka_unit_test(injected_power_is_one), cmocka_unit_test(extremes),
+        cmocka_unit_test(too_many_layers),
+    };
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
