@@ -1,0 +1,631 @@
+// raymarch.c -- the ray march against closed forms and a CPU twin.
+#include "gpu_test.h"
+#include "passes/raymarch/raymarch.h"
+#include "counters.h"
+#include "beam_args.h"
+#include "scatter_lut_args.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+enum { MAX_TEXELS = 16 * 16 * 16 };
+
+// A three-dimensional texture of 1 or 4 channels.
+typedef struct texture {
+    uint32_t size[3];
+    int channels;
+    float texels[MAX_TEXELS * 4];
+} texture;
+
+// Everything a march reads. One medium of constant coefficients times density, at most one sun.
+typedef struct march_scene {
+    struct medium_block medium;
+    struct shape_block shape;
+    struct light_block light;
+    struct beam_block beam;
+    struct lut_block lut;
+    struct camera_block camera;
+    struct env_block env;
+    texture density, distance, column, inscatter;
+    float sums[2]; // the scattering table, constant
+    float *host_depth;
+    tyn_raymarch_params params;
+} march_scene;
+
+static void make_cube(march_scene *s, float sigma_s, float sigma_a, float g)
+{
+    memset(s, 0, sizeof *s);
+    struct medium_block *m = &s->medium;
+    for (int i = 0; i < 3; i++) {
+        m->extent[i] = m->voxel[i] = 1.0f;
+        m->brick_size[i] = TYN_BRICK;
+        m->size[i] = m->bricks[i] = 1;
+        m->sigma_s[i] = sigma_s;
+        m->sigma_a[i] = sigma_a;
+        m->g[i] = g;
+        s->density.size[i] = s->distance.size[i] = s->column.size[i] = 1;
+        s->inscatter.size[i] = 3;
+        s->light.color[i] = 1.0f;
+        s->shape.rows[i][i] = 1.0f;
+        s->shape.rows[i][3] = -0.5f;
+    }
+    m->num_shapes = 1;
+    m->max_density = 1;
+    m->sigma_t_max = sigma_s + sigma_a;
+    s->density.channels = s->distance.channels = s->column.channels = 1;
+    s->inscatter.channels = 4;
+    s->density.texels[0] = s->column.texels[0] = 1.0f;
+    s->lut.num_rows = 1;
+    s->lut.g[0] = g;
+    s->lut.theta_1[0] = 0.4f;
+    s->sums[0] = -1.5f;
+    s->sums[1] = -2.0f;
+    s->camera.size[0] = s->camera.size[1] = 16;
+    s->camera.half_width = s->camera.half_height = 0.5f;
+    s->camera.orthographic = 1;
+    tyn_pass_defaults(&tyn_pass_raymarch, &s->params);
+    s->params.grey = 1;
+    s->params.num_suns = 1;
+    s->params.width = s->params.height = 16;
+    memcpy(s->params.extent, m->extent, sizeof m->extent);
+    s->params.longest_step = tyn_raymarch_longest_step(sigma_s + sigma_a, 0, m->extent);
+}
+
+static void normalize(float v[3])
+{
+    float l = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int i = 0; i < 3; i++) {
+        v[i] /= l;
+    }
+}
+
+static void set_sun(march_scene *s, float x, float y, float z)
+{
+    float d[3] = {x, y, z};
+    normalize(d);
+    for (int i = 0; i < 3; i++) {
+        s->light.direction[i] = s->beam.direction[i] = d[i];
+        s->beam.rows[i][i] = 1.0f / s->medium.extent[i];
+        s->beam.clip_scale[i] = d[i] != 0 ? 1.0f / d[i] : 0;
+        s->beam.clip_offset[i] = d[i] == 0 ? 1e30f : d[i] > 0 ? 0 : -s->medium.extent[i] / d[i];
+    }
+}
+
+// Looks along d at the centre of the box from `distance`.
+static void set_camera(march_scene *s, float x, float y, float z, float distance)
+{
+    float d[3] = {x, y, z}, up[3] = {0, 0, 1};
+    normalize(d);
+    if (fabsf(d[2]) > 0.9f) {
+        up[1] = 1;
+        up[2] = 0;
+    }
+    float right[3] = {d[1] * up[2] - d[2] * up[1], d[2] * up[0] - d[0] * up[2],
+                      d[0] * up[1] - d[1] * up[0]};
+    normalize(right);
+    float true_up[3] = {right[1] * d[2] - right[2] * d[1], right[2] * d[0] - right[0] * d[2],
+                        right[0] * d[1] - right[1] * d[0]};
+    for (int i = 0; i < 3; i++) {
+        s->camera.forward[i] = d[i];
+        s->camera.right[i] = right[i];
+        s->camera.up[i] = true_up[i];
+        s->camera.origin[i] = 0.5f * s->medium.extent[i] - distance * d[i];
+    }
+}
+
+static tyn_ref upload(gpu_test *t, const char *name, const texture *x)
+{
+    return gpu_image(t, name, TYN_IMAGE_3D, (tyn_extent){x->size[0], x->size[1], x->size[2]},
+                     x->channels, x->texels);
+}
+
+static void run(gpu_test *t, march_scene *s)
+{
+    tyn_graph_begin(t->graph);
+    texture *table = calloc(1, sizeof *table);
+    *table = (texture){.size = {2, 2, 1}, .channels = 2};
+    for (int i = 0; i < 4; i++) {
+        memcpy(table->texels + 2 * i, s->sums, sizeof s->sums);
+    }
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [RAYMARCH_PORT_MEDIUM] = gpu_buffer(t, "medium", &s->medium, sizeof s->medium),
+        [RAYMARCH_PORT_DENSITY] = upload(t, "density", &s->density),
+        [RAYMARCH_PORT_DISTANCE] = upload(t, "distance", &s->distance),
+        [RAYMARCH_PORT_SHAPES] = gpu_buffer(t, "shapes", &s->shape, sizeof s->shape),
+        [RAYMARCH_PORT_LIGHTS] = gpu_buffer(t, "lights", &s->light, sizeof s->light),
+        [RAYMARCH_PORT_BEAMS] = gpu_buffer(t, "beams", &s->beam, sizeof s->beam),
+        [RAYMARCH_PORT_COLUMN] = upload(t, "column", &s->column),
+        [RAYMARCH_PORT_LUT] = upload(t, "lut", table),
+        [RAYMARCH_PORT_LUT_BLOCK] = gpu_buffer(t, "lut_block", &s->lut, sizeof s->lut),
+        [RAYMARCH_PORT_CAMERA] = gpu_buffer(t, "camera", &s->camera, sizeof s->camera),
+        [RAYMARCH_PORT_ENVIRONMENT] = gpu_buffer(t, "environment", &s->env, sizeof s->env),
+    };
+    if (s->inscatter.texels[0] > 0) {
+        refs[RAYMARCH_PORT_INSCATTER] = upload(t, "inscatter", &s->inscatter);
+    }
+    if (s->host_depth) {
+        refs[RAYMARCH_PORT_HOST_DEPTH] =
+            gpu_image(t, "host_depth", TYN_IMAGE_2D,
+                      (tyn_extent){s->params.width, s->params.height, 1}, 1, s->host_depth);
+    }
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_raymarch, &s->params, refs), TYN_OK);
+    for (uint8_t p = RAYMARCH_PORT_RADIANCE; p < RAYMARCH_NUM_PORTS; p++) {
+        if (refs[p].resource) {
+            tyn_graph_output(t->graph, tyn_pass_raymarch.ports[p].name, refs[p], true);
+        }
+    }
+    gpu_run(t);
+    free(table);
+}
+
+static const float *pixel(gpu_test *t, const march_scene *s, const char *name, uint32_t x,
+                          uint32_t y)
+{
+    return (const float *)gpu_map(t, name) + 4 * (y * s->params.width + x);
+}
+
+static double hg(double g, double mu)
+{
+    return (1 - g * g) / (4 * PI * pow(1 + g * g - 2 * g * mu, 1.5));
+}
+
+static void assert_close(double value, double expected, double relative, const char *what)
+{
+    if (!(fabs(value - expected) <= relative * fabs(expected) + 1e-7)) {
+        fail_msg("%s: %.8g instead of %.8g", what, value, expected);
+    }
+}
+
+// Light along +x through the unit cube; views from the side, against the light and with it.
+static void single_scattering(void **state)
+{
+    gpu_test *t = *state;
+    march_scene *s = malloc(sizeof *s);
+    const float gs[] = {-0.5f, 0, 0.5f, 0.9f};
+    for (int k = 0; k < 4; k++) {
+        const double g = gs[k], sigma = 4;
+        for (int colour = 0; colour < 2; colour++) {
+            make_cube(s, 4, 0, gs[k]);
+            s->params.grey = !colour;
+            set_sun(s, 1, 0, 0);
+            set_camera(s, 0, -1, 0, 3);
+            run(t, s);
+            // Pixels of the side view run along -x, as right = forward x up.
+            const float *p = pixel(t, s, "radiance", 3, 7);
+            double x = 1 - 3.5 / 16;
+            assert_close(p[0], sigma * hg(g, 0) * exp(-sigma * x) * (1 - exp(-sigma)) / sigma, 1e-5,
+                         "side");
+            assert_close(p[3], 1 - exp(-sigma), 1e-5, "alpha");
+            set_camera(s, -1, 0, 0, 3);
+            run(t, s);
+            assert_close(pixel(t, s, "radiance", 5, 5)[1], sigma * hg(g, 1) * exp(-sigma), 2e-3,
+                         "against the light");
+            set_camera(s, 1, 0, 0, 3);
+            run(t, s);
+            assert_close(pixel(t, s, "radiance", 5, 5)[2],
+                         sigma * hg(g, -1) * (1 - exp(-2 * sigma)) / (2 * sigma), 2e-3,
+                         "with the light");
+        }
+    }
+    free(s);
+}
+
+// ---- the twin ---------------------------------------------------------------------------------
+
+static double sample(const texture *x, const double uvw[3], int channel)
+{
+    int i[3];
+    double f[3];
+    for (int a = 0; a < 3; a++) {
+        double p = uvw[a] * x->size[a] - 0.5;
+        p = fmin(fmax(p, 0), x->size[a] - 1.0);
+        i[a] = (int)fmin(floor(p), x->size[a] > 1 ? x->size[a] - 2.0 : 0);
+        f[a] = p - i[a];
+    }
+    double sum = 0;
+    for (int c = 0; c < 8; c++) {
+        double w = 1;
+        size_t at[3];
+        for (int a = 0; a < 3; a++) {
+            int up = c >> a & 1;
+            w *= up ? f[a] : 1 - f[a];
+            at[a] = (size_t)(i[a] + up) < x->size[a] ? (size_t)(i[a] + up) : x->size[a] - 1;
+        }
+        sum += w *
+               x->texels[((at[2] * x->size[1] + at[1]) * x->size[0] + at[0]) * (size_t)x->channels +
+                         (size_t)channel];
+    }
+    return sum;
+}
+
+typedef struct twin_result {
+    double radiance, single, transmittance, scaled, half;
+} twin_result;
+
+// One ray in many small steps, channel c.
+static twin_result twin(const march_scene *s, const double o[3], const double d[3], int c)
+{
+    twin_result r = {0, 0, 1, 1, INFINITY};
+    double begin = 0, end = 1e30;
+    for (int a = 0; a < 3; a++) {
+        double t0 = (0 - o[a]) / d[a], t1 = (s->medium.extent[a] - o[a]) / d[a];
+        begin = fmax(begin, fmin(t0, t1));
+        end = fmin(end, fmax(t0, t1));
+    }
+    double g = s->medium.g[c], f = g > 0 ? g * g : 0, turn = 0;
+    for (int a = 0; a < 3; a++) {
+        turn += pow(-d[a] - s->light.direction[a], 2);
+    }
+    double theta = 2 * asin(fmin(sqrt(turn) / 2, 1)), p = hg(g, 1 - turn / 2);
+    double x = fmin(fmax(theta / s->lut.theta_1[0] - 0.5, 0), 1), h = 1 - x * x * (3 - 2 * x);
+    const int steps = 4000;
+    double ds = (end - begin) / steps;
+    for (int i = 0; i < steps && begin < end; i++) {
+        double q[3], uvw[3], field[3], path = 1e30, at = begin + (i + 0.5) * ds;
+        double longest = fmax(s->medium.extent[0], fmax(s->medium.extent[1], s->medium.extent[2]));
+        int most = (int)s->inscatter.size[0] - 2;
+        for (int a = 1; a < 3; a++) {
+            most = (int)s->inscatter.size[a] - 2 > most ? (int)s->inscatter.size[a] - 2 : most;
+        }
+        for (int a = 0; a < 3; a++) {
+            q[a] = o[a] + at * d[a];
+            uvw[a] = q[a] / s->medium.extent[a];
+            double dx = longest / most, cells = s->inscatter.size[a] - 2.0;
+            double origin = 0.5 * (s->medium.extent[a] - cells * dx);
+            field[a] = ((q[a] - origin) / dx + 1) / s->inscatter.size[a];
+            double l = s->light.direction[a] > 0 ? q[a] / s->light.direction[a]
+                       : s->light.direction[a] < 0
+                           ? (q[a] - s->medium.extent[a]) / s->light.direction[a]
+                           : 1e30;
+            path = fmin(path, l);
+        }
+        double rho = sample(&s->density, uvw, 0);
+        double sigma_s = s->medium.sigma_s[c] * rho, sigma_a = s->medium.sigma_a[c] * rho;
+        double column = path * sample(&s->column, uvw, 0);
+        double tau_s = column * s->medium.sigma_s[c], tau_a = column * s->medium.sigma_a[c];
+        double w = r.transmittance * exp(-(sigma_s + sigma_a) * ds / 2) * ds;
+        double w_scaled = r.scaled * exp(-(sigma_s * (1 - f) + sigma_a) * ds / 2) * ds;
+        double light = s->light.color[c] * sigma_s * exp(-tau_a), once = light * p * exp(-tau_s);
+        r.single += once * w;
+        if (s->params.kernels) {
+            double forward = f * (1 - exp(-tau_s)) * exp(-tau_s * (1 - f));
+            double k_tms = p * (1 - h) * exp(-tau_s) + forward * exp(s->sums[0]);
+            double k_lobe = p * h * exp(-tau_s) + forward * exp(s->sums[1]);
+            r.radiance += light * (k_tms * w_scaled + k_lobe * w);
+        } else {
+            r.radiance += once * w;
+        }
+        if (s->inscatter.texels[0] > 0) {
+            r.radiance += sigma_s * (1 - f) * sample(&s->inscatter, field, c) * w_scaled;
+        }
+        if (s->params.emissive) {
+            r.radiance += s->medium.emission[c] * rho * w_scaled;
+        }
+        r.transmittance *= exp(-(sigma_s + sigma_a) * ds);
+        r.scaled *= exp(-(sigma_s * (1 - f) + sigma_a) * ds);
+        if (r.transmittance <= 0.5 && r.half == INFINITY) {
+            r.half = at;
+        }
+    }
+    return r;
+}
+
+static double noise(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return (*seed >> 8) / (double)(1 << 24);
+}
+
+// A lumpy box with a corner that is empty, an oblique sun, everything on.
+static void make_lumps(march_scene *s)
+{
+    make_cube(s, 3, 0.5f, 0.6f);
+    const float extent[3] = {1.5f, 1.0f, 2.0f};
+    const uint32_t size[3] = {12, 8, 16}, bricks[3] = {2, 1, 2};
+    uint32_t seed = 1;
+    for (int i = 0; i < 3; i++) {
+        s->medium.extent[i] = s->params.extent[i] = extent[i];
+        s->medium.size[i] = s->density.size[i] = s->column.size[i] = size[i];
+        s->medium.bricks[i] = s->distance.size[i] = bricks[i];
+        s->medium.voxel[i] = extent[i] / (float)size[i];
+        s->medium.brick_size[i] = s->medium.voxel[i] * TYN_BRICK;
+        s->shape.rows[i][i] = 1.0f / extent[i];
+    }
+    s->inscatter.size[0] = 5; // 3 x 2 x 4 cells of 0.5 m
+    s->inscatter.size[1] = 4;
+    s->inscatter.size[2] = 6;
+    for (uint32_t i = 0; i < 12 * 8 * 16; i++) {
+        uint32_t x = i % 12, z = i / 96;
+        // Bricks of z >= 8, x >= 8 are empty, with a voxel to spare for the interpolation.
+        s->density.texels[i] = x >= 7 && z >= 7 ? 0 : (float)(0.5 + noise(&seed));
+        s->column.texels[i] = (float)(0.3 + 0.7 * noise(&seed));
+    }
+    s->distance.texels[3] = 1;
+    for (uint32_t i = 0; i < 5 * 4 * 6 * 4; i++) {
+        s->inscatter.texels[i] = (float)(0.1 + 0.2 * noise(&seed));
+    }
+    const float color[3] = {1.0f, 0.7f, 0.3f}, emission[3] = {0.02f, 0.05f, 0.01f};
+    memcpy(s->light.color, color, sizeof color);
+    memcpy(s->medium.emission, emission, sizeof emission);
+    set_sun(s, 0.4f, -0.5f, 0.8f);
+    set_camera(s, -0.7f, 0.5f, -0.3f, 4);
+    s->camera.half_width = s->camera.half_height = 0.8f;
+    s->params.kernels = s->params.emissive = 1;
+    s->params.step = 0.1f;
+    s->params.antialias = 0;
+    s->params.layers = RAYMARCH_LAYER_TRANSMITTANCE | RAYMARCH_LAYER_DEPTH | RAYMARCH_LAYER_SINGLE |
+                       RAYMARCH_LAYER_MULTIPLE;
+}
+
+static void compare_with_twin(gpu_test *t, const march_scene *s, double tolerance)
+{
+    uint32_t w = s->params.width;
+    uint32_t hits = 0;
+    for (uint32_t y = 1; y < w; y += 3) {
+        for (uint32_t x = 1; x < w; x += 3) {
+            double o[3], d[3], length = 0;
+            double su = 2 * (x + 0.5) / w - 1, sv = 1 - 2 * (y + 0.5) / w;
+            for (int a = 0; a < 3; a++) {
+                double across = su * s->camera.half_width * s->camera.right[a] +
+                                sv * s->camera.half_height * s->camera.up[a];
+                o[a] = s->camera.origin[a] + (s->camera.orthographic ? across : 0);
+                d[a] = s->camera.forward[a] + (s->camera.orthographic ? 0 : across);
+                length += d[a] * d[a];
+            }
+            for (int a = 0; a < 3; a++) {
+                d[a] /= sqrt(length);
+            }
+            for (int c = 0; c < 3; c++) {
+                twin_result r = twin(s, o, d, c);
+                hits += r.radiance > 0;
+                assert_close(pixel(t, s, "radiance", x, y)[c], r.radiance, tolerance, "radiance");
+                assert_close(pixel(t, s, "single", x, y)[c], r.single, tolerance, "single");
+                assert_close(pixel(t, s, "multiple", x, y)[c], r.radiance - r.single, 2 * tolerance,
+                             "multiple");
+                assert_close(pixel(t, s, "transmittance", x, y)[c], r.transmittance, tolerance,
+                             "transmittance");
+                float half = pixel(t, s, "depth", x, y)[1];
+                if (s->params.grey) {
+                    assert_true(r.half == INFINITY ? isinf(half) : fabs(half - r.half) < 1e-2);
+                }
+                assert_true(isinf(pixel(t, s, "depth", x, y)[0]));
+            }
+        }
+    }
+    assert_true(hits > 20);
+    const struct counters_block *counters = gpu_map(t, "counters");
+    assert_int_equal(counters->non_finite, 0);
+    assert_true(counters->pixels > 50 && counters->steps > 20 * counters->pixels);
+}
+
+static void lumps_grey(void **state)
+{
+    march_scene *s = malloc(sizeof *s);
+    make_lumps(s);
+    run(*state, s);
+    compare_with_twin(*state, s, 2e-3);
+    // Perspective, from inside.
+    s->camera.orthographic = 0;
+    set_camera(s, -0.7f, 0.5f, -0.3f, 0.1f);
+    run(*state, s);
+    compare_with_twin(*state, s, 2e-3);
+    free(s);
+}
+
+static void lumps_colour(void **state)
+{
+    gpu_test *t = *state;
+    march_scene *s = malloc(sizeof *s);
+    make_lumps(s);
+    run(t, s);
+    float grey[16 * 16 * 4];
+    memcpy(grey, gpu_map(t, "radiance"), sizeof grey);
+    s->params.grey = 0;
+    run(t, s);
+    const float *colour = gpu_map(t, "radiance");
+    for (int i = 0; i < 16 * 16 * 4; i++) {
+        assert_close(colour[i], grey[i], 1e-5, "both kernels");
+    }
+    const float sigma_s[3] = {3, 2, 5}, sigma_a[3] = {0.5f, 1, 0};
+    memcpy(s->medium.sigma_s, sigma_s, sizeof sigma_s);
+    memcpy(s->medium.sigma_a, sigma_a, sizeof sigma_a);
+    run(t, s);
+    compare_with_twin(t, s, 2e-3);
+    free(s);
+}
+
+// Skipping empty bricks changes nothing; a step of one voxel is nearly as good as a tenth.
+static void skipping(void **state)
+{
+    gpu_test *t = *state;
+    march_scene *s = malloc(sizeof *s);
+    make_lumps(s);
+    run(t, s);
+    float fine[16 * 16 * 4];
+    memcpy(fine, gpu_map(t, "radiance"), sizeof fine);
+    uint32_t skipped = ((const struct counters_block *)gpu_map(t, "counters"))->steps;
+    s->distance.texels[3] = 0;
+    run(t, s);
+    uint32_t all = ((const struct counters_block *)gpu_map(t, "counters"))->steps;
+    assert_true(skipped < all * 0.95);
+    const float *marched = gpu_map(t, "radiance");
+    for (int i = 0; i < 16 * 16 * 4; i++) {
+        assert_close(marched[i], fine[i], 2e-3, "without skipping");
+    }
+    s->params.step = 1;
+    run(t, s);
+    double sum = 0, off = 0;
+    marched = gpu_map(t, "radiance");
+    for (int i = 0; i < 16 * 16 * 4; i++) {
+        sum += fine[i];
+        off += fabs(marched[i] - fine[i]);
+    }
+    print_message("one voxel a step: %.2f %% off a tenth of it\n", 100 * off / sum);
+    assert_true(off < 0.02 * sum); // white noise in the voxels is the worst case
+    free(s);
+}
+
+// Uniform surroundings of radiance 1 and no absorption: every pixel is 1, at any depth and g.
+static void furnace(void **state)
+{
+    gpu_test *t = *state;
+    march_scene *s = malloc(sizeof *s);
+    const float sigmas[] = {1e-4f, 0.1f, 4, 300};
+    for (int k = 0; k < 8; k++) {
+        make_cube(s, sigmas[k / 2], 0, k % 2 ? 0.9f : 0.0f);
+        s->params.num_suns = 0;
+        s->params.mean = s->params.background = 1;
+        s->params.layers = RAYMARCH_LAYER_TRANSMITTANCE | RAYMARCH_LAYER_MULTIPLE;
+        for (int i = 0; i < 3; i++) {
+            s->env.radiance[i] = s->env.mean[i] = 1;
+        }
+        for (int i = 0; i < 27 * 4; i++) {
+            s->inscatter.texels[i] = 1;
+        }
+        set_camera(s, 0.3f, 0.5f, -0.6f, 3);
+        s->camera.half_width = s->camera.half_height = 0.9f;
+        run(t, s);
+        for (uint32_t i = 0; i < 16 * 16; i++) {
+            const float *p = pixel(t, s, "radiance", i % 16, i / 16);
+            assert_close(p[0], 1, 2e-4, "furnace");
+            assert_close(p[3], 1, 0, "alpha");
+            double behind = pixel(t, s, "transmittance", i % 16, i / 16)[0];
+            assert_close(pixel(t, s, "multiple", i % 16, i / 16)[0] + behind, 1, 2e-4,
+                         "multiple + background");
+        }
+    }
+    free(s);
+}
+
+// The tail behind transmittance 1e-3 is not lost, and what is behind the medium is attenuated to the end.
+static void opaque(void **state)
+{
+    gpu_test *t = *state;
+    march_scene *s = malloc(sizeof *s);
+    make_cube(s, 0, 9, 0);
+    s->params.num_suns = 0;
+    s->params.emissive = 1;
+    s->params.stop = 0.1f;
+    s->medium.emission[0] = s->medium.emission[1] = s->medium.emission[2] = 9;
+    set_camera(s, 0, 1, 0, 3);
+    s->params.layers = RAYMARCH_LAYER_TRANSMITTANCE;
+    run(t, s);
+    assert_close(pixel(t, s, "radiance", 8, 8)[0], 1, 2e-3, "emission");
+    assert_close(pixel(t, s, "transmittance", 8, 8)[0], exp(-9), 1e-4, "transmittance");
+    free(s);
+}
+
+static void host_depth(void **state)
+{
+    gpu_test *t = *state;
+    march_scene *s = malloc(sizeof *s);
+    make_cube(s, 2, 0, 0);
+    set_sun(s, 0, 0, -1);
+    set_camera(s, 0, 1, 0, 2); // the box is from 1.5 to 2.5
+    s->camera.orthographic = 0;
+    s->params.layers = RAYMARCH_LAYER_TRANSMITTANCE | RAYMARCH_LAYER_DEPTH;
+    s->params.background = 1;
+    s->env.radiance[0] = 100;
+    // A reversed infinite projection: depth = near / distance.
+    float depth[16 * 16], view_to_clip[4] = {0, 0.1f, -1, 0};
+    for (int i = 0; i < 256; i++) {
+        depth[i] = i % 16 < 8 ? 0.1f / 2.0f : 0;
+    }
+    s->host_depth = depth;
+    memcpy(s->params.depth, view_to_clip, sizeof view_to_clip);
+    run(t, s);
+    // Pixel (7, 7) looks nearly straight ahead.
+    double l = sqrt(1 + 2 * pow(0.5 / 16, 2));
+    assert_close(pixel(t, s, "depth", 7, 7)[0], 2 * l, 1e-5, "surface");
+    assert_close(pixel(t, s, "transmittance", 7, 7)[0], exp(-2 * 0.5 * l), 1e-4, "half the box");
+    assert_true(pixel(t, s, "radiance", 7, 7)[0] < 2); // the environment is hidden
+    assert_close(pixel(t, s, "transmittance", 8, 8)[0], exp(-2 * l), 1e-4, "the whole box");
+    assert_true(isinf(pixel(t, s, "depth", 8, 8)[0]));
+    assert_true(pixel(t, s, "radiance", 8, 8)[0] > 10);
+    free(s);
+}
+
+static void bad_density(void **state)
+{
+    gpu_test *t = *state;
+    march_scene *s = malloc(sizeof *s);
+    make_lumps(s);
+    s->density.texels[500] = NAN;
+    s->density.texels[300] = -1e5f;
+    s->inscatter.texels[40] = INFINITY;
+    run(t, s);
+    for (int k = 0; k < 4; k++) {
+        const char *const names[] = {"radiance", "single", "multiple", "transmittance"};
+        const float *p = gpu_map(t, names[k]);
+        for (int i = 0; i < 16 * 16 * 4; i++) {
+            assert_true(isfinite(p[i]) && p[i] >= 0);
+        }
+    }
+    assert_true(((const struct counters_block *)gpu_map(t, "counters"))->non_finite > 0);
+    free(s);
+}
+
+// A sphere in the box: pixels on its outline are averaged over four rays.
+static void antialias(void **state)
+{
+    gpu_test *t = *state;
+    march_scene *s = malloc(sizeof *s);
+    make_cube(s, 2, 0, 0);
+    s->shape.kind = TYN_SHAPE_KIND_SPHERE;
+    set_sun(s, 1, 0, 0);
+    set_camera(s, 0.1f, 1, 0.2f, 3);
+    run(t, s);
+    uint32_t four = ((const struct counters_block *)gpu_map(t, "counters"))->steps;
+    s->params.antialias = 0;
+    run(t, s);
+    uint32_t one = ((const struct counters_block *)gpu_map(t, "counters"))->steps;
+    print_message("steps with one ray a pixel: %u, with four at the outline: %u\n", one, four);
+    // The outline of a circle of 16 pixels' diameter passes between the quarters of about 30 pixels.
+    assert_true(four > one * 1.2 && four < one * 1.6);
+    free(s);
+}
+
+static void nothing(void **state)
+{
+    gpu_test *t = *state;
+    march_scene *s = calloc(1, sizeof *s);
+    make_cube(s, 0, 0, 0);
+    set_camera(s, 0, 1, 0, 3);
+    s->env.radiance[2] = 0.5f;
+    s->params.num_suns = 0;
+    s->params.background = 1;
+    for (int i = 0; i < 3; i++) {
+        s->medium.extent[i] = 0;
+    }
+    tyn_graph_begin(t->graph);
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [RAYMARCH_PORT_MEDIUM] = gpu_buffer(t, "medium", &s->medium, sizeof s->medium),
+        [RAYMARCH_PORT_SHAPES] = gpu_buffer(t, "shapes", &s->shape, sizeof s->shape),
+        [RAYMARCH_PORT_LIGHTS] = gpu_buffer(t, "lights", &s->light, sizeof s->light),
+        [RAYMARCH_PORT_CAMERA] = gpu_buffer(t, "camera", &s->camera, sizeof s->camera),
+        [RAYMARCH_PORT_ENVIRONMENT] = gpu_buffer(t, "environment", &s->env, sizeof s->env),
+    };
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_raymarch, &s->params, refs), TYN_OK);
+    tyn_graph_output(t->graph, "radiance", refs[RAYMARCH_PORT_RADIANCE], true);
+    gpu_run(t);
+    for (uint32_t i = 0; i < 256; i++) {
+        const float *p = pixel(t, s, "radiance", i % 16, i / 16);
+        assert_true(p[0] == 0 && p[2] == 0.5f && p[3] == 1);
+    }
+    free(s);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(single_scattering), cmocka_unit_test(lumps_grey),
+        cmocka_unit_test(lumps_colour),      cmocka_unit_test(skipping),
+        cmocka_unit_test(furnace),           cmocka_unit_test(opaque),
+        cmocka_unit_test(host_depth),        cmocka_unit_test(bad_density),
+        cmocka_unit_test(antialias),         cmocka_unit_test(nothing),
+    };
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
