@@ -4,6 +4,7 @@
 #include "passes/beam/beam.h"
 #include "passes/composite/composite.h"
 #include "passes/tonemap/tonemap.h"
+#include <tyndall/registry.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -98,7 +99,7 @@ tyn_result tyn_add_beams(tyn_graph *g, const tyn_job *job, const tyn_media_refs 
 
     tyn_ref refs[TYN_MAX_PORTS] = {
         [BEAM_PORT_MEDIUM] = job->refs.medium,
-        [BEAM_PORT_DENSITY] = media->density,
+        [coefficients ? BEAM_PORT_SIGMA_S : BEAM_PORT_DENSITY] = media->density,
         [BEAM_PORT_SIGMA_A] = media->sigma_a,
         [BEAM_PORT_G] = media->g,
     };
