@@ -267,27 +267,32 @@ static tyn_result check_mesh(const checker *c, const cJSON *mesh)
 
 static tyn_result check_camera(const checker *c, const cJSON *camera)
 {
+    static const char *const required[2][5] = {{"yfov", "znear"},
+                                               {"xmag", "ymag", "zfar", "znear"}};
     const char *type = "";
     cJSON *lens;
-    double size = 0.0, aspect;
+    double unused;
     TRY(tyn_json_string(c->doc, camera, "type", &type));
     bool perspective = strcmp(type, "perspective") == 0;
     if (!perspective && strcmp(type, "orthographic") != 0) {
         return tyn_json_fault(c->doc, camera, "type must be \"perspective\" or \"orthographic\"");
     }
     TRY(tyn_json_object(c->doc, camera, type, &lens));
-    if (lens && perspective) {
-        TRY(tyn_json_number(c->doc, lens, "yfov", 1e-4, 3.1415, "between 0 and pi radians", &size));
-        TRY(tyn_json_number(c->doc, lens, "aspectRatio", 1e-6, 1e6, "> 0", &aspect));
-    } else if (lens) {
-        TRY(tyn_json_number(c->doc, lens, "ymag", 1e-30, 1e30, "> 0, metres", &size));
-        TRY(tyn_json_number(c->doc, lens, "xmag", 1e-30, 1e30, "> 0, metres", &aspect));
+    if (!lens) {
+        return tyn_json_fault(c->doc, camera, "%s is missing: an object with its lens", type);
     }
-    if (size <= 0.0) {
-        return tyn_json_fault(c->doc, camera, "%s is missing",
-                              perspective ? "perspective.yfov" : "orthographic.ymag");
+    for (const char *const *name = required[!perspective]; *name; name++) {
+        if (!tyn_json_member(lens, *name)) {
+            return tyn_json_fault(c->doc, lens, "%s is missing", *name);
+        }
     }
-    return TYN_OK;
+    if (perspective) {
+        TRY(tyn_json_number(c->doc, lens, "yfov", 1e-4, 3.1415, "between 0 and pi radians",
+                            &unused));
+        return tyn_json_number(c->doc, lens, "aspectRatio", 1e-6, 1e6, "> 0", &unused);
+    }
+    TRY(tyn_json_number(c->doc, lens, "ymag", 1e-30, 1e30, "> 0, metres", &unused));
+    return tyn_json_number(c->doc, lens, "xmag", 1e-30, 1e30, "> 0, metres", &unused);
 }
 
 static tyn_result check_light(const checker *c, const cJSON *light)
