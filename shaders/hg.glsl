@@ -49,9 +49,11 @@ float hg_above(float g, float mu)
 // and a narrow lobe keeps its relative precision.
 float hg_sample(float g, float u)
 {
-    float d = (1.0 - g) + 2.0 * g * u;
-    float q = (1.0 - g) / d;
-    return 2.0 * (1.0 - u) * q * q * (1.0 + g * u);
+    float a = abs(g), v = g >= 0.0 ? u : 1.0 - u; // a backward lobe is the mirrored forward one
+    float d = (1.0 - a) + 2.0 * a * v;
+    float q = (1.0 - a) / d;
+    float one_minus_mu = 2.0 * (1.0 - v) * q * q * (1.0 + a * v);
+    return g >= 0.0 ? one_minus_mu : 2.0 - one_minus_mu;
 }
 
 // ---- delta scaling ------------------------------------------------------------------------------

@@ -9,8 +9,8 @@
 
 struct lut_block { // storage buffer "lut_block"
     tyn_uint num_rows;
-    tyn_uint spread;        // 0: a row per distinct g; 1: rows evenly spread in -ln(1 - g)
-    float log_first;        // spread: -ln(1 - g) of the first row
+    tyn_uint spread;        // 0: a row per distinct g; 1: rows evenly spread in ln(g / (1 - g))
+    float log_first;        // spread: ln(g / (1 - g)) of the first row
     float log_step;         // spread: ... from row to row
     tyn_uvec3 channel_row;  // not spread: row of each colour channel
     tyn_uint num_terms;     // of the longest series

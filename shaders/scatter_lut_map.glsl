@@ -51,7 +51,8 @@ float lut_theta(uint texel, float g)
 // Fractional row of a spread table.
 float lut_row(float log_first, float log_step, uint num_rows, float g)
 {
-    float row = (-log(1.0 - max(g, 0.0)) - log_first) / max(log_step, 1e-6);
+    g = clamp(g, 1e-6, 1.0 - 1e-6);
+    float row = (log(g / (1.0 - g)) - log_first) / log_step;
     return clamp(row, 0.0, float(num_rows - 1u));
 }
 

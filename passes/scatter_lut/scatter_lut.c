@@ -35,7 +35,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                     scatter_lut_sum_spirv,
                     sizeof(scatter_lut_sum_spirv),
                     0,
-                    {TYN_LUT_ANGLES, 1, 1},
+                    {TYN_LUT_ANGLES / 4, 1, 1},
                     sum_bindings,
                     3,
                     0},
@@ -55,13 +55,14 @@ static void make_rows(const tyn_scatter_lut_params *p, struct lut_block *block)
 {
     *block = (struct lut_block){0};
     if (p->mode == TYN_MEDIUM_COEFFICIENTS) {
-        double last = -log1p(-fmin(fmax(p->g_max, 0.1), g_max)), first = -log1p(-0.02);
+        double top = fmin(fmax(p->g_max, 0.1), g_max), first = log(0.02 / 0.98);
+        double step = (log(top / (1 - top)) - first) / (TYN_LUT_MAX_ROWS - 1);
         block->num_rows = TYN_LUT_MAX_ROWS;
         block->spread = 1;
         block->log_first = (float)first;
-        block->log_step = (float)((last - first) / (TYN_LUT_MAX_ROWS - 1));
+        block->log_step = (float)step;
         for (uint32_t r = 0; r < TYN_LUT_MAX_ROWS; r++) {
-            block->g[r] = (float)-expm1(-(first + r * (last - first) / (TYN_LUT_MAX_ROWS - 1)));
+            block->g[r] = (float)fmin(1 / (1 + exp(-(first + r * step))), g_max);
         }
     } else {
         for (uint32_t c = 0; c < 3; c++) {
@@ -218,11 +219,11 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_update(r, SCATTER_LUT_PORT_LUT_BLOCK, 0, &block, sizeof(block));
     tyn_rec_dispatch(r, &(tyn_dispatch){
                             .kernel = KERNEL_SUM,
-                            .cells = {TYN_LUT_ANGLES, TYN_LUT_DEPTHS, block.num_rows},
+                            .cells = {TYN_LUT_ANGLES / 4, TYN_LUT_DEPTHS, block.num_rows},
                         });
-    // Per term and texel: the recurrence (7), the sums (4).
+    // Per term and texel: the recurrence (5), the sums (4).
     double texel_terms = (double)block.num_terms * TYN_LUT_ANGLES * TYN_LUT_DEPTHS;
-    tyn_rec_work(r, "flops", 11 * texel_terms);
+    tyn_rec_work(r, "flops", 9 * texel_terms);
     tyn_rec_work(r, "bytes", 8.0 * TYN_LUT_ANGLES * TYN_LUT_DEPTHS * block.num_rows);
 }
 

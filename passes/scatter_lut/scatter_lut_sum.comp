@@ -3,9 +3,9 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "scatter_lut_map.glsl"
-#include "scatter_lut_series.glsl"
 
-layout(local_size_x = TYN_LUT_ANGLES) in; // x: angle, y: depth, z: row
+const uint THREADS = TYN_LUT_ANGLES / 4, CHUNK = TYN_LUT_ANGLES;
+layout(local_size_x = TYN_LUT_ANGLES / 4) in; // x: four angles, y: depth, z: row
 layout(set = 0, binding = 0, scalar) readonly buffer lut_buffer
 {
     lut_block lut;
@@ -18,7 +18,8 @@ layout(set = 0, binding = 2, rg32f) writeonly uniform image3D lut_image;
 
 const float PI = 3.14159265358979;
 
-shared vec2 coefficients[TYN_LUT_ANGLES];
+// Per term of a chunk: coefficient of K_tms and K_lobe, and of the recurrence to the next P_l.
+shared vec4 chunk[CHUNK];
 
 // (2l+1)/(4 pi) (e^{-tau (1 - F_l)} - e^-tau) / (f (1 - e^-tau) e^{-tau (1 - f)}); its limit at tau = 0.
 float coefficient(float l, float moment, float f, float tau)
@@ -36,32 +37,60 @@ float coefficient(float l, float moment, float f, float tau)
 
 void main()
 {
-    ivec3 texel = ivec3(gl_GlobalInvocationID);
-    uint row = gl_WorkGroupID.z;
+    uint thread = gl_LocalInvocationID.x, row = gl_WorkGroupID.z;
     float g = lut.g[row];
     float f = lut.theta_1[row] > 0.0 ? g * g : 0.0;
     float tau = lut_depth(gl_WorkGroupID.y, f);
     uint terms = f > 0.0 ? lut.terms[row] : 0u;
 
-    legendre series = legendre_start(lut_theta(gl_LocalInvocationID.x, g));
-    vec2 sums = vec2(0.0);
-    for (uint start = 0u; start < terms; start += TYN_LUT_ANGLES) {
-        uint l = start + gl_LocalInvocationID.x;
+    // The recurrence (l+1) P_{l+1} = (2l+1) x P_l - l P_{l-1} loses all digits near x = 1 for l in the
+    // thousands, where dP_l/dx = l (l+1) / 2. In y = 1 - x, which is known to full relative precision,
+    // and the differences d_l = P_l - P_{l-1} it reads d_{l+1} = (l d_l - (2l+1) y P_l) / (l+1).
+    // Behind (x < 0) P_l(-x) = (-1)^l P_l(x).
+    vec4 y;
+    bvec4 behind;
+    for (uint a = 0u; a < 4u; a++) {
+        float theta = lut_theta(thread + a * THREADS, g);
+        behind[a] = theta > 0.5 * PI;
+        float half_sine = behind[a] ? cos(0.5 * theta) : sin(0.5 * theta);
+        y[a] = 2.0 * half_sine * half_sine;
+    }
+    vec4 p = vec4(1.0), d = vec4(0.0);
+    vec4 rest_even = vec4(0.0), rest_odd = vec4(0.0), lobe_even = vec4(0.0), lobe_odd = vec4(0.0);
+    for (uint start = 0u; start < terms; start += CHUNK) {
         barrier();
-        if (l < terms) {
-            vec2 moment = moments[lut.first_term[row] + l];
-            coefficients[gl_LocalInvocationID.x] = moment * coefficient(float(l), moment.y, f, tau);
+        for (uint i = thread; i < CHUNK; i += THREADS) {
+            uint l = start + i;
+            chunk[i] = vec4(0.0);
+            if (l < terms) {
+                vec2 moment = moments[lut.first_term[row] + l];
+                chunk[i] = vec4(moment * coefficient(float(l), moment.y, f, tau),
+                                vec2(float(l), float(2u * l + 1u)) / float(l + 1u));
+            }
         }
         barrier();
-        uint count = min(terms - start, TYN_LUT_ANGLES);
-        for (uint i = 0u; i < count; i++) {
-            sums += coefficients[i] * legendre_value(series);
-            legendre_next(series, float(start + i));
+        uint count = min(terms - start, CHUNK);
+        for (uint i = 0u; i < count; i += 2u) { // chunks have an even length
+            vec4 term = chunk[i];
+            rest_even += term.x * p;
+            lobe_even += term.y * p;
+            d = term.z * d - term.w * y * p;
+            p += d;
+            term = chunk[i + 1u];
+            rest_odd += term.x * p;
+            lobe_odd += term.y * p;
+            d = term.z * d - term.w * y * p;
+            p += d;
         }
     }
-    // Both parts are sums of convolutions of non-negative functions; what rounding leaves below a ten
-    // thousandth of the other one is not resolved.
-    float total = max(sums.x + sums.y, 1e-9);
-    vec2 stored = log(max(sums, vec2(1e-4 * total)));
-    imageStore(lut_image, texel.yxz, vec4(stored, 0.0, 0.0));
+    vec4 rest = rest_even + mix(rest_odd, -rest_odd, behind);
+    vec4 lobe = lobe_even + mix(lobe_odd, -lobe_odd, behind);
+    for (uint a = 0u; a < 4u; a++) {
+        // Both parts are sums of convolutions of non-negative functions; what rounding leaves below a
+        // ten thousandth of the other one is not resolved.
+        float total = max(rest[a] + lobe[a], 1e-9);
+        vec2 stored = log(max(vec2(rest[a], lobe[a]), vec2(1e-4 * total)));
+        ivec3 texel = ivec3(gl_WorkGroupID.y, thread + a * THREADS, row);
+        imageStore(lut_image, texel, vec4(stored, 0.0, 0.0));
+    }
 }

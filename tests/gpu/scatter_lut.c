@@ -1,0 +1,282 @@
+// scatter_lut.c -- the table of forward scattering against the double precision series.
+#include "gpu_test.h"
+#include "passes/scatter_lut/scatter_lut.h"
+#include "point_pass.h"
+#include "scatter_lut_eval.comp.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define PI 3.14159265358979323846
+
+// ---- the series, straight from its definition -----------------------------------------------------
+
+typedef struct series {
+    double g, f, theta_1;
+    int terms;
+    double lobe[2500], rest[2500]; // F_l, g^l - F_l
+} series;
+
+static double phase(double g, double theta)
+{
+    double y = 2 * sin(0.5 * theta) * sin(0.5 * theta);
+    return (1 - g * g) / (4 * PI * pow((1 - g) * (1 - g) + 2 * g * y, 1.5));
+}
+
+static double window(const series *s, double theta)
+{
+    double x = s->theta_1 > 0 ? theta / s->theta_1 - 0.5 : 1;
+    return x <= 0 ? 1 : x >= 1 ? 0 : 1 - x * x * (3 - 2 * x);
+}
+
+static double lobe_density(const series *s, double theta)
+{
+    return 2 * PI * phase(s->g, theta) * window(s, theta) * sin(theta);
+}
+
+static void series_make(series *s, double g)
+{
+    *s = (series){.g = g, .f = g > 0 ? g * g : 0, .terms = (int)(12 / (1 - fmax(g, 0))) + 64};
+    if (s->terms > 2464) {
+        s->terms = 2464;
+    }
+    if (s->f < 1e-6) {
+        double power = 1;
+        for (int l = 0; l < s->terms; l++, power *= g) {
+            s->rest[l] = power;
+        }
+        return;
+    }
+    double lo = 0, hi = 2;
+    int n = s->terms * 8 > 4000 ? s->terms * 8 : 4000;
+    for (int i = 0; i < 45; i++) { // half width that holds the fraction f
+        s->theta_1 = 0.5 * (lo + hi);
+        double sum = 0;
+        for (int q = 0; q < n; q++) {
+            sum += lobe_density(s, 1.5 * s->theta_1 * (q + 0.5) / n) * 1.5 * s->theta_1 / n;
+        }
+        *(sum < s->f ? &lo : &hi) = s->theta_1;
+    }
+    for (int q = 0; q < n; q++) {
+        double theta = 1.5 * s->theta_1 * (q + 0.5) / n, mu = cos(theta), before = 1, p = mu;
+        double weight = lobe_density(s, theta) * 1.5 * s->theta_1 / n;
+        for (int l = 0; l < s->terms; l++) {
+            s->lobe[l] += weight * before;
+            double next = ((2 * l + 3) * mu * p - (l + 1) * before) / (l + 2);
+            before = p;
+            p = next;
+        }
+    }
+    double power = 1;
+    for (int l = 0; l < s->terms; l++, power *= g) {
+        s->rest[l] = power - s->lobe[l];
+    }
+}
+
+static void series_kernels(const series *s, double tau, double theta, double k[2])
+{
+    double mu = cos(theta), before = 1, p = mu, h = window(s, theta), sum[2] = {0, 0};
+    for (int l = 0; l < s->terms; l++) {
+        double e = (2 * l + 1) / (4 * PI) * before * exp(-tau * (1 - s->lobe[l])) *
+                   -expm1(-tau * s->lobe[l]);
+        sum[0] += e * s->rest[l];
+        sum[1] += e * s->lobe[l];
+        double next = ((2 * l + 3) * mu * p - (l + 1) * before) / (l + 2);
+        before = p;
+        p = next;
+    }
+    k[0] = phase(s->g, theta) * (1 - h) * exp(-tau) + fmax(sum[0], 0);
+    k[1] = phase(s->g, theta) * h * exp(-tau) + fmax(sum[1], 0);
+}
+
+// ---- the table at points --------------------------------------------------------------------------
+
+typedef struct point {
+    float tau, theta, g;
+    uint32_t channel;
+    float tau_p;
+} point;
+
+static const float (*evaluate(gpu_test *t, const tyn_scatter_lut_params *lut_params,
+                              const point *points, uint32_t count, uint32_t mixed))[2]
+{
+    static point_pass pass;
+    static const point_input inputs[] = {{"lut", TYN_IMAGE_3D, TYN_USE_SAMPLED},
+                                         {"lut_block", TYN_BUFFER, TYN_USE_STORAGE_READ}};
+    point_pass_init(&pass, scatter_lut_eval_spirv, sizeof scatter_lut_eval_spirv, inputs, 2);
+    tyn_graph_begin(t->graph);
+    tyn_ref lut[SCATTER_LUT_NUM_PORTS] = {{0}}, refs[4] = {{0}};
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_scatter_lut, lut_params, lut), TYN_OK);
+    refs[0] = lut[SCATTER_LUT_PORT_LUT];
+    refs[1] = lut[SCATTER_LUT_PORT_LUT_BLOCK];
+    refs[2] = gpu_buffer(t, "points", points, count * sizeof *points);
+    point_pass_params params = {count, 8, mixed, pass.results};
+    assert_int_equal(tyn_graph_add(t->graph, &pass.desc, &params, refs), TYN_OK);
+    tyn_graph_output(t->graph, "results", refs[3], true);
+    gpu_run(t);
+    return (const float(*)[2])gpu_map(t, "results");
+}
+
+static double random_unit(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return (*seed >> 8) * 0x1p-24;
+}
+
+enum { COUNT = 600 };
+
+// Even over the logarithms of depth and angle, where the kernels vary. `deepest` in tau (1 - f).
+static void scatter_points(point *points, uint32_t channel, double g, double deepest,
+                           uint32_t *seed)
+{
+    double depth_max = deepest / (1 - (g > 0 ? g * g : 0)), width = 0.2 * (1 - fabs(g));
+    for (int i = 0; i < COUNT; i++) {
+        double tau = expm1(random_unit(seed) * log1p(4 * depth_max)) / 4;
+        double theta = width * expm1(random_unit(seed) * log1p(PI / width));
+        points[i] = (point){(float)tau, (float)fmin(theta, PI), 0, channel, 0};
+    }
+}
+
+// Largest error relative to K_tms + K_lobe; NaN and negative values count as 1e30.
+static double worst_error(const series *s, const point *points, const float (*got)[2],
+                          const char *name)
+{
+    double worst = 0, sum = 0, at[2] = {0, 0};
+    for (int i = 0; i < COUNT; i++) {
+        double k[2];
+        series_kernels(s, points[i].tau, points[i].theta, k);
+        for (int part = 0; part < 2; part++) {
+            double error = fabs(got[i][part] - k[part]) / (k[0] + k[1]);
+            error = got[i][part] >= 0 && error == error ? error : 1e30;
+            sum += error;
+            if (error > worst) {
+                worst = error;
+                at[0] = points[i].tau;
+                at[1] = points[i].theta;
+            }
+        }
+    }
+    printf("%s g %6.3f: largest error %.3f %% (tau %.3g, theta %.3g), mean %.4f %%\n", name, s->g,
+           100 * worst, at[0], at[1], 100 * sum / (2 * COUNT));
+    return worst;
+}
+
+static void rows_of_channels(void **state)
+{
+    gpu_test *t = *state;
+    static const float sets[][3] = {{0.9f, 0.5f, 0.9f},
+                                    {0, 1e-8f, 0.03f},
+                                    {-0.6f, -0.95f, 0.3f},
+                                    {0.6f, 0.85f, 0.95f},
+                                    {0.8f, 0.98f, 0.995f}};
+    static point points[3 * COUNT];
+    static series s;
+    uint32_t seed = 7;
+    for (size_t n = 0; n < sizeof sets / sizeof *sets; n++) {
+        tyn_scatter_lut_params params = {
+            TYN_MEDIUM_DENSITY, {sets[n][0], sets[n][1], sets[n][2]}, 0};
+        for (uint32_t c = 0; c < 3; c++) {
+            scatter_points(points + c * COUNT, c, sets[n][c], 20, &seed);
+        }
+        const float(*got)[2] = evaluate(t, &params, points, 3 * COUNT, 0);
+        printf("built in %.2f ms\n", gpu_ms(t, "scatter_lut"));
+        for (uint32_t c = 0; c < 3; c++) {
+            series_make(&s, sets[n][c]);
+            double worst = worst_error(&s, points + c * COUNT, got + c * COUNT, "row");
+            assert_true(worst < (sets[n][c] > 0.98f ? 0.01 : 0.005));
+        }
+    }
+}
+
+// Without scattering before, the sum is the phase function itself; at g above 0.995 that of 0.995.
+static void single_scattering(void **state)
+{
+    gpu_test *t = *state;
+    point points[200];
+    static const float g[3] = {0.9f, -0.7f, 0.999f};
+    for (int i = 0; i < 200; i++) {
+        points[i] = (point){0, (float)(PI * pow(i / 199.0, 3)), 0, (uint32_t)i % 3, 0};
+    }
+    tyn_scatter_lut_params params = {TYN_MEDIUM_DENSITY, {g[0], g[1], g[2]}, 0};
+    const float(*got)[2] = evaluate(t, &params, points, 200, 0);
+    for (int i = 0; i < 200; i++) {
+        double p = phase(fmin(g[i % 3], 0.995), points[i].theta);
+        assert_true(fabs(got[i][0] + got[i][1] - p) < 2e-4 * p);
+    }
+}
+
+// All directions together: the light that is still going forward after the last scattering,
+// f e^{-tau (1 - f)}, and what left the beam in it, (1 - f) times that. Also far beyond the table.
+static void sums_over_directions(void **state)
+{
+    gpu_test *t = *state;
+    enum { DEPTHS = 5, ANGLES = 4000 };
+    static point points[DEPTHS * ANGLES];
+    const double g = 0.8, f = g * g, taus[DEPTHS] = {0.01, 0.5, 3, 30, 80};
+    for (int i = 0; i < DEPTHS * ANGLES; i++) {
+        points[i] =
+            (point){(float)taus[i / ANGLES], (float)(PI * (i % ANGLES + 0.5) / ANGLES), 0, 0, 0};
+    }
+    tyn_scatter_lut_params params = {TYN_MEDIUM_DENSITY, {0.8f, 0.8f, 0.8f}, 0};
+    const float(*got)[2] = evaluate(t, &params, points, DEPTHS * ANGLES, 0);
+    for (int d = 0; d < DEPTHS; d++) {
+        double sum[2] = {0, 0};
+        for (int a = 0; a < ANGLES; a++) {
+            for (int part = 0; part < 2; part++) {
+                sum[part] +=
+                    2 * PI * got[d * ANGLES + a][part] * sin(points[a].theta) * PI / ANGLES;
+            }
+        }
+        double beam = exp(-taus[d] * (1 - f));
+        printf("tau %5.2f: lobe %.5f of %.5f, rest %.5f of %.5f\n", taus[d], sum[1] / beam, f,
+               sum[0] / beam, 1 - f);
+        assert_true(fabs(sum[1] / beam - f) < 0.003);
+        assert_true(fabs(sum[0] / beam - (1 - f)) < 0.003);
+    }
+}
+
+// A beam with one g throughout, looked up between the rows of a table for varying g.
+static void spread_rows(void **state)
+{
+    gpu_test *t = *state;
+    static const double gs[] = {-0.4, 0, 0.02, 0.15, 0.5, 0.77, 0.9, 0.94, 0.95};
+    static point points[COUNT];
+    static series s;
+    uint32_t seed = 3;
+    tyn_scatter_lut_params params = {TYN_MEDIUM_COEFFICIENTS, {0, 0, 0}, 0.95f};
+    for (size_t n = 0; n < sizeof gs / sizeof *gs; n++) {
+        scatter_points(points, 0, gs[n], 6, &seed);
+        for (int i = 0; i < COUNT; i++) {
+            points[i].g = (float)gs[n];
+            points[i].tau_p = points[i].tau * (float)(1 - (gs[n] > 0 ? gs[n] * gs[n] : 0));
+        }
+        const float(*got)[2] = evaluate(t, &params, points, COUNT, 1);
+        series_make(&s, gs[n]);
+        assert_true(worst_error(&s, points, got, "spread") < 0.02);
+    }
+}
+
+static void refuses_bad_g(void **state)
+{
+    gpu_test *t = *state;
+    static const float bad[] = {1, -1, 2, NAN, INFINITY};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        tyn_scatter_lut_params params = {TYN_MEDIUM_DENSITY, {0.5f, bad[i], 0.5f}, 0};
+        tyn_ref refs[SCATTER_LUT_NUM_PORTS] = {{0}};
+        t->quiet = true;
+        tyn_graph_begin(t->graph);
+        assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_scatter_lut, &params, refs),
+                         TYN_ERR_PARAMS);
+        t->quiet = false;
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(rows_of_channels),     cmocka_unit_test(single_scattering),
+        cmocka_unit_test(sums_over_directions), cmocka_unit_test(spread_rows),
+        cmocka_unit_test(refuses_bad_g),
+    };
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}

@@ -1,0 +1,29 @@
+// scatter_lut_eval.comp -- the kernels at given depths and angles.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define SCATTER_LUT 0
+#define SCATTER_LUT_BLOCK 1
+#include "scatter_lut.glsl"
+
+layout(local_size_x = 64) in;
+layout(constant_id = 0) const uint mixed = 0u;
+struct point {
+    float tau, theta, g; // g and tau_p: mixed only
+    uint channel;
+    float tau_p;
+};
+layout(set = 0, binding = 2, scalar) readonly buffer points_buffer { point points[]; };
+layout(set = 0, binding = 3, scalar) writeonly buffer results_buffer { vec2 results[]; };
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= points.length()) {
+        return;
+    }
+    point p = points[i];
+    vec3 light = vec3(0.0, 0.0, 1.0), view = vec3(sin(p.theta), 0.0, cos(p.theta));
+    results[i] = mixed == 0u ? scatter_kernels(scatter_angle_of(p.channel, view, light), p.tau)
+                             : scatter_kernels_mixed(view, light, p.g, p.tau, p.tau_p);
+}
