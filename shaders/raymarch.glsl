@@ -83,14 +83,20 @@ struct march_medium {
 march_medium march_medium_of(medium_point point)
 {
     vec3 sigma_s = point.sigma_s, g = point.g;
-    similarity_clamp(sigma_s, g);
+    bool scaled = !raymarch_has(RAYMARCH_UNSCALED);
+    if (scaled) {
+        similarity_clamp(sigma_s, g);
+    }
     march_medium m;
     m.g = spectrum_of(g);
     m.scattering = spectrum_of(sigma_s);
     m.absorption = spectrum_of(point.sigma_a);
     m.hidden = spectrum_of(point.sigma_s) - m.scattering;
     m.extinction = m.scattering + m.absorption;
-    m.scaled_scattering = (1.0 - delta_fraction(m.g)) * m.scattering;
+    m.scaled_scattering = m.scattering;
+    if (scaled) {
+        m.scaled_scattering *= 1.0 - delta_fraction(m.g);
+    }
     m.scaled_extinction = m.scaled_scattering + m.absorption;
     m.emission = point.emission;
     return m;
@@ -299,7 +305,11 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
 
             if (raymarch_has(RAYMARCH_FIELD)) {
                 vec3 J = textureLod(inscatter_tex, field0 + at * field1, 0.0).rgb;
-                result.radiance += m.scaled_scattering * weight_scaled * J;
+                spectrum per_metre = m.scaled_scattering;
+                if (raymarch_has(RAYMARCH_SOURCE)) {
+                    per_metre = spectrum(spectrum_max(m.extinction) > 0.0 ? 1.0 : 0.0);
+                }
+                result.radiance += per_metre * weight_scaled * J;
             }
             if (raymarch_has(RAYMARCH_EMISSION)) {
                 result.radiance += m.emission * weight_scaled;

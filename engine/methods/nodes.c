@@ -126,6 +126,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->num_suns = in->num_suns;
     params->kernels = in->lut.resource != 0;
     params->mean = in->mean_in_field;
+    params->field = in->field;
     params->emissive = frame->emissive;
     params->width = job->view->width;
     params->height = job->view->height;

@@ -26,6 +26,7 @@ typedef struct tyn_picture_inputs {
     tyn_ref inscatter;
     uint32_t num_suns;
     float cell;         // of the lattice behind inscatter, m; 0 = none
+    uint32_t field;     // RAYMARCH_INSCATTER_*
     bool mean_in_field; // the environment's mean came in through inscatter
 } tyn_picture_inputs;
 

@@ -171,6 +171,8 @@ static void record(tyn_recorder *r, const void *params)
     }
     features |= p->kernels ? RAYMARCH_KERNELS : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_INSCATTER) ? RAYMARCH_FIELD : 0;
+    features |= p->field != RAYMARCH_INSCATTER_SCALED ? RAYMARCH_UNSCALED : 0;
+    features |= p->field == RAYMARCH_INSCATTER_SOURCE ? RAYMARCH_SOURCE : 0;
     features |= p->emissive ? RAYMARCH_EMISSION : 0;
     features |= p->mean ? RAYMARCH_MEAN : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_HOST_DEPTH) ? RAYMARCH_HOST_DEPTH : 0;

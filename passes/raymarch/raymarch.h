@@ -16,6 +16,7 @@ typedef struct tyn_raymarch_params {
     uint32_t emissive;   // 1: media emit light
     uint32_t background; // 1: the environment behind the medium is seen
     uint32_t layers;     // set of RAYMARCH_LAYER_*
+    uint32_t field;      // RAYMARCH_INSCATTER_*: what `inscatter` is
     uint32_t width, height;
     float extent[3];    // medium_block.extent, m
     float longest_step; // m; a step is no longer than this
@@ -26,6 +27,12 @@ typedef struct tyn_raymarch_params {
 // of cells of `dx` metres (0 = none): the light changes no faster than cells and depth allow.
 // Steps are bounded by voxels as well, so this matters for homogeneous media only.
 float tyn_raymarch_longest_step(float sigma_t, float dx, const float extent[3]);
+
+enum {
+    RAYMARCH_INSCATTER_SCALED = 0, // light per sigma_s' (merge): depths of the picture are delta scaled
+    RAYMARCH_INSCATTER_PLAIN,      // light per sigma_s; nothing is scaled
+    RAYMARCH_INSCATTER_SOURCE,     // light per metre of any medium; nothing is scaled
+};
 
 enum {
     RAYMARCH_LAYER_TRANSMITTANCE = 1 << 0,

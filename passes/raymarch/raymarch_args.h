@@ -15,6 +15,8 @@
 #define RAYMARCH_DEPTH 256u
 #define RAYMARCH_SINGLE 512u
 #define RAYMARCH_MULTIPLE 1024u
+#define RAYMARCH_UNSCALED 2048u // no delta scaling: tau' is tau
+#define RAYMARCH_SOURCE 4096u   // inscatter is what a metre of any medium sends, not per sigma_s
 
 struct raymarch_args {
     float step;           // longest step, m
