@@ -43,12 +43,17 @@ void tyn_graph_begin(tyn_graph *g)
     g->num_nodes = 0;
     g->num_outputs = 0;
     g->params_used = 0;
-    g->recompute = false;
+    g->recompute = g->setup_only = false;
 }
 
 void tyn_graph_recompute(tyn_graph *g)
 {
     g->recompute = true;
+}
+
+void tyn_graph_setup_only(tyn_graph *g)
+{
+    g->setup_only = true;
 }
 
 static void *grow(void *array, uint32_t count, uint32_t *cap, size_t element)

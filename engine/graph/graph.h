@@ -63,6 +63,9 @@ void tyn_graph_mark_media(tyn_graph *g, tyn_ref ref);
 // This frame runs every node that depends on more than the media, changed or not (for timing).
 void tyn_graph_recompute(tyn_graph *g);
 
+// This frame records only uploads and nodes that depend on the media alone.
+void tyn_graph_setup_only(tyn_graph *g);
+
 tyn_extent tyn_graph_extent(const tyn_graph *g, tyn_ref ref);
 VkFormat tyn_graph_format(const tyn_graph *g, tyn_ref ref);
 const tyn_log *tyn_graph_log(const tyn_graph *g);
@@ -101,6 +104,7 @@ typedef struct tyn_node_stats {
     double gpu_ms; // of the last finished record that ran it; 0 where timestamps are missing
     double cpu_ms; // recording
     uint32_t dispatches, barriers;
+    bool media_only; // depends on the media alone
     uint64_t bytes; // memory of the node's OUT and SCRATCH resources
     struct {
         const char *name;

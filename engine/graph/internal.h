@@ -112,7 +112,7 @@ struct tyn_graph {
     output outputs[32];
     uint32_t num_outputs;
     uint64_t unique; // ever-changing content
-    bool recompute;
+    bool recompute, setup_only;
     // compiled
     uint64_t structure; // 0 = nothing compiled
     phys *phys;

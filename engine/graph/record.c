@@ -367,7 +367,9 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
             g->runs[i].stats.cpu_ms = 0;
         }
     }
-    record_readbacks(&rec);
+    if (!g->setup_only) {
+        record_readbacks(&rec);
+    }
     record_imports_after(&rec);
     slot->pending = true;
     g->frame++;
@@ -412,6 +414,7 @@ uint32_t tyn_graph_stats(tyn_graph *g, const tyn_node_stats **stats)
         const node *n = &g->nodes[i];
         g->stats[i] = g->runs[i].stats;
         g->stats[i].name = n->pass->name;
+        g->stats[i].media_only = n->media_only;
         g->stats[i].bytes = 0;
         for (uint32_t p = 0; p < n->pass->num_ports; p++) {
             tyn_port_dir dir = n->pass->ports[p].dir;

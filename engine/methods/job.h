@@ -44,11 +44,19 @@ typedef struct tyn_job {
     const tyn_frame_scene *frame;
     tyn_scene_refs refs;
     uint32_t outputs;       // set of tyn_output that is wanted
+    bool readback;          // copy the outputs to host memory
     float view_to_clip[16]; // of the host's depth
     const tyn_log *log;
     void (*warn)(void *user, const char *line); // goes to the report's warnings, once per text
     void *warn_user;
 } tyn_job;
+
+// Gives the graph what was made for an output; nothing happens if it is not wanted.
+void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref);
+// Has a pass's struct counters_block read back, for the report. `pass` = its node's name.
+void tyn_job_counters(tyn_graph *g, const tyn_job *job, const char *pass, tyn_ref ref);
+// The names of outputs in the graph: "radiance", ...
+const char *tyn_output_name(tyn_output which);
 
 typedef struct tyn_method {
     const char *name, *summary;

@@ -27,6 +27,7 @@ typedef struct tyn_context_params {
     const char *method;           // "pop" (NULL), "pop-paper", "single", "path"
     const tyn_settings *settings; // NULL = defaults; copied
     uint32_t frames_in_flight;    // 1..8; 0 = 2
+    bool readback;                // copy outputs to host memory (tyn_context_output)
 } tyn_context_params;
 #define tyn_context_params(...) \
     (&(tyn_context_params){.struct_size = sizeof(tyn_context_params), __VA_ARGS__})
@@ -87,7 +88,8 @@ typedef struct tyn_frame {
     const tyn_image *depth;  // COMPOSITE: may be NULL; hardware depth of the host's surfaces
     float view_to_clip[16];  // Required with depth: how depth was made (Vulkan clip z in [0, 1])
     const tyn_image *color;  // COMPOSITE: Required; rgba16f or rgba32f with STORAGE usage
-    bool recompute;          // run every node, changed or not (for timing)
+    bool recompute;  // run every node but those that depend on the media alone, changed or not
+    bool setup_only; // record only uploads and nodes that depend on the media alone
 } tyn_frame;
 #define tyn_frame(...) (&(tyn_frame){.struct_size = sizeof(tyn_frame), __VA_ARGS__})
 
@@ -96,7 +98,7 @@ typedef struct tyn_frame {
 TYN_API tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame);
 TYN_API tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame);
 
-// Host memory of an output of the last record, once the GPU has finished it: 4 floats a pixel (DISPLAY:
+// With `readback`: host memory of an output of the last record, once the GPU has finished it: 4 floats a pixel (DISPLAY:
 // 4 bytes), or the probe and balance structs. NULL if it was not asked for. Valid until the next call.
 TYN_API const void *tyn_context_output(tyn_context *ctx, tyn_output output);
 
@@ -111,6 +113,7 @@ typedef struct tyn_node_report {
     double flops;
     struct { const char *name; double amount; } work[8];
     uint32_t num_work;
+    bool media_only; // depends on the media alone: part of the set-up, not of a frame
 } tyn_node_report;
 
 typedef struct tyn_report {
@@ -122,6 +125,10 @@ typedef struct tyn_report {
 } tyn_report;
 // Of the last finished record. Valid until the next call on the context.
 TYN_API void tyn_context_report(tyn_context *ctx, tyn_report *report);
+
+// Progressive methods: the most samples that one record should be asked for, so that no dispatch runs
+// long (>= 1). Others: 1. After prepare.
+TYN_API uint32_t tyn_context_batch(tyn_context *ctx, const tyn_frame *frame);
 
 // The compiled graph as text or Graphviz; freed with free().
 TYN_API char *tyn_context_graph(tyn_context *ctx, bool dot);

@@ -1,0 +1,443 @@
+// context.c -- tyn_context: a method on a scene, recorded into the caller's command buffer.
+#include <tyndall/context.h>
+#include "frame/frame_scene.h"
+#include "plugin/registry.h"
+#include "base/hash.h"
+#include "counters.h"
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_WARNINGS = 32 };
+
+struct tyn_context {
+    tyn_device *dev;
+    const tyn_method *method;
+    tyn_settings *settings;
+    bool readback;
+    tyn_graph *graph;
+    // What the last declaration was made from; the graph reads it until it has recorded.
+    tyn_frame_scene frame;
+    tyn_atlas atlas;
+    const tyn_scene *scene;
+    float (*points)[3]; // probe points in M
+    uint32_t num_points;
+    uint32_t outputs;
+    // The environment's tables, made again when its texels change.
+    uint64_t env_hash;
+    float env_mean[3];
+    char *warnings[MAX_WARNINGS];
+    uint32_t num_warnings;
+    tyn_node_report *nodes; // of the last report
+    tyn_balance balance;
+};
+
+// ---- create, destroy --------------------------------------------------------------------------
+
+tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params, tyn_context **out)
+{
+    *out = NULL;
+    if (!dev || !params || params->struct_size < sizeof *params) {
+        tyn_log_print(dev ? &dev->log : NULL, TYN_LOG_ERROR,
+                      "tyn_context_create: use the tyn_context_params() macro");
+        return TYN_ERR_PARAMS;
+    }
+    const tyn_method *method = tyn_method_find(params->method ? params->method : "pop");
+    if (!method) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR, "method '%s' is not known; there are: %s",
+                      params->method, tyn_method_names());
+        return TYN_ERR_PARAMS;
+    }
+    uint32_t slots = params->frames_in_flight ? params->frames_in_flight : 2;
+    if (slots > 8) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR, "frames_in_flight is %u; it must be 1 to 8", slots);
+        return TYN_ERR_PARAMS;
+    }
+    tyn_context *ctx = calloc(1, sizeof *ctx);
+    if (!ctx) {
+        return TYN_ERR_MEMORY;
+    }
+    ctx->dev = dev;
+    ctx->method = method;
+    ctx->readback = params->readback;
+    tyn_result result = tyn_settings_copy(params->settings, &ctx->settings);
+    if (result == TYN_OK) {
+        result = tyn_graph_create(dev, slots, &ctx->graph);
+    }
+    if (result != TYN_OK) {
+        tyn_context_destroy(&ctx);
+    }
+    *out = ctx;
+    return result;
+}
+
+static void clear_warnings(tyn_context *ctx)
+{
+    for (uint32_t i = 0; i < ctx->num_warnings; i++) {
+        free(ctx->warnings[i]);
+    }
+    ctx->num_warnings = 0;
+}
+
+void tyn_context_destroy(tyn_context **context)
+{
+    tyn_context *ctx = context ? *context : NULL;
+    if (!ctx) {
+        return;
+    }
+    *context = NULL;
+    tyn_graph_destroy(&ctx->graph);
+    tyn_settings_destroy(&ctx->settings);
+    clear_warnings(ctx);
+    free(ctx->points);
+    free(ctx->nodes);
+    free(ctx);
+}
+
+// ---- declaring a frame ------------------------------------------------------------------------
+
+static void add_warning(void *user, const char *line)
+{
+    tyn_context *ctx = user;
+    for (uint32_t i = 0; i < ctx->num_warnings; i++) {
+        if (!strcmp(ctx->warnings[i], line)) {
+            return;
+        }
+    }
+    char *copy = ctx->num_warnings < MAX_WARNINGS ? strdup(line) : NULL;
+    if (copy) {
+        ctx->warnings[ctx->num_warnings++] = copy;
+        tyn_log_print(&ctx->dev->log, TYN_LOG_WARN, "%s: %s", ctx->method->name, line);
+    }
+}
+
+static tyn_result check_frame(const tyn_context *ctx, const tyn_frame *frame)
+{
+    const tyn_log *log = &ctx->dev->log;
+    if (!frame || frame->struct_size < sizeof *frame || !frame->scene || !frame->view) {
+        tyn_log_print(log, TYN_LOG_ERROR,
+                      "tyn_frame: scene and view are required (use the tyn_frame() macro)");
+        return TYN_ERR_PARAMS;
+    }
+    const tyn_view *view = frame->view;
+    uint32_t outputs = view->outputs ? view->outputs : TYN_OUTPUT_RADIANCE;
+    if (outputs & ~ctx->method->outputs) {
+        uint32_t missing = outputs & ~ctx->method->outputs;
+        tyn_log_print(log, TYN_LOG_ERROR, "method '%s' cannot make the output '%s'",
+                      ctx->method->name, tyn_output_name((tyn_output)(missing & -missing)));
+        return TYN_ERR_PARAMS;
+    }
+    if (!view->width || !view->height || view->width > 16384 || view->height > 16384) {
+        tyn_log_print(log, TYN_LOG_ERROR, "size is %u x %u; each side must be 1 to 16384 pixels",
+                      view->width, view->height);
+        return TYN_ERR_PARAMS;
+    }
+    if ((outputs & TYN_OUTPUT_PROBE) && (!view->points || !view->num_points)) {
+        tyn_log_print(log, TYN_LOG_ERROR, "a probe needs at least one point");
+        return TYN_ERR_PARAMS;
+    }
+    if (outputs & TYN_OUTPUT_COMPOSITE) {
+        const tyn_image *color = frame->color;
+        if (!color || !(color->usage & VK_IMAGE_USAGE_STORAGE_BIT) ||
+            (color->format != VK_FORMAT_R16G16B16A16_SFLOAT &&
+             color->format != VK_FORMAT_R32G32B32A32_SFLOAT)) {
+            tyn_log_print(log, TYN_LOG_ERROR,
+                          "COMPOSITE needs tyn_frame.color: rgba16f or rgba32f with "
+                          "VK_IMAGE_USAGE_STORAGE_BIT");
+            return TYN_ERR_PARAMS;
+        }
+        if (color->extent.width != view->width || color->extent.height != view->height) {
+            tyn_log_print(log, TYN_LOG_ERROR,
+                          "color is %u x %u, the view is %u x %u; make them equal",
+                          color->extent.width, color->extent.height, view->width, view->height);
+            return TYN_ERR_PARAMS;
+        }
+    }
+    return tyn_scene_check(frame->scene, log);
+}
+
+static void fill_atlas(void *user, void *texels)
+{
+    const tyn_context *ctx = user;
+    tyn_atlas_fill(&ctx->atlas, ctx->scene, texels);
+}
+
+static void fill_environment(void *user, void *texels)
+{
+    const tyn_environment *env = &((const tyn_context *)user)->scene->environment;
+    float *out = texels;
+    for (size_t i = 0; i < (size_t)env->size[0] * env->size[1]; i++) {
+        memcpy(out + i * 4, env->data + i * 3, 3 * sizeof(float));
+        out[i * 4 + 3] = 1;
+    }
+}
+
+static tyn_result update_environment(tyn_context *ctx, const tyn_environment *env)
+{
+    size_t texels = (size_t)env->size[0] * env->size[1];
+    uint64_t hash = 1;
+    if (env->present && texels) {
+        hash = env->hash ? env->hash
+                         : tyn_hash_bytes(TYN_HASH_SEED, env->data, texels * 3 * sizeof(float));
+    }
+    if (hash != ctx->env_hash) {
+        tyn_environment_mean(env, ctx->env_mean);
+        ctx->env_hash = hash;
+    }
+    return TYN_OK;
+}
+
+static tyn_result update_points(tyn_context *ctx, const tyn_view *view)
+{
+    if (view->num_points > ctx->num_points || !ctx->points) {
+        void *grown = realloc(ctx->points, view->num_points * sizeof *ctx->points);
+        if (!grown) {
+            return TYN_ERR_MEMORY;
+        }
+        ctx->points = grown;
+    }
+    ctx->num_points = view->num_points;
+    const float *m = ctx->frame.m_from_world;
+    for (uint32_t i = 0; i < view->num_points; i++) {
+        const float *p = view->points[i];
+        for (int a = 0; a < 3; a++) {
+            ctx->points[i][a] = (float)((double)m[a] * p[0] + (double)m[4 + a] * p[1] +
+                                        (double)m[8 + a] * p[2] + m[12 + a]);
+        }
+    }
+    return TYN_OK;
+}
+
+static void upload_scene(tyn_context *ctx, const tyn_frame *frame, tyn_scene_refs *refs)
+{
+    tyn_graph *g = ctx->graph;
+    const tyn_frame_scene *f = &ctx->frame;
+    const tyn_scene *scene = frame->scene;
+    if (ctx->atlas.host) {
+        uint64_t version = frame->density_versions ? frame->density_versions[0] : 0;
+        refs->atlas =
+            tyn_graph_import_image(g, "atlas", TYN_IMAGE_3D, &frame->densities[0], version);
+    } else if (ctx->atlas.extent.z) {
+        refs->atlas = tyn_graph_upload_image(
+            g, "atlas", TYN_IMAGE_3D, ctx->atlas.half ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT,
+            ctx->atlas.extent, fill_atlas, ctx, tyn_atlas_hash(&ctx->atlas, scene));
+    }
+    refs->medium = tyn_graph_upload_buffer(g, "medium", &f->medium, sizeof f->medium, 0);
+    uint32_t shapes = scene->num_shapes ? scene->num_shapes : 1;
+    refs->shapes = tyn_graph_upload_buffer(g, "shapes", f->shapes, shapes * sizeof f->shapes[0], 0);
+    tyn_graph_mark_media(g, refs->atlas);
+    tyn_graph_mark_media(g, refs->medium);
+    tyn_graph_mark_media(g, refs->shapes);
+
+    uint32_t lights = f->num_lights ? f->num_lights : 1;
+    refs->lights = tyn_graph_upload_buffer(g, "lights", f->lights, lights * sizeof f->lights[0], 0);
+    refs->camera = tyn_graph_upload_buffer(g, "camera", &f->camera, sizeof f->camera, 0);
+    refs->environment =
+        tyn_graph_upload_buffer(g, "environment", &f->environment, sizeof f->environment, 0);
+    const tyn_environment *env = &scene->environment;
+    if (f->environment.has_map) {
+        refs->env_map = tyn_graph_upload_image(
+            g, "env_map", TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
+            (tyn_extent){env->size[0], env->size[1], 1}, fill_environment, ctx, ctx->env_hash);
+    }
+    if (frame->view->outputs & TYN_OUTPUT_PROBE) {
+        refs->points = tyn_graph_upload_buffer(g, "points", ctx->points,
+                                               ctx->num_points * sizeof *ctx->points, 0);
+    }
+    if (frame->view->outputs & TYN_OUTPUT_COMPOSITE) {
+        refs->color = tyn_graph_import_image(g, "color", TYN_IMAGE_2D, frame->color, 0);
+        if (frame->depth) {
+            refs->depth = tyn_graph_import_image(g, "depth", TYN_IMAGE_2D, frame->depth, 0);
+        }
+    }
+}
+
+static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *job)
+{
+    const tyn_view *view = frame->view;
+    const tyn_log *log = &ctx->dev->log;
+    ctx->scene = frame->scene;
+    tyn_result result = update_environment(ctx, &frame->scene->environment);
+    if (result == TYN_OK) {
+        result = tyn_frame_scene_build(&ctx->frame, frame->scene, view, ctx->env_mean, log);
+    }
+    if (result == TYN_OK) {
+        result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);
+    }
+    if (result == TYN_OK && ctx->atlas.host && !frame->densities) {
+        tyn_log_print(log, TYN_LOG_ERROR, "volume 0 has no data and tyn_frame.densities is NULL");
+        result = TYN_ERR_PARAMS;
+    }
+    if (result == TYN_OK && (view->outputs & TYN_OUTPUT_PROBE)) {
+        result = update_points(ctx, view);
+    }
+    if (result != TYN_OK) {
+        return result;
+    }
+    *job = (tyn_job){.scene = frame->scene,
+                     .view = view,
+                     .settings = ctx->settings,
+                     .frame = &ctx->frame,
+                     .outputs = view->outputs ? view->outputs : TYN_OUTPUT_RADIANCE,
+                     .readback = ctx->readback,
+                     .log = log,
+                     .warn = add_warning,
+                     .warn_user = ctx};
+    memcpy(job->view_to_clip, frame->view_to_clip, sizeof job->view_to_clip);
+    return TYN_OK;
+}
+
+static tyn_result declare(tyn_context *ctx, const tyn_frame *frame)
+{
+    tyn_result result = check_frame(ctx, frame);
+    tyn_job job;
+    if (result == TYN_OK) {
+        result = make_job(ctx, frame, &job);
+    }
+    if (result != TYN_OK) {
+        return result;
+    }
+    ctx->outputs = job.outputs;
+    tyn_graph_begin(ctx->graph);
+    if (frame->recompute) {
+        tyn_graph_recompute(ctx->graph);
+    }
+    if (frame->setup_only) {
+        tyn_graph_setup_only(ctx->graph);
+    }
+    upload_scene(ctx, frame, &job.refs);
+    result = ctx->method->declare(ctx->graph, &job);
+    return result == TYN_OK ? tyn_graph_status(ctx->graph) : result;
+}
+
+// ---- prepare, record --------------------------------------------------------------------------
+
+tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)
+{
+    clear_warnings(ctx);
+    tyn_result result = declare(ctx, frame);
+    if (result == TYN_OK && !tyn_graph_matches(ctx->graph)) {
+        result = tyn_graph_compile(ctx->graph);
+    }
+    return result;
+}
+
+tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame)
+{
+    if (!frame || !frame->cmd) {
+        tyn_log_print(&ctx->dev->log, TYN_LOG_ERROR, "tyn_frame: cmd is required");
+        return TYN_ERR_PARAMS;
+    }
+    tyn_result result = declare(ctx, frame);
+    return result == TYN_OK ? tyn_graph_record(ctx->graph, frame->cmd) : result;
+}
+
+uint32_t tyn_context_batch(tyn_context *ctx, const tyn_frame *frame)
+{
+    tyn_job job;
+    if (!ctx->method->batch || check_frame(ctx, frame) != TYN_OK ||
+        make_job(ctx, frame, &job) != TYN_OK) {
+        return 1;
+    }
+    uint32_t batch = ctx->method->batch(&job);
+    return batch ? batch : 1;
+}
+
+// ---- outputs ----------------------------------------------------------------------------------
+
+const char *tyn_output_name(tyn_output which)
+{
+    static const char *const names[] = {"radiance", "transmittance", "depth",   "single",
+                                        "multiple", "error",         "display", "probe",
+                                        "balance",  "composite"};
+    for (uint32_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (which == (tyn_output)(1u << i)) {
+            return names[i];
+        }
+    }
+    return "unknown";
+}
+
+void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref)
+{
+    if (job->outputs & which) {
+        tyn_graph_output(g, tyn_output_name(which), ref,
+                         job->readback && which != TYN_OUTPUT_COMPOSITE);
+    }
+}
+
+void tyn_job_counters(tyn_graph *g, const tyn_job *job, const char *pass, tyn_ref ref)
+{
+    // Named as the pass: the report finds them by the node's name. Unasked, they keep nothing alive.
+    if (job->readback && ref.resource) {
+        tyn_graph_output(g, pass, ref, true);
+    }
+}
+
+const void *tyn_context_output(tyn_context *ctx, tyn_output output)
+{
+    return ctx->outputs & output ? tyn_graph_map(ctx->graph, tyn_output_name(output), NULL, NULL)
+                                 : NULL;
+}
+
+// ---- what happened ----------------------------------------------------------------------------
+
+static const char *state_name(tyn_node_state state)
+{
+    static const char *const names[] = {"ran", "unchanged", "culled", "empty"};
+    return names[state];
+}
+
+static void add_work(tyn_node_report *node, const char *name, double amount)
+{
+    if (node->num_work < sizeof node->work / sizeof node->work[0]) {
+        node->work[node->num_work].name = name;
+        node->work[node->num_work++].amount = amount;
+    }
+}
+
+void tyn_context_report(tyn_context *ctx, tyn_report *report)
+{
+    *report = (tyn_report){.warnings = (const char *const *)ctx->warnings,
+                           .num_warnings = ctx->num_warnings};
+    const tyn_node_stats *stats;
+    uint32_t count = tyn_graph_stats(ctx->graph, &stats);
+    tyn_node_report *nodes = realloc(ctx->nodes, (count ? count : 1) * sizeof *nodes);
+    if (!nodes) {
+        return;
+    }
+    ctx->nodes = nodes;
+    for (uint32_t i = 0; i < count; i++) {
+        const tyn_node_stats *s = &stats[i];
+        nodes[i] = (tyn_node_report){.name = s->name,
+                                     .state = state_name(s->state),
+                                     .gpu_ms = s->gpu_ms,
+                                     .cpu_ms = s->cpu_ms,
+                                     .dispatches = s->dispatches,
+                                     .barriers = s->barriers,
+                                     .bytes = s->bytes,
+                                     .media_only = s->media_only};
+        for (uint32_t w = 0; w < s->num_work; w++) {
+            if (!strcmp(s->work[w].name, "flops")) {
+                nodes[i].flops = s->work[w].amount;
+            } else {
+                add_work(&nodes[i], s->work[w].name, s->work[w].amount);
+            }
+        }
+        const struct counters_block *c = tyn_graph_map(ctx->graph, s->name, NULL, NULL);
+        if (c && s->state != TYN_NODE_CULLED) {
+            add_work(&nodes[i], "steps", c->steps);
+            add_work(&nodes[i], "pixels", c->pixels);
+            add_work(&nodes[i], "non_finite", c->non_finite);
+            add_work(&nodes[i], "clamped", c->clamped);
+            add_work(&nodes[i], "cut", c->cut);
+        }
+    }
+    report->nodes = nodes;
+    report->num_nodes = count;
+    tyn_graph_memory(ctx->graph, &report->persistent_bytes, &report->transient_bytes);
+}
+
+char *tyn_context_graph(tyn_context *ctx, bool dot)
+{
+    return tyn_graph_dump(ctx->graph, dot);
+}

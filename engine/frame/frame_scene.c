@@ -1,0 +1,379 @@
+// frame_scene.c -- turns a scene and a view into the blocks that shaders read.
+#include "frame/frame_scene.h"
+#include <math.h>
+#include <string.h>
+
+// Texels along the longest side of a medium that must be resampled, at most and at least.
+enum { RESAMPLED_MAX = 192, RESAMPLED_HOMOGENEOUS = 96 };
+
+// ---- small linear algebra, in double ----------------------------------------------------------
+
+static double dot3(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static double length3(const double a[3])
+{
+    return sqrt(dot3(a, a));
+}
+
+static void cross3(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+// A rigid frame: axes of M in the world, and its origin.
+typedef struct rigid {
+    double axes[3][3], origin[3];
+} rigid;
+
+static void to_m_direction(const rigid *m, const float world[3], float out[3])
+{
+    const double w[3] = {world[0], world[1], world[2]};
+    for (int a = 0; a < 3; a++) {
+        out[a] = (float)dot3(m->axes[a], w);
+    }
+}
+
+static void to_m_position(const rigid *m, const float world[3], float out[3])
+{
+    const double w[3] = {world[0] - m->origin[0], world[1] - m->origin[1], world[2] - m->origin[2]};
+    for (int a = 0; a < 3; a++) {
+        out[a] = (float)dot3(m->axes[a], w);
+    }
+}
+
+// ---- the medium frame -------------------------------------------------------------------------
+
+static void columns(const float matrix[16], double c[4][3])
+{
+    for (int i = 0; i < 4; i++) {
+        for (int j = 0; j < 3; j++) {
+            c[i][j] = matrix[i * 4 + j];
+        }
+    }
+}
+
+// One box or sphere without shear: M is turned with it. Gives false for shears.
+static bool frame_of_shape(const tyn_shape *shape, rigid *m, double extent[3], bool *mirrored)
+{
+    double c[4][3], turned[3];
+    columns(shape->to_world, c);
+    for (int a = 0; a < 3; a++) {
+        extent[a] = length3(c[a]);
+        for (int b = 0; b < a; b++) {
+            if (fabs(dot3(c[a], c[b])) > 1e-5 * extent[a] * extent[b]) {
+                return false;
+            }
+        }
+    }
+    for (int a = 0; a < 3; a++) {
+        for (int j = 0; j < 3; j++) {
+            m->axes[a][j] = c[a][j] / extent[a];
+        }
+    }
+    cross3(m->axes[1], m->axes[2], turned);
+    *mirrored = dot3(turned, m->axes[0]) < 0;
+    if (*mirrored) {
+        for (int j = 0; j < 3; j++) {
+            m->axes[0][j] = -m->axes[0][j];
+        }
+    }
+    for (int j = 0; j < 3; j++) {
+        m->origin[j] = c[3][j];
+        for (int a = 0; a < 3; a++) {
+            m->origin[j] -= 0.5 * extent[a] * m->axes[a][j];
+        }
+    }
+    return true;
+}
+
+static void frame_of_world(const tyn_scene *scene, rigid *m, double extent[3])
+{
+    float lo[3] = {0, 0, 0}, hi[3] = {1, 1, 1};
+    if (!tyn_scene_bounds(scene, lo, hi)) {
+        hi[0] = hi[1] = hi[2] = 1;
+    }
+    for (int a = 0; a < 3; a++) {
+        m->origin[a] = lo[a];
+        extent[a] = (double)hi[a] - lo[a];
+        for (int j = 0; j < 3; j++) {
+            m->axes[a][j] = a == j;
+        }
+    }
+}
+
+static bool equal_coefficients(const tyn_medium *a, const tyn_medium *b)
+{
+    bool equal = true;
+    for (int c = 0; c < 3; c++) {
+        equal &= a->sigma_s[c] * a->density_scale == b->sigma_s[c] * b->density_scale &&
+                 a->sigma_a[c] * a->density_scale == b->sigma_a[c] * b->density_scale &&
+                 a->g[c] == b->g[c] &&
+                 a->emission[c] * a->density_scale == b->emission[c] * b->density_scale;
+    }
+    return equal;
+}
+
+static bool one_value(const float v[3])
+{
+    return v[0] == v[1] && v[1] == v[2];
+}
+
+// Texels of a resampled medium: as fine as its finest grid, within bounds.
+static void choose_size(const tyn_scene *scene, const double extent[3], uint32_t size[3])
+{
+    double longest = fmax(extent[0], fmax(extent[1], extent[2]));
+    double h = longest / RESAMPLED_HOMOGENEOUS;
+    for (uint32_t i = 0; i < scene->num_shapes; i++) {
+        int32_t volume = scene->media[scene->shapes[i].medium].volume;
+        double c[4][3];
+        columns(scene->shapes[i].to_world, c);
+        for (int a = 0; volume >= 0 && a < 3; a++) {
+            h = fmin(h, length3(c[a]) / scene->volumes[volume].size[a]);
+        }
+    }
+    h = fmax(h, longest / RESAMPLED_MAX);
+    for (int a = 0; a < 3; a++) {
+        size[a] = (uint32_t)fmax(1.0, ceil(extent[a] / h - 1e-6));
+    }
+}
+
+static void build_medium(tyn_frame_scene *out, const tyn_scene *scene, const double extent[3])
+{
+    struct medium_block *b = &out->medium;
+    const tyn_medium *first = &scene->media[scene->shapes[0].medium];
+    bool equal = true;
+    float max_sum = 0;
+    for (uint32_t i = 0; i < scene->num_shapes; i++) {
+        const tyn_medium *m = &scene->media[scene->shapes[i].medium];
+        equal &= equal_coefficients(first, m);
+        max_sum += m->volume < 0 ? 1.0f : scene->volumes[m->volume].max_density;
+    }
+    b->mode = equal ? TYN_MEDIUM_DENSITY : TYN_MEDIUM_COEFFICIENTS;
+    b->num_shapes = scene->num_shapes;
+    b->max_density = equal ? max_sum : 1.0f;
+    b->sigma_t_max = equal ? 0.0f : 1.0f;
+    for (int c = 0; equal && c < 3; c++) {
+        b->sigma_s[c] = first->sigma_s[c] * first->density_scale;
+        b->sigma_a[c] = first->sigma_a[c] * first->density_scale;
+        b->g[c] = first->g[c];
+        b->emission[c] = first->emission[c] * first->density_scale;
+        b->sigma_t_max = fmaxf(b->sigma_t_max, b->sigma_s[c] + b->sigma_a[c]);
+    }
+    out->grey = equal && one_value(b->sigma_s) && one_value(b->sigma_a) && one_value(b->g);
+    if (out->direct && first->volume >= 0) {
+        memcpy(b->size, scene->volumes[first->volume].size, sizeof b->size);
+    } else if (out->direct) {
+        b->size[0] = b->size[1] = b->size[2] = 1;
+    } else {
+        choose_size(scene, extent, b->size);
+    }
+    for (int a = 0; a < 3; a++) {
+        b->extent[a] = (float)extent[a];
+        b->voxel[a] = b->extent[a] / (float)b->size[a];
+        b->bricks[a] = (b->size[a] + TYN_BRICK - 1) / TYN_BRICK;
+        b->brick_size[a] = b->voxel[a] * TYN_BRICK;
+        b->repeat[a] = scene->num_shapes == 1 && scene->shapes[0].repeat[a];
+    }
+}
+
+// Rows of M -> local: the inverse of (world -> M) o (local -> world).
+static void local_from_m(const tyn_shape *shape, const rigid *m, tyn_vec4 rows[3])
+{
+    double c[4][3], in_m[4][3];
+    columns(shape->to_world, c);
+    for (int j = 0; j < 3; j++) {
+        c[3][j] -= m->origin[j];
+    }
+    for (int i = 0; i < 4; i++) {
+        for (int a = 0; a < 3; a++) {
+            in_m[i][a] = dot3(m->axes[a], c[i]);
+        }
+    }
+    double bc[3], ca[3], ab[3];
+    cross3(in_m[1], in_m[2], bc);
+    cross3(in_m[2], in_m[0], ca);
+    cross3(in_m[0], in_m[1], ab);
+    double det = dot3(in_m[0], bc);
+    const double *inverse[3] = {bc, ca, ab};
+    for (int r = 0; r < 3; r++) {
+        for (int a = 0; a < 3; a++) {
+            rows[r][a] = (float)(inverse[r][a] / det);
+        }
+        rows[r][3] = (float)(-dot3(inverse[r], in_m[3]) / det);
+    }
+}
+
+static void build_shapes(tyn_frame_scene *out, const tyn_scene *scene, const rigid *m)
+{
+    out->empty = true;
+    for (uint32_t i = 0; i < scene->num_shapes; i++) {
+        const tyn_shape *shape = &scene->shapes[i];
+        const tyn_medium *medium = &scene->media[shape->medium];
+        const tyn_volume *volume = medium->volume < 0 ? NULL : &scene->volumes[medium->volume];
+        struct shape_block *b = &out->shapes[i];
+        local_from_m(shape, m, b->rows);
+        b->kind = shape->kind == TYN_SHAPE_SPHERE ? TYN_SHAPE_KIND_SPHERE : TYN_SHAPE_KIND_BOX;
+        b->offset[2] = tyn_atlas_offset(scene, medium->volume);
+        for (int a = 0; a < 3; a++) {
+            b->size[a] = volume ? volume->size[a] : 1;
+            b->sigma_s[a] = medium->sigma_s[a] * medium->density_scale;
+            b->sigma_a[a] = medium->sigma_a[a] * medium->density_scale;
+            b->g[a] = medium->g[a];
+            b->emission[a] = medium->emission[a] * medium->density_scale;
+            bool dark = b->sigma_s[a] + b->sigma_a[a] + b->emission[a] <= 0;
+            out->empty &= dark || (volume && volume->max_density <= 0);
+            out->emissive |= b->emission[a] > 0;
+        }
+    }
+}
+
+// ---- lights, camera, environment --------------------------------------------------------------
+
+static void build_lights(tyn_frame_scene *out, const tyn_scene *scene, const rigid *m)
+{
+    for (int pass = 0; pass < 2; pass++) { // directional lights first
+        for (uint32_t i = 0; i < scene->num_lights; i++) {
+            const tyn_light *light = &scene->lights[i];
+            if ((light->kind == TYN_LIGHT_DIRECTIONAL) != (pass == 0)) {
+                continue;
+            }
+            struct light_block *b = &out->lights[out->num_lights++];
+            memcpy(b->color, light->color, sizeof b->color);
+            b->kind = (tyn_uint)light->kind;
+            b->cos_inner = light->cos_inner;
+            b->cos_outer = light->cos_outer;
+            to_m_position(m, light->position, b->position);
+            to_m_direction(m, light->direction, b->direction);
+            float *d = b->direction, n = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+            for (int a = 0; a < 3; a++) {
+                d[a] = n > 0 ? d[a] / n : (float)(a == 2);
+            }
+            out->num_suns += pass == 0;
+        }
+    }
+}
+
+static void build_camera(tyn_frame_scene *out, const tyn_view *view, const rigid *m)
+{
+    const tyn_camera *camera = &view->camera;
+    struct camera_block *b = &out->camera;
+    float aspect = view->height ? (float)view->width / (float)view->height : 1.0f;
+    to_m_position(m, camera->position, b->origin);
+    to_m_direction(m, camera->right, b->right);
+    to_m_direction(m, camera->up, b->up);
+    to_m_direction(m, camera->back, b->forward);
+    for (int a = 0; a < 3; a++) {
+        b->forward[a] = -b->forward[a];
+    }
+    b->orthographic = camera->projection == TYN_ORTHOGRAPHIC;
+    b->half_height = b->orthographic ? camera->ymag : tanf(camera->yfov * 0.5f);
+    b->half_width = b->half_height * aspect;
+    b->background = !view->no_background;
+    b->size[0] = view->width;
+    b->size[1] = view->height;
+}
+
+static void build_environment(tyn_frame_scene *out, const tyn_environment *env,
+                              const float mean_env[3], const rigid *m)
+{
+    struct env_block *b = &out->environment;
+    if (!env->present) {
+        return;
+    }
+    b->has_map = env->size[0] && env->size[1];
+    b->size[0] = env->size[0];
+    b->size[1] = env->size[1];
+    const float *q = env->rotation;
+    double n =
+        sqrt((double)q[0] * q[0] + (double)q[1] * q[1] + (double)q[2] * q[2] + (double)q[3] * q[3]);
+    double x = n > 0 ? q[0] / n : 0, y = n > 0 ? q[1] / n : 0, z = n > 0 ? q[2] / n : 0;
+    double w = n > 0 ? q[3] / n : 1;
+    const double map_to_world[3][3] = {
+        // columns: the map's axes in the world
+        {1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)},
+        {2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)},
+        {2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y)}};
+    for (int r = 0; r < 3; r++) {
+        for (int a = 0; a < 3; a++) {
+            b->rows[r][a] = (float)dot3(map_to_world[r], m->axes[a]);
+        }
+        b->radiance[r] = env->radiance[r] * env->strength;
+        b->mean[r] = b->radiance[r] * (b->has_map ? mean_env[r] : 1.0f);
+    }
+}
+
+void tyn_environment_mean(const tyn_environment *env, float mean[3])
+{
+    double sum[3] = {0, 0, 0};
+    const float *texel = env->data;
+    for (uint32_t y = 0; y < env->size[1]; y++) {
+        // Share of the sphere of one texel of this row.
+        double share = (cos(M_PI * y / env->size[1]) - cos(M_PI * (y + 1) / env->size[1])) * 0.5 /
+                       env->size[0];
+        for (uint32_t x = 0; x < env->size[0]; x++, texel += 3) {
+            for (int c = 0; c < 3; c++) {
+                sum[c] += share * texel[c];
+            }
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        mean[c] = (float)sum[c];
+    }
+}
+
+// ---- all --------------------------------------------------------------------------------------
+
+tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, const tyn_view *view,
+                                 const float mean_env[3], const tyn_log *log)
+{
+    memset(out, 0, sizeof *out);
+    for (uint32_t i = 0; i < scene->num_shapes; i++) {
+        const bool *repeat = scene->shapes[i].repeat;
+        if ((repeat[0] || repeat[1] || repeat[2]) && scene->num_shapes > 1) {
+            tyn_log_print(
+                log, TYN_LOG_ERROR,
+                "shape %u repeats, but the scene has %u shapes; a periodic medium must be "
+                "the only one",
+                i, scene->num_shapes);
+            return TYN_ERR_UNSUPPORTED;
+        }
+    }
+    rigid m;
+    double extent[3];
+    bool mirrored = false;
+    bool unsheared =
+        scene->num_shapes == 1 && frame_of_shape(&scene->shapes[0], &m, extent, &mirrored);
+    if (!unsheared) {
+        frame_of_world(scene, &m, extent);
+    }
+    // The atlas can serve as the density texture if it holds this grid alone.
+    tyn_atlas atlas;
+    tyn_result result = tyn_atlas_plan(&atlas, scene, log);
+    if (result != TYN_OK) {
+        return result;
+    }
+    out->direct = unsheared && !mirrored && scene->shapes[0].kind == TYN_SHAPE_BOX &&
+                  (scene->media[scene->shapes[0].medium].volume < 0
+                       ? scene->num_volumes == 0
+                       : scene->num_volumes == 1 && atlas.extent.z == scene->volumes[0].size[2]);
+    if (scene->num_shapes) {
+        build_medium(out, scene, extent);
+    }
+    build_shapes(out, scene, &m);
+    build_lights(out, scene, &m);
+    build_camera(out, view, &m);
+    build_environment(out, &scene->environment, mean_env, &m);
+    for (int a = 0; a < 3; a++) {
+        for (int j = 0; j < 3; j++) {
+            out->m_from_world[j * 4 + a] = (float)m.axes[a][j];
+        }
+        out->m_from_world[12 + a] = (float)-dot3(m.axes[a], m.origin);
+    }
+    out->m_from_world[15] = 1;
+    return TYN_OK;
+}

@@ -1,0 +1,23 @@
+// frame_scene.h -- turns a scene and a view into the blocks that shaders read.
+#pragma once
+#include "methods/job.h"
+
+// Everything in the medium frame M (scene_args.h). `mean_env` is the mean radiance of the map's texels
+// over the sphere, before `radiance` and `strength`. Errors are one log line.
+tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, const tyn_view *view,
+                                 const float mean_env[3], const tyn_log *log);
+
+// Mean of a latitude-longitude map over the sphere, exact for its texels' solid angles.
+void tyn_environment_mean(const tyn_environment *environment, float mean[3]);
+
+// The atlas: every density grid, stacked along z in the order of scene.volumes, then one texel of 1 for
+// homogeneous media. {0,0,0} extent if the only grid is the host's image.
+typedef struct tyn_atlas {
+    tyn_extent extent;
+    bool half; // R16F holds all values well
+    bool host; // the host brings the image
+} tyn_atlas;
+tyn_result tyn_atlas_plan(tyn_atlas *atlas, const tyn_scene *scene, const tyn_log *log);
+void tyn_atlas_fill(const tyn_atlas *atlas, const tyn_scene *scene, void *texels);
+uint64_t tyn_atlas_hash(const tyn_atlas *atlas, const tyn_scene *scene);
+uint32_t tyn_atlas_offset(const tyn_scene *scene, int32_t volume); // first z

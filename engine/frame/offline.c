@@ -1,0 +1,175 @@
+// offline.c -- rendering to host memory with a device of our own: submit and wait.
+#include <tyndall/offline.h>
+#include "gpu/device.h"
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+struct tyn_offline {
+    tyn_device *dev;
+    tyn_context *context;
+    VkCommandPool pool;
+    VkCommandBuffer cmd;
+    VkFence fence;
+    double setup_ms, frame_ms;
+};
+
+static double now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params *params, tyn_offline **out)
+{
+    *out = NULL;
+    if (!dev || !dev->queue || !params || params->struct_size < sizeof *params) {
+        tyn_log_print(dev ? &dev->log : NULL, TYN_LOG_ERROR,
+                      "tyn_offline_create needs a device from tyn_device_open");
+        return TYN_ERR_PARAMS;
+    }
+    tyn_offline *off = calloc(1, sizeof *off);
+    if (!off) {
+        return TYN_ERR_MEMORY;
+    }
+    off->dev = dev;
+    const tyn_procs *vk = &dev->vk;
+    tyn_result result = tyn_context_create(
+        dev,
+        tyn_context_params(.method = params->method, .settings = params->settings,
+                           .frames_in_flight = 1, .readback = true),
+        &off->context);
+    if (result == TYN_OK) {
+        VkResult made = vk->CreateCommandPool(
+            dev->device,
+            &(VkCommandPoolCreateInfo){.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                       .queueFamilyIndex = dev->queue_family},
+            NULL, &off->pool);
+        result = tyn_vk_check(dev, made, "vkCreateCommandPool");
+    }
+    if (result == TYN_OK) {
+        VkResult made = vk->AllocateCommandBuffers(
+            dev->device,
+            &(VkCommandBufferAllocateInfo){.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                           .commandPool = off->pool,
+                                           .commandBufferCount = 1},
+            &off->cmd);
+        result = tyn_vk_check(dev, made, "vkAllocateCommandBuffers");
+    }
+    if (result == TYN_OK) {
+        VkResult made = vk->CreateFence(
+            dev->device, &(VkFenceCreateInfo){.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO}, NULL,
+            &off->fence);
+        result = tyn_vk_check(dev, made, "vkCreateFence");
+    }
+    if (result != TYN_OK) {
+        tyn_offline_destroy(&off);
+    }
+    *out = off;
+    return result;
+}
+
+void tyn_offline_destroy(tyn_offline **offline)
+{
+    tyn_offline *off = offline ? *offline : NULL;
+    if (!off) {
+        return;
+    }
+    *offline = NULL;
+    tyn_context_destroy(&off->context);
+    off->dev->vk.DestroyFence(off->dev->device, off->fence, NULL);
+    off->dev->vk.DestroyCommandPool(off->dev->device, off->pool, NULL);
+    free(off);
+}
+
+// Records, submits and waits.
+static tyn_result submit(tyn_offline *off, tyn_frame *frame)
+{
+    const tyn_device *dev = off->dev;
+    const tyn_procs *vk = &dev->vk;
+    frame->cmd = off->cmd;
+    VkResult r = vk->ResetCommandPool(dev->device, off->pool, 0);
+    if (r == VK_SUCCESS) {
+        r = vk->BeginCommandBuffer(
+            off->cmd,
+            &(VkCommandBufferBeginInfo){.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT});
+    }
+    tyn_result result = tyn_vk_check(dev, r, "vkBeginCommandBuffer");
+    if (result == TYN_OK) {
+        result = tyn_context_record(off->context, frame);
+        r = vk->EndCommandBuffer(off->cmd);
+    }
+    if (result == TYN_OK && r == VK_SUCCESS) {
+        r = vk->QueueSubmit2(
+            dev->queue, 1,
+            &(VkSubmitInfo2){.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+                             .commandBufferInfoCount = 1,
+                             .pCommandBufferInfos =
+                                 &(VkCommandBufferSubmitInfo){
+                                     .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                     .commandBuffer = off->cmd}},
+            off->fence);
+        if (r == VK_SUCCESS) {
+            r = vk->WaitForFences(dev->device, 1, &off->fence, VK_TRUE, UINT64_MAX);
+        }
+        if (r == VK_SUCCESS) {
+            r = vk->ResetFences(dev->device, 1, &off->fence);
+        }
+    }
+    return result == TYN_OK ? tyn_vk_check(dev, r, "rendering a frame") : result;
+}
+
+tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn_view *view,
+                             bool recompute)
+{
+    tyn_view part = *view;
+    tyn_frame frame = *tyn_frame(.scene = scene, .view = &part, .recompute = recompute);
+    uint32_t batch = tyn_context_batch(off->context, &frame);
+    uint32_t samples = view->num_samples ? view->num_samples : 1;
+    // Every record of the frame gets the same shape of work, so that it is prepared once.
+    part.num_samples = batch < samples ? batch : samples;
+    double start = now_ms();
+    tyn_result result = tyn_context_prepare(off->context, &frame);
+    if (result == TYN_OK) {
+        frame.setup_only = true;
+        result = submit(off, &frame);
+        frame.setup_only = false;
+    }
+    off->setup_ms = now_ms() - start;
+
+    start = now_ms();
+    for (uint32_t done = 0; result == TYN_OK && done < samples; done += part.num_samples) {
+        part.first_sample = view->first_sample + done;
+        part.num_samples = samples - done < batch ? samples - done : batch;
+        result = submit(off, &frame);
+    }
+    off->frame_ms = now_ms() - start;
+    return result;
+}
+
+const void *tyn_offline_output(tyn_offline *off, tyn_output output)
+{
+    return tyn_context_output(off->context, output);
+}
+
+void tyn_offline_report(tyn_offline *off, tyn_report *report)
+{
+    tyn_context_report(off->context, report);
+}
+
+tyn_context *tyn_offline_context(tyn_offline *off)
+{
+    return off->context;
+}
+
+double tyn_offline_setup_ms(const tyn_offline *off)
+{
+    return off->setup_ms;
+}
+
+double tyn_offline_frame_ms(const tyn_offline *off)
+{
+    return off->frame_ms;
+}
