@@ -4,6 +4,7 @@
 #include "plugin/registry.h"
 #include "base/hash.h"
 #include "counters.h"
+#include "gpu/device.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -186,8 +186,9 @@ static void choose_nodes(const tyn_graph *g, bool *run_node)
 {
     for (uint32_t i = 0; i < g->num_nodes; i++) {
         const node *n = &g->nodes[i];
-        run_node[i] = n->needed && ((g->recompute && !n->media_only) ||
-                                    g->runs[i].hash != n->hash || !outputs_current(g, n, i));
+        bool wanted = n->needed && (n->media_only || !g->setup_only);
+        run_node[i] = wanted && ((g->recompute && !n->media_only) || g->runs[i].hash != n->hash ||
+                                 !outputs_current(g, n, i));
     }
     for (uint32_t i = g->num_nodes; i-- > 0;) {
         const node *n = &g->nodes[i];

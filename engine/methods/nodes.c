@@ -1,5 +1,6 @@
 // nodes.c -- parts of a frame that several methods have in common.
 #include "methods/nodes.h"
+#include <tyndall/registry.h>
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
 #include "passes/composite/composite.h"
@@ -162,7 +163,7 @@ static tyn_result add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance
     tyn_ref refs[TYN_MAX_PORTS] = {[TONEMAP_PORT_RADIANCE] = radiance};
     tyn_result result = tyn_graph_add(g, &tyn_pass_tonemap, &params, refs);
     if (result == TYN_OK) {
-        tyn_graph_output(g, "display", refs[TONEMAP_PORT_DISPLAY], true);
+        tyn_job_output(g, job, TYN_OUTPUT_DISPLAY, refs[TONEMAP_PORT_DISPLAY]);
     }
     return result;
 }
@@ -180,7 +181,7 @@ static tyn_result add_composite(tyn_graph *g, const tyn_job *job, tyn_ref radian
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_composite, &params, refs);
     if (result == TYN_OK) {
-        tyn_graph_output(g, "color", refs[COMPOSITE_PORT_COLOR], false);
+        tyn_job_output(g, job, TYN_OUTPUT_COMPOSITE, refs[COMPOSITE_PORT_COLOR]);
     }
     return result;
 }
@@ -219,22 +220,19 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
         return result;
     }
     static const struct {
-        uint32_t output;
+        tyn_output output;
         uint8_t port;
-        const char *name;
     } images[] = {
-        {TYN_OUTPUT_RADIANCE, RAYMARCH_PORT_RADIANCE, "radiance"},
-        {TYN_OUTPUT_TRANSMITTANCE, RAYMARCH_PORT_TRANSMITTANCE, "transmittance"},
-        {TYN_OUTPUT_DEPTH, RAYMARCH_PORT_DEPTH, "depth"},
-        {TYN_OUTPUT_SINGLE, RAYMARCH_PORT_SINGLE, "single"},
-        {TYN_OUTPUT_MULTIPLE, RAYMARCH_PORT_MULTIPLE, "multiple"},
+        {TYN_OUTPUT_RADIANCE, RAYMARCH_PORT_RADIANCE},
+        {TYN_OUTPUT_TRANSMITTANCE, RAYMARCH_PORT_TRANSMITTANCE},
+        {TYN_OUTPUT_DEPTH, RAYMARCH_PORT_DEPTH},
+        {TYN_OUTPUT_SINGLE, RAYMARCH_PORT_SINGLE},
+        {TYN_OUTPUT_MULTIPLE, RAYMARCH_PORT_MULTIPLE},
     };
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
-        if (job->outputs & images[i].output) {
-            tyn_graph_output(g, images[i].name, refs[images[i].port], true);
-        }
+        tyn_job_output(g, job, images[i].output, refs[images[i].port]);
     }
-    tyn_graph_output(g, "counters", refs[RAYMARCH_PORT_COUNTERS], true);
+    tyn_job_counters(g, job, "raymarch", refs[RAYMARCH_PORT_COUNTERS]);
     if (result == TYN_OK && job->outputs & TYN_OUTPUT_DISPLAY) {
         result = add_display(g, job, refs[RAYMARCH_PORT_RADIANCE]);
     }

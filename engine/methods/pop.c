@@ -198,7 +198,7 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, field *f)
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_probe, &params, refs);
     if (result == TYN_OK) {
-        tyn_graph_output(g, "probe", refs[PROBE_PORT_RESULTS], true);
+        tyn_job_output(g, job, TYN_OUTPUT_PROBE, refs[PROBE_PORT_RESULTS]);
     }
     return result;
 }
@@ -221,7 +221,7 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, field *f)
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_balance, &params, refs);
     if (result == TYN_OK) {
-        tyn_graph_output(g, "balance", refs[BALANCE_PORT_BALANCE], true);
+        tyn_job_output(g, job, TYN_OUTPUT_BALANCE, refs[BALANCE_PORT_BALANCE]);
     }
     return result;
 }

@@ -1,16 +1,27 @@
 // registry.c -- the passes and methods of the library: one line each.
 #include "plugin/registry.h"
+#include "passes/beam/beam.h"
+#include "passes/composite/composite.h"
+#include "passes/medium/medium.h"
+#include "passes/raymarch/raymarch.h"
+#include "passes/scatter_lut/scatter_lut.h"
+#include "passes/tonemap/tonemap.h"
 #include <string.h>
 
 static const tyn_pass_desc *const passes[] = {
-    NULL,
+    &tyn_pass_medium,
+    &tyn_pass_beam,
+    &tyn_pass_scatter_lut,
+    &tyn_pass_raymarch,
+    &tyn_pass_composite,
+    &tyn_pass_tonemap,
 };
-enum { NUM_PASSES = sizeof passes / sizeof passes[0] - 1 };
+enum { NUM_PASSES = sizeof passes / sizeof passes[0] };
 
 static const tyn_method *const methods[] = {
-    NULL,
+    &tyn_method_single,
 };
-enum { NUM_METHODS = sizeof methods / sizeof methods[0] - 1 };
+enum { NUM_METHODS = sizeof methods / sizeof methods[0] };
 
 uint32_t tyn_num_passes(void)
 {
