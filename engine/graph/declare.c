@@ -290,7 +290,7 @@ static void hash_node(const tyn_graph *g, node *n)
     const tyn_pass_desc *pass = n->pass;
     uint64_t h = tyn_hash_string(TYN_HASH_SEED, pass->name);
     h = tyn_hash_bytes(h, n->params, pass->params_size);
-    n->media_only = true;
+    n->media_only = pass->media_only;
     for (uint32_t p = 0; p < pass->num_ports; p++) {
         const resource *r = n->res[p] ? &g->resources[n->res[p] - 1] : NULL;
         tyn_port_dir dir = pass->ports[p].dir;

@@ -100,7 +100,8 @@ tyn_result tyn_add_beams(tyn_graph *g, const tyn_job *job, const tyn_media_refs 
 
     tyn_ref refs[TYN_MAX_PORTS] = {
         [BEAM_PORT_MEDIUM] = job->refs.medium,
-        [coefficients ? BEAM_PORT_SIGMA_S : BEAM_PORT_DENSITY] = media->density,
+        [BEAM_PORT_DENSITY] = coefficients ? (tyn_ref){0} : media->density,
+        [BEAM_PORT_SIGMA_S] = coefficients ? media->density : (tyn_ref){0},
         [BEAM_PORT_SIGMA_A] = media->sigma_a,
         [BEAM_PORT_G] = media->g,
     };

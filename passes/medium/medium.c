@@ -176,6 +176,7 @@ const tyn_pass_desc tyn_pass_medium = {
     .num_kernels = NUM_KERNELS,
     .params = params_table,
     .num_params = sizeof(params_table) / sizeof(params_table[0]),
+    .media_only = true,
     .params_size = sizeof(tyn_medium_params),
     .declare = declare,
     .record = record,

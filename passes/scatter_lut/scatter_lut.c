@@ -234,6 +234,7 @@ const tyn_pass_desc tyn_pass_scatter_lut = {
     .num_ports = SCATTER_LUT_NUM_PORTS,
     .kernels = kernels,
     .num_kernels = NUM_KERNELS,
+    .media_only = true,
     .params_size = sizeof(tyn_scatter_lut_params),
     .declare = declare,
     .record = record,

@@ -107,6 +107,8 @@ typedef struct tyn_pass_desc {
     const tyn_param *params; // user-visible; the struct may hold further fields that the method sets
     uint32_t num_params;
     size_t params_size; // the struct must have no uninitialised padding: start from tyn_pass_defaults
+    bool media_only; // params and inputs depend on the media alone (no light, no camera): with media-only
+                     // inputs the node is part of the set-up and not of a frame's cost
     // Gives every OUT and SCRATCH port its extent (tyn_build_*). Depends only on params and on the
     // extents of the inputs. An OUT port that is given none does not exist in this configuration.
     tyn_result (*declare)(tyn_builder *b, const void *params);
