@@ -40,10 +40,11 @@ struct lattice_args { // kernels on the whole lattice
 struct lattice_level_args { // kernels on one level of the diffusion grid
     tyn_uvec3 dims;         // of level 0
     tyn_uint level;
-    tyn_uint levels; // how many there are
-    tyn_uint colour; // relax: 0 or 1
-    float dx;        // of level 0, m
-    float floor_;    // least sigma_tr, 1/m
+    tyn_uint levels;   // how many there are
+    tyn_uint channels;
+    tyn_uint colour;   // relax: 0 or 1
+    float dx;          // of level 0, m
+    float least_transport; // that a cell's sigma_tr is taken for, 1/m
 };
 
 #define LATTICE_DIRECTIONS 14

@@ -92,8 +92,10 @@ static void coarsen(const level *f, double fine_dx, level *l)
         for (int face = 0; face < 6; face++) {
             int axis = face / 2;
             if (neighbour(f, c, face) < 0) {
-                l->k[q][face] +=
-                    area / (2 * (area / f->k[id][face]) - 2); // half cell twice as long
+                // The half cell at the box becomes twice as long; where the coarse cell reaches
+                // beyond the box its centre is on it, and only the Robin condition is left.
+                bool beyond = face % 2 && f->n[axis] % 2;
+                l->k[q][face] += area / (beyond ? 2 : 2 * (area / f->k[id][face]) - 2);
             } else if (c[axis] % 2 == face % 2) {
                 l->k[q][face] += 0.5 * f->k[id][face];
             }

@@ -1,0 +1,34 @@
+// lattice_interpolate.comp -- adds the correction of the next coarser level.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "lattice_args.h"
+#include "lattice_levels.glsl"
+#include "lattice_stencil.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(push_constant, scalar) uniform push
+{
+    lattice_level_args args; // level: the fine one
+};
+layout(binding = 0, r32f) uniform image3D correction;
+
+void main()
+{
+    lattice_level fine = lattice_level_of(ivec3(args.dims), args.level);
+    lattice_level coarse = lattice_level_of(ivec3(args.dims), args.level + 1);
+    ivec3 c = ivec3(gl_GlobalInvocationID);
+    int ch = c.z / fine.size.z;
+    c.z %= fine.size.z;
+    if (any(greaterThanEqual(c.xy, fine.size.xy)) || ch >= int(args.channels)) {
+        return;
+    }
+    ivec3 stack = ivec3(0, 0, ch * int(args.dims.z));
+    lattice_interpolation from = lattice_interpolation_of(c, coarse.size);
+    float sum = imageLoad(correction, fine.offset + stack + c).r;
+    for (uint corner = 0; corner < 8; corner++) {
+        ivec3 texel = coarse.offset + stack + lattice_corner(from, corner);
+        sum += lattice_corner_weight(corner) * imageLoad(correction, texel).r;
+    }
+    imageStore(correction, fine.offset + stack + c, vec4(sum));
+}

@@ -1,0 +1,65 @@
+// lattice_source_beam.comp -- T', the unscattered part of one sun, averaged over a cell.
+//
+// The mean is weighted with sigma_s', so that sigma_s' T' is the cell's true first scattering. Each
+// sub-sample is the mean along the light over its own length: e^-tau sinh(x) / x with tau to its centre.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "lattice_args.h"
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 1
+#define MEDIUM_G 2
+#define BEAM_BLOCKS 3
+#define BEAM_COLUMN 4
+#define BEAM_TAU_A 5
+#define BEAM_TAU_P 6
+#include "medium.glsl"
+#include "beam.glsl"
+#include "lattice.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(push_constant, scalar) uniform push
+{
+    lattice_source_args args;
+};
+// Suns stacked along z: T' per colour channel.
+layout(binding = 7, rgba32f) uniform writeonly image3D sunlit;
+
+void main()
+{
+    ivec3 texel = ivec3(gl_GlobalInvocationID);
+    ivec3 dims = ivec3(args.dims);
+    uint sun = uint(texel.z / dims.z);
+    if (any(greaterThanEqual(texel.xy, dims.xy)) || sun >= args.num_suns) {
+        return;
+    }
+    lattice_box box = lattice_box_of(medium.extent, dims);
+    vec3 corner = vec3(texel.xy, texel.z % dims.z);
+    vec3 d = abs(beams[sun].direction);
+    float length_h = box.dx / float(args.samples) / max(d.x, max(d.y, d.z));
+    vec3 weighted = vec3(0.0), weight = vec3(0.0);
+    for (uint k = 0; k < args.samples; k++) {
+        for (uint j = 0; j < args.samples; j++) {
+            for (uint i = 0; i < args.samples; i++) {
+                vec3 p = lattice_to_m(box, corner + (vec3(i, j, k) + 0.5) / float(args.samples));
+                medium_point m = medium_sample(p);
+                similarity_clamp(m.sigma_s, m.g);
+                vec3 scaled = (1.0 - delta_fraction(m.g)) * m.sigma_s;
+                if (max(scaled.r, max(scaled.g, scaled.b)) <= 0.0) {
+                    continue;
+                }
+                beam_tau tau = beam_depth(sun, p);
+                // e^-tau sinh(x) / x, without the overflow of sinh; x <= tau up to interpolation.
+                vec3 x = 0.5 * length_h * (scaled + m.sigma_a);
+                vec3 centre = tau.a + tau.p;
+                vec3 near = exp(-max(centre - x, vec3(0.0))), far = exp(-(centre + x));
+                vec3 t = mix(exp(-centre), (near - far) / max(2.0 * x, vec3(1e-20)),
+                             greaterThan(x, vec3(0.01)));
+                weighted += scaled * t;
+                weight += scaled;
+            }
+        }
+    }
+    vec3 t = mix(vec3(0.0), weighted / max(weight, vec3(1e-30)), greaterThan(weight, vec3(0.0)));
+    imageStore(sunlit, texel, vec4(t, 0.0));
+}

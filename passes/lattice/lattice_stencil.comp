@@ -1,0 +1,53 @@
+// lattice_stencil.comp -- stencil of the diffusion correction on the lattice itself.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "lattice_args.h"
+#include "lattice_stencil.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(push_constant, scalar) uniform push
+{
+    lattice_level_args args;
+};
+layout(binding = 0) uniform sampler3D cells;
+layout(binding = 1, rgba32f) uniform writeonly image3D stencil_lo;
+layout(binding = 2, rgba32f) uniform writeonly image3D stencil_hi;
+
+// 1 / (3 sigma_tr), and a second term without which a correction with this coefficient makes the
+// iteration diverge where cells are optically thick (tau' > 3): a sweep itself spreads light by about
+// that much. In vacuum the coefficient is bounded by the size of the box.
+float diffusion_coefficient(vec4 cell)
+{
+    float total = cell.x + cell.y, tau = total * args.dx;
+    float transport = total - cell.z * cell.x;
+    return 1.0 / (3.0 * max(transport, args.least_transport)) + 0.2 * args.dx * min(1.0, tau * tau);
+}
+
+void main()
+{
+    ivec3 texel = ivec3(gl_GlobalInvocationID);
+    ivec3 dims = ivec3(args.dims);
+    if (any(greaterThanEqual(texel.xy, dims.xy)) || texel.z >= dims.z * int(args.channels)) {
+        return;
+    }
+    ivec3 c = ivec3(texel.xy, texel.z % dims.z);
+    vec4 cell = texelFetch(cells, texel, 0);
+    float d = diffusion_coefficient(cell);
+    vec3 k[2];
+    for (int side = 0; side < 2; side++) {
+        for (int axis = 0; axis < 3; axis++) {
+            if (c[axis] == (side == 0 ? 0 : dims[axis] - 1)) {
+                k[side][axis] = args.dx * args.dx / (2.0 + args.dx / (2.0 * d));
+            } else {
+                ivec3 q = texel;
+                q[axis] += 2 * side - 1;
+                float behind = diffusion_coefficient(texelFetch(cells, q, 0));
+                k[side][axis] = args.dx * 2.0 * d * behind / (d + behind);
+            }
+        }
+    }
+    lattice_stencil s = lattice_stencil(k[0], k[1], cell.y * args.dx * args.dx * args.dx, 0.0);
+    imageStore(stencil_lo, texel, lattice_stencil_lo(s));
+    imageStore(stencil_hi, texel, lattice_stencil_hi(s));
+}
