@@ -54,13 +54,23 @@ struct lattice_weights {
 lattice_weights lattice_weights_of(float tau)
 {
     lattice_weights w;
-    w.e = exp(-tau);
-    if (tau < 0.05) {
-        w.a0 = 1.0 - tau * (0.5 - tau * (1.0 / 6.0 - tau / 24.0));
-        w.a1 = 0.5 - tau * (1.0 / 6.0 - tau * (1.0 / 24.0 - tau / 120.0));
-        w.b1 = -(1.0 / 12.0 - tau * (1.0 / 24.0 - tau / 80.0));
+    if (tau < 0.5) {
+        // Power series where the closed forms cancel; a0 and e from a1, so that tau a1 = 1 - a0 and
+        // tau a0 = 1 - e hold to the last digit: that is what conserves energy.
+        w.a1 = 1.0 / 40320.0;
+        w.a1 = 1.0 / 5040.0 - tau * w.a1;
+        w.a1 = 1.0 / 720.0 - tau * w.a1;
+        w.a1 = 1.0 / 120.0 - tau * w.a1;
+        w.a1 = 1.0 / 24.0 - tau * w.a1;
+        w.a1 = 1.0 / 6.0 - tau * w.a1;
+        w.a1 = 0.5 - tau * w.a1;
+        w.a0 = 1.0 - tau * w.a1;
+        w.e = 1.0 - tau * w.a0;
+        w.b1 = 1.0 / 360.0 - tau * (1.0 / 2016.0 - tau / 13440.0);
+        w.b1 = -(1.0 / 12.0 - tau * (1.0 / 24.0 - tau * (1.0 / 80.0 - tau * w.b1)));
         w.w1 = -tau * w.b1;
     } else {
+        w.e = exp(-tau);
         w.a0 = (1.0 - w.e) / tau;
         w.a1 = (1.0 - w.a0) / tau;
         w.w1 = w.a1 - 0.5 * w.a0;

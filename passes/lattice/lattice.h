@@ -70,7 +70,6 @@ enum {
     LATTICE_SOURCE_PORT_SOURCE, // OUT 3D RGBA32F, stacked: sum E T' over the suns, sum E T' direction (W/m^2)
     LATTICE_SOURCE_PORT_POWER, // OUT buffer: per sun the power that enters and that its beam loses, for balance
     LATTICE_SOURCE_PORT_SUNLIT, // SCRATCH
-    LATTICE_SOURCE_PORT_SUMS,   // SCRATCH
     LATTICE_SOURCE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_lattice_source;

@@ -40,17 +40,17 @@ struct lattice_args { // kernels on the whole lattice
 struct lattice_level_args { // kernels on one level of the diffusion grid
     tyn_uvec3 dims;         // of level 0
     tyn_uint level;
-    tyn_uint levels;   // how many there are
+    tyn_uint levels; // how many there are
     tyn_uint channels;
-    tyn_uint colour;   // relax: 0 or 1
-    float dx;          // of level 0, m
+    tyn_uint colour;       // relax: 0 or 1
+    float dx;              // of level 0, m
     float least_transport; // that a cell's sigma_tr is taken for, 1/m
 };
 
 #define LATTICE_DIRECTIONS 14
-#define LATTICE_GROUP 128  // threads of a reducing workgroup
-#define LATTICE_NUM_DOTS 5 // dot products of Anderson mixing
-#define LATTICE_MAX_LEVELS 6
+#define LATTICE_SWEEP_GROUP 64    // threads of a workgroup: lines
+#define LATTICE_GROUP 128         // ... of kernels that reduce
+#define LATTICE_NUM_DOTS 5        // dot products of Anderson mixing
 #define LATTICE_COARSE_CELLS 4096 // a level of at most so many cells is solved inside one workgroup
 #define LATTICE_COARSE_GROUP 256
 #define LATTICE_SUN_GROUP 256

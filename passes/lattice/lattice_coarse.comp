@@ -17,7 +17,7 @@ layout(push_constant, scalar) uniform push
 layout(binding = 0) uniform sampler3D stencil_lo;
 layout(binding = 1) uniform sampler3D stencil_hi;
 layout(binding = 2) uniform sampler3D rhs_image;
-layout(binding = 3, r32f) uniform writeonly image3D correction_image;
+layout(binding = 3, r32f) uniform image3D correction_image;
 
 // Each level has 1/8 of the cells of the one before; 1/4 in a box one cell thin; and 1/2 in one that is
 // thin along two axes, which has at most 64 cells to begin with. So 3/8 more hold all levels.
@@ -143,7 +143,7 @@ void main()
     uint level = args.level;
     enter(level);
     for (uint i = gl_LocalInvocationIndex; i < cells_of(size); i += LATTICE_COARSE_GROUP) {
-        correction[i] = 0.0;
+        correction[i] = imageLoad(correction_image, texel_0 + cell_of(i)).r;
     }
     barrier();
     for (; level + 1 < args.levels; level++) {

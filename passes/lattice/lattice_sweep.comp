@@ -10,7 +10,7 @@
 #include "lattice_args.h"
 #include "lattice_sweep.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = LATTICE_SWEEP_GROUP) in;
 layout(push_constant, scalar) uniform push
 {
     lattice_args args;

@@ -136,7 +136,7 @@ double llc_twin_sweep(const llc_twin *t, const double (*in)[4], double (*out)[4]
     return leak;
 }
 
-static double dot(const double (*a)[4], const double (*b)[4], int n)
+static double dot(double (*a)[4], double (*b)[4], int n)
 {
     double sum = 0;
     for (int i = 0; i < n; i++) {

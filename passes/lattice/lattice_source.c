@@ -1,0 +1,155 @@
+// lattice_source.c -- the suns' unscattered light on the lattice.
+#include "lattice.h"
+#include "lattice_args.h"
+#include "lattice_source_beam.comp.h"
+#include "lattice_source_sum.comp.h"
+#include "lattice_source.comp.h"
+#include <math.h>
+
+static const tyn_port ports[LATTICE_SOURCE_NUM_PORTS] = {
+    [LATTICE_SOURCE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
+    [LATTICE_SOURCE_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "struct light_block[]"},
+    [LATTICE_SOURCE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
+    [LATTICE_SOURCE_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, false,
+                                     "density, or sigma_s in mode COEFFICIENTS"},
+    [LATTICE_SOURCE_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "mean cosine"},
+    [LATTICE_SOURCE_PORT_BEAMS] = {"beams", TYN_IN, TYN_BUFFER, 0, false, "struct beam_block[]"},
+    [LATTICE_SOURCE_PORT_COLUMN] = {"column", TYN_IN, TYN_IMAGE_3D, 0, false,
+                                    "depth along the suns, or that of sigma_s"},
+    [LATTICE_SOURCE_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "of absorption"},
+    [LATTICE_SOURCE_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true, "of sigma_s'"},
+    [LATTICE_SOURCE_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                    false,
+                                    "unscattered fluence and flux of the suns, W/m^2; channels "
+                                    "stacked along z"},
+    [LATTICE_SOURCE_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false,
+                                   "struct lattice_power per sun and channel"},
+    [LATTICE_SOURCE_PORT_SUNLIT] = {"sunlit", TYN_SCRATCH, TYN_IMAGE_3D,
+                                    VK_FORMAT_R32G32B32A32_SFLOAT, false,
+                                    "transmittance to each sun, suns stacked along z"},
+};
+
+enum { KERNEL_BEAM, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
+
+static const tyn_binding beam_bindings[] = {
+    {LATTICE_SOURCE_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {LATTICE_SOURCE_PORT_DENSITY, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_G, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_BEAMS, TYN_USE_STORAGE_READ},
+    {LATTICE_SOURCE_PORT_COLUMN, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_TAU_A, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_TAU_P, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_binding sum_bindings[] = {
+    {LATTICE_SOURCE_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {LATTICE_SOURCE_PORT_DENSITY, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_BEAMS, TYN_USE_STORAGE_READ},
+    {LATTICE_SOURCE_PORT_COLUMN, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_TAU_A, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_TAU_P, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_POWER, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_binding source_bindings[] = {
+    {LATTICE_SOURCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
+    {LATTICE_SOURCE_PORT_POWER, TYN_USE_STORAGE_READ},
+    {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_SOURCE, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_BEAM] = {"beam",
+                     lattice_source_beam_spirv,
+                     sizeof lattice_source_beam_spirv,
+                     sizeof(struct lattice_source_args),
+                     {8, 4, 2},
+                     beam_bindings,
+                     8,
+                     1},
+    [KERNEL_SUM] = {"sum",
+                    lattice_source_sum_spirv,
+                    sizeof lattice_source_sum_spirv,
+                    sizeof(struct lattice_source_args),
+                    {LATTICE_SUN_GROUP, 1, 1},
+                    sum_bindings,
+                    9,
+                    1},
+    [KERNEL_SOURCE] = {"source",
+                       lattice_source_spirv,
+                       sizeof lattice_source_spirv,
+                       sizeof(struct lattice_source_args),
+                       {8, 4, 2},
+                       source_bindings,
+                       4,
+                       0},
+};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_lattice_source_params *p = params;
+    tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
+    if (p->num_suns < 1 || p->num_suns > TYN_LATTICE_MAX_SUNS) {
+        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                      "pass 'lattice_source': num_suns is %u; must be 1 to %d", p->num_suns,
+                      TYN_LATTICE_MAX_SUNS);
+        return TYN_ERR_PARAMS;
+    }
+    tyn_build_image(b, LATTICE_SOURCE_PORT_SOURCE,
+                    (tyn_extent){dims.x, dims.y, dims.z * p->shape.channels}, 1);
+    tyn_build_image(b, LATTICE_SOURCE_PORT_SUNLIT,
+                    (tyn_extent){dims.x, dims.y, dims.z * p->num_suns}, 1);
+    tyn_build_buffer(b, LATTICE_SOURCE_PORT_POWER,
+                     sizeof(struct lattice_power) * p->num_suns * p->shape.channels);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_lattice_source_params *p = params;
+    tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
+    tyn_extent texels = tyn_rec_extent(r, LATTICE_SOURCE_PORT_DENSITY);
+    const float *extent = p->shape.extent;
+    const uint32_t size[3] = {texels.x, texels.y, texels.z};
+    float dx = fmaxf(extent[0], fmaxf(extent[1], extent[2])) / (float)p->shape.cells, voxels = 0;
+    struct lattice_source_args args = {
+        .dims = {dims.x, dims.y, dims.z}, .channels = p->shape.channels, .num_suns = p->num_suns};
+    for (int a = 0; a < 3; a++) {
+        args.tint[a] = p->shape.tint[a];
+        voxels = fmaxf(voxels, dx * (float)size[a] / extent[a]);
+    }
+    args.samples = (uint32_t)fminf(fmaxf(ceilf(voxels - 1e-3f), 2), 4);
+    double cells = (double)dims.x * dims.y * dims.z;
+
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_BEAM,
+                                        .cells = {dims.x, dims.y, dims.z * p->num_suns},
+                                        .args = &args,
+                                        .spec = &p->mode});
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){.kernel = KERNEL_SUM,
+                           .cells = {p->num_suns * LATTICE_SUN_GROUP, p->shape.channels, 1},
+                           .args = &args,
+                           .spec = &p->mode});
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SOURCE,
+                                        .cells = {dims.x, dims.y, dims.z * p->shape.channels},
+                                        .args = &args});
+    tyn_rec_work(r, "cells", cells * p->num_suns);
+    tyn_rec_work(r, "fetches", 2 * cells * p->num_suns * pow(args.samples, 3));
+}
+
+const tyn_pass_desc tyn_pass_lattice_source = {
+    .name = "lattice_source",
+    .summary = "unscattered sunlight in the cells of the lattice",
+    .ports = ports,
+    .num_ports = LATTICE_SOURCE_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params_size = sizeof(tyn_lattice_source_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = LATTICE_SOURCE_PORT_SOURCE,
+    .debug_meaning = "unscattered sunlight in a slice, W/m^2",
+};
