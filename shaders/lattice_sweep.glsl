@@ -37,10 +37,10 @@ vec4 lattice_emitted(vec4 total, float g)
     return vec4(total.x, 3.0 * g * total.yzw) / LATTICE_4PI;
 }
 
-// The source is optional: without suns its port has one texel of zeros.
-vec4 lattice_fetch_source(sampler3D source, ivec3 texel)
+// Without suns the source's port has one texel of zeros.
+vec4 lattice_fetch_source(sampler3D source, sampler3D cells, ivec3 texel)
 {
-    return textureSize(source, 0).x == 1 ? texelFetch(source, ivec3(0), 0) : texelFetch(source, texel, 0);
+    return textureSize(source, 0) == textureSize(cells, 0) ? texelFetch(source, texel, 0) : vec4(0.0);
 }
 
 // A segment of optical depth tau with a source that is linear along it (value s in the middle, slope

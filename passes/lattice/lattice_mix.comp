@@ -46,6 +46,6 @@ void main()
         atomicAdd(counters.non_finite, 1);
     }
     imageStore(moments, texel, m);
-    vec4 beam = lattice_fetch_source(source, texel);
+    vec4 beam = lattice_fetch_source(source, cells, texel);
     imageStore(emitted, texel, lattice_emitted(m + beam, texelFetch(cells, texel, 0).z));
 }

@@ -32,6 +32,6 @@ void main()
     float boundary = lattice_channel(environment.mean, args.channels, ch, args.tint);
     vec4 m = vec4(LATTICE_4PI * boundary, 0.0, 0.0, 0.0);
     imageStore(moments, texel, m);
-    vec4 beam = lattice_fetch_source(source, texel);
+    vec4 beam = lattice_fetch_source(source, cells, texel);
     imageStore(emitted, texel, lattice_emitted(m + beam, texelFetch(cells, texel, 0).z));
 }

@@ -174,10 +174,58 @@ static void matches_twin(void **state)
     }
 }
 
+// Inside a uniform environment a medium that only scatters is invisible: phi = 4 pi L, no flux.
+static void furnace(void **state)
+{
+    llc_twin w;
+    llc_twin_init(&w, 20, 17, 12, 0.25);
+    fill_random(&w, 5);
+    for (int i = 0; i < 20 * 17 * 12; i++) {
+        w.sigma_a[i] = w.emission[i] = 0;
+        memset(w.beam[i], 0, sizeof w.beam[i]);
+    }
+    w.boundary = 2;
+    run r = run_pass(*state, &w, 1, 3);
+    for (int i = 0; i < 20 * 17 * 12; i++) {
+        assert_true(fabs(r.moments[4 * i] / (4 * M_PI * 2) - 1) < 1e-5);
+        for (int k = 1; k < 4; k++) {
+            assert_true(fabs(r.moments[4 * i + k]) < 1e-4);
+        }
+    }
+    run_free(&r);
+    llc_twin_finish(&w);
+}
+
+// What the beam scatters leaves the box or is absorbed: <= 1 % is missing after 4 sweeps, <= 0.3 % after 6.
+static void conserves(void **state)
+{
+    static const double media[][3] = {
+        {4, 0, 0},     {4, 0, 0.6},    {4, 0, 0.9},      {3.6, 0.4, 0.9},
+        {50, 0, 0},    {50, 0, 0.9},   {49.5, 0.5, 0.9}, {4, 0, -0.5},
+        {1e-6, 0, .5}, {4e-6, 4, 0.5}, {400, 0, 0.9999},
+    };
+    for (size_t m = 0; m < sizeof media / sizeof media[0]; m++) {
+        for (int sweeps = 4; sweeps <= 6; sweeps += 2) {
+            llc_twin w;
+            llc_twin_init(&w, 24, 24, 24, 1.0 / 24);
+            fill_homogeneous(&w, media[m][0], media[m][1], media[m][2]);
+            run r = run_pass(*state, &w, 1, sweeps);
+            double missing = imbalance(&w, r.moments, r.leaks[0]);
+            printf("sigma_s %g, sigma_a %g, g %g: %d sweeps, imbalance %.1e\n", media[m][0],
+                   media[m][1], media[m][2], sweeps, missing);
+            assert_true(fabs(missing) < (sweeps == 4 ? 0.01 : 0.003));
+            run_free(&r);
+            llc_twin_finish(&w);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(matches_twin),
+        cmocka_unit_test(furnace),
+        cmocka_unit_test(conserves),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
