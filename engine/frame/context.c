@@ -5,6 +5,7 @@
 #include "base/hash.h"
 #include "counters.h"
 #include "gpu/device.h"
+#include "scene/check.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,6 +26,7 @@ struct tyn_context {
     uint32_t outputs;
     // The environment's tables, made again when its texels change.
     uint64_t env_hash;
+    uint64_t checked_data; // hash of the densities and texels that were found fit
     float env_mean[3];
     char *warnings[MAX_WARNINGS];
     uint32_t num_warnings;
@@ -153,7 +155,8 @@ static tyn_result check_frame(const tyn_context *ctx, const tyn_frame *frame)
             return TYN_ERR_PARAMS;
         }
     }
-    return tyn_scene_check(frame->scene, log);
+    tyn_result result = tyn_camera_check(&view->camera, 0, log);
+    return result == TYN_OK ? tyn_scene_check_values(frame->scene, log) : result;
 }
 
 static void fill_atlas(void *user, void *texels)
@@ -316,6 +319,13 @@ tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)
 {
     clear_warnings(ctx);
     tyn_result result = declare(ctx, frame);
+    uint64_t data = result == TYN_OK
+                        ? tyn_hash_u64(tyn_atlas_hash(&ctx->atlas, frame->scene), ctx->env_hash)
+                        : 0;
+    if (result == TYN_OK && data != ctx->checked_data) {
+        result = tyn_scene_check_data(frame->scene, &ctx->dev->log);
+        ctx->checked_data = result == TYN_OK ? data : 0;
+    }
     if (result == TYN_OK && !tyn_graph_matches(ctx->graph)) {
         result = tyn_graph_compile(ctx->graph);
     }

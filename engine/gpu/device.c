@@ -158,6 +158,35 @@ static VkResult create_sampler(tyn_device *dev, VkSamplerAddressMode u, VkSample
                                  NULL, out);
 }
 
+// Formats that passes sample with linear filtering or store to, beyond what Vulkan promises.
+static tyn_result check_formats(const tyn_device *dev)
+{
+    static const struct {
+        VkFormat format;
+        const char *name;
+        VkFormatFeatureFlags need;
+    } formats[] = {
+        {VK_FORMAT_R16_SFLOAT, "R16_SFLOAT", VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT},
+        {VK_FORMAT_R32_SFLOAT, "R32_SFLOAT",
+         VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT},
+        {VK_FORMAT_R32G32_SFLOAT, "R32G32_SFLOAT",
+         VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT},
+        {VK_FORMAT_R32G32B32A32_SFLOAT, "R32G32B32A32_SFLOAT",
+         VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT},
+    };
+    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
+        VkFormatProperties p;
+        dev->vk.GetPhysicalDeviceFormatProperties(dev->physical_device, formats[i].format, &p);
+        if ((p.optimalTilingFeatures & formats[i].need) != formats[i].need) {
+            tyn_log_print(&dev->log, TYN_LOG_ERROR,
+                          "device '%s' cannot filter or store images of format %s",
+                          dev->properties.deviceName, formats[i].name);
+            return TYN_ERR_UNSUPPORTED;
+        }
+    }
+    return TYN_OK;
+}
+
 tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa, const void *cache,
                            size_t cache_size)
 {
@@ -195,6 +224,10 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa, cons
         tyn_log_print(&dev->log, TYN_LOG_ERROR, "queue_family %u has no compute",
                       dev->queue_family);
         return TYN_ERR_PARAMS;
+    }
+    result = check_formats(dev);
+    if (result != TYN_OK) {
+        return result;
     }
 
     if (tyn_vk_check(dev, create_sampler(dev, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, &dev->clamp),

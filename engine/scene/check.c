@@ -1,5 +1,5 @@
 // check.c -- is every number of a scene one that the solvers can take?
-#include <tyndall/scene.h>
+#include "scene/check.h"
 #include <math.h>
 #include "scene/matrix.h"
 
@@ -29,23 +29,24 @@ static bool amount3(const float v[3])
 
 static tyn_result check_volume(const tyn_volume *volume, uint32_t i, const tyn_log *log)
 {
-    uint64_t voxels = 1;
     for (int a = 0; a < 3; a++) {
         if (volume->size[a] < 1 || volume->size[a] > 65536) {
             FAULT("volumes[%u].size[%d] = %u: must be 1 to 65536 voxels", i, a, volume->size[a]);
         }
-        voxels *= volume->size[a];
     }
     if (!isfinite(volume->max_density) || volume->max_density < 0.0f) {
         FAULT("volumes[%u].max_density = %g: must be >= 0 and finite", i, volume->max_density);
     }
-    if (!volume->data) {
-        if (volume->max_density <= 0.0f) {
-            FAULT("volumes[%u].max_density = 0: required (> 0) where data is NULL", i);
-        }
-        return TYN_OK;
+    if (!volume->data && volume->max_density <= 0.0f) {
+        FAULT("volumes[%u].max_density = 0: required (> 0) where data is NULL", i);
     }
-    for (uint64_t v = 0; v < voxels; v++) {
+    return TYN_OK;
+}
+
+static tyn_result check_densities(const tyn_volume *volume, uint32_t i, const tyn_log *log)
+{
+    uint64_t voxels = (uint64_t)volume->size[0] * volume->size[1] * volume->size[2];
+    for (uint64_t v = 0; volume->data && v < voxels; v++) {
         float density = volume->data[v];
         if (!(density >= 0.0f && density <= volume->max_density)) {
             FAULT("volumes[%u].data[%llu] = %g: density must be between 0 and max_density = %g", i,
@@ -134,7 +135,7 @@ static tyn_result check_light(const tyn_light *l, uint32_t i, const tyn_log *log
     return TYN_OK;
 }
 
-static tyn_result check_camera(const tyn_camera *c, uint32_t i, const tyn_log *log)
+tyn_result tyn_camera_check(const tyn_camera *c, uint32_t i, const tyn_log *log)
 {
     if (!finite3(c->position)) {
         FAULT("cameras[%u].position = %g, %g, %g: must be finite", i, c->position[0],
@@ -175,7 +176,12 @@ static tyn_result check_environment(const tyn_environment *e, const tyn_log *log
         FAULT("environment: a map needs both data and a size, a constant has neither (%ux%u)",
               e->size[0], e->size[1]);
     }
-    for (size_t t = 0; e->data && t < 3 * (size_t)e->size[0] * e->size[1]; t++) {
+    return TYN_OK;
+}
+
+static tyn_result check_texels(const tyn_environment *e, const tyn_log *log)
+{
+    for (size_t t = 0; e->present && e->data && t < 3 * (size_t)e->size[0] * e->size[1]; t++) {
         if (!(e->data[t] >= 0.0f && isfinite(e->data[t]))) {
             FAULT("environment.data[%zu] = %g: must be >= 0 and finite", t, e->data[t]);
         }
@@ -183,7 +189,7 @@ static tyn_result check_environment(const tyn_environment *e, const tyn_log *log
     return TYN_OK;
 }
 
-tyn_result tyn_scene_check(const tyn_scene *scene, const tyn_log *log)
+tyn_result tyn_scene_check_values(const tyn_scene *scene, const tyn_log *log)
 {
     tyn_result r = TYN_OK;
     if (scene->num_media > TYN_MAX_MEDIA || scene->num_shapes > TYN_MAX_SHAPES ||
@@ -204,7 +210,22 @@ tyn_result tyn_scene_check(const tyn_scene *scene, const tyn_log *log)
         r = check_light(&scene->lights[i], i, log);
     }
     for (uint32_t i = 0; !r && i < scene->num_cameras; i++) {
-        r = check_camera(&scene->cameras[i], i, log);
+        r = tyn_camera_check(&scene->cameras[i], i, log);
     }
     return r ? r : check_environment(&scene->environment, log);
+}
+
+tyn_result tyn_scene_check_data(const tyn_scene *scene, const tyn_log *log)
+{
+    tyn_result r = TYN_OK;
+    for (uint32_t i = 0; !r && i < scene->num_volumes; i++) {
+        r = check_densities(&scene->volumes[i], i, log);
+    }
+    return r ? r : check_texels(&scene->environment, log);
+}
+
+tyn_result tyn_scene_check(const tyn_scene *scene, const tyn_log *log)
+{
+    tyn_result r = tyn_scene_check_values(scene, log);
+    return r ? r : tyn_scene_check_data(scene, log);
 }

@@ -1,0 +1,8 @@
+// check.h -- the parts of tyn_scene_check: what is cheap enough for every frame, and what is not.
+#pragma once
+#include <tyndall/scene.h>
+
+tyn_result tyn_scene_check_values(const tyn_scene *scene, const tyn_log *log); // all but the data
+tyn_result tyn_scene_check_data(const tyn_scene *scene,
+                                const tyn_log *log); // every voxel and texel
+tyn_result tyn_camera_check(const tyn_camera *camera, uint32_t index, const tyn_log *log);
