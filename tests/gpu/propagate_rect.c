@@ -120,7 +120,7 @@ static void reference_states(void **state)
     for (int i = 0; i < num; i++) {
         const state_record *r = &records[i];
         bool inscatter = strcmp(r->kind, "inscatter") == 0;
-        if (strcmp(r->kind, "sigma_t") == 0) {
+        if (strcmp(r->kind, "state") != 0 && !inscatter) {
             continue;
         }
         state_density(records, num, r, density);

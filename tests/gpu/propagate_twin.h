@@ -30,7 +30,7 @@ double twin_hg(double mu, double g);
 
 // ---- reference states from a prototype (tests/data/propagate_rect_states.bin) -----------------------
 
-enum { STATE_CELLS = 16, STATE_TOTAL = STATE_CELLS * STATE_CELLS * STATE_CELLS, STATE_MAX = 16 };
+enum { STATE_CELLS = 16, STATE_TOTAL = STATE_CELLS * STATE_CELLS * STATE_CELLS, STATE_MAX = 24 };
 
 typedef struct state_record {
     char kind[16], name[16];
