@@ -2,16 +2,24 @@
 #include "plugin/registry.h"
 #include "passes/beam/beam.h"
 #include "passes/composite/composite.h"
+#include "passes/lattice/lattice.h"
 #include "passes/medium/medium.h"
+#include "passes/propagate_rect/propagate_rect.h"
 #include "passes/raymarch/raymarch.h"
 #include "passes/scatter_lut/scatter_lut.h"
 #include "passes/tonemap/tonemap.h"
+#include "passes/upsample/upsample.h"
 #include <string.h>
 
 static const tyn_pass_desc *const passes[] = {
     &tyn_pass_medium,
     &tyn_pass_beam,
     &tyn_pass_scatter_lut,
+    &tyn_pass_lattice_cells,
+    &tyn_pass_lattice_source,
+    &tyn_pass_lattice,
+    &tyn_pass_propagate_rect,
+    &tyn_pass_upsample,
     &tyn_pass_raymarch,
     &tyn_pass_composite,
     &tyn_pass_tonemap,
@@ -19,6 +27,7 @@ static const tyn_pass_desc *const passes[] = {
 enum { NUM_PASSES = sizeof passes / sizeof passes[0] };
 
 static const tyn_method *const methods[] = {
+    &tyn_method_pop_paper,
     &tyn_method_single,
 };
 enum { NUM_METHODS = sizeof methods / sizeof methods[0] };

@@ -78,6 +78,7 @@ const tyn_pass_desc tyn_pass_lattice_cells = {
     .num_ports = LATTICE_CELLS_NUM_PORTS,
     .kernels = kernels,
     .num_kernels = 1,
+    .media_only = true,
     .params_size = sizeof(tyn_lattice_cells_params),
     .declare = declare,
     .record = record,
