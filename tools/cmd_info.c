@@ -116,9 +116,9 @@ static const char *name_or(const char *name)
     return name ? name : "(no name)";
 }
 
-static void print_color(const char *title, const float v[3], const char *unit)
+static void print_color(const char *title, const float v[3], const char *after)
 {
-    printf("  %s %g %g %g%s%s", title, v[0], v[1], v[2], unit[0] ? " " : "", unit);
+    printf("%s%g %g %g%s", title, v[0], v[1], v[2], after);
 }
 
 static void print_media(const tyn_scene *scene)
@@ -136,11 +136,11 @@ static void print_media(const tyn_scene *scene)
         } else {
             printf("density of volume %d x %g", m->volume, m->density_scale);
         }
-        print_color("\n  scattering", m->sigma_s, "1/m\n");
-        print_color("absorption", m->sigma_a, "1/m\n");
-        print_color("mean cosine", m->g, "\n");
+        print_color("\n  scattering  ", m->sigma_s, " 1/m\n");
+        print_color("  absorption  ", m->sigma_a, " 1/m\n");
+        print_color("  mean cosine ", m->g, "\n");
         if (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0) {
-            print_color("emission", m->emission, "W/(m^3 sr)\n");
+            print_color("  emission    ", m->emission, " W/(m^3 sr)\n");
         }
     }
     for (uint32_t i = 0; i < scene->num_shapes; i++) {
@@ -162,7 +162,7 @@ static void print_lights(const tyn_scene *scene)
         const tyn_light *l = &scene->lights[i];
         bool sun = l->kind == TYN_LIGHT_DIRECTIONAL;
         printf("light %u '%s': %s,", i, name_or(l->name), kinds[l->kind]);
-        print_color("", l->color, sun ? "W/m^2," : "W/sr,");
+        print_color(" ", l->color, sun ? " W/m^2," : " W/sr,");
         const float *v = sun ? l->direction : l->position;
         printf(" %s %g %g %g\n", sun ? "travels along" : "at", v[0], v[1], v[2]);
     }
@@ -173,7 +173,7 @@ static void print_lights(const tyn_scene *scene)
         printf("environment: constant,");
     }
     if (env->present) {
-        print_color("radiance", env->radiance, "");
+        print_color(" radiance ", env->radiance, "");
         printf(" x %g\n", env->strength);
     }
 }

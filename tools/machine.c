@@ -1,10 +1,10 @@
 // machine.c -- the device that --device names, with its pipelines cached on disk.
 #include "machine.h"
+#include "cache.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <tyndall/io.h>
 
 const option machine_table[MACHINE_TABLE_SIZE] = {
@@ -84,27 +84,14 @@ static const char cache_magic[8] = "TYNPIPE1";
 
 enum { CACHE_LIMIT = 256 << 20 };
 
-static char *cache_folder(void)
+static char *pipelines_path(const tyn_device_info *info)
 {
-    const char *base = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
-    if (base && base[0] == '/') { // the XDG specification: relative paths are invalid
-        return text_format("%s/tyndall", base);
-    }
-    return home && home[0] == '/' ? text_format("%s/.cache/tyndall", home) : NULL;
-}
-
-static char *cache_path(const tyn_device_info *info)
-{
-    char *folder = cache_folder();
-    if (!folder) {
-        return NULL;
-    }
     uint64_t key = text_hash(info->name, strlen(info->name), info->api_version);
     key = text_hash(info->driver, strlen(info->driver), key);
     key = text_hash(tyn_version_string(), strlen(tyn_version_string()), key);
-    char *path = text_format("%s/pipelines-%016llx", folder, (unsigned long long)key);
-    free(folder);
-    return path;
+    char name[40];
+    snprintf(name, sizeof name, "pipelines-%016llx", (unsigned long long)key);
+    return cache_path(name);
 }
 
 // The driver's bytes in `file`, or NULL if the file is not whole.
@@ -126,17 +113,6 @@ static const void *cache_bytes(const void *file, size_t file_size, size_t *size,
     return bytes;
 }
 
-static void make_folders(const char *path)
-{
-    char *copy = text_format("%s", path);
-    for (char *p = copy ? strchr(copy + 1, '/') : NULL; p; p = strchr(p + 1, '/')) {
-        *p = '\0';
-        mkdir(copy, 0700);
-        *p = '/';
-    }
-    free(copy);
-}
-
 static void cache_write(machine *m)
 {
     size_t size = 0;
@@ -148,7 +124,6 @@ static void cache_write(machine *m)
         memcpy(file, &header, sizeof header);
         memcpy(file + sizeof header, bytes, size);
         if (header.hash != m->cache_hash) {
-            make_folders(m->cache_path);
             tyn_file_write(m->cache_path, file, sizeof header + size, NULL);
         }
     }
@@ -164,7 +139,7 @@ static int open_chosen(app *a, const tyn_device_info *info, int index, bool vali
     snprintf(select, sizeof select, "%d", index);
     void *file = NULL;
     size_t file_size = 0, size = 0;
-    m->cache_path = cache_path(info);
+    m->cache_path = pipelines_path(info);
     if (m->cache_path) {
         tyn_file_read(m->cache_path, CACHE_LIMIT, &file, &file_size, NULL);
     }

@@ -42,14 +42,14 @@ static void right_side(const option *o, char *text, size_t size)
         return;
     }
     if (!isnan(o->def)) {
-        used += (size_t)snprintf(text, size, "default %g", o->def);
+        used += (size_t)snprintf(text, size, "default %.10g", o->def);
     }
     if (o->max > o->min) {
-        used += (size_t)snprintf(text + used, size - used, "%s%g to %g", used ? ", " : "", o->min,
-                                 o->max);
+        used += (size_t)snprintf(text + used, size - used, "%s%.10g to %.10g", used ? ", " : "",
+                                 o->min, o->max);
     } else if (o->kind == OPT_UINT && o->min > 0) {
-        used +=
-            (size_t)snprintf(text + used, size - used, "%sat least %g", used ? ", " : "", o->min);
+        used += (size_t)snprintf(text + used, size - used, "%sat least %.10g", used ? ", " : "",
+                                 o->min);
     }
 }
 

@@ -1,0 +1,142 @@
+#!/bin/sh
+# arguments.sh -- what the tool says to wrong arguments and inputs, help, compare, info. No GPU.
+. "$(dirname "$0")/lib.sh"
+
+# ---- the command line ----
+run
+[ "$code" = 2 ] || fail "without a command: exit $code"
+refuses 2 "unknown command 'paint'" paint
+works --help
+grep -q "selftest" out || fail "--help lists no selftest"
+works --version
+grep -qE '^tyndall [0-9]+\.[0-9]+\.[0-9]+$' out || fail "--version: $(cat out)"
+for command in render compare probe balance bench graph info selftest view; do
+    works $command --help
+    grep -q "usage: tyndall $command" out || fail "$command --help: $(head -1 out)"
+    refuses 2 "unknown option '--paint'" $command --paint
+done
+works --help-markdown
+cmp -s out "$source/docs/cli.md" ||
+    fail "docs/cli.md is not what 'tyndall --help-markdown' prints: make it again"
+
+# ---- options ----
+refuses 2 "SCENE is missing" render
+refuses 2 "one argument too many" render a.gltf b.hdr c
+refuses 2 "--size: '640' is not" render a.gltf --size 640
+refuses 2 "--size: '0x5' is not" render a.gltf --size 0x5
+refuses 2 "--size: '640x99999' is not" render a.gltf --size 640x99999
+refuses 2 "--sigma-s: '1,2' is not three numbers" render a.gltf --sigma-s 1,2
+refuses 2 "--look-at: '1' is not three numbers" render a.gltf --look-at 1
+refuses 2 "--spp: '0' is not" render a.gltf --spp 0
+refuses 2 "--spp: '-1' is not" render a.gltf --spp -1
+refuses 2 "--spp: '1.5' is not" render a.gltf --spp 1.5
+refuses 2 "--fov: '180' is not" render a.gltf --fov=180
+refuses 2 "--fov: 'nan' is not" render a.gltf --fov nan
+refuses 2 "--spp needs a value" render a.gltf --spp
+refuses 2 "--quiet takes no value" render a.gltf --quiet=1
+refuses 2 "--quality: 'best' is not one of: draft, normal, high" render a.gltf --quality best
+refuses 2 "--change: 'all' is not one of: none, camera, light" render a.gltf --change all
+refuses 2 "--change needs --frames" render a.gltf --change none
+refuses 2 "--frames: '5-1' is neither" render a.gltf --frames 5-1
+refuses 2 "--frames: '0' is neither" render a.gltf --frames 0
+refuses 2 "holds no %04d" render a.gltf --frames 1-5 -o a.png
+refuses 2 "neither .exr nor .png" render a.gltf -o a.tif
+refuses 2 "no layer 'albedo'" render a.gltf -o a.exr --aov depth,albedo
+refuses 2 "need an .exr" render a.gltf -o a.png --aov depth
+refuses 1 "is not there" render a.gltf -o nowhere/a.png
+refuses 2 "no method 'magic'; there are: " render a.gltf --method magic
+refuses 2 "'lattice' is not PASS.PARAM=VALUE" render a.gltf -D lattice
+refuses 2 "comes with a later version" render "$scenes/cube.gltf" --plugin a.so
+refuses 2 "comes with a later version" view "$scenes/cube.gltf"
+refuses 2 "--points is missing" probe "$scenes/cube.gltf"
+refuses 2 "one of SCENE, --devices, --passes, --methods" info
+refuses 2 "one of SCENE, --devices, --passes, --methods" info --passes --methods
+refuses 2 "magic" render a.gltf -D magic.power=3
+refuses 2 "lattice" render a.gltf -D lattice.power=3
+refuses 2 "cells" render a.gltf -D lattice.cells=many
+refuses 2 "cells" render a.gltf -D lattice.cells=-5
+
+# ---- inputs ----
+refuses 2 "nothere.gltf" info nothere.gltf
+refuses 2 "nothere.gltf" render nothere.gltf
+refuses 2 "nothere.exr" render "$scenes/cube.gltf" nothere.exr
+refuses 2 "given twice" render "$scenes/cube.gltf" a.exr --env b.exr
+echo "{" >broken.gltf
+refuses 2 "broken.gltf" render broken.gltf
+refuses 2 "no camera 'north'" render "$scenes/cube.gltf" --camera north
+refuses 2 "no camera '99'" render "$scenes/cube.gltf" --camera 99
+refuses 2 "orthographic" render "$scenes/cube.gltf" --camera side --fov 40
+refuses 2 "do not give a direction" render "$scenes/cube.gltf" --look-from 1,1,1 --look-at 1,1,1
+refuses 2 "sigma" render "$scenes/cube.gltf" --sigma-s=-1
+refuses 2 "albedo" render "$scenes/cube.gltf" --albedo 1.5
+refuses 2 "g" render "$scenes/cube.gltf" --g 1
+refuses 2 "nothere.csv" probe "$scenes/cube.gltf" --points nothere.csv
+printf 'x,y,z\n' >empty.csv
+refuses 2 "holds no points" probe "$scenes/cube.gltf" --points empty.csv
+printf 'x,y,z\n0,0,0\n1,2\n' >short.csv
+refuses 2 "short.csv:3: '1,2' is not x,y,z" probe "$scenes/cube.gltf" --points short.csv
+
+# ---- suites of the bench ----
+refuses 2 "nothere.json" bench --suite nothere.json
+printf '{\n"name": "x",\n"scenes" [] }\n' >broken.json
+refuses 2 "broken.json:3: is not JSON" bench --suite broken.json
+echo '{"name": "x", "scenes": [{"scene": "cube.gltf", "fog": 1}], "runs": [{}]}' >key.json
+refuses 2 "scenes[0].fog: is not a known key" bench --suite key.json --scenes "$scenes"
+echo '{"name": "x", "scenes": [{"scene": "nothere.gltf"}], "runs": [{}]}' >scene.json
+refuses 2 "'nothere.gltf' is neither" bench --suite scene.json --scenes "$scenes"
+echo '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": []}' >runs.json
+refuses 2 "runs: must be a list" bench --suite runs.json --scenes "$scenes"
+echo '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{"settings": {"a.b": 1}}]}' >set.json
+refuses 2 "a.b" bench --suite set.json --scenes "$scenes"
+
+# ---- info ----
+works info "$scenes/smoke.gltf"
+grep -q "96x160x96 voxels" out || fail "info smoke: $(cat out)"
+grep -q "camera 0 'view'" out || fail "info smoke: no camera"
+works info "$scenes/cube.gltf" --sigma-s 1,2,3 --albedo 0.5
+grep -q "absorption *0.5 1 1.5 1/m" out || fail "info with overrides: $(grep absorption out)"
+works info --methods
+grep -q "^pop " out || fail "info --methods lists no pop: $(cat out)"
+works info --passes
+grep -q -- "-D lattice.cells=.*default" out || fail "info --passes: no lattice.cells"
+
+# ---- compare ----
+make() {
+    "$helpers/exr_make" "$@" || fail "exr_make $*"
+}
+make a.exr 2 1 R=1,2 G=0,0 B=3,1
+make b.exr 2 1 R=1,1 G=0,2 B=2,1
+works compare a.exr b.exr
+near "$(value rel_l1)" 0.571428571 1e-6 "rel_l1"
+near "$(value rmse)" 1 1e-6 "rmse"
+near "$(value rel_rmse)" 0.738548946 1e-6 "rel_rmse"
+near "$(value smape)" 0.511111111 1e-6 "smape"
+near "$(value bias)" 0 1e-6 "bias"
+near "$(value p95)" 0.994200497 1e-6 "p95"
+near "$(value nan)" 0 0 "nan"
+[ -z "$(value n)" ] || fail "n without an error layer"
+works compare a.exr b.exr --block 2
+near "$(value rel_l1)" 0.571428571 1e-6 "rel_l1 of blocks"
+make ae.exr 2 1 R=1,2 G=0,0 B=3,1 error.R=0.1 error.G=0.1 error.B=0.1
+works compare ae.exr b.exr --json --heat heat.png
+cp out compare.json
+near "$("$helpers/json_get" compare.json n)" 0.0683901 1e-6 "n as JSON"
+near "$("$helpers/json_get" compare.json error)" 0.567321302 1e-6 "error as JSON"
+[ "$(head -c 4 heat.png | od -An -tx1 | tr -d ' \n')" = 89504e47 ] || fail "--heat wrote no PNG"
+make c.exr 1 2 R=1 G=1 B=1
+make zero.exr 2 1 R=0 G=0 B=0
+make nan.exr 2 1 R=nan,2 G=0,0 B=3,1
+make xyz.exr 2 1 X=1
+refuses 2 "both need the same size" compare a.exr c.exr
+refuses 2 "sum to 0" compare a.exr zero.exr
+refuses 2 "no channel 'R'" compare xyz.exr b.exr
+refuses 2 "nothere.exr" compare nothere.exr b.exr
+refuses 2 "b.csv" compare a.exr b.csv
+refuses 2 "not a .png" compare a.exr b.exr --heat heat.jpg
+refuses 2 "--block: '0' is not" compare a.exr b.exr --block 0
+refuses 1 "nowhere" compare a.exr b.exr --heat nowhere/heat.png
+run compare nan.exr b.exr
+[ "$code" = 1 ] || fail "compare with a NaN: exit $code"
+near "$(value nan)" 1 0 "nan"
+
+finish

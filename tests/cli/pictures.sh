@@ -1,0 +1,101 @@
+#!/bin/sh
+# pictures.sh -- what the tool makes on a device: files, stats, probe, balance, graph, the same bytes twice.
+. "$(dirname "$0")/lib.sh"
+
+run info --devices
+if [ "$code" != 0 ] || ! grep -q "usable" out; then
+    echo "skipped: no Vulkan device"
+    exit 77
+fi
+
+get() {
+    "$helpers/json_get" "$1" "$2" || fail "$1 has no $2"
+}
+
+# ---- render ----
+refuses 2 "no device 'abacus'" render "$scenes/cube.gltf" --device abacus
+refuses 2 "no device '99'" render "$scenes/cube.gltf" --device 99
+works render "$scenes/cube.gltf" --size 64x48 --quiet
+[ -s cube.png ] || fail "render wrote no cube.png"
+[ -s err ] && fail "--quiet printed: $(cat err)"
+works render "$scenes/cube.gltf" --size 64x48 --quiet -o a.exr -o a.png --aov transmittance,depth,depth_t50,single,multiple --stats a.json
+[ -s a.exr ] && [ -s a.png ] || fail "render wrote no a.exr or a.png"
+cmp -s a.png cube.png || fail "the same picture in two ways differs"
+works render "$scenes/cube.gltf" --size 64x48 --quiet -o b.exr --aov transmittance,depth,depth_t50,single,multiple
+cmp -s a.exr b.exr || fail "pop: the same bytes twice"
+works compare a.exr b.exr
+near "$(value rel_l1)" 0 0 "rel_l1 of equal pictures"
+leftover=$(ls | grep -vxE 'cube.png|[ab].(exr|png|json)|out|err|cache')
+[ -z "$leftover" ] || fail "left behind: $leftover"
+refuses 2 "does not make the layer 'error'" render "$scenes/cube.gltf" -o a.exr --aov error --method pop
+
+# a second run finds the pipelines of the first
+ls cache/tyndall/pipelines-* >/dev/null 2>&1 || fail "no pipeline cache was written"
+echo "damaged" >cache/tyndall/pipelines-junk
+for file in cache/tyndall/pipelines-*; do
+    echo "damaged" >"$file"
+done
+works render "$scenes/cube.gltf" --size 16x16 --quiet -o c.png
+
+# ---- stats ----
+[ "$(get a.json method)" = pop ] || fail "stats: method"
+[ "$(get a.json size.0)" = 64 ] && [ "$(get a.json size.1)" = 48 ] || fail "stats: size"
+for key in tyndall device setup_ms frame_ms.cold memory.persistent memory.transient nodes.0.name \
+    nodes.0.state nodes.0.gpu_ms nodes.0.cpu_ms nodes.0.dispatches nodes.0.bytes nodes.0.flops \
+    nodes.0.work warnings settings/lattice.cells inputs; do
+    get a.json "$key" >/dev/null
+done
+[ "$(get a.json frame_ms.unchanged)" = null ] || fail "stats: unchanged was not run"
+works render "$scenes/cube.gltf" --size 64x48 --quiet --frames 3 --change none --stats n.json
+near "$(get n.json frame_ms.unchanged)" 0 1e5 "stats: unchanged"
+works render "$scenes/cube.gltf" --size 64x48 --quiet --frames 2 --change camera --stats c.json
+near "$(get c.json frame_ms.camera_moved)" 0 1e5 "stats: camera_moved"
+works render "$scenes/cube.gltf" --size 64x48 --quiet --frames 2 --stats f.json
+near "$(get f.json frame_ms.cold)" 0 1e5 "stats: cold"
+
+# ---- path ----
+works render "$scenes/cube.gltf" --size 32x32 --quiet --method path --spp 8 -o p.exr --aov error --stats p.json
+works render "$scenes/cube.gltf" --size 32x32 --quiet --method path --spp 8 -o q.exr --aov error
+cmp -s p.exr q.exr || fail "path: the same bytes twice"
+works render "$scenes/cube.gltf" --size 32x32 --quiet --method path --spp 8 -o r.exr --aov error --seed 1
+cmp -s p.exr r.exr && fail "path: another seed gives the same bytes"
+works compare p.exr r.exr
+awk -v n="$(value n)" -v r="$(value rel_l1)" 'BEGIN { exit !(n > 0 && r < 2 * n && n < 2 * r) }' ||
+    fail "path: two seeds differ by $(value rel_l1), their errors explain $(value n)"
+[ "$(get p.json settings/spp)" = 8 ] || fail "stats: spp"
+
+# ---- sequences ----
+works render "$scenes/cube.gltf" --size 16x16 --quiet --frames 3-4 -o s_%04d.png -o t_##.exr
+[ -s s_0003.png ] && [ -s s_0004.png ] && [ -s t_03.exr ] && [ -s t_04.exr ] || fail "--frames 3-4: $(ls)"
+
+# ---- interruption: exit 130 and no file ----
+"$tool" render "$scenes/cube.gltf" --size 512x512 --quiet --method path --spp 100000 -o i.exr &
+pid=$!
+sleep 2
+kill -INT $pid
+wait $pid
+code=$?
+[ "$code" = 130 ] || fail "interrupted: exit $code"
+[ -e i.exr ] && fail "interrupted: there is a file"
+
+# ---- probe, balance, graph ----
+printf 'x,y,z\n0.5,0.5,0.5\n0.25,0.5,0.5\n' >points.csv
+works probe "$scenes/cube.gltf" --points points.csv --quiet -o field.csv
+[ "$(wc -l <field.csv)" = 3 ] || fail "probe: $(cat field.csv)"
+[ "$(head -1 field.csv | tr ',' '\n' | wc -l)" = 15 ] || fail "probe: header $(head -1 field.csv)"
+works probe "$scenes/cube.gltf" --points points.csv --quiet --method path --spp 4096
+[ "$(head -1 out | tr ',' '\n' | wc -l)" = 27 ] || fail "probe --method path: $(head -1 out)"
+sed -n 2p out | grep -q '^0.5,0.5,0.5,' || fail "probe: order of the points"
+works balance "$scenes/cube.gltf" --json --quiet
+cp out balance.json
+for key in entering emitted absorbed_media absorbed_surfaces escaped imbalance; do
+    [ "$("$helpers/json_get" balance.json $key)" = "list 3" ] || fail "balance: $key"
+done
+near "$(get balance.json entering.0)" 1 1e-3 "power that enters the cube, W"
+near "$(get balance.json imbalance.0)" 0 0.01 "imbalance of the cube"
+works graph "$scenes/cube.gltf" --quiet
+grep -q raymarch out || fail "graph: no raymarch: $(head -5 out)"
+works graph "$scenes/cube.gltf" --dot --quiet
+grep -q digraph out || fail "graph --dot: $(head -2 out)"
+
+finish
