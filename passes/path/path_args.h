@@ -1,0 +1,78 @@
+// path_args.h -- push constants and results of the path tracer's kernels. Included by C and GLSL.
+#ifndef TYN_PATH_ARGS_H
+#define TYN_PATH_ARGS_H
+#include "shared.h"
+
+// Specialisation constants: what a scene has, so that what it has not costs nothing.
+#define TYN_PATH_SPEC_SHAPES 0      // 1: exactly one shape; 0: as many as the medium block says
+#define TYN_PATH_SPEC_HOMOGENEOUS 1 // that shape has no density grid
+#define TYN_PATH_SPEC_GREY 2        // coefficients are equal in all channels
+#define TYN_PATH_SPEC_LIGHTS 3      // 0, 1, or 2 = several
+#define TYN_PATH_SPEC_ENVIRONMENT 4 // TYN_PATH_ENV_*
+#define TYN_PATH_SPEC_FLAGS 5       // TYN_PATH_* bits
+#define TYN_PATH_NUM_SPEC 6
+
+#define TYN_PATH_ENV_NONE 0
+#define TYN_PATH_ENV_CONSTANT 1
+#define TYN_PATH_ENV_MAP 2
+
+#define TYN_PATH_REPEAT 1u       // some axis is periodic
+#define TYN_PATH_EMISSIVE 2u     // some medium emits
+#define TYN_PATH_MIXTURE 4u      // light-lobe mixture sampling
+#define TYN_PATH_EQUIANGULAR 8u  // lamps in or near the media: equi-angular distance sampling
+#define TYN_PATH_LAYERS 16u      // first-order light and transmittance are kept as well
+#define TYN_PATH_SCATTERED 32u   // probes leave out light that has not scattered
+
+struct path_args {
+    tyn_uint first;       // pixel or point of this dispatch's first thread
+    tyn_uint num;         // pixels or points of this dispatch
+    tyn_uint slots;       // threads a pixel
+    tyn_uint first_sample, num_samples; // of this dispatch, for every pixel
+    tyn_uint seed;
+    tyn_uint num_lights;
+    tyn_uint max_depth;   // longest path, scatterings
+    tyn_uint rr_depth;    // Russian roulette from this many scatterings on
+    tyn_uint max_steps;   // safety cap: tentative collisions and brick crossings of one path
+    float sigma_guess;    // typical extinction, 1/m: weighs equi-angular against free-flight sampling
+    tyn_vec3 world[3];    // probes: the world's axes in M
+};
+TYN_ASSERT_SIZE(path_args, 80);
+
+// What one thread found: mean and sum of squared deviations of its samples.
+struct path_partial {
+    tyn_vec3 mean, deviation; // radiance
+    float alpha;              // mean of 1 - transmittance
+    tyn_uint count;
+};
+TYN_ASSERT_SIZE(path_partial, 32);
+
+struct path_partial_layers { // means
+    tyn_vec3 single, multiple, transmittance;
+};
+TYN_ASSERT_SIZE(path_partial_layers, 36);
+
+struct path_resolve_args {
+    tyn_uint first, num;     // pixels or points, as in path_args
+    tyn_uint slots;
+    tyn_uint width;          // of the image, pixels
+    tyn_uint samples_before; // in the running statistics; 0: start anew
+    tyn_uint layers;         // 1: single, multiple, transmittance as well
+    tyn_uint opaque;         // 1: a background is seen, alpha is 1
+};
+TYN_ASSERT_SIZE(path_resolve_args, 28);
+
+// A probe's values: fluence (3 channels), then net flux (3 axes of M x 3 channels).
+#define TYN_PATH_PROBE_VALUES 12
+
+struct path_probe_partial { // of a thread's samples, or of all so far
+    float mean[TYN_PATH_PROBE_VALUES], deviation[TYN_PATH_PROBE_VALUES];
+    tyn_uint count;
+};
+TYN_ASSERT_SIZE(path_probe_partial, 100);
+
+struct path_probe_result { // as tyn_probe_result
+    float value[TYN_PATH_PROBE_VALUES], error[TYN_PATH_PROBE_VALUES];
+};
+TYN_ASSERT_SIZE(path_probe_result, 96);
+
+#endif

@@ -1,0 +1,107 @@
+// path_probe.comp -- samples of the light field at points: each thread follows some paths from one point, in
+// all directions.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "path_args.h"
+
+const bool PROBE = true;
+#include "path_resources.glsl"
+
+layout(set = 0, binding = 8, scalar) readonly buffer points_buffer { vec3 points[]; };
+layout(set = 0, binding = 9, scalar) writeonly buffer partial_buffer { path_probe_partial partials[]; };
+layout(set = 0, binding = 10, scalar) buffer counters_buffer { counters_block counters; };
+
+#include "path.glsl"
+
+path_probe_partial partial;
+vec3 point;
+vec3 heading;       // direction of the path that is followed, away from the point
+float heading_pdf;  // 1/sr
+vec3 direct, direct_heading; // irradiance from lamps and suns, and where it comes from
+
+// Directions: uniform; the lobes of the phase function about a light; the environment map.
+void path_begin(inout rng_state rng, out vec3 origin, out vec3 direction)
+{
+    uvec4 bits = rng_next(rng);
+    float map_share = ENVIRONMENT == TYN_PATH_ENV_MAP ? (LIGHTS > 0u ? 0.33 : 0.5) : 0.0;
+    float lobe_share = LIGHTS > 0u ? (ENVIRONMENT == TYN_PATH_ENV_MAP ? 0.33 : 0.5) : 0.0;
+    float g = max(shapes[0].g.x, 0.0);
+    vec3 axis = vec3(0.0, 0.0, 1.0);
+    if (LIGHTS > 0u) {
+        light_choice choice = light_choose(point, rng_float(bits.y), false);
+        axis = light_towards(min(choice.index, args.num_lights - 1u), point).direction;
+    }
+    float u = rng_float(bits.x);
+    if (ENVIRONMENT == TYN_PATH_ENV_MAP && u < map_share) {
+        float pdf;
+        direction = env_sample(env, rng_next(rng), pdf);
+    } else {
+        u = (u - map_share) / (1.0 - map_share);
+        float c = lobe_share / (1.0 - map_share);
+        direction = phase_sample(u < c ? (u < 0.5 * c ? g : g * g) : 0.0, axis, rng_vec2(bits.zw));
+    }
+    vec3 lobes = 0.5 * (phase(vec3(g), axis, direction) + phase(vec3(g * g), axis, direction));
+    heading_pdf = (1.0 - map_share - lobe_share) * (0.25 / HG_PI) + lobe_share * lobes.x;
+    if (ENVIRONMENT == TYN_PATH_ENV_MAP) {
+        heading_pdf += map_share * env_pdf(env, direction);
+    }
+    origin = point;
+    heading = direction;
+    direct = vec3(0.0);
+    direct_heading = vec3(0.0);
+}
+
+void path_direct(vec3 direction, vec3 irradiance)
+{
+    direct = irradiance;
+    direct_heading = direction;
+}
+
+// Running mean and sum of squared deviations of one value.
+void add_value(uint i, float value, float share)
+{
+    float delta = value - partial.mean[i];
+    partial.mean[i] += delta * share;
+    partial.deviation[i] += delta * (value - partial.mean[i]);
+}
+
+void path_end(path_result result)
+{
+    vec3 radiance = result.radiance;
+    if ((FLAGS & TYN_PATH_SCATTERED) == 0u) {
+        radiance += result.background;
+    }
+    vec3 fluence = radiance / heading_pdf;
+    partial.count++;
+    float share = 1.0 / float(partial.count);
+    for (uint c = 0u; c < 3u; c++) {
+        add_value(c, fluence[c] + direct[c], share);
+        // Light travels against the path. Net flux along axis a: minus the component of `heading`.
+        for (uint a = 0u; a < 3u; a++) {
+            float flux = -(fluence[c] * dot(heading, args.world[a]) +
+                           direct[c] * dot(direct_heading, args.world[a]));
+            add_value(3u + 3u * a + c, flux, share);
+        }
+    }
+}
+
+void main()
+{
+    uint thread = gl_GlobalInvocationID.x;
+    if (thread >= args.num * args.slots) {
+        return;
+    }
+    uint element = args.first + thread / args.slots, slot = thread % args.slots;
+    point = points[element];
+    for (uint i = 0u; i < TYN_PATH_PROBE_VALUES; i++) {
+        partial.mean[i] = 0.0;
+        partial.deviation[i] = 0.0;
+    }
+    partial.count = 0u;
+    uint each = args.num_samples / args.slots, more = args.num_samples % args.slots;
+    uint first = args.first_sample + slot * each + min(slot, more);
+    path_run(element, first, first + each + (slot < more ? 1u : 0u));
+    partials[thread] = partial;
+    path_tally(slot);
+}

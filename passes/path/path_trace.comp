@@ -1,0 +1,67 @@
+// path_trace.comp -- samples of an image: each thread follows some paths of one pixel.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "path_args.h"
+
+const bool PROBE = false;
+#include "path_resources.glsl"
+
+layout(set = 0, binding = 8, scalar) uniform camera_uniform { camera_block camera; };
+layout(set = 0, binding = 9, scalar) writeonly buffer partial_buffer { path_partial partials[]; };
+layout(set = 0, binding = 10, scalar) buffer counters_buffer { counters_block counters; };
+layout(set = 0, binding = 11, scalar) writeonly buffer layers_buffer { path_partial_layers layers[]; };
+
+#include "path.glsl"
+
+// Welford's running mean and sum of squared deviations: exact 0 for equal samples, however many.
+path_partial partial = path_partial(vec3(0.0), vec3(0.0), 0.0, 0u);
+path_partial_layers partial_layers = path_partial_layers(vec3(0.0), vec3(0.0), vec3(0.0));
+uvec2 pixel;
+
+void path_begin(inout rng_state rng, out vec3 origin, out vec3 direction)
+{
+    camera_ray ray = camera_ray_through(camera, vec2(pixel) + rng_vec2(rng_next(rng).xy));
+    origin = ray.origin;
+    direction = ray.direction;
+}
+
+void path_direct(vec3 direction, vec3 radiance)
+{
+}
+
+void path_end(path_result result)
+{
+    vec3 radiance = result.radiance + (camera.background != 0u ? result.background : vec3(0.0));
+    partial.count++;
+    float share = 1.0 / float(partial.count);
+    vec3 delta = radiance - partial.mean;
+    partial.mean += delta * share;
+    partial.deviation += delta * (radiance - partial.mean);
+    partial.alpha += (1.0 - channel_mean(result.transmittance) - partial.alpha) * share;
+    if ((FLAGS & TYN_PATH_LAYERS) != 0u) {
+        partial_layers.single += (result.single - partial_layers.single) * share;
+        partial_layers.multiple += (result.radiance - result.single - partial_layers.multiple) * share;
+        partial_layers.transmittance += (result.transmittance - partial_layers.transmittance) * share;
+    }
+}
+
+void main()
+{
+    uint thread = gl_GlobalInvocationID.x;
+    if (thread >= args.num * args.slots) {
+        return;
+    }
+    uint element = args.first + thread / args.slots, slot = thread % args.slots;
+    pixel = uvec2(element % camera.size.x, element / camera.size.x);
+    // Samples are dealt out evenly; the earlier slots get one more where they do not divide.
+    uint each = args.num_samples / args.slots, more = args.num_samples % args.slots;
+    uint first = args.first_sample + slot * each + min(slot, more);
+    path_run(element, first, first + each + (slot < more ? 1u : 0u));
+
+    partials[thread] = partial;
+    if ((FLAGS & TYN_PATH_LAYERS) != 0u) {
+        layers[thread] = partial_layers;
+    }
+    path_tally(slot);
+}

@@ -1,0 +1,90 @@
+// path_lights.glsl -- drawing a light for next-event estimation.
+//
+// The includer declares `lights[]` (light_block), `env` (env_block), `args` (path_args) and the constants of
+// path_args.h.
+#ifndef TYN_PATH_LIGHTS_GLSL
+#define TYN_PATH_LIGHTS_GLSL
+#include "scene_args.h"
+
+struct light_choice {
+    uint index;         // args.num_lights: the environment map
+    float probability;
+    float environment;  // probability of the environment map at this point
+};
+
+struct light_sample {
+    vec3 direction; // towards the light, unit
+    float distance; // m
+    vec3 arriving;  // irradiance on a perpendicular plane in vacuum, W/m^2
+};
+
+// Fraction of a spot's intensity in direction `d` (unit, away from it), as in KHR_lights_punctual.
+float spot_falloff(light_block light, vec3 d)
+{
+    float c = dot(d, light.direction);
+    float width = light.cos_inner - light.cos_outer;
+    if (width < 1e-6) {
+        return c >= light.cos_outer ? 1.0 : 0.0;
+    }
+    float a = clamp((c - light.cos_outer) / width, 0.0, 1.0);
+    return a * a;
+}
+
+light_sample light_towards(uint index, vec3 p)
+{
+    light_block light = lights[index];
+    if (light.kind == TYN_LIGHT_KIND_DIRECTIONAL) {
+        return light_sample(-light.direction, 1e30, light.color);
+    }
+    vec3 to = light.position - p;
+    float distance2 = max(dot(to, to), 1e-20);
+    float distance = sqrt(distance2);
+    vec3 direction = to / distance;
+    float falloff = light.kind == TYN_LIGHT_KIND_SPOT ? spot_falloff(light, -direction) : 1.0;
+    return light_sample(direction, distance, light.color * (falloff / distance2));
+}
+
+// What light `index` would send to `p` through vacuum: the weight of the draw.
+float light_weight(uint index, vec3 p)
+{
+    vec3 arriving = light_towards(index, p).arriving;
+    return max(arriving.x, max(arriving.y, arriving.z));
+}
+
+// Draws a light in proportion to light_weight; the environment map, if `with_map`, by its mean fluence.
+light_choice light_choose(vec3 p, float u, bool with_map)
+{
+    bool map = with_map && ENVIRONMENT == TYN_PATH_ENV_MAP;
+    if (LIGHTS == 0u) {
+        return light_choice(0u, map ? 1.0 : 0.0, map ? 1.0 : 0.0);
+    }
+    if (LIGHTS == 1u && !map) {
+        return light_choice(0u, 1.0, 0.0);
+    }
+    // The map is drawn by phase sampling as well, so it needs the smaller half of its share here.
+    float map_weight = map ? 6.2831853 * max(env.mean.x, max(env.mean.y, env.mean.z)) : 0.0;
+    float total = map_weight;
+    for (uint i = 0u; i < args.num_lights; i++) {
+        total += light_weight(i, p);
+    }
+    if (!(total > 0.0)) {
+        return light_choice(0u, 0.0, 0.0);
+    }
+    float at = u * total;
+    float weight = 0.0;
+    uint index = args.num_lights;
+    for (uint i = 0u; i < args.num_lights; i++) {
+        weight = light_weight(i, p);
+        if (at < weight) {
+            index = i;
+            break;
+        }
+        at -= weight;
+    }
+    if (index == args.num_lights) {
+        weight = map_weight;
+    }
+    return light_choice(index, weight / total, map_weight / total);
+}
+
+#endif

@@ -1,0 +1,31 @@
+// path_resources.glsl -- what every tracing kernel of the path tracer reads (set 0, bindings 0 to 7), and
+// what it is specialised to.
+#ifndef TYN_PATH_RESOURCES_GLSL
+#define TYN_PATH_RESOURCES_GLSL
+#include "counters.h"
+#include "env_args.h"
+#include "scene_args.h"
+
+layout(local_size_x = 64) in;
+
+layout(constant_id = 0) const uint ONE_SHAPE = 0u;
+layout(constant_id = 1) const bool HOMOGENEOUS = false;
+layout(constant_id = 2) const bool GREY = false;
+layout(constant_id = 3) const uint LIGHTS = 2u;
+layout(constant_id = 4) const uint ENVIRONMENT = 2u;
+layout(constant_id = 5) const uint FLAGS = 0u;
+
+layout(set = 0, binding = 0) uniform sampler3D atlas;
+layout(set = 0, binding = 1, scalar) uniform medium_uniform { medium_block medium; };
+layout(set = 0, binding = 2, scalar) readonly buffer shapes_buffer { shape_block shapes[]; };
+layout(set = 0, binding = 3) uniform sampler3D bricks;
+layout(set = 0, binding = 4, scalar) readonly buffer lights_buffer { light_block lights[]; };
+layout(set = 0, binding = 5, scalar) uniform environment_uniform { env_block env; };
+layout(set = 0, binding = 6) uniform sampler2D env_map;
+layout(set = 0, binding = 7, scalar) readonly buffer env_buffer {
+    env_table_block env_table;
+    env_cell env_cells[];
+};
+layout(push_constant, scalar) uniform args_push { path_args args; };
+
+#endif
