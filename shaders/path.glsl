@@ -17,10 +17,11 @@
 //    medium are weighed as in a homogeneous one.
 //  * Environment map: next-event estimation and phase sampling, balance heuristic over directions.
 //
-// One loop, one stage per turn, so that threads of a subgroup at different stages stay together.
+// A turn of the loop is a flight, and at its end a vertex with its shadow ray: threads of a subgroup fly
+// together and scatter together, and one whose path has ended starts the next at once.
 //
 // The includer declares the resources of path_media.glsl and path_lights.glsl, and defines
-//   void path_begin(inout rng_state, out vec3 origin, out vec3 direction)  -- start of the next path
+//   void path_begin(inout rng_state, vec2 random, out vec3 origin, out vec3 direction)  -- the next path
 //   void path_direct(vec3 direction, vec3 radiance)  -- probes: uncollided lamps at the point itself
 //   void path_end(path_result)                       -- the path's contribution
 #ifndef TYN_PATH_GLSL
@@ -44,21 +45,13 @@ struct path_counts { // of this thread
 };
 path_counts path_count = path_counts(0u, 0u, 0u, 0u);
 
-void path_begin(inout rng_state rng, out vec3 origin, out vec3 direction);
+void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction);
 void path_direct(vec3 direction, vec3 radiance);
 void path_end(path_result result);
 
 const float PATH_MIXTURE_FIRST = 0.2, PATH_MIXTURE_LOG2_DECAY = -0.32192809; // log2 0.8
 const float PATH_ROULETTE = 0.1; // paths, and transmittance, below this weight are played for
 const float PATH_FAR = 1e30;
-
-const uint STAGE_BEGIN = 0u;   // no path
-const uint STAGE_STRETCH = 1u; // at a vertex, about to leave it
-const uint STAGE_FLIGHT = 2u;  // delta tracking from the vertex
-const uint STAGE_SHADOW = 3u;  // ratio tracking from the vertex to a light
-const uint STAGE_ALONG = 4u;   // ratio tracking along the stretch to the equi-angular point
-const uint STAGE_ASIDE = 5u;   // ratio tracking from there to the lamp
-const uint STAGE_END = 6u;
 
 // The stretch of a ray seen from a lamp: distances along the ray and the angles that they span.
 struct lamp_view {
@@ -100,12 +93,13 @@ uint lamp_choose(vec3 origin, vec3 direction, float u, out float probability)
     float total = 0.0, kept = 0.0;
     uint index = args.num_lights;
     for (uint i = 0u; i < args.num_lights; i++) {
-        if (lights[i].kind == TYN_LIGHT_KIND_DIRECTIONAL) {
+        light_block light = light_get(i);
+        if (light.kind == TYN_LIGHT_KIND_DIRECTIONAL) {
             continue;
         }
-        vec3 to = lights[i].position - origin;
+        vec3 to = light.position - origin;
         float height = length(to - max(dot(to, direction), 0.0) * direction);
-        float weight = max3(lights[i].color) / max(height, 1e-6);
+        float weight = max3(light.color) / max(height, 1e-6);
         total += weight;
         float share = weight / max(total, 1e-30);
         if (u < share) {
@@ -125,357 +119,381 @@ float channel_mean(vec3 v)
     return (v.x + v.y + v.z) * (1.0 / 3.0);
 }
 
-// One path's light: everything, and its first order.
-void path_add(inout path_result result, vec3 radiance, bool first_order)
+// A path as its flights change it.
+struct path_state {
+    vec3 vertex, way;   // where it is, and where it goes on to
+    vec3 beta, rho;     // see above
+    vec3 hero;          // 1 in the hero channel
+    uint depth, steps;  // scatterings; effort
+};
+
+vec3 path_weight(path_state path)
 {
-    result.radiance += radiance;
-    if ((FLAGS & TYN_PATH_LAYERS) != 0u && first_order) {
-        result.single += radiance;
+    return GREY ? path.beta : path.beta / channel_mean(path.rho);
+}
+
+// Extinction of each channel over the largest, where coefficients are one constant times density.
+vec3 path_tint;
+
+// Transmittance from `origin` to `distance`, an unbiased estimate for each channel.
+vec3 path_transmittance(vec3 origin, vec3 direction, float distance, inout rng_state rng, inout uint steps)
+{
+    vec2 span = media_span(origin, direction);
+    float left = min(span.y, distance) - span.x;
+    if (!(left > 0.0)) {
+        return vec3(1.0);
     }
+    if (HOMOGENEOUS) {
+        return exp(-grey(path_shape0.sigma_s + path_shape0.sigma_a) * left);
+    }
+    vec3 passed = vec3(1.0), at = origin + span.x * direction;
+    brick_walk walk = brick_start(medium, at, direction);
+    vec2 bounds = media_bounds(walk.cell);
+    float tau = rng_exponential(rng_next(rng).x);
+    while (steps < args.max_steps) {
+        steps++;
+        int axis;
+        float face = brick_exit(medium, walk, at, axis), ahead = min(face, left);
+        // The least extinction is taken out analytically, the rest is tracked.
+        float tracked = bounds.y - bounds.x;
+        bool collides = tau < tracked * ahead;
+        float moved = collides ? tau / tracked : ahead;
+        at += moved * direction;
+        left -= moved;
+        passed *= exp(-bounds.x * moved * path_tint);
+        if (collides) {
+            path_count.collisions++;
+            uvec4 bits = rng_next(rng);
+            tau = rng_exponential(bits.x);
+            vec3 more = media_at(at, 0.0, vec3(0.0)).sigma_t - bounds.x * path_tint;
+            passed *= clamp(1.0 - more / tracked, 0.0, 1.0);
+            float most = max3(passed);
+            if (most < PATH_ROULETTE) {
+                float survival = most / PATH_ROULETTE;
+                if (rng_float(bits.y) >= survival) {
+                    return vec3(0.0);
+                }
+                passed /= survival;
+            }
+        } else {
+            if (left <= 0.0 || !brick_step(medium, walk, axis)) {
+                break;
+            }
+            tau -= tracked * ahead;
+            bounds = media_bounds(walk.cell);
+        }
+    }
+    return passed;
+}
+
+// What a flight found.
+struct path_flight {
+    bool collided;
+    float distance; // from the vertex, m
+    vec3 at;
+    media_point m;
+    vec3 glow;      // emission on the way, already weighed by the path
+    float spare;    // a random number nobody has used
+};
+
+// Flies on from the vertex to the next real collision, or out of the media.
+path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
+{
+    path_flight f;
+    f.collided = false;
+    f.distance = 0.0;
+    f.at = path.vertex;
+    f.glow = vec3(0.0);
+    uvec4 bits = rng_next(rng);
+    float tau = rng_exponential(bits.x);
+    f.spare = rng_float(bits.y);
+    vec2 span = media_span(path.vertex, path.way);
+    if (span.x >= span.y) {
+        return f;
+    }
+    hit = true;
+    if (HOMOGENEOUS) {
+        // Distances from the hero's own exponential: a pdf for every channel, and no null collisions.
+        f.m = media_at(path.vertex, 0.0, path.hero);
+        float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero), left = span.y - span.x;
+        f.collided = tau < sigma_t * left;
+        float moved = f.collided ? tau / sigma_t : left;
+        path.steps++;
+        path_count.collisions += f.collided ? 1u : 0u;
+        f.distance = span.x + moved;
+        f.at = path.vertex + f.distance * path.way;
+        if ((FLAGS & TYN_PATH_EMISSIVE) != 0u) {
+            f.glow = path_weight(path) * f.m.emission * moved;
+        }
+        if (!GREY) {
+            vec3 spread = exp((sigma_t - f.m.sigma_t) * moved);
+            path.beta *= spread;
+            path.rho *= spread;
+        }
+        return f;
+    }
+    f.at += span.x * path.way;
+    f.distance = span.x;
+    brick_walk walk = brick_start(medium, f.at, path.way);
+    float bound = media_bounds(walk.cell).y;
+    while (path.steps < args.max_steps) {
+        path.steps++;
+        int axis;
+        float ahead = brick_exit(medium, walk, f.at, axis);
+        bool collides = tau < bound * ahead;
+        float moved = collides ? tau / bound : ahead;
+        bits = rng_next(rng);
+        if ((FLAGS & TYN_PATH_EMISSIVE) != 0u) {
+            // Track-length estimator at one point of the way.
+            vec3 somewhere = f.at + moved * rng_float(bits.w) * path.way;
+            f.glow += path_weight(path) * media_at(somewhere, 0.0, path.hero).emission * moved;
+        }
+        f.at += moved * path.way;
+        f.distance += moved;
+        if (!collides) {
+            tau -= bound * ahead;
+            if (!brick_step(medium, walk, axis)) {
+                break;
+            }
+            bound = media_bounds(walk.cell).y;
+        } else {
+            path_count.collisions++;
+            tau = rng_exponential(bits.x);
+            f.m = media_at(f.at, rng_float(bits.z), path.hero);
+            float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero);
+            if (rng_float(bits.y) * bound < sigma_t) {
+                f.collided = true;
+                break;
+            }
+            if (!GREY) {
+                // A null collision: the path goes straight on, its colour does not.
+                vec3 none = max(bound - f.m.sigma_t, 0.0);
+                none /= max(dot(none, path.hero), 1e-30);
+                path.beta *= none;
+                path.rho *= none;
+            }
+        }
+    }
+    return f;
+}
+
+// The light that a lamp sends to the stretch ahead of the vertex and from there back to it, by an
+// equi-angular distance.
+vec3 path_lamp(inout path_state path, inout rng_state rng)
+{
+    vec2 span = media_span(path.vertex, path.way);
+    uvec4 bits = rng_next(rng);
+    float probability;
+    uint lamp = lamp_choose(path.vertex, path.way, rng_float(bits.x), probability);
+    if (span.x >= span.y || lamp == args.num_lights) {
+        return vec3(0.0);
+    }
+    lamp_view v = lamp_see(light_get(lamp).position, path.vertex, path.way, span);
+    float angle = mix(v.angle0, v.angle1, rng_float(bits.y));
+    float distance = clamp(v.closest + v.height * tan(angle), v.span.x, v.span.y);
+    float pdf = lamp_pdf(v, distance);
+    vec3 at = path.vertex + distance * path.way;
+    media_point m = media_at(at, rng_float(bits.z), vec3(1.0 / 3.0));
+    if (!(max3(m.part_s) > 0.0) || !(pdf > 0.0)) {
+        return vec3(0.0);
+    }
+    light_sample light = light_towards(lamp, at);
+    vec3 sent = path_weight(path) * m.part_s * phase(m.g, path.way, light.direction) * light.arriving;
+    sent *= channel_mean(m.sigma_s) / channel_mean(m.part_s) * (1.0 - flight_weight(pdf, distance)) /
+            (pdf * probability);
+    sent *= path_transmittance(path.vertex, path.way, distance, rng, path.steps);
+    return sent * path_transmittance(at, light.direction, light.distance, rng, path.steps);
+}
+
+// Axis of a path's light lobes.
+vec4 path_lobe(inout rng_state rng, float u)
+{
+    if ((FLAGS & TYN_PATH_MIXTURE) == 0u) {
+        return vec4(0.0, 0.0, 0.0, -1.0);
+    }
+    if (LIGHTS == 1u && ENVIRONMENT != TYN_PATH_ENV_MAP) {
+        bool distant = path_light0.kind == TYN_LIGHT_KIND_DIRECTIONAL;
+        return distant ? vec4(-path_light0.direction, 0.0) : vec4(path_light0.position, 1.0);
+    }
+    // Any axis that does not depend on the path is unbiased.
+    light_choice choice = light_choose(0.5 * medium.extent, u, true);
+    if (LIGHTS > 0u && choice.index < args.num_lights) {
+        light_block light = light_get(choice.index);
+        bool distant = light.kind == TYN_LIGHT_KIND_DIRECTIONAL;
+        return distant ? vec4(-light.direction, 0.0) : vec4(light.position, 1.0);
+    }
+    float pdf = 0.0;
+    return ENVIRONMENT == TYN_PATH_ENV_MAP ? vec4(env_sample(env, rng_next(rng), pdf), 0.0)
+                                           : vec4(0.0, 0.0, 0.0, -1.0);
 }
 
 // Follows samples [first, end) of one pixel or point.
 void path_run(uint element, uint first, uint end)
 {
-    uint index = first, stage = STAGE_BEGIN;
-    rng_state rng = rng_start(element, first, args.seed);
+    if (ONE_SHAPE == 1u) {
+        path_shape0 = shapes[0];
+    }
+    if (LIGHTS == 1u) {
+        path_light0 = lights[0];
+    }
+    path_tint = GREY ? vec3(1.0) : (medium.sigma_s + medium.sigma_a) / max(medium.sigma_t_max, 1e-30);
+
+    uint index = first;
+    bool ended = true;
+    rng_state rng;
+    path_state path;
     path_result result;
-    // Extinction of each channel over the largest, where coefficients are constants times density.
-    vec3 tint = GREY ? vec3(1.0) : (medium.sigma_s + medium.sigma_a) / max(medium.sigma_t_max, 1e-30);
-
-    // The path.
-    vec3 vertex, way;         // where it is, and where it goes on to
-    vec3 beta, rho, hero;     // see above; 1 in the hero channel
-    uint depth, steps;        // scatterings so far; effort so far
     vec4 lobe;                // direction towards a light (w 0) or a lamp's position (w 1); none: w -1
-    float pdf_phase, pdf_map; // of `way`; probability with which the map was drawn at the vertex
-    bool alive;               // goes on after the shadow ray
-
-    // The ray that is tracked.
-    vec3 at, along;
-    float gone, left; // distances from its start and to its end, m
-    float tau;        // optical depth to the next tentative collision
-    brick_walk walk;
-    float bound, ground; // extinction of the brick: most and least of the largest channel, 1/m
-    bool starts = false, arrives = false;
-    vec3 passed, pending; // transmittance so far; what arrives if nothing is lost
-    uint lamp;            // of the equi-angular sample
-    float lamp_at, lamp_factor;
+    float pdf_phase, pdf_map; // of the path's way; probability with which the map was drawn at the vertex
 
     for (;;) {
-        arrives = false;
-
-        if (stage == STAGE_BEGIN) {
+        if (ended) {
             if (index >= end) {
                 break;
             }
+            ended = false;
             rng = rng_start(element, index++, args.seed);
             result = path_result(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), false);
-            beta = vec3(1.0);
-            rho = vec3(1.0);
-            hero = vec3(1.0, 0.0, 0.0);
-            lobe = vec4(0.0, 0.0, 0.0, -1.0);
-            depth = 0u;
-            steps = 0u;
+            path.beta = vec3(1.0);
+            path.rho = vec3(1.0);
+            path.hero = vec3(1.0, 0.0, 0.0);
+            path.depth = 0u;
+            path.steps = 0u;
             pdf_phase = 1.0;
             pdf_map = 0.0;
-            alive = true;
-            path_begin(rng, vertex, way);
             uvec4 bits = rng_next(rng);
             if (!GREY) {
-                float u = 3.0 * rng_float(bits.x);
-                hero = vec3(u < 1.0, u >= 1.0 && u < 2.0, u >= 2.0);
+                float u = 3.0 * rng_float(bits.z);
+                path.hero = vec3(u < 1.0, u >= 1.0 && u < 2.0, u >= 2.0);
             }
-            if ((FLAGS & TYN_PATH_MIXTURE) != 0u) {
-                // Any axis that does not depend on the path is unbiased.
-                light_choice choice = light_choose(0.5 * medium.extent, rng_float(bits.y), true);
+            lobe = path_lobe(rng, rng_float(bits.w));
+            path_begin(rng, rng_vec2(bits.xy), path.vertex, path.way);
+            if (PROBE && LIGHTS > 0u && (FLAGS & TYN_PATH_SCATTERED) == 0u) {
+                light_choice choice = light_choose(path.vertex, rng_float(rng_next(rng).x), false);
+                if (choice.probability > 0.0) {
+                    light_sample light = light_towards(choice.index, path.vertex);
+                    vec3 passed = path_transmittance(path.vertex, light.direction, light.distance, rng,
+                                                     path.steps);
+                    path_direct(light.direction, light.arriving * passed / choice.probability);
+                }
+            }
+        }
+
+        if ((FLAGS & TYN_PATH_EQUIANGULAR) != 0u && path.depth < args.max_depth) {
+            vec3 sent = path_lamp(path, rng);
+            result.radiance += sent;
+            result.single += path.depth == 0u ? sent : vec3(0.0);
+        }
+
+        path_flight f = path_fly(path, rng, result.hit);
+        result.radiance += f.glow;
+
+        if (path.steps >= args.max_steps) {
+            path_count.cut++;
+            ended = true;
+        } else if (!f.collided) {
+            ended = true;
+            vec3 weight = path_weight(path);
+            if (path.depth == 0u) {
+                result.transmittance = weight;
+            }
+            if (ENVIRONMENT != TYN_PATH_ENV_NONE) {
+                vec3 sky = weight * (ENVIRONMENT == TYN_PATH_ENV_MAP
+                                         ? environment_radiance(env, env_map, path.way)
+                                         : env.radiance);
+                if (ENVIRONMENT == TYN_PATH_ENV_MAP && pdf_map > 0.0) {
+                    sky *= pdf_phase / (pdf_phase + pdf_map * env_pdf(env, path.way));
+                }
+                if (path.depth == 0u) {
+                    result.background = sky;
+                } else {
+                    result.radiance += sky;
+                    result.single += path.depth == 1u ? sky : vec3(0.0);
+                }
+            }
+        } else if (path.depth >= args.max_depth) {
+            ended = true;
+        } else {
+            // A real collision, drawn for the hero. With several media the path goes on in one of them.
+            path.depth++;
+            float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero);
+            float part = 1.0;
+            vec3 chosen = vec3(1.0);
+            if (ONE_SHAPE != 1u) {
+                part = dot(f.m.sigma_s, path.hero) / max(dot(f.m.part_s, path.hero), 1e-30);
+                chosen = f.m.part_s / max(f.m.sigma_s, vec3(1e-30));
+            }
+            path.beta *= f.m.part_s * (part / sigma_t);
+            if (!GREY) {
+                path.rho *= f.m.sigma_t * chosen * (part / sigma_t);
+            }
+            vec3 weight = path_weight(path);
+            uvec4 bits = rng_next(rng);
+
+            vec3 toward = vec3(0.0);
+            float c = 0.0;
+            if ((FLAGS & TYN_PATH_MIXTURE) != 0u && lobe.w >= 0.0) {
+                toward = lobe.w > 0.0 ? lobe.xyz - f.at : lobe.xyz;
+                toward *= inversesqrt(max(dot(toward, toward), 1e-30));
+                c = PATH_MIXTURE_FIRST * exp2(PATH_MIXTURE_LOG2_DECAY * float(path.depth - 1u));
+            }
+
+            // Next-event estimation.
+            light_choice choice = light_choose(f.at, rng_float(bits.x), true);
+            vec3 direction = vec3(0.0, 0.0, 1.0), pending = vec3(0.0);
+            float distance = PATH_FAR;
+            if (choice.probability > 0.0) {
                 if (LIGHTS > 0u && choice.index < args.num_lights) {
-                    light_block light = lights[choice.index];
-                    lobe = light.kind == TYN_LIGHT_KIND_DIRECTIONAL ? vec4(-light.direction, 0.0)
-                                                                    : vec4(light.position, 1.0);
+                    light_sample light = light_towards(choice.index, f.at);
+                    direction = light.direction;
+                    distance = light.distance;
+                    float factor = 1.0 / choice.probability;
+                    if ((FLAGS & TYN_PATH_EQUIANGULAR) != 0u && distance < PATH_FAR) {
+                        lamp_view v = lamp_see(light_get(choice.index).position, path.vertex, path.way,
+                                               media_span(path.vertex, path.way));
+                        factor *= flight_weight(lamp_pdf(v, f.distance), f.distance);
+                    }
+                    pending = weight * phase(f.m.g, path.way, direction) * light.arriving * factor;
                 } else if (ENVIRONMENT == TYN_PATH_ENV_MAP) {
                     float pdf;
-                    lobe = vec4(env_sample(env, rng_next(rng), pdf), 0.0);
+                    direction = env_sample(env, rng_next(rng), pdf);
+                    vec3 forward = phase(f.m.g, path.way, direction);
+                    float other = channel_mean(mixture_pdf(f.m.g, forward, toward, direction, c));
+                    pending = weight * forward * environment_radiance(env, env_map, direction) /
+                              max(pdf * choice.probability + other, 1e-30);
                 }
             }
-            stage = STAGE_STRETCH;
-            if (PROBE && LIGHTS > 0u && (FLAGS & TYN_PATH_SCATTERED) == 0u) {
-                light_choice choice = light_choose(vertex, rng_float(bits.z), false);
-                if (choice.probability > 0.0) {
-                    light_sample light = light_towards(choice.index, vertex);
-                    at = vertex;
-                    along = light.direction;
-                    left = light.distance;
-                    pending = light.arriving / choice.probability;
-                    passed = vec3(1.0);
-                    stage = STAGE_SHADOW;
-                    starts = true;
-                }
+            if (max3(pending) > 0.0) {
+                pending *= path_transmittance(f.at, direction, distance, rng, path.steps);
+                result.radiance += pending;
+                result.single += path.depth == 1u ? pending : vec3(0.0);
             }
-        }
 
-        if (stage == STAGE_STRETCH) {
-            at = vertex;
-            along = way;
-            left = PATH_FAR;
-            starts = true;
-            stage = STAGE_FLIGHT;
-            if ((FLAGS & TYN_PATH_EQUIANGULAR) != 0u && depth < args.max_depth) {
-                vec2 span = media_span(vertex, way);
-                uvec4 bits = rng_next(rng);
-                float probability;
-                lamp = lamp_choose(vertex, way, rng_float(bits.x), probability);
-                if (span.x < span.y && lamp < args.num_lights) {
-                    lamp_view v = lamp_see(lights[lamp].position, vertex, way, span);
-                    float angle = mix(v.angle0, v.angle1, rng_float(bits.y));
-                    lamp_at = clamp(v.closest + v.height * tan(angle), v.span.x, v.span.y);
-                    float pdf = lamp_pdf(v, lamp_at);
-                    lamp_factor = (1.0 - flight_weight(pdf, lamp_at)) / (pdf * probability);
-                    left = lamp_at;
-                    passed = vec3(1.0);
-                    stage = STAGE_ALONG;
-                }
+            // The next direction.
+            vec3 d = mixture_sample(GREY ? f.m.g.x : dot(f.m.g, path.hero), path.way, toward, c,
+                                    rng_float(bits.y), rng_vec2(bits.zw));
+            if ((FLAGS & TYN_PATH_MIXTURE) != 0u || !GREY || ENVIRONMENT == TYN_PATH_ENV_MAP) {
+                vec3 forward = phase(f.m.g, path.way, d);
+                vec3 pdf = mixture_pdf(f.m.g, forward, toward, d, c);
+                float divide = 1.0 / max(GREY ? pdf.x : dot(pdf, path.hero), 1e-30);
+                path.beta *= forward * divide;
+                path.rho *= GREY ? vec3(1.0) : pdf * divide;
+                pdf_phase = channel_mean(pdf);
+                pdf_map = choice.environment;
+            }
+            path.vertex = f.at;
+            path.way = d;
+
+            float most = max3(path_weight(path));
+            ended = !(most > 0.0);
+            if (path.depth >= args.rr_depth && most < PATH_ROULETTE) {
+                float survival = most / PATH_ROULETTE;
+                ended = f.spare >= survival;
+                path.beta /= max(survival, 1e-30);
             }
         }
 
-        if (starts) {
-            starts = false;
-            vec2 span = media_span(at, along);
-            span.y = min(span.y, left);
-            if (span.x >= span.y) {
-                arrives = true;
-            } else if (HOMOGENEOUS && stage != STAGE_FLIGHT) {
-                passed *= exp(-(shapes[0].sigma_s + shapes[0].sigma_a) * (span.y - span.x));
-                arrives = true;
-            } else {
-                at += span.x * along;
-                gone = span.x;
-                left = span.y - span.x;
-                tau = rng_exponential(rng_next(rng).x);
-                if (HOMOGENEOUS) {
-                    bound = max3(shapes[0].sigma_s + shapes[0].sigma_a);
-                    ground = 0.0;
-                } else {
-                    walk = brick_start(medium, at, along);
-                    vec2 bounds = media_bounds(walk.cell);
-                    bound = bounds.y;
-                    ground = bounds.x;
-                }
-                if (stage == STAGE_FLIGHT) {
-                    result.hit = true;
-                }
-            }
-        }
-
-        if (!arrives) {
-            bool flight = stage == STAGE_FLIGHT;
-            float ahead = left;
-            int axis = 0;
-            if (!HOMOGENEOUS) {
-                float face = brick_exit(medium, walk, at, axis);
-                arrives = left <= face;
-                ahead = min(left, face);
-            }
-            // Shadow rays lose the least extinction analytically and track the rest.
-            float tracked = flight ? bound : bound - ground;
-            bool collides = tau < tracked * ahead;
-            float moved = collides ? tau / tracked : ahead;
-            if ((FLAGS & TYN_PATH_EMISSIVE) != 0u && flight) {
-                // Track-length estimator, at one point of the way that is unlikely to be the same again.
-                uvec4 bits = rng_next(rng);
-                vec3 glow = media_at(at + moved * rng_float(bits.x) * along, 0.0, hero).emission;
-                result.radiance += beta / channel_mean(rho) * glow * moved;
-            }
-            at += moved * along;
-            gone += moved;
-            left -= moved;
-            if (!flight) {
-                passed *= exp(-ground * moved * tint);
-            }
-            if (++steps > args.max_steps) {
-                path_count.cut++;
-                stage = STAGE_END;
-            } else if (!collides) {
-                tau -= tracked * ahead;
-                if (HOMOGENEOUS) {
-                    arrives = true;
-                } else if (!arrives) {
-                    if (brick_step(medium, walk, axis)) {
-                        vec2 bounds = media_bounds(walk.cell);
-                        bound = bounds.y;
-                        ground = bounds.x;
-                    } else {
-                        arrives = true;
-                    }
-                }
-            } else {
-                arrives = false;
-                path_count.collisions++;
-                uvec4 bits = rng_next(rng);
-                tau = rng_exponential(bits.x);
-                media_point m = media_at(at, rng_float(bits.z), hero);
-                if (!flight) {
-                    vec3 kept = 1.0 - (m.sigma_t - ground * tint) / tracked;
-                    passed *= clamp(kept, 0.0, 1.0);
-                    float most = max3(passed);
-                    if (most < PATH_ROULETTE) {
-                        float survival = most / PATH_ROULETTE;
-                        bool survives = rng_float(bits.y) < survival;
-                        passed = survives ? passed / survival : vec3(0.0);
-                        arrives = !survives;
-                    }
-                } else {
-                    float sigma_t = GREY ? m.sigma_t.x : dot(m.sigma_t, hero);
-                    if (rng_float(bits.y) * bound >= sigma_t) {
-                        if (!GREY) {
-                            // Null collision: the path goes straight on, its colour does not.
-                            vec3 none = max(bound - m.sigma_t, 0.0);
-                            float divide = 1.0 / max(dot(none, hero), 1e-30);
-                            beta *= none * divide;
-                            rho *= none * divide;
-                        }
-                    } else if (depth >= args.max_depth) {
-                        stage = STAGE_END;
-                    } else {
-                        // A real collision. With several media the path goes on in one of them.
-                        depth++;
-                        float part = ONE_SHAPE == 1u ? 1.0 : dot(m.sigma_s, hero) /
-                                                             max(dot(m.part_s, hero), 1e-30);
-                        beta *= m.part_s * (part / sigma_t);
-                        if (!GREY) {
-                            vec3 chosen = ONE_SHAPE == 1u ? vec3(1.0)
-                                                          : m.part_s / max(m.sigma_s, vec3(1e-30));
-                            rho *= m.sigma_t * chosen * (part / sigma_t);
-                        }
-                        vec3 weight = GREY ? beta : beta / channel_mean(rho);
-                        bits = rng_next(rng);
-
-                        vec3 toward = vec3(0.0);
-                        float c = 0.0;
-                        if ((FLAGS & TYN_PATH_MIXTURE) != 0u && lobe.w >= 0.0) {
-                            toward = lobe.w > 0.0 ? lobe.xyz - at : lobe.xyz;
-                            toward *= inversesqrt(max(dot(toward, toward), 1e-30));
-                            c = PATH_MIXTURE_FIRST * exp2(PATH_MIXTURE_LOG2_DECAY * float(depth - 1u));
-                        }
-
-                        // Next-event estimation.
-                        pending = vec3(0.0);
-                        light_choice choice = light_choose(at, rng_float(bits.x), true);
-                        if (choice.probability > 0.0) {
-                            if (LIGHTS > 0u && choice.index < args.num_lights) {
-                                light_sample light = light_towards(choice.index, at);
-                                float factor = 1.0 / choice.probability;
-                                if ((FLAGS & TYN_PATH_EQUIANGULAR) != 0u &&
-                                    lights[choice.index].kind != TYN_LIGHT_KIND_DIRECTIONAL) {
-                                    lamp_view v = lamp_see(lights[choice.index].position, vertex, way,
-                                                           media_span(vertex, way));
-                                    factor *= flight_weight(lamp_pdf(v, gone), gone);
-                                }
-                                along = light.direction;
-                                left = light.distance;
-                                pending = weight * phase(m.g, way, along) * light.arriving * factor;
-                            } else if (ENVIRONMENT == TYN_PATH_ENV_MAP) {
-                                float pdf;
-                                along = env_sample(env, rng_next(rng), pdf);
-                                left = PATH_FAR;
-                                vec3 forward = phase(m.g, way, along);
-                                float other = channel_mean(mixture_pdf(m.g, forward, toward, along, c));
-                                pending = weight * forward * environment_radiance(env, env_map, along) /
-                                          max(pdf * choice.probability + other, 1e-30);
-                            }
-                        }
-
-                        // The next direction.
-                        vec3 d = mixture_sample(GREY ? m.g.x : dot(m.g, hero), way, toward, c,
-                                                rng_float(bits.y), rng_vec2(bits.zw));
-                        if ((FLAGS & TYN_PATH_MIXTURE) != 0u || !GREY || ENVIRONMENT == TYN_PATH_ENV_MAP) {
-                            vec3 forward = phase(m.g, way, d);
-                            vec3 pdf = mixture_pdf(m.g, forward, toward, d, c);
-                            float divide = 1.0 / max(GREY ? pdf.x : dot(pdf, hero), 1e-30);
-                            beta *= forward * divide;
-                            if (!GREY) {
-                                rho *= pdf * divide;
-                            }
-                            pdf_phase = channel_mean(pdf);
-                            pdf_map = choice.environment;
-                        }
-                        vertex = at;
-                        way = d;
-
-                        float most = max3(GREY ? beta : beta / channel_mean(rho));
-                        alive = most > 0.0;
-                        if (depth >= args.rr_depth && most < PATH_ROULETTE) {
-                            float survival = most / PATH_ROULETTE;
-                            alive = rng_float(rng_next(rng).x) < survival;
-                            beta /= max(survival, 1e-30);
-                        }
-
-                        stage = alive ? STAGE_STRETCH : STAGE_END;
-                        if (max3(pending) > 0.0) {
-                            passed = vec3(1.0);
-                            if (HOMOGENEOUS) {
-                                float length = min(media_span(at, along).y, left);
-                                passed = exp(-m.sigma_t * length);
-                                path_add(result, pending * passed, depth == 1u);
-                            } else {
-                                stage = STAGE_SHADOW;
-                                starts = true;
-                            }
-                        }
-                    }
-                }
-            }
-        }
-
-        if (arrives) {
-            vec3 weight = GREY ? beta : beta / channel_mean(rho);
-            if (stage == STAGE_FLIGHT) {
-                if (ENVIRONMENT != TYN_PATH_ENV_NONE) {
-                    vec3 sky = weight * (ENVIRONMENT == TYN_PATH_ENV_MAP
-                                             ? environment_radiance(env, env_map, way)
-                                             : env.radiance);
-                    if (ENVIRONMENT == TYN_PATH_ENV_MAP && pdf_map > 0.0) {
-                        sky *= pdf_phase / (pdf_phase + pdf_map * env_pdf(env, way));
-                    }
-                    if (depth == 0u) {
-                        result.background = sky;
-                    } else {
-                        path_add(result, sky, depth == 1u);
-                    }
-                }
-                if (depth == 0u) {
-                    result.transmittance = weight;
-                }
-                stage = STAGE_END;
-            } else if (stage == STAGE_SHADOW) {
-                if (PROBE && depth == 0u) {
-                    path_direct(along, pending * passed);
-                } else {
-                    path_add(result, pending * passed, depth == 1u);
-                }
-                stage = alive ? STAGE_STRETCH : STAGE_END;
-            } else if (stage == STAGE_ALONG) {
-                at = vertex + lamp_at * way;
-                media_point m = media_at(at, rng_float(rng_next(rng).x), vec3(1.0 / 3.0));
-                light_sample light = light_towards(lamp, at);
-                float part = max3(m.part_s) > 0.0 ? channel_mean(m.sigma_s) / channel_mean(m.part_s) : 0.0;
-                pending = weight * m.part_s * phase(m.g, way, light.direction) * light.arriving *
-                          (part * lamp_factor);
-                along = light.direction;
-                left = light.distance;
-                stage = STAGE_ASIDE;
-                starts = true;
-            } else {
-                path_add(result, pending * passed, depth == 0u);
-                at = vertex;
-                along = way;
-                left = PATH_FAR;
-                stage = STAGE_FLIGHT;
-                starts = true;
-            }
-        }
-
-        if (stage == STAGE_END) {
+        if (ended) {
             vec3 sum = result.radiance + result.background + result.single + result.transmittance;
             if (any(isnan(sum)) || any(isinf(sum))) {
                 path_count.non_finite++;
@@ -483,7 +501,6 @@ void path_run(uint element, uint first, uint end)
             }
             path_count.hits += result.hit ? 1u : 0u;
             path_end(result);
-            stage = STAGE_BEGIN;
         }
     }
 }

@@ -23,25 +23,40 @@ vec3 grey(vec3 v)
     return GREY ? v.xxx : v;
 }
 
-vec3 shape_local(uint i, vec3 p)
+// The first shape, kept in registers: buffers are slow to read in a loop.
+shape_block path_shape0;
+
+shape_block shape_get(uint i)
 {
-    return vec3(dot(shapes[i].rows[0].xyz, p) + shapes[i].rows[0].w,
-                dot(shapes[i].rows[1].xyz, p) + shapes[i].rows[1].w,
-                dot(shapes[i].rows[2].xyz, p) + shapes[i].rows[2].w);
+    if (ONE_SHAPE == 1u) {
+        return path_shape0;
+    }
+    shape_block shape = shapes[i];
+    return shape;
+}
+
+vec3 shape_turn(shape_block shape, vec3 d)
+{
+    return vec3(dot(shape.rows[0].xyz, d), dot(shape.rows[1].xyz, d), dot(shape.rows[2].xyz, d));
+}
+
+vec3 shape_local(shape_block shape, vec3 p)
+{
+    return shape_turn(shape, p) + vec3(shape.rows[0].w, shape.rows[1].w, shape.rows[2].w);
 }
 
 // Value of the shape's grid: trilinear, clamped to the grid's own texels, so that neighbours in the atlas
 // never show.
-float shape_density(uint i, vec3 local)
+float shape_density(shape_block shape, vec3 local)
 {
-    vec3 size = vec3(shapes[i].size);
-    vec3 texel = clamp((local + 0.5) * size, vec3(0.5), size - 0.5) + vec3(shapes[i].offset);
+    vec3 size = vec3(shape.size);
+    vec3 texel = clamp((local + 0.5) * size, vec3(0.5), size - 0.5) + vec3(shape.offset);
     return textureLod(atlas, texel / vec3(textureSize(atlas, 0)), 0.0).r;
 }
 
-bool shape_holds(uint i, vec3 local)
+bool shape_holds(shape_block shape, vec3 local)
 {
-    if (shapes[i].kind == TYN_SHAPE_KIND_SPHERE) {
+    if (shape.kind == TYN_SHAPE_KIND_SPHERE) {
         return dot(local, local) <= 0.25;
     }
     return max3(abs(local)) <= 0.5;
@@ -60,11 +75,11 @@ media_point media_at(vec3 p, float pick, vec3 hero)
 {
     media_point m;
     if (HOMOGENEOUS) {
-        m.sigma_s = grey(shapes[0].sigma_s);
-        m.sigma_t = grey(shapes[0].sigma_s + shapes[0].sigma_a);
-        m.emission = shapes[0].emission;
+        m.sigma_s = grey(path_shape0.sigma_s);
+        m.sigma_t = grey(path_shape0.sigma_s + path_shape0.sigma_a);
+        m.emission = path_shape0.emission;
         m.part_s = m.sigma_s;
-        m.g = grey(shapes[0].g);
+        m.g = grey(path_shape0.g);
         return m;
     }
     p = wrap(p);
@@ -76,22 +91,25 @@ media_point media_at(vec3 p, float pick, vec3 hero)
     float total = 0.0;
     uint count = ONE_SHAPE == 1u ? 1u : medium.num_shapes;
     for (uint i = 0u; i < count; i++) {
-        vec3 local = shape_local(i, p);
-        if (!shape_holds(i, local)) {
-            continue;
-        }
-        float density = shape_density(i, local);
-        vec3 s = density * grey(shapes[i].sigma_s);
+        shape_block shape = shape_get(i);
+        vec3 local = shape_local(shape, p);
+        float density = shape_holds(shape, local) ? shape_density(shape, local) : 0.0;
+        vec3 s = density * grey(shape.sigma_s);
         m.sigma_s += s;
-        m.sigma_t += s + density * grey(shapes[i].sigma_a);
-        m.emission += density * shapes[i].emission;
+        m.sigma_t += s + density * grey(shape.sigma_a);
+        m.emission += density * shape.emission;
+        if (ONE_SHAPE == 1u) {
+            m.part_s = s;
+            m.g = grey(shape.g);
+            break;
+        }
         // Weighted reservoir of one, with one random number that is stretched again after each use.
         float weight = dot(s, hero);
         total += weight;
         float share = total > 0.0 ? weight / total : 0.0;
-        if (ONE_SHAPE == 1u || pick < share) {
+        if (pick < share) {
             m.part_s = s;
-            m.g = grey(shapes[i].g);
+            m.g = grey(shape.g);
             pick = pick / max(share, 1e-12);
         } else {
             pick = (pick - share) / max(1.0 - share, 1e-12);
@@ -107,18 +125,16 @@ vec2 media_span(vec3 origin, vec3 direction)
     if (!HOMOGENEOUS) {
         return brick_span(medium, origin, direction);
     }
+    vec3 o = shape_local(path_shape0, origin), d = shape_turn(path_shape0, direction);
     vec2 span;
-    if (shapes[0].kind == TYN_SHAPE_KIND_BOX) {
-        vec3 o = shape_local(0u, origin);
-        vec3 d = vec3(dot(shapes[0].rows[0].xyz, direction), dot(shapes[0].rows[1].xyz, direction),
-                 dot(shapes[0].rows[2].xyz, direction));
+    if (path_shape0.kind == TYN_SHAPE_KIND_SPHERE) {
+        span = ray_sphere(o, d, 0.5);
+    } else {
         vec3 half_size = vec3(0.5);
         if ((FLAGS & TYN_PATH_REPEAT) != 0u) {
             half_size += 1e30 * vec3(medium.repeat);
         }
         span = ray_box(o, ray_inverse(d), -half_size, half_size);
-    } else {
-        span = ray_shape(shapes[0], origin, direction);
     }
     return vec2(max(span.x, 0.0), span.y);
 }

@@ -21,12 +21,12 @@ float heading_pdf;  // 1/sr
 vec3 direct, direct_heading; // irradiance from lamps and suns, and where it comes from
 
 // Directions: uniform; the lobes of the phase function about a light; the environment map.
-void path_begin(inout rng_state rng, out vec3 origin, out vec3 direction)
+void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction)
 {
     uvec4 bits = rng_next(rng);
     float map_share = ENVIRONMENT == TYN_PATH_ENV_MAP ? (LIGHTS > 0u ? 0.33 : 0.5) : 0.0;
     float lobe_share = LIGHTS > 0u ? (ENVIRONMENT == TYN_PATH_ENV_MAP ? 0.33 : 0.5) : 0.0;
-    float g = max(shapes[0].g.x, 0.0);
+    float g = max(shape_get(0u).g.x, 0.0);
     vec3 axis = vec3(0.0, 0.0, 1.0);
     if (LIGHTS > 0u) {
         light_choice choice = light_choose(point, rng_float(bits.y), false);

@@ -19,9 +19,9 @@ path_partial partial = path_partial(vec3(0.0), vec3(0.0), 0.0, 0u);
 path_partial_layers partial_layers = path_partial_layers(vec3(0.0), vec3(0.0), vec3(0.0));
 uvec2 pixel;
 
-void path_begin(inout rng_state rng, out vec3 origin, out vec3 direction)
+void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction)
 {
-    camera_ray ray = camera_ray_through(camera, vec2(pixel) + rng_vec2(rng_next(rng).xy));
+    camera_ray ray = camera_ray_through(camera, vec2(pixel) + random);
     origin = ray.origin;
     direction = ray.direction;
 }
