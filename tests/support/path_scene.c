@@ -3,7 +3,6 @@
 #include "base/hash.h"
 #include "methods/env_cdf.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -235,7 +234,6 @@ static void render_some(gpu_test *t, path_scene *s)
     }
     gpu_run(t);
     const struct counters_block *counters = gpu_map(t, "counters");
-    if (getenv("DBG")) printf("gpu %.1f ms steps*16 %u paths %u hits %u\n", gpu_ms(t,"path"), counters->steps*16, w*h*s->params.num_samples, counters->pixels);
     assert_int_equal(counters->non_finite, 0);
     assert_int_equal(counters->cut, 0);
 }
