@@ -142,13 +142,14 @@ static tyn_result load_procs(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa)
     return TYN_OK;
 }
 
-static VkResult create_sampler(tyn_device *dev, VkSamplerAddressMode u, VkSampler *out)
+static VkResult create_sampler(tyn_device *dev, VkSamplerAddressMode u, VkFilter filter,
+                               VkSampler *out)
 {
     return dev->vk.CreateSampler(dev->device,
                                  &(VkSamplerCreateInfo){
                                      .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                     .magFilter = VK_FILTER_LINEAR,
-                                     .minFilter = VK_FILTER_LINEAR,
+                                     .magFilter = filter,
+                                     .minFilter = filter,
                                      .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
                                      .addressModeU = u,
                                      .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
@@ -230,11 +231,20 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa, cons
         return result;
     }
 
-    if (tyn_vk_check(dev, create_sampler(dev, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, &dev->clamp),
-                     "vkCreateSampler") != TYN_OK ||
-        tyn_vk_check(dev, create_sampler(dev, VK_SAMPLER_ADDRESS_MODE_REPEAT, &dev->repeat_x),
-                     "vkCreateSampler") != TYN_OK) {
-        return TYN_ERR_DEVICE;
+    const struct {
+        VkSamplerAddressMode u;
+        VkFilter filter;
+        VkSampler *out;
+    } samplers[] = {
+        {VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, VK_FILTER_LINEAR, &dev->clamp},
+        {VK_SAMPLER_ADDRESS_MODE_REPEAT, VK_FILTER_LINEAR, &dev->repeat_x},
+        {VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE, VK_FILTER_NEAREST, &dev->nearest},
+    };
+    for (size_t i = 0; i < sizeof samplers / sizeof samplers[0]; i++) {
+        VkResult made = create_sampler(dev, samplers[i].u, samplers[i].filter, samplers[i].out);
+        if (tyn_vk_check(dev, made, "vkCreateSampler") != TYN_OK) {
+            return TYN_ERR_DEVICE;
+        }
     }
     VkResult made = dev->vk.CreatePipelineCache(
         dev->device,

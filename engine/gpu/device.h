@@ -29,6 +29,7 @@ struct tyn_device {
     uint32_t timestamp_bits; // 0: no timestamps
     bool debug_names;
     VkSampler clamp, repeat_x; // linear
+    VkSampler nearest;         // for depth formats, which need not be filterable
     VkPipelineCache cache;
     tyn_pipeline **pipelines;
     uint32_t num_pipelines;

@@ -332,6 +332,7 @@ void tyn_device_destroy(tyn_device **device)
             dev->vk.DestroyPipelineCache(dev->device, dev->cache, NULL);
             dev->vk.DestroySampler(dev->device, dev->clamp, NULL);
             dev->vk.DestroySampler(dev->device, dev->repeat_x, NULL);
+            dev->vk.DestroySampler(dev->device, dev->nearest, NULL);
         }
         if (own) {
             dev->vk.DestroyDevice(dev->device, NULL);

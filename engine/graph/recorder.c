@@ -201,6 +201,15 @@ static VkImageView view_of(const tyn_recorder *r, uint8_t port, uint8_t mip, boo
     return sampled || !p->mip_views[mip] ? p->view : p->mip_views[mip];
 }
 
+static VkSampler sampler_of(tyn_recorder *r, uint8_t port, const tyn_binding *binding)
+{
+    const resource *res = resource_at(r, port);
+    if (res && res->kind == RESOURCE_IMPORT && res->image.aspect & VK_IMAGE_ASPECT_DEPTH_BIT) {
+        return r->g->dev->nearest;
+    }
+    return binding->repeat ? r->g->dev->repeat_x : r->g->dev->clamp;
+}
+
 static VkDescriptorSet find_or_make_set(tyn_recorder *r, const tyn_dispatch *d, tyn_pipeline *pl,
                                         const uint8_t *ports, const touch *touches, uint32_t count)
 {
@@ -232,11 +241,9 @@ static VkDescriptorSet find_or_make_set(tyn_recorder *r, const tyn_dispatch *d, 
                 }
             }
             uint8_t mip = d->mips ? d->mips[i] : 0;
-            images[i] =
-                (VkDescriptorImageInfo){use != TYN_USE_SAMPLED  ? VK_NULL_HANDLE
-                                        : k->bindings[i].repeat ? g->dev->repeat_x
-                                                                : g->dev->clamp,
-                                        view_of(r, ports[i], mip, use == TYN_USE_SAMPLED), layout};
+            images[i] = (VkDescriptorImageInfo){
+                use == TYN_USE_SAMPLED ? sampler_of(r, ports[i], &k->bindings[i]) : VK_NULL_HANDLE,
+                view_of(r, ports[i], mip, use == TYN_USE_SAMPLED), layout};
             writes[i].pImageInfo = &images[i];
             h = tyn_hash_u64(h, (uint64_t)images[i].imageView);
             h = tyn_hash_u64(h, layout);
