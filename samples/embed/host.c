@@ -24,8 +24,11 @@ static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlag
 {
     (void)severity;
     (void)types;
-    ((host *)user)->messages++;
-    fprintf(stderr, "host: validation: %s\n", data->pMessage);
+    host *h = user;
+    h->messages++;
+    if (!h->quiet) {
+        fprintf(stderr, "host: validation: %s\n", data->pMessage);
+    }
     return VK_FALSE;
 }
 

@@ -63,6 +63,7 @@ typedef struct host {
     VkInstance instance;
     VkDebugUtilsMessengerEXT messenger;
     uint32_t messages; // of the validation layers
+    bool quiet;        // they are counted but not printed
     VkPhysicalDevice physical_device;
     VkPhysicalDeviceMemoryProperties memory;
     char device_name[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
