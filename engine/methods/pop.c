@@ -213,6 +213,7 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, field *f)
     tyn_ref refs[TYN_MAX_PORTS] = {
         [BALANCE_PORT_MEDIUM] = job->refs.medium,
         [BALANCE_PORT_ENVIRONMENT] = f->lit_by_environment ? job->refs.environment : (tyn_ref){0},
+        [BALANCE_PORT_LIGHTS] = job->refs.lights,
         [BALANCE_PORT_CELLS] = f->cells,
         [BALANCE_PORT_MOMENTS] = f->moments,
         [BALANCE_PORT_SOURCE] = f->source,

@@ -2,6 +2,7 @@
 #ifndef TYN_LATTICE_ARGS_H
 #define TYN_LATTICE_ARGS_H
 #include "shared.h"
+#include "lattice_power.h"
 
 struct lattice_cells_args {
     tyn_uvec3 dims; // cells
@@ -17,16 +18,6 @@ struct lattice_source_args {
     tyn_uint samples; // per cell along each axis
     tyn_uint num_suns;
 };
-
-// Power of sun n in channel c at [n * channels + c], W; everything is per unit of the sun's colour but
-// `scale`, which is a factor.
-struct lattice_power {
-    float entering; // through the medium's box
-    float lost;     // by the beam on its way through, from the optical depths where it leaves
-    float collided; // the same summed over the cells, after scaling
-    float scale;    // that makes the cells lose what the beam loses
-};
-TYN_ASSERT_SIZE(lattice_power, 16);
 
 struct lattice_args { // kernels on the whole lattice
     tyn_uvec3 dims;

@@ -44,7 +44,6 @@ static const tyn_binding beam_bindings[] = {
 
 static const tyn_binding sum_bindings[] = {
     {LATTICE_SOURCE_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {LATTICE_SOURCE_PORT_DENSITY, TYN_USE_SAMPLED},
     {LATTICE_SOURCE_PORT_BEAMS, TYN_USE_STORAGE_READ},
     {LATTICE_SOURCE_PORT_COLUMN, TYN_USE_SAMPLED},
     {LATTICE_SOURCE_PORT_TAU_A, TYN_USE_SAMPLED},
@@ -76,7 +75,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                     sizeof(struct lattice_source_args),
                     {LATTICE_SUN_GROUP, 1, 1},
                     sum_bindings,
-                    9,
+                    8,
                     1},
     [KERNEL_SOURCE] = {"source",
                        lattice_source_spirv,

@@ -7,11 +7,11 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define BEAM_BLOCKS 2
-#define BEAM_COLUMN 3
-#define BEAM_TAU_A 4
-#define BEAM_TAU_P 5
+#define MEDIUM_DENSITY 2 // the medium itself is not read
+#define BEAM_BLOCKS 1
+#define BEAM_COLUMN 2
+#define BEAM_TAU_A 3
+#define BEAM_TAU_P 4
 #include "medium.glsl"
 #include "beam.glsl"
 #include "lattice.glsl"
@@ -21,9 +21,9 @@ layout(push_constant, scalar) uniform push
 {
     lattice_source_args args;
 };
-layout(binding = 6) uniform sampler3D cells;
-layout(binding = 7) uniform sampler3D sunlit;
-layout(binding = 8, scalar) writeonly buffer power_buffer
+layout(binding = 5) uniform sampler3D cells;
+layout(binding = 6) uniform sampler3D sunlit;
+layout(binding = 7, scalar) writeonly buffer power_buffer
 {
     lattice_power power[];
 };

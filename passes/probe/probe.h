@@ -12,9 +12,8 @@ typedef struct tyn_probe_params {
 
 enum {
     PROBE_PORT_MEDIUM,  // IN buffer struct medium_block
-    PROBE_PORT_LIGHTS,  // IN buffer struct light_block[]
+    PROBE_PORT_LIGHTS,  // IN optional buffer struct light_block[]
     PROBE_PORT_MOMENTS, // IN 3D, of lattice
-    PROBE_PORT_DENSITY, // IN 3D: density, or sigma_s in mode COEFFICIENTS
     PROBE_PORT_BEAMS,   // IN optional buffer struct beam_block[]
     PROBE_PORT_COLUMN,  // IN optional 3D: column, or tau_s in mode COEFFICIENTS
     PROBE_PORT_TAU_A,   // IN optional 3D: mode COEFFICIENTS, as the one below
@@ -34,13 +33,13 @@ typedef struct tyn_balance_params {
 enum {
     BALANCE_PORT_MEDIUM,      // IN buffer struct medium_block
     BALANCE_PORT_ENVIRONMENT, // IN optional buffer struct env_block
+    BALANCE_PORT_LIGHTS,      // IN optional buffer struct light_block[]
     BALANCE_PORT_CELLS,       // IN 3D, of lattice_cells
     BALANCE_PORT_MOMENTS,     // IN 3D, of lattice
     BALANCE_PORT_SOURCE,      // IN optional 3D, of lattice_source
     BALANCE_PORT_POWER,       // IN optional buffer, of lattice_source
     BALANCE_PORT_LEAKS,       // IN buffer, of lattice
     BALANCE_PORT_BALANCE,     // OUT buffer tyn_balance
-    BALANCE_PORT_PARTIALS,    // SCRATCH
     BALANCE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_balance;

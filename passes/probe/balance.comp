@@ -1,0 +1,117 @@
+// balance.comp -- where the energy goes: sums over cells and lines, one workgroup per channel.
+//
+// What the environment brings in is pi L times the area of the medium's box; the lines' leaks are net, so
+// what they carry straight through the lattice counts on both sides.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "scene_args.h"
+#include "probe_args.h"
+#include "lattice_power.h"
+#include "lattice.glsl"
+#include "lattice_sweep.glsl"
+
+layout(local_size_x = BALANCE_GROUP) in;
+layout(push_constant, scalar) uniform push
+{
+    balance_args args;
+};
+layout(binding = 0, scalar) uniform medium_uniform
+{
+    medium_block medium;
+};
+layout(binding = 1, scalar) uniform environment_uniform
+{
+    env_block environment;
+};
+layout(binding = 2, scalar) readonly buffer light_buffer
+{
+    light_block lights[];
+};
+layout(binding = 3) uniform sampler3D cells;
+layout(binding = 4) uniform sampler3D moments;
+layout(binding = 5) uniform sampler3D source;
+layout(binding = 6, scalar) readonly buffer power_buffer
+{
+    lattice_power power[];
+};
+layout(binding = 7, scalar) readonly buffer leak_buffer
+{
+    float leaks[];
+};
+// tyn_balance: six triples of doubles, each as two words; a device need not know doubles.
+layout(binding = 8, scalar) writeonly buffer balance_buffer
+{
+    uvec2 balance[6][3];
+};
+
+shared vec3 sums[BALANCE_GROUP]; // absorbed, emitted, leak
+
+uvec2 double_bits(float x)
+{
+    uint bits = floatBitsToUint(x), exponent = bits >> 23 & 0xFFu;
+    if (exponent == 0u) {
+        return uvec2(0u, bits & 0x80000000u);
+    }
+    uint wide = exponent == 0xFFu ? 0x7FFu : exponent + 896u; // 1023 - 127
+    return uvec2(bits << 29, (bits & 0x80000000u) | wide << 20 | (bits & 0x7FFFFFu) >> 3);
+}
+
+void write(uint row, uint ch, float value)
+{
+    if (args.channels == 1) {
+        for (uint c = 0; c < 3; c++) {
+            balance[row][c] = double_bits(row == 5 ? value : value * args.tint[c]);
+        }
+    } else {
+        balance[row][ch] = double_bits(value);
+    }
+}
+
+void main()
+{
+    uint ch = gl_WorkGroupID.x, me = gl_LocalInvocationIndex;
+    ivec3 dims = textureSize(cells, 0);
+    dims.z /= int(args.channels);
+    float dx = lattice_box_of(medium.extent, dims).dx, volume = dx * dx * dx;
+    vec3 sum = vec3(0.0);
+    for (uint i = me; i < uint(dims.x * dims.y * dims.z); i += BALANCE_GROUP) {
+        ivec3 c = ivec3(int(i) % dims.x, int(i) / dims.x % dims.y,
+                        int(i) / (dims.x * dims.y) + int(ch) * dims.z);
+        vec4 cell = texelFetch(cells, c, 0);
+        float phi = texelFetch(moments, c, 0).x + lattice_fetch_source(source, cells, c).x;
+        sum += volume * vec3(cell.y * phi, LATTICE_4PI * cell.w, 0.0);
+    }
+    for (uint i = me; i < args.num_leaks; i += BALANCE_GROUP) {
+        sum.z += leaks[ch * args.num_leaks + i];
+    }
+    sums[me] = sum;
+    for (uint half_n = BALANCE_GROUP / 2; half_n > 0; half_n /= 2) {
+        barrier();
+        if (me < half_n) {
+            sums[me] += sums[me + half_n];
+        }
+    }
+    barrier();
+    if (me != 0) {
+        return;
+    }
+    vec3 extent = medium.extent;
+    float area = 2.0 * (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x);
+    float entering =
+        LATTICE_4PI / 4.0 * area * lattice_channel(environment.mean, args.channels, ch, args.tint);
+    float escaped = entering + sums[0].z;
+    for (uint sun = 0; sun < args.num_suns; sun++) {
+        lattice_power w = power[sun * args.channels + ch];
+        float e = lattice_channel(lights[sun].color, args.channels, ch, args.tint);
+        entering += e * w.entering;
+        escaped += e * (w.entering - w.lost);
+    }
+    float absorbed = sums[0].x, emitted = sums[0].y, given = entering + emitted;
+    write(0, ch, entering);
+    write(1, ch, emitted);
+    write(2, ch, absorbed);
+    write(3, ch, 0.0);
+    write(4, ch, escaped);
+    write(5, ch, given > 0.0 ? 1.0 - (absorbed + escaped) / given : 0.0);
+}

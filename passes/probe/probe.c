@@ -1,0 +1,79 @@
+// probe.c -- the light field at points.
+#include "probe.h"
+#include "probe_args.h"
+#include "probe.comp.h"
+
+static const tyn_port ports[PROBE_NUM_PORTS] = {
+    [PROBE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
+    [PROBE_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, true, "struct light_block[]"},
+    [PROBE_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
+    [PROBE_PORT_BEAMS] = {"beams", TYN_IN, TYN_BUFFER, 0, true, "struct beam_block[]"},
+    [PROBE_PORT_COLUMN] = {"column", TYN_IN, TYN_IMAGE_3D, 0, true,
+                           "depth along the suns, or that of sigma_s"},
+    [PROBE_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "of absorption"},
+    [PROBE_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true, "of sigma_s'"},
+    [PROBE_PORT_POINTS] = {"points", TYN_IN, TYN_BUFFER, 0, false, "vec3[], m"},
+    [PROBE_PORT_RESULTS] = {"results", TYN_OUT, TYN_BUFFER, 0, false, "tyn_probe_result[], W/m^2"},
+};
+
+static const tyn_binding bindings[] = {
+    {PROBE_PORT_MEDIUM, TYN_USE_UNIFORM},        {PROBE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
+    {PROBE_PORT_MOMENTS, TYN_USE_SAMPLED},       {PROBE_PORT_BEAMS, TYN_USE_STORAGE_READ},
+    {PROBE_PORT_COLUMN, TYN_USE_SAMPLED},        {PROBE_PORT_TAU_A, TYN_USE_SAMPLED},
+    {PROBE_PORT_TAU_P, TYN_USE_SAMPLED},         {PROBE_PORT_POINTS, TYN_USE_STORAGE_READ},
+    {PROBE_PORT_RESULTS, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_kernel kernels[] = {
+    {"probe",
+     probe_spirv,
+     sizeof probe_spirv,
+     sizeof(struct probe_args),
+     {64, 1, 1},
+     bindings,
+     9,
+     1},
+};
+
+static uint32_t num_points(tyn_extent bytes)
+{
+    return bytes.x / (3 * sizeof(float));
+}
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    (void)params;
+    tyn_build_buffer(b, PROBE_PORT_RESULTS,
+                     (uint64_t)num_points(tyn_build_extent(b, PROBE_PORT_POINTS)) *
+                         sizeof(struct probe_result));
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_probe_params *p = params;
+    struct probe_args args = {
+        .tint = {p->tint[0], p->tint[1], p->tint[2]},
+        .channels = p->channels,
+        .num_suns = p->num_suns,
+        .num_points = num_points(tyn_rec_extent(r, PROBE_PORT_POINTS)),
+        .scattered_only = p->scattered_only,
+    };
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){.cells = {args.num_points, 1, 1}, .args = &args, .spec = &p->mode});
+    tyn_rec_work(r, "points", args.num_points);
+}
+
+const tyn_pass_desc tyn_pass_probe = {
+    .name = "probe",
+    .summary = "fluence and net flux at points",
+    .ports = ports,
+    .num_ports = PROBE_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 1,
+    .params_size = sizeof(tyn_probe_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = PROBE_PORT_RESULTS,
+    .debug_meaning = "fluence and flux per point, W/m^2",
+};

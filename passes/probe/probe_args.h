@@ -1,0 +1,31 @@
+// probe_args.h -- push constants of the probe and balance kernels. Included by C and GLSL.
+#ifndef TYN_PROBE_ARGS_H
+#define TYN_PROBE_ARGS_H
+#include "shared.h"
+
+struct probe_args {
+    tyn_vec3 tint;
+    tyn_uint channels;
+    tyn_uint num_suns;
+    tyn_uint num_points;
+    tyn_uint scattered_only;
+};
+
+struct probe_result { // tyn_probe_result
+    float fluence[3];
+    float flux[9]; // x_r x_g x_b y_r ...
+    float fluence_se[3];
+    float flux_se[9];
+};
+TYN_ASSERT_SIZE(probe_result, 96);
+
+struct balance_args {
+    tyn_vec3 tint;
+    tyn_uint channels;
+    tyn_uint num_suns;
+    tyn_uint num_leaks; // per channel
+};
+
+#define BALANCE_GROUP 256
+
+#endif
