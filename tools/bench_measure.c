@@ -141,13 +141,12 @@ int bench_measure(bench_case *c, const bench_run *run, bench_result *result)
         result->failed = true;
         code = EXIT_DONE;
     } else if (code == EXIT_DONE) {
-        renderer_warn(c->a, &r);
         measure_fill(c, r.offline);
         code = compare_frame(c, r.offline, &view, result->error);
         for (int i = 0; i < BENCH_BLOCKS; i++) { // a run's own noise is an error of it
             result->error[i].error = without_reference(&result->error[i], c->reference.noise[i]);
         }
-        result->setup_ms = tyn_offline_setup_ms(r.offline);
+        result->setup_ms = r.setup_ms;
         view.outputs = TYN_OUTPUT_RADIANCE;
         if (code == EXIT_DONE) {
             code = renderer_frame(c->a, &r, &c->scene, &view, true,

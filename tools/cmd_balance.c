@@ -48,7 +48,6 @@ static int balance_scene(app *a, const balance_args *args, session *s)
     if (code != EXIT_DONE) {
         return code;
     }
-    renderer_warn(a, &s->renderer);
     const tyn_balance *balance = tyn_offline_output(s->renderer.offline, TYN_OUTPUT_BALANCE);
     if (!balance) {
         app_error(a, "the method gave no balance");

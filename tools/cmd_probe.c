@@ -80,7 +80,6 @@ static int probe_scene(app *a, const probe_args *args, const points *p, session 
     if (code != EXIT_DONE) {
         return code;
     }
-    renderer_warn(a, &s->renderer);
     const tyn_probe_result *results = tyn_offline_output(s->renderer.offline, TYN_OUTPUT_PROBE);
     if (!results) {
         app_error(a, "the method gave no light field");

@@ -137,13 +137,12 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
     if (code != EXIT_DONE) {
         return code;
     }
-    renderer_warn(a, &job->renderer);
     code = write_outputs(a, job, &view, &paths->outputs);
     stats s = {.device = tyn_device_name(job->machine.device),
                .method = job->method,
                .scene = scene,
                .view = &view,
-               .setup_ms = tyn_offline_setup_ms(job->renderer.offline),
+               .setup_ms = job->renderer.setup_ms,
                .cold_ms = job->renderer.frame_ms,
                .camera_moved_ms = NAN,
                .light_moved_ms = NAN,

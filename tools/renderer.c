@@ -42,6 +42,7 @@ static int progressive_frame(app *a, renderer *r, const tyn_scene *scene, const 
             return app_exit_code(a, result, true);
         }
         r->frame_ms += tyn_offline_frame_ms(r->offline);
+        r->setup_ms += tyn_offline_setup_ms(r->offline);
         if (bar) {
             progress_update(&a->bar, (double)(done + part.num_samples) / view->num_samples);
         }
@@ -52,7 +53,7 @@ static int progressive_frame(app *a, renderer *r, const tyn_scene *scene, const 
 int renderer_frame(app *a, renderer *r, const tyn_scene *scene, const tyn_view *view,
                    bool recompute, const char *label)
 {
-    r->frame_ms = 0;
+    r->setup_ms = r->frame_ms = 0;
     if (label) {
         progress_start(&a->bar, label, a->quiet);
     }
@@ -60,20 +61,14 @@ int renderer_frame(app *a, renderer *r, const tyn_scene *scene, const tyn_view *
     if (r->progressive) {
         code = progressive_frame(a, r, scene, view, recompute, label != NULL);
     } else {
-        code = app_exit_code(a, tyn_offline_frame(r->offline, scene, view, recompute), true);
-        r->frame_ms = code == EXIT_DONE ? tyn_offline_frame_ms(r->offline) : 0;
+        tyn_view once = *view;
+        once.num_samples = 0;
+        code = app_exit_code(a, tyn_offline_frame(r->offline, scene, &once, recompute), true);
+        r->frame_ms = tyn_offline_frame_ms(r->offline);
+        r->setup_ms = tyn_offline_setup_ms(r->offline);
     }
     if (label) {
         progress_clear(&a->bar);
     }
     return code;
-}
-
-void renderer_warn(app *a, renderer *r)
-{
-    tyn_report report = {0};
-    tyn_offline_report(r->offline, &report);
-    for (uint32_t i = 0; i < report.num_warnings; i++) {
-        app_warn(a, "%s", report.warnings[i]);
-    }
 }

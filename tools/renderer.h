@@ -8,7 +8,7 @@
 typedef struct renderer {
     tyn_offline *offline;
     bool progressive;
-    double frame_ms; // of the last frame, all its portions
+    double setup_ms, frame_ms; // of the last frame, all its portions
 } renderer;
 
 // Gives the exit code; renderer_close is due in any case.
@@ -19,6 +19,3 @@ void renderer_close(renderer *r);
 // what the progress bar says; NULL = no bar. Gives the exit code, EXIT_INTERRUPTED at Ctrl-C.
 int renderer_frame(app *a, renderer *r, const tyn_scene *scene, const tyn_view *view,
                    bool recompute, const char *label);
-
-// The report of the last frame: warnings of the method, once each, to stderr.
-void renderer_warn(app *a, renderer *r);
