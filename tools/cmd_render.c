@@ -159,6 +159,8 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
         tyn_report report = {0};
         tyn_offline_report(job->renderer.offline, &report);
         s.report = &report;
+        s.warnings[0] = job->renderer.warnings[0];
+        s.warnings[1] = job->renderer.warnings[1];
         code = json_write(a, stats_make(&s), paths->stats);
     }
     return code;

@@ -154,21 +154,22 @@ static int write_exr(app *a, const output_plan *plan, tyn_offline *offline, cons
     return app_exit_code(a, result, false);
 }
 
-// The display image is opaque: the medium over the background, or over black without one.
+// Opaque, or with --no-background the medium alone with its alpha.
 static int write_png(app *a, tyn_offline *offline, const tyn_view *view, const char *path)
 {
     const size_t num = (size_t)view->width * view->height;
+    const uint32_t channels = view->no_background ? 4 : 3;
     const uint8_t *rgba = tyn_offline_output(offline, TYN_OUTPUT_DISPLAY);
-    uint8_t *rgb = rgba ? malloc(3 * num) : NULL;
-    if (!rgb) {
+    uint8_t *pixels = rgba ? malloc(channels * num) : NULL;
+    if (!pixels) {
         app_error(a, rgba ? "out of memory" : "the method gave no display image");
         return EXIT_FAILED;
     }
     for (size_t k = 0; k < num; k++) {
-        memcpy(rgb + 3 * k, rgba + 4 * k, 3);
+        memcpy(pixels + channels * k, rgba + 4 * k, channels);
     }
-    tyn_result result = tyn_png_write(path, view->width, view->height, 3, rgb, &a->log);
-    free(rgb);
+    tyn_result result = tyn_png_write(path, view->width, view->height, channels, pixels, &a->log);
+    free(pixels);
     return app_exit_code(a, result, false);
 }
 

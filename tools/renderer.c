@@ -1,5 +1,7 @@
 // renderer.c -- one frame of a method, in portions that can be interrupted.
 #include "renderer.h"
+#include <stdlib.h>
+#include <string.h>
 
 // Samples of all pixels in one call: small enough for Ctrl-C and the bar, and given by the view alone,
 // so that the sums are the same on every run.
@@ -16,6 +18,40 @@ int renderer_open(app *a, tyn_device *device, const method *m, renderer *r)
 void renderer_close(renderer *r)
 {
     tyn_offline_destroy(&r->offline);
+    for (size_t i = 0; i < ARRAY_SIZE(r->warnings); i++) {
+        free(r->warnings[i]);
+        r->warnings[i] = NULL;
+    }
+}
+
+static double counted(const tyn_report *report, const char *name)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < report->num_nodes; i++) {
+        const tyn_node_report *n = &report->nodes[i];
+        for (uint32_t k = 0; k < n->num_work; k++) {
+            sum += strcmp(n->work[k].name, name) == 0 ? n->work[k].amount : 0;
+        }
+    }
+    return sum;
+}
+
+// Says once what was replaced or cut.
+static void warn_of_counts(app *a, renderer *r)
+{
+    static const struct {
+        const char *name, *what;
+    } counts[] = {{"non_finite", "values were not finite and count as 0"},
+                  {"cut", "paths were ended by the safety cap: the result is too dark"}};
+    tyn_report report = {0};
+    tyn_offline_report(r->offline, &report);
+    for (size_t i = 0; i < ARRAY_SIZE(counts); i++) {
+        double count = counted(&report, counts[i].name);
+        if (count > 0 && !r->warnings[i]) {
+            r->warnings[i] = text_format("at least %.0f %s", count, counts[i].what);
+            app_warn(a, "%s", r->warnings[i] ? r->warnings[i] : counts[i].what);
+        }
+    }
 }
 
 static uint32_t portion(const tyn_view *view)
@@ -69,6 +105,9 @@ int renderer_frame(app *a, renderer *r, const tyn_scene *scene, const tyn_view *
     }
     if (label) {
         progress_clear(&a->bar);
+    }
+    if (code == EXIT_DONE) {
+        warn_of_counts(a, r);
     }
     return code;
 }

@@ -9,6 +9,9 @@ typedef struct renderer {
     tyn_offline *offline;
     bool progressive;
     double setup_ms, frame_ms; // of the last frame, all its portions
+    // What kernels counted in the last call of the last frame and should not have had to: values that
+    // were not finite, paths ended by the safety cap. One line each, NULL = none.
+    char *warnings[2];
 } renderer;
 
 // Gives the exit code; renderer_close is due in any case.

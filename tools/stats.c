@@ -190,6 +190,11 @@ cJSON *stats_make(const stats *s)
     for (uint32_t i = 0; i < s->report->num_warnings; i++) {
         cJSON_AddItemToArray(warnings, cJSON_CreateString(s->report->warnings[i]));
     }
+    for (size_t i = 0; i < ARRAY_SIZE(s->warnings); i++) {
+        if (s->warnings[i]) {
+            cJSON_AddItemToArray(warnings, cJSON_CreateString(s->warnings[i]));
+        }
+    }
     cJSON_AddItemToObject(root, "settings", settings_of(s->method, s->view));
     cJSON_AddItemToObject(root, "inputs", inputs_of(s));
     return root;
