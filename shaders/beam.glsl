@@ -5,9 +5,12 @@
 //   BEAM_COLUMN    sampler: `column` (mode DENSITY) or `tau_s` (mode COEFFICIENTS)
 //   BEAM_TAU_A, BEAM_TAU_P   samplers, mode COEFFICIENTS (leave out in kernels that know DENSITY only)
 //
-// The textures hold the *mean* along the ray since it entered the box, which has no kinks where
-// neighbouring rays enter through different faces; the length is exact. So a homogeneous medium is
-// exact at any resolution and obliquity, and there are no stair-steps along the box's shadow edges.
+// The textures hold the mean R of the medium along each ray since slice 0, a plane that all rays cross,
+// the medium being continued beyond the faces of its box by its values there. That field has no kinks
+// where neighbouring rays enter the box through different faces, as the depth itself has, so it may be
+// interpolated; the depth is R(p) s(p) - R(e) s(e), with e where the ray of p enters the box and s the
+// distance from slice 0, both exact. The second term is absent for rays that enter through slice 0 and
+// where the medium is empty at the other faces.
 #ifndef TYN_BEAM_GLSL
 #define TYN_BEAM_GLSL
 #include "beam_args.h"
@@ -52,12 +55,41 @@ vec3 beam_uvw(uint sun, vec3 p)
     return uvw;
 }
 
-// Mode DENSITY: column density int density ds, m times texture value. `p` in the box; positions
-// outside are moved to it (periodic axes wrap).
-float beam_column(uint sun, vec3 p)
+// How a depth is put together at a point.
+struct beam_place {
+    vec3 uvw;     // of p
+    float to;     // the depth is to x (texture at uvw)
+    float before; //   - before x (texture at uvw - (0, 0, back)), if before > 0
+    float back;
+};
+
+// `p` in the box; positions outside are moved to it (periodic axes wrap).
+beam_place beam_place_of(uint sun, vec3 p)
 {
     p = clamp(medium_wrap(p), vec3(0.0), medium.extent);
-    return beam_length(sun, p) * textureLod(beam_column_tex, beam_uvw(sun, p), 0.0).r;
+    float inside = beam_length(sun, p);
+    beam_place place = beam_place(beam_uvw(sun, p), inside, 0.0, inside * beams[sun].z_rate);
+    if (beams[sun].even == 0u) {
+        place.to = dot(beams[sun].depth_row.xyz, p) + beams[sun].depth_row.w;
+        place.before = beams[sun].edges != 0u ? place.to - inside : 0.0;
+    }
+    return place;
+}
+
+vec3 beam_fetch(sampler3D tex, beam_place place)
+{
+    vec3 depth = place.to * textureLod(tex, place.uvw, 0.0).rgb;
+    if (place.before > 0.0) {
+        vec3 at_entry = textureLod(tex, place.uvw - vec3(0.0, 0.0, place.back), 0.0).rgb;
+        depth = max(depth - place.before * at_entry, vec3(0.0));
+    }
+    return depth;
+}
+
+// Mode DENSITY: column density int density ds, m times texture value.
+float beam_column(uint sun, vec3 p)
+{
+    return beam_fetch(beam_column_tex, beam_place_of(sun, p)).r;
 }
 
 // Mode DENSITY: optical depths of a column density.
@@ -75,16 +107,14 @@ beam_tau beam_depth(uint sun, vec3 p)
     if (medium_mode == TYN_MEDIUM_DENSITY) {
         return beam_of_column(beam_column(sun, p));
     }
-    p = clamp(medium_wrap(p), vec3(0.0), medium.extent);
-    float length_p = beam_length(sun, p);
-    vec3 uvw = beam_uvw(sun, p);
+    beam_place place = beam_place_of(sun, p);
     beam_tau tau = beam_tau(vec3(0.0), vec3(0.0), vec3(0.0));
-    tau.s = length_p * textureLod(beam_column_tex, uvw, 0.0).rgb;
+    tau.s = beam_fetch(beam_column_tex, place);
 #ifdef BEAM_TAU_A
-    tau.a = length_p * textureLod(beam_tau_a_tex, uvw, 0.0).rgb;
+    tau.a = beam_fetch(beam_tau_a_tex, place);
 #endif
 #ifdef BEAM_TAU_P
-    tau.p = length_p * textureLod(beam_tau_p_tex, uvw, 0.0).rgb;
+    tau.p = beam_fetch(beam_tau_p_tex, place);
 #endif
     return tau;
 }

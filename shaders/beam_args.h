@@ -12,10 +12,14 @@
 
 struct beam_block { // element of storage buffer "beams", one per sun
     tyn_vec4 rows[3];      // M -> texture coordinate: dot(rows[i].xyz, p) + rows[i].w
+    tyn_vec4 depth_row;    // M -> distance from slice 0 along the light, m, likewise
     tyn_vec3 clip_scale;   // distance to p from where its ray enters the box, m:
     tyn_uint light;        //   least component of p clip_scale + clip_offset
     tyn_vec3 clip_offset;
     tyn_uint first_slice;  // z of slice 0 in the texture
+    tyn_uint even;         // 1: the mean is the same everywhere: homogeneous, or a box without sides
+    tyn_uint edges;        // set by the sweep: 1 if the medium is not empty at the faces between the slices'
+    float z_rate;          // texture z per m along the light
     tyn_vec2 period_first; // texture u, v of the first node of a periodic axis
     tyn_vec2 period;       // its period in texture u, v; 0 = not periodic
     tyn_uvec3 nodes;       // columns along u and v, slices
@@ -27,6 +31,6 @@ struct beam_block { // element of storage buffer "beams", one per sun
     tyn_vec3 direction;    // of travel, unit
     tyn_uint samples;      // of the medium between two slices
 };
-TYN_ASSERT_SIZE(beam_block, 176);
+TYN_ASSERT_SIZE(beam_block, 204);
 
 #endif

@@ -21,9 +21,9 @@ static const tyn_port ports[BEAM_NUM_PORTS] = {
     [BEAM_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "mean cosine"},
     [BEAM_PORT_BEAMS] = {"beams", TYN_OUT, TYN_BUFFER, 0, false, "beam_block per sun: its grid"},
     [BEAM_PORT_COLUMN] = {"column", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-                          "mean density along the light since it entered the box"},
+                          "mean density along the light since slice 0 of its grid"},
     [BEAM_PORT_TAU_S] = {"tau_s", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                         "mean sigma_s along the light since it entered the box, 1/m"},
+                         "mean sigma_s along the light since slice 0 of its grid, 1/m"},
     [BEAM_PORT_TAU_A] = {"tau_a", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
                          "mean sigma_a along the light, 1/m"},
     [BEAM_PORT_TAU_P] = {"tau_p", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
@@ -35,13 +35,13 @@ enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
 static const tyn_binding density_bindings[] = {
     {BEAM_PORT_MEDIUM, TYN_USE_UNIFORM},
     {BEAM_PORT_DENSITY, TYN_USE_SAMPLED},
-    {BEAM_PORT_BEAMS, TYN_USE_STORAGE_READ},
+    {BEAM_PORT_BEAMS, TYN_USE_STORAGE_RW},
     {BEAM_PORT_COLUMN, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding coefficients_bindings[] = {
     {BEAM_PORT_MEDIUM, TYN_USE_UNIFORM},      {BEAM_PORT_SIGMA_S, TYN_USE_SAMPLED},
     {BEAM_PORT_SIGMA_A, TYN_USE_SAMPLED},     {BEAM_PORT_G, TYN_USE_SAMPLED},
-    {BEAM_PORT_BEAMS, TYN_USE_STORAGE_READ},  {BEAM_PORT_TAU_S, TYN_USE_STORAGE_WRITE},
+    {BEAM_PORT_BEAMS, TYN_USE_STORAGE_RW},    {BEAM_PORT_TAU_S, TYN_USE_STORAGE_WRITE},
     {BEAM_PORT_TAU_A, TYN_USE_STORAGE_WRITE}, {BEAM_PORT_TAU_P, TYN_USE_STORAGE_WRITE},
 };
 
@@ -66,9 +66,8 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
 
 static const tyn_param params_table[] = {
     {"cells", TYN_PARAM_INT, offsetof(tyn_beam_params, cells), 160, 1, MAX_CELLS, "cells",
-     "most cells of a sun's grid along an axis (96 where coefficients are textures); never finer "
-     "than "
-     "the medium's voxels",
+     "most cells of a sun's grid along an axis (96 where coefficients are textures); a cell is one "
+     "voxel along the light and half of one across at least",
      NULL},
 };
 
@@ -89,16 +88,37 @@ static uint32_t slice_axis(const struct medium_block *m, const double d[3])
     return best;
 }
 
-// Cells across the light that any direction close to this axis can use, at most `limit`.
-static uint32_t lateral_cells(const struct medium_block *m, uint32_t lateral, uint32_t axis,
-                              double length, uint32_t limit)
+static bool is_homogeneous(const struct medium_block *m)
 {
-    if (m->size[0] == 1 && m->size[1] == 1 && m->size[2] == 1) {
-        return 1;
+    return m->size[0] == 1 && m->size[1] == 1 && m->size[2] == 1;
+}
+
+// Distance between columns over `range` metres across the light: as the finest voxel, or half of it
+// where columns do not run through voxel centres, if `limit` cells are enough for that.
+static double lateral_step(const struct medium_block *m, uint32_t lateral, uint32_t axis,
+                           double range, bool oblique, uint32_t limit)
+{
+    double finest = fmin(m->voxel[lateral], m->voxel[axis]) * (oblique ? 0.5 : 1);
+    return is_homogeneous(m) ? range : fmax(finest, range / limit);
+}
+
+static uint32_t lateral_cells(double range, double step)
+{
+    return (uint32_t)fmax(ceil(range / step - 1e-3), 1);
+}
+
+// One slice a voxel; more where a periodic box lets the light run so flat that it crosses many voxels
+// from slice to slice.
+static uint32_t num_slices(const struct medium_block *m, const double d[3], uint32_t axis,
+                           uint32_t limit)
+{
+    double slices = m->size[axis];
+    for (uint32_t i = 0; i < 3; i++) {
+        if (m->repeat[i] && !is_homogeneous(m)) {
+            slices = fmax(slices, ceil(fabs(d[i] / d[axis]) * m->extent[axis] / m->voxel[i]));
+        }
     }
-    double finest = fmin(m->voxel[lateral], m->voxel[axis]);
-    double cells = ceil(length / finest - 1e-3);
-    return cells < limit ? (uint32_t)fmax(cells, 1) : limit;
+    return slices < limit ? (uint32_t)slices : limit;
 }
 
 // One sun, except for what depends on the whole texture. `alloc` = nodes along u, v and slices that its
@@ -114,7 +134,7 @@ static void plan_sun(struct beam_block *b, const struct medium_block *m,
         d[i] = dir[i] / norm;
     }
     uint32_t w = slice_axis(m, d), lateral[2] = {(w + 1) % 3, (w + 2) % 3};
-    uint32_t slices = m->size[w] < limit ? m->size[w] : limit;
+    uint32_t slices = num_slices(m, d, w, limit);
     double first = d[w] < 0 ? m->extent[w] : 0, sign = d[w] < 0 ? -1 : 1;
     double origin[3] = {0}, step[3][3] = {{0}};
     origin[w] = first;
@@ -125,8 +145,10 @@ static void plan_sun(struct beam_block *b, const struct medium_block *m,
         double shear = d[a] / d[w], slide = d[a] / fabs(d[w]) * m->extent[w];
         double from = m->repeat[a] ? 0 : fmin(0, -slide);
         double range = m->extent[a] + (m->repeat[a] ? 0 : fabs(slide));
-        uint32_t cells = lateral_cells(m, a, w, range, limit);
-        double h = range / cells;
+        bool oblique = fabs(slide) > 0.5 * m->voxel[a];
+        double h = lateral_step(m, a, w, range, oblique, limit);
+        uint32_t cells = lateral_cells(range, h);
+        h = m->repeat[a] ? range / cells : h;
         // Where the light is along an axis and the grid as fine as the medium, columns go through voxel
         // centres: the column density is bilinear between those.
         origin[a] = from - 0.5 * h;
@@ -137,10 +159,12 @@ static void plan_sun(struct beam_block *b, const struct medium_block *m,
         b->nodes[k] = cells + 2;
         b->period[k] = m->repeat[a] ? (float)cells : 0;
         b->period_first[k] = 0.5f;
-        alloc[k] = lateral_cells(m, a, w, m->extent[a] + (m->repeat[a] ? 0 : (double)m->extent[w]),
-                                 limit) +
-                   2;
+        range = m->extent[a] + (m->repeat[a] ? 0 : (double)m->extent[w]);
+        alloc[k] = lateral_cells(range, lateral_step(m, a, w, range, true, limit)) + 2;
     }
+    b->depth_row[w] = (float)(1 / d[w]);
+    b->depth_row[3] = (float)(-first / d[w]);
+    b->even = is_homogeneous(m) || m->repeat[w];
     map[2][w] = sign * slices / m->extent[w];
     map[2][3] = d[w] < 0 ? slices : 0;
     b->nodes[2] = alloc[2] = slices + 1;
@@ -192,7 +216,9 @@ void tyn_beam_plan(tyn_beam_params *params, const struct medium_block *medium,
             for (int i = 0; i < 4; i++) {
                 b->rows[k][i] = (float)((maps[n][k][i] + (i == 3 ? shift : 0)) / texels);
             }
-            if (k < 2) {
+            if (k == 2) {
+                b->z_rate = (float)(maps[n][2][b->axis] * b->direction[b->axis] / texels);
+            } else {
                 b->period[k] = (float)(b->period[k] / texels);
                 b->period_first[k] = (float)((b->period_first[k] + 0.5) / texels);
             }

@@ -10,7 +10,7 @@
 #include "beam_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 0, binding = 4, scalar) readonly buffer beam_buffer
+layout(set = 0, binding = 4, scalar) buffer beam_buffer
 {
     beam_block beams[];
 };
@@ -40,6 +40,11 @@ vec4 finite(vec4 v)
     return mix(v, vec4(0.0), bvec4(uvec4(isnan(v)) | uvec4(isinf(v))));
 }
 
+bool beam_any(mat3x4 value)
+{
+    return value[0].w + value[1].w > 0.0;
+}
+
 void beam_store(ivec3 texel, mat3x4 mean)
 {
     imageStore(tau_s_image, texel, finite(mean[0]));
@@ -51,6 +56,8 @@ void beam_store(ivec3 texel, mat3x4 mean)
 void main()
 {
     if (all(lessThan(gl_GlobalInvocationID.xy, imageSize(tau_s_image).xy))) {
-        beam_sweep(beams[gl_WorkGroupID.z], gl_GlobalInvocationID.xy);
+        if (beam_sweep(beams[gl_WorkGroupID.z], gl_GlobalInvocationID.xy)) {
+            atomicOr(beams[gl_WorkGroupID.z].edges, 1u);
+        }
     }
 }

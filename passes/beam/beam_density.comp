@@ -8,7 +8,7 @@
 #include "beam_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 0, binding = 2, scalar) readonly buffer beam_buffer
+layout(set = 0, binding = 2, scalar) buffer beam_buffer
 {
     beam_block beams[];
 };
@@ -21,6 +21,11 @@ float beam_value(vec3 p)
     return textureLod(medium_density_tex, medium_uvw(medium_wrap(p)), 0.0).r;
 }
 
+bool beam_any(float value)
+{
+    return value > 0.0;
+}
+
 void beam_store(ivec3 texel, float mean)
 {
     imageStore(column_image, texel, vec4(isnan(mean) || isinf(mean) ? 0.0 : mean));
@@ -30,6 +35,8 @@ void beam_store(ivec3 texel, float mean)
 void main()
 {
     if (all(lessThan(gl_GlobalInvocationID.xy, imageSize(column_image).xy))) {
-        beam_sweep(beams[gl_WorkGroupID.z], gl_GlobalInvocationID.xy);
+        if (beam_sweep(beams[gl_WorkGroupID.z], gl_GlobalInvocationID.xy)) {
+            atomicOr(beams[gl_WorkGroupID.z].edges, 1u);
+        }
     }
 }
