@@ -4,6 +4,7 @@
 #include "plugin/registry.h"
 #include "base/hash.h"
 #include "counters.h"
+#include "methods/env_cdf.h"
 #include "gpu/device.h"
 #include "scene/check.h"
 #include <stdlib.h>
@@ -28,6 +29,7 @@ struct tyn_context {
     uint64_t env_hash;
     uint64_t checked_data; // hash of the densities and texels that were found fit
     float env_mean[3];
+    void *env_cdf; // of a method that reads it
     char *warnings[MAX_WARNINGS];
     uint32_t num_warnings;
     tyn_node_report *nodes; // of the last report
@@ -92,6 +94,7 @@ void tyn_context_destroy(tyn_context **context)
     tyn_settings_destroy(&ctx->settings);
     clear_warnings(ctx);
     free(ctx->points);
+    free(ctx->env_cdf);
     free(ctx->nodes);
     free(ctx);
 }
@@ -185,6 +188,14 @@ static tyn_result update_environment(tyn_context *ctx, const tyn_environment *en
     }
     if (hash != ctx->env_hash) {
         tyn_environment_mean(env, ctx->env_mean);
+        free(ctx->env_cdf);
+        ctx->env_cdf = NULL;
+        if (ctx->method->reads_env_cdf && tyn_env_cdf_size(env)) {
+            ctx->env_cdf = malloc(tyn_env_cdf_size(env));
+            if (!ctx->env_cdf || !tyn_env_cdf_build(env, ctx->env_cdf)) {
+                return TYN_ERR_MEMORY;
+            }
+        }
         ctx->env_hash = hash;
     }
     return TYN_OK;
@@ -242,6 +253,10 @@ static void upload_scene(tyn_context *ctx, const tyn_frame *frame, tyn_scene_ref
         refs->env_map = tyn_graph_upload_image(
             g, "env_map", TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
             (tyn_extent){env->size[0], env->size[1], 1}, fill_environment, ctx, ctx->env_hash);
+        if (ctx->env_cdf) {
+            refs->env_cdf = tyn_graph_upload_buffer(g, "env_cdf", ctx->env_cdf,
+                                                    tyn_env_cdf_size(env), ctx->env_hash);
+        }
     }
     if (frame->view->outputs & TYN_OUTPUT_PROBE) {
         refs->points = tyn_graph_upload_buffer(g, "points", ctx->points,

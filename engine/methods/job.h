@@ -31,7 +31,7 @@ typedef struct tyn_scene_refs {
     tyn_ref camera;      // struct camera_block
     tyn_ref environment; // struct env_block
     tyn_ref env_map;     // 2D RGBA32F; {0} if constant
-    tyn_ref env_cdf;     // path: buffer, see tyn_env_cdf in job.c; {0} if constant
+    tyn_ref env_cdf;     // methods/env_cdf.h; {0} if constant or not read
     tyn_ref points;      // PROBE: vec3 in M, scalar
     tyn_ref depth;       // COMPOSITE: host depth
     tyn_ref color;       // COMPOSITE: host colour
@@ -63,6 +63,7 @@ typedef struct tyn_method {
     const tyn_pass_desc *const *passes; // NULL-terminated, frame order
     uint32_t outputs;                   // set of tyn_output it can make
     bool progressive;                   // uses view.first_sample, num_samples
+    bool reads_env_cdf;                 // wants refs.env_cdf
     // Largest work a single record may be given (view.num_samples) to keep a dispatch short; NULL if
     // not progressive.
     uint32_t (*batch)(const tyn_job *job);

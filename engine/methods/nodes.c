@@ -155,7 +155,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     }
 }
 
-static tyn_result add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance)
+tyn_result tyn_add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance)
 {
     tyn_tonemap_params params;
     tyn_settings_params(job->settings, &tyn_pass_tonemap, &params);
@@ -235,7 +235,7 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
     }
     tyn_job_counters(g, job, "raymarch", refs[RAYMARCH_PORT_COUNTERS]);
     if (result == TYN_OK && job->outputs & TYN_OUTPUT_DISPLAY) {
-        result = add_display(g, job, refs[RAYMARCH_PORT_RADIANCE]);
+        result = tyn_add_display(g, job, refs[RAYMARCH_PORT_RADIANCE]);
     }
     if (result == TYN_OK && job->outputs & TYN_OUTPUT_COMPOSITE) {
         result =

@@ -34,6 +34,9 @@ typedef struct tyn_picture_inputs {
 // `in` may be NULL: an empty scene.
 tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_inputs *in);
 
+// The display image of a radiance.
+tyn_result tyn_add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance);
+
 // Outputs that tyn_add_picture makes.
 #define TYN_PICTURE_OUTPUTS                                                                        \
     (TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_SINGLE |       \

@@ -4,6 +4,7 @@
 #include "passes/composite/composite.h"
 #include "passes/lattice/lattice.h"
 #include "passes/medium/medium.h"
+#include "passes/path/path.h"
 #include "passes/propagate_rect/propagate_rect.h"
 #include "passes/raymarch/raymarch.h"
 #include "passes/scatter_lut/scatter_lut.h"
@@ -21,6 +22,8 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_propagate_rect,
     &tyn_pass_upsample,
     &tyn_pass_raymarch,
+    &tyn_pass_path,
+    &tyn_pass_path_probe,
     &tyn_pass_composite,
     &tyn_pass_tonemap,
 };
@@ -29,6 +32,7 @@ enum { NUM_PASSES = sizeof passes / sizeof passes[0] };
 static const tyn_method *const methods[] = {
     &tyn_method_pop_paper,
     &tyn_method_single,
+    &tyn_method_path,
 };
 enum { NUM_METHODS = sizeof methods / sizeof methods[0] };
 

@@ -1,0 +1,246 @@
+// path.c -- method "path": unbiased path tracing, the reference that the other methods are judged by.
+#include "methods/nodes.h"
+#include "passes/medium/medium.h"
+#include "passes/path/path.h"
+#include "passes/path/path_args.h"
+#include "passes/tonemap/tonemap.h"
+#include <tyndall/registry.h>
+#include <math.h>
+#include <string.h>
+
+// ---- what a path costs ------------------------------------------------------------------------
+
+// Threads of a dispatch, and of one whose paths are long.
+enum { THREADS = 16384, THREADS_LONG = 2048 };
+
+static const double DISPATCH_NS = 20e6; // aimed at; 50 ms is the limit on a software device
+static const double RECORD_NS = 1e9;    // of all dispatches of a record
+static const double LONG_PATH_NS = 1500;
+
+// Nanoseconds of a path on two cores of a software device, roughly and rather too many. In a medium that
+// absorbs nothing the mean way of light between entering and leaving is 4 V / S whatever the scattering, so the
+// number of collisions follows from the densest extinction.
+static double path_cost_ns(const tyn_job *job, bool homogeneous)
+{
+    const struct medium_block *m = &job->frame->medium;
+    double e[3] = {m->extent[0], m->extent[1], m->extent[2]};
+    double surface = 2 * (e[0] * e[1] + e[1] * e[2] + e[2] * e[0]), chord = 0;
+    if (m->repeat[0] || m->repeat[1] || m->repeat[2]) {
+        for (int a = 0; a < 3; a++) {
+            chord = fmax(chord, m->repeat[a] ? 0 : 2 * e[a]);
+        }
+    } else if (surface > 0) {
+        chord = 4 * e[0] * e[1] * e[2] / surface;
+    }
+    double bound = 0;
+    if (m->mode == TYN_MEDIUM_DENSITY) {
+        bound = (double)m->sigma_t_max * m->max_density;
+    } else {
+        for (uint32_t i = 0; i < m->num_shapes; i++) {
+            const struct shape_block *s = &job->frame->shapes[i];
+            bound += s->sigma_s[1] + s->sigma_a[1];
+        }
+    }
+    double collisions = 2 + bound * chord;
+    double bricks = m->bricks[0] + m->bricks[1] + m->bricks[2];
+    return homogeneous ? 120 * collisions : 250 * collisions + 100 * bricks;
+}
+
+// ---- parameters -------------------------------------------------------------------------------
+
+static bool has_grids(const tyn_job *job)
+{
+    const tyn_scene *scene = job->scene;
+    for (uint32_t i = 0; i < scene->num_shapes; i++) {
+        if (scene->media[scene->shapes[i].medium].volume >= 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bool equal3(const float v[3])
+{
+    return v[0] == v[1] && v[1] == v[2];
+}
+
+static uint32_t count_near_lamps(const tyn_frame_scene *frame)
+{
+    const float *e = frame->medium.extent;
+    float reach = 0.5f * sqrtf(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+    uint32_t count = 0;
+    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
+        const float *p = frame->lights[i].position;
+        bool near = true;
+        for (int a = 0; a < 3; a++) {
+            near = near && p[a] > -reach && p[a] < e[a] + reach;
+        }
+        count += near;
+    }
+    return count;
+}
+
+static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_desc *pass)
+{
+    const tyn_frame_scene *frame = job->frame;
+    const struct medium_block *m = &frame->medium;
+    const struct env_block *env = &frame->environment;
+    const tyn_view *view = job->view;
+    tyn_settings_params(job->settings, pass, p);
+    p->seed = view->seed;
+    p->first_sample = view->first_sample;
+    p->num_samples = view->num_samples ? view->num_samples : 1;
+    p->max_depth = view->max_depth;
+    p->rr_depth = view->rr_depth;
+    p->homogeneous = frame->empty || (m->num_shapes == 1 && !has_grids(job));
+    p->one_shape = frame->empty || m->num_shapes == 1;
+    p->threads = path_cost_ns(job, p->homogeneous) > LONG_PATH_NS ? THREADS_LONG : THREADS;
+    p->grey = 1;
+    float sigma_t = 0;
+    for (uint32_t i = 0; i < m->num_shapes; i++) {
+        const struct shape_block *s = &frame->shapes[i];
+        p->grey = p->grey && equal3(s->sigma_s) && equal3(s->sigma_a) && equal3(s->g);
+        sigma_t = fmaxf(sigma_t, s->sigma_s[1] + s->sigma_a[1]);
+    }
+    p->repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];
+    p->emissive = frame->emissive;
+    p->num_lights = frame->num_lights;
+    p->num_lamps = count_near_lamps(frame);
+    bool sky = env->radiance[0] + env->radiance[1] + env->radiance[2] > 0;
+    p->environment = !sky ? TYN_PATH_ENV_NONE : env->has_map ? TYN_PATH_ENV_MAP : TYN_PATH_ENV_CONSTANT;
+    p->sigma_guess = p->homogeneous ? sigma_t : 0.3f * sigma_t * m->max_density;
+    p->layers = (job->outputs & (TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_TRANSMITTANCE)) != 0;
+    p->opaque = sky && !view->no_background;
+    p->scattered = view->scattered_only;
+    for (int w = 0; w < 3; w++) {
+        for (int a = 0; a < 3; a++) {
+            p->world[w][a] = frame->m_from_world[w * 4 + a];
+        }
+    }
+}
+
+static uint32_t batch(const tyn_job *job)
+{
+    tyn_path_params p;
+    bool probes = job->outputs & TYN_OUTPUT_PROBE;
+    set_params(&p, job, probes ? &tyn_pass_path_probe : &tyn_pass_path);
+    double elements = probes ? job->view->num_points : (double)job->view->width * job->view->height;
+    double cost = path_cost_ns(job, p.homogeneous);
+    double samples = fmin(DISPATCH_NS / (cost * fmin(elements, p.threads)), RECORD_NS / (cost * elements));
+    return samples < 1 ? 1 : samples > 1e6 ? 1000000 : (uint32_t)samples;
+}
+
+// ---- nodes ------------------------------------------------------------------------------------
+
+static void connect_scene(tyn_ref *refs, const tyn_job *job, tyn_ref bricks)
+{
+    refs[PATH_PORT_ATLAS] = job->refs.atlas;
+    refs[PATH_PORT_MEDIUM] = job->refs.medium;
+    refs[PATH_PORT_SHAPES] = job->refs.shapes;
+    refs[PATH_PORT_BRICKS] = bricks;
+    refs[PATH_PORT_LIGHTS] = job->refs.lights;
+    refs[PATH_PORT_ENVIRONMENT] = job->refs.environment;
+    refs[PATH_PORT_ENV_MAP] = job->refs.env_map;
+    refs[PATH_PORT_ENV_TABLE] = job->refs.env_cdf;
+}
+
+static tyn_ref history(tyn_graph *g, const char *name, uint32_t width, uint32_t height)
+{
+    return tyn_graph_history_image(g, name, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                   (tyn_extent){width, height, 1}, 1);
+}
+
+static tyn_result add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
+{
+    tyn_path_params params;
+    set_params(&params, job, &tyn_pass_path);
+    uint32_t w = job->view->width, h = job->view->height;
+    uint32_t lw = params.layers ? w : 1, lh = params.layers ? h : 1;
+    tyn_ref refs[PATH_NUM_PORTS] = {
+        [PATH_PORT_CAMERA] = job->refs.camera,
+        [PATH_PORT_MEAN] = history(g, "path_mean", w, h),
+        [PATH_PORT_LOW] = history(g, "path_low", w, h),
+        [PATH_PORT_DEVIATION] = history(g, "path_deviation", w, h),
+        [PATH_PORT_MEAN_SINGLE] = history(g, "path_single", lw, lh),
+        [PATH_PORT_MEAN_MULTIPLE] = history(g, "path_multiple", lw, lh),
+        [PATH_PORT_MEAN_TRANSMITTANCE] = history(g, "path_transmittance", lw, lh),
+    };
+    connect_scene(refs, job, bricks);
+    tyn_result result = tyn_graph_add(g, &tyn_pass_path, &params, refs);
+    if (result != TYN_OK) {
+        return result;
+    }
+    tyn_job_output(g, job, TYN_OUTPUT_RADIANCE, refs[PATH_PORT_RADIANCE]);
+    tyn_job_output(g, job, TYN_OUTPUT_ERROR, refs[PATH_PORT_ERROR]);
+    tyn_job_output(g, job, TYN_OUTPUT_SINGLE, refs[PATH_PORT_SINGLE]);
+    tyn_job_output(g, job, TYN_OUTPUT_MULTIPLE, refs[PATH_PORT_MULTIPLE]);
+    tyn_job_output(g, job, TYN_OUTPUT_TRANSMITTANCE, refs[PATH_PORT_TRANSMITTANCE]);
+    tyn_job_counters(g, job, "path", refs[PATH_PORT_COUNTERS]);
+    return job->outputs & TYN_OUTPUT_DISPLAY ? tyn_add_display(g, job, refs[PATH_PORT_RADIANCE]) : TYN_OK;
+}
+
+static tyn_result add_probes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
+{
+    tyn_path_params params;
+    set_params(&params, job, &tyn_pass_path_probe);
+    tyn_ref refs[PATH_PROBE_NUM_PORTS] = {
+        [PATH_PROBE_PORT_POINTS] = job->refs.points,
+        [PATH_PROBE_PORT_STATE] = tyn_graph_history_buffer(
+            g, "path_probes", tyn_path_probe_state_size(job->view->num_points), 1),
+    };
+    connect_scene(refs, job, bricks);
+    tyn_result result = tyn_graph_add(g, &tyn_pass_path_probe, &params, refs);
+    if (result == TYN_OK) {
+        tyn_job_output(g, job, TYN_OUTPUT_PROBE, refs[PATH_PROBE_PORT_RESULTS]);
+        tyn_job_counters(g, job, "path_probe", refs[PATH_PROBE_PORT_COUNTERS]);
+    }
+    return result;
+}
+
+// A periodic medium's own axes must be those of M.
+static tyn_result check_repeat(const tyn_job *job)
+{
+    const struct medium_block *m = &job->frame->medium;
+    const struct shape_block *s = &job->frame->shapes[0];
+    bool repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];
+    for (int i = 0; repeat && i < 9; i++) {
+        if (i / 3 != i % 3 && fabsf(s->rows[i / 3][i % 3]) * m->extent[i % 3] > 1e-4f) {
+            tyn_log_print(job->log, TYN_LOG_ERROR,
+                          "shape 0 repeats and is sheared; the axes of a periodic box must be at right angles");
+            return TYN_ERR_UNSUPPORTED;
+        }
+    }
+    return TYN_OK;
+}
+
+static tyn_result declare(tyn_graph *g, const tyn_job *job)
+{
+    tyn_result result = check_repeat(job);
+    tyn_media_refs media = {{0}};
+    if (result == TYN_OK && !job->frame->empty) {
+        result = tyn_add_medium(g, job, &media);
+    }
+    if (result == TYN_OK && job->outputs & ~(uint32_t)TYN_OUTPUT_PROBE) {
+        result = add_image(g, job, media.bricks);
+    }
+    if (result == TYN_OK && job->outputs & TYN_OUTPUT_PROBE) {
+        result = add_probes(g, job, media.bricks);
+    }
+    return result;
+}
+
+static const tyn_pass_desc *const passes[] = {
+    &tyn_pass_medium, &tyn_pass_path, &tyn_pass_path_probe, &tyn_pass_tonemap, NULL,
+};
+
+const tyn_method tyn_method_path = {
+    .name = "path",
+    .summary = "unbiased path tracing: the reference",
+    .passes = passes,
+    .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE |
+               TYN_OUTPUT_ERROR | TYN_OUTPUT_DISPLAY | TYN_OUTPUT_PROBE,
+    .progressive = true,
+    .reads_env_cdf = true,
+    .batch = batch,
+    .declare = declare,
+};
