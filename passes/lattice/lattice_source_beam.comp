@@ -1,7 +1,8 @@
 // lattice_source_beam.comp -- T', the unscattered part of one sun, averaged over a cell.
 //
-// The mean is weighted with sigma_s', so that sigma_s' T' is the cell's true first scattering. Each
-// sub-sample is the mean along the light over its own length: e^-tau sinh(x) / x with tau to its centre.
+// The mean is weighted with sigma_s', so that sigma_s' T' is the cell's true first scattering; with
+// sigma_a where nothing scatters. Each sub-sample is the mean along the light over its own length:
+// e^-tau sinh(x) / x with tau to its centre.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -45,7 +46,8 @@ void main()
                 medium_point m = medium_sample(p);
                 similarity_clamp(m.sigma_s, m.g);
                 vec3 scaled = (1.0 - delta_fraction(m.g)) * m.sigma_s;
-                if (max(scaled.r, max(scaled.g, scaled.b)) <= 0.0) {
+                vec3 w = scaled + 1e-6 * m.sigma_a;
+                if (w.r + w.g + w.b <= 0.0) {
                     continue;
                 }
                 beam_tau tau = beam_depth(sun, p);
@@ -55,8 +57,8 @@ void main()
                 vec3 near = exp(-max(centre - x, vec3(0.0))), far = exp(-(centre + x));
                 vec3 t = mix(exp(-centre), (near - far) / max(2.0 * x, vec3(1e-20)),
                              greaterThan(x, vec3(0.01)));
-                weighted += scaled * t;
-                weight += scaled;
+                weighted += w * t;
+                weight += w;
             }
         }
     }

@@ -1,0 +1,189 @@
+// probe.c -- probes and the balance of the whole chain: against Monte Carlo and closed forms.
+#include "light_chain.h"
+#include "npy.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static light_chain cube(float sigma_s, float sigma_a, float g)
+{
+    light_chain c = {.extent = {1, 1, 1}, .cells = 32, .cycles = -1, .channels = 1};
+    for (int k = 0; k < 3; k++) {
+        c.sigma_s[k] = sigma_s;
+        c.sigma_a[k] = sigma_a;
+        c.g[k] = g;
+    }
+    return c;
+}
+
+static void sun(light_chain *c, float x, float y, float z, float r, float g, float b)
+{
+    float length = sqrtf(x * x + y * y + z * z);
+    uint32_t s = c->num_suns++;
+    const float d[3] = {x / length, y / length, z / length}, color[3] = {r, g, b};
+    memcpy(c->sun_direction[s], d, sizeof d);
+    memcpy(c->sun_color[s], color, sizeof color);
+}
+
+// Mean |difference| over mean fluence, against Monte Carlo in 16^3 cells of the unit cube, sigma_s 4, sun
+// along +x. What is left is the angular error of 14 directions and the lobe without sideways spread.
+static void fluence_in_a_cube(void **state)
+{
+    static const struct {
+        const char *file;
+        float g, bound;
+    } cases[] = {{"reference/cube_fluence_g0.00.npy", 0, 0.03f},
+                 {"reference/cube_fluence_g0.50.npy", 0.5f, 0.07f},
+                 {"reference/cube_fluence_g0.90.npy", 0.9f, 0.13f}};
+    enum { N = 16, SUB = 2 };
+    static float points[N * N * N * SUB * SUB * SUB][3];
+    uint32_t n = 0;
+    for (int i = 0; i < N * N * N; i++) {
+        for (int s = 0; s < SUB * SUB * SUB; s++, n++) {
+            points[n][0] = ((float)(i % N) + ((float)(s & 1) + 0.5f) / SUB) / N;
+            points[n][1] = ((float)(i / N % N) + ((float)(s >> 1 & 1) + 0.5f) / SUB) / N;
+            points[n][2] = ((float)(i / N / N) + ((float)(s >> 2) + 0.5f) / SUB) / N;
+        }
+    }
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        char path[512];
+        npy_array reference;
+        if (!shared_path(path, sizeof path, cases[k].file) || !npy_read(&reference, path)) {
+            printf("skipped: no %s\n", cases[k].file);
+            skip();
+        }
+        light_chain c = cube(4, 0, cases[k].g);
+        sun(&c, 1, 0, 0, 1, 1, 1);
+        c.points = (const float(*)[3])points;
+        c.num_points = n;
+        c.scattered_only = true;
+        light_chain_run(*state, &c);
+        double off = 0, sum = 0, mean = 0;
+        for (int i = 0; i < N * N * N; i++) {
+            double phi = 0;
+            for (int s = 0; s < SUB * SUB * SUB; s++) {
+                phi += c.results[i * SUB * SUB * SUB + s].fluence[0] / (SUB * SUB * SUB);
+            }
+            off += fabs(phi - reference.data[2 * i]);
+            sum += reference.data[2 * i];
+            mean += phi;
+        }
+        printf("g %.2f: fluence L1 %.1f %%, mean %+.1f %%, imbalance %.1e\n", cases[k].g,
+               100 * off / sum, 100 * (mean / sum - 1), c.balance.imbalance[0]);
+        assert_true(off / sum < cases[k].bound);
+        light_chain_finish(&c);
+        npy_free(&reference);
+    }
+}
+
+// Without scattering the fluence is E e^-tau exactly, and the flux along the light is the same.
+static void absorption_only(void **state)
+{
+    static const float points[][3] = {{0.5f, 0.5f, 0.5f}, {0.1f, 0.8f, 0.3f}, {0.9f, 0.95f, 0.6f}};
+    light_chain c = cube(0, 2, 0);
+    sun(&c, 1, 2, -0.5f, 3, 3, 3);
+    c.points = points;
+    c.num_points = 3;
+    light_chain_run(*state, &c);
+    const float *d = c.sun_direction[0];
+    for (int i = 0; i < 3; i++) {
+        float length = 1e9f;
+        for (int a = 0; a < 3; a++) {
+            length = fminf(length, (d[a] > 0 ? points[i][a] : points[i][a] - 1) / d[a]);
+        }
+        float expected = 3 * expf(-2 * length);
+        assert_true(fabsf(c.results[i].fluence[1] / expected - 1) < 1e-3f);
+        for (int a = 0; a < 3; a++) {
+            assert_true(fabsf(c.results[i].flux[3 * a + 2] - expected * d[a]) < 1e-3f * expected);
+        }
+    }
+    assert_true(fabs(c.balance.imbalance[0]) < 1e-3);
+    light_chain_finish(&c);
+}
+
+// Light that enters is absorbed or escapes; one channel with a tint, three channels and coefficients as
+// textures say the same; oblique light is no worse than aligned light.
+static void balances(void **state)
+{
+    static const float media[][3] = {{4, 0, 0}, {4, 1, 0.6f}, {30, 0.1f, 0.85f}, {500, 0, 0}};
+    float density[12 * 12 * 12];
+    uint32_t seed = 1;
+    for (int i = 0; i < 12 * 12 * 12; i++) {
+        seed = seed * 1664525u + 1013904223u;
+        density[i] = seed >> 31 ? (float)(seed >> 8 & 0xFFFF) / 65536 : 0;
+    }
+    for (size_t m = 0; m < sizeof media / sizeof media[0]; m++) {
+        for (int grid = 0; grid < 2; grid++) {
+            double first = 0;
+            for (int variant = 0; variant < 3; variant++) {
+                light_chain c = cube(media[m][0], media[m][1], media[m][2]);
+                c.extent[1] = 0.7f;
+                c.extent[2] = 0.55f;
+                c.cells = 24;
+                c.sweeps = 6;
+                c.density = grid ? density : NULL;
+                c.size = grid ? (tyn_extent){12, 12, 12} : (tyn_extent){1, 1, 1};
+                c.channels = variant == 0 ? 1 : 3;
+                c.coefficients = variant == 2;
+                sun(&c, 0.5f, 0.3f, 0.81f, 1, 0.5f, 0.25f);
+                sun(&c, 0, -1, 0, 2, 1, 0.5f);
+                light_chain_run(*state, &c);
+                const tyn_balance *b = &c.balance;
+                printf(
+                    "sigma_s %g, grid %d, variant %d: entering %.4f, absorbed %.4f, escaped %.4f, "
+                    "imbalance %.1e\n",
+                    media[m][0], grid, variant, b->entering[1], b->absorbed_media[1], b->escaped[1],
+                    b->imbalance[1]);
+                assert_true(fabs(b->imbalance[1]) < 0.01);
+                assert_true(fabs(b->escaped[1] / b->escaped[0] - 0.5) < 1e-3);
+                first = variant == 0 ? b->escaped[1] : first;
+                assert_true(fabs(b->escaped[1] / first - 1) < 0.01);
+                light_chain_finish(&c);
+            }
+        }
+    }
+}
+
+// A medium that only scatters is invisible in a uniform environment, and one that emits and absorbs like a
+// black body of the same radiance, too.
+static void furnace(void **state)
+{
+    static const float points[][3] = {{0.5f, 0.5f, 0.5f}, {0.02f, 0.99f, 0.4f}};
+    for (int emissive = 0; emissive < 2; emissive++) {
+        light_chain c = cube(12, emissive ? 3 : 0, 0.7f);
+        for (int k = 0; k < 3; k++) {
+            c.environment[k] = 0.5f * (float)(k + 1);
+            c.emission[k] = emissive ? 3 * c.environment[k] : 0;
+        }
+        c.channels = emissive ? 3 : 1;
+        c.points = points;
+        c.num_points = 2;
+        light_chain_run(*state, &c);
+        for (int i = 0; i < 2; i++) {
+            for (int k = 0; k < 3; k++) {
+                double expected = 4 * M_PI * c.environment[k];
+                assert_true(fabs(c.results[i].fluence[k] / expected - 1) < 1e-4);
+                assert_true(fabs(c.results[i].flux[k]) < 1e-4 * expected);
+            }
+        }
+        size_t texels = (size_t)c.inscatter_size.x * c.inscatter_size.y * c.inscatter_size.z;
+        for (size_t i = 0; i < texels * 4; i++) {
+            double expected = i % 4 < 3 ? c.environment[i % 4] : 1;
+            assert_true(fabs(c.inscatter[i] / expected - 1) < 1e-4);
+        }
+        assert_true(fabs(c.balance.imbalance[0]) < 1e-4);
+        light_chain_finish(&c);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(absorption_only),
+        cmocka_unit_test(fluence_in_a_cube),
+        cmocka_unit_test(balances),
+        cmocka_unit_test(furnace),
+    };
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
