@@ -52,18 +52,30 @@ vec2 ray_sphere(vec3 origin, vec3 direction, float r)
     return vec2(closest - half_chord, closest + half_chord);
 }
 
+// M -> local unit box of a shape.
+vec3 shape_vector(shape_block shape, vec3 v)
+{
+    return vec3(dot(shape.rows[0].xyz, v), dot(shape.rows[1].xyz, v), dot(shape.rows[2].xyz, v));
+}
+
+vec3 shape_point(shape_block shape, vec3 p)
+{
+    return shape_vector(shape, p) + vec3(shape.rows[0].w, shape.rows[1].w, shape.rows[2].w);
+}
+
+// Span of a ray in local coordinates.
+vec2 ray_unit_shape(uint kind, vec3 origin, vec3 direction)
+{
+    if (kind == TYN_SHAPE_KIND_SPHERE) {
+        return ray_sphere(origin, direction, 0.5);
+    }
+    return ray_box(origin, ray_inverse(direction), vec3(-0.5), vec3(0.5));
+}
+
 // Span of a ray in a shape of the scene.
 vec2 ray_shape(shape_block shape, vec3 origin, vec3 direction)
 {
-    vec3 o = vec3(dot(shape.rows[0].xyz, origin), dot(shape.rows[1].xyz, origin),
-                  dot(shape.rows[2].xyz, origin)) +
-             vec3(shape.rows[0].w, shape.rows[1].w, shape.rows[2].w);
-    vec3 d = vec3(dot(shape.rows[0].xyz, direction), dot(shape.rows[1].xyz, direction),
-                  dot(shape.rows[2].xyz, direction));
-    if (shape.kind == TYN_SHAPE_KIND_SPHERE) {
-        return ray_sphere(o, d, 0.5);
-    }
-    return ray_box(o, ray_inverse(d), vec3(-0.5), vec3(0.5));
+    return ray_unit_shape(shape.kind, shape_point(shape, origin), shape_vector(shape, direction));
 }
 
 #endif

@@ -42,7 +42,6 @@ float spectrum_mean(vec3 x)
 }
 #endif
 
-#define RAYMARCH_INFINITY uintBitsToFloat(0x7f800000u)
 const int RAYMARCH_CHUNK = 8; // steps between two looks at the distance map
 
 bool raymarch_has(uint feature)
@@ -263,7 +262,7 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
     march_result result;
     result.radiance = vec3(0.0);
     result.single = vec3(0.0);
-    result.half_distance = RAYMARCH_INFINITY;
+    result.half_distance = TYN_INFINITY;
     result.steps = 0u;
 
     march_sun suns[TYN_BEAM_MAX_SUNS];

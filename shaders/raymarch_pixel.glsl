@@ -6,23 +6,9 @@
 
 // Pixel of a thread of an 8x8 group, so that any 8 threads in a row are a block of 4x2 pixels, whose
 // rays take about equally many steps.
-ivec2 pixel_of_thread(uvec2 group, uint i)
+uvec2 pixel_of_thread(uvec2 group, uint i)
 {
-    uvec2 p = uvec2((i & 3u) | (i >> 1 & 4u), (i >> 2 & 1u) | (i >> 3 & 6u));
-    return ivec2(group * 8u + p);
-}
-
-// Which of the first 64 shapes a ray meets, as bits.
-uvec2 shapes_met(camera_ray ray)
-{
-    uvec2 met = uvec2(0u);
-    for (uint i = 0u; i < min(medium.num_shapes, 64u); i++) {
-        vec2 span = ray_shape(shapes[i], ray.origin, ray.direction);
-        if (span.x < span.y && span.y > 0.0) {
-            met[i >> 5] |= 1u << (i & 31u);
-        }
-    }
-    return met;
+    return group * 8u + uvec2((i & 3u) | (i >> 1 & 4u), (i >> 2 & 1u) | (i >> 3 & 6u));
 }
 
 vec2 quarter_pixel(uint i)
@@ -30,32 +16,36 @@ vec2 quarter_pixel(uint i)
     return vec2(0.25 + 0.5 * float(i & 1u), 0.25 + 0.5 * float(i >> 1));
 }
 
-// 4 if the rays of the pixel's quarters disagree on which shapes they meet, else 1.
+// 4 if the rays through the pixel's quarters disagree on which shapes they meet, else 1.
 uint rays_of_pixel(ivec2 pixel)
 {
     if (args.supersample == 0u) {
         return 1u;
     }
-    uvec2 first = shapes_met(camera_ray_through(camera, vec2(pixel) + quarter_pixel(0u)));
+    // Origin or direction is linear in the image position.
+    camera_ray ray = camera_ray_through(camera, vec2(pixel) + 0.5);
+    vec2 quarter = 0.5 / vec2(camera.size);
+    vec3 across = quarter.x * camera.half_width * camera.right;
+    vec3 up = quarter.y * camera.half_height * camera.up;
+    bool orthographic = camera.orthographic != 0u;
+    if (!orthographic) {
+        ray.direction /= dot(ray.direction, camera.forward);
+    }
     bool agree = true;
-    for (uint i = 1u; i < 4u; i++) {
-        agree = agree &&
-                shapes_met(camera_ray_through(camera, vec2(pixel) + quarter_pixel(i))) == first;
+    uint count = raymarch_has(RAYMARCH_ONE_SHAPE) ? 1u : medium.num_shapes;
+    for (uint i = 0u; i < count; i++) {
+        vec3 o = shape_point(shapes[i], ray.origin), d = shape_vector(shapes[i], ray.direction);
+        vec3 x = shape_vector(shapes[i], across), y = shape_vector(shapes[i], up);
+        uint met = 0u;
+        for (uint k = 0u; k < 4u; k++) {
+            vec3 shift = ((k & 1u) == 0u ? -x : x) + ((k & 2u) == 0u ? -y : y);
+            vec2 span = orthographic ? ray_unit_shape(shapes[i].kind, o + shift, d)
+                                     : ray_unit_shape(shapes[i].kind, o, d + shift);
+            met += span.x < span.y && span.y > 0.0 ? 1u : 0u;
+        }
+        agree = agree && (met == 0u || met == 4u);
     }
     return agree ? 1u : 4u;
-}
-
-// Distance along the ray to the host's surface.
-float host_distance(ivec2 pixel, camera_ray ray)
-{
-    ivec2 size = textureSize(host_depth_tex, 0);
-    ivec2 texel = ivec2((vec2(pixel) + 0.5) / vec2(camera.size) * vec2(size));
-    float depth = texelFetch(host_depth_tex, min(texel, size - 1), 0).r;
-    // Clip z and w are linear in view z: depth (p11 z + p15) = p10 z + p14.
-    float below = depth * args.depth.z - args.depth.x;
-    float z = (args.depth.y - depth * args.depth.w) / below;
-    // An infinite far plane divides by zero.
-    return abs(below) > 1e-12 ? abs(z) / dot(ray.direction, camera.forward) : RAYMARCH_INFINITY;
 }
 
 bool is_finite(vec3 v)
@@ -66,7 +56,7 @@ bool is_finite(vec3 v)
 void shade_pixel(ivec2 pixel)
 {
     vec3 radiance = vec3(0.0), single = vec3(0.0), multiple = vec3(0.0), transmittance = vec3(0.0);
-    float surface = RAYMARCH_INFINITY, half_distance = RAYMARCH_INFINITY;
+    float surface = TYN_INFINITY, half_distance = TYN_INFINITY;
     uint steps = 0u, num_rays = rays_of_pixel(pixel);
     bool met = false;
     for (uint i = 0u; i < num_rays; i++) {
@@ -75,7 +65,7 @@ void shade_pixel(ivec2 pixel)
         vec2 span = ray_box(ray.origin, ray_inverse(ray.direction), vec3(0.0), medium.extent);
         span.x = max(span.x, 0.0);
         if (raymarch_has(RAYMARCH_HOST_DEPTH)) {
-            surface = host_distance(pixel, ray);
+            surface = host_distance(host_depth_tex, camera, args.depth, pixel, ray.direction);
             span.y = min(span.y, surface);
         }
         met = met || span.x < span.y;
@@ -94,7 +84,7 @@ void shade_pixel(ivec2 pixel)
         }
         multiple += max(scattered, 0.0);
         radiance += r.single + scattered;
-        if (raymarch_has(RAYMARCH_BACKGROUND) && surface == RAYMARCH_INFINITY) {
+        if (raymarch_has(RAYMARCH_BACKGROUND) && surface == TYN_INFINITY) {
             radiance += r.transmittance *
                         environment_radiance(environment, environment_tex, ray.direction);
         }

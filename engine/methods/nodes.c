@@ -136,6 +136,9 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->longest_step =
         tyn_raymarch_longest_step(block->sigma_t_max * block->max_density, in->cell, block->extent);
 
+    params->num_shapes = block->num_shapes;
+    tyn_raymarch_window(params, &frame->camera);
+
     const struct env_block *env = &frame->environment;
     bool surroundings =
         env->has_map || env->radiance[0] + env->radiance[1] + env->radiance[2] > 0.0f;

@@ -2,6 +2,7 @@
 #include "raymarch.h"
 #include "raymarch_args.h"
 #include "counters.h"
+#include "raymarch_background.comp.h"
 #include "raymarch_grey.comp.h"
 #include "raymarch_colour.comp.h"
 #include <math.h>
@@ -76,13 +77,26 @@ static const tyn_binding bindings[] = {
     {RAYMARCH_PORT_TAU_A, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_TAU_P, TYN_USE_SAMPLED, false},
 };
+// The order of raymarch_background.comp.
+static const tyn_binding background_bindings[] = {
+    {RAYMARCH_PORT_CAMERA, TYN_USE_UNIFORM, false},
+    {RAYMARCH_PORT_ENVIRONMENT, TYN_USE_UNIFORM, false},
+    {RAYMARCH_PORT_ENV_MAP, TYN_USE_SAMPLED, true},
+    {RAYMARCH_PORT_HOST_DEPTH, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_RADIANCE, TYN_USE_STORAGE_WRITE, false},
+    {RAYMARCH_PORT_TRANSMITTANCE, TYN_USE_STORAGE_WRITE, false},
+    {RAYMARCH_PORT_DEPTH, TYN_USE_STORAGE_WRITE, false},
+    {RAYMARCH_PORT_SINGLE, TYN_USE_STORAGE_WRITE, false},
+    {RAYMARCH_PORT_MULTIPLE, TYN_USE_STORAGE_WRITE, false},
+};
 enum {
+    NUM_BACKGROUND_BINDINGS = sizeof(background_bindings) / sizeof(background_bindings[0]),
     NUM_BINDINGS = sizeof(bindings) / sizeof(bindings[0]),
     NUM_GREY_BINDINGS = NUM_BINDINGS - 5,
     NUM_SPEC = 3, // mode, number of suns, features
 };
 
-enum { KERNEL_GREY = 0, KERNEL_COLOUR, NUM_KERNELS };
+enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_GREY] = {.name = "raymarch_grey",
@@ -101,6 +115,14 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                        .bindings = bindings,
                        .num_bindings = NUM_BINDINGS,
                        .num_spec = NUM_SPEC},
+    [KERNEL_BACKGROUND] = {.name = "raymarch_background",
+                           .spirv = raymarch_background_spirv,
+                           .spirv_size = sizeof(raymarch_background_spirv),
+                           .args_size = sizeof(struct raymarch_args),
+                           .local_size = {8, 8, 1},
+                           .bindings = background_bindings,
+                           .num_bindings = NUM_BACKGROUND_BINDINGS,
+                           .num_spec = NUM_SPEC},
 };
 
 static const tyn_param params_table[] = {
@@ -152,48 +174,113 @@ static float shortest_voxel(tyn_extent size, const float extent[3])
                  extent[2] / fmaxf((float)size.z, 1));
 }
 
-static void record(tyn_recorder *r, const void *params)
+void tyn_raymarch_window(tyn_raymarch_params *params, const struct camera_block *camera)
 {
-    const tyn_raymarch_params *p = params;
-    uint32_t features = 0;
-    uint8_t ports_of[NUM_BINDINGS];
-    for (uint32_t i = 0; i < NUM_BINDINGS; i++) {
-        ports_of[i] = bindings[i].port;
-        // A layer that is not made: its binding is not written to, so any image will do.
-        for (uint32_t k = 0; k < NUM_LAYERS; k++) {
-            if (bindings[i].port == layers[k].port && !(p->layers & layers[k].layer)) {
-                ports_of[i] = RAYMARCH_PORT_RADIANCE;
-            }
+    const float half[2] = {camera->half_width, camera->half_height};
+    const float *axes[2] = {camera->right, camera->up};
+    float lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};
+    for (int corner = 0; corner < 8; corner++) {
+        float depth = 0, at[2] = {0, 0};
+        for (int i = 0; i < 3; i++) {
+            float d = (corner >> i & 1 ? params->extent[i] : 0) - camera->origin[i];
+            depth += d * camera->forward[i];
+            at[0] += d * axes[0][i];
+            at[1] += d * axes[1][i];
+        }
+        float scale = camera->orthographic ? 1 : depth;
+        bool beside = !camera->orthographic && depth <= 1e-3f * (fabsf(at[0]) + fabsf(at[1]));
+        for (int i = 0; i < 2; i++) {
+            float s = at[i] / (half[i] * scale) - camera->shift[i];
+            lo[i] = beside ? -INFINITY : fminf(lo[i], s);
+            hi[i] = beside ? INFINITY : fmaxf(hi[i], s);
         }
     }
+    const float size[2] = {(float)params->width, (float)params->height};
+    const float from[2] = {lo[0], -hi[1]}, to[2] = {hi[0], -lo[1]}; // rows run down
+    for (int i = 0; i < 2; i++) {
+        float a = floorf(0.5f * (from[i] + 1) * size[i]) - 1,
+              b = ceilf(0.5f * (to[i] + 1) * size[i]) + 1;
+        params->first[i] = (uint32_t)fminf(fmaxf(a, 0), size[i]);
+        params->end[i] = (uint32_t)fminf(fmaxf(b, (float)params->first[i]), size[i]);
+    }
+    if (params->first[0] >= params->end[0] || params->first[1] >= params->end[1]) {
+        // Out of sight: one pixel, as all zeros would mean all.
+        params->first[0] = params->first[1] = 0;
+        params->end[0] = params->end[1] = 1;
+    }
+}
+
+static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
+{
+    bool field = tyn_rec_has(r, RAYMARCH_PORT_INSCATTER);
+    bool behind = p->background || p->layers & RAYMARCH_LAYER_TRANSMITTANCE;
+    uint32_t features = 0;
     for (uint32_t k = 0; k < NUM_LAYERS; k++) {
         features |= p->layers & layers[k].layer ? layers[k].feature : 0;
     }
     features |= p->kernels ? RAYMARCH_KERNELS : 0;
-    features |= tyn_rec_has(r, RAYMARCH_PORT_INSCATTER) ? RAYMARCH_FIELD : 0;
+    features |= field ? RAYMARCH_FIELD : 0;
     features |= p->field != RAYMARCH_INSCATTER_SCALED ? RAYMARCH_UNSCALED : 0;
     features |= p->field == RAYMARCH_INSCATTER_SOURCE ? RAYMARCH_SOURCE : 0;
     features |= p->emissive ? RAYMARCH_EMISSION : 0;
     features |= p->mean ? RAYMARCH_MEAN : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_HOST_DEPTH) ? RAYMARCH_HOST_DEPTH : 0;
     features |= p->background ? RAYMARCH_BACKGROUND : 0;
-    bool follow = p->background || p->layers & RAYMARCH_LAYER_TRANSMITTANCE;
-    features |= follow ? RAYMARCH_BEHIND : 0;
+    features |= behind ? RAYMARCH_BEHIND : 0;
+    features |= p->num_shapes == 1 ? RAYMARCH_ONE_SHAPE : 0;
+    return features;
+}
 
+// A layer that is not made: its binding is not written to, so any image will do.
+static void bind(const tyn_raymarch_params *p, const tyn_binding *table, uint32_t count,
+                 uint8_t *ports_of)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        ports_of[i] = table[i].port;
+        for (uint32_t k = 0; k < NUM_LAYERS; k++) {
+            if (table[i].port == layers[k].port && !(p->layers & layers[k].layer)) {
+                ports_of[i] = RAYMARCH_PORT_RADIANCE;
+            }
+        }
+    }
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_raymarch_params *p = params;
+    uint32_t spec[NUM_SPEC] = {p->mode, p->num_suns, features_of(r, p)};
     float voxel = p->step * shortest_voxel(tyn_rec_extent(r, RAYMARCH_PORT_DENSITY), p->extent);
     struct raymarch_args args = {
         .step = fminf(voxel, p->longest_step),
         .stop = p->stop,
         .supersample = p->antialias,
         .depth = {p->depth[0], p->depth[1], p->depth[2], p->depth[3]},
+        .first = {p->first[0], p->first[1]},
+        .end = {p->end[0], p->end[1]},
     };
+    if (p->end[0] == 0) {
+        args.end[0] = p->width;
+        args.end[1] = p->height;
+    }
     tyn_rec_fill(r, RAYMARCH_PORT_COUNTERS, 0);
+    // What lies outside the window first, as the window's edges are not on workgroups.
+    uint8_t background_ports[NUM_BACKGROUND_BINDINGS], ports_of[NUM_BINDINGS];
+    bind(p, background_bindings, NUM_BACKGROUND_BINDINGS, background_ports);
+    bind(p, bindings, NUM_BINDINGS, ports_of);
+    tyn_extent window = {args.end[0] - args.first[0], args.end[1] - args.first[1], 1};
     tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = p->grey ? KERNEL_GREY : KERNEL_COLOUR,
+                            .kernel = KERNEL_BACKGROUND,
                             .cells = {p->width, p->height, 1},
                             .args = &args,
+                            .ports = background_ports,
+                            .spec = spec,
+                        });
+    tyn_rec_dispatch(r, &(tyn_dispatch){
+                            .kernel = p->grey ? KERNEL_GREY : KERNEL_COLOUR,
+                            .cells = window,
+                            .args = &args,
                             .ports = ports_of,
-                            .spec = (const uint32_t[]){p->mode, p->num_suns, features},
+                            .spec = spec,
                         });
 }
 

@@ -20,7 +20,10 @@ typedef struct tyn_raymarch_params {
     uint32_t width, height;
     float extent[3];    // medium_block.extent, m
     float longest_step; // m; a step is no longer than this
-    float depth[4];     // p10, p14, p11, p15 of the host's view_to_clip
+    uint32_t num_shapes;
+    uint32_t first[2],
+        end[2];     // pixels that may see the media (tyn_raymarch_window); all 0: every pixel
+    float depth[4]; // p10, p14, p11, p15 of the host's view_to_clip
 } tyn_raymarch_params;
 
 // The longest step in metres for a medium whose majorant is `sigma_t` (1/m), marched through a lattice
@@ -28,10 +31,14 @@ typedef struct tyn_raymarch_params {
 // Steps are bounded by voxels as well, so this matters for homogeneous media only.
 float tyn_raymarch_longest_step(float sigma_t, float dx, const float extent[3]);
 
+// Sets first and end to a window that holds every pixel from which a ray may meet the media's box.
+void tyn_raymarch_window(tyn_raymarch_params *params, const struct camera_block *camera);
+
 enum {
-    RAYMARCH_INSCATTER_SCALED = 0, // light per sigma_s' (merge): depths of the picture are delta scaled
-    RAYMARCH_INSCATTER_PLAIN,      // light per sigma_s; nothing is scaled
-    RAYMARCH_INSCATTER_SOURCE,     // light per metre of any medium; nothing is scaled
+    RAYMARCH_INSCATTER_SCALED =
+        0,                     // light per sigma_s' (merge): depths of the picture are delta scaled
+    RAYMARCH_INSCATTER_PLAIN,  // light per sigma_s; nothing is scaled
+    RAYMARCH_INSCATTER_SOURCE, // light per metre of any medium; nothing is scaled
 };
 
 enum {

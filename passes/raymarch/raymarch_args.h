@@ -17,14 +17,17 @@
 #define RAYMARCH_MULTIPLE 1024u
 #define RAYMARCH_UNSCALED 2048u // no delta scaling: tau' is tau
 #define RAYMARCH_SOURCE 4096u   // inscatter is what a metre of any medium sends, not per sigma_s
+#define RAYMARCH_ONE_SHAPE 8192u
 
 struct raymarch_args {
     float step;           // longest step, m
     float stop;           // a ray ends where the transmittance is below this
     tyn_uint supersample; // 1: four rays where they disagree on which shapes they hit
     tyn_uint pad;
-    tyn_vec4 depth; // p10, p14, p11, p15 of the host's view_to_clip
+    tyn_vec4 depth;  // p10, p14, p11, p15 of the host's view_to_clip
+    tyn_uvec2 first; // pixels in which the box of the media may be seen: from `first` ...
+    tyn_uvec2 end;   // ... to before `end`
 };
-TYN_ASSERT_SIZE(raymarch_args, 32);
+TYN_ASSERT_SIZE(raymarch_args, 48);
 
 #endif

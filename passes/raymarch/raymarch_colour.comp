@@ -7,6 +7,7 @@
 #include "camera.glsl"
 #include "environment.glsl"
 #include "display.glsl"
+#include "host_depth.glsl"
 #include "medium.glsl"
 #include "beam.glsl"
 #include "scatter_lut.glsl"
@@ -18,8 +19,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 void main()
 {
-    ivec2 pixel = pixel_of_thread(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
-    if (all(lessThan(uvec2(pixel), camera.size))) {
-        shade_pixel(pixel);
+    uvec2 pixel = args.first + pixel_of_thread(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
+    if (all(lessThan(pixel, args.end))) {
+        shade_pixel(ivec2(pixel));
     }
 }

@@ -1,0 +1,69 @@
+// raymarch_background.comp -- pixels in which no medium can be seen.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "camera.glsl"
+#include "environment.glsl"
+#include "host_depth.glsl"
+#include "raymarch_args.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 2) const uint raymarch_features = 0u;
+layout(binding = 0, scalar) uniform camera_uniform
+{
+    camera_block camera;
+};
+layout(binding = 1, scalar) uniform env_uniform
+{
+    env_block environment;
+};
+layout(binding = 2) uniform sampler2D environment_tex;
+layout(binding = 3) uniform sampler2D host_depth_tex;
+layout(binding = 4, rgba32f) uniform writeonly image2D radiance_image;
+layout(binding = 5, rgba32f) uniform writeonly image2D transmittance_image;
+layout(binding = 6, rgba32f) uniform writeonly image2D depth_image;
+layout(binding = 7, rgba32f) uniform writeonly image2D single_image;
+layout(binding = 8, rgba32f) uniform writeonly image2D multiple_image;
+
+layout(push_constant, scalar) uniform Args
+{
+    raymarch_args args;
+};
+
+bool has(uint feature)
+{
+    return (raymarch_features & feature) != 0u;
+}
+
+void main()
+{
+    uvec2 p = gl_GlobalInvocationID.xy;
+    bool inside = all(greaterThanEqual(p, args.first)) && all(lessThan(p, args.end));
+    if (inside || any(greaterThanEqual(p, camera.size))) {
+        return;
+    }
+    ivec2 pixel = ivec2(p);
+    camera_ray ray = camera_ray_through(camera, vec2(pixel) + 0.5);
+    float surface = TYN_INFINITY;
+    if (has(RAYMARCH_HOST_DEPTH)) {
+        surface = host_distance(host_depth_tex, camera, args.depth, pixel, ray.direction);
+    }
+    vec4 radiance = vec4(0.0);
+    if (has(RAYMARCH_BACKGROUND) && surface == TYN_INFINITY) {
+        radiance = vec4(environment_radiance(environment, environment_tex, ray.direction), 1.0);
+    }
+    imageStore(radiance_image, pixel, radiance);
+    if (has(RAYMARCH_TRANSMITTANCE)) {
+        imageStore(transmittance_image, pixel, vec4(1.0));
+    }
+    if (has(RAYMARCH_DEPTH)) {
+        imageStore(depth_image, pixel, vec4(surface, TYN_INFINITY, 0.0, 0.0));
+    }
+    if (has(RAYMARCH_SINGLE)) {
+        imageStore(single_image, pixel, vec4(vec3(0.0), 1.0));
+    }
+    if (has(RAYMARCH_MULTIPLE)) {
+        imageStore(multiple_image, pixel, vec4(vec3(0.0), 1.0));
+    }
+}
