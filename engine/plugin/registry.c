@@ -5,6 +5,8 @@
 #include "passes/lattice/lattice.h"
 #include "passes/medium/medium.h"
 #include "passes/path/path.h"
+#include "passes/merge/merge.h"
+#include "passes/probe/probe.h"
 #include "passes/propagate_rect/propagate_rect.h"
 #include "passes/raymarch/raymarch.h"
 #include "passes/scatter_lut/scatter_lut.h"
@@ -19,6 +21,9 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_lattice_cells,
     &tyn_pass_lattice_source,
     &tyn_pass_lattice,
+    &tyn_pass_merge,
+    &tyn_pass_probe,
+    &tyn_pass_balance,
     &tyn_pass_propagate_rect,
     &tyn_pass_upsample,
     &tyn_pass_raymarch,
@@ -30,6 +35,7 @@ static const tyn_pass_desc *const passes[] = {
 enum { NUM_PASSES = sizeof passes / sizeof passes[0] };
 
 static const tyn_method *const methods[] = {
+    &tyn_method_pop,
     &tyn_method_pop_paper,
     &tyn_method_single,
     &tyn_method_path,
