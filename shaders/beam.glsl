@@ -76,10 +76,46 @@ beam_place beam_place_of(uint sun, vec3 p)
     return place;
 }
 
+// The same along a ray within the box (one period), where all of it is linear in the distance.
+struct beam_ray {
+    vec3 uvw0, uvw1;       // at distance s: uvw0 + s uvw1
+    vec3 length0, length1; // distance of p from its entry: least component of length0 + s length1
+    float depth0, depth1;  // distance from slice 0
+    float z_rate;
+    bool even, edges;
+};
+
+beam_ray beam_ray_of(uint sun, vec3 origin, vec3 direction)
+{
+    beam_ray ray;
+    for (int i = 0; i < 3; i++) {
+        ray.uvw0[i] = dot(beams[sun].rows[i].xyz, origin) + beams[sun].rows[i].w;
+        ray.uvw1[i] = dot(beams[sun].rows[i].xyz, direction);
+    }
+    ray.length0 = beams[sun].clip_offset + origin * beams[sun].clip_scale;
+    ray.length1 = direction * beams[sun].clip_scale;
+    ray.depth0 = dot(beams[sun].depth_row.xyz, origin) + beams[sun].depth_row.w;
+    ray.depth1 = dot(beams[sun].depth_row.xyz, direction);
+    ray.z_rate = beams[sun].z_rate;
+    ray.even = beams[sun].even != 0u;
+    ray.edges = beams[sun].edges != 0u;
+    return ray;
+}
+
+beam_place beam_ray_at(beam_ray ray, float s)
+{
+    vec3 lengths = ray.length0 + s * ray.length1;
+    float inside = max(min(min(lengths.x, lengths.y), lengths.z), 0.0);
+    float depth = ray.depth0 + s * ray.depth1;
+    return beam_place(ray.uvw0 + s * ray.uvw1, ray.even ? inside : depth,
+                      ray.edges ? depth - inside : 0.0, inside * ray.z_rate);
+}
+
 vec3 beam_fetch(sampler3D tex, beam_place place)
 {
     vec3 depth = place.to * textureLod(tex, place.uvw, 0.0).rgb;
-    if (place.before > 0.0) {
+    // Rounding must not let a ray that enters through slice 0 take a second fetch.
+    if (place.before > 1e-5 * place.to) {
         vec3 at_entry = textureLod(tex, place.uvw - vec3(0.0, 0.0, place.back), 0.0).rgb;
         depth = max(depth - place.before * at_entry, vec3(0.0));
     }

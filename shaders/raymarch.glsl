@@ -128,9 +128,8 @@ march_medium march_medium_at(march_medium unit, vec3 uvw)
 
 // A sun as one view ray sees it: its grid's coordinates are linear along the ray.
 struct march_sun {
-    vec3 uvw0, uvw1;       // texture coordinate at distance s: uvw0 + s uvw1
-    vec3 length0, length1; // path of the light in the box: least component of length0 + s length1
-    vec3 irradiance;       // W/m^2
+    beam_ray beam;
+    vec3 irradiance; // W/m^2
 #ifdef RAYMARCH_GREY
     scatter_angle angle;
 #else
@@ -150,15 +149,9 @@ struct march_result {
 
 march_sun march_sun_of(uint n, vec3 origin, vec3 direction)
 {
-    beam_block beam = beams[n];
-    light_block light = lights[beam.light];
+    light_block light = lights[beams[n].light];
     march_sun sun;
-    for (int i = 0; i < 3; i++) {
-        sun.uvw0[i] = dot(beam.rows[i].xyz, origin) + beam.rows[i].w;
-        sun.uvw1[i] = dot(beam.rows[i].xyz, direction);
-    }
-    sun.length0 = beam.clip_offset + origin * beam.clip_scale;
-    sun.length1 = direction * beam.clip_scale;
+    sun.beam = beam_ray_of(n, origin, direction);
     sun.irradiance = light.color;
 #ifdef RAYMARCH_GREY
     sun.angle = scatter_angle_of(0u, -direction, light.direction);
@@ -179,12 +172,10 @@ march_sun march_sun_of(uint n, vec3 origin, vec3 direction)
 vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 view, float s,
                     spectrum weight, spectrum weight_scaled, inout vec3 first)
 {
-    vec3 uvw = sun.uvw0 + s * sun.uvw1;
-    vec3 lengths = sun.length0 + s * sun.length1;
-    float path = max(min(min(lengths.x, lengths.y), lengths.z), 0.0);
+    beam_place place = beam_ray_at(sun.beam, s);
     spectrum tau_s, tau_a, phase, k_tms, k_lobe;
 #ifdef RAYMARCH_GREY
-    float column = path * textureLod(beam_column_tex, uvw, 0.0).r;
+    float column = beam_fetch(beam_column_tex, place).r;
     tau_s = unit.scattering * column;
     tau_a = unit.absorption * column;
     phase = sun.angle.first.x + sun.angle.first.y;
@@ -195,7 +186,7 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 view,
     }
 #else
     if (medium_mode == TYN_MEDIUM_DENSITY) {
-        float column = path * textureLod(beam_column_tex, uvw, 0.0).r;
+        float column = beam_fetch(beam_column_tex, place).r;
         tau_s = unit.scattering * column;
         tau_a = unit.absorption * column;
         for (int c = 0; c < 3; c++) {
@@ -209,14 +200,14 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 view,
             }
         }
     } else {
-        tau_s = path * textureLod(beam_column_tex, uvw, 0.0).rgb;
-        tau_a = path * textureLod(beam_tau_a_tex, uvw, 0.0).rgb;
+        tau_s = beam_fetch(beam_column_tex, place);
+        tau_a = beam_fetch(beam_tau_a_tex, place);
         vec3 turn = view - sun.direction;
         for (int c = 0; c < 3; c++) {
             phase[c] = hg_near(m.g[c], 0.5 * dot(turn, turn));
         }
         if (raymarch_has(RAYMARCH_KERNELS)) {
-            vec3 tau_p = path * textureLod(beam_tau_p_tex, uvw, 0.0).rgb;
+            vec3 tau_p = beam_fetch(beam_tau_p_tex, place);
             for (int c = 0; c < 3; c++) {
                 vec2 k = scatter_kernels_mixed(view, sun.direction, m.g[c], tau_s[c], tau_p[c]);
                 k_tms[c] = k.x;

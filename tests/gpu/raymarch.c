@@ -89,6 +89,7 @@ static void set_sun(march_scene *s, float x, float y, float z)
     normalize(d);
     for (int i = 0; i < 3; i++) {
         s->light.direction[i] = s->beam.direction[i] = d[i];
+        s->beam.even = 1; // `column` holds the mean since the entry
         s->beam.rows[i][i] = 1.0f / s->medium.extent[i];
         s->beam.clip_scale[i] = d[i] != 0 ? 1.0f / d[i] : 0;
         s->beam.clip_offset[i] = d[i] == 0 ? 1e30f : d[i] > 0 ? 0 : -s->medium.extent[i] / d[i];
