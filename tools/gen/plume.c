@@ -272,6 +272,38 @@ static float trace(const fluid *f, float x, float y, float z)
     return smoke > u[3] ? smoke : u[3];
 }
 
+// Mean concentration of a fine voxel.
+static float voxel(const fluid *f, int x, int y, int z)
+{
+    // Where the coarse grid has none nearby, there is none.
+    const float near = sample(f->state, (float)x / FINE - 0.25f, (float)y / FINE - 0.25f,
+                              (float)z / FINE - 0.25f)[3];
+    if (near < 0.004f) {
+        return 0.0f;
+    }
+    float sum = 0.0f;
+    for (int s = 0; s < SAMPLES; s++) {
+        const uint32_t h = gen_hash((uint32_t)x, (uint32_t)y, (uint32_t)z, (uint32_t)s);
+        const float px = (float)x + (float)(h & 1023) / 1024.0f;
+        const float py = (float)y + (float)(h >> 10 & 1023) / 1024.0f;
+        const float pz = (float)z + (float)(h >> 20 & 1023) / 1024.0f;
+        sum += trace(f, px / FINE - 0.5f, py / FINE - 0.5f, pz / FINE - 0.5f);
+    }
+    return clampf(sum / SAMPLES * clampf(near * 10.0f, 0.0f, 1.0f), 0.0f, 1.0f);
+}
+
+// 0 at the faces of the grid, 1 from a few voxels inwards.
+static float fade(const gen_grid *g, int x, int y, int z)
+{
+    const int at[3] = {x, y, z};
+    float factor = 1.0f;
+    for (int a = 0; a < 3; a++) {
+        const int left = at[a], right = g->n[a] - 1 - at[a];
+        factor *= clampf((float)(left < right ? left : right) / 5.0f, 0.0f, 1.0f);
+    }
+    return factor;
+}
+
 static void *zeroed(size_t count, size_t size)
 {
     void *p = calloc(count, size);
@@ -311,25 +343,7 @@ gen_grid gen_plume(void)
     for (int z = 0; z < g.n[2]; z++) {
         for (int y = 0; y < g.n[1]; y++) {
             for (int x = 0; x < g.n[0]; x++) {
-                // Where the coarse grid has none nearby, there is none.
-                const float near = sample(f.state, (float)x / FINE - 0.25f, (float)y / FINE - 0.25f,
-                                          (float)z / FINE - 0.25f)[3];
-                if (near < 0.004f) {
-                    continue;
-                }
-                float sum = 0.0f;
-                for (int s = 0; s < SAMPLES; s++) {
-                    const uint32_t h = gen_hash((uint32_t)x, (uint32_t)y, (uint32_t)z, (uint32_t)s);
-                    const float jx = (float)(h & 1023) / 1024.0f;
-                    const float jy = (float)(h >> 10 & 1023) / 1024.0f;
-                    const float jz = (float)(h >> 20 & 1023) / 1024.0f;
-                    const float smoke =
-                        trace(&f, ((float)x + jx) / FINE - 0.5f, ((float)y + jy) / FINE - 0.5f,
-                              ((float)z + jz) / FINE - 0.5f);
-                    sum += smoke;
-                }
-                g.data[gen_index(&g, x, y, z)] =
-                    clampf(sum / SAMPLES * clampf(near * 10.0f, 0.0f, 1.0f), 0.0f, 1.0f);
+                g.data[gen_index(&g, x, y, z)] = voxel(&f, x, y, z) * fade(&g, x, y, z);
             }
         }
     }

@@ -22,7 +22,7 @@
 // Where the faces of the unit cube are looked at: across the light, against it, and along it. The
 // half height 0.5 makes one face fill a square picture.
 #define CUBE_CAMERAS                                                                               \
-    {.name = "view", .from = {2.2f, 1.6f, 2.4f}, .at = {0.5f, 0.45f, 0.5f}, .yfov = 0.5f},         \
+    {.name = "view", .from = {-1.8f, 1.7f, 3.2f}, .at = {0.5f, 0.45f, 0.5f}, .yfov = 0.48f},       \
         {.name = "side",                                                                           \
          .from = {0.5f, 2, 0.5f},                                                                  \
          .at = {0.5f, 0, 0.5f},                                                                    \
@@ -164,7 +164,7 @@ const gen_scene gen_scenes[] = {
                    .density = CUMULUS}},
         .shapes = {{.name = "cloud", .translation = {0, 610, 0}, .scale = {600, 420, 600}}},
         .suns = {{.direction = {-0.7f, -0.55f, -0.3f}, .irradiance = 6}},
-        .cameras = {{.name = "view", .from = {150, 260, 1300}, .at = {0, 590, 0}, .yfov = 0.55f}},
+        .cameras = {{.name = "view", .from = {120, 300, 1300}, .at = {0, 565, 0}, .yfov = 0.4f}},
     },
     {
         .name = "two-media",
@@ -184,9 +184,10 @@ const gen_scene gen_scenes[] = {
                     .medium = 1,
                     .translation = {0.4f, -0.2f, 0.1f},
                     .rotation = {0.0859162286f, 0.128874347f, 0.257748693f, 0.953716934f},
-                    .scale = {1.6f, 1.1f, 1.4f}}},
-        .suns = {{.direction = {-0.6f, -0.7f, -0.4f}, .irradiance = 5}},
-        .cameras = {{.name = "view", .from = {1.2f, 1.2f, 4.4f}, .yfov = 0.55f}},
+                    .scale = {1.3f, 0.9f, 1.2f}}},
+        .suns = {{.direction = {-0.6f, -0.7f, -0.4f}, .irradiance = 12}},
+        .cameras =
+            {{.name = "view", .from = {0.8f, 1.2f, 4.6f}, .at = {0.2f, 0, 0}, .yfov = 0.46f}},
     },
 };
 
