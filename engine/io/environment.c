@@ -30,8 +30,8 @@ static tyn_result load_exr(uint32_t size[2], float **pixels, const char *path, c
                            tyn_image_file_channel(&image, "B")};
     const float *grey = tyn_image_file_channel(&image, "Y");
     size_t count = (size_t)image.width * image.height;
-    for (int c = 0; c < 3; c++) {
-        rgb[c] = grey && !rgb[0] ? grey : rgb[c];
+    if (grey && !rgb[0] && !rgb[1] && !rgb[2]) {
+        rgb[0] = rgb[1] = rgb[2] = grey;
     }
     *pixels = malloc(count * 3 * sizeof **pixels);
     if (!rgb[0] || !rgb[1] || !rgb[2]) {

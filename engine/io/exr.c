@@ -247,6 +247,9 @@ tyn_result tyn_exr_parse(tyn_image_file *image, const void *bytes, size_t size, 
     init.max_tile_width = init.max_tile_height = 4096;
     memset(image, 0, sizeof *image);
     exr_result_t e = exr_start_read(&p.context, file, &init);
+    if (e == EXR_ERR_SUCCESS && s.message[0]) {
+        e = EXR_ERR_INVALID_ATTR; // it complained, and went on with a guess
+    }
     tyn_result r =
         e == EXR_ERR_SUCCESS ? read_picture(&p, &s, file, log) : report(&s, e, file, log);
     if (p.decoding) {

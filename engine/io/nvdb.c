@@ -19,6 +19,7 @@
 enum { HEADER_BYTES = 16, META_BYTES = 176, CODEC_NONE = 0, CODEC_ZIP = 1, CODEC_BLOSC = 2 };
 
 typedef struct input {
+    const uint8_t *begin;
     const char *file;
     const tyn_log *log;
 } input;
@@ -64,7 +65,7 @@ static uint64_t read_segment(contents *list, const uint8_t *p, uint64_t size, co
 {
     if (size < HEADER_BYTES || memcmp(p, "NanoVDB", 7) != 0) {
         LOG(in, "%s: not a NanoVDB file (%s): must start with \"NanoVDB\"", in->file,
-            list->count ? "damaged behind a grid" : "wrong magic number");
+            p == in->begin ? "wrong magic number" : "damaged behind a segment");
         return 0;
     }
     if (!known(p, load(p + 8, 4))) {
@@ -488,7 +489,7 @@ static tyn_result extract(tyn_volume *volume, uint8_t *memory, const entry *e, c
 tyn_result tyn_nvdb_parse(tyn_volume *volume, const void *bytes, size_t size, const char *grid,
                           const char *file, uint64_t *clamped_negative, const tyn_log *log)
 {
-    const input in = {file, log};
+    const input in = {bytes, file, log};
     contents list = {0};
     uint8_t *memory = NULL;
     tyn_result r = TYN_OK;

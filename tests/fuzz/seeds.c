@@ -1,0 +1,122 @@
+// seeds.c -- writes small valid files for the fuzzers to start from: fuzz_seeds FOLDER.
+#include <tyndall/io.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include "nvdb_write.h"
+
+static const char *root;
+
+static void put(const char *kind, const char *name, const void *data, size_t size)
+{
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", root, kind);
+    mkdir(path, 0777);
+    snprintf(path, sizeof path, "%s/%s/%s", root, kind, name);
+    tyn_file_write(path, data, size, NULL);
+}
+
+static float ramp(int32_t i, int32_t j, int32_t k)
+{
+    return (float)((i * 7 + j * 5 + k * 3) & 15) / 15.0f;
+}
+
+static void put_nvdb(void)
+{
+    static const uint32_t types[] = {NVDB_FLOAT, NVDB_HALF, NVDB_FP4,
+                                     NVDB_FP8,   NVDB_FP16, NVDB_FPN};
+    for (uint32_t t = 0; t < 6; t++) {
+        for (uint32_t codec = NVDB_ZIP; codec <= NVDB_BLOSC; codec++) {
+            nvdb_spec spec = {"density", types[t], codec, 2,    {-3, 2, 1}, {9, 8, 6},
+                              ramp,      0.0f,     {0},   0.0f, 0.1};
+            size_t size;
+            char name[32];
+            snprintf(name, sizeof name, "%u-%u", types[t], codec);
+            uint8_t *file = nvdb_write(&spec, &size, NULL);
+            put("nvdb", name, file, size);
+            free(file);
+        }
+    }
+}
+
+static void put_exr(void)
+{
+    float data[3 * 20 * 18];
+    tyn_channel channels[3] = {{"R", data}, {"G", data + 360}, {"depth.Z", data + 720}};
+    tyn_image_file image = {20, 18, 3, channels};
+    for (int i = 0; i < 3 * 20 * 18; i++) {
+        data[i] = (float)(i % 37) * 0.1f;
+    }
+    for (int full = 0; full < 2; full++) {
+        char path[512];
+        put("exr", full ? "float" : "half", "", 0);
+        snprintf(path, sizeof path, "%s/exr/%s", root, full ? "float" : "half");
+        tyn_exr_write(&image, path, full, NULL);
+    }
+}
+
+static void put_hdr(void)
+{
+    static const char head[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 8\n";
+    uint8_t file[256];
+    size_t n = sizeof head - 1;
+    memcpy(file, head, n);
+    for (int y = 0; y < 2; y++) { // runs and literals
+        const uint8_t line[] = {2, 2, 0, 8, 136, 7, 136, 9, 136, 3, 8, 1, 2, 3, 4, 5, 6, 7, 8};
+        memcpy(file + n, line, sizeof line);
+        n += sizeof line;
+    }
+    put("hdr", "new", file, n);
+    n = sizeof head - 1;
+    for (int i = 0; i < 4; i++) { // a pixel, then repeated
+        const uint8_t pixels[] = {10, 20, 30, 130, 1, 1, 1, 3};
+        memcpy(file + n, pixels, sizeof pixels);
+        n += sizeof pixels;
+    }
+    put("hdr", "old", file, n);
+}
+
+static void put_gltf(void)
+{
+    static const char text[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,1],\"extensions\":{"
+        "\"TYN_environment_map\":{\"environment\":0}}}],\"nodes\":[{\"scale\":[2,1,1],\"children\":"
+        "[2],\"extensions\":{\"TYN_participating_media\":{\"medium\":0,\"repeat\":[true,false,true]"
+        "}}},{\"camera\":0},{\"mesh\":0,\"extensions\":{\"KHR_lights_punctual\":{\"light\":0}}}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":[{"
+        "\"bufferView\":0,\"componentType\":5126,\"count\":1,\"type\":\"VEC3\"}],\"bufferViews\":[{"
+        "\"buffer\":0,\"byteLength\":12}],\"buffers\":[{\"byteLength\":12,\"uri\":"
+        "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAA\"}],\"cameras\":[{\"type\":"
+        "\"perspective\",\"perspective\":{\"yfov\":0.7,\"znear\":0.1}}],\"extensions\":{"
+        "\"KHR_lights_punctual\":{\"lights\":[{\"type\":\"spot\",\"spot\":{\"outerConeAngle\":0.5}}"
+        "]},\"TYN_environment_map\":{\"environments\":[{\"radiance\":[0.1,0.2,0.3]}]},"
+        "\"TYN_participating_media\":{\"media\":[{\"scattering\":[1,2,3],\"anisotropy\":0.5}]}}}";
+    uint8_t glb[2048] = "glTF";
+    uint32_t json = (uint32_t)(sizeof text - 1 + 3) / 4 * 4, total = 20 + json, version = 2;
+    put("gltf", "text", text, sizeof text - 1);
+    memset(glb + 20, ' ', json);
+    memcpy(glb + 4, &version, 4);
+    memcpy(glb + 8, &total, 4);
+    memcpy(glb + 12, &json, 4);
+    memcpy(glb + 16, "JSON", 4);
+    memcpy(glb + 20, text, sizeof text - 1);
+    put("gltf", "binary", glb, total);
+}
+
+int main(int argc, char **argv)
+{
+    if (argc != 2) {
+        fprintf(stderr, "usage: fuzz_seeds FOLDER\n");
+        return 2;
+    }
+    root = argv[1];
+    mkdir(root, 0777);
+    put_nvdb();
+    put_exr();
+    put_hdr();
+    put_gltf();
+    const uint8_t raw[7 + 8] = {2, 2, 0, 2, 0, 2, 0, 1, 2, 3, 4, 5, 6, 7, 8};
+    put("raw", "u8", raw, sizeof raw);
+    return 0;
+}

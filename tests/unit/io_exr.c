@@ -1,0 +1,319 @@
+// io_exr.c -- OpenEXR images: what is written is read again; tiles; damaged files; PNG beside it.
+#include <math.h>
+#include <openexr.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "io/exr.h"
+#include "io_test.h"
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#include <stb/stb_image.h>
+
+enum { WIDTH = 21, HEIGHT = 37 };
+
+static float at(int channel, int i)
+{
+    return channel == 2 ? INFINITY : (float)(i % 53) * (channel ? -0.37f : 11.1f);
+}
+
+// Three channels, names not in alphabetical order.
+static void fill(tyn_image_file *image)
+{
+    static const char *const names[] = {"transmittance.R", "B", "depth.Z"};
+    *image = (tyn_image_file){WIDTH, HEIGHT, 3, calloc(3, sizeof(tyn_channel))};
+    for (int c = 0; c < 3; c++) {
+        strcpy(image->channels[c].name, names[c]);
+        image->channels[c].data = malloc(WIDTH * HEIGHT * sizeof(float));
+        for (int i = 0; i < WIDTH * HEIGHT; i++) {
+            image->channels[c].data[i] = at(c, i);
+        }
+    }
+}
+
+static void round_trip(void **state)
+{
+    (void)state;
+    for (int full = 0; full < 2; full++) {
+        tyn_image_file image, read;
+        io_log log;
+        io_log_init(&log);
+        fill(&image);
+        const char *path = io_path("a.exr");
+        assert_int_equal(tyn_exr_write(&image, path, full, &log.log), TYN_OK);
+        assert_int_equal(tyn_exr_read(&read, path, &log.log), TYN_OK);
+        assert_int_equal(log.errors + log.warnings, 0);
+        assert_int_equal(read.width, WIDTH);
+        assert_int_equal(read.height, HEIGHT);
+        assert_int_equal(read.num_channels, 3);
+        for (int c = 0; c < 3; c++) {
+            const float *data = tyn_image_file_channel(&read, image.channels[c].name);
+            assert_non_null(data);
+            for (int i = 0; i < WIDTH * HEIGHT; i++) {
+                assert_true(data[i] == at(c, i) ||
+                            (!full && fabsf(data[i] - at(c, i)) <= fabsf(at(c, i)) * 0x1p-11f));
+            }
+        }
+        assert_null(tyn_image_file_channel(&read, "R"));
+        tyn_image_file_finish(&read);
+        tyn_image_file_finish(&image);
+    }
+}
+
+static void saturation(void **state)
+{
+    float values[4] = {1e6f, -1e9f, 65504, INFINITY};
+    tyn_channel channel = {"Y", values};
+    tyn_image_file image = {4, 1, 1, &channel}, read;
+    io_log log;
+    (void)state;
+    io_log_init(&log);
+    const char *path = io_path("big.exr");
+    assert_int_equal(tyn_exr_write(&image, path, false, &log.log), TYN_OK);
+    assert_int_equal(log.warnings, 1);
+    assert_non_null(strstr(log.last, "2 values"));
+    assert_int_equal(tyn_exr_read(&read, path, &log.log), TYN_OK);
+    const float *y = tyn_image_file_channel(&read, "Y");
+    assert_true(y[0] == 65504 && y[1] == -65504 && y[2] == 65504 && isinf(y[3]));
+    tyn_image_file_finish(&read);
+    // Infinity is refused as radiance.
+    tyn_environment env = {0};
+    assert_int_equal(tyn_environment_load(&env, path, &log.log), TYN_ERR_PARAMS);
+    assert_non_null(strstr(log.last, "pixel 3, 0"));
+    // A folder that is not there; nothing is left behind.
+    io_log_init(&log);
+    assert_int_equal(tyn_exr_write(&image, io_path("none/a.exr"), false, &log.log), TYN_ERR_IO);
+    assert_int_equal(log.errors, 1);
+    image.width = 0;
+    assert_int_equal(tyn_exr_write(&image, path, false, &log.log), TYN_ERR_PARAMS);
+}
+
+// A map with a luminance channel alone, and one that lacks blue.
+static void environments(void **state)
+{
+    float values[2] = {0.5f, -0.25f};
+    tyn_channel channels[2] = {{"Y", values}, {"G", values}};
+    tyn_image_file image = {2, 1, 1, channels};
+    tyn_environment env = {0};
+    io_log log;
+    (void)state;
+    io_log_init(&log);
+    const char *path = io_path("env.exr");
+    assert_int_equal(tyn_exr_write(&image, path, true, &log.log), TYN_OK);
+    assert_int_equal(tyn_environment_load(&env, path, &log.log), TYN_OK);
+    assert_true(env.present && env.size[0] == 2 && env.size[1] == 1);
+    assert_true(env.data[0] == 0.5f && env.data[2] == 0.5f && env.data[3] == 0); // clamped
+    image.channels = channels + 1;
+    assert_int_equal(tyn_exr_write(&image, path, true, &log.log), TYN_OK);
+    assert_int_equal(tyn_environment_load(&env, path, &log.log), TYN_ERR_PARAMS);
+    assert_int_equal(log.errors, 1);
+    assert_true(env.data[0] == 0.5f); // what was there stays
+    free(env.data);
+}
+
+// Writes an image of 12 x 12 with the library itself: lines or 8 x 8 tiles that count from 0.
+static const char *write_kind(exr_storage_t storage, int parts, exr_pixel_type_t type)
+{
+    const char *path = io_path("kind.exr");
+    exr_context_t context;
+    float count[64];
+    const int32_t no_samples[12] = {0};
+    for (int i = 0; i < 64; i++) {
+        count[i] = (float)i;
+    }
+    assert_int_equal(exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, NULL), 0);
+    for (int p = 0; p < parts; p++) {
+        int index;
+        exr_add_part(context, p ? "two" : "one", storage, &index);
+        exr_initialize_required_attr_simple(context, p, 12, 12, EXR_COMPRESSION_NONE);
+        if (storage == EXR_STORAGE_TILED) {
+            exr_set_tile_descriptor(context, p, 8, 8, EXR_TILE_ONE_LEVEL, EXR_TILE_ROUND_DOWN);
+        }
+        exr_add_channel(context, p, "Y", type, EXR_PERCEPTUALLY_LINEAR, 1, 1);
+        exr_set_version(context, p, 1);
+    }
+    assert_int_equal(exr_write_header(context), 0);
+    for (int t = 0; storage == EXR_STORAGE_TILED && t < 4; t++) {
+        size_t side_x = t & 1 ? 4 : 8, side_y = t & 2 ? 4 : 8;
+        exr_write_tile_chunk(context, 0, t & 1, t >> 1, 0, 0, count, side_x * side_y * 4);
+    }
+    for (int y = 0; y < 12 * parts; y++) {
+        if (storage == EXR_STORAGE_SCANLINE) {
+            exr_write_scanline_chunk(context, y / 12, y % 12, count, 48);
+        } else if (storage == EXR_STORAGE_DEEP_SCANLINE) {
+            exr_write_deep_scanline_chunk(context, 0, y, count, 0, 0, no_samples, 48);
+        }
+    }
+    assert_int_equal(exr_finish(&context), 0);
+    return path;
+}
+
+static void refuse(const char *path, const char *says)
+{
+    tyn_image_file image;
+    io_log log;
+    io_log_init(&log);
+    assert_int_equal(tyn_exr_read(&image, path, &log.log), TYN_ERR_PARAMS);
+    assert_int_equal(log.errors, 1);
+    assert_int_equal(log.newlines, 0);
+    if (!strstr(log.last, says)) {
+        print_error("%s\n", log.last);
+    }
+    assert_non_null(strstr(log.last, says));
+}
+
+static void kinds(void **state)
+{
+    tyn_image_file image;
+    io_log log;
+    (void)state;
+    io_log_init(&log);
+    const char *path = write_kind(EXR_STORAGE_TILED, 1, EXR_PIXEL_FLOAT);
+    assert_int_equal(tyn_exr_read(&image, path, &log.log), TYN_OK);
+    assert_int_equal(image.width, 12);
+    const float *y = image.channels[0].data;
+    assert_true(y[0] == 0 && y[12] == 8 && y[8] == 0 && y[12 + 8] == 4 && y[8 * 12 + 8] == 0 &&
+                y[11 * 12 + 11] == 15);
+    tyn_image_file_finish(&image);
+    refuse(write_kind(EXR_STORAGE_SCANLINE, 2, EXR_PIXEL_FLOAT), "2 parts");
+    refuse(write_kind(EXR_STORAGE_SCANLINE, 1, EXR_PIXEL_UINT), "no half or float");
+    refuse(write_kind(EXR_STORAGE_DEEP_SCANLINE, 1, EXR_PIXEL_FLOAT), "deep");
+    void *file;
+    size_t size;
+    path = write_kind(EXR_STORAGE_SCANLINE, 1, EXR_PIXEL_FLOAT);
+    assert_int_equal(tyn_file_read(path, 1 << 20, &file, &size, &log.log), TYN_OK);
+    const char entry[] = {'Y', 0, 2, 0, 0, 0, 0, 0,
+                          0,   0, 1, 0, 0, 0, 1}; // name, type, ..., sampling
+    char *found = memmem(file, size, entry, sizeof entry);
+    if (!found) { // perceptually linear is a byte before the reserved ones
+        const char linear[] = {'Y', 0, 2, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+        found = memmem(file, size, linear, sizeof linear);
+    }
+    assert_non_null(found);
+    found[10] = found[14] = 2;
+    refuse(io_put("sub.exr", file, size), "subsampled");
+    free(file);
+}
+
+static void broken(void **state)
+{
+    tyn_image_file image, read;
+    io_log log;
+    void *whole;
+    size_t size;
+    (void)state;
+    io_log_init(&log);
+    fill(&image);
+    const char *path = io_path("whole.exr");
+    assert_int_equal(tyn_exr_write(&image, path, false, &log.log), TYN_OK);
+    assert_int_equal(tyn_file_read(path, 1 << 20, &whole, &size, &log.log), TYN_OK);
+    tyn_image_file_finish(&image);
+    for (size_t cut = 0; cut < size - 1; cut += 7) { // truncated anywhere
+        uint8_t *file = malloc(cut + 1);
+        memcpy(file, whole, cut);
+        io_log_init(&log);
+        assert_int_equal(tyn_exr_parse(&read, file, cut, "cut.exr", &log.log), TYN_ERR_PARAMS);
+        assert_int_equal(log.errors, 1);
+        assert_int_equal(log.newlines, 0);
+        assert_non_null(strstr(log.last, "cut.exr"));
+        free(file);
+    }
+    // Attributes: the value of `name` (behind name, type and size) is overwritten.
+    const struct {
+        const char *name, *type;
+        size_t at;
+        int32_t value;
+    } attributes[] = {{"dataWindow", "box2i", 8, 0x7ffffff0}, {"dataWindow", "box2i", 8, -100},
+                      {"dataWindow", "box2i", 12, 60000},     {"dataWindow", "box2i", 0, 22},
+                      {"compression", "compression", 0, 99},  {"channels", "chlist", 2, 77},
+                      {"lineOrder", "lineOrder", 0, 88}};
+    for (size_t i = 0; i < sizeof attributes / sizeof attributes[0]; i++) {
+        uint8_t *file = malloc(size);
+        memcpy(file, whole, size);
+        char key[64];
+        int length = snprintf(key, sizeof key, "%s%c%s", attributes[i].name, 0, attributes[i].type);
+        uint8_t *found = memmem(file, size, key, (size_t)length + 1);
+        assert_non_null(found);
+        uint8_t *value = found + length + 1 + 4 + attributes[i].at;
+        memcpy(value, &attributes[i].value, strcmp(attributes[i].type, "box2i") ? 1 : 4);
+        io_log_init(&log);
+        tyn_result r = tyn_exr_parse(&read, file, size, "bad.exr", &log.log);
+        if (r != TYN_ERR_PARAMS) {
+            print_error("attribute %zu: %d\n", i, r);
+        }
+        assert_int_equal(r, TYN_ERR_PARAMS);
+        assert_int_equal(log.errors, 1);
+        free(file);
+    }
+    const struct {
+        const char *name, *bytes;
+    } others[] = {
+        {"empty.exr", ""}, {"text.exr", "not an image at all"}, {"magic.exr", "v/1\1\2\0\0\0"}};
+    for (int i = 0; i < 3; i++) {
+        io_log_init(&log);
+        path = io_put_text(others[i].name, others[i].bytes);
+        assert_int_equal(tyn_exr_read(&read, path, &log.log), TYN_ERR_PARAMS);
+        assert_int_equal(log.errors, 1);
+    }
+    io_log_init(&log);
+    assert_int_equal(tyn_exr_read(&read, io_path("none.exr"), &log.log), TYN_ERR_IO);
+    assert_int_equal(log.errors, 1);
+    free(whole);
+}
+
+static void png(void **state)
+{
+    (void)state;
+    for (uint32_t channels = 3; channels <= 4; channels++) {
+        uint8_t pixels[31 * 17 * 4];
+        io_log log;
+        io_log_init(&log);
+        for (uint32_t i = 0; i < sizeof pixels; i++) {
+            pixels[i] = (uint8_t)(i < 600 ? i / 3 : i * i * 2654435761u >> 24);
+        }
+        const char *path = io_path("a.png");
+        assert_int_equal(tyn_png_write(path, 31, 17, channels, pixels, &log.log), TYN_OK);
+        int w, h, n;
+        uint8_t *read = stbi_load(path, &w, &h, &n, 0);
+        assert_non_null(read);
+        assert_true(w == 31 && h == 17 && n == (int)channels);
+        assert_memory_equal(read, pixels, 31 * 17 * channels);
+        stbi_image_free(read);
+        assert_int_equal(tyn_png_write(path, 0, 17, 3, pixels, &log.log), TYN_ERR_PARAMS);
+        assert_int_equal(tyn_png_write(path, 3, 17, 2, pixels, &log.log), TYN_ERR_PARAMS);
+        assert_int_equal(tyn_png_write(io_path("no/a.png"), 3, 3, 3, pixels, &log.log), TYN_ERR_IO);
+        assert_int_equal(log.errors, 3);
+    }
+}
+
+static void real_file(void **state)
+{
+    tyn_environment env = {0};
+    io_log log;
+    (void)state;
+    io_log_init(&log);
+    const char *path = io_shared("data/museum.exr");
+    if (!path) {
+        print_message("no shared data\n");
+        skip();
+    }
+    assert_int_equal(tyn_environment_load(&env, path, &log.log), TYN_OK);
+    double sum = 0;
+    for (size_t i = 0; i < 3 * (size_t)env.size[0] * env.size[1]; i++) {
+        sum += env.data[i];
+    }
+    print_message("museum.exr: %u x %u, mean %g\n", env.size[0], env.size[1],
+                  sum / (3.0 * env.size[0] * env.size[1]));
+    assert_int_equal(env.size[0], 2 * env.size[1]);
+    assert_true(sum > 0 && isfinite(sum));
+    free(env.data);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(round_trip),   cmocka_unit_test(saturation),
+                                       cmocka_unit_test(environments), cmocka_unit_test(kinds),
+                                       cmocka_unit_test(broken),       cmocka_unit_test(png),
+                                       cmocka_unit_test(real_file)};
+    return cmocka_run_group_tests(tests, NULL, io_test_clean);
+}
