@@ -20,6 +20,7 @@ typedef struct bench_node {
     double gpu_ms;            // median over the cold frames
     double steps;             // work "steps" of the last cold frame, 0 = does not count them
     uint64_t bytes;
+    bool setup; // depends on the media alone: not part of a frame
 } bench_node;
 
 // What a baseline needs for the error of a run.

@@ -57,7 +57,7 @@ static void take_nodes(tyn_offline *offline, bench_result *result)
     for (uint32_t i = 0; i < report.num_nodes && i < BENCH_MAX_NODES; i++) {
         const tyn_node_report *n = &report.nodes[i];
         bench_node *node = &result->nodes[result->num_nodes++];
-        *node = (bench_node){.bytes = n->bytes, .gpu_ms = n->gpu_ms};
+        *node = (bench_node){.bytes = n->bytes, .gpu_ms = n->gpu_ms, .setup = n->media_only};
         snprintf(node->name, sizeof node->name, "%s", n->name);
         for (uint32_t k = 0; k < n->num_work; k++) {
             node->steps = strcmp(n->work[k].name, "steps") == 0 ? n->work[k].amount : node->steps;

@@ -52,6 +52,21 @@ static void print_equal(const bench_case *c, const bench_result *result)
     }
 }
 
+static void print_nodes(const bench_result *result, bool setup, const char *title)
+{
+    for (uint32_t i = 0; i < result->num_nodes; i++) {
+        const bench_node *n = &result->nodes[i];
+        if (n->setup != setup || !(n->gpu_ms > 0)) {
+            continue;
+        }
+        printf("%s %s %.*f", title, n->name, n->gpu_ms < 10 ? 2 : 1, n->gpu_ms);
+        title = "";
+        if (n->steps > 0) {
+            printf(" (%.1f ns a step)", 1e6 * n->gpu_ms / n->steps);
+        }
+    }
+}
+
 void bench_print_result(const bench_case *c, const bench_run *run, const bench_result *result)
 {
     if (result->failed) {
@@ -65,19 +80,11 @@ void bench_print_result(const bench_case *c, const bench_run *run, const bench_r
     print_ms(result->unchanged_ms);
     print_ms(result->setup_ms);
     printf(" %8.1f\n", (double)(result->persistent + result->transient) / (1 << 20));
-    printf("    nodes, ms:");
-    for (uint32_t i = 0; i < result->num_nodes; i++) {
-        const bench_node *n = &result->nodes[i];
-        if (n->gpu_ms > 0) {
-            printf(" %s %.*f", n->name, n->gpu_ms < 10 ? 2 : 1, n->gpu_ms);
-        }
-        if (n->gpu_ms > 0 && n->steps > 0) {
-            printf(" (%.1f ns a step)", 1e6 * n->gpu_ms / n->steps);
-        }
-    }
+    print_nodes(result, false, "    nodes, ms:");
+    print_nodes(result, true, "; set-up:");
     printf("\n    camera moved, unchanged:");
     for (uint32_t i = 0; i < result->num_nodes; i++) {
-        if (strcmp(result->nodes[i].state, "unchanged") == 0) {
+        if (!result->nodes[i].setup && strcmp(result->nodes[i].state, "unchanged") == 0) {
             printf(" %s", result->nodes[i].name);
         }
     }
@@ -126,6 +133,7 @@ static cJSON *json_nodes(const bench_result *result)
         cJSON *node = cJSON_CreateObject();
         cJSON_AddStringToObject(node, "name", n->name);
         json_add_float(node, "gpu_ms", n->gpu_ms);
+        cJSON_AddBoolToObject(node, "setup", n->setup);
         cJSON_AddNumberToObject(node, "bytes", (double)n->bytes);
         if (n->steps > 0) {
             cJSON_AddNumberToObject(node, "steps", n->steps);

@@ -70,6 +70,7 @@ cJSON *stats_report_nodes(const tyn_report *report)
         cJSON *node = cJSON_CreateObject(), *work = cJSON_CreateObject();
         cJSON_AddStringToObject(node, "name", n->name);
         cJSON_AddStringToObject(node, "state", n->state);
+        cJSON_AddBoolToObject(node, "setup", n->media_only);
         json_add_float(node, "gpu_ms", n->gpu_ms);
         json_add_float(node, "cpu_ms", n->cpu_ms);
         cJSON_AddNumberToObject(node, "dispatches", n->dispatches);

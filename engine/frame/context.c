@@ -449,8 +449,10 @@ void tyn_context_report(tyn_context *ctx, tyn_report *report)
                 add_work(&nodes[i], s->work[w].name, s->work[w].amount);
             }
         }
-        const struct counters_block *c = tyn_graph_map(ctx->graph, s->name, NULL, NULL);
-        if (c && s->state != TYN_NODE_CULLED) {
+        // By the node's name there may also be an output of the frame ("balance"), of another size.
+        tyn_extent size = {0};
+        const struct counters_block *c = tyn_graph_map(ctx->graph, s->name, &size, NULL);
+        if (c && size.x == sizeof *c && s->state != TYN_NODE_CULLED) {
             add_work(&nodes[i], "steps", c->steps);
             add_work(&nodes[i], "pixels", c->pixels);
             add_work(&nodes[i], "non_finite", c->non_finite);
