@@ -366,11 +366,11 @@ static void coefficients(void **state)
     textures out = run(t, &w);
     check_bricks(&w, &out, &seed);
     check_distance(&w, &out);
-    int compared = 0;
+    int compared = 0, different = 0;
     for (int i = 0; i < 64 * 32 * 32; i++) {
         double p[3] = {(i % 64 + 0.5) / 32, (i / 64 % 32 + 0.5) / 32, (i / 2048 + 0.5) / 32};
-        // Away from all edges the mean over a voxel is the mean of eight points in it. (The cap of the
-        // sphere may still reach into a voxel without touching a corner.)
+        // Away from all edges the mean over a voxel is the mean of eight points in it. (A cap of the
+        // sphere or a corner of the box may still be in a voxel none of whose corners is.)
         double value[2] = {0, 0};
         bool edge = false;
         for (int n = 0; n < 2; n++) {
@@ -404,14 +404,14 @@ static void coefficients(void **state)
                 weighted += value[n] * w.shapes[n].sigma_s[c] * w.shapes[n].g[c];
                 emission += value[n] * w.shapes[n].emission[c];
             }
-            assert_true(fabs(s[c] - sigma_s) < 1e-4 * sigma_s + 1e-2);
-            assert_true(fabs(a[c] - sigma_a) < 1e-4 * sigma_a + 1e-2);
-            assert_true(fabs(out.emission[4 * i + c] - emission) < 1e-4 * emission + 1e-2);
+            different += !(fabs(s[c] - sigma_s) < 1e-4 * sigma_s + 1e-4 &&
+                           fabs(a[c] - sigma_a) < 1e-4 * sigma_a + 1e-4 &&
+                           fabs(out.emission[4 * i + c] - emission) < 1e-4 * emission + 1e-4);
             assert_true(sigma_s < 1e-3 || fabs(g[c] - weighted / sigma_s) < 1e-2);
         }
     }
-    printf("%d voxels compared\n", compared);
-    assert_true(compared > 10000);
+    printf("%d voxels compared, %d values differ\n", compared, different);
+    assert_true(compared > 10000 && different < 30);
     free(w.atlas);
 }
 
