@@ -227,6 +227,7 @@ static tyn_result create_resources(tyn_graph *g)
         p->bytes = resource_bytes(r);
         if (r->kind == RESOURCE_IMPORT) {
             p->image = r->image.image;
+            p->borrowed = true;
             continue;
         }
         *(r->kind == RESOURCE_SCRATCH ? &g->transient_bytes : &g->persistent_bytes) += p->bytes;
@@ -355,14 +356,14 @@ static tyn_result create_pipelines(tyn_graph *g)
 
 // ---- release ----------------------------------------------------------------------------------
 
-static void destroy_phys(tyn_graph *g, phys *p, bool imported)
+static void destroy_phys(tyn_graph *g, phys *p)
 {
     const tyn_device *dev = g->dev;
     for (uint32_t m = 0; m < MAX_MIPS; m++) {
         dev->vk.DestroyImageView(dev->device, p->mip_views[m], NULL);
     }
     dev->vk.DestroyImageView(dev->device, p->view, NULL);
-    if (!imported) {
+    if (!p->borrowed) {
         dev->vk.DestroyImage(dev->device, p->image, NULL);
     }
     dev->vk.DestroyBuffer(dev->device, p->buffer, NULL);
@@ -384,11 +385,10 @@ void graph_release(tyn_graph *g)
 {
     graph_free_staging(g);
     for (uint32_t i = 0; i < g->num_phys; i++) {
-        // `view` is only set on images of our own.
-        destroy_phys(g, &g->phys[i], g->phys[i].image && !g->phys[i].view);
+        destroy_phys(g, &g->phys[i]);
     }
     for (int d = 0; d < 3; d++) {
-        destroy_phys(g, &g->dummy[d], false);
+        destroy_phys(g, &g->dummy[d]);
     }
     for (uint32_t i = 0; i < g->num_slots; i++) {
         g->dev->vk.DestroyDescriptorPool(g->dev->device, g->slots[i].pool, NULL);

@@ -58,6 +58,7 @@ typedef struct output {
 // The Vulkan side of a resource.
 typedef struct phys {
     VkImage image;
+    bool borrowed;    // the image is the host's
     VkImageView view; // all mips
     VkImageView mip_views[MAX_MIPS];
     VkBuffer buffer;

@@ -204,7 +204,9 @@ static void check_kernel(const tyn_pass_desc *pass, const tyn_kernel *kernel)
         fault(pass, kernel->name, "%u bytes of push constants in the shader, %u in the table",
               shader.push_constant_bytes, kernel->args_size);
     }
-    if (shader.spec_wide || shader.spec_ids != (1u << kernel->num_spec) - 1) {
+    // Kernels of one pass may share a list of constants, so one may be unused; but not the last.
+    if (shader.spec_wide || shader.spec_ids >> kernel->num_spec ||
+        (kernel->num_spec && !(shader.spec_ids >> (kernel->num_spec - 1)))) {
         fault(pass, kernel->name, "specialisation constants (mask %#x) are not 0..%d",
               shader.spec_ids, (int)kernel->num_spec - 1);
     }

@@ -1,0 +1,599 @@
+// frames.c -- whole frames of the render graph on a device that only writes down what it is told:
+// barriers of the first and of later frames, culling, change tracking, histories, host images, faults.
+#include "fake_vulkan.h"
+#include "graph/graph.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+// ---- passes -----------------------------------------------------------------------------------
+
+static const uint32_t no_spirv[5];
+#define KERNEL(text, args, table)                                                                  \
+    {                                                                                              \
+        .name = text, .spirv = no_spirv, .spirv_size = sizeof no_spirv, .args_size = args,         \
+        .local_size = {8, 8, 1}, .bindings = table, .num_bindings = sizeof table / sizeof *table,  \
+        .num_spec = 1                                                                              \
+    }
+
+typedef struct node_params {
+    int32_t times; // dispatches
+    int32_t value;
+    uint32_t spec;
+} node_params;
+
+// blur: reads an image and perhaps a buffer, writes an image through a ping-pong.
+enum { BLUR_IN, BLUR_BIAS, BLUR_OUT, BLUR_TMP, BLUR_NUM };
+static const tyn_port blur_ports[BLUR_NUM] = {
+    {"in", TYN_IN, TYN_IMAGE_2D, 0, false, "what is blurred"},
+    {"bias", TYN_IN, TYN_BUFFER, 0, true, "added each time"},
+    {"out", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false, "blurred"},
+    {"tmp", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false, "every other step"},
+};
+static const tyn_binding blur_bindings[] = {
+    {BLUR_IN, TYN_USE_SAMPLED}, {BLUR_OUT, TYN_USE_STORAGE_WRITE}, {BLUR_BIAS, TYN_USE_UNIFORM}};
+static const tyn_kernel blur_kernels[] = {KERNEL("blur", 4, blur_bindings)};
+
+static tyn_result blur_declare(tyn_builder *b, const void *params)
+{
+    (void)params;
+    tyn_build_image(b, BLUR_OUT, tyn_build_extent(b, BLUR_IN), 1);
+    tyn_build_image(b, BLUR_TMP, tyn_build_extent(b, BLUR_IN), 1);
+    return TYN_OK;
+}
+
+static void blur_record(tyn_recorder *r, const void *params)
+{
+    const node_params *p = params;
+    for (int i = 0; i < p->times; i++) {
+        uint8_t to = (p->times - 1 - i) % 2 ? BLUR_TMP : BLUR_OUT;
+        uint8_t from = i == 0 ? BLUR_IN : to == BLUR_OUT ? BLUR_TMP : BLUR_OUT;
+        tyn_rec_dispatch(r, &(tyn_dispatch){.cells = tyn_rec_extent(r, BLUR_OUT),
+                                            .args = &p->value,
+                                            .ports = (const uint8_t[]){from, to, BLUR_BIAS},
+                                            .spec = &p->spec});
+    }
+}
+
+static const tyn_pass_desc blur = {.name = "blur",
+                                   .summary = "a moving average",
+                                   .ports = blur_ports,
+                                   .num_ports = BLUR_NUM,
+                                   .kernels = blur_kernels,
+                                   .num_kernels = 1,
+                                   .params_size = sizeof(node_params),
+                                   .declare = blur_declare,
+                                   .record = blur_record,
+                                   .debug_port = BLUR_OUT};
+
+// add: changes a buffer in place.
+enum { ADD_SUM, ADD_X, ADD_NUM };
+static const tyn_port add_ports[ADD_NUM] = {
+    {"sum", TYN_INOUT, TYN_BUFFER, 0, false, "grows"},
+    {"x", TYN_IN, TYN_IMAGE_2D, 0, false, "what is added"},
+};
+static const tyn_binding add_bindings[] = {{ADD_SUM, TYN_USE_STORAGE_RW}, {ADD_X, TYN_USE_SAMPLED}};
+static const tyn_kernel add_kernels[] = {KERNEL("add", 0, add_bindings)};
+
+static tyn_result nothing_to_declare(tyn_builder *b, const void *params)
+{
+    (void)b, (void)params;
+    return TYN_OK;
+}
+
+static void add_record(tyn_recorder *r, const void *params)
+{
+    const node_params *p = params;
+    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = {64, 1, 1}, .spec = &p->spec});
+}
+
+static const tyn_pass_desc add = {.name = "add",
+                                  .summary = "adds up",
+                                  .ports = add_ports,
+                                  .num_ports = ADD_NUM,
+                                  .kernels = add_kernels,
+                                  .num_kernels = 1,
+                                  .params_size = sizeof(node_params),
+                                  .declare = nothing_to_declare,
+                                  .record = add_record};
+
+// count: counts into a buffer and dispatches as many workgroups.
+enum { COUNT_IN, COUNT_GROUPS, COUNT_OUT, COUNT_NUM };
+static const tyn_port count_ports[COUNT_NUM] = {
+    {"in", TYN_IN, TYN_IMAGE_2D, 0, false, "what is counted"},
+    {"groups", TYN_OUT, TYN_BUFFER, 0, false, "workgroups"},
+    {"out", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false, "result"},
+};
+static const tyn_binding count_bindings[] = {{COUNT_IN, TYN_USE_SAMPLED},
+                                             {COUNT_GROUPS, TYN_USE_STORAGE_RW}};
+static const tyn_binding draw_bindings[] = {{COUNT_IN, TYN_USE_SAMPLED},
+                                            {COUNT_OUT, TYN_USE_STORAGE_WRITE}};
+static const tyn_kernel count_kernels[] = {KERNEL("count", 0, count_bindings),
+                                           KERNEL("draw", 0, draw_bindings)};
+
+static tyn_result count_declare(tyn_builder *b, const void *params)
+{
+    (void)params;
+    tyn_build_buffer(b, COUNT_GROUPS, 12);
+    tyn_build_image(b, COUNT_OUT, tyn_build_extent(b, COUNT_IN), 1);
+    return TYN_OK;
+}
+
+static void count_record(tyn_recorder *r, const void *params)
+{
+    const node_params *p = params;
+    tyn_rec_fill(r, COUNT_GROUPS, 1);
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){.kernel = 0, .cells = tyn_rec_extent(r, COUNT_IN), .spec = &p->spec});
+    tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = 1, .spec = &p->spec}, COUNT_GROUPS, 0);
+}
+
+static const tyn_pass_desc count = {.name = "count",
+                                    .summary = "draws as much as it counts",
+                                    .ports = count_ports,
+                                    .num_ports = COUNT_NUM,
+                                    .kernels = count_kernels,
+                                    .num_kernels = 2,
+                                    .params_size = sizeof(node_params),
+                                    .declare = count_declare,
+                                    .record = count_record,
+                                    .debug_port = COUNT_OUT};
+
+// ---- harness ----------------------------------------------------------------------------------
+
+enum { W = 40, H = 20 };
+static const VkCommandBuffer no_cmd = VK_NULL_HANDLE;
+
+typedef struct fixture {
+    fake_vulkan *fake;
+    tyn_graph *g;
+} fixture;
+
+static int setup(void **state)
+{
+    fixture *f = calloc(1, sizeof *f);
+    f->fake = fake_create();
+    *state = f;
+    return tyn_graph_create(&f->fake->dev, 2, &f->g);
+}
+
+static int teardown(void **state)
+{
+    fixture *f = *state;
+    tyn_graph_destroy(&f->g);
+    fake_destroy(&f->fake); // fails if anything is left
+    free(f);
+    return 0;
+}
+
+static void fill_zero(void *user, void *staging)
+{
+    (void)user;
+    memset(staging, 0, W * H * 4);
+}
+
+static tyn_ref upload(tyn_graph *g, const char *name, uint64_t hash)
+{
+    return tyn_graph_upload_image(g, name, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
+                                  (tyn_extent){W, H, 1}, fill_zero, NULL, hash);
+}
+
+static tyn_ref add_blur(tyn_graph *g, tyn_ref in, tyn_ref bias, node_params p)
+{
+    tyn_ref refs[BLUR_NUM] = {in, bias};
+    tyn_graph_add(g, &blur, &p, refs);
+    return refs[BLUR_OUT];
+}
+
+static tyn_result frame(fixture *f)
+{
+    fake_clear(f->fake);
+    if (!tyn_graph_matches(f->g)) {
+        tyn_result result = tyn_graph_compile(f->g);
+        if (result != TYN_OK) {
+            return result;
+        }
+    }
+    f->fake->recording = true;
+    tyn_result result = tyn_graph_record(f->g, no_cmd);
+    f->fake->recording = false;
+    assert_int_equal(f->fake->created_while_recording, 0);
+    return result;
+}
+
+static void assert_states(fixture *f, const char *expected) // one letter a node: r, u, c, e
+{
+    const tyn_node_stats *stats;
+    uint32_t num = tyn_graph_stats(f->g, &stats);
+    char found[33] = "";
+    for (uint32_t i = 0; i < num; i++) {
+        found[i] = "ruce"[stats[i].state];
+    }
+    assert_string_equal(found, expected);
+}
+
+static void compare_golden(const char *name, const char *text)
+{
+    char path[512], *golden;
+    snprintf(path, sizeof path, "%s/%s", TYN_TEST_GOLDEN, name);
+    if (getenv("TYN_TEST_WRITE_GOLDEN")) {
+        FILE *file = fopen(path, "w");
+        assert_non_null(file);
+        fputs(text, file);
+        fclose(file);
+    }
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    golden = calloc(1, 1 << 16);
+    size_t n = fread(golden, 1, (1 << 16) - 1, file);
+    golden[n] = 0;
+    fclose(file);
+    assert_string_equal(text, golden);
+    free(golden);
+}
+
+// upload -> blur (4) -> blur (3, with bias) -> result, and a blur that nobody needs.
+typedef struct chain {
+    uint64_t input;
+    float bias;
+    node_params first, second;
+} chain;
+static const chain default_chain = {1, 0.25f, {4, 1, 0}, {3, 1, 0}};
+
+static void declare_chain(tyn_graph *g, const chain *c)
+{
+    tyn_graph_begin(g);
+    tyn_ref in = upload(g, "input", c->input);
+    tyn_ref bias = tyn_graph_upload_buffer(g, "bias", &c->bias, sizeof c->bias, 0);
+    tyn_ref a = add_blur(g, in, (tyn_ref){0}, c->first);
+    tyn_ref b = add_blur(g, a, bias, c->second);
+    add_blur(g, in, (tyn_ref){0}, c->first);
+    tyn_graph_output(g, "result", b, true);
+}
+
+// ---- barriers ---------------------------------------------------------------------------------
+
+static void first_frame(void **state)
+{
+    fixture *f = *state;
+    declare_chain(f->g, &default_chain);
+    assert_int_equal(frame(f), TYN_OK);
+    assert_states(f, "rrc");
+    compare_golden("first_frame.txt", f->fake->text);
+}
+
+static int by_text(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+// The barriers and dispatches among the lines of a text, from line `from` on until one that starts
+// with `until`; barriers of one dispatch sorted, as they go out together.
+static void work_of(char *text, const char *from, const char *until, char *out)
+{
+    char *barriers[32];
+    int num = 0;
+    *out = 0;
+    text = strstr(text, from);
+    assert_non_null(text);
+    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
+        line += strspn(line, " ");
+        if (strncmp(line, until, strlen(until)) == 0) {
+            return; // barriers that wait belong to what comes after
+        }
+        if (strncmp(line, "barrier", 7) == 0) {
+            barriers[num++] = line;
+        } else if (strncmp(line, "dispatch", 8) == 0) {
+            qsort(barriers, (size_t)num, sizeof *barriers, by_text);
+            for (int i = 0; i < num; i++) {
+                strcat(strcat(out, barriers[i]), "\n");
+            }
+            strcat(strcat(out, line), "\n");
+            num = 0;
+        }
+    }
+}
+
+// What the dump says is what is recorded: same barriers, same dispatches, same order.
+static void dump_tells_the_truth(void **state)
+{
+    fixture *f = *state;
+    declare_chain(f->g, &default_chain);
+    assert_int_equal(frame(f), TYN_OK);
+    char *dump = tyn_graph_dump(f->g, false), *dot = tyn_graph_dump(f->g, true);
+    compare_golden("dump.txt", dump);
+    compare_golden("dump.dot", dot);
+    char planned[8192], recorded[8192];
+    work_of(dump, "node 0", "output", planned);
+    work_of(f->fake->text, "node blur", "copy", recorded);
+    assert_string_equal(planned, recorded);
+    assert_true(strlen(planned) > 500);
+    free(dump);
+    free(dot);
+}
+
+// The first accesses of a frame wait for the last ones of the frame before.
+static void second_frame_waits_for_the_first(void **state)
+{
+    fixture *f = *state;
+    chain c = default_chain;
+    declare_chain(f->g, &c);
+    frame(f);
+    c.bias = 0.5f;
+    declare_chain(f->g, &c);
+    assert_int_equal(frame(f), TYN_OK);
+    assert_states(f, "urc");
+    compare_golden("second_frame.txt", f->fake->text);
+}
+
+static void indirect_dispatch(void **state)
+{
+    fixture *f = *state;
+    tyn_graph_begin(f->g);
+    tyn_ref refs[COUNT_NUM] = {upload(f->g, "input", 1)};
+    node_params p = {0};
+    assert_int_equal(tyn_graph_add(f->g, &count, &p, refs), TYN_OK);
+    tyn_graph_output(f->g, "out", refs[COUNT_OUT], false);
+    assert_int_equal(frame(f), TYN_OK);
+    compare_golden("indirect.txt", f->fake->text);
+}
+
+// A host image comes in one state and is left in another, used or not.
+static void host_image(void **state)
+{
+    fixture *f = *state;
+    tyn_image image = fake_image(f->fake, "host", (VkExtent3D){W, H, 1});
+    image.before = (tyn_sync){VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                              VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+                              VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+    image.after = (tyn_sync){VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+                             VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, VK_IMAGE_LAYOUT_GENERAL};
+    for (int i = 0; i < 2; i++) { // version 0: it may have changed, so both frames run
+        tyn_graph_begin(f->g);
+        tyn_ref in = tyn_graph_import_image(f->g, "host", TYN_IMAGE_2D, &image, 0);
+        tyn_graph_output(f->g, "out", add_blur(f->g, in, (tyn_ref){0}, (node_params){1, 0, 0}),
+                         false);
+        assert_int_equal(frame(f), TYN_OK);
+        assert_states(f, "r");
+    }
+    compare_golden("host_image.txt", f->fake->text);
+    // A version says that the content is the same: nothing runs, the states are still exchanged.
+    for (int i = 0; i < 2; i++) {
+        tyn_graph_begin(f->g);
+        tyn_ref in = tyn_graph_import_image(f->g, "host", TYN_IMAGE_2D, &image, 7);
+        tyn_graph_output(f->g, "out", add_blur(f->g, in, (tyn_ref){0}, (node_params){1, 0, 0}),
+                         false);
+        assert_int_equal(frame(f), TYN_OK);
+    }
+    assert_states(f, "u");
+    assert_int_equal(f->fake->dispatches, 0);
+    assert_string_equal(f->fake->text,
+                        "barrier host: COLOR_OUTPUT COLOR_WRITE -> FRAGMENT SAMPLED_READ, "
+                        "COLOR_ATTACHMENT -> GENERAL\n");
+    fake_free_image(f->fake, &image);
+}
+
+// ---- change tracking --------------------------------------------------------------------------
+
+static void only_what_changed_runs(void **state)
+{
+    fixture *f = *state;
+    chain c = default_chain;
+    declare_chain(f->g, &c);
+    frame(f);
+    declare_chain(f->g, &c);
+    frame(f);
+    assert_states(f, "uuc");
+    assert_int_equal(f->fake->dispatches + f->fake->copies, 0); // not even read back again
+
+    c.second.value = 2; // arguments of the second
+    declare_chain(f->g, &c);
+    assert_true(tyn_graph_matches(f->g));
+    frame(f);
+    assert_states(f, "urc");
+    assert_int_equal(f->fake->dispatches, 3);
+
+    c.first.value = 2; // arguments of the first: the second reads what it made
+    declare_chain(f->g, &c);
+    frame(f);
+    assert_states(f, "rrc");
+
+    c.input = 2; // the data of both
+    declare_chain(f->g, &c);
+    frame(f);
+    assert_states(f, "rrc");
+    declare_chain(f->g, &c);
+    frame(f);
+    assert_states(f, "uuc");
+
+    c.input = 1; // back again is a change, too
+    declare_chain(f->g, &c);
+    frame(f);
+    assert_states(f, "rrc");
+
+    declare_chain(f->g, &c);
+    tyn_graph_recompute(f->g);
+    frame(f);
+    assert_states(f, "rrc");
+}
+
+static void structure_is_noticed(void **state)
+{
+    fixture *f = *state;
+    chain c = default_chain;
+    declare_chain(f->g, &c);
+    frame(f);
+    c.first.times = 2; // other dispatches
+    declare_chain(f->g, &c);
+    assert_false(tyn_graph_matches(f->g));
+    fake_clear(f->fake);
+    assert_int_equal(tyn_graph_record(f->g, no_cmd), TYN_ERR_PARAMS);
+    assert_string_equal(f->fake->text, ""); // refused before the first command
+    assert_non_null(strstr(f->fake->log, "prepare it first"));
+    c = default_chain;
+    c.second.spec = 1; // another pipeline
+    declare_chain(f->g, &c);
+    assert_false(tyn_graph_matches(f->g));
+    declare_chain(f->g, &default_chain);
+    assert_true(tyn_graph_matches(f->g));
+    tyn_graph_output(f->g, "input", (tyn_ref){1, 0}, true); // another output
+    assert_false(tyn_graph_matches(f->g));
+}
+
+// The media's nodes are no part of a frame's cost: they run when only the set-up is asked for, and are
+// spared when everything else runs again.
+static void media_are_set_up_apart(void **state)
+{
+    fixture *f = *state;
+    tyn_pass_desc medium = blur;
+    medium.media_only = true;
+    for (int i = 0; i < 3; i++) {
+        tyn_graph_begin(f->g);
+        tyn_ref in = upload(f->g, "input", 1);
+        tyn_graph_mark_media(f->g, in);
+        tyn_ref refs[BLUR_NUM] = {in};
+        tyn_graph_add(f->g, &medium, &(node_params){1, 0, 0}, refs);
+        tyn_graph_output(f->g, "out",
+                         add_blur(f->g, refs[BLUR_OUT], (tyn_ref){0}, (node_params){1, 0, 0}),
+                         true);
+        if (i == 0) {
+            tyn_graph_setup_only(f->g);
+        } else if (i == 2) {
+            tyn_graph_recompute(f->g);
+        }
+        assert_int_equal(frame(f), TYN_OK);
+        assert_states(f, i == 0 ? "ru" : "ur");
+    }
+}
+
+// In-place changes: the buffer is an upload that two nodes change; if one must run again so must the
+// other, from the upload on.
+static void histories(void **state)
+{
+    fixture *f = *state;
+    for (int i = 0; i < 4; i++) {
+        uint64_t key = i < 3 ? 5 : 6;
+        tyn_graph_begin(f->g);
+        tyn_ref x = upload(f->g, "x", i < 2 ? 1 : 2);
+        tyn_ref refs[ADD_NUM] = {tyn_graph_history_buffer(f->g, "history", 64, key), x};
+        assert_int_equal(tyn_graph_add(f->g, &add, &(node_params){0}, refs), TYN_OK);
+        tyn_graph_output(f->g, "sum", refs[ADD_SUM], false);
+        assert_int_equal(frame(f), TYN_OK);
+        assert_states(f, i == 1 ? "u" : "r");
+        // Zeros at the start and when the key changes, never in between.
+        assert_int_equal(strstr(f->fake->text, "fill history\n") != NULL, i == 0 || i == 3);
+    }
+}
+
+// ---- faults -----------------------------------------------------------------------------------
+
+static void expect_fault(fixture *f, const tyn_pass_desc *pass, tyn_ref *refs, const char *text)
+{
+    f->fake->log[0] = 0;
+    assert_int_equal(tyn_graph_add(f->g, pass, &(node_params){1, 0, 0}, refs), TYN_ERR_PARAMS);
+    if (!strstr(f->fake->log, text)) {
+        fail_msg("'%s' lacks '%s'", f->fake->log, text);
+    }
+    assert_int_equal(tyn_graph_status(f->g), TYN_ERR_PARAMS);
+    assert_int_equal(tyn_graph_compile(f->g), TYN_ERR_PARAMS);
+    assert_int_equal(tyn_graph_record(f->g, no_cmd), TYN_ERR_PARAMS);
+}
+
+static void faults(void **state)
+{
+    fixture *f = *state;
+    tyn_graph_begin(f->g);
+    tyn_ref refs[BLUR_NUM] = {{0}};
+    expect_fault(f, &blur, refs, "node 'blur': input 'in' (what is blurred) is not connected");
+
+    // The version of a buffer that a later node has changed.
+    tyn_graph_begin(f->g);
+    tyn_ref x = upload(f->g, "x", 1), history = tyn_graph_history_buffer(f->g, "sum", 64, 1);
+    tyn_ref first[ADD_NUM] = {history, x}, stale[ADD_NUM] = {history, x};
+    assert_int_equal(tyn_graph_add(f->g, &add, &(node_params){0}, first), TYN_OK);
+    expect_fault(f, &add, stale,
+                 "node 'add': input 'sum' is version 0 of 'sum', which was overwritten; the newest "
+                 "is 1");
+
+    tyn_graph_begin(f->g);
+    tyn_ref kind[BLUR_NUM] = {tyn_graph_history_buffer(f->g, "numbers", 64, 1)};
+    expect_fault(f, &blur, kind, "input 'in' and 'numbers' differ in kind");
+
+    tyn_graph_begin(f->g);
+    fake_clear(f->fake);
+    tyn_graph_output(f->g, "result", (tyn_ref){9, 0}, true);
+    assert_string_equal(f->fake->log, "output 'result' is not a resource\n");
+    assert_int_equal(tyn_graph_status(f->g), TYN_ERR_PARAMS);
+
+    // A new declaration starts afresh.
+    declare_chain(f->g, &default_chain);
+    assert_int_equal(frame(f), TYN_OK);
+}
+
+static void huge_image(void **state)
+{
+    fixture *f = *state;
+    tyn_graph_begin(f->g);
+    tyn_ref in = tyn_graph_upload_image(f->g, "wide", TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
+                                        (tyn_extent){20000, 1, 1}, fill_zero, NULL, 1);
+    tyn_graph_output(f->g, "out", add_blur(f->g, in, (tyn_ref){0}, (node_params){1, 0, 0}), false);
+    assert_int_equal(frame(f), TYN_ERR_UNSUPPORTED);
+    assert_string_equal(f->fake->log,
+                        "image 'wide' of 20000 x 1 x 1: the device's limit is 16384 per axis\n");
+}
+
+// Whichever allocation fails: an error, nothing leaks, and the next frame is made in full.
+static void out_of_memory(void **state)
+{
+    fixture *f = *state;
+    uint32_t failures = 0;
+    for (uint32_t at = 1;; at++) {
+        f->fake->created = 0;
+        f->fake->fail_at = at;
+        declare_chain(f->g, &default_chain);
+        tyn_result result = frame(f);
+        f->fake->fail_at = 0;
+        if (result == TYN_OK) {
+            break;
+        }
+        assert_int_equal(result, TYN_ERR_MEMORY);
+        assert_true(strlen(f->fake->log) > 0);
+        failures++;
+        declare_chain(f->g, &default_chain);
+        assert_int_equal(frame(f), TYN_OK);
+        assert_states(f, "rrc");
+        // Start over with nothing, so that the same calls come again.
+        tyn_graph_destroy(&f->g);
+        tyn_pipelines_destroy(&f->fake->dev);
+        if (f->fake->live) {
+            fail_msg("call %u fails: something is left", at);
+        }
+        assert_int_equal(tyn_graph_create(&f->fake->dev, 2, &f->g), TYN_OK);
+    }
+    assert_true(failures > 20);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(first_frame),
+        TEST(dump_tells_the_truth),
+        TEST(second_frame_waits_for_the_first),
+        TEST(indirect_dispatch),
+        TEST(host_image),
+        TEST(only_what_changed_runs),
+        TEST(structure_is_noticed),
+        TEST(media_are_set_up_apart),
+        TEST(histories),
+        TEST(faults),
+        TEST(huge_image),
+        TEST(out_of_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
