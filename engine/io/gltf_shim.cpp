@@ -13,10 +13,14 @@ namespace {
 // Buffers come first in tinygltf's order; once they are read, what it asks for are images, which
 // nothing draws: they are not there.
 struct files {
-    const tyn_log *log;
     size_t buffers_left;
-    bool logged;
+    std::string fault; // why a buffer could not be read
 };
+
+void keep_fault(void *user, tyn_log_level, const char *message)
+{
+    static_cast<files *>(user)->fault = message;
+}
 
 bool file_exists(const std::string &, void *user)
 {
@@ -33,8 +37,8 @@ bool read_file(std::vector<unsigned char> *out, std::string *, const std::string
     files *f = static_cast<files *>(user);
     void *data = nullptr;
     size_t size = 0;
-    if (f->buffers_left == 0 || tyn_file_read(path.c_str(), 1ull << 31, &data, &size, f->log)) {
-        f->logged |= f->buffers_left > 0;
+    const tyn_log log = {keep_fault, f, TYN_LOG_ERROR};
+    if (f->buffers_left == 0 || tyn_file_read(path.c_str(), 1ull << 31, &data, &size, &log)) {
         return false;
     }
     f->buffers_left--;
@@ -169,7 +173,7 @@ tyn_result read_model(gltf_model *model, const gltf_source *source, const tyn_lo
     tinygltf::TinyGLTF reader;
     tinygltf::Model parsed;
     std::string error, warning;
-    files state = {log, source->num_external_buffers, false};
+    files state = {source->num_external_buffers, std::string()};
     reader.SetImageLoader(skip_image, nullptr);
     reader.SetFsCallbacks({file_exists, same_path, read_file, nullptr, &state});
     unsigned size = unsigned(source->size);
@@ -181,13 +185,14 @@ tyn_result read_model(gltf_model *model, const gltf_source *source, const tyn_lo
                                                static_cast<const char *>(source->bytes), size,
                                                source->directory);
     if (!ok) {
+        if (!state.fault.empty()) {
+            error = "buffers: " + state.fault;
+        }
         for (char &c : error) {
             c = c == '\n' || c == '\r' ? ' ' : c;
         }
-        if (!state.logged) {
-            tyn_log_print(log, TYN_LOG_ERROR, "%s: %.300s", source->file,
-                          error.empty() ? "not a valid glTF file" : error.c_str());
-        }
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: %.300s", source->file,
+                      error.empty() ? "not a valid glTF file" : error.c_str());
         return TYN_ERR_PARAMS;
     }
     copy_model(model, parsed);

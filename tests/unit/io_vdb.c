@@ -1,0 +1,70 @@
+// io_vdb.c -- OpenVDB files, or the line that says how to get them.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "io_test.h"
+
+static void real_file(void **state)
+{
+    tyn_volume v;
+    io_log log;
+    (void)state;
+    io_log_init(&log);
+    const char *path = io_shared("data/smoke.vdb");
+    if (!path) {
+        print_message("no shared data\n");
+        skip();
+    }
+    tyn_result r = tyn_volume_load(&v, path, NULL, NULL, &log.log);
+    if (r == TYN_ERR_UNSUPPORTED) {
+        assert_int_equal(log.errors, 1);
+        assert_non_null(strstr(log.last, "-Dopenvdb=enabled"));
+        return;
+    }
+    assert_int_equal(r, TYN_OK);
+    uint64_t active = 0;
+    for (size_t i = 0; i < (size_t)v.size[0] * v.size[1] * v.size[2]; i++) {
+        active += v.data[i] > 0;
+    }
+    print_message("%s: %u x %u x %u, max %g\n", v.name, v.size[0], v.size[1], v.size[2],
+                  v.max_density);
+    assert_int_equal(active, 1049275); // its count of active voxels
+    assert_true(v.max_density > 5 && v.max_density < 6);
+    assert_true(fabs(v.index_to_world[0] - 1 / 2.1) < 1e-6);
+    tyn_volume_finish(&v);
+    assert_int_equal(tyn_volume_load(&v, path, "fire", NULL, &log.log), TYN_ERR_PARAMS);
+    assert_non_null(strstr(log.last, "\"density\" (float)"));
+    assert_int_equal(log.errors, 1);
+}
+
+static void broken(void **state)
+{
+    (void)state;
+    const char *path = io_shared("data/smoke.vdb");
+    void *whole = NULL;
+    size_t size = 64;
+    io_log log;
+    io_log_init(&log);
+    if (path) {
+        assert_int_equal(tyn_file_read(path, 1 << 24, &whole, &size, &log.log), TYN_OK);
+    }
+    const size_t cuts[] = {0, 1, 7, 20, 40, 100, 200, 400, 1000, 100000, size - 1};
+    for (size_t i = 0; i < sizeof cuts / sizeof cuts[0]; i++) {
+        tyn_volume v;
+        uint8_t text[64] = "this is no volume";
+        io_log_init(&log);
+        const char *bad = io_put("bad.vdb", whole ? whole : text, cuts[i] < size ? cuts[i] : size);
+        tyn_result r = tyn_volume_load(&v, bad, NULL, NULL, &log.log);
+        assert_true(r == TYN_ERR_PARAMS || r == TYN_ERR_UNSUPPORTED);
+        assert_int_equal(log.errors, 1);
+        assert_int_equal(log.newlines, 0);
+        assert_null(v.data);
+    }
+    free(whole);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(real_file), cmocka_unit_test(broken)};
+    return cmocka_run_group_tests(tests, NULL, io_test_clean);
+}
