@@ -2,7 +2,6 @@
 #include "probe.h"
 #include "probe_args.h"
 #include "balance.comp.h"
-#include <tyndall/context.h>
 
 static const tyn_port ports[BALANCE_NUM_PORTS] = {
     [BALANCE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
@@ -38,7 +37,7 @@ static const tyn_kernel kernels[] = {
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     (void)params;
-    tyn_build_buffer(b, BALANCE_PORT_BALANCE, sizeof(tyn_balance));
+    tyn_build_buffer(b, BALANCE_PORT_BALANCE, 6 * 3 * sizeof(double)); // tyn_balance: six triples
     return TYN_OK;
 }
 

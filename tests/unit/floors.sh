@@ -40,6 +40,7 @@ check()
         if (name ~ /\.comp\.h$/ && exists(dir substr(name, 1, length(name) - 2))) {
             return dir name # made from the shader beside it
         }
+        if (quoted && exists(dir name ".in")) { return dir name }
         return ""
     }
     # The folder that is one unit of the layering.
