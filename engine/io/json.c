@@ -104,6 +104,15 @@ static const cJSON *duplicate_key(const cJSON *node)
     return found;
 }
 
+static const cJSON *infinite_number(const cJSON *node)
+{
+    const cJSON *found = cJSON_IsNumber(node) && !isfinite(node->valuedouble) ? node : NULL;
+    for (const cJSON *child = node->child; child && !found; child = child->next) {
+        found = infinite_number(child);
+    }
+    return found;
+}
+
 static int line_of(const char *text, const char *at)
 {
     int line = 1;
@@ -131,14 +140,16 @@ tyn_result tyn_json_parse(json_doc *doc, const char *text, size_t size, const ch
     while (end < text + size && (*end == ' ' || *end == '\t' || *end == '\r' || *end == '\n')) {
         end++;
     }
-    const cJSON *twice;
+    const cJSON *at;
     if (end != text + size) {
         tyn_log_print(log, TYN_LOG_ERROR, "%s: not valid JSON, line %d: text after the end", file,
                       line_of(text, end));
     } else if (!cJSON_IsObject(doc->root)) {
         tyn_log_print(log, TYN_LOG_ERROR, "%s: JSON must be an object", file);
-    } else if ((twice = duplicate_key(doc->root))) {
-        tyn_json_fault(doc, twice, "a name may stand only once in an object (of at most %d)",
+    } else if ((at = infinite_number(doc->root))) {
+        tyn_json_fault(doc, at, "a number must be finite");
+    } else if ((at = duplicate_key(doc->root))) {
+        tyn_json_fault(doc, at, "a name may stand only once in an object (of at most %d)",
                        MAX_MEMBERS);
     } else {
         return TYN_OK;
