@@ -13,8 +13,8 @@ static bool write_sky(const char *folder)
 {
     enum { WIDTH = 64, HEIGHT = 32 };
     static float rgb[HEIGHT * WIDTH * 3];
-    const float zenith[3] = {0.06f, 0.14f, 0.36f}, horizon[3] = {0.42f, 0.52f, 0.62f};
-    const float ground[3] = {0.10f, 0.09f, 0.08f};
+    const float zenith[3] = {0.03f, 0.08f, 0.24f}, horizon[3] = {0.2f, 0.29f, 0.4f};
+    const float ground[3] = {0.05f, 0.045f, 0.04f};
     for (int y = 0; y < HEIGHT; y++) {
         // From +1 at the zenith to -1 at the nadir, linear in the polar angle.
         const float h = 1.0f - 2.0f * ((float)y + 0.5f) / HEIGHT;
