@@ -1,24 +1,37 @@
-// lattice_levels.glsl -- where the levels of the diffusion grid lie in their images. No bindings.
+// lattice_levels.glsl -- where the levels of the diffusion grid lie in their buffers. No bindings.
 //
-// Level l + 1 has half the cells of level l, rounded up. Level 0 fills [0, dims); the others stand to
-// the right of it, one below the other, like the mips of an atlas. Channels are stacked along z with
-// the depth of level 0.
+// Level l + 1 has half the cells of level l along each axis, rounded up. The levels of a channel follow
+// each other, finest first; within a level x is fastest.
 #ifndef TYN_LATTICE_LEVELS_GLSL
 #define TYN_LATTICE_LEVELS_GLSL
 
 struct lattice_level {
-    ivec3 offset; // of channel 0
     ivec3 size;
+    uint first; // its first cell, from the first cell of the channel
 };
+
+uint lattice_num_cells(ivec3 size)
+{
+    return uint(size.x * size.y * size.z);
+}
+
+lattice_level lattice_next_level(lattice_level l)
+{
+    return lattice_level((l.size + 1) / 2, l.first + lattice_num_cells(l.size));
+}
 
 lattice_level lattice_level_of(ivec3 dims, uint level)
 {
-    lattice_level l = lattice_level(ivec3(0), dims);
+    lattice_level l = lattice_level(dims, 0);
     for (uint i = 0; i < level; i++) {
-        l.offset = i == 0 ? ivec3(dims.x, 0, 0) : l.offset + ivec3(0, l.size.y, 0);
-        l.size = (l.size + 1) / 2;
+        l = lattice_next_level(l);
     }
     return l;
+}
+
+uint lattice_index(lattice_level l, ivec3 c)
+{
+    return l.first + uint((c.z * l.size.y + c.y) * l.size.x + c.x);
 }
 
 #endif

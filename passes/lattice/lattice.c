@@ -17,7 +17,8 @@
 #include <math.h>
 
 enum {
-    PORT_EMITTED = LATTICE_PORT_FIRST_SCRATCH,
+    PORT_STATE = LATTICE_PORT_FIRST_SCRATCH,
+    PORT_EMITTED,
     PORT_MEAN_PSI,
     PORT_SWEPT,
     PORT_STENCIL_LO,
@@ -31,7 +32,8 @@ enum {
     NUM_PORTS,
 };
 
-#define RGBA VK_FORMAT_R32G32B32A32_SFLOAT
+// The state is in buffers: a software device stores to images several times more slowly.
+#define SCRATCH(port, name, meaning) [port] = {name, TYN_SCRATCH, TYN_BUFFER, 0, false, meaning}
 
 static const tyn_port ports[NUM_PORTS] = {
     [LATTICE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
@@ -40,35 +42,28 @@ static const tyn_port ports[NUM_PORTS] = {
     [LATTICE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
                                   "struct env_block; its mean enters at the box"},
     [LATTICE_PORT_MOMENTS] =
-        {"moments", TYN_OUT, TYN_IMAGE_3D, RGBA, false,
+        {"moments", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
          "fluence and net flux of the scattered light, W/m^2; channels stacked "
          "along z"},
     [LATTICE_PORT_COUNTERS] = {"counters", TYN_OUT, TYN_BUFFER, 0, false, "struct counters_block"},
     [LATTICE_PORT_LEAKS] = {"leaks", TYN_OUT, TYN_BUFFER, 0, false,
                             "net power through the box of each line of the last sweep, W"},
-    [PORT_EMITTED] = {"emitted", TYN_SCRATCH, TYN_IMAGE_3D, RGBA, false,
-                      "scattered radiance per sigma_s', linear in direction"},
-    [PORT_MEAN_PSI] = {"mean_psi", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-                       "mean radiance in a cell, directions stacked along x"},
-    [PORT_SWEPT] = {"swept", TYN_SCRATCH, TYN_IMAGE_3D, RGBA, false, "moments after the sweep"},
-    [PORT_STENCIL_LO] = {"stencil_lo", TYN_SCRATCH, TYN_IMAGE_3D, RGBA, false,
-                         "conductance to -x, -y, -z; absorption"},
-    [PORT_STENCIL_HI] = {"stencil_hi", TYN_SCRATCH, TYN_IMAGE_3D, RGBA, false,
-                         "conductance to +x, +y, +z; their sum"},
-    [PORT_RHS] = {"rhs", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-                  "of the diffusion correction, W"},
-    [PORT_CORRECTION] = {"correction", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-                         "of the fluence, W/m^2"},
-    [PORT_RESULT] = {"result_0", TYN_SCRATCH, TYN_IMAGE_3D, RGBA, false, "corrected moments"},
-    [PORT_RESULT + 1] = {"result_1", TYN_SCRATCH, TYN_IMAGE_3D, RGBA, false, "corrected moments"},
-    [PORT_RESULT + 2] = {"result_2", TYN_SCRATCH, TYN_IMAGE_3D, RGBA, false, "corrected moments"},
-    [PORT_CHANGE] = {"change_0", TYN_SCRATCH, TYN_IMAGE_3D, RGBA, false, "what a sweep changed"},
-    [PORT_CHANGE + 1] = {"change_1", TYN_SCRATCH, TYN_IMAGE_3D, RGBA, false,
-                         "what a sweep changed"},
-    [PORT_CHANGE + 2] = {"change_2", TYN_SCRATCH, TYN_IMAGE_3D, RGBA, false,
-                         "what a sweep changed"},
-    [PORT_PARTIALS] = {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "dot products by workgroup"},
-    [PORT_WEIGHTS] = {"weights", TYN_SCRATCH, TYN_BUFFER, 0, false, "shares of earlier sweeps"},
+    SCRATCH(PORT_STATE, "state", "moments at the start of a sweep"),
+    SCRATCH(PORT_EMITTED, "emitted", "scattered radiance per sigma_s', linear in direction"),
+    SCRATCH(PORT_MEAN_PSI, "mean_psi", "mean radiance in a cell by direction"),
+    SCRATCH(PORT_SWEPT, "swept", "moments after the sweep"),
+    SCRATCH(PORT_STENCIL_LO, "stencil_lo", "conductance to -x, -y, -z; absorption"),
+    SCRATCH(PORT_STENCIL_HI, "stencil_hi", "conductance to +x, +y, +z; sum of all"),
+    SCRATCH(PORT_RHS, "rhs", "of the diffusion correction, W"),
+    SCRATCH(PORT_CORRECTION, "correction", "of the fluence, W/m^2"),
+    SCRATCH(PORT_RESULT, "result_0", "corrected moments"),
+    SCRATCH(PORT_RESULT + 1, "result_1", "corrected moments"),
+    SCRATCH(PORT_RESULT + 2, "result_2", "corrected moments"),
+    SCRATCH(PORT_CHANGE, "change_0", "what a sweep changed"),
+    SCRATCH(PORT_CHANGE + 1, "change_1", "what a sweep changed"),
+    SCRATCH(PORT_CHANGE + 2, "change_2", "what a sweep changed"),
+    SCRATCH(PORT_PARTIALS, "partials", "dot products by workgroup"),
+    SCRATCH(PORT_WEIGHTS, "weights", "shares of earlier sweeps"),
 };
 
 // ---- kernels --------------------------------------------------------------------------------------
@@ -91,7 +86,7 @@ enum {
 
 static const tyn_binding start_bindings[] = {
     {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM}, {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},      {LATTICE_PORT_MOMENTS, TYN_USE_STORAGE_WRITE},
+    {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},      {PORT_STATE, TYN_USE_STORAGE_WRITE},
     {PORT_EMITTED, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding stencil_bindings[] = {
@@ -104,40 +99,40 @@ static const tyn_binding stencil_coarse_bindings[] = {
     {PORT_STENCIL_HI, TYN_USE_STORAGE_RW},
 };
 static const tyn_binding sweep_bindings[] = {
-    {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
-    {PORT_EMITTED, TYN_USE_SAMPLED},
-    {PORT_MEAN_PSI, TYN_USE_STORAGE_WRITE},
+    {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM}, {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
+    {PORT_EMITTED, TYN_USE_STORAGE_READ},        {PORT_MEAN_PSI, TYN_USE_STORAGE_WRITE},
     {LATTICE_PORT_LEAKS, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding collect_bindings[] = {
-    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},   {PORT_MEAN_PSI, TYN_USE_SAMPLED},
-    {LATTICE_PORT_MOMENTS, TYN_USE_SAMPLED}, {PORT_SWEPT, TYN_USE_STORAGE_WRITE},
-    {PORT_RHS, TYN_USE_STORAGE_WRITE},       {PORT_CORRECTION, TYN_USE_STORAGE_WRITE},
+    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED}, {PORT_MEAN_PSI, TYN_USE_STORAGE_READ},
+    {PORT_STATE, TYN_USE_STORAGE_READ},    {PORT_SWEPT, TYN_USE_STORAGE_WRITE},
+    {PORT_RHS, TYN_USE_STORAGE_WRITE},     {PORT_CORRECTION, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding relax_bindings[] = {
-    {PORT_STENCIL_LO, TYN_USE_SAMPLED},
-    {PORT_STENCIL_HI, TYN_USE_SAMPLED},
-    {PORT_RHS, TYN_USE_SAMPLED},
+    {PORT_STENCIL_LO, TYN_USE_STORAGE_READ},
+    {PORT_STENCIL_HI, TYN_USE_STORAGE_READ},
+    {PORT_RHS, TYN_USE_STORAGE_READ},
     {PORT_CORRECTION, TYN_USE_STORAGE_RW},
 };
 static const tyn_binding restrict_bindings[] = {
-    {PORT_STENCIL_LO, TYN_USE_SAMPLED},
-    {PORT_STENCIL_HI, TYN_USE_SAMPLED},
+    {PORT_STENCIL_LO, TYN_USE_STORAGE_READ},
+    {PORT_STENCIL_HI, TYN_USE_STORAGE_READ},
     {PORT_RHS, TYN_USE_STORAGE_RW},
     {PORT_CORRECTION, TYN_USE_STORAGE_RW},
 };
-static const tyn_binding interpolate_bindings[] = {{PORT_CORRECTION, TYN_USE_STORAGE_RW}};
+static const tyn_binding interpolate_bindings[] = {
+    {PORT_CORRECTION, TYN_USE_STORAGE_RW},
+};
 static const tyn_binding coarse_bindings[] = {
-    {PORT_STENCIL_LO, TYN_USE_SAMPLED},
-    {PORT_STENCIL_HI, TYN_USE_SAMPLED},
-    {PORT_RHS, TYN_USE_SAMPLED},
+    {PORT_STENCIL_LO, TYN_USE_STORAGE_READ},
+    {PORT_STENCIL_HI, TYN_USE_STORAGE_READ},
+    {PORT_RHS, TYN_USE_STORAGE_READ},
     {PORT_CORRECTION, TYN_USE_STORAGE_RW},
 };
 static const tyn_binding residual_bindings[] = {
-    {LATTICE_PORT_MOMENTS, TYN_USE_SAMPLED}, {PORT_SWEPT, TYN_USE_SAMPLED},
-    {PORT_CORRECTION, TYN_USE_SAMPLED},      {PORT_CHANGE + 1, TYN_USE_SAMPLED},
-    {PORT_CHANGE + 2, TYN_USE_SAMPLED},      {PORT_RESULT, TYN_USE_STORAGE_WRITE},
+    {PORT_STATE, TYN_USE_STORAGE_READ},      {PORT_SWEPT, TYN_USE_STORAGE_READ},
+    {PORT_CORRECTION, TYN_USE_STORAGE_READ}, {PORT_CHANGE + 1, TYN_USE_STORAGE_READ},
+    {PORT_CHANGE + 2, TYN_USE_STORAGE_READ}, {PORT_RESULT, TYN_USE_STORAGE_WRITE},
     {PORT_CHANGE, TYN_USE_STORAGE_WRITE},    {PORT_PARTIALS, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding weights_bindings[] = {
@@ -145,72 +140,62 @@ static const tyn_binding weights_bindings[] = {
     {PORT_WEIGHTS, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding mix_bindings[] = {
-    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},
-    {PORT_RESULT, TYN_USE_SAMPLED},
-    {PORT_RESULT + 1, TYN_USE_SAMPLED},
-    {PORT_RESULT + 2, TYN_USE_SAMPLED},
-    {PORT_WEIGHTS, TYN_USE_STORAGE_READ},
-    {LATTICE_PORT_MOMENTS, TYN_USE_STORAGE_WRITE},
-    {PORT_EMITTED, TYN_USE_STORAGE_WRITE},
-    {LATTICE_PORT_COUNTERS, TYN_USE_STORAGE_RW},
+    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},       {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},
+    {PORT_RESULT, TYN_USE_STORAGE_READ},         {PORT_RESULT + 1, TYN_USE_STORAGE_READ},
+    {PORT_RESULT + 2, TYN_USE_STORAGE_READ},     {PORT_WEIGHTS, TYN_USE_STORAGE_READ},
+    {PORT_STATE, TYN_USE_STORAGE_WRITE},         {PORT_EMITTED, TYN_USE_STORAGE_WRITE},
+    {LATTICE_PORT_COUNTERS, TYN_USE_STORAGE_RW}, {LATTICE_PORT_MOMENTS, TYN_USE_STORAGE_WRITE},
 };
 
-#define KERNEL(name, args, x, y, z)                                                                \
+#define KERNEL(name, args, spec, x, y, z)                                                          \
     {                                                                                              \
 #name, lattice_##name##_spirv, sizeof lattice_##name##_spirv, sizeof(struct args),         \
-            {x, y, z }, name##_bindings, sizeof name##_bindings / sizeof name##_bindings[0], 0     \
+            {x, y, z }, name##_bindings, sizeof name##_bindings / sizeof name##_bindings[0], spec  \
     }
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_START] = KERNEL(start, lattice_args, 8, 4, 2),
-    [KERNEL_STENCIL] = KERNEL(stencil, lattice_level_args, 8, 4, 2),
-    [KERNEL_STENCIL_COARSE] = KERNEL(stencil_coarse, lattice_level_args, 4, 4, 4),
-    [KERNEL_SWEEP] = KERNEL(sweep, lattice_args, LATTICE_SWEEP_GROUP, 1, 1),
-    [KERNEL_COLLECT] = KERNEL(collect, lattice_args, 8, 4, 2),
-    [KERNEL_RELAX] = KERNEL(relax, lattice_level_args, 8, 4, 2),
-    [KERNEL_RESTRICT] = KERNEL(restrict, lattice_level_args, 4, 4, 4),
-    [KERNEL_INTERPOLATE] = KERNEL(interpolate, lattice_level_args, 8, 4, 2),
-    [KERNEL_COARSE] = KERNEL(coarse, lattice_level_args, LATTICE_COARSE_GROUP, 1, 1),
-    [KERNEL_RESIDUAL] = KERNEL(residual, lattice_args, LATTICE_GROUP, 1, 1),
-    [KERNEL_WEIGHTS] = KERNEL(weights, lattice_args, LATTICE_GROUP, 1, 1),
-    [KERNEL_MIX] = KERNEL(mix, lattice_args, 8, 4, 2),
+    [KERNEL_START] = KERNEL(start, lattice_args, 0, 8, 4, 2),
+    [KERNEL_STENCIL] = KERNEL(stencil, lattice_level_args, 0, 8, 4, 2),
+    [KERNEL_STENCIL_COARSE] = KERNEL(stencil_coarse, lattice_level_args, 0, 4, 4, 4),
+    [KERNEL_SWEEP] = KERNEL(sweep, lattice_args, 0, LATTICE_SWEEP_GROUP, 1, 1),
+    [KERNEL_COLLECT] = KERNEL(collect, lattice_args, 0, 8, 4, 2),
+    [KERNEL_RELAX] = KERNEL(relax, lattice_level_args, 0, 8, 4, 2),
+    [KERNEL_RESTRICT] = KERNEL(restrict, lattice_level_args, 0, 4, 4, 4),
+    [KERNEL_INTERPOLATE] = KERNEL(interpolate, lattice_level_args, 0, 8, 4, 2),
+    [KERNEL_COARSE] = KERNEL(coarse, lattice_level_args, 0, LATTICE_COARSE_GROUP, 1, 1),
+    [KERNEL_RESIDUAL] = KERNEL(residual, lattice_args, 0, LATTICE_GROUP, 1, 1),
+    [KERNEL_WEIGHTS] = KERNEL(weights, lattice_args, 0, LATTICE_GROUP, 1, 1),
+    [KERNEL_MIX] = KERNEL(mix, lattice_args, 1, 8, 4, 2),
 };
 
 // ---- levels of the diffusion grid -----------------------------------------------------------------
 
-typedef struct solve { // what recording needs to know
-    tyn_recorder *r;
-    const tyn_lattice_params *params;
-    tyn_extent size[8];   // of the levels
-    uint32_t levels;      // until no side is longer than 4
-    uint32_t first_small; // the first level that is solved in one workgroup
-    tyn_extent texels;    // of the lattice with its channels
-    struct lattice_args args;
-} solve;
+enum { MAX_LEVELS = 8 };
 
-static uint32_t level_sizes(tyn_extent dims, tyn_extent size[8])
+typedef struct levels {
+    tyn_extent size[MAX_LEVELS];
+    uint32_t num;         // until no side is longer than 4
+    uint32_t first_small; // the first that is solved in one workgroup
+    uint32_t cells;       // of all
+} levels;
+
+static uint32_t num_cells(tyn_extent e)
 {
-    uint32_t levels = 1;
-    size[0] = dims;
-    while (dims.x > 4 || dims.y > 4 || dims.z > 4) {
-        dims = (tyn_extent){(dims.x + 1) / 2, (dims.y + 1) / 2, (dims.z + 1) / 2};
-        size[levels++] = dims;
-    }
-    return levels;
+    return e.x * e.y * e.z;
 }
 
-// Level 0, and to the right of it the others one below the other.
-static tyn_extent levels_extent(tyn_extent dims, uint32_t channels)
+static levels plan_levels(tyn_extent dims)
 {
-    tyn_extent size[8], extent = {dims.x, dims.y, dims.z * channels};
-    uint32_t levels = level_sizes(dims, size), below = 0;
-    for (uint32_t l = 1; l < levels; l++) {
-        below += size[l].y;
+    levels l = {.size = {dims}, .num = 1, .cells = num_cells(dims)};
+    while (dims.x > 4 || dims.y > 4 || dims.z > 4) {
+        dims = (tyn_extent){(dims.x + 1) / 2, (dims.y + 1) / 2, (dims.z + 1) / 2};
+        l.size[l.num++] = dims;
+        l.cells += num_cells(dims);
     }
-    extent.x += levels > 1 ? size[1].x : 0;
-    extent.y = below > extent.y ? below : extent.y;
-    return extent;
+    while (num_cells(l.size[l.first_small]) > LATTICE_COARSE_CELLS) {
+        l.first_small++;
+    }
+    return l;
 }
 
 // ---- declare --------------------------------------------------------------------------------------
@@ -235,23 +220,24 @@ static tyn_result declare(tyn_builder *b, const void *params)
                       cells.x, cells.y, cells.z, texels.x, texels.y, texels.z);
         return TYN_ERR_PARAMS;
     }
-    tyn_extent all_levels = levels_extent(dims, channels);
+    const uint64_t scalar = sizeof(float) * channels, n = num_cells(dims);
+    const uint64_t all_levels = plan_levels(dims).cells;
+    uint64_t groups = (n + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
     tyn_build_image(b, LATTICE_PORT_MOMENTS, texels, 1);
-    tyn_build_image(b, PORT_EMITTED, texels, 1);
-    tyn_build_image(b, PORT_MEAN_PSI,
-                    (tyn_extent){LATTICE_DIRECTIONS * texels.x, texels.y, texels.z}, 1);
-    tyn_build_image(b, PORT_SWEPT, texels, 1);
-    tyn_build_image(b, PORT_STENCIL_LO, all_levels, 1);
-    tyn_build_image(b, PORT_STENCIL_HI, all_levels, 1);
-    tyn_build_image(b, PORT_RHS, all_levels, 1);
-    tyn_build_image(b, PORT_CORRECTION, all_levels, 1);
+    tyn_build_buffer(b, PORT_STATE, 4 * scalar * n);
+    tyn_build_buffer(b, PORT_EMITTED, 4 * scalar * n);
+    tyn_build_buffer(b, PORT_MEAN_PSI, LATTICE_DIRECTIONS * scalar * n);
+    tyn_build_buffer(b, PORT_SWEPT, 4 * scalar * n);
+    tyn_build_buffer(b, PORT_STENCIL_LO, 4 * scalar * all_levels);
+    tyn_build_buffer(b, PORT_STENCIL_HI, 4 * scalar * all_levels);
+    tyn_build_buffer(b, PORT_RHS, scalar * all_levels);
+    tyn_build_buffer(b, PORT_CORRECTION, scalar * all_levels);
     for (uint8_t i = 0; i < 3; i++) {
-        tyn_build_image(b, PORT_RESULT + i, texels, 1);
-        tyn_build_image(b, PORT_CHANGE + i, texels, 1);
+        tyn_build_buffer(b, PORT_RESULT + i, 4 * scalar * n);
+        tyn_build_buffer(b, PORT_CHANGE + i, 4 * scalar * n);
     }
-    uint32_t groups = (dims.x * dims.y * dims.z + LATTICE_GROUP - 1) / LATTICE_GROUP;
-    tyn_build_buffer(b, PORT_PARTIALS, sizeof(float) * LATTICE_NUM_DOTS * groups * channels);
-    tyn_build_buffer(b, PORT_WEIGHTS, sizeof(float) * 2 * channels);
+    tyn_build_buffer(b, PORT_PARTIALS, LATTICE_NUM_DOTS * scalar * groups);
+    tyn_build_buffer(b, PORT_WEIGHTS, 2 * scalar);
     tyn_build_buffer(b, LATTICE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, LATTICE_PORT_LEAKS,
                      sizeof(float) * LATTICE_DIRECTIONS * lines_of(dims) * channels);
@@ -260,33 +246,47 @@ static tyn_result declare(tyn_builder *b, const void *params)
 
 // ---- record ---------------------------------------------------------------------------------------
 
-static void on_cells(const solve *s, uint32_t kernel, const uint8_t *with_ports)
+typedef struct solve { // what recording needs to know
+    tyn_recorder *r;
+    const tyn_lattice_params *params;
+    levels levels;
+    tyn_extent texels; // of the lattice with its channels
+    struct lattice_args args;
+} solve;
+
+static void on_cells(const solve *s, uint32_t kernel)
 {
-    tyn_rec_dispatch(
-        s->r, &(tyn_dispatch){
-                  .kernel = kernel, .cells = s->texels, .args = &s->args, .ports = with_ports});
+    tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = kernel, .cells = s->texels, .args = &s->args});
 }
 
 static void on_level(const solve *s, uint32_t kernel, uint32_t level, tyn_extent threads,
                      uint32_t colour)
 {
     const float *extent = s->params->shape.extent;
+    tyn_extent dims = s->levels.size[0];
     struct lattice_level_args args = {
-        .dims = {s->size[0].x, s->size[0].y, s->size[0].z},
+        .dims = {dims.x, dims.y, dims.z},
         .level = level,
-        .levels = s->levels,
+        .levels = s->levels.num,
+        .stride = s->levels.cells,
         .channels = s->params->shape.channels,
         .colour = colour,
         .dx = s->args.dx,
         .least_transport = 0.3f / fmaxf(extent[0], fmaxf(extent[1], extent[2])),
     };
-    threads.z *= s->params->shape.channels;
     tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = kernel, .cells = threads, .args = &args});
+}
+
+// Threads of a kernel that visits every cell of a level, or every second one along x.
+static tyn_extent cells_of(const solve *s, uint32_t level)
+{
+    tyn_extent e = s->levels.size[level];
+    return (tyn_extent){e.x, e.y, e.z * s->params->shape.channels};
 }
 
 static void relax_twice(const solve *s, uint32_t level)
 {
-    tyn_extent threads = s->size[level];
+    tyn_extent threads = cells_of(s, level);
     threads.x = (threads.x + 1) / 2;
     for (uint32_t i = 0; i < 4; i++) {
         on_level(s, KERNEL_RELAX, level, threads, i % 2);
@@ -295,59 +295,50 @@ static void relax_twice(const solve *s, uint32_t level)
 
 static void v_cycle(const solve *s)
 {
-    for (uint32_t l = 0; l < s->first_small; l++) {
+    const uint32_t small = s->levels.first_small;
+    for (uint32_t l = 0; l < small; l++) {
         relax_twice(s, l);
-        on_level(s, KERNEL_RESTRICT, l + 1, s->size[l + 1], 0);
+        on_level(s, KERNEL_RESTRICT, l + 1, cells_of(s, l + 1), 0);
     }
-    tyn_rec_dispatch(
-        s->r, &(tyn_dispatch){.kernel = KERNEL_COARSE,
-                              .cells = {LATTICE_COARSE_GROUP * s->params->shape.channels, 1, 1},
-                              .args = &(struct lattice_level_args){
-                                  .dims = {s->size[0].x, s->size[0].y, s->size[0].z},
-                                  .level = s->first_small,
-                                  .levels = s->levels,
-                                  .channels = s->params->shape.channels,
-                                  .dx = s->args.dx,
-                              }});
-    for (uint32_t l = s->first_small; l-- > 0;) {
-        on_level(s, KERNEL_INTERPOLATE, l, s->size[l], 0);
+    on_level(s, KERNEL_COARSE, small,
+             (tyn_extent){LATTICE_COARSE_GROUP * s->params->shape.channels, 1, 1}, 0);
+    for (uint32_t l = small; l-- > 0;) {
+        on_level(s, KERNEL_INTERPOLATE, l, cells_of(s, l), 0);
         relax_twice(s, l);
     }
 }
 
-static void sweep(solve *s, uint32_t index)
+// Mixes the result of sweep number `index` with those of the two before; the three newest go round.
+static void mix(solve *s, uint32_t index)
 {
     const tyn_lattice_params *p = s->params;
-    tyn_rec_dispatch(
-        s->r, &(tyn_dispatch){.kernel = KERNEL_SWEEP,
-                              .cells = {s->args.lines, LATTICE_DIRECTIONS, p->shape.channels},
-                              .args = &s->args});
-    on_cells(s, KERNEL_COLLECT, NULL);
-    for (int32_t i = 0; i < p->cycles; i++) {
-        v_cycle(s);
-    }
-    // The three newest results and changes go round.
     uint8_t result[3], change[3];
     for (uint8_t age = 0; age < 3; age++) {
         result[age] = (uint8_t)(PORT_RESULT + (index + 3 - age) % 3);
         change[age] = (uint8_t)(PORT_CHANGE + (index + 3 - age) % 3);
     }
     s->args.history = !p->anderson ? 0 : index < 2 ? index : 2;
-    const tyn_extent n = s->size[0];
-    tyn_rec_dispatch(
-        s->r, &(tyn_dispatch){.kernel = KERNEL_RESIDUAL,
-                              .cells = {n.x * n.y * n.z, p->shape.channels, 1},
-                              .args = &s->args,
-                              .ports = (const uint8_t[]){LATTICE_PORT_MOMENTS, PORT_SWEPT,
-                                                         PORT_CORRECTION, change[1], change[2],
-                                                         result[0], change[0], PORT_PARTIALS}});
+    uint32_t groups =
+        (num_cells(s->levels.size[0]) + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
+    tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = KERNEL_RESIDUAL,
+                                           .cells = {groups * LATTICE_GROUP, p->shape.channels, 1},
+                                           .args = &s->args,
+                                           .ports = (const uint8_t[]){
+                                               PORT_STATE, PORT_SWEPT, PORT_CORRECTION, change[1],
+                                               change[2], result[0], change[0], PORT_PARTIALS}});
     tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = KERNEL_WEIGHTS,
                                            .cells = {LATTICE_GROUP * p->shape.channels, 1, 1},
                                            .args = &s->args});
-    on_cells(s, KERNEL_MIX,
-             (const uint8_t[]){LATTICE_PORT_CELLS, LATTICE_PORT_SOURCE, result[0], result[1],
-                               result[2], PORT_WEIGHTS, LATTICE_PORT_MOMENTS, PORT_EMITTED,
-                               LATTICE_PORT_COUNTERS});
+    const uint32_t last = index + 1 == (uint32_t)p->sweeps;
+    tyn_rec_dispatch(
+        s->r, &(tyn_dispatch){.kernel = KERNEL_MIX,
+                              .cells = s->texels,
+                              .args = &s->args,
+                              .spec = &last,
+                              .ports = (const uint8_t[]){
+                                  LATTICE_PORT_CELLS, LATTICE_PORT_SOURCE, result[0], result[1],
+                                  result[2], PORT_WEIGHTS, PORT_STATE, PORT_EMITTED,
+                                  LATTICE_PORT_COUNTERS, LATTICE_PORT_MOMENTS}});
 }
 
 static void record(tyn_recorder *r, const void *params)
@@ -358,6 +349,7 @@ static void record(tyn_recorder *r, const void *params)
     solve s = {
         .r = r,
         .params = p,
+        .levels = plan_levels(dims),
         .texels = {dims.x, dims.y, dims.z * p->shape.channels},
         .args = {.dims = {dims.x, dims.y, dims.z},
                  .channels = p->shape.channels,
@@ -365,23 +357,27 @@ static void record(tyn_recorder *r, const void *params)
                  .dx = fmaxf(extent[0], fmaxf(extent[1], extent[2])) / (float)p->shape.cells,
                  .lines = lines_of(dims)},
     };
-    s.levels = level_sizes(dims, s.size);
-    while (s.size[s.first_small].x * s.size[s.first_small].y * s.size[s.first_small].z >
-           LATTICE_COARSE_CELLS) {
-        s.first_small++;
-    }
+    s.args.stride = s.levels.cells;
     tyn_rec_fill(r, LATTICE_PORT_COUNTERS, 0);
-    on_cells(&s, KERNEL_START, NULL);
+    on_cells(&s, KERNEL_START);
     if (p->cycles > 0) {
-        on_level(&s, KERNEL_STENCIL, 0, dims, 0);
-        for (uint32_t l = 1; l < s.levels; l++) {
-            on_level(&s, KERNEL_STENCIL_COARSE, l, s.size[l], 0);
+        on_level(&s, KERNEL_STENCIL, 0, cells_of(&s, 0), 0);
+        for (uint32_t l = 1; l < s.levels.num; l++) {
+            on_level(&s, KERNEL_STENCIL_COARSE, l, cells_of(&s, l), 0);
         }
     }
     for (uint32_t i = 0; i < (uint32_t)p->sweeps; i++) {
-        sweep(&s, i);
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = KERNEL_SWEEP,
+                               .cells = {s.args.lines, LATTICE_DIRECTIONS, p->shape.channels},
+                               .args = &s.args});
+        on_cells(&s, KERNEL_COLLECT);
+        for (int32_t c = 0; c < p->cycles; c++) {
+            v_cycle(&s);
+        }
+        mix(&s, i);
     }
-    double cells = (double)s.texels.x * s.texels.y * s.texels.z * p->sweeps;
+    double cells = (double)num_cells(s.texels) * p->sweeps;
     tyn_rec_work(r, "cells", cells);
     // A line's segment: 30 operations; collecting, mixing: 130; a cycle: 8/7 * 9 stencils of 15.
     tyn_rec_work(r, "flops", cells * (LATTICE_DIRECTIONS * 30 + 130 + 150 * p->cycles));

@@ -25,6 +25,7 @@ struct lattice_args { // kernels on the whole lattice
     tyn_vec3 tint;
     float dx;         // m
     tyn_uint lines;   // sweep: threads per direction and channel
+    tyn_uint stride;  // cells of all levels of the diffusion grid
     tyn_uint history; // residual, weights, mix: earlier sweeps to mix in, 0..2
 };
 
@@ -32,6 +33,7 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
     tyn_uvec3 dims;         // of level 0
     tyn_uint level;
     tyn_uint levels; // how many there are
+    tyn_uint stride; // cells of all
     tyn_uint channels;
     tyn_uint colour;       // relax: 0 or 1
     float dx;              // of level 0, m
@@ -39,9 +41,10 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
 };
 
 #define LATTICE_DIRECTIONS 14
-#define LATTICE_SWEEP_GROUP 64    // threads of a workgroup: lines
-#define LATTICE_GROUP 128         // ... of kernels that reduce
-#define LATTICE_NUM_DOTS 5        // dot products of Anderson mixing
+#define LATTICE_SWEEP_GROUP 64                   // threads of a workgroup: lines
+#define LATTICE_GROUP 64                         // ... of kernels that reduce
+#define LATTICE_GROUP_CELLS (16 * LATTICE_GROUP) // that it reduces
+#define LATTICE_NUM_DOTS 5                       // dot products of Anderson mixing
 #define LATTICE_COARSE_CELLS 4096 // a level of at most so many cells is solved inside one workgroup
 #define LATTICE_COARSE_GROUP 256
 #define LATTICE_SUN_GROUP 256

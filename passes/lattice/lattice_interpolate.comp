@@ -11,7 +11,10 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the fine one
 };
-layout(binding = 0, r32f) uniform image3D correction;
+layout(binding = 0, scalar) buffer correction_buffer
+{
+    float correction[];
+};
 
 void main()
 {
@@ -23,12 +26,12 @@ void main()
     if (any(greaterThanEqual(c.xy, fine.size.xy)) || ch >= int(args.channels)) {
         return;
     }
-    ivec3 stack = ivec3(0, 0, ch * int(args.dims.z));
+    uint channel = uint(ch) * args.stride;
     lattice_interpolation from = lattice_interpolation_of(c, coarse.size);
-    float sum = imageLoad(correction, fine.offset + stack + c).r;
+    float sum = 0.0;
     for (uint corner = 0; corner < 8; corner++) {
-        ivec3 texel = coarse.offset + stack + lattice_corner(from, corner);
-        sum += lattice_corner_weight(corner) * imageLoad(correction, texel).r;
+        uint i = channel + lattice_index(coarse, lattice_corner(from, corner));
+        sum += lattice_corner_weight(corner) * correction[i];
     }
-    imageStore(correction, fine.offset + stack + c, vec4(sum));
+    correction[channel + lattice_index(fine, c)] += sum;
 }

@@ -13,39 +13,62 @@ layout(push_constant, scalar) uniform push
 };
 layout(binding = 0) uniform sampler3D cells;
 layout(binding = 1) uniform sampler3D source;
-layout(binding = 2) uniform sampler3D result;
-layout(binding = 3) uniform sampler3D result_1; // of the sweep before
-layout(binding = 4) uniform sampler3D result_2;
+layout(binding = 2, scalar) readonly buffer result_buffer
+{
+    vec4 result[];
+};
+layout(binding = 3, scalar) readonly buffer result_1_buffer
+{
+    vec4 result_1[];
+};
+layout(binding = 4, scalar) readonly buffer result_2_buffer
+{
+    vec4 result_2[];
+};
 layout(binding = 5, scalar) readonly buffer weight_buffer
 {
     vec2 weights[];
 };
-layout(binding = 6, rgba32f) uniform writeonly image3D moments;
-layout(binding = 7, rgba32f) uniform writeonly image3D emitted;
+layout(binding = 6, scalar) writeonly buffer state_buffer
+{
+    vec4 state[];
+};
+layout(binding = 7, scalar) writeonly buffer emitted_buffer
+{
+    vec4 emitted[];
+};
 layout(binding = 8, scalar) buffer counter_buffer
 {
     counters_block counters;
 };
+layout(binding = 9, rgba32f) uniform writeonly image3D moments;
+
+layout(constant_id = 0) const uint last = 0; // 1: of the last sweep
 
 void main()
 {
-    ivec3 texel = ivec3(gl_GlobalInvocationID);
-    uint ch = uint(texel.z) / args.dims.z;
-    if (any(greaterThanEqual(uvec2(texel.xy), args.dims.xy)) || ch >= args.channels) {
+    uvec3 texel = gl_GlobalInvocationID;
+    uint ch = texel.z / args.dims.z;
+    if (any(greaterThanEqual(texel.xy, args.dims.xy)) || ch >= args.channels) {
         return;
     }
-    vec4 newest = texelFetch(result, texel, 0), m = newest;
+    uint i = (texel.z * args.dims.y + texel.y) * args.dims.x + texel.x;
+    vec4 newest = result[i], m = newest;
     if (args.history >= 1) {
-        m += weights[ch].x * (texelFetch(result_1, texel, 0) - newest);
+        m += weights[ch].x * (result_1[i] - newest);
     }
     if (args.history >= 2) {
-        m += weights[ch].y * (texelFetch(result_2, texel, 0) - newest);
+        m += weights[ch].y * (result_2[i] - newest);
     }
     if (any(isnan(m)) || any(isinf(m))) {
         m = vec4(0.0);
         atomicAdd(counters.non_finite, 1);
     }
-    imageStore(moments, texel, m);
-    vec4 beam = lattice_fetch_source(source, cells, texel);
-    imageStore(emitted, texel, lattice_emitted(m + beam, texelFetch(cells, texel, 0).z));
+    if (last == 1) {
+        imageStore(moments, ivec3(texel), m);
+    } else {
+        state[i] = m;
+        vec4 beam = lattice_fetch_source(source, cells, ivec3(texel));
+        emitted[i] = lattice_emitted(m + beam, texelFetch(cells, ivec3(texel), 0).z);
+    }
 }

@@ -11,10 +11,22 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args;
 };
-layout(binding = 0) uniform sampler3D stencil_lo;
-layout(binding = 1) uniform sampler3D stencil_hi;
-layout(binding = 2) uniform sampler3D rhs;
-layout(binding = 3, r32f) uniform image3D correction;
+layout(binding = 0, scalar) readonly buffer lo_buffer
+{
+    vec4 stencil_lo[];
+};
+layout(binding = 1, scalar) readonly buffer hi_buffer
+{
+    vec4 stencil_hi[];
+};
+layout(binding = 2, scalar) readonly buffer rhs_buffer
+{
+    float rhs[];
+};
+layout(binding = 3, scalar) buffer correction_buffer
+{
+    float correction[];
+};
 
 void main()
 {
@@ -26,15 +38,15 @@ void main()
     if (any(greaterThanEqual(c.xy, level.size.xy)) || ch >= int(args.channels)) {
         return;
     }
-    ivec3 texel = level.offset + c + ivec3(0, 0, ch * int(args.dims.z));
-    lattice_stencil k =
-        lattice_stencil_of(texelFetch(stencil_lo, texel, 0), texelFetch(stencil_hi, texel, 0));
-    float sum = texelFetch(rhs, texel, 0).r;
-    for (int axis = 0; axis < 3; axis++) {
-        ivec3 o = ivec3(0);
-        o[axis] = 1;
-        sum += c[axis] > 0 ? k.lo[axis] * imageLoad(correction, texel - o).r : 0.0;
-        sum += c[axis] < level.size[axis] - 1 ? k.hi[axis] * imageLoad(correction, texel + o).r : 0.0;
-    }
-    imageStore(correction, texel, vec4(sum / k.diagonal));
+    uint i = uint(ch) * args.stride + lattice_index(level, c);
+    lattice_stencil k = lattice_stencil_of(stencil_lo[i], stencil_hi[i]);
+    uint step_y = level.size.x, step_z = level.size.x * level.size.y;
+    float sum = rhs[i];
+    sum += c.x > 0 ? k.lo.x * correction[i - 1] : 0.0;
+    sum += c.x < level.size.x - 1 ? k.hi.x * correction[i + 1] : 0.0;
+    sum += c.y > 0 ? k.lo.y * correction[i - step_y] : 0.0;
+    sum += c.y < level.size.y - 1 ? k.hi.y * correction[i + step_y] : 0.0;
+    sum += c.z > 0 ? k.lo.z * correction[i - step_z] : 0.0;
+    sum += c.z < level.size.z - 1 ? k.hi.z * correction[i + step_z] : 0.0;
+    correction[i] = sum / k.diagonal;
 }

@@ -3,7 +3,8 @@
 //
 // The change r = result - start of up to three sweeps is kept; with d_i = r_i - r the products are
 // d1.d1, d2.d2, d1.d2, d1.r, d2.r, where flux counts three times (then the norm is that of the radiance
-// whose first moments these are). Each workgroup sums its cells pairwise.
+// whose first moments these are). Each thread adds its cells in order,
+// each workgroup its threads pairwise.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -14,13 +15,34 @@ layout(push_constant, scalar) uniform push
 {
     lattice_args args;
 };
-layout(binding = 0) uniform sampler3D moments; // at the start of the sweep
-layout(binding = 1) uniform sampler3D swept;
-layout(binding = 2) uniform sampler3D correction;
-layout(binding = 3) uniform sampler3D change_1; // of the sweep before
-layout(binding = 4) uniform sampler3D change_2;
-layout(binding = 5, rgba32f) uniform writeonly image3D result;
-layout(binding = 6, rgba32f) uniform writeonly image3D change;
+layout(binding = 0, scalar) readonly buffer state_buffer
+{
+    vec4 state[];
+};
+layout(binding = 1, scalar) readonly buffer swept_buffer
+{
+    vec4 swept[];
+};
+layout(binding = 2, scalar) readonly buffer correction_buffer
+{
+    float correction[];
+};
+layout(binding = 3, scalar) readonly buffer change_1_buffer
+{
+    vec4 change_1[];
+};
+layout(binding = 4, scalar) readonly buffer change_2_buffer
+{
+    vec4 change_2[];
+};
+layout(binding = 5, scalar) writeonly buffer result_buffer
+{
+    vec4 result[];
+};
+layout(binding = 6, scalar) writeonly buffer change_buffer
+{
+    vec4 change[];
+};
 layout(binding = 7, scalar) writeonly buffer partial_buffer
 {
     float partials[]; // [channel][workgroup][dot]
@@ -35,29 +57,32 @@ float norm_dot(vec4 a, vec4 b)
 
 void main()
 {
-    uint me = gl_LocalInvocationIndex, i = gl_GlobalInvocationID.x, ch = gl_GlobalInvocationID.y;
-    uint plane = args.dims.x * args.dims.y;
-    for (uint k = 0; k < LATTICE_NUM_DOTS; k++) {
-        sums[k][me] = 0.0;
-    }
-    if (i < plane * args.dims.z) {
-        ivec3 c = ivec3(i % args.dims.x, i / args.dims.x % args.dims.y, i / plane + ch * args.dims.z);
-        vec4 m = texelFetch(swept, c, 0);
-        m.x += texelFetch(correction, c, 0).r;
-        vec4 r = m - texelFetch(moments, c, 0);
-        imageStore(result, c, m);
-        imageStore(change, c, r);
+    uint me = gl_LocalInvocationIndex, ch = gl_GlobalInvocationID.y;
+    uint cells = args.dims.x * args.dims.y * args.dims.z;
+    uint begin = gl_WorkGroupID.x * LATTICE_GROUP_CELLS;
+    uint end = min(begin + LATTICE_GROUP_CELLS, cells);
+    float dots[LATTICE_NUM_DOTS] = float[](0.0, 0.0, 0.0, 0.0, 0.0);
+    for (uint c = begin + me; c < end; c += LATTICE_GROUP) {
+        uint i = ch * cells + c;
+        vec4 m = swept[i];
+        m.x += correction[ch * args.stride + c];
+        vec4 r = m - state[i];
+        result[i] = m;
+        change[i] = r;
         if (args.history >= 1) {
-            vec4 d1 = texelFetch(change_1, c, 0) - r;
-            sums[0][me] = norm_dot(d1, d1);
-            sums[3][me] = norm_dot(d1, r);
+            vec4 d1 = change_1[i] - r;
+            dots[0] += norm_dot(d1, d1);
+            dots[3] += norm_dot(d1, r);
             if (args.history >= 2) {
-                vec4 d2 = texelFetch(change_2, c, 0) - r;
-                sums[1][me] = norm_dot(d2, d2);
-                sums[2][me] = norm_dot(d1, d2);
-                sums[4][me] = norm_dot(d2, r);
+                vec4 d2 = change_2[i] - r;
+                dots[1] += norm_dot(d2, d2);
+                dots[2] += norm_dot(d1, d2);
+                dots[4] += norm_dot(d2, r);
             }
         }
+    }
+    for (uint k = 0; k < LATTICE_NUM_DOTS; k++) {
+        sums[k][me] = dots[k];
     }
     for (uint half_n = LATTICE_GROUP / 2; half_n > 0; half_n /= 2) {
         barrier();

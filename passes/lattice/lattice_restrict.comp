@@ -11,10 +11,22 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the coarse one
 };
-layout(binding = 0) uniform sampler3D stencil_lo;
-layout(binding = 1) uniform sampler3D stencil_hi;
-layout(binding = 2, r32f) uniform image3D rhs;
-layout(binding = 3, r32f) uniform image3D correction;
+layout(binding = 0, scalar) readonly buffer lo_buffer
+{
+    vec4 stencil_lo[];
+};
+layout(binding = 1, scalar) readonly buffer hi_buffer
+{
+    vec4 stencil_hi[];
+};
+layout(binding = 2, scalar) buffer rhs_buffer
+{
+    float rhs[];
+};
+layout(binding = 3, scalar) buffer correction_buffer
+{
+    float correction[];
+};
 
 void main()
 {
@@ -26,24 +38,25 @@ void main()
     if (any(greaterThanEqual(c.xy, coarse.size.xy)) || ch >= int(args.channels)) {
         return;
     }
-    ivec3 stack = ivec3(0, 0, ch * int(args.dims.z));
+    uint channel = uint(ch) * args.stride;
+    uint step_y = fine.size.x, step_z = fine.size.x * fine.size.y;
     float sum = 0.0;
     for (int child = 0; child < 8; child++) {
         ivec3 f = 2 * c + ivec3(child & 1, child >> 1 & 1, child >> 2);
         if (any(greaterThanEqual(f, fine.size))) {
             continue;
         }
-        ivec3 texel = fine.offset + stack + f;
-        lattice_stencil k =
-            lattice_stencil_of(texelFetch(stencil_lo, texel, 0), texelFetch(stencil_hi, texel, 0));
-        sum += imageLoad(rhs, texel).r - k.diagonal * imageLoad(correction, texel).r;
-        for (int axis = 0; axis < 3; axis++) {
-            ivec3 o = ivec3(0);
-            o[axis] = 1;
-            sum += f[axis] > 0 ? k.lo[axis] * imageLoad(correction, texel - o).r : 0.0;
-            sum += f[axis] < fine.size[axis] - 1 ? k.hi[axis] * imageLoad(correction, texel + o).r : 0.0;
-        }
+        uint i = channel + lattice_index(fine, f);
+        lattice_stencil k = lattice_stencil_of(stencil_lo[i], stencil_hi[i]);
+        sum += rhs[i] - k.diagonal * correction[i];
+        sum += f.x > 0 ? k.lo.x * correction[i - 1] : 0.0;
+        sum += f.x < fine.size.x - 1 ? k.hi.x * correction[i + 1] : 0.0;
+        sum += f.y > 0 ? k.lo.y * correction[i - step_y] : 0.0;
+        sum += f.y < fine.size.y - 1 ? k.hi.y * correction[i + step_y] : 0.0;
+        sum += f.z > 0 ? k.lo.z * correction[i - step_z] : 0.0;
+        sum += f.z < fine.size.z - 1 ? k.hi.z * correction[i + step_z] : 0.0;
     }
-    imageStore(rhs, coarse.offset + stack + c, vec4(sum));
-    imageStore(correction, coarse.offset + stack + c, vec4(0.0));
+    uint i = channel + lattice_index(coarse, c);
+    rhs[i] = sum;
+    correction[i] = 0.0;
 }

@@ -19,19 +19,26 @@ layout(binding = 0, scalar) uniform environment_uniform
 };
 layout(binding = 1) uniform sampler3D cells;
 layout(binding = 2) uniform sampler3D source;
-layout(binding = 3, rgba32f) uniform writeonly image3D moments;
-layout(binding = 4, rgba32f) uniform writeonly image3D emitted;
+layout(binding = 3, scalar) writeonly buffer state_buffer
+{
+    vec4 state[];
+};
+layout(binding = 4, scalar) writeonly buffer emitted_buffer
+{
+    vec4 emitted[];
+};
 
 void main()
 {
-    ivec3 texel = ivec3(gl_GlobalInvocationID);
-    uint ch = uint(texel.z) / args.dims.z;
-    if (any(greaterThanEqual(uvec2(texel.xy), args.dims.xy)) || ch >= args.channels) {
+    uvec3 texel = gl_GlobalInvocationID; // channels stacked along z
+    uint ch = texel.z / args.dims.z;
+    if (any(greaterThanEqual(texel.xy, args.dims.xy)) || ch >= args.channels) {
         return;
     }
+    uint i = (texel.z * args.dims.y + texel.y) * args.dims.x + texel.x;
     float boundary = lattice_channel(environment.mean, args.channels, ch, args.tint);
     vec4 m = vec4(LATTICE_4PI * boundary, 0.0, 0.0, 0.0);
-    imageStore(moments, texel, m);
-    vec4 beam = lattice_fetch_source(source, cells, texel);
-    imageStore(emitted, texel, lattice_emitted(m + beam, texelFetch(cells, texel, 0).z));
+    state[i] = m;
+    vec4 beam = lattice_fetch_source(source, cells, ivec3(texel));
+    emitted[i] = lattice_emitted(m + beam, texelFetch(cells, ivec3(texel), 0).z);
 }

@@ -11,8 +11,14 @@ layout(push_constant, scalar) uniform push
     lattice_level_args args;
 };
 layout(binding = 0) uniform sampler3D cells;
-layout(binding = 1, rgba32f) uniform writeonly image3D stencil_lo;
-layout(binding = 2, rgba32f) uniform writeonly image3D stencil_hi;
+layout(binding = 1, scalar) writeonly buffer lo_buffer
+{
+    vec4 stencil_lo[];
+};
+layout(binding = 2, scalar) writeonly buffer hi_buffer
+{
+    vec4 stencil_hi[];
+};
 
 // 1 / (3 sigma_tr), and a second term without which a correction with this coefficient makes the
 // iteration diverge where cells are optically thick (tau' > 3): a sweep itself spreads light by about
@@ -48,6 +54,7 @@ void main()
         }
     }
     lattice_stencil s = lattice_stencil(k[0], k[1], cell.y * args.dx * args.dx * args.dx, 0.0);
-    imageStore(stencil_lo, texel, lattice_stencil_lo(s));
-    imageStore(stencil_hi, texel, lattice_stencil_hi(s));
+    uint i = uint(texel.z / dims.z) * args.stride + uint((c.z * dims.y + c.y) * dims.x + c.x);
+    stencil_lo[i] = lattice_stencil_lo(s);
+    stencil_hi[i] = lattice_stencil_hi(s);
 }

@@ -14,8 +14,14 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the coarse one
 };
-layout(binding = 0, rgba32f) uniform image3D stencil_lo;
-layout(binding = 1, rgba32f) uniform image3D stencil_hi;
+layout(binding = 0, scalar) buffer lo_buffer
+{
+    vec4 stencil_lo[];
+};
+layout(binding = 1, scalar) buffer hi_buffer
+{
+    vec4 stencil_hi[];
+};
 
 void main()
 {
@@ -27,7 +33,7 @@ void main()
     if (any(greaterThanEqual(c.xy, coarse.size.xy)) || ch >= int(args.channels)) {
         return;
     }
-    ivec3 stack = ivec3(0, 0, ch * int(args.dims.z));
+    uint channel = uint(ch) * args.stride;
     float edge = args.dx * float(1u << (args.level - 1)), area = edge * edge; // of fine cells
     lattice_stencil k = lattice_stencil(vec3(0.0), vec3(0.0), 0.0, 0.0);
     for (int child = 0; child < 8; child++) {
@@ -35,8 +41,8 @@ void main()
         if (any(greaterThanEqual(f, fine.size))) {
             continue;
         }
-        vec4 lo = imageLoad(stencil_lo, fine.offset + stack + f);
-        vec4 hi = imageLoad(stencil_hi, fine.offset + stack + f);
+        uint i = channel + lattice_index(fine, f);
+        vec4 lo = stencil_lo[i], hi = stencil_hi[i];
         k.absorption += lo.w;
         for (int axis = 0; axis < 3; axis++) {
             // At the box the half cell becomes twice as long. A coarse cell that reaches beyond the box has
@@ -53,6 +59,7 @@ void main()
             }
         }
     }
-    imageStore(stencil_lo, coarse.offset + stack + c, lattice_stencil_lo(k));
-    imageStore(stencil_hi, coarse.offset + stack + c, lattice_stencil_hi(k));
+    uint i = channel + lattice_index(coarse, c);
+    stencil_lo[i] = lattice_stencil_lo(k);
+    stencil_hi[i] = lattice_stencil_hi(k);
 }

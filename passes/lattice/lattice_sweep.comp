@@ -20,9 +20,14 @@ layout(binding = 0, scalar) uniform environment_uniform
     env_block environment;
 };
 layout(binding = 1) uniform sampler3D cells;
-layout(binding = 2) uniform sampler3D emitted;
-// Mean radiance in the cell, directions stacked along x.
-layout(binding = 3, r32f) uniform writeonly image3D mean_psi;
+layout(binding = 2, scalar) readonly buffer emitted_buffer
+{
+    vec4 emitted[];
+};
+layout(binding = 3, scalar) writeonly buffer mean_buffer
+{
+    float mean_psi[]; // mean radiance in a cell: [direction][channel][cell]
+};
 layout(binding = 4, scalar) writeonly buffer leak_buffer
 {
     float leaks[]; // per thread: what leaves the box less what enters, W
@@ -55,8 +60,11 @@ void main()
         ivec3 first = mix(dims - 1, ivec3(0), greaterThan(o, ivec3(0)));
         ivec3 last = dims - 1 - first;
         bvec3 moves = notEqual(o, ivec3(0));
-        ivec3 stack = ivec3(0, 0, int(ch) * dims.z);
-        ivec3 to_mean = stack + ivec3(int(direction) * dims.x, 0, 0);
+        ivec3 strides = ivec3(1, dims.x, dims.x * dims.y);
+        ivec3 step_back = -o * (dims - 1) * strides; // from the last cell of an axis to its first
+        int first_cell = int(ch) * dims.z * strides.z;
+        int to_mean = int(direction) * int(args.channels) * dims.z * strides.z;
+        int at = first_cell + c.x * strides.x + c.y * strides.y + c.z * strides.z;
 
         float length_l = args.dx * (diagonal ? sqrt(3.0) : 1.0);
         vec3 omega = vec3(o) * (diagonal ? inversesqrt(3.0) : 1.0);
@@ -65,34 +73,36 @@ void main()
         float boundary = lattice_channel(environment.mean, args.channels, ch, args.tint);
 
         float psi = boundary, before = 0.0;
-        vec4 e = texelFetch(emitted, c + stack, 0);
+        vec4 e = emitted[at];
         float s = e.x + dot(omega, e.yzw);
         for (int i = 0; i < dims[axis]; i++) {
-            bool enters = any(both(equal(c, first), moves)), leaves = any(both(equal(c, last), moves));
+            bvec3 at_first = both(equal(c, first), moves), at_last = both(equal(c, last), moves);
+            bool enters = any(at_first), leaves = any(at_last);
             if (enters) {
                 psi = boundary;
                 leak -= psi;
             }
-            ivec3 next = mix(c + o, first, both(equal(c, last), moves));
-            e = texelFetch(emitted, next + stack, 0);
+            // On, or around to the line that enters at the opposite side.
+            vec4 cell = texelFetch(cells, c + ivec3(0, 0, int(ch) * dims.z), 0);
+            int next = at + (at_last.x ? step_back.x : o.x * strides.x) +
+                       (at_last.y ? step_back.y : o.y * strides.y) +
+                       (at_last.z ? step_back.z : o.z * strides.z);
+            c = mix(c + o, first, at_last);
+            e = emitted[next];
             float behind = e.x + dot(omega, e.yzw);
             // Central difference, one-sided at the box; limited so that the source keeps its sign.
             float slope = enters ? (leaves ? 0.0 : behind - s)
                                  : (leaves ? s - before : 0.5 * (behind - before));
             slope = clamp(slope, -2.0 * abs(s), 2.0 * abs(s));
 
-            vec4 cell = texelFetch(cells, c + stack, 0);
             lattice_weights w = lattice_weights_of((cell.x + cell.y) * length_l);
             float q = length_l * cell.x, emission = length_l * cell.w;
-            float mean = psi * w.a0 + q * (s * w.a1 + slope * w.b1) + emission * w.a1;
+            mean_psi[at + to_mean] = psi * w.a0 + q * (s * w.a1 + slope * w.b1) + emission * w.a1;
             psi = psi * w.e + q * (s * w.a0 + slope * w.w1) + emission * w.a0;
-            imageStore(mean_psi, c + to_mean, vec4(mean));
-            if (leaves) {
-                leak += psi;
-            }
+            leak += leaves ? psi : 0.0;
             before = s;
             s = behind;
-            c = next;
+            at = next;
         }
         leak *= tube;
     }
