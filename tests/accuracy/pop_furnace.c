@@ -1,0 +1,66 @@
+// pop_furnace.c -- surroundings of radiance 1 and no absorption: every pixel of `pop` is 1, for any density
+// and anisotropy. The mean of the environment enters at the lattice's boundary.
+#include "gpu_test.h"
+#include "picture.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { N = 24 };
+
+// Lumps from 0 to about 2.
+static float *lumps(void)
+{
+    float *grid = malloc(N * N * N * sizeof *grid);
+    for (int i = 0; i < N * N * N; i++) {
+        double x = i % N / (double)N, y = i / N % N / (double)N, z = i / N / N / (double)N;
+        double v = 1 + sin(11 * x + 5 * y) * sin(9 * y - 4 * z) + 0.5 * sin(23 * z + 7 * x);
+        grid[i] = v > 0.3 ? (float)v : 0; // with hard edges
+    }
+    return grid;
+}
+
+static void furnace(void **state)
+{
+    gpu_test *t = *state;
+    static const float gs[] = {0, 0.5f, 0.9f}, sigmas[] = {0.1f, 4, 60};
+    float *grid = lumps();
+    for (int k = 0; k < 18; k++) {
+        float g = gs[k % 3], sigma = sigmas[k / 3 % 3];
+        bool lumpy = k >= 9;
+        tyn_scene *scene = malloc(sizeof *scene);
+        tyn_scene_init(scene);
+        tyn_medium medium = grey_medium(sigma, 0, g);
+        scene_add_box(scene, &medium, (float[]){0, 0, 0}, (float[]){1, 1, 1}, (uint32_t[]){N, N, N},
+                      lumpy ? grid : NULL);
+        scene_set_sky(scene, 1);
+        tyn_view view = {0};
+        view_orthographic(&view, (float[]){0.5f, 0.5f, 0.5f}, -1, -2, -0.7f, (float[]){0, 1, 0},
+                          0.9f, 48);
+        if (k % 2) { // from inside, perspective
+            view.camera.projection = TYN_PERSPECTIVE;
+            view.camera.yfov = 1.2f;
+            view.camera.position[0] = 0.8f;
+            view.camera.position[1] = 0.9f;
+            view.camera.position[2] = 0.7f;
+        }
+        picture p;
+        picture_render(&p, t->dev, "pop", scene, &view, NULL, 0);
+        double worst = 0;
+        for (int i = 0; i < 48 * 48 * 3; i++) {
+            worst = fmax(worst, fabs(p.rgb[i] - 1.0));
+        }
+        print_message("%s, sigma_s %4.1f, g %.1f: worst pixel %.3f %% from 1\n",
+                      lumpy ? "lumps" : "cube ", (double)sigma, (double)g, 100 * worst);
+        assert_true(worst <= 0.005);
+        picture_free(&p);
+        tyn_scene_finish(scene);
+        free(scene);
+    }
+    free(grid);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(furnace)};
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}

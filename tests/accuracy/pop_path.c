@@ -1,0 +1,223 @@
+// pop_path.c -- `pop` against converged pictures of `path` of the same scenes, and against the reference
+// image of coloured blobs.
+//
+// Absolute radiance, relative L1 on blocks of 8x8 pixels less what the references' noise explains, the
+// worst of three lattices. TYN_LONG=N takes N times the samples.
+#include "gpu_test.h"
+#include "npy.h"
+#include "picture.h"
+#include <tyndall/io.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const int cells[] = {16, 24, 32};
+enum { NUM_CELLS = 3 };
+
+// Worst error over the lattices.
+static double worst_error(gpu_test *t, const char *name, const tyn_scene *scene,
+                          const tyn_view *view, const picture *reference)
+{
+    double worst = 0;
+    for (int k = 0; k < NUM_CELLS; k++) {
+        char settings[64];
+        snprintf(settings, sizeof settings, "lattice.cells=%d", cells[k]);
+        picture ours;
+        picture_render(&ours, t->dev, "pop", scene, view, settings, 0);
+        picture_error e = picture_compare(&ours, reference, 8);
+        print_message("%-30s %2d cells: error %5.2f %% (rel_l1 %5.2f, noise %4.2f, bias %+5.2f)\n",
+                      name, cells[k], 100 * e.reported, 100 * e.rel_l1, 100 * e.noise,
+                      100 * e.bias);
+        worst = fmax(worst, e.reported);
+        picture_free(&ours);
+    }
+    return worst;
+}
+
+static double against_path(gpu_test *t, const char *name, const tyn_scene *scene,
+                           const tyn_view *view, uint32_t spp)
+{
+    const char *effort = getenv("TYN_LONG");
+    picture reference;
+    picture_render(&reference, t->dev, "path", scene, view, NULL,
+                   effort ? spp * (uint32_t)atoi(effort) : spp);
+    double e = worst_error(t, name, scene, view, &reference);
+    picture_free(&reference);
+    return e;
+}
+
+// ---- scenes made here -------------------------------------------------------------------------
+
+typedef struct made {
+    const char *name;
+    float sigma_s[3], sigma_a[3], g[3];
+    float sun[3], look[3];
+    bool blobs;
+} made;
+
+enum { N = 48 };
+
+static float *blobs(void)
+{
+    static const float centre[5][4] = {{0.35f, 0.4f, 0.4f, 0.12f},
+                                       {0.65f, 0.5f, 0.45f, 0.15f},
+                                       {0.5f, 0.45f, 0.7f, 0.1f},
+                                       {0.4f, 0.7f, 0.55f, 0.09f},
+                                       {0.6f, 0.3f, 0.3f, 0.08f}};
+    float *grid = malloc(N * N * N * sizeof *grid);
+    for (int i = 0; i < N * N * N; i++) {
+        float p[3] = {((float)(i % N) + 0.5f) / N, ((float)(i / N % N) + 0.5f) / N,
+                      ((float)(i / N / N) + 0.5f) / N};
+        float v = -0.02f;
+        for (int b = 0; b < 5; b++) {
+            float q = 0;
+            for (int a = 0; a < 3; a++) {
+                q += (p[a] - centre[b][a]) * (p[a] - centre[b][a]);
+            }
+            v += expf(-q / (2 * centre[b][3] * centre[b][3]));
+        }
+        grid[i] = fmaxf(v, 0);
+    }
+    return grid;
+}
+
+#define GREY(x)                                                                                    \
+    {                                                                                              \
+        x, x, x                                                                                    \
+    }
+
+static void made_scenes(void **state)
+{
+    static const made scenes[] = {
+        {"oblique light, g 0", GREY(4), GREY(0), GREY(0), {5, -3, 8}, {-6, -5, 3}, false},
+        {"oblique light, g 0.5", GREY(4), GREY(0), GREY(0.5f), {5, -3, 8}, {-6, -5, 3}, false},
+        {"oblique light and view, g 0.9",
+         GREY(4),
+         GREY(0),
+         GREY(0.9f),
+         {5, -3, 8},
+         {2, -5, -7},
+         false},
+        {"towards the light, g 0.9", GREY(4), GREY(0), GREY(0.9f), {5, -3, 8}, {-4, 4, -8}, false},
+        {"coloured, g by channel",
+         {2, 4, 8},
+         {0.5f, 0.1f, 0},
+         {0.1f, 0.4f, 0.7f},
+         {3, -6, 2},
+         {-5, -3, -4},
+         false},
+        {"g 0.7", GREY(8), GREY(0.2f), GREY(0.7f), {-2, -5, 3}, {4, -2, -5}, false},
+        {"g 0.8", GREY(8), GREY(0.2f), GREY(0.8f), {-2, -5, 3}, {4, -2, -5}, false},
+        {"blobs, g 0.75", GREY(20), GREY(0.2f), GREY(0.75f), {1, -4, 2}, {-3, -1, -4}, true},
+        {"coloured blobs, g 0.6",
+         {10, 14, 20},
+         {3, 1, 0.3f},
+         GREY(0.6f),
+         {4, -3, 1},
+         {-1, -2, -5},
+         true},
+    };
+    enum { NUM = sizeof scenes / sizeof scenes[0] };
+    double errors[NUM];
+    float *grid = blobs();
+    for (int i = 0; i < NUM; i++) {
+        const made *m = &scenes[i];
+        tyn_scene *scene = malloc(sizeof *scene);
+        tyn_scene_init(scene);
+        tyn_medium medium = grey_medium(0, 0, 0);
+        memcpy(medium.sigma_s, m->sigma_s, sizeof m->sigma_s);
+        memcpy(medium.sigma_a, m->sigma_a, sizeof m->sigma_a);
+        memcpy(medium.g, m->g, sizeof m->g);
+        scene_add_box(scene, &medium, (float[]){0, 0, 0}, (float[]){1, 1, 1}, (uint32_t[]){N, N, N},
+                      m->blobs ? grid : NULL);
+        scene_add_sun(scene, m->sun[0], m->sun[1], m->sun[2], 3, 2.5f, 2);
+        tyn_view view = {0};
+        view_orthographic(&view, (float[]){0.5f, 0.5f, 0.5f}, m->look[0], m->look[1], m->look[2],
+                          (float[]){0, 1, 0}, 0.8f, 64);
+        errors[i] = against_path(*state, m->name, scene, &view, 256);
+        tyn_scene_finish(scene);
+        free(scene);
+    }
+    free(grid);
+    double sum = 0;
+    for (int i = 0; i < NUM; i++) {
+        sum += errors[i];
+        assert_true(errors[i] <= 0.12);
+    }
+    print_message("mean of %d scenes: %.2f %%\n", NUM, 100 * sum / NUM);
+}
+
+// ---- scenes of the samples --------------------------------------------------------------------
+
+static void sample_scenes(void **state)
+{
+    gpu_test *t = *state;
+    static const struct {
+        const char *name;
+        uint32_t spp;
+    } samples[] = {{"cube-oblique", 256}, {"smoke", 256}, {"cloud", 256}, {"two-media", 256}};
+    double errors[4];
+    for (int i = 0; i < 4; i++) {
+        char path[512];
+        snprintf(path, sizeof path, "%s/%s.gltf", TYN_SAMPLE_SCENES, samples[i].name);
+        tyn_scene *scene = malloc(sizeof *scene);
+        tyn_scene_init(scene);
+        assert_int_equal(tyn_scene_load(scene, path, NULL, &t->log), TYN_OK);
+        tyn_view view = {.width = 64, .height = 64};
+        if (scene->num_cameras) {
+            view.camera = scene->cameras[0];
+        } else {
+            tyn_camera_frame_scene(&view.camera, scene);
+        }
+        errors[i] = against_path(t, samples[i].name, scene, &view, samples[i].spp);
+        tyn_scene_finish(scene);
+        free(scene);
+    }
+    for (int i = 0; i < 4; i++) {
+        assert_true(errors[i] <= 0.12);
+    }
+}
+
+// The blobs of the shared references, 10 m wide, three colours, g 0.9.
+static void reference_blobs(void **state)
+{
+    picture reference;
+    char path[512];
+    if (!shared_path(path, sizeof path, "reference/images/blobs64.f32") ||
+        !picture_reference(&reference, "blobs_dir_toward")) {
+        print_message("skipped: no reference blobs_dir_toward\n");
+        skip();
+    }
+    const uint32_t size[3] = {64, 64, 64};
+    float *grid = malloc(64 * 64 * 64 * sizeof *grid);
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    assert_int_equal(fread(grid, sizeof *grid, 64 * 64 * 64, file), 64 * 64 * 64);
+    fclose(file);
+    tyn_scene *scene = malloc(sizeof *scene);
+    tyn_scene_init(scene);
+    tyn_medium medium = {.sigma_s = {2.9f, 3.6f, 4.2f},
+                         .sigma_a = {3.4f, 3.35f, 3.4f},
+                         .g = GREY(0.9f),
+                         .density_scale = 1};
+    scene_add_box(scene, &medium, (float[]){-5, -5, -5}, (float[]){5, 5, 5}, size, grid);
+    scene_add_sun(scene, -0.5f, -0.6f, 0.4f, 1, 1, 1);
+    tyn_view view = {0};
+    view_orthographic(&view, (float[]){0, 0, 0}, 0.5f, 0.3f, -0.5f, (float[]){0, 1, 0}, 7,
+                      reference.width);
+    double e = worst_error(*state, "blobs_dir_toward", scene, &view, &reference);
+    assert_true(e <= 0.10);
+    picture_free(&reference);
+    tyn_scene_finish(scene);
+    free(scene);
+    free(grid);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(reference_blobs),
+                                       cmocka_unit_test(made_scenes),
+                                       cmocka_unit_test(sample_scenes)};
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
