@@ -108,7 +108,7 @@ beam_place beam_ray_at(beam_ray ray, float s)
     float inside = max(min(min(lengths.x, lengths.y), lengths.z), 0.0);
     float depth = ray.depth0 + s * ray.depth1;
     return beam_place(ray.uvw0 + s * ray.uvw1, ray.even ? inside : depth,
-                      ray.edges ? depth - inside : 0.0, inside * ray.z_rate);
+                      ray.edges && !ray.even ? depth - inside : 0.0, inside * ray.z_rate);
 }
 
 vec3 beam_fetch(sampler3D tex, beam_place place)

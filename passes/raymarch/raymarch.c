@@ -150,7 +150,7 @@ float tyn_raymarch_longest_step(float sigma_t, float dx, const float extent[3])
 {
     float side = fmaxf(extent[0], fmaxf(extent[1], extent[2]));
     // Light that falls off as e^-x over a step of depth x comes out x^2 / 24 too dark.
-    float by_depth = sigma_t > 0.0f ? fmaxf(0.15f / sigma_t, side / 512.0f) : side;
+    float by_depth = sigma_t > 0.0f ? fmaxf(0.1f / sigma_t, side / 512.0f) : side;
     return fminf(fminf(by_depth, side / 8.0f), dx > 0.0f ? dx : side);
 }
 
