@@ -41,7 +41,7 @@ static const tyn_param params[] = {
      "most cubic cells along the longest side; needless ones beyond the resolution of the medium "
      "and "
      "twice that of the aligned grids are not made"},
-    {"range", TYN_PARAM_FLOAT, offsetof(tyn_upsample_params, range), 0.25, 0, 10, "",
+    {"range", TYN_PARAM_FLOAT, offsetof(tyn_upsample_params, range), 1, 0, 10, "",
      "relative difference of sigma_s that counts as another kind of place; 0 = plain trilinear"},
 };
 
