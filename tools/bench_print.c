@@ -73,8 +73,12 @@ void bench_print_result(const bench_case *c, const bench_run *run, const bench_r
         printf("%-20s cannot do this scene\n", run->name);
         return;
     }
-    printf("%-20s %6.2f %% %6.2f %%", run->name, 100 * result->error[0].error,
-           100 * result->error[1].error);
+    printf("%-20s", run->name);
+    for (int k = 0; k < BENCH_BLOCKS; k++) {
+        // An error below the noise of the reference is a small difference of large numbers.
+        bool vague = result->error[k].error < c->reference.noise[k];
+        printf(" %s%5.2f %%", vague ? "~" : " ", 100 * result->error[k].error);
+    }
     print_ms(result->cold_ms);
     print_ms(result->camera_ms);
     print_ms(result->unchanged_ms);
