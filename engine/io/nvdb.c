@@ -242,7 +242,7 @@ typedef struct extraction {
     const pnanovdb_grid_type_constants_t *layout;
     int64_t lo[3]; // index coordinates of the first voxel of the volume
     tyn_volume *volume;
-    uint64_t budget[3]; // how many leaf, lower, upper nodes the memory can hold
+    uint64_t voxels_left; // that no tile or leaf has covered
 } extraction;
 
 // The part of a cube of index space that lies in the volume, in voxels of the volume.
@@ -308,20 +308,39 @@ static float leaf_value(const extraction *x, pnanovdb_leaf_handle_t leaf, pnanov
     }
 }
 
-// A node of `bytes` at `address` lies behind the tree header and inside the memory, is aligned, and is
-// not one too many (a damaged file may hang the same node below many parents).
-static bool node_fits(extraction *x, pnanovdb_address_t address, uint64_t bytes, int level)
+// Tiles and leaves cover every voxel at most once; without this a small file with many overlapping
+// ones would keep us busy for years.
+static bool take(extraction *x, const region *r)
+{
+    uint64_t count =
+        (uint64_t)(r->end[0] - r->begin[0]) * (r->end[1] - r->begin[1]) * (r->end[2] - r->begin[2]);
+    bool enough = count <= x->voxels_left;
+    x->voxels_left -= enough ? count : 0;
+    return enough;
+}
+
+static bool copy_tile(extraction *x, const region *r, pnanovdb_address_t value)
+{
+    if (!take(x, r)) {
+        return false;
+    }
+    fill(x, r, tile_value(x, value));
+    return true;
+}
+
+// A node of `bytes` at `address` lies behind the tree header and inside the memory, and is aligned.
+static bool node_fits(const extraction *x, pnanovdb_address_t address, uint64_t bytes)
 {
     uint64_t at = address.byte_offset;
     return at >= PNANOVDB_GRID_SIZE + PNANOVDB_TREE_SIZE && at % 8 == 0 && at <= x->size &&
-           bytes <= x->size - at && x->budget[level]-- > 0;
+           bytes <= x->size - at;
 }
 
 static bool copy_leaf(extraction *x, pnanovdb_leaf_handle_t leaf, const int64_t origin[3])
 {
     region r;
     uint64_t bytes = x->layout->leaf_size;
-    if (!node_fits(x, leaf.address, bytes, 0)) {
+    if (!node_fits(x, leaf.address, bytes)) {
         return false;
     }
     if (x->type == PNANOVDB_GRID_TYPE_FPN) {
@@ -333,6 +352,9 @@ static bool copy_leaf(extraction *x, pnanovdb_leaf_handle_t leaf, const int64_t 
     }
     if (!clip(x, origin, 8, &r)) {
         return true;
+    }
+    if (!take(x, &r)) {
+        return false;
     }
     for (uint32_t k = r.begin[2]; k < r.end[2]; k++) {
         for (uint32_t j = r.begin[1]; j < r.end[1]; j++) {
@@ -350,7 +372,7 @@ static bool copy_leaf(extraction *x, pnanovdb_leaf_handle_t leaf, const int64_t 
 static bool copy_lower(extraction *x, pnanovdb_lower_handle_t lower, const int64_t origin[3])
 {
     region r;
-    if (!node_fits(x, lower.address, x->layout->lower_size, 1)) {
+    if (!node_fits(x, lower.address, x->layout->lower_size)) {
         return false;
     }
     for (uint32_t n = 0; n < PNANOVDB_LOWER_TABLE_COUNT; n++) {
@@ -359,9 +381,12 @@ static bool copy_lower(extraction *x, pnanovdb_lower_handle_t lower, const int64
         if (!clip(x, at, 8, &r)) {
             continue;
         }
-        if (!pnanovdb_lower_get_child_mask(x->buf, lower, n)) {
-            fill(x, &r, tile_value(x, pnanovdb_lower_get_table_address(x->type, x->buf, lower, n)));
-        } else if (!copy_leaf(x, pnanovdb_lower_get_child(x->type, x->buf, lower, n), at)) {
+        bool child = pnanovdb_lower_get_child_mask(x->buf, lower, n);
+        pnanovdb_address_t value = pnanovdb_lower_get_table_address(x->type, x->buf, lower, n);
+        if (!child && !copy_tile(x, &r, value)) {
+            return false;
+        }
+        if (child && !copy_leaf(x, pnanovdb_lower_get_child(x->type, x->buf, lower, n), at)) {
             return false;
         }
     }
@@ -371,7 +396,7 @@ static bool copy_lower(extraction *x, pnanovdb_lower_handle_t lower, const int64
 static bool copy_upper(extraction *x, pnanovdb_upper_handle_t upper, const int64_t origin[3])
 {
     region r;
-    if (!node_fits(x, upper.address, x->layout->upper_size, 2)) {
+    if (!node_fits(x, upper.address, x->layout->upper_size)) {
         return false;
     }
     for (uint32_t n = 0; n < PNANOVDB_UPPER_TABLE_COUNT; n++) {
@@ -380,9 +405,12 @@ static bool copy_upper(extraction *x, pnanovdb_upper_handle_t upper, const int64
         if (!clip(x, at, 128, &r)) {
             continue;
         }
-        if (!pnanovdb_upper_get_child_mask(x->buf, upper, n)) {
-            fill(x, &r, tile_value(x, pnanovdb_upper_get_table_address(x->type, x->buf, upper, n)));
-        } else if (!copy_lower(x, pnanovdb_upper_get_child(x->type, x->buf, upper, n), at)) {
+        bool child = pnanovdb_upper_get_child_mask(x->buf, upper, n);
+        pnanovdb_address_t value = pnanovdb_upper_get_table_address(x->type, x->buf, upper, n);
+        if (!child && !copy_tile(x, &r, value)) {
+            return false;
+        }
+        if (child && !copy_lower(x, pnanovdb_upper_get_child(x->type, x->buf, upper, n), at)) {
             return false;
         }
     }
@@ -418,11 +446,13 @@ static bool copy_root(extraction *x, pnanovdb_root_handle_t root)
         if (!clip(x, origin, 4096, &r)) {
             continue;
         }
-        if (pnanovdb_root_tile_get_child(x->buf, tile) == 0) {
-            fill(x, &r,
-                 tile_value(x,
-                            pnanovdb_address_offset(tile.address, x->layout->root_tile_off_value)));
-        } else if (!copy_upper(x, pnanovdb_root_get_child(x->type, x->buf, root, tile), origin)) {
+        bool child = pnanovdb_root_tile_get_child(x->buf, tile) != 0;
+        pnanovdb_address_t value =
+            pnanovdb_address_offset(tile.address, x->layout->root_tile_off_value);
+        if (!child && !copy_tile(x, &r, value)) {
+            return false;
+        }
+        if (child && !copy_upper(x, pnanovdb_root_get_child(x->type, x->buf, root, tile), origin)) {
             return false;
         }
     }
@@ -453,9 +483,6 @@ static tyn_result extract(tyn_volume *volume, uint8_t *memory, const entry *e, c
         .layout = &pnanovdb_grid_type_constants[e->type],
         .volume = volume,
     };
-    x.budget[0] = e->grid_size / x.layout->leaf_size;
-    x.budget[1] = e->grid_size / x.layout->lower_size;
-    x.budget[2] = e->grid_size / x.layout->upper_size;
     pnanovdb_root_handle_t root =
         pnanovdb_tree_get_root(x.buf, pnanovdb_grid_get_tree(x.buf, grid));
     uint64_t at = root.address.byte_offset;
@@ -476,11 +503,13 @@ static tyn_result extract(tyn_volume *volume, uint8_t *memory, const entry *e, c
     if (r) {
         return r;
     }
+    x.voxels_left = (uint64_t)(size[0] * size[1] * size[2]);
     x.lo[0] = lo.x, x.lo[1] = lo.y, x.lo[2] = lo.z;
     if (!copy_root(&x, root)) {
         tyn_volume_finish(volume);
-        return FAULT(in, "%s: grid \"%.100s\" is damaged: nodes of its tree lie outside of it",
-                     in->file, e->name);
+        return FAULT(
+            in, "%s: grid \"%.100s\" is damaged: nodes of its tree lie outside of it or overlap",
+            in->file, e->name);
     }
     copy_map(&x, grid);
     return TYN_OK;

@@ -286,6 +286,32 @@ static void packed_damage(void **state)
     }
 }
 
+// Two root tiles of one key: an hour's work for a small file, if it were believed.
+static void overlap(void **state)
+{
+    enum { SECOND_TILE = 672 + 64 + 64 + 32 };
+    nvdb_spec spec = {.name = "density",
+                      .type = NVDB_FLOAT,
+                      .grid_class = 2,
+                      .lo = {-9, 0, 0},
+                      .hi = {9, 9, 9},
+                      .value = ramp,
+                      .voxel = 1};
+    size_t size, grid;
+    uint8_t *file = nvdb_write(&spec, &size, &grid);
+    tyn_volume v;
+    io_log log;
+    uint64_t clamped = 0;
+    (void)state;
+    io_log_init(&log);
+    memcpy(file + grid + SECOND_TILE, file + grid + SECOND_TILE - 32, 8);
+    assert_int_equal(tyn_nvdb_parse(&v, file, size, NULL, "a.nvdb", &clamped, &log.log),
+                     TYN_ERR_PARAMS);
+    assert_int_equal(log.errors, 1);
+    assert_non_null(strstr(log.last, "overlap"));
+    free(file);
+}
+
 // A volume alone becomes a scene: a camera, a sun, a sky, an optical depth of 24.
 static void alone(void **state)
 {
@@ -348,10 +374,15 @@ static void real_file(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(types_and_codecs), cmocka_unit_test(tiles),
-                                       cmocka_unit_test(values),           cmocka_unit_test(names),
-                                       cmocka_unit_test(segments),         cmocka_unit_test(broken),
-                                       cmocka_unit_test(packed_damage),    cmocka_unit_test(alone),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(types_and_codecs),
+                                       cmocka_unit_test(tiles),
+                                       cmocka_unit_test(values),
+                                       cmocka_unit_test(names),
+                                       cmocka_unit_test(segments),
+                                       cmocka_unit_test(broken),
+                                       cmocka_unit_test(packed_damage),
+                                       cmocka_unit_test(overlap),
+                                       cmocka_unit_test(alone),
                                        cmocka_unit_test(real_file)};
     return cmocka_run_group_tests(tests, NULL, io_test_clean);
 }
