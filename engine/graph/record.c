@@ -180,8 +180,56 @@ static bool outputs_current(const tyn_graph *g, const node *n, uint32_t index)
     return true;
 }
 
-// Which needed nodes run: those whose inputs or params changed, and, for a resource that is changed in
-// place, all earlier writers of one that runs.
+// The newest version of a resource that is made in this frame.
+static uint32_t newest_needed(const tyn_graph *g, const resource *r)
+{
+    uint32_t v = r->version;
+    while (v > 0 && r->writers[v] && !g->nodes[r->writers[v] - 1].needed) {
+        v--;
+    }
+    return v;
+}
+
+static bool also_run(bool *run_node, uint32_t writer)
+{
+    bool more = writer && !run_node[writer - 1];
+    if (more) {
+        run_node[writer - 1] = true;
+    }
+    return more;
+}
+
+// Nodes that must run because of others that do: a version that was changed in place since is made
+// again for its reader, and whoever changes a version that is made again changes it again. What
+// histories and host images held before is gone; it is for their owners to know. True if any was added.
+static bool add_in_place(const tyn_graph *g, bool *run_node)
+{
+    bool more = false;
+    for (uint32_t i = 0; i < g->num_nodes; i++) {
+        const node *n = &g->nodes[i];
+        for (uint32_t p = 0; run_node[i] && p < n->pass->num_ports; p++) {
+            tyn_port_dir dir = n->pass->ports[p].dir;
+            const resource *r = n->res[p] ? &g->resources[n->res[p] - 1] : NULL;
+            if (!r || r->kind == RESOURCE_HISTORY || r->kind == RESOURCE_IMPORT) {
+                continue;
+            }
+            bool gone = dir == TYN_INOUT || (dir == TYN_IN && n->versions[p] < newest_needed(g, r));
+            more |= gone && also_run(run_node, r->writers[n->versions[p]]);
+        }
+    }
+    for (uint32_t i = 0; i < g->num_resources; i++) {
+        const resource *r = &g->resources[i];
+        uint32_t newest = newest_needed(g, r);
+        for (uint32_t v = 0; v < newest; v++) {
+            more |= r->writers[v] && run_node[r->writers[v] - 1] &&
+                    also_run(run_node, r->writers[v + 1]);
+        }
+    }
+    return more;
+}
+
+// Which needed nodes run: those whose inputs or params changed, and what these need of resources that
+// are changed in place.
 static void choose_nodes(const tyn_graph *g, bool *run_node)
 {
     for (uint32_t i = 0; i < g->num_nodes; i++) {
@@ -190,18 +238,7 @@ static void choose_nodes(const tyn_graph *g, bool *run_node)
         run_node[i] = wanted && ((g->recompute && !n->media_only) || g->runs[i].hash != n->hash ||
                                  !outputs_current(g, n, i));
     }
-    for (uint32_t i = g->num_nodes; i-- > 0;) {
-        const node *n = &g->nodes[i];
-        for (uint32_t p = 0; run_node[i] && p < n->pass->num_ports; p++) {
-            if (!n->res[p] || n->pass->ports[p].dir != TYN_INOUT) {
-                continue;
-            }
-            const resource *r = &g->resources[n->res[p] - 1];
-            if (r->kind != RESOURCE_HISTORY && r->kind != RESOURCE_IMPORT &&
-                r->writers[n->versions[p]]) {
-                run_node[r->writers[n->versions[p]] - 1] = true;
-            }
-        }
+    while (add_in_place(g, run_node)) {
     }
 }
 
