@@ -341,7 +341,9 @@ tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)
         result = tyn_scene_check_data(frame->scene, &ctx->dev->log);
         ctx->checked_data = result == TYN_OK ? data : 0;
     }
-    if (result == TYN_OK && !tyn_graph_matches(ctx->graph)) {
+    if (result == TYN_OK && tyn_graph_matches(ctx->graph)) {
+        tyn_graph_trim(ctx->graph);
+    } else if (result == TYN_OK) {
         result = tyn_graph_compile(ctx->graph);
     }
     return result;

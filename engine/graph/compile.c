@@ -381,6 +381,16 @@ void graph_free_staging(tyn_graph *g)
     tyn_heap_finish(g->dev, &g->staging_heap);
 }
 
+void tyn_graph_trim(tyn_graph *g)
+{
+    for (uint32_t i = 0; i < g->num_phys; i++) {
+        if (g->phys[i].staged && g->phys[i].staged != g->phys[i].content) {
+            return; // still to be copied
+        }
+    }
+    graph_free_staging(g);
+}
+
 void graph_release(tyn_graph *g)
 {
     graph_free_staging(g);

@@ -120,6 +120,12 @@ tyn_ref tyn_graph_import_image(tyn_graph *g, const char *name, tyn_dim dim, cons
 tyn_ref tyn_graph_upload_buffer(tyn_graph *g, const char *name, const void *data, size_t size,
                                 uint64_t hash)
 {
+    if (size > g->dev->properties.limits.maxStorageBufferRange) {
+        graph_fail(g, TYN_ERR_UNSUPPORTED, "'%s' takes %.1f MiB; the device binds at most %.1f MiB",
+                   name, (double)size / (1 << 20),
+                   (double)g->dev->properties.limits.maxStorageBufferRange / (1 << 20));
+        return (tyn_ref){0};
+    }
     if (!hash) {
         hash = tyn_hash_bytes(tyn_hash_string(TYN_HASH_SEED, name), data, size);
     }

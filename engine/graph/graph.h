@@ -81,6 +81,9 @@ bool tyn_graph_matches(const tyn_graph *g);
 // Culls, allocates, makes pipelines. The GPU must be done with earlier records. May block.
 tyn_result tyn_graph_compile(tyn_graph *g);
 
+// Frees host memory of uploads that are done. The GPU must be done with earlier records.
+void tyn_graph_trim(tyn_graph *g);
+
 // Appends this frame's work. Never submits, waits or allocates memory.
 tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd);
 

@@ -120,22 +120,23 @@ void tyn_print_stages(char *text, size_t size, VkPipelineStageFlags2 stages)
 
 void tyn_print_access(char *text, size_t size, VkAccessFlags2 access)
 {
-    static const bit_name names[] = {{VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, "SAMPLED_READ"},
-                                     {VK_ACCESS_2_SHADER_STORAGE_READ_BIT, "STORAGE_READ"},
-                                     {VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, "STORAGE_WRITE"},
-                                     {VK_ACCESS_2_UNIFORM_READ_BIT, "UNIFORM_READ"},
-                                     {VK_ACCESS_2_TRANSFER_READ_BIT, "TRANSFER_READ"},
-                                     {VK_ACCESS_2_TRANSFER_WRITE_BIT, "TRANSFER_WRITE"},
-                                     {VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, "INDIRECT_READ"},
-                                     {VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT, "COLOR_READ"},
+    static const bit_name names[] = {
+        {VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, "SAMPLED_READ"},
+        {VK_ACCESS_2_SHADER_STORAGE_READ_BIT, "STORAGE_READ"},
+        {VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, "STORAGE_WRITE"},
+        {VK_ACCESS_2_UNIFORM_READ_BIT, "UNIFORM_READ"},
+        {VK_ACCESS_2_TRANSFER_READ_BIT, "TRANSFER_READ"},
+        {VK_ACCESS_2_TRANSFER_WRITE_BIT, "TRANSFER_WRITE"},
+        {VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, "INDIRECT_READ"},
+        {VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT, "COLOR_READ"},
         {VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, "COLOR_WRITE"},
         {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, "DEPTH_READ"},
         {VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, "DEPTH_WRITE"},
         {VK_ACCESS_2_HOST_READ_BIT, "HOST_READ"},
-                                     {VK_ACCESS_2_HOST_WRITE_BIT, "HOST_WRITE"},
-                                     {VK_ACCESS_2_MEMORY_READ_BIT, "MEMORY_READ"},
-                                     {VK_ACCESS_2_MEMORY_WRITE_BIT, "MEMORY_WRITE"},
-                                     {0, NULL}};
+        {VK_ACCESS_2_HOST_WRITE_BIT, "HOST_WRITE"},
+        {VK_ACCESS_2_MEMORY_READ_BIT, "MEMORY_READ"},
+        {VK_ACCESS_2_MEMORY_WRITE_BIT, "MEMORY_WRITE"},
+        {0, NULL}};
     print_bits(text, size, access, names);
 }
 

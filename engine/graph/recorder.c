@@ -340,6 +340,18 @@ static void dispatch(tyn_recorder *r, const tyn_dispatch *d, int indirect_port, 
     for (uint32_t i = 0; i < k->num_bindings; i++) {
         ports[i] = d->ports ? d->ports[i] : k->bindings[i].port;
     }
+    const uint32_t cells[3] = {d->cells.x ? d->cells.x : 1, d->cells.y ? d->cells.y : 1,
+                               d->cells.z ? d->cells.z : 1};
+    uint32_t groups[3];
+    for (int a = 0; a < 3; a++) {
+        uint32_t local = k->local_size[a] ? k->local_size[a] : 1;
+        groups[a] = (cells[a] + local - 1) / local;
+        if (groups[a] > r->g->dev->properties.limits.maxComputeWorkGroupCount[a]) {
+            fail(r, TYN_ERR_UNSUPPORTED, "more workgroups than the device takes for kernel",
+                 k->name);
+            return;
+        }
+    }
     r->dispatches++;
     if (r->mode == RECORD_SURVEY) {
         survey_dispatch(r, d, ports);
@@ -369,13 +381,6 @@ static void dispatch(tyn_recorder *r, const tyn_dispatch *d, int indirect_port, 
     }
     synchronise(r, touches, count);
 
-    const uint32_t cells[3] = {d->cells.x ? d->cells.x : 1, d->cells.y ? d->cells.y : 1,
-                               d->cells.z ? d->cells.z : 1};
-    uint32_t groups[3];
-    for (int a = 0; a < 3; a++) {
-        uint32_t local = k->local_size[a] ? k->local_size[a] : 1;
-        groups[a] = (cells[a] + local - 1) / local;
-    }
     if (r->mode == RECORD_PLAN) {
         char line[160];
         snprintf(line, sizeof line, "    dispatch %s %u x %u x %u", d->label ? d->label : k->name,
