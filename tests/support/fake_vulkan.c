@@ -343,6 +343,9 @@ fake_vulkan *fake_create(void)
     dev->properties.limits.maxStorageBufferRange = 128u << 20;
     dev->properties.limits.maxImageDimension2D = 16384;
     dev->properties.limits.maxImageDimension3D = 2048;
+    for (int a = 0; a < 3; a++) {
+        dev->properties.limits.maxComputeWorkGroupCount[a] = 65535;
+    }
     dev->properties.limits.bufferImageGranularity = 1024;
     dev->memory.memoryTypeCount = 1;
     dev->memory.memoryTypes[0].propertyFlags =
