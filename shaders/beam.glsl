@@ -5,12 +5,12 @@
 //   BEAM_COLUMN    sampler: `column` (mode DENSITY) or `tau_s` (mode COEFFICIENTS)
 //   BEAM_TAU_A, BEAM_TAU_P   samplers, mode COEFFICIENTS (leave out in kernels that know DENSITY only)
 //
-// The textures hold the mean R of the medium along each ray since slice 0, a plane that all rays cross,
-// the medium being continued beyond the faces of its box by its values there. That field has no kinks
-// where neighbouring rays enter the box through different faces, as the depth itself has, so it may be
-// interpolated; the depth is R(p) s(p) - R(e) s(e), with e where the ray of p enters the box and s the
-// distance from slice 0, both exact. The second term is absent for rays that enter through slice 0 and
-// where the medium is empty at the other faces.
+// The textures hold the integral C of the medium along each ray, the medium being continued beyond the
+// faces of its box by its values there. That field has no kinks where neighbouring rays enter the box
+// through different faces, as the depth itself has, so it may be interpolated; the depth is
+// C(p) - C(e), with e where the ray of p enters the box. The second term is absent for rays that enter
+// through the first slice and where the medium is empty at the other faces. If the medium is the same
+// everywhere the texture holds its mean, and the depth is that times the exact length: no grid shows.
 #ifndef TYN_BEAM_GLSL
 #define TYN_BEAM_GLSL
 #include "beam_args.h"
@@ -58,22 +58,26 @@ vec3 beam_uvw(uint sun, vec3 p)
 // How a depth is put together at a point.
 struct beam_place {
     vec3 uvw;     // of p
-    float to;     // the depth is to x (texture at uvw)
-    float before; //   - before x (texture at uvw - (0, 0, back)), if before > 0
-    float back;
+    vec3 entry;   // of e
+    float scale;  // of the texture at uvw
+    bool subtract; // the texture at entry
 };
+
+// From the distances of p to its entry and to slice 0 along the light.
+beam_place beam_place_at(vec3 uvw, float inside, float depth, float z_rate, bool even, bool edges)
+{
+    // Rounding must not let a ray that enters through slice 0 take a second fetch.
+    return beam_place(uvw, uvw - vec3(0.0, 0.0, inside * z_rate), even ? inside : 1.0,
+                      edges && !even && depth - inside > 1e-5 * depth);
+}
 
 // `p` in the box; positions outside are moved to it (periodic axes wrap).
 beam_place beam_place_of(uint sun, vec3 p)
 {
     p = clamp(medium_wrap(p), vec3(0.0), medium.extent);
-    float inside = beam_length(sun, p);
-    beam_place place = beam_place(beam_uvw(sun, p), inside, 0.0, inside * beams[sun].z_rate);
-    if (beams[sun].even == 0u) {
-        place.to = dot(beams[sun].depth_row.xyz, p) + beams[sun].depth_row.w;
-        place.before = beams[sun].edges != 0u ? place.to - inside : 0.0;
-    }
-    return place;
+    float depth = dot(beams[sun].depth_row.xyz, p) + beams[sun].depth_row.w;
+    return beam_place_at(beam_uvw(sun, p), beam_length(sun, p), depth, beams[sun].z_rate,
+                         beams[sun].even != 0u, beams[sun].edges != 0u);
 }
 
 // The same along a ray within the box (one period), where all of it is linear in the distance.
@@ -106,18 +110,15 @@ beam_place beam_ray_at(beam_ray ray, float s)
 {
     vec3 lengths = ray.length0 + s * ray.length1;
     float inside = max(min(min(lengths.x, lengths.y), lengths.z), 0.0);
-    float depth = ray.depth0 + s * ray.depth1;
-    return beam_place(ray.uvw0 + s * ray.uvw1, ray.even ? inside : depth,
-                      ray.edges && !ray.even ? depth - inside : 0.0, inside * ray.z_rate);
+    return beam_place_at(ray.uvw0 + s * ray.uvw1, inside, ray.depth0 + s * ray.depth1, ray.z_rate,
+                         ray.even, ray.edges);
 }
 
 vec3 beam_fetch(sampler3D tex, beam_place place)
 {
-    vec3 depth = place.to * textureLod(tex, place.uvw, 0.0).rgb;
-    // Rounding must not let a ray that enters through slice 0 take a second fetch.
-    if (place.before > 1e-5 * place.to) {
-        vec3 at_entry = textureLod(tex, place.uvw - vec3(0.0, 0.0, place.back), 0.0).rgb;
-        depth = max(depth - place.before * at_entry, vec3(0.0));
+    vec3 depth = place.scale * textureLod(tex, place.uvw, 0.0).rgb;
+    if (place.subtract) {
+        depth = max(depth - textureLod(tex, place.entry, 0.0).rgb, vec3(0.0));
     }
     return depth;
 }

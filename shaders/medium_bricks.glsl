@@ -1,27 +1,8 @@
-// medium_bricks.glsl -- least and largest value over a brick, for the exact shapes and for a texture.
-// One workgroup per brick. Include after medium_shapes.glsl and medium_args.h.
+// medium_bricks.glsl -- least and largest value over a brick, for the exact shapes. One thread does a
+// brick: no texel is fetched by more than a few threads, and nothing needs to be joined.
+// Include after medium_shapes.glsl.
 #ifndef TYN_MEDIUM_BRICKS_GLSL
 #define TYN_MEDIUM_BRICKS_GLSL
-
-shared vec2 brick_ranges[TYN_BRICK_THREADS];
-
-// (least, largest) over the workgroup of each thread's range.
-vec2 brick_reduce(vec2 range)
-{
-    uint thread = gl_LocalInvocationIndex;
-    barrier();
-    brick_ranges[thread] = range;
-    for (uint reach = TYN_BRICK_THREADS / 2u; reach > 0u; reach /= 2u) {
-        barrier();
-        if (thread < reach) {
-            vec2 other = brick_ranges[thread + reach];
-            range = vec2(min(range.x, other.x), max(range.y, other.y));
-            brick_ranges[thread] = range;
-        }
-    }
-    barrier();
-    return brick_ranges[0];
-}
 
 const vec2 BRICK_NOTHING = vec2(3.4e38, 0.0);
 
@@ -38,7 +19,7 @@ vec2 brick_of_shape(shape_block s, vec3 lo, vec3 hi)
     vec3 centre = shape_local(s, 0.5 * (lo + hi));
     vec3 local_half = shape_local_half(s, 0.5 * (hi - lo));
     if (shape_misses(s, centre, local_half + 1e-6)) {
-        return vec2(0.0); // the same for the whole workgroup
+        return vec2(0.0);
     }
     ivec3 size = ivec3(s.size);
     // Rounding of the affine map is covered by a thousandth of a texel.
@@ -46,13 +27,14 @@ vec2 brick_of_shape(shape_block s, vec3 lo, vec3 hi)
     ivec3 last = ivec3(floor((centre + local_half + 0.5) * vec3(size) - 0.499)) + 1;
     first = clamp(first, ivec3(0), size - 1);
     last = clamp(last, ivec3(0), size - 1);
-    uvec3 count = uvec3(last - first + 1);
     vec2 range = BRICK_NOTHING;
-    for (uint i = gl_LocalInvocationIndex; i < count.x * count.y * count.z; i += TYN_BRICK_THREADS) {
-        ivec3 texel = first + ivec3(i % count.x, i / count.x % count.y, i / (count.x * count.y));
-        range = brick_add(range, texelFetch(atlas_tex, texel + ivec3(s.offset), 0).r);
+    for (int z = first.z; z <= last.z; z++) {
+        for (int y = first.y; y <= last.y; y++) {
+            for (int x = first.x; x <= last.x; x++) {
+                range = brick_add(range, texelFetch(atlas_tex, ivec3(x, y, z) + ivec3(s.offset), 0).r);
+            }
+        }
     }
-    range = brick_reduce(range);
     return shape_contains(s, centre, local_half) ? range : vec2(0.0, range.y);
 }
 

@@ -21,13 +21,13 @@ static const tyn_port ports[BEAM_NUM_PORTS] = {
     [BEAM_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "mean cosine"},
     [BEAM_PORT_BEAMS] = {"beams", TYN_OUT, TYN_BUFFER, 0, false, "beam_block per sun: its grid"},
     [BEAM_PORT_COLUMN] = {"column", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-                          "mean density along the light since slice 0 of its grid"},
+                          "density integrated along the light, m (homogeneous: its mean)"},
     [BEAM_PORT_TAU_S] = {"tau_s", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                         "mean sigma_s along the light since slice 0 of its grid, 1/m"},
+                         "sigma_s integrated along the light (homogeneous: mean, 1/m)"},
     [BEAM_PORT_TAU_A] = {"tau_a", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                         "mean sigma_a along the light, 1/m"},
+                         "sigma_a integrated along the light, likewise"},
     [BEAM_PORT_TAU_P] = {"tau_p", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                         "mean sigma_s outside the forward peak along the light, 1/m"},
+                         "sigma_s outside the forward peak integrated along the light, likewise"},
 };
 
 enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
@@ -170,10 +170,10 @@ static void plan_sun(struct beam_block *b, const struct medium_block *m,
     b->nodes[2] = alloc[2] = slices + 1;
     b->axis = w;
 
-    double samples = 1;
+    double voxels = 0; // that a ray crosses from slice to slice, squared
     for (int i = 0; i < 3; i++) {
         step[2][i] = d[i] / fabs(d[w]) * m->extent[w] / slices;
-        samples = fmax(samples, 2 * ceil(fabs(step[2][i]) / m->voxel[i] - 1e-3));
+        voxels += step[2][i] / m->voxel[i] * step[2][i] / m->voxel[i];
         bool bounds = !m->repeat[i] && fabs(d[i]) > 1e-6;
         b->clip_scale[i] = bounds ? (float)(1 / d[i]) : 0;
         b->clip_offset[i] = (float)(!bounds    ? unbounded * longest
@@ -185,7 +185,8 @@ static void plan_sun(struct beam_block *b, const struct medium_block *m,
         b->step_w[i] = (float)step[2][i];
         b->direction[i] = (float)d[i];
     }
-    b->samples = samples < MAX_SAMPLES ? (uint32_t)samples : MAX_SAMPLES;
+    // One per voxel: midpoints sum the voxels' values, which along an axis is exact but for the ends.
+    b->samples = (uint32_t)fmin(fmax(round(sqrt(voxels)), 1), MAX_SAMPLES);
 }
 
 void tyn_beam_plan(tyn_beam_params *params, const struct medium_block *medium,
@@ -258,8 +259,9 @@ static void record(tyn_recorder *r, const void *params)
                             .cells = {p->extent[0], p->extent[1], p->num_suns},
                             .spec = &p->mode,
                         });
-    double nodes = 0, fetches = 0, columns = (double)p->extent[0] * p->extent[1];
+    double nodes = 0, fetches = 0;
     for (uint32_t n = 0; n < p->num_suns; n++) {
+        double columns = (double)p->beams[n].nodes[0] * p->beams[n].nodes[1];
         nodes += columns * p->beams[n].nodes[2];
         fetches += columns * (p->beams[n].nodes[2] - 1) * p->beams[n].samples;
     }
@@ -282,5 +284,5 @@ const tyn_pass_desc tyn_pass_beam = {
     .declare = declare,
     .record = record,
     .debug_port = BEAM_PORT_COLUMN,
-    .debug_meaning = "mean density between the light's entry and the slice, seen along the light",
+    .debug_meaning = "column density in the slices of the suns' grids",
 };

@@ -25,10 +25,11 @@ enum {
     BEAM_PORT_SIGMA_A,
     BEAM_PORT_G,
     BEAM_PORT_BEAMS,  // OUT buffer struct beam_block[]
-    BEAM_PORT_COLUMN, // OUT 3D R32F: mode DENSITY, mean density along the light since slice 0
-    BEAM_PORT_TAU_S,  // OUT 3D RGBA32F: mode COEFFICIENTS, mean sigma_s likewise, 1/m
-    BEAM_PORT_TAU_A,  // OUT 3D RGBA32F: mean sigma_a, 1/m
-    BEAM_PORT_TAU_P,  // OUT 3D RGBA32F: mean (1 - f) sigma_s, 1/m
+    BEAM_PORT_COLUMN, // OUT 3D R32F: mode DENSITY, density integrated along the light: what
+                      // beam.glsl reads, as the three below
+    BEAM_PORT_TAU_S, // OUT 3D RGBA32F: mode COEFFICIENTS, sigma_s integrated; a = mean of the channels
+    BEAM_PORT_TAU_A, // OUT 3D RGBA32F: sigma_a integrated
+    BEAM_PORT_TAU_P, // OUT 3D RGBA32F: (1 - f) sigma_s integrated
     BEAM_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_beam;

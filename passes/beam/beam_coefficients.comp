@@ -1,4 +1,4 @@
-// beam_coefficients.comp -- mean coefficients along each sun; x, y: column, z: sun.
+// beam_coefficients.comp -- coefficients integrated along each sun; x, y: column, z: sun.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -25,9 +25,8 @@ vec4 with_mean(vec3 v)
     return vec4(v, (v.x + v.y + v.z) / 3.0);
 }
 
-mat3x4 beam_value(vec3 p)
+mat3x4 beam_value(vec3 uvw)
 {
-    vec3 uvw = medium_uvw(medium_wrap(p));
     vec3 sigma_s = textureLod(medium_density_tex, uvw, 0.0).rgb;
     vec3 sigma_a = textureLod(medium_sigma_a_tex, uvw, 0.0).rgb;
     vec3 g = textureLod(medium_g_tex, uvw, 0.0).rgb;
@@ -45,19 +44,19 @@ bool beam_any(mat3x4 value)
     return value[0].w + value[1].w > 0.0;
 }
 
-void beam_store(ivec3 texel, mat3x4 mean)
+void beam_store(ivec3 texel, mat3x4 value)
 {
-    imageStore(tau_s_image, texel, finite(mean[0]));
-    imageStore(tau_a_image, texel, finite(mean[1]));
-    imageStore(tau_p_image, texel, finite(mean[2]));
+    imageStore(tau_s_image, texel, finite(value[0]));
+    imageStore(tau_a_image, texel, finite(value[1]));
+    imageStore(tau_p_image, texel, finite(value[2]));
 }
 #include "beam_sweep.glsl"
 
 void main()
 {
-    if (all(lessThan(gl_GlobalInvocationID.xy, imageSize(tau_s_image).xy))) {
-        if (beam_sweep(beams[gl_WorkGroupID.z], gl_GlobalInvocationID.xy)) {
-            atomicOr(beams[gl_WorkGroupID.z].edges, 1u);
-        }
+    uvec2 column = gl_GlobalInvocationID.xy;
+    uint sun = gl_WorkGroupID.z;
+    if (all(lessThan(column, beams[sun].nodes.xy)) && beam_sweep(beams[sun], column)) {
+        atomicOr(beams[sun].edges, 1u);
     }
 }

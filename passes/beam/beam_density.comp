@@ -1,4 +1,4 @@
-// beam_density.comp -- mean density along each sun; x, y: column, z: sun.
+// beam_density.comp -- density integrated along each sun; x, y: column, z: sun.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -16,9 +16,9 @@ layout(set = 0, binding = 3, r32f) writeonly uniform image3D column_image;
 
 #define BEAM_VALUE float
 
-float beam_value(vec3 p)
+float beam_value(vec3 uvw)
 {
-    return textureLod(medium_density_tex, medium_uvw(medium_wrap(p)), 0.0).r;
+    return textureLod(medium_density_tex, uvw, 0.0).r;
 }
 
 bool beam_any(float value)
@@ -26,17 +26,17 @@ bool beam_any(float value)
     return value > 0.0;
 }
 
-void beam_store(ivec3 texel, float mean)
+void beam_store(ivec3 texel, float value)
 {
-    imageStore(column_image, texel, vec4(isnan(mean) || isinf(mean) ? 0.0 : mean));
+    imageStore(column_image, texel, vec4(isnan(value) || isinf(value) ? 0.0 : value));
 }
 #include "beam_sweep.glsl"
 
 void main()
 {
-    if (all(lessThan(gl_GlobalInvocationID.xy, imageSize(column_image).xy))) {
-        if (beam_sweep(beams[gl_WorkGroupID.z], gl_GlobalInvocationID.xy)) {
-            atomicOr(beams[gl_WorkGroupID.z].edges, 1u);
-        }
+    uvec2 column = gl_GlobalInvocationID.xy;
+    uint sun = gl_WorkGroupID.z;
+    if (all(lessThan(column, beams[sun].nodes.xy)) && beam_sweep(beams[sun], column)) {
+        atomicOr(beams[sun].edges, 1u);
     }
 }

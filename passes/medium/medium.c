@@ -77,7 +77,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_DENSITY] = KERNEL(density, resample_args, 4, 4, 4),
     [KERNEL_COEFFICIENTS] = KERNEL(coefficients, resample_args, 4, 4, 4),
     [KERNEL_EMISSION] = KERNEL(emission, resample_args, 4, 4, 4),
-    [KERNEL_BRICKS] = KERNEL(bricks, bricks_args, TYN_BRICK_THREADS, 1, 1),
+    [KERNEL_BRICKS] = KERNEL(bricks, bricks_args, 4, 4, 4),
     [KERNEL_DISTANCE] = KERNEL(distance, distance_args, 4, 4, 4),
 };
 
@@ -141,7 +141,7 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_dispatch(
         r, &(tyn_dispatch){
                .kernel = KERNEL_BRICKS,
-               .cells = {bricks.x * TYN_BRICK_THREADS, bricks.y, bricks.z},
+               .cells = bricks,
                .args = &(struct bricks_args){coefficients ? 2
                                              : p->direct  ? 0
                                                           : 1},

@@ -3,8 +3,6 @@
 #define TYN_MEDIUM_ARGS_H
 #include "shared.h"
 
-#define TYN_BRICK_THREADS 64
-
 struct resample_args {
     tyn_uint samples; // per axis of a voxel at the edge of a shape
 };
