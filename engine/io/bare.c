@@ -27,7 +27,7 @@ static double densest_column(const tyn_volume *v, int axis)
     return most * step;
 }
 
-// A cloud-like medium whose thickest line of sight has an optical depth of 24 (mean of the axes): dense
+// A cloud-like medium whose thickest line of sight has an optical depth of 32 (mean of the axes): dense
 // enough to be bright and to cast its own shadow, thin enough at its rim to show its structure.
 static void choose_medium(tyn_medium *medium, const tyn_volume *volume)
 {
@@ -37,22 +37,22 @@ static void choose_medium(tyn_medium *medium, const tyn_volume *volume)
     }
     *medium = (tyn_medium){.density_scale = 1.0f};
     for (int c = 0; c < 3; c++) {
-        medium->sigma_s[c] = column > 0.0 ? (float)fmin(24.0 / column, 1e30) : 0.0f;
+        medium->sigma_s[c] = column > 0.0 ? (float)fmin(32.0 / column, 1e30) : 0.0f;
         medium->g[c] = 0.75f;
     }
 }
 
-// From above the left shoulder of the default camera. Irradiance so that a white cloud is a little
-// above 1.
+// From the left of the default camera, thirty degrees up, a little behind it: the near side shows the
+// terminator. Irradiance so that the lit side has a radiance of about 1.
 static void add_sun(tyn_scene *scene)
 {
-    double d[3] = {0.72, -0.55, -0.42};
+    double d[3] = {0.85, -0.50, -0.15};
     vec_normalize(d);
     scene->num_lights = 1;
     scene->lights[0] = (tyn_light){
         .name = strdup("sun"),
         .kind = TYN_LIGHT_DIRECTIONAL,
-        .color = {5.2f, 4.9f, 4.4f},
+        .color = {6.6f, 6.0f, 5.2f},
         .direction = {(float)d[0], (float)d[1], (float)d[2]},
     };
 }
@@ -61,8 +61,8 @@ static void add_sun(tyn_scene *scene)
 static tyn_result add_sky(tyn_environment *env, const tyn_log *log)
 {
     enum { WIDTH = 16, HEIGHT = 128 };
-    static const float zenith[3] = {0.10f, 0.22f, 0.52f}, horizon[3] = {0.42f, 0.55f, 0.70f},
-                       nadir[3] = {0.05f, 0.07f, 0.10f};
+    static const float zenith[3] = {0.05f, 0.13f, 0.36f}, horizon[3] = {0.15f, 0.25f, 0.42f},
+                       nadir[3] = {0.012f, 0.02f, 0.036f};
     env->data = malloc(WIDTH * HEIGHT * 3 * sizeof *env->data);
     if (!env->data) {
         tyn_log_print(log, TYN_LOG_ERROR, "no memory for the sky");
