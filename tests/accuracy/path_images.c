@@ -102,5 +102,6 @@ static void cubes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(cubes)};
+    cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

@@ -269,13 +269,21 @@ static void probe_some(gpu_test *t, path_scene *s, const float (*points)[3], uin
     assert_int_equal(counters->cut, 0);
 }
 
+const tyn_probe_result *path_scene_probe_more(gpu_test *t, path_scene *s, const float (*points)[3],
+                                              uint32_t num_points, uint32_t done)
+{
+    s->params.first_sample = done;
+    s->params.num_samples = s->samples;
+    probe_some(t, s, points, num_points);
+    return gpu_map(t, "results");
+}
+
 const tyn_probe_result *path_scene_probe(gpu_test *t, path_scene *s, const float (*points)[3],
                                          uint32_t num_points, uint32_t samples)
 {
-    for (uint32_t done = 0; done < samples; done += s->params.num_samples) {
-        s->params.first_sample = done;
-        s->params.num_samples = samples - done < s->samples ? samples - done : s->samples;
-        probe_some(t, s, points, num_points);
+    const tyn_probe_result *results = NULL;
+    for (uint32_t done = 0; done < samples; done += s->samples) {
+        results = path_scene_probe_more(t, s, points, num_points, done);
     }
-    return gpu_map(t, "results");
+    return results;
 }

@@ -36,5 +36,8 @@ void path_scene_orthographic(path_scene *s, const float centre[3], const float d
 // Four floats a pixel, valid until the next run. error may be NULL.
 void path_scene_render(gpu_test *t, path_scene *s, uint32_t samples, const float **radiance,
                        const float **error);
+// A record's samples more, after `done`.
+const tyn_probe_result *path_scene_probe_more(gpu_test *t, path_scene *s, const float (*points)[3],
+                                              uint32_t num_points, uint32_t done);
 const tyn_probe_result *path_scene_probe(gpu_test *t, path_scene *s, const float (*points)[3],
                                          uint32_t num_points, uint32_t samples);
