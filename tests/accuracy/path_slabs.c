@@ -157,6 +157,7 @@ int main(void)
         cmocka_unit_test(radiances),
         cmocka_unit_test(summary),
     };
+    setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
     return cmocka_run_group_tests(tests, read_rows, gpu_teardown);
 }
