@@ -36,8 +36,9 @@ layout(binding = 3, scalar) buffer correction_buffer
 shared float correction[LATTICE_COARSE_CELLS * 11 / 8];
 shared float rhs[LATTICE_COARSE_CELLS * 3 / 8];
 
-const uint RELAXATIONS = 2;
-const uint COARSEST_RELAXATIONS = 32;
+// On the coarsest level, at most 4^3 cells, over-relaxed.
+const uint COARSEST_RELAXATIONS = 8;
+const float COARSEST_OMEGA = 1.5;
 
 lattice_level at;    // the level at work
 lattice_level first; // the finest one here
@@ -75,7 +76,7 @@ float inflow(ivec3 c, lattice_stencil k)
     return sum;
 }
 
-void relax(uint times)
+void relax(uint times, float omega)
 {
     ivec3 half_size = ivec3((at.size.x + 1) / 2, at.size.yz);
     uint n = lattice_num_cells(half_size);
@@ -85,7 +86,8 @@ void relax(uint times)
             c.x = 2 * c.x + (c.y + c.z + int(t) & 1);
             if (c.x < at.size.x) {
                 lattice_stencil k = stencil_at(c);
-                correction[index_of(c)] = inflow(c, k) / k.diagonal;
+                float old = correction[index_of(c)];
+                correction[index_of(c)] = mix(old, inflow(c, k) / k.diagonal, omega);
             }
         }
         barrier();
@@ -140,15 +142,15 @@ void main()
     barrier();
     at = first;
     for (uint level = args.level; level + 1 < args.levels; level++) {
-        relax(RELAXATIONS);
+        relax(1, 1.0);
         restrict_to_next();
         at = lattice_next_level(at);
     }
-    relax(COARSEST_RELAXATIONS);
+    relax(COARSEST_RELAXATIONS, COARSEST_OMEGA);
     for (uint level = args.levels - 1; level > args.level; level--) {
         at = lattice_level_of(ivec3(args.dims), level - 1);
         interpolate_from_next();
-        relax(RELAXATIONS);
+        relax(1, 1.0);
     }
     for (uint i = gl_LocalInvocationIndex; i < n; i += LATTICE_COARSE_GROUP) {
         correction_out[in_buffer + i] = correction[i];

@@ -26,7 +26,7 @@ void llc_twin_init(llc_twin *t, int nx, int ny, int nz, double dx)
         .emission = calloc(n, sizeof(double)),
         .beam = calloc(n, sizeof *t->beam),
         .m = calloc(n, sizeof *t->m),
-        .cycles = 1,
+        .cycles = 2,
         .anderson = true,
         .dense_term = 0.2,
     };

@@ -9,7 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_LEVELS = 8, COARSEST_SWEEPS = 32 };
+enum { MAX_LEVELS = 8, COARSEST_SWEEPS = 8 };
+
+static const double coarsest_omega = 1.5;
 
 typedef struct level {
     int n[3];
@@ -155,12 +157,11 @@ static void cycle(level *l, int levels)
 {
     if (levels == 1) {
         for (int i = 0; i < COARSEST_SWEEPS; i++) {
-            relax(l, 1);
+            relax(l, coarsest_omega);
         }
         return;
     }
     level *next = l + 1;
-    relax(l, 1);
     relax(l, 1);
     memset(next->x, 0, count(next) * sizeof(double));
     memset(next->b, 0, count(next) * sizeof(double));
@@ -170,7 +171,6 @@ static void cycle(level *l, int levels)
     }
     cycle(next, levels - 1);
     interpolate(l, next);
-    relax(l, 1);
     relax(l, 1);
 }
 
