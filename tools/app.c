@@ -24,8 +24,9 @@ bool app_interrupted(void)
 
 static void print_line(app *a, const char *kind, const char *message)
 {
-    progress_clear(&a->bar);
+    progress_hold(&a->bar);
     fprintf(stderr, "tyndall%s%s: %s%s\n", a->command[0] ? " " : "", a->command, kind, message);
+    progress_release(&a->bar);
 }
 
 static void print_log(void *user, tyn_log_level level, const char *message)
@@ -43,6 +44,7 @@ void app_init(app *a)
 {
     memset(a, 0, sizeof *a);
     a->command = "";
+    progress_init(&a->bar);
     a->log = (tyn_log){print_log, a, TYN_LOG_WARN};
     struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);

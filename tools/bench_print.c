@@ -75,8 +75,8 @@ void bench_print_result(const bench_case *c, const bench_run *run, const bench_r
     }
     printf("%-20s", run->name);
     for (int k = 0; k < BENCH_BLOCKS; k++) {
-        // An error below the noise of the reference is a small difference of large numbers.
-        bool vague = result->error[k].error < c->reference.noise[k];
+        // An error near the noise of the reference is a small difference of large numbers.
+        bool vague = result->error[k].error < 2 * c->reference.noise[k];
         printf(" %s%5.2f %%", vague ? "~" : " ", 100 * result->error[k].error);
     }
     print_ms(result->cold_ms);

@@ -30,7 +30,6 @@ static void report(selftest *t, const char *name, double value, double expected,
 {
     bool ok = fabs(value - expected) <= tolerance; // false for NaN
     t->num_failed += !ok;
-    progress_clear(&t->a->bar);
     if (!t->args->json) {
         printf("%-6s %-44s %12.6g, expected %.6g +- %.2g\n", ok ? "ok" : "FAILED", name, value,
                expected, tolerance);

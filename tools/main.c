@@ -56,7 +56,7 @@ static int run_command(app *a, const command *cmd, int argc, char **argv)
     case OPT_WRONG:
         break;
     }
-    progress_clear(&a->bar);
+    progress_stop(&a->bar);
     free(args);
     if (fflush(stdout) != 0 || ferror(stdout)) {
         app_error(a, "the results cannot be written to stdout");

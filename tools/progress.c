@@ -1,43 +1,109 @@
 // progress.c -- a bar on stderr for what takes over a second.
 #include "app.h"
 #include <stdio.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { BAR_WIDTH = 32 };
 
-void progress_start(progress *p, const char *label, bool quiet)
+void progress_init(progress *p)
 {
-    progress_clear(p);
-    double now = app_seconds();
-    *p = (progress){.label = label,
-                    .start = now,
-                    .last_drawn = now,
-                    .enabled = !quiet && isatty(STDERR_FILENO)};
+    *p = (progress){.running = false};
+    pthread_mutex_init(&p->lock, NULL);
+    pthread_cond_init(&p->stopped, NULL);
 }
 
-void progress_update(progress *p, double fraction)
+// With the lock held.
+static void draw(progress *p)
 {
-    double now = app_seconds();
-    if (!p->enabled || now - p->start < 1.0 || now - p->last_drawn < 0.1) {
+    const double elapsed = app_seconds() - p->start;
+    if (elapsed < 1.0) {
         return;
     }
-    char bar[BAR_WIDTH + 1];
-    for (int i = 0; i < BAR_WIDTH; i++) {
-        bar[i] = i < fraction * BAR_WIDTH ? '#' : '.';
+    if (p->fraction > 0) {
+        char bar[BAR_WIDTH + 1];
+        for (int i = 0; i < BAR_WIDTH; i++) {
+            bar[i] = i < p->fraction * BAR_WIDTH ? '#' : '.';
+        }
+        bar[BAR_WIDTH] = '\0';
+        fprintf(stderr, "\r%s [%s] %3.0f %%  %.0f s left\033[K", p->label, bar, 100 * p->fraction,
+                elapsed * (1 - p->fraction) / p->fraction);
+    } else {
+        fprintf(stderr, "\r%s  %.0f s\033[K", p->label, elapsed);
     }
-    bar[BAR_WIDTH] = '\0';
-    double left = fraction > 0 ? (now - p->start) * (1 - fraction) / fraction : 0;
-    fprintf(stderr, "\r%s [%s] %3.0f %%  %.0f s left \033[K", p->label, bar, 100 * fraction, left);
     fflush(stderr);
-    p->last_drawn = now;
     p->drawn = true;
 }
 
-void progress_clear(progress *p)
+// With the lock held.
+static void clear(progress *p)
 {
     if (p->drawn) {
         fprintf(stderr, "\r\033[K");
         fflush(stderr);
         p->drawn = false;
     }
+}
+
+static void *draw_until_stopped(void *argument)
+{
+    progress *p = argument;
+    pthread_mutex_lock(&p->lock);
+    while (p->running) {
+        draw(p);
+        struct timespec next;
+        clock_gettime(CLOCK_REALTIME, &next);
+        next.tv_nsec += 200000000;
+        next.tv_sec += next.tv_nsec / 1000000000;
+        next.tv_nsec %= 1000000000;
+        pthread_cond_timedwait(&p->stopped, &p->lock, &next);
+    }
+    clear(p);
+    pthread_mutex_unlock(&p->lock);
+    return NULL;
+}
+
+void progress_start(progress *p, const char *label, bool quiet)
+{
+    progress_stop(p);
+    if (quiet || !isatty(STDERR_FILENO)) {
+        return;
+    }
+    p->label = label;
+    p->start = app_seconds();
+    p->fraction = 0;
+    p->running = true;
+    if (pthread_create(&p->thread, NULL, draw_until_stopped, p) != 0) {
+        p->running = false;
+    }
+}
+
+void progress_update(progress *p, double fraction)
+{
+    pthread_mutex_lock(&p->lock);
+    p->fraction = fraction;
+    pthread_mutex_unlock(&p->lock);
+}
+
+void progress_hold(progress *p)
+{
+    pthread_mutex_lock(&p->lock);
+    clear(p);
+}
+
+void progress_release(progress *p)
+{
+    pthread_mutex_unlock(&p->lock);
+}
+
+void progress_stop(progress *p)
+{
+    if (!p->running) { // only this thread changes it
+        return;
+    }
+    pthread_mutex_lock(&p->lock);
+    p->running = false;
+    pthread_cond_signal(&p->stopped);
+    pthread_mutex_unlock(&p->lock);
+    pthread_join(p->thread, NULL);
 }

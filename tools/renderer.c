@@ -5,7 +5,7 @@
 
 // Samples of all pixels in one call: small enough for Ctrl-C and the bar, and given by the view alone,
 // so that the sums are the same on every run.
-enum { SAMPLES_PER_CALL = 1 << 20 };
+enum { SAMPLES_PER_CALL = 1 << 18 };
 
 int renderer_open(app *a, tyn_device *device, const method *m, renderer *r)
 {
@@ -104,7 +104,7 @@ int renderer_frame(app *a, renderer *r, const tyn_scene *scene, const tyn_view *
         r->setup_ms = tyn_offline_setup_ms(r->offline);
     }
     if (label) {
-        progress_clear(&a->bar);
+        progress_stop(&a->bar);
     }
     if (code == EXIT_DONE) {
         warn_of_counts(a, r);

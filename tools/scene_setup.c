@@ -77,7 +77,9 @@ int scene_open(app *a, const scene_options *options, tyn_scene *scene)
         return EXIT_WRONG;
     }
     const char *environment = options->env ? options->env : options->environment;
+    progress_start(&a->bar, "loading", a->quiet);
     tyn_result result = tyn_scene_load(scene, options->scene, environment, &a->log);
+    progress_stop(&a->bar);
     if (result != TYN_OK) {
         return app_exit_code(a, result, true);
     }

@@ -72,7 +72,7 @@ int timing_run(app *a, renderer *r, tyn_scene *scene, const tyn_view *view, timi
             progress_update(&a->bar, (i + 1.0) / frames);
         }
     }
-    progress_clear(&a->bar);
+    progress_stop(&a->bar);
     if (code == EXIT_DONE) {
         *median_ms = timing_median(values, frames);
     }
