@@ -15,6 +15,7 @@ typedef struct object {
     bool live;
     const char *kind;
     char name[64];
+    VkDeviceSize size; // of buffers, images and memory
     void *memory;
 } object;
 
@@ -76,13 +77,15 @@ static const char *name_of(uint64_t handle)
     return objects[handle].name[0] ? objects[handle].name : objects[handle].kind;
 }
 
-#define FAKE_OBJECT(Type, Info)                                                                    \
+// `bytes` is an expression of `info`, which tests may leave out.
+#define FAKE_OBJECT(Type, Info, bytes)                                                             \
     static VkResult create_##Type(VkDevice dev, const Info *info,                                  \
                                   const VkAllocationCallbacks *callbacks, Vk##Type *out)           \
     {                                                                                              \
-        (void)dev, (void)info, (void)callbacks;                                                    \
+        (void)dev, (void)callbacks;                                                                \
         uint64_t handle;                                                                           \
         VkResult result = create(#Type, &handle);                                                  \
+        objects[handle].size = info ? (bytes) : 0;                                                 \
         *out = (Vk##Type)handle;                                                                   \
         return result;                                                                             \
     }                                                                                              \
@@ -93,15 +96,20 @@ static const char *name_of(uint64_t handle)
         destroy(#Type, (uint64_t)handle);                                                          \
     }
 
-FAKE_OBJECT(Buffer, VkBufferCreateInfo)
-FAKE_OBJECT(Image, VkImageCreateInfo)
-FAKE_OBJECT(ImageView, VkImageViewCreateInfo)
-FAKE_OBJECT(DescriptorSetLayout, VkDescriptorSetLayoutCreateInfo)
-FAKE_OBJECT(PipelineLayout, VkPipelineLayoutCreateInfo)
-FAKE_OBJECT(ShaderModule, VkShaderModuleCreateInfo)
-FAKE_OBJECT(DescriptorPool, VkDescriptorPoolCreateInfo)
-FAKE_OBJECT(QueryPool, VkQueryPoolCreateInfo)
-FAKE_OBJECT(DeviceMemory, VkMemoryAllocateInfo)
+static VkDeviceSize image_bytes(const VkImageCreateInfo *info)
+{
+    return 32 * (VkDeviceSize)info->extent.width * info->extent.height * info->extent.depth;
+}
+
+FAKE_OBJECT(Buffer, VkBufferCreateInfo, info->size)
+FAKE_OBJECT(Image, VkImageCreateInfo, image_bytes(info))
+FAKE_OBJECT(DeviceMemory, VkMemoryAllocateInfo, info->allocationSize)
+FAKE_OBJECT(ImageView, VkImageViewCreateInfo, 0)
+FAKE_OBJECT(DescriptorSetLayout, VkDescriptorSetLayoutCreateInfo, 0)
+FAKE_OBJECT(PipelineLayout, VkPipelineLayoutCreateInfo, 0)
+FAKE_OBJECT(ShaderModule, VkShaderModuleCreateInfo, 0)
+FAKE_OBJECT(DescriptorPool, VkDescriptorPoolCreateInfo, 0)
+FAKE_OBJECT(QueryPool, VkQueryPoolCreateInfo, 0)
 
 static VkResult create_pipelines(VkDevice dev, VkPipelineCache cache, uint32_t count,
                                  const VkComputePipelineCreateInfo *info,
@@ -131,14 +139,14 @@ static VkResult set_name(VkDevice dev, const VkDebugUtilsObjectNameInfoEXT *info
 
 static void buffer_needs(VkDevice dev, VkBuffer buffer, VkMemoryRequirements *out)
 {
-    (void)dev, (void)buffer;
-    *out = (VkMemoryRequirements){65536, 256, 1};
+    (void)dev;
+    *out = (VkMemoryRequirements){objects[(uint64_t)buffer].size, 256, 1};
 }
 
 static void image_needs(VkDevice dev, VkImage image, VkMemoryRequirements *out)
 {
-    (void)dev, (void)image;
-    *out = (VkMemoryRequirements){65536, 256, 1};
+    (void)dev;
+    *out = (VkMemoryRequirements){objects[(uint64_t)image].size, 256, 1};
 }
 
 static VkResult bind_buffer(VkDevice dev, VkBuffer buffer, VkDeviceMemory memory,
@@ -159,7 +167,7 @@ static VkResult map(VkDevice dev, VkDeviceMemory memory, VkDeviceSize offset, Vk
 {
     (void)dev, (void)offset, (void)size, (void)flags;
     object *o = &objects[(uint64_t)memory];
-    o->memory = calloc(1, 16u << 20);
+    o->memory = calloc(1, o->size);
     *out = o->memory;
     return VK_SUCCESS;
 }
