@@ -84,8 +84,9 @@ void main()
     if (me == 0) {
         vec3 extent = medium.extent, d = abs(beams[sun].direction);
         vec3 faces = vec3(extent.y * extent.z, extent.z * extent.x, extent.x * extent.y);
-        // Where all light is lost within a fraction of a sub-sample there may be nothing to scale.
-        float scale = sums[0].y > 0.0 ? clamp(sums[0].x / sums[0].y, 0.0, 100.0) : 1.0;
+        // Close to 1 where the sub-samples resolve the beam; large where it is lost within a fraction of
+        // one, or where the depth of the cells is bounded.
+        float scale = sums[0].y > 0.0 ? min(sums[0].x / sums[0].y, 1e6) : 1.0;
         power[sun * args.channels + ch] =
             lattice_power(dot(faces, d), sums[0].x, sums[0].y * scale, scale);
     }

@@ -1,5 +1,6 @@
 // light_chain.c -- medium -> beam -> lattice_cells -> lattice_source -> lattice -> merge, probe, balance.
 #include "light_chain.h"
+#include "counters.h"
 #include "passes/beam/beam.h"
 #include "passes/lattice/lattice.h"
 #include "passes/merge/merge.h"
@@ -127,6 +128,7 @@ void light_chain_run(gpu_test *t, light_chain *c)
         [LATTICE_PORT_ENVIRONMENT] = env_ref,
     };
     add(t, &tyn_pass_lattice, &solve, lattice);
+    tyn_graph_output(t->graph, "counters", lattice[LATTICE_PORT_COUNTERS], true);
 
     tyn_ref merge[TYN_MAX_PORTS] = {
         [MERGE_PORT_MEDIUM] = medium_ref,
@@ -185,6 +187,7 @@ void light_chain_run(gpu_test *t, light_chain *c)
         c->results = realloc(c->results, c->num_points * sizeof *c->results);
         memcpy(c->results, gpu_map(t, "results"), c->num_points * sizeof *c->results);
     }
+    c->non_finite = ((const struct counters_block *)gpu_map(t, "counters"))->non_finite;
     c->ms_cells = gpu_ms(t, "lattice_cells");
     c->ms_source = gpu_ms(t, "lattice_source");
     c->ms_solve = gpu_ms(t, "lattice");

@@ -25,6 +25,7 @@ typedef struct light_chain {
     tyn_balance balance;
     float *inscatter; // (dims + 2) RGBA texels, malloc'ed; seen from +x far away
     tyn_extent inscatter_size;
+    uint32_t non_finite; // cells that the solve counted as not finite
     double ms_cells, ms_source, ms_solve;
 } light_chain;
 
