@@ -12,7 +12,7 @@
 //
 // The first terms are evaluated here; the table holds the sums as
 //   ln( sum / (f (1 - e^-tau) e^{-tau (1 - f)}) )
-// over ln(1 + tau) and ln(1 + theta / width): nearly straight there, so few texels do.
+// over ln(1 + tau / 4) and ln(1 + theta / width): nearly straight there, so few texels do.
 //
 // Define SCATTER_LUT (sampler3D) and SCATTER_LUT_BLOCK (storage buffer) before including.
 #ifndef TYN_SCATTER_LUT_GLSL
@@ -31,7 +31,7 @@ struct scatter_angle {
     vec2 first;  // p (1 - h), p h
     vec2 vw;     // texture coordinate of angle and row
     float f;
-    float scale; // texels of ln(1 + tau)
+    float scale; // texture u per ln(1 + tau / 4)
 };
 
 scatter_angle scatter_angle_in_row(float row, float g, float theta_1, float one_minus_mu)

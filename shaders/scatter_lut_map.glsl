@@ -10,21 +10,25 @@ float lut_depth_max(float f)
     return 20.0 / (1.0 - f);
 }
 
-// Texture u per ln(1 + tau), texel centres at both ends.
+// Depth around which the texels go from even to geometric spacing; found by trial.
+const float LUT_DEPTH = 4.0;
+
+// Texture u per ln(1 + tau / LUT_DEPTH), texel centres at both ends.
 float lut_depth_scale(float f)
 {
-    return float(TYN_LUT_DEPTHS - 1) / (float(TYN_LUT_DEPTHS) * log(1.0 + lut_depth_max(f)));
+    return float(TYN_LUT_DEPTHS - 1) / (float(TYN_LUT_DEPTHS) * log(1.0 + lut_depth_max(f) / LUT_DEPTH));
 }
 
 float lut_u(float tau, float scale)
 {
-    return 0.5 / float(TYN_LUT_DEPTHS) + min(log(1.0 + max(tau, 0.0)) * scale,
+    return 0.5 / float(TYN_LUT_DEPTHS) + min(log(1.0 + max(tau, 0.0) / LUT_DEPTH) * scale,
                                              float(TYN_LUT_DEPTHS - 1) / float(TYN_LUT_DEPTHS));
 }
 
 float lut_depth(uint texel, float f)
 {
-    return exp(float(texel) / float(TYN_LUT_DEPTHS - 1) * log(1.0 + lut_depth_max(f))) - 1.0;
+    float t = float(texel) / float(TYN_LUT_DEPTHS - 1);
+    return LUT_DEPTH * (exp(t * log(1.0 + lut_depth_max(f) / LUT_DEPTH)) - 1.0);
 }
 
 // Angle around which the texels go from even to geometric spacing, radians: a few times the width of
