@@ -47,23 +47,23 @@ vec3 medium_wrap(vec3 p)
     return p - vec3(medium.repeat) * medium.extent * floor(p / medium.extent);
 }
 
-// Of a wrapped position.
-bool medium_inside(vec3 p)
-{
-    return all(greaterThanEqual(p, vec3(0.0))) && all(lessThanEqual(p, medium.extent));
-}
-
-// Texture coordinate of a wrapped position.
+// Texture coordinate of a position; periodic axes wrap.
 vec3 medium_uvw(vec3 p)
 {
-    return p / medium.extent;
+    vec3 uvw = p / medium.extent;
+    return uvw - vec3(medium.repeat) * floor(uvw);
+}
+
+bool medium_inside(vec3 uvw)
+{
+    return all(greaterThanEqual(uvw, vec3(0.0))) && all(lessThanEqual(uvw, vec3(1.0)));
 }
 
 // Texture value of mode DENSITY, which the coefficients in the block are multiplied with; 0 outside.
 float medium_density(vec3 p)
 {
-    p = medium_wrap(p);
-    return medium_inside(p) ? textureLod(medium_density_tex, medium_uvw(p), 0.0).r : 0.0;
+    vec3 uvw = medium_uvw(p);
+    return medium_inside(uvw) ? textureLod(medium_density_tex, uvw, 0.0).r : 0.0;
 }
 
 // Coefficients of mode DENSITY at a texture value.
@@ -80,9 +80,8 @@ medium_point medium_sample(vec3 p)
         return medium_of_density(medium_density(p));
     }
     medium_point m = medium_point(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-    p = medium_wrap(p);
-    if (medium_inside(p)) {
-        vec3 uvw = medium_uvw(p);
+    vec3 uvw = medium_uvw(p);
+    if (medium_inside(uvw)) {
         m.sigma_s = textureLod(medium_density_tex, uvw, 0.0).rgb;
 #ifdef MEDIUM_SIGMA_A
         m.sigma_a = textureLod(medium_sigma_a_tex, uvw, 0.0).rgb;
