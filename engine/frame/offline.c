@@ -12,6 +12,11 @@ struct tyn_offline {
     VkCommandBuffer cmd;
     VkFence fence;
     double setup_ms, frame_ms;
+    tyn_progress_fn progress;
+    void *progress_user;
+    // Sums over the records of the last frame; num_nodes 0: it was one record.
+    tyn_node_report *nodes;
+    uint32_t num_nodes;
 };
 
 static double now_ms(void)
@@ -80,7 +85,14 @@ void tyn_offline_destroy(tyn_offline **offline)
     tyn_context_destroy(&off->context);
     off->dev->vk.DestroyFence(off->dev->device, off->fence, NULL);
     off->dev->vk.DestroyCommandPool(off->dev->device, off->pool, NULL);
+    free(off->nodes);
     free(off);
+}
+
+void tyn_offline_on_progress(tyn_offline *off, tyn_progress_fn fn, void *user)
+{
+    off->progress = fn;
+    off->progress_user = user;
 }
 
 // Records, submits and waits.
@@ -121,6 +133,38 @@ static tyn_result submit(tyn_offline *off, tyn_frame *frame)
     return result == TYN_OK ? tyn_vk_check(dev, r, "rendering a frame") : result;
 }
 
+// Adds what the last record did. A node that did not run in it still reports its last run.
+static void add_record(tyn_offline *off)
+{
+    tyn_report report;
+    tyn_context_report(off->context, &report);
+    if (off->num_nodes != report.num_nodes) { // the first record of a frame
+        tyn_node_report *nodes = realloc(off->nodes, report.num_nodes * sizeof *nodes);
+        if (nodes) {
+            memcpy(nodes, report.nodes, report.num_nodes * sizeof *nodes);
+            off->nodes = nodes;
+            off->num_nodes = report.num_nodes;
+        }
+        return;
+    }
+    for (uint32_t i = 0; i < report.num_nodes; i++) {
+        const tyn_node_report *from = &report.nodes[i];
+        tyn_node_report *to = &off->nodes[i];
+        if (strcmp(from->state, "ran")) {
+            continue;
+        }
+        to->state = from->state;
+        to->gpu_ms += from->gpu_ms;
+        to->cpu_ms += from->cpu_ms;
+        to->dispatches += from->dispatches;
+        to->barriers += from->barriers;
+        to->flops += from->flops;
+        for (uint32_t w = 0; w < from->num_work && w < to->num_work; w++) {
+            to->work[w].amount += from->work[w].amount;
+        }
+    }
+}
+
 tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn_view *view,
                              bool recompute)
 {
@@ -139,11 +183,18 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
     }
     off->setup_ms = now_ms() - start;
 
+    off->num_nodes = 0;
     start = now_ms();
     for (uint32_t done = 0; result == TYN_OK && done < samples; done += part.num_samples) {
         part.first_sample = view->first_sample + done;
         part.num_samples = samples - done < batch ? samples - done : batch;
         result = submit(off, &frame);
+        if (result == TYN_OK && samples > batch) {
+            const double fraction = (double)(done + part.num_samples) / samples;
+            add_record(off);
+            bool go_on = !off->progress || off->progress(off->progress_user, fraction);
+            result = go_on ? TYN_OK : TYN_ERR_STOPPED;
+        }
     }
     off->frame_ms = now_ms() - start;
     return result;
@@ -157,6 +208,10 @@ const void *tyn_offline_output(tyn_offline *off, tyn_output output)
 void tyn_offline_report(tyn_offline *off, tyn_report *report)
 {
     tyn_context_report(off->context, report);
+    if (off->num_nodes) {
+        report->nodes = off->nodes;
+        report->num_nodes = off->num_nodes;
+    }
 }
 
 tyn_context *tyn_offline_context(tyn_offline *off)

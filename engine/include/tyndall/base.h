@@ -47,6 +47,7 @@ typedef enum tyn_result {
     TYN_ERR_MEMORY = -3,      // out of host or device memory
     TYN_ERR_DEVICE = -4,      // no device, or a Vulkan call failed
     TYN_ERR_IO = -5,          // a file cannot be read or written
+    TYN_ERR_STOPPED = -6,     // a callback of the caller's asked to stop
 } tyn_result;
 
 typedef enum tyn_log_level { TYN_LOG_ERROR = 0, TYN_LOG_WARN, TYN_LOG_INFO, TYN_LOG_DEBUG } tyn_log_level;

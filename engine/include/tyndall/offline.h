@@ -29,7 +29,13 @@ TYN_API tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, c
                                      bool recompute);
 // A foreign density image, depth or composite target cannot be given here.
 
+// Called between the records of such a frame with the share of its samples that is done. False stops
+// it: tyn_offline_frame returns TYN_ERR_STOPPED, and the outputs are not of all samples.
+typedef bool (*tyn_progress_fn)(void *user, double fraction);
+TYN_API void tyn_offline_on_progress(tyn_offline *off, tyn_progress_fn fn, void *user);
+
 TYN_API const void *tyn_offline_output(tyn_offline *off, tyn_output output);
+// Of the last frame: times, dispatches and work of a node are sums over the frame's records.
 TYN_API void tyn_offline_report(tyn_offline *off, tyn_report *report);
 TYN_API tyn_context *tyn_offline_context(tyn_offline *off);
 TYN_API double tyn_offline_setup_ms(const tyn_offline *off); // pipelines, uploads, media-only nodes
