@@ -90,7 +90,8 @@ int app_exit_code(app *a, tyn_result result, bool input)
                                               "this device or this build cannot do it",
                                               "out of memory",
                                               "no Vulkan device, or a Vulkan call failed",
-                                              "a file cannot be read or written"};
+                                              "a file cannot be read or written",
+                                              "stopped"};
         int reason = -(int)result;
         app_error(a, "%s", reason > 0 && reason < (int)ARRAY_SIZE(reasons) ? reasons[reason] : "?");
     }

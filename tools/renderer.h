@@ -1,4 +1,4 @@
-// renderer.h -- one frame of a method, in portions that can be interrupted.
+// renderer.h -- one frame of a method, with progress, that can be interrupted.
 #pragma once
 #include "app.h"
 #include "machine.h"
@@ -8,9 +8,9 @@
 typedef struct renderer {
     tyn_offline *offline;
     bool progressive;
-    double setup_ms, frame_ms; // of the last frame, all its portions
-    // What kernels counted in the last call of the last frame and should not have had to: values that
-    // were not finite, paths ended by the safety cap. One line each, NULL = none.
+    double setup_ms, frame_ms; // of the last frame
+    // What kernels counted in a frame and should not have had to: values that were not finite, paths
+    // ended by the safety cap. One line each, NULL = none.
     char *warnings[2];
 } renderer;
 
