@@ -187,7 +187,7 @@ const gen_scene gen_scenes[] = {
                     .scale = {1.3f, 0.9f, 1.2f}}},
         .suns = {{.direction = {-0.6f, -0.7f, -0.4f}, .irradiance = 12}},
         .cameras =
-            {{.name = "view", .from = {0.8f, 1.2f, 4.6f}, .at = {0.2f, 0, 0}, .yfov = 0.46f}},
+            {{.name = "view", .from = {0.8f, 1.2f, 5.2f}, .at = {0.32f, -0.1f, 0}, .yfov = 0.46f}},
     },
 };
 
