@@ -122,7 +122,7 @@ static void write_leaf(const nvdb_spec *s, uint8_t *leaf, int32_t x, int32_t y, 
     }
     for (int n = 0; n < 512; n++) {
         int32_t p[3] = {x + (n >> 6), y + (n >> 3 & 7), z + (n & 7)};
-        float v = s->value(p[0], p[1], p[2]);
+        float v = s->value ? s->value(p[0], p[1], p[2]) : 1.0f;
         if (p[0] >= s->lo[0] && p[0] <= s->hi[0] && p[1] >= s->lo[1] && p[1] <= s->hi[1] &&
             p[2] >= s->lo[2] && p[2] <= s->hi[2]) {
             set_bit(leaf + 16, (uint32_t)n);

@@ -19,7 +19,8 @@ typedef struct tyn_volume {
     float *data;             // size[0]*size[1]*size[2]; owned by the scene. NULL: the host brings an
                              // image each frame (tyn_frame.densities), and max_density is Required
     float max_density;       // largest value
-    double index_to_world[16]; // of the file (voxel index -> its own world); used by shape "grid" at load
+    double index_to_world[16]; // of the file: voxel index in data (centres at whole numbers) -> its own
+                               // world, column-major; used by shape "grid" at load
     uint64_t hash;           // content hash of data, for change tracking
 } tyn_volume;
 
@@ -30,7 +31,7 @@ typedef struct tyn_medium {
     float sigma_a[3];    // absorption, 1/m, >= 0
     float g[3];          // Henyey-Greenstein mean cosine, (-1, 1)
     float emission[3];   // W/(m^3 sr), >= 0
-    float density_scale; // multiplies the grid's density; 1 after load, >= 0
+    float density_scale; // multiplies the density, >= 0; after load the file's density.scale, else 1
     int32_t volume;      // index into scene.volumes; -1: homogeneous, density 1
 } tyn_medium;
 
