@@ -1,4 +1,7 @@
 // medium.h -- the medium as the solvers read it: resampled textures, min/max bricks, distances.
+//
+// There are no mip levels: the lattice averages over its own cells, which are not powers of two of the
+// voxels, and nothing else reads the medium coarser.
 #pragma once
 #include <tyndall/pass.h>
 #include "scene_args.h"

@@ -412,48 +412,6 @@ static void not_finite(void **state)
     grid_free(&m);
 }
 
-// The texture keeps its extent while a sun moves, and stays within its bounds.
-static void plan(void **state)
-{
-    (void)state;
-    static const uint32_t sizes[][3] = {
-        {64, 64, 64}, {96, 160, 96}, {512, 512, 512}, {1, 1, 1}, {8, 1, 300}};
-    for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
-        for (uint32_t mode = 0; mode < 2; mode++) {
-            grid m = grid_make((float[3]){1, 1, 1}, (uint32_t[3]){1, 1, 1}, mode);
-            uint32_t most = mode == TYN_MEDIUM_DENSITY ? 160 : 96, first[3] = {0};
-            for (int i = 0; i < 3; i++) {
-                m.block.size[i] = sizes[k][i];
-                m.block.extent[i] = 0.01f * (float)sizes[k][i];
-                m.block.voxel[i] = 0.01f;
-            }
-            uint32_t seed = 1;
-            for (int n = 0; n < 200; n++) {
-                struct light_block s[2] = {
-                    sun(random_unit(&seed) - 0.5, 0.9, random_unit(&seed) - 0.5),
-                    sun(0.9, random_unit(&seed) - 0.5, random_unit(&seed) - 0.5),
-                };
-                tyn_beam_params params;
-                tyn_pass_defaults(&tyn_pass_beam, &params);
-                tyn_beam_plan(&params, &m.block, s, 2);
-                if (n == 0) {
-                    memcpy(first, params.extent, sizeof first);
-                }
-                assert_memory_equal(first, params.extent, sizeof first);
-                assert_true(params.extent[0] <= most + 2 && params.extent[1] <= most + 2);
-                assert_true(params.extent[2] <= 2 * (most + 1));
-                for (uint32_t b = 0; b < 2; b++) {
-                    assert_true(params.beams[b].nodes[0] <= params.extent[0]);
-                    assert_true(params.beams[b].nodes[1] <= params.extent[1]);
-                    assert_true(params.beams[b].first_slice + params.beams[b].nodes[2] <=
-                                params.extent[2]);
-                }
-            }
-            grid_free(&m);
-        }
-    }
-}
-
 static void refuses_no_sun(void **state)
 {
     gpu_test *t = *state;
@@ -471,10 +429,10 @@ static void refuses_no_sun(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(homogeneous),  cmocka_unit_test(smooth),
-        cmocka_unit_test(rough),        cmocka_unit_test(periodic),
-        cmocka_unit_test(coefficients), cmocka_unit_test(not_finite),
-        cmocka_unit_test(plan),         cmocka_unit_test(refuses_no_sun),
+        cmocka_unit_test(homogeneous),    cmocka_unit_test(smooth),
+        cmocka_unit_test(rough),          cmocka_unit_test(periodic),
+        cmocka_unit_test(coefficients),   cmocka_unit_test(not_finite),
+        cmocka_unit_test(refuses_no_sun),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
