@@ -151,36 +151,46 @@ vec3 path_transmittance(vec3 origin, vec3 direction, float distance, inout rng_s
     vec2 bounds = media_bounds(walk.cell);
     float tau = rng_exponential(rng_next(rng).x);
     while (steps < args.max_steps) {
-        steps++;
+        // Bricks without a collision. The least extinction is taken out analytically, the rest is tracked.
         int axis;
         float face = brick_exit(medium, walk, at, axis), ahead = min(face, left);
-        // The least extinction is taken out analytically, the rest is tracked.
         float tracked = bounds.y - bounds.x;
-        bool collides = tau < tracked * ahead;
-        float moved = collides ? tau / tracked : ahead;
+        while (tau >= tracked * ahead && steps < args.max_steps) {
+            steps++;
+            tau -= tracked * ahead;
+            at += ahead * direction;
+            left -= ahead;
+            passed *= exp(-bounds.x * ahead * path_tint);
+            if (left <= 0.0 || !brick_step(medium, walk, axis)) {
+                left = 0.0;
+                break;
+            }
+            bounds = media_bounds(walk.cell);
+            tracked = bounds.y - bounds.x;
+            face = brick_exit(medium, walk, at, axis);
+            ahead = min(face, left);
+        }
+        if (left <= 0.0) {
+            break;
+        }
+        steps++;
+        path_count.collisions++;
+        uvec4 bits = rng_next(rng);
+        float moved = tau / tracked;
+        tau = rng_exponential(bits.x);
         at += moved * direction;
         left -= moved;
         passed *= exp(-bounds.x * moved * path_tint);
-        if (collides) {
-            path_count.collisions++;
-            uvec4 bits = rng_next(rng);
-            tau = rng_exponential(bits.x);
-            vec3 more = media_at(at, 0.0, vec3(0.0)).sigma_t - bounds.x * path_tint;
-            passed *= clamp(1.0 - more / tracked, 0.0, 1.0);
-            float most = max3(passed);
-            if (most < PATH_ROULETTE) {
-                float survival = most / PATH_ROULETTE;
-                if (rng_float(bits.y) >= survival) {
-                    return vec3(0.0);
-                }
-                passed /= survival;
-            }
-        } else {
-            if (left <= 0.0 || !brick_step(medium, walk, axis)) {
+        vec3 more = media_at(at, 0.0, vec3(0.0)).sigma_t - bounds.x * path_tint;
+        passed *= clamp(1.0 - more / tracked, 0.0, 1.0);
+        float most = max3(passed);
+        if (most < PATH_ROULETTE) {
+            float survival = most / PATH_ROULETTE;
+            if (rng_float(bits.y) >= survival) {
+                passed = vec3(0.0);
                 break;
             }
-            tau -= tracked * ahead;
-            bounds = media_bounds(walk.cell);
+            passed /= survival;
         }
     }
     return passed;
@@ -195,6 +205,13 @@ struct path_flight {
     vec3 glow;      // emission on the way, already weighed by the path
     float spare;    // a random number nobody has used
 };
+
+// Emission on the next `moved` metres: track-length estimator, at one point of them.
+void path_glow(inout path_flight f, path_state path, float moved, inout rng_state rng)
+{
+    vec3 somewhere = f.at + moved * rng_float(rng_next(rng).x) * path.way;
+    f.glow += path_weight(path) * media_at(somewhere, 0.0, path.hero).emission * moved;
+}
 
 // Flies on from the vertex to the next real collision, or out of the media.
 path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
@@ -236,42 +253,51 @@ path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
     f.distance = span.x;
     brick_walk walk = brick_start(medium, f.at, path.way);
     float bound = media_bounds(walk.cell).y;
+    bool inside = true;
     while (path.steps < args.max_steps) {
-        path.steps++;
+        // Bricks without a collision.
         int axis;
         float ahead = brick_exit(medium, walk, f.at, axis);
-        bool collides = tau < bound * ahead;
-        float moved = collides ? tau / bound : ahead;
-        bits = rng_next(rng);
-        if ((FLAGS & TYN_PATH_EMISSIVE) != 0u) {
-            // Track-length estimator at one point of the way.
-            vec3 somewhere = f.at + moved * rng_float(bits.w) * path.way;
-            f.glow += path_weight(path) * media_at(somewhere, 0.0, path.hero).emission * moved;
-        }
-        f.at += moved * path.way;
-        f.distance += moved;
-        if (!collides) {
+        while (tau >= bound * ahead && path.steps < args.max_steps) {
+            path.steps++;
+            if ((FLAGS & TYN_PATH_EMISSIVE) != 0u) {
+                path_glow(f, path, ahead, rng);
+            }
             tau -= bound * ahead;
-            if (!brick_step(medium, walk, axis)) {
+            f.at += ahead * path.way;
+            f.distance += ahead;
+            inside = brick_step(medium, walk, axis);
+            if (!inside) {
                 break;
             }
             bound = media_bounds(walk.cell).y;
-        } else {
-            path_count.collisions++;
-            tau = rng_exponential(bits.x);
-            f.m = media_at(f.at, rng_float(bits.z), path.hero);
-            float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero);
-            if (rng_float(bits.y) * bound < sigma_t) {
-                f.collided = true;
-                break;
-            }
-            if (!GREY) {
-                // A null collision: the path goes straight on, its colour does not.
-                vec3 none = max(bound - f.m.sigma_t, 0.0);
-                none /= max(dot(none, path.hero), 1e-30);
-                path.beta *= none;
-                path.rho *= none;
-            }
+            ahead = brick_exit(medium, walk, f.at, axis);
+        }
+        if (!inside) {
+            break;
+        }
+        path.steps++;
+        path_count.collisions++;
+        float moved = tau / bound;
+        if ((FLAGS & TYN_PATH_EMISSIVE) != 0u) {
+            path_glow(f, path, moved, rng);
+        }
+        bits = rng_next(rng);
+        tau = rng_exponential(bits.x);
+        f.at += moved * path.way;
+        f.distance += moved;
+        f.m = media_at(f.at, rng_float(bits.z), path.hero);
+        float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero);
+        if (rng_float(bits.y) * bound < sigma_t) {
+            f.collided = true;
+            break;
+        }
+        if (!GREY) {
+            // A null collision: the path goes straight on, its colour does not.
+            vec3 none = max(bound - f.m.sigma_t, 0.0);
+            none /= max(dot(none, path.hero), 1e-30);
+            path.beta *= none;
+            path.rho *= none;
         }
     }
     return f;
@@ -312,7 +338,7 @@ vec4 path_lobe(inout rng_state rng, float u)
         return vec4(0.0, 0.0, 0.0, -1.0);
     }
     if (LIGHTS == 1u && ENVIRONMENT != TYN_PATH_ENV_MAP) {
-        bool distant = path_light0.kind == TYN_LIGHT_KIND_DIRECTIONAL;
+        bool distant = (FLAGS & TYN_PATH_LAMPS) == 0u || path_light0.kind == TYN_LIGHT_KIND_DIRECTIONAL;
         return distant ? vec4(-path_light0.direction, 0.0) : vec4(path_light0.position, 1.0);
     }
     // Any axis that does not depend on the path is unbiased.
@@ -330,12 +356,6 @@ vec4 path_lobe(inout rng_state rng, float u)
 // Follows samples [first, end) of one pixel or point.
 void path_run(uint element, uint first, uint end)
 {
-    if (ONE_SHAPE == 1u) {
-        path_shape0 = shapes[0];
-    }
-    if (LIGHTS == 1u) {
-        path_light0 = lights[0];
-    }
     path_tint = GREY ? vec3(1.0) : (medium.sigma_s + medium.sigma_a) / max(medium.sigma_t_max, 1e-30);
 
     uint index = first;
@@ -419,7 +439,7 @@ void path_run(uint element, uint first, uint end)
             float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero);
             float part = 1.0;
             vec3 chosen = vec3(1.0);
-            if (ONE_SHAPE != 1u) {
+            if (ONE_SHAPE == 0u) {
                 part = dot(f.m.sigma_s, path.hero) / max(dot(f.m.part_s, path.hero), 1e-30);
                 chosen = f.m.part_s / max(f.m.sigma_s, vec3(1e-30));
             }
@@ -433,8 +453,11 @@ void path_run(uint element, uint first, uint end)
             vec3 toward = vec3(0.0);
             float c = 0.0;
             if ((FLAGS & TYN_PATH_MIXTURE) != 0u && lobe.w >= 0.0) {
-                toward = lobe.w > 0.0 ? lobe.xyz - f.at : lobe.xyz;
-                toward *= inversesqrt(max(dot(toward, toward), 1e-30));
+                toward = lobe.xyz;
+                if ((FLAGS & TYN_PATH_LAMPS) != 0u && lobe.w > 0.0) {
+                    toward -= f.at;
+                    toward *= inversesqrt(max(dot(toward, toward), 1e-30));
+                }
                 c = PATH_MIXTURE_FIRST * exp2(PATH_MIXTURE_LOG2_DECAY * float(path.depth - 1u));
             }
 

@@ -30,9 +30,6 @@ float spot_falloff(light_block light, vec3 d)
     return a * a;
 }
 
-// The only light, kept in registers: buffers are slow to read in a loop.
-light_block path_light0;
-
 light_block light_get(uint index)
 {
     if (LIGHTS == 1u) {
@@ -45,7 +42,7 @@ light_block light_get(uint index)
 light_sample light_towards(uint index, vec3 p)
 {
     light_block light = light_get(index);
-    if (light.kind == TYN_LIGHT_KIND_DIRECTIONAL) {
+    if ((FLAGS & TYN_PATH_LAMPS) == 0u || light.kind == TYN_LIGHT_KIND_DIRECTIONAL) {
         return light_sample(-light.direction, 1e30, light.color);
     }
     vec3 to = light.position - p;

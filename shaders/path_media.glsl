@@ -23,12 +23,9 @@ vec3 grey(vec3 v)
     return GREY ? v.xxx : v;
 }
 
-// The first shape, kept in registers: buffers are slow to read in a loop.
-shape_block path_shape0;
-
 shape_block shape_get(uint i)
 {
-    if (ONE_SHAPE == 1u) {
+    if (ONE_SHAPE != 0u) {
         return path_shape0;
     }
     shape_block shape = shapes[i];
@@ -51,12 +48,17 @@ float shape_density(shape_block shape, vec3 local)
 {
     vec3 size = vec3(shape.size);
     vec3 texel = clamp((local + 0.5) * size, vec3(0.5), size - 0.5) + vec3(shape.offset);
-    return textureLod(atlas, texel / vec3(textureSize(atlas, 0)), 0.0).r;
+    return textureLod(atlas, texel * path_atlas_texel, 0.0).r;
+}
+
+bool shape_is_sphere(shape_block shape)
+{
+    return ONE_SHAPE == 2u || (ONE_SHAPE == 0u && shape.kind == TYN_SHAPE_KIND_SPHERE);
 }
 
 bool shape_holds(shape_block shape, vec3 local)
 {
-    if (shape.kind == TYN_SHAPE_KIND_SPHERE) {
+    if (shape_is_sphere(shape)) {
         return dot(local, local) <= 0.25;
     }
     return max3(abs(local)) <= 0.5;
@@ -89,7 +91,7 @@ media_point media_at(vec3 p, float pick, vec3 hero)
     m.part_s = vec3(0.0);
     m.g = vec3(0.0);
     float total = 0.0;
-    uint count = ONE_SHAPE == 1u ? 1u : medium.num_shapes;
+    uint count = ONE_SHAPE != 0u ? 1u : medium.num_shapes;
     for (uint i = 0u; i < count; i++) {
         shape_block shape = shape_get(i);
         vec3 local = shape_local(shape, p);
@@ -98,7 +100,7 @@ media_point media_at(vec3 p, float pick, vec3 hero)
         m.sigma_s += s;
         m.sigma_t += s + density * grey(shape.sigma_a);
         m.emission += density * shape.emission;
-        if (ONE_SHAPE == 1u) {
+        if (ONE_SHAPE != 0u) {
             m.part_s = s;
             m.g = grey(shape.g);
             break;
@@ -127,7 +129,7 @@ vec2 media_span(vec3 origin, vec3 direction)
     }
     vec3 o = shape_local(path_shape0, origin), d = shape_turn(path_shape0, direction);
     vec2 span;
-    if (path_shape0.kind == TYN_SHAPE_KIND_SPHERE) {
+    if (shape_is_sphere(path_shape0)) {
         span = ray_sphere(o, d, 0.5);
     } else {
         vec3 half_size = vec3(0.5);

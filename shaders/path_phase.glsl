@@ -21,7 +21,8 @@ vec3 phase_sample(float g, vec3 axis, vec2 u)
     float a = -1.0 / (sign_z + axis.z), b = axis.x * axis.y * a;
     vec3 t = vec3(1.0 + sign_z * axis.x * axis.x * a, sign_z * b, -sign_z * axis.x);
     vec3 s = vec3(b, sign_z + axis.y * axis.y * a, -axis.y);
-    return normalize((1.0 - one_minus_mu) * axis + across * (cos(azimuth) * t + sin(azimuth) * s));
+    vec3 d = (1.0 - one_minus_mu) * axis + across * (cos(azimuth) * t + sin(azimuth) * s);
+    return d * (1.5 - 0.5 * dot(d, d)); // rounding alone is to be undone: one Newton step
 }
 
 // pdf of `d` in the mixture: the phase function (value `forward`) or, with probability `c`, the lobes of g and

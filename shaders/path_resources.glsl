@@ -16,16 +16,40 @@ layout(constant_id = 4) const uint ENVIRONMENT = 2u;
 layout(constant_id = 5) const uint FLAGS = 0u;
 
 layout(set = 0, binding = 0) uniform sampler3D atlas;
-layout(set = 0, binding = 1, scalar) uniform medium_uniform { medium_block medium; };
+layout(set = 0, binding = 1, scalar) uniform medium_uniform { medium_block medium_in; };
 layout(set = 0, binding = 2, scalar) readonly buffer shapes_buffer { shape_block shapes[]; };
 layout(set = 0, binding = 3) uniform sampler3D bricks;
 layout(set = 0, binding = 4, scalar) readonly buffer lights_buffer { light_block lights[]; };
-layout(set = 0, binding = 5, scalar) uniform environment_uniform { env_block env; };
+layout(set = 0, binding = 5, scalar) uniform environment_uniform { env_block env_in; };
 layout(set = 0, binding = 6) uniform sampler2D env_map;
 layout(set = 0, binding = 7, scalar) readonly buffer env_buffer {
     env_table_block env_table;
     env_cell env_cells[];
 };
-layout(push_constant, scalar) uniform args_push { path_args args; };
+layout(push_constant, scalar) uniform args_push { path_args args_in; };
+
+// Copies that live in registers: inside a loop whose lanes diverge, software devices read buffers lane by lane.
+medium_block medium;
+env_block env;
+path_args args;
+shape_block path_shape0; // the only shape
+light_block path_light0; // the only light
+vec3 path_atlas_texel;   // 1 / texels of the atlas
+
+void path_load()
+{
+    medium = medium_in;
+    args = args_in;
+    path_atlas_texel = 1.0 / vec3(textureSize(atlas, 0));
+    if (ENVIRONMENT != TYN_PATH_ENV_NONE) {
+        env = env_in;
+    }
+    if (ONE_SHAPE != 0u) {
+        path_shape0 = shapes[0];
+    }
+    if (LIGHTS == 1u) {
+        path_light0 = lights[0];
+    }
+}
 
 #endif

@@ -93,7 +93,8 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
     p->max_depth = view->max_depth;
     p->rr_depth = view->rr_depth;
     p->homogeneous = frame->empty || (m->num_shapes == 1 && !has_grids(job));
-    p->one_shape = frame->empty || m->num_shapes == 1;
+    bool sphere = frame->shapes[0].kind == TYN_SHAPE_KIND_SPHERE;
+    p->one_shape = frame->empty || m->num_shapes == 1 ? (sphere ? 2 : 1) : 0;
     p->threads = path_cost_ns(job, p->homogeneous) > LONG_PATH_NS ? THREADS_LONG : THREADS;
     p->grey = 1;
     float sigma_t = 0;
@@ -105,7 +106,8 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
     p->repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];
     p->emissive = frame->emissive;
     p->num_lights = frame->num_lights;
-    p->num_lamps = count_near_lamps(frame);
+    p->num_lamps = frame->num_lights - frame->num_suns;
+    p->near_lamps = count_near_lamps(frame);
     bool sky = env->radiance[0] + env->radiance[1] + env->radiance[2] > 0;
     p->environment = !sky ? TYN_PATH_ENV_NONE : env->has_map ? TYN_PATH_ENV_MAP : TYN_PATH_ENV_CONSTANT;
     p->sigma_guess = p->homogeneous ? sigma_t : 0.3f * sigma_t * m->max_density;

@@ -14,12 +14,13 @@ typedef struct tyn_path_params {
     uint32_t rr_depth;                  // Russian roulette from here on; 0 = 4
     uint32_t threads;     // at most, of a dispatch: what keeps one below the time limit
     uint32_t homogeneous; // one shape and no density grid
-    uint32_t one_shape;
+    uint32_t one_shape;   // 1: a box, 2: a sphere, 0: several
     uint32_t grey;        // sigma_s, sigma_a and g are equal in all channels
     uint32_t repeat;      // some axis is periodic
     uint32_t emissive;
     uint32_t num_lights;
-    uint32_t num_lamps;   // point and spot lights among them, in or near the media
+    uint32_t num_lamps;   // point and spot lights among them
+    uint32_t near_lamps;  // those in or near the media
     uint32_t environment; // TYN_PATH_ENV_*
     float sigma_guess;    // typical extinction, 1/m
     uint32_t layers;      // images: single, multiple and transmittance as well

@@ -4,7 +4,7 @@
 #include "shared.h"
 
 // Specialisation constants: what a scene has, so that what it has not costs nothing.
-#define TYN_PATH_SPEC_SHAPES 0      // 1: exactly one shape; 0: as many as the medium block says
+#define TYN_PATH_SPEC_SHAPES 0      // 1: exactly one box, 2: one sphere, 0: as many as the medium block says
 #define TYN_PATH_SPEC_HOMOGENEOUS 1 // that shape has no density grid
 #define TYN_PATH_SPEC_GREY 2        // coefficients are equal in all channels
 #define TYN_PATH_SPEC_LIGHTS 3      // 0, 1, or 2 = several
@@ -21,6 +21,7 @@
 #define TYN_PATH_MIXTURE 4u      // light-lobe mixture sampling
 #define TYN_PATH_EQUIANGULAR 8u  // lamps in or near the media: equi-angular distance sampling
 #define TYN_PATH_LAYERS 16u      // first-order light and transmittance are kept as well
+#define TYN_PATH_LAMPS 64u       // some light is a point or spot light
 #define TYN_PATH_SCATTERED 32u   // probes leave out light that has not scattered
 
 struct path_args {

@@ -89,6 +89,7 @@ void path_end(path_result result)
 void main()
 {
     uint thread = gl_GlobalInvocationID.x;
+    path_load();
     if (thread >= args.num * args.slots) {
         return;
     }

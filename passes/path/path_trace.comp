@@ -7,7 +7,7 @@
 const bool PROBE = false;
 #include "path_resources.glsl"
 
-layout(set = 0, binding = 8, scalar) uniform camera_uniform { camera_block camera; };
+layout(set = 0, binding = 8, scalar) uniform camera_uniform { camera_block camera_in; };
 layout(set = 0, binding = 9, scalar) writeonly buffer partial_buffer { path_partial partials[]; };
 layout(set = 0, binding = 10, scalar) buffer counters_buffer { counters_block counters; };
 layout(set = 0, binding = 11, scalar) writeonly buffer layers_buffer { path_partial_layers layers[]; };
@@ -17,6 +17,7 @@ layout(set = 0, binding = 11, scalar) writeonly buffer layers_buffer { path_part
 // Welford's running mean and sum of squared deviations: exact 0 for equal samples, however many.
 path_partial partial = path_partial(vec3(0.0), vec3(0.0), 0.0, 0u);
 path_partial_layers partial_layers = path_partial_layers(vec3(0.0), vec3(0.0), vec3(0.0));
+camera_block camera; // in registers, as path_load has it
 uvec2 pixel;
 
 void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction)
@@ -49,6 +50,8 @@ void path_end(path_result result)
 void main()
 {
     uint thread = gl_GlobalInvocationID.x;
+    path_load();
+    camera = camera_in;
     if (thread >= args.num * args.slots) {
         return;
     }

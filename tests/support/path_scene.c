@@ -98,6 +98,7 @@ void path_scene_lamp(path_scene *s, const float position[3], const float intensi
     copy3(l->position, position);
     l->direction[2] = 1;
     s->params.num_lamps++;
+    s->params.near_lamps++;
 }
 
 void path_scene_sky(path_scene *s, float radiance)
