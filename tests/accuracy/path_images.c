@@ -171,8 +171,8 @@ static void blobs(void **state)
         uint32_t samples;
     } images[] = {
         {"blobs_dir_toward", false, false, {0.5f, 0.3f, -0.5f}, 7, 512},
-        {"blobs_sky_front", false, true, {0, 0, 1}, 5, 128},
-        {"blobsthin_sky_front", true, true, {0, 0, 1}, 5, 128},
+        {"blobs_sky_front", false, true, {0, 0, 1}, 5, 512},
+        {"blobsthin_sky_front", true, true, {0, 0, 1}, 5, 512},
     };
     if (!read_blobs(grid)) {
         skip();
