@@ -15,7 +15,7 @@
 
 // The box around the medium's box with one axis along the light, in cubes of its longest side / cells.
 // Across the light what the last cells reach beyond the medium is split evenly.
-propagate_grid propagate_grid_of(vec3 extent, light_block light, uint index, uint cells)
+propagate_grid propagate_grid_of(vec3 extent, light_block light, uint index, uint cells, uint channels)
 {
     propagate_grid grid;
     vec3 d = normalize(light.direction);
@@ -37,8 +37,8 @@ propagate_grid propagate_grid_of(vec3 extent, light_block light, uint index, uin
     grid.direction = d;
     grid.irradiance = light.color;
     grid.light = index;
-    grid.first_layer = index * cells;
-    grid.pad = 0u;
+    grid.first_layer = index * channels * cells;
+    grid.channels = channels;
     return grid;
 }
 
@@ -55,14 +55,6 @@ vec3 propagate_from_m(propagate_grid grid, vec3 p)
     return vec3(dot(grid.across_u, p), dot(grid.across_v, p), dot(grid.direction, p)) / grid.cell;
 }
 
-// Which grid and cell a texel of the stacked images is; false: none.
-bool propagate_cell_of(ivec3 texel, uint cells, out uint index, out ivec3 cell)
-{
-    index = uint(texel.z) / cells;
-    cell = ivec3(texel.xy, uint(texel.z) % cells);
-    return all(lessThan(uvec2(texel.xy), uvec2(cells)));
-}
-
 bool propagate_inside(propagate_grid grid, ivec3 cell)
 {
     return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(uvec3(cell), grid.size));
@@ -73,32 +65,28 @@ bool propagate_inside(propagate_grid grid, ivec3 cell)
 // What is kept of a is its complement, the spread 1 - a: light that has hardly scattered has a next to
 // 1, and the fractions that go sideways are proportional to 1 - a, which a rounded a would lose.
 
-// Fractions of a cell's light that go to the neighbour in front, to each of the four beside, and to
-// the one behind: the distribution integrated over the cones of Eq 3 (45 and 135 degrees). With
-// s^2 = 1 + a^2 - 2 a mu the integral of Eq 1 below mu is (1 - a) (1 + mu) / (s (s + 1 + a)), which has
-// no division by a; what is ahead is the rest, so that the six sum to 1. A lobe that points backward is
-// the mirror image.
-struct propagate_split {
-    float front, side, back;
-};
-
-propagate_split propagate_split_of(float spread)
+// A cell: L in units of the irradiance, 1 - a, and the fractions of L that go to each of the four
+// neighbours beside and to the one behind; the rest goes to the one in front. The fractions are the
+// distribution integrated over the cones of Eq 3 (45 and 135 degrees). With s^2 = 1 + a^2 - 2 a mu the
+// integral of Eq 1 below mu is (1 - a) (1 + mu) / (s (s + 1 + a)), which has no division by a. A lobe
+// that points backward is the mirror image.
+vec4 propagate_state(float light, float spread)
 {
     const float edge = 0.70710678;            // cos 45 degrees
     float narrow = min(spread, 2.0 - spread); // 1 - |a|
     float s_ahead = sqrt(narrow * narrow + 2.0 * (1.0 - narrow) * (1.0 - edge));
     float s_behind = sqrt(narrow * narrow + 2.0 * (1.0 - narrow) * (1.0 + edge));
-    float outside = narrow * (1.0 + edge) / (s_ahead * (s_ahead + 2.0 - narrow));
+    float outside = narrow * (1.0 + edge) / (s_ahead * (s_ahead + 2.0 - narrow)); // of the cone ahead
     float behind = narrow * (1.0 - edge) / (s_behind * (s_behind + 2.0 - narrow));
     float side = 0.25 * (outside - behind);
-    return spread <= 1.0 ? propagate_split(1.0 - outside, side, behind)
-                         : propagate_split(behind, side, 1.0 - outside);
+    return vec4(light, spread, side, spread <= 1.0 ? behind : 1.0 - outside);
 }
 
-float propagate_fraction(float spread, int layers) // layers: steps along d from source to destination
+// What of a cell's light goes `layers` steps along d.
+float propagate_part(vec4 state, int layers)
 {
-    propagate_split split = propagate_split_of(spread);
-    return layers > 0 ? split.front : layers < 0 ? split.back : split.side;
+    float part = layers == 0 ? state.z : layers < 0 ? state.w : 1.0 - 4.0 * state.z - state.w;
+    return state.x * part;
 }
 
 // -ln g for 0 < g < 1; the series where a rounded ln would lose digits: -ln g = 2 artanh((1-g)/(1+g)).
@@ -108,26 +96,24 @@ float propagate_minus_log(float g)
     return g > 0.8 ? y * (2.0 + y * y * (2.0 / 3.0 + y * y * (0.4 + y * y * 2.0 / 7.0))) : -log(g);
 }
 
+// How fast a falls, 1/m: a' = a e^(-decay t) (Eq 4). The flight has a Poisson number of events, so the
+// exact mean of g^n has the decay (1 - g) sigma_s; the paper takes g to the mean number instead, which
+// has no meaning for g < 0: the exact rate is used there.
+float propagate_decay(float sigma_s, float g, uint rate)
+{
+    if (rate == TYN_PROPAGATE_RATE_EXACT || g < 0.0) {
+        return (1.0 - g) * sigma_s;
+    }
+    if (sigma_s <= 0.0) {
+        return 0.0;
+    }
+    return g > 0.0 ? propagate_minus_log(g) * sigma_s : 1e30; // g = 0: isotropic after any event
+}
+
 // 1 - e^-x, x >= 0.
 float propagate_loss(float x)
 {
     return x < 0.05 ? x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0)))) : 1.0 - exp(-x);
-}
-
-// The spread after the scattering depth tau (Eq 4): a' = a r. The flight has a Poisson number of
-// events, so the exact mean of g^n is r = exp(-(1 - g) tau); the paper takes g to the mean number
-// instead, which has no meaning for g < 0: the exact rate is used there.
-float propagate_scatter(float spread, float g, float tau, uint rate)
-{
-    float loss = 1.0; // 1 - r
-    if (rate == TYN_PROPAGATE_RATE_EXACT || g < 0.0) {
-        loss = propagate_loss((1.0 - g) * tau);
-    } else if (g > 0.0) {
-        loss = propagate_loss(tau * propagate_minus_log(g));
-    } else if (tau <= 0.0) {
-        loss = 0.0;
-    }
-    return spread + (1.0 - spread) * loss;
 }
 
 // ---- what the eye gets (Eq 8) -----------------------------------------------------------------------

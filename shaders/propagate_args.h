@@ -1,4 +1,8 @@
 // propagate_args.h -- grids of the six-neighbour propagation. Included by C and GLSL; scalar layout.
+//
+// All grids are stacked along z in one image, channel by channel: cell (i, j, k) of channel c of light n
+// is texel (i, j, (n channels + c) cells + k), and first_layer = n channels cells. One channel if the
+// medium is the same in all: light of another colour is the same light times a colour.
 #ifndef TYN_PROPAGATE_ARGS_H
 #define TYN_PROPAGATE_ARGS_H
 #include "shared.h"
@@ -21,8 +25,8 @@ struct propagate_grid {   // element of storage buffer "grids", one per directio
     tyn_vec3 across_v;    // M, unit: y axis
     tyn_uint light;       // index into "lights"
     tyn_vec3 direction;   // M, unit: z axis, the light's direction of travel
-    tyn_uint pad;
-    tyn_vec3 irradiance; // of the light, W/m^2
+    tyn_uint channels;   // 1 or 3
+    tyn_vec3 irradiance; // of the light, W/m^2: what the grid's light is in units of
     tyn_uvec3 size;      // cells; texels beyond are not part of the grid
 };
 TYN_ASSERT_SIZE(propagate_grid, 88);

@@ -24,6 +24,7 @@ static tyn_result add_propagation(tyn_graph *g, const tyn_job *job, const tyn_pi
 {
     tyn_settings_params(job->settings, &tyn_pass_propagate_rect, &light->params);
     light->params.num_suns = in->num_suns;
+    light->params.channels = job->frame->grey ? 1 : 3;
     light->params.mode = job->frame->medium.mode;
     light->refs[PROPAGATE_RECT_PORT_MEDIUM] = job->refs.medium;
     light->refs[PROPAGATE_RECT_PORT_LIGHTS] = job->refs.lights;
@@ -49,7 +50,7 @@ static tyn_result add_upsampling(tyn_graph *g, const tyn_job *job, const propaga
         [UPSAMPLE_PORT_MEDIUM] = job->refs.medium,
         [UPSAMPLE_PORT_DENSITY] = in->media.density,
         [UPSAMPLE_PORT_GRIDS] = light->refs[PROPAGATE_RECT_PORT_GRIDS],
-        [UPSAMPLE_PORT_CELL_SIGMA_S] = light->refs[PROPAGATE_RECT_PORT_CELL_S],
+        [UPSAMPLE_PORT_CELLS] = light->refs[PROPAGATE_RECT_PORT_CELLS],
         [UPSAMPLE_PORT_SEEN] = light->refs[PROPAGATE_RECT_PORT_SEEN],
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_upsample, &params, refs);

@@ -8,6 +8,7 @@
 #include "scene_args.h"
 
 #define PORT(name) PROPAGATE_RECT_PORT_##name
+#define RGBA VK_FORMAT_R32G32B32A32_SFLOAT
 
 static const tyn_port ports[PROPAGATE_RECT_NUM_PORTS] = {
     [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
@@ -19,21 +20,18 @@ static const tyn_port ports[PROPAGATE_RECT_NUM_PORTS] = {
     [PORT(G)] = {"g", TYN_IN, TYN_IMAGE_3D, .optional = true,
                  .meaning = "mean cosine of scattering"},
     [PORT(GRIDS)] = {"grids", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_grid[]"},
-#define CELLS(port, text, dir_, what)                                                              \
-    [port] = {text, dir_, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, .meaning = what}
-    CELLS(PORT(CELL_S), "cell_sigma_s", TYN_OUT, "mean scattering of the aligned cells, 1/m"),
-    CELLS(PORT(CELL_A), "cell_sigma_a", TYN_OUT, "mean absorption of the aligned cells, 1/m"),
-    CELLS(PORT(CELL_G), "cell_g", TYN_OUT, "mean cosine of scattering in the aligned cells"),
-    CELLS(PORT(LIGHT), "light", TYN_OUT, "L after the last iteration, W/m^2"),
-    CELLS(PORT(SPREAD), "spread", TYN_OUT,
-          "1 - a, a = mean cosine of L about the light's direction"),
-    CELLS(PORT(SEEN), "seen", TYN_OUT,
-          "L_acc: light sent to the eye in all iterations, W/(m^2 sr)"),
-    CELLS(PORT(LIGHT_OTHER), "light_other", TYN_SCRATCH, "L of every other iteration, W/m^2"),
-    CELLS(PORT(SPREAD_OTHER), "spread_other", TYN_SCRATCH, "1 - a of every other iteration"),
-    CELLS(PORT(SEEN_OTHER), "seen_other", TYN_SCRATCH,
-          "L_acc of every other iteration, W/(m^2 sr)"),
-#undef CELLS
+    [PORT(CELLS)] = {"cells", TYN_OUT, TYN_IMAGE_3D, RGBA,
+                     .meaning =
+                         "mean sigma_s, sigma_a of the aligned cells, 1/m; g; decay of a, 1/m"},
+    [PORT(STATE)] = {"state", TYN_OUT, TYN_IMAGE_3D, RGBA,
+                     .meaning = "L per irradiance, 1 - a, its fractions to a side and to the back"},
+    [PORT(SEEN)] = {"seen", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
+                    .meaning =
+                        "L_acc: light sent to the eye in all iterations, per irradiance, 1/sr"},
+    [PORT(STATE_OTHER)] = {"state_other", TYN_SCRATCH, TYN_IMAGE_3D, RGBA,
+                           .meaning = "state of every other iteration"},
+    [PORT(SEEN_OTHER)] = {"seen_other", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
+                          .meaning = "L_acc of every other iteration"},
 };
 
 enum { SETUP, CELLS, START, STEP, NUM_KERNELS };
@@ -44,23 +42,19 @@ static const tyn_binding setup_bindings[] = {
     {PORT(GRIDS), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding cells_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},       {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},      {PORT(G), TYN_USE_SAMPLED},
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},   {PORT(CELL_S), TYN_USE_STORAGE_WRITE},
-    {PORT(CELL_A), TYN_USE_STORAGE_WRITE}, {PORT(CELL_G), TYN_USE_STORAGE_WRITE},
+    {PORT(MEDIUM), TYN_USE_UNIFORM},     {PORT(DENSITY), TYN_USE_SAMPLED},
+    {PORT(SIGMA_A), TYN_USE_SAMPLED},    {PORT(G), TYN_USE_SAMPLED},
+    {PORT(GRIDS), TYN_USE_STORAGE_READ}, {PORT(CELLS), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding start_bindings[] = {
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},   {PORT(CAMERA), TYN_USE_UNIFORM},
-    {PORT(CELL_S), TYN_USE_SAMPLED},       {PORT(CELL_A), TYN_USE_SAMPLED},
-    {PORT(CELL_G), TYN_USE_SAMPLED},       {PORT(LIGHT), TYN_USE_STORAGE_WRITE},
-    {PORT(SPREAD), TYN_USE_STORAGE_WRITE}, {PORT(SEEN), TYN_USE_STORAGE_WRITE},
+    {PORT(GRIDS), TYN_USE_STORAGE_READ}, {PORT(CAMERA), TYN_USE_UNIFORM},
+    {PORT(CELLS), TYN_USE_SAMPLED},      {PORT(STATE), TYN_USE_STORAGE_WRITE},
+    {PORT(SEEN), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding step_bindings[] = {
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},   {PORT(CAMERA), TYN_USE_UNIFORM},
-    {PORT(CELL_S), TYN_USE_SAMPLED},       {PORT(CELL_A), TYN_USE_SAMPLED},
-    {PORT(CELL_G), TYN_USE_SAMPLED},       {PORT(LIGHT_OTHER), TYN_USE_SAMPLED},
-    {PORT(SPREAD_OTHER), TYN_USE_SAMPLED}, {PORT(SEEN_OTHER), TYN_USE_SAMPLED},
-    {PORT(LIGHT), TYN_USE_STORAGE_WRITE},  {PORT(SPREAD), TYN_USE_STORAGE_WRITE},
+    {PORT(GRIDS), TYN_USE_STORAGE_READ}, {PORT(CAMERA), TYN_USE_UNIFORM},
+    {PORT(CELLS), TYN_USE_SAMPLED},      {PORT(STATE_OTHER), TYN_USE_SAMPLED},
+    {PORT(SEEN_OTHER), TYN_USE_SAMPLED}, {PORT(STATE), TYN_USE_STORAGE_WRITE},
     {PORT(SEEN), TYN_USE_STORAGE_WRITE},
 };
 
@@ -74,7 +68,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [SETUP] = {KERNEL(setup, 64, 1, 1, 0)},
     [CELLS] = {KERNEL(cells, 4, 4, 4, 1)},
     [START] = {KERNEL(start, 8, 8, 1, 1)},
-    [STEP] = {KERNEL(step, 4, 4, 4, 1)},
+    [STEP] = {KERNEL(step, 4, 4, 4, 0)},
 };
 
 #define FIELD(name) offsetof(tyn_propagate_rect_params, name)
@@ -101,75 +95,61 @@ static const tyn_param params[] = {
 static tyn_result declare(tyn_builder *b, const void *data)
 {
     const tyn_propagate_rect_params *p = data;
-    uint32_t cells = (uint32_t)p->cells, layers = cells * p->num_suns;
-    if (layers > PROPAGATE_RECT_MAX_LAYERS) {
-        tyn_log_print(
-            tyn_build_log(b), TYN_LOG_ERROR,
-            "propagate_rect: %u lights with %u cells each: at most %d cells in all along the "
-            "light; lower propagate_rect.cells or the number of directional lights",
-            p->num_suns, cells, PROPAGATE_RECT_MAX_LAYERS);
-        return TYN_ERR_PARAMS;
-    }
-    if (layers == 0) {
-        return TYN_OK;
-    }
+    uint32_t cells = (uint32_t)p->cells;
     tyn_build_buffer(b, PORT(GRIDS), p->num_suns * sizeof(struct propagate_grid));
-    for (uint8_t port = PORT(CELL_S); port <= PORT(SEEN_OTHER); port++) {
-        tyn_build_image(b, port, (tyn_extent){cells, cells, layers}, 1);
+    for (uint8_t port = PORT(CELLS); port <= PORT(SEEN_OTHER); port++) {
+        tyn_build_image(b, port, (tyn_extent){cells, cells, cells * p->num_suns * p->channels}, 1);
     }
     return TYN_OK;
 }
 
-// Port tables of a kernel with the double-buffered ports of this iteration: the states are written
-// alternately to OUT and SCRATCH so that the last one lands in OUT.
-static void alternate(uint8_t *out, const tyn_binding *bindings, uint32_t n, bool swap)
+// Ports of a kernel's bindings. The states are written alternately to the outputs and to scratch, so
+// that the last one lands in the outputs; `swap` exchanges the two.
+static const uint8_t *alternate(uint8_t *out, uint32_t kernel, bool swap)
 {
-    for (uint32_t i = 0; i < n; i++) {
-        uint8_t port = bindings[i].port;
-        if (swap && port >= PORT(LIGHT) && port <= PORT(SEEN)) {
-            port += PORT(LIGHT_OTHER) - PORT(LIGHT);
-        } else if (swap && port >= PORT(LIGHT_OTHER) && port <= PORT(SEEN_OTHER)) {
-            port -= PORT(LIGHT_OTHER) - PORT(LIGHT);
+    for (uint32_t i = 0; i < kernels[kernel].num_bindings; i++) {
+        uint8_t port = kernels[kernel].bindings[i].port;
+        if (swap && (port == PORT(STATE) || port == PORT(SEEN))) {
+            port += PORT(STATE_OTHER) - PORT(STATE);
+        } else if (swap && (port == PORT(STATE_OTHER) || port == PORT(SEEN_OTHER))) {
+            port -= PORT(STATE_OTHER) - PORT(STATE);
         }
         out[i] = port;
     }
+    return out;
 }
 
 static void record(tyn_recorder *r, const void *data)
 {
     const tyn_propagate_rect_params *p = data;
-    if (p->num_suns == 0) {
-        return;
-    }
-    uint32_t cells = (uint32_t)p->cells;
+    const uint32_t cells = (uint32_t)p->cells, stacks = p->num_suns * p->channels;
+    const uint32_t init = (uint32_t)p->init;
+    const struct propagate_rect_args args = {cells, p->num_suns, p->channels, p->last_event,
+                                             (uint32_t)p->rate};
     uint8_t table[TYN_MAX_BINDINGS];
-    struct propagate_rect_args args = {cells, p->num_suns, p->last_event};
-    tyn_extent all = {cells, cells, cells * p->num_suns};
 
     tyn_rec_dispatch(r,
                      &(tyn_dispatch){.kernel = SETUP, .cells = {p->num_suns, 1, 1}, .args = &args});
-
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = CELLS, .cells = all, .args = &args, .spec = &p->mode});
-
-    bool other = p->iterations % 2 != 0; // the state now written goes to SCRATCH
-    alternate(table, start_bindings, kernels[START].num_bindings, other);
-    uint32_t init = (uint32_t)p->init, rate = (uint32_t)p->rate;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
-                                        .cells = {cells, cells, p->num_suns},
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = CELLS,
+                                        .cells = {cells, cells, cells * p->num_suns},
                                         .args = &args,
-                                        .ports = table,
+                                        .spec = &p->mode});
+    bool other = p->iterations % 2 != 0; // what is written now goes to scratch
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
+                                        .cells = {cells, cells, stacks},
+                                        .args = &args,
+                                        .ports = alternate(table, START, other),
                                         .spec = &init});
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
-        alternate(table, step_bindings, kernels[STEP].num_bindings, other);
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){
-                   .kernel = STEP, .cells = all, .args = &args, .ports = table, .spec = &rate});
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
+                                            .cells = {cells, cells, cells * stacks},
+                                            .args = &args,
+                                            .ports = alternate(table, STEP, other)});
     }
-    double hops = (double)cells * cells * cells * p->num_suns * p->iterations;
+    double hops = (double)cells * cells * cells * stacks * p->iterations;
     tyn_rec_work(r, "cells", hops);
-    tyn_rec_work(r, "flops", hops * 3 * 6 * 45); // channels, neighbours, counted by hand
+    tyn_rec_work(r, "flops", hops * 200); // counted by hand
 }
 
 const tyn_pass_desc tyn_pass_propagate_rect = {

@@ -7,10 +7,6 @@
 #include <tyndall/pass.h>
 #include "propagate_args.h"
 
-enum {
-    PROPAGATE_RECT_MAX_LAYERS = 256
-}; // cells * num_suns: every device has 3D images of that depth
-
 typedef struct tyn_propagate_rect_params {
     int32_t cells;       // along the longest side of the aligned box, 2..64
     int32_t iterations;  // 1..256
@@ -19,6 +15,7 @@ typedef struct tyn_propagate_rect_params {
     int32_t rate;        // TYN_PROPAGATE_RATE_*
     int32_t source;    // TYN_PROPAGATE_SOURCE_*: for the ray march, no kernel of this pass reads it
     uint32_t num_suns; // set by the method: directional lights, the first ones of "lights"
+    uint32_t channels; // set by the method: 1 if the medium is the same in all channels, else 3
     uint32_t mode;     // set by the method: TYN_MEDIUM_*
 } tyn_propagate_rect_params;
 
@@ -29,16 +26,14 @@ enum {
     PROPAGATE_RECT_PORT_DENSITY, // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
     PROPAGATE_RECT_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as g
     PROPAGATE_RECT_PORT_G,
-    PROPAGATE_RECT_PORT_GRIDS,  // OUT buffer struct propagate_grid[]
-    PROPAGATE_RECT_PORT_CELL_S, // OUT 3D RGBA32F, grids stacked along z: mean sigma_s, 1/m
-    PROPAGATE_RECT_PORT_CELL_A, // OUT 3D RGBA32F: mean sigma_a, 1/m
-    PROPAGATE_RECT_PORT_CELL_G, // OUT 3D RGBA32F: sigma_s-weighted mean g
-    PROPAGATE_RECT_PORT_LIGHT,  // OUT 3D RGBA32F: L after the last iteration, W/m^2
-    PROPAGATE_RECT_PORT_SPREAD, // OUT 3D RGBA32F: 1 - a after it
-    PROPAGATE_RECT_PORT_SEEN,   // OUT 3D RGBA32F: L_acc, sum over iterations of L towards the eye,
-                                // W/(m^2 sr)
-    PROPAGATE_RECT_PORT_LIGHT_OTHER, // SCRATCH, as the three above
-    PROPAGATE_RECT_PORT_SPREAD_OTHER,
+    PROPAGATE_RECT_PORT_GRIDS, // OUT buffer struct propagate_grid[]
+    PROPAGATE_RECT_PORT_CELLS, // OUT 3D RGBA32F, stacked (propagate_args.h): mean sigma_s, sigma_a, 1/m;
+                               // sigma_s-weighted mean g; decay of a, 1/m
+    PROPAGATE_RECT_PORT_STATE, // OUT 3D RGBA32F, stacked: after the last iteration L in units of the
+                               // irradiance, 1 - a, fractions of L to a side and to the back
+    PROPAGATE_RECT_PORT_SEEN, // OUT 3D R32F, stacked: L_acc, sum over iterations of L towards the eye,
+                              // in units of the irradiance, 1/sr
+    PROPAGATE_RECT_PORT_STATE_OTHER, // SCRATCH, as the two above
     PROPAGATE_RECT_PORT_SEEN_OTHER,
     PROPAGATE_RECT_NUM_PORTS,
 };

@@ -6,8 +6,10 @@
 struct propagate_rect_args {
     tyn_uint cells;
     tyn_uint num_suns;
+    tyn_uint channels;
     tyn_uint last_event;
+    tyn_uint rate;
 };
-TYN_ASSERT_SIZE(propagate_rect_args, 12);
+TYN_ASSERT_SIZE(propagate_rect_args, 20);
 
 #endif

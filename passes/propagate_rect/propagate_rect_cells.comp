@@ -13,9 +13,7 @@
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 4, scalar) readonly buffer grids_buffer { propagate_grid grids[]; };
-layout(set = 0, binding = 5, rgba32f) uniform writeonly image3D out_sigma_s;
-layout(set = 0, binding = 6, rgba32f) uniform writeonly image3D out_sigma_a;
-layout(set = 0, binding = 7, rgba32f) uniform writeonly image3D out_g;
+layout(set = 0, binding = 5, rgba32f) uniform writeonly image3D out_cells;
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 
 // Samples along each edge of a cell. A trilinear fetch is a mean over two voxels, so one per two voxels
@@ -29,12 +27,12 @@ int samples_along(float cell)
 
 void main()
 {
-    ivec3 texel = ivec3(gl_GlobalInvocationID), cell;
-    uint index;
-    if (!propagate_cell_of(texel, args.cells, index, cell) || index >= args.num_suns) {
+    uvec3 thread = gl_GlobalInvocationID;
+    ivec3 cell = ivec3(thread.xy, thread.z % args.cells);
+    if (any(greaterThanEqual(thread, uvec3(args.cells, args.cells, args.cells * args.num_suns)))) {
         return;
     }
-    propagate_grid grid = grids[index];
+    propagate_grid grid = grids[thread.z / args.cells];
     vec3 sigma_s = vec3(0.0), sigma_a = vec3(0.0), g = vec3(0.0);
     if (propagate_inside(grid, cell)) {
         int n = samples_along(grid.cell);
@@ -62,7 +60,9 @@ void main()
         sigma_s *= each;
         sigma_a *= each;
     }
-    imageStore(out_sigma_s, texel, vec4(sigma_s, 0.0));
-    imageStore(out_sigma_a, texel, vec4(sigma_a, 0.0));
-    imageStore(out_g, texel, vec4(g, 0.0));
+    for (uint c = 0u; c < args.channels; c++) {
+        ivec3 texel = cell + ivec3(0, 0, grid.first_layer + c * args.cells);
+        imageStore(out_cells, texel,
+                   vec4(sigma_s[c], sigma_a[c], g[c], propagate_decay(sigma_s[c], g[c], args.rate)));
+    }
 }

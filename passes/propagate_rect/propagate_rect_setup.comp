@@ -15,6 +15,6 @@ void main()
 {
     uint i = gl_GlobalInvocationID.x;
     if (i < args.num_suns) {
-        grids[i] = propagate_grid_of(medium.extent, lights[i], i, args.cells);
+        grids[i] = propagate_grid_of(medium.extent, lights[i], i, args.cells, args.channels);
     }
 }

@@ -11,17 +11,16 @@ static const tyn_port ports[UPSAMPLE_NUM_PORTS] = {
     [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
     [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
     [PORT(GRIDS)] = {"grids", TYN_IN, TYN_BUFFER, .meaning = "struct propagate_grid[]"},
-    [PORT(CELL_SIGMA_S)] = {"cell_sigma_s", TYN_IN, TYN_IMAGE_3D,
-                            .meaning = "mean scattering of the aligned cells, 1/m"},
-    [PORT(SEEN)] = {"seen", TYN_IN, TYN_IMAGE_3D,
-                    .meaning = "L_acc of the aligned cells, W/(m^2 sr)"},
+    [PORT(CELLS)] = {"cells", TYN_IN, TYN_IMAGE_3D,
+                     .meaning = "of propagate_rect: x is mean sigma_s, 1/m"},
+    [PORT(SEEN)] = {"seen", TYN_IN, TYN_IMAGE_3D, .meaning = "of propagate_rect: L_acc, 1/sr"},
     [PORT(INSCATTER)] = {"inscatter", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                          .meaning = "light towards the eye per unit of sigma_s, W/(m^2 sr)"},
 };
 
 static const tyn_binding field_bindings[] = {
     {PORT(MEDIUM), TYN_USE_UNIFORM},     {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(GRIDS), TYN_USE_STORAGE_READ}, {PORT(CELL_SIGMA_S), TYN_USE_SAMPLED},
+    {PORT(GRIDS), TYN_USE_STORAGE_READ}, {PORT(CELLS), TYN_USE_SAMPLED},
     {PORT(SEEN), TYN_USE_SAMPLED},       {PORT(INSCATTER), TYN_USE_STORAGE_WRITE},
 };
 
@@ -73,7 +72,7 @@ static void record(tyn_recorder *r, const void *data)
 {
     const tyn_upsample_params *p = data;
     tyn_extent dims = dims_of(p), texels = tyn_rec_extent(r, PORT(INSCATTER));
-    struct upsample_args args = {{dims.x, dims.y, dims.z}, p->num_suns, p->range};
+    struct upsample_args args = {{dims.x, dims.y, dims.z}, p->num_suns, p->grid_cells, p->range};
     tyn_rec_dispatch(r, &(tyn_dispatch){.cells = texels, .args = &args, .spec = &p->mode});
     tyn_rec_work(r, "cells", (double)texels.x * texels.y * texels.z * p->num_suns);
 }

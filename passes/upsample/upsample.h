@@ -18,11 +18,11 @@ typedef struct tyn_upsample_params {
 } tyn_upsample_params;
 
 enum {
-    UPSAMPLE_PORT_MEDIUM,       // IN buffer struct medium_block
-    UPSAMPLE_PORT_DENSITY,      // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
-    UPSAMPLE_PORT_GRIDS,        // IN buffer struct propagate_grid[]
-    UPSAMPLE_PORT_CELL_SIGMA_S, // IN 3D, of propagate_rect
-    UPSAMPLE_PORT_SEEN,         // IN 3D, of propagate_rect
+    UPSAMPLE_PORT_MEDIUM,    // IN buffer struct medium_block
+    UPSAMPLE_PORT_DENSITY,   // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
+    UPSAMPLE_PORT_GRIDS,     // IN buffer struct propagate_grid[]
+    UPSAMPLE_PORT_CELLS,     // IN 3D, of propagate_rect
+    UPSAMPLE_PORT_SEEN,      // IN 3D, of propagate_rect
     UPSAMPLE_PORT_INSCATTER, // OUT 3D RGBA32F, dims + 2, W/(m^2 sr): sample at lattice_inscatter_uvw;
                              // the ghost layer repeats the outer cells
     UPSAMPLE_NUM_PORTS,

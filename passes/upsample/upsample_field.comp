@@ -11,7 +11,7 @@
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 2, scalar) readonly buffer grids_buffer { propagate_grid grids[]; };
-layout(set = 0, binding = 3) uniform sampler3D cell_sigma_s;
+layout(set = 0, binding = 3) uniform sampler3D cells;
 layout(set = 0, binding = 4) uniform sampler3D seen;
 layout(set = 0, binding = 5, rgba32f) uniform writeonly image3D out_inscatter;
 layout(push_constant, scalar) uniform push { upsample_args args; };
@@ -32,6 +32,17 @@ float likeness(float a, float b)
     return exp(-0.5 * d * d) + 1e-4;
 }
 
+// First component of the channels of a cell; `texel` is that of the first channel.
+vec3 channels_of(sampler3D stack, ivec3 texel, propagate_grid grid)
+{
+    float first = texelFetch(stack, texel, 0).r;
+    if (grid.channels == 1u) {
+        return vec3(first);
+    }
+    ivec3 next = ivec3(0, 0, int(args.grid_cells));
+    return vec3(first, texelFetch(stack, texel + next, 0).r, texelFetch(stack, texel + 2 * next, 0).r);
+}
+
 // Light of one grid at a point, clamped to the outer cells.
 vec3 gather(propagate_grid grid, vec3 p, float here)
 {
@@ -44,12 +55,11 @@ vec3 gather(propagate_grid grid, vec3 p, float here)
         ivec3 corner = ivec3(n & 1, n >> 1 & 1, n >> 2);
         ivec3 texel = clamp(base + corner, ivec3(0), last) + ivec3(0, 0, int(grid.first_layer));
         vec3 tent = mix(1.0 - part, part, vec3(corner));
-        float weight = tent.x * tent.y * tent.z *
-                       likeness(here, guide(texelFetch(cell_sigma_s, texel, 0).rgb));
-        sum += weight * texelFetch(seen, texel, 0).rgb;
+        float weight = tent.x * tent.y * tent.z * likeness(here, guide(channels_of(cells, texel, grid)));
+        sum += weight * channels_of(seen, texel, grid);
         weights += weight;
     }
-    return sum / weights;
+    return grid.irradiance * sum / weights;
 }
 
 void main()

@@ -73,7 +73,7 @@ static const float *picture(gpu_test *t, const struct camera_block *camera)
 
     tyn_propagate_rect_params propagate;
     tyn_pass_defaults(&tyn_pass_propagate_rect, &propagate);
-    propagate.num_suns = 1;
+    propagate.num_suns = propagate.channels = 1;
     tyn_ref a[PROPAGATE_RECT_NUM_PORTS] = {[PROPAGATE_RECT_PORT_MEDIUM] = media,
                                            [PROPAGATE_RECT_PORT_LIGHTS] = lights,
                                            [PROPAGATE_RECT_PORT_CAMERA] = eye,
@@ -90,7 +90,7 @@ static const float *picture(gpu_test *t, const struct camera_block *camera)
     tyn_ref b[UPSAMPLE_NUM_PORTS] = {[UPSAMPLE_PORT_MEDIUM] = media,
                                      [UPSAMPLE_PORT_DENSITY] = density,
                                      [UPSAMPLE_PORT_GRIDS] = a[PROPAGATE_RECT_PORT_GRIDS],
-                                     [UPSAMPLE_PORT_CELL_SIGMA_S] = a[PROPAGATE_RECT_PORT_CELL_S],
+                                     [UPSAMPLE_PORT_CELLS] = a[PROPAGATE_RECT_PORT_CELLS],
                                      [UPSAMPLE_PORT_SEEN] = a[PROPAGATE_RECT_PORT_SEEN]};
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_upsample, &upsample, b), TYN_OK);
 
