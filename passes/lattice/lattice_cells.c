@@ -61,9 +61,10 @@ static void record(tyn_recorder *r, const void *params)
     double fetches = (double)dims.x * dims.y * dims.z;
     for (int a = 0; a < 3; a++) {
         args.tint[a] = p->shape.tint[a];
-        // One sample a voxel; at least two, as the medium's box may end inside a cell.
-        float voxels = ceilf(dx * (float)size[a] / extent[a] - 1e-3f);
-        args.samples[a] = (uint32_t)fminf(fmaxf(voxels, 2), MAX_SAMPLES);
+        // One trilinear sample for two voxels along an axis, which misses none; at least two, as the
+        // medium's box may end inside a cell.
+        float pairs = ceilf(0.5f * dx * (float)size[a] / extent[a] - 1e-3f);
+        args.samples[a] = (uint32_t)fminf(fmaxf(pairs, 2), MAX_SAMPLES);
         fetches *= args.samples[a];
     }
     tyn_rec_dispatch(r, &(tyn_dispatch){.cells = dims, .args = &args, .spec = &p->mode});

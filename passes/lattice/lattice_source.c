@@ -68,7 +68,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                      {8, 4, 2},
                      beam_bindings,
                      8,
-                     1},
+                     2},
     [KERNEL_SUM] = {"sum",
                     lattice_source_sum_spirv,
                     sizeof lattice_source_sum_spirv,
@@ -120,13 +120,13 @@ static void record(tyn_recorder *r, const void *params)
         args.tint[a] = p->shape.tint[a];
         voxels = fmaxf(voxels, dx * (float)size[a] / extent[a]);
     }
-    args.samples = (uint32_t)fminf(fmaxf(ceilf(voxels - 1e-3f), 2), 4);
+    args.samples = (uint32_t)fminf(fmaxf(ceilf(0.5f * voxels - 1e-3f), 2), 4);
     double cells = (double)dims.x * dims.y * dims.z;
-
+    const uint32_t spec[2] = {p->mode, p->shape.channels};
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_BEAM,
                                         .cells = {dims.x, dims.y, dims.z * p->num_suns},
                                         .args = &args,
-                                        .spec = &p->mode});
+                                        .spec = spec});
     tyn_rec_dispatch(
         r, &(tyn_dispatch){.kernel = KERNEL_SUM,
                            .cells = {p->num_suns * LATTICE_SUN_GROUP, p->shape.channels, 1},

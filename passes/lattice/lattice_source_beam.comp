@@ -26,23 +26,32 @@ layout(push_constant, scalar) uniform push
 // Suns stacked along z: T' per colour channel.
 layout(binding = 7, rgba32f) uniform writeonly image3D sunlit;
 
+layout(constant_id = 1) const uint num_channels = 3;
+
+// e^-centre sinh(x) / x without its overflow; x <= centre up to interpolation. Below x = 0.01 it is
+// e^-centre within 2e-5.
+float mean_transmittance(float centre, float x)
+{
+    x = max(x, 0.01);
+    return (exp(-max(centre - x, 0.0)) - exp(-(centre + x))) / (2.0 * x);
+}
+
 void main()
 {
-    ivec3 texel = ivec3(gl_GlobalInvocationID);
-    ivec3 dims = ivec3(args.dims);
+    ivec3 texel = ivec3(gl_GlobalInvocationID), dims = ivec3(args.dims);
+    ivec3 c = ivec3(texel.xy, texel.z % dims.z);
     uint sun = uint(texel.z / dims.z);
-    if (any(greaterThanEqual(texel.xy, dims.xy)) || sun >= args.num_suns) {
+    if (any(greaterThanEqual(c, dims)) || sun >= args.num_suns) {
         return;
     }
     lattice_box box = lattice_box_of(medium.extent, dims);
-    vec3 corner = vec3(texel.xy, texel.z % dims.z);
     vec3 d = abs(beams[sun].direction);
     float length_h = box.dx / float(args.samples) / max(d.x, max(d.y, d.z));
     vec3 weighted = vec3(0.0), weight = vec3(0.0);
     for (uint k = 0; k < args.samples; k++) {
         for (uint j = 0; j < args.samples; j++) {
             for (uint i = 0; i < args.samples; i++) {
-                vec3 p = lattice_to_m(box, corner + (vec3(i, j, k) + 0.5) / float(args.samples));
+                vec3 p = lattice_to_m(box, vec3(c) + (vec3(i, j, k) + 0.5) / float(args.samples));
                 medium_point m = medium_sample(p);
                 similarity_clamp(m.sigma_s, m.g);
                 vec3 scaled = (1.0 - delta_fraction(m.g)) * m.sigma_s;
@@ -51,12 +60,11 @@ void main()
                     continue;
                 }
                 beam_tau tau = beam_depth(sun, p);
-                // e^-tau sinh(x) / x, without the overflow of sinh; x <= tau up to interpolation.
-                vec3 x = 0.5 * length_h * (scaled + m.sigma_a);
-                vec3 centre = tau.a + tau.p;
-                vec3 near = exp(-max(centre - x, vec3(0.0))), far = exp(-(centre + x));
-                vec3 t = mix(exp(-centre), (near - far) / max(2.0 * x, vec3(1e-20)),
-                             greaterThan(x, vec3(0.01)));
+                vec3 x = 0.5 * length_h * (scaled + m.sigma_a), centre = tau.a + tau.p;
+                vec3 t = vec3(mean_transmittance(centre.r, x.r));
+                if (num_channels == 3) {
+                    t.gb = vec2(mean_transmittance(centre.g, x.g), mean_transmittance(centre.b, x.b));
+                }
                 weighted += w * t;
                 weight += w;
             }
