@@ -17,6 +17,7 @@ struct tyn_context {
     const tyn_method *method;
     tyn_settings *settings;
     bool readback;
+    const char *inspect; // pass to look at; NULL = none
     tyn_graph *graph;
     // What the last declaration was made from; the graph reads it until it has recorded.
     tyn_frame_scene frame;
@@ -32,6 +33,8 @@ struct tyn_context {
     void *env_cdf; // of a method that reads it
     char *warnings[MAX_WARNINGS];
     uint32_t num_warnings;
+    uint64_t logged[MAX_WARNINGS]; // hashes of those that went to the log: once each
+    uint32_t num_logged;
     tyn_node_report *nodes; // of the last report
     tyn_balance balance;
 };
@@ -101,6 +104,21 @@ void tyn_context_destroy(tyn_context **context)
 
 // ---- declaring a frame ------------------------------------------------------------------------
 
+// To the log once in a context's life, however many frames give it.
+static void log_warning(tyn_context *ctx, const char *line)
+{
+    const uint64_t hash = tyn_hash_bytes(TYN_HASH_SEED, line, strlen(line));
+    for (uint32_t i = 0; i < ctx->num_logged; i++) {
+        if (ctx->logged[i] == hash) {
+            return;
+        }
+    }
+    if (ctx->num_logged < MAX_WARNINGS) {
+        ctx->logged[ctx->num_logged++] = hash;
+        tyn_log_print(&ctx->dev->log, TYN_LOG_WARN, "%s: %s", ctx->method->name, line);
+    }
+}
+
 static void add_warning(void *user, const char *line)
 {
     tyn_context *ctx = user;
@@ -112,7 +130,7 @@ static void add_warning(void *user, const char *line)
     char *copy = ctx->num_warnings < MAX_WARNINGS ? strdup(line) : NULL;
     if (copy) {
         ctx->warnings[ctx->num_warnings++] = copy;
-        tyn_log_print(&ctx->dev->log, TYN_LOG_WARN, "%s: %s", ctx->method->name, line);
+        log_warning(ctx, line);
     }
 }
 
@@ -323,6 +341,7 @@ static tyn_result declare(tyn_context *ctx, const tyn_frame *frame)
     if (frame->setup_only) {
         tyn_graph_setup_only(ctx->graph);
     }
+    tyn_graph_inspect(ctx->graph, ctx->readback ? ctx->inspect : NULL);
     upload_scene(ctx, frame, &job.refs);
     result = ctx->method->declare(ctx->graph, &job);
     return result == TYN_OK ? tyn_graph_status(ctx->graph) : result;
@@ -465,6 +484,29 @@ void tyn_context_report(tyn_context *ctx, tyn_report *report)
     report->nodes = nodes;
     report->num_nodes = count;
     tyn_graph_memory(ctx->graph, &report->persistent_bytes, &report->transient_bytes);
+}
+
+void tyn_context_inspect(tyn_context *ctx, const char *pass)
+{
+    ctx->inspect = pass;
+}
+
+bool tyn_context_inspection(tyn_context *ctx, tyn_inspection *inspection)
+{
+    *inspection = (tyn_inspection){0};
+    const tyn_pass_desc *pass = ctx->inspect ? tyn_pass_find(ctx->inspect) : NULL;
+    tyn_extent extent = {0};
+    const void *texels = tyn_graph_map(ctx->graph, "inspect", &extent, &inspection->format);
+    if (!pass || !texels) {
+        return false;
+    }
+    inspection->port = pass->ports[pass->debug_port].name;
+    inspection->meaning = pass->debug_meaning;
+    inspection->size[0] = extent.x;
+    inspection->size[1] = extent.y;
+    inspection->size[2] = extent.z ? extent.z : 1;
+    inspection->texels = texels;
+    return true;
 }
 
 char *tyn_context_graph(tyn_context *ctx, bool dot)

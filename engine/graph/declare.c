@@ -42,6 +42,7 @@ void tyn_graph_begin(tyn_graph *g)
     g->num_resources = 0;
     g->num_nodes = 0;
     g->num_outputs = 0;
+    g->inspect = NULL;
     g->params_used = 0;
     g->recompute = g->setup_only = false;
 }
@@ -193,6 +194,29 @@ void tyn_graph_output(tyn_graph *g, const char *name, tyn_ref ref, bool readback
     } else {
         g->outputs[g->num_outputs++] = (output){name, ref, readback};
     }
+}
+
+void tyn_graph_inspect(tyn_graph *g, const char *pass)
+{
+    g->inspect = pass;
+}
+
+// What was asked for by tyn_graph_inspect, if this node makes it.
+static void inspect_node(tyn_graph *g, const tyn_pass_desc *pass, const tyn_ref *refs)
+{
+    static const char name[] = "inspect";
+    const tyn_ref ref = refs[pass->debug_port];
+    if (!g->inspect || strcmp(g->inspect, pass->name) || !ref.resource ||
+        g->resources[ref.resource - 1].dim == TYN_BUFFER) {
+        return;
+    }
+    for (uint32_t i = 0; i < g->num_outputs; i++) {
+        if (!strcmp(g->outputs[i].name, name)) {
+            g->outputs[i].ref = ref;
+            return;
+        }
+    }
+    tyn_graph_output(g, name, ref, true);
 }
 
 // ---- nodes ------------------------------------------------------------------------------------
@@ -382,6 +406,7 @@ tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *pa
     if (g->status == TYN_OK) {
         hash_node(g, n);
         publish_outputs(g, n, index, refs);
+        inspect_node(g, pass, refs);
     }
     return g->status;
 }

@@ -112,7 +112,8 @@ struct tyn_graph {
     size_t params_used, params_cap;
     output outputs[32];
     uint32_t num_outputs;
-    uint64_t unique; // ever-changing content
+    const char *inspect; // pass whose debug port is wanted; NULL = none
+    uint64_t unique;     // ever-changing content
     bool recompute, setup_only;
     // compiled
     uint64_t structure; // 0 = nothing compiled

@@ -130,6 +130,18 @@ TYN_API void tyn_context_report(tyn_context *ctx, tyn_report *report);
 // long (>= 1). Others: 1. After prepare.
 TYN_API uint32_t tyn_context_batch(tyn_context *ctx, const tyn_frame *frame);
 
+// What one pass made, for looking at: the image at its debug port (`tyndall info --passes`).
+typedef struct tyn_inspection {
+    const char *port, *meaning; // which one, and a word on it
+    VkFormat format;            // of `texels`, tightly packed, x fastest
+    uint32_t size[3];           // texels; [2] = 1 for a 2D image
+    const void *texels;         // valid until the next call on the context
+} tyn_inspection;
+// From the next prepare on; NULL = nothing. The name must live as long. Needs params.readback.
+TYN_API void tyn_context_inspect(tyn_context *ctx, const char *pass);
+// Of the last finished record. False: the frame has no such node, or what it makes is no image.
+TYN_API bool tyn_context_inspection(tyn_context *ctx, tyn_inspection *inspection);
+
 // The compiled graph as text or Graphviz; freed with free().
 TYN_API char *tyn_context_graph(tyn_context *ctx, bool dot);
 
