@@ -1,23 +1,59 @@
 // cmd_graph.c -- `tyndall graph`: the compiled render graph of a scene.
 #include "session.h"
+#include "slice.h"
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 typedef struct graph_args {
     scene_options scene;
     view_options view;
     method_options method;
     machine_options machine;
+    const char *node, *output;
     bool dot;
 } graph_args;
+
+static bool has_pass(app *a, const tyn_method_info *info, const char *name)
+{
+    char known[512] = "";
+    size_t used = 0;
+    for (const tyn_pass_desc *const *pass = info->passes; *pass; pass++) {
+        if (strcmp((*pass)->name, name) == 0) {
+            return true;
+        }
+        if (used < sizeof known) {
+            used += (size_t)snprintf(known + used, sizeof known - used, "%s %s", used ? "," : "",
+                                     (*pass)->name);
+        }
+    }
+    app_error(a, "--view: method '%s' has no pass '%s'; it has:%s", info->name, name, known);
+    return false;
+}
+
+// --view: computes a frame and draws what one pass made.
+static int view_pass(app *a, const graph_args *args, const tyn_view *view, session *s)
+{
+    tyn_view drawn = *view;
+    // Outputs that need the pass, as far as the method makes them.
+    drawn.outputs |= s->method.info.outputs & (TYN_OUTPUT_DISPLAY | TYN_OUTPUT_ERROR);
+    tyn_context *context = tyn_offline_context(s->renderer.offline);
+    tyn_context_inspect(context, args->node);
+    int code = renderer_frame(a, &s->renderer, &s->scene, &drawn, false, s->method.info.name);
+    if (code != EXIT_DONE) {
+        return code;
+    }
+    tyn_inspection inspection;
+    if (!tyn_context_inspection(context, &inspection)) {
+        app_error(a, "--view: pass '%s' makes no image for this scene", args->node);
+        return EXIT_WRONG;
+    }
+    return slice_write(a, &inspection, args->output);
+}
 
 // Compiles without computing anything.
 static int print_graph(app *a, const graph_args *args, const tyn_view *view, session *s)
 {
-    int code = session_start(a, &args->machine, s);
-    if (code != EXIT_DONE) {
-        return code;
-    }
     tyn_context *context = tyn_offline_context(s->renderer.offline);
     tyn_result result = tyn_context_prepare(context, tyn_frame(.scene = &s->scene, .view = view));
     if (result != TYN_OK) {
@@ -36,6 +72,11 @@ static int run_graph(app *a, const void *arguments)
 {
     const graph_args *args = arguments;
     a->quiet = args->machine.quiet;
+    if ((args->node != NULL) != (args->output != NULL) ||
+        (args->output && !text_ends_with(args->output, ".png"))) {
+        app_error(a, "--view PASS and -o FILE.png go together");
+        return EXIT_WRONG;
+    }
     tyn_view view = {.outputs = TYN_OUTPUT_RADIANCE};
     method_view(&args->method, &view);
     session s;
@@ -43,8 +84,14 @@ static int run_graph(app *a, const void *arguments)
     if (code == EXIT_DONE) {
         code = view_setup(a, &args->view, &s.scene, &view);
     }
+    if (code == EXIT_DONE && args->node && !has_pass(a, &s.method.info, args->node)) {
+        code = EXIT_WRONG;
+    }
     if (code == EXIT_DONE) {
-        code = print_graph(a, args, &view, &s);
+        code = session_start(a, &args->machine, &s);
+    }
+    if (code == EXIT_DONE) {
+        code = args->node ? view_pass(a, args, &view, &s) : print_graph(a, args, &view, &s);
     }
     session_close(&s);
     return code;
@@ -55,6 +102,9 @@ static const opt_positional positionals[] = {SCENE_POSITIONALS(graph_args, scene
 #define AT(field) offsetof(graph_args, field)
 static const option graph_table[] = {
     {0, "dot", OPT_FLAG, AT(dot), NULL, "for Graphviz: tyndall graph SCENE --dot | dot -Tsvg"},
+    {0, "view", OPT_TEXT, AT(node), "PASS",
+     "draw the middle slice of what a pass made (its debug view in 'tyndall info --passes')"},
+    {'o', "output", OPT_TEXT, AT(output), "FILE.png", "where --view is drawn"},
 };
 static const opt_group groups[] = {
     {"graph", graph_table, ARRAY_SIZE(graph_table), 0},

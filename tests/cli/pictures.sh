@@ -97,6 +97,19 @@ works graph "$scenes/cube.gltf" --quiet
 grep -q raymarch out || fail "graph: no raymarch: $(head -5 out)"
 works graph "$scenes/cube.gltf" --dot --quiet
 grep -q digraph out || fail "graph --dot: $(head -2 out)"
+for pass in beam lattice merge; do
+    works graph "$scenes/cube.gltf" --size 16x16 --quiet --view $pass -o view.png
+    [ -s view.png ] || fail "graph --view $pass wrote no picture"
+    rm -f view.png
+done
+refuses 2 "makes no image" graph "$scenes/cube.gltf" --size 16x16 --view composite -o view.png
+refuses 2 "has no pass 'paint'; it has: medium" graph "$scenes/cube.gltf" --view paint -o view.png
+
+# ---- warnings: once, and in the stats ----
+run render "$scenes/two-media.gltf" --size 16x16 --frames 3 -o w.png --stats w.json
+warnings=$(grep -c warning: err)
+near "$warnings" 1 1 "warnings of two-media: $(cat err)"
+[ "$(get w.json warnings)" = "list $warnings" ] || fail "stats: warnings are not those on stderr"
 
 # ---- bench, selftest ----
 cat >suite.json <<'END'
