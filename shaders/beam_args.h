@@ -18,7 +18,7 @@ struct beam_block { // element of storage buffer "beams", one per sun
     tyn_vec3 clip_offset;
     tyn_uint first_slice;  // z of slice 0 in the texture
     tyn_uint even;         // 1: the mean is the same everywhere: homogeneous, or a box without sides
-    tyn_uint edges;        // set by the sweep: 1 if the medium is not empty at the faces between the slices'
+    tyn_uint edges;        // 1: there is something beside the box, at its other faces; set by the sweep
     float z_rate;          // texture z per m along the light
     tyn_vec2 period_first; // texture u, v of the first node of a periodic axis
     tyn_vec2 period;       // its period in texture u, v; 0 = not periodic

@@ -16,7 +16,7 @@ uvec2 beam_span(beam_block beam, vec3 start, float spacing)
     vec3 scale = beam.clip_scale;
     vec3 inside = start * scale + beam.clip_offset;
     vec3 spread = abs(beam.step_u * scale) + abs(beam.step_v * scale);
-    vec3 chord = mix(vec3(2.0 * beam.clip_offset), medium.extent * abs(scale), notEqual(scale, vec3(0.0)));
+    vec3 chord = mix(2.0 * beam.clip_offset, medium.extent * abs(scale), notEqual(scale, vec3(0.0)));
     vec3 first = inside + spread, last = chord - inside + spread;
     float enter = -min(min(first.x, first.y), first.z) / spacing;
     float leave = min(min(last.x, last.y), last.z) / spacing;

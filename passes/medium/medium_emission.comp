@@ -25,5 +25,6 @@ void main()
             emission += shape_mean(shapes[i], p, int(args.samples)) * shapes[i].emission;
         }
     }
-    imageStore(emission_image, ivec3(voxel), vec4(emission, (emission.x + emission.y + emission.z) / 3.0));
+    float mean = (emission.x + emission.y + emission.z) / 3.0;
+    imageStore(emission_image, ivec3(voxel), vec4(emission, mean));
 }

@@ -21,18 +21,21 @@ const float PI = 3.14159265358979;
 // Per term of a chunk: coefficient of K_tms and K_lobe, and of the recurrence to the next P_l.
 shared vec4 chunk[CHUNK];
 
-// (2l+1)/(4 pi) (e^{-tau (1 - F_l)} - e^-tau) / (f (1 - e^-tau) e^{-tau (1 - f)}); its limit at tau = 0.
+// 1 - e^-x without cancellation.
+float lost(float x)
+{
+    return abs(x) < 0.05 ? x * (1.0 - x * (0.5 - x / 6.0 * (1.0 - 0.25 * x))) : 1.0 - exp(-x);
+}
+
+// (2l+1)/(4 pi) (e^{-tau (1 - F_l)} - e^-tau) / (f (1 - e^-tau) e^{-tau (1 - f)}), F_l = moment; its
+// limit at tau = 0. F_l may be negative, but no exponent here is ever large.
 float coefficient(float l, float moment, float f, float tau)
 {
-    float order = (2.0 * l + 1.0) / (4.0 * PI * f);
-    if (tau == 0.0) {
-        return order * moment;
-    }
     float x = tau * moment;
-    float scattered = abs(x) < 0.05 ? exp(tau * (moment - f)) * x * (1.0 - x * (0.5 - x / 6.0 * (1.0 - 0.25 * x)))
-                                    : exp(tau * (moment - f)) - exp(-tau * f);
-    float any = tau < 0.05 ? tau * (1.0 - tau * (0.5 - tau / 6.0 * (1.0 - 0.25 * tau))) : 1.0 - exp(-tau);
-    return order * scattered / any;
+    float scattered = tau == 0.0 ? moment
+                      : abs(x) < 0.05 ? exp(tau * (moment - f)) * lost(x) / lost(tau)
+                                      : (exp(tau * (moment - f)) - exp(-tau * f)) / lost(tau);
+    return (2.0 * l + 1.0) / (4.0 * PI * f) * scattered;
 }
 
 void main()

@@ -164,11 +164,9 @@ static double worst_error(const series *s, const point *points, const float (*go
 static void rows_of_channels(void **state)
 {
     gpu_test *t = *state;
-    static const float sets[][3] = {{0.9f, 0.5f, 0.9f},
-                                    {0, 1e-8f, 0.03f},
-                                    {-0.6f, -0.95f, 0.3f},
-                                    {0.6f, 0.85f, 0.95f},
-                                    {0.8f, 0.98f, 0.995f}};
+    static const float sets[][3] = {{0.9f, 0.5f, 0.9f},    {0, 1e-8f, 0.03f},
+                                    {-0.6f, -0.95f, 0.3f}, {0.6f, 0.85f, 0.95f},
+                                    {0.8f, 0.98f, 0.995f}, {0.0011f, 0.01f, 0.99f}};
     static point points[3 * COUNT];
     static series s;
     uint32_t seed = 7;
