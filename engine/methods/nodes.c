@@ -134,7 +134,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->height = job->view->height;
     memcpy(params->extent, block->extent, sizeof params->extent);
     params->longest_step =
-        tyn_raymarch_longest_step(block->sigma_t_max * block->max_density, in->cell, block->extent);
+        tyn_raymarch_longest_step(block->sigma_t_max * block->max_density, in->cell, block);
 
     params->num_shapes = block->num_shapes;
     tyn_raymarch_window(params, &frame->camera);

@@ -27,9 +27,9 @@ typedef struct tyn_raymarch_params {
 } tyn_raymarch_params;
 
 // The longest step in metres for a medium whose majorant is `sigma_t` (1/m), marched through a lattice
-// of cells of `dx` metres (0 = none): the light changes no faster than cells and depth allow.
-// Steps are bounded by voxels as well, so this matters for homogeneous media only.
-float tyn_raymarch_longest_step(float sigma_t, float dx, const float extent[3]);
+// of cells of `dx` metres (0 = none): the light changes no faster than cells and depth allow. Matters for
+// media of few voxels; else steps are as long as voxels.
+float tyn_raymarch_longest_step(float sigma_t, float dx, const struct medium_block *medium);
 
 // Sets first and end to a window that holds every pixel from which a ray may meet the media's box.
 void tyn_raymarch_window(tyn_raymarch_params *params, const struct camera_block *camera);

@@ -72,7 +72,7 @@ static void make_cube(march_scene *s, float sigma_s, float sigma_a, float g)
     s->params.width = s->params.height = 16;
     s->params.num_shapes = 1;
     memcpy(s->params.extent, m->extent, sizeof m->extent);
-    s->params.longest_step = tyn_raymarch_longest_step(sigma_s + sigma_a, 0, m->extent);
+    s->params.longest_step = tyn_raymarch_longest_step(sigma_s + sigma_a, 0, m);
 }
 
 static void normalize(float v[3])
