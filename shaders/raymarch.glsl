@@ -152,6 +152,8 @@ march_sun march_sun_of(uint n, vec3 origin, vec3 direction)
     light_block light = lights[beams[n].light];
     march_sun sun;
     sun.beam = beam_ray_of(n, origin, direction);
+    // Said at compile time, as some devices run both sides of a branch.
+    sun.beam.edges = sun.beam.edges && !raymarch_has(RAYMARCH_CLOSED);
     sun.irradiance = light.color;
 #ifdef RAYMARCH_GREY
     sun.angle = scatter_angle_of(0u, -direction, light.direction);

@@ -28,6 +28,8 @@ struct tyn_context {
     uint32_t outputs;
     // The environment's tables, made again when its texels change.
     uint64_t env_hash;
+    uint64_t closed_hash; // of the grid that `closed` was found for
+    bool closed;
     uint64_t checked_data; // hash of the densities and texels that were found fit
     float env_mean[3];
     void *env_cdf; // of a method that reads it
@@ -288,6 +290,20 @@ static void upload_scene(tyn_context *ctx, const tyn_frame *frame, tyn_scene_ref
     }
 }
 
+// Whether the only grid is 0 at its faces; looked up again when its content changes.
+static bool is_closed(tyn_context *ctx, const tyn_scene *scene)
+{
+    if (!ctx->frame.direct || scene->num_volumes != 1) {
+        return false;
+    }
+    uint64_t hash = tyn_hash_u64(scene->volumes[0].hash, (uint64_t)(uintptr_t)scene->volumes[0].data);
+    if (hash != ctx->closed_hash) {
+        ctx->closed = tyn_volume_closed(&scene->volumes[0]);
+        ctx->closed_hash = hash;
+    }
+    return ctx->closed;
+}
+
 static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *job)
 {
     const tyn_view *view = frame->view;
@@ -298,6 +314,7 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
         result = tyn_frame_scene_build(&ctx->frame, frame->scene, view, ctx->env_mean, log);
     }
     if (result == TYN_OK) {
+        ctx->frame.closed = is_closed(ctx, frame->scene);
         result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);
     }
     if (result == TYN_OK && ctx->atlas.host && !frame->densities) {

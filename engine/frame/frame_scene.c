@@ -328,6 +328,26 @@ void tyn_environment_mean(const tyn_environment *env, float mean[3])
 
 // ---- all --------------------------------------------------------------------------------------
 
+bool tyn_volume_closed(const tyn_volume *volume)
+{
+    const uint32_t *n = volume->size;
+    for (size_t z = 0; volume->data && z < n[2]; z++) {
+        for (size_t y = 0; y < n[1]; y++) {
+            const float *row = volume->data + (z * n[1] + y) * n[0];
+            bool face = z == 0 || z == n[2] - 1 || y == 0 || y == n[1] - 1;
+            for (size_t x = 0; face && x < n[0]; x++) {
+                if (row[x] != 0.0f) {
+                    return false;
+                }
+            }
+            if (row[0] != 0.0f || row[n[0] - 1] != 0.0f) {
+                return false;
+            }
+        }
+    }
+    return volume->data != NULL;
+}
+
 tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, const tyn_view *view,
                                  const float mean_env[3], const tyn_log *log)
 {

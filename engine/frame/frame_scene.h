@@ -21,3 +21,6 @@ tyn_result tyn_atlas_plan(tyn_atlas *atlas, const tyn_scene *scene, const tyn_lo
 void tyn_atlas_fill(const tyn_atlas *atlas, const tyn_scene *scene, void *texels);
 uint64_t tyn_atlas_hash(const tyn_atlas *atlas, const tyn_scene *scene);
 uint32_t tyn_atlas_offset(const tyn_scene *scene, int32_t volume); // first z
+
+// True if the outermost voxels of a grid are all 0; false for a host's image.
+bool tyn_volume_closed(const tyn_volume *volume);

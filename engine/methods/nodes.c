@@ -137,6 +137,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
         tyn_raymarch_longest_step(block->sigma_t_max * block->max_density, in->cell, block);
 
     params->num_shapes = block->num_shapes;
+    params->closed = frame->closed || block->size[0] * block->size[1] * block->size[2] == 1;
     tyn_raymarch_window(params, &frame->camera);
 
     const struct env_block *env = &frame->environment;

@@ -233,6 +233,7 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= p->background ? RAYMARCH_BACKGROUND : 0;
     features |= behind ? RAYMARCH_BEHIND : 0;
     features |= p->num_shapes == 1 ? RAYMARCH_ONE_SHAPE : 0;
+    features |= p->closed ? RAYMARCH_CLOSED : 0;
     return features;
 }
 
@@ -254,9 +255,9 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_raymarch_params *p = params;
     uint32_t spec[NUM_SPEC] = {p->mode, p->num_suns, features_of(r, p)};
-    float voxel = p->step * shortest_voxel(tyn_rec_extent(r, RAYMARCH_PORT_DENSITY), p->extent);
+    float voxel = shortest_voxel(tyn_rec_extent(r, RAYMARCH_PORT_DENSITY), p->extent);
     struct raymarch_args args = {
-        .step = fminf(voxel, p->longest_step),
+        .step = p->step * fminf(voxel, p->longest_step),
         .stop = p->stop,
         .supersample = p->antialias,
         .depth = {p->depth[0], p->depth[1], p->depth[2], p->depth[3]},

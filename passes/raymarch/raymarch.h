@@ -4,7 +4,8 @@
 #include "scene_args.h"
 
 typedef struct tyn_raymarch_params {
-    float step;         // "raymarch.step": longest step in voxels of the medium
+    float
+        step; // "raymarch.step": longest step, in voxels (homogeneous: in steps that resolve the light)
     float stop;         // "raymarch.stop": transmittance at which a ray ends
     uint32_t antialias; // "raymarch.antialias": four rays a pixel where they disagree
     // Set by the method.
@@ -20,6 +21,9 @@ typedef struct tyn_raymarch_params {
     uint32_t width, height;
     float extent[3];    // medium_block.extent, m
     float longest_step; // m; a step is no longer than this
+    uint32_t
+        closed; // 1: the medium is empty at the faces of its box, or homogeneous: depths along suns take
+                // one fetch
     uint32_t num_shapes;
     uint32_t first[2],
         end[2];     // pixels that may see the media (tyn_raymarch_window); all 0: every pixel

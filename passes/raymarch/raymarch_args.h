@@ -18,6 +18,7 @@
 #define RAYMARCH_UNSCALED 2048u // no delta scaling: tau' is tau
 #define RAYMARCH_SOURCE 4096u   // inscatter is what a metre of any medium sends, not per sigma_s
 #define RAYMARCH_ONE_SHAPE 8192u
+#define RAYMARCH_CLOSED 16384u // no light enters through a face at which there is medium
 
 struct raymarch_args {
     float step;           // longest step, m
