@@ -161,7 +161,7 @@ static void one_line_each(void **state)
 static void nesting(void **state)
 {
     enum { DEPTH = 100000 };
-    char *text = malloc(2 * DEPTH + 64);
+    static char text[2 * DEPTH + 64];
     tyn_scene scene;
     io_log log;
     (void)state;
@@ -176,7 +176,6 @@ static void nesting(void **state)
         assert_int_equal(log.errors, 1);
         assert_non_null(strstr(log.last, "deeper than 64"));
     }
-    free(text);
 }
 
 static void limits(void **state)
