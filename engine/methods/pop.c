@@ -152,7 +152,6 @@ static tyn_result add_solve(tyn_graph *g, const tyn_job *job, field *f)
     tyn_settings_params(job->settings, &tyn_pass_lattice, &params);
     params.shape = f->shape;
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [LATTICE_PORT_MEDIUM] = job->refs.medium,
         [LATTICE_PORT_CELLS] = f->cells,
         [LATTICE_PORT_SOURCE] = f->source,
         [LATTICE_PORT_ENVIRONMENT] = f->lit_by_environment ? job->refs.environment : (tyn_ref){0},
@@ -189,6 +188,12 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, field *f)
     memcpy(params.tint, f->shape.tint, sizeof params.tint);
     params.num_suns = f->picture.num_suns;
     params.scattered_only = job->view->scattered_only;
+    for (int axis = 0; axis < 3; axis++) {
+        memcpy(params.world[axis], job->frame->m_from_world + 4 * axis, sizeof params.world[axis]);
+    }
+    if (params.scattered_only && f->lit_by_environment) {
+        tyn_method_warn(job, "probe: the environment's light counts as scattered, all of it");
+    }
     const tyn_beam_refs *beams = &f->picture.beams;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [PROBE_PORT_MEDIUM] = job->refs.medium, [PROBE_PORT_LIGHTS] = job->refs.lights,

@@ -36,7 +36,6 @@ enum {
 #define SCRATCH(port, name, meaning) [port] = {name, TYN_SCRATCH, TYN_BUFFER, 0, false, meaning}
 
 static const tyn_port ports[NUM_PORTS] = {
-    [LATTICE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
     [LATTICE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
     [LATTICE_PORT_SOURCE] = {"source", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_source"},
     [LATTICE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,

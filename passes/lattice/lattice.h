@@ -84,7 +84,6 @@ typedef struct tyn_lattice_params {
 } tyn_lattice_params;
 
 enum {
-    LATTICE_PORT_MEDIUM,      // IN buffer struct medium_block
     LATTICE_PORT_CELLS,       // IN 3D, of lattice_cells
     LATTICE_PORT_SOURCE,      // IN optional 3D, of lattice_source
     LATTICE_PORT_ENVIRONMENT, // IN optional buffer struct env_block: its mean enters at the box

@@ -2,6 +2,7 @@
 #include "probe.h"
 #include "probe_args.h"
 #include "probe.comp.h"
+#include <string.h>
 
 static const tyn_port ports[PROBE_NUM_PORTS] = {
     [PROBE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
@@ -59,6 +60,7 @@ static void record(tyn_recorder *r, const void *params)
         .num_points = num_points(tyn_rec_extent(r, PROBE_PORT_POINTS)),
         .scattered_only = p->scattered_only,
     };
+    memcpy(args.world, p->world, sizeof args.world);
     tyn_rec_dispatch(
         r, &(tyn_dispatch){.cells = {args.num_points, 1, 1}, .args = &args, .spec = &p->mode});
     tyn_rec_work(r, "points", args.num_points);

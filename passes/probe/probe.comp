@@ -78,7 +78,7 @@ void main()
         results[i].fluence[ch] = field[ch].x;
         results[i].fluence_se[ch] = 0.0;
         for (uint axis = 0; axis < 3; axis++) {
-            results[i].flux[3 * axis + ch] = field[ch][axis + 1];
+            results[i].flux[3 * axis + ch] = dot(args.world[axis], field[ch].yzw);
             results[i].flux_se[3 * axis + ch] = 0.0;
         }
     }

@@ -7,7 +7,8 @@ typedef struct tyn_probe_params {
     uint32_t channels;       // of `moments`: 1 or 3
     float tint[3];           // of the one channel (tyn_lattice_shape.tint)
     uint32_t num_suns;       // 0..4
-    uint32_t scattered_only; // 1: without the light that has not scattered
+    uint32_t scattered_only; // 1: without the suns' light that has not scattered
+    float world[3][3];       // the world's axes in M: what the flux is given along
 } tyn_probe_params;
 
 enum {

@@ -9,6 +9,7 @@ struct probe_args {
     tyn_uint num_suns;
     tyn_uint num_points;
     tyn_uint scattered_only;
+    tyn_vec3 world[3];
 };
 
 struct probe_result { // tyn_probe_result

@@ -48,10 +48,8 @@ static run run_pass(gpu_test *t, const llc_twin *twins, uint32_t channels, int s
     params.cycles = first->cycles;
     params.anderson = first->anderson;
 
-    struct medium_block medium = {.extent = {1, 1, 1}};
     tyn_graph_begin(t->graph);
     tyn_ref refs[64] = {
-        [LATTICE_PORT_MEDIUM] = gpu_buffer(t, "medium", &medium, sizeof medium),
         [LATTICE_PORT_CELLS] = gpu_image(t, "cells", TYN_IMAGE_3D, texels, 4, cell),
         [LATTICE_PORT_SOURCE] = gpu_image(t, "source", TYN_IMAGE_3D, texels, 4, source),
         [LATTICE_PORT_ENVIRONMENT] = gpu_buffer(t, "environment", &env, sizeof env),

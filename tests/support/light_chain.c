@@ -122,7 +122,6 @@ void light_chain_run(gpu_test *t, light_chain *c)
     }
     tyn_ref env_ref = gpu_buffer(t, "environment", &env, sizeof env);
     tyn_ref lattice[TYN_MAX_PORTS] = {
-        [LATTICE_PORT_MEDIUM] = medium_ref,
         [LATTICE_PORT_CELLS] = cells[LATTICE_CELLS_PORT_CELLS],
         [LATTICE_PORT_SOURCE] = source[LATTICE_SOURCE_PORT_SOURCE],
         [LATTICE_PORT_ENVIRONMENT] = env_ref,
@@ -160,7 +159,8 @@ void light_chain_run(gpu_test *t, light_chain *c)
         tyn_probe_params p = {.mode = mode,
                               .channels = c->channels,
                               .num_suns = c->num_suns,
-                              .scattered_only = c->scattered_only};
+                              .scattered_only = c->scattered_only,
+                              .world = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
         memcpy(p.tint, solve.shape.tint, sizeof p.tint);
         tyn_ref probe[TYN_MAX_PORTS] = {
             [PROBE_PORT_MEDIUM] = medium_ref,
