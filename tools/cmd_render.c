@@ -58,16 +58,21 @@ static char *path_of(const char *path, bool numbered, uint32_t number)
     return numbered ? sequence_path(path, number) : text_format("%s", path);
 }
 
-static void paths_make(const render_args *args, const opt_list *outputs, bool numbered,
+// False: out of memory.
+static bool paths_make(const render_args *args, const opt_list *outputs, bool numbered,
                        uint32_t number, picture_paths *p)
 {
     const char *environment = args->scene.env ? args->scene.env : args->scene.environment;
     *p = (picture_paths){.scene = path_of(args->scene.scene, numbered, number),
                          .environment = path_of(environment, numbered, number),
                          .stats = path_of(args->stats, numbered, number)};
+    bool whole = p->scene && (p->environment || !environment) && (p->stats || !args->stats);
     for (uint32_t i = 0; i < outputs->count; i++) {
-        p->outputs.items[p->outputs.count++] = path_of(outputs->items[i], numbered, number);
+        p->outputs.items[i] = path_of(outputs->items[i], numbered, number);
+        p->outputs.count++;
+        whole = whole && p->outputs.items[i];
     }
+    return whole;
 }
 
 static void paths_finish(picture_paths *p)
@@ -170,7 +175,10 @@ static int load_and_render(app *a, render_job *job, const opt_list *outputs, boo
                            uint32_t number)
 {
     picture_paths p;
-    paths_make(job->args, outputs, numbered, number, &p);
+    if (!paths_make(job->args, outputs, numbered, number, &p)) {
+        paths_finish(&p);
+        return app_exit_code(a, TYN_ERR_MEMORY, false);
+    }
     scene_options options = job->args->scene;
     options.scene = p.scene;
     if (options.env) {
@@ -222,6 +230,9 @@ static int render_all(app *a, const render_args *args, const opt_list *outputs)
     if (code == EXIT_DONE) {
         code = output_plan_make(a, &meth.info, outputs, args->aov, args->full_float, &plan);
     }
+    if (code == EXIT_DONE && args->stats && !output_folder_is_writable(a, args->stats)) {
+        code = EXIT_FAILED;
+    }
     render_job job = {.args = args, .method = &meth, .plan = &plan, .repeat = s.repeat};
     uint32_t first = s.numbered ? s.first : 0, last = s.numbered ? s.last : 0;
     for (uint32_t number = first; code == EXIT_DONE && number <= last; number++) {
@@ -238,8 +249,8 @@ static int run_render(app *a, const void *arguments)
     const render_args *args = arguments;
     a->quiet = args->machine.quiet;
     opt_list outputs = args->outputs;
-    char *stem = text_stem(args->scene.scene),
-         *by_name = text_format("%s.png", stem ? stem : "out");
+    char *stem = text_stem(args->scene.scene);
+    char *by_name = text_format("%s.png", stem ? stem : "out");
     if (outputs.count == 0) {
         outputs.items[outputs.count++] = by_name;
     }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GLOBAL_OPTIONS "see 'tyndall %s --help'"
+#define SEE_HELP "see 'tyndall %s --help'"
 
 static void *field(void *args, const opt_group *group, const option *o)
 {
@@ -213,7 +213,7 @@ static opt_outcome take_option(const command *cmd, int argc, char **argv, int *i
         text = arg[2] ? arg + 2 : NULL; // -Dname=value
     }
     if (!o) {
-        tyn_log_print(log, TYN_LOG_ERROR, "unknown option '%s'; " GLOBAL_OPTIONS, arg, cmd->name);
+        tyn_log_print(log, TYN_LOG_ERROR, "unknown option '%s'; " SEE_HELP, arg, cmd->name);
         return OPT_WRONG;
     }
     char name[64];
@@ -260,13 +260,13 @@ opt_outcome options_parse(const command *cmd, int argc, char **argv, void *args,
             const opt_positional *p = &cmd->positionals[num_positionals++];
             *(const char **)((char *)args + p->offset) = argv[i];
         } else {
-            tyn_log_print(log, TYN_LOG_ERROR, "'%s' is one argument too many; " GLOBAL_OPTIONS,
-                          argv[i], cmd->name);
+            tyn_log_print(log, TYN_LOG_ERROR, "'%s' is one argument too many; " SEE_HELP, argv[i],
+                          cmd->name);
             return OPT_WRONG;
         }
     }
     if (num_positionals < cmd->num_positionals && cmd->positionals[num_positionals].required) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s is missing (%s); " GLOBAL_OPTIONS,
+        tyn_log_print(log, TYN_LOG_ERROR, "%s is missing (%s); " SEE_HELP,
                       cmd->positionals[num_positionals].name, cmd->positionals[num_positionals].doc,
                       cmd->name);
         return OPT_WRONG;

@@ -1,5 +1,6 @@
 // output.c -- the pictures a frame gives: EXR layers and display-ready PNG.
 #include "output.h"
+#include "sequence.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,15 +70,15 @@ static bool add_layer(app *a, const tyn_method_info *method, const char *name, s
     return false;
 }
 
-// A file that cannot be written is said before the work, not after it.
-static bool folder_is_writable(app *a, const char *path)
+bool output_folder_is_writable(app *a, const char *path)
 {
     const char *slash = strrchr(path, '/');
     char *folder = slash ? text_format("%.*s", slash == path ? 1 : (int)(slash - path), path)
                          : text_format(".");
     struct stat status;
+    bool known = !sequence_has_number(folder);
     bool there = folder && stat(folder, &status) == 0 && S_ISDIR(status.st_mode);
-    bool writable = there && access(folder, W_OK) == 0;
+    bool writable = !known || (there && access(folder, W_OK) == 0);
     if (!writable) {
         app_error(a, "%s: cannot be written: the folder '%s' %s", path, folder ? folder : "",
                   there ? "is not writable" : "is not there");
@@ -110,7 +111,7 @@ int output_plan_make(app *a, const tyn_method_info *method, const opt_list *file
         aov += length + (aov[length] == ',');
     }
     for (uint32_t i = 0; i < files->count; i++) {
-        if (!folder_is_writable(a, files->items[i])) {
+        if (!output_folder_is_writable(a, files->items[i])) {
             return EXIT_FAILED;
         }
     }

@@ -44,6 +44,7 @@ refuses 2 "neither .exr nor .png" render a.gltf -o a.tif
 refuses 2 "no layer 'albedo'" render a.gltf -o a.exr --aov depth,albedo
 refuses 2 "need an .exr" render a.gltf -o a.png --aov depth
 refuses 1 "is not there" render a.gltf -o nowhere/a.png
+refuses 1 "is not there" render a.gltf -o a.png --stats nowhere/a.json
 refuses 2 "no method 'magic'; there are: " render a.gltf --method magic
 refuses 2 "'lattice' is not PASS.PARAM=VALUE" render a.gltf -D lattice
 refuses 2 "comes with a later version" render "$scenes/cube.gltf" --plugin a.so
