@@ -1,5 +1,6 @@
 // cmd_info.c -- `tyndall info`: what is in a file, what this machine has, what the passes take.
 #include "app.h"
+#include "devices.h"
 #include "scene_setup.h"
 #include <math.h>
 #include <stdio.h>
@@ -14,29 +15,17 @@ typedef struct info_args {
 
 // ---- the machine ------------------------------------------------------------------------------
 
-enum { MAX_DEVICES = 16 };
-
 static int print_devices(app *a)
 {
-    tyn_device_info *infos = calloc(MAX_DEVICES, sizeof *infos);
-    int count = infos ? tyn_devices_list(infos, MAX_DEVICES, &a->log) : TYN_ERR_MEMORY;
-    if (count <= 0) {
-        if (count == 0) {
-            app_error(a,
-                      "no Vulkan device; a software one is Mesa's lavapipe (mesa-vulkan-drivers)");
-        }
-        free(infos);
-        return count ? app_exit_code(a, (tyn_result)count, false) : EXIT_FAILED;
+    devices d;
+    int code = devices_list(a, &d);
+    for (int i = 0; i < d.count; i++) {
+        char *text = devices_describe(&d.infos[i]);
+        printf("%d  %s\n   %s\n", i, d.infos[i].name, text ? text : "");
+        free(text);
     }
-    for (int i = 0; i < count && i < MAX_DEVICES; i++) {
-        const tyn_device_info *d = &infos[i];
-        printf("%d  %s\n   %s, Vulkan %u.%u.%u, driver %s, heap %.1f GiB\n   %s%s\n", i, d->name,
-               d->type, VK_API_VERSION_MAJOR(d->api_version), VK_API_VERSION_MINOR(d->api_version),
-               VK_API_VERSION_PATCH(d->api_version), d->driver, (double)d->heap_bytes / (1u << 30),
-               d->missing[0] ? "cannot be used, it lacks: " : "usable", d->missing);
-    }
-    free(infos);
-    return EXIT_DONE;
+    devices_finish(&d);
+    return code;
 }
 
 // ---- passes and methods -----------------------------------------------------------------------

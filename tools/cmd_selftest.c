@@ -3,11 +3,13 @@
 // Loads no files. The expected values are closed forms, or rows of reference tables that were computed
 // for this project: the slab with DISORT 4.0.99 (128 streams, fluxes to 1e-6), the cube with pbrt-v3
 // (standard error of an image mean below 0.1 %).
+#include "devices.h"
 #include "renderer.h"
 #include "selftest_scenes.h"
 #include "stats.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct selftest_args {
@@ -305,6 +307,27 @@ static int check_validation(selftest *t, const char *device)
     return code;
 }
 
+// The devices there are: what a report of a fault needs beside the checks.
+static int report_devices(selftest *t, cJSON *list)
+{
+    devices d;
+    int code = devices_list(t->a, &d);
+    for (int i = 0; i < d.count; i++) {
+        char *text = devices_describe(&d.infos[i]);
+        if (t->args->json) {
+            cJSON *device = cJSON_CreateObject();
+            cJSON_AddStringToObject(device, "name", d.infos[i].name);
+            cJSON_AddStringToObject(device, "about", text ? text : "");
+            cJSON_AddItemToArray(list, device);
+        } else {
+            printf("device %d: %s, %s\n", i, d.infos[i].name, text ? text : "");
+        }
+        free(text);
+    }
+    devices_finish(&d);
+    return code;
+}
+
 // ---- the command ------------------------------------------------------------------------------
 
 static int run_checks(selftest *t, const char *device)
@@ -321,36 +344,42 @@ static int run_checks(selftest *t, const char *device)
 static int run_selftest(app *a, const void *arguments)
 {
     const selftest_args *args = arguments;
-    machine mach;
-    int code = machine_open(a, &args->machine, false, &mach);
-    if (code != EXIT_DONE) {
-        machine_close(&mach);
-        return code;
-    }
-    selftest t = {.a = a, .args = args, .device = mach.device, .checks = cJSON_CreateArray()};
+    a->quiet = args->machine.quiet;
+    cJSON *root = cJSON_CreateObject();
+    selftest t = {.a = a, .args = args};
+    cJSON_AddStringToObject(root, "tyndall", tyn_version_string());
+    cJSON *list = cJSON_AddArrayToObject(root, "devices");
+    machine mach = {0};
     double start = app_seconds();
-    if (!args->json) {
-        printf("tyndall %s on %s, %s\n", tyn_version_string(), tyn_device_name(mach.device),
-               tyn_device_driver(mach.device));
+    int code = report_devices(&t, list);
+    if (code == EXIT_DONE) {
+        code = machine_open(a, &args->machine, false, &mach);
     }
-    code = run_checks(&t, args->machine.device);
-    double seconds = app_seconds() - start;
-    bool ok = code == EXIT_DONE && t.num_failed == 0;
-    if (args->json) {
-        cJSON *root = cJSON_CreateObject();
-        cJSON_AddStringToObject(root, "tyndall", tyn_version_string());
-        cJSON_AddStringToObject(root, "device", tyn_device_name(mach.device));
-        cJSON_AddStringToObject(root, "driver", tyn_device_driver(mach.device));
+    if (code == EXIT_DONE) {
+        t.device = mach.device;
+        t.checks = cJSON_CreateArray();
+        const char *name = tyn_device_name(mach.device), *driver = tyn_device_driver(mach.device);
+        cJSON_AddStringToObject(root, "device", name);
+        cJSON_AddStringToObject(root, "driver", driver);
+        if (!args->json) {
+            printf("tyndall %s on %s, %s\n", tyn_version_string(), name, driver);
+        }
+        code = run_checks(&t, args->machine.device);
+        double seconds = app_seconds() - start;
+        bool ok = code == EXIT_DONE && t.num_failed == 0;
         cJSON_AddBoolToObject(root, "ok", ok);
         json_add_float(root, "seconds", seconds);
         cJSON_AddItemToObject(root, "checks", t.checks);
-        json_write(a, root, NULL);
-    } else {
-        cJSON_Delete(t.checks);
-        printf("%s, %.0f s\n", ok ? "all right" : "NOT all right", seconds);
+        if (args->json) {
+            json_write(a, cJSON_Duplicate(root, true), NULL);
+        } else {
+            printf("%s, %.0f s\n", ok ? "all right" : "NOT all right", seconds);
+        }
+        code = code == EXIT_DONE && !ok ? EXIT_FAILED : code;
     }
+    cJSON_Delete(root);
     machine_close(&mach);
-    return code == EXIT_DONE && !ok ? EXIT_FAILED : code;
+    return code;
 }
 
 #define AT(field) offsetof(selftest_args, field)

@@ -1,6 +1,7 @@
 // machine.c -- the device that --device names, with its pipelines cached on disk.
 #include "machine.h"
 #include "cache.h"
+#include "devices.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,8 +18,6 @@ const option machine_table[MACHINE_TABLE_SIZE] = {
 };
 
 // ---- choosing ---------------------------------------------------------------------------------
-
-enum { MAX_DEVICES = 16 };
 
 static bool name_contains(const char *name, const char *part)
 {
@@ -45,32 +44,32 @@ static int rank(const tyn_device_info *info)
 }
 
 // The index of the device to open, or -1 if there is none of that name.
-static int choose(const tyn_device_info *infos, int count, const char *select)
+static int choose(const devices *d, const char *select)
 {
     char *end = NULL;
     long index = select ? strtol(select, &end, 10) : 0;
     bool by_index = select && isdigit((unsigned char)*select) && *end == '\0';
     int best = -1;
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < d->count; i++) {
         bool wanted =
-            !select || (by_index ? i == index : *select && name_contains(infos[i].name, select));
-        if (wanted && (best < 0 || rank(&infos[i]) > rank(&infos[best]))) {
+            !select || (by_index ? i == index : *select && name_contains(d->infos[i].name, select));
+        if (wanted && (best < 0 || rank(&d->infos[i]) > rank(&d->infos[best]))) {
             best = i;
         }
     }
     return best;
 }
 
-static void say_what_there_is(app *a, const tyn_device_info *infos, int count, const char *select)
+static void say_what_there_is(app *a, const devices *d, const char *select)
 {
     char line[1024];
     size_t used = 0;
-    for (int i = 0; i < count && used < sizeof line; i++) {
+    for (int i = 0; i < d->count && used < sizeof line; i++) {
         used += (size_t)snprintf(line + used, sizeof line - used, "%s %d '%s'", i ? "," : "", i,
-                                 infos[i].name);
+                                 d->infos[i].name);
     }
     app_error(a, "--device: there is no device '%s'; there %s:%s", select,
-              count == 1 ? "is" : "are", line);
+              d->count == 1 ? "is" : "are", line);
 }
 
 // ---- the pipeline cache on disk ---------------------------------------------------------------
@@ -160,24 +159,18 @@ int machine_open(app *a, const machine_options *options, bool validation, machin
         app_error(a, "--plugin comes with a later version");
         return EXIT_WRONG;
     }
-    tyn_device_info *infos = calloc(MAX_DEVICES, sizeof *infos);
-    int count = infos ? tyn_devices_list(infos, MAX_DEVICES, &a->log) : TYN_ERR_MEMORY;
-    int code = EXIT_FAILED;
-    if (count < 0) {
-        code = app_exit_code(a, (tyn_result)count, false);
-    } else if (count == 0) {
-        app_error(a, "no Vulkan device; a software one is Mesa's lavapipe (mesa-vulkan-drivers)");
-    } else {
-        count = count < MAX_DEVICES ? count : MAX_DEVICES;
-        int index = choose(infos, count, options->device);
+    devices d;
+    int code = devices_list(a, &d);
+    if (code == EXIT_DONE) {
+        int index = choose(&d, options->device);
         if (index < 0) {
-            say_what_there_is(a, infos, count, options->device);
+            say_what_there_is(a, &d, options->device);
             code = EXIT_WRONG;
         } else {
-            code = open_chosen(a, &infos[index], index, validation, m);
+            code = open_chosen(a, &d.infos[index], index, validation, m);
         }
     }
-    free(infos);
+    devices_finish(&d);
     return code;
 }
 

@@ -1,5 +1,21 @@
 // session.c -- what a subcommand that computes one thing about one scene holds.
 #include "session.h"
+#include <stdio.h>
+
+static void say_who_can(app *a, const char *method, tyn_output output)
+{
+    char able[256] = "";
+    size_t used = 0;
+    for (uint32_t i = 0; i < tyn_num_methods(); i++) {
+        tyn_method_info info;
+        tyn_method_at(i, &info);
+        if (info.outputs & output && used < sizeof able) {
+            used += (size_t)snprintf(able + used, sizeof able - used, "%s %s", used ? "," : "",
+                                     info.name);
+        }
+    }
+    app_error(a, "--method: '%s' cannot do that yet; these can:%s", method, able);
+}
 
 int session_open(app *a, const scene_options *scene, const method_options *how, tyn_output output,
                  session *s)
@@ -8,7 +24,7 @@ int session_open(app *a, const scene_options *scene, const method_options *how, 
     tyn_scene_init(&s->scene);
     int code = method_open(a, how, &s->method);
     if (code == EXIT_DONE && !(s->method.info.outputs & output)) {
-        app_error(a, "--method: '%s' cannot do that", s->method.info.name);
+        say_who_can(a, s->method.info.name, output);
         code = EXIT_WRONG;
     }
     return code == EXIT_DONE ? scene_open(a, scene, &s->scene) : code;

@@ -49,6 +49,7 @@ refuses 2 "no method 'magic'; there are: " render a.gltf --method magic
 refuses 2 "'lattice' is not PASS.PARAM=VALUE" render a.gltf -D lattice
 refuses 2 "comes with a later version" render "$scenes/cube.gltf" --plugin a.so
 refuses 2 "comes with a later version" view "$scenes/cube.gltf"
+refuses 2 "'single' cannot do that yet; these can: pop" balance "$scenes/cube.gltf" --method single
 refuses 2 "--points is missing" probe "$scenes/cube.gltf"
 refuses 2 "--view PASS and -o FILE.png go together" graph "$scenes/cube.gltf" --view beam
 refuses 2 "one of SCENE, --devices, --passes, --methods" info
