@@ -27,8 +27,9 @@ static double densest_column(const tyn_volume *v, int axis)
     return most * step;
 }
 
-// A cloud-like medium whose thickest line of sight has an optical depth of 32 (mean of the axes): dense
-// enough to be bright and to cast its own shadow, thin enough at its rim to show its structure.
+// A cloud-like medium whose thickest line of sight has an optical depth of 32 (mean of the axes):
+// dense enough to be bright and to cast its own shadow, thin enough at its rim to show its
+// structure.
 static void choose_medium(tyn_medium *medium, const tyn_volume *volume)
 {
     double column = 0.0;
@@ -42,8 +43,8 @@ static void choose_medium(tyn_medium *medium, const tyn_volume *volume)
     }
 }
 
-// From the left of the default camera, thirty degrees up, a little behind it: the near side shows the
-// terminator. Irradiance so that the lit side has a radiance of about 1.
+// From the left of the default camera, thirty degrees up, a little behind it: the near side shows
+// the terminator. Irradiance so that the lit side has a radiance of about 1.
 static void add_sun(tyn_scene *scene)
 {
     double d[3] = {0.85, -0.50, -0.15};

@@ -58,7 +58,8 @@ static size_t count_external_buffers(const json_doc *doc)
     return count;
 }
 
-// tinygltf drops what it does not like, for instance an index written as 1.0: nothing may be missing.
+// tinygltf drops what it does not like, for instance an index written as 1.0: nothing may be
+// missing.
 static tyn_result check_model(const gltf_model *model, const json_doc *doc)
 {
     const cJSON *node = NULL, *nodes = tyn_json_member(doc->root, "nodes");

@@ -46,7 +46,8 @@ typedef struct gltf_source {
     const char *file;            // for messages
 } gltf_source;
 
-// Buffers are read and their sizes compared, images are not. No exception leaves; faults are one line.
+// Buffers are read and their sizes compared, images are not. No exception leaves; faults are one
+// line.
 tyn_result gltf_model_read(gltf_model *model, const gltf_source *source, const tyn_log *log);
 void gltf_model_finish(gltf_model *model);
 

@@ -102,7 +102,8 @@ static bool read_line_new(reader *r, uint8_t *rgbe, uint32_t width)
     return true;
 }
 
-// Old style: pixels, where 1, 1, 1, n repeats the last one n times, more by 2^8 for each further one.
+// Old style: pixels, where 1, 1, 1, n repeats the last one n times, more by 2^8 for each further
+// one.
 static bool read_line_old(reader *r, uint8_t *rgbe, uint32_t width)
 {
     uint32_t shift = 0;

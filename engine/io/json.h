@@ -9,7 +9,8 @@ typedef struct json_doc {
     cJSON *root; // an object
 } json_doc;
 
-// Refuses nesting deeper than 64, text after the value, duplicate keys, and a root that is no object.
+// Refuses nesting deeper than 64, text after the value, duplicate keys, and a root that is no
+// object.
 tyn_result tyn_json_parse(json_doc *doc, const char *text, size_t size, const char *file,
                           const tyn_log *log);
 void tyn_json_finish(json_doc *doc);
@@ -18,8 +19,8 @@ void tyn_json_finish(json_doc *doc);
 tyn_result tyn_json_fault(const json_doc *doc, const cJSON *at, const char *format, ...)
     TYN_PRINTF(3, 4);
 
-// Members of objects. A member that is not there is no fault (the output keeps its value); one of the
-// wrong type or range is.
+// Members of objects. A member that is not there is no fault (the output keeps its value); one of
+// the wrong type or range is.
 tyn_result tyn_json_object(const json_doc *doc, const cJSON *parent, const char *name, cJSON **out);
 tyn_result tyn_json_array(const json_doc *doc, const cJSON *parent, const char *name, cJSON **out);
 tyn_result tyn_json_string(const json_doc *doc, const cJSON *parent, const char *name,

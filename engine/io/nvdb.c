@@ -1,8 +1,9 @@
 // nvdb.c -- NanoVDB files: the segments, the codecs, and from the sparse tree to a dense grid.
 //
-// A file is a row of segments; a segment is a header, one record of metadata for each grid, then the
-// grids. A grid is one block of memory that is used as it is: PNanoVDB.h knows its layout. Every read
-// goes through PNanoVDB's bounds check, and every node is checked to lie inside the block.
+// A file is a row of segments; a segment is a header, one record of metadata for each grid, then
+// the grids. A grid is one block of memory that is used as it is: PNanoVDB.h knows its layout.
+// Every read goes through PNanoVDB's bounds check, and every node is checked to lie inside the
+// block.
 #include "io/nvdb.h"
 #include <stdlib.h>
 #include <string.h>
@@ -52,8 +53,8 @@ static uint64_t load(const uint8_t *p, int bytes)
     return v;
 }
 
-// Files and grids start with "NanoVDB0" to "NanoVDB2"; the ABI is the major version 32, in the upper
-// 11 bits of the version.
+// Files and grids start with "NanoVDB0" to "NanoVDB2"; the ABI is the major version 32, in the
+// upper 11 bits of the version.
 static bool known(const uint8_t *magic, uint64_t version)
 {
     return memcmp(magic, "NanoVDB", 7) == 0 && magic[7] >= '0' && magic[7] <= '2' &&
@@ -344,7 +345,8 @@ static bool copy_leaf(extraction *x, pnanovdb_leaf_handle_t leaf, const int64_t 
         return false;
     }
     if (x->type == PNANOVDB_GRID_TYPE_FPN) {
-        // Bits of a value are a power of two, 1 to 16, with the exponent in the upper three flag bits.
+        // Bits of a value are a power of two, 1 to 16, with the exponent in the upper three flag
+        // bits.
         uint32_t log_bits = pnanovdb_leaf_get_bbox_dif_and_flags(x->buf, leaf) >> 29;
         if (log_bits > 4 || bytes + (64ull << log_bits) > x->size - leaf.address.byte_offset) {
             return false;

@@ -28,8 +28,8 @@ static uint8_t paeth(int left, int up, int corner)
     return (uint8_t)(a <= b && a <= c ? left : b <= c ? up : corner);
 }
 
-// Filters a row (PNG 9.2) with method 0 none, 1 sub, 2 up, 4 Paeth; returns the sum of magnitudes, the
-// usual guess of how well it will compress.
+// Filters a row (PNG 9.2) with method 0 none, 1 sub, 2 up, 4 Paeth; returns the sum of magnitudes,
+// the usual guess of how well it will compress.
 static uint64_t filter_row(uint8_t *out, const uint8_t *row, const uint8_t *above, size_t size,
                            size_t pixel, int method)
 {

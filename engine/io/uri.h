@@ -2,15 +2,16 @@
 #pragma once
 #include "io/json.h"
 
-// The path that a uri of the document means: relative to the document, %XX decoded. NULL after a fault;
-// else freed with free().
+// The path that a uri of the document means: relative to the document, %XX decoded. NULL after a
+// fault; else freed with free().
 char *tyn_uri_path(const json_doc *doc, const cJSON *uri);
 
-// Everything up to the last '/', without it; "." if there is none. Freed with free(); NULL: no memory.
+// Everything up to the last '/', without it; "." if there is none. Freed with free(); NULL: no
+// memory.
 char *tyn_path_directory(const char *path);
 
-// A log that keeps the first error, so that what a reader said can be told together with the place of
-// the scene that named the file.
+// A log that keeps the first error, so that what a reader said can be told together with the place
+// of the scene that named the file.
 typedef struct tyn_capture {
     tyn_log log;
     char message[1024];

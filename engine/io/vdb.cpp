@@ -16,8 +16,8 @@ extern "C" {
 
 namespace {
 
-// The library takes the zeros that a short file gives it for values. So walk over the descriptors of the
-// grids first, and see that the last of them ends inside the file.
+// The library takes the zeros that a short file gives it for values. So walk over the descriptors
+// of the grids first, and see that the last of them ends inside the file.
 class outline : public openvdb::io::Archive {
   public:
     explicit outline(const char *path)

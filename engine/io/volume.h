@@ -19,7 +19,8 @@ tyn_result tyn_volume_alloc(tyn_volume *volume, const int64_t size[3], const cha
 tyn_result tyn_volume_seal(tyn_volume *volume, const char *file, const char *grid,
                            uint64_t *clamped_negative, const tyn_log *log);
 
-// Chooses among the grids of a file. names[i] NULL = not readable as density. `grid` NULL = "density",
-// else the first readable one. Returns its index, or -1 after one line that lists the grids there are.
+// Chooses among the grids of a file, those that are readable as density. `grid` NULL = "density",
+// else the first readable one. Returns its index, or -1 after one line that lists the grids there
+// are.
 int tyn_volume_choose(const char *const *names, const char *const *types, const bool *readable,
                       uint32_t count, const char *grid, const char *file, const tyn_log *log);

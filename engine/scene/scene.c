@@ -74,8 +74,8 @@ bool tyn_scene_bounds(const tyn_scene *scene, float lo[3], float hi[3])
         const tyn_shape *shape = &scene->shapes[i];
         const float *m = shape->to_world;
         for (int a = 0; a < 3; a++) {
-            // Half extent of the image of the shape: of a cube the sum of the half axes' components,
-            // of a sphere the length of the matrix row.
+            // Half extent of the image of the shape: of a cube the sum of the half axes'
+            // components, of a sphere the length of the matrix row.
             float x = m[a], y = m[4 + a], z = m[8 + a];
             float half = shape->kind == TYN_SHAPE_SPHERE ? 0.5f * sqrtf(x * x + y * y + z * z)
                                                          : 0.5f * (fabsf(x) + fabsf(y) + fabsf(z));

@@ -1,5 +1,5 @@
-// broken_make.c -- writes files that no loader may take: broken_make FOLDER. Prints, for every one, the
-// file to hand to the tool (for a volume or a map the scene that names it).
+// broken_make.c -- writes files that no loader may take: broken_make FOLDER. Prints, for every one,
+// the file to hand to the tool (for a volume or a map the scene that names it).
 #include <tyndall/io.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-// nvdb_tree.c -- libFuzzer harness: damaged trees. A valid uncompressed file is patched by the input,
-// a list of (place, offset as 3 bytes, value as 4 bytes), and read.
+// nvdb_tree.c -- libFuzzer harness: damaged trees. A valid uncompressed file is patched by the
+// input, a list of (place, offset as 3 bytes, value as 4 bytes), and read.
 #include "io/nvdb.h"
 #include <string.h>
 #include "nvdb_write.h"

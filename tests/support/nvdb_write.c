@@ -1,6 +1,6 @@
-// nvdb_write.c -- a NanoVDB file with one grid: header, metadata, then grid, tree, root, tiles, upper,
-// lower and leaf nodes in this order. Offsets and sizes are those of the format's version 32.4; nothing
-// is taken from the reader under test.
+// nvdb_write.c -- a NanoVDB file with one grid: header, metadata, then grid, tree, root, tiles,
+// upper, lower and leaf nodes in this order. Offsets and sizes are those of the format's version
+// 32.4; nothing is taken from the reader under test.
 #include "nvdb_write.h"
 #include <math.h>
 #include <stdlib.h>

@@ -11,7 +11,8 @@ typedef struct nvdb_spec {
     uint32_t type, codec; // NVDB_*
     uint32_t grid_class;  // 2 = fog volume, 1 = level set
     int32_t lo[3], hi[3]; // active voxels, inclusive
-    // Of every voxel of a leaf, active or not; in [0, 1] for the quantised types. NULL: 1 everywhere.
+    // Of every voxel of a leaf, active or not; in [0, 1] for the quantised types. NULL: 1
+    // everywhere.
     float (*value)(int32_t i, int32_t j, int32_t k);
     float background;
     int32_t tile[3];  // origin of one 8^3 block that is stored as a tile of value tile_value

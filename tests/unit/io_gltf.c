@@ -1,4 +1,5 @@
-// io_gltf.c -- what a glTF scene becomes: transforms, cameras, lights, media, environment, containers.
+// io_gltf.c -- what a glTF scene becomes: transforms, cameras, lights, media, environment,
+// containers.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,8 +55,8 @@ static void nodes(void **state)
 {
     tyn_scene s;
     (void)state;
-    // A parent turned by 90 degrees about y (x -> -z) and moved; below it a scaled box, a camera under a
-    // non-uniform scale, a lamp.
+    // A parent turned by 90 degrees about y (x -> -z) and moved; below it a scaled box, a camera
+    // under a non-uniform scale, a lamp.
     load(
         &s,
         quoted(
@@ -162,7 +163,8 @@ static void volumes(void **state)
     assert_true(s.volumes[1].data[0] == 0 && s.volumes[1].data[1] == 3);
     assert_int_equal(s.clamped_negative, 1);
     assert_int_equal(s.num_warnings, 1);
-    // Voxel centres at half their index, outer corners half a voxel further out: x from 0.75 to 2.75.
+    // Voxel centres at half their index, outer corners half a voxel further out: x from 0.75 to
+    // 2.75.
     NEAR(s.shapes[0].to_world, 2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0.5f, 0, 101.75f, 0.25f, 0, 1);
     assert_int_equal(s.shapes[1].kind, TYN_SHAPE_SPHERE);
     assert_true(s.shapes[2].repeat[0] && !s.shapes[2].repeat[1] && s.shapes[2].repeat[2]);

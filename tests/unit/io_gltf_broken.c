@@ -1,4 +1,5 @@
-// io_gltf_broken.c -- every fault of a scene file is one line with the file, the place and the remedy.
+// io_gltf_broken.c -- every fault of a scene file is one line with the file, the place and the
+// remedy.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,9 +1,10 @@
 // io.h -- files in and out: scenes, volumes, environments, images. No Vulkan. Tier 1.
 //
-// Every fault of a file is one log line (file, place, value, what would be right) and a negative result:
-// TYN_ERR_IO if it cannot be opened, TYN_ERR_PARAMS if its content is wrong, TYN_ERR_UNSUPPORTED if this
-// build was made without what it needs, TYN_ERR_MEMORY. Nothing is left half-loaded. Files are written
-// under a temporary name and renamed. What is read and written: docs/file-formats.md.
+// Every fault of a file is one log line (file, place, value, what would be right) and a negative
+// result: TYN_ERR_IO if it cannot be opened, TYN_ERR_PARAMS if its content is wrong,
+// TYN_ERR_UNSUPPORTED if this build was made without what it needs, TYN_ERR_MEMORY. Nothing is left
+// half-loaded. Files are written under a temporary name and renamed. What is read and written:
+// docs/file-formats.md.
 #pragma once
 #include "scene.h"
 
@@ -12,9 +13,10 @@ extern "C" {
 #endif
 
 // Loads a scene: .gltf, .glb, or a bare volume (.nvdb, .vdb), which is framed and given a sun and a
-// sky (docs/scene-format.md, "A volume alone"). `environment` (may be NULL) replaces the scene's map
-// whole, and lights a bare volume in place of sun and sky. `scene` is initialised first; give it back
-// with tyn_scene_finish. What is no fault but should be known is in scene->warnings and is not logged.
+// sky (docs/scene-format.md, "A volume alone"). `environment` (may be NULL) replaces the scene's
+// map whole, and lights a bare volume in place of sun and sky. `scene` is initialised first; give
+// it back with tyn_scene_finish. What is no fault but should be known is in scene->warnings and is
+// not logged.
 TYN_API tyn_result tyn_scene_load(tyn_scene *scene, const char *path, const char *environment,
                                   const tyn_log *log);
 
@@ -24,8 +26,8 @@ TYN_API tyn_result tyn_volume_load(tyn_volume *volume, const char *path, const c
                                    uint64_t *clamped_negative, const tyn_log *log);
 TYN_API void tyn_volume_finish(tyn_volume *volume);
 
-// Loads a latitude-longitude map (.exr, .hdr) into `size`, `data` and `hash` and sets `present`; radiance,
-// rotation and strength are kept. Negative values are set to 0.
+// Loads a latitude-longitude map (.exr, .hdr) into `size`, `data` and `hash` and sets `present`;
+// radiance, rotation and strength are kept. Negative values are set to 0.
 TYN_API tyn_result tyn_environment_load(tyn_environment *env, const char *path, const tyn_log *log);
 
 // A float image of named channels, planar, row 0 at the top.
