@@ -2,7 +2,7 @@
 #include "session.h"
 #include <stdio.h>
 
-static void say_who_can(app *a, const char *method, tyn_output output)
+static void say_who_can(app *a, const char *name, tyn_output output)
 {
     char able[256] = "";
     size_t used = 0;
@@ -14,7 +14,7 @@ static void say_who_can(app *a, const char *method, tyn_output output)
                                      info.name);
         }
     }
-    app_error(a, "--method: '%s' cannot do that yet; these can:%s", method, able);
+    app_error(a, "--method: '%s' cannot do that yet; these can:%s", name, able);
 }
 
 int session_open(app *a, const scene_options *scene, const method_options *how, tyn_output output,
