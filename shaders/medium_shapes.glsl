@@ -71,7 +71,7 @@ bool shape_contains(shape_block s, vec3 local, vec3 local_half)
 }
 
 // Mean over the voxel around p of the texture value, 0 outside the shape. `samples` per axis where the
-// voxel is on the shape's edge; inside, two are enough for a grid of similar resolution.
+// voxel is on the shape's edge; inside, as many as it has texels.
 float shape_mean(shape_block s, vec3 p, int samples)
 {
     vec3 centre = shape_local(s, p);
@@ -80,19 +80,26 @@ float shape_mean(shape_block s, vec3 p, int samples)
         return 0.0;
     }
     bool inside = shape_contains(s, centre, local_half);
-    bool homogeneous = all(equal(s.size, uvec3(1)));
-    if (inside && homogeneous) {
-        return shape_value(s, centre);
+    int n = samples;
+    if (inside) {
+        vec3 texels = vec3(s.size) * vec3(length(s.rows[0].xyz * medium.voxel),
+                                          length(s.rows[1].xyz * medium.voxel),
+                                          length(s.rows[2].xyz * medium.voxel));
+        n = clamp(int(max(max(texels.x, texels.y), texels.z) + 0.5), 1, samples);
     }
-    int n = inside ? 2 : samples;
     vec3 half_box = 0.5 * medium.voxel / float(n);
     vec3 sub_half = local_half / float(n);
+    // Steps between samples are linear in local coordinates.
+    mat3 to_local = transpose(mat3(s.rows[0].xyz, s.rows[1].xyz, s.rows[2].xyz));
+    vec3 step_x = to_local[0] * 2.0 * half_box.x;
+    vec3 step_y = to_local[1] * 2.0 * half_box.y;
+    vec3 step_z = to_local[2] * 2.0 * half_box.z;
+    vec3 first = centre - 0.5 * float(n - 1) * (step_x + step_y + step_z);
     float sum = 0.0;
     for (int k = 0; k < n; k++) {
         for (int j = 0; j < n; j++) {
             for (int i = 0; i < n; i++) {
-                vec3 at = (vec3(i, j, k) + 0.5) / float(n) - 0.5;
-                vec3 local = shape_local(s, p + at * medium.voxel);
+                vec3 local = first + float(i) * step_x + float(j) * step_y + float(k) * step_z;
                 float cover = inside ? 1.0 : shape_cover(s, local, sub_half, half_box);
                 if (cover > 0.0) {
                     sum += cover * shape_value(s, local);

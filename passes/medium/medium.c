@@ -56,9 +56,10 @@ static const tyn_binding emission_bindings[] = {
     {MEDIUM_PORT_EMISSION, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding bricks_bindings[] = {
-    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},  {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
-    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},   {MEDIUM_PORT_SIGMA_S, TYN_USE_SAMPLED},
-    {MEDIUM_PORT_SIGMA_A, TYN_USE_SAMPLED}, {MEDIUM_PORT_BRICKS, TYN_USE_STORAGE_WRITE},
+    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
+    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},
+    {MEDIUM_PORT_BRICKS, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding distance_bindings[] = {
     {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},
@@ -82,7 +83,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
 };
 
 static const tyn_param params_table[] = {
-    {"samples", TYN_PARAM_INT, offsetof(tyn_medium_params, samples), 4, 1, 8, "",
+    {"samples", TYN_PARAM_INT, offsetof(tyn_medium_params, samples), 3, 1, 8, "",
      "points along each axis of a voxel at the edge of a shape that its mean is taken over", NULL},
 };
 
@@ -134,20 +135,9 @@ static void record(tyn_recorder *r, const void *params)
             r, &(tyn_dispatch){.kernel = KERNEL_DENSITY, .cells = size, .args = &resample});
     }
 
-    uint8_t first = coefficients ? MEDIUM_PORT_SIGMA_S
-                    : p->direct  ? MEDIUM_PORT_ATLAS
-                                 : MEDIUM_PORT_DENSITY;
-    uint8_t second = coefficients ? MEDIUM_PORT_SIGMA_A : MEDIUM_PORT_ATLAS;
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){
-               .kernel = KERNEL_BRICKS,
-               .cells = bricks,
-               .args = &(struct bricks_args){coefficients ? 2
-                                             : p->direct  ? 0
-                                                          : 1},
-               .ports = (const uint8_t[]){MEDIUM_PORT_MEDIUM, MEDIUM_PORT_SHAPES, MEDIUM_PORT_ATLAS,
-                                          first, second, MEDIUM_PORT_BRICKS},
-           });
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_BRICKS,
+                                        .cells = bricks,
+                                        .args = &(struct bricks_args){p->direct ? 0.0f : 1.0f}});
 
     // x: bricks -> distance, y: distance -> scratch, z: scratch -> distance.
     static const uint8_t chain[] = {MEDIUM_PORT_BRICKS, MEDIUM_PORT_DISTANCE,
@@ -164,7 +154,7 @@ static void record(tyn_recorder *r, const void *params)
     double voxels = (double)size.x * size.y * size.z;
     double written = coefficients ? (p->emissive ? 64 : 48) : p->direct ? 0 : 4;
     tyn_rec_work(r, "cells", voxels);
-    tyn_rec_work(r, "bytes", voxels * (4 + 2 * written)); // atlas, textures written and read again
+    tyn_rec_work(r, "bytes", voxels * (4 + written)); // atlas, textures
 }
 
 const tyn_pass_desc tyn_pass_medium = {

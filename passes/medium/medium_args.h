@@ -8,7 +8,9 @@ struct resample_args {
 };
 
 struct bricks_args {
-    tyn_uint textures; // 0: the solvers read the atlas itself, 1: density, 2: sigma_s and sigma_a
+    float
+        grow; // voxels by which the shapes are looked at beyond the brick: 1 where resampled textures are
+        // read, as interpolation in the brick reaches voxels next to it; 0 for the shapes alone
 };
 
 struct distance_args {
