@@ -27,7 +27,7 @@ static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
     [RAYMARCH_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "mean sigma_a along the suns"},
     [RAYMARCH_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true,
                              "mean (1 - f) sigma_s along the suns"},
-    [RAYMARCH_PORT_LUT] = {"lut", TYN_IN, TYN_IMAGE_3D, 0, true, "forward scattering"},
+    [RAYMARCH_PORT_LUT] = {"lut", TYN_IN, TYN_IMAGE_2D, 0, true, "forward scattering"},
     [RAYMARCH_PORT_LUT_BLOCK] = {"lut_block", TYN_IN, TYN_BUFFER, 0, true, "lut_block"},
     [RAYMARCH_PORT_INSCATTER] = {"inscatter", TYN_IN, TYN_IMAGE_3D, 0, true,
                                  "radiance scattered towards the eye, W/(m^2 sr)"},

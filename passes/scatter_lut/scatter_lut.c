@@ -12,9 +12,9 @@ static const double g_min = 1e-3;  // below it there is no lobe worth splitting 
 
 static const tyn_port ports[SCATTER_LUT_NUM_PORTS] = {
     [SCATTER_LUT_PORT_LUT] =
-        {"lut", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32_SFLOAT, false,
-         "ln of the multiple forward scattering of K_tms and K_lobe over depth, "
-         "angle and g"},
+        {"lut", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_SFLOAT, false,
+         "ln of the multiple forward scattering of K_tms and K_lobe over depth (x) "
+         "and angle (y), a table for each g above the other"},
     [SCATTER_LUT_PORT_LUT_BLOCK] = {"lut_block", TYN_OUT, TYN_BUFFER, 0, false,
                                     "rows of the table: g, half width of the lobe"},
     [SCATTER_LUT_PORT_MOMENTS] =
@@ -198,7 +198,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
     make_rows(p, &block);
     uint64_t bytes = block.num_terms * 2ull * sizeof(float);
     tyn_build_image(b, SCATTER_LUT_PORT_LUT,
-                    (tyn_extent){TYN_LUT_DEPTHS, TYN_LUT_ANGLES, block.num_rows}, 1);
+                    (tyn_extent){TYN_LUT_DEPTHS, TYN_LUT_ANGLES * block.num_rows, 1}, 1);
     tyn_build_buffer(b, SCATTER_LUT_PORT_LUT_BLOCK, sizeof(block));
     tyn_build_buffer(b, SCATTER_LUT_PORT_MOMENTS, bytes > 0 ? bytes : 8);
     return TYN_OK;

@@ -11,7 +11,7 @@ typedef struct tyn_scatter_lut_params {
 } tyn_scatter_lut_params;
 
 enum {
-    SCATTER_LUT_PORT_LUT, // OUT 3D RG32F: K_tms and K_lobe over depth, angle and row, in the form
+    SCATTER_LUT_PORT_LUT, // OUT 2D RG32F: K_tms and K_lobe over depth, angle and row, in the form
                           // that scatter_lut.glsl reads
     SCATTER_LUT_PORT_LUT_BLOCK, // OUT buffer struct lut_block
     SCATTER_LUT_PORT_MOMENTS,   // SCRATCH buffer: Legendre moments F_l and g^l - F_l of the rows

@@ -14,7 +14,7 @@ layout(set = 0, binding = 1, scalar) readonly buffer moments_buffer
 {
     vec2 moments[]; // g^l - F_l, F_l
 };
-layout(set = 0, binding = 2, rg32f) writeonly uniform image3D lut_image;
+layout(set = 0, binding = 2, rg32f) writeonly uniform image2D lut_image;
 
 const float PI = 3.14159265358979;
 
@@ -93,7 +93,7 @@ void main()
         // ten thousandth of the other one is not resolved.
         float total = max(rest[a] + lobe[a], 1e-9);
         vec2 stored = log(max(vec2(rest[a], lobe[a]), vec2(1e-4 * total)));
-        ivec3 texel = ivec3(gl_WorkGroupID.y, thread + a * THREADS, row);
+        ivec2 texel = ivec2(gl_WorkGroupID.y, thread + (a + 4u * row) * THREADS);
         imageStore(lut_image, texel, vec4(stored, 0.0, 0.0));
     }
 }

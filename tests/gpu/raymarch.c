@@ -140,7 +140,8 @@ static void run(gpu_test *t, march_scene *s)
         [RAYMARCH_PORT_LIGHTS] = gpu_buffer(t, "lights", &s->light, sizeof s->light),
         [RAYMARCH_PORT_BEAMS] = gpu_buffer(t, "beams", &s->beam, sizeof s->beam),
         [RAYMARCH_PORT_COLUMN] = upload(t, "column", &s->column),
-        [RAYMARCH_PORT_LUT] = upload(t, "lut", table),
+        [RAYMARCH_PORT_LUT] =
+            gpu_image(t, "lut", TYN_IMAGE_2D, (tyn_extent){2, 2, 1}, 2, table->texels),
         [RAYMARCH_PORT_LUT_BLOCK] = gpu_buffer(t, "lut_block", &s->lut, sizeof s->lut),
         [RAYMARCH_PORT_CAMERA] = gpu_buffer(t, "camera", &s->camera, sizeof s->camera),
         [RAYMARCH_PORT_ENVIRONMENT] = gpu_buffer(t, "environment", &s->env, sizeof s->env),

@@ -101,7 +101,7 @@ static const float (*evaluate(gpu_test *t, const tyn_scatter_lut_params *lut_par
                               const point *points, uint32_t count, uint32_t mixed))[2]
 {
     static point_pass pass;
-    static const point_input inputs[] = {{"lut", TYN_IMAGE_3D, TYN_USE_SAMPLED},
+    static const point_input inputs[] = {{"lut", TYN_IMAGE_2D, TYN_USE_SAMPLED},
                                          {"lut_block", TYN_BUFFER, TYN_USE_STORAGE_READ}};
     point_pass_init(&pass, scatter_lut_eval_spirv, sizeof scatter_lut_eval_spirv, inputs, 2);
     tyn_graph_begin(t->graph);
