@@ -11,6 +11,11 @@ const float LATTICE_4PI = 12.56637061;
 const float LATTICE_WEIGHT_AXIS = 0.30 / 6.0;
 const float LATTICE_WEIGHT_DIAGONAL = 0.70 / 8.0;
 
+float lattice_weight(uint direction)
+{
+    return direction < 6 ? LATTICE_WEIGHT_AXIS : LATTICE_WEIGHT_DIAGONAL;
+}
+
 // Steps of direction 0..13; 0..5 are the axes.
 ivec3 lattice_step(uint direction)
 {

@@ -27,7 +27,7 @@ static const float thin_depth = 0.05f;
 typedef struct field {
     tyn_lattice_shape shape;
     tyn_picture_inputs picture;
-    tyn_ref cells, source, power, moments, leaks;
+    tyn_ref cells, source, power, sky, moments, leaks;
     bool lit_by_environment;
 } field;
 
@@ -80,7 +80,9 @@ static void choose_channels(field *f, const tyn_frame_scene *frame, uint32_t num
     }
     memcpy(colors[count++], frame->environment.mean, sizeof colors[0]);
     memcpy(colors[count++], frame->medium.emission, sizeof colors[0]);
-    bool one = tyn_lattice_tint((const float(*)[3])colors, count, f->shape.tint);
+    // A map may have another colour in every direction.
+    bool one = tyn_lattice_tint((const float(*)[3])colors, count, f->shape.tint) &&
+               !(f->lit_by_environment && frame->environment.has_map);
     f->shape.channels = one && frame->grey ? 1 : 3;
     if (f->shape.channels == 3) {
         f->shape.tint[0] = f->shape.tint[1] = f->shape.tint[2] = 1.0f;
@@ -146,6 +148,19 @@ static tyn_result add_source(tyn_graph *g, const tyn_job *job, field *f)
     return result;
 }
 
+static tyn_result add_sky(tyn_graph *g, const tyn_job *job, field *f)
+{
+    tyn_lattice_sky_params params;
+    tyn_settings_params(job->settings, &tyn_pass_lattice_sky, &params);
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [LATTICE_SKY_PORT_ENVIRONMENT] = job->refs.environment,
+        [LATTICE_SKY_PORT_ENV_MAP] = job->refs.env_map,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_sky, &params, refs);
+    f->sky = refs[LATTICE_SKY_PORT_SKY];
+    return result;
+}
+
 static tyn_result add_solve(tyn_graph *g, const tyn_job *job, field *f)
 {
     tyn_lattice_params params;
@@ -154,7 +169,7 @@ static tyn_result add_solve(tyn_graph *g, const tyn_job *job, field *f)
     tyn_ref refs[TYN_MAX_PORTS] = {
         [LATTICE_PORT_CELLS] = f->cells,
         [LATTICE_PORT_SOURCE] = f->source,
-        [LATTICE_PORT_ENVIRONMENT] = f->lit_by_environment ? job->refs.environment : (tyn_ref){0},
+        [LATTICE_PORT_SKY] = f->sky,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_lattice, &params, refs);
     f->moments = refs[LATTICE_PORT_MOMENTS];
@@ -217,7 +232,7 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, field *f)
     params.num_suns = f->picture.num_suns;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [BALANCE_PORT_MEDIUM] = job->refs.medium,
-        [BALANCE_PORT_ENVIRONMENT] = f->lit_by_environment ? job->refs.environment : (tyn_ref){0},
+        [BALANCE_PORT_SKY] = f->sky,
         [BALANCE_PORT_LIGHTS] = job->refs.lights,
         [BALANCE_PORT_CELLS] = f->cells,
         [BALANCE_PORT_MOMENTS] = f->moments,
@@ -244,6 +259,7 @@ static tyn_result add_lattice(tyn_graph *g, const tyn_job *job, field *f)
     } steps[] = {
         {true, add_cells},
         {suns, add_source},
+        {f->lit_by_environment, add_sky},
         {true, add_solve},
         {picture, add_merge},
         {(job->outputs & TYN_OUTPUT_PROBE) != 0, add_probe},
@@ -272,7 +288,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     f.lit_by_environment = any_positive(frame->environment.mean);
     if (f.lit_by_environment && frame->environment.has_map) {
         tyn_method_warn(job,
-                        "the environment lights the medium with its mean only; it is seen whole");
+                        "the environment lights the medium from 14 directions; it is seen whole");
     }
     result = tyn_add_medium(g, job, &f.picture.media);
     if (result == TYN_OK) {
@@ -303,6 +319,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_scatter_lut,
     &tyn_pass_lattice_cells,
     &tyn_pass_lattice_source,
+    &tyn_pass_lattice_sky,
     &tyn_pass_lattice,
     &tyn_pass_merge,
     &tyn_pass_raymarch,

@@ -38,8 +38,7 @@ enum {
 static const tyn_port ports[NUM_PORTS] = {
     [LATTICE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
     [LATTICE_PORT_SOURCE] = {"source", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_source"},
-    [LATTICE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
-                                  "struct env_block; its mean enters at the box"},
+    [LATTICE_PORT_SKY] = {"sky", TYN_IN, TYN_BUFFER, 0, true, "of lattice_sky: enters at the box"},
     [LATTICE_PORT_MOMENTS] =
         {"moments", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
          "fluence and net flux of the scattered light, W/m^2; channels stacked "
@@ -84,8 +83,8 @@ enum {
 };
 
 static const tyn_binding start_bindings[] = {
-    {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM}, {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},      {PORT_STATE, TYN_USE_STORAGE_WRITE},
+    {LATTICE_PORT_SKY, TYN_USE_STORAGE_READ}, {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},   {PORT_STATE, TYN_USE_STORAGE_WRITE},
     {PORT_EMITTED, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding stencil_bindings[] = {
@@ -98,7 +97,7 @@ static const tyn_binding stencil_coarse_bindings[] = {
     {PORT_STENCIL_HI, TYN_USE_STORAGE_RW},
 };
 static const tyn_binding sweep_bindings[] = {
-    {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM}, {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_PORT_SKY, TYN_USE_STORAGE_READ},    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
     {PORT_EMITTED, TYN_USE_STORAGE_READ},        {PORT_MEAN_PSI, TYN_USE_STORAGE_WRITE},
     {LATTICE_PORT_LEAKS, TYN_USE_STORAGE_WRITE},
 };

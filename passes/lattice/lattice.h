@@ -1,8 +1,9 @@
 // lattice.h -- the light that has scattered: one solve on a lattice of cubic cells for all lights.
 //
-// Three passes, so that what does not change is not done again:
+// Four passes, so that what does not change is not done again:
 //   lattice_cells   the medium averaged over the cells         (again when the medium changes)
 //   lattice_source  unscattered sunlight per cell              (... or a sun changes)
+//   lattice_sky     the environment by direction                (... or the environment)
 //   lattice         fluence and flux of the scattered light    (... or the environment changes)
 // None of them depends on the camera.
 //
@@ -74,6 +75,21 @@ enum {
 };
 extern const tyn_pass_desc tyn_pass_lattice_source;
 
+// ---- lattice_sky --------------------------------------------------------------------------------
+
+typedef struct tyn_lattice_sky_params {
+    uint32_t unused; // has none
+} tyn_lattice_sky_params;
+
+enum {
+    LATTICE_SKY_PORT_ENVIRONMENT, // IN buffer struct env_block
+    LATTICE_SKY_PORT_ENV_MAP,     // IN optional 2D
+    LATTICE_SKY_PORT_SKY, // OUT buffer vec3[14]: radiance that enters along each direction of
+                          // the lattice, W/(m^2 sr); their weighted mean is env_block.mean
+    LATTICE_SKY_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_lattice_sky;
+
 // ---- lattice ----------------------------------------------------------------------------------
 
 typedef struct tyn_lattice_params {
@@ -84,9 +100,9 @@ typedef struct tyn_lattice_params {
 } tyn_lattice_params;
 
 enum {
-    LATTICE_PORT_CELLS,       // IN 3D, of lattice_cells
-    LATTICE_PORT_SOURCE,      // IN optional 3D, of lattice_source
-    LATTICE_PORT_ENVIRONMENT, // IN optional buffer struct env_block: its mean enters at the box
+    LATTICE_PORT_CELLS,  // IN 3D, of lattice_cells
+    LATTICE_PORT_SOURCE, // IN optional 3D, of lattice_source
+    LATTICE_PORT_SKY,    // IN optional buffer, of lattice_sky
     LATTICE_PORT_MOMENTS, // OUT 3D RGBA32F, stacked: fluence phi and net flux (x, y, z) of the light that
                           // has scattered, came from the environment or was emitted, W/m^2
     LATTICE_PORT_COUNTERS, // OUT buffer struct counters_block

@@ -1,10 +1,9 @@
-// lattice_start.comp -- the first guess: the mean of the environment everywhere, no scattered sunlight.
+// lattice_start.comp -- the first guess: the environment everywhere as if unhindered, no sunlight.
 //
 // In a medium that only scatters, inside a uniform environment, it is already the solution.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "scene_args.h"
 #include "lattice_args.h"
 #include "lattice_sweep.glsl"
 
@@ -13,9 +12,9 @@ layout(push_constant, scalar) uniform push
 {
     lattice_args args;
 };
-layout(binding = 0, scalar) uniform environment_uniform
+layout(binding = 0, scalar) readonly buffer sky_buffer
 {
-    env_block environment;
+    vec3 sky[]; // that enters along each direction, W/(m^2 sr)
 };
 layout(binding = 1) uniform sampler3D cells;
 layout(binding = 2) uniform sampler3D source;
@@ -36,8 +35,12 @@ void main()
         return;
     }
     uint i = (texel.z * args.dims.y + texel.y) * args.dims.x + texel.x;
-    float boundary = lattice_channel(environment.mean, args.channels, ch, args.tint);
-    vec4 m = vec4(LATTICE_4PI * boundary, 0.0, 0.0, 0.0);
+    vec4 m = vec4(0.0);
+    for (uint d = 0; d < LATTICE_DIRECTIONS; d++) {
+        float boundary = lattice_channel(sky[d], args.channels, ch, args.tint);
+        m += LATTICE_4PI * lattice_weight(d) * boundary *
+             vec4(1.0, normalize(vec3(lattice_step(d))));
+    }
     state[i] = m;
     vec4 beam = lattice_fetch_source(source, cells, ivec3(texel));
     emitted[i] = lattice_emitted(m + beam, texelFetch(cells, ivec3(texel), 0).z);

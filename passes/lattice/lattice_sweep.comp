@@ -6,7 +6,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "scene_args.h"
 #include "lattice_args.h"
 #include "lattice_sweep.glsl"
 
@@ -15,9 +14,9 @@ layout(push_constant, scalar) uniform push
 {
     lattice_args args;
 };
-layout(binding = 0, scalar) uniform environment_uniform
+layout(binding = 0, scalar) readonly buffer sky_buffer
 {
-    env_block environment;
+    vec3 sky[]; // that enters along each direction, W/(m^2 sr)
 };
 layout(binding = 1) uniform sampler3D cells;
 layout(binding = 2, scalar) readonly buffer emitted_buffer
@@ -68,9 +67,8 @@ void main()
 
         float length_l = args.dx * (diagonal ? sqrt(3.0) : 1.0);
         vec3 omega = vec3(o) * (diagonal ? inversesqrt(3.0) : 1.0);
-        float weight = diagonal ? LATTICE_WEIGHT_DIAGONAL : LATTICE_WEIGHT_AXIS;
-        float tube = args.dx * args.dx * args.dx / length_l * LATTICE_4PI * weight; // m^2 sr
-        float boundary = lattice_channel(environment.mean, args.channels, ch, args.tint);
+        float tube = args.dx * args.dx * args.dx / length_l * LATTICE_4PI * lattice_weight(direction); // m^2 sr
+        float boundary = lattice_channel(sky[direction], args.channels, ch, args.tint);
 
         float psi = boundary, before = 0.0;
         vec4 e = emitted[at];

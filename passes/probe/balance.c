@@ -5,7 +5,7 @@
 
 static const tyn_port ports[BALANCE_NUM_PORTS] = {
     [BALANCE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
-    [BALANCE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true, "struct env_block"},
+    [BALANCE_PORT_SKY] = {"sky", TYN_IN, TYN_BUFFER, 0, true, "of lattice_sky"},
     [BALANCE_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, true, "struct light_block[]"},
     [BALANCE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
     [BALANCE_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
@@ -16,7 +16,7 @@ static const tyn_port ports[BALANCE_NUM_PORTS] = {
 };
 
 static const tyn_binding bindings[] = {
-    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},        {BALANCE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},        {BALANCE_PORT_SKY, TYN_USE_STORAGE_READ},
     {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},   {BALANCE_PORT_CELLS, TYN_USE_SAMPLED},
     {BALANCE_PORT_MOMENTS, TYN_USE_SAMPLED},       {BALANCE_PORT_SOURCE, TYN_USE_SAMPLED},
     {BALANCE_PORT_POWER, TYN_USE_STORAGE_READ},    {BALANCE_PORT_LEAKS, TYN_USE_STORAGE_READ},

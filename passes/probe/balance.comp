@@ -1,7 +1,7 @@
 // balance.comp -- where the energy goes: sums over cells and lines, one workgroup per channel.
 //
-// What the environment brings in is pi L times the area of the medium's box; the lines' leaks are net, so
-// what they carry straight through the lattice counts on both sides.
+// What the environment brings in is, for each direction, radiance times the projected area of the medium's
+// box; the lines' leaks are net, so what they carry straight through the lattice counts on both sides.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -20,9 +20,9 @@ layout(binding = 0, scalar) uniform medium_uniform
 {
     medium_block medium;
 };
-layout(binding = 1, scalar) uniform environment_uniform
+layout(binding = 1, scalar) readonly buffer sky_buffer
 {
-    env_block environment;
+    vec3 sky[]; // that enters along each direction, W/(m^2 sr)
 };
 layout(binding = 2, scalar) readonly buffer light_buffer
 {
@@ -97,9 +97,14 @@ void main()
         return;
     }
     vec3 extent = medium.extent;
-    float area = 2.0 * (extent.x * extent.y + extent.y * extent.z + extent.z * extent.x);
-    float entering =
-        LATTICE_4PI / 4.0 * area * lattice_channel(environment.mean, args.channels, ch, args.tint);
+    vec3 faces = vec3(extent.y * extent.z, extent.z * extent.x, extent.x * extent.y);
+    float entering = 0.0, isotropic = 0.0; // of radiance 1 from everywhere: pi times the surface
+    for (uint d = 0; d < 14; d++) {
+        float area = dot(faces, abs(normalize(vec3(lattice_step(d)))));
+        entering += lattice_weight(d) * area * lattice_channel(sky[d], args.channels, ch, args.tint);
+        isotropic += lattice_weight(d) * area;
+    }
+    entering *= LATTICE_4PI / 4.0 * 2.0 * (faces.x + faces.y + faces.z) / isotropic;
     float escaped = entering + sums[0].z;
     for (uint sun = 0; sun < args.num_suns; sun++) {
         lattice_power w = power[sun * args.channels + ch];

@@ -32,15 +32,15 @@ typedef struct tyn_balance_params {
 } tyn_balance_params;
 
 enum {
-    BALANCE_PORT_MEDIUM,      // IN buffer struct medium_block
-    BALANCE_PORT_ENVIRONMENT, // IN optional buffer struct env_block
-    BALANCE_PORT_LIGHTS,      // IN optional buffer struct light_block[]
-    BALANCE_PORT_CELLS,       // IN 3D, of lattice_cells
-    BALANCE_PORT_MOMENTS,     // IN 3D, of lattice
-    BALANCE_PORT_SOURCE,      // IN optional 3D, of lattice_source
-    BALANCE_PORT_POWER,       // IN optional buffer, of lattice_source
-    BALANCE_PORT_LEAKS,       // IN buffer, of lattice
-    BALANCE_PORT_BALANCE,     // OUT buffer tyn_balance
+    BALANCE_PORT_MEDIUM,  // IN buffer struct medium_block
+    BALANCE_PORT_SKY,     // IN optional buffer, of lattice_sky
+    BALANCE_PORT_LIGHTS,  // IN optional buffer struct light_block[]
+    BALANCE_PORT_CELLS,   // IN 3D, of lattice_cells
+    BALANCE_PORT_MOMENTS, // IN 3D, of lattice
+    BALANCE_PORT_SOURCE,  // IN optional 3D, of lattice_source
+    BALANCE_PORT_POWER,   // IN optional buffer, of lattice_source
+    BALANCE_PORT_LEAKS,   // IN buffer, of lattice
+    BALANCE_PORT_BALANCE, // OUT buffer tyn_balance
     BALANCE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_balance;

@@ -120,11 +120,13 @@ void light_chain_run(gpu_test *t, light_chain *c)
         add(t, &tyn_pass_lattice_source,
             &(tyn_lattice_source_params){solve.shape, mode, c->num_suns}, source);
     }
-    tyn_ref env_ref = gpu_buffer(t, "environment", &env, sizeof env);
+    tyn_ref sky[TYN_MAX_PORTS] = {[LATTICE_SKY_PORT_ENVIRONMENT] =
+                                      gpu_buffer(t, "environment", &env, sizeof env)};
+    add(t, &tyn_pass_lattice_sky, &(tyn_lattice_sky_params){0}, sky);
     tyn_ref lattice[TYN_MAX_PORTS] = {
         [LATTICE_PORT_CELLS] = cells[LATTICE_CELLS_PORT_CELLS],
         [LATTICE_PORT_SOURCE] = source[LATTICE_SOURCE_PORT_SOURCE],
-        [LATTICE_PORT_ENVIRONMENT] = env_ref,
+        [LATTICE_PORT_SKY] = sky[LATTICE_SKY_PORT_SKY],
     };
     add(t, &tyn_pass_lattice, &solve, lattice);
     tyn_graph_output(t->graph, "counters", lattice[LATTICE_PORT_COUNTERS], true);
@@ -144,7 +146,7 @@ void light_chain_run(gpu_test *t, light_chain *c)
     memcpy(balance_params.tint, solve.shape.tint, sizeof balance_params.tint);
     tyn_ref balance[TYN_MAX_PORTS] = {
         [BALANCE_PORT_MEDIUM] = medium_ref,
-        [BALANCE_PORT_ENVIRONMENT] = env_ref,
+        [BALANCE_PORT_SKY] = sky[LATTICE_SKY_PORT_SKY],
         [BALANCE_PORT_LIGHTS] = lights_ref,
         [BALANCE_PORT_CELLS] = cells[LATTICE_CELLS_PORT_CELLS],
         [BALANCE_PORT_MOMENTS] = lattice[LATTICE_PORT_MOMENTS],
