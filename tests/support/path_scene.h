@@ -20,6 +20,7 @@ typedef struct path_scene {
     tyn_environment map;   // data NULL: constant
     tyn_path_params params;
     uint32_t samples;      // of a record
+    bool may_cut;          // paths may meet the safety cap
 } path_scene;
 
 // A box [0, extent] of one medium, coefficients at density 1. `grid` (may be NULL) is kept by reference.
