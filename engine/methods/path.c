@@ -109,9 +109,12 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
     p->num_lamps = frame->num_lights - frame->num_suns;
     p->near_lamps = count_near_lamps(frame);
     bool sky = env->radiance[0] + env->radiance[1] + env->radiance[2] > 0;
-    p->environment = !sky ? TYN_PATH_ENV_NONE : env->has_map ? TYN_PATH_ENV_MAP : TYN_PATH_ENV_CONSTANT;
+    p->environment = !sky           ? TYN_PATH_ENV_NONE
+                     : env->has_map ? TYN_PATH_ENV_MAP
+                                    : TYN_PATH_ENV_CONSTANT;
     p->sigma_guess = p->homogeneous ? sigma_t : 0.3f * sigma_t * m->max_density;
-    p->layers = (job->outputs & (TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_TRANSMITTANCE)) != 0;
+    p->layers =
+        (job->outputs & (TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_TRANSMITTANCE)) != 0;
     p->opaque = sky && !view->no_background;
     p->scattered = view->scattered_only;
     for (int w = 0; w < 3; w++) {
@@ -123,12 +126,16 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
 
 static uint32_t batch(const tyn_job *job)
 {
+    if (job->outputs & TYN_OUTPUT_BALANCE) {
+        return 1;
+    }
     tyn_path_params p;
     bool probes = job->outputs & TYN_OUTPUT_PROBE;
     set_params(&p, job, probes ? &tyn_pass_path_probe : &tyn_pass_path);
     double elements = probes ? job->view->num_points : (double)job->view->width * job->view->height;
     double cost = path_cost_ns(job, p.homogeneous);
-    double samples = fmin(DISPATCH_NS / (cost * fmin(elements, p.threads)), RECORD_NS / (cost * elements));
+    double samples =
+        fmin(DISPATCH_NS / (cost * fmin(elements, p.threads)), RECORD_NS / (cost * elements));
     return samples < 1 ? 1 : samples > 1e6 ? 1000000 : (uint32_t)samples;
 }
 
@@ -178,7 +185,8 @@ static tyn_result add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     tyn_job_output(g, job, TYN_OUTPUT_MULTIPLE, refs[PATH_PORT_MULTIPLE]);
     tyn_job_output(g, job, TYN_OUTPUT_TRANSMITTANCE, refs[PATH_PORT_TRANSMITTANCE]);
     tyn_job_counters(g, job, "path", refs[PATH_PORT_COUNTERS]);
-    return job->outputs & TYN_OUTPUT_DISPLAY ? tyn_add_display(g, job, refs[PATH_PORT_RADIANCE]) : TYN_OK;
+    return job->outputs & TYN_OUTPUT_DISPLAY ? tyn_add_display(g, job, refs[PATH_PORT_RADIANCE])
+                                             : TYN_OK;
 }
 
 static tyn_result add_probes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
@@ -199,6 +207,52 @@ static tyn_result add_probes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     return result;
 }
 
+// Power of the lamps inside the media's box, which count as emitted.
+static void set_lamp_power(tyn_path_params *p, const tyn_frame_scene *frame)
+{
+    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
+        const struct light_block *l = &frame->lights[i];
+        bool inside = true;
+        for (int a = 0; a < 3; a++) {
+            inside = inside && l->position[a] >= 0 && l->position[a] <= frame->medium.extent[a];
+        }
+        // Integral of the spot's falloff over the sphere: a full cap, then a squared ramp in the cosine.
+        float cap = 1 - l->cos_inner, ramp = (l->cos_inner - l->cos_outer) / 3;
+        float angle =
+            l->kind == TYN_LIGHT_KIND_SPOT ? 2 * (float)M_PI * (cap + ramp) : 4 * (float)M_PI;
+        for (int c = 0; inside && c < 3; c++) {
+            p->lamp_power[c] += l->color[c] * angle;
+        }
+    }
+}
+
+// One `sample` of a balance is BALANCE_CHUNKS dispatches of as many paths as the time limit allows.
+static tyn_result add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
+{
+    enum { BALANCE_CHUNKS = 16, CHUNK_MIN = 4096, CHUNK_MAX = 131072 };
+    tyn_path_params params;
+    set_params(&params, job, &tyn_pass_path_balance);
+    set_lamp_power(&params, job->frame);
+    double paths = DISPATCH_NS / path_cost_ns(job, params.homogeneous);
+    params.chunks = BALANCE_CHUNKS;
+    params.threads = 4096;
+    params.num_samples = paths < CHUNK_MIN   ? CHUNK_MIN
+                         : paths > CHUNK_MAX ? CHUNK_MAX
+                                             : (uint32_t)paths;
+    params.first_sample *= params.chunks * params.num_samples;
+    tyn_ref refs[PATH_BALANCE_NUM_PORTS] = {
+        [PATH_BALANCE_PORT_STATE] =
+            tyn_graph_history_buffer(g, "path_balance", tyn_path_probe_state_size(1), 1),
+    };
+    connect_scene(refs, job, bricks);
+    tyn_result result = tyn_graph_add(g, &tyn_pass_path_balance, &params, refs);
+    if (result == TYN_OK) {
+        tyn_job_output(g, job, TYN_OUTPUT_BALANCE, refs[PATH_BALANCE_PORT_BALANCE]);
+        tyn_job_counters(g, job, "path_balance", refs[PATH_BALANCE_PORT_COUNTERS]);
+    }
+    return result;
+}
+
 // A periodic medium's own axes must be those of M.
 static tyn_result check_repeat(const tyn_job *job)
 {
@@ -208,7 +262,8 @@ static tyn_result check_repeat(const tyn_job *job)
     for (int i = 0; repeat && i < 9; i++) {
         if (i / 3 != i % 3 && fabsf(s->rows[i / 3][i % 3]) * m->extent[i % 3] > 1e-4f) {
             tyn_log_print(job->log, TYN_LOG_ERROR,
-                          "shape 0 repeats and is sheared; the axes of a periodic box must be at right angles");
+                          "shape 0 repeats and is sheared; the axes of a periodic box must be at "
+                          "right angles");
             return TYN_ERR_UNSUPPORTED;
         }
     }
@@ -222,25 +277,30 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (result == TYN_OK && !job->frame->empty) {
         result = tyn_add_medium(g, job, &media);
     }
-    if (result == TYN_OK && job->outputs & ~(uint32_t)TYN_OUTPUT_PROBE) {
+    if (result == TYN_OK && job->outputs & ~(uint32_t)(TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE)) {
         result = add_image(g, job, media.bricks);
     }
     if (result == TYN_OK && job->outputs & TYN_OUTPUT_PROBE) {
         result = add_probes(g, job, media.bricks);
     }
+    if (result == TYN_OK && job->outputs & TYN_OUTPUT_BALANCE) {
+        result = add_balance(g, job, media.bricks);
+    }
     return result;
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium, &tyn_pass_path, &tyn_pass_path_probe, &tyn_pass_tonemap, NULL,
+    &tyn_pass_medium,       &tyn_pass_path,    &tyn_pass_path_probe,
+    &tyn_pass_path_balance, &tyn_pass_tonemap, NULL,
 };
 
 const tyn_method tyn_method_path = {
     .name = "path",
     .summary = "unbiased path tracing: the reference",
     .passes = passes,
-    .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE |
-               TYN_OUTPUT_ERROR | TYN_OUTPUT_DISPLAY | TYN_OUTPUT_PROBE,
+    .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_SINGLE |
+               TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_ERROR | TYN_OUTPUT_DISPLAY | TYN_OUTPUT_PROBE |
+               TYN_OUTPUT_BALANCE,
     .progressive = true,
     .reads_env_cdf = true,
     .batch = batch,

@@ -29,6 +29,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_raymarch,
     &tyn_pass_path,
     &tyn_pass_path_probe,
+    &tyn_pass_path_balance,
     &tyn_pass_composite,
     &tyn_pass_tonemap,
 };

@@ -2,6 +2,7 @@
 #include "path.h"
 #include "counters.h"
 #include "path_args.h"
+#include "path_tables.h"
 #include "path_probe.comp.h"
 #include "path_probe_resolve.comp.h"
 #include "path_resolve.comp.h"
@@ -13,36 +14,17 @@ enum { PROBE_STATE_BYTES = 3 * TYN_PATH_PROBE_VALUES * 4 };
 
 // ---- tables -----------------------------------------------------------------------------------
 
-#define SCENE_PORTS                                                                                    \
-    {"atlas", TYN_IN, TYN_IMAGE_3D, 0, true, "all density grids"},                                     \
-    {"medium", TYN_IN, TYN_BUFFER, 0, false, "the medium frame's box and bricks"},                     \
-    {"shapes", TYN_IN, TYN_BUFFER, 0, true, "the exact media"},                                        \
-    {"bricks", TYN_IN, TYN_IMAGE_3D, 0, true, "least and largest density or extinction of bricks"},    \
-    {"lights", TYN_IN, TYN_BUFFER, 0, true, "suns and lamps"},                                         \
-    {"environment", TYN_IN, TYN_BUFFER, 0, true, "the surroundings"},                                  \
-    {"env_map", TYN_IN, TYN_IMAGE_2D, 0, true, "radiance of the surroundings, W/(m^2 sr)"},            \
-    {"env_table", TYN_IN, TYN_BUFFER, 0, true, "alias table of the map's brightness"}
-
-#define SCENE_BINDINGS                                                                                 \
-    {PATH_PORT_ATLAS, TYN_USE_SAMPLED, false}, {PATH_PORT_MEDIUM, TYN_USE_UNIFORM, false},             \
-        {PATH_PORT_SHAPES, TYN_USE_STORAGE_READ, false}, {PATH_PORT_BRICKS, TYN_USE_SAMPLED, false},   \
-        {PATH_PORT_LIGHTS, TYN_USE_STORAGE_READ, false},                                               \
-        {PATH_PORT_ENVIRONMENT, TYN_USE_UNIFORM, false}, {PATH_PORT_ENV_MAP, TYN_USE_SAMPLED, true},   \
-    {                                                                                                  \
-        PATH_PORT_ENV_TABLE, TYN_USE_STORAGE_READ, false                                               \
-    }
-
-static const tyn_param params_table[] = {
+const tyn_param path_params_table[PATH_NUM_PARAMS] = {
     {"mixture", TYN_PARAM_BOOL, offsetof(tyn_path_params, mixture), 1, 0, 1, "",
      "draw directions from a mixture with light lobes; 0: the phase function alone", NULL},
     {"equiangular", TYN_PARAM_BOOL, offsetof(tyn_path_params, equiangular), 1, 0, 1, "",
      "draw distances by the angle seen from lamps as well; 0: free flights alone", NULL},
-    {"max_steps", TYN_PARAM_INT, offsetof(tyn_path_params, max_steps), 200000, 100, 100000000, "steps",
-     "safety cap of one path; cut paths are counted", NULL},
+    {"max_steps", TYN_PARAM_INT, offsetof(tyn_path_params, max_steps), 200000, 100, 100000000,
+     "steps", "safety cap of one path; cut paths are counted", NULL},
 };
 
 static const tyn_port image_ports[PATH_NUM_PORTS] = {
-    SCENE_PORTS,
+    PATH_SCENE_PORT_ROWS,
     {"camera", TYN_IN, TYN_BUFFER, 0, false, "rays of the pixels"},
     {"mean", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "running mean radiance, W/(m^2 sr)"},
     {"low", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "what single precision loses of the mean"},
@@ -61,7 +43,7 @@ static const tyn_port image_ports[PATH_NUM_PORTS] = {
 };
 
 static const tyn_binding trace_bindings[] = {
-    SCENE_BINDINGS,
+    PATH_SCENE_BINDING_ROWS,
     {PATH_PORT_CAMERA, TYN_USE_UNIFORM, false},
     {PATH_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
     {PATH_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
@@ -85,14 +67,26 @@ static const tyn_binding resolve_bindings[] = {
 };
 
 static const tyn_kernel image_kernels[] = {
-    {"path_trace", path_trace_spirv, sizeof path_trace_spirv, sizeof(struct path_args), {64, 1, 1},
-     trace_bindings, sizeof trace_bindings / sizeof *trace_bindings, TYN_PATH_NUM_SPEC},
-    {"path_resolve", path_resolve_spirv, sizeof path_resolve_spirv, sizeof(struct path_resolve_args),
-     {64, 1, 1}, resolve_bindings, sizeof resolve_bindings / sizeof *resolve_bindings, 0},
+    {"path_trace",
+     path_trace_spirv,
+     sizeof path_trace_spirv,
+     sizeof(struct path_args),
+     {64, 1, 1},
+     trace_bindings,
+     sizeof trace_bindings / sizeof *trace_bindings,
+     TYN_PATH_NUM_SPEC},
+    {"path_resolve",
+     path_resolve_spirv,
+     sizeof path_resolve_spirv,
+     sizeof(struct path_resolve_args),
+     {64, 1, 1},
+     resolve_bindings,
+     sizeof resolve_bindings / sizeof *resolve_bindings,
+     0},
 };
 
 static const tyn_port probe_ports[PATH_PROBE_NUM_PORTS] = {
-    SCENE_PORTS,
+    PATH_SCENE_PORT_ROWS,
     {"points", TYN_IN, TYN_BUFFER, 0, false, "points in M, m"},
     {"state", TYN_INOUT, TYN_BUFFER, 0, false, "running statistics of each point"},
     {"results", TYN_OUT, TYN_BUFFER, 0, false, "fluence and net flux with standard errors, W/m^2"},
@@ -101,7 +95,7 @@ static const tyn_port probe_ports[PATH_PROBE_NUM_PORTS] = {
 };
 
 static const tyn_binding probe_bindings[] = {
-    SCENE_BINDINGS,
+    PATH_SCENE_BINDING_ROWS,
     {PATH_PROBE_PORT_POINTS, TYN_USE_STORAGE_READ, false},
     {PATH_PROBE_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
     {PATH_PROBE_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
@@ -114,11 +108,22 @@ static const tyn_binding probe_resolve_bindings[] = {
 };
 
 static const tyn_kernel probe_kernels[] = {
-    {"path_probe", path_probe_spirv, sizeof path_probe_spirv, sizeof(struct path_args), {64, 1, 1},
-     probe_bindings, sizeof probe_bindings / sizeof *probe_bindings, TYN_PATH_NUM_SPEC},
-    {"path_probe_resolve", path_probe_resolve_spirv, sizeof path_probe_resolve_spirv,
-     sizeof(struct path_resolve_args), {64, 1, 1}, probe_resolve_bindings,
-     sizeof probe_resolve_bindings / sizeof *probe_resolve_bindings, 0},
+    {"path_probe",
+     path_probe_spirv,
+     sizeof path_probe_spirv,
+     sizeof(struct path_args),
+     {64, 1, 1},
+     probe_bindings,
+     sizeof probe_bindings / sizeof *probe_bindings,
+     TYN_PATH_NUM_SPEC},
+    {"path_probe_resolve",
+     path_probe_resolve_spirv,
+     sizeof path_probe_resolve_spirv,
+     sizeof(struct path_resolve_args),
+     {64, 1, 1},
+     probe_resolve_bindings,
+     sizeof probe_resolve_bindings / sizeof *probe_resolve_bindings,
+     0},
 };
 
 // ---- splitting the work -----------------------------------------------------------------------
@@ -139,7 +144,7 @@ static split split_work(const tyn_path_params *p, uint32_t elements)
     return s;
 }
 
-static struct path_args trace_args(const tyn_path_params *p)
+struct path_args path_trace_args(const tyn_path_params *p)
 {
     return (struct path_args){
         .first_sample = p->first_sample,
@@ -156,7 +161,7 @@ static struct path_args trace_args(const tyn_path_params *p)
     };
 }
 
-static void specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_path_params *p)
+void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_path_params *p)
 {
     // A lobe needs a light; under a constant sky every direction is as good.
     bool lights = p->num_lights > 0 || p->environment == TYN_PATH_ENV_MAP;
@@ -167,8 +172,8 @@ static void specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_path_params *
     spec[TYN_PATH_SPEC_ENVIRONMENT] = p->environment;
     spec[TYN_PATH_SPEC_FLAGS] =
         (p->repeat ? TYN_PATH_REPEAT : 0) | (p->emissive ? TYN_PATH_EMISSIVE : 0) |
-        (p->mixture && lights ? TYN_PATH_MIXTURE : 0) |
-        (p->num_lamps ? TYN_PATH_LAMPS : 0) | (p->equiangular && p->near_lamps ? TYN_PATH_EQUIANGULAR : 0) |
+        (p->mixture && lights ? TYN_PATH_MIXTURE : 0) | (p->num_lamps ? TYN_PATH_LAMPS : 0) |
+        (p->equiangular && p->near_lamps ? TYN_PATH_EQUIANGULAR : 0) |
         (p->layers ? TYN_PATH_LAYERS : 0) | (p->scattered ? TYN_PATH_SCATTERED : 0);
 }
 
@@ -198,16 +203,17 @@ static void record_image(tyn_recorder *r, const void *params)
     tyn_extent size = tyn_rec_extent(r, PATH_PORT_MEAN);
     uint32_t pixels = size.x * size.y, spec[TYN_PATH_NUM_SPEC];
     split s = split_work(p, pixels);
-    specialise(spec, p);
+    path_specialise(spec, p);
     tyn_rec_fill(r, PATH_PORT_COUNTERS, 0);
     for (uint32_t first = 0; first < pixels; first += s.tile) {
         uint32_t num = pixels - first < s.tile ? pixels - first : s.tile;
-        struct path_args args = trace_args(p);
+        struct path_args args = path_trace_args(p);
         args.first = first;
         args.num = num;
         args.slots = s.slots;
-        tyn_rec_dispatch(r, &(tyn_dispatch){
-                                .kernel = 0, .cells = {num * s.slots, 1, 1}, .args = &args, .spec = spec});
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){
+                   .kernel = 0, .cells = {num * s.slots, 1, 1}, .args = &args, .spec = spec});
         struct path_resolve_args resolve = {
             .first = first,
             .num = num,
@@ -229,8 +235,8 @@ const tyn_pass_desc tyn_pass_path = {
     .num_ports = PATH_NUM_PORTS,
     .kernels = image_kernels,
     .num_kernels = 2,
-    .params = params_table,
-    .num_params = sizeof params_table / sizeof *params_table,
+    .params = path_params_table,
+    .num_params = PATH_NUM_PARAMS,
     .params_size = sizeof(tyn_path_params),
     .declare = declare_image,
     .record = record_image,
@@ -249,7 +255,8 @@ static tyn_result declare_probe(tyn_builder *b, const void *params)
 {
     uint32_t points = tyn_build_extent(b, PATH_PROBE_PORT_STATE).x / PROBE_STATE_BYTES;
     split s = split_work(params, points);
-    tyn_build_buffer(b, PATH_PROBE_PORT_RESULTS, (uint64_t)points * sizeof(struct path_probe_result));
+    tyn_build_buffer(b, PATH_PROBE_PORT_RESULTS,
+                     (uint64_t)points * sizeof(struct path_probe_result));
     tyn_build_buffer(b, PATH_PROBE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, PATH_PROBE_PORT_PARTIALS,
                      (uint64_t)s.tile * s.slots * sizeof(struct path_probe_partial));
@@ -262,16 +269,17 @@ static void record_probe(tyn_recorder *r, const void *params)
     uint32_t points = tyn_rec_extent(r, PATH_PROBE_PORT_STATE).x / PROBE_STATE_BYTES;
     uint32_t spec[TYN_PATH_NUM_SPEC];
     split s = split_work(p, points);
-    specialise(spec, p);
+    path_specialise(spec, p);
     tyn_rec_fill(r, PATH_PROBE_PORT_COUNTERS, 0);
     for (uint32_t first = 0; first < points; first += s.tile) {
         uint32_t num = points - first < s.tile ? points - first : s.tile;
-        struct path_args args = trace_args(p);
+        struct path_args args = path_trace_args(p);
         args.first = first;
         args.num = num;
         args.slots = s.slots;
-        tyn_rec_dispatch(r, &(tyn_dispatch){
-                                .kernel = 0, .cells = {num * s.slots, 1, 1}, .args = &args, .spec = spec});
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){
+                   .kernel = 0, .cells = {num * s.slots, 1, 1}, .args = &args, .spec = spec});
         struct path_resolve_args resolve = {
             .first = first, .num = num, .slots = s.slots, .samples_before = p->first_sample};
         tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = 1,
@@ -288,8 +296,8 @@ const tyn_pass_desc tyn_pass_path_probe = {
     .num_ports = PATH_PROBE_NUM_PORTS,
     .kernels = probe_kernels,
     .num_kernels = 2,
-    .params = params_table,
-    .num_params = sizeof params_table / sizeof *params_table,
+    .params = path_params_table,
+    .num_params = PATH_NUM_PARAMS,
     .params_size = sizeof(tyn_path_params),
     .declare = declare_probe,
     .record = record_probe,

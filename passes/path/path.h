@@ -27,6 +27,8 @@ typedef struct tyn_path_params {
     uint32_t opaque;      // images: a background is seen, alpha is 1
     uint32_t scattered;   // probes: without light that has not scattered
     float world[3][3];    // probes: the world's axes in M
+    float lamp_power[3];  // balance: of the lamps inside the media, W
+    uint32_t chunks;      // balance: dispatches of num_samples paths each
 } tyn_path_params;
 
 // What every tracing pass reads.
@@ -38,7 +40,7 @@ enum {
     PATH_PORT_LIGHTS,      // IN buffer struct light_block[], optional
     PATH_PORT_ENVIRONMENT, // IN buffer struct env_block, optional
     PATH_PORT_ENV_MAP,     // IN 2D, optional
-    PATH_PORT_ENV_TABLE,   // IN buffer struct env_table_block and cells, optional: methods/env_cdf.h
+    PATH_PORT_ENV_TABLE, // IN buffer struct env_table_block and cells, optional: methods/env_cdf.h
     PATH_NUM_SCENE_PORTS,
 };
 
@@ -73,6 +75,19 @@ enum {
     PATH_PROBE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_path_probe;
+
+// Where the energy goes.
+enum {
+    PATH_BALANCE_PORT_STATE =
+        PATH_NUM_SCENE_PORTS,  // INOUT buffer, the state of one probe: a history
+    PATH_BALANCE_PORT_BALANCE, // OUT buffer tyn_balance
+    PATH_BALANCE_PORT_RESULT,  // OUT buffer: entering, emitted, absorbed, escaped (3 channels), and
+                               // the standard errors of all
+    PATH_BALANCE_PORT_COUNTERS, // OUT buffer struct counters_block
+    PATH_BALANCE_PORT_PARTIALS, // SCRATCH
+    PATH_BALANCE_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_path_balance;
 
 // Bytes of the probes' history.
 uint64_t tyn_path_probe_state_size(uint32_t num_points);

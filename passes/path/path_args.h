@@ -59,8 +59,9 @@ struct path_resolve_args {
     tyn_uint samples_before; // in the running statistics; 0: start anew
     tyn_uint layers;         // 1: single, multiple, transmittance as well
     tyn_uint opaque;         // 1: a background is seen, alpha is 1
+    tyn_vec3 lamps;          // balance: power of the lamps inside the media, W
 };
-TYN_ASSERT_SIZE(path_resolve_args, 28);
+TYN_ASSERT_SIZE(path_resolve_args, 40);
 
 // A probe's values: fluence (3 channels), then net flux (3 axes of M x 3 channels).
 #define TYN_PATH_PROBE_VALUES 12
@@ -70,6 +71,11 @@ struct path_probe_partial { // of a thread's samples, or of all so far
     tyn_uint count;
 };
 TYN_ASSERT_SIZE(path_probe_partial, 100);
+
+struct path_probe_state { // running statistics of a point
+    float mean[TYN_PATH_PROBE_VALUES], low[TYN_PATH_PROBE_VALUES], deviation[TYN_PATH_PROBE_VALUES];
+};
+TYN_ASSERT_SIZE(path_probe_state, 144);
 
 struct path_probe_result { // as tyn_probe_result
     float value[TYN_PATH_PROBE_VALUES], error[TYN_PATH_PROBE_VALUES];

@@ -23,8 +23,8 @@ static float random_unit(void)
 
 static void make_cube(path_scene *s, float g)
 {
-    path_scene_box(s, (float[]){1, 1, 1}, (float[]){4, 4, 4}, (float[]){0, 0, 0}, (float[]){g, g, g}, NULL,
-                   NULL);
+    path_scene_box(s, (float[]){1, 1, 1}, (float[]){4, 4, 4}, (float[]){0, 0, 0},
+                   (float[]){g, g, g}, NULL, NULL);
     path_scene_sun(s, (float[]){1, 0, 0}, (float[]){1, 1, 1});
     s->params.scattered = 1;
     s->params.seed = (uint32_t)(g * 10);
@@ -73,7 +73,8 @@ static void fluence_of_cells(void **state)
         path_scene s;
         make_cube(&s, g);
         s.samples = 64;
-        const tyn_probe_result *p = path_scene_probe(*state, &s, (const float(*)[3])points, NUM_CELLS, 256);
+        const tyn_probe_result *p =
+            path_scene_probe(*state, &s, (const float(*)[3])points, NUM_CELLS, 256);
         tally all = {0}, layers[CELLS] = {{0}};
         double var_ref = 0, sum_ref = 0;
         for (int i = 0; i < NUM_CELLS; i++) {
@@ -124,7 +125,8 @@ static double face_reference(float g, const char *face, double *se)
 
 static void power_through_faces(void **state)
 {
-    static const char *const faces[] = {"entry(x=0)", "exit(x=1) diffuse", "y=0", "y=1", "z=0", "z=1"};
+    static const char *const faces[] = {"entry(x=0)", "exit(x=1) diffuse", "y=0", "y=1", "z=0",
+                                        "z=1"};
     static float points[6 * FACE_POINTS][3];
     for (int k = 0; k < 3; k++) {
         float g = (const float[]){0, 0.5f, 0.9f}[k];
@@ -151,8 +153,8 @@ static void power_through_faces(void **state)
                 add(&t, face % 2 ? flux : -flux);
             }
             double z = (mean(&t) - ref) / hypot(error(&t), se_ref);
-            printf("power g %.1f %-18s %.5f +- %.5f  reference %.5f  z %+.2f\n", (double)g, faces[face],
-                   mean(&t), error(&t), ref, z);
+            printf("power g %.1f %-18s %.5f +- %.5f  reference %.5f  z %+.2f\n", (double)g,
+                   faces[face], mean(&t), error(&t), ref, z);
             assert_true(fabs(z) <= 3);
         }
     }

@@ -62,7 +62,7 @@ static void compare(gpu_test *t, path_scene *s, const char *name, uint32_t sampl
                     z2 += (a - b) * (a - b) / (va + vb);
                     blocks++;
                 } else { // background alone
-assert_true(fabs(a - b) <= 1e-4 * b);
+                    assert_true(fabs(a - b) <= 1e-4 * b);
                 }
             }
         }
@@ -204,9 +204,11 @@ static void blobs(void **state)
 static void check_furnace(gpu_test *t, path_scene *s, const char *name, uint32_t samples)
 {
     const float *radiance, *error;
-    path_scene_orthographic(s, (float[]){0.5f * s->medium.extent[0], 0.5f * s->medium.extent[1],
-                                         0.5f * s->medium.extent[2]},
-                            (float[]){-1, -2, -0.7f}, (float[]){0, 1, 0}, 0.9f * s->medium.extent[0], 32);
+    path_scene_orthographic(s,
+                            (float[]){0.5f * s->medium.extent[0], 0.5f * s->medium.extent[1],
+                                      0.5f * s->medium.extent[2]},
+                            (float[]){-1, -2, -0.7f}, (float[]){0, 1, 0},
+                            0.9f * s->medium.extent[0], 32);
     s->samples = samples < 64 ? samples : 64;
     path_scene_render(t, s, samples, &radiance, &error);
     for (int c = 0; c < 3; c++) {
@@ -217,7 +219,8 @@ static void check_furnace(gpu_test *t, path_scene *s, const char *name, uint32_t
             worst = fmax(worst, fabs((double)radiance[4 * i + c] - 1));
         }
         double mean = sum / 1024, se = sqrt(var) / 1024;
-        printf("furnace %-28s %d  mean %.6f +- %.6f  worst pixel %.6f off\n", name, c, mean, se, worst);
+        printf("furnace %-28s %d  mean %.6f +- %.6f  worst pixel %.6f off\n", name, c, mean, se,
+               worst);
         assert_true(fabs(mean - 1) <= 3 * se + 2e-6);
     }
 }
@@ -233,8 +236,8 @@ static void furnaces(void **state)
         const float g = (const float[]){0, 0.5f, 0.9f}[i];
         char name[32];
         path_scene s;
-        path_scene_box(&s, (float[]){1, 1, 1}, (float[]){4, 4, 4}, (float[]){0, 0, 0}, (float[]){g, g, g},
-                       NULL, NULL);
+        path_scene_box(&s, (float[]){1, 1, 1}, (float[]){4, 4, 4}, (float[]){0, 0, 0},
+                       (float[]){g, g, g}, NULL, NULL);
         path_scene_sky(&s, 1);
         snprintf(name, sizeof name, "g %.1f", (double)g);
         check_furnace(*state, &s, name, 16);

@@ -31,8 +31,8 @@ static int read_rows(void **state)
     while (fgets(line, sizeof line, f) && num_rows < MAX_ROWS) {
         row *r = &rows[num_rows];
         char kind[16], place[8], rest[64] = "";
-        if (sscanf(line, "%15[a-z],%f,%f,%f,%f,%7[^,],%63s", kind, &r->tau, &r->g, &r->albedo, &r->mu0,
-                   place, rest) != 7) {
+        if (sscanf(line, "%15[a-z],%f,%f,%f,%f,%7[^,],%63s", kind, &r->tau, &r->g, &r->albedo,
+                   &r->mu0, place, rest) != 7) {
             continue; // comments and the heading
         }
         r->flux = !strcmp(kind, "flux");
@@ -77,8 +77,8 @@ static void check(const row *r, const char *what, double value, double error, do
 {
     double z = (value - expected) / error;
     printf("tau %-4g g %-4g albedo %-4g mu0 %-3g %-6s %-8s %.6f +- %.6f  expected %.6f  z %+.2f\n",
-           (double)r->tau, (double)r->g, (double)r->albedo, (double)r->mu0, r->bottom ? "bottom" : "top",
-           what, value, error, expected, z);
+           (double)r->tau, (double)r->g, (double)r->albedo, (double)r->mu0,
+           r->bottom ? "bottom" : "top", what, value, error, expected, z);
     worst = fmax(worst, fabs(z));
     sum_z2 += z * z;
     num_z++;
@@ -134,7 +134,8 @@ static void radiances(void **state)
         float up = r->bottom ? -1 : 1;
         // The camera looks against the direction of travel.
         float direction[3] = {-sin_theta * cosf(phi), -sin_theta * sinf(phi), -up * r->mu};
-        path_scene_orthographic(&s, (float[]){0.5f, 0.5f, 0.5f}, direction, (float[]){0, 1, 0}, 0.1f, 1);
+        path_scene_orthographic(&s, (float[]){0.5f, 0.5f, 0.5f}, direction, (float[]){0, 1, 0},
+                                0.1f, 1);
         s.samples = 32768;
         const float *radiance, *error;
         path_scene_render(*state, &s, 4 * s.samples, &radiance, &error);

@@ -19,7 +19,8 @@ static void make_cube(path_scene *s, float sigma_s, float sigma_a, float g, bool
     path_scene_box(s, (float[]){1, 1, 1}, (float[]){sigma_s, sigma_s, sigma_s},
                    (float[]){sigma_a, sigma_a, sigma_a}, (float[]){g, g, g}, grid ? one : NULL,
                    (uint32_t[]){1, 1, 1});
-    path_scene_orthographic(s, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, -1, 0}, (float[]){0, 0, 1}, 0.5f, 16);
+    path_scene_orthographic(s, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, -1, 0}, (float[]){0, 0, 1},
+                            0.5f, 16);
     s->samples = 64;
 }
 
@@ -60,7 +61,8 @@ static void first_order_of_a_sun(void **state)
         double inside = (1 - exp(-4)) / 4;
         double expected = 3 * hg(0.6, 0) * inside * inside;
         for (int c = 0; c < 3; c++) {
-            check(grid ? "sun, grid" : "sun", image_mean(radiance, c), image_error(error, c), (c + 1) * expected);
+            check(grid ? "sun, grid" : "sun", image_mean(radiance, c), image_error(error, c),
+                  (c + 1) * expected);
         }
     }
 }
@@ -111,8 +113,8 @@ static void first_order_of_a_lamp(void **state)
         path_scene s;
         make_cube(&s, 2, 1, 0.5f, i == 2);
         path_scene_lamp(&s, lamp, (float[]){1, 1, 1});
-        path_scene_orthographic(&s, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, 0, -1}, (float[]){0, 1, 0}, 1e-6f,
-                                16);
+        path_scene_orthographic(&s, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, 0, -1},
+                                (float[]){0, 1, 0}, 1e-6f, 16);
         s.params.max_depth = 1;
         s.params.equiangular = i != 0;
         s.samples = 256;
@@ -141,8 +143,8 @@ static void emission(void **state)
         path_scene_render(*state, &s, 256, &radiance, &error);
         double length = sigma_a > 0 ? (1 - exp(-(double)sigma_a)) / (double)sigma_a : 1;
         for (int c = 0; c < 3; c++) {
-            check(i % 2 ? "emission, grid" : "emission", image_mean(radiance, c), image_error(error, c),
-                  (c + 1) * length);
+            check(i % 2 ? "emission, grid" : "emission", image_mean(radiance, c),
+                  image_error(error, c), (c + 1) * length);
         }
     }
 }
@@ -153,7 +155,8 @@ static void overlap(void **state)
     path_scene s;
     make_cube(&s, 1, 1, 0, true);
     path_scene_sun(&s, (float[]){1, 0, 0}, (float[]){1, 1, 1});
-    const float ss[2][3] = {{2, 1, 0.5f}, {0.5f, 1.5f, 0}}, sa[2] = {0.5f, 0.25f}, g[2] = {0.7f, -0.4f};
+    const float ss[2][3] = {{2, 1, 0.5f}, {0.5f, 1.5f, 0}}, sa[2] = {0.5f, 0.25f},
+                g[2] = {0.7f, -0.4f};
     float most = 0;
     s.shapes[1] = s.shapes[0];
     for (int c = 0; c < 3; c++) {
@@ -172,9 +175,11 @@ static void overlap(void **state)
     const float *radiance, *error;
     path_scene_render(*state, &s, 1024, &radiance, &error);
     for (int c = 0; c < 3; c++) {
-        double sigma_t = ss[0][c] + ss[1][c] + sa[0] + sa[1], inside = (1 - exp(-sigma_t)) / sigma_t;
+        double sigma_t = ss[0][c] + ss[1][c] + sa[0] + sa[1],
+               inside = (1 - exp(-sigma_t)) / sigma_t;
         double scattered = ss[0][c] * hg(g[0], 0) + ss[1][c] * hg(g[1], 0);
-        check("two media", image_mean(radiance, c), image_error(error, c), scattered * inside * inside);
+        check("two media", image_mean(radiance, c), image_error(error, c),
+              scattered * inside * inside);
     }
 }
 
@@ -201,6 +206,28 @@ static void probes_in_vacuum(void **state)
     check("spot, penumbra", p[1].fluence[1], 0, 8 / r2 * a * a);
     check("spot, flux along x", p[1].flux[1], 0, 8 / r2 * a * a * 0.4 / sqrt(r2));
     assert_true(p[1].fluence_se[1] <= 1e-6f * p[1].fluence[1]);
+}
+
+// What comes in, from points on the surface, against what is absorbed, from points inside, and goes out.
+static void energy(void **state)
+{
+    for (int i = 0; i < 2; i++) {
+        path_scene s;
+        make_cube(&s, 3, 1, 0.6f, i == 1);
+        path_scene_sun(&s, (float[]){0.6f, 0, -0.8f}, (float[]){1, 2, 3});
+        path_scene_sky(&s, 0.25f);
+        const tyn_balance *b;
+        const struct path_probe_result *r = path_scene_balance(*state, &s, 262144, &b);
+        for (int c = 0; c < 3; c++) {
+            // A sun on two faces, and a sky on six.
+            double entering = 1.4 * (c + 1) + 6 * M_PI * 0.25;
+            check("entering", b->entering[c], r->error[c], entering);
+            double lost = b->absorbed_media[c] + b->escaped[c];
+            check("absorbed and escaped", lost, hypot(r->error[6 + c], r->error[9 + c]), entering);
+            assert_true(fabs(b->imbalance[c] - (1 - lost / b->entering[c])) < 1e-6);
+            assert_true(b->emitted[c] == 0 && b->absorbed_surfaces[c] == 0);
+        }
+    }
 }
 
 // Light lobes change the noise, not the mean.
@@ -266,6 +293,7 @@ int main(void)
         cmocka_unit_test(emission),
         cmocka_unit_test(overlap),
         cmocka_unit_test(probes_in_vacuum),
+        cmocka_unit_test(energy),
         cmocka_unit_test(mixture),
         cmocka_unit_test(same_again),
         cmocka_unit_test(safety_cap),

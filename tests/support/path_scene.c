@@ -150,7 +150,8 @@ static float *brick_bounds(const path_scene *s)
                     for (int a = 0; a < 3; a++) {
                         at[a] = at[a] < 0 ? 0 : at[a] >= (int)n[a] ? (int)n[a] - 1 : at[a];
                     }
-                    float v = s->grid[((size_t)at[2] * n[1] + (size_t)at[1]) * n[0] + (size_t)at[0]];
+                    float v =
+                        s->grid[((size_t)at[2] * n[1] + (size_t)at[1]) * n[0] + (size_t)at[0]];
                     out[0] = fminf(out[0], v);
                     out[1] = fmaxf(out[1], v);
                 }
@@ -259,8 +260,8 @@ static void probe_some(gpu_test *t, path_scene *s, const float (*points)[3], uin
     tyn_graph_begin(t->graph);
     declare_scene(t, s, refs);
     refs[PATH_PROBE_PORT_POINTS] = gpu_buffer(t, "points", points, num_points * sizeof *points);
-    refs[PATH_PROBE_PORT_STATE] = tyn_graph_history_buffer(
-        t->graph, "state", tyn_path_probe_state_size(num_points), 1);
+    refs[PATH_PROBE_PORT_STATE] =
+        tyn_graph_history_buffer(t->graph, "state", tyn_path_probe_state_size(num_points), 1);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_path_probe, &s->params, refs), TYN_OK);
     tyn_graph_output(t->graph, "results", refs[PATH_PROBE_PORT_RESULTS], true);
     tyn_graph_output(t->graph, "counters", refs[PATH_PROBE_PORT_COUNTERS], true);
@@ -287,4 +288,24 @@ const tyn_probe_result *path_scene_probe(gpu_test *t, path_scene *s, const float
         results = path_scene_probe_more(t, s, points, num_points, done);
     }
     return results;
+}
+
+const struct path_probe_result *path_scene_balance(gpu_test *t, path_scene *s, uint32_t samples,
+                                                   const tyn_balance **balance)
+{
+    tyn_ref refs[PATH_BALANCE_NUM_PORTS] = {{0}};
+    tyn_graph_begin(t->graph);
+    declare_scene(t, s, refs);
+    refs[PATH_BALANCE_PORT_STATE] =
+        tyn_graph_history_buffer(t->graph, "state", tyn_path_probe_state_size(1), 1);
+    s->params.first_sample = 0;
+    s->params.chunks = 4;
+    s->params.threads = 1024;
+    s->params.num_samples = samples / s->params.chunks;
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_path_balance, &s->params, refs), TYN_OK);
+    tyn_graph_output(t->graph, "balance", refs[PATH_BALANCE_PORT_BALANCE], true);
+    tyn_graph_output(t->graph, "result", refs[PATH_BALANCE_PORT_RESULT], true);
+    gpu_run(t);
+    *balance = gpu_map(t, "balance");
+    return gpu_map(t, "result");
 }

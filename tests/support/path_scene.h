@@ -15,12 +15,12 @@ typedef struct path_scene {
     struct light_block lights[8];
     struct camera_block camera;
     struct env_block environment;
-    const float *grid;     // of the atlas, NULL: homogeneous
+    const float *grid; // of the atlas, NULL: homogeneous
     uint32_t grid_size[3];
-    tyn_environment map;   // data NULL: constant
+    tyn_environment map; // data NULL: constant
     tyn_path_params params;
-    uint32_t samples;      // of a record
-    bool may_cut;          // paths may meet the safety cap
+    uint32_t samples; // of a record
+    bool may_cut;     // paths may meet the safety cap
 } path_scene;
 
 // A box [0, extent] of one medium, coefficients at density 1. `grid` (may be NULL) is kept by reference.
@@ -37,6 +37,9 @@ void path_scene_orthographic(path_scene *s, const float centre[3], const float d
 // Four floats a pixel, valid until the next run. error may be NULL.
 void path_scene_render(gpu_test *t, path_scene *s, uint32_t samples, const float **radiance,
                        const float **error);
+// Entering, emitted, absorbed, escaped (3 channels each), W, and their standard errors.
+const struct path_probe_result *path_scene_balance(gpu_test *t, path_scene *s, uint32_t samples,
+                                                   const tyn_balance **balance);
 // A record's samples more, after `done`.
 const tyn_probe_result *path_scene_probe_more(gpu_test *t, path_scene *s, const float (*points)[3],
                                               uint32_t num_points, uint32_t done);

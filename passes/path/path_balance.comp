@@ -1,0 +1,148 @@
+// path_balance.comp -- where the energy goes, by paths from random points: inside the media for what they absorb
+// and emit, on their surface for what comes in and goes out. The two kinds of points know nothing of each other, so
+// that the sums agree is a check.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "path_args.h"
+
+const bool PROBE = true;
+#include "path_resources.glsl"
+
+layout(set = 0, binding = 8, scalar) writeonly buffer partial_buffer { path_probe_partial partials[]; };
+layout(set = 0, binding = 9, scalar) buffer counters_buffer { counters_block counters; };
+
+#include "path.glsl"
+#include "path_heading.glsl"
+
+path_probe_partial partial;
+bool on_surface;
+vec3 normal;      // outwards, of the surface
+vec3 measure;     // what a unit of radiance per steradian at the point stands for: area, or volume times sigma_a
+vec3 emitted;     // of the media at the point, W
+vec3 direct_in, direct_out; // of lamps and suns; direct_out: inside, absorbed
+
+// A point of the unit box's or the sphere's surface, and its outward normal there.
+vec3 surface_local(shape_block shape, vec3 random, out vec3 outward, out float area)
+{
+    if (shape_is_sphere(shape)) {
+        float z = 1.0 - 2.0 * random.x, r = sqrt(max(1.0 - z * z, 0.0)), azimuth = 2.0 * HG_PI * random.y;
+        outward = vec3(r * cos(azimuth), r * sin(azimuth), z);
+        area = HG_PI;
+        return 0.5 * outward;
+    }
+    uint face = min(uint(random.z * 6.0), 5u), axis = face >> 1;
+    float side = (face & 1u) != 0u ? 1.0 : -1.0;
+    vec2 at = random.xy - 0.5;
+    area = medium.repeat[axis] != 0u ? 0.0 : 6.0; // a periodic medium has no face there
+    outward = side * vec3(axis == 0u, axis == 1u, axis == 2u);
+    return 0.5 * outward +
+           (axis == 0u ? vec3(0.0, at) : axis == 1u ? vec3(at.x, 0.0, at.y) : vec3(at, 0.0));
+}
+
+bool inside_another(uint own, vec3 p)
+{
+    for (uint i = 0u; i < medium.num_shapes && ONE_SHAPE == 0u; i++) {
+        shape_block shape = shapes[i];
+        if (i != own && shape_holds(shape, shape_local(shape, p))) {
+            return true;
+        }
+    }
+    return false;
+}
+
+vec3 surface_point(uvec4 bits)
+{
+    uint count = ONE_SHAPE != 0u ? 1u : max(medium.num_shapes, 1u);
+    uint own = min(uint(rng_float(bits.w) * float(count)), count - 1u);
+    shape_block shape = shape_get(own);
+    mat3 to_local = transpose(mat3(shape.rows[0].xyz, shape.rows[1].xyz, shape.rows[2].xyz));
+    mat3 from_local = inverse(to_local);
+    vec3 outward;
+    float area;
+    vec3 local = surface_local(shape, vec3(rng_vec2(bits.xy), rng_float(bits.z)), outward, area);
+    vec3 p = from_local * (local - vec3(shape.rows[0].w, shape.rows[1].w, shape.rows[2].w));
+    // Nanson: n dA = |det J| J^-T n' dA'.
+    vec3 stretched = abs(determinant(from_local)) * (transpose(to_local) * outward);
+    float stretch = length(stretched);
+    normal = stretched / stretch;
+    measure = vec3(area * stretch * float(count) * (inside_another(own, p) ? 0.0 : 1.0));
+    return p;
+}
+
+vec3 volume_point(uvec4 bits)
+{
+    vec3 p = vec3(rng_vec2(bits.xy), rng_float(bits.z)) * medium.extent;
+    float volume = medium.extent.x * medium.extent.y * medium.extent.z;
+    media_point m = media_at(p, 0.0, vec3(1.0));
+    if (HOMOGENEOUS && !shape_holds(path_shape0, shape_local(path_shape0, p))) {
+        volume = 0.0;
+    }
+    measure = volume * max(m.sigma_t - m.sigma_s, 0.0);
+    emitted = 4.0 * HG_PI * volume * m.emission;
+    return p;
+}
+
+void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction)
+{
+    emitted = vec3(0.0);
+    direct_in = vec3(0.0);
+    direct_out = vec3(0.0);
+    on_surface = random.x < 0.5;
+    uvec4 bits = rng_next(rng);
+    if (on_surface) {
+        origin = surface_point(bits);
+    } else {
+        origin = volume_point(bits);
+    }
+    direction = heading_draw(origin, rng);
+}
+
+void path_direct(vec3 direction, vec3 irradiance)
+{
+    float outwards = on_surface ? -dot(direction, normal) : 1.0;
+    direct_in = measure * irradiance * max(-outwards, 0.0);
+    direct_out = measure * irradiance * max(outwards, 0.0);
+}
+
+void add_value(uint i, float value, float share)
+{
+    float delta = value - partial.mean[i];
+    partial.mean[i] += delta * share;
+    partial.deviation[i] += delta * (value - partial.mean[i]);
+}
+
+void path_end(path_result result)
+{
+    vec3 fluence = (result.radiance + result.background) / heading_pdf;
+    float outwards = on_surface ? -dot(heading, normal) : 1.0;
+    vec3 incoming = direct_in + measure * fluence * max(-outwards, 0.0);
+    vec3 outgoing = direct_out + measure * fluence * max(outwards, 0.0);
+    partial.count++;
+    float share = 1.0 / float(partial.count);
+    for (uint c = 0u; c < 3u; c++) { // twice, as either kind of point is drawn half the time
+        add_value(c, on_surface ? 2.0 * incoming[c] : 0.0, share);
+        add_value(3u + c, 2.0 * emitted[c], share);
+        add_value(6u + c, on_surface ? 0.0 : 2.0 * outgoing[c], share);
+        add_value(9u + c, on_surface ? 2.0 * outgoing[c] : 0.0, share);
+    }
+}
+
+void main()
+{
+    uint thread = gl_GlobalInvocationID.x;
+    path_load();
+    if (thread >= args.slots) {
+        return;
+    }
+    for (uint i = 0u; i < TYN_PATH_PROBE_VALUES; i++) {
+        partial.mean[i] = 0.0;
+        partial.deviation[i] = 0.0;
+    }
+    partial.count = 0u;
+    uint each = args.num_samples / args.slots, more = args.num_samples % args.slots;
+    uint first = args.first_sample + thread * each + min(thread, more);
+    path_run(0u, first, first + each + (thread < more ? 1u : 0u));
+    partials[thread] = partial;
+    path_tally(thread);
+}

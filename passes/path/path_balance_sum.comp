@@ -1,0 +1,49 @@
+// path_balance_sum.comp -- merges what the threads found, and writes the balance so far as doubles, with the lamps
+// that are inside the media and what is missing. One thread a value.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "path_args.h"
+
+layout(local_size_x = TYN_PATH_PROBE_VALUES) in;
+
+layout(set = 0, binding = 0, scalar) readonly buffer partial_buffer { path_probe_partial partials[]; };
+layout(set = 0, binding = 1, scalar) buffer state_buffer { path_probe_state states[]; };
+layout(set = 0, binding = 2, scalar) writeonly buffer result_buffer { path_probe_result result; };
+// tyn_balance: six triples of doubles, each as two words; a device need not know doubles.
+layout(set = 0, binding = 3, scalar) writeonly buffer balance_buffer { uvec2 balance[6][3]; };
+layout(push_constant, scalar) uniform args_push { path_resolve_args args; };
+
+#include "path_probe_merge.glsl"
+
+shared float values[TYN_PATH_PROBE_VALUES];
+
+uvec2 double_bits(float x)
+{
+    uint bits = floatBitsToUint(x), exponent = (bits >> 23) & 0xffu;
+    if (exponent == 0u) {
+        return uvec2(0u); // zero; single denormals are as good as zero
+    }
+    return uvec2(bits << 29, (bits & 0x80000000u) | ((exponent + 896u) << 20) | ((bits & 0x7fffffu) >> 3));
+}
+
+void main()
+{
+    uint value = gl_LocalInvocationIndex;
+    vec2 merged = probe_merge(0u, 0u, value);
+    values[value] = merged.x;
+    result.value[value] = merged.x;
+    result.error[value] = merged.y;
+    barrier();
+    if (value >= 3u) {
+        return;
+    }
+    float entering = values[value], emitted = values[3u + value] + args.lamps[value];
+    float absorbed = values[6u + value], escaped = values[9u + value], given = entering + emitted;
+    balance[0][value] = double_bits(entering);
+    balance[1][value] = double_bits(emitted);
+    balance[2][value] = double_bits(absorbed);
+    balance[3][value] = uvec2(0u);
+    balance[4][value] = double_bits(escaped);
+    balance[5][value] = double_bits(given > 0.0 ? 1.0 - (absorbed + escaped) / given : 0.0);
+}
