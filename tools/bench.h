@@ -25,8 +25,8 @@ typedef struct bench_node {
 
 // What a baseline needs for the error of a run.
 typedef struct bench_equal {
-    double spp, ms, error; // samples and time at that error; error as measured near it
-    bool measured;         // false: extrapolated from fewer samples
+    double spp, ms; // at that error
+    bool measured;  // false: extrapolated from fewer samples
 } bench_equal;
 
 typedef struct bench_result {
@@ -60,12 +60,19 @@ void bench_reference_finish(bench_reference *r);
 // Error, times, memory and nodes of a run. EXIT_DONE with result->failed where the method cannot.
 int bench_measure(bench_case *c, const bench_run *run, bench_result *result);
 
-// How the noise of a baseline falls, found once a scene, and then what it needs at an error.
+// A rendering of a baseline: its time, and its error without the noise of the reference.
+typedef struct bench_sample {
+    uint32_t spp; // 0: not rendered
+    double ms, error[BENCH_BLOCKS];
+} bench_sample;
+
+// How the error of a baseline falls, found once a scene, and then what it needs at an error.
 typedef struct bench_baseline {
-    double ms_per_sample, n1[BENCH_BLOCKS]; // metrics.n of one sample a pixel
+    bench_sample pilot;   // of suite->pilot_spp
+    bench_sample longest; // of suite->max_seconds, when it was first needed
 } bench_baseline;
 int bench_baseline_pilot(bench_case *c, const bench_run *run, bench_baseline *b);
-int bench_baseline_equal(bench_case *c, const bench_run *run, const bench_baseline *b,
+int bench_baseline_equal(bench_case *c, const bench_run *run, bench_baseline *b,
                          uint32_t block_index, double error, bench_equal *equal);
 
 // Planar R, G, B (and errors, or NULL) of the last frame, in `planes` of 6 w h floats.

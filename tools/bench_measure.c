@@ -163,11 +163,11 @@ int bench_measure(bench_case *c, const bench_run *run, bench_result *result)
 
 // ---- baselines --------------------------------------------------------------------------------
 
-static int render_baseline(bench_case *c, const bench_run *run, uint32_t spp, double *ms,
-                           metrics errors[BENCH_BLOCKS])
+static int render_baseline(bench_case *c, const bench_run *run, uint32_t spp, bench_sample *sample)
 {
     method m = {0};
     renderer r = {0};
+    metrics errors[BENCH_BLOCKS];
     tyn_view view = c->view;
     method_view(&run->method, &view);
     view.num_samples = spp;
@@ -185,10 +185,15 @@ static int render_baseline(bench_case *c, const bench_run *run, uint32_t spp, do
         char label[128];
         snprintf(label, sizeof label, "%.50s: %.50s, %u samples", c->spec->name, run->name, spp);
         code = renderer_frame(c->a, &r, &c->scene, &view, true, label);
-        *ms = r.frame_ms;
     }
     if (code == EXIT_DONE) {
         code = compare_frame(c, r.offline, &view, errors);
+    }
+    if (code == EXIT_DONE) {
+        *sample = (bench_sample){.spp = spp, .ms = r.frame_ms};
+        for (int i = 0; i < BENCH_BLOCKS; i++) {
+            sample->error[i] = without_reference(&errors[i], c->reference.noise[i]);
+        }
     }
     renderer_close(&r);
     method_finish(&m);
@@ -197,41 +202,45 @@ static int render_baseline(bench_case *c, const bench_run *run, uint32_t spp, do
 
 int bench_baseline_pilot(bench_case *c, const bench_run *run, bench_baseline *b)
 {
-    const uint32_t spp = c->suite->pilot_spp;
-    metrics errors[BENCH_BLOCKS];
-    double ms;
-    int code = render_baseline(c, run, spp, &ms, errors);
     *b = (bench_baseline){0};
-    if (code == EXIT_DONE) {
-        b->ms_per_sample = ms / spp;
-        for (int i = 0; i < BENCH_BLOCKS; i++) {
-            b->n1[i] = without_reference(&errors[i], c->reference.noise[i]) * sqrt(spp);
-        }
-    }
-    return code;
+    return render_baseline(c, run, c->suite->pilot_spp, &b->pilot);
 }
 
-// The noise falls as 1 / sqrt(samples): that gives the number of samples; rendering them tells the
-// time and the error really reached, and the small step between the two errors goes by the same rule.
-int bench_baseline_equal(bench_case *c, const bench_run *run, const bench_baseline *b,
+// Noise falls as 1 / sqrt(samples): from the error of a sample to another error.
+static void by_the_rule(const bench_sample *sample, uint32_t block_index, double error,
+                        bench_equal *equal)
+{
+    const double ratio = sample->error[block_index] / error, factor = ratio * ratio;
+    equal->spp = sample->spp * factor;
+    equal->ms = sample->ms * factor;
+}
+
+// The pilot tells by the rule how many samples are needed. As many are rendered as long as that is
+// affordable, else as many as are: the rule then has less far to go than from the pilot, whose few
+// samples have not met all of a long tail.
+int bench_baseline_equal(bench_case *c, const bench_run *run, bench_baseline *b,
                          uint32_t block_index, double error, bench_equal *equal)
 {
-    const double wanted = b->n1[block_index] / error;
-    *equal = (bench_equal){.spp = wanted * wanted, .error = error};
-    equal->ms = equal->spp * b->ms_per_sample;
-    const double rendered = fmax(1, round(equal->spp));
-    if (!(error > 0) || rendered * b->ms_per_sample > 1e3 * c->suite->max_seconds) {
+    *equal = (bench_equal){0};
+    if (!(error > 0)) {
         return EXIT_DONE;
     }
-    metrics errors[BENCH_BLOCKS];
-    double ms;
-    int code = render_baseline(c, run, (uint32_t)rendered, &ms, errors);
-    if (code != EXIT_DONE) {
-        return code;
+    by_the_rule(&b->pilot, block_index, error, equal);
+    const double affordable = 1e3 * c->suite->max_seconds * b->pilot.spp / b->pilot.ms;
+    const double needed = fmax(1, round(equal->spp));
+    bench_sample sample = {0};
+    int code = EXIT_DONE;
+    if (needed <= affordable) {
+        code = render_baseline(c, run, (uint32_t)needed, &sample);
+        equal->measured = code == EXIT_DONE;
+    } else if (affordable > b->pilot.spp) {
+        if (!b->longest.spp) {
+            code = render_baseline(c, run, (uint32_t)affordable, &b->longest);
+        }
+        sample = b->longest;
     }
-    double reached = without_reference(&errors[block_index], c->reference.noise[block_index]);
-    double factor = reached / error * (reached / error);
-    *equal = (bench_equal){
-        .spp = rendered * factor, .ms = ms * factor, .error = reached, .measured = true};
-    return EXIT_DONE;
+    if (sample.spp) {
+        by_the_rule(&sample, block_index, error, equal);
+    }
+    return code;
 }

@@ -28,7 +28,7 @@ static char *default_scenes(void)
                  : text_format("samples/scenes");
 }
 
-static int measure_equal(bench_case *c, const bench_baseline *baselines, bench_result *result)
+static int measure_equal(bench_case *c, bench_baseline *baselines, bench_result *result)
 {
     int code = EXIT_DONE;
     for (uint32_t i = 0; i < c->suite->num_baselines && code == EXIT_DONE; i++) {
