@@ -309,6 +309,11 @@ static void connect_inputs(tyn_graph *g, node *n, const tyn_ref *refs)
             graph_fail(g, TYN_ERR_PARAMS, "node '%s': input '%s' and '%s' differ in kind (%d, %d)",
                        n->pass->name, port->name, r->name, port->dim, r->dim);
         }
+        if (port->dir == TYN_INOUT && r->kind == RESOURCE_UPLOAD) {
+            graph_fail(g, TYN_ERR_PARAMS,
+                       "node '%s': '%s' would change the upload '%s' in place; use a history",
+                       n->pass->name, port->name, r->name);
+        }
         n->res[p] = refs[p].resource;
         n->versions[p] = refs[p].version;
     }
