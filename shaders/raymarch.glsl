@@ -297,6 +297,9 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
 
             if (raymarch_has(RAYMARCH_FIELD)) {
                 vec3 J = textureLod(inscatter_tex, field0 + at * field1, 0.0).rgb;
+                if (raymarch_has(RAYMARCH_ONE_CHANNEL)) {
+                    J = J.r * args.tint;
+                }
                 spectrum per_metre = m.scaled_scattering;
                 if (raymarch_has(RAYMARCH_SOURCE)) {
                     per_metre = spectrum(spectrum_max(m.extinction) > 0.0 ? 1.0 : 0.0);

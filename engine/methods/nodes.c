@@ -129,6 +129,8 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->kernels = in->lut.resource != 0;
     params->mean = in->mean_in_field;
     params->field = in->field;
+    params->one_channel = in->one_channel;
+    memcpy(params->tint, in->tint, sizeof params->tint);
     params->emissive = frame->emissive;
     params->width = job->view->width;
     params->height = job->view->height;

@@ -25,7 +25,9 @@ typedef struct tyn_picture_inputs {
     tyn_ref lut, lut_block; // given: all forward orders of the suns, else the first
     tyn_ref inscatter;
     uint32_t num_suns;
-    float cell;         // of the lattice behind inscatter, m; 0 = none
+    float cell;       // of the lattice behind inscatter, m; 0 = none
+    bool one_channel; // inscatter has one channel, to be multiplied with tint
+    float tint[3];
     uint32_t field;     // RAYMARCH_INSCATTER_*
     bool mean_in_field; // the environment's mean came in through inscatter
 } tyn_picture_inputs;

@@ -182,7 +182,6 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, field *f)
     tyn_merge_params params;
     tyn_settings_params(job->settings, &tyn_pass_merge, &params);
     params.channels = f->shape.channels;
-    memcpy(params.tint, f->shape.tint, sizeof params.tint);
     tyn_ref refs[TYN_MAX_PORTS] = {
         [MERGE_PORT_MEDIUM] = job->refs.medium,
         [MERGE_PORT_CAMERA] = job->refs.camera,
@@ -191,6 +190,8 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, field *f)
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_merge, &params, refs);
     f->picture.inscatter = refs[MERGE_PORT_INSCATTER];
+    f->picture.one_channel = f->shape.channels == 1;
+    memcpy(f->picture.tint, f->shape.tint, sizeof f->picture.tint);
     return result;
 }
 

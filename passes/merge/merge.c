@@ -1,7 +1,7 @@
 // merge.c -- the light field of the lattice for one view.
 #include "merge.h"
-#include "merge_args.h"
-#include "merge.comp.h"
+#include "merge_one.comp.h"
+#include "merge_three.comp.h"
 
 static const tyn_port ports[MERGE_NUM_PORTS] = {
     [MERGE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
@@ -11,7 +11,7 @@ static const tyn_port ports[MERGE_NUM_PORTS] = {
     [MERGE_PORT_INSCATTER] = {"inscatter", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                               false,
                               "radiance scattered towards the eye per sigma_s', W/(m^2 sr); one "
-                              "ghost cell around"},
+                              "ghost cell around; R32F where one channel is solved"},
 };
 
 static const tyn_binding bindings[] = {
@@ -20,21 +20,22 @@ static const tyn_binding bindings[] = {
     {MERGE_PORT_INSCATTER, TYN_USE_STORAGE_WRITE},
 };
 
-static const tyn_kernel kernels[] = {
-    {"merge",
-     merge_spirv,
-     sizeof merge_spirv,
-     sizeof(struct merge_args),
-     {8, 4, 2},
-     bindings,
-     5,
-     0},
+enum { KERNEL_ONE, KERNEL_THREE, NUM_KERNELS };
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_ONE] =
+        {"merge_one", merge_one_spirv, sizeof merge_one_spirv, 0, {8, 4, 2}, bindings, 5, 0},
+    [KERNEL_THREE] =
+        {"merge_three", merge_three_spirv, sizeof merge_three_spirv, 0, {8, 4, 2}, bindings, 5, 0},
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_merge_params *p = params;
     tyn_extent dims = tyn_build_extent(b, MERGE_PORT_MOMENTS);
+    if (p->channels == 1) {
+        tyn_build_format(b, MERGE_PORT_INSCATTER, VK_FORMAT_R32_SFLOAT);
+    }
     tyn_build_image(b, MERGE_PORT_INSCATTER,
                     (tyn_extent){dims.x + 2, dims.y + 2, dims.z / p->channels + 2}, 1);
     return TYN_OK;
@@ -44,8 +45,8 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_merge_params *p = params;
     tyn_extent size = tyn_rec_extent(r, MERGE_PORT_INSCATTER);
-    struct merge_args args = {{p->tint[0], p->tint[1], p->tint[2]}, p->channels};
-    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = size, .args = &args});
+    uint32_t kernel = p->channels == 1 ? KERNEL_ONE : KERNEL_THREE;
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = kernel, .cells = size});
     tyn_rec_work(r, "cells", (double)size.x * size.y * size.z);
 }
 
@@ -55,7 +56,7 @@ const tyn_pass_desc tyn_pass_merge = {
     .ports = ports,
     .num_ports = MERGE_NUM_PORTS,
     .kernels = kernels,
-    .num_kernels = 1,
+    .num_kernels = NUM_KERNELS,
     .params_size = sizeof(tyn_merge_params),
     .declare = declare,
     .record = record,

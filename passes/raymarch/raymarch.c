@@ -234,6 +234,7 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= behind ? RAYMARCH_BEHIND : 0;
     features |= p->num_shapes == 1 ? RAYMARCH_ONE_SHAPE : 0;
     features |= p->closed ? RAYMARCH_CLOSED : 0;
+    features |= p->one_channel ? RAYMARCH_ONE_CHANNEL : 0;
     return features;
 }
 
@@ -263,6 +264,7 @@ static void record(tyn_recorder *r, const void *params)
         .depth = {p->depth[0], p->depth[1], p->depth[2], p->depth[3]},
         .first = {p->first[0], p->first[1]},
         .end = {p->end[0], p->end[1]},
+        .tint = {p->tint[0], p->tint[1], p->tint[2]},
     };
     if (p->end[0] == 0) {
         args.end[0] = p->width;

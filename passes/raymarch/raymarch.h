@@ -9,15 +9,17 @@ typedef struct tyn_raymarch_params {
     float stop;         // "raymarch.stop": transmittance at which a ray ends
     uint32_t antialias; // "raymarch.antialias": four rays a pixel where they disagree
     // Set by the method.
-    uint32_t grey;       // 1: one medium (mode DENSITY), equal in all channels
-    uint32_t mode;       // TYN_MEDIUM_*
-    uint32_t num_suns;   // 0..4
-    uint32_t kernels;    // 1: sunlight scattered forward any number of times (lut); else once only
-    uint32_t mean;       // 1: the mean of the environment came in through the field
-    uint32_t emissive;   // 1: media emit light
-    uint32_t background; // 1: the environment behind the medium is seen
-    uint32_t layers;     // set of RAYMARCH_LAYER_*
-    uint32_t field;      // RAYMARCH_INSCATTER_*: what `inscatter` is
+    uint32_t grey;        // 1: one medium (mode DENSITY), equal in all channels
+    uint32_t mode;        // TYN_MEDIUM_*
+    uint32_t num_suns;    // 0..4
+    uint32_t kernels;     // 1: sunlight scattered forward any number of times (lut); else once only
+    uint32_t mean;        // 1: the mean of the environment came in through the field
+    uint32_t emissive;    // 1: media emit light
+    uint32_t background;  // 1: the environment behind the medium is seen
+    uint32_t layers;      // set of RAYMARCH_LAYER_*
+    uint32_t field;       // RAYMARCH_INSCATTER_*: what `inscatter` is
+    uint32_t one_channel; // 1: inscatter has one channel, to be multiplied with `tint`
+    float tint[3];
     uint32_t width, height;
     float extent[3];    // medium_block.extent, m
     float longest_step; // m; a step is no longer than this

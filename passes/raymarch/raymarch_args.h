@@ -18,17 +18,18 @@
 #define RAYMARCH_UNSCALED 2048u // no delta scaling: tau' is tau
 #define RAYMARCH_SOURCE 4096u   // inscatter is what a metre of any medium sends, not per sigma_s
 #define RAYMARCH_ONE_SHAPE 8192u
-#define RAYMARCH_CLOSED 16384u // no light enters through a face at which there is medium
+#define RAYMARCH_ONE_CHANNEL 32768u // inscatter has one channel
+#define RAYMARCH_CLOSED 16384u      // no light enters through a face at which there is medium
 
 struct raymarch_args {
     float step;           // longest step, m
     float stop;           // a ray ends where the transmittance is below this
     tyn_uint supersample; // 1: four rays where they disagree on which shapes they hit
-    tyn_uint pad;
-    tyn_vec4 depth;  // p10, p14, p11, p15 of the host's view_to_clip
-    tyn_uvec2 first; // pixels in which the box of the media may be seen: from `first` ...
-    tyn_uvec2 end;   // ... to before `end`
+    tyn_vec4 depth;       // p10, p14, p11, p15 of the host's view_to_clip
+    tyn_uvec2 first;      // pixels in which the box of the media may be seen: from `first` ...
+    tyn_uvec2 end;        // ... to before `end`
+    tyn_vec3 tint;        // of the one channel of inscatter
 };
-TYN_ASSERT_SIZE(raymarch_args, 48);
+TYN_ASSERT_SIZE(raymarch_args, 56);
 
 #endif

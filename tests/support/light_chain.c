@@ -138,7 +138,6 @@ void light_chain_run(gpu_test *t, light_chain *c)
         [MERGE_PORT_MOMENTS] = lattice[LATTICE_PORT_MOMENTS],
     };
     tyn_merge_params merge_params = {.channels = c->channels};
-    memcpy(merge_params.tint, solve.shape.tint, sizeof merge_params.tint);
     add(t, &tyn_pass_merge, &merge_params, merge);
     tyn_graph_output(t->graph, "inscatter", merge[MERGE_PORT_INSCATTER], true);
 
@@ -182,9 +181,16 @@ void light_chain_run(gpu_test *t, light_chain *c)
 
     memcpy(&c->balance, gpu_map(t, "balance"), sizeof c->balance);
     const void *inscatter = tyn_graph_map(t->graph, "inscatter", &c->inscatter_size, NULL);
-    size_t bytes = (size_t)c->inscatter_size.x * c->inscatter_size.y * c->inscatter_size.z * 16;
-    c->inscatter = realloc(c->inscatter, bytes);
-    memcpy(c->inscatter, inscatter, bytes);
+    size_t texels = (size_t)c->inscatter_size.x * c->inscatter_size.y * c->inscatter_size.z;
+    c->inscatter = realloc(c->inscatter, texels * 16);
+    if (c->channels == 1) {
+        for (size_t i = 0; i < texels * 4; i++) {
+            c->inscatter[i] =
+                i % 4 < 3 ? ((const float *)inscatter)[i / 4] * solve.shape.tint[i % 4] : 1;
+        }
+    } else {
+        memcpy(c->inscatter, inscatter, texels * 16);
+    }
     if (c->num_points) {
         c->results = realloc(c->results, c->num_points * sizeof *c->results);
         memcpy(c->results, gpu_map(t, "results"), c->num_points * sizeof *c->results);

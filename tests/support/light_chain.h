@@ -23,7 +23,8 @@ typedef struct light_chain {
     // Out.
     tyn_probe_result *results; // malloc'ed
     tyn_balance balance;
-    float *inscatter; // (dims + 2) RGBA texels, malloc'ed; seen from +x far away
+    float *inscatter; // (dims + 2) RGBA texels, malloc'ed; seen
+                      // from +x far away
     tyn_extent inscatter_size;
     uint32_t non_finite; // cells that the solve counted as not finite
     double ms_cells, ms_source, ms_solve;
