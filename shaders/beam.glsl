@@ -139,12 +139,11 @@ beam_tau beam_of_column(float column)
 }
 
 // Either mode.
-beam_tau beam_depth(uint sun, vec3 p)
+beam_tau beam_depth_at(beam_place place)
 {
     if (medium_mode == TYN_MEDIUM_DENSITY) {
-        return beam_of_column(beam_column(sun, p));
+        return beam_of_column(beam_fetch(beam_column_tex, place).r);
     }
-    beam_place place = beam_place_of(sun, p);
     beam_tau tau = beam_tau(vec3(0.0), vec3(0.0), vec3(0.0));
     tau.s = beam_fetch(beam_column_tex, place);
 #ifdef BEAM_TAU_A
@@ -154,6 +153,11 @@ beam_tau beam_depth(uint sun, vec3 p)
     tau.p = beam_fetch(beam_tau_p_tex, place);
 #endif
     return tau;
+}
+
+beam_tau beam_depth(uint sun, vec3 p)
+{
+    return beam_depth_at(beam_place_of(sun, p));
 }
 
 #endif

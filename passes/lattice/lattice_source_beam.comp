@@ -46,20 +46,22 @@ void main()
     }
     lattice_box box = lattice_box_of(medium.extent, dims);
     vec3 d = abs(beams[sun].direction);
-    float length_h = box.dx / float(args.samples) / max(d.x, max(d.y, d.z));
     vec3 weighted = vec3(0.0), weight = vec3(0.0);
+    float step_length = box.dx / float(args.samples), length_h = step_length / max(d.x, max(d.y, d.z));
     for (uint k = 0; k < args.samples; k++) {
         for (uint j = 0; j < args.samples; j++) {
+            vec3 row = lattice_to_m(box, vec3(c) + (vec3(0, j, k) + 0.5) / float(args.samples));
+            beam_ray ray = beam_ray_of(sun, row, vec3(1.0, 0.0, 0.0));
             for (uint i = 0; i < args.samples; i++) {
-                vec3 p = lattice_to_m(box, vec3(c) + (vec3(i, j, k) + 0.5) / float(args.samples));
-                medium_point m = medium_sample(p);
+                float s = float(i) * step_length;
+                medium_point m = medium_sample(row + vec3(s, 0.0, 0.0));
                 similarity_clamp(m.sigma_s, m.g);
                 vec3 scaled = (1.0 - delta_fraction(m.g)) * m.sigma_s;
                 vec3 w = scaled + 1e-6 * m.sigma_a;
                 if (w.r + w.g + w.b <= 0.0) {
                     continue;
                 }
-                beam_tau tau = beam_depth(sun, p);
+                beam_tau tau = beam_depth_at(beam_ray_at(ray, s));
                 vec3 x = 0.5 * length_h * (scaled + m.sigma_a), centre = tau.a + tau.p;
                 vec3 t = vec3(mean_transmittance(centre.r, x.r));
                 if (num_channels == 3) {
