@@ -140,7 +140,7 @@ struct march_sun {
 
 struct march_result {
     vec3 radiance; // of the medium alone
-    vec3 single;   // its first-order part
+    vec3 single;   // its first-order part, where a layer wants it
     vec3 transmittance;
     vec3 scaled_transmittance; // e^-tau'
     float half_distance;       // where the mean transmittance falls to 1/2, or infinity
@@ -220,7 +220,9 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 view,
 #endif
     vec3 light = m.scattering * exp(-tau_a) * sun.irradiance;
     vec3 once = light * (phase * exp(-tau_s) * weight);
-    first += once;
+    if (raymarch_has(RAYMARCH_SINGLE | RAYMARCH_MULTIPLE)) {
+        first += once;
+    }
     if (!raymarch_has(RAYMARCH_KERNELS)) {
         return once;
     }

@@ -78,12 +78,12 @@ void shade_pixel(ivec2 pixel)
         half_distance = min(half_distance, span.x + r.half_distance);
         // What went through or was scattered forward of the part of the environment that the field
         // holds: L_mean (e^-tau' - e^-tau) counts as scattered.
-        vec3 scattered = r.radiance - r.single;
+        vec3 light = r.radiance;
         if (raymarch_has(RAYMARCH_MEAN)) {
-            scattered += environment.mean * max(r.scaled_transmittance - r.transmittance, 0.0);
+            light += environment.mean * max(r.scaled_transmittance - r.transmittance, 0.0);
         }
-        multiple += max(scattered, 0.0);
-        radiance += r.single + scattered;
+        multiple += max(light - r.single, 0.0);
+        radiance += light;
         if (raymarch_has(RAYMARCH_BACKGROUND) && surface == TYN_INFINITY) {
             radiance += r.transmittance *
                         environment_radiance(environment, environment_tex, ray.direction);

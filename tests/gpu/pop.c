@@ -1,0 +1,208 @@
+// pop.c -- method `pop` as a whole: what it refuses, warns of and leaves out; its layers add up.
+#include "gpu_test.h"
+#include "picture.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIZE = 32, PIXELS = SIZE * SIZE };
+
+static const uint32_t all_layers = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE |
+                                   TYN_OUTPUT_DEPTH | TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE;
+
+typedef struct stage {
+    tyn_scene scene;
+    tyn_view view;
+    tyn_offline *off;
+} stage;
+
+static stage *set_stage(gpu_test *t, float sigma_s)
+{
+    stage *s = calloc(1, sizeof *s);
+    tyn_scene_init(&s->scene);
+    tyn_medium medium = grey_medium(sigma_s, 0.5f, 0.7f);
+    scene_add_box(&s->scene, &medium, (float[]){0, 0, 0}, (float[]){1, 1, 1}, NULL, NULL);
+    scene_add_sun(&s->scene, 1, -2, 0.5f, 2, 1.5f, 1);
+    view_orthographic(&s->view, (float[]){0.5f, 0.5f, 0.5f}, -1, -1, -2, (float[]){0, 1, 0}, 0.9f,
+                      SIZE);
+    assert_int_equal(tyn_offline_create(t->dev, tyn_offline_params(.method = "pop"), &s->off),
+                     TYN_OK);
+    return s;
+}
+
+static void strike(stage *s)
+{
+    tyn_offline_destroy(&s->off);
+    tyn_scene_finish(&s->scene);
+    free(s);
+}
+
+static void show(stage *s)
+{
+    assert_int_equal(tyn_offline_frame(s->off, &s->scene, &s->view, false), TYN_OK);
+}
+
+static bool warns_of(stage *s, const char *words)
+{
+    tyn_report report;
+    tyn_offline_report(s->off, &report);
+    for (uint32_t i = 0; i < report.num_warnings; i++) {
+        if (strstr(report.warnings[i], words)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static const char *state_of(stage *s, const char *node)
+{
+    tyn_report report;
+    tyn_offline_report(s->off, &report);
+    for (uint32_t i = 0; i < report.num_nodes; i++) {
+        if (!strcmp(report.nodes[i].name, node)) {
+            return report.nodes[i].state;
+        }
+    }
+    return "absent";
+}
+
+static void layers_add_up(void **state)
+{
+    stage *s = set_stage(*state, 4);
+    scene_set_sky(&s->scene, 0.3f);
+    s->view.outputs = all_layers;
+    show(s);
+    const float *rgb = tyn_offline_output(s->off, TYN_OUTPUT_RADIANCE);
+    const float *single = tyn_offline_output(s->off, TYN_OUTPUT_SINGLE);
+    const float *multiple = tyn_offline_output(s->off, TYN_OUTPUT_MULTIPLE);
+    const float *through = tyn_offline_output(s->off, TYN_OUTPUT_TRANSMITTANCE);
+    const float *depth = tyn_offline_output(s->off, TYN_OUTPUT_DEPTH);
+    int inside = 0;
+    for (int i = 0; i < PIXELS * 4; i++) {
+        if (i % 4 == 3) {
+            assert_true(rgb[i] == 1); // an environment is seen everywhere
+            continue;
+        }
+        float sum = single[i] + multiple[i] + 0.3f * through[i];
+        assert_true(fabsf(sum - rgb[i]) <= 1e-5f * rgb[i]);
+        assert_true(through[i] >= 0 && through[i] <= 1 && single[i] >= 0 && multiple[i] >= 0);
+        inside += through[i] < 1;
+    }
+    assert_true(inside > PIXELS);
+    for (int i = 0; i < PIXELS; i++) {
+        assert_true(isinf(depth[4 * i]));
+        assert_true(isinf(depth[4 * i + 1]) == (through[4 * i] > 0.5f));
+    }
+    // Without its background the picture is the medium alone, premultiplied.
+    float with[PIXELS * 4], behind[PIXELS * 4];
+    memcpy(with, rgb, sizeof with);
+    memcpy(behind, through, sizeof behind);
+    s->view.no_background = true;
+    show(s);
+    rgb = tyn_offline_output(s->off, TYN_OUTPUT_RADIANCE);
+    for (int i = 0; i < PIXELS * 4; i++) {
+        float expected = i % 4 < 3 ? with[i] - 0.3f * behind[i] : 1 - behind[i - 1];
+        assert_true(fabsf(rgb[i] - expected) < 1e-5f);
+    }
+    strike(s);
+}
+
+static void refuses_repeat(void **state)
+{
+    gpu_test *t = *state;
+    stage *s = set_stage(t, 4);
+    s->scene.shapes[0].repeat[2] = true;
+    t->quiet = true;
+    assert_int_equal(tyn_offline_frame(s->off, &s->scene, &s->view, false), TYN_ERR_PARAMS);
+    assert_non_null(strstr(t->last_error, "repeat"));
+    t->quiet = false;
+    strike(s);
+}
+
+static void warns(void **state)
+{
+    stage *s = set_stage(*state, 4);
+    show(s);
+    assert_false(warns_of(s, ""));
+    for (int i = 0; i < 4; i++) {
+        scene_add_sun(&s->scene, 1, -2, 0.2f * (float)i, 0.1f, 0.1f, 0.1f);
+    }
+    tyn_light *lamp = &s->scene.lights[s->scene.num_lights++];
+    *lamp = (tyn_light){.kind = TYN_LIGHT_POINT, .color = {1, 1, 1}, .position = {2, 2, 2}};
+    show(s);
+    assert_true(warns_of(s, "5 directional lights"));
+    assert_true(warns_of(s, "1 point or spot light"));
+    strike(s);
+}
+
+// What a scene does not need is not run.
+static void leaves_out(void **state)
+{
+    stage *s = set_stage(*state, 0.01f);
+    show(s); // so thin that light scatters but once
+    assert_string_equal(state_of(s, "lattice"), "absent");
+    assert_string_equal(state_of(s, "raymarch"), "ran");
+    s->scene.media[0].sigma_s[1] = 4;
+    show(s);
+    assert_string_equal(state_of(s, "lattice"), "ran");
+    s->view.camera.position[0] += 0.1f;
+    show(s);
+    assert_string_equal(state_of(s, "lattice"), "unchanged");
+    assert_string_equal(state_of(s, "beam"), "unchanged");
+    assert_string_equal(state_of(s, "merge"), "ran");
+    show(s);
+    assert_string_equal(state_of(s, "raymarch"), "unchanged");
+    // No medium: the environment alone.
+    s->scene.num_shapes = 0;
+    scene_set_sky(&s->scene, 2);
+    show(s);
+    assert_string_equal(state_of(s, "lattice"), "absent");
+    assert_string_equal(state_of(s, "medium"), "absent");
+    const float *rgb = tyn_offline_output(s->off, TYN_OUTPUT_RADIANCE);
+    for (int i = 0; i < PIXELS; i++) {
+        assert_true(rgb[4 * i] == 2 && rgb[4 * i + 3] == 1);
+    }
+    strike(s);
+}
+
+// Several suns are the sum of their pictures.
+static void suns_add_up(void **state)
+{
+    gpu_test *t = *state;
+    static const float suns[3][6] = {
+        {1, -2, 0.5f, 2, 1.5f, 1}, {-1, -1, 1, 0.5f, 0.5f, 2}, {0.2f, 1, -2, 1, 0, 0}};
+    double sum[PIXELS * 3] = {0};
+    for (int k = 0; k < 4; k++) {
+        stage *s = set_stage(t, 4);
+        s->scene.num_lights = 0;
+        for (int i = 0; i < 3; i++) {
+            if (k == i || k == 3) {
+                scene_add_sun(&s->scene, suns[i][0], suns[i][1], suns[i][2], suns[i][3], suns[i][4],
+                              suns[i][5]);
+            }
+        }
+        picture p;
+        picture_render(&p, t->dev, "pop", &s->scene, &s->view, "lattice.sweeps=12", 0);
+        double most = 0;
+        for (int i = 0; i < PIXELS * 3; i++) {
+            if (k < 3) {
+                sum[i] += p.rgb[i];
+            } else {
+                most = fmax(most, fabs(p.rgb[i] - sum[i]) / (sum[i] + 1e-3));
+            }
+        }
+        print_message(k == 3 ? "three suns at once: %.2e off their sum\n" : "", most);
+        assert_true(most < 5e-3);
+        picture_free(&p);
+        strike(s);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(layers_add_up), cmocka_unit_test(refuses_repeat), cmocka_unit_test(warns),
+        cmocka_unit_test(leaves_out),    cmocka_unit_test(suns_add_up),
+    };
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
