@@ -153,6 +153,8 @@ static tyn_result create_image(tyn_graph *g, const resource *r, phys *p, VkDevic
                           r->extent.x, r->extent.y, r->extent.z, limit);
     }
     VkImageType type = r->dim == TYN_IMAGE_3D ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
+    // An image that no needed node reads still gets a view, which wants one of these.
+    const VkImageUsageFlags shader_uses = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
     VkResult made = dev->vk.CreateImage(
         dev->device,
         &(VkImageCreateInfo){.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
@@ -163,7 +165,9 @@ static tyn_result create_image(tyn_graph *g, const resource *r, phys *p, VkDevic
                              .arrayLayers = 1,
                              .samples = VK_SAMPLE_COUNT_1_BIT,
                              .tiling = VK_IMAGE_TILING_OPTIMAL,
-                             .usage = p->image_usage ? p->image_usage : VK_IMAGE_USAGE_SAMPLED_BIT,
+                             .usage = p->image_usage & shader_uses
+                                          ? p->image_usage
+                                          : p->image_usage | VK_IMAGE_USAGE_SAMPLED_BIT,
                              .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED},
         NULL, &p->image);
     tyn_result result = tyn_vk_check(dev, made, r->name);

@@ -14,11 +14,13 @@ typedef struct stage {
     tyn_scene scene;
     tyn_view view;
     tyn_offline *off;
+    tyn_device *dev;
 } stage;
 
 static stage *set_stage(gpu_test *t, float sigma_s)
 {
     stage *s = calloc(1, sizeof *s);
+    s->dev = t->dev;
     tyn_scene_init(&s->scene);
     tyn_medium medium = grey_medium(sigma_s, 0.5f, 0.7f);
     scene_add_box(&s->scene, &medium, (float[]){0, 0, 0}, (float[]){1, 1, 1}, NULL, NULL);
@@ -40,6 +42,7 @@ static void strike(stage *s)
 static void show(stage *s)
 {
     assert_int_equal(tyn_offline_frame(s->off, &s->scene, &s->view, false), TYN_OK);
+    assert_int_equal(tyn_device_validation_messages(s->dev), 0);
 }
 
 static bool warns_of(stage *s, const char *words)

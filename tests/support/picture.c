@@ -151,6 +151,7 @@ void picture_render(picture *p, tyn_device *dev, const char *method, const tyn_s
         p->se = copy_rgb(tyn_offline_output(off, TYN_OUTPUT_ERROR), pixels);
     }
     tyn_offline_destroy(&off);
+    assert_int_equal(tyn_device_validation_messages(dev), 0);
 }
 
 bool picture_reference(picture *p, const char *name)
