@@ -174,6 +174,7 @@ static tyn_result add_solve(tyn_graph *g, const tyn_job *job, field *f)
     tyn_result result = tyn_graph_add(g, &tyn_pass_lattice, &params, refs);
     f->moments = refs[LATTICE_PORT_MOMENTS];
     f->leaks = refs[LATTICE_PORT_LEAKS];
+    tyn_job_counters(g, job, "lattice", refs[LATTICE_PORT_COUNTERS]);
     return result;
 }
 
