@@ -1,8 +1,8 @@
 // lattice.glsl -- where the cells of the light lattice are. No bindings.
 //
-// The lattice is a box of cubic cells around the medium's box: dx = longest side / longest dimension,
-// and what the last cells reach beyond the medium is split evenly between both ends. All of it
-// follows from the medium's extent and the number of cells, so nothing else is passed around.
+// The lattice is a box of cubic cells around the medium's box: dx = longest side / longest
+// dimension, and what the last cells reach beyond the medium is split evenly between both ends. All
+// of it follows from the medium's extent and the number of cells, so nothing else is passed around.
 //
 // Channels that are solved are stacked along z: texel (i, j, c * dims.z + k) is cell (i, j, k) of
 // channel c.
@@ -36,8 +36,9 @@ vec3 lattice_to_m(lattice_box box, vec3 cell)
     return box.origin + cell * box.dx;
 }
 
-// Texture coordinate in `inscatter`, which has one ghost cell around the lattice: trilinear sampling
-// there extrapolates linearly over the outer half cell. `size` = textureSize(inscatter, 0).
+// Texture coordinate in `inscatter`, which has one ghost cell around the lattice: trilinear
+// sampling there extrapolates linearly over the outer half cell. `size` = textureSize(inscatter,
+// 0).
 vec3 lattice_inscatter_uvw(vec3 extent, ivec3 size, vec3 p)
 {
     lattice_box box = lattice_box_of(extent, size - 2);

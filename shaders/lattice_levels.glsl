@@ -1,7 +1,7 @@
 // lattice_levels.glsl -- where the levels of the diffusion grid lie in their buffers. No bindings.
 //
-// Level l + 1 has half the cells of level l along each axis, rounded up. The levels of a channel follow
-// each other, finest first; within a level x is fastest.
+// Level l + 1 has half the cells of level l along each axis, rounded up. The levels of a channel
+// follow each other, finest first; within a level x is fastest.
 #ifndef TYN_LATTICE_LEVELS_GLSL
 #define TYN_LATTICE_LEVELS_GLSL
 

@@ -1,8 +1,9 @@
 // lattice_stencil.glsl -- the equation of one cell of the diffusion grid. No bindings.
 //
-// -div D grad e + sigma_a e = r, D de/dn = -e/2 at the box, integrated over cells: the sum over the six
-// faces of conductance (e - e behind the face), plus absorption e, is the right hand side in W. Outside
-// the box e is 0, and the half cell and the Robin condition in series are the conductance to there.
+// -div D grad e + sigma_a e = r, D de/dn = -e/2 at the box, integrated over cells: the sum over the
+// six faces of conductance (e - e behind the face), plus absorption e, is the right hand side in W.
+// Outside the box e is 0, and the half cell and the Robin condition in series are the conductance
+// to there.
 #ifndef TYN_LATTICE_STENCIL_GLSL
 #define TYN_LATTICE_STENCIL_GLSL
 
@@ -27,8 +28,9 @@ vec4 lattice_stencil_hi(lattice_stencil k)
     return vec4(k.hi, k.absorption + dot(k.lo + k.hi, vec3(1.0)));
 }
 
-// Trilinear interpolation of a correction from the next coarser level: along each axis the coarse cell
-// around the fine one counts 3/4 and its neighbour on the near side 1/4; at the box the former 1.
+// Trilinear interpolation of a correction from the next coarser level: along each axis the coarse
+// cell around the fine one counts 3/4 and its neighbour on the near side 1/4; at the box the former
+// 1.
 struct lattice_interpolation {
     ivec3 near, far;
 };

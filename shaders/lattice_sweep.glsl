@@ -1,9 +1,10 @@
 // lattice_sweep.glsl -- light along the 14 lattice lines of a cell. No bindings.
 //
-// Directions: 6 along the axes, 8 along the body diagonals; a line goes from cell centre to cell centre,
-// so nothing is interpolated and the tubes around the lines fill space: what leaves a cell enters the
-// next one. The weights sum to 1 and give sum w O O^T = 1/3 for any share of the axes; 0.30 matches the
-// mean escape from a cube within 0.7 % for optical depths 1 to 50 (Lebedev's 0.40: 2.6 %).
+// Directions: 6 along the axes, 8 along the body diagonals; a line goes from cell centre to cell
+// centre, so nothing is interpolated and the tubes around the lines fill space: what leaves a cell
+// enters the next one. The weights sum to 1 and give sum w O O^T = 1/3 for any share of the axes;
+// 0.30 matches the mean escape from a cube within 0.7 % for optical depths 1 to 50 (Lebedev's 0.40:
+// 2.6 %).
 #ifndef TYN_LATTICE_SWEEP_GLSL
 #define TYN_LATTICE_SWEEP_GLSL
 
@@ -34,9 +35,9 @@ float lattice_channel(vec3 color, uint channels, uint ch, vec3 tint)
     return channels == 1 ? dot(color, tint) / dot(tint, tint) : color[ch];
 }
 
-// The source of scattered radiance per sigma_s' is linear in direction: s(O) = e.x + dot(O, e.yzw), from
-// the fluence and flux of all light. It may be negative against strong light; that is not clipped, as
-// clipping adds energy (1.7 % at g = 0.9).
+// The source of scattered radiance per sigma_s' is linear in direction: s(O) = e.x + dot(O, e.yzw),
+// from the fluence and flux of all light. It may be negative against strong light; that is not
+// clipped, as clipping adds energy (1.7 % at g = 0.9).
 vec4 lattice_emitted(vec4 total, float g)
 {
     return vec4(total.x, 3.0 * g * total.yzw) / LATTICE_4PI;
@@ -48,10 +49,10 @@ vec4 lattice_fetch_source(sampler3D source, sampler3D cells, ivec3 texel)
     return textureSize(source, 0) == textureSize(cells, 0) ? texelFetch(source, texel, 0) : vec4(0.0);
 }
 
-// A segment of optical depth tau with a source that is linear along it (value s in the middle, slope
-// per segment): psi_out = psi_in e + Q (s a0 + slope w1), mean psi = psi_in a0 + Q (s a1 + slope b1),
-// Q = length sigma_s'. The slope has no mean: tau psi_mean = psi_in - psi_out + Q s exactly, so energy
-// is conserved; without it thick media diffuse too fast by sigma length / 2.
+// A segment of optical depth tau with a source that is linear along it (value s in the middle,
+// slope per segment): psi_out = psi_in e + Q (s a0 + slope w1), mean psi = psi_in a0 + Q (s a1 +
+// slope b1), Q = length sigma_s'. The slope has no mean: tau psi_mean = psi_in - psi_out + Q s
+// exactly, so energy is conserved; without it thick media diffuse too fast by sigma length / 2.
 struct lattice_weights {
     float e, a0, a1, w1, b1;
 };

@@ -64,7 +64,7 @@ static const tyn_port ports[NUM_PORTS] = {
     SCRATCH(PORT_WEIGHTS, "weights", "shares of earlier sweeps"),
 };
 
-// ---- kernels --------------------------------------------------------------------------------------
+// ---- kernels ------------------------------------------------------------------------------------
 
 enum {
     KERNEL_START,
@@ -166,7 +166,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_MIX] = KERNEL(mix, lattice_args, 1, 8, 4, 2),
 };
 
-// ---- levels of the diffusion grid -----------------------------------------------------------------
+// ---- levels of the diffusion grid ---------------------------------------------------------------
 
 enum { MAX_LEVELS = 8 };
 
@@ -196,7 +196,7 @@ static levels plan_levels(tyn_extent dims)
     return l;
 }
 
-// ---- declare --------------------------------------------------------------------------------------
+// ---- declare ------------------------------------------------------------------------------------
 
 static uint32_t lines_of(tyn_extent d)
 {
@@ -242,7 +242,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
     return TYN_OK;
 }
 
-// ---- record ---------------------------------------------------------------------------------------
+// ---- record -------------------------------------------------------------------------------------
 
 typedef struct solve { // what recording needs to know
     tyn_recorder *r;

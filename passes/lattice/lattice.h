@@ -8,8 +8,8 @@
 // None of them depends on the camera.
 //
 // Coefficients are those of delta scaling: f = g^2 for g > 0, else 0; g' = (g - f) / (1 - f),
-// sigma_s' = (1 - f) sigma_s, sigma_t' = sigma_a + sigma_s'. Light scattered into the forward peak f
-// counts as not scattered (Joseph, Wiscombe and Weinman 1976).
+// sigma_s' = (1 - f) sigma_s, sigma_t' = sigma_a + sigma_s'. Light scattered into the forward peak
+// f counts as not scattered (Joseph, Wiscombe and Weinman 1976).
 #pragma once
 #include <tyndall/pass.h>
 #include "scene_args.h"
@@ -28,8 +28,9 @@ typedef struct tyn_lattice_shape {
 tyn_extent tyn_lattice_dims(const float extent[3], int32_t cells);
 
 // True if `n` colours (lights, emission, mean of the environment) are multiples of one colour, its
-// `tint` with a largest component of 1. With a grey medium one channel is then enough: shaders solve for
-// dot(color, tint) / dot(tint, tint), and merge and probe multiply by the tint. Else (1, 1, 1).
+// `tint` with a largest component of 1. With a grey medium one channel is then enough: shaders
+// solve for dot(color, tint) / dot(tint, tint), and merge and probe multiply by the tint. Else (1,
+// 1, 1).
 bool tyn_lattice_tint(const float (*colors)[3], uint32_t n, float tint[3]);
 
 // ---- lattice_cells ----------------------------------------------------------------------------

@@ -61,8 +61,8 @@ static void record(tyn_recorder *r, const void *params)
     double fetches = (double)dims.x * dims.y * dims.z;
     for (int a = 0; a < 3; a++) {
         args.tint[a] = p->shape.tint[a];
-        // One trilinear sample for two voxels along an axis, which misses none; at least two, as the
-        // medium's box may end inside a cell.
+        // One trilinear sample for two voxels along an axis, which misses none; at least two, as
+        // the medium's box may end inside a cell.
         float pairs = ceilf(0.5f * dx * (float)size[a] / extent[a] - 1e-3f);
         args.samples[a] = (uint32_t)fminf(fmaxf(pairs, 2), MAX_SAMPLES);
         fetches *= args.samples[a];

@@ -21,8 +21,8 @@ layout(push_constant, scalar) uniform push
 };
 layout(binding = 5, rgba32f) uniform writeonly image3D cells;
 
-// Optical depth of a cell's edge beyond which nothing changes any more, but sigma' times a difference of
-// fluences loses all digits.
+// Optical depth of a cell's edge beyond which nothing changes any more, but sigma' times a
+// difference of fluences loses all digits.
 const float MAX_TAU = 4096.0;
 
 void main()

@@ -1,7 +1,7 @@
 // lattice_coarse.comp -- the V-cycle on all levels small enough for one workgroup's shared memory.
 //
-// One workgroup per channel. The first level's right hand side comes from its image, as do all stencils;
-// the corrections of all levels and the other right hand sides are in shared memory.
+// One workgroup per channel. The first level's right hand side comes from a buffer, as do all
+// stencils; the corrections of all levels and the other right hand sides are in shared memory.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -31,8 +31,9 @@ layout(binding = 3, scalar) buffer correction_buffer
     float correction_out[];
 };
 
-// Each level has 1/8 of the cells of the one before; 1/4 in a box one cell thin; and 1/2 in one that is
-// thin along two axes, which has at most 64 cells to begin with. So 3/8 more hold all levels.
+// Each level has 1/8 of the cells of the one before; 1/4 in a box one cell thin; and 1/2 in one
+// that is thin along two axes, which has at most 64 cells to begin with. So 3/8 more hold all
+// levels.
 shared float correction[LATTICE_COARSE_CELLS * 11 / 8];
 shared float rhs[LATTICE_COARSE_CELLS * 3 / 8];
 
@@ -99,7 +100,8 @@ void restrict_to_next()
 {
     lattice_level next = lattice_next_level(at);
     uint to = next.first - first.first;
-    for (uint i = gl_LocalInvocationIndex; i < lattice_num_cells(next.size); i += LATTICE_COARSE_GROUP) {
+    uint n = lattice_num_cells(next.size);
+    for (uint i = gl_LocalInvocationIndex; i < n; i += LATTICE_COARSE_GROUP) {
         ivec3 c = cell_of(i, next.size);
         float sum = 0.0;
         for (int child = 0; child < 8; child++) {
@@ -119,7 +121,8 @@ void interpolate_from_next()
 {
     lattice_level next = lattice_next_level(at);
     uint to = at.first - first.first;
-    for (uint i = gl_LocalInvocationIndex; i < lattice_num_cells(at.size); i += LATTICE_COARSE_GROUP) {
+    uint n = lattice_num_cells(at.size);
+    for (uint i = gl_LocalInvocationIndex; i < n; i += LATTICE_COARSE_GROUP) {
         lattice_interpolation from = lattice_interpolation_of(cell_of(i, at.size), next.size);
         float sum = 0.0;
         for (uint corner = 0; corner < 8; corner++) {

@@ -1,4 +1,5 @@
-// lattice_collect.comp -- moments of the radiance of a sweep, and the source of its diffusion correction.
+// lattice_collect.comp -- moments of the radiance of a sweep, and the source of its diffusion
+// correction.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,10 +1,10 @@
-// lattice_residual.comp -- what a sweep and its correction give, and the dot products that say how to
-// mix it with the results of earlier sweeps.
+// lattice_residual.comp -- what a sweep and its correction give, and the dot products that say how
+// to mix it with the results of earlier sweeps.
 //
 // The change r = result - start of up to three sweeps is kept; with d_i = r_i - r the products are
-// d1.d1, d2.d2, d1.d2, d1.r, d2.r, where flux counts three times (then the norm is that of the radiance
-// whose first moments these are). Each thread adds its cells in order,
-// each workgroup its threads pairwise.
+// d1.d1, d2.d2, d1.d2, d1.r, d2.r, where flux counts three times (then the norm is that of the
+// radiance whose first moments these are). Each thread adds its cells in order, each workgroup its
+// threads pairwise.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

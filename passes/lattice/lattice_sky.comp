@@ -1,7 +1,7 @@
 // lattice_sky.comp -- the environment as the 14 lattice directions see it, first part: lobes.
 //
-// One workgroup per direction averages the map with a lobe cos^6 about where the light comes from, as
-// wide as the directions are apart. Sums have a fixed order.
+// One workgroup per direction averages the map with a lobe cos^6 about where the light comes from,
+// as wide as the directions are apart. Sums have a fixed order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -4,6 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "scene_args.h"
 #include "lattice_args.h"
+#include "lattice_sweep.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(push_constant, scalar) uniform push
@@ -32,10 +33,9 @@ void main()
     vec4 sum = vec4(0.0);
     for (uint sun = 0; sun < args.num_suns; sun++) {
         float t = texelFetch(sunlit, ivec3(texel.xy, texel.z % dims.z + int(sun) * dims.z), 0)[ch];
-        vec3 color = lights[sun].color;
-        float e = args.channels == 1 ? dot(color, args.tint) / dot(args.tint, args.tint) : color[ch];
-        e *= t * power[sun * args.channels + uint(ch)].scale;
-        sum += e * vec4(1.0, lights[sun].direction);
+        float e = lattice_channel(lights[sun].color, args.channels, uint(ch), args.tint);
+        float scale = power[sun * args.channels + uint(ch)].scale;
+        sum += e * scale * t * vec4(1.0, lights[sun].direction);
     }
     imageStore(source, texel, sum);
 }

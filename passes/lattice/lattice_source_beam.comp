@@ -47,7 +47,8 @@ void main()
     lattice_box box = lattice_box_of(medium.extent, dims);
     vec3 d = abs(beams[sun].direction);
     vec3 weighted = vec3(0.0), weight = vec3(0.0);
-    float step_length = box.dx / float(args.samples), length_h = step_length / max(d.x, max(d.y, d.z));
+    float step_length = box.dx / float(args.samples);
+    float length_h = step_length / max(d.x, max(d.y, d.z)); // of a sub-sample along the light
     for (uint k = 0; k < args.samples; k++) {
         for (uint j = 0; j < args.samples; j++) {
             vec3 row = lattice_to_m(box, vec3(c) + (vec3(0, j, k) + 0.5) / float(args.samples));
@@ -65,7 +66,8 @@ void main()
                 vec3 x = 0.5 * length_h * (scaled + m.sigma_a), centre = tau.a + tau.p;
                 vec3 t = vec3(mean_transmittance(centre.r, x.r));
                 if (num_channels == 3) {
-                    t.gb = vec2(mean_transmittance(centre.g, x.g), mean_transmittance(centre.b, x.b));
+                    t.g = mean_transmittance(centre.g, x.g);
+                    t.b = mean_transmittance(centre.b, x.b);
                 }
                 weighted += w * t;
                 weight += w;

@@ -1,7 +1,8 @@
 // lattice_source_sum.comp -- the factor that makes the cells lose what the beam loses.
 //
-// One workgroup per sun and channel. What the beam loses is the integral of 1 - e^-tau' over the faces
-// where it leaves the box. Sums have a fixed order: every thread its own terms, then pairwise.
+// One workgroup per sun and channel. What the beam loses is the integral of 1 - e^-tau' over the
+// faces where it leaves the box. Sums have a fixed order: every thread its own terms, then
+// pairwise.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -84,8 +85,8 @@ void main()
     if (me == 0) {
         vec3 extent = medium.extent, d = abs(beams[sun].direction);
         vec3 faces = vec3(extent.y * extent.z, extent.z * extent.x, extent.x * extent.y);
-        // Close to 1 where the sub-samples resolve the beam; large where it is lost within a fraction of
-        // one, or where the depth of the cells is bounded.
+        // Close to 1 where the sub-samples resolve the beam; large where it is lost within a
+        // fraction of one, or where the depth of the cells is bounded.
         float scale = sums[0].y > 0.0 ? min(sums[0].x / sums[0].y, 1e6) : 1.0;
         power[sun * args.channels + ch] =
             lattice_power(dot(faces, d), sums[0].x, sums[0].y * scale, scale);

@@ -21,8 +21,8 @@ layout(binding = 2, scalar) writeonly buffer hi_buffer
 };
 
 // 1 / (3 sigma_tr), and a second term without which a correction with this coefficient makes the
-// iteration diverge where cells are optically thick (tau' > 3): a sweep itself spreads light by about
-// that much. In vacuum the coefficient is bounded by the size of the box.
+// iteration diverge where cells are optically thick (tau' > 3): a sweep itself spreads light by
+// about that much. In vacuum the coefficient is bounded by the size of the box.
 float diffusion_coefficient(vec4 cell)
 {
     float total = cell.x + cell.y, tau = total * args.dx;

@@ -1,7 +1,7 @@
 // lattice_stencil_coarse.comp -- stencil of a level from that of the next finer one.
 //
-// Coarse conductances are those of cells twice as large whose D is the mean over the four fine faces:
-// half the sum. Absorption adds up.
+// Coarse conductances are those of cells twice as large whose D is the mean over the four fine
+// faces: half the sum. Absorption adds up.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -45,15 +45,16 @@ void main()
         vec4 lo = stencil_lo[i], hi = stencil_hi[i];
         k.absorption += lo.w;
         for (int axis = 0; axis < 3; axis++) {
-            // At the box the half cell becomes twice as long. A coarse cell that reaches beyond the box has
-            // its centre on it, so that only the Robin condition is left.
+            // At the box the half cell becomes twice as long. A coarse cell that reaches beyond the
+            // box has its centre on it, so that only the Robin condition is left.
             if (f[axis] == 0) {
                 k.lo[axis] += area / (2.0 * (area / lo[axis]) - 2.0);
             } else if (f[axis] % 2 == 0) {
                 k.lo[axis] += 0.5 * lo[axis];
             }
             if (f[axis] == fine.size[axis] - 1) {
-                k.hi[axis] += f[axis] % 2 == 0 ? area / 2.0 : area / (2.0 * (area / hi[axis]) - 2.0);
+                bool beyond = f[axis] % 2 == 0;
+                k.hi[axis] += area / (beyond ? 2.0 : 2.0 * (area / hi[axis]) - 2.0);
             } else if (f[axis] % 2 == 1) {
                 k.hi[axis] += 0.5 * hi[axis];
             }

@@ -1,8 +1,8 @@
 // lattice_sweep.comp -- one sweep: a thread follows one lattice line of one direction and channel.
 //
-// psi stays in a register. Lines of a diagonal have different lengths; a thread that leaves the box at a
-// side goes on at the opposite side with the line that enters there, so every thread makes as many steps
-// as the box has slices, and every cell is met once per direction.
+// psi stays in a register. Lines of a diagonal have different lengths; a thread that leaves the box
+// at a side goes on at the opposite side with the line that enters there, so every thread makes as
+// many steps as the box has slices, and every cell is met once per direction.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -44,7 +44,8 @@ void main()
     ivec3 dims = ivec3(args.dims);
     ivec3 o = lattice_step(direction);
     bool diagonal = direction >= 6;
-    // March along z, or along the axis of the direction; lines start at the cells of the plane across.
+    // March along z, or along the axis of the direction; lines start at the cells of the plane
+    // across.
     int axis = diagonal ? 2 : int(direction / 2);
     int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
     if (line >= args.lines) {
@@ -61,13 +62,13 @@ void main()
         bvec3 moves = notEqual(o, ivec3(0));
         ivec3 strides = ivec3(1, dims.x, dims.x * dims.y);
         ivec3 step_back = -o * (dims - 1) * strides; // from the last cell of an axis to its first
-        int first_cell = int(ch) * dims.z * strides.z;
-        int to_mean = int(direction) * int(args.channels) * dims.z * strides.z;
-        int at = first_cell + c.x * strides.x + c.y * strides.y + c.z * strides.z;
+        int per_channel = dims.z * strides.z;
+        int to_mean = int(direction * args.channels) * per_channel;
+        int at = int(ch) * per_channel + c.z * strides.z + c.y * strides.y + c.x;
 
         float length_l = args.dx * (diagonal ? sqrt(3.0) : 1.0);
         vec3 omega = vec3(o) * (diagonal ? inversesqrt(3.0) : 1.0);
-        float tube = args.dx * args.dx * args.dx / length_l * LATTICE_4PI * lattice_weight(direction); // m^2 sr
+        float cross_section = args.dx * args.dx * args.dx / length_l; // of the tube around a line
         float boundary = lattice_channel(sky[direction], args.channels, ch, args.tint);
 
         float psi = boundary, before = 0.0;
@@ -80,8 +81,8 @@ void main()
                 psi = boundary;
                 leak -= psi;
             }
-            // On, or around to the line that enters at the opposite side.
             vec4 cell = texelFetch(cells, c + ivec3(0, 0, int(ch) * dims.z), 0);
+            // On, or around to the line that enters at the opposite side.
             int next = at + (at_last.x ? step_back.x : o.x * strides.x) +
                        (at_last.y ? step_back.y : o.y * strides.y) +
                        (at_last.z ? step_back.z : o.z * strides.z);
@@ -102,7 +103,7 @@ void main()
             s = behind;
             at = next;
         }
-        leak *= tube;
+        leak *= cross_section * LATTICE_4PI * lattice_weight(direction);
     }
     leaks[(ch * LATTICE_DIRECTIONS + direction) * args.lines + line] = leak;
 }

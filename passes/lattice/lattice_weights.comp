@@ -1,4 +1,5 @@
-// lattice_weights.comp -- Anderson mixing: the shares g_i of earlier sweeps that minimise |r + sum g_i d_i|.
+// lattice_weights.comp -- Anderson mixing: the shares g_i of earlier sweeps that minimise |r + sum
+// g_i d_i|.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -20,7 +21,8 @@ layout(binding = 1, scalar) writeonly buffer weight_buffer
 
 shared float sums[LATTICE_NUM_DOTS][LATTICE_GROUP];
 
-// A Gram determinant below this share of the product of its diagonal is rounding: d1, d2 are parallel.
+// A Gram determinant below this share of the product of its diagonal is rounding: d1, d2 are
+// parallel.
 const float PARALLEL = 1e-5;
 
 void main()

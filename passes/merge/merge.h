@@ -1,4 +1,5 @@
-// merge.h -- what one view reads of the light field: radiance that scatters towards the eye, per cell.
+// merge.h -- what one view reads of the light field: radiance that scatters towards the eye, per
+// cell.
 #pragma once
 #include <tyndall/pass.h>
 

@@ -1,4 +1,5 @@
-// merge_three.comp -- radiance that a cell scatters towards the eye, per sigma_s', of three channels.
+// merge_three.comp -- radiance that a cell scatters towards the eye, per sigma_s', of three
+// channels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

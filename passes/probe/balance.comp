@@ -1,7 +1,8 @@
 // balance.comp -- where the energy goes: sums over cells and lines, one workgroup per channel.
 //
-// What the environment brings in is, for each direction, radiance times the projected area of the medium's
-// box; the lines' leaks are net, so what they carry straight through the lattice counts on both sides.
+// What the environment brings in is, for each direction, radiance times the projected area of the
+// medium's box; the lines' leaks are net, so what they carry straight through the lattice counts on
+// both sides.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -64,8 +64,8 @@ void main()
     }
     for (uint sun = 0; sun < args.num_suns; sun++) {
         beam_tau tau = beam_depth(sun, p);
-        // The lattice counts light in the forward peak as not scattered; a probe of the scattered light
-        // takes it back.
+        // The lattice counts light in the forward peak as not scattered; a probe of the scattered
+        // light takes it back.
         vec3 e = exp(-(tau.a + tau.p));
         if (args.scattered_only != 0) {
             e -= exp(-(tau.a + tau.s));

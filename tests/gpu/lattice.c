@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-// ---- running the pass on what twins hold ----------------------------------------------------------
+// ---- running the pass on what twins hold --------------------------------------------------------
 
 typedef struct run {
     float *moments; // of the device: [channel][cell][4]
@@ -117,7 +117,7 @@ static double imbalance(llc_twin *w, const float *moments, float leak)
     return llc_twin_imbalance(w);
 }
 
-// ---- media ----------------------------------------------------------------------------------------
+// ---- media --------------------------------------------------------------------------------------
 
 static double random_01(uint32_t *seed)
 {
@@ -153,7 +153,7 @@ static void fill_random(llc_twin *w, uint32_t seed)
     }
 }
 
-// ---- tests ----------------------------------------------------------------------------------------
+// ---- tests --------------------------------------------------------------------------------------
 
 static void matches_twin(void **state)
 {
@@ -179,7 +179,8 @@ static void matches_twin(void **state)
             double leak = fabs(r.leaks[ch] - twins[ch].leak) / (1 + fabs(twins[ch].leak));
             printf("%d x %d x %d, channel %u: moments %.1e, leak %.1e\n", sizes[s][0], sizes[s][1],
                    sizes[s][2], ch, d, leak);
-            // Mixing divides by differences of almost equal sweeps; without it rounding stays rounding.
+            // Mixing divides by differences of almost equal sweeps; without it rounding stays
+            // rounding.
             assert_true(d < (twins[ch].anderson ? 2e-3 : 2e-5));
             assert_true(leak < 1e-3);
             llc_twin_finish(&twins[ch]);
@@ -210,7 +211,8 @@ static void furnace(void **state)
     llc_twin_finish(&w);
 }
 
-// What the beam scatters leaves the box or is absorbed: <= 1 % is missing after 4 sweeps, <= 0.3 % after 6.
+// What the beam scatters leaves the box or is absorbed: <= 1 % is missing after 4 sweeps, <= 0.3 %
+// after 6.
 static void conserves(void **state)
 {
     static const double media[][3] = {

@@ -26,8 +26,9 @@ static void sun(light_chain *c, float x, float y, float z, float r, float g, flo
     memcpy(c->sun_color[s], color, sizeof color);
 }
 
-// Mean |difference| over mean fluence, against Monte Carlo in 16^3 cells of the unit cube, sigma_s 4, sun
-// along +x. What is left is the angular error of 14 directions and the lobe without sideways spread.
+// Mean |difference| over mean fluence, against Monte Carlo in 16^3 cells of the unit cube, sigma_s
+// 4, sun along +x. What is left is the angular error of 14 directions and the lobe without sideways
+// spread.
 static void fluence_in_a_cube(void **state)
 {
     static const struct {
@@ -102,8 +103,8 @@ static void absorption_only(void **state)
     light_chain_finish(&c);
 }
 
-// Light that enters is absorbed or escapes; one channel with a tint, three channels and coefficients as
-// textures say the same; oblique light is no worse than aligned light.
+// Light that enters is absorbed or escapes; one channel with a tint, three channels and
+// coefficients as textures say the same; oblique light is no worse than aligned light.
 static void balances(void **state)
 {
     static const float media[][3] = {{4, 0, 0}, {4, 1, 0.6f}, {30, 0.1f, 0.85f}, {500, 0, 0}};
@@ -145,8 +146,8 @@ static void balances(void **state)
     }
 }
 
-// A medium that only scatters is invisible in a uniform environment, and one that emits and absorbs like a
-// black body of the same radiance, too.
+// A medium that only scatters is invisible in a uniform environment, and one that emits and absorbs
+// like a black body of the same radiance, too.
 static void furnace(void **state)
 {
     static const float points[][3] = {{0.5f, 0.5f, 0.5f}, {0.02f, 0.99f, 0.4f}};

@@ -175,8 +175,8 @@ static void refinement(void **state)
     npy_free(&reference);
 }
 
-// Without the second term of the diffusion coefficient the correction diverges in dense media. If this
-// passes without it, the tests above do not guard it.
+// Without the second term of the diffusion coefficient the correction diverges in dense media. If
+// this passes without it, the tests above do not guard it.
 static void dense_term_is_needed(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-// light_chain.c -- medium -> beam -> lattice_cells -> lattice_source -> lattice -> merge, probe, balance.
+// light_chain.c -- medium -> beam -> lattice_cells -> lattice_source -> lattice -> merge, probe,
+// balance.
 #include "light_chain.h"
 #include "counters.h"
 #include "passes/beam/beam.h"

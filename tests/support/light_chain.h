@@ -1,4 +1,5 @@
-// light_chain.h -- the nodes from a density grid to probes and the balance, for tests of the lattice.
+// light_chain.h -- the nodes from a density grid to probes and the balance, for tests of the
+// lattice.
 #pragma once
 #include "gpu_test.h"
 #include "scene_args.h"

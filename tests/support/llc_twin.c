@@ -153,8 +153,8 @@ static double dot(double (*a)[4], double (*b)[4], int n)
     return sum;
 }
 
-// Anderson mixing: from up to three pairs (result x of an iteration, change r it made), newest first,
-// the combination of results whose combined change is least.
+// Anderson mixing: from up to three pairs (result x of an iteration, change r it made), newest
+// first, the combination of results whose combined change is least.
 static void mix(double (*const x[3])[4], double (*const r[3])[4], int pairs, int n,
                 double (*out)[4])
 {

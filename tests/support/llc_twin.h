@@ -1,8 +1,8 @@
 // llc_twin.h -- the lattice solver of passes/lattice once more, on the CPU, in double precision.
 //
-// Same discrete equations, written from the formulas and sharing no source with the shaders: 14 lattice
-// lines with linear sources, a diffusion correction by multigrid, Anderson mixing of depth 2. One channel.
-// Cell (i, j, k) is element (k * n[1] + j) * n[0] + i.
+// Same discrete equations, written from the formulas and sharing no source with the shaders: 14
+// lattice lines with linear sources, a diffusion correction by multigrid, Anderson mixing of depth
+// 2. One channel. Cell (i, j, k) is element (k * n[1] + j) * n[0] + i.
 #pragma once
 #include <stdbool.h>
 
@@ -39,7 +39,7 @@ void llc_twin_solve(llc_twin *t, int sweeps);
 // (leak + absorbed - made) / (made + entering at the box); made by the beams and by emission.
 double llc_twin_imbalance(const llc_twin *t);
 
-// The diffusion correction's equation, A e = b (in W per unit fluence): `cycles` V-cycles from e = 0,
-// or successive over-relaxation until the residual is `tolerance` |b|.
+// The diffusion correction's equation, A e = b (in W per unit fluence): `cycles` V-cycles from e =
+// 0, or successive over-relaxation until the residual is `tolerance` |b|.
 void llc_twin_diffusion(const llc_twin *t, const double *b, int cycles, double *e);
 int llc_twin_diffusion_sor(const llc_twin *t, const double *b, double tolerance, double *e);

@@ -1,9 +1,9 @@
 // llc_twin_diffusion.c -- the diffusion correction: -div D grad e + sigma_a e = r, D de/dn = -e/2.
 //
-// Finite volumes: between neighbours the conductance area / distance times the harmonic mean of D; at
-// the box the half cell and the Robin condition in series. Cell-centred multigrid: residuals are summed
-// over 2x2x2 cells, corrections interpolated trilinearly, coarse conductances are what coarse cells with
-// the mean D of their faces would have.
+// Finite volumes: between neighbours the conductance area / distance times the harmonic mean of D;
+// at the box the half cell and the Robin condition in series. Cell-centred multigrid: residuals are
+// summed over 2x2x2 cells, corrections interpolated trilinearly, coarse conductances are what
+// coarse cells with the mean D of their faces would have.
 #include "llc_twin.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-// llc_twin.c -- the CPU twin of the lattice itself: its multigrid against relaxation carried to the end,
-// its transport against closed forms.
+// llc_twin.c -- the CPU twin of the lattice itself: its multigrid against relaxation carried to the
+// end, its transport against closed forms.
 #include "llc_twin.h"
 #include <math.h>
 #include <setjmp.h>
@@ -31,8 +31,8 @@ static double sigma_of(int medium, int x, int y, int z, uint32_t *seed)
     }
 }
 
-// Errors of the diffusion correction fall by 2.5 and more with each V-cycle, whatever the contrast and
-// the size: 0.25 is left after one, 1e-3 after eight.
+// Errors of the diffusion correction fall by 2.5 and more with each V-cycle, whatever the contrast
+// and the size: 0.25 is left after one, 1e-3 after eight.
 static void multigrid_converges(void **state)
 {
     (void)state;
@@ -96,7 +96,8 @@ static void absorption(void **state)
     llc_twin_finish(&t);
 }
 
-// tau <mean psi> = psi_in - psi_out + Q s on every line, so energy is kept to rounding once converged.
+// tau <mean psi> = psi_in - psi_out + Q s on every line, so energy is kept to rounding once
+// converged.
 static void conserves(void **state)
 {
     (void)state;
