@@ -144,7 +144,7 @@ vec3 path_transmittance(vec3 origin, vec3 direction, float distance, inout rng_s
         return vec3(1.0);
     }
     if (HOMOGENEOUS) {
-        return exp(-grey(path_shape0.sigma_s + path_shape0.sigma_a) * left);
+        return exp(-grey(path_shapes[0].sigma_s + path_shapes[0].sigma_a) * left);
     }
     vec3 passed = vec3(1.0), at = origin + span.x * direction;
     brick_walk walk = brick_start(medium, at, direction);
@@ -439,7 +439,7 @@ void path_run(uint element, uint first, uint end)
             float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero);
             float part = 1.0;
             vec3 chosen = vec3(1.0);
-            if (ONE_SHAPE == 0u) {
+            if (SHAPES != 1u) {
                 part = dot(f.m.sigma_s, path.hero) / max(dot(f.m.part_s, path.hero), 1e-30);
                 chosen = f.m.part_s / max(f.m.sigma_s, vec3(1e-30));
             }

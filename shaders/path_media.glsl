@@ -25,8 +25,8 @@ vec3 grey(vec3 v)
 
 shape_block shape_get(uint i)
 {
-    if (ONE_SHAPE != 0u) {
-        return path_shape0;
+    if (SHAPES != 0u) {
+        return path_shapes[i];
     }
     shape_block shape = shapes[i];
     return shape;
@@ -53,7 +53,7 @@ float shape_density(shape_block shape, vec3 local)
 
 bool shape_is_sphere(shape_block shape)
 {
-    return ONE_SHAPE == 2u || (ONE_SHAPE == 0u && shape.kind == TYN_SHAPE_KIND_SPHERE);
+    return SHAPES == 1u ? (FLAGS & TYN_PATH_SPHERE) != 0u : shape.kind == TYN_SHAPE_KIND_SPHERE;
 }
 
 bool shape_holds(shape_block shape, vec3 local)
@@ -77,11 +77,11 @@ media_point media_at(vec3 p, float pick, vec3 hero)
 {
     media_point m;
     if (HOMOGENEOUS) {
-        m.sigma_s = grey(path_shape0.sigma_s);
-        m.sigma_t = grey(path_shape0.sigma_s + path_shape0.sigma_a);
-        m.emission = path_shape0.emission;
+        m.sigma_s = grey(path_shapes[0].sigma_s);
+        m.sigma_t = grey(path_shapes[0].sigma_s + path_shapes[0].sigma_a);
+        m.emission = path_shapes[0].emission;
         m.part_s = m.sigma_s;
-        m.g = grey(path_shape0.g);
+        m.g = grey(path_shapes[0].g);
         return m;
     }
     p = wrap(p);
@@ -91,7 +91,7 @@ media_point media_at(vec3 p, float pick, vec3 hero)
     m.part_s = vec3(0.0);
     m.g = vec3(0.0);
     float total = 0.0;
-    uint count = ONE_SHAPE != 0u ? 1u : medium.num_shapes;
+    uint count = SHAPES != 0u ? SHAPES : medium.num_shapes;
     for (uint i = 0u; i < count; i++) {
         shape_block shape = shape_get(i);
         vec3 local = shape_local(shape, p);
@@ -100,7 +100,7 @@ media_point media_at(vec3 p, float pick, vec3 hero)
         m.sigma_s += s;
         m.sigma_t += s + density * grey(shape.sigma_a);
         m.emission += density * shape.emission;
-        if (ONE_SHAPE != 0u) {
+        if (SHAPES == 1u) {
             m.part_s = s;
             m.g = grey(shape.g);
             break;
@@ -127,9 +127,9 @@ vec2 media_span(vec3 origin, vec3 direction)
     if (!HOMOGENEOUS) {
         return brick_span(medium, origin, direction);
     }
-    vec3 o = shape_local(path_shape0, origin), d = shape_turn(path_shape0, direction);
+    vec3 o = shape_local(path_shapes[0], origin), d = shape_turn(path_shapes[0], direction);
     vec2 span;
-    if (shape_is_sphere(path_shape0)) {
+    if (shape_is_sphere(path_shapes[0])) {
         span = ray_sphere(o, d, 0.5);
     } else {
         vec3 half_size = vec3(0.5);

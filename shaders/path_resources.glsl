@@ -8,7 +8,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(constant_id = 0) const uint ONE_SHAPE = 0u;
+layout(constant_id = 0) const uint SHAPES = 0u;
 layout(constant_id = 1) const bool HOMOGENEOUS = false;
 layout(constant_id = 2) const bool GREY = false;
 layout(constant_id = 3) const uint LIGHTS = 2u;
@@ -32,7 +32,7 @@ layout(push_constant, scalar) uniform args_push { path_args args_in; };
 medium_block medium;
 env_block env;
 path_args args;
-shape_block path_shape0; // the only shape
+shape_block path_shapes[TYN_PATH_SHAPES_MAX]; // where there are no more
 light_block path_light0; // the only light
 vec3 path_atlas_texel;   // 1 / texels of the atlas
 
@@ -44,8 +44,8 @@ void path_load()
     if (ENVIRONMENT != TYN_PATH_ENV_NONE) {
         env = env_in;
     }
-    if (ONE_SHAPE != 0u) {
-        path_shape0 = shapes[0];
+    for (uint i = 0u; i < SHAPES; i++) {
+        path_shapes[i] = shapes[i];
     }
     if (LIGHTS == 1u) {
         path_light0 = lights[0];

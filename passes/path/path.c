@@ -165,14 +165,15 @@ void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_path_params *p)
 {
     // A lobe needs a light; under a constant sky every direction is as good.
     bool lights = p->num_lights > 0 || p->environment == TYN_PATH_ENV_MAP;
-    spec[TYN_PATH_SPEC_SHAPES] = p->one_shape;
+    spec[TYN_PATH_SPEC_SHAPES] = p->num_shapes <= TYN_PATH_SHAPES_MAX ? p->num_shapes : 0;
     spec[TYN_PATH_SPEC_HOMOGENEOUS] = p->homogeneous ? 1 : 0;
     spec[TYN_PATH_SPEC_GREY] = p->grey ? 1 : 0;
     spec[TYN_PATH_SPEC_LIGHTS] = p->num_lights < 2 ? p->num_lights : 2;
     spec[TYN_PATH_SPEC_ENVIRONMENT] = p->environment;
     spec[TYN_PATH_SPEC_FLAGS] =
-        (p->repeat ? TYN_PATH_REPEAT : 0) | (p->emissive ? TYN_PATH_EMISSIVE : 0) |
-        (p->mixture && lights ? TYN_PATH_MIXTURE : 0) | (p->num_lamps ? TYN_PATH_LAMPS : 0) |
+        (p->repeat ? TYN_PATH_REPEAT : 0) | (p->sphere ? TYN_PATH_SPHERE : 0) |
+        (p->emissive ? TYN_PATH_EMISSIVE : 0) | (p->mixture && lights ? TYN_PATH_MIXTURE : 0) |
+        (p->num_lamps ? TYN_PATH_LAMPS : 0) |
         (p->equiangular && p->near_lamps ? TYN_PATH_EQUIANGULAR : 0) |
         (p->layers ? TYN_PATH_LAYERS : 0) | (p->scattered ? TYN_PATH_SCATTERED : 0);
 }

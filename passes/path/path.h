@@ -14,9 +14,10 @@ typedef struct tyn_path_params {
     uint32_t rr_depth;                  // Russian roulette from here on; 0 = 4
     uint32_t threads;     // at most, of a dispatch: what keeps one below the time limit
     uint32_t homogeneous; // one shape and no density grid
-    uint32_t one_shape;   // 1: a box, 2: a sphere, 0: several
-    uint32_t grey;        // sigma_s, sigma_a and g are equal in all channels
-    uint32_t repeat;      // some axis is periodic
+    uint32_t num_shapes;
+    uint32_t sphere; // the only shape is one
+    uint32_t grey;   // sigma_s, sigma_a and g are equal in all channels
+    uint32_t repeat; // some axis is periodic
     uint32_t emissive;
     uint32_t num_lights;
     uint32_t num_lamps;   // point and spot lights among them

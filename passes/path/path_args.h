@@ -4,13 +4,15 @@
 #include "shared.h"
 
 // Specialisation constants: what a scene has, so that what it has not costs nothing.
-#define TYN_PATH_SPEC_SHAPES 0      // 1: exactly one box, 2: one sphere, 0: as many as the medium block says
+#define TYN_PATH_SPEC_SHAPES 0      // exactly so many shapes; 0: more than TYN_PATH_SHAPES_MAX
 #define TYN_PATH_SPEC_HOMOGENEOUS 1 // that shape has no density grid
 #define TYN_PATH_SPEC_GREY 2        // coefficients are equal in all channels
 #define TYN_PATH_SPEC_LIGHTS 3      // 0, 1, or 2 = several
 #define TYN_PATH_SPEC_ENVIRONMENT 4 // TYN_PATH_ENV_*
 #define TYN_PATH_SPEC_FLAGS 5       // TYN_PATH_* bits
 #define TYN_PATH_NUM_SPEC 6
+
+#define TYN_PATH_SHAPES_MAX 4 // shapes that are kept in registers
 
 #define TYN_PATH_ENV_NONE 0
 #define TYN_PATH_ENV_CONSTANT 1
@@ -21,6 +23,7 @@
 #define TYN_PATH_MIXTURE 4u      // light-lobe mixture sampling
 #define TYN_PATH_EQUIANGULAR 8u  // lamps in or near the media: equi-angular distance sampling
 #define TYN_PATH_LAYERS 16u      // first-order light and transmittance are kept as well
+#define TYN_PATH_SPHERE 128u     // the only shape is a sphere
 #define TYN_PATH_LAMPS 64u       // some light is a point or spot light
 #define TYN_PATH_SCATTERED 32u   // probes leave out light that has not scattered
 

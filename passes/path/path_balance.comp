@@ -42,7 +42,7 @@ vec3 surface_local(shape_block shape, vec3 random, out vec3 outward, out float a
 
 bool inside_another(uint own, vec3 p)
 {
-    for (uint i = 0u; i < medium.num_shapes && ONE_SHAPE == 0u; i++) {
+    for (uint i = 0u; i < medium.num_shapes && SHAPES != 1u; i++) {
         shape_block shape = shapes[i];
         if (i != own && shape_holds(shape, shape_local(shape, p))) {
             return true;
@@ -53,7 +53,7 @@ bool inside_another(uint own, vec3 p)
 
 vec3 surface_point(uvec4 bits)
 {
-    uint count = ONE_SHAPE != 0u ? 1u : max(medium.num_shapes, 1u);
+    uint count = SHAPES != 0u ? SHAPES : medium.num_shapes;
     uint own = min(uint(rng_float(bits.w) * float(count)), count - 1u);
     shape_block shape = shape_get(own);
     mat3 to_local = transpose(mat3(shape.rows[0].xyz, shape.rows[1].xyz, shape.rows[2].xyz));
@@ -75,7 +75,7 @@ vec3 volume_point(uvec4 bits)
     vec3 p = vec3(rng_vec2(bits.xy), rng_float(bits.z)) * medium.extent;
     float volume = medium.extent.x * medium.extent.y * medium.extent.z;
     media_point m = media_at(p, 0.0, vec3(1.0));
-    if (HOMOGENEOUS && !shape_holds(path_shape0, shape_local(path_shape0, p))) {
+    if (HOMOGENEOUS && !shape_holds(path_shapes[0], shape_local(path_shapes[0], p))) {
         volume = 0.0;
     }
     measure = volume * max(m.sigma_t - m.sigma_s, 0.0);

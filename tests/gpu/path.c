@@ -170,7 +170,8 @@ static void overlap(void **state)
     s.medium.mode = TYN_MEDIUM_COEFFICIENTS;
     s.medium.num_shapes = 2;
     s.medium.sigma_t_max = most; // of the brick, whose bounds are (1, 1)
-    s.params.one_shape = s.params.grey = 0;
+    s.params.num_shapes = 2;
+    s.params.grey = 0;
     s.params.max_depth = 1;
     const float *radiance, *error;
     path_scene_render(*state, &s, 1024, &radiance, &error);

@@ -67,7 +67,7 @@ void path_scene_box(path_scene *s, const float extent[3], const float sigma_s[3]
     copy3(shape->g, g);
 
     tyn_pass_defaults(&tyn_pass_path, &s->params);
-    s->params.one_shape = 1;
+    s->params.num_shapes = 1;
     s->params.homogeneous = grid ? 0 : 1;
     s->params.grey = 1;
     for (int i = 1; i < 3; i++) {
