@@ -19,7 +19,7 @@ vec2 quarter_pixel(uint i)
 // 4 if the rays through the pixel's quarters disagree on which shapes they meet, else 1.
 uint rays_of_pixel(ivec2 pixel)
 {
-    if (args.supersample == 0u) {
+    if (!raymarch_has(RAYMARCH_SUPERSAMPLE)) {
         return 1u;
     }
     // Origin or direction is linear in the image position.

@@ -140,6 +140,9 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
 
     params->num_shapes = block->num_shapes;
     params->closed = frame->closed || block->size[0] * block->size[1] * block->size[2] == 1;
+    if (frame->closed) {
+        params->antialias = 0; // the box that the rays may miss has nothing at its faces
+    }
     tyn_raymarch_window(params, &frame->camera);
 
     const struct env_block *env = &frame->environment;

@@ -234,6 +234,7 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= behind ? RAYMARCH_BEHIND : 0;
     features |= p->num_shapes == 1 ? RAYMARCH_ONE_SHAPE : 0;
     features |= p->closed ? RAYMARCH_CLOSED : 0;
+    features |= p->antialias ? RAYMARCH_SUPERSAMPLE : 0;
     features |= p->one_channel ? RAYMARCH_ONE_CHANNEL : 0;
     return features;
 }
@@ -260,7 +261,6 @@ static void record(tyn_recorder *r, const void *params)
     struct raymarch_args args = {
         .step = p->step * fminf(voxel, p->longest_step),
         .stop = p->stop,
-        .supersample = p->antialias,
         .depth = {p->depth[0], p->depth[1], p->depth[2], p->depth[3]},
         .first = {p->first[0], p->first[1]},
         .end = {p->end[0], p->end[1]},
