@@ -126,6 +126,16 @@ march_medium march_medium_at(march_medium unit, vec3 uvw)
     return march_scale(unit, max(textureLod(medium_density_tex, uvw, 0.0).r, 0.0));
 }
 
+// Is there anything that absorbs, scatters or emits?
+bool march_any(march_medium m)
+{
+    float most = spectrum_max(m.extinction) + spectrum_max(m.hidden);
+    if (raymarch_has(RAYMARCH_EMISSION)) {
+        most += m.emission.r + m.emission.g + m.emission.b;
+    }
+    return most > 0.0;
+}
+
 // A sun as one view ray sees it: its grid's coordinates are linear along the ray.
 struct march_sun {
     beam_ray beam;
@@ -284,10 +294,22 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
             if (s >= end || spectrum_max(through_scaled) <= args.stop) {
                 break;
             }
-            float ds = min(length_next, end - s);
-            length_next = args.step;
-
-            march_medium m = march_medium_at(unit, medium0 + (s + 0.5 * ds) * medium1);
+            // Empty steps cost one fetch: neighbouring rays look for the next full one together.
+            march_medium m;
+            float ds;
+            bool full = false;
+            do {
+                ds = min(length_next, end - s);
+                length_next = args.step;
+                m = march_medium_at(unit, medium0 + (s + 0.5 * ds) * medium1);
+                full = march_any(m);
+                s += full ? 0.0 : ds;
+                i += full ? 0 : 1;
+                result.steps++;
+            } while (!full && i < RAYMARCH_CHUNK && s < end);
+            if (!full) {
+                break;
+            }
             spectrum x = m.extinction * ds, x_scaled = m.scaled_extinction * ds;
             float at = s + ds * step_centroid(0.5 * spectrum_mean(
                                     raymarch_has(RAYMARCH_KERNELS) ? x + x_scaled : x + x));
@@ -326,7 +348,6 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
             through_scaled *= e_scaled;
             hidden += m.hidden * ds;
             s += ds;
-            result.steps++;
         }
     }
 
