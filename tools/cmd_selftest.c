@@ -17,7 +17,12 @@ typedef struct selftest_args {
     bool json;
 } selftest_args;
 
-enum { SIZE = 32, PATH_SAMPLES = 64, PROBE_SAMPLES = 1 << 18 };
+enum {
+    SIZE = 32,               // pixels
+    PATH_SAMPLES = 64,       // a pixel
+    PROBE_SAMPLES = 1 << 18, // a point
+    BALANCE_SAMPLES = 8,     // of many thousand paths each
+};
 
 // One check is |value - expected| <= tolerance.
 typedef struct selftest {
@@ -224,7 +229,7 @@ static int check_energy(selftest *t)
             continue;
         }
         tyn_view view = {
-            .width = 1, .height = 1, .outputs = TYN_OUTPUT_BALANCE, .num_samples = PROBE_SAMPLES};
+            .width = 1, .height = 1, .outputs = TYN_OUTPUT_BALANCE, .num_samples = BALANCE_SAMPLES};
         selftest_camera(&view.camera, 0, 0, -1, 1);
         tyn_scene scene;
         selftest_cube(&scene, 0.5f, false);
