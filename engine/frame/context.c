@@ -28,8 +28,8 @@ struct tyn_context {
     uint32_t outputs;
     // The environment's tables, made again when its texels change.
     uint64_t env_hash;
-    uint64_t closed_hash; // of the grid that `closed` was found for
-    bool closed;
+    uint64_t faces_hash; // of the grid that `open_faces` was found for
+    uint32_t open_faces;
     uint64_t checked_data; // hash of the densities and texels that were found fit
     float env_mean[3];
     void *env_cdf; // of a method that reads it
@@ -290,18 +290,19 @@ static void upload_scene(tyn_context *ctx, const tyn_frame *frame, tyn_scene_ref
     }
 }
 
-// Whether the only grid is 0 at its faces; looked up again when its content changes.
-static bool is_closed(tyn_context *ctx, const tyn_scene *scene)
+// Faces at which the medium is not 0, as far as is known; looked up again when the grid changes.
+static uint32_t open_faces(tyn_context *ctx, const tyn_scene *scene)
 {
     if (!ctx->frame.direct || scene->num_volumes != 1) {
-        return false;
+        return 63;
     }
-    uint64_t hash = tyn_hash_u64(scene->volumes[0].hash, (uint64_t)(uintptr_t)scene->volumes[0].data);
-    if (hash != ctx->closed_hash) {
-        ctx->closed = tyn_volume_closed(&scene->volumes[0]);
-        ctx->closed_hash = hash;
+    uint64_t hash =
+        tyn_hash_u64(scene->volumes[0].hash, (uint64_t)(uintptr_t)scene->volumes[0].data);
+    if (hash != ctx->faces_hash) {
+        ctx->open_faces = tyn_volume_open_faces(&scene->volumes[0]);
+        ctx->faces_hash = hash;
     }
-    return ctx->closed;
+    return ctx->open_faces;
 }
 
 static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *job)
@@ -314,7 +315,7 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
         result = tyn_frame_scene_build(&ctx->frame, frame->scene, view, ctx->env_mean, log);
     }
     if (result == TYN_OK) {
-        ctx->frame.closed = is_closed(ctx, frame->scene);
+        ctx->frame.open_faces = open_faces(ctx, frame->scene);
         result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);
     }
     if (result == TYN_OK && ctx->atlas.host && !frame->densities) {

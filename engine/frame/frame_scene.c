@@ -328,24 +328,25 @@ void tyn_environment_mean(const tyn_environment *env, float mean[3])
 
 // ---- all --------------------------------------------------------------------------------------
 
-bool tyn_volume_closed(const tyn_volume *volume)
+uint32_t tyn_volume_open_faces(const tyn_volume *volume)
 {
+    if (!volume->data) {
+        return 63;
+    }
     const uint32_t *n = volume->size;
-    for (size_t z = 0; volume->data && z < n[2]; z++) {
-        for (size_t y = 0; y < n[1]; y++) {
-            const float *row = volume->data + (z * n[1] + y) * n[0];
-            bool face = z == 0 || z == n[2] - 1 || y == 0 || y == n[1] - 1;
-            for (size_t x = 0; face && x < n[0]; x++) {
-                if (row[x] != 0.0f) {
-                    return false;
-                }
-            }
-            if (row[0] != 0.0f || row[n[0] - 1] != 0.0f) {
-                return false;
+    const size_t stride[3] = {1, n[0], (size_t)n[0] * n[1]};
+    uint32_t open = 0;
+    for (int a = 0; a < 3; a++) {
+        int u = (a + 1) % 3, v = (a + 2) % 3;
+        for (size_t j = 0; j < n[v]; j++) {
+            for (size_t i = 0; i < n[u]; i++) {
+                const float *low = volume->data + i * stride[u] + j * stride[v];
+                open |= low[0] != 0.0f ? 1u << (2 * a) : 0;
+                open |= low[(n[a] - 1) * stride[a]] != 0.0f ? 2u << (2 * a) : 0;
             }
         }
     }
-    return volume->data != NULL;
+    return open;
 }
 
 tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, const tyn_view *view,

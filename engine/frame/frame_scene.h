@@ -22,5 +22,5 @@ void tyn_atlas_fill(const tyn_atlas *atlas, const tyn_scene *scene, void *texels
 uint64_t tyn_atlas_hash(const tyn_atlas *atlas, const tyn_scene *scene);
 uint32_t tyn_atlas_offset(const tyn_scene *scene, int32_t volume); // first z
 
-// True if the outermost voxels of a grid are all 0; false for a host's image.
-bool tyn_volume_closed(const tyn_volume *volume);
+// At which faces of its box a grid is not 0: bit 2 a for the low face of axis a, 2 a + 1 for the high one.
+uint32_t tyn_volume_open_faces(const tyn_volume *volume);

@@ -18,8 +18,9 @@ typedef struct tyn_frame_scene {
     bool direct; // one unsheared box: the atlas is the density texture, `medium` need not resample
     bool grey;   // sigma_s, sigma_a, g equal in all channels (and no coefficient textures)
     bool emissive;
-    bool closed;            // direct, and the density is 0 at all faces of the box (false: not known)
-    bool empty;             // no medium at all, or no coefficient above 0
+    uint32_t
+        open_faces; // of the box, where the density may not be 0: bit 2 a + (1: high face of axis a)
+    bool empty;     // no medium at all, or no coefficient above 0
     float m_from_world[16]; // rigid
 } tyn_frame_scene;
 

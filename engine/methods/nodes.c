@@ -117,6 +117,19 @@ tyn_result tyn_add_beams(tyn_graph *g, const tyn_job *job, const tyn_media_refs 
 
 // ---- the picture ------------------------------------------------------------------------------
 
+// Is there medium at a face through which a sun shines into the box?
+static bool sunlight_enters_through_medium(const tyn_frame_scene *frame, uint32_t num_suns)
+{
+    uint32_t lit = 0;
+    for (uint32_t n = 0; n < num_suns; n++) {
+        for (int a = 0; a < 3; a++) {
+            float d = frame->lights[n].direction[a];
+            lit |= d > 0.0f ? 1u << (2 * a) : d < 0.0f ? 2u << (2 * a) : 0;
+        }
+    }
+    return (lit & frame->open_faces) != 0;
+}
+
 static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
                              const tyn_picture_inputs *in)
 {
@@ -139,8 +152,9 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
         tyn_raymarch_longest_step(block->sigma_t_max * block->max_density, in->cell, block);
 
     params->num_shapes = block->num_shapes;
-    params->closed = frame->closed || block->size[0] * block->size[1] * block->size[2] == 1;
-    if (frame->closed) {
+    params->closed = !sunlight_enters_through_medium(frame, in->num_suns) ||
+                     block->size[0] * block->size[1] * block->size[2] == 1;
+    if (!frame->open_faces) {
         params->antialias = 0; // the box that the rays may miss has nothing at its faces
     }
     tyn_raymarch_window(params, &frame->camera);

@@ -24,8 +24,8 @@ typedef struct tyn_raymarch_params {
     float extent[3];    // medium_block.extent, m
     float longest_step; // m; a step is no longer than this
     uint32_t
-        closed; // 1: the medium is empty at the faces of its box, or homogeneous: depths along suns take
-                // one fetch
+        closed; // 1: the medium is empty at the faces through which suns shine in, or homogeneous: depths
+                // along suns take one fetch
     uint32_t num_shapes;
     uint32_t first[2],
         end[2];     // pixels that may see the media (tyn_raymarch_window); all 0: every pixel
