@@ -87,7 +87,8 @@ const command cmd_balance = {
     .summary = "Where the energy goes, in W, for R, G and B.",
     .details =
         "entering: through the surface of the media's shapes together; emitted: by media and by\n"
-        "lamps inside; imbalance = 1 - (absorbed + escaped) / (entering + emitted).",
+        "lamps inside; imbalance = 1 - (absorbed + escaped) / (entering + emitted). With\n"
+        "--method path a sample (--spp) is some hundred thousand paths.",
     .positionals = positionals,
     .num_positionals = ARRAY_SIZE(positionals),
     .groups = groups,
