@@ -44,7 +44,10 @@ static double path_cost_ns(const tyn_job *job, bool homogeneous)
     }
     double collisions = 2 + bound * chord;
     double bricks = m->bricks[0] + m->bricks[1] + m->bricks[2];
-    return homogeneous ? 25 * collisions : 60 * m->num_shapes * collisions + 10 * bricks;
+    double cost = homogeneous ? 25 * collisions : 60 * m->num_shapes * collisions + 10 * bricks;
+    // Paths that start inside have to find their way out of the thick of it.
+    cost *= job->outputs & (TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE) ? 2 + 0.5 * bound * chord : 1;
+    return job->frame->grey ? cost : 2 * cost;
 }
 
 // ---- parameters -------------------------------------------------------------------------------
@@ -231,7 +234,7 @@ static void set_lamp_power(tyn_path_params *p, const tyn_frame_scene *frame)
 // One `sample` of a balance is BALANCE_CHUNKS dispatches of as many paths as the time limit allows.
 static tyn_result add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
 {
-    enum { BALANCE_CHUNKS = 16, CHUNK_MIN = 4096, CHUNK_MAX = 131072 };
+    enum { BALANCE_CHUNKS = 8, CHUNK_MIN = 4096, CHUNK_MAX = 16384 };
     tyn_path_params params;
     set_params(&params, job, &tyn_pass_path_balance);
     set_lamp_power(&params, job->frame);

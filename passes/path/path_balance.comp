@@ -34,8 +34,9 @@ vec3 surface_local(shape_block shape, vec3 random, out vec3 outward, out float a
     uint face = min(uint(random.z * 6.0), 5u), axis = face >> 1;
     float side = (face & 1u) != 0u ? 1.0 : -1.0;
     vec2 at = random.xy - 0.5;
-    area = medium.repeat[axis] != 0u ? 0.0 : 6.0; // a periodic medium has no face there
     outward = side * vec3(axis == 0u, axis == 1u, axis == 2u);
+    bool periodic = dot(abs(outward), vec3(medium.repeat)) > 0.0;
+    area = periodic ? 0.0 : 6.0; // a periodic medium has no face there
     return 0.5 * outward +
            (axis == 0u ? vec3(0.0, at) : axis == 1u ? vec3(at.x, 0.0, at.y) : vec3(at, 0.0));
 }
@@ -55,8 +56,13 @@ vec3 surface_point(uvec4 bits)
 {
     uint count = SHAPES != 0u ? SHAPES : medium.num_shapes;
     uint own = min(uint(rng_float(bits.w) * float(count)), count - 1u);
-    shape_block shape = shape_get(own);
+    shape_block shape = shapes[own]; // an index that varies would drive path_shapes out of registers
     mat3 to_local = transpose(mat3(shape.rows[0].xyz, shape.rows[1].xyz, shape.rows[2].xyz));
+    if (determinant(to_local) == 0.0) { // a scene without media
+        measure = vec3(0.0);
+        normal = vec3(0.0, 0.0, 1.0);
+        return vec3(0.0);
+    }
     mat3 from_local = inverse(to_local);
     vec3 outward;
     float area;
