@@ -7,15 +7,25 @@
 
 enum { W = 19, H = 11, N = W * H * 4 };
 
-static void fill_half(void *user, void *staging)
+static tyn_ref add(gpu_test *t, bool half, tyn_ref radiance, tyn_ref transmittance, tyn_ref color)
 {
-    const float *values = user;
-    uint16_t *texels = staging;
-    for (int i = 0; i < N; i++) {
-        texels[i] = tyn_half_from_float(values[i]);
-    }
+    tyn_ref refs[COMPOSITE_NUM_PORTS] = {
+        [COMPOSITE_PORT_RADIANCE] = radiance,
+        [COMPOSITE_PORT_TRANSMITTANCE] = transmittance,
+        [COMPOSITE_PORT_COLOR] = color,
+    };
+    tyn_composite_params params = {.half_color = half};
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_composite, &params, refs), TYN_OK);
+    return refs[COMPOSITE_PORT_COLOR];
 }
 
+static tyn_ref blank(gpu_test *t, bool half, tyn_extent extent)
+{
+    VkFormat format = half ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+    return tyn_graph_history_image(t->graph, "color", TYN_IMAGE_2D, format, extent, 1);
+}
+
+// A picture is laid over nothing, then a second one over it.
 static void lay(gpu_test *t, bool half)
 {
     float radiance[N], transmittance[N], color[N];
@@ -26,21 +36,16 @@ static void lay(gpu_test *t, bool half)
     }
     tyn_extent extent = {W, H, 1};
     tyn_graph_begin(t->graph);
-    tyn_ref refs[COMPOSITE_NUM_PORTS] = {
-        gpu_image(t, "radiance", TYN_IMAGE_2D, extent, 4, radiance),
-        gpu_image(t, "transmittance", TYN_IMAGE_2D, extent, 4, transmittance),
-    };
-    refs[COMPOSITE_PORT_COLOR] =
-        half ? tyn_graph_upload_image(t->graph, "color", TYN_IMAGE_2D,
-                                      VK_FORMAT_R16G16B16A16_SFLOAT, extent, fill_half, color, 1)
-             : gpu_image(t, "color", TYN_IMAGE_2D, extent, 4, color);
-    tyn_composite_params params = {.half_color = half};
-    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_composite, &params, refs), TYN_OK);
-    tyn_graph_output(t->graph, "color", refs[COMPOSITE_PORT_COLOR], true);
+    tyn_ref light = gpu_image(t, "radiance", TYN_IMAGE_2D, extent, 4, radiance);
+    tyn_ref through = gpu_image(t, "transmittance", TYN_IMAGE_2D, extent, 4, transmittance);
+    tyn_ref below = gpu_image(t, "below", TYN_IMAGE_2D, extent, 4, color);
+    tyn_ref laid = add(t, half, below, through, blank(t, half, extent));
+    laid = add(t, half, light, through, laid);
+    tyn_graph_output(t->graph, "color", laid, true);
     gpu_run(t);
     const void *out = gpu_map(t, "color");
     for (int i = 0; i < N; i++) {
-        float expected = i % 4 == 3 ? color[i] : color[i] * transmittance[i] + radiance[i];
+        float expected = i % 4 == 3 ? 0 : color[i] * transmittance[i] + radiance[i];
         float value =
             half ? tyn_half_to_float(((const uint16_t *)out)[i]) : ((const float *)out)[i];
         assert_true(fabsf(value - expected) <= (half ? 1e-3f : 1e-6f) * (1 + expected));
@@ -65,7 +70,7 @@ static void other_size(void **state)
     tyn_ref refs[COMPOSITE_NUM_PORTS] = {
         gpu_image(t, "radiance", TYN_IMAGE_2D, (tyn_extent){W, H, 1}, 4, texels),
         gpu_image(t, "transmittance", TYN_IMAGE_2D, (tyn_extent){W, H, 1}, 4, texels),
-        gpu_image(t, "color", TYN_IMAGE_2D, (tyn_extent){W, H - 1, 1}, 4, texels),
+        blank(t, false, (tyn_extent){W, H - 1, 1}),
     };
     t->quiet = true;
     tyn_composite_params params = {0};
