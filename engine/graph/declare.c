@@ -26,11 +26,6 @@ tyn_result graph_fail(tyn_graph *g, tyn_result result, const char *format, ...)
     return result;
 }
 
-const tyn_log *tyn_graph_log(const tyn_graph *g)
-{
-    return &g->dev->log;
-}
-
 tyn_result tyn_graph_status(const tyn_graph *g)
 {
     return g->status;
@@ -86,12 +81,6 @@ static resource *find(tyn_graph *g, tyn_ref ref)
 {
     return ref.resource && ref.resource <= g->num_resources ? &g->resources[ref.resource - 1]
                                                             : NULL;
-}
-
-tyn_extent tyn_graph_extent(const tyn_graph *g, tyn_ref ref)
-{
-    const resource *r = find((tyn_graph *)g, ref);
-    return r ? r->extent : (tyn_extent){0, 0, 0};
 }
 
 VkFormat tyn_graph_format(const tyn_graph *g, tyn_ref ref)

@@ -70,9 +70,7 @@ void tyn_graph_setup_only(tyn_graph *g);
 // of several such nodes the last. Counts until the next tyn_graph_begin.
 void tyn_graph_inspect(tyn_graph *g, const char *pass);
 
-tyn_extent tyn_graph_extent(const tyn_graph *g, tyn_ref ref);
 VkFormat tyn_graph_format(const tyn_graph *g, tyn_ref ref);
-const tyn_log *tyn_graph_log(const tyn_graph *g);
 
 // ---- compile, record ------------------------------------------------------------------------
 

@@ -194,16 +194,6 @@ tyn_result tyn_json_string(const json_doc *doc, const cJSON *parent, const char 
     return cJSON_IsString(at) ? TYN_OK : tyn_json_fault(doc, at, "must be a string");
 }
 
-tyn_result tyn_json_bool(const json_doc *doc, const cJSON *parent, const char *name, bool *out)
-{
-    const cJSON *at = tyn_json_member(parent, name);
-    if (!at) {
-        return TYN_OK;
-    }
-    *out = cJSON_IsTrue(at);
-    return cJSON_IsBool(at) ? TYN_OK : tyn_json_fault(doc, at, "must be true or false");
-}
-
 static bool number_in(const cJSON *at, double lo, double hi)
 {
     return cJSON_IsNumber(at) && at->valuedouble >= lo && at->valuedouble <= hi;

@@ -25,7 +25,6 @@ tyn_result tyn_json_object(const json_doc *doc, const cJSON *parent, const char 
 tyn_result tyn_json_array(const json_doc *doc, const cJSON *parent, const char *name, cJSON **out);
 tyn_result tyn_json_string(const json_doc *doc, const cJSON *parent, const char *name,
                            const char **out);
-tyn_result tyn_json_bool(const json_doc *doc, const cJSON *parent, const char *name, bool *out);
 // `right` says what the value must be, e.g. "a number >= 0".
 tyn_result tyn_json_number(const json_doc *doc, const cJSON *parent, const char *name, double lo,
                            double hi, const char *right, double *out);

@@ -1,6 +1,5 @@
 // nodes.c -- parts of a frame that several methods have in common.
 #include "methods/nodes.h"
-#include <tyndall/registry.h>
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
 #include "passes/composite/composite.h"
