@@ -153,7 +153,7 @@ static void print_lights(const tyn_scene *scene)
         printf("light %u '%s': %s,", i, name_or(l->name), kinds[l->kind]);
         print_color(" ", l->color, sun ? " W/m^2," : " W/sr,");
         const float *v = sun ? l->direction : l->position;
-        printf(" %s %g %g %g\n", sun ? "travels along" : "at", v[0], v[1], v[2]);
+        printf(" %s %g %g %g\n", sun ? "travels along" : "at", 0 + v[0], 0 + v[1], 0 + v[2]);
     }
     const tyn_environment *env = &scene->environment;
     if (env->present && env->data) {
@@ -171,7 +171,7 @@ static void print_cameras(const tyn_scene *scene)
 {
     for (uint32_t i = 0; i < scene->num_cameras; i++) {
         const tyn_camera *c = &scene->cameras[i];
-        printf("camera %u '%s': ", i, name_or(c->name ? c->name : c->camera_name));
+        printf("camera %u '%s': ", c->index, name_or(c->name ? c->name : c->camera_name));
         if (c->projection == TYN_PERSPECTIVE) {
             printf("perspective, vertical field of view %g deg", c->yfov * 180 / 3.14159265358979);
         } else {

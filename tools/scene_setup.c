@@ -111,13 +111,17 @@ static bool same_name(const char *a, const char *b)
     return a && strcmp(a, b) == 0;
 }
 
-// INDEX|NAME -> index into scene->cameras, or -1. A number is an index where there is one.
+// INDEX|NAME -> index into scene->cameras, or -1. A number is an index into the file's list where that
+// has one which a node uses.
 static int find_camera(const tyn_scene *scene, const char *name)
 {
     char *end;
     unsigned long index = strtoul(name, &end, 10);
-    if (isdigit((unsigned char)*name) && *end == '\0' && index < scene->num_cameras) {
-        return (int)index;
+    bool number = isdigit((unsigned char)*name) && *end == '\0';
+    for (uint32_t i = 0; number && i < scene->num_cameras; i++) {
+        if (scene->cameras[i].index == index) {
+            return (int)i;
+        }
     }
     for (uint32_t i = 0; i < scene->num_cameras; i++) {
         if (same_name(scene->cameras[i].name, name)) {
@@ -139,8 +143,8 @@ static void say_which_cameras(app *a, const tyn_scene *scene, const char *name)
     for (uint32_t i = 0; i < scene->num_cameras && used < sizeof line; i++) {
         const tyn_camera *c = &scene->cameras[i];
         const char *title = c->name ? c->name : c->camera_name ? c->camera_name : "";
-        used +=
-            (size_t)snprintf(line + used, sizeof line - used, "%s %u '%s'", i ? "," : "", i, title);
+        used += (size_t)snprintf(line + used, sizeof line - used, "%s %u '%s'", i ? "," : "",
+                                 c->index, title);
     }
     app_error(a, "--camera: there is no camera '%s'; the scene has:%s", name, line);
 }

@@ -136,8 +136,14 @@ static tyn_result add_camera(walk *w, uint32_t n)
         return TYN_ERR_MEMORY;
     }
     w->scene->cameras = grown;
-    tyn_camera *camera = &grown[w->scene->num_cameras++];
+    // By their place in the file's list, which is how they are asked for, then in the nodes' order.
+    uint32_t index = (uint32_t)w->model->nodes[n].camera, at = w->scene->num_cameras++;
+    for (; at > 0 && grown[at - 1].index > index; at--) {
+        grown[at] = grown[at - 1];
+    }
+    tyn_camera *camera = &grown[at];
     *camera = (tyn_camera){
+        .index = index,
         .name = name_or_null(w->model->nodes[n].name),
         .camera_name = name_or_null(from->name),
         .projection = from->orthographic ? TYN_ORTHOGRAPHIC : TYN_PERSPECTIVE,

@@ -123,6 +123,25 @@ static float ramp(int32_t i, int32_t j, int32_t k)
     return (float)(i + 10 * j + 100 * k);
 }
 
+// Cameras stand in the order of the file's list, whatever the nodes' order, and know their place in it.
+static void camera_order(void **state)
+{
+    tyn_scene s;
+    (void)state;
+    load(&s, quoted(ASSET ", 'scene': 0, 'scenes': [{'nodes': [0, 1, 2]}], 'nodes': ["
+                          "{'name': 'late', 'camera': 2}, {'name': 'early', 'camera': 0},"
+                          "{'name': 'again', 'camera': 0}], 'cameras': ["
+                          "{'type': 'perspective', 'perspective': {'yfov': 0.5, 'znear': 1}},"
+                          "{'type': 'perspective', 'perspective': {'yfov': 0.6, 'znear': 1}},"
+                          "{'type': 'perspective', 'perspective': {'yfov': 0.7, 'znear': 1}}]}"));
+    assert_int_equal(s.num_cameras, 3);
+    assert_string_equal(s.cameras[0].name, "early");
+    assert_string_equal(s.cameras[1].name, "again");
+    assert_string_equal(s.cameras[2].name, "late");
+    assert_true(s.cameras[0].index == 0 && s.cameras[1].index == 0 && s.cameras[2].index == 2);
+    tyn_scene_finish(&s);
+}
+
 static void volumes(void **state)
 {
     nvdb_spec spec = {.name = "smoke",
@@ -270,8 +289,8 @@ static void long_chain(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(nodes), cmocka_unit_test(volumes),
-                                       cmocka_unit_test(environments), cmocka_unit_test(containers),
-                                       cmocka_unit_test(long_chain)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(nodes),      cmocka_unit_test(camera_order),
+                                       cmocka_unit_test(volumes),    cmocka_unit_test(environments),
+                                       cmocka_unit_test(containers), cmocka_unit_test(long_chain)};
     return cmocka_run_group_tests(tests, NULL, io_test_clean);
 }

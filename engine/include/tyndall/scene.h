@@ -73,6 +73,7 @@ typedef enum tyn_projection { TYN_PERSPECTIVE = 0, TYN_ORTHOGRAPHIC = 1 } tyn_pr
 typedef struct tyn_camera {
     char *name;           // node's name; may be NULL
     char *camera_name;    // glTF camera's name; may be NULL
+    uint32_t index;       // in the file's list of cameras, which several nodes may use
     tyn_projection projection;
     float position[3];    // world, metres
     float right[3], up[3], back[3]; // orthonormal, right-handed; looks along -back
