@@ -196,6 +196,22 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, field *f)
     return result;
 }
 
+static uint32_t points_outside(const tyn_job *job)
+{
+    const float *m = job->frame->m_from_world, *extent = job->frame->medium.extent;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < job->view->num_points; i++) {
+        const float *p = job->view->points[i];
+        bool outside = false;
+        for (int a = 0; a < 3; a++) {
+            float x = m[a] * p[0] + m[4 + a] * p[1] + m[8 + a] * p[2] + m[12 + a];
+            outside = outside || x < -1e-3f * extent[a] || x > 1.001f * extent[a];
+        }
+        count += outside;
+    }
+    return count;
+}
+
 static tyn_result add_probe(tyn_graph *g, const tyn_job *job, field *f)
 {
     tyn_probe_params params;
@@ -210,6 +226,13 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, field *f)
     }
     if (params.scattered_only && f->lit_by_environment) {
         tyn_method_warn(job, "probe: the environment's light counts as scattered, all of it");
+    }
+    uint32_t outside = points_outside(job);
+    if (outside > 0) {
+        tyn_method_warn(job,
+                        "probe: %u of %u points lie outside the media's box; there the scattered "
+                        "light is the nearest face's, too much",
+                        outside, job->view->num_points);
     }
     const tyn_beam_refs *beams = &f->picture.beams;
     tyn_ref refs[TYN_MAX_PORTS] = {

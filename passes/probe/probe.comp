@@ -48,6 +48,18 @@ vec4 moments_at(lattice_box box, vec3 p, uint ch)
     return vec4(max(sum.x, 0.0), sum.yzw);
 }
 
+// Where light along `direction` that arrives at p was last in the box: p itself if that is inside.
+// False: it never was.
+bool last_in_box(vec3 p, vec3 direction, out vec3 last)
+{
+    vec3 d = mix(direction, vec3(1e-12), lessThan(abs(direction), vec3(1e-12)));
+    vec3 t0 = p / d, t1 = (p - medium.extent) / d; // distances back to the faces
+    vec3 lo = min(t0, t1), hi = max(t0, t1);
+    float t = max(max(max(lo.x, lo.y), lo.z), 0.0);
+    last = p - t * d;
+    return t <= min(min(hi.x, hi.y), hi.z);
+}
+
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
@@ -63,7 +75,11 @@ void main()
         field[ch] = args.tint[ch] * moments_at(box, p, args.channels == 1 ? 0 : ch);
     }
     for (uint sun = 0; sun < args.num_suns; sun++) {
-        beam_tau tau = beam_depth(sun, p);
+        vec3 last;
+        beam_tau tau = beam_tau(vec3(0.0), vec3(0.0), vec3(0.0));
+        if (last_in_box(p, lights[sun].direction, last)) {
+            tau = beam_depth(sun, last);
+        }
         // The lattice counts light in the forward peak as not scattered; a probe of the scattered
         // light takes it back.
         vec3 e = exp(-(tau.a + tau.p));

@@ -81,17 +81,28 @@ static void fluence_in_a_cube(void **state)
 // Without scattering the fluence is E e^-tau exactly, and the flux along the light is the same.
 static void absorption_only(void **state)
 {
-    static const float points[][3] = {{0.5f, 0.5f, 0.5f}, {0.1f, 0.8f, 0.3f}, {0.9f, 0.95f, 0.6f}};
+    static const float points[][3] = {{0.5f, 0.5f, 0.5f},
+                                      {0.1f, 0.8f, 0.3f},
+                                      {0.9f, 0.95f, 0.6f},
+                                      {1, 1.5f, 0.25f}, // outside, in the shadow
+                                      {2, 0.5f, 0.5f}}; // outside, in the sun
+    const int num_points = sizeof points / sizeof points[0];
     light_chain c = cube(0, 2, 0);
     sun(&c, 1, 2, -0.5f, 3, 3, 3);
     c.points = points;
-    c.num_points = 3;
+    c.num_points = (uint32_t)num_points;
     light_chain_run(*state, &c);
     const float *d = c.sun_direction[0];
-    for (int i = 0; i < 3; i++) {
-        float length = 1e9f;
-        for (int a = 0; a < 3; a++) {
-            length = fminf(length, (d[a] > 0 ? points[i][a] : points[i][a] - 1) / d[a]);
+    for (int i = 0; i < num_points; i++) {
+        const float step = 1e-4f;
+        float length = 0; // of the way to the point within the cube
+        for (int k = 0; k < 40000; k++) {
+            bool inside = true;
+            for (int a = 0; a < 3; a++) {
+                float x = points[i][a] - ((float)k + 0.5f) * step * d[a];
+                inside = inside && x > 0 && x < 1;
+            }
+            length += inside ? step : 0;
         }
         float expected = 3 * expf(-2 * length);
         assert_true(fabsf(c.results[i].fluence[1] / expected - 1) < 1e-3f);
