@@ -116,11 +116,12 @@ static int write_outputs(app *a, const render_job *job, const tyn_view *view, co
 }
 
 // What the run gave, in a line for people.
-static void note_result(app *a, const stats *s, const opt_list *files)
+static void note_result(app *a, const stats *s, double frame_ms, const opt_list *files)
 {
-    app_note(a, "%s: %ux%u, %s on %s, %.0f ms a cold frame, %.0f ms set-up", files->items[0],
-             s->view->width, s->view->height, s->method->info.name, s->device, s->cold_ms,
-             s->setup_ms);
+    bool cold = !isnan(s->cold_ms);
+    app_note(a, "%s: %ux%u, %s on %s, %.0f ms%s, %.0f ms set-up", files->items[0], s->view->width,
+             s->view->height, s->method->info.name, s->device, frame_ms,
+             cold ? " a cold frame" : "", s->setup_ms);
 }
 
 // Renders, writes and times one picture. `scene` has been loaded.
@@ -132,6 +133,8 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
                      .exposure_ev = job->args->exposure,
                      .time_index = number};
     method_view(&job->args->method, &view);
+    // Later pictures of a sequence recompute only what differs: they are not cold.
+    bool first = !job->renderer.offline;
     int code = view_setup(a, &job->args->view, scene, &view);
     if (code == EXIT_DONE) {
         code = open_renderer(a, job);
@@ -142,13 +145,14 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
     if (code != EXIT_DONE) {
         return code;
     }
+    const double frame_ms = job->renderer.frame_ms;
     code = write_outputs(a, job, &view, &paths->outputs);
     stats s = {.device = tyn_device_name(job->machine.device),
                .method = job->method,
                .scene = scene,
                .view = &view,
                .setup_ms = job->renderer.setup_ms,
-               .cold_ms = job->renderer.frame_ms,
+               .cold_ms = first ? frame_ms : NAN,
                .camera_moved_ms = NAN,
                .light_moved_ms = NAN,
                .unchanged_ms = NAN,
@@ -159,7 +163,7 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
     if (code != EXIT_DONE) {
         return code;
     }
-    note_result(a, &s, &paths->outputs);
+    note_result(a, &s, frame_ms, &paths->outputs);
     if (paths->stats) {
         tyn_report report = {0};
         tyn_offline_report(job->renderer.offline, &report);
