@@ -231,10 +231,10 @@ static void set_lamp_power(tyn_path_params *p, const tyn_frame_scene *frame)
     }
 }
 
-// One `sample` of a balance is BALANCE_CHUNKS dispatches of as many paths as the time limit allows.
+// One `sample` of a balance is a dispatch of some thousand paths: as many as the time limit allows.
 static tyn_result add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
 {
-    enum { BALANCE_CHUNKS = 8, CHUNK_MIN = 4096, CHUNK_MAX = 16384 };
+    enum { BALANCE_CHUNKS = 1, CHUNK_MIN = 4096, CHUNK_MAX = 16384 };
     tyn_path_params params;
     set_params(&params, job, &tyn_pass_path_balance);
     set_lamp_power(&params, job->frame);
