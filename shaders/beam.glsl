@@ -15,10 +15,17 @@
 #define TYN_BEAM_GLSL
 #include "beam_args.h"
 
+#ifdef BEAM_UNIFORM // read at constant places by every thread: much cheaper on a CPU device
+layout(set = 0, binding = BEAM_BLOCKS, scalar) uniform beam_uniform
+{
+    beam_block beams[TYN_BEAM_MAX_SUNS];
+};
+#else
 layout(set = 0, binding = BEAM_BLOCKS, scalar) readonly buffer beam_buffer
 {
     beam_block beams[];
 };
+#endif
 layout(set = 0, binding = BEAM_COLUMN) uniform sampler3D beam_column_tex;
 #ifdef BEAM_TAU_A
 layout(set = 0, binding = BEAM_TAU_A) uniform sampler3D beam_tau_a_tex;

@@ -42,7 +42,7 @@ float spectrum_mean(vec3 x)
 }
 #endif
 
-const int RAYMARCH_CHUNK = 8; // steps between two looks at the distance map
+const int RAYMARCH_CHUNK = 32; // steps between two looks at the distance map: empty ones are cheap
 
 bool raymarch_has(uint feature)
 {

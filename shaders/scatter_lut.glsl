@@ -14,14 +14,14 @@
 //   ln( sum / (f (1 - e^-tau) e^{-tau (1 - f)}) )
 // over ln(1 + tau / 4) and ln(1 + theta / width): nearly straight there, so few texels do.
 //
-// Define SCATTER_LUT (sampler2D) and SCATTER_LUT_BLOCK (storage buffer) before including.
+// Define SCATTER_LUT (sampler2D) and SCATTER_LUT_BLOCK (uniform buffer) before including.
 #ifndef TYN_SCATTER_LUT_GLSL
 #define TYN_SCATTER_LUT_GLSL
 #include "hg.glsl"
 #include "scatter_lut_map.glsl"
 
 layout(set = 0, binding = SCATTER_LUT) uniform sampler2D lut_tex;
-layout(set = 0, binding = SCATTER_LUT_BLOCK, scalar) readonly buffer lut_buffer
+layout(set = 0, binding = SCATTER_LUT_BLOCK, scalar) uniform lut_uniform
 {
     lut_block lut;
 };

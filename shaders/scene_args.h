@@ -18,6 +18,10 @@
 #define TYN_LIGHT_KIND_POINT 1
 #define TYN_LIGHT_KIND_SPOT 2
 
+// Elements that the buffers "shapes" and "lights" always have; the counts say how many are used.
+#define TYN_SHAPES_MAX 64
+#define TYN_LIGHTS_MAX 64
+
 #define TYN_BRICK 8 // medium texels per brick along each axis
 
 struct medium_block { // uniform buffer "medium"

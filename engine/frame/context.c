@@ -257,14 +257,12 @@ static void upload_scene(tyn_context *ctx, const tyn_frame *frame, tyn_scene_ref
             ctx->atlas.extent, fill_atlas, ctx, tyn_atlas_hash(&ctx->atlas, scene));
     }
     refs->medium = tyn_graph_upload_buffer(g, "medium", &f->medium, sizeof f->medium, 0);
-    uint32_t shapes = scene->num_shapes ? scene->num_shapes : 1;
-    refs->shapes = tyn_graph_upload_buffer(g, "shapes", f->shapes, shapes * sizeof f->shapes[0], 0);
+    refs->shapes = tyn_graph_upload_buffer(g, "shapes", f->shapes, sizeof f->shapes, 0);
     tyn_graph_mark_media(g, refs->atlas);
     tyn_graph_mark_media(g, refs->medium);
     tyn_graph_mark_media(g, refs->shapes);
 
-    uint32_t lights = f->num_lights ? f->num_lights : 1;
-    refs->lights = tyn_graph_upload_buffer(g, "lights", f->lights, lights * sizeof f->lights[0], 0);
+    refs->lights = tyn_graph_upload_buffer(g, "lights", f->lights, sizeof f->lights, 0);
     refs->camera = tyn_graph_upload_buffer(g, "camera", &f->camera, sizeof f->camera, 0);
     refs->environment =
         tyn_graph_upload_buffer(g, "environment", &f->environment, sizeof f->environment, 0);

@@ -65,7 +65,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
 };
 
 static const tyn_param params_table[] = {
-    {"cells", TYN_PARAM_INT, offsetof(tyn_beam_params, cells), 160, 1, MAX_CELLS, "cells",
+    {"cells", TYN_PARAM_INT, offsetof(tyn_beam_params, cells), 112, 1, MAX_CELLS, "cells",
      "most cells of a sun's grid along an axis (96 where coefficients are textures); a cell is one "
      "voxel along the light and half of one across at least",
      NULL},

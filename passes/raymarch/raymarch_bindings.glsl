@@ -12,18 +12,19 @@ layout(constant_id = 2) const uint raymarch_features = 0u;
 #define MEDIUM_BLOCK 0
 #define MEDIUM_DENSITY 1
 #define BEAM_BLOCKS 2
+#define BEAM_UNIFORM
 #define BEAM_COLUMN 3
 #define SCATTER_LUT 4
 #define SCATTER_LUT_BLOCK 5
 layout(binding = 6) uniform sampler3D distance_tex;
 layout(binding = 7) uniform sampler3D inscatter_tex;
-layout(binding = 8, scalar) readonly buffer shape_buffer
+layout(binding = 8, scalar) uniform shape_uniform
 {
-    shape_block shapes[];
+    shape_block shapes[TYN_SHAPES_MAX];
 };
-layout(binding = 9, scalar) readonly buffer light_buffer
+layout(binding = 9, scalar) uniform light_uniform
 {
-    light_block lights[];
+    light_block lights[TYN_LIGHTS_MAX];
 };
 layout(binding = 10, scalar) uniform camera_uniform
 {

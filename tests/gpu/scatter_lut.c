@@ -102,7 +102,7 @@ static const float (*evaluate(gpu_test *t, const tyn_scatter_lut_params *lut_par
 {
     static point_pass pass;
     static const point_input inputs[] = {{"lut", TYN_IMAGE_2D, TYN_USE_SAMPLED},
-                                         {"lut_block", TYN_BUFFER, TYN_USE_STORAGE_READ}};
+                                         {"lut_block", TYN_BUFFER, TYN_USE_UNIFORM}};
     point_pass_init(&pass, scatter_lut_eval_spirv, sizeof scatter_lut_eval_spirv, inputs, 2);
     tyn_graph_begin(t->graph);
     tyn_ref lut[SCATTER_LUT_NUM_PORTS] = {{0}}, refs[4] = {{0}};
