@@ -275,18 +275,37 @@ static tyn_result check_repeat(const tyn_job *job)
     return TYN_OK;
 }
 
+// Depths have no noise to take away: the ray march finds them, and does nothing else here.
+static tyn_result add_depth(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media)
+{
+    const tyn_uint *repeat = job->frame->medium.repeat;
+    if (repeat[0] || repeat[1] || repeat[2]) {
+        tyn_log_print(job->log, TYN_LOG_ERROR,
+                      "the layer 'depth' does not know periodic media (\"repeat\"); leave it out");
+        return TYN_ERR_PARAMS;
+    }
+    tyn_job depth = *job;
+    depth.outputs = TYN_OUTPUT_DEPTH;
+    const tyn_picture_inputs in = {.media = *media};
+    return tyn_add_picture(g, &depth, job->frame->empty ? NULL : &in);
+}
+
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
 {
+    const uint32_t not_images = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_DEPTH;
     tyn_result result = check_repeat(job);
     tyn_media_refs media = {{0}};
     if (result == TYN_OK && !job->frame->empty) {
         result = tyn_add_medium(g, job, &media);
     }
-    if (result == TYN_OK && job->outputs & ~(uint32_t)(TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE)) {
+    if (result == TYN_OK && job->outputs & ~not_images) {
         result = add_image(g, job, media.bricks);
     }
     if (result == TYN_OK && job->outputs & TYN_OUTPUT_PROBE) {
         result = add_probes(g, job, media.bricks);
+    }
+    if (result == TYN_OK && job->outputs & TYN_OUTPUT_DEPTH) {
+        result = add_depth(g, job, &media);
     }
     if (result == TYN_OK && job->outputs & TYN_OUTPUT_BALANCE) {
         result = add_balance(g, job, media.bricks);
@@ -295,17 +314,22 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,       &tyn_pass_path,    &tyn_pass_path_probe,
-    &tyn_pass_path_balance, &tyn_pass_tonemap, NULL,
+    &tyn_pass_medium,
+    &tyn_pass_path,
+    &tyn_pass_path_probe,
+    &tyn_pass_path_balance,
+    &tyn_pass_raymarch,
+    &tyn_pass_tonemap,
+    NULL,
 };
 
 const tyn_method tyn_method_path = {
     .name = "path",
     .summary = "unbiased path tracing: the reference",
     .passes = passes,
-    .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_SINGLE |
-               TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_ERROR | TYN_OUTPUT_DISPLAY | TYN_OUTPUT_PROBE |
-               TYN_OUTPUT_BALANCE,
+    .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH |
+               TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_ERROR | TYN_OUTPUT_DISPLAY |
+               TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE,
     .progressive = true,
     .reads_env_cdf = true,
     .batch = batch,

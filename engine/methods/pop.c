@@ -250,20 +250,21 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, field *f)
 
 static tyn_result add_balance(tyn_graph *g, const tyn_job *job, field *f)
 {
+    if (job->scene->num_shapes != 1 || job->scene->shapes[0].kind != TYN_SHAPE_BOX) {
+        tyn_method_warn(job,
+                        "the balance is that of the box around the media: light that misses them "
+                        "inside it counts as entering and as escaped");
+    }
     tyn_balance_params params;
     tyn_settings_params(job->settings, &tyn_pass_balance, &params);
     params.channels = f->shape.channels;
     memcpy(params.tint, f->shape.tint, sizeof params.tint);
     params.num_suns = f->picture.num_suns;
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [BALANCE_PORT_MEDIUM] = job->refs.medium,
-        [BALANCE_PORT_SKY] = f->sky,
-        [BALANCE_PORT_LIGHTS] = job->refs.lights,
-        [BALANCE_PORT_CELLS] = f->cells,
-        [BALANCE_PORT_MOMENTS] = f->moments,
-        [BALANCE_PORT_SOURCE] = f->source,
-        [BALANCE_PORT_POWER] = f->power,
-        [BALANCE_PORT_LEAKS] = f->leaks,
+        [BALANCE_PORT_MEDIUM] = job->refs.medium, [BALANCE_PORT_SKY] = f->sky,
+        [BALANCE_PORT_LIGHTS] = job->refs.lights, [BALANCE_PORT_CELLS] = f->cells,
+        [BALANCE_PORT_MOMENTS] = f->moments,      [BALANCE_PORT_SOURCE] = f->source,
+        [BALANCE_PORT_POWER] = f->power,          [BALANCE_PORT_LEAKS] = f->leaks,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_balance, &params, refs);
     if (result == TYN_OK) {
@@ -339,20 +340,13 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,
-    &tyn_pass_beam,
-    &tyn_pass_scatter_lut,
-    &tyn_pass_lattice_cells,
-    &tyn_pass_lattice_source,
-    &tyn_pass_lattice_sky,
-    &tyn_pass_lattice,
-    &tyn_pass_merge,
-    &tyn_pass_raymarch,
-    &tyn_pass_composite,
-    &tyn_pass_tonemap,
-    &tyn_pass_probe,
-    &tyn_pass_balance,
-    NULL,
+    &tyn_pass_medium,         &tyn_pass_beam,
+    &tyn_pass_scatter_lut,    &tyn_pass_lattice_cells,
+    &tyn_pass_lattice_source, &tyn_pass_lattice_sky,
+    &tyn_pass_lattice,        &tyn_pass_merge,
+    &tyn_pass_raymarch,       &tyn_pass_composite,
+    &tyn_pass_tonemap,        &tyn_pass_probe,
+    &tyn_pass_balance,        NULL,
 };
 
 const tyn_method tyn_method_pop = {
