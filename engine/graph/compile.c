@@ -235,7 +235,7 @@ static tyn_result create_resources(tyn_graph *g)
             continue;
         }
         *(r->kind == RESOURCE_SCRATCH ? &g->transient_bytes : &g->persistent_bytes) += p->bytes;
-        if (r->kind == RESOURCE_UPLOAD || r->kind == RESOURCE_HISTORY) {
+        if (r->kind == RESOURCE_UPLOAD || r->kind == RESOURCE_HISTORY || g->poison) {
             p->buffer_usage |= VK_BUFFER_USAGE_TRANSFER_DST_BIT;
             p->image_usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
         }

@@ -115,6 +115,7 @@ struct tyn_graph {
     const char *inspect; // pass whose debug port is wanted; NULL = none
     uint64_t unique;     // ever-changing content
     bool recompute, setup_only;
+    bool poison; // tests: what a node has not written is NaN
     // compiled
     uint64_t structure; // 0 = nothing compiled
     phys *phys;

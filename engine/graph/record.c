@@ -81,19 +81,27 @@ static void record_upload(tyn_recorder *rec, uint32_t index)
     p->content = r->content;
 }
 
-static void record_zeros(tyn_recorder *rec, uint32_t index)
+static void record_fill(tyn_recorder *rec, uint32_t index, uint32_t word)
 {
     tyn_graph *g = rec->g;
     const resource *r = &g->resources[index];
     phys *p = &g->phys[index];
     recorder_access(rec, index, transfer(r, true));
     if (r->dim == TYN_BUFFER) {
-        g->dev->vk.CmdFillBuffer(rec->cmd, p->buffer, 0, VK_WHOLE_SIZE, 0);
+        g->dev->vk.CmdFillBuffer(rec->cmd, p->buffer, 0, VK_WHOLE_SIZE, word);
     } else {
+        const VkClearColorValue color = {.uint32 = {word, word, word, word}};
         g->dev->vk.CmdClearColorImage(
-            rec->cmd, p->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &(VkClearColorValue){{0}}, 1,
-            &(VkImageSubresourceRange){VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1});
+            rec->cmd, p->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &color, 1,
+            &(VkImageSubresourceRange){VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1});
     }
+}
+
+static void record_zeros(tyn_recorder *rec, uint32_t index)
+{
+    const resource *r = &rec->g->resources[index];
+    phys *p = &rec->g->phys[index];
+    record_fill(rec, index, 0);
     p->key = r->key;
     p->content = 1; // zeros
 }
@@ -157,6 +165,10 @@ static void record_sources(tyn_recorder *rec)
             record_upload(rec, i);
         } else if (r->kind == RESOURCE_HISTORY && (!p->content || p->key != r->key)) {
             record_zeros(rec, i);
+        } else if (g->poison && !p->content &&
+                   (r->kind == RESOURCE_OUT || r->kind == RESOURCE_SCRATCH)) {
+            record_fill(rec, i, 0x7fc00000u); // NaN
+            p->content = 1;
         }
     }
 }

@@ -254,6 +254,15 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_beam_params *p = params;
     bool density = p->mode == TYN_MEDIUM_DENSITY;
     tyn_rec_update(r, BEAM_PORT_BEAMS, 0, p->beams, sizeof(p->beams));
+    // Slices and columns that no point reads are not computed, but rounding lets a fetch beside them give
+    // them a weight of 1e-7: they must be finite.
+    static const uint8_t textures[] = {BEAM_PORT_COLUMN, BEAM_PORT_TAU_S, BEAM_PORT_TAU_A,
+                                       BEAM_PORT_TAU_P};
+    for (size_t i = 0; i < sizeof(textures); i++) {
+        if (tyn_rec_has(r, textures[i])) {
+            tyn_rec_clear(r, textures[i]);
+        }
+    }
     tyn_rec_dispatch(r, &(tyn_dispatch){
                             .kernel = density ? KERNEL_DENSITY : KERNEL_COEFFICIENTS,
                             .cells = {p->extent[0], p->extent[1], p->num_suns},

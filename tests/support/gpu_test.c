@@ -1,5 +1,6 @@
 // gpu_test.c -- runs single passes on the device, with validation on.
 #include "gpu_test.h"
+#include "graph/internal.h"
 #include "base/half.h"
 #include "base/hash.h"
 #include <stdio.h>
@@ -46,6 +47,7 @@ int gpu_setup(void **state)
     if (tyn_graph_create(t->dev, 1, &t->graph) != TYN_OK) {
         return -1;
     }
+    t->graph->poison = true; // reading what nobody wrote must show
     tyn_graph_begin(t->graph);
     *state = t;
     return 0;
@@ -148,12 +150,12 @@ tyn_ref gpu_buffer(gpu_test *t, const char *name, const void *data, size_t size)
     return tyn_graph_upload_buffer(t->graph, name, copy, size, 0);
 }
 
-double gpu_ms(gpu_test *t, const char *node)
+double gpu_ms(gpu_test *t, const char *name)
 {
     const tyn_node_stats *stats;
     uint32_t count = tyn_graph_stats(t->graph, &stats);
     for (uint32_t i = 0; i < count; i++) {
-        if (!strcmp(stats[i].name, node)) {
+        if (!strcmp(stats[i].name, name)) {
             return stats[i].gpu_ms;
         }
     }
