@@ -161,8 +161,10 @@ static void mix(double (*const x[3])[4], double (*const r[3])[4], int pairs, int
     double g[2] = {0, 0};
     double(*d[2])[4] = {calloc(n, sizeof *d[0]), calloc(n, sizeof *d[1])};
     for (int p = 1; p < pairs; p++) {
-        for (int i = 0; i < 4 * n; i++) {
-            d[p - 1][0][i] = r[p][0][i] - r[0][0][i];
+        for (int i = 0; i < n; i++) {
+            for (int k = 0; k < 4; k++) {
+                d[p - 1][i][k] = r[p][i][k] - r[0][i][k];
+            }
         }
     }
     double a00 = dot(d[0], d[0], n) * (1 + 1e-6), a11 = dot(d[1], d[1], n) * (1 + 1e-6);
@@ -174,10 +176,12 @@ static void mix(double (*const x[3])[4], double (*const r[3])[4], int pairs, int
     } else if (pairs > 1 && a00 > 0) {
         g[0] = b0 / a00;
     }
-    for (int i = 0; i < 4 * n; i++) {
-        out[0][i] = x[0][0][i];
-        for (int p = 1; p < pairs; p++) {
-            out[0][i] += g[p - 1] * (x[p][0][i] - x[0][0][i]);
+    for (int i = 0; i < n; i++) {
+        for (int k = 0; k < 4; k++) {
+            out[i][k] = x[0][i][k];
+            for (int p = 1; p < pairs; p++) {
+                out[i][k] += g[p - 1] * (x[p][i][k] - x[0][i][k]);
+            }
         }
     }
     free(d[0]);
@@ -215,8 +219,10 @@ void llc_twin_solve(llc_twin *t, int sweeps)
                 x[0][i][0] += e[i];
             }
         }
-        for (int i = 0; i < 4 * n; i++) {
-            r[0][0][i] = x[0][0][i] - t->m[0][i];
+        for (int i = 0; i < n; i++) {
+            for (int k = 0; k < 4; k++) {
+                r[0][i][k] = x[0][i][k] - t->m[i][k];
+            }
         }
         mix(x, r, t->anderson ? (sweep < 2 ? sweep + 1 : 3) : 1, n, t->m);
     }
