@@ -21,7 +21,7 @@ enum {
     SIZE = 32,               // pixels
     PATH_SAMPLES = 64,       // a pixel
     PROBE_SAMPLES = 1 << 18, // a point
-    BALANCE_SAMPLES = 256,    // of many thousand paths each
+    BALANCE_SAMPLES = 256,   // of many thousand paths each
 };
 
 // One check is |value - expected| <= tolerance.

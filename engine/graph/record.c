@@ -91,9 +91,10 @@ static void record_fill(tyn_recorder *rec, uint32_t index, uint32_t word)
         g->dev->vk.CmdFillBuffer(rec->cmd, p->buffer, 0, VK_WHOLE_SIZE, word);
     } else {
         const VkClearColorValue color = {.uint32 = {word, word, word, word}};
-        g->dev->vk.CmdClearColorImage(
-            rec->cmd, p->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &color, 1,
-            &(VkImageSubresourceRange){VK_IMAGE_ASPECT_COLOR_BIT, 0, VK_REMAINING_MIP_LEVELS, 0, 1});
+        g->dev->vk.CmdClearColorImage(rec->cmd, p->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                      &color, 1,
+                                      &(VkImageSubresourceRange){VK_IMAGE_ASPECT_COLOR_BIT, 0,
+                                                                 VK_REMAINING_MIP_LEVELS, 0, 1});
     }
 }
 

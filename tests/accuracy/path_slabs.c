@@ -89,7 +89,8 @@ static void test_fluxes(gpu_test *t, bool graded)
 {
     for (int i = 0; i < num_rows; i++) {
         const row *r = &rows[i];
-        if (!r->flux || (graded && i % 7) || (!effort && r->tau > 4 && (r->albedo == 1 || r->bottom))) {
+        if (!r->flux || (graded && i % 7) ||
+            (!effort && r->tau > 4 && (r->albedo == 1 || r->bottom))) {
             continue;
         }
         path_scene s;

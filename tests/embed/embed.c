@@ -23,11 +23,6 @@
 
 enum { WIDTH = 80, HEIGHT = 56, VOXELS = 24 };
 
-#define UP                                                                                         \
-    {                                                                                              \
-        0, 1, 0                                                                                    \
-    }
-
 // ---- states that a host may hand its images over in -------------------------------------------
 
 static const tyn_sync nothing_yet = {VK_PIPELINE_STAGE_2_NONE, VK_ACCESS_2_NONE,
@@ -228,7 +223,7 @@ static tyn_view make_view(float x, uint32_t width, uint32_t height, uint32_t out
         .camera = {.projection = TYN_PERSPECTIVE,
                    .position = {x, 0, 5},
                    .right = {1, 0, 0},
-                   .up = UP,
+                   .up = {0, 1, 0},
                    .back = {0, 0, 1},
                    .yfov = 0.6f},
         .width = width,

@@ -23,8 +23,8 @@ static void rounding(void **state)
 {
     (void)state;
     assert_int_equal(tyn_half_from_float(1.0f), 0x3c00);
-    assert_int_equal(tyn_half_from_float(1.0f + 0x1p-11f), 0x3c00);       // tie to even
-    assert_int_equal(tyn_half_from_float(1.0f + 3 * 0x1p-11f), 0x3c02);   // tie to even
+    assert_int_equal(tyn_half_from_float(1.0f + 0x1p-11f), 0x3c00);     // tie to even
+    assert_int_equal(tyn_half_from_float(1.0f + 3 * 0x1p-11f), 0x3c02); // tie to even
     assert_int_equal(tyn_half_from_float(65504.0f), 0x7bff);
     assert_int_equal(tyn_half_from_float(65519.9f), 0x7bff);
     assert_int_equal(tyn_half_from_float(65520.0f), 0x7c00);
