@@ -47,7 +47,9 @@ vec2 brick_of_shapes(vec3 lo, vec3 hi)
                                                         : shapes[i].sigma_s + shapes[i].sigma_a;
         vec2 range = brick_of_shape(shapes[i], lo, hi);
         least += range.x * weight;
-        largest += range.y * weight;
+        // A medium that only emits must not look empty; the majorant stays one.
+        bool glows = max(max(shapes[i].emission.x, shapes[i].emission.y), shapes[i].emission.z) > 0.0;
+        largest += range.y * max(weight, vec3(glows ? 1e-6 : 0.0));
     }
     return vec2(max(max(least.x, least.y), least.z), max(max(largest.x, largest.y), largest.z));
 }

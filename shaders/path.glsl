@@ -63,9 +63,12 @@ lamp_view lamp_see(vec3 lamp, vec3 origin, vec3 direction, vec2 span)
 {
     lamp_view v;
     v.closest = dot(lamp - origin, direction);
-    v.height = max(length(lamp - origin - v.closest * direction), 1e-6);
     // Along a repeated axis the rest of an endless ray is left to free flights.
     v.span = vec2(span.x, min(span.y, max(v.closest, span.x) + 1e3 * length(medium.extent)));
+    // Any height gives an unbiased sampler. A ray through a lamp beyond its ends gets one that leaves the
+    // two angles apart in floats.
+    float beyond = max(v.span.x - v.closest, v.closest - v.span.y);
+    v.height = max(length(lamp - origin - v.closest * direction), max(1e-6, 1e-3 * beyond));
     v.angle0 = atan((v.span.x - v.closest) / v.height);
     v.angle1 = max(atan((v.span.y - v.closest) / v.height), v.angle0 + 1e-7);
     return v;
@@ -240,7 +243,11 @@ path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
         f.distance = span.x + moved;
         f.at = path.vertex + f.distance * path.way;
         if ((FLAGS & TYN_PATH_EMISSIVE) != 0u) {
-            f.glow = path_weight(path) * f.m.emission * moved;
+            // Of the whole stretch, with each channel's own attenuation: `moved` follows the hero's.
+            vec3 depth = f.m.sigma_t * left;
+            vec3 reach = mix((1.0 - exp(-depth)) / max(f.m.sigma_t, vec3(1e-30)),
+                             left * (1.0 - 0.5 * depth), lessThan(depth, vec3(1e-3)));
+            f.glow = path_weight(path) * f.m.emission * reach;
         }
         if (!GREY) {
             vec3 spread = exp((sigma_t - f.m.sigma_t) * moved);

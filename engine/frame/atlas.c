@@ -82,6 +82,8 @@ uint64_t tyn_atlas_hash(const tyn_atlas *atlas, const tyn_scene *scene)
     uint64_t h = tyn_hash_bytes(TYN_HASH_SEED, &atlas->extent, sizeof atlas->extent);
     for (uint32_t i = 0; i < scene->num_volumes; i++) {
         const tyn_volume *v = &scene->volumes[i];
+        h = tyn_hash_bytes(h, v->size, sizeof v->size);
+        h = tyn_hash_bytes(h, &v->max_density, sizeof v->max_density);
         size_t count = (size_t)v->size[0] * v->size[1] * v->size[2];
         h = tyn_hash_u64(h, v->hash ? v->hash
                             : v->data

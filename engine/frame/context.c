@@ -294,8 +294,7 @@ static uint32_t open_faces(tyn_context *ctx, const tyn_scene *scene)
     if (!ctx->frame.direct || scene->num_volumes != 1) {
         return 63;
     }
-    uint64_t hash =
-        tyn_hash_u64(scene->volumes[0].hash, (uint64_t)(uintptr_t)scene->volumes[0].data);
+    uint64_t hash = tyn_atlas_hash(&ctx->atlas, scene);
     if (hash != ctx->faces_hash) {
         ctx->open_faces = tyn_volume_open_faces(&scene->volumes[0]);
         ctx->faces_hash = hash;
@@ -313,8 +312,10 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
         result = tyn_frame_scene_build(&ctx->frame, frame->scene, view, ctx->env_mean, log);
     }
     if (result == TYN_OK) {
-        ctx->frame.open_faces = open_faces(ctx, frame->scene);
         result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);
+    }
+    if (result == TYN_OK) {
+        ctx->frame.open_faces = open_faces(ctx, frame->scene);
     }
     if (result == TYN_OK && ctx->atlas.host && !frame->densities) {
         tyn_log_print(log, TYN_LOG_ERROR, "volume 0 has no data and tyn_frame.densities is NULL");

@@ -221,10 +221,12 @@ static void build_shapes(tyn_frame_scene *out, const tyn_scene *scene, const rig
         b->offset[2] = tyn_atlas_offset(scene, medium->volume);
         for (int a = 0; a < 3; a++) {
             b->size[a] = volume ? volume->size[a] : 1;
-            b->sigma_s[a] = medium->sigma_s[a] * medium->density_scale;
-            b->sigma_a[a] = medium->sigma_a[a] * medium->density_scale;
+            // A grid that is 0 everywhere holds nothing, whatever its coefficients.
+            float scale = volume && volume->max_density <= 0 ? 0 : medium->density_scale;
+            b->sigma_s[a] = medium->sigma_s[a] * scale;
+            b->sigma_a[a] = medium->sigma_a[a] * scale;
             b->g[a] = medium->g[a];
-            b->emission[a] = medium->emission[a] * medium->density_scale;
+            b->emission[a] = medium->emission[a] * scale;
             bool dark = b->sigma_s[a] + b->sigma_a[a] + b->emission[a] <= 0;
             out->empty &= dark || (volume && volume->max_density <= 0);
             out->emissive |= b->emission[a] > 0;

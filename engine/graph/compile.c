@@ -136,7 +136,8 @@ static bool same_structure(tyn_graph *g)
 bool tyn_graph_matches(const tyn_graph *graph)
 {
     tyn_graph *g = (tyn_graph *)graph; // culling writes flags of the declaration only
-    return g->status == TYN_OK && same_structure(g) && graph_uploads_staged(g);
+    g->current = g->status == TYN_OK && same_structure(g) && graph_uploads_staged(g);
+    return g->current;
 }
 
 // ---- allocate ---------------------------------------------------------------------------------
@@ -413,6 +414,9 @@ void graph_release(tyn_graph *g)
     tyn_heap_finish(g->dev, &g->heap);
     free(g->phys);
     free(g->runs);
+    free(g->run_node);
+    g->run_node = NULL;
+    g->current = false;
     g->phys = NULL;
     g->runs = NULL;
     g->num_phys = g->num_runs = 0;
@@ -428,14 +432,17 @@ tyn_result tyn_graph_compile(tyn_graph *g)
     }
     if (same_structure(g)) { // only new data
         graph_free_staging(g);
-        return stage_uploads(g);
+        tyn_result staged = stage_uploads(g);
+        g->current = staged == TYN_OK;
+        return staged;
     }
     graph_release(g);
     g->num_phys = g->num_resources;
     g->num_runs = g->num_nodes;
     g->phys = calloc(g->num_phys ? g->num_phys : 1, sizeof *g->phys);
     g->runs = calloc(g->num_runs ? g->num_runs : 1, sizeof *g->runs);
-    if (!g->phys || !g->runs) {
+    g->run_node = calloc(g->num_runs ? g->num_runs : 1, sizeof *g->run_node);
+    if (!g->phys || !g->runs || !g->run_node) {
         return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
     }
     for (uint32_t i = 0; i < g->num_outputs; i++) {
@@ -457,5 +464,6 @@ tyn_result tyn_graph_compile(tyn_graph *g)
         return result;
     }
     g->structure = graph_structure(g, &s);
+    g->current = true;
     return TYN_OK;
 }

@@ -40,6 +40,7 @@ void tyn_graph_begin(tyn_graph *g)
     g->inspect = NULL;
     g->params_used = 0;
     g->recompute = g->setup_only = false;
+    g->current = false;
 }
 
 void tyn_graph_recompute(tyn_graph *g)
@@ -161,6 +162,12 @@ tyn_ref tyn_graph_history_image(tyn_graph *g, const char *name, tyn_dim dim, VkF
 
 tyn_ref tyn_graph_history_buffer(tyn_graph *g, const char *name, uint64_t bytes, uint64_t key)
 {
+    if (bytes > g->dev->properties.limits.maxStorageBufferRange) {
+        graph_fail(g, TYN_ERR_UNSUPPORTED, "'%s' takes %.1f MiB; the device binds at most %.1f MiB",
+                   name, (double)bytes / (1 << 20),
+                   (double)g->dev->properties.limits.maxStorageBufferRange / (1 << 20));
+        return (tyn_ref){0};
+    }
     return tyn_graph_history_image(g, name, TYN_BUFFER, VK_FORMAT_UNDEFINED,
                                    (tyn_extent){(uint32_t)bytes, 1, 1}, key);
 }

@@ -118,6 +118,8 @@ struct tyn_graph {
     bool poison; // tests: what a node has not written is NaN
     // compiled
     uint64_t structure; // 0 = nothing compiled
+    bool current;       // the declaration is the one that was compiled or recorded last
+    bool *run_node;     // per node: runs in the record under way
     phys *phys;
     uint32_t num_phys;
     node_run *runs;

@@ -292,10 +292,10 @@ static tyn_result run_one(tyn_graph *g, VkCommandBuffer cmd, uint32_t index)
     for (uint32_t p = 0; p < n->pass->num_ports; p++) {
         tyn_port_dir dir = n->pass->ports[p].dir;
         if (n->res[p] && (dir == TYN_OUT || dir == TYN_INOUT)) {
-            g->phys[n->res[p] - 1].content = tyn_hash_u64(n->hash, p + 1);
+            g->phys[n->res[p] - 1].content = r.result == TYN_OK ? tyn_hash_u64(n->hash, p + 1) : 0;
         }
     }
-    run->hash = n->hash;
+    run->hash = r.result == TYN_OK ? n->hash : 0;
     run->stats.state = r.dispatches ? TYN_NODE_RAN : TYN_NODE_EMPTY;
     run->stats.cpu_ms = now_ms() - start;
     run->stats.dispatches = r.dispatches;
@@ -367,18 +367,23 @@ static void collect_timestamps(tyn_graph *g, frame_slot *slot)
     if (!slot->pending || !slot->queries) {
         return;
     }
-    slot->pending = false;
+    bool all = true;
     uint64_t mask =
         g->dev->timestamp_bits == 64 ? UINT64_MAX : (1ull << g->dev->timestamp_bits) - 1;
     for (uint32_t i = 0; i < g->num_runs; i++) {
         uint64_t t[2];
-        if (slot->timed[i] &&
-            g->dev->vk.GetQueryPoolResults(g->dev->device, slot->queries, i * 2, 2, sizeof t, t, 8,
+        if (!slot->timed[i]) {
+            continue;
+        }
+        if (g->dev->vk.GetQueryPoolResults(g->dev->device, slot->queries, i * 2, 2, sizeof t, t, 8,
                                            VK_QUERY_RESULT_64_BIT) == VK_SUCCESS) {
             g->runs[i].stats.gpu_ms = (double)((t[1] - t[0]) & mask) *
                                       (double)g->dev->properties.limits.timestampPeriod * 1e-6;
+        } else {
+            all = false; // not finished: ask again later
         }
     }
+    slot->pending = !all;
 }
 
 tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
@@ -391,10 +396,7 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
                       "the frame differs in structure from what was prepared; prepare it first");
         return TYN_ERR_PARAMS;
     }
-    bool *run_node = calloc(g->num_nodes ? g->num_nodes : 1, sizeof *run_node);
-    if (!run_node) {
-        return TYN_ERR_MEMORY;
-    }
+    bool *run_node = g->run_node;
     frame_slot *slot = &g->slots[g->frame % g->num_slots];
     collect_timestamps(g, slot);
     g->dev->vk.ResetDescriptorPool(g->dev->device, slot->pool, 0);
@@ -424,13 +426,12 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
     record_imports_after(&rec);
     slot->pending = true;
     g->frame++;
-    free(run_node);
     return result;
 }
 
 const void *tyn_graph_map(tyn_graph *g, const char *name, tyn_extent *extent, VkFormat *format)
 {
-    for (uint32_t i = 0; i < g->num_outputs; i++) {
+    for (uint32_t i = 0; g->current && i < g->num_outputs; i++) {
         if (g->outputs[i].readback && !strcmp(g->outputs[i].name, name)) {
             const resource *r = &g->resources[g->outputs[i].ref.resource - 1];
             if (extent) {
@@ -450,7 +451,7 @@ const void *tyn_graph_map(tyn_graph *g, const char *name, tyn_extent *extent, Vk
 uint32_t tyn_graph_stats(tyn_graph *g, const tyn_node_stats **stats)
 {
     *stats = NULL;
-    if (!g->structure || g->num_runs != g->num_nodes) {
+    if (!g->current) {
         return 0;
     }
     if (g->frame) {

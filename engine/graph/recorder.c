@@ -96,7 +96,9 @@ static void add_barrier(tyn_graph *g, barrier_batch *batch, uint32_t index, cons
         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
         .image = p->image,
-        .subresourceRange = {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS},
+        // Of a host's image only mip 0 of layer 0 is ours.
+        .subresourceRange = {aspect, 0, r->kind == RESOURCE_IMPORT ? 1 : VK_REMAINING_MIP_LEVELS, 0,
+                             1},
     };
 }
 

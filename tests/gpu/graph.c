@@ -132,6 +132,7 @@ static void chain_and_changes(void **state)
     input[3] = 1000; // new data, same structure
     declare_chain(t, input, 4, 5);
     assert_false(tyn_graph_matches(t->graph));
+    assert_null(tyn_graph_map(t->graph, "result", NULL, NULL)); // not before it has run
     gpu_run(t);
     check(t, input, 4, 5);
     assert_int_equal(state_of(t, 0), TYN_NODE_RAN);

@@ -149,6 +149,29 @@ static void emission(void **state)
     }
 }
 
+// Channels of unequal extinction share a path: each must get its own attenuation.
+static void coloured_emission(void **state)
+{
+    for (int grid = 0; grid < 2; grid++) {
+        path_scene s;
+        path_scene_box(&s, (float[]){1, 1, 1}, (float[]){0, 0, 0}, (float[]){1, 2, 4},
+                       (float[]){0, 0, 0}, grid ? one : NULL, (uint32_t[]){1, 1, 1});
+        path_scene_orthographic(&s, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, -1, 0},
+                                (float[]){0, 0, 1}, 0.5f, 16);
+        for (int c = 0; c < 3; c++) {
+            s.medium.emission[c] = s.shapes[0].emission[c] = 1;
+        }
+        s.params.emissive = 1;
+        const float *radiance, *error;
+        path_scene_render(*state, &s, 256, &radiance, &error);
+        for (int c = 0; c < 3; c++) {
+            double sigma_a = 1 << c;
+            check(grid ? "coloured emission, grid" : "coloured emission", image_mean(radiance, c),
+                  image_error(error, c), (1 - exp(-sigma_a)) / sigma_a);
+        }
+    }
+}
+
 // Two media in one place, of different colours and phase functions: their scattering adds up.
 static void overlap(void **state)
 {
@@ -292,6 +315,7 @@ int main(void)
         cmocka_unit_test(layers),
         cmocka_unit_test(first_order_of_a_lamp),
         cmocka_unit_test(emission),
+        cmocka_unit_test(coloured_emission),
         cmocka_unit_test(overlap),
         cmocka_unit_test(probes_in_vacuum),
         cmocka_unit_test(energy),

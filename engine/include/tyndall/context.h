@@ -81,7 +81,9 @@ typedef struct tyn_view {
 typedef struct tyn_frame {
     size_t struct_size;
     VkCommandBuffer cmd;     // Required: recording, outside a render pass
-    const tyn_scene *scene;  // Required: same counts and sizes as prepared; values may differ
+    const tyn_scene *scene;  // Required: same counts and sizes as prepared; values may
+                             // differ, but some choose other kernels or grids: record refuses
+                             // then, and prepare mends it (docs/embedding.md)
     const tyn_view *view;    // Required: same size, outputs and point count as prepared
     const tyn_image *densities;         // one per volume whose data is NULL, in order
     const uint64_t *density_versions;   // NULL = they may have changed every frame
@@ -123,7 +125,7 @@ typedef struct tyn_report {
     const char *const *warnings; // what the method left out or approximated, one line each
     uint32_t num_warnings;
 } tyn_report;
-// Of the last finished record. Valid until the next call on the context.
+// Of the last record, once the GPU has finished it. Valid until the next call on the context.
 TYN_API void tyn_context_report(tyn_context *ctx, tyn_report *report);
 
 // Progressive methods: the most samples that one record should be asked for, so that no dispatch runs
