@@ -18,9 +18,9 @@
 #define TYN_LIGHT_KIND_POINT 1
 #define TYN_LIGHT_KIND_SPOT 2
 
-// Elements that the buffers "shapes" and "lights" always have; the counts say how many are used.
+// Elements that the buffers "shapes", "lights" and "suns" always have; the counts say how many are used.
 #define TYN_SHAPES_MAX 64
-#define TYN_LIGHTS_MAX 64
+#define TYN_LIGHTS_MAX 68 // those of a scene and the suns of its environment map
 
 #define TYN_BRICK 8 // medium texels per brick along each axis
 
@@ -56,15 +56,16 @@ struct shape_block { // element of storage buffer "shapes": the exact media, as 
 };
 TYN_ASSERT_SIZE(shape_block, 128);
 
-struct light_block { // element of storage buffer "lights"; directional lights come first
+struct light_block { // element of storage buffers "lights" (directional lights first) and "suns"
     tyn_vec3 color;  // W/m^2 (directional) or W/sr
     tyn_uint kind;
     tyn_vec3 position;  // M, m
     float cos_inner;
     tyn_vec3 direction; // M, unit, direction of travel
     float cos_outer;
+    float mean_cosine;  // of its disc as seen from the medium: 1 = all light comes along `direction`
 };
-TYN_ASSERT_SIZE(light_block, 48);
+TYN_ASSERT_SIZE(light_block, 52);
 
 struct camera_block { // uniform buffer "camera"
     tyn_vec3 origin;  // M, m
@@ -88,11 +89,13 @@ struct env_block { // uniform buffer "environment"
     tyn_vec4 rows[3];  // M direction -> map direction (xyz used)
     tyn_vec3 radiance; // multiplies texels; or is the constant radiance
     tyn_uint has_map;  // 0: constant `radiance` (0,0,0 = no environment)
-    tyn_vec3 mean;     // mean radiance over the sphere, W/(m^2 sr): Lbar
+    tyn_vec3 mean;     // mean radiance over the sphere, W/(m^2 sr)
     tyn_uint pad;
+    tyn_vec3 sky;      // ... without the map's suns, which are in the buffer "suns": Lbar
+    tyn_uint pad2;
     tyn_uvec2 size;    // texels
-    tyn_uvec2 pad2;
+    tyn_uvec2 pad3;
 };
-TYN_ASSERT_SIZE(env_block, 96);
+TYN_ASSERT_SIZE(env_block, 112);
 
 #endif

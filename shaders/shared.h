@@ -13,6 +13,7 @@ typedef uint32_t tyn_uvec2[2];
 typedef uint32_t tyn_uvec3[3];
 // Size in bytes that scalar layout gives the struct.
 #define TYN_ASSERT_SIZE(type, bytes) static_assert(sizeof(struct type) == (bytes), #type)
+#define TYN_STRUCT(type) struct type // names a struct within another one
 #else
 #define tyn_uint uint
 #define tyn_vec2 vec2
@@ -21,6 +22,7 @@ typedef uint32_t tyn_uvec3[3];
 #define tyn_uvec2 uvec2
 #define tyn_uvec3 uvec3
 #define TYN_ASSERT_SIZE(type, bytes)
+#define TYN_STRUCT(type) type
 #endif
 
 #endif

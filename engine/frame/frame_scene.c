@@ -255,7 +255,10 @@ static void build_lights(tyn_frame_scene *out, const tyn_scene *scene, const rig
             for (int a = 0; a < 3; a++) {
                 d[a] = n > 0 ? d[a] / n : (float)(a == 2);
             }
-            out->num_suns += pass == 0;
+            if (pass == 0) {
+                b->mean_cosine = 1;
+                out->suns[out->num_suns++] = *b;
+            }
         }
     }
 }
@@ -306,6 +309,7 @@ static void build_environment(tyn_frame_scene *out, const tyn_environment *env,
         }
         b->radiance[r] = env->radiance[r] * env->strength;
         b->mean[r] = b->radiance[r] * (b->has_map ? mean_env[r] : 1.0f);
+        b->sky[r] = b->mean[r];
     }
 }
 

@@ -11,8 +11,10 @@
 typedef struct tyn_frame_scene {
     struct medium_block medium;
     struct shape_block shapes[TYN_MAX_SHAPES];
-    struct light_block lights[TYN_MAX_LIGHTS];
+    struct light_block lights[TYN_LIGHTS_MAX];
     uint32_t num_lights, num_suns; // suns = directional lights, first in `lights`
+    struct light_block suns[TYN_LIGHTS_MAX]; // the directional lights, then the environment map's suns
+    uint32_t num_map_suns; // suns[num_suns .. num_suns + num_map_suns); `path` has them in the map
     struct camera_block camera;
     struct env_block environment;
     bool direct; // one unsheared box: the atlas is the density texture, `medium` need not resample
@@ -30,6 +32,7 @@ typedef struct tyn_scene_refs {
     tyn_ref medium;      // struct medium_block
     tyn_ref shapes;      // struct shape_block[]
     tyn_ref lights;      // struct light_block[]
+    tyn_ref suns;        // struct light_block[]: tyn_frame_scene.suns
     tyn_ref camera;      // struct camera_block
     tyn_ref environment; // struct env_block
     tyn_ref env_map;     // 2D RGBA32F; {0} if constant

@@ -1,0 +1,30 @@
+// ordinate_args.h -- principal ordinates: the directions from which a map lights the medium.
+// Included by C and GLSL; scalar layout.
+//
+// The ordinates partition the sphere into regions. Each stands for all the light of its region, as if
+// it came evenly from a cone of the region's solid angle around one direction.
+#ifndef TYN_ORDINATE_ARGS_H
+#define TYN_ORDINATE_ARGS_H
+#include "shared.h"
+
+#define TYN_ORDINATES_MAX 256
+
+struct ordinate {
+    tyn_vec3 irradiance; // W/m^2 across the direction: integral of the radiance over the region. Where the
+                         // mean of the sky was split off it may be negative.
+    float mean_cosine;   // of the region about its own mean direction: 1 - solid_angle / (4 pi), 1 = a point
+    tyn_vec3 direction;  // of travel, M, unit: the opposite of the region's energy-weighted mean direction
+    float solid_angle;   // of the region, sr
+};
+TYN_ASSERT_SIZE(ordinate, 32);
+
+struct ordinates_block { // uniform or storage buffer "ordinates"; the tail beyond `count` is zero
+    tyn_uint count;      // in use, 0 to TYN_ORDINATES_MAX
+    tyn_uint folded;     // whose light was too little to matter and is carried by a neighbour
+    tyn_uint fixed;      // the first ones: suns that have no aligned grid of full resolution
+    tyn_uint pad;
+    TYN_STRUCT(ordinate) list[TYN_ORDINATES_MAX];
+};
+TYN_ASSERT_SIZE(ordinates_block, 8208);
+
+#endif
