@@ -14,6 +14,7 @@
 #ifndef TYN_BEAM_GLSL
 #define TYN_BEAM_GLSL
 #include "beam_args.h"
+#include "beam_tau.glsl"
 
 #ifdef BEAM_UNIFORM // read at constant places by every thread: much cheaper on a CPU device
 layout(set = 0, binding = BEAM_BLOCKS, scalar) uniform beam_uniform
@@ -33,14 +34,6 @@ layout(set = 0, binding = BEAM_TAU_A) uniform sampler3D beam_tau_a_tex;
 #ifdef BEAM_TAU_P
 layout(set = 0, binding = BEAM_TAU_P) uniform sampler3D beam_tau_p_tex;
 #endif
-
-// Optical depths along the light up to a point. Scattering depths are those after similarity_clamp.
-struct beam_tau {
-    vec3 s; // int sigma_s
-    vec3 a; // int sigma_a
-    vec3 p; // int (1 - f) sigma_s, f = g^2 for g > 0, else 0
-};
-// What is left of the sun: exp(-(a + s)); with what was scattered into the forward peak: exp(-(a + p)).
 
 // Distance from where the light enters the box, m.
 float beam_length(uint sun, vec3 p)
@@ -134,15 +127,6 @@ vec3 beam_fetch(sampler3D tex, beam_place place)
 float beam_column(uint sun, vec3 p)
 {
     return beam_fetch(beam_column_tex, beam_place_of(sun, p)).r;
-}
-
-// Mode DENSITY: optical depths of a column density.
-beam_tau beam_of_column(float column)
-{
-    vec3 sigma_s = medium.sigma_s, g = medium.g;
-    similarity_clamp(sigma_s, g);
-    vec3 s = sigma_s * column;
-    return beam_tau(s, medium.sigma_a * column, s * (1.0 - delta_fraction(g)));
 }
 
 // Either mode.
