@@ -21,7 +21,7 @@ TYN_ASSERT_SIZE(ordinate, 32);
 struct ordinates_block { // uniform or storage buffer "ordinates"; the tail beyond `count` is zero
     tyn_uint count;      // in use, 0 to TYN_ORDINATES_MAX
     tyn_uint folded;     // whose light was too little to matter and is carried by a neighbour
-    tyn_uint fixed;      // the first ones: suns that have no aligned grid of full resolution
+    tyn_uint num_fixed;  // the first ones: suns that have no aligned grid of full resolution
     tyn_uint pad;
     TYN_STRUCT(ordinate) list[TYN_ORDINATES_MAX];
 };
