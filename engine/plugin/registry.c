@@ -1,6 +1,7 @@
 // registry.c -- the passes and methods of the library: one line each.
 #include "plugin/registry.h"
 #include "passes/beam/beam.h"
+#include "passes/columns/columns.h"
 #include "passes/composite/composite.h"
 #include "passes/lattice/lattice.h"
 #include "passes/medium/medium.h"
@@ -17,6 +18,7 @@
 static const tyn_pass_desc *const passes[] = {
     &tyn_pass_medium,
     &tyn_pass_beam,
+    &tyn_pass_columns,
     &tyn_pass_scatter_lut,
     &tyn_pass_lattice_cells,
     &tyn_pass_lattice_source,

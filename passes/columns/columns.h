@@ -1,0 +1,26 @@
+// columns.h -- optical depth along the principal ordinates, from where their light enters the medium's
+// box to the centres of the lattice's cells.
+#pragma once
+#include <tyndall/pass.h>
+#include "scene_args.h"
+#include "ordinate_args.h"
+#include "columns_args.h"
+
+typedef struct tyn_columns_params {
+    float extent[3];  // medium_block.extent, m
+    uint32_t dims[3]; // cells of the lattice (tyn_lattice_dims)
+    uint32_t mode;    // TYN_MEDIUM_*
+    uint32_t count;   // ordinates at most; how many there are is in the block
+} tyn_columns_params;
+
+enum {
+    COLUMNS_PORT_MEDIUM,  // IN buffer struct medium_block
+    COLUMNS_PORT_DENSITY, // IN 3D: density, or sigma_s in mode COEFFICIENTS
+    COLUMNS_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as the one below
+    COLUMNS_PORT_G,
+    COLUMNS_PORT_ORDINATES, // IN buffer struct ordinates_block
+    COLUMNS_PORT_COLUMNS,   // OUT buffer: what columns.glsl reads
+    COLUMNS_PORT_NODES,     // SCRATCH
+    COLUMNS_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_columns;
