@@ -1,11 +1,10 @@
 // scatter_lut.c -- moments of the forward lobe on the CPU, the table on the GPU.
 #include "scatter_lut.h"
 #include "scatter_lut_sum.comp.h"
+#include "base/forward_lobe.h"
 #include <math.h>
 
-#define PI 3.14159265358979323846
-
-enum { POINTS = 8, MAX_TERMS = 2464 };
+enum { MAX_TERMS = 2464 };
 
 static const double g_max = 0.995; // narrower lobes are replaced by this one (similarity_clamp)
 static const double g_min = 1e-3;  // below it there is no lobe worth splitting off
@@ -88,92 +87,11 @@ static void make_rows(const tyn_scatter_lut_params *p, struct lut_block *block)
 
 // ---- moments --------------------------------------------------------------------------------------
 
-// Gauss-Legendre points and weights on [-1, 1] by Newton's method.
-static void gauss_legendre(double x[POINTS], double w[POINTS])
-{
-    for (int i = 0; i < POINTS; i++) {
-        double z = cos(PI * (i + 0.75) / (POINTS + 0.5)), slope = 1;
-        for (int newton = 0; newton < 8; newton++) {
-            double p = 1, before = 0;
-            for (int l = 0; l < POINTS; l++) {
-                double next = ((2 * l + 1) * z * p - l * before) / (l + 1);
-                before = p;
-                p = next;
-            }
-            slope = POINTS * (before - z * p) / (1 - z * z);
-            z -= p / slope;
-        }
-        x[i] = z;
-        w[i] = 2 / ((1 - z * z) * slope * slope);
-    }
-}
-
-// Fraction of the phase function within theta of the forward direction.
-static double fraction_within(double g, double theta)
-{
-    double s1 = sin(0.5 * theta), one_minus_mu = 2 * s1 * s1;
-    double s = sqrt((1 - g) * (1 - g) + 2 * g * one_minus_mu);
-    return (1 + g) * one_minus_mu / (s * (s + 1 - g));
-}
-
-// theta_1 such that the lobe p h holds the fraction g^2. By parts, int p h = int -h' fraction_within,
-// with -h' = 6 x (1 - x), x = theta / theta_1 - 1/2; bisection, as it grows with theta_1.
-static double find_theta_1(double g, const double x[POINTS], const double w[POINTS])
-{
-    double lo = 0, hi = PI / 1.5;
-    for (int i = 0; i < 50; i++) {
-        double theta_1 = 0.5 * (lo + hi), sum = 0;
-        for (int panel = 0; panel < 4; panel++) {
-            for (int q = 0; q < POINTS; q++) {
-                double t = (panel + 0.5 + 0.5 * x[q]) / 4;
-                sum += w[q] / 8 * 6 * t * (1 - t) * fraction_within(g, (t + 0.5) * theta_1);
-            }
-        }
-        if (sum < g * g) {
-            lo = theta_1;
-        } else {
-            hi = theta_1;
-        }
-    }
-    return 0.5 * (lo + hi);
-}
-
-// Adds 2 pi int p h P_l dmu over [from, to] to moments[l]. Panels are half a lobe's width: the last P_l
-// turns about once in one.
-static void add_moments(double g, double theta_1, double from, double to, const double x[POINTS],
-                        const double w[POINTS], double *moments, uint32_t terms)
-{
-    uint32_t panels = (uint32_t)ceil((to - from) / fmin(0.5 * (1 - g), 0.25 * (to - from)));
-    double half = 0.5 * (to - from) / panels;
-    for (uint32_t panel = 0; panel < panels; panel++) {
-        double y[POINTS], p[POINTS], d[POINTS] = {0}; // 1 - mu, weight P_l, weight (P_l - P_{l-1})
-        for (int q = 0; q < POINTS; q++) {
-            double theta = from + half * (2 * panel + 1 + x[q]), s1 = sin(0.5 * theta);
-            y[q] = 2 * s1 * s1;
-            double s2 = (1 - g) * (1 - g) + 2 * g * y[q];
-            double t = fmin(fmax(theta / theta_1 - 0.5, 0), 1), h = 1 - t * t * (3 - 2 * t);
-            p[q] = w[q] * half * h * sin(theta) * 0.5 * (1 - g * g) / (s2 * sqrt(s2));
-        }
-        for (uint32_t l = 0; l < terms; l++) {
-            double a = l / (l + 1.0), b = (2 * l + 1) / (l + 1.0), sum = 0;
-            for (int q = 0; q < POINTS; q++) {
-                sum += p[q];
-                d[q] = a * d[q] - b * y[q] * p[q];
-                p[q] += d[q];
-            }
-            moments[l] += sum;
-        }
-    }
-}
-
 // Completes the rows and writes the moments (g^l - F_l, F_l) of one of them.
 static void make_moments(struct lut_block *block, uint32_t r, float (*out)[2])
 {
-    double x[POINTS], w[POINTS], lobe[MAX_TERMS] = {0}, g = block->g[r];
-    gauss_legendre(x, w);
-    double theta_1 = find_theta_1(g, x, w), power = 1;
-    add_moments(g, theta_1, 0, 0.5 * theta_1, x, w, lobe, block->terms[r]);
-    add_moments(g, theta_1, 0.5 * theta_1, 1.5 * theta_1, x, w, lobe, block->terms[r]);
+    double lobe[MAX_TERMS], g = block->g[r], power = 1;
+    double theta_1 = tyn_lobe_moments(g, lobe, block->terms[r]);
     for (uint32_t l = 0; l < block->terms[r]; l++, power *= g) {
         out[l][0] = (float)(power - lobe[l]);
         out[l][1] = (float)lobe[l];
