@@ -1,5 +1,5 @@
 // samples.c -- the sample scenes are what they are said to be: they load, the smoke fills its part of
-// the picture, the cloud is thick. argv[1] is their folder.
+// the picture, the cloud is thick, the sky has its sun. argv[1] is their folder.
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -36,9 +36,11 @@ static tyn_scene load(const char *name)
 static void all_load(void **state)
 {
     (void)state;
-    static const char *const names[] = {"cube",    "cube-oblique",  "sphere",   "slab",
-                                        "slab-60", "furnace",       "smoke",    "cloud",
-                                        "empty",   "furnace-smoke", "two-media"};
+    static const char *const names[] = {
+        "cube",      "cube-oblique", "sphere", "slab",           "slab-60",
+        "furnace",   "smoke",        "cloud",  "furnace-smoke",  "two-media",
+        "smoke-sky", "cloud-sunset", "milk",   "plume-contrast", "empty",
+    };
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
         tyn_scene scene = load(names[i]);
         assert_int_equal(tyn_scene_check(&scene, &log_all), TYN_OK);
@@ -108,6 +110,80 @@ static void smoke_is_inside(void **state)
     tyn_scene_finish(&scene);
 }
 
+// Irradiance of a map on a plane that faces `towards`, from within `cosine` of that direction.
+static double irradiance(const tyn_environment *e, const double towards[3], double cosine,
+                         double *brightest, double *darkest)
+{
+    const double pi = 3.14159265358979;
+    double sum = 0;
+    *brightest = 0;
+    *darkest = 1e30;
+    for (uint32_t y = 0; y < e->size[1]; y++) {
+        const double t0 = pi * y / e->size[1], t1 = pi * (y + 1) / e->size[1], t = 0.5 * (t0 + t1);
+        const double solid = 2 * pi / e->size[0] * (cos(t0) - cos(t1));
+        for (uint32_t x = 0; x < e->size[0]; x++) {
+            const double phi = 2 * pi * ((x + 0.5) / e->size[0] - 0.5);
+            const double c = sin(t) * sin(phi) * towards[0] + cos(t) * towards[1] -
+                             sin(t) * cos(phi) * towards[2];
+            const float *rgb = e->data + 3 * ((size_t)y * e->size[0] + x);
+            const double grey = ((double)rgb[0] + (double)rgb[1] + (double)rgb[2]) / 3;
+            sum += c > cosine ? grey * c * solid : 0;
+            *brightest = grey > *brightest ? grey : *brightest;
+            *darkest = grey < *darkest ? grey : *darkest;
+        }
+    }
+    return sum;
+}
+
+// The clear sky: the sun stands where it is said to, and gives most of the light.
+static void sky_has_its_sun(void **state)
+{
+    (void)state;
+    tyn_scene scene = load("smoke-sky");
+    const double pi = 3.14159265358979, e = 35 * pi / 180, a = 75 * pi / 180;
+    const double sun[3] = {cos(e) * sin(a), sin(e), -cos(e) * cos(a)}, up[3] = {0, 1, 0};
+    double bright, dark;
+    const double direct = irradiance(&scene.environment, sun, cos(1.0 * pi / 180), &bright, &dark);
+    const double all = irradiance(&scene.environment, up, 0, &bright, &dark);
+    const double sky = all - direct * sin(e);
+    print_message(
+        "clear sky: sun %.2f W/m^2, sky %.2f W/m^2 on the ground, radiance %.2f to %.0f\n", direct,
+        sky, dark, bright);
+    // 12 W/m^2 above the atmosphere, of which a clear one lets three quarters through; a clear sky
+    // gives a tenth to a third of what falls on the ground.
+    assert_true(direct > 0.6 * 12 && direct < 0.9 * 12);
+    assert_true(sky > 0.1 * all && sky < 0.33 * all);
+    tyn_scene_finish(&scene);
+}
+
+static void courtyard_has_contrast(void **state)
+{
+    (void)state;
+    tyn_scene scene = load("plume-contrast");
+    const double up[3] = {0, 1, 0};
+    double bright, dark;
+    const double down = irradiance(&scene.environment, up, 0, &bright, &dark);
+    print_message("courtyard: radiance %.3f to %.2f, %.2f W/m^2 on the ground\n", dark, bright,
+                  down);
+    assert_true(bright > 100 * dark && bright < 20);
+    tyn_scene_finish(&scene);
+}
+
+// The milk absorbs less than one part in a thousand, and is some hundred mean free paths thick.
+static void milk_is_thick(void **state)
+{
+    (void)state;
+    tyn_scene scene = load("milk");
+    const tyn_medium *m = &scene.media[0];
+    for (int k = 0; k < 3; k++) {
+        assert_true(m->sigma_a[k] < 1e-3f * m->sigma_s[k]);
+    }
+    const float across = thickest_column(&scene, 0), up = thickest_column(&scene, 1);
+    print_message("milk: optical depth %.0f across, %.0f up\n", (double)across, (double)up);
+    assert_true(across > 100 && up > 200);
+    tyn_scene_finish(&scene);
+}
+
 // 40 +- 5 % of the pixels of a square picture have at least 1 % of the smoke in front of them.
 static void smoke_fills_the_picture(void **state)
 {
@@ -151,6 +227,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(all_load),
         cmocka_unit_test(cloud_is_thick),
         cmocka_unit_test(smoke_is_inside),
+        cmocka_unit_test(sky_has_its_sun),
+        cmocka_unit_test(courtyard_has_contrast),
+        cmocka_unit_test(milk_is_thick),
         cmocka_unit_test(smoke_fills_the_picture),
     };
     return cmocka_run_group_tests_name("samples", tests, NULL, NULL);

@@ -1,14 +1,15 @@
 // main.c -- `tyndall-scenes FOLDER`: writes the sample scenes, the same bytes on every machine.
 //
 // The arithmetic is + - * / and sqrt, which IEEE 754 rounds exactly; there is no call into the
-// transcendental half of libm, whose last digit is the platform's, and no contraction to fused
-// multiply-add (see meson.build).
+// transcendental half of libm, whose last digit is the platform's (see portable.h), and no
+// contraction to fused multiply-add (see meson.build).
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "maps.h"
 #include "scenes.h"
 
-// A clear sky without its sun: radiance from the zenith over the horizon to the ground.
+// A painted sky without a sun: radiance from the zenith over the horizon to the ground.
 static bool write_sky(const char *folder)
 {
     enum { WIDTH = 64, HEIGHT = 32 };
@@ -30,6 +31,33 @@ static bool write_sky(const char *folder)
     return gen_write_hdr(folder, "sky.hdr", WIDTH, HEIGHT, rgb);
 }
 
+static bool write_map(const char *folder, const char *file, gen_map map)
+{
+    const bool ok = gen_write_exr(folder, file, &map);
+    gen_map_free(&map);
+    return ok;
+}
+
+static bool write_maps(const char *folder)
+{
+    enum { WIDTH = 512, HEIGHT = 256 };
+    const gen_sky clear = {.elevation = 35,
+                           .azimuth = 75,
+                           .turbidity = 2.2,
+                           .albedo = {0.12, 0.11, 0.09},
+                           .irradiance = 12,
+                           .observer = 200};
+    const gen_sky sunset = {.elevation = 5,
+                            .azimuth = 75,
+                            .turbidity = 2.5,
+                            .albedo = {0.12, 0.11, 0.09},
+                            .irradiance = 25,
+                            .observer = 200};
+    bool ok = write_map(folder, "clear-sky.exr", gen_clear_sky(&clear, WIDTH, HEIGHT));
+    ok = write_map(folder, "sunset-sky.exr", gen_clear_sky(&sunset, WIDTH, HEIGHT)) && ok;
+    return write_map(folder, "courtyard.exr", gen_courtyard(WIDTH, HEIGHT)) && ok;
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 2) {
@@ -38,6 +66,7 @@ int main(int argc, char **argv)
     }
     const char *folder = argv[1];
     bool ok = write_sky(folder);
+    ok = write_maps(folder) && ok;
     for (int i = 0; i < gen_num_scenes; i++) {
         ok = gen_write_gltf(folder, &gen_scenes[i]) && ok;
     }
@@ -50,5 +79,8 @@ int main(int argc, char **argv)
     gen_grid plume = gen_plume();
     ok = gen_write_f16(folder, "smoke.raw", &plume) && ok;
     gen_grid_free(&plume);
+    gen_grid hare = gen_hare();
+    ok = gen_write_u8(folder, "hare.raw", &hare) && ok;
+    gen_grid_free(&hare);
     return ok ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -14,6 +14,11 @@
         .uri = "blobs.raw", .type = "u8", .size = { 48, 48, 48 }                                   \
     }
 
+#define HARE                                                                                       \
+    {                                                                                              \
+        .uri = "hare.raw", .type = "u8", .size = { 72, 96, 84 }                                    \
+    }
+
 #define UNIT_CUBE                                                                                  \
     {                                                                                              \
         .name = "cube", .translation = {0.5f, 0.5f, 0.5f}, .scale = { 1, 1, 1 }                    \
@@ -188,6 +193,64 @@ const gen_scene gen_scenes[] = {
         .suns = {{.direction = {-0.6f, -0.7f, -0.4f}, .irradiance = 12}},
         .cameras =
             {{.name = "view", .from = {0.8f, 1.2f, 5.2f}, .at = {0.32f, -0.1f, 0}, .yfov = 0.46f}},
+    },
+    {
+        .name = "smoke-sky",
+        .about = "the plume of smoke under a clear sky, the sun on the right",
+        .media = {{.name = "smoke",
+                   .scattering = {26, 26, 26},
+                   .absorption = {2.6f, 2.6f, 2.6f},
+                   .anisotropy = 0.7f,
+                   .density = PLUME}},
+        .shapes = {{.name = "smoke", .translation = {0, 1, 0}, .scale = {1.2f, 2, 1.2f}}},
+        .cameras = {{.name = "view", .from = {0, 0.2f, 4.1f}, .at = {0, 1.03f, 0}, .yfov = 0.4f}},
+        .environment = true,
+        .environment_uri = "clear-sky.exr",
+        .environment_radiance = {1, 1, 1},
+    },
+    {
+        .name = "cloud-sunset",
+        .about = "a cumulus of 600 m under the evening sky, the sun 5 degrees above the horizon",
+        .media = {{.name = "cloud",
+                   .scattering = {0.25f, 0.25f, 0.25f},
+                   .anisotropy = 0.85f,
+                   .density = CUMULUS}},
+        .shapes = {{.name = "cloud", .translation = {0, 610, 0}, .scale = {600, 420, 600}}},
+        .cameras = {{.name = "view", .from = {120, 300, 1300}, .at = {0, 565, 0}, .yfov = 0.4f}},
+        .environment = true,
+        .environment_uri = "sunset-sky.exr",
+        .environment_radiance = {1, 1, 1},
+    },
+    {
+        .name = "milk",
+        .about = "a hare of milk, 0.4 m high, with the coefficients of Elek et al. 2014, figure 8, "
+                 "taken per mm; a density scale of 0.01 gives the optical size of their 4 m dragon",
+        .media = {{.name = "milk",
+                   .scattering = {910, 1070, 1250},
+                   .absorption = {0.15f, 0.35f, 0.9f},
+                   .anisotropy = 0.95f,
+                   .density = HARE}},
+        .shapes = {{.name = "hare", .translation = {0, 0.2f, 0}, .scale = {0.3f, 0.4f, 0.35f}}},
+        .cameras =
+            {{.name = "view", .from = {0.5f, 0.3f, 0.9f}, .at = {0, 0.19f, 0}, .yfov = 0.45f}},
+        .environment = true,
+        .environment_uri = "courtyard.exr",
+        .environment_radiance = {1, 1, 1},
+    },
+    {
+        .name = "plume-contrast",
+        .about = "a dark plume of 10 m in a courtyard, with the coefficients of Elek et al. 2014, "
+                 "figure 11",
+        .media = {{.name = "smoke",
+                   .scattering = {2.9f, 3.6f, 4.2f},
+                   .absorption = {3.4f, 3.35f, 3.4f},
+                   .anisotropy = 0.9f,
+                   .density = PLUME}},
+        .shapes = {{.name = "smoke", .translation = {0, 5, 0}, .scale = {6, 10, 6}}},
+        .cameras = {{.name = "view", .from = {0, 1.2f, 20.5f}, .at = {0, 5.1f, 0}, .yfov = 0.4f}},
+        .environment = true,
+        .environment_uri = "courtyard.exr",
+        .environment_radiance = {1, 1, 1},
     },
 };
 

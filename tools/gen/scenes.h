@@ -12,3 +12,5 @@ gen_grid gen_plume(void);
 gen_grid gen_cumulus(void);
 // Three soft blobs: density in [0, 1].
 gen_grid gen_blobs(void);
+// A sitting hare: density 1 inside, Y up.
+gen_grid gen_hare(void);
