@@ -3,6 +3,7 @@
 #include "passes/beam/beam.h"
 #include "passes/columns/columns.h"
 #include "passes/composite/composite.h"
+#include "passes/importance/importance.h"
 #include "passes/lattice/lattice.h"
 #include "passes/medium/medium.h"
 #include "passes/path/path.h"
@@ -28,6 +29,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_balance,
     &tyn_pass_propagate_rect,
     &tyn_pass_upsample,
+    &tyn_pass_importance,
     &tyn_pass_raymarch,
     &tyn_pass_path,
     &tyn_pass_path_probe,

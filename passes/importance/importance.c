@@ -1,0 +1,161 @@
+// importance.c -- see importance.h.
+#include "importance.h"
+#include "importance_cells.comp.h"
+#include "importance_field.comp.h"
+#include "importance_map.comp.h"
+#include "importance_send.comp.h"
+#include "importance_setup.comp.h"
+#include "importance_step.comp.h"
+#include "scene_args.h"
+
+#define PORT(name) IMPORTANCE_PORT_##name
+
+static const tyn_port ports[IMPORTANCE_NUM_PORTS] = {
+    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
+    [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
+    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
+    [PORT(SIGMA_A)] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                       .meaning = "absorption, 1/m"},
+    [PORT(G)] = {"g", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                 .meaning = "mean cosine of scattering"},
+    [PORT(HISTORY)] = {"history", TYN_INOUT, TYN_BUFFER, .meaning = "struct importance_history"},
+    [PORT(MAP)] = {"importance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
+                   .meaning = "importance by the direction light comes from, mean 1"},
+    [PORT(FIELD)] = {"field", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                     .meaning = "importance scattered, 1/m^3; times its mean cosine; sigma_t, 1/m"},
+    [PORT(GRID)] = {"grid", TYN_OUT, TYN_BUFFER, .meaning = "struct importance_grid"},
+    [PORT(CELLS)] = {"cells", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct importance_cell[]"},
+    [PORT(STATE)] = {"state", TYN_SCRATCH, TYN_BUFFER,
+                     .meaning = "power, 1 - a, parts to a side and to the back"},
+    [PORT(STATE_OTHER)] = {"state_other", TYN_SCRATCH, TYN_BUFFER,
+                           .meaning = "state of every other iteration"},
+    [PORT(TRACKS)] = {"tracks", TYN_SCRATCH, TYN_BUFFER,
+                      .meaning = "sum of power times length, and times 1 - a"},
+    [PORT(SENT)] = {"sent", TYN_SCRATCH, TYN_BUFFER,
+                    .meaning = "what leaves the medium along each direction, 1/sr"},
+};
+
+enum { SETUP, CELLS, STEP, FIELD, SEND, MAP, NUM_KERNELS };
+
+static const tyn_binding setup_bindings[] = {
+    {PORT(MEDIUM), TYN_USE_UNIFORM},
+    {PORT(CAMERA), TYN_USE_UNIFORM},
+    {PORT(GRID), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding cells_bindings[] = {
+    {PORT(MEDIUM), TYN_USE_UNIFORM},      {PORT(DENSITY), TYN_USE_SAMPLED},
+    {PORT(SIGMA_A), TYN_USE_SAMPLED},     {PORT(G), TYN_USE_SAMPLED},
+    {PORT(GRID), TYN_USE_UNIFORM},        {PORT(CELLS), TYN_USE_STORAGE_WRITE},
+    {PORT(STATE), TYN_USE_STORAGE_WRITE}, {PORT(TRACKS), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding step_bindings[] = {
+    {PORT(CELLS), TYN_USE_STORAGE_READ},
+    {PORT(STATE_OTHER), TYN_USE_STORAGE_READ},
+    {PORT(STATE), TYN_USE_STORAGE_WRITE},
+    {PORT(TRACKS), TYN_USE_STORAGE_RW},
+};
+static const tyn_binding field_bindings[] = {
+    {PORT(CELLS), TYN_USE_STORAGE_READ},
+    {PORT(TRACKS), TYN_USE_STORAGE_READ},
+    {PORT(FIELD), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding send_bindings[] = {
+    {PORT(MEDIUM), TYN_USE_UNIFORM},
+    {PORT(GRID), TYN_USE_UNIFORM},
+    {PORT(FIELD), TYN_USE_SAMPLED},
+    {PORT(SENT), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding map_bindings[] = {
+    {PORT(SENT), TYN_USE_STORAGE_READ},
+    {PORT(HISTORY), TYN_USE_STORAGE_RW},
+    {PORT(MAP), TYN_USE_STORAGE_WRITE},
+};
+
+#define KERNEL(step, x, y, z, specs)                                                               \
+    .name = "importance_" #step, .spirv = importance_##step##_spirv,                               \
+    .spirv_size = sizeof importance_##step##_spirv, .args_size = sizeof(struct importance_args),   \
+    .local_size = {x, y, z}, .bindings = step##_bindings,                                          \
+    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [SETUP] = {KERNEL(setup, 1, 1, 1, 0)},
+    [CELLS] = {KERNEL(cells, 4, 4, 4, 1)},
+    [STEP] = {KERNEL(step, 4, 4, 4, 0)},
+    [FIELD] = {KERNEL(field, 4, 4, 4, 0)},
+    [SEND] = {KERNEL(send, TYN_IMPORTANCE_RAYS, 8, 1, 0)},
+    [MAP] = {KERNEL(map, TYN_IMPORTANCE_TEXELS, 1, 1, 0)},
+};
+
+#define FIELD_OF(name) offsetof(tyn_importance_params, name)
+static const tyn_param params[] = {
+    {"cells", TYN_PARAM_INT, FIELD_OF(cells), 16, 8, 32, "cells",
+     "along each side of the grid in the camera's pyramid"},
+    {"iterations", TYN_PARAM_INT, FIELD_OF(iterations), 24, 1, 128, "",
+     "hops from cell to cell; at least as many as cells"},
+    {"smoothing", TYN_PARAM_FLOAT, FIELD_OF(smoothing), 0, 0, 0.95, "",
+     "weight of the frames before; above 0 a picture depends on those rendered before it"},
+    {"floor", TYN_PARAM_FLOAT, FIELD_OF(floor), 0.1, 0, 1, "",
+     "least importance of a direction; the mean is 1"},
+};
+
+static tyn_result declare(tyn_builder *b, const void *data)
+{
+    const tyn_importance_params *p = data;
+    const uint32_t n = (uint32_t)p->cells;
+    const uint64_t cells = (uint64_t)n * n * n;
+    tyn_build_image(b, PORT(MAP), (tyn_extent){TYN_IMPORTANCE_WIDTH, TYN_IMPORTANCE_HEIGHT, 1}, 1);
+    tyn_build_image(b, PORT(FIELD), (tyn_extent){n, n, n}, 1);
+    tyn_build_buffer(b, PORT(GRID), sizeof(struct importance_grid));
+    tyn_build_buffer(b, PORT(CELLS), cells * sizeof(struct importance_cell));
+    tyn_build_buffer(b, PORT(STATE), cells * 4 * sizeof(float));
+    tyn_build_buffer(b, PORT(STATE_OTHER), cells * 4 * sizeof(float));
+    tyn_build_buffer(b, PORT(TRACKS), cells * 2 * sizeof(float));
+    tyn_build_buffer(b, PORT(SENT), TYN_IMPORTANCE_TEXELS * sizeof(float));
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *data)
+{
+    const tyn_importance_params *p = data;
+    const uint32_t n = (uint32_t)p->cells;
+    const struct importance_args args = {n, p->scaled, p->smoothing, p->floor};
+    const tyn_extent grid = {n, n, n};
+    static const uint8_t swapped[] = {PORT(CELLS), PORT(STATE), PORT(STATE_OTHER), PORT(TRACKS)};
+
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SETUP, .cells = {1, 1, 1}, .args = &args});
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){.kernel = CELLS, .cells = grid, .args = &args, .spec = &p->mode});
+    for (int32_t i = 0; i < p->iterations; i++) {
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
+                                            .cells = grid,
+                                            .args = &args,
+                                            .ports = i % 2 == 0 ? swapped : NULL});
+    }
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = FIELD, .cells = grid, .args = &args});
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SEND,
+                                        .cells = {TYN_IMPORTANCE_RAYS, TYN_IMPORTANCE_TEXELS, 1},
+                                        .args = &args});
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){.kernel = MAP, .cells = {TYN_IMPORTANCE_TEXELS, 1, 1}, .args = &args});
+    double hops = (double)n * n * n * p->iterations;
+    double steps = (double)TYN_IMPORTANCE_TEXELS * TYN_IMPORTANCE_RAYS * TYN_IMPORTANCE_RAYS *
+                   TYN_IMPORTANCE_STEPS;
+    tyn_rec_work(r, "cells", hops);
+    tyn_rec_work(r, "steps", steps);
+    tyn_rec_work(r, "flops", hops * 150 + steps * 70); // counted by hand
+}
+
+const tyn_pass_desc tyn_pass_importance = {
+    .name = "importance",
+    .summary = "directions whose light matters for the picture (Elek 2014, section 5.2)",
+    .ports = ports,
+    .num_ports = IMPORTANCE_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params = params,
+    .num_params = sizeof params / sizeof *params,
+    .params_size = sizeof(tyn_importance_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = PORT(MAP),
+    .debug_meaning = "importance by direction, latitude and longitude of the medium's frame",
+};

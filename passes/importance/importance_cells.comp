@@ -1,0 +1,81 @@
+// importance_cells.comp -- the medium of each cell, and the importance before the first hop: a picture
+// of power 1, evenly over its area, enters the first layer.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 1
+#define MEDIUM_SIGMA_A 2
+#define MEDIUM_G 3
+#include "medium.glsl"
+#include "propagate.glsl"
+#include "importance.glsl"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+layout(set = 0, binding = 4, scalar) uniform grid_uniform { importance_grid grid; };
+layout(set = 0, binding = 5, scalar) writeonly buffer cells_buffer { importance_cell cells[]; };
+layout(set = 0, binding = 6, scalar) writeonly buffer state_buffer { vec4 state[]; };
+layout(set = 0, binding = 7, scalar) writeonly buffer tracks_buffer { vec2 tracks[]; };
+layout(push_constant, scalar) uniform push { importance_args args; };
+
+const int SAMPLES = 4; // along each edge of a cell
+
+float mean(vec3 v)
+{
+    return (v.r + v.g + v.b) / 3.0;
+}
+
+// Part of the picture that the column covers.
+float coverage(vec2 low, vec2 high)
+{
+    vec2 both = min(high, grid.window_high) - max(low, grid.window_low);
+    vec2 window = grid.window_high - grid.window_low;
+    return both.x > 0.0 && both.y > 0.0 ? both.x * both.y / (window.x * window.y) : 0.0;
+}
+
+void main()
+{
+    uvec3 cell = gl_GlobalInvocationID;
+    if (any(greaterThanEqual(cell, uvec3(args.cells)))) {
+        return;
+    }
+    uint index = (cell.z * args.cells + cell.y) * args.cells + cell.x;
+    importance_cell here = importance_cell(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    float power = 0.0;
+    if (grid.empty == 0u) {
+        vec3 scattered = vec3(0.0), absorbed = vec3(0.0), turned = vec3(0.0);
+        for (int i = 0; i < SAMPLES * SAMPLES * SAMPLES; i++) {
+            vec3 at = (vec3(i % SAMPLES, i / SAMPLES % SAMPLES, i / (SAMPLES * SAMPLES)) + 0.5) /
+                      float(SAMPLES);
+            medium_point m = medium_sample(importance_to_m(grid, (vec3(cell) + at) / float(args.cells)));
+            scattered += m.sigma_s;
+            absorbed += m.sigma_a;
+            turned += m.sigma_s * m.g;
+        }
+        const float each = 1.0 / float(SAMPLES * SAMPLES * SAMPLES);
+        float sigma_s = mean(scattered) * each, g = mean(turned) * each / max(sigma_s, 1e-30);
+        here.sigma_a = mean(absorbed) * each;
+        here.decay = propagate_decay(sigma_s, g, TYN_PROPAGATE_RATE_EXACT);
+        float f = args.scaled != 0u ? delta_fraction(g) : 0.0;
+        here.sigma_s = (1.0 - f) * sigma_s;
+        here.sigma_t = here.sigma_s + here.sigma_a;
+        here.g = (g - f) / (1.0 - f);
+
+        vec2 low = mix(grid.low, grid.high, vec2(cell.xy) / float(args.cells));
+        vec2 high = mix(grid.low, grid.high, vec2(cell.xy + 1u) / float(args.cells));
+        vec2 centre = grid.orthographic != 0u ? vec2(0.0) : 0.5 * (low + high);
+        float z_low = importance_depth(grid, float(cell.z) / float(args.cells));
+        float z_high = importance_depth(grid, float(cell.z + 1u) / float(args.cells));
+        // The mean over the layer of the square of the widening.
+        float area = (high.x - low.x) * (high.y - low.y) *
+                     (grid.orthographic != 0u ? 1.0
+                                              : (z_low * z_low + z_low * z_high + z_high * z_high) / 3.0);
+        here.along = (z_high - z_low) * sqrt(1.0 + dot(centre, centre));
+        here.across = sqrt(area);
+        here.volume = area * (z_high - z_low);
+        power = cell.z == 0u ? coverage(low, high) : 0.0;
+    }
+    cells[index] = here;
+    state[index] = propagate_state(power, 0.0);
+    tracks[index] = vec2(power * here.along, 0.0);
+}

@@ -1,0 +1,57 @@
+// importance_args.h -- the camera's grid and the map of directions. Included by C and GLSL.
+#ifndef TYN_IMPORTANCE_ARGS_H
+#define TYN_IMPORTANCE_ARGS_H
+#include "shared.h"
+
+#define TYN_IMPORTANCE_WIDTH 32 // of the map of directions, texels
+#define TYN_IMPORTANCE_HEIGHT 16
+#define TYN_IMPORTANCE_TEXELS (TYN_IMPORTANCE_WIDTH * TYN_IMPORTANCE_HEIGHT)
+#define TYN_IMPORTANCE_RAYS 8   // along each side of the box, per direction of the map
+#define TYN_IMPORTANCE_STEPS 16 // of a ray through the box
+
+// The grid is the part of the camera's pyramid that holds the medium: column (i, j) is a pencil of the
+// camera's rays, layer k a range of depths. Positions in it are (s, t, z): depth z along `forward`;
+// s, t along `right` and `up`, divided by z if the camera is perspective.
+struct importance_grid {
+    tyn_vec3 origin; // M, m: the camera
+    float near;      // depths, m
+    tyn_vec3 right;  // M, unit
+    float far;
+    tyn_vec3 up;
+    tyn_uint orthographic;
+    tyn_vec3 forward;
+    tyn_uint empty;  // 1: no medium in front of the camera
+    tyn_vec2 low;    // (s, t) of the grid
+    tyn_vec2 high;
+    tyn_vec2 window_low; // of the picture
+    tyn_vec2 window_high;
+};
+TYN_ASSERT_SIZE(importance_grid, 96);
+
+struct importance_cell { // the medium in a cell; the mean over the channels
+    float sigma_s;       // 1/m, of the last scattering: delta-scaled where the method wants it
+    float sigma_t;
+    float g;
+    float sigma_a; // 1/m, true
+    float decay;   // of the mean cosine, 1/m
+    float along;   // length of the cell in its column, m
+    float across;  // width, m
+    float volume;  // m^3
+};
+TYN_ASSERT_SIZE(importance_cell, 32);
+
+struct importance_history { // from frame to frame; zeros at the start
+    tyn_uint frames;        // 0 = nothing is known yet
+    float map[TYN_IMPORTANCE_TEXELS];
+};
+TYN_ASSERT_SIZE(importance_history, 2052);
+
+struct importance_args {
+    tyn_uint cells; // along each side of the grid
+    tyn_uint scaled;
+    float smoothing;
+    float floor;
+};
+TYN_ASSERT_SIZE(importance_args, 16);
+
+#endif
