@@ -31,7 +31,7 @@ struct tyn_context {
     uint64_t faces_hash; // of the grid that `open_faces` was found for
     uint32_t open_faces;
     uint64_t checked_data; // hash of the densities and texels that were found fit
-    float env_mean[3];
+    tyn_map_light map_light;
     void *env_cdf; // of a method that reads it
     char *warnings[MAX_WARNINGS];
     uint32_t num_warnings;
@@ -207,9 +207,11 @@ static tyn_result update_environment(tyn_context *ctx, const tyn_environment *en
                          : tyn_hash_bytes(TYN_HASH_SEED, env->data, texels * 3 * sizeof(float));
     }
     if (hash != ctx->env_hash) {
-        tyn_environment_mean(env, ctx->env_mean);
         free(ctx->env_cdf);
         ctx->env_cdf = NULL;
+        if (!tyn_map_light_find(env, &ctx->map_light)) {
+            return TYN_ERR_MEMORY;
+        }
         if (ctx->method->reads_env_cdf && tyn_env_cdf_size(env)) {
             ctx->env_cdf = malloc(tyn_env_cdf_size(env));
             if (!ctx->env_cdf || !tyn_env_cdf_build(env, ctx->env_cdf)) {
@@ -310,7 +312,7 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     ctx->scene = frame->scene;
     tyn_result result = update_environment(ctx, &frame->scene->environment);
     if (result == TYN_OK) {
-        result = tyn_frame_scene_build(&ctx->frame, frame->scene, view, ctx->env_mean, log);
+        result = tyn_frame_scene_build(&ctx->frame, frame->scene, view, &ctx->map_light, log);
     }
     if (result == TYN_OK) {
         result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);

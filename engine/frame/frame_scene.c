@@ -283,8 +283,27 @@ static void build_camera(tyn_frame_scene *out, const tyn_view *view, const rigid
     b->size[1] = view->height;
 }
 
+// The map's suns as directional lights behind those of the scene.
+static void build_map_suns(tyn_frame_scene *out, const tyn_map_light *map)
+{
+    const struct env_block *env = &out->environment;
+    out->map = *map;
+    for (uint32_t i = 0; i < map->num_suns; i++) {
+        const tyn_map_sun *sun = &map->suns[i];
+        struct light_block *b = &out->suns[out->num_suns + out->num_map_suns++];
+        *b = (struct light_block){.kind = TYN_LIGHT_KIND_DIRECTIONAL,
+                                  .mean_cosine = sun->mean_cosine};
+        for (int a = 0; a < 3; a++) {
+            b->color[a] = env->radiance[a] * (float)sun->irradiance[a];
+            for (int r = 0; r < 3; r++) {
+                b->direction[a] -= env->rows[r][a] * sun->direction[r];
+            }
+        }
+    }
+}
+
 static void build_environment(tyn_frame_scene *out, const tyn_environment *env,
-                              const float mean_env[3], const rigid *m)
+                              const tyn_map_light *map, const rigid *m)
 {
     struct env_block *b = &out->environment;
     if (!env->present) {
@@ -308,28 +327,10 @@ static void build_environment(tyn_frame_scene *out, const tyn_environment *env,
             b->rows[r][a] = (float)dot3(map_to_world[r], m->axes[a]);
         }
         b->radiance[r] = env->radiance[r] * env->strength;
-        b->mean[r] = b->radiance[r] * (b->has_map ? mean_env[r] : 1.0f);
-        b->sky[r] = b->mean[r];
+        b->mean[r] = b->radiance[r] * (b->has_map ? (float)map->mean[r] : 1.0f);
+        b->sky[r] = b->radiance[r] * (b->has_map ? (float)map->sky[r] : 1.0f);
     }
-}
-
-void tyn_environment_mean(const tyn_environment *env, float mean[3])
-{
-    double sum[3] = {0, 0, 0};
-    const float *texel = env->data;
-    for (uint32_t y = 0; y < env->size[1]; y++) {
-        // Share of the sphere of one texel of this row.
-        double share = (cos(M_PI * y / env->size[1]) - cos(M_PI * (y + 1) / env->size[1])) * 0.5 /
-                       env->size[0];
-        for (uint32_t x = 0; x < env->size[0]; x++, texel += 3) {
-            for (int c = 0; c < 3; c++) {
-                sum[c] += share * texel[c];
-            }
-        }
-    }
-    for (int c = 0; c < 3; c++) {
-        mean[c] = (float)sum[c];
-    }
+    build_map_suns(out, map);
 }
 
 // ---- all --------------------------------------------------------------------------------------
@@ -356,7 +357,7 @@ uint32_t tyn_volume_open_faces(const tyn_volume *volume)
 }
 
 tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, const tyn_view *view,
-                                 const float mean_env[3], const tyn_log *log)
+                                 const tyn_map_light *map, const tyn_log *log)
 {
     memset(out, 0, sizeof *out);
     for (uint32_t i = 0; i < scene->num_shapes; i++) {
@@ -394,7 +395,7 @@ tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, c
     build_shapes(out, scene, &m);
     build_lights(out, scene, &m);
     build_camera(out, view, &m);
-    build_environment(out, &scene->environment, mean_env, &m);
+    build_environment(out, &scene->environment, map, &m);
     for (int a = 0; a < 3; a++) {
         for (int j = 0; j < 3; j++) {
             out->m_from_world[j * 4 + a] = (float)m.axes[a][j];

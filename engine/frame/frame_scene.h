@@ -2,13 +2,10 @@
 #pragma once
 #include "methods/job.h"
 
-// Everything in the medium frame M (scene_args.h). `mean_env` is the mean radiance of the map's texels
-// over the sphere, before `radiance` and `strength`. Errors are one log line.
+// Everything in the medium frame M (scene_args.h). `map` is what tyn_map_light_find says of the scene's
+// environment. Errors are one log line.
 tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, const tyn_view *view,
-                                 const float mean_env[3], const tyn_log *log);
-
-// Mean of a latitude-longitude map over the sphere, exact for its texels' solid angles.
-void tyn_environment_mean(const tyn_environment *environment, float mean[3]);
+                                 const tyn_map_light *map, const tyn_log *log);
 
 // The atlas: every density grid, stacked along z in the order of scene.volumes, then one texel of 1 for
 // homogeneous media. {0,0,0} extent if the only grid is the host's image.

@@ -5,6 +5,7 @@
 #pragma once
 #include <tyndall/context.h>
 #include "graph/graph.h"
+#include "scene/env_suns.h"
 #include "scene_args.h"
 
 // The scene in the medium frame, made once per frame by the engine.
@@ -15,6 +16,7 @@ typedef struct tyn_frame_scene {
     uint32_t num_lights, num_suns; // suns = directional lights, first in `lights`
     struct light_block suns[TYN_LIGHTS_MAX]; // the directional lights, then the environment map's suns
     uint32_t num_map_suns; // suns[num_suns .. num_suns + num_map_suns); `path` has them in the map
+    tyn_map_light map; // of the environment, in the map's frame and units
     struct camera_block camera;
     struct env_block environment;
     bool direct; // one unsheared box: the atlas is the density texture, `medium` need not resample
