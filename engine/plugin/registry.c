@@ -3,6 +3,7 @@
 #include "passes/beam/beam.h"
 #include "passes/columns/columns.h"
 #include "passes/composite/composite.h"
+#include "passes/env_glow/env_glow.h"
 #include "passes/importance/importance.h"
 #include "passes/lattice/lattice.h"
 #include "passes/medium/medium.h"
@@ -30,6 +31,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_propagate_rect,
     &tyn_pass_upsample,
     &tyn_pass_importance,
+    &tyn_pass_env_glow,
     &tyn_pass_raymarch,
     &tyn_pass_path,
     &tyn_pass_path_probe,

@@ -1,0 +1,245 @@
+// env_glow.c -- the environment as it looks through a medium that scatters forward.
+//
+// The smearing is a convolution on the sphere: every spherical harmonic of degree l is multiplied with
+// the kernel's Legendre moment. The moments come from the CPU, the transforms there and back run on the
+// GPU: Fourier sums along the rows, Legendre functions across them.
+#include "env_glow.h"
+#include "env_glow_args.h"
+#include "env_glow_rows.comp.h"
+#include "env_glow_analyse.comp.h"
+#include "env_glow_smear.comp.h"
+#include "env_glow_texels.comp.h"
+#include "base/forward_lobe.h"
+#include <math.h>
+
+#define PI 3.14159265358979323846
+
+enum { DEGREES = TYN_GLOW_HEIGHT };
+
+static const double g_max = 0.995; // narrower lobes are replaced by this one (similarity_clamp)
+
+static const tyn_port ports[ENV_GLOW_NUM_PORTS] = {
+    [ENV_GLOW_PORT_SKY] = {"sky", TYN_IN, TYN_IMAGE_2D, 0, false,
+                           "latitude-longitude map without its suns"},
+    [ENV_GLOW_PORT_GLOW] = {"glow", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
+                            "the map smeared by forward scattering, over direction and depth"},
+    [ENV_GLOW_PORT_SERIES] = {"series", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                              "Legendre moments of the kernels, weights of the rows"},
+    [ENV_GLOW_PORT_ROWS] = {"rows", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                            "Fourier sums of the map's rows"},
+    [ENV_GLOW_PORT_COEFFICIENTS] = {"coefficients", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                                    "spherical harmonics of the map"},
+    [ENV_GLOW_PORT_LEVELS] = {"levels", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                              "Fourier sums of the smeared map's rows"},
+};
+
+static const tyn_binding rows_bindings[] = {
+    {ENV_GLOW_PORT_SKY, TYN_USE_SAMPLED, true},
+    {ENV_GLOW_PORT_ROWS, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding analyse_bindings[] = {
+    {ENV_GLOW_PORT_SERIES, TYN_USE_STORAGE_READ},
+    {ENV_GLOW_PORT_ROWS, TYN_USE_STORAGE_READ},
+    {ENV_GLOW_PORT_COEFFICIENTS, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding smear_bindings[] = {
+    {ENV_GLOW_PORT_SERIES, TYN_USE_STORAGE_READ},
+    {ENV_GLOW_PORT_COEFFICIENTS, TYN_USE_STORAGE_READ},
+    {ENV_GLOW_PORT_LEVELS, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding texels_bindings[] = {
+    {ENV_GLOW_PORT_SERIES, TYN_USE_STORAGE_READ},
+    {ENV_GLOW_PORT_LEVELS, TYN_USE_STORAGE_READ},
+    {ENV_GLOW_PORT_GLOW, TYN_USE_STORAGE_WRITE},
+};
+
+enum { KERNEL_ROWS, KERNEL_ANALYSE, KERNEL_SMEAR, KERNEL_TEXELS, NUM_KERNELS };
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_ROWS] = {"rows",
+                     env_glow_rows_spirv,
+                     sizeof(env_glow_rows_spirv),
+                     sizeof(struct env_glow_args),
+                     {TYN_GLOW_HEIGHT, 1, 1},
+                     rows_bindings,
+                     2,
+                     0},
+    [KERNEL_ANALYSE] = {"analyse",
+                        env_glow_analyse_spirv,
+                        sizeof(env_glow_analyse_spirv),
+                        0,
+                        {TYN_GLOW_HEIGHT, 1, 1},
+                        analyse_bindings,
+                        3,
+                        0},
+    [KERNEL_SMEAR] = {"smear",
+                      env_glow_smear_spirv,
+                      sizeof(env_glow_smear_spirv),
+                      0,
+                      {TYN_GLOW_HEIGHT / 2, 1, 1},
+                      smear_bindings,
+                      3,
+                      0},
+    [KERNEL_TEXELS] = {"texels",
+                       env_glow_texels_spirv,
+                       sizeof(env_glow_texels_spirv),
+                       0,
+                       {TYN_GLOW_WIDTH / 4, 1, 1},
+                       texels_bindings,
+                       3,
+                       0},
+};
+
+// ---- the series -----------------------------------------------------------------------------------
+
+static double clamped_g(const tyn_env_glow_params *p, int c)
+{
+    return fmin(fmax(p->g[c], 0), g_max);
+}
+
+// Levels up to the depth at which e^-tau' = e^-20 in a medium that does not absorb.
+static uint32_t num_levels(const tyn_env_glow_params *p)
+{
+    double g = fmax(clamped_g(p, 0), fmax(clamped_g(p, 1), clamped_g(p, 2)));
+    double deepest = 20 * g * g / (1 - g * g);
+    double last = ceil(log1p(deepest / TYN_GLOW_DEPTH) / TYN_GLOW_STEP);
+    return (uint32_t)fmin(fmax(last + 1, 2), TYN_GLOW_LEVELS);
+}
+
+// Legendre moments of the lobes of all orders from the first on at forward depth t, from those of one
+// order: (e^(t phi) - 1) / (e^t - 1).
+static void lobe_series(double t, const double phi[DEGREES], double k[DEGREES])
+{
+    for (int l = 0; l < DEGREES; l++) {
+        k[l] = t > 0 ? exp(-t * (1 - phi[l])) * expm1(-t * phi[l]) / expm1(-t) : phi[l];
+    }
+    // A series that is cut off rings around bright windows: a lobe too narrow for it is widened just so
+    // much (by a Gaussian) that its last moment has fallen to 3 %.
+    double last = fabs(k[DEGREES - 1]) / 0.03;
+    double widen = last > 1 ? log(last) / ((DEGREES - 1.0) * DEGREES) : 0;
+    for (int l = 1; l < DEGREES; l++) {
+        k[l] *= exp(-widen * l * (l + 1));
+    }
+}
+
+// Fejer's first rule in x = cos(theta): exact for polynomials of degree below the number of rows.
+static void row_weights(struct glow_series *s)
+{
+    const int n = TYN_GLOW_HEIGHT;
+    for (int i = 0; i < n; i++) {
+        double theta = PI * (i + 0.5) / n, sum = 0;
+        for (int k = 1; k <= n / 2; k++) {
+            sum += cos(2 * k * theta) / (4.0 * k * k - 1);
+        }
+        s->weights[i] = (float)(2.0 / n * (1 - 2 * sum));
+        s->solid_angles[i] = (float)(2 * sin(0.5 * PI / n) * sin(theta));
+    }
+}
+
+static void make_series(const tyn_env_glow_params *p, struct glow_series *s)
+{
+    *s = (struct glow_series){0};
+    row_weights(s);
+    double phi[3][DEGREES] = {
+        {1}, {1}, {1}}; // no lobe: the mean alone, which nothing is weighted with
+    for (int c = 0; c < 3; c++) {
+        double g = clamped_g(p, c);
+        if (g * g > 1e-6) {
+            tyn_lobe_moments(g, phi[c], DEGREES);
+            for (int l = DEGREES - 1; l >= 0; l--) {
+                phi[c][l] /= phi[c][0];
+            }
+        }
+    }
+    for (uint32_t level = 0; level < num_levels(p); level++) {
+        double t = TYN_GLOW_DEPTH * expm1(TYN_GLOW_STEP * level), k[DEGREES];
+        for (int c = 0; c < 3; c++) {
+            lobe_series(t, phi[c], k);
+            for (uint32_t l = 0; l < DEGREES; l++) {
+                s->kernel[level * DEGREES + l][c] = (float)k[l];
+                if (fabs(k[l]) > 1e-4 && l >= s->terms[level]) {
+                    s->terms[level] = (l + 2) / 2 * 2; // even
+                }
+            }
+        }
+    }
+}
+
+// ---- the pass -------------------------------------------------------------------------------------
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_env_glow_params *p = params;
+    for (int c = 0; c < 3; c++) {
+        if (!(p->g[c] > -1 && p->g[c] < 1)) {
+            tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                          "env_glow: g is %g, must be above -1 and below 1", p->g[c]);
+            return TYN_ERR_PARAMS;
+        }
+    }
+    uint32_t levels = num_levels(p);
+    uint64_t orders = (uint64_t)DEGREES * TYN_GLOW_HEIGHT * sizeof(struct glow_order);
+    tyn_build_image(b, ENV_GLOW_PORT_GLOW, (tyn_extent){TYN_GLOW_WIDTH, TYN_GLOW_HEIGHT, levels},
+                    1);
+    tyn_build_buffer(b, ENV_GLOW_PORT_SERIES, sizeof(struct glow_series));
+    tyn_build_buffer(b, ENV_GLOW_PORT_ROWS, orders);
+    tyn_build_buffer(b, ENV_GLOW_PORT_COEFFICIENTS,
+                     (uint64_t)DEGREES * DEGREES * sizeof(struct glow_coefficient));
+    tyn_build_buffer(b, ENV_GLOW_PORT_LEVELS, levels * orders);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_env_glow_params *p = params;
+    struct glow_series series;
+    make_series(p, &series);
+    tyn_rec_update(r, ENV_GLOW_PORT_SERIES, 0, &series, sizeof series);
+    // A map without mips that is finer than the glow is not expected.
+    tyn_extent sky = tyn_rec_extent(r, ENV_GLOW_PORT_SKY);
+    struct env_glow_args args = {0};
+    for (uint32_t mip = 0; sky.x >> mip > TYN_GLOW_WIDTH || sky.y >> mip > TYN_GLOW_HEIGHT;) {
+        args.mip = (float)++mip;
+    }
+    uint32_t levels = num_levels(p);
+    tyn_rec_dispatch(r, &(tyn_dispatch){
+                            .kernel = KERNEL_ROWS,
+                            .cells = {DEGREES, TYN_GLOW_HEIGHT, 1},
+                            .args = &args,
+                        });
+    tyn_rec_dispatch(r, &(tyn_dispatch){
+                            .kernel = KERNEL_ANALYSE,
+                            .cells = {DEGREES, DEGREES, 1},
+                        });
+    tyn_rec_dispatch(r, &(tyn_dispatch){
+                            .kernel = KERNEL_SMEAR,
+                            .cells = {TYN_GLOW_HEIGHT / 2, DEGREES, levels},
+                        });
+    tyn_rec_dispatch(r, &(tyn_dispatch){
+                            .kernel = KERNEL_TEXELS,
+                            .cells = {TYN_GLOW_WIDTH / 4, TYN_GLOW_HEIGHT, levels},
+                        });
+    double smeared = 0;
+    for (uint32_t level = 0; level < levels; level++) {
+        double terms = series.terms[level];
+        // Per degree, order and pair of rows the recurrence and the sums; per order and four texels.
+        smeared += terms * terms / 2 * TYN_GLOW_HEIGHT / 2 * 20;
+        smeared += terms * TYN_GLOW_HEIGHT * TYN_GLOW_WIDTH / 4 * 18;
+    }
+    tyn_rec_work(r, "flops", smeared);
+    tyn_rec_work(r, "bytes", 16.0 * TYN_GLOW_WIDTH * TYN_GLOW_HEIGHT * levels);
+}
+
+const tyn_pass_desc tyn_pass_env_glow = {
+    .name = "env_glow",
+    .summary = "the environment as it looks through a medium that scatters forward",
+    .ports = ports,
+    .num_ports = ENV_GLOW_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params_size = sizeof(tyn_env_glow_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = ENV_GLOW_PORT_GLOW,
+    .debug_meaning = "the smeared map at a middle depth",
+};

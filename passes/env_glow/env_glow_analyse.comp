@@ -1,0 +1,74 @@
+// env_glow_analyse.comp -- spherical harmonics of the map: an order a group, a degree a thread.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "glow_args.h"
+#include "legendre.glsl"
+
+const uint ROWS = TYN_GLOW_HEIGHT, HALF = TYN_GLOW_HEIGHT / 2, DEGREES = TYN_GLOW_HEIGHT;
+layout(local_size_x = TYN_GLOW_HEIGHT) in;
+layout(set = 0, binding = 0, scalar) readonly buffer series_buffer
+{
+    glow_series series;
+};
+layout(set = 0, binding = 1, scalar) readonly buffer rows_buffer
+{
+    glow_order rows[];
+};
+layout(set = 0, binding = 2, scalar) writeonly buffer coefficients_buffer
+{
+    glow_coefficient coefficients[];
+};
+
+const float PI = 3.14159265358979;
+
+shared float legendre[DEGREES][HALF];
+// Sum (of degrees m, m + 2, ..) and difference (m + 1, ..) of a row and its mirror image.
+shared glow_order folded[2][HALF];
+
+void main()
+{
+    uint thread = gl_LocalInvocationID.x, m = gl_WorkGroupID.y;
+    // The mean is taken off with the rows' solid angles and put back as it is, so that a map keeps its
+    // energy and a uniform one stays uniform.
+    vec3 mean = vec3(0.0);
+    for (uint row = 0u; row < (m == 0u ? ROWS : 0u); row++) {
+        mean += 0.5 * series.solid_angles[row] * rows[row].cosine;
+    }
+    if (thread < HALF) {
+        uint row = thread;
+        glow_order north = rows[m * ROWS + row], south = rows[m * ROWS + ROWS - 1u - row];
+        float weight = series.weights[row];
+        folded[0][row] = glow_order(weight * (north.cosine + south.cosine - 2.0 * mean),
+                                    weight * (north.sine + south.sine));
+        folded[1][row] =
+            glow_order(weight * (north.cosine - south.cosine), weight * (north.sine - south.sine));
+        float theta = PI * (float(row) + 0.5) / float(ROWS), x = cos(theta);
+        float p = legendre_first(m, sin(theta)), before = 0.0;
+        legendre[m][row] = p;
+        for (uint l = m + 1u; l < DEGREES; l++) {
+            vec2 r = legendre_recurrence(l, m);
+            float next = r.x * (x * p - r.y * before);
+            before = p;
+            p = next;
+            legendre[l][row] = p;
+        }
+    }
+    barrier();
+    uint l = thread;
+    if (l < m) {
+        return;
+    }
+    vec3 cosine = vec3(0.0), sine = vec3(0.0);
+    for (uint row = 0u; row < HALF; row++) {
+        float p = legendre[l][row];
+        glow_order f = folded[(l - m) & 1u][row];
+        cosine += p * f.cosine;
+        sine += p * f.sine;
+    }
+    if (l == 0u) {
+        cosine = sqrt(2.0) * mean;
+    }
+    vec2 r = l > m ? legendre_recurrence(l, m) : vec2(0.0);
+    coefficients[m * DEGREES + l] = glow_coefficient(cosine, sine, r.x, r.y);
+}
