@@ -7,6 +7,12 @@
 #define TYN_LUT_DEPTHS 64  // texels along the scattering depth
 #define TYN_LUT_ANGLES 192 // texels along the angle
 
+// The table "tms" of light from cones, see tms.glsl.
+#define TYN_TMS_DEPTHS 32 // texels along the scattering depth
+#define TYN_TMS_ANGLES 96 // texels along the angle
+#define TYN_TMS_CONES 24  // sizes of cones per row
+#define TYN_TMS_MAX_TERMS 512
+
 struct lut_block { // storage buffer "lut_block"
     tyn_uint num_rows;
     tyn_uint spread;        // 0: a row per distinct g; 1: rows evenly spread in ln(g / (1 - g))
@@ -18,7 +24,10 @@ struct lut_block { // storage buffer "lut_block"
     float theta_1[TYN_LUT_MAX_ROWS]; // half width of the forward lobe, radians; 0 = no lobe
     tyn_uint terms[TYN_LUT_MAX_ROWS]; // length of the row's series
     tyn_uint first_term[TYN_LUT_MAX_ROWS]; // where it starts in the buffer "moments"
+    tyn_uint tms_terms[TYN_LUT_MAX_ROWS];  // length of the series of "tms"
+    float tms_spread[TYN_LUT_MAX_ROWS];    // f - F_1: the mean cosine of light that is still going
+                                           // forward falls as e^(-tau_s times this)
 };
-TYN_ASSERT_SIZE(lut_block, 288);
+TYN_ASSERT_SIZE(lut_block, 416);
 
 #endif

@@ -52,6 +52,59 @@ float lut_theta(uint texel, float g)
     return width * (exp(t * log(1.0 + 3.14159265358979 / width)) - 1.0);
 }
 
+// ---- the table "tms" ----------------------------------------------------------------------------
+
+// Texture u per ln(1 + tau / LUT_DEPTH), texel centres at both ends.
+float tms_depth_scale(float f)
+{
+    return float(TYN_TMS_DEPTHS - 1) / (float(TYN_TMS_DEPTHS) * log(1.0 + lut_depth_max(f) / LUT_DEPTH));
+}
+
+float tms_u(float tau, float scale)
+{
+    return 0.5 / float(TYN_TMS_DEPTHS) + min(log(1.0 + max(tau, 0.0) / LUT_DEPTH) * scale,
+                                             float(TYN_TMS_DEPTHS - 1) / float(TYN_TMS_DEPTHS));
+}
+
+float tms_depth(uint texel, float f)
+{
+    float t = float(texel) / float(TYN_TMS_DEPTHS - 1);
+    return LUT_DEPTH * (exp(t * log(1.0 + lut_depth_max(f) / LUT_DEPTH)) - 1.0);
+}
+
+// Over the square root of sin(theta / 2): no arc cosine, and texels are closer where lobes are.
+// `away` = 1 - mu, or 1 + mu where g < 0.
+float tms_v(float away)
+{
+    const float n = float(TYN_TMS_ANGLES);
+    return 0.5 / n + sqrt(sqrt(clamp(0.5 * away, 0.0, 1.0))) * ((n - 1.0) / n);
+}
+
+float tms_away(uint texel)
+{
+    float root = float(texel) / float(TYN_TMS_ANGLES - 1);
+    return 2.0 * root * root * root * root;
+}
+
+// Part of the sphere that a row's cone covers: even steps of sin(half its half angle).
+float tms_cone(uint cone)
+{
+    float s = float(cone) / float(TYN_TMS_CONES - 1);
+    return s * s;
+}
+
+// Fractional cone for a part of the sphere: the mix of the two cones around it that has its mean
+// cosine, 1 - part.
+float tms_level(float part)
+{
+    const float n = float(TYN_TMS_CONES - 1);
+    part = clamp(part, 0.0, 1.0);
+    float k = min(floor(n * sqrt(part)), n - 1.0);
+    return k + clamp((n * n * part - k * k) / (2.0 * k + 1.0), 0.0, 1.0);
+}
+
+// ---- rows ---------------------------------------------------------------------------------------
+
 // Fractional row of a spread table.
 float lut_row(float log_first, float log_step, uint num_rows, float g)
 {

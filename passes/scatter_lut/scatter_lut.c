@@ -1,10 +1,12 @@
 // scatter_lut.c -- moments of the forward lobe on the CPU, the table on the GPU.
 #include "scatter_lut.h"
 #include "scatter_lut_sum.comp.h"
+#include "scatter_lut_tms.comp.h"
 #include "base/forward_lobe.h"
 #include <math.h>
 
 enum { MAX_TERMS = 2464 };
+enum { CONES_BYTES = 4 * TYN_TMS_CONES * TYN_TMS_MAX_TERMS };
 
 static const double g_max = 0.995; // narrower lobes are replaced by this one (similarity_clamp)
 static const double g_min = 1e-3;  // below it there is no lobe worth splitting off
@@ -16,17 +18,30 @@ static const tyn_port ports[SCATTER_LUT_NUM_PORTS] = {
          "and angle (y), a table for each g above the other"},
     [SCATTER_LUT_PORT_LUT_BLOCK] = {"lut_block", TYN_OUT, TYN_BUFFER, 0, false,
                                     "rows of the table: g, half width of the lobe"},
+    [SCATTER_LUT_PORT_TMS] =
+        {"tms", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
+         "phase function of what leaves the forward lobes of light from a cone, "
+         "1/sr, over depth (x), angle (y) and the size of the cone (z)"},
     [SCATTER_LUT_PORT_MOMENTS] =
         {"moments", TYN_SCRATCH, TYN_BUFFER, 0, false,
          "Legendre moments of the phase function outside and inside the lobe"},
+    [SCATTER_LUT_PORT_CONES] = {"cones", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                                "Legendre moments of the cones"},
 };
 
-enum { KERNEL_SUM, NUM_KERNELS };
+enum { KERNEL_SUM, KERNEL_TMS, NUM_KERNELS };
 
 static const tyn_binding sum_bindings[] = {
     {SCATTER_LUT_PORT_LUT_BLOCK, TYN_USE_STORAGE_READ},
     {SCATTER_LUT_PORT_MOMENTS, TYN_USE_STORAGE_READ},
     {SCATTER_LUT_PORT_LUT, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_binding tms_bindings[] = {
+    {SCATTER_LUT_PORT_LUT_BLOCK, TYN_USE_STORAGE_READ},
+    {SCATTER_LUT_PORT_MOMENTS, TYN_USE_STORAGE_READ},
+    {SCATTER_LUT_PORT_CONES, TYN_USE_STORAGE_READ},
+    {SCATTER_LUT_PORT_TMS, TYN_USE_STORAGE_WRITE},
 };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
@@ -38,6 +53,14 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                     sum_bindings,
                     3,
                     0},
+    [KERNEL_TMS] = {"tms",
+                    scatter_lut_tms_spirv,
+                    sizeof(scatter_lut_tms_spirv),
+                    0,
+                    {TYN_TMS_ANGLES / 4, 1, 1},
+                    tms_bindings,
+                    4,
+                    0},
 };
 
 // ---- rows -----------------------------------------------------------------------------------------
@@ -45,8 +68,22 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
 static uint32_t num_terms(double g)
 {
     // g^l and the moments of the lobe are below 1e-5 of the first beyond this.
-    double terms = 12 / (1 - fmax(g, 0)) + 64;
+    double terms = 12 / (1 - fabs(g)) + 64;
     return terms < MAX_TERMS ? (uint32_t)terms : MAX_TERMS;
+}
+
+// The phase function beside the lobe has no peak, only the window's bends, whatever g is: its moments
+// fall as l^-3. Without a lobe, g < 0, it is the peak itself.
+static uint32_t num_tms_terms(double g)
+{
+    uint32_t terms = num_terms(g), most = g > 0 ? 192 : TYN_TMS_MAX_TERMS;
+    return terms < most ? terms : most;
+}
+
+// Moments of a row in the buffer "moments".
+static uint32_t row_terms(const struct lut_block *block, uint32_t r)
+{
+    return block->terms[r] > block->tms_terms[r] ? block->terms[r] : block->tms_terms[r];
 }
 
 // Which g the rows have; the rest of the block is zero.
@@ -79,24 +116,46 @@ static void make_rows(const tyn_scatter_lut_params *p, struct lut_block *block)
     uint32_t first_term = 0;
     for (uint32_t r = 0; r < block->num_rows; r++) {
         block->terms[r] = block->g[r] > g_min ? num_terms(block->g[r]) : 0;
+        block->tms_terms[r] = p->tms ? num_tms_terms(block->g[r]) : 0;
         block->first_term[r] = first_term;
-        first_term += block->terms[r];
+        first_term += row_terms(block, r);
     }
     block->num_terms = first_term;
 }
 
 // ---- moments --------------------------------------------------------------------------------------
 
-// Completes the rows and writes the moments (g^l - F_l, F_l) of one of them.
+// Completes a row and writes its moments (g^l - F_l, F_l). Where g < 0 they are those of -g: the table
+// "tms" counts angles from behind there.
 static void make_moments(struct lut_block *block, uint32_t r, float (*out)[2])
 {
-    double lobe[MAX_TERMS], g = block->g[r], power = 1;
-    double theta_1 = tyn_lobe_moments(g, lobe, block->terms[r]);
-    for (uint32_t l = 0; l < block->terms[r]; l++, power *= g) {
+    double lobe[MAX_TERMS] = {0}, g = block->g[r], power = 1;
+    uint32_t terms = row_terms(block, r);
+    if (block->terms[r] > 0) {
+        block->theta_1[r] = (float)tyn_lobe_moments(g, lobe, terms);
+        block->tms_spread[r] = (float)(lobe[0] - lobe[1]);
+    }
+    for (uint32_t l = 0; l < terms; l++, power *= fabs(g)) {
         out[l][0] = (float)(power - lobe[l]);
         out[l][1] = (float)lobe[l];
     }
-    block->theta_1[r] = (float)theta_1;
+}
+
+// c_l of the cones of the table "tms", for scatter_lut_map.glsl's tms_cone: averages of P_l over a cone
+// of half angle gamma, c = cos gamma. With d_l = P_l(c) - P_{l-1}(c), which keeps the digits of small
+// cones, c_l = -(d_l + d_{l+1}) / ((2l + 1) (1 - c)).
+static void make_cones(float (*out)[TYN_TMS_MAX_TERMS])
+{
+    for (uint32_t cone = 0; cone < TYN_TMS_CONES; cone++) {
+        double s = cone / (TYN_TMS_CONES - 1.0), y = 2 * s * s, p = 1 - y, d = -y;
+        out[cone][0] = 1;
+        for (uint32_t l = 1; l < TYN_TMS_MAX_TERMS; l++) {
+            double next = (l * d - (2 * l + 1) * y * p) / (l + 1);
+            out[cone][l] = cone == 0 ? 1 : (float)(-(d + next) / ((2 * l + 1) * y));
+            d = next;
+            p += d;
+        }
+    }
 }
 
 // ---- the pass -------------------------------------------------------------------------------------
@@ -119,19 +178,27 @@ static tyn_result declare(tyn_builder *b, const void *params)
                     (tyn_extent){TYN_LUT_DEPTHS, TYN_LUT_ANGLES * block.num_rows, 1}, 1);
     tyn_build_buffer(b, SCATTER_LUT_PORT_LUT_BLOCK, sizeof(block));
     tyn_build_buffer(b, SCATTER_LUT_PORT_MOMENTS, bytes > 0 ? bytes : 8);
+    if (p->tms) {
+        tyn_build_image(
+            b, SCATTER_LUT_PORT_TMS,
+            (tyn_extent){TYN_TMS_DEPTHS, TYN_TMS_ANGLES, TYN_TMS_CONES * block.num_rows}, 1);
+        tyn_build_buffer(b, SCATTER_LUT_PORT_CONES, CONES_BYTES);
+    }
     return TYN_OK;
 }
 
 static void record(tyn_recorder *r, const void *params)
 {
+    const tyn_scatter_lut_params *p = params;
     struct lut_block block;
-    make_rows(params, &block);
+    make_rows(p, &block);
     for (uint32_t row = 0; row < block.num_rows; row++) {
-        if (block.terms[row] > 0) {
+        uint32_t terms = row_terms(&block, row);
+        if (terms > 0) {
             float moments[MAX_TERMS][2];
             make_moments(&block, row, moments);
             tyn_rec_update(r, SCATTER_LUT_PORT_MOMENTS, block.first_term[row] * sizeof(moments[0]),
-                           moments, block.terms[row] * sizeof(moments[0]));
+                           moments, terms * sizeof(moments[0]));
         }
     }
     tyn_rec_update(r, SCATTER_LUT_PORT_LUT_BLOCK, 0, &block, sizeof(block));
@@ -141,8 +208,24 @@ static void record(tyn_recorder *r, const void *params)
                         });
     // Per term and texel: the recurrence (5), the sums (4).
     double texel_terms = (double)block.num_terms * TYN_LUT_ANGLES * TYN_LUT_DEPTHS;
-    tyn_rec_work(r, "flops", 9 * texel_terms);
-    tyn_rec_work(r, "bytes", 8.0 * TYN_LUT_ANGLES * TYN_LUT_DEPTHS * block.num_rows);
+    double flops = 9 * texel_terms, bytes = 8.0 * TYN_LUT_ANGLES * TYN_LUT_DEPTHS * block.num_rows;
+    if (p->tms) {
+        float cones[TYN_TMS_CONES][TYN_TMS_MAX_TERMS];
+        make_cones(cones);
+        tyn_rec_update(r, SCATTER_LUT_PORT_CONES, 0, cones, CONES_BYTES);
+        uint32_t layers = TYN_TMS_CONES * block.num_rows;
+        tyn_rec_dispatch(r, &(tyn_dispatch){
+                                .kernel = KERNEL_TMS,
+                                .cells = {TYN_TMS_ANGLES / 4, TYN_TMS_DEPTHS / 4, layers},
+                            });
+        for (uint32_t row = 0; row < block.num_rows; row++) {
+            // Four depths share the recurrence.
+            flops += 3.25 * block.tms_terms[row] * TYN_TMS_ANGLES * TYN_TMS_DEPTHS * TYN_TMS_CONES;
+        }
+        bytes += 4.0 * TYN_TMS_ANGLES * TYN_TMS_DEPTHS * layers;
+    }
+    tyn_rec_work(r, "flops", flops);
+    tyn_rec_work(r, "bytes", bytes);
 }
 
 const tyn_pass_desc tyn_pass_scatter_lut = {

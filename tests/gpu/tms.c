@@ -1,0 +1,303 @@
+// tms.c -- the table of light scattered from cones against the double precision series.
+#include "gpu_test.h"
+#include "passes/scatter_lut/scatter_lut.h"
+#include "point_pass.h"
+#include "tms_eval.comp.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define PI 3.14159265358979323846
+
+enum { TERMS = 1300 };
+
+// ---- the series, straight from its definition -----------------------------------------------------
+
+typedef struct series {
+    double g, f;
+    int terms;
+    double lobe[TERMS], rest[TERMS]; // F_l, g^l - F_l
+} series;
+
+static double phase(double g, double theta)
+{
+    double s = sin(0.5 * theta);
+    return (1 - g * g) / (4 * PI * pow((1 - g) * (1 - g) + 4 * g * s * s, 1.5));
+}
+
+static double window(double theta_1, double theta)
+{
+    double x = theta / theta_1 - 0.5;
+    return x <= 0 ? 1 : x >= 1 ? 0 : 1 - x * x * (3 - 2 * x);
+}
+
+// sum = 2 pi int p h dmu; with `s` also the moments. Simpson in theta^(1/2), even over peak and tail.
+static double integrate_lobe(double g, double theta_1, series *s)
+{
+    const int n = 6000;
+    double total = 0, end = sqrt(1.5 * theta_1);
+    for (int q = 1; q <= n; q++) {
+        double root = end * q / n, theta = root * root, mu = cos(theta);
+        double w = (q == n  ? 1
+                    : q % 2 ? 4
+                            : 2) *
+                   end / n / 3 * 2 * root * 2 * PI * phase(g, theta) * window(theta_1, theta) *
+                   sin(theta);
+        total += w;
+        double before = 1, p = mu;
+        for (int l = 0; s && l < s->terms; l++) {
+            s->lobe[l] += w * before;
+            double next = ((2 * l + 3) * mu * p - (l + 1) * before) / (l + 2);
+            before = p;
+            p = next;
+        }
+    }
+    return total;
+}
+
+static void series_make(series *s, double g)
+{
+    *s = (series){.g = g, .f = g > 0 ? g * g : 0, .terms = (int)(12 / (1 - fabs(g))) + 64};
+    if (s->f > 0) {
+        double lo = 0, hi = 2;
+        for (int i = 0; i < 45; i++) { // half width that holds the fraction f
+            double middle = 0.5 * (lo + hi);
+            *(integrate_lobe(g, middle, NULL) < s->f ? &lo : &hi) = middle;
+        }
+        integrate_lobe(g, lo, s);
+    }
+    double power = 1;
+    for (int l = 0; l < s->terms; l++, power *= g) {
+        s->rest[l] = power - s->lobe[l];
+    }
+}
+
+// Average of P_l over a cone that covers `part` of the sphere.
+static void cone_moments(double part, int terms, double *c)
+{
+    double x = 1 - 2 * part, before = 1, p = x;
+    c[0] = 1;
+    for (int l = 1; l < terms; l++) {
+        double next = ((2 * l + 1) * x * p - l * before) / (l + 1);
+        c[l] = part > 0 ? (before - next) / ((2 * l + 1) * (1 - x)) : 1;
+        before = p;
+        p = next;
+    }
+}
+
+// Kt e^{tau (1 - f)} / (1 - f).
+static double kernel(const series *s, const double *c, double tau, double mu)
+{
+    double before = 1, p = mu, sum = 0;
+    for (int l = 0; l < s->terms; l++) {
+        sum +=
+            (2 * l + 1) / (4 * PI) * before * c[l] * s->rest[l] * exp(-tau * (s->f - s->lobe[l]));
+        double next = ((2 * l + 3) * mu * p - (l + 1) * before) / (l + 2);
+        before = p;
+        p = next;
+    }
+    return sum / (1 - s->f);
+}
+
+// ---- the table at points --------------------------------------------------------------------------
+
+typedef struct point {
+    float tau, mu, part;
+    uint32_t channel;
+    float g, tau_p;
+} point;
+
+static const float *evaluate(gpu_test *t, const tyn_scatter_lut_params *lut_params,
+                             const point *points, uint32_t count, uint32_t mixed)
+{
+    static point_pass pass;
+    static const point_input inputs[] = {{"tms", TYN_IMAGE_3D, TYN_USE_SAMPLED},
+                                         {"lut_block", TYN_BUFFER, TYN_USE_UNIFORM}};
+    point_pass_init(&pass, tms_eval_spirv, sizeof tms_eval_spirv, inputs, 2);
+    tyn_graph_begin(t->graph);
+    tyn_ref lut[SCATTER_LUT_NUM_PORTS] = {{0}}, refs[4] = {{0}};
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_scatter_lut, lut_params, lut), TYN_OK);
+    refs[0] = lut[SCATTER_LUT_PORT_TMS];
+    refs[1] = lut[SCATTER_LUT_PORT_LUT_BLOCK];
+    refs[2] = gpu_buffer(t, "points", points, count * sizeof *points);
+    point_pass_params params = {count, sizeof(float), mixed, pass.results};
+    assert_int_equal(tyn_graph_add(t->graph, &pass.desc, &params, refs), TYN_OK);
+    tyn_graph_output(t->graph, "results", refs[3], true);
+    gpu_run(t);
+    return gpu_map(t, "results");
+}
+
+static double random_unit(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return (*seed >> 8) * 0x1p-24;
+}
+
+static double random_depth(double f, uint32_t *seed)
+{
+    return 4 * expm1(random_unit(seed) * log1p(15 / (1 - f) / 4));
+}
+
+static const float gs[][3] = {{-0.5f, 0, 0.3f}, {0.7f, 0.9f, 0.95f}, {0.99f, 0.99f, -0.9f}};
+enum { SETS = sizeof gs / sizeof *gs, ANGLES = 60, DEPTHS = 6 };
+
+// Points of one channel and cone: DEPTHS depths with ANGLES angles each.
+static void fill_points(point *points, uint32_t channel, double g, double part, uint32_t *seed)
+{
+    for (int d = 0; d < DEPTHS; d++) {
+        double tau = d == 0 ? 0 : random_depth(g > 0 ? g * g : 0, seed);
+        for (int a = 0; a < ANGLES; a++) {
+            double s = random_unit(seed), mu = 1 - 2 * s * s; // closer where it varies
+            points[d * ANGLES + a] =
+                (point){(float)tau, (float)(g < 0 ? -mu : mu), (float)part, channel, 0, 0};
+        }
+    }
+}
+
+// Largest error relative to the largest value at that depth. NaN and negative values count as 1e30.
+static double worst_error(const series *s, const double *c, const point *points, const float *got)
+{
+    double worst = 0;
+    for (int d = 0; d < DEPTHS; d++) {
+        double expected[ANGLES], peak = 0;
+        for (int a = 0; a < ANGLES; a++) {
+            expected[a] = kernel(s, c, points[d * ANGLES + a].tau, points[d * ANGLES + a].mu);
+            peak = fmax(peak, expected[a]);
+        }
+        for (int a = 0; a < ANGLES; a++) {
+            double value = got[d * ANGLES + a];
+            double error = fabs(value - expected[a]) / peak;
+            worst = fmax(worst, value >= 0 && error == error ? error : 1e30);
+        }
+    }
+    return worst;
+}
+
+// At the cones that the table has, everything within 0.5 % of the peak (1 % where a cone is most of the
+// sphere, the texels being wide at its edge); between them the mix of two cones has softer edges.
+static void cones(void **state)
+{
+    gpu_test *t = *state;
+    enum { CONES = 2 * TYN_TMS_CONES - 1 };
+    static point points[3][CONES][DEPTHS * ANGLES];
+    static series s;
+    static double c[TERMS];
+    uint32_t seed = 5;
+    for (int set = 0; set < SETS; set++) {
+        tyn_scatter_lut_params params = {
+            .mode = TYN_MEDIUM_DENSITY, .g = {gs[set][0], gs[set][1], gs[set][2]}, .tms = 1};
+        for (uint32_t ch = 0; ch < 3; ch++) {
+            for (int i = 0; i < CONES; i++) {
+                double sine = i / (CONES - 1.0);
+                fill_points(points[ch][i], ch, gs[set][ch], sine * sine, &seed);
+            }
+        }
+        const float *got = evaluate(t, &params, points[0][0], sizeof points / sizeof(point), 0);
+        printf("built in %.2f ms\n", gpu_ms(t, "scatter_lut"));
+        for (int ch = 0; ch < 3; ch++) {
+            series_make(&s, gs[set][ch]);
+            double at = 0, between = 0;
+            for (int i = 0; i < CONES; i++) {
+                cone_moments(points[ch][i][0].part, s.terms, c);
+                double error =
+                    worst_error(&s, c, points[ch][i], got + (ch * CONES + i) * DEPTHS * ANGLES);
+                bool wide = points[ch][i][0].part > 0.8f;
+                if (i % 2 == 0) {
+                    at = fmax(at, wide ? error / 2 : error);
+                } else if (!wide) {
+                    between = fmax(between, error);
+                }
+            }
+            printf("g %5.2f: largest error %.3f %% of the peak; between cones %.2f %%\n", s.g,
+                   100 * at, 100 * between);
+            assert_true(at < 0.005);
+            assert_true(between < 0.04);
+        }
+    }
+}
+
+// All directions together scatter everything, and the mean cosine is exact, for cones of any size.
+static void sums_over_directions(void **state)
+{
+    gpu_test *t = *state;
+    enum { CASES = 12, STEPS = 3000 };
+    static point points[3][CASES][STEPS];
+    static series s;
+    uint32_t seed = 11;
+    for (int set = 0; set < SETS; set++) {
+        tyn_scatter_lut_params params = {
+            .mode = TYN_MEDIUM_DENSITY, .g = {gs[set][0], gs[set][1], gs[set][2]}, .tms = 1};
+        for (uint32_t ch = 0; ch < 3; ch++) {
+            double f = gs[set][ch] > 0 ? gs[set][ch] * gs[set][ch] : 0;
+            for (int i = 0; i < CASES; i++) {
+                double part = i == 0 ? 0 : i == 1 ? 1 : pow(random_unit(&seed), 3);
+                double tau = random_depth(f, &seed);
+                for (int k = 0; k < STEPS; k++) {
+                    points[ch][i][k] = (point){
+                        (float)tau, (float)cos(PI * (k + 0.5) / STEPS), (float)part, ch, 0, 0};
+                }
+            }
+        }
+        const float *got = evaluate(t, &params, points[0][0], sizeof points / sizeof(point), 0);
+        for (int ch = 0; ch < 3; ch++) {
+            series_make(&s, gs[set][ch]);
+            double worst[2] = {0, 0};
+            for (int i = 0; i < CASES; i++) {
+                const point *p = points[ch][i];
+                double sum = 0, first = 0;
+                for (int k = 0; k < STEPS; k++) {
+                    double theta = PI * (k + 0.5) / STEPS;
+                    double w = 2 * PI * sin(theta) * PI / STEPS * got[(ch * CASES + i) * STEPS + k];
+                    sum += w;
+                    first += w * cos(theta);
+                }
+                double expected =
+                    s.rest[1] / (1 - s.f) * (1 - p[0].part) * exp(-p[0].tau * (s.f - s.lobe[1]));
+                worst[0] = fmax(worst[0], fabs(sum - 1));
+                worst[1] = fmax(worst[1], fabs(first - expected));
+            }
+            printf("g %5.2f: sum off by %.2g, mean cosine by %.2g\n", s.g, worst[0], worst[1]);
+            assert_true(worst[0] < 0.003);
+            assert_true(worst[1] < 0.003);
+        }
+    }
+}
+
+// Rows for varying g: where it does not vary the result is that of the series.
+static void spread_rows(void **state)
+{
+    gpu_test *t = *state;
+    static const double spread[] = {-0.4, 0, 0.03, 0.2, 0.5, 0.77, 0.9, 0.94};
+    static point points[DEPTHS * ANGLES];
+    static series s;
+    static double c[TERMS];
+    uint32_t seed = 3;
+    tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_COEFFICIENTS, .g_max = 0.95f, .tms = 1};
+    for (size_t n = 0; n < sizeof spread / sizeof *spread; n++) {
+        double g = spread[n];
+        series_make(&s, g);
+        fill_points(points, 0, g, 9 / 529.0, &seed);
+        for (int i = 0; i < DEPTHS * ANGLES; i++) {
+            points[i].g = (float)g;
+            points[i].tau_p = points[i].tau * (float)(1 - s.f);
+        }
+        const float *got = evaluate(t, &params, points, DEPTHS * ANGLES, 1);
+        if (n == 0) {
+            printf("built in %.2f ms\n", gpu_ms(t, "scatter_lut"));
+        }
+        cone_moments(points[0].part, s.terms, c);
+        double error = worst_error(&s, c, points, got);
+        printf("spread g %5.2f: largest error %.3f %% of the peak\n", g, 100 * error);
+        assert_true(error < 0.03);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cones),
+        cmocka_unit_test(sums_over_directions),
+        cmocka_unit_test(spread_rows),
+    };
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
