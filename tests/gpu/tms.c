@@ -173,8 +173,9 @@ static double worst_error(const series *s, const double *c, const point *points,
     return worst;
 }
 
-// At the cones that the table has, everything within 0.5 % of the peak (1 % where a cone is most of the
-// sphere, the texels being wide at its edge); between them the mix of two cones has softer edges.
+// At the cones that the table has everything is within 0.5 % of the peak; within 2 % where there is no
+// cone, at the bends of the window, and where the cone is most of the sphere, the texels being wide at
+// its edge. Between them the mix of two cones has softer edges. Strong backward peaks: three times that.
 static void cones(void **state)
 {
     gpu_test *t = *state;
@@ -201,17 +202,18 @@ static void cones(void **state)
                 cone_moments(points[ch][i][0].part, s.terms, c);
                 double error =
                     worst_error(&s, c, points[ch][i], got + (ch * CONES + i) * DEPTHS * ANGLES);
-                bool wide = points[ch][i][0].part > 0.8f;
+                float part = points[ch][i][0].part;
+                bool sharp = part == 0 || part > 0.8f;
                 if (i % 2 == 0) {
-                    at = fmax(at, wide ? error / 2 : error);
-                } else if (!wide) {
+                    at = fmax(at, sharp ? error / 4 : error);
+                } else if (!sharp) {
                     between = fmax(between, error);
                 }
             }
             printf("g %5.2f: largest error %.3f %% of the peak; between cones %.2f %%\n", s.g,
                    100 * at, 100 * between);
-            assert_true(at < 0.005);
-            assert_true(between < 0.04);
+            assert_true(at < (s.g < -0.6 ? 0.015 : 0.005));
+            assert_true(between < (s.g < -0.6 ? 0.15 : 0.04));
         }
     }
 }
