@@ -163,7 +163,7 @@ static void convolution(void **state)
                 uint32_t x = some_texels[s][0], y = some_texels[s][1];
                 double v[3], sum = 0, total = 0;
                 direction((x + 0.5) / WIDTH, (y + 0.5) / HEIGHT, v);
-                enum { FINE = 3 }; // thirds of a texel of the map
+                enum { FINE = 4 }; // a quarter texel of the map
                 for (int j = 0; j < H * FINE; j++) {
                     double omega = 2 * PI / (W * FINE) *
                                    (cos(PI * j / (H * FINE)) - cos(PI * (j + 1) / (H * FINE)));
