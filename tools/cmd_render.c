@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 typedef struct render_args {
     scene_options scene;
@@ -24,6 +25,15 @@ typedef struct render_args {
     float exposure;
 } render_args;
 
+// What a volume or a scene without a camera is given to be looked at, chosen for the first picture of
+// a sequence and kept for the others: else smoke that thins out would be made denser, and a camera
+// that fits what grows would draw back.
+typedef struct first_look {
+    bool chosen;
+    tyn_medium medium;
+    tyn_camera camera;
+} first_look;
+
 // What stays the same over the pictures of a sequence.
 typedef struct render_job {
     const render_args *args;
@@ -32,6 +42,7 @@ typedef struct render_job {
     uint32_t repeat; // timing frames
     machine machine; // opened for the first picture, when its scene has been read
     renderer renderer;
+    first_look look;
 } render_job;
 
 static int open_renderer(app *a, render_job *job)
@@ -124,6 +135,35 @@ static void note_result(app *a, const stats *s, double frame_ms, const opt_list 
              cold ? " a cold frame" : "", s->setup_ms);
 }
 
+static bool is_volume(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && (strcasecmp(dot, ".nvdb") == 0 || strcasecmp(dot, ".vdb") == 0);
+}
+
+// Gives a picture of a sequence the coefficients and the camera of the first, where they were chosen
+// to suit it.
+static void keep_look(first_look *look, const char *path, tyn_scene *scene, tyn_camera *camera)
+{
+    tyn_medium *m = &scene->media[0];
+    const bool volume = is_volume(path);
+    float seen = 0;
+    for (int c = 0; c < 3; c++) {
+        seen += volume ? m->sigma_s[c] + m->sigma_a[c] : 1;
+    }
+    if (!look->chosen && seen > 0) { // the first with something in it
+        *look = (first_look){true, *m, *camera};
+        look->camera.name = look->camera.camera_name = NULL; // are the scene's
+    }
+    if (look->chosen && volume) {
+        memcpy(m->sigma_s, look->medium.sigma_s, sizeof m->sigma_s);
+        memcpy(m->sigma_a, look->medium.sigma_a, sizeof m->sigma_a);
+    }
+    if (look->chosen && (volume || scene->num_cameras == 0)) {
+        *camera = look->camera;
+    }
+}
+
 // Renders, writes and times one picture. `scene` has been loaded.
 static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t number,
                           const picture_paths *paths)
@@ -137,6 +177,7 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
     bool first = !job->renderer.offline;
     int code = view_setup(a, &job->args->view, scene, &view);
     if (code == EXIT_DONE) {
+        keep_look(&job->look, paths->scene, scene, &view.camera);
         code = open_renderer(a, job);
     }
     if (code == EXIT_DONE) {
@@ -190,6 +231,7 @@ static int load_and_render(app *a, render_job *job, const opt_list *outputs, boo
     } else {
         options.environment = p.environment;
     }
+    options.number = numbered ? &number : NULL;
     tyn_scene scene;
     int code = scene_open(a, &options, &scene);
     if (code == EXIT_DONE) {

@@ -78,7 +78,10 @@ int scene_open(app *a, const scene_options *options, tyn_scene *scene)
     }
     const char *environment = options->env ? options->env : options->environment;
     progress_start(&a->bar, "loading", a->quiet);
-    tyn_result result = tyn_scene_load(scene, options->scene, environment, &a->log);
+    tyn_result result =
+        options->number
+            ? tyn_scene_load_frame(scene, options->scene, environment, *options->number, &a->log)
+            : tyn_scene_load(scene, options->scene, environment, &a->log);
     progress_stop(&a->bar);
     if (result != TYN_OK) {
         return app_exit_code(a, result, true);

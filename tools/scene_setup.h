@@ -9,6 +9,7 @@ typedef struct scene_options {
     float env_rotate, env_strength;
     opt_vector sigma_s, sigma_a, g, albedo;
     float density_scale;
+    const uint32_t *number; // of a picture of a sequence, for the files that a scene names; NULL: none
 } scene_options;
 extern const option scene_table[];
 enum { SCENE_TABLE_SIZE = 8 };

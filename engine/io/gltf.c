@@ -287,7 +287,7 @@ static tyn_result build_scene(tyn_scene *scene, const gltf_model *model, const j
 }
 
 tyn_result tyn_gltf_parse(tyn_scene *scene, const void *bytes, size_t size, const char *file,
-                          const char *environment, const tyn_log *log)
+                          const char *environment, const uint32_t *frame, const tyn_log *log)
 {
     const char *text;
     size_t text_size;
@@ -298,6 +298,7 @@ tyn_result tyn_gltf_parse(tyn_scene *scene, const void *bytes, size_t size, cons
     tyn_result r = find_json(bytes, size, file, &text, &text_size, &glb, log);
     if (!r) {
         r = tyn_json_parse(&doc, text, text_size, file, log);
+        doc.frame = frame;
     }
     if (!r) {
         r = tyn_gltf_check(&doc, glb);

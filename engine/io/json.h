@@ -6,7 +6,8 @@
 typedef struct json_doc {
     const char *file;
     const tyn_log *log;
-    cJSON *root; // an object
+    cJSON *root;           // an object
+    const uint32_t *frame; // number of a picture that stands for ### in names of files; NULL: none
 } json_doc;
 
 // Refuses nesting deeper than 64, text after the value, duplicate keys, and a root that is no

@@ -18,13 +18,13 @@ static bool is_one_of(const char *path, const char *const *extensions)
 }
 
 static tyn_result load_gltf(tyn_scene *scene, const char *path, const char *environment,
-                            const tyn_log *log)
+                            const uint32_t *frame, const tyn_log *log)
 {
     void *bytes;
     size_t size;
     tyn_result r = tyn_file_read(path, 0x7fffffff, &bytes, &size, log);
     if (!r) {
-        r = tyn_gltf_parse(scene, bytes, size, path, environment, log);
+        r = tyn_gltf_parse(scene, bytes, size, path, environment, frame, log);
         free(bytes);
     }
     return r;
@@ -48,12 +48,12 @@ static tyn_result load_bare(tyn_scene *scene, const char *path, const char *envi
     return r;
 }
 
-tyn_result tyn_scene_load(tyn_scene *scene, const char *path, const char *environment,
-                          const tyn_log *log)
+static tyn_result load(tyn_scene *scene, const char *path, const char *environment,
+                       const uint32_t *frame, const tyn_log *log)
 {
     tyn_scene_init(scene);
     if (is_one_of(path, (const char *const[]){".gltf", ".glb", NULL})) {
-        return load_gltf(scene, path, environment, log);
+        return load_gltf(scene, path, environment, frame, log);
     }
     if (is_one_of(path, (const char *const[]){".nvdb", ".vdb", NULL})) {
         return load_bare(scene, path, environment, log);
@@ -62,4 +62,16 @@ tyn_result tyn_scene_load(tyn_scene *scene, const char *path, const char *enviro
                   "%s: unknown kind of scene: must be .gltf, .glb, or a volume (.nvdb, .vdb)",
                   path);
     return TYN_ERR_PARAMS;
+}
+
+tyn_result tyn_scene_load(tyn_scene *scene, const char *path, const char *environment,
+                          const tyn_log *log)
+{
+    return load(scene, path, environment, NULL, log);
+}
+
+tyn_result tyn_scene_load_frame(tyn_scene *scene, const char *path, const char *environment,
+                                uint32_t frame, const tyn_log *log)
+{
+    return load(scene, path, environment, &frame, log);
 }

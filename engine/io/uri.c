@@ -22,6 +22,18 @@ char *tyn_path_directory(const char *path)
     return length ? strndup(path, length) : strdup(".");
 }
 
+// Puts the number in the place of the first run of '#' behind `base`, which there must be; a new string.
+static char *put_number(const char *path, size_t base, uint32_t number)
+{
+    const char *at = strchr(path + base, '#');
+    const int width = (int)strspn(at, "#"), before = (int)(at - path);
+    char *out = malloc(strlen(path) + 16);
+    if (out) {
+        sprintf(out, "%.*s%0*u%s", before, path, width, number, at + width);
+    }
+    return out;
+}
+
 char *tyn_uri_path(const json_doc *doc, const cJSON *uri)
 {
     if (!cJSON_IsString(uri) || !uri->valuestring[0]) {
@@ -55,6 +67,14 @@ char *tyn_uri_path(const json_doc *doc, const cJSON *uri)
         }
     }
     *out = 0;
+    if (doc->frame && strchr(path + base, '#')) {
+        char *numbered = put_number(path, base, *doc->frame);
+        free(path);
+        path = numbered;
+        if (!path) {
+            tyn_json_fault(doc, uri, "no memory for its path");
+        }
+    }
     return path;
 }
 

@@ -68,6 +68,31 @@ awk -v n="$(value n)" -v r="$(value rel_l1)" 'BEGIN { exit !(n > 0 && r < 2 * n 
 works render "$scenes/cube.gltf" --size 16x16 --quiet --frames 3-4 -o s_%04d.png -o t_##.exr
 [ -s s_0003.png ] && [ -s s_0004.png ] && [ -s t_03.exr ] && [ -s t_04.exr ] || fail "--frames 3-4: $(ls)"
 
+# an animated volume, alone and named by a scene: one picture a frame, each of its own
+"$helpers/sequence_make" . || fail "sequence_make"
+works render puff.%04d.nvdb --size 32x32 --quiet --frames 2-5 -o v_####.exr -o v_####.png --stats v_####.json
+works render puffs.gltf --size 32x32 --quiet --frames 2-5 -o g_####.exr --stats g_%04d.json -D lattice.cells=12
+for pair in 2:3 3:4 4:5; do
+    for name in v g; do
+        [ -s ${name}_000${pair#*:}.exr ] && [ -s ${name}_000${pair#*:}.json ] || fail "a sequence lacks files: $(ls)"
+        works compare ${name}_000${pair%:*}.exr ${name}_000${pair#*:}.exr
+        awk -v r="$(value rel_l1)" 'BEGIN { exit !(r > 0.02) }' || fail "pictures $pair of ${name} are the same"
+    done
+done
+[ -s v_0005.png ] || fail "a sequence lacks its .png"
+# the puff thins out: the coefficients that suit the first picture are those of all
+works compare v_0005.exr v_0002.exr
+awk -v b="$(value bias)" 'BEGIN { exit !(b < 0.5) }' || fail "a thinner puff is brighter by $(value bias)"
+# a picture of a sequence is the picture
+works render puffs.gltf --size 32x32 --quiet --frames 4-4 -o one_#.exr -D lattice.cells=12
+works compare one_4.exr g_0004.exr
+near "$(value rel_l1)" 0 0.002 "a picture of a sequence and the picture alone"
+[ "$(get g_0002.json frame_ms.cold)" != null ] && [ "$(get g_0003.json frame_ms.cold)" = null ] ||
+    fail "only the first picture of a sequence is a cold one"
+refuses 2 "puff.0006.nvdb" render puffs.gltf --size 32x32 --quiet --frames 6-7 -o n_#.exr
+refuses 2 "puff.####.nvdb" render puffs.gltf --size 32x32 --quiet -o n.exr
+refuses 2 "puff.0001.nvdb" render puff.####.nvdb --size 32x32 --quiet --frames 1-2 -o n_#.exr
+
 # ---- interruption: exit 130 and no file ----
 "$tool" render "$scenes/cube.gltf" --size 512x512 --quiet --method path --spp 100000 -o i.exr &
 pid=$!

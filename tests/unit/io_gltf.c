@@ -223,6 +223,34 @@ static void environments(void **state)
     tyn_scene_finish(&s);
 }
 
+// In a sequence a run of # in the name of a file is the picture's number.
+static void numbered_files(void **state)
+{
+    tyn_scene s;
+    io_log log;
+    (void)state;
+    io_log_init(&log);
+    io_put("smoke.0007.raw", "\0\1\2\3\4\5\6\7", 8);
+    const char *text = "{'uri': 'smoke.####.raw', 'size': [2, 2, 2], 'type': 'u8'}";
+    char whole[1024];
+    snprintf(whole, sizeof whole,
+             ASSET ", 'scenes': [{'nodes': [0]}], 'scene': 0, 'nodes': [{'extensions': "
+                   "{'TYN_participating_media': {'medium': 0, 'shape': 'box'}}}], 'extensions': "
+                   "{'TYN_participating_media': {'media': [{'scattering': 1, 'density': %s}]}}}",
+             text);
+    const char *path = io_put_text("sequence.gltf", quoted(whole));
+    assert_int_equal(tyn_scene_load_frame(&s, path, NULL, 7, &log.log), TYN_OK);
+    assert_int_equal(s.num_volumes, 1);
+    assert_true(s.volumes[0].data[7] == 7.0f / 255);
+    tyn_scene_finish(&s);
+    assert_int_equal(log.errors, 0);
+    assert_int_equal(tyn_scene_load_frame(&s, path, NULL, 12345, &log.log), TYN_ERR_IO);
+    assert_non_null(strstr(log.last, "smoke.12345.raw"));
+    io_log_init(&log);
+    assert_int_equal(tyn_scene_load(&s, path, NULL, &log.log), TYN_ERR_IO);
+    assert_non_null(strstr(log.last, "smoke.####.raw"));
+}
+
 static void containers(void **state)
 {
     tyn_scene s;
@@ -264,7 +292,8 @@ static void containers(void **state)
     tyn_scene_finish(&s);
     for (uint32_t cut = 0; cut < total; cut++) { // truncated anywhere
         io_log_init(&log);
-        assert_int_equal(tyn_gltf_parse(&s, glb, cut, "cut.glb", NULL, &log.log), TYN_ERR_PARAMS);
+        assert_int_equal(tyn_gltf_parse(&s, glb, cut, "cut.glb", NULL, NULL, &log.log),
+                         TYN_ERR_PARAMS);
         assert_int_equal(log.errors, 1);
         assert_int_equal(log.newlines, 0);
     }
@@ -289,8 +318,10 @@ static void long_chain(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(nodes),      cmocka_unit_test(camera_order),
-                                       cmocka_unit_test(volumes),    cmocka_unit_test(environments),
-                                       cmocka_unit_test(containers), cmocka_unit_test(long_chain)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nodes),          cmocka_unit_test(camera_order),
+        cmocka_unit_test(volumes),        cmocka_unit_test(environments),
+        cmocka_unit_test(numbered_files), cmocka_unit_test(containers),
+        cmocka_unit_test(long_chain)};
     return cmocka_run_group_tests(tests, NULL, io_test_clean);
 }

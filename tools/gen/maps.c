@@ -93,7 +93,7 @@ static void put_header(bytes *b, const gen_map *map)
     put_u32(b, 2);        // version; one part of lines
     put_attribute(b, "channels", "chlist", 3 * 18 + 1);
     for (int c = 0; c < 3; c++) {
-        put(b, "B\0G\0R" + 2 * c, 2);
+        put(b, &"B\0G\0R"[2 * c], 2);
         put_u32(b, FLOAT);
         put_u32(b, 0); // not perceptually linear
         put_u32(b, 1); // every pixel along x

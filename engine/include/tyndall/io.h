@@ -20,6 +20,12 @@ extern "C" {
 TYN_API tyn_result tyn_scene_load(tyn_scene *scene, const char *path, const char *environment,
                                   const tyn_log *log);
 
+// The same for picture `frame` of a sequence: in the names of the files that a glTF scene refers to
+// a run of '#' stands for the number, padded with zeros to as many digits. `path` and `environment`
+// are taken as they are.
+TYN_API tyn_result tyn_scene_load_frame(tyn_scene *scene, const char *path, const char *environment,
+                                        uint32_t frame, const tyn_log *log);
+
 // Loads one grid of a volume file (.nvdb, .vdb) by its extension; `grid` NULL = "density", else the
 // first float grid. Negative values are set to 0 and added to `clamped_negative` (may be NULL).
 TYN_API tyn_result tyn_volume_load(tyn_volume *volume, const char *path, const char *grid,
