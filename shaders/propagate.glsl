@@ -15,10 +15,10 @@
 
 // The box around the medium's box with one axis along the light, in cubes of its longest side / cells.
 // Across the light what the last cells reach beyond the medium is split evenly.
-propagate_grid propagate_grid_of(vec3 extent, light_block light, uint index, uint cells, uint channels)
+propagate_grid propagate_grid_of(vec3 extent, vec3 direction, uint cells)
 {
     propagate_grid grid;
-    vec3 d = normalize(light.direction);
+    vec3 d = normalize(direction);
     vec3 steepness = abs(d); // start from the axis least along d: grids of axis-parallel light are aligned
     vec3 start = steepness.x <= steepness.y && steepness.x <= steepness.z ? vec3(1.0, 0.0, 0.0)
                : steepness.y <= steepness.z                               ? vec3(0.0, 1.0, 0.0)
@@ -35,10 +35,6 @@ propagate_grid propagate_grid_of(vec3 extent, light_block light, uint index, uin
     grid.across_u = u;
     grid.across_v = v;
     grid.direction = d;
-    grid.irradiance = light.color;
-    grid.light = index;
-    grid.first_layer = index * channels * cells;
-    grid.channels = channels;
     return grid;
 }
 
@@ -55,21 +51,56 @@ vec3 propagate_from_m(propagate_grid grid, vec3 p)
     return vec3(dot(grid.across_u, p), dot(grid.across_v, p), dot(grid.direction, p)) / grid.cell;
 }
 
+propagate_place propagate_place_of(propagate_grid grid)
+{
+    propagate_place place;
+    mat3 axes = mat3(grid.across_u, grid.across_v, grid.direction) / grid.cell;
+    for (int i = 0; i < 3; i++) {
+        place.rows[i] = vec4(axes[i], -dot(axes[i], grid.origin));
+    }
+    place.irradiance = grid.irradiance;
+    place.size = grid.size.x | grid.size.y << 8 | grid.size.z << 16;
+    return place;
+}
+
+// Position in cells of a grid, kept half a cell off its faces: where a linear fetch reads no cell
+// beyond them.
+vec3 propagate_at(propagate_place place, vec3 p)
+{
+    vec3 at = vec3(dot(place.rows[0].xyz, p) + place.rows[0].w, dot(place.rows[1].xyz, p) + place.rows[1].w,
+                   dot(place.rows[2].xyz, p) + place.rows[2].w);
+    vec3 size = vec3(place.size & 255u, place.size >> 8 & 255u, place.size >> 16);
+    return clamp(at, vec3(0.5), size - 0.5);
+}
+
 bool propagate_inside(propagate_grid grid, ivec3 cell)
 {
     return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(uvec3(cell), grid.size));
 }
 
+// Layers of workgroups of `depth` cells that a grid takes along z, so that no workgroup has two grids.
+uint propagate_groups(uint cells, uint depth)
+{
+    return (cells + depth - 1u) / depth;
+}
+
+// Number of a cell in a buffer; `stack` = grid and channel.
+uint propagate_index(ivec3 cell, uint stack, uint cells)
+{
+    return ((stack * cells + uint(cell.z)) * cells + uint(cell.y)) * cells + uint(cell.x);
+}
+
 // ---- one hop (Eqs 1-4) ----------------------------------------------------------------------------
 //
-// What is kept of a is its complement, the spread 1 - a: light that has hardly scattered has a next to
-// 1, and the fractions that go sideways are proportional to 1 - a, which a rounded a would lose.
+// Half of a hop lies in either cell, and absorption and loss of anisotropy multiply along the way: so a
+// cell keeps what its light has become at its own faces, and a neighbour adds its own half. What is
+// kept of a is its complement, the spread 1 - a: light that has hardly scattered has a next to 1, and
+// the fractions that go sideways are proportional to 1 - a, which a rounded a would lose.
 
-// A cell: L in units of the irradiance, 1 - a, and the fractions of L that go to each of the four
-// neighbours beside and to the one behind; the rest goes to the one in front. The fractions are the
-// distribution integrated over the cones of Eq 3 (45 and 135 degrees). With s^2 = 1 + a^2 - 2 a mu the
-// integral of Eq 1 below mu is (1 - a) (1 + mu) / (s (s + 1 + a)), which has no division by a. A lobe
-// that points backward is the mirror image.
+// Powers of a cell's light that leave it ahead, to each of the four neighbours beside and behind, and
+// its spread. The fractions are the distribution integrated over the cones of Eq 3 (45 and 135 degrees).
+// With s^2 = 1 + a^2 - 2 a mu the integral of Eq 1 below mu is (1 - a) (1 + mu) / (s (s + 1 + a)),
+// which has no division by a. A lobe that points backward is the mirror image.
 vec4 propagate_state(float light, float spread)
 {
     const float edge = 0.70710678;            // cos 45 degrees
@@ -79,14 +110,8 @@ vec4 propagate_state(float light, float spread)
     float outside = narrow * (1.0 + edge) / (s_ahead * (s_ahead + 2.0 - narrow)); // of the cone ahead
     float behind = narrow * (1.0 - edge) / (s_behind * (s_behind + 2.0 - narrow));
     float side = 0.25 * (outside - behind);
-    return vec4(light, spread, side, spread <= 1.0 ? behind : 1.0 - outside);
-}
-
-// What of a cell's light goes `layers` steps along d.
-float propagate_part(vec4 state, int layers)
-{
-    float part = layers == 0 ? state.z : layers < 0 ? state.w : 1.0 - 4.0 * state.z - state.w;
-    return state.x * part;
+    vec2 ends = spread <= 1.0 ? vec2(1.0 - outside, behind) : vec2(behind, 1.0 - outside);
+    return vec4(light * ends.x, light * side, light * ends.y, spread);
 }
 
 // -ln g for 0 < g < 1; the series where a rounded ln would lose digits: -ln g = 2 artanh((1-g)/(1+g)).
@@ -96,24 +121,56 @@ float propagate_minus_log(float g)
     return g > 0.8 ? y * (2.0 + y * y * (2.0 / 3.0 + y * y * (0.4 + y * y * 2.0 / 7.0))) : -log(g);
 }
 
-// How fast a falls, 1/m: a' = a e^(-decay t) (Eq 4). The flight has a Poisson number of events, so the
-// exact mean of g^n has the decay (1 - g) sigma_s; the paper takes g to the mean number instead, which
-// has no meaning for g < 0: the exact rate is used there.
-float propagate_decay(float sigma_s, float g, uint rate)
+// Exponent of the fall of a over a scattering depth: a' = a e^-decay (Eq 4). The flight has a Poisson
+// number of events, so the exact mean of g^n has the exponent (1 - g) depth; the paper takes g to the
+// mean number instead, which has no meaning for g < 0: the exact rate is used there.
+float propagate_decay(float depth, float g, uint rate)
 {
     if (rate == TYN_PROPAGATE_RATE_EXACT || g < 0.0) {
-        return (1.0 - g) * sigma_s;
+        return (1.0 - g) * depth;
     }
-    if (sigma_s <= 0.0) {
+    if (depth <= 0.0) {
         return 0.0;
     }
-    return g > 0.0 ? propagate_minus_log(g) * sigma_s : 1e30; // g = 0: isotropic after any event
+    return g > 0.0 ? propagate_minus_log(g) * depth : 1e30; // g = 0: isotropic after any event
 }
 
 // 1 - e^-x, x >= 0.
 float propagate_loss(float x)
 {
     return x < 0.05 ? x * (1.0 - x * (0.5 - x * (1.0 / 6.0 - x * (1.0 / 24.0)))) : 1.0 - exp(-x);
+}
+
+// A cell as buffer "cells" has it.
+struct propagate_cell {
+    float sigma_s; // optical depths over the edge of a cell
+    float sigma_a;
+    float g;
+    float mu; // cosine between the grid's direction and that to the eye; below -1: not part of the grid
+};
+
+propagate_cell propagate_cell_of(vec4 stored)
+{
+    return propagate_cell(stored.x, stored.y, stored.z, stored.w);
+}
+
+const vec4 propagate_no_cell = vec4(0.0, 0.0, 0.0, -2.0);
+
+// What the way through half a cell leaves of L, and takes of a.
+float propagate_kept(propagate_cell cell)
+{
+    return exp(-0.5 * cell.sigma_a);
+}
+
+float propagate_more_spread(propagate_cell cell, float spread, uint rate)
+{
+    return spread + (1.0 - spread) * propagate_loss(0.5 * propagate_decay(cell.sigma_s, cell.g, rate));
+}
+
+// State of a cell that holds `light` in its middle.
+vec4 propagate_outgoing(propagate_cell cell, float light, float spread, uint rate)
+{
+    return propagate_state(light * propagate_kept(cell), propagate_more_spread(cell, spread, rate));
 }
 
 // ---- what the eye gets (Eq 8) -----------------------------------------------------------------------

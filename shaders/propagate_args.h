@@ -1,8 +1,9 @@
 // propagate_args.h -- grids of the six-neighbour propagation. Included by C and GLSL; scalar layout.
 //
-// All grids are stacked along z in one image, channel by channel: cell (i, j, k) of channel c of light n
-// is texel (i, j, (n channels + c) cells + k), and first_layer = n channels cells. One channel if the
-// medium is the same in all: light of another colour is the same light times a colour.
+// Cells of a grid are numbered x fastest, within a cube of `cells` along each axis. Where a grid keeps one
+// number a channel, grid n and channel c are stack n channels + c: one after the other in a buffer, tiles
+// side by side in an image. One channel if the medium is the same in all: light of another colour is
+// the same light times a colour.
 #ifndef TYN_PROPAGATE_ARGS_H
 #define TYN_PROPAGATE_ARGS_H
 #include "shared.h"
@@ -16,19 +17,32 @@
 #define TYN_PROPAGATE_RATE_EXACT 1           // a' = a exp(-(1 - g) sigma_s t)
 #define TYN_PROPAGATE_SOURCE_SCATTERED 0     // source = sigma_s L_acc
 #define TYN_PROPAGATE_SOURCE_ACCUMULATED 1   // source = L_acc
+#define TYN_PROPAGATE_PREFILTER_OFF 0        // an ordinate's light starts as a beam: a = 1
+#define TYN_PROPAGATE_PREFILTER_HEURISTIC 1  // a = (1 - w / N)^beta, w = share of the sphere times N
+#define TYN_PROPAGATE_PREFILTER_EXACT 2      // a = mean cosine of the ordinate's region
 
-struct propagate_grid {   // element of storage buffer "grids", one per directional light
-    tyn_vec3 origin;      // M position of the corner of cell (0, 0, 0), m
-    float cell;           // edge of the cubic cells, m
-    tyn_vec3 across_u;    // M, unit: x axis of the grid
-    tyn_uint first_layer; // z of layer 0 in the stacked images
-    tyn_vec3 across_v;    // M, unit: y axis
-    tyn_uint light;       // index into "lights"
-    tyn_vec3 direction;   // M, unit: z axis, the light's direction of travel
+struct propagate_grid {  // element of storage buffer "grids": directional lights, then ordinates
+    tyn_vec3 origin;     // M position of the corner of cell (0, 0, 0), m
+    float cell;          // edge of the cubic cells, m
+    tyn_vec3 across_u;   // M, unit: x axis of the grid
     tyn_uint channels;   // 1 or 3
+    tyn_vec3 across_v;   // M, unit: y axis
+    float mean_cosine;   // of the light as it enters, 1 = a beam
+    tyn_vec3 direction;  // M, unit: z axis, the light's direction of travel
+    tyn_uint light;      // index in the list
     tyn_vec3 irradiance; // of the light, W/m^2: what the grid's light is in units of
-    tyn_uvec3 size;      // cells; texels beyond are not part of the grid
+    tyn_uvec3 size;      // cells; those beyond hold no light. (0, 0, 0): no light at all
 };
 TYN_ASSERT_SIZE(propagate_grid, 88);
+
+// What the merge of all grids needs of one: element of uniform buffer "places", in the order of "grids".
+#define TYN_PROPAGATE_GRIDS_MAX 256
+
+struct propagate_place {
+    tyn_vec4 rows[3];    // M -> cells of the grid: dot(rows[i].xyz, p) + rows[i].w; cell i spans [i, i + 1]
+    tyn_vec3 irradiance; // W/m^2
+    tyn_uint size;       // cells: x | y << 8 | z << 16
+};
+TYN_ASSERT_SIZE(propagate_place, 64);
 
 #endif

@@ -7,6 +7,7 @@
 #include "passes/medium/medium.h"
 #include "passes/propagate_rect/propagate_rect.h"
 #include "passes/upsample/upsample.h"
+#include "passes/merge_grids/merge_grids.h"
 #include "passes/composite/composite.h"
 #include "passes/tonemap/tonemap.h"
 #include <tyndall/registry.h>
@@ -26,6 +27,8 @@ static tyn_result add_propagation(tyn_graph *g, const tyn_job *job, const tyn_pi
     light->params.num_suns = in->num_suns;
     light->params.channels = job->frame->grey ? 1 : 3;
     light->params.mode = job->frame->medium.mode;
+    memcpy(light->params.extent, job->frame->medium.extent, sizeof light->params.extent);
+    memcpy(light->params.size, job->frame->medium.size, sizeof light->params.size);
     light->refs[PROPAGATE_RECT_PORT_MEDIUM] = job->refs.medium;
     light->refs[PROPAGATE_RECT_PORT_LIGHTS] = job->refs.lights;
     light->refs[PROPAGATE_RECT_PORT_CAMERA] = job->refs.camera;
@@ -39,21 +42,34 @@ static tyn_result add_upsampling(tyn_graph *g, const tyn_job *job, const propaga
                                  tyn_picture_inputs *in)
 {
     const struct medium_block *block = &job->frame->medium;
+    tyn_merge_grids_params merge;
+    tyn_settings_params(job->settings, &tyn_pass_merge_grids, &merge);
+    merge.num_grids = light->params.num_suns + light->params.num_ordinates;
+    merge.grid_cells = (uint32_t)light->params.cells;
+    merge.channels = light->params.channels;
+    merge.mode = block->mode;
+    memcpy(merge.extent, block->extent, sizeof merge.extent);
+    tyn_ref merged[MERGE_GRIDS_NUM_PORTS] = {
+        [MERGE_GRIDS_PORT_MEDIUM] = job->refs.medium,
+        [MERGE_GRIDS_PORT_DENSITY] = in->media.density,
+        [MERGE_GRIDS_PORT_PLACES] = light->refs[PROPAGATE_RECT_PORT_PLACES],
+        [MERGE_GRIDS_PORT_SEEN] = light->refs[PROPAGATE_RECT_PORT_SEEN],
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_merge_grids, &merge, merged);
+    if (result != TYN_OK) {
+        return result;
+    }
     tyn_upsample_params params;
     tyn_settings_params(job->settings, &tyn_pass_upsample, &params);
-    params.num_suns = in->num_suns;
-    params.grid_cells = (uint32_t)light->params.cells;
     params.mode = block->mode;
     memcpy(params.extent, block->extent, sizeof params.extent);
     memcpy(params.size, block->size, sizeof params.size);
     tyn_ref refs[UPSAMPLE_NUM_PORTS] = {
         [UPSAMPLE_PORT_MEDIUM] = job->refs.medium,
         [UPSAMPLE_PORT_DENSITY] = in->media.density,
-        [UPSAMPLE_PORT_GRIDS] = light->refs[PROPAGATE_RECT_PORT_GRIDS],
-        [UPSAMPLE_PORT_CELLS] = light->refs[PROPAGATE_RECT_PORT_CELLS],
-        [UPSAMPLE_PORT_SEEN] = light->refs[PROPAGATE_RECT_PORT_SEEN],
+        [UPSAMPLE_PORT_MERGED] = merged[MERGE_GRIDS_PORT_MERGED],
     };
-    tyn_result result = tyn_graph_add(g, &tyn_pass_upsample, &params, refs);
+    result = tyn_graph_add(g, &tyn_pass_upsample, &params, refs);
     in->inscatter = refs[UPSAMPLE_PORT_INSCATTER];
     float longest = fmaxf(block->extent[0], fmaxf(block->extent[1], block->extent[2]));
     in->cell = longest / (float)light->params.cells;
@@ -95,6 +111,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 static const tyn_pass_desc *const passes[] = {
     &tyn_pass_medium,
     &tyn_pass_propagate_rect,
+    &tyn_pass_merge_grids,
     &tyn_pass_upsample,
     &tyn_pass_raymarch,
     &tyn_pass_composite,

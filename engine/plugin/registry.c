@@ -9,6 +9,7 @@
 #include "passes/medium/medium.h"
 #include "passes/path/path.h"
 #include "passes/merge/merge.h"
+#include "passes/merge_grids/merge_grids.h"
 #include "passes/probe/probe.h"
 #include "passes/propagate_rect/propagate_rect.h"
 #include "passes/raymarch/raymarch.h"
@@ -29,6 +30,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_probe,
     &tyn_pass_balance,
     &tyn_pass_propagate_rect,
+    &tyn_pass_merge_grids,
     &tyn_pass_upsample,
     &tyn_pass_importance,
     &tyn_pass_env_glow,

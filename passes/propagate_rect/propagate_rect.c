@@ -2,17 +2,24 @@
 #include "propagate_rect.h"
 #include "propagate_rect_args.h"
 #include "propagate_rect_cells.comp.h"
+#include "propagate_rect_collect.comp.h"
+#include "propagate_rect_light.comp.h"
 #include "propagate_rect_setup.comp.h"
+#include "propagate_rect_shrink_coefficients.comp.h"
+#include "propagate_rect_shrink_density.comp.h"
 #include "propagate_rect_start.comp.h"
 #include "propagate_rect_step.comp.h"
+#include "ordinate_args.h"
 #include "scene_args.h"
+#include <math.h>
 
 #define PORT(name) PROPAGATE_RECT_PORT_##name
-#define RGBA VK_FORMAT_R32G32B32A32_SFLOAT
 
 static const tyn_port ports[PROPAGATE_RECT_NUM_PORTS] = {
     [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
     [PORT(LIGHTS)] = {"lights", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
+    [PORT(ORDINATES)] = {"ordinates", TYN_IN, TYN_BUFFER, .optional = true,
+                         .meaning = "struct ordinates_block"},
     [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
     [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
     [PORT(SIGMA_A)] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
@@ -20,55 +27,103 @@ static const tyn_port ports[PROPAGATE_RECT_NUM_PORTS] = {
     [PORT(G)] = {"g", TYN_IN, TYN_IMAGE_3D, .optional = true,
                  .meaning = "mean cosine of scattering"},
     [PORT(GRIDS)] = {"grids", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_grid[]"},
-    [PORT(CELLS)] = {"cells", TYN_OUT, TYN_IMAGE_3D, RGBA,
-                     .meaning =
-                         "mean sigma_s, sigma_a of the aligned cells, 1/m; g; decay of a, 1/m"},
-    [PORT(STATE)] = {"state", TYN_OUT, TYN_IMAGE_3D, RGBA,
-                     .meaning = "L per irradiance, 1 - a, its fractions to a side and to the back"},
+    [PORT(PLACES)] = {"places", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_place[]"},
     [PORT(SEEN)] = {"seen", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
                     .meaning =
                         "L_acc: light sent to the eye in all iterations, per irradiance, 1/sr"},
-    [PORT(STATE_OTHER)] = {"state_other", TYN_SCRATCH, TYN_IMAGE_3D, RGBA,
+    [PORT(LIGHT)] = {"light", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
+                     .meaning = "L after the last iteration, per irradiance"},
+    [PORT(CELLS)] = {"cells", TYN_OUT, TYN_BUFFER,
+                     .meaning = "scattering and absorption depths of a cell, g, cosine to the eye"},
+    [PORT(STATE)] = {"state", TYN_OUT, TYN_BUFFER,
+                     .meaning = "light that leaves ahead, to a side, behind; its 1 - a"},
+    [PORT(SUM)] = {"sum", TYN_OUT, TYN_BUFFER, .meaning = "L_acc of the last batch of grids"},
+    [PORT(STATE_OTHER)] = {"state_other", TYN_SCRATCH, TYN_BUFFER,
                            .meaning = "state of every other iteration"},
-    [PORT(SEEN_OTHER)] = {"seen_other", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
-                          .meaning = "L_acc of every other iteration"},
+    [PORT(SMALL)] = {"small", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
+                     .meaning = "the density, or sigma_s, shrunk"},
+    [PORT(SMALL_SIGMA_A)] = {"small_sigma_a", TYN_SCRATCH, TYN_IMAGE_3D,
+                             VK_FORMAT_R32G32B32A32_SFLOAT, .meaning = "sigma_a, shrunk"},
+    [PORT(SMALL_G)] = {"small_g", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                       .meaning = "g, shrunk"},
 };
 
-enum { SETUP, CELLS, START, STEP, NUM_KERNELS };
+enum {
+    SETUP,
+    SHRINK_DENSITY,
+    SHRINK_COEFFICIENTS,
+    CELLS,
+    START,
+    STEP,
+    COLLECT,
+    LIGHT,
+    NUM_KERNELS
+};
 
 static const tyn_binding setup_bindings[] = {
     {PORT(MEDIUM), TYN_USE_UNIFORM},
     {PORT(LIGHTS), TYN_USE_STORAGE_READ},
+    {PORT(ORDINATES), TYN_USE_STORAGE_READ},
     {PORT(GRIDS), TYN_USE_STORAGE_WRITE},
+    {PORT(PLACES), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding shrink_density_bindings[] = {
+    {PORT(MEDIUM), TYN_USE_UNIFORM},
+    {PORT(DENSITY), TYN_USE_SAMPLED},
+    {PORT(SMALL), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding shrink_coefficients_bindings[] = {
+    {PORT(MEDIUM), TYN_USE_UNIFORM},
+    {PORT(DENSITY), TYN_USE_SAMPLED},
+    {PORT(SIGMA_A), TYN_USE_SAMPLED},
+    {PORT(G), TYN_USE_SAMPLED},
+    {PORT(SMALL), TYN_USE_STORAGE_WRITE},
+    {PORT(SMALL_SIGMA_A), TYN_USE_STORAGE_WRITE},
+    {PORT(SMALL_G), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding cells_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},     {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},    {PORT(G), TYN_USE_SAMPLED},
-    {PORT(GRIDS), TYN_USE_STORAGE_READ}, {PORT(CELLS), TYN_USE_STORAGE_WRITE},
+    {PORT(MEDIUM), TYN_USE_UNIFORM},      {PORT(DENSITY), TYN_USE_SAMPLED},
+    {PORT(SIGMA_A), TYN_USE_SAMPLED},     {PORT(G), TYN_USE_SAMPLED},
+    {PORT(GRIDS), TYN_USE_STORAGE_READ},  {PORT(CAMERA), TYN_USE_UNIFORM},
+    {PORT(CELLS), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding start_bindings[] = {
-    {PORT(GRIDS), TYN_USE_STORAGE_READ}, {PORT(CAMERA), TYN_USE_UNIFORM},
-    {PORT(CELLS), TYN_USE_SAMPLED},      {PORT(STATE), TYN_USE_STORAGE_WRITE},
-    {PORT(SEEN), TYN_USE_STORAGE_WRITE},
+    {PORT(GRIDS), TYN_USE_STORAGE_READ},        {PORT(CELLS), TYN_USE_STORAGE_READ},
+    {PORT(STATE), TYN_USE_STORAGE_WRITE},       {PORT(STATE_OTHER), TYN_USE_STORAGE_WRITE},
+    {PORT(SUM), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding step_bindings[] = {
-    {PORT(GRIDS), TYN_USE_STORAGE_READ}, {PORT(CAMERA), TYN_USE_UNIFORM},
-    {PORT(CELLS), TYN_USE_SAMPLED},      {PORT(STATE_OTHER), TYN_USE_SAMPLED},
-    {PORT(SEEN_OTHER), TYN_USE_SAMPLED}, {PORT(STATE), TYN_USE_STORAGE_WRITE},
+    {PORT(CELLS), TYN_USE_STORAGE_READ},
+    {PORT(STATE_OTHER), TYN_USE_STORAGE_READ},
+    {PORT(STATE), TYN_USE_STORAGE_WRITE},
+    {PORT(SUM), TYN_USE_STORAGE_RW},
+};
+static const tyn_binding collect_bindings[] = {
+    {PORT(SUM), TYN_USE_STORAGE_READ},
     {PORT(SEEN), TYN_USE_STORAGE_WRITE},
 };
+static const tyn_binding light_bindings[] = {
+    {PORT(CELLS), TYN_USE_STORAGE_READ},
+    {PORT(STATE), TYN_USE_STORAGE_READ},
+    {PORT(LIGHT), TYN_USE_STORAGE_WRITE},
+};
 
-#define KERNEL(step, x, y, z, specs)                                                               \
+#define EDGE PROPAGATE_RECT_GROUP
+#define KERNEL(step, x, y, z, specs, size)                                                         \
     .name = "propagate_rect_" #step, .spirv = propagate_rect_##step##_spirv,                       \
-    .spirv_size = sizeof propagate_rect_##step##_spirv,                                            \
-    .args_size = sizeof(struct propagate_rect_args), .local_size = {x, y, z},                      \
-    .bindings = step##_bindings, .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, \
-    .num_spec = specs
+    .spirv_size = sizeof propagate_rect_##step##_spirv, .args_size = size,                         \
+    .local_size = {x, y, z}, .bindings = step##_bindings,                                          \
+    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
+#define ARGS sizeof(struct propagate_rect_args)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = {KERNEL(setup, 64, 1, 1, 0)},
-    [CELLS] = {KERNEL(cells, 4, 4, 4, 1)},
-    [START] = {KERNEL(start, 8, 8, 1, 1)},
-    [STEP] = {KERNEL(step, 4, 4, 4, 0)},
+    [SETUP] = {KERNEL(setup, 64, 1, 1, 0, ARGS)},
+    [SHRINK_DENSITY] = {KERNEL(shrink_density, EDGE, EDGE, EDGE, 1, 0)},
+    [SHRINK_COEFFICIENTS] = {KERNEL(shrink_coefficients, EDGE, EDGE, EDGE, 1, 0)},
+    [CELLS] = {KERNEL(cells, EDGE, EDGE, EDGE, 1, ARGS)},
+    [START] = {KERNEL(start, 8, 8, 1, 1, ARGS)},
+    [STEP] = {KERNEL(step, EDGE, EDGE, EDGE, 0, ARGS)},
+    [COLLECT] = {KERNEL(collect, EDGE, EDGE, EDGE, 0, ARGS)},
+    [LIGHT] = {KERNEL(light, EDGE, EDGE, EDGE, 0, ARGS)},
 };
 
 #define FIELD(name) offsetof(tyn_propagate_rect_params, name)
@@ -90,71 +145,199 @@ static const tyn_param params[] = {
      "what a point of the medium sends to the eye: sigma_s L_acc, or L_acc where there is any "
      "medium",
      (const char *const[]){"scattered", "accumulated"}},
+    {"prefilter", TYN_PARAM_ENUM, FIELD(prefilter), TYN_PROPAGATE_PREFILTER_EXACT, 0, 2, "",
+     "mean cosine of an ordinate's light as it enters: 1, (1 - w / N)^beta, or 1 - its part of the "
+     "sphere",
+     (const char *const[]){"off", "heuristic", "exact"}},
+    {"beta", TYN_PARAM_FLOAT, FIELD(beta), 1, 0.01, 1000, "",
+     "exponent of the heuristic prefilter; 1 is exact for regions of equal size"},
 };
+
+// ---- sizes ------------------------------------------------------------------------------------
+
+static uint32_t num_grids(const tyn_propagate_rect_params *p)
+{
+    return p->num_suns + p->num_ordinates;
+}
+
+static uint32_t cells_of_grid(const tyn_propagate_rect_params *p)
+{
+    return (uint32_t)(p->cells * p->cells * p->cells) * p->channels;
+}
+
+// Grids of a batch: as many as storage buffers hold.
+static uint32_t batch(const tyn_propagate_rect_params *p)
+{
+    const uint32_t bytes = 128u << 20;
+    uint32_t fit = bytes / (cells_of_grid(p) * (uint32_t)(4 * sizeof(float)));
+    return fit < num_grids(p) ? fit : num_grids(p);
+}
+
+static uint32_t tiles_of(const tyn_propagate_rect_params *p)
+{
+    return (uint32_t)ceil(sqrt((double)(num_grids(p) * p->channels)));
+}
+
+// Texels of the shrunk medium, no larger than half a cell of any grid; {0} if the medium's own will do.
+// A grid's cells are the smallest if its box is no longer than that of the medium.
+static tyn_extent small_of(const tyn_propagate_rect_params *p)
+{
+    double longest = fmax(p->extent[0], fmax(p->extent[1], p->extent[2]));
+    uint32_t size[3];
+    bool shrinks = false;
+    for (int i = 0; i < 3; i++) {
+        double voxels = p->size[i] * (longest / p->cells) / p->extent[i]; // along a cell
+        uint32_t step = (uint32_t)fmax(floor(0.5 * voxels), 1);
+        size[i] = (p->size[i] + step - 1) / step;
+        shrinks = shrinks || step > 1;
+    }
+    return shrinks ? (tyn_extent){size[0], size[1], size[2]} : (tyn_extent){0, 0, 0};
+}
+
+static float voxel_of(const tyn_propagate_rect_params *p)
+{
+    tyn_extent small = small_of(p);
+    const uint32_t shrunk[3] = {small.x, small.y, small.z};
+    float finest = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        finest = fminf(finest, p->extent[i] / (float)(small.x ? shrunk[i] : p->size[i]));
+    }
+    return finest;
+}
+
+// ---- the pass ---------------------------------------------------------------------------------
 
 static tyn_result declare(tyn_builder *b, const void *data)
 {
     const tyn_propagate_rect_params *p = data;
-    uint32_t cells = (uint32_t)p->cells;
-    tyn_build_buffer(b, PORT(GRIDS), p->num_suns * sizeof(struct propagate_grid));
-    for (uint8_t port = PORT(CELLS); port <= PORT(SEEN_OTHER); port++) {
-        tyn_build_image(b, port, (tyn_extent){cells, cells, cells * p->num_suns * p->channels}, 1);
+    if (num_grids(p) == 0 || num_grids(p) > TYN_PROPAGATE_GRIDS_MAX) {
+        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                      "propagate_rect: %u lights and %u ordinates, must be 1 to %d together",
+                      p->num_suns, p->num_ordinates, TYN_PROPAGATE_GRIDS_MAX);
+        return TYN_ERR_PARAMS;
+    }
+    uint32_t cells = (uint32_t)p->cells, tiles = tiles_of(p), stacks = num_grids(p) * p->channels;
+    uint64_t numbers = (uint64_t)batch(p) * cells_of_grid(p);
+    tyn_extent tiled = {cells * tiles, cells * ((stacks + tiles - 1) / tiles), cells};
+    tyn_extent small = small_of(p);
+    tyn_build_buffer(b, PORT(GRIDS), num_grids(p) * sizeof(struct propagate_grid));
+    tyn_build_buffer(b, PORT(PLACES), TYN_PROPAGATE_GRIDS_MAX * sizeof(struct propagate_place));
+    tyn_build_buffer(b, PORT(CELLS), numbers * 4 * sizeof(float));
+    tyn_build_buffer(b, PORT(STATE), numbers * 4 * sizeof(float));
+    tyn_build_buffer(b, PORT(STATE_OTHER), numbers * 4 * sizeof(float));
+    tyn_build_buffer(b, PORT(SUM), numbers * sizeof(float));
+    tyn_build_image(b, PORT(SEEN), tiled, 1);
+    if (p->keep_light) {
+        tyn_build_image(b, PORT(LIGHT), tiled, 1);
+    }
+    if (small.x) {
+        tyn_build_image(b, PORT(SMALL), small, 1);
+    }
+    if (small.x && p->mode == TYN_MEDIUM_COEFFICIENTS) {
+        tyn_build_format(b, PORT(SMALL), VK_FORMAT_R32G32B32A32_SFLOAT);
+        tyn_build_image(b, PORT(SMALL_SIGMA_A), small, 1);
+        tyn_build_image(b, PORT(SMALL_G), small, 1);
     }
     return TYN_OK;
 }
 
-// Ports of a kernel's bindings. The states are written alternately to the outputs and to scratch, so
-// that the last one lands in the outputs; `swap` exchanges the two.
-static const uint8_t *alternate(uint8_t *out, uint32_t kernel, bool swap)
+// Ports of a kernel's bindings with some exchanged for others.
+static const uint8_t *exchange(uint8_t *out, uint32_t kernel, const uint8_t (*pairs)[2], int count)
 {
     for (uint32_t i = 0; i < kernels[kernel].num_bindings; i++) {
-        uint8_t port = kernels[kernel].bindings[i].port;
-        if (swap && (port == PORT(STATE) || port == PORT(SEEN))) {
-            port += PORT(STATE_OTHER) - PORT(STATE);
-        } else if (swap && (port == PORT(STATE_OTHER) || port == PORT(SEEN_OTHER))) {
-            port -= PORT(STATE_OTHER) - PORT(STATE);
+        out[i] = kernels[kernel].bindings[i].port;
+        for (int k = 0; k < count; k++) {
+            if (out[i] == pairs[k][0]) {
+                out[i] = pairs[k][1];
+                break;
+            }
         }
-        out[i] = port;
     }
     return out;
+}
+
+static void record_shrink(tyn_recorder *r, const tyn_propagate_rect_params *p)
+{
+    bool density = p->mode == TYN_MEDIUM_DENSITY;
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = density ? SHRINK_DENSITY : SHRINK_COEFFICIENTS,
+                                        .cells = small_of(p),
+                                        .spec = &p->mode});
+}
+
+// All iterations of args->count grids from args->first.
+static void record_batch(tyn_recorder *r, const tyn_propagate_rect_params *p,
+                         const struct propagate_rect_args *args)
+{
+    static const uint8_t small[][2] = {{PORT(DENSITY), PORT(SMALL)},
+                                       {PORT(SIGMA_A), PORT(SMALL_SIGMA_A)},
+                                       {PORT(G), PORT(SMALL_G)}};
+    static const uint8_t swap[][2] = {{PORT(STATE), PORT(STATE_OTHER)},
+                                      {PORT(STATE_OTHER), PORT(STATE)}};
+    uint8_t table[TYN_MAX_BINDINGS];
+    uint32_t layers = (args->cells + EDGE - 1) / EDGE * EDGE; // no workgroup has cells of two grids
+    uint32_t stacks = args->count * args->channels, init = (uint32_t)p->init;
+    tyn_extent all = {args->cells, args->cells, layers * stacks};
+    int shrunk = !small_of(p).x ? 0 : p->mode == TYN_MEDIUM_COEFFICIENTS ? 3 : 1;
+
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = CELLS,
+                                        .cells = {args->cells, args->cells, layers * args->count},
+                                        .args = args,
+                                        .ports = exchange(table, CELLS, small, shrunk),
+                                        .spec = &p->mode});
+    // The states are written alternately, so that the last one lands in the output.
+    bool other = p->iterations % 2 != 0;
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
+                                        .cells = {args->cells, args->cells, stacks},
+                                        .args = args,
+                                        .ports = exchange(table, START, swap, other ? 2 : 0),
+                                        .spec = &init});
+    for (int32_t m = 0; m < p->iterations; m++) {
+        other = !other;
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
+                                            .cells = all,
+                                            .args = args,
+                                            .ports = exchange(table, STEP, swap, other ? 2 : 0)});
+    }
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = COLLECT, .cells = all, .args = args});
+    if (p->keep_light) {
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = LIGHT, .cells = all, .args = args});
+    }
 }
 
 static void record(tyn_recorder *r, const void *data)
 {
     const tyn_propagate_rect_params *p = data;
-    const uint32_t cells = (uint32_t)p->cells, stacks = p->num_suns * p->channels;
-    const uint32_t init = (uint32_t)p->init;
-    const struct propagate_rect_args args = {cells, p->num_suns, p->channels, p->last_event,
-                                             (uint32_t)p->rate};
-    uint8_t table[TYN_MAX_BINDINGS];
-
-    tyn_rec_dispatch(r,
-                     &(tyn_dispatch){.kernel = SETUP, .cells = {p->num_suns, 1, 1}, .args = &args});
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = CELLS,
-                                        .cells = {cells, cells, cells * p->num_suns},
-                                        .args = &args,
-                                        .spec = &p->mode});
-    bool other = p->iterations % 2 != 0; // what is written now goes to scratch
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
-                                        .cells = {cells, cells, stacks},
-                                        .args = &args,
-                                        .ports = alternate(table, START, other),
-                                        .spec = &init});
-    for (int32_t m = 0; m < p->iterations; m++) {
-        other = !other;
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
-                                            .cells = {cells, cells, cells * stacks},
-                                            .args = &args,
-                                            .ports = alternate(table, STEP, other)});
+    struct propagate_rect_args args = {
+        .cells = (uint32_t)p->cells,
+        .channels = p->channels,
+        .num_suns = p->num_suns,
+        .num_ordinates = p->num_ordinates,
+        .last_event = p->last_event,
+        .rate = (uint32_t)p->rate,
+        .prefilter = (uint32_t)p->prefilter,
+        .beta = p->beta,
+        .voxel = voxel_of(p),
+        .tiles = tiles_of(p),
+    };
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){.kernel = SETUP, .cells = {num_grids(p), 1, 1}, .args = &args});
+    if (small_of(p).x) {
+        record_shrink(r, p);
     }
-    double hops = (double)cells * cells * cells * stacks * p->iterations;
+    for (args.first = 0; args.first < num_grids(p); args.first += args.count) {
+        uint32_t left = num_grids(p) - args.first, fit = batch(p);
+        args.count = left < fit ? left : fit;
+        record_batch(r, p, &args);
+    }
+    double hops = (double)cells_of_grid(p) * num_grids(p) * p->iterations;
     tyn_rec_work(r, "cells", hops);
-    tyn_rec_work(r, "flops", hops * 200); // counted by hand
+    tyn_rec_work(r, "flops", hops * 150); // counted by hand
+    tyn_rec_work(r, "bytes", hops * 56);
 }
 
 const tyn_pass_desc tyn_pass_propagate_rect = {
     .name = "propagate_rect",
-    .summary = "light of each directional light moved cell by cell in its aligned grid (Elek 2014)",
+    .summary = "light of each light and ordinate moved cell by cell in its aligned grid (Elek 2014)",
     .ports = ports,
     .num_ports = PROPAGATE_RECT_NUM_PORTS,
     .kernels = kernels,
@@ -165,5 +348,5 @@ const tyn_pass_desc tyn_pass_propagate_rect = {
     .declare = declare,
     .record = record,
     .debug_port = PORT(SEEN),
-    .debug_meaning = "radiance sent to the eye, middle of the stacked aligned grids",
+    .debug_meaning = "radiance sent to the eye, middle of the aligned grids",
 };

@@ -1,8 +1,12 @@
-// propagate_rect.h -- light of each directional light in its own aligned grid, moved cell by cell.
+// propagate_rect.h -- light of each directional light and ordinate in its own aligned grid, moved cell by
+// cell.
 //
-// Elek et al. 2014, sections 3-4, Eqs 1-8. The result depends on the view (Eq 8): a moved camera runs
+// Elek et al. 2014, sections 3-5.1, Eqs 1-8. The result depends on the view (Eq 8): a moved camera runs
 // all iterations again, as in the paper. Defaults are the reading with the right energy: the first
 // layer starts with the light's irradiance, and what reaches the eye has scattered a last time.
+//
+// All grids take one dispatch an iteration. What does not fit a storage buffer of 128 MiB, which every
+// device has, is done in several batches of grids, one after the other.
 #pragma once
 #include <tyndall/pass.h>
 #include "propagate_args.h"
@@ -14,27 +18,41 @@ typedef struct tyn_propagate_rect_params {
     uint32_t last_event; // 1: the light is scattered once more towards the eye: hg(mu, g a)
     int32_t rate;        // TYN_PROPAGATE_RATE_*
     int32_t source;    // TYN_PROPAGATE_SOURCE_*: for the ray march, no kernel of this pass reads it
-    uint32_t num_suns; // set by the method: directional lights, the first ones of "lights"
-    uint32_t channels; // set by the method: 1 if the medium is the same in all channels, else 3
-    uint32_t mode;     // set by the method: TYN_MEDIUM_*
+    int32_t prefilter; // TYN_PROPAGATE_PREFILTER_*
+    float beta;        // exponent of the heuristic prefilter
+    uint32_t num_suns; // set by the method, as all below: directional lights, the first of "lights"
+    uint32_t num_ordinates; // room for, 0..TYN_ORDINATES_MAX
+    uint32_t channels;      // 1 if the medium is the same in all channels, else 3
+    uint32_t mode;          // TYN_MEDIUM_*
+    uint32_t keep_light;    // 1: the port "light" exists
+    float extent[3];        // medium_block.extent, m
+    uint32_t size[3];       // medium_block.size
 } tyn_propagate_rect_params;
 
 enum {
-    PROPAGATE_RECT_PORT_MEDIUM,  // IN buffer struct medium_block
-    PROPAGATE_RECT_PORT_LIGHTS,  // IN buffer struct light_block[]
-    PROPAGATE_RECT_PORT_CAMERA,  // IN buffer struct camera_block
-    PROPAGATE_RECT_PORT_DENSITY, // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
-    PROPAGATE_RECT_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as g
+    PROPAGATE_RECT_PORT_MEDIUM,    // IN buffer struct medium_block
+    PROPAGATE_RECT_PORT_LIGHTS,    // IN buffer struct light_block[]
+    PROPAGATE_RECT_PORT_ORDINATES, // IN optional buffer struct ordinates_block
+    PROPAGATE_RECT_PORT_CAMERA,    // IN buffer struct camera_block
+    PROPAGATE_RECT_PORT_DENSITY,   // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
+    PROPAGATE_RECT_PORT_SIGMA_A,   // IN optional 3D: mode COEFFICIENTS, as g
     PROPAGATE_RECT_PORT_G,
     PROPAGATE_RECT_PORT_GRIDS, // OUT buffer struct propagate_grid[]
-    PROPAGATE_RECT_PORT_CELLS, // OUT 3D RGBA32F, stacked (propagate_args.h): mean sigma_s, sigma_a, 1/m;
-                               // sigma_s-weighted mean g; decay of a, 1/m
-    PROPAGATE_RECT_PORT_STATE, // OUT 3D RGBA32F, stacked: after the last iteration L in units of the
-                               // irradiance, 1 - a, fractions of L to a side and to the back
-    PROPAGATE_RECT_PORT_SEEN, // OUT 3D R32F, stacked: L_acc, sum over iterations of L towards the eye,
-                              // in units of the irradiance, 1/sr
-    PROPAGATE_RECT_PORT_STATE_OTHER, // SCRATCH, as the two above
-    PROPAGATE_RECT_PORT_SEEN_OTHER,
+    PROPAGATE_RECT_PORT_PLACES, // OUT buffer struct propagate_place[TYN_PROPAGATE_GRIDS_MAX], <= 16 KiB
+    PROPAGATE_RECT_PORT_SEEN,  // OUT 3D R32F, tiles of grids and channels (propagate_args.h): L_acc, sum
+                               // over iterations of L towards the eye, in units of the irradiance, 1/sr
+    PROPAGATE_RECT_PORT_LIGHT, // OUT 3D R32F, optional, tiles: L after the last iteration, in units of the
+                               // irradiance
+    PROPAGATE_RECT_PORT_CELLS, // OUT buffer, vec4[grids][channels][cells^3] of the last batch: optical
+                               // depths of scattering and absorption over the edge of a cell, g, cosine
+                               // between the light and the direction to the eye (-2: not in the grid)
+    PROPAGATE_RECT_PORT_STATE, // OUT buffer, vec4, so: after the last iteration what of L leaves the cell
+                               // ahead, to each side and behind, and 1 - a of it
+    PROPAGATE_RECT_PORT_SUM,         // OUT buffer, float, so: L_acc
+    PROPAGATE_RECT_PORT_STATE_OTHER, // SCRATCH, as the state
+    PROPAGATE_RECT_PORT_SMALL,       // SCRATCH 3D: density or sigma_s at a resolution that suits the cells,
+    PROPAGATE_RECT_PORT_SMALL_SIGMA_A, // ... if the medium's is more than twice as fine
+    PROPAGATE_RECT_PORT_SMALL_G,
     PROPAGATE_RECT_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_propagate_rect;

@@ -3,13 +3,23 @@
 #define TYN_PROPAGATE_RECT_ARGS_H
 #include "shared.h"
 
+// Edge of the workgroups of kernels with one thread a cell.
+#define PROPAGATE_RECT_GROUP 4
+
 struct propagate_rect_args {
     tyn_uint cells;
-    tyn_uint num_suns;
     tyn_uint channels;
+    tyn_uint num_suns;
+    tyn_uint num_ordinates; // room for; the list may have fewer
+    tyn_uint first;         // grid of this batch
+    tyn_uint count;         // grids of this batch
     tyn_uint last_event;
     tyn_uint rate;
+    tyn_uint prefilter;
+    float beta;
+    float voxel;     // of what the coefficients are read from, shortest edge, m
+    tyn_uint tiles;  // a row, in images
 };
-TYN_ASSERT_SIZE(propagate_rect_args, 20);
+TYN_ASSERT_SIZE(propagate_rect_args, 48);
 
 #endif

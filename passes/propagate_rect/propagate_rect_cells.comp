@@ -1,5 +1,5 @@
 // propagate_rect_cells.comp -- the medium's mean coefficients over each cell (the paper's section 4.2
-// asks for a downscaled medium).
+// asks for a downscaled medium), and the cosine at which the eye sees it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -13,7 +13,8 @@
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 4, scalar) readonly buffer grids_buffer { propagate_grid grids[]; };
-layout(set = 0, binding = 5, rgba32f) uniform writeonly image3D out_cells;
+layout(set = 0, binding = 5, scalar) uniform camera_uniform { camera_block camera; };
+layout(set = 0, binding = 6, scalar) writeonly buffer cells_buffer { vec4 cells[]; };
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 
 // Samples along each edge of a cell. A trilinear fetch is a mean over two voxels, so one per two voxels
@@ -21,48 +22,47 @@ layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 // them as they are.
 int samples_along(float cell)
 {
-    float voxels = cell / min(medium.voxel.x, min(medium.voxel.y, medium.voxel.z)) - 1e-3;
+    float voxels = cell / args.voxel - 1e-3;
     return voxels <= 1.0 ? 1 : clamp(int(ceil(0.5 * voxels)), 2, 16);
 }
 
 void main()
 {
-    uvec3 thread = gl_GlobalInvocationID;
-    ivec3 cell = ivec3(thread.xy, thread.z % args.cells);
-    if (any(greaterThanEqual(thread, uvec3(args.cells, args.cells, args.cells * args.num_suns)))) {
+    uint groups = propagate_groups(args.cells, PROPAGATE_RECT_GROUP);
+    uint n = gl_WorkGroupID.z / groups; // grid of this batch
+    ivec3 cell = ivec3(gl_GlobalInvocationID.xy,
+                       gl_GlobalInvocationID.z - n * groups * PROPAGATE_RECT_GROUP);
+    if (any(greaterThanEqual(uvec3(cell), uvec3(args.cells)))) {
         return;
     }
-    propagate_grid grid = grids[thread.z / args.cells];
+    propagate_grid grid = grids[args.first + n];
     vec3 sigma_s = vec3(0.0), sigma_a = vec3(0.0), g = vec3(0.0);
-    if (propagate_inside(grid, cell)) {
-        int n = samples_along(grid.cell);
-        // Half the extent along M's axes of the cube that a sample stands for.
-        vec3 reach = 0.5 * grid.cell / float(n) *
-                     (abs(grid.across_u) + abs(grid.across_v) + abs(grid.direction));
-        for (int k = 0; k < n; k++) {
-            for (int j = 0; j < n; j++) {
-                for (int i = 0; i < n; i++) {
-                    vec3 p = propagate_to_m(grid, vec3(cell) + (vec3(i, j, k) + 0.5) / float(n));
-                    vec3 part = clamp((min(p + reach, medium.extent) - max(p - reach, 0.0)) /
-                                      (2.0 * reach), 0.0, 1.0);
-                    float covered = part.x * part.y * part.z;
-                    if (covered > 0.0) {
-                        medium_point m = medium_sample(clamp(p, vec3(0.0), medium.extent));
-                        sigma_s += covered * m.sigma_s;
-                        sigma_a += covered * m.sigma_a;
-                        g += covered * m.sigma_s * m.g;
-                    }
+    bool inside = propagate_inside(grid, cell);
+    int along = inside ? samples_along(grid.cell) : 0;
+    // Half the extent along M's axes of the cube that a sample stands for.
+    vec3 reach = 0.5 * grid.cell / float(max(along, 1)) *
+                 (abs(grid.across_u) + abs(grid.across_v) + abs(grid.direction));
+    for (int k = 0; k < along; k++) {
+        for (int j = 0; j < along; j++) {
+            for (int i = 0; i < along; i++) {
+                vec3 p = propagate_to_m(grid, vec3(cell) + (vec3(i, j, k) + 0.5) / float(along));
+                vec3 part = clamp((min(p + reach, medium.extent) - max(p - reach, 0.0)) /
+                                  (2.0 * reach), 0.0, 1.0);
+                float covered = part.x * part.y * part.z;
+                if (covered > 0.0) {
+                    medium_point m = medium_sample(clamp(p, vec3(0.0), medium.extent));
+                    sigma_s += covered * m.sigma_s;
+                    sigma_a += covered * m.sigma_a;
+                    g += covered * m.sigma_s * m.g;
                 }
             }
         }
-        g /= max(sigma_s, vec3(1e-30));
-        float each = 1.0 / float(n * n * n);
-        sigma_s *= each;
-        sigma_a *= each;
     }
+    g /= max(sigma_s, vec3(1e-30));
+    float each = grid.cell / float(max(along * along * along, 1));
+    float mu = dot(grid.direction, propagate_to_eye(camera, propagate_to_m(grid, vec3(cell) + 0.5)));
     for (uint c = 0u; c < args.channels; c++) {
-        ivec3 texel = cell + ivec3(0, 0, grid.first_layer + c * args.cells);
-        imageStore(out_cells, texel,
-                   vec4(sigma_s[c], sigma_a[c], g[c], propagate_decay(sigma_s[c], g[c], args.rate)));
+        cells[propagate_index(cell, n * args.channels + c, args.cells)] =
+            inside ? vec4(sigma_s[c] * each, sigma_a[c] * each, g[c], mu) : propagate_no_cell;
     }
 }

@@ -1,20 +1,61 @@
-// propagate_rect_setup.comp -- places the grid of each light.
+// propagate_rect_setup.comp -- places the grid of each directional light and ordinate, and prefilters.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "propagate.glsl"
+#include "ordinate_args.h"
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0, scalar) uniform medium_uniform { medium_block medium; };
 layout(set = 0, binding = 1, scalar) readonly buffer lights_buffer { light_block lights[]; };
-layout(set = 0, binding = 2, scalar) writeonly buffer grids_buffer { propagate_grid grids[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer ordinates_buffer { ordinates_block ordinates; };
+layout(set = 0, binding = 3, scalar) writeonly buffer grids_buffer { propagate_grid grids[]; };
+layout(set = 0, binding = 4, scalar) writeonly buffer places_buffer { propagate_place places[]; };
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
+
+// Mean cosine of an ordinate's light as it enters (section 5.1). The heuristic's w, the importance in
+// (0, 1) that the text calls proportional and very similar to the solid angle of the ordinate's region,
+// is read as the region's share of the sphere in units of the mean share 1 / N: with beta = 1 regions of
+// the mean size have their exact mean cosine, 1 - 1 / N.
+float prefiltered(ordinate o, uint count)
+{
+    if (args.prefilter == TYN_PROPAGATE_PREFILTER_HEURISTIC) {
+        float share = min(o.solid_angle / (4.0 * HG_PI) * float(count), 1.0);
+        return pow(1.0 - share / float(count), args.beta);
+    }
+    return args.prefilter == TYN_PROPAGATE_PREFILTER_EXACT ? o.mean_cosine : 1.0;
+}
 
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i < args.num_suns) {
-        grids[i] = propagate_grid_of(medium.extent, lights[i], i, args.cells, args.channels);
+    if (i >= args.num_suns + args.num_ordinates) {
+        return;
     }
+    bool sun = i < args.num_suns;
+    uint n = sun ? i : i - args.num_suns;
+    uint count = min(ordinates.count, uint(TYN_ORDINATES_MAX));
+    bool used = sun || n < count;
+    vec3 direction = vec3(0.0, 0.0, 1.0), irradiance = vec3(0.0);
+    float mean_cosine = 1.0;
+    if (sun) {
+        direction = lights[n].direction;
+        irradiance = lights[n].color;
+        if (args.prefilter != TYN_PROPAGATE_PREFILTER_OFF) {
+            mean_cosine = lights[n].mean_cosine;
+        }
+    } else if (used) {
+        direction = ordinates.list[n].direction;
+        irradiance = ordinates.list[n].irradiance;
+        mean_cosine = prefiltered(ordinates.list[n], count);
+    }
+    propagate_grid grid = propagate_grid_of(medium.extent, direction, args.cells);
+    grid.size *= used ? 1u : 0u;
+    grid.irradiance = irradiance;
+    grid.mean_cosine = clamp(mean_cosine, 0.0, 1.0);
+    grid.light = n;
+    grid.channels = args.channels;
+    grids[i] = grid;
+    places[i] = propagate_place_of(grid);
 }

@@ -7,48 +7,42 @@
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 0, scalar) readonly buffer grids_buffer { propagate_grid grids[]; };
-layout(set = 0, binding = 1, scalar) uniform camera_uniform { camera_block camera; };
-layout(set = 0, binding = 2) uniform sampler3D cells;
-layout(set = 0, binding = 3) uniform sampler3D in_state;
-layout(set = 0, binding = 4) uniform sampler3D in_seen;
-layout(set = 0, binding = 5, rgba32f) uniform writeonly image3D out_state;
-layout(set = 0, binding = 6, r32f) uniform writeonly image3D out_seen;
+layout(set = 0, binding = 0, scalar) readonly buffer cells_buffer { vec4 cells[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer in_buffer { vec4 in_state[]; };
+layout(set = 0, binding = 2, scalar) writeonly buffer out_buffer { vec4 out_state[]; };
+layout(set = 0, binding = 3, scalar) buffer sum_buffer { float sum[]; };
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 
-const ivec3 neighbour[6] = ivec3[](ivec3(0, 0, -1), ivec3(0, 0, 1), ivec3(-1, 0, 0), ivec3(1, 0, 0),
-                                   ivec3(0, -1, 0), ivec3(0, 1, 0));
+// Light that a neighbour sends and its share of the spread. `part`: of propagate_state, which way.
+vec2 from(uint q, int step, bool there, int part)
+{
+    vec4 state = in_state[there ? q + uint(step) : q];
+    float light = there ? state[part] : 0.0;
+    return vec2(light, light * state.w);
+}
 
 void main()
 {
-    ivec3 texel = ivec3(gl_GlobalInvocationID);
-    uint stack = uint(texel.z) / args.cells; // light and channel
-    ivec3 cell = ivec3(texel.xy, uint(texel.z) % args.cells);
-    if (any(greaterThanEqual(uvec2(texel.xy), uvec2(args.cells))) ||
-        stack >= args.num_suns * args.channels) {
+    uint groups = propagate_groups(args.cells, PROPAGATE_RECT_GROUP);
+    uint stack = gl_WorkGroupID.z / groups; // grid of this batch and channel
+    ivec3 cell = ivec3(gl_GlobalInvocationID.xy,
+                       gl_GlobalInvocationID.z - stack * groups * PROPAGATE_RECT_GROUP);
+    int last = int(args.cells) - 1, row = int(args.cells), layer = row * row;
+    if (any(greaterThan(cell, ivec3(last)))) {
         return;
     }
-    propagate_grid grid = grids[stack / args.channels];
-    float light = 0.0, spread = 0.0, seen = 0.0;
-    if (propagate_inside(grid, cell)) {
-        vec4 here = texelFetch(cells, texel, 0);
-        for (int n = 0; n < 6; n++) {
-            if (!propagate_inside(grid, cell + neighbour[n])) {
-                continue; // vacuum beyond the grid: nothing comes in
-            }
-            vec4 state = texelFetch(in_state, texel + neighbour[n], 0);
-            vec4 there = texelFetch(cells, texel + neighbour[n], 0);
-            vec4 hop = 0.5 * (here + there) * grid.cell; // depths: half the way in either cell
-            float moved = propagate_part(state, -neighbour[n].z) * exp(-hop.y);
-            light += moved;
-            spread += moved * (state.y + (1.0 - state.y) * propagate_loss(hop.w));
-        }
-        seen = texelFetch(in_seen, texel, 0).r;
-        spread = light > 0.0 ? spread / light : 1.0;
-        vec3 p = propagate_to_m(grid, vec3(cell) + 0.5);
-        float mu = dot(grid.direction, propagate_to_eye(camera, p));
-        seen += light * propagate_towards_eye(mu, 1.0 - spread, here.z, args.last_event != 0u);
+    uint q = propagate_index(cell, stack, args.cells);
+    propagate_cell here = propagate_cell_of(cells[q]);
+    // A loop, because that is what a processor without masks for whole workgroups can skip.
+    for (bool inside = here.mu >= -1.5; inside; inside = false) {
+        // Beyond the grid is vacuum: nothing comes in.
+        vec2 light = from(q, -layer, cell.z > 0, 0) + from(q, layer, cell.z < last, 2) +
+                     from(q, -1, cell.x > 0, 1) + from(q, 1, cell.x < last, 1) +
+                     from(q, -row, cell.y > 0, 1) + from(q, row, cell.y < last, 1);
+        float spread = light.x > 0.0 ? light.y / light.x : 1.0;
+        spread = propagate_more_spread(here, spread, args.rate);
+        light.x *= propagate_kept(here);
+        sum[q] += light.x * propagate_towards_eye(here.mu, 1.0 - spread, here.g, args.last_event != 0u);
+        out_state[q] = propagate_outgoing(here, light.x, spread, args.rate);
     }
-    imageStore(out_state, texel, propagate_state(light, spread));
-    imageStore(out_seen, texel, vec4(seen, 0.0, 0.0, 0.0));
 }

@@ -10,18 +10,17 @@
 static const tyn_port ports[UPSAMPLE_NUM_PORTS] = {
     [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
     [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
-    [PORT(GRIDS)] = {"grids", TYN_IN, TYN_BUFFER, .meaning = "struct propagate_grid[]"},
-    [PORT(CELLS)] = {"cells", TYN_IN, TYN_IMAGE_3D,
-                     .meaning = "of propagate_rect: x is mean sigma_s, 1/m"},
-    [PORT(SEEN)] = {"seen", TYN_IN, TYN_IMAGE_3D, .meaning = "of propagate_rect: L_acc, 1/sr"},
+    [PORT(MERGED)] = {"merged", TYN_IN, TYN_IMAGE_3D,
+                      .meaning = "of merge_grids: light to the eye, W/(m^2 sr); mean sigma_s"},
     [PORT(INSCATTER)] = {"inscatter", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                          .meaning = "light towards the eye per unit of sigma_s, W/(m^2 sr)"},
 };
 
 static const tyn_binding field_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},     {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(GRIDS), TYN_USE_STORAGE_READ}, {PORT(CELLS), TYN_USE_SAMPLED},
-    {PORT(SEEN), TYN_USE_SAMPLED},       {PORT(INSCATTER), TYN_USE_STORAGE_WRITE},
+    {PORT(MEDIUM), TYN_USE_UNIFORM},
+    {PORT(DENSITY), TYN_USE_SAMPLED},
+    {PORT(MERGED), TYN_USE_SAMPLED},
+    {PORT(INSCATTER), TYN_USE_STORAGE_WRITE},
 };
 
 static const tyn_kernel kernels[] = {
@@ -38,18 +37,17 @@ static const tyn_kernel kernels[] = {
 static const tyn_param params[] = {
     {"cells", TYN_PARAM_INT, offsetof(tyn_upsample_params, cells), 64, 8, 256, "cells",
      "most cubic cells along the longest side; needless ones beyond the resolution of the medium "
-     "and "
-     "twice that of the aligned grids are not made"},
+     "and of the merged grid are not made"},
     {"range", TYN_PARAM_FLOAT, offsetof(tyn_upsample_params, range), 1, 0, 10, "",
      "relative difference of sigma_s that counts as another kind of place; 0 = plain trilinear"},
 };
 
-// Cells of the result: cubes, as fine as the medium's voxels and as half a cell of the aligned grids,
-// which lie askew in the box (section 5.3), but not more than asked for.
-static tyn_extent dims_of(const tyn_upsample_params *p)
+// Cells of the result: cubes, as fine as the medium's voxels and as the merged grid's cells, but not more
+// than asked for.
+static tyn_extent dims_of(const tyn_upsample_params *p, tyn_extent merged)
 {
     float longest = fmaxf(p->extent[0], fmaxf(p->extent[1], p->extent[2]));
-    float finest = 2.0f * (float)p->grid_cells;
+    float finest = fmaxf((float)merged.x, fmaxf((float)merged.y, (float)merged.z));
     for (int i = 0; i < 3; i++) {
         finest = fmaxf(finest, ceilf((float)p->size[i] * longest / p->extent[i] - 1e-3f));
     }
@@ -63,7 +61,7 @@ static tyn_extent dims_of(const tyn_upsample_params *p)
 
 static tyn_result declare(tyn_builder *b, const void *data)
 {
-    tyn_extent dims = dims_of(data);
+    tyn_extent dims = dims_of(data, tyn_build_extent(b, PORT(MERGED)));
     tyn_build_image(b, PORT(INSCATTER), (tyn_extent){dims.x + 2, dims.y + 2, dims.z + 2}, 1);
     return TYN_OK;
 }
@@ -71,15 +69,16 @@ static tyn_result declare(tyn_builder *b, const void *data)
 static void record(tyn_recorder *r, const void *data)
 {
     const tyn_upsample_params *p = data;
-    tyn_extent dims = dims_of(p), texels = tyn_rec_extent(r, PORT(INSCATTER));
-    struct upsample_args args = {{dims.x, dims.y, dims.z}, p->num_suns, p->grid_cells, p->range};
+    tyn_extent dims = dims_of(p, tyn_rec_extent(r, PORT(MERGED)));
+    tyn_extent texels = tyn_rec_extent(r, PORT(INSCATTER));
+    struct upsample_args args = {{dims.x, dims.y, dims.z}, p->range};
     tyn_rec_dispatch(r, &(tyn_dispatch){.cells = texels, .args = &args, .spec = &p->mode});
-    tyn_rec_work(r, "cells", (double)texels.x * texels.y * texels.z * p->num_suns);
+    tyn_rec_work(r, "cells", (double)texels.x * texels.y * texels.z);
 }
 
 const tyn_pass_desc tyn_pass_upsample = {
     .name = "upsample",
-    .summary = "joint bilateral upsampling of the aligned grids' light onto the medium's axes",
+    .summary = "joint bilateral upsampling of the merged grid's light",
     .ports = ports,
     .num_ports = UPSAMPLE_NUM_PORTS,
     .kernels = kernels,

@@ -1,28 +1,23 @@
-// upsample.h -- what the aligned grids send to the eye, merged and refined onto the medium's own axes.
+// upsample.h -- what the merged grid sends to the eye, refined with the medium as guide.
 //
-// Joint bilateral upsampling in 3D (Elek et al. 2014, section 4.4 and 5.3; Kopf et al. 2007): between
-// the eight nearest cells of a grid those whose mean scattering coefficient is like that at the point
+// Joint bilateral upsampling in 3D (Elek et al. 2014, section 4.4; Kopf et al. 2007): between the eight
+// nearest cells of the coarse grid those whose mean scattering coefficient is like that at the point
 // count more, so that detail of the medium shows in light that was computed without it.
 #pragma once
 #include <tyndall/pass.h>
-#include "propagate_args.h"
 
 typedef struct tyn_upsample_params {
     int32_t cells; // along the longest side, at most; 8..256
     float range; // relative difference of sigma_s at which the weight falls to 61 %; 0 = trilinear
-    uint32_t num_suns;   // set by the method, as all below
-    uint32_t grid_cells; // of propagate_rect, along the longest side
-    uint32_t mode;       // TYN_MEDIUM_*
-    float extent[3];     // medium_block.extent, m
-    uint32_t size[3];    // medium_block.size
+    uint32_t mode;    // set by the method, as all below: TYN_MEDIUM_*
+    float extent[3];  // medium_block.extent, m
+    uint32_t size[3]; // medium_block.size
 } tyn_upsample_params;
 
 enum {
     UPSAMPLE_PORT_MEDIUM,    // IN buffer struct medium_block
     UPSAMPLE_PORT_DENSITY,   // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
-    UPSAMPLE_PORT_GRIDS,     // IN buffer struct propagate_grid[]
-    UPSAMPLE_PORT_CELLS,     // IN 3D, of propagate_rect
-    UPSAMPLE_PORT_SEEN,      // IN 3D, of propagate_rect
+    UPSAMPLE_PORT_MERGED,    // IN 3D RGBA32F, of merge_grids
     UPSAMPLE_PORT_INSCATTER, // OUT 3D RGBA32F, dims + 2, W/(m^2 sr): sample at lattice_inscatter_uvw;
                              // the ghost layer repeats the outer cells
     UPSAMPLE_NUM_PORTS,

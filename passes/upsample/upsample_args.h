@@ -5,10 +5,8 @@
 
 struct upsample_args {
     tyn_uvec3 dims; // cells of the result, without the ghost layer
-    tyn_uint num_suns;
-    tyn_uint grid_cells; // along each axis of a grid's part of the stacked images
     float range;
 };
-TYN_ASSERT_SIZE(upsample_args, 24);
+TYN_ASSERT_SIZE(upsample_args, 16);
 
 #endif

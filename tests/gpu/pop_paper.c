@@ -3,6 +3,7 @@
 #include "gpu_test.h"
 #include "propagate_twin.h"
 #include "passes/propagate_rect/propagate_rect.h"
+#include "passes/merge_grids/merge_grids.h"
 #include "passes/upsample/upsample.h"
 #include "passes/raymarch/raymarch.h"
 #include "scene_args.h"
@@ -73,25 +74,37 @@ static const float *picture(gpu_test *t, const struct camera_block *camera)
 
     tyn_propagate_rect_params propagate;
     tyn_pass_defaults(&tyn_pass_propagate_rect, &propagate);
+    propagate.cells = propagate.iterations = 16;
     propagate.num_suns = propagate.channels = 1;
+    memcpy(propagate.extent, medium.extent, sizeof propagate.extent);
+    memcpy(propagate.size, medium.size, sizeof propagate.size);
     tyn_ref a[PROPAGATE_RECT_NUM_PORTS] = {[PROPAGATE_RECT_PORT_MEDIUM] = media,
                                            [PROPAGATE_RECT_PORT_LIGHTS] = lights,
                                            [PROPAGATE_RECT_PORT_CAMERA] = eye,
                                            [PROPAGATE_RECT_PORT_DENSITY] = density};
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_propagate_rect, &propagate, a), TYN_OK);
 
+    tyn_merge_grids_params merge;
+    tyn_pass_defaults(&tyn_pass_merge_grids, &merge);
+    merge.finer = 1; // the prototype does not refine
+    merge.num_grids = merge.channels = 1;
+    merge.grid_cells = (uint32_t)propagate.cells;
+    memcpy(merge.extent, medium.extent, sizeof merge.extent);
+    tyn_ref m[MERGE_GRIDS_NUM_PORTS] = {
+        [MERGE_GRIDS_PORT_MEDIUM] = media,
+        [MERGE_GRIDS_PORT_DENSITY] = density,
+        [MERGE_GRIDS_PORT_PLACES] = a[PROPAGATE_RECT_PORT_PLACES],
+        [MERGE_GRIDS_PORT_SEEN] = a[PROPAGATE_RECT_PORT_SEEN]};
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_merge_grids, &merge, m), TYN_OK);
+
     tyn_upsample_params upsample;
     tyn_pass_defaults(&tyn_pass_upsample, &upsample);
-    upsample.num_suns = 1;
-    upsample.cells = propagate.cells; // the prototype does not refine
-    upsample.grid_cells = (uint32_t)propagate.cells;
+    upsample.cells = propagate.cells;
     memcpy(upsample.extent, medium.extent, sizeof upsample.extent);
     memcpy(upsample.size, medium.size, sizeof upsample.size);
     tyn_ref b[UPSAMPLE_NUM_PORTS] = {[UPSAMPLE_PORT_MEDIUM] = media,
                                      [UPSAMPLE_PORT_DENSITY] = density,
-                                     [UPSAMPLE_PORT_GRIDS] = a[PROPAGATE_RECT_PORT_GRIDS],
-                                     [UPSAMPLE_PORT_CELLS] = a[PROPAGATE_RECT_PORT_CELLS],
-                                     [UPSAMPLE_PORT_SEEN] = a[PROPAGATE_RECT_PORT_SEEN]};
+                                     [UPSAMPLE_PORT_MERGED] = m[MERGE_GRIDS_PORT_MERGED]};
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_upsample, &upsample, b), TYN_OK);
 
     tyn_raymarch_params march;

@@ -8,18 +8,10 @@
 
 #define PORT(name) UPSAMPLE_PORT_##name
 
-enum {
-    NX = 24,
-    NY = 20,
-    NZ = 16,
-    LAYERS = 7,
-    SUNS = 2,
-    GRID_TEXELS = LAYERS * LAYERS * LAYERS * (3 + 1) // one grid of three channels, one of one
-};
+enum { NX = 24, NY = 20, NZ = 16, MX = 12, MY = 10, MZ = 8, MERGED = MX * MY * MZ };
 
 static const float extent[3] = {1.2f, 1.0f, 0.8f};
-static float density[NX * NY * NZ], cells[GRID_TEXELS * 4], seen[GRID_TEXELS];
-static struct propagate_grid grids[SUNS];
+static float density[NX * NY * NZ], merged[MERGED][4]; // cells of 0.1 m: light, sigma_s
 
 static float random_unit(void)
 {
@@ -32,32 +24,12 @@ static void make_inputs(void)
     for (int q = 0; q < NX * NY * NZ; q++) {
         density[q] = rand() % 5 ? random_unit() : 0;
     }
-    for (int q = 0; q < GRID_TEXELS * 4; q++) {
-        cells[q] = 5 * random_unit();
+    for (int q = 0; q < MERGED; q++) {
+        for (int c = 0; c < 3; c++) {
+            merged[q][c] = random_unit();
+        }
+        merged[q][3] = 5 * random_unit();
     }
-    for (int q = 0; q < GRID_TEXELS; q++) {
-        seen[q] = random_unit();
-    }
-    // One grid along the axes that is smaller than the box (so that its outer cells are repeated), one
-    // turned about the diagonal.
-    grids[0] = (struct propagate_grid){.origin = {0.1f, 0, 0.1f},
-                                       .cell = 0.15f,
-                                       .across_u = {1, 0, 0},
-                                       .across_v = {0, 1, 0},
-                                       .direction = {0, 0, 1},
-                                       .channels = 3,
-                                       .irradiance = {2, 1, 0.5f},
-                                       .size = {7, 6, 4}};
-    grids[1] = (struct propagate_grid){.origin = {-0.3f, 0.1f, 0.4f},
-                                       .cell = 0.25f,
-                                       .across_u = {2 / 3.0f, -1 / 3.0f, 2 / 3.0f},
-                                       .across_v = {2 / 3.0f, 2 / 3.0f, -1 / 3.0f},
-                                       .direction = {-1 / 3.0f, 2 / 3.0f, 2 / 3.0f},
-                                       .first_layer = 3 * LAYERS,
-                                       .channels = 1,
-                                       .irradiance = {1, 2, 3},
-                                       .light = 1,
-                                       .size = {5, 7, 7}};
 }
 
 static const float *run(gpu_test *t, float range, int32_t max_cells, tyn_extent *size)
@@ -68,19 +40,15 @@ static const float *run(gpu_test *t, float range, int32_t max_cells, tyn_extent 
     tyn_pass_defaults(&tyn_pass_upsample, &params);
     params.cells = max_cells;
     params.range = range;
-    params.num_suns = SUNS;
-    params.grid_cells = LAYERS;
     memcpy(params.extent, extent, sizeof extent);
     memcpy(params.size, medium.size, sizeof params.size);
-    tyn_extent stack = {LAYERS, LAYERS, LAYERS * (3 + 1)};
     tyn_ref refs[UPSAMPLE_NUM_PORTS] = {0};
     tyn_graph_begin(t->graph);
     refs[PORT(MEDIUM)] = gpu_buffer(t, "medium", &medium, sizeof medium);
-    refs[PORT(GRIDS)] = gpu_buffer(t, "grids", grids, sizeof grids);
     refs[PORT(DENSITY)] =
         gpu_image(t, "density", TYN_IMAGE_3D, (tyn_extent){NX, NY, NZ}, 1, density);
-    refs[PORT(CELLS)] = gpu_image(t, "cells", TYN_IMAGE_3D, stack, 4, cells);
-    refs[PORT(SEEN)] = gpu_image(t, "seen", TYN_IMAGE_3D, stack, 1, seen);
+    refs[PORT(MERGED)] =
+        gpu_image(t, "merged", TYN_IMAGE_3D, (tyn_extent){MX, MY, MZ}, 4, merged[0]);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_upsample, &params, refs), TYN_OK);
     tyn_graph_output(t->graph, "inscatter", refs[PORT(INSCATTER)], true);
     gpu_run(t);
@@ -115,15 +83,12 @@ static double density_at(const double p[3])
     return sum;
 }
 
-static double seen_at(const struct propagate_grid *grid, const double p[3], double range, int c)
+static double light_at(const double p[3], double range, int c)
 {
-    const float *axes[3] = {grid->across_u, grid->across_v, grid->direction};
+    const int n[3] = {MX, MY, MZ};
     double at[3], sum = 0, weights = 0, here = density_at(p) * (2 + 4 + 9) / 3;
     for (int a = 0; a < 3; a++) {
-        at[a] = -0.5;
-        for (int x = 0; x < 3; x++) {
-            at[a] += axes[a][x] * (p[x] - grid->origin[x]) / grid->cell;
-        }
+        at[a] = p[a] / 0.1 - 0.5;
     }
     for (int corner = 0; corner < 8; corner++) {
         double weight = 1;
@@ -131,22 +96,17 @@ static double seen_at(const struct propagate_grid *grid, const double p[3], doub
         for (int a = 0; a < 3; a++) {
             int base = (int)floor(at[a]), up = corner >> a & 1;
             weight *= up ? at[a] - base : 1 - (at[a] - base);
-            index[a] = clamped(base + up, (int)grid->size[a]);
+            index[a] = clamped(base + up, n[a]);
         }
-        int q = ((index[2] + (int)grid->first_layer) * LAYERS + index[1]) * LAYERS + index[0];
+        const float *cell = merged[(index[2] * MY + index[1]) * MX + index[0]];
         if (range > 0) {
-            double there = 0;
-            for (int k = 0; k < 3; k++) {
-                int texel = q + (grid->channels == 1 ? 0 : k * LAYERS * LAYERS * LAYERS);
-                there += cells[4 * texel] / 3.0;
-            }
-            double d = fabs(here - there) / (here + there) / range;
+            double d = fabs(here - cell[3]) / (here + cell[3]) / range;
             weight *= exp(-0.5 * d * d) + 1e-4;
         }
-        sum += weight * seen[q + (grid->channels == 1 ? 0 : c * LAYERS * LAYERS * LAYERS)];
+        sum += weight * cell[c];
         weights += weight;
     }
-    return grid->irradiance[c] * sum / weights;
+    return sum / weights;
 }
 
 static void equals_twin(void **state)
@@ -166,7 +126,7 @@ static void equals_twin(void **state)
                            (clamped(i[1] - 1, 20) + 0.5) * 0.05,
                            (clamped(i[2] - 1, 16) + 0.5) * 0.05};
             for (int c = 0; c < 3; c++) {
-                double expected = seen_at(&grids[0], p, range, c) + seen_at(&grids[1], p, range, c);
+                double expected = light_at(p, range, c);
                 worst = fmax(worst, fabs(found[4 * q + (uint32_t)c] - expected) / expected);
             }
         }
@@ -180,16 +140,15 @@ static void equals_twin(void **state)
 static void keeps_a_constant(void **state)
 {
     make_inputs();
-    for (int q = 0; q < GRID_TEXELS; q++) {
-        seen[q] = 2.5f;
+    for (int q = 0; q < MERGED; q++) {
+        merged[q][0] = merged[q][1] = merged[q][2] = 2.5f;
     }
     tyn_extent size;
     const float *found = run(*state, 0.05f, 16, &size);
     assert_int_equal(size.x, 18);
     for (uint32_t q = 0; q < size.x * size.y * size.z; q++) {
         for (uint32_t c = 0; c < 3; c++) {
-            assert_float_equal(found[4 * q + c],
-                               2.5 * (grids[0].irradiance[c] + grids[1].irradiance[c]), 1e-5);
+            assert_float_equal(found[4 * q + c], 2.5, 1e-5);
         }
     }
 }

@@ -1,0 +1,90 @@
+// merge_grids.c -- see merge_grids.h.
+#include "merge_grids.h"
+#include "merge_grids_args.h"
+#include "merge_grids_sum.comp.h"
+#include "scene_args.h"
+#include <math.h>
+
+#define PORT(name) MERGE_GRIDS_PORT_##name
+
+static const tyn_port ports[MERGE_GRIDS_NUM_PORTS] = {
+    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
+    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
+    [PORT(PLACES)] = {"places", TYN_IN, TYN_BUFFER, .meaning = "struct propagate_place[]"},
+    [PORT(SEEN)] = {"seen", TYN_IN, TYN_IMAGE_3D, .meaning = "of propagate_rect: L_acc, 1/sr"},
+    [PORT(RESIDUUM)] = {"residuum", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                        .meaning = "of residuum: light to the eye, W/(m^2 sr)"},
+    [PORT(MERGED)] = {"merged", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                      .meaning = "light to the eye per unit of sigma_s, W/(m^2 sr); mean sigma_s"},
+};
+
+static const tyn_binding sum_bindings[] = {
+    {PORT(MEDIUM), TYN_USE_UNIFORM},   {PORT(DENSITY), TYN_USE_SAMPLED},
+    {PORT(PLACES), TYN_USE_UNIFORM},   {PORT(SEEN), TYN_USE_SAMPLED},
+    {PORT(RESIDUUM), TYN_USE_SAMPLED}, {PORT(MERGED), TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_kernel kernels[] = {
+    {.name = "merge_grids_sum",
+     .spirv = merge_grids_sum_spirv,
+     .spirv_size = sizeof merge_grids_sum_spirv,
+     .args_size = sizeof(struct merge_grids_args),
+     .local_size = {4, 4, 4},
+     .bindings = sum_bindings,
+     .num_bindings = sizeof sum_bindings / sizeof *sum_bindings,
+     .num_spec = 1},
+};
+
+static const tyn_param params[] = {
+    {"finer", TYN_PARAM_INT, offsetof(tyn_merge_grids_params, finer), 2, 1, 8, "",
+     "cells of the merged grid per cell of the aligned ones, along an axis"},
+};
+
+static tyn_extent dims_of(const tyn_merge_grids_params *p)
+{
+    float longest = fmaxf(p->extent[0], fmaxf(p->extent[1], p->extent[2]));
+    float dx = longest / (float)(p->grid_cells * (uint32_t)p->finer);
+    uint32_t dims[3];
+    for (int i = 0; i < 3; i++) {
+        dims[i] = (uint32_t)fmaxf(1.0f, ceilf(p->extent[i] / dx - 1e-3f));
+    }
+    return (tyn_extent){dims[0], dims[1], dims[2]};
+}
+
+static tyn_result declare(tyn_builder *b, const void *data)
+{
+    tyn_build_image(b, PORT(MERGED), dims_of(data), 1);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *data)
+{
+    const tyn_merge_grids_params *p = data;
+    tyn_extent dims = dims_of(p);
+    struct merge_grids_args args = {
+        .dims = {dims.x, dims.y, dims.z},
+        .num_grids = p->num_grids,
+        .grid_cells = p->grid_cells,
+        .channels = p->channels,
+        .tiles = tyn_rec_extent(r, PORT(SEEN)).x / p->grid_cells,
+        .residuum = tyn_rec_has(r, PORT(RESIDUUM)),
+    };
+    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = dims, .args = &args, .spec = &p->mode});
+    tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * p->num_grids);
+}
+
+const tyn_pass_desc tyn_pass_merge_grids = {
+    .name = "merge_grids",
+    .summary = "light to the eye of all aligned grids, summed on the medium's axes",
+    .ports = ports,
+    .num_ports = MERGE_GRIDS_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 1,
+    .params = params,
+    .num_params = sizeof params / sizeof *params,
+    .params_size = sizeof(tyn_merge_grids_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = PORT(MERGED),
+    .debug_meaning = "light towards the eye, middle slice of the medium's box",
+};
