@@ -92,15 +92,14 @@ uint propagate_index(ivec3 cell, uint stack, uint cells)
 
 // ---- one hop (Eqs 1-4) ----------------------------------------------------------------------------
 //
-// Half of a hop lies in either cell, and absorption and loss of anisotropy multiply along the way: so a
-// cell keeps what its light has become at its own faces, and a neighbour adds its own half. What is
-// kept of a is its complement, the spread 1 - a: light that has hardly scattered has a next to 1, and
-// the fractions that go sideways are proportional to 1 - a, which a rounded a would lose.
+// What is kept of a is its complement, the spread 1 - a: light that has hardly scattered has a next to
+// 1, and the fractions that go sideways are proportional to 1 - a, which a rounded a would lose.
 
-// Powers of a cell's light that leave it ahead, to each of the four neighbours beside and behind, and
-// its spread. The fractions are the distribution integrated over the cones of Eq 3 (45 and 135 degrees).
-// With s^2 = 1 + a^2 - 2 a mu the integral of Eq 1 below mu is (1 - a) (1 + mu) / (s (s + 1 + a)),
-// which has no division by a. A lobe that points backward is the mirror image.
+// A cell: L in units of the irradiance, 1 - a, and the fractions of L that go to each of the four
+// neighbours beside and to the one behind; the rest goes to the one in front. The fractions are the
+// distribution integrated over the cones of Eq 3 (45 and 135 degrees). With s^2 = 1 + a^2 - 2 a mu the
+// integral of Eq 1 below mu is (1 - a) (1 + mu) / (s (s + 1 + a)), which has no division by a. A lobe
+// that points backward is the mirror image.
 vec4 propagate_state(float light, float spread)
 {
     const float edge = 0.70710678;            // cos 45 degrees
@@ -110,8 +109,14 @@ vec4 propagate_state(float light, float spread)
     float outside = narrow * (1.0 + edge) / (s_ahead * (s_ahead + 2.0 - narrow)); // of the cone ahead
     float behind = narrow * (1.0 - edge) / (s_behind * (s_behind + 2.0 - narrow));
     float side = 0.25 * (outside - behind);
-    vec2 ends = spread <= 1.0 ? vec2(1.0 - outside, behind) : vec2(behind, 1.0 - outside);
-    return vec4(light * ends.x, light * side, light * ends.y, spread);
+    return vec4(light, spread, side, spread <= 1.0 ? behind : 1.0 - outside);
+}
+
+// What of a cell's light goes `layers` steps along d.
+float propagate_part(vec4 state, int layers)
+{
+    float part = layers == 0 ? state.z : layers < 0 ? state.w : 1.0 - 4.0 * state.z - state.w;
+    return state.x * part;
 }
 
 // -ln g for 0 < g < 1; the series where a rounded ln would lose digits: -ln g = 2 artanh((1-g)/(1+g)).
@@ -167,10 +172,15 @@ float propagate_more_spread(propagate_cell cell, float spread, uint rate)
     return spread + (1.0 - spread) * propagate_loss(0.5 * propagate_decay(cell.sigma_s, cell.g, rate));
 }
 
-// State of a cell that holds `light` in its middle.
+// What leaves a cell that holds `light` in its middle: ahead, to each of the four sides, behind; and its
+// spread. Half of a hop lies in either cell, and what happens on the way multiplies: so a cell can do
+// its own half for all of its neighbours.
 vec4 propagate_outgoing(propagate_cell cell, float light, float spread, uint rate)
 {
-    return propagate_state(light * propagate_kept(cell), propagate_more_spread(cell, spread, rate));
+    vec4 state = propagate_state(light, spread);
+    float kept = propagate_kept(cell);
+    return vec4(vec3(propagate_part(state, 1), propagate_part(state, 0), propagate_part(state, -1)) * kept,
+                propagate_more_spread(cell, spread, rate));
 }
 
 // ---- what the eye gets (Eq 8) -----------------------------------------------------------------------

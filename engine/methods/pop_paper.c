@@ -109,14 +109,8 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,
-    &tyn_pass_propagate_rect,
-    &tyn_pass_merge_grids,
-    &tyn_pass_upsample,
-    &tyn_pass_raymarch,
-    &tyn_pass_composite,
-    &tyn_pass_tonemap,
-    NULL,
+    &tyn_pass_medium,   &tyn_pass_propagate_rect, &tyn_pass_merge_grids, &tyn_pass_upsample,
+    &tyn_pass_raymarch, &tyn_pass_composite,      &tyn_pass_tonemap,     NULL,
 };
 
 const tyn_method tyn_method_pop_paper = {

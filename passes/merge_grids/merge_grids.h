@@ -20,9 +20,9 @@ enum {
     MERGE_GRIDS_PORT_PLACES,   // IN buffer, of propagate_rect
     MERGE_GRIDS_PORT_SEEN,     // IN 3D, of propagate_rect
     MERGE_GRIDS_PORT_RESIDUUM, // IN optional 3D RGBA32F: of residuum, added
-    MERGE_GRIDS_PORT_MERGED,   // OUT 3D RGBA32F, cubic cells that span the medium's box (lattice.glsl):
-                               // rgb = light to the eye per unit of sigma_s, W/(m^2 sr); a = mean sigma_s
-                               // of the cell and the channels, 1/m
+    MERGE_GRIDS_PORT_MERGED, // OUT 3D RGBA32F, cubic cells that span the medium's box (lattice.glsl):
+    // rgb = light to the eye per unit of sigma_s, W/(m^2 sr); a = mean sigma_s
+    // of the cell and the channels, 1/m
     MERGE_GRIDS_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_merge_grids;

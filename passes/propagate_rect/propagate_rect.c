@@ -61,10 +61,8 @@ enum {
 };
 
 static const tyn_binding setup_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},
-    {PORT(LIGHTS), TYN_USE_STORAGE_READ},
-    {PORT(ORDINATES), TYN_USE_STORAGE_READ},
-    {PORT(GRIDS), TYN_USE_STORAGE_WRITE},
+    {PORT(MEDIUM), TYN_USE_UNIFORM},         {PORT(LIGHTS), TYN_USE_STORAGE_READ},
+    {PORT(ORDINATES), TYN_USE_STORAGE_READ}, {PORT(GRIDS), TYN_USE_STORAGE_WRITE},
     {PORT(PLACES), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding shrink_density_bindings[] = {
@@ -73,12 +71,9 @@ static const tyn_binding shrink_density_bindings[] = {
     {PORT(SMALL), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding shrink_coefficients_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},
-    {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},
-    {PORT(G), TYN_USE_SAMPLED},
-    {PORT(SMALL), TYN_USE_STORAGE_WRITE},
-    {PORT(SMALL_SIGMA_A), TYN_USE_STORAGE_WRITE},
+    {PORT(MEDIUM), TYN_USE_UNIFORM},        {PORT(DENSITY), TYN_USE_SAMPLED},
+    {PORT(SIGMA_A), TYN_USE_SAMPLED},       {PORT(G), TYN_USE_SAMPLED},
+    {PORT(SMALL), TYN_USE_STORAGE_WRITE},   {PORT(SMALL_SIGMA_A), TYN_USE_STORAGE_WRITE},
     {PORT(SMALL_G), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding cells_bindings[] = {
@@ -88,8 +83,8 @@ static const tyn_binding cells_bindings[] = {
     {PORT(CELLS), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding start_bindings[] = {
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},        {PORT(CELLS), TYN_USE_STORAGE_READ},
-    {PORT(STATE), TYN_USE_STORAGE_WRITE},       {PORT(STATE_OTHER), TYN_USE_STORAGE_WRITE},
+    {PORT(GRIDS), TYN_USE_STORAGE_READ},  {PORT(CELLS), TYN_USE_STORAGE_READ},
+    {PORT(STATE), TYN_USE_STORAGE_WRITE}, {PORT(STATE_OTHER), TYN_USE_STORAGE_WRITE},
     {PORT(SUM), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding step_bindings[] = {
@@ -337,7 +332,8 @@ static void record(tyn_recorder *r, const void *data)
 
 const tyn_pass_desc tyn_pass_propagate_rect = {
     .name = "propagate_rect",
-    .summary = "light of each light and ordinate moved cell by cell in its aligned grid (Elek 2014)",
+    .summary =
+        "light of each light and ordinate moved cell by cell in its aligned grid (Elek 2014)",
     .ports = ports,
     .num_ports = PROPAGATE_RECT_NUM_PORTS,
     .kernels = kernels,

@@ -39,18 +39,18 @@ enum {
     PROPAGATE_RECT_PORT_G,
     PROPAGATE_RECT_PORT_GRIDS, // OUT buffer struct propagate_grid[]
     PROPAGATE_RECT_PORT_PLACES, // OUT buffer struct propagate_place[TYN_PROPAGATE_GRIDS_MAX], <= 16 KiB
-    PROPAGATE_RECT_PORT_SEEN,  // OUT 3D R32F, tiles of grids and channels (propagate_args.h): L_acc, sum
-                               // over iterations of L towards the eye, in units of the irradiance, 1/sr
+    PROPAGATE_RECT_PORT_SEEN, // OUT 3D R32F, tiles of grids and channels (propagate_args.h): L_acc, sum
+    // over iterations of L towards the eye, in units of the irradiance, 1/sr
     PROPAGATE_RECT_PORT_LIGHT, // OUT 3D R32F, optional, tiles: L after the last iteration, in units of the
                                // irradiance
     PROPAGATE_RECT_PORT_CELLS, // OUT buffer, vec4[grids][channels][cells^3] of the last batch: optical
-                               // depths of scattering and absorption over the edge of a cell, g, cosine
-                               // between the light and the direction to the eye (-2: not in the grid)
+    // depths of scattering and absorption over the edge of a cell, g, cosine
+    // between the light and the direction to the eye (-2: not in the grid)
     PROPAGATE_RECT_PORT_STATE, // OUT buffer, vec4, so: after the last iteration what of L leaves the cell
                                // ahead, to each side and behind, and 1 - a of it
     PROPAGATE_RECT_PORT_SUM,         // OUT buffer, float, so: L_acc
     PROPAGATE_RECT_PORT_STATE_OTHER, // SCRATCH, as the state
-    PROPAGATE_RECT_PORT_SMALL,       // SCRATCH 3D: density or sigma_s at a resolution that suits the cells,
+    PROPAGATE_RECT_PORT_SMALL, // SCRATCH 3D: density or sigma_s at a resolution that suits the cells,
     PROPAGATE_RECT_PORT_SMALL_SIGMA_A, // ... if the medium's is more than twice as fine
     PROPAGATE_RECT_PORT_SMALL_G,
     PROPAGATE_RECT_NUM_PORTS,

@@ -17,8 +17,8 @@ struct propagate_rect_args {
     tyn_uint rate;
     tyn_uint prefilter;
     float beta;
-    float voxel;     // of what the coefficients are read from, shortest edge, m
-    tyn_uint tiles;  // a row, in images
+    float voxel;    // of what the coefficients are read from, shortest edge, m
+    tyn_uint tiles; // a row, in images
 };
 TYN_ASSERT_SIZE(propagate_rect_args, 48);
 

@@ -13,7 +13,7 @@ layout(set = 0, binding = 2, scalar) writeonly buffer out_buffer { vec4 out_stat
 layout(set = 0, binding = 3, scalar) buffer sum_buffer { float sum[]; };
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 
-// Light that a neighbour sends and its share of the spread. `part`: of propagate_state, which way.
+// Light that a neighbour sends and its share of the spread. `part`: of propagate_outgoing, which way.
 vec2 from(uint q, int step, bool there, int part)
 {
     vec4 state = in_state[there ? q + uint(step) : q];

@@ -60,7 +60,7 @@ static struct camera_block camera_of(const view *v)
 // The passes as the method wires them; radiance of RAYS x RAYS pixels.
 static const float *picture(gpu_test *t, const struct camera_block *camera)
 {
-    const struct light_block light = {.color = {1, 1, 1}, .direction = {0, 0, 1}};
+    const struct light_block light = {.color = {1, 1, 1}, .direction = {0, 0, 1}, .mean_cosine = 1};
     const struct shape_block shape = {
         .rows = {{1, 0, 0, -0.5f}, {0, 1, 0, -0.5f}, {0, 0, 1, -0.5f}}, .size = {1, 1, 1}};
     const struct env_block dark = {{{0}}};
@@ -90,11 +90,10 @@ static const float *picture(gpu_test *t, const struct camera_block *camera)
     merge.num_grids = merge.channels = 1;
     merge.grid_cells = (uint32_t)propagate.cells;
     memcpy(merge.extent, medium.extent, sizeof merge.extent);
-    tyn_ref m[MERGE_GRIDS_NUM_PORTS] = {
-        [MERGE_GRIDS_PORT_MEDIUM] = media,
-        [MERGE_GRIDS_PORT_DENSITY] = density,
-        [MERGE_GRIDS_PORT_PLACES] = a[PROPAGATE_RECT_PORT_PLACES],
-        [MERGE_GRIDS_PORT_SEEN] = a[PROPAGATE_RECT_PORT_SEEN]};
+    tyn_ref m[MERGE_GRIDS_NUM_PORTS] = {[MERGE_GRIDS_PORT_MEDIUM] = media,
+                                        [MERGE_GRIDS_PORT_DENSITY] = density,
+                                        [MERGE_GRIDS_PORT_PLACES] = a[PROPAGATE_RECT_PORT_PLACES],
+                                        [MERGE_GRIDS_PORT_SEEN] = a[PROPAGATE_RECT_PORT_SEEN]};
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_merge_grids, &merge, m), TYN_OK);
 
     tyn_upsample_params upsample;

@@ -3,6 +3,7 @@
 #include "gpu_test.h"
 #include "propagate_twin.h"
 #include "passes/propagate_rect/propagate_rect.h"
+#include "ordinate_args.h"
 #include "scene_args.h"
 #include <math.h>
 #include <stdio.h>
@@ -18,6 +19,7 @@ typedef struct setup {
     const float *density;
     struct light_block suns[MAX_SUNS];
     struct camera_block camera;
+    struct ordinates_block ordinates;
     tyn_propagate_rect_params params;
 } setup;
 
@@ -66,7 +68,7 @@ static void set_medium(setup *s, const float extent[3], const uint32_t size[3],
 // The unit cube of 16^3 voxels under a sun of unit irradiance along +z, seen from `to_eye`.
 static setup unit_cube(const float *density, float sigma_s, float g, const float to_eye[3])
 {
-    setup s = {.suns[0] = {.color = {1, 1, 1}, .direction = {0, 0, 1}}};
+    setup s = {.suns[0] = {.color = {1, 1, 1}, .direction = {0, 0, 1}, .mean_cosine = 1}};
     set_medium(&s, (float[]){1, 1, 1}, (uint32_t[]){STATE_CELLS, STATE_CELLS, STATE_CELLS},
                density);
     tyn_pass_defaults(&tyn_pass_propagate_rect, &s.params);
@@ -93,6 +95,7 @@ static outcome run(gpu_test *t, const setup *s)
     tyn_graph_begin(t->graph);
     refs[PORT(MEDIUM)] = gpu_buffer(t, "medium", &s->medium, sizeof s->medium);
     refs[PORT(LIGHTS)] = gpu_buffer(t, "lights", s->suns, sizeof s->suns);
+    refs[PORT(ORDINATES)] = gpu_buffer(t, "ordinates", &s->ordinates, sizeof s->ordinates);
     refs[PORT(CAMERA)] = gpu_buffer(t, "camera", &s->camera, sizeof s->camera);
     refs[PORT(DENSITY)] = gpu_image(t, "density", TYN_IMAGE_3D,
                                     (tyn_extent){size[0], size[1], size[2]}, 1, s->density);
@@ -105,6 +108,15 @@ static outcome run(gpu_test *t, const setup *s)
     gpu_run(t);
     return (outcome){gpu_map(t, "state"), gpu_map(t, "cells"), gpu_map(t, "sum"),
                      gpu_map(t, "grids")};
+}
+
+static double total(const outcome *o, int first, int n)
+{
+    double sum = 0;
+    for (int q = first; q < first + n; q++) {
+        sum += sent(o, q);
+    }
+    return sum;
 }
 
 // Largest relative difference (of values below 1e-6: absolute, in 1e-6) where `weight` > 1e-6 of its
@@ -180,8 +192,8 @@ static setup oblique(float *density)
     static const uint32_t size[3] = {12, 16, 10};
     static const float extent[3] = {1.0f, 1.4f, 0.8f};
     setup s = {
-        .suns = {{.color = {1, 2, 3}, .direction = {0.48f, 0.6f, 0.64f}},
-                 {.color = {4, 0.5f, 1}, .direction = {0, -1, 0}}},
+        .suns = {{.color = {1, 2, 3}, .direction = {0.48f, 0.6f, 0.64f}, .mean_cosine = 1},
+                 {.color = {4, 0.5f, 1}, .direction = {0, -1, 0}, .mean_cosine = 1}},
         .camera = {.origin = {0.3f, 0.9f, 3}, .forward = {0, 0, -1}},
         .medium = {.sigma_s = {2, 5, 9}, .sigma_a = {0.5f, 0.1f, 0}, .g = {0.8f, 0, -0.3f}},
     };
@@ -209,25 +221,25 @@ static void to_m(const struct propagate_grid *grid, const double cell[3], double
     }
 }
 
-// One channel of one sun against the twin. The aligned grid is that of the device, whose cells the
+// One channel of one grid against the twin. The aligned grid is that of the device, whose cells the
 // test `grids_span_the_medium` checks.
-static double compare_channel(const setup *s, const outcome *o, int sun, int c)
+static double compare_channel(const setup *s, const outcome *o, int index, int c)
 {
     static double sigma_s[CELLS], sigma_a[CELLS], g[CELLS], mu[CELLS], light[CELLS], cosine[CELLS],
         seen[CELLS], found[3][CELLS], spread[CELLS];
-    const struct propagate_grid *grid = &o->grids[sun];
+    const struct propagate_grid *grid = &o->grids[index];
     const int n[3] = {(int)grid->size[0], (int)grid->size[1], (int)grid->size[2]};
     int total = n[0] * n[1] * n[2], texels[CELLS];
     for (int q = 0; q < total; q++) {
         int i = q % n[0], j = q / n[0] % n[1], k = q / (n[0] * n[1]);
-        int at = texels[q] = (((3 * sun + c) * N + k) * N + j) * N + i;
+        int at = texels[q] = (((3 * index + c) * N + k) * N + j) * N + i;
         double p[3], to_eye[3], r = 0;
         to_m(grid, (double[]){i + 0.5, j + 0.5, k + 0.5}, p);
         mu[q] = 0;
         for (int x = 0; x < 3; x++) {
             to_eye[x] = s->camera.origin[x] - p[x];
             r += to_eye[x] * to_eye[x];
-            mu[q] += to_eye[x] * s->suns[sun].direction[x];
+            mu[q] += to_eye[x] * grid->direction[x];
         }
         mu[q] /= sqrt(r);
         sigma_s[q] = o->cells[at].c[0] / grid->cell;
@@ -242,7 +254,8 @@ static double compare_channel(const setup *s, const outcome *o, int sun, int c)
                       (twin_init)s->params.init,
                       s->params.rate == TYN_PROPAGATE_RATE_EXACT,
                       s->params.last_event != 0,
-                      mu};
+                      mu,
+                      grid->mean_cosine};
     twin_propagate(&twin, s->params.iterations, light, cosine, seen);
     for (int q = 0; q < total; q++) {
         found[0][q] = light_of(o, texels[q]);
@@ -273,6 +286,99 @@ static void every_reading(void **state)
                       s.params.rate, s.params.last_event, difference);
         assert_true(difference < 1e-4);
     }
+}
+
+// ---- ordinates --------------------------------------------------------------------------------
+
+// Directions spread evenly over the sphere, on a spiral; regions of unequal size.
+static void set_ordinates(setup *s, uint32_t count)
+{
+    s->ordinates.count = count;
+    s->params.num_ordinates = count;
+    for (uint32_t n = 0; n < count; n++) {
+        struct ordinate *o = &s->ordinates.list[n];
+        double z = 1 - (2 * n + 1.0) / count, r = sqrt(1 - z * z), phi = 2.399963 * n;
+        o->direction[0] = (float)(r * cos(phi));
+        o->direction[1] = (float)(r * sin(phi));
+        o->direction[2] = (float)z;
+        o->solid_angle = (float)(12.566371 / count * (n % 2 ? 0.5 : 1.5));
+        o->mean_cosine = (float)(1 - o->solid_angle / 12.566371);
+        for (int c = 0; c < 3; c++) {
+            o->irradiance[c] = (float)(1 + (n + (uint32_t)c) % 3);
+        }
+    }
+}
+
+static uint32_t dispatches_of(gpu_test *t)
+{
+    const tyn_node_stats *stats;
+    uint32_t count = tyn_graph_stats(t->graph, &stats);
+    for (uint32_t i = 0; i < count; i++) {
+        if (!strcmp(stats[i].name, "propagate_rect")) {
+            return stats[i].dispatches;
+        }
+    }
+    return 0;
+}
+
+// A grid for each, behind those of the suns, with light that starts as the prefilter says.
+static void ordinates(void **state)
+{
+    static float density[12 * 16 * 10];
+    setup s = oblique(density);
+    outcome o = run(*state, &s);
+    uint32_t dispatches = dispatches_of(*state);
+    for (int32_t filter = 0; filter < 3; filter++) {
+        s.params.prefilter = filter;
+        s.params.beta = 3;
+        s.params.init = filter == 1 ? TYN_PROPAGATE_INIT_FIRST_COLLISION : TYN_PROPAGATE_INIT_ENTRY;
+        set_ordinates(&s, 9);
+        o = run(*state, &s);
+        assert_int_equal(dispatches_of(*state), dispatches);
+        double difference = 0;
+        for (int n = 0; n < 9; n++) {
+            const struct propagate_grid *grid = &o.grids[MAX_SUNS + n];
+            double share = n % 2 ? 0.5 : 1;
+            double expected = filter == 0   ? 1
+                              : filter == 1 ? pow(1 - share / 9, 3)
+                                            : (double)s.ordinates.list[n].mean_cosine;
+            assert_float_equal(grid->mean_cosine, expected, 1e-6);
+            assert_memory_equal(grid->irradiance, s.ordinates.list[n].irradiance,
+                                sizeof grid->irradiance);
+            difference = fmax(difference, compare_channel(&s, &o, MAX_SUNS + n, n % 3));
+        }
+        print_message("prefilter %d: largest difference %.1e\n", filter, difference);
+        assert_true(difference < 1e-4);
+    }
+    // Fewer than there is room for: the rest is dark.
+    s.ordinates.count = 4;
+    o = run(*state, &s);
+    for (int q = (MAX_SUNS + 4) * 3 * CELLS; q < (MAX_SUNS + 9) * 3 * CELLS; q++) {
+        assert_true(sent(&o, q) == 0 && o.seen[q] == 0);
+    }
+}
+
+// The configuration of the paper's section 7, and one whose grids do not fit one storage buffer.
+static void many_ordinates(void **state)
+{
+    static float density[32 * 32 * 32];
+    for (int q = 0; q < 32 * 32 * 32; q++) {
+        density[q] = 1;
+    }
+    setup s = unit_cube(density, 4, 0.9f, (float[]){1, 0, 0});
+    set_medium(&s, (float[]){1, 1, 1}, (uint32_t[]){32, 32, 32}, density);
+    memcpy(s.params.size, s.medium.size, sizeof s.params.size);
+    s.params.cells = 20;
+    s.params.iterations = 10;
+    s.params.num_suns = 0;
+    set_ordinates(&s, 64);
+    outcome o = run(*state, &s);
+    for (int n = 0; n < 64; n++) {
+        double power = total(&o, n * 8000, 8000) / o.grids[n].size[0] / o.grids[n].size[1];
+        assert_true(power > 0.5 && power < 1.00001);
+    }
+    print_message("64 ordinates, 20^3, 10 iterations: %u dispatches, %.0f ms\n",
+                  dispatches_of(*state), gpu_ms(*state, "propagate_rect"));
 }
 
 // ---- the grids --------------------------------------------------------------------------------
@@ -318,15 +424,6 @@ static void grids_span_the_medium(void **state)
         print_message("sun %d: medium in the cells / in the voxels = %.4f\n", sun, cells / voxels);
         assert_float_equal(cells / voxels, 1, 0.05);
     }
-}
-
-static double total(const outcome *o, int first, int n)
-{
-    double sum = 0;
-    for (int q = first; q < first + n; q++) {
-        sum += sent(o, q);
-    }
-    return sum;
 }
 
 // The six fractions sum to 1: one cell of light in the middle, all of it is in its neighbours after one
@@ -412,7 +509,8 @@ int main(void)
         cmocka_unit_test(reference_states),      cmocka_unit_test(every_reading),
         cmocka_unit_test(grids_span_the_medium), cmocka_unit_test(fractions_sum_to_one),
         cmocka_unit_test(injected_power_is_one), cmocka_unit_test(extremes),
-        cmocka_unit_test(colour_of_the_light),
+        cmocka_unit_test(colour_of_the_light),   cmocka_unit_test(ordinates),
+        cmocka_unit_test(many_ordinates),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

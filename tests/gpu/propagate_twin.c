@@ -40,7 +40,7 @@ static void start(const twin_grid *t, double *light, double *cosine, double *see
             double sigma = t->sigma_a[q] + (t->init == TWIN_ABSORPTION ? 0 : t->sigma_s[q]);
             double beam = exp(-depth) * mean_exp(sigma * t->dx), g = t->g[q];
             depth += sigma * t->dx;
-            cosine[q] = 1;
+            cosine[q] = t->mean_cosine;
             seen[q] = 0;
             switch (t->init) {
             case TWIN_ENTRY:
@@ -48,9 +48,10 @@ static void start(const twin_grid *t, double *light, double *cosine, double *see
                 break;
             case TWIN_FIRST_COLLISION:
                 light[q] = beam * t->sigma_s[q] * t->dx;
-                cosine[q] = g;
-                seen[q] = beam * twin_hg(t->mu[q], clamp_lobe(g)) +
-                          0.5 * light[q] * twin_hg(t->mu[q], clamp_lobe(t->last_event ? g * g : g));
+                cosine[q] = g * t->mean_cosine;
+                seen[q] = beam * twin_hg(t->mu[q], clamp_lobe(cosine[q])) +
+                          0.5 * light[q] *
+                              twin_hg(t->mu[q], clamp_lobe(cosine[q] * (t->last_event ? g : 1)));
                 break;
             default:
                 light[q] = beam;

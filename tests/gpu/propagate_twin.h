@@ -17,7 +17,8 @@ typedef struct twin_grid {
     const double *sigma_s, *sigma_a, *g;
     twin_init init;
     bool exact_rate, last_event;
-    const double *mu; // cosine between the light and the direction to the eye
+    const double *mu;   // cosine between the light and the direction to the eye
+    double mean_cosine; // of the light as it enters; 1 = a beam
 } twin_grid;
 
 // L, a and the sum of what went to the eye (Eq 8) after some iterations.
