@@ -1,0 +1,350 @@
+// pop_sky.c -- `pop` under environment maps: against the reference images under a sky, and against
+// pictures of `path` of the sample scenes and of volumes under a measured map.
+//
+// rel_l1 on blocks of 8x8 pixels less what the references' noise explains; with the background, and without:
+// both pictures less what is seen of the environment with no scattering, which is computed here along the
+// pixels' rays. Each case by the number of ordinates and by the cells of the lattice.
+//
+// The pictures of `path` are tables in tests/data/sky: block means with their standard errors. They are made by this
+// program with TYN_SKY_MAKE=<folder of the tables> (TYN_SKY_ONLY=<case>: one of them); without that
+// a short run of `path` is held against them. TYN_LONG=1: all numbers of ordinates and all lattices,
+// and the tables are checked with more samples.
+#include "gpu_test.h"
+#include "npy.h"
+#include "picture.h"
+#include "sky.h"
+#include <tyndall/io.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { BLOCK = 8, SIZE = 96 };
+
+static const float zero3[3] = {0, 0, 0};
+
+// The references' blobs, dense (g 0.9) or thin (g 0.5).
+static bool make_blobs(tyn_scene *scene, tyn_view *view, bool thin)
+{
+    char path[512];
+    if (!shared_path(path, sizeof path, "reference/images/blobs64.f32")) {
+        return false;
+    }
+    float *grid = malloc(64 * 64 * 64 * sizeof *grid);
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    assert_int_equal(fread(grid, sizeof *grid, 64 * 64 * 64, file), 64 * 64 * 64);
+    fclose(file);
+    tyn_medium dense = {
+        .sigma_s = {2.9f, 3.6f, 4.2f}, .sigma_a = {3.4f, 3.35f, 3.4f}, .g = {0.9f, 0.9f, 0.9f}};
+    tyn_medium light = {.sigma_s = {0.29f, 0.36f, 0.42f},
+                        .sigma_a = {0.034f, 0.0335f, 0.034f},
+                        .g = {0.5f, 0.5f, 0.5f}};
+    tyn_medium medium = thin ? light : dense;
+    medium.density_scale = 1;
+    scene_add_box(scene, &medium, (float[]){-5, -5, -5}, (float[]){5, 5, 5},
+                  (uint32_t[]){64, 64, 64}, grid);
+    sky_reference_map(&scene->environment, SKY_WHOLE);
+    view_orthographic(view, zero3, 0, 0, 1, (float[]){0, 1, 0}, 5, 32);
+    free(grid);
+    return true;
+}
+
+typedef enum origin { BLOBS, THIN_BLOBS, SAMPLE, VOLUME } origin;
+
+typedef struct sky_case {
+    const char *name;
+    origin from;
+    const char *file, *map; // VOLUME: below the shared data
+    uint32_t spp, check;    // samples of the stored table (or of the picture), and of the check
+    float scale;            // density scale, 0 = as it is
+} sky_case;
+
+static const sky_case cases[] = {
+    {.name = "blobs_sky_front", .from = BLOBS, .check = 512},
+    {.name = "blobsthin_sky_front", .from = THIN_BLOBS, .check = 512},
+    {.name = "smoke-sky", .from = SAMPLE, .spp = 1024, .check = 16},
+    {.name = "cloud-sunset", .from = SAMPLE, .spp = 2048, .check = 8},
+    {.name = "milk", .from = SAMPLE, .spp = 1024, .check = 2},
+    {.name = "plume-contrast", .from = SAMPLE, .spp = 2048, .check = 16},
+    {.name = "teapot-museum",
+     .from = VOLUME,
+     .file = "data/teapot_cloud.nvdb",
+     .map = "data/museum.exr",
+     .spp = 64},
+    {.name = "smoke-museum",
+     .from = VOLUME,
+     .file = "data/smoke.vdb",
+     .map = "data/museum.exr",
+     .spp = 64},
+};
+enum { NUM_CASES = sizeof cases / sizeof cases[0] };
+
+static float largest_g(const tyn_scene *scene)
+{
+    float g = -1;
+    for (uint32_t m = 0; m < scene->num_media; m++) {
+        for (int c = 0; c < 3; c++) {
+            g = fmaxf(g, scene->media[m].g[c]);
+        }
+    }
+    return g;
+}
+
+// False: what it needs is not there.
+static bool load(gpu_test *t, const sky_case *k, tyn_scene *scene, tyn_view *view)
+{
+    tyn_scene_init(scene);
+    *view = (tyn_view){.width = SIZE, .height = SIZE};
+    char path[512], map[512];
+    switch (k->from) {
+    case BLOBS:
+    case THIN_BLOBS:
+        return make_blobs(scene, view, k->from == THIN_BLOBS);
+    case SAMPLE:
+        snprintf(path, sizeof path, "%s/%s.gltf", TYN_SAMPLE_SCENES, k->name);
+        assert_int_equal(tyn_scene_load(scene, path, NULL, &t->log), TYN_OK);
+        break;
+    case VOLUME:
+        if (!shared_path(path, sizeof path, k->file) || !shared_path(map, sizeof map, k->map)) {
+            return false;
+        }
+        t->quiet = true; // without OpenVDB there is no reading .vdb
+        tyn_result result = tyn_scene_load(scene, path, map, &t->log);
+        t->quiet = false;
+        if (result != TYN_OK) {
+            return false;
+        }
+        break;
+    }
+    for (uint32_t m = 0; k->scale > 0 && m < scene->num_media; m++) {
+        scene->media[m].density_scale *= k->scale;
+    }
+    if (scene->num_cameras) {
+        view->camera = scene->cameras[0];
+    } else {
+        tyn_camera_frame_scene(&view->camera, scene);
+    }
+    return true;
+}
+
+// ---- references -------------------------------------------------------------------------------
+
+static double seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static double relative_se(const picture *p)
+{
+    double se = 0, sum = 0;
+    for (uint32_t i = 0; i < p->width * p->height * 3; i++) {
+        se += p->se[i];
+        sum += fabs(p->rgb[i]);
+    }
+    return se / sum;
+}
+
+static void table_path(char *path, size_t size, const char *folder, const sky_case *k)
+{
+    snprintf(path, size, "%s/%s.csv", folder, k->name);
+}
+
+static void path_blocks(gpu_test *t, const sky_case *k, const tyn_scene *scene,
+                        const tyn_view *view, uint32_t seed, uint32_t spp, picture *blocks)
+{
+    picture p;
+    double start = seconds();
+    tyn_view seeded = *view;
+    seeded.seed = seed;
+    picture_render(&p, t->dev, "path", scene, &seeded, NULL, spp);
+    picture_blocks(blocks, &p, BLOCK);
+    print_message("%-20s path, %u samples: standard error of a block %.2f %%, %.0f s\n", k->name,
+                  spp, 100 * relative_se(blocks), seconds() - start);
+    picture_free(&p);
+}
+
+// Bias and z of a picture of few samples against the reference.
+static void check_reference(gpu_test *t, const sky_case *k, const tyn_scene *scene,
+                            const tyn_view *view, const picture *reference)
+{
+    picture p;
+    path_blocks(t, k, scene, view, 1, k->check * (getenv("TYN_LONG") ? 16 : 1), &p);
+    double off = 0, variance = 0, sum = 0, z2 = 0;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < p.width * p.height * 3; i++) {
+        double d = (double)p.rgb[i] - reference->rgb[i];
+        double v = (double)p.se[i] * p.se[i] + (double)reference->se[i] * reference->se[i];
+        off += d;
+        variance += v;
+        sum += reference->rgb[i];
+        if (v > 1e-10 * reference->rgb[i] * reference->rgb[i]) {
+            z2 += d * d / v;
+            count++;
+        }
+    }
+    double bias_z = off / sqrt(variance), z = sqrt(z2 / count);
+    print_message("%-20s path against the reference: bias %+.2f %% (z %+.2f), z_rms of blocks "
+                  "%.2f\n",
+                  k->name, 100 * off / sum, bias_z, z);
+    assert_true(fabs(bias_z) <= 4);
+    assert_true(z <= 1.5);
+    picture_free(&p);
+}
+
+static bool reference_of(gpu_test *t, const sky_case *k, const tyn_scene *scene,
+                         const tyn_view *view, picture *reference)
+{
+    if (k->from == BLOBS || k->from == THIN_BLOBS) {
+        picture p;
+        if (!picture_reference(&p, k->name)) {
+            return false;
+        }
+        picture_blocks(reference, &p, BLOCK);
+        picture_free(&p);
+        return true;
+    }
+    if (k->from == VOLUME) { // nothing of others is kept here
+        path_blocks(t, k, scene, view, 0, k->spp * (getenv("TYN_LONG") ? 16 : 1), reference);
+        return true;
+    }
+    char path[512];
+    table_path(path, sizeof path, TYN_TEST_DATA "/sky", k);
+    return picture_read_table(reference, path);
+}
+
+// ---- comparison -------------------------------------------------------------------------------
+
+typedef struct sky_error {
+    picture_error with, without;
+} sky_error;
+
+static sky_error compare(gpu_test *t, const tyn_scene *scene, const tyn_view *view,
+                         const char *settings, const picture *reference, const picture *unscattered)
+{
+    picture p, blocks, rest;
+    picture_render(&p, t->dev, "pop", scene, view, settings, 0);
+    picture_blocks(&blocks, &p, BLOCK);
+    sky_error e = {.with = picture_compare(&blocks, reference, 1)};
+    rest = (picture){.width = reference->width, .height = reference->height, .se = reference->se};
+    size_t bytes = (size_t)rest.width * rest.height * 3 * sizeof *rest.rgb;
+    rest.rgb = malloc(bytes);
+    memcpy(rest.rgb, reference->rgb, bytes);
+    picture_subtract(&rest, unscattered);
+    picture_subtract(&blocks, unscattered);
+    e.without = picture_compare(&blocks, &rest, 1);
+    free(rest.rgb);
+    picture_free(&blocks);
+    picture_free(&p);
+    return e;
+}
+
+static bool has_ordinates(void)
+{
+    tyn_settings *settings;
+    assert_int_equal(tyn_settings_create(&settings), TYN_OK);
+    bool known = tyn_settings_set(settings, "ordinates.count", "64", NULL) == TYN_OK;
+    tyn_settings_destroy(&settings);
+    return known;
+}
+
+static void run_case(gpu_test *t, const sky_case *k)
+{
+    static const int counts[] = {64, 16, 256}, cells[] = {32, 16, 24, 48};
+    const char *only = getenv("TYN_SKY_ONLY"), *folder = getenv("TYN_SKY_MAKE");
+    const bool thorough = getenv("TYN_LONG") != NULL;
+    if (only && strcmp(only, k->name) != 0) {
+        return;
+    }
+    tyn_scene *scene = malloc(sizeof *scene);
+    tyn_view view;
+    picture reference, whole, unscattered;
+    bool there = load(t, k, scene, &view);
+    if (there && folder && k->from == SAMPLE) {
+        char path[512], comment[128];
+        path_blocks(t, k, scene, &view, 0, k->spp, &reference);
+        table_path(path, sizeof path, folder, k);
+        snprintf(comment, sizeof comment,
+                 "%s, %ux%u pixels in blocks of %u: path, %u samples a pixel", k->name, view.width,
+                 view.height, BLOCK, k->spp);
+        picture_write_table(&reference, path, comment);
+        picture_free(&reference);
+    }
+    if (!there || !reference_of(t, k, scene, &view, &reference)) {
+        print_message("%-20s skipped: its data are not there\n", k->name);
+        tyn_scene_finish(scene);
+        free(scene);
+        return;
+    }
+    bool blobs = k->from == BLOBS || k->from == THIN_BLOBS;
+    picture_unscattered(&whole, scene, &view, blobs ? sky_of_references : NULL);
+    picture_blocks(&unscattered, &whole, BLOCK);
+    if (k->check) {
+        check_reference(t, k, scene, &view, &reference);
+    }
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) {
+            bool wanted = thorough || j == 0 || (i == 0 && j == 1);
+            if (!wanted || (i > 0 && !has_ordinates())) {
+                continue;
+            }
+            char settings[80];
+            int n = snprintf(settings, sizeof settings, "lattice.cells=%d", cells[j]);
+            if (has_ordinates()) {
+                snprintf(settings + n, sizeof settings - (size_t)n, " ordinates.count=%d",
+                         counts[i]);
+            }
+            sky_error e = compare(t, scene, &view, settings, &reference, &unscattered);
+            print_message("%-20s %3d ordinates, %2d cells: with background %5.2f %%, without %5.2f "
+                          "%% (rel_l1 %5.2f, noise %4.2f, bias %+6.2f)\n",
+                          k->name, counts[i], cells[j], 100 * e.with.reported,
+                          100 * e.without.reported, 100 * e.without.rel_l1, 100 * e.without.noise,
+                          100 * e.without.bias);
+            if (i == 0 && j == 0 && has_ordinates()) {
+                assert_true(e.with.reported <= 0.04);
+                assert_true(e.without.reported <= (largest_g(scene) >= 0.85f ? 0.12 : 0.08));
+            }
+        }
+    }
+    picture_free(&whole);
+    picture_free(&unscattered);
+    picture_free(&reference);
+    tyn_scene_finish(scene);
+    free(scene);
+}
+
+static void references(void **state)
+{
+    run_case(*state, &cases[0]);
+    run_case(*state, &cases[1]);
+}
+
+static void samples(void **state)
+{
+    for (int i = 2; i < NUM_CASES; i++) {
+        if (cases[i].from == SAMPLE) {
+            run_case(*state, &cases[i]);
+        }
+    }
+}
+
+static void volumes(void **state)
+{
+    for (int i = 2; i < NUM_CASES; i++) {
+        if (cases[i].from == VOLUME) {
+            run_case(*state, &cases[i]);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(references), cmocka_unit_test(samples),
+                                       cmocka_unit_test(volumes)};
+    setvbuf(stdout, NULL, _IOLBF, 0);
+    cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
