@@ -2,13 +2,14 @@
 //
 //   L = int { e^-tau'(s) [sigma_s' J + emission]
 //             + sigma_s sum_n E_n e^-tau_a(n) [K_tms e^-tau'(s) + K_lobe e^-tau(s)] } ds
-//       + e^-tau' L_mean + e^-tau (L_behind - L_mean)
+//       + e^-tau L_behind + (e^-tau' - e^-tau) B
 //
 // tau is the true optical depth along the view ray, tau' the one in which forward scattering counts as
 // not scattered (delta scaling), (n) are depths along sun n. J is the light that has scattered out of
 // the suns' forward peaks (texture inscatter), K_tms and K_lobe hold the first and all forward orders
-// exactly (scatter_lut.glsl). The mean of the environment comes in through the lattice; what is seen
-// of it directly is attenuated by tau', or a uniform surrounding would not look uniform.
+// exactly (scatter_lut.glsl). B is the environment as forward scattering smears it (glow.glsl), of a
+// uniform one its radiance: the lattice has it delta scaled, so that what went through or was scattered
+// forward must add up to e^-tau', or a uniform surrounding would not look uniform.
 //
 // Every step takes the medium at its middle and integrates the attenuation exactly: int_0^ds e^(-sigma t)
 // dt = ds (1 - e^-x) / x with x = sigma ds. Light is taken at the centroid of that weight.
@@ -153,6 +154,7 @@ struct march_result {
     vec3 single;   // its first-order part, where a layer wants it
     vec3 transmittance;
     vec3 scaled_transmittance; // e^-tau'
+    spectrum forward_depth;    // tau - tau'
     float half_distance;       // where the mean transmittance falls to 1/2, or infinity
     uint steps;
 };
@@ -377,6 +379,13 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
     }
     result.transmittance = vec3(through * exp(-hidden));
     result.scaled_transmittance = vec3(through_scaled);
+    // e^-tau may be too small for a float where e^-tau' is not; in one medium the depths are in proportion.
+    result.forward_depth = log(max(through_scaled, 1e-37) / max(through * exp(-hidden), 1e-37));
+    if (medium_mode == TYN_MEDIUM_DENSITY) {
+        spectrum forward = unit.extinction + unit.hidden - unit.scaled_extinction;
+        result.forward_depth =
+            -log(max(through_scaled, 1e-37)) * forward / max(unit.scaled_extinction, 1e-30);
+    }
     return result;
 }
 

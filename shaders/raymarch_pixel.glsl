@@ -1,6 +1,6 @@
 // raymarch_pixel.glsl -- the rays of one pixel and what is stored of them.
 //
-// Include after raymarch.glsl and display.glsl.
+// Include after raymarch.glsl, background.glsl, glow.glsl and display.glsl.
 #ifndef TYN_RAYMARCH_PIXEL_GLSL
 #define TYN_RAYMARCH_PIXEL_GLSL
 
@@ -76,17 +76,23 @@ void shade_pixel(ivec2 pixel)
         transmittance += r.transmittance;
         single += r.single;
         half_distance = min(half_distance, span.x + r.half_distance);
-        // What went through or was scattered forward of the part of the environment that the field
-        // holds: L_mean (e^-tau' - e^-tau) counts as scattered.
+        // The environment's light that was scattered forward only. In front of a host's surface it is not
+        // what lies behind that; the mean keeps uniform surroundings uniform.
         vec3 light = r.radiance;
-        if (raymarch_has(RAYMARCH_MEAN)) {
-            light += environment.mean * max(r.scaled_transmittance - r.transmittance, 0.0);
+        if (raymarch_has(RAYMARCH_GLOW | RAYMARCH_MEAN)) {
+            vec3 smeared = environment.sky;
+            if (raymarch_has(RAYMARCH_GLOW) && surface == TYN_INFINITY) {
+                smeared = environment.radiance *
+                          glow_radiance(glow_tex, environment, ray.direction, r.forward_depth);
+            }
+            light += smeared * max(r.scaled_transmittance - r.transmittance, 0.0);
         }
         multiple += max(light - r.single, 0.0);
         radiance += light;
         if (raymarch_has(RAYMARCH_BACKGROUND) && surface == TYN_INFINITY) {
-            radiance += r.transmittance *
-                        environment_radiance(environment, environment_tex, ray.direction);
+            radiance += r.transmittance * background_radiance(environment, environment_tex, camera,
+                                                              vec2(pixel) + where,
+                                                              num_rays == 1u ? 1.0 : 0.5);
         }
     }
     float share = 1.0 / float(num_rays);

@@ -35,6 +35,8 @@ static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
     [RAYMARCH_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, false, "env_block"},
     [RAYMARCH_PORT_ENV_MAP] = {"env_map", TYN_IN, TYN_IMAGE_2D, 0, true,
                                "latitude-longitude map, W/(m^2 sr)"},
+    [RAYMARCH_PORT_GLOW] = {"glow", TYN_IN, TYN_IMAGE_3D, 0, true,
+                            "the map as forward scattering smears it, W/(m^2 sr)"},
     [RAYMARCH_PORT_HOST_DEPTH] = {"host_depth", TYN_IN, TYN_IMAGE_2D, 0, true,
                                   "hardware depth of the host's surfaces"},
     [RAYMARCH_PORT_RADIANCE] = {"radiance", TYN_OUT, IMAGE2, false,
@@ -71,6 +73,7 @@ static const tyn_binding bindings[] = {
     {RAYMARCH_PORT_SINGLE, TYN_USE_STORAGE_WRITE, false},
     {RAYMARCH_PORT_MULTIPLE, TYN_USE_STORAGE_WRITE, false},
     {RAYMARCH_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
+    {RAYMARCH_PORT_GLOW, TYN_USE_SAMPLED, true},
     {RAYMARCH_PORT_SIGMA_A, TYN_USE_SAMPLED, false}, // from here on colour only
     {RAYMARCH_PORT_G, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_EMISSION, TYN_USE_SAMPLED, false},
@@ -218,7 +221,8 @@ void tyn_raymarch_window(tyn_raymarch_params *params, const struct camera_block 
 static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
 {
     bool field = tyn_rec_has(r, RAYMARCH_PORT_INSCATTER);
-    bool behind = p->background || p->layers & RAYMARCH_LAYER_TRANSMITTANCE;
+    bool glow = tyn_rec_has(r, RAYMARCH_PORT_GLOW);
+    bool behind = p->background || glow || p->layers & RAYMARCH_LAYER_TRANSMITTANCE;
     uint32_t features = 0;
     for (uint32_t k = 0; k < NUM_LAYERS; k++) {
         features |= p->layers & layers[k].layer ? layers[k].feature : 0;
@@ -227,6 +231,7 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= field ? RAYMARCH_FIELD : 0;
     features |= p->field != RAYMARCH_INSCATTER_SCALED ? RAYMARCH_UNSCALED : 0;
     features |= p->field == RAYMARCH_INSCATTER_SOURCE ? RAYMARCH_SOURCE : 0;
+    features |= glow ? RAYMARCH_GLOW : 0;
     features |= p->emissive ? RAYMARCH_EMISSION : 0;
     features |= p->mean ? RAYMARCH_MEAN : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_HOST_DEPTH) ? RAYMARCH_HOST_DEPTH : 0;

@@ -73,7 +73,9 @@ enum {
     RAYMARCH_PORT_CAMERA,      // IN buffer struct camera_block
     RAYMARCH_PORT_ENVIRONMENT, // IN buffer struct env_block
     RAYMARCH_PORT_ENV_MAP,     // IN optional 2D
-    RAYMARCH_PORT_HOST_DEPTH,  // IN optional 2D: hardware depth; rays end there
+    RAYMARCH_PORT_GLOW, // IN optional 3D: of env_glow, the map scattered forward; without it what
+                        // is scattered forward comes from the mean alone (`mean`)
+    RAYMARCH_PORT_HOST_DEPTH, // IN optional 2D: hardware depth; rays end there
     RAYMARCH_PORT_RADIANCE, // OUT 2D RGBA32F: radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where
                             // an environment is seen
     RAYMARCH_PORT_TRANSMITTANCE, // OUT 2D RGBA32F, asked for by `layers`, as all below

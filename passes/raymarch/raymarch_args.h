@@ -21,6 +21,7 @@
 #define RAYMARCH_DEPTH (1u << 14)
 #define RAYMARCH_SINGLE (1u << 15)
 #define RAYMARCH_MULTIPLE (1u << 16)
+#define RAYMARCH_GLOW (1u << 17) // what is scattered forward comes from the texture glow
 
 struct raymarch_args {
     float step;      // longest step, m

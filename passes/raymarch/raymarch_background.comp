@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "camera.glsl"
-#include "environment.glsl"
+#include "background.glsl"
 #include "host_depth.glsl"
 #include "raymarch_args.h"
 
@@ -51,7 +51,8 @@ void main()
     }
     vec4 radiance = vec4(0.0);
     if (has(RAYMARCH_BACKGROUND) && surface == TYN_INFINITY) {
-        radiance = vec4(environment_radiance(environment, environment_tex, ray.direction), 1.0);
+        radiance.rgb = background_radiance(environment, environment_tex, camera, vec2(pixel) + 0.5, 1.0);
+        radiance.a = 1.0;
     }
     imageStore(radiance_image, pixel, radiance);
     if (has(RAYMARCH_TRANSMITTANCE)) {

@@ -45,12 +45,13 @@ layout(binding = 19, scalar) buffer counter_buffer
 {
     counters_block counters;
 };
+layout(binding = 20) uniform sampler3D glow_tex;
 #ifndef RAYMARCH_GREY
-#define MEDIUM_SIGMA_A 20
-#define MEDIUM_G 21
-#define MEDIUM_EMISSION 22
-#define BEAM_TAU_A 23
-#define BEAM_TAU_P 24
+#define MEDIUM_SIGMA_A 21
+#define MEDIUM_G 22
+#define MEDIUM_EMISSION 23
+#define BEAM_TAU_A 24
+#define BEAM_TAU_P 25
 #endif
 
 layout(push_constant, scalar) uniform Args

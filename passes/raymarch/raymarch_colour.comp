@@ -5,7 +5,8 @@
 
 #include "raymarch_bindings.glsl"
 #include "camera.glsl"
-#include "environment.glsl"
+#include "background.glsl"
+#include "glow.glsl"
 #include "display.glsl"
 #include "host_depth.glsl"
 #include "medium.glsl"

@@ -5,7 +5,8 @@
 #define RAYMARCH_GREY
 #include "raymarch_bindings.glsl"
 #include "camera.glsl"
-#include "environment.glsl"
+#include "background.glsl"
+#include "glow.glsl"
 #include "display.glsl"
 #include "host_depth.glsl"
 #include "medium.glsl"

@@ -483,7 +483,7 @@ static void furnace(void **state)
         s->params.mean = s->params.background = 1;
         s->params.layers = RAYMARCH_LAYER_TRANSMITTANCE | RAYMARCH_LAYER_MULTIPLE;
         for (int i = 0; i < 3; i++) {
-            s->env.radiance[i] = s->env.mean[i] = 1;
+            s->env.radiance[i] = s->env.sky[i] = 1;
         }
         for (int i = 0; i < 27 * 4; i++) {
             s->inscatter.texels[i] = 1;
