@@ -3,6 +3,7 @@
 #ifndef TYN_IMPORTANCE_GLSL
 #define TYN_IMPORTANCE_GLSL
 #include "scene_args.h"
+#include "propagate.glsl"
 #include "importance_args.h"
 
 const float IMPORTANCE_PI = 3.14159265358979;
@@ -47,6 +48,7 @@ importance_grid importance_grid_of(camera_block camera, vec3 extent)
     // Nearer layers than that would be of no width, with the camera in the medium.
     grid.near = max(grid.near, grid.orthographic != 0u ? 0.0 : max(grid.far, 0.0) / 32.0);
     grid.empty = grid.far > grid.near ? 0u : 1u;
+    grid.octaves = grid.orthographic != 0u ? 0.0 : max(log2(max(grid.far, 1e-30) / max(grid.near, 1e-30)), 1e-6);
 
     // The edges of the box, cut at the near plane: s and t are monotone along each.
     grid.low = vec2(1e30);
@@ -82,14 +84,14 @@ importance_grid importance_grid_of(camera_block camera, vec3 extent)
 float importance_depth(importance_grid grid, float layer)
 {
     return grid.orthographic != 0u ? mix(grid.near, grid.far, layer)
-                                   : grid.near * pow(grid.far / grid.near, layer);
+                                   : grid.near * exp2(grid.octaves * layer);
 }
 
 float importance_layer(importance_grid grid, float z)
 {
     z = max(z, grid.near);
     return grid.orthographic != 0u ? (z - grid.near) / (grid.far - grid.near)
-                                   : log(z / grid.near) / log(grid.far / grid.near);
+                                   : log2(z / grid.near) / grid.octaves;
 }
 
 // Grid [0, 1]^3 -> M.
@@ -105,6 +107,30 @@ vec3 importance_from_camera(importance_grid grid, vec3 p)
 {
     vec2 at = p.xy / importance_widening(grid, max(p.z, grid.near));
     return vec3((at - grid.low) / (grid.high - grid.low), importance_layer(grid, p.z));
+}
+
+// ---- one hop ----------------------------------------------------------------------------------------
+//
+// Elek et al. 2014, Eqs 2-6. A hop is half the way in either cell, so each does its half once for all
+// neighbours. Cells hold power, so the growing width of the columns needs no account.
+
+// What the medium does in half a cell: part of the power left, loss of mean cosine.
+vec2 importance_half_hop(importance_cell cell, float way)
+{
+    return vec2(exp(-0.5 * cell.sigma_a * way), propagate_loss(0.5 * cell.decay * way));
+}
+
+// What a cell of power `power` and mean cosine 1 - spread hands on; adds its way to the track: half a
+// hop in, half a hop out.
+importance_light importance_leave(importance_cell cell, float power, float spread, inout vec2 track)
+{
+    vec4 state = propagate_state(power, spread);
+    float way = power * mix(cell.along, cell.across, 4.0 * state.z);
+    track += vec2(way, way * spread);
+    vec2 along = importance_half_hop(cell, cell.along), across = importance_half_hop(cell, cell.across);
+    return importance_light(propagate_part(state, 1) * along.x, propagate_part(state, 0) * across.x,
+                            propagate_part(state, -1) * along.x, spread + (1.0 - spread) * along.y,
+                            spread + (1.0 - spread) * across.y);
 }
 
 // ---- directions of the map ----------------------------------------------------------------------------

@@ -7,7 +7,7 @@
 #define TYN_IMPORTANCE_HEIGHT 16
 #define TYN_IMPORTANCE_TEXELS (TYN_IMPORTANCE_WIDTH * TYN_IMPORTANCE_HEIGHT)
 #define TYN_IMPORTANCE_RAYS 8   // along each side of the box, per direction of the map
-#define TYN_IMPORTANCE_STEPS 16 // of a ray through the box
+#define TYN_IMPORTANCE_STEPS 12 // of a ray through the box
 
 // The grid is the part of the camera's pyramid that holds the medium: column (i, j) is a pencil of the
 // camera's rays, layer k a range of depths. Positions in it are (s, t, z): depth z along `forward`;
@@ -25,8 +25,9 @@ struct importance_grid {
     tyn_vec2 high;
     tyn_vec2 window_low; // of the picture
     tyn_vec2 window_high;
+    float octaves; // log2 of far / near, perspective
 };
-TYN_ASSERT_SIZE(importance_grid, 96);
+TYN_ASSERT_SIZE(importance_grid, 100);
 
 struct importance_cell { // the medium in a cell; the mean over the channels
     float sigma_s;       // 1/m, of the last scattering: delta-scaled where the method wants it
@@ -39,6 +40,13 @@ struct importance_cell { // the medium in a cell; the mean over the channels
     float volume;  // m^3
 };
 TYN_ASSERT_SIZE(importance_cell, 32);
+
+struct importance_light { // importance on its way out of a cell, half a hop done
+    float ahead, side, behind; // power to the neighbour in front, each of the four beside, the one behind
+    float spread_along;  // 1 - mean cosine of what goes ahead or back
+    float spread_across; // ... and to the sides
+};
+TYN_ASSERT_SIZE(importance_light, 20);
 
 struct importance_history { // from frame to frame; zeros at the start
     tyn_uint frames;        // 0 = nothing is known yet

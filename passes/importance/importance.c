@@ -25,10 +25,9 @@ static const tyn_port ports[IMPORTANCE_NUM_PORTS] = {
                      .meaning = "importance scattered, 1/m^3; times its mean cosine; sigma_t, 1/m"},
     [PORT(GRID)] = {"grid", TYN_OUT, TYN_BUFFER, .meaning = "struct importance_grid"},
     [PORT(CELLS)] = {"cells", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct importance_cell[]"},
-    [PORT(STATE)] = {"state", TYN_SCRATCH, TYN_BUFFER,
-                     .meaning = "power, 1 - a, parts to a side and to the back"},
-    [PORT(STATE_OTHER)] = {"state_other", TYN_SCRATCH, TYN_BUFFER,
-                           .meaning = "state of every other iteration"},
+    [PORT(LIGHT)] = {"light", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct importance_light[]"},
+    [PORT(LIGHT_OTHER)] = {"light_other", TYN_SCRATCH, TYN_BUFFER,
+                           .meaning = "the same, of every other iteration"},
     [PORT(TRACKS)] = {"tracks", TYN_SCRATCH, TYN_BUFFER,
                       .meaning = "sum of power times length, and times 1 - a"},
     [PORT(SENT)] = {"sent", TYN_SCRATCH, TYN_BUFFER,
@@ -46,12 +45,12 @@ static const tyn_binding cells_bindings[] = {
     {PORT(MEDIUM), TYN_USE_UNIFORM},      {PORT(DENSITY), TYN_USE_SAMPLED},
     {PORT(SIGMA_A), TYN_USE_SAMPLED},     {PORT(G), TYN_USE_SAMPLED},
     {PORT(GRID), TYN_USE_UNIFORM},        {PORT(CELLS), TYN_USE_STORAGE_WRITE},
-    {PORT(STATE), TYN_USE_STORAGE_WRITE}, {PORT(TRACKS), TYN_USE_STORAGE_WRITE},
+    {PORT(LIGHT), TYN_USE_STORAGE_WRITE}, {PORT(TRACKS), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding step_bindings[] = {
     {PORT(CELLS), TYN_USE_STORAGE_READ},
-    {PORT(STATE_OTHER), TYN_USE_STORAGE_READ},
-    {PORT(STATE), TYN_USE_STORAGE_WRITE},
+    {PORT(LIGHT_OTHER), TYN_USE_STORAGE_READ},
+    {PORT(LIGHT), TYN_USE_STORAGE_WRITE},
     {PORT(TRACKS), TYN_USE_STORAGE_RW},
 };
 static const tyn_binding field_bindings[] = {
@@ -106,8 +105,8 @@ static tyn_result declare(tyn_builder *b, const void *data)
     tyn_build_image(b, PORT(FIELD), (tyn_extent){n, n, n}, 1);
     tyn_build_buffer(b, PORT(GRID), sizeof(struct importance_grid));
     tyn_build_buffer(b, PORT(CELLS), cells * sizeof(struct importance_cell));
-    tyn_build_buffer(b, PORT(STATE), cells * 4 * sizeof(float));
-    tyn_build_buffer(b, PORT(STATE_OTHER), cells * 4 * sizeof(float));
+    tyn_build_buffer(b, PORT(LIGHT), cells * sizeof(struct importance_light));
+    tyn_build_buffer(b, PORT(LIGHT_OTHER), cells * sizeof(struct importance_light));
     tyn_build_buffer(b, PORT(TRACKS), cells * 2 * sizeof(float));
     tyn_build_buffer(b, PORT(SENT), TYN_IMPORTANCE_TEXELS * sizeof(float));
     return TYN_OK;
@@ -119,7 +118,7 @@ static void record(tyn_recorder *r, const void *data)
     const uint32_t n = (uint32_t)p->cells;
     const struct importance_args args = {n, p->scaled, p->smoothing, p->floor};
     const tyn_extent grid = {n, n, n};
-    static const uint8_t swapped[] = {PORT(CELLS), PORT(STATE), PORT(STATE_OTHER), PORT(TRACKS)};
+    static const uint8_t swapped[] = {PORT(CELLS), PORT(LIGHT), PORT(LIGHT_OTHER), PORT(TRACKS)};
 
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SETUP, .cells = {1, 1, 1}, .args = &args});
     tyn_rec_dispatch(

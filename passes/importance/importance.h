@@ -31,8 +31,8 @@ enum {
                              // its mean cosine about the column; sigma_t, 1/m
     IMPORTANCE_PORT_GRID,    // OUT buffer struct importance_grid
     IMPORTANCE_PORT_CELLS,   // SCRATCH buffer struct importance_cell[]
-    IMPORTANCE_PORT_STATE,   // SCRATCH buffer vec4[]: power, spread, parts to a side and to the back
-    IMPORTANCE_PORT_STATE_OTHER,
+    IMPORTANCE_PORT_LIGHT,   // SCRATCH buffer struct importance_light[]
+    IMPORTANCE_PORT_LIGHT_OTHER,
     IMPORTANCE_PORT_TRACKS, // SCRATCH buffer vec2[]: sum of power times length, and times spread
     IMPORTANCE_PORT_SENT,   // SCRATCH buffer float[]: what leaves the medium along a direction, 1/sr
     IMPORTANCE_NUM_PORTS,

@@ -8,17 +8,16 @@
 #define MEDIUM_SIGMA_A 2
 #define MEDIUM_G 3
 #include "medium.glsl"
-#include "propagate.glsl"
 #include "importance.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 4, scalar) uniform grid_uniform { importance_grid grid; };
 layout(set = 0, binding = 5, scalar) writeonly buffer cells_buffer { importance_cell cells[]; };
-layout(set = 0, binding = 6, scalar) writeonly buffer state_buffer { vec4 state[]; };
+layout(set = 0, binding = 6, scalar) writeonly buffer light_buffer { importance_light light[]; };
 layout(set = 0, binding = 7, scalar) writeonly buffer tracks_buffer { vec2 tracks[]; };
 layout(push_constant, scalar) uniform push { importance_args args; };
 
-const int SAMPLES = 4; // along each edge of a cell
+const int SAMPLES = 3; // along each edge of a cell
 
 float mean(vec3 v)
 {
@@ -76,6 +75,7 @@ void main()
         power = cell.z == 0u ? coverage(low, high) : 0.0;
     }
     cells[index] = here;
-    state[index] = propagate_state(power, 0.0);
-    tracks[index] = vec2(power * here.along, 0.0);
+    vec2 track = vec2(0.0);
+    light[index] = importance_leave(here, power, 0.0, track);
+    tracks[index] = track;
 }

@@ -14,13 +14,14 @@ layout(push_constant, scalar) uniform push { importance_args args; };
 const float SHARPNESS = 36.0;
 const int REACH = 2; // rows; beyond, the weight is below 0.07
 
+shared vec3 directions[TYN_IMPORTANCE_TEXELS];
 shared float filtered[TYN_IMPORTANCE_TEXELS];
 shared float row_means[TYN_IMPORTANCE_HEIGHT];
 
 // The mean around a direction. All texels of the rows near by are asked, so that poles need no care.
 float around(uint texel)
 {
-    vec3 w = importance_direction(texel);
+    vec3 w = directions[texel];
     int row = int(texel / TYN_IMPORTANCE_WIDTH);
     int first = max(row - REACH, 0), last = min(row + REACH, TYN_IMPORTANCE_HEIGHT - 1);
     float sum = 0.0, total = 0.0;
@@ -28,7 +29,7 @@ float around(uint texel)
         float share = importance_share(uint(j));
         for (int i = 0; i < TYN_IMPORTANCE_WIDTH; i++) {
             uint other = uint(j * TYN_IMPORTANCE_WIDTH + i);
-            float weight = share * exp(SHARPNESS * (dot(w, importance_direction(other)) - 1.0));
+            float weight = share * exp(SHARPNESS * (dot(w, directions[other]) - 1.0));
             sum += weight * sent[other];
             total += weight;
         }
@@ -39,6 +40,8 @@ float around(uint texel)
 void main()
 {
     uint texel = gl_LocalInvocationID.x;
+    directions[texel] = importance_direction(texel);
+    barrier();
     float value = around(texel);
     filtered[texel] = value;
     barrier();

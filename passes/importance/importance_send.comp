@@ -4,7 +4,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "camera.glsl"
-#include "propagate.glsl"
 #include "importance.glsl"
 
 layout(local_size_x = TYN_IMPORTANCE_RAYS, local_size_y = 8) in;

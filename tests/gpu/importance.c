@@ -222,7 +222,7 @@ static void against_twin(void **state)
     compare(*state, s, "camera inside");
 
     s = noisy();
-    look(&s->camera, (float[]){3, 2, 4}, (float[]){-1, -0.6f, -1.2f}, 0.7f, 0.5f);
+    look(&s->camera, (float[]){3.1f, 2, 4}, (float[]){-1, -0.63f, -1.2f}, 0.7f, 0.5f);
     s->camera.orthographic = 1;
     compare(*state, s, "orthographic");
 

@@ -157,7 +157,7 @@ typedef struct cell {
 
 static cell cell_of(const twin_scene *s, const frustum *f, int x, int y, int z)
 {
-    enum { EACH = 4 };
+    enum { EACH = 3 };
     const int at[3] = {x, y, z}, n = s->cells;
     double mean = 0;
     for (int k = 0; k < EACH * EACH * EACH; k++) {
@@ -269,6 +269,7 @@ static double field_value(const void *data, int i)
 static double march(const twin_scene *s, const frustum *f, double (*field)[3], const double from[3],
                     const double w[3])
 {
+    enum { STEPS = 12 };
     double enter = -1e30, leave = 1e30, sum = 0, tau = 0;
     for (int i = 0; i < 3; i++) {
         double d = fabs(w[i]) < 1e-15 ? 1e-15 : w[i];
@@ -276,9 +277,9 @@ static double march(const twin_scene *s, const frustum *f, double (*field)[3], c
         enter = fmax(enter, fmin(a, b));
         leave = fmin(leave, fmax(a, b));
     }
-    double way = fmax(leave - enter, 0) / 16;
+    double way = fmax(leave - enter, 0) / STEPS;
     double w_camera[3] = {dot(w, s->right), dot(w, s->up), dot(w, s->forward)};
-    for (int i = 0; i < 16 && way > 0; i++) {
+    for (int i = 0; i < STEPS && way > 0; i++) {
         double p[3], q[3], at[3], value[3];
         for (int c = 0; c < 3; c++) {
             p[c] = from[c] + w[c] * (leave - (i + 0.5) * way);
