@@ -88,8 +88,8 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
 static const tyn_param params[] = {
     {"cells", TYN_PARAM_INT, FIELD_OF(cells), 16, 8, 32, "cells",
      "along each side of the grid in the camera's pyramid"},
-    {"iterations", TYN_PARAM_INT, FIELD_OF(iterations), 24, 1, 128, "",
-     "hops from cell to cell; at least as many as cells"},
+    {"iterations", TYN_PARAM_INT, FIELD_OF(iterations), 16, 1, 128, "",
+     "hops from cell to cell; as many as cells, more scatter too much"},
     {"smoothing", TYN_PARAM_FLOAT, FIELD_OF(smoothing), 0, 0, 0.95, "",
      "weight of the frames before; above 0 a picture depends on those rendered before it"},
     {"floor", TYN_PARAM_FLOAT, FIELD_OF(floor), 0.1, 0, 1, "",

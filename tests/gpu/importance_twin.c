@@ -311,8 +311,8 @@ static double march(const twin_scene *s, const frustum *f, double (*field)[3], c
 static double sent_along(const twin_scene *s, const frustum *f, double (*field)[3],
                          const double w[3])
 {
-    enum { RAYS = 8 };
-    // The frame of parallel rays is the pass's: rays of another frame give another 64-point mean.
+    enum { RAYS = 6 };
+    // The frame of parallel rays is the pass's: rays of another frame give another 36-point mean.
     double up[3] = {fabs(w[1]) < 0.7 ? 0 : 1, fabs(w[1]) < 0.7 ? 1 : 0, 0};
     double u[3], v[3], side[2] = {0, 0}, sum = 0;
     for (int i = 0; i < 3; i++) {
