@@ -1,47 +1,23 @@
-// merge.glsl -- what a cell of the lattice scatters towards the eye.
+// merge.glsl -- where merge keeps what each cell scatters towards the eye, and the way there.
 //
-// Include after lattice.glsl, with the bindings medium, camera, cells, moments and inscatter; define
-// MERGE_CHANNELS, 1 or 3.
+// Include after lattice.glsl and merge_args.h, with the push constants args.
+//
+// The buffer "field" has planes of one float per cell: J of each channel, before the clamp at 0, then
+// the largest sigma_s' of the channels.
 #ifndef TYN_MERGE_GLSL
 #define TYN_MERGE_GLSL
 
-// The field is linear in direction: (phi + 3 g' v.F) / 4 pi, v towards the eye.
-vec4 merge_towards_eye(lattice_box box, ivec3 c)
+uint merge_index(ivec3 cell, uint plane)
 {
-    vec3 p = lattice_to_m(box, vec3(c) + 0.5), v = camera.origin - p;
-    v = camera.orthographic != 0 ? -camera.forward : v / max(length(v), 1e-20);
-    vec4 j = vec4(0.0);
-    for (int ch = 0; ch < MERGE_CHANNELS; ch++) {
-        ivec3 texel = c + ivec3(0, 0, ch * box.dims.z);
-        vec4 m = texelFetch(moments, texel, 0);
-        j[ch] = max(m.x + 3.0 * texelFetch(cells, texel, 0).z * dot(v, m.yzw), 0.0) / 12.56637061;
-    }
-    return j;
+    uvec3 c = uvec3(cell);
+    return ((plane * args.dims.z + c.z) * args.dims.y + c.y) * args.dims.x + c.x;
 }
 
-// A ghost cell continues the two cells before it: 2 J_0 - J_1, along each axis where it is outside.
-void merge_texel(ivec3 texel)
+// Direction from the middle of a cell to the eye.
+vec3 merge_towards_eye(camera_block camera, lattice_box box, ivec3 cell)
 {
-    ivec3 dims = imageSize(inscatter) - 2;
-    if (any(greaterThanEqual(texel, dims + 2))) {
-        return;
-    }
-    lattice_box box = lattice_box_of(medium.extent, dims);
-    ivec3 c = texel - 1, near = clamp(c, ivec3(0), dims - 1);
-    ivec3 far = clamp(2 * near - c, ivec3(0), dims - 1);
-    ivec3 outside = ivec3(notEqual(c, near));
-    vec4 j = vec4(0.0);
-    for (int k = 0; k <= outside.z; k++) {
-        for (int l = 0; l <= outside.y; l++) {
-            for (int i = 0; i <= outside.x; i++) {
-                ivec3 q = ivec3(i == 0 ? near.x : far.x, l == 0 ? near.y : far.y, k == 0 ? near.z : far.z);
-                float w = (i == 0 ? 1.0 + outside.x : -1.0) * (l == 0 ? 1.0 + outside.y : -1.0) *
-                          (k == 0 ? 1.0 + outside.z : -1.0);
-                j += w * merge_towards_eye(box, q);
-            }
-        }
-    }
-    imageStore(inscatter, texel, vec4(max(j.rgb, vec3(0.0)), 1.0));
+    vec3 v = camera.origin - lattice_to_m(box, vec3(cell) + 0.5);
+    return camera.orthographic != 0 ? -camera.forward : v / max(length(v), 1e-20);
 }
 
 #endif

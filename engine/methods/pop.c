@@ -183,6 +183,9 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, field *f)
     tyn_merge_params params;
     tyn_settings_params(job->settings, &tyn_pass_merge, &params);
     params.channels = f->shape.channels;
+    memcpy(params.tint, f->shape.tint, sizeof params.tint);
+    params.mode = job->frame->medium.mode;
+    params.grey = job->frame->grey;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [MERGE_PORT_MEDIUM] = job->refs.medium,
         [MERGE_PORT_CAMERA] = job->refs.camera,
@@ -190,6 +193,7 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, field *f)
         [MERGE_PORT_MOMENTS] = f->moments,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_merge, &params, refs);
+    tyn_job_counters(g, job, "merge", refs[MERGE_PORT_COUNTERS]);
     f->picture.inscatter = refs[MERGE_PORT_INSCATTER];
     f->picture.one_channel = f->shape.channels == 1;
     memcpy(f->picture.tint, f->shape.tint, sizeof f->picture.tint);

@@ -1,5 +1,9 @@
-// merge.c -- the light field of the lattice for one view.
+// merge.c -- the light field of the lattice and of the ordinates for one view.
 #include "merge.h"
+#include "merge_args.h"
+#include "counters.h"
+#include "merge_cells.comp.h"
+#include "merge_ordinates.comp.h"
 #include "merge_one.comp.h"
 #include "merge_three.comp.h"
 
@@ -8,36 +12,98 @@ static const tyn_port ports[MERGE_NUM_PORTS] = {
     [MERGE_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "struct camera_block"},
     [MERGE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
     [MERGE_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
+    [MERGE_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, true, "struct ordinates_block"},
+    [MERGE_PORT_COLUMNS] = {"columns", TYN_IN, TYN_BUFFER, 0, true,
+                            "optical depths along the ordinates"},
+    [MERGE_PORT_TMS] = {"tms", TYN_IN, TYN_IMAGE_3D, 0, true, "kernels, of scatter_lut"},
+    [MERGE_PORT_LUT_BLOCK] = {"lut_block", TYN_IN, TYN_BUFFER, 0, true, "struct lut_block"},
     [MERGE_PORT_INSCATTER] = {"inscatter", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                               false,
                               "radiance scattered towards the eye per sigma_s', W/(m^2 sr); one "
                               "ghost cell around; R32F where one channel is solved"},
+    [MERGE_PORT_COUNTERS] = {"counters", TYN_OUT, TYN_BUFFER, 0, false, "struct counters_block"},
+    [MERGE_PORT_FIELD] = {"field", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                          "what each cell scatters towards the eye, before the clamp at 0"},
 };
 
-static const tyn_binding bindings[] = {
-    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},          {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
-    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},           {MERGE_PORT_MOMENTS, TYN_USE_SAMPLED},
+enum { KERNEL_CELLS, KERNEL_ORDINATES, KERNEL_ONE, KERNEL_THREE, NUM_KERNELS };
+
+static const tyn_binding cells_bindings[] = {
+    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},      {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
+    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},       {MERGE_PORT_MOMENTS, TYN_USE_SAMPLED},
+    {MERGE_PORT_FIELD, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_binding ordinates_bindings[] = {
+    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},    {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
+    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},     {MERGE_PORT_CELLS, TYN_USE_SAMPLED},
+    {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},  {MERGE_PORT_COLUMNS, TYN_USE_STORAGE_READ},
+    {MERGE_PORT_TMS, TYN_USE_SAMPLED},       {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},
+    {MERGE_PORT_ORDINATES, TYN_USE_UNIFORM},
+};
+
+static const tyn_binding ghosts_bindings[] = {
+    {MERGE_PORT_FIELD, TYN_USE_STORAGE_READ},
+    {MERGE_PORT_COUNTERS, TYN_USE_STORAGE_RW},
     {MERGE_PORT_INSCATTER, TYN_USE_STORAGE_WRITE},
 };
 
-enum { KERNEL_ONE, KERNEL_THREE, NUM_KERNELS };
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_ONE] =
-        {"merge_one", merge_one_spirv, sizeof merge_one_spirv, 0, {8, 4, 2}, bindings, 5, 0},
-    [KERNEL_THREE] =
-        {"merge_three", merge_three_spirv, sizeof merge_three_spirv, 0, {8, 4, 2}, bindings, 5, 0},
+    [KERNEL_CELLS] = {"cells",
+                      merge_cells_spirv,
+                      sizeof merge_cells_spirv,
+                      sizeof(struct merge_args),
+                      {8, 4, 2},
+                      cells_bindings,
+                      5,
+                      0},
+    [KERNEL_ORDINATES] = {"ordinates",
+                          merge_ordinates_spirv,
+                          sizeof merge_ordinates_spirv,
+                          sizeof(struct merge_args),
+                          {8, 4, 2},
+                          ordinates_bindings,
+                          9,
+                          3},
+    [KERNEL_ONE] = {"one",
+                    merge_one_spirv,
+                    sizeof merge_one_spirv,
+                    sizeof(struct merge_args),
+                    {8, 4, 2},
+                    ghosts_bindings,
+                    3,
+                    0},
+    [KERNEL_THREE] = {"three",
+                      merge_three_spirv,
+                      sizeof merge_three_spirv,
+                      sizeof(struct merge_args),
+                      {8, 4, 2},
+                      ghosts_bindings,
+                      3,
+                      0},
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_merge_params *p = params;
     tyn_extent dims = tyn_build_extent(b, MERGE_PORT_MOMENTS);
+    bool ordinates = tyn_build_has(b, MERGE_PORT_ORDINATES);
+    for (uint8_t port = MERGE_PORT_COLUMNS; port <= MERGE_PORT_LUT_BLOCK; port++) {
+        if (tyn_build_has(b, port) != ordinates) {
+            tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                          "merge: '%s' and '%s' must be connected both or neither",
+                          ports[MERGE_PORT_ORDINATES].name, ports[port].name);
+            return TYN_ERR_PARAMS;
+        }
+    }
     if (p->channels == 1) {
         tyn_build_format(b, MERGE_PORT_INSCATTER, VK_FORMAT_R32_SFLOAT);
     }
     tyn_build_image(b, MERGE_PORT_INSCATTER,
                     (tyn_extent){dims.x + 2, dims.y + 2, dims.z / p->channels + 2}, 1);
+    tyn_build_buffer(b, MERGE_PORT_COUNTERS, sizeof(struct counters_block));
+    tyn_build_buffer(b, MERGE_PORT_FIELD,
+                     4ull * dims.x * dims.y * (dims.z / p->channels) * (p->channels + 1));
     return TYN_OK;
 }
 
@@ -45,9 +111,22 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_merge_params *p = params;
     tyn_extent size = tyn_rec_extent(r, MERGE_PORT_INSCATTER);
-    uint32_t kernel = p->channels == 1 ? KERNEL_ONE : KERNEL_THREE;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = kernel, .cells = size});
-    tyn_rec_work(r, "cells", (double)size.x * size.y * size.z);
+    tyn_extent dims = {size.x - 2, size.y - 2, size.z - 2};
+    struct merge_args args = {.dims = {dims.x, dims.y, dims.z},
+                              .channels = p->channels,
+                              .tint = {p->tint[0], p->tint[1], p->tint[2]}};
+    tyn_rec_fill(r, MERGE_PORT_COUNTERS, 0);
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_CELLS, .cells = dims, .args = &args});
+    if (tyn_rec_has(r, MERGE_PORT_ORDINATES)) {
+        const uint32_t spec[3] = {p->mode, p->grey, p->channels};
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){
+                   .kernel = KERNEL_ORDINATES, .cells = dims, .args = &args, .spec = spec});
+    }
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = p->channels == 1 ? KERNEL_ONE : KERNEL_THREE,
+                                        .cells = size,
+                                        .args = &args});
+    tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z);
 }
 
 const tyn_pass_desc tyn_pass_merge = {

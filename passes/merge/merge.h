@@ -5,6 +5,9 @@
 
 typedef struct tyn_merge_params {
     uint32_t channels; // of `moments`: 1 or 3
+    float tint[3];     // of the one channel (see tyn_lattice_tint), else 1, 1, 1
+    uint32_t mode;     // TYN_MEDIUM_*, read where there are ordinates, as the next
+    uint32_t grey;     // 1: sigma_s, sigma_a and g are equal in all channels (mode DENSITY)
 } tyn_merge_params;
 
 enum {
@@ -12,8 +15,15 @@ enum {
     MERGE_PORT_CAMERA,    // IN buffer struct camera_block
     MERGE_PORT_CELLS,     // IN 3D, of lattice_cells
     MERGE_PORT_MOMENTS,   // IN 3D, of lattice
-    MERGE_PORT_INSCATTER, // OUT 3D RGBA32F (one channel: R32F), dims + 2: J = max(0, phi + 3 g' v.F) / (4 pi), W/(m^2 sr), v the
-                          // direction from the cell to the eye; sample at lattice_inscatter_uvw
+    MERGE_PORT_ORDINATES, // IN optional buffer struct ordinates_block; all four or none
+    MERGE_PORT_COLUMNS,   // IN optional buffer, of columns
+    MERGE_PORT_TMS,       // IN optional 3D, of scatter_lut
+    MERGE_PORT_LUT_BLOCK, // IN optional buffer struct lut_block
+    MERGE_PORT_INSCATTER, // OUT 3D RGBA32F (one channel: R32F), dims + 2: J = max(0, (phi + 3 g' v.F) / (4 pi)
+    // + sum over ordinates of E e^-tau' k), W/(m^2 sr), v the direction from the cell to
+    // the eye, k of tms.glsl; sample at lattice_inscatter_uvw
+    MERGE_PORT_COUNTERS, // OUT buffer struct counters_block: cells that were clamped or not finite
+    MERGE_PORT_FIELD,    // SCRATCH buffer: J of the cells
     MERGE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_merge;

@@ -1,28 +1,35 @@
-// merge_three.comp -- radiance that a cell scatters towards the eye, per sigma_s', of three
-// channels.
+// merge_three.comp -- radiance that a cell scatters towards the eye, per sigma_s', of three channels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "scene_args.h"
+#include "counters.h"
+#include "merge_args.h"
 #include "lattice.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(binding = 0, scalar) uniform medium_uniform
+layout(push_constant, scalar) uniform push
 {
-    medium_block medium;
+    merge_args args;
 };
-layout(binding = 1, scalar) uniform camera_uniform
+layout(binding = 0, scalar) readonly buffer field_buffer
 {
-    camera_block camera;
+    float field[];
 };
-layout(binding = 2) uniform sampler3D cells;
-layout(binding = 3) uniform sampler3D moments;
-layout(binding = 4, rgba32f) uniform writeonly image3D inscatter;
+layout(binding = 1, scalar) buffer counters_buffer
+{
+    counters_block counters;
+};
+layout(binding = 2, rgba32f) uniform writeonly image3D inscatter;
 
-#define MERGE_CHANNELS 3
+#define MERGE_CHANNELS 3u
 #include "merge.glsl"
+#include "merge_ghosts.glsl"
 
 void main()
 {
-    merge_texel(ivec3(gl_GlobalInvocationID));
+    ivec3 texel = ivec3(gl_GlobalInvocationID);
+    if (all(lessThan(texel, ivec3(args.dims) + 2))) {
+        imageStore(inscatter, texel, merge_texel(texel));
+    }
 }

@@ -1,6 +1,7 @@
 // tms.c -- the table of light scattered from cones against the double precision series.
 #include "gpu_test.h"
 #include "passes/scatter_lut/scatter_lut.h"
+#include "lobe_series.h"
 #include "point_pass.h"
 #include "tms_eval.comp.h"
 #include <math.h>
@@ -8,96 +9,6 @@
 #include <stdlib.h>
 
 #define PI 3.14159265358979323846
-
-enum { TERMS = 1300 };
-
-// ---- the series, straight from its definition -----------------------------------------------------
-
-typedef struct series {
-    double g, f;
-    int terms;
-    double lobe[TERMS], rest[TERMS]; // F_l, g^l - F_l
-} series;
-
-static double phase(double g, double theta)
-{
-    double s = sin(0.5 * theta);
-    return (1 - g * g) / (4 * PI * pow((1 - g) * (1 - g) + 4 * g * s * s, 1.5));
-}
-
-static double window(double theta_1, double theta)
-{
-    double x = theta / theta_1 - 0.5;
-    return x <= 0 ? 1 : x >= 1 ? 0 : 1 - x * x * (3 - 2 * x);
-}
-
-// sum = 2 pi int p h dmu; with `s` also the moments. Simpson in theta^(1/2), even over peak and tail.
-static double integrate_lobe(double g, double theta_1, series *s)
-{
-    const int n = 6000;
-    double total = 0, end = sqrt(1.5 * theta_1);
-    for (int q = 1; q <= n; q++) {
-        double root = end * q / n, theta = root * root, mu = cos(theta);
-        double w = (q == n  ? 1
-                    : q % 2 ? 4
-                            : 2) *
-                   end / n / 3 * 2 * root * 2 * PI * phase(g, theta) * window(theta_1, theta) *
-                   sin(theta);
-        total += w;
-        double before = 1, p = mu;
-        for (int l = 0; s && l < s->terms; l++) {
-            s->lobe[l] += w * before;
-            double next = ((2 * l + 3) * mu * p - (l + 1) * before) / (l + 2);
-            before = p;
-            p = next;
-        }
-    }
-    return total;
-}
-
-static void series_make(series *s, double g)
-{
-    *s = (series){.g = g, .f = g > 0 ? g * g : 0, .terms = (int)(12 / (1 - fabs(g))) + 64};
-    if (s->f > 0) {
-        double lo = 0, hi = 2;
-        for (int i = 0; i < 45; i++) { // half width that holds the fraction f
-            double middle = 0.5 * (lo + hi);
-            *(integrate_lobe(g, middle, NULL) < s->f ? &lo : &hi) = middle;
-        }
-        integrate_lobe(g, lo, s);
-    }
-    double power = 1;
-    for (int l = 0; l < s->terms; l++, power *= g) {
-        s->rest[l] = power - s->lobe[l];
-    }
-}
-
-// Average of P_l over a cone that covers `part` of the sphere.
-static void cone_moments(double part, int terms, double *c)
-{
-    double x = 1 - 2 * part, before = 1, p = x;
-    c[0] = 1;
-    for (int l = 1; l < terms; l++) {
-        double next = ((2 * l + 1) * x * p - l * before) / (l + 1);
-        c[l] = part > 0 ? (before - next) / ((2 * l + 1) * (1 - x)) : 1;
-        before = p;
-        p = next;
-    }
-}
-
-// Kt e^{tau (1 - f)} / (1 - f).
-static double kernel(const series *s, const double *c, double tau, double mu)
-{
-    double before = 1, p = mu, sum = 0;
-    for (int l = 0; l < s->terms; l++) {
-        sum +=
-            (2 * l + 1) / (4 * PI) * before * c[l] * s->rest[l] * exp(-tau * (s->f - s->lobe[l]));
-        double next = ((2 * l + 3) * mu * p - (l + 1) * before) / (l + 2);
-        before = p;
-        p = next;
-    }
-    return sum / (1 - s->f);
-}
 
 // ---- the table at points --------------------------------------------------------------------------
 
@@ -155,13 +66,14 @@ static void fill_points(point *points, uint32_t channel, double g, double part, 
 }
 
 // Largest error relative to the largest value at that depth. NaN and negative values count as 1e30.
-static double worst_error(const series *s, const double *c, const point *points, const float *got)
+static double worst_error(const lobe_series *s, const double *c, const point *points,
+                          const float *got)
 {
     double worst = 0;
     for (int d = 0; d < DEPTHS; d++) {
         double expected[ANGLES], peak = 0;
         for (int a = 0; a < ANGLES; a++) {
-            expected[a] = kernel(s, c, points[d * ANGLES + a].tau, points[d * ANGLES + a].mu);
+            expected[a] = lobe_kernel(s, c, points[d * ANGLES + a].tau, points[d * ANGLES + a].mu);
             peak = fmax(peak, expected[a]);
         }
         for (int a = 0; a < ANGLES; a++) {
@@ -181,8 +93,8 @@ static void cones(void **state)
     gpu_test *t = *state;
     enum { CONES = 2 * TYN_TMS_CONES - 1 };
     static point points[3][CONES][DEPTHS * ANGLES];
-    static series s;
-    static double c[TERMS];
+    static lobe_series s;
+    static double c[LOBE_TERMS];
     uint32_t seed = 5;
     for (int set = 0; set < SETS; set++) {
         tyn_scatter_lut_params params = {
@@ -196,10 +108,10 @@ static void cones(void **state)
         const float *got = evaluate(t, &params, points[0][0], sizeof points / sizeof(point), 0);
         printf("built in %.2f ms\n", gpu_ms(t, "scatter_lut"));
         for (int ch = 0; ch < 3; ch++) {
-            series_make(&s, gs[set][ch]);
+            lobe_series_make(&s, gs[set][ch]);
             double at = 0, between = 0;
             for (int i = 0; i < CONES; i++) {
-                cone_moments(points[ch][i][0].part, s.terms, c);
+                lobe_cone(points[ch][i][0].part, s.terms, c);
                 double error =
                     worst_error(&s, c, points[ch][i], got + (ch * CONES + i) * DEPTHS * ANGLES);
                 float part = points[ch][i][0].part;
@@ -224,7 +136,7 @@ static void sums_over_directions(void **state)
     gpu_test *t = *state;
     enum { CASES = 12, STEPS = 3000 };
     static point points[3][CASES][STEPS];
-    static series s;
+    static lobe_series s;
     uint32_t seed = 11;
     for (int set = 0; set < SETS; set++) {
         tyn_scatter_lut_params params = {
@@ -242,7 +154,7 @@ static void sums_over_directions(void **state)
         }
         const float *got = evaluate(t, &params, points[0][0], sizeof points / sizeof(point), 0);
         for (int ch = 0; ch < 3; ch++) {
-            series_make(&s, gs[set][ch]);
+            lobe_series_make(&s, gs[set][ch]);
             double worst[2] = {0, 0};
             for (int i = 0; i < CASES; i++) {
                 const point *p = points[ch][i];
@@ -271,13 +183,13 @@ static void spread_rows(void **state)
     gpu_test *t = *state;
     static const double spread[] = {-0.4, 0, 0.03, 0.2, 0.5, 0.77, 0.9, 0.94};
     static point points[DEPTHS * ANGLES];
-    static series s;
-    static double c[TERMS];
+    static lobe_series s;
+    static double c[LOBE_TERMS];
     uint32_t seed = 3;
     tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_COEFFICIENTS, .g_max = 0.95f, .tms = 1};
     for (size_t n = 0; n < sizeof spread / sizeof *spread; n++) {
         double g = spread[n];
-        series_make(&s, g);
+        lobe_series_make(&s, g);
         fill_points(points, 0, g, 9 / 529.0, &seed);
         for (int i = 0; i < DEPTHS * ANGLES; i++) {
             points[i].g = (float)g;
@@ -287,7 +199,7 @@ static void spread_rows(void **state)
         if (n == 0) {
             printf("built in %.2f ms\n", gpu_ms(t, "scatter_lut"));
         }
-        cone_moments(points[0].part, s.terms, c);
+        lobe_cone(points[0].part, s.terms, c);
         double error = worst_error(&s, c, points, got);
         printf("spread g %5.2f: largest error %.3f %% of the peak\n", g, 100 * error);
         assert_true(error < 0.03);

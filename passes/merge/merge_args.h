@@ -1,0 +1,12 @@
+// merge_args.h -- push constants of the merge kernels. Included by C and GLSL.
+#ifndef TYN_MERGE_ARGS_H
+#define TYN_MERGE_ARGS_H
+#include "shared.h"
+
+struct merge_args {
+    tyn_uvec3 dims; // cells
+    tyn_uint channels;
+    tyn_vec3 tint; // of the one channel
+};
+
+#endif

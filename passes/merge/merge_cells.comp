@@ -1,0 +1,46 @@
+// merge_cells.comp -- what a cell scatters towards the eye of the light that has scattered before.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "scene_args.h"
+#include "merge_args.h"
+#include "lattice.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(push_constant, scalar) uniform push
+{
+    merge_args args;
+};
+layout(binding = 0, scalar) uniform medium_uniform
+{
+    medium_block medium;
+};
+layout(binding = 1, scalar) uniform camera_uniform
+{
+    camera_block camera;
+};
+layout(binding = 2) uniform sampler3D cells;
+layout(binding = 3) uniform sampler3D moments;
+layout(binding = 4, scalar) writeonly buffer field_buffer
+{
+    float field[];
+};
+#include "merge.glsl"
+
+void main()
+{
+    ivec3 c = ivec3(gl_GlobalInvocationID), dims = ivec3(args.dims);
+    if (any(greaterThanEqual(c, dims))) {
+        return;
+    }
+    // The field is linear in direction: (phi + 3 g' v.F) / 4 pi, v towards the eye.
+    vec3 v = merge_towards_eye(camera, lattice_box_of(medium.extent, dims), c);
+    float most = 0.0;
+    for (int ch = 0; ch < int(args.channels); ch++) {
+        ivec3 texel = c + ivec3(0, 0, ch * dims.z);
+        vec4 cell = texelFetch(cells, texel, 0), m = texelFetch(moments, texel, 0);
+        field[merge_index(c, uint(ch))] = (m.x + 3.0 * cell.z * dot(v, m.yzw)) / 12.56637061;
+        most = max(most, cell.x);
+    }
+    field[merge_index(c, args.channels)] = most;
+}

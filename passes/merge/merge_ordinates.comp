@@ -1,0 +1,122 @@
+// merge_ordinates.comp -- adds what a cell scatters towards the eye of the ordinates' unscattered light.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 2 // not read
+#include "medium.glsl"
+#define COLUMNS_BUFFER 5
+#include "columns.glsl"
+#define TMS 6
+#define SCATTER_LUT_BLOCK 7
+#include "tms.glsl"
+#include "merge_args.h"
+#include "ordinate_args.h"
+#include "lattice.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(constant_id = 1) const bool grey = false; // all channels of the medium are equal
+layout(constant_id = 2) const uint channels = 3;
+layout(push_constant, scalar) uniform push
+{
+    merge_args args;
+};
+layout(binding = 1, scalar) uniform camera_uniform
+{
+    camera_block camera;
+};
+layout(binding = 3) uniform sampler3D cells;
+layout(binding = 4, scalar) buffer field_buffer
+{
+    float field[];
+};
+layout(binding = 8, scalar) uniform ordinates_uniform
+{
+    ordinates_block ordinates;
+};
+#include "merge.glsl"
+
+// Does the picture read this cell? It does so around every cell that scatters.
+bool is_read(ivec3 c, ivec3 dims)
+{
+    ivec3 lo = max(c - 1, ivec3(0)), hi = min(c + 1, dims - 1);
+    float most = 0.0;
+    for (int z = lo.z; z <= hi.z; z++) {
+        for (int y = lo.y; y <= hi.y; y++) {
+            for (int x = lo.x; x <= hi.x; x++) {
+                most = max(most, field[merge_index(ivec3(x, y, z), channels)]);
+            }
+        }
+    }
+    return most > 0.0;
+}
+
+// k e^-tau' of an ordinate, per channel.
+vec3 grey_share(uint n, uvec3 cell, beam_tau unit, tms_row row, float mu, float level)
+{
+    float column = columns_density(n, cell, args.dims);
+    return vec3(exp(-(unit.a.r + unit.p.r) * column) * tms_kernel(row, mu, unit.s.r * column, level));
+}
+
+vec3 coloured_share(uint n, uvec3 cell, beam_tau unit, tms_row row[3], float mu, float level)
+{
+    float column = columns_density(n, cell, args.dims);
+    vec3 k = exp(-(unit.a + unit.p) * column);
+    for (int ch = 0; ch < 3; ch++) {
+        k[ch] *= tms_kernel(row[ch], mu, unit.s[ch] * column, level);
+    }
+    return k;
+}
+
+vec3 mixed_share(uint n, uvec3 cell, vec3 g, float mu, float level, float mean_cosine)
+{
+    beam_tau tau = columns_tau(n, cell, args.dims);
+    vec3 k = exp(-(tau.a + tau.p));
+    for (int ch = 0; ch < 3; ch++) {
+        k[ch] *= tms_kernel_mixed(g[ch], mu, tau.s[ch], tau.p[ch], level, mean_cosine);
+    }
+    return k;
+}
+
+void main()
+{
+    ivec3 c = ivec3(gl_GlobalInvocationID), dims = ivec3(args.dims);
+    if (any(greaterThanEqual(c, dims))) {
+        return;
+    }
+    vec3 v = merge_towards_eye(camera, lattice_box_of(medium.extent, dims), c);
+    beam_tau unit = beam_of_column(1.0);
+    tms_row row[3];
+    for (uint ch = 0u; ch < 3u; ch++) {
+        row[ch] = tms_row_of_channel(ch);
+    }
+    vec3 g = vec3(0.0); // of the cell
+    if (medium_mode == TYN_MEDIUM_COEFFICIENTS) {
+        for (int ch = 0; ch < 3; ch++) {
+            float scaled = texelFetch(cells, c + ivec3(0, 0, min(ch, int(channels) - 1) * dims.z), 0).z;
+            g[ch] = scaled > 0.0 ? scaled / (1.0 - scaled) : scaled;
+        }
+    }
+    vec3 sum = vec3(0.0);
+    uint count = is_read(c, dims) ? min(ordinates.count, uint(TYN_ORDINATES_MAX)) : 0u;
+    for (uint n = 0u; n < count; n++) {
+        ordinate o = ordinates.list[n];
+        float mu = dot(o.direction, v), level = tms_level(1.0 - o.mean_cosine);
+        vec3 share;
+        if (medium_mode == TYN_MEDIUM_COEFFICIENTS) {
+            share = mixed_share(n, uvec3(c), g, mu, level, o.mean_cosine);
+        } else if (grey) {
+            share = grey_share(n, uvec3(c), unit, row[0], mu, level);
+        } else {
+            share = coloured_share(n, uvec3(c), unit, row, mu, level);
+        }
+        sum += o.irradiance * share;
+    }
+    if (channels == 1u) {
+        field[merge_index(c, 0u)] += dot(sum, args.tint) / dot(args.tint, args.tint);
+    } else {
+        for (uint ch = 0u; ch < 3u; ch++) {
+            field[merge_index(c, ch)] += sum[ch];
+        }
+    }
+}
