@@ -4,6 +4,7 @@
 #include "passes/columns/columns.h"
 #include "passes/composite/composite.h"
 #include "passes/env_glow/env_glow.h"
+#include "passes/env_importance/env_importance.h"
 #include "passes/importance/importance.h"
 #include "passes/lattice/lattice.h"
 #include "passes/medium/medium.h"
@@ -32,6 +33,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_propagate_rect,
     &tyn_pass_merge_grids,
     &tyn_pass_upsample,
+    &tyn_pass_env_importance,
     &tyn_pass_importance,
     &tyn_pass_env_glow,
     &tyn_pass_raymarch,
