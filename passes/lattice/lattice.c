@@ -384,7 +384,7 @@ static void record(tyn_recorder *r, const void *params)
 static const tyn_param param_table[] = {
     {"cells", TYN_PARAM_INT, offsetof(tyn_lattice_params, shape.cells), 32, 4,
      TYN_LATTICE_MAX_CELLS, "cells", "lattice cells along the longest side of the medium", NULL},
-    {"sweeps", TYN_PARAM_INT, offsetof(tyn_lattice_params, sweeps), 4, 1, 64, "",
+    {"sweeps", TYN_PARAM_INT, offsetof(tyn_lattice_params, sweeps), 4, 1, 256, "",
      "iterations of the solve; the error falls about tenfold with each two", NULL},
     {"cycles", TYN_PARAM_INT, offsetof(tyn_lattice_params, cycles), 2, 0, 8, "",
      "multigrid cycles of the diffusion correction after each sweep; 0 = no correction", NULL},

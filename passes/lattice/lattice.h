@@ -95,7 +95,7 @@ extern const tyn_pass_desc tyn_pass_lattice_sky;
 
 typedef struct tyn_lattice_params {
     tyn_lattice_shape shape; // shape.cells is the user's "lattice.cells"
-    int32_t sweeps;          // 1..64
+    int32_t sweeps;          // 1..256
     int32_t cycles;          // V-cycles of the diffusion correction after each sweep, 0..8
     uint32_t anderson;       // 1: mix the last three sweeps
 } tyn_lattice_params;

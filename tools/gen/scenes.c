@@ -223,18 +223,21 @@ const gen_scene gen_scenes[] = {
     },
     {
         .name = "milk",
-        .about = "a hare of milk, 0.4 m high, with the coefficients of Elek et al. 2014, figure 8, "
-                 "taken per mm; a density scale of 0.01 gives the optical size of their 4 m dragon",
+        .about =
+            "a hare of milk, 0.7 m high, with the coefficients of Elek et al. 2014, figure 8, "
+            "taken per mm; a density scale of 1/175 gives the optical size of their 4 m dragon",
         .media = {{.name = "milk",
                    .scattering = {910, 1070, 1250},
                    .absorption = {0.15f, 0.35f, 0.9f},
                    .anisotropy = 0.95f,
                    .density = HARE}},
-        .shapes = {{.name = "hare", .translation = {0, 0.2f, 0}, .scale = {0.3f, 0.4f, 0.35f}}},
+        .shapes = {{.name = "hare",
+                    .translation = {0, 0.35f, 0},
+                    .scale = {0.525f, 0.7f, 0.6125f}}},
         .cameras =
-            {{.name = "view", .from = {0.5f, 0.3f, 0.9f}, .at = {0, 0.19f, 0}, .yfov = 0.45f}},
+            {{.name = "view", .from = {0.84f, 0.14f, 1.63f}, .at = {0, 0.36f, 0}, .yfov = 0.46f}},
         .environment = true,
-        .environment_uri = "courtyard.exr",
+        .environment_uri = "clear-sky.exr",
         .environment_radiance = {1, 1, 1},
     },
     {
