@@ -37,9 +37,9 @@ static const tyn_binding coefficients_bindings[] = {
     {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM}, {COLUMNS_PORT_NODES, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding gather_bindings[] = {
-    {COLUMNS_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM},
-    {COLUMNS_PORT_NODES, TYN_USE_STORAGE_READ},
+    {COLUMNS_PORT_MEDIUM, TYN_USE_UNIFORM},        {COLUMNS_PORT_DENSITY, TYN_USE_SAMPLED},
+    {COLUMNS_PORT_SIGMA_A, TYN_USE_SAMPLED},       {COLUMNS_PORT_G, TYN_USE_SAMPLED},
+    {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM},     {COLUMNS_PORT_NODES, TYN_USE_STORAGE_READ},
     {COLUMNS_PORT_COLUMNS, TYN_USE_STORAGE_WRITE},
 };
 
@@ -66,7 +66,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                        sizeof(struct columns_args),
                        {8, 8, 1},
                        gather_bindings,
-                       4,
+                       7,
                        1},
 };
 
@@ -80,7 +80,7 @@ static void grid_size(const tyn_columns_params *p, uint32_t *columns, uint32_t *
 {
     *columns = *nodes = 0;
     for (int w = 0; w < 3; w++) {
-        uint32_t c = (p->dims[(w + 1) % 3] + 2) * (p->dims[(w + 2) % 3] + 2);
+        uint32_t c = (p->dims[(w + 1) % 3] + 1) * (p->dims[(w + 2) % 3] + 1);
         *columns = c > *columns ? c : *columns;
         *nodes = c * p->dims[w] > *nodes ? c * p->dims[w] : *nodes;
     }
@@ -135,11 +135,12 @@ static void record(tyn_recorder *r, const void *params)
                                .cells = {columns, 1, ordinates},
                                .args = &args,
                                .spec = &p->mode});
+        uint32_t rows = p->dims[1] > p->dims[2] ? p->dims[1] : p->dims[2];
         tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_GATHER,
-                                            .cells = {(p->dims[0] + 1) / 2, p->dims[1],
-                                                      p->dims[2] * num_components * ordinates},
+                                            .cells = {(p->dims[0] + 1) / 2, rows,
+                                                      num_components * ordinates},
                                             .args = &args,
-                                            .spec = &num_components});
+                                            .spec = &p->mode});
     }
 
     tyn_extent texels = tyn_rec_extent(r, COLUMNS_PORT_DENSITY);

@@ -1,16 +1,20 @@
-// columns_gather.comp -- from the columns to the cells; x: two cells, y, z: cells, the components and
-// ordinates of the batch above each other along z.
+// columns_gather.comp -- from the columns to the cells; x: two cells, y: row across the axis v of the
+// ordinate's grid, along which a thread goes; z: components of the ordinates of the batch.
 //
-// The ray to a cell's centre lies between four columns, all the way. It enters the box where they may
-// be beside it still; there they run through the medium of the faces. That integral C has no kinks
-// where neighbouring rays enter through different faces, as the depth itself has, so it may be
-// interpolated between columns; the depth is C(cell) - C(entry).
+// A cell's ray lies between four columns, so the depth is interpolated between theirs. Where neighbouring
+// rays enter the box through different faces the depth has a kink: there the columns have, together, not
+// gone as far through the box as the ray. What they lack is the medium at the ray's entry times that
+// distance; without it the edges of a box of medium would show.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "scene_args.h"
 #include "ordinate_args.h"
 #include "columns_args.h"
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 1
+#define MEDIUM_SIGMA_A 2
+#define MEDIUM_G 3
+#include "medium.glsl"
 #include "lattice.glsl"
 #include "columns_grid.glsl"
 
@@ -19,105 +23,122 @@ layout(push_constant, scalar) uniform push
 {
     columns_args args;
 };
-layout(binding = 0, scalar) uniform medium_uniform
-{
-    medium_block medium;
-};
-layout(binding = 1, scalar) uniform ordinates_uniform
+layout(binding = 4, scalar) uniform ordinates_uniform
 {
     ordinates_block ordinates;
 };
-layout(binding = 2, scalar) readonly buffer node_buffer
+layout(binding = 5, scalar) readonly buffer node_buffer
 {
     float nodes[]; // [ordinate][component][slice][v][u]
 };
-layout(binding = 3, scalar) writeonly buffer columns_buffer
+layout(binding = 6, scalar) writeonly buffer columns_buffer
 {
     uint columns_words[]; // columns.glsl
 };
 
-layout(constant_id = 0) const uint num_components = 1;
+const uint num_components = medium_mode == TYN_MEDIUM_DENSITY ? 1u : COLUMNS_COMPONENTS;
 
-// The four columns around a ray, at a slice.
-struct corners {
-    ivec2 lo, hi;    // columns along u and v
-    vec2 t;          // weight of hi
-    ivec2 place;     // of lo in the slice of the cell
-    ivec2 shift;     // cells that columns have moved by there
-};
-
-float between(columns_grid grid, corners c, uint base, int slice, vec4 keep)
+float component_at(uint component, vec3 uvw)
 {
-    float a = keep.x * nodes[base + columns_node(grid, slice, c.lo)];
-    float b = keep.y * nodes[base + columns_node(grid, slice, ivec2(c.hi.x, c.lo.y))];
-    float d = keep.z * nodes[base + columns_node(grid, slice, ivec2(c.lo.x, c.hi.y))];
-    float e = keep.w * nodes[base + columns_node(grid, slice, c.hi)];
-    return mix(mix(a, b, c.t.x), mix(d, e, c.t.x), c.t.y);
-}
-
-// 0 for columns that at an earlier slice were not yet in the grid: their integral begins after it.
-vec4 present(columns_grid grid, corners c, int slice)
-{
-    ivec2 place = c.place + ivec2(floor(grid.shear * float(slice))) - c.shift;
-    vec2 lo = mix(vec2(0.0), vec2(1.0), greaterThanEqual(place, ivec2(0)));
-    vec2 hi = mix(vec2(0.0), vec2(1.0), greaterThanEqual(place, ivec2(-1)));
-    return vec4(lo.x * lo.y, hi.x * lo.y, lo.x * hi.y, hi.x * hi.y);
-}
-
-float depth(columns_grid grid, ivec3 cell, uint base)
-{
-    ivec3 q = mix(cell, ivec3(args.dims) - 1 - cell, grid.reverse);
-    q = ivec3(q[grid.u], q[grid.v], q[grid.w]);
-    vec2 offset = grid.shear * float(q.z);
-    corners c;
-    c.shift = ivec2(floor(offset));
-    c.place = q.xy + 1;
-    c.lo = columns_wrap(c.place - c.shift, grid.count);
-    c.hi = mix(c.lo + 1, ivec2(0), equal(c.lo + 1, grid.count));
-    c.t = 1.0 - fract(offset);
-    float sum = between(grid, c, base, q.z, vec4(1.0));
-
-    // Slices back to where the ray comes in through a face at the side; at the front C is 0.
-    vec2 aside = (vec2(q.xy) + 0.5 - grid.low.xy) / max(grid.shear, vec2(1e-12));
-    float entry = float(q.z) - min(aside.x, aside.y);
-    for (int side = 0; side < (entry > grid.front ? 1 : 0); side++) {
-        int slice = min(int(floor(entry)), q.z - 1);
-        float after = between(grid, c, base, slice + 1, present(grid, c, slice + 1));
-        if (slice >= 0) {
-            float before = between(grid, c, base, max(slice, 0), present(grid, c, slice));
-            sum -= mix(before, after, entry - float(slice));
-        } else {
-            sum -= after * (entry - grid.front) / -grid.front;
-        }
+    vec3 sigma_s = textureLod(medium_density_tex, uvw, 0.0).rgb;
+    if (medium_mode == TYN_MEDIUM_DENSITY) {
+        return sigma_s.r;
     }
-    return max(sum, 0.0);
+    vec3 sigma_a = textureLod(medium_sigma_a_tex, uvw, 0.0).rgb;
+    vec3 g = textureLod(medium_g_tex, uvw, 0.0).rgb;
+    similarity_clamp(sigma_s, g);
+    vec3 value = component < 3u ? sigma_s
+                                : component < 6u ? sigma_a : sigma_s * (1.0 - delta_fraction(g));
+    return value[component % 3u];
 }
 
-// Square roots, for the range of halves.
-float encoded(float x)
+// x mod n for whole numbers -8192 < x < 8192.
+ivec2 wrapped(ivec2 x, int n)
 {
-    return x < 4e9 ? sqrt(x) : isnan(x) ? 0.0 : 65504.0;
+    return x - n * ivec2(floor((vec2(x) + 0.5) / float(n)));
+}
+
+// Square roots, for the range of halves; rounded here to what a half holds, as packing may truncate.
+vec2 encoded(vec2 x)
+{
+    vec2 root = mix(sqrt(clamp(x, 0.0, 4.29e9)), vec2(0.0), isnan(x));
+    return uintBitsToFloat((floatBitsToUint(root) + 0x1000u) & 0xFFFFE000u);
 }
 
 void main()
 {
-    uint layer = gl_WorkGroupID.z / args.dims.z, component = layer % num_components;
-    uint local = layer / num_components, n = args.first + local;
+    uint local = gl_WorkGroupID.z / num_components, component = gl_WorkGroupID.z % num_components;
+    uint n = args.first + local;
     if (n >= ordinates.count) {
         return;
     }
-    ivec3 cell = ivec3(2 * gl_GlobalInvocationID.x, gl_GlobalInvocationID.y, gl_WorkGroupID.z % args.dims.z);
-    if (any(greaterThanEqual(cell, ivec3(args.dims)))) {
+    ivec3 dims = ivec3(args.dims);
+    columns_grid grid = columns_grid_of(ordinates.list[n].direction, lattice_box_of(medium.extent, dims));
+    int word_x = int(gl_GlobalInvocationID.x), across = int(gl_GlobalInvocationID.y);
+    int row = (dims.x + 1) / 2;
+    if (word_x >= row || across >= dims[grid.v == 1 ? 2 : 1]) {
         return;
     }
-    lattice_box box = lattice_box_of(medium.extent, ivec3(args.dims));
-    columns_grid grid = columns_grid_of(ordinates.list[n].direction, box);
+    // In each pair of numbers that follow is one for each of the two cells.
+    ivec3 cell_x = ivec3(2 * word_x, across, across);
+    ivec3 cell_y = ivec3(min(2 * word_x + 1, dims.x - 1), across, across);
+    cell_x = mix(cell_x, dims - 1 - cell_x, grid.reverse);
+    cell_y = mix(cell_y, dims - 1 - cell_y, grid.reverse);
+    ivec2 u = ivec2(cell_x[grid.u], cell_y[grid.u]), slice = ivec2(cell_x[grid.w], cell_y[grid.w]);
+    vec2 offset_u = grid.shear.x * vec2(slice), offset_v = grid.shear.y * vec2(slice);
+    vec2 u0 = vec2(u) - 0.5 + fract(offset_u), v0 = fract(offset_v) - 0.5; // lower columns
+    vec2 t_u = 1.0 - fract(offset_u), t_v = 1.0 - fract(offset_v);         // weights of the upper ones
+    ivec2 lo = wrapped(u - ivec2(offset_u), grid.count.x);
+    ivec2 hi = mix(lo + 1, ivec2(0), equal(lo + 1, ivec2(grid.count.x)));
+    ivec2 m = wrapped(-ivec2(offset_v), grid.count.y);
+    vec2 u0_inside = (u0 - grid.low.x) * grid.per_cell.x;
+    vec2 u1_inside = u0_inside + grid.per_cell.x;
+    vec2 u_inside = (vec2(u) + 0.5 - grid.low.x) * grid.per_cell.x;
+
     uint base = local * args.stride + component * (args.stride / num_components);
-    vec2 pair;
-    pair.x = encoded(depth(grid, cell, base));
-    pair.y = encoded(depth(grid, ivec3(min(cell.x + 1, int(args.dims.x) - 1), cell.yz), base));
-    uint row = (args.dims.x + 1u) / 2u;
-    uint plane = (n * num_components + component) * args.dims.z + uint(cell.z);
-    columns_words[(plane * args.dims.y + uint(cell.y)) * row + gl_GlobalInvocationID.x] =
-        packHalf2x16(pair);
+    ivec2 first = int(base) + slice * (grid.count.x * grid.count.y);
+    int v_stride = grid.v == 1 ? row : row * dims.y; // words
+    int cell_v = grid.reverse[grid.v] ? grid.size.y - 1 : 0;
+    uint plane = (n * num_components + component) * args.dims.z;
+    uint word = (grid.v == 1 ? (plane + across) * args.dims.y : plane * args.dims.y + across) * row +
+                uint(word_x + cell_v * v_stride);
+    v_stride = grid.reverse[grid.v] ? -v_stride : v_stride;
+
+    // A box that is one cell thin has no columns in it to look between: its rays are marched.
+    bool thin = grid.size.x == 1 || grid.size.y == 1;
+    int samples = columns_samples(grid);
+    vec2 before = vec2(0.0), before_inside = vec2(0.0);
+    for (int v = 0; v <= grid.size.y; v++) { // columns, and the cell after the first of two
+        ivec2 at = first + m * grid.count.x;
+        vec2 here = vec2(mix(nodes[at.x + lo.x], nodes[at.x + hi.x], t_u.x),
+                         mix(nodes[at.y + lo.y], nodes[at.y + hi.y], t_u.y));
+        m = mix(m + 1, ivec2(0), equal(m + 1, ivec2(grid.count.y)));
+        vec2 along_v = (float(v) + v0 - grid.low.y) * grid.per_cell.y;
+        vec2 here_inside = mix(columns_inside(grid, u0_inside, along_v, vec2(slice)),
+                               columns_inside(grid, u1_inside, along_v, vec2(slice)), t_u);
+        if (v > 0) {
+            vec2 v_inside = vec2((float(v) - 0.5 - grid.low.y) * grid.per_cell.y);
+            vec2 inside = columns_inside(grid, u_inside, v_inside, vec2(slice));
+            vec2 lacking = inside - mix(before_inside, here_inside, t_v);
+            vec2 sum = mix(before, here, t_v);
+            int steps = any(greaterThan(abs(lacking), 1e-4 * inside)) ? 1 : 0;
+            if (thin) {
+                lacking = inside;
+                sum = vec2(0.0);
+                steps = int(ceil(max(inside.x, inside.y) * float(samples)));
+            }
+            for (int i = 0; i < steps; i++) {
+                vec2 back = inside - lacking * (float(i) + 0.5) / float(steps);
+                vec3 uvw_x = columns_uvw(grid, vec2(u.x + 0.5, v - 0.5), float(slice.x));
+                vec3 uvw_y = columns_uvw(grid, vec2(u.y + 0.5, v - 0.5), float(slice.y));
+                sum += grid.spacing * lacking / float(steps) *
+                       vec2(component_at(component, uvw_x - back.x * grid.per_slice),
+                            component_at(component, uvw_y - back.y * grid.per_slice));
+            }
+            columns_words[word] = packHalf2x16(encoded(sum));
+            word += v_stride;
+        }
+        before = here;
+        before_inside = here_inside;
+    }
 }

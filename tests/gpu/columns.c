@@ -1,0 +1,382 @@
+// columns.c -- optical depths along principal ordinates against line integrals in double precision.
+#include "gpu_test.h"
+#include "base/half.h"
+#include "passes/columns/columns.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// ---- a medium and its line integrals --------------------------------------------------------------
+
+typedef struct grid {
+    struct medium_block block;
+    float *texels[3]; // density; or sigma_s, sigma_a, g as RGBA
+} grid;
+
+static grid grid_make(const float extent[3], const uint32_t size[3], uint32_t mode)
+{
+    grid m = {{.mode = mode, .sigma_t_max = 1, .max_density = 1}};
+    for (int i = 0; i < 3; i++) {
+        m.block.extent[i] = extent[i];
+        m.block.size[i] = size[i];
+        m.block.voxel[i] = extent[i] / (float)size[i];
+    }
+    size_t count = (size_t)size[0] * size[1] * size[2];
+    for (int k = 0; k < (mode == TYN_MEDIUM_DENSITY ? 1 : 3); k++) {
+        m.texels[k] = calloc(count * (mode == TYN_MEDIUM_DENSITY ? 1 : 4), sizeof(float));
+    }
+    return m;
+}
+
+static void grid_free(grid *m)
+{
+    for (int k = 0; k < 3; k++) {
+        free(m->texels[k]);
+    }
+}
+
+// Trilinear between voxel centres, constant in the outer half voxels.
+static double grid_value(const grid *m, int texture, int channel, const double p[3])
+{
+    int channels = m->block.mode == TYN_MEDIUM_DENSITY ? 1 : 4, i0[3], i1[3];
+    double w[3];
+    for (int i = 0; i < 3; i++) {
+        double x = p[i] / m->block.extent[i] * m->block.size[i] - 0.5;
+        x = fmin(fmax(x, 0), m->block.size[i] - 1.0);
+        i0[i] = (int)x;
+        i1[i] = i0[i] + 1 < (int)m->block.size[i] ? i0[i] + 1 : i0[i];
+        w[i] = x - i0[i];
+    }
+    double sum = 0;
+    for (int c = 0; c < 8; c++) {
+        int x = c & 1 ? i1[0] : i0[0], y = c & 2 ? i1[1] : i0[1], z = c & 4 ? i1[2] : i0[2];
+        double weight =
+            (c & 1 ? w[0] : 1 - w[0]) * (c & 2 ? w[1] : 1 - w[1]) * (c & 4 ? w[2] : 1 - w[2]);
+        size_t texel = ((size_t)z * m->block.size[1] + (size_t)y) * m->block.size[0] + (size_t)x;
+        sum += weight * m->texels[texture][texel * (size_t)channels + (size_t)channel];
+    }
+    return sum;
+}
+
+static double entry_distance(const grid *m, const double p[3], const float d[3])
+{
+    double length = 1e30;
+    for (int i = 0; i < 3; i++) {
+        if (d[i] != 0) {
+            length = fmin(length, (d[i] > 0 ? p[i] : p[i] - m->block.extent[i]) / d[i]);
+        }
+    }
+    return length;
+}
+
+static double column(const grid *m, int texture, int channel, const double p[3], const float d[3])
+{
+    double length = entry_distance(m, p, d), sum = 0, finest = 1e30;
+    for (int i = 0; i < 3; i++) {
+        finest = fmin(finest, m->block.voxel[i]);
+    }
+    int n = (int)(length / finest * 8) + 8;
+    for (int i = 0; i < n; i++) {
+        double s = length * (i + 0.5) / n,
+               q[3] = {p[0] - s * d[0], p[1] - s * d[1], p[2] - s * d[2]};
+        sum += grid_value(m, texture, channel, q) * length / n;
+    }
+    return sum;
+}
+
+// ---- the pass --------------------------------------------------------------------------------------
+
+static double random_unit(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return (*seed >> 8) * 0x1p-24;
+}
+
+// Along axes, face and body diagonals, grazing, then anywhere.
+static struct ordinates_block ordinates_make(uint32_t count)
+{
+    static const float special[][3] = {
+        {1, 0, 0},  {-1, 0, 0},  {0, 1, 0},      {0, -1, 0},       {0, 0, 1},          {0, 0, -1},
+        {1, 1, 0},  {-1, 0, -1}, {0, 1, -1},     {1, 1, 1},        {-1, 1, -1},        {1, -1, -1},
+        {1, .5, 0}, {0, -1, .5}, {1e-4f, 0, -1}, {-.999f, 1, .1f}, {1, 1e-7f, -1e-7f},
+    };
+    struct ordinates_block block = {.count = count};
+    uint32_t seed = 7;
+    for (uint32_t n = 0; n < count; n++) {
+        double d[3];
+        for (int i = 0; i < 3; i++) {
+            d[i] =
+                n < sizeof special / sizeof special[0] ? special[n][i] : 2 * random_unit(&seed) - 1;
+        }
+        double norm = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        for (int i = 0; i < 3; i++) {
+            block.list[n].direction[i] = (float)(d[i] / norm);
+        }
+    }
+    return block;
+}
+
+typedef struct result {
+    const uint16_t *halves;
+    uint32_t dims[3], components;
+} result;
+
+static double result_at(const result *r, uint32_t n, uint32_t component, const uint32_t c[3])
+{
+    size_t row = (r->dims[0] + 1) / 2 * 2;
+    size_t plane = ((size_t)n * r->components + component) * r->dims[2] + c[2];
+    double root = tyn_half_to_float(r->halves[(plane * r->dims[1] + c[1]) * row + c[0]]);
+    return root * root;
+}
+
+// Cells of a lattice as lattice.h plans it: cubes, what they reach beyond the box split evenly.
+static void cells_of(const grid *m, uint32_t cells, uint32_t dims[3], double *dx)
+{
+    const float *e = m->block.extent;
+    *dx = fmax(e[0], fmax(e[1], e[2])) / cells;
+    for (int i = 0; i < 3; i++) {
+        dims[i] = (uint32_t)fmax(1, ceil(e[i] / *dx - 1e-4));
+    }
+}
+
+static result run_pass(gpu_test *t, const grid *m, const struct ordinates_block *ordinates,
+                       uint32_t count, uint32_t cells)
+{
+    double dx;
+    bool density = m->block.mode == TYN_MEDIUM_DENSITY;
+    result r = {.components = density ? 1 : COLUMNS_COMPONENTS};
+    cells_of(m, cells, r.dims, &dx);
+    tyn_columns_params params = {.mode = m->block.mode, .count = count};
+    memcpy(params.extent, m->block.extent, sizeof params.extent);
+    memcpy(params.dims, r.dims, sizeof params.dims);
+    tyn_extent extent = {m->block.size[0], m->block.size[1], m->block.size[2]};
+    int channels = density ? 1 : 4;
+    tyn_graph_begin(t->graph);
+    tyn_ref refs[COLUMNS_NUM_PORTS] = {
+        [COLUMNS_PORT_MEDIUM] = gpu_buffer(t, "medium", &m->block, sizeof m->block),
+        [COLUMNS_PORT_DENSITY] =
+            gpu_image(t, "density", TYN_IMAGE_3D, extent, channels, m->texels[0]),
+        [COLUMNS_PORT_ORDINATES] = gpu_buffer(t, "ordinates", ordinates, sizeof *ordinates),
+    };
+    if (!density) {
+        refs[COLUMNS_PORT_SIGMA_A] =
+            gpu_image(t, "sigma_a", TYN_IMAGE_3D, extent, channels, m->texels[1]);
+        refs[COLUMNS_PORT_G] = gpu_image(t, "g", TYN_IMAGE_3D, extent, channels, m->texels[2]);
+    }
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_columns, &params, refs), TYN_OK);
+    tyn_graph_output(t->graph, "columns", refs[COLUMNS_PORT_COLUMNS], true);
+    gpu_run(t);
+    r.halves = gpu_map(t, "columns");
+    return r;
+}
+
+typedef struct errors {
+    double largest, mean; // |column - exact| / the largest exact one
+    double relative;      // largest |column - exact| / exact
+} errors;
+
+static errors compare(const grid *m, const struct ordinates_block *ordinates, const result *r,
+                      uint32_t cells, const char *name)
+{
+    errors e = {0, 0, 0};
+    uint32_t dims[3], count = 0, seed = 3;
+    double dx, most = 0;
+    cells_of(m, cells, dims, &dx);
+    for (uint32_t n = 0; n < ordinates->count; n++) {
+        for (uint32_t k = 0; k < 300; k++) {
+            uint32_t c[3];
+            double p[3];
+            for (int i = 0; i < 3; i++) {
+                c[i] = (uint32_t)(random_unit(&seed) * dims[i]);
+                p[i] = (c[i] + 0.5) * dx + 0.5 * (m->block.extent[i] - dims[i] * dx);
+            }
+            double want = column(m, 0, 0, p, ordinates->list[n].direction);
+            double got = result_at(r, n, 0, c), wrong = fabs(got - want);
+            most = fmax(most, want);
+            e.largest = wrong <= e.largest ? e.largest : wrong; // a NaN stays
+            e.relative = want > 0 ? fmax(e.relative, wrong / want) : e.relative;
+            e.mean += wrong;
+            count++;
+        }
+    }
+    e.largest /= most;
+    e.mean /= most * count;
+    printf("%-28s of the largest: mean %.2e, worst %.2e; worst relative %.2e\n", name, e.mean,
+           e.largest, e.relative);
+    return e;
+}
+
+// ---- tests ------------------------------------------------------------------------------------------
+
+static const float cube[3] = {1, 1, 1};
+
+static void homogeneous(void **state)
+{
+    static const struct {
+        float extent[3];
+        uint32_t size[3], cells;
+    } boxes[] = {
+        {{1, 1, 1}, {1, 1, 1}, 16},     {{1, 1, 1}, {9, 9, 9}, 16},
+        {{3, 1, 0.7f}, {5, 4, 3}, 13},  {{1, 1, 1}, {1, 1, 1}, 1},
+        {{0.1f, 4, 2}, {1, 1, 1}, 24},  {{0.03f, 2, 0.07f}, {3, 200, 7}, 32},
+        {{5, 0.01f, 5}, {4, 1, 4}, 16},
+    };
+    struct ordinates_block ordinates = ordinates_make(64);
+    for (size_t b = 0; b < sizeof boxes / sizeof boxes[0]; b++) {
+        grid m = grid_make(boxes[b].extent, boxes[b].size, TYN_MEDIUM_DENSITY);
+        for (uint32_t i = 0; i < boxes[b].size[0] * boxes[b].size[1] * boxes[b].size[2]; i++) {
+            m.texels[0][i] = 3;
+        }
+        result r = run_pass(*state, &m, &ordinates, 64, boxes[b].cells);
+        errors e = compare(&m, &ordinates, &r, boxes[b].cells, "homogeneous");
+        assert_true(e.relative < 1e-3); // a half has 11 digits, its square 10
+        grid_free(&m);
+    }
+}
+
+static void blob(void **state)
+{
+    static const uint32_t size[3] = {48, 48, 48};
+    struct ordinates_block ordinates = ordinates_make(64);
+    grid m = grid_make(cube, size, TYN_MEDIUM_DENSITY);
+    for (uint32_t i = 0; i < 48 * 48 * 48; i++) {
+        double x = (i % 48 + .5) / 48 - .5, y = (i / 48 % 48 + .5) / 48 - .5,
+               z = (i / 48 / 48 + .5) / 48 - .4;
+        m.texels[0][i] = (float)exp(-(x * x + y * y + z * z) / (2 * 0.15 * 0.15));
+    }
+    result r = run_pass(*state, &m, &ordinates, 64, 24);
+    errors e = compare(&m, &ordinates, &r, 24, "gaussian, sigma 3.6 cells");
+    assert_true(e.mean < 2e-3 && e.largest < 0.02);
+    grid_free(&m);
+}
+
+static void step(void **state)
+{
+    static const uint32_t size[3] = {64, 64, 64};
+    struct ordinates_block ordinates = ordinates_make(64);
+    grid m = grid_make(cube, size, TYN_MEDIUM_DENSITY);
+    for (uint32_t i = 0; i < 64 * 64 * 64; i++) {
+        uint32_t x = i % 64, y = i / 64 % 64, z = i / 64 / 64;
+        m.texels[0][i] = x > 20 && x < 50 && y > 30 && z < 40 ? 1 : 0;
+    }
+    result r = run_pass(*state, &m, &ordinates, 64, 32);
+    errors e = compare(&m, &ordinates, &r, 32, "block with sharp faces");
+    assert_true(e.mean < 0.01 && e.largest < 0.3);
+    grid_free(&m);
+}
+
+// Coefficients that are textures: three integrals of three channels.
+static void coefficients(void **state)
+{
+    static const uint32_t size[3] = {20, 24, 16};
+    static const float extent[3] = {1, 1.2f, 0.8f};
+    struct ordinates_block ordinates = ordinates_make(20);
+    grid m = grid_make(extent, size, TYN_MEDIUM_COEFFICIENTS);
+    grid scaled = grid_make(extent, size, TYN_MEDIUM_COEFFICIENTS);
+    for (uint32_t i = 0; i < 20 * 24 * 16; i++) {
+        double x = i % 20 / 20.0, y = i / 20 % 24 / 24.0, z = i / 480 / 16.0;
+        for (int c = 0; c < 3; c++) {
+            float s = (float)(2 + sin(5 * x + c) * cos(4 * y)), g = 0.3f * (float)c;
+            m.texels[0][4 * i + (size_t)c] = s;
+            m.texels[1][4 * i + (size_t)c] = (float)(1 + 0.5 * sin(4 * z - 2 * c) * cos(3 * x));
+            m.texels[2][4 * i + (size_t)c] = g;
+            scaled.texels[0][4 * i + (size_t)c] = (1 - g * g) * s;
+        }
+    }
+    result r = run_pass(*state, &m, &ordinates, 20, 12);
+    double dx, worst = 0, most = 0;
+    uint32_t dims[3], seed = 5;
+    cells_of(&m, 12, dims, &dx);
+    for (uint32_t n = 0; n < 20; n++) {
+        for (uint32_t k = 0; k < 90; k++) {
+            uint32_t c[3], which = k % 9;
+            double p[3];
+            for (int i = 0; i < 3; i++) {
+                c[i] = (uint32_t)(random_unit(&seed) * dims[i]);
+                p[i] = (c[i] + 0.5) * dx + 0.5 * (extent[i] - dims[i] * dx);
+            }
+            double want = column(which < 6 ? &m : &scaled, which / 3 == 1 ? 1 : 0, (int)(which % 3),
+                                 p, ordinates.list[n].direction);
+            most = fmax(most, want);
+            worst = fmax(worst, fabs(result_at(&r, n, which, c) - want));
+        }
+    }
+    printf("coefficients: worst %.2e of the largest\n", worst / most);
+    assert_true(worst < 0.03 * most);
+    grid_free(&m);
+    grid_free(&scaled);
+}
+
+// Any medium on any lattice gives numbers, and beyond those in use no work is done.
+static void extremes(void **state)
+{
+    static const struct {
+        float extent[3];
+        uint32_t size[3], cells, count;
+    } boxes[] = {
+        {{1, 1, 1}, {1, 1, 1}, 1, 1},
+        {{1, 1, 1}, {2, 2, 2}, 8, 256},
+        {{0.03f, 2, 0.07f}, {3, 200, 7}, 32, 40},
+        {{10, 0.01f, 10}, {16, 2, 16}, 24, 40},
+        {{1e-3f, 1e3f, 1}, {2, 50, 3}, 64, 20},
+    };
+    static const float values[] = {0, 1e-6f, 1, 1e8f};
+    for (size_t b = 0; b < sizeof boxes / sizeof boxes[0]; b++) {
+        struct ordinates_block ordinates = ordinates_make(boxes[b].count);
+        for (size_t v = 0; v < sizeof values / sizeof values[0]; v++) {
+            grid m = grid_make(boxes[b].extent, boxes[b].size, TYN_MEDIUM_DENSITY);
+            uint32_t texels = boxes[b].size[0] * boxes[b].size[1] * boxes[b].size[2], seed = 11;
+            for (uint32_t i = 0; i < texels; i++) {
+                m.texels[0][i] = i % 3 ? (float)random_unit(&seed) * values[v] : 0;
+            }
+            result r = run_pass(*state, &m, &ordinates, boxes[b].count, boxes[b].cells);
+            uint32_t bad = 0, c[3];
+            double bound = 1.01 * values[v] * 1.8 *
+                           fmax(m.block.extent[0], fmax(m.block.extent[1], m.block.extent[2]));
+            for (uint32_t n = 0; n < boxes[b].count; n++) {
+                for (c[2] = 0; c[2] < r.dims[2]; c[2]++) {
+                    for (c[1] = 0; c[1] < r.dims[1]; c[1]++) {
+                        for (c[0] = 0; c[0] < r.dims[0]; c[0]++) {
+                            double x = result_at(&r, n, 0, c);
+                            bad += !(x >= 0 && x <= bound);
+                        }
+                    }
+                }
+            }
+            assert_int_equal(bad, 0);
+            grid_free(&m);
+        }
+    }
+}
+
+// More than fits is refused with a line that says what to do.
+static void too_much(void **state)
+{
+    gpu_test *t = *state;
+    tyn_columns_params params = {
+        .extent = {1, 1, 1}, .dims = {64, 64, 64}, .mode = TYN_MEDIUM_COEFFICIENTS, .count = 64};
+    float one[4] = {1, 1, 1, 1};
+    struct ordinates_block ordinates = ordinates_make(1);
+    tyn_graph_begin(t->graph);
+    tyn_ref refs[COLUMNS_NUM_PORTS] = {
+        [COLUMNS_PORT_MEDIUM] =
+            gpu_buffer(t, "medium", &(struct medium_block){0}, sizeof(struct medium_block)),
+        [COLUMNS_PORT_DENSITY] =
+            gpu_image(t, "density", TYN_IMAGE_3D, (tyn_extent){1, 1, 1}, 4, one),
+        [COLUMNS_PORT_ORDINATES] = gpu_buffer(t, "ordinates", &ordinates, sizeof ordinates),
+    };
+    t->quiet = true;
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_columns, &params, refs), TYN_ERR_PARAMS);
+    t->quiet = false;
+    assert_non_null(strstr(t->last_error, "lower ordinates.count or lattice.cells"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(homogeneous),  cmocka_unit_test(blob),     cmocka_unit_test(step),
+        cmocka_unit_test(coefficients), cmocka_unit_test(extremes), cmocka_unit_test(too_much),
+    };
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
