@@ -14,6 +14,7 @@
 #include "passes/probe/probe.h"
 #include "passes/propagate_rect/propagate_rect.h"
 #include "passes/raymarch/raymarch.h"
+#include "passes/residuum/residuum.h"
 #include "passes/scatter_lut/scatter_lut.h"
 #include "passes/tonemap/tonemap.h"
 #include "passes/upsample/upsample.h"
@@ -32,6 +33,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_balance,
     &tyn_pass_propagate_rect,
     &tyn_pass_merge_grids,
+    &tyn_pass_residuum,
     &tyn_pass_upsample,
     &tyn_pass_env_importance,
     &tyn_pass_importance,

@@ -319,6 +319,11 @@ static void record(tyn_recorder *r, const void *data)
     if (small_of(p).x) {
         record_shrink(r, p);
     }
+    // Fetches at a tile's edge give the tile behind it a weight of 0: no grid may be there, but numbers.
+    tyn_rec_clear(r, PORT(SEEN));
+    if (p->keep_light) {
+        tyn_rec_clear(r, PORT(LIGHT));
+    }
     for (args.first = 0; args.first < num_grids(p); args.first += args.count) {
         uint32_t left = num_grids(p) - args.first, fit = batch(p);
         args.count = left < fit ? left : fit;

@@ -1,0 +1,152 @@
+// residuum.c -- see residuum.h.
+#include "residuum.h"
+#include "residuum_args.h"
+#include "residuum_collect.comp.h"
+#include "residuum_start.comp.h"
+#include "residuum_step.comp.h"
+#include "scene_args.h"
+#include <math.h>
+
+#define PORT(name) RESIDUUM_PORT_##name
+
+uint32_t tyn_residuum_after(float a, float g, float sigma_s, float hop, float epsilon)
+{
+    double depth = (double)sigma_s * (double)hop; // of a hop
+    if (a <= epsilon) {
+        return 0;
+    }
+    double events = g <= 0 ? 1 : g >= 1 ? INFINITY : log((double)epsilon / (double)a) / log(g);
+    double hops = depth > 0 ? ceil(events / depth) : INFINITY;
+    return hops < UINT32_MAX ? (uint32_t)hops : UINT32_MAX;
+}
+
+static const tyn_port ports[RESIDUUM_NUM_PORTS] = {
+    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
+    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
+    [PORT(SIGMA_A)] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                       .meaning = "absorption, 1/m"},
+    [PORT(PLACES)] = {"places", TYN_IN, TYN_BUFFER, .meaning = "struct propagate_place[]"},
+    [PORT(LIGHT)] = {"light", TYN_IN, TYN_IMAGE_3D,
+                     .meaning = "of propagate_rect: L per irradiance"},
+    [PORT(RESIDUUM)] = {"residuum", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                        .meaning = "light to the eye per unit of sigma_s, W/(m^2 sr)"},
+    [PORT(STATE)] = {"state", TYN_OUT, TYN_BUFFER, .meaning = "light at the faces, W/m^2"},
+    [PORT(STATE_OTHER)] = {"state_other", TYN_SCRATCH, TYN_BUFFER,
+                           .meaning = "state of every other iteration"},
+    [PORT(KEPT)] = {"kept", TYN_SCRATCH, TYN_BUFFER, .meaning = "transmittance of half a cell"},
+    [PORT(SUM)] = {"sum", TYN_SCRATCH, TYN_BUFFER, .meaning = "light of all iterations, W/m^2"},
+};
+
+enum { START, STEP, COLLECT, NUM_KERNELS };
+
+static const tyn_binding start_bindings[] = {
+    {PORT(MEDIUM), TYN_USE_UNIFORM},     {PORT(DENSITY), TYN_USE_SAMPLED},
+    {PORT(SIGMA_A), TYN_USE_SAMPLED},    {PORT(PLACES), TYN_USE_UNIFORM},
+    {PORT(LIGHT), TYN_USE_SAMPLED},      {PORT(STATE), TYN_USE_STORAGE_WRITE},
+    {PORT(KEPT), TYN_USE_STORAGE_WRITE}, {PORT(SUM), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding step_bindings[] = {
+    {PORT(STATE_OTHER), TYN_USE_STORAGE_READ},
+    {PORT(STATE), TYN_USE_STORAGE_WRITE},
+    {PORT(KEPT), TYN_USE_STORAGE_READ},
+    {PORT(SUM), TYN_USE_STORAGE_RW},
+};
+static const tyn_binding collect_bindings[] = {
+    {PORT(SUM), TYN_USE_STORAGE_READ},
+    {PORT(RESIDUUM), TYN_USE_STORAGE_WRITE},
+};
+
+#define KERNEL(step, specs)                                                                        \
+    .name = "residuum_" #step, .spirv = residuum_##step##_spirv,                                   \
+    .spirv_size = sizeof residuum_##step##_spirv, .args_size = sizeof(struct residuum_args),       \
+    .local_size = {4, 4, 4}, .bindings = step##_bindings,                                          \
+    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [START] = {KERNEL(start, 1)},
+    [STEP] = {KERNEL(step, 0)},
+    [COLLECT] = {KERNEL(collect, 0)},
+};
+
+#define FIELD(name) offsetof(tyn_residuum_params, name)
+static const tyn_param params[] = {
+    {"on", TYN_PARAM_BOOL, FIELD(on), 0, 0, 1, "",
+     "merge what is left in the aligned grids and move it on as isotropic light"},
+    {"epsilon", TYN_PARAM_FLOAT, FIELD(epsilon), 0.1, 0.001, 0.9, "",
+     "mean cosine below which light counts as isotropic"},
+    {"after", TYN_PARAM_INT, FIELD(after), 0, 0, 256, "",
+     "iterations in the aligned grids before; 0 = as Eq 10 has it, at least as many as cells"},
+    {"cells", TYN_PARAM_INT, FIELD(cells), 32, 4, 64, "cells",
+     "cubic cells along the longest side of the medium's box"},
+    {"iterations", TYN_PARAM_INT, FIELD(iterations), 20, 0, 256, "", "hops of the isotropic light"},
+};
+
+static tyn_extent dims_of(const tyn_residuum_params *p)
+{
+    float longest = fmaxf(p->extent[0], fmaxf(p->extent[1], p->extent[2]));
+    uint32_t dims[3];
+    for (int i = 0; i < 3; i++) {
+        dims[i] = (uint32_t)fmaxf(1.0f, ceilf(p->extent[i] / longest * (float)p->cells - 1e-3f));
+    }
+    return (tyn_extent){dims[0], dims[1], dims[2]};
+}
+
+static tyn_result declare(tyn_builder *b, const void *data)
+{
+    tyn_extent dims = dims_of(data);
+    uint64_t bytes = (uint64_t)dims.x * dims.y * dims.z * 4 * sizeof(float);
+    tyn_build_image(b, PORT(RESIDUUM), dims, 1);
+    tyn_build_buffer(b, PORT(STATE), bytes);
+    tyn_build_buffer(b, PORT(STATE_OTHER), bytes);
+    tyn_build_buffer(b, PORT(KEPT), bytes);
+    tyn_build_buffer(b, PORT(SUM), bytes);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *data)
+{
+    // The states are written alternately, so that the last one lands in the output.
+    static const uint8_t start_other[] = {PORT(MEDIUM), PORT(DENSITY), PORT(SIGMA_A),
+                                          PORT(PLACES), PORT(LIGHT),   PORT(STATE_OTHER),
+                                          PORT(KEPT),   PORT(SUM)};
+    static const uint8_t step_other[] = {PORT(STATE), PORT(STATE_OTHER), PORT(KEPT), PORT(SUM)};
+    const tyn_residuum_params *p = data;
+    tyn_extent dims = dims_of(p);
+    struct residuum_args args = {
+        .dims = {dims.x, dims.y, dims.z},
+        .num_grids = p->num_grids,
+        .grid_cells = p->grid_cells,
+        .channels = p->channels,
+        .tiles = tyn_rec_extent(r, PORT(LIGHT)).x / p->grid_cells,
+    };
+    bool other = p->iterations % 2 != 0;
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
+                                        .cells = dims,
+                                        .args = &args,
+                                        .ports = other ? start_other : NULL,
+                                        .spec = &p->mode});
+    for (int32_t m = 0; m < p->iterations; m++) {
+        other = !other;
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
+                                            .cells = dims,
+                                            .args = &args,
+                                            .ports = other ? step_other : NULL});
+    }
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = COLLECT, .cells = dims, .args = &args});
+    tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * p->iterations);
+}
+
+const tyn_pass_desc tyn_pass_residuum = {
+    .name = "residuum",
+    .summary = "light left in the aligned grids moved on as isotropic light in one grid",
+    .ports = ports,
+    .num_ports = RESIDUUM_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params = params,
+    .num_params = sizeof params / sizeof *params,
+    .params_size = sizeof(tyn_residuum_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = PORT(RESIDUUM),
+    .debug_meaning = "light towards the eye, middle slice of the medium's box",
+};

@@ -1,0 +1,15 @@
+// residuum_args.h -- arguments of all kernels. Included by C and GLSL.
+#ifndef TYN_RESIDUUM_ARGS_H
+#define TYN_RESIDUUM_ARGS_H
+#include "shared.h"
+
+struct residuum_args {
+    tyn_uvec3 dims; // cells
+    tyn_uint num_grids;
+    tyn_uint grid_cells; // edge of a tile
+    tyn_uint channels;
+    tyn_uint tiles; // a row of `light`
+};
+TYN_ASSERT_SIZE(residuum_args, 28);
+
+#endif
