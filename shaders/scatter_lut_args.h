@@ -25,9 +25,7 @@ struct lut_block { // storage buffer "lut_block"
     tyn_uint terms[TYN_LUT_MAX_ROWS]; // length of the row's series
     tyn_uint first_term[TYN_LUT_MAX_ROWS]; // where it starts in the buffer "moments"
     tyn_uint tms_terms[TYN_LUT_MAX_ROWS];  // length of the series of "tms"
-    float tms_spread[TYN_LUT_MAX_ROWS];    // f - F_1: the mean cosine of light that is still going
-                                           // forward falls as e^(-tau_s times this)
 };
-TYN_ASSERT_SIZE(lut_block, 416);
+TYN_ASSERT_SIZE(lut_block, 352);
 
 #endif

@@ -53,28 +53,43 @@ float tms_kernel(tms_row row, float mu, float tau_s, float level)
     return textureLod(tms_tex, at, 0.0).r;
 }
 
-// Mode COEFFICIENTS, where g varies: `g` of the last scattering; on the way the mean of (1 - f) was
-// tau_p / tau_s. The light before has the spread of that beam: the depth is the one where a beam
-// of the row's g is as wide.
-float tms_kernel_mixed(float g, float mu, float tau_s, float tau_p, float level, float mean_cosine)
+// ---- mode COEFFICIENTS, where g varies ------------------------------------------------------------
+
+// f - F_1: how fast the mean cosine of light that is still going forward falls with tau_s. A fit to the
+// moments of the lobe, within 1.5 %.
+float tms_spread(float g)
 {
-    if (g <= 0.0) {
-        return hg(g * mean_cosine, mu); // no lobe: the beam is as narrow as it came
-    }
+    float f = g * g;
+    return f * f * (1.0 - g) / (0.871 + g * (1.35 + 2.47 * g));
+}
+
+// The last scattering; constant in a cell.
+struct tms_last {
+    tms_row below, above; // around its g
+    float between;
+    float depth; // of a beam of its g that has a spread of 1
+    float g;
+};
+
+tms_last tms_last_of(float g)
+{
     float row = lut_row(lut.log_first, lut.log_step, lut.num_rows, min(g, HG_MAX));
     uint below = uint(row), above = min(below + 1u, lut.num_rows - 1u);
-    float spread = mix(lut.tms_spread[below], lut.tms_spread[above], fract(row));
+    return tms_last(tms_row_of(below), tms_row_of(above), fract(row),
+                    1.0 / tms_spread(clamp(g, lut.g[0], HG_MAX)), g);
+}
 
+// The mean of (1 - f) on the way was tau_p / tau_s. A beam of the last scattering's g that is as wide as
+// that one has another depth.
+float tms_kernel_mixed(tms_last last, float mu, float tau_s, float tau_p, float level,
+                       float mean_cosine)
+{
     float f = tau_s > 0.0 ? clamp(1.0 - tau_p / tau_s, 0.0, HG_MAX * HG_MAX) : 0.0;
-    float beam = lut_row(lut.log_first, lut.log_step, lut.num_rows, sqrt(f));
-    uint beam_below = uint(beam), beam_above = min(beam_below + 1u, lut.num_rows - 1u);
-    float beam_spread = mix(lut.tms_spread[beam_below], lut.tms_spread[beam_above], fract(beam));
-    // Below the first row spreads go as f.
-    beam_spread *= min(1.0, f / (lut.g[0] * lut.g[0]));
-
-    float depth = tau_s * beam_spread / spread;
-    return mix(tms_kernel(tms_row_of(below), mu, depth, level),
-               tms_kernel(tms_row_of(above), mu, depth, level), fract(row));
+    float depth = tau_s * tms_spread(sqrt(f)) * last.depth;
+    float forward = mix(tms_kernel(last.below, mu, depth, level),
+                        tms_kernel(last.above, mu, depth, level), last.between);
+    // Without a lobe the light is as narrow as it came.
+    return last.g > 0.0 ? forward : hg(last.g * mean_cosine, mu);
 }
 
 #endif

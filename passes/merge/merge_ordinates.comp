@@ -68,12 +68,13 @@ vec3 coloured_share(uint n, uvec3 cell, beam_tau unit, tms_row row[3], float mu,
     return k;
 }
 
-vec3 mixed_share(uint n, uvec3 cell, vec3 g, float mu, float level, float mean_cosine)
+vec3 mixed_share(uint n, uvec3 cell, tms_last last[3], float mu, float level,
+                 float mean_cosine)
 {
     beam_tau tau = columns_tau(n, cell, args.dims);
     vec3 k = exp(-(tau.a + tau.p));
     for (int ch = 0; ch < 3; ch++) {
-        k[ch] *= tms_kernel_mixed(g[ch], mu, tau.s[ch], tau.p[ch], level, mean_cosine);
+        k[ch] *= tms_kernel_mixed(last[ch], mu, tau.s[ch], tau.p[ch], level, mean_cosine);
     }
     return k;
 }
@@ -90,11 +91,11 @@ void main()
     for (uint ch = 0u; ch < 3u; ch++) {
         row[ch] = tms_row_of_channel(ch);
     }
-    vec3 g = vec3(0.0); // of the cell
+    tms_last last[3]; // of the cell
     if (medium_mode == TYN_MEDIUM_COEFFICIENTS) {
         for (int ch = 0; ch < 3; ch++) {
             float scaled = texelFetch(cells, c + ivec3(0, 0, min(ch, int(channels) - 1) * dims.z), 0).z;
-            g[ch] = scaled > 0.0 ? scaled / (1.0 - scaled) : scaled;
+            last[ch] = tms_last_of(scaled > 0.0 ? scaled / (1.0 - scaled) : scaled);
         }
     }
     vec3 sum = vec3(0.0);
@@ -104,7 +105,7 @@ void main()
         float mu = dot(o.direction, v), level = tms_level(1.0 - o.mean_cosine);
         vec3 share;
         if (medium_mode == TYN_MEDIUM_COEFFICIENTS) {
-            share = mixed_share(n, uvec3(c), g, mu, level, o.mean_cosine);
+            share = mixed_share(n, uvec3(c), last, mu, level, o.mean_cosine);
         } else if (grey) {
             share = grey_share(n, uvec3(c), unit, row[0], mu, level);
         } else {

@@ -133,7 +133,6 @@ static void make_moments(struct lut_block *block, uint32_t r, float (*out)[2])
     uint32_t terms = row_terms(block, r);
     if (block->terms[r] > 0) {
         block->theta_1[r] = (float)tyn_lobe_moments(g, lobe, terms);
-        block->tms_spread[r] = (float)(lobe[0] - lobe[1]);
     }
     for (uint32_t l = 0; l < terms; l++, power *= fabs(g)) {
         out[l][0] = (float)(power - lobe[l]);
