@@ -2,6 +2,7 @@
 // and anisotropy. The mean of the environment enters at the lattice's boundary.
 #include "gpu_test.h"
 #include "picture.h"
+#include "sky.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -59,8 +60,49 @@ static void furnace(void **state)
     free(grid);
 }
 
+// The same surroundings as a map, in which every texel is 1: what finds its suns, smears it and divides it
+// into ordinates has to leave it as it is, whatever its size and wherever it is turned.
+static void maps(void **state)
+{
+    gpu_test *t = *state;
+    static const uint32_t sizes[][2] = {{16, 8}, {1, 1}, {37, 18}, {1024, 512}};
+    static const float gs[] = {0, 0.5f, 0.9f, 0.95f}, sigmas[] = {0.1f, 4, 60};
+    float *grid = lumps();
+    for (int k = 0; k < 12; k++) {
+        float g = gs[k % 4], sigma = sigmas[k % 3];
+        bool lumpy = k % 2;
+        tyn_scene *scene = malloc(sizeof *scene);
+        tyn_scene_init(scene);
+        tyn_medium medium = grey_medium(sigma, 0, g);
+        scene_add_box(scene, &medium, (float[]){0, 0, 0}, (float[]){1, 1, 1}, (uint32_t[]){N, N, N},
+                      lumpy ? grid : NULL);
+        const uint32_t *size = sizes[k / 3];
+        sky_constant_map(&scene->environment, size[0], size[1], 1);
+        if (k % 3) {
+            sky_turn(&scene->environment, 1, -2, 0.5f, (float)k);
+        }
+        tyn_view view = {0};
+        view_orthographic(&view, (float[]){0.5f, 0.5f, 0.5f}, -1, -2, -0.7f, (float[]){0, 1, 0},
+                          0.9f, 48);
+        picture p;
+        picture_render(&p, t->dev, "pop", scene, &view, NULL, 0);
+        double worst = 0;
+        for (int i = 0; i < 48 * 48 * 3; i++) {
+            worst = fmax(worst, fabs(p.rgb[i] - 1.0));
+        }
+        print_message("%s, sigma_s %4.1f, g %.2f, map of %ux%u: worst pixel %.3f %% from 1\n",
+                      lumpy ? "lumps" : "cube ", (double)sigma, (double)g, size[0], size[1],
+                      100 * worst);
+        assert_true(worst <= 0.005);
+        picture_free(&p);
+        tyn_scene_finish(scene);
+        free(scene);
+    }
+    free(grid);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(furnace)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(furnace), cmocka_unit_test(maps)};
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
