@@ -65,7 +65,7 @@ static void furnace(void **state)
 static void maps(void **state)
 {
     gpu_test *t = *state;
-    static const uint32_t sizes[][2] = {{16, 8}, {1, 1}, {37, 18}, {1024, 512}};
+    static const uint32_t sizes[][2] = {{16, 8}, {64, 3}, {37, 18}, {1024, 512}};
     static const float gs[] = {0, 0.5f, 0.9f, 0.95f}, sigmas[] = {0.1f, 4, 60};
     float *grid = lumps();
     for (int k = 0; k < 12; k++) {

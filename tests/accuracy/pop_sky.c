@@ -20,7 +20,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { BLOCK = 8, SIZE = 96 };
+enum { BLOCK = 8 };
 
 static const float zero3[3] = {0, 0, 0};
 
@@ -58,15 +58,15 @@ typedef struct sky_case {
     origin from;
     const char *file, *map; // VOLUME: below the shared data
     uint32_t spp, check;    // samples of the stored table (or of the picture), and of the check
-    float scale;            // density scale, 0 = as it is
+    uint32_t size;          // of the picture, 0: 96
 } sky_case;
 
 static const sky_case cases[] = {
     {.name = "blobs_sky_front", .from = BLOBS, .check = 512},
     {.name = "blobsthin_sky_front", .from = THIN_BLOBS, .check = 512},
     {.name = "smoke-sky", .from = SAMPLE, .spp = 1024, .check = 16},
-    {.name = "cloud-sunset", .from = SAMPLE, .spp = 2048, .check = 8},
-    {.name = "milk", .from = SAMPLE, .spp = 1024, .check = 2},
+    {.name = "cloud-sunset", .from = SAMPLE, .spp = 2048, .check = 16},
+    {.name = "milk", .from = SAMPLE, .spp = 3200, .check = 16, .size = 48},
     {.name = "plume-contrast", .from = SAMPLE, .spp = 2048, .check = 16},
     {.name = "teapot-museum",
      .from = VOLUME,
@@ -96,7 +96,8 @@ static float largest_g(const tyn_scene *scene)
 static bool load(gpu_test *t, const sky_case *k, tyn_scene *scene, tyn_view *view)
 {
     tyn_scene_init(scene);
-    *view = (tyn_view){.width = SIZE, .height = SIZE};
+    *view = (tyn_view){0};
+    view->width = view->height = k->size ? k->size : 96;
     char path[512], map[512];
     switch (k->from) {
     case BLOBS:
@@ -117,9 +118,6 @@ static bool load(gpu_test *t, const sky_case *k, tyn_scene *scene, tyn_view *vie
             return false;
         }
         break;
-    }
-    for (uint32_t m = 0; k->scale > 0 && m < scene->num_media; m++) {
-        scene->media[m].density_scale *= k->scale;
     }
     if (scene->num_cameras) {
         view->camera = scene->cameras[0];
