@@ -31,7 +31,7 @@ TYN_ASSERT_SIZE(glow_order, 24);
 struct glow_coefficient { // of degree l and order m, with what the recurrence needs to come to P_lm
     tyn_vec3 cosine;
     tyn_vec3 sine;
-    float alpha, beta;
+    float alpha, beta; // l = m: P_mm / sin^m theta, 0
 };
 TYN_ASSERT_SIZE(glow_coefficient, 32);
 

@@ -6,13 +6,14 @@
 #ifndef TYN_LEGENDRE_GLSL
 #define TYN_LEGENDRE_GLSL
 
-float legendre_first(uint m, float sin_theta)
+// P_mm / sin^m theta.
+float legendre_norm(uint m)
 {
-    float p = 0.70710678;
+    float norm = 0.70710678;
     for (uint i = 1u; i <= m; i++) {
-        p *= sqrt(1.0 + 0.5 / float(i)) * sin_theta;
+        norm *= sqrt(1.0 + 0.5 / float(i));
     }
-    return p;
+    return norm;
 }
 
 // P_lm = alpha (cos_theta P_{l-1,m} - beta P_{l-2,m}) for l > m, P_{m-1,m} = 0.

@@ -60,7 +60,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                      env_glow_rows_spirv,
                      sizeof(env_glow_rows_spirv),
                      sizeof(struct env_glow_args),
-                     {TYN_GLOW_HEIGHT, 1, 1},
+                     {TYN_GLOW_HEIGHT / 4, 1, 1},
                      rows_bindings,
                      2,
                      0},
@@ -76,7 +76,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                       env_glow_smear_spirv,
                       sizeof(env_glow_smear_spirv),
                       0,
-                      {TYN_GLOW_HEIGHT / 2, 1, 1},
+                      {TYN_GLOW_HEIGHT / 8, 1, 1},
                       smear_bindings,
                       3,
                       0},
@@ -84,7 +84,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                        env_glow_texels_spirv,
                        sizeof(env_glow_texels_spirv),
                        0,
-                       {TYN_GLOW_WIDTH / 4, 1, 1},
+                       {TYN_GLOW_WIDTH / 16, 1, 1},
                        texels_bindings,
                        3,
                        0},
@@ -204,7 +204,7 @@ static void record(tyn_recorder *r, const void *params)
     uint32_t levels = num_levels(p);
     tyn_rec_dispatch(r, &(tyn_dispatch){
                             .kernel = KERNEL_ROWS,
-                            .cells = {DEGREES, TYN_GLOW_HEIGHT, 1},
+                            .cells = {TYN_GLOW_HEIGHT / 4, TYN_GLOW_HEIGHT, 1},
                             .args = &args,
                         });
     tyn_rec_dispatch(r, &(tyn_dispatch){
@@ -213,11 +213,11 @@ static void record(tyn_recorder *r, const void *params)
                         });
     tyn_rec_dispatch(r, &(tyn_dispatch){
                             .kernel = KERNEL_SMEAR,
-                            .cells = {TYN_GLOW_HEIGHT / 2, DEGREES, levels},
+                            .cells = {TYN_GLOW_HEIGHT / 8, DEGREES, levels},
                         });
     tyn_rec_dispatch(r, &(tyn_dispatch){
                             .kernel = KERNEL_TEXELS,
-                            .cells = {TYN_GLOW_WIDTH / 4, TYN_GLOW_HEIGHT, levels},
+                            .cells = {TYN_GLOW_WIDTH / 16, TYN_GLOW_HEIGHT, levels},
                         });
     double smeared = 0;
     for (uint32_t level = 0; level < levels; level++) {

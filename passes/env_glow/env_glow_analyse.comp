@@ -44,7 +44,7 @@ void main()
         folded[1][row] =
             glow_order(weight * (north.cosine - south.cosine), weight * (north.sine - south.sine));
         float theta = PI * (float(row) + 0.5) / float(ROWS), x = cos(theta);
-        float p = legendre_first(m, sin(theta)), before = 0.0;
+        float p = legendre_norm(m) * pow(sin(theta), float(m)), before = 0.0;
         legendre[m][row] = p;
         for (uint l = m + 1u; l < DEGREES; l++) {
             vec2 r = legendre_recurrence(l, m);
@@ -69,6 +69,6 @@ void main()
     if (l == 0u) {
         cosine = sqrt(2.0) * mean;
     }
-    vec2 r = l > m ? legendre_recurrence(l, m) : vec2(0.0);
+    vec2 r = l > m ? legendre_recurrence(l, m) : vec2(legendre_norm(m), 0.0);
     coefficients[m * DEGREES + l] = glow_coefficient(cosine, sine, r.x, r.y);
 }

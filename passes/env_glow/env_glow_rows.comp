@@ -1,12 +1,12 @@
-// env_glow_rows.comp -- Fourier sums of the map's rows: a row a group, an order a thread.
+// env_glow_rows.comp -- Fourier sums of the map's rows: a row a group, four orders a thread.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "glow_args.h"
 #include "env_glow_args.h"
 
-const uint ORDERS = TYN_GLOW_HEIGHT, HALF = TYN_GLOW_WIDTH / 2;
-layout(local_size_x = TYN_GLOW_HEIGHT) in;
+const uint HALF = TYN_GLOW_WIDTH / 2, FOUR = 4, THREADS = TYN_GLOW_HEIGHT / FOUR;
+layout(local_size_x = TYN_GLOW_HEIGHT / 4) in;
 layout(set = 0, binding = 0) uniform sampler2D sky_tex;
 layout(set = 0, binding = 1, scalar) writeonly buffer rows_buffer
 {
@@ -31,22 +31,33 @@ vec3 texel(uint i, uint row)
 
 void main()
 {
-    uint m = gl_LocalInvocationID.x, row = gl_WorkGroupID.y;
-    for (uint i = m; i < HALF; i += ORDERS) {
+    uint thread = gl_LocalInvocationID.x, row = gl_WorkGroupID.y;
+    for (uint i = thread; i < HALF; i += THREADS) {
         vec3 here = texel(i, row), opposite = texel(i + HALF, row);
         folded[0][i] = here + opposite;
         folded[1][i] = here - opposite;
     }
     barrier();
-    float angle = float(m) * (PI / float(TYN_GLOW_WIDTH));
-    vec2 turned = vec2(cos(angle), sin(angle)), turn = vec2(cos(2.0 * angle), sin(2.0 * angle));
-    vec3 cosine = vec3(0.0), sine = vec3(0.0);
-    for (uint i = 0u; i < HALF; i++) {
-        vec3 light = folded[m & 1u][i];
-        cosine += light * turned.x;
-        sine += light * turned.y;
-        turned = vec2(turned.x * turn.x - turned.y * turn.y, turned.x * turn.y + turned.y * turn.x);
+    vec3 cosine[FOUR], sine[FOUR];
+    vec2 turn[FOUR], turned[FOUR];
+    for (uint k = 0u; k < FOUR; k++) {
+        float angle = float(thread + k * THREADS) * (PI / float(TYN_GLOW_WIDTH));
+        turned[k] = vec2(cos(angle), sin(angle));
+        turn[k] = vec2(cos(2.0 * angle), sin(2.0 * angle));
+        cosine[k] = sine[k] = vec3(0.0);
     }
-    float scale = (m == 0u ? 1.0 : 2.0) / float(TYN_GLOW_WIDTH);
-    rows[m * TYN_GLOW_HEIGHT + row] = glow_order(scale * cosine, scale * sine);
+    for (uint i = 0u; i < HALF; i++) {
+        vec3 light = folded[thread & 1u][i]; // the thread's orders are all even or all odd
+        for (uint k = 0u; k < FOUR; k++) {
+            cosine[k] += light * turned[k].x;
+            sine[k] += light * turned[k].y;
+            turned[k] = vec2(turned[k].x * turn[k].x - turned[k].y * turn[k].y,
+                             turned[k].x * turn[k].y + turned[k].y * turn[k].x);
+        }
+    }
+    for (uint k = 0u; k < FOUR; k++) {
+        uint m = thread + k * THREADS;
+        float scale = (m == 0u ? 1.0 : 2.0) / float(TYN_GLOW_WIDTH);
+        rows[m * TYN_GLOW_HEIGHT + row] = glow_order(scale * cosine[k], scale * sine[k]);
+    }
 }

@@ -1,12 +1,13 @@
-// env_glow_smear.comp -- rows of the smeared map: an order and a level a group, two rows a thread.
+// env_glow_smear.comp -- rows of the smeared map: an order and a level a group, eight rows a thread.
+//
+// Several rows a thread, as fetching a coefficient costs some devices more than using it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "glow_args.h"
-#include "legendre.glsl"
 
-const uint ROWS = TYN_GLOW_HEIGHT, DEGREES = TYN_GLOW_HEIGHT;
-layout(local_size_x = TYN_GLOW_HEIGHT / 2) in;
+const uint ROWS = TYN_GLOW_HEIGHT, DEGREES = TYN_GLOW_HEIGHT, PAIRS = 4, THREADS = ROWS / 2 / PAIRS;
+layout(local_size_x = TYN_GLOW_HEIGHT / 8) in;
 layout(set = 0, binding = 0, scalar) readonly buffer series_buffer
 {
     glow_series series;
@@ -24,33 +25,41 @@ const float PI = 3.14159265358979;
 
 void main()
 {
-    uint row = gl_LocalInvocationID.x, m = gl_WorkGroupID.y, level = gl_WorkGroupID.z;
-    float theta = PI * (float(row) + 0.5) / float(ROWS), x = cos(theta);
+    uint m = gl_WorkGroupID.y, level = gl_WorkGroupID.z;
     uint terms = series.terms[level];
-    // Of degrees m, m + 2, .., which are even about the equator, and of the others.
-    glow_order even = glow_order(vec3(0.0), vec3(0.0)), odd = even;
-    float before = 0.0, p = m < terms ? legendre_first(m, sin(theta)) : 0.0;
-    for (uint l = m; l < terms; l++) {
-        glow_coefficient c = coefficients[m * DEGREES + l];
-        if (l > m) {
-            float next = c.alpha * (x * p - c.beta * before);
-            before = p;
-            p = next;
-        }
-        vec3 weight = series.kernel[level * DEGREES + l] * p;
-        even.cosine += weight * c.cosine;
-        even.sine += weight * c.sine;
-        // The next degree belongs to the other sum.
-        glow_order swap = even;
-        even = odd;
-        odd = swap;
+    // Of degrees m, m + 2, .., which are even about the equator, and of m + 1, m + 3, ...
+    vec3 cosine[2][PAIRS], sine[2][PAIRS];
+    float x[PAIRS], before[PAIRS], p[PAIRS];
+    float norm = coefficients[m * DEGREES + m].alpha;
+    for (uint k = 0u; k < PAIRS; k++) {
+        float theta = PI * (float(gl_LocalInvocationID.x + k * THREADS) + 0.5) / float(ROWS);
+        x[k] = cos(theta);
+        before[k] = 0.0;
+        p[k] = norm * pow(sin(theta), float(m));
+        cosine[0][k] = cosine[1][k] = sine[0][k] = sine[1][k] = vec3(0.0);
     }
-    if (((max(terms, m) - m) & 1u) != 0u) {
-        glow_order swap = even;
-        even = odd;
-        odd = swap;
+    for (uint first = m; first < terms; first += 2u) {
+        for (uint odd = 0u; odd < 2u; odd++) {
+            uint l = min(first + odd, DEGREES - 1u);
+            glow_coefficient c = coefficients[m * DEGREES + l];
+            vec3 kernel = first + odd < terms ? series.kernel[level * DEGREES + l] : vec3(0.0);
+            c.cosine *= kernel;
+            c.sine *= kernel;
+            for (uint k = 0u; k < PAIRS; k++) {
+                if (l > m) {
+                    float next = c.alpha * (x[k] * p[k] - c.beta * before[k]);
+                    before[k] = p[k];
+                    p[k] = next;
+                }
+                cosine[odd][k] += p[k] * c.cosine;
+                sine[odd][k] += p[k] * c.sine;
+            }
+        }
     }
     uint at = (level * DEGREES + m) * ROWS;
-    levels[at + row] = glow_order(even.cosine + odd.cosine, even.sine + odd.sine);
-    levels[at + ROWS - 1u - row] = glow_order(even.cosine - odd.cosine, even.sine - odd.sine);
+    for (uint k = 0u; k < PAIRS; k++) {
+        uint row = gl_LocalInvocationID.x + k * THREADS;
+        levels[at + row] = glow_order(cosine[0][k] + cosine[1][k], sine[0][k] + sine[1][k]);
+        levels[at + ROWS - 1u - row] = glow_order(cosine[0][k] - cosine[1][k], sine[0][k] - sine[1][k]);
+    }
 }
