@@ -8,6 +8,7 @@
 #include "passes/importance/importance.h"
 #include "passes/lattice/lattice.h"
 #include "passes/medium/medium.h"
+#include "passes/ordinates/ordinates.h"
 #include "passes/path/path.h"
 #include "passes/merge/merge.h"
 #include "passes/merge_grids/merge_grids.h"
@@ -36,6 +37,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_residuum,
     &tyn_pass_upsample,
     &tyn_pass_env_importance,
+    &tyn_pass_ordinates,
     &tyn_pass_importance,
     &tyn_pass_env_glow,
     &tyn_pass_raymarch,

@@ -1,0 +1,132 @@
+// ordinates.c -- principal ordinates: the directions from which the surroundings light the medium.
+#include "ordinates.h"
+#include "ordinates_args.h"
+#include "sky_args.h"
+#include "ordinates_columns.comp.h"
+#include "ordinates_partition.comp.h"
+#include "ordinates_rows.comp.h"
+#include <stddef.h>
+#include <string.h>
+
+static const tyn_port ports[ORDINATES_NUM_PORTS] = {
+    [ORDINATES_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, false,
+                                    "struct env_block"},
+    [ORDINATES_PORT_SKY] = {"sky", TYN_IN, TYN_IMAGE_2D, 0, true, "of env_importance"},
+    [ORDINATES_PORT_SUMS] = {"sums", TYN_IN, TYN_BUFFER, 0, true, "of env_importance"},
+    [ORDINATES_PORT_IMPORTANCE] = {"importance", TYN_IN, TYN_IMAGE_2D, 0, true,
+                                   "by the direction light comes from, frame M, mean 1"},
+    [ORDINATES_PORT_ORDINATES] = {"ordinates", TYN_OUT, TYN_BUFFER, 0, false,
+                                  "struct ordinates_block"},
+    [ORDINATES_PORT_WEIGHTS] = {"weights", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                                "sums of luminance x importance over rectangles"},
+};
+
+static const tyn_binding rows_bindings[] = {
+    {ORDINATES_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {ORDINATES_PORT_SKY, TYN_USE_SAMPLED},
+    {ORDINATES_PORT_IMPORTANCE, TYN_USE_SAMPLED, true},
+    {ORDINATES_PORT_WEIGHTS, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding columns_bindings[] = {
+    {ORDINATES_PORT_WEIGHTS, TYN_USE_STORAGE_RW},
+};
+static const tyn_binding partition_bindings[] = {
+    {ORDINATES_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {ORDINATES_PORT_SUMS, TYN_USE_STORAGE_READ},
+    {ORDINATES_PORT_WEIGHTS, TYN_USE_STORAGE_READ},
+    {ORDINATES_PORT_ORDINATES, TYN_USE_STORAGE_WRITE},
+};
+
+enum { KERNEL_ROWS, KERNEL_COLUMNS, KERNEL_PARTITION, NUM_KERNELS };
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_ROWS] = {"rows",
+                     ordinates_rows_spirv,
+                     sizeof ordinates_rows_spirv,
+                     0,
+                     {SKY_SUMS_WIDTH, 1, 1},
+                     rows_bindings,
+                     4,
+                     0},
+    [KERNEL_COLUMNS] = {"columns",
+                        ordinates_columns_spirv,
+                        sizeof ordinates_columns_spirv,
+                        0,
+                        {64, 1, 1},
+                        columns_bindings,
+                        1,
+                        0},
+    [KERNEL_PARTITION] = {"partition",
+                          ordinates_partition_spirv,
+                          sizeof ordinates_partition_spirv,
+                          sizeof(struct ordinates_args),
+                          {TYN_ORDINATES_MAX, 1, 1},
+                          partition_bindings,
+                          4,
+                          0},
+};
+
+static const tyn_param params_table[] = {
+    {"count", TYN_PARAM_INT, offsetof(tyn_ordinates_params, count), 64, 1, TYN_ORDINATES_MAX, "",
+     "principal ordinates of the environment"},
+    {"split", TYN_PARAM_BOOL, offsetof(tyn_ordinates_params, split), 1, 0, 1, "",
+     "light the lattice with the sky's mean and the ordinates with the rest"},
+    {"fold", TYN_PARAM_FLOAT, offsetof(tyn_ordinates_params, fold), 1e-4, 0, 2e-3, "",
+     "part of all light below which an ordinate is folded into its neighbour"},
+    {"spread", TYN_PARAM_FLOAT, offsetof(tyn_ordinates_params, spread), 0.5, 0.01, 100, "",
+     "how evenly ordinates are placed: uniform weight, in means of the sky"},
+};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    (void)params;
+    tyn_build_buffer(b, ORDINATES_PORT_ORDINATES, sizeof(struct ordinates_block));
+    if (tyn_build_has(b, ORDINATES_PORT_IMPORTANCE)) {
+        tyn_build_buffer(b, ORDINATES_PORT_WEIGHTS,
+                         sizeof(float) * (SKY_SUMS_WIDTH + 1) * (SKY_SUMS_HEIGHT + 1));
+    }
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_ordinates_params *p = params;
+    const uint32_t room = TYN_ORDINATES_MAX - p->num_fixed;
+    const struct ordinates_args args = {
+        .regions = (uint32_t)p->count < room ? (uint32_t)p->count : room,
+        .fixed_ones = p->num_fixed,
+        .split = p->split,
+        .weighted = tyn_rec_has(r, ORDINATES_PORT_IMPORTANCE),
+        .fold = p->fold,
+        .spread = p->spread,
+    };
+    struct ordinates_block block = {.count = 0};
+    memcpy(block.list, p->fixed, p->num_fixed * sizeof block.list[0]);
+    tyn_rec_update(r, ORDINATES_PORT_ORDINATES, 0, &block, sizeof block);
+    if (args.weighted) {
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_ROWS,
+                                            .cells = {SKY_SUMS_WIDTH, SKY_SUMS_HEIGHT, 1}});
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = KERNEL_COLUMNS, .cells = {SKY_SUMS_WIDTH + 1, 1, 1}});
+    }
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_PARTITION,
+                                        .cells = {TYN_ORDINATES_MAX, 1, 1},
+                                        .args = &args});
+    tyn_rec_work(r, "ordinates", args.regions + args.fixed_ones);
+}
+
+const tyn_pass_desc tyn_pass_ordinates = {
+    .name = "ordinates",
+    .summary = "directions from which the surroundings light the medium",
+    .ports = ports,
+    .num_ports = ORDINATES_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params = params_table,
+    .num_params = sizeof params_table / sizeof params_table[0],
+    .params_size = sizeof(tyn_ordinates_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = ORDINATES_PORT_ORDINATES,
+    .debug_meaning = "struct ordinates_block",
+};

@@ -1,0 +1,31 @@
+// ordinates.h -- principal ordinates: the directions from which the surroundings light the medium.
+//
+// The sphere is cut into regions of about equal light x importance, each an ordinate that carries the
+// exact integral of its region. The cuts form a tree whose shape depends on the number of regions alone
+// and whose axes depend on the map alone, in the map's own frame: when the map turns or importance
+// changes, every region moves a little and keeps its place in the list.
+#pragma once
+#include <tyndall/pass.h>
+#include "ordinate_args.h"
+
+enum { ORDINATES_MAX_FIXED = 68 };
+
+typedef struct tyn_ordinates_params {
+    int32_t count;      // regions, 1..256; fewer if they and the fixed ones would be more than 256
+    uint32_t split;     // 1: the mean of the sky (env_block.sky) is not in them
+    float fold;         // ordinates below this part of all light are folded into a neighbour
+    float spread;       // see ordinates_args.h
+    uint32_t num_fixed; // set by the method: ready-made ordinates that come first
+    struct ordinate fixed[ORDINATES_MAX_FIXED];
+} tyn_ordinates_params;
+
+enum {
+    ORDINATES_PORT_ENVIRONMENT, // IN buffer struct env_block
+    ORDINATES_PORT_SKY,         // IN optional 2D, of env_importance; not for a constant environment
+    ORDINATES_PORT_SUMS,        // IN optional buffer, of env_importance; with `sky`
+    ORDINATES_PORT_IMPORTANCE,  // IN optional 2D, frame M, mean 1
+    ORDINATES_PORT_ORDINATES,   // OUT buffer struct ordinates_block
+    ORDINATES_PORT_WEIGHTS,     // SCRATCH buffer float[]: sums of luminance x importance
+    ORDINATES_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_ordinates;

@@ -1,0 +1,437 @@
+// ordinates.c -- principal ordinates of analytic maps: partitions of light and of the sphere, against a
+// tree in double; folding, fixed ones, and how they move when things change a little.
+#include "gpu_test.h"
+#include "passes/env_importance/env_importance.h"
+#include "passes/ordinates/ordinates.h"
+#include "scene/env_suns.h"
+#include "scene_args.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    W = 512,
+    H = 256,
+    COARSE_W = SKY_SUMS_WIDTH,
+    COARSE_H = SKY_SUMS_HEIGHT,
+    IMP_W = 32,
+    IMP_H = 16
+};
+
+static const double weights[3] = {0.2126, 0.7152, 0.0722};
+static float map[W * H * 3];
+
+typedef enum map_kind { SKY, CONTRAST, WINDOWS, NOISE, BLACK, CONSTANT, NUM_MAPS } map_kind;
+static const char *const map_names[] = {"sky", "contrast", "windows", "noise", "black", "constant"};
+
+static void direction(double x, double y, double w, double h, double d[3])
+{
+    double azimuth = (x / w - 0.5) * 2 * M_PI, polar = y / h * M_PI;
+    d[0] = sin(polar) * sin(azimuth);
+    d[1] = cos(polar);
+    d[2] = -sin(polar) * cos(azimuth);
+}
+
+static double random_01(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return (double)(*seed >> 8) / 16777216.0;
+}
+
+static double dot3(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void fill_map(map_kind kind)
+{
+    static const double Z[3] = {0.25, 0.5, 1.0}, Y[3] = {0.9, 0.95, 1.0}, G[3] = {0.15, 0.12, 0.10};
+    const double spots[4][3] = {{0.6, 0.64, -0.48}, {-0.8, 0, 0.6}, {0, -0.6, 0.8}, {0, 1, 0}};
+    uint32_t seed = 5;
+    for (int i = 0; i < W * H; i++) {
+        double d[3];
+        direction(i % W + 0.5, i / W + 0.5, W, H, d);
+        for (int c = 0; c < 3; c++) {
+            double sky = d[1] >= 0 ? Y[c] + (Z[c] - Y[c]) * sqrt(d[1])
+                                   : Y[c] + (G[c] - Y[c]) * fmin(1, -5 * d[1]);
+            double v = sky;
+            if (kind == CONTRAST) { // a bright patch that is no sun
+                v = 0.05 * sky + 40 * exp(30 * (dot3(d, spots[0]) - 1));
+            } else if (kind == WINDOWS) {
+                v = 0.02;
+                for (int k = 0; k < 4; k++) {
+                    v += dot3(d, spots[k]) > 0.97 - 0.02 * k ? 3 + k + c : 0;
+                }
+            } else if (kind == NOISE) {
+                v = pow(random_01(&seed), 4);
+            } else if (kind == BLACK) {
+                v = 0;
+            }
+            map[3 * i + c] = (float)v;
+        }
+    }
+}
+
+static void rotation(const double axis[3], double angle, double m[3][3])
+{
+    const double c = cos(angle), s = sin(angle);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            m[i][j] = (1 - c) * axis[i] * axis[j] + (i == j ? c : 0);
+        }
+    }
+    m[0][1] -= s * axis[2];
+    m[0][2] += s * axis[1];
+    m[1][0] += s * axis[2];
+    m[1][2] -= s * axis[0];
+    m[2][0] -= s * axis[1];
+    m[2][1] += s * axis[0];
+}
+
+typedef struct scene {
+    tyn_map_light light;
+    struct env_block env;
+    const float *importance; // IMP_W x IMP_H, NULL = none
+    bool constant;
+} scene;
+
+static scene make_scene(map_kind kind, double turn)
+{
+    scene s = {.constant = kind == CONSTANT};
+    const float tint[3] = {2, 1.5f, 0.5f};
+    const double axis[3] = {0.48, 0.6, 0.64};
+    double m[3][3];
+    rotation(axis, turn, m);
+    fill_map(kind);
+    if (!s.constant) {
+        tyn_environment e = {.present = true, .size = {W, H}, .data = map};
+        assert_true(tyn_map_light_find(&e, &s.light));
+        assert_int_equal(s.light.num_suns, 0);
+    }
+    s.env.has_map = !s.constant;
+    for (int r = 0; r < 3; r++) {
+        for (int a = 0; a < 3; a++) {
+            s.env.rows[r][a] = (float)m[r][a];
+        }
+        s.env.radiance[r] = tint[r];
+        s.env.sky[r] = tint[r] * (s.constant ? 1.0f : (float)s.light.sky[r]);
+    }
+    return s;
+}
+
+static struct ordinates_block run(gpu_test *t, const scene *s, const tyn_ordinates_params *params)
+{
+    static float rgba[W * H * 4];
+    tyn_graph_begin(t->graph);
+    tyn_ref env[ENV_IMPORTANCE_NUM_PORTS] = {{0}}, refs[ORDINATES_NUM_PORTS] = {{0}};
+    refs[ORDINATES_PORT_ENVIRONMENT] = gpu_buffer(t, "environment", &s->env, sizeof s->env);
+    if (!s->constant) {
+        for (int i = 0; i < W * H; i++) {
+            memcpy(rgba + 4 * i, map + 3 * i, 12);
+        }
+        env[ENV_IMPORTANCE_PORT_MAP] =
+            gpu_image(t, "map", TYN_IMAGE_2D, (tyn_extent){W, H, 1}, 4, rgba);
+        const tyn_env_importance_params none = {0};
+        assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_env_importance, &none, env), TYN_OK);
+        refs[ORDINATES_PORT_SKY] = env[ENV_IMPORTANCE_PORT_SKY];
+        refs[ORDINATES_PORT_SUMS] = env[ENV_IMPORTANCE_PORT_SUMS];
+    }
+    if (s->importance) {
+        refs[ORDINATES_PORT_IMPORTANCE] = gpu_image(
+            t, "importance", TYN_IMAGE_2D, (tyn_extent){IMP_W, IMP_H, 1}, 1, s->importance);
+    }
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_ordinates, params, refs), TYN_OK);
+    tyn_graph_output(t->graph, "ordinates", refs[ORDINATES_PORT_ORDINATES], true);
+    gpu_run(t);
+    struct ordinates_block block;
+    memcpy(&block, gpu_map(t, "ordinates"), sizeof block);
+    return block;
+}
+
+static tyn_ordinates_params defaults(int count, bool split, float fold)
+{
+    static tyn_ordinates_params p;
+    tyn_pass_defaults(&tyn_pass_ordinates, &p);
+    p.count = count;
+    p.split = split;
+    p.fold = fold;
+    return p;
+}
+
+// ---- sums -------------------------------------------------------------------------------------
+
+// Integral of the light, and of its absolute value, over the sphere.
+static void integrals(const scene *s, bool split, double sum[3], double size[3])
+{
+    for (int c = 0; c < 3; c++) {
+        sum[c] = size[c] = 0;
+        for (int i = 0; i < W * H; i++) {
+            double share = (cos(M_PI * (i / W) / H) - cos(M_PI * (i / W + 1) / H)) * 2 * M_PI / W;
+            double l = s->env.radiance[c] * (s->constant ? 1 : (double)map[3 * i + c]);
+            l -= split ? s->env.sky[c] : 0;
+            sum[c] += l * share;
+            size[c] += fabs(l) * share;
+        }
+    }
+}
+
+static void partitions(void **state)
+{
+    gpu_test *t = *state;
+    const int counts[] = {1, 2, 3, 7, 16, 64, 255, 256};
+    for (int kind = 0; kind < NUM_MAPS; kind++) {
+        const scene s = make_scene(kind, 0.7);
+        double worst = 0;
+        for (int k = 0; k < 16; k++) {
+            const bool split = k & 1;
+            const int n = counts[k / 2];
+            tyn_ordinates_params params = defaults(n, split, 0);
+            const struct ordinates_block b = run(t, &s, &params);
+            double sum[3], size[3], solid_angle = 0, got[3] = {0, 0, 0};
+            integrals(&s, split, sum, size);
+            for (uint32_t i = 0; i < b.count; i++) {
+                const struct ordinate *o = &b.list[i];
+                solid_angle += o->solid_angle;
+                double length = 0;
+                for (int c = 0; c < 3; c++) {
+                    got[c] += o->irradiance[c];
+                    length += o->direction[c] * o->direction[c];
+                    assert_true(split || o->irradiance[c] >= 0);
+                }
+                assert_true(fabs(length - 1) < 1e-5);
+                assert_true(o->solid_angle > 0);
+                assert_true(fabs(o->mean_cosine - (1 - o->solid_angle / (4 * M_PI))) < 1e-6);
+            }
+            for (uint32_t i = b.count; i < TYN_ORDINATES_MAX; i++) {
+                assert_true(b.list[i].solid_angle == 0 && b.list[i].irradiance[0] == 0);
+            }
+            bool dark = kind == BLACK || (kind == CONSTANT && split);
+            if (dark) { // nothing to carry
+                for (int c = 0; c < 3; c++) {
+                    assert_true(fabs(got[c]) < 1e-4);
+                }
+                continue;
+            }
+            assert_int_equal(b.count, n);
+            assert_int_equal(b.folded, 0);
+            assert_true(fabs(solid_angle / (4 * M_PI) - 1) < 1e-5);
+            for (int c = 0; c < 3; c++) {
+                double error = fabs(got[c] - sum[c]) / size[c];
+                worst = fmax(worst, error);
+                if (!(error < 1e-4)) {
+                    fail_msg("%s, %d, split %d: %g, should be %g", map_names[kind], n, split,
+                             got[c], sum[c]);
+                }
+            }
+        }
+        printf("%s: sums off by %.1e of all light at most\n", map_names[kind], worst);
+    }
+}
+
+// ---- the tree in double -----------------------------------------------------------------------
+
+typedef struct region {
+    double x0, y0, x1, y1; // texels of the coarse map; y advances with the solid angle within a row
+} region;
+
+typedef struct twin {
+    double light[COARSE_H][COARSE_W]; // what is shared out, without the even part
+    double power[COARSE_H][COARSE_W][3];
+    double moment[COARSE_H][COARSE_W][3];
+    double even; // per sr
+} twin;
+
+static double row_solid_angle(int y)
+{
+    return (cos(M_PI * y / COARSE_H) - cos(M_PI * (y + 1) / COARSE_H)) * 2 * M_PI / COARSE_W;
+}
+
+static double overlap(double a0, double a1, int cell)
+{
+    return fmax(0, fmin(a1, cell + 1) - fmax(a0, cell));
+}
+
+// Sum over a region of field[y][x][stride], of `count` numbers.
+static void sum_region(const double *field, int count, region r, double *out)
+{
+    memset(out, 0, (size_t)count * sizeof *out);
+    for (int y = (int)r.y0; y < COARSE_H && y < r.y1; y++) {
+        for (int x = (int)r.x0; x < COARSE_W && x < r.x1; x++) {
+            double share = overlap(r.x0, r.x1, x) * overlap(r.y0, r.y1, y);
+            for (int c = 0; c < count; c++) {
+                out[c] += share * field[(y * COARSE_W + x) * count + c];
+            }
+        }
+    }
+}
+
+static double region_solid_angle(region r)
+{
+    double sum = 0;
+    for (int y = 0; y < COARSE_H; y++) {
+        sum += overlap(r.y0, r.y1, y) * row_solid_angle(y) * (r.x1 - r.x0);
+    }
+    return sum;
+}
+
+static double polar_of(double y)
+{
+    int row = y < COARSE_H ? (int)y : COARSE_H - 1;
+    double a = cos(M_PI * row / COARSE_H), b = cos(M_PI * (row + 1) / COARSE_H);
+    return acos(fmax(-1, fmin(1, a + (b - a) * (y - row))));
+}
+
+static double mass(const twin *w, region r)
+{
+    double light;
+    sum_region(&w->light[0][0], 1, r, &light);
+    return light + w->even * region_solid_angle(r);
+}
+
+static void grow(const twin *base, const twin *w, region base_r, region r, int n, region *out)
+{
+    if (n == 1) {
+        *out = r;
+        return;
+    }
+    double height = polar_of(base_r.y1) - polar_of(base_r.y0);
+    bool across = region_solid_angle(base_r) / height >= height;
+    const twin *tables[2] = {base, w};
+    region *pieces[2] = {&base_r, &r}, lower[2], upper[2];
+    for (int k = 0; k < 2; k++) {
+        double low = across ? pieces[k]->x0 : pieces[k]->y0;
+        double high = across ? pieces[k]->x1 : pieces[k]->y1;
+        double target = mass(tables[k], *pieces[k]) * (n / 2) / n;
+        lower[k] = upper[k] = *pieces[k];
+        for (int i = 0; i < 50; i++) {
+            double middle = 0.5 * (low + high);
+            *(across ? &lower[k].x1 : &lower[k].y1) = middle;
+            *(mass(tables[k], lower[k]) < target ? &low : &high) = middle;
+        }
+        *(across ? &upper[k].x0 : &upper[k].y0) = low;
+    }
+    grow(base, w, lower[0], lower[1], n / 2, out);
+    grow(base, w, upper[0], upper[1], n - n / 2, out + n / 2);
+}
+
+static double importance_at(const float *importance, const double d[3])
+{
+    double u = (0.5 + atan2(d[0], -d[2]) / (2 * M_PI)) * IMP_W - 0.5;
+    double v = acos(fmax(-1, fmin(1, d[1]))) / M_PI * IMP_H - 0.5;
+    int x = (int)floor(u), y = (int)floor(v);
+    double fx = u - x, fy = v - y, sum = 0;
+    for (int k = 0; k < 4; k++) {
+        int i = (x + (k & 1) + IMP_W) % IMP_W, j = y + (k >> 1);
+        j = j < 0 ? 0 : j >= IMP_H ? IMP_H - 1 : j;
+        sum += ((k & 1) ? fx : 1 - fx) * ((k >> 1) ? fy : 1 - fy) * importance[j * IMP_W + i];
+    }
+    return sum;
+}
+
+static void make_twin(const scene *s, double spread, bool weighted, twin *w)
+{
+    memset(w, 0, sizeof *w);
+    double total = 0;
+    for (int i = 0; i < W * H; i++) {
+        int y = i / W * COARSE_H / H, x = i % W * COARSE_W / W;
+        double share = (cos(M_PI * (i / W) / H) - cos(M_PI * (i / W + 1) / H)) * 2 * M_PI / W;
+        double d[3], l = 0;
+        direction(i % W + 0.5, i / W + 0.5, W, H, d);
+        for (int c = 0; c < 3; c++) {
+            w->power[y][x][c] += share * map[3 * i + c];
+            l += weights[c] * share * map[3 * i + c];
+        }
+        for (int c = 0; c < 3; c++) {
+            w->moment[y][x][c] += l * d[c];
+        }
+        w->light[y][x] += l;
+    }
+    for (int y = 0; y < COARSE_H; y++) {
+        for (int x = 0; x < COARSE_W; x++) {
+            double d[3], m[3];
+            direction(x + 0.5, y + 0.5, COARSE_W, COARSE_H, d);
+            for (int a = 0; a < 3; a++) {
+                m[a] =
+                    s->env.rows[0][a] * d[0] + s->env.rows[1][a] * d[1] + s->env.rows[2][a] * d[2];
+            }
+            w->light[y][x] *= weighted ? importance_at(s->importance, m) : 1;
+            total += w->light[y][x];
+        }
+    }
+    w->even = spread * total / (4 * M_PI);
+}
+
+static void make_importance(float *out, double peak)
+{
+    const double towards[3] = {0.36, 0.48, 0.8};
+    double sum = 0, area = 0;
+    for (int i = 0; i < IMP_W * IMP_H; i++) {
+        double d[3], share = sin((i / IMP_W + 0.5) / IMP_H * M_PI);
+        direction(i % IMP_W + 0.5, i / IMP_W + 0.5, IMP_W, IMP_H, d);
+        out[i] = (float)(0.2 + peak * exp(3 * (dot3(d, towards) - 1)));
+        sum += share * out[i];
+        area += share;
+    }
+    for (int i = 0; i < IMP_W * IMP_H; i++) {
+        out[i] *= (float)(area / sum);
+    }
+}
+
+static void against_twin(void **state)
+{
+    gpu_test *t = *state;
+    static twin base, weighted;
+    static float importance[IMP_W * IMP_H];
+    make_importance(importance, 3);
+    const int counts[] = {1, 3, 64, 100};
+    for (int kind = 0; kind < BLACK; kind++) {
+        for (int k = 0; k < 8; k++) {
+            scene s = make_scene(kind, 0.7);
+            const int n = counts[k / 2];
+            s.importance = k & 1 ? importance : NULL;
+            const tyn_ordinates_params params = defaults(n, false, 0);
+            const struct ordinates_block b = run(t, &s, &params);
+            make_twin(&s, params.spread, false, &base);
+            make_twin(&s, params.spread, s.importance != NULL, &weighted);
+            region regions[TYN_ORDINATES_MAX], all = {0, 0, COARSE_W, COARSE_H};
+            grow(&base, &weighted, all, all, n, regions);
+            double worst_light = 0, worst_angle = 0, worst_turn = 0;
+            for (int i = 0; i < n; i++) {
+                double power[3], moment[3], got[3] = {0, 0, 0}, length = 0, dot = 0, middle[3];
+                sum_region(&base.power[0][0][0], 3, regions[i], power);
+                sum_region(&base.moment[0][0][0], 3, regions[i], moment);
+                double solid_angle = region_solid_angle(regions[i]);
+                for (int c = 0; c < 3; c++) {
+                    double expected = power[c] * s.env.radiance[c];
+                    worst_light = fmax(worst_light, fabs(b.list[i].irradiance[c] / expected - 1));
+                    for (int r = 0; r < 3; r++) { // M -> map, against the travel
+                        got[r] -= s.env.rows[r][c] * b.list[i].direction[c];
+                    }
+                    length += moment[c] * moment[c];
+                }
+                for (int c = 0; c < 3; c++) {
+                    middle[c] = moment[c] / sqrt(length);
+                    dot += middle[c] * got[c];
+                }
+                worst_angle = fmax(worst_angle, fabs(b.list[i].solid_angle / solid_angle - 1));
+                worst_turn = fmax(worst_turn, acos(fmin(1, dot)) * 180 / M_PI);
+            }
+            printf("%s, %d%s: light off by %.1e, solid angle by %.1e, direction by %.2g degrees\n",
+                   map_names[kind], n, s.importance ? ", importance" : "", worst_light, worst_angle,
+                   worst_turn);
+            assert_true(worst_light < 3e-3);
+            assert_true(worst_angle < 3e-3);
+            assert_true(worst_turn < 0.5);
+        }
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(partitions),
+        cmocka_unit_test(against_twin),
+    };
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
