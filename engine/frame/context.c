@@ -28,8 +28,9 @@ struct tyn_context {
     uint32_t outputs;
     // The environment's tables, made again when its texels change.
     uint64_t env_hash;
-    uint64_t faces_hash; // of the grid that `open_faces` was found for
+    uint64_t grid_hash; // of the grid that the two below were found for
     uint32_t open_faces;
+    float mean_density;
     uint64_t checked_data; // hash of the densities and texels that were found fit
     tyn_map_light map_light;
     void *env_cdf; // of a method that reads it
@@ -291,18 +292,23 @@ static void upload_scene(tyn_context *ctx, const tyn_frame *frame, tyn_scene_ref
     }
 }
 
-// Faces at which the medium is not 0, as far as is known; looked up again when the grid changes.
-static uint32_t open_faces(tyn_context *ctx, const tyn_scene *scene)
+// What the density grid says of the medium, as far as is known; looked up again when the grid changes.
+static void look_at_grid(tyn_context *ctx, const tyn_scene *scene)
 {
-    if (!ctx->frame.direct || scene->num_volumes != 1) {
-        return 63;
+    tyn_frame_scene *out = &ctx->frame;
+    out->open_faces = 63;
+    out->mean_density = out->direct && scene->num_volumes == 0 ? 1.0f : 0.0f;
+    if (!out->direct || scene->num_volumes != 1) {
+        return;
     }
     uint64_t hash = tyn_atlas_hash(&ctx->atlas, scene);
-    if (hash != ctx->faces_hash) {
+    if (hash != ctx->grid_hash) {
         ctx->open_faces = tyn_volume_open_faces(&scene->volumes[0]);
-        ctx->faces_hash = hash;
+        ctx->mean_density = tyn_volume_mean(&scene->volumes[0]);
+        ctx->grid_hash = hash;
     }
-    return ctx->open_faces;
+    out->open_faces = ctx->open_faces;
+    out->mean_density = ctx->mean_density;
 }
 
 static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *job)
@@ -318,7 +324,7 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
         result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);
     }
     if (result == TYN_OK) {
-        ctx->frame.open_faces = open_faces(ctx, frame->scene);
+        look_at_grid(ctx, frame->scene);
     }
     if (result == TYN_OK && ctx->atlas.host && !frame->densities) {
         tyn_log_print(log, TYN_LOG_ERROR, "volume 0 has no data and tyn_frame.densities is NULL");

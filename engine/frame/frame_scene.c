@@ -356,6 +356,16 @@ uint32_t tyn_volume_open_faces(const tyn_volume *volume)
     return open;
 }
 
+float tyn_volume_mean(const tyn_volume *volume)
+{
+    size_t count = (size_t)volume->size[0] * volume->size[1] * volume->size[2];
+    double sum = 0;
+    for (size_t i = 0; volume->data && i < count; i++) {
+        sum += volume->data[i];
+    }
+    return (float)(sum / (double)count);
+}
+
 tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, const tyn_view *view,
                                  const tyn_map_light *map, const tyn_log *log)
 {

@@ -24,6 +24,7 @@ typedef struct tyn_frame_scene {
     bool emissive;
     uint32_t
         open_faces; // of the box, where the density may not be 0: bit 2 a + (1: high face of axis a)
+    float mean_density; // over the box, mode DENSITY: in units of the texture's values; 0 = not known
     bool empty;     // no medium at all, or no coefficient above 0
     float m_from_world[16]; // rigid
 } tyn_frame_scene;

@@ -1,81 +1,160 @@
 // pop_paper.c -- method "pop-paper": principal-ordinates propagation as published in 2014.
 //
-// The light of each sun, scattered or not, moves from cell to cell of the sun's own aligned grid; what
-// it sends to the eye is upsampled with the medium as guide and marched. Kept as it was published (the
-// readings are settings of propagate_rect): the baseline of method "pop".
+// The light of each sun and ordinate, scattered or not, moves from cell to cell of its own aligned grid;
+// what all of them send to the eye is merged into one grid, upsampled with the medium as guide and
+// marched. Kept as it was published (the readings are settings of propagate_rect): the baseline of
+// method "pop".
 #include "methods/nodes.h"
 #include "passes/medium/medium.h"
 #include "passes/propagate_rect/propagate_rect.h"
-#include "passes/upsample/upsample.h"
+#include "passes/residuum/residuum.h"
 #include "passes/merge_grids/merge_grids.h"
+#include "passes/upsample/upsample.h"
 #include "passes/composite/composite.h"
 #include "passes/tonemap/tonemap.h"
 #include <tyndall/registry.h>
 #include <math.h>
 #include <string.h>
 
-// What the two passes hand on.
+// What the nodes of one frame share.
 typedef struct propagated {
-    tyn_propagate_rect_params params;
-    tyn_ref refs[PROPAGATE_RECT_NUM_PORTS];
+    tyn_propagate_rect_params grids;
+    tyn_residuum_params residuum;
+    tyn_picture_inputs picture;
+    tyn_ref places, seen, light, isotropic, merged;
 } propagated;
 
-static tyn_result add_propagation(tyn_graph *g, const tyn_job *job, const tyn_picture_inputs *in,
-                                  propagated *light)
+static float longest_side(const tyn_job *job)
 {
-    tyn_settings_params(job->settings, &tyn_pass_propagate_rect, &light->params);
-    light->params.num_suns = in->num_suns;
-    light->params.channels = job->frame->grey ? 1 : 3;
-    light->params.mode = job->frame->medium.mode;
-    memcpy(light->params.extent, job->frame->medium.extent, sizeof light->params.extent);
-    memcpy(light->params.size, job->frame->medium.size, sizeof light->params.size);
-    light->refs[PROPAGATE_RECT_PORT_MEDIUM] = job->refs.medium;
-    light->refs[PROPAGATE_RECT_PORT_LIGHTS] = job->refs.lights;
-    light->refs[PROPAGATE_RECT_PORT_CAMERA] = job->refs.camera;
-    light->refs[PROPAGATE_RECT_PORT_DENSITY] = in->media.density;
-    light->refs[PROPAGATE_RECT_PORT_SIGMA_A] = in->media.sigma_a;
-    light->refs[PROPAGATE_RECT_PORT_G] = in->media.g;
-    return tyn_graph_add(g, &tyn_pass_propagate_rect, &light->params, light->refs);
+    const float *extent = job->frame->medium.extent;
+    return fmaxf(extent[0], fmaxf(extent[1], extent[2]));
 }
 
-static tyn_result add_upsampling(tyn_graph *g, const tyn_job *job, const propagated *light,
-                                 tyn_picture_inputs *in)
+// Iterations in the aligned grids before what is left in them counts as isotropic (section 5.4). The
+// largest mean cosine at the start is that of a sun or of the smallest region, next to 1. Light has
+// to cross the grid, so there are as many iterations as cells at least; no more are known to be needed
+// where the mean of the medium is not known.
+static int32_t iterations_before_residuum(const propagated *p, const tyn_job *job)
+{
+    const struct medium_block *m = &job->frame->medium;
+    float sigma_s = 0.0f, g = -1.0f;
+    if (p->residuum.after > 0) {
+        return p->residuum.after;
+    }
+    for (int c = 0; c < 3; c++) {
+        sigma_s += m->sigma_s[c] / 3.0f * job->frame->mean_density;
+        g = fmaxf(g, m->g[c]);
+    }
+    float hop = longest_side(job) / (float)p->grids.cells;
+    uint32_t hops =
+        sigma_s > 0.0f ? tyn_residuum_after(1.0f, g, sigma_s, hop, p->residuum.epsilon) : 0;
+    return (int32_t)fminf(fmaxf((float)hops, (float)p->grids.cells), 256.0f);
+}
+
+static tyn_result add_propagation(tyn_graph *g, const tyn_job *job, propagated *p)
 {
     const struct medium_block *block = &job->frame->medium;
-    tyn_merge_grids_params merge;
-    tyn_settings_params(job->settings, &tyn_pass_merge_grids, &merge);
-    merge.num_grids = light->params.num_suns + light->params.num_ordinates;
-    merge.grid_cells = (uint32_t)light->params.cells;
-    merge.channels = light->params.channels;
-    merge.mode = block->mode;
-    memcpy(merge.extent, block->extent, sizeof merge.extent);
-    tyn_ref merged[MERGE_GRIDS_NUM_PORTS] = {
-        [MERGE_GRIDS_PORT_MEDIUM] = job->refs.medium,
-        [MERGE_GRIDS_PORT_DENSITY] = in->media.density,
-        [MERGE_GRIDS_PORT_PLACES] = light->refs[PROPAGATE_RECT_PORT_PLACES],
-        [MERGE_GRIDS_PORT_SEEN] = light->refs[PROPAGATE_RECT_PORT_SEEN],
-    };
-    tyn_result result = tyn_graph_add(g, &tyn_pass_merge_grids, &merge, merged);
-    if (result != TYN_OK) {
-        return result;
+    p->grids.num_suns = p->picture.num_suns;
+    p->grids.channels = job->frame->grey ? 1 : 3;
+    p->grids.mode = block->mode;
+    p->grids.keep_light = p->residuum.on;
+    if (p->residuum.on) {
+        p->grids.iterations = iterations_before_residuum(p, job);
     }
+    memcpy(p->grids.extent, block->extent, sizeof p->grids.extent);
+    memcpy(p->grids.size, block->size, sizeof p->grids.size);
+    tyn_ref refs[PROPAGATE_RECT_NUM_PORTS] = {
+        [PROPAGATE_RECT_PORT_MEDIUM] = job->refs.medium,
+        [PROPAGATE_RECT_PORT_LIGHTS] = job->refs.suns,
+        [PROPAGATE_RECT_PORT_CAMERA] = job->refs.camera,
+        [PROPAGATE_RECT_PORT_DENSITY] = p->picture.media.density,
+        [PROPAGATE_RECT_PORT_SIGMA_A] = p->picture.media.sigma_a,
+        [PROPAGATE_RECT_PORT_G] = p->picture.media.g,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_propagate_rect, &p->grids, refs);
+    p->places = refs[PROPAGATE_RECT_PORT_PLACES];
+    p->seen = refs[PROPAGATE_RECT_PORT_SEEN];
+    p->light = refs[PROPAGATE_RECT_PORT_LIGHT];
+    return result;
+}
+
+static uint32_t num_grids(const propagated *p)
+{
+    return p->grids.num_suns + p->grids.num_ordinates;
+}
+
+static tyn_result add_residuum(tyn_graph *g, const tyn_job *job, propagated *p)
+{
+    p->residuum.num_grids = num_grids(p);
+    p->residuum.grid_cells = (uint32_t)p->grids.cells;
+    p->residuum.channels = p->grids.channels;
+    p->residuum.mode = p->grids.mode;
+    memcpy(p->residuum.extent, p->grids.extent, sizeof p->residuum.extent);
+    tyn_ref refs[RESIDUUM_NUM_PORTS] = {
+        [RESIDUUM_PORT_MEDIUM] = job->refs.medium,
+        [RESIDUUM_PORT_DENSITY] = p->picture.media.density,
+        [RESIDUUM_PORT_SIGMA_A] = p->picture.media.sigma_a,
+        [RESIDUUM_PORT_PLACES] = p->places,
+        [RESIDUUM_PORT_LIGHT] = p->light,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_residuum, &p->residuum, refs);
+    p->isotropic = refs[RESIDUUM_PORT_RESIDUUM];
+    return result;
+}
+
+static tyn_result add_merge(tyn_graph *g, const tyn_job *job, propagated *p)
+{
+    tyn_merge_grids_params params;
+    tyn_settings_params(job->settings, &tyn_pass_merge_grids, &params);
+    params.num_grids = num_grids(p);
+    params.grid_cells = (uint32_t)p->grids.cells;
+    params.channels = p->grids.channels;
+    params.mode = p->grids.mode;
+    memcpy(params.extent, p->grids.extent, sizeof params.extent);
+    tyn_ref refs[MERGE_GRIDS_NUM_PORTS] = {
+        [MERGE_GRIDS_PORT_MEDIUM] = job->refs.medium,
+        [MERGE_GRIDS_PORT_DENSITY] = p->picture.media.density,
+        [MERGE_GRIDS_PORT_PLACES] = p->places,
+        [MERGE_GRIDS_PORT_SEEN] = p->seen,
+        [MERGE_GRIDS_PORT_RESIDUUM] = p->isotropic,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_merge_grids, &params, refs);
+    p->merged = refs[MERGE_GRIDS_PORT_MERGED];
+    return result;
+}
+
+static tyn_result add_upsampling(tyn_graph *g, const tyn_job *job, propagated *p)
+{
     tyn_upsample_params params;
     tyn_settings_params(job->settings, &tyn_pass_upsample, &params);
-    params.mode = block->mode;
-    memcpy(params.extent, block->extent, sizeof params.extent);
-    memcpy(params.size, block->size, sizeof params.size);
+    params.mode = p->grids.mode;
+    memcpy(params.extent, p->grids.extent, sizeof params.extent);
+    memcpy(params.size, p->grids.size, sizeof params.size);
     tyn_ref refs[UPSAMPLE_NUM_PORTS] = {
         [UPSAMPLE_PORT_MEDIUM] = job->refs.medium,
-        [UPSAMPLE_PORT_DENSITY] = in->media.density,
-        [UPSAMPLE_PORT_MERGED] = merged[MERGE_GRIDS_PORT_MERGED],
+        [UPSAMPLE_PORT_DENSITY] = p->picture.media.density,
+        [UPSAMPLE_PORT_MERGED] = p->merged,
     };
-    result = tyn_graph_add(g, &tyn_pass_upsample, &params, refs);
-    in->inscatter = refs[UPSAMPLE_PORT_INSCATTER];
-    float longest = fmaxf(block->extent[0], fmaxf(block->extent[1], block->extent[2]));
-    in->cell = longest / (float)light->params.cells;
-    in->field = light->params.source == TYN_PROPAGATE_SOURCE_ACCUMULATED ? RAYMARCH_INSCATTER_SOURCE
-                                                                         : RAYMARCH_INSCATTER_PLAIN;
+    tyn_result result = tyn_graph_add(g, &tyn_pass_upsample, &params, refs);
+    p->picture.inscatter = refs[UPSAMPLE_PORT_INSCATTER];
+    p->picture.cell = longest_side(job) / (float)p->grids.cells;
+    p->picture.field = p->grids.source == TYN_PROPAGATE_SOURCE_ACCUMULATED
+                           ? RAYMARCH_INSCATTER_SOURCE
+                           : RAYMARCH_INSCATTER_PLAIN;
     return result;
+}
+
+// The light in the medium, from the suns and the ordinates of `p`.
+static tyn_result add_light(tyn_graph *g, const tyn_job *job, propagated *p)
+{
+    tyn_result result = add_propagation(g, job, p);
+    if (result == TYN_OK && p->residuum.on) {
+        result = add_residuum(g, job, p);
+    }
+    if (result == TYN_OK) {
+        result = add_merge(g, job, p);
+    }
+    return result == TYN_OK ? add_upsampling(g, job, p) : result;
 }
 
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
@@ -95,22 +174,22 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (frame->emissive) {
         tyn_method_warn(job, "emission is seen, but does not light the medium");
     }
-    tyn_picture_inputs in = {.num_suns = tyn_method_suns(job), .field = RAYMARCH_INSCATTER_PLAIN};
-    propagated light = {.refs = {{0}}};
-    result = tyn_add_medium(g, job, &in.media);
-    if (result == TYN_OK && in.num_suns) {
-        result = add_propagation(g, job, &in, &light);
+    propagated p = {
+        .picture = {.num_suns = tyn_method_suns(job), .field = RAYMARCH_INSCATTER_PLAIN}};
+    tyn_settings_params(job->settings, &tyn_pass_propagate_rect, &p.grids);
+    tyn_settings_params(job->settings, &tyn_pass_residuum, &p.residuum);
+    result = tyn_add_medium(g, job, &p.picture.media);
+    if (result == TYN_OK && p.picture.num_suns) {
+        result = add_light(g, job, &p);
     }
-    if (result == TYN_OK && in.num_suns) {
-        result = add_upsampling(g, job, &light, &in);
-    }
-    in.num_suns = 0; // all of their light is in the field
-    return result == TYN_OK ? tyn_add_picture(g, job, &in) : result;
+    p.picture.num_suns = 0; // all of their light is in the field
+    return result == TYN_OK ? tyn_add_picture(g, job, &p.picture) : result;
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,   &tyn_pass_propagate_rect, &tyn_pass_merge_grids, &tyn_pass_upsample,
-    &tyn_pass_raymarch, &tyn_pass_composite,      &tyn_pass_tonemap,     NULL,
+    &tyn_pass_medium,      &tyn_pass_propagate_rect, &tyn_pass_residuum,
+    &tyn_pass_merge_grids, &tyn_pass_upsample,       &tyn_pass_raymarch,
+    &tyn_pass_composite,   &tyn_pass_tonemap,        NULL,
 };
 
 const tyn_method tyn_method_pop_paper = {

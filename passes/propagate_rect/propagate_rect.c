@@ -333,6 +333,7 @@ static void record(tyn_recorder *r, const void *data)
     tyn_rec_work(r, "cells", hops);
     tyn_rec_work(r, "flops", hops * 150); // counted by hand
     tyn_rec_work(r, "bytes", hops * 56);
+    tyn_rec_work(r, "iterations", p->iterations);
 }
 
 const tyn_pass_desc tyn_pass_propagate_rect = {
