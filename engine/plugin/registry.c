@@ -28,6 +28,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_scatter_lut,
     &tyn_pass_lattice_cells,
     &tyn_pass_lattice_source,
+    &tyn_pass_lattice_ordinates,
     &tyn_pass_lattice,
     &tyn_pass_merge,
     &tyn_pass_probe,

@@ -3,6 +3,7 @@
 // Four passes, so that what does not change is not done again:
 //   lattice_cells   the medium averaged over the cells         (again when the medium changes)
 //   lattice_source  unscattered sunlight per cell              (... or a sun changes)
+//   lattice_ordinates  light of the sky's principal ordinates (... or the environment)
 //   lattice_sky     the environment by direction                (... or the environment)
 //   lattice         fluence and flux of the scattered light    (... or the environment changes)
 // None of them depends on the camera.
@@ -75,6 +76,26 @@ enum {
     LATTICE_SOURCE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_lattice_source;
+
+// ---- lattice_ordinates ------------------------------------------------------------------------
+
+typedef struct tyn_lattice_ordinates_params {
+    tyn_lattice_shape shape;
+    uint32_t mode;  // TYN_MEDIUM_*
+    uint32_t grey;  // 1: sigma_s, sigma_a and g are the same in all channels
+    uint32_t count; // tyn_columns_params.count
+} tyn_lattice_ordinates_params;
+
+enum {
+    LATTICE_ORDINATES_PORT_MEDIUM,    // IN buffer struct medium_block
+    LATTICE_ORDINATES_PORT_ORDINATES, // IN buffer struct ordinates_block
+    LATTICE_ORDINATES_PORT_COLUMNS,   // IN buffer, of columns
+    LATTICE_ORDINATES_PORT_CELLS,     // IN 3D, of lattice_cells
+    LATTICE_ORDINATES_PORT_SUNLIGHT,  // IN optional 3D: `source` of lattice_source, which is added to
+    LATTICE_ORDINATES_PORT_SOURCE,    // OUT 3D RGBA32F, stacked: sum E T', sum a E T' direction (W/m^2)
+    LATTICE_ORDINATES_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_lattice_ordinates;
 
 // ---- lattice_sky --------------------------------------------------------------------------------
 

@@ -19,6 +19,13 @@ struct lattice_source_args {
     tyn_uint num_suns;
 };
 
+struct lattice_ordinates_args {
+    tyn_uvec3 dims;
+    tyn_uint channels;
+    tyn_vec3 tint;
+    tyn_uint count; // ordinates that the columns have room for
+};
+
 struct lattice_args { // kernels on the whole lattice
     tyn_uvec3 dims;
     tyn_uint channels;

@@ -28,14 +28,6 @@ layout(binding = 7, rgba32f) uniform writeonly image3D sunlit;
 
 layout(constant_id = 1) const uint num_channels = 3;
 
-// e^-centre sinh(x) / x without its overflow; x <= centre up to interpolation. Below x = 0.01 it is
-// e^-centre within 2e-5.
-float mean_transmittance(float centre, float x)
-{
-    x = max(x, 0.01);
-    return (exp(-max(centre - x, 0.0)) - exp(-(centre + x))) / (2.0 * x);
-}
-
 void main()
 {
     ivec3 texel = ivec3(gl_GlobalInvocationID), dims = ivec3(args.dims);
