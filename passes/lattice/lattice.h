@@ -91,8 +91,8 @@ enum {
     LATTICE_ORDINATES_PORT_ORDINATES, // IN buffer struct ordinates_block
     LATTICE_ORDINATES_PORT_COLUMNS,   // IN buffer, of columns
     LATTICE_ORDINATES_PORT_CELLS,     // IN 3D, of lattice_cells
-    LATTICE_ORDINATES_PORT_SUNLIGHT,  // IN optional 3D: `source` of lattice_source, which is added to
-    LATTICE_ORDINATES_PORT_SOURCE,    // OUT 3D RGBA32F, stacked: sum E T', sum a E T' direction (W/m^2)
+    LATTICE_ORDINATES_PORT_SUNLIGHT, // IN optional 3D: `source` of lattice_source, which is added to
+    LATTICE_ORDINATES_PORT_SOURCE, // OUT 3D RGBA32F, stacked: sum E T', sum a E T' direction (W/m^2)
     LATTICE_ORDINATES_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_lattice_ordinates;
@@ -122,9 +122,10 @@ typedef struct tyn_lattice_params {
 } tyn_lattice_params;
 
 enum {
-    LATTICE_PORT_CELLS,  // IN 3D, of lattice_cells
-    LATTICE_PORT_SOURCE, // IN optional 3D, of lattice_source
-    LATTICE_PORT_SKY,    // IN optional buffer, of lattice_sky
+    LATTICE_PORT_CELLS,       // IN 3D, of lattice_cells
+    LATTICE_PORT_SOURCE,      // IN optional 3D, of lattice_ordinates or lattice_source
+    LATTICE_PORT_SKY,         // IN optional buffer, of lattice_sky
+    LATTICE_PORT_ENVIRONMENT, // IN optional buffer struct env_block: `sky` enters from all sides
     LATTICE_PORT_MOMENTS, // OUT 3D RGBA32F, stacked: fluence phi and net flux (x, y, z) of the light that
                           // has scattered, came from the environment or was emitted, W/m^2
     LATTICE_PORT_COUNTERS, // OUT buffer struct counters_block

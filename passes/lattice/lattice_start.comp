@@ -4,6 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "scene_args.h"
 #include "lattice_args.h"
 #include "lattice_sweep.glsl"
 
@@ -15,6 +16,10 @@ layout(push_constant, scalar) uniform push
 layout(binding = 0, scalar) readonly buffer sky_buffer
 {
     vec3 sky[]; // that enters along each direction, W/(m^2 sr)
+};
+layout(binding = 5, scalar) uniform environment_uniform
+{
+    env_block environment;
 };
 layout(binding = 1) uniform sampler3D cells;
 layout(binding = 2) uniform sampler3D source;
@@ -37,7 +42,7 @@ void main()
     uint i = (texel.z * args.dims.y + texel.y) * args.dims.x + texel.x;
     vec4 m = vec4(0.0);
     for (uint d = 0; d < LATTICE_DIRECTIONS; d++) {
-        float boundary = lattice_channel(sky[d], args.channels, ch, args.tint);
+        float boundary = lattice_channel(sky[d] + environment.sky, args.channels, ch, args.tint);
         m += LATTICE_4PI * lattice_weight(d) * boundary *
              vec4(1.0, normalize(vec3(lattice_step(d))));
     }

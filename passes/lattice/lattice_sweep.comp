@@ -6,6 +6,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "scene_args.h"
 #include "lattice_args.h"
 #include "lattice_sweep.glsl"
 
@@ -17,6 +18,10 @@ layout(push_constant, scalar) uniform push
 layout(binding = 0, scalar) readonly buffer sky_buffer
 {
     vec3 sky[]; // that enters along each direction, W/(m^2 sr)
+};
+layout(binding = 5, scalar) uniform environment_uniform
+{
+    env_block environment;
 };
 layout(binding = 1) uniform sampler3D cells;
 layout(binding = 2, scalar) readonly buffer emitted_buffer
@@ -69,7 +74,7 @@ void main()
         float length_l = args.dx * (diagonal ? sqrt(3.0) : 1.0);
         vec3 omega = vec3(o) * (diagonal ? inversesqrt(3.0) : 1.0);
         float cross_section = args.dx * args.dx * args.dx / length_l; // of the tube around a line
-        float boundary = lattice_channel(sky[direction], args.channels, ch, args.tint);
+        float boundary = lattice_channel(sky[direction] + environment.sky, args.channels, ch, args.tint);
 
         float psi = boundary, before = 0.0;
         vec4 e = emitted[at];

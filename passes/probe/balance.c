@@ -12,6 +12,9 @@ static const tyn_port ports[BALANCE_NUM_PORTS] = {
     [BALANCE_PORT_SOURCE] = {"source", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_source"},
     [BALANCE_PORT_POWER] = {"power", TYN_IN, TYN_BUFFER, 0, true, "of lattice_source"},
     [BALANCE_PORT_LEAKS] = {"leaks", TYN_IN, TYN_BUFFER, 0, false, "of lattice"},
+    [BALANCE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
+                                  "struct env_block: its mean without suns enters at the box"},
+    [BALANCE_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, true, "struct ordinates_block"},
     [BALANCE_PORT_BALANCE] = {"balance", TYN_OUT, TYN_BUFFER, 0, false, "tyn_balance, W"},
 };
 
@@ -20,7 +23,8 @@ static const tyn_binding bindings[] = {
     {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},   {BALANCE_PORT_CELLS, TYN_USE_SAMPLED},
     {BALANCE_PORT_MOMENTS, TYN_USE_SAMPLED},       {BALANCE_PORT_SOURCE, TYN_USE_SAMPLED},
     {BALANCE_PORT_POWER, TYN_USE_STORAGE_READ},    {BALANCE_PORT_LEAKS, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_BALANCE, TYN_USE_STORAGE_WRITE},
+    {BALANCE_PORT_BALANCE, TYN_USE_STORAGE_WRITE}, {BALANCE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {BALANCE_PORT_ORDINATES, TYN_USE_UNIFORM},
 };
 
 static const tyn_kernel kernels[] = {
@@ -30,7 +34,7 @@ static const tyn_kernel kernels[] = {
      sizeof(struct balance_args),
      {BALANCE_GROUP, 1, 1},
      bindings,
-     9,
+     11,
      0},
 };
 

@@ -2,11 +2,13 @@
 //
 // What the environment brings in is, for each direction, radiance times the projected area of the
 // medium's box; the lines' leaks are net, so what they carry straight through the lattice counts on
-// both sides.
+// both sides. Suns and ordinates lose what collides in the cells: that of a sun was made to be what its
+// beam loses.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "scene_args.h"
+#include "ordinate_args.h"
 #include "probe_args.h"
 #include "lattice_power.h"
 #include "lattice.glsl"
@@ -46,7 +48,16 @@ layout(binding = 8, scalar) writeonly buffer balance_buffer
     uvec2 balance[6][3];
 };
 
-shared vec3 sums[BALANCE_GROUP]; // absorbed, emitted, leak
+layout(binding = 9, scalar) uniform environment_uniform
+{
+    env_block environment;
+};
+layout(binding = 10, scalar) uniform ordinates_uniform
+{
+    ordinates_block ordinates;
+};
+
+shared vec4 sums[BALANCE_GROUP]; // absorbed, emitted, leak, lost by suns and ordinates
 
 uvec2 double_bits(float x)
 {
@@ -75,13 +86,14 @@ void main()
     ivec3 dims = textureSize(cells, 0);
     dims.z /= int(args.channels);
     float dx = lattice_box_of(medium.extent, dims).dx, volume = dx * dx * dx;
-    vec3 sum = vec3(0.0);
+    vec4 sum = vec4(0.0);
     for (uint i = me; i < uint(dims.x * dims.y * dims.z); i += BALANCE_GROUP) {
         ivec3 c = ivec3(int(i) % dims.x, int(i) / dims.x % dims.y,
                         int(i) / (dims.x * dims.y) + int(ch) * dims.z);
         vec4 cell = texelFetch(cells, c, 0);
-        float phi = texelFetch(moments, c, 0).x + lattice_fetch_source(source, cells, c).x;
-        sum += volume * vec3(cell.y * phi, LATTICE_4PI * cell.w, 0.0);
+        float beams = lattice_fetch_source(source, cells, c).x;
+        float phi = texelFetch(moments, c, 0).x + beams;
+        sum += volume * vec4(cell.y * phi, LATTICE_4PI * cell.w, 0.0, (cell.x + cell.y) * beams);
     }
     for (uint i = me; i < args.num_leaks; i += BALANCE_GROUP) {
         sum.z += leaks[ch * args.num_leaks + i];
@@ -102,17 +114,21 @@ void main()
     float entering = 0.0, isotropic = 0.0; // of radiance 1 from everywhere: pi times the surface
     for (uint d = 0; d < 14; d++) {
         float area = dot(faces, abs(normalize(vec3(lattice_step(d)))));
-        entering += lattice_weight(d) * area * lattice_channel(sky[d], args.channels, ch, args.tint);
+        vec3 boundary = sky[d] + environment.sky;
+        entering += lattice_weight(d) * area * lattice_channel(boundary, args.channels, ch, args.tint);
         isotropic += lattice_weight(d) * area;
     }
     entering *= LATTICE_4PI / 4.0 * 2.0 * (faces.x + faces.y + faces.z) / isotropic;
-    float escaped = entering + sums[0].z;
+    for (uint n = 0; n < ordinates.count; n++) {
+        float e = lattice_channel(ordinates.list[n].irradiance, args.channels, ch, args.tint);
+        entering += e * dot(faces, abs(ordinates.list[n].direction));
+    }
     for (uint sun = 0; sun < args.num_suns; sun++) {
         lattice_power w = power[sun * args.channels + ch];
         float e = lattice_channel(lights[sun].color, args.channels, ch, args.tint);
         entering += e * w.entering;
-        escaped += e * (w.entering - w.lost);
     }
+    float escaped = entering + sums[0].z - sums[0].w;
     float absorbed = sums[0].x, emitted = sums[0].y, given = entering + emitted;
     write(0, ch, entering);
     write(1, ch, emitted);

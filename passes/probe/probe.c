@@ -13,6 +13,10 @@ static const tyn_port ports[PROBE_NUM_PORTS] = {
                            "depth along the suns, or that of sigma_s"},
     [PROBE_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "of absorption"},
     [PROBE_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true, "of sigma_s'"},
+    [PROBE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
+                                "struct env_block: its mean without suns enters at the box"},
+    [PROBE_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, true, "struct ordinates_block"},
+    [PROBE_PORT_COLUMNS] = {"columns", TYN_IN, TYN_BUFFER, 0, true, "of columns"},
     [PROBE_PORT_POINTS] = {"points", TYN_IN, TYN_BUFFER, 0, false, "vec3[], m"},
     [PROBE_PORT_RESULTS] = {"results", TYN_OUT, TYN_BUFFER, 0, false, "tyn_probe_result[], W/m^2"},
 };
@@ -22,7 +26,8 @@ static const tyn_binding bindings[] = {
     {PROBE_PORT_MOMENTS, TYN_USE_SAMPLED},       {PROBE_PORT_BEAMS, TYN_USE_STORAGE_READ},
     {PROBE_PORT_COLUMN, TYN_USE_SAMPLED},        {PROBE_PORT_TAU_A, TYN_USE_SAMPLED},
     {PROBE_PORT_TAU_P, TYN_USE_SAMPLED},         {PROBE_PORT_POINTS, TYN_USE_STORAGE_READ},
-    {PROBE_PORT_RESULTS, TYN_USE_STORAGE_WRITE},
+    {PROBE_PORT_RESULTS, TYN_USE_STORAGE_WRITE}, {PROBE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {PROBE_PORT_ORDINATES, TYN_USE_UNIFORM},     {PROBE_PORT_COLUMNS, TYN_USE_STORAGE_READ},
 };
 
 static const tyn_kernel kernels[] = {
@@ -32,7 +37,7 @@ static const tyn_kernel kernels[] = {
      sizeof(struct probe_args),
      {64, 1, 1},
      bindings,
-     9,
+     12,
      1},
 };
 
@@ -57,6 +62,7 @@ static void record(tyn_recorder *r, const void *params)
         .tint = {p->tint[0], p->tint[1], p->tint[2]},
         .channels = p->channels,
         .num_suns = p->num_suns,
+        .num_ordinates = p->num_ordinates,
         .num_points = num_points(tyn_rec_extent(r, PROBE_PORT_POINTS)),
         .scattered_only = p->scattered_only,
     };

@@ -3,14 +3,17 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "probe_args.h"
+#include "ordinate_args.h"
 #define MEDIUM_BLOCK 0
 #define MEDIUM_DENSITY 4 // the medium itself is not read
 #define BEAM_BLOCKS 3
 #define BEAM_COLUMN 4
 #define BEAM_TAU_A 5
 #define BEAM_TAU_P 6
+#define COLUMNS_BUFFER 11
 #include "medium.glsl"
 #include "beam.glsl"
+#include "columns.glsl"
 #include "lattice.glsl"
 
 layout(local_size_x = 64) in;
@@ -23,6 +26,14 @@ layout(binding = 1, scalar) readonly buffer light_buffer
     light_block lights[];
 };
 layout(binding = 2) uniform sampler3D moments;
+layout(binding = 9, scalar) uniform environment_uniform
+{
+    env_block environment;
+};
+layout(binding = 10, scalar) uniform ordinates_uniform
+{
+    ordinates_block ordinates;
+};
 layout(binding = 7, scalar) readonly buffer point_buffer
 {
     vec3 points[];
@@ -32,20 +43,53 @@ layout(binding = 8, scalar) writeonly buffer result_buffer
     probe_result results[];
 };
 
-// Trilinear between cell centres; in the outer half cell the same line goes on.
-vec4 moments_at(lattice_box box, vec3 p, uint ch)
+// A point between the centres of eight cells; beyond the outermost ones the same line goes on.
+struct cell_corners {
+    ivec3 lo, hi;
+    vec3 t;
+};
+
+cell_corners corners_of(lattice_box box, vec3 p)
 {
     vec3 x = clamp(lattice_from_m(box, p), vec3(0.0), vec3(box.dims)) - 0.5;
-    ivec3 lo = clamp(ivec3(floor(x)), ivec3(0), max(box.dims - 2, 0)), hi = min(lo + 1, box.dims - 1);
-    vec3 t = x - vec3(lo);
+    ivec3 lo = clamp(ivec3(floor(x)), ivec3(0), max(box.dims - 2, 0));
+    return cell_corners(lo, min(lo + 1, box.dims - 1), x - vec3(lo));
+}
+
+ivec3 corner_of(cell_corners c, uint corner, out float weight)
+{
+    bvec3 far = bvec3((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
+    vec3 w = mix(1.0 - c.t, c.t, far);
+    weight = w.x * w.y * w.z;
+    return ivec3(far.x ? c.hi.x : c.lo.x, far.y ? c.hi.y : c.lo.y, far.z ? c.hi.z : c.lo.z);
+}
+
+vec4 moments_at(lattice_box box, vec3 p, uint ch)
+{
+    cell_corners corners = corners_of(box, p);
     vec4 sum = vec4(0.0);
-    for (uint corner = 0; corner < 8; corner++) {
-        bvec3 far = bvec3((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
-        vec3 w = mix(1.0 - t, t, far);
-        ivec3 c = ivec3(far.x ? hi.x : lo.x, far.y ? hi.y : lo.y, far.z ? hi.z : lo.z);
-        sum += w.x * w.y * w.z * texelFetch(moments, c + ivec3(0, 0, int(ch) * box.dims.z), 0);
+    for (uint i = 0; i < 8; i++) {
+        float w;
+        ivec3 c = corner_of(corners, i, w);
+        sum += w * texelFetch(moments, c + ivec3(0, 0, int(ch) * box.dims.z), 0);
     }
-    return vec4(max(sum.x, 0.0), sum.yzw);
+    return sum;
+}
+
+beam_tau ordinate_tau(lattice_box box, vec3 p, uint n)
+{
+    cell_corners corners = corners_of(box, p);
+    beam_tau sum = beam_tau(vec3(0.0), vec3(0.0), vec3(0.0));
+    for (uint i = 0; i < 8; i++) {
+        float w;
+        ivec3 c = corner_of(corners, i, w);
+        beam_tau tau = columns_tau(n, uvec3(c), uvec3(box.dims));
+        sum.s += w * tau.s;
+        sum.a += w * tau.a;
+        sum.p += w * tau.p;
+    }
+    vec3 zero = vec3(0.0);
+    return beam_tau(max(sum.s, zero), max(sum.a, zero), max(sum.p, zero));
 }
 
 // Where light along `direction` that arrives at p was last in the box: p itself if that is inside.
@@ -90,8 +134,27 @@ void main()
             field[ch] += e[ch] * lights[sun].color[ch] * vec4(1.0, lights[sun].direction);
         }
     }
+    uint count = min(ordinates.count, args.num_ordinates);
+    for (uint n = 0; n < count; n++) {
+        vec3 last, d = ordinates.list[n].direction, color = ordinates.list[n].irradiance;
+        beam_tau tau = beam_tau(vec3(0.0), vec3(0.0), vec3(0.0));
+        if (last_in_box(p, d, last)) {
+            tau = ordinate_tau(box, last, n);
+        }
+        vec3 direct = exp(-(tau.a + tau.s)), e = color * exp(-(tau.a + tau.p));
+        if (args.scattered_only != 0) {
+            // The regions of all but the fixed ordinates make up the sphere; the mean of the sky that
+            // comes from them is in the moments.
+            vec3 mean = n < ordinates.num_fixed ? vec3(0.0) : environment.sky;
+            e -= direct * (color + mean * ordinates.list[n].solid_angle);
+        }
+        d *= ordinates.list[n].mean_cosine;
+        for (uint ch = 0; ch < 3; ch++) {
+            field[ch] += e[ch] * vec4(1.0, d);
+        }
+    }
     for (uint ch = 0; ch < 3; ch++) {
-        results[i].fluence[ch] = field[ch].x;
+        results[i].fluence[ch] = max(field[ch].x, 0.0);
         results[i].fluence_se[ch] = 0.0;
         for (uint axis = 0; axis < 3; axis++) {
             results[i].flux[3 * axis + ch] = dot(args.world[axis], field[ch].yzw);

@@ -3,12 +3,15 @@
 #include <tyndall/pass.h>
 
 typedef struct tyn_probe_params {
-    uint32_t mode;           // TYN_MEDIUM_*
-    uint32_t channels;       // of `moments`: 1 or 3
-    float tint[3];           // of the one channel (tyn_lattice_shape.tint)
-    uint32_t num_suns;       // 0..4
-    uint32_t scattered_only; // 1: without the suns' light that has not scattered
-    float world[3][3];       // the world's axes in M: what the flux is given along
+    uint32_t mode;          // TYN_MEDIUM_*
+    uint32_t channels;      // of `moments`: 1 or 3
+    float tint[3];          // of the one channel (tyn_lattice_shape.tint)
+    uint32_t num_suns;      // 0..4
+    uint32_t num_ordinates; // at most (tyn_columns_params.count); 0: there are none
+    uint32_t
+        scattered_only; // 1: without light that has not scattered: that of suns and ordinates, and
+                        // of the mean of the sky where there are ordinates, along them
+    float world[3][3];  // the world's axes in M: what the flux is given along
 } tyn_probe_params;
 
 enum {
@@ -19,8 +22,11 @@ enum {
     PROBE_PORT_COLUMN,  // IN optional 3D: column, or tau_s in mode COEFFICIENTS
     PROBE_PORT_TAU_A,   // IN optional 3D: mode COEFFICIENTS, as the one below
     PROBE_PORT_TAU_P,
-    PROBE_PORT_POINTS,  // IN buffer vec3[], M, m
-    PROBE_PORT_RESULTS, // OUT buffer tyn_probe_result[]
+    PROBE_PORT_ENVIRONMENT, // IN optional buffer struct env_block, what lattice was given
+    PROBE_PORT_ORDINATES,   // IN optional buffer struct ordinates_block
+    PROBE_PORT_COLUMNS,     // IN optional buffer, of columns
+    PROBE_PORT_POINTS,      // IN buffer vec3[], M, m
+    PROBE_PORT_RESULTS,     // OUT buffer tyn_probe_result[]
     PROBE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_probe;
@@ -32,15 +38,17 @@ typedef struct tyn_balance_params {
 } tyn_balance_params;
 
 enum {
-    BALANCE_PORT_MEDIUM,  // IN buffer struct medium_block
-    BALANCE_PORT_SKY,     // IN optional buffer, of lattice_sky
-    BALANCE_PORT_LIGHTS,  // IN optional buffer struct light_block[]
-    BALANCE_PORT_CELLS,   // IN 3D, of lattice_cells
-    BALANCE_PORT_MOMENTS, // IN 3D, of lattice
-    BALANCE_PORT_SOURCE,  // IN optional 3D, of lattice_source
-    BALANCE_PORT_POWER,   // IN optional buffer, of lattice_source
-    BALANCE_PORT_LEAKS,   // IN buffer, of lattice
-    BALANCE_PORT_BALANCE, // OUT buffer tyn_balance
+    BALANCE_PORT_MEDIUM,      // IN buffer struct medium_block
+    BALANCE_PORT_SKY,         // IN optional buffer, of lattice_sky
+    BALANCE_PORT_LIGHTS,      // IN optional buffer struct light_block[]
+    BALANCE_PORT_CELLS,       // IN 3D, of lattice_cells
+    BALANCE_PORT_MOMENTS,     // IN 3D, of lattice
+    BALANCE_PORT_SOURCE,      // IN optional 3D, of lattice_ordinates or lattice_source
+    BALANCE_PORT_POWER,       // IN optional buffer, of lattice_source
+    BALANCE_PORT_LEAKS,       // IN buffer, of lattice
+    BALANCE_PORT_ENVIRONMENT, // IN optional buffer struct env_block, what lattice was given
+    BALANCE_PORT_ORDINATES,   // IN optional buffer struct ordinates_block
+    BALANCE_PORT_BALANCE,     // OUT buffer tyn_balance
     BALANCE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_balance;

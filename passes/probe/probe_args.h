@@ -7,6 +7,7 @@ struct probe_args {
     tyn_vec3 tint;
     tyn_uint channels;
     tyn_uint num_suns;
+    tyn_uint num_ordinates;
     tyn_uint num_points;
     tyn_uint scattered_only;
     tyn_vec3 world[3];

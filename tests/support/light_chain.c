@@ -3,6 +3,7 @@
 #include "light_chain.h"
 #include "counters.h"
 #include "passes/beam/beam.h"
+#include "passes/columns/columns.h"
 #include "passes/lattice/lattice.h"
 #include "passes/merge/merge.h"
 #include "passes/probe/probe.h"
@@ -51,7 +52,7 @@ void light_chain_run(gpu_test *t, light_chain *c)
         medium.sigma_a[a] = c->coefficients ? 0 : c->sigma_a[a];
         medium.emission[a] = c->coefficients ? 0 : c->emission[a];
         medium.sigma_t_max = fmaxf(medium.sigma_t_max, c->sigma_s[a] + c->sigma_a[a]);
-        env.mean[a] = env.radiance[a] = c->environment[a];
+        env.mean[a] = env.radiance[a] = env.sky[a] = c->environment[a];
         for (uint32_t s = 0; s < c->num_suns; s++) {
             lights[s].color[a] = c->sun_color[s][a];
             lights[s].direction[a] = c->sun_direction[s][a];
@@ -121,13 +122,42 @@ void light_chain_run(gpu_test *t, light_chain *c)
         add(t, &tyn_pass_lattice_source,
             &(tyn_lattice_source_params){solve.shape, mode, c->num_suns}, source);
     }
-    tyn_ref sky[TYN_MAX_PORTS] = {[LATTICE_SKY_PORT_ENVIRONMENT] =
-                                      gpu_buffer(t, "environment", &env, sizeof env)};
-    add(t, &tyn_pass_lattice_sky, &(tyn_lattice_sky_params){0}, sky);
+    tyn_ref env_ref = gpu_buffer(t, "environment", &env, sizeof env);
+    tyn_ref source_ref = source[LATTICE_SOURCE_PORT_SOURCE], ordinates_ref = {0};
+    tyn_ref columns[TYN_MAX_PORTS] = {{0}};
+    tyn_extent dims = tyn_lattice_dims(c->extent, c->cells);
+    uint32_t count = c->ordinates ? c->ordinates->count : 0;
+    if (count) {
+        ordinates_ref = gpu_buffer(t, "ordinates", c->ordinates, sizeof *c->ordinates);
+        columns[COLUMNS_PORT_MEDIUM] = medium_ref;
+        columns[COLUMNS_PORT_DENSITY] = density;
+        columns[COLUMNS_PORT_SIGMA_A] = sigma_a;
+        columns[COLUMNS_PORT_G] = g;
+        columns[COLUMNS_PORT_ORDINATES] = ordinates_ref;
+        tyn_columns_params p = {.extent = {c->extent[0], c->extent[1], c->extent[2]},
+                                .dims = {dims.x, dims.y, dims.z},
+                                .mode = mode,
+                                .count = count};
+        add(t, &tyn_pass_columns, &p, columns);
+        tyn_ref light[TYN_MAX_PORTS] = {
+            [LATTICE_ORDINATES_PORT_MEDIUM] = medium_ref,
+            [LATTICE_ORDINATES_PORT_ORDINATES] = ordinates_ref,
+            [LATTICE_ORDINATES_PORT_COLUMNS] = columns[COLUMNS_PORT_COLUMNS],
+            [LATTICE_ORDINATES_PORT_CELLS] = cells[LATTICE_CELLS_PORT_CELLS],
+            [LATTICE_ORDINATES_PORT_SUNLIGHT] = source_ref,
+        };
+        bool grey = c->sigma_s[0] == c->sigma_s[1] && c->sigma_s[1] == c->sigma_s[2] &&
+                    c->sigma_a[0] == c->sigma_a[1] && c->sigma_a[1] == c->sigma_a[2] &&
+                    c->g[0] == c->g[1] && c->g[1] == c->g[2];
+        add(t, &tyn_pass_lattice_ordinates,
+            &(tyn_lattice_ordinates_params){solve.shape, mode, grey, count}, light);
+        source_ref = light[LATTICE_ORDINATES_PORT_SOURCE];
+        tyn_graph_output(t->graph, "source", source_ref, true);
+    }
     tyn_ref lattice[TYN_MAX_PORTS] = {
         [LATTICE_PORT_CELLS] = cells[LATTICE_CELLS_PORT_CELLS],
-        [LATTICE_PORT_SOURCE] = source[LATTICE_SOURCE_PORT_SOURCE],
-        [LATTICE_PORT_SKY] = sky[LATTICE_SKY_PORT_SKY],
+        [LATTICE_PORT_SOURCE] = source_ref,
+        [LATTICE_PORT_ENVIRONMENT] = env_ref,
     };
     add(t, &tyn_pass_lattice, &solve, lattice);
     tyn_graph_output(t->graph, "counters", lattice[LATTICE_PORT_COUNTERS], true);
@@ -146,11 +176,12 @@ void light_chain_run(gpu_test *t, light_chain *c)
     memcpy(balance_params.tint, solve.shape.tint, sizeof balance_params.tint);
     tyn_ref balance[TYN_MAX_PORTS] = {
         [BALANCE_PORT_MEDIUM] = medium_ref,
-        [BALANCE_PORT_SKY] = sky[LATTICE_SKY_PORT_SKY],
+        [BALANCE_PORT_ENVIRONMENT] = env_ref,
+        [BALANCE_PORT_ORDINATES] = ordinates_ref,
         [BALANCE_PORT_LIGHTS] = lights_ref,
         [BALANCE_PORT_CELLS] = cells[LATTICE_CELLS_PORT_CELLS],
         [BALANCE_PORT_MOMENTS] = lattice[LATTICE_PORT_MOMENTS],
-        [BALANCE_PORT_SOURCE] = source[LATTICE_SOURCE_PORT_SOURCE],
+        [BALANCE_PORT_SOURCE] = source_ref,
         [BALANCE_PORT_POWER] = source[LATTICE_SOURCE_PORT_POWER],
         [BALANCE_PORT_LEAKS] = lattice[LATTICE_PORT_LEAKS],
     };
@@ -161,6 +192,7 @@ void light_chain_run(gpu_test *t, light_chain *c)
         tyn_probe_params p = {.mode = mode,
                               .channels = c->channels,
                               .num_suns = c->num_suns,
+                              .num_ordinates = count,
                               .scattered_only = c->scattered_only,
                               .world = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
         memcpy(p.tint, solve.shape.tint, sizeof p.tint);
@@ -172,6 +204,9 @@ void light_chain_run(gpu_test *t, light_chain *c)
             [PROBE_PORT_COLUMN] = column,
             [PROBE_PORT_TAU_A] = beam[BEAM_PORT_TAU_A],
             [PROBE_PORT_TAU_P] = beam[BEAM_PORT_TAU_P],
+            [PROBE_PORT_ENVIRONMENT] = env_ref,
+            [PROBE_PORT_ORDINATES] = ordinates_ref,
+            [PROBE_PORT_COLUMNS] = columns[COLUMNS_PORT_COLUMNS],
             [PROBE_PORT_POINTS] =
                 gpu_buffer(t, "points", c->points, c->num_points * sizeof c->points[0]),
         };
@@ -196,6 +231,11 @@ void light_chain_run(gpu_test *t, light_chain *c)
         c->results = realloc(c->results, c->num_points * sizeof *c->results);
         memcpy(c->results, gpu_map(t, "results"), c->num_points * sizeof *c->results);
     }
+    if (count) {
+        size_t bytes = (size_t)dims.x * dims.y * dims.z * c->channels * 16;
+        c->source = realloc(c->source, bytes);
+        memcpy(c->source, gpu_map(t, "source"), bytes);
+    }
     c->non_finite = ((const struct counters_block *)gpu_map(t, "counters"))->non_finite;
     c->ms_cells = gpu_ms(t, "lattice_cells");
     c->ms_source = gpu_ms(t, "lattice_source");
@@ -205,6 +245,7 @@ void light_chain_run(gpu_test *t, light_chain *c)
 void light_chain_finish(light_chain *c)
 {
     free(c->results);
+    free(c->source);
     free(c->inscatter);
     memset(c, 0, sizeof *c);
 }

@@ -3,6 +3,7 @@
 #pragma once
 #include "gpu_test.h"
 #include "scene_args.h"
+#include "ordinate_args.h"
 #include <tyndall/context.h>
 
 typedef struct light_chain {
@@ -13,7 +14,8 @@ typedef struct light_chain {
     float sigma_s[3], sigma_a[3], g[3], emission[3];
     uint32_t num_suns;
     float sun_color[4][3], sun_direction[4][3];
-    float environment[3];
+    float environment[3];                    // from all sides
+    const struct ordinates_block *ordinates; // NULL: none
     int cells, sweeps;
     int cycles;        // -1: the default
     uint32_t channels; // 1 or 3
@@ -28,6 +30,7 @@ typedef struct light_chain {
                       // from +x far away
     tyn_extent inscatter_size;
     uint32_t non_finite; // cells that the solve counted as not finite
+    float *source;       // RGBA per cell, channels stacked, malloc'ed; only with ordinates
     double ms_cells, ms_source, ms_solve;
 } light_chain;
 
