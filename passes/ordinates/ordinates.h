@@ -15,6 +15,7 @@ typedef struct tyn_ordinates_params {
     uint32_t split;     // 1: the mean of the sky (env_block.sky) is not in them
     float fold;         // ordinates below this part of all light are folded into a neighbour
     float spread;       // see ordinates_args.h
+    uint32_t importance; // 1: the method weights directions with their importance for the picture
     uint32_t num_fixed; // set by the method: ready-made ordinates that come first
     struct ordinate fixed[ORDINATES_MAX_FIXED];
 } tyn_ordinates_params;

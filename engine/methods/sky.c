@@ -1,0 +1,95 @@
+// sky.c -- the light of an environment map as principal ordinates.
+#include "methods/sky.h"
+#include "passes/env_importance/env_importance.h"
+#include "passes/importance/importance.h"
+#include "passes/ordinates/ordinates.h"
+#include <tyndall/registry.h>
+#include <string.h>
+
+static tyn_result add_env_importance(tyn_graph *g, const tyn_job *job, tyn_ref *sky, tyn_ref *sums)
+{
+    const tyn_map_light *map = &job->frame->map;
+    tyn_env_importance_params params;
+    tyn_settings_params(job->settings, &tyn_pass_env_importance, &params);
+    params.suns.num_suns = map->num_suns;
+    for (uint32_t i = 0; i < map->num_suns; i++) {
+        struct sky_sun *sun = &params.suns.suns[i];
+        memcpy(sun->direction, map->suns[i].direction, sizeof sun->direction);
+        memcpy(sun->around, map->suns[i].around, sizeof sun->around);
+        sun->cos_radius = map->suns[i].cos_radius;
+    }
+    tyn_ref refs[TYN_MAX_PORTS] = {[ENV_IMPORTANCE_PORT_MAP] = job->refs.env_map};
+    tyn_result result = tyn_graph_add(g, &tyn_pass_env_importance, &params, refs);
+    *sky = refs[ENV_IMPORTANCE_PORT_SKY];
+    *sums = refs[ENV_IMPORTANCE_PORT_SUMS];
+    return result;
+}
+
+// Where light counts for the picture; nothing without a camera.
+static tyn_result add_importance(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
+                                 bool scaled, tyn_ref *map)
+{
+    tyn_importance_params params;
+    tyn_settings_params(job->settings, &tyn_pass_importance, &params);
+    params.mode = job->frame->medium.mode;
+    params.scaled = scaled;
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [IMPORTANCE_PORT_MEDIUM] = job->refs.medium,
+        [IMPORTANCE_PORT_CAMERA] = job->refs.camera,
+        [IMPORTANCE_PORT_DENSITY] = media->density,
+        [IMPORTANCE_PORT_SIGMA_A] = media->sigma_a,
+        [IMPORTANCE_PORT_G] = media->g,
+        [IMPORTANCE_PORT_HISTORY] =
+            tyn_graph_history_buffer(g, "importance_history", sizeof(struct importance_history), 1),
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_importance, &params, refs);
+    *map = refs[IMPORTANCE_PORT_MAP];
+    return result;
+}
+
+// A sun as an ordinate: a cone with its mean cosine.
+static struct ordinate ordinate_of_sun(const struct light_block *sun)
+{
+    struct ordinate o = {.mean_cosine = sun->mean_cosine,
+                         .solid_angle = 4.0f * 3.14159265f * (1.0f - sun->mean_cosine)};
+    memcpy(o.irradiance, sun->color, sizeof o.irradiance);
+    memcpy(o.direction, sun->direction, sizeof o.direction);
+    return o;
+}
+
+tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
+                       uint32_t first_sun, bool can_split, tyn_sky_refs *sky)
+{
+    const tyn_frame_scene *frame = job->frame;
+    const struct env_block *env = &frame->environment;
+    tyn_ordinates_params params;
+    tyn_settings_params(job->settings, &tyn_pass_ordinates, &params);
+    params.split = can_split && params.split;
+    for (uint32_t i = first_sun; i < frame->num_suns + frame->num_map_suns; i++) {
+        params.fixed[params.num_fixed++] = ordinate_of_sun(&frame->suns[i]);
+    }
+    *sky = (tyn_sky_refs){.split = params.split};
+    bool lit = env->sky[0] + env->sky[1] + env->sky[2] > 0.0f;
+    bool regions = lit && (env->has_map || !params.split);
+    if (!regions && !params.num_fixed) {
+        return TYN_OK;
+    }
+    params.count = regions ? params.count : 0;
+    sky->count = (uint32_t)params.count + params.num_fixed;
+
+    tyn_ref refs[TYN_MAX_PORTS] = {[ORDINATES_PORT_ENVIRONMENT] = job->refs.environment};
+    tyn_result result = TYN_OK;
+    if (regions && env->has_map) {
+        result = add_env_importance(g, job, &sky->sky, &refs[ORDINATES_PORT_SUMS]);
+        refs[ORDINATES_PORT_SKY] = sky->sky;
+    }
+    bool picture = job->outputs & TYN_PICTURE_OUTPUTS;
+    if (result == TYN_OK && regions && picture && params.importance) {
+        result = add_importance(g, job, media, can_split, &refs[ORDINATES_PORT_IMPORTANCE]);
+    }
+    if (result == TYN_OK) {
+        result = tyn_graph_add(g, &tyn_pass_ordinates, &params, refs);
+    }
+    sky->ordinates = refs[ORDINATES_PORT_ORDINATES];
+    return result;
+}
