@@ -29,18 +29,12 @@ shared glow_order folded[2][HALF];
 void main()
 {
     uint thread = gl_LocalInvocationID.x, m = gl_WorkGroupID.y;
-    // The mean is taken off with the rows' solid angles and put back as it is, so that a map keeps its
-    // energy and a uniform one stays uniform.
-    vec3 mean = vec3(0.0);
-    for (uint row = 0u; row < (m == 0u ? ROWS : 0u); row++) {
-        mean += 0.5 * series.solid_angles[row] * rows[row].cosine;
-    }
     if (thread < HALF) {
         uint row = thread;
         glow_order north = rows[m * ROWS + row], south = rows[m * ROWS + ROWS - 1u - row];
         float weight = series.weights[row];
-        folded[0][row] = glow_order(weight * (north.cosine + south.cosine - 2.0 * mean),
-                                    weight * (north.sine + south.sine));
+        folded[0][row] =
+            glow_order(weight * (north.cosine + south.cosine), weight * (north.sine + south.sine));
         folded[1][row] =
             glow_order(weight * (north.cosine - south.cosine), weight * (north.sine - south.sine));
         float theta = PI * (float(row) + 0.5) / float(ROWS), x = cos(theta);
@@ -66,8 +60,10 @@ void main()
         cosine += p * f.cosine;
         sine += p * f.sine;
     }
-    if (l == 0u) {
-        cosine = sqrt(2.0) * mean;
+    // The mean is taken by the rows' solid angles: a map keeps its energy to the last texel.
+    for (uint row = 0u; row < (l == 0u ? ROWS : 0u); row++) {
+        vec3 part = sqrt(0.5) * series.solid_angles[row] * rows[row].cosine;
+        cosine = row == 0u ? part : cosine + part;
     }
     vec2 r = l > m ? legendre_recurrence(l, m) : vec2(legendre_norm(m), 0.0);
     coefficients[m * DEGREES + l] = glow_coefficient(cosine, sine, r.x, r.y);

@@ -10,7 +10,7 @@
 
 #define PI 3.14159265358979323846
 
-enum { MAP_W = 64, MAP_H = 32, SIZE = 24, GLOW_W = 8, GLOW_H = 4, GLOW_LEVELS = 6 };
+enum { MAP_W = 64, MAP_H = 32, SIZE = 24, GLOW_W = 8, GLOW_H = 4, GLOW_LEVELS = 18 };
 
 typedef struct sky_scene {
     struct medium_block medium;
@@ -276,8 +276,9 @@ static void through_the_medium(void **state)
         {{2, 2, 2}, {0.3f, 0.3f, 0.3f}, {0.8f, 0.8f, 0.8f}},
         {{2, 5, 1}, {0, 0.3f, 2}, {0.8f, 0.5f, -0.3f}},
         {{150, 100, 200}, {0, 0, 0}, {0.98f, 0.98f, 0.99f}}, // e^-tau is 0, e^-tau' is not
+        {{2, 5, 20}, {0, 0, 0}, {0.998f, 0.99f, 0.9999f}},   // lobes too narrow to resolve
     };
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 8; k++) {
         make_scene(s, 0.3f, 0.4f, -0.8f, 0.25f);
         memcpy(s->medium.sigma_s, media[k / 2].sigma_s, sizeof(tyn_vec3));
         memcpy(s->medium.sigma_a, media[k / 2].sigma_a, sizeof(tyn_vec3));
@@ -296,9 +297,11 @@ static void through_the_medium(void **state)
                 double length = chord(s, d);
                 hits += length > 0;
                 for (int c = 0; c < 3; c++) {
-                    double g = s->medium.g[c], f = g > 0 ? g * g : 0, a = s->medium.sigma_a[c];
-                    double forward = f * s->medium.sigma_s[c] * length;
-                    double scaled = exp(-((1 - f) * s->medium.sigma_s[c] + a) * length);
+                    double g = s->medium.g[c], sigma_s = s->medium.sigma_s[c];
+                    double wide = sigma_s * fmin(1, (1 - g) / 0.005); // what g = 0.995 replaces
+                    double f = g > 0 ? fmin(g * g, 0.995 * 0.995) : 0;
+                    double forward = (sigma_s - (1 - f) * wide) * length;
+                    double scaled = exp(-((1 - f) * wide + s->medium.sigma_a[c]) * length);
                     double level = log(1 + forward / TYN_GLOW_DEPTH) / TYN_GLOW_STEP;
                     double glow = s->env.radiance[c] * scaled * (1 - exp(-forward)) *
                                   lookup(s->glow, GLOW_W, GLOW_H, GLOW_LEVELS, u, v, level, c);
