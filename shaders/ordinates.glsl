@@ -130,11 +130,32 @@ float ordinates_cut(ordinates_region r, uint axis, float part, ordinates_density
     return mix(at.x, at.y, rise > 0.0 ? clamp((target - mass.x) / rise, 0.0, 1.0) : 0.5);
 }
 
-// The side along which a region is longer: 0 across, 1 down. Its mean width is solid angle / height.
-uint ordinates_longer_side(ordinates_region r)
+// Solid angle of a region by which its directions miss each other: 0 for a point, least for a cap.
+float ordinates_width(ordinates_region r)
 {
-    float height = ordinates_polar(r.to.y) - ordinates_polar(r.from.y);
-    return ordinates_solid_angle(r) >= height * height ? 0u : 1u;
+    return ordinates_solid_angle(r) - length(ordinates_vector(r));
+}
+
+void ordinates_divide(ordinates_region r, uint axis, float cut, out ordinates_region lower,
+                      out ordinates_region upper)
+{
+    lower = r;
+    upper = r;
+    lower.to[axis] = cut;
+    upper.from[axis] = cut;
+}
+
+// The axis whose cut leaves the more compact pieces: 0 across, 1 down.
+uint ordinates_axis(ordinates_region r, float part, ordinates_density density)
+{
+    vec2 width;
+    for (uint axis = 0u; axis < 2u; axis++) {
+        ordinates_region lower, upper;
+        ordinates_divide(r, axis, ordinates_cut(r, axis, part, density), lower, upper);
+        width[axis] = ordinates_width(lower) + ordinates_width(upper);
+    }
+    // Even maps must not depend on rounding.
+    return width.y < 0.999 * width.x ? 1u : 0u;
 }
 
 #endif

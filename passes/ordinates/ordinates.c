@@ -96,7 +96,7 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t room = TYN_ORDINATES_MAX - p->num_fixed;
     const struct ordinates_args args = {
         .regions = (uint32_t)p->count < room ? (uint32_t)p->count : room,
-        .fixed_ones = p->num_fixed,
+        .num_fixed = p->num_fixed,
         .split = p->split,
         .weighted = tyn_rec_has(r, ORDINATES_PORT_IMPORTANCE),
         .fold = p->fold,
@@ -114,7 +114,7 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_PARTITION,
                                         .cells = {TYN_ORDINATES_MAX, 1, 1},
                                         .args = &args});
-    tyn_rec_work(r, "ordinates", args.regions + args.fixed_ones);
+    tyn_rec_work(r, "ordinates", args.regions + args.num_fixed);
 }
 
 const tyn_pass_desc tyn_pass_ordinates = {

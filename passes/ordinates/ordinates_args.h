@@ -4,12 +4,12 @@
 #include "shared.h"
 
 struct ordinates_args {
-    tyn_uint regions;    // of the partition
-    tyn_uint fixed_ones; // in front of the list
-    tyn_uint split;      // 1: what is above or below the mean of the sky; 0: all light
-    tyn_uint weighted;   // 1: regions follow importance, too
-    float fold;          // part of the light below which an ordinate is folded away
-    float spread;        // of the mean luminance, added where regions are placed
+    tyn_uint regions;   // of the partition
+    tyn_uint num_fixed; // in front of the list
+    tyn_uint split;     // 1: what is above or below the mean of the sky; 0: all light
+    tyn_uint weighted;  // 1: regions follow importance, too
+    float fold;         // part of the light below which an ordinate is folded away
+    float spread;       // of the mean luminance, added where regions are placed
 };
 TYN_ASSERT_SIZE(ordinates_args, 24);
 

@@ -31,7 +31,7 @@ layout(binding = 2, scalar) readonly buffer weights_buffer
 };
 layout(binding = 3, scalar) writeonly buffer ordinates_buffer
 {
-    uint count, folded, fixed_ones, pad;
+    uint count, folded, num_fixed, pad;
     ordinate list[];
 };
 
@@ -65,13 +65,15 @@ void grow_tree(ordinates_density density, bool choose_axes)
     for (uint level = 0u; level < LEVELS; level++) {
         const uint node = (1u << level) + me;
         if (me < 1u << level && leaves[node] > 1u) {
-            ordinates_region lower = regions[node], upper = lower;
-            uint n = leaves[node], n_lower = n / 2u;
-            uint axis = choose_axes ? ordinates_longer_side(lower) : axes[node];
-            axes[node] = axis;
-            float cut = ordinates_cut(lower, axis, float(n_lower) / float(n), density);
-            lower.to[axis] = cut;
-            upper.from[axis] = cut;
+            const uint n = leaves[node], n_lower = n / 2u;
+            const float part = float(n_lower) / float(n);
+            const ordinates_region r = regions[node];
+            if (choose_axes) {
+                axes[node] = ordinates_axis(r, part, density);
+            }
+            const uint axis = axes[node];
+            ordinates_region lower, upper;
+            ordinates_divide(r, axis, ordinates_cut(r, axis, part, density), lower, upper);
             regions[2u * node] = lower;
             regions[2u * node + 1u] = upper;
             leaves[2u * node] = n_lower;
@@ -142,7 +144,7 @@ void write(uint n)
     vec3 light = lights[n].rgb, moment = moments[n].xyz;
     // The angular size of what light there is: means weighted with it.
     vec2 size = lights[n].a * vec2(moments[n].w, 1.0);
-    uint place = args.fixed_ones;
+    uint place = args.num_fixed;
     for (uint i = 0u; i < args.regions; i++) {
         bool mine = kept[i] == 0u && heirs[i] == n;
         light += mine ? lights[i].rgb : vec3(0.0);
@@ -196,8 +198,8 @@ void main()
         for (uint i = 0u; i < args.regions; i++) {
             left += kept[i];
         }
-        count = args.fixed_ones + left;
+        count = args.num_fixed + left;
         folded = args.regions - left;
-        fixed_ones = args.fixed_ones;
+        num_fixed = args.num_fixed;
     }
 }

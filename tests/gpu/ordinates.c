@@ -289,28 +289,50 @@ static double mass(const twin *w, region r)
     return light + w->even * region_solid_angle(r);
 }
 
+static double cut(const twin *w, region r, bool across, double part)
+{
+    double low = across ? r.x0 : r.y0, high = across ? r.x1 : r.y1, target = part * mass(w, r);
+    for (int i = 0; i < 45; i++) {
+        double middle = 0.5 * (low + high);
+        region lower = r;
+        *(across ? &lower.x1 : &lower.y1) = middle;
+        *(mass(w, lower) < target ? &low : &high) = middle;
+    }
+    return low;
+}
+
+static void divide(region r, bool across, double at, region *lower, region *upper)
+{
+    *lower = *upper = r;
+    *(across ? &lower->x1 : &lower->y1) = *(across ? &upper->x0 : &upper->y0) = at;
+}
+
+// Solid angle less the length of the integral of the direction.
+static double width(region r)
+{
+    double t[2] = {polar_of(r.y0), polar_of(r.y1)}, a = (r.x1 - r.x0) / COARSE_W * M_PI;
+    double level = (t[1] - 0.5 * sin(2 * t[1]) - t[0] + 0.5 * sin(2 * t[0])) * sin(a);
+    double upright = (sin(t[1]) * sin(t[1]) - sin(t[0]) * sin(t[0])) * a;
+    return region_solid_angle(r) - sqrt(level * level + upright * upright);
+}
+
 static void grow(const twin *base, const twin *w, region base_r, region r, int n, region *out)
 {
     if (n == 1) {
         *out = r;
         return;
     }
-    double height = polar_of(base_r.y1) - polar_of(base_r.y0);
-    bool across = region_solid_angle(base_r) / height >= height;
-    const twin *tables[2] = {base, w};
-    region *pieces[2] = {&base_r, &r}, lower[2], upper[2];
+    const double part = (double)(n / 2) / n;
+    double at[2], widths[2];
+    region lower[2], upper[2];
     for (int k = 0; k < 2; k++) {
-        double low = across ? pieces[k]->x0 : pieces[k]->y0;
-        double high = across ? pieces[k]->x1 : pieces[k]->y1;
-        double target = mass(tables[k], *pieces[k]) * (n / 2) / n;
-        lower[k] = upper[k] = *pieces[k];
-        for (int i = 0; i < 50; i++) {
-            double middle = 0.5 * (low + high);
-            *(across ? &lower[k].x1 : &lower[k].y1) = middle;
-            *(mass(tables[k], lower[k]) < target ? &low : &high) = middle;
-        }
-        *(across ? &upper[k].x0 : &upper[k].y0) = low;
+        at[k] = cut(base, base_r, k == 0, part);
+        divide(base_r, k == 0, at[k], &lower[0], &upper[0]);
+        widths[k] = width(lower[0]) + width(upper[0]);
     }
+    const bool across = widths[1] >= 0.999 * widths[0];
+    divide(base_r, across, at[!across], &lower[0], &upper[0]);
+    divide(r, across, base == w ? at[!across] : cut(w, r, across, part), &lower[1], &upper[1]);
     grow(base, w, lower[0], lower[1], n / 2, out);
     grow(base, w, upper[0], upper[1], n - n / 2, out + n / 2);
 }
@@ -394,8 +416,9 @@ static void against_twin(void **state)
             const struct ordinates_block b = run(t, &s, &params);
             make_twin(&s, params.spread, false, &base);
             make_twin(&s, params.spread, s.importance != NULL, &weighted);
+            const twin *placing = s.importance ? &weighted : &base;
             region regions[TYN_ORDINATES_MAX], all = {0, 0, COARSE_W, COARSE_H};
-            grow(&base, &weighted, all, all, n, regions);
+            grow(&base, placing, all, all, n, regions);
             double worst_light = 0, worst_angle = 0, worst_turn = 0;
             for (int i = 0; i < n; i++) {
                 double power[3], moment[3], got[3] = {0, 0, 0}, length = 0, dot = 0, middle[3];
@@ -417,9 +440,10 @@ static void against_twin(void **state)
                 worst_angle = fmax(worst_angle, fabs(b.list[i].solid_angle / solid_angle - 1));
                 worst_turn = fmax(worst_turn, acos(fmin(1, dot)) * 180 / M_PI);
             }
-            printf("%s, %d%s: light off by %.1e, solid angle by %.1e, direction by %.2g degrees\n",
+            printf("%s, %d%s: light off by %.1e, solid angle by %.1e, direction by %.2g degrees; "
+                   "%.2f ms\n",
                    map_names[kind], n, s.importance ? ", importance" : "", worst_light, worst_angle,
-                   worst_turn);
+                   worst_turn, gpu_ms(t, "ordinates"));
             assert_true(worst_light < 3e-3);
             assert_true(worst_angle < 3e-3);
             assert_true(worst_turn < 0.5);
@@ -427,11 +451,185 @@ static void against_twin(void **state)
     }
 }
 
+// ---- folding, fixed ones ----------------------------------------------------------------------
+
+static double size_of(const struct ordinate *o)
+{
+    double size = 0;
+    for (int c = 0; c < 3; c++) {
+        size += weights[c] * fabs(o->irradiance[c]);
+    }
+    return size;
+}
+
+static double degrees_between(const struct ordinate *a, const struct ordinate *b)
+{
+    double dot = 0, cross = 0;
+    for (int c = 0; c < 3; c++) {
+        int d = (c + 1) % 3, e = (c + 2) % 3;
+        double x =
+            (double)a->direction[d] * b->direction[e] - (double)a->direction[e] * b->direction[d];
+        dot += (double)a->direction[c] * b->direction[c];
+        cross += x * x;
+    }
+    return atan2(sqrt(cross), dot) * 180 / M_PI;
+}
+
+static void folding(void **state)
+{
+    gpu_test *t = *state;
+    const scene s = make_scene(WINDOWS, 0.3);
+    for (int n = 16; n <= 256; n *= 4) {
+        tyn_ordinates_params params = defaults(n, false, 0);
+        const struct ordinates_block all = run(t, &s, &params);
+        params.fold = 1e-3f;
+        const struct ordinates_block b = run(t, &s, &params);
+        double total = 0, sum[3] = {0, 0, 0};
+        for (int i = 0; i < n; i++) {
+            total += size_of(&all.list[i]);
+        }
+        // Whoever is too small goes to the nearest of the others; those keep their order.
+        int keepers[TYN_ORDINATES_MAX], kept = 0;
+        struct {
+            double light[3], towards[3], size, angle;
+        } expected[TYN_ORDINATES_MAX] = {{{0}}};
+        for (int i = 0; i < n; i++) {
+            if (size_of(&all.list[i]) > 1e-3 * total) {
+                keepers[kept++] = i;
+            }
+        }
+        for (int i = 0; i < n; i++) {
+            const struct ordinate *o = &all.list[i];
+            int nearest = 0;
+            for (int k = 1; k < kept; k++) {
+                double now = degrees_between(o, &all.list[keepers[nearest]]);
+                nearest = degrees_between(o, &all.list[keepers[k]]) < now ? k : nearest;
+            }
+            double luminance = 0;
+            for (int c = 0; c < 3; c++) {
+                expected[nearest].light[c] += o->irradiance[c];
+                sum[c] += o->irradiance[c];
+                luminance += weights[c] * o->irradiance[c] / s.env.radiance[c];
+            }
+            for (int c = 0; c < 3; c++) {
+                expected[nearest].towards[c] += luminance * o->direction[c];
+            }
+            expected[nearest].size += size_of(o);
+            expected[nearest].angle += size_of(o) * o->solid_angle;
+        }
+        printf("%d ordinates: %u in use, %u folded\n", n, b.count, b.folded);
+        assert_int_equal(b.count, kept);
+        assert_int_equal(b.folded, n - kept);
+        assert_true(n < 256 || b.folded > 0);
+        for (int k = 0; k < kept; k++) {
+            const struct ordinate *o = &b.list[k];
+            struct ordinate towards = {.solid_angle = 0};
+            for (int c = 0; c < 3; c++) {
+                assert_true(fabs(o->irradiance[c] - expected[k].light[c]) < 1e-5 * sum[c]);
+                towards.direction[c] = (float)expected[k].towards[c];
+            }
+            double angle = expected[k].angle / expected[k].size;
+            assert_true(degrees_between(o, &towards) < 1);
+            assert_true(fabs(o->solid_angle / angle - 1) < 1e-4);
+            assert_true(fabs(o->mean_cosine - (1 - o->solid_angle / (4 * M_PI))) < 1e-6);
+        }
+        assert_true(b.list[b.count].solid_angle == 0);
+    }
+}
+
+static void fixed(void **state)
+{
+    gpu_test *t = *state;
+    const scene s = make_scene(SKY, 0.3);
+    tyn_ordinates_params params = defaults(256, true, 0);
+    for (int i = 0; i < ORDINATES_MAX_FIXED; i++) {
+        params.fixed[i] = (struct ordinate){{(float)i, 1e-9f, 0}, 1, {0, 1, 0}, 0};
+    }
+    for (uint32_t n = 0; n <= ORDINATES_MAX_FIXED; n += 34) {
+        params.num_fixed = n;
+        const struct ordinates_block b = run(t, &s, &params);
+        assert_int_equal(b.num_fixed, n);
+        assert_int_equal(b.count, 256);
+        assert_memory_equal(b.list, params.fixed, n * sizeof b.list[0]);
+        double solid_angle = 0, sum[3], size[3], got = 0;
+        integrals(&s, true, sum, size);
+        for (uint32_t i = n; i < b.count; i++) {
+            solid_angle += b.list[i].solid_angle;
+            got += b.list[i].irradiance[0];
+        }
+        assert_true(fabs(solid_angle / (4 * M_PI) - 1) < 1e-5);
+        assert_true(fabs(got - sum[0]) < 1e-4 * size[0]);
+    }
+}
+
+// ---- how they move ----------------------------------------------------------------------------
+
+typedef struct moves {
+    double most, mean; // degrees; mean weighted with light
+} moves;
+
+// No ordinate comes as near to another's place as to its own.
+static moves compare(const struct ordinates_block *a, const struct ordinates_block *b)
+{
+    assert_int_equal(a->count, b->count);
+    moves m = {0, 0};
+    double total = 0;
+    for (uint32_t i = 0; i < a->count; i++) {
+        double move = degrees_between(&a->list[i], &b->list[i]), nearest = 180;
+        m.most = fmax(m.most, move);
+        m.mean += move * size_of(&a->list[i]);
+        total += size_of(&a->list[i]);
+        for (uint32_t k = 0; k < a->count; k++) {
+            nearest = fmin(nearest, k == i ? 180 : degrees_between(&a->list[i], &b->list[k]));
+        }
+        assert_true(move < nearest);
+    }
+    m.mean /= total;
+    return m;
+}
+
+static void moves_little(void **state)
+{
+    gpu_test *t = *state;
+    static float importance[IMP_W * IMP_H], changed[IMP_W * IMP_H];
+    make_importance(importance, 3);
+    uint32_t seed = 3;
+    for (int i = 0; i < IMP_W * IMP_H; i++) {
+        changed[i] = importance[i] * (float)(1 + 0.02 * (random_01(&seed) - 0.5));
+    }
+    for (int kind = 0; kind < BLACK; kind++) {
+        for (int n = 16; n <= 256; n *= 4) {
+            const tyn_ordinates_params params = defaults(n, true, 0);
+            scene s = make_scene(kind, 0.3), turned = make_scene(kind, 0.3 + 0.5 * M_PI / 180);
+            const struct ordinates_block plain = run(t, &s, &params);
+            const struct ordinates_block plain_turned = run(t, &turned, &params);
+            s.importance = turned.importance = importance;
+            const struct ordinates_block a = run(t, &s, &params);
+            const struct ordinates_block b = run(t, &turned, &params);
+            s.importance = changed;
+            const struct ordinates_block c = run(t, &s, &params);
+            moves rigid = compare(&plain, &plain_turned);
+            moves turn = compare(&a, &b), noise = compare(&a, &c);
+            printf("%s, %d: map turned by 0.5 degrees: %.2f degrees at most, with importance %.2f "
+                   "(mean %.2f); importance changed by 1 %%: %.2f (mean %.2f)\n",
+                   map_names[kind], n, rigid.most, turn.most, turn.mean, noise.most, noise.mean);
+            assert_true(rigid.most < 0.51);
+            assert_true(turn.mean < 1 && noise.mean < 0.5 && noise.most < 2);
+            // A region with a mere sliver of something bright is drawn towards it quickly.
+            assert_true(turn.most < (kind == WINDOWS ? 10 : 2));
+            for (int i = 0; i < n; i++) { // rigid: their light is the same
+                assert_true(fabs(plain.list[i].irradiance[0] - plain_turned.list[i].irradiance[0]) <
+                            1e-6);
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(partitions),
-        cmocka_unit_test(against_twin),
+        cmocka_unit_test(partitions), cmocka_unit_test(against_twin), cmocka_unit_test(folding),
+        cmocka_unit_test(fixed),      cmocka_unit_test(moves_little),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
