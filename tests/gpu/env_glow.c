@@ -247,7 +247,7 @@ static void limits(void **state)
                     sum += omega * value;
                 }
             }
-            if (fabs(sum / omega_sum - mean) > 0.01 * mean) {
+            if (fabs(sum / omega_sum - mean) > 0.015 * mean) {
                 fail_msg("g %g, level %u: mean %g instead of %g", gs[k], level, sum / omega_sum,
                          mean);
             }
