@@ -14,12 +14,10 @@ layout(set = 0, binding = 3, scalar) buffer sum_buffer { float sum[]; };
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 
 // Light that a neighbour sends and its share of the spread. `part`: of propagate_outgoing, which way.
-// Numbers that are not needed are not loaded.
 vec2 from(uint q, int step, bool there, int part)
 {
-    uint source = there ? q + uint(step) : q;
-    float light = there ? in_state[source][part] : 0.0;
-    return vec2(light, light * in_state[source].w);
+    vec4 state = in_state[there ? q + uint(step) : q];
+    return there ? vec2(state[part], state[part] * state.w) : vec2(0.0);
 }
 
 void main()
