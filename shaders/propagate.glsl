@@ -35,6 +35,7 @@ propagate_grid propagate_grid_of(vec3 extent, vec3 direction, uint cells)
     grid.across_u = u;
     grid.across_v = v;
     grid.direction = d;
+    grid.pad = 0u;
     return grid;
 }
 

@@ -6,7 +6,7 @@
 // the same light times a colour.
 #ifndef TYN_PROPAGATE_ARGS_H
 #define TYN_PROPAGATE_ARGS_H
-#include "shared.h"
+#include "ordinate_args.h"
 
 // Readings of the paper where its text leaves a choice.
 #define TYN_PROPAGATE_INIT_ENTRY 0           // first layer only, unattenuated
@@ -21,7 +21,7 @@
 #define TYN_PROPAGATE_PREFILTER_HEURISTIC 1  // a = (1 - w / N)^beta, w = share of the sphere times N
 #define TYN_PROPAGATE_PREFILTER_EXACT 2      // a = mean cosine of the ordinate's region
 
-struct propagate_grid {  // element of storage buffer "grids": directional lights, then ordinates
+struct propagate_grid {  // element of storage buffer "grids", one per ordinate
     tyn_vec3 origin;     // M position of the corner of cell (0, 0, 0), m
     float cell;          // edge of the cubic cells, m
     tyn_vec3 across_u;   // M, unit: x axis of the grid
@@ -29,14 +29,13 @@ struct propagate_grid {  // element of storage buffer "grids": directional light
     tyn_vec3 across_v;   // M, unit: y axis
     float mean_cosine;   // of the light as it enters, 1 = a beam
     tyn_vec3 direction;  // M, unit: z axis, the light's direction of travel
-    tyn_uint light;      // index in the list
+    tyn_uint pad;
     tyn_vec3 irradiance; // of the light, W/m^2: what the grid's light is in units of
     tyn_uvec3 size;      // cells; those beyond hold no light. (0, 0, 0): no light at all
 };
 TYN_ASSERT_SIZE(propagate_grid, 88);
 
 // What the merge of all grids needs of one: element of uniform buffer "places", in the order of "grids".
-#define TYN_PROPAGATE_GRIDS_MAX 256
 
 struct propagate_place {
     tyn_vec4 rows[3];    // M -> cells of the grid: dot(rows[i].xyz, p) + rows[i].w; cell i spans [i, i + 1]

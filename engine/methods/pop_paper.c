@@ -4,7 +4,10 @@
 // what all of them send to the eye is merged into one grid, upsampled with the medium as guide and
 // marched. Kept as it was published (the readings are settings of propagate_rect): the baseline of
 // method "pop".
-#include "methods/nodes.h"
+#include "methods/sky.h"
+#include "passes/env_importance/env_importance.h"
+#include "passes/importance/importance.h"
+#include "passes/ordinates/ordinates.h"
 #include "passes/medium/medium.h"
 #include "passes/propagate_rect/propagate_rect.h"
 #include "passes/residuum/residuum.h"
@@ -21,6 +24,7 @@ typedef struct propagated {
     tyn_propagate_rect_params grids;
     tyn_residuum_params residuum;
     tyn_picture_inputs picture;
+    tyn_sky_refs sky;
     tyn_ref places, seen, light, isotropic, merged;
 } propagated;
 
@@ -54,7 +58,7 @@ static int32_t iterations_before_residuum(const propagated *p, const tyn_job *jo
 static tyn_result add_propagation(tyn_graph *g, const tyn_job *job, propagated *p)
 {
     const struct medium_block *block = &job->frame->medium;
-    p->grids.num_suns = p->picture.num_suns;
+    p->grids.num_ordinates = p->sky.count;
     p->grids.channels = job->frame->grey ? 1 : 3;
     p->grids.mode = block->mode;
     p->grids.keep_light = p->residuum.on;
@@ -65,7 +69,7 @@ static tyn_result add_propagation(tyn_graph *g, const tyn_job *job, propagated *
     memcpy(p->grids.size, block->size, sizeof p->grids.size);
     tyn_ref refs[PROPAGATE_RECT_NUM_PORTS] = {
         [PROPAGATE_RECT_PORT_MEDIUM] = job->refs.medium,
-        [PROPAGATE_RECT_PORT_LIGHTS] = job->refs.suns,
+        [PROPAGATE_RECT_PORT_ORDINATES] = p->sky.ordinates,
         [PROPAGATE_RECT_PORT_CAMERA] = job->refs.camera,
         [PROPAGATE_RECT_PORT_DENSITY] = p->picture.media.density,
         [PROPAGATE_RECT_PORT_SIGMA_A] = p->picture.media.sigma_a,
@@ -78,14 +82,9 @@ static tyn_result add_propagation(tyn_graph *g, const tyn_job *job, propagated *
     return result;
 }
 
-static uint32_t num_grids(const propagated *p)
-{
-    return p->grids.num_suns + p->grids.num_ordinates;
-}
-
 static tyn_result add_residuum(tyn_graph *g, const tyn_job *job, propagated *p)
 {
-    p->residuum.num_grids = num_grids(p);
+    p->residuum.num_grids = p->grids.num_ordinates;
     p->residuum.grid_cells = (uint32_t)p->grids.cells;
     p->residuum.channels = p->grids.channels;
     p->residuum.mode = p->grids.mode;
@@ -106,7 +105,7 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, propagated *p)
 {
     tyn_merge_grids_params params;
     tyn_settings_params(job->settings, &tyn_pass_merge_grids, &params);
-    params.num_grids = num_grids(p);
+    params.num_grids = p->grids.num_ordinates;
     params.grid_cells = (uint32_t)p->grids.cells;
     params.channels = p->grids.channels;
     params.mode = p->grids.mode;
@@ -144,7 +143,7 @@ static tyn_result add_upsampling(tyn_graph *g, const tyn_job *job, propagated *p
     return result;
 }
 
-// The light in the medium, from the suns and the ordinates of `p`.
+// The light in the medium.
 static tyn_result add_light(tyn_graph *g, const tyn_job *job, propagated *p)
 {
     tyn_result result = add_propagation(g, job, p);
@@ -167,22 +166,20 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (frame->empty) {
         return tyn_add_picture(g, job, NULL);
     }
-    const float *mean = frame->environment.mean;
-    if (mean[0] + mean[1] + mean[2] > 0.0f) {
-        tyn_method_warn(job, "the environment is seen, but does not light the medium");
-    }
     if (frame->emissive) {
         tyn_method_warn(job, "emission is seen, but does not light the medium");
     }
-    propagated p = {
-        .picture = {.num_suns = tyn_method_suns(job), .field = RAYMARCH_INSCATTER_PLAIN}};
+    tyn_method_suns(job); // warns of lamps
+    propagated p = {.picture.field = RAYMARCH_INSCATTER_PLAIN};
     tyn_settings_params(job->settings, &tyn_pass_propagate_rect, &p.grids);
     tyn_settings_params(job->settings, &tyn_pass_residuum, &p.residuum);
     result = tyn_add_medium(g, job, &p.picture.media);
-    if (result == TYN_OK && p.picture.num_suns) {
+    if (result == TYN_OK) {
+        result = tyn_add_sky(g, job, &p.picture.media, 0, false, &p.sky);
+    }
+    if (result == TYN_OK && p.sky.count) {
         result = add_light(g, job, &p);
     }
-    p.picture.num_suns = 0; // all of their light is in the field
     return result == TYN_OK ? tyn_add_picture(g, job, &p.picture) : result;
 }
 

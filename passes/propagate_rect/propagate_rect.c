@@ -17,9 +17,7 @@
 
 static const tyn_port ports[PROPAGATE_RECT_NUM_PORTS] = {
     [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
-    [PORT(LIGHTS)] = {"lights", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
-    [PORT(ORDINATES)] = {"ordinates", TYN_IN, TYN_BUFFER, .optional = true,
-                         .meaning = "struct ordinates_block"},
+    [PORT(ORDINATES)] = {"ordinates", TYN_IN, TYN_BUFFER, .meaning = "struct ordinates_block"},
     [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
     [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
     [PORT(SIGMA_A)] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
@@ -61,8 +59,9 @@ enum {
 };
 
 static const tyn_binding setup_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},         {PORT(LIGHTS), TYN_USE_STORAGE_READ},
-    {PORT(ORDINATES), TYN_USE_STORAGE_READ}, {PORT(GRIDS), TYN_USE_STORAGE_WRITE},
+    {PORT(MEDIUM), TYN_USE_UNIFORM},
+    {PORT(ORDINATES), TYN_USE_STORAGE_READ},
+    {PORT(GRIDS), TYN_USE_STORAGE_WRITE},
     {PORT(PLACES), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding shrink_density_bindings[] = {
@@ -150,11 +149,6 @@ static const tyn_param params[] = {
 
 // ---- sizes ------------------------------------------------------------------------------------
 
-static uint32_t num_grids(const tyn_propagate_rect_params *p)
-{
-    return p->num_suns + p->num_ordinates;
-}
-
 static uint32_t cells_of_grid(const tyn_propagate_rect_params *p)
 {
     return (uint32_t)(p->cells * p->cells * p->cells) * p->channels;
@@ -165,12 +159,12 @@ static uint32_t batch(const tyn_propagate_rect_params *p)
 {
     const uint32_t bytes = 128u << 20;
     uint32_t fit = bytes / (cells_of_grid(p) * (uint32_t)(4 * sizeof(float)));
-    return fit < num_grids(p) ? fit : num_grids(p);
+    return fit < p->num_ordinates ? fit : p->num_ordinates;
 }
 
 static uint32_t tiles_of(const tyn_propagate_rect_params *p)
 {
-    return (uint32_t)ceil(sqrt((double)(num_grids(p) * p->channels)));
+    return (uint32_t)ceil(sqrt((double)(p->num_ordinates * p->channels)));
 }
 
 // Texels of the shrunk medium, no larger than half a cell of any grid; {0} if the medium's own will do.
@@ -205,18 +199,19 @@ static float voxel_of(const tyn_propagate_rect_params *p)
 static tyn_result declare(tyn_builder *b, const void *data)
 {
     const tyn_propagate_rect_params *p = data;
-    if (num_grids(p) == 0 || num_grids(p) > TYN_PROPAGATE_GRIDS_MAX) {
+    if (p->num_ordinates == 0 || p->num_ordinates > TYN_ORDINATES_MAX) {
         tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "propagate_rect: %u lights and %u ordinates, must be 1 to %d together",
-                      p->num_suns, p->num_ordinates, TYN_PROPAGATE_GRIDS_MAX);
+                      "propagate_rect: %u ordinates, must be 1 to %d", p->num_ordinates,
+                      TYN_ORDINATES_MAX);
         return TYN_ERR_PARAMS;
     }
-    uint32_t cells = (uint32_t)p->cells, tiles = tiles_of(p), stacks = num_grids(p) * p->channels;
+    uint32_t cells = (uint32_t)p->cells, tiles = tiles_of(p),
+             stacks = p->num_ordinates * p->channels;
     uint64_t numbers = (uint64_t)batch(p) * cells_of_grid(p);
     tyn_extent tiled = {cells * tiles, cells * ((stacks + tiles - 1) / tiles), cells};
     tyn_extent small = small_of(p);
-    tyn_build_buffer(b, PORT(GRIDS), num_grids(p) * sizeof(struct propagate_grid));
-    tyn_build_buffer(b, PORT(PLACES), TYN_PROPAGATE_GRIDS_MAX * sizeof(struct propagate_place));
+    tyn_build_buffer(b, PORT(GRIDS), p->num_ordinates * sizeof(struct propagate_grid));
+    tyn_build_buffer(b, PORT(PLACES), TYN_ORDINATES_MAX * sizeof(struct propagate_place));
     tyn_build_buffer(b, PORT(CELLS), numbers * 4 * sizeof(float));
     tyn_build_buffer(b, PORT(STATE), numbers * 4 * sizeof(float));
     tyn_build_buffer(b, PORT(STATE_OTHER), numbers * 4 * sizeof(float));
@@ -305,7 +300,6 @@ static void record(tyn_recorder *r, const void *data)
     struct propagate_rect_args args = {
         .cells = (uint32_t)p->cells,
         .channels = p->channels,
-        .num_suns = p->num_suns,
         .num_ordinates = p->num_ordinates,
         .last_event = p->last_event,
         .rate = (uint32_t)p->rate,
@@ -315,7 +309,7 @@ static void record(tyn_recorder *r, const void *data)
         .tiles = tiles_of(p),
     };
     tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = SETUP, .cells = {num_grids(p), 1, 1}, .args = &args});
+        r, &(tyn_dispatch){.kernel = SETUP, .cells = {p->num_ordinates, 1, 1}, .args = &args});
     if (small_of(p).x) {
         record_shrink(r, p);
     }
@@ -324,12 +318,12 @@ static void record(tyn_recorder *r, const void *data)
     if (p->keep_light) {
         tyn_rec_clear(r, PORT(LIGHT));
     }
-    for (args.first = 0; args.first < num_grids(p); args.first += args.count) {
-        uint32_t left = num_grids(p) - args.first, fit = batch(p);
+    for (args.first = 0; args.first < p->num_ordinates; args.first += args.count) {
+        uint32_t left = p->num_ordinates - args.first, fit = batch(p);
         args.count = left < fit ? left : fit;
         record_batch(r, p, &args);
     }
-    double hops = (double)cells_of_grid(p) * num_grids(p) * p->iterations;
+    double hops = (double)cells_of_grid(p) * p->num_ordinates * p->iterations;
     tyn_rec_work(r, "cells", hops);
     tyn_rec_work(r, "flops", hops * 150); // counted by hand
     tyn_rec_work(r, "bytes", hops * 56);
@@ -338,8 +332,7 @@ static void record(tyn_recorder *r, const void *data)
 
 const tyn_pass_desc tyn_pass_propagate_rect = {
     .name = "propagate_rect",
-    .summary =
-        "light of each light and ordinate moved cell by cell in its aligned grid (Elek 2014)",
+    .summary = "light of each ordinate moved cell by cell in its aligned grid (Elek 2014)",
     .ports = ports,
     .num_ports = PROPAGATE_RECT_NUM_PORTS,
     .kernels = kernels,

@@ -1,5 +1,4 @@
-// propagate_rect.h -- light of each directional light and ordinate in its own aligned grid, moved cell by
-// cell.
+// propagate_rect.h -- light of each ordinate in its own aligned grid, moved cell by cell.
 //
 // Elek et al. 2014, sections 3-5.1, Eqs 1-8. The result depends on the view (Eq 8): a moved camera runs
 // all iterations again, as in the paper. Defaults are the reading with the right energy: the first
@@ -20,8 +19,7 @@ typedef struct tyn_propagate_rect_params {
     int32_t source;    // TYN_PROPAGATE_SOURCE_*: for the ray march, no kernel of this pass reads it
     int32_t prefilter; // TYN_PROPAGATE_PREFILTER_*
     float beta;        // exponent of the heuristic prefilter
-    uint32_t num_suns; // set by the method, as all below: directional lights, the first of "lights"
-    uint32_t num_ordinates; // room for, 0..TYN_ORDINATES_MAX
+    uint32_t num_ordinates; // set by the method, as all below: room for, 1..TYN_ORDINATES_MAX
     uint32_t channels;      // 1 if the medium is the same in all channels, else 3
     uint32_t mode;          // TYN_MEDIUM_*
     uint32_t keep_light;    // 1: the port "light" exists
@@ -31,14 +29,13 @@ typedef struct tyn_propagate_rect_params {
 
 enum {
     PROPAGATE_RECT_PORT_MEDIUM,    // IN buffer struct medium_block
-    PROPAGATE_RECT_PORT_LIGHTS,    // IN buffer struct light_block[]
-    PROPAGATE_RECT_PORT_ORDINATES, // IN optional buffer struct ordinates_block
+    PROPAGATE_RECT_PORT_ORDINATES, // IN buffer struct ordinates_block
     PROPAGATE_RECT_PORT_CAMERA,    // IN buffer struct camera_block
     PROPAGATE_RECT_PORT_DENSITY,   // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
     PROPAGATE_RECT_PORT_SIGMA_A,   // IN optional 3D: mode COEFFICIENTS, as g
     PROPAGATE_RECT_PORT_G,
-    PROPAGATE_RECT_PORT_GRIDS, // OUT buffer struct propagate_grid[]
-    PROPAGATE_RECT_PORT_PLACES, // OUT buffer struct propagate_place[TYN_PROPAGATE_GRIDS_MAX], <= 16 KiB
+    PROPAGATE_RECT_PORT_GRIDS,  // OUT buffer struct propagate_grid[]
+    PROPAGATE_RECT_PORT_PLACES, // OUT buffer struct propagate_place[TYN_ORDINATES_MAX], <= 16 KiB
     PROPAGATE_RECT_PORT_SEEN, // OUT 3D R32F, tiles of grids and channels (propagate_args.h): L_acc, sum
     // over iterations of L towards the eye, in units of the irradiance, 1/sr
     PROPAGATE_RECT_PORT_LIGHT, // OUT 3D R32F, optional, tiles: L after the last iteration, in units of the

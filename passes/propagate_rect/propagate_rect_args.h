@@ -9,7 +9,6 @@
 struct propagate_rect_args {
     tyn_uint cells;
     tyn_uint channels;
-    tyn_uint num_suns;
     tyn_uint num_ordinates; // room for; the list may have fewer
     tyn_uint first;         // grid of this batch
     tyn_uint count;         // grids of this batch
@@ -20,6 +19,6 @@ struct propagate_rect_args {
     float voxel;    // of what the coefficients are read from, shortest edge, m
     tyn_uint tiles; // a row, in images
 };
-TYN_ASSERT_SIZE(propagate_rect_args, 48);
+TYN_ASSERT_SIZE(propagate_rect_args, 44);
 
 #endif

@@ -1,4 +1,4 @@
-// propagate_rect_setup.comp -- places the grid of each directional light and ordinate, and prefilters.
+// propagate_rect_setup.comp -- places the grid of each ordinate, and prefilters.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -8,10 +8,9 @@
 
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 0, scalar) uniform medium_uniform { medium_block medium; };
-layout(set = 0, binding = 1, scalar) readonly buffer lights_buffer { light_block lights[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer ordinates_buffer { ordinates_block ordinates; };
-layout(set = 0, binding = 3, scalar) writeonly buffer grids_buffer { propagate_grid grids[]; };
-layout(set = 0, binding = 4, scalar) writeonly buffer places_buffer { propagate_place places[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer ordinates_buffer { ordinates_block ordinates; };
+layout(set = 0, binding = 2, scalar) writeonly buffer grids_buffer { propagate_grid grids[]; };
+layout(set = 0, binding = 3, scalar) writeonly buffer places_buffer { propagate_place places[]; };
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 
 // Mean cosine of an ordinate's light as it enters (section 5.1). The heuristic's w, the importance in
@@ -30,31 +29,17 @@ float prefiltered(ordinate o, uint count)
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
-    if (i >= args.num_suns + args.num_ordinates) {
+    if (i >= args.num_ordinates) {
         return;
     }
-    bool sun = i < args.num_suns;
-    uint n = sun ? i : i - args.num_suns;
     uint count = min(ordinates.count, uint(TYN_ORDINATES_MAX));
-    bool used = sun || n < count;
-    vec3 direction = vec3(0.0, 0.0, 1.0), irradiance = vec3(0.0);
-    float mean_cosine = 1.0;
-    if (sun) {
-        direction = lights[n].direction;
-        irradiance = lights[n].color;
-        if (args.prefilter != TYN_PROPAGATE_PREFILTER_OFF) {
-            mean_cosine = lights[n].mean_cosine;
-        }
-    } else if (used) {
-        direction = ordinates.list[n].direction;
-        irradiance = ordinates.list[n].irradiance;
-        mean_cosine = prefiltered(ordinates.list[n], count);
-    }
-    propagate_grid grid = propagate_grid_of(medium.extent, direction, args.cells);
+    bool used = i < count;
+    ordinate o = ordinates.list[i];
+    propagate_grid grid =
+        propagate_grid_of(medium.extent, used ? o.direction : vec3(0.0, 0.0, 1.0), args.cells);
     grid.size *= used ? 1u : 0u;
-    grid.irradiance = irradiance;
-    grid.mean_cosine = clamp(mean_cosine, 0.0, 1.0);
-    grid.light = n;
+    grid.irradiance = used ? o.irradiance : vec3(0.0);
+    grid.mean_cosine = used ? clamp(prefiltered(o, count), 0.0, 1.0) : 1.0;
     grid.channels = args.channels;
     grids[i] = grid;
     places[i] = propagate_place_of(grid);

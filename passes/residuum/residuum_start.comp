@@ -13,7 +13,7 @@
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 3, scalar) uniform places_uniform
 {
-    propagate_place places[TYN_PROPAGATE_GRIDS_MAX];
+    propagate_place places[TYN_ORDINATES_MAX];
 };
 layout(set = 0, binding = 4) uniform sampler3D light;
 layout(set = 0, binding = 5, scalar) writeonly buffer state_buffer { vec4 out_state[]; };

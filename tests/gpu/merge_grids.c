@@ -35,7 +35,7 @@ static const float *run(gpu_test *t, uint32_t channels, bool residuum, tyn_exten
         .voxel = {extent[0] / NX, extent[1] / NY, extent[2] / NZ},
         .sigma_s = {2, 4, 9},
     };
-    struct propagate_place places[TYN_PROPAGATE_GRIDS_MAX] = {{{{0}}}};
+    struct propagate_place places[TYN_ORDINATES_MAX] = {{{{0}}}};
     for (int n = 0; n < GRIDS; n++) {
         const struct grid *g = &grids[n];
         for (int a = 0; a < 3; a++) {

@@ -6,6 +6,7 @@
 #include "passes/merge_grids/merge_grids.h"
 #include "passes/upsample/upsample.h"
 #include "passes/raymarch/raymarch.h"
+#include "ordinate_args.h"
 #include "scene_args.h"
 #include <math.h>
 #include <stdio.h>
@@ -60,7 +61,9 @@ static struct camera_block camera_of(const view *v)
 // The passes as the method wires them; radiance of RAYS x RAYS pixels.
 static const float *picture(gpu_test *t, const struct camera_block *camera)
 {
-    const struct light_block light = {.color = {1, 1, 1}, .direction = {0, 0, 1}, .mean_cosine = 1};
+    const struct light_block light = {{0}};
+    const struct ordinates_block sun = {
+        .count = 1, .list = {{.irradiance = {1, 1, 1}, .mean_cosine = 1, .direction = {0, 0, 1}}}};
     const struct shape_block shape = {
         .rows = {{1, 0, 0, -0.5f}, {0, 1, 0, -0.5f}, {0, 0, 1, -0.5f}}, .size = {1, 1, 1}};
     const struct env_block dark = {{{0}}};
@@ -75,11 +78,12 @@ static const float *picture(gpu_test *t, const struct camera_block *camera)
     tyn_propagate_rect_params propagate;
     tyn_pass_defaults(&tyn_pass_propagate_rect, &propagate);
     propagate.cells = propagate.iterations = 16;
-    propagate.num_suns = propagate.channels = 1;
+    propagate.num_ordinates = propagate.channels = 1;
     memcpy(propagate.extent, medium.extent, sizeof propagate.extent);
     memcpy(propagate.size, medium.size, sizeof propagate.size);
     tyn_ref a[PROPAGATE_RECT_NUM_PORTS] = {[PROPAGATE_RECT_PORT_MEDIUM] = media,
-                                           [PROPAGATE_RECT_PORT_LIGHTS] = lights,
+                                           [PROPAGATE_RECT_PORT_ORDINATES] =
+                                               gpu_buffer(t, "ordinates", &sun, sizeof sun),
                                            [PROPAGATE_RECT_PORT_CAMERA] = eye,
                                            [PROPAGATE_RECT_PORT_DENSITY] = density};
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_propagate_rect, &propagate, a), TYN_OK);

@@ -54,7 +54,6 @@ static outcome run(gpu_test *t, int32_t before, int32_t iterations)
 {
     const struct ordinates_block list = directions();
     const struct camera_block camera = {.orthographic = 1, .forward = {0, 0, -1}};
-    const struct light_block none = {{0}};
     tyn_graph_begin(t->graph);
     tyn_ref block = gpu_buffer(t, "medium", &medium, sizeof medium);
     tyn_ref image = gpu_image(t, "density", TYN_IMAGE_3D, (tyn_extent){16, 12, 8}, 1, density);
@@ -70,7 +69,6 @@ static outcome run(gpu_test *t, int32_t before, int32_t iterations)
     memcpy(p.size, medium.size, sizeof p.size);
     tyn_ref a[PROPAGATE_RECT_NUM_PORTS] = {
         [PROPAGATE_RECT_PORT_MEDIUM] = block,
-        [PROPAGATE_RECT_PORT_LIGHTS] = gpu_buffer(t, "lights", &none, sizeof none),
         [PROPAGATE_RECT_PORT_ORDINATES] = gpu_buffer(t, "ordinates", &list, sizeof list),
         [PROPAGATE_RECT_PORT_CAMERA] = gpu_buffer(t, "camera", &camera, sizeof camera),
         [PROPAGATE_RECT_PORT_DENSITY] = image};
