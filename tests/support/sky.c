@@ -66,7 +66,8 @@ void sky_reference_map(tyn_environment *map, sky_part what)
             double w[3], l[3];
             map_direction((i % W + (k % SUB + 0.5) / SUB) / W, (i / W + (k / SUB + 0.5) / SUB) / H,
                           w);
-            if (i / W == H / 2) {
+            // Its neighbours too: the background behind a pixel is blended over half a texel.
+            if (abs(i / W - H / 2) <= 1) {
                 near_horizon(w, what, l);
             } else {
                 part_of_reference(w, what, l);

@@ -9,7 +9,7 @@ typedef void (*sky_fn)(const double w[3], double out[3]);
 
 // The sky of the shared reference images: zenith, horizon, ground and a soft sun.
 void sky_of_references(const double w[3], double out[3]);
-// A map of it, 2048 x 1023 averages over texels; the row of the horizon holds the horizon. Owned by the
+// A map of it, 2048 x 1023 averages over texels; the three rows at the horizon hold the horizon. Owned by the
 // caller. `what`: everything, without its sun, or its sun alone.
 typedef enum sky_part { SKY_WHOLE, SKY_WITHOUT_SUN, SKY_SUN } sky_part;
 void sky_reference_map(tyn_environment *map, sky_part what);
