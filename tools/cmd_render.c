@@ -271,7 +271,9 @@ static int render_all(app *a, const render_args *args, const opt_list *outputs)
     output_plan plan;
     int code = check_sequence(a, args, outputs, &s);
     if (code == EXIT_DONE) {
-        code = method_open(a, &args->method, &meth);
+        method_options how = args->method;
+        how.sequence = s.numbered;
+        code = method_open(a, &how, &meth);
     }
     if (code == EXIT_DONE) {
         code = output_plan_make(a, &meth.info, outputs, args->aov, args->full_float, &plan);

@@ -60,6 +60,9 @@ int method_open(app *a, const method_options *options, method *m)
         return EXIT_WRONG;
     }
     tyn_result result = tyn_settings_create(&m->settings);
+    if (result == TYN_OK && options->sequence) {
+        result = tyn_settings_set(m->settings, "lattice.warm", "1", &a->log);
+    }
     if (result == TYN_OK && options->quality) {
         result = tyn_settings_quality(m->settings, options->quality, &a->log);
     }

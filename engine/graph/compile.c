@@ -142,7 +142,8 @@ bool tyn_graph_matches(const tyn_graph *graph)
 
 // ---- allocate ---------------------------------------------------------------------------------
 
-static tyn_result create_image(tyn_graph *g, const resource *r, phys *p, VkDeviceSize expected)
+static tyn_result create_image(tyn_graph *g, tyn_heap *heap, const resource *r, phys *p,
+                               VkDeviceSize expected)
 {
     tyn_device *dev = g->dev;
     const VkPhysicalDeviceLimits *limits = &dev->properties.limits;
@@ -173,7 +174,7 @@ static tyn_result create_image(tyn_graph *g, const resource *r, phys *p, VkDevic
         NULL, &p->image);
     tyn_result result = tyn_vk_check(dev, made, r->name);
     if (result == TYN_OK) {
-        result = tyn_heap_bind_image(dev, &g->heap, p->image, expected);
+        result = tyn_heap_bind_image(dev, heap, p->image, expected);
     }
     // View 0 sees all mips, the others one each.
     for (uint32_t v = 0; result == TYN_OK && v < (r->mips > 1 ? r->mips + 1 : 1); v++) {
@@ -216,7 +217,38 @@ static tyn_result create_buffer(tyn_graph *g, tyn_heap *heap, VkDeviceSize size,
     return result;
 }
 
-static tyn_result create_resources(tyn_graph *g)
+// Histories of the last compilation, which this one may take over.
+typedef struct heritage {
+    phys *items;
+    uint32_t count;
+} heritage;
+
+static uint64_t history_identity(const resource *r)
+{
+    uint64_t h = tyn_hash_string(TYN_HASH_SEED, r->name);
+    h = tyn_hash_u64(h, (uint64_t)r->dim << 32 | (uint64_t)r->format);
+    h = tyn_hash_bytes(h, &r->extent, sizeof r->extent);
+    return h ? h : 1;
+}
+
+// True if `p` has become the history of the same name and shape that there was before.
+static bool inherit(heritage *from, const resource *r, phys *p)
+{
+    const uint64_t identity = history_identity(r);
+    for (uint32_t i = 0; i < from->count; i++) {
+        phys *old = &from->items[i];
+        if (old->history == identity && (p->image_usage & ~old->image_usage) == 0 &&
+            (p->buffer_usage & ~old->buffer_usage) == 0) {
+            *p = *old;
+            *old = (phys){0};
+            return true;
+        }
+    }
+    p->history = identity;
+    return false;
+}
+
+static tyn_result create_resources(tyn_graph *g, heritage *old)
 {
     VkDeviceSize expected = 0;
     for (uint32_t i = 0; i < g->num_resources; i++) {
@@ -240,10 +272,16 @@ static tyn_result create_resources(tyn_graph *g)
             p->buffer_usage |= VK_BUFFER_USAGE_TRANSFER_DST_BIT;
             p->image_usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
         }
+        const bool history = r->kind == RESOURCE_HISTORY;
+        if (history && inherit(old, r, p)) {
+            continue;
+        }
+        tyn_heap *heap = history ? &p->heap : &g->heap;
+        const VkDeviceSize block = history ? 0 : expected;
         result = r->dim == TYN_BUFFER
-                     ? create_buffer(g, &g->heap, p->bytes ? p->bytes : 4, p->buffer_usage,
-                                     TYN_MEMORY_DEVICE, expected, r->name, &p->buffer, NULL)
-                     : create_image(g, r, p, expected);
+                     ? create_buffer(g, heap, p->bytes ? p->bytes : 4, p->buffer_usage,
+                                     TYN_MEMORY_DEVICE, block, r->name, &p->buffer, NULL)
+                     : create_image(g, heap, r, p, block);
         expected -= expected > p->bytes ? p->bytes : expected;
     }
     for (uint32_t i = 0; result == TYN_OK && i < g->num_outputs; i++) {
@@ -269,7 +307,7 @@ static tyn_result create_dummies(tyn_graph *g)
                       TYN_MEMORY_DEVICE, 0, "none", &g->dummy[TYN_BUFFER].buffer, NULL);
     for (tyn_dim dim = TYN_IMAGE_2D; result == TYN_OK && dim <= TYN_IMAGE_3D; dim++) {
         g->dummy[dim].image_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-        result = create_image(g,
+        result = create_image(g, &g->heap,
                               &(resource){.name = "none",
                                           .dim = dim,
                                           .format = VK_FORMAT_R32G32B32A32_SFLOAT,
@@ -373,7 +411,35 @@ static void destroy_phys(tyn_graph *g, phys *p)
     }
     dev->vk.DestroyBuffer(dev->device, p->buffer, NULL);
     dev->vk.DestroyBuffer(dev->device, p->readback, NULL);
+    tyn_heap_finish(g->dev, &p->heap);
     *p = (phys){0};
+}
+
+// Takes the histories out, without what belongs to this compilation alone. Without memory for the list
+// there are none: they start anew.
+static heritage take_histories(tyn_graph *g)
+{
+    heritage h = {.items = calloc(g->num_phys ? g->num_phys : 1, sizeof *h.items)};
+    for (uint32_t i = 0; h.items && i < g->num_phys; i++) {
+        phys *p = &g->phys[i];
+        if (p->history) {
+            g->dev->vk.DestroyBuffer(g->dev->device, p->readback, NULL);
+            p->readback = VK_NULL_HANDLE;
+            p->readback_ptr = NULL;
+            p->read = 0;
+            h.items[h.count++] = *p;
+            *p = (phys){0};
+        }
+    }
+    return h;
+}
+
+static void drop_histories(tyn_graph *g, heritage *h)
+{
+    for (uint32_t i = 0; i < h->count; i++) {
+        destroy_phys(g, &h->items[i]);
+    }
+    free(h->items);
 }
 
 void graph_free_staging(tyn_graph *g)
@@ -436,6 +502,7 @@ tyn_result tyn_graph_compile(tyn_graph *g)
         g->current = staged == TYN_OK;
         return staged;
     }
+    heritage old = take_histories(g);
     graph_release(g);
     g->num_phys = g->num_resources;
     g->num_runs = g->num_nodes;
@@ -443,6 +510,7 @@ tyn_result tyn_graph_compile(tyn_graph *g)
     g->runs = calloc(g->num_runs ? g->num_runs : 1, sizeof *g->runs);
     g->run_node = calloc(g->num_runs ? g->num_runs : 1, sizeof *g->run_node);
     if (!g->phys || !g->runs || !g->run_node) {
+        drop_histories(g, &old);
         return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
     }
     for (uint32_t i = 0; i < g->num_outputs; i++) {
@@ -454,7 +522,8 @@ tyn_result tyn_graph_compile(tyn_graph *g)
     }
     survey s;
     tyn_result result = graph_survey(g, &s, g->phys);
-    result = result == TYN_OK ? create_resources(g) : result;
+    result = result == TYN_OK ? create_resources(g, &old) : result;
+    drop_histories(g, &old);
     result = result == TYN_OK ? create_dummies(g) : result;
     result = result == TYN_OK ? create_slots(g, &s) : result;
     result = result == TYN_OK ? create_pipelines(g) : result;

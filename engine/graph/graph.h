@@ -47,7 +47,8 @@ tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *pa
                          tyn_ref *refs);
 
 // A persistent image or buffer that starts as zeros and lives across frames: the INOUT of
-// accumulating passes. `key` changes = start from zeros again.
+// accumulating passes. `key` changes = start from zeros again; so does another shape. Compiling
+// anew because other nodes or shapes were declared leaves it as it is.
 tyn_ref tyn_graph_history_image(tyn_graph *g, const char *name, tyn_dim dim, VkFormat format,
                                 tyn_extent extent, uint64_t key);
 tyn_ref tyn_graph_history_buffer(tyn_graph *g, const char *name, uint64_t bytes, uint64_t key);

@@ -68,6 +68,8 @@ typedef struct phys {
     tyn_track track;
     uint64_t content; // what is in it; 0 = nothing
     uint64_t key;     // HISTORY
+    uint64_t history; // HISTORY: what it is, its name and shape; else 0
+    tyn_heap heap;    // HISTORY: its own, so that it outlives the others
     VkBuffer staging; // UPLOAD, big: host memory waiting to be copied
     void *staging_ptr;
     uint64_t staged; // content hash in staging; 0 = none

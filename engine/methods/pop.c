@@ -161,6 +161,54 @@ static tyn_result add_sky(tyn_graph *g, const tyn_job *job, field *f)
     return result;
 }
 
+// The solution of the last frame: what is remembered, and what light puts in now.
+typedef struct memory {
+    tyn_lattice_recall_params params;
+    tyn_ref history, power;
+} memory;
+
+// `solve` are the refs of the lattice, which gets the guess.
+static tyn_result add_recall(tyn_graph *g, const tyn_job *job, const field *f, tyn_ref *solve,
+                             memory *m)
+{
+    m->params = (tyn_lattice_recall_params){.shape = f->shape};
+    // The inverse of a rigid matrix (column-major): its transpose turns back.
+    const float *from = job->frame->m_from_world;
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) {
+            m->params.world[i][k] = from[4 * i + k];
+            m->params.world[i][3] -= from[4 * i + k] * from[12 + k];
+        }
+    }
+    m->history = tyn_graph_history_buffer(
+        g, "lattice_memory", tyn_lattice_memory_size(f->shape.cells, f->shape.channels), 1);
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [LATTICE_RECALL_PORT_MEMORY] = m->history,
+        [LATTICE_RECALL_PORT_CELLS] = solve[LATTICE_PORT_CELLS],
+        [LATTICE_RECALL_PORT_SOURCE] = solve[LATTICE_PORT_SOURCE],
+        [LATTICE_RECALL_PORT_SKY] = solve[LATTICE_PORT_SKY],
+        [LATTICE_RECALL_PORT_ENVIRONMENT] = solve[LATTICE_PORT_ENVIRONMENT],
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_recall, &m->params, refs);
+    solve[LATTICE_PORT_GUESS] = refs[LATTICE_RECALL_PORT_GUESS];
+    m->power = refs[LATTICE_RECALL_PORT_POWER];
+    return result;
+}
+
+static tyn_result add_keep(tyn_graph *g, const field *f, const memory *m)
+{
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [LATTICE_KEEP_PORT_MOMENTS] = f->moments,
+        [LATTICE_KEEP_PORT_POWER] = m->power,
+        [LATTICE_KEEP_PORT_MEMORY] = m->history,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_keep, &m->params, refs);
+    if (result == TYN_OK) {
+        tyn_graph_output(g, "lattice_memory", refs[LATTICE_KEEP_PORT_MEMORY], false);
+    }
+    return result;
+}
+
 static tyn_result add_solve(tyn_graph *g, const tyn_job *job, field *f)
 {
     tyn_lattice_params params;
@@ -171,11 +219,15 @@ static tyn_result add_solve(tyn_graph *g, const tyn_job *job, field *f)
         [LATTICE_PORT_SOURCE] = f->source,
         [LATTICE_PORT_SKY] = f->sky,
     };
-    tyn_result result = tyn_graph_add(g, &tyn_pass_lattice, &params, refs);
+    memory last = {0};
+    tyn_result result = params.warm ? add_recall(g, job, f, refs, &last) : TYN_OK;
+    if (result == TYN_OK) {
+        result = tyn_graph_add(g, &tyn_pass_lattice, &params, refs);
+    }
     f->moments = refs[LATTICE_PORT_MOMENTS];
     f->leaks = refs[LATTICE_PORT_LEAKS];
     tyn_job_counters(g, job, "lattice", refs[LATTICE_PORT_COUNTERS]);
-    return result;
+    return result == TYN_OK && params.warm ? add_keep(g, f, &last) : result;
 }
 
 static tyn_result add_merge(tyn_graph *g, const tyn_job *job, field *f)
@@ -347,7 +399,8 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_medium,         &tyn_pass_beam,
     &tyn_pass_scatter_lut,    &tyn_pass_lattice_cells,
     &tyn_pass_lattice_source, &tyn_pass_lattice_sky,
-    &tyn_pass_lattice,        &tyn_pass_merge,
+    &tyn_pass_lattice_recall, &tyn_pass_lattice,
+    &tyn_pass_lattice_keep,   &tyn_pass_merge,
     &tyn_pass_raymarch,       &tyn_pass_composite,
     &tyn_pass_tonemap,        &tyn_pass_probe,
     &tyn_pass_balance,        NULL,

@@ -41,6 +41,7 @@ static const tyn_port ports[NUM_PORTS] = {
     [LATTICE_PORT_SKY] = {"sky", TYN_IN, TYN_BUFFER, 0, true, "of lattice_sky: enters at the box"},
     [LATTICE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
                                   "struct env_block: its mean without suns enters at the box"},
+    [LATTICE_PORT_GUESS] = {"guess", TYN_IN, TYN_BUFFER, 0, true, "moments to start from"},
     [LATTICE_PORT_MOMENTS] =
         {"moments", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
          "fluence and net flux of the scattered light, W/m^2; channels stacked "
@@ -85,9 +86,10 @@ enum {
 };
 
 static const tyn_binding start_bindings[] = {
-    {LATTICE_PORT_SKY, TYN_USE_STORAGE_READ}, {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},   {PORT_STATE, TYN_USE_STORAGE_WRITE},
-    {PORT_EMITTED, TYN_USE_STORAGE_WRITE},    {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {LATTICE_PORT_SKY, TYN_USE_STORAGE_READ},   {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},     {PORT_STATE, TYN_USE_STORAGE_WRITE},
+    {PORT_EMITTED, TYN_USE_STORAGE_WRITE},      {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {LATTICE_PORT_GUESS, TYN_USE_STORAGE_READ},
 };
 static const tyn_binding stencil_bindings[] = {
     {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
@@ -355,7 +357,8 @@ static void record(tyn_recorder *r, const void *params)
                  .channels = p->shape.channels,
                  .tint = {p->shape.tint[0], p->shape.tint[1], p->shape.tint[2]},
                  .dx = fmaxf(extent[0], fmaxf(extent[1], extent[2])) / (float)p->shape.cells,
-                 .lines = lines_of(dims)},
+                 .lines = lines_of(dims),
+                 .warm = tyn_rec_has(r, LATTICE_PORT_GUESS)},
     };
     s.args.stride = s.levels.cells;
     tyn_rec_fill(r, LATTICE_PORT_COUNTERS, 0);
@@ -392,6 +395,8 @@ static const tyn_param param_table[] = {
      "multigrid cycles of the diffusion correction after each sweep; 0 = no correction", NULL},
     {"anderson", TYN_PARAM_BOOL, offsetof(tyn_lattice_params, anderson), 1, 0, 1, "",
      "mix the results of the last three sweeps (Anderson acceleration)", NULL},
+    {"warm", TYN_PARAM_BOOL, offsetof(tyn_lattice_params, warm), 0, 0, 1, "",
+     "start from the last frame's solution: for sequences", NULL},
 };
 
 const tyn_pass_desc tyn_pass_lattice = {

@@ -6,6 +6,8 @@
 //   lattice_ordinates  light of the sky's principal ordinates (... or the environment)
 //   lattice_sky     the environment by direction                (... or the environment)
 //   lattice         fluence and flux of the scattered light    (... or the environment changes)
+// and two around the last for sequences: lattice_recall brings the last frame's solution to this
+// frame's cells, lattice_keep puts this frame's away.
 // None of them depends on the camera.
 //
 // Coefficients are those of delta scaling: f = g^2 for g > 0, else 0; g' = (g - f) / (1 - f),
@@ -119,6 +121,7 @@ typedef struct tyn_lattice_params {
     int32_t sweeps;          // 1..256
     int32_t cycles;          // V-cycles of the diffusion correction after each sweep, 0..8
     uint32_t anderson;       // 1: mix the last three sweeps
+    uint32_t warm;           // for the method: 1 = add lattice_recall and lattice_keep
 } tyn_lattice_params;
 
 enum {
@@ -126,6 +129,7 @@ enum {
     LATTICE_PORT_SOURCE,      // IN optional 3D, of lattice_ordinates or lattice_source
     LATTICE_PORT_SKY,         // IN optional buffer, of lattice_sky
     LATTICE_PORT_ENVIRONMENT, // IN optional buffer struct env_block: `sky` enters from all sides
+    LATTICE_PORT_GUESS,       // IN optional buffer, of lattice_recall: where the solve starts
     LATTICE_PORT_MOMENTS, // OUT 3D RGBA32F, stacked: fluence phi and net flux (x, y, z) of the light that
                           // has scattered, came from the environment or was emitted, W/m^2
     LATTICE_PORT_COUNTERS, // OUT buffer struct counters_block
@@ -133,3 +137,36 @@ enum {
     LATTICE_PORT_FIRST_SCRATCH,
 };
 extern const tyn_pass_desc tyn_pass_lattice;
+
+// ---- lattice_recall, lattice_keep ---------------------------------------------------------------
+
+typedef struct tyn_lattice_recall_params { // of both
+    tyn_lattice_shape shape;
+    float world[3][4]; // rows of the matrix from M to the world
+} tyn_lattice_recall_params;
+
+enum {
+    LATTICE_RECALL_PORT_MEMORY, // IN buffer, a history of tyn_lattice_memory_size bytes
+    LATTICE_RECALL_PORT_CELLS,  // IN 3D, as lattice has it, and the two below
+    LATTICE_RECALL_PORT_SOURCE, // IN optional 3D
+    LATTICE_RECALL_PORT_SKY,    // IN optional buffer
+    LATTICE_RECALL_PORT_ENVIRONMENT, // IN optional buffer
+    LATTICE_RECALL_PORT_GUESS,  // OUT buffer vec4[]: moments by cell. The last frame's where it had any, by
+                                // the place in the world, scaled by what light puts in now over what
+                                // it did then; elsewhere the environment as if unhindered
+    LATTICE_RECALL_PORT_POWER,  // OUT buffer vec3: what light puts in
+    LATTICE_RECALL_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_lattice_recall;
+
+enum {
+    LATTICE_KEEP_PORT_MOMENTS, // IN 3D, of lattice
+    LATTICE_KEEP_PORT_POWER,   // IN buffer, of lattice_recall
+    LATTICE_KEEP_PORT_MEMORY,  // INOUT buffer, the history
+    LATTICE_KEEP_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_lattice_keep;
+
+// Bytes that hold any lattice of so many cells along its longest side: the same for a medium whose
+// box changes from frame to frame.
+uint64_t tyn_lattice_memory_size(int32_t cells, uint32_t channels);
