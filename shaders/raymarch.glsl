@@ -141,11 +141,15 @@ bool march_any(march_medium m)
 struct march_sun {
     beam_ray beam;
     vec3 irradiance; // W/m^2
+    float mean_cosine;
 #ifdef RAYMARCH_GREY
     scatter_angle angle;
+    float phase; // of one scattering; mode DENSITY, as `angle`
 #else
     scatter_angle angle[3];
-    vec3 direction;
+    vec3 phase;
+    uint light;
+    float one_minus_mu;
 #endif
 };
 
@@ -159,21 +163,33 @@ struct march_result {
     uint steps;
 };
 
-march_sun march_sun_of(uint n, vec3 origin, vec3 direction)
+march_sun march_sun_of(uint n, march_medium unit, vec3 origin, vec3 direction)
 {
     light_block light = lights[beams[n].light];
+    vec3 turn = direction + light.direction;
+    float one_minus_mu = 0.5 * dot(turn, turn);
     march_sun sun;
     sun.beam = beam_ray_of(n, origin, direction);
     // Said at compile time, as some devices run both sides of a branch.
     sun.beam.edges = sun.beam.edges && !raymarch_has(RAYMARCH_CLOSED);
     sun.irradiance = light.color;
+    sun.mean_cosine = light.mean_cosine;
 #ifdef RAYMARCH_GREY
-    sun.angle = scatter_angle_of(0u, -direction, light.direction);
+    sun.phase = hg_near(unit.g * light.mean_cosine, one_minus_mu);
+    if (raymarch_has(RAYMARCH_KERNELS)) {
+        sun.angle = scatter_angle_of(beams[n].light, 0u, one_minus_mu);
+        vec2 once = scatter_kernels(sun.angle, 0.0);
+        sun.phase = once.x + once.y;
+    }
 #else
-    sun.direction = light.direction;
-    if (medium_mode == TYN_MEDIUM_DENSITY) {
-        for (uint c = 0u; c < 3u; c++) {
-            sun.angle[c] = scatter_angle_of(c, -direction, light.direction);
+    sun.light = beams[n].light;
+    sun.one_minus_mu = one_minus_mu;
+    for (uint c = 0u; c < 3u && medium_mode == TYN_MEDIUM_DENSITY; c++) {
+        sun.phase[c] = hg_near(unit.g[c] * light.mean_cosine, one_minus_mu);
+        if (raymarch_has(RAYMARCH_KERNELS)) {
+            sun.angle[c] = scatter_angle_of(beams[n].light, c, one_minus_mu);
+            vec2 once = scatter_kernels(sun.angle[c], 0.0);
+            sun.phase[c] = once.x + once.y;
         }
     }
 #endif
@@ -183,16 +199,15 @@ march_sun march_sun_of(uint n, vec3 origin, vec3 direction)
 // Light of one sun that is scattered towards the eye at distance s of the ray. `weight` and
 // `weight_scaled`: integrals of e^-tau and e^-tau' over the step, m. `first`: the part that has
 // scattered once, W/(m^2 sr), as the result.
-vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 view, float s,
+vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, float s,
                     spectrum weight, spectrum weight_scaled, inout vec3 first)
 {
     beam_place place = beam_ray_at(sun.beam, s);
-    spectrum tau_s, tau_a, phase, k_tms, k_lobe;
+    spectrum tau_s, tau_a, phase = sun.phase, k_tms, k_lobe;
 #ifdef RAYMARCH_GREY
     float column = beam_fetch(beam_column_tex, place).r;
     tau_s = unit.scattering * column;
     tau_a = unit.absorption * column;
-    phase = sun.angle.first.x + sun.angle.first.y;
     if (raymarch_has(RAYMARCH_KERNELS)) {
         vec2 k = scatter_kernels(sun.angle, tau_s);
         k_tms = k.x;
@@ -203,9 +218,6 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 view,
         float column = beam_fetch(beam_column_tex, place).r;
         tau_s = unit.scattering * column;
         tau_a = unit.absorption * column;
-        for (int c = 0; c < 3; c++) {
-            phase[c] = sun.angle[c].first.x + sun.angle[c].first.y;
-        }
         if (raymarch_has(RAYMARCH_KERNELS)) {
             for (int c = 0; c < 3; c++) {
                 vec2 k = scatter_kernels(sun.angle[c], tau_s[c]);
@@ -216,14 +228,14 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 view,
     } else {
         tau_s = beam_fetch(beam_column_tex, place);
         tau_a = beam_fetch(beam_tau_a_tex, place);
-        vec3 turn = view - sun.direction;
         for (int c = 0; c < 3; c++) {
-            phase[c] = hg_near(m.g[c], 0.5 * dot(turn, turn));
+            phase[c] = hg_near(m.g[c] * sun.mean_cosine, sun.one_minus_mu);
         }
         if (raymarch_has(RAYMARCH_KERNELS)) {
             vec3 tau_p = beam_fetch(beam_tau_p_tex, place);
             for (int c = 0; c < 3; c++) {
-                vec2 k = scatter_kernels_mixed(view, sun.direction, m.g[c], tau_s[c], tau_p[c]);
+                vec2 k = scatter_kernels_mixed(sun.light, sun.mean_cosine, sun.one_minus_mu, m.g[c],
+                                               tau_s[c], tau_p[c]);
                 k_tms[c] = k.x;
                 k_lobe[c] = k.y;
             }
@@ -272,11 +284,11 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
     result.half_distance = TYN_INFINITY;
     result.steps = 0u;
 
+    march_medium unit = march_medium_of(medium_of_density(1.0));
     march_sun suns[TYN_BEAM_MAX_SUNS];
     for (uint n = 0u; n < raymarch_num_suns; n++) {
-        suns[n] = march_sun_of(n, origin, direction);
+        suns[n] = march_sun_of(n, unit, origin, direction);
     }
-    march_medium unit = march_medium_of(medium_of_density(1.0));
     vec3 inverse = ray_inverse(direction);
     // Texture coordinates are linear along the ray.
     vec3 medium0 = origin / medium.extent, medium1 = direction / medium.extent;
@@ -336,8 +348,8 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
                 result.radiance += m.emission * weight_scaled;
             }
             for (uint n = 0u; n < raymarch_num_suns; n++) {
-                result.radiance += march_sunlight(suns[n], unit, m, -direction, at,
-                                                  weight, weight_scaled, result.single);
+                result.radiance += march_sunlight(suns[n], unit, m, at, weight,
+                                                  weight_scaled, result.single);
             }
             if (raymarch_has(RAYMARCH_DEPTH)) {
                 float t0 = spectrum_mean(through * exp(-hidden));

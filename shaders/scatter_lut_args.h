@@ -4,6 +4,8 @@
 #include "shared.h"
 
 #define TYN_LUT_MAX_ROWS 16
+#define TYN_LUT_MAX_SUNS 4
+#define TYN_LUT_MAX_SETS 5 // of rows: for points and for each sun that is seen under an angle
 #define TYN_LUT_DEPTHS 64  // texels along the scattering depth
 #define TYN_LUT_ANGLES 192 // texels along the angle
 
@@ -19,13 +21,15 @@ struct lut_block { // storage buffer "lut_block"
     float log_first;        // spread: ln(g / (1 - g)) of the first row
     float log_step;         // spread: ... from row to row
     tyn_uvec3 channel_row;  // not spread: row of each colour channel
-    tyn_uint num_terms;     // of the longest series
+    tyn_uint num_sets;
+    tyn_uint sun_set[TYN_LUT_MAX_SUNS];
+    float blur[TYN_LUT_MAX_SETS]; // 1 - mean cosine of the set's sun; 0 = a point
     float g[TYN_LUT_MAX_ROWS];
     float theta_1[TYN_LUT_MAX_ROWS]; // half width of the forward lobe, radians; 0 = no lobe
     tyn_uint terms[TYN_LUT_MAX_ROWS]; // length of the row's series
     tyn_uint first_term[TYN_LUT_MAX_ROWS]; // where it starts in the buffer "moments"
     tyn_uint tms_terms[TYN_LUT_MAX_ROWS];  // length of the series of "tms"
 };
-TYN_ASSERT_SIZE(lut_block, 352);
+TYN_ASSERT_SIZE(lut_block, 388);
 
 #endif

@@ -19,10 +19,17 @@ float lut_depth_scale(float f)
     return float(TYN_LUT_DEPTHS - 1) / (float(TYN_LUT_DEPTHS) * log(1.0 + lut_depth_max(f) / LUT_DEPTH));
 }
 
+// From the first to the last depth, in texture u.
+const float LUT_DEPTH_RANGE = float(TYN_LUT_DEPTHS - 1) / float(TYN_LUT_DEPTHS);
+
+float lut_depth_log(float tau)
+{
+    return log(1.0 + max(tau, 0.0) / LUT_DEPTH);
+}
+
 float lut_u(float tau, float scale)
 {
-    return 0.5 / float(TYN_LUT_DEPTHS) + min(log(1.0 + max(tau, 0.0) / LUT_DEPTH) * scale,
-                                             float(TYN_LUT_DEPTHS - 1) / float(TYN_LUT_DEPTHS));
+    return 0.5 / float(TYN_LUT_DEPTHS) + min(lut_depth_log(tau) * scale, LUT_DEPTH_RANGE);
 }
 
 float lut_depth(uint texel, float f)
@@ -62,8 +69,8 @@ float tms_depth_scale(float f)
 
 float tms_u(float tau, float scale)
 {
-    return 0.5 / float(TYN_TMS_DEPTHS) + min(log(1.0 + max(tau, 0.0) / LUT_DEPTH) * scale,
-                                             float(TYN_TMS_DEPTHS - 1) / float(TYN_TMS_DEPTHS));
+    return 0.5 / float(TYN_TMS_DEPTHS) +
+           min(lut_depth_log(tau) * scale, float(TYN_TMS_DEPTHS - 1) / float(TYN_TMS_DEPTHS));
 }
 
 float tms_depth(uint texel, float f)

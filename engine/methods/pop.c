@@ -97,6 +97,10 @@ static tyn_result add_lut(tyn_graph *g, const tyn_job *job, field *f)
     params.mode = m->mode;
     memcpy(params.g, m->g, sizeof params.g);
     params.g_max = largest_g(job);
+    params.num_suns = f->picture.num_suns;
+    for (uint32_t n = 0; n < params.num_suns; n++) {
+        params.mean_cosine[n] = job->frame->suns[n].mean_cosine;
+    }
     tyn_ref refs[TYN_MAX_PORTS] = {{0}};
     tyn_result result = tyn_graph_add(g, &tyn_pass_scatter_lut, &params, refs);
     f->picture.lut = refs[SCATTER_LUT_PORT_LUT];

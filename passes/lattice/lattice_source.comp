@@ -35,7 +35,7 @@ void main()
         float t = texelFetch(sunlit, ivec3(texel.xy, texel.z % dims.z + int(sun) * dims.z), 0)[ch];
         float e = lattice_channel(lights[sun].color, args.channels, uint(ch), args.tint);
         float scale = power[sun * args.channels + uint(ch)].scale;
-        sum += e * scale * t * vec4(1.0, lights[sun].direction);
+        sum += e * scale * t * vec4(1.0, lights[sun].mean_cosine * lights[sun].direction);
     }
     imageStore(source, texel, sum);
 }

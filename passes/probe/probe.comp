@@ -130,8 +130,9 @@ void main()
         if (args.scattered_only != 0) {
             e -= exp(-(tau.a + tau.s));
         }
+        vec3 flux = lights[sun].mean_cosine * lights[sun].direction;
         for (uint ch = 0; ch < 3; ch++) {
-            field[ch] += e[ch] * lights[sun].color[ch] * vec4(1.0, lights[sun].direction);
+            field[ch] += e[ch] * lights[sun].color[ch] * vec4(1.0, flux);
         }
     }
     uint count = min(ordinates.count, args.num_ordinates);

@@ -1,6 +1,7 @@
 // raymarch.c -- the picture: light of the medium gathered along the rays of a camera.
 #include "raymarch.h"
 #include "raymarch_args.h"
+#include "scatter_lut_args.h"
 #include "counters.h"
 #include "raymarch_background.comp.h"
 #include "raymarch_grey.comp.h"
@@ -228,6 +229,7 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
         features |= p->layers & layers[k].layer ? layers[k].feature : 0;
     }
     features |= p->kernels ? RAYMARCH_KERNELS : 0;
+    features |= tyn_rec_extent(r, RAYMARCH_PORT_LUT).x > TYN_LUT_DEPTHS ? RAYMARCH_SOFT_SUNS : 0;
     features |= field ? RAYMARCH_FIELD : 0;
     features |= p->field != RAYMARCH_INSCATTER_SCALED ? RAYMARCH_UNSCALED : 0;
     features |= p->field == RAYMARCH_INSCATTER_SOURCE ? RAYMARCH_SOURCE : 0;

@@ -68,7 +68,7 @@ enum {
     RAYMARCH_PORT_TAU_A,    // IN optional 3D: mode COEFFICIENTS, as the one below
     RAYMARCH_PORT_TAU_P,
     RAYMARCH_PORT_LUT,         // IN optional 2D: with `kernels` and suns, as the next
-    RAYMARCH_PORT_LUT_BLOCK,   // IN buffer struct lut_block (optional without suns)
+    RAYMARCH_PORT_LUT_BLOCK,   // IN optional buffer struct lut_block
     RAYMARCH_PORT_INSCATTER,   // IN optional 3D: of merge; without it suns and emission only
     RAYMARCH_PORT_CAMERA,      // IN buffer struct camera_block
     RAYMARCH_PORT_ENVIRONMENT, // IN buffer struct env_block

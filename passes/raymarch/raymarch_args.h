@@ -22,6 +22,7 @@
 #define RAYMARCH_SINGLE (1u << 15)
 #define RAYMARCH_MULTIPLE (1u << 16)
 #define RAYMARCH_GLOW (1u << 17) // what is scattered forward comes from the texture glow
+#define RAYMARCH_SOFT_SUNS (1u << 18) // there are suns that are seen under an angle
 
 struct raymarch_args {
     float step;      // longest step, m

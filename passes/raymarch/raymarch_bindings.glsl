@@ -16,6 +16,7 @@ layout(constant_id = 2) const uint raymarch_features = 0u;
 #define BEAM_COLUMN 3
 #define SCATTER_LUT 4
 #define SCATTER_LUT_BLOCK 5
+#define SCATTER_LUT_SOFT ((raymarch_features & RAYMARCH_SOFT_SUNS) != 0u)
 layout(binding = 6) uniform sampler3D distance_tex;
 layout(binding = 7) uniform sampler3D inscatter_tex;
 layout(binding = 8, scalar) uniform shape_uniform

@@ -8,8 +8,9 @@
 enum { MAX_TERMS = 2464 };
 enum { CONES_BYTES = 4 * TYN_TMS_CONES * TYN_TMS_MAX_TERMS };
 
-static const double g_max = 0.995; // narrower lobes are replaced by this one (similarity_clamp)
-static const double g_min = 1e-3;  // below it there is no lobe worth splitting off
+static const double g_max = 0.995;     // narrower lobes are replaced by this one (similarity_clamp)
+static const double g_min = 1e-3;      // below it there is no lobe worth splitting off
+static const float least_blur = 1e-4f; // 1 - mean cosine: smaller suns are points (0.8 degrees RMS)
 
 static const tyn_port ports[SCATTER_LUT_NUM_PORTS] = {
     [SCATTER_LUT_PORT_LUT] =
@@ -86,10 +87,24 @@ static uint32_t row_terms(const struct lut_block *block, uint32_t r)
     return block->terms[r] > block->tms_terms[r] ? block->terms[r] : block->tms_terms[r];
 }
 
-// Which g the rows have; the rest of the block is zero.
-static void make_rows(const tyn_scatter_lut_params *p, struct lut_block *block)
+// Index of a value in a list, put at its end if it is not there.
+static uint32_t find(float *list, uint32_t *count, float value)
 {
-    *block = (struct lut_block){0};
+    uint32_t i = 0;
+    while (i < *count && list[i] != value) {
+        i++;
+    }
+    if (i == *count) {
+        list[(*count)++] = value;
+    }
+    return i;
+}
+
+// Which g the rows and which suns the sets have; the rest of the block is zero. Returns the number of
+// moments.
+static uint32_t make_rows(const tyn_scatter_lut_params *p, struct lut_block *block)
+{
+    *block = (struct lut_block){.num_sets = 1};
     if (p->mode == TYN_MEDIUM_COEFFICIENTS) {
         double top = fmin(fmax(p->g_max, 0.1), g_max), first = log(0.02 / 0.98);
         double step = (log(top / (1 - top)) - first) / (TYN_LUT_MAX_ROWS - 1);
@@ -103,35 +118,33 @@ static void make_rows(const tyn_scatter_lut_params *p, struct lut_block *block)
     } else {
         for (uint32_t c = 0; c < 3; c++) {
             float g = fminf(p->g[c], (float)g_max);
-            uint32_t r = 0;
-            while (r < block->num_rows && block->g[r] != g) {
-                r++;
-            }
-            if (r == block->num_rows) {
-                block->g[block->num_rows++] = g;
-            }
-            block->channel_row[c] = r;
+            block->channel_row[c] = find(block->g, &block->num_rows, g);
         }
     }
-    uint32_t first_term = 0;
-    for (uint32_t r = 0; r < block->num_rows; r++) {
-        block->terms[r] = block->g[r] > g_min ? num_terms(block->g[r]) : 0;
-        block->tms_terms[r] = p->tms ? num_tms_terms(block->g[r]) : 0;
-        block->first_term[r] = first_term;
-        first_term += row_terms(block, r);
+    for (uint32_t i = 0; i < p->num_suns; i++) {
+        float blur = 1 - p->mean_cosine[i];
+        block->sun_set[i] = find(block->blur, &block->num_sets, blur > least_blur ? blur : 0);
     }
-    block->num_terms = first_term;
+    uint32_t moments = 0;
+    for (uint32_t r = 0; r < block->num_rows; r++) {
+        bool summed = block->g[r] > g_min || block->num_sets > 1;
+        block->terms[r] = summed ? num_terms(block->g[r]) : 0;
+        block->tms_terms[r] = p->tms ? num_tms_terms(block->g[r]) : 0;
+        block->first_term[r] = moments;
+        moments += row_terms(block, r);
+    }
+    return moments;
 }
 
 // ---- moments --------------------------------------------------------------------------------------
 
-// Completes a row and writes its moments (g^l - F_l, F_l). Where g < 0 they are those of -g: the table
-// "tms" counts angles from behind there.
+// Completes a row and writes its moments (g^l - F_l, F_l). Where g < 0 they are those of -g, which are
+// the same seen from behind.
 static void make_moments(struct lut_block *block, uint32_t r, float (*out)[2])
 {
     double lobe[MAX_TERMS] = {0}, g = block->g[r], power = 1;
     uint32_t terms = row_terms(block, r);
-    if (block->terms[r] > 0) {
+    if (g > g_min) {
         block->theta_1[r] = (float)tyn_lobe_moments(g, lobe, terms);
     }
     for (uint32_t l = 0; l < terms; l++, power *= fabs(g)) {
@@ -170,11 +183,19 @@ static tyn_result declare(tyn_builder *b, const void *params)
             return TYN_ERR_PARAMS;
         }
     }
+    for (uint32_t i = 0; i < p->num_suns; i++) {
+        if (i >= TYN_LUT_MAX_SUNS || !(p->mean_cosine[i] > 0 && p->mean_cosine[i] <= 1)) {
+            tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                          "scatter_lut: %u suns, at most %d with mean cosines in (0, 1]",
+                          p->num_suns, TYN_LUT_MAX_SUNS);
+            return TYN_ERR_PARAMS;
+        }
+    }
     struct lut_block block;
-    make_rows(p, &block);
-    uint64_t bytes = block.num_terms * 2ull * sizeof(float);
-    tyn_build_image(b, SCATTER_LUT_PORT_LUT,
-                    (tyn_extent){TYN_LUT_DEPTHS, TYN_LUT_ANGLES * block.num_rows, 1}, 1);
+    uint64_t bytes = make_rows(p, &block) * 2ull * sizeof(float);
+    tyn_build_image(
+        b, SCATTER_LUT_PORT_LUT,
+        (tyn_extent){TYN_LUT_DEPTHS * block.num_sets, TYN_LUT_ANGLES * block.num_rows, 1}, 1);
     tyn_build_buffer(b, SCATTER_LUT_PORT_LUT_BLOCK, sizeof(block));
     tyn_build_buffer(b, SCATTER_LUT_PORT_MOMENTS, bytes > 0 ? bytes : 8);
     if (p->tms) {
@@ -191,8 +212,10 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_scatter_lut_params *p = params;
     struct lut_block block;
     make_rows(p, &block);
+    double terms_of_lut = 0;
     for (uint32_t row = 0; row < block.num_rows; row++) {
         uint32_t terms = row_terms(&block, row);
+        terms_of_lut += block.terms[row] * block.num_sets;
         if (terms > 0) {
             float moments[MAX_TERMS][2];
             make_moments(&block, row, moments);
@@ -201,13 +224,15 @@ static void record(tyn_recorder *r, const void *params)
         }
     }
     tyn_rec_update(r, SCATTER_LUT_PORT_LUT_BLOCK, 0, &block, sizeof(block));
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = KERNEL_SUM,
-                            .cells = {TYN_LUT_ANGLES / 4, TYN_LUT_DEPTHS, block.num_rows},
-                        });
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){
+               .kernel = KERNEL_SUM,
+               .cells = {TYN_LUT_ANGLES / 4, TYN_LUT_DEPTHS * block.num_sets, block.num_rows},
+           });
     // Per term and texel: the recurrence (5), the sums (4).
-    double texel_terms = (double)block.num_terms * TYN_LUT_ANGLES * TYN_LUT_DEPTHS;
-    double flops = 9 * texel_terms, bytes = 8.0 * TYN_LUT_ANGLES * TYN_LUT_DEPTHS * block.num_rows;
+    double texel_terms = terms_of_lut * TYN_LUT_ANGLES * TYN_LUT_DEPTHS;
+    double flops = 9 * texel_terms,
+           bytes = 8.0 * TYN_LUT_ANGLES * TYN_LUT_DEPTHS * block.num_rows * block.num_sets;
     if (p->tms) {
         float cones[TYN_TMS_CONES][TYN_TMS_MAX_TERMS];
         make_cones(cones);
@@ -234,7 +259,7 @@ const tyn_pass_desc tyn_pass_scatter_lut = {
     .num_ports = SCATTER_LUT_NUM_PORTS,
     .kernels = kernels,
     .num_kernels = NUM_KERNELS,
-    .media_only = true,
+    .media_only = true, // and on the sizes of suns, which change as seldom
     .params_size = sizeof(tyn_scatter_lut_params),
     .declare = declare,
     .record = record,

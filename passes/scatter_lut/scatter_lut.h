@@ -5,10 +5,12 @@
 #include "scatter_lut_args.h"
 
 typedef struct tyn_scatter_lut_params {
-    uint32_t mode; // TYN_MEDIUM_*
-    float g[3];    // DENSITY: of the colour channels, in (-1, 1)
-    float g_max;   // COEFFICIENTS: largest g of any medium
-    uint32_t tms;  // 1: also make `tms`
+    uint32_t mode;                       // TYN_MEDIUM_*
+    float g[3];                          // DENSITY: of the colour channels, in (-1, 1)
+    float g_max;                         // COEFFICIENTS: largest g of any medium
+    uint32_t tms;                        // 1: also make `tms`
+    uint32_t num_suns;                   // 0..4
+    float mean_cosine[TYN_LUT_MAX_SUNS]; // of the suns' discs, light_block.mean_cosine, in (0, 1]
 } tyn_scatter_lut_params;
 
 enum {

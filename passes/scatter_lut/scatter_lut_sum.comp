@@ -5,7 +5,7 @@
 #include "scatter_lut_map.glsl"
 
 const uint THREADS = TYN_LUT_ANGLES / 4, CHUNK = TYN_LUT_ANGLES;
-layout(local_size_x = TYN_LUT_ANGLES / 4) in; // x: four angles, y: depth, z: row
+layout(local_size_x = TYN_LUT_ANGLES / 4) in; // x: four angles, y: depth of a set, z: row
 layout(set = 0, binding = 0, scalar) readonly buffer lut_buffer
 {
     lut_block lut;
@@ -27,7 +27,7 @@ float lost(float x)
     return abs(x) < 0.05 ? x * (1.0 - x * (0.5 - x / 6.0 * (1.0 - 0.25 * x))) : 1.0 - exp(-x);
 }
 
-// (2l+1)/(4 pi) (e^{-tau (1 - F_l)} - e^-tau) / (f (1 - e^-tau) e^{-tau (1 - f)}), F_l = moment; its
+// Points: (2l+1)/(4 pi) (e^{-tau (1 - F_l)} - e^-tau) / (f (1 - e^-tau) e^{-tau (1 - f)}), F_l = moment; its
 // limit at tau = 0. F_l may be negative, but no exponent here is ever large.
 float coefficient(float l, float moment, float f, float tau)
 {
@@ -38,13 +38,21 @@ float coefficient(float l, float moment, float f, float tau)
     return (2.0 * l + 1.0) / (4.0 * PI * f) * scattered;
 }
 
+// Suns that are seen under an angle: (2l+1)/(4 pi) a^{l (l+1) / 2} e^{tau (F_l - f)}.
+float blurred_coefficient(float l, float moment, float f, float tau, float blur)
+{
+    float spot = 0.5 * l * (l + 1.0) * log(1.0 - blur);
+    return (2.0 * l + 1.0) / (4.0 * PI) * exp(spot + tau * (moment - f));
+}
+
 void main()
 {
     uint thread = gl_LocalInvocationID.x, row = gl_WorkGroupID.z;
     float g = lut.g[row];
     float f = lut.theta_1[row] > 0.0 ? g * g : 0.0;
-    float tau = lut_depth(gl_WorkGroupID.y, f);
-    uint terms = f > 0.0 ? lut.terms[row] : 0u;
+    float tau = lut_depth(gl_WorkGroupID.y % TYN_LUT_DEPTHS, f);
+    float blur = lut.blur[gl_WorkGroupID.y / TYN_LUT_DEPTHS];
+    uint terms = f > 0.0 || blur > 0.0 ? lut.terms[row] : 0u;
 
     // The recurrence (l+1) P_{l+1} = (2l+1) x P_l - l P_{l-1} loses all digits near x = 1 for l in the
     // thousands, where dP_l/dx = l (l+1) / 2. In y = 1 - x, which is known to full relative precision,
@@ -67,7 +75,10 @@ void main()
             chunk[i] = vec4(0.0);
             if (l < terms) {
                 vec2 moment = moments[lut.first_term[row] + l];
-                chunk[i] = vec4(moment * coefficient(float(l), moment.y, f, tau),
+                float factor = blur > 0.0 ? blurred_coefficient(float(l), moment.y, f, tau, blur)
+                                          : coefficient(float(l), moment.y, f, tau);
+                factor *= g < 0.0 && (l & 1u) != 0u ? -1.0 : 1.0; // moments of -g
+                chunk[i] = vec4(moment * factor,
                                 vec2(float(l), float(2u * l + 1u)) / float(l + 1u));
             }
         }

@@ -49,6 +49,7 @@ static void make_cube(march_scene *s, float sigma_s, float sigma_a, float g)
         s->density.size[i] = s->distance.size[i] = s->column.size[i] = 1;
         s->inscatter.size[i] = 3;
         s->light.color[i] = 1.0f;
+        s->light.mean_cosine = 1.0f;
         s->shape.rows[i][i] = 1.0f;
         s->shape.rows[i][3] = -0.5f;
     }
@@ -58,7 +59,7 @@ static void make_cube(march_scene *s, float sigma_s, float sigma_a, float g)
     s->density.channels = s->distance.channels = s->column.channels = 1;
     s->inscatter.channels = 4;
     s->density.texels[0] = s->column.texels[0] = 1.0f;
-    s->lut.num_rows = 1;
+    s->lut.num_rows = s->lut.num_sets = 1;
     s->lut.g[0] = g;
     s->lut.theta_1[0] = 0.4f;
     s->sums[0] = -1.5f;
@@ -140,12 +141,14 @@ static void run(gpu_test *t, march_scene *s)
         [RAYMARCH_PORT_LIGHTS] = gpu_buffer(t, "lights", &s->light, sizeof s->light),
         [RAYMARCH_PORT_BEAMS] = gpu_buffer(t, "beams", &s->beam, sizeof s->beam),
         [RAYMARCH_PORT_COLUMN] = upload(t, "column", &s->column),
-        [RAYMARCH_PORT_LUT] =
-            gpu_image(t, "lut", TYN_IMAGE_2D, (tyn_extent){2, 2, 1}, 2, table->texels),
-        [RAYMARCH_PORT_LUT_BLOCK] = gpu_buffer(t, "lut_block", &s->lut, sizeof s->lut),
         [RAYMARCH_PORT_CAMERA] = gpu_buffer(t, "camera", &s->camera, sizeof s->camera),
         [RAYMARCH_PORT_ENVIRONMENT] = gpu_buffer(t, "environment", &s->env, sizeof s->env),
     };
+    if (s->params.kernels) {
+        refs[RAYMARCH_PORT_LUT] =
+            gpu_image(t, "lut", TYN_IMAGE_2D, (tyn_extent){2, 2, 1}, 2, table->texels);
+        refs[RAYMARCH_PORT_LUT_BLOCK] = gpu_buffer(t, "lut_block", &s->lut, sizeof s->lut);
+    }
     if (s->inscatter.texels[0] > 0) {
         refs[RAYMARCH_PORT_INSCATTER] = upload(t, "inscatter", &s->inscatter);
     }

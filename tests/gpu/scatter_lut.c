@@ -95,6 +95,8 @@ typedef struct point {
     float tau, theta, g;
     uint32_t channel;
     float tau_p;
+    uint32_t sun;
+    float cosine;
 } point;
 
 static const float (*evaluate(gpu_test *t, const tyn_scatter_lut_params *lut_params,
@@ -133,7 +135,7 @@ static void scatter_points(point *points, uint32_t channel, double g, double dee
     for (int i = 0; i < COUNT; i++) {
         double tau = expm1(random_unit(seed) * log1p(4 * depth_max)) / 4;
         double theta = width * expm1(random_unit(seed) * log1p(PI / width));
-        points[i] = (point){(float)tau, (float)fmin(theta, PI), 0, channel, 0};
+        points[i] = (point){(float)tau, (float)fmin(theta, PI), 0, channel, 0, 0, 1};
     }
 }
 
@@ -171,8 +173,8 @@ static void rows_of_channels(void **state)
     static series s;
     uint32_t seed = 7;
     for (size_t n = 0; n < sizeof sets / sizeof *sets; n++) {
-        tyn_scatter_lut_params params = {
-            TYN_MEDIUM_DENSITY, {sets[n][0], sets[n][1], sets[n][2]}, 0};
+        tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY,
+                                         .g = {sets[n][0], sets[n][1], sets[n][2]}};
         for (uint32_t c = 0; c < 3; c++) {
             scatter_points(points + c * COUNT, c, sets[n][c], 20, &seed);
         }
@@ -193,9 +195,9 @@ static void single_scattering(void **state)
     point points[200];
     static const float g[3] = {0.9f, -0.7f, 0.999f};
     for (int i = 0; i < 200; i++) {
-        points[i] = (point){0, (float)(PI * pow(i / 199.0, 3)), 0, (uint32_t)i % 3, 0};
+        points[i] = (point){0, (float)(PI * pow(i / 199.0, 3)), 0, (uint32_t)i % 3, 0, 0, 1};
     }
-    tyn_scatter_lut_params params = {TYN_MEDIUM_DENSITY, {g[0], g[1], g[2]}, 0};
+    tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY, .g = {g[0], g[1], g[2]}};
     const float(*got)[2] = evaluate(t, &params, points, 200, 0);
     for (int i = 0; i < 200; i++) {
         double p = phase(fmin(g[i % 3], 0.995), points[i].theta);
@@ -212,10 +214,10 @@ static void sums_over_directions(void **state)
     static point points[DEPTHS * ANGLES];
     const double g = 0.8, f = g * g, taus[DEPTHS] = {0.01, 0.5, 3, 30, 80};
     for (int i = 0; i < DEPTHS * ANGLES; i++) {
-        points[i] =
-            (point){(float)taus[i / ANGLES], (float)(PI * (i % ANGLES + 0.5) / ANGLES), 0, 0, 0};
+        points[i] = (point){
+            (float)taus[i / ANGLES], (float)(PI * (i % ANGLES + 0.5) / ANGLES), 0, 0, 0, 0, 1};
     }
-    tyn_scatter_lut_params params = {TYN_MEDIUM_DENSITY, {0.8f, 0.8f, 0.8f}, 0};
+    tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY, .g = {0.8f, 0.8f, 0.8f}};
     const float(*got)[2] = evaluate(t, &params, points, DEPTHS * ANGLES, 0);
     for (int d = 0; d < DEPTHS; d++) {
         double sum[2] = {0, 0};
@@ -241,7 +243,7 @@ static void spread_rows(void **state)
     static point points[COUNT];
     static series s;
     uint32_t seed = 3;
-    tyn_scatter_lut_params params = {TYN_MEDIUM_COEFFICIENTS, {0, 0, 0}, 0.95f};
+    tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_COEFFICIENTS, .g_max = 0.95f};
     for (size_t n = 0; n < sizeof gs / sizeof *gs; n++) {
         scatter_points(points, 0, gs[n], 6, &seed);
         for (int i = 0; i < COUNT; i++) {
@@ -254,12 +256,185 @@ static void spread_rows(void **state)
     }
 }
 
+// ---- suns that are seen under an angle ------------------------------------------------------------
+
+enum { FINE = 4000, SUN_ANGLES = 16, SUN_DEPTHS = 4 };
+
+// K_tms + K_lobe of a point sun, for interpolation: even in theta^(1/2).
+static void fine_kernel(const series *s, double tau, double *out)
+{
+    for (int i = 0; i <= FINE; i++) {
+        double k[2], root = (double)i / FINE;
+        series_kernels(s, tau, PI * root * root, k);
+        out[i] = k[0] + k[1];
+    }
+}
+
+static double at_angle(const double *fine, double cosine)
+{
+    double x = sqrt(acos(fmin(fmax(cosine, -1), 1)) / PI) * FINE;
+    int i = x < FINE - 1 ? (int)x : FINE - 1;
+    return fine[i] + (x - i) * (fine[i + 1] - fine[i]);
+}
+
+// The heat kernel on the sphere: the n-fold convolution of small discs, n large.
+static double spot(double a, double c)
+{
+    double sum = 0, before = 1, p = c;
+    for (int l = 0; l < 1200; l++) {
+        sum += (2 * l + 1) / (4 * PI) * pow(a, 0.5 * l * (l + 1)) * before;
+        double next = ((2 * l + 3) * c * p - (l + 1) * before) / (l + 2);
+        before = p;
+        p = next;
+    }
+    return sum;
+}
+
+// Mean over a sun around the direction `theta` away: the soft spot of mean cosine a, or an even disc.
+static double over_sun(const double *fine, double theta, double a, bool disc)
+{
+    enum { RINGS = 100, SPOKES = 100 };
+    static double of_a, weight[RINGS], cosine[RINGS];
+    double sum = 0;
+    if (of_a != a) {
+        of_a = a;
+        for (int r = 0; r < RINGS; r++) { // out to seven standard deviations
+            double u = (r + 0.5) / RINGS, s = u * 14 * sqrt(0.5 * (1 - a));
+            cosine[r] = cos(fmin(s, PI));
+            weight[r] =
+                s < PI ? spot(a, cosine[r]) * 2 * PI * sin(s) * 14 * sqrt(0.5 * (1 - a)) / RINGS
+                       : 0;
+        }
+    }
+    for (int r = 0; r < RINGS; r++) {
+        double c = disc ? 1 - 2 * (1 - a) * (r + 0.5) / RINGS : cosine[r];
+        double w = disc ? 1.0 / RINGS : weight[r];
+        for (int k = 0; k < SPOKES; k++) {
+            double phi = PI * (k + 0.5) / SPOKES;
+            sum += w / SPOKES *
+                   at_angle(fine, cos(theta) * c + sin(theta) * sqrt(1 - c * c) * cos(phi));
+        }
+    }
+    return sum;
+}
+
+static void suns_of_finite_size(void **state)
+{
+    gpu_test *t = *state;
+    enum { SUNS = 3, PER_ROW = SUN_DEPTHS * SUN_ANGLES };
+    static const float g[3] = {0.9f, 0.6f, -0.5f};
+    static const double a[SUNS] = {0.995, 0.98, 0.9999945};
+    static const double taus[SUN_DEPTHS] = {0, 0.7, 3, 10};
+    static point points[SUNS * 3 * PER_ROW];
+    static series s[3];
+    static double fine[FINE + 1];
+    tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY,
+                                     .g = {g[0], g[1], g[2]},
+                                     .num_suns = SUNS,
+                                     .mean_cosine = {(float)a[0], (float)a[1], (float)a[2]}};
+    for (int i = 0; i < SUNS * 3 * PER_ROW; i++) {
+        uint32_t sun = (uint32_t)(i / (3 * PER_ROW)), channel = (uint32_t)(i / PER_ROW % 3);
+        double root = (i % SUN_ANGLES + 0.3) / SUN_ANGLES;
+        points[i] = (point){.tau = (float)taus[i / SUN_ANGLES % SUN_DEPTHS],
+                            .theta = (float)(PI * root * root),
+                            .channel = channel,
+                            .sun = sun};
+    }
+    const float(*got)[2] = evaluate(t, &params, points, SUNS * 3 * PER_ROW, 0);
+    for (int sun = 0; sun < SUNS; sun++) {
+        for (int c = 0; c < 3; c++) {
+            series_make(&s[c], g[c]);
+            double worst = 0, worst_disc = 0;
+            for (int d = 0; d < SUN_DEPTHS; d++) {
+                fine_kernel(&s[c], taus[d], fine);
+                for (int k = 0; k < SUN_ANGLES; k++) {
+                    int i = (sun * 3 + c) * PER_ROW + d * SUN_ANGLES + k;
+                    double sum = got[i][0] + got[i][1];
+                    double expected = over_sun(fine, points[i].theta, a[sun], false);
+                    double disc = over_sun(fine, points[i].theta, a[sun], true);
+                    worst = fmax(worst, fabs(sum - expected) / expected);
+                    worst_disc = fmax(worst_disc, fabs(sum - disc) / disc);
+                    assert_true(got[i][0] >= 0 && got[i][1] >= 0);
+                }
+            }
+            printf("sun of mean cosine %.4f, g %4.1f: within %.2f %%; of an even disc %.1f %%\n",
+                   a[sun], g[c], 100 * worst, 100 * worst_disc);
+            assert_true(worst < 0.01);
+        }
+    }
+}
+
+// The parts of a sun of finite size hold what those of a point hold.
+static void sums_with_a_sun(void **state)
+{
+    gpu_test *t = *state;
+    enum { DEPTHS = 4, ANGLES = 4000 };
+    static point points[DEPTHS * ANGLES];
+    const double g = 0.8, f = g * g, taus[DEPTHS] = {0, 0.5, 3, 30};
+    for (int i = 0; i < DEPTHS * ANGLES; i++) {
+        points[i] = (point){.tau = (float)taus[i / ANGLES],
+                            .theta = (float)(PI * (i % ANGLES + 0.5) / ANGLES),
+                            .sun = 1};
+    }
+    tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY,
+                                     .g = {0.8f, 0.8f, 0.8f},
+                                     .num_suns = 2,
+                                     .mean_cosine = {1, 0.95f}};
+    const float(*got)[2] = evaluate(t, &params, points, DEPTHS * ANGLES, 0);
+    for (int d = 0; d < DEPTHS; d++) {
+        double sum[2] = {0, 0};
+        for (int i = d * ANGLES; i < (d + 1) * ANGLES; i++) {
+            for (int part = 0; part < 2; part++) {
+                sum[part] += 2 * PI * got[i][part] * sin(points[i].theta) * PI / ANGLES;
+            }
+        }
+        double beam = exp(-taus[d] * (1 - f));
+        assert_true(fabs(sum[1] / beam - f) < 0.003);
+        assert_true(fabs(sum[0] / beam - (1 - f)) < 0.003);
+    }
+}
+
+// The same in tables for varying g, between their rows.
+static void spread_rows_with_a_sun(void **state)
+{
+    gpu_test *t = *state;
+    static const double gs[] = {-0.4, 0.5, 0.9}, taus[SUN_DEPTHS] = {0, 0.7, 3, 10};
+    const double a = 0.995;
+    static point points[SUN_DEPTHS * SUN_ANGLES];
+    static series s;
+    static double fine[FINE + 1];
+    tyn_scatter_lut_params params = {
+        .mode = TYN_MEDIUM_COEFFICIENTS, .g_max = 0.95f, .num_suns = 1, .mean_cosine = {(float)a}};
+    for (size_t n = 0; n < sizeof gs / sizeof *gs; n++) {
+        series_make(&s, gs[n]);
+        for (int i = 0; i < SUN_DEPTHS * SUN_ANGLES; i++) {
+            double root = (i % SUN_ANGLES + 0.3) / SUN_ANGLES, tau = taus[i / SUN_ANGLES];
+            points[i] = (point){.tau = (float)tau,
+                                .theta = (float)(PI * root * root),
+                                .g = (float)gs[n],
+                                .tau_p = (float)(tau * (1 - s.f)),
+                                .cosine = (float)a};
+        }
+        const float(*got)[2] = evaluate(t, &params, points, SUN_DEPTHS * SUN_ANGLES, 1);
+        double worst = 0;
+        for (int i = 0; i < SUN_DEPTHS * SUN_ANGLES; i++) {
+            if (i % SUN_ANGLES == 0) {
+                fine_kernel(&s, taus[i / SUN_ANGLES], fine);
+            }
+            double expected = over_sun(fine, points[i].theta, a, false);
+            worst = fmax(worst, fabs(got[i][0] + got[i][1] - expected) / expected);
+        }
+        printf("spread, sun of mean cosine %.3f, g %4.1f: within %.2f %%\n", a, gs[n], 100 * worst);
+        assert_true(worst < 0.03);
+    }
+}
+
 static void refuses_bad_g(void **state)
 {
     gpu_test *t = *state;
     static const float bad[] = {1, -1, 2, NAN, INFINITY};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        tyn_scatter_lut_params params = {TYN_MEDIUM_DENSITY, {0.5f, bad[i], 0.5f}, 0};
+        tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY, .g = {0.5f, bad[i], 0.5f}};
         tyn_ref refs[SCATTER_LUT_NUM_PORTS] = {{0}};
         t->quiet = true;
         tyn_graph_begin(t->graph);
@@ -272,9 +447,10 @@ static void refuses_bad_g(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rows_of_channels),     cmocka_unit_test(single_scattering),
-        cmocka_unit_test(sums_over_directions), cmocka_unit_test(spread_rows),
-        cmocka_unit_test(refuses_bad_g),
+        cmocka_unit_test(rows_of_channels),       cmocka_unit_test(single_scattering),
+        cmocka_unit_test(sums_over_directions),   cmocka_unit_test(spread_rows),
+        cmocka_unit_test(suns_of_finite_size),    cmocka_unit_test(sums_with_a_sun),
+        cmocka_unit_test(spread_rows_with_a_sun), cmocka_unit_test(refuses_bad_g),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

@@ -4,6 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #define SCATTER_LUT 0
 #define SCATTER_LUT_BLOCK 1
+#define SCATTER_LUT_SOFT true
 #include "scatter_lut.glsl"
 
 layout(local_size_x = 64) in;
@@ -12,6 +13,8 @@ struct point {
     float tau, theta, g; // g and tau_p: mixed only
     uint channel;
     float tau_p;
+    uint sun;
+    float cosine; // mixed only
 };
 layout(set = 0, binding = 2, scalar) readonly buffer points_buffer { point points[]; };
 layout(set = 0, binding = 3, scalar) writeonly buffer results_buffer { vec2 results[]; };
@@ -24,6 +27,10 @@ void main()
     }
     point p = points[i];
     vec3 light = vec3(0.0, 0.0, 1.0), view = vec3(sin(p.theta), 0.0, cos(p.theta));
-    results[i] = mixed == 0u ? scatter_kernels(scatter_angle_of(p.channel, view, light), p.tau)
-                             : scatter_kernels_mixed(view, light, p.g, p.tau, p.tau_p);
+    vec3 turn = view - light;
+    float one_minus_mu = 0.5 * dot(turn, turn);
+    results[i] =
+        mixed == 0u
+            ? scatter_kernels(scatter_angle_of(p.sun, p.channel, one_minus_mu), p.tau)
+            : scatter_kernels_mixed(p.sun, p.cosine, one_minus_mu, p.g, p.tau, p.tau_p);
 }

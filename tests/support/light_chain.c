@@ -54,6 +54,7 @@ void light_chain_run(gpu_test *t, light_chain *c)
         medium.sigma_t_max = fmaxf(medium.sigma_t_max, c->sigma_s[a] + c->sigma_a[a]);
         env.mean[a] = env.radiance[a] = env.sky[a] = c->environment[a];
         for (uint32_t s = 0; s < c->num_suns; s++) {
+            lights[s].mean_cosine = 1;
             lights[s].color[a] = c->sun_color[s][a];
             lights[s].direction[a] = c->sun_direction[s][a];
         }
