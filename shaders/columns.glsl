@@ -1,5 +1,5 @@
 // columns.glsl -- optical depth along the principal ordinates, from where their light enters the
-// medium's box to the centres of the lattice's cells.
+// medium's box to the lattice's cells.
 //
 // Include after medium.glsl, and define COLUMNS_BUFFER, the binding of the storage buffer "columns".
 //
@@ -30,11 +30,17 @@ uint columns_stride(uvec3 dims)
     return dims.z * dims.y * ((dims.x + 1u) / 2u);
 }
 
-float columns_value(uint word, uint x)
+// Of both cells of a word.
+vec2 columns_pair(uint word)
 {
     vec2 roots = unpackHalf2x16(columns_words[word]);
-    float root = (x & 1u) != 0u ? roots.y : roots.x;
-    return root * root;
+    return roots * roots;
+}
+
+float columns_value(uint word, uint x)
+{
+    vec2 pair = columns_pair(word);
+    return (x & 1u) != 0u ? pair.y : pair.x;
 }
 
 vec3 columns_value3(uint word, uint stride, uint x)

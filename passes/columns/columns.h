@@ -1,5 +1,5 @@
 // columns.h -- optical depth along the principal ordinates, from where their light enters the medium's
-// box to the centres of the lattice's cells.
+// box to the cells of the lattice: along the ray to a cell's centre, with the mean length over the cell.
 #pragma once
 #include <tyndall/pass.h>
 #include "scene_args.h"

@@ -3,8 +3,8 @@
 //
 // A cell's ray lies between four columns, so the depth is interpolated between theirs. Where neighbouring
 // rays enter the box through different faces the depth has a kink: there the columns have, together, not
-// gone as far through the box as the ray. What they lack is the medium at the ray's entry times that
-// distance; without it the edges of a box of medium would show.
+// gone as far through the box as the rays to the cell. What they lack is the medium at the ray's entry
+// times that distance; without it the edges of a box of medium would show.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -58,6 +58,14 @@ ivec2 wrapped(ivec2 x, int n)
     return x - n * ivec2(floor((vec2(x) + 0.5) / float(n)));
 }
 
+// The part of a cell that is in the box, along an axis: its middle, and a quarter of its width.
+void part_of_cell(vec2 cell, float low, int size, out vec2 middle, out vec2 quarter)
+{
+    vec2 from = max(cell, low), to = min(cell + 1.0, float(size) - low);
+    middle = 0.5 * (from + to);
+    quarter = 0.25 * (to - from);
+}
+
 // Square roots, for the range of halves; rounded here to what a half holds, as packing may truncate.
 vec2 encoded(vec2 x)
 {
@@ -93,7 +101,9 @@ void main()
     ivec2 m = wrapped(-ivec2(offset_v), grid.count.y);
     vec2 u0_inside = (u0 - grid.low.x) * grid.per_cell.x;
     vec2 u1_inside = u0_inside + grid.per_cell.x;
-    vec2 u_inside = (vec2(u) + 0.5 - grid.low.x) * grid.per_cell.x;
+    vec2 middle_u, middle_w, quarter_u, quarter_w, middle_v, quarter_v;
+    part_of_cell(vec2(u), grid.low.x, grid.size.x, middle_u, quarter_u);
+    part_of_cell(vec2(slice), grid.front + 0.5, grid.size.z, middle_w, quarter_w);
 
     uint base = local * args.stride + component * (args.stride / num_components);
     ivec2 first = int(base) + slice * (grid.count.x * grid.count.y);
@@ -117,8 +127,15 @@ void main()
         vec2 here_inside = mix(columns_inside(grid, u0_inside, along_v, vec2(slice)),
                                columns_inside(grid, u1_inside, along_v, vec2(slice)), t_u);
         if (v > 0) {
-            vec2 v_inside = vec2((float(v) - 0.5 - grid.low.y) * grid.per_cell.y);
-            vec2 inside = columns_inside(grid, u_inside, v_inside, vec2(slice));
+            part_of_cell(vec2(v - 1), grid.low.y, grid.size.y, middle_v, quarter_v);
+            vec2 inside = vec2(0.0);
+            for (int i = 0; i < 8; i++) { // octants of the cell
+                vec3 at = mix(vec3(-1.0), vec3(1.0), notEqual(ivec3(i) & ivec3(1, 2, 4), ivec3(0)));
+                vec2 along_u = (middle_u + at.x * quarter_u - grid.low.x) * grid.per_cell.x;
+                vec2 along_v = (middle_v + at.y * quarter_v - grid.low.y) * grid.per_cell.y;
+                inside += 0.125 * columns_inside(grid, along_u, along_v,
+                                                 middle_w + at.z * quarter_w - 0.5);
+            }
             vec2 lacking = inside - mix(before_inside, here_inside, t_v);
             vec2 sum = mix(before, here, t_v);
             int steps = any(greaterThan(abs(lacking), 1e-4 * inside)) ? 1 : 0;
