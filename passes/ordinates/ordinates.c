@@ -3,6 +3,8 @@
 #include "ordinates_args.h"
 #include "sky_args.h"
 #include "ordinates_columns.comp.h"
+#include "ordinates_fold.comp.h"
+#include "ordinates_gather.comp.h"
 #include "ordinates_partition.comp.h"
 #include "ordinates_rows.comp.h"
 #include <stddef.h>
@@ -19,6 +21,10 @@ static const tyn_port ports[ORDINATES_NUM_PORTS] = {
                                   "struct ordinates_block"},
     [ORDINATES_PORT_WEIGHTS] = {"weights", TYN_SCRATCH, TYN_BUFFER, 0, false,
                                 "sums of luminance x importance over rectangles"},
+    [ORDINATES_PORT_REGIONS] = {"regions", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                                "their corners on the map"},
+    [ORDINATES_PORT_PIECES] = {"pieces", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                               "what comes from them before folding"},
 };
 
 static const tyn_binding rows_bindings[] = {
@@ -34,10 +40,21 @@ static const tyn_binding partition_bindings[] = {
     {ORDINATES_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
     {ORDINATES_PORT_SUMS, TYN_USE_STORAGE_READ},
     {ORDINATES_PORT_WEIGHTS, TYN_USE_STORAGE_READ},
+    {ORDINATES_PORT_REGIONS, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding gather_bindings[] = {
+    {ORDINATES_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {ORDINATES_PORT_SUMS, TYN_USE_STORAGE_READ},
+    {ORDINATES_PORT_REGIONS, TYN_USE_STORAGE_READ},
+    {ORDINATES_PORT_PIECES, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding fold_bindings[] = {
+    {ORDINATES_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {ORDINATES_PORT_PIECES, TYN_USE_STORAGE_READ},
     {ORDINATES_PORT_ORDINATES, TYN_USE_STORAGE_WRITE},
 };
 
-enum { KERNEL_ROWS, KERNEL_COLUMNS, KERNEL_PARTITION, NUM_KERNELS };
+enum { KERNEL_ROWS, KERNEL_COLUMNS, KERNEL_PARTITION, KERNEL_GATHER, KERNEL_FOLD, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_ROWS] = {"rows",
@@ -64,6 +81,22 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                           partition_bindings,
                           4,
                           0},
+    [KERNEL_GATHER] = {"gather",
+                       ordinates_gather_spirv,
+                       sizeof ordinates_gather_spirv,
+                       sizeof(struct ordinates_args),
+                       {64, 1, 1},
+                       gather_bindings,
+                       4,
+                       0},
+    [KERNEL_FOLD] = {"fold",
+                     ordinates_fold_spirv,
+                     sizeof ordinates_fold_spirv,
+                     sizeof(struct ordinates_args),
+                     {TYN_ORDINATES_MAX, 1, 1},
+                     fold_bindings,
+                     3,
+                     0},
 };
 
 static const tyn_param params_table[] = {
@@ -83,6 +116,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
 {
     (void)params;
     tyn_build_buffer(b, ORDINATES_PORT_ORDINATES, sizeof(struct ordinates_block));
+    tyn_build_buffer(b, ORDINATES_PORT_REGIONS, 4 * sizeof(float) * TYN_ORDINATES_MAX);
+    tyn_build_buffer(b, ORDINATES_PORT_PIECES, sizeof(struct ordinates_piece) * TYN_ORDINATES_MAX);
     if (tyn_build_has(b, ORDINATES_PORT_IMPORTANCE)) {
         tyn_build_buffer(b, ORDINATES_PORT_WEIGHTS,
                          sizeof(float) * (SKY_SUMS_WIDTH + 1) * (SKY_SUMS_HEIGHT + 1));
@@ -111,9 +146,11 @@ static void record(tyn_recorder *r, const void *params)
         tyn_rec_dispatch(
             r, &(tyn_dispatch){.kernel = KERNEL_COLUMNS, .cells = {SKY_SUMS_WIDTH + 1, 1, 1}});
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_PARTITION,
-                                        .cells = {TYN_ORDINATES_MAX, 1, 1},
-                                        .args = &args});
+    for (uint32_t kernel = KERNEL_PARTITION; kernel <= KERNEL_FOLD; kernel++) {
+        tyn_rec_dispatch(
+            r,
+            &(tyn_dispatch){.kernel = kernel, .cells = {TYN_ORDINATES_MAX, 1, 1}, .args = &args});
+    }
     tyn_rec_work(r, "ordinates", args.regions + args.num_fixed);
 }
 

@@ -11,12 +11,12 @@
 enum { ORDINATES_MAX_FIXED = 68 };
 
 typedef struct tyn_ordinates_params {
-    int32_t count;      // regions, 1..256; fewer if they and the fixed ones would be more than 256
-    uint32_t split;     // 1: the mean of the sky (env_block.sky) is not in them
-    float fold;         // ordinates below this part of all light are folded into a neighbour
-    float spread;       // see ordinates_args.h
+    int32_t count;       // regions, 1..256; fewer if they and the fixed ones would be more than 256
+    uint32_t split;      // 1: the mean of the sky (env_block.sky) is not in them
+    float fold;          // ordinates below this part of all light are folded into a neighbour
+    float spread;        // see ordinates_args.h
     uint32_t importance; // 1: the method weights directions with their importance for the picture
-    uint32_t num_fixed; // set by the method: ready-made ordinates that come first
+    uint32_t num_fixed;  // set by the method: ready-made ordinates that come first
     struct ordinate fixed[ORDINATES_MAX_FIXED];
 } tyn_ordinates_params;
 
@@ -27,6 +27,8 @@ enum {
     ORDINATES_PORT_IMPORTANCE,  // IN optional 2D, frame M, mean 1
     ORDINATES_PORT_ORDINATES,   // OUT buffer struct ordinates_block
     ORDINATES_PORT_WEIGHTS,     // SCRATCH buffer float[]: sums of luminance x importance
+    ORDINATES_PORT_REGIONS,     // SCRATCH buffer vec4[TYN_ORDINATES_MAX]: corners on the map
+    ORDINATES_PORT_PIECES,      // SCRATCH buffer struct ordinates_piece[TYN_ORDINATES_MAX]
     ORDINATES_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_ordinates;

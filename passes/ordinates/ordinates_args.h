@@ -13,4 +13,12 @@ struct ordinates_args {
 };
 TYN_ASSERT_SIZE(ordinates_args, 24);
 
+struct ordinates_piece { // what comes from a region, before folding
+    tyn_vec3 light;      // W/m^2
+    float size;          // luminance of its absolute value
+    tyn_vec3 moment;     // integral of luminance times direction, map frame
+    float solid_angle;
+};
+TYN_ASSERT_SIZE(ordinates_piece, 32);
+
 #endif

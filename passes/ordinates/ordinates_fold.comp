@@ -1,0 +1,123 @@
+// ordinates_fold.comp -- the list of ordinates: those with next to no light are folded into others.
+//
+// One workgroup. The light of a folded ordinate goes to the nearest one that is kept, whose direction
+// and size become the means, weighted with light.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "scene_args.h"
+#include "ordinate_args.h"
+#include "ordinates_args.h"
+#include "sky.glsl"
+
+layout(local_size_x = TYN_ORDINATES_MAX) in;
+layout(push_constant, scalar) uniform arguments
+{
+    ordinates_args args;
+};
+layout(binding = 0, scalar) uniform environment_uniform
+{
+    env_block environment;
+};
+layout(binding = 1, scalar) readonly buffer pieces_buffer
+{
+    ordinates_piece pieces[];
+};
+layout(binding = 2, scalar) writeonly buffer ordinates_buffer
+{
+    uint count, folded, num_fixed, pad;
+    ordinate list[];
+};
+
+shared float sizes[TYN_ORDINATES_MAX]; // of their light
+shared vec3 directions[TYN_ORDINATES_MAX];
+shared uint heirs[TYN_ORDINATES_MAX]; // who takes the light of a folded one
+shared uint ranks[TYN_ORDINATES_MAX]; // among those that are kept
+shared uint folded_ones[TYN_ORDINATES_MAX];
+shared uint num_folded;
+shared float least; // size of light that is kept
+
+// The direction of a moment; where there is none, any.
+vec3 middle_of(vec3 moment)
+{
+    float size = length(moment);
+    return size > 0.0 ? moment / size : vec3(0.0, 1.0, 0.0);
+}
+
+// One thread does what is sequential.
+void sort_out_folded()
+{
+    float sum = 0.0;
+    for (uint n = 0u; n < args.regions; n++) {
+        sum += sizes[n];
+    }
+    least = args.fold * sum;
+    uint kept = 0u, gone = 0u;
+    for (uint n = 0u; n < args.regions; n++) {
+        bool keep = sizes[n] > least;
+        ranks[n] = kept;
+        folded_ones[gone] = n;
+        kept += keep ? 1u : 0u;
+        gone += keep ? 0u : 1u;
+    }
+    num_folded = gone;
+    count = args.num_fixed + kept;
+    folded = gone;
+    num_fixed = args.num_fixed;
+}
+
+uint nearest_kept(vec3 d)
+{
+    float nearest = -2.0;
+    uint found = 0u;
+    for (uint i = 0u; i < args.regions; i++) {
+        float cosine = dot(d, directions[i]);
+        bool nearer = sizes[i] > least && cosine > nearest;
+        nearest = nearer ? cosine : nearest;
+        found = nearer ? i : found;
+    }
+    return found;
+}
+
+void write(uint n)
+{
+    const ordinates_piece own = pieces[n];
+    vec3 light = own.light, moment = own.moment;
+    vec2 size = own.size * vec2(own.solid_angle, 1.0);
+    for (uint k = 0u; k < num_folded; k++) {
+        const ordinates_piece other = pieces[folded_ones[k]];
+        const float mine = heirs[k] == n ? 1.0 : 0.0;
+        light += mine * other.light;
+        moment += mine * other.moment;
+        size += mine * other.size * vec2(other.solid_angle, 1.0);
+    }
+    const vec3 d = -middle_of(moment);
+    ordinate o;
+    o.irradiance = light;
+    o.direction = environment.rows[0].xyz * d.x + environment.rows[1].xyz * d.y +
+                  environment.rows[2].xyz * d.z;
+    o.solid_angle = size.x / size.y;
+    o.mean_cosine = clamp(1.0 - o.solid_angle / (4.0 * SKY_PI), 0.0, 1.0);
+    list[args.num_fixed + ranks[n]] = o;
+}
+
+void main()
+{
+    const uint me = gl_LocalInvocationIndex;
+    if (me < args.regions) {
+        sizes[me] = pieces[me].size;
+        directions[me] = middle_of(pieces[me].moment);
+    }
+    barrier();
+    if (me == 0u) {
+        sort_out_folded();
+    }
+    barrier();
+    for (uint k = me; k < num_folded; k += TYN_ORDINATES_MAX) {
+        heirs[k] = nearest_kept(directions[folded_ones[k]]);
+    }
+    barrier();
+    if (me < args.regions && sizes[me] > least) {
+        write(me);
+    }
+}

@@ -1,0 +1,71 @@
+// ordinates_gather.comp -- what comes from each region; a thread per region.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "scene_args.h"
+#include "ordinate_args.h"
+#include "ordinates_args.h"
+#include "ordinates_region.glsl"
+
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform arguments
+{
+    ordinates_args args;
+};
+layout(binding = 0, scalar) uniform environment_uniform
+{
+    env_block environment;
+};
+layout(binding = 1, scalar) readonly buffer sums_buffer
+{
+    sky_sum sums[];
+};
+layout(binding = 2, scalar) readonly buffer regions_buffer
+{
+    vec4 regions[]; // from, to
+};
+layout(binding = 3, scalar) writeonly buffer pieces_buffer
+{
+    ordinates_piece pieces[];
+};
+
+// All of it: xyz power, w luminance; and the moment.
+void add_corner(vec2 p, float sign, inout vec4 power, inout vec3 moment)
+{
+    vec2 f;
+    uint e = ordinates_entry(p, f);
+    vec4 share = vec4((1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y);
+    for (uint k = 0u; k < 4u; k++) {
+        sky_sum s = sums[e + (k & 1u) + (k >> 1) * ORDINATES_ROW];
+        power += sign * share[k] * vec4(s.power, s.luminance);
+        moment += sign * share[k] * s.moment;
+    }
+}
+
+void main()
+{
+    const uint n = gl_GlobalInvocationID.x;
+    if (n >= args.regions) {
+        return;
+    }
+    const ordinates_region r = ordinates_region(regions[n].xy, regions[n].zw);
+    const float solid_angle = ordinates_solid_angle(r);
+    const vec3 outwards = ordinates_vector(r);
+    vec4 power = vec4(0.0);
+    vec3 moment = vec3(0.0);
+    if (environment.has_map == 0u) {
+        power.rgb = vec3(solid_angle);
+        moment = outwards;
+    } else {
+        add_corner(r.to, 1.0, power, moment);
+        add_corner(vec2(r.from.x, r.to.y), -1.0, power, moment);
+        add_corner(vec2(r.to.x, r.from.y), -1.0, power, moment);
+        add_corner(r.from, 1.0, power, moment);
+        float mean = sums[(SKY_SUMS_HEIGHT + 1) * ORDINATES_ROW - 1u].luminance / (4.0 * SKY_PI);
+        // A trace of even light: where it is black, the region's middle counts.
+        moment = moment / max(mean, 1e-30) + 1e-3 * outwards;
+    }
+    vec3 light = environment.radiance * power.rgb;
+    light -= args.split != 0u ? environment.sky * solid_angle : vec3(0.0);
+    pieces[n] = ordinates_piece(light, sky_luminance(abs(light)), moment, solid_angle);
+}
