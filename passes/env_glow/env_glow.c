@@ -114,11 +114,12 @@ static void lobe_series(double t, const double phi[DEGREES], double k[DEGREES])
         k[l] = t > 0 ? exp(-t * (1 - phi[l])) * expm1(-t * phi[l]) / expm1(-t) : phi[l];
     }
     // A series that is cut off rings around bright windows: a lobe too narrow for it is widened just so
-    // much (by a Gaussian) that its last moment has fallen to 3 %.
+    // much that its last moment has fallen to 3 %.
+    const double sharpness = 1.5; // between a Gaussian, which blurs more, and a cut, which rings
     double last = fabs(k[DEGREES - 1]) / 0.03;
-    double widen = last > 1 ? log(last) / ((DEGREES - 1.0) * DEGREES) : 0;
+    double widen = last > 1 ? log(last) / pow((DEGREES - 1.0) * DEGREES, sharpness) : 0;
     for (int l = 1; l < DEGREES; l++) {
-        k[l] *= exp(-widen * l * (l + 1));
+        k[l] *= exp(-widen * pow(l * (l + 1), sharpness));
     }
 }
 

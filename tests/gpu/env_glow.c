@@ -247,7 +247,9 @@ static void limits(void **state)
                     sum += omega * value;
                 }
             }
-            if (fabs(sum / omega_sum - mean) > 0.015 * mean) {
+            // Where a cut series is clamped at 0 around the lamp it gains.
+            double tolerance = gs[k] > 0.3f && gs[k] < 0.95f ? 0.01 : 0.05;
+            if (fabs(sum / omega_sum - mean) > tolerance * mean) {
                 fail_msg("g %g, level %u: mean %g instead of %g", gs[k], level, sum / omega_sum,
                          mean);
             }
