@@ -122,9 +122,9 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
 
 #define FIELD(name) offsetof(tyn_propagate_rect_params, name)
 static const tyn_param params[] = {
-    {"cells", TYN_PARAM_INT, FIELD(cells), 16, 2, 64, "cells",
+    {"cells", TYN_PARAM_INT, FIELD(cells), 20, 2, 64, "cells",
      "cubic cells along the longest side of the box aligned with the light"},
-    {"iterations", TYN_PARAM_INT, FIELD(iterations), 16, 1, 256, "",
+    {"iterations", TYN_PARAM_INT, FIELD(iterations), 20, 1, 256, "",
      "hops from cell to cell; the paper takes about as many as cells"},
     {"init", TYN_PARAM_ENUM, FIELD(init), TYN_PROPAGATE_INIT_ENTRY, 0, 3, "",
      "light before the first hop: entry is the only one that has the right power without "
