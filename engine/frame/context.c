@@ -4,6 +4,7 @@
 #include "plugin/registry.h"
 #include "base/hash.h"
 #include "counters.h"
+#include "ordinate_args.h"
 #include "methods/env_cdf.h"
 #include "gpu/device.h"
 #include "scene/check.h"
@@ -468,6 +469,26 @@ static void add_work(tyn_node_report *node, const char *name, double amount)
     }
 }
 
+// What the node itself counted: struct counters_block, or the head of struct ordinates_block. By the
+// node's name there may also be an output of the frame ("balance"), of another size.
+static void add_counters(tyn_node_report *node, tyn_graph *graph)
+{
+    tyn_extent size = {0};
+    const void *data = tyn_graph_map(graph, node->name, &size, NULL);
+    if (data && size.x == sizeof(struct counters_block)) {
+        const struct counters_block *c = data;
+        add_work(node, "steps", c->steps);
+        add_work(node, "pixels", c->pixels);
+        add_work(node, "non_finite", c->non_finite);
+        add_work(node, "clamped", c->clamped);
+        add_work(node, "cut", c->cut);
+    } else if (data && size.x == sizeof(struct ordinates_block)) {
+        const struct ordinates_block *o = data;
+        add_work(node, "ordinates", o->count);
+        add_work(node, "folded", o->folded);
+    }
+}
+
 void tyn_context_report(tyn_context *ctx, tyn_report *report)
 {
     *report = (tyn_report){.warnings = (const char *const *)ctx->warnings,
@@ -496,15 +517,8 @@ void tyn_context_report(tyn_context *ctx, tyn_report *report)
                 add_work(&nodes[i], s->work[w].name, s->work[w].amount);
             }
         }
-        // By the node's name there may also be an output of the frame ("balance"), of another size.
-        tyn_extent size = {0};
-        const struct counters_block *c = tyn_graph_map(ctx->graph, s->name, &size, NULL);
-        if (c && size.x == sizeof *c && s->state != TYN_NODE_CULLED) {
-            add_work(&nodes[i], "steps", c->steps);
-            add_work(&nodes[i], "pixels", c->pixels);
-            add_work(&nodes[i], "non_finite", c->non_finite);
-            add_work(&nodes[i], "clamped", c->clamped);
-            add_work(&nodes[i], "cut", c->cut);
+        if (s->state != TYN_NODE_CULLED) {
+            add_counters(&nodes[i], ctx->graph);
         }
     }
     report->nodes = nodes;

@@ -151,7 +151,7 @@ static void record(tyn_recorder *r, const void *params)
             r,
             &(tyn_dispatch){.kernel = kernel, .cells = {TYN_ORDINATES_MAX, 1, 1}, .args = &args});
     }
-    tyn_rec_work(r, "ordinates", args.regions + args.num_fixed);
+    tyn_rec_work(r, "regions", args.regions);
 }
 
 const tyn_pass_desc tyn_pass_ordinates = {

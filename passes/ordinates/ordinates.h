@@ -11,7 +11,8 @@
 enum { ORDINATES_MAX_FIXED = 68 };
 
 typedef struct tyn_ordinates_params {
-    int32_t count;       // regions, 1..256; fewer if they and the fixed ones would be more than 256
+    int32_t count; // regions, 1..256, or 0 if the method has nothing but fixed ones; fewer if there
+                   // are too many of those
     uint32_t split;      // 1: the mean of the sky (env_block.sky) is not in them
     float fold;          // ordinates below this part of all light are folded into a neighbour
     float spread;        // see ordinates_args.h

@@ -114,7 +114,8 @@ ordinates_density density_of(uint table)
 void main()
 {
     const uint me = gl_LocalInvocationIndex;
-    grow_tree(density_of(environment.has_map != 0u ? ORDINATES_SUMS : ORDINATES_NO_TABLE));
+    const bool mapped = environment.has_map != 0u && args.regions > 0u;
+    grow_tree(density_of(mapped ? ORDINATES_SUMS : ORDINATES_NO_TABLE));
     if (args.weighted != 0u) {
         grow_tree_again(density_of(ORDINATES_WEIGHTS));
     }

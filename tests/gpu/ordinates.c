@@ -560,6 +560,15 @@ static void fixed(void **state)
         assert_true(fabs(solid_angle / (4 * M_PI) - 1) < 1e-5);
         assert_true(fabs(got - sum[0]) < 1e-4 * size[0]);
     }
+    // Suns alone, under a map that is not looked at.
+    params.count = 0;
+    scene dark = s;
+    dark.constant = true; // connects nothing
+    const struct ordinates_block b = run(t, &dark, &params);
+    assert_int_equal(b.count, ORDINATES_MAX_FIXED);
+    assert_int_equal(b.folded, 0);
+    assert_memory_equal(b.list, params.fixed, sizeof params.fixed);
+    assert_true(b.list[b.count].solid_angle == 0);
 }
 
 // ---- how they move ----------------------------------------------------------------------------
