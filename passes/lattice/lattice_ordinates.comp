@@ -89,7 +89,10 @@ void main()
     vec3 extinction = medium_mode == TYN_MEDIUM_DENSITY ? unit.a + unit.p : vec3(1.0);
 
     vec3 tint = args.tint / dot(args.tint, args.tint);
-    uint count = min(ordinates.count, args.count), stride = columns_stride(args.dims);
+    vec3 most = max(least[0], least[1]);
+    bool any_medium = most.x + most.y + most.z > 0.0; // where there is none light does nothing
+    uint count = any_medium ? min(ordinates.count, args.count) : 0u;
+    uint stride = columns_stride(args.dims);
     vec4 sums[2][3];
     for (int i = 0; i < 6; i++) {
         sums[i / 3][i % 3] = vec4(0.0);
