@@ -75,7 +75,8 @@ tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_media_refs *m
         return TYN_OK;
     }
     params.count = regions ? params.count : 0;
-    sky->count = (uint32_t)params.count + params.num_fixed;
+    uint32_t count = (uint32_t)params.count + params.num_fixed;
+    sky->count = count < TYN_ORDINATES_MAX ? count : TYN_ORDINATES_MAX;
 
     tyn_ref refs[TYN_MAX_PORTS] = {[ORDINATES_PORT_ENVIRONMENT] = job->refs.environment};
     tyn_result result = TYN_OK;
