@@ -12,4 +12,9 @@ struct columns_args {
     tyn_uint stride; // nodes of an ordinate
 };
 
+struct columns_average_args {
+    tyn_uvec3 size;    // texels of the averaged medium
+    tyn_uvec3 samples; // of the medium in each, along the axes
+};
+
 #endif

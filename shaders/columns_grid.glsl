@@ -68,11 +68,11 @@ vec3 columns_uvw(columns_grid grid, vec2 at, float slice)
            (at.y - slice * grid.shear.y) * grid.step_v + slice * grid.per_slice;
 }
 
-// Trilinear samples from slice to slice: one for two voxels, half way between them.
+// Trilinear samples from slice to slice: one for two voxels and a half.
 int columns_samples(columns_grid grid)
 {
-    vec3 voxels = abs(grid.per_slice) * vec3(medium.size);
-    return int(clamp(ceil(0.5 * max(voxels.x, max(voxels.y, voxels.z)) - 0.01), 1.0, 64.0));
+    vec3 voxels = abs(grid.per_slice) * vec3(textureSize(medium_density_tex, 0));
+    return int(clamp(ceil(0.4 * max(voxels.x, max(voxels.y, voxels.z)) - 0.01), 1.0, 64.0));
 }
 
 // Slices that the ray through a place has crossed since it entered the box; beyond the far side of

@@ -24,6 +24,7 @@
 static const tyn_pass_desc *const passes[] = {
     &tyn_pass_medium,
     &tyn_pass_beam,
+    &tyn_pass_columns_average,
     &tyn_pass_columns,
     &tyn_pass_scatter_lut,
     &tyn_pass_lattice_cells,

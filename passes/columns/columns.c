@@ -136,11 +136,11 @@ static void record(tyn_recorder *r, const void *params)
                                .args = &args,
                                .spec = &p->mode});
         uint32_t rows = p->dims[1] > p->dims[2] ? p->dims[1] : p->dims[2];
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_GATHER,
-                                            .cells = {(p->dims[0] + 1) / 2, rows,
-                                                      num_components * ordinates},
-                                            .args = &args,
-                                            .spec = &p->mode});
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = KERNEL_GATHER,
+                               .cells = {(p->dims[0] + 1) / 2, rows, num_components * ordinates},
+                               .args = &args,
+                               .spec = &p->mode});
     }
 
     tyn_extent texels = tyn_rec_extent(r, COLUMNS_PORT_DENSITY);
@@ -153,7 +153,7 @@ static void record(tyn_recorder *r, const void *params)
     }
     // As if all ordinates were in use, along axes. A sample: position 9, sum 1 (with coefficients delta
     // scaling and 9 sums); a cell: its place 40, and for a component two values between columns.
-    double all_nodes = (double)nodes * p->count, samples = all_nodes * ceil(0.5 * voxels - 0.01);
+    double all_nodes = (double)nodes * p->count, samples = all_nodes * ceil(0.4 * voxels - 0.01);
     tyn_rec_work(r, "cells", cells * p->count);
     tyn_rec_work(r, "fetches", samples * (num_components > 1 ? 3 : 1));
     tyn_rec_work(r, "flops",
