@@ -164,6 +164,15 @@ static void print_lights(const tyn_scene *scene)
     if (env->present) {
         print_color(" radiance ", env->radiance, "");
         printf(" x %g\n", env->strength);
+        tyn_environment_sun suns[TYN_MAX_MAP_SUNS];
+        const uint32_t count = tyn_environment_suns(env, suns);
+        for (uint32_t i = 0; i < count; i++) {
+            const tyn_environment_sun *s = &suns[i];
+            printf("  sun %u of the map:", i);
+            print_color(" ", s->irradiance, " W/m^2,");
+            print_color(" travels along ", s->direction, "");
+            printf(", radius %.3g deg\n", s->radius * 180 / 3.14159265358979);
+        }
     }
 }
 

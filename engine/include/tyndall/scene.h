@@ -68,6 +68,17 @@ typedef struct tyn_environment {
     uint64_t hash;       // content hash of data
 } tyn_environment;
 
+// A compact spot of a map with much of its light: methods treat it as a directional light.
+enum { TYN_MAX_MAP_SUNS = 4 };
+typedef struct tyn_environment_sun {
+    float irradiance[3]; // across its direction, W/m^2
+    float direction[3];  // of travel, world, unit
+    float radius;        // of an even disc with its mean cosine, radians
+} tyn_environment_sun;
+// Finds them, brightest first; gives their number, 0 for a constant. Reads the whole map.
+TYN_API uint32_t tyn_environment_suns(const tyn_environment *env,
+                                      tyn_environment_sun suns[TYN_MAX_MAP_SUNS]);
+
 typedef enum tyn_projection { TYN_PERSPECTIVE = 0, TYN_ORTHOGRAPHIC = 1 } tyn_projection;
 
 typedef struct tyn_camera {
