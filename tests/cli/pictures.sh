@@ -53,6 +53,14 @@ near "$(get c.json frame_ms.camera_moved)" 0 1e5 "stats: camera_moved"
 works render "$scenes/cube.gltf" --size 64x48 --quiet --frames 2 --stats f.json
 near "$(get f.json frame_ms.cold)" 0 1e5 "stats: cold"
 
+# the suns of a map are said, and how many ordinates carry the rest
+works info "$scenes/smoke-sky.gltf"
+grep -q "sun 0 of the map: .* radius 0.5" out || fail "info: no sun in: $(grep -A1 environment out)"
+works info "$scenes/plume-contrast.gltf"
+grep -q "of the map" out && fail "info: a sun in the courtyard"
+works render "$scenes/smoke-sky.gltf" --size 16x16 --quiet --method pop-paper -D ordinates.count=12 -o o.png --stats o.json
+grep -q '"folded":' o.json || fail "stats: ordinates: $(grep -A3 '"ordinates"' o.json)"
+
 # ---- path ----
 works render "$scenes/cube.gltf" --size 32x32 --quiet --method path --spp 8 -o p.exr --aov error --stats p.json
 works render "$scenes/cube.gltf" --size 32x32 --quiet --method path --spp 8 -o q.exr --aov error
