@@ -153,6 +153,14 @@ static void sky_has_its_sun(void **state)
     // gives a tenth to a third of what falls on the ground.
     assert_true(direct > 0.6 * 12 && direct < 0.9 * 12);
     assert_true(sky > 0.1 * all && sky < 0.33 * all);
+    tyn_environment_sun suns[TYN_MAX_MAP_SUNS];
+    assert_int_equal(tyn_environment_suns(&scene.environment, suns), 1);
+    double cosine = 0, found = 0;
+    for (int k = 0; k < 3; k++) {
+        cosine -= (double)suns[0].direction[k] * sun[k];
+        found += (double)suns[0].irradiance[k] / 3;
+    }
+    assert_true(cosine > cos(0.3 * pi / 180) && fabs(found / direct - 1) < 0.02);
     tyn_scene_finish(&scene);
 }
 
