@@ -221,17 +221,21 @@ static void several_suns(void **state)
 static void none(void **state)
 {
     (void)state;
-    const lamp window = lobe(0.4, 0.3, 1, 30, -0.4); // 23 degrees: no sun
-    const lamp wide = lobe(0.4, 0.3, 1, 20, 20);     // a glow of 13 degrees
-    const lamp weak = lobe(0.4, 0.3, 1, 5, 800);     // 4 % of a grey sky
+    const lamp window = lobe(0.4, 0.3, 1, 30, -0.4);   // a disc of 23 degrees
+    const lamp porthole = lobe(0.4, 0.3, 1, 9, -0.25); // of 14
+    const lamp wide = lobe(0.4, 0.3, 1, 20, 20);       // a glow of 13 degrees per axis
+    const lamp glow = lobe(0.4, 0.3, 1, 40, 60);       // of 7
+    const lamp weak = lobe(0.4, 0.3, 1, 5, 800);       // a sun of 4 % of a grey sky
     const surroundings cases[] = {{.grey = 0.2, .lamps = &window, .num_lamps = 1},
+                                  {.grey = 0.2, .lamps = &porthole, .num_lamps = 1},
                                   {.grey = 0.2, .lamps = &wide, .num_lamps = 1},
+                                  {.grey = 0.2, .lamps = &glow, .num_lamps = 1},
                                   {.grey = 0.08, .lamps = &weak, .num_lamps = 1},
                                   {.sky = 1},
                                   {.grey = 1},
                                   {.grey = 0}};
     const uint32_t sizes[][2] = {{512, 256}, {37, 19}, {1, 1}, {2, 1}, {1, 5}, {900, 2}};
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < 8; i++) {
         for (int k = 0; k < 6; k++) {
             tyn_environment env = make_map(sizes[k][0], sizes[k][1], &cases[i], 1);
             tyn_map_light light;
