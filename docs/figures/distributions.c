@@ -82,6 +82,8 @@ static slice *render(tyn_device *dev, const char *method, float g, const char *n
     tyn_scene *scene = malloc(sizeof *scene);
     slice *out = malloc(sizeof *out);
     if (!scene || !out || tyn_settings_create(&settings) != TYN_OK ||
+        tyn_settings_set(settings, "propagate_rect.cells", "16", NULL) != TYN_OK ||
+        tyn_settings_set(settings, "propagate_rect.iterations", "16", NULL) != TYN_OK ||
         (name && tyn_settings_set(settings, name, value, NULL) != TYN_OK) ||
         tyn_offline_create(dev, tyn_offline_params(.method = method, .settings = settings), &off) !=
             TYN_OK) {
