@@ -1,6 +1,7 @@
 // pop_paper.c -- the passes of method "pop-paper" together: its picture against that of the prototype
 // behind the reference states.
 #include "gpu_test.h"
+#include "picture.h"
 #include "propagate_twin.h"
 #include "passes/propagate_rect/propagate_rect.h"
 #include "passes/merge_grids/merge_grids.h"
@@ -16,13 +17,13 @@
 // The prototype averages 2 x 2 rays a pixel; here every ray is a pixel.
 enum { PIXELS = 32, RAYS = 2 * PIXELS };
 
-typedef struct view {
+typedef struct viewpoint {
     const char *name;
     float to_eye[3], right[3], half_width;
     bool mirrored; // columns of the prototype run against `right`
-} view;
+} viewpoint;
 
-static const view views[] = {
+static const viewpoint views[] = {
     {"image0", {0, 0, 1}, {1, 0, 0}, 0.5f, false},
     {"image45", {0.70710678f, 0, 0.70710678f}, {0.70710678f, 0, -0.70710678f}, 0.70710678f, false},
     {"image90", {1, 0, 0}, {0, 0, -1}, 0.5f, true},
@@ -43,7 +44,7 @@ static const struct medium_block medium = {
     .sigma_t_max = 4,
 };
 
-static struct camera_block camera_of(const view *v)
+static struct camera_block camera_of(const viewpoint *v)
 {
     struct camera_block c = {.orthographic = 1,
                              .half_width = v->half_width,
@@ -59,7 +60,7 @@ static struct camera_block camera_of(const view *v)
 }
 
 // The passes as the method wires them; radiance of RAYS x RAYS pixels.
-static const float *picture(gpu_test *t, const struct camera_block *camera)
+static const float *radiance_of(gpu_test *t, const struct camera_block *camera)
 {
     const struct light_block light = {{0}};
     const struct ordinates_block sun = {
@@ -133,7 +134,7 @@ static const float *picture(gpu_test *t, const struct camera_block *camera)
     return gpu_map(t, "radiance");
 }
 
-static double pixel_of(const float *radiance, const view *v, int x, int y)
+static double pixel_of(const float *radiance, const viewpoint *v, int x, int y)
 {
     double sum = 0;
     for (int k = 0; k < 4; k++) {
@@ -150,11 +151,11 @@ static void equals_prototype(void **state)
     state_record *records;
     int num = states_load(&records);
     for (size_t i = 0; i < sizeof views / sizeof *views; i++) {
-        const view *v = &views[i];
+        const viewpoint *v = &views[i];
         const state_record *r = states_find(records, num, v->name, "hom4_g60", 16);
         assert_non_null(r);
         struct camera_block camera = camera_of(v);
-        const float *radiance = picture(*state, &camera);
+        const float *radiance = radiance_of(*state, &camera);
         double difference = 0, sum = 0, worst = 0;
         for (int y = 0; y < PIXELS; y++) {
             for (int x = 0; x < PIXELS; x++) {
@@ -171,8 +172,136 @@ static void equals_prototype(void **state)
     free(records);
 }
 
+// ---- the method under an environment -------------------------------------------------------------
+
+// A box in light that is 1 from all sides, seen across one side.
+static void set_furnace(tyn_scene *scene, tyn_view *view, float sigma_s)
+{
+    tyn_medium box = grey_medium(sigma_s, 0, 0.5f);
+    tyn_scene_init(scene);
+    scene_add_box(scene, &box, (float[]){0, 0, 0}, (float[]){1, 1, 1}, NULL, NULL);
+    scene_set_sky(scene, 1);
+    view_orthographic(view, (float[]){0.5f, 0.5f, 0.5f}, 1, 0, 0, (float[]){0, 1, 0}, 0.5f, 16);
+    view->no_background = true;
+    view->outputs = TYN_OUTPUT_RADIANCE;
+}
+
+// In a thin medium every ordinate crosses its grid with little change, and J = sum E_n / 4 pi = 1.
+static void thin_furnace(void **state)
+{
+    gpu_test *t = *state;
+    tyn_scene scene;
+    tyn_view view;
+    picture p;
+    set_furnace(&scene, &view, 0.08f);
+    for (int filter = 0; filter < 2; filter++) {
+        picture_render(&p, t->dev, "pop-paper", &scene, &view,
+                       filter ? "propagate_rect.prefilter=exact" : "propagate_rect.prefilter=off",
+                       0);
+        double sum = 0;
+        for (uint32_t i = 0; i < 3 * p.width * p.height; i++) {
+            assert_true(isfinite(p.rgb[i]));
+            sum += p.rgb[i];
+        }
+        double expected = -expm1(-0.08) * 3 * p.width * p.height;
+        print_message("prefilter %s: %.4f of what a furnace shows\n", filter ? "exact" : "off",
+                      sum / expected);
+        assert_true(fabs(sum / expected - 1) < 0.05);
+        picture_free(&p);
+    }
+    tyn_scene_finish(&scene);
+}
+
+static tyn_report frame_report(gpu_test *t, tyn_offline **off, const tyn_scene *scene,
+                               const tyn_view *view, const char *name, const char *value)
+{
+    tyn_settings *settings;
+    tyn_report report;
+    assert_int_equal(tyn_settings_create(&settings), TYN_OK);
+    assert_int_equal(tyn_settings_set(settings, name, value, NULL), TYN_OK);
+    assert_int_equal(
+        tyn_offline_create(t->dev, tyn_offline_params(.method = "pop-paper", .settings = settings),
+                           off),
+        TYN_OK);
+    assert_int_equal(tyn_offline_frame(*off, scene, view, false), TYN_OK);
+    tyn_offline_report(*off, &report);
+    tyn_settings_destroy(&settings);
+    return report;
+}
+
+static const tyn_node_report *node_of(const tyn_report *report, const char *name)
+{
+    for (uint32_t i = 0; i < report->num_nodes; i++) {
+        if (!strcmp(report->nodes[i].name, name)) {
+            return &report->nodes[i];
+        }
+    }
+    return NULL;
+}
+
+static uint32_t dispatches(const tyn_report *report)
+{
+    uint32_t sum = 0;
+    for (uint32_t i = 0; i < report->num_nodes; i++) {
+        sum += report->nodes[i].dispatches;
+    }
+    return sum;
+}
+
+static void dispatches_do_not_depend_on_ordinates(void **state)
+{
+    gpu_test *t = *state;
+    tyn_scene scene;
+    tyn_view view;
+    tyn_offline *off;
+    uint32_t expected = 0;
+    set_furnace(&scene, &view, 2);
+    scene_add_sun(&scene, 1, -2, 0.5f, 2, 1.5f, 1);
+    for (int i = 0; i < 3; i++) {
+        tyn_report report = frame_report(t, &off, &scene, &view, "ordinates.count",
+                                         ((const char *[]){"1", "64", "256"})[i]);
+        assert_int_equal(report.num_warnings, 0);
+        expected = i ? expected : dispatches(&report);
+        assert_int_equal(dispatches(&report), expected);
+        tyn_offline_destroy(&off);
+    }
+    tyn_scene_finish(&scene);
+}
+
+// The residuum waits for as many iterations as the grid has cells, or as Eq 10 wants.
+static void residuum_after(void **state)
+{
+    gpu_test *t = *state;
+    static const struct {
+        float sigma_s;
+        double iterations;
+    } cases[] = {{100, 20}, {2, 34}, {0.001f, 256}};
+    for (int i = 0; i < 3; i++) {
+        tyn_scene scene;
+        tyn_view view;
+        tyn_offline *off;
+        set_furnace(&scene, &view, cases[i].sigma_s); // g = 0.5, hops of 1/20 m
+        tyn_report report = frame_report(t, &off, &scene, &view, "residuum.on", "1");
+        const tyn_node_report *n = node_of(&report, "propagate_rect");
+        assert_non_null(n);
+        assert_non_null(node_of(&report, "residuum"));
+        for (uint32_t k = 0; k < n->num_work; k++) {
+            if (!strcmp(n->work[k].name, "iterations")) {
+                assert_float_equal(n->work[k].amount, cases[i].iterations, 0);
+            }
+        }
+        tyn_offline_destroy(&off);
+        tyn_scene_finish(&scene);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(equals_prototype)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(equals_prototype),
+        cmocka_unit_test(thin_furnace),
+        cmocka_unit_test(dispatches_do_not_depend_on_ordinates),
+        cmocka_unit_test(residuum_after),
+    };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
