@@ -85,7 +85,10 @@ tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_media_refs *m
         refs[ORDINATES_PORT_SKY] = sky->sky;
     }
     bool picture = job->outputs & TYN_PICTURE_OUTPUTS;
-    if (result == TYN_OK && regions && picture && params.importance) {
+    // A method that evaluates the forward lobes by pixel gains nothing by it (docs/method.md).
+    bool weighted = params.importance == ORDINATES_IMPORTANCE_ON ||
+                    (params.importance == ORDINATES_IMPORTANCE_AUTO && !can_split);
+    if (result == TYN_OK && regions && picture && weighted) {
         result = add_importance(g, job, media, can_split, &refs[ORDINATES_PORT_IMPORTANCE]);
     }
     if (result == TYN_OK) {

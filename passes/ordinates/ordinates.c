@@ -108,8 +108,10 @@ static const tyn_param params_table[] = {
      "part of all light below which an ordinate is folded into its neighbour"},
     {"spread", TYN_PARAM_FLOAT, offsetof(tyn_ordinates_params, spread), 0.5, 0.01, 100, "",
      "how evenly ordinates are placed: uniform weight, in means of the sky"},
-    {"importance", TYN_PARAM_BOOL, offsetof(tyn_ordinates_params, importance), 0, 0, 1, "",
-     "place ordinates where light counts for the picture, too"},
+    {"importance", TYN_PARAM_ENUM, offsetof(tyn_ordinates_params, importance),
+     ORDINATES_IMPORTANCE_AUTO, 0, 2, "",
+     "weight directions with their importance for the picture; auto: pop-paper does, pop need not",
+     (const char *const[]){"off", "on", "auto"}},
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

@@ -9,6 +9,7 @@
 #include "ordinate_args.h"
 
 enum { ORDINATES_MAX_FIXED = 68 };
+enum { ORDINATES_IMPORTANCE_OFF, ORDINATES_IMPORTANCE_ON, ORDINATES_IMPORTANCE_AUTO };
 
 typedef struct tyn_ordinates_params {
     int32_t count; // regions, 1..256, or 0 if the method has nothing but fixed ones; fewer if there
@@ -16,7 +17,7 @@ typedef struct tyn_ordinates_params {
     uint32_t split;      // 1: the mean of the sky (env_block.sky) is not in them
     float fold;          // ordinates below this part of all light are folded into a neighbour
     float spread;        // see ordinates_args.h
-    uint32_t importance; // 1: the method weights directions with their importance for the picture
+    int32_t importance; // ORDINATES_IMPORTANCE_*: does the method weight directions with their importance?
     uint32_t num_fixed;  // set by the method: ready-made ordinates that come first
     struct ordinate fixed[ORDINATES_MAX_FIXED];
 } tyn_ordinates_params;

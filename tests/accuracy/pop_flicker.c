@@ -197,7 +197,7 @@ static bool has_setting(const char *name)
 {
     tyn_settings *settings;
     assert_int_equal(tyn_settings_create(&settings), TYN_OK);
-    bool known = tyn_settings_set(settings, name, "1", NULL) == TYN_OK;
+    bool known = tyn_settings_set(settings, name, "on", NULL) == TYN_OK;
     tyn_settings_destroy(&settings);
     return known;
 }
@@ -205,9 +205,9 @@ static bool has_setting(const char *name)
 static void motion_of(gpu_test *t, motion m, float g)
 {
     static frames a, b, p;
-    static const char *const settings[] = {"ordinates.importance=0", "ordinates.importance=1",
-                                           "ordinates.importance=0 ordinates.count=16",
-                                           "ordinates.importance=1 ordinates.count=16"};
+    static const char *const settings[] = {"ordinates.importance=off", "ordinates.importance=on",
+                                           "ordinates.importance=off ordinates.count=16",
+                                           "ordinates.importance=on ordinates.count=16"};
     if (!has_setting("ordinates.importance")) {
         skip();
     }
