@@ -114,6 +114,33 @@ static void absorption_only(void **state)
     light_chain_finish(&c);
 }
 
+// Light of a sun that is seen under an angle has less flux than fluence, in the lattice's source too.
+static void sun_of_finite_size(void **state)
+{
+    static const float points[][3] = {{0.5f, 0.5f, 0.5f}};
+    const float a = 0.8f;
+    light_chain c = cube(0, 2, 0);
+    sun(&c, 1, 2, -0.5f, 3, 3, 3);
+    c.mean_cosine = a;
+    c.points = points;
+    c.num_points = 1;
+    light_chain_run(*state, &c);
+    const float *d = c.sun_direction[0];
+    float fluence = c.results[0].fluence[0];
+    assert_true(fluence > 0.5f);
+    for (int axis = 0; axis < 3; axis++) {
+        assert_true(fabsf(c.results[0].flux[3 * axis] - a * fluence * d[axis]) < 1e-4f);
+    }
+    int cells = c.cells * c.cells * c.cells;
+    for (int i = 0; i < cells; i++) {
+        for (int axis = 0; axis < 3; axis++) {
+            const float *b = c.source + 4 * i;
+            assert_true(fabsf(b[1 + axis] - a * b[0] * d[axis]) < 1e-5f);
+        }
+    }
+    light_chain_finish(&c);
+}
+
 // Light that enters is absorbed or escapes; one channel with a tint, three channels and
 // coefficients as textures say the same; oblique light is no worse than aligned light.
 static void balances(void **state)
@@ -192,9 +219,8 @@ static void furnace(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(absorption_only),
-        cmocka_unit_test(fluence_in_a_cube),
-        cmocka_unit_test(balances),
+        cmocka_unit_test(absorption_only),   cmocka_unit_test(sun_of_finite_size),
+        cmocka_unit_test(fluence_in_a_cube), cmocka_unit_test(balances),
         cmocka_unit_test(furnace),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);

@@ -54,7 +54,7 @@ void light_chain_run(gpu_test *t, light_chain *c)
         medium.sigma_t_max = fmaxf(medium.sigma_t_max, c->sigma_s[a] + c->sigma_a[a]);
         env.mean[a] = env.radiance[a] = env.sky[a] = c->environment[a];
         for (uint32_t s = 0; s < c->num_suns; s++) {
-            lights[s].mean_cosine = 1;
+            lights[s].mean_cosine = c->mean_cosine > 0 ? c->mean_cosine : 1;
             lights[s].color[a] = c->sun_color[s][a];
             lights[s].direction[a] = c->sun_direction[s][a];
         }
@@ -153,6 +153,8 @@ void light_chain_run(gpu_test *t, light_chain *c)
         add(t, &tyn_pass_lattice_ordinates,
             &(tyn_lattice_ordinates_params){solve.shape, mode, grey, count}, light);
         source_ref = light[LATTICE_ORDINATES_PORT_SOURCE];
+    }
+    if (source_ref.resource) {
         tyn_graph_output(t->graph, "source", source_ref, true);
     }
     tyn_ref lattice[TYN_MAX_PORTS] = {
@@ -232,7 +234,7 @@ void light_chain_run(gpu_test *t, light_chain *c)
         c->results = realloc(c->results, c->num_points * sizeof *c->results);
         memcpy(c->results, gpu_map(t, "results"), c->num_points * sizeof *c->results);
     }
-    if (count) {
+    if (source_ref.resource) {
         size_t bytes = (size_t)dims.x * dims.y * dims.z * c->channels * 16;
         c->source = realloc(c->source, bytes);
         memcpy(c->source, gpu_map(t, "source"), bytes);
