@@ -40,7 +40,7 @@ print("%.0f" % (nodes.get(sys.argv[2], 0) if sys.argv[2] else sum(nodes.values()
 PY
 }
 
-paper="--method pop-paper -D propagate_rect.cells=20"
+paper="--method pop-paper -D propagate_rect.cells=20 -D ordinates.importance=off"
 
 table_methods() {
     echo "| scene | \`pop-paper\`, 10 iterations | ms | 20 iterations | ms | + residuum | ms | \`pop\` | ms |"
@@ -67,11 +67,11 @@ table_ordinates() {
     echo "| ordinates | without importance | with importance | propagation, ms |"
     echo "|---|---|---|---|"
     for n in 8 27 64 125; do
-        for importance in 0 1; do
+        for importance in off on; do
             picture fig14-$n-$importance $options $paper -D ordinates.count=$n -D ordinates.importance=$importance
         done
-        echo "| $n | $(measure fig14-$n-0 fig14-path) | $(measure fig14-$n-1 fig14-path) |" \
-            "$(time_of fig14-$n-0 propagate_rect) |"
+        echo "| $n | $(measure fig14-$n-off fig14-path) | $(measure fig14-$n-on fig14-path) |" \
+            "$(time_of fig14-$n-off propagate_rect) |"
     done
 }
 
@@ -96,7 +96,7 @@ table_prefilter() {
 
 # Fig 8: milk by full propagation, and by the isotropic residuum after some iterations.
 table_milk() {
-    options="$scenes/milk.gltf --method pop-paper -D propagate_rect.cells=16"
+    options="$scenes/milk.gltf --method pop-paper -D propagate_rect.cells=16 -D ordinates.importance=off"
     picture fig8-full $options -D propagate_rect.iterations=100
     echo "| iterations in 64 grids of 16^3 | in one of 32^3 | difference to the first row | propagation, ms |"
     echo "|---|---|---|---|"
