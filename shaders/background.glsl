@@ -39,44 +39,44 @@ vec3 background_lookup(sampler2D map, vec2 uv, vec2 width)
 }
 
 // Radiance, W/(m^2 sr), that arrives at the part of the image within `side` / 2 pixels of `pixel` (column +
-// u, row + v), as if nothing were in between.
-vec3 background_radiance(env_block env, sampler2D map, camera_block camera, vec2 pixel, float side)
+// u, row + v), as if nothing were in between. `direction`: of the ray through `pixel`.
+vec3 background_radiance(env_block env, sampler2D map, camera_block camera, vec3 direction, vec2 pixel,
+                         float side)
 {
     if (env.has_map == 0u) {
         return env.radiance;
     }
-    // What the position's sides are in texels. For the direction n (any length) in the map's frame, rho its
-    // distance from the axis: d phi = (n.x dn.z - n.z dn.x) / rho^2, d theta = (n.y n.dn / n^2 - dn.y) / rho.
-    // A box as wide as the root of the sum of squares has the footprint's variance.
-    vec2 size = vec2(textureSize(map, 0)), footprint = vec2(0.0);
+    vec3 d = environment_map_direction(env, direction);
+    vec2 uv = environment_uv(d), size = vec2(textureSize(map, 0)), footprint = vec2(0.0);
     if (camera.orthographic == 0u) {
-        vec2 s = 2.0 * pixel / vec2(camera.size) - 1.0;
-        vec3 n = environment_map_direction(
-            env, camera.forward + (s.x + camera.shift.x) * camera.half_width * camera.right +
-                     (camera.shift.y - s.y) * camera.half_height * camera.up);
-        vec3 across = 2.0 * side / float(camera.size.x) * camera.half_width *
+        // What a step across and one down in the image are in texels. With rho the distance of d from the
+        // axis: d phi = (d.x dd.z - d.z dd.x) / rho^2, d theta = (d.y d.dd - dd.y) / rho. A box as wide as
+        // the root of the sum of squares has the footprint's variance.
+        float scale = 2.0 * side * dot(direction, camera.forward);
+        vec3 across = scale * camera.half_width / float(camera.size.x) *
                       environment_map_direction(env, camera.right);
-        vec3 down = 2.0 * side / float(camera.size.y) * camera.half_height *
+        vec3 down = scale * camera.half_height / float(camera.size.y) *
                     environment_map_direction(env, camera.up);
-        float n2 = dot(n, n), rho2 = max(n.x * n.x + n.z * n.z, 1e-12 * n2);
-        vec2 phi = (n.x * vec2(across.z, down.z) - n.z * vec2(across.x, down.x)) / rho2;
-        vec2 theta = (n.y / n2 * vec2(dot(n, across), dot(n, down)) - vec2(across.y, down.y)) /
-                     sqrt(rho2);
+        float rho2 = max(d.x * d.x + d.z * d.z, 1e-12);
+        vec2 phi = (d.x * vec2(across.z, down.z) - d.z * vec2(across.x, down.x)) / rho2;
+        vec2 theta = (d.y * vec2(dot(d, across), dot(d, down)) - vec2(across.y, down.y)) *
+                     inversesqrt(rho2);
         footprint = size * vec2(0.5 * TYN_INV_PI * length(phi), TYN_INV_PI * length(theta));
     }
     // The mean over the footprint's box where that has no more than a texel, else over a grid of such ones.
     float taps = clamp(ceil(max(footprint.x, footprint.y) - 0.01), 1.0, BACKGROUND_MAX_TAPS);
     vec2 width = mix(min(footprint / taps, vec2(1.0)), vec2(BACKGROUND_SMOOTH),
                      lessThan(footprint, vec2(BACKGROUND_SMOOTH)));
-    vec3 sum = vec3(0.0);
-    for (float y = 0.5; y < taps; y++) {
-        for (float x = 0.5; x < taps; x++) {
+    vec3 mean = taps > 1.0 ? vec3(0.0) : background_lookup(map, uv, width);
+    float count = taps > 1.0 ? taps : 0.0, share = 1.0 / (taps * taps);
+    for (float y = 0.5; y < count; y++) {
+        for (float x = 0.5; x < count; x++) {
             vec2 at = pixel + side * (vec2(x, y) / taps - 0.5);
-            vec3 d = environment_map_direction(env, camera_ray_through(camera, at).direction);
-            sum += background_lookup(map, environment_uv(d), width);
+            vec3 tap = environment_map_direction(env, camera_ray_through(camera, at).direction);
+            mean += share * background_lookup(map, environment_uv(tap), width);
         }
     }
-    return env.radiance * sum / (taps * taps);
+    return env.radiance * mean;
 }
 
 #endif

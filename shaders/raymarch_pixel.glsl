@@ -90,9 +90,9 @@ void shade_pixel(ivec2 pixel)
         multiple += max(light - r.single, 0.0);
         radiance += light;
         if (raymarch_has(RAYMARCH_BACKGROUND) && surface == TYN_INFINITY) {
-            radiance += r.transmittance * background_radiance(environment, environment_tex, camera,
-                                                              vec2(pixel) + where,
-                                                              num_rays == 1u ? 1.0 : 0.5);
+            radiance += r.transmittance *
+                        background_radiance(environment, environment_tex, camera, ray.direction,
+                                            vec2(pixel) + where, num_rays == 1u ? 1.0 : 0.5);
         }
     }
     float share = 1.0 / float(num_rays);

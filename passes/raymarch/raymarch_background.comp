@@ -51,7 +51,8 @@ void main()
     }
     vec4 radiance = vec4(0.0);
     if (has(RAYMARCH_BACKGROUND) && surface == TYN_INFINITY) {
-        radiance.rgb = background_radiance(environment, environment_tex, camera, vec2(pixel) + 0.5, 1.0);
+        radiance.rgb = background_radiance(environment, environment_tex, camera, ray.direction,
+                                           vec2(pixel) + 0.5, 1.0);
         radiance.a = 1.0;
     }
     imageStore(radiance_image, pixel, radiance);
