@@ -157,8 +157,9 @@ static uint32_t cells_of_grid(const tyn_propagate_rect_params *p)
 // Grids of a batch: as many as storage buffers hold.
 static uint32_t batch(const tyn_propagate_rect_params *p)
 {
-    const uint32_t bytes = 128u << 20;
+    const uint32_t bytes = p->buffer_bytes ? p->buffer_bytes : 128u << 20;
     uint32_t fit = bytes / (cells_of_grid(p) * (uint32_t)(4 * sizeof(float)));
+    fit = fit > 0 ? fit : 1;
     return fit < p->num_ordinates ? fit : p->num_ordinates;
 }
 

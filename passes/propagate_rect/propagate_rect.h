@@ -22,6 +22,7 @@ typedef struct tyn_propagate_rect_params {
     uint32_t num_ordinates; // set by the method, as all below: room for, 1..TYN_ORDINATES_MAX
     uint32_t channels;      // 1 if the medium is the same in all channels, else 3
     uint32_t mode;          // TYN_MEDIUM_*
+    uint32_t buffer_bytes;  // largest storage buffer; 0 = 128 MiB
     uint32_t keep_light;    // 1: the port "light" exists
     float extent[3];        // medium_block.extent, m
     uint32_t size[3];       // medium_block.size

@@ -118,6 +118,10 @@ static outcome run(gpu_test *t, const setup *s)
         tyn_graph_output(t->graph, tyn_pass_propagate_rect.ports[ports[i]].name, refs[ports[i]],
                          true);
     }
+    tyn_graph_output(t->graph, "seen", refs[PORT(SEEN)], true);
+    if (params.keep_light) {
+        tyn_graph_output(t->graph, "light", refs[PORT(LIGHT)], true);
+    }
     gpu_run(t);
     return (outcome){gpu_map(t, "state"), gpu_map(t, "cells"), gpu_map(t, "sum"),
                      gpu_map(t, "grids")};
@@ -371,7 +375,33 @@ static void ordinates(void **state)
     }
 }
 
-// The configuration of the paper's section 7, and one whose grids do not fit one storage buffer.
+// What all grids sent to the eye and still hold, whatever number of them is done at a time.
+static void batches(void **state)
+{
+    static float density[12 * 16 * 10], once[2][4 * 9 * 3 * CELLS];
+    setup s = oblique(density);
+    s.num_suns = 0;
+    s.params.keep_light = 1;
+    s.params.mode = TYN_MEDIUM_DENSITY;
+    set_ordinates(&s, 9);
+    for (int32_t batch = 9; batch > 0; batch -= 4) { // 9, 5 + 4, nine times 1
+        s.params.buffer_bytes = (uint32_t)batch * 3 * CELLS * 16;
+        run(*state, &s);
+        for (int i = 0; i < 2; i++) {
+            tyn_extent size;
+            const char *name = i ? "light" : "seen";
+            const float *found = tyn_graph_map(((gpu_test *)*state)->graph, name, &size, NULL);
+            size_t texels = (size_t)size.x * size.y * size.z;
+            assert_true(found && texels <= sizeof once[0] / sizeof(float));
+            if (batch == 9) {
+                memcpy(once[i], found, texels * sizeof(float));
+            }
+            assert_memory_equal(found, once[i], texels * sizeof(float));
+        }
+    }
+}
+
+// The configuration of the paper's section 7.
 static void many_ordinates(void **state)
 {
     static float density[32 * 32 * 32];
@@ -519,10 +549,15 @@ static void colour_of_the_light(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reference_states),      cmocka_unit_test(every_reading),
-        cmocka_unit_test(grids_span_the_medium), cmocka_unit_test(fractions_sum_to_one),
-        cmocka_unit_test(injected_power_is_one), cmocka_unit_test(extremes),
-        cmocka_unit_test(colour_of_the_light),   cmocka_unit_test(ordinates),
+        cmocka_unit_test(reference_states),
+        cmocka_unit_test(every_reading),
+        cmocka_unit_test(grids_span_the_medium),
+        cmocka_unit_test(fractions_sum_to_one),
+        cmocka_unit_test(injected_power_is_one),
+        cmocka_unit_test(extremes),
+        cmocka_unit_test(colour_of_the_light),
+        cmocka_unit_test(ordinates),
+        cmocka_unit_test(batches),
         cmocka_unit_test(many_ordinates),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
