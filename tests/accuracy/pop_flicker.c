@@ -1,9 +1,10 @@
 // pop_flicker.c -- how steady `pop` is while the camera or the environment map turns.
 //
 // Half a degree a frame about a still medium, blocks of 4x4 pixels. RMS over blocks and frames, in % of the
-// mean: the change from frame to frame of `pop` and of `path`, what that of `pop` is beyond, the
-// difference of the two changes, and how far `pop` is from a cubic in time, which is what flickers:
-// four degrees of turning are no more than a cubic, behind the phase function.
+// mean: the change from frame to frame of `pop` and of `path`; the difference of the two, which is
+// what `pop` changes beyond what `path` shows; and what of the change of `pop` is not a cubic in time,
+// which is what one sees flicker: four degrees of turning are no more than a cubic, behind the phase
+// function.
 //
 // `path` comes as cubics in time from a table, made by this program with TYN_FLICKER_MAKE=FILE from two
 // runs A and B with different random numbers: noise drops out of mean products of A and B.
@@ -304,18 +305,16 @@ static void motion_of(gpu_test *t, motion m)
         fit(&p, &of_pop);
         unfold(&of_pop, &smooth);
         double change = sqrt(product(&p, NULL, &p, NULL)) / mean, off = 0;
-        double beyond = sqrt(fmax(change * change - path * path, 0));
         double difference = sqrt(fmax(product(&p, &a, &p, &b), 0)) / mean;
         double flicker = sqrt(product(&p, &smooth, &p, &smooth)) / mean;
         for (int j = 0; j < VALUES; j++) {
             off += fabs(p.at[0][j] - 0.5 * (a.at[0][j] + b.at[0][j])) / (VALUES * mean);
         }
-        print_message("  %-41s pop %.2f %%, beyond %.2f, difference %.2f, flicker %.2f; "
-                      "rel_l1 of a picture %.1f\n",
-                      settings[i], 100 * change, 100 * beyond, 100 * difference, 100 * flicker,
-                      100 * off);
+        print_message(
+            "  %-42s pop %.2f %%, difference %.2f, not cubic %.2f; rel_l1 of a picture %.1f\n",
+            settings[i], 100 * change, 100 * difference, 100 * flicker, 100 * off);
         assert_true(flicker <= 0.002);
-        assert_true(i > 0 || beyond <= 0.005);
+        assert_true(i >= 2 || difference <= 0.005);
     }
     tyn_scene_finish(scene);
     free(scene);
