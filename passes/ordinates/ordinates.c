@@ -106,13 +106,18 @@ static const tyn_param params_table[] = {
      "light the lattice with the sky's mean and the ordinates with the rest"},
     {"fold", TYN_PARAM_FLOAT, offsetof(tyn_ordinates_params, fold), 1e-4, 0, 2e-3, "",
      "part of all light below which an ordinate is folded into its neighbour"},
-    {"spread", TYN_PARAM_FLOAT, offsetof(tyn_ordinates_params, spread), 0.5, 0.01, 100, "",
-     "how evenly ordinates are placed: uniform weight, in means of the sky"},
+    {"spread", TYN_PARAM_FLOAT, offsetof(tyn_ordinates_params, spread), 2, 0.05, 100, "",
+     "how evenly ordinates are placed: uniform weight, in means of the sky; a quarter if not "
+     "split"},
     {"importance", TYN_PARAM_ENUM, offsetof(tyn_ordinates_params, importance),
      ORDINATES_IMPORTANCE_AUTO, 0, 2, "",
      "weight directions with their importance for the picture; auto: pop-paper does, pop need not",
      (const char *const[]){"off", "on", "auto"}},
 };
+
+// Less the mean of the sky, ordinates carry its contrast, and of that dark regions have as much as
+// bright ones; all its light is worth to be followed closer.
+static const float all_light_spread = 0.25f;
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -137,7 +142,7 @@ static void record(tyn_recorder *r, const void *params)
         .split = p->split,
         .weighted = tyn_rec_has(r, ORDINATES_PORT_IMPORTANCE),
         .fold = p->fold,
-        .spread = p->spread,
+        .spread = p->split ? p->spread : all_light_spread * p->spread,
     };
     struct ordinates_block block = {.count = 0};
     memcpy(block.list, p->fixed, p->num_fixed * sizeof block.list[0]);

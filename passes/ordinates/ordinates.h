@@ -14,11 +14,12 @@ enum { ORDINATES_IMPORTANCE_OFF, ORDINATES_IMPORTANCE_ON, ORDINATES_IMPORTANCE_A
 typedef struct tyn_ordinates_params {
     int32_t count; // regions, 1..256, or 0 if the method has nothing but fixed ones; fewer if there
                    // are too many of those
-    uint32_t split;      // 1: the mean of the sky (env_block.sky) is not in them
-    float fold;          // ordinates below this part of all light are folded into a neighbour
-    float spread;        // see ordinates_args.h
-    int32_t importance; // ORDINATES_IMPORTANCE_*: does the method weight directions with their importance?
-    uint32_t num_fixed;  // set by the method: ready-made ordinates that come first
+    uint32_t split; // 1: the mean of the sky (env_block.sky) is not in them
+    float fold;     // ordinates below this part of all light are folded into a neighbour
+    float spread;   // see ordinates_args.h
+    int32_t
+        importance; // ORDINATES_IMPORTANCE_*: does the method weight directions with their importance?
+    uint32_t num_fixed; // set by the method: ready-made ordinates that come first
     struct ordinate fixed[ORDINATES_MAX_FIXED];
 } tyn_ordinates_params;
 

@@ -42,6 +42,22 @@ void add_corner(vec2 p, float sign, inout vec4 power, inout vec3 moment)
     }
 }
 
+// Where the light that an ordinate carries comes from; all in means of the sky. `outwards`: the integral
+// of the direction.
+//
+// All light: the luminance and its moment, and a trace of even light, so that in the black the
+// region's middle counts. Split: the light less the mean, whose moment is exact as long as it has
+// nearly one sign (r near 1 or -1). Where lighter and darker parts cancel, that moment may point anywhere, and
+// the sum of light and mean decides.
+vec3 direction_of_light(float luminance, vec3 moment, float solid_angle, vec3 outwards)
+{
+    if (args.split == 0u) {
+        return moment + 1e-3 * outwards;
+    }
+    float r = (luminance - solid_angle) / (luminance + solid_angle);
+    return r * (moment - outwards) + (1.0 - r * r) * (moment + outwards);
+}
+
 void main()
 {
     const uint n = gl_GlobalInvocationID.x;
@@ -62,8 +78,8 @@ void main()
         add_corner(vec2(r.to.x, r.from.y), -1.0, power, moment);
         add_corner(r.from, 1.0, power, moment);
         float mean = sums[(SKY_SUMS_HEIGHT + 1) * ORDINATES_ROW - 1u].luminance / (4.0 * SKY_PI);
-        // A trace of even light: where it is black, the region's middle counts.
-        moment = moment / max(mean, 1e-30) + 1e-3 * outwards;
+        moment = direction_of_light(power.w / max(mean, 1e-30), moment / max(mean, 1e-30),
+                                    solid_angle, outwards);
     }
     vec3 light = environment.radiance * power.rgb;
     light -= args.split != 0u ? environment.sky * solid_angle : vec3(0.0);
