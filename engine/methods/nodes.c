@@ -37,7 +37,7 @@ tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method)
     return TYN_OK;
 }
 
-uint32_t tyn_method_suns(const tyn_job *job)
+uint32_t tyn_method_suns(const tyn_job *job, bool of_map)
 {
     const tyn_frame_scene *frame = job->frame;
     uint32_t lamps = frame->num_lights - frame->num_suns;
@@ -45,12 +45,8 @@ uint32_t tyn_method_suns(const tyn_job *job)
         tyn_method_warn(job, "%u point or spot light%s left out: only directional lights are done",
                         lamps, lamps > 1 ? "s are" : " is");
     }
-    if (frame->num_suns > TYN_METHOD_MAX_SUNS) {
-        tyn_method_warn(job, "%u directional lights: the first %d are used", frame->num_suns,
-                        TYN_METHOD_MAX_SUNS);
-        return TYN_METHOD_MAX_SUNS;
-    }
-    return frame->num_suns;
+    uint32_t suns = frame->num_suns + (of_map ? frame->num_map_suns : 0);
+    return suns < TYN_METHOD_MAX_SUNS ? suns : TYN_METHOD_MAX_SUNS;
 }
 
 tyn_result tyn_add_medium(tyn_graph *g, const tyn_job *job, tyn_media_refs *media)
@@ -95,7 +91,7 @@ tyn_result tyn_add_beams(tyn_graph *g, const tyn_job *job, const tyn_media_refs 
     bool coefficients = block->mode == TYN_MEDIUM_COEFFICIENTS;
     tyn_beam_params params;
     tyn_settings_params(job->settings, &tyn_pass_beam, &params);
-    tyn_beam_plan(&params, block, job->frame->lights, num_suns);
+    tyn_beam_plan(&params, block, job->frame->suns, num_suns);
 
     tyn_ref refs[TYN_MAX_PORTS] = {
         [BEAM_PORT_MEDIUM] = job->refs.medium,
@@ -122,7 +118,7 @@ static bool sunlight_enters_through_medium(const tyn_frame_scene *frame, uint32_
     uint32_t lit = 0;
     for (uint32_t n = 0; n < num_suns; n++) {
         for (int a = 0; a < 3; a++) {
-            float d = frame->lights[n].direction[a];
+            float d = frame->suns[n].direction[a];
             lit |= d > 0.0f ? 1u << (2 * a) : d < 0.0f ? 2u << (2 * a) : 0;
         }
     }
@@ -225,7 +221,7 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
         [RAYMARCH_PORT_EMISSION] = in->media.emission,
         [RAYMARCH_PORT_DISTANCE] = in->media.distance,
         [RAYMARCH_PORT_SHAPES] = job->refs.shapes,
-        [RAYMARCH_PORT_LIGHTS] = job->refs.lights,
+        [RAYMARCH_PORT_LIGHTS] = job->refs.suns,
         [RAYMARCH_PORT_BEAMS] = in->beams.beams,
         [RAYMARCH_PORT_COLUMN] = in->beams.column,
         [RAYMARCH_PORT_TAU_A] = in->beams.tau_a,
@@ -236,6 +232,7 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
         [RAYMARCH_PORT_CAMERA] = job->refs.camera,
         [RAYMARCH_PORT_ENVIRONMENT] = job->refs.environment,
         [RAYMARCH_PORT_ENV_MAP] = job->refs.env_map,
+        [RAYMARCH_PORT_GLOW] = in->glow,
         [RAYMARCH_PORT_HOST_DEPTH] = job->refs.depth,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_raymarch, &params, refs);

@@ -24,6 +24,7 @@ typedef struct tyn_picture_inputs {
     tyn_beam_refs beams;
     tyn_ref lut, lut_block; // given: all forward orders of the suns, else the first
     tyn_ref inscatter;
+    tyn_ref glow; // the map scattered forward (env_glow)
     uint32_t num_suns;
     float cell;       // of the lattice behind inscatter, m; 0 = none
     bool one_channel; // inscatter has one channel, to be multiplied with tint
@@ -44,9 +45,9 @@ tyn_result tyn_add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance);
     (TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_SINGLE |       \
      TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_DISPLAY | TYN_OUTPUT_COMPOSITE)
 
-// Suns that the method treats, at most TYN_METHOD_MAX_SUNS; one warning for each kind of light that is
-// left out.
-uint32_t tyn_method_suns(const tyn_job *job);
+// Suns with an aligned grid, the first of frame->suns: at most TYN_METHOD_MAX_SUNS; those of the
+// environment's map among them if `of_map`. Warns of lamps, which are left out.
+uint32_t tyn_method_suns(const tyn_job *job, bool of_map);
 
 // A line among the report's warnings.
 void tyn_method_warn(const tyn_job *job, const char *format, ...) TYN_PRINTF(2, 3);

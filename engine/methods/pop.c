@@ -1,12 +1,19 @@
 // pop.c -- method "pop": principal ordinates with one lattice for everything that has scattered.
 //
 // The light of each sun that has not scattered, and what it scattered forward, is followed exactly in
-// the sun's own aligned grid; what has left the beam goes into one solve on a lattice of cubic cells for
-// all lights together, seen from the camera by merge and raymarch. A node that a scene does not need
-// is not declared.
-#include "methods/nodes.h"
+// the sun's own aligned grid. An environment is split: its suns are such suns; its mean enters the
+// lattice from all sides; the rest shines along principal ordinates, and what a forward scattering
+// medium shows of it is smeared for each pixel (glow). What has left the beams and the ordinates goes
+// into one solve on a lattice of cubic cells for all lights together, seen from the camera by merge
+// and raymarch. A node that a scene does not need is not declared.
+#include "methods/sky.h"
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
+#include "passes/columns/columns.h"
+#include "passes/env_glow/env_glow.h"
+#include "passes/env_importance/env_importance.h"
+#include "passes/importance/importance.h"
+#include "passes/ordinates/ordinates.h"
 #include "passes/scatter_lut/scatter_lut.h"
 #include "passes/lattice/lattice.h"
 #include "passes/merge/merge.h"
@@ -27,8 +34,10 @@ static const float thin_depth = 0.05f;
 typedef struct field {
     tyn_lattice_shape shape;
     tyn_picture_inputs picture;
-    tyn_ref cells, source, power, sky, moments, leaks;
-    bool lit_by_environment;
+    tyn_sky_refs sky;
+    tyn_ref tms, columns;
+    tyn_ref cells, source, power, moments, leaks;
+    bool from_all_sides; // the mean of the environment lights the medium
 } field;
 
 static bool any_positive(const float v[3])
@@ -71,18 +80,18 @@ static bool is_thin(const tyn_frame_scene *frame)
 }
 
 // One channel is solved if medium and light allow it.
-static void choose_channels(field *f, const tyn_frame_scene *frame, uint32_t num_suns)
+static void choose_channels(field *f, const tyn_frame_scene *frame)
 {
-    float colors[TYN_METHOD_MAX_SUNS + 2][3];
+    float colors[TYN_LIGHTS_MAX + 2][3];
     uint32_t count = 0;
-    for (uint32_t i = 0; i < num_suns; i++) {
-        memcpy(colors[count++], frame->lights[i].color, sizeof colors[0]);
+    for (uint32_t i = 0; i < frame->num_suns + frame->num_map_suns; i++) {
+        memcpy(colors[count++], frame->suns[i].color, sizeof colors[0]);
     }
-    memcpy(colors[count++], frame->environment.mean, sizeof colors[0]);
+    memcpy(colors[count++], frame->environment.sky, sizeof colors[0]);
     memcpy(colors[count++], frame->medium.emission, sizeof colors[0]);
     // A map may have another colour in every direction.
-    bool one = tyn_lattice_tint((const float(*)[3])colors, count, f->shape.tint) &&
-               !(f->lit_by_environment && frame->environment.has_map);
+    bool one =
+        tyn_lattice_tint((const float(*)[3])colors, count, f->shape.tint) && !f->sky.sky.resource;
     f->shape.channels = one && frame->grey ? 1 : 3;
     if (f->shape.channels == 3) {
         f->shape.tint[0] = f->shape.tint[1] = f->shape.tint[2] = 1.0f;
@@ -101,10 +110,28 @@ static tyn_result add_lut(tyn_graph *g, const tyn_job *job, field *f)
     for (uint32_t n = 0; n < params.num_suns; n++) {
         params.mean_cosine[n] = job->frame->suns[n].mean_cosine;
     }
+    params.tms = f->sky.ordinates.resource != 0;
     tyn_ref refs[TYN_MAX_PORTS] = {{0}};
     tyn_result result = tyn_graph_add(g, &tyn_pass_scatter_lut, &params, refs);
+    f->tms = refs[SCATTER_LUT_PORT_TMS];
     f->picture.lut = refs[SCATTER_LUT_PORT_LUT];
     f->picture.lut_block = refs[SCATTER_LUT_PORT_LUT_BLOCK];
+    return result;
+}
+
+// What the map looks like behind a medium that scatters forward.
+static tyn_result add_glow(tyn_graph *g, const tyn_job *job, field *f)
+{
+    const struct medium_block *m = &job->frame->medium;
+    float largest = largest_g(job);
+    tyn_env_glow_params params;
+    tyn_settings_params(job->settings, &tyn_pass_env_glow, &params);
+    for (int c = 0; c < 3; c++) {
+        params.g[c] = m->mode == TYN_MEDIUM_DENSITY ? m->g[c] : largest;
+    }
+    tyn_ref refs[TYN_MAX_PORTS] = {[ENV_GLOW_PORT_SKY] = f->sky.sky};
+    tyn_result result = tyn_graph_add(g, &tyn_pass_env_glow, &params, refs);
+    f->picture.glow = refs[ENV_GLOW_PORT_GLOW];
     return result;
 }
 
@@ -137,7 +164,7 @@ static tyn_result add_source(tyn_graph *g, const tyn_job *job, field *f)
     const tyn_beam_refs *beams = &f->picture.beams;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [LATTICE_SOURCE_PORT_MEDIUM] = job->refs.medium,
-        [LATTICE_SOURCE_PORT_LIGHTS] = job->refs.lights,
+        [LATTICE_SOURCE_PORT_LIGHTS] = job->refs.suns,
         [LATTICE_SOURCE_PORT_CELLS] = f->cells,
         [LATTICE_SOURCE_PORT_DENSITY] = f->picture.media.density,
         [LATTICE_SOURCE_PORT_G] = f->picture.media.g,
@@ -152,16 +179,26 @@ static tyn_result add_source(tyn_graph *g, const tyn_job *job, field *f)
     return result;
 }
 
-static tyn_result add_sky(tyn_graph *g, const tyn_job *job, field *f)
+static tyn_result add_columns(tyn_graph *g, const tyn_job *job, field *f)
 {
-    tyn_lattice_sky_params params;
-    tyn_settings_params(job->settings, &tyn_pass_lattice_sky, &params);
+    tyn_extent dims = tyn_lattice_dims(f->shape.extent, f->shape.cells);
+    tyn_columns_params params;
+    tyn_settings_params(job->settings, &tyn_pass_columns, &params);
+    memcpy(params.extent, f->shape.extent, sizeof params.extent);
+    params.dims[0] = dims.x;
+    params.dims[1] = dims.y;
+    params.dims[2] = dims.z;
+    params.mode = job->frame->medium.mode;
+    params.count = f->sky.count;
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [LATTICE_SKY_PORT_ENVIRONMENT] = job->refs.environment,
-        [LATTICE_SKY_PORT_ENV_MAP] = job->refs.env_map,
+        [COLUMNS_PORT_MEDIUM] = job->refs.medium,
+        [COLUMNS_PORT_DENSITY] = f->picture.media.density,
+        [COLUMNS_PORT_SIGMA_A] = f->picture.media.sigma_a,
+        [COLUMNS_PORT_G] = f->picture.media.g,
+        [COLUMNS_PORT_ORDINATES] = f->sky.ordinates,
     };
-    tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_sky, &params, refs);
-    f->sky = refs[LATTICE_SKY_PORT_SKY];
+    tyn_result result = tyn_graph_add(g, &tyn_pass_columns, &params, refs);
+    f->columns = refs[COLUMNS_PORT_COLUMNS];
     return result;
 }
 
@@ -190,7 +227,6 @@ static tyn_result add_recall(tyn_graph *g, const tyn_job *job, const field *f, t
         [LATTICE_RECALL_PORT_MEMORY] = m->history,
         [LATTICE_RECALL_PORT_CELLS] = solve[LATTICE_PORT_CELLS],
         [LATTICE_RECALL_PORT_SOURCE] = solve[LATTICE_PORT_SOURCE],
-        [LATTICE_RECALL_PORT_SKY] = solve[LATTICE_PORT_SKY],
         [LATTICE_RECALL_PORT_ENVIRONMENT] = solve[LATTICE_PORT_ENVIRONMENT],
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_recall, &m->params, refs);
@@ -213,6 +249,32 @@ static tyn_result add_keep(tyn_graph *g, const field *f, const memory *m)
     return result;
 }
 
+static tyn_result add_ordinates(tyn_graph *g, const tyn_job *job, field *f)
+{
+    tyn_lattice_ordinates_params params;
+    tyn_settings_params(job->settings, &tyn_pass_lattice_ordinates, &params);
+    params.shape = f->shape;
+    params.mode = job->frame->medium.mode;
+    params.grey = job->frame->grey;
+    params.count = f->sky.count;
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [LATTICE_ORDINATES_PORT_MEDIUM] = job->refs.medium,
+        [LATTICE_ORDINATES_PORT_ORDINATES] = f->sky.ordinates,
+        [LATTICE_ORDINATES_PORT_COLUMNS] = f->columns,
+        [LATTICE_ORDINATES_PORT_CELLS] = f->cells,
+        [LATTICE_ORDINATES_PORT_SUNLIGHT] = f->source,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_ordinates, &params, refs);
+    f->source = refs[LATTICE_ORDINATES_PORT_SOURCE];
+    return result;
+}
+
+// What the lattice is given of the environment: its mean from all sides.
+static tyn_ref environment_of(const tyn_job *job, const field *f)
+{
+    return f->from_all_sides ? job->refs.environment : (tyn_ref){0};
+}
+
 static tyn_result add_solve(tyn_graph *g, const tyn_job *job, field *f)
 {
     tyn_lattice_params params;
@@ -221,7 +283,7 @@ static tyn_result add_solve(tyn_graph *g, const tyn_job *job, field *f)
     tyn_ref refs[TYN_MAX_PORTS] = {
         [LATTICE_PORT_CELLS] = f->cells,
         [LATTICE_PORT_SOURCE] = f->source,
-        [LATTICE_PORT_SKY] = f->sky,
+        [LATTICE_PORT_ENVIRONMENT] = environment_of(job, f),
     };
     memory last = {0};
     tyn_result result = params.warm ? add_recall(g, job, f, refs, &last) : TYN_OK;
@@ -248,6 +310,12 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, field *f)
         [MERGE_PORT_CELLS] = f->cells,
         [MERGE_PORT_MOMENTS] = f->moments,
     };
+    if (f->sky.ordinates.resource) {
+        refs[MERGE_PORT_ORDINATES] = f->sky.ordinates;
+        refs[MERGE_PORT_COLUMNS] = f->columns;
+        refs[MERGE_PORT_TMS] = f->tms;
+        refs[MERGE_PORT_LUT_BLOCK] = f->picture.lut_block;
+    }
     tyn_result result = tyn_graph_add(g, &tyn_pass_merge, &params, refs);
     tyn_job_counters(g, job, "merge", refs[MERGE_PORT_COUNTERS]);
     f->picture.inscatter = refs[MERGE_PORT_INSCATTER];
@@ -280,12 +348,10 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, field *f)
     params.channels = f->shape.channels;
     memcpy(params.tint, f->shape.tint, sizeof params.tint);
     params.num_suns = f->picture.num_suns;
+    params.num_ordinates = f->sky.count;
     params.scattered_only = job->view->scattered_only;
     for (int axis = 0; axis < 3; axis++) {
         memcpy(params.world[axis], job->frame->m_from_world + 4 * axis, sizeof params.world[axis]);
-    }
-    if (params.scattered_only && f->lit_by_environment) {
-        tyn_method_warn(job, "probe: the environment's light counts as scattered, all of it");
     }
     uint32_t outside = points_outside(job);
     if (outside > 0) {
@@ -296,10 +362,17 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, field *f)
     }
     const tyn_beam_refs *beams = &f->picture.beams;
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [PROBE_PORT_MEDIUM] = job->refs.medium, [PROBE_PORT_LIGHTS] = job->refs.lights,
-        [PROBE_PORT_MOMENTS] = f->moments,      [PROBE_PORT_BEAMS] = beams->beams,
-        [PROBE_PORT_COLUMN] = beams->column,    [PROBE_PORT_TAU_A] = beams->tau_a,
-        [PROBE_PORT_TAU_P] = beams->tau_p,      [PROBE_PORT_POINTS] = job->refs.points,
+        [PROBE_PORT_MEDIUM] = job->refs.medium,
+        [PROBE_PORT_LIGHTS] = job->refs.suns,
+        [PROBE_PORT_MOMENTS] = f->moments,
+        [PROBE_PORT_BEAMS] = beams->beams,
+        [PROBE_PORT_COLUMN] = beams->column,
+        [PROBE_PORT_TAU_A] = beams->tau_a,
+        [PROBE_PORT_TAU_P] = beams->tau_p,
+        [PROBE_PORT_POINTS] = job->refs.points,
+        [PROBE_PORT_ENVIRONMENT] = environment_of(job, f),
+        [PROBE_PORT_ORDINATES] = f->sky.ordinates,
+        [PROBE_PORT_COLUMNS] = f->columns,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_probe, &params, refs);
     if (result == TYN_OK) {
@@ -321,10 +394,15 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, field *f)
     memcpy(params.tint, f->shape.tint, sizeof params.tint);
     params.num_suns = f->picture.num_suns;
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [BALANCE_PORT_MEDIUM] = job->refs.medium, [BALANCE_PORT_SKY] = f->sky,
-        [BALANCE_PORT_LIGHTS] = job->refs.lights, [BALANCE_PORT_CELLS] = f->cells,
-        [BALANCE_PORT_MOMENTS] = f->moments,      [BALANCE_PORT_SOURCE] = f->source,
-        [BALANCE_PORT_POWER] = f->power,          [BALANCE_PORT_LEAKS] = f->leaks,
+        [BALANCE_PORT_MEDIUM] = job->refs.medium,
+        [BALANCE_PORT_ENVIRONMENT] = environment_of(job, f),
+        [BALANCE_PORT_ORDINATES] = f->sky.ordinates,
+        [BALANCE_PORT_LIGHTS] = job->refs.suns,
+        [BALANCE_PORT_CELLS] = f->cells,
+        [BALANCE_PORT_MOMENTS] = f->moments,
+        [BALANCE_PORT_SOURCE] = f->source,
+        [BALANCE_PORT_POWER] = f->power,
+        [BALANCE_PORT_LEAKS] = f->leaks,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_balance, &params, refs);
     if (result == TYN_OK) {
@@ -335,27 +413,52 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, field *f)
 
 // Runs the steps in order until one fails.
 typedef tyn_result (*step_fn)(tyn_graph *g, const tyn_job *job, field *f);
+typedef struct step {
+    bool wanted;
+    step_fn add;
+} step;
 
-static tyn_result add_lattice(tyn_graph *g, const tyn_job *job, field *f)
+static tyn_result add_steps(tyn_graph *g, const tyn_job *job, field *f, const step *steps, size_t n)
 {
-    const bool suns = f->picture.num_suns > 0, picture = job->outputs & TYN_PICTURE_OUTPUTS;
-    const struct {
-        bool wanted;
-        step_fn add;
-    } steps[] = {
-        {true, add_cells},
-        {suns, add_source},
-        {f->lit_by_environment, add_sky},
-        {true, add_solve},
-        {picture, add_merge},
-        {(job->outputs & TYN_OUTPUT_PROBE) != 0, add_probe},
-        {(job->outputs & TYN_OUTPUT_BALANCE) != 0, add_balance},
-    };
     tyn_result result = TYN_OK;
-    for (size_t i = 0; result == TYN_OK && i < sizeof steps / sizeof steps[0]; i++) {
+    for (size_t i = 0; result == TYN_OK && i < n; i++) {
         result = steps[i].wanted ? steps[i].add(g, job, f) : TYN_OK;
     }
     return result;
+}
+#define ADD_STEPS(g, job, f, steps) add_steps(g, job, f, steps, sizeof steps / sizeof steps[0])
+
+static tyn_result add_lights(tyn_graph *g, const tyn_job *job, field *f)
+{
+    tyn_result result =
+        tyn_add_beams(g, job, &f->picture.media, f->picture.num_suns, &f->picture.beams);
+    return result == TYN_OK
+               ? tyn_add_sky(g, job, &f->picture.media, f->picture.num_suns, true, &f->sky)
+               : result;
+}
+
+static tyn_result add_field(tyn_graph *g, const tyn_job *job, field *f)
+{
+    const tyn_frame_scene *frame = job->frame;
+    tyn_lattice_params lattice;
+    tyn_settings_params(job->settings, &tyn_pass_lattice, &lattice);
+    memcpy(f->shape.extent, frame->medium.extent, sizeof f->shape.extent);
+    f->shape.cells = lattice.shape.cells;
+    choose_channels(f, frame);
+    float longest = fmaxf(f->shape.extent[0], fmaxf(f->shape.extent[1], f->shape.extent[2]));
+    f->picture.cell = longest / (float)f->shape.cells;
+    const bool ordinates = f->sky.ordinates.resource != 0;
+    const step steps[] = {
+        {true, add_cells},
+        {ordinates, add_columns},
+        {f->picture.num_suns, add_source},
+        {ordinates, add_ordinates},
+        {true, add_solve},
+        {job->outputs & TYN_PICTURE_OUTPUTS, add_merge},
+        {job->outputs & TYN_OUTPUT_PROBE, add_probe},
+        {job->outputs & TYN_OUTPUT_BALANCE, add_balance},
+    };
+    return ADD_STEPS(g, job, f, steps);
 }
 
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
@@ -370,44 +473,51 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         return tyn_add_picture(g, job, NULL);
     }
 
-    field f = {.picture.num_suns = tyn_method_suns(job)};
-    f.lit_by_environment = any_positive(frame->environment.mean);
-    if (f.lit_by_environment && frame->environment.has_map) {
-        tyn_method_warn(job,
-                        "the environment lights the medium from 14 directions; it is seen whole");
-    }
+    field f = {.picture.num_suns = tyn_method_suns(job, true)};
     result = tyn_add_medium(g, job, &f.picture.media);
     if (result == TYN_OK) {
-        result = tyn_add_beams(g, job, &f.picture.media, f.picture.num_suns, &f.picture.beams);
+        result = add_lights(g, job, &f);
     }
-    if (result == TYN_OK && f.picture.num_suns && picture) {
-        result = add_lut(g, job, &f);
-    }
-    bool scattered_light = f.picture.num_suns || f.lit_by_environment || frame->emissive;
-    bool solve = scattered_light && (f.lit_by_environment || !is_thin(frame));
-    if (result == TYN_OK && (solve || job->outputs & field_outputs)) {
-        tyn_lattice_params lattice;
-        tyn_settings_params(job->settings, &tyn_pass_lattice, &lattice);
-        memcpy(f.shape.extent, frame->medium.extent, sizeof f.shape.extent);
-        f.shape.cells = lattice.shape.cells;
-        choose_channels(&f, frame, f.picture.num_suns);
-        float longest = fmaxf(f.shape.extent[0], fmaxf(f.shape.extent[1], f.shape.extent[2]));
-        f.picture.cell = longest / (float)f.shape.cells;
-        f.picture.mean_in_field = f.lit_by_environment;
-        result = add_lattice(g, job, &f);
+    f.from_all_sides =
+        any_positive(frame->environment.sky) && (f.sky.split || !f.sky.ordinates.resource);
+    f.picture.mean_in_field = f.from_all_sides;
+    bool lit_by_environment = f.from_all_sides || f.sky.ordinates.resource;
+    bool scattered_light = f.picture.num_suns || lit_by_environment || frame->emissive;
+    bool solve = scattered_light && (lit_by_environment || !is_thin(frame));
+    const step steps[] = {
+        {picture && (f.picture.num_suns || f.sky.ordinates.resource), add_lut},
+        {picture && f.sky.sky.resource, add_glow},
+        {solve || (job->outputs & field_outputs), add_field},
+    };
+    if (result == TYN_OK) {
+        result = ADD_STEPS(g, job, &f, steps);
     }
     return result == TYN_OK && picture ? tyn_add_picture(g, job, &f.picture) : result;
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,         &tyn_pass_beam,
-    &tyn_pass_scatter_lut,    &tyn_pass_lattice_cells,
-    &tyn_pass_lattice_source, &tyn_pass_lattice_sky,
-    &tyn_pass_lattice_recall, &tyn_pass_lattice,
-    &tyn_pass_lattice_keep,   &tyn_pass_merge,
-    &tyn_pass_raymarch,       &tyn_pass_composite,
-    &tyn_pass_tonemap,        &tyn_pass_probe,
-    &tyn_pass_balance,        NULL,
+    &tyn_pass_medium,
+    &tyn_pass_beam,
+    &tyn_pass_env_importance,
+    &tyn_pass_importance,
+    &tyn_pass_ordinates,
+    &tyn_pass_scatter_lut,
+    &tyn_pass_env_glow,
+    &tyn_pass_lattice_cells,
+    &tyn_pass_columns_average,
+    &tyn_pass_columns,
+    &tyn_pass_lattice_source,
+    &tyn_pass_lattice_ordinates,
+    &tyn_pass_lattice_recall,
+    &tyn_pass_lattice,
+    &tyn_pass_lattice_keep,
+    &tyn_pass_merge,
+    &tyn_pass_raymarch,
+    &tyn_pass_composite,
+    &tyn_pass_tonemap,
+    &tyn_pass_probe,
+    &tyn_pass_balance,
+    NULL,
 };
 
 const tyn_method tyn_method_pop = {

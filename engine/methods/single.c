@@ -20,7 +20,11 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         0.0f) {
         tyn_method_warn(job, "the environment is seen, but does not light the medium");
     }
-    tyn_picture_inputs in = {.num_suns = tyn_method_suns(job)};
+    tyn_picture_inputs in = {.num_suns = tyn_method_suns(job, false)};
+    if (job->frame->num_suns > in.num_suns) {
+        tyn_method_warn(job, "%u directional lights: the first %u are used", job->frame->num_suns,
+                        in.num_suns);
+    }
     result = tyn_add_medium(g, job, &in.media);
     if (result == TYN_OK) {
         result = tyn_add_beams(g, job, &in.media, in.num_suns, &in.beams);
