@@ -179,6 +179,30 @@ static tyn_result add_source(tyn_graph *g, const tyn_job *job, field *f)
     return result;
 }
 
+// The medium as columns see it: averaged if it is much finer than they are.
+static tyn_result average_medium(tyn_graph *g, const tyn_job *job, const uint32_t dims[3],
+                                 tyn_media_refs *media)
+{
+    const struct medium_block *m = &job->frame->medium;
+    tyn_columns_average_params params;
+    tyn_settings_params(job->settings, &tyn_pass_columns_average, &params);
+    params.mode = m->mode;
+    if (!tyn_columns_average_size(m, dims, params.size)) {
+        return TYN_OK;
+    }
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [COLUMNS_AVERAGE_PORT_DENSITY] = media->density,
+        [COLUMNS_AVERAGE_PORT_SIGMA_A] = media->sigma_a,
+        [COLUMNS_AVERAGE_PORT_G] = media->g,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_columns_average, &params, refs);
+    media->density = m->mode == TYN_MEDIUM_COEFFICIENTS ? refs[COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S]
+                                                        : refs[COLUMNS_AVERAGE_PORT_MEAN_DENSITY];
+    media->sigma_a = refs[COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A];
+    media->g = refs[COLUMNS_AVERAGE_PORT_MEAN_G];
+    return result;
+}
+
 static tyn_result add_columns(tyn_graph *g, const tyn_job *job, field *f)
 {
     tyn_extent dims = tyn_lattice_dims(f->shape.extent, f->shape.cells);
@@ -190,14 +214,19 @@ static tyn_result add_columns(tyn_graph *g, const tyn_job *job, field *f)
     params.dims[2] = dims.z;
     params.mode = job->frame->medium.mode;
     params.count = f->sky.count;
+    tyn_media_refs media = f->picture.media;
+    tyn_result result = average_medium(g, job, params.dims, &media);
+    if (result != TYN_OK) {
+        return result;
+    }
     tyn_ref refs[TYN_MAX_PORTS] = {
         [COLUMNS_PORT_MEDIUM] = job->refs.medium,
-        [COLUMNS_PORT_DENSITY] = f->picture.media.density,
-        [COLUMNS_PORT_SIGMA_A] = f->picture.media.sigma_a,
-        [COLUMNS_PORT_G] = f->picture.media.g,
+        [COLUMNS_PORT_DENSITY] = media.density,
+        [COLUMNS_PORT_SIGMA_A] = media.sigma_a,
+        [COLUMNS_PORT_G] = media.g,
         [COLUMNS_PORT_ORDINATES] = f->sky.ordinates,
     };
-    tyn_result result = tyn_graph_add(g, &tyn_pass_columns, &params, refs);
+    result = tyn_graph_add(g, &tyn_pass_columns, &params, refs);
     f->columns = refs[COLUMNS_PORT_COLUMNS];
     return result;
 }
