@@ -112,7 +112,9 @@ void main()
             }
             if (ch < num_transmittances) {
                 for (int i = 0; i < 2; i++) {
-                    float tau = extinction[ch] * centre[i];
+                    // Where the centre of a thick cell happens to be in the open, light still loses no
+                    // more in it than there is.
+                    float tau = max(extinction[ch] * centre[i], least[i][ch]);
                     float x = min(max(extinction[ch] * change[i], least[i][ch]), tau);
                     x = enters[i] ? tau : x;
                     t[i] = mean_transmittance(tau, x);

@@ -81,6 +81,7 @@ static void expected(const twin *w, uint32_t ch, int cell, double sum[4])
             least = fmin(least, way);
         }
         double own = dx * (w->cells[ch][cell][0] + w->cells[ch][cell][1]);
+        tau = fmax(tau, 0.5 * own);
         double x = enters ? tau : fmin(fmax(0.5 * sqrt(squares), 0.5 * own), tau);
         double light = exp(-tau) * (x > 1e-6 ? sinh(x) / x : 1);
         light *= w->channels == 1 ? (e[0] * t[0] + e[1] * t[1] + e[2] * t[2]) /
