@@ -153,8 +153,9 @@ static void media(void **state)
                                      .parallel = turn % 7 == 0,
                                      .two = turn % 6 == 0,
                                      .strength = 1,
-                                     // Out of a map of at most 1, no more than 1, and a bit.
-                                     .most = turn % 2 ? 1.5 : 0});
+                                     // Out of a map of at most 0.5, hardly more; but backward peaks
+                                     // that cells do not resolve are summed too high.
+                                     .most = turn % 2 ? (gs[j] < -0.9f ? 5 : 1) : 0});
         }
     }
 }
