@@ -221,13 +221,13 @@ static tyn_result declare(tyn_builder *b, const void *data)
     if (p->keep_light) {
         tyn_build_image(b, PORT(LIGHT), tiled, 1);
     }
-    if (small.x) {
-        tyn_build_image(b, PORT(SMALL), small, 1);
-    }
     if (small.x && p->mode == TYN_MEDIUM_COEFFICIENTS) {
-        tyn_build_format(b, PORT(SMALL), VK_FORMAT_R32G32B32A32_SFLOAT);
+        tyn_build_format(b, PORT(SMALL), VK_FORMAT_R32G32B32A32_SFLOAT); // before the image is made
         tyn_build_image(b, PORT(SMALL_SIGMA_A), small, 1);
         tyn_build_image(b, PORT(SMALL_G), small, 1);
+    }
+    if (small.x) {
+        tyn_build_image(b, PORT(SMALL), small, 1);
     }
     return TYN_OK;
 }

@@ -16,7 +16,8 @@ enum { MAX_SUNS = 2 };
 
 typedef struct setup {
     struct medium_block medium;
-    const float *density;
+    const float *density;     // or sigma_s, RGBA, with the two below
+    const float *sigma_a, *g; // or NULL
     struct light_block suns[MAX_SUNS];
     struct camera_block camera;
     struct ordinates_block ordinates; // behind the suns
@@ -110,8 +111,13 @@ static outcome run(gpu_test *t, const setup *s)
     refs[PORT(MEDIUM)] = gpu_buffer(t, "medium", &s->medium, sizeof s->medium);
     refs[PORT(ORDINATES)] = gpu_buffer(t, "ordinates", &list, sizeof list);
     refs[PORT(CAMERA)] = gpu_buffer(t, "camera", &s->camera, sizeof s->camera);
-    refs[PORT(DENSITY)] = gpu_image(t, "density", TYN_IMAGE_3D,
-                                    (tyn_extent){size[0], size[1], size[2]}, 1, s->density);
+    tyn_extent texels = {size[0], size[1], size[2]};
+    int channels = s->params.mode == TYN_MEDIUM_COEFFICIENTS ? 4 : 1;
+    refs[PORT(DENSITY)] = gpu_image(t, "density", TYN_IMAGE_3D, texels, channels, s->density);
+    if (s->sigma_a) {
+        refs[PORT(SIGMA_A)] = gpu_image(t, "sigma_a", TYN_IMAGE_3D, texels, 4, s->sigma_a);
+        refs[PORT(G)] = gpu_image(t, "g", TYN_IMAGE_3D, texels, 4, s->g);
+    }
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_propagate_rect, &params, refs), TYN_OK);
     static const int ports[] = {PORT(GRIDS), PORT(CELLS), PORT(STATE), PORT(SUM)};
     for (int i = 0; i < 4; i++) {
@@ -469,6 +475,70 @@ static void grids_span_the_medium(void **state)
     }
 }
 
+// Where the medium is much finer than the cells they are made from one shrunk to suit: with the same mean
+// coefficients.
+static void shrunk_medium(void **state)
+{
+    enum { X = 40, Y = 30, Z = 22, VOXELS = X * Y * Z, C = 6 };
+    static float density[VOXELS], sigma_s[4 * VOXELS], sigma_a[4 * VOXELS], g[4 * VOXELS];
+    setup s = {.suns = {{.color = {1, 1, 1}, .direction = {0.48f, 0.6f, 0.64f}}},
+               .num_suns = 1,
+               .camera = {.orthographic = 1, .forward = {0, 0, -1}},
+               .medium = {.sigma_s = {2, 5, 9}, .sigma_a = {3, 2, 1}, .g = {0.8f, 0, -0.3f}}};
+    double sums[3][3] = {{0}}; // sigma_s, sigma_a, sigma_s g of the voxels
+    srand(5);
+    for (int q = 0; q < VOXELS; q++) {
+        density[q] = (float)(rand() % 1000) * 1e-3f;
+        for (int c = 0; c < 4; c++) {
+            sigma_s[4 * q + c] = (float)(rand() % 1000) * 1e-3f;
+            sigma_a[4 * q + c] = (float)(rand() % 1000) * 1e-3f;
+            g[4 * q + c] = q % X < X / 2 ? 0.9f : 0.1f;
+        }
+    }
+    tyn_pass_defaults(&tyn_pass_propagate_rect, &s.params);
+    s.params.cells = C;
+    s.params.iterations = 1;
+    s.params.channels = 3;
+    for (uint32_t mode = 0; mode < 2; mode++) {
+        set_medium(&s, (float[]){1, 0.75f, 0.55f}, (uint32_t[]){X, Y, Z}, mode ? sigma_s : density);
+        s.sigma_a = mode ? sigma_a : NULL;
+        s.g = mode ? g : NULL;
+        s.params.mode = mode;
+        memcpy(s.params.extent, s.medium.extent, sizeof s.params.extent);
+        memcpy(s.params.size, s.medium.size, sizeof s.params.size);
+        memset(sums, 0, sizeof sums);
+        const double voxel = 1.0 / (40 * 40 * 40);
+        for (int q = 0; q < VOXELS; q++) {
+            for (int c = 0; c < 3; c++) {
+                double scattering = mode ? sigma_s[4 * q + c] : density[q] * s.medium.sigma_s[c];
+                sums[0][c] += voxel * scattering;
+                sums[1][c] +=
+                    voxel * (mode ? sigma_a[4 * q + c] : density[q] * s.medium.sigma_a[c]);
+                sums[2][c] += voxel * scattering * (mode ? g[4 * q + c] : s.medium.g[c]);
+            }
+        }
+        outcome o = run(*state, &s);
+        double area = o.grids[0].cell * o.grids[0].cell, worst = 0;
+        for (int c = 0; c < 3; c++) {
+            double found[3] = {0};
+            for (int q = c * C * C * C; q < (c + 1) * C * C * C; q++) {
+                const float *cell = o.cells[q].c;
+                found[0] += area * cell[0];
+                found[1] += area * cell[1];
+                found[2] += area * cell[0] * cell[2];
+            }
+            for (int i = 0; i < 3; i++) {
+                double difference = fabs(found[i] - sums[i][c]);
+                worst = fmax(worst, difference / fmax(fabs(sums[i][c]), 1e-3));
+                assert_true(isfinite(found[i]));
+            }
+        }
+        print_message("mode %u: sums over cells differ from those over voxels by %.1e\n", mode,
+                      worst);
+        assert_true(worst < 0.03);
+    }
+}
+
 // The six fractions sum to 1: one cell of light in the middle, all of it is in its neighbours after one
 // hop, whatever its mean cosine.
 static void fractions_sum_to_one(void **state)
@@ -558,6 +628,7 @@ int main(void)
         cmocka_unit_test(colour_of_the_light),
         cmocka_unit_test(ordinates),
         cmocka_unit_test(batches),
+        cmocka_unit_test(shrunk_medium),
         cmocka_unit_test(many_ordinates),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
