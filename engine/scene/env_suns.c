@@ -291,9 +291,9 @@ static excess_sum sum_excess(const latlong *m, const double centre[3], double ra
 }
 
 // Moves s->centre to the spot's middle; false if there is no sun.
-static bool find_spot(const latlong *m, double least, spot *s)
+static bool find_spot(const latlong *m, double least, int rounds, spot *s)
 {
-    for (int round = 0; round < 4; round++) {
+    for (int round = 0; round < rounds; round++) {
         rings r;
         fill_rings(m, s->centre, &r);
         choose_disc(&r, least, s);
@@ -419,7 +419,7 @@ static void search(latlong *full, reduced *r, tyn_map_light *out)
         spot s;
         memcpy(s.centre, candidate, sizeof s.centre);
         tyn_map_sun *sun = &out->suns[out->num_suns];
-        if (find_spot(&r->map, least, &s) && find_spot(full, least, &s) &&
+        if (find_spot(&r->map, least, 4, &s) && find_spot(full, least, 2, &s) &&
             measure_sun(full, &s, sun)) {
             full->num_suns = ++out->num_suns;
             uint32_t rows[2];
