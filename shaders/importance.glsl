@@ -114,12 +114,6 @@ vec3 importance_from_camera(importance_grid grid, vec3 p)
 // Elek et al. 2014, Eqs 2-6. A hop is half the way in either cell, so each does its half once for all
 // neighbours. Cells hold power, so the growing width of the columns needs no account.
 
-// What the medium does in half a cell: part of the power left, loss of mean cosine.
-vec2 importance_half_hop(importance_cell cell, float way)
-{
-    return vec2(exp(-0.5 * cell.sigma_a * way), propagate_loss(0.5 * cell.decay * way));
-}
-
 // What a cell of power `power` and mean cosine 1 - spread hands on; adds its way to the track: half a
 // hop in, half a hop out.
 importance_light importance_leave(importance_cell cell, float power, float spread, inout vec2 track)
@@ -127,7 +121,7 @@ importance_light importance_leave(importance_cell cell, float power, float sprea
     vec4 state = propagate_state(power, spread);
     float way = power * mix(cell.along, cell.across, 4.0 * state.z);
     track += vec2(way, way * spread);
-    vec2 along = importance_half_hop(cell, cell.along), across = importance_half_hop(cell, cell.across);
+    vec2 along = cell.hop_along, across = cell.hop_across;
     return importance_light(propagate_part(state, 1) * along.x, propagate_part(state, 0) * across.x,
                             propagate_part(state, -1) * along.x, spread + (1.0 - spread) * along.y,
                             spread + (1.0 - spread) * across.y);

@@ -33,13 +33,13 @@ struct importance_cell { // the medium in a cell; the mean over the channels
     float sigma_s;       // 1/m, of the last scattering: delta-scaled where the method wants it
     float sigma_t;
     float g;
-    float sigma_a; // 1/m, true
-    float decay;   // of the mean cosine, 1/m
-    float along;   // length of the cell in its column, m
-    float across;  // width, m
-    float volume;  // m^3
+    float volume; // m^3
+    float along;  // length of the cell in its column, m
+    float across; // width, m
+    tyn_vec2 hop_along;  // what half a cell does: part of the power left, loss of the mean cosine
+    tyn_vec2 hop_across;
 };
-TYN_ASSERT_SIZE(importance_cell, 32);
+TYN_ASSERT_SIZE(importance_cell, 40);
 
 struct importance_light { // importance on its way out of a cell, half a hop done
     float ahead, side, behind; // power to the neighbour in front, each of the four beside, the one behind

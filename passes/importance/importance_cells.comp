@@ -32,6 +32,12 @@ float coverage(vec2 low, vec2 high)
     return both.x > 0.0 && both.y > 0.0 ? both.x * both.y / (window.x * window.y) : 0.0;
 }
 
+// Part of the power left after half the way, loss of mean cosine (Eq 4 at its exact rate).
+vec2 half_hop(float sigma_a, float decay, float way)
+{
+    return vec2(exp(-0.5 * sigma_a * way), propagate_loss(0.5 * decay * way));
+}
+
 void main()
 {
     uvec3 cell = gl_GlobalInvocationID;
@@ -39,7 +45,7 @@ void main()
         return;
     }
     uint index = (cell.z * args.cells + cell.y) * args.cells + cell.x;
-    importance_cell here = importance_cell(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    importance_cell here = importance_cell(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec2(0.0));
     float power = 0.0;
     if (grid.empty == 0u) {
         vec3 scattered = vec3(0.0), absorbed = vec3(0.0), turned = vec3(0.0);
@@ -53,11 +59,11 @@ void main()
         }
         const float each = 1.0 / float(SAMPLES * SAMPLES * SAMPLES);
         float sigma_s = mean(scattered) * each, g = mean(turned) * each / max(sigma_s, 1e-30);
-        here.sigma_a = mean(absorbed) * each;
-        here.decay = propagate_decay(sigma_s, g, TYN_PROPAGATE_RATE_EXACT);
+        float sigma_a = mean(absorbed) * each;
+        float decay = propagate_decay(sigma_s, g, TYN_PROPAGATE_RATE_EXACT);
         float f = args.scaled != 0u ? delta_fraction(g) : 0.0;
         here.sigma_s = (1.0 - f) * sigma_s;
-        here.sigma_t = here.sigma_s + here.sigma_a;
+        here.sigma_t = here.sigma_s + sigma_a;
         here.g = (g - f) / (1.0 - f);
 
         vec2 low = mix(grid.low, grid.high, vec2(cell.xy) / float(args.cells));
@@ -72,6 +78,8 @@ void main()
         here.along = (z_high - z_low) * sqrt(1.0 + dot(centre, centre));
         here.across = sqrt(area);
         here.volume = area * (z_high - z_low);
+        here.hop_along = half_hop(sigma_a, decay, here.along);
+        here.hop_across = half_hop(sigma_a, decay, here.across);
         power = cell.z == 0u ? coverage(low, high) : 0.0;
     }
     cells[index] = here;

@@ -39,9 +39,9 @@ void main()
         }
     }
     importance_cell here = cells[index];
-    vec2 hop = importance_half_hop(here, here.along);
+    vec2 hop = here.hop_along;
     along = hop.x * vec2(along.x, along.y + (along.x - along.y) * hop.y);
-    hop = importance_half_hop(here, here.across);
+    hop = here.hop_across;
     across = hop.x * vec2(across.x, across.y + (across.x - across.y) * hop.y);
     float power = along.x + across.x;
     float spread = power > 0.0 ? (along.y + across.y) / power : 1.0;
