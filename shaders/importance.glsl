@@ -94,14 +94,6 @@ float importance_layer(importance_grid grid, float z)
                                    : log2(z / grid.near) / grid.octaves;
 }
 
-// Grid [0, 1]^3 -> M.
-vec3 importance_to_m(importance_grid grid, vec3 uvw)
-{
-    float z = importance_depth(grid, uvw.z);
-    vec2 across = mix(grid.low, grid.high, uvw.xy) * importance_widening(grid, z);
-    return grid.origin + grid.right * across.x + grid.up * across.y + grid.forward * z;
-}
-
 // Camera coordinates -> grid [0, 1]^3; what is before the first layer is in it.
 vec3 importance_from_camera(importance_grid grid, vec3 p)
 {

@@ -32,6 +32,12 @@ float coverage(vec2 low, vec2 high)
     return both.x > 0.0 && both.y > 0.0 ? both.x * both.y / (window.x * window.y) : 0.0;
 }
 
+// Coordinate in the grid, in [0, 1], of a sample of a cell.
+float layer(float cell, int sample_index)
+{
+    return (cell + (float(sample_index) + 0.5) / float(SAMPLES)) / float(args.cells);
+}
+
 // Part of the power left after half the way, loss of mean cosine (Eq 4 at its exact rate).
 vec2 half_hop(float sigma_a, float decay, float way)
 {
@@ -49,13 +55,28 @@ void main()
     float power = 0.0;
     if (grid.empty == 0u) {
         vec3 scattered = vec3(0.0), absorbed = vec3(0.0), turned = vec3(0.0);
-        for (int i = 0; i < SAMPLES * SAMPLES * SAMPLES; i++) {
-            vec3 at = (vec3(i % SAMPLES, i / SAMPLES % SAMPLES, i / (SAMPLES * SAMPLES)) + 0.5) /
-                      float(SAMPLES);
-            medium_point m = medium_sample(importance_to_m(grid, (vec3(cell) + at) / float(args.cells)));
-            scattered += m.sigma_s;
-            absorbed += m.sigma_a;
-            turned += m.sigma_s * m.g;
+        float density = 0.0;
+        for (int k = 0; k < SAMPLES; k++) {
+            float z = importance_depth(grid, layer(float(cell.z), k));
+            float widening = importance_widening(grid, z);
+            for (int i = 0; i < SAMPLES * SAMPLES; i++) {
+                vec2 at = vec2(layer(float(cell.x), i % SAMPLES), layer(float(cell.y), i / SAMPLES));
+                vec2 across = mix(grid.low, grid.high, at) * widening;
+                vec3 p = grid.origin + grid.right * across.x + grid.up * across.y + grid.forward * z;
+                if (medium_mode == TYN_MEDIUM_DENSITY) {
+                    density += medium_density(p);
+                } else {
+                    medium_point m = medium_sample(p);
+                    scattered += m.sigma_s;
+                    absorbed += m.sigma_a;
+                    turned += m.sigma_s * m.g;
+                }
+            }
+        }
+        if (medium_mode == TYN_MEDIUM_DENSITY) {
+            scattered = density * medium.sigma_s;
+            absorbed = density * medium.sigma_a;
+            turned = scattered * medium.g;
         }
         const float each = 1.0 / float(SAMPLES * SAMPLES * SAMPLES);
         float sigma_s = mean(scattered) * each, g = mean(turned) * each / max(sigma_s, 1e-30);
