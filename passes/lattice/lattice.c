@@ -38,7 +38,6 @@ enum {
 static const tyn_port ports[NUM_PORTS] = {
     [LATTICE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
     [LATTICE_PORT_SOURCE] = {"source", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_source"},
-    [LATTICE_PORT_SKY] = {"sky", TYN_IN, TYN_BUFFER, 0, true, "of lattice_sky: enters at the box"},
     [LATTICE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
                                   "struct env_block: its mean without suns enters at the box"},
     [LATTICE_PORT_GUESS] = {"guess", TYN_IN, TYN_BUFFER, 0, true, "moments to start from"},
@@ -86,10 +85,9 @@ enum {
 };
 
 static const tyn_binding start_bindings[] = {
-    {LATTICE_PORT_SKY, TYN_USE_STORAGE_READ},   {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},     {PORT_STATE, TYN_USE_STORAGE_WRITE},
-    {PORT_EMITTED, TYN_USE_STORAGE_WRITE},      {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {LATTICE_PORT_GUESS, TYN_USE_STORAGE_READ},
+    {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM}, {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},      {PORT_STATE, TYN_USE_STORAGE_WRITE},
+    {PORT_EMITTED, TYN_USE_STORAGE_WRITE},       {LATTICE_PORT_GUESS, TYN_USE_STORAGE_READ},
 };
 static const tyn_binding stencil_bindings[] = {
     {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
@@ -101,9 +99,9 @@ static const tyn_binding stencil_coarse_bindings[] = {
     {PORT_STENCIL_HI, TYN_USE_STORAGE_RW},
 };
 static const tyn_binding sweep_bindings[] = {
-    {LATTICE_PORT_SKY, TYN_USE_STORAGE_READ},    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM}, {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
     {PORT_EMITTED, TYN_USE_STORAGE_READ},        {PORT_MEAN_PSI, TYN_USE_STORAGE_WRITE},
-    {LATTICE_PORT_LEAKS, TYN_USE_STORAGE_WRITE}, {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {LATTICE_PORT_LEAKS, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding collect_bindings[] = {
     {LATTICE_PORT_CELLS, TYN_USE_SAMPLED}, {PORT_MEAN_PSI, TYN_USE_STORAGE_READ},

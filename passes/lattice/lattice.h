@@ -4,7 +4,6 @@
 //   lattice_cells   the medium averaged over the cells         (again when the medium changes)
 //   lattice_source  unscattered sunlight per cell              (... or a sun changes)
 //   lattice_ordinates  light of the sky's principal ordinates (... or the environment)
-//   lattice_sky     the environment by direction                (... or the environment)
 //   lattice         fluence and flux of the scattered light    (... or the environment changes)
 // and two around the last for sequences: lattice_recall brings the last frame's solution to this
 // frame's cells, lattice_keep puts this frame's away.
@@ -99,21 +98,6 @@ enum {
 };
 extern const tyn_pass_desc tyn_pass_lattice_ordinates;
 
-// ---- lattice_sky --------------------------------------------------------------------------------
-
-typedef struct tyn_lattice_sky_params {
-    uint32_t unused; // has none
-} tyn_lattice_sky_params;
-
-enum {
-    LATTICE_SKY_PORT_ENVIRONMENT, // IN buffer struct env_block
-    LATTICE_SKY_PORT_ENV_MAP,     // IN optional 2D
-    LATTICE_SKY_PORT_SKY, // OUT buffer vec3[14]: radiance that enters along each direction of
-                          // the lattice, W/(m^2 sr); their weighted mean is env_block.mean
-    LATTICE_SKY_NUM_PORTS,
-};
-extern const tyn_pass_desc tyn_pass_lattice_sky;
-
 // ---- lattice ----------------------------------------------------------------------------------
 
 typedef struct tyn_lattice_params {
@@ -127,7 +111,6 @@ typedef struct tyn_lattice_params {
 enum {
     LATTICE_PORT_CELLS,       // IN 3D, of lattice_cells
     LATTICE_PORT_SOURCE,      // IN optional 3D, of lattice_ordinates or lattice_source
-    LATTICE_PORT_SKY,         // IN optional buffer, of lattice_sky
     LATTICE_PORT_ENVIRONMENT, // IN optional buffer struct env_block: `sky` enters from all sides
     LATTICE_PORT_GUESS,       // IN optional buffer, of lattice_recall: where the solve starts
     LATTICE_PORT_MOMENTS, // OUT 3D RGBA32F, stacked: fluence phi and net flux (x, y, z) of the light that
@@ -146,15 +129,14 @@ typedef struct tyn_lattice_recall_params { // of both
 } tyn_lattice_recall_params;
 
 enum {
-    LATTICE_RECALL_PORT_MEMORY, // IN buffer, a history of tyn_lattice_memory_size bytes
-    LATTICE_RECALL_PORT_CELLS,  // IN 3D, as lattice has it, and the two below
-    LATTICE_RECALL_PORT_SOURCE, // IN optional 3D
-    LATTICE_RECALL_PORT_SKY,    // IN optional buffer
+    LATTICE_RECALL_PORT_MEMORY,      // IN buffer, a history of tyn_lattice_memory_size bytes
+    LATTICE_RECALL_PORT_CELLS,       // IN 3D, as lattice has it, and the two below
+    LATTICE_RECALL_PORT_SOURCE,      // IN optional 3D
     LATTICE_RECALL_PORT_ENVIRONMENT, // IN optional buffer
-    LATTICE_RECALL_PORT_GUESS,  // OUT buffer vec4[]: moments by cell. The last frame's where it had any, by
-                                // the place in the world, scaled by what light puts in now over what
-                                // it did then; elsewhere the environment as if unhindered
-    LATTICE_RECALL_PORT_POWER,  // OUT buffer vec3: what light puts in
+    LATTICE_RECALL_PORT_GUESS, // OUT buffer vec4[]: moments by cell. The last frame's where it had any, by
+                               // the place in the world, scaled by what light puts in now over what
+                               // it did then; elsewhere the environment as if unhindered
+    LATTICE_RECALL_PORT_POWER, // OUT buffer vec3: what light puts in
     LATTICE_RECALL_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_lattice_recall;

@@ -35,7 +35,6 @@ static const tyn_port recall_ports[LATTICE_RECALL_NUM_PORTS] = {
                                     "struct lattice_memory_block and moments"},
     [LATTICE_RECALL_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
     [LATTICE_RECALL_PORT_SOURCE] = {"source", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_source"},
-    [LATTICE_RECALL_PORT_SKY] = {"sky", TYN_IN, TYN_BUFFER, 0, true, "of lattice_sky"},
     [LATTICE_RECALL_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
                                          "struct env_block"},
     [LATTICE_RECALL_PORT_GUESS] = {"guess", TYN_OUT, TYN_BUFFER, 0, false, "moments to start from"},
@@ -48,16 +47,14 @@ enum { KERNEL_POWER, KERNEL_RECALL, NUM_RECALL_KERNELS };
 static const tyn_binding power_bindings[] = {
     {LATTICE_RECALL_PORT_CELLS, TYN_USE_SAMPLED},
     {LATTICE_RECALL_PORT_SOURCE, TYN_USE_SAMPLED},
-    {LATTICE_RECALL_PORT_SKY, TYN_USE_STORAGE_READ},
-    {LATTICE_RECALL_PORT_POWER, TYN_USE_STORAGE_WRITE},
     {LATTICE_RECALL_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {LATTICE_RECALL_PORT_POWER, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding recall_bindings[] = {
     {LATTICE_RECALL_PORT_MEMORY, TYN_USE_STORAGE_READ},
-    {LATTICE_RECALL_PORT_SKY, TYN_USE_STORAGE_READ},
+    {LATTICE_RECALL_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
     {LATTICE_RECALL_PORT_POWER, TYN_USE_STORAGE_READ},
     {LATTICE_RECALL_PORT_GUESS, TYN_USE_STORAGE_WRITE},
-    {LATTICE_RECALL_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
 };
 
 static const tyn_kernel recall_kernels[NUM_RECALL_KERNELS] = {
@@ -67,7 +64,7 @@ static const tyn_kernel recall_kernels[NUM_RECALL_KERNELS] = {
                       sizeof(struct lattice_recall_args),
                       {LATTICE_SUN_GROUP, 1, 1},
                       power_bindings,
-                      5,
+                      4,
                       0},
     [KERNEL_RECALL] = {"recall",
                        lattice_recall_spirv,
@@ -75,7 +72,7 @@ static const tyn_kernel recall_kernels[NUM_RECALL_KERNELS] = {
                        sizeof(struct lattice_recall_args),
                        {8, 4, 2},
                        recall_bindings,
-                       5,
+                       4,
                        0},
 };
 

@@ -4,8 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
 #include "lattice.glsl"
-#define LATTICE_SKY 1
-#define LATTICE_ENVIRONMENT 4
+#define LATTICE_ENVIRONMENT 1
 #include "lattice_unhindered.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;

@@ -8,8 +8,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
 #include "lattice.glsl"
-#define LATTICE_SKY 2
-#define LATTICE_ENVIRONMENT 4
+#define LATTICE_ENVIRONMENT 2
 #include "lattice_unhindered.glsl"
 
 layout(local_size_x = LATTICE_SUN_GROUP) in;

@@ -6,8 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
-#define LATTICE_SKY 0
-#define LATTICE_ENVIRONMENT 5
+#define LATTICE_ENVIRONMENT 0
 #include "lattice_unhindered.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
@@ -25,7 +24,7 @@ layout(binding = 4, scalar) writeonly buffer emitted_buffer
 {
     vec4 emitted[];
 };
-layout(binding = 6, scalar) readonly buffer guess_buffer
+layout(binding = 5, scalar) readonly buffer guess_buffer
 {
     vec4 guess[];
 };

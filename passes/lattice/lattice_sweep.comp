@@ -6,22 +6,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "scene_args.h"
 #include "lattice_args.h"
-#include "lattice_sweep.glsl"
+#define LATTICE_ENVIRONMENT 0
+#include "lattice_unhindered.glsl"
 
 layout(local_size_x = LATTICE_SWEEP_GROUP) in;
 layout(push_constant, scalar) uniform push
 {
     lattice_args args;
-};
-layout(binding = 0, scalar) readonly buffer sky_buffer
-{
-    vec3 sky[]; // that enters along each direction, W/(m^2 sr)
-};
-layout(binding = 5, scalar) uniform environment_uniform
-{
-    env_block environment;
 };
 layout(binding = 1) uniform sampler3D cells;
 layout(binding = 2, scalar) readonly buffer emitted_buffer
@@ -74,7 +66,7 @@ void main()
         float length_l = args.dx * (diagonal ? sqrt(3.0) : 1.0);
         vec3 omega = vec3(o) * (diagonal ? inversesqrt(3.0) : 1.0);
         float cross_section = args.dx * args.dx * args.dx / length_l; // of the tube around a line
-        float boundary = lattice_channel(sky[direction] + environment.sky, args.channels, ch, args.tint);
+        float boundary = lattice_boundary(args.channels, ch, args.tint);
 
         float psi = boundary, before = 0.0;
         vec4 e = emitted[at];

@@ -5,7 +5,6 @@
 
 static const tyn_port ports[BALANCE_NUM_PORTS] = {
     [BALANCE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
-    [BALANCE_PORT_SKY] = {"sky", TYN_IN, TYN_BUFFER, 0, true, "of lattice_sky"},
     [BALANCE_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, true, "struct light_block[]"},
     [BALANCE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
     [BALANCE_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
@@ -19,12 +18,11 @@ static const tyn_port ports[BALANCE_NUM_PORTS] = {
 };
 
 static const tyn_binding bindings[] = {
-    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},        {BALANCE_PORT_SKY, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},        {BALANCE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
     {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},   {BALANCE_PORT_CELLS, TYN_USE_SAMPLED},
     {BALANCE_PORT_MOMENTS, TYN_USE_SAMPLED},       {BALANCE_PORT_SOURCE, TYN_USE_SAMPLED},
     {BALANCE_PORT_POWER, TYN_USE_STORAGE_READ},    {BALANCE_PORT_LEAKS, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_BALANCE, TYN_USE_STORAGE_WRITE}, {BALANCE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {BALANCE_PORT_ORDINATES, TYN_USE_UNIFORM},
+    {BALANCE_PORT_BALANCE, TYN_USE_STORAGE_WRITE}, {BALANCE_PORT_ORDINATES, TYN_USE_UNIFORM},
 };
 
 static const tyn_kernel kernels[] = {
@@ -34,7 +32,7 @@ static const tyn_kernel kernels[] = {
      sizeof(struct balance_args),
      {BALANCE_GROUP, 1, 1},
      bindings,
-     11,
+     10,
      0},
 };
 

@@ -1,7 +1,7 @@
 // balance.comp -- where the energy goes: sums over cells and lines, one workgroup per channel.
 //
-// What the environment brings in is, for each direction, radiance times the projected area of the
-// medium's box; the lines' leaks are net, so what they carry straight through the lattice counts on
+// What the environment brings in is pi times its radiance and the surface of the medium's box, an
+// ordinate its irradiance times the area across it; the lines' leaks are net, so what they carry straight through the lattice counts on
 // both sides. Suns and ordinates lose what collides in the cells: that of a sun was made to be what its
 // beam loses.
 #version 460
@@ -23,9 +23,9 @@ layout(binding = 0, scalar) uniform medium_uniform
 {
     medium_block medium;
 };
-layout(binding = 1, scalar) readonly buffer sky_buffer
+layout(binding = 1, scalar) uniform environment_uniform
 {
-    vec3 sky[]; // that enters along each direction, W/(m^2 sr)
+    env_block environment; // its `sky` enters from all sides
 };
 layout(binding = 2, scalar) readonly buffer light_buffer
 {
@@ -48,11 +48,7 @@ layout(binding = 8, scalar) writeonly buffer balance_buffer
     uvec2 balance[6][3];
 };
 
-layout(binding = 9, scalar) uniform environment_uniform
-{
-    env_block environment;
-};
-layout(binding = 10, scalar) uniform ordinates_uniform
+layout(binding = 9, scalar) uniform ordinates_uniform
 {
     ordinates_block ordinates;
 };
@@ -111,14 +107,8 @@ void main()
     }
     vec3 extent = medium.extent;
     vec3 faces = vec3(extent.y * extent.z, extent.z * extent.x, extent.x * extent.y);
-    float entering = 0.0, isotropic = 0.0; // of radiance 1 from everywhere: pi times the surface
-    for (uint d = 0; d < 14; d++) {
-        float area = dot(faces, abs(normalize(vec3(lattice_step(d)))));
-        vec3 boundary = sky[d] + environment.sky;
-        entering += lattice_weight(d) * area * lattice_channel(boundary, args.channels, ch, args.tint);
-        isotropic += lattice_weight(d) * area;
-    }
-    entering *= LATTICE_4PI / 4.0 * 2.0 * (faces.x + faces.y + faces.z) / isotropic;
+    float entering = LATTICE_4PI / 4.0 * 2.0 * (faces.x + faces.y + faces.z) *
+                     lattice_channel(environment.sky, args.channels, ch, args.tint);
     for (uint n = 0; n < ordinates.count; n++) {
         float e = lattice_channel(ordinates.list[n].irradiance, args.channels, ch, args.tint);
         entering += e * dot(faces, abs(ordinates.list[n].direction));

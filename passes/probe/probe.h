@@ -39,7 +39,6 @@ typedef struct tyn_balance_params {
 
 enum {
     BALANCE_PORT_MEDIUM,      // IN buffer struct medium_block
-    BALANCE_PORT_SKY,         // IN optional buffer, of lattice_sky
     BALANCE_PORT_LIGHTS,      // IN optional buffer struct light_block[]
     BALANCE_PORT_CELLS,       // IN 3D, of lattice_cells
     BALANCE_PORT_MOMENTS,     // IN 3D, of lattice

@@ -73,11 +73,6 @@ static double source_along(const llc_twin *t, const double (*m)[4], int id, cons
     return (phi + 3 * t->g[id] * flux) / four_pi;
 }
 
-double llc_twin_boundary(const llc_twin *t, const double d[3])
-{
-    return t->boundary * (1 + t->tilt[0] * d[0] + t->tilt[1] * d[1] + t->tilt[2] * d[2]);
-}
-
 static double sweep_direction(const llc_twin *t, const double (*in)[4], double (*out)[4],
                               const int o[3], double *psi_out)
 {
@@ -99,7 +94,7 @@ static double sweep_direction(const llc_twin *t, const double (*in)[4], double (
                     up = up && c[a] - o[a] >= 0 && c[a] - o[a] < n[a];
                     down = down && c[a] + o[a] >= 0 && c[a] + o[a] < n[a];
                 }
-                double psi = up ? psi_out[id - step] : llc_twin_boundary(t, d);
+                double psi = up ? psi_out[id - step] : t->boundary;
                 leak -= up ? 0 : psi * tube;
                 double s = source_along(t, in, id, d);
                 double before = up ? source_along(t, in, id - step, d) : s;
@@ -200,9 +195,7 @@ void llc_twin_solve(llc_twin *t, int sweeps)
     }
     for (int i = 0; i < n; i++) {
         t->m[i][0] = four_pi * t->boundary;
-        for (int a = 0; a < 3; a++) {
-            t->m[i][a + 1] = four_pi / 3 * t->boundary * t->tilt[a];
-        }
+        t->m[i][1] = t->m[i][2] = t->m[i][3] = 0;
     }
     for (int sweep = 0; sweep < sweeps; sweep++) {
         double(*oldest_x)[4] = x[2], (*oldest_r)[4] = r[2];

@@ -14,8 +14,7 @@ typedef struct llc_twin {
     double *sigma_s, *sigma_a, *g; // delta-scaled sigma_s', g'; 1/m
     double *emission;              // W/(m^3 sr)
     double (*beam)[4];             // sum E T', sum E T' direction, W/m^2
-    // Radiance that enters at the box along direction d is boundary (1 + tilt.d), W/(m^2 sr).
-    double boundary, tilt[3];
+    double boundary;               // radiance that enters at the box from all sides, W/(m^2 sr)
     // How to solve.
     int cycles;        // V-cycles after each sweep
     bool anderson;     // mix the last three sweeps
@@ -28,12 +27,10 @@ typedef struct llc_twin {
 void llc_twin_init(llc_twin *t, int nx, int ny, int nz, double dx);
 void llc_twin_finish(llc_twin *t);
 
-double llc_twin_boundary(const llc_twin *t, const double d[3]);
-
 // One sweep from `in` to `out` (which must differ); returns the leak, W.
 double llc_twin_sweep(const llc_twin *t, const double (*in)[4], double (*out)[4]);
 
-// From what enters, as if unhindered: phi = 4 pi boundary, F = 4 pi / 3 boundary tilt.
+// From what enters, as if unhindered: phi = 4 pi boundary, F = 0.
 void llc_twin_solve(llc_twin *t, int sweeps);
 
 // (leak + absorbed - made) / (made + entering at the box); made by the beams and by emission.
