@@ -196,7 +196,8 @@ static void thin_furnace(void **state)
     set_furnace(&scene, &view, 0.08f);
     for (int filter = 0; filter < 2; filter++) {
         picture_render(&p, t->dev, "pop-paper", &scene, &view,
-                       filter ? "propagate_rect.prefilter=exact" : "propagate_rect.prefilter=off",
+                       filter ? "propagate_rect.cells=12 propagate_rect.prefilter=exact"
+                              : "propagate_rect.cells=12 propagate_rect.prefilter=off",
                        0);
         double sum = 0;
         for (uint32_t i = 0; i < 3 * p.width * p.height; i++) {
@@ -218,6 +219,8 @@ static tyn_report frame_report(gpu_test *t, tyn_offline **off, const tyn_scene *
     tyn_settings *settings;
     tyn_report report;
     assert_int_equal(tyn_settings_create(&settings), TYN_OK);
+    assert_int_equal(tyn_settings_set(settings, "propagate_rect.cells", "8", NULL), TYN_OK);
+    assert_int_equal(tyn_settings_set(settings, "ordinates.count", "8", NULL), TYN_OK);
     assert_int_equal(tyn_settings_set(settings, name, value, NULL), TYN_OK);
     assert_int_equal(
         tyn_offline_create(t->dev, tyn_offline_params(.method = "pop-paper", .settings = settings),
@@ -275,12 +278,12 @@ static void residuum_after(void **state)
     static const struct {
         float sigma_s;
         double iterations;
-    } cases[] = {{100, 20}, {2, 34}, {0.001f, 256}};
+    } cases[] = {{100, 8}, {2, 14}, {0.001f, 256}};
     for (int i = 0; i < 3; i++) {
         tyn_scene scene;
         tyn_view view;
         tyn_offline *off;
-        set_furnace(&scene, &view, cases[i].sigma_s); // g = 0.5, hops of 1/20 m
+        set_furnace(&scene, &view, cases[i].sigma_s); // g = 0.5, hops of 1/8 m
         tyn_report report = frame_report(t, &off, &scene, &view, "residuum.on", "1");
         const tyn_node_report *n = node_of(&report, "propagate_rect");
         assert_non_null(n);
