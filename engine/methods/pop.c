@@ -220,10 +220,8 @@ static tyn_result add_columns(tyn_graph *g, const tyn_job *job, field *f)
         return result;
     }
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [COLUMNS_PORT_MEDIUM] = job->refs.medium,
-        [COLUMNS_PORT_DENSITY] = media.density,
-        [COLUMNS_PORT_SIGMA_A] = media.sigma_a,
-        [COLUMNS_PORT_G] = media.g,
+        [COLUMNS_PORT_MEDIUM] = job->refs.medium,    [COLUMNS_PORT_DENSITY] = media.density,
+        [COLUMNS_PORT_SIGMA_A] = media.sigma_a,      [COLUMNS_PORT_G] = media.g,
         [COLUMNS_PORT_ORDINATES] = f->sky.ordinates,
     };
     result = tyn_graph_add(g, &tyn_pass_columns, &params, refs);
@@ -509,7 +507,8 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     }
     f.from_all_sides =
         any_positive(frame->environment.sky) && (f.sky.split || !f.sky.ordinates.resource);
-    f.picture.mean_in_field = f.from_all_sides;
+    // What is scattered forward of a constant environment, whoever carries the rest.
+    f.picture.mean_in_field = any_positive(frame->environment.sky);
     bool lit_by_environment = f.from_all_sides || f.sky.ordinates.resource;
     bool scattered_light = f.picture.num_suns || lit_by_environment || frame->emissive;
     bool solve = scattered_light && (lit_by_environment || !is_thin(frame));
@@ -525,28 +524,17 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,
-    &tyn_pass_beam,
-    &tyn_pass_env_importance,
-    &tyn_pass_importance,
-    &tyn_pass_ordinates,
-    &tyn_pass_scatter_lut,
-    &tyn_pass_env_glow,
-    &tyn_pass_lattice_cells,
-    &tyn_pass_columns_average,
-    &tyn_pass_columns,
-    &tyn_pass_lattice_source,
-    &tyn_pass_lattice_ordinates,
-    &tyn_pass_lattice_recall,
-    &tyn_pass_lattice,
-    &tyn_pass_lattice_keep,
-    &tyn_pass_merge,
-    &tyn_pass_raymarch,
-    &tyn_pass_composite,
-    &tyn_pass_tonemap,
-    &tyn_pass_probe,
-    &tyn_pass_balance,
-    NULL,
+    &tyn_pass_medium,          &tyn_pass_beam,
+    &tyn_pass_env_importance,  &tyn_pass_importance,
+    &tyn_pass_ordinates,       &tyn_pass_scatter_lut,
+    &tyn_pass_env_glow,        &tyn_pass_lattice_cells,
+    &tyn_pass_columns_average, &tyn_pass_columns,
+    &tyn_pass_lattice_source,  &tyn_pass_lattice_ordinates,
+    &tyn_pass_lattice_recall,  &tyn_pass_lattice,
+    &tyn_pass_lattice_keep,    &tyn_pass_merge,
+    &tyn_pass_raymarch,        &tyn_pass_composite,
+    &tyn_pass_tonemap,         &tyn_pass_probe,
+    &tyn_pass_balance,         NULL,
 };
 
 const tyn_method tyn_method_pop = {
