@@ -39,6 +39,8 @@ vec3 columns_step(vec3 direction, float dx, int axis)
 columns_grid columns_grid_of(vec3 direction, lattice_box box)
 {
     columns_grid grid;
+    // A direction that is none (nothing comes along it) is as good as any, but it must be one.
+    direction = dot(direction, direction) > 0.25 ? direction : vec3(0.0, 0.0, 1.0);
     vec3 d = abs(direction);
     grid.w = d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
     grid.u = grid.w == 0 ? 2 : 0;

@@ -372,6 +372,8 @@ static void extremes(void **state)
     static const float values[] = {0, 1e-6f, 1, 1e8f};
     for (size_t b = 0; b < sizeof boxes / sizeof boxes[0]; b++) {
         struct ordinates_block ordinates = ordinates_make(boxes[b].count);
+        ordinates.list[boxes[b].count / 2] = (struct ordinate){.direction = {0, 0, 0}};
+        ordinates.list[boxes[b].count / 3] = (struct ordinate){.direction = {NAN, 0, 1}};
         for (size_t v = 0; v < sizeof values / sizeof values[0]; v++) {
             grid m = grid_make(boxes[b].extent, boxes[b].size, TYN_MEDIUM_DENSITY);
             uint32_t texels = boxes[b].size[0] * boxes[b].size[1] * boxes[b].size[2], seed = 11;
