@@ -16,7 +16,7 @@ TYN_ASSERT_SIZE(ordinates_args, 24);
 struct ordinates_piece { // what comes from a region, before folding
     tyn_vec3 light;      // W/m^2
     float size;          // luminance of its absolute value
-    tyn_vec3 moment;     // towards where it comes from, as long as it weighs in folding; map frame
+    tyn_vec3 moment;     // towards where it comes from, map frame; any length
     float solid_angle;
 };
 TYN_ASSERT_SIZE(ordinates_piece, 32);

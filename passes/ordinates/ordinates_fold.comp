@@ -82,13 +82,14 @@ uint nearest_kept(vec3 d)
 void write(uint n)
 {
     const ordinates_piece own = pieces[n];
-    vec3 light = own.light, moment = own.moment;
+    // Directions count by light: one of a region whose light and dark cancel must not turn its heir.
+    vec3 light = own.light, moment = own.size * directions[n];
     vec2 size = own.size * vec2(own.solid_angle, 1.0);
     for (uint k = 0u; k < num_folded; k++) {
         const ordinates_piece other = pieces[folded_ones[k]];
         const float mine = heirs[k] == n ? 1.0 : 0.0;
         light += mine * other.light;
-        moment += mine * other.moment;
+        moment += mine * other.size * directions[folded_ones[k]];
         size += mine * other.size * vec2(other.solid_angle, 1.0);
     }
     const vec3 d = -middle_of(moment);
