@@ -73,7 +73,8 @@ static double mean_radiance(tyn_offline *off, const tyn_scene *scene, const tyn_
     return sum / (PIXELS * PIXELS);
 }
 
-// Half of the slice is rendered, the other half mirrors it. `name` may be NULL.
+// The grids of `pop-paper` have 16^3 cells and take 16 iterations if `name` does not say otherwise. Half
+// of the slice is rendered, the other half mirrors it. `name` may be NULL.
 static slice *render(tyn_device *dev, const char *method, float g, const char *name,
                      const char *value)
 {

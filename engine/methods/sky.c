@@ -85,7 +85,7 @@ tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_media_refs *m
         refs[ORDINATES_PORT_SKY] = sky->sky;
     }
     bool picture = job->outputs & TYN_PICTURE_OUTPUTS;
-    // A method that evaluates the forward lobes by pixel gains nothing by it (docs/method.md).
+    // Ordinates that follow the camera are solved for anew when it moves: not where the solve could stay.
     bool weighted = params.importance == ORDINATES_IMPORTANCE_ON ||
                     (params.importance == ORDINATES_IMPORTANCE_AUTO && !can_split);
     if (result == TYN_OK && regions && picture && weighted) {
