@@ -64,7 +64,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                        columns_gather_spirv,
                        sizeof columns_gather_spirv,
                        sizeof(struct columns_args),
-                       {8, 8, 1},
+                       {COLUMNS_GROUP, 1, 1},
                        gather_bindings,
                        7,
                        1},
@@ -136,11 +136,11 @@ static void record(tyn_recorder *r, const void *params)
                                .args = &args,
                                .spec = &p->mode});
         uint32_t rows = p->dims[1] > p->dims[2] ? p->dims[1] : p->dims[2];
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_GATHER,
-                               .cells = {(p->dims[0] + 1) / 2, rows, num_components * ordinates},
-                               .args = &args,
-                               .spec = &p->mode});
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_GATHER,
+                                            .cells = {(p->dims[0] + 1) / 2 * rows, 1,
+                                                      num_components * ordinates},
+                                            .args = &args,
+                                            .spec = &p->mode});
     }
 
     tyn_extent texels = tyn_rec_extent(r, COLUMNS_PORT_DENSITY);

@@ -1,5 +1,5 @@
-// columns_gather.comp -- from the columns to the cells; x: two cells, y: row across the axis v of the
-// ordinate's grid, along which a thread goes; z: components of the ordinates of the batch.
+// columns_gather.comp -- from the columns to the cells; x: two cells of a row, and rows, across the axis v
+// of the ordinate's grid, along which a thread goes; z: components of the ordinates of the batch.
 //
 // A cell's ray lies between four columns, so the depth is interpolated between theirs. Where neighbouring
 // rays enter the box through different faces the depth has a kink: there the columns have, together, not
@@ -18,7 +18,7 @@
 #include "lattice.glsl"
 #include "columns_grid.glsl"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = COLUMNS_GROUP) in;
 layout(push_constant, scalar) uniform push
 {
     columns_args args;
@@ -82,9 +82,9 @@ void main()
     }
     ivec3 dims = ivec3(args.dims);
     columns_grid grid = columns_grid_of(ordinates.list[n].direction, lattice_box_of(medium.extent, dims));
-    int word_x = int(gl_GlobalInvocationID.x), across = int(gl_GlobalInvocationID.y);
-    int row = (dims.x + 1) / 2;
-    if (word_x >= row || across >= dims[grid.v == 1 ? 2 : 1]) {
+    int row = (dims.x + 1) / 2, thread = int(gl_GlobalInvocationID.x);
+    int across = thread / row, word_x = thread - across * row;
+    if (across >= dims[grid.v == 1 ? 2 : 1]) {
         return;
     }
     // In each pair of numbers that follow is one for each of the two cells.
