@@ -181,13 +181,6 @@ static void maps(void **state)
 
 static void numbers(void **state)
 {
-    tyn_settings *known;
-    assert_int_equal(tyn_settings_create(&known), TYN_OK);
-    if (tyn_settings_set(known, "ordinates.count", "64", NULL) != TYN_OK) {
-        tyn_settings_destroy(&known);
-        skip();
-    }
-    tyn_settings_destroy(&known);
     static const int counts[] = {1, 2, 3, 7, 64, 255, 256};
     for (int i = 0; i < 7; i++) {
         for (int j = 0; j < 4; j++) {
