@@ -44,6 +44,7 @@ float spectrum_mean(vec3 x)
 #endif
 
 const int RAYMARCH_CHUNK = 32; // steps between two looks at the distance map: empty ones are cheap
+const float RAYMARCH_GONE = 9.0; // scaled depth beyond args.stop at which nothing behind is followed on
 
 bool raymarch_has(uint feature)
 {
@@ -371,10 +372,11 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
         spectrum through_end = spectrum(0.0);
         if (raymarch_has(RAYMARCH_BEHIND)) {
             spectrum tau = spectrum(0.0), tau_scaled = spectrum(0.0);
-            while (s < end && spectrum_max(tau_scaled) < 16.0) {
+            float step = 2.0 * args.step;
+            while (s < end && spectrum_max(tau_scaled) < RAYMARCH_GONE) {
                 s = march_skip(origin, direction, inverse, s, end);
-                for (int i = 0; i < RAYMARCH_CHUNK; i++) {
-                    float ds = min(args.step, end - s);
+                for (int i = 0; i < 8 && s < end; i++) {
+                    float ds = min(step, end - s);
                     march_medium m = march_medium_at(unit, medium0 + (s + 0.5 * ds) * medium1);
                     tau += m.extinction * ds;
                     tau_scaled += m.scaled_extinction * ds;
