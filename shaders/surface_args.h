@@ -8,6 +8,7 @@
 
 #define TYN_SURFACE_DOUBLE_SIDED 1u // emits from both sides; all surfaces reflect on both
 #define TYN_SURFACE_NO_TEXTURE 0xffffffffu
+#define TYN_SURFACE_STACK 64 // levels of the hierarchy at most, so nodes that wait in a traversal
 
 struct surface_block { // uniform buffer "surfaces"
     tyn_vec4 to_world[3]; // M -> world: world_i = dot(rows[i].xyz, p) + rows[i].w
@@ -28,7 +29,7 @@ struct surface_vertex { // element of storage buffer "vertices"
 TYN_ASSERT_SIZE(surface_vertex, 32);
 
 // Front: the side from which v0, v1, v2 run counter-clockwise, in world space (mirrored nodes are turned
-// round at upload).
+// round when they are loaded).
 struct surface_triangle { // element of storage buffer "triangles", in the hierarchy's order
     tyn_uint v0, v1, v2, material;
 };

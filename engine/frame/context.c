@@ -35,6 +35,7 @@ struct tyn_context {
     uint64_t checked_data; // hash of the densities and texels that were found fit
     tyn_map_light map_light;
     void *env_cdf; // of a method that reads it
+    tyn_surface_data surfaces;
     char *warnings[MAX_WARNINGS];
     uint32_t num_warnings;
     uint64_t logged[MAX_WARNINGS]; // hashes of those that went to the log: once each
@@ -102,6 +103,7 @@ void tyn_context_destroy(tyn_context **context)
     clear_warnings(ctx);
     free(ctx->points);
     free(ctx->env_cdf);
+    tyn_surface_data_finish(&ctx->surfaces);
     free(ctx->nodes);
     free(ctx);
 }
@@ -246,6 +248,36 @@ static tyn_result update_points(tyn_context *ctx, const tyn_view *view)
     return TYN_OK;
 }
 
+static void upload_surfaces(tyn_context *ctx, const tyn_surfaces *s, tyn_scene_refs *refs)
+{
+    tyn_graph *g = ctx->graph;
+    const tyn_surface_data *data = &ctx->surfaces;
+    const struct surface_block *block = &ctx->frame.surfaces;
+    if (!ctx->frame.num_triangles) {
+        return;
+    }
+    struct {
+        tyn_ref *ref;
+        const char *name;
+        const void *data;
+        size_t size;
+    } buffers[] = {
+        {&refs->vertices, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices},
+        {&refs->triangles, "triangles", s->triangles, s->num_triangles * sizeof *s->triangles},
+        {&refs->materials, "materials", s->materials, s->num_materials * sizeof *s->materials},
+        {&refs->textures, "textures", data->textures, data->num_textures * sizeof *data->textures},
+        {&refs->texels, "texels", data->texels, data->num_texels * sizeof *data->texels},
+        {&refs->nodes, "nodes", s->nodes, s->num_nodes * sizeof *s->nodes},
+    };
+    refs->surfaces = tyn_graph_upload_buffer(g, "surfaces", block, sizeof *block, 0);
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++) {
+        if (buffers[i].size) {
+            *buffers[i].ref = tyn_graph_upload_buffer(g, buffers[i].name, buffers[i].data,
+                                                      buffers[i].size, data->hash);
+        }
+    }
+}
+
 static void upload_scene(tyn_context *ctx, const tyn_frame *frame, tyn_scene_refs *refs)
 {
     tyn_graph *g = ctx->graph;
@@ -281,6 +313,7 @@ static void upload_scene(tyn_context *ctx, const tyn_frame *frame, tyn_scene_ref
                                                     tyn_env_cdf_size(env), ctx->env_hash);
         }
     }
+    upload_surfaces(ctx, &scene->surfaces, refs);
     if (frame->view->outputs & TYN_OUTPUT_PROBE) {
         refs->points = tyn_graph_upload_buffer(g, "points", ctx->points,
                                                ctx->num_points * sizeof *ctx->points, 0);
@@ -319,7 +352,11 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     ctx->scene = frame->scene;
     tyn_result result = update_environment(ctx, &frame->scene->environment);
     if (result == TYN_OK) {
-        result = tyn_frame_scene_build(&ctx->frame, frame->scene, view, &ctx->map_light, log);
+        result = tyn_surface_data_update(&ctx->surfaces, &frame->scene->surfaces, log);
+    }
+    if (result == TYN_OK) {
+        result = tyn_frame_scene_build(&ctx->frame, frame->scene, view, &ctx->map_light,
+                                       &ctx->surfaces, log);
     }
     if (result == TYN_OK) {
         result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);

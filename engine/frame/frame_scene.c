@@ -91,11 +91,23 @@ static bool frame_of_shape(const tyn_shape *shape, rigid *m, double extent[3], b
     return true;
 }
 
-static void frame_of_world(const tyn_scene *scene, rigid *m, double extent[3])
+// Axes of the world, around all media, or around the surfaces if there is no medium: then no side of the
+// box is less than a thousandth of the longest, so that one wall alone spans a frame too.
+static void frame_of_world(const tyn_scene *scene, const tyn_surface_data *surfaces, rigid *m,
+                           double extent[3])
 {
     float lo[3] = {0, 0, 0}, hi[3] = {1, 1, 1};
-    if (!tyn_scene_bounds(scene, lo, hi)) {
-        hi[0] = hi[1] = hi[2] = 1;
+    if (scene->num_shapes) {
+        tyn_scene_bounds(scene, lo, hi);
+    } else if (surfaces->hash) {
+        float longest = 1e-6f;
+        for (int a = 0; a < 3; a++) {
+            longest = fmaxf(longest, surfaces->hi[a] - surfaces->lo[a]);
+        }
+        for (int a = 0; a < 3; a++) {
+            lo[a] = surfaces->lo[a];
+            hi[a] = fmaxf(surfaces->hi[a], lo[a] + 1e-3f * longest);
+        }
     }
     for (int a = 0; a < 3; a++) {
         m->origin[a] = lo[a];
@@ -178,6 +190,18 @@ static void build_medium(tyn_frame_scene *out, const tyn_scene *scene, const dou
         b->bricks[a] = (b->size[a] + TYN_BRICK - 1) / TYN_BRICK;
         b->brick_size[a] = b->voxel[a] * TYN_BRICK;
         b->repeat[a] = scene->num_shapes == 1 && scene->shapes[0].repeat[a];
+    }
+}
+
+// No medium: the box is there (around the surfaces), with one texel of nothing in it.
+static void build_void(tyn_frame_scene *out, const double extent[3])
+{
+    struct medium_block *b = &out->medium;
+    b->mode = TYN_MEDIUM_DENSITY;
+    for (int a = 0; a < 3; a++) {
+        b->size[a] = b->bricks[a] = 1;
+        b->extent[a] = b->voxel[a] = (float)extent[a];
+        b->brick_size[a] = b->voxel[a] * TYN_BRICK;
     }
 }
 
@@ -333,6 +357,29 @@ static void build_environment(tyn_frame_scene *out, const tyn_environment *env,
     build_map_suns(out, map);
 }
 
+// ---- surfaces ---------------------------------------------------------------------------------
+
+static void build_surfaces(tyn_frame_scene *out, const tyn_surfaces *surfaces,
+                           const tyn_surface_data *data, const rigid *m)
+{
+    struct surface_block *b = &out->surfaces;
+    if (!data->hash) {
+        return;
+    }
+    out->num_triangles = b->num_triangles = surfaces->num_triangles;
+    b->num_nodes = surfaces->num_nodes;
+    for (int r = 0; r < 3; r++) {
+        for (int a = 0; a < 3; a++) {
+            b->to_world[r][a] = (float)m->axes[a][r];
+            b->from_world[r][a] = (float)m->axes[r][a];
+        }
+        b->to_world[r][3] = (float)m->origin[r];
+        b->from_world[r][3] = (float)-dot3(m->axes[r], m->origin);
+        b->lo[r] = data->lo[r];
+        b->hi[r] = data->hi[r];
+    }
+}
+
 // ---- all --------------------------------------------------------------------------------------
 
 uint32_t tyn_volume_open_faces(const tyn_volume *volume)
@@ -367,7 +414,8 @@ float tyn_volume_mean(const tyn_volume *volume)
 }
 
 tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, const tyn_view *view,
-                                 const tyn_map_light *map, const tyn_log *log)
+                                 const tyn_map_light *map, const tyn_surface_data *surfaces,
+                                 const tyn_log *log)
 {
     memset(out, 0, sizeof *out);
     for (uint32_t i = 0; i < scene->num_shapes; i++) {
@@ -387,7 +435,7 @@ tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, c
     bool unsheared =
         scene->num_shapes == 1 && frame_of_shape(&scene->shapes[0], &m, extent, &mirrored);
     if (!unsheared) {
-        frame_of_world(scene, &m, extent);
+        frame_of_world(scene, surfaces, &m, extent);
     }
     // The atlas can serve as the density texture if it holds this grid alone.
     tyn_atlas atlas;
@@ -401,11 +449,14 @@ tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, c
                        : scene->num_volumes == 1 && atlas.extent.z == scene->volumes[0].size[2]);
     if (scene->num_shapes) {
         build_medium(out, scene, extent);
+    } else if (surfaces->hash) {
+        build_void(out, extent);
     }
     build_shapes(out, scene, &m);
     build_lights(out, scene, &m);
     build_camera(out, view, &m);
     build_environment(out, &scene->environment, map, &m);
+    build_surfaces(out, &scene->surfaces, surfaces, &m);
     for (int a = 0; a < 3; a++) {
         for (int j = 0; j < 3; j++) {
             out->m_from_world[j * 4 + a] = (float)m.axes[a][j];

@@ -7,6 +7,7 @@
 #include "graph/graph.h"
 #include "scene/env_suns.h"
 #include "scene_args.h"
+#include "surface_args.h"
 
 // The scene in the medium frame, made once per frame by the engine.
 typedef struct tyn_frame_scene {
@@ -26,6 +27,8 @@ typedef struct tyn_frame_scene {
         open_faces; // of the box, where the density may not be 0: bit 2 a + (1: high face of axis a)
     float mean_density; // over the box, mode DENSITY: in units of the texture's values; 0 = not known
     bool empty;     // no medium at all, or no coefficient above 0
+    uint32_t num_triangles; // of the surfaces; 0: there are none, nor their refs
+    struct surface_block surfaces;
     float m_from_world[16]; // rigid
 } tyn_frame_scene;
 
@@ -40,6 +43,14 @@ typedef struct tyn_scene_refs {
     tyn_ref environment; // struct env_block
     tyn_ref env_map;     // 2D RGBA32F; {0} if constant
     tyn_ref env_cdf;     // methods/env_cdf.h; {0} if constant or not read
+    // Surfaces (surface_args.h); all {0} without them.
+    tyn_ref surfaces;    // struct surface_block
+    tyn_ref vertices;    // struct surface_vertex[]
+    tyn_ref triangles;   // struct surface_triangle[]
+    tyn_ref materials;   // struct surface_material[]
+    tyn_ref textures;    // struct surface_texture[], at least one
+    tyn_ref texels;      // uint[], at least one
+    tyn_ref nodes;       // struct surface_node[]; {0} if the scene has no hierarchy
     tyn_ref points;      // PROBE: vec3 in M, scalar
     tyn_ref depth;       // COMPOSITE: host depth
     tyn_ref color;       // COMPOSITE: host colour

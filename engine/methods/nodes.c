@@ -22,6 +22,13 @@ void tyn_method_warn(const tyn_job *job, const char *format, ...)
     }
 }
 
+void tyn_method_warn_surfaces(const tyn_job *job)
+{
+    if (job->frame->num_triangles) {
+        tyn_method_warn(job, "surfaces are left out: %u triangles", job->frame->num_triangles);
+    }
+}
+
 tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method)
 {
     for (uint32_t i = 0; i < job->scene->num_shapes; i++) {

@@ -295,6 +295,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     const uint32_t not_images = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_DEPTH;
     tyn_result result = check_repeat(job);
     tyn_media_refs media = {{0}};
+    tyn_method_warn_surfaces(job);
     if (result == TYN_OK && !job->frame->empty) {
         result = tyn_add_medium(g, job, &media);
     }

@@ -495,6 +495,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (result != TYN_OK) {
         return result;
     }
+    tyn_method_warn_surfaces(job);
     bool picture = job->outputs & TYN_PICTURE_OUTPUTS;
     if (frame->empty && !(job->outputs & field_outputs)) {
         return tyn_add_picture(g, job, NULL);

@@ -2,6 +2,7 @@
 #include "scene/check.h"
 #include <math.h>
 #include "scene/matrix.h"
+#include "scene/surfaces.h"
 
 #define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
 
@@ -227,5 +228,6 @@ tyn_result tyn_scene_check_data(const tyn_scene *scene, const tyn_log *log)
 tyn_result tyn_scene_check(const tyn_scene *scene, const tyn_log *log)
 {
     tyn_result r = tyn_scene_check_values(scene, log);
-    return r ? r : tyn_scene_check_data(scene, log);
+    r = r ? r : tyn_scene_check_data(scene, log);
+    return r ? r : tyn_surfaces_check(&scene->surfaces, log);
 }

@@ -1,4 +1,5 @@
 // check.h -- the parts of tyn_scene_check: what is cheap enough for every frame, and what is not.
+// Surfaces are checked apart (scene/surfaces.h), where they are made ready for the GPU.
 #pragma once
 #include <tyndall/scene.h>
 

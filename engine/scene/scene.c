@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "scene/surfaces.h"
 
 void tyn_scene_init(tyn_scene *scene)
 {
@@ -44,6 +45,7 @@ void tyn_scene_finish(tyn_scene *scene)
     free(scene->cameras);
     free(scene->warnings);
     free(scene->environment.data);
+    tyn_surfaces_free(&scene->surfaces);
     tyn_scene_init(scene);
 }
 
@@ -66,9 +68,12 @@ void tyn_scene_warn(tyn_scene *scene, const char *format, ...)
 
 bool tyn_scene_bounds(const tyn_scene *scene, float lo[3], float hi[3])
 {
+    if (!scene->num_shapes) {
+        return tyn_surfaces_bounds(&scene->surfaces, lo, hi);
+    }
     for (int a = 0; a < 3; a++) {
-        lo[a] = scene->num_shapes ? FLT_MAX : 0.0f;
-        hi[a] = scene->num_shapes ? -FLT_MAX : 0.0f;
+        lo[a] = FLT_MAX;
+        hi[a] = -FLT_MAX;
     }
     for (uint32_t i = 0; i < scene->num_shapes; i++) {
         const tyn_shape *shape = &scene->shapes[i];
@@ -83,7 +88,7 @@ bool tyn_scene_bounds(const tyn_scene *scene, float lo[3], float hi[3])
             hi[a] = fmaxf(hi[a], m[12 + a] + half);
         }
     }
-    return scene->num_shapes > 0;
+    return true;
 }
 
 static bool all_in(const float *v, float lo, float hi)

@@ -1,4 +1,4 @@
-// scene.h -- what is rendered: media, lights, environment, cameras. Plain data, no Vulkan. Tier 1.
+// scene.h -- what is rendered: media, surfaces, lights, environment, cameras. Plain data, no Vulkan. Tier 1.
 //
 // A scene is a tree of plain structs that may be filled by hand, by `tyndall/io.h`, or changed in
 // place between frames. World space is right-handed, Y up, metres (docs/scene-format.md).
@@ -57,6 +57,63 @@ typedef struct tyn_light {
     float cos_inner, cos_outer; // spot: cosines of the cone half angles, cos_inner >= cos_outer
 } tyn_light;
 
+// Surfaces: one soup of triangles in world space. Diffuse (Lambertian), opaque, reflecting alike on both
+// sides. The arrays below are what shaders read (`surface_*` of shaders/surface_args.h), so they reach the
+// GPU as they are.
+typedef struct tyn_surface_vertex {
+    float position[3]; // world, m
+    float u;           // texture coordinates: (0, 0) is the outer corner of a texture's first texel
+    float normal[3];   // world, unit; for shading, on the front side
+    float v;
+} tyn_surface_vertex;
+
+typedef struct tyn_surface_triangle {
+    uint32_t vertices[3]; // counter-clockwise as seen from the front
+    uint32_t material;
+} tyn_surface_triangle;
+
+enum { TYN_SURFACE_EMITS_BOTH_SIDES = 1 };
+#define TYN_NO_TEXTURE UINT32_MAX
+typedef struct tyn_surface_material {
+    float albedo[3];   // linear, 0 to 1; the texture multiplies it
+    uint32_t flags;    // TYN_SURFACE_EMITS_BOTH_SIDES, else only the front emits
+    float emission[3]; // radiance, W/(m^2 sr), >= 0
+    uint32_t texture;  // index into textures, or TYN_NO_TEXTURE
+} tyn_surface_material;
+
+typedef enum tyn_wrap { TYN_WRAP_REPEAT = 0, TYN_WRAP_CLAMP, TYN_WRAP_MIRROR } tyn_wrap;
+enum { TYN_MAX_TEXTURE_SIDE = 16384 };
+typedef struct tyn_texture {
+    char *name;       // for messages; may be NULL
+    uint32_t size[2]; // texels, 1 to TYN_MAX_TEXTURE_SIDE
+    uint8_t *texels;  // R8 G8 B8 A8, sRGB, rows in the order of v; alpha is not read
+    tyn_wrap wrap[2]; // along u and v
+} tyn_texture;
+
+// A binary hierarchy over the triangles, for methods that trace rays: tyn_surfaces_build_nodes of
+// <tyndall/io.h>, or any other builder. Node 0 is the root; children follow their parent.
+enum { TYN_SURFACE_MAX_DEPTH = 64 }; // levels, the root's included
+typedef struct tyn_surface_node {
+    float lo[3];    // world, m: encloses all that is below
+    uint32_t first; // inner: its children are nodes `first` and `first` + 1; leaf: first triangle
+    float hi[3];
+    uint32_t count; // triangles of a leaf; 0: inner
+} tyn_surface_node;
+
+typedef struct tyn_surfaces { // arrays are owned by the scene, from malloc; NULL if empty
+    tyn_surface_vertex *vertices;
+    uint32_t num_vertices;
+    tyn_surface_triangle *triangles;
+    uint32_t num_triangles;
+    tyn_surface_material *materials;
+    uint32_t num_materials;
+    tyn_texture *textures;
+    uint32_t num_textures;
+    tyn_surface_node *nodes; // NULL: none
+    uint32_t num_nodes;
+    uint64_t hash; // changes when anything above does; 0: found anew for every frame from all of it
+} tyn_surfaces;
+
 // A latitude-longitude map, or a constant. Mapping: docs/scene-format.md.
 typedef struct tyn_environment {
     bool present;
@@ -106,9 +163,10 @@ typedef struct tyn_scene {
     tyn_environment environment;
     tyn_camera *cameras;
     uint32_t num_cameras;
-    uint32_t num_meshes;       // surfaces in the file, which no method draws yet
+    tyn_surfaces surfaces;
+    uint32_t num_meshes; // of the file, as many times as its nodes show them
     uint64_t clamped_negative; // negative densities that were set to 0 at load
-    char **warnings;           // one line each, e.g. "mesh 'wall': surfaces are not drawn yet"
+    char **warnings;           // one line each, e.g. "mesh 'wall': its lines are left out"
     uint32_t num_warnings;
 } tyn_scene;
 
@@ -119,11 +177,12 @@ TYN_API void tyn_scene_warn(tyn_scene *scene, const char *format, ...) TYN_PRINT
 // Checks every number of the scene; the first fault is one log line.
 TYN_API tyn_result tyn_scene_check(const tyn_scene *scene, const tyn_log *log);
 
-// Union of the world boxes of all shapes. False (and zeros) if there is none.
+// Union of the world boxes of all shapes; without shapes, of the surfaces' vertices. False (and zeros) if
+// there is neither.
 TYN_API bool tyn_scene_bounds(const tyn_scene *scene, float lo[3], float hi[3]);
 
-// The camera used when a scene has none: the media's bounding sphere framed at 40 degrees from a
-// little above.
+// The camera used when a scene has none: the bounding sphere of the media, without media of the
+// surfaces, framed at 40 degrees from a little above.
 TYN_API void tyn_camera_frame_scene(tyn_camera *camera, const tyn_scene *scene);
 
 // Looks from `from` at `at`; up is +Y, -Z where the view is parallel to it.

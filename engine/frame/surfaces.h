@@ -1,0 +1,20 @@
+// surfaces.h -- surfaces as the GPU gets them: checked, textures with their mip chains.
+#pragma once
+#include "scene/surfaces.h"
+#include "surface_args.h"
+
+// Made when the surfaces' hash changes and kept until the next one.
+typedef struct tyn_surface_data {
+    uint64_t hash; // 0: no surfaces
+    float lo[3], hi[3];
+    struct surface_texture
+        *textures; // at least one element, so that there is always a buffer to bind
+    uint32_t num_textures;
+    uint32_t *texels; // of all levels of all textures; at least one
+    size_t num_texels;
+} tyn_surface_data;
+
+// Checks the surfaces and makes the data anew if they changed. Errors are one log line.
+tyn_result tyn_surface_data_update(tyn_surface_data *data, const tyn_surfaces *surfaces,
+                                   const tyn_log *log);
+void tyn_surface_data_finish(tyn_surface_data *data);
