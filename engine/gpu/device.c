@@ -9,7 +9,8 @@
 static const VkPhysicalDeviceVulkan13Features required13 = {
     .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
     .synchronization2 = VK_TRUE,
-    .maintenance4 = VK_TRUE, // LocalSizeId and relaxed interfaces that current glslang may emit
+    .dynamicRendering = VK_TRUE, // raster kernels
+    .maintenance4 = VK_TRUE,     // LocalSizeId and relaxed interfaces that current glslang may emit
 };
 static const VkPhysicalDeviceVulkan12Features required12 = {
     .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES,
@@ -52,6 +53,8 @@ const char *tyn_missing_feature(const VkPhysicalDeviceFeatures2 *enabled)
         find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SYNCHRONIZATION_2_FEATURES);
     const VkPhysicalDeviceMaintenance4Features *maint4 =
         find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_FEATURES);
+    const VkPhysicalDeviceDynamicRenderingFeatures *rendering =
+        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DYNAMIC_RENDERING_FEATURES);
     if (!enabled || !enabled->features.shaderStorageImageExtendedFormats) {
         return "shaderStorageImageExtendedFormats";
     }
@@ -63,6 +66,9 @@ const char *tyn_missing_feature(const VkPhysicalDeviceFeatures2 *enabled)
     }
     if (!(v13 && v13->maintenance4) && !(maint4 && maint4->maintenance4)) {
         return "maintenance4";
+    }
+    if (!(v13 && v13->dynamicRendering) && !(rendering && rendering->dynamicRendering)) {
+        return "dynamicRendering";
     }
     return NULL;
 }
@@ -221,6 +227,7 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa, cons
     VkQueueFamilyProperties family = families[dev->queue_family];
     free(families);
     dev->timestamp_bits = family.timestampValidBits;
+    dev->graphics = (family.queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
     if (!(family.queueFlags & VK_QUEUE_COMPUTE_BIT)) {
         tyn_log_print(&dev->log, TYN_LOG_ERROR, "queue_family %u has no compute",
                       dev->queue_family);

@@ -6,6 +6,7 @@
 
 // A kernel's layouts, and one pipeline per set of specialisation constants.
 typedef struct tyn_pipeline {
+    const tyn_pass_desc *pass;
     const tyn_kernel *kernel;
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
@@ -27,6 +28,7 @@ struct tyn_device {
     char driver[256];
     VkPhysicalDeviceMemoryProperties memory;
     uint32_t timestamp_bits; // 0: no timestamps
+    bool graphics;           // the queue family draws
     bool debug_names;
     VkSampler clamp, repeat_x; // linear
     VkSampler nearest;         // for depth formats, which need not be filterable
@@ -59,6 +61,8 @@ tyn_result tyn_pipeline_variant(tyn_device *dev, tyn_pipeline *pipeline, const u
                                 VkPipeline *out);
 // The descriptor type of a binding.
 VkDescriptorType tyn_descriptor_type(const tyn_pass_desc *pass, const tyn_binding *binding);
+// The stages that see a kernel's bindings and push constants.
+VkShaderStageFlags tyn_kernel_stages(const tyn_kernel *kernel);
 
 // Finds only; VK_NULL_HANDLE if it was never made.
 VkPipeline tyn_pipeline_find(const tyn_pipeline *pipeline, const uint32_t *spec);

@@ -145,9 +145,14 @@ static candidate inspect(const tyn_procs *vk, VkPhysicalDevice device)
     VkQueueFamilyProperties families[16];
     uint32_t count = 16;
     vk->GetPhysicalDeviceQueueFamilyProperties(device, &count, families);
-    for (uint32_t i = 0; i < count && c.queue_family == UINT32_MAX; i++) {
-        if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT) {
-            c.queue_family = i;
+    // One that draws as well, if there is one: scenes with surfaces need it.
+    const VkQueueFlags wishes[] = {VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT,
+                                   VK_QUEUE_COMPUTE_BIT};
+    for (uint32_t w = 0; w < 2; w++) {
+        for (uint32_t i = 0; i < count && c.queue_family == UINT32_MAX; i++) {
+            if ((families[i].queueFlags & wishes[w]) == wishes[w]) {
+                c.queue_family = i;
+            }
         }
     }
     if (c.queue_family == UINT32_MAX && !c.missing) {

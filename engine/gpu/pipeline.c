@@ -16,6 +16,12 @@ VkDescriptorType tyn_descriptor_type(const tyn_pass_desc *pass, const tyn_bindin
     }
 }
 
+VkShaderStageFlags tyn_kernel_stages(const tyn_kernel *kernel)
+{
+    return kernel->raster ? VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT
+                          : VK_SHADER_STAGE_COMPUTE_BIT;
+}
+
 static tyn_result create_layouts(tyn_device *dev, const tyn_pass_desc *pass, tyn_pipeline *p)
 {
     VkDescriptorSetLayoutBinding bindings[TYN_MAX_BINDINGS] = {0};
@@ -24,7 +30,7 @@ static tyn_result create_layouts(tyn_device *dev, const tyn_pass_desc *pass, tyn
             .binding = i,
             .descriptorType = tyn_descriptor_type(pass, &p->kernel->bindings[i]),
             .descriptorCount = 1,
-            .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+            .stageFlags = tyn_kernel_stages(p->kernel),
         };
     }
     VkResult made = dev->vk.CreateDescriptorSetLayout(
@@ -44,7 +50,7 @@ static tyn_result create_layouts(tyn_device *dev, const tyn_pass_desc *pass, tyn
                 .pSetLayouts = &p->set_layout,
                 .pushConstantRangeCount = p->kernel->args_size ? 1 : 0,
                 .pPushConstantRanges =
-                    &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, p->kernel->args_size},
+                    &(VkPushConstantRange){tyn_kernel_stages(p->kernel), 0, p->kernel->args_size},
             },
             NULL, &p->layout);
     }
@@ -72,6 +78,7 @@ tyn_result tyn_pipeline_get(tyn_device *dev, const tyn_pass_desc *pass, uint32_t
         free(p);
         return TYN_ERR_MEMORY;
     }
+    p->pass = pass;
     p->kernel = k;
     dev->pipelines[dev->num_pipelines++] = p;
     *out = p;
@@ -88,6 +95,124 @@ VkPipeline tyn_pipeline_find(const tyn_pipeline *p, const uint32_t *spec)
     return VK_NULL_HANDLE;
 }
 
+static tyn_result create_module(tyn_device *dev, const tyn_kernel *k, const uint32_t *spirv,
+                                size_t size, VkShaderModule *out)
+{
+    VkResult made = dev->vk.CreateShaderModule(
+        dev->device,
+        &(VkShaderModuleCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = spirv},
+        NULL, out);
+    return tyn_vk_check(dev, made, k->name);
+}
+
+static VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which, VkShaderModule module,
+                                             const VkSpecializationInfo *spec)
+{
+    return (VkPipelineShaderStageCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+        .stage = which,
+        .module = module,
+        .pName = "main",
+        .pSpecializationInfo = spec->mapEntryCount ? spec : NULL,
+    };
+}
+
+static VkResult create_compute(tyn_device *dev, const tyn_pipeline *p, VkShaderModule module,
+                               const VkSpecializationInfo *spec, VkPipeline *out)
+{
+    return dev->vk.CreateComputePipelines(
+        dev->device, dev->cache, 1,
+        &(VkComputePipelineCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+            .stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module, spec),
+            .layout = p->layout,
+        },
+        NULL, out);
+}
+
+// Triangles without vertex input, viewport and scissor left to the draw, no blending.
+static VkResult create_raster(tyn_device *dev, const tyn_pipeline *p, VkShaderModule vertex,
+                              VkShaderModule fragment, const VkSpecializationInfo *spec,
+                              VkPipeline *out)
+{
+    const tyn_raster *raster = p->kernel->raster;
+    VkFormat colors[TYN_MAX_ATTACHMENTS], depth = VK_FORMAT_UNDEFINED;
+    VkPipelineColorBlendAttachmentState writes[TYN_MAX_ATTACHMENTS];
+    uint32_t num_colors = 0;
+    for (uint32_t i = 0; i < raster->num_attachments; i++) {
+        VkFormat format = p->pass->ports[raster->attachments[i].port].format;
+        if (raster->attachments[i].use == TYN_USE_DEPTH) {
+            depth = format;
+        } else {
+            writes[num_colors] = (VkPipelineColorBlendAttachmentState){
+                .colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                                  VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT};
+            colors[num_colors++] = format;
+        }
+    }
+    const VkPipelineShaderStageCreateInfo stages[2] = {
+        stage(VK_SHADER_STAGE_VERTEX_BIT, vertex, spec),
+        stage(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, spec),
+    };
+    const VkDynamicState dynamic[2] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+    return dev->vk.CreateGraphicsPipelines(
+        dev->device, dev->cache, 1,
+        &(VkGraphicsPipelineCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+            .pNext =
+                &(VkPipelineRenderingCreateInfo){
+                    .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+                    .colorAttachmentCount = num_colors,
+                    .pColorAttachmentFormats = colors,
+                    .depthAttachmentFormat = depth,
+                },
+            .stageCount = fragment ? 2 : 1,
+            .pStages = stages,
+            .pVertexInputState =
+                &(VkPipelineVertexInputStateCreateInfo){
+                    .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO},
+            .pInputAssemblyState =
+                &(VkPipelineInputAssemblyStateCreateInfo){
+                    .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+                    .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST},
+            .pViewportState =
+                &(VkPipelineViewportStateCreateInfo){
+                    .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+                    .viewportCount = 1,
+                    .scissorCount = 1},
+            .pRasterizationState =
+                &(VkPipelineRasterizationStateCreateInfo){
+                    .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+                    .polygonMode = VK_POLYGON_MODE_FILL,
+                    .cullMode = raster->cull,
+                    .frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE,
+                    .lineWidth = 1.0f},
+            .pMultisampleState =
+                &(VkPipelineMultisampleStateCreateInfo){
+                    .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+                    .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT},
+            .pDepthStencilState =
+                &(VkPipelineDepthStencilStateCreateInfo){
+                    .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+                    .depthTestEnable = depth != VK_FORMAT_UNDEFINED,
+                    .depthWriteEnable = depth != VK_FORMAT_UNDEFINED,
+                    .depthCompareOp = raster->depth},
+            .pColorBlendState =
+                &(VkPipelineColorBlendStateCreateInfo){
+                    .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+                    .attachmentCount = num_colors,
+                    .pAttachments = writes},
+            .pDynamicState =
+                &(VkPipelineDynamicStateCreateInfo){
+                    .sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+                    .dynamicStateCount = 2,
+                    .pDynamicStates = dynamic},
+            .layout = p->layout,
+        },
+        NULL, out);
+}
+
 tyn_result tyn_pipeline_variant(tyn_device *dev, tyn_pipeline *p, const uint32_t *spec,
                                 VkPipeline *out)
 {
@@ -95,48 +220,41 @@ tyn_result tyn_pipeline_variant(tyn_device *dev, tyn_pipeline *p, const uint32_t
     if (*out) {
         return TYN_OK;
     }
+    const tyn_kernel *k = p->kernel;
+    if (k->raster && !dev->graphics) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR,
+                      "kernel '%s' draws surfaces: it needs a queue family with graphics, which "
+                      "family %u is not",
+                      k->name, dev->queue_family);
+        return TYN_ERR_UNSUPPORTED;
+    }
     void *grown = realloc(p->variants, (p->num_variants + 1) * sizeof *p->variants);
     if (!grown) {
         return TYN_ERR_MEMORY;
     }
     p->variants = grown;
 
-    VkShaderModule module;
-    tyn_result result = tyn_vk_check(
-        dev,
-        dev->vk.CreateShaderModule(
-            dev->device,
-            &(VkShaderModuleCreateInfo){.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                        .codeSize = p->kernel->spirv_size,
-                                        .pCode = p->kernel->spirv},
-            NULL, &module),
-        p->kernel->name);
-    if (result != TYN_OK) {
-        return result;
+    VkShaderModule module = VK_NULL_HANDLE, fragment = VK_NULL_HANDLE;
+    tyn_result result = create_module(dev, k, k->spirv, k->spirv_size, &module);
+    if (result == TYN_OK && k->raster && k->raster->fragment) {
+        result = create_module(dev, k, k->raster->fragment, k->raster->fragment_size, &fragment);
     }
-    VkSpecializationMapEntry entries[TYN_MAX_SPEC];
-    for (uint32_t i = 0; i < p->kernel->num_spec; i++) {
-        entries[i] = (VkSpecializationMapEntry){i, i * 4, 4};
-    }
-    const VkSpecializationInfo info = {p->kernel->num_spec, entries, p->kernel->num_spec * 4, spec};
-    VkResult made = dev->vk.CreateComputePipelines(
-        dev->device, dev->cache, 1,
-        &(VkComputePipelineCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-            .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                      .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                      .module = module,
-                      .pName = "main",
-                      .pSpecializationInfo = p->kernel->num_spec ? &info : NULL},
-            .layout = p->layout,
-        },
-        NULL, out);
-    dev->vk.DestroyShaderModule(dev->device, module, NULL);
-    result = tyn_vk_check(dev, made, p->kernel->name);
     if (result == TYN_OK) {
-        tyn_device_name_object(dev, VK_OBJECT_TYPE_PIPELINE, (uint64_t)*out, p->kernel->name);
+        VkSpecializationMapEntry entries[TYN_MAX_SPEC];
+        for (uint32_t i = 0; i < k->num_spec; i++) {
+            entries[i] = (VkSpecializationMapEntry){i, i * 4, 4};
+        }
+        const VkSpecializationInfo info = {k->num_spec, entries, k->num_spec * 4, spec};
+        VkResult made = k->raster ? create_raster(dev, p, module, fragment, &info, out)
+                                  : create_compute(dev, p, module, &info, out);
+        result = tyn_vk_check(dev, made, k->name);
+    }
+    dev->vk.DestroyShaderModule(dev->device, module, NULL);
+    dev->vk.DestroyShaderModule(dev->device, fragment, NULL);
+    if (result == TYN_OK) {
+        tyn_device_name_object(dev, VK_OBJECT_TYPE_PIPELINE, (uint64_t)*out, k->name);
         memset(p->variants[p->num_variants].spec, 0, sizeof p->variants[0].spec);
-        memcpy(p->variants[p->num_variants].spec, spec, p->kernel->num_spec * 4);
+        memcpy(p->variants[p->num_variants].spec, spec, k->num_spec * 4);
         p->variants[p->num_variants++].pipeline = *out;
     }
     return result;

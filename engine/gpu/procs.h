@@ -58,6 +58,7 @@
     X(CreateShaderModule)                                                                          \
     X(DestroyShaderModule)                                                                         \
     X(CreateComputePipelines)                                                                      \
+    X(CreateGraphicsPipelines)                                                                     \
     X(DestroyPipeline)                                                                             \
     X(CreatePipelineCache)                                                                         \
     X(DestroyPipelineCache)                                                                        \
@@ -73,6 +74,11 @@
     X(CmdPushConstants)                                                                            \
     X(CmdDispatch)                                                                                 \
     X(CmdDispatchIndirect)                                                                         \
+    X(CmdBeginRendering)                                                                           \
+    X(CmdEndRendering)                                                                             \
+    X(CmdSetViewport)                                                                              \
+    X(CmdSetScissor)                                                                               \
+    X(CmdDraw)                                                                                     \
     X(CmdCopyBuffer)                                                                               \
     X(CmdCopyBufferToImage)                                                                        \
     X(CmdCopyImageToBuffer)                                                                        \

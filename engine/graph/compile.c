@@ -15,6 +15,7 @@ uint32_t graph_texel_size(VkFormat format)
     case VK_FORMAT_R32_UINT:
     case VK_FORMAT_R16G16_SFLOAT:
     case VK_FORMAT_R8G8B8A8_UNORM:
+    case VK_FORMAT_D32_SFLOAT:
         return 4;
     case VK_FORMAT_R32G32_SFLOAT:
     case VK_FORMAT_R16G16B16A16_SFLOAT:
@@ -23,6 +24,17 @@ uint32_t graph_texel_size(VkFormat format)
         return 16;
     default:
         return 16;
+    }
+}
+
+VkImageAspectFlags graph_aspect(VkFormat format)
+{
+    switch (format) {
+    case VK_FORMAT_D16_UNORM:
+    case VK_FORMAT_D32_SFLOAT:
+        return VK_IMAGE_ASPECT_DEPTH_BIT;
+    default:
+        return VK_IMAGE_ASPECT_COLOR_BIT;
     }
 }
 
@@ -178,7 +190,7 @@ static tyn_result create_image(tyn_graph *g, tyn_heap *heap, const resource *r, 
     }
     // View 0 sees all mips, the others one each.
     for (uint32_t v = 0; result == TYN_OK && v < (r->mips > 1 ? r->mips + 1 : 1); v++) {
-        VkImageSubresourceRange range = {VK_IMAGE_ASPECT_COLOR_BIT, 0, r->mips, 0, 1};
+        VkImageSubresourceRange range = {graph_aspect(r->format), 0, r->mips, 0, 1};
         if (v) {
             range.baseMipLevel = v - 1;
             range.levelCount = 1;

@@ -60,6 +60,8 @@ static const char *format_name(VkFormat format)
         return "RGBA32F";
     case VK_FORMAT_R8G8B8A8_UNORM:
         return "RGBA8";
+    case VK_FORMAT_D32_SFLOAT:
+        return "D32F";
     default:
         return "other";
     }
@@ -163,6 +165,17 @@ static char *dump_text(tyn_graph *g)
     return t.data;
 }
 
+static bool draws(const tyn_pass_desc *pass)
+{
+    for (uint32_t k = 0; k < pass->num_kernels; k++) {
+        if (pass->kernels[k].raster) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Nodes that draw are green, those that only compute blue.
 static char *dump_dot(tyn_graph *g)
 {
     text t = {0};
@@ -170,7 +183,10 @@ static char *dump_dot(tyn_graph *g)
     for (uint32_t i = 0; i < g->num_nodes; i++) {
         const node *n = &g->nodes[i];
         put(&t, "  n%u [label=\"%s\" shape=box style=\"filled%s\" fillcolor=\"%s\"];\n", i,
-            n->pass->name, n->needed ? "" : ",dashed", n->needed ? "#cfe2ff" : "#eeeeee");
+            n->pass->name, n->needed ? "" : ",dashed",
+            !n->needed       ? "#eeeeee"
+            : draws(n->pass) ? "#d3f0d3"
+                             : "#cfe2ff");
         for (uint32_t p = 0; p < n->pass->num_ports; p++) {
             tyn_port_dir dir = n->pass->ports[p].dir;
             if (!n->res[p] || dir == TYN_SCRATCH) {

@@ -1,5 +1,5 @@
-// internal.h -- the inside of the render graph, shared by declare.c, compile.c, recorder.c, record.c
-// and dump.c.
+// internal.h -- the inside of the render graph, shared by declare.c, compile.c, recorder.c, draw.c,
+// record.c and dump.c.
 //
 // A declaration is two lists, resources and nodes, rebuilt for every frame. What was compiled is kept
 // beside it, index by index: `phys` belongs to `resources`, `runs` to `nodes`. Both agree as long as
@@ -162,6 +162,21 @@ struct tyn_recorder {
     uint32_t num_work;
 };
 
+typedef struct touch { // one resource in one dispatch or draw
+    uint32_t resource;
+    tyn_access access;
+} touch;
+
+// One dispatch or draw under way.
+typedef struct launch {
+    uint32_t kernel;
+    const uint32_t *spec;
+    const uint8_t *mips;
+    uint8_t ports[TYN_MAX_BINDINGS];
+    touch touches[TYN_MAX_BINDINGS + TYN_MAX_ATTACHMENTS + 1];
+    uint32_t num_touches;
+} launch;
+
 tyn_result graph_fail(tyn_graph *g, tyn_result result, const char *format, ...) TYN_PRINTF(3, 4);
 void graph_cull(tyn_graph *g);
 tyn_result graph_survey(tyn_graph *g, survey *s, phys *usage);
@@ -170,6 +185,18 @@ void graph_release(tyn_graph *g); // everything compiled
 void graph_free_staging(tyn_graph *g);
 bool graph_uploads_staged(const tyn_graph *g);
 uint32_t graph_texel_size(VkFormat format);
+VkImageAspectFlags graph_aspect(VkFormat format);
 
 // Records a barrier for one access outside any node (uploads, readback, host images).
 void recorder_access(tyn_recorder *r, uint32_t resource_index, tyn_access access);
+void recorder_fail(tyn_recorder *r, tyn_result result, const char *what, const char *which);
+
+// Starts with what the kernel's bindings touch; `ports`, `spec` and `mips` may be NULL.
+launch launch_begin(tyn_recorder *r, uint32_t kernel, const uint8_t *ports, const uint8_t *mips,
+                    const uint32_t *spec);
+void launch_touch(launch *l, uint32_t resource_index, tyn_access access);
+// Surveys, or makes the pipeline, or puts the barriers into the stream. True if the command itself is
+// to be printed (PLAN) or recorded (LIVE).
+bool launch_prepare(tyn_recorder *r, const launch *l);
+// Binds pipeline and descriptors; its pipeline, or NULL if that failed.
+const tyn_pipeline *launch_bind(tyn_recorder *r, const launch *l);

@@ -51,6 +51,8 @@ bool tyn_plan(tyn_track *t, tyn_access a, tyn_barrier *out)
                          .write_access =
                              a.access & (VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
                                          VK_ACCESS_2_TRANSFER_WRITE_BIT |
+                                         VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT |
+                                         VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT |
                                          VK_ACCESS_2_HOST_WRITE_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT),
                          .layout = a.layout};
     } else if (transition) {
@@ -110,8 +112,10 @@ void tyn_print_stages(char *text, size_t size, VkPipelineStageFlags2 stages)
         {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, "TRANSFER"},
         {VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, "INDIRECT"},
         {VK_PIPELINE_STAGE_2_HOST_BIT, "HOST"},
+        {VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, "VERTEX"},
         {VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT, "FRAGMENT"},
         {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, "COLOR_OUTPUT"},
+        {VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT, "EARLY_TESTS"},
         {VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT, "LATE_TESTS"},
         {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, "ALL"},
         {0, NULL}};
@@ -155,6 +159,8 @@ const char *tyn_layout_name(VkImageLayout layout)
         return "TRANSFER_DST";
     case VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL:
         return "COLOR_ATTACHMENT";
+    case VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL:
+        return "DEPTH_ATTACHMENT";
     case VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL:
         return "DEPTH_READ_ONLY";
     default:

@@ -54,7 +54,7 @@ static tyn_access transfer(const resource *r, bool write)
 
 static VkBufferImageCopy whole_image(const resource *r)
 {
-    return (VkBufferImageCopy){.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+    return (VkBufferImageCopy){.imageSubresource = {graph_aspect(r->format), 0, 0, 1},
                                .imageExtent = {r->extent.x, r->extent.y, r->extent.z}};
 }
 
@@ -112,6 +112,11 @@ static void record_dummies(tyn_graph *g, VkCommandBuffer cmd)
     if (g->dummy_ready) {
         return;
     }
+    const VkPipelineStageFlags2 shaders =
+        VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
+        (g->dev->graphics
+             ? VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT
+             : 0);
     VkImageMemoryBarrier2 images[2];
     for (int d = 0; d < 2; d++) {
         images[d] = (VkImageMemoryBarrier2){
@@ -133,7 +138,7 @@ static void record_dummies(tyn_graph *g, VkCommandBuffer cmd)
                                       &(VkClearColorValue){{0}}, 1, &images[d].subresourceRange);
         images[d].srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
         images[d].srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
-        images[d].dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+        images[d].dstStageMask = shaders;
         images[d].dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
         images[d].oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
         images[d].newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
@@ -143,7 +148,7 @@ static void record_dummies(tyn_graph *g, VkCommandBuffer cmd)
         .sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
         .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
         .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
-        .dstStageMask = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+        .dstStageMask = shaders,
         .dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT,
         .buffer = g->dummy[TYN_BUFFER].buffer,
         .size = VK_WHOLE_SIZE};
@@ -167,6 +172,7 @@ static void record_sources(tyn_recorder *rec)
         } else if (r->kind == RESOURCE_HISTORY && (!p->content || p->key != r->key)) {
             record_zeros(rec, i);
         } else if (g->poison && !p->content &&
+                   graph_aspect(r->format) == VK_IMAGE_ASPECT_COLOR_BIT &&
                    (r->kind == RESOURCE_OUT || r->kind == RESOURCE_SCRATCH)) {
             record_fill(rec, i, 0x7fc00000u); // NaN
             p->content = 1;

@@ -1,16 +1,9 @@
-// recorder.c -- what a pass records: dispatches and small transfers. The same code surveys (what will
-// be needed), makes pipelines, plans (for dumps) and records.
+// recorder.c -- what a pass records: dispatches and small transfers (draw.c: draws). The same code surveys
+// (what will be needed), makes pipelines, plans (for dumps) and records.
 #include "graph/internal.h"
 #include "base/hash.h"
 #include <stdio.h>
 #include <string.h>
-
-static const VkPipelineStageFlags2 COMPUTE = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-
-typedef struct touch { // one resource in one dispatch
-    uint32_t resource;
-    tyn_access access;
-} touch;
 
 static node *node_of(const tyn_recorder *r)
 {
@@ -48,7 +41,7 @@ void tyn_rec_work(tyn_recorder *r, const char *name, double amount)
     }
 }
 
-static void fail(tyn_recorder *r, tyn_result result, const char *what, const char *which)
+void recorder_fail(tyn_recorder *r, tyn_result result, const char *what, const char *which)
 {
     if (r->result == TYN_OK) {
         r->result = result;
@@ -60,8 +53,8 @@ static void fail(tyn_recorder *r, tyn_result result, const char *what, const cha
 // ---- barriers ---------------------------------------------------------------------------------
 
 typedef struct barrier_batch {
-    VkBufferMemoryBarrier2 buffers[TYN_MAX_BINDINGS + 1];
-    VkImageMemoryBarrier2 images[TYN_MAX_BINDINGS + 1];
+    VkBufferMemoryBarrier2 buffers[TYN_MAX_BINDINGS + TYN_MAX_ATTACHMENTS + 1];
+    VkImageMemoryBarrier2 images[TYN_MAX_BINDINGS + TYN_MAX_ATTACHMENTS + 1];
     uint32_t num_buffers, num_images;
 } barrier_batch;
 
@@ -84,7 +77,7 @@ static void add_barrier(tyn_graph *g, barrier_batch *batch, uint32_t index, cons
     }
     const resource *r = &g->resources[index];
     VkImageAspectFlags aspect =
-        r->kind == RESOURCE_IMPORT && r->image.aspect ? r->image.aspect : VK_IMAGE_ASPECT_COLOR_BIT;
+        r->kind == RESOURCE_IMPORT && r->image.aspect ? r->image.aspect : graph_aspect(r->format);
     batch->images[batch->num_images++] = (VkImageMemoryBarrier2){
         .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
         .srcStageMask = b->src_stages,
@@ -151,18 +144,18 @@ void recorder_access(tyn_recorder *r, uint32_t index, tyn_access access)
     synchronise(r, &(touch){index, access}, 1);
 }
 
-static void add_touch(touch *touches, uint32_t *count, uint32_t index, tyn_access access)
+void launch_touch(launch *l, uint32_t index, tyn_access access)
 {
-    for (uint32_t i = 0; i < *count; i++) {
-        if (touches[i].resource == index) {
-            touches[i].access = tyn_access_join(touches[i].access, access);
+    for (uint32_t i = 0; i < l->num_touches; i++) {
+        if (l->touches[i].resource == index) {
+            l->touches[i].access = tyn_access_join(l->touches[i].access, access);
             return;
         }
     }
-    touches[(*count)++] = (touch){index, access};
+    l->touches[l->num_touches++] = (touch){index, access};
 }
 
-static tyn_access access_of(const tyn_port *port, tyn_use use)
+static tyn_access access_of(const tyn_port *port, tyn_use use, VkPipelineStageFlags2 stages)
 {
     const VkAccessFlags2 reads = VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
     const VkAccessFlags2 writes = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
@@ -171,17 +164,17 @@ static tyn_access access_of(const tyn_port *port, tyn_use use)
     switch (use) {
     case TYN_USE_SAMPLED:
         // A port that its own node writes stays in GENERAL: it would flip at every dispatch.
-        return (tyn_access){COMPUTE, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, true, false,
+        return (tyn_access){stages, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, true, false,
                             port->dir == TYN_IN ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
                                                 : VK_IMAGE_LAYOUT_GENERAL};
     case TYN_USE_UNIFORM:
-        return (tyn_access){COMPUTE, VK_ACCESS_2_UNIFORM_READ_BIT, true, false, general};
+        return (tyn_access){stages, VK_ACCESS_2_UNIFORM_READ_BIT, true, false, general};
     case TYN_USE_STORAGE_READ:
-        return (tyn_access){COMPUTE, reads, true, false, general};
+        return (tyn_access){stages, reads, true, false, general};
     case TYN_USE_STORAGE_WRITE:
-        return (tyn_access){COMPUTE, writes, false, true, general};
+        return (tyn_access){stages, writes, false, true, general};
     default:
-        return (tyn_access){COMPUTE, reads | writes, true, true, general};
+        return (tyn_access){stages, reads | writes, true, true, general};
     }
 }
 
@@ -206,15 +199,17 @@ static VkImageView view_of(const tyn_recorder *r, uint8_t port, uint8_t mip, boo
 static VkSampler sampler_of(tyn_recorder *r, uint8_t port, const tyn_binding *binding)
 {
     const resource *res = resource_at(r, port);
-    if (res && res->kind == RESOURCE_IMPORT && res->image.aspect & VK_IMAGE_ASPECT_DEPTH_BIT) {
+    bool depth = res && (graph_aspect(res->format) & VK_IMAGE_ASPECT_DEPTH_BIT ||
+                         res->image.aspect & VK_IMAGE_ASPECT_DEPTH_BIT);
+    if (depth) {
         return r->g->dev->nearest;
     }
     return binding->repeat ? r->g->dev->repeat_x : r->g->dev->clamp;
 }
 
-static VkDescriptorSet find_or_make_set(tyn_recorder *r, const tyn_dispatch *d, tyn_pipeline *pl,
-                                        const uint8_t *ports, const touch *touches, uint32_t count)
+static VkDescriptorSet find_or_make_set(tyn_recorder *r, const launch *l, const tyn_pipeline *pl)
 {
+    const uint8_t *ports = l->ports;
     tyn_graph *g = r->g;
     const tyn_kernel *k = pl->kernel;
     uint64_t h = tyn_hash_u64(TYN_HASH_SEED, (uint64_t)(uintptr_t)k);
@@ -237,12 +232,12 @@ static VkDescriptorSet find_or_make_set(tyn_recorder *r, const tyn_dispatch *d, 
         } else {
             // The layout that this dispatch has the image in (two bindings may share it).
             VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-            for (uint32_t t = 0; t < count; t++) {
-                if (touches[t].resource + 1 == node_of(r)->res[ports[i]]) {
-                    layout = touches[t].access.layout;
+            for (uint32_t t = 0; t < l->num_touches; t++) {
+                if (l->touches[t].resource + 1 == node_of(r)->res[ports[i]]) {
+                    layout = l->touches[t].access.layout;
                 }
             }
-            uint8_t mip = d->mips ? d->mips[i] : 0;
+            uint8_t mip = l->mips ? l->mips[i] : 0;
             images[i] = (VkDescriptorImageInfo){
                 use == TYN_USE_SAMPLED ? sampler_of(r, ports[i], &k->bindings[i]) : VK_NULL_HANDLE,
                 view_of(r, ports[i], mip, use == TYN_USE_SAMPLED), layout};
@@ -265,7 +260,7 @@ static VkDescriptorSet find_or_make_set(tyn_recorder *r, const tyn_dispatch *d, 
                                        .pSetLayouts = &pl->set_layout},
         &set);
     if (made != VK_SUCCESS) {
-        fail(r, TYN_ERR_DEVICE, "no descriptor set left for kernel", k->name);
+        recorder_fail(r, TYN_ERR_DEVICE, "no descriptor set left for kernel", k->name);
         return VK_NULL_HANDLE;
     }
     for (uint32_t i = 0; i < k->num_bindings; i++) {
@@ -278,15 +273,16 @@ static VkDescriptorSet find_or_make_set(tyn_recorder *r, const tyn_dispatch *d, 
 
 // ---- surveying --------------------------------------------------------------------------------
 
-static void survey_dispatch(tyn_recorder *r, const tyn_dispatch *d, const uint8_t *ports)
+static void survey_launch(tyn_recorder *r, const launch *l)
 {
     const node *n = node_of(r);
-    const tyn_kernel *k = &n->pass->kernels[d->kernel];
+    const tyn_kernel *k = &n->pass->kernels[l->kernel];
+    const uint8_t *ports = l->ports;
     survey *s = r->survey;
     s->hash = tyn_hash_u64(s->hash, (uint64_t)(uintptr_t)k);
     s->hash = tyn_hash_bytes(s->hash, ports, k->num_bindings);
-    if (d->spec) {
-        s->hash = tyn_hash_bytes(s->hash, d->spec, k->num_spec * 4);
+    if (l->spec) {
+        s->hash = tyn_hash_bytes(s->hash, l->spec, k->num_spec * 4);
     }
     s->sets++;
     for (uint32_t i = 0; i < k->num_bindings; i++) {
@@ -318,30 +314,84 @@ static void survey_transfer(tyn_recorder *r, uint8_t port, bool source)
     }
 }
 
-static void make_pipeline(tyn_recorder *r, const tyn_dispatch *d)
+static const uint32_t no_spec[TYN_MAX_SPEC]; // zeros
+
+static void make_pipeline(tyn_recorder *r, const launch *l)
 {
-    static const uint32_t zeros[TYN_MAX_SPEC];
     tyn_pipeline *pl;
     VkPipeline pipeline;
-    tyn_result result = tyn_pipeline_get(r->g->dev, node_of(r)->pass, d->kernel, &pl);
+    tyn_result result = tyn_pipeline_get(r->g->dev, node_of(r)->pass, l->kernel, &pl);
     if (result == TYN_OK) {
-        result = tyn_pipeline_variant(r->g->dev, pl, d->spec ? d->spec : zeros, &pipeline);
+        result = tyn_pipeline_variant(r->g->dev, pl, l->spec ? l->spec : no_spec, &pipeline);
     }
     if (result != TYN_OK) {
-        fail(r, result, "no pipeline for kernel", node_of(r)->pass->kernels[d->kernel].name);
+        recorder_fail(r, result, "no pipeline for kernel",
+                      node_of(r)->pass->kernels[l->kernel].name);
     }
 }
 
-// ---- dispatching ------------------------------------------------------------------------------
+// ---- launching --------------------------------------------------------------------------------
+
+launch launch_begin(tyn_recorder *r, uint32_t kernel, const uint8_t *ports, const uint8_t *mips,
+                    const uint32_t *spec)
+{
+    const node *n = node_of(r);
+    const tyn_kernel *k = &n->pass->kernels[kernel];
+    const VkPipelineStageFlags2 stages =
+        k->raster ? VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT
+                  : VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+    launch l = {.kernel = kernel, .spec = spec, .mips = mips};
+    for (uint32_t i = 0; i < k->num_bindings; i++) {
+        l.ports[i] = ports ? ports[i] : k->bindings[i].port;
+        if (n->res[l.ports[i]]) {
+            launch_touch(&l, n->res[l.ports[i]] - 1,
+                         access_of(&n->pass->ports[l.ports[i]], k->bindings[i].use, stages));
+        }
+    }
+    return l;
+}
+
+bool launch_prepare(tyn_recorder *r, const launch *l)
+{
+    if (r->mode == RECORD_SURVEY) {
+        survey_launch(r, l);
+        return false;
+    }
+    if (r->mode == RECORD_PIPELINES) {
+        make_pipeline(r, l);
+        return false;
+    }
+    synchronise(r, l->touches, l->num_touches);
+    return true;
+}
+
+const tyn_pipeline *launch_bind(tyn_recorder *r, const launch *l)
+{
+    const tyn_procs *vk = &r->g->dev->vk;
+    const tyn_kernel *k = &node_of(r)->pass->kernels[l->kernel];
+    const VkPipelineBindPoint point =
+        k->raster ? VK_PIPELINE_BIND_POINT_GRAPHICS : VK_PIPELINE_BIND_POINT_COMPUTE;
+    tyn_pipeline *pl;
+    tyn_result result = tyn_pipeline_get(r->g->dev, node_of(r)->pass, l->kernel, &pl);
+    VkPipeline pipeline =
+        result == TYN_OK ? tyn_pipeline_find(pl, l->spec ? l->spec : no_spec) : VK_NULL_HANDLE;
+    if (!pipeline) {
+        recorder_fail(r, TYN_ERR_PARAMS, "a pipeline was not prepared for kernel", k->name);
+        return NULL;
+    }
+    VkDescriptorSet set = find_or_make_set(r, l, pl);
+    if (!set) {
+        return NULL;
+    }
+    vk->CmdBindPipeline(r->cmd, point, pipeline);
+    vk->CmdBindDescriptorSets(r->cmd, point, pl->layout, 0, 1, &set, 0, NULL);
+    return pl;
+}
 
 static void dispatch(tyn_recorder *r, const tyn_dispatch *d, int indirect_port, uint64_t offset)
 {
     const node *n = node_of(r);
     const tyn_kernel *k = &n->pass->kernels[d->kernel];
-    uint8_t ports[TYN_MAX_BINDINGS];
-    for (uint32_t i = 0; i < k->num_bindings; i++) {
-        ports[i] = d->ports ? d->ports[i] : k->bindings[i].port;
-    }
     const uint32_t cells[3] = {d->cells.x ? d->cells.x : 1, d->cells.y ? d->cells.y : 1,
                                d->cells.z ? d->cells.z : 1};
     uint32_t groups[3];
@@ -349,40 +399,26 @@ static void dispatch(tyn_recorder *r, const tyn_dispatch *d, int indirect_port, 
         uint32_t local = k->local_size[a] ? k->local_size[a] : 1;
         groups[a] = (cells[a] + local - 1) / local;
         if (groups[a] > r->g->dev->properties.limits.maxComputeWorkGroupCount[a]) {
-            fail(r, TYN_ERR_UNSUPPORTED, "more workgroups than the device takes for kernel",
-                 k->name);
+            recorder_fail(r, TYN_ERR_UNSUPPORTED,
+                          "more workgroups than the device takes for kernel", k->name);
             return;
         }
     }
     r->dispatches++;
-    if (r->mode == RECORD_SURVEY) {
-        survey_dispatch(r, d, ports);
-        if (indirect_port >= 0 && r->usage && n->res[indirect_port]) {
-            r->usage[n->res[indirect_port] - 1].buffer_usage |= VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
-        }
-        return;
-    }
-    if (r->mode == RECORD_PIPELINES) {
-        make_pipeline(r, d);
-        return;
-    }
-
-    touch touches[TYN_MAX_BINDINGS + 1];
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < k->num_bindings; i++) {
-        if (n->res[ports[i]]) {
-            add_touch(touches, &count, n->res[ports[i]] - 1,
-                      access_of(&n->pass->ports[ports[i]], k->bindings[i].use));
-        }
-    }
+    launch l = launch_begin(r, d->kernel, d->ports, d->mips, d->spec);
     if (indirect_port >= 0 && n->res[indirect_port]) {
-        add_touch(touches, &count, n->res[indirect_port] - 1,
-                  (tyn_access){VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
-                               VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, true, false,
-                               VK_IMAGE_LAYOUT_UNDEFINED});
+        uint32_t index = n->res[indirect_port] - 1;
+        launch_touch(&l, index,
+                     (tyn_access){VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+                                  VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, true, false,
+                                  VK_IMAGE_LAYOUT_UNDEFINED});
+        if (r->mode == RECORD_SURVEY && r->usage) {
+            r->usage[index].buffer_usage |= VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+        }
     }
-    synchronise(r, touches, count);
-
+    if (!launch_prepare(r, &l)) {
+        return;
+    }
     if (r->mode == RECORD_PLAN) {
         char line[160];
         snprintf(line, sizeof line, "    dispatch %s %u x %u x %u", d->label ? d->label : k->name,
@@ -390,24 +426,11 @@ static void dispatch(tyn_recorder *r, const tyn_dispatch *d, int indirect_port, 
         r->print(r->print_user, line);
         return;
     }
-
-    static const uint32_t zeros[TYN_MAX_SPEC];
     const tyn_procs *vk = &r->g->dev->vk;
-    tyn_pipeline *pl;
-    tyn_result result = tyn_pipeline_get(r->g->dev, n->pass, d->kernel, &pl);
-    VkPipeline pipeline =
-        result == TYN_OK ? tyn_pipeline_find(pl, d->spec ? d->spec : zeros) : VK_NULL_HANDLE;
-    if (!pipeline) {
-        fail(r, TYN_ERR_PARAMS, "a pipeline was not prepared for kernel", k->name);
+    const tyn_pipeline *pl = launch_bind(r, &l);
+    if (!pl) {
         return;
     }
-    VkDescriptorSet set = find_or_make_set(r, d, pl, ports, touches, count);
-    if (!set) {
-        return;
-    }
-    vk->CmdBindPipeline(r->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-    vk->CmdBindDescriptorSets(r->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, pl->layout, 0, 1, &set, 0,
-                              NULL);
     if (k->args_size) {
         vk->CmdPushConstants(r->cmd, pl->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, k->args_size,
                              d->args);

@@ -257,6 +257,114 @@ static void declare_chain(tyn_graph *g, const chain *c)
 
 // ---- barriers ---------------------------------------------------------------------------------
 
+// draw: triangles into two tiles, then over them, and a depth image that is sampled afterwards.
+enum { DRAW_CORNERS, DRAW_TEXTURE, DRAW_COLOR, DRAW_DEPTH, DRAW_NUM };
+static const tyn_port draw_ports[DRAW_NUM] = {
+    {"corners", TYN_IN, TYN_BUFFER, 0, false, "corners of triangles"},
+    {"texture", TYN_IN, TYN_IMAGE_2D, 0, true, "what is on them"},
+    {"color", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, false, "picture"},
+    {"depth", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT, false, "depth"},
+};
+static const tyn_binding pull_bindings[] = {{DRAW_CORNERS, TYN_USE_STORAGE_READ},
+                                            {DRAW_TEXTURE, TYN_USE_SAMPLED}};
+static const tyn_binding draw_attachments[] = {{DRAW_COLOR, TYN_USE_COLOR},
+                                               {DRAW_DEPTH, TYN_USE_DEPTH}};
+static const tyn_raster draw_raster = {.fragment = no_spirv,
+                                       .fragment_size = sizeof no_spirv,
+                                       .attachments = draw_attachments,
+                                       .num_attachments = 2,
+                                       .depth = VK_COMPARE_OP_GREATER};
+static const tyn_kernel draw_kernels[] = {{.name = "corners",
+                                           .spirv = no_spirv,
+                                           .spirv_size = sizeof no_spirv,
+                                           .args_size = 4,
+                                           .bindings = pull_bindings,
+                                           .num_bindings = 2,
+                                           .raster = &draw_raster}};
+
+static tyn_result draw_declare(tyn_builder *b, const void *params)
+{
+    const node_params *p = params;
+    tyn_build_image(b, DRAW_COLOR, (tyn_extent){64, 32, 1}, 1);
+    tyn_build_image(b, DRAW_DEPTH, (tyn_extent){64, p->value ? 16 : 32, 1}, 1);
+    return TYN_OK;
+}
+
+static void draw_record(tyn_recorder *r, const void *params)
+{
+    const node_params *p = params;
+    const tyn_tile tiles[2] = {{0, 0, 32, 32, &p->times}, {32, 0, 32, 32, &p->times}};
+    tyn_rec_draw(r, &(tyn_draw){.vertices = 6, .tiles = tiles, .num_tiles = 2});
+    tyn_rec_draw(r, &(tyn_draw){.vertices = 3, .args = &p->times, .keep = true, .label = "again"});
+}
+
+static const tyn_pass_desc draw = {.name = "draw",
+                                   .summary = "draws triangles",
+                                   .ports = draw_ports,
+                                   .num_ports = DRAW_NUM,
+                                   .kernels = draw_kernels,
+                                   .num_kernels = 1,
+                                   .params_size = sizeof(node_params),
+                                   .declare = draw_declare,
+                                   .record = draw_record,
+                                   .debug_port = DRAW_COLOR};
+
+static void declare_drawing(tyn_graph *g, node_params p)
+{
+    static const float corners[9] = {1};
+    tyn_graph_begin(g);
+    tyn_ref refs[DRAW_NUM] = {tyn_graph_upload_buffer(g, "corners", corners, sizeof corners, 1)};
+    tyn_ref blurred[BLUR_NUM] = {{0}};
+    if (tyn_graph_add(g, &draw, &p, refs) == TYN_OK) {
+        blurred[BLUR_IN] = refs[DRAW_DEPTH];
+        tyn_graph_add(g, &blur, &(node_params){1, 0, 0}, blurred);
+        tyn_graph_output(g, "color", refs[DRAW_COLOR], true);
+        tyn_graph_output(g, "blurred", blurred[BLUR_OUT], false);
+    }
+}
+
+static void drawing(void **state)
+{
+    fixture *f = *state;
+    declare_drawing(f->g, (node_params){0});
+    assert_int_equal(frame(f), TYN_OK);
+    compare_golden("drawing.txt", f->fake->text);
+    char *dump = tyn_graph_dump(f->g, false), *dot = tyn_graph_dump(f->g, true);
+    assert_non_null(strstr(dump, "    draw corners 6 vertices, 2 tiles\n"));
+    assert_non_null(strstr(dump, "    draw again 3 vertices, 1 tiles\n"));
+    assert_non_null(strstr(dump, "depth (D32F 64 x 32, persistent)"));
+    assert_non_null(strstr(dot, "#d3f0d3")); // the node that draws
+    assert_non_null(strstr(dot, "#cfe2ff")); // the one that computes
+    free(dump);
+    free(dot);
+    const tyn_node_stats *stats;
+    assert_int_equal(tyn_graph_stats(f->g, &stats), 2);
+    assert_int_equal(stats[0].dispatches, 3); // as many as tiles
+
+    declare_drawing(f->g, (node_params){0}); // nothing changed: nothing is drawn
+    fake_clear(f->fake);
+    assert_int_equal(frame(f), TYN_OK);
+    assert_null(strstr(f->fake->text, "rendering"));
+    assert_int_equal(f->fake->dispatches, 0);
+
+    declare_drawing(f->g, (node_params){.value = 1}); // attachments of two sizes
+    assert_int_equal(frame(f), TYN_ERR_PARAMS);
+    assert_non_null(strstr(f->fake->log, "attachments must exist"));
+}
+
+// A queue without graphics does everything but draw.
+static void drawing_needs_graphics(void **state)
+{
+    fixture *f = *state;
+    f->fake->dev.graphics = false;
+    declare_chain(f->g, &default_chain);
+    assert_int_equal(frame(f), TYN_OK);
+    assert_null(strstr(f->fake->text, "VERTEX"));
+    declare_drawing(f->g, (node_params){0});
+    assert_int_equal(frame(f), TYN_ERR_UNSUPPORTED);
+    assert_non_null(strstr(f->fake->log, "it needs a queue family with graphics"));
+}
+
 static void first_frame(void **state)
 {
     fixture *f = *state;
@@ -594,6 +702,8 @@ int main(void)
         TEST(dump_tells_the_truth),
         TEST(second_frame_waits_for_the_first),
         TEST(indirect_dispatch),
+        TEST(drawing),
+        TEST(drawing_needs_graphics),
         TEST(host_image),
         TEST(only_what_changed_runs),
         TEST(structure_is_noticed),

@@ -12,6 +12,16 @@
 #define COMPUTE VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT
 #define TRANSFER VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT
 #define INDIRECT VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT
+#define SHADERS (VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT)
+#define COLOR_OUTPUT VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT
+#define DEPTH_TESTS                                                                                \
+    (VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT)
+#define COLOR_READ VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT
+#define COLOR_WRITE VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT
+#define DEPTH_READ VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT
+#define DEPTH_WRITE VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT
+#define COLOR_ATTACHMENT VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL
+#define DEPTH_ATTACHMENT VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL
 #define GENERAL VK_IMAGE_LAYOUT_GENERAL
 #define READ_ONLY VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
 #define TRANSFER_SRC VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL
@@ -33,6 +43,7 @@ static const named_access accesses[] = {
     {"indirect", {INDIRECT, VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, true, false, 0}},
     {"copy", {TRANSFER, VK_ACCESS_2_TRANSFER_READ_BIT, true, false, 0}},
     {"fill", {TRANSFER, VK_ACCESS_2_TRANSFER_WRITE_BIT, false, true, 0}},
+    {"pull", {SHADERS, VK_ACCESS_2_SHADER_STORAGE_READ_BIT, true, false, 0}}, // vertices
     {"READ", {COMPUTE, VK_ACCESS_2_SHADER_STORAGE_READ_BIT, true, false, GENERAL}},
     {"WRITE", {COMPUTE, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT, false, true, GENERAL}},
     {"MODIFY",
@@ -43,8 +54,13 @@ static const named_access accesses[] = {
     {"COPY", {TRANSFER, VK_ACCESS_2_TRANSFER_READ_BIT, true, false, TRANSFER_SRC}},
     {"UPLOAD", {TRANSFER, VK_ACCESS_2_TRANSFER_WRITE_BIT, false, true, TRANSFER_DST}},
     {"CLEAR", {TRANSFER, VK_ACCESS_2_TRANSFER_WRITE_BIT, false, true, GENERAL}},
+    {"SAMPLE_DRAWING", {SHADERS, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, true, false, READ_ONLY}},
+    {"DRAW", {COLOR_OUTPUT, COLOR_WRITE, false, true, COLOR_ATTACHMENT}},
+    {"DRAW_OVER", {COLOR_OUTPUT, COLOR_READ | COLOR_WRITE, true, true, COLOR_ATTACHMENT}},
+    {"DEPTH", {DEPTH_TESTS, DEPTH_READ | DEPTH_WRITE, false, true, DEPTH_ATTACHMENT}},
+    {"DEPTH_OVER", {DEPTH_TESTS, DEPTH_READ | DEPTH_WRITE, true, true, DEPTH_ATTACHMENT}},
 };
-enum { NUM_ACCESSES = sizeof accesses / sizeof *accesses, NUM_BUFFER_ACCESSES = 7 };
+enum { NUM_ACCESSES = sizeof accesses / sizeof *accesses, NUM_BUFFER_ACCESSES = 8 };
 
 static const named_access *find(const char *name)
 {
@@ -126,6 +142,32 @@ static const struct {
     {"SAMPLE", "TRANSFER TRANSFER_WRITE > COMPUTE SAMPLED_READ, TRANSFER_DST > READ_ONLY"},
     {"SAMPLE", NULL},
     {"UPLOAD", "COMPUTE NONE > TRANSFER TRANSFER_WRITE, READ_ONLY > TRANSFER_DST"},
+    {NULL, NULL},
+    // Vertices that a dispatch made.
+    {"write", NULL},
+    {"pull", "COMPUTE STORAGE_WRITE > VERTEX|FRAGMENT STORAGE_READ"},
+    {"pull", NULL},
+    {"read", "COMPUTE STORAGE_WRITE > COMPUTE STORAGE_READ"},
+    {"write", "COMPUTE|VERTEX|FRAGMENT NONE > COMPUTE NONE"},
+    {NULL, NULL},
+    // A picture: drawn, drawn over, sampled by compute and by a draw, drawn anew.
+    {"DRAW", "NONE NONE > COLOR_OUTPUT COLOR_WRITE, UNDEFINED > COLOR_ATTACHMENT"},
+    {"DRAW_OVER", "COLOR_OUTPUT COLOR_WRITE > COLOR_OUTPUT COLOR_READ|COLOR_WRITE"},
+    {"SAMPLE", "COLOR_OUTPUT COLOR_WRITE > COMPUTE SAMPLED_READ, COLOR_ATTACHMENT > READ_ONLY"},
+    {"SAMPLE_DRAWING", "COMPUTE NONE > VERTEX|FRAGMENT SAMPLED_READ"},
+    {"DRAW", "COMPUTE|VERTEX|FRAGMENT NONE > COLOR_OUTPUT COLOR_WRITE, READ_ONLY > "
+             "COLOR_ATTACHMENT"},
+    {NULL, NULL},
+    // A shadow map: the same with both fragment tests.
+    {"DEPTH", "NONE NONE > EARLY_TESTS|LATE_TESTS DEPTH_READ|DEPTH_WRITE, UNDEFINED > "
+              "DEPTH_ATTACHMENT"},
+    {"DEPTH_OVER", "EARLY_TESTS|LATE_TESTS DEPTH_WRITE > EARLY_TESTS|LATE_TESTS "
+                   "DEPTH_READ|DEPTH_WRITE"},
+    {"SAMPLE", "EARLY_TESTS|LATE_TESTS DEPTH_WRITE > COMPUTE SAMPLED_READ, DEPTH_ATTACHMENT > "
+               "READ_ONLY"},
+    {"COPY", "COMPUTE NONE > TRANSFER TRANSFER_READ, READ_ONLY > TRANSFER_SRC"},
+    {"DEPTH", "TRANSFER NONE > EARLY_TESTS|LATE_TESTS DEPTH_READ|DEPTH_WRITE, TRANSFER_SRC > "
+              "DEPTH_ATTACHMENT"},
 };
 
 static void expected_barriers(void **state)
@@ -167,14 +209,26 @@ static void joined_accesses(void **state)
 // a barrier names its stage and access, and from then on visible to the second scopes of barriers that
 // it is ordered before. A layout transition is a write inside the barrier.
 
-enum { MAX_OPS = 96, NUM_STAGES = 3, NUM_READS = 5 };
-static const VkPipelineStageFlags2 stage_bits[NUM_STAGES] = {COMPUTE, TRANSFER, INDIRECT};
-static const VkAccessFlags2 read_bits[NUM_READS] = {
-    VK_ACCESS_2_SHADER_STORAGE_READ_BIT, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
-    VK_ACCESS_2_UNIFORM_READ_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
-    VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT};
-static const VkAccessFlags2 write_bits =
-    VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT;
+enum { MAX_OPS = 160, NUM_STAGES = 8, NUM_READS = 7 };
+static const VkPipelineStageFlags2 stage_bits[NUM_STAGES] = {
+    COMPUTE,
+    TRANSFER,
+    INDIRECT,
+    VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT,
+    VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT,
+    COLOR_OUTPUT,
+    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT,
+    VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+};
+static const VkAccessFlags2 read_bits[NUM_READS] = {VK_ACCESS_2_SHADER_STORAGE_READ_BIT,
+                                                    VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
+                                                    VK_ACCESS_2_UNIFORM_READ_BIT,
+                                                    VK_ACCESS_2_TRANSFER_READ_BIT,
+                                                    VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT,
+                                                    COLOR_READ,
+                                                    DEPTH_READ};
+static const VkAccessFlags2 write_bits = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+                                         VK_ACCESS_2_TRANSFER_WRITE_BIT | COLOR_WRITE | DEPTH_WRITE;
 
 typedef struct operation {
     VkPipelineStageFlags2 stage; // 0: a layout transition

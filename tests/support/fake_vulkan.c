@@ -123,6 +123,14 @@ static VkResult create_pipelines(VkDevice dev, VkPipelineCache cache, uint32_t c
     return result;
 }
 
+static VkResult create_raster_pipelines(VkDevice dev, VkPipelineCache cache, uint32_t count,
+                                        const VkGraphicsPipelineCreateInfo *info,
+                                        const VkAllocationCallbacks *callbacks, VkPipeline *out)
+{
+    (void)info;
+    return create_pipelines(dev, cache, count, NULL, callbacks, out);
+}
+
 static void destroy_pipeline(VkDevice dev, VkPipeline handle,
                              const VkAllocationCallbacks *callbacks)
 {
@@ -264,6 +272,50 @@ static void dispatch(VkCommandBuffer cmd, uint32_t x, uint32_t y, uint32_t z)
     put("dispatch %s %u x %u x %u\n", name_of(bound_pipeline), x, y, z);
 }
 
+static void put_attachment(const VkRenderingAttachmentInfo *a)
+{
+    put(" %s %s", a->loadOp == VK_ATTACHMENT_LOAD_OP_CLEAR ? "clear" : "keep",
+        tyn_layout_name(a->imageLayout));
+}
+
+static void begin_rendering(VkCommandBuffer cmd, const VkRenderingInfo *info)
+{
+    (void)cmd;
+    put("rendering %u x %u:", info->renderArea.extent.width, info->renderArea.extent.height);
+    for (uint32_t i = 0; i < info->colorAttachmentCount; i++) {
+        put_attachment(&info->pColorAttachments[i]);
+    }
+    if (info->pDepthAttachment) {
+        put_attachment(info->pDepthAttachment);
+    }
+    put("\n");
+}
+
+static void end_rendering(VkCommandBuffer cmd)
+{
+    (void)cmd;
+    put("end of rendering\n");
+}
+
+static void set_viewport(VkCommandBuffer cmd, uint32_t first, uint32_t count, const VkViewport *v)
+{
+    (void)cmd, (void)first, (void)count;
+    put("at %g, %g, %g x %g ", (double)v->x, (double)v->y, (double)v->width, (double)v->height);
+}
+
+static void set_scissor(VkCommandBuffer cmd, uint32_t first, uint32_t count, const VkRect2D *s)
+{
+    (void)cmd, (void)first, (void)count, (void)s;
+}
+
+static void draw(VkCommandBuffer cmd, uint32_t vertices, uint32_t instances, uint32_t first,
+                 uint32_t first_instance)
+{
+    (void)cmd, (void)instances, (void)first, (void)first_instance;
+    fake->dispatches++;
+    put("draw %s %u\n", name_of(bound_pipeline), vertices);
+}
+
 static void dispatch_indirect(VkCommandBuffer cmd, VkBuffer buffer, VkDeviceSize offset)
 {
     (void)cmd;
@@ -348,6 +400,7 @@ fake_vulkan *fake_create(void)
     tyn_device *dev = &fake->dev;
     dev->log = (tyn_log){on_log, fake, TYN_LOG_INFO};
     dev->debug_names = true;
+    dev->graphics = true;
     dev->properties.limits.maxStorageBufferRange = 128u << 20;
     dev->properties.limits.maxImageDimension2D = 16384;
     dev->properties.limits.maxImageDimension3D = 2048;
@@ -379,6 +432,7 @@ fake_vulkan *fake_create(void)
         .AllocateMemory = create_DeviceMemory,
         .FreeMemory = destroy_DeviceMemory,
         .CreateComputePipelines = create_pipelines,
+        .CreateGraphicsPipelines = create_raster_pipelines,
         .DestroyPipeline = destroy_pipeline,
         .SetDebugUtilsObjectNameEXT = set_name,
         .GetBufferMemoryRequirements = buffer_needs,
@@ -395,6 +449,11 @@ fake_vulkan *fake_create(void)
         .CmdPushConstants = push_constants,
         .CmdDispatch = dispatch,
         .CmdDispatchIndirect = dispatch_indirect,
+        .CmdBeginRendering = begin_rendering,
+        .CmdEndRendering = end_rendering,
+        .CmdSetViewport = set_viewport,
+        .CmdSetScissor = set_scissor,
+        .CmdDraw = draw,
         .CmdCopyBuffer = copy_buffer,
         .CmdCopyBufferToImage = copy_to_image,
         .CmdCopyImageToBuffer = copy_from_image,

@@ -55,6 +55,19 @@ static uint32_t spirv_format(VkFormat format)
     return SpvImageFormatUnknown;
 }
 
+typedef struct shaders { // of a kernel
+    reflect_shader at[2];
+    int num;
+} shaders;
+
+static bool reflect_kernel(const tyn_kernel *kernel, shaders *out, const char **why)
+{
+    const tyn_raster *raster = kernel->raster;
+    out->num = raster && raster->fragment ? 2 : 1;
+    return reflect(kernel->spirv, kernel->spirv_size, &out->at[0], why) &&
+           (out->num == 1 || reflect(raster->fragment, raster->fragment_size, &out->at[1], why));
+}
+
 // Does some kernel store to this port in the format of the port table? (A pass may have variants of
 // a kernel in other formats, chosen together with tyn_build_format.)
 static bool stored_as_declared(const tyn_pass_desc *pass, uint8_t port)
@@ -63,7 +76,7 @@ static bool stored_as_declared(const tyn_pass_desc *pass, uint8_t port)
         const tyn_kernel *kernel = &pass->kernels[k];
         reflect_shader shader;
         const char *why;
-        if (!reflect(kernel->spirv, kernel->spirv_size, &shader, &why)) {
+        if (kernel->raster || !reflect(kernel->spirv, kernel->spirv_size, &shader, &why)) {
             continue;
         }
         for (uint32_t i = 0; i < shader.num_bindings; i++) {
@@ -173,49 +186,99 @@ static bool capability_known(uint32_t capability)
     }
 }
 
+static void check_compute(const tyn_pass_desc *pass, const tyn_kernel *kernel,
+                          const reflect_shader *shader)
+{
+    if (!shader->compute) {
+        fault(pass, kernel->name, "is not a compute shader");
+    }
+    if (memcmp(shader->local_size, kernel->local_size, sizeof shader->local_size) != 0) {
+        fault(pass, kernel->name, "local size %ux%ux%u in the shader, %ux%ux%u in the table",
+              shader->local_size[0], shader->local_size[1], shader->local_size[2],
+              kernel->local_size[0], kernel->local_size[1], kernel->local_size[2]);
+    }
+    if (shader->local_size[0] * shader->local_size[1] * shader->local_size[2] > 1024) {
+        fault(pass, kernel->name, "more than 1024 threads a workgroup");
+    }
+    if (shader->shared_bytes > 32768) {
+        fault(pass, kernel->name, "%u bytes of shared memory", shader->shared_bytes);
+    }
+}
+
+static void check_raster(const tyn_pass_desc *pass, const tyn_kernel *kernel, const shaders *s)
+{
+    const reflect_shader *vertex = &s->at[0], *fragment = s->num == 2 ? &s->at[1] : NULL;
+    if (!vertex->vertex || (fragment && !fragment->fragment)) {
+        fault(pass, kernel->name, "needs a vertex and a fragment shader");
+    }
+    if (vertex->inputs) {
+        fault(pass, kernel->name, "has vertex inputs; vertices come from storage buffers");
+    }
+    if (fragment && (fragment->inputs & ~vertex->outputs)) {
+        fault(pass, kernel->name,
+              "the fragment shader reads what the vertex shader does not write");
+    }
+    uint32_t colors = 0, depths = 0;
+    for (uint32_t i = 0; i < kernel->raster->num_attachments; i++) {
+        colors += kernel->raster->attachments[i].use == TYN_USE_COLOR;
+        depths += kernel->raster->attachments[i].use == TYN_USE_DEPTH;
+    }
+    uint32_t written = fragment ? fragment->outputs : 0;
+    if (written != (1u << colors) - 1 || depths > 1 ||
+        colors + depths != kernel->raster->num_attachments || colors + depths == 0) {
+        fault(pass, kernel->name, "draws to locations (mask %#x), and has %u colours, %u depths",
+              written, colors, depths);
+    }
+    if (kernel->local_size[0] | kernel->local_size[1] | kernel->local_size[2]) {
+        fault(pass, kernel->name, "a raster kernel has no local size");
+    }
+}
+
 static void check_kernel(const tyn_pass_desc *pass, const tyn_kernel *kernel)
 {
-    reflect_shader shader;
+    shaders s;
     const char *why;
-    if (!reflect(kernel->spirv, kernel->spirv_size, &shader, &why)) {
+    if (!reflect_kernel(kernel, &s, &why)) {
         fault(pass, kernel->name, "%s", why);
         return;
     }
-    if (shader.num_entry_points != 1 || !shader.compute || !shader.named_main) {
-        fault(pass, kernel->name, "needs one compute entry point \"main\"");
+    if (kernel->raster) {
+        check_raster(pass, kernel, &s);
+    } else {
+        check_compute(pass, kernel, &s.at[0]);
     }
-    for (uint32_t i = 0; i < shader.num_capabilities; i++) {
-        if (!capability_known(shader.capabilities[i])) {
-            fault(pass, kernel->name, "needs SPIR-V capability %u", shader.capabilities[i]);
+    uint32_t args = 0, spec_ids = 0, seen = 0;
+    for (int i = 0; i < s.num; i++) {
+        const reflect_shader *shader = &s.at[i];
+        if (shader->num_entry_points != 1 || !shader->named_main) {
+            fault(pass, kernel->name, "needs one entry point \"main\"");
         }
+        for (uint32_t c = 0; c < shader->num_capabilities; c++) {
+            if (!capability_known(shader->capabilities[c])) {
+                fault(pass, kernel->name, "needs SPIR-V capability %u", shader->capabilities[c]);
+            }
+        }
+        if (shader->spec_wide) {
+            fault(pass, kernel->name, "a specialisation constant is not of 32 bits");
+        }
+        for (uint32_t b = 0; b < shader->num_bindings; b++) {
+            check_binding(pass, kernel, &shader->bindings[b]);
+            if (shader->bindings[b].binding < 32) {
+                seen |= 1u << shader->bindings[b].binding;
+            }
+        }
+        spec_ids |= shader->spec_ids;
+        args = shader->push_constant_bytes > args ? shader->push_constant_bytes : args;
     }
-    if (memcmp(shader.local_size, kernel->local_size, sizeof shader.local_size) != 0) {
-        fault(pass, kernel->name, "local size %ux%ux%u in the shader, %ux%ux%u in the table",
-              shader.local_size[0], shader.local_size[1], shader.local_size[2],
-              kernel->local_size[0], kernel->local_size[1], kernel->local_size[2]);
-    }
-    if (shader.local_size[0] * shader.local_size[1] * shader.local_size[2] > 1024) {
-        fault(pass, kernel->name, "more than 1024 threads a workgroup");
-    }
-    if (shader.shared_bytes > 32768) {
-        fault(pass, kernel->name, "%u bytes of shared memory", shader.shared_bytes);
-    }
-    if (shader.push_constant_bytes != kernel->args_size || kernel->args_size > TYN_MAX_ARGS) {
-        fault(pass, kernel->name, "%u bytes of push constants in the shader, %u in the table",
-              shader.push_constant_bytes, kernel->args_size);
+    if (args != kernel->args_size || kernel->args_size > TYN_MAX_ARGS) {
+        fault(pass, kernel->name, "%u bytes of push constants in the shader, %u in the table", args,
+              kernel->args_size);
     }
     // Kernels of one pass may share a list of constants, so one may be unused; but not the last.
-    if (shader.spec_wide || shader.spec_ids >> kernel->num_spec ||
-        (kernel->num_spec && !(shader.spec_ids >> (kernel->num_spec - 1)))) {
-        fault(pass, kernel->name, "specialisation constants (mask %#x) are not 0..%d",
-              shader.spec_ids, (int)kernel->num_spec - 1);
-    }
-    uint32_t seen = 0;
-    for (uint32_t i = 0; i < shader.num_bindings; i++) {
-        check_binding(pass, kernel, &shader.bindings[i]);
-        if (shader.bindings[i].binding < 32) {
-            seen |= 1u << shader.bindings[i].binding;
-        }
+    if (spec_ids >> kernel->num_spec ||
+        (kernel->num_spec && !(spec_ids >> (kernel->num_spec - 1)))) {
+        fault(pass, kernel->name, "specialisation constants (mask %#x) are not 0..%d", spec_ids,
+              (int)kernel->num_spec - 1);
     }
     for (uint32_t i = 0; i < kernel->num_bindings; i++) {
         if (!(seen >> i & 1)) {
@@ -270,11 +333,18 @@ static void check_uses(const tyn_pass_desc *pass, const tyn_kernel *kernel)
         }
         const tyn_port *port = &pass->ports[b->port];
         bool writes = b->use == TYN_USE_STORAGE_WRITE || b->use == TYN_USE_STORAGE_RW;
-        if (writes && port->dir == TYN_IN) {
-            fault(pass, kernel->name, "binding %u writes the input %s", i, port->name);
+        if (writes && (port->dir == TYN_IN || kernel->raster)) {
+            fault(pass, kernel->name, "binding %u writes %s", i, port->name);
         }
         if (b->repeat && b->use != TYN_USE_SAMPLED) {
             fault(pass, kernel->name, "binding %u repeats but is not sampled", i);
+        }
+    }
+    for (uint32_t i = 0; kernel->raster && i < kernel->raster->num_attachments; i++) {
+        const tyn_binding *a = &kernel->raster->attachments[i];
+        if (a->port >= pass->num_ports || pass->ports[a->port].dir == TYN_IN ||
+            pass->ports[a->port].dim != TYN_IMAGE_2D) {
+            fault(pass, kernel->name, "attachment %u is no 2D image that the pass makes", i);
         }
     }
 }
@@ -357,6 +427,15 @@ static void drift_is_found(void **state)
             tyn_binding bindings[TYN_MAX_BINDINGS];
             memcpy(bindings, kernel.bindings, kernel.num_bindings * sizeof *bindings);
             kernel.bindings = bindings;
+            if (kernel.raster) {
+                tyn_raster raster = *kernel.raster;
+                raster.num_attachments--;
+                kernel.raster = &raster;
+                assert_true(faults_with(pass, &kernel) > 0);
+                kernel.raster = NULL;
+                assert_true(faults_with(pass, &kernel) > 0);
+                kernel.raster = pass->kernels[k].raster;
+            }
             kernel.local_size[0]++;
             assert_true(faults_with(pass, &kernel) > 0);
             kernel.local_size[0]--;

@@ -164,8 +164,14 @@ static void add_binding(const module *m, const uint32_t *var, uint32_t type, uin
 static void variable(const module *m, const uint32_t *var, reflect_shader *out)
 {
     uint32_t type = m->def[var[1]][3]; // what the pointer points to
-    const uint32_t *binding;
+    const uint32_t *binding, *location = decoration(m, var[2], -1, SpvDecorationLocation);
     switch (var[3]) {
+    case SpvStorageClassInput:
+        out->inputs |= location ? 1u << *location : 0;
+        break;
+    case SpvStorageClassOutput:
+        out->outputs |= location ? 1u << *location : 0;
+        break;
     case SpvStorageClassPushConstant:
         out->push_constant_bytes = type_bytes(m, type);
         break;
@@ -208,6 +214,8 @@ static void read_interface(const module *m, reflect_shader *out)
         case SpvOpEntryPoint:
             out->num_entry_points++;
             out->compute = at[1] == SpvExecutionModelGLCompute;
+            out->vertex = at[1] == SpvExecutionModelVertex;
+            out->fragment = at[1] == SpvExecutionModelFragment;
             out->named_main = strcmp((const char *)(at + 3), "main") == 0;
             break;
         case SpvOpExecutionMode:

@@ -1,4 +1,4 @@
-// spirv_reflect.h -- what a compute shader says about its interface, read from its SPIR-V.
+// spirv_reflect.h -- what a shader says about its interface, read from its SPIR-V.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -29,9 +29,11 @@ typedef struct reflect_shader {
     uint32_t capabilities[REFLECT_MAX_CAPABILITIES];
     uint32_t num_capabilities;
     uint32_t num_entry_points;
-    bool compute, named_main;
+    bool compute, vertex, fragment; // the stage
+    bool named_main;
     uint32_t local_size[3];
     uint32_t push_constant_bytes; // 0: there are none
+    uint32_t inputs, outputs;     // bit i: location i is read, written
     uint32_t shared_bytes;        // workgroup memory
     uint32_t spec_ids;            // bit i: specialisation constant i exists
     bool spec_wide;               // one has an id >= 32 or is not 32 bits (or bool)

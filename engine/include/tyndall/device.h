@@ -28,7 +28,8 @@ typedef struct tyn_device_params {
     PFN_vkGetInstanceProcAddr get_instance_proc_addr; // Required
     uint32_t api_version;             // Required: as given in VkApplicationInfo
     const VkPhysicalDeviceFeatures2 *features; // Required: as enabled on `device`
-    uint32_t queue_family;            // of the command buffers we will be given
+    uint32_t queue_family;            // of the command buffers we will be given: one with compute, and
+                                      // with graphics if scenes are to have surfaces
     bool debug_names;                 // VK_EXT_debug_utils is enabled: name objects, label nodes
     const void *pipeline_cache;       // from an earlier tyn_device_pipeline_cache; may be NULL
     size_t pipeline_cache_size;

@@ -1,14 +1,15 @@
 // pass.h -- how a pass module is written. Tier 2.
 //
 // A pass is static data plus a few pure functions: which images and buffers it reads and writes
-// (ports), its compute kernels and what each of their bindings is (kernels), its parameters with
-// units, ranges and defaults (params), the shapes of its outputs (declare), and its dispatches
-// (record). Descriptor layouts, pipelines, image usage, layouts and every barrier are derived.
+// (ports), its compute and raster kernels and what each of their bindings is (kernels), its parameters
+// with units, ranges and defaults (params), the shapes of its outputs (declare), and its dispatches and
+// draws (record). Descriptor layouts, pipelines, image usage, layouts and every barrier are derived.
 // No pass writes a barrier, allocates, or sees a Vulkan object.
 //
-// Barriers: the recorder looks at what each dispatch reads and writes and puts the needed barrier in
-// front of it, inside a node and between nodes alike. Two dispatches that touch the same resource,
-// one of them writing, are ordered; so put independent work in one dispatch.
+// Barriers: the recorder looks at what each dispatch or draw reads and writes and puts the needed
+// barrier in front of it, inside a node and between nodes alike. Two dispatches that touch the same
+// resource, one of them writing, are ordered; so put independent work in one dispatch (of draws: in the
+// tiles of one draw).
 #pragma once
 #include "base.h"
 #include <vulkan/vulkan_core.h> // types only
@@ -17,7 +18,13 @@
 extern "C" {
 #endif
 
-enum { TYN_MAX_PORTS = 32, TYN_MAX_BINDINGS = 32, TYN_MAX_SPEC = 8, TYN_MAX_ARGS = 128 };
+enum {
+    TYN_MAX_PORTS = 32,
+    TYN_MAX_BINDINGS = 32,
+    TYN_MAX_SPEC = 8,
+    TYN_MAX_ARGS = 128,
+    TYN_MAX_ATTACHMENTS = 5, // four colours and a depth: what every device can draw to at once
+};
 
 // ---- shapes ---------------------------------------------------------------------------------
 
@@ -58,6 +65,8 @@ typedef enum tyn_use {
     TYN_USE_INDIRECT,      // implied by dispatch_indirect; not for bindings
     TYN_USE_TRANSFER_SRC,  // implied by the recorder's copies; not for bindings
     TYN_USE_TRANSFER_DST,
+    TYN_USE_COLOR, // drawn to: only in tyn_raster.attachments
+    TYN_USE_DEPTH, // tested against and drawn to: only there
 } tyn_use;
 
 // Binding b of set 0 is element b of this table.
@@ -67,15 +76,30 @@ typedef struct tyn_binding {
     bool repeat;  // SAMPLED: wrap instead of clamp (latitude-longitude maps: x wraps, y clamps)
 } tyn_binding;
 
+// What makes a kernel draw triangles. Vertices come from storage buffers by gl_VertexIndex; there is no
+// vertex input. Front faces run counter-clockwise as they are seen on the screen.
+typedef struct tyn_raster {
+    const uint32_t *fragment; // SPIR-V of the fragment shader; NULL: depth alone is drawn
+    size_t fragment_size;     // bytes
+    const tyn_binding *attachments; // COLOR (location 0, 1, ... in this order) and at most one DEPTH, of
+                                    // 2D ports that have the format of the table
+    uint32_t num_attachments;
+    VkCompareOp depth; // new depth `op` old one = drawn; with a DEPTH attachment only
+    float clear_depth; // what a draw that does not keep starts from (colours: 0)
+    VkCullModeFlags cull;
+} tyn_raster;
+
 typedef struct tyn_kernel {
     const char *name;
-    const uint32_t *spirv; // embedded at build time (see passes/meson.build)
+    const uint32_t *spirv; // embedded at build time (see passes/meson.build); raster: the vertex shader
     size_t spirv_size;     // bytes
     uint32_t args_size;    // push constants, bytes, <= 128
     uint32_t local_size[3];
     const tyn_binding *bindings;
     uint32_t num_bindings;
     uint32_t num_spec;     // specialisation constants 0..n-1, 32 bits each, given per dispatch
+    const tyn_raster *raster; // NULL: a compute kernel. Else both shaders see all bindings (none of them
+                              // written), constants and args; local_size is 0
 } tyn_kernel;
 
 // ---- parameters -----------------------------------------------------------------------------
@@ -154,6 +178,26 @@ TYN_API void tyn_rec_dispatch(tyn_recorder *r, const tyn_dispatch *d);
 // Workgroup counts from `offset` bytes into a buffer port (3 x uint32).
 TYN_API void tyn_rec_dispatch_indirect(tyn_recorder *r, const tyn_dispatch *d, uint8_t port,
                                        uint64_t offset);
+// A part of the attachments with push constants of its own.
+typedef struct tyn_tile {
+    uint32_t x, y, width, height; // texels: viewport and scissor
+    const void *args;
+} tyn_tile;
+
+// One draw into each tile; all tiles in one go, in order, without barriers between them. The attachments
+// must be of one size. The queue must do graphics: recording fails where it cannot.
+typedef struct tyn_draw {
+    uint32_t kernel;       // index into kernels, one with `raster`
+    uint32_t vertices;     // of every tile; 0: attachments are cleared and nothing is drawn
+    const tyn_tile *tiles; // NULL = one that covers the attachments, with `args`
+    uint32_t num_tiles;
+    const void *args;
+    bool keep;            // draw over what is there; else all of the attachments is cleared first
+    const uint8_t *ports; // NULL = the table's; else num_bindings port indices
+    const uint32_t *spec; // num_spec values, NULL = zeros
+    const char *label;
+} tyn_draw;
+TYN_API void tyn_rec_draw(tyn_recorder *r, const tyn_draw *d);
 // Inline data, <= 65536 bytes, multiple of 4, into a buffer port.
 TYN_API void tyn_rec_update(tyn_recorder *r, uint8_t port, uint64_t offset, const void *data,
                             size_t size);

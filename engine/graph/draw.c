@@ -1,0 +1,148 @@
+// draw.c -- what a pass draws: raster kernels into attachments, by dynamic rendering.
+#include "graph/internal.h"
+#include "base/hash.h"
+#include <stdio.h>
+
+// A draw that keeps what is there reads it; one that clears does not. Depth is tested against anyhow, but
+// within the draw.
+static tyn_access attachment_access(tyn_use use, bool keep)
+{
+    if (use == TYN_USE_DEPTH) {
+        return (tyn_access){VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT |
+                                VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
+                            VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT |
+                                VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT,
+                            keep, true, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
+    }
+    return (tyn_access){VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                        (keep ? VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT : 0) |
+                            VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
+                        keep, true, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
+}
+
+// The size that all attachments have; {0} after a failure.
+static tyn_extent check_attachments(tyn_recorder *r, const tyn_kernel *k)
+{
+    const tyn_graph *g = r->g;
+    const node *n = &g->nodes[r->node];
+    tyn_extent size = {0, 0, 0};
+    for (uint32_t i = 0; i < k->raster->num_attachments; i++) {
+        const tyn_port *port = &n->pass->ports[k->raster->attachments[i].port];
+        const uint32_t id = n->res[k->raster->attachments[i].port];
+        const resource *res = id ? &g->resources[id - 1] : NULL;
+        if (!res || res->dim != TYN_IMAGE_2D || res->format != port->format ||
+            (i && (res->extent.x != size.x || res->extent.y != size.y))) {
+            recorder_fail(r, TYN_ERR_PARAMS,
+                          "attachments must exist, in the table's format and in one size; not so",
+                          port->name);
+            return (tyn_extent){0, 0, 0};
+        }
+        size = res->extent;
+    }
+    return size;
+}
+
+static void survey_attachments(tyn_recorder *r, const tyn_kernel *k)
+{
+    const node *n = &r->g->nodes[r->node];
+    for (uint32_t i = 0; r->usage && i < k->raster->num_attachments; i++) {
+        const tyn_binding *a = &k->raster->attachments[i];
+        r->usage[n->res[a->port] - 1].image_usage |=
+            a->use == TYN_USE_DEPTH ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
+                                    : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
+    }
+}
+
+static void begin_rendering(tyn_recorder *r, const tyn_kernel *k, tyn_extent size, bool keep)
+{
+    const node *n = &r->g->nodes[r->node];
+    VkRenderingAttachmentInfo colors[TYN_MAX_ATTACHMENTS], depth;
+    uint32_t num_colors = 0;
+    bool has_depth = false;
+    for (uint32_t i = 0; i < k->raster->num_attachments; i++) {
+        const tyn_binding *a = &k->raster->attachments[i];
+        const phys *p = &r->g->phys[n->res[a->port] - 1];
+        const resource *res = &r->g->resources[n->res[a->port] - 1];
+        const VkRenderingAttachmentInfo info = {
+            .sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+            .imageView = res->kind == RESOURCE_IMPORT ? res->image.view
+                         : p->mip_views[0]            ? p->mip_views[0]
+                                                      : p->view,
+            .imageLayout = attachment_access(a->use, keep).layout,
+            .loadOp = keep ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR,
+            .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
+            .clearValue.depthStencil.depth =
+                a->use == TYN_USE_DEPTH ? k->raster->clear_depth : 0.0f,
+        };
+        if (a->use == TYN_USE_DEPTH) {
+            depth = info;
+            has_depth = true;
+        } else {
+            colors[num_colors++] = info;
+        }
+    }
+    r->g->dev->vk.CmdBeginRendering(
+        r->cmd, &(VkRenderingInfo){.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                                   .renderArea = {{0, 0}, {size.x, size.y}},
+                                   .layerCount = 1,
+                                   .colorAttachmentCount = num_colors,
+                                   .pColorAttachments = colors,
+                                   .pDepthAttachment = has_depth ? &depth : NULL});
+}
+
+static void draw_tile(tyn_recorder *r, const tyn_kernel *k, const tyn_pipeline *pl,
+                      const tyn_tile *tile, uint32_t vertices)
+{
+    const tyn_procs *vk = &r->g->dev->vk;
+    vk->CmdSetViewport(r->cmd, 0, 1,
+                       &(VkViewport){(float)tile->x, (float)tile->y, (float)tile->width,
+                                     (float)tile->height, 0.0f, 1.0f});
+    vk->CmdSetScissor(
+        r->cmd, 0, 1,
+        &(VkRect2D){{(int32_t)tile->x, (int32_t)tile->y}, {tile->width, tile->height}});
+    if (k->args_size) {
+        vk->CmdPushConstants(r->cmd, pl->layout, tyn_kernel_stages(k), 0, k->args_size, tile->args);
+    }
+    vk->CmdDraw(r->cmd, vertices, 1, 0, 0);
+}
+
+void tyn_rec_draw(tyn_recorder *r, const tyn_draw *d)
+{
+    const node *n = &r->g->nodes[r->node];
+    const tyn_kernel *k = &n->pass->kernels[d->kernel];
+    const tyn_extent size = check_attachments(r, k);
+    if (!size.x) {
+        return;
+    }
+    const tyn_tile whole = {0, 0, size.x, size.y, d->args};
+    const tyn_tile *tiles = d->tiles ? d->tiles : &whole;
+    const uint32_t num_tiles = d->tiles ? d->num_tiles : 1;
+    r->dispatches += num_tiles;
+    launch l = launch_begin(r, d->kernel, d->ports, NULL, d->spec);
+    for (uint32_t i = 0; i < k->raster->num_attachments; i++) {
+        const tyn_binding *a = &k->raster->attachments[i];
+        launch_touch(&l, n->res[a->port] - 1, attachment_access(a->use, d->keep));
+    }
+    if (r->mode == RECORD_SURVEY) {
+        survey_attachments(r, k);
+    }
+    if (!launch_prepare(r, &l)) {
+        return;
+    }
+    if (r->mode == RECORD_PLAN) {
+        char line[160];
+        snprintf(line, sizeof line, "    draw %s %u vertices, %u tiles",
+                 d->label ? d->label : k->name, d->vertices, num_tiles);
+        r->print(r->print_user, line);
+        return;
+    }
+    const tyn_pipeline *pl = launch_bind(r, &l);
+    if (!pl) {
+        return;
+    }
+    begin_rendering(r, k, size, d->keep);
+    for (uint32_t i = 0; i < num_tiles && d->vertices; i++) {
+        draw_tile(r, k, pl, &tiles[i], d->vertices);
+    }
+    r->g->dev->vk.CmdEndRendering(r->cmd);
+}
