@@ -1,0 +1,131 @@
+// walls_cells.comp -- of each cell: the albedo its cut links meet, and the planes of its walls.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "walls_pass_args.h"
+#include "surface_args.h"
+#include "lattice.glsl"
+#include "walls_links.glsl"
+#include "walls_triangle.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(push_constant, scalar) uniform push
+{
+    walls_pass_args args;
+};
+layout(binding = 0, scalar) uniform surface_uniform
+{
+    surface_block surfaces;
+};
+layout(binding = 1, scalar) readonly buffer vertex_buffer
+{
+    surface_vertex vertices[];
+};
+layout(binding = 2, scalar) readonly buffer triangle_buffer
+{
+    surface_triangle triangles[];
+};
+layout(binding = 3, scalar) readonly buffer link_buffer
+{
+    uint links[];
+};
+layout(binding = 4, scalar) readonly buffer hit_buffer
+{
+    uint hits[];
+};
+layout(binding = 5, scalar) readonly buffer nearest_buffer
+{
+    uint nearest[];
+};
+layout(binding = 6, scalar) readonly buffer material_buffer
+{
+    surface_material materials[];
+};
+layout(binding = 7, scalar) readonly buffer texture_buffer
+{
+    surface_texture textures[];
+};
+layout(binding = 8, scalar) readonly buffer texel_buffer
+{
+    uint texels[];
+};
+layout(binding = 9, scalar) writeonly buffer cell_buffer
+{
+    wall_cell wall_cells[];
+};
+#include "walls_place.glsl"
+#include "walls_texture.glsl"
+
+walls_triangle triangle_of(uint i)
+{
+    return walls_triangle_of(walls_place(vertices[triangles[i].v0].position),
+                             walls_place(vertices[triangles[i].v1].position),
+                             walls_place(vertices[triangles[i].v2].position));
+}
+
+// Mean over about a cell around the place where the link from p along d meets triangle i.
+vec3 albedo_at(uint i, vec3 p, vec3 d)
+{
+    surface_triangle s = triangles[i];
+    surface_material m = materials[s.material];
+    if (m.texture == TYN_SURFACE_NO_TEXTURE) {
+        return m.albedo;
+    }
+    walls_triangle t = triangle_of(i);
+    float rise = -dot(t.normal, d);
+    float where = abs(rise) > 1e-20 ? clamp(dot(t.normal, p - t.a) / rise, 0.0, 1.0) : 0.5;
+    vec3 hit = p + where * d - t.a, u = t.b - t.a, v = t.c - t.a;
+    float area = dot(t.normal, t.normal);
+    vec2 share = vec2(dot(cross(hit, v), t.normal), dot(cross(u, hit), t.normal)) / area;
+    surface_vertex v0 = vertices[s.v0], v1 = vertices[s.v1], v2 = vertices[s.v2];
+    vec2 uv0 = vec2(v0.u, v0.v), uv1 = vec2(v1.u, v1.v) - uv0, uv2 = vec2(v2.u, v2.v) - uv0;
+    vec2 size = vec2(textures[m.texture].size);
+    float texels_per_cell = abs(uv1.x * uv2.y - uv1.y * uv2.x) * size.x * size.y / sqrt(area);
+    return m.albedo *
+           walls_texture(m.texture, uv0 + share.x * uv1 + share.y * uv2, texels_per_cell);
+}
+
+// In M, m, with the centre on its positive side.
+vec4 plane_of(uint i, ivec3 c, lattice_box box)
+{
+    walls_triangle t = triangle_of(i);
+    vec3 n = normalize(t.normal);
+    n = dot(n, vec3(c) - t.a) < 0.0 ? -n : n;
+    vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);
+    return vec4(n, -dot(n, lattice_to_m(box, t.a + 0.5 + shift)));
+}
+
+void main()
+{
+    ivec3 c = ivec3(gl_GlobalInvocationID);
+    if (any(greaterThanEqual(c, ivec3(args.dims)))) {
+        return;
+    }
+    uint i = walls_cell_index(c), n = args.dims.x * args.dims.y * args.dims.z, cut = links[i];
+    wall_cell cell = wall_cell(vec4[3](vec4(0.0), vec4(0.0), vec4(0.0)), vec3(0.0), 0.0);
+    for (uint link = 0u; link < 14u; link++) {
+        if ((cut >> link & 1u) != 0u) {
+            float a = lattice_weight(link) * (link < 6u ? 1.0 : inversesqrt(3.0));
+            cell.area += a;
+            cell.albedo += a * albedo_at(hits[link * n + i] & 0xffffffu, vec3(c), vec3(walls_step(link)));
+        }
+    }
+    cell.albedo = cell.area > 0.0 ? clamp(cell.albedo / cell.area, vec3(0.0), vec3(1.0)) : vec3(0.0);
+
+    lattice_box box = lattice_box_of(args.extent, ivec3(args.dims));
+    uint used = 0u, found = 0u;
+    for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
+        uint best = 0xffffffffu, slot = 0u;
+        for (uint s = 0u; s < WALLS_SLOTS; s++) {
+            uint key = (used >> s & 1u) != 0u ? 0xffffffffu : nearest[s * n + i];
+            slot = key < best ? s : slot;
+            best = min(best, key);
+        }
+        if (best == 0xffffffffu) {
+            break;
+        }
+        used |= 1u << slot;
+        cell.planes[found++] = plane_of(best & 0xffffffu, c, box);
+    }
+    wall_cells[i] = cell;
+}

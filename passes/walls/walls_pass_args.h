@@ -1,0 +1,17 @@
+// walls_pass_args.h -- push constants of the kernels of the pass walls. Included by C and GLSL.
+#ifndef TYN_WALLS_PASS_ARGS_H
+#define TYN_WALLS_PASS_ARGS_H
+#include "shared.h"
+
+struct walls_pass_args {
+    tyn_vec3 extent; // of the medium, m
+    tyn_uvec3 dims;  // cells
+    tyn_uint num_triangles;
+    tyn_uint row; // triangles in a row of workgroups
+};
+
+#define WALLS_GROUP 64  // threads that look at one triangle
+#define WALLS_SLOTS 6   // walls in a cell, one for each main direction of the normal
+#define WALLS_ROW 32768 // workgroups along x
+
+#endif

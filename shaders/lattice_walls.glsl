@@ -1,0 +1,160 @@
+// lattice_walls.glsl -- light of the lattice at a point, not blended through walls.
+//
+// Include after lattice.glsl and define the bindings of the buffers that the pass walls makes:
+//   WALLS_LINKS   storage buffer uint wall_links[]
+//   WALLS_CELLS   storage buffer wall_cell wall_cells[]
+// Call nothing of this where the scene has no surfaces: then the buffers hold nothing.
+//
+// A point in a cell through which no wall passes sees all 26 neighbours, and is served by trilinear
+// interpolation. Else it takes, of the eight cells around it, those on its own side: if it is on the
+// side of its cell's centre (of up to three planes), those to which the links are open; if not, those whose
+// centres are on the same sides of these planes as the point.
+#ifndef TYN_LATTICE_WALLS_GLSL
+#define TYN_LATTICE_WALLS_GLSL
+#include "walls_args.h"
+#include "walls_links.glsl"
+
+layout(set = 0, binding = WALLS_LINKS, scalar) readonly buffer walls_link_buffer
+{
+    uint wall_links[];
+};
+layout(set = 0, binding = WALLS_CELLS, scalar) readonly buffer walls_cell_buffer
+{
+    wall_cell wall_cells[];
+};
+
+struct walls_place {
+    ivec3 cell;
+    uint index; // of the cell
+    uint links; // its wall_links
+    vec3 x;     // the point in cell edges; centres are at whole numbers
+};
+
+// Of a point in M; outside the lattice that of its nearest cell.
+walls_place walls_place_of(lattice_box box, vec3 p)
+{
+    walls_place w;
+    w.x = lattice_from_m(box, p) - 0.5;
+    w.cell = clamp(ivec3(floor(w.x + 0.5)), ivec3(0), box.dims - 1);
+    w.index = uint((w.cell.z * box.dims.y + w.cell.y) * box.dims.x + w.cell.x);
+    w.links = wall_links[w.index];
+    return w;
+}
+
+// Is there a wall about? If not, trilinear interpolation will do.
+bool walls_near(walls_place w)
+{
+    return (w.links & TYN_WALLS_NEAR) != 0u;
+}
+
+// Bit k: p, in M, is behind plane k of the cell as seen from its centre.
+uint walls_behind(uint index, vec3 p)
+{
+    uint behind = 0u;
+    for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
+        vec4 plane = wall_cells[index].planes[k];
+        behind |= dot(plane.xyz, p) + plane.w < 0.0 ? 1u << k : 0u;
+    }
+    return behind;
+}
+
+// Is p, a point of the cell, on the side of the cell's centre?
+bool walls_same_side(lattice_box box, ivec3 cell, vec3 p)
+{
+    uint index = uint((cell.z * box.dims.y + cell.y) * box.dims.x + cell.x);
+    return (wall_links[index] & TYN_WALLS_NEAR) == 0u || walls_behind(index, p) == 0u;
+}
+
+vec3 walls_centre(lattice_box box, ivec3 cell)
+{
+    vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);
+    return lattice_to_m(box, vec3(cell) + 0.5 + shift);
+}
+
+// Shares of the cells around a point: corner i is cell base + (i & 1, i >> 1 & 1, i >> 2), within the
+// lattice. They sum to 1, or are all 0 where no cell near has light for the point.
+struct walls_blend {
+    ivec3 base;
+    float share[8];
+    ivec3 instead; // where all shares are 0: the cell to take alone; x < 0: none
+};
+
+ivec3 walls_corner(lattice_box box, ivec3 base, uint i)
+{
+    return clamp(base + ivec3(i & 1u, i >> 1 & 1u, i >> 2), ivec3(0), box.dims - 1);
+}
+
+bool walls_sees(lattice_box box, walls_place w, uint behind, ivec3 q)
+{
+    ivec3 d = q - w.cell;
+    if (d == ivec3(0)) {
+        return behind == 0u;
+    }
+    if (behind == 0u) {
+        return (w.links >> walls_link(d) & 1u) == 0u;
+    }
+    return walls_behind(w.index, walls_centre(box, q)) == behind;
+}
+
+walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
+{
+    uint behind = walls_behind(w.index, p);
+    walls_blend b;
+    b.base = ivec3(floor(w.x));
+    b.instead = ivec3(-1);
+    vec3 f = w.x - vec3(b.base);
+    float sum = 0.0;
+    for (uint i = 0u; i < 8u; i++) {
+        vec3 t = mix(1.0 - f, f, vec3(i & 1u, i >> 1 & 1u, i >> 2));
+        // Beyond the outermost centres the same cell counts twice.
+        ivec3 q = clamp(walls_corner(box, b.base, i), w.cell - 1, w.cell + 1);
+        b.share[i] = walls_sees(box, w, behind, q) ? t.x * t.y * t.z : 0.0;
+        sum += b.share[i];
+    }
+    for (uint i = 0u; i < 8u; i++) {
+        b.share[i] = sum > 1e-6 ? b.share[i] / sum : 0.0;
+    }
+    if (sum <= 1e-6) {
+        float nearest = 1e30;
+        for (int i = 0; i < 27; i++) {
+            ivec3 q = w.cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+            if (any(lessThan(q, ivec3(0))) || any(greaterThanEqual(q, box.dims)) ||
+                !walls_sees(box, w, behind, q)) {
+                continue;
+            }
+            float away = distance(vec3(q), w.x);
+            b.instead = away < nearest ? q : b.instead;
+            nearest = min(away, nearest);
+        }
+    }
+    return b;
+}
+
+// A field with one texel per cell, `skip` texels of the texture before cell 0. Channel ch of a stacked one:
+// skip.z = ch dims.z.
+vec4 walls_fetch(sampler3D field, lattice_box box, walls_blend b, ivec3 skip)
+{
+    vec4 sum = vec4(0.0);
+    if (b.instead.x >= 0) {
+        return texelFetch(field, b.instead + skip, 0);
+    }
+    for (uint i = 0u; i < 8u; i++) {
+        if (b.share[i] > 0.0) {
+            sum += b.share[i] * texelFetch(field, walls_corner(box, b.base, i) + skip, 0);
+        }
+    }
+    return sum;
+}
+
+// Irradiance on a surface at p (M) whose side n (M, unit) is asked for, of the light in the lattice:
+// phi / 4 - F.n / 2, the flux through a plane in radiance that is linear in direction. W/m^2 of what the
+// channel ch of `moments` solves.
+float walls_irradiance(sampler3D moments, lattice_box box, vec3 p, vec3 n, int ch)
+{
+    vec3 off = p + 0.02 * box.dx * n; // decidedly on that side
+    walls_place w = walls_place_of(box, off);
+    vec4 m = walls_fetch(moments, box, walls_blend_of(box, w, off), ivec3(0, 0, ch * box.dims.z));
+    return max(0.25 * m.x - 0.5 * dot(m.yzw, n), 0.0);
+}
+
+#endif

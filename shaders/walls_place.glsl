@@ -1,0 +1,24 @@
+// walls_place.glsl -- places in the lattice. Include after lattice.glsl, with args (walls_pass_args) and the
+// block surfaces.
+#ifndef TYN_WALLS_PLACE_GLSL
+#define TYN_WALLS_PLACE_GLSL
+
+uint walls_cell_index(ivec3 c)
+{
+    return (uint(c.z) * args.dims.y + uint(c.y)) * args.dims.x + uint(c.x);
+}
+
+// World -> lattice: centres, moved by the shift, at whole numbers. Every triangle of a vertex gets the same
+// place for it.
+vec3 walls_place(vec3 world)
+{
+    precise vec3 m = vec3(dot(surfaces.from_world[0].xyz, world) + surfaces.from_world[0].w,
+                          dot(surfaces.from_world[1].xyz, world) + surfaces.from_world[1].w,
+                          dot(surfaces.from_world[2].xyz, world) + surfaces.from_world[2].w);
+    lattice_box box = lattice_box_of(args.extent, ivec3(args.dims));
+    precise vec3 place = (m - box.origin) / box.dx - 0.5 -
+                         vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);
+    return place;
+}
+
+#endif
