@@ -8,7 +8,7 @@
 // A point in a cell through which no wall passes sees all 26 neighbours, and is served by trilinear
 // interpolation. Else it takes, of the eight cells around it, those on its own side: if it is on the
 // side of its cell's centre (of up to three planes), those to which the links are open; if not, those whose
-// centres are on the same sides of these planes as the point.
+// centres are on the same sides of these planes as the point, and which have no wall towards it.
 #ifndef TYN_LATTICE_WALLS_GLSL
 #define TYN_LATTICE_WALLS_GLSL
 #include "walls_args.h"
@@ -84,7 +84,8 @@ ivec3 walls_corner(lattice_box box, ivec3 base, uint i)
     return clamp(base + ivec3(i & 1u, i >> 1 & 1u, i >> 2), ivec3(0), box.dims - 1);
 }
 
-bool walls_sees(lattice_box box, walls_place w, uint behind, ivec3 q)
+// `behind` = walls_behind of the point in its own cell.
+bool walls_sees(lattice_box box, walls_place w, vec3 p, uint behind, ivec3 q)
 {
     ivec3 d = q - w.cell;
     if (d == ivec3(0)) {
@@ -93,7 +94,8 @@ bool walls_sees(lattice_box box, walls_place w, uint behind, ivec3 q)
     if (behind == 0u) {
         return (w.links >> walls_link(d) & 1u) == 0u;
     }
-    return walls_behind(w.index, walls_centre(box, q)) == behind;
+    // Walls between p and q that do not touch the point's cell are in that of q.
+    return walls_behind(w.index, walls_centre(box, q)) == behind && walls_same_side(box, q, p);
 }
 
 walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
@@ -108,7 +110,7 @@ walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
         vec3 t = mix(1.0 - f, f, vec3(i & 1u, i >> 1 & 1u, i >> 2));
         // Beyond the outermost centres the same cell counts twice.
         ivec3 q = clamp(walls_corner(box, b.base, i), w.cell - 1, w.cell + 1);
-        b.share[i] = walls_sees(box, w, behind, q) ? t.x * t.y * t.z : 0.0;
+        b.share[i] = walls_sees(box, w, p, behind, q) ? t.x * t.y * t.z : 0.0;
         sum += b.share[i];
     }
     for (uint i = 0u; i < 8u; i++) {
@@ -119,7 +121,7 @@ walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
         for (int i = 0; i < 27; i++) {
             ivec3 q = w.cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1;
             if (any(lessThan(q, ivec3(0))) || any(greaterThanEqual(q, box.dims)) ||
-                !walls_sees(box, w, behind, q)) {
+                !walls_sees(box, w, p, behind, q)) {
                 continue;
             }
             float away = distance(vec3(q), w.x);

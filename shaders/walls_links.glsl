@@ -20,7 +20,7 @@ uint walls_link(ivec3 s)
 {
     uvec3 negative = uvec3(lessThan(s, ivec3(0)));
     if (s.x != 0 && s.y != 0 && s.z != 0) {
-        return 6u + (1u - negative.x) + 2u * (1u - negative.y) + 4u * (1u - negative.z);
+        return 6u + negative.x + 2u * negative.y + 4u * negative.z;
     }
     if (s.x == 0) {
         return s.y == 0 ? 4u + negative.z : s.z == 0 ? 2u + negative.y : 14u + negative.y + 2u * negative.z;

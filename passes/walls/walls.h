@@ -6,7 +6,7 @@
 #include <tyndall/pass.h>
 
 typedef struct tyn_walls_params {
-    float extent[3]; // medium_block.extent, m
+    float extent[3];  // medium_block.extent, m
     uint32_t dims[3]; // cells of the lattice: tyn_lattice_dims
 } tyn_walls_params;
 

@@ -66,6 +66,19 @@ void cut(ivec3 c, uint link, bool inner, float where, uint triangle)
     }
 }
 
+// Of a link and its reverse one is looked at: that whose first component is > 0.
+const uint HALF = 13u;
+const uint FORWARD[HALF] = uint[](0u, 2u, 4u, 6u, 8u, 10u, 12u, 14u, 16u, 18u, 20u, 22u, 24u);
+
+// Cells from which a link along d has a box that meets the triangle's.
+void range_of(vec3 least, vec3 most, vec3 d, out ivec3 first, out ivec3 count)
+{
+    vec3 lo = ceil(least - max(d, vec3(0.0))), hi = floor(most - min(d, vec3(0.0)));
+    first = ivec3(clamp(lo, vec3(-1.0), vec3(args.dims) + 1.0));
+    ivec3 last = ivec3(clamp(hi, vec3(-2.0), vec3(args.dims)));
+    count = max(last - first + 1, ivec3(0));
+}
+
 void main()
 {
     uint triangle = gl_WorkGroupID.y * args.row + gl_WorkGroupID.x;
@@ -80,39 +93,52 @@ void main()
     if (!(all(lessThan(abs(least), vec3(1e9))) && all(lessThan(abs(most), vec3(1e9)))) || size == 0.0) {
         return; // not finite, or without area
     }
-    vec3 dims = vec3(args.dims);
-    ivec3 lo = ivec3(clamp(floor(least) - 1.0, vec3(-1.0), dims + 1.0));
-    ivec3 hi = ivec3(clamp(ceil(most) + 1.0, vec3(-2.0), dims));
-    ivec3 count = max(hi - lo + 1, ivec3(0));
-    uint n = uint(count.x * count.y * count.z), cells = args.dims.x * args.dims.y * args.dims.z;
+    // What rounding may move the triangle by.
+    vec3 slack = 1e-4 + 4e-7 * max(abs(least), abs(most));
+    least -= slack;
+    most += slack;
+
+    // All links whose boxes meet the triangle's, one direction after another.
+    ivec3 first[HALF], count[HALF];
+    uint total = 0u;
+    for (uint k = 0u; k < HALF; k++) {
+        range_of(least, most, vec3(walls_step(FORWARD[k])), first[k], count[k]);
+        total += uint(count[k].x * count[k].y * count[k].z);
+    }
+    for (uint i = gl_LocalInvocationIndex; i < total; i += WALLS_GROUP) {
+        uint k = 0u, of = i;
+        for (uint n = uint(count[k].x * count[k].y * count[k].z); of >= n && k < HALF - 1u;
+             n = uint(count[k].x * count[k].y * count[k].z)) {
+            of -= n;
+            k++;
+        }
+        ivec3 c = first[k] + ivec3(int(of) % count[k].x, int(of) / count[k].x % count[k].y,
+                                   int(of) / (count[k].x * count[k].y));
+        uint link = FORWARD[k];
+        ivec3 d = walls_step(link);
+        bool here = in_lattice(c), there = in_lattice(c + d);
+        float where;
+        if ((here || there) && walls_cuts(t, vec3(c), vec3(d), where)) {
+            cut(c, link, here && there, where, triangle);
+            cut(c + d, walls_reverse(link), here && there, 1.0 - where, triangle);
+        }
+    }
+
+    // The cubes of the cells are around their true centres; a wall in a face of one is not in it.
     vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);
-    for (uint i = gl_LocalInvocationIndex; i < n; i += WALLS_GROUP) {
-        ivec3 c = lo + ivec3(int(i) % count.x, int(i) / count.x % count.y, int(i) / (count.x * count.y));
-        vec3 p = vec3(c);
-        vec2 height = walls_height(t, p);
-        if (abs(height.x) > 1.75 * size + height.y) {
-            continue;
-        }
-        bool inside = in_lattice(c);
-        for (uint link = 0u; link < TYN_WALLS_LINKS; link++) {
-            ivec3 d = walls_step(link);
-            // Of a link and its reverse one has its first component > 0.
-            int ahead = d.x != 0 ? d.x : d.y != 0 ? d.y : d.z;
-            float where;
-            if (ahead < 0 || !(inside || in_lattice(c + d)) || !walls_cuts(t, p, vec3(d), where)) {
-                continue;
-            }
-            bool inner = inside && in_lattice(c + d);
-            cut(c, link, inner, where, triangle);
-            cut(c + d, walls_reverse(link), inner, 1.0 - where, triangle);
-        }
-        // The cube of the cell is around its true centre; a wall in one of its faces is not in it.
-        if (inside && walls_in_cube(t, p - shift, 0.499)) {
-            vec3 outward = height.x < 0.0 ? -t.normal : t.normal, main = abs(outward);
+    ivec3 lo = ivec3(clamp(ceil(least + shift - 0.5), vec3(0.0), vec3(args.dims)));
+    ivec3 hi = ivec3(clamp(floor(most + shift + 0.5), vec3(-1.0), vec3(args.dims) - 1.0));
+    ivec3 box = max(hi - lo + 1, ivec3(0));
+    uint cells = args.dims.x * args.dims.y * args.dims.z;
+    for (uint i = gl_LocalInvocationIndex; i < uint(box.x * box.y * box.z); i += WALLS_GROUP) {
+        ivec3 c = lo + ivec3(int(i) % box.x, int(i) / box.x % box.y, int(i) / (box.x * box.y));
+        if (walls_in_cube(t, vec3(c) - shift, 0.499)) {
+            float height = walls_height(t, vec3(c)).x;
+            vec3 outward = height < 0.0 ? -t.normal : t.normal, main = abs(outward);
             int axis = main.x >= main.y && main.x >= main.z ? 0 : main.y >= main.z ? 1 : 2;
             uint slot = uint(2 * axis + int(outward[axis] < 0.0)), at = walls_cell_index(c);
             atomicOr(links[at], TYN_WALLS_NEAR);
-            atomicMin(nearest[slot * cells + at], key_of(abs(height.x) / size, triangle));
+            atomicMin(nearest[slot * cells + at], key_of(abs(height) / size, triangle));
         }
     }
 }

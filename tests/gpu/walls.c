@@ -53,8 +53,8 @@ static mesh box_mesh(const double centre[3], const double h[3], double angle)
         double x[3] = {k[1] * p[2] - k[2] * p[1], k[2] * p[0] - k[0] * p[2],
                        k[0] * p[1] - k[1] * p[0]};
         for (int a = 0; a < 3; a++) {
-            v[i][a] = centre[a] + p[a] * cos(angle) + x[a] * sin(angle) +
-                      k[a] * along * (1 - cos(angle));
+            v[i][a] =
+                centre[a] + p[a] * cos(angle) + x[a] * sin(angle) + k[a] * along * (1 - cos(angle));
         }
     }
     static const int faces[6][4] = {{0, 2, 6, 4}, {1, 5, 7, 3}, {0, 4, 5, 1},
@@ -74,8 +74,8 @@ static void split(mesh *m, const double a[3], const double b[3], const double c[
         double p[3][3];
         const double *from[3] = {a, b, c};
         for (int i = 0; i < 3; i++) {
-            double r = sqrt(from[i][0] * from[i][0] + from[i][1] * from[i][1] +
-                            from[i][2] * from[i][2]);
+            double r =
+                sqrt(from[i][0] * from[i][0] + from[i][1] * from[i][1] + from[i][2] * from[i][2]);
             for (int k = 0; k < 3; k++) {
                 p[i][k] = centre[k] + radius * from[i][k] / r;
             }
@@ -194,7 +194,7 @@ static void step_of(int link, int d[3])
         d[link / 2] = link % 2 ? -1 : 1;
     } else if (link < 14) {
         for (int a = 0; a < 3; a++) {
-            d[a] = (link - 6) >> a & 1 ? 1 : -1;
+            d[a] = (link - 6) >> a & 1 ? -1 : 1;
         }
     } else {
         int zero = (link - 14) / 4, s = (link - 14) % 4, u = zero == 0 ? 1 : 0,
@@ -226,7 +226,7 @@ static double det3(const double a[3], const double b[3], const double c[3])
 }
 
 // 1: cut, 0: open, -1: too close to tell in single precision.
-static int cuts(const double tri[3][3], const double p[3], const double d[3], double dx)
+static int cuts(double tri[3][3], const double p[3], const double d[3], double dx)
 {
     double e1[3], e2[3], s[3];
     for (int a = 0; a < 3; a++) {
@@ -237,8 +237,11 @@ static int cuts(const double tri[3][3], const double p[3], const double d[3], do
     // p + t d = v0 + u e1 + v e2
     double det = -det3(e1, e2, d);
     double margin = 1e-4;
-    if (fabs(det) < 1e-9) {
-        return -1;
+    if (fabs(det) < 1e-6) { // in the plane, or beside it
+        double n[3] = {e1[1] * e2[2] - e1[2] * e2[1], e1[2] * e2[0] - e1[0] * e2[2],
+                       e1[0] * e2[1] - e1[1] * e2[0]};
+        double size = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        return fabs(n[0] * s[0] + n[1] * s[1] + n[2] * s[2]) > margin * size ? 0 : -1;
     }
     double u = -det3(s, e2, d) / det, v = -det3(e1, s, d) / det, t = det3(e1, e2, s) / det;
     double least = fmin(fmin(u, v), fmin(1 - u - v, fmin(t, 1 - t)));
@@ -341,10 +344,10 @@ static void closed_meshes_are_closed(void **state)
     for (int k = 0; k < 24; k++) {
         double c[3] = {0.5 + 0.003 * k, 0.5 - 0.0017 * k, 0.5};
         // Every fourth lies on planes of centres, on faces of cells, or on the lattice's own.
-        double on_centres[3] = {0.525, 0.525, 0.525}, h = k % 4 ? 0.31 + 0.001 * k : 0.25;
+        double on_centres[3] = {0.525, 0.525, 0.525}, h = k % 4 ? 0.25 + 0.001 * k : 0.25;
         mesh m = k % 2 ? sphere_mesh(c, 0.37, k % 6)
-                       : box_mesh(k % 4 ? c : on_centres,
-                                  (double[]){h, h, k == 8 ? 0.475 : 0.3}, k % 4 ? 0.13 * k : 0);
+                       : box_mesh(k % 4 ? c : on_centres, (double[]){h, h, k == 8 ? 0.475 : 0.25},
+                                  k % 4 ? 0.13 * k : 0);
         result r = run(*state, &g, &m);
         bool out;
         int inside = flood(&g, &r, (10 * 20 + 10) * 20 + 10, &out);
@@ -472,14 +475,13 @@ static void blends_on_one_side(void **state)
     point_pass_init(&pass, walls_eval_spirv, sizeof walls_eval_spirv, inputs, 4);
     point_pass_params params = {.count = POINTS, .result_size = 16, .results = pass.results};
     tyn_ref p[POINT_PASS_INPUTS + 2] = {
-        w.links, w.cells,
-        gpu_image(t, "field", TYN_IMAGE_3D, (tyn_extent){16, 16, 16}, 4, field),
+        w.links, w.cells, gpu_image(t, "field", TYN_IMAGE_3D, (tyn_extent){16, 16, 16}, 4, field),
         gpu_buffer(t, "setup", &setup, sizeof setup),
         gpu_buffer(t, "points", points, POINTS * sizeof *points)};
     assert_int_equal(tyn_graph_add(t->graph, &pass.desc, &params, p), TYN_OK);
     tyn_graph_output(t->graph, "results", p[pass.results], true);
     gpu_run(t);
-    const float(*results)[4] = (const void *)gpu_map(t, "results");
+    const float(*results)[4] = (const float(*)[4])gpu_map(t, "results");
     int wrong_in = 0, wrong_out = 0, in = 0, near = 0;
     for (int i = 0; i < POINTS; i++) {
         double depth = 1;
@@ -495,15 +497,13 @@ static void blends_on_one_side(void **state)
         }
         near += results[i][1] > 0;
         in += depth > 0;
-        if (depth > 0 && results[i][1] > 0) {
-            wrong_in += results[i][0] > 1e-6;
-        } else if (depth < 0 && results[i][1] > 0) {
-            wrong_out += results[i][0] < 1 - 1e-6;
-        }
+        wrong_in += depth > 0 && results[i][0] > 1e-6;
+        wrong_out += depth < 0 && results[i][0] < 1 - 1e-6;
     }
-    printf("%d points inside, %d in cells with walls: %d see light from outside; %d outside see the "
-           "dark\n",
-           in, near, wrong_in, wrong_out);
+    printf(
+        "%d points inside, %d in cells with walls: %d see light from outside; %d outside see the "
+        "dark\n",
+        in, near, wrong_in, wrong_out);
     assert_int_equal(wrong_in, 0);
     assert_true(wrong_out < POINTS / 500);
     free(field);
@@ -534,12 +534,9 @@ static void many_triangles(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(matches_brute_force),
-        cmocka_unit_test(closed_meshes_are_closed),
-        cmocka_unit_test(walls_on_the_lattice),
-        cmocka_unit_test(box_is_the_room),
-        cmocka_unit_test(blends_on_one_side),
-        cmocka_unit_test(many_triangles),
+        cmocka_unit_test(matches_brute_force),  cmocka_unit_test(closed_meshes_are_closed),
+        cmocka_unit_test(walls_on_the_lattice), cmocka_unit_test(box_is_the_room),
+        cmocka_unit_test(blends_on_one_side),   cmocka_unit_test(many_triangles),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
