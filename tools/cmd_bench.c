@@ -84,6 +84,9 @@ static int measure_scene(app *a, tyn_device *device, const bench_suite *suite,
                     .view = {.outputs = TYN_OUTPUT_RADIANCE, .no_background = true},
                     .fill = NAN};
     int code = scene_open(a, &spec->scene, &c.scene);
+    if (code == EXIT_DONE) { // for the reference
+        code = scene_prepare(a, &(tyn_method_info){.traces_rays = true}, &c.scene);
+    }
     if (code == EXIT_DONE) {
         code = view_setup(a, &spec->view, &c.scene, &c.view);
     }

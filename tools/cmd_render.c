@@ -235,6 +235,9 @@ static int load_and_render(app *a, render_job *job, const opt_list *outputs, boo
     tyn_scene scene;
     int code = scene_open(a, &options, &scene);
     if (code == EXIT_DONE) {
+        code = scene_prepare(a, &job->method->info, &scene);
+    }
+    if (code == EXIT_DONE) {
         code = render_picture(a, job, &scene, number, &p);
     }
     tyn_scene_finish(&scene);

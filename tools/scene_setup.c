@@ -107,6 +107,15 @@ int scene_open(app *a, const scene_options *options, tyn_scene *scene)
     return app_exit_code(a, result, true);
 }
 
+int scene_prepare(app *a, const tyn_method_info *method, tyn_scene *scene)
+{
+    tyn_surfaces *surfaces = &scene->surfaces;
+    if (!method->traces_rays || surfaces->nodes) {
+        return EXIT_DONE;
+    }
+    return app_exit_code(a, tyn_surfaces_build_nodes(surfaces, &a->log), true);
+}
+
 // ---- the camera -------------------------------------------------------------------------------
 
 static bool same_name(const char *a, const char *b)

@@ -2,6 +2,7 @@
 #pragma once
 #include "app.h"
 #include <tyndall/context.h>
+#include <tyndall/registry.h>
 
 typedef struct scene_options {
     const char *scene, *environment; // positional
@@ -32,6 +33,10 @@ enum { VIEW_TABLE_SIZE = 5 };
 
 // Loads and changes the scene. Gives the exit code; tyn_scene_finish is due in any case.
 int scene_open(app *a, const scene_options *options, tyn_scene *scene);
+
+// Builds what the method needs for the scene's surfaces: a hierarchy, if it traces rays. Gives the exit
+// code.
+int scene_prepare(app *a, const tyn_method_info *method, tyn_scene *scene);
 
 // Fills camera, width and height.
 int view_setup(app *a, const view_options *options, const tyn_scene *scene, tyn_view *view);

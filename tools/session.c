@@ -27,7 +27,10 @@ int session_open(app *a, const scene_options *scene, const method_options *how, 
         say_who_can(a, s->method.info.name, output);
         code = EXIT_WRONG;
     }
-    return code == EXIT_DONE ? scene_open(a, scene, &s->scene) : code;
+    if (code == EXIT_DONE) {
+        code = scene_open(a, scene, &s->scene);
+    }
+    return code == EXIT_DONE ? scene_prepare(a, &s->method.info, &s->scene) : code;
 }
 
 int session_start(app *a, const machine_options *options, session *s)

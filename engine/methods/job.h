@@ -84,6 +84,7 @@ typedef struct tyn_method {
     uint32_t outputs;                   // set of tyn_output it can make
     bool progressive;                   // uses view.first_sample, num_samples
     bool reads_env_cdf;                 // wants refs.env_cdf
+    bool traces_rays;                   // wants refs.nodes where there are surfaces
     // Largest work a single record may be given (view.num_samples) to keep a dispatch short; NULL if
     // not progressive.
     uint32_t (*batch)(const tyn_job *job);

@@ -333,6 +333,7 @@ const tyn_method tyn_method_path = {
                TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE,
     .progressive = true,
     .reads_env_cdf = true,
+    .traces_rays = true,
     .batch = batch,
     .declare = declare,
 };

@@ -22,32 +22,19 @@
 #include <string.h>
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,
-    &tyn_pass_beam,
-    &tyn_pass_columns_average,
-    &tyn_pass_columns,
-    &tyn_pass_scatter_lut,
-    &tyn_pass_lattice_cells,
-    &tyn_pass_lattice_source,
-    &tyn_pass_lattice_ordinates,
-    &tyn_pass_lattice,
-    &tyn_pass_merge,
-    &tyn_pass_probe,
-    &tyn_pass_balance,
-    &tyn_pass_propagate_rect,
-    &tyn_pass_merge_grids,
-    &tyn_pass_residuum,
-    &tyn_pass_upsample,
-    &tyn_pass_env_importance,
-    &tyn_pass_ordinates,
-    &tyn_pass_importance,
-    &tyn_pass_env_glow,
-    &tyn_pass_raymarch,
-    &tyn_pass_path,
-    &tyn_pass_path_probe,
-    &tyn_pass_path_balance,
-    &tyn_pass_composite,
-    &tyn_pass_tonemap,
+    &tyn_pass_medium,          &tyn_pass_beam,
+    &tyn_pass_columns_average, &tyn_pass_columns,
+    &tyn_pass_scatter_lut,     &tyn_pass_lattice_cells,
+    &tyn_pass_lattice_source,  &tyn_pass_lattice_ordinates,
+    &tyn_pass_lattice,         &tyn_pass_merge,
+    &tyn_pass_probe,           &tyn_pass_balance,
+    &tyn_pass_propagate_rect,  &tyn_pass_merge_grids,
+    &tyn_pass_residuum,        &tyn_pass_upsample,
+    &tyn_pass_env_importance,  &tyn_pass_ordinates,
+    &tyn_pass_importance,      &tyn_pass_env_glow,
+    &tyn_pass_raymarch,        &tyn_pass_path,
+    &tyn_pass_path_probe,      &tyn_pass_path_balance,
+    &tyn_pass_composite,       &tyn_pass_tonemap,
 };
 enum { NUM_PASSES = sizeof passes / sizeof passes[0] };
 
@@ -89,7 +76,8 @@ void tyn_method_at(uint32_t index, tyn_method_info *info)
     *info = (tyn_method_info){0};
     if (index < NUM_METHODS) {
         const tyn_method *m = methods[index];
-        *info = (tyn_method_info){m->name, m->summary, m->passes, m->outputs, m->progressive};
+        *info = (tyn_method_info){m->name,    m->summary,     m->passes,
+                                  m->outputs, m->progressive, m->traces_rays};
     }
 }
 

@@ -36,6 +36,11 @@ TYN_API void tyn_volume_finish(tyn_volume *volume);
 // radiance, rotation and strength are kept. Negative values are set to 0.
 TYN_API tyn_result tyn_environment_load(tyn_environment *env, const char *path, const tyn_log *log);
 
+// Builds `nodes` over the triangles for methods that trace rays ("path"), and puts the triangles into the
+// nodes' order; `hash` changes if it is not 0. Uses Embree, the same input always gives the same nodes.
+// The surfaces must have passed tyn_scene_check. Nothing happens without triangles.
+TYN_API tyn_result tyn_surfaces_build_nodes(tyn_surfaces *surfaces, const tyn_log *log);
+
 // A float image of named channels, planar, row 0 at the top.
 typedef struct tyn_channel {
     char name[48]; // "R", "transmittance.R", "depth.Z", ...

@@ -15,6 +15,7 @@ typedef struct tyn_method_info {
     const tyn_pass_desc *const *passes; // NULL-terminated, in the order of the frame
     uint32_t outputs; // set of tyn_output it can make
     bool progressive; // adds view.num_samples samples a call to what it has
+    bool traces_rays; // surfaces need a hierarchy: tyn_surfaces_build_nodes of <tyndall/io.h>
 } tyn_method_info;
 TYN_API uint32_t tyn_num_methods(void);
 TYN_API void tyn_method_at(uint32_t index, tyn_method_info *info);
