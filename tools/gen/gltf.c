@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "portable.h"
+
 static void cross(const float a[3], const float b[3], float out[3])
 {
     out[0] = a[1] * b[2] - a[2] * b[1];
@@ -20,8 +22,7 @@ static void normalize(float v[3])
     }
 }
 
-// "[a, b, c]": nine digits bring every float back exactly.
-static void put_floats(FILE *f, const float *v, int n)
+void gen_put_floats(FILE *f, const float *v, int n)
 {
     fputc('[', f);
     for (int i = 0; i < n; i++) {
@@ -47,7 +48,7 @@ static void put_aim(FILE *f, const float position[3], const float forward[3], co
                          above[2],    0,           -ahead[0],   -ahead[1], -ahead[2], 0,
                          position[0], position[1], position[2], 1};
     fputs("\"matrix\": ", f);
-    put_floats(f, m, 16);
+    gen_put_floats(f, m, 16);
 }
 
 static void put_media(FILE *f, const gen_scene *s)
@@ -56,9 +57,9 @@ static void put_media(FILE *f, const gen_scene *s)
     for (int i = 0; i < GEN_MAX && s->media[i].name; i++) {
         const gen_medium *m = &s->media[i];
         fprintf(f, "%s\n      { \"name\": \"%s\", \"scattering\": ", i ? "," : "", m->name);
-        put_floats(f, m->scattering, 3);
+        gen_put_floats(f, m->scattering, 3);
         fputs(", \"absorption\": ", f);
-        put_floats(f, m->absorption, 3);
+        gen_put_floats(f, m->absorption, 3);
         fprintf(f, ",\n        \"anisotropy\": %.9g", (double)m->anisotropy);
         if (m->density.uri) {
             const gen_volume *v = &m->density;
@@ -72,16 +73,59 @@ static void put_media(FILE *f, const gen_scene *s)
     fputs("\n    ] }", f);
 }
 
-static void put_root_extensions(FILE *f, const gen_scene *s)
+// Suns first, then lamps.
+static void put_lights(FILE *f, const gen_scene *s, const gen_model *model)
 {
+    const char *comma = "";
+    fputs("    \"KHR_lights_punctual\": { \"lights\": [", f);
+    for (int i = 0; i < GEN_MAX && s->suns[i].irradiance > 0; i++, comma = ",") {
+        const gen_sun *sun = &s->suns[i];
+        const bool white = sun->color[0] + sun->color[1] + sun->color[2] <= 0;
+        fprintf(f, "%s\n      { \"type\": \"directional\", \"intensity\": %.9g, \"color\": ", comma,
+                (double)sun->irradiance);
+        gen_put_floats(f, white ? (const float[3]){1, 1, 1} : sun->color, 3);
+        fputs(" }", f);
+    }
+    for (uint32_t i = 0; i < model->num_lamps; i++, comma = ",") {
+        const gen_lamp *lamp = &model->lamps[i];
+        fprintf(f, "%s\n      { \"type\": \"%s\", \"intensity\": %.9g, \"color\": ", comma,
+                lamp->outer > 0 ? "spot" : "point", (double)lamp->intensity);
+        gen_put_floats(f, lamp->color, 3);
+        if (lamp->outer > 0) {
+            fprintf(f, ", \"spot\": { \"innerConeAngle\": %.9g, \"outerConeAngle\": %.9g }",
+                    (double)lamp->inner, (double)lamp->outer);
+        }
+        fputs(" }", f);
+    }
+    fputs("\n    ] }", f);
+}
+
+static bool has_strong_emission(const gen_scene *s)
+{
+    for (int i = 0; i < GEN_MAX_MATERIALS && s->materials[i].name; i++) {
+        const float *e = s->materials[i].emission;
+        if (e[0] > 0 || e[1] > 0 || e[2] > 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static void put_root_extensions(FILE *f, const gen_scene *s, const gen_model *model)
+{
+    const bool lights = s->suns[0].irradiance > 0 || model->num_lamps > 0;
     const char *comma = "";
     fputs("  \"extensionsUsed\": [", f);
     if (s->media[0].name) {
         fputs("\"TYN_participating_media\"", f);
         comma = ", ";
     }
-    if (s->suns[0].irradiance > 0) {
+    if (lights) {
         fprintf(f, "%s\"KHR_lights_punctual\"", comma);
+        comma = ", ";
+    }
+    if (has_strong_emission(s)) {
+        fprintf(f, "%s\"KHR_materials_emissive_strength\"", comma);
         comma = ", ";
     }
     if (s->environment) {
@@ -93,17 +137,9 @@ static void put_root_extensions(FILE *f, const gen_scene *s)
         put_media(f, s);
         comma = ",\n";
     }
-    if (s->suns[0].irradiance > 0) {
-        fprintf(f, "%s    \"KHR_lights_punctual\": { \"lights\": [", comma);
-        for (int i = 0; i < GEN_MAX && s->suns[i].irradiance > 0; i++) {
-            const gen_sun *sun = &s->suns[i];
-            const bool white = sun->color[0] + sun->color[1] + sun->color[2] <= 0;
-            fprintf(f, "%s\n      { \"type\": \"directional\", \"intensity\": %.9g, \"color\": ",
-                    i ? "," : "", (double)sun->irradiance);
-            put_floats(f, white ? (const float[3]){1, 1, 1} : sun->color, 3);
-            fputs(" }", f);
-        }
-        fputs("\n    ] }", f);
+    if (lights) {
+        fputs(comma, f);
+        put_lights(f, s, model);
         comma = ",\n";
     }
     if (s->environment) {
@@ -112,7 +148,7 @@ static void put_root_extensions(FILE *f, const gen_scene *s)
             fprintf(f, "\"uri\": \"%s\", ", s->environment_uri);
         }
         fputs("\"radiance\": ", f);
-        put_floats(f, s->environment_radiance, 3);
+        gen_put_floats(f, s->environment_radiance, 3);
         fputs(" } ] }", f);
     }
     fputs("\n  },\n", f);
@@ -121,14 +157,14 @@ static void put_root_extensions(FILE *f, const gen_scene *s)
 static void put_shape(FILE *f, const gen_shape *shape)
 {
     fprintf(f, "    { \"name\": \"%s\", \"translation\": ", shape->name);
-    put_floats(f, shape->translation, 3);
+    gen_put_floats(f, shape->translation, 3);
     const float *q = shape->rotation;
     if (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] > 0) {
         fputs(", \"rotation\": ", f);
-        put_floats(f, q, 4);
+        gen_put_floats(f, q, 4);
     }
     fputs(", \"scale\": ", f);
-    put_floats(f, shape->scale, 3);
+    gen_put_floats(f, shape->scale, 3);
     fprintf(f,
             ",\n      \"extensions\": { \"TYN_participating_media\": { \"medium\": %u, "
             "\"shape\": \"%s\"",
@@ -140,7 +176,32 @@ static void put_shape(FILE *f, const gen_shape *shape)
     fputs(" } } }", f);
 }
 
-static uint32_t put_nodes(FILE *f, const gen_scene *s)
+static void put_light_of_node(FILE *f, uint32_t light)
+{
+    fprintf(f, ",\n      \"extensions\": { \"KHR_lights_punctual\": { \"light\": %u } } }", light);
+}
+
+static void put_part(FILE *f, const gen_model *model, const gen_part *part)
+{
+    fprintf(f, "    { \"name\": \"%s\", \"mesh\": %u", model->meshes[part->mesh].name, part->mesh);
+    const float *t = part->translation;
+    if (t[0] != 0 || t[1] != 0 || t[2] != 0) {
+        fputs(", \"translation\": ", f);
+        gen_put_floats(f, t, 3);
+    }
+    if (part->turn != 0) {
+        const double half = 0.5 * (double)part->turn;
+        fputs(", \"rotation\": ", f);
+        gen_put_floats(f, (const float[4]){0, (float)gen_sin(half), 0, (float)gen_cos(half)}, 4);
+    }
+    if (part->scale != 1) {
+        fputs(", \"scale\": ", f);
+        gen_put_floats(f, (const float[3]){part->scale, part->scale, part->scale}, 3);
+    }
+    fputs(" }", f);
+}
+
+static uint32_t put_nodes(FILE *f, const gen_scene *s, const gen_model *model)
 {
     uint32_t n = 0;
     fputs("  \"nodes\": [", f);
@@ -148,10 +209,22 @@ static uint32_t put_nodes(FILE *f, const gen_scene *s)
         fputs(n++ ? ",\n" : "\n", f);
         put_shape(f, &s->shapes[i]);
     }
+    for (uint32_t i = 0; i < model->num_parts; i++) {
+        fputs(n++ ? ",\n" : "\n", f);
+        put_part(f, model, &model->parts[i]);
+    }
+    uint32_t light = 0;
     for (int i = 0; i < GEN_MAX && s->suns[i].irradiance > 0; i++) {
         fprintf(f, "%s    { \"name\": \"sun%d\", ", n++ ? ",\n" : "\n", i);
         put_aim(f, (const float[3]){0}, s->suns[i].direction, (const float[3]){0, 1, 0});
-        fprintf(f, ",\n      \"extensions\": { \"KHR_lights_punctual\": { \"light\": %d } } }", i);
+        put_light_of_node(f, light++);
+    }
+    for (uint32_t i = 0; i < model->num_lamps; i++) {
+        const gen_lamp *lamp = &model->lamps[i];
+        fprintf(f, "%s    { \"name\": \"lamp%u\", ", n++ ? ",\n" : "\n", i);
+        put_aim(f, lamp->position, lamp->outer > 0 ? lamp->direction : (const float[3]){0, 0, -1},
+                (const float[3]){0, 1, 0});
+        put_light_of_node(f, light++);
     }
     for (int i = 0; i <= GEN_MAX && s->cameras[i].name; i++) {
         const gen_camera *c = &s->cameras[i];
@@ -187,7 +260,7 @@ static void put_cameras(FILE *f, const gen_scene *s)
     fputs("\n  ]", f);
 }
 
-bool gen_write_gltf(const char *folder, const gen_scene *s)
+static bool write_scene(const char *folder, const gen_scene *s, const gen_model *model)
 {
     char path[4096];
     snprintf(path, sizeof(path), "%s/%s.gltf", folder, s->name);
@@ -200,10 +273,13 @@ bool gen_write_gltf(const char *folder, const gen_scene *s)
             "{\n  \"asset\": { \"version\": \"2.0\", \"generator\": \"tyndall-scenes\", "
             "\"extras\": { \"about\": \"%s\" } },\n",
             s->about);
-    put_root_extensions(f, s);
+    put_root_extensions(f, s, model);
+    if (model->num_meshes > 0) {
+        gen_put_meshes(f, s, model);
+    }
     put_cameras(f, s);
     fputs(",\n", f);
-    const uint32_t nodes = put_nodes(f, s);
+    const uint32_t nodes = put_nodes(f, s, model);
     fprintf(f, ",\n  \"scene\": 0,\n  \"scenes\": [ { \"name\": \"%s\", \"nodes\": [", s->name);
     for (uint32_t i = 0; i < nodes; i++) {
         fprintf(f, "%s%u", i ? ", " : "", i);
@@ -219,4 +295,16 @@ bool gen_write_gltf(const char *folder, const gen_scene *s)
         return false;
     }
     return true;
+}
+
+bool gen_write_gltf(const char *folder, const gen_scene *s)
+{
+    gen_model model = {0};
+    if (s->build) {
+        s->build(&model);
+    }
+    const bool ok = write_scene(folder, s, &model) &&
+                    (model.num_meshes == 0 || gen_write_buffer(folder, s->name, &model));
+    gen_model_free(&model);
+    return ok;
 }

@@ -8,6 +8,7 @@
 
 #include "maps.h"
 #include "scenes.h"
+#include "textures.h"
 
 // A painted sky without a sun: radiance from the zenith over the horizon to the ground.
 static bool write_sky(const char *folder)
@@ -58,6 +59,26 @@ static bool write_maps(const char *folder)
     return write_map(folder, "courtyard.exr", gen_courtyard(WIDTH, HEIGHT)) && ok;
 }
 
+// Writes a volume and frees it.
+static bool write_grid(const char *folder, const char *file, gen_grid grid,
+                       bool (*write)(const char *, const char *, const gen_grid *))
+{
+    const bool ok = write(folder, file, &grid);
+    gen_grid_free(&grid);
+    return ok;
+}
+
+static bool write_grids(const char *folder)
+{
+    bool ok = write_grid(folder, "blobs.raw", gen_blobs(), gen_write_u8);
+    ok = write_grid(folder, "cloud.raw", gen_cumulus(), gen_write_u8) && ok;
+    ok = write_grid(folder, "smoke.raw", gen_plume(), gen_write_f16) && ok;
+    ok = write_grid(folder, "hare.raw", gen_hare(), gen_write_u8) && ok;
+    ok = write_grid(folder, "lantern.raw", gen_lantern_smoke(), gen_write_u8) && ok;
+    ok = write_grid(folder, "cave.raw", gen_cave_dust(), gen_write_f16) && ok;
+    return write_grid(folder, "haze.raw", gen_haze(), gen_write_u8) && ok;
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 2) {
@@ -67,20 +88,16 @@ int main(int argc, char **argv)
     const char *folder = argv[1];
     bool ok = write_sky(folder);
     ok = write_maps(folder) && ok;
+    ok = gen_write_textures(folder) && ok;
     for (int i = 0; i < gen_num_scenes; i++) {
         ok = gen_write_gltf(folder, &gen_scenes[i]) && ok;
     }
-    gen_grid blobs = gen_blobs();
-    ok = gen_write_u8(folder, "blobs.raw", &blobs) && ok;
-    gen_grid_free(&blobs);
-    gen_grid cumulus = gen_cumulus();
-    ok = gen_write_u8(folder, "cloud.raw", &cumulus) && ok;
-    gen_grid_free(&cumulus);
-    gen_grid plume = gen_plume();
-    ok = gen_write_f16(folder, "smoke.raw", &plume) && ok;
-    gen_grid_free(&plume);
-    gen_grid hare = gen_hare();
-    ok = gen_write_u8(folder, "hare.raw", &hare) && ok;
-    gen_grid_free(&hare);
+    static const gen_scene *const with_walls[] = {&gen_room,     &gen_fog_hall,
+                                                  &gen_lantern,  &gen_cornell_smoke,
+                                                  &gen_vpl_cave, &gen_many_lights};
+    for (size_t i = 0; i < sizeof(with_walls) / sizeof(with_walls[0]); i++) {
+        ok = gen_write_gltf(folder, with_walls[i]) && ok;
+    }
+    ok = write_grids(folder) && ok;
     return ok ? EXIT_SUCCESS : EXIT_FAILURE;
 }

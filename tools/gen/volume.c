@@ -61,8 +61,8 @@ float gen_grid_sample(const gen_grid *g, float x, float y, float z)
     return mix(a, b, fz);
 }
 
-static bool write_bytes(const char *folder, const char *file, const char *head, const void *bytes,
-                        size_t size)
+bool gen_write_bytes(const char *folder, const char *file, const char *head, const void *bytes,
+                     size_t size)
 {
     char path[4096];
     snprintf(path, sizeof(path), "%s/%s", folder, file);
@@ -97,7 +97,7 @@ bool gen_write_f16(const char *folder, const char *file, const gen_grid *grid)
         bytes[2 * i] = (uint8_t)(h & 0xff);
         bytes[2 * i + 1] = (uint8_t)(h >> 8);
     }
-    const bool ok = write_bytes(folder, file, "", bytes, count * 2);
+    const bool ok = gen_write_bytes(folder, file, "", bytes, count * 2);
     free(bytes);
     return ok;
 }
@@ -109,7 +109,7 @@ bool gen_write_u8(const char *folder, const char *file, const gen_grid *grid)
     for (size_t i = 0; i < count; i++) {
         bytes[i] = (uint8_t)(clamp(grid->data[i], 0.0f, 1.0f) * 255.0f + 0.5f);
     }
-    const bool ok = write_bytes(folder, file, "", bytes, count);
+    const bool ok = gen_write_bytes(folder, file, "", bytes, count);
     free(bytes);
     return ok;
 }
@@ -135,7 +135,7 @@ bool gen_write_hdr(const char *folder, const char *file, int width, int height, 
             out[3] = (uint8_t)(exponent + 128);
         }
     }
-    const bool ok = write_bytes(folder, file, head, bytes, count * 4);
+    const bool ok = gen_write_bytes(folder, file, head, bytes, count * 4);
     free(bytes);
     return ok;
 }

@@ -26,3 +26,7 @@ bool gen_write_u8(const char *folder, const char *file, const gen_grid *grid);
 
 // Writes an RGB float picture as Radiance HDR (flat RGBE, row 0 on top).
 bool gen_write_hdr(const char *folder, const char *file, int width, int height, const float *rgb);
+
+// Writes FOLDER/FILE: a text, then bytes. False, with one line on stderr, if it cannot be written.
+bool gen_write_bytes(const char *folder, const char *file, const char *head, const void *bytes,
+                     size_t size);
