@@ -22,19 +22,34 @@
 #include <string.h>
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,          &tyn_pass_beam,
-    &tyn_pass_columns_average, &tyn_pass_columns,
-    &tyn_pass_scatter_lut,     &tyn_pass_lattice_cells,
-    &tyn_pass_lattice_source,  &tyn_pass_lattice_ordinates,
-    &tyn_pass_lattice,         &tyn_pass_merge,
-    &tyn_pass_probe,           &tyn_pass_balance,
-    &tyn_pass_propagate_rect,  &tyn_pass_merge_grids,
-    &tyn_pass_residuum,        &tyn_pass_upsample,
-    &tyn_pass_env_importance,  &tyn_pass_ordinates,
-    &tyn_pass_importance,      &tyn_pass_env_glow,
-    &tyn_pass_raymarch,        &tyn_pass_path,
-    &tyn_pass_path_probe,      &tyn_pass_path_balance,
-    &tyn_pass_composite,       &tyn_pass_tonemap,
+    // clang-format off
+    &tyn_pass_medium,
+    &tyn_pass_beam,
+    &tyn_pass_columns_average,
+    &tyn_pass_columns,
+    &tyn_pass_scatter_lut,
+    &tyn_pass_lattice_cells,
+    &tyn_pass_lattice_source,
+    &tyn_pass_lattice_ordinates,
+    &tyn_pass_lattice,
+    &tyn_pass_merge,
+    &tyn_pass_probe,
+    &tyn_pass_balance,
+    &tyn_pass_propagate_rect,
+    &tyn_pass_merge_grids,
+    &tyn_pass_residuum,
+    &tyn_pass_upsample,
+    &tyn_pass_env_importance,
+    &tyn_pass_ordinates,
+    &tyn_pass_importance,
+    &tyn_pass_env_glow,
+    &tyn_pass_raymarch,
+    &tyn_pass_path,
+    &tyn_pass_path_probe,
+    &tyn_pass_path_balance,
+    &tyn_pass_composite,
+    &tyn_pass_tonemap,
+    // clang-format on
 };
 enum { NUM_PASSES = sizeof passes / sizeof passes[0] };
 
