@@ -18,7 +18,7 @@ static const texel_format formats[] = {
     {VK_FORMAT_R32_SFLOAT, 1, 4},          {VK_FORMAT_R32G32_SFLOAT, 2, 4},
     {VK_FORMAT_R32G32B32A32_SFLOAT, 4, 4}, {VK_FORMAT_R16_SFLOAT, 1, 2},
     {VK_FORMAT_R16G16_SFLOAT, 2, 2},       {VK_FORMAT_R16G16B16A16_SFLOAT, 4, 2},
-    {VK_FORMAT_R8G8B8A8_UNORM, 4, 1},
+    {VK_FORMAT_R8G8B8A8_UNORM, 4, 1},      {VK_FORMAT_D32_SFLOAT, 1, 4},
 };
 
 static float half_value(uint16_t h)

@@ -17,6 +17,7 @@
 #include "passes/raymarch/raymarch.h"
 #include "passes/residuum/residuum.h"
 #include "passes/scatter_lut/scatter_lut.h"
+#include "passes/shadow_map/shadow_map.h"
 #include "passes/tonemap/tonemap.h"
 #include "passes/upsample/upsample.h"
 #include <string.h>
@@ -43,6 +44,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_ordinates,
     &tyn_pass_importance,
     &tyn_pass_env_glow,
+    &tyn_pass_shadow_map,
     &tyn_pass_raymarch,
     &tyn_pass_path,
     &tyn_pass_path_probe,

@@ -11,7 +11,7 @@ check()
 (
     cd "$1"
     find engine passes shaders tools samples -type f \
-        \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.hpp' -o -name '*.comp' -o -name '*.glsl' \) \
+        \( -name '*.[ch]' -o -name '*.cpp' -o -name '*.hpp' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' -o -name '*.glsl' \) \
         2>/dev/null | sort | xargs awk '
     function exists(path,   line, r) {
         if (!(path in seen)) {
@@ -37,7 +37,7 @@ check()
                 return roots[i] name
             }
         }
-        if (name ~ /\.comp\.h$/ && exists(dir substr(name, 1, length(name) - 2))) {
+        if (name ~ /\.(comp|vert|frag)\.h$/ && exists(dir substr(name, 1, length(name) - 2))) {
             return dir name # made from the shader beside it
         }
         if (quoted && exists(dir name ".in")) { return dir name }

@@ -1,0 +1,13 @@
+// surfaces.h -- the surfaces' part of a frame: what lights and camera see of them.
+#pragma once
+#include "methods/job.h"
+
+// Shadow maps of the suns that have beams and of the lamps: what shaders/shadow.glsl reads.
+typedef struct tyn_shadow_refs {
+    tyn_ref atlas;  // 2D D32
+    tyn_ref lights; // struct shadow_light[]
+} tyn_shadow_refs;
+
+// {0} without surfaces, or without lights. `num_suns`: the first of frame->suns.
+tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
+                           tyn_shadow_refs *shadows);

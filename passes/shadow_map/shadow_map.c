@@ -1,0 +1,88 @@
+// shadow_map.c -- the scene's triangles drawn into every light's map.
+#include "shadow_map.h"
+#include "shadow_map_vertex.vert.h"
+
+static const tyn_port ports[SHADOW_MAP_NUM_PORTS] = {
+    [SHADOW_MAP_PORT_TRIANGLES] = {"triangles", TYN_IN, TYN_BUFFER, 0, false,
+                                   "struct surface_triangle[]"},
+    [SHADOW_MAP_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, false,
+                                  "struct surface_vertex[]"},
+    [SHADOW_MAP_PORT_ATLAS] = {"shadow_atlas", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT, false,
+                               "reversed depth of what each light sees first; 0: nothing"},
+    [SHADOW_MAP_PORT_SHADOWS] = {"shadows", TYN_OUT, TYN_BUFFER, 0, false,
+                                 "struct shadow_light[]: where each light's maps are"},
+};
+
+static const tyn_binding bindings[] = {
+    {SHADOW_MAP_PORT_TRIANGLES, TYN_USE_STORAGE_READ, false},
+    {SHADOW_MAP_PORT_VERTICES, TYN_USE_STORAGE_READ, false},
+};
+
+static const tyn_binding attachments[] = {{SHADOW_MAP_PORT_ATLAS, TYN_USE_DEPTH, false}};
+
+static const tyn_raster raster = {
+    .attachments = attachments,
+    .num_attachments = 1,
+    .depth = VK_COMPARE_OP_GREATER,
+    .clear_depth = 0.0f,
+};
+
+static const tyn_kernel kernels[] = {
+    {.name = "shadow_map",
+     .spirv = shadow_map_vertex_spirv,
+     .spirv_size = sizeof(shadow_map_vertex_spirv),
+     .args_size = sizeof(struct shadow_map_args),
+     .bindings = bindings,
+     .num_bindings = 2,
+     .raster = &raster},
+};
+
+static const tyn_param params_table[] = {
+    {"sun_texels", TYN_PARAM_INT, offsetof(tyn_shadow_map_params, sun_texels), 2048, 16, 8192,
+     "texels", "side of the map of a directional light, over all surfaces", NULL},
+    {"lamp_texels", TYN_PARAM_INT, offsetof(tyn_shadow_map_params, lamp_texels), 512, 16, 2048,
+     "texels",
+     "side of each of a point light's six maps, half of that of a spot's one; less for more than "
+     "four lamps",
+     NULL},
+};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_shadow_map_params *p = params;
+    tyn_build_image(b, SHADOW_MAP_PORT_ATLAS, (tyn_extent){p->size[0], p->size[1], 1}, 1);
+    tyn_build_buffer(b, SHADOW_MAP_PORT_SHADOWS, sizeof p->lights);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_shadow_map_params *p = params;
+    tyn_tile tiles[TYN_SHADOW_VIEWS];
+    for (uint32_t i = 0; i < p->num_views; i++) {
+        const tyn_shadow_view *v = &p->views[i];
+        tiles[i] = (tyn_tile){v->place[0], v->place[1], v->texels, v->texels, &v->args};
+    }
+    tyn_rec_update(r, SHADOW_MAP_PORT_SHADOWS, 0, p->lights, sizeof p->lights);
+    tyn_rec_draw(r, &(tyn_draw){.kernel = 0,
+                                .vertices = 3 * p->num_triangles,
+                                .tiles = tiles,
+                                .num_tiles = p->num_views});
+    tyn_rec_work(r, "triangles", (double)p->num_triangles * p->num_views);
+}
+
+const tyn_pass_desc tyn_pass_shadow_map = {
+    .name = "shadow_map",
+    .summary = "what each light sees of the surfaces",
+    .ports = ports,
+    .num_ports = SHADOW_MAP_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 1,
+    .params = params_table,
+    .num_params = sizeof(params_table) / sizeof(params_table[0]),
+    .params_size = sizeof(tyn_shadow_map_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = SHADOW_MAP_PORT_ATLAS,
+    .debug_meaning = "the maps of all lights: 1 near, 0 far",
+};

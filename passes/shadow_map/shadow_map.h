@@ -1,0 +1,40 @@
+// shadow_map.h -- what the lights see of the surfaces: depth maps of all of them in one atlas.
+#pragma once
+#include <tyndall/pass.h>
+#include "scene_args.h"
+#include "shadow_args.h"
+#include "surface_args.h"
+
+enum { TYN_SHADOW_VIEWS = TYN_SHADOW_SUNS + 6 * TYN_SHADOW_LAMPS };
+
+typedef struct tyn_shadow_view {
+    uint32_t place[2], texels; // in the atlas
+    struct shadow_map_args args;
+} tyn_shadow_view;
+
+typedef struct tyn_shadow_map_params {
+    int32_t sun_texels;  // "shadow_map.sun_texels"
+    int32_t lamp_texels; // "shadow_map.lamp_texels"
+    // Set by tyn_shadow_map_plan:
+    uint32_t size[2]; // of the atlas, texels
+    uint32_t num_triangles;
+    uint32_t num_views;
+    struct shadow_light lights[TYN_SHADOW_MAX];
+    tyn_shadow_view views[TYN_SHADOW_VIEWS];
+} tyn_shadow_map_params;
+
+// Lays out the maps of suns (the first num_suns <= TYN_SHADOW_SUNS) and lamps (points and spots) for the
+// sides in params, and fills the rest of params. The atlas's size depends on the kinds and numbers of lights
+// alone, so that moving them changes nothing else.
+void tyn_shadow_map_plan(tyn_shadow_map_params *params, const struct light_block *suns,
+                         uint32_t num_suns, const struct light_block *lamps, uint32_t num_lamps,
+                         const struct surface_block *surfaces);
+
+enum {
+    SHADOW_MAP_PORT_TRIANGLES, // IN buffer struct surface_triangle[]
+    SHADOW_MAP_PORT_VERTICES,  // IN buffer struct surface_vertex[]
+    SHADOW_MAP_PORT_ATLAS,     // OUT 2D D32: what shadow.glsl reads, with the buffer below
+    SHADOW_MAP_PORT_SHADOWS,   // OUT buffer struct shadow_light[TYN_SHADOW_MAX]
+    SHADOW_MAP_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_shadow_map;

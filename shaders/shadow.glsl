@@ -1,0 +1,151 @@
+// shadow.glsl -- whether a light sees a point, past the surfaces of the scene.
+//
+// Define SHADOW_ATLAS and SHADOW_LIGHTS as the bindings of what pass shadow_map makes. A point is shadowed by
+// what its light's map has in front of it; where there is no map everything is lit.
+#ifndef TYN_SHADOW_GLSL
+#define TYN_SHADOW_GLSL
+#include "shadow_args.h"
+
+layout(set = 0, binding = SHADOW_ATLAS) uniform sampler2D shadow_atlas;
+layout(set = 0, binding = SHADOW_LIGHTS, scalar) readonly buffer shadow_lights_buffer
+{
+    shadow_light shadows[];
+};
+
+const float SHADOW_EPSILON = 4e-6; // of depths: rounding in maps and projections
+
+vec3 shadow_frame(shadow_light l, vec3 p)
+{
+    return vec3(dot(l.rows[0].xyz, p) + l.rows[0].w, dot(l.rows[1].xyz, p) + l.rows[1].w,
+                dot(l.rows[2].xyz, p) + l.rows[2].w);
+}
+
+vec3 shadow_frame_direction(shadow_light l, vec3 n)
+{
+    return vec3(dot(l.rows[0].xyz, n), dot(l.rows[1].xyz, n), dot(l.rows[2].xyz, n));
+}
+
+// A point on a map.
+struct shadow_place {
+    vec2 texel; // in the atlas
+    float depth;
+    bool inside; // of the map
+};
+
+// The face of the cube that a direction goes through, and the components along its u, v and axis.
+uint shadow_face(vec3 q)
+{
+    vec3 a = abs(q);
+    bool x = a.x >= a.y && a.x >= a.z, y = a.y >= a.z;
+    float major = x ? q.x : y ? q.y : q.z;
+    return (x ? 0u : y ? 2u : 4u) + (major < 0.0 ? 1u : 0u);
+}
+
+vec3 shadow_on_face(uint face, vec3 q)
+{
+    vec3 turned = face < 2u ? q.yzx : face < 4u ? q.zxy : q;
+    return vec3(turned.xy, (face & 1u) != 0u ? -turned.z : turned.z);
+}
+
+shadow_place shadow_place_sun(shadow_light l, vec3 q)
+{
+    // What is behind all casters is at their far side; what is before them is nearer than all.
+    return shadow_place(l.offset + l.texels * (0.5 + 0.5 * q.xy), max(q.z, 0.0),
+                        all(lessThan(abs(q.xy), vec2(1.0))));
+}
+
+// `q` is on the face.
+shadow_place shadow_place_lamp(shadow_light l, uint face, vec3 q)
+{
+    vec2 uv = q.xy * (l.scale / max(q.z, 1e-20));
+    vec2 tile = vec2(face % 3u, face / 3u);
+    bool inside = l.kind != TYN_SHADOW_NONE && q.z > l.near && all(lessThan(abs(uv), vec2(1.0)));
+    return shadow_place(l.offset + l.texels * (tile + 0.5 + 0.5 * uv), l.near / max(q.z, 1e-20),
+                        inside);
+}
+
+// The depths of the four texels around a place: at (0, 1), (1, 1), (1, 0), (0, 0) from `first`.
+vec4 shadow_gather(shadow_place place, out vec2 first)
+{
+    // The last texels of a map are never covered, so that no place inside is blended with a neighbour map.
+    first = floor(place.texel - 0.5);
+    return textureGather(shadow_atlas, (first + 1.0) / vec2(textureSize(shadow_atlas, 0)));
+}
+
+// Only what all four texels see is lit: a place behind the straight edge of a surface has one of the four
+// behind it, so that nothing leaks around edges into closed rooms. Shadows are larger by half a texel.
+float shadow_all_lit(shadow_place place)
+{
+    vec2 first;
+    vec4 stored = shadow_gather(place, first);
+    bool lit = all(lessThanEqual(stored, vec4(place.depth)));
+    return lit || !place.inside ? 1.0 : 0.0;
+}
+
+float shadow_visibility_sun(uint light, vec3 p)
+{
+    shadow_light l = shadows[light];
+    return shadow_all_lit(shadow_place_sun(l, shadow_frame(l, p)));
+}
+
+float shadow_visibility_lamp(uint light, vec3 p)
+{
+    shadow_light l = shadows[light];
+    vec3 q = shadow_frame(l, p);
+    uint face = l.kind == TYN_SHADOW_CUBE ? shadow_face(q) : 0u;
+    q = l.kind == TYN_SHADOW_CUBE ? shadow_on_face(face, q) : q;
+    return shadow_all_lit(shadow_place_lamp(l, face, q));
+}
+
+// 1 where the light (an index of shadow_args.h) sees the point `p` of the medium (M), else 0.
+float shadow_visibility(uint light, vec3 p)
+{
+    return light < TYN_SHADOW_SUNS ? shadow_visibility_sun(light, p)
+                                   : shadow_visibility_lamp(light, p);
+}
+
+// The same for a point of a surface with the normal `n` (M, either side), blended between texels. Depths
+// that do not change with u and v except linearly (parallel maps as they are, perspective ones because
+// they are reciprocal) are those of the surface's own plane at the four texels: so it does not shadow
+// itself, whatever its slope, and what is in front of it by more than a tenth of a texel does.
+float shadow_visibility_surface(uint light, vec3 p, vec3 n)
+{
+    shadow_light l = shadows[light];
+    vec3 q = shadow_frame(l, p), m = shadow_frame_direction(l, n);
+    shadow_place place;
+    vec2 slope; // of depth by u and v
+    if (light < TYN_SHADOW_SUNS) {
+        place = shadow_place_sun(l, q);
+        // Rows are orthogonal but not of unit length: normals divide by its square.
+        m /= vec3(dot(l.rows[0].xyz, l.rows[0].xyz), dot(l.rows[1].xyz, l.rows[1].xyz),
+                  dot(l.rows[2].xyz, l.rows[2].xyz)) + 1e-30;
+        slope = -m.xy / (abs(m.z) > 1e-20 ? m.z : 1e-20);
+    } else {
+        uint face = l.kind == TYN_SHADOW_CUBE ? shadow_face(q) : 0u;
+        if (l.kind == TYN_SHADOW_CUBE) {
+            q = shadow_on_face(face, q);
+            m = shadow_on_face(face, m);
+        }
+        place = shadow_place_lamp(l, face, q);
+        // 1 / z = (m.x u / scale + m.y v / scale + m.z) / dot(m, q)
+        float height = dot(m, q);
+        slope = l.near * m.xy / (l.scale * (abs(height) > 1e-20 ? height : 1e-20));
+    }
+    if (!place.inside) {
+        return 1.0;
+    }
+    slope *= 2.0 / l.texels; // by texels
+    float steepest = 0.25 * place.depth + SHADOW_EPSILON; // edge-on, where little light arrives
+    slope = clamp(slope, vec2(-steepest), vec2(steepest));
+    vec2 first;
+    vec4 stored = shadow_gather(place, first);
+    vec2 w = place.texel - 0.5 - first; // of the texel to the right and below
+    float slack = 0.1 * (abs(slope.x) + abs(slope.y)) + SHADOW_EPSILON * (1.0 + place.depth);
+    vec4 x = vec4(0.0, 1.0, 1.0, 0.0) - w.x, y = vec4(1.0, 1.0, 0.0, 0.0) - w.y;
+    vec4 own = max(place.depth + slope.x * x + slope.y * y, 0.0) + slack;
+    vec4 lit = vec4(lessThanEqual(stored, own));
+    vec4 weights = vec4((1.0 - w.x) * w.y, w.x * w.y, w.x * (1.0 - w.y), (1.0 - w.x) * (1.0 - w.y));
+    return dot(lit, weights);
+}
+
+#endif

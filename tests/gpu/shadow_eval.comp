@@ -1,0 +1,26 @@
+// shadow_eval.comp -- visibility of lights at given points.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define SHADOW_ATLAS 0
+#define SHADOW_LIGHTS 1
+#include "shadow.glsl"
+
+layout(local_size_x = 64) in;
+struct point {
+    vec3 p;
+    uint light;
+    vec3 normal; // 0: a point of the medium
+};
+layout(set = 0, binding = 2, scalar) readonly buffer points_buffer { point points[]; };
+layout(set = 0, binding = 3, scalar) writeonly buffer results_buffer { float results[]; };
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i < points.length()) {
+        point q = points[i];
+        results[i] = q.normal == vec3(0.0) ? shadow_visibility(q.light, q.p)
+                                           : shadow_visibility_surface(q.light, q.p, q.normal);
+    }
+}
