@@ -15,7 +15,20 @@ struct lattice_stencil {
 
 lattice_stencil lattice_stencil_of(vec4 lo, vec4 hi)
 {
-    return lattice_stencil(lo.xyz, hi.xyz, lo.w, hi.w);
+    return lattice_stencil(lo.xyz, hi.xyz, lo.w, abs(hi.w));
+}
+
+// Walls may part the eight cells that a coarse one is made of. It stands for those of the largest part
+// only; the others, whose sum of conductances is stored with a minus, give it nothing and get nothing from it.
+bool lattice_orphan(vec4 hi)
+{
+    return hi.w < 0.0;
+}
+
+// Is no wall in this cell's faces?
+bool lattice_open(vec4 lo, vec4 hi)
+{
+    return all(greaterThan(lo.xyz, vec3(0.0))) && all(greaterThan(hi.xyz, vec3(0.0)));
 }
 
 vec4 lattice_stencil_lo(lattice_stencil k)

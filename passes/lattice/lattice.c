@@ -29,6 +29,7 @@ enum {
     PORT_CHANGE = PORT_RESULT + 3, // and two more
     PORT_PARTIALS = PORT_CHANGE + 3,
     PORT_WEIGHTS,
+    PORT_ARRIVED,
     NUM_PORTS,
 };
 
@@ -41,6 +42,10 @@ static const tyn_port ports[NUM_PORTS] = {
     [LATTICE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
                                   "struct env_block: its mean without suns enters at the box"},
     [LATTICE_PORT_GUESS] = {"guess", TYN_IN, TYN_BUFFER, 0, true, "moments to start from"},
+    [LATTICE_PORT_WALL_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
+    [LATTICE_PORT_WALL_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
+    [LATTICE_PORT_WALL_LIGHT] = {"wall_light", TYN_IN, TYN_BUFFER, 0, true,
+                                 "radiance that the walls of a cell send out, W/(m^2 sr)"},
     [LATTICE_PORT_MOMENTS] =
         {"moments", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
          "fluence and net flux of the scattered light, W/m^2; channels stacked "
@@ -48,6 +53,8 @@ static const tyn_port ports[NUM_PORTS] = {
     [LATTICE_PORT_COUNTERS] = {"counters", TYN_OUT, TYN_BUFFER, 0, false, "struct counters_block"},
     [LATTICE_PORT_LEAKS] = {"leaks", TYN_OUT, TYN_BUFFER, 0, false,
                             "net power through the box of each line of the last sweep, W"},
+    [LATTICE_PORT_WALL_POWER] = {"wall_power", TYN_OUT, TYN_BUFFER, 0, false,
+                                 "power that walls absorbed, and that wall_light brings, W"},
     SCRATCH(PORT_STATE, "state", "moments at the start of a sweep"),
     SCRATCH(PORT_EMITTED, "emitted", "scattered radiance per sigma_s', linear in direction"),
     SCRATCH(PORT_MEAN_PSI, "mean_psi", "mean radiance in a cell by direction"),
@@ -64,6 +71,7 @@ static const tyn_port ports[NUM_PORTS] = {
     SCRATCH(PORT_CHANGE + 2, "change_2", "what a sweep changed"),
     SCRATCH(PORT_PARTIALS, "partials", "dot products by workgroup"),
     SCRATCH(PORT_WEIGHTS, "weights", "shares of earlier sweeps"),
+    SCRATCH(PORT_ARRIVED, "arrived", "radiance that arrives at walls by direction"),
 };
 
 // ---- kernels ------------------------------------------------------------------------------------
@@ -93,6 +101,8 @@ static const tyn_binding stencil_bindings[] = {
     {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
     {PORT_STENCIL_LO, TYN_USE_STORAGE_WRITE},
     {PORT_STENCIL_HI, TYN_USE_STORAGE_WRITE},
+    {LATTICE_PORT_WALL_LINKS, TYN_USE_STORAGE_READ},
+    {LATTICE_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
 };
 static const tyn_binding stencil_coarse_bindings[] = {
     {PORT_STENCIL_LO, TYN_USE_STORAGE_RW},
@@ -101,12 +111,21 @@ static const tyn_binding stencil_coarse_bindings[] = {
 static const tyn_binding sweep_bindings[] = {
     {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM}, {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
     {PORT_EMITTED, TYN_USE_STORAGE_READ},        {PORT_MEAN_PSI, TYN_USE_STORAGE_WRITE},
-    {LATTICE_PORT_LEAKS, TYN_USE_STORAGE_WRITE},
+    {LATTICE_PORT_LEAKS, TYN_USE_STORAGE_WRITE}, {PORT_STATE, TYN_USE_STORAGE_READ},
+    {PORT_ARRIVED, TYN_USE_STORAGE_WRITE},       {LATTICE_PORT_WALL_LINKS, TYN_USE_STORAGE_READ},
 };
 static const tyn_binding collect_bindings[] = {
-    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED}, {PORT_MEAN_PSI, TYN_USE_STORAGE_READ},
-    {PORT_STATE, TYN_USE_STORAGE_READ},    {PORT_SWEPT, TYN_USE_STORAGE_WRITE},
-    {PORT_RHS, TYN_USE_STORAGE_WRITE},     {PORT_CORRECTION, TYN_USE_STORAGE_WRITE},
+    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
+    {PORT_MEAN_PSI, TYN_USE_STORAGE_READ},
+    {PORT_STATE, TYN_USE_STORAGE_READ},
+    {PORT_SWEPT, TYN_USE_STORAGE_WRITE},
+    {PORT_RHS, TYN_USE_STORAGE_WRITE},
+    {PORT_CORRECTION, TYN_USE_STORAGE_WRITE},
+    {PORT_ARRIVED, TYN_USE_STORAGE_READ},
+    {LATTICE_PORT_WALL_LIGHT, TYN_USE_STORAGE_READ},
+    {LATTICE_PORT_WALL_POWER, TYN_USE_STORAGE_WRITE},
+    {LATTICE_PORT_WALL_LINKS, TYN_USE_STORAGE_READ},
+    {LATTICE_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
 };
 static const tyn_binding relax_bindings[] = {
     {PORT_STENCIL_LO, TYN_USE_STORAGE_READ},
@@ -122,6 +141,8 @@ static const tyn_binding restrict_bindings[] = {
 };
 static const tyn_binding interpolate_bindings[] = {
     {PORT_CORRECTION, TYN_USE_STORAGE_RW},
+    {PORT_STENCIL_LO, TYN_USE_STORAGE_READ},
+    {PORT_STENCIL_HI, TYN_USE_STORAGE_READ},
 };
 static const tyn_binding coarse_bindings[] = {
     {PORT_STENCIL_LO, TYN_USE_STORAGE_READ},
@@ -130,10 +151,15 @@ static const tyn_binding coarse_bindings[] = {
     {PORT_CORRECTION, TYN_USE_STORAGE_RW},
 };
 static const tyn_binding residual_bindings[] = {
-    {PORT_STATE, TYN_USE_STORAGE_READ},      {PORT_SWEPT, TYN_USE_STORAGE_READ},
-    {PORT_CORRECTION, TYN_USE_STORAGE_READ}, {PORT_CHANGE + 1, TYN_USE_STORAGE_READ},
-    {PORT_CHANGE + 2, TYN_USE_STORAGE_READ}, {PORT_RESULT, TYN_USE_STORAGE_WRITE},
-    {PORT_CHANGE, TYN_USE_STORAGE_WRITE},    {PORT_PARTIALS, TYN_USE_STORAGE_WRITE},
+    {PORT_STATE, TYN_USE_STORAGE_READ},
+    {PORT_SWEPT, TYN_USE_STORAGE_READ},
+    {PORT_CORRECTION, TYN_USE_STORAGE_READ},
+    {PORT_CHANGE + 1, TYN_USE_STORAGE_READ},
+    {PORT_CHANGE + 2, TYN_USE_STORAGE_READ},
+    {PORT_RESULT, TYN_USE_STORAGE_WRITE},
+    {PORT_CHANGE, TYN_USE_STORAGE_WRITE},
+    {PORT_PARTIALS, TYN_USE_STORAGE_WRITE},
+    {LATTICE_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
 };
 static const tyn_binding weights_bindings[] = {
     {PORT_PARTIALS, TYN_USE_STORAGE_READ},
@@ -154,18 +180,18 @@ static const tyn_binding mix_bindings[] = {
     }
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_START] = KERNEL(start, lattice_args, 0, 8, 4, 2),
-    [KERNEL_STENCIL] = KERNEL(stencil, lattice_level_args, 0, 8, 4, 2),
-    [KERNEL_STENCIL_COARSE] = KERNEL(stencil_coarse, lattice_level_args, 0, 4, 4, 4),
-    [KERNEL_SWEEP] = KERNEL(sweep, lattice_args, 0, LATTICE_SWEEP_GROUP, 1, 1),
-    [KERNEL_COLLECT] = KERNEL(collect, lattice_args, 0, 8, 4, 2),
+    [KERNEL_START] = KERNEL(start, lattice_args, 1, 8, 4, 2),
+    [KERNEL_STENCIL] = KERNEL(stencil, lattice_level_args, 1, 8, 4, 2),
+    [KERNEL_STENCIL_COARSE] = KERNEL(stencil_coarse, lattice_level_args, 1, 4, 4, 4),
+    [KERNEL_SWEEP] = KERNEL(sweep, lattice_args, 1, LATTICE_SWEEP_GROUP, 1, 1),
+    [KERNEL_COLLECT] = KERNEL(collect, lattice_args, 2, 8, 4, 2),
     [KERNEL_RELAX] = KERNEL(relax, lattice_level_args, 0, 8, 4, 2),
     [KERNEL_RESTRICT] = KERNEL(restrict, lattice_level_args, 0, 4, 4, 4),
-    [KERNEL_INTERPOLATE] = KERNEL(interpolate, lattice_level_args, 0, 8, 4, 2),
-    [KERNEL_COARSE] = KERNEL(coarse, lattice_level_args, 0, LATTICE_COARSE_GROUP, 1, 1),
-    [KERNEL_RESIDUAL] = KERNEL(residual, lattice_args, 0, LATTICE_GROUP, 1, 1),
+    [KERNEL_INTERPOLATE] = KERNEL(interpolate, lattice_level_args, 1, 8, 4, 2),
+    [KERNEL_COARSE] = KERNEL(coarse, lattice_level_args, 1, LATTICE_COARSE_GROUP, 1, 1),
+    [KERNEL_RESIDUAL] = KERNEL(residual, lattice_args, 1, LATTICE_GROUP, 1, 1),
     [KERNEL_WEIGHTS] = KERNEL(weights, lattice_args, 0, LATTICE_GROUP, 1, 1),
-    [KERNEL_MIX] = KERNEL(mix, lattice_args, 1, 8, 4, 2),
+    [KERNEL_MIX] = KERNEL(mix, lattice_args, 2, 8, 4, 2),
 };
 
 // ---- levels of the diffusion grid ---------------------------------------------------------------
@@ -206,6 +232,12 @@ static uint32_t lines_of(tyn_extent d)
     return yz > xz ? (yz > xy ? yz : xy) : (xz > xy ? xz : xy);
 }
 
+// Vectors of the state of a channel: of the cells, and four cells' walls in one.
+static uint32_t num_elements(tyn_extent dims, bool walls)
+{
+    return num_cells(dims) + (walls ? (num_cells(dims) + 3) / 4 : 0);
+}
+
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_lattice_params *p = params;
@@ -220,24 +252,34 @@ static tyn_result declare(tyn_builder *b, const void *params)
                       cells.x, cells.y, cells.z, texels.x, texels.y, texels.z);
         return TYN_ERR_PARAMS;
     }
+    const bool walls = tyn_build_has(b, LATTICE_PORT_WALL_LINKS);
+    if (walls != tyn_build_has(b, LATTICE_PORT_WALL_CELLS)) {
+        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                      "pass 'lattice': 'wall_links' and 'wall_cells' must be connected both or "
+                      "neither");
+        return TYN_ERR_PARAMS;
+    }
     const uint64_t scalar = sizeof(float) * channels, n = num_cells(dims);
+    const uint64_t elements = num_elements(dims, walls);
     const uint64_t all_levels = plan_levels(dims).cells;
-    uint64_t groups = (n + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
+    uint64_t groups = (elements + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
     tyn_build_image(b, LATTICE_PORT_MOMENTS, texels, 1);
-    tyn_build_buffer(b, PORT_STATE, 4 * scalar * n);
+    tyn_build_buffer(b, PORT_STATE, 4 * scalar * elements);
     tyn_build_buffer(b, PORT_EMITTED, 4 * scalar * n);
     tyn_build_buffer(b, PORT_MEAN_PSI, LATTICE_DIRECTIONS * scalar * n);
-    tyn_build_buffer(b, PORT_SWEPT, 4 * scalar * n);
+    tyn_build_buffer(b, PORT_SWEPT, 4 * scalar * elements);
     tyn_build_buffer(b, PORT_STENCIL_LO, 4 * scalar * all_levels);
     tyn_build_buffer(b, PORT_STENCIL_HI, 4 * scalar * all_levels);
     tyn_build_buffer(b, PORT_RHS, scalar * all_levels);
     tyn_build_buffer(b, PORT_CORRECTION, scalar * all_levels);
     for (uint8_t i = 0; i < 3; i++) {
-        tyn_build_buffer(b, PORT_RESULT + i, 4 * scalar * n);
-        tyn_build_buffer(b, PORT_CHANGE + i, 4 * scalar * n);
+        tyn_build_buffer(b, PORT_RESULT + i, 4 * scalar * elements);
+        tyn_build_buffer(b, PORT_CHANGE + i, 4 * scalar * elements);
     }
     tyn_build_buffer(b, PORT_PARTIALS, LATTICE_NUM_DOTS * scalar * groups);
     tyn_build_buffer(b, PORT_WEIGHTS, 2 * scalar);
+    tyn_build_buffer(b, PORT_ARRIVED, walls ? LATTICE_DIRECTIONS * scalar * n : scalar);
+    tyn_build_buffer(b, LATTICE_PORT_WALL_POWER, walls ? 2 * scalar * n : scalar);
     tyn_build_buffer(b, LATTICE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, LATTICE_PORT_LEAKS,
                      sizeof(float) * LATTICE_DIRECTIONS * lines_of(dims) * channels);
@@ -251,16 +293,19 @@ typedef struct solve { // what recording needs to know
     const tyn_lattice_params *params;
     levels levels;
     tyn_extent texels; // of the lattice with its channels
+    uint32_t walls[2]; // there are walls; they shine
     struct lattice_args args;
 } solve;
 
 static void on_cells(const solve *s, uint32_t kernel)
 {
-    tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = kernel, .cells = s->texels, .args = &s->args});
+    tyn_rec_dispatch(
+        s->r,
+        &(tyn_dispatch){.kernel = kernel, .cells = s->texels, .args = &s->args, .spec = s->walls});
 }
 
-static void on_level(const solve *s, uint32_t kernel, uint32_t level, tyn_extent threads,
-                     uint32_t colour)
+static void on_level_as(const solve *s, uint32_t kernel, uint32_t level, tyn_extent threads,
+                        uint32_t colour, uint32_t spec)
 {
     const float *extent = s->params->shape.extent;
     tyn_extent dims = s->levels.size[0];
@@ -274,7 +319,14 @@ static void on_level(const solve *s, uint32_t kernel, uint32_t level, tyn_extent
         .dx = s->args.dx,
         .least_transport = 0.3f / fmaxf(extent[0], fmaxf(extent[1], extent[2])),
     };
-    tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = kernel, .cells = threads, .args = &args});
+    tyn_rec_dispatch(
+        s->r, &(tyn_dispatch){.kernel = kernel, .cells = threads, .args = &args, .spec = &spec});
+}
+
+static void on_level(const solve *s, uint32_t kernel, uint32_t level, tyn_extent threads,
+                     uint32_t colour)
+{
+    on_level_as(s, kernel, level, threads, colour, s->walls[0]);
 }
 
 // Threads of a kernel that visits every cell of a level, or every second one along x.
@@ -318,23 +370,24 @@ static void mix(solve *s, uint32_t index)
         change[age] = (uint8_t)(PORT_CHANGE + (index + 3 - age) % 3);
     }
     s->args.history = !p->anderson ? 0 : index < 2 ? index : 2;
-    uint32_t groups =
-        (num_cells(s->levels.size[0]) + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
-    tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = KERNEL_RESIDUAL,
-                                           .cells = {groups * LATTICE_GROUP, p->shape.channels, 1},
-                                           .args = &s->args,
-                                           .ports = (const uint8_t[]){
-                                               PORT_STATE, PORT_SWEPT, PORT_CORRECTION, change[1],
-                                               change[2], result[0], change[0], PORT_PARTIALS}});
+    uint32_t groups = (s->args.elements + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
+    tyn_rec_dispatch(
+        s->r, &(tyn_dispatch){.kernel = KERNEL_RESIDUAL,
+                              .cells = {groups * LATTICE_GROUP, p->shape.channels, 1},
+                              .args = &s->args,
+                              .spec = s->walls,
+                              .ports = (const uint8_t[]){PORT_STATE, PORT_SWEPT, PORT_CORRECTION,
+                                                         change[1], change[2], result[0], change[0],
+                                                         PORT_PARTIALS, LATTICE_PORT_WALL_CELLS}});
     tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = KERNEL_WEIGHTS,
                                            .cells = {LATTICE_GROUP * p->shape.channels, 1, 1},
                                            .args = &s->args});
-    const uint32_t last = index + 1 == (uint32_t)p->sweeps;
+    const uint32_t spec[2] = {index + 1 == (uint32_t)p->sweeps, s->walls[0]};
     tyn_rec_dispatch(
         s->r, &(tyn_dispatch){.kernel = KERNEL_MIX,
                               .cells = s->texels,
                               .args = &s->args,
-                              .spec = &last,
+                              .spec = spec,
                               .ports = (const uint8_t[]){
                                   LATTICE_PORT_CELLS, LATTICE_PORT_SOURCE, result[0], result[1],
                                   result[2], PORT_WEIGHTS, PORT_STATE, PORT_EMITTED,
@@ -359,19 +412,27 @@ static void record(tyn_recorder *r, const void *params)
                  .warm = tyn_rec_has(r, LATTICE_PORT_GUESS)},
     };
     s.args.stride = s.levels.cells;
+    s.walls[0] = tyn_rec_has(r, LATTICE_PORT_WALL_LINKS);
+    s.walls[1] = tyn_rec_has(r, LATTICE_PORT_WALL_LIGHT);
+    s.args.elements = num_elements(dims, s.walls[0]);
+    s.args.corrected = p->cycles > 0;
     tyn_rec_fill(r, LATTICE_PORT_COUNTERS, 0);
     on_cells(&s, KERNEL_START);
     if (p->cycles > 0) {
         on_level(&s, KERNEL_STENCIL, 0, cells_of(&s, 0), 0);
         for (uint32_t l = 1; l < s.levels.num; l++) {
-            on_level(&s, KERNEL_STENCIL_COARSE, l, cells_of(&s, l), 0);
+            if (s.walls[0]) { // first the fine cells that the coarse ones do not stand for
+                on_level_as(&s, KERNEL_STENCIL_COARSE, l, cells_of(&s, l), 0, 1);
+            }
+            on_level_as(&s, KERNEL_STENCIL_COARSE, l, cells_of(&s, l), 0, 2 * s.walls[0]);
         }
     }
     for (uint32_t i = 0; i < (uint32_t)p->sweeps; i++) {
         tyn_rec_dispatch(
             r, &(tyn_dispatch){.kernel = KERNEL_SWEEP,
                                .cells = {s.args.lines, LATTICE_DIRECTIONS, p->shape.channels},
-                               .args = &s.args});
+                               .args = &s.args,
+                               .spec = s.walls});
         on_cells(&s, KERNEL_COLLECT);
         for (int32_t c = 0; c < p->cycles; c++) {
             v_cycle(&s);

@@ -113,10 +113,16 @@ enum {
     LATTICE_PORT_SOURCE,      // IN optional 3D, of lattice_ordinates or lattice_source
     LATTICE_PORT_ENVIRONMENT, // IN optional buffer struct env_block: `sky` enters from all sides
     LATTICE_PORT_GUESS,       // IN optional buffer, of lattice_recall: where the solve starts
+    LATTICE_PORT_WALL_LINKS,  // IN optional buffer, of walls: light stops at them and is reflected
+    LATTICE_PORT_WALL_CELLS,  // IN optional buffer struct wall_cell[], of walls; both or neither
+    LATTICE_PORT_WALL_LIGHT, // IN optional buffer vec3[cell]: radiance that a cell's walls send out beside
+                             // what they reflect of the lattice's light, RGB, W/(m^2 sr)
     LATTICE_PORT_MOMENTS, // OUT 3D RGBA32F, stacked: fluence phi and net flux (x, y, z) of the light that
                           // has scattered, came from the environment or was emitted, W/m^2
     LATTICE_PORT_COUNTERS, // OUT buffer struct counters_block
     LATTICE_PORT_LEAKS,    // OUT buffer: what left the box in the last sweep, for balance
+    LATTICE_PORT_WALL_POWER, // OUT buffer vec2[channel][cell], with walls: power that the walls of a cell
+                             // absorbed in the last sweep, and that `wall_light` brings, W
     LATTICE_PORT_FIRST_SCRATCH,
 };
 extern const tyn_pass_desc tyn_pass_lattice;

@@ -31,6 +31,8 @@ layout(binding = 3, scalar) buffer correction_buffer
     float correction_out[];
 };
 
+layout(constant_id = 0) const uint walls = 0;
+
 // Each level has 1/8 of the cells of the one before; 1/4 in a box one cell thin; and 1/2 in one
 // that is thin along two axes, which has at most 64 cells to begin with. So 3/8 more hold all
 // levels.
@@ -60,6 +62,11 @@ lattice_stencil stencil_at(ivec3 c)
 {
     uint i = channel + lattice_index(at, c);
     return lattice_stencil_of(stencil_lo[i], stencil_hi[i]);
+}
+
+bool is_orphan(ivec3 c)
+{
+    return walls == 1 && lattice_orphan(stencil_hi[channel + lattice_index(at, c)]);
 }
 
 // Right hand side plus what flows in from the neighbours.
@@ -106,7 +113,7 @@ void restrict_to_next()
         float sum = 0.0;
         for (int child = 0; child < 8; child++) {
             ivec3 f = 2 * c + ivec3(child & 1, child >> 1 & 1, child >> 2);
-            if (all(lessThan(f, at.size))) {
+            if (all(lessThan(f, at.size)) && !is_orphan(f)) {
                 lattice_stencil k = stencil_at(f);
                 sum += inflow(f, k) - k.diagonal * correction[index_of(f)];
             }
@@ -124,9 +131,20 @@ void interpolate_from_next()
     uint n = lattice_num_cells(at.size);
     for (uint i = gl_LocalInvocationIndex; i < n; i += LATTICE_COARSE_GROUP) {
         lattice_interpolation from = lattice_interpolation_of(cell_of(i, at.size), next.size);
+        bool blended = true;
+        if (walls == 1) {
+            if (is_orphan(cell_of(i, at.size))) {
+                continue;
+            }
+            for (uint corner = 0; corner < 8; corner++) {
+                uint k = channel + lattice_index(next, lattice_corner(from, corner));
+                blended = blended && lattice_open(stencil_lo[k], stencil_hi[k]);
+            }
+        }
         float sum = 0.0;
         for (uint corner = 0; corner < 8; corner++) {
-            uint q = lattice_index(next, lattice_corner(from, corner)) - first.first;
+            ivec3 c = blended ? lattice_corner(from, corner) : from.near;
+            uint q = lattice_index(next, c) - first.first;
             sum += lattice_corner_weight(corner) * correction[q];
         }
         correction[to + i] += sum;

@@ -34,6 +34,54 @@ layout(binding = 5, scalar) writeonly buffer correction_buffer
     float correction[];
 };
 
+layout(binding = 6, scalar) readonly buffer arrived_buffer
+{
+    float arrived[]; // as mean_psi, at the ends of cut links
+};
+layout(binding = 7, scalar) readonly buffer light_buffer
+{
+    vec3 wall_light[];
+};
+layout(binding = 8, scalar) writeonly buffer power_buffer
+{
+    vec2 wall_power[]; // absorbed, sent out of wall_light; W
+};
+#define LATTICE_WALL_LINKS 9
+#define LATTICE_WALL_CELLS 10
+#include "lattice_wall_state.glsl"
+layout(constant_id = 0) const uint walls = 0;
+layout(constant_id = 1) const uint lit_walls = 0; // there is wall_light
+
+// Light that arrives at a cell's walls comes back with their mean albedo as one radiance on all lines that
+// start there: what arrives is the sum of 4 pi w psi over the tubes' cross-sections, dx^3 / L. Returns
+// the part of the correction's right hand side: what the change of that radiance would still set off.
+float reflect_light(uint i, uint ch, uint per_direction)
+{
+    uint cell = i - ch * lattice_all_cells(), vector = lattice_wall_vector(ch, cell);
+    uint cut = wall_links[cell];
+    wall_cell wall = wall_cells[cell];
+    float sum = 0.0;
+    for (uint d = 0; d < LATTICE_DIRECTIONS; d++) {
+        if ((cut >> d & 1u) != 0u) {
+            float share = lattice_weight(d) * (d < 6u ? 1.0 : inversesqrt(3.0));
+            sum += share * arrived[d * per_direction + i];
+        }
+    }
+    float albedo = wall.albedo[ch], per_radiance = LATTICE_4PI * args.dx * args.dx, sent = 0.0;
+    if (lit_walls == 1) {
+        sent = lattice_channel(wall_light[cell], args.channels, ch, args.tint);
+    }
+    float radiance = wall.area > 0.0 ? albedo * sum / wall.area + sent : 0.0;
+    swept[vector][cell % 4u] = radiance;
+    for (uint k = cell % 4u + 1u; cell + 1u == lattice_all_cells() && k < 4u; k++) {
+        swept[vector][k] = 0.0;
+    }
+    wall_power[i] = per_radiance * vec2((1.0 - albedo) * sum, sent * wall.area);
+    // Marshak's condition for a wall that reflects and shines.
+    float change = radiance - state[vector][cell % 4u];
+    return per_radiance * wall.area * change * 2.0 / (1.0 + albedo);
+}
+
 void main()
 {
     uvec3 texel = gl_GlobalInvocationID;
@@ -62,6 +110,10 @@ void main()
     swept[i] = m;
     float sigma_s = texelFetch(cells, ivec3(texel), 0).x;
     uint l = ch * args.stride + i - ch * plane * args.dims.z; // on level 0
-    rhs[l] = args.dx * args.dx * args.dx * sigma_s * (m.x - state[i].x);
+    float change = args.dx * args.dx * args.dx * sigma_s * (m.x - state[i].x);
+    if (walls == 1) {
+        change += reflect_light(i, ch, per_direction);
+    }
+    rhs[l] = change;
     correction[l] = 0.0;
 }

@@ -16,6 +16,16 @@ layout(binding = 0, scalar) buffer correction_buffer
     float correction[];
 };
 
+layout(binding = 1, scalar) readonly buffer lo_buffer
+{
+    vec4 stencil_lo[];
+};
+layout(binding = 2, scalar) readonly buffer hi_buffer
+{
+    vec4 stencil_hi[];
+};
+layout(constant_id = 0) const uint walls = 0;
+
 void main()
 {
     lattice_level fine = lattice_level_of(ivec3(args.dims), args.level);
@@ -28,9 +38,20 @@ void main()
     }
     uint channel = uint(ch) * args.stride;
     lattice_interpolation from = lattice_interpolation_of(c, coarse.size);
+    bool blended = true;
+    if (walls == 1) {
+        if (lattice_orphan(stencil_hi[channel + lattice_index(fine, c)])) {
+            return;
+        }
+        // Not through walls: with one about, from the near cell alone.
+        for (uint corner = 0; corner < 8; corner++) {
+            uint i = channel + lattice_index(coarse, lattice_corner(from, corner));
+            blended = blended && lattice_open(stencil_lo[i], stencil_hi[i]);
+        }
+    }
     float sum = 0.0;
     for (uint corner = 0; corner < 8; corner++) {
-        uint i = channel + lattice_index(coarse, lattice_corner(from, corner));
+        uint i = channel + lattice_index(coarse, blended ? lattice_corner(from, corner) : from.near);
         sum += lattice_corner_weight(corner) * correction[i];
     }
     correction[channel + lattice_index(fine, c)] += sum;

@@ -44,6 +44,22 @@ layout(binding = 8, scalar) buffer counter_buffer
 layout(binding = 9, rgba32f) uniform writeonly image3D moments;
 
 layout(constant_id = 0) const uint last = 0; // 1: of the last sweep
+layout(constant_id = 1) const uint walls = 0;
+#include "lattice_wall_state.glsl"
+
+// The next radiance of the walls of a cell.
+void mix_walls(uint ch, uint cell)
+{
+    uint v = lattice_wall_vector(ch, cell), k = cell % 4u;
+    float newest = result[v][k], radiance = newest;
+    if (args.history >= 1) {
+        radiance += weights[ch].x * (result_1[v][k] - newest);
+    }
+    if (args.history >= 2) {
+        radiance += weights[ch].y * (result_2[v][k] - newest);
+    }
+    state[v][k] = isnan(radiance) || isinf(radiance) ? 0.0 : max(radiance, 0.0);
+}
 
 void main()
 {
@@ -63,6 +79,9 @@ void main()
     if (any(isnan(m)) || any(isinf(m))) {
         m = vec4(0.0);
         atomicAdd(counters.non_finite, 1);
+    }
+    if (walls == 1) {
+        mix_walls(ch, i - ch * lattice_all_cells());
     }
     if (last == 1) {
         imageStore(moments, ivec3(texel), m);

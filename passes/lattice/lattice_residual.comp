@@ -48,6 +48,10 @@ layout(binding = 7, scalar) writeonly buffer partial_buffer
     float partials[]; // [channel][workgroup][dot]
 };
 
+#define LATTICE_WALL_CELLS 8
+#include "lattice_wall_state.glsl"
+layout(constant_id = 0) const uint walls = 0;
+
 shared float sums[LATTICE_NUM_DOTS][LATTICE_GROUP];
 
 float norm_dot(vec4 a, vec4 b)
@@ -55,30 +59,54 @@ float norm_dot(vec4 a, vec4 b)
     return a.x * b.x + 3.0 * dot(a.yzw, b.yzw);
 }
 
+// Radiance counts as the fluence it would give.
+float norm_dot_walls(vec4 a, vec4 b)
+{
+    return 157.9137 * dot(a, b);
+}
+
+// The correction e of the fluence means e / 2 = (1 + albedo) J + pi change for the flux J it has towards
+// a wall, of which the wall sends back its share.
+vec4 corrected_walls(uint quad, uint ch, vec4 radiance, vec4 change)
+{
+    for (uint k = 0u; k < 4u; k++) {
+        uint cell = 4u * quad + k;
+        if (cell < lattice_all_cells() && wall_cells[cell].area > 0.0) {
+            float albedo = wall_cells[cell].albedo[ch];
+            float e = correction[ch * args.stride + cell];
+            radiance[k] += albedo * (e * 0.15915494 - change[k]) / (1.0 + albedo);
+        }
+    }
+    return radiance;
+}
+
 void main()
 {
     uint me = gl_LocalInvocationIndex, ch = gl_GlobalInvocationID.y;
     uint cells = args.dims.x * args.dims.y * args.dims.z;
     uint begin = gl_WorkGroupID.x * LATTICE_GROUP_CELLS;
-    uint end = min(begin + LATTICE_GROUP_CELLS, cells);
+    uint end = min(begin + LATTICE_GROUP_CELLS, args.elements);
     float dots[LATTICE_NUM_DOTS] = float[](0.0, 0.0, 0.0, 0.0, 0.0);
     for (uint c = begin + me; c < end; c += LATTICE_GROUP) {
-        uint i = ch * cells + c;
+        bool wall = walls == 1 && c >= cells;
+        uint i = wall ? args.channels * cells + ch * (args.elements - cells) + c - cells : ch * cells + c;
         vec4 m = swept[i];
-        m.x += correction[ch * args.stride + c];
+        if (!wall) {
+            m.x += correction[ch * args.stride + c];
+        } else if (args.corrected == 1) {
+            m = corrected_walls(c - cells, ch, m, m - state[i]);
+        }
         vec4 r = m - state[i];
         result[i] = m;
         change[i] = r;
         if (args.history >= 1) {
             vec4 d1 = change_1[i] - r;
-            dots[0] += norm_dot(d1, d1);
-            dots[3] += norm_dot(d1, r);
-            if (args.history >= 2) {
-                vec4 d2 = change_2[i] - r;
-                dots[1] += norm_dot(d2, d2);
-                dots[2] += norm_dot(d1, d2);
-                dots[4] += norm_dot(d2, r);
-            }
+            vec4 d2 = args.history >= 2 ? change_2[i] - r : vec4(0.0);
+            dots[0] += wall ? norm_dot_walls(d1, d1) : norm_dot(d1, d1);
+            dots[3] += wall ? norm_dot_walls(d1, r) : norm_dot(d1, r);
+            dots[1] += wall ? norm_dot_walls(d2, d2) : norm_dot(d2, d2);
+            dots[2] += wall ? norm_dot_walls(d1, d2) : norm_dot(d1, d2);
+            dots[4] += wall ? norm_dot_walls(d2, r) : norm_dot(d2, r);
         }
     }
     for (uint k = 0; k < LATTICE_NUM_DOTS; k++) {

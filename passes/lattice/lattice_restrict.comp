@@ -48,6 +48,9 @@ void main()
         }
         uint i = channel + lattice_index(fine, f);
         lattice_stencil k = lattice_stencil_of(stencil_lo[i], stencil_hi[i]);
+        if (lattice_orphan(stencil_hi[i])) {
+            continue;
+        }
         sum += rhs[i] - k.diagonal * correction[i];
         sum += f.x > 0 ? k.lo.x * correction[i - 1] : 0.0;
         sum += f.x < fine.size.x - 1 ? k.hi.x * correction[i + 1] : 0.0;

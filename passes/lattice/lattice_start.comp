@@ -1,7 +1,8 @@
 // lattice_start.comp -- the first guess: the environment everywhere as if unhindered, no sunlight; or
 // what lattice_recall brought.
 //
-// In a medium that only scatters, inside a uniform environment, the former is already the solution.
+// In a medium that only scatters, inside a uniform environment, the former is already the solution. Among
+// walls it is dark: what no light reaches stays so.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -28,6 +29,8 @@ layout(binding = 5, scalar) readonly buffer guess_buffer
 {
     vec4 guess[];
 };
+layout(constant_id = 0) const uint walls = 0;
+#include "lattice_wall_state.glsl"
 
 void main()
 {
@@ -38,6 +41,13 @@ void main()
     }
     uint i = (texel.z * args.dims.y + texel.y) * args.dims.x + texel.x;
     vec4 m = args.warm == 1 ? guess[i] : lattice_unhindered(args.channels, ch, args.tint);
+    if (walls == 1) {
+        m = args.warm == 1 ? m : vec4(0.0);
+        uint cell = i - ch * lattice_all_cells();
+        for (uint k = cell % 4u; k < (cell + 1u == lattice_all_cells() ? 4u : cell % 4u + 1u); k++) {
+            state[lattice_wall_vector(ch, cell)][k] = 0.0;
+        }
+    }
     state[i] = m;
     vec4 beam = lattice_fetch_source(source, cells, ivec3(texel));
     emitted[i] = lattice_emitted(m + beam, texelFetch(cells, ivec3(texel), 0).z);

@@ -20,6 +20,11 @@ layout(binding = 2, scalar) writeonly buffer hi_buffer
     vec4 stencil_hi[];
 };
 
+layout(constant_id = 0) const uint walls = 0;
+#define LATTICE_WALL_LINKS 3
+#define LATTICE_WALL_CELLS 4
+#include "lattice_wall_state.glsl"
+
 // 1 / (3 sigma_tr), and a second term without which a correction with this coefficient makes the
 // iteration diverge where cells are optically thick (tau' > 3): a sweep itself spreads light by
 // about that much. In vacuum the coefficient is bounded by the size of the box.
@@ -53,7 +58,21 @@ void main()
             }
         }
     }
-    lattice_stencil s = lattice_stencil(k[0], k[1], cell.y * args.dx * args.dx * args.dx, 0.0);
+    float absorption = cell.y * args.dx * args.dx * args.dx;
+    if (walls == 1) {
+        // No flow through cut faces. What the walls absorb: D de/dn = -(e / 2) (1 - albedo) / (1 + albedo),
+        // in series with the half cell.
+        uint id = uint((c.z * dims.y + c.y) * dims.x + c.x), cut = wall_links[id];
+        for (int axis = 0; axis < 3; axis++) {
+            k[0][axis] = (cut >> (2 * axis + 1) & 1u) != 0u ? 0.0 : k[0][axis];
+            k[1][axis] = (cut >> (2 * axis) & 1u) != 0u ? 0.0 : k[1][axis];
+        }
+        float area = 4.0 * wall_cells[id].area * args.dx * args.dx;
+        float albedo = wall_cells[id].albedo[texel.z / dims.z];
+        absorption += area * (1.0 - albedo) / (2.0 * (1.0 + albedo) + (1.0 - albedo) * args.dx / (2.0 * d));
+        absorption += 1e-5 * args.dx * args.dx; // there is a solution also where nothing absorbs
+    }
+    lattice_stencil s = lattice_stencil(k[0], k[1], absorption, 0.0);
     uint i = uint(texel.z / dims.z) * args.stride + uint((c.z * dims.y + c.y) * dims.x + c.x);
     stencil_lo[i] = lattice_stencil_lo(s);
     stencil_hi[i] = lattice_stencil_hi(s);

@@ -23,6 +23,66 @@ layout(binding = 1, scalar) buffer hi_buffer
     vec4 stencil_hi[];
 };
 
+// 0: there are no walls; else two dispatches: 1 finds the orphans among the fine cells, 2 does the rest.
+layout(constant_id = 0) const uint walls = 0;
+
+// Children of coarse cell c that are connected with each other, most of them: bit = child.
+uint largest_part(lattice_level fine, ivec3 c, uint channel)
+{
+    uint part[8];
+    vec3 hi[8];
+    for (int child = 0; child < 8; child++) {
+        ivec3 f = 2 * c + ivec3(child & 1, child >> 1 & 1, child >> 2);
+        bool inside = all(lessThan(f, fine.size));
+        part[child] = inside ? 1u << child : 0u;
+        hi[child] = inside ? stencil_hi[channel + lattice_index(fine, f)].xyz : vec3(0.0);
+    }
+    for (int times = 0; times < 7; times++) {
+        for (int child = 0; child < 8; child++) {
+            for (int axis = 0; axis < 3; axis++) {
+                int other = child | 1 << axis;
+                if (other != child && part[other] != 0u && hi[child][axis] > 0.0) {
+                    part[child] |= part[other];
+                    part[other] |= part[child];
+                }
+            }
+        }
+    }
+    uint largest = 0u;
+    for (int child = 0; child < 8; child++) {
+        largest = bitCount(part[child]) > bitCount(largest) ? part[child] : largest;
+    }
+    return largest;
+}
+
+void mark_orphans(lattice_level fine, ivec3 c, uint channel)
+{
+    uint part = largest_part(fine, c, channel);
+    for (int child = 0; child < 8; child++) {
+        ivec3 f = 2 * c + ivec3(child & 1, child >> 1 & 1, child >> 2);
+        if ((part >> child & 1u) == 0u && all(lessThan(f, fine.size))) {
+            uint i = channel + lattice_index(fine, f);
+            stencil_hi[i].w = -abs(stencil_hi[i].w);
+        }
+    }
+}
+
+// Is there a wall between a cell, or what stands for it on the next level, and its neighbour?
+bool parted(lattice_level fine, ivec3 f, int axis, int way, uint channel)
+{
+    if (walls == 0) {
+        return false;
+    }
+    f[axis] += way;
+    return lattice_orphan(stencil_hi[channel + lattice_index(fine, f)]);
+}
+
+// In series with the half cell that is to become twice as long; no way out at all through a wall.
+float longer(float area, float conductance)
+{
+    return conductance > 0.0 ? area / (2.0 * (area / conductance) - 2.0) : 0.0;
+}
+
 void main()
 {
     lattice_level coarse = lattice_level_of(ivec3(args.dims), args.level);
@@ -34,6 +94,10 @@ void main()
         return;
     }
     uint channel = uint(ch) * args.stride;
+    if (walls == 1) {
+        mark_orphans(fine, c, channel);
+        return;
+    }
     float edge = args.dx * float(1u << (args.level - 1)), area = edge * edge; // of fine cells
     lattice_stencil k = lattice_stencil(vec3(0.0), vec3(0.0), 0.0, 0.0);
     for (int child = 0; child < 8; child++) {
@@ -43,19 +107,23 @@ void main()
         }
         uint i = channel + lattice_index(fine, f);
         vec4 lo = stencil_lo[i], hi = stencil_hi[i];
+        if (lattice_orphan(hi)) {
+            continue;
+        }
         k.absorption += lo.w;
         for (int axis = 0; axis < 3; axis++) {
             // At the box the half cell becomes twice as long. A coarse cell that reaches beyond the
             // box has its centre on it, so that only the Robin condition is left.
             if (f[axis] == 0) {
-                k.lo[axis] += area / (2.0 * (area / lo[axis]) - 2.0);
-            } else if (f[axis] % 2 == 0) {
+                k.lo[axis] += longer(area, lo[axis]);
+            } else if (f[axis] % 2 == 0 && !parted(fine, f, axis, -1, channel)) {
                 k.lo[axis] += 0.5 * lo[axis];
             }
             if (f[axis] == fine.size[axis] - 1) {
                 bool beyond = f[axis] % 2 == 0;
-                k.hi[axis] += area / (beyond ? 2.0 : 2.0 * (area / hi[axis]) - 2.0);
-            } else if (f[axis] % 2 == 1) {
+                float out_of_box = beyond && hi[axis] > 0.0 ? area / 2.0 : longer(area, hi[axis]);
+                k.hi[axis] += out_of_box;
+            } else if (f[axis] % 2 == 1 && !parted(fine, f, axis, 1, channel)) {
                 k.hi[axis] += 0.5 * hi[axis];
             }
         }

@@ -2,7 +2,8 @@
 //
 // psi stays in a register. Lines of a diagonal have different lengths; a thread that leaves the box
 // at a side goes on at the opposite side with the line that enters there, so every thread makes as
-// many steps as the box has slices, and every cell is met once per direction.
+// many steps as the box has slices, and every cell is met once per direction. At a link that a wall cuts
+// the light has arrived at the wall, and the line goes on with what the wall sends out on its other side.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -28,6 +29,19 @@ layout(binding = 4, scalar) writeonly buffer leak_buffer
 {
     float leaks[]; // per thread: what leaves the box less what enters, W
 };
+
+layout(binding = 5, scalar) readonly buffer state_buffer
+{
+    vec4 state[];
+};
+layout(binding = 6, scalar) writeonly buffer arrived_buffer
+{
+    float arrived[]; // radiance at the end of a cut link: [direction][channel][cell]
+};
+#define LATTICE_WALL_LINKS 7
+#include "lattice_wall_state.glsl"
+#include "walls_links.glsl"
+layout(constant_id = 0) const uint walls = 0;
 
 bvec3 both(bvec3 a, bvec3 b)
 {
@@ -68,15 +82,28 @@ void main()
         float cross_section = args.dx * args.dx * args.dx / length_l; // of the tube around a line
         float boundary = lattice_boundary(args.channels, ch, args.tint);
 
+        uint ahead = 1u << direction, back = 1u << walls_reverse(direction);
+
         float psi = boundary, before = 0.0;
         vec4 e = emitted[at];
         float s = e.x + dot(omega, e.yzw);
         for (int i = 0; i < dims[axis]; i++) {
             bvec3 at_first = both(equal(c, first), moves), at_last = both(equal(c, last), moves);
-            bool enters = any(at_first), leaves = any(at_last);
+            bool enters = any(at_first), leaves = any(at_last), counted = leaves, ends = false;
             if (enters) {
                 psi = boundary;
-                leak -= psi;
+            }
+            leak -= enters ? psi : 0.0;
+            if (walls == 1) {
+                uint id = uint(at - int(ch) * per_channel), cut = wall_links[id];
+                if ((cut & back) != 0u) {
+                    leak += enters ? psi : 0.0;
+                    psi = state[lattice_wall_vector(ch, id)][id % 4u];
+                    enters = true;
+                }
+                ends = (cut & ahead) != 0u;
+                counted = leaves && !ends;
+                leaves = leaves || ends;
             }
             vec4 cell = texelFetch(cells, c + ivec3(0, 0, int(ch) * dims.z), 0);
             // On, or around to the line that enters at the opposite side.
@@ -95,7 +122,10 @@ void main()
             float q = length_l * cell.x, emission = length_l * cell.w;
             mean_psi[at + to_mean] = psi * w.a0 + q * (s * w.a1 + slope * w.b1) + emission * w.a1;
             psi = psi * w.e + q * (s * w.a0 + slope * w.w1) + emission * w.a0;
-            leak += leaves ? psi : 0.0;
+            leak += counted ? psi : 0.0;
+            if (ends) {
+                arrived[at + to_mean] = psi;
+            }
             before = s;
             s = behind;
             at = next;

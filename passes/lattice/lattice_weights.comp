@@ -28,8 +28,7 @@ const float PARALLEL = 1e-5;
 void main()
 {
     uint me = gl_LocalInvocationIndex, ch = gl_WorkGroupID.x;
-    uint cells = args.dims.x * args.dims.y * args.dims.z;
-    uint groups = (cells + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
+    uint groups = (args.elements + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
     for (uint k = 0; k < LATTICE_NUM_DOTS; k++) {
         float sum = 0.0;
         for (uint i = me; i < groups; i += LATTICE_GROUP) {
