@@ -1,164 +1,14 @@
 // walls.c -- which links of the lattice surfaces cut: against brute force, closed, the same from both ends.
 #include "gpu_test.h"
 #include "point_pass.h"
-#include "passes/walls/walls.h"
-#include "surface_args.h"
-#include "walls_args.h"
+#include "wall_mesh.h"
 #include "walls_eval.comp.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-// ---- meshes -------------------------------------------------------------------------------------
-
-typedef struct mesh {
-    double (*tri)[3][3]; // world
-    float (*albedo)[3];  // per triangle
-    int n, capacity;
-} mesh;
-
-static void add_triangle(mesh *m, const double a[3], const double b[3], const double c[3],
-                         float albedo)
-{
-    if (m->n == m->capacity) {
-        m->capacity = m->capacity ? 2 * m->capacity : 64;
-        m->tri = realloc(m->tri, m->capacity * sizeof *m->tri);
-        m->albedo = realloc(m->albedo, m->capacity * sizeof *m->albedo);
-    }
-    memcpy(m->tri[m->n][0], a, 3 * sizeof(double));
-    memcpy(m->tri[m->n][1], b, 3 * sizeof(double));
-    memcpy(m->tri[m->n][2], c, 3 * sizeof(double));
-    for (int i = 0; i < 3; i++) {
-        m->albedo[m->n][i] = albedo;
-    }
-    m->n++;
-}
-
-static void mesh_free(mesh *m)
-{
-    free(m->tri);
-    free(m->albedo);
-    *m = (mesh){0};
-}
-
-// A box of half sizes h around `centre`, turned by `angle` about (1, 1, 0).
-static mesh box_mesh(const double centre[3], const double h[3], double angle)
-{
-    mesh m = {0};
-    double k[3] = {sqrt(0.5), sqrt(0.5), 0}, v[8][3];
-    for (int i = 0; i < 8; i++) {
-        double p[3] = {i & 1 ? h[0] : -h[0], i & 2 ? h[1] : -h[1], i & 4 ? h[2] : -h[2]};
-        double along = p[0] * k[0] + p[1] * k[1] + p[2] * k[2];
-        double x[3] = {k[1] * p[2] - k[2] * p[1], k[2] * p[0] - k[0] * p[2],
-                       k[0] * p[1] - k[1] * p[0]};
-        for (int a = 0; a < 3; a++) {
-            v[i][a] =
-                centre[a] + p[a] * cos(angle) + x[a] * sin(angle) + k[a] * along * (1 - cos(angle));
-        }
-    }
-    static const int faces[6][4] = {{0, 2, 6, 4}, {1, 5, 7, 3}, {0, 4, 5, 1},
-                                    {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 6, 7, 5}};
-    for (int f = 0; f < 6; f++) {
-        // Both diagonals, and both orders of vertices, are met.
-        add_triangle(&m, v[faces[f][0]], v[faces[f][1]], v[faces[f][2]], 0.5f);
-        add_triangle(&m, v[faces[f][3]], v[faces[f][0]], v[faces[f][2]], 0.5f);
-    }
-    return m;
-}
-
-static void split(mesh *m, const double a[3], const double b[3], const double c[3], int depth,
-                  const double centre[3], double radius)
-{
-    if (depth == 0) {
-        double p[3][3];
-        const double *from[3] = {a, b, c};
-        for (int i = 0; i < 3; i++) {
-            double r =
-                sqrt(from[i][0] * from[i][0] + from[i][1] * from[i][1] + from[i][2] * from[i][2]);
-            for (int k = 0; k < 3; k++) {
-                p[i][k] = centre[k] + radius * from[i][k] / r;
-            }
-        }
-        add_triangle(m, p[0], p[1], p[2], 0.25f);
-        return;
-    }
-    double ab[3], bc[3], ca[3];
-    for (int k = 0; k < 3; k++) {
-        ab[k] = (a[k] + b[k]) / 2, bc[k] = (b[k] + c[k]) / 2, ca[k] = (c[k] + a[k]) / 2;
-    }
-    split(m, a, ab, ca, depth - 1, centre, radius);
-    split(m, ab, b, bc, depth - 1, centre, radius);
-    split(m, ca, bc, c, depth - 1, centre, radius);
-    split(m, ab, bc, ca, depth - 1, centre, radius);
-}
-
-static mesh sphere_mesh(const double centre[3], double radius, int depth)
-{
-    mesh m = {0};
-    for (int i = 0; i < 8; i++) {
-        double x[3] = {i & 1 ? 1 : -1, 0, 0}, y[3] = {0, i & 2 ? 1 : -1, 0},
-               z[3] = {0, 0, i & 4 ? 1 : -1};
-        split(&m, x, y, z, depth, centre, radius);
-    }
-    return m;
-}
-
 // ---- running the pass ---------------------------------------------------------------------------
-
-typedef struct grid {
-    int n[3];
-    double extent[3], dx;
-} grid;
-
-static grid grid_of(int nx, int ny, int nz, double dx)
-{
-    return (grid){{nx, ny, nz}, {nx * dx, ny * dx, nz * dx}, dx};
-}
-
-typedef struct refs {
-    tyn_ref links, cells;
-} refs;
-
-// Every triangle has vertices of its own and a material of its own.
-static refs add_walls(gpu_test *t, const grid *g, const mesh *m)
-{
-    struct surface_block block = {.num_triangles = (uint32_t)m->n};
-    for (int a = 0; a < 3; a++) {
-        block.to_world[a][a] = block.from_world[a][a] = 1;
-    }
-    struct surface_vertex *v = calloc((size_t)m->n * 3, sizeof *v);
-    struct surface_triangle *tri = calloc((size_t)m->n, sizeof *tri);
-    struct surface_material *mat = calloc((size_t)m->n, sizeof *mat);
-    for (int i = 0; i < m->n; i++) {
-        for (int k = 0; k < 3; k++) {
-            for (int a = 0; a < 3; a++) {
-                v[3 * i + k].position[a] = (float)m->tri[i][k][a];
-            }
-        }
-        uint32_t u = (uint32_t)i;
-        tri[i] = (struct surface_triangle){3 * u, 3 * u + 1, 3 * u + 2, u};
-        memcpy(mat[i].albedo, m->albedo[i], sizeof mat[i].albedo);
-        mat[i].texture = TYN_SURFACE_NO_TEXTURE;
-    }
-    tyn_walls_params params;
-    tyn_pass_defaults(&tyn_pass_walls, &params);
-    for (int a = 0; a < 3; a++) {
-        params.extent[a] = (float)g->extent[a];
-        params.dims[a] = (uint32_t)g->n[a];
-    }
-    tyn_ref p[WALLS_NUM_PORTS] = {
-        [WALLS_PORT_SURFACES] = gpu_buffer(t, "surfaces", &block, sizeof block),
-        [WALLS_PORT_VERTICES] = gpu_buffer(t, "vertices", v, (size_t)m->n * 3 * sizeof *v),
-        [WALLS_PORT_TRIANGLES] = gpu_buffer(t, "triangles", tri, (size_t)m->n * sizeof *tri),
-        [WALLS_PORT_MATERIALS] = gpu_buffer(t, "materials", mat, (size_t)m->n * sizeof *mat),
-    };
-    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_walls, &params, p), TYN_OK);
-    free(v);
-    free(tri);
-    free(mat);
-    return (refs){p[WALLS_PORT_LINKS], p[WALLS_PORT_CELLS]};
-}
 
 typedef struct result {
     uint32_t *links;
@@ -169,7 +19,7 @@ static result run(gpu_test *t, const grid *g, const mesh *m)
 {
     size_t n = (size_t)g->n[0] * g->n[1] * g->n[2];
     tyn_graph_begin(t->graph);
-    refs r = add_walls(t, g, m);
+    wall_refs r = mesh_walls(t, g, m);
     tyn_graph_output(t->graph, "links", r.links, true);
     tyn_graph_output(t->graph, "cells", r.cells, true);
     gpu_run(t);
@@ -325,8 +175,8 @@ static void matches_brute_force(void **state)
 {
     grid g = grid_of(12, 9, 7, 0.25);
     mesh meshes[2] = {
-        box_mesh((double[]){1.43, 1.11, 0.87}, (double[]){0.81, 0.55, 0.47}, 0.5236),
-        sphere_mesh((double[]){1.5, 1.2, 0.9}, 0.71, 2),
+        mesh_box((double[]){1.43, 1.11, 0.87}, (double[]){0.81, 0.55, 0.47}, 0.5236),
+        mesh_sphere((double[]){1.5, 1.2, 0.9}, 0.71, 2),
     };
     for (int i = 0; i < 2; i++) {
         result r = run(*state, &g, &meshes[i]);
@@ -345,8 +195,8 @@ static void closed_meshes_are_closed(void **state)
         double c[3] = {0.5 + 0.003 * k, 0.5 - 0.0017 * k, 0.5};
         // Every fourth lies on planes of centres, on faces of cells, or on the lattice's own.
         double on_centres[3] = {0.525, 0.525, 0.525}, h = k % 4 ? 0.25 + 0.001 * k : 0.25;
-        mesh m = k % 2 ? sphere_mesh(c, 0.37, k % 6)
-                       : box_mesh(k % 4 ? c : on_centres, (double[]){h, h, k == 8 ? 0.475 : 0.25},
+        mesh m = k % 2 ? mesh_sphere(c, 0.37, k % 6)
+                       : mesh_box(k % 4 ? c : on_centres, (double[]){h, h, k == 8 ? 0.475 : 0.25},
                                   k % 4 ? 0.13 * k : 0);
         result r = run(*state, &g, &m);
         bool out;
@@ -374,8 +224,8 @@ static void walls_on_the_lattice(void **state)
                 v[i][(axis + 2) % 3] = i & 2 ? 9 : -5;
             }
             mesh m = {0};
-            add_triangle(&m, v[0], v[1], v[2], 0.5f);
-            add_triangle(&m, v[3], v[2], v[1], 0.5f);
+            mesh_add(&m, v[0], v[1], v[2], 0.5f);
+            mesh_add(&m, v[3], v[2], v[1], 0.5f);
             result r = run(*state, &g, &m);
             for (int i = 0; i < 512; i++) {
                 int c[3] = {i % 8, i / 8 % 8, i / 64};
@@ -404,7 +254,7 @@ static void box_is_the_room(void **state)
     for (int a = 0; a < 3; a++) {
         c[a] = h[a] = g.extent[a] / 2;
     }
-    mesh m = box_mesh(c, h, 0);
+    mesh m = mesh_box(c, h, 0);
     result r = run(*state, &g, &m);
     bool out;
     assert_int_equal(flood(&g, &r, 0, &out), 120);
@@ -424,7 +274,7 @@ static void blends_on_one_side(void **state)
     size_t n = 16 * 16 * 16;
     enum { POINTS = 20000 };
     const double centre[3] = {0.51, 0.48, 0.53}, h[3] = {0.27, 0.22, 0.25}, angle = 0.5236;
-    mesh m = box_mesh(centre, h, angle);
+    mesh m = mesh_box(centre, h, angle);
     result r = run(t, &g, &m);
     // Inside: in the box's own frame.
     const double *x0 = m.tri[0][0];
@@ -460,7 +310,7 @@ static void blends_on_one_side(void **state)
         }
     }
     tyn_graph_begin(t->graph);
-    refs w = add_walls(t, &g, &m);
+    wall_refs w = mesh_walls(t, &g, &m);
     struct {
         float extent[3];
         uint32_t dims[3];
@@ -515,7 +365,7 @@ static void blends_on_one_side(void **state)
 static void many_triangles(void **state)
 {
     grid g = grid_of(32, 32, 32, 1.0 / 32);
-    mesh m = sphere_mesh((double[]){0.5, 0.5, 0.5}, 0.4, 7); // 131072
+    mesh m = mesh_sphere((double[]){0.5, 0.5, 0.5}, 0.4, 7); // 131072
     result r = run(*state, &g, &m);
     bool out;
     int inside = flood(&g, &r, (16 * 32 + 16) * 32 + 16, &out);
