@@ -60,6 +60,51 @@ static void furnace(void **state)
     free(grid);
 }
 
+// Voxels of density 0 and 10^4 in turn: every cell is far thicker than a mean free path and half empty.
+static void checkerboard(void **state)
+{
+    gpu_test *t = *state;
+    static const float gs[] = {0, 0.5f, 0.9f};
+    float *grid = malloc(N * N * N * sizeof *grid);
+    for (int i = 0; i < N * N * N; i++) {
+        grid[i] = (i % N + i / N % N + i / N / N) % 2 ? 1e4f : 0;
+    }
+    for (int k = 0; k < 6; k++) {
+        const float g = gs[k % 3];
+        const bool inside = k >= 3;
+        tyn_scene *scene = malloc(sizeof *scene);
+        tyn_scene_init(scene);
+        tyn_medium medium = grey_medium(1, 0, g);
+        scene_add_box(scene, &medium, (float[]){0, 0, 0}, (float[]){1, 1, 1}, (uint32_t[]){N, N, N},
+                      grid);
+        scene_set_sky(scene, 1);
+        tyn_view view = {0};
+        view_orthographic(&view, (float[]){0.5f, 0.5f, 0.5f}, -1, -2, -0.7f, (float[]){0, 1, 0},
+                          0.9f, 48);
+        if (inside) {
+            view.camera.projection = TYN_PERSPECTIVE;
+            view.camera.yfov = 1.2f;
+            view.camera.position[0] = 0.8f;
+            view.camera.position[1] = 0.9f;
+            view.camera.position[2] = 0.7f;
+        }
+        picture p;
+        picture_render(&p, t->dev, "pop", scene, &view, NULL, 0);
+        double worst = 0;
+        for (int i = 0; i < 48 * 48 * 3; i++) {
+            worst = fmax(worst, fabs(p.rgb[i] - 1.0));
+        }
+        print_message("checkerboard of 0 and 10^4 per metre, g %.1f, from %s: worst pixel %.3f %% "
+                      "from 1\n",
+                      (double)g, inside ? "inside" : "outside", 100 * worst);
+        assert_true(worst <= 0.005);
+        picture_free(&p);
+        tyn_scene_finish(scene);
+        free(scene);
+    }
+    free(grid);
+}
+
 // The same surroundings as a map, in which every texel is 1: what finds its suns, smears it and divides it
 // into ordinates has to leave it as it is, whatever its size and wherever it is turned.
 static void maps(void **state)
@@ -148,6 +193,6 @@ static void unsplit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(unsplit), cmocka_unit_test(furnace),
-                                       cmocka_unit_test(maps)};
+                                       cmocka_unit_test(checkerboard), cmocka_unit_test(maps)};
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
