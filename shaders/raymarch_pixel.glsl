@@ -59,15 +59,23 @@ void shade_pixel(ivec2 pixel)
     float surface = TYN_INFINITY, half_distance = TYN_INFINITY;
     uint steps = 0u, num_rays = rays_of_pixel(pixel);
     bool met = false;
+    vec4 first = vec4(vec3(0.0), TYN_INFINITY); // surface of the scene
+    if (raymarch_has(RAYMARCH_SURFACE)) {
+        first = texelFetch(surface_tex, pixel, 0);
+    }
+    bool shown = false; // is it in front of the host's?
     for (uint i = 0u; i < num_rays; i++) {
         vec2 where = num_rays == 1u ? vec2(0.5) : quarter_pixel(i);
         camera_ray ray = camera_ray_through(camera, vec2(pixel) + where);
         vec2 span = ray_box(ray.origin, ray_inverse(ray.direction), vec3(0.0), medium.extent);
         span.x = max(span.x, 0.0);
+        surface = first.a;
         if (raymarch_has(RAYMARCH_HOST_DEPTH)) {
-            surface = host_distance(host_depth_tex, camera, args.depth, pixel, ray.direction);
-            span.y = min(span.y, surface);
+            surface = min(surface, host_distance(host_depth_tex, camera, args.depth, pixel,
+                                                 ray.direction));
         }
+        shown = raymarch_has(RAYMARCH_SURFACE) && first.a < TYN_INFINITY && first.a == surface;
+        span.y = min(span.y, surface);
         met = met || span.x < span.y;
         // Distances from where the ray enters: the camera may be far away.
         march_result r = march_ray(ray.origin + span.x * ray.direction, ray.direction,
@@ -76,12 +84,15 @@ void shade_pixel(ivec2 pixel)
         transmittance += r.transmittance;
         single += r.single;
         half_distance = min(half_distance, span.x + r.half_distance);
-        // The environment's light that was scattered forward only. In front of a host's surface it is not
-        // what lies behind that; the mean keeps uniform surroundings uniform.
+        // Light of what is behind that was scattered forward only: of the environment or, hardly out of
+        // place, of the surface. In front of a host's surface it is not what lies behind that; the mean
+        // keeps uniform surroundings uniform.
         vec3 light = r.radiance;
-        if (raymarch_has(RAYMARCH_GLOW | RAYMARCH_MEAN)) {
-            vec3 smeared = environment.sky;
-            if (raymarch_has(RAYMARCH_GLOW) && surface == TYN_INFINITY) {
+        if (raymarch_has(RAYMARCH_GLOW | RAYMARCH_MEAN | RAYMARCH_SURFACE)) {
+            vec3 smeared = raymarch_has(RAYMARCH_GLOW | RAYMARCH_MEAN) ? environment.sky : vec3(0.0);
+            if (shown) {
+                smeared = first.rgb;
+            } else if (raymarch_has(RAYMARCH_GLOW) && surface == TYN_INFINITY) {
                 smeared = environment.radiance *
                           glow_radiance(glow_tex, environment, ray.direction, r.forward_depth);
             }
@@ -89,7 +100,9 @@ void shade_pixel(ivec2 pixel)
         }
         multiple += max(light - r.single, 0.0);
         radiance += light;
-        if (raymarch_has(RAYMARCH_BACKGROUND) && surface == TYN_INFINITY) {
+        if (raymarch_has(RAYMARCH_SURFACE_SEEN) && shown) {
+            radiance += r.transmittance * first.rgb;
+        } else if (raymarch_has(RAYMARCH_BACKGROUND) && surface == TYN_INFINITY) {
             radiance += r.transmittance *
                         background_radiance(environment, environment_tex, camera, ray.direction,
                                             vec2(pixel) + where, num_rays == 1u ? 1.0 : 0.5);
@@ -107,7 +120,8 @@ void shade_pixel(ivec2 pixel)
         atomicAdd(counters.steps, steps);
         atomicAdd(counters.pixels, 1u);
     }
-    float cover = raymarch_has(RAYMARCH_BACKGROUND) ? 1.0 : 1.0 - dot(transmittance, vec3(1.0 / 3.0));
+    bool opaque = raymarch_has(RAYMARCH_BACKGROUND) || (raymarch_has(RAYMARCH_SURFACE_SEEN) && shown);
+    float cover = opaque ? 1.0 : 1.0 - dot(transmittance, vec3(1.0 / 3.0));
     imageStore(radiance_image, pixel, vec4(max(radiance, 0.0), cover));
     if (raymarch_has(RAYMARCH_TRANSMITTANCE)) {
         imageStore(transmittance_image, pixel, vec4(transmittance, 1.0));

@@ -40,6 +40,8 @@ static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
                             "the map as forward scattering smears it, W/(m^2 sr)"},
     [RAYMARCH_PORT_HOST_DEPTH] = {"host_depth", TYN_IN, TYN_IMAGE_2D, 0, true,
                                   "hardware depth of the host's surfaces"},
+    [RAYMARCH_PORT_SURFACE] = {"surface", TYN_IN, TYN_IMAGE_2D, 0, true,
+                               "radiance of the first surface, W/(m^2 sr); distance, m"},
     [RAYMARCH_PORT_RADIANCE] = {"radiance", TYN_OUT, IMAGE2, false,
                                 "radiance, W/(m^2 sr); a = 1 - mean transmittance"},
     [RAYMARCH_PORT_TRANSMITTANCE] = {"transmittance", TYN_OUT, IMAGE2, false,
@@ -75,6 +77,7 @@ static const tyn_binding bindings[] = {
     {RAYMARCH_PORT_MULTIPLE, TYN_USE_STORAGE_WRITE, false},
     {RAYMARCH_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
     {RAYMARCH_PORT_GLOW, TYN_USE_SAMPLED, true},
+    {RAYMARCH_PORT_SURFACE, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_SIGMA_A, TYN_USE_SAMPLED, false}, // from here on colour only
     {RAYMARCH_PORT_G, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_EMISSION, TYN_USE_SAMPLED, false},
@@ -92,6 +95,7 @@ static const tyn_binding background_bindings[] = {
     {RAYMARCH_PORT_DEPTH, TYN_USE_STORAGE_WRITE, false},
     {RAYMARCH_PORT_SINGLE, TYN_USE_STORAGE_WRITE, false},
     {RAYMARCH_PORT_MULTIPLE, TYN_USE_STORAGE_WRITE, false},
+    {RAYMARCH_PORT_SURFACE, TYN_USE_SAMPLED, false},
 };
 enum {
     NUM_BACKGROUND_BINDINGS = sizeof(background_bindings) / sizeof(background_bindings[0]),
@@ -223,7 +227,8 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
 {
     bool field = tyn_rec_has(r, RAYMARCH_PORT_INSCATTER);
     bool glow = tyn_rec_has(r, RAYMARCH_PORT_GLOW);
-    bool behind = p->background || glow || p->layers & RAYMARCH_LAYER_TRANSMITTANCE;
+    bool surface = tyn_rec_has(r, RAYMARCH_PORT_SURFACE);
+    bool behind = p->background || surface || glow || p->layers & RAYMARCH_LAYER_TRANSMITTANCE;
     uint32_t features = 0;
     for (uint32_t k = 0; k < NUM_LAYERS; k++) {
         features |= p->layers & layers[k].layer ? layers[k].feature : 0;
@@ -238,6 +243,8 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= p->mean ? RAYMARCH_MEAN : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_HOST_DEPTH) ? RAYMARCH_HOST_DEPTH : 0;
     features |= p->background ? RAYMARCH_BACKGROUND : 0;
+    features |= surface ? RAYMARCH_SURFACE : 0;
+    features |= surface && p->surfaces ? RAYMARCH_SURFACE_SEEN : 0;
     features |= behind ? RAYMARCH_BEHIND : 0;
     features |= p->num_shapes == 1 ? RAYMARCH_ONE_SHAPE : 0;
     features |= p->closed ? RAYMARCH_CLOSED : 0;

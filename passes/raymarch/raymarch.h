@@ -16,6 +16,7 @@ typedef struct tyn_raymarch_params {
     uint32_t mean;        // 1: the mean of the environment came in through the field
     uint32_t emissive;    // 1: media emit light
     uint32_t background;  // 1: the environment behind the medium is seen
+    uint32_t surfaces;    // 1: so are surfaces; else rays end there, but show the medium alone
     uint32_t layers;      // set of RAYMARCH_LAYER_*
     uint32_t field;       // RAYMARCH_INSCATTER_*: what `inscatter` is
     uint32_t one_channel; // 1: inscatter has one channel, to be multiplied with `tint`
@@ -76,10 +77,12 @@ enum {
     RAYMARCH_PORT_GLOW, // IN optional 3D: of env_glow, the map scattered forward; without it what
                         // is scattered forward comes from the mean alone (`mean`)
     RAYMARCH_PORT_HOST_DEPTH, // IN optional 2D: hardware depth; rays end there
+    RAYMARCH_PORT_SURFACE, // IN optional 2D: radiance of the first surface, W/(m^2 sr); a = its distance
+                           // along the ray, m, or infinity; rays end there
     RAYMARCH_PORT_RADIANCE, // OUT 2D RGBA32F: radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where
-                            // an environment is seen
+                            // an environment or a surface is seen
     RAYMARCH_PORT_TRANSMITTANCE, // OUT 2D RGBA32F, asked for by `layers`, as all below
-    RAYMARCH_PORT_DEPTH,    // OUT 2D RGBA32F: distance to the host's surface, and to where the mean
+    RAYMARCH_PORT_DEPTH,    // OUT 2D RGBA32F: distance to the first surface, and to where the mean
                             // transmittance is 1/2, m; infinity if there is none
     RAYMARCH_PORT_SINGLE,   // OUT 2D RGBA32F: light that has scattered once
     RAYMARCH_PORT_MULTIPLE, // OUT 2D RGBA32F: more often, from the environment's mean, or emitted

@@ -21,8 +21,10 @@
 #define RAYMARCH_DEPTH (1u << 14)
 #define RAYMARCH_SINGLE (1u << 15)
 #define RAYMARCH_MULTIPLE (1u << 16)
-#define RAYMARCH_GLOW (1u << 17) // what is scattered forward comes from the texture glow
+#define RAYMARCH_GLOW (1u << 17)      // what is scattered forward comes from the texture glow
 #define RAYMARCH_SOFT_SUNS (1u << 18) // there are suns that are seen under an angle
+#define RAYMARCH_SURFACE (1u << 19)   // rays end at the scene's surfaces
+#define RAYMARCH_SURFACE_SEEN (1u << 20)
 
 struct raymarch_args {
     float step;      // longest step, m

@@ -25,6 +25,7 @@ layout(binding = 5, rgba32f) uniform writeonly image2D transmittance_image;
 layout(binding = 6, rgba32f) uniform writeonly image2D depth_image;
 layout(binding = 7, rgba32f) uniform writeonly image2D single_image;
 layout(binding = 8, rgba32f) uniform writeonly image2D multiple_image;
+layout(binding = 9) uniform sampler2D surface_tex;
 
 layout(push_constant, scalar) uniform Args
 {
@@ -50,6 +51,13 @@ void main()
         surface = host_distance(host_depth_tex, camera, args.depth, pixel, ray.direction);
     }
     vec4 radiance = vec4(0.0);
+    if (has(RAYMARCH_SURFACE)) {
+        vec4 first = texelFetch(surface_tex, pixel, 0);
+        if (has(RAYMARCH_SURFACE_SEEN) && first.a < surface) {
+            radiance = vec4(first.rgb, 1.0);
+        }
+        surface = min(surface, first.a);
+    }
     if (has(RAYMARCH_BACKGROUND) && surface == TYN_INFINITY) {
         radiance.rgb = background_radiance(environment, environment_tex, camera, ray.direction,
                                            vec2(pixel) + 0.5, 1.0);

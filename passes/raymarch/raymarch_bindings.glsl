@@ -47,12 +47,13 @@ layout(binding = 19, scalar) buffer counter_buffer
     counters_block counters;
 };
 layout(binding = 20) uniform sampler3D glow_tex;
+layout(binding = 21) uniform sampler2D surface_tex;
 #ifndef RAYMARCH_GREY
-#define MEDIUM_SIGMA_A 21
-#define MEDIUM_G 22
-#define MEDIUM_EMISSION 23
-#define BEAM_TAU_A 24
-#define BEAM_TAU_P 25
+#define MEDIUM_SIGMA_A 22
+#define MEDIUM_G 23
+#define MEDIUM_EMISSION 24
+#define BEAM_TAU_A 25
+#define BEAM_TAU_P 26
 #endif
 
 layout(push_constant, scalar) uniform Args

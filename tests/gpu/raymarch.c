@@ -31,7 +31,7 @@ typedef struct march_scene {
     struct env_block env;
     texture density, distance, column, inscatter;
     float sums[2]; // the scattering table, constant
-    float *host_depth;
+    float *host_depth, *surface;
     tyn_raymarch_params params;
 } march_scene;
 
@@ -156,6 +156,10 @@ static void run(gpu_test *t, march_scene *s)
         refs[RAYMARCH_PORT_HOST_DEPTH] =
             gpu_image(t, "host_depth", TYN_IMAGE_2D,
                       (tyn_extent){s->params.width, s->params.height, 1}, 1, s->host_depth);
+    }
+    if (s->surface) {
+        refs[RAYMARCH_PORT_SURFACE] =
+            gpu_image(t, "surface", TYN_IMAGE_2D, (tyn_extent){16, 16, 1}, 4, s->surface);
     }
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_raymarch, &s->params, refs), TYN_OK);
     for (uint8_t p = RAYMARCH_PORT_RADIANCE; p < RAYMARCH_NUM_PORTS; p++) {
@@ -554,6 +558,53 @@ static void host_depth(void **state)
     free(s);
 }
 
+// The left half of the image has a surface in the middle of the box: what it sends is seen through the
+// medium in front of it, and with what that scatters forward; no light comes from behind it.
+static void surfaces(void **state)
+{
+    gpu_test *t = *state;
+    march_scene *s = malloc(sizeof *s);
+    const double sigma_s = 1.5, sigma_a = 0.5, g = 0.6;
+    make_cube(s, (float)sigma_s, (float)sigma_a, (float)g);
+    set_camera(s, 0, 1, 0, 2); // the box is from 1.5 to 2.5
+    s->params.num_suns = 0;
+    s->params.layers = RAYMARCH_LAYER_TRANSMITTANCE | RAYMARCH_LAYER_DEPTH;
+    s->params.surfaces = 1;
+    s->camera.half_width = s->camera.half_height = 0.8f; // the outermost pixels miss the box
+    tyn_raymarch_window(&s->params, &s->camera);
+    float surface[16 * 16][4] = {{0}};
+    for (int i = 0; i < 256; i++) {
+        surface[i][1] = 3;
+        surface[i][3] = i % 16 < 8 ? 2.0f : INFINITY;
+    }
+    s->surface = surface[0];
+    double forward = g * g * sigma_s, seen = 3 * exp(-0.5 * (sigma_s + sigma_a - forward));
+    for (int background = 0; background < 2; background++) {
+        s->params.background = (uint32_t)background;
+        s->env.radiance[0] = 7;
+        run(t, s);
+        const float *p = pixel(t, s, "radiance", 5, 8);
+        assert_true(p[0] == 0 && p[2] == 0 && p[3] == 1);
+        assert_close(p[1], seen, 1e-4, "through half the box");
+        assert_close(pixel(t, s, "transmittance", 5, 8)[1], exp(-0.5 * 2), 1e-4, "half the box");
+        assert_true(pixel(t, s, "depth", 5, 8)[0] == 2);
+        p = pixel(t, s, "radiance", 1, 1);
+        assert_true(p[0] == 0 && p[1] == 3 && p[3] == 1 && pixel(t, s, "depth", 1, 1)[0] == 2);
+        p = pixel(t, s, "radiance", 9, 8);
+        assert_close(p[0], background ? 7 * exp(-2) : 0, 1e-4, "environment");
+        assert_close(p[3], background ? 1 : 1 - exp(-2), 1e-4, "cover");
+        assert_true(isinf(pixel(t, s, "depth", 9, 8)[0]));
+    }
+    s->params.background = s->params.surfaces = 0;
+    run(t, s);
+    const float *p = pixel(t, s, "radiance", 5, 8);
+    assert_close(p[1], seen - 3 * exp(-0.5 * 2), 1e-4, "scattered forward alone");
+    assert_close(p[3], 1 - exp(-0.5 * 2), 1e-4, "cover of the medium");
+    p = pixel(t, s, "radiance", 1, 1);
+    assert_true(p[1] == 0 && p[3] == 0);
+    free(s);
+}
+
 static void bad_density(void **state)
 {
     gpu_test *t = *state;
@@ -630,8 +681,9 @@ int main(void)
         cmocka_unit_test(single_scattering), cmocka_unit_test(lumps_grey),
         cmocka_unit_test(lumps_colour),      cmocka_unit_test(skipping),
         cmocka_unit_test(furnace),           cmocka_unit_test(opaque),
-        cmocka_unit_test(host_depth),        cmocka_unit_test(bad_density),
-        cmocka_unit_test(antialias),         cmocka_unit_test(nothing),
+        cmocka_unit_test(surfaces),          cmocka_unit_test(host_depth),
+        cmocka_unit_test(bad_density),       cmocka_unit_test(antialias),
+        cmocka_unit_test(nothing),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
