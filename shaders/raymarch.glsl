@@ -26,6 +26,10 @@ float spectrum_max(float x)
 {
     return x;
 }
+float spectrum_min(float x)
+{
+    return x;
+}
 float spectrum_mean(float x)
 {
     return x;
@@ -37,6 +41,10 @@ float spectrum_max(vec3 x)
 {
     return max(max(x.r, x.g), x.b);
 }
+float spectrum_min(vec3 x)
+{
+    return min(min(x.r, x.g), x.b);
+}
 float spectrum_mean(vec3 x)
 {
     return (x.r + x.g + x.b) * (1.0 / 3.0);
@@ -44,7 +52,7 @@ float spectrum_mean(vec3 x)
 #endif
 
 const int RAYMARCH_CHUNK = 32; // steps between two looks at the distance map: empty ones are cheap
-const float RAYMARCH_GONE = 9.0; // scaled depth beyond args.stop at which nothing behind is followed on
+const float RAYMARCH_GONE = 9.0; // scaled depth behind args.stop, in every channel, of what hides all
 
 bool raymarch_has(uint feature)
 {
@@ -373,7 +381,7 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
         if (raymarch_has(RAYMARCH_BEHIND)) {
             spectrum tau = spectrum(0.0), tau_scaled = spectrum(0.0);
             float step = 2.0 * args.step;
-            while (s < end && spectrum_max(tau_scaled) < RAYMARCH_GONE) {
+            while (s < end && spectrum_min(tau_scaled) < RAYMARCH_GONE) {
                 s = march_skip(origin, direction, inverse, s, end);
                 for (int i = 0; i < 8 && s < end; i++) {
                     float ds = min(step, end - s);

@@ -36,25 +36,25 @@ bool sequence_parse(const char *text, sequence *s)
     return text[-1] == '-' && digits(&text, &s->last) && *text == '\0' && s->first <= s->last;
 }
 
-// Where the number stands in the path, how long its placeholder is, and how wide the number. NULL: none.
+// Where the number stands in the path, how long its placeholder is, and how wide the number: the last
+// of its kind, as folders may be named C#. NULL: none.
 static const char *placeholder(const char *path, size_t *length, int *width)
 {
+    const char *found = NULL;
     for (const char *p = path; *p; p++) {
-        *length = strspn(p, "#");
-        if (*length > 0) {
-            *width = (int)*length;
-            return p;
-        }
-        if (*p == '%') {
-            size_t n = strspn(p + 1, "0123456789");
-            if (p[1 + n] == 'd' && n <= 3) {
-                *width = n ? atoi(p + 1) : 1;
-                *length = n + 2;
-                return p;
-            }
+        size_t hashes = strspn(p, "#"), n = *p == '%' ? strspn(p + 1, "0123456789") : 0;
+        if (hashes > 0) {
+            *width = (int)hashes;
+            *length = hashes;
+            found = p;
+            p += hashes - 1;
+        } else if (*p == '%' && p[1 + n] == 'd' && n <= 3) {
+            *width = n ? atoi(p + 1) : 1;
+            *length = n + 2;
+            found = p;
         }
     }
-    return NULL;
+    return found;
 }
 
 bool sequence_has_number(const char *path)

@@ -209,8 +209,10 @@ static tyn_result update_environment(tyn_context *ctx, const tyn_environment *en
     if (env->present && texels) {
         hash = env->hash ? env->hash
                          : tyn_hash_bytes(TYN_HASH_SEED, env->data, texels * 3 * sizeof(float));
+        hash = tyn_hash_u64(hash, env->size[0]);
     }
     if (hash != ctx->env_hash) {
+        ctx->env_hash = 0; // what is here is of no map until all of it is made
         free(ctx->env_cdf);
         ctx->env_cdf = NULL;
         if (!tyn_map_light_find(env, &ctx->map_light)) {

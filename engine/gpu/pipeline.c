@@ -57,6 +57,49 @@ static tyn_result create_layouts(tyn_device *dev, const tyn_pass_desc *pass, tyn
     return tyn_vk_check(dev, made, p->kernel->name);
 }
 
+// What the tables ask for beyond the device's limits; the first is one log line.
+static tyn_result check_limits(const tyn_device *dev, const tyn_pass_desc *pass,
+                               const tyn_kernel *k)
+{
+    const VkPhysicalDeviceLimits *limits = &dev->properties.limits;
+    uint32_t threads = 1, images = 0, buffers = 0, textures = 0;
+    for (uint32_t i = 0; i < k->num_bindings; i++) {
+        VkDescriptorType type = tyn_descriptor_type(pass, &k->bindings[i]);
+        images += type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+        buffers += type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        textures += type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    }
+    bool wide = false;
+    for (int a = 0; a < 3 && !k->raster; a++) {
+        threads *= k->local_size[a];
+        wide = wide || k->local_size[a] > limits->maxComputeWorkGroupSize[a];
+    }
+    const struct {
+        bool over;
+        uint32_t wanted, limit;
+        const char *what;
+    } tests[] = {
+        {wide || threads > limits->maxComputeWorkGroupInvocations, threads,
+         limits->maxComputeWorkGroupInvocations, "threads in a workgroup"},
+        {images > limits->maxPerStageDescriptorStorageImages, images,
+         limits->maxPerStageDescriptorStorageImages, "storage images"},
+        {buffers > limits->maxPerStageDescriptorStorageBuffers, buffers,
+         limits->maxPerStageDescriptorStorageBuffers, "storage buffers"},
+        {textures > limits->maxPerStageDescriptorSampledImages, textures,
+         limits->maxPerStageDescriptorSampledImages, "sampled images"},
+    };
+    for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++) {
+        if (tests[i].over) {
+            tyn_log_print(&dev->log, TYN_LOG_ERROR,
+                          "kernel '%s' of pass '%s' needs %u %s; the device '%s' has %u", k->name,
+                          pass->name, tests[i].wanted, tests[i].what, tyn_device_name(dev),
+                          tests[i].limit);
+            return TYN_ERR_UNSUPPORTED;
+        }
+    }
+    return TYN_OK;
+}
+
 tyn_result tyn_pipeline_get(tyn_device *dev, const tyn_pass_desc *pass, uint32_t kernel,
                             tyn_pipeline **out)
 {
@@ -67,6 +110,10 @@ tyn_result tyn_pipeline_get(tyn_device *dev, const tyn_pass_desc *pass, uint32_t
             *out = dev->pipelines[i];
             return TYN_OK;
         }
+    }
+    tyn_result fits = check_limits(dev, pass, k);
+    if (fits != TYN_OK) {
+        return fits;
     }
     tyn_pipeline *p = calloc(1, sizeof *p);
     tyn_pipeline **grown =

@@ -490,6 +490,11 @@ static bool begin_transfer(tyn_recorder *r, uint8_t port, bool source, const cha
     return true;
 }
 
+bool tyn_rec_live(const tyn_recorder *r)
+{
+    return r->mode == RECORD_LIVE;
+}
+
 void tyn_rec_update(tyn_recorder *r, uint8_t port, uint64_t offset, const void *data, size_t size)
 {
     if (begin_transfer(r, port, false, "update")) {

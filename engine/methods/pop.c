@@ -45,22 +45,41 @@ static bool any_positive(const float v[3])
     return v[0] > 0.0f || v[1] > 0.0f || v[2] > 0.0f;
 }
 
-// Largest g of any medium, and a warning where media of different g may overlap.
-static float largest_g(const tyn_job *job)
+// Least and largest g of what scatters in the scene; 0 and 0 if nothing does.
+static void range_of_g(const tyn_scene *scene, float *least, float *most)
 {
-    float least = 1.0f, most = -1.0f;
-    for (uint32_t m = 0; m < job->scene->num_media; m++) {
+    *least = 1.0f;
+    *most = -1.0f;
+    for (uint32_t i = 0; i < scene->num_shapes; i++) {
+        const tyn_medium *m = &scene->media[scene->shapes[i].medium];
         for (int c = 0; c < 3; c++) {
-            least = fminf(least, job->scene->media[m].g[c]);
-            most = fmaxf(most, job->scene->media[m].g[c]);
+            if (m->sigma_s[c] * m->density_scale > 0.0f) {
+                *least = fminf(*least, m->g[c]);
+                *most = fmaxf(*most, m->g[c]);
+            }
         }
     }
+    if (*least > *most) {
+        *least = *most = 0.0f;
+    }
+}
+
+static float largest_g(const tyn_job *job)
+{
+    float least, most;
+    range_of_g(job->scene, &least, &most);
+    return most;
+}
+
+static void warn_of_mixtures(const tyn_job *job)
+{
+    float least, most;
+    range_of_g(job->scene, &least, &most);
     if (job->frame->medium.mode == TYN_MEDIUM_COEFFICIENTS && least < most) {
         tyn_method_warn(job,
                         "media of different anisotropy: where they overlap their mean weighted "
                         "with sigma_s is used");
     }
-    return most;
 }
 
 static bool is_thin(const tyn_frame_scene *frame)
@@ -249,7 +268,8 @@ static tyn_result add_recall(tyn_graph *g, const tyn_job *job, const field *f, t
         }
     }
     m->history = tyn_graph_history_buffer(
-        g, "lattice_memory", tyn_lattice_memory_size(f->shape.cells, f->shape.channels), 1);
+        g, "lattice_memory", tyn_lattice_memory_size(f->shape.cells, f->shape.channels),
+        job->view->cut);
     tyn_ref refs[TYN_MAX_PORTS] = {
         [LATTICE_RECALL_PORT_MEMORY] = m->history,
         [LATTICE_RECALL_PORT_CELLS] = solve[LATTICE_PORT_CELLS],
@@ -496,9 +516,16 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         return result;
     }
     tyn_method_warn_surfaces(job);
+    warn_of_mixtures(job);
     bool picture = job->outputs & TYN_PICTURE_OUTPUTS;
     if (frame->empty && !(job->outputs & field_outputs)) {
         return tyn_add_picture(g, job, NULL);
+    }
+    if (job->scene->num_shapes == 0) {
+        tyn_log_print(
+            job->log, TYN_LOG_ERROR,
+            "the scene has no medium: 'pop' has nothing to probe or to balance; 'path' can");
+        return TYN_ERR_PARAMS;
     }
 
     field f = {.picture.num_suns = tyn_method_suns(job, true)};

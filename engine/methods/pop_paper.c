@@ -185,9 +185,9 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,      &tyn_pass_propagate_rect, &tyn_pass_residuum,
-    &tyn_pass_merge_grids, &tyn_pass_upsample,       &tyn_pass_raymarch,
-    &tyn_pass_composite,   &tyn_pass_tonemap,        NULL,
+    &tyn_pass_medium,         &tyn_pass_env_importance, &tyn_pass_importance,  &tyn_pass_ordinates,
+    &tyn_pass_propagate_rect, &tyn_pass_residuum,       &tyn_pass_merge_grids, &tyn_pass_upsample,
+    &tyn_pass_raymarch,       &tyn_pass_composite,      &tyn_pass_tonemap,     NULL,
 };
 
 const tyn_method tyn_method_pop_paper = {

@@ -33,14 +33,15 @@ static tyn_result add_importance(tyn_graph *g, const tyn_job *job, const tyn_med
     tyn_settings_params(job->settings, &tyn_pass_importance, &params);
     params.mode = job->frame->medium.mode;
     params.scaled = scaled;
+    params.time = params.smoothing > 0.0f ? (uint32_t)job->view->time_index : 0;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [IMPORTANCE_PORT_MEDIUM] = job->refs.medium,
         [IMPORTANCE_PORT_CAMERA] = job->refs.camera,
         [IMPORTANCE_PORT_DENSITY] = media->density,
         [IMPORTANCE_PORT_SIGMA_A] = media->sigma_a,
         [IMPORTANCE_PORT_G] = media->g,
-        [IMPORTANCE_PORT_HISTORY] =
-            tyn_graph_history_buffer(g, "importance_history", sizeof(struct importance_history), 1),
+        [IMPORTANCE_PORT_HISTORY] = tyn_graph_history_buffer(
+            g, "importance_history", sizeof(struct importance_history), job->view->cut),
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_importance, &params, refs);
     *map = refs[IMPORTANCE_PORT_MAP];

@@ -193,8 +193,10 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_env_glow_params *p = params;
-    struct glow_series series;
-    make_series(p, &series);
+    struct glow_series series = {0};
+    if (tyn_rec_live(r)) {
+        make_series(p, &series);
+    }
     tyn_rec_update(r, ENV_GLOW_PORT_SERIES, 0, &series, sizeof series);
     // A map without mips that is finer than the glow is not expected.
     tyn_extent sky = tyn_rec_extent(r, ENV_GLOW_PORT_SKY);

@@ -16,6 +16,8 @@ typedef struct tyn_importance_params {
     uint32_t mode;      // set by the method: TYN_MEDIUM_*
     uint32_t scaled;    // set by the method: 1 = scattering within the delta of the delta-scaled phase
                         // function is not scattering (it reaches the eye by other ways than ordinates)
+    uint32_t time;      // set by the method: of the frame. With smoothing another one is another step of
+                        // the filter; without, 0
 } tyn_importance_params;
 
 enum {

@@ -77,7 +77,8 @@ void main()
     vec3 least[2] = vec3[2](vec3(0.0), vec3(0.0));
     for (int ch = 0; ch < int(args.channels); ch++) {
         for (int i = 0; i < 2; i++) {
-            vec4 c = texelFetch(cells, ivec3(cell) + ivec3(i, 0, ch * dims.z), 0);
+            int x = min(int(cell.x) + i, dims.x - 1);
+            vec4 c = texelFetch(cells, ivec3(x, cell.y, int(cell.z) + ch * dims.z), 0);
             least[i][ch] = 0.5 * dx * (c.x + c.y);
         }
     }

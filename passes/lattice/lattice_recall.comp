@@ -76,8 +76,10 @@ void main()
                                                  memory.world[2].w));
         vec3 cell = lattice_from_m(lattice_box_of(memory.extent, ivec3(memory.dims)), then);
         if (all(greaterThan(cell, vec3(0.0))) && all(lessThan(cell, vec3(memory.dims)))) {
-            m = growth(ch) * remembered(cell, ch);
-            m.yzw = transpose(to_world) * (transpose(from_world) * m.yzw);
+            vec4 old = growth(ch) * remembered(cell, ch);
+            old.yzw = transpose(to_world) * (transpose(from_world) * old.yzw);
+            // A solution that failed is not handed on.
+            m = any(isnan(old)) || any(isinf(old)) ? m : old;
         }
     }
     guess[i] = m;

@@ -218,7 +218,9 @@ static void record(tyn_recorder *r, const void *params)
         terms_of_lut += block.terms[row] * block.num_sets;
         if (terms > 0) {
             float moments[MAX_TERMS][2];
-            make_moments(&block, row, moments);
+            if (tyn_rec_live(r)) {
+                make_moments(&block, row, moments);
+            }
             tyn_rec_update(r, SCATTER_LUT_PORT_MOMENTS, block.first_term[row] * sizeof(moments[0]),
                            moments, terms * sizeof(moments[0]));
         }
@@ -235,7 +237,9 @@ static void record(tyn_recorder *r, const void *params)
            bytes = 8.0 * TYN_LUT_ANGLES * TYN_LUT_DEPTHS * block.num_rows * block.num_sets;
     if (p->tms) {
         float cones[TYN_TMS_CONES][TYN_TMS_MAX_TERMS];
-        make_cones(cones);
+        if (tyn_rec_live(r)) {
+            make_cones(cones);
+        }
         tyn_rec_update(r, SCATTER_LUT_PORT_CONES, 0, cones, CONES_BYTES);
         uint32_t layers = TYN_TMS_CONES * block.num_rows;
         tyn_rec_dispatch(r, &(tyn_dispatch){

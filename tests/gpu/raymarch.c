@@ -528,6 +528,25 @@ static void opaque(void **state)
     free(s);
 }
 
+// Where one channel is much denser than another, that one is still seen through.
+static void opaque_in_one_colour(void **state)
+{
+    gpu_test *t = *state;
+    march_scene *s = malloc(sizeof *s);
+    static const float dense[] = {2, 5, 20};
+    for (int i = 0; i < 3; i++) {
+        make_cube(s, 0, 11, 0);
+        s->params.num_suns = s->params.grey = 0;
+        s->medium.sigma_a[1] = s->medium.sigma_a[2] = 11 * dense[i];
+        s->medium.sigma_t_max = 11 * dense[i];
+        set_camera(s, 0, 1, 0, 3);
+        s->params.layers = RAYMARCH_LAYER_TRANSMITTANCE;
+        run(t, s);
+        assert_close(pixel(t, s, "transmittance", 8, 8)[0], exp(-11), 1e-3, "transmittance");
+    }
+    free(s);
+}
+
 static void host_depth(void **state)
 {
     gpu_test *t = *state;
@@ -678,11 +697,17 @@ static void nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(single_scattering), cmocka_unit_test(lumps_grey),
-        cmocka_unit_test(lumps_colour),      cmocka_unit_test(skipping),
-        cmocka_unit_test(furnace),           cmocka_unit_test(opaque),
-        cmocka_unit_test(surfaces),          cmocka_unit_test(host_depth),
-        cmocka_unit_test(bad_density),       cmocka_unit_test(antialias),
+        cmocka_unit_test(single_scattering),
+        cmocka_unit_test(lumps_grey),
+        cmocka_unit_test(lumps_colour),
+        cmocka_unit_test(skipping),
+        cmocka_unit_test(furnace),
+        cmocka_unit_test(opaque),
+        cmocka_unit_test(surfaces),
+        cmocka_unit_test(host_depth),
+        cmocka_unit_test(bad_density),
+        cmocka_unit_test(opaque_in_one_colour),
+        cmocka_unit_test(antialias),
         cmocka_unit_test(nothing),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);

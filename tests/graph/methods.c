@@ -175,14 +175,32 @@ static void assert_spared(stage *st, const char *const *names)
     }
 }
 
-static void one(const char *method, int scene)
+// What a method declares is on its list of passes.
+static void assert_listed(stage *st, const tyn_method_info *info)
 {
+    tyn_report report;
+    tyn_context_report(st->ctx, &report);
+    for (uint32_t i = 0; i < report.num_nodes; i++) {
+        bool listed = false;
+        for (const tyn_pass_desc *const *p = info->passes; *p; p++) {
+            listed = listed || strcmp(report.nodes[i].name, (*p)->name) == 0;
+        }
+        if (!listed) {
+            fail_msg("%s: pass %s is not on the method's list", st->label, report.nodes[i].name);
+        }
+    }
+}
+
+static void one(const tyn_method_info *info, int scene)
+{
+    const char *method = info->name;
     static const char *const view_independent[] = {
         "medium", "beam", "scatter_lut", "lattice_cells", "lattice_source", "lattice", NULL};
     static const char *const light_independent[] = {"medium", "scatter_lut", "lattice_cells", NULL};
     stage st;
     open_stage(&st, method, scene);
     frame(&st);
+    assert_listed(&st, info);
     assert_true(st.fake->copies > 0); // the picture is read back
     bool progressive = strcmp(method, "path") == 0;
     if (!progressive) {
@@ -217,7 +235,7 @@ static void every_method_on_every_scene(void **state)
         tyn_method_info info;
         tyn_method_at(m, &info);
         for (int scene = 0; scene < NUM_SCENES; scene++) {
-            one(info.name, scene);
+            one(&info, scene);
         }
     }
 }

@@ -406,7 +406,12 @@ fake_vulkan *fake_create(void)
     dev->properties.limits.maxImageDimension3D = 2048;
     for (int a = 0; a < 3; a++) {
         dev->properties.limits.maxComputeWorkGroupCount[a] = 65535;
+        dev->properties.limits.maxComputeWorkGroupSize[a] = a < 2 ? 1024 : 64;
     }
+    dev->properties.limits.maxComputeWorkGroupInvocations = 1024;
+    dev->properties.limits.maxPerStageDescriptorStorageImages = 32;
+    dev->properties.limits.maxPerStageDescriptorStorageBuffers = 32;
+    dev->properties.limits.maxPerStageDescriptorSampledImages = 32;
     dev->properties.limits.bufferImageGranularity = 1024;
     dev->memory.memoryTypeCount = 1;
     dev->memory.memoryTypes[0].propertyFlags =

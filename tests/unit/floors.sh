@@ -92,6 +92,7 @@ check()
             next
         }
         to = unit(target)
+        if (to ~ /^public\// && !(substr(to, 8) in lowest)) { fault("no floor is known for <" name ">") }
         if (from == to) { next }
         if (from ~ /^public\//) {
             a = tier[substr(from, 8)]

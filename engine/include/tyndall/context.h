@@ -75,7 +75,9 @@ typedef struct tyn_view {
     const float (*points)[3]; // PROBE: world positions
     uint32_t num_points;
     bool scattered_only;      // PROBE: without the uncollided light
-    uint64_t time_index;      // frame number of a sequence
+    uint64_t time_index;      // frame number of a sequence: importance.smoothing takes a step when it changes
+    uint32_t cut;             // another number forgets what earlier frames left (importance.smoothing,
+                              // lattice.warm): for another scene, or a camera that jumps
 } tyn_view;
 
 typedef struct tyn_frame {

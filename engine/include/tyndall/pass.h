@@ -131,8 +131,9 @@ typedef struct tyn_pass_desc {
     const tyn_param *params; // user-visible; the struct may hold further fields that the method sets
     uint32_t num_params;
     size_t params_size; // the struct must have no uninitialised padding: start from tyn_pass_defaults
-    bool media_only; // params and inputs depend on the media alone (no light, no camera): with media-only
-                     // inputs the node is part of the set-up and not of a frame's cost
+    bool media_only; // params and inputs depend on the media alone, or on what changes as seldom (which
+                     // kinds of light there are; no light's strength or direction, no camera): with
+                     // media-only inputs the node is part of the set-up and not of a frame's cost
     // Gives every OUT and SCRATCH port its extent (tyn_build_*). Depends only on params and on the
     // extents of the inputs. An OUT port that is given none does not exist in this configuration.
     tyn_result (*declare)(tyn_builder *b, const void *params);
@@ -201,6 +202,9 @@ TYN_API void tyn_rec_draw(tyn_recorder *r, const tyn_draw *d);
 // Inline data, <= 65536 bytes, multiple of 4, into a buffer port.
 TYN_API void tyn_rec_update(tyn_recorder *r, uint8_t port, uint64_t offset, const void *data,
                             size_t size);
+// `record` is called several times a frame, and mostly to see what it would do. False then: the data of
+// tyn_rec_update and the amounts of tyn_rec_work are not looked at, so what is costly may be left out.
+TYN_API bool tyn_rec_live(const tyn_recorder *r);
 TYN_API void tyn_rec_fill(tyn_recorder *r, uint8_t port, uint32_t value); // whole buffer
 TYN_API void tyn_rec_clear(tyn_recorder *r, uint8_t port); // image (mip 0..) to zero
 TYN_API void tyn_rec_copy_buffer(tyn_recorder *r, uint8_t src, uint8_t dst, uint64_t bytes);
