@@ -14,7 +14,7 @@
 // Every step takes the medium at its middle and integrates the attenuation exactly: int_0^ds e^(-sigma t)
 // dt = ds (1 - e^-x) / x with x = sigma ds. Light is taken at the centroid of that weight.
 //
-// Include after camera, environment, medium, beam, scatter_lut and lattice. RAYMARCH_GREY: all channels
+// Include after camera, environment, medium, beam, scatter_lut, lattice and lattice_walls. RAYMARCH_GREY: all channels
 // of the medium are equal, so optical depths are scalars.
 #ifndef TYN_RAYMARCH_GLSL
 #define TYN_RAYMARCH_GLSL
@@ -262,6 +262,19 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, float s,
     return light * (k_tms * weight_scaled + k_lobe * weight);
 }
 
+// Light of the lattice at a point, as texture inscatter has it; uvw is its place there.
+vec3 march_field(vec3 p, vec3 uvw)
+{
+    if (raymarch_has(RAYMARCH_WALLS)) {
+        lattice_box box = lattice_box_of(medium.extent, textureSize(inscatter_tex, 0) - 2);
+        walls_place place = walls_place_of(box, p);
+        if (walls_near(place)) {
+            return walls_fetch(inscatter_tex, box, walls_blend_of(box, place, p), ivec3(1)).rgb;
+        }
+    }
+    return textureLod(inscatter_tex, uvw, 0.0).rgb;
+}
+
 // Moves `s` on to the next brick that is not empty, or to `end`.
 float march_skip(vec3 origin, vec3 direction, vec3 inverse, float s, float end)
 {
@@ -343,7 +356,7 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
             through_before = through_scaled;
 
             if (raymarch_has(RAYMARCH_FIELD)) {
-                vec3 J = textureLod(inscatter_tex, field0 + at * field1, 0.0).rgb;
+                vec3 J = march_field(origin + at * direction, field0 + at * field1);
                 if (raymarch_has(RAYMARCH_ONE_CHANNEL)) {
                     J = J.r * args.tint;
                 }

@@ -24,6 +24,7 @@ typedef struct tyn_picture_inputs {
     tyn_beam_refs beams;
     tyn_ref lut, lut_block; // given: all forward orders of the suns, else the first
     tyn_ref inscatter;
+    tyn_ref wall_links, wall_cells; // of walls: surfaces among the cells of inscatter
     tyn_ref glow; // the map scattered forward (env_glow)
     uint32_t num_suns;
     float cell;       // of the lattice behind inscatter, m; 0 = none

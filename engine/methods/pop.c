@@ -7,6 +7,7 @@
 // into one solve on a lattice of cubic cells for all lights together, seen from the camera by merge
 // and raymarch. A node that a scene does not need is not declared.
 #include "methods/sky.h"
+#include "methods/walls.h"
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
 #include "passes/columns/columns.h"
@@ -18,6 +19,7 @@
 #include "passes/lattice/lattice.h"
 #include "passes/merge/merge.h"
 #include "passes/probe/probe.h"
+#include "passes/walls/walls.h"
 #include "passes/composite/composite.h"
 #include "passes/tonemap/tonemap.h"
 #include <tyndall/registry.h>
@@ -36,7 +38,8 @@ typedef struct field {
     tyn_picture_inputs picture;
     tyn_sky_refs sky;
     tyn_ref tms, columns;
-    tyn_ref cells, source, power, moments, leaks;
+    tyn_ref cells, source, power, moments, leaks, wall_power;
+    tyn_wall_refs walls; // surfaces on the lattice; {0} without
     bool from_all_sides; // the mean of the environment lights the medium
 } field;
 
@@ -99,8 +102,9 @@ static bool is_thin(const tyn_frame_scene *frame)
 }
 
 // One channel is solved if medium and light allow it.
-static void choose_channels(field *f, const tyn_frame_scene *frame)
+static void choose_channels(field *f, const tyn_scene *scene, const tyn_frame_scene *frame)
 {
+    bool grey = frame->grey; // and so are the walls
     float colors[TYN_LIGHTS_MAX + 2][3];
     uint32_t count = 0;
     for (uint32_t i = 0; i < frame->num_suns + frame->num_map_suns; i++) {
@@ -109,9 +113,16 @@ static void choose_channels(field *f, const tyn_frame_scene *frame)
     memcpy(colors[count++], frame->environment.sky, sizeof colors[0]);
     memcpy(colors[count++], frame->medium.emission, sizeof colors[0]);
     // A map may have another colour in every direction.
+    const tyn_surfaces *surfaces = &scene->surfaces;
+    bool walls = tyn_has_walls(frame);
+    for (uint32_t i = 0; walls && i < surfaces->num_materials; i++) {
+        const tyn_surface_material *m = &surfaces->materials[i];
+        grey = grey && m->texture == TYN_NO_TEXTURE && m->albedo[0] == m->albedo[1] &&
+               m->albedo[1] == m->albedo[2] && !any_positive(m->emission);
+    }
     bool one =
         tyn_lattice_tint((const float(*)[3])colors, count, f->shape.tint) && !f->sky.sky.resource;
-    f->shape.channels = one && frame->grey ? 1 : 3;
+    f->shape.channels = one && grey ? 1 : 3;
     if (f->shape.channels == 3) {
         f->shape.tint[0] = f->shape.tint[1] = f->shape.tint[2] = 1.0f;
     }
@@ -173,6 +184,14 @@ static tyn_result add_cells(tyn_graph *g, const tyn_job *job, field *f)
     return result;
 }
 
+static tyn_result add_walls(tyn_graph *g, const tyn_job *job, field *f)
+{
+    tyn_result result = tyn_add_walls(g, job, &f->shape, &f->walls);
+    f->picture.wall_links = f->walls.links;
+    f->picture.wall_cells = f->walls.cells;
+    return result;
+}
+
 static tyn_result add_source(tyn_graph *g, const tyn_job *job, field *f)
 {
     tyn_lattice_source_params params;
@@ -191,6 +210,8 @@ static tyn_result add_source(tyn_graph *g, const tyn_job *job, field *f)
         [LATTICE_SOURCE_PORT_COLUMN] = beams->column,
         [LATTICE_SOURCE_PORT_TAU_A] = beams->tau_a,
         [LATTICE_SOURCE_PORT_TAU_P] = beams->tau_p,
+        [LATTICE_SOURCE_PORT_WALL_LINKS] = f->walls.links,
+        [LATTICE_SOURCE_PORT_WALL_CELLS] = f->walls.cells,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_source, &params, refs);
     f->source = refs[LATTICE_SOURCE_PORT_SOURCE];
@@ -331,6 +352,8 @@ static tyn_result add_solve(tyn_graph *g, const tyn_job *job, field *f)
         [LATTICE_PORT_CELLS] = f->cells,
         [LATTICE_PORT_SOURCE] = f->source,
         [LATTICE_PORT_ENVIRONMENT] = environment_of(job, f),
+        [LATTICE_PORT_WALL_LINKS] = f->walls.links,
+        [LATTICE_PORT_WALL_CELLS] = f->walls.cells,
     };
     memory last = {0};
     tyn_result result = params.warm ? add_recall(g, job, f, refs, &last) : TYN_OK;
@@ -339,6 +362,7 @@ static tyn_result add_solve(tyn_graph *g, const tyn_job *job, field *f)
     }
     f->moments = refs[LATTICE_PORT_MOMENTS];
     f->leaks = refs[LATTICE_PORT_LEAKS];
+    f->wall_power = f->walls.links.resource ? refs[LATTICE_PORT_WALL_POWER] : (tyn_ref){0};
     tyn_job_counters(g, job, "lattice", refs[LATTICE_PORT_COUNTERS]);
     return result == TYN_OK && params.warm ? add_keep(g, f, &last) : result;
 }
@@ -417,6 +441,8 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, field *f)
         [PROBE_PORT_TAU_A] = beams->tau_a,
         [PROBE_PORT_TAU_P] = beams->tau_p,
         [PROBE_PORT_POINTS] = job->refs.points,
+        [PROBE_PORT_WALL_LINKS] = f->walls.links,
+        [PROBE_PORT_WALL_CELLS] = f->walls.cells,
         [PROBE_PORT_ENVIRONMENT] = environment_of(job, f),
         [PROBE_PORT_ORDINATES] = f->sky.ordinates,
         [PROBE_PORT_COLUMNS] = f->columns,
@@ -450,6 +476,7 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, field *f)
         [BALANCE_PORT_SOURCE] = f->source,
         [BALANCE_PORT_POWER] = f->power,
         [BALANCE_PORT_LEAKS] = f->leaks,
+        [BALANCE_PORT_WALL_POWER] = f->wall_power,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_balance, &params, refs);
     if (result == TYN_OK) {
@@ -479,6 +506,15 @@ static tyn_result add_lights(tyn_graph *g, const tyn_job *job, field *f)
 {
     tyn_result result =
         tyn_add_beams(g, job, &f->picture.media, f->picture.num_suns, &f->picture.beams);
+    if (tyn_has_walls(job->frame)) {
+        // Ordinates know of no walls; the mean of the sky comes in along the lattice's lines, which do.
+        if (job->frame->environment.has_map) {
+            tyn_method_warn(job,
+                            "among surfaces the medium is lit by the mean of the environment map "
+                            "and by its suns");
+        }
+        return result;
+    }
     return result == TYN_OK
                ? tyn_add_sky(g, job, &f->picture.media, f->picture.num_suns, true, &f->sky)
                : result;
@@ -491,12 +527,13 @@ static tyn_result add_field(tyn_graph *g, const tyn_job *job, field *f)
     tyn_settings_params(job->settings, &tyn_pass_lattice, &lattice);
     memcpy(f->shape.extent, frame->medium.extent, sizeof f->shape.extent);
     f->shape.cells = lattice.shape.cells;
-    choose_channels(f, frame);
+    choose_channels(f, job->scene, frame);
     float longest = fmaxf(f->shape.extent[0], fmaxf(f->shape.extent[1], f->shape.extent[2]));
     f->picture.cell = longest / (float)f->shape.cells;
     const bool ordinates = f->sky.ordinates.resource != 0;
     const step steps[] = {
         {true, add_cells},
+        {true, add_walls},
         {ordinates, add_columns},
         {f->picture.num_suns, add_source},
         {ordinates, add_ordinates},
@@ -552,17 +589,29 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,          &tyn_pass_beam,
-    &tyn_pass_env_importance,  &tyn_pass_importance,
-    &tyn_pass_ordinates,       &tyn_pass_scatter_lut,
-    &tyn_pass_env_glow,        &tyn_pass_lattice_cells,
-    &tyn_pass_columns_average, &tyn_pass_columns,
-    &tyn_pass_lattice_source,  &tyn_pass_lattice_ordinates,
-    &tyn_pass_lattice_recall,  &tyn_pass_lattice,
-    &tyn_pass_lattice_keep,    &tyn_pass_merge,
-    &tyn_pass_raymarch,        &tyn_pass_composite,
-    &tyn_pass_tonemap,         &tyn_pass_probe,
-    &tyn_pass_balance,         NULL,
+    &tyn_pass_medium,
+    &tyn_pass_beam,
+    &tyn_pass_env_importance,
+    &tyn_pass_importance,
+    &tyn_pass_ordinates,
+    &tyn_pass_scatter_lut,
+    &tyn_pass_env_glow,
+    &tyn_pass_lattice_cells,
+    &tyn_pass_walls,
+    &tyn_pass_columns_average,
+    &tyn_pass_columns,
+    &tyn_pass_lattice_source,
+    &tyn_pass_lattice_ordinates,
+    &tyn_pass_lattice_recall,
+    &tyn_pass_lattice,
+    &tyn_pass_lattice_keep,
+    &tyn_pass_merge,
+    &tyn_pass_raymarch,
+    &tyn_pass_composite,
+    &tyn_pass_tonemap,
+    &tyn_pass_probe,
+    &tyn_pass_balance,
+    NULL,
 };
 
 const tyn_method tyn_method_pop = {

@@ -20,6 +20,7 @@
 #include "passes/shadow_map/shadow_map.h"
 #include "passes/tonemap/tonemap.h"
 #include "passes/upsample/upsample.h"
+#include "passes/walls/walls.h"
 #include <string.h>
 
 static const tyn_pass_desc *const passes[] = {
@@ -29,6 +30,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_columns_average,
     &tyn_pass_columns,
     &tyn_pass_scatter_lut,
+    &tyn_pass_walls,
     &tyn_pass_lattice_cells,
     &tyn_pass_lattice_source,
     &tyn_pass_lattice_ordinates,

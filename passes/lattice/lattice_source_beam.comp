@@ -17,6 +17,9 @@
 #include "medium.glsl"
 #include "beam.glsl"
 #include "lattice.glsl"
+#define WALLS_LINKS 8
+#define WALLS_CELLS 9
+#include "lattice_walls.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(push_constant, scalar) uniform push
@@ -27,6 +30,7 @@ layout(push_constant, scalar) uniform push
 layout(binding = 7, rgba32f) uniform writeonly image3D sunlit;
 
 layout(constant_id = 1) const uint num_channels = 3;
+layout(constant_id = 2) const uint walls = 0;
 
 void main()
 {
@@ -47,6 +51,9 @@ void main()
             beam_ray ray = beam_ray_of(sun, row, vec3(1.0, 0.0, 0.0));
             for (uint i = 0; i < args.samples; i++) {
                 float s = float(i) * step_length;
+                if (walls == 1 && !walls_same_side(box, c, row + vec3(s, 0.0, 0.0))) {
+                    continue;
+                }
                 medium_point m = medium_sample(row + vec3(s, 0.0, 0.0));
                 similarity_clamp(m.sigma_s, m.g);
                 vec3 scaled = (1.0 - delta_fraction(m.g)) * m.sigma_s;

@@ -14,15 +14,17 @@ static const tyn_port ports[BALANCE_NUM_PORTS] = {
     [BALANCE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
                                   "struct env_block: its mean without suns enters at the box"},
     [BALANCE_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, true, "struct ordinates_block"},
+    [BALANCE_PORT_WALL_POWER] = {"wall_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice"},
     [BALANCE_PORT_BALANCE] = {"balance", TYN_OUT, TYN_BUFFER, 0, false, "tyn_balance, W"},
 };
 
 static const tyn_binding bindings[] = {
-    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},        {BALANCE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},   {BALANCE_PORT_CELLS, TYN_USE_SAMPLED},
-    {BALANCE_PORT_MOMENTS, TYN_USE_SAMPLED},       {BALANCE_PORT_SOURCE, TYN_USE_SAMPLED},
-    {BALANCE_PORT_POWER, TYN_USE_STORAGE_READ},    {BALANCE_PORT_LEAKS, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_BALANCE, TYN_USE_STORAGE_WRITE}, {BALANCE_PORT_ORDINATES, TYN_USE_UNIFORM},
+    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},          {BALANCE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},     {BALANCE_PORT_CELLS, TYN_USE_SAMPLED},
+    {BALANCE_PORT_MOMENTS, TYN_USE_SAMPLED},         {BALANCE_PORT_SOURCE, TYN_USE_SAMPLED},
+    {BALANCE_PORT_POWER, TYN_USE_STORAGE_READ},      {BALANCE_PORT_LEAKS, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_BALANCE, TYN_USE_STORAGE_WRITE},   {BALANCE_PORT_ORDINATES, TYN_USE_UNIFORM},
+    {BALANCE_PORT_WALL_POWER, TYN_USE_STORAGE_READ},
 };
 
 static const tyn_kernel kernels[] = {
@@ -32,8 +34,8 @@ static const tyn_kernel kernels[] = {
      sizeof(struct balance_args),
      {BALANCE_GROUP, 1, 1},
      bindings,
-     10,
-     0},
+     11,
+     1},
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -53,8 +55,10 @@ static void record(tyn_recorder *r, const void *params)
         .num_leaks =
             tyn_rec_extent(r, BALANCE_PORT_LEAKS).x / (uint32_t)sizeof(float) / p->channels,
     };
-    tyn_rec_dispatch(r,
-                     &(tyn_dispatch){.cells = {BALANCE_GROUP * p->channels, 1, 1}, .args = &args});
+    const uint32_t walls = tyn_rec_has(r, BALANCE_PORT_WALL_POWER);
+    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = {BALANCE_GROUP * p->channels, 1, 1},
+                                        .args = &args,
+                                        .spec = &walls});
 }
 
 const tyn_pass_desc tyn_pass_balance = {

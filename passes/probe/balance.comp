@@ -53,6 +53,13 @@ layout(binding = 9, scalar) uniform ordinates_uniform
     ordinates_block ordinates;
 };
 
+layout(binding = 10, scalar) readonly buffer wall_buffer
+{
+    vec2 wall_power[]; // absorbed by a cell's walls, sent out by them; W
+};
+layout(constant_id = 0) const uint walls = 0;
+
+shared vec2 wall_sums[BALANCE_GROUP];
 shared vec4 sums[BALANCE_GROUP]; // absorbed, emitted, leak, lost by suns and ordinates
 
 uvec2 double_bits(float x)
@@ -83,6 +90,7 @@ void main()
     dims.z /= int(args.channels);
     float dx = lattice_box_of(medium.extent, dims).dx, volume = dx * dx * dx;
     vec4 sum = vec4(0.0);
+    vec2 wall_sum = vec2(0.0);
     for (uint i = me; i < uint(dims.x * dims.y * dims.z); i += BALANCE_GROUP) {
         ivec3 c = ivec3(int(i) % dims.x, int(i) / dims.x % dims.y,
                         int(i) / (dims.x * dims.y) + int(ch) * dims.z);
@@ -94,11 +102,16 @@ void main()
     for (uint i = me; i < args.num_leaks; i += BALANCE_GROUP) {
         sum.z += leaks[ch * args.num_leaks + i];
     }
+    for (uint i = me, n = uint(dims.x * dims.y * dims.z); walls == 1 && i < n; i += BALANCE_GROUP) {
+        wall_sum += wall_power[ch * n + i];
+    }
     sums[me] = sum;
+    wall_sums[me] = wall_sum;
     for (uint half_n = BALANCE_GROUP / 2; half_n > 0; half_n /= 2) {
         barrier();
         if (me < half_n) {
             sums[me] += sums[me + half_n];
+            wall_sums[me] += wall_sums[me + half_n];
         }
     }
     barrier();
@@ -119,11 +132,11 @@ void main()
         entering += e * w.entering;
     }
     float escaped = entering + sums[0].z - sums[0].w;
-    float absorbed = sums[0].x, emitted = sums[0].y, given = entering + emitted;
+    float absorbed = sums[0].x, emitted = sums[0].y + wall_sums[0].y, given = entering + emitted;
     write(0, ch, entering);
     write(1, ch, emitted);
     write(2, ch, absorbed);
-    write(3, ch, 0.0);
+    write(3, ch, wall_sums[0].x);
     write(4, ch, escaped);
-    write(5, ch, given > 0.0 ? 1.0 - (absorbed + escaped) / given : 0.0);
+    write(5, ch, given > 0.0 ? 1.0 - (absorbed + wall_sums[0].x + escaped) / given : 0.0);
 }

@@ -17,17 +17,20 @@ static const tyn_port ports[PROBE_NUM_PORTS] = {
                                 "struct env_block: its mean without suns enters at the box"},
     [PROBE_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, true, "struct ordinates_block"},
     [PROBE_PORT_COLUMNS] = {"columns", TYN_IN, TYN_BUFFER, 0, true, "of columns"},
+    [PROBE_PORT_WALL_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
+    [PROBE_PORT_WALL_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
     [PROBE_PORT_POINTS] = {"points", TYN_IN, TYN_BUFFER, 0, false, "vec3[], m"},
     [PROBE_PORT_RESULTS] = {"results", TYN_OUT, TYN_BUFFER, 0, false, "tyn_probe_result[], W/m^2"},
 };
 
 static const tyn_binding bindings[] = {
-    {PROBE_PORT_MEDIUM, TYN_USE_UNIFORM},        {PROBE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
-    {PROBE_PORT_MOMENTS, TYN_USE_SAMPLED},       {PROBE_PORT_BEAMS, TYN_USE_STORAGE_READ},
-    {PROBE_PORT_COLUMN, TYN_USE_SAMPLED},        {PROBE_PORT_TAU_A, TYN_USE_SAMPLED},
-    {PROBE_PORT_TAU_P, TYN_USE_SAMPLED},         {PROBE_PORT_POINTS, TYN_USE_STORAGE_READ},
-    {PROBE_PORT_RESULTS, TYN_USE_STORAGE_WRITE}, {PROBE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {PROBE_PORT_ORDINATES, TYN_USE_UNIFORM},     {PROBE_PORT_COLUMNS, TYN_USE_STORAGE_READ},
+    {PROBE_PORT_MEDIUM, TYN_USE_UNIFORM},          {PROBE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
+    {PROBE_PORT_MOMENTS, TYN_USE_SAMPLED},         {PROBE_PORT_BEAMS, TYN_USE_STORAGE_READ},
+    {PROBE_PORT_COLUMN, TYN_USE_SAMPLED},          {PROBE_PORT_TAU_A, TYN_USE_SAMPLED},
+    {PROBE_PORT_TAU_P, TYN_USE_SAMPLED},           {PROBE_PORT_POINTS, TYN_USE_STORAGE_READ},
+    {PROBE_PORT_RESULTS, TYN_USE_STORAGE_WRITE},   {PROBE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {PROBE_PORT_ORDINATES, TYN_USE_UNIFORM},       {PROBE_PORT_COLUMNS, TYN_USE_STORAGE_READ},
+    {PROBE_PORT_WALL_LINKS, TYN_USE_STORAGE_READ}, {PROBE_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
 };
 
 static const tyn_kernel kernels[] = {
@@ -37,8 +40,8 @@ static const tyn_kernel kernels[] = {
      sizeof(struct probe_args),
      {64, 1, 1},
      bindings,
-     12,
-     1},
+     14,
+     2},
 };
 
 static uint32_t num_points(tyn_extent bytes)
@@ -67,8 +70,9 @@ static void record(tyn_recorder *r, const void *params)
         .scattered_only = p->scattered_only,
     };
     memcpy(args.world, p->world, sizeof args.world);
+    const uint32_t spec[2] = {p->mode, tyn_rec_has(r, PROBE_PORT_WALL_LINKS)};
     tyn_rec_dispatch(
-        r, &(tyn_dispatch){.cells = {args.num_points, 1, 1}, .args = &args, .spec = &p->mode});
+        r, &(tyn_dispatch){.cells = {args.num_points, 1, 1}, .args = &args, .spec = spec});
     tyn_rec_work(r, "points", args.num_points);
 }
 

@@ -15,7 +15,11 @@
 #include "beam.glsl"
 #include "columns.glsl"
 #include "lattice.glsl"
+#define WALLS_LINKS 12
+#define WALLS_CELLS 13
+#include "lattice_walls.glsl"
 
+layout(constant_id = 1) const uint walls = 0;
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform push
 {
@@ -66,6 +70,12 @@ ivec3 corner_of(cell_corners c, uint corner, out float weight)
 
 vec4 moments_at(lattice_box box, vec3 p, uint ch)
 {
+    if (walls == 1) {
+        walls_place place = walls_place_of(box, p);
+        if (walls_near(place)) {
+            return walls_fetch(moments, box, walls_blend_of(box, place, p), ivec3(0, 0, int(ch) * box.dims.z));
+        }
+    }
     cell_corners corners = corners_of(box, p);
     vec4 sum = vec4(0.0);
     for (uint i = 0; i < 8; i++) {

@@ -25,8 +25,10 @@ enum {
     PROBE_PORT_ENVIRONMENT, // IN optional buffer struct env_block, what lattice was given
     PROBE_PORT_ORDINATES,   // IN optional buffer struct ordinates_block
     PROBE_PORT_COLUMNS,     // IN optional buffer, of columns
-    PROBE_PORT_POINTS,      // IN buffer vec3[], M, m
-    PROBE_PORT_RESULTS,     // OUT buffer tyn_probe_result[]
+    PROBE_PORT_WALL_LINKS,  // IN optional buffers, of walls
+    PROBE_PORT_WALL_CELLS,
+    PROBE_PORT_POINTS,  // IN buffer vec3[], M, m
+    PROBE_PORT_RESULTS, // OUT buffer tyn_probe_result[]
     PROBE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_probe;
@@ -47,6 +49,7 @@ enum {
     BALANCE_PORT_LEAKS,       // IN buffer, of lattice
     BALANCE_PORT_ENVIRONMENT, // IN optional buffer struct env_block, what lattice was given
     BALANCE_PORT_ORDINATES,   // IN optional buffer struct ordinates_block
+    BALANCE_PORT_WALL_POWER,  // IN optional buffer, of lattice
     BALANCE_PORT_BALANCE,     // OUT buffer tyn_balance
     BALANCE_NUM_PORTS,
 };

@@ -32,6 +32,8 @@ static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
     [RAYMARCH_PORT_LUT_BLOCK] = {"lut_block", TYN_IN, TYN_BUFFER, 0, true, "lut_block"},
     [RAYMARCH_PORT_INSCATTER] = {"inscatter", TYN_IN, TYN_IMAGE_3D, 0, true,
                                  "radiance scattered towards the eye, W/(m^2 sr)"},
+    [RAYMARCH_PORT_WALL_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
+    [RAYMARCH_PORT_WALL_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
     [RAYMARCH_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "camera_block"},
     [RAYMARCH_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, false, "env_block"},
     [RAYMARCH_PORT_ENV_MAP] = {"env_map", TYN_IN, TYN_IMAGE_2D, 0, true,
@@ -78,6 +80,8 @@ static const tyn_binding bindings[] = {
     {RAYMARCH_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
     {RAYMARCH_PORT_GLOW, TYN_USE_SAMPLED, true},
     {RAYMARCH_PORT_SURFACE, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_WALL_LINKS, TYN_USE_STORAGE_READ, false},
+    {RAYMARCH_PORT_WALL_CELLS, TYN_USE_STORAGE_READ, false},
     {RAYMARCH_PORT_SIGMA_A, TYN_USE_SAMPLED, false}, // from here on colour only
     {RAYMARCH_PORT_G, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_EMISSION, TYN_USE_SAMPLED, false},
@@ -250,6 +254,7 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= p->closed ? RAYMARCH_CLOSED : 0;
     features |= p->antialias ? RAYMARCH_SUPERSAMPLE : 0;
     features |= p->one_channel ? RAYMARCH_ONE_CHANNEL : 0;
+    features |= tyn_rec_has(r, RAYMARCH_PORT_WALL_LINKS) ? RAYMARCH_WALLS : 0;
     return features;
 }
 

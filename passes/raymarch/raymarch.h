@@ -68,9 +68,11 @@ enum {
     RAYMARCH_PORT_COLUMN,   // IN optional 3D: column, or tau_s in mode COEFFICIENTS
     RAYMARCH_PORT_TAU_A,    // IN optional 3D: mode COEFFICIENTS, as the one below
     RAYMARCH_PORT_TAU_P,
-    RAYMARCH_PORT_LUT,         // IN optional 2D: with `kernels` and suns, as the next
-    RAYMARCH_PORT_LUT_BLOCK,   // IN optional buffer struct lut_block
-    RAYMARCH_PORT_INSCATTER,   // IN optional 3D: of merge; without it suns and emission only
+    RAYMARCH_PORT_LUT,        // IN optional 2D: with `kernels` and suns, as the next
+    RAYMARCH_PORT_LUT_BLOCK,  // IN optional buffer struct lut_block
+    RAYMARCH_PORT_INSCATTER,  // IN optional 3D: of merge; without it suns and emission only
+    RAYMARCH_PORT_WALL_LINKS, // IN optional buffers, of walls: surfaces part the cells of inscatter
+    RAYMARCH_PORT_WALL_CELLS,
     RAYMARCH_PORT_CAMERA,      // IN buffer struct camera_block
     RAYMARCH_PORT_ENVIRONMENT, // IN buffer struct env_block
     RAYMARCH_PORT_ENV_MAP,     // IN optional 2D

@@ -48,12 +48,14 @@ layout(binding = 19, scalar) buffer counter_buffer
 };
 layout(binding = 20) uniform sampler3D glow_tex;
 layout(binding = 21) uniform sampler2D surface_tex;
+#define WALLS_LINKS 22
+#define WALLS_CELLS 23
 #ifndef RAYMARCH_GREY
-#define MEDIUM_SIGMA_A 22
-#define MEDIUM_G 23
-#define MEDIUM_EMISSION 24
-#define BEAM_TAU_A 25
-#define BEAM_TAU_P 26
+#define MEDIUM_SIGMA_A 24
+#define MEDIUM_G 25
+#define MEDIUM_EMISSION 26
+#define BEAM_TAU_A 27
+#define BEAM_TAU_P 28
 #endif
 
 layout(push_constant, scalar) uniform Args

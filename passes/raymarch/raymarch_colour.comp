@@ -13,6 +13,7 @@
 #include "beam.glsl"
 #include "scatter_lut.glsl"
 #include "lattice.glsl"
+#include "lattice_walls.glsl"
 #include "raymarch.glsl"
 #include "raymarch_pixel.glsl"
 

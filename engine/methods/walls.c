@@ -1,0 +1,54 @@
+// walls.c -- surfaces as the lattice sees them.
+#include "methods/walls.h"
+#include "passes/walls/walls.h"
+#include <tyndall/registry.h>
+#include <math.h>
+
+bool tyn_has_walls(const tyn_frame_scene *frame)
+{
+    if (frame->num_triangles == 0) {
+        return false;
+    }
+    // The surfaces' box in M, and the media's with the cells beside it, which are at most a quarter of it.
+    const float *m = frame->m_from_world, *extent = frame->medium.extent;
+    float longest = fmaxf(extent[0], fmaxf(extent[1], extent[2]));
+    for (int axis = 0; axis < 3; axis++) {
+        float lo = m[12 + axis], hi = lo;
+        for (int k = 0; k < 3; k++) {
+            float a = m[4 * k + axis] * frame->surfaces.lo[k],
+                  b = m[4 * k + axis] * frame->surfaces.hi[k];
+            lo += fminf(a, b);
+            hi += fmaxf(a, b);
+        }
+        if (hi < -0.25f * longest || lo > extent[axis] + 0.25f * longest) {
+            return false;
+        }
+    }
+    return true;
+}
+
+tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
+                         tyn_wall_refs *walls)
+{
+    *walls = (tyn_wall_refs){{0}};
+    if (!tyn_has_walls(job->frame)) {
+        return TYN_OK;
+    }
+    tyn_extent dims = tyn_lattice_dims(shape->extent, shape->cells);
+    tyn_walls_params params;
+    tyn_settings_params(job->settings, &tyn_pass_walls, &params);
+    params.dims[0] = dims.x;
+    params.dims[1] = dims.y;
+    params.dims[2] = dims.z;
+    for (int a = 0; a < 3; a++) {
+        params.extent[a] = shape->extent[a];
+    }
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [WALLS_PORT_SURFACES] = job->refs.surfaces,   [WALLS_PORT_VERTICES] = job->refs.vertices,
+        [WALLS_PORT_TRIANGLES] = job->refs.triangles, [WALLS_PORT_MATERIALS] = job->refs.materials,
+        [WALLS_PORT_TEXTURES] = job->refs.textures,   [WALLS_PORT_TEXELS] = job->refs.texels,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_walls, &params, refs);
+    *walls = (tyn_wall_refs){refs[WALLS_PORT_LINKS], refs[WALLS_PORT_CELLS]};
+    return result;
+}
