@@ -5,6 +5,7 @@
 #include "passes/composite/composite.h"
 #include "passes/env_glow/env_glow.h"
 #include "passes/env_importance/env_importance.h"
+#include "passes/gbuffer/gbuffer.h"
 #include "passes/importance/importance.h"
 #include "passes/lattice/lattice.h"
 #include "passes/medium/medium.h"
@@ -46,6 +47,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_ordinates,
     &tyn_pass_importance,
     &tyn_pass_env_glow,
+    &tyn_pass_gbuffer,
     &tyn_pass_shadow_map,
     &tyn_pass_raymarch,
     &tyn_pass_path,

@@ -1,0 +1,104 @@
+// gbuffer.c -- the surfaces drawn as the camera sees them.
+#include "gbuffer.h"
+#include "gbuffer_args.h"
+#include "gbuffer_fragment.frag.h"
+#include "gbuffer_vertex.vert.h"
+
+static const tyn_port ports[GBUFFER_NUM_PORTS] = {
+    [GBUFFER_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "struct camera_block"},
+    [GBUFFER_PORT_SURFACES] = {"surfaces", TYN_IN, TYN_BUFFER, 0, false, "struct surface_block"},
+    [GBUFFER_PORT_TRIANGLES] = {"triangles", TYN_IN, TYN_BUFFER, 0, false,
+                                "struct surface_triangle[]"},
+    [GBUFFER_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, false, "struct surface_vertex[]"},
+    [GBUFFER_PORT_MATERIALS] = {"materials", TYN_IN, TYN_BUFFER, 0, false,
+                                "struct surface_material[]"},
+    [GBUFFER_PORT_TEXTURES] = {"textures", TYN_IN, TYN_BUFFER, 0, false,
+                               "struct surface_texture[]"},
+    [GBUFFER_PORT_TEXELS] = {"texels", TYN_IN, TYN_BUFFER, 0, false, "uint[]: R8 G8 B8 A8, sRGB"},
+    [GBUFFER_PORT_SURFACE] = {"surface", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                              false, "shading normal (M); distance along the ray, m, 0: none"},
+    [GBUFFER_PORT_ALBEDO] = {"albedo", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
+                             "albedo; x of the facet's normal, folded"},
+    [GBUFFER_PORT_EMISSION] = {"emission", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                               false,
+                               "radiance to the camera, W/(m^2 sr); y of the facet's normal"},
+    [GBUFFER_PORT_DEPTH] = {"depth", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT, false,
+                            "reversed"},
+};
+
+static const tyn_binding bindings[] = {
+    {GBUFFER_PORT_CAMERA, TYN_USE_UNIFORM, false},
+    {GBUFFER_PORT_SURFACES, TYN_USE_UNIFORM, false},
+    {GBUFFER_PORT_TRIANGLES, TYN_USE_STORAGE_READ, false},
+    {GBUFFER_PORT_VERTICES, TYN_USE_STORAGE_READ, false},
+    {GBUFFER_PORT_MATERIALS, TYN_USE_STORAGE_READ, false},
+    {GBUFFER_PORT_TEXTURES, TYN_USE_STORAGE_READ, false},
+    {GBUFFER_PORT_TEXELS, TYN_USE_STORAGE_READ, false},
+};
+
+static const tyn_binding attachments[] = {
+    {GBUFFER_PORT_SURFACE, TYN_USE_COLOR, false},
+    {GBUFFER_PORT_ALBEDO, TYN_USE_COLOR, false},
+    {GBUFFER_PORT_EMISSION, TYN_USE_COLOR, false},
+    {GBUFFER_PORT_DEPTH, TYN_USE_DEPTH, false},
+};
+
+static const tyn_raster raster = {
+    .fragment = gbuffer_fragment_spirv,
+    .fragment_size = sizeof(gbuffer_fragment_spirv),
+    .attachments = attachments,
+    .num_attachments = 4,
+    .depth = VK_COMPARE_OP_GREATER,
+    .clear_depth = 0.0f,
+};
+
+static const tyn_kernel kernels[] = {
+    {.name = "gbuffer",
+     .spirv = gbuffer_vertex_spirv,
+     .spirv_size = sizeof(gbuffer_vertex_spirv),
+     .args_size = sizeof(struct gbuffer_args),
+     .bindings = bindings,
+     .num_bindings = 7,
+     .raster = &raster},
+};
+
+static const tyn_param params_table[] = {
+    {"samples", TYN_PARAM_INT, offsetof(tyn_gbuffer_params, samples), 2, 1, 4, "",
+     "samples of the surfaces along each side of a pixel: how smooth their edges are", NULL},
+};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_gbuffer_params *p = params;
+    const tyn_extent size = {p->size[0] * (uint32_t)p->samples, p->size[1] * (uint32_t)p->samples,
+                             1};
+    tyn_build_image(b, GBUFFER_PORT_SURFACE, size, 1);
+    tyn_build_image(b, GBUFFER_PORT_ALBEDO, size, 1);
+    tyn_build_image(b, GBUFFER_PORT_EMISSION, size, 1);
+    tyn_build_image(b, GBUFFER_PORT_DEPTH, size, 1);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_gbuffer_params *p = params;
+    const struct gbuffer_args args = {.samples = (uint32_t)p->samples};
+    tyn_rec_draw(r, &(tyn_draw){.kernel = 0, .vertices = 3 * p->num_triangles, .args = &args});
+    tyn_rec_work(r, "triangles", p->num_triangles);
+}
+
+const tyn_pass_desc tyn_pass_gbuffer = {
+    .name = "gbuffer",
+    .summary = "surfaces as the camera sees them",
+    .ports = ports,
+    .num_ports = GBUFFER_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 1,
+    .params = params_table,
+    .num_params = sizeof(params_table) / sizeof(params_table[0]),
+    .params_size = sizeof(tyn_gbuffer_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = GBUFFER_PORT_ALBEDO,
+    .debug_meaning = "albedo of what the camera sees",
+};

@@ -1,0 +1,25 @@
+// gbuffer.h -- the surfaces that the camera sees: where, which way they face, what they reflect and emit.
+#pragma once
+#include <tyndall/pass.h>
+
+typedef struct tyn_gbuffer_params {
+    int32_t samples;  // "gbuffer.samples"
+    uint32_t size[2]; // of the picture, pixels; set by the method, as the one below
+    uint32_t num_triangles;
+} tyn_gbuffer_params;
+
+enum {
+    GBUFFER_PORT_CAMERA,    // IN buffer struct camera_block
+    GBUFFER_PORT_SURFACES,  // IN buffer struct surface_block
+    GBUFFER_PORT_TRIANGLES, // IN buffers, surface_args.h
+    GBUFFER_PORT_VERTICES,
+    GBUFFER_PORT_MATERIALS,
+    GBUFFER_PORT_TEXTURES,
+    GBUFFER_PORT_TEXELS,
+    GBUFFER_PORT_SURFACE,  // OUT 2D RGBA32F: gbuffer.glsl, as the two below
+    GBUFFER_PORT_ALBEDO,   // OUT 2D RGBA32F
+    GBUFFER_PORT_EMISSION, // OUT 2D RGBA32F
+    GBUFFER_PORT_DEPTH,    // SCRATCH 2D D32
+    GBUFFER_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_gbuffer;

@@ -1,0 +1,33 @@
+// gbuffer_vertex.vert -- the corners of the scene's triangles in the camera's clip space.
+//
+// Depth is reversed. Perspective: 0 at infinity, and what is nearer to the eye than a millionth of the
+// scene is cut off; orthographic: 1 in the plane of the camera, 0 behind the scene.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "gbuffer_bindings.glsl"
+
+layout(location = 0) flat out uint triangle;
+
+void main()
+{
+    triangle = uint(gl_VertexIndex) / 3u;
+    uint corner = uint(gl_VertexIndex) % 3u;
+    surface_triangle t = triangles[triangle];
+    uint v = corner == 0u ? t.v0 : corner == 1u ? t.v1 : t.v2;
+    vec3 p = shift(surfaces.from_world, vertices[v].position) - camera.origin;
+    vec2 across = vec2(dot(p, camera.right) / camera.half_width, dot(p, camera.up) / camera.half_height);
+    float z = dot(p, camera.forward);
+    vec3 size = surfaces.hi - surfaces.lo;
+    if (camera.orthographic != 0u) {
+        // The farthest corner of the scene's box.
+        vec3 forward = turn(surfaces.to_world, camera.forward);
+        vec3 middle = shift(surfaces.from_world, 0.5 * (surfaces.lo + surfaces.hi)) - camera.origin;
+        float farthest = dot(middle, camera.forward) + 0.501 * dot(size, abs(forward)) + 1e-6;
+        across -= camera.shift;
+        gl_Position = vec4(across.x, -across.y, 1.0 - z / max(farthest, 1e-6), 1.0);
+    } else {
+        across -= z * camera.shift;
+        gl_Position = vec4(across.x, -across.y, 1e-6 * length(size), z);
+    }
+}

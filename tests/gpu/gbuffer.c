@@ -1,0 +1,375 @@
+// gbuffer.c -- the G-buffer against rays through all triangles, in double precision.
+#include "gpu_test.h"
+#include "passes/gbuffer/gbuffer.h"
+#include "scene_args.h"
+#include "solids.h"
+#include "surface_args.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WIDTH = 48, HEIGHT = 32 };
+
+// ---- the scene --------------------------------------------------------------------------------
+
+static void make_scene(tyn_scene *scene)
+{
+    tyn_scene_init(scene);
+    const float none[3] = {0};
+    uint32_t floor = solids_material(scene, (float[]){0.5f, 0.25f, 0.125f}, none);
+    uint32_t box = solids_material(scene, (float[]){0.75f, 0.75f, 0.75f}, (float[]){3, 2, 1});
+    uint32_t card = solids_material(scene, (float[]){0.1f, 0.9f, 0.3f}, (float[]){0, 5, 0});
+    scene->surfaces.materials[card].flags = TYN_SURFACE_EMITS_BOTH_SIDES;
+    scene->surfaces.materials[floor].texture = 0;
+    // Far larger than what is seen, below and behind the camera.
+    solids_quad(scene, (float[]){-300, 0, -300}, (float[]){0, 0, 600}, (float[]){600, 0, 0}, floor);
+    solids_box(scene, (float[]){-1, 0.5f, -1}, (float[]){1, 1.5f, 0.5f}, 0.5f, false, box);
+    solids_quad(scene, (float[]){0.5f, 0.2f, 0.8f}, (float[]){0, 1.5f, 0.3f},
+                (float[]){1.2f, 0.1f, -0.2f},
+                card); // its back is seen
+    // Normals of the card as of something round.
+    tyn_surfaces *s = &scene->surfaces;
+    for (uint32_t v = s->num_vertices - 4; v < s->num_vertices; v++) {
+        s->vertices[v].normal[0] += 0.3f * ((float)(v & 1) - 0.5f);
+        float length = 0;
+        for (int c = 0; c < 3; c++) {
+            length += s->vertices[v].normal[c] * s->vertices[v].normal[c];
+        }
+        for (int c = 0; c < 3; c++) {
+            s->vertices[v].normal[c] /= sqrtf(length);
+        }
+    }
+    for (uint32_t v = 0; v < 4; v++) { // the floor's texture repeats every metre
+        s->vertices[v].u *= 600;
+        s->vertices[v].v *= 600;
+    }
+}
+
+static const float frame_rows[3][4] = {
+    {0.8f, 0, 0.6f, 1}, {0, 1, 0, -0.5f}, {-0.6f, 0, 0.8f, 2}}; // world -> M
+
+static struct surface_block make_block(const tyn_scene *scene)
+{
+    struct surface_block s = {
+        .num_triangles = scene->surfaces.num_triangles, .lo = {-300, 0, -300}, .hi = {300, 2, 300}};
+    memcpy(s.from_world, frame_rows, sizeof frame_rows);
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++) {
+            s.to_world[r][c] = frame_rows[c][r];
+            s.to_world[r][3] -= frame_rows[c][r] * frame_rows[c][3];
+        }
+    }
+    return s;
+}
+
+static void turn(const float v[3], float out[3])
+{
+    for (int r = 0; r < 3; r++) {
+        out[r] = frame_rows[r][0] * v[0] + frame_rows[r][1] * v[1] + frame_rows[r][2] * v[2];
+    }
+}
+
+static void normalise(float v[3])
+{
+    float length = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int c = 0; c < 3; c++) {
+        v[c] /= length;
+    }
+}
+
+// In the world; forward and up need not be normal to each other.
+static struct camera_block make_camera(const float at[3], const float forward[3], bool orthographic)
+{
+    float f[3] = {forward[0], forward[1], forward[2]};
+    normalise(f);
+    float r[3] = {-f[2], 0, f[0]}; // f x y
+    normalise(r);
+    const float u[3] = {r[1] * f[2] - r[2] * f[1], r[2] * f[0] - r[0] * f[2],
+                        r[0] * f[1] - r[1] * f[0]};
+    struct camera_block c = {.orthographic = orthographic,
+                             .half_width = orthographic ? 3 : 0.75f,
+                             .half_height = orthographic ? 2 : 0.5f,
+                             .size = {WIDTH, HEIGHT},
+                             .shift = {0.1f, -0.2f}};
+    turn(at, c.origin);
+    for (int k = 0; k < 3; k++) {
+        c.origin[k] += frame_rows[k][3];
+    }
+    turn(r, c.right);
+    turn(u, c.up);
+    turn(f, c.forward);
+    return c;
+}
+
+// ---- the twin ---------------------------------------------------------------------------------
+
+typedef struct hit {
+    int triangle; // -1: none
+    double distance, weights[3];
+} hit;
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+// A ray of the camera through sample position (x, y) in pixels, in the world.
+static void make_ray(const struct camera_block *c, double x, double y, double o[3], double d[3])
+{
+    double m[2][3], s = 2 * x / WIDTH - 1 + (double)c->shift[0],
+                    t = 1 - 2 * y / HEIGHT + (double)c->shift[1];
+    for (int k = 0; k < 3; k++) {
+        double across =
+            s * (double)(c->half_width * c->right[k]) + t * (double)(c->half_height * c->up[k]);
+        m[0][k] = (double)c->origin[k] - (double)frame_rows[k][3] + (c->orthographic ? across : 0);
+        m[1][k] = (double)c->forward[k] + (c->orthographic ? 0 : across);
+    }
+    double length = sqrt(dot(m[1], m[1]));
+    for (int k = 0; k < 3; k++) { // the inverse of the turn
+        o[k] = d[k] = 0;
+        for (int j = 0; j < 3; j++) {
+            o[k] += (double)frame_rows[j][k] * m[0][j];
+            d[k] += (double)frame_rows[j][k] * m[1][j] / length;
+        }
+    }
+}
+
+static hit trace(const tyn_surfaces *s, const double o[3], const double d[3])
+{
+    hit best = {.triangle = -1, .distance = INFINITY};
+    for (uint32_t i = 0; i < s->num_triangles; i++) {
+        double e[2][3], from[3], n[3], q[3];
+        const float *v[3];
+        for (int k = 0; k < 3; k++) {
+            v[k] = s->vertices[s->triangles[i].vertices[k]].position;
+        }
+        for (int c = 0; c < 3; c++) {
+            e[0][c] = (double)v[1][c] - (double)v[0][c];
+            e[1][c] = (double)v[2][c] - (double)v[0][c];
+            from[c] = o[c] - (double)v[0][c];
+        }
+        cross(e[0], e[1], n);
+        cross(from, d, q);
+        double det = -dot(d, n), distance = dot(from, n) / det;
+        double b = dot(e[1], q) / det, c = -dot(e[0], q) / det;
+        if (b >= 0 && c >= 0 && b + c <= 1 && distance > 0 && distance < best.distance) {
+            best = (hit){(int)i, distance, {1 - b - c, b, c}};
+        }
+    }
+    return best;
+}
+
+// ---- the device -------------------------------------------------------------------------------
+
+typedef struct images {
+    const float (*surface)[4], (*albedo)[4], (*emission)[4];
+} images;
+
+static images draw(gpu_test *t, const tyn_scene *scene, const struct camera_block *camera,
+                   const struct surface_texture *texture, const uint32_t *texels, size_t count,
+                   int32_t samples)
+{
+    const tyn_surfaces *s = &scene->surfaces;
+    const struct surface_block block = make_block(scene);
+    tyn_gbuffer_params params;
+    tyn_pass_defaults(&tyn_pass_gbuffer, &params);
+    params.samples = samples;
+    params.size[0] = WIDTH;
+    params.size[1] = HEIGHT;
+    params.num_triangles = s->num_triangles;
+    tyn_graph_begin(t->graph);
+    tyn_ref refs[GBUFFER_NUM_PORTS] = {
+        gpu_buffer(t, "camera", camera, sizeof *camera),
+        gpu_buffer(t, "surfaces", &block, sizeof block),
+        gpu_buffer(t, "triangles", s->triangles, s->num_triangles * sizeof *s->triangles),
+        gpu_buffer(t, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices),
+        gpu_buffer(t, "materials", s->materials, s->num_materials * sizeof *s->materials),
+        gpu_buffer(t, "textures", texture, sizeof *texture),
+        gpu_buffer(t, "texels", texels, count * sizeof *texels),
+    };
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_gbuffer, &params, refs), TYN_OK);
+    tyn_graph_output(t->graph, "surface", refs[GBUFFER_PORT_SURFACE], true);
+    tyn_graph_output(t->graph, "albedo", refs[GBUFFER_PORT_ALBEDO], true);
+    tyn_graph_output(t->graph, "emission", refs[GBUFFER_PORT_EMISSION], true);
+    gpu_run(t);
+    return (images){(const float(*)[4])gpu_map(t, "surface"),
+                    (const float(*)[4])gpu_map(t, "albedo"),
+                    (const float(*)[4])gpu_map(t, "emission")};
+}
+
+static void unfold(float x, float y, float n[3])
+{
+    n[0] = x;
+    n[1] = y;
+    n[2] = 1 - fabsf(x) - fabsf(y);
+    if (n[2] < 0) {
+        n[0] = (1 - fabsf(y)) * (x >= 0 ? 1 : -1);
+        n[1] = (1 - fabsf(x)) * (y >= 0 ? 1 : -1);
+    }
+    normalise(n);
+}
+
+static void expect_near(const float *found, const float *right, float tolerance, const char *what,
+                        uint32_t i)
+{
+    for (int c = 0; c < 3; c++) {
+        if (!(fabsf(found[c] - right[c]) <= tolerance)) {
+            fail_msg("%s of sample %u: %g %g %g, not %g %g %g", what, i, (double)found[0],
+                     (double)found[1], (double)found[2], (double)right[0], (double)right[1],
+                     (double)right[2]);
+        }
+    }
+}
+
+static void check_sample(const tyn_surfaces *s, const images *got, uint32_t i, const hit *h,
+                         const double d[3])
+{
+    if (h->triangle < 0) {
+        assert_true(got->surface[i][3] == 0);
+        return;
+    }
+    if (!(fabs((double)got->surface[i][3] - h->distance) <= 1e-5 * h->distance + 2e-6)) {
+        fail_msg("sample %u: distance %g, not %g", i, (double)got->surface[i][3], h->distance);
+    }
+    const tyn_surface_triangle *t = &s->triangles[h->triangle];
+    const tyn_surface_material *m = &s->materials[t->material];
+    float facet[3], normal[3] = {0}, right[3], found[3], e[2][3];
+    for (int c = 0; c < 3; c++) {
+        e[0][c] = s->vertices[t->vertices[1]].position[c] - s->vertices[t->vertices[0]].position[c];
+        e[1][c] = s->vertices[t->vertices[2]].position[c] - s->vertices[t->vertices[0]].position[c];
+        for (int k = 0; k < 3; k++) {
+            normal[c] += (float)h->weights[k] * s->vertices[t->vertices[k]].normal[c];
+        }
+    }
+    for (int c = 0; c < 3; c++) {
+        const int j = (c + 1) % 3, k = (c + 2) % 3;
+        facet[c] = e[0][j] * e[1][k] - e[0][k] * e[1][j];
+    }
+    normalise(facet);
+    normalise(normal);
+    const bool front =
+        (double)facet[0] * d[0] + (double)facet[1] * d[1] + (double)facet[2] * d[2] < 0;
+    for (int c = 0; c < 3; c++) {
+        facet[c] = front ? facet[c] : -facet[c];
+        normal[c] = front ? normal[c] : -normal[c];
+    }
+    turn(facet, right);
+    unfold(got->albedo[i][3], got->emission[i][3], found);
+    expect_near(found, right, 1e-5f, "facet", i);
+    turn(normal, right);
+    expect_near(got->surface[i], right, 1e-4f, "normal", i);
+    const float none[3] = {0};
+    const bool emits = front || (m->flags & TYN_SURFACE_EMITS_BOTH_SIDES);
+    expect_near(got->emission[i], emits ? m->emission : none, 0, "emission", i);
+    if (m->texture == TYN_NO_TEXTURE) {
+        expect_near(got->albedo[i], m->albedo, 0, "albedo", i);
+    }
+}
+
+static void as_rays_find_it(void **state)
+{
+    gpu_test *t = *state;
+    tyn_scene scene;
+    make_scene(&scene);
+    const struct surface_texture texture = {.levels = 1, .size = {1, 1}};
+    const uint32_t white = 0xffffffffu;
+    const struct camera_block cameras[] = {
+        make_camera((float[]){0.5f, 2, 5}, (float[]){0, -0.2f, -1}, false),
+        make_camera((float[]){3, 0.01f, 3}, (float[]){-1, 0.1f, -1}, false),  // close to the floor
+        make_camera((float[]){0, 1, -0.2f}, (float[]){0.3f, 0.2f, 1}, false), // within the box
+        make_camera((float[]){0.5f, 2, 5}, (float[]){0, -0.3f, -1}, true),
+        make_camera((float[]){0, 1, 0}, (float[]){1, -0.3f, 0.2f}, true), // starts within the box
+    };
+    for (size_t k = 0; k < sizeof cameras / sizeof cameras[0]; k++) {
+        const int32_t samples = 1 + (int32_t)(k % 2);
+        images got = draw(t, &scene, &cameras[k], &texture, &white, 1, samples);
+        const uint32_t width = WIDTH * (uint32_t)samples;
+        uint32_t edges = 0, seen = 0;
+        for (uint32_t y = 0; y < HEIGHT * (uint32_t)samples; y++) {
+            for (uint32_t x = 0; x < width; x++) {
+                double o[3], d[3];
+                hit h = {0};
+                int triangles[5];
+                for (int j = 0; j < 5;
+                     j++) { // around, then the middle: rounding may decide at edges
+                    const double at[2] = {x + 0.5 + (j == 0) * 0.01 - (j == 1) * 0.01,
+                                          y + 0.5 + (j == 2) * 0.01 - (j == 3) * 0.01};
+                    make_ray(&cameras[k], at[0] / samples, at[1] / samples, o, d);
+                    h = trace(&scene.surfaces, o, d);
+                    triangles[j] = h.triangle;
+                }
+                bool edge = false;
+                for (int j = 0; j < 4; j++) {
+                    edge |= triangles[j] != triangles[4];
+                }
+                edges += edge;
+                seen += h.triangle >= 0;
+                if (!edge) {
+                    check_sample(&scene.surfaces, &got, y * width + x, &h, d);
+                }
+            }
+        }
+        print_message("camera %zu: %u samples of surfaces, %u at edges\n", k, seen, edges);
+        assert_true(seen > 500 && edges < seen / 20);
+    }
+    tyn_scene_finish(&scene);
+}
+
+// A checkerboard of one-metre squares: sharp close by, its mean far away, and sRGB is decoded.
+static void textures(void **state)
+{
+    gpu_test *t = *state;
+    tyn_scene scene;
+    make_scene(&scene);
+    scene.surfaces.num_triangles = 2;
+    enum { SIDE = 64 };
+    static uint32_t texels[SIDE * SIDE * 2];
+    const struct surface_texture texture = {.levels = 7, .size = {SIDE, SIDE}};
+    uint32_t count = 0;
+    for (uint32_t level = 0; level < 7; level++) {
+        const uint32_t side = SIDE >> level;
+        for (uint32_t i = 0; i < side * side; i++) {
+            bool white = (i % side < side / 2) != (i / side < side / 2);
+            texels[count++] = side == 1 ? 0xff0000bcu
+                              : white   ? 0xff0000ffu
+                                        : 0xff000000u; // 0.5 red
+        }
+    }
+    const struct camera_block above =
+        make_camera((float[]){0.5f, 0.3f, 0.5f}, (float[]){0.01f, -1, 0}, false);
+    images got = draw(t, &scene, &above, &texture, texels, count, 1);
+    uint32_t white = 0, black = 0;
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
+        white += fabsf(got.albedo[i][0] - 0.5f) < 1e-4f;
+        black += got.albedo[i][0] < 1e-4f;
+        assert_true(got.albedo[i][1] == 0);
+    }
+    print_message("%u white, %u black of %d\n", white, black, WIDTH * HEIGHT);
+    assert_true(white > WIDTH * HEIGHT / 4 && black > WIDTH * HEIGHT / 4 &&
+                white + black > WIDTH * HEIGHT * 8 / 10);
+    const struct camera_block far =
+        make_camera((float[]){0, 150, 0}, (float[]){0.01f, -1, 0}, false);
+    got = draw(t, &scene, &far, &texture, texels, count, 1);
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
+        if (!(fabsf(got.albedo[i][0] - 0.25f) < 2e-3f)) {
+            fail_msg("far away, sample %u: %g", i, (double)got.albedo[i][0]);
+        }
+    }
+    tyn_scene_finish(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(as_rays_find_it),
+        cmocka_unit_test(textures),
+    };
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
