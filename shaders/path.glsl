@@ -16,13 +16,16 @@
 //    t gets weights of both that add up to 1; they need not be the true pdfs, so free flights in an unknown
 //    medium are weighed as in a homogeneous one.
 //  * Environment map: next-event estimation and phase sampling, balance heuristic over directions.
+//  * Surfaces: a flight ends at the first one. Directions are drawn by the cosine; emitters by next-event
+//    estimation (uniform over area, triangles by their power) and by directions, balance heuristic.
 //
 // A turn of the loop is a flight, and at its end a vertex with its shadow ray: threads of a subgroup fly
 // together and scatter together, and one whose path has ended starts the next at once.
 //
-// The includer declares the resources of path_media.glsl and path_lights.glsl, and defines
+// The includer declares the resources of path_resources.glsl, and defines
 //   void path_begin(inout rng_state, vec2 random, out vec3 origin, out vec3 direction)  -- the next path
-//   void path_direct(vec3 direction, vec3 radiance)  -- probes: uncollided lamps at the point itself
+//   float path_begin_pdf(vec3 direction)  -- probes: 1/sr of the first directions of the path just begun
+//   void path_direct(vec3 direction, vec3 irradiance)  -- probes: uncollided lamps and emitters at the point itself
 //   void path_end(path_result)                       -- the path's contribution
 #ifndef TYN_PATH_GLSL
 #define TYN_PATH_GLSL
@@ -31,13 +34,16 @@
 #include "path_media.glsl"
 #include "path_phase.glsl"
 #include "rng.glsl"
+#include "path_surfaces.glsl"
 
 struct path_result {
     vec3 radiance;      // scattered and emitted by the media
     vec3 single;        // its part of first order
-    vec3 background;    // the environment, seen through the media
-    vec3 transmittance; // mean 1 in vacuum: an unbiased estimate for each channel
+    vec3 background;    // the environment and emitters, seen through the media
+    vec3 reflected;     // what the first surface reflects, seen through the media
+    vec3 transmittance; // to the first surface; mean 1 in vacuum: an unbiased estimate for each channel
     bool hit;           // met the domain of the media
+    bool solid;         // met a surface first
 };
 
 struct path_counts { // of this thread
@@ -46,7 +52,8 @@ struct path_counts { // of this thread
 path_counts path_count = path_counts(0u, 0u, 0u, 0u);
 
 void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction);
-void path_direct(vec3 direction, vec3 radiance);
+float path_begin_pdf(vec3 direction);
+void path_direct(vec3 direction, vec3 irradiance);
 void path_end(path_result result);
 
 const float PATH_MIXTURE_FIRST = 0.2, PATH_MIXTURE_LOG2_DECAY = -0.32192809; // log2 0.8
@@ -127,8 +134,29 @@ struct path_state {
     vec3 vertex, way;   // where it is, and where it goes on to
     vec3 beta, rho;     // see above
     vec3 hero;          // 1 in the hero channel
-    uint depth, steps;  // scatterings; effort
+    uint depth, steps;  // scatterings and reflections; effort
+    float end;          // distance to the surface ahead, m
 };
+
+// The media ahead, up to the next surface.
+vec2 path_span(path_state path)
+{
+    vec2 span = media_span(path.vertex, path.way);
+    return SURFACES ? vec2(span.x, min(span.y, path.end)) : span;
+}
+
+// Light of one order: 0 is seen straight from its source.
+void path_add(inout path_result result, vec3 light, uint depth)
+{
+    if (depth == 0u) {
+        result.background += light;
+    } else if (result.solid) {
+        result.reflected += light;
+    } else {
+        result.radiance += light;
+        result.single += depth == 1u ? light : vec3(0.0);
+    }
+}
 
 vec3 path_weight(path_state path)
 {
@@ -216,7 +244,7 @@ void path_glow(inout path_flight f, path_state path, float moved, inout rng_stat
     f.glow += path_weight(path) * media_at(somewhere, 0.0, path.hero).emission * moved;
 }
 
-// Flies on from the vertex to the next real collision, or out of the media.
+// Flies on from the vertex to the next real collision, or to the end of the way or out of the media.
 path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
 {
     path_flight f;
@@ -227,7 +255,7 @@ path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
     uvec4 bits = rng_next(rng);
     float tau = rng_exponential(bits.x);
     f.spare = rng_float(bits.y);
-    vec2 span = media_span(path.vertex, path.way);
+    vec2 span = path_span(path);
     if (span.x >= span.y) {
         return f;
     }
@@ -265,6 +293,7 @@ path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
         // Bricks without a collision.
         int axis;
         float ahead = brick_exit(medium, walk, f.at, axis);
+        ahead = SURFACES ? min(ahead, path.end - f.distance) : ahead;
         while (tau >= bound * ahead && path.steps < args.max_steps) {
             path.steps++;
             if ((FLAGS & TYN_PATH_EMISSIVE) != 0u) {
@@ -273,12 +302,13 @@ path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
             tau -= bound * ahead;
             f.at += ahead * path.way;
             f.distance += ahead;
-            inside = brick_step(medium, walk, axis);
+            inside = !(SURFACES && f.distance >= path.end) && brick_step(medium, walk, axis);
             if (!inside) {
                 break;
             }
             bound = media_bounds(walk.cell).y;
             ahead = brick_exit(medium, walk, f.at, axis);
+            ahead = SURFACES ? min(ahead, path.end - f.distance) : ahead;
         }
         if (!inside) {
             break;
@@ -314,7 +344,7 @@ path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
 // equi-angular distance.
 vec3 path_lamp(inout path_state path, inout rng_state rng)
 {
-    vec2 span = media_span(path.vertex, path.way);
+    vec2 span = path_span(path);
     uvec4 bits = rng_next(rng);
     float probability;
     uint lamp = lamp_choose(path.vertex, path.way, rng_float(bits.x), probability);
@@ -331,6 +361,9 @@ vec3 path_lamp(inout path_state path, inout rng_state rng)
         return vec3(0.0);
     }
     light_sample light = light_towards(lamp, at);
+    if (surface_hides(at, light.direction, light.distance)) {
+        return vec3(0.0);
+    }
     vec3 sent = path_weight(path) * m.part_s * phase(m.g, path.way, light.direction) * light.arriving;
     sent *= channel_mean(m.sigma_s) / channel_mean(m.part_s) * (1.0 - flight_weight(pdf, distance)) /
             (pdf * probability);
@@ -349,7 +382,7 @@ vec4 path_lobe(inout rng_state rng, float u)
         return distant ? vec4(-path_light0.direction, 0.0) : vec4(path_light0.position, 1.0);
     }
     // Any axis that does not depend on the path is unbiased.
-    light_choice choice = light_choose(0.5 * medium.extent, u, true);
+    light_choice choice = light_choose(0.5 * medium.extent, u, LIGHT_MAP);
     if (LIGHTS > 0u && choice.index < args.num_lights) {
         light_block light = light_get(choice.index);
         bool distant = light.kind == TYN_LIGHT_KIND_DIRECTIONAL;
@@ -358,6 +391,29 @@ vec4 path_lobe(inout rng_state rng, float u)
     float pdf = 0.0;
     return ENVIRONMENT == TYN_PATH_ENV_MAP ? vec4(env_sample(env, rng_next(rng), pdf), 0.0)
                                            : vec4(0.0, 0.0, 0.0, -1.0);
+}
+
+// Probes: the light of lamps, suns and emitters at the first point of a path, and how likely emitters were drawn.
+float path_meet_lights(inout path_state path, inout rng_state rng)
+{
+    light_choice choice = light_choose(path.vertex, rng_float(rng_next(rng).x), LIGHT_EMITTERS);
+    if (!(choice.probability > 0.0)) {
+        return 0.0;
+    }
+    light_sample light;
+    if (EMITTERS && choice.index > args.num_lights) {
+        emitter_sample from = emitter_draw(path.vertex, rng);
+        float pdf = from.pdf * choice.probability + path_begin_pdf(from.direction);
+        light = light_sample(from.direction, from.distance,
+                             from.pdf > 0.0 ? from.radiance * choice.probability / pdf : vec3(0.0));
+    } else {
+        light = light_towards(choice.index, path.vertex);
+    }
+    if (max3(light.arriving) > 0.0 && !surface_hides(path.vertex, light.direction, light.distance)) {
+        vec3 passed = path_transmittance(path.vertex, light.direction, light.distance, rng, path.steps);
+        path_direct(light.direction, light.arriving * passed / choice.probability);
+    }
+    return choice.emitters;
 }
 
 // Follows samples [first, end) of one pixel or point.
@@ -371,7 +427,8 @@ void path_run(uint element, uint first, uint end)
     path_state path;
     path_result result;
     vec4 lobe;                // direction towards a light (w 0) or a lamp's position (w 1); none: w -1
-    float pdf_phase, pdf_map; // of the path's way; probability with which the map was drawn at the vertex
+    float pdf_way;            // of the path's way, 1/sr
+    float draw_map, draw_emitters; // probabilities with which these were drawn at the vertex
 
     for (;;) {
         if (ended) {
@@ -380,14 +437,16 @@ void path_run(uint element, uint first, uint end)
             }
             ended = false;
             rng = rng_start(element, index++, args.seed);
-            result = path_result(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), false);
+            result = path_result(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), false, false);
             path.beta = vec3(1.0);
             path.rho = vec3(1.0);
             path.hero = vec3(1.0, 0.0, 0.0);
             path.depth = 0u;
             path.steps = 0u;
-            pdf_phase = 1.0;
-            pdf_map = 0.0;
+            path.end = PATH_FAR;
+            pdf_way = 1.0;
+            draw_map = 0.0;
+            draw_emitters = 0.0;
             uvec4 bits = rng_next(rng);
             if (!GREY) {
                 float u = 3.0 * rng_float(bits.z);
@@ -395,30 +454,49 @@ void path_run(uint element, uint first, uint end)
             }
             lobe = path_lobe(rng, rng_float(bits.w));
             path_begin(rng, rng_vec2(bits.xy), path.vertex, path.way);
-            if (PROBE && LIGHTS > 0u && (FLAGS & TYN_PATH_SCATTERED) == 0u) {
-                light_choice choice = light_choose(path.vertex, rng_float(rng_next(rng).x), false);
-                if (choice.probability > 0.0) {
-                    light_sample light = light_towards(choice.index, path.vertex);
-                    vec3 passed = path_transmittance(path.vertex, light.direction, light.distance, rng,
-                                                     path.steps);
-                    path_direct(light.direction, light.arriving * passed / choice.probability);
-                }
+            if (PROBE && (LIGHTS > 0u || EMITTERS) && (FLAGS & TYN_PATH_SCATTERED) == 0u) {
+                draw_emitters = path_meet_lights(path, rng);
+                pdf_way = path_begin_pdf(path.way);
             }
         }
 
+        surface_hit ahead = surface_hit(PATH_FAR, 0u, vec2(0.0));
+        vec3 period = vec3(0.0);
+        if (SURFACES) {
+            path.steps++;
+            surface_trace(path.vertex, path.way, false, ahead, period);
+            path.end = ahead.t;
+        }
+
         if ((FLAGS & TYN_PATH_EQUIANGULAR) != 0u && path.depth < args.max_depth) {
-            vec3 sent = path_lamp(path, rng);
-            result.radiance += sent;
-            result.single += path.depth == 0u ? sent : vec3(0.0);
+            path_add(result, path_lamp(path, rng), path.depth + 1u);
         }
 
         path_flight f = path_fly(path, rng, result.hit);
-        result.radiance += f.glow;
+        path_add(result, f.glow, path.depth + 2u); // of no single order
+
+        bool at_surface = SURFACES && !f.collided && path.end < PATH_FAR;
+        surface_finding found;
+        if (at_surface && path.steps < args.max_steps) {
+            found = surface_find(ahead, period, path.way);
+            vec3 weight = path_weight(path);
+            vec3 emitted = weight * found.emission;
+            if (EMITTERS && draw_emitters > 0.0) {
+                float slope = abs(dot(found.point.normal, path.way));
+                float drawn = draw_emitters * found.density * path.end * path.end;
+                emitted *= pdf_way * slope / max(pdf_way * slope + drawn, 1e-37);
+            }
+            path_add(result, emitted, path.depth);
+            if (path.depth == 0u) {
+                result.transmittance = weight;
+                result.solid = true;
+            }
+        }
 
         if (path.steps >= args.max_steps) {
             path_count.cut++;
             ended = true;
-        } else if (!f.collided) {
+        } else if (!f.collided && !at_surface) {
             ended = true;
             vec3 weight = path_weight(path);
             if (path.depth == 0u) {
@@ -428,89 +506,109 @@ void path_run(uint element, uint first, uint end)
                 vec3 sky = weight * (ENVIRONMENT == TYN_PATH_ENV_MAP
                                          ? environment_radiance(env, env_map, path.way)
                                          : env.radiance);
-                if (ENVIRONMENT == TYN_PATH_ENV_MAP && pdf_map > 0.0) {
-                    sky *= pdf_phase / (pdf_phase + pdf_map * env_pdf(env, path.way));
+                if (ENVIRONMENT == TYN_PATH_ENV_MAP && draw_map > 0.0) {
+                    sky *= pdf_way / (pdf_way + draw_map * env_pdf(env, path.way));
                 }
-                if (path.depth == 0u) {
-                    result.background = sky;
-                } else {
-                    result.radiance += sky;
-                    result.single += path.depth == 1u ? sky : vec3(0.0);
-                }
+                path_add(result, sky, path.depth);
             }
         } else if (path.depth >= args.max_depth) {
             ended = true;
         } else {
-            // A real collision, drawn for the hero. With several media the path goes on in one of them.
             path.depth++;
-            float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero);
-            float part = 1.0;
-            vec3 chosen = vec3(1.0);
-            if (SHAPES != 1u) {
-                part = dot(f.m.sigma_s, path.hero) / max(dot(f.m.part_s, path.hero), 1e-30);
-                chosen = f.m.part_s / max(f.m.sigma_s, vec3(1e-30));
-            }
-            path.beta *= f.m.part_s * (part / sigma_t);
-            if (!GREY) {
-                path.rho *= f.m.sigma_t * chosen * (part / sigma_t);
+            vec3 toward = vec3(0.0); // the mixture's axis and share
+            float c = 0.0;
+            if (at_surface) {
+                f.at = surface_offset(found.point, found.point.normal);
+                path.beta *= found.albedo;
+            } else {
+                // A real collision, drawn for the hero. With several media the path goes on in one of them.
+                float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero);
+                float part = 1.0;
+                vec3 chosen = vec3(1.0);
+                if (SHAPES != 1u) {
+                    part = dot(f.m.sigma_s, path.hero) / max(dot(f.m.part_s, path.hero), 1e-30);
+                    chosen = f.m.part_s / max(f.m.sigma_s, vec3(1e-30));
+                }
+                path.beta *= f.m.part_s * (part / sigma_t);
+                if (!GREY) {
+                    path.rho *= f.m.sigma_t * chosen * (part / sigma_t);
+                }
+                if ((FLAGS & TYN_PATH_MIXTURE) != 0u && lobe.w >= 0.0) {
+                    toward = lobe.xyz;
+                    if ((FLAGS & TYN_PATH_LAMPS) != 0u && lobe.w > 0.0) {
+                        toward -= f.at;
+                        toward *= inversesqrt(max(dot(toward, toward), 1e-30));
+                    }
+                    c = PATH_MIXTURE_FIRST * exp2(PATH_MIXTURE_LOG2_DECAY * float(path.depth - 1u));
+                }
             }
             vec3 weight = path_weight(path);
             uvec4 bits = rng_next(rng);
 
-            vec3 toward = vec3(0.0);
-            float c = 0.0;
-            if ((FLAGS & TYN_PATH_MIXTURE) != 0u && lobe.w >= 0.0) {
-                toward = lobe.xyz;
-                if ((FLAGS & TYN_PATH_LAMPS) != 0u && lobe.w > 0.0) {
-                    toward -= f.at;
-                    toward *= inversesqrt(max(dot(toward, toward), 1e-30));
-                }
-                c = PATH_MIXTURE_FIRST * exp2(PATH_MIXTURE_LOG2_DECAY * float(path.depth - 1u));
-            }
-
-            // Next-event estimation.
-            light_choice choice = light_choose(f.at, rng_float(bits.x), true);
+            // Next-event estimation: `pending` is what the light sends here, `drawn` the pdf of its direction.
+            light_choice choice = light_choose(f.at, rng_float(bits.x), LIGHT_MAP | LIGHT_EMITTERS);
             vec3 direction = vec3(0.0, 0.0, 1.0), pending = vec3(0.0);
-            float distance = PATH_FAR;
+            float distance = PATH_FAR, drawn = 0.0;
             if (choice.probability > 0.0) {
                 if (LIGHTS > 0u && choice.index < args.num_lights) {
                     light_sample light = light_towards(choice.index, f.at);
                     direction = light.direction;
                     distance = light.distance;
-                    float factor = 1.0 / choice.probability;
-                    if ((FLAGS & TYN_PATH_EQUIANGULAR) != 0u && distance < PATH_FAR) {
+                    pending = weight * light.arriving / choice.probability;
+                    if ((FLAGS & TYN_PATH_EQUIANGULAR) != 0u && distance < PATH_FAR && !at_surface) {
                         lamp_view v = lamp_see(light_get(choice.index).position, path.vertex, path.way,
-                                               media_span(path.vertex, path.way));
-                        factor *= flight_weight(lamp_pdf(v, f.distance), f.distance);
+                                               path_span(path));
+                        pending *= flight_weight(lamp_pdf(v, f.distance), f.distance);
                     }
-                    pending = weight * phase(f.m.g, path.way, direction) * light.arriving * factor;
+                } else if (EMITTERS && choice.index > args.num_lights) {
+                    emitter_sample from = emitter_draw(f.at, rng);
+                    direction = from.direction;
+                    distance = from.distance;
+                    drawn = from.pdf * choice.probability;
+                    pending = drawn > 0.0 ? weight * from.radiance : vec3(0.0);
                 } else if (ENVIRONMENT == TYN_PATH_ENV_MAP) {
                     float pdf;
                     direction = env_sample(env, rng_next(rng), pdf);
-                    vec3 forward = phase(f.m.g, path.way, direction);
-                    float other = channel_mean(mixture_pdf(f.m.g, forward, toward, direction, c));
-                    pending = weight * forward * environment_radiance(env, env_map, direction) /
-                              max(pdf * choice.probability + other, 1e-30);
+                    drawn = pdf * choice.probability;
+                    pending = weight * environment_radiance(env, env_map, direction);
                 }
+                if (at_surface) {
+                    float lambert = max(dot(direction, found.point.normal), 0.0) * (1.0 / HG_PI);
+                    pending *= lambert;
+                    drawn += drawn > 0.0 ? lambert : 0.0;
+                } else {
+                    vec3 forward = phase(f.m.g, path.way, direction);
+                    pending *= forward;
+                    if (drawn > 0.0) {
+                        drawn += channel_mean(mixture_pdf(f.m.g, forward, toward, direction, c));
+                    }
+                }
+                pending *= drawn > 0.0 ? 1.0 / drawn : 1.0;
             }
-            if (max3(pending) > 0.0) {
+            if (max3(pending) > 0.0 && !surface_hides(f.at, direction, distance)) {
                 pending *= path_transmittance(f.at, direction, distance, rng, path.steps);
-                result.radiance += pending;
-                result.single += path.depth == 1u ? pending : vec3(0.0);
+                path_add(result, pending, path.depth);
             }
 
             // The next direction.
-            vec3 d = mixture_sample(GREY ? f.m.g.x : dot(f.m.g, path.hero), path.way, toward, c,
-                                    rng_float(bits.y), rng_vec2(bits.zw));
-            if ((FLAGS & TYN_PATH_MIXTURE) != 0u || !GREY || ENVIRONMENT == TYN_PATH_ENV_MAP) {
-                vec3 forward = phase(f.m.g, path.way, d);
-                vec3 pdf = mixture_pdf(f.m.g, forward, toward, d, c);
-                float divide = 1.0 / max(GREY ? pdf.x : dot(pdf, path.hero), 1e-30);
-                path.beta *= forward * divide;
-                path.rho *= GREY ? vec3(1.0) : pdf * divide;
-                pdf_phase = channel_mean(pdf);
-                pdf_map = choice.environment;
+            vec3 d;
+            if (at_surface) {
+                d = cosine_sample(found.point.normal, rng_vec2(bits.zw));
+                pdf_way = max(dot(d, found.point.normal), 0.0) * (1.0 / HG_PI);
+            } else {
+                d = mixture_sample(GREY ? f.m.g.x : dot(f.m.g, path.hero), path.way, toward, c,
+                                   rng_float(bits.y), rng_vec2(bits.zw));
+                if ((FLAGS & TYN_PATH_MIXTURE) != 0u || !GREY || ENVIRONMENT == TYN_PATH_ENV_MAP || EMITTERS) {
+                    vec3 forward = phase(f.m.g, path.way, d);
+                    vec3 pdf = mixture_pdf(f.m.g, forward, toward, d, c);
+                    float divide = 1.0 / max(GREY ? pdf.x : dot(pdf, path.hero), 1e-30);
+                    path.beta *= forward * divide;
+                    path.rho *= GREY ? vec3(1.0) : pdf * divide;
+                    pdf_way = channel_mean(pdf);
+                }
             }
+            draw_map = choice.environment;
+            draw_emitters = choice.emitters;
             path.vertex = f.at;
             path.way = d;
 
@@ -524,10 +622,10 @@ void path_run(uint element, uint first, uint end)
         }
 
         if (ended) {
-            vec3 sum = result.radiance + result.background + result.single + result.transmittance;
+            vec3 sum = result.radiance + result.background + result.reflected + result.single + result.transmittance;
             if (any(isnan(sum)) || any(isinf(sum))) {
                 path_count.non_finite++;
-                result = path_result(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), result.hit);
+                result = path_result(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), result.hit, result.solid);
             }
             path_count.hits += result.hit ? 1u : 0u;
             path_end(result);

@@ -4,34 +4,61 @@
 #define TYN_PATH_HEADING_GLSL
 
 vec3 heading;      // direction of the path that is followed, away from the point
+vec3 heading_axis; // of the lobes about a light
 float heading_pdf; // 1/sr
+
+// Shares of the map and of the lobes about a light.
+vec2 heading_shares()
+{
+    bool map = ENVIRONMENT == TYN_PATH_ENV_MAP;
+    return vec2(map ? (LIGHTS > 0u ? 0.33 : 0.5) : 0.0, LIGHTS > 0u ? (map ? 0.33 : 0.5) : 0.0);
+}
+
+float heading_g()
+{
+    return max(shape_get(0u).g.x, 0.0);
+}
+
+// pdf of direction `d`, 1/sr.
+float heading_density(vec3 d)
+{
+    vec2 shares = heading_shares();
+    float g = heading_g(), pdf = (1.0 - shares.x - shares.y) * (0.25 / HG_PI);
+    if (LIGHTS > 0u) {
+        pdf += shares.y * 0.5 * (phase(vec3(g), heading_axis, d) + phase(vec3(g * g), heading_axis, d)).x;
+    }
+    if (ENVIRONMENT == TYN_PATH_ENV_MAP) {
+        pdf += shares.x * env_pdf(env, d);
+    }
+    return pdf;
+}
 
 vec3 heading_draw(vec3 point, inout rng_state rng)
 {
     uvec4 bits = rng_next(rng);
-    float map_share = ENVIRONMENT == TYN_PATH_ENV_MAP ? (LIGHTS > 0u ? 0.33 : 0.5) : 0.0;
-    float lobe_share = LIGHTS > 0u ? (ENVIRONMENT == TYN_PATH_ENV_MAP ? 0.33 : 0.5) : 0.0;
-    float g = max(shape_get(0u).g.x, 0.0);
-    vec3 axis = vec3(0.0, 0.0, 1.0);
+    vec2 shares = heading_shares();
+    float g = heading_g();
+    heading_axis = vec3(0.0, 0.0, 1.0);
     if (LIGHTS > 0u) {
-        light_choice choice = light_choose(point, rng_float(bits.y), false);
-        axis = light_towards(min(choice.index, args.num_lights - 1u), point).direction;
+        light_choice choice = light_choose(point, rng_float(bits.y), 0u);
+        heading_axis = light_towards(min(choice.index, args.num_lights - 1u), point).direction;
     }
     float u = rng_float(bits.x);
-    if (ENVIRONMENT == TYN_PATH_ENV_MAP && u < map_share) {
+    if (ENVIRONMENT == TYN_PATH_ENV_MAP && u < shares.x) {
         float pdf;
         heading = env_sample(env, rng_next(rng), pdf);
     } else {
-        u = (u - map_share) / (1.0 - map_share);
-        float c = lobe_share / (1.0 - map_share);
-        heading = phase_sample(u < c ? (u < 0.5 * c ? g : g * g) : 0.0, axis, rng_vec2(bits.zw));
+        u = (u - shares.x) / (1.0 - shares.x);
+        float c = shares.y / (1.0 - shares.x);
+        heading = phase_sample(u < c ? (u < 0.5 * c ? g : g * g) : 0.0, heading_axis, rng_vec2(bits.zw));
     }
-    vec3 lobes = 0.5 * (phase(vec3(g), axis, heading) + phase(vec3(g * g), axis, heading));
-    heading_pdf = (1.0 - map_share - lobe_share) * (0.25 / HG_PI) + lobe_share * lobes.x;
-    if (ENVIRONMENT == TYN_PATH_ENV_MAP) {
-        heading_pdf += map_share * env_pdf(env, heading);
-    }
+    heading_pdf = heading_density(heading);
     return heading;
+}
+
+float path_begin_pdf(vec3 direction)
+{
+    return heading_density(direction);
 }
 
 #endif

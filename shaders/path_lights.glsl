@@ -1,15 +1,17 @@
 // path_lights.glsl -- drawing a light for next-event estimation.
 //
-// The includer declares `lights[]` (light_block), `env` (env_block), `args` (path_args) and the constants of
-// path_args.h.
+// The includer declares the resources of path_resources.glsl.
 #ifndef TYN_PATH_LIGHTS_GLSL
 #define TYN_PATH_LIGHTS_GLSL
 #include "scene_args.h"
 
+const uint LIGHT_MAP = 1u, LIGHT_EMITTERS = 2u; // what may be drawn beside suns and lamps
+
 struct light_choice {
-    uint index;         // args.num_lights: the environment map
+    uint index;         // args.num_lights: the environment map; one more: emissive triangles
     float probability;
     float environment;  // probability of the environment map at this point
+    float emitters;     // probability of the emissive triangles
 };
 
 struct light_sample {
@@ -60,28 +62,39 @@ float light_weight(uint index, vec3 p)
     return max(arriving.x, max(arriving.y, arriving.z));
 }
 
-// Draws a light in proportion to light_weight; the environment map, if `with_map`, by its mean fluence.
-light_choice light_choose(vec3 p, float u, bool with_map)
+// About what the emissive triangles together send to `p` through vacuum.
+float emitters_irradiance(vec3 p)
 {
-    bool map = with_map && ENVIRONMENT == TYN_PATH_ENV_MAP;
-    if (LIGHTS == 0u) {
-        return light_choice(0u, map ? 1.0 : 0.0, map ? 1.0 : 0.0);
+    vec3 to = path_emitters.xyz - p;
+    return emitters.weight / max(dot(to, to), path_emitters.w);
+}
+
+// Draws a light in proportion to light_weight; the environment map by its mean fluence; emissive triangles by
+// about what they send.
+light_choice light_choose(vec3 p, float u, uint kinds)
+{
+    bool map = (kinds & LIGHT_MAP) != 0u && ENVIRONMENT == TYN_PATH_ENV_MAP;
+    bool emitters = (kinds & LIGHT_EMITTERS) != 0u && (FLAGS & TYN_PATH_EMITTERS) != 0u;
+    if (LIGHTS == 0u && !(map && emitters)) {
+        return light_choice(args.num_lights + (emitters ? 1u : 0u), map || emitters ? 1.0 : 0.0, map ? 1.0 : 0.0,
+                            emitters ? 1.0 : 0.0);
     }
-    if (LIGHTS == 1u && !map) {
-        return light_choice(0u, 1.0, 0.0);
+    if (LIGHTS == 1u && !map && !emitters) {
+        return light_choice(0u, 1.0, 0.0, 0.0);
     }
-    // The map is drawn by phase sampling as well, so it needs the smaller half of its share here.
+    // These are drawn by directions as well, so they need the smaller half of their share here.
     float map_weight = map ? 6.2831853 * max(env.mean.x, max(env.mean.y, env.mean.z)) : 0.0;
-    float total = map_weight;
+    float emitters_weight = emitters ? 0.5 * emitters_irradiance(p) : 0.0;
+    float total = map_weight + emitters_weight;
     for (uint i = 0u; i < args.num_lights; i++) {
         total += light_weight(i, p);
     }
     if (!(total > 0.0)) {
-        return light_choice(0u, 0.0, 0.0);
+        return light_choice(0u, 0.0, 0.0, 0.0);
     }
     float at = u * total;
     float weight = 0.0;
-    uint index = args.num_lights;
+    uint index = args.num_lights + 2u;
     for (uint i = 0u; i < args.num_lights; i++) {
         weight = light_weight(i, p);
         if (at < weight) {
@@ -90,10 +103,12 @@ light_choice light_choose(vec3 p, float u, bool with_map)
         }
         at -= weight;
     }
-    if (index == args.num_lights) {
-        weight = map_weight;
+    if (index > args.num_lights) {
+        bool emitter = emitters && (at < emitters_weight || !map);
+        index = args.num_lights + (emitter ? 1u : 0u);
+        weight = emitter ? emitters_weight : map_weight;
     }
-    return light_choice(index, weight / total, map_weight / total);
+    return light_choice(index, weight / total, map_weight / total, emitters_weight / total);
 }
 
 #endif

@@ -1,10 +1,12 @@
-// path_resources.glsl -- what every tracing kernel of the path tracer reads (set 0, bindings 0 to 7), and
+// path_resources.glsl -- what every tracing kernel of the path tracer reads (set 0, bindings 0 to 15), and
 // what it is specialised to.
 #ifndef TYN_PATH_RESOURCES_GLSL
 #define TYN_PATH_RESOURCES_GLSL
 #include "counters.h"
 #include "env_args.h"
 #include "scene_args.h"
+#include "surface_args.h"
+#include "surface_table_args.h"
 
 layout(local_size_x = 64) in;
 
@@ -26,6 +28,17 @@ layout(set = 0, binding = 7, scalar) readonly buffer env_buffer {
     env_table_block env_table;
     env_cell env_cells[];
 };
+layout(set = 0, binding = 8, scalar) uniform surfaces_uniform { surface_block surfaces; };
+layout(set = 0, binding = 9, scalar) readonly buffer vertices_buffer { surface_vertex vertices[]; };
+layout(set = 0, binding = 10, scalar) readonly buffer triangles_buffer { surface_triangle triangles[]; };
+layout(set = 0, binding = 11, scalar) readonly buffer materials_buffer { surface_material materials[]; };
+layout(set = 0, binding = 12, scalar) readonly buffer textures_buffer { surface_texture textures[]; };
+layout(set = 0, binding = 13, scalar) readonly buffer texels_buffer { uint texels[]; };
+layout(set = 0, binding = 14, scalar) readonly buffer nodes_buffer { surface_node nodes[]; };
+layout(set = 0, binding = 15, scalar) readonly buffer emitters_buffer {
+    surface_table emitters;
+    surface_cell emitter_cells[];
+};
 layout(push_constant, scalar) uniform args_push { path_args args_in; };
 
 // Copies that live in registers: inside a loop whose lanes diverge, software devices read buffers lane by lane.
@@ -35,6 +48,7 @@ path_args args;
 shape_block path_shapes[TYN_PATH_SHAPES_MAX]; // where there are no more
 light_block path_light0; // the only light
 vec3 path_atlas_texel;   // 1 / texels of the atlas
+vec4 path_emitters;      // centre of the emissive triangles (M) and squared radius
 
 void path_load()
 {
@@ -49,6 +63,12 @@ void path_load()
     }
     if (LIGHTS == 1u) {
         path_light0 = lights[0];
+    }
+    if ((FLAGS & TYN_PATH_EMITTERS) != 0u) {
+        for (uint i = 0u; i < 3u; i++) {
+            path_emitters[i] = dot(surfaces.from_world[i], vec4(emitters.centre, 1.0));
+        }
+        path_emitters.w = emitters.radius * emitters.radius;
     }
 }
 

@@ -175,7 +175,9 @@ void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_path_params *p)
         (p->emissive ? TYN_PATH_EMISSIVE : 0) | (p->mixture && lights ? TYN_PATH_MIXTURE : 0) |
         (p->num_lamps ? TYN_PATH_LAMPS : 0) |
         (p->equiangular && p->near_lamps ? TYN_PATH_EQUIANGULAR : 0) |
-        (p->layers ? TYN_PATH_LAYERS : 0) | (p->scattered ? TYN_PATH_SCATTERED : 0);
+        (p->layers ? TYN_PATH_LAYERS : 0) | (p->scattered ? TYN_PATH_SCATTERED : 0) |
+        (p->surfaces ? TYN_PATH_SURFACES : 0) |
+        (p->surfaces && p->emitters ? TYN_PATH_EMITTERS : 0);
 }
 
 // ---- image ------------------------------------------------------------------------------------

@@ -18,6 +18,8 @@ typedef struct tyn_path_params {
     uint32_t sphere; // the only shape is one
     uint32_t grey;   // sigma_s, sigma_a and g are equal in all channels
     uint32_t repeat; // some axis is periodic
+    uint32_t surfaces; // there are triangles
+    uint32_t emitters; // some of them emit and are in the table
     uint32_t emissive;
     uint32_t num_lights;
     uint32_t num_lamps;   // point and spot lights among them
@@ -42,6 +44,14 @@ enum {
     PATH_PORT_ENVIRONMENT, // IN buffer struct env_block, optional
     PATH_PORT_ENV_MAP,     // IN 2D, optional
     PATH_PORT_ENV_TABLE, // IN buffer struct env_table_block and cells, optional: methods/env_cdf.h
+    PATH_PORT_SURFACES,  // IN buffer struct surface_block; this and the rest are optional
+    PATH_PORT_VERTICES,  // IN buffer struct surface_vertex[]
+    PATH_PORT_TRIANGLES, // IN buffer struct surface_triangle[]
+    PATH_PORT_MATERIALS, // IN buffer struct surface_material[]
+    PATH_PORT_TEXTURES,  // IN buffer struct surface_texture[]
+    PATH_PORT_TEXELS,    // IN buffer uint[]
+    PATH_PORT_NODES,     // IN buffer struct surface_node[]; without it all triangles are tried
+    PATH_PORT_EMITTERS,  // IN buffer struct surface_table and cells: methods/surface_tables.h
     PATH_NUM_SCENE_PORTS,
 };
 

@@ -25,7 +25,9 @@
 #define TYN_PATH_LAYERS 16u      // first-order light and transmittance are kept as well
 #define TYN_PATH_SPHERE 128u     // the only shape is a sphere
 #define TYN_PATH_LAMPS 64u       // some light is a point or spot light
-#define TYN_PATH_SCATTERED 32u   // probes leave out light that has not scattered
+#define TYN_PATH_SCATTERED 32u   // probes leave out light that comes straight from its source
+#define TYN_PATH_SURFACES 256u   // there are triangles
+#define TYN_PATH_EMITTERS 512u   // ... and a table by which emissive ones are drawn
 
 struct path_args {
     tyn_uint first;       // pixel or point of this dispatch's first thread

@@ -9,8 +9,8 @@
 const bool PROBE = true;
 #include "path_resources.glsl"
 
-layout(set = 0, binding = 8, scalar) writeonly buffer partial_buffer { path_probe_partial partials[]; };
-layout(set = 0, binding = 9, scalar) buffer counters_buffer { counters_block counters; };
+layout(set = 0, binding = 16, scalar) writeonly buffer partial_buffer { path_probe_partial partials[]; };
+layout(set = 0, binding = 17, scalar) buffer counters_buffer { counters_block counters; };
 
 #include "path.glsl"
 #include "path_heading.glsl"
@@ -23,7 +23,7 @@ vec3 emitted;     // of the media at the point, W
 vec3 direct_in, direct_out; // of lamps and suns; direct_out: inside, absorbed
 
 // A point of the unit box's or the sphere's surface, and its outward normal there.
-vec3 surface_local(shape_block shape, vec3 random, out vec3 outward, out float area)
+vec3 media_face_local(shape_block shape, vec3 random, out vec3 outward, out float area)
 {
     if (shape_is_sphere(shape)) {
         float z = 1.0 - 2.0 * random.x, r = sqrt(max(1.0 - z * z, 0.0)), azimuth = 2.0 * HG_PI * random.y;
@@ -52,7 +52,7 @@ bool inside_another(uint own, vec3 p)
     return false;
 }
 
-vec3 surface_point(uvec4 bits)
+vec3 media_face_point(uvec4 bits)
 {
     uint count = SHAPES != 0u ? SHAPES : medium.num_shapes;
     uint own = min(uint(rng_float(bits.w) * float(count)), count - 1u);
@@ -66,7 +66,7 @@ vec3 surface_point(uvec4 bits)
     mat3 from_local = inverse(to_local);
     vec3 outward;
     float area;
-    vec3 local = surface_local(shape, vec3(rng_vec2(bits.xy), rng_float(bits.z)), outward, area);
+    vec3 local = media_face_local(shape, vec3(rng_vec2(bits.xy), rng_float(bits.z)), outward, area);
     vec3 p = from_local * (local - vec3(shape.rows[0].w, shape.rows[1].w, shape.rows[2].w));
     // Nanson: n dA = |det J| J^-T n' dA'.
     vec3 stretched = abs(determinant(from_local)) * (transpose(to_local) * outward);
@@ -97,7 +97,7 @@ void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 dire
     on_surface = random.x < 0.5;
     uvec4 bits = rng_next(rng);
     if (on_surface) {
-        origin = surface_point(bits);
+        origin = media_face_point(bits);
     } else {
         origin = volume_point(bits);
     }
@@ -120,7 +120,7 @@ void add_value(uint i, float value, float share)
 
 void path_end(path_result result)
 {
-    vec3 fluence = (result.radiance + result.background) / heading_pdf;
+    vec3 fluence = (result.radiance + result.background + result.reflected) / heading_pdf;
     float outwards = on_surface ? -dot(heading, normal) : 1.0;
     vec3 incoming = direct_in + measure * fluence * max(-outwards, 0.0);
     vec3 outgoing = direct_out + measure * fluence * max(outwards, 0.0);

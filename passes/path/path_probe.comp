@@ -8,9 +8,9 @@
 const bool PROBE = true;
 #include "path_resources.glsl"
 
-layout(set = 0, binding = 8, scalar) readonly buffer points_buffer { vec3 points[]; };
-layout(set = 0, binding = 9, scalar) writeonly buffer partial_buffer { path_probe_partial partials[]; };
-layout(set = 0, binding = 10, scalar) buffer counters_buffer { counters_block counters; };
+layout(set = 0, binding = 16, scalar) readonly buffer points_buffer { vec3 points[]; };
+layout(set = 0, binding = 17, scalar) writeonly buffer partial_buffer { path_probe_partial partials[]; };
+layout(set = 0, binding = 18, scalar) buffer counters_buffer { counters_block counters; };
 
 #include "path.glsl"
 #include "path_heading.glsl"
@@ -43,7 +43,7 @@ void add_value(uint i, float value, float share)
 
 void path_end(path_result result)
 {
-    vec3 radiance = result.radiance;
+    vec3 radiance = result.radiance + result.reflected;
     if ((FLAGS & TYN_PATH_SCATTERED) == 0u) {
         radiance += result.background;
     }

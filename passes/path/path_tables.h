@@ -3,29 +3,43 @@
 #include "path.h"
 #include "path_args.h"
 
+// clang-format off
 #define PATH_SCENE_PORT_ROWS                                                                       \
     {"atlas", TYN_IN, TYN_IMAGE_3D, 0, true, "all density grids"},                                 \
-        {"medium", TYN_IN, TYN_BUFFER, 0, false, "the medium frame's box and bricks"},             \
-        {"shapes", TYN_IN, TYN_BUFFER, 0, true, "the exact media"},                                \
-        {"bricks", TYN_IN, TYN_IMAGE_3D,                                                           \
-         0,        true,   "least and largest density or extinction of bricks"},                   \
-        {"lights", TYN_IN, TYN_BUFFER, 0, true, "suns and lamps"},                                 \
-        {"environment", TYN_IN, TYN_BUFFER, 0, true, "the surroundings"},                          \
-        {"env_map", TYN_IN, TYN_IMAGE_2D, 0, true, "radiance of the surroundings, W/(m^2 sr)"},    \
-    {                                                                                              \
-        "env_table", TYN_IN, TYN_BUFFER, 0, true, "alias table of the map's brightness"            \
-    }
+    {"medium", TYN_IN, TYN_BUFFER, 0, false, "the medium frame's box and bricks"},                 \
+    {"shapes", TYN_IN, TYN_BUFFER, 0, true, "the exact media"},                                    \
+    {"bricks", TYN_IN, TYN_IMAGE_3D, 0, true, "least and largest density or extinction of bricks"}, \
+    {"lights", TYN_IN, TYN_BUFFER, 0, true, "suns and lamps"},                                     \
+    {"environment", TYN_IN, TYN_BUFFER, 0, true, "the surroundings"},                              \
+    {"env_map", TYN_IN, TYN_IMAGE_2D, 0, true, "radiance of the surroundings, W/(m^2 sr)"},        \
+    {"env_table", TYN_IN, TYN_BUFFER, 0, true, "alias table of the map's brightness"},             \
+    {"surfaces", TYN_IN, TYN_BUFFER, 0, true, "frame and box of the triangles"},                   \
+    {"vertices", TYN_IN, TYN_BUFFER, 0, true, "of the triangles"},                                 \
+    {"triangles", TYN_IN, TYN_BUFFER, 0, true, "in the hierarchy's order"},                        \
+    {"materials", TYN_IN, TYN_BUFFER, 0, true, "albedo and emission"},                             \
+    {"textures", TYN_IN, TYN_BUFFER, 0, true, "where each texture's texels are"},                  \
+    {"texels", TYN_IN, TYN_BUFFER, 0, true, "of all textures"},                                    \
+    {"nodes", TYN_IN, TYN_BUFFER, 0, true, "hierarchy of the triangles"},                          \
+    {"emitters", TYN_IN, TYN_BUFFER, 0, true, "alias table of the emissive triangles' power"}
 
 #define PATH_SCENE_BINDING_ROWS                                                                    \
-    {PATH_PORT_ATLAS, TYN_USE_SAMPLED, false}, {PATH_PORT_MEDIUM, TYN_USE_UNIFORM, false},         \
-        {PATH_PORT_SHAPES, TYN_USE_STORAGE_READ, false},                                           \
-        {PATH_PORT_BRICKS, TYN_USE_SAMPLED, false},                                                \
-        {PATH_PORT_LIGHTS, TYN_USE_STORAGE_READ, false},                                           \
-        {PATH_PORT_ENVIRONMENT, TYN_USE_UNIFORM, false},                                           \
-        {PATH_PORT_ENV_MAP, TYN_USE_SAMPLED, true},                                                \
-    {                                                                                              \
-        PATH_PORT_ENV_TABLE, TYN_USE_STORAGE_READ, false                                           \
-    }
+    {PATH_PORT_ATLAS, TYN_USE_SAMPLED, false},                                                     \
+    {PATH_PORT_MEDIUM, TYN_USE_UNIFORM, false},                                                    \
+    {PATH_PORT_SHAPES, TYN_USE_STORAGE_READ, false},                                               \
+    {PATH_PORT_BRICKS, TYN_USE_SAMPLED, false},                                                    \
+    {PATH_PORT_LIGHTS, TYN_USE_STORAGE_READ, false},                                               \
+    {PATH_PORT_ENVIRONMENT, TYN_USE_UNIFORM, false},                                               \
+    {PATH_PORT_ENV_MAP, TYN_USE_SAMPLED, true},                                                    \
+    {PATH_PORT_ENV_TABLE, TYN_USE_STORAGE_READ, false},                                            \
+    {PATH_PORT_SURFACES, TYN_USE_UNIFORM, false},                                                  \
+    {PATH_PORT_VERTICES, TYN_USE_STORAGE_READ, false},                                             \
+    {PATH_PORT_TRIANGLES, TYN_USE_STORAGE_READ, false},                                            \
+    {PATH_PORT_MATERIALS, TYN_USE_STORAGE_READ, false},                                            \
+    {PATH_PORT_TEXTURES, TYN_USE_STORAGE_READ, false},                                             \
+    {PATH_PORT_TEXELS, TYN_USE_STORAGE_READ, false},                                               \
+    {PATH_PORT_NODES, TYN_USE_STORAGE_READ, false},                                                \
+    {PATH_PORT_EMITTERS, TYN_USE_STORAGE_READ, false}
+// clang-format on
 
 enum { PATH_NUM_PARAMS = 3 };
 extern const tyn_param path_params_table[PATH_NUM_PARAMS];

@@ -7,10 +7,10 @@
 const bool PROBE = false;
 #include "path_resources.glsl"
 
-layout(set = 0, binding = 8, scalar) uniform camera_uniform { camera_block camera_in; };
-layout(set = 0, binding = 9, scalar) writeonly buffer partial_buffer { path_partial partials[]; };
-layout(set = 0, binding = 10, scalar) buffer counters_buffer { counters_block counters; };
-layout(set = 0, binding = 11, scalar) writeonly buffer layers_buffer { path_partial_layers layers[]; };
+layout(set = 0, binding = 16, scalar) uniform camera_uniform { camera_block camera_in; };
+layout(set = 0, binding = 17, scalar) writeonly buffer partial_buffer { path_partial partials[]; };
+layout(set = 0, binding = 18, scalar) buffer counters_buffer { counters_block counters; };
+layout(set = 0, binding = 19, scalar) writeonly buffer layers_buffer { path_partial_layers layers[]; };
 
 #include "path.glsl"
 
@@ -27,19 +27,26 @@ void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 dire
     direction = ray.direction;
 }
 
-void path_direct(vec3 direction, vec3 radiance)
+float path_begin_pdf(vec3 direction)
+{
+    return 0.0;
+}
+
+void path_direct(vec3 direction, vec3 irradiance)
 {
 }
 
 void path_end(path_result result)
 {
-    vec3 radiance = result.radiance + (camera.background != 0u ? result.background : vec3(0.0));
+    bool background = camera.background != 0u;
+    vec3 radiance = result.radiance + (background ? result.background + result.reflected : vec3(0.0));
+    bool opaque = background && result.solid;
     partial.count++;
     float share = 1.0 / float(partial.count);
     vec3 delta = radiance - partial.mean;
     partial.mean += delta * share;
     partial.deviation += delta * (radiance - partial.mean);
-    partial.alpha += (1.0 - channel_mean(result.transmittance) - partial.alpha) * share;
+    partial.alpha += ((opaque ? 1.0 : 1.0 - channel_mean(result.transmittance)) - partial.alpha) * share;
     if ((FLAGS & TYN_PATH_LAYERS) != 0u) {
         partial_layers.single += (result.single - partial_layers.single) * share;
         partial_layers.multiple += (result.radiance - result.single - partial_layers.multiple) * share;

@@ -1,0 +1,218 @@
+// surface_trace.glsl -- where a ray meets the scene's triangles.
+//
+// No ray leaks between triangles that share an edge or a vertex: the edge functions of Woop, Benthin and Wald,
+// "Watertight ray/triangle intersection" (JCGT 2(1), 2013), in single precision. Their double precision fallback
+// is not needed for that: fl(ab) - fl(cd) is 0 or has the sign of ab - cd, as rounding is monotonic, and 0 counts
+// as inside on both sides of an edge.
+//
+// A ray that starts on a surface does not meet that surface again, at any scale: the origin's side of the
+// triangle's plane is told by an orientation test with its error bound, not by the distance along the ray.
+// surface_offset moves origins to the side they belong to.
+//
+// The includer declares `surfaces` (surface_block), `vertices[]`, `triangles[]` and `nodes[]` (surface_args.h).
+#ifndef TYN_SURFACE_TRACE_GLSL
+#define TYN_SURFACE_TRACE_GLSL
+#include "surface_args.h"
+
+const float SURFACE_EPSILON = 5.9604645e-8; // half an ulp of 1
+const int SURFACE_STACK = 64; // entries: the deepest level of a hierarchy
+
+struct surface_hit {
+    float t;         // m; surface_trace finds hits nearer than the value it is given
+    uint triangle;
+    vec2 barycentric; // weights of v1 and v2
+};
+
+struct surface_ray { // in the world
+    vec3 origin, direction, inverse;
+    vec3 shear; // shear.xy turns the direction into the permuted z axis, which shear.z scales
+    uint axis;  // the direction's largest component, permuted to z
+};
+
+// Turns the axes so that `axis` becomes z.
+vec3 surface_permute(vec3 v, uint axis)
+{
+    return axis == 0u ? v.yzx : axis == 1u ? v.zxy : v;
+}
+
+surface_ray surface_ray_make(vec3 origin, vec3 direction)
+{
+    surface_ray ray;
+    ray.origin = origin;
+    ray.direction = direction;
+    vec3 size = abs(direction);
+    ray.axis = size.x > size.y ? (size.x > size.z ? 0u : 2u) : (size.y > size.z ? 1u : 2u);
+    vec3 d = surface_permute(direction, ray.axis);
+    ray.shear = vec3(d.xy / d.z, 1.0 / d.z);
+    vec3 sign_of = mix(vec3(-1.0), vec3(1.0), greaterThanEqual(direction, vec3(0.0)));
+    ray.inverse = sign_of / max(size, vec3(1e-18));
+    return ray;
+}
+
+// A cross product and the sum of its terms' sizes, which bounds its rounding.
+vec3 surface_cross(vec3 a, vec3 b, out vec3 sizes)
+{
+    vec3 p = a.yzx * b.zxy, q = a.zxy * b.yzx;
+    sizes = abs(p) + abs(q);
+    return p - q;
+}
+
+// Takes the triangle as the new hit if the ray meets it before `hit.t`.
+bool surface_meet(surface_ray ray, uint index, inout surface_hit hit)
+{
+    surface_triangle triangle = triangles[index];
+    vec3 v0 = vertices[triangle.v0].position, v1 = vertices[triangle.v1].position,
+         v2 = vertices[triangle.v2].position;
+    vec3 a = surface_permute(v0 - ray.origin, ray.axis), b = surface_permute(v1 - ray.origin, ray.axis),
+         c = surface_permute(v2 - ray.origin, ray.axis);
+    // `precise`: neighbours must see the same numbers at their common edge, but for the sign.
+    precise vec2 pa = a.xy - ray.shear.xy * a.z;
+    precise vec2 pb = b.xy - ray.shear.xy * b.z;
+    precise vec2 pc = c.xy - ray.shear.xy * c.z;
+    precise float u = pc.x * pb.y - pc.y * pb.x;
+    precise float v = pa.x * pc.y - pa.y * pc.x;
+    precise float w = pb.x * pa.y - pb.y * pa.x;
+    if (min(min(u, v), w) < 0.0 && max(max(u, v), w) > 0.0) {
+        return false;
+    }
+    float sum = u + v + w;
+    if (sum == 0.0) {
+        return false;
+    }
+    float t = max(ray.shear.z * (u * a.z + v * b.z + w * c.z) / sum, 0.0);
+    if (!(t < hit.t)) {
+        return false;
+    }
+    // Not from an origin in the triangle's plane, and not if the ray leads away from it.
+    vec3 sizes, from = v0 - ray.origin;
+    vec3 normal = surface_cross(v1 - v0, v2 - v0, sizes);
+    float height = dot(normal, from), facing = dot(normal, ray.direction);
+    sizes *= 4.0 * SURFACE_EPSILON;
+    if (abs(height) <= dot(sizes, abs(from)) ||
+        (height * facing < 0.0 && abs(facing) > dot(sizes, abs(ray.direction)))) {
+        return false;
+    }
+    hit = surface_hit(t, index, vec2(v, w) / sum);
+    return true;
+}
+
+// Where the ray enters a box; beyond `far` if it does not before `far`. Never misses a box for rounding: Ize,
+// "Robust BVH ray traversal" (JCGT 2(2), 2013).
+float surface_enter(surface_ray ray, vec3 lo, vec3 hi, float far)
+{
+    vec3 a = (lo - ray.origin) * ray.inverse, b = (hi - ray.origin) * ray.inverse;
+    vec3 enter = min(a, b), leave = max(a, b);
+    float near = max(max(enter.x, enter.y), max(enter.z, 0.0));
+    float end = min(min(leave.x, leave.y), leave.z) * (1.0 + 8.0 * SURFACE_EPSILON);
+    return near <= min(end, far) ? near : 3e38;
+}
+
+// The nearest hit before `hit.t`, or with `any` the first that is found. False if there is none.
+bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
+{
+    bool found = false;
+    if (surfaces.num_nodes == 0u) {
+        for (uint i = 0u; i < surfaces.num_triangles && !(any && found); i++) {
+            found = surface_meet(ray, i, hit) || found;
+        }
+        return found;
+    }
+    uint stack[SURFACE_STACK];
+    int depth = 0;
+    uint at = 0u;
+    if (surface_enter(ray, nodes[0].lo, nodes[0].hi, hit.t) > hit.t) {
+        return false;
+    }
+    for (;;) {
+        uint first = nodes[at].first, count = nodes[at].count;
+        bool down = false;
+        if (count == 0u) {
+            float left = surface_enter(ray, nodes[first].lo, nodes[first].hi, hit.t);
+            float right = surface_enter(ray, nodes[first + 1u].lo, nodes[first + 1u].hi, hit.t);
+            bool right_first = right < left;
+            down = min(left, right) <= hit.t;
+            at = right_first ? first + 1u : first;
+            if (max(left, right) <= hit.t) {
+                stack[depth++] = right_first ? first : first + 1u;
+            }
+        } else {
+            for (uint i = first; i < first + count; i++) {
+                found = surface_meet(ray, i, hit) || found;
+            }
+            if (any && found) {
+                break;
+            }
+        }
+        if (!down) {
+            if (depth == 0) {
+                break;
+            }
+            at = stack[--depth];
+        }
+    }
+    return found;
+}
+
+// ---- frames -----------------------------------------------------------------------------------
+
+vec3 surface_turn(tyn_vec4 rows[3], vec3 d)
+{
+    return vec3(dot(rows[0].xyz, d), dot(rows[1].xyz, d), dot(rows[2].xyz, d));
+}
+
+vec3 surface_transform(tyn_vec4 rows[3], vec3 p)
+{
+    return surface_turn(rows, p) + vec3(rows[0].w, rows[1].w, rows[2].w);
+}
+
+// Bounds of a vector's components, turned.
+vec3 surface_turn_sizes(tyn_vec4 rows[3], vec3 sizes)
+{
+    return vec3(dot(abs(rows[0].xyz), sizes), dot(abs(rows[1].xyz), sizes), dot(abs(rows[2].xyz), sizes));
+}
+
+// What rounding may have done to a transformed point whose own error is `error`.
+vec3 surface_transform_error(tyn_vec4 rows[3], vec3 p, vec3 error)
+{
+    return surface_turn_sizes(rows, 4.0 * SURFACE_EPSILON * abs(p) + error) +
+           4.0 * SURFACE_EPSILON * abs(vec3(rows[0].w, rows[1].w, rows[2].w));
+}
+
+// A point of a triangle in M, from which rays into the half space of `normal_M` or its opposite may start.
+struct surface_point {
+    vec3 at;     // M, m
+    vec3 normal; // M, unit: of the plane, towards the front
+    vec3 error;  // bounds what rounding did to `at`, there and back
+};
+
+surface_point surface_point_at(uint index, vec2 barycentric)
+{
+    surface_triangle triangle = triangles[index];
+    vec3 v0 = vertices[triangle.v0].position, v1 = vertices[triangle.v1].position,
+         v2 = vertices[triangle.v2].position;
+    vec3 e1 = v1 - v0, e2 = v2 - v0;
+    vec3 longest = max(abs(e1), abs(e2));
+    float scale = 1.0 / max(max(longest.x, max(longest.y, longest.z)), 1e-37); // squares stay in range
+    vec3 normal = cross(scale * e1, scale * e2);
+    vec3 b = vec3(1.0 - barycentric.x - barycentric.y, barycentric);
+    vec3 world = b.x * v0 + b.y * v1 + b.z * v2;
+    vec3 error = 6.0 * SURFACE_EPSILON * (b.x * abs(v0) + b.y * abs(v1) + b.z * abs(v2));
+    surface_point p;
+    p.at = surface_transform(surfaces.from_world, world);
+    p.normal = surface_turn(surfaces.from_world, normal * inversesqrt(max(dot(normal, normal), 1e-37)));
+    // Back in the world the point must still be on its side.
+    error = surface_transform_error(surfaces.from_world, world, error);
+    error = surface_transform_error(surfaces.to_world, p.at, error);
+    p.error = surface_turn_sizes(surfaces.from_world, error);
+    return p;
+}
+
+// Moves the point off its triangle, to the side of `towards` (a direction or a vector, M), by what rounding may
+// have done to it: as in Pharr, Jakob and Humphreys, "Physically based rendering", 3.9.
+vec3 surface_offset(surface_point p, vec3 towards)
+{
+    float away = 2.0 * dot(abs(p.normal), p.error);
+    return p.at + (dot(towards, p.normal) < 0.0 ? -away : away) * p.normal;
+}
+
+#endif
