@@ -361,7 +361,7 @@ vec3 path_lamp(inout path_state path, inout rng_state rng)
         return vec3(0.0);
     }
     light_sample light = light_towards(lamp, at);
-    if (surface_hides(at, light.direction, light.distance)) {
+    if (surface_hides(at, light.direction, light.distance, SURFACE_NONE)) {
         return vec3(0.0);
     }
     vec3 sent = path_weight(path) * m.part_s * phase(m.g, path.way, light.direction) * light.arriving;
@@ -401,15 +401,17 @@ float path_meet_lights(inout path_state path, inout rng_state rng)
         return 0.0;
     }
     light_sample light;
+    uint target = SURFACE_NONE;
     if (EMITTERS && choice.index > args.num_lights) {
         emitter_sample from = emitter_draw(path.vertex, rng);
         float pdf = from.pdf * choice.probability + path_begin_pdf(from.direction);
+        target = from.triangle;
         light = light_sample(from.direction, from.distance,
                              from.pdf > 0.0 ? from.radiance * choice.probability / pdf : vec3(0.0));
     } else {
         light = light_towards(choice.index, path.vertex);
     }
-    if (max3(light.arriving) > 0.0 && !surface_hides(path.vertex, light.direction, light.distance)) {
+    if (max3(light.arriving) > 0.0 && !surface_hides(path.vertex, light.direction, light.distance, target)) {
         vec3 passed = path_transmittance(path.vertex, light.direction, light.distance, rng, path.steps);
         path_direct(light.direction, light.arriving * passed / choice.probability);
     }
@@ -460,7 +462,7 @@ void path_run(uint element, uint first, uint end)
             }
         }
 
-        surface_hit ahead = surface_hit(PATH_FAR, 0u, vec2(0.0));
+        surface_hit ahead = surface_hit(PATH_FAR, SURFACE_NONE, vec2(0.0));
         vec3 period = vec3(0.0);
         if (SURFACES) {
             path.steps++;
@@ -549,6 +551,7 @@ void path_run(uint element, uint first, uint end)
             light_choice choice = light_choose(f.at, rng_float(bits.x), LIGHT_MAP | LIGHT_EMITTERS);
             vec3 direction = vec3(0.0, 0.0, 1.0), pending = vec3(0.0);
             float distance = PATH_FAR, drawn = 0.0;
+            uint target = SURFACE_NONE;
             if (choice.probability > 0.0) {
                 if (LIGHTS > 0u && choice.index < args.num_lights) {
                     light_sample light = light_towards(choice.index, f.at);
@@ -564,6 +567,7 @@ void path_run(uint element, uint first, uint end)
                     emitter_sample from = emitter_draw(f.at, rng);
                     direction = from.direction;
                     distance = from.distance;
+                    target = from.triangle;
                     drawn = from.pdf * choice.probability;
                     pending = drawn > 0.0 ? weight * from.radiance : vec3(0.0);
                 } else if (ENVIRONMENT == TYN_PATH_ENV_MAP) {
@@ -585,7 +589,7 @@ void path_run(uint element, uint first, uint end)
                 }
                 pending *= drawn > 0.0 ? 1.0 / drawn : 1.0;
             }
-            if (max3(pending) > 0.0 && !surface_hides(f.at, direction, distance)) {
+            if (max3(pending) > 0.0 && !surface_hides(f.at, direction, distance, target)) {
                 pending *= path_transmittance(f.at, direction, distance, rng, path.steps);
                 path_add(result, pending, path.depth);
             }

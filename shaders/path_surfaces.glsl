@@ -21,13 +21,16 @@ void surface_box(out vec3 lo, out vec3 hi)
     hi = centre + reach;
 }
 
-// The nearest surface before `hit.t`, or with `any` the first that is found. `period`: where its copy stands, m.
+// The nearest surface before `hit.t`, or with `any` the first that is found; but for the triangle that `hit` has.
+// `period`: where its copy stands, m.
 bool surface_trace(vec3 origin, vec3 direction, bool any, inout surface_hit hit, out vec3 period)
 {
     period = vec3(0.0);
     vec3 way = surface_turn(surfaces.to_world, direction);
+    uint skip = hit.triangle;
     if ((FLAGS & TYN_PATH_REPEAT) == 0u) {
-        return surface_trace_world(surface_ray_make(surface_transform(surfaces.to_world, origin), way), any, hit);
+        return surface_trace_world(surface_ray_make(surface_transform(surfaces.to_world, origin), way, skip), any,
+                                   hit);
     }
     // Each copy is in a cell of its own, which begins where the surfaces do.
     vec3 lo, hi, repeats = vec3(medium.repeat), inverse = ray_inverse(direction);
@@ -41,7 +44,7 @@ bool surface_trace(vec3 origin, vec3 direction, bool any, inout surface_hit hit,
     bool found = false;
     for (uint i = 0u; i < SURFACE_PERIODS; i++) {
         vec3 at = surface_transform(surfaces.to_world, origin - cell * medium.extent);
-        if (surface_trace_world(surface_ray_make(at, way), any, hit)) {
+        if (surface_trace_world(surface_ray_make(at, way, skip), any, hit)) {
             found = true;
             period = cell * medium.extent;
         }
@@ -57,9 +60,10 @@ bool surface_trace(vec3 origin, vec3 direction, bool any, inout surface_hit hit,
     return found;
 }
 
-bool surface_hides(vec3 origin, vec3 direction, float distance)
+// Whether something stands between two points; `target`: the triangle that holds the other end, or SURFACE_NONE.
+bool surface_hides(vec3 origin, vec3 direction, float distance, uint target)
 {
-    surface_hit hit = surface_hit(distance, 0u, vec2(0.0));
+    surface_hit hit = surface_hit(distance, target, vec2(0.0));
     vec3 period;
     return SURFACES && surface_trace(origin, direction, true, hit, period);
 }
@@ -157,6 +161,7 @@ struct emitter_sample {
     float distance; // m
     vec3 radiance;  // towards the point, W/(m^2 sr)
     float pdf;      // 1/sr
+    uint triangle;
 };
 
 uint surface_cell_pick(surface_cell cell, uint bits)
@@ -184,7 +189,8 @@ emitter_sample emitter_draw(vec3 p, inout rng_state rng)
     float slope = dot(point.normal, direction);
     surface_material material = materials[triangles[index].material];
     vec3 radiance = surface_emission(material, slope < 0.0, density);
-    return emitter_sample(direction, distance, radiance, density * distance * distance / max(abs(slope), 1e-12));
+    float pdf = density * distance * distance / max(abs(slope), 1e-12);
+    return emitter_sample(direction, distance, radiance, pdf, index);
 }
 
 #endif

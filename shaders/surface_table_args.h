@@ -18,7 +18,7 @@ TYN_ASSERT_SIZE(surface_table, 48);
 // Walker's alias method: draw a cell uniformly, take its triangle with probability `keep`, else `alias`.
 struct surface_cell {
     float keep;
-    tyn_uint triangle, alias; // indices of triangles
+    tyn_uint alias, triangle; // indices of triangles
 };
 TYN_ASSERT_SIZE(surface_cell, 12);
 

@@ -7,15 +7,16 @@
 //
 // A ray that starts on a surface does not meet that surface again, at any scale: the origin's side of the
 // triangle's plane is told by an orientation test with its error bound, not by the distance along the ray.
-// surface_offset moves origins to the side they belong to.
+// surface_offset moves origins to the side they belong to. A ray towards a point of a triangle leaves that triangle
+// out.
 //
 // The includer declares `surfaces` (surface_block), `vertices[]`, `triangles[]` and `nodes[]` (surface_args.h).
 #ifndef TYN_SURFACE_TRACE_GLSL
 #define TYN_SURFACE_TRACE_GLSL
 #include "surface_args.h"
 
+const uint SURFACE_NONE = 0xffffffffu;
 const float SURFACE_EPSILON = 5.9604645e-8; // half an ulp of 1
-const int SURFACE_STACK = 64; // entries: the deepest level of a hierarchy
 
 struct surface_hit {
     float t;         // m; surface_trace finds hits nearer than the value it is given
@@ -27,6 +28,7 @@ struct surface_ray { // in the world
     vec3 origin, direction, inverse;
     vec3 shear; // shear.xy turns the direction into the permuted z axis, which shear.z scales
     uint axis;  // the direction's largest component, permuted to z
+    uint skip;  // a triangle that is not met: where the ray ends
 };
 
 // Turns the axes so that `axis` becomes z.
@@ -35,9 +37,10 @@ vec3 surface_permute(vec3 v, uint axis)
     return axis == 0u ? v.yzx : axis == 1u ? v.zxy : v;
 }
 
-surface_ray surface_ray_make(vec3 origin, vec3 direction)
+surface_ray surface_ray_make(vec3 origin, vec3 direction, uint skip)
 {
     surface_ray ray;
+    ray.skip = skip;
     ray.origin = origin;
     ray.direction = direction;
     vec3 size = abs(direction);
@@ -80,7 +83,7 @@ bool surface_meet(surface_ray ray, uint index, inout surface_hit hit)
         return false;
     }
     float t = max(ray.shear.z * (u * a.z + v * b.z + w * c.z) / sum, 0.0);
-    if (!(t < hit.t)) {
+    if (!(t < hit.t) || index == ray.skip) {
         return false;
     }
     // Not from an origin in the triangle's plane, and not if the ray leads away from it.
@@ -117,7 +120,7 @@ bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
         }
         return found;
     }
-    uint stack[SURFACE_STACK];
+    uint stack[TYN_SURFACE_STACK];
     int depth = 0;
     uint at = 0u;
     if (surface_enter(ray, nodes[0].lo, nodes[0].hi, hit.t) > hit.t) {

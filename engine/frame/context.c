@@ -270,6 +270,8 @@ static void upload_surfaces(tyn_context *ctx, const tyn_surfaces *s, tyn_scene_r
         {&refs->textures, "textures", data->textures, data->num_textures * sizeof *data->textures},
         {&refs->texels, "texels", data->texels, data->num_texels * sizeof *data->texels},
         {&refs->nodes, "nodes", s->nodes, s->num_nodes * sizeof *s->nodes},
+        {&refs->emitters, "emitters", data->emitters, data->emitters_size},
+        {&refs->areas, "areas", data->areas, data->areas_size},
     };
     refs->surfaces = tyn_graph_upload_buffer(g, "surfaces", block, sizeof *block, 0);
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++) {
@@ -355,6 +357,10 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     tyn_result result = update_environment(ctx, &frame->scene->environment);
     if (result == TYN_OK) {
         result = tyn_surface_data_update(&ctx->surfaces, &frame->scene->surfaces, log);
+    }
+    if (result == TYN_OK && ctx->method->traces_rays) {
+        result = tyn_surface_data_tables(&ctx->surfaces, &frame->scene->surfaces,
+                                         view->outputs & TYN_OUTPUT_BALANCE);
     }
     if (result == TYN_OK) {
         result = tyn_frame_scene_build(&ctx->frame, frame->scene, view, &ctx->map_light,

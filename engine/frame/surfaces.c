@@ -1,5 +1,6 @@
 // surfaces.c -- mip chains of textures, made when surfaces change.
 #include "frame/surfaces.h"
+#include "methods/surface_tables.h"
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -154,6 +155,8 @@ void tyn_surface_data_finish(tyn_surface_data *data)
 {
     free(data->textures);
     free(data->texels);
+    free(data->emitters);
+    free(data->areas);
     memset(data, 0, sizeof *data);
 }
 
@@ -175,5 +178,24 @@ tyn_result tyn_surface_data_update(tyn_surface_data *data, const tyn_surfaces *s
     }
     tyn_surfaces_bounds(surfaces, data->lo, data->hi);
     data->hash = hash;
+    return TYN_OK;
+}
+
+tyn_result tyn_surface_data_tables(tyn_surface_data *data, const tyn_surfaces *surfaces, bool areas)
+{
+    if (data->hash && !data->has_emitters) {
+        if (!tyn_surface_table_build(surfaces, TYN_SURFACE_EMITTERS, &data->emitters,
+                                     &data->emitters_size)) {
+            return TYN_ERR_MEMORY;
+        }
+        data->has_emitters = true;
+    }
+    if (data->hash && areas && !data->has_areas) {
+        if (!tyn_surface_table_build(surfaces, TYN_SURFACE_AREAS, &data->areas,
+                                     &data->areas_size)) {
+            return TYN_ERR_MEMORY;
+        }
+        data->has_areas = true;
+    }
     return TYN_OK;
 }

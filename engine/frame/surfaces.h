@@ -12,9 +12,15 @@ typedef struct tyn_surface_data {
     uint32_t num_textures;
     uint32_t *texels; // of all levels of all textures; at least one
     size_t num_texels;
+    void *emitters, *areas; // methods/surface_tables.h; NULL if there are none or nobody reads them
+    size_t emitters_size, areas_size;
+    bool has_emitters, has_areas; // were asked for and made
 } tyn_surface_data;
 
 // Checks the surfaces and makes the data anew if they changed. Errors are one log line.
 tyn_result tyn_surface_data_update(tyn_surface_data *data, const tyn_surfaces *surfaces,
                                    const tyn_log *log);
+// Makes the tables by which triangles are drawn, the second only if wanted.
+tyn_result tyn_surface_data_tables(tyn_surface_data *data, const tyn_surfaces *surfaces,
+                                   bool areas);
 void tyn_surface_data_finish(tyn_surface_data *data);

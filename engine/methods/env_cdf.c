@@ -1,6 +1,7 @@
 // env_cdf.c -- builds the alias table of an environment map.
 #include "methods/env_cdf.h"
 #include "env_args.h"
+#include "methods/alias_table.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,40 +68,17 @@ bool tyn_env_cdf_build(const tyn_environment *environment, void *table)
         return true;
     }
     struct env_cell *cells = (struct env_cell *)((char *)table + sizeof(head));
-    double *scaled = malloc(count * sizeof(double));
-    uint32_t *small = malloc(count * sizeof(uint32_t)), *large = malloc(count * sizeof(uint32_t));
-    if (!scaled || !small || !large) {
-        free(scaled);
-        free(small);
-        free(large);
+    double *weights = malloc(count * sizeof *weights);
+    if (!weights) {
         return false;
     }
     memcpy(table, &head, sizeof(head));
-    double total = weigh(environment, head.width, head.height, scaled);
-    size_t num_small = 0, num_large = 0;
+    // A black map is drawn from uniformly over the square: any table is right.
+    double total = weigh(environment, head.width, head.height, weights);
     for (size_t i = 0; i < count; i++) {
-        // A black map is drawn from uniformly over the square: any table is right.
-        scaled[i] = total > 0 ? scaled[i] / total * (double)count : 1.0;
-        cells[i] = (struct env_cell){1.0f, (uint32_t)i, (float)scaled[i]};
-        if (scaled[i] < 1.0) {
-            small[num_small++] = (uint32_t)i;
-        } else {
-            large[num_large++] = (uint32_t)i;
-        }
+        cells[i].density = total > 0 ? (float)(weights[i] / total * (double)count) : 1.0f;
     }
-    // Vose's form of Walker's method: fill each cell below average from one above.
-    while (num_small > 0 && num_large > 0) {
-        uint32_t poor = small[--num_small], rich = large[num_large - 1];
-        cells[poor].keep = (float)scaled[poor];
-        cells[poor].alias = rich;
-        scaled[rich] -= 1.0 - scaled[poor];
-        if (scaled[rich] < 1.0) {
-            num_large--;
-            small[num_small++] = rich;
-        }
-    }
-    free(scaled);
-    free(small);
-    free(large);
-    return true;
+    bool ok = tyn_alias_build(weights, count, &cells->keep, sizeof *cells);
+    free(weights);
+    return ok;
 }

@@ -51,6 +51,8 @@ typedef struct tyn_scene_refs {
     tyn_ref textures;    // struct surface_texture[], at least one
     tyn_ref texels;      // uint[], at least one
     tyn_ref nodes;       // struct surface_node[]; {0} if the scene has no hierarchy
+    tyn_ref emitters;    // struct surface_table and cells; {0} if nothing emits, or if it is not read
+    tyn_ref areas;       // the same; {0} but for BALANCE
     tyn_ref points;      // PROBE: vec3 in M, scalar
     tyn_ref depth;       // COMPOSITE: host depth
     tyn_ref color;       // COMPOSITE: host colour
@@ -84,7 +86,7 @@ typedef struct tyn_method {
     uint32_t outputs;                   // set of tyn_output it can make
     bool progressive;                   // uses view.first_sample, num_samples
     bool reads_env_cdf;                 // wants refs.env_cdf
-    bool traces_rays;                   // wants refs.nodes where there are surfaces
+    bool traces_rays; // wants refs.nodes and refs.emitters where there are surfaces, and refs.areas for a balance
     // Largest work a single record may be given (view.num_samples) to keep a dispatch short; NULL if
     // not progressive.
     uint32_t (*batch)(const tyn_job *job);

@@ -109,6 +109,8 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
         sigma_t = fmaxf(sigma_t, s->sigma_s[1] + s->sigma_a[1]);
     }
     p->repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];
+    p->surfaces = frame->num_triangles > 0;
+    p->emitters = job->refs.emitters.resource != 0 && !p->repeat; // else there is no end of them
     p->emissive = frame->emissive;
     p->num_lights = frame->num_lights;
     p->num_lamps = frame->num_lights - frame->num_suns;
@@ -156,6 +158,14 @@ static void connect_scene(tyn_ref *refs, const tyn_job *job, tyn_ref bricks)
     refs[PATH_PORT_ENVIRONMENT] = job->refs.environment;
     refs[PATH_PORT_ENV_MAP] = job->refs.env_map;
     refs[PATH_PORT_ENV_TABLE] = job->refs.env_cdf;
+    refs[PATH_PORT_SURFACES] = job->refs.surfaces;
+    refs[PATH_PORT_VERTICES] = job->refs.vertices;
+    refs[PATH_PORT_TRIANGLES] = job->refs.triangles;
+    refs[PATH_PORT_MATERIALS] = job->refs.materials;
+    refs[PATH_PORT_TEXTURES] = job->refs.textures;
+    refs[PATH_PORT_TEXELS] = job->refs.texels;
+    refs[PATH_PORT_NODES] = job->refs.nodes;
+    refs[PATH_PORT_EMITTERS] = job->refs.emitters;
 }
 
 static tyn_ref history(tyn_graph *g, const char *name, uint32_t width, uint32_t height)
@@ -295,7 +305,6 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     const uint32_t not_images = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_DEPTH;
     tyn_result result = check_repeat(job);
     tyn_media_refs media = {{0}};
-    tyn_method_warn_surfaces(job);
     if (result == TYN_OK && !job->frame->empty) {
         result = tyn_add_medium(g, job, &media);
     }

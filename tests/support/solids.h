@@ -13,3 +13,11 @@ void solids_quad(tyn_scene *scene, const float corner[3], const float u[3], cons
 // centre. Fronts outwards, or inwards: a room.
 void solids_box(tyn_scene *scene, const float lo[3], const float hi[3], float angle, bool inwards,
                 uint32_t material);
+
+// A sphere of triangles, `rings` (>= 2) from pole to pole about the vertical axis, with the area of the true
+// sphere: then its mean shadow and what it emits are true as well.
+void solids_sphere(tyn_scene *scene, const float centre[3], float radius, uint32_t rings,
+                   bool inwards, uint32_t material);
+
+// Sorts the triangles into a hierarchy of at most `leaf` triangles a leaf: split at the median.
+void solids_hierarchy(tyn_scene *scene, uint32_t leaf);

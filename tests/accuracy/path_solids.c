@@ -1,0 +1,175 @@
+// path_solids.c -- `path` with surfaces against closed forms: furnaces, closed boxes, form factors, shadows.
+#include "path_run.h"
+#include "gpu_test.h"
+#include "solids.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const float BLACK[3] = {0, 0, 0}, WHITE[3] = {1, 1, 1};
+
+static path_run runs;
+
+static int setup(void **state)
+{
+    int result = gpu_setup(state);
+    if (result == 0) {
+        path_run_open(&runs, ((gpu_test *)*state)->dev);
+    }
+    return result;
+}
+
+static int teardown(void **state)
+{
+    path_run_close(&runs);
+    return gpu_teardown(state);
+}
+
+static void check(const char *what, double value, double se, double expected)
+{
+    double z = (value - expected) / fmax(se, 1e-6 * fabs(expected));
+    printf("%-44s %.6f +- %.6f  expected %.6f  z %+.2f\n", what, value, se, expected, z);
+    if (!getenv("NOASSERT")) assert_true(isfinite(z) && fabs(z) <= 3);
+}
+
+// Mean of a picture's channel and its standard error.
+static double mean(const picture *p, int c, double *se)
+{
+    double sum = 0, var = 0;
+    uint32_t n = p->width * p->height;
+    for (uint32_t i = 0; i < n; i++) {
+        sum += p->rgb[3 * i + (uint32_t)c];
+        var += (double)p->se[3 * i + (uint32_t)c] * p->se[3 * i + (uint32_t)c];
+    }
+    *se = sqrt(var) / n;
+    return sum / n;
+}
+
+// White things under a sky of 1 cannot be seen, in and around a medium of albedo 1.
+static void furnaces(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 6; i++) {
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t white = solids_material(&scene, WHITE, BLACK);
+        solids_sphere(&scene, (float[]){0, 0, 0}, 0.4f, 12, false, white);
+        solids_box(&scene, (float[]){-2, -0.6f, -2}, (float[]){2, -0.5f, 2}, 0.3f, false, white);
+        solids_quad(&scene, (float[]){0.5f, -0.5f, -1}, (float[]){0, 0, 2}, (float[]){0, 1.2f, 0},
+                    white);
+        if (i % 2) {
+            solids_hierarchy(&scene, 3);
+        }
+        tyn_medium m = grey_medium(3, 0, 0.6f);
+        if (i / 2 == 1) {
+            scene_add_box(&scene, &m, (float[]){-1, -1, -1}, (float[]){1, 1, 1}, NULL, NULL);
+        } else if (i / 2 == 2) {
+            m.sigma_s[1] = 1.5f;
+            m.sigma_s[2] = 6;
+            float grid[27];
+            for (int k = 0; k < 27; k++) {
+                grid[k] = k % 5 * 0.3f;
+            }
+            scene_add_box(&scene, &m, (float[]){-1, -0.5f, -1}, (float[]){1, 1, 1},
+                          (uint32_t[]){3, 3, 3}, grid);
+        }
+        scene_set_sky(&scene, 1);
+        tyn_view view = {0};
+        view_perspective(&view, (float[]){1.5f, 1, 2}, (float[]){0, -0.1f, 0}, 0.7f, 24);
+        picture p = {0};
+        path_run_picture(&runs, &p, &scene, &view, path_effort(16));
+        for (int c = 0; c < 3; c++) {
+            double se, value = mean(&p, c, &se);
+            char name[64];
+            snprintf(name, sizeof name, "furnace %s %s %d",
+                     (const char *[]){"no medium", "fog", "coloured"}[i / 2],
+                     i % 2 ? "hierarchy" : "all", c);
+            check(name, value, se, 1);
+        }
+        picture_free(&p);
+        tyn_scene_finish(&scene);
+    }
+}
+
+// Closed box of albedo rho whose walls emit 1: 1 / (1 - rho) everywhere, with any medium of albedo 1 inside.
+static void closed_box(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        const float scale = (const float[]){1, 1e-3f, 1e5f, 1}[i], rho = 0.5f;
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t wall = solids_material(&scene, (float[]){rho, 0.2f, 0}, WHITE);
+        const float lo[3] = {0, 0, 0}, hi[3] = {3 * scale, 2 * scale, 4 * scale};
+        solids_box(&scene, lo, hi, 0.4f, true, wall);
+        tyn_medium m = grey_medium(0.8f / scale, 0, 0.5f);
+        if (i != 3) {
+            scene_add_box(&scene, &m, (float[]){scale, 0.5f * scale, scale},
+                          (float[]){2 * scale, scale, 3 * scale}, NULL, NULL);
+        }
+        tyn_view view = {0};
+        view_perspective(&view, (float[]){scale, scale, scale}, (float[]){3 * scale, 0, 3 * scale},
+                         1, 16);
+        picture p = {0};
+        path_run_picture(&runs, &p, &scene, &view, path_effort(64));
+        for (int c = 0; c < 3; c++) {
+            double se, value = mean(&p, c, &se);
+            char name[64];
+            snprintf(name, sizeof name, "closed box, scale %g, %d", (double)scale, c);
+            check(name, value, se, 1 / (1 - (double)(const float[]){rho, 0.2f, 0}[c]));
+        }
+        picture_free(&p);
+        tyn_scene_finish(&scene);
+    }
+}
+
+// Irradiance of a floor under a parallel, square emitter at height h: the form factor from a point on the axis to
+// a square of half side a (Howell, "A catalog of radiation configuration factors", B-3 times four).
+static double form_factor(double a, double h)
+{
+    double x = a / h, r = sqrt(1 + x * x);
+    return 4 * (1 / (2 * M_PI)) * 2 * (x / r * atan(x / r));
+}
+
+static void form_factors(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        const float half = (const float[]){0.1f, 1, 5}[i], h = 1;
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t floor = solids_material(&scene, (float[]){0.6f, 0.6f, 0.6f}, BLACK);
+        uint32_t lamp = solids_material(&scene, BLACK, (float[]){2, 1, 0.5f});
+        solids_quad(&scene, (float[]){-10, 0, -10}, (float[]){0, 0, 20}, (float[]){20, 0, 0},
+                    floor);
+        solids_quad(&scene, (float[]){-half, h, -half}, (float[]){2 * half, 0, 0},
+                    (float[]){0, 0, 2 * half}, lamp); // front downwards
+        tyn_view view = {0};
+        view_orthographic(&view, (float[]){0, 0, 0}, 1, -0.2f, 0, (float[]){0, 1, 0}, 1e-3f, 1);
+        view.camera.position[0] = -0.05f; // below the emitter
+        view.camera.position[1] = 0.01f;
+        picture p = {0};
+        path_run_picture(&runs, &p, &scene, &view, path_effort(8192));
+        for (int c = 0; c < 3; c++) {
+            char name[64];
+            snprintf(name, sizeof name, "form factor, half side %g, %d", (double)half, c);
+            check(name, p.rgb[c], p.se[c],
+                  0.6 * form_factor(half, h) * (double)(const float[]){2, 1, 0.5f}[c]);
+        }
+        picture_free(&p);
+        tyn_scene_finish(&scene);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(furnaces),
+        cmocka_unit_test(closed_box),
+        cmocka_unit_test(form_factors),
+    };
+    setvbuf(stdout, NULL, _IOLBF, 0);
+    cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
+    return cmocka_run_group_tests(tests, setup, teardown);
+}
