@@ -81,7 +81,7 @@ static void room(void **state)
     tyn_view view = {0};
     view_perspective(&view, (float[]){3.6f, 1.5f, 3.8f}, (float[]){1.8f, 1.3f, 1.6f},
                      tanf((float)M_PI / 6), 64);
-    const uint32_t samples = path_effort(96);
+    const uint32_t samples = path_effort(40);
     double start = seconds();
     path_run_picture(&runs, &p, &scene, &view, samples);
     double took = seconds() - start;

@@ -106,7 +106,8 @@ void scene_add_lamp(tyn_scene *scene, const float position[3], float intensity)
     memcpy(l->position, position, sizeof l->position);
 }
 
-picture_score picture_z(const picture *a, const picture *reference, uint32_t block, uint32_t channel)
+picture_score picture_z(const picture *a, const picture *reference, uint32_t block,
+                        uint32_t channel)
 {
     assert_int_equal(a->width, reference->width);
     assert_int_equal(a->height, reference->height);

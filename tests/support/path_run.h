@@ -36,6 +36,7 @@ typedef struct picture_score {
     double rms;           // of z over blocks
     double largest;       // |z| of a block
 } picture_score;
-picture_score picture_z(const picture *a, const picture *reference, uint32_t block, uint32_t channel);
+picture_score picture_z(const picture *a, const picture *reference, uint32_t block,
+                        uint32_t channel);
 
 uint32_t path_effort(uint32_t samples); // times TYN_LONG, if that is set
