@@ -14,9 +14,13 @@ struct ordinate {
                          // mean of the sky was split off it may be negative.
     float mean_cosine;   // of the region about its own mean direction: 1 - solid_angle / (4 pi), 1 = a point
     tyn_vec3 direction;  // of travel, M, unit: the opposite of the region's energy-weighted mean direction
-    float solid_angle;   // of the region, sr
+    float solid_angle;   // of its cone, sr: its region's, or the mean of those folded into it
+    // What an even radiance of 1 from its region and those folded into it gives: 4 pi and 0 over all
+    // ordinates; of suns 0.
+    float even;
+    tyn_vec3 even_flux; // M
 };
-TYN_ASSERT_SIZE(ordinate, 32);
+TYN_ASSERT_SIZE(ordinate, 48);
 
 struct ordinates_block { // uniform or storage buffer "ordinates"; the tail beyond `count` is zero
     tyn_uint count;      // in use, 0 to TYN_ORDINATES_MAX
@@ -25,6 +29,6 @@ struct ordinates_block { // uniform or storage buffer "ordinates"; the tail beyo
     tyn_uint pad;
     TYN_STRUCT(ordinate) list[TYN_ORDINATES_MAX];
 };
-TYN_ASSERT_SIZE(ordinates_block, 8208);
+TYN_ASSERT_SIZE(ordinates_block, 12304);
 
 #endif

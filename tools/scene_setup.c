@@ -1,5 +1,6 @@
 // scene_setup.c -- SCENE and the options that change it: coefficients, environment, camera, size.
 #include "scene_setup.h"
+#include "sequence.h"
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -22,6 +23,8 @@ const option scene_table[SCENE_TABLE_SIZE] = {
      "albedo of every medium, 0 to 1; last, keeping sigma_s + sigma_a"},
     {0, "density-scale", OPT_NUMBER, SCENE_AT(density_scale), "S", "multiply every density", NAN, 0,
      1e30},
+    {0, "frame", OPT_NUMBER, SCENE_AT(frame), "N",
+     "picture N of a sequence: the number for %04d or #### in names of files", NAN, 0, 100000},
 };
 
 #define VIEW_AT(field) offsetof(view_options, field)
@@ -68,6 +71,26 @@ static const float *given(const opt_vector *v)
     return v->given ? v->v : NULL;
 }
 
+static tyn_result load(app *a, const scene_options *options, const char *environment,
+                       tyn_scene *scene)
+{
+    if (options->number) {
+        return tyn_scene_load_frame(scene, options->scene, environment, *options->number, &a->log);
+    }
+    if (isnan(options->frame)) {
+        return tyn_scene_load(scene, options->scene, environment, &a->log);
+    }
+    const uint32_t number = (uint32_t)options->frame;
+    char *file = sequence_path(options->scene, number);
+    char *map = environment ? sequence_path(environment, number) : NULL;
+    tyn_result result = file && (map || !environment)
+                            ? tyn_scene_load_frame(scene, file, map, number, &a->log)
+                            : TYN_ERR_MEMORY;
+    free(file);
+    free(map);
+    return result;
+}
+
 int scene_open(app *a, const scene_options *options, tyn_scene *scene)
 {
     tyn_scene_init(scene);
@@ -78,10 +101,7 @@ int scene_open(app *a, const scene_options *options, tyn_scene *scene)
     }
     const char *environment = options->env ? options->env : options->environment;
     progress_start(&a->bar, "loading", a->quiet);
-    tyn_result result =
-        options->number
-            ? tyn_scene_load_frame(scene, options->scene, environment, *options->number, &a->log)
-            : tyn_scene_load(scene, options->scene, environment, &a->log);
+    tyn_result result = load(a, options, environment, scene);
     progress_stop(&a->bar);
     if (result != TYN_OK) {
         return app_exit_code(a, result, true);

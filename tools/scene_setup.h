@@ -10,10 +10,11 @@ typedef struct scene_options {
     float env_rotate, env_strength;
     opt_vector sigma_s, sigma_a, g, albedo;
     float density_scale;
+    float frame; // NAN: not given
     const uint32_t *number; // of a picture of a sequence, for the files that a scene names; NULL: none
 } scene_options;
 extern const option scene_table[];
-enum { SCENE_TABLE_SIZE = 8 };
+enum { SCENE_TABLE_SIZE = 9 };
 #define SCENE_POSITIONALS(args, member)                                                            \
     {"SCENE", "a .gltf or .glb scene, or a volume (.nvdb, .vdb)", true,                            \
      offsetof(args, member.scene)},                                                                \

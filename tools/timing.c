@@ -2,6 +2,7 @@
 #include "timing.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double step_angle = 0.5 * 3.14159265358979323846 / 180; // each frame, about +Y
 
@@ -28,11 +29,23 @@ static void step_camera(const tyn_scene *scene, tyn_camera *camera)
     }
 }
 
+// The environment turns as well: its rotation q becomes that about +Y times q.
 static void step_lights(tyn_scene *scene)
 {
     for (uint32_t i = 0; i < scene->num_lights; i++) {
         turn(scene->lights[i].direction);
     }
+    float *q = scene->environment.rotation;
+    const float w = q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0 ? 1 : q[3];
+    const float s = (float)sin(0.5 * step_angle), c = (float)cos(0.5 * step_angle);
+    const float turned[4] = {c * q[0] + s * q[2], c * q[1] + s * w, c * q[2] - s * q[0],
+                             c * w - s * q[1]};
+    memcpy(q, turned, sizeof turned);
+}
+
+static bool has_light(const tyn_scene *scene)
+{
+    return scene->num_lights || (scene->environment.present && scene->environment.size[0]);
 }
 
 static int by_value(const void *a, const void *b)
@@ -53,7 +66,7 @@ double timing_median(double *values, uint32_t count)
 int timing_run(app *a, renderer *r, tyn_scene *scene, const tyn_view *view, timing_change change,
                uint32_t frames, double *median_ms)
 {
-    if (change == TIMING_LIGHT && scene->num_lights == 0) {
+    if (change == TIMING_LIGHT && !has_light(scene)) {
         app_warn(a, "there is no light that could change");
     }
     double *values = calloc(frames, sizeof *values);

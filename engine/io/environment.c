@@ -56,6 +56,48 @@ static tyn_result load_exr(uint32_t size[2], float **pixels, const char *path, c
     return r;
 }
 
+// Maps of a few texels get more of them, an odd number of times as many: the bilinear map stays what it
+// was, and methods that take texels for boxes see it too.
+static tyn_result refine_small(uint32_t size[2], float **pixels, const tyn_log *log)
+{
+    uint32_t times[2] = {1, 1};
+    for (int a = 0; a < 2; a++) {
+        while (times[a] * size[a] < (a == 0 ? 64u : 32u)) {
+            times[a] += 2;
+        }
+    }
+    const uint32_t w = times[0] * size[0], h = times[1] * size[1];
+    if (w == size[0] && h == size[1]) {
+        return TYN_OK;
+    }
+    float *fine = malloc(3 * sizeof(float) * w * h);
+    if (!fine) {
+        tyn_log_print(log, TYN_LOG_ERROR, "no memory for an environment of %u x %u texels", w, h);
+        return TYN_ERR_MEMORY;
+    }
+    for (uint32_t y = 0; y < h; y++) {
+        const float v = ((float)y + 0.5f) / (float)times[1] - 0.5f; // clamped
+        const float fy = fminf(fmaxf(v, 0), (float)(size[1] - 1));
+        const uint32_t y0 = (uint32_t)fy, y1 = y0 + 1 < size[1] ? y0 + 1 : y0;
+        for (uint32_t x = 0; x < w; x++) {
+            const float fx = ((float)x + 0.5f) / (float)times[0] - 0.5f + (float)size[0]; // wraps
+            const uint32_t x0 = (uint32_t)fx % size[0], x1 = (x0 + 1) % size[0];
+            const float tx = fx - floorf(fx), ty = fy - (float)y0;
+            const float *p = *pixels, *rows[2] = {p + 3 * y0 * size[0], p + 3 * y1 * size[0]};
+            for (int c = 0; c < 3; c++) {
+                const float top = rows[0][3 * x0 + c] * (1 - tx) + rows[0][3 * x1 + c] * tx;
+                const float low = rows[1][3 * x0 + c] * (1 - tx) + rows[1][3 * x1 + c] * tx;
+                fine[3 * ((size_t)y * w + x) + c] = top * (1 - ty) + low * ty;
+            }
+        }
+    }
+    free(*pixels);
+    *pixels = fine;
+    size[0] = w;
+    size[1] = h;
+    return TYN_OK;
+}
+
 tyn_result tyn_environment_load(tyn_environment *env, const char *path, const tyn_log *log)
 {
     const char *dot = strrchr(path, '.');
@@ -71,7 +113,7 @@ tyn_result tyn_environment_load(tyn_environment *env, const char *path, const ty
                       path);
         return TYN_ERR_PARAMS;
     }
-    size_t count = r ? 0 : 3 * (size_t)size[0] * size[1];
+    size_t count = r ? 0 : 3 * (size_t)size[0] * size[1], negative = 0;
     for (size_t i = 0; i < count; i++) {
         if (!isfinite(pixels[i])) {
             tyn_log_print(log, TYN_LOG_ERROR, "%s: pixel %zu, %zu is %g: must be finite", path,
@@ -79,7 +121,15 @@ tyn_result tyn_environment_load(tyn_environment *env, const char *path, const ty
             free(pixels);
             return TYN_ERR_PARAMS;
         }
+        negative += pixels[i] < 0;
         pixels[i] = fmaxf(pixels[i], 0.0f); // filters leave small negative values beside lamps
+    }
+    if (negative) {
+        tyn_log_print(log, TYN_LOG_WARN, "%s: %zu negative values were set to 0", path, negative);
+    }
+    if (!r) {
+        r = refine_small(size, &pixels, log);
+        count = 3 * (size_t)size[0] * size[1];
     }
     if (!r) {
         free(env->data);

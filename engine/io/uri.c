@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static int hex(char c)
 {
@@ -74,6 +75,13 @@ char *tyn_uri_path(const json_doc *doc, const cJSON *uri)
         if (!path) {
             tyn_json_fault(doc, uri, "no memory for its path");
         }
+    }
+    if (path && !doc->frame && strchr(path + base, '#') && access(path, F_OK) != 0) {
+        tyn_json_fault(doc, uri,
+                       "names the pictures of a sequence: say which (--frame N), or render "
+                       "a range (--frames A-B)");
+        free(path);
+        path = NULL;
     }
     return path;
 }

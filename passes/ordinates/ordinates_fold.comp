@@ -85,19 +85,23 @@ void write(uint n)
     // Directions count by light: one of a region whose light and dark cancel must not turn its heir.
     vec3 light = own.light, moment = own.size * directions[n];
     vec2 size = own.size * vec2(own.solid_angle, 1.0);
+    vec4 even = vec4(own.solid_angle, own.outwards);
     for (uint k = 0u; k < num_folded; k++) {
         const ordinates_piece other = pieces[folded_ones[k]];
         const float mine = heirs[k] == n ? 1.0 : 0.0;
         light += mine * other.light;
         moment += mine * other.size * directions[folded_ones[k]];
         size += mine * other.size * vec2(other.solid_angle, 1.0);
+        even += mine * vec4(other.solid_angle, other.outwards);
     }
-    const vec3 d = -middle_of(moment);
+    const mat3 to_m =
+        mat3(environment.rows[0].xyz, environment.rows[1].xyz, environment.rows[2].xyz);
     ordinate o;
     o.irradiance = light;
-    o.direction = environment.rows[0].xyz * d.x + environment.rows[1].xyz * d.y +
-                  environment.rows[2].xyz * d.z;
+    o.direction = to_m * -middle_of(moment);
     o.solid_angle = size.x / size.y;
+    o.even = even.x;
+    o.even_flux = to_m * -even.yzw;
     o.mean_cosine = clamp(1.0 - o.solid_angle / (4.0 * SKY_PI), 0.0, 1.0);
     list[args.num_fixed + ranks[n]] = o;
 }

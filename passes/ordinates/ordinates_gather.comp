@@ -83,5 +83,6 @@ void main()
     }
     vec3 light = environment.radiance * power.rgb;
     light -= args.split != 0u ? environment.sky * solid_angle : vec3(0.0);
-    pieces[n] = ordinates_piece(light, sky_luminance(abs(light)), moment, solid_angle);
+    pieces[n] = ordinates_piece(light, sky_luminance(abs(light)), moment, solid_angle,
+                                outwards);
 }

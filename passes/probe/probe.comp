@@ -154,10 +154,12 @@ void main()
         }
         vec3 direct = exp(-(tau.a + tau.s)), e = color * exp(-(tau.a + tau.p));
         if (args.scattered_only != 0) {
-            // The regions of all but the fixed ordinates make up the sphere; the mean of the sky that
-            // comes from them is in the moments.
-            vec3 mean = n < ordinates.num_fixed ? vec3(0.0) : environment.sky;
-            e -= direct * (color + mean * ordinates.list[n].solid_angle);
+            // The mean of the sky that comes from the regions is in the moments.
+            vec4 even = vec4(ordinates.list[n].even, ordinates.list[n].even_flux);
+            e -= direct * color;
+            for (uint ch = 0; ch < 3; ch++) {
+                field[ch] -= direct[ch] * environment.sky[ch] * even;
+            }
         }
         d *= ordinates.list[n].mean_cosine;
         for (uint ch = 0; ch < 3; ch++) {

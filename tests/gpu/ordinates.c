@@ -551,6 +551,7 @@ static void folding(void **state)
         assert_int_equal(b.count, kept);
         assert_int_equal(b.folded, n - kept);
         assert_true(n < 256 || b.folded > 0);
+        double covered = 0, flux[3] = {0, 0, 0};
         for (int k = 0; k < kept; k++) {
             const struct ordinate *o = &b.list[k];
             struct ordinate towards = {.solid_angle = 0};
@@ -562,7 +563,13 @@ static void folding(void **state)
             assert_true(degrees_between(o, &towards) < 1);
             assert_true(fabs(o->solid_angle / angle - 1) < 1e-4);
             assert_true(fabs(o->mean_cosine - (1 - o->solid_angle / (4 * M_PI))) < 1e-6);
+            covered += o->even;
+            for (int c = 0; c < 3; c++) {
+                flux[c] += o->even_flux[c];
+            }
         }
+        assert_true(fabs(covered / (4 * M_PI) - 1) < 1e-5); // folded regions are with their heirs
+        assert_true(fabs(flux[0]) + fabs(flux[1]) + fabs(flux[2]) < 1e-4);
         assert_true(b.list[b.count].solid_angle == 0);
     }
 }
@@ -573,7 +580,7 @@ static void fixed(void **state)
     const scene s = make_scene(SKY, 0.3);
     tyn_ordinates_params params = defaults(256, true, 0);
     for (int i = 0; i < ORDINATES_MAX_FIXED; i++) {
-        params.fixed[i] = (struct ordinate){{(float)i, 1e-9f, 0}, 1, {0, 1, 0}, 0};
+        params.fixed[i] = (struct ordinate){{(float)i, 1e-9f, 0}, 1, {0, 1, 0}, 0, 0, {0, 0, 0}};
     }
     for (uint32_t n = 0; n <= ORDINATES_MAX_FIXED; n += 34) {
         params.num_fixed = n;
