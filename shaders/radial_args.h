@@ -50,7 +50,7 @@ struct radial_grid {
     float per_shell;    // ln(1 + r / near) from node to node
     tyn_uint inside;    // 1: the light is in the medium's box
 };
-TYN_ASSERT_SIZE(radial_grid, 144);
+TYN_ASSERT_SIZE(radial_grid, 148);
 
 struct radial_block { // storage buffer "radials": lamps first, the strongest first of all
     tyn_uint count;
@@ -58,6 +58,6 @@ struct radial_block { // storage buffer "radials": lamps first, the strongest fi
     tyn_uvec2 pad;
     TYN_STRUCT(radial_grid) list[TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX];
 };
-TYN_ASSERT_SIZE(radial_block, 46096);
+TYN_ASSERT_SIZE(radial_block, 47376);
 
 #endif

@@ -21,6 +21,7 @@
 #include "passes/shadow_map/shadow_map.h"
 #include "passes/tonemap/tonemap.h"
 #include "passes/upsample/upsample.h"
+#include "passes/vpl/vpl.h"
 #include "passes/walls/walls.h"
 #include <string.h>
 
@@ -49,6 +50,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_env_glow,
     &tyn_pass_gbuffer,
     &tyn_pass_shadow_map,
+    &tyn_pass_vpl,
     &tyn_pass_raymarch,
     &tyn_pass_path,
     &tyn_pass_path_probe,

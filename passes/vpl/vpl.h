@@ -1,0 +1,39 @@
+// vpl.h -- virtual point lights: what surfaces reflect of the primary lights, and what they emit, as a few
+// lights of a cosine lobe.
+#pragma once
+#include <tyndall/pass.h>
+#include "rsm_args.h"
+
+typedef struct tyn_vpl_params {
+    int32_t count; // "vpl.count": lights at most
+    // Set by the method:
+    uint32_t mode;     // TYN_MEDIUM_*
+    uint32_t num_suns; // directional lights in "lights": lamps come after them
+    uint32_t emitters; // 1: there are materials that emit; 2: some of them on both sides
+    uint32_t num_triangles;
+    uint32_t num_tiles; // of the reflective shadow maps
+    struct rsm_tile tiles[TYN_RSM_MAX_TILES];
+} tyn_vpl_params;
+
+enum {
+    VPL_PORT_MEDIUM,  // IN buffer struct medium_block
+    VPL_PORT_DENSITY, // IN optional 3D: density, or sigma_s in mode COEFFICIENTS; none: no medium
+    VPL_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as the one below
+    VPL_PORT_G,
+    VPL_PORT_SUNS,   // IN buffer struct light_block[]
+    VPL_PORT_LIGHTS, // IN buffer struct light_block[]: directional lights, then lamps
+    VPL_PORT_FLUX,   // IN optional 2D: rsm_args.h, as the two below
+    VPL_PORT_POSITION,
+    VPL_PORT_NORMAL,
+    VPL_PORT_SURFACES, // IN optional buffer struct surface_block: with emitters, as the three below
+    VPL_PORT_VERTICES, // IN optional buffers, surface_args.h
+    VPL_PORT_TRIANGLES,
+    VPL_PORT_MATERIALS,
+    VPL_PORT_VPLS,    // OUT buffer struct radial_vpls
+    VPL_PORT_PLAN,    // SCRATCH buffer struct vpl_plan
+    VPL_PORT_WEIGHTS, // SCRATCH buffer float[]: of the elements
+    VPL_PORT_BLOCKS, // SCRATCH buffer float[]: sums of blocks of elements, then what is before each
+    VPL_PORT_STRATA, // SCRATCH buffer struct vpl_stratum[]
+    VPL_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_vpl;

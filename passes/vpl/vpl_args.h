@@ -1,0 +1,44 @@
+// vpl_args.h -- what the kernels of pass vpl hand each other. Included by C and GLSL; scalar layout.
+//
+// Everything that may become a VPL is an element: a texel of a reflective shadow map, or one side of a
+// triangle. Elements are in blocks of VPL_BLOCK; a map's run along its Hilbert curve.
+#ifndef VPL_ARGS_H
+#define VPL_ARGS_H
+#include "shared.h"
+#include "rsm_args.h"
+
+#define VPL_BLOCK 256
+#define VPL_MAX_SOURCES (4 + 64 + 2)
+
+struct vpl_tile {
+    TYN_STRUCT(rsm_tile) map;
+    tyn_uint first; // block
+};
+TYN_ASSERT_SIZE(vpl_tile, 20);
+
+struct vpl_plan {
+    tyn_uint num_blocks;
+    tyn_uint num_tiles;
+    tyn_uint front; // block from which on elements are fronts of triangles
+    tyn_uint back;  // ... are backs; num_blocks: none
+    tyn_uint num_sources;
+    tyn_uint num_triangles;
+    tyn_uint sources[VPL_MAX_SOURCES]; // first blocks: of each light's maps, of fronts, of backs
+    TYN_STRUCT(vpl_tile) tiles[TYN_RSM_MAX_TILES];
+};
+TYN_ASSERT_SIZE(vpl_plan, 24 + 280 + 20 * 388);
+
+// A VPL stands for the elements with cumulated weights in [from, to), partly where they reach beyond.
+struct vpl_stratum {
+    float from, to;
+};
+TYN_ASSERT_SIZE(vpl_stratum, 8);
+
+struct vpl_args {
+    tyn_uint count; // VPLs at most
+    tyn_uint num_suns;
+    tyn_uint media; // 1: there is a medium
+};
+TYN_ASSERT_SIZE(vpl_args, 12);
+
+#endif

@@ -1,0 +1,239 @@
+// vpl_lights.comp -- one workgroup a VPL: the light that stands for a stratum of elements.
+//
+// All power of the stratum is the VPL's. Where it is and looks is the mean of those of its elements that
+// lie on one smooth piece of a surface with the element in the stratum's middle, weighted by power: it does
+// not hang between two surfaces. What the medium takes from the light on its way to that place is taken from
+// the power; light scattered forward counts as not scattered, as everywhere outside the march.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+
+#define VPL_PLAN 0
+#define VPL_FLUX 1
+#define VPL_POSITION 2
+#define VPL_NORMAL 3
+#define VPL_SURFACES 4
+#define VPL_VERTICES 5
+#define VPL_TRIANGLES 6
+#define VPL_MATERIALS 7
+#define MEDIUM_BLOCK 8
+#define MEDIUM_DENSITY 9
+#define MEDIUM_SIGMA_A 10
+#define MEDIUM_G 11
+#include "vpl_elements.glsl"
+#include "medium.glsl"
+#include "camera.glsl"
+#include "radial_args.h"
+#include "shadow_args.h"
+
+layout(local_size_x = VPL_BLOCK) in;
+
+layout(binding = 12, scalar) readonly buffer weight_buffer
+{
+    float weights[];
+};
+layout(binding = 13, scalar) readonly buffer block_buffer
+{
+    float blocks[]; // weights before each, and the whole
+};
+layout(binding = 14, scalar) readonly buffer strata_buffer
+{
+    vpl_stratum strata[];
+};
+layout(binding = 15, scalar) uniform sun_uniform
+{
+    light_block suns[TYN_LIGHTS_MAX];
+};
+layout(binding = 16, scalar) uniform light_uniform
+{
+    light_block lights[TYN_LIGHTS_MAX];
+};
+layout(binding = 17, scalar) buffer vpl_buffer
+{
+    uint vpl_count;
+    uvec3 vpl_pad;
+    radial_light vpls[];
+};
+layout(push_constant, scalar) uniform Args
+{
+    vpl_args args;
+};
+
+shared vec4 sums[VPL_BLOCK];
+shared uint middle, last_lit; // elements of the block, from 1 on
+
+vec4 total_of(vec4 v)
+{
+    uint lane = gl_LocalInvocationIndex;
+    barrier();
+    sums[lane] = v;
+    for (uint half_size = VPL_BLOCK / 2u; half_size > 0u; half_size /= 2u) {
+        barrier();
+        if (lane < half_size) {
+            sums[lane] += sums[lane + half_size];
+        }
+    }
+    barrier();
+    return sums[0];
+}
+
+// Cumulated weights before and after this thread's element of a block: the same for every VPL.
+vec2 weights_around(uint block)
+{
+    uint lane = gl_LocalInvocationIndex;
+    float weight = weights[block * VPL_BLOCK + lane];
+    barrier();
+    sums[lane].x = weight;
+    for (uint step = 1u; step < VPL_BLOCK; step *= 2u) {
+        barrier();
+        float before = lane >= step ? sums[lane - step].x : 0.0;
+        barrier();
+        sums[lane].x += before;
+    }
+    barrier();
+    float start = blocks[block];
+    return vec2(lane > 0u ? start + sums[lane - 1u].x : start, start + sums[lane].x);
+}
+
+// The last block that starts at or before a cumulated weight.
+uint block_of(float weight)
+{
+    uint lo = 0u, hi = plan.num_blocks - 1u;
+    while (lo < hi) {
+        uint mid = (lo + hi + 1u) / 2u;
+        bool before = blocks[mid] <= weight;
+        lo = before ? mid : lo;
+        hi = before ? hi : mid - 1u;
+    }
+    return lo;
+}
+
+// Optical depth from the light of a map to a place, per channel: a sample a thread.
+vec3 depth_from_light(uint light, vec3 p)
+{
+    vec3 towards;
+    float reach;
+    if (light < TYN_SHADOW_SUNS) {
+        towards = -suns[light].direction;
+        reach = 1e30;
+    } else {
+        vec3 way = lights[args.num_suns + light - TYN_SHADOW_SUNS].position - p;
+        reach = length(way);
+        towards = way / max(reach, 1e-20);
+    }
+    vec2 span = ray_box(p, ray_inverse(towards), vec3(0.0), medium.extent);
+    span = vec2(max(span.x, 0.0), min(span.y, reach));
+    float ds = max(span.y - span.x, 0.0) / float(VPL_BLOCK);
+    medium_point m =
+        medium_sample(p + (span.x + (float(gl_LocalInvocationIndex) + 0.5) * ds) * towards);
+    vec3 sigma_s = m.sigma_s, g = m.g;
+    similarity_clamp(sigma_s, g);
+    vec3 sigma_t = m.sigma_a + sigma_s * (1.0 - delta_fraction(g));
+    return total_of(vec4(sigma_t * ds, 0.0)).rgb;
+}
+
+// The part of this thread's element that is in the stratum.
+vec2 part_of(uint block, vpl_stratum stratum)
+{
+    vec2 w = weights_around(block);
+    vec2 part = (vec2(stratum.from, stratum.to) - w.x) / max(w.y - w.x, 1e-30);
+    return clamp(part, 0.0, w.y > w.x ? 1.0 : 0.0);
+}
+
+// Does a piece go on from the centre's? Within some 20 degrees of its plane, facing the same way, and not
+// farther than connected pieces of that area reach. In between, partly, so that nothing jumps.
+float same_piece(vec3 offset, vec3 normal, vec3 centre_normal, float area)
+{
+    float dd = dot(offset, offset);
+    float off = abs(dot(centre_normal, offset)) * inversesqrt(max(dd, 1e-20));
+    return smoothstep(0.5, 0.8, dot(normal, centre_normal)) * (1.0 - smoothstep(0.15, 0.35, off)) *
+           (1.0 - smoothstep(6.0 * area, 12.0 * area, dd));
+}
+
+void main()
+{
+    uint index = gl_WorkGroupID.x, lane = gl_LocalInvocationIndex;
+    if (index >= vpl_count) {
+        return;
+    }
+    vpl_stratum stratum = strata[index];
+    uint first = block_of(stratum.from);
+
+    // The first element that reaches beyond the middle.
+    float half_way = 0.5 * (stratum.from + stratum.to);
+    uint block = block_of(half_way);
+    if (lane == 0u) {
+        middle = VPL_BLOCK + 1u;
+        last_lit = 1u;
+    }
+    barrier();
+    vec2 around = weights_around(block);
+    if (around.y > around.x) {
+        atomicMin(middle, around.y > half_way ? lane + 1u : VPL_BLOCK + 1u);
+        atomicMax(last_lit, lane + 1u);
+    }
+    barrier();
+    uint at = (middle <= VPL_BLOCK ? middle : last_lit) - 1u; // rounding may leave none beyond
+    float weight_at = weights[block * VPL_BLOCK + at];
+    float inside = 0.0; // how far into the triangle the middle is
+    if (block >= plan.front) {
+        float before = blocks[block];
+        for (uint i = 0u; i < at; i++) {
+            before += weights[block * VPL_BLOCK + i];
+        }
+        inside = clamp((half_way - before) / max(weight_at, 1e-30), 0.0, 0.999);
+    }
+    vpl_piece centre = vpl_piece_of(block, at, vec2(inside, inside + 1e-4), 0u, 1u);
+
+    vec4 flux = vec4(0.0); // and the area, m^2
+    for (uint b = first; b < plan.num_blocks && blocks[b] < stratum.to; b++) {
+        if (blocks[b + 1u] > blocks[b]) {
+            vec2 part = part_of(b, stratum);
+            float share = part.y - part.x;
+            if (share > 0.0) {
+                flux.rgb += share * vpl_flux(b, lane);
+                flux.a += vpl_piece_of(b, lane, vec2(0.0, share), 0u, 1u).area;
+            }
+        }
+    }
+    flux = total_of(flux);
+
+    vec4 place = vec4(0.0);  // offset from the centre; weight
+    vec4 normal = vec4(0.0); // normal; squared offset
+    for (uint b = first; b < plan.num_blocks && blocks[b] < stratum.to; b++) {
+        if (blocks[b + 1u] > blocks[b]) {
+            vec2 part = part_of(b, stratum);
+            float share = part.y - part.x;
+            uint pieces = share > 0.0 ? vpl_pieces(b) : 0u;
+            float weight = weights[b * VPL_BLOCK + lane] * share / float(max(pieces, 1u));
+            for (uint k = 0u; k < pieces; k++) {
+                vpl_piece p = vpl_piece_of(b, lane, part, k, pieces);
+                vec3 d = p.position - centre.position;
+                float v = weight * same_piece(d, p.normal, centre.normal, flux.a);
+                place += v * vec4(d, 1.0);
+                normal += v * vec4(p.normal, dot(d, d) + p.area / (2.0 * VPL_PI));
+            }
+        }
+    }
+    place = total_of(place);
+    normal = total_of(normal);
+
+    radial_light light;
+    light.kind = TYN_RADIAL_COSINE;
+    light.light = TYN_RADIAL_NO_LIGHT;
+    light.cos_inner = light.cos_outer = 0.0;
+    vec3 offset = place.w > 0.0 ? place.xyz / place.w : vec3(0.0);
+    light.position = centre.position + offset;
+    light.axis = dot(normal.xyz, normal.xyz) > 0.0 ? normalize(normal.xyz) : centre.normal;
+    // A disc of radius r has the mean squared distance r^2 / 2 from its centre.
+    float spread = place.w > 0.0 ? normal.w / place.w - dot(offset, offset) : 0.0;
+    light.radius = sqrt(2.0 * max(spread, 0.0));
+    vec3 depth = vec3(0.0);
+    if (args.media != 0u && block < plan.front) {
+        depth = depth_from_light(plan.tiles[vpl_tile_of(block)].map.light, light.position);
+    }
+    light.intensity = flux.rgb * exp(-depth) / VPL_PI;
+    if (lane == 0u) {
+        vpls[index] = light;
+    }
+}

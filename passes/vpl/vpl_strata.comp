@@ -1,0 +1,92 @@
+// vpl_strata.comp -- cumulates the weights of blocks and cuts them into one stratum per VPL.
+//
+// Strata are equally heavy and start anew at every light, whose last one may be lighter. Edges move
+// smoothly when the light does, so that VPLs do; no VPL stands for two lights. If there are hardly more VPLs
+// than lights the lights are taken together.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "vpl_args.h"
+#include "radial_args.h"
+
+layout(local_size_x = VPL_BLOCK) in;
+
+layout(binding = 0, scalar) readonly buffer plan_buffer
+{
+    vpl_plan plan;
+};
+layout(binding = 1, scalar) buffer block_buffer
+{
+    float blocks[]; // in: weights; out: what is before; one more element, the whole
+};
+layout(binding = 2, scalar) writeonly buffer strata_buffer
+{
+    vpl_stratum strata[];
+};
+layout(binding = 3, scalar) writeonly buffer vpl_buffer
+{
+    uint vpl_count;
+    uvec3 vpl_pad;
+};
+layout(push_constant, scalar) uniform Args
+{
+    vpl_args args;
+};
+
+shared float sums[VPL_BLOCK];
+shared float starts[VPL_MAX_SOURCES + 1];
+
+void main()
+{
+    uint lane = gl_LocalInvocationIndex;
+    uint share = (plan.num_blocks + VPL_BLOCK - 1u) / VPL_BLOCK;
+    uint first = min(lane * share, plan.num_blocks), end = min(first + share, plan.num_blocks);
+    float sum = 0.0;
+    for (uint i = first; i < end; i++) {
+        sum += blocks[i];
+    }
+    sums[lane] = sum;
+    for (uint step = 1u; step < VPL_BLOCK; step *= 2u) {
+        barrier();
+        float before = lane >= step ? sums[lane - step] : 0.0;
+        barrier();
+        sums[lane] += before;
+    }
+    barrier();
+    float before = lane > 0u ? sums[lane - 1u] : 0.0;
+    for (uint i = first; i < end; i++) {
+        float weight = blocks[i];
+        blocks[i] = before;
+        before += weight;
+    }
+    float total = sums[VPL_BLOCK - 1u];
+    if (lane == 0u) {
+        blocks[plan.num_blocks] = total;
+    }
+    memoryBarrierBuffer();
+    barrier();
+
+    bool together = args.count < 2u * plan.num_sources;
+    uint num_sources = together ? 1u : plan.num_sources;
+    if (lane <= num_sources) {
+        starts[lane] = lane == num_sources ? total : blocks[plan.sources[lane]];
+    }
+    barrier();
+    float weight = total / float(together ? args.count : args.count - num_sources);
+    uint count = 0u;
+    for (uint s = 0u; s < num_sources && total > 0.0; s++) {
+        float from = starts[s], to = starts[s + 1u];
+        // Less than a thousandth is not worth a VPL of its own.
+        uint strata_here = to > from ? uint(max(ceil((to - from) / weight - 1e-3), 1.0)) : 0u;
+        if (lane >= count && lane < count + strata_here) {
+            uint k = lane - count;
+            bool last = k + 1u == strata_here;
+            strata[lane] = vpl_stratum(from + float(k) * weight,
+                                       last ? to : from + float(k + 1u) * weight);
+        }
+        count += strata_here;
+    }
+    if (lane == 0u) {
+        vpl_count = min(count, args.count);
+    }
+}

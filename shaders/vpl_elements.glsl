@@ -1,0 +1,172 @@
+// vpl_elements.glsl -- what may become a VPL: texels of reflective shadow maps, sides of triangles.
+//
+// Define the bindings VPL_PLAN, VPL_FLUX, VPL_POSITION, VPL_NORMAL, VPL_SURFACES, VPL_VERTICES,
+// VPL_TRIANGLES, VPL_MATERIALS.
+#ifndef TYN_VPL_ELEMENTS_GLSL
+#define TYN_VPL_ELEMENTS_GLSL
+#include "vpl_args.h"
+#include "surface_args.h"
+
+layout(binding = VPL_PLAN, scalar) readonly buffer vpl_plan_buffer
+{
+    vpl_plan plan;
+};
+layout(binding = VPL_FLUX) uniform sampler2D rsm_flux_tex;
+layout(binding = VPL_POSITION) uniform sampler2D rsm_position_tex;
+layout(binding = VPL_NORMAL) uniform sampler2D rsm_normal_tex;
+layout(binding = VPL_SURFACES, scalar) uniform vpl_surfaces_buffer
+{
+    surface_block surfaces;
+};
+layout(binding = VPL_VERTICES, scalar) readonly buffer vpl_vertices_buffer
+{
+    surface_vertex vertices[];
+};
+layout(binding = VPL_TRIANGLES, scalar) readonly buffer vpl_triangles_buffer
+{
+    surface_triangle triangles[];
+};
+layout(binding = VPL_MATERIALS, scalar) readonly buffer vpl_materials_buffer
+{
+    surface_material materials[];
+};
+
+const float VPL_PI = 3.14159265358979;
+const uint VPL_NO_TRIANGLE = 0xffffffffu;
+
+// Texel d of a Hilbert curve through side x side texels, a power of two.
+uvec2 vpl_hilbert(uint side, uint d)
+{
+    uvec2 p = uvec2(0u);
+    for (uint s = 1u; s < side; s *= 2u) {
+        uint rx = 1u & (d / 2u), ry = 1u & (d ^ rx);
+        if (ry == 0u) {
+            p = rx == 1u ? s - 1u - p : p;
+            p = p.yx;
+        }
+        p += s * uvec2(rx, ry);
+        d /= 4u;
+    }
+    return p;
+}
+
+// The map that a block belongs to; blocks of maps come before those of triangles.
+uint vpl_tile_of(uint block)
+{
+    uint lo = 0u, hi = plan.num_tiles - 1u;
+    while (lo < hi) {
+        uint mid = (lo + hi + 1u) / 2u;
+        bool before = plan.tiles[mid].first <= block;
+        lo = before ? mid : lo;
+        hi = before ? hi : mid - 1u;
+    }
+    return lo;
+}
+
+ivec2 vpl_texel(uint block, uint lane)
+{
+    uint tile = vpl_tile_of(block);
+    rsm_tile map = plan.tiles[tile].map;
+    uint d = (block - plan.tiles[tile].first) * VPL_BLOCK + lane;
+    return ivec2(map.offset + vpl_hilbert(map.texels, d));
+}
+
+uint vpl_triangle(uint block, uint lane)
+{
+    uint i = (block - (block >= plan.back ? plan.back : plan.front)) * VPL_BLOCK + lane;
+    return i < plan.num_triangles ? i : VPL_NO_TRIANGLE;
+}
+
+vec3 vpl_corner(uint vertex)
+{
+    vec3 p = vertices[vertex].position; // world -> M
+    return vec3(dot(surfaces.from_world[0].xyz, p) + surfaces.from_world[0].w,
+                dot(surfaces.from_world[1].xyz, p) + surfaces.from_world[1].w,
+                dot(surfaces.from_world[2].xyz, p) + surfaces.from_world[2].w);
+}
+
+// Power that leaves an element, W.
+vec3 vpl_flux(uint block, uint lane)
+{
+    if (block < plan.front) {
+        return texelFetch(rsm_flux_tex, vpl_texel(block, lane), 0).rgb;
+    }
+    uint i = vpl_triangle(block, lane);
+    if (i == VPL_NO_TRIANGLE) {
+        return vec3(0.0);
+    }
+    surface_material m = materials[triangles[i].material];
+    bool lit = block < plan.back || (m.flags & TYN_SURFACE_DOUBLE_SIDED) != 0u;
+    if (!lit || m.emission.r + m.emission.g + m.emission.b <= 0.0) {
+        return vec3(0.0);
+    }
+    vec3 a = vpl_corner(triangles[i].v0), b = vpl_corner(triangles[i].v1);
+    vec3 c = vpl_corner(triangles[i].v2);
+    return m.emission * (VPL_PI * 0.5 * length(cross(b - a, c - a)));
+}
+
+// What elements are chosen by.
+float vpl_weight(vec3 flux)
+{
+    float w = flux.r + flux.g + flux.b;
+    return w > 0.0 && !isinf(w) ? w : 0.0; // also where it is no number
+}
+
+// A piece of a surface: part of a triangle, or what a texel sees.
+struct vpl_piece {
+    vec3 position; // M, of its middle
+    vec3 normal;   // on the side that shines
+    float area;    // m^2
+};
+
+// A point at parameter t in [0, 1) of a curve that fills a triangle evenly (Sierpinski's): neighbours on
+// it are neighbours on the triangle. It runs along the longest side, halving triangles.
+vec3 vpl_on_triangle(vec3 a, vec3 b, vec3 c, float t)
+{
+    vec3 l = vec3(dot(c - b, c - b), dot(a - c, a - c), dot(b - a, b - a));
+    vec3 apex = l.x >= l.y && l.x >= l.z ? a : l.y >= l.z ? b : c;
+    vec3 from = l.x >= l.y && l.x >= l.z ? b : l.y >= l.z ? c : a;
+    vec3 to = l.x >= l.y && l.x >= l.z ? c : l.y >= l.z ? a : b;
+    for (int i = 0; i < 14; i++) {
+        vec3 middle = 0.5 * (from + to);
+        t *= 2.0;
+        bool second = t >= 1.0;
+        t -= second ? 1.0 : 0.0;
+        from = second ? apex : from;
+        to = second ? to : apex;
+        apex = middle;
+    }
+    return (apex + from + to) * (1.0 / 3.0);
+}
+
+// Piece k of `pieces` of the part [from, to) of an element.
+vpl_piece vpl_piece_of(uint block, uint lane, vec2 part, uint k, uint pieces)
+{
+    vpl_piece piece;
+    if (block < plan.front) {
+        ivec2 texel = vpl_texel(block, lane);
+        vec4 position = texelFetch(rsm_position_tex, texel, 0);
+        piece.position = position.xyz;
+        piece.area = position.w * (part.y - part.x);
+        piece.normal = texelFetch(rsm_normal_tex, texel, 0).xyz;
+        return piece;
+    }
+    surface_triangle tri = triangles[vpl_triangle(block, lane)];
+    vec3 a = vpl_corner(tri.v0), b = vpl_corner(tri.v1), c = vpl_corner(tri.v2);
+    vec3 n = cross(b - a, c - a);
+    float twice = length(n), share = (part.y - part.x) / float(pieces);
+    piece.position = vpl_on_triangle(a, b, c, part.x + (float(k) + 0.5) * share);
+    piece.area = 0.5 * twice * share;
+    piece.normal = n / max(twice, 1e-30);
+    if (block >= plan.back) {
+        piece.normal = -piece.normal;
+    }
+    return piece;
+}
+
+uint vpl_pieces(uint block)
+{
+    return block < plan.front ? 1u : 8u;
+}
+
+#endif
