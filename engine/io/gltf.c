@@ -5,9 +5,11 @@
 #include <string.h>
 #include "io/gltf_check.h"
 #include "io/gltf_media.h"
+#include "io/gltf_mesh.h"
 #include "io/gltf_shim.h"
 #include "io/uri.h"
 #include "scene/matrix.h"
+#include "scene/surfaces.h"
 
 // ---- the container --------------------------------------------------------------------------
 
@@ -90,7 +92,7 @@ typedef struct walk {
     const gltf_media *media;
     const cJSON **nodes;    // JSON of every node
     double (*to_world)[16]; // of every node
-    const char *first_mesh; // name of the first node with a mesh
+    gltf_meshes meshes;
 } walk;
 
 static void local_matrix(double m[16], const gltf_node *node)
@@ -199,10 +201,11 @@ static tyn_result visit(walk *w, uint32_t n, const double parent[16])
         return tyn_json_fault(w->doc, tyn_json_member(w->nodes[n], "matrix"),
                               "its last row must be 0, 0, 0, 1");
     }
-    if (node->mesh >= 0 && w->scene->num_meshes++ == 0) {
-        w->first_mesh = node->name;
-    }
     tyn_result r = tyn_gltf_read_shape(w->scene, w->media, w->doc, w->nodes[n], m);
+    if (!r && node->mesh >= 0) {
+        w->scene->num_meshes++;
+        r = tyn_gltf_mesh_add(&w->meshes, w->nodes[n], node->mesh, m);
+    }
     if (!r && node->camera >= 0) {
         r = add_camera(w, n);
     }
@@ -245,10 +248,6 @@ static tyn_result walk_nodes(walk *w)
             stack[top++] = model->nodes[n].children[i];
         }
     }
-    if (w->scene->num_meshes > 0) {
-        tyn_scene_warn(w->scene, "mesh '%s'%s: surfaces are not drawn yet", w->first_mesh,
-                       w->scene->num_meshes > 1 ? " and others" : "");
-    }
 done:
     free(stack);
     free(parents);
@@ -274,7 +273,10 @@ static tyn_result build_scene(tyn_scene *scene, const gltf_model *model, const j
     tyn_result r = tyn_gltf_read_media(scene, &media, doc);
     if (!r) {
         walk w = {.scene = scene, .model = model, .doc = doc, .media = &media};
-        r = walk_nodes(&w);
+        r = tyn_gltf_meshes_open(&w.meshes, doc, model, scene);
+        r = r ? r : walk_nodes(&w);
+        tyn_gltf_meshes_close(&w.meshes);
+        scene->surfaces.hash = tyn_surfaces_hash(&scene->surfaces);
     }
     if (!r && environment) {
         r = tyn_environment_load(&scene->environment, environment, doc->log);

@@ -15,43 +15,15 @@
         }                                                                                          \
     } while (0)
 
-// A top-level array of objects, for access by index.
-typedef struct list {
-    const cJSON **items;
-    int64_t count;
-} list;
-
 typedef struct checker {
     const json_doc *doc;
     bool glb;
-    list buffers, buffer_views, accessors, materials, meshes, cameras, nodes, scenes, lights;
+    json_list buffers, buffer_views, accessors, materials, meshes, cameras, nodes, scenes, lights;
+    json_list images, samplers, textures;
 } checker;
 
-static tyn_result get_list(const json_doc *doc, const cJSON *parent, const char *name, list *out)
-{
-    cJSON *array;
-    const cJSON *element;
-    TRY(tyn_json_array(doc, parent, name, &array));
-    if (!array) {
-        return TYN_OK;
-    }
-    out->items = calloc((size_t)cJSON_GetArraySize(array) + 1, sizeof *out->items);
-    if (!out->items) {
-        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its %s", doc->file, name);
-        return TYN_ERR_MEMORY;
-    }
-    cJSON_ArrayForEach(element, array)
-    {
-        if (!cJSON_IsObject(element)) {
-            return tyn_json_fault(doc, element, "must be an object");
-        }
-        out->items[out->count++] = element;
-    }
-    return TYN_OK;
-}
-
 static tyn_result check_index(const checker *c, const cJSON *parent, const char *name,
-                              const list *of, const char *what)
+                              const json_list *of, const char *what)
 {
     const cJSON *at = tyn_json_member(parent, name);
     int64_t unused;
@@ -60,7 +32,7 @@ static tyn_result check_index(const checker *c, const cJSON *parent, const char 
 
 // Every element of an array of indices.
 static tyn_result check_indices(const checker *c, const cJSON *parent, const char *name,
-                                const list *of, const char *what)
+                                const json_list *of, const char *what)
 {
     cJSON *array;
     const cJSON *element;
@@ -75,8 +47,9 @@ static tyn_result check_indices(const checker *c, const cJSON *parent, const cha
 
 static tyn_result check_extensions(const checker *c)
 {
-    static const char *const known[] = {"TYN_participating_media", "TYN_environment_map",
-                                        "KHR_lights_punctual", "KHR_materials_emissive_strength"};
+    static const char *const known[] = {
+        "TYN_participating_media", "TYN_environment_map",   "KHR_lights_punctual",
+        "KHR_mesh_quantization",   "KHR_texture_transform", "KHR_materials_emissive_strength"};
     cJSON *array;
     const cJSON *element;
     TRY(tyn_json_array(c->doc, c->doc->root, "extensionsUsed", &array));
@@ -89,8 +62,8 @@ static tyn_result check_extensions(const checker *c)
         }
         if (!found) {
             return tyn_json_fault(c->doc, element,
-                                  "this extension is not known; known are %s, %s, %s, %s", known[0],
-                                  known[1], known[2], known[3]);
+                                  "this extension is not known; known are %s, %s, %s, %s, %s, %s",
+                                  known[0], known[1], known[2], known[3], known[4], known[5]);
         }
     }
     return TYN_OK;
@@ -232,10 +205,64 @@ static tyn_result check_accessor(const checker *c, const cJSON *accessor)
     return check_sparse(c, accessor, bytes);
 }
 
+static tyn_result check_image(const checker *c, const cJSON *image)
+{
+    const char *uri = NULL;
+    TRY(tyn_json_string(c->doc, image, "uri", &uri));
+    TRY(check_index(c, image, "bufferView", &c->buffer_views, "bufferViews"));
+    if ((uri && *uri) == (tyn_json_member(image, "bufferView") != NULL)) {
+        return tyn_json_fault(c->doc, image, "needs either a uri or a bufferView");
+    }
+    return TYN_OK;
+}
+
+static tyn_result check_sampler(const checker *c, const cJSON *sampler)
+{
+    static const char *const names[] = {"wrapS", "wrapT"};
+    for (int i = 0; i < 2; i++) {
+        int64_t mode = 10497;
+        const char *right = "10497 (repeat), 33071 (clamp) or 33648 (mirror)";
+        TRY(tyn_json_integer(c->doc, sampler, names[i], 0, 65535, right, &mode));
+        if (mode != 10497 && mode != 33071 && mode != 33648) {
+            return tyn_json_fault(c->doc, tyn_json_member(sampler, names[i]), "must be %s", right);
+        }
+    }
+    return TYN_OK;
+}
+
+static tyn_result check_texture(const checker *c, const cJSON *texture)
+{
+    TRY(check_index(c, texture, "sampler", &c->samplers, "samplers"));
+    return check_index(c, texture, "source", &c->images, "images");
+}
+
+static tyn_result check_texture_info(const checker *c, const cJSON *parent, const char *name)
+{
+    cJSON *info;
+    TRY(tyn_json_object(c->doc, parent, name, &info));
+    if (info && !tyn_json_member(info, "index")) {
+        return tyn_json_fault(c->doc, info, "index is missing: an index of textures");
+    }
+    return info ? check_index(c, info, "index", &c->textures, "textures") : TYN_OK;
+}
+
+static tyn_result check_material(const checker *c, const cJSON *material)
+{
+    cJSON *pbr;
+    TRY(tyn_json_object(c->doc, material, "pbrMetallicRoughness", &pbr));
+    if (pbr) {
+        TRY(check_texture_info(c, pbr, "baseColorTexture"));
+        TRY(check_texture_info(c, pbr, "metallicRoughnessTexture"));
+    }
+    TRY(check_texture_info(c, material, "normalTexture"));
+    TRY(check_texture_info(c, material, "occlusionTexture"));
+    return check_texture_info(c, material, "emissiveTexture");
+}
+
 static tyn_result check_mesh(const checker *c, const cJSON *mesh)
 {
-    list primitives = {0};
-    tyn_result r = get_list(c->doc, mesh, "primitives", &primitives);
+    json_list primitives = {0};
+    tyn_result r = tyn_json_list(c->doc, mesh, "primitives", &primitives);
     for (int64_t i = 0; !r && i < primitives.count; i++) {
         const cJSON *p = primitives.items[i], *element;
         cJSON *attributes;
@@ -250,8 +277,8 @@ static tyn_result check_mesh(const checker *c, const cJSON *mesh)
                       : tyn_json_index(c->doc, element, c->accessors.count, "accessors", &unused);
             }
         }
-        list targets = {0};
-        r = r ? r : get_list(c->doc, p, "targets", &targets);
+        json_list targets = {0};
+        r = r ? r : tyn_json_list(c->doc, p, "targets", &targets);
         for (int64_t t = 0; !r && t < targets.count; t++) {
             cJSON_ArrayForEach(element, targets.items[t])
             {
@@ -431,20 +458,23 @@ static tyn_result check_all(checker *c)
     cJSON *extensions, *lights = NULL;
     TRY(check_asset(c));
     TRY(check_extensions(c));
-    TRY(get_list(doc, doc->root, "buffers", &c->buffers));
-    TRY(get_list(doc, doc->root, "bufferViews", &c->buffer_views));
-    TRY(get_list(doc, doc->root, "accessors", &c->accessors));
-    TRY(get_list(doc, doc->root, "materials", &c->materials));
-    TRY(get_list(doc, doc->root, "meshes", &c->meshes));
-    TRY(get_list(doc, doc->root, "cameras", &c->cameras));
-    TRY(get_list(doc, doc->root, "nodes", &c->nodes));
-    TRY(get_list(doc, doc->root, "scenes", &c->scenes));
+    TRY(tyn_json_list(doc, doc->root, "buffers", &c->buffers));
+    TRY(tyn_json_list(doc, doc->root, "bufferViews", &c->buffer_views));
+    TRY(tyn_json_list(doc, doc->root, "accessors", &c->accessors));
+    TRY(tyn_json_list(doc, doc->root, "images", &c->images));
+    TRY(tyn_json_list(doc, doc->root, "samplers", &c->samplers));
+    TRY(tyn_json_list(doc, doc->root, "textures", &c->textures));
+    TRY(tyn_json_list(doc, doc->root, "materials", &c->materials));
+    TRY(tyn_json_list(doc, doc->root, "meshes", &c->meshes));
+    TRY(tyn_json_list(doc, doc->root, "cameras", &c->cameras));
+    TRY(tyn_json_list(doc, doc->root, "nodes", &c->nodes));
+    TRY(tyn_json_list(doc, doc->root, "scenes", &c->scenes));
     TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
     if (extensions) {
         TRY(tyn_json_object(doc, extensions, "KHR_lights_punctual", &lights));
     }
     if (lights) {
-        TRY(get_list(doc, lights, "lights", &c->lights));
+        TRY(tyn_json_list(doc, lights, "lights", &c->lights));
     }
     for (int64_t i = 0; i < c->buffers.count; i++) {
         TRY(check_buffer(c, i));
@@ -454,6 +484,18 @@ static tyn_result check_all(checker *c)
     }
     for (int64_t i = 0; i < c->accessors.count; i++) {
         TRY(check_accessor(c, c->accessors.items[i]));
+    }
+    for (int64_t i = 0; i < c->images.count; i++) {
+        TRY(check_image(c, c->images.items[i]));
+    }
+    for (int64_t i = 0; i < c->samplers.count; i++) {
+        TRY(check_sampler(c, c->samplers.items[i]));
+    }
+    for (int64_t i = 0; i < c->textures.count; i++) {
+        TRY(check_texture(c, c->textures.items[i]));
+    }
+    for (int64_t i = 0; i < c->materials.count; i++) {
+        TRY(check_material(c, c->materials.items[i]));
     }
     for (int64_t i = 0; i < c->meshes.count; i++) {
         TRY(check_mesh(c, c->meshes.items[i]));
@@ -472,8 +514,9 @@ tyn_result tyn_gltf_check(const json_doc *doc, bool glb)
 {
     checker c = {.doc = doc, .glb = glb};
     tyn_result r = check_all(&c);
-    const list *lists[] = {&c.buffers, &c.buffer_views, &c.accessors, &c.materials, &c.meshes,
-                           &c.cameras, &c.nodes,        &c.scenes,    &c.lights};
+    const json_list *lists[] = {&c.buffers, &c.buffer_views, &c.accessors, &c.materials,
+                                &c.meshes,  &c.cameras,      &c.nodes,     &c.scenes,
+                                &c.lights,  &c.images,       &c.samplers,  &c.textures};
     for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) {
         free(lists[i]->items);
     }

@@ -10,8 +10,8 @@
 
 namespace {
 
-// Buffers come first in tinygltf's order; once they are read, what it asks for are images, which
-// nothing draws: they are not there.
+// Buffers come first in tinygltf's order; once they are read, what it asks for are images: they are not
+// there. Those that materials use are read later (gltf_texture.c).
 struct files {
     size_t buffers_left;
     std::string fault; // why a buffer could not be read
@@ -142,6 +142,13 @@ void copy_model(gltf_model *to, const tinygltf::Model &from)
     for (const tinygltf::Light &light : from.lights) {
         copy_light(&to->lights[to->num_lights++], light);
     }
+    to->buffers = allocate<gltf_bytes>(from.buffers.size());
+    for (const tinygltf::Buffer &buffer : from.buffers) {
+        gltf_bytes *b = &to->buffers[to->num_buffers++];
+        b->data = allocate<uint8_t>(buffer.data.size());
+        b->size = buffer.data.size();
+        std::memcpy(b->data, buffer.data.data(), b->size);
+    }
     to->scene = -1;
     if (!from.scenes.empty()) {
         to->scene = from.defaultScene < 0 ? 0 : from.defaultScene;
@@ -220,6 +227,24 @@ tyn_result gltf_model_read(gltf_model *model, const gltf_source *source, const t
     return r;
 }
 
+bool gltf_data_uri(const char *uri, gltf_bytes *out)
+{
+    try {
+        std::vector<unsigned char> bytes;
+        std::string type;
+        if (!tinygltf::IsDataURI(uri) ||
+            !tinygltf::DecodeDataURI(&bytes, type, uri, 0, false) || bytes.empty()) {
+            return false;
+        }
+        out->data = allocate<uint8_t>(bytes.size());
+        out->size = bytes.size();
+        std::memcpy(out->data, bytes.data(), out->size);
+        return true;
+    } catch (const std::exception &) {
+        return false;
+    }
+}
+
 void gltf_model_finish(gltf_model *model)
 {
     for (uint32_t i = 0; i < model->num_nodes; i++) {
@@ -232,6 +257,10 @@ void gltf_model_finish(gltf_model *model)
     for (uint32_t i = 0; i < model->num_lights; i++) {
         std::free(model->lights[i].name);
     }
+    for (uint32_t i = 0; i < model->num_buffers; i++) {
+        std::free(model->buffers[i].data);
+    }
+    std::free(model->buffers);
     std::free(model->scene_name);
     std::free(model->roots);
     std::free(model->nodes);

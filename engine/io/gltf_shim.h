@@ -27,6 +27,11 @@ typedef struct gltf_light {
     double color[3], intensity, inner, outer;
 } gltf_light;
 
+typedef struct gltf_bytes {
+    uint8_t *data;
+    size_t size;
+} gltf_bytes;
+
 typedef struct gltf_model {
     char *scene_name; // of the scene that is shown
     int32_t scene;    // its index; -1: the file has none, every root node is shown
@@ -34,7 +39,8 @@ typedef struct gltf_model {
     gltf_node *nodes;
     gltf_camera *cameras;
     gltf_light *lights;
-    uint32_t num_nodes, num_cameras, num_lights;
+    gltf_bytes *buffers; // of the file, each at least as long as its byteLength
+    uint32_t num_nodes, num_cameras, num_lights, num_buffers;
 } gltf_model;
 
 typedef struct gltf_source {
@@ -46,10 +52,13 @@ typedef struct gltf_source {
     const char *file;            // for messages
 } gltf_source;
 
-// Buffers are read and their sizes compared, images are not. No exception leaves; faults are one
+// Buffers are read and their sizes compared; images are left alone. No exception leaves; faults are one
 // line.
 tyn_result gltf_model_read(gltf_model *model, const gltf_source *source, const tyn_log *log);
 void gltf_model_finish(gltf_model *model);
+
+// What a "data:" uri holds; freed with free(). False if it is not one, or cannot be read.
+bool gltf_data_uri(const char *uri, gltf_bytes *out);
 
 #ifdef __cplusplus
 }

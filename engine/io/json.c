@@ -278,3 +278,26 @@ tyn_result tyn_json_index(const json_doc *doc, const cJSON *at, int64_t count, c
     *out = (int64_t)at->valuedouble;
     return TYN_OK;
 }
+
+tyn_result tyn_json_list(const json_doc *doc, const cJSON *parent, const char *name, json_list *out)
+{
+    cJSON *array;
+    const cJSON *element;
+    tyn_result r = tyn_json_array(doc, parent, name, &array);
+    if (r || !array) {
+        return r;
+    }
+    out->items = calloc((size_t)cJSON_GetArraySize(array) + 1, sizeof *out->items);
+    if (!out->items) {
+        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its %s", doc->file, name);
+        return TYN_ERR_MEMORY;
+    }
+    cJSON_ArrayForEach(element, array)
+    {
+        if (!cJSON_IsObject(element)) {
+            return tyn_json_fault(doc, element, "must be an object");
+        }
+        out->items[out->count++] = element;
+    }
+    return TYN_OK;
+}

@@ -40,4 +40,12 @@ tyn_result tyn_json_integer(const json_doc *doc, const cJSON *parent, const char
 // An index into `count` things called `what`.
 tyn_result tyn_json_index(const json_doc *doc, const cJSON *at, int64_t count, const char *what,
                           int64_t *out);
+// A member that is an array of objects, for access by index; `items` is freed with free(). Nothing where it
+// is not there.
+typedef struct json_list {
+    const cJSON **items;
+    int64_t count;
+} json_list;
+tyn_result tyn_json_list(const json_doc *doc, const cJSON *parent, const char *name,
+                         json_list *out);
 cJSON *tyn_json_member(const cJSON *parent, const char *name); // NULL: not there

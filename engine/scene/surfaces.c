@@ -1,6 +1,5 @@
 // surfaces.c -- life of a scene's surfaces, their bounds, hash and checks.
 #include "scene/surfaces.h"
-#include "base/hash.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -34,25 +33,6 @@ bool tyn_surfaces_bounds(const tyn_surfaces *s, float lo[3], float hi[3])
         }
     }
     return any;
-}
-
-uint64_t tyn_surfaces_hash(const tyn_surfaces *s)
-{
-    if (s->hash || !s->num_triangles) {
-        return s->num_triangles ? s->hash : 0;
-    }
-    uint64_t h = TYN_HASH_SEED;
-    h = tyn_hash_bytes(h, s->vertices, s->num_vertices * sizeof *s->vertices);
-    h = tyn_hash_bytes(h, s->triangles, s->num_triangles * sizeof *s->triangles);
-    h = tyn_hash_bytes(h, s->materials, s->num_materials * sizeof *s->materials);
-    h = tyn_hash_bytes(h, s->nodes, s->num_nodes * sizeof *s->nodes);
-    for (uint32_t i = 0; i < s->num_textures; i++) {
-        const tyn_texture *t = &s->textures[i];
-        h = tyn_hash_bytes(h, t->size, sizeof t->size);
-        h = tyn_hash_bytes(h, t->wrap, sizeof t->wrap);
-        h = tyn_hash_bytes(h, t->texels, t->texels ? (size_t)t->size[0] * t->size[1] * 4 : 0);
-    }
-    return h ? h : 1;
 }
 
 // ---- checks -----------------------------------------------------------------------------------

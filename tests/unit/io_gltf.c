@@ -261,7 +261,8 @@ static void containers(void **state)
     const char *buffers =
         "'buffers': [{'byteLength': 12%s}], 'bufferViews': [{'buffer': 0, 'byteLength': 12}],"
         "'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 1, 'type': 'VEC3'}],"
-        "'meshes': [{'primitives': [{'attributes': {'POSITION': 0}}]}], 'nodes': [{'mesh': 0}]}";
+        "'meshes': [{'primitives': [{'mode': 0, 'attributes': {'POSITION': 0}}]}], 'nodes': "
+        "[{'mesh': 0}]}";
     const char *uris[] = {", 'uri': 'data.bin'",
                           ", 'uri': 'data:application/octet-stream;base64,AAAAAAAAAAAAAAAA'"};
     char text[2048], part[1024];

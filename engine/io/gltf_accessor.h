@@ -1,0 +1,31 @@
+// gltf_accessor.h -- values of accessors as floats or indices. The document has passed tyn_gltf_check.
+#pragma once
+#include "io/gltf_shim.h"
+#include "io/json.h"
+
+typedef struct gltf_data {
+    const json_doc *doc;
+    const gltf_model *model;
+    json_list accessors, buffer_views;
+} gltf_data;
+tyn_result tyn_gltf_data_open(gltf_data *data, const json_doc *doc, const gltf_model *model);
+void tyn_gltf_data_close(gltf_data *data);
+
+// Bytes [offset, offset + size) of a buffer view; NULL if it does not hold as many.
+const uint8_t *tyn_gltf_view_bytes(const gltf_data *data, int64_t view, uint64_t offset,
+                                   uint64_t size);
+uint64_t tyn_gltf_view_size(const gltf_data *data, int64_t view);
+
+// `at` is the member that names the accessor, for messages: "attributes.POSITION". Normalised integers
+// become 0 to 1 or -1 to 1, others keep their value; sparse values are put in. The accessor's type must be
+// VEC<least> to VEC<most>. `out`: count * components floats, all finite, freed with free().
+typedef struct gltf_floats {
+    float *values;
+    uint32_t count, components;
+} gltf_floats;
+tyn_result tyn_gltf_read_floats(const gltf_data *data, const cJSON *at, uint32_t least,
+                                uint32_t most, gltf_floats *out);
+
+// Indices, each < `limit`; freed with free().
+tyn_result tyn_gltf_read_indices(const gltf_data *data, const cJSON *at, uint32_t limit,
+                                 uint32_t **out, uint32_t *count);

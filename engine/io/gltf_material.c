@@ -1,0 +1,241 @@
+// gltf_material.c -- materials of a glTF file as diffuse surfaces.
+//
+// Of the metallic-roughness model its diffuse part is kept: albedo = baseColor (1 - metallic).
+#include "io/gltf_material.h"
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TRY(call)                                                                                  \
+    do {                                                                                           \
+        tyn_result r_ = (call);                                                                    \
+        if (r_) {                                                                                  \
+            return r_;                                                                             \
+        }                                                                                          \
+    } while (0)
+
+// ---- open, close ------------------------------------------------------------------------------
+
+tyn_result tyn_gltf_materials_open(gltf_materials *m, const gltf_data *data, tyn_scene *scene)
+{
+    const json_doc *doc = data->doc;
+    memset(m, 0, sizeof *m);
+    m->scene = scene;
+    TRY(tyn_gltf_textures_open(&m->textures, data, &scene->surfaces));
+    TRY(tyn_json_list(doc, doc->root, "materials", &m->list));
+    m->loaded = calloc((size_t)m->list.count + 1, sizeof *m->loaded);
+    m->is_loaded = calloc((size_t)m->list.count + 1, sizeof *m->is_loaded);
+    if (!m->loaded || !m->is_loaded) {
+        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its materials", doc->file);
+        return TYN_ERR_MEMORY;
+    }
+    return TYN_OK;
+}
+
+void tyn_gltf_materials_close(gltf_materials *m)
+{
+    static const char *const what[NUM_LACKS] = {
+        [LACK_METAL] = "all metal (metallicFactor 1 is glTF's default): it reflects nothing, only "
+                       "diffuse reflection is done",
+        [LACK_METAL_TEXTURE] = "of metallicRoughnessTexture the mean metalness counts",
+        [LACK_EMISSIVE_TEXTURE] = "of emissiveTexture the mean counts",
+        [LACK_NORMAL_TEXTURE] = "normalTexture is not read",
+        [LACK_ALPHA] = "it is opaque: alphaMode is not read",
+        [LACK_EXTENSION] = "of its extensions only KHR_materials_emissive_strength is read",
+    };
+    for (int i = 0; i < NUM_LACKS; i++) {
+        const uint32_t others = m->lacks[i].count - 1;
+        if (m->lacks[i].count == 1) {
+            tyn_scene_warn(m->scene, "material %s: %s", m->lacks[i].name, what[i]);
+        } else if (m->lacks[i].count) {
+            tyn_scene_warn(m->scene, "material %s and %u more: %s", m->lacks[i].name, others,
+                           what[i]);
+        }
+    }
+    tyn_gltf_textures_close(&m->textures);
+    free(m->list.items);
+    free(m->loaded);
+    free(m->is_loaded);
+}
+
+static void lack(gltf_materials *m, int64_t index, gltf_material_lack which)
+{
+    if (m->lacks[which].count++ == 0) {
+        const cJSON *name =
+            index < m->list.count ? tyn_json_member(m->list.items[index], "name") : NULL;
+        char *text = m->lacks[which].name;
+        if (cJSON_IsString(name)) {
+            snprintf(text, sizeof m->lacks[which].name, "'%s'", name->valuestring);
+        } else if (index < m->list.count) {
+            snprintf(text, sizeof m->lacks[which].name, "%lld", (long long)index);
+        } else {
+            snprintf(text, sizeof m->lacks[which].name, "of meshes without one");
+        }
+    }
+}
+
+// ---- reading ----------------------------------------------------------------------------------
+
+static tyn_result read_texture_info(gltf_materials *m, const cJSON *info, gltf_material *out,
+                                    uint32_t *texture)
+{
+    const json_doc *doc = m->textures.data->doc;
+    int64_t texcoord = 0;
+    double offset[2] = {0, 0}, scale[2] = {1, 1}, angle = 0;
+    cJSON *extensions, *transform = NULL;
+    TRY(tyn_json_integer(doc, info, "texCoord", 0, 15, "a whole number, 0 to 15", &texcoord));
+    TRY(tyn_json_object(doc, info, "extensions", &extensions));
+    if (extensions) {
+        TRY(tyn_json_object(doc, extensions, "KHR_texture_transform", &transform));
+    }
+    if (transform) {
+        const char *finite = "a finite number";
+        TRY(tyn_json_integer(doc, transform, "texCoord", 0, 15, "a whole number, 0 to 15",
+                             &texcoord));
+        TRY(tyn_json_numbers(doc, transform, "offset", 2, -1e9, 1e9, finite, offset));
+        TRY(tyn_json_numbers(doc, transform, "scale", 2, -1e9, 1e9, finite, scale));
+        TRY(tyn_json_number(doc, transform, "rotation", -1e9, 1e9, finite, &angle));
+    }
+    const double c = cos(angle), s = sin(angle);
+    const double uv[2][3] = {{c * scale[0], s * scale[1], offset[0]},
+                             {-s * scale[0], c * scale[1], offset[1]}};
+    for (int i = 0; i < 6; i++) {
+        out->uv[i / 3][i % 3] = (float)uv[i / 3][i % 3];
+    }
+    out->texcoord = (uint32_t)texcoord;
+    return tyn_gltf_texture_get(&m->textures, info, texture);
+}
+
+static tyn_result read_albedo(gltf_materials *m, int64_t index, const cJSON *json,
+                              gltf_material *out, tyn_surface_material *material)
+{
+    const json_doc *doc = m->textures.data->doc;
+    double factor[4] = {1, 1, 1, 1}, metallic = 1, mean[4];
+    cJSON *pbr, *info = NULL, *metal = NULL;
+    TRY(tyn_json_object(doc, json, "pbrMetallicRoughness", &pbr));
+    if (pbr) {
+        TRY(tyn_json_numbers(doc, pbr, "baseColorFactor", 4, 0, 1, "between 0 and 1", factor));
+        TRY(tyn_json_number(doc, pbr, "metallicFactor", 0, 1, "between 0 and 1", &metallic));
+        TRY(tyn_json_object(doc, pbr, "baseColorTexture", &info));
+        TRY(tyn_json_object(doc, pbr, "metallicRoughnessTexture", &metal));
+    }
+    if (metal && metallic > 0) { // metalness is in the blue channel, linear
+        TRY(tyn_gltf_texture_mean(&m->textures, metal, false, mean));
+        metallic *= mean[2];
+        lack(m, index, LACK_METAL_TEXTURE);
+    }
+    if (info) {
+        TRY(read_texture_info(m, info, out, &material->texture));
+    }
+    for (int c = 0; c < 3; c++) {
+        material->albedo[c] = (float)(factor[c] * (1 - metallic));
+    }
+    if (metallic == 1 && factor[0] + factor[1] + factor[2] > 0) {
+        lack(m, index, LACK_METAL);
+    }
+    return TYN_OK;
+}
+
+static tyn_result read_emission(gltf_materials *m, int64_t index, const cJSON *json,
+                                tyn_surface_material *material)
+{
+    const json_doc *doc = m->textures.data->doc;
+    double factor[3] = {0, 0, 0}, strength = 1, mean[4] = {1, 1, 1, 1};
+    cJSON *extensions, *strong = NULL, *info;
+    TRY(tyn_json_numbers(doc, json, "emissiveFactor", 3, 0, 1, "between 0 and 1", factor));
+    TRY(tyn_json_object(doc, json, "extensions", &extensions));
+    if (extensions) {
+        TRY(tyn_json_object(doc, extensions, "KHR_materials_emissive_strength", &strong));
+    }
+    if (strong) {
+        TRY(tyn_json_number(doc, strong, "emissiveStrength", 0, 1e30, "a number >= 0", &strength));
+    }
+    TRY(tyn_json_object(doc, json, "emissiveTexture", &info));
+    if (info && factor[0] + factor[1] + factor[2] > 0) {
+        TRY(tyn_gltf_texture_mean(&m->textures, info, true, mean));
+        lack(m, index, LACK_EMISSIVE_TEXTURE);
+    }
+    for (int c = 0; c < 3; c++) {
+        material->emission[c] = (float)(factor[c] * strength * mean[c]);
+    }
+    return TYN_OK;
+}
+
+static void look_at_rest(gltf_materials *m, int64_t index, const cJSON *json)
+{
+    const cJSON *mode = tyn_json_member(json, "alphaMode"), *extension;
+    if (cJSON_IsString(mode) && strcmp(mode->valuestring, "OPAQUE") != 0) {
+        lack(m, index, LACK_ALPHA);
+    }
+    if (tyn_json_member(json, "normalTexture")) {
+        lack(m, index, LACK_NORMAL_TEXTURE);
+    }
+    cJSON_ArrayForEach(extension, tyn_json_member(json, "extensions"))
+    {
+        if (strcmp(extension->string, "KHR_materials_emissive_strength") != 0) {
+            lack(m, index, LACK_EXTENSION);
+            break;
+        }
+    }
+}
+
+// ---- into the scene ---------------------------------------------------------------------------
+
+static tyn_result add(gltf_materials *m, const tyn_surface_material *material, uint32_t *index)
+{
+    tyn_surfaces *s = &m->scene->surfaces;
+    tyn_surface_material *grown = realloc(s->materials, (s->num_materials + 1) * sizeof *grown);
+    if (!grown) {
+        const json_doc *doc = m->textures.data->doc;
+        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its materials", doc->file);
+        return TYN_ERR_MEMORY;
+    }
+    s->materials = grown;
+    *index = s->num_materials;
+    grown[s->num_materials++] = *material;
+    return TYN_OK;
+}
+
+tyn_result tyn_gltf_material_get(gltf_materials *m, int64_t index, const gltf_material **out)
+{
+    const int64_t at = index < 0 ? m->list.count : index;
+    gltf_material *loaded = &m->loaded[at];
+    *out = loaded;
+    if (m->is_loaded[at]) {
+        return TYN_OK;
+    }
+    tyn_surface_material material = {.texture = TYN_NO_TEXTURE};
+    *loaded = (gltf_material){.uv = {{1, 0, 0}, {0, 1, 0}}};
+    if (at == m->list.count) { // albedo = 1 (1 - 1)
+        lack(m, at, LACK_METAL);
+    } else {
+        const cJSON *json = m->list.items[at];
+        TRY(read_albedo(m, at, json, loaded, &material));
+        TRY(read_emission(m, at, json, &material));
+        look_at_rest(m, at, json);
+        material.flags =
+            cJSON_IsTrue(tyn_json_member(json, "doubleSided")) ? TYN_SURFACE_EMITS_BOTH_SIDES : 0;
+    }
+    TRY(add(m, &material, &loaded->index));
+    m->is_loaded[at] = true;
+    return TYN_OK;
+}
+
+tyn_result tyn_gltf_material_tinted(gltf_materials *m, uint32_t index, const float tint[3],
+                                    uint32_t *tinted)
+{
+    const tyn_surfaces *s = &m->scene->surfaces;
+    tyn_surface_material material = s->materials[index];
+    for (int c = 0; c < 3; c++) {
+        material.albedo[c] = fminf(fmaxf(material.albedo[c] * tint[c], 0), 1);
+    }
+    for (uint32_t i = 0; i < s->num_materials; i++) {
+        if (memcmp(&s->materials[i], &material, sizeof material) == 0) {
+            *tinted = i;
+            return TYN_OK;
+        }
+    }
+    return add(m, &material, tinted);
+}

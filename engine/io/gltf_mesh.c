@@ -1,0 +1,367 @@
+// gltf_mesh.c -- meshes of a glTF file as triangles in the world.
+#include "io/gltf_mesh.h"
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "scene/matrix.h"
+
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+enum { MAX_VERTICES = 1 << 16 };
+#else
+enum { MAX_VERTICES = 1 << 27 }; // and triangles: nodes may show one mesh any number of times
+#endif
+
+enum { LACK_LINES, LACK_POSITION, LACK_MORPH, LACK_SKIN, LACK_COLOR };
+enum { MODE_TRIANGLES = 4, MODE_STRIP, MODE_FAN };
+
+// ---- open, close ------------------------------------------------------------------------------
+
+tyn_result tyn_gltf_meshes_open(gltf_meshes *m, const json_doc *doc, const gltf_model *model,
+                                tyn_scene *scene)
+{
+    memset(m, 0, sizeof *m);
+    tyn_result r = tyn_gltf_data_open(&m->data, doc, model);
+    r = r ? r : tyn_gltf_materials_open(&m->materials, &m->data, scene);
+    return r ? r : tyn_json_list(doc, doc->root, "meshes", &m->list);
+}
+
+void tyn_gltf_meshes_close(gltf_meshes *m)
+{
+    static const char *const what[] = {
+        [LACK_LINES] = "points and lines are left out",
+        [LACK_POSITION] = "a primitive without POSITION is left out",
+        [LACK_MORPH] = "morph targets are left out: its shape is that without them",
+        [LACK_SKIN] = "skins are left out: its shape is that without one",
+        [LACK_COLOR] = "of colours that vary from vertex to vertex the mean counts",
+    };
+    tyn_scene *scene = m->materials.scene;
+    for (size_t i = 0; scene && i < sizeof what / sizeof what[0]; i++) {
+        if (m->lacks[i].count) {
+            tyn_scene_warn(scene, "mesh %s%s: %s", m->lacks[i].name,
+                           m->lacks[i].count > 1 ? " and others" : "", what[i]);
+        }
+    }
+    if (scene) {
+        tyn_gltf_materials_close(&m->materials);
+    }
+    tyn_gltf_data_close(&m->data);
+    free(m->list.items);
+}
+
+static void lack(gltf_meshes *m, int64_t mesh, int which)
+{
+    const cJSON *name = tyn_json_member(m->list.items[mesh], "name");
+    if (m->lacks[which].count++ == 0) {
+        char *text = m->lacks[which].name;
+        if (cJSON_IsString(name)) {
+            snprintf(text, sizeof m->lacks[which].name, "'%s'", name->valuestring);
+        } else {
+            snprintf(text, sizeof m->lacks[which].name, "%lld", (long long)mesh);
+        }
+    }
+}
+
+// ---- a primitive's data -----------------------------------------------------------------------
+
+typedef struct primitive {
+    const cJSON *json;
+    int64_t mesh;
+    gltf_floats positions, normals, texcoords, colors; // count 0: none
+    uint32_t *indices;                                 // NULL: 0, 1, 2, ...
+    uint32_t num_indices;
+    int mode;
+    const gltf_material *material;
+    uint32_t material_index; // with its colour
+} primitive;
+
+static void primitive_finish(primitive *p)
+{
+    free(p->positions.values);
+    free(p->normals.values);
+    free(p->texcoords.values);
+    free(p->colors.values);
+    free(p->indices);
+}
+
+// An attribute that must have as many elements as there are positions.
+static tyn_result read_attribute(const gltf_meshes *m, const primitive *p, const char *name,
+                                 uint32_t least, uint32_t most, gltf_floats *out)
+{
+    const cJSON *at = tyn_json_member(tyn_json_member(p->json, "attributes"), name);
+    if (!at) {
+        return TYN_OK;
+    }
+    tyn_result r = tyn_gltf_read_floats(&m->data, at, least, most, out);
+    if (!r && out->count != p->positions.count) {
+        return tyn_json_fault(m->data.doc, at, "has %u elements, POSITION has %u", out->count,
+                              p->positions.count);
+    }
+    return r;
+}
+
+static tyn_result read_indices(const gltf_meshes *m, primitive *p)
+{
+    const cJSON *at = tyn_json_member(p->json, "indices");
+    tyn_result r = TYN_OK;
+    p->num_indices = p->positions.count;
+    if (at) {
+        r = tyn_gltf_read_indices(&m->data, at, p->positions.count, &p->indices, &p->num_indices);
+    }
+    if (!r && (p->num_indices < 3 || (p->mode == MODE_TRIANGLES && p->num_indices % 3))) {
+        return tyn_json_fault(
+            m->data.doc, at ? at : p->json,
+            "has %u vertices: triangles need a multiple of 3, strips and fans 3 or "
+            "more",
+            p->num_indices);
+    }
+    return r;
+}
+
+// COLOR_0 multiplies the material's colour. The mean stands for all if they differ.
+static tyn_result apply_colors(gltf_meshes *m, primitive *p)
+{
+    const gltf_floats *colors = &p->colors;
+    double sum[3] = {0};
+    bool equal = true;
+    for (uint32_t i = 0; i < colors->count; i++) {
+        for (uint32_t c = 0; c < 3; c++) {
+            const float v = colors->values[(size_t)i * colors->components + c];
+            sum[c] += v;
+            equal &= v == colors->values[c];
+        }
+    }
+    p->material_index = p->material->index;
+    if (!colors->count) {
+        return TYN_OK;
+    }
+    if (!equal) {
+        lack(m, p->mesh, LACK_COLOR);
+    }
+    float tint[3];
+    for (int c = 0; c < 3; c++) {
+        tint[c] = equal ? colors->values[c] : (float)(sum[c] / colors->count);
+    }
+    return tyn_gltf_material_tinted(&m->materials, p->material->index, tint, &p->material_index);
+}
+
+static tyn_result read_primitive(gltf_meshes *m, primitive *p)
+{
+    const json_doc *doc = m->data.doc;
+    int64_t mode = MODE_TRIANGLES, material = -1;
+    char texcoord[16];
+    tyn_result r = tyn_json_integer(doc, p->json, "mode", 0, 6, "0 to 6", &mode);
+    if (r) {
+        return r;
+    }
+    p->mode = (int)mode;
+    if (mode < MODE_TRIANGLES) {
+        lack(m, p->mesh, LACK_LINES);
+        return TYN_OK;
+    }
+    const cJSON *position = tyn_json_member(tyn_json_member(p->json, "attributes"), "POSITION");
+    if (!position) {
+        lack(m, p->mesh, LACK_POSITION);
+        return TYN_OK;
+    }
+    if (tyn_json_member(p->json, "targets")) {
+        lack(m, p->mesh, LACK_MORPH);
+    }
+    const cJSON *index = tyn_json_member(p->json, "material");
+    material = index ? (int64_t)index->valuedouble : -1;
+    r = tyn_gltf_material_get(&m->materials, material, &p->material);
+    r = r ? r : tyn_gltf_read_floats(&m->data, position, 3, 3, &p->positions);
+    r = r ? r : read_attribute(m, p, "NORMAL", 3, 3, &p->normals);
+    r = r ? r : read_attribute(m, p, "COLOR_0", 3, 4, &p->colors);
+    if (!r) {
+        const tyn_surface_material *s = &m->materials.scene->surfaces.materials[p->material->index];
+        snprintf(texcoord, sizeof texcoord, "TEXCOORD_%u", p->material->texcoord);
+        if (s->texture != TYN_NO_TEXTURE) {
+            r = read_attribute(m, p, texcoord, 2, 2, &p->texcoords);
+        }
+    }
+    r = r ? r : apply_colors(m, p);
+    return r ? r : read_indices(m, p);
+}
+
+// ---- into the scene ---------------------------------------------------------------------------
+
+// A node's matrix as meshes need it. Normals turn with the inverse transpose; that is the matrix of
+// cofactors over the determinant, whose sign alone matters.
+typedef struct placement {
+    const double *m;
+    double normal[9]; // column-major
+    bool mirrored;    // triangles run the other way round
+} placement;
+
+static placement place(const double m[16])
+{
+    placement p = {.m = m, .mirrored = mat_det3(m) < 0};
+    for (int c = 0; c < 3; c++) {
+        vec_cross(p.normal + 3 * c, m + 4 * ((c + 1) % 3), m + 4 * ((c + 2) % 3));
+        for (int i = 0; i < 3; i++) {
+            p.normal[3 * c + i] *= p.mirrored ? -1 : 1;
+        }
+    }
+    return p;
+}
+
+static void place_position(const placement *at, const float *p, double out[3])
+{
+    for (int i = 0; i < 3; i++) {
+        out[i] = at->m[i] * p[0] + at->m[4 + i] * p[1] + at->m[8 + i] * p[2] + at->m[12 + i];
+    }
+}
+
+// False if the normal is 0.
+static bool place_normal(const placement *at, const float *n, double out[3])
+{
+    for (int i = 0; i < 3; i++) {
+        out[i] = at->normal[i] * n[0] + at->normal[3 + i] * n[1] + at->normal[6 + i] * n[2];
+    }
+    return vec_normalize(out);
+}
+
+static bool grow(void **array, uint32_t *room, size_t count, size_t size)
+{
+    if (count <= *room) {
+        return true;
+    }
+    const size_t wanted = count + count / 2 + 64;
+    void *grown = wanted <= UINT32_MAX ? realloc(*array, wanted * size) : NULL;
+    if (grown) {
+        *array = grown;
+        *room = (uint32_t)wanted;
+    }
+    return grown != NULL;
+}
+
+// Room for three vertices and a triangle.
+static tyn_result make_room(gltf_meshes *m, const primitive *p)
+{
+    tyn_surfaces *s = &m->materials.scene->surfaces;
+    if (s->num_vertices > MAX_VERTICES - 3 || s->num_triangles > MAX_VERTICES - 1) {
+        return tyn_json_fault(m->data.doc, p->json, "there may be %d vertices and triangles in all",
+                              MAX_VERTICES);
+    }
+    if (!grow((void **)&s->vertices, &m->vertex_room, (size_t)s->num_vertices + 3,
+              sizeof *s->vertices) ||
+        !grow((void **)&s->triangles, &m->triangle_room, (size_t)s->num_triangles + 1,
+              sizeof *s->triangles)) {
+        tyn_log_print(m->data.doc->log, TYN_LOG_ERROR, "%s: no memory for its triangles",
+                      m->data.doc->file);
+        return TYN_ERR_MEMORY;
+    }
+    return TYN_OK;
+}
+
+// `normal` is the triangle's, for vertices that have none.
+static void put_vertex(tyn_surface_vertex *v, const primitive *p, const placement *at, uint32_t i,
+                       const double normal[3])
+{
+    double position[3], n[3];
+    place_position(at, p->positions.values + 3 * (size_t)i, position);
+    if (!p->normals.count || !place_normal(at, p->normals.values + 3 * (size_t)i, n)) {
+        memcpy(n, normal, sizeof n);
+    }
+    for (int a = 0; a < 3; a++) {
+        v->position[a] = (float)position[a];
+        v->normal[a] = (float)n[a];
+    }
+    v->u = v->v = 0;
+    if (p->texcoords.count) {
+        const float *t = p->texcoords.values + 2 * (size_t)i;
+        const float(*uv)[3] = p->material->uv;
+        v->u = uv[0][0] * t[0] + uv[0][1] * t[1] + uv[0][2];
+        v->v = uv[1][0] * t[0] + uv[1][1] * t[1] + uv[1][2];
+    }
+}
+
+// Corners of triangle k as places in the list of indices (glTF 2.0, 3.7.2.1), then as indices.
+static void corners(const primitive *p, uint32_t k, uint32_t out[3])
+{
+    out[0] = p->mode == MODE_TRIANGLES ? 3 * k : p->mode == MODE_STRIP ? k : k + 1;
+    out[1] = p->mode == MODE_TRIANGLES ? 3 * k + 1 : p->mode == MODE_STRIP ? k + 1 + k % 2 : k + 2;
+    out[2] = p->mode == MODE_TRIANGLES ? 3 * k + 2 : p->mode == MODE_STRIP ? k + 2 - k % 2 : 0;
+    for (int c = 0; p->indices && c < 3; c++) {
+        out[c] = p->indices[out[c]];
+    }
+}
+
+// Triangles without area show nothing and are left out. With normals of their own vertices are shared
+// as in the file, those that no triangle uses stay behind; without, every triangle has three.
+static tyn_result add_triangles(gltf_meshes *m, const primitive *p, const placement *at)
+{
+    tyn_surfaces *s = &m->materials.scene->surfaces;
+    uint32_t *moved = malloc(p->positions.count * sizeof *moved); // where a vertex has gone
+    const uint32_t count = p->mode == MODE_TRIANGLES ? p->num_indices / 3 : p->num_indices - 2;
+    if (!moved) {
+        return tyn_json_fault(m->data.doc, p->json, "no memory for its vertices");
+    }
+    memset(moved, 0xff, p->positions.count * sizeof *moved);
+    tyn_result r = TYN_OK;
+    for (uint32_t k = 0; !r && k < count; k++) {
+        uint32_t i[3];
+        double v[3][3], normal[3];
+        corners(p, k, i);
+        if (at->mirrored) {
+            const uint32_t second = i[1];
+            i[1] = i[2];
+            i[2] = second;
+        }
+        for (int c = 0; c < 3; c++) {
+            place_position(at, p->positions.values + 3 * (size_t)i[c], v[c]);
+        }
+        for (int a = 0; a < 3; a++) {
+            v[1][a] -= v[0][a];
+            v[2][a] -= v[0][a];
+        }
+        vec_cross(normal, v[1], v[2]);
+        if (!vec_normalize(normal)) {
+            continue;
+        }
+        r = make_room(m, p);
+        tyn_surface_triangle *triangle = r ? NULL : &s->triangles[s->num_triangles++];
+        for (int c = 0; !r && c < 3; c++) {
+            uint32_t *place = &moved[i[c]];
+            if (*place == UINT32_MAX || !p->normals.count) {
+                *place = s->num_vertices++;
+                put_vertex(&s->vertices[*place], p, at, i[c], normal);
+            }
+            triangle->vertices[c] = *place;
+        }
+        if (!r) {
+            triangle->material = p->material_index;
+        }
+    }
+    free(moved);
+    return r;
+}
+
+tyn_result tyn_gltf_mesh_add(gltf_meshes *m, const cJSON *node, int64_t mesh,
+                             const double to_world[16])
+{
+    json_list primitives = {0};
+    const placement at = place(to_world);
+    if (!mat_invertible(to_world)) {
+        return tyn_json_fault(
+            m->data.doc, node,
+            "its mesh is flat: the matrix must be invertible, its determinant is %g",
+            mat_det3(to_world));
+    }
+    if (tyn_json_member(node, "skin")) {
+        lack(m, mesh, LACK_SKIN);
+    }
+    tyn_result r = tyn_json_list(m->data.doc, m->list.items[mesh], "primitives", &primitives);
+    for (int64_t i = 0; !r && i < primitives.count; i++) {
+        primitive p = {.json = primitives.items[i], .mesh = mesh};
+        r = read_primitive(m, &p);
+        if (!r && p.positions.count) {
+            r = add_triangles(m, &p, &at);
+        }
+        primitive_finish(&p);
+    }
+    free(primitives.items);
+    return r;
+}

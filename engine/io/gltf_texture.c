@@ -1,0 +1,182 @@
+// gltf_texture.c -- textures of a glTF file, read when a material wants them.
+#include "io/gltf_texture.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "io/picture.h"
+#include "io/uri.h"
+
+tyn_result tyn_gltf_textures_open(gltf_textures *t, const gltf_data *data, tyn_surfaces *surfaces)
+{
+    const json_doc *doc = data->doc;
+    *t = (gltf_textures){.data = data, .surfaces = surfaces};
+    tyn_result r = tyn_json_list(doc, doc->root, "textures", &t->textures);
+    r = r ? r : tyn_json_list(doc, doc->root, "images", &t->images);
+    r = r ? r : tyn_json_list(doc, doc->root, "samplers", &t->samplers);
+    if (r) {
+        return r;
+    }
+    t->loaded = malloc(((size_t)t->textures.count + 1) * sizeof *t->loaded);
+    if (!t->loaded) {
+        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its textures", doc->file);
+        return TYN_ERR_MEMORY;
+    }
+    for (int64_t i = 0; i < t->textures.count; i++) {
+        t->loaded[i] = TYN_NO_TEXTURE;
+    }
+    return TYN_OK;
+}
+
+void tyn_gltf_textures_close(gltf_textures *t)
+{
+    free(t->textures.items);
+    free(t->images.items);
+    free(t->samplers.items);
+    free(t->loaded);
+}
+
+// ---- images -----------------------------------------------------------------------------------
+
+static tyn_result decode(const gltf_data *data, const cJSON *at, const uint8_t *bytes, size_t size,
+                         tyn_texture *out)
+{
+    const char *reason;
+    out->texels = tyn_picture_decode(bytes, size, out->size, &reason);
+    return out->texels ? TYN_OK
+                       : tyn_json_fault(data->doc, at, "must be a PNG or JPEG picture: %s", reason);
+}
+
+static tyn_result read_file(const gltf_data *data, const cJSON *uri, tyn_texture *out)
+{
+    char *path = tyn_uri_path(data->doc, uri);
+    if (!path) {
+        return TYN_ERR_PARAMS;
+    }
+    void *bytes;
+    size_t size;
+    tyn_capture capture;
+    tyn_capture_init(&capture);
+    tyn_result r = tyn_file_read(path, 1ull << 31, &bytes, &size, &capture.log);
+    free(path);
+    if (r) {
+        return tyn_capture_fault(&capture, data->doc, uri, r);
+    }
+    r = decode(data, uri, bytes, size, out);
+    free(bytes);
+    return r;
+}
+
+static tyn_result read_image(const gltf_data *data, const cJSON *image, tyn_texture *out)
+{
+    const cJSON *uri = tyn_json_member(image, "uri"), *view = tyn_json_member(image, "bufferView");
+    if (view) {
+        const int64_t index = (int64_t)view->valuedouble;
+        const uint64_t size = tyn_gltf_view_size(data, index);
+        const uint8_t *bytes = tyn_gltf_view_bytes(data, index, 0, size);
+        return bytes ? decode(data, image, bytes, size, out)
+                     : tyn_json_fault(data->doc, view, "reaches beyond its buffer");
+    }
+    if (strncmp(uri->valuestring, "data:", 5) != 0) {
+        return read_file(data, uri, out);
+    }
+    gltf_bytes bytes;
+    if (!gltf_data_uri(uri->valuestring, &bytes)) {
+        return tyn_json_fault(data->doc, uri, "must be base64 data of a PNG or JPEG picture");
+    }
+    tyn_result r = decode(data, uri, bytes.data, bytes.size, out);
+    free(bytes.data);
+    return r;
+}
+
+// ---- textures ---------------------------------------------------------------------------------
+
+static tyn_wrap wrap_mode(const cJSON *sampler, const char *name)
+{
+    const cJSON *at = tyn_json_member(sampler, name);
+    const int mode = at ? (int)at->valuedouble : 10497;
+    return mode == 33071 ? TYN_WRAP_CLAMP : mode == 33648 ? TYN_WRAP_MIRROR : TYN_WRAP_REPEAT;
+}
+
+static tyn_result read_texture(const gltf_textures *t, int64_t index, tyn_texture *out)
+{
+    const cJSON *texture = t->textures.items[index], *source = tyn_json_member(texture, "source");
+    const cJSON *sampler = tyn_json_member(texture, "sampler");
+    *out = (tyn_texture){0};
+    if (!source) {
+        return tyn_json_fault(t->data->doc, texture, "source is missing: an index of images");
+    }
+    if (sampler) {
+        const cJSON *modes = t->samplers.items[(int64_t)sampler->valuedouble];
+        out->wrap[0] = wrap_mode(modes, "wrapS");
+        out->wrap[1] = wrap_mode(modes, "wrapT");
+    }
+    return read_image(t->data, t->images.items[(int64_t)source->valuedouble], out);
+}
+
+static int64_t texture_index(const cJSON *info)
+{
+    return (int64_t)tyn_json_member(info, "index")->valuedouble;
+}
+
+static char *texture_name(const gltf_textures *t, const cJSON *texture)
+{
+    const cJSON *source = tyn_json_member(texture, "source");
+    const cJSON *at[2] = {texture, t->images.items[(int64_t)source->valuedouble]};
+    for (int i = 0; i < 2; i++) {
+        const cJSON *name = tyn_json_member(at[i], "name");
+        if (cJSON_IsString(name) && name->valuestring[0]) {
+            return strdup(name->valuestring);
+        }
+    }
+    return NULL;
+}
+
+tyn_result tyn_gltf_texture_get(gltf_textures *t, const cJSON *info, uint32_t *index)
+{
+    const int64_t from = texture_index(info);
+    tyn_surfaces *s = t->surfaces;
+    if (t->loaded[from] == TYN_NO_TEXTURE) {
+        tyn_texture texture;
+        tyn_result r = read_texture(t, from, &texture);
+        if (r) {
+            return r;
+        }
+        tyn_texture *grown = realloc(s->textures, (s->num_textures + 1) * sizeof *grown);
+        if (!grown) {
+            free(texture.texels);
+            return tyn_json_fault(t->data->doc, info, "no memory for its texture");
+        }
+        texture.name = texture_name(t, t->textures.items[from]);
+        s->textures = grown;
+        t->loaded[from] = s->num_textures;
+        grown[s->num_textures++] = texture;
+    }
+    *index = t->loaded[from];
+    return TYN_OK;
+}
+
+tyn_result tyn_gltf_texture_mean(gltf_textures *t, const cJSON *info, bool srgb, double mean[4])
+{
+    tyn_texture texture;
+    tyn_result r = read_texture(t, texture_index(info), &texture);
+    if (r) {
+        return r;
+    }
+    const size_t texels = (size_t)texture.size[0] * texture.size[1];
+    uint64_t histogram[4][256] = {{0}};
+    for (size_t i = 0; i < texels; i++) {
+        for (int c = 0; c < 4; c++) {
+            histogram[c][texture.texels[4 * i + (size_t)c]]++;
+        }
+    }
+    for (int c = 0; c < 4; c++) {
+        mean[c] = 0;
+        for (int v = 0; v < 256; v++) {
+            const double x = v / 255.0;
+            const double light = x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
+            mean[c] += (srgb && c < 3 ? light : x) * (double)histogram[c][v] / (double)texels;
+        }
+    }
+    free(texture.texels);
+    return TYN_OK;
+}

@@ -1,0 +1,18 @@
+// gltf_texture.h -- textures of a glTF file, read when a material wants them.
+#pragma once
+#include "io/gltf_accessor.h"
+
+typedef struct gltf_textures {
+    const gltf_data *data;
+    tyn_surfaces *surfaces;
+    json_list textures, images, samplers;
+    uint32_t *loaded; // for every texture its index in surfaces->textures, or TYN_NO_TEXTURE
+} gltf_textures;
+tyn_result tyn_gltf_textures_open(gltf_textures *t, const gltf_data *data, tyn_surfaces *surfaces);
+void tyn_gltf_textures_close(gltf_textures *t);
+
+// `info` is a checked textureInfo: the texture into the scene, once however often it is asked for.
+tyn_result tyn_gltf_texture_get(gltf_textures *t, const cJSON *info, uint32_t *index);
+
+// Means of a texture's four channels, 0 to 1; colours are decoded from sRGB first if `srgb`.
+tyn_result tyn_gltf_texture_mean(gltf_textures *t, const cJSON *info, bool srgb, double mean[4]);
