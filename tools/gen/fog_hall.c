@@ -105,7 +105,7 @@ const gen_scene gen_fog_hall = {
                .absorption = {0.004f, 0.004f, 0.004f},
                .anisotropy = 0.6f}},
     .shapes = {{.name = "fog", .translation = {0, 3.5f, 0}, .scale = {10.6f, 7.4f, 24.4f}}},
-    .suns = {{.direction = {-0.78f, -0.5f, 0.42f}, .irradiance = 60, .color = {1, 0.88f, 0.7f}}},
+    .suns = {{.direction = {-0.78f, -0.5f, 0.42f}, .irradiance = 40, .color = {1, 0.88f, 0.7f}}},
     .cameras =
         {{.name = "view", .from = {-1.7f, 1.7f, 10.6f}, .at = {2.6f, 2.9f, 0}, .yfov = 0.95f}},
     .environment = true,

@@ -32,7 +32,7 @@ static void add_lantern(gen_model *model)
     gen_place(model, 0, STAND, 0, 0, 1);
     gen_add_lamp(
         model,
-        &(gen_lamp){.position = {0, STAND + 0.22f, 0}, .intensity = 9, .color = {1, 0.62f, 0.28f}});
+        &(gen_lamp){.position = {0, STAND + 0.22f, 0}, .intensity = 22, .color = {1, 0.62f, 0.28f}});
 }
 
 static void add_crates(gen_model *model)
@@ -102,7 +102,7 @@ const gen_scene gen_lantern = {
                .anisotropy = 0.3f,
                .density = {.uri = "lantern.raw", .type = "u8", .size = {80, 40, 80}}}},
     .shapes = {{.name = "smoke", .translation = {0, 1.2f, 0}, .scale = {5.6f, 2.4f, 5.6f}}},
-    .cameras = {{.name = "view", .from = {0.9f, 1.35f, 4.2f}, .at = {0, 0.72f, 0}, .yfov = 0.72f}},
+    .cameras = {{.name = "view", .from = {0.9f, 1.35f, 4.2f}, .at = {0, 0.72f, 0}, .yfov = 0.62f}},
     .environment = true,
     .environment_radiance = {0.006f, 0.01f, 0.02f},
     .materials = {{.name = "ground", .albedo = {0.8f, 0.75f, 0.7f}, .texture = "slabs.png"},
