@@ -14,7 +14,7 @@
 // Every step takes the medium at its middle and integrates the attenuation exactly: int_0^ds e^(-sigma t)
 // dt = ds (1 - e^-x) / x with x = sigma ds. Light is taken at the centroid of that weight.
 //
-// Include after camera, environment, medium, beam, scatter_lut, lattice and lattice_walls. RAYMARCH_GREY: all channels
+// Include after camera, environment, medium, beam, scatter_lut, lattice, lattice_walls and shadow. RAYMARCH_GREY: all channels
 // of the medium are equal, so optical depths are scalars.
 #ifndef TYN_RAYMARCH_GLSL
 #define TYN_RAYMARCH_GLSL
@@ -52,6 +52,7 @@ float spectrum_mean(vec3 x)
 #endif
 
 const int RAYMARCH_CHUNK = 32; // steps between two looks at the distance map: empty ones are cheap
+const float RAYMARCH_SHADOWS_ACROSS = 256.0; // looks at a shadow map along the box's longest side
 const float RAYMARCH_GONE = 9.0; // scaled depth behind args.stop, in every channel, of what hides all
 
 bool raymarch_has(uint feature)
@@ -262,6 +263,18 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, float s,
     return light * (k_tms * weight_scaled + k_lobe * weight);
 }
 
+// Mean visibility of a sun from distance s of the ray over a step: what moves along a view ray moves
+// evenly over the sun's map. Steps follow the medium, shadows do not: so a step looks at several places.
+float march_shadow(shadow_light map, vec3 from, vec3 along, float s, float ds)
+{
+    float longest = max(max(medium.extent.x, medium.extent.y), medium.extent.z) / RAYMARCH_SHADOWS_ACROSS;
+    float count = clamp(ceil(ds / longest), 1.0, 16.0), part = ds / count, sum = 0.0;
+    for (float i = 0.5; i < count; i += 1.0) {
+        sum += shadow_all_lit(shadow_place_sun(map, from + (s + i * part) * along));
+    }
+    return sum / count;
+}
+
 // Light of the lattice at a point, as texture inscatter has it; uvw is its place there.
 vec3 march_field(vec3 p, vec3 uvw)
 {
@@ -370,8 +383,14 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
                 result.radiance += m.emission * weight_scaled;
             }
             for (uint n = 0u; n < raymarch_num_suns; n++) {
-                result.radiance += march_sunlight(suns[n], unit, m, at, weight,
-                                                  weight_scaled, result.single);
+                float lit = 1.0;
+                if (raymarch_has(RAYMARCH_SHADOWS)) {
+                    shadow_light map = shadows[beams[n].light];
+                    lit = march_shadow(map, shadow_frame(map, origin),
+                                       shadow_frame_direction(map, direction), s, ds);
+                }
+                result.radiance += march_sunlight(suns[n], unit, m, at, lit * weight,
+                                                  lit * weight_scaled, result.single);
             }
             if (raymarch_has(RAYMARCH_DEPTH)) {
                 float t0 = spectrum_mean(through * exp(-hidden));

@@ -238,6 +238,8 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
         [RAYMARCH_PORT_INSCATTER] = in->inscatter,
         [RAYMARCH_PORT_WALL_LINKS] = in->wall_links,
         [RAYMARCH_PORT_WALL_CELLS] = in->wall_cells,
+        [RAYMARCH_PORT_SHADOW_ATLAS] = in->num_suns ? in->shadows.atlas : (tyn_ref){0},
+        [RAYMARCH_PORT_SHADOWS] = in->num_suns ? in->shadows.lights : (tyn_ref){0},
         [RAYMARCH_PORT_CAMERA] = job->refs.camera,
         [RAYMARCH_PORT_ENVIRONMENT] = job->refs.environment,
         [RAYMARCH_PORT_ENV_MAP] = job->refs.env_map,

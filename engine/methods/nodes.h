@@ -1,6 +1,6 @@
 // nodes.h -- parts of a frame that several methods have in common.
 #pragma once
-#include "methods/job.h"
+#include "methods/surfaces.h"
 #include "passes/raymarch/raymarch.h"
 
 enum { TYN_METHOD_MAX_SUNS = 4 }; // suns that have their own aligned grid
@@ -25,7 +25,8 @@ typedef struct tyn_picture_inputs {
     tyn_ref lut, lut_block; // given: all forward orders of the suns, else the first
     tyn_ref inscatter;
     tyn_ref wall_links, wall_cells; // of walls: surfaces among the cells of inscatter
-    tyn_ref glow; // the map scattered forward (env_glow)
+    tyn_shadow_refs shadows;        // surfaces before the lights
+    tyn_ref glow;                   // the map scattered forward (env_glow)
     uint32_t num_suns;
     float cell;       // of the lattice behind inscatter, m; 0 = none
     bool one_channel; // inscatter has one channel, to be multiplied with tint

@@ -16,6 +16,7 @@
 #include "passes/importance/importance.h"
 #include "passes/ordinates/ordinates.h"
 #include "passes/scatter_lut/scatter_lut.h"
+#include "passes/shadow_map/shadow_map.h"
 #include "passes/lattice/lattice.h"
 #include "passes/merge/merge.h"
 #include "passes/probe/probe.h"
@@ -212,6 +213,8 @@ static tyn_result add_source(tyn_graph *g, const tyn_job *job, field *f)
         [LATTICE_SOURCE_PORT_TAU_P] = beams->tau_p,
         [LATTICE_SOURCE_PORT_WALL_LINKS] = f->walls.links,
         [LATTICE_SOURCE_PORT_WALL_CELLS] = f->walls.cells,
+        [LATTICE_SOURCE_PORT_SHADOW_ATLAS] = f->picture.shadows.atlas,
+        [LATTICE_SOURCE_PORT_SHADOWS] = f->picture.shadows.lights,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_source, &params, refs);
     f->source = refs[LATTICE_SOURCE_PORT_SOURCE];
@@ -506,6 +509,9 @@ static tyn_result add_lights(tyn_graph *g, const tyn_job *job, field *f)
 {
     tyn_result result =
         tyn_add_beams(g, job, &f->picture.media, f->picture.num_suns, &f->picture.beams);
+    if (result == TYN_OK) {
+        result = tyn_add_shadows(g, job, f->picture.num_suns, &f->picture.shadows);
+    }
     if (tyn_has_walls(job->frame)) {
         // Ordinates know of no walls; the mean of the sky comes in along the lattice's lines, which do.
         if (job->frame->environment.has_map) {
@@ -589,6 +595,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
+    &tyn_pass_shadow_map,
     &tyn_pass_medium,
     &tyn_pass_beam,
     &tyn_pass_env_importance,

@@ -3,6 +3,7 @@
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
 #include "passes/composite/composite.h"
+#include "passes/shadow_map/shadow_map.h"
 #include "passes/tonemap/tonemap.h"
 #include <tyndall/registry.h>
 
@@ -30,12 +31,20 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (result == TYN_OK) {
         result = tyn_add_beams(g, job, &in.media, in.num_suns, &in.beams);
     }
+    if (result == TYN_OK) {
+        result = tyn_add_shadows(g, job, in.num_suns, &in.shadows);
+    }
     return result == TYN_OK ? tyn_add_picture(g, job, &in) : result;
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,    &tyn_pass_beam,    &tyn_pass_raymarch,
-    &tyn_pass_composite, &tyn_pass_tonemap, NULL,
+    &tyn_pass_medium,
+    &tyn_pass_beam,
+    &tyn_pass_shadow_map,
+    &tyn_pass_raymarch,
+    &tyn_pass_composite,
+    &tyn_pass_tonemap,
+    NULL,
 };
 
 const tyn_method tyn_method_single = {

@@ -73,6 +73,8 @@ enum {
     LATTICE_SOURCE_PORT_TAU_P,
     LATTICE_SOURCE_PORT_WALL_LINKS, // IN optional buffers, of walls: a cell has the light of its own side
     LATTICE_SOURCE_PORT_WALL_CELLS,
+    LATTICE_SOURCE_PORT_SHADOW_ATLAS, // IN optional 2D, of shadow_map: surfaces stand before the suns
+    LATTICE_SOURCE_PORT_SHADOWS,      // IN optional buffer
     LATTICE_SOURCE_PORT_SOURCE, // OUT 3D RGBA32F, stacked: sum E T' over the suns, sum E T' direction (W/m^2)
     LATTICE_SOURCE_PORT_POWER, // OUT buffer: per sun the power that enters and that its beam loses, for balance
     LATTICE_SOURCE_PORT_SUNLIT, // SCRATCH

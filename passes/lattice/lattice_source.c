@@ -20,6 +20,9 @@ static const tyn_port ports[LATTICE_SOURCE_NUM_PORTS] = {
     [LATTICE_SOURCE_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true, "of sigma_s'"},
     [LATTICE_SOURCE_PORT_WALL_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
     [LATTICE_SOURCE_PORT_WALL_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
+    [LATTICE_SOURCE_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, 0, true,
+                                          "of shadow_map"},
+    [LATTICE_SOURCE_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, true, "of shadow_map"},
     [LATTICE_SOURCE_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                                     false,
                                     "unscattered fluence and flux of the suns, W/m^2; channels "
@@ -28,7 +31,8 @@ static const tyn_port ports[LATTICE_SOURCE_NUM_PORTS] = {
                                    "struct lattice_power per sun and channel"},
     [LATTICE_SOURCE_PORT_SUNLIT] = {"sunlit", TYN_SCRATCH, TYN_IMAGE_3D,
                                     VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                                    "transmittance to each sun, suns stacked along z"},
+                                    "transmittance to each sun; a = how much of the cell sees it; "
+                                    "suns stacked along z"},
 };
 
 enum { KERNEL_BEAM, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
@@ -44,6 +48,8 @@ static const tyn_binding beam_bindings[] = {
     {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_STORAGE_WRITE},
     {LATTICE_SOURCE_PORT_WALL_LINKS, TYN_USE_STORAGE_READ},
     {LATTICE_SOURCE_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
+    {LATTICE_SOURCE_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_SHADOWS, TYN_USE_STORAGE_READ},
 };
 
 static const tyn_binding sum_bindings[] = {
@@ -71,8 +77,8 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                      sizeof(struct lattice_source_args),
                      {8, 4, 2},
                      beam_bindings,
-                     10,
-                     3},
+                     12,
+                     4},
     [KERNEL_SUM] = {"sum",
                     lattice_source_sum_spirv,
                     sizeof lattice_source_sum_spirv,
@@ -126,8 +132,9 @@ static void record(tyn_recorder *r, const void *params)
     }
     args.samples = (uint32_t)fminf(fmaxf(ceilf(0.5f * voxels - 1e-3f), 2), 4);
     double cells = (double)dims.x * dims.y * dims.z;
-    const uint32_t spec[3] = {p->mode, p->shape.channels,
-                              tyn_rec_has(r, LATTICE_SOURCE_PORT_WALL_LINKS)};
+    const uint32_t spec[4] = {p->mode, p->shape.channels,
+                              tyn_rec_has(r, LATTICE_SOURCE_PORT_WALL_LINKS),
+                              tyn_rec_has(r, LATTICE_SOURCE_PORT_SHADOW_ATLAS)};
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_BEAM,
                                         .cells = {dims.x, dims.y, dims.z * p->num_suns},
                                         .args = &args,

@@ -32,7 +32,8 @@ void main()
     }
     vec4 sum = vec4(0.0);
     for (uint sun = 0; sun < args.num_suns; sun++) {
-        float t = texelFetch(sunlit, ivec3(texel.xy, texel.z % dims.z + int(sun) * dims.z), 0)[ch];
+        vec4 seen = texelFetch(sunlit, ivec3(texel.xy, texel.z % dims.z + int(sun) * dims.z), 0);
+        float t = seen[ch] * seen.a;
         float e = lattice_channel(lights[sun].color, args.channels, uint(ch), args.tint);
         float scale = power[sun * args.channels + uint(ch)].scale;
         sum += e * scale * t * vec4(1.0, lights[sun].mean_cosine * lights[sun].direction);

@@ -2,7 +2,8 @@
 //
 // The mean is weighted with sigma_s', so that sigma_s' T' is the cell's true first scattering; with
 // sigma_a where nothing scatters. Each sub-sample is the mean along the light over its own length:
-// e^-tau sinh(x) / x with tau to its centre.
+// e^-tau sinh(x) / x with tau to its centre. What surfaces keep from the cell is the fraction of that light
+// that it does not see: kept apart, because the beam's energy is compared without surfaces.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -20,17 +21,21 @@
 #define WALLS_LINKS 8
 #define WALLS_CELLS 9
 #include "lattice_walls.glsl"
+#define SHADOW_ATLAS 10
+#define SHADOW_LIGHTS 11
+#include "shadow.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(push_constant, scalar) uniform push
 {
     lattice_source_args args;
 };
-// Suns stacked along z: T' per colour channel.
+// Suns stacked along z: T' per colour channel; a = the part of that light which no surface stops.
 layout(binding = 7, rgba32f) uniform writeonly image3D sunlit;
 
 layout(constant_id = 1) const uint num_channels = 3;
 layout(constant_id = 2) const uint walls = 0;
+layout(constant_id = 3) const uint shadowed = 0;
 
 void main()
 {
@@ -43,6 +48,7 @@ void main()
     lattice_box box = lattice_box_of(medium.extent, dims);
     vec3 d = abs(beams[sun].direction);
     vec3 weighted = vec3(0.0), weight = vec3(0.0);
+    vec2 seen = vec2(0.0); // of the light in all channels: by the cell, and all
     float step_length = box.dx / float(args.samples);
     float length_h = step_length / max(d.x, max(d.y, d.z)); // of a sub-sample along the light
     for (uint k = 0; k < args.samples; k++) {
@@ -70,9 +76,16 @@ void main()
                 }
                 weighted += w * t;
                 weight += w;
+                if (shadowed == 1) {
+                    float light = dot(w * t, vec3(1.0));
+                    seen += light * vec2(shadow_visibility_sun(beams[sun].light,
+                                                               row + vec3(s, 0.0, 0.0)),
+                                         1.0);
+                }
             }
         }
     }
     vec3 t = mix(vec3(0.0), weighted / max(weight, vec3(1e-30)), greaterThan(weight, vec3(0.0)));
-    imageStore(sunlit, texel, vec4(t, 0.0));
+    float visible = shadowed == 1 && seen.y > 0.0 ? seen.x / seen.y : 1.0;
+    imageStore(sunlit, texel, vec4(t, visible));
 }

@@ -34,6 +34,8 @@ static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
                                  "radiance scattered towards the eye, W/(m^2 sr)"},
     [RAYMARCH_PORT_WALL_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
     [RAYMARCH_PORT_WALL_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
+    [RAYMARCH_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, 0, true, "of shadow_map"},
+    [RAYMARCH_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, true, "of shadow_map"},
     [RAYMARCH_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "camera_block"},
     [RAYMARCH_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, false, "env_block"},
     [RAYMARCH_PORT_ENV_MAP] = {"env_map", TYN_IN, TYN_IMAGE_2D, 0, true,
@@ -82,6 +84,8 @@ static const tyn_binding bindings[] = {
     {RAYMARCH_PORT_SURFACE, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_WALL_LINKS, TYN_USE_STORAGE_READ, false},
     {RAYMARCH_PORT_WALL_CELLS, TYN_USE_STORAGE_READ, false},
+    {RAYMARCH_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_SHADOWS, TYN_USE_STORAGE_READ, false},
     {RAYMARCH_PORT_SIGMA_A, TYN_USE_SAMPLED, false}, // from here on colour only
     {RAYMARCH_PORT_G, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_EMISSION, TYN_USE_SAMPLED, false},
@@ -255,6 +259,7 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= p->antialias ? RAYMARCH_SUPERSAMPLE : 0;
     features |= p->one_channel ? RAYMARCH_ONE_CHANNEL : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_WALL_LINKS) ? RAYMARCH_WALLS : 0;
+    features |= tyn_rec_has(r, RAYMARCH_PORT_SHADOW_ATLAS) ? RAYMARCH_SHADOWS : 0;
     return features;
 }
 

@@ -73,9 +73,11 @@ enum {
     RAYMARCH_PORT_INSCATTER,  // IN optional 3D: of merge; without it suns and emission only
     RAYMARCH_PORT_WALL_LINKS, // IN optional buffers, of walls: surfaces part the cells of inscatter
     RAYMARCH_PORT_WALL_CELLS,
-    RAYMARCH_PORT_CAMERA,      // IN buffer struct camera_block
-    RAYMARCH_PORT_ENVIRONMENT, // IN buffer struct env_block
-    RAYMARCH_PORT_ENV_MAP,     // IN optional 2D
+    RAYMARCH_PORT_SHADOW_ATLAS, // IN optional 2D, of shadow_map: surfaces stand before the lights
+    RAYMARCH_PORT_SHADOWS,      // IN optional buffer
+    RAYMARCH_PORT_CAMERA,       // IN buffer struct camera_block
+    RAYMARCH_PORT_ENVIRONMENT,  // IN buffer struct env_block
+    RAYMARCH_PORT_ENV_MAP,      // IN optional 2D
     RAYMARCH_PORT_GLOW, // IN optional 3D: of env_glow, the map scattered forward; without it what
                         // is scattered forward comes from the mean alone (`mean`)
     RAYMARCH_PORT_HOST_DEPTH, // IN optional 2D: hardware depth; rays end there

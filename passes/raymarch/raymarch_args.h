@@ -26,6 +26,7 @@
 #define RAYMARCH_SURFACE (1u << 19)   // rays end at the scene's surfaces
 #define RAYMARCH_WALLS (1u << 21)     // surfaces part the cells of inscatter
 #define RAYMARCH_SURFACE_SEEN (1u << 20)
+#define RAYMARCH_SHADOWS (1u << 22) // surfaces stand before the suns
 
 struct raymarch_args {
     float step;      // longest step, m

@@ -50,12 +50,14 @@ layout(binding = 20) uniform sampler3D glow_tex;
 layout(binding = 21) uniform sampler2D surface_tex;
 #define WALLS_LINKS 22
 #define WALLS_CELLS 23
+#define SHADOW_ATLAS 24
+#define SHADOW_LIGHTS 25
 #ifndef RAYMARCH_GREY
-#define MEDIUM_SIGMA_A 24
-#define MEDIUM_G 25
-#define MEDIUM_EMISSION 26
-#define BEAM_TAU_A 27
-#define BEAM_TAU_P 28
+#define MEDIUM_SIGMA_A 26
+#define MEDIUM_G 27
+#define MEDIUM_EMISSION 28
+#define BEAM_TAU_A 29
+#define BEAM_TAU_P 30
 #endif
 
 layout(push_constant, scalar) uniform Args

@@ -14,6 +14,7 @@
 #include "scatter_lut.glsl"
 #include "lattice.glsl"
 #include "lattice_walls.glsl"
+#include "shadow.glsl"
 #include "raymarch.glsl"
 #include "raymarch_pixel.glsl"
 

@@ -430,6 +430,7 @@ static void drift_is_found(void **state)
             if (kernel.raster) {
                 tyn_raster raster = *kernel.raster;
                 raster.num_attachments--;
+                raster.attachments++; // the first is missing
                 kernel.raster = &raster;
                 assert_true(faults_with(pass, &kernel) > 0);
                 kernel.raster = NULL;
