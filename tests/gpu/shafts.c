@@ -1,0 +1,146 @@
+// shafts.c -- sunlight through a slit above fog: `single` against the integral along each ray, `pop` against
+// `path`, and a closed box that stays dark.
+#include "gpu_test.h"
+#include "picture.h"
+#include "solids.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const float sigma_s = 0.5f, sigma_a = 0.2f, g = 0.3f;
+static const float sun[3] = {0.3f, -1, 0.1f}; // not of unit length
+static const float slit[2] = {0.4f, 0.6f}, plate = 1.1f;
+
+// A cube of fog of 1 m; black plates above it leave a slit along z.
+static void make_scene(tyn_scene *scene)
+{
+    tyn_scene_init(scene);
+    const tyn_medium fog = grey_medium(sigma_s, sigma_a, g);
+    scene_add_box(scene, &fog, (float[]){0, 0, 0}, (float[]){1, 1, 1}, NULL, NULL);
+    const float length = sqrtf(sun[0] * sun[0] + sun[1] * sun[1] + sun[2] * sun[2]);
+    scene_add_sun(scene, sun[0] / length, sun[1] / length, sun[2] / length, 3, 2, 1);
+    const uint32_t black = solids_material(scene, (float[3]){0}, (float[3]){0});
+    solids_quad(scene, (float[]){-2, plate, -1}, (float[]){0, 0, 3}, (float[]){2 + slit[0], 0, 0},
+                black);
+    solids_quad(scene, (float[]){slit[1], plate, -1}, (float[]){0, 0, 3}, (float[]){2, 0, 0},
+                black);
+}
+
+// Where the sun's ray through (x, y) comes through the plates' plane, from the middle of the slit, in half
+// widths of it.
+static double in_slit(double x, double y)
+{
+    const double at = x - ((double)plate - y) / -(double)sun[1] * (double)sun[0];
+    return (at - 0.5 * ((double)slit[0] + (double)slit[1])) /
+           (0.5 * ((double)slit[1] - (double)slit[0]));
+}
+
+static double phase(double mu)
+{
+    const double q = (double)g;
+    return (1 - q * q) / (4 * M_PI * pow(1 + q * q - 2 * q * mu, 1.5));
+}
+
+// Way from a point of the cube against direction d (of unit length) to its faces.
+static double way_back(const double p[3], const double d[3])
+{
+    double way = INFINITY;
+    for (int a = 0; a < 3; a++) {
+        if (d[a] != 0) {
+            way = fmin(way, d[a] > 0 ? p[a] / d[a] : (p[a] - 1) / d[a]);
+        }
+    }
+    return way;
+}
+
+// Light of irradiance 1 that has scattered once, along the ray (x, y) in direction -z.
+static double once(double x, double y)
+{
+    if (fabs(in_slit(x, y)) > 1 || x < 0 || x > 1 || y < 0 || y > 1) {
+        return 0;
+    }
+    const double length = sqrt((double)(sun[0] * sun[0] + sun[1] * sun[1] + sun[2] * sun[2]));
+    const double d[3] = {(double)sun[0] / length, (double)sun[1] / length, (double)sun[2] / length};
+    const double sigma_t = (double)(sigma_s + sigma_a);
+    enum { STEPS = 200 };
+    double sum = 0;
+    for (int i = 0; i < STEPS; i++) {
+        const double p[3] = {x, y, (i + 0.5) / STEPS};
+        sum += exp(-sigma_t * (way_back(p, d) + 1 - p[2])) / STEPS;
+    }
+    return (double)sigma_s * phase(d[2]) * sum; // turns from d to +z
+}
+
+static void once_through_a_slit(void **state)
+{
+    gpu_test *t = *state;
+    enum { SIZE = 64 };
+    tyn_scene scene;
+    make_scene(&scene);
+    tyn_view view = {0};
+    view_orthographic(&view, (float[]){0.5f, 0.5f, 3}, 0, 0, -1, (float[]){0, 1, 0}, 0.5f, SIZE);
+    picture p;
+    picture_render(&p, t->dev, "single", &scene, &view, "shadow_map.sun_texels=1024", 1);
+    const double texel = 4.7 / 1020, pixel = 1.0 / SIZE, width = 0.5 * (double)(slit[1] - slit[0]);
+    double sum = 0, right_sum = 0;
+    uint32_t lit = 0, dark = 0;
+    for (uint32_t j = 0; j < SIZE; j++) {
+        for (uint32_t i = 0; i < SIZE; i++) {
+            const double x = (i + 0.5) * pixel, y = 1 - (j + 0.5) * pixel;
+            const double right = once(x, y), found = (double)p.rgb[3 * (j * SIZE + i)] / 3;
+            const double beyond = (fabs(in_slit(x, y)) - 1) * width; // the edge, m
+            sum += found;
+            right_sum += right;
+            if (fabs(beyond) < texel) {
+                continue;
+            }
+            lit += right > 0;
+            dark += right == 0;
+            if (fabs(found - right) > 0.01 * right) {
+                fail_msg("(%g, %g): %g, not %g, %g m from the edge", x, y, found, right, beyond);
+            }
+        }
+    }
+    print_message("%u lit pixels, %u dark ones; all light %.4f of the right one\n", lit, dark,
+                  sum / right_sum);
+    assert_true(lit > 500 && dark > 2000);
+    assert_true(fabs(sum / right_sum - 1) < 0.03);
+    picture_free(&p);
+    tyn_scene_finish(&scene);
+}
+
+// Everything that scatters on, too.
+static void all_orders(void **state)
+{
+    gpu_test *t = *state;
+    enum { SIZE = 32 };
+    tyn_scene scene;
+    make_scene(&scene);
+    scene.media[0] = grey_medium(1.5f, 0.1f, 0.3f);
+    tyn_view view = {0};
+    view_orthographic(&view, (float[]){0.5f, 0.5f, 3}, 0, 0, -1, (float[]){0, 1, 0}, 0.5f, SIZE);
+    picture p, q;
+    picture_render(&p, t->dev, "pop", &scene, &view, "lattice.cells=24", 1);
+    picture_render(&q, t->dev, "path", &scene, &view, NULL, 256);
+    picture_error e = picture_compare(&p, &q, 4);
+    double sum = 0, right = 0;
+    for (uint32_t i = 0; i < 3 * SIZE * SIZE; i++) {
+        sum += (double)p.rgb[i];
+        right += (double)q.rgb[i];
+    }
+    print_message("pop: rel_l1 %.4f (noise %.4f), mean %.4f of path's\n", e.rel_l1, e.noise,
+                  sum / right);
+    assert_true(e.rel_l1 < 0.06 && fabs(sum / right - 1) < 0.03);
+    picture_free(&p);
+    picture_free(&q);
+    tyn_scene_finish(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(once_through_a_slit),
+        cmocka_unit_test(all_orders),
+    };
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
