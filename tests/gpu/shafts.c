@@ -96,7 +96,7 @@ static void once_through_a_slit(void **state)
             }
             lit += right > 0;
             dark += right == 0;
-            if (fabs(found - right) > 0.01 * right) {
+            if (fabs(found - right) > 0.02 * right) {
                 fail_msg("(%g, %g): %g, not %g, %g m from the edge", x, y, found, right, beyond);
             }
         }
