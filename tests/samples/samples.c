@@ -37,9 +37,11 @@ static void all_load(void **state)
 {
     (void)state;
     static const char *const names[] = {
-        "cube",      "cube-oblique", "sphere", "slab",           "slab-60",
-        "furnace",   "smoke",        "cloud",  "furnace-smoke",  "two-media",
-        "smoke-sky", "cloud-sunset", "milk",   "plume-contrast", "empty",
+        "cube",        "cube-oblique", "sphere",  "slab",           "slab-60",
+        "furnace",     "smoke",        "cloud",   "furnace-smoke",  "two-media",
+        "smoke-sky",   "cloud-sunset", "milk",    "plume-contrast", "empty",
+        "room",        "fog-hall",     "lantern", "cornell-smoke",  "vpl-cave",
+        "many-lights",
     };
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
         tyn_scene scene = load(names[i]);

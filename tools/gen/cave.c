@@ -57,13 +57,14 @@ static void hole_point(int s, float p[3])
     p[2] = -HOLE * (float)gen_sin(turn);
 }
 
-// Rows from the hole's rim over the wall to the lowest point; the front is inside.
-static void add_cave(gen_mesh *mesh)
+// Rows of the wall from `first` to `last`, the front inside: row 0 is the hole's rim, row DOWN the lowest
+// point.
+static void add_rows(gen_mesh *mesh, int first, int last)
 {
     static const float none[3] = {0, 0, 0};
-    const double first = 0.2;
-    for (int row = 0; row <= DOWN; row++) {
-        const double theta = first + (GEN_PI - first) * (row - 1) / (DOWN - 1);
+    const double lip = 0.2; // angle of row 1 from above
+    for (int row = first; row <= last; row++) {
+        const double theta = lip + (GEN_PI - lip) * (row - 1) / (DOWN - 1);
         for (int s = 0; s < AROUND; s++) {
             float w[3] = {0, -1, 0}, p[3];
             if (row > 0 && row < DOWN) {
@@ -76,7 +77,7 @@ static void add_cave(gen_mesh *mesh)
             gen_add_vertex(mesh, p, none, none);
         }
     }
-    for (uint32_t row = 0; row < DOWN; row++) {
+    for (uint32_t row = 0; row < (uint32_t)(last - first); row++) {
         for (uint32_t s = 0; s < AROUND; s++) {
             const uint32_t a = row * AROUND + s, b = row * AROUND + (s + 1) % AROUND;
             gen_add_triangle(mesh, a, b, b + AROUND);
@@ -154,7 +155,9 @@ static void add_dripstone(gen_model *model)
 
 static void build(gen_model *model)
 {
-    add_cave(gen_mesh_new(model, "cave", ROCK));
+    add_rows(gen_mesh_new(model, "shaft", ROCK), 0, 1);
+    gen_place_here(model);
+    add_rows(gen_mesh_new(model, "cave", ROCK), 1, DOWN);
     gen_place_here(model);
     add_block(gen_mesh_new(model, "block", OUTSIDE));
     gen_place_here(model);

@@ -77,7 +77,7 @@ static float cave_density(float x, float y, float z)
     const float n = wisps(3.0f * x, 4.2f * y, 3.0f * z, 1.1f, 80);
     const float low = (float)gen_exp(-3.5 * (double)y);
     const float veil = smooth(0.12f, 0.62f, n);
-    return 0.006f + 0.02f * low * clampf(0.6f + n, 0, 2) + 0.22f * veil * veil * (0.25f + low);
+    return 0.01f + 0.03f * low * clampf(0.6f + n, 0, 2) + 0.5f * veil * veil * (0.25f + low);
 }
 
 gen_grid gen_cave_dust(void)
