@@ -31,13 +31,17 @@ void merge_count(ivec3 c)
     }
 }
 
-// A ghost cell continues the two cells before it: 2 J_0 - J_1, along each axis where it is outside.
+// A ghost cell continues the two cells before it: 2 J_0 - J_1, along each axis where it is outside; along a
+// periodic one it is the cell at the other end.
 vec4 merge_texel(ivec3 texel)
 {
-    ivec3 dims = ivec3(args.dims), c = texel - 1, near = clamp(c, ivec3(0), dims - 1);
+    ivec3 dims = ivec3(args.dims), c = texel - 1;
+    bool within = all(equal(c, clamp(c, ivec3(0), dims - 1)));
+    c = mix(c, (c + dims) % dims, notEqual(args.repeat, uvec3(0)));
+    ivec3 near = clamp(c, ivec3(0), dims - 1);
     ivec3 far = clamp(2 * near - c, ivec3(0), dims - 1);
     ivec3 outside = ivec3(notEqual(c, near));
-    if (outside == ivec3(0)) {
+    if (within) {
         merge_count(c);
     }
     vec3 j = vec3(0.0);

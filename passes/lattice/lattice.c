@@ -15,6 +15,7 @@
 #include "lattice_weights.comp.h"
 #include "lattice_mix.comp.h"
 #include <math.h>
+#include <string.h>
 
 enum {
     PORT_STATE = LATTICE_PORT_FIRST_SCRATCH,
@@ -183,7 +184,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_START] = KERNEL(start, lattice_args, 1, 8, 4, 2),
     [KERNEL_STENCIL] = KERNEL(stencil, lattice_level_args, 1, 8, 4, 2),
     [KERNEL_STENCIL_COARSE] = KERNEL(stencil_coarse, lattice_level_args, 1, 4, 4, 4),
-    [KERNEL_SWEEP] = KERNEL(sweep, lattice_args, 1, LATTICE_SWEEP_GROUP, 1, 1),
+    [KERNEL_SWEEP] = KERNEL(sweep, lattice_args, 2, LATTICE_SWEEP_GROUP, 1, 1),
     [KERNEL_COLLECT] = KERNEL(collect, lattice_args, 2, 8, 4, 2),
     [KERNEL_RELAX] = KERNEL(relax, lattice_level_args, 0, 8, 4, 2),
     [KERNEL_RESTRICT] = KERNEL(restrict, lattice_level_args, 0, 4, 4, 4),
@@ -252,6 +253,14 @@ static tyn_result declare(tyn_builder *b, const void *params)
                       cells.x, cells.y, cells.z, texels.x, texels.y, texels.z);
         return TYN_ERR_PARAMS;
     }
+    const uint32_t *repeat = p->shape.repeat;
+    if ((repeat[0] && repeat[1] && repeat[2]) ||
+        tyn_lattice_fit(p->shape.extent, repeat, p->shape.cells) != p->shape.cells) {
+        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                      "pass 'lattice': sides that repeat must be whole numbers of cells, and one "
+                      "side must not repeat");
+        return TYN_ERR_PARAMS;
+    }
     const bool walls = tyn_build_has(b, LATTICE_PORT_WALL_LINKS);
     if (walls != tyn_build_has(b, LATTICE_PORT_WALL_CELLS)) {
         tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
@@ -317,6 +326,8 @@ static void on_level_as(const solve *s, uint32_t kernel, uint32_t level, tyn_ext
         .channels = s->params->shape.channels,
         .colour = colour,
         .dx = s->args.dx,
+        .repeat = {s->params->shape.repeat[0], s->params->shape.repeat[1],
+                   s->params->shape.repeat[2]},
         .least_transport = 0.3f / fmaxf(extent[0], fmaxf(extent[1], extent[2])),
     };
     tyn_rec_dispatch(
@@ -416,6 +427,10 @@ static void record(tyn_recorder *r, const void *params)
     s.walls[1] = tyn_rec_has(r, LATTICE_PORT_WALL_LIGHT);
     s.args.elements = num_elements(dims, s.walls[0]);
     s.args.corrected = p->cycles > 0;
+    const uint32_t *repeat = p->shape.repeat;
+    const uint32_t sweep_spec[2] = {s.walls[0], repeat[0] || repeat[1] || repeat[2]};
+    memcpy(s.args.repeat, repeat, sizeof s.args.repeat);
+    s.args.march = !repeat[2] ? 2 : !repeat[1] ? 1 : 0;
     tyn_rec_fill(r, LATTICE_PORT_COUNTERS, 0);
     on_cells(&s, KERNEL_START);
     if (p->cycles > 0) {
@@ -432,7 +447,7 @@ static void record(tyn_recorder *r, const void *params)
             r, &(tyn_dispatch){.kernel = KERNEL_SWEEP,
                                .cells = {s.args.lines, LATTICE_DIRECTIONS, p->shape.channels},
                                .args = &s.args,
-                               .spec = s.walls});
+                               .spec = sweep_spec});
         on_cells(&s, KERNEL_COLLECT);
         for (int32_t c = 0; c < p->cycles; c++) {
             v_cycle(&s);

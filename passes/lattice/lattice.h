@@ -24,10 +24,14 @@ typedef struct tyn_lattice_shape {
     int32_t cells;     // along the longest side: the param "lattice.cells"
     uint32_t channels; // 1 or 3 that are solved
     float tint[3];     // of the one channel (see tyn_lattice_tint), else 1, 1, 1
+    uint32_t repeat[3]; // medium_block.repeat; not all three. Such sides are whole numbers of cells
 } tyn_lattice_shape;
 
 // Cells along each axis: cubes of longest side / cells; the box they fill holds the medium's.
 tyn_extent tyn_lattice_dims(const float extent[3], int32_t cells);
+
+// The most cells, up to `cells`, with which the sides that repeat are whole numbers of cells; 0: none.
+int32_t tyn_lattice_fit(const float extent[3], const uint32_t repeat[3], int32_t cells);
 
 // True if `n` colours (lights, emission, mean of the environment) are multiples of one colour, its
 // `tint` with a largest component of 1. With a grey medium one channel is then enough: shaders

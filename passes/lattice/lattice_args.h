@@ -37,6 +37,8 @@ struct lattice_args { // kernels on the whole lattice
     tyn_uint warm;    // start: 1 = from the guess
     tyn_uint elements;  // vectors of the state per channel: cells, then the radiance of their walls by fours
     tyn_uint corrected; // residual: 1 = there is a diffusion correction
+    tyn_uvec3 repeat;   // sweep: periodic axes
+    tyn_uint march;     // sweep: axis from whose planes diagonal lines start; not a periodic one
 };
 
 struct lattice_recall_args {
@@ -67,6 +69,7 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
     tyn_uint colour;       // relax: 0 or 1
     float dx;              // of level 0, m
     float least_transport; // that a cell's sigma_tr is taken for, 1/m
+    tyn_uvec3 repeat;      // stencil: periodic axes
 };
 
 #define LATTICE_DIRECTIONS 14

@@ -14,6 +14,23 @@ tyn_extent tyn_lattice_dims(const float extent[3], int32_t cells)
     return (tyn_extent){n[0], n[1], n[2]};
 }
 
+int32_t tyn_lattice_fit(const float extent[3], const uint32_t repeat[3], int32_t cells)
+{
+    float longest = fmaxf(extent[0], fmaxf(extent[1], extent[2]));
+    for (; cells > 0; cells--) {
+        bool fits = true;
+        for (int a = 0; a < 3; a++) {
+            double exact = longest > 0 ? (double)extent[a] / longest * cells : 1;
+            double whole = fmax(1, round(exact));
+            fits = fits && (!repeat[a] || fabs(exact - whole) <= 1e-4 * whole);
+        }
+        if (fits) {
+            break;
+        }
+    }
+    return cells;
+}
+
 bool tyn_lattice_tint(const float (*colors)[3], uint32_t n, float tint[3])
 {
     bool found = false;

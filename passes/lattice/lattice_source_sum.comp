@@ -41,7 +41,7 @@ float lost_through_exit_faces(uint sun, uint ch)
         float cosine = beams[sun].direction[axis];
         uint nu = FACE_SAMPLES * args.dims[u], nv = FACE_SAMPLES * args.dims[v];
         float area = medium.extent[u] * medium.extent[v] / float(nu * nv) * abs(cosine);
-        if (area == 0.0) {
+        if (area == 0.0 || medium.repeat[axis] != 0u) {
             continue;
         }
         vec3 p;
@@ -84,7 +84,8 @@ void main()
     barrier();
     if (me == 0) {
         vec3 extent = medium.extent, d = abs(beams[sun].direction);
-        vec3 faces = vec3(extent.y * extent.z, extent.z * extent.x, extent.x * extent.y);
+        vec3 faces = vec3(extent.y * extent.z, extent.z * extent.x, extent.x * extent.y) *
+                     vec3(equal(medium.repeat, uvec3(0)));
         // Close to 1 where the sub-samples resolve the beam; large where it is lost within a
         // fraction of one, or where the depth of the cells is bounded.
         float scale = sums[0].y > 0.0 ? min(sums[0].x / sums[0].y, 1e6) : 1.0;

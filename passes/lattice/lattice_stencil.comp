@@ -49,7 +49,8 @@ void main()
     for (int side = 0; side < 2; side++) {
         for (int axis = 0; axis < 3; axis++) {
             if (c[axis] == (side == 0 ? 0 : dims[axis] - 1)) {
-                k[side][axis] = args.dx * args.dx / (2.0 + args.dx / (2.0 * d));
+                // Across a periodic side as if mirrored there: a correction may be inexact.
+                k[side][axis] = args.repeat[axis] != 0u ? 0.0 : args.dx * args.dx / (2.0 + args.dx / (2.0 * d));
             } else {
                 ivec3 q = texel;
                 q[axis] += 2 * side - 1;

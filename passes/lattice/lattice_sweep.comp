@@ -42,6 +42,7 @@ layout(binding = 6, scalar) writeonly buffer arrived_buffer
 #include "lattice_wall_state.glsl"
 #include "walls_links.glsl"
 layout(constant_id = 0) const uint walls = 0;
+layout(constant_id = 1) const uint periodic = 0; // some axes are
 
 bvec3 both(bvec3 a, bvec3 b)
 {
@@ -57,7 +58,7 @@ void main()
     bool diagonal = direction >= 6;
     // March along z, or along the axis of the direction; lines start at the cells of the plane
     // across.
-    int axis = diagonal ? 2 : int(direction / 2);
+    int axis = diagonal ? int(args.march) : int(direction / 2);
     int u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
     if (line >= args.lines) {
         return;
@@ -87,9 +88,31 @@ void main()
         float psi = boundary, before = 0.0;
         vec4 e = emitted[at];
         float s = e.x + dot(omega, e.yzw);
-        for (int i = 0; i < dims[axis]; i++) {
+        bvec3 open = bvec3(true);
+        bool closed = false; // the line comes back to where it began
+        float through = 1.0; // what of the light is left there
+        int steps = dims[axis];
+        if (periodic == 1) {
+            open = equal(args.repeat, uvec3(0));
+            closed = !diagonal && !open[axis];
+            if (closed) { // the first time round finds out what comes back
+                psi = 0.0;
+                steps *= 2;
+                vec4 end = emitted[at + (dims[axis] - 1) * o[axis] * strides[axis]];
+                before = end.x + dot(omega, end.yzw);
+            }
+        }
+        for (int i = 0; i < steps; i++) {
             bvec3 at_first = both(equal(c, first), moves), at_last = both(equal(c, last), moves);
-            bool enters = any(at_first), leaves = any(at_last), counted = leaves, ends = false;
+            bool enters = any(at_first), leaves = any(at_last);
+            if (periodic == 1) {
+                enters = any(both(at_first, open));
+                leaves = any(both(at_last, open));
+                if (closed && i == dims[axis]) {
+                    psi /= max(1.0 - through, 1e-6);
+                }
+            }
+            bool counted = leaves, ends = false;
             if (enters) {
                 psi = boundary;
             }
@@ -100,6 +123,7 @@ void main()
                     leak += enters ? psi : 0.0;
                     psi = state[lattice_wall_vector(ch, id)][id % 4u];
                     enters = true;
+                    through = 0.0;
                 }
                 ends = (cut & ahead) != 0u;
                 counted = leaves && !ends;
@@ -121,6 +145,7 @@ void main()
             lattice_weights w = lattice_weights_of((cell.x + cell.y) * length_l);
             float q = length_l * cell.x, emission = length_l * cell.w;
             mean_psi[at + to_mean] = psi * w.a0 + q * (s * w.a1 + slope * w.b1) + emission * w.a1;
+            through *= w.e;
             psi = psi * w.e + q * (s * w.a0 + slope * w.w1) + emission * w.a0;
             leak += counted ? psi : 0.0;
             if (ends) {

@@ -114,7 +114,8 @@ static void record(tyn_recorder *r, const void *params)
     tyn_extent dims = {size.x - 2, size.y - 2, size.z - 2};
     struct merge_args args = {.dims = {dims.x, dims.y, dims.z},
                               .channels = p->channels,
-                              .tint = {p->tint[0], p->tint[1], p->tint[2]}};
+                              .tint = {p->tint[0], p->tint[1], p->tint[2]},
+                              .repeat = {p->repeat[0], p->repeat[1], p->repeat[2]}};
     tyn_rec_fill(r, MERGE_PORT_COUNTERS, 0);
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_CELLS, .cells = dims, .args = &args});
     if (tyn_rec_has(r, MERGE_PORT_ORDINATES)) {

@@ -7,6 +7,7 @@ typedef struct tyn_merge_params {
     uint32_t channels; // of `moments`: 1 or 3
     float tint[3];     // of the one channel (see tyn_lattice_tint), else 1, 1, 1
     uint32_t mode;     // TYN_MEDIUM_*, read where there are ordinates, as the next
+    uint32_t repeat[3]; // medium_block.repeat
     uint32_t grey;     // 1: sigma_s, sigma_a and g are equal in all channels (mode DENSITY)
 } tyn_merge_params;
 

@@ -7,6 +7,7 @@ struct merge_args {
     tyn_uvec3 dims; // cells
     tyn_uint channels;
     tyn_vec3 tint; // of the one channel
+    tyn_uvec3 repeat; // medium_block.repeat
 };
 
 #endif

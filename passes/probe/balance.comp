@@ -119,7 +119,8 @@ void main()
         return;
     }
     vec3 extent = medium.extent;
-    vec3 faces = vec3(extent.y * extent.z, extent.z * extent.x, extent.x * extent.y);
+    vec3 faces = vec3(extent.y * extent.z, extent.z * extent.x, extent.x * extent.y) *
+                 vec3(equal(medium.repeat, uvec3(0))); // of a periodic medium: one period
     float entering = LATTICE_4PI / 4.0 * 2.0 * (faces.x + faces.y + faces.z) *
                      lattice_channel(environment.sky, args.channels, ch, args.tint);
     for (uint n = 0; n < ordinates.count; n++) {

@@ -57,7 +57,16 @@ cell_corners corners_of(lattice_box box, vec3 p)
 {
     vec3 x = clamp(lattice_from_m(box, p), vec3(0.0), vec3(box.dims)) - 0.5;
     ivec3 lo = clamp(ivec3(floor(x)), ivec3(0), max(box.dims - 2, 0));
-    return cell_corners(lo, min(lo + 1, box.dims - 1), x - vec3(lo));
+    cell_corners corners = cell_corners(lo, min(lo + 1, box.dims - 1), x - vec3(lo));
+    for (int axis = 0; axis < 3; axis++) {
+        if (medium.repeat[axis] != 0u) {
+            int n = box.dims[axis], i = int(floor(x[axis]));
+            corners.lo[axis] = (i + n) % n;
+            corners.hi[axis] = (i + 1) % n;
+            corners.t[axis] = x[axis] - floor(x[axis]);
+        }
+    }
+    return corners;
 }
 
 ivec3 corner_of(cell_corners c, uint corner, out float weight)
@@ -107,7 +116,8 @@ beam_tau ordinate_tau(lattice_box box, vec3 p, uint n)
 bool last_in_box(vec3 p, vec3 direction, out vec3 last)
 {
     vec3 d = mix(direction, vec3(1e-12), lessThan(abs(direction), vec3(1e-12)));
-    vec3 t0 = p / d, t1 = (p - medium.extent) / d; // distances back to the faces
+    vec3 endless = 1e30 * vec3(medium.repeat);
+    vec3 t0 = (p + endless) / d, t1 = (p - medium.extent - endless) / d; // distances back to the faces
     vec3 lo = min(t0, t1), hi = max(t0, t1);
     float t = max(max(max(lo.x, lo.y), lo.z), 0.0);
     last = p - t * d;
@@ -120,7 +130,7 @@ void main()
     if (i >= args.num_points) {
         return;
     }
-    vec3 p = points[i];
+    vec3 p = medium_wrap(points[i]);
     ivec3 dims = textureSize(moments, 0);
     dims.z /= int(args.channels);
     lattice_box box = lattice_box_of(medium.extent, dims);
