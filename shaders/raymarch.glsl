@@ -123,6 +123,9 @@ march_medium march_scale(march_medium unit, float density)
 // At a texture coordinate; `unit` is the medium at texture value 1 (mode DENSITY).
 march_medium march_medium_at(march_medium unit, vec3 uvw)
 {
+    if (raymarch_has(RAYMARCH_REPEAT)) {
+        uvw -= vec3(medium.repeat) * floor(uvw);
+    }
 #ifndef RAYMARCH_GREY
     if (medium_mode == TYN_MEDIUM_COEFFICIENTS) {
         vec3 emission = vec3(0.0);
@@ -150,6 +153,7 @@ bool march_any(march_medium m)
 // A sun as one view ray sees it: its grid's coordinates are linear along the ray.
 struct march_sun {
     beam_ray beam;
+    uint grid; // number of its grid
     vec3 irradiance; // W/m^2
     float mean_cosine;
 #ifdef RAYMARCH_GREY
@@ -179,6 +183,7 @@ march_sun march_sun_of(uint n, march_medium unit, vec3 origin, vec3 direction)
     vec3 turn = direction + light.direction;
     float one_minus_mu = 0.5 * dot(turn, turn);
     march_sun sun;
+    sun.grid = n;
     sun.beam = beam_ray_of(n, origin, direction);
     // Said at compile time, as some devices run both sides of a branch.
     sun.beam.edges = sun.beam.edges && !raymarch_has(RAYMARCH_CLOSED);
@@ -209,10 +214,15 @@ march_sun march_sun_of(uint n, march_medium unit, vec3 origin, vec3 direction)
 // Light of one sun that is scattered towards the eye at distance s of the ray. `weight` and
 // `weight_scaled`: integrals of e^-tau and e^-tau' over the step, m. `first`: the part that has
 // scattered once, W/(m^2 sr), as the result.
-vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, float s,
+vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, float s,
                     spectrum weight, spectrum weight_scaled, inout vec3 first)
 {
-    beam_place place = beam_ray_at(sun.beam, s);
+    beam_place place;
+    if (raymarch_has(RAYMARCH_REPEAT)) {
+        place = beam_place_of(sun.grid, p);
+    } else {
+        place = beam_ray_at(sun.beam, s);
+    }
     spectrum tau_s, tau_a, phase = sun.phase, k_tms, k_lobe;
 #ifdef RAYMARCH_GREY
     float column = beam_fetch(beam_column_tex, place).r;
@@ -278,6 +288,10 @@ float march_shadow(shadow_light map, vec3 from, vec3 along, float s, float ds)
 // Light of the lattice at a point, as texture inscatter has it; uvw is its place there.
 vec3 march_field(vec3 p, vec3 uvw)
 {
+    if (raymarch_has(RAYMARCH_REPEAT)) {
+        p = medium_wrap(p);
+        uvw = lattice_inscatter_uvw(medium.extent, textureSize(inscatter_tex, 0), p);
+    }
     if (raymarch_has(RAYMARCH_WALLS)) {
         lattice_box box = lattice_box_of(medium.extent, textureSize(inscatter_tex, 0) - 2);
         walls_place place = walls_place_of(box, p);
@@ -294,7 +308,12 @@ float march_skip(vec3 origin, vec3 direction, vec3 inverse, float s, float end)
     float smallest = min(min(medium.brick_size.x, medium.brick_size.y), medium.brick_size.z);
     vec3 per_brick = 1.0 / medium.brick_size;
     ivec3 last = ivec3(medium.bricks) - 1;
+    vec3 first = origin;
     while (s < end) {
+        if (raymarch_has(RAYMARCH_REPEAT)) { // as seen from the period at hand
+            vec3 p = first + s * direction;
+            origin = first + (medium_wrap(p) - p);
+        }
         ivec3 brick = clamp(ivec3((origin + s * direction) * per_brick), ivec3(0), last);
         float away = texelFetch(distance_tex, brick, 0).r;
         if (away < 0.5) {
@@ -389,7 +408,7 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
                     lit = march_shadow(map, shadow_frame(map, origin),
                                        shadow_frame_direction(map, direction), s, ds);
                 }
-                result.radiance += march_sunlight(suns[n], unit, m, at, lit * weight,
+                result.radiance += march_sunlight(suns[n], unit, m, origin + at * direction, at, lit * weight,
                                                   lit * weight_scaled, result.single);
             }
             if (raymarch_has(RAYMARCH_DEPTH)) {

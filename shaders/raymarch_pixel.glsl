@@ -67,7 +67,11 @@ void shade_pixel(ivec2 pixel)
     for (uint i = 0u; i < num_rays; i++) {
         vec2 where = num_rays == 1u ? vec2(0.5) : quarter_pixel(i);
         camera_ray ray = camera_ray_through(camera, vec2(pixel) + where);
-        vec2 span = ray_box(ray.origin, ray_inverse(ray.direction), vec3(0.0), medium.extent);
+        vec3 beyond = vec3(0.0); // a periodic medium: so many periods that none sees farther
+        if (raymarch_has(RAYMARCH_REPEAT)) {
+            beyond = 256.0 * medium.extent * vec3(medium.repeat);
+        }
+        vec2 span = ray_box(ray.origin, ray_inverse(ray.direction), -beyond, medium.extent + beyond);
         span.x = max(span.x, 0.0);
         surface = first.a;
         if (raymarch_has(RAYMARCH_HOST_DEPTH)) {

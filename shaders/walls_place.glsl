@@ -1,5 +1,5 @@
-// walls_place.glsl -- places in the lattice. Include after lattice.glsl, with args (walls_pass_args) and the
-// block surfaces.
+// walls_place.glsl -- places in the lattice. Include after lattice.glsl and walls_triangle.glsl, with args
+// (extent, dims), the block surfaces and the buffers vertices and triangles.
 #ifndef TYN_WALLS_PLACE_GLSL
 #define TYN_WALLS_PLACE_GLSL
 
@@ -19,6 +19,13 @@ vec3 walls_place(vec3 world)
     precise vec3 place = (m - box.origin) / box.dx - 0.5 -
                          vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);
     return place;
+}
+
+walls_triangle walls_triangle_at(uint i)
+{
+    return walls_triangle_of(walls_place(vertices[triangles[i].v0].position),
+                             walls_place(vertices[triangles[i].v1].position),
+                             walls_place(vertices[triangles[i].v2].position));
 }
 
 #endif

@@ -156,10 +156,13 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->num_shapes = block->num_shapes;
     params->closed = !sunlight_enters_through_medium(frame, in->num_suns) ||
                      block->size[0] * block->size[1] * block->size[2] == 1;
-    if (!frame->open_faces) {
+    params->repeat = block->repeat[0] || block->repeat[1] || block->repeat[2];
+    if (!frame->open_faces || params->repeat) {
         params->antialias = 0; // the box that the rays may miss has nothing at its faces
     }
-    tyn_raymarch_window(params, &frame->camera);
+    if (!params->repeat) { // else it is to be seen everywhere
+        tyn_raymarch_window(params, &frame->camera);
+    }
 
     const struct env_block *env = &frame->environment;
     bool surroundings =

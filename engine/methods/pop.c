@@ -41,6 +41,7 @@ typedef struct field {
     tyn_ref tms, columns;
     tyn_ref cells, source, power, moments, leaks, wall_power;
     tyn_wall_refs walls; // surfaces on the lattice; {0} without
+    tyn_ref wall_light;  // what they reflect of light that is not the lattice's; {0} if nothing
     bool from_all_sides; // the mean of the environment lights the medium
 } field;
 
@@ -191,6 +192,14 @@ static tyn_result add_walls(tyn_graph *g, const tyn_job *job, field *f)
     f->picture.wall_links = f->walls.links;
     f->picture.wall_cells = f->walls.cells;
     return result;
+}
+
+// In a periodic medium the walls reflect sunlight as part of the lattice: light from single points on them
+// knows no periods.
+static tyn_result add_wall_light(tyn_graph *g, const tyn_job *job, field *f)
+{
+    return tyn_add_wall_light(g, job, &f->shape, &f->walls, &f->picture.beams, f->picture.num_suns,
+                              &f->wall_light);
 }
 
 static tyn_result add_source(tyn_graph *g, const tyn_job *job, field *f)
@@ -357,6 +366,7 @@ static tyn_result add_solve(tyn_graph *g, const tyn_job *job, field *f)
         [LATTICE_PORT_ENVIRONMENT] = environment_of(job, f),
         [LATTICE_PORT_WALL_LINKS] = f->walls.links,
         [LATTICE_PORT_WALL_CELLS] = f->walls.cells,
+        [LATTICE_PORT_WALL_LIGHT] = f->wall_light,
     };
     memory last = {0};
     tyn_result result = params.warm ? add_recall(g, job, f, refs, &last) : TYN_OK;
@@ -375,6 +385,7 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, field *f)
     tyn_merge_params params;
     tyn_settings_params(job->settings, &tyn_pass_merge, &params);
     params.channels = f->shape.channels;
+    memcpy(params.repeat, f->shape.repeat, sizeof params.repeat);
     memcpy(params.tint, f->shape.tint, sizeof params.tint);
     params.mode = job->frame->medium.mode;
     params.grey = job->frame->grey;
@@ -407,7 +418,8 @@ static uint32_t points_outside(const tyn_job *job)
         bool outside = false;
         for (int a = 0; a < 3; a++) {
             float x = m[a] * p[0] + m[4 + a] * p[1] + m[8 + a] * p[2] + m[12 + a];
-            outside = outside || x < -1e-3f * extent[a] || x > 1.001f * extent[a];
+            outside = outside || (!job->frame->medium.repeat[a] &&
+                                  (x < -1e-3f * extent[a] || x > 1.001f * extent[a]));
         }
         count += outside;
     }
@@ -532,17 +544,22 @@ static tyn_result add_field(tyn_graph *g, const tyn_job *job, field *f)
     tyn_lattice_params lattice;
     tyn_settings_params(job->settings, &tyn_pass_lattice, &lattice);
     memcpy(f->shape.extent, frame->medium.extent, sizeof f->shape.extent);
-    f->shape.cells = lattice.shape.cells;
+    memcpy(f->shape.repeat, frame->medium.repeat, sizeof f->shape.repeat);
+    f->shape.cells =
+        tyn_lattice_fit(frame->medium.extent, frame->medium.repeat, lattice.shape.cells);
     choose_channels(f, job->scene, frame);
     float longest = fmaxf(f->shape.extent[0], fmaxf(f->shape.extent[1], f->shape.extent[2]));
     f->picture.cell = longest / (float)f->shape.cells;
     const bool ordinates = f->sky.ordinates.resource != 0;
+    const uint32_t *repeat = f->shape.repeat;
+    const bool periodic = repeat[0] || repeat[1] || repeat[2];
     const step steps[] = {
         {true, add_cells},
         {true, add_walls},
         {ordinates, add_columns},
         {f->picture.num_suns, add_source},
         {ordinates, add_ordinates},
+        {periodic, add_wall_light},
         {true, add_solve},
         {job->outputs & TYN_PICTURE_OUTPUTS, add_merge},
         {job->outputs & TYN_OUTPUT_PROBE, add_probe},
@@ -551,10 +568,48 @@ static tyn_result add_field(tyn_graph *g, const tyn_job *job, field *f)
     return ADD_STEPS(g, job, f, steps);
 }
 
+// Are the axes of the only shape not those of M?
+static bool is_sheared(const tyn_frame_scene *frame)
+{
+    bool sheared = false;
+    for (int i = 0; i < 9; i++) {
+        float across = fabsf(frame->shapes[0].rows[i / 3][i % 3]) * frame->medium.extent[i % 3];
+        sheared = sheared || (i / 3 != i % 3 && across > 1e-4f);
+    }
+    return sheared;
+}
+
+// TYN_ERR_PARAMS with a log line where a periodic medium is more than the lattice can do.
+static tyn_result check_repeat(const tyn_job *job)
+{
+    const struct medium_block *m = &job->frame->medium;
+    uint32_t axes = m->repeat[0] + m->repeat[1] + m->repeat[2];
+    tyn_lattice_params lattice;
+    tyn_settings_params(job->settings, &tyn_pass_lattice, &lattice);
+    const char *problem = NULL;
+    if (axes == 0) {
+        return TYN_OK;
+    } else if (axes == 3) {
+        problem = "repeats along all three axes; no light can come in from anywhere";
+    } else if (is_sheared(job->frame)) {
+        problem = "repeats and is sheared; the axes of a periodic box must be at right angles";
+    } else if (job->frame->environment.has_map) {
+        problem = "repeats under an environment map; give the environment as a constant radiance";
+    } else if (tyn_lattice_fit(m->extent, m->repeat, lattice.shape.cells) == 0) {
+        problem = "repeats along two sides that are no whole numbers of the same length, or too "
+                  "short for \"lattice.cells\"";
+    }
+    if (problem) {
+        tyn_log_print(job->log, TYN_LOG_ERROR, "shape 0 %s ('pop')", problem);
+        return TYN_ERR_PARAMS;
+    }
+    return TYN_OK;
+}
+
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
 {
     const tyn_frame_scene *frame = job->frame;
-    tyn_result result = tyn_method_refuse_repeat(job, "pop");
+    tyn_result result = check_repeat(job);
     if (result != TYN_OK) {
         return result;
     }
@@ -605,6 +660,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_env_glow,
     &tyn_pass_lattice_cells,
     &tyn_pass_walls,
+    &tyn_pass_wall_light,
     &tyn_pass_columns_average,
     &tyn_pass_columns,
     &tyn_pass_lattice_source,

@@ -49,6 +49,44 @@ tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_sha
         [WALLS_PORT_TEXTURES] = job->refs.textures,   [WALLS_PORT_TEXELS] = job->refs.texels,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_walls, &params, refs);
-    *walls = (tyn_wall_refs){refs[WALLS_PORT_LINKS], refs[WALLS_PORT_CELLS]};
+    *walls = (tyn_wall_refs){refs[WALLS_PORT_LINKS], refs[WALLS_PORT_CELLS], refs[WALLS_PORT_HITS]};
+    return result;
+}
+
+tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
+                              const tyn_wall_refs *walls, const tyn_beam_refs *beams,
+                              uint32_t num_suns, tyn_ref *light)
+{
+    *light = (tyn_ref){0};
+    if (!walls->links.resource || num_suns == 0) {
+        return TYN_OK;
+    }
+    tyn_extent dims = tyn_lattice_dims(shape->extent, shape->cells);
+    tyn_wall_light_params params;
+    tyn_settings_params(job->settings, &tyn_pass_wall_light, &params);
+    params.mode = job->frame->medium.mode;
+    params.num_suns = num_suns;
+    params.dims[0] = dims.x;
+    params.dims[1] = dims.y;
+    params.dims[2] = dims.z;
+    for (int a = 0; a < 3; a++) {
+        params.extent[a] = shape->extent[a];
+    }
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [WALL_LIGHT_PORT_MEDIUM] = job->refs.medium,
+        [WALL_LIGHT_PORT_LIGHTS] = job->refs.suns,
+        [WALL_LIGHT_PORT_BEAMS] = beams->beams,
+        [WALL_LIGHT_PORT_COLUMN] = beams->column,
+        [WALL_LIGHT_PORT_TAU_A] = beams->tau_a,
+        [WALL_LIGHT_PORT_TAU_P] = beams->tau_p,
+        [WALL_LIGHT_PORT_SURFACES] = job->refs.surfaces,
+        [WALL_LIGHT_PORT_VERTICES] = job->refs.vertices,
+        [WALL_LIGHT_PORT_TRIANGLES] = job->refs.triangles,
+        [WALL_LIGHT_PORT_LINKS] = walls->links,
+        [WALL_LIGHT_PORT_CELLS] = walls->cells,
+        [WALL_LIGHT_PORT_HITS] = walls->hits,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_wall_light, &params, refs);
+    *light = refs[WALL_LIGHT_PORT_LIGHT];
     return result;
 }

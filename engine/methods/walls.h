@@ -1,11 +1,12 @@
 // walls.h -- surfaces as the lattice sees them.
 #pragma once
-#include "methods/job.h"
+#include "methods/nodes.h"
 #include "passes/lattice/lattice.h"
 
 // What shaders/lattice_walls.glsl and the lattice read.
 typedef struct tyn_wall_refs {
     tyn_ref links, cells;
+    tyn_ref hits; // the triangles that links meet, for wall_light
 } tyn_wall_refs;
 
 // Do surfaces come near the media's box? Else the lattice has no walls.
@@ -14,3 +15,9 @@ bool tyn_has_walls(const tyn_frame_scene *frame);
 // {0} without walls.
 tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
                          tyn_wall_refs *walls);
+
+// What the first of frame->suns shine on the walls of the cells: LATTICE_PORT_WALL_LIGHT; {0} without
+// walls or suns. For methods that do not reflect that light otherwise.
+tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
+                              const tyn_wall_refs *walls, const tyn_beam_refs *beams,
+                              uint32_t num_suns, tyn_ref *light);

@@ -256,6 +256,7 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= behind ? RAYMARCH_BEHIND : 0;
     features |= p->num_shapes == 1 ? RAYMARCH_ONE_SHAPE : 0;
     features |= p->closed ? RAYMARCH_CLOSED : 0;
+    features |= p->repeat ? RAYMARCH_REPEAT : 0;
     features |= p->antialias ? RAYMARCH_SUPERSAMPLE : 0;
     features |= p->one_channel ? RAYMARCH_ONE_CHANNEL : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_WALL_LINKS) ? RAYMARCH_WALLS : 0;

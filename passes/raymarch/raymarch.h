@@ -28,6 +28,7 @@ typedef struct tyn_raymarch_params {
         closed; // 1: the medium is empty at the faces through which suns shine in, or homogeneous: depths
                 // along suns take one fetch
     uint32_t num_shapes;
+    uint32_t repeat; // 1: the medium is periodic along an axis
     uint32_t first[2],
         end[2];     // pixels that may see the media (tyn_raymarch_window); all 0: every pixel
     float depth[4]; // p10, p14, p11, p15 of the host's view_to_clip

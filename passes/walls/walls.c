@@ -19,7 +19,7 @@ static const tyn_port ports[WALLS_NUM_PORTS] = {
                           "which of its 26 links are cut, per cell"},
     [WALLS_PORT_CELLS] = {"wall_cells", TYN_OUT, TYN_BUFFER, 0, false,
                           "struct wall_cell: mean albedo and planes of a cell's walls"},
-    [WALLS_PORT_HITS] = {"hits", TYN_SCRATCH, TYN_BUFFER, 0, false, "nearest triangle per line"},
+    [WALLS_PORT_HITS] = {"hits", TYN_OUT, TYN_BUFFER, 0, false, "nearest triangle per line"},
     [WALLS_PORT_NEAREST] = {"nearest", TYN_SCRATCH, TYN_BUFFER, 0, false,
                             "nearest triangle in the cell, per main direction of its normal"},
 };

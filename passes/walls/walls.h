@@ -19,11 +19,40 @@ enum {
     WALLS_PORT_TEXELS,    // IN optional buffer uint[]
     WALLS_PORT_LINKS,     // OUT buffer uint[cell]: walls_args.h
     WALLS_PORT_CELLS,     // OUT buffer struct wall_cell[cell]
-    WALLS_PORT_HITS,      // SCRATCH
-    WALLS_PORT_NEAREST,   // SCRATCH
+    WALLS_PORT_HITS, // OUT buffer uint[link 0..13][cell]: the triangle that a cut link meets, in the low
+                     // 24 bits, and 255 times its share of the link in the others
+    WALLS_PORT_NEAREST, // SCRATCH
     WALLS_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_walls;
+
+// ---- wall_light -------------------------------------------------------------------------------------
+
+// Sunlight on the walls of the cells, as radiance that they send out.
+typedef struct tyn_wall_light_params {
+    float extent[3];   // medium_block.extent, m
+    uint32_t dims[3];  // cells of the lattice
+    uint32_t mode;     // TYN_MEDIUM_*
+    uint32_t num_suns; // 1..4
+} tyn_wall_light_params;
+
+enum {
+    WALL_LIGHT_PORT_MEDIUM, // IN buffer struct medium_block
+    WALL_LIGHT_PORT_LIGHTS, // IN buffer struct light_block[]
+    WALL_LIGHT_PORT_BEAMS,  // IN buffer struct beam_block[]
+    WALL_LIGHT_PORT_COLUMN, // IN 3D: column, or tau_s in mode COEFFICIENTS
+    WALL_LIGHT_PORT_TAU_A,  // IN optional 3D: mode COEFFICIENTS, as the one below
+    WALL_LIGHT_PORT_TAU_P,
+    WALL_LIGHT_PORT_SURFACES, // IN buffers, as walls has them
+    WALL_LIGHT_PORT_VERTICES,
+    WALL_LIGHT_PORT_TRIANGLES,
+    WALL_LIGHT_PORT_LINKS, // IN buffers, of walls
+    WALL_LIGHT_PORT_CELLS,
+    WALL_LIGHT_PORT_HITS,
+    WALL_LIGHT_PORT_LIGHT, // OUT buffer vec3[cell]: LATTICE_PORT_WALL_LIGHT
+    WALL_LIGHT_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_wall_light;
 
 // Triangles that the pass can tell apart.
 enum { TYN_WALLS_MAX_TRIANGLES = 1 << 24 };

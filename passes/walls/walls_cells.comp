@@ -56,13 +56,6 @@ layout(binding = 9, scalar) writeonly buffer cell_buffer
 #include "walls_place.glsl"
 #include "walls_texture.glsl"
 
-walls_triangle triangle_of(uint i)
-{
-    return walls_triangle_of(walls_place(vertices[triangles[i].v0].position),
-                             walls_place(vertices[triangles[i].v1].position),
-                             walls_place(vertices[triangles[i].v2].position));
-}
-
 // Mean over about a cell around the place where the link from p along d meets triangle i.
 vec3 albedo_at(uint i, vec3 p, vec3 d)
 {
@@ -71,7 +64,7 @@ vec3 albedo_at(uint i, vec3 p, vec3 d)
     if (m.texture == TYN_SURFACE_NO_TEXTURE) {
         return m.albedo;
     }
-    walls_triangle t = triangle_of(i);
+    walls_triangle t = walls_triangle_at(i);
     float rise = -dot(t.normal, d);
     float where = abs(rise) > 1e-20 ? clamp(dot(t.normal, p - t.a) / rise, 0.0, 1.0) : 0.5;
     vec3 hit = p + where * d - t.a, u = t.b - t.a, v = t.c - t.a;
@@ -88,7 +81,7 @@ vec3 albedo_at(uint i, vec3 p, vec3 d)
 // In M, m, with the centre on its positive side.
 vec4 plane_of(uint i, ivec3 c, lattice_box box)
 {
-    walls_triangle t = triangle_of(i);
+    walls_triangle t = walls_triangle_at(i);
     vec3 n = normalize(t.normal);
     n = dot(n, vec3(c) - t.a) < 0.0 ? -n : n;
     vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);

@@ -1,0 +1,86 @@
+// wall_light.c -- sunlight on the walls of the lattice.
+#include "walls.h"
+#include "wall_light_args.h"
+#include "wall_light_suns.comp.h"
+
+static const tyn_port ports[WALL_LIGHT_NUM_PORTS] = {
+    [WALL_LIGHT_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
+    [WALL_LIGHT_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "struct light_block[]"},
+    [WALL_LIGHT_PORT_BEAMS] = {"beams", TYN_IN, TYN_BUFFER, 0, false, "struct beam_block[]"},
+    [WALL_LIGHT_PORT_COLUMN] = {"column", TYN_IN, TYN_IMAGE_3D, 0, false,
+                                "depth along the suns, or that of sigma_s"},
+    [WALL_LIGHT_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "of absorption"},
+    [WALL_LIGHT_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true, "of sigma_s'"},
+    [WALL_LIGHT_PORT_SURFACES] = {"surfaces", TYN_IN, TYN_BUFFER, 0, false, "struct surface_block"},
+    [WALL_LIGHT_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, false,
+                                  "struct surface_vertex[]"},
+    [WALL_LIGHT_PORT_TRIANGLES] = {"triangles", TYN_IN, TYN_BUFFER, 0, false,
+                                   "struct surface_triangle[]"},
+    [WALL_LIGHT_PORT_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
+    [WALL_LIGHT_PORT_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
+    [WALL_LIGHT_PORT_HITS] = {"hits", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
+    [WALL_LIGHT_PORT_LIGHT] = {"wall_light", TYN_OUT, TYN_BUFFER, 0, false,
+                               "radiance that the walls of a cell send out, W/(m^2 sr)"},
+};
+
+static const tyn_binding bindings[] = {
+    {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {WALL_LIGHT_PORT_LIGHTS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_BEAMS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_COLUMN, TYN_USE_SAMPLED},
+    {WALL_LIGHT_PORT_TAU_A, TYN_USE_SAMPLED},
+    {WALL_LIGHT_PORT_TAU_P, TYN_USE_SAMPLED},
+    {WALL_LIGHT_PORT_SURFACES, TYN_USE_UNIFORM},
+    {WALL_LIGHT_PORT_VERTICES, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_TRIANGLES, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_LINKS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_CELLS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_HITS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_kernel kernels[] = {
+    {"suns",
+     wall_light_suns_spirv,
+     sizeof wall_light_suns_spirv,
+     sizeof(struct wall_light_args),
+     {8, 4, 2},
+     bindings,
+     WALL_LIGHT_NUM_PORTS,
+     1},
+};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_wall_light_params *p = params;
+    tyn_build_buffer(b, WALL_LIGHT_PORT_LIGHT, 12ull * p->dims[0] * p->dims[1] * p->dims[2]);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_wall_light_params *p = params;
+    struct wall_light_args args = {
+        .extent = {p->extent[0], p->extent[1], p->extent[2]},
+        .dims = {p->dims[0], p->dims[1], p->dims[2]},
+        .num_suns = p->num_suns,
+    };
+    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = {p->dims[0], p->dims[1], p->dims[2]},
+                                        .args = &args,
+                                        .spec = &p->mode});
+    tyn_rec_work(r, "cells", (double)p->dims[0] * p->dims[1] * p->dims[2]);
+}
+
+const tyn_pass_desc tyn_pass_wall_light = {
+    .name = "wall_light",
+    .summary = "sunlight on the walls of the lattice's cells",
+    .ports = ports,
+    .num_ports = WALL_LIGHT_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 1,
+    .params_size = sizeof(tyn_wall_light_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = WALL_LIGHT_PORT_LIGHT,
+    .debug_meaning = "radiance of the walls per cell, W/(m^2 sr)",
+};

@@ -1,0 +1,100 @@
+// wall_light_suns.comp -- sunlight that arrives at the walls of a cell, as radiance they send out.
+//
+// Each cut link stands for the wall's area that isotropic light meets along it, 4 a_j dx^2 (walls_args.h).
+// What arrives there is irradiance times the cosine to the triangle that the link meets; the radiance of all
+// links together is its mean, weighted with those areas, times albedo / pi. Light in the forward peak of the
+// medium counts as not scattered (delta scaling), as in the lattice.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "wall_light_args.h"
+#include "surface_args.h"
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 3 // the medium itself is not read
+#define BEAM_BLOCKS 2
+#define BEAM_COLUMN 3
+#define BEAM_TAU_A 4
+#define BEAM_TAU_P 5
+#include "medium.glsl"
+#include "beam.glsl"
+#include "lattice.glsl"
+#include "walls_links.glsl"
+#include "walls_triangle.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(push_constant, scalar) uniform push
+{
+    wall_light_args args;
+};
+layout(binding = 1, scalar) readonly buffer light_buffer
+{
+    light_block lights[];
+};
+layout(binding = 6, scalar) uniform surface_uniform
+{
+    surface_block surfaces;
+};
+layout(binding = 7, scalar) readonly buffer vertex_buffer
+{
+    surface_vertex vertices[];
+};
+layout(binding = 8, scalar) readonly buffer triangle_buffer
+{
+    surface_triangle triangles[];
+};
+layout(binding = 9, scalar) readonly buffer link_buffer
+{
+    uint links[];
+};
+layout(binding = 10, scalar) readonly buffer cell_buffer
+{
+    wall_cell wall_cells[];
+};
+layout(binding = 11, scalar) readonly buffer hit_buffer
+{
+    uint hits[];
+};
+layout(binding = 12, scalar) writeonly buffer wall_light_buffer
+{
+    vec3 wall_light[];
+};
+#include "walls_place.glsl"
+
+// Irradiance of the suns at p (M) on the side n (M, unit).
+vec3 sunlight(vec3 p, vec3 n)
+{
+    vec3 sum = vec3(0.0);
+    for (uint sun = 0u; sun < args.num_suns; sun++) {
+        float cosine = -dot(lights[sun].direction, n);
+        if (cosine > 0.0) {
+            beam_tau tau = beam_depth(sun, p);
+            sum += cosine * lights[sun].color * exp(-(tau.a + tau.p));
+        }
+    }
+    return sum;
+}
+
+void main()
+{
+    ivec3 c = ivec3(gl_GlobalInvocationID);
+    if (any(greaterThanEqual(c, ivec3(args.dims)))) {
+        return;
+    }
+    uint i = walls_cell_index(c), cells = args.dims.x * args.dims.y * args.dims.z, cut = links[i];
+    lattice_box box = lattice_box_of(args.extent, ivec3(args.dims));
+    vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z), sum = vec3(0.0);
+    for (uint link = 0u; link < 14u; link++) {
+        if ((cut >> link & 1u) == 0u) {
+            continue;
+        }
+        walls_triangle t = walls_triangle_at(hits[link * cells + i] & 0xffffffu);
+        vec3 d = vec3(walls_step(link)), n = normalize(t.normal);
+        float rise = -dot(n, d);
+        float where = abs(rise) > 1e-6 ? clamp(dot(n, vec3(c) - t.a) / rise, 0.0, 1.0) : 0.5;
+        vec3 p = lattice_to_m(box, vec3(c) + where * d + 0.5 + shift);
+        float a = lattice_weight(link) * (link < 6u ? 1.0 : inversesqrt(3.0));
+        sum += a * sunlight(p, rise < 0.0 ? -n : n);
+    }
+    float area = wall_cells[i].area;
+    wall_light[i] = area > 0.0 ? wall_cells[i].albedo * sum / (area * 3.14159265) : vec3(0.0);
+}
