@@ -110,14 +110,17 @@ static void layers_add_up(void **state)
     strike(s);
 }
 
-static void refuses_repeat(void **state)
+static void refuses_what_repeats_everywhere(void **state)
 {
     gpu_test *t = *state;
     stage *s = set_stage(t, 4);
-    s->scene.shapes[0].repeat[2] = true;
+    bool *repeat = s->scene.shapes[0].repeat;
+    repeat[2] = true;
+    show(s); // along one or two axes the medium may
+    repeat[0] = repeat[1] = true;
     t->quiet = true;
     assert_int_equal(tyn_offline_frame(s->off, &s->scene, &s->view, false), TYN_ERR_PARAMS);
-    assert_non_null(strstr(t->last_error, "repeat"));
+    assert_non_null(strstr(t->last_error, "repeats along all three axes"));
     t->quiet = false;
     strike(s);
 }
@@ -205,7 +208,7 @@ static void suns_add_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layers_add_up), cmocka_unit_test(refuses_repeat), cmocka_unit_test(warns),
+        cmocka_unit_test(layers_add_up), cmocka_unit_test(refuses_what_repeats_everywhere), cmocka_unit_test(warns),
         cmocka_unit_test(leaves_out),    cmocka_unit_test(suns_add_up),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
