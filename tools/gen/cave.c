@@ -174,7 +174,7 @@ const gen_scene gen_vpl_cave = {
                .anisotropy = 0.7f,
                .density = {.uri = "cave.raw", .type = "f16", .size = {72, 72, 72}}}},
     .shapes = {{.name = "dust", .scale = {20, 20, 20}}},
-    .suns = {{.direction = {-0.3f, -1, -0.18f}, .irradiance = 130, .color = {1, 0.93f, 0.8f}}},
+    .suns = {{.direction = {-0.3f, -1, -0.18f}, .irradiance = 220, .color = {1, 0.93f, 0.8f}}},
     .cameras =
         {{.name = "view", .from = {4.1f, -1.7f, 5.1f}, .at = {-1.7f, -1.6f, -2.2f}, .yfov = 1.15f}},
     .materials = {{.name = "rock", .albedo = {0.5f, 0.42f, 0.34f}},
