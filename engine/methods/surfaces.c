@@ -1,8 +1,11 @@
 // surfaces.c -- the surfaces' part of a frame.
 #include "methods/surfaces.h"
 #include "passes/gbuffer/gbuffer.h"
+#include "passes/rsm/rsm.h"
 #include "passes/shadow_map/shadow_map.h"
 #include <tyndall/registry.h>
+#include <math.h>
+#include <string.h>
 
 tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
                            tyn_shadow_refs *shadows)
@@ -49,5 +52,60 @@ tyn_result tyn_add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *g
     tyn_result result = tyn_graph_add(g, &tyn_pass_gbuffer, &params, refs);
     *gbuffer = (tyn_gbuffer_refs){refs[GBUFFER_PORT_SURFACE], refs[GBUFFER_PORT_ALBEDO],
                                   refs[GBUFFER_PORT_EMISSION]};
+    return result;
+}
+
+// The area of a sun's texel across the light; the solid angle of a lamp's in the middle of its map.
+static float texel_of(const struct shadow_light *l)
+{
+    if (l->kind != TYN_SHADOW_SUN) {
+        const float side = 2.0f / (l->texels * l->scale);
+        return side * side;
+    }
+    float area = 1.0f;
+    for (int r = 0; r < 2; r++) {
+        const float *row = l->rows[r];
+        area *= 2.0f / (l->texels * sqrtf(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]));
+    }
+    return area;
+}
+
+tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_rsm_refs *rsm)
+{
+    const tyn_frame_scene *frame = job->frame;
+    const struct light_block *lamps = frame->lights + frame->num_suns;
+    const uint32_t num_lamps = frame->num_lights - frame->num_suns;
+    memset(rsm, 0, sizeof *rsm);
+    if (!frame->num_triangles || num_suns + num_lamps == 0) {
+        return TYN_OK;
+    }
+    tyn_rsm_params params;
+    tyn_settings_params(job->settings, &tyn_pass_rsm, &params);
+    // The same views as those of the shadow maps, smaller.
+    tyn_shadow_map_params views = {.sun_texels = params.sun_texels,
+                                   .lamp_texels = params.lamp_texels};
+    tyn_shadow_map_plan(&views, frame->suns, num_suns, lamps, num_lamps, &frame->surfaces);
+    memcpy(params.size, views.size, sizeof params.size);
+    params.num_triangles = frame->num_triangles;
+    for (uint32_t i = 0; i < views.num_views; i++) {
+        const tyn_shadow_view *v = &views.views[i];
+        const struct shadow_light *l = &views.lights[v->light];
+        const struct rsm_tile tile = {{v->place[0], v->place[1]}, v->texels, v->light};
+        tyn_rsm_add(&params, &tile, l->kind, v->args.clip,
+                    v->light < TYN_SHADOW_SUNS ? &frame->suns[v->light]
+                                               : &lamps[v->light - TYN_SHADOW_SUNS],
+                    texel_of(l));
+    }
+    rsm->num_tiles = params.num_tiles;
+    memcpy(rsm->tiles, params.tiles, sizeof rsm->tiles);
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [RSM_PORT_SURFACES] = job->refs.surfaces, [RSM_PORT_TRIANGLES] = job->refs.triangles,
+        [RSM_PORT_VERTICES] = job->refs.vertices, [RSM_PORT_MATERIALS] = job->refs.materials,
+        [RSM_PORT_TEXTURES] = job->refs.textures, [RSM_PORT_TEXELS] = job->refs.texels,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_rsm, &params, refs);
+    rsm->flux = refs[RSM_PORT_FLUX];
+    rsm->position = refs[RSM_PORT_POSITION];
+    rsm->normal = refs[RSM_PORT_NORMAL];
     return result;
 }

@@ -1,6 +1,7 @@
 // surfaces.h -- the surfaces' part of a frame: what lights and camera see of them.
 #pragma once
 #include "methods/job.h"
+#include "rsm_args.h"
 
 // Shadow maps of the suns that have beams and of the lamps: what shaders/shadow.glsl reads.
 typedef struct tyn_shadow_refs {
@@ -17,3 +18,12 @@ typedef struct tyn_gbuffer_refs {
     tyn_ref surface, albedo, emission; // 2D RGBA32F, gbuffer.samples^2 texels a pixel
 } tyn_gbuffer_refs;
 tyn_result tyn_add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *gbuffer);
+
+// What the lights shine on: reflective shadow maps of the same lights as tyn_add_shadows. {0} without surfaces, or
+// without lights; `num_tiles` maps, `tiles` of TYN_RSM_MAX_TILES.
+typedef struct tyn_rsm_refs {
+    tyn_ref flux, position, normal; // 2D RGBA32F (rsm_args.h)
+    uint32_t num_tiles;
+    struct rsm_tile tiles[TYN_RSM_MAX_TILES];
+} tyn_rsm_refs;
+tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_rsm_refs *rsm);

@@ -17,6 +17,7 @@
 #include "passes/propagate_rect/propagate_rect.h"
 #include "passes/raymarch/raymarch.h"
 #include "passes/residuum/residuum.h"
+#include "passes/rsm/rsm.h"
 #include "passes/scatter_lut/scatter_lut.h"
 #include "passes/shadow_map/shadow_map.h"
 #include "passes/tonemap/tonemap.h"
@@ -50,6 +51,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_importance,
     &tyn_pass_env_glow,
     &tyn_pass_gbuffer,
+    &tyn_pass_rsm,
     &tyn_pass_shadow_map,
     &tyn_pass_vpl,
     &tyn_pass_raymarch,

@@ -39,7 +39,8 @@ static const tyn_kernel kernels[] = {
 
 static const tyn_param params_table[] = {
     {"sun_texels", TYN_PARAM_INT, offsetof(tyn_shadow_map_params, sun_texels), 2048, 16, 8192,
-     "texels", "side of the map of a directional light, over all surfaces", NULL},
+     "texels",
+     "side of the map of a directional light, over all surfaces; rounded to a power of two", NULL},
     {"lamp_texels", TYN_PARAM_INT, offsetof(tyn_shadow_map_params, lamp_texels), 512, 16, 2048,
      "texels",
      "side of each of a point light's six maps, half of that of a spot's one; less for more than "

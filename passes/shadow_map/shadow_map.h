@@ -9,6 +9,7 @@ enum { TYN_SHADOW_VIEWS = TYN_SHADOW_SUNS + 6 * TYN_SHADOW_LAMPS };
 
 typedef struct tyn_shadow_view {
     uint32_t place[2], texels; // in the atlas
+    uint32_t light;            // index of shadow_args.h
     struct shadow_map_args args;
 } tyn_shadow_view;
 

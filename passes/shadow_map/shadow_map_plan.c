@@ -134,6 +134,7 @@ static void plan_sun(tyn_shadow_map_params *p, struct shadow_light *l,
     view->place[0] = (uint32_t)l->offset[0];
     view->place[1] = (uint32_t)l->offset[1];
     view->texels = (uint32_t)l->texels;
+    view->light = (uint32_t)(l - p->lights);
     for (int r = 0; r < 3; r++) {
         clip_row(view->args.clip[r], f.rows[r], 1, s);
     }
@@ -181,6 +182,7 @@ static void plan_lamp(tyn_shadow_map_params *p, struct shadow_light *l,
         view->place[0] = (uint32_t)l->offset[0] + (uint32_t)(face % 3) * (uint32_t)l->texels;
         view->place[1] = (uint32_t)l->offset[1] + (uint32_t)(face / 3) * (uint32_t)l->texels;
         view->texels = (uint32_t)l->texels;
+        view->light = (uint32_t)(l - p->lights);
         clip_row(view->args.clip[0], f.rows[(w + 1) % 3], (double)l->scale, s);
         clip_row(view->args.clip[1], f.rows[(w + 2) % 3], (double)l->scale, s);
         view->args.clip[2][3] = l->near;
@@ -207,6 +209,16 @@ static void place(shelves *s, uint32_t width, uint32_t height, float offset[2])
     s->height = height > s->height ? height : s->height;
 }
 
+// The nearest one, at least 16: who reads maps may walk through them by halves.
+static uint32_t power_of_two(double x)
+{
+    uint32_t power = 16;
+    while (power * 1.4142 < x) {
+        power *= 2;
+    }
+    return power;
+}
+
 // Wide spots are seen by a cube: one map would be coarse in its middle.
 static tyn_uint kind_of(const struct light_block *lamp)
 {
@@ -228,11 +240,10 @@ void tyn_shadow_map_plan(tyn_shadow_map_params *p, const struct light_block *sun
         p->lights[i].rows[0][3] = 2; // without a map: outside of it
     }
 
-    const uint32_t sun = (uint32_t)p->sun_texels;
+    const uint32_t sun = power_of_two((double)p->sun_texels);
     // As many texels for many lamps as for four.
     double shrink = num_lamps > 4 ? sqrt(4.0 / num_lamps) : 1;
-    uint32_t face = (uint32_t)((double)p->lamp_texels * shrink) / 8 * 8;
-    face = face < 16 ? 16 : face;
+    const uint32_t face = power_of_two((double)p->lamp_texels * shrink);
     shelves atlas = {.width = num_suns > 1 ? 2 * sun : num_suns ? sun : 0};
     const uint32_t lamp_row = num_lamps > 1 ? 6 * face : num_lamps ? 3 * face : 16;
     atlas.width = atlas.width > lamp_row ? atlas.width : lamp_row;

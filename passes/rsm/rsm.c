@@ -1,0 +1,127 @@
+// rsm.c -- the scene's surfaces drawn as every light sees them, with what they reflect.
+#include "rsm.h"
+#include "rsm_fragment.frag.h"
+#include "rsm_vertex.vert.h"
+#include <string.h>
+
+#define IMAGE TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, false
+
+static const tyn_port ports[RSM_NUM_PORTS] = {
+    [RSM_PORT_SURFACES] = {"surfaces", TYN_IN, TYN_BUFFER, 0, false, "struct surface_block"},
+    [RSM_PORT_TRIANGLES] = {"triangles", TYN_IN, TYN_BUFFER, 0, false, "struct surface_triangle[]"},
+    [RSM_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, false, "struct surface_vertex[]"},
+    [RSM_PORT_MATERIALS] = {"materials", TYN_IN, TYN_BUFFER, 0, false, "struct surface_material[]"},
+    [RSM_PORT_TEXTURES] = {"textures", TYN_IN, TYN_BUFFER, 0, false, "struct surface_texture[]"},
+    [RSM_PORT_TEXELS] = {"texels", TYN_IN, TYN_BUFFER, 0, false, "uint[]: R8 G8 B8 A8, sRGB"},
+    [RSM_PORT_FLUX] = {"rsm_flux", TYN_OUT, IMAGE, "power that a texel reflects, W"},
+    [RSM_PORT_POSITION] = {"rsm_position", TYN_OUT, IMAGE, "where (M, m); area of it, m^2"},
+    [RSM_PORT_NORMAL] = {"rsm_normal", TYN_OUT, IMAGE, "of the surface (M), on the light's side"},
+    [RSM_PORT_DEPTH] = {"depth", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT, false,
+                        "reversed"},
+};
+
+static const tyn_binding bindings[] = {
+    {RSM_PORT_SURFACES, TYN_USE_UNIFORM, false},
+    {RSM_PORT_TRIANGLES, TYN_USE_STORAGE_READ, false},
+    {RSM_PORT_VERTICES, TYN_USE_STORAGE_READ, false},
+    {RSM_PORT_MATERIALS, TYN_USE_STORAGE_READ, false},
+    {RSM_PORT_TEXTURES, TYN_USE_STORAGE_READ, false},
+    {RSM_PORT_TEXELS, TYN_USE_STORAGE_READ, false},
+};
+
+static const tyn_binding attachments[] = {
+    {RSM_PORT_FLUX, TYN_USE_COLOR, false},
+    {RSM_PORT_POSITION, TYN_USE_COLOR, false},
+    {RSM_PORT_NORMAL, TYN_USE_COLOR, false},
+    {RSM_PORT_DEPTH, TYN_USE_DEPTH, false},
+};
+
+static const tyn_raster raster = {
+    .fragment = rsm_fragment_spirv,
+    .fragment_size = sizeof(rsm_fragment_spirv),
+    .attachments = attachments,
+    .num_attachments = 4,
+    .depth = VK_COMPARE_OP_GREATER,
+    .clear_depth = 0.0f,
+};
+
+static const tyn_kernel kernels[] = {
+    {.name = "rsm",
+     .spirv = rsm_vertex_spirv,
+     .spirv_size = sizeof(rsm_vertex_spirv),
+     .args_size = sizeof(struct rsm_draw_args),
+     .bindings = bindings,
+     .num_bindings = 6,
+     .raster = &raster},
+};
+
+static const tyn_param params_table[] = {
+    {"sun_texels", TYN_PARAM_INT, offsetof(tyn_rsm_params, sun_texels), 256, 16, 1024, "texels",
+     "side of the map of a directional light; rounded to a power of two", NULL},
+    {"lamp_texels", TYN_PARAM_INT, offsetof(tyn_rsm_params, lamp_texels), 64, 16, 512, "texels",
+     "side of each of a point light's six maps; less for more than four lamps", NULL},
+};
+
+void tyn_rsm_add(tyn_rsm_params *p, const struct rsm_tile *tile, uint32_t kind,
+                 const tyn_vec4 clip[4], const struct light_block *light, float texel)
+{
+    if (p->num_tiles == TYN_RSM_MAX_TILES) {
+        return;
+    }
+    p->tiles[p->num_tiles] = *tile;
+    struct rsm_draw_args *d = &p->draws[p->num_tiles++];
+    *d = (struct rsm_draw_args){
+        .kind = kind, .cos_inner = -2.0f, .cos_outer = -2.0f, .texel = texel};
+    memcpy(d->clip, clip, sizeof d->clip);
+    for (int c = 0; c < 3; c++) {
+        d->flux[c] = light->color[c] * texel;
+        d->origin[c] =
+            light->kind == TYN_LIGHT_KIND_DIRECTIONAL ? light->direction[c] : light->position[c];
+        d->axis[c] = light->direction[c];
+    }
+    if (light->kind == TYN_LIGHT_KIND_SPOT) {
+        d->cos_inner = light->cos_inner;
+        d->cos_outer = light->cos_outer;
+    }
+}
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_rsm_params *p = params;
+    const tyn_extent size = {p->size[0], p->size[1], 1};
+    for (uint8_t port = RSM_PORT_FLUX; port <= RSM_PORT_DEPTH; port++) {
+        tyn_build_image(b, port, size, 1);
+    }
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_rsm_params *p = params;
+    tyn_tile tiles[TYN_RSM_MAX_TILES];
+    for (uint32_t i = 0; i < p->num_tiles; i++) {
+        const struct rsm_tile *t = &p->tiles[i];
+        tiles[i] = (tyn_tile){t->offset[0], t->offset[1], t->texels, t->texels, &p->draws[i]};
+    }
+    tyn_rec_draw(r, &(tyn_draw){.kernel = 0,
+                                .vertices = 3 * p->num_triangles,
+                                .tiles = tiles,
+                                .num_tiles = p->num_tiles});
+    tyn_rec_work(r, "triangles", (double)p->num_triangles * p->num_tiles);
+}
+
+const tyn_pass_desc tyn_pass_rsm = {
+    .name = "rsm",
+    .summary = "what surfaces reflect of each light",
+    .ports = ports,
+    .num_ports = RSM_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 1,
+    .params = params_table,
+    .num_params = sizeof(params_table) / sizeof(params_table[0]),
+    .params_size = sizeof(tyn_rsm_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = RSM_PORT_FLUX,
+    .debug_meaning = "power reflected in the texels of all lights' maps, W",
+};

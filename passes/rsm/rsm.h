@@ -1,0 +1,38 @@
+// rsm.h -- reflective shadow maps: what each light shines on, and the power reflected there.
+#pragma once
+#include <tyndall/pass.h>
+#include "rsm_args.h"
+#include "rsm_draw_args.h"
+#include "scene_args.h"
+
+typedef struct tyn_rsm_params {
+    int32_t sun_texels;  // "rsm.sun_texels"
+    int32_t lamp_texels; // "rsm.lamp_texels"
+    // Set by the method:
+    uint32_t size[2]; // of the atlas, texels
+    uint32_t num_triangles;
+    uint32_t num_tiles; // by tyn_rsm_add
+    struct rsm_tile tiles[TYN_RSM_MAX_TILES];
+    struct rsm_draw_args draws[TYN_RSM_MAX_TILES];
+} tyn_rsm_params;
+
+// Adds the map of a light, or one face of it. `kind`: TYN_SHADOW_*; a face of a CUBE ends where the angle to its
+// axis is 45 degrees, even if the map goes on. `clip`: rows, world -> clip space. `texel`: of a sun its area across
+// the light, m^2; of a lamp the solid angle of a texel in the middle, sr.
+void tyn_rsm_add(tyn_rsm_params *params, const struct rsm_tile *tile, uint32_t kind,
+                 const tyn_vec4 clip[4], const struct light_block *light, float texel);
+
+enum {
+    RSM_PORT_SURFACES,  // IN buffer struct surface_block
+    RSM_PORT_TRIANGLES, // IN buffers, surface_args.h
+    RSM_PORT_VERTICES,
+    RSM_PORT_MATERIALS,
+    RSM_PORT_TEXTURES,
+    RSM_PORT_TEXELS,
+    RSM_PORT_FLUX,     // OUT 2D RGBA32F: rsm_args.h, as the two below
+    RSM_PORT_POSITION, // OUT 2D RGBA32F
+    RSM_PORT_NORMAL,   // OUT 2D RGBA32F
+    RSM_PORT_DEPTH,    // SCRATCH 2D D32
+    RSM_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_rsm;

@@ -1,0 +1,18 @@
+// rsm_draw_args.h -- push constants of a reflective shadow map.
+#ifndef TYN_RSM_DRAW_ARGS_H
+#define TYN_RSM_DRAW_ARGS_H
+#include "shared.h"
+
+struct rsm_draw_args {
+    tyn_vec4 clip[4]; // world -> clip space, row by row
+    tyn_vec3 flux; // W: irradiance x area of a texel; intensity x solid angle of one in the middle
+    tyn_uint kind; // TYN_SHADOW_SUN, CONE or CUBE
+    tyn_vec3 origin; // M, m: of a lamp; of a sun its direction of travel
+    float cos_inner; // of a spot, as the two below; -2 of a point
+    tyn_vec3 axis;   // M
+    float cos_outer;
+    float texel; // area of a texel across the sun, m^2; solid angle of one in the middle, sr
+};
+TYN_ASSERT_SIZE(rsm_draw_args, 116);
+
+#endif

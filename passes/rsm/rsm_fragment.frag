@@ -1,0 +1,73 @@
+// rsm_fragment.frag -- the power that the surface in a texel reflects, and where and how large it is.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "rsm_bindings.glsl"
+#define SURFACE_TEXTURES 4
+#define SURFACE_TEXELS 5
+#include "surface_texture.glsl"
+#include "shadow_args.h"
+
+layout(set = 0, binding = 3, scalar) readonly buffer materials_buffer
+{
+    surface_material materials[];
+};
+layout(location = 0) flat in uint triangle;
+layout(location = 1) in vec3 weights;
+layout(location = 0) out vec4 flux;
+layout(location = 1) out vec4 position;
+layout(location = 2) out vec4 normal;
+
+const float LEAST_COSINE = 1e-3; // of light and surface: what is seen edge-on has no area to speak of
+
+// Share of a spot's intensity at an angle to its axis (KHR_lights_punctual).
+float falloff(float cosine)
+{
+    float width = args.cos_inner - args.cos_outer;
+    if (width < 1e-6) {
+        return cosine >= args.cos_outer ? 1.0 : 0.0;
+    }
+    float a = clamp((cosine - args.cos_outer) / width, 0.0, 1.0);
+    return a * a;
+}
+
+void main()
+{
+    surface_triangle t = triangles[triangle];
+    surface_vertex a = vertices[t.v0], b = vertices[t.v1], c = vertices[t.v2];
+    vec3 world = weights.x * a.position + weights.y * b.position + weights.z * c.position;
+    vec3 facet = cross(b.position - a.position, c.position - a.position);
+    vec3 p = to_m(world) + vec3(surfaces.from_world[0].w, surfaces.from_world[1].w,
+                                surfaces.from_world[2].w);
+    vec3 n = normalize(to_m(facet));
+
+    vec3 way = args.origin; // direction of the light, unit
+    float share = 1.0, across = 1.0; // of args.flux; of its area or solid angle, m^2 or sr
+    if (args.kind != TYN_SHADOW_SUN) {
+        vec3 d = p - args.origin, axis = to_m(args.clip[3].xyz);
+        float r = max(length(d), 1e-20), z = dot(d, axis);
+        way = d / r;
+        float cosine = z / r;
+        // Of a texel of the plane z = 1 at this angle: its solid angle against that in the middle.
+        across = cosine * cosine * cosine;
+        bool beside = args.kind == TYN_SHADOW_CUBE && max(max(abs(d.x), abs(d.y)), abs(d.z)) > 1.0001 * z;
+        share = beside ? 0.0 : across * falloff(dot(way, args.axis));
+        across *= r * r;
+    }
+    float cosine = dot(n, way);
+    n = cosine > 0.0 ? -n : n; // on the side of the light
+    float area = args.texel * across / max(abs(cosine), LEAST_COSINE);
+
+    surface_material m = materials[t.material];
+    vec3 albedo = m.albedo;
+    if (m.texture != TYN_SURFACE_NO_TEXTURE) {
+        // The mean of the texture over the texel, taken as a square on the surface.
+        vec2 ua = vec2(a.u, a.v), u1 = vec2(b.u, b.v) - ua, u2 = vec2(c.u, c.v) - ua;
+        float scale = sqrt(abs(u1.x * u2.y - u1.y * u2.x) / max(length(facet), 1e-30) * area);
+        albedo *= surface_texture_around(m.texture, ua + weights.y * u1 + weights.z * u2,
+                                         vec2(scale, 0.0), vec2(0.0, scale));
+    }
+    flux = vec4(args.flux * share * albedo, 0.0);
+    position = vec4(p, area);
+    normal = vec4(n, 0.0);
+}

@@ -1,0 +1,19 @@
+// rsm_vertex.vert -- the corners of the scene's triangles as a light sees them.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "rsm_bindings.glsl"
+
+layout(location = 0) flat out uint triangle;
+layout(location = 1) out vec3 weights; // of the corners
+
+void main()
+{
+    triangle = uint(gl_VertexIndex) / 3u;
+    uint corner = uint(gl_VertexIndex) % 3u;
+    surface_triangle t = triangles[triangle];
+    vec4 p = vec4(vertices[corner == 0u ? t.v0 : corner == 1u ? t.v1 : t.v2].position, 1.0);
+    weights = vec3(equal(uvec3(corner), uvec3(0u, 1u, 2u)));
+    gl_Position = vec4(dot(args.clip[0], p), dot(args.clip[1], p), dot(args.clip[2], p),
+                       dot(args.clip[3], p));
+}
