@@ -1,5 +1,6 @@
 // path_probe_merge.glsl -- merges what the threads of a point found into the point's running statistics. The
-// includer declares `partials[]` (path_probe_partial), `states[]` (path_probe_state) and `args` (path_resolve_args).
+// includer declares `partials[]` and `states[]` (path_probe_partial and path_probe_state, or those of a balance)
+// and `args` (path_resolve_args).
 #ifndef TYN_PATH_PROBE_MERGE_GLSL
 #define TYN_PATH_PROBE_MERGE_GLSL
 

@@ -88,6 +88,21 @@ static bool has_grids(const tyn_job *job)
     return false;
 }
 
+// Bounds in M of the world box around the surfaces; empty without surfaces.
+static void surfaces_box(const tyn_frame_scene *frame, float lo[3], float hi[3])
+{
+    const struct surface_block *s = &frame->surfaces;
+    for (int a = 0; a < 3; a++) {
+        float centre = s->from_world[a][3], reach = 0;
+        for (int w = 0; w < 3; w++) {
+            centre += s->from_world[a][w] * 0.5f * (s->lo[w] + s->hi[w]);
+            reach += fabsf(s->from_world[a][w]) * 0.5f * (s->hi[w] - s->lo[w]);
+        }
+        lo[a] = centre - reach;
+        hi[a] = centre + reach;
+    }
+}
+
 static bool equal3(const float v[3])
 {
     return v[0] == v[1] && v[1] == v[2];
@@ -247,14 +262,48 @@ static tyn_result add_probes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     return result;
 }
 
-// Power of the lamps inside the media's box, which count as emitted.
+static void include(float box[2][3], const float p[3])
+{
+    for (int a = 0; a < 3; a++) {
+        box[0][a] = fminf(box[0][a], p[a]);
+        box[1][a] = fmaxf(box[1][a], p[a]);
+    }
+}
+
+// The box that is balanced: the media's; with surfaces a little more than media, surfaces and lamps together,
+// but for periodic axes.
+static void set_box(tyn_path_params *p, const tyn_frame_scene *frame)
+{
+    const struct medium_block *m = &frame->medium;
+    memset(p->box[0], 0, sizeof p->box[0]);
+    memcpy(p->box[1], m->extent, sizeof p->box[1]);
+    if (!frame->num_triangles) {
+        return;
+    }
+    float corners[2][3], size = 0;
+    surfaces_box(frame, corners[0], corners[1]);
+    include(p->box, corners[0]);
+    include(p->box, corners[1]);
+    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
+        include(p->box, frame->lights[i].position);
+    }
+    for (int a = 0; a < 3; a++) {
+        size = fmaxf(size, p->box[1][a] - p->box[0][a]);
+    }
+    for (int a = 0; a < 3; a++) {
+        p->box[0][a] = m->repeat[a] ? 0 : p->box[0][a] - 0.05f * size;
+        p->box[1][a] = m->repeat[a] ? m->extent[a] : p->box[1][a] + 0.05f * size;
+    }
+}
+
+// Power of the lamps inside the box, which count as emitted.
 static void set_lamp_power(tyn_path_params *p, const tyn_frame_scene *frame)
 {
     for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
         const struct light_block *l = &frame->lights[i];
         bool inside = true;
         for (int a = 0; a < 3; a++) {
-            inside = inside && l->position[a] >= 0 && l->position[a] <= frame->medium.extent[a];
+            inside = inside && l->position[a] >= p->box[0][a] && l->position[a] <= p->box[1][a];
         }
         // Integral of the spot's falloff over the sphere: a full cap, then a squared ramp in the cosine.
         float cap = 1 - l->cos_inner, ramp = (l->cos_inner - l->cos_outer) / 3;
@@ -272,6 +321,7 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     enum { BALANCE_CHUNKS = 1, CHUNK_MIN = 4096, CHUNK_MAX = 16384 };
     tyn_path_params params;
     set_params(&params, job, &tyn_pass_path_balance);
+    set_box(&params, job->frame);
     set_lamp_power(&params, job->frame);
     double paths = DISPATCH_NS / path_cost_ns(job, params.homogeneous);
     params.chunks = BALANCE_CHUNKS;
@@ -282,7 +332,8 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     params.first_sample *= params.chunks * params.num_samples;
     tyn_ref refs[PATH_BALANCE_NUM_PORTS] = {
         [PATH_BALANCE_PORT_STATE] =
-            tyn_graph_history_buffer(g, "path_balance", tyn_path_probe_state_size(1), 1),
+            tyn_graph_history_buffer(g, "path_balance", tyn_path_balance_state_size(), 1),
+        [PATH_BALANCE_PORT_AREAS] = job->refs.areas,
     };
     connect_scene(refs, job, bricks);
     tyn_result result = tyn_graph_add(g, &tyn_pass_path_balance, &params, refs);
@@ -293,7 +344,7 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     return result;
 }
 
-// A periodic medium's own axes must be those of M.
+// A periodic medium's own axes must be those of M; surfaces repeat with it, each copy in a period of its own.
 static tyn_result check_repeat(const tyn_job *job)
 {
     const struct medium_block *m = &job->frame->medium;
@@ -305,6 +356,17 @@ static tyn_result check_repeat(const tyn_job *job)
                           "shape 0 repeats and is sheared; the axes of a periodic box must be at "
                           "right angles");
             return TYN_ERR_UNSUPPORTED;
+        }
+    }
+    float lo[3], hi[3];
+    surfaces_box(job->frame, lo, hi);
+    for (int a = 0; repeat && a < 3; a++) {
+        if (m->repeat[a] && hi[a] - lo[a] > 1.0001f * m->extent[a]) {
+            tyn_log_print(job->log, TYN_LOG_ERROR,
+                          "surfaces reach over %g m along the medium's axis %d, on which it "
+                          "repeats every %g m; they repeat with it and must fit into one period",
+                          (double)(hi[a] - lo[a]), a, (double)m->extent[a]);
+            return TYN_ERR_PARAMS;
         }
     }
     return TYN_OK;

@@ -158,6 +158,8 @@ struct path_args path_trace_args(const tyn_path_params *p)
         .world = {{p->world[0][0], p->world[0][1], p->world[0][2]},
                   {p->world[1][0], p->world[1][1], p->world[1][2]},
                   {p->world[2][0], p->world[2][1], p->world[2][2]}},
+        .box_lo = {p->box[0][0], p->box[0][1], p->box[0][2]},
+        .box_hi = {p->box[1][0], p->box[1][1], p->box[1][2]},
     };
 }
 

@@ -30,7 +30,8 @@ typedef struct tyn_path_params {
     uint32_t opaque;      // images: a background is seen, alpha is 1
     uint32_t scattered;   // probes: without light that has not scattered
     float world[3][3];    // probes: the world's axes in M
-    float lamp_power[3];  // balance: of the lamps inside the media, W
+    float lamp_power[3];  // balance: of the lamps inside, W
+    float box[2][3];      // balance of surfaces: corners of the box around everything, M
     uint32_t chunks;      // balance: dispatches of num_samples paths each
 } tyn_path_params;
 
@@ -90,15 +91,17 @@ extern const tyn_pass_desc tyn_pass_path_probe;
 // Where the energy goes.
 enum {
     PATH_BALANCE_PORT_STATE =
-        PATH_NUM_SCENE_PORTS,  // INOUT buffer, the state of one probe: a history
+        PATH_NUM_SCENE_PORTS,  // INOUT buffer, tyn_path_balance_state_size bytes: a history
     PATH_BALANCE_PORT_BALANCE, // OUT buffer tyn_balance
-    PATH_BALANCE_PORT_RESULT,  // OUT buffer: entering, emitted, absorbed, escaped (3 channels), and
-                               // the standard errors of all
+    PATH_BALANCE_PORT_RESULT,  // OUT buffer struct path_balance_result: values and standard errors
     PATH_BALANCE_PORT_COUNTERS, // OUT buffer struct counters_block
     PATH_BALANCE_PORT_PARTIALS, // SCRATCH
+    PATH_BALANCE_PORT_AREAS,    // IN buffer struct surface_table and cells, optional
     PATH_BALANCE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_path_balance;
 
 // Bytes of the probes' history.
 uint64_t tyn_path_probe_state_size(uint32_t num_points);
+// ... and of a balance's.
+uint64_t tyn_path_balance_state_size(void);

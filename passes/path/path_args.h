@@ -41,8 +41,9 @@ struct path_args {
     tyn_uint max_steps;   // safety cap: tentative collisions and brick crossings of one path
     float sigma_guess;    // typical extinction, 1/m: weighs equi-angular against free-flight sampling
     tyn_vec3 world[3];    // probes: the world's axes in M
+    tyn_vec3 box_lo, box_hi; // balance of surfaces: the box that light enters and leaves, M
 };
-TYN_ASSERT_SIZE(path_args, 80);
+TYN_ASSERT_SIZE(path_args, 104);
 
 // What one thread found: mean and sum of squared deviations of its samples.
 struct path_partial {
@@ -64,7 +65,7 @@ struct path_resolve_args {
     tyn_uint samples_before; // in the running statistics; 0: start anew
     tyn_uint layers;         // 1: single, multiple, transmittance as well
     tyn_uint opaque;         // 1: a background is seen, alpha is 1
-    tyn_vec3 lamps;          // balance: power of the lamps inside the media, W
+    tyn_vec3 lamps;          // balance: power of the lamps inside, W
 };
 TYN_ASSERT_SIZE(path_resolve_args, 40);
 
@@ -86,5 +87,25 @@ struct path_probe_result { // as tyn_probe_result
     float value[TYN_PATH_PROBE_VALUES], error[TYN_PATH_PROBE_VALUES];
 };
 TYN_ASSERT_SIZE(path_probe_result, 96);
+
+// A balance's values, 3 channels each: entering, emitted, absorbed by media, escaped, absorbed by surfaces; W.
+#define TYN_PATH_BALANCE_VALUES 15
+
+struct path_balance_partial { // likewise
+    float mean[TYN_PATH_BALANCE_VALUES], deviation[TYN_PATH_BALANCE_VALUES];
+    tyn_uint count;
+};
+TYN_ASSERT_SIZE(path_balance_partial, 124);
+
+struct path_balance_state {
+    float mean[TYN_PATH_BALANCE_VALUES], low[TYN_PATH_BALANCE_VALUES],
+        deviation[TYN_PATH_BALANCE_VALUES];
+};
+TYN_ASSERT_SIZE(path_balance_state, 180);
+
+struct path_balance_result {
+    float value[TYN_PATH_BALANCE_VALUES], error[TYN_PATH_BALANCE_VALUES];
+};
+TYN_ASSERT_SIZE(path_balance_result, 120);
 
 #endif

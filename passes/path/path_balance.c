@@ -13,12 +13,14 @@ static const tyn_port ports[PATH_BALANCE_NUM_PORTS] = {
     {"result", TYN_OUT, TYN_BUFFER, 0, false, "the same in single precision, with standard errors"},
     {"counters", TYN_OUT, TYN_BUFFER, 0, false, "collisions, cut paths, non-finite samples"},
     {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "statistics of each thread"},
+    {"areas", TYN_IN, TYN_BUFFER, 0, true, "alias table of the triangles' areas"},
 };
 
 static const tyn_binding trace_bindings[] = {
     PATH_SCENE_BINDING_ROWS,
     {PATH_BALANCE_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
     {PATH_BALANCE_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
+    {PATH_BALANCE_PORT_AREAS, TYN_USE_STORAGE_READ, false},
 };
 
 static const tyn_binding sum_bindings[] = {
@@ -41,20 +43,25 @@ static const tyn_kernel kernels[] = {
      path_balance_sum_spirv,
      sizeof path_balance_sum_spirv,
      sizeof(struct path_resolve_args),
-     {TYN_PATH_PROBE_VALUES, 1, 1},
+     {TYN_PATH_BALANCE_VALUES, 1, 1},
      sum_bindings,
      sizeof sum_bindings / sizeof *sum_bindings,
      0},
 };
 
+uint64_t tyn_path_balance_state_size(void)
+{
+    return sizeof(struct path_balance_state);
+}
+
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_path_params *p = params;
     tyn_build_buffer(b, PATH_BALANCE_PORT_BALANCE, 6 * 3 * sizeof(double));
-    tyn_build_buffer(b, PATH_BALANCE_PORT_RESULT, sizeof(struct path_probe_result));
+    tyn_build_buffer(b, PATH_BALANCE_PORT_RESULT, sizeof(struct path_balance_result));
     tyn_build_buffer(b, PATH_BALANCE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, PATH_BALANCE_PORT_PARTIALS,
-                     (uint64_t)p->threads * sizeof(struct path_probe_partial));
+                     (uint64_t)p->threads * sizeof(struct path_balance_partial));
     return TYN_OK;
 }
 
@@ -79,7 +86,7 @@ static void record(tyn_recorder *r, const void *params)
             .lamps = {p->lamp_power[0], p->lamp_power[1], p->lamp_power[2]},
         };
         tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = 1, .cells = {TYN_PATH_PROBE_VALUES, 1, 1}, .args = &sum});
+            r, &(tyn_dispatch){.kernel = 1, .cells = {TYN_PATH_BALANCE_VALUES, 1, 1}, .args = &sum});
     }
     tyn_rec_work(r, "paths", (double)p->chunks * p->num_samples);
 }

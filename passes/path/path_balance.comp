@@ -1,6 +1,7 @@
 // path_balance.comp -- where the energy goes, by paths from random points: inside the media for what they absorb
-// and emit, on their surface for what comes in and goes out. The two kinds of points know nothing of each other, so
-// that the sums agree is a check.
+// and emit, on solid surfaces for what these absorb, on the boundary for what comes in and goes out. The kinds of
+// points know nothing of each other, so that the sums agree is a check. The boundary is that of the media; with
+// solid surfaces a box around everything.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -9,18 +10,51 @@
 const bool PROBE = true;
 #include "path_resources.glsl"
 
-layout(set = 0, binding = 16, scalar) writeonly buffer partial_buffer { path_probe_partial partials[]; };
+layout(set = 0, binding = 16, scalar) writeonly buffer partial_buffer { path_balance_partial partials[]; };
 layout(set = 0, binding = 17, scalar) buffer counters_buffer { counters_block counters; };
+layout(set = 0, binding = 18, scalar) readonly buffer areas_buffer {
+    surface_table areas;
+    surface_cell area_cells[];
+};
 
 #include "path.glsl"
 #include "path_heading.glsl"
 
-path_probe_partial partial;
-bool on_surface;
-vec3 normal;      // outwards, of the surface
+path_balance_partial partial;
+const uint IN_MEDIA = 0u, ON_BOUNDARY = 1u, ON_SURFACE = 2u;
+uint place;
+vec3 normal;      // of the boundary, outwards, or of the surface
 vec3 measure;     // what a unit of radiance per steradian at the point stands for: area, or volume times sigma_a
 vec3 emitted;     // of the media at the point, W
 vec3 direct_in, direct_out; // of lamps and suns; direct_out: inside, absorbed
+
+// A point of a box's surface, from numbers in [0, 1).
+vec3 box_face_point(vec3 lo, vec3 hi, uvec4 bits)
+{
+    vec3 size = hi - lo, random = vec3(rng_vec2(bits.xy), rng_float(bits.z));
+    uint face = min(uint(rng_float(bits.w) * 6.0), 5u);
+    vec3 along = vec3(equal(uvec3(face >> 1), uvec3(0u, 1u, 2u)));
+    float side = float(face & 1u);
+    normal = (2.0 * side - 1.0) * along;
+    bool periodic = dot(along, vec3(medium.repeat)) > 0.0; // there is no face there
+    float area = dot(along, size.yzx * size.zxy);
+    measure = vec3(periodic ? 0.0 : 6.0 * area);
+    return lo + mix(random, vec3(side), greaterThan(along, vec3(0.0))) * size;
+}
+
+// A point of the triangles, on either side; weighed by what the surface absorbs.
+vec3 solid_point(uvec4 bits, uint more)
+{
+    uint high, low;
+    umulExtended(bits.x, areas.count, high, low);
+    uint index = surface_cell_pick(area_cells[high], bits.y);
+    vec2 barycentric = triangle_sample(rng_vec2(bits.zw));
+    surface_point point = surface_point_at(index, barycentric);
+    surface_material material = materials[triangles[index].material];
+    normal = rng_float(more) < 0.5 ? point.normal : -point.normal;
+    measure = 2.0 * areas.weight * (1.0 - surface_albedo(material, index, barycentric));
+    return surface_offset(point, normal);
+}
 
 // A point of the unit box's or the sphere's surface, and its outward normal there.
 vec3 media_face_local(shape_block shape, vec3 random, out vec3 outward, out float area)
@@ -94,9 +128,13 @@ void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 dire
     emitted = vec3(0.0);
     direct_in = vec3(0.0);
     direct_out = vec3(0.0);
-    on_surface = random.x < 0.5;
+    place = SURFACES ? min(uint(random.x * 3.0), 2u) : random.x < 0.5 ? ON_BOUNDARY : IN_MEDIA;
     uvec4 bits = rng_next(rng);
-    if (on_surface) {
+    if (SURFACES && place == ON_SURFACE) {
+        origin = solid_point(bits, rng_next(rng).x);
+    } else if (SURFACES && place == ON_BOUNDARY) {
+        origin = box_face_point(args.box_lo, args.box_hi, bits);
+    } else if (place == ON_BOUNDARY) {
         origin = media_face_point(bits);
     } else {
         origin = volume_point(bits);
@@ -104,9 +142,16 @@ void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 dire
     direction = heading_draw(origin, rng);
 }
 
+// Of light that comes from `direction`: against the boundary's normal, or absorbed.
+float outward_cosine(vec3 direction)
+{
+    float cosine = dot(direction, normal);
+    return place == ON_BOUNDARY ? -cosine : place == ON_SURFACE ? max(cosine, 0.0) : 1.0;
+}
+
 void path_direct(vec3 direction, vec3 irradiance)
 {
-    float outwards = on_surface ? -dot(direction, normal) : 1.0;
+    float outwards = outward_cosine(direction);
     direct_in = measure * irradiance * max(-outwards, 0.0);
     direct_out = measure * irradiance * max(outwards, 0.0);
 }
@@ -121,16 +166,19 @@ void add_value(uint i, float value, float share)
 void path_end(path_result result)
 {
     vec3 fluence = (result.radiance + result.background + result.reflected) / heading_pdf;
-    float outwards = on_surface ? -dot(heading, normal) : 1.0;
+    float outwards = outward_cosine(heading);
     vec3 incoming = direct_in + measure * fluence * max(-outwards, 0.0);
     vec3 outgoing = direct_out + measure * fluence * max(outwards, 0.0);
     partial.count++;
     float share = 1.0 / float(partial.count);
-    for (uint c = 0u; c < 3u; c++) { // twice, as either kind of point is drawn half the time
-        add_value(c, on_surface ? 2.0 * incoming[c] : 0.0, share);
-        add_value(3u + c, 2.0 * emitted[c], share);
-        add_value(6u + c, on_surface ? 0.0 : 2.0 * outgoing[c], share);
-        add_value(9u + c, on_surface ? 2.0 * outgoing[c] : 0.0, share);
+    float kinds = SURFACES ? 3.0 : 2.0; // each is drawn so seldom
+    vec3 lit = SURFACES && emitters.count > 0u ? emitters.power : vec3(0.0);
+    for (uint c = 0u; c < 3u; c++) {
+        add_value(c, place == ON_BOUNDARY ? kinds * incoming[c] : 0.0, share);
+        add_value(3u + c, kinds * emitted[c] + lit[c], share);
+        add_value(6u + c, place == IN_MEDIA ? kinds * outgoing[c] : 0.0, share);
+        add_value(9u + c, place == ON_BOUNDARY ? kinds * outgoing[c] : 0.0, share);
+        add_value(12u + c, place == ON_SURFACE ? kinds * outgoing[c] : 0.0, share);
     }
 }
 
@@ -141,7 +189,7 @@ void main()
     if (thread >= args.slots) {
         return;
     }
-    for (uint i = 0u; i < TYN_PATH_PROBE_VALUES; i++) {
+    for (uint i = 0u; i < TYN_PATH_BALANCE_VALUES; i++) {
         partial.mean[i] = 0.0;
         partial.deviation[i] = 0.0;
     }

@@ -5,18 +5,18 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "path_args.h"
 
-layout(local_size_x = TYN_PATH_PROBE_VALUES) in;
+layout(local_size_x = TYN_PATH_BALANCE_VALUES) in;
 
-layout(set = 0, binding = 0, scalar) readonly buffer partial_buffer { path_probe_partial partials[]; };
-layout(set = 0, binding = 1, scalar) buffer state_buffer { path_probe_state states[]; };
-layout(set = 0, binding = 2, scalar) writeonly buffer result_buffer { path_probe_result result; };
+layout(set = 0, binding = 0, scalar) readonly buffer partial_buffer { path_balance_partial partials[]; };
+layout(set = 0, binding = 1, scalar) buffer state_buffer { path_balance_state states[]; };
+layout(set = 0, binding = 2, scalar) writeonly buffer result_buffer { path_balance_result result; };
 // tyn_balance: six triples of doubles, each as two words; a device need not know doubles.
 layout(set = 0, binding = 3, scalar) writeonly buffer balance_buffer { uvec2 balance[6][3]; };
 layout(push_constant, scalar) uniform args_push { path_resolve_args args; };
 
 #include "path_probe_merge.glsl"
 
-shared float values[TYN_PATH_PROBE_VALUES];
+shared float values[TYN_PATH_BALANCE_VALUES];
 
 uvec2 double_bits(float x)
 {
@@ -39,11 +39,12 @@ void main()
         return;
     }
     float entering = values[value], emitted = values[3u + value] + args.lamps[value];
-    float absorbed = values[6u + value], escaped = values[9u + value], given = entering + emitted;
+    float absorbed = values[6u + value], escaped = values[9u + value], on_walls = values[12u + value];
+    float given = entering + emitted, taken = absorbed + on_walls + escaped;
     balance[0][value] = double_bits(entering);
     balance[1][value] = double_bits(emitted);
     balance[2][value] = double_bits(absorbed);
-    balance[3][value] = uvec2(0u);
+    balance[3][value] = double_bits(on_walls);
     balance[4][value] = double_bits(escaped);
-    balance[5][value] = double_bits(given > 0.0 ? 1.0 - (absorbed + escaped) / given : 0.0);
+    balance[5][value] = double_bits(given > 0.0 ? 1.0 - taken / given : 0.0);
 }

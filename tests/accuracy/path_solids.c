@@ -162,12 +162,58 @@ static void form_factors(void **state)
     }
 }
 
+// What is emitted is absorbed or escapes. The balance has no standard errors; these are bounds on what is left.
+static void balances(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        const bool closed = i < 2;
+        uint32_t wall = solids_material(&scene, (float[]){0.7f, 0.5f, 0.2f}, BLACK);
+        uint32_t lamp = solids_material(&scene, (float[]){0.1f, 0.1f, 0.1f}, (float[]){3, 2, 1});
+        solids_box(&scene, (float[]){0, 0, 0}, (float[]){3, 2, 4}, 0.2f, closed, wall);
+        if (!closed) { // without a front: open
+            scene.surfaces.num_triangles -= 2;
+        }
+        if (i != 1) {
+            solids_sphere(&scene, (float[]){1.5f, 1, 2}, 0.3f, 6, false, lamp);
+        } else {
+            scene_add_lamp(&scene, (float[]){1.4f, 1.2f, 2.2f}, 5);
+        }
+        solids_hierarchy(&scene, 2);
+        if (i != 2) {
+            tyn_medium m = grey_medium(0.4f, 0.1f, 0.3f);
+            scene_add_box(&scene, &m, (float[]){0.7f, 0.2f, 0.7f}, (float[]){2, 1.8f, 3}, NULL,
+                          NULL);
+        }
+        if (i == 3) {
+            scene_add_sun(&scene, 0.2f, -1, -0.7f, 2, 2, 2);
+            scene_set_sky(&scene, 0.3f);
+        }
+        const tyn_balance *b = path_run_balance(&runs, &scene, path_effort(16));
+        for (int c = 0; c < 3; c++) {
+            printf("balance %d, %d: entering %.4f emitted %.4f, media %.4f surfaces %.4f escaped %.4f: "
+                   "%+.4f\n",
+                   i, c, b->entering[c], b->emitted[c], b->absorbed_media[c],
+                   b->absorbed_surfaces[c], b->escaped[c], b->imbalance[c]);
+            assert_true(fabs(b->imbalance[c]) < 0.02);
+            assert_true((b->absorbed_media[c] > 0) == (i != 2));
+            assert_true(b->absorbed_surfaces[c] > 0);
+            assert_true((b->escaped[c] > 0) == !closed);
+            assert_true((b->entering[c] > 0) == (i == 3));
+        }
+        tyn_scene_finish(&scene);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(furnaces),
         cmocka_unit_test(closed_box),
         cmocka_unit_test(form_factors),
+        cmocka_unit_test(balances),
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));

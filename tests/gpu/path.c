@@ -241,7 +241,7 @@ static void energy(void **state)
         path_scene_sun(&s, (float[]){0.6f, 0, -0.8f}, (float[]){1, 2, 3});
         path_scene_sky(&s, 0.25f);
         const tyn_balance *b;
-        const struct path_probe_result *r = path_scene_balance(*state, &s, 262144, &b);
+        const struct path_balance_result *r = path_scene_balance(*state, &s, 262144, &b);
         for (int c = 0; c < 3; c++) {
             // A sun on two faces, and a sky on six.
             double entering = 1.4 * (c + 1) + 6 * M_PI * 0.25;

@@ -290,14 +290,14 @@ const tyn_probe_result *path_scene_probe(gpu_test *t, path_scene *s, const float
     return results;
 }
 
-const struct path_probe_result *path_scene_balance(gpu_test *t, path_scene *s, uint32_t samples,
+const struct path_balance_result *path_scene_balance(gpu_test *t, path_scene *s, uint32_t samples,
                                                    const tyn_balance **balance)
 {
     tyn_ref refs[PATH_BALANCE_NUM_PORTS] = {{0}};
     tyn_graph_begin(t->graph);
     declare_scene(t, s, refs);
     refs[PATH_BALANCE_PORT_STATE] =
-        tyn_graph_history_buffer(t->graph, "state", tyn_path_probe_state_size(1), 1);
+        tyn_graph_history_buffer(t->graph, "state", tyn_path_balance_state_size(), 1);
     s->params.first_sample = 0;
     s->params.chunks = 4;
     s->params.threads = 1024;

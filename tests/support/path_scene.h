@@ -38,7 +38,7 @@ void path_scene_orthographic(path_scene *s, const float centre[3], const float d
 void path_scene_render(gpu_test *t, path_scene *s, uint32_t samples, const float **radiance,
                        const float **error);
 // Entering, emitted, absorbed, escaped (3 channels each), W, and their standard errors.
-const struct path_probe_result *path_scene_balance(gpu_test *t, path_scene *s, uint32_t samples,
+const struct path_balance_result *path_scene_balance(gpu_test *t, path_scene *s, uint32_t samples,
                                                    const tyn_balance **balance);
 // A record's samples more, after `done`.
 const tyn_probe_result *path_scene_probe_more(gpu_test *t, path_scene *s, const float (*points)[3],
