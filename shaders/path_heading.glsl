@@ -1,10 +1,12 @@
 // path_heading.glsl -- first directions of paths that start at a point, over the whole sphere: uniform, the lobes
-// of the phase function about a light, or the environment map. Included after path.glsl.
+// of the phase function about a light, or the environment map. From a surface, by the cosine to its normal instead
+// of uniform. Included after path.glsl.
 #ifndef TYN_PATH_HEADING_GLSL
 #define TYN_PATH_HEADING_GLSL
 
 vec3 heading;      // direction of the path that is followed, away from the point
 vec3 heading_axis; // of the lobes about a light
+vec3 heading_normal; // of the surface that the point is on; else 0
 float heading_pdf; // 1/sr
 
 // Shares of the map and of the lobes about a light.
@@ -23,7 +25,9 @@ float heading_g()
 float heading_density(vec3 d)
 {
     vec2 shares = heading_shares();
-    float g = heading_g(), pdf = (1.0 - shares.x - shares.y) * (0.25 / HG_PI);
+    bool free = heading_normal == vec3(0.0);
+    float rest = free ? 0.25 / HG_PI : max(dot(d, heading_normal), 0.0) * (1.0 / HG_PI);
+    float g = heading_g(), pdf = (1.0 - shares.x - shares.y) * rest;
     if (LIGHTS > 0u) {
         pdf += shares.y * 0.5 * (phase(vec3(g), heading_axis, d) + phase(vec3(g * g), heading_axis, d)).x;
     }
@@ -33,8 +37,10 @@ float heading_density(vec3 d)
     return pdf;
 }
 
-vec3 heading_draw(vec3 point, inout rng_state rng)
+// `surface_normal`: of the surface that the point is on; 0 if it is free.
+vec3 heading_draw(vec3 point, vec3 surface_normal, inout rng_state rng)
 {
+    heading_normal = surface_normal;
     uvec4 bits = rng_next(rng);
     vec2 shares = heading_shares();
     float g = heading_g();
@@ -50,9 +56,13 @@ vec3 heading_draw(vec3 point, inout rng_state rng)
     } else {
         u = (u - shares.x) / (1.0 - shares.x);
         float c = shares.y / (1.0 - shares.x);
-        heading = phase_sample(u < c ? (u < 0.5 * c ? g : g * g) : 0.0, heading_axis, rng_vec2(bits.zw));
+        if (u >= c && heading_normal != vec3(0.0)) {
+            heading = cosine_sample(heading_normal, rng_vec2(bits.zw));
+        } else {
+            heading = phase_sample(u < c ? (u < 0.5 * c ? g : g * g) : 0.0, heading_axis, rng_vec2(bits.zw));
+        }
     }
-    heading_pdf = heading_density(heading);
+    heading_pdf = max(heading_density(heading), 1e-30);
     return heading;
 }
 

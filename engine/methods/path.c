@@ -318,13 +318,13 @@ static void set_lamp_power(tyn_path_params *p, const tyn_frame_scene *frame)
 // One `sample` of a balance is a dispatch of some thousand paths: as many as the time limit allows.
 static tyn_result add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
 {
-    enum { BALANCE_CHUNKS = 1, CHUNK_MIN = 4096, CHUNK_MAX = 16384 };
+    enum { BALANCE_CHUNKS = 1, SOLID_CHUNKS = 4, CHUNK_MIN = 4096, CHUNK_MAX = 16384 };
     tyn_path_params params;
     set_params(&params, job, &tyn_pass_path_balance);
     set_box(&params, job->frame);
     set_lamp_power(&params, job->frame);
     double paths = DISPATCH_NS / path_cost_ns(job, params.homogeneous);
-    params.chunks = BALANCE_CHUNKS;
+    params.chunks = params.surfaces ? SOLID_CHUNKS : BALANCE_CHUNKS; // walls make more noise
     params.threads = 4096;
     params.num_samples = paths < CHUNK_MIN   ? CHUNK_MIN
                          : paths > CHUNK_MAX ? CHUNK_MAX

@@ -86,7 +86,8 @@ static void record(tyn_recorder *r, const void *params)
             .lamps = {p->lamp_power[0], p->lamp_power[1], p->lamp_power[2]},
         };
         tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = 1, .cells = {TYN_PATH_BALANCE_VALUES, 1, 1}, .args = &sum});
+            r,
+            &(tyn_dispatch){.kernel = 1, .cells = {TYN_PATH_BALANCE_VALUES, 1, 1}, .args = &sum});
     }
     tyn_rec_work(r, "paths", (double)p->chunks * p->num_samples);
 }

@@ -128,7 +128,7 @@ void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 dire
     emitted = vec3(0.0);
     direct_in = vec3(0.0);
     direct_out = vec3(0.0);
-    place = SURFACES ? min(uint(random.x * 3.0), 2u) : random.x < 0.5 ? ON_BOUNDARY : IN_MEDIA;
+    place = SURFACES ? rng.key.y % 3u : random.x < 0.5 ? ON_BOUNDARY : IN_MEDIA; // key.y counts the samples
     uvec4 bits = rng_next(rng);
     if (SURFACES && place == ON_SURFACE) {
         origin = solid_point(bits, rng_next(rng).x);
@@ -139,7 +139,7 @@ void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 dire
     } else {
         origin = volume_point(bits);
     }
-    direction = heading_draw(origin, rng);
+    direction = heading_draw(origin, place == ON_SURFACE ? normal : vec3(0.0), rng);
 }
 
 // Of light that comes from `direction`: against the boundary's normal, or absorbed.

@@ -22,7 +22,7 @@ vec3 direct, direct_heading; // irradiance from lamps and suns, and where it com
 void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction)
 {
     origin = point;
-    direction = heading_draw(point, rng);
+    direction = heading_draw(point, vec3(0.0), rng);
     direct = vec3(0.0);
     direct_heading = vec3(0.0);
 }

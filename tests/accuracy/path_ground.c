@@ -39,8 +39,7 @@ static void make_slab(tyn_scene *scene, const slab *s, bool turned)
     tyn_scene_init(scene);
     const float ss = s->tau * s->albedo;
     tyn_medium m = grey_medium(ss, s->tau - ss, s->g);
-    tyn_shape *shape =
-        scene_add_box(scene, &m, (float[]){0, 0, 0}, (float[]){1, 1, 1}, NULL, NULL);
+    tyn_shape *shape = scene_add_box(scene, &m, (float[]){0, 0, 0}, (float[]){1, 1, 1}, NULL, NULL);
     shape->repeat[0] = shape->repeat[2] = true;
     uint32_t ground = solids_material(scene, (float[]){0.8f, 0.8f, 0.8f}, (float[]){0, 0, 0});
     if (turned) { // a quarter about y: x -> -z, z -> x
@@ -115,8 +114,8 @@ static void fluxes(void **state)
         }
         tyn_scene scene;
         make_slab(&scene, &s, slabs++ % 2);
-        const tyn_probe_result *p = path_run_probe(&runs, &scene, (const float(*)[3])points,
-                                                   DEPTHS, false, path_effort(16384));
+        const tyn_probe_result *p = path_run_probe(&runs, &scene, (const float(*)[3])points, DEPTHS,
+                                                   false, path_effort(16384));
         for (int i = 0; i < DEPTHS; i++) {
             char what[64];
             snprintf(what, sizeof what, "flux at %.2f", (double)points[i][1]);

@@ -166,11 +166,11 @@ static void form_factors(void **state)
 static void balances(void **state)
 {
     (void)state;
-    for (int i = 0; i < 4; i++) {
+    for (int i = getenv("TYN_LONG") ? 0 : 1; i < 4; i += getenv("TYN_LONG") ? 1 : 2) {
         tyn_scene scene;
         tyn_scene_init(&scene);
         const bool closed = i < 2;
-        uint32_t wall = solids_material(&scene, (float[]){0.7f, 0.5f, 0.2f}, BLACK);
+        uint32_t wall = solids_material(&scene, (float[]){0.5f, 0.3f, 0.1f}, BLACK);
         uint32_t lamp = solids_material(&scene, (float[]){0.1f, 0.1f, 0.1f}, (float[]){3, 2, 1});
         solids_box(&scene, (float[]){0, 0, 0}, (float[]){3, 2, 4}, 0.2f, closed, wall);
         if (!closed) { // without a front: open
@@ -191,13 +191,14 @@ static void balances(void **state)
             scene_add_sun(&scene, 0.2f, -1, -0.7f, 2, 2, 2);
             scene_set_sky(&scene, 0.3f);
         }
-        const tyn_balance *b = path_run_balance(&runs, &scene, path_effort(16));
+        const tyn_balance *b = path_run_balance(&runs, &scene, path_effort(6));
         for (int c = 0; c < 3; c++) {
-            printf("balance %d, %d: entering %.4f emitted %.4f, media %.4f surfaces %.4f escaped %.4f: "
+            printf("balance %d, %d: entering %.4f emitted %.4f, media %.4f surfaces %.4f escaped "
+                   "%.4f: "
                    "%+.4f\n",
                    i, c, b->entering[c], b->emitted[c], b->absorbed_media[c],
                    b->absorbed_surfaces[c], b->escaped[c], b->imbalance[c]);
-            assert_true(fabs(b->imbalance[c]) < 0.02);
+            assert_true(fabs(b->imbalance[c]) < (getenv("TYN_LONG") ? 0.02 : 0.04));
             assert_true((b->absorbed_media[c] > 0) == (i != 2));
             assert_true(b->absorbed_surfaces[c] > 0);
             assert_true((b->escaped[c] > 0) == !closed);
