@@ -1,4 +1,5 @@
-// lattice_power.h -- what lattice_source tells balance about a sun. Included by C and GLSL.
+// lattice_power.h -- what lattice_source tells balance about a sun, and lattice_lamps about a group of local
+// lights. Included by C and GLSL.
 #ifndef TYN_LATTICE_POWER_H
 #define TYN_LATTICE_POWER_H
 #include "shared.h"
@@ -11,5 +12,14 @@ struct lattice_power {
     float scale;    // factor that makes the cells lose what the beam loses
 };
 TYN_ASSERT_SIZE(lattice_power, 16);
+
+// Of a group of local lights in channel c at [group * channels + c], W.
+struct lattice_lamp_power {
+    float entering; // from outside the medium's box
+    float emitted;  // in it
+    float lost;     // on the way to where the light leaves the box, from the optical depths there
+    float scale;    // factor that makes the cells lose as much
+};
+TYN_ASSERT_SIZE(lattice_lamp_power, 16);
 
 #endif

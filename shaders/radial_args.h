@@ -8,7 +8,8 @@
 #include "shared.h"
 
 #define TYN_RADIAL_ISOTROPIC 0
-#define TYN_RADIAL_SPOT 1   // KHR_lights_punctual: ((cos - cos_outer) / (cos_inner - cos_outer))^2 in between
+#define TYN_RADIAL_SPOT                                                                            \
+    1 // KHR_lights_punctual: ((cos - cos_outer) / (cos_inner - cos_outer))^2 in between
 #define TYN_RADIAL_COSINE 2 // Lambertian: cosine to the axis, nothing behind
 
 #define TYN_RADIAL_LAMPS_MAX 64
@@ -36,21 +37,23 @@ TYN_ASSERT_SIZE(radial_vpls, 14352);
 
 // A light and where in the textures its grid is. Nodes are the centres of texels; there is one more row of
 // texels around each map, of what lies beyond the folded edges. Node k of a direction is at the distance
-// near (e^(k / per_node) - 1): even around the light, exponential beyond `near`.
+// begin + near (e^(k per_shell) - 1): even around the light, exponential farther away than `near`.
 struct radial_grid {
     TYN_STRUCT(radial_light) light;
-    tyn_vec3 to_map[3]; // rows: M direction -> direction of the map, not normalised: narrow light and boxes
-                        // that are far away get most of the map
+    tyn_vec3 to_map
+        [3]; // rows: M direction -> direction of the map, not normalised: narrow light and boxes
+             // that are far away get most of the map
     tyn_vec3 base;      // texture coordinate of octahedral coordinate (0, 0), distance 0
-    tyn_vec3 scale;     // per octahedral coordinate and per ln(1 + r / near)
+    tyn_vec3 scale;     // per octahedral coordinate and per ln(1 + (r - begin) / near)
     tyn_uvec3 first;    // texel of the tile's border
     tyn_uint cells;     // of the map along each side, without the border
     tyn_uint shells;    // nodes along a direction, less one
+    float begin;        // where the medium's box begins, m
     float inverse_near; // 1/m
-    float per_shell;    // ln(1 + r / near) from node to node
+    float per_shell;    // ln(1 + (r - begin) / near) from node to node
     tyn_uint inside;    // 1: the light is in the medium's box
 };
-TYN_ASSERT_SIZE(radial_grid, 148);
+TYN_ASSERT_SIZE(radial_grid, 152);
 
 struct radial_block { // storage buffer "radials": lamps first, the strongest first of all
     tyn_uint count;
@@ -58,6 +61,6 @@ struct radial_block { // storage buffer "radials": lamps first, the strongest fi
     tyn_uvec2 pad;
     TYN_STRUCT(radial_grid) list[TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX];
 };
-TYN_ASSERT_SIZE(radial_block, 47376);
+TYN_ASSERT_SIZE(radial_block, 48656);
 
 #endif

@@ -1,9 +1,10 @@
 // lattice.h -- the light that has scattered: one solve on a lattice of cubic cells for all lights.
 //
-// Four passes, so that what does not change is not done again:
+// Five passes, so that what does not change is not done again:
 //   lattice_cells   the medium averaged over the cells         (again when the medium changes)
 //   lattice_source  unscattered sunlight per cell              (... or a sun changes)
 //   lattice_ordinates  light of the sky's principal ordinates (... or the environment)
+//   lattice_lamps   unscattered light of lamps and surfaces    (... or a lamp)
 //   lattice         fluence and flux of the scattered light    (... or the environment changes)
 // and two around the last for sequences: lattice_recall brings the last frame's solution to this
 // frame's cells, lattice_keep puts this frame's away.
@@ -106,6 +107,33 @@ enum {
 };
 extern const tyn_pass_desc tyn_pass_lattice_ordinates;
 
+// ---- lattice_lamps ----------------------------------------------------------------------------
+
+typedef struct tyn_lattice_lamps_params {
+    tyn_lattice_shape shape;
+    uint32_t mode;     // TYN_MEDIUM_*
+    uint32_t num_fine; // lamps whose power is balanced one by one, 0 to 4: the first of `radials`
+    uint32_t num_lamps;
+    uint32_t vpls; // 1: there may be VPLs
+} tyn_lattice_lamps_params;
+
+enum {
+    LATTICE_LAMPS_PORT_MEDIUM,  // IN buffer struct medium_block
+    LATTICE_LAMPS_PORT_CELLS,   // IN 3D, of lattice_cells
+    LATTICE_LAMPS_PORT_DENSITY, // IN 3D: density, or sigma_s in mode COEFFICIENTS
+    LATTICE_LAMPS_PORT_G,       // IN optional 3D: mode COEFFICIENTS
+    LATTICE_LAMPS_PORT_RADIALS, // IN buffer struct radial_block
+    LATTICE_LAMPS_PORT_COLUMN,  // IN 3D: column, or tau_s in mode COEFFICIENTS; of radial_beam
+    LATTICE_LAMPS_PORT_TAU_A,   // IN optional 3D: mode COEFFICIENTS, as the one below
+    LATTICE_LAMPS_PORT_TAU_P,
+    LATTICE_LAMPS_PORT_OTHERS, // IN optional 3D: `source` of suns and ordinates, which is added to
+    LATTICE_LAMPS_PORT_SOURCE, // OUT 3D RGBA32F, stacked: fluence and flux of unscattered light, W/m^2
+    LATTICE_LAMPS_PORT_POWER, // OUT buffer struct lattice_lamp_power per group and channel
+    LATTICE_LAMPS_PORT_LIT,   // SCRATCH
+    LATTICE_LAMPS_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_lattice_lamps;
+
 // ---- lattice ----------------------------------------------------------------------------------
 
 typedef struct tyn_lattice_params {
@@ -118,7 +146,7 @@ typedef struct tyn_lattice_params {
 
 enum {
     LATTICE_PORT_CELLS,       // IN 3D, of lattice_cells
-    LATTICE_PORT_SOURCE,      // IN optional 3D, of lattice_ordinates or lattice_source
+    LATTICE_PORT_SOURCE,      // IN optional 3D, of the last of lattice_source, _ordinates, _lamps
     LATTICE_PORT_ENVIRONMENT, // IN optional buffer struct env_block: `sky` enters from all sides
     LATTICE_PORT_GUESS,       // IN optional buffer, of lattice_recall: where the solve starts
     LATTICE_PORT_WALL_LINKS,  // IN optional buffer, of walls: light stops at them and is reflected

@@ -26,6 +26,20 @@ struct lattice_ordinates_args {
     tyn_uint count; // ordinates that the columns have room for
 };
 
+// Local lights go into the lattice in groups: each of the strongest lamps, the further lamps, the VPLs. A
+// group's light is scaled so that the cells lose what its beams lose.
+#define LATTICE_LAMPS_MAX_GROUPS 6
+
+struct lattice_lamps_args {
+    tyn_uvec3 dims;
+    tyn_uint channels;
+    tyn_vec3 tint;
+    tyn_uint num_fine;   // lamps that are groups of their own
+    tyn_uint num_lamps;  // all
+    tyn_uint num_groups; // the VPLs, if there may be any, are the last
+    tyn_uint samples;    // per cell along each axis: of the strongest lamps; others one less
+};
+
 struct lattice_args { // kernels on the whole lattice
     tyn_uvec3 dims;
     tyn_uint channels;

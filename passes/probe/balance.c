@@ -15,6 +15,7 @@ static const tyn_port ports[BALANCE_NUM_PORTS] = {
                                   "struct env_block: its mean without suns enters at the box"},
     [BALANCE_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, true, "struct ordinates_block"},
     [BALANCE_PORT_WALL_POWER] = {"wall_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice"},
+    [BALANCE_PORT_LAMP_POWER] = {"lamp_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice_lamps"},
     [BALANCE_PORT_BALANCE] = {"balance", TYN_OUT, TYN_BUFFER, 0, false, "tyn_balance, W"},
 };
 
@@ -25,6 +26,7 @@ static const tyn_binding bindings[] = {
     {BALANCE_PORT_POWER, TYN_USE_STORAGE_READ},      {BALANCE_PORT_LEAKS, TYN_USE_STORAGE_READ},
     {BALANCE_PORT_BALANCE, TYN_USE_STORAGE_WRITE},   {BALANCE_PORT_ORDINATES, TYN_USE_UNIFORM},
     {BALANCE_PORT_WALL_POWER, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_LAMP_POWER, TYN_USE_STORAGE_READ},
 };
 
 static const tyn_kernel kernels[] = {
@@ -34,7 +36,7 @@ static const tyn_kernel kernels[] = {
      sizeof(struct balance_args),
      {BALANCE_GROUP, 1, 1},
      bindings,
-     11,
+     12,
      1},
 };
 
@@ -52,6 +54,7 @@ static void record(tyn_recorder *r, const void *params)
         .tint = {p->tint[0], p->tint[1], p->tint[2]},
         .channels = p->channels,
         .num_suns = p->num_suns,
+        .num_groups = p->num_groups,
         .num_leaks =
             tyn_rec_extent(r, BALANCE_PORT_LEAKS).x / (uint32_t)sizeof(float) / p->channels,
     };

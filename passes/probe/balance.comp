@@ -34,6 +34,10 @@ layout(binding = 2, scalar) readonly buffer light_buffer
 layout(binding = 3) uniform sampler3D cells;
 layout(binding = 4) uniform sampler3D moments;
 layout(binding = 5) uniform sampler3D source;
+layout(binding = 11, scalar) readonly buffer lamp_power_buffer
+{
+    lattice_lamp_power lamp_power[];
+};
 layout(binding = 6, scalar) readonly buffer power_buffer
 {
     lattice_power power[];
@@ -132,8 +136,14 @@ void main()
         float e = lattice_channel(lights[sun].color, args.channels, ch, args.tint);
         entering += e * w.entering;
     }
-    float escaped = entering + sums[0].z - sums[0].w;
-    float absorbed = sums[0].x, emitted = sums[0].y + wall_sums[0].y, given = entering + emitted;
+    float emitted = sums[0].y + wall_sums[0].y;
+    for (uint group = 0; group < args.num_groups; group++) {
+        entering += lamp_power[group * args.channels + ch].entering;
+        emitted += lamp_power[group * args.channels + ch].emitted;
+    }
+    float lamps = emitted - sums[0].y - wall_sums[0].y; // their light that does not collide escapes
+    float escaped = lamps + entering + sums[0].z - sums[0].w;
+    float absorbed = sums[0].x, given = entering + emitted;
     write(0, ch, entering);
     write(1, ch, emitted);
     write(2, ch, absorbed);

@@ -37,6 +37,7 @@ typedef struct tyn_balance_params {
     uint32_t channels;
     float tint[3];
     uint32_t num_suns;
+    uint32_t num_groups; // of local lights
 } tyn_balance_params;
 
 enum {
@@ -44,12 +45,13 @@ enum {
     BALANCE_PORT_LIGHTS,      // IN optional buffer struct light_block[]
     BALANCE_PORT_CELLS,       // IN 3D, of lattice_cells
     BALANCE_PORT_MOMENTS,     // IN 3D, of lattice
-    BALANCE_PORT_SOURCE,      // IN optional 3D, of lattice_ordinates or lattice_source
+    BALANCE_PORT_SOURCE,      // IN optional 3D, of the last of lattice_source, _ordinates, _lamps
     BALANCE_PORT_POWER,       // IN optional buffer, of lattice_source
     BALANCE_PORT_LEAKS,       // IN buffer, of lattice
     BALANCE_PORT_ENVIRONMENT, // IN optional buffer struct env_block, what lattice was given
     BALANCE_PORT_ORDINATES,   // IN optional buffer struct ordinates_block
     BALANCE_PORT_WALL_POWER,  // IN optional buffer, of lattice
+    BALANCE_PORT_LAMP_POWER,  // IN optional buffer, of lattice_lamps
     BALANCE_PORT_BALANCE,     // OUT buffer tyn_balance
     BALANCE_NUM_PORTS,
 };

@@ -25,7 +25,8 @@ struct balance_args {
     tyn_vec3 tint;
     tyn_uint channels;
     tyn_uint num_suns;
-    tyn_uint num_leaks; // per channel
+    tyn_uint num_leaks;  // per channel
+    tyn_uint num_groups; // of local lights
 };
 
 #define BALANCE_GROUP 256

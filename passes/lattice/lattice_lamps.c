@@ -1,0 +1,162 @@
+// lattice_lamps.c -- unscattered light of lamps and VPLs on the lattice.
+#include "lattice.h"
+#include "lattice_args.h"
+#include "lattice_lamps_cells.comp.h"
+#include "lattice_lamps_sum.comp.h"
+#include "lattice_lamps.comp.h"
+#include <math.h>
+
+static const tyn_port ports[LATTICE_LAMPS_NUM_PORTS] = {
+    [LATTICE_LAMPS_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
+    [LATTICE_LAMPS_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
+    [LATTICE_LAMPS_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, false,
+                                    "density, or sigma_s in mode COEFFICIENTS"},
+    [LATTICE_LAMPS_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "mean cosine"},
+    [LATTICE_LAMPS_PORT_RADIALS] = {"radials", TYN_IN, TYN_BUFFER, 0, false, "struct radial_block"},
+    [LATTICE_LAMPS_PORT_COLUMN] = {"column", TYN_IN, TYN_IMAGE_3D, 0, false,
+                                   "mean density (or sigma_s) on the way from the lights"},
+    [LATTICE_LAMPS_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "mean sigma_a"},
+    [LATTICE_LAMPS_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true, "mean (1 - f) sigma_s"},
+    [LATTICE_LAMPS_PORT_OTHERS] = {"others", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                   "source of lattice_source or lattice_ordinates"},
+    [LATTICE_LAMPS_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                   false,
+                                   "unscattered fluence and flux of all lights, W/m^2; channels "
+                                   "stacked along z"},
+    [LATTICE_LAMPS_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false,
+                                  "struct lattice_lamp_power per group of lights and channel"},
+    [LATTICE_LAMPS_PORT_LIT] = {"lit", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                false, "fluence and flux of each group of lights, before scaling"},
+};
+
+enum { KERNEL_CELLS, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
+
+static const tyn_binding cells_bindings[] = {
+    {LATTICE_LAMPS_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {LATTICE_LAMPS_PORT_DENSITY, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_G, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_RADIALS, TYN_USE_STORAGE_READ},
+    {LATTICE_LAMPS_PORT_COLUMN, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_TAU_A, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_TAU_P, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_LIT, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_binding sum_bindings[] = {
+    {LATTICE_LAMPS_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {LATTICE_LAMPS_PORT_RADIALS, TYN_USE_STORAGE_READ},
+    {LATTICE_LAMPS_PORT_COLUMN, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_TAU_A, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_TAU_P, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_LIT, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_POWER, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_binding source_bindings[] = {
+    {LATTICE_LAMPS_PORT_POWER, TYN_USE_STORAGE_READ},   {LATTICE_LAMPS_PORT_LIT, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_OTHERS, TYN_USE_SAMPLED},       {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_SOURCE, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_CELLS] = {"cells",
+                      lattice_lamps_cells_spirv,
+                      sizeof lattice_lamps_cells_spirv,
+                      sizeof(struct lattice_lamps_args),
+                      {8, 4, 2},
+                      cells_bindings,
+                      9,
+                      2},
+    [KERNEL_SUM] = {"sum",
+                    lattice_lamps_sum_spirv,
+                    sizeof lattice_lamps_sum_spirv,
+                    sizeof(struct lattice_lamps_args),
+                    {LATTICE_SUN_GROUP, 1, 1},
+                    sum_bindings,
+                    8,
+                    1},
+    [KERNEL_SOURCE] = {"source",
+                       lattice_lamps_spirv,
+                       sizeof lattice_lamps_spirv,
+                       sizeof(struct lattice_lamps_args),
+                       {8, 4, 2},
+                       source_bindings,
+                       5,
+                       0},
+};
+
+static uint32_t num_groups(const tyn_lattice_lamps_params *p)
+{
+    return p->num_fine + (p->num_lamps > p->num_fine) + p->vpls;
+}
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_lattice_lamps_params *p = params;
+    tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
+    uint32_t groups = num_groups(p);
+    if (groups < 1 || groups > LATTICE_LAMPS_MAX_GROUPS || p->num_fine > p->num_lamps) {
+        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                      "pass 'lattice_lamps': %u groups of lights; must be 1 to %d", groups,
+                      LATTICE_LAMPS_MAX_GROUPS);
+        return TYN_ERR_PARAMS;
+    }
+    uint32_t layers = dims.z * p->shape.channels;
+    tyn_build_image(b, LATTICE_LAMPS_PORT_SOURCE, (tyn_extent){dims.x, dims.y, layers}, 1);
+    tyn_build_image(b, LATTICE_LAMPS_PORT_LIT, (tyn_extent){dims.x, dims.y, layers * groups}, 1);
+    tyn_build_buffer(b, LATTICE_LAMPS_PORT_POWER,
+                     sizeof(struct lattice_lamp_power) * groups * p->shape.channels);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_lattice_lamps_params *p = params;
+    tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
+    tyn_extent texels = tyn_rec_extent(r, LATTICE_LAMPS_PORT_DENSITY);
+    const float *extent = p->shape.extent;
+    const uint32_t size[3] = {texels.x, texels.y, texels.z};
+    float dx = fmaxf(extent[0], fmaxf(extent[1], extent[2])) / (float)p->shape.cells, voxels = 0;
+    struct lattice_lamps_args args = {
+        .dims = {dims.x, dims.y, dims.z},
+        .channels = p->shape.channels,
+        .num_fine = p->num_fine,
+        .num_lamps = p->num_lamps,
+        .num_groups = num_groups(p),
+    };
+    for (int a = 0; a < 3; a++) {
+        args.tint[a] = p->shape.tint[a];
+        voxels = fmaxf(voxels, dx * (float)size[a] / extent[a]);
+    }
+    args.samples = (uint32_t)fminf(fmaxf(ceilf(0.5f * voxels - 1e-3f), 2), 4);
+    const uint32_t spec[2] = {p->mode, p->shape.channels};
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_CELLS,
+                                        .cells = {dims.x, dims.y, dims.z * args.num_groups},
+                                        .args = &args,
+                                        .spec = spec});
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){.kernel = KERNEL_SUM,
+                           .cells = {args.num_groups * LATTICE_SUN_GROUP, p->shape.channels, 1},
+                           .args = &args,
+                           .spec = &p->mode});
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SOURCE,
+                                        .cells = {dims.x, dims.y, dims.z * p->shape.channels},
+                                        .args = &args});
+    tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * p->num_lamps);
+}
+
+const tyn_pass_desc tyn_pass_lattice_lamps = {
+    .name = "lattice_lamps",
+    .summary = "unscattered light of lamps and surfaces in the cells of the lattice",
+    .ports = ports,
+    .num_ports = LATTICE_LAMPS_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params_size = sizeof(tyn_lattice_lamps_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = LATTICE_LAMPS_PORT_SOURCE,
+    .debug_meaning = "unscattered light in a slice, W/m^2",
+};

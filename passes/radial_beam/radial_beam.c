@@ -1,0 +1,262 @@
+// radial_beam.c -- lays out the grids of local lights and sweeps them in one dispatch.
+#include "radial_beam.h"
+#include "radial_beam_args.h"
+#include "radial_beam_setup.comp.h"
+#include "radial_beam_density.comp.h"
+#include "radial_beam_coefficients.comp.h"
+#include <math.h>
+#include <string.h>
+
+// With coefficients a node has 48 bytes instead of 4: fine grids are kept to 64 cells, 10 MB per lamp.
+enum { MAX_CELLS = 160, MAX_COEFFICIENT_CELLS = 64 };
+enum { LEAST_WIDTH = 128 }; // texels that tiles of many lights are laid side by side in
+
+static const tyn_port ports[RADIAL_BEAM_NUM_PORTS] = {
+    [RADIAL_BEAM_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
+    [RADIAL_BEAM_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, false,
+                                  "density, or sigma_s in mode COEFFICIENTS"},
+    [RADIAL_BEAM_PORT_SIGMA_A] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, 0, true, "absorption, 1/m"},
+    [RADIAL_BEAM_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "mean cosine"},
+    [RADIAL_BEAM_PORT_VPLS] = {"vpls", TYN_IN, TYN_BUFFER, 0, true, "struct radial_vpls"},
+    [RADIAL_BEAM_PORT_RADIALS] = {"radials", TYN_OUT, TYN_BUFFER, 0, false,
+                                  "struct radial_block: lamps, VPLs and their grids"},
+    [RADIAL_BEAM_PORT_COLUMN] =
+        {"column", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
+         "mean density from a light, or from where its ray enters, to a node"},
+    [RADIAL_BEAM_PORT_TAU_S] = {"tau_s", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                false, "mean sigma_s, likewise, 1/m"},
+    [RADIAL_BEAM_PORT_TAU_A] = {"tau_a", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                false, "mean sigma_a"},
+    [RADIAL_BEAM_PORT_TAU_P] = {"tau_p", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                false, "mean sigma_s outside the forward peak"},
+    [RADIAL_BEAM_PORT_LAMPS] = {"lamps", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                                "struct radial_light[]"},
+};
+
+enum { KERNEL_SETUP, KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
+
+static const tyn_binding setup_bindings[] = {
+    {RADIAL_BEAM_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {RADIAL_BEAM_PORT_LAMPS, TYN_USE_STORAGE_READ},
+    {RADIAL_BEAM_PORT_VPLS, TYN_USE_STORAGE_READ},
+    {RADIAL_BEAM_PORT_RADIALS, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding density_bindings[] = {
+    {RADIAL_BEAM_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {RADIAL_BEAM_PORT_DENSITY, TYN_USE_SAMPLED},
+    {RADIAL_BEAM_PORT_RADIALS, TYN_USE_STORAGE_READ},
+    {RADIAL_BEAM_PORT_COLUMN, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding coefficients_bindings[] = {
+    {RADIAL_BEAM_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {RADIAL_BEAM_PORT_DENSITY, TYN_USE_SAMPLED},
+    {RADIAL_BEAM_PORT_SIGMA_A, TYN_USE_SAMPLED},
+    {RADIAL_BEAM_PORT_G, TYN_USE_SAMPLED},
+    {RADIAL_BEAM_PORT_RADIALS, TYN_USE_STORAGE_READ},
+    {RADIAL_BEAM_PORT_TAU_S, TYN_USE_STORAGE_WRITE},
+    {RADIAL_BEAM_PORT_TAU_A, TYN_USE_STORAGE_WRITE},
+    {RADIAL_BEAM_PORT_TAU_P, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_SETUP] = {"setup",
+                      radial_beam_setup_spirv,
+                      sizeof radial_beam_setup_spirv,
+                      sizeof(struct radial_beam_args),
+                      {64, 1, 1},
+                      setup_bindings,
+                      4,
+                      0},
+    [KERNEL_DENSITY] = {"density",
+                        radial_beam_density_spirv,
+                        sizeof radial_beam_density_spirv,
+                        sizeof(struct radial_beam_args),
+                        {RADIAL_GROUP * RADIAL_GROUP, 1, 1},
+                        density_bindings,
+                        4,
+                        1},
+    [KERNEL_COEFFICIENTS] = {"coefficients",
+                             radial_beam_coefficients_spirv,
+                             sizeof radial_beam_coefficients_spirv,
+                             sizeof(struct radial_beam_args),
+                             {RADIAL_GROUP * RADIAL_GROUP, 1, 1},
+                             coefficients_bindings,
+                             8,
+                             1},
+};
+
+static const tyn_param params_table[] = {
+    {"cells", TYN_PARAM_INT, offsetof(tyn_radial_beam_params, cells), 112, 2, MAX_CELLS, "cells",
+     "along a side of the strongest lamps' maps of directions (64 at most where coefficients are "
+     "textures); no finer than the medium",
+     NULL},
+    {"further_cells", TYN_PARAM_INT, offsetof(tyn_radial_beam_params, further_cells), 32, 2,
+     MAX_CELLS, "cells", "... of further lamps", NULL},
+    {"vpl_cells", TYN_PARAM_INT, offsetof(tyn_radial_beam_params, vpl_cells), 8, 2, 32, "cells",
+     "... of lights that stand for reflections and emission of surfaces", NULL},
+};
+
+// ---- layout ---------------------------------------------------------------------------------------
+
+struct radial_light tyn_radial_of_lamp(const struct light_block *lamp, uint32_t index)
+{
+    struct radial_light light = {
+        .kind = lamp->kind == TYN_LIGHT_KIND_SPOT ? TYN_RADIAL_SPOT : TYN_RADIAL_ISOTROPIC,
+        .cos_inner = lamp->cos_inner,
+        .cos_outer = lamp->cos_outer,
+        .light = index,
+    };
+    memcpy(light.position, lamp->position, sizeof light.position);
+    memcpy(light.intensity, lamp->color, sizeof light.intensity);
+    memcpy(light.axis, lamp->direction, sizeof light.axis);
+    return light;
+}
+
+static float strength(const struct radial_light *light)
+{
+    return fmaxf(light->intensity[0], fmaxf(light->intensity[1], light->intensity[2]));
+}
+
+void tyn_radial_beam_plan(tyn_radial_beam_params *params, const struct medium_block *medium,
+                          const struct light_block *lights, uint32_t first_lamp,
+                          uint32_t num_lights, uint32_t fine, uint32_t max_vpls)
+{
+    uint32_t count = 0;
+    for (uint32_t i = first_lamp; i < num_lights && count < TYN_RADIAL_LAMPS_MAX; i++) {
+        struct radial_light light = tyn_radial_of_lamp(&lights[i], i);
+        if (!(strength(&light) > 0)) {
+            continue;
+        }
+        uint32_t at = count++;
+        for (; at > 0 && strength(&params->lamps[at - 1]) < strength(&light); at--) {
+            params->lamps[at] = params->lamps[at - 1];
+        }
+        params->lamps[at] = light;
+    }
+    params->mode = medium->mode;
+    params->num_lamps = count;
+    params->num_fine = fine < count ? fine : count;
+    params->max_vpls = max_vpls < TYN_RADIAL_VPLS_MAX ? max_vpls : TYN_RADIAL_VPLS_MAX;
+    // A cell of the map is sqrt(4 pi) / cells wide; at half the box's diagonal as wide as a voxel.
+    double diagonal = 0, voxel = INFINITY;
+    for (int a = 0; a < 3; a++) {
+        diagonal += (double)medium->extent[a] * medium->extent[a];
+        voxel = fmin(voxel, medium->voxel[a]);
+    }
+    bool even = medium->size[0] * medium->size[1] * medium->size[2] == 1;
+    double finest = ceil(3.545 * 0.5 * sqrt(diagonal) / voxel);
+    params->finest = even ? 2 : (uint32_t)fmin(fmax(finest, 4), MAX_CELLS);
+}
+
+static uint32_t smaller(uint32_t a, uint32_t b)
+{
+    return a < b ? a : b;
+}
+
+static struct radial_beam_args layout(const tyn_radial_beam_params *p)
+{
+    const uint32_t cells[RADIAL_CLASSES] = {(uint32_t)p->cells, (uint32_t)p->further_cells,
+                                            (uint32_t)p->vpl_cells};
+    const uint32_t counts[RADIAL_CLASSES] = {p->num_fine, p->num_lamps - p->num_fine, p->max_vpls};
+    uint32_t most =
+        smaller(p->mode == TYN_MEDIUM_COEFFICIENTS ? MAX_COEFFICIENT_CELLS : MAX_CELLS, p->finest);
+    struct radial_beam_args args = {.num_lamps = p->num_lamps, .max_vpls = p->max_vpls};
+    uint32_t width = 1, first = 0;
+    for (uint32_t c = 0; c < RADIAL_CLASSES; c++) {
+        struct radial_class *class = &args.classes[c];
+        class->first_light = first;
+        class->count = counts[c];
+        class->cells = smaller(cells[c], most);
+        class->shells = class->cells < 4 ? 2 : (3 * class->cells + 3) / 4;
+        class->patches = (class->cells + 2 + RADIAL_GROUP - 1) / RADIAL_GROUP;
+        first += counts[c];
+        uint32_t tile = class->cells + 2, row = (uint32_t)ceil(sqrt(counts[c]));
+        uint32_t fit = LEAST_WIDTH / tile > 1 ? LEAST_WIDTH / tile : 1;
+        uint32_t wanted = tile * smaller(row, fit);
+        width = counts[c] > 0 && wanted > width ? wanted : width;
+    }
+    uint32_t layers = 0;
+    for (uint32_t c = 0; c < RADIAL_CLASSES; c++) {
+        struct radial_class *class = &args.classes[c];
+        class->first_layer = layers;
+        if (class->count == 0) {
+            continue;
+        }
+        class->per_row = width / (class->cells + 2);
+        uint32_t per_layer = class->per_row * class->per_row;
+        layers += (class->count + per_layer - 1) / per_layer * (class->shells + 1);
+    }
+    args.size[0] = args.size[1] = width;
+    args.size[2] = layers;
+    return args;
+}
+
+// ---- the pass -------------------------------------------------------------------------------------
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_radial_beam_params *p = params;
+    uint32_t lights = p->num_lamps + p->max_vpls;
+    if (lights == 0 || p->num_lamps > TYN_RADIAL_LAMPS_MAX || p->num_fine > p->num_lamps ||
+        p->max_vpls > TYN_RADIAL_VPLS_MAX || p->finest < 1) {
+        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                      "radial_beam: %u lamps and %u VPLs planned, must be 1 to %d and 0 to %d",
+                      p->num_lamps, p->max_vpls, TYN_RADIAL_LAMPS_MAX, TYN_RADIAL_VPLS_MAX);
+        return TYN_ERR_PARAMS;
+    }
+    struct radial_beam_args args = layout(p);
+    tyn_extent extent = {args.size[0], args.size[1], args.size[2]};
+    tyn_build_buffer(b, RADIAL_BEAM_PORT_RADIALS,
+                     offsetof(struct radial_block, list) + lights * sizeof(struct radial_grid));
+    tyn_build_buffer(b, RADIAL_BEAM_PORT_LAMPS, sizeof p->lamps);
+    if (p->mode == TYN_MEDIUM_DENSITY) {
+        tyn_build_image(b, RADIAL_BEAM_PORT_COLUMN, extent, 1);
+    } else {
+        tyn_build_image(b, RADIAL_BEAM_PORT_TAU_S, extent, 1);
+        tyn_build_image(b, RADIAL_BEAM_PORT_TAU_A, extent, 1);
+        tyn_build_image(b, RADIAL_BEAM_PORT_TAU_P, extent, 1);
+    }
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_radial_beam_params *p = params;
+    struct radial_beam_args args = layout(p);
+    tyn_rec_update(r, RADIAL_BEAM_PORT_LAMPS, 0, p->lamps, sizeof p->lamps);
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SETUP,
+                                        .cells = {p->num_lamps + p->max_vpls, 1, 1},
+                                        .args = &args});
+    uint32_t groups = 0;
+    double nodes = 0;
+    for (uint32_t c = 0; c < RADIAL_CLASSES; c++) {
+        const struct radial_class *class = &args.classes[c];
+        groups += class->count * class->patches * class->patches;
+        nodes += (double)class->count * class->cells * class->cells * (class->shells + 1);
+    }
+    bool density = p->mode == TYN_MEDIUM_DENSITY;
+    tyn_rec_dispatch(r, &(tyn_dispatch){
+                            .kernel = density ? KERNEL_DENSITY : KERNEL_COEFFICIENTS,
+                            .cells = {groups * RADIAL_GROUP * RADIAL_GROUP, 1, 1},
+                            .args = &args,
+                            .spec = &p->mode,
+                        });
+    tyn_rec_work(r, "cells", nodes);
+    tyn_rec_work(r, "bytes", nodes * (density ? 4 : 48));
+}
+
+const tyn_pass_desc tyn_pass_radial_beam = {
+    .name = "radial_beam",
+    .summary = "optical depth from local lights outwards, in a grid around each",
+    .ports = ports,
+    .num_ports = RADIAL_BEAM_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params = params_table,
+    .num_params = sizeof(params_table) / sizeof(params_table[0]),
+    .params_size = sizeof(tyn_radial_beam_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = RADIAL_BEAM_PORT_COLUMN,
+    .debug_meaning = "mean density from lights outwards: maps of directions",
+};

@@ -1,0 +1,99 @@
+// radial.glsl -- local lights: what they send to a point, and the optical depth on the way.
+//
+// Include after medium.glsl and define the bindings:
+//   RADIAL_BLOCK   buffer radial_block: "radials"; RADIAL_UNIFORM defined: a uniform buffer of lamps alone
+//   RADIAL_COLUMN  sampler: `column` (mode DENSITY) or `tau_s` (mode COEFFICIENTS)
+//   RADIAL_TAU_A, RADIAL_TAU_P   samplers, mode COEFFICIENTS (leave out in kernels that know DENSITY only)
+//
+// The textures hold the mean of the medium between the light, or where the way from it enters the box,
+// and a point. Times the exact length of that way it is the depth: where the medium is the same
+// everywhere no grid shows, and there is no singularity at the light.
+#ifndef TYN_RADIAL_GLSL
+#define TYN_RADIAL_GLSL
+#include "radial_args.h"
+#include "octahedral.glsl"
+#include "radial_lobe.glsl"
+#include "beam_tau.glsl"
+
+#ifdef RADIAL_UNIFORM
+layout(set = 0, binding = RADIAL_BLOCK, scalar) uniform radial_uniform
+{
+    uint radial_count, radial_num_lamps;
+    uvec2 radial_pad;
+    radial_grid radials[TYN_RADIAL_LAMPS_MAX];
+};
+#else
+layout(set = 0, binding = RADIAL_BLOCK, scalar) readonly buffer radial_buffer
+{
+    uint radial_count, radial_num_lamps;
+    uvec2 radial_pad;
+    radial_grid radials[];
+};
+#endif
+layout(set = 0, binding = RADIAL_COLUMN) uniform sampler3D radial_column_tex;
+#ifdef RADIAL_TAU_A
+layout(set = 0, binding = RADIAL_TAU_A) uniform sampler3D radial_tau_a_tex;
+#endif
+#ifdef RADIAL_TAU_P
+layout(set = 0, binding = RADIAL_TAU_P) uniform sampler3D radial_tau_p_tex;
+#endif
+
+struct radial_place {
+    vec3 uvw;
+    float inside; // length of the way from the light to the point within the box, m
+};
+
+// `away`: from the light to a point in the box; r = its length.
+radial_place radial_place_of(uint n, vec3 away, float r)
+{
+    vec3 d = vec3(dot(radials[n].to_map[0], away), dot(radials[n].to_map[1], away),
+                  dot(radials[n].to_map[2], away));
+    float way = log(1.0 + max(r - radials[n].begin, 0.0) * radials[n].inverse_near);
+    // At the light itself any direction will do.
+    vec2 e = r > 0.0 ? octahedral_of(d) : vec2(0.0);
+    radial_place place;
+    place.uvw = radials[n].base + radials[n].scale * vec3(e, way);
+    place.inside = r;
+    if (radials[n].inside == 0u) {
+        vec3 o = radials[n].light.position;
+        vec3 gap = max(-o, vec3(0.0)) - max(o - medium.extent, vec3(0.0));
+        vec3 f = mix(vec3(0.0), gap / away, notEqual(gap, vec3(0.0)));
+        place.inside = r * clamp(1.0 - max(f.x, max(f.y, f.z)), 0.0, 1.0);
+    }
+    return place;
+}
+
+// Share of the light's intensity that goes along `away`, r = its length.
+float radial_share(uint n, vec3 away, float r)
+{
+    if (radials[n].light.kind == TYN_RADIAL_ISOTROPIC) {
+        return 1.0;
+    }
+    return radial_lobe(radials[n].light.kind, radials[n].light.axis, radials[n].light.cos_inner,
+                       radials[n].light.cos_outer, away / max(r, 1e-20));
+}
+
+// Mode DENSITY: column density, m times texture value.
+float radial_column(radial_place place)
+{
+    return place.inside * textureLod(radial_column_tex, place.uvw, 0.0).r;
+}
+
+// Either mode.
+beam_tau radial_tau(radial_place place)
+{
+    if (medium_mode == TYN_MEDIUM_DENSITY) {
+        return beam_of_column(radial_column(place));
+    }
+    beam_tau tau = beam_tau(vec3(0.0), vec3(0.0), vec3(0.0));
+    tau.s = place.inside * textureLod(radial_column_tex, place.uvw, 0.0).rgb;
+#ifdef RADIAL_TAU_A
+    tau.a = place.inside * textureLod(radial_tau_a_tex, place.uvw, 0.0).rgb;
+#endif
+#ifdef RADIAL_TAU_P
+    tau.p = place.inside * textureLod(radial_tau_p_tex, place.uvw, 0.0).rgb;
+#endif
+    return tau;
+}
+
+#endif
