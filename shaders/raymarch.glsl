@@ -5,7 +5,7 @@
 //       + e^-tau L_behind + (e^-tau' - e^-tau) B
 //
 // tau is the true optical depth along the view ray, tau' the one in which forward scattering counts as
-// not scattered (delta scaling), (n) are depths along sun n. J is the light that has scattered out of
+// not scattered (delta scaling), (n) are depths along sun or lamp n; E of a lamp is I / r^2. J is the light that has scattered out of
 // the suns' forward peaks (texture inscatter), K_tms and K_lobe hold the first and all forward orders
 // exactly (scatter_lut.glsl). B is the environment as forward scattering smears it (glow.glsl), of a
 // uniform one its radiance: the lattice has it delta scaled, so that what went through or was scattered
@@ -14,7 +14,7 @@
 // Every step takes the medium at its middle and integrates the attenuation exactly: int_0^ds e^(-sigma t)
 // dt = ds (1 - e^-x) / x with x = sigma ds. Light is taken at the centroid of that weight.
 //
-// Include after camera, environment, medium, beam, scatter_lut, lattice, lattice_walls and shadow. RAYMARCH_GREY: all channels
+// Include after camera, environment, medium, beam, radial, scatter_lut, lattice, lattice_walls and shadow. RAYMARCH_GREY: all channels
 // of the medium are equal, so optical depths are scalars.
 #ifndef TYN_RAYMARCH_GLSL
 #define TYN_RAYMARCH_GLSL
@@ -254,7 +254,7 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, fl
         if (raymarch_has(RAYMARCH_KERNELS)) {
             vec3 tau_p = beam_fetch(beam_tau_p_tex, place);
             for (int c = 0; c < 3; c++) {
-                vec2 k = scatter_kernels_mixed(sun.light, sun.mean_cosine, sun.one_minus_mu, m.g[c],
+                vec2 k = scatter_kernels_mixed(lut.sun_set[sun.light], sun.mean_cosine, sun.one_minus_mu, m.g[c],
                                                tau_s[c], tau_p[c]);
                 k_tms[c] = k.x;
                 k_lobe[c] = k.y;
@@ -302,6 +302,100 @@ vec3 march_field(vec3 p, vec3 uvw)
     return textureLod(inscatter_tex, uvw, 0.0).rgb;
 }
 
+// ---- lamps ----------------------------------------------------------------------------------------
+
+// Where a view ray is in relation to a lamp, and what is needed on all of it.
+struct march_lamps {
+    vec3 origin, direction;
+    float start; // distance of the eye from the origin, m
+    float pixel; // width of a pixel at the eye, and what it grows by per metre
+    float spread;
+};
+
+// The picture shows means over pixels: a ray through the lamp itself has the mean of 1 / h over a disc as
+// large as the pixel, which is 2 / its radius.
+float march_least_h(march_lamps ray, float s)
+{
+    return 0.282 * (ray.pixel + ray.spread * (ray.start + s)) + 1e-6 * medium.voxel.x;
+}
+
+const float MARCH_LAMP_STEP = 0.15; // steps are no longer than this part of the distance from a lamp
+
+float march_lamp_step(march_lamps ray, float s)
+{
+    float least = TYN_INFINITY;
+    for (uint n = 0u; n < raymarch_num_lamps; n++) {
+        vec3 away = ray.origin + s * ray.direction - radials[n].light.position;
+        least = min(least, dot(away, away));
+    }
+    return MARCH_LAMP_STEP * max(sqrt(least), march_least_h(ray, s));
+}
+
+// As march_sunlight, of a lamp in the step from s to s + ds, of which `at` is the middle. 1 / r^2 changes most:
+// its mean is exact, (angle under which the lamp sees the step) / (h ds), h the ray's distance from it.
+vec3 march_lamplight(uint n, march_lamps ray, march_medium unit, march_medium m, float s, float ds,
+                     float at, spectrum weight, spectrum weight_scaled, inout vec3 first)
+{
+    vec3 away = ray.origin + at * ray.direction - radials[n].light.position;
+    float along = dot(away, ray.direction), least = march_least_h(ray, at);
+    vec3 across = away - along * ray.direction;
+    float h2 = max(dot(across, across), least * least);
+    float a = along + (s - at), b = a + ds, q = h2 + a * b, z = sqrt(h2) * ds;
+    float mean = q > 4.0 * z ? (1.0 - z * z / (3.0 * q * q)) / q : atan(z, q) / z;
+    // Where the angle from the lamp is in the middle: half of the light is on either side.
+    float ra = sqrt(h2 + a * a), rb = sqrt(h2 + b * b);
+    float middle = (a * rb + b * ra) / (ra + rb) + (at - s - 0.5 * ds);
+    away += (clamp(middle, a, b) - along) * ray.direction;
+    float r = length(away);
+    float share = radial_share(n, away, r);
+    vec3 irradiance = radials[n].light.intensity * (share * mean);
+    if (share <= 0.0) {
+        return vec3(0.0);
+    }
+    vec3 turn = ray.direction + away / max(r, 1e-20);
+    float one_minus_mu = 0.5 * dot(turn, turn);
+    radial_place place = radial_place_of(n, away, r);
+    spectrum tau_s, tau_a, phase, k_tms, k_lobe;
+#ifdef RAYMARCH_GREY
+    float column = radial_column(place);
+    tau_s = unit.scattering * column;
+    tau_a = unit.absorption * column;
+    phase = hg_near(unit.g, one_minus_mu);
+    if (raymarch_has(RAYMARCH_KERNELS)) {
+        vec2 k = scatter_kernels(scatter_angle_of_point(0u, one_minus_mu), tau_s);
+        k_tms = k.x;
+        k_lobe = k.y;
+    }
+#else
+    beam_tau tau = radial_tau(place);
+    tau_s = tau.s;
+    tau_a = tau.a;
+    scatter_angle angle;
+    for (uint c = 0u; c < 3u; c++) {
+        phase[c] = hg_near(m.g[c], one_minus_mu);
+        if (raymarch_has(RAYMARCH_KERNELS)) {
+            vec2 k;
+            if (medium_mode == TYN_MEDIUM_DENSITY) {
+                if (c == 0u || lut.channel_row[c] != lut.channel_row[0]) {
+                    angle = scatter_angle_of_point(c, one_minus_mu);
+                }
+                k = scatter_kernels(angle, tau_s[c]);
+            } else {
+                k = scatter_kernels_mixed(0u, 1.0, one_minus_mu, m.g[c], tau.s[c], tau.p[c]);
+            }
+            k_tms[c] = k.x;
+            k_lobe[c] = k.y;
+        }
+    }
+#endif
+    vec3 light = m.scattering * exp(-tau_a) * irradiance;
+    vec3 once = light * (phase * exp(-tau_s) * weight);
+    if (raymarch_has(RAYMARCH_SINGLE | RAYMARCH_MULTIPLE)) {
+        first += once;
+    }
+    return raymarch_has(RAYMARCH_KERNELS) ? light * (k_tms * weight_scaled + k_lobe * weight) : once;
+}
+
 // Moves `s` on to the next brick that is not empty, or to `end`.
 float march_skip(vec3 origin, vec3 direction, vec3 inverse, float s, float end)
 {
@@ -329,8 +423,8 @@ float march_skip(vec3 origin, vec3 direction, vec3 inverse, float s, float end)
 }
 
 // Marches from `origin`, which is inside the box, over the distance `end`. `offset` in (0, 1] is the
-// length of the first step in steps.
-march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
+// length of the first step in steps. `start`: how far from the eye the origin is.
+march_result march_ray(vec3 origin, vec3 direction, float end, float offset, float start)
 {
     march_result result;
     result.radiance = vec3(0.0);
@@ -343,6 +437,10 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
     for (uint n = 0u; n < raymarch_num_suns; n++) {
         suns[n] = march_sun_of(n, unit, origin, direction);
     }
+    float pixel = 2.0 * camera.half_width / float(camera.size.x);
+    bool orthographic = camera.orthographic != 0u;
+    march_lamps lamps = march_lamps(origin, direction, start, orthographic ? pixel : 0.0,
+                                    orthographic ? 0.0 : pixel);
     vec3 inverse = ray_inverse(direction);
     // Texture coordinates are linear along the ray.
     vec3 medium0 = origin / medium.extent, medium1 = direction / medium.extent;
@@ -369,6 +467,9 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
             do {
                 ds = min(length_next, end - s);
                 length_next = args.step;
+                if (raymarch_num_lamps > 0u) {
+                    ds = min(ds, march_lamp_step(lamps, s));
+                }
                 m = march_medium_at(unit, medium0 + (s + 0.5 * ds) * medium1);
                 full = march_any(m);
                 s += full ? 0.0 : ds;
@@ -410,6 +511,10 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset)
                 }
                 result.radiance += march_sunlight(suns[n], unit, m, origin + at * direction, at, lit * weight,
                                                   lit * weight_scaled, result.single);
+            }
+            for (uint n = 0u; n < raymarch_num_lamps; n++) {
+                result.radiance += march_lamplight(n, lamps, unit, m, s, ds, at, weight, weight_scaled,
+                                                   result.single);
             }
             if (raymarch_has(RAYMARCH_DEPTH)) {
                 float t0 = spectrum_mean(through * exp(-hidden));

@@ -83,7 +83,7 @@ void shade_pixel(ivec2 pixel)
         met = met || span.x < span.y;
         // Distances from where the ray enters: the camera may be far away.
         march_result r = march_ray(ray.origin + span.x * ray.direction, ray.direction,
-                                   max(span.y - span.x, 0.0), display_bayer(uvec2(pixel)));
+                                   max(span.y - span.x, 0.0), display_bayer(uvec2(pixel)), span.x);
         steps += r.steps;
         transmittance += r.transmittance;
         single += r.single;

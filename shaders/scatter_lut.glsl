@@ -72,6 +72,13 @@ scatter_angle scatter_angle_of(uint sun, uint channel, float one_minus_mu)
     return a;
 }
 
+// A light that is a point, as seen from anywhere.
+scatter_angle scatter_angle_of_point(uint channel, float one_minus_mu)
+{
+    uint row = lut.channel_row[channel];
+    return scatter_angle_in_row(row, lut.g[row], lut.theta_1[row], one_minus_mu);
+}
+
 // K_tms and K_lobe, 1/sr, behind the scattering depth tau_s. One fetch.
 vec2 scatter_kernels(scatter_angle a, float tau_s)
 {
@@ -103,8 +110,9 @@ vec2 scatter_table(scatter_rows rows, float u)
 }
 
 // `g` is that of the last scattering; the earlier ones on the way had the mean 1 - f = tau_p / tau_s, which
-// keeps the light that is still in the beam exact. `a`: mean cosine of the sun.
-vec2 scatter_kernels_mixed(uint sun, float a, float one_minus_mu, float g, float tau_s, float tau_p)
+// keeps the light that is still in the beam exact. `set` of tables: lut.sun_set of a sun, 0 of a point; `a`:
+// mean cosine of the sun.
+vec2 scatter_kernels_mixed(uint set_index, float a, float one_minus_mu, float g, float tau_s, float tau_p)
 {
     float theta = 2.0 * asin(sqrt(clamp(0.5 * one_minus_mu, 0.0, 1.0)));
     g = min(g, HG_MAX);
@@ -121,7 +129,7 @@ vec2 scatter_kernels_mixed(uint sun, float a, float one_minus_mu, float g, float
     vec2 last = hg_near(g * a, one_minus_mu) * vec2(1.0 - h, h);
     vec2 more = f * (1.0 - direct) * exp(scatter_table(beam, u / sets) - tau_s * (1.0 - f));
     if (SCATTER_LUT_SOFT) {
-        float set = float(lut.sun_set[sun]), u0 = lut_u(0.0, 0.0);
+        float set = float(set_index), u0 = lut_u(0.0, 0.0);
         vec2 all = exp(scatter_table(beam, (set + u) / sets) - tau_s * (1.0 - f));
         vec2 once = exp(scatter_table(beam, (set + u0) / sets));
         vec2 once_here = exp(scatter_table(scatter_rows_of(g, theta), (set + u0) / sets));

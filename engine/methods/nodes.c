@@ -44,14 +44,18 @@ tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method)
     return TYN_OK;
 }
 
-uint32_t tyn_method_suns(const tyn_job *job, bool of_map)
+void tyn_method_warn_lamps(const tyn_job *job)
 {
-    const tyn_frame_scene *frame = job->frame;
-    uint32_t lamps = frame->num_lights - frame->num_suns;
+    uint32_t lamps = job->frame->num_lights - job->frame->num_suns;
     if (lamps) {
         tyn_method_warn(job, "%u point or spot light%s left out: only directional lights are done",
                         lamps, lamps > 1 ? "s are" : " is");
     }
+}
+
+uint32_t tyn_method_suns(const tyn_job *job, bool of_map)
+{
+    const tyn_frame_scene *frame = job->frame;
     uint32_t suns = frame->num_suns + (of_map ? frame->num_map_suns : 0);
     return suns < TYN_METHOD_MAX_SUNS ? suns : TYN_METHOD_MAX_SUNS;
 }
@@ -141,6 +145,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->grey = frame->grey && block->mode == TYN_MEDIUM_DENSITY;
     params->mode = block->mode;
     params->num_suns = in->num_suns;
+    params->num_lamps = in->num_marched_lamps;
     params->kernels = in->lut.resource != 0;
     params->mean = in->mean_in_field;
     params->field = in->field;
@@ -236,6 +241,10 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
         [RAYMARCH_PORT_COLUMN] = in->beams.column,
         [RAYMARCH_PORT_TAU_A] = in->beams.tau_a,
         [RAYMARCH_PORT_TAU_P] = in->beams.tau_p,
+        [RAYMARCH_PORT_RADIALS] = in->lamps.radials,
+        [RAYMARCH_PORT_RADIAL_COLUMN] = in->lamps.column,
+        [RAYMARCH_PORT_RADIAL_TAU_A] = in->lamps.tau_a,
+        [RAYMARCH_PORT_RADIAL_TAU_P] = in->lamps.tau_p,
         [RAYMARCH_PORT_LUT] = in->lut,
         [RAYMARCH_PORT_LUT_BLOCK] = in->lut_block,
         [RAYMARCH_PORT_INSCATTER] = in->inscatter,

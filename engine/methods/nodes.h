@@ -18,10 +18,20 @@ typedef struct tyn_beam_refs {
 tyn_result tyn_add_beams(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
                          uint32_t num_suns, tyn_beam_refs *beams);
 
+// Optical depths around local lights (methods/lamps.h). In mode COEFFICIENTS `column` is tau_s. {0} without.
+typedef struct tyn_radial_refs {
+    tyn_ref radials, column, tau_a, tau_p;
+    uint32_t num_lamps; // of them
+    uint32_t num_fine;  // that have grids as fine as the medium, the first ones
+    bool vpls;          // VPLs follow them
+} tyn_radial_refs;
+
 // What the picture is gathered from; {0} refs are left out.
 typedef struct tyn_picture_inputs {
     tyn_media_refs media;
     tyn_beam_refs beams;
+    tyn_radial_refs lamps;
+    uint32_t num_marched_lamps;
     tyn_ref lut, lut_block; // given: all forward orders of the suns, else the first
     tyn_ref inscatter;
     tyn_ref wall_links, wall_cells; // of walls: surfaces among the cells of inscatter
@@ -48,11 +58,14 @@ tyn_result tyn_add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance);
      TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_DISPLAY | TYN_OUTPUT_COMPOSITE)
 
 // Suns with an aligned grid, the first of frame->suns: at most TYN_METHOD_MAX_SUNS; those of the
-// environment's map among them if `of_map`. Warns of lamps, which are left out.
+// environment's map among them if `of_map`.
 uint32_t tyn_method_suns(const tyn_job *job, bool of_map);
 
 // A line among the report's warnings.
 void tyn_method_warn(const tyn_job *job, const char *format, ...) TYN_PRINTF(2, 3);
+
+// Warns of point and spot lights, which a method leaves out.
+void tyn_method_warn_lamps(const tyn_job *job);
 
 // TYN_ERR_PARAMS with a log line if a shape of the scene is periodic.
 tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method);

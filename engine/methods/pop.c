@@ -6,6 +6,7 @@
 // medium shows of it is smeared for each pixel (glow). What has left the beams and the ordinates goes
 // into one solve on a lattice of cubic cells for all lights together, seen from the camera by merge
 // and raymarch. A node that a scene does not need is not declared.
+#include "methods/lamps.h"
 #include "methods/sky.h"
 #include "methods/walls.h"
 #include "passes/medium/medium.h"
@@ -20,6 +21,7 @@
 #include "passes/lattice/lattice.h"
 #include "passes/merge/merge.h"
 #include "passes/probe/probe.h"
+#include "passes/radial_beam/radial_beam.h"
 #include "passes/walls/walls.h"
 #include "passes/composite/composite.h"
 #include "passes/tonemap/tonemap.h"
@@ -39,7 +41,7 @@ typedef struct field {
     tyn_picture_inputs picture;
     tyn_sky_refs sky;
     tyn_ref tms, columns;
-    tyn_ref cells, source, power, moments, leaks, wall_power;
+    tyn_ref cells, source, power, lamp_power, moments, leaks, wall_power;
     tyn_wall_refs walls; // surfaces on the lattice; {0} without
     tyn_ref wall_light;  // what they reflect of light that is not the lattice's; {0} if nothing
     bool from_all_sides; // the mean of the environment lights the medium
@@ -107,10 +109,13 @@ static bool is_thin(const tyn_frame_scene *frame)
 static void choose_channels(field *f, const tyn_scene *scene, const tyn_frame_scene *frame)
 {
     bool grey = frame->grey; // and so are the walls
-    float colors[TYN_LIGHTS_MAX + 2][3];
+    float colors[2 * TYN_LIGHTS_MAX + 2][3];
     uint32_t count = 0;
     for (uint32_t i = 0; i < frame->num_suns + frame->num_map_suns; i++) {
         memcpy(colors[count++], frame->suns[i].color, sizeof colors[0]);
+    }
+    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
+        memcpy(colors[count++], frame->lights[i].color, sizeof colors[0]);
     }
     memcpy(colors[count++], frame->environment.sky, sizeof colors[0]);
     memcpy(colors[count++], frame->medium.emission, sizeof colors[0]);
@@ -122,8 +127,8 @@ static void choose_channels(field *f, const tyn_scene *scene, const tyn_frame_sc
         grey = grey && m->texture == TYN_NO_TEXTURE && m->albedo[0] == m->albedo[1] &&
                m->albedo[1] == m->albedo[2] && !any_positive(m->emission);
     }
-    bool one =
-        tyn_lattice_tint((const float(*)[3])colors, count, f->shape.tint) && !f->sky.sky.resource;
+    bool one = tyn_lattice_tint((const float(*)[3])colors, count, f->shape.tint) &&
+               !f->sky.sky.resource && !f->picture.lamps.vpls; // which have the colours of surfaces
     f->shape.channels = one && grey ? 1 : 3;
     if (f->shape.channels == 3) {
         f->shape.tint[0] = f->shape.tint[1] = f->shape.tint[2] = 1.0f;
@@ -349,6 +354,33 @@ static tyn_result add_ordinates(tyn_graph *g, const tyn_job *job, field *f)
     return result;
 }
 
+static tyn_result add_lamps(tyn_graph *g, const tyn_job *job, field *f)
+{
+    const tyn_radial_refs *lamps = &f->picture.lamps;
+    tyn_lattice_lamps_params params;
+    tyn_settings_params(job->settings, &tyn_pass_lattice_lamps, &params);
+    params.shape = f->shape;
+    params.mode = job->frame->medium.mode;
+    params.num_fine = lamps->num_fine;
+    params.num_lamps = lamps->num_lamps;
+    params.vpls = lamps->vpls;
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [LATTICE_LAMPS_PORT_MEDIUM] = job->refs.medium,
+        [LATTICE_LAMPS_PORT_CELLS] = f->cells,
+        [LATTICE_LAMPS_PORT_DENSITY] = f->picture.media.density,
+        [LATTICE_LAMPS_PORT_G] = f->picture.media.g,
+        [LATTICE_LAMPS_PORT_RADIALS] = lamps->radials,
+        [LATTICE_LAMPS_PORT_COLUMN] = lamps->column,
+        [LATTICE_LAMPS_PORT_TAU_A] = lamps->tau_a,
+        [LATTICE_LAMPS_PORT_TAU_P] = lamps->tau_p,
+        [LATTICE_LAMPS_PORT_OTHERS] = f->source,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_lamps, &params, refs);
+    f->source = refs[LATTICE_LAMPS_PORT_SOURCE];
+    f->lamp_power = refs[LATTICE_LAMPS_PORT_POWER];
+    return result;
+}
+
 // What the lattice is given of the environment: its mean from all sides.
 static tyn_ref environment_of(const tyn_job *job, const field *f)
 {
@@ -435,6 +467,7 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, field *f)
     memcpy(params.tint, f->shape.tint, sizeof params.tint);
     params.num_suns = f->picture.num_suns;
     params.num_ordinates = f->sky.count;
+    params.local_lights = f->picture.lamps.radials.resource != 0;
     params.scattered_only = job->view->scattered_only;
     for (int axis = 0; axis < 3; axis++) {
         memcpy(params.world[axis], job->frame->m_from_world + 4 * axis, sizeof params.world[axis]);
@@ -455,6 +488,10 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, field *f)
         [PROBE_PORT_COLUMN] = beams->column,
         [PROBE_PORT_TAU_A] = beams->tau_a,
         [PROBE_PORT_TAU_P] = beams->tau_p,
+        [PROBE_PORT_RADIALS] = f->picture.lamps.radials,
+        [PROBE_PORT_RADIAL_COLUMN] = f->picture.lamps.column,
+        [PROBE_PORT_RADIAL_TAU_A] = f->picture.lamps.tau_a,
+        [PROBE_PORT_RADIAL_TAU_P] = f->picture.lamps.tau_p,
         [PROBE_PORT_POINTS] = job->refs.points,
         [PROBE_PORT_WALL_LINKS] = f->walls.links,
         [PROBE_PORT_WALL_CELLS] = f->walls.cells,
@@ -481,6 +518,7 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, field *f)
     params.channels = f->shape.channels;
     memcpy(params.tint, f->shape.tint, sizeof params.tint);
     params.num_suns = f->picture.num_suns;
+    params.num_groups = tyn_radial_groups(&f->picture.lamps);
     tyn_ref refs[TYN_MAX_PORTS] = {
         [BALANCE_PORT_MEDIUM] = job->refs.medium,
         [BALANCE_PORT_ENVIRONMENT] = environment_of(job, f),
@@ -492,6 +530,7 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, field *f)
         [BALANCE_PORT_POWER] = f->power,
         [BALANCE_PORT_LEAKS] = f->leaks,
         [BALANCE_PORT_WALL_POWER] = f->wall_power,
+        [BALANCE_PORT_LAMP_POWER] = f->lamp_power,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_balance, &params, refs);
     if (result == TYN_OK) {
@@ -522,9 +561,13 @@ static tyn_result add_lights(tyn_graph *g, const tyn_job *job, field *f)
     tyn_result result =
         tyn_add_beams(g, job, &f->picture.media, f->picture.num_suns, &f->picture.beams);
     if (result == TYN_OK) {
+        result = tyn_add_radials(g, job, &f->picture.media, (tyn_ref){0}, &f->picture.lamps);
+        f->picture.num_marched_lamps = f->picture.lamps.num_lamps;
+    }
+    if (result == TYN_OK) {
         result = tyn_add_shadows(g, job, f->picture.num_suns, &f->picture.shadows);
     }
-    if (tyn_has_walls(job->frame)) {
+    if (result == TYN_OK && tyn_has_walls(job->frame)) {
         // Ordinates know of no walls; the mean of the sky comes in along the lattice's lines, which do.
         if (job->frame->environment.has_map) {
             tyn_method_warn(job,
@@ -559,6 +602,7 @@ static tyn_result add_field(tyn_graph *g, const tyn_job *job, field *f)
         {ordinates, add_columns},
         {f->picture.num_suns, add_source},
         {ordinates, add_ordinates},
+        {f->picture.lamps.radials.resource, add_lamps},
         {periodic, add_wall_light},
         {true, add_solve},
         {job->outputs & TYN_PICTURE_OUTPUTS, add_merge},
@@ -636,10 +680,11 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     // What is scattered forward of a constant environment, whoever carries the rest.
     f.picture.mean_in_field = any_positive(frame->environment.sky);
     bool lit_by_environment = f.from_all_sides || f.sky.ordinates.resource;
-    bool scattered_light = f.picture.num_suns || lit_by_environment || frame->emissive;
+    bool lamps = f.picture.lamps.radials.resource != 0;
+    bool scattered_light = f.picture.num_suns || lamps || lit_by_environment || frame->emissive;
     bool solve = scattered_light && (lit_by_environment || !is_thin(frame));
     const step steps[] = {
-        {picture && (f.picture.num_suns || f.sky.ordinates.resource), add_lut},
+        {picture && (f.picture.num_suns || lamps || f.sky.ordinates.resource), add_lut},
         {picture && f.sky.sky.resource, add_glow},
         {solve || (job->outputs & field_outputs), add_field},
     };
@@ -656,6 +701,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_env_importance,
     &tyn_pass_importance,
     &tyn_pass_ordinates,
+    &tyn_pass_radial_beam,
     &tyn_pass_scatter_lut,
     &tyn_pass_env_glow,
     &tyn_pass_lattice_cells,
@@ -665,6 +711,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_columns,
     &tyn_pass_lattice_source,
     &tyn_pass_lattice_ordinates,
+    &tyn_pass_lattice_lamps,
     &tyn_pass_lattice_recall,
     &tyn_pass_lattice,
     &tyn_pass_lattice_keep,

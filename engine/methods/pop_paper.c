@@ -170,7 +170,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (frame->emissive) {
         tyn_method_warn(job, "emission is seen, but does not light the medium");
     }
-    tyn_method_suns(job, true); // warns of lamps
+    tyn_method_warn_lamps(job);
     propagated p = {.picture.field = RAYMARCH_INSCATTER_PLAIN};
     tyn_settings_params(job->settings, &tyn_pass_propagate_rect, &p.grids);
     tyn_settings_params(job->settings, &tyn_pass_residuum, &p.residuum);

@@ -1,7 +1,8 @@
 // single.c -- method "single": light that has scattered exactly once, and emission.
-#include "methods/nodes.h"
+#include "methods/lamps.h"
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
+#include "passes/radial_beam/radial_beam.h"
 #include "passes/composite/composite.h"
 #include "passes/shadow_map/shadow_map.h"
 #include "passes/tonemap/tonemap.h"
@@ -34,17 +35,16 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (result == TYN_OK) {
         result = tyn_add_shadows(g, job, in.num_suns, &in.shadows);
     }
+    if (result == TYN_OK) {
+        result = tyn_add_radials(g, job, &in.media, (tyn_ref){0}, &in.lamps);
+        in.num_marched_lamps = in.lamps.num_lamps;
+    }
     return result == TYN_OK ? tyn_add_picture(g, job, &in) : result;
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,
-    &tyn_pass_beam,
-    &tyn_pass_shadow_map,
-    &tyn_pass_raymarch,
-    &tyn_pass_composite,
-    &tyn_pass_tonemap,
-    NULL,
+    &tyn_pass_medium,   &tyn_pass_beam,      &tyn_pass_shadow_map, &tyn_pass_radial_beam,
+    &tyn_pass_raymarch, &tyn_pass_composite, &tyn_pass_tonemap,    NULL,
 };
 
 const tyn_method tyn_method_single = {

@@ -19,6 +19,12 @@ static const tyn_port ports[PROBE_NUM_PORTS] = {
     [PROBE_PORT_COLUMNS] = {"columns", TYN_IN, TYN_BUFFER, 0, true, "of columns"},
     [PROBE_PORT_WALL_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
     [PROBE_PORT_WALL_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
+    [PROBE_PORT_RADIALS] = {"radials", TYN_IN, TYN_BUFFER, 0, true, "struct radial_block"},
+    [PROBE_PORT_RADIAL_COLUMN] = {"radial_column", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                  "mean density (or sigma_s) on the way from local lights"},
+    [PROBE_PORT_RADIAL_TAU_A] = {"radial_tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "mean sigma_a"},
+    [PROBE_PORT_RADIAL_TAU_P] = {"radial_tau_p", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                 "mean (1 - f) sigma_s"},
     [PROBE_PORT_POINTS] = {"points", TYN_IN, TYN_BUFFER, 0, false, "vec3[], m"},
     [PROBE_PORT_RESULTS] = {"results", TYN_OUT, TYN_BUFFER, 0, false, "tyn_probe_result[], W/m^2"},
 };
@@ -31,6 +37,8 @@ static const tyn_binding bindings[] = {
     {PROBE_PORT_RESULTS, TYN_USE_STORAGE_WRITE},   {PROBE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
     {PROBE_PORT_ORDINATES, TYN_USE_UNIFORM},       {PROBE_PORT_COLUMNS, TYN_USE_STORAGE_READ},
     {PROBE_PORT_WALL_LINKS, TYN_USE_STORAGE_READ}, {PROBE_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
+    {PROBE_PORT_RADIALS, TYN_USE_STORAGE_READ},    {PROBE_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED},
+    {PROBE_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED},    {PROBE_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED},
 };
 
 static const tyn_kernel kernels[] = {
@@ -40,7 +48,7 @@ static const tyn_kernel kernels[] = {
      sizeof(struct probe_args),
      {64, 1, 1},
      bindings,
-     14,
+     18,
      2},
 };
 
@@ -68,6 +76,7 @@ static void record(tyn_recorder *r, const void *params)
         .num_ordinates = p->num_ordinates,
         .num_points = num_points(tyn_rec_extent(r, PROBE_PORT_POINTS)),
         .scattered_only = p->scattered_only,
+        .local_lights = p->local_lights,
     };
     memcpy(args.world, p->world, sizeof args.world);
     const uint32_t spec[2] = {p->mode, tyn_rec_has(r, PROBE_PORT_WALL_LINKS)};

@@ -11,9 +11,14 @@
 #define BEAM_TAU_A 5
 #define BEAM_TAU_P 6
 #define COLUMNS_BUFFER 11
+#define RADIAL_BLOCK 14
+#define RADIAL_COLUMN 15
+#define RADIAL_TAU_A 16
+#define RADIAL_TAU_P 17
 #include "medium.glsl"
 #include "beam.glsl"
 #include "columns.glsl"
+#include "radial.glsl"
 #include "lattice.glsl"
 #define WALLS_LINKS 12
 #define WALLS_CELLS 13
@@ -124,6 +129,20 @@ bool last_in_box(vec3 p, vec3 direction, out vec3 last)
     return t <= min(min(hi.x, hi.y), hi.z);
 }
 
+// Optical depth between local light n and p, which lies `away` from it and may be outside of the box.
+beam_tau lamp_tau(uint n, vec3 away)
+{
+    vec3 o = radials[n].light.position;
+    vec3 d = mix(away, vec3(1e-20), lessThan(abs(away), vec3(1e-20)));
+    vec3 t0 = -o / d, t1 = (medium.extent - o) / d, lo = min(t0, t1), hi = max(t0, t1);
+    float enter = max(max(lo.x, lo.y), lo.z), leave = min(min(hi.x, hi.y), min(hi.z, 1.0));
+    if (enter >= leave || leave <= 0.0) {
+        return beam_tau(vec3(0.0), vec3(0.0), vec3(0.0));
+    }
+    vec3 last = leave * away;
+    return radial_tau(radial_place_of(n, last, length(last)));
+}
+
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
@@ -153,6 +172,24 @@ void main()
         vec3 flux = lights[sun].mean_cosine * lights[sun].direction;
         for (uint ch = 0; ch < 3; ch++) {
             field[ch] += e[ch] * lights[sun].color[ch] * vec4(1.0, flux);
+        }
+    }
+    uint lights = args.local_lights != 0 ? radial_count : 0u;
+    for (uint n = 0; n < lights; n++) {
+        vec3 away = p - radials[n].light.position;
+        float r = length(away), radius = radials[n].light.radius;
+        float share = radial_share(n, away, r) / max(r * r, max(radius * radius, 1e-12));
+        if (share <= 0.0) {
+            continue;
+        }
+        beam_tau tau = lamp_tau(n, away);
+        vec3 e = exp(-(tau.a + tau.p));
+        if (args.scattered_only != 0) {
+            e -= exp(-(tau.a + tau.s));
+        }
+        e *= share * radials[n].light.intensity;
+        for (uint ch = 0; ch < 3; ch++) {
+            field[ch] += e[ch] * vec4(1.0, away / max(r, 1e-20));
         }
     }
     uint count = min(ordinates.count, args.num_ordinates);

@@ -8,6 +8,7 @@ typedef struct tyn_probe_params {
     float tint[3];          // of the one channel (tyn_lattice_shape.tint)
     uint32_t num_suns;      // 0..4
     uint32_t num_ordinates; // at most (tyn_columns_params.count); 0: there are none
+    uint32_t local_lights;  // 1: there are lamps or VPLs
     uint32_t
         scattered_only; // 1: without light that has not scattered: that of suns and ordinates, and
                         // of the mean of the sky where there are ordinates, along them
@@ -27,6 +28,10 @@ enum {
     PROBE_PORT_COLUMNS,     // IN optional buffer, of columns
     PROBE_PORT_WALL_LINKS,  // IN optional buffers, of walls
     PROBE_PORT_WALL_CELLS,
+    PROBE_PORT_RADIALS,       // IN optional buffer struct radial_block
+    PROBE_PORT_RADIAL_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS; of radial_beam
+    PROBE_PORT_RADIAL_TAU_A, // IN optional 3D: mode COEFFICIENTS, as the one below
+    PROBE_PORT_RADIAL_TAU_P,
     PROBE_PORT_POINTS,  // IN buffer vec3[], M, m
     PROBE_PORT_RESULTS, // OUT buffer tyn_probe_result[]
     PROBE_NUM_PORTS,

@@ -28,6 +28,13 @@ static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
     [RAYMARCH_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "mean sigma_a along the suns"},
     [RAYMARCH_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true,
                              "mean (1 - f) sigma_s along the suns"},
+    [RAYMARCH_PORT_RADIALS] = {"radials", TYN_IN, TYN_BUFFER, 0, true, "radial_block"},
+    [RAYMARCH_PORT_RADIAL_COLUMN] = {"radial_column", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                     "mean density (or sigma_s) on the way from lamps"},
+    [RAYMARCH_PORT_RADIAL_TAU_A] = {"radial_tau_a", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                    "mean sigma_a on the way from lamps"},
+    [RAYMARCH_PORT_RADIAL_TAU_P] = {"radial_tau_p", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                    "mean (1 - f) sigma_s on the way from lamps"},
     [RAYMARCH_PORT_LUT] = {"lut", TYN_IN, TYN_IMAGE_2D, 0, true, "forward scattering"},
     [RAYMARCH_PORT_LUT_BLOCK] = {"lut_block", TYN_IN, TYN_BUFFER, 0, true, "lut_block"},
     [RAYMARCH_PORT_INSCATTER] = {"inscatter", TYN_IN, TYN_IMAGE_3D, 0, true,
@@ -86,11 +93,15 @@ static const tyn_binding bindings[] = {
     {RAYMARCH_PORT_WALL_CELLS, TYN_USE_STORAGE_READ, false},
     {RAYMARCH_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_SHADOWS, TYN_USE_STORAGE_READ, false},
+    {RAYMARCH_PORT_RADIALS, TYN_USE_UNIFORM, false},
+    {RAYMARCH_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_SIGMA_A, TYN_USE_SAMPLED, false}, // from here on colour only
     {RAYMARCH_PORT_G, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_EMISSION, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_TAU_A, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_TAU_P, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED, false},
 };
 // The order of raymarch_background.comp.
 static const tyn_binding background_bindings[] = {
@@ -108,8 +119,8 @@ static const tyn_binding background_bindings[] = {
 enum {
     NUM_BACKGROUND_BINDINGS = sizeof(background_bindings) / sizeof(background_bindings[0]),
     NUM_BINDINGS = sizeof(bindings) / sizeof(bindings[0]),
-    NUM_GREY_BINDINGS = NUM_BINDINGS - 5,
-    NUM_SPEC = 3, // mode, number of suns, features
+    NUM_GREY_BINDINGS = NUM_BINDINGS - 7,
+    NUM_SPEC = 4, // mode, number of suns, features, number of lamps
 };
 
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
@@ -138,7 +149,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                            .local_size = {8, 8, 1},
                            .bindings = background_bindings,
                            .num_bindings = NUM_BACKGROUND_BINDINGS,
-                           .num_spec = NUM_SPEC},
+                           .num_spec = NUM_SPEC - 1},
 };
 
 static const tyn_param params_table[] = {
@@ -281,7 +292,7 @@ static void bind(const tyn_raymarch_params *p, const tyn_binding *table, uint32_
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_raymarch_params *p = params;
-    uint32_t spec[NUM_SPEC] = {p->mode, p->num_suns, features_of(r, p)};
+    uint32_t spec[NUM_SPEC] = {p->mode, p->num_suns, features_of(r, p), p->num_lamps};
     float voxel = shortest_voxel(tyn_rec_extent(r, RAYMARCH_PORT_DENSITY), p->extent);
     struct raymarch_args args = {
         .step = p->step * fminf(voxel, p->longest_step),

@@ -12,6 +12,7 @@ typedef struct tyn_raymarch_params {
     uint32_t grey;        // 1: one medium (mode DENSITY), equal in all channels
     uint32_t mode;        // TYN_MEDIUM_*
     uint32_t num_suns;    // 0..4
+    uint32_t num_lamps;   // that are marched: the first of `radials`
     uint32_t kernels;     // 1: sunlight scattered forward any number of times (lut); else once only
     uint32_t mean;        // 1: the mean of the environment came in through the field
     uint32_t emissive;    // 1: media emit light
@@ -69,6 +70,10 @@ enum {
     RAYMARCH_PORT_COLUMN,   // IN optional 3D: column, or tau_s in mode COEFFICIENTS
     RAYMARCH_PORT_TAU_A,    // IN optional 3D: mode COEFFICIENTS, as the one below
     RAYMARCH_PORT_TAU_P,
+    RAYMARCH_PORT_RADIALS,       // IN optional buffer struct radial_block: with lamps, as the next
+    RAYMARCH_PORT_RADIAL_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS; of radial_beam
+    RAYMARCH_PORT_RADIAL_TAU_A, // IN optional 3D: mode COEFFICIENTS, as the one below
+    RAYMARCH_PORT_RADIAL_TAU_P,
     RAYMARCH_PORT_LUT,        // IN optional 2D: with `kernels` and suns, as the next
     RAYMARCH_PORT_LUT_BLOCK,  // IN optional buffer struct lut_block
     RAYMARCH_PORT_INSCATTER,  // IN optional 3D: of merge; without it suns and emission only

@@ -8,6 +8,7 @@
 // Specialisation constant 0 is the medium's mode (medium.glsl).
 layout(constant_id = 1) const uint raymarch_num_suns = 1u;
 layout(constant_id = 2) const uint raymarch_features = 0u;
+layout(constant_id = 3) const uint raymarch_num_lamps = 0u;
 
 #define MEDIUM_BLOCK 0
 #define MEDIUM_DENSITY 1
@@ -52,12 +53,17 @@ layout(binding = 21) uniform sampler2D surface_tex;
 #define WALLS_CELLS 23
 #define SHADOW_ATLAS 24
 #define SHADOW_LIGHTS 25
+#define RADIAL_BLOCK 26
+#define RADIAL_UNIFORM
+#define RADIAL_COLUMN 27
 #ifndef RAYMARCH_GREY
-#define MEDIUM_SIGMA_A 26
-#define MEDIUM_G 27
-#define MEDIUM_EMISSION 28
-#define BEAM_TAU_A 29
-#define BEAM_TAU_P 30
+#define MEDIUM_SIGMA_A 28
+#define MEDIUM_G 29
+#define MEDIUM_EMISSION 30
+#define BEAM_TAU_A 31
+#define BEAM_TAU_P 32
+#define RADIAL_TAU_A 33
+#define RADIAL_TAU_P 34
 #endif
 
 layout(push_constant, scalar) uniform Args

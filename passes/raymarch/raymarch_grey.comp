@@ -11,6 +11,7 @@
 #include "host_depth.glsl"
 #include "medium.glsl"
 #include "beam.glsl"
+#include "radial.glsl"
 #include "scatter_lut.glsl"
 #include "lattice.glsl"
 #include "lattice_walls.glsl"

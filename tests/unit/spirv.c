@@ -247,7 +247,8 @@ static void check_kernel(const tyn_pass_desc *pass, const tyn_kernel *kernel)
     } else {
         check_compute(pass, kernel, &s.at[0]);
     }
-    uint32_t args = 0, spec_ids = 0, seen = 0;
+    uint32_t args = 0, spec_ids = 0;
+    uint64_t seen = 0;
     for (int i = 0; i < s.num; i++) {
         const reflect_shader *shader = &s.at[i];
         if (shader->num_entry_points != 1 || !shader->named_main) {
@@ -263,8 +264,8 @@ static void check_kernel(const tyn_pass_desc *pass, const tyn_kernel *kernel)
         }
         for (uint32_t b = 0; b < shader->num_bindings; b++) {
             check_binding(pass, kernel, &shader->bindings[b]);
-            if (shader->bindings[b].binding < 32) {
-                seen |= 1u << shader->bindings[b].binding;
+            if (shader->bindings[b].binding < 64) {
+                seen |= 1ull << shader->bindings[b].binding;
             }
         }
         spec_ids |= shader->spec_ids;

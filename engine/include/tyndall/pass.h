@@ -19,8 +19,8 @@ extern "C" {
 #endif
 
 enum {
-    TYN_MAX_PORTS = 32,
-    TYN_MAX_BINDINGS = 32,
+    TYN_MAX_PORTS = 40,
+    TYN_MAX_BINDINGS = 40,
     TYN_MAX_SPEC = 8,
     TYN_MAX_ARGS = 128,
     TYN_MAX_ATTACHMENTS = 5, // four colours and a depth: what every device can draw to at once

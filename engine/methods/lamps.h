@@ -1,0 +1,12 @@
+// lamps.h -- local lights of the methods: point and spot lights, and those that stand for surfaces' light.
+#pragma once
+#include "methods/nodes.h"
+
+enum { TYN_METHOD_FINE_LAMPS = 4 };
+
+// `vpls`: buffer struct radial_vpls, or {0}.
+tyn_result tyn_add_radials(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
+                           tyn_ref vpls, tyn_radial_refs *out);
+
+// Groups of local lights that the lattice keeps apart (lattice_lamps).
+uint32_t tyn_radial_groups(const tyn_radial_refs *radials);
