@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { REFLECT_MAX_BINDINGS = 32, REFLECT_MAX_CAPABILITIES = 32 };
+enum { REFLECT_MAX_BINDINGS = 64, REFLECT_MAX_CAPABILITIES = 32 };
 
 typedef enum reflect_kind {
     REFLECT_OTHER = 0, // an array of descriptors, a separate sampler, ...
