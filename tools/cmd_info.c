@@ -144,6 +144,59 @@ static void print_media(const tyn_scene *scene)
     }
 }
 
+// Area of a material's triangles, m^2.
+static double material_area(const tyn_surfaces *s, uint32_t material)
+{
+    double area = 0;
+    for (uint32_t i = 0; i < s->num_triangles; i++) {
+        const float *p[3];
+        double n2 = 0;
+        for (int k = 0; k < 3; k++) {
+            p[k] = s->vertices[s->triangles[i].vertices[k]].position;
+        }
+        for (int a = 0; a < 3; a++) {
+            const int b = (a + 1) % 3, c = (a + 2) % 3;
+            const double n = ((double)p[1][b] - p[0][b]) * ((double)p[2][c] - p[0][c]) -
+                             ((double)p[1][c] - p[0][c]) * ((double)p[2][b] - p[0][b]);
+            n2 += n * n;
+        }
+        area += s->triangles[i].material == material ? 0.5 * sqrt(n2) : 0;
+    }
+    return area;
+}
+
+static void print_surfaces(const tyn_scene *scene)
+{
+    static const char *const wraps[] = {"repeats", "clamped", "mirrored"};
+    const tyn_surfaces *s = &scene->surfaces;
+    if (!s->num_triangles) {
+        return;
+    }
+    printf("surfaces: %u meshes, %u triangles, %u vertices\n", scene->num_meshes, s->num_triangles,
+           s->num_vertices);
+    for (uint32_t i = 0; i < s->num_materials; i++) {
+        const tyn_surface_material *m = &s->materials[i];
+        const double area = material_area(s, i);
+        const int sides = m->flags & TYN_SURFACE_EMITS_BOTH_SIDES ? 2 : 1;
+        printf("material %u: albedo %g %g %g", i, m->albedo[0], m->albedo[1], m->albedo[2]);
+        if (m->texture != TYN_NO_TEXTURE) {
+            printf(" x texture %u", m->texture);
+        }
+        printf(", %.4g m^2\n", area);
+        if (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0) {
+            const double factor = 3.14159265358979 * area * sides; // of a Lambertian emitter
+            print_color("  emission ", m->emission, " W/(m^2 sr)");
+            printf(" from %s, %.4g %.4g %.4g W\n", sides == 2 ? "both sides" : "the front",
+                   factor * m->emission[0], factor * m->emission[1], factor * m->emission[2]);
+        }
+    }
+    for (uint32_t i = 0; i < s->num_textures; i++) {
+        const tyn_texture *t = &s->textures[i];
+        printf("texture %u '%s': %ux%u texels, %s along u, %s along v\n", i, name_or(t->name),
+               t->size[0], t->size[1], wraps[t->wrap[0]], wraps[t->wrap[1]]);
+    }
+}
+
 static void print_lights(const tyn_scene *scene)
 {
     static const char *const kinds[] = {"directional", "point", "spot"};
@@ -197,12 +250,14 @@ static int print_scene(app *a, const scene_options *options)
     int code = scene_open(a, options, &scene);
     if (code == EXIT_DONE) {
         print_media(&scene);
+        print_surfaces(&scene);
         print_lights(&scene);
         print_cameras(&scene);
         float lo[3], hi[3];
         if (tyn_scene_bounds(&scene, lo, hi)) {
-            printf("bounds of the media: %g %g %g to %g %g %g m\n", lo[0], lo[1], lo[2], hi[0],
-                   hi[1], hi[2]);
+            printf("bounds of the %s: %g %g %g to %g %g %g m\n",
+                   scene.num_shapes ? "media" : "surfaces", lo[0], lo[1], lo[2], hi[0], hi[1],
+                   hi[2]);
         }
         if (scene.clamped_negative) {
             printf("negative densities set to 0: %llu\n",

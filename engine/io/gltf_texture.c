@@ -128,7 +128,9 @@ static char *texture_name(const gltf_textures *t, const cJSON *texture)
             return strdup(name->valuestring);
         }
     }
-    return NULL;
+    const cJSON *uri = tyn_json_member(at[1], "uri");
+    return cJSON_IsString(uri) && strncmp(uri->valuestring, "data:", 5) ? strdup(uri->valuestring)
+                                                                        : NULL;
 }
 
 tyn_result tyn_gltf_texture_get(gltf_textures *t, const cJSON *info, uint32_t *index)
