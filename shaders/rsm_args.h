@@ -5,7 +5,8 @@
 //                   the way from the light: irradiance x area x albedo, or intensity x solid angle x albedo
 //   "rsm_position"  rgb: M, m; a: area of the surface in the texel, m^2
 //   "rsm_normal"    rgb: M, unit, on the side of the light
-// Texels that see no surface are 0.
+// Texels that see no surface are 0. So is the flux of surfaces that face nothing, neither media nor other
+// surfaces: what they reflect leaves the scene.
 #ifndef TYN_RSM_ARGS_H
 #define TYN_RSM_ARGS_H
 #include "shared.h"

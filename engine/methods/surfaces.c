@@ -87,6 +87,9 @@ tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_
     tyn_shadow_map_plan(&views, frame->suns, num_suns, lamps, num_lamps, &frame->surfaces);
     memcpy(params.size, views.size, sizeof params.size);
     params.num_triangles = frame->num_triangles;
+    if (!frame->empty) {
+        memcpy(params.extent, frame->medium.extent, sizeof params.extent);
+    }
     for (uint32_t i = 0; i < views.num_views; i++) {
         const tyn_shadow_view *v = &views.views[i];
         const struct shadow_light *l = &views.lights[v->light];

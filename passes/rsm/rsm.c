@@ -73,6 +73,7 @@ void tyn_rsm_add(tyn_rsm_params *p, const struct rsm_tile *tile, uint32_t kind,
     *d = (struct rsm_draw_args){
         .kind = kind, .cos_inner = -2.0f, .cos_outer = -2.0f, .texel = texel};
     memcpy(d->clip, clip, sizeof d->clip);
+    memcpy(d->extent, p->extent, sizeof d->extent);
     for (int c = 0; c < 3; c++) {
         d->flux[c] = light->color[c] * texel;
         d->origin[c] =

@@ -11,6 +11,7 @@ typedef struct tyn_rsm_params {
     // Set by the method:
     uint32_t size[2]; // of the atlas, texels
     uint32_t num_triangles;
+    float extent[3];    // medium_block.extent, m; 0 without media
     uint32_t num_tiles; // by tyn_rsm_add
     struct rsm_tile tiles[TYN_RSM_MAX_TILES];
     struct rsm_draw_args draws[TYN_RSM_MAX_TILES];

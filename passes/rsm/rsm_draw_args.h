@@ -11,8 +11,9 @@ struct rsm_draw_args {
     float cos_inner; // of a spot, as the two below; -2 of a point
     tyn_vec3 axis;   // M
     float cos_outer;
-    float texel; // area of a texel across the sun, m^2; solid angle of one in the middle, sr
+    float texel;     // area of a texel across the sun, m^2; solid angle of one in the middle, sr
+    tyn_vec3 extent; // of the box of the media, m
 };
-TYN_ASSERT_SIZE(rsm_draw_args, 116);
+TYN_ASSERT_SIZE(rsm_draw_args, 128);
 
 #endif

@@ -31,6 +31,19 @@ float falloff(float cosine)
     return a * a;
 }
 
+// Is there anything in front of a surface at p, of the media or of other surfaces? Light reflected by the outer
+// walls of a house is not seen by what is inside. (Less than a hundredth of the scene counts as nothing.)
+bool faces_something(vec3 p, vec3 world, vec3 n)
+{
+    vec3 size = surfaces.hi - surfaces.lo;
+    vec3 m = vec3(dot(surfaces.to_world[0].xyz, n), dot(surfaces.to_world[1].xyz, n),
+                  dot(surfaces.to_world[2].xyz, n));
+    // How far the boxes reach beyond the plane of the surface.
+    float media = args.extent.x > 0.0 ? dot(max(n, vec3(0.0)), args.extent) - dot(n, p) : 0.0;
+    float others = dot(m, 0.5 * (surfaces.lo + surfaces.hi) - world) + 0.5 * dot(abs(m), size);
+    return max(media, others) > 0.01 * max(length(size), length(args.extent));
+}
+
 void main()
 {
     surface_triangle t = triangles[triangle];
@@ -67,7 +80,7 @@ void main()
         albedo *= surface_texture_around(m.texture, ua + weights.y * u1 + weights.z * u2,
                                          vec2(scale, 0.0), vec2(0.0, scale));
     }
-    flux = vec4(args.flux * share * albedo, 0.0);
+    flux = faces_something(p, world, n) ? vec4(args.flux * share * albedo, 0.0) : vec4(0.0);
     position = vec4(p, area);
     normal = vec4(n, 0.0);
 }

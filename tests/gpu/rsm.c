@@ -41,7 +41,14 @@ static sums run(gpu_test *t, const tyn_scene *scene, const struct light_block *l
     frame.lights[0] = frame.suns[0] = *light;
     frame.num_suns = light->kind == TYN_LIGHT_KIND_DIRECTIONAL;
     frame.num_triangles = frame.surfaces.num_triangles = s->num_triangles;
+    frame.empty = true;
     memcpy(frame.surfaces.from_world, rows, sizeof rows);
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++) {
+            frame.surfaces.to_world[r][c] = rows[c][r];
+            frame.surfaces.to_world[r][3] -= rows[c][r] * rows[c][3];
+        }
+    }
     for (int a = 0; a < 3; a++) {
         frame.surfaces.lo[a] = INFINITY;
         frame.surfaces.hi[a] = -INFINITY;
@@ -191,12 +198,33 @@ static void spots_in_a_room(void **state)
     tyn_scene_finish(&scene);
 }
 
+// A closed box from outside: nothing is in front of its faces, so nothing sees what they reflect.
+static void a_house_from_outside(void **state)
+{
+    tyn_scene scene;
+    tyn_scene_init(&scene);
+    const uint32_t m = solids_material(&scene, (float[]){0.5f, 0.6f, 0.7f}, (float[3]){0});
+    solids_box(&scene, (float[]){-1, 0, -2}, (float[]){3, 2, 1}, 0, false, m);
+    struct light_block sun = {.kind = TYN_LIGHT_KIND_DIRECTIONAL, .color = {1, 2, 4}};
+    turn((float[]){0.48f, -0.8f, 0.36f}, false, sun.direction);
+    sums s = run(*state, &scene, &sun, (float[]){-1, 0, -2}, (float[]){3, 2, 1});
+    assert_int_equal(s.texels, 0);
+    // With a yard around it, the walls light that, and the yard lights the walls.
+    solids_quad(&scene, (float[]){-5, 0, -5}, (float[]){0, 0, 10}, (float[]){10, 0, 0}, m);
+    s = run(*state, &scene, &sun, (float[]){-5, 0, -5}, (float[]){5, 2, 5});
+    const double yard = 10 * 10 * 0.8,
+                 roof = 4 * 3 * 0.8; // what goes through: the roof's light is lost
+    expect("red", s.flux[0], 0.5 * (yard - roof), 0.01);
+    tyn_scene_finish(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_square_in_the_sun),
         cmocka_unit_test(a_lamp_in_a_room),
         cmocka_unit_test(spots_in_a_room),
+        cmocka_unit_test(a_house_from_outside),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
