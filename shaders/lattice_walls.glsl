@@ -132,6 +132,33 @@ walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
     return b;
 }
 
+// Do the centres of two cells see each other? Along the links next to the line between them: never through a
+// closed mesh; past edges and along oblique walls right to about a cell. `b` may be outside the lattice, where
+// there are no walls.
+bool walls_visible(lattice_box box, ivec3 a, ivec3 b)
+{
+    ivec3 way = abs(b - a), at = a;
+    int n = max(way.x, max(way.y, way.z));
+    for (int i = 1; i <= n; i++) {
+        ivec3 next = a + ivec3(floor(vec3(b - a) * (float(i) / float(n)) + 0.5));
+        uint links = wall_links[uint((at.z * box.dims.y + at.y) * box.dims.x + at.x)];
+        if ((links >> walls_link(next - at) & 1u) != 0u) {
+            return false;
+        }
+        if (any(lessThan(next, ivec3(0))) || any(greaterThanEqual(next, box.dims))) {
+            return true;
+        }
+        at = next;
+    }
+    return true;
+}
+
+// The cell that a light on a surface shines from, `n` being the side it is on.
+ivec3 walls_cell_before(lattice_box box, vec3 p, vec3 n)
+{
+    return ivec3(floor(lattice_from_m(box, p) + 0.75 * n));
+}
+
 // A field with one texel per cell, `skip` texels of the texture before cell 0. Channel ch of a stacked one:
 // skip.z = ch dims.z.
 vec4 walls_fetch(sampler3D field, lattice_box box, walls_blend b, ivec3 skip)

@@ -10,7 +10,7 @@ struct walls_pass_args {
     tyn_uint row; // triangles in a row of workgroups
 };
 
-#define WALLS_GROUP 32  // threads that look at one triangle
+#define WALLS_GROUP 16  // threads that look at one triangle
 #define WALLS_SLOTS 6   // walls in a cell, one for each main direction of the normal
 #define WALLS_ROW 32768 // workgroups along x
 

@@ -332,7 +332,7 @@ static void blends_on_one_side(void **state)
     tyn_graph_output(t->graph, "results", p[pass.results], true);
     gpu_run(t);
     const float(*results)[4] = (const float(*)[4])gpu_map(t, "results");
-    int wrong_in = 0, wrong_out = 0, in = 0, near = 0;
+    int wrong_in = 0, wrong_out = 0, in = 0, near = 0, seen = 0, within = 0;
     for (int i = 0; i < POINTS; i++) {
         double depth = 1;
         for (int a = 0; a < 3; a++) {
@@ -346,6 +346,17 @@ static void blends_on_one_side(void **state)
             continue;
         }
         near += results[i][1] > 0;
+        // Cells see each other only if both are inside or both are not; inside, as it is convex, they do.
+        const float *q = points[(i + 1) % POINTS];
+        float both[2];
+        for (int k = 0; k < 2; k++) {
+            const float *x = k ? q : points[i];
+            int c[3] = {(int)(x[0] * 16), (int)(x[1] * 16), (int)(x[2] * 16)};
+            both[k] = field[4 * ((c[2] * 16 + c[1]) * 16 + c[0])];
+        }
+        assert_true(results[i][3] < 0 || both[0] == both[1]);
+        within += both[0] == 0 && both[1] == 0;
+        seen += both[0] == 0 && both[1] == 0 && results[i][3] >= 0;
         in += depth > 0;
         wrong_in += depth > 0 && results[i][0] > 1e-6;
         wrong_out += depth < 0 && results[i][0] < 1 - 1e-6;
@@ -354,6 +365,8 @@ static void blends_on_one_side(void **state)
         "%d points inside, %d in cells with walls: %d see light from outside; %d outside see the "
         "dark\n",
         in, near, wrong_in, wrong_out);
+    printf("%d of %d pairs of cells inside see each other\n", seen, within);
+    assert_true(within > 100 && seen > 0.97 * within);
     assert_int_equal(wrong_in, 0);
     assert_true(wrong_out < POINTS / 500);
     free(field);
