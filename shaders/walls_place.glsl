@@ -10,7 +10,7 @@ uint walls_cell_index(ivec3 c)
 
 // World -> lattice: centres, moved by the shift, at whole numbers. Every triangle of a vertex gets the same
 // place for it.
-vec3 walls_place(vec3 world)
+vec3 walls_lattice_place(vec3 world)
 {
     precise vec3 m = vec3(dot(surfaces.from_world[0].xyz, world) + surfaces.from_world[0].w,
                           dot(surfaces.from_world[1].xyz, world) + surfaces.from_world[1].w,
@@ -23,9 +23,9 @@ vec3 walls_place(vec3 world)
 
 walls_triangle walls_triangle_at(uint i)
 {
-    return walls_triangle_of(walls_place(vertices[triangles[i].v0].position),
-                             walls_place(vertices[triangles[i].v1].position),
-                             walls_place(vertices[triangles[i].v2].position));
+    return walls_triangle_of(walls_lattice_place(vertices[triangles[i].v0].position),
+                             walls_lattice_place(vertices[triangles[i].v1].position),
+                             walls_lattice_place(vertices[triangles[i].v2].position));
 }
 
 #endif

@@ -2,15 +2,23 @@
 #include "walls.h"
 #include "wall_light_args.h"
 #include "wall_light_suns.comp.h"
+#include "wall_light_vpls.comp.h"
 
 static const tyn_port ports[WALL_LIGHT_NUM_PORTS] = {
     [WALL_LIGHT_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
     [WALL_LIGHT_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "struct light_block[]"},
-    [WALL_LIGHT_PORT_BEAMS] = {"beams", TYN_IN, TYN_BUFFER, 0, false, "struct beam_block[]"},
-    [WALL_LIGHT_PORT_COLUMN] = {"column", TYN_IN, TYN_IMAGE_3D, 0, false,
+    [WALL_LIGHT_PORT_BEAMS] = {"beams", TYN_IN, TYN_BUFFER, 0, true, "struct beam_block[]"},
+    [WALL_LIGHT_PORT_COLUMN] = {"column", TYN_IN, TYN_IMAGE_3D, 0, true,
                                 "depth along the suns, or that of sigma_s"},
     [WALL_LIGHT_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "of absorption"},
     [WALL_LIGHT_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true, "of sigma_s'"},
+    [WALL_LIGHT_PORT_RADIALS] = {"radials", TYN_IN, TYN_BUFFER, 0, true, "struct radial_block"},
+    [WALL_LIGHT_PORT_RADIAL_COLUMN] = {"radial_column", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                       "depth along them, or that of sigma_s"},
+    [WALL_LIGHT_PORT_RADIAL_TAU_A] = {"radial_tau_a", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                      "of absorption"},
+    [WALL_LIGHT_PORT_RADIAL_TAU_P] = {"radial_tau_p", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                      "of sigma_s'"},
     [WALL_LIGHT_PORT_SURFACES] = {"surfaces", TYN_IN, TYN_BUFFER, 0, false, "struct surface_block"},
     [WALL_LIGHT_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, false,
                                   "struct surface_vertex[]"},
@@ -23,7 +31,22 @@ static const tyn_port ports[WALL_LIGHT_NUM_PORTS] = {
                                "radiance that the walls of a cell send out, W/(m^2 sr)"},
 };
 
-static const tyn_binding bindings[] = {
+static const tyn_binding vpl_bindings[] = {
+    {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {WALL_LIGHT_PORT_RADIALS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED},
+    {WALL_LIGHT_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED},
+    {WALL_LIGHT_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED},
+    {WALL_LIGHT_PORT_SURFACES, TYN_USE_UNIFORM},
+    {WALL_LIGHT_PORT_VERTICES, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_TRIANGLES, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_LINKS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_CELLS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_HITS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_RW},
+};
+
+static const tyn_binding sun_bindings[] = {
     {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},
     {WALL_LIGHT_PORT_LIGHTS, TYN_USE_STORAGE_READ},
     {WALL_LIGHT_PORT_BEAMS, TYN_USE_STORAGE_READ},
@@ -45,14 +68,27 @@ static const tyn_kernel kernels[] = {
      sizeof wall_light_suns_spirv,
      sizeof(struct wall_light_args),
      {8, 4, 2},
-     bindings,
-     WALL_LIGHT_NUM_PORTS,
+     sun_bindings,
+     sizeof sun_bindings / sizeof sun_bindings[0],
      1},
+    {"vpls",
+     wall_light_vpls_spirv,
+     sizeof wall_light_vpls_spirv,
+     sizeof(struct wall_light_args),
+     {8, 4, 2},
+     vpl_bindings,
+     sizeof vpl_bindings / sizeof vpl_bindings[0],
+     2},
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_wall_light_params *p = params;
+    if (p->num_suns == 0 && !tyn_build_has(b, WALL_LIGHT_PORT_RADIALS)) {
+        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                      "pass 'wall_light': neither suns nor 'radials': nothing shines");
+        return TYN_ERR_PARAMS;
+    }
     tyn_build_buffer(b, WALL_LIGHT_PORT_LIGHT, 12ull * p->dims[0] * p->dims[1] * p->dims[2]);
     return TYN_OK;
 }
@@ -65,9 +101,16 @@ static void record(tyn_recorder *r, const void *params)
         .dims = {p->dims[0], p->dims[1], p->dims[2]},
         .num_suns = p->num_suns,
     };
-    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = {p->dims[0], p->dims[1], p->dims[2]},
-                                        .args = &args,
-                                        .spec = &p->mode});
+    const tyn_extent cells = {p->dims[0], p->dims[1], p->dims[2]};
+    if (p->num_suns > 0) {
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = 0, .cells = cells, .args = &args, .spec = &p->mode});
+    }
+    if (tyn_rec_has(r, WALL_LIGHT_PORT_RADIALS)) {
+        const uint32_t spec[2] = {p->mode, p->num_suns > 0};
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = 1, .cells = cells, .args = &args, .spec = spec});
+    }
     tyn_rec_work(r, "cells", (double)p->dims[0] * p->dims[1] * p->dims[2]);
 }
 
@@ -77,7 +120,7 @@ const tyn_pass_desc tyn_pass_wall_light = {
     .ports = ports,
     .num_ports = WALL_LIGHT_NUM_PORTS,
     .kernels = kernels,
-    .num_kernels = 1,
+    .num_kernels = 2,
     .params_size = sizeof(tyn_wall_light_params),
     .declare = declare,
     .record = record,

@@ -28,21 +28,25 @@ extern const tyn_pass_desc tyn_pass_walls;
 
 // ---- wall_light -------------------------------------------------------------------------------------
 
-// Sunlight on the walls of the cells, as radiance that they send out.
+// Light of suns and of virtual point lights (VPLs) on the walls of the cells, as radiance that they send out.
 typedef struct tyn_wall_light_params {
     float extent[3];   // medium_block.extent, m
     uint32_t dims[3];  // cells of the lattice
     uint32_t mode;     // TYN_MEDIUM_*
-    uint32_t num_suns; // 1..4
+    uint32_t num_suns; // 0..4: those whose light walls reflect here
 } tyn_wall_light_params;
 
 enum {
     WALL_LIGHT_PORT_MEDIUM, // IN buffer struct medium_block
     WALL_LIGHT_PORT_LIGHTS, // IN buffer struct light_block[]
-    WALL_LIGHT_PORT_BEAMS,  // IN buffer struct beam_block[]
-    WALL_LIGHT_PORT_COLUMN, // IN 3D: column, or tau_s in mode COEFFICIENTS
+    WALL_LIGHT_PORT_BEAMS,  // IN optional buffer struct beam_block[]: with suns, as the next
+    WALL_LIGHT_PORT_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS
     WALL_LIGHT_PORT_TAU_A,  // IN optional 3D: mode COEFFICIENTS, as the one below
     WALL_LIGHT_PORT_TAU_P,
+    WALL_LIGHT_PORT_RADIALS, // IN optional buffer struct radial_block: its VPLs shine on walls, as the three below
+    WALL_LIGHT_PORT_RADIAL_COLUMN,
+    WALL_LIGHT_PORT_RADIAL_TAU_A,
+    WALL_LIGHT_PORT_RADIAL_TAU_P,
     WALL_LIGHT_PORT_SURFACES, // IN buffers, as walls has them
     WALL_LIGHT_PORT_VERTICES,
     WALL_LIGHT_PORT_TRIANGLES,

@@ -86,8 +86,8 @@ void main()
         return;
     }
     uvec3 v = uvec3(triangles[triangle].v0, triangles[triangle].v1, triangles[triangle].v2);
-    walls_triangle t = walls_triangle_of(walls_place(vertices[v.x].position), walls_place(vertices[v.y].position),
-                                         walls_place(vertices[v.z].position));
+    walls_triangle t = walls_triangle_of(walls_lattice_place(vertices[v.x].position), walls_lattice_place(vertices[v.y].position),
+                                         walls_lattice_place(vertices[v.z].position));
     vec3 least = min(t.a, min(t.b, t.c)), most = max(t.a, max(t.b, t.c));
     float size = length(t.normal);
     if (!(all(lessThan(abs(least), vec3(1e9))) && all(lessThan(abs(most), vec3(1e9)))) || size == 0.0) {

@@ -1,0 +1,128 @@
+// wall_light_vpls.comp -- light of virtual point lights (VPLs) that arrives at the walls of a cell, as radiance
+// they send out.
+//
+// As wall_light_suns.comp. Links that meet surfaces of about the same normal are taken together, at their mean
+// place. 1 / r^2 is bounded by the disc that a VPL stands for and by half a cell. Whether a VPL is seen is
+// asked of the lattice, which no light leaks through.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "wall_light_args.h"
+#include "surface_args.h"
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 2 // the medium itself is not read
+#define RADIAL_BLOCK 1
+#define RADIAL_COLUMN 2
+#define RADIAL_TAU_A 3
+#define RADIAL_TAU_P 4
+#include "medium.glsl"
+#include "radial.glsl"
+#include "lattice.glsl"
+#define WALLS_LINKS 8
+#define WALLS_CELLS 9
+#include "lattice_walls.glsl"
+#include "walls_triangle.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(push_constant, scalar) uniform push
+{
+    wall_light_args args;
+};
+layout(binding = 5, scalar) uniform surface_uniform
+{
+    surface_block surfaces;
+};
+layout(binding = 6, scalar) readonly buffer vertex_buffer
+{
+    surface_vertex vertices[];
+};
+layout(binding = 7, scalar) readonly buffer triangle_buffer
+{
+    surface_triangle triangles[];
+};
+layout(binding = 10, scalar) readonly buffer hit_buffer
+{
+    uint hits[];
+};
+layout(binding = 11, scalar) buffer wall_light_buffer
+{
+    vec3 wall_light[];
+};
+layout(constant_id = 1) const uint added = 0; // 1: to the suns' light
+
+#include "walls_place.glsl"
+
+const uint SIDES = 4u;
+
+struct wall_side {
+    vec3 normal, place; // sums over links; M, m
+    float area;
+};
+
+void main()
+{
+    ivec3 c = ivec3(gl_GlobalInvocationID);
+    if (any(greaterThanEqual(c, ivec3(args.dims)))) {
+        return;
+    }
+    uint i = walls_cell_index(c), cells = args.dims.x * args.dims.y * args.dims.z, cut = wall_links[i];
+    vec3 albedo = wall_cells[i].albedo, sum = vec3(0.0);
+    float area = wall_cells[i].area;
+    if (area == 0.0 || albedo == vec3(0.0)) {
+        if (added == 0) {
+            wall_light[i] = vec3(0.0);
+        }
+        return;
+    }
+    lattice_box box = lattice_box_of(args.extent, ivec3(args.dims));
+    vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);
+    wall_side sides[SIDES];
+    uint num_sides = 0u;
+    for (uint link = 0u; link < 14u; link++) {
+        if ((cut >> link & 1u) == 0u) {
+            continue;
+        }
+        walls_triangle t = walls_triangle_at(hits[link * cells + i] & 0xffffffu);
+        vec3 d = vec3(walls_step(link)), n = normalize(t.normal);
+        float rise = -dot(n, d);
+        float where = abs(rise) > 1e-6 ? clamp(dot(n, vec3(c) - t.a) / rise, 0.0, 1.0) : 0.5;
+        vec3 p = lattice_to_m(box, vec3(c) + where * d + 0.5 + shift);
+        n = rise < 0.0 ? -n : n;
+        float a = lattice_weight(link) * (link < 6u ? 1.0 : inversesqrt(3.0));
+        uint k = 0u;
+        while (k < num_sides && dot(sides[k].normal, n) < 0.95 * sides[k].area) {
+            k++;
+        }
+        k = min(k, SIDES - 1u);
+        if (k == num_sides) {
+            sides[num_sides++] = wall_side(vec3(0.0), vec3(0.0), 0.0);
+        }
+        sides[k].normal += a * n;
+        sides[k].place += a * p;
+        sides[k].area += a;
+    }
+    for (uint k = 0u; k < num_sides; k++) {
+        sides[k].normal = normalize(sides[k].normal);
+        sides[k].place /= sides[k].area;
+    }
+    for (uint n = radial_num_lamps; n < radial_count; n++) {
+        radial_light light = radials[n].light;
+        vec3 irradiance = vec3(0.0);
+        for (uint k = 0u; k < num_sides; k++) {
+            vec3 away = sides[k].place - light.position;
+            float r2 = dot(away, away), r = sqrt(r2), cosine = -dot(away, sides[k].normal) / max(r, 1e-20);
+            float share = cosine > 0.0 ? radial_share(n, away, r) : 0.0;
+            if (share > 0.0) {
+                beam_tau tau = radial_tau(radial_place_of(n, away, r));
+                float bounded = max(r2, max(light.radius * light.radius, 0.25 * box.dx * box.dx));
+                irradiance += sides[k].area * cosine * share / bounded * exp(-(tau.a + tau.p));
+            }
+        }
+        if (irradiance.r + irradiance.g + irradiance.b > 0.0) {
+            ivec3 from = walls_cell_before(box, light.position, light.axis);
+            sum += walls_visible(box, c, from) ? light.intensity * irradiance : vec3(0.0);
+        }
+    }
+    vec3 radiance = albedo * sum / (area * 3.14159265);
+    wall_light[i] = added == 1 ? wall_light[i] + radiance : radiance;
+}
