@@ -199,12 +199,14 @@ static tyn_result add_walls(tyn_graph *g, const tyn_job *job, field *f)
     return result;
 }
 
-// In a periodic medium the walls reflect sunlight as part of the lattice: light from single points on them
-// knows no periods.
+// What walls reflect of light that is not the lattice's: second reflections, of what the VPLs send. In a periodic
+// medium also sunlight: light from single points on walls knows no periods.
 static tyn_result add_wall_light(tyn_graph *g, const tyn_job *job, field *f)
 {
-    return tyn_add_wall_light(g, job, &f->shape, &f->walls, &f->picture.beams, f->picture.num_suns,
-                              &f->wall_light);
+    const uint32_t *repeat = f->shape.repeat;
+    uint32_t suns = repeat[0] || repeat[1] || repeat[2] ? f->picture.num_suns : 0;
+    return tyn_add_wall_light(g, job, &f->shape, &f->walls, &f->picture.beams, suns,
+                              &f->picture.lamps, &f->wall_light);
 }
 
 static tyn_result add_source(tyn_graph *g, const tyn_job *job, field *f)
@@ -594,8 +596,6 @@ static tyn_result add_field(tyn_graph *g, const tyn_job *job, field *f)
     float longest = fmaxf(f->shape.extent[0], fmaxf(f->shape.extent[1], f->shape.extent[2]));
     f->picture.cell = longest / (float)f->shape.cells;
     const bool ordinates = f->sky.ordinates.resource != 0;
-    const uint32_t *repeat = f->shape.repeat;
-    const bool periodic = repeat[0] || repeat[1] || repeat[2];
     const step steps[] = {
         {true, add_cells},
         {true, add_walls},
@@ -603,7 +603,7 @@ static tyn_result add_field(tyn_graph *g, const tyn_job *job, field *f)
         {f->picture.num_suns, add_source},
         {ordinates, add_ordinates},
         {f->picture.lamps.radials.resource, add_lamps},
-        {periodic, add_wall_light},
+        {true, add_wall_light},
         {true, add_solve},
         {job->outputs & TYN_PICTURE_OUTPUTS, add_merge},
         {job->outputs & TYN_OUTPUT_PROBE, add_probe},

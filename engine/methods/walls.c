@@ -55,10 +55,10 @@ tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_sha
 
 tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
                               const tyn_wall_refs *walls, const tyn_beam_refs *beams,
-                              uint32_t num_suns, tyn_ref *light)
+                              uint32_t num_suns, const tyn_radial_refs *radials, tyn_ref *light)
 {
     *light = (tyn_ref){0};
-    if (!walls->links.resource || num_suns == 0) {
+    if (!walls->links.resource || (num_suns == 0 && !radials->vpls)) {
         return TYN_OK;
     }
     tyn_extent dims = tyn_lattice_dims(shape->extent, shape->cells);
@@ -79,6 +79,10 @@ tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattic
         [WALL_LIGHT_PORT_COLUMN] = beams->column,
         [WALL_LIGHT_PORT_TAU_A] = beams->tau_a,
         [WALL_LIGHT_PORT_TAU_P] = beams->tau_p,
+        [WALL_LIGHT_PORT_RADIALS] = radials->vpls ? radials->radials : (tyn_ref){0},
+        [WALL_LIGHT_PORT_RADIAL_COLUMN] = radials->column,
+        [WALL_LIGHT_PORT_RADIAL_TAU_A] = radials->tau_a,
+        [WALL_LIGHT_PORT_RADIAL_TAU_P] = radials->tau_p,
         [WALL_LIGHT_PORT_SURFACES] = job->refs.surfaces,
         [WALL_LIGHT_PORT_VERTICES] = job->refs.vertices,
         [WALL_LIGHT_PORT_TRIANGLES] = job->refs.triangles,

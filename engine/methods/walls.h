@@ -16,8 +16,8 @@ bool tyn_has_walls(const tyn_frame_scene *frame);
 tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
                          tyn_wall_refs *walls);
 
-// What the first of frame->suns shine on the walls of the cells: LATTICE_PORT_WALL_LIGHT; {0} without
-// walls or suns. For methods that do not reflect that light otherwise.
+// What the first of frame->suns (those whose light is not reflected otherwise) and the VPLs of `radials`
+// shine on the walls of the cells: LATTICE_PORT_WALL_LIGHT; {0} without walls or such lights.
 tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
                               const tyn_wall_refs *walls, const tyn_beam_refs *beams,
-                              uint32_t num_suns, tyn_ref *light);
+                              uint32_t num_suns, const tyn_radial_refs *radials, tyn_ref *light);

@@ -17,8 +17,7 @@ static const tyn_port ports[WALL_LIGHT_NUM_PORTS] = {
                                        "depth along them, or that of sigma_s"},
     [WALL_LIGHT_PORT_RADIAL_TAU_A] = {"radial_tau_a", TYN_IN, TYN_IMAGE_3D, 0, true,
                                       "of absorption"},
-    [WALL_LIGHT_PORT_RADIAL_TAU_P] = {"radial_tau_p", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                      "of sigma_s'"},
+    [WALL_LIGHT_PORT_RADIAL_TAU_P] = {"radial_tau_p", TYN_IN, TYN_IMAGE_3D, 0, true, "of sigma_s'"},
     [WALL_LIGHT_PORT_SURFACES] = {"surfaces", TYN_IN, TYN_BUFFER, 0, false, "struct surface_block"},
     [WALL_LIGHT_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, false,
                                   "struct surface_vertex[]"},
@@ -108,8 +107,8 @@ static void record(tyn_recorder *r, const void *params)
     }
     if (tyn_rec_has(r, WALL_LIGHT_PORT_RADIALS)) {
         const uint32_t spec[2] = {p->mode, p->num_suns > 0};
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = 1, .cells = cells, .args = &args, .spec = spec});
+        tyn_rec_dispatch(r,
+                         &(tyn_dispatch){.kernel = 1, .cells = cells, .args = &args, .spec = spec});
     }
     tyn_rec_work(r, "cells", (double)p->dims[0] * p->dims[1] * p->dims[2]);
 }
