@@ -1,6 +1,6 @@
 // raymarch_pixel.glsl -- the rays of one pixel and what is stored of them.
 //
-// Include after raymarch.glsl, background.glsl, glow.glsl and display.glsl.
+// Include after raymarch.glsl, background.glsl, surface_samples.glsl, glow.glsl and display.glsl.
 #ifndef TYN_RAYMARCH_PIXEL_GLSL
 #define TYN_RAYMARCH_PIXEL_GLSL
 
@@ -56,16 +56,24 @@ bool is_finite(vec3 v)
 void shade_pixel(ivec2 pixel)
 {
     vec3 radiance = vec3(0.0), single = vec3(0.0), multiple = vec3(0.0), transmittance = vec3(0.0);
-    float surface = TYN_INFINITY, half_distance = TYN_INFINITY;
+    float surface = TYN_INFINITY, half_distance = TYN_INFINITY, nearest = TYN_INFINITY, cover = 0.0;
     uint steps = 0u, num_rays = rays_of_pixel(pixel);
     bool met = false;
     vec4 first = vec4(vec3(0.0), TYN_INFINITY); // surface of the scene
+    int side = 0; // of the samples of several surfaces: a ray each
     if (raymarch_has(RAYMARCH_SURFACE)) {
-        first = texelFetch(surface_tex, pixel, 0);
+        surface_samples samples = surface_samples_of(surface_tex, camera, pixel);
+        first = samples.mean;
+        side = samples.even ? 0 : samples.side;
+        num_rays = samples.even ? num_rays : uint(side * side);
     }
-    bool shown = false; // is it in front of the host's?
     for (uint i = 0u; i < num_rays; i++) {
         vec2 where = num_rays == 1u ? vec2(0.5) : quarter_pixel(i);
+        if (raymarch_has(RAYMARCH_SURFACE) && side > 0) {
+            ivec2 at = ivec2(int(i) % side, int(i) / side);
+            where = (vec2(at) + 0.5) / float(side);
+            first = texelFetch(surface_tex, pixel * side + at, 0);
+        }
         camera_ray ray = camera_ray_through(camera, vec2(pixel) + where);
         vec3 beyond = vec3(0.0); // a periodic medium: so many periods that none sees farther
         if (raymarch_has(RAYMARCH_REPEAT)) {
@@ -78,7 +86,8 @@ void shade_pixel(ivec2 pixel)
             surface = min(surface, host_distance(host_depth_tex, camera, args.depth, pixel,
                                                  ray.direction));
         }
-        shown = raymarch_has(RAYMARCH_SURFACE) && first.a < TYN_INFINITY && first.a == surface;
+        bool shown = raymarch_has(RAYMARCH_SURFACE) && first.a < TYN_INFINITY && first.a == surface;
+        nearest = min(nearest, surface);
         span.y = min(span.y, surface);
         met = met || span.x < span.y;
         // Distances from where the ray enters: the camera may be far away.
@@ -106,7 +115,10 @@ void shade_pixel(ivec2 pixel)
         radiance += light;
         if (raymarch_has(RAYMARCH_SURFACE_SEEN) && shown) {
             radiance += r.transmittance * first.rgb;
-        } else if (raymarch_has(RAYMARCH_BACKGROUND) && surface == TYN_INFINITY) {
+            cover += 1.0;
+        } else if (!raymarch_has(RAYMARCH_BACKGROUND)) {
+            cover += 1.0 - dot(r.transmittance, vec3(1.0 / 3.0));
+        } else if (surface == TYN_INFINITY) {
             radiance += r.transmittance *
                         background_radiance(environment, environment_tex, camera, ray.direction,
                                             vec2(pixel) + where, num_rays == 1u ? 1.0 : 0.5);
@@ -119,19 +131,19 @@ void shade_pixel(ivec2 pixel)
         atomicAdd(counters.non_finite, 1u);
         radiance = single = multiple = vec3(0.0);
         transmittance = vec3(1.0);
+        cover = 0.0;
     }
     if (met) {
         atomicAdd(counters.steps, steps);
         atomicAdd(counters.pixels, 1u);
     }
-    bool opaque = raymarch_has(RAYMARCH_BACKGROUND) || (raymarch_has(RAYMARCH_SURFACE_SEEN) && shown);
-    float cover = opaque ? 1.0 : 1.0 - dot(transmittance, vec3(1.0 / 3.0));
+    cover = raymarch_has(RAYMARCH_BACKGROUND) ? 1.0 : cover * share;
     imageStore(radiance_image, pixel, vec4(max(radiance, 0.0), cover));
     if (raymarch_has(RAYMARCH_TRANSMITTANCE)) {
         imageStore(transmittance_image, pixel, vec4(transmittance, 1.0));
     }
     if (raymarch_has(RAYMARCH_DEPTH)) {
-        imageStore(depth_image, pixel, vec4(surface, half_distance, 0.0, 0.0));
+        imageStore(depth_image, pixel, vec4(nearest, half_distance, 0.0, 0.0));
     }
     if (raymarch_has(RAYMARCH_SINGLE)) {
         imageStore(single_image, pixel, vec4(single * share, 1.0));

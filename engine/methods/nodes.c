@@ -167,6 +167,10 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     }
     if (!params->repeat) { // else it is to be seen everywhere
         tyn_raymarch_window(params, &frame->camera);
+    if (frame->empty) { // nothing to march through: a pixel, as no window would mean all
+        params->first[0] = params->first[1] = 0;
+        params->end[0] = params->end[1] = 1;
+    }
     }
 
     const struct env_block *env = &frame->environment;
@@ -175,6 +179,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     // Over a host's picture only the medium is laid.
     params->background =
         surroundings && !job->view->no_background && !(job->outputs & TYN_OUTPUT_COMPOSITE);
+    params->surfaces = !job->view->no_background && !(job->outputs & TYN_OUTPUT_COMPOSITE);
     if (job->outputs & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_COMPOSITE)) {
         params->layers |= RAYMARCH_LAYER_TRANSMITTANCE;
     }
@@ -257,6 +262,7 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
         [RAYMARCH_PORT_ENV_MAP] = job->refs.env_map,
         [RAYMARCH_PORT_GLOW] = in->glow,
         [RAYMARCH_PORT_HOST_DEPTH] = job->refs.depth,
+        [RAYMARCH_PORT_SURFACE] = in->surface,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_raymarch, &params, refs);
     if (result != TYN_OK) {

@@ -26,6 +26,12 @@ typedef struct tyn_radial_refs {
     bool vpls;          // VPLs follow them
 } tyn_radial_refs;
 
+// Virtual point lights (methods/shading.h).
+typedef struct tyn_vpl_refs {
+    tyn_ref lights;    // struct radial_vpls
+    tyn_ref distances; // 2D: what shaders/vpl_visibility.glsl reads
+} tyn_vpl_refs;
+
 // What the picture is gathered from; {0} refs are left out.
 typedef struct tyn_picture_inputs {
     tyn_media_refs media;
@@ -36,6 +42,8 @@ typedef struct tyn_picture_inputs {
     tyn_ref inscatter;
     tyn_ref wall_links, wall_cells; // of walls: surfaces among the cells of inscatter
     tyn_shadow_refs shadows;        // surfaces before the lights
+    tyn_vpl_refs vpls;              // light that surfaces send on (methods/shading.h)
+    tyn_ref surface;                // radiance and distance of surfaces before the camera
     tyn_ref glow;                   // the map scattered forward (env_glow)
     uint32_t num_suns;
     float cell;       // of the lattice behind inscatter, m; 0 = none

@@ -7,6 +7,7 @@
 // into one solve on a lattice of cubic cells for all lights together, seen from the camera by merge
 // and raymarch. A node that a scene does not need is not declared.
 #include "methods/lamps.h"
+#include "methods/shading.h"
 #include "methods/sky.h"
 #include "methods/walls.h"
 #include "passes/medium/medium.h"
@@ -17,7 +18,11 @@
 #include "passes/importance/importance.h"
 #include "passes/ordinates/ordinates.h"
 #include "passes/scatter_lut/scatter_lut.h"
+#include "passes/gbuffer/gbuffer.h"
+#include "passes/rsm/rsm.h"
+#include "passes/shade/shade.h"
 #include "passes/shadow_map/shadow_map.h"
+#include "passes/vpl/vpl.h"
 #include "passes/lattice/lattice.h"
 #include "passes/merge/merge.h"
 #include "passes/probe/probe.h"
@@ -650,6 +655,27 @@ static tyn_result check_repeat(const tyn_job *job)
     return TYN_OK;
 }
 
+// The picture of a scene without a medium.
+static tyn_result add_surfaces_alone(tyn_graph *g, const tyn_job *job)
+{
+    const tyn_media_refs no_media = {{0}};
+    tyn_picture_inputs in = {.num_suns = 0};
+    uint32_t num_suns = tyn_method_suns(job, true);
+    tyn_result result = tyn_add_shadows(g, job, num_suns, &in.shadows);
+    if (result == TYN_OK) {
+        result = tyn_add_vpls(g, job, &no_media, num_suns, &in.vpls);
+    }
+    if (result == TYN_OK) {
+        result = tyn_add_surfaces(g, job, (tyn_ref){0}, num_suns, &in);
+    }
+    return result == TYN_OK ? tyn_add_picture(g, job, &in) : result;
+}
+
+static tyn_result add_surfaces(tyn_graph *g, const tyn_job *job, field *f)
+{
+    return tyn_add_surfaces(g, job, f->moments, f->picture.num_suns, &f->picture);
+}
+
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
 {
     const tyn_frame_scene *frame = job->frame;
@@ -657,11 +683,10 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (result != TYN_OK) {
         return result;
     }
-    tyn_method_warn_surfaces(job);
     warn_of_mixtures(job);
     bool picture = job->outputs & TYN_PICTURE_OUTPUTS;
     if (frame->empty && !(job->outputs & field_outputs)) {
-        return tyn_add_picture(g, job, NULL);
+        return add_surfaces_alone(g, job);
     }
     if (job->scene->num_shapes == 0) {
         tyn_log_print(
@@ -687,6 +712,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         {picture && (f.picture.num_suns || lamps || f.sky.ordinates.resource), add_lut},
         {picture && f.sky.sky.resource, add_glow},
         {solve || (job->outputs & field_outputs), add_field},
+        {picture, add_surfaces},
     };
     if (result == TYN_OK) {
         result = ADD_STEPS(g, job, &f, steps);
@@ -695,9 +721,11 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_shadow_map,
     &tyn_pass_medium,
     &tyn_pass_beam,
+    &tyn_pass_shadow_map,
+    &tyn_pass_rsm,
+    &tyn_pass_vpl,
     &tyn_pass_env_importance,
     &tyn_pass_importance,
     &tyn_pass_ordinates,
@@ -716,6 +744,8 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_lattice,
     &tyn_pass_lattice_keep,
     &tyn_pass_merge,
+    &tyn_pass_gbuffer,
+    &tyn_pass_shade,
     &tyn_pass_raymarch,
     &tyn_pass_composite,
     &tyn_pass_tonemap,

@@ -19,6 +19,7 @@
 #include "passes/residuum/residuum.h"
 #include "passes/rsm/rsm.h"
 #include "passes/scatter_lut/scatter_lut.h"
+#include "passes/shade/shade.h"
 #include "passes/shadow_map/shadow_map.h"
 #include "passes/tonemap/tonemap.h"
 #include "passes/upsample/upsample.h"
@@ -54,6 +55,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_rsm,
     &tyn_pass_shadow_map,
     &tyn_pass_vpl,
+    &tyn_pass_shade,
     &tyn_pass_raymarch,
     &tyn_pass_path,
     &tyn_pass_path_probe,

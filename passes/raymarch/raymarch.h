@@ -88,7 +88,7 @@ enum {
                         // is scattered forward comes from the mean alone (`mean`)
     RAYMARCH_PORT_HOST_DEPTH, // IN optional 2D: hardware depth; rays end there
     RAYMARCH_PORT_SURFACE, // IN optional 2D: radiance of the first surface, W/(m^2 sr); a = its distance
-                           // along the ray, m, or infinity; rays end there
+                           // along the ray, m, or infinity; rays end there. n x n samples a pixel
     RAYMARCH_PORT_RADIANCE, // OUT 2D RGBA32F: radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where
                             // an environment or a surface is seen
     RAYMARCH_PORT_TRANSMITTANCE, // OUT 2D RGBA32F, asked for by `layers`, as all below

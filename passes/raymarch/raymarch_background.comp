@@ -5,6 +5,7 @@
 #include "camera.glsl"
 #include "background.glsl"
 #include "host_depth.glsl"
+#include "surface_samples.glsl"
 #include "raymarch_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -51,17 +52,18 @@ void main()
         surface = host_distance(host_depth_tex, camera, args.depth, pixel, ray.direction);
     }
     vec4 radiance = vec4(0.0);
+    float open = surface == TYN_INFINITY ? 1.0 : 0.0; // share in which the environment is seen
     if (has(RAYMARCH_SURFACE)) {
-        vec4 first = texelFetch(surface_tex, pixel, 0);
-        if (has(RAYMARCH_SURFACE_SEEN) && first.a < surface) {
-            radiance = vec4(first.rgb, 1.0);
+        surface_samples samples = surface_samples_of(surface_tex, camera, pixel);
+        if (has(RAYMARCH_SURFACE_SEEN) && samples.mean.a < surface) {
+            radiance = vec4(samples.mean.rgb, samples.covered);
         }
-        surface = min(surface, first.a);
+        open *= 1.0 - samples.covered;
+        surface = min(surface, samples.mean.a);
     }
-    if (has(RAYMARCH_BACKGROUND) && surface == TYN_INFINITY) {
-        radiance.rgb = background_radiance(environment, environment_tex, camera, ray.direction,
-                                           vec2(pixel) + 0.5, 1.0);
-        radiance.a = 1.0;
+    if (has(RAYMARCH_BACKGROUND) && open > 0.0) {
+        radiance += open * vec4(background_radiance(environment, environment_tex, camera,
+                                                    ray.direction, vec2(pixel) + 0.5, 1.0), 1.0);
     }
     imageStore(radiance_image, pixel, radiance);
     if (has(RAYMARCH_TRANSMITTANCE)) {

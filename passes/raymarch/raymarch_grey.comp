@@ -9,6 +9,7 @@
 #include "glow.glsl"
 #include "display.glsl"
 #include "host_depth.glsl"
+#include "surface_samples.glsl"
 #include "medium.glsl"
 #include "beam.glsl"
 #include "radial.glsl"

@@ -1,7 +1,9 @@
 // vpl.c -- see vpl.h.
 #include "vpl.h"
 #include "vpl_args.h"
+#include "vpl_distances.comp.h"
 #include "vpl_lights.comp.h"
+
 #include "vpl_strata.comp.h"
 #include "vpl_weights.comp.h"
 #include "radial_args.h"
@@ -33,7 +35,11 @@ static const tyn_port ports[VPL_NUM_PORTS] = {
                          .meaning = "struct surface_triangle[]"},
     [PORT(MATERIALS)] = {"materials", TYN_IN, TYN_BUFFER, .optional = true,
                          .meaning = "struct surface_material[]"},
+    [PORT(NODES)] = {"nodes", TYN_IN, TYN_BUFFER, .optional = true,
+                     .meaning = "struct surface_node[]"},
     [PORT(VPLS)] = {"vpls", TYN_OUT, TYN_BUFFER, .meaning = "struct radial_vpls"},
+    [PORT(DISTANCES)] = {"vpl_distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
+                         .meaning = "of the first surface in every direction of a VPL, m"},
     [PORT(PLAN)] = {"plan", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_plan"},
     [PORT(WEIGHTS)] = {"weights", TYN_SCRATCH, TYN_BUFFER, .meaning = "float[], of elements"},
     [PORT(BLOCKS)] = {"blocks", TYN_SCRATCH, TYN_BUFFER, .meaning = "float[], of their blocks"},
@@ -74,23 +80,45 @@ static const tyn_binding lights_bindings[] = {
     {PORT(VPLS), TYN_USE_STORAGE_RW},
 };
 
-enum { WEIGHTS = 0, STRATA, LIGHTS, NUM_KERNELS };
+static const tyn_binding distances_bindings[] = {
+    {PORT(SURFACES), TYN_USE_UNIFORM},       {PORT(VERTICES), TYN_USE_STORAGE_READ},
+    {PORT(TRIANGLES), TYN_USE_STORAGE_READ}, {PORT(NODES), TYN_USE_STORAGE_READ},
+    {PORT(VPLS), TYN_USE_STORAGE_READ},      {PORT(DISTANCES), TYN_USE_STORAGE_WRITE},
+};
 
-#define KERNEL(step, args, specs)                                                                  \
+enum { WEIGHTS = 0, STRATA, LIGHTS, DISTANCES, NUM_KERNELS };
+
+#define KERNEL(step, x, y, args, specs)                                                            \
     .name = "vpl_" #step, .spirv = vpl_##step##_spirv, .spirv_size = sizeof vpl_##step##_spirv,    \
-    .args_size = args, .local_size = {VPL_BLOCK, 1, 1}, .bindings = step##_bindings,               \
+    .args_size = args, .local_size = {x, y, 1}, .bindings = step##_bindings,                       \
     .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [WEIGHTS] = {KERNEL(weights, 0, 0)},
-    [STRATA] = {KERNEL(strata, sizeof(struct vpl_args), 0)},
-    [LIGHTS] = {KERNEL(lights, sizeof(struct vpl_args), 1)},
+    [WEIGHTS] = {KERNEL(weights, VPL_BLOCK, 1, 0, 0)},
+    [STRATA] = {KERNEL(strata, VPL_BLOCK, 1, sizeof(struct vpl_args), 0)},
+    [LIGHTS] = {KERNEL(lights, VPL_BLOCK, 1, sizeof(struct vpl_args), 1)},
+    [DISTANCES] = {KERNEL(distances, 8, 8, 0, 0)},
 };
 
 static const tyn_param params[] = {
     {"count", TYN_PARAM_INT, offsetof(tyn_vpl_params, count), 128, 0, TYN_RADIAL_VPLS_MAX, "",
      "lights at most that stand for what surfaces reflect first and emit"},
+    {"visibility", TYN_PARAM_INT, offsetof(tyn_vpl_params, visibility), 16, 0, 64, "texels",
+     "along each side of the maps of what these lights see of the surfaces; 0 = all is lit"},
 };
+
+// Texels along each side of a map of distances; 0: none.
+static uint32_t map_side(const tyn_vpl_params *p, bool triangles)
+{
+    return triangles && p->visibility >= 2 ? (uint32_t)p->visibility : 0;
+}
+
+static tyn_extent atlas_size(const tyn_vpl_params *p, bool triangles)
+{
+    const uint32_t side = map_side(p, triangles), in_a_row = 16;
+    const uint32_t rows = ((uint32_t)p->count + in_a_row - 1) / in_a_row;
+    return side && rows ? (tyn_extent){in_a_row * side, rows * side, 1} : (tyn_extent){1, 1, 1};
+}
 
 // ---- the plan -----------------------------------------------------------------------------------
 
@@ -134,6 +162,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
 {
     const uint64_t blocks = make_plan(data, NULL);
     tyn_build_buffer(b, PORT(VPLS), sizeof(struct radial_vpls));
+    tyn_build_image(b, PORT(DISTANCES), atlas_size(data, tyn_build_has(b, PORT(TRIANGLES))), 1);
     tyn_build_buffer(b, PORT(PLAN), sizeof(struct vpl_plan));
     tyn_build_buffer(b, PORT(WEIGHTS), (blocks + 1) * VPL_BLOCK * sizeof(float));
     tyn_build_buffer(b, PORT(BLOCKS), (blocks + 1) * sizeof(float));
@@ -160,6 +189,12 @@ static void record(tyn_recorder *r, const void *data)
                                         .cells = {args.count * VPL_BLOCK, 1, 1},
                                         .args = &args,
                                         .spec = &p->mode});
+    const bool triangles = tyn_rec_has(r, PORT(TRIANGLES));
+    if (map_side(p, triangles)) {
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = DISTANCES, .cells = tyn_rec_extent(r, PORT(DISTANCES))});
+        tyn_rec_work(r, "rays", (double)args.count * p->visibility * p->visibility);
+    }
     tyn_rec_work(r, "elements", (double)plan.num_blocks * VPL_BLOCK);
     tyn_rec_work(r, "vpls", args.count);
 }
@@ -176,6 +211,6 @@ const tyn_pass_desc tyn_pass_vpl = {
     .params_size = sizeof(tyn_vpl_params),
     .declare = declare,
     .record = record,
-    .debug_port = PORT(VPLS),
-    .debug_meaning = "the lights (a buffer: nothing to see)",
+    .debug_port = PORT(DISTANCES),
+    .debug_meaning = "what each light sees: distances of surfaces",
 };

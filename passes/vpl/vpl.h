@@ -5,7 +5,9 @@
 #include "rsm_args.h"
 
 typedef struct tyn_vpl_params {
-    int32_t count; // "vpl.count": lights at most
+    int32_t count;      // "vpl.count": lights at most
+    int32_t visibility; // "vpl.visibility": texels of the maps of what they see
+
     // Set by the method:
     uint32_t mode;     // TYN_MEDIUM_*
     uint32_t num_suns; // directional lights in "lights": lamps come after them
@@ -25,13 +27,15 @@ enum {
     VPL_PORT_FLUX,   // IN optional 2D: rsm_args.h, as the two below
     VPL_PORT_POSITION,
     VPL_PORT_NORMAL,
-    VPL_PORT_SURFACES, // IN optional buffer struct surface_block: with emitters, as the three below
+    VPL_PORT_SURFACES, // IN optional buffer struct surface_block: with triangles, as the four below
     VPL_PORT_VERTICES, // IN optional buffers, surface_args.h
     VPL_PORT_TRIANGLES,
     VPL_PORT_MATERIALS,
-    VPL_PORT_VPLS,    // OUT buffer struct radial_vpls
-    VPL_PORT_PLAN,    // SCRATCH buffer struct vpl_plan
-    VPL_PORT_WEIGHTS, // SCRATCH buffer float[]: of the elements
+    VPL_PORT_NODES,
+    VPL_PORT_VPLS,      // OUT buffer struct radial_vpls
+    VPL_PORT_DISTANCES, // OUT 2D R32F: what vpl_visibility.glsl reads; without surfaces or maps 1 x 1
+    VPL_PORT_PLAN,      // SCRATCH buffer struct vpl_plan
+    VPL_PORT_WEIGHTS,   // SCRATCH buffer float[]: of the elements
     VPL_PORT_BLOCKS, // SCRATCH buffer float[]: sums of blocks of elements, then what is before each
     VPL_PORT_STRATA, // SCRATCH buffer struct vpl_stratum[]
     VPL_NUM_PORTS,

@@ -1,0 +1,134 @@
+// shading.c -- see shading.h.
+#include "methods/shading.h"
+#include "methods/walls.h"
+#include "passes/shade/shade.h"
+#include "passes/vpl/vpl.h"
+#include <tyndall/registry.h>
+#include <string.h>
+
+enum { MOST_WITHOUT_HIERARCHY = 256 }; // triangles that every ray may be tested against
+
+// 0: nothing emits; 2: some materials on both sides.
+static uint32_t emitters(const tyn_surfaces *surfaces)
+{
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < surfaces->num_materials; i++) {
+        const tyn_surface_material *m = &surfaces->materials[i];
+        if (m->emission[0] + m->emission[1] + m->emission[2] > 0.0f) {
+            const uint32_t sides = m->flags & TYN_SURFACE_EMITS_BOTH_SIDES ? 2 : 1;
+            most = most > sides ? most : sides;
+        }
+    }
+    return most;
+}
+
+tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
+                        uint32_t num_suns, tyn_vpl_refs *vpls)
+{
+    *vpls = (tyn_vpl_refs){{0}};
+    if (!job->frame->num_triangles) {
+        return TYN_OK;
+    }
+    tyn_vpl_params params;
+    tyn_settings_params(job->settings, &tyn_pass_vpl, &params);
+    params.mode = job->frame->medium.mode;
+    params.num_suns = job->frame->num_suns;
+    params.num_triangles = job->frame->num_triangles;
+    params.emitters = emitters(&job->scene->surfaces);
+    if (params.count == 0) {
+        return TYN_OK;
+    }
+    tyn_rsm_refs rsm;
+    tyn_result result = tyn_add_rsm(g, job, num_suns, &rsm);
+    if (result != TYN_OK || rsm.num_tiles + params.emitters == 0) {
+        return result;
+    }
+    if (!job->refs.nodes.resource && params.num_triangles > MOST_WITHOUT_HIERARCHY) {
+        tyn_method_warn(job, "the surfaces have no hierarchy: light that they reflect passes "
+                             "through other surfaces");
+        params.visibility = 0;
+    }
+    params.num_tiles = rsm.num_tiles;
+    memcpy(params.tiles, rsm.tiles, sizeof params.tiles);
+
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [VPL_PORT_MEDIUM] = job->refs.medium,
+        [VPL_PORT_DENSITY] = media->density,
+        [VPL_PORT_SIGMA_A] = media->sigma_a,
+        [VPL_PORT_G] = media->g,
+        [VPL_PORT_SUNS] = job->refs.suns,
+        [VPL_PORT_LIGHTS] = job->refs.lights,
+        [VPL_PORT_FLUX] = rsm.flux,
+        [VPL_PORT_POSITION] = rsm.position,
+        [VPL_PORT_NORMAL] = rsm.normal,
+        [VPL_PORT_SURFACES] = job->refs.surfaces,
+
+        [VPL_PORT_VERTICES] = job->refs.vertices,
+        [VPL_PORT_TRIANGLES] = job->refs.triangles,
+        [VPL_PORT_MATERIALS] = job->refs.materials,
+        [VPL_PORT_NODES] = job->refs.nodes,
+    };
+    result = tyn_graph_add(g, &tyn_pass_vpl, &params, refs);
+    *vpls = (tyn_vpl_refs){refs[VPL_PORT_VPLS], refs[VPL_PORT_DISTANCES]};
+    return result;
+}
+
+tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, uint32_t num_suns,
+                            tyn_picture_inputs *in)
+{
+    in->surface = (tyn_ref){0};
+    if (!job->frame->num_triangles) {
+        return TYN_OK;
+    }
+    tyn_gbuffer_refs seen;
+    tyn_result result = tyn_add_gbuffer(g, job, &seen);
+    if (result != TYN_OK) {
+        return result;
+    }
+    const float *sky = job->frame->environment.sky;
+    tyn_shade_params params;
+    tyn_settings_params(job->settings, &tyn_pass_shade, &params);
+    params.mode = job->frame->medium.mode;
+    params.size[0] = job->view->width;
+    params.size[1] = job->view->height;
+    params.num_suns = num_suns;
+    params.num_directional = job->frame->num_suns;
+    params.num_lamps = job->frame->num_lights - job->frame->num_suns;
+    params.one_channel = in->one_channel;
+    memcpy(params.tint, in->tint, sizeof params.tint);
+    params.sky = sky[0] + sky[1] + sky[2] > 0.0f;
+    const bool media = in->media.density.resource != 0;
+    if (media && !in->lamps.radials.resource) {
+        params.num_lamps = 0;
+    }
+    const tyn_vpl_refs vpls = !media || in->lamps.vpls ? in->vpls : (tyn_vpl_refs){{0}};
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [SHADE_PORT_MEDIUM] = job->refs.medium,
+        [SHADE_PORT_CAMERA] = job->refs.camera,
+        [SHADE_PORT_ENVIRONMENT] = job->refs.environment,
+        [SHADE_PORT_SUNS] = job->refs.suns,
+        [SHADE_PORT_LIGHTS] = job->refs.lights,
+        [SHADE_PORT_SURFACE] = seen.surface,
+        [SHADE_PORT_ALBEDO] = seen.albedo,
+        [SHADE_PORT_EMISSION] = seen.emission,
+        [SHADE_PORT_BEAMS] = in->beams.beams,
+        [SHADE_PORT_COLUMN] = in->beams.column,
+        [SHADE_PORT_TAU_A] = in->beams.tau_a,
+        [SHADE_PORT_TAU_P] = in->beams.tau_p,
+        [SHADE_PORT_RADIALS] = in->lamps.radials,
+        [SHADE_PORT_RADIAL_COLUMN] = in->lamps.column,
+        [SHADE_PORT_RADIAL_TAU_A] = in->lamps.tau_a,
+        [SHADE_PORT_RADIAL_TAU_P] = in->lamps.tau_p,
+        [SHADE_PORT_SHADOW_ATLAS] = in->shadows.atlas,
+        [SHADE_PORT_SHADOWS] = in->shadows.lights,
+        [SHADE_PORT_VPLS] = vpls.lights,
+        [SHADE_PORT_VPL_DISTANCES] = vpls.distances,
+        // Surfaces far from the medium's box are no walls of the lattice, and outside it.
+        [SHADE_PORT_MOMENTS] = in->wall_links.resource ? moments : (tyn_ref){0},
+        [SHADE_PORT_WALL_LINKS] = in->wall_links,
+        [SHADE_PORT_WALL_CELLS] = in->wall_cells,
+    };
+    result = tyn_graph_add(g, &tyn_pass_shade, &params, refs);
+    in->surface = refs[SHADE_PORT_RADIANCE];
+    return result;
+}

@@ -1,0 +1,167 @@
+// shade.c -- see shade.h.
+#include "shade.h"
+#include "shade_args.h"
+#include "shade_gather.comp.h"
+#include "shade_surface.comp.h"
+#include "shade_vpls.comp.h"
+#include <string.h>
+
+#define PORT(name) SHADE_PORT_##name
+#define IMAGE2 TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT
+
+static const tyn_port ports[SHADE_NUM_PORTS] = {
+    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
+    [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
+    [PORT(ENVIRONMENT)] = {"environment", TYN_IN, TYN_BUFFER, .meaning = "struct env_block"},
+    [PORT(SUNS)] = {"suns", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
+    [PORT(LIGHTS)] = {"lights", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
+    [PORT(SURFACE)] = {"surface", TYN_IN, TYN_IMAGE_2D, .meaning = "shading normal, distance in m"},
+    [PORT(ALBEDO)] = {"albedo", TYN_IN, TYN_IMAGE_2D, .meaning = "albedo"},
+    [PORT(EMISSION)] = {"emission", TYN_IN, TYN_IMAGE_2D, .meaning = "radiance, W/(m^2 sr)"},
+    [PORT(BEAMS)] = {"beams", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "beam_block[]"},
+    [PORT(COLUMN)] = {"column", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                      .meaning = "density (or sigma_s) along the suns"},
+    [PORT(TAU_A)] = {"tau_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                     .meaning = "sigma_a along the suns"},
+    [PORT(TAU_P)] = {"tau_p", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                     .meaning = "(1 - f) sigma_s along the suns"},
+    [PORT(RADIALS)] = {"radials", TYN_IN, TYN_BUFFER, .optional = true,
+                       .meaning = "struct radial_block"},
+    [PORT(RADIAL_COLUMN)] = {"radial_column", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                             .meaning = "mean density (or sigma_s) from local lights"},
+    [PORT(RADIAL_TAU_A)] = {"radial_tau_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                            .meaning = "mean sigma_a"},
+    [PORT(RADIAL_TAU_P)] = {"radial_tau_p", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                            .meaning = "mean (1 - f) sigma_s"},
+    [PORT(SHADOW_ATLAS)] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, .optional = true,
+                            .meaning = "depth maps of the lights"},
+    [PORT(SHADOWS)] = {"shadows", TYN_IN, TYN_BUFFER, .optional = true,
+                       .meaning = "struct shadow_light[]"},
+    [PORT(VPLS)] = {"vpls", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "struct radial_vpls"},
+    [PORT(VPL_DISTANCES)] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, .optional = true,
+                             .meaning = "what VPLs see, m"},
+    [PORT(MOMENTS)] = {"moments", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                       .meaning = "fluence and flux on the lattice, W/m^2"},
+    [PORT(WALL_LINKS)] = {"wall_links", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "uint[]"},
+    [PORT(WALL_CELLS)] = {"wall_cells", TYN_IN, TYN_BUFFER, .optional = true,
+                          .meaning = "struct wall_cell[]"},
+    [PORT(RADIANCE)] = {"surface_radiance", TYN_OUT, IMAGE2,
+                        .meaning = "radiance to the camera, W/(m^2 sr); distance, m"},
+    [PORT(PLACE)] = {"place", TYN_SCRATCH, IMAGE2, .meaning = "where a pixel is shaded (M, m)"},
+    [PORT(PART)] = {"part", TYN_SCRATCH, IMAGE2,
+                    .meaning = "irradiance of a part of the VPLs, W/m^2"},
+    [PORT(INDIRECT)] = {"indirect", TYN_SCRATCH, IMAGE2,
+                        .meaning = "irradiance of all VPLs, W/m^2"},
+};
+
+// Bindings 0 to 19 of shade.glsl.
+#define COMMON_BINDINGS                                                                            \
+    {PORT(MEDIUM), TYN_USE_UNIFORM}, {PORT(COLUMN), TYN_USE_SAMPLED},                              \
+        {PORT(BEAMS), TYN_USE_UNIFORM}, {PORT(COLUMN), TYN_USE_SAMPLED},                           \
+        {PORT(TAU_A), TYN_USE_SAMPLED}, {PORT(TAU_P), TYN_USE_SAMPLED},                            \
+        {PORT(RADIALS), TYN_USE_STORAGE_READ}, {PORT(RADIAL_COLUMN), TYN_USE_SAMPLED},             \
+        {PORT(RADIAL_TAU_A), TYN_USE_SAMPLED}, {PORT(RADIAL_TAU_P), TYN_USE_SAMPLED},              \
+        {PORT(SHADOW_ATLAS), TYN_USE_SAMPLED}, {PORT(SHADOWS), TYN_USE_STORAGE_READ},              \
+        {PORT(VPLS), TYN_USE_STORAGE_READ}, {PORT(SUNS), TYN_USE_UNIFORM},                         \
+        {PORT(LIGHTS), TYN_USE_UNIFORM}, {PORT(CAMERA), TYN_USE_UNIFORM},                          \
+        {PORT(SURFACE), TYN_USE_SAMPLED}, {PORT(ALBEDO), TYN_USE_SAMPLED},                         \
+        {PORT(EMISSION), TYN_USE_SAMPLED},                                                         \
+    {                                                                                              \
+        PORT(VPL_DISTANCES), TYN_USE_SAMPLED                                                       \
+    }
+
+static const tyn_binding vpls_bindings[] = {
+    COMMON_BINDINGS,
+    {PORT(PLACE), TYN_USE_STORAGE_WRITE},
+    {PORT(PART), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding gather_bindings[] = {
+    COMMON_BINDINGS,
+    {PORT(PLACE), TYN_USE_SAMPLED},
+    {PORT(PART), TYN_USE_SAMPLED},
+    {PORT(INDIRECT), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding surface_bindings[] = {
+    COMMON_BINDINGS,
+    {PORT(INDIRECT), TYN_USE_SAMPLED},
+    {PORT(PLACE), TYN_USE_SAMPLED},
+    {PORT(PART), TYN_USE_SAMPLED},
+    {PORT(MOMENTS), TYN_USE_SAMPLED},
+    {PORT(WALL_LINKS), TYN_USE_STORAGE_READ},
+    {PORT(WALL_CELLS), TYN_USE_STORAGE_READ},
+    {PORT(ENVIRONMENT), TYN_USE_UNIFORM},
+    {PORT(RADIANCE), TYN_USE_STORAGE_WRITE},
+};
+
+enum { VPLS = 0, GATHER, SURFACE, NUM_KERNELS };
+
+#define KERNEL(step)                                                                               \
+    .name = "shade_" #step, .spirv = shade_##step##_spirv,                                         \
+    .spirv_size = sizeof shade_##step##_spirv, .args_size = sizeof(struct shade_args),             \
+    .local_size = {8, 8, 1}, .bindings = step##_bindings,                                          \
+    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = 2
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [VPLS] = {KERNEL(vpls)},
+    [GATHER] = {KERNEL(gather)},
+    [SURFACE] = {KERNEL(surface)},
+};
+
+static tyn_result declare(tyn_builder *b, const void *data)
+{
+    const tyn_shade_params *p = data;
+    const bool vpls = tyn_build_has(b, PORT(VPLS));
+    const tyn_extent pixels =
+        vpls ? (tyn_extent){p->size[0], p->size[1], 1} : (tyn_extent){1, 1, 1};
+    tyn_build_image(b, PORT(RADIANCE), tyn_build_extent(b, PORT(SURFACE)), 1);
+    tyn_build_image(b, PORT(PLACE), pixels, 1);
+    tyn_build_image(b, PORT(PART), pixels, 1);
+    tyn_build_image(b, PORT(INDIRECT), pixels, 1);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *data)
+{
+    const tyn_shade_params *p = data;
+    const bool vpls = tyn_rec_has(r, PORT(VPLS));
+    const struct shade_args args = {
+        .samples = tyn_rec_extent(r, PORT(SURFACE)).x / p->size[0],
+        .num_suns = p->num_suns,
+        .num_directional = p->num_directional,
+        .num_lamps = p->num_lamps,
+        .tint = {p->tint[0], p->tint[1], p->tint[2]},
+    };
+    uint32_t features = 0;
+    features |= tyn_rec_has(r, PORT(BEAMS)) || tyn_rec_has(r, PORT(RADIALS)) ? SHADE_MEDIUM : 0;
+    features |= tyn_rec_has(r, PORT(SHADOWS)) ? SHADE_SHADOWS : 0;
+    features |= vpls ? SHADE_VPLS : 0;
+    features |= tyn_rec_has(r, PORT(MOMENTS)) ? SHADE_LATTICE : 0;
+    features |= p->one_channel ? SHADE_ONE_CHANNEL : 0;
+    features |= p->sky ? SHADE_SKY : 0;
+    const uint32_t spec[2] = {p->mode, features};
+    const tyn_extent pixels = {p->size[0], p->size[1], 1};
+    tyn_dispatch d = {.cells = pixels, .args = &args, .spec = spec};
+    if (vpls) {
+        d.kernel = VPLS;
+        tyn_rec_dispatch(r, &d);
+        d.kernel = GATHER;
+        tyn_rec_dispatch(r, &d);
+    }
+    d.kernel = SURFACE;
+    tyn_rec_dispatch(r, &d);
+    tyn_rec_work(r, "pixels", (double)pixels.x * pixels.y);
+}
+
+const tyn_pass_desc tyn_pass_shade = {
+    .name = "shade",
+    .summary = "radiance of the surfaces that the camera sees",
+    .ports = ports,
+    .num_ports = SHADE_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params_size = sizeof(tyn_shade_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = PORT(RADIANCE),
+    .debug_meaning = "radiance of the surfaces, without the medium in front of them",
+};

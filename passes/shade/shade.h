@@ -1,0 +1,49 @@
+// shade.h -- radiance of the surfaces that the camera sees.
+#pragma once
+#include <tyndall/pass.h>
+
+typedef struct tyn_shade_params {
+    // All set by the method:
+    uint32_t mode;    // TYN_MEDIUM_*
+    uint32_t size[2]; // of the picture, pixels
+    uint32_t
+        num_suns; // that shine on surfaces: of "beams", or the first of "suns" without a medium
+    uint32_t num_directional; // lights before the lamps in "lights"
+    uint32_t num_lamps;
+    uint32_t one_channel; // 1: "moments" has one channel, to be multiplied with `tint`
+    float tint[3];
+    uint32_t sky; // 1: the mean of the environment lights what is outside the lattice
+} tyn_shade_params;
+
+enum {
+    SHADE_PORT_MEDIUM,      // IN buffer struct medium_block
+    SHADE_PORT_CAMERA,      // IN buffer struct camera_block
+    SHADE_PORT_ENVIRONMENT, // IN buffer struct env_block
+    SHADE_PORT_SUNS,        // IN buffer struct light_block[]
+    SHADE_PORT_LIGHTS,      // IN buffer struct light_block[]: directional lights, then lamps
+    SHADE_PORT_SURFACE,     // IN 2D: gbuffer.glsl, as the two below
+    SHADE_PORT_ALBEDO,
+    SHADE_PORT_EMISSION,
+    SHADE_PORT_BEAMS, // IN optional buffer struct beam_block[]: with a medium and suns, as the three below
+    SHADE_PORT_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS
+    SHADE_PORT_TAU_A,
+    SHADE_PORT_TAU_P,
+    SHADE_PORT_RADIALS, // IN optional buffer struct radial_block: with a medium and lamps or VPLs
+    SHADE_PORT_RADIAL_COLUMN,
+    SHADE_PORT_RADIAL_TAU_A,
+    SHADE_PORT_RADIAL_TAU_P,
+    SHADE_PORT_SHADOW_ATLAS,  // IN optional 2D, shadow.glsl
+    SHADE_PORT_SHADOWS,       // IN optional buffer struct shadow_light[]
+    SHADE_PORT_VPLS,          // IN optional buffer struct radial_vpls
+    SHADE_PORT_VPL_DISTANCES, // IN optional 2D, vpl_visibility.glsl: with VPLs
+    SHADE_PORT_MOMENTS,       // IN optional 3D: light of the lattice, as the two below
+    SHADE_PORT_WALL_LINKS,    // IN optional buffer uint[]
+    SHADE_PORT_WALL_CELLS,    // IN optional buffer struct wall_cell[]
+    SHADE_PORT_RADIANCE, // OUT 2D RGBA32F, as large as the G-buffer: radiance to the camera, W/(m^2 sr);
+                         // a = distance along the ray, m, or infinity
+    SHADE_PORT_PLACE, // SCRATCH 2D RGBA32F: exist with VPLs
+    SHADE_PORT_PART,
+    SHADE_PORT_INDIRECT,
+    SHADE_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_shade;

@@ -1,0 +1,27 @@
+// shade_args.h -- features and push constants of the surfaces' shading. Included by C and GLSL.
+#ifndef SHADE_ARGS_H
+#define SHADE_ARGS_H
+#include "shared.h"
+
+// Bits of the specialisation constant "features".
+#define SHADE_MEDIUM (1u << 0)  // light is attenuated on its way
+#define SHADE_SHADOWS (1u << 1) // there are shadow maps
+#define SHADE_VPLS (1u << 2)
+#define SHADE_LATTICE (1u << 3)     // there is light in the lattice
+#define SHADE_ONE_CHANNEL (1u << 4) // ... of one channel, to be multiplied with `tint`
+#define SHADE_SKY (1u << 5) // the mean of the environment lights what is outside the lattice
+
+#define SHADE_SIDE 4   // pixels of a pattern along each side; each takes a part of the VPLs
+#define SHADE_REACH 2  // pixels around one that a gather looks at
+#define SHADE_NONE 4.0 // in place of a normal: no surface
+
+struct shade_args {
+    tyn_uint samples; // of the G-buffer along each side of a pixel
+    tyn_uint num_suns;
+    tyn_uint num_directional; // lights before the lamps in "lights"
+    tyn_uint num_lamps;
+    tyn_vec3 tint;
+};
+TYN_ASSERT_SIZE(shade_args, 28);
+
+#endif

@@ -1,0 +1,45 @@
+// shade_vpls.comp -- every pixel takes a sixteenth of the VPLs.
+//
+// Neighbours in a pattern of 4 x 4 pixels take different ones (Wald et al. 2002, interleaved sampling), and
+// shade_gather.comp sums over the pattern.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shade.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 20, rgba32f) uniform writeonly image2D place_image; // position; x of the folded normal
+layout(binding = 21, rgba32f) uniform writeonly image2D part_image;  // irradiance; y of the normal
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(camera.size)))) {
+        return;
+    }
+    // The pixel's first sample that meets a surface, from its middle on.
+    int side = int(args.samples), count = side * side;
+    int start = (side / 2) * side + side / 2;
+    gbuffer_point found;
+    ivec2 texel;
+    for (int i = 0; i < count; i++) {
+        int k = (start + i) % count;
+        texel = pixel * side + ivec2(k % side, k / side);
+        found = shade_sample(texel);
+        if (found.distance > 0.0) {
+            break;
+        }
+    }
+    if (found.distance <= 0.0) {
+        imageStore(place_image, pixel, vec4(vec3(0.0), SHADE_NONE));
+        imageStore(part_image, pixel, vec4(0.0));
+        return;
+    }
+    shade_point p = shade_point(shade_position(texel, found.distance), found.normal, found.facet);
+    ivec2 cell = pixel & (SHADE_SIDE - 1);
+    vec3 part = shade_vpls(p, uint(cell.y * SHADE_SIDE + cell.x), SHADE_SIDE * SHADE_SIDE);
+    vec2 normal = gbuffer_fold(p.normal);
+    imageStore(place_image, pixel, vec4(p.position, normal.x));
+    imageStore(part_image, pixel, vec4(part, normal.y));
+}

@@ -1,0 +1,32 @@
+// surface_samples.glsl -- the samples of the scene's surfaces in a pixel: radiance, and distance or infinity.
+#ifndef TYN_SURFACE_SAMPLES_GLSL
+#define TYN_SURFACE_SAMPLES_GLSL
+#include "host_depth.glsl"
+
+struct surface_samples {
+    int side;     // samples along each side of the pixel
+    vec4 mean;    // radiance and distance, if they are even; else the distance is the shortest
+    bool even;    // about equally far away, or no surface at all
+    float covered; // share that shows a surface
+};
+
+surface_samples surface_samples_of(sampler2D surfaces, camera_block camera, ivec2 pixel)
+{
+    surface_samples s;
+    s.side = textureSize(surfaces, 0).x / int(camera.size.x);
+    float nearest = TYN_INFINITY, farthest = 0.0, count = float(s.side * s.side);
+    vec4 sum = vec4(0.0);
+    s.covered = 0.0;
+    for (int i = 0; i < s.side * s.side; i++) {
+        vec4 found = texelFetch(surfaces, pixel * s.side + ivec2(i % s.side, i / s.side), 0);
+        sum += found.a < TYN_INFINITY ? found : vec4(0.0);
+        s.covered += found.a < TYN_INFINITY ? 1.0 / count : 0.0;
+        nearest = min(nearest, found.a);
+        farthest = max(farthest, found.a);
+    }
+    s.even = nearest == TYN_INFINITY || farthest < 1.05 * nearest;
+    s.mean = vec4(sum.rgb / count, s.even && nearest < TYN_INFINITY ? sum.a / count : nearest);
+    return s;
+}
+
+#endif

@@ -1,0 +1,72 @@
+// vpl_visibility.glsl -- what surfaces leave of a VPL's view: distances of the first ones around it.
+//
+// Each VPL has a square map of its half space, 16 maps in a row of the atlas. A direction d with d.z along the
+// VPL's axis is at the octahedral coordinates p = d.xy / (|d.x| + |d.y| + d.z), a diamond that is turned to fill
+// the square. Texels lie on its edges too, so that nothing beyond them is needed.
+#ifndef TYN_VPL_VISIBILITY_GLSL
+#define TYN_VPL_VISIBILITY_GLSL
+
+#define VPL_MAPS_IN_A_ROW 16
+
+// Directions across the axis n (Duff et al., "Building an orthonormal basis, revisited", JCGT 6(1), 2017).
+mat3 vpl_frame(vec3 n)
+{
+    float s = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (s + n.z), b = n.x * n.y * a;
+    return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
+}
+
+// Direction in the VPL's frame of a place in the square [0, 1]^2, not normalised.
+vec3 vpl_map_direction(vec2 at)
+{
+    vec2 q = 2.0 * at - 1.0;
+    vec2 p = 0.5 * vec2(q.x + q.y, q.x - q.y);
+    return vec3(p, 1.0 - abs(p.x) - abs(p.y));
+}
+
+vec2 vpl_map_place(vec3 d)
+{
+    vec2 p = d.xy / max(abs(d.x) + abs(d.y) + max(d.z, 0.0), 1e-20);
+    return 0.5 + 0.5 * vec2(p.x + p.y, p.x - p.y);
+}
+
+ivec2 vpl_map_corner(uint vpl, int side)
+{
+    return side * ivec2(vpl % VPL_MAPS_IN_A_ROW, vpl / VPL_MAPS_IN_A_ROW);
+}
+
+#ifdef VPL_DISTANCES
+layout(set = 0, binding = VPL_DISTANCES) uniform sampler2D vpl_distances;
+
+// Share of the light of VPL `vpl`, whose axis is `axis`, that goes the way `away` and is not stopped by
+// surfaces: of the four rays around that way, those that reach beyond the point. `normal`: of the surface that
+// the point is on, whose plane the rays are to reach; (0, 0, 0) for a point in the medium.
+float vpl_visibility(uint vpl, vec3 axis, vec3 away, vec3 normal)
+{
+    int side = textureSize(vpl_distances, 0).x / VPL_MAPS_IN_A_ROW;
+    if (side < 2) {
+        return 1.0; // no maps
+    }
+    mat3 frame = vpl_frame(axis);
+    vec3 d = away * frame, n = normal * frame; // multiplied from the left: into the frame
+    vec2 x = vpl_map_place(d) * float(side - 1);
+    ivec2 first = min(ivec2(x), ivec2(side - 2)), corner = vpl_map_corner(vpl, side);
+    vec2 w = x - vec2(first);
+    float r = length(d), plane = dot(n, d), seen = 0.0;
+    for (int i = 0; i < 4; i++) {
+        ivec2 at = first + ivec2(i & 1, i >> 1);
+        float stored = texelFetch(vpl_distances, corner + at, 0).r;
+        float reach = r;
+        if (plane != 0.0) {
+            float facing = dot(n, normalize(vpl_map_direction(vec2(at) / float(side - 1))));
+            // Beyond the plane's horizon, or far off: as far as the point is.
+            reach = facing * plane > 0.25 * abs(plane * plane) / r ? min(plane / facing, 4.0 * r) : r;
+        }
+        vec2 share = mix(1.0 - w, w, vec2(i & 1, i >> 1));
+        seen += stored >= 0.95 * reach ? share.x * share.y : 0.0;
+    }
+    return seen;
+}
+#endif
+
+#endif
