@@ -2,6 +2,7 @@
 // nothing fails or leaks, an unchanged frame records nothing, a moved camera or sun runs no more than
 // it must.
 #include "fake_vulkan.h"
+#include "solids.h"
 #include <tyndall/context.h>
 #include <tyndall/registry.h>
 #include <setjmp.h>
@@ -95,8 +96,32 @@ static void lamps(tyn_scene *s) // more suns than have grids, and a lamp
         (tyn_light){.kind = TYN_LIGHT_POINT, .color = {5, 5, 5}, .position = {0.2f, 0, 0}};
 }
 
-static void (*const scenes[])(tyn_scene *) = {cube, cloud, two_media, empty, dark, lamps};
-static const char *const scene_names[] = {"cube", "cloud", "two_media", "empty", "dark", "lamps"};
+// A floor and a lamp's shade that glows, without any medium; the hierarchy is one leaf.
+static void walls(tyn_scene *s)
+{
+    const float grey[3] = {0.5f, 0.5f, 0.5f}, black[3] = {0, 0, 0}, glow[3] = {3, 2, 1};
+    const uint32_t floor = solids_material(s, grey, black), shade = solids_material(s, grey, glow);
+    solids_quad(s, (float[]){-2, -0.4f, 2}, (float[]){4, 0, 0}, (float[]){0, 0, -4}, floor);
+    solids_box(s, (float[]){0.1f, 0, 0.1f}, (float[]){0.3f, 0.2f, 0.3f}, 0.5f, false, shade);
+    s->surfaces.nodes = calloc(1, sizeof *s->surfaces.nodes);
+    s->surfaces.num_nodes = 1;
+    s->surfaces.nodes[0] =
+        (tyn_surface_node){{-2, -1, -2}, 0, {2, 2, 2}, s->surfaces.num_triangles};
+    add_sun(s, 0, -1, 0);
+    s->lights[s->num_lights++] =
+        (tyn_light){.kind = TYN_LIGHT_POINT, .color = {5, 5, 5}, .position = {0.2f, 0.3f, 0}};
+}
+
+static void walls_in_fog(tyn_scene *s)
+{
+    walls(s);
+    add_medium(s, 4, 0.5f, 0, -1);
+}
+
+static void (*const scenes[])(tyn_scene *) = {cube, cloud, two_media, empty,
+                                              dark, lamps, walls,     walls_in_fog};
+static const char *const scene_names[] = {"cube", "cloud", "two_media", "empty",
+                                          "dark", "lamps", "walls",     "walls_in_fog"};
 enum { NUM_SCENES = sizeof scenes / sizeof *scenes };
 
 // ---- frames -----------------------------------------------------------------------------------
