@@ -133,5 +133,6 @@ wall_refs mesh_walls(gpu_test *t, const grid *g, const mesh *m)
     free(v);
     free(tri);
     free(mat);
-    return (wall_refs){p[WALLS_PORT_LINKS], p[WALLS_PORT_CELLS]};
+    return (wall_refs){p[WALLS_PORT_LINKS],    p[WALLS_PORT_CELLS],    p[WALLS_PORT_HITS],
+                       p[WALLS_PORT_SURFACES], p[WALLS_PORT_VERTICES], p[WALLS_PORT_TRIANGLES]};
 }

@@ -23,7 +23,8 @@ typedef struct grid {
 grid grid_of(int nx, int ny, int nz, double dx);
 
 typedef struct wall_refs {
-    tyn_ref links, cells;
+    tyn_ref links, cells, hits;
+    tyn_ref surfaces, vertices, triangles; // what the pass was given
 } wall_refs;
 // Adds the pass. Every triangle has vertices of its own and a material of its own.
 wall_refs mesh_walls(gpu_test *t, const grid *g, const mesh *m);

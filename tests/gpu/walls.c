@@ -2,6 +2,9 @@
 #include "gpu_test.h"
 #include "point_pass.h"
 #include "wall_mesh.h"
+#include "passes/walls/walls.h"
+#include "radial_args.h"
+#include "scene_args.h"
 #include "walls_eval.comp.h"
 #include <math.h>
 #include <stdio.h>
@@ -375,6 +378,81 @@ static void blends_on_one_side(void **state)
     mesh_free(&m);
 }
 
+// All that a light on one wall of an empty room sends arrives at the others; outside the room nothing does.
+static void virtual_lights(void **state)
+{
+    gpu_test *t = *state;
+    for (int k = 0; k < 2; k++) {
+        grid g = grid_of(24, 24, 24, 1.0 / 24);
+        mesh m = mesh_box((double[]){0.5, 0.5, 0.5}, (double[]){0.37, 0.31, 0.34}, k * 0.4);
+        // In the middle of a wall, facing inwards.
+        double p[3], n[3], length = 0;
+        for (int a = 0; a < 3; a++) {
+            p[a] = 0.5 * (m.tri[4][0][a] + m.tri[4][2][a]);
+            n[a] = 0.5 - p[a];
+            length += n[a] * n[a];
+        }
+        struct radial_block lights = {.count = 1};
+        struct radial_grid *v = &lights.list[0];
+        for (int a = 0; a < 3; a++) {
+            n[a] /= sqrt(length);
+            v->light.position[a] = (float)(p[a] + 1e-4 * n[a]);
+            v->light.axis[a] = (float)n[a];
+            v->light.intensity[a] = 2;
+            v->to_map[a][a] = 1;
+        }
+        v->light.kind = TYN_RADIAL_COSINE;
+        v->inside = 1;
+        v->inverse_near = 1;
+        struct medium_block medium = {.extent = {1, 1, 1}, .size = {1, 1, 1}};
+        const float zero = 0;
+        tyn_graph_begin(t->graph);
+        wall_refs w = mesh_walls(t, &g, &m);
+        tyn_wall_light_params params;
+        tyn_pass_defaults(&tyn_pass_wall_light, &params);
+        for (int a = 0; a < 3; a++) {
+            params.extent[a] = 1;
+            params.dims[a] = 24;
+        }
+        tyn_ref refs[WALL_LIGHT_NUM_PORTS] = {
+            [WALL_LIGHT_PORT_MEDIUM] = gpu_buffer(t, "medium", &medium, sizeof medium),
+            [WALL_LIGHT_PORT_LIGHTS] = gpu_buffer(t, "lights", &medium, sizeof medium),
+            [WALL_LIGHT_PORT_RADIALS] = gpu_buffer(t, "radials", &lights, sizeof lights),
+            [WALL_LIGHT_PORT_RADIAL_COLUMN] =
+                gpu_image(t, "column", TYN_IMAGE_3D, (tyn_extent){1, 1, 1}, 1, &zero),
+            [WALL_LIGHT_PORT_SURFACES] = w.surfaces,
+            [WALL_LIGHT_PORT_VERTICES] = w.vertices,
+            [WALL_LIGHT_PORT_TRIANGLES] = w.triangles,
+            [WALL_LIGHT_PORT_LINKS] = w.links,
+            [WALL_LIGHT_PORT_CELLS] = w.cells,
+            [WALL_LIGHT_PORT_HITS] = w.hits,
+        };
+        assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_wall_light, &params, refs), TYN_OK);
+        tyn_graph_output(t->graph, "wall_light", refs[WALL_LIGHT_PORT_LIGHT], true);
+        tyn_graph_output(t->graph, "wall_cells", w.cells, true);
+        tyn_graph_output(t->graph, "links", w.links, true);
+        gpu_run(t);
+        const float(*light)[3] = (const float(*)[3])gpu_map(t, "wall_light");
+        const struct wall_cell *cells = gpu_map(t, "wall_cells");
+        result r = {(uint32_t *)gpu_map(t, "links"), NULL};
+        double arriving = 0;
+        int lit = 0;
+        for (int i = 0; i < 24 * 24 * 24; i++) {
+            double area = 4 * cells[i].area / 576, albedo = cells[i].albedo[1];
+            arriving += albedo > 0 ? M_PI * light[i][1] / albedo * area : 0;
+            if (light[i][1] > 0 && lit++ % 50 == 0) {
+                bool out;
+                flood(&g, &r, i, &out);
+                assert_false(out);
+            }
+        }
+        printf("turned by %.1f: %.3f of the light arrives, at %d cells; %.2f ms\n", k * 0.4,
+               arriving / (2 * M_PI), lit, gpu_ms(t, "wall_light"));
+        assert_true(fabs(arriving / (2 * M_PI) - 1) < (k ? 0.15 : 0.05));
+        mesh_free(&m);
+    }
+}
+
 static void many_triangles(void **state)
 {
     grid g = grid_of(32, 32, 32, 1.0 / 32);
@@ -399,7 +477,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(matches_brute_force),  cmocka_unit_test(closed_meshes_are_closed),
         cmocka_unit_test(walls_on_the_lattice), cmocka_unit_test(box_is_the_room),
-        cmocka_unit_test(blends_on_one_side),   cmocka_unit_test(many_triangles),
+        cmocka_unit_test(blends_on_one_side),   cmocka_unit_test(virtual_lights),
+        cmocka_unit_test(many_triangles),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
