@@ -500,6 +500,8 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, field *f)
         [PROBE_PORT_RADIAL_TAU_A] = f->picture.lamps.tau_a,
         [PROBE_PORT_RADIAL_TAU_P] = f->picture.lamps.tau_p,
         [PROBE_PORT_POINTS] = job->refs.points,
+        [PROBE_PORT_SHADOW_ATLAS] = f->picture.shadows.atlas,
+        [PROBE_PORT_SHADOWS] = f->picture.shadows.lights,
         [PROBE_PORT_WALL_LINKS] = f->walls.links,
         [PROBE_PORT_WALL_CELLS] = f->walls.cells,
         [PROBE_PORT_ENVIRONMENT] = environment_of(job, f),

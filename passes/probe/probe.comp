@@ -23,8 +23,12 @@
 #define WALLS_LINKS 12
 #define WALLS_CELLS 13
 #include "lattice_walls.glsl"
+#define SHADOW_ATLAS 18
+#define SHADOW_LIGHTS 19
+#include "shadow.glsl"
 
 layout(constant_id = 1) const uint walls = 0;
+layout(constant_id = 2) const uint shadowed = 0;
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform push
 {
@@ -168,6 +172,9 @@ void main()
         vec3 e = exp(-(tau.a + tau.p));
         if (args.scattered_only != 0) {
             e -= exp(-(tau.a + tau.s));
+        }
+        if (shadowed == 1) {
+            e *= shadow_visibility_sun(sun, p);
         }
         vec3 flux = lights[sun].mean_cosine * lights[sun].direction;
         for (uint ch = 0; ch < 3; ch++) {

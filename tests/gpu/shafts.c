@@ -136,11 +136,37 @@ static void all_orders(void **state)
     tyn_scene_finish(&scene);
 }
 
+// Unscattered sunlight at points: there in the shaft, none beside it.
+static void probes(void **state)
+{
+    gpu_test *t = *state;
+    tyn_scene scene;
+    make_scene(&scene);
+    scene.media[0] = grey_medium(0, sigma_a, 0);
+    const float points[2][3] = {{0.65f, 0.4f, 0.5f}, {0.3f, 0.4f, 0.5f}};
+    tyn_view view = {
+        .width = 1, .height = 1, .outputs = TYN_OUTPUT_PROBE, .points = points, .num_points = 2};
+    tyn_camera_frame_scene(&view.camera, &scene);
+    tyn_offline *off = NULL;
+    assert_int_equal(tyn_offline_create(t->dev, tyn_offline_params(.method = "pop"), &off), TYN_OK);
+    assert_int_equal(tyn_offline_frame(off, &scene, &view, false), TYN_OK);
+    const tyn_probe_result *r = tyn_offline_output(off, TYN_OUTPUT_PROBE);
+    const double way =
+        (1 - 0.4) * sqrt((double)(sun[0] * sun[0] + sun[1] * sun[1] + sun[2] * sun[2]));
+    print_message("fluence %g in the shaft, %g beside it\n", (double)r[0].fluence[0],
+                  (double)r[1].fluence[0]);
+    assert_true(fabs((double)r[0].fluence[0] / (3 * exp(-(double)sigma_a * way)) - 1) < 0.01);
+    assert_true(r[1].fluence[0] < 1e-6f);
+    tyn_offline_destroy(&off);
+    tyn_scene_finish(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(once_through_a_slit),
         cmocka_unit_test(all_orders),
+        cmocka_unit_test(probes),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
