@@ -203,7 +203,7 @@ static void same_as_all(void **state)
     }
     out = trace(*state, &scene, &block, false, true);
     for (int k = 0; k < COUNT; k++) {
-        if (all[k] != out[k].t) {
+        if (!(fabsf(all[k] - out[k].t) <= 1e-6f * all[k])) {
             fail_msg("ray %d: %.9g of all, %.9g by the hierarchy", k, (double)all[k],
                      (double)out[k].t);
         }
