@@ -88,15 +88,17 @@ static void record(tyn_recorder *r, const void *params)
             tyn_rec_extent(r, WALLS_PORT_TRIANGLES).x / (uint32_t)sizeof(struct surface_triangle),
     };
     args.row = args.num_triangles < WALLS_ROW ? args.num_triangles : WALLS_ROW;
+    args.slices = args.num_triangles < WALLS_FEW ? WALLS_SLICES : 1;
     tyn_rec_fill(r, WALLS_PORT_LINKS, 0);
     tyn_rec_fill(r, WALLS_PORT_HITS, 0xffffffffu);
     tyn_rec_fill(r, WALLS_PORT_NEAREST, 0xffffffffu);
     if (args.row > 0) {
         tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_SCATTER,
-                               .cells = {args.row * WALLS_GROUP,
-                                         (args.num_triangles + args.row - 1) / args.row, 1},
-                               .args = &args});
+            r,
+            &(tyn_dispatch){.kernel = KERNEL_SCATTER,
+                            .cells = {args.row * WALLS_GROUP,
+                                      (args.num_triangles + args.row - 1) / args.row, args.slices},
+                            .args = &args});
     }
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_CELLS,
                                         .cells = {p->dims[0], p->dims[1], p->dims[2]},

@@ -1,4 +1,5 @@
-// walls_scatter.comp -- one workgroup per triangle: the links it cuts and the cells it passes through.
+// walls_scatter.comp -- one workgroup per triangle, or a few if there are not many: the links it cuts and the
+// cells it passes through.
 //
 // What several triangles do to a cell is put together by atomic or and minimum, which do not depend on
 // their order. A link is judged once, from one of its ends.
@@ -93,6 +94,7 @@ void main()
     if (!(all(lessThan(abs(least), vec3(1e9))) && all(lessThan(abs(most), vec3(1e9)))) || size == 0.0) {
         return; // not finite, or without area
     }
+    uint me = gl_WorkGroupID.z * WALLS_GROUP + gl_LocalInvocationIndex, stride = args.slices * WALLS_GROUP;
     // What rounding may move the triangle by.
     vec3 slack = 1e-4 + 4e-7 * max(abs(least), abs(most));
     least -= slack;
@@ -105,7 +107,7 @@ void main()
         range_of(least, most, vec3(walls_step(FORWARD[k])), first[k], count[k]);
         total += uint(count[k].x * count[k].y * count[k].z);
     }
-    for (uint i = gl_LocalInvocationIndex; i < total; i += WALLS_GROUP) {
+    for (uint i = me; i < total; i += stride) {
         uint k = 0u, of = i;
         for (uint n = uint(count[k].x * count[k].y * count[k].z); of >= n && k < HALF - 1u;
              n = uint(count[k].x * count[k].y * count[k].z)) {
@@ -130,7 +132,7 @@ void main()
     ivec3 hi = ivec3(clamp(floor(most + shift + 0.5), vec3(-1.0), vec3(args.dims) - 1.0));
     ivec3 box = max(hi - lo + 1, ivec3(0));
     uint cells = args.dims.x * args.dims.y * args.dims.z;
-    for (uint i = gl_LocalInvocationIndex; i < uint(box.x * box.y * box.z); i += WALLS_GROUP) {
+    for (uint i = me; i < uint(box.x * box.y * box.z); i += stride) {
         ivec3 c = lo + ivec3(int(i) % box.x, int(i) / box.x % box.y, int(i) / (box.x * box.y));
         if (walls_in_cube(t, vec3(c) - shift, 0.499)) {
             float height = walls_height(t, vec3(c)).x;

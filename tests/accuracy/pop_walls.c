@@ -87,6 +87,29 @@ static void sealed(void **state)
                (double)rho, (double)m.sigma_s[0], in, inside, outside / dark);
         assert_true(in > 100 && inside < 1e-4 * outside / dark);
         tyn_offline_destroy(&off);
+
+        // From inside nothing is to be seen; from outside, among uniform surroundings, a white box neither.
+        tyn_view view = {0};
+        view_perspective(&view, (float[]){0.2f, 0.1f, 0.25f}, (float[]){-0.2f, -0.05f, -0.2f}, 1,
+                         24);
+        picture dark_picture, white;
+        picture_render(&dark_picture, t->dev, "pop", &scene, &view, NULL, 0);
+        view_perspective(&view, (float[]){0.2f, 0.8f, 2.5f}, (float[]){0, 0, 0}, 0.5f, 24);
+        picture_render(&white, t->dev, "pop", &scene, &view, "lattice.sweeps=12", 0);
+        double brightest = 0, mean_dark = 0, wrong = 0, mean_wrong = 0;
+        for (int i = 0; i < 24 * 24 * 3; i++) {
+            brightest = fmax(brightest, dark_picture.rgb[i]);
+            mean_dark += dark_picture.rgb[i] / (24 * 24 * 3);
+            wrong = fmax(wrong, fabs(white.rgb[i] - 1.0));
+            mean_wrong += (white.rgb[i] - 1.0) / (24 * 24 * 3);
+        }
+        printf("    brightest pixel inside %.1e; outside off by %.1e, mean %.1e\n", brightest,
+               wrong, mean_wrong);
+        // A ray may end a little behind the surface that another sample of its pixel meets.
+        assert_true(mean_dark < 1e-5 && brightest < 1e-3);
+        assert_true(rho < 1 || (wrong < 0.05 && fabs(mean_wrong) < 1e-3));
+        picture_free(&dark_picture);
+        picture_free(&white);
         tyn_scene_finish(&scene);
     }
 }
