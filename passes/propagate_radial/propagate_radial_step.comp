@@ -1,0 +1,89 @@
+// propagate_radial_step.comp -- one iteration: every cell gathers from its six neighbours (Eqs 2-6) and adds
+// what it now sends to the eye (Eqs 7-8).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "propagate_radial.glsl"
+#include "propagate_radial_args.h"
+
+layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+layout(set = 0, binding = 0, scalar) readonly buffer grids_buffer { propagate_radial_grid grids[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer map_buffer { vec4 map[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer cells_buffer { vec4 cells[]; };
+layout(set = 0, binding = 3, scalar) readonly buffer in_buffer { vec4 in_state[]; };
+layout(set = 0, binding = 4, scalar) writeonly buffer out_buffer { vec4 out_state[]; };
+layout(set = 0, binding = 5, scalar) buffer sum_buffer { float sum[]; };
+layout(push_constant, scalar) uniform push { propagate_radial_args args; };
+
+// Cells side by side are of unequal size. If each sent the same share of its light to the other, the larger
+// would lose light that is the same everywhere. So they exchange as much as the smaller one sends, and what
+// else the larger one would send stays there.
+
+// Light that has come to the middle of the cell, and its share of the spread.
+void add(inout vec2 light, float power, float spread, float decay)
+{
+    light += power * vec2(1.0, propagate_radial_spread(spread, decay));
+}
+
+void main()
+{
+    uint groups = propagate_groups(args.layers, PROPAGATE_RADIAL_GROUP);
+    uint stack = gl_WorkGroupID.z / groups, n = args.first + stack / args.channels;
+    ivec3 cell = ivec3(gl_GlobalInvocationID.xy,
+                       gl_GlobalInvocationID.z - stack * groups * PROPAGATE_RADIAL_GROUP);
+    if (any(greaterThanEqual(uvec3(cell), uvec3(args.cells, args.cells, args.layers)))) {
+        return;
+    }
+    int side = int(args.cells);
+    uint layer = args.cells * args.cells, base = n * layer;
+    uint q = propagate_radial_index(cell, stack, args.cells, args.layers);
+    propagate_radial_cell here = propagate_radial_cell_of(cells[q]);
+    vec4 own = map[base + uint(cell.y * side + cell.x)];
+    float growth = grids[n].growth, flatter = args.narrowing != 0u ? growth * growth : 1.0;
+    bool spacing = args.scale == TYN_PROPAGATE_SCALE_SPACING;
+    float smaller = args.scale == TYN_PROPAGATE_SCALE_RECIPROCAL ? 1.0 / (growth * growth) : 1.0;
+    // A loop, because that is what a processor without masks for whole workgroups can skip.
+    for (bool inside = here.mu >= -1.5; inside; inside = false) {
+        vec2 light = vec2(0.0);
+        float times = 1.0; // how often the light goes through the cell
+        if (cell.z == 0) {
+            ivec2 across = propagate_radial_across(cell.xy, side);
+            uint there = propagate_radial_index(ivec3(across, 0), stack, args.cells, args.layers);
+            if (args.layers > 1u) {
+                vec4 shell = in_state[there + layer];
+                float decay = cells[there + layer].x + cells[there].x;
+                // The light's a, about the direction in which it goes now.
+                add(light, shell.z * smaller * exp(-cells[there].y), min(shell.w, 2.0 - shell.w), decay);
+            }
+            times = 2.0; // once on either side of the light
+        } else {
+            // Outwards, from a cell further in; then inwards. In units of power the growth of the area is in;
+            // in those of radiance the paper's factor is that of the spacing instead.
+            float kept = exp(-here.loss), kept_beside = exp(-here.loss * own.z), stays = 0.0;
+            vec4 mine = in_state[q], inner = in_state[q - layer];
+            add(light, inner.x * kept * (spacing && cell.z > 1 ? growth : 1.0),
+                cell.z > 1 ? inner.w / flatter : inner.w, here.decay + cells[q - layer].x);
+            if (cell.z + 1 < int(args.layers)) {
+                vec4 outer = in_state[q + layer];
+                add(light, outer.z * kept * (spacing ? 1.0 / growth : smaller),
+                    min(outer.w * flatter, 2.0), here.decay + cells[q + layer].x);
+            }
+            for (int s = 0; s < 4; s++) {
+                int by = s < 2 ? -1 : 1;
+                ivec2 t = octahedral_fold(cell.xy + ((s & 1) == 0 ? ivec2(by, 0) : ivec2(0, by)), side);
+                uint there = propagate_radial_index(ivec3(t, cell.z), stack, args.cells, args.layers);
+                vec4 beside = in_state[there], its = map[base + uint(t.y * side + t.x)];
+                add(light, beside.y * kept_beside * (spacing ? own.y / its.y : min(own.y / its.y, 1.0)),
+                    beside.w, here.decay * own.z + cells[there].x * its.z);
+                stays += spacing ? 0.0 : max(1.0 - its.y / own.y, 0.0);
+            }
+            // The rest of what would go to smaller cells.
+            add(light, mine.y * kept_beside * stays, mine.w, 2.0 * here.decay * own.z);
+            add(light, mine.z * kept * (spacing ? 0.0 : 1.0 - smaller), mine.w, 2.0 * here.decay);
+        }
+        float spread = light.x > 0.0 ? clamp(light.y / light.x, 0.0, 2.0) : 1.0;
+        sum[q] += times / own.y * light.x *
+                  propagate_towards_eye(here.mu, 1.0 - spread, here.g, args.last_event != 0u);
+        out_state[q] = propagate_radial_outgoing(here, cell.z == 0, own.z, light.x, spread);
+    }
+}

@@ -1,0 +1,371 @@
+// propagate_radial.c -- the six-neighbour propagation around local lights against a CPU twin in double
+// precision, and what must hold for any light: solid angles, power, symmetry, finite numbers.
+#include "gpu_test.h"
+#include "propagate_radial_twin.h"
+#include "passes/propagate_radial/propagate_radial.h"
+#include "passes/propagate_radial/propagate_radial_args.h"
+#include "scene_args.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PORT(name) PROPAGATE_RADIAL_PORT_##name
+#define PI 3.14159265358979323846
+
+typedef struct setup {
+    struct medium_block medium;
+    const float *density;
+    struct camera_block camera;
+    struct radial_vpls vpls;
+    tyn_propagate_radial_params params;
+} setup;
+
+typedef struct texel {
+    float c[4];
+} texel;
+
+typedef struct outcome {
+    const texel *map, *cells, *state;
+    const float *sum;
+    const struct propagate_radial_grid *grids;
+    uint32_t n, layers, channels;
+} outcome;
+
+static setup setup_of(const float extent[3], const uint32_t size[3], const float *density)
+{
+    setup s = {.density = density};
+    tyn_pass_defaults(&tyn_pass_propagate_radial, &s.params);
+    for (int i = 0; i < 3; i++) {
+        s.medium.extent[i] = s.params.extent[i] = extent[i];
+        s.medium.size[i] = s.params.size[i] = size[i];
+        s.medium.voxel[i] = extent[i] / (float)size[i];
+    }
+    s.camera.orthographic = 1;
+    s.camera.forward[2] = -1;
+    s.params.channels = 1;
+    return s;
+}
+
+static struct radial_light *add_lamp(setup *s, float x, float y, float z)
+{
+    struct radial_light *light = &s->params.lamps[s->params.num_lamps++];
+    *light = (struct radial_light){.position = {x, y, z}, .intensity = {1, 1, 1}};
+    return light;
+}
+
+static outcome run(gpu_test *t, const setup *s)
+{
+    const uint32_t *size = s->medium.size;
+    tyn_ref refs[PROPAGATE_RADIAL_NUM_PORTS] = {{0}};
+    tyn_graph_begin(t->graph);
+    refs[PORT(MEDIUM)] = gpu_buffer(t, "medium", &s->medium, sizeof s->medium);
+    refs[PORT(CAMERA)] = gpu_buffer(t, "camera", &s->camera, sizeof s->camera);
+    refs[PORT(DENSITY)] = gpu_image(t, "density", TYN_IMAGE_3D,
+                                    (tyn_extent){size[0], size[1], size[2]}, 1, s->density);
+    if (s->params.max_vpls) {
+        refs[PORT(VPLS)] = gpu_buffer(t, "vpls", &s->vpls, sizeof s->vpls);
+    }
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_propagate_radial, &s->params, refs), TYN_OK);
+    static const int shown[] = {PORT(GRIDS), PORT(MAP), PORT(CELLS),
+                                PORT(STATE), PORT(SUM), PORT(SEEN)};
+    for (int i = 0; i < 6; i++) {
+        tyn_graph_output(t->graph, tyn_pass_propagate_radial.ports[shown[i]].name, refs[shown[i]],
+                         true);
+    }
+    gpu_run(t);
+    return (outcome){gpu_map(t, "map"),
+                     gpu_map(t, "cells"),
+                     gpu_map(t, "state"),
+                     gpu_map(t, "sum"),
+                     gpu_map(t, "grids"),
+                     ((uint32_t)s->params.cells + 1) & ~1u,
+                     (uint32_t)s->params.shells + 1,
+                     s->params.channels};
+}
+
+// Power in the middle of cell q of a stack.
+static double light_of(const outcome *o, const texel *map, uint32_t stack, uint32_t q)
+{
+    uint32_t layer = o->n * o->n, at = stack * layer * o->layers + q;
+    const float *state = o->state[at].c, *cell = o->cells[at].c;
+    double along = exp((double)cell[1]), beside = exp((double)(cell[1] * map[q % layer].c[2]));
+    return state[0] * along + 4.0 * state[1] * beside + state[2] * along;
+}
+
+static double held(const outcome *o, uint32_t grid, uint32_t channel)
+{
+    double sum = 0;
+    for (uint32_t q = 0; q < o->n * o->n * o->layers; q++) {
+        sum += light_of(o, o->map + grid * o->n * o->n, grid * o->channels + channel, q);
+    }
+    return sum;
+}
+
+// ---- the map ----------------------------------------------------------------------------------
+
+// Direction of an octahedral coordinate: the faces folded out one by one.
+static void direction(double u, double v, double d[3])
+{
+    double z = 1 - fabs(u) - fabs(v);
+    d[0] = z >= 0 ? u : copysign(1 - fabs(v), u);
+    d[1] = z >= 0 ? v : copysign(1 - fabs(u), v);
+    d[2] = z;
+    double r = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (int i = 0; i < 3; i++) {
+        d[i] /= r;
+    }
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// Solid angle of a triangle of directions (Van Oosterom and Strackee 1983).
+static double triangle(const double a[3], const double b[3], const double c[3])
+{
+    double volume = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+                    a[2] * (b[0] * c[1] - b[1] * c[0]);
+    return fabs(2 * atan2(volume, 1 + dot(a, b) + dot(b, c) + dot(c, a)));
+}
+
+// Edges of texels are great circles, and those that are cut by the fold |u| + |v| = 1 are cut along a diagonal.
+static double solid_angle(int n, int i, int j)
+{
+    double corner[2][2][3], u = (2 * i + 1.0) / n - 1, v = (2 * j + 1.0) / n - 1;
+    for (int b = 0; b < 2; b++) {
+        for (int a = 0; a < 2; a++) {
+            direction(2.0 * (i + a) / n - 1, 2.0 * (j + b) / n - 1, corner[b][a]);
+        }
+    }
+    bool falling = u * v > 0; // the fold's direction in this quadrant
+    return falling ? triangle(corner[0][0], corner[0][1], corner[1][0]) +
+                         triangle(corner[1][1], corner[0][1], corner[1][0])
+                   : triangle(corner[0][1], corner[0][0], corner[1][1]) +
+                         triangle(corner[1][0], corner[0][0], corner[1][1]);
+}
+
+static const float one_voxel = 1;
+
+static void maps(void **state)
+{
+    setup s = setup_of((float[]){1, 1, 1}, (uint32_t[]){1, 1, 1}, &one_voxel);
+    s.medium.sigma_s[0] = 1;
+    add_lamp(&s, 0.5f, 0.5f, 0.5f);
+    struct radial_light *spot = add_lamp(&s, 0.2f, 0.3f, 0.4f);
+    *spot = (struct radial_light){.position = {0.2f, 0.3f, 0.4f},
+                                  .kind = TYN_RADIAL_SPOT,
+                                  .axis = {0.6f, 0, 0.8f},
+                                  .cos_inner = 0.9f,
+                                  .cos_outer = 0.7f};
+    spot = add_lamp(&s, 0, 0, 0);
+    *spot = (struct radial_light){.position = {0.5f, 0.5f, 3},
+                                  .kind = TYN_RADIAL_SPOT,
+                                  .axis = {0, 0, -1},
+                                  .cos_inner = 0.999999f,
+                                  .cos_outer = 0.9999989f}; // narrower than all points of a texel
+    s.params.max_vpls = 2;
+    s.vpls.count = 1;
+    s.vpls.list[0] = (struct radial_light){.position = {0.5f, 0.5f, 0},
+                                           .kind = TYN_RADIAL_COSINE,
+                                           .axis = {0, 0, 1},
+                                           .radius = 0.5f,
+                                           .intensity = {1, 2, 3}};
+    for (int n = 2; n <= 32; n *= 4) {
+        s.params.cells = n;
+        outcome o = run(*state, &s);
+        double worst = 0;
+        const double power[] = {4 * PI, 2 * PI * (1 - (2 * 0.9 + 0.7) / 3),
+                                2 * PI * (1 - (2 * 0.999999 + 0.9999989) / 3), PI};
+        for (int k = 0; k < 4; k++) {
+            double angles = 0, start = 0;
+            for (int q = 0; q < n * n; q++) {
+                const float *c = o.map[k * n * n + q].c;
+                angles += c[1];
+                start += c[0];
+                if (k == 0) {
+                    worst = fmax(worst, fabs(c[1] / solid_angle(n, q % n, q / n) - 1));
+                }
+            }
+            // The outer half of a flattened map is seen from its few points only.
+            assert_true(fabs(angles / (4 * PI) - 1) < (k == 2 ? 0.05 : 1e-3));
+            assert_true(fabs(start / power[k] - 1) < (k == 2 ? 0.05 : 1e-5));
+        }
+        print_message("%d x %d: solid angles within %.1e\n", n, n, worst);
+        assert_true(worst < 5e-3); // of texels that the fold cuts
+        double r = 0.5 * sqrt(0.25 + 0.25 + 1); // half the way to the farthest corner
+        assert_float_equal(o.grids[3].mean_cosine, 0.5 + 0.5 * r / sqrt(r * r + 0.25), 1e-5);
+        assert_int_equal(o.grids[3].layers, o.layers);
+        assert_int_equal(o.grids[4].layers, 0); // there is none
+        assert_true(held(&o, 4, 0) == 0);
+    }
+}
+
+// Folded neighbours are neighbours on the sphere too: no farther than the widest cell.
+static void folds(void **state)
+{
+    (void)state;
+    for (int n = 2; n <= 32; n += 2) {
+        for (int q = 0; q < 4 * n * n; q++) {
+            static const int step[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+            int i = q / 4 % n, j = q / 4 / n, at[2], back[2], returns = 0;
+            radial_twin_beside(n, i, j, step[q % 4][0], step[q % 4][1], at);
+            double a[3], b[3];
+            direction((2 * i + 1.0) / n - 1, (2 * j + 1.0) / n - 1, a);
+            direction((2 * at[0] + 1.0) / n - 1, (2 * at[1] + 1.0) / n - 1, b);
+            assert_true(acos(fmin(dot(a, b), 1)) < 6.0 / n);
+            for (int k = 0; k < 4; k++) {
+                radial_twin_beside(n, at[0], at[1], step[k][0], step[k][1], back);
+                returns += back[0] == i && back[1] == j;
+            }
+            assert_true(returns > 0);
+        }
+    }
+}
+
+// ---- the twin ---------------------------------------------------------------------------------
+
+enum { MAX_CELLS = 12 * 12 * 16 };
+
+static double worst_of(const double *found, const double *expected, int n)
+{
+    double top = 0, result = 0;
+    for (int i = 0; i < n; i++) {
+        top = fmax(top, fabs(expected[i]));
+    }
+    for (int i = 0; i < n; i++) {
+        double scale = fmax(fabs(expected[i]), 1e-4 * top);
+        result = fmax(result, fabs(found[i] - expected[i]) / scale);
+    }
+    return result;
+}
+
+static double compare(const setup *s, const outcome *o, uint32_t grid, uint32_t channel,
+                      radial_twin_sums *sums)
+{
+    static double start[144], angle[144], wide[144], decay[MAX_CELLS], loss[MAX_CELLS],
+        g[MAX_CELLS], mu[MAX_CELLS], light[MAX_CELLS], cosine[MAX_CELLS], seen[MAX_CELLS],
+        found[3][MAX_CELLS];
+    static bool cell[MAX_CELLS];
+    static int first[144];
+    int layer = (int)(o->n * o->n), total = layer * (int)o->layers;
+    const texel *map = o->map + grid * (uint32_t)layer;
+    uint32_t stack = grid * o->channels + channel;
+    const texel *cells = o->cells + stack * (uint32_t)total;
+    for (int q = 0; q < layer; q++) {
+        start[q] = map[q].c[0];
+        angle[q] = map[q].c[1];
+        wide[q] = map[q].c[2];
+        first[q] = -1;
+    }
+    for (int q = 0; q < total; q++) {
+        const float *c = cells[q].c;
+        cell[q] = c[3] > -1.5f;
+        decay[q] = c[0];
+        loss[q] = c[1];
+        g[q] = c[2];
+        mu[q] = c[3];
+        first[q % layer] = cell[q] && first[q % layer] < 0 ? q / layer : first[q % layer];
+    }
+    const struct propagate_radial_grid *own = &o->grids[grid];
+    static const radial_twin_scale scales[] = {RADIAL_TWIN_POWER, RADIAL_TWIN_RECIPROCAL,
+                                               RADIAL_TWIN_SPACING};
+    radial_twin twin = {(int)o->n,
+                        (int)o->layers,
+                        own->growth,
+                        start,
+                        angle,
+                        wide,
+                        decay,
+                        loss,
+                        g,
+                        mu,
+                        cell,
+                        first,
+                        own->mean_cosine,
+                        scales[s->params.scale],
+                        s->params.narrowing != 0,
+                        s->params.last_event != 0};
+    *sums = radial_twin_run(&twin, s->params.iterations, light, cosine, seen);
+    for (int q = 0; q < total; q++) {
+        double of_cell = light_of(o, map, stack, (uint32_t)q);
+        found[0][q] = cell[q] ? of_cell : 0;
+        found[1][q] = (1.0 - (double)o->state[stack * (uint32_t)total + (uint32_t)q].c[3]) *
+                      (cell[q] ? of_cell : 0);
+        found[2][q] = o->sum[stack * (uint32_t)total + (uint32_t)q];
+        cosine[q] *= light[q];
+    }
+    return fmax(fmax(worst_of(found[0], light, total), worst_of(found[1], cosine, total)),
+                worst_of(found[2], seen, total));
+}
+
+static setup blobs(float *density)
+{
+    const uint32_t size[3] = {9, 12, 7};
+    srand(5);
+    for (uint32_t q = 0; q < size[0] * size[1] * size[2]; q++) {
+        density[q] = rand() % 4 ? (float)(rand() % 1000) * 1e-3f : 0;
+    }
+    setup s = setup_of((float[]){1.0f, 1.3f, 0.8f}, size, density);
+    memcpy(s.medium.sigma_s, (float[]){2, 5, 9}, sizeof s.medium.sigma_s);
+    memcpy(s.medium.sigma_a, (float[]){0.5f, 0.1f, 0}, sizeof s.medium.sigma_a);
+    memcpy(s.medium.g, (float[]){0.8f, 0.3f, 0.5f}, sizeof s.medium.g);
+    s.camera = (struct camera_block){.origin = {0.3f, 0.9f, 3}, .forward = {0, 0, -1}};
+    s.params.channels = 3;
+    s.params.cells = 11; // made even
+    s.params.shells = 9;
+    s.params.iterations = 13;
+    add_lamp(&s, 0.4f, 0.7f, 0.3f);
+    struct radial_light *spot = add_lamp(&s, 0.9f, -0.5f, 1.5f);
+    spot->kind = TYN_RADIAL_SPOT;
+    memcpy(spot->axis, (float[]){-0.48f, 0.6f, -0.64f}, sizeof spot->axis);
+    spot->cos_inner = 0.95f;
+    spot->cos_outer = 0.8f;
+    s.params.max_vpls = 1;
+    s.vpls.count = 1;
+    s.vpls.list[0] = (struct radial_light){.position = {0.2f, 0, 0.6f},
+                                           .kind = TYN_RADIAL_COSINE,
+                                           .axis = {0, 1, 0},
+                                           .radius = 0.2f,
+                                           .intensity = {1, 2, 3}};
+    return s;
+}
+
+static void equals_twin(void **state)
+{
+    static float density[9 * 12 * 7];
+    setup s = blobs(density);
+    for (int reading = 0; reading < 12; reading++) {
+        s.params.scale = reading % 3;
+        s.params.rate = reading / 3 & 1;
+        s.params.last_event = (uint32_t)(reading / 3 & 1);
+        s.params.narrowing = (uint32_t)(reading / 6);
+        outcome o = run(*state, &s);
+        double difference = 0, balance = 0;
+        for (uint32_t grid = 0; grid < 3; grid++) {
+            for (uint32_t c = 0; c < 3; c++) {
+                radial_twin_sums sums;
+                difference = fmax(difference, compare(&s, &o, grid, c, &sums));
+                double rest = sums.injected - sums.absorbed - sums.escaped - sums.held;
+                if (s.params.scale != TYN_PROPAGATE_SCALE_SPACING) {
+                    balance = fmax(balance, fabs(rest / sums.injected));
+                    assert_true(fabs(held(&o, grid, c) - sums.held) < 1e-4 * sums.injected);
+                }
+            }
+        }
+        print_message("scale %d, rate %d, narrowing %u: largest difference %.1e, balance %.1e\n",
+                      s.params.scale, s.params.rate, s.params.narrowing, difference, balance);
+        // Lobes that point inwards keep 1 - a next to 2, where the parts that go outwards lose digits.
+        assert_true(difference < (s.params.narrowing ? 2e-2 : 2e-4) && balance < 1e-12);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(maps),
+        cmocka_unit_test(folds),
+        cmocka_unit_test(equals_twin),
+    };
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
