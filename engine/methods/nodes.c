@@ -44,15 +44,6 @@ tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method)
     return TYN_OK;
 }
 
-void tyn_method_warn_lamps(const tyn_job *job)
-{
-    uint32_t lamps = job->frame->num_lights - job->frame->num_suns;
-    if (lamps) {
-        tyn_method_warn(job, "%u point or spot light%s left out: only directional lights are done",
-                        lamps, lamps > 1 ? "s are" : " is");
-    }
-}
-
 uint32_t tyn_method_suns(const tyn_job *job, bool of_map)
 {
     const tyn_frame_scene *frame = job->frame;

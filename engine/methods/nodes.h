@@ -72,9 +72,6 @@ uint32_t tyn_method_suns(const tyn_job *job, bool of_map);
 // A line among the report's warnings.
 void tyn_method_warn(const tyn_job *job, const char *format, ...) TYN_PRINTF(2, 3);
 
-// Warns of point and spot lights, which a method leaves out.
-void tyn_method_warn_lamps(const tyn_job *job);
-
 // TYN_ERR_PARAMS with a log line if a shape of the scene is periodic.
 tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method);
 // Warns that a method leaves the surfaces out, if there are any.

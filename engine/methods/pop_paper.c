@@ -1,6 +1,6 @@
 // pop_paper.c -- method "pop-paper": principal-ordinates propagation as published in 2014.
 //
-// The light of each sun and ordinate, scattered or not, moves from cell to cell of its own aligned grid;
+// The light of each sun, ordinate and lamp, scattered or not, moves from cell to cell of its own aligned grid;
 // what all of them send to the eye is merged into one grid, upsampled with the medium as guide and
 // marched. Kept as it was published (the readings are settings of propagate_rect): the baseline of
 // method "pop".
@@ -9,7 +9,9 @@
 #include "passes/importance/importance.h"
 #include "passes/ordinates/ordinates.h"
 #include "passes/medium/medium.h"
+#include "passes/propagate_radial/propagate_radial.h"
 #include "passes/propagate_rect/propagate_rect.h"
+#include "passes/radial_beam/radial_beam.h"
 #include "passes/residuum/residuum.h"
 #include "passes/merge_grids/merge_grids.h"
 #include "passes/upsample/upsample.h"
@@ -22,10 +24,12 @@
 // What the nodes of one frame share.
 typedef struct propagated {
     tyn_propagate_rect_params grids;
+    tyn_propagate_radial_params radial;
     tyn_residuum_params residuum;
     tyn_picture_inputs picture;
     tyn_sky_refs sky;
     tyn_ref places, seen, light, isotropic, merged;
+    tyn_ref radial_places, radial_seen;
 } propagated;
 
 static float longest_side(const tyn_job *job)
@@ -55,18 +59,52 @@ static int32_t iterations_before_residuum(const propagated *p, const tyn_job *jo
     return (int32_t)fminf(fmaxf((float)hops, (float)p->grids.cells), 256.0f);
 }
 
-static tyn_result add_propagation(tyn_graph *g, const tyn_job *job, propagated *p)
+// What all grids need to know of the medium.
+static void set_grids(propagated *p, const tyn_job *job)
 {
     const struct medium_block *block = &job->frame->medium;
     p->grids.num_ordinates = p->sky.count;
-    p->grids.channels = job->frame->grey ? 1 : 3;
-    p->grids.mode = block->mode;
+    p->grids.channels = p->radial.channels = job->frame->grey ? 1 : 3;
+    p->grids.mode = p->radial.mode = block->mode;
+    memcpy(p->grids.extent, block->extent, sizeof p->grids.extent);
+    memcpy(p->grids.size, block->size, sizeof p->grids.size);
+    memcpy(p->radial.extent, block->extent, sizeof p->radial.extent);
+    memcpy(p->radial.size, block->size, sizeof p->radial.size);
+}
+
+// Lamps that shine.
+static void set_lamps(propagated *p, const tyn_job *job)
+{
+    const tyn_frame_scene *frame = job->frame;
+    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
+        const float *color = frame->lights[i].color;
+        if (color[0] + color[1] + color[2] > 0.0f && p->radial.num_lamps < TYN_RADIAL_LAMPS_MAX) {
+            p->radial.lamps[p->radial.num_lamps++] = tyn_radial_of_lamp(&frame->lights[i], i);
+        }
+    }
+}
+
+static tyn_result add_radial(tyn_graph *g, const tyn_job *job, propagated *p)
+{
+    tyn_ref refs[PROPAGATE_RADIAL_NUM_PORTS] = {
+        [PROPAGATE_RADIAL_PORT_MEDIUM] = job->refs.medium,
+        [PROPAGATE_RADIAL_PORT_CAMERA] = job->refs.camera,
+        [PROPAGATE_RADIAL_PORT_DENSITY] = p->picture.media.density,
+        [PROPAGATE_RADIAL_PORT_SIGMA_A] = p->picture.media.sigma_a,
+        [PROPAGATE_RADIAL_PORT_G] = p->picture.media.g,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_propagate_radial, &p->radial, refs);
+    p->radial_places = refs[PROPAGATE_RADIAL_PORT_PLACES];
+    p->radial_seen = refs[PROPAGATE_RADIAL_PORT_SEEN];
+    return result;
+}
+
+static tyn_result add_propagation(tyn_graph *g, const tyn_job *job, propagated *p)
+{
     p->grids.keep_light = p->residuum.on;
     if (p->residuum.on) {
         p->grids.iterations = iterations_before_residuum(p, job);
     }
-    memcpy(p->grids.extent, block->extent, sizeof p->grids.extent);
-    memcpy(p->grids.size, block->size, sizeof p->grids.size);
     tyn_ref refs[PROPAGATE_RECT_NUM_PORTS] = {
         [PROPAGATE_RECT_PORT_MEDIUM] = job->refs.medium,
         [PROPAGATE_RECT_PORT_ORDINATES] = p->sky.ordinates,
@@ -108,6 +146,8 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, propagated *p)
     params.num_grids = p->grids.num_ordinates;
     params.grid_cells = (uint32_t)p->grids.cells;
     params.channels = p->grids.channels;
+    params.num_radial = p->radial.num_lamps;
+    params.radial_cells = ((uint32_t)p->radial.cells + 1) & ~1u;
     params.mode = p->grids.mode;
     memcpy(params.extent, p->grids.extent, sizeof params.extent);
     tyn_ref refs[MERGE_GRIDS_NUM_PORTS] = {
@@ -115,6 +155,8 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, propagated *p)
         [MERGE_GRIDS_PORT_DENSITY] = p->picture.media.density,
         [MERGE_GRIDS_PORT_PLACES] = p->places,
         [MERGE_GRIDS_PORT_SEEN] = p->seen,
+        [MERGE_GRIDS_PORT_RADIAL_PLACES] = p->radial_places,
+        [MERGE_GRIDS_PORT_RADIAL_SEEN] = p->radial_seen,
         [MERGE_GRIDS_PORT_RESIDUUM] = p->isotropic,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_merge_grids, &params, refs);
@@ -146,9 +188,16 @@ static tyn_result add_upsampling(tyn_graph *g, const tyn_job *job, propagated *p
 // The light in the medium.
 static tyn_result add_light(tyn_graph *g, const tyn_job *job, propagated *p)
 {
-    tyn_result result = add_propagation(g, job, p);
-    if (result == TYN_OK && p->residuum.on) {
+    set_grids(p, job);
+    tyn_result result = TYN_OK;
+    if (p->sky.count) {
+        result = add_propagation(g, job, p);
+    }
+    if (result == TYN_OK && p->sky.count && p->residuum.on) {
         result = add_residuum(g, job, p);
+    }
+    if (result == TYN_OK && p->radial.num_lamps) {
+        result = add_radial(g, job, p);
     }
     if (result == TYN_OK) {
         result = add_merge(g, job, p);
@@ -170,24 +219,35 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (frame->emissive) {
         tyn_method_warn(job, "emission is seen, but does not light the medium");
     }
-    tyn_method_warn_lamps(job);
     propagated p = {.picture.field = RAYMARCH_INSCATTER_PLAIN};
     tyn_settings_params(job->settings, &tyn_pass_propagate_rect, &p.grids);
+    tyn_settings_params(job->settings, &tyn_pass_propagate_radial, &p.radial);
     tyn_settings_params(job->settings, &tyn_pass_residuum, &p.residuum);
+    set_lamps(&p, job);
     result = tyn_add_medium(g, job, &p.picture.media);
     if (result == TYN_OK) {
         result = tyn_add_sky(g, job, &p.picture.media, 0, false, &p.sky);
     }
-    if (result == TYN_OK && p.sky.count) {
+    if (result == TYN_OK && (p.sky.count || p.radial.num_lamps)) {
         result = add_light(g, job, &p);
     }
     return result == TYN_OK ? tyn_add_picture(g, job, &p.picture) : result;
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,         &tyn_pass_env_importance, &tyn_pass_importance,  &tyn_pass_ordinates,
-    &tyn_pass_propagate_rect, &tyn_pass_residuum,       &tyn_pass_merge_grids, &tyn_pass_upsample,
-    &tyn_pass_raymarch,       &tyn_pass_composite,      &tyn_pass_tonemap,     NULL,
+    &tyn_pass_medium,
+    &tyn_pass_env_importance,
+    &tyn_pass_importance,
+    &tyn_pass_ordinates,
+    &tyn_pass_propagate_rect,
+    &tyn_pass_propagate_radial,
+    &tyn_pass_residuum,
+    &tyn_pass_merge_grids,
+    &tyn_pass_upsample,
+    &tyn_pass_raymarch,
+    &tyn_pass_composite,
+    &tyn_pass_tonemap,
+    NULL,
 };
 
 const tyn_method tyn_method_pop_paper = {

@@ -14,6 +14,7 @@
 #include "passes/merge/merge.h"
 #include "passes/merge_grids/merge_grids.h"
 #include "passes/probe/probe.h"
+#include "passes/propagate_radial/propagate_radial.h"
 #include "passes/propagate_rect/propagate_rect.h"
 #include "passes/raymarch/raymarch.h"
 #include "passes/residuum/residuum.h"
@@ -44,6 +45,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_probe,
     &tyn_pass_balance,
     &tyn_pass_propagate_rect,
+    &tyn_pass_propagate_radial,
     &tyn_pass_merge_grids,
     &tyn_pass_residuum,
     &tyn_pass_upsample,

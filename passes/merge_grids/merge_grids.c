@@ -10,8 +10,14 @@
 static const tyn_port ports[MERGE_GRIDS_NUM_PORTS] = {
     [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
     [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
-    [PORT(PLACES)] = {"places", TYN_IN, TYN_BUFFER, .meaning = "struct propagate_place[]"},
-    [PORT(SEEN)] = {"seen", TYN_IN, TYN_IMAGE_3D, .meaning = "of propagate_rect: L_acc, 1/sr"},
+    [PORT(PLACES)] = {"places", TYN_IN, TYN_BUFFER, .optional = true,
+                      .meaning = "struct propagate_place[]"},
+    [PORT(SEEN)] = {"seen", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                    .meaning = "of propagate_rect: L_acc, 1/sr"},
+    [PORT(RADIAL_PLACES)] = {"radial_places", TYN_IN, TYN_BUFFER, .optional = true,
+                             .meaning = "struct propagate_radial_place[]"},
+    [PORT(RADIAL_SEEN)] = {"radial_seen", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                           .meaning = "of propagate_radial: r^2 L_acc, 1/sr"},
     [PORT(RESIDUUM)] = {"residuum", TYN_IN, TYN_IMAGE_3D, .optional = true,
                         .meaning = "of residuum: light to the eye, W/(m^2 sr)"},
     [PORT(MERGED)] = {"merged", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
@@ -19,9 +25,14 @@ static const tyn_port ports[MERGE_GRIDS_NUM_PORTS] = {
 };
 
 static const tyn_binding sum_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},   {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(PLACES), TYN_USE_UNIFORM},   {PORT(SEEN), TYN_USE_SAMPLED},
-    {PORT(RESIDUUM), TYN_USE_SAMPLED}, {PORT(MERGED), TYN_USE_STORAGE_WRITE},
+    {PORT(MEDIUM), TYN_USE_UNIFORM},
+    {PORT(DENSITY), TYN_USE_SAMPLED},
+    {PORT(PLACES), TYN_USE_UNIFORM},
+    {PORT(SEEN), TYN_USE_SAMPLED},
+    {PORT(RESIDUUM), TYN_USE_SAMPLED},
+    {PORT(MERGED), TYN_USE_STORAGE_WRITE},
+    {PORT(RADIAL_PLACES), TYN_USE_STORAGE_READ},
+    {PORT(RADIAL_SEEN), TYN_USE_SAMPLED},
 };
 
 static const tyn_kernel kernels[] = {
@@ -37,13 +48,15 @@ static const tyn_kernel kernels[] = {
 
 static const tyn_param params[] = {
     {"finer", TYN_PARAM_INT, offsetof(tyn_merge_grids_params, finer), 2, 1, 8, "",
-     "cells of the merged grid per cell of the aligned ones, along an axis"},
+     "cells of the merged grid per cell of the finest aligned one, along an axis"},
 };
 
 static tyn_extent dims_of(const tyn_merge_grids_params *p)
 {
     float longest = fmaxf(p->extent[0], fmaxf(p->extent[1], p->extent[2]));
-    float dx = longest / (float)(p->grid_cells * (uint32_t)p->finer);
+    uint32_t finest =
+        p->num_radial && p->radial_cells > p->grid_cells ? p->radial_cells : p->grid_cells;
+    float dx = longest / (float)(finest * (uint32_t)p->finer);
     uint32_t dims[3];
     for (int i = 0; i < 3; i++) {
         dims[i] = (uint32_t)fmaxf(1.0f, ceilf(p->extent[i] / dx - 1e-3f));
@@ -66,11 +79,15 @@ static void record(tyn_recorder *r, const void *data)
         .num_grids = p->num_grids,
         .grid_cells = p->grid_cells,
         .channels = p->channels,
-        .tiles = tyn_rec_extent(r, PORT(SEEN)).x / p->grid_cells,
+        .tiles = p->num_grids ? tyn_rec_extent(r, PORT(SEEN)).x / p->grid_cells : 1,
         .residuum = tyn_rec_has(r, PORT(RESIDUUM)),
+        .num_radial = p->num_radial,
+        .radial_cells = p->radial_cells,
+        .radial_tiles =
+            p->num_radial ? tyn_rec_extent(r, PORT(RADIAL_SEEN)).x / (p->radial_cells + 2) : 1,
     };
     tyn_rec_dispatch(r, &(tyn_dispatch){.cells = dims, .args = &args, .spec = &p->mode});
-    tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * p->num_grids);
+    tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * (p->num_grids + p->num_radial));
 }
 
 const tyn_pass_desc tyn_pass_merge_grids = {

@@ -10,7 +10,10 @@ struct merge_grids_args {
     tyn_uint channels;
     tyn_uint tiles;    // a row of `seen`
     tyn_uint residuum; // 1: add it
+    tyn_uint num_radial;
+    tyn_uint radial_cells; // of a map along a side; the edge of a tile, less 2
+    tyn_uint radial_tiles; // a row of `radial_seen`
 };
-TYN_ASSERT_SIZE(merge_grids_args, 32);
+TYN_ASSERT_SIZE(merge_grids_args, 44);
 
 #endif

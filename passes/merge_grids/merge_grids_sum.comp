@@ -7,6 +7,7 @@
 #include "medium.glsl"
 #include "lattice.glsl"
 #include "propagate.glsl"
+#include "propagate_radial.glsl"
 #include "merge_grids_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
@@ -17,6 +18,11 @@ layout(set = 0, binding = 2, scalar) uniform places_uniform
 layout(set = 0, binding = 3) uniform sampler3D seen;
 layout(set = 0, binding = 4) uniform sampler3D residuum;
 layout(set = 0, binding = 5, rgba32f) uniform writeonly image3D out_merged;
+layout(set = 0, binding = 6, scalar) readonly buffer radial_places_buffer
+{
+    propagate_radial_place radial_places[];
+};
+layout(set = 0, binding = 7) uniform sampler3D radial_seen;
 layout(push_constant, scalar) uniform push { merge_grids_args args; };
 
 // Mean of sigma_s over a cell and the channels: a trilinear fetch is a mean over two voxels.
@@ -34,6 +40,54 @@ float guide(lattice_box box, vec3 cell)
         }
     }
     return dot(sum, vec3(1.0 / 3.0)) / float(along * along * along);
+}
+
+// Mean of 1 / r^2 over a cube of edge h with its middle at a distance r: that over the ball of equal volume, of
+// radius R, 3 / (4 R^3) (2 R - (r - R^2 / r) ln |(r + R) / (r - R)|).
+float inverse_square(float r, float h)
+{
+    float R = 0.62035049 * h;
+    if (r > 4.0 * R) {
+        return (1.0 + 0.2 * R * R / (r * r)) / (r * r);
+    }
+    r = max(r, 1e-3 * R);
+    float apart = max(abs(r - R), 1e-6 * R);
+    return 0.75 / (R * R * R) * (2.0 * R - (r - R * R / r) * log((r + R) / apart));
+}
+
+// Light of a lamp at p, per intensity and channel, times r^2.
+vec3 seen_from(propagate_radial_place place, uint n, vec3 away, float r)
+{
+    float k = r * place.per_inner;
+    vec2 e = octahedral_of(r > 0.0 ? vec3(dot(place.to_map[0], away), dot(place.to_map[1], away),
+                                          dot(place.to_map[2], away))
+                                   : vec3(0.0, 0.0, 1.0));
+    float layer = clamp(k < 1.0 ? k : 1.0 + log(k) * place.per_layer, 0.5, float(place.layers) - 0.5);
+    vec3 at = vec3(1.0 + (0.5 * e + 0.5) * float(args.radial_cells), layer);
+    vec3 texel = 1.0 / vec3(textureSize(radial_seen, 0)), found = vec3(0.0);
+    for (uint c = 0u; c < args.channels; c++) {
+        uint stack = n * args.channels + c;
+        uvec2 corner = uvec2(stack % args.radial_tiles, stack / args.radial_tiles) * (args.radial_cells + 2u);
+        found[c] = textureLod(radial_seen, (vec3(corner, 0.0) + at) * texel, 0.0).r;
+    }
+    return args.channels == 1u ? found.rrr : found;
+}
+
+// Mean over a cell of edge dx: the cells of the radial grid are small next to the light.
+vec3 radial_mean(uint n, vec3 middle, float dx)
+{
+    propagate_radial_place place = radial_places[n];
+    float distant = length(middle - place.position);
+    int along = place.layers == 0u ? 0 : distant < 2.0 * dx ? 8 : distant < 6.0 * dx ? 2 : 1;
+    float h = dx / float(max(along, 1));
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < along * along * along; i++) {
+        vec3 part = (vec3(i % along, i / along % along, i / (along * along)) + 0.5) * h - 0.5 * dx;
+        vec3 away = middle + part - place.position;
+        float r = length(away);
+        sum += inverse_square(r, h) * seen_from(place, n, away, r);
+    }
+    return place.intensity * sum / float(max(along * along * along, 1));
 }
 
 void main()
@@ -57,6 +111,9 @@ void main()
             tile = tile.x == args.tiles ? uvec2(0u, tile.y + 1u) : tile;
         }
         light += places[n].irradiance * (args.channels == 1u ? found.rrr : found);
+    }
+    for (uint n = 0u; n < args.num_radial; n++) {
+        light += radial_mean(n, p, box.dx);
     }
     if (args.residuum != 0u) {
         lattice_box own = lattice_box_of(medium.extent, textureSize(residuum, 0));
