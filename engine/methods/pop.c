@@ -569,8 +569,13 @@ static tyn_result add_lights(tyn_graph *g, const tyn_job *job, field *f)
 {
     tyn_result result =
         tyn_add_beams(g, job, &f->picture.media, f->picture.num_suns, &f->picture.beams);
+    const uint32_t *repeat = job->frame->medium.repeat;
+    if (result == TYN_OK && !repeat[0] && !repeat[1] && !repeat[2]) {
+        result = tyn_add_vpls(g, job, &f->picture.media, f->picture.num_suns, &f->picture.vpls);
+    }
     if (result == TYN_OK) {
-        result = tyn_add_radials(g, job, &f->picture.media, (tyn_ref){0}, &f->picture.lamps);
+        result =
+            tyn_add_radials(g, job, &f->picture.media, f->picture.vpls.lights, &f->picture.lamps);
         f->picture.num_marched_lamps = f->picture.lamps.num_lamps;
     }
     if (result == TYN_OK) {
