@@ -22,7 +22,9 @@ static inline uint64_t tyn_hash_bytes(uint64_t h, const void *data, size_t size)
         h = tyn_hash_u64(h, w);
     }
     uint64_t tail = 0;
-    memcpy(&tail, p, size);
+    if (size) { // nothing may be at NULL
+        memcpy(&tail, p, size);
+    }
     return tyn_hash_u64(h, tail);
 }
 

@@ -262,11 +262,11 @@ static tyn_result add_probes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     return result;
 }
 
-static void include(float box[2][3], const float p[3])
+static void include(float lo[3], float hi[3], const float p[3])
 {
     for (int a = 0; a < 3; a++) {
-        box[0][a] = fminf(box[0][a], p[a]);
-        box[1][a] = fmaxf(box[1][a], p[a]);
+        lo[a] = fminf(lo[a], p[a]);
+        hi[a] = fmaxf(hi[a], p[a]);
     }
 }
 
@@ -282,10 +282,10 @@ static void set_box(tyn_path_params *p, const tyn_frame_scene *frame)
     }
     float corners[2][3], size = 0;
     surfaces_box(frame, corners[0], corners[1]);
-    include(p->box, corners[0]);
-    include(p->box, corners[1]);
+    include(p->box[0], p->box[1], corners[0]);
+    include(p->box[0], p->box[1], corners[1]);
     for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
-        include(p->box, frame->lights[i].position);
+        include(p->box[0], p->box[1], frame->lights[i].position);
     }
     for (int a = 0; a < 3; a++) {
         size = fmaxf(size, p->box[1][a] - p->box[0][a]);

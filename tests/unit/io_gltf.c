@@ -202,8 +202,10 @@ static void environments(void **state)
                      "'extensions': {'TYN_environment_map': {'environments': [{'radiance': 2},"
                      "{'uri': 'sky.hdr', 'radiance': [1, 2, 3], 'rotation': [0, 1, 0, 0]}]}}}");
     load(&s, text);
-    assert_true(s.environment.present && s.environment.size[0] == 2 && s.environment.size[1] == 1);
-    NEAR(s.environment.data, 1, 1, 1, 0.5f, 0.5f, 0.5f);
+    // A map of 2 x 1 texels is refined: the centres of the old texels keep their values.
+    assert_true(s.environment.present && s.environment.size[0] == 66 && s.environment.size[1] == 33);
+    NEAR(s.environment.data + 3 * 16, 1, 1, 1);
+    NEAR(s.environment.data + 3 * 49, 0.5f, 0.5f, 0.5f);
     NEAR(s.environment.radiance, 1, 2, 3);
     NEAR(s.environment.rotation, 0, 1, 0, 0);
     assert_true(s.environment.strength == 1);
@@ -247,8 +249,9 @@ static void numbered_files(void **state)
     assert_int_equal(tyn_scene_load_frame(&s, path, NULL, 12345, &log.log), TYN_ERR_IO);
     assert_non_null(strstr(log.last, "smoke.12345.raw"));
     io_log_init(&log);
-    assert_int_equal(tyn_scene_load(&s, path, NULL, &log.log), TYN_ERR_IO);
+    assert_int_equal(tyn_scene_load(&s, path, NULL, &log.log), TYN_ERR_PARAMS);
     assert_non_null(strstr(log.last, "smoke.####.raw"));
+    assert_non_null(strstr(log.last, "--frame"));
 }
 
 static void containers(void **state)
