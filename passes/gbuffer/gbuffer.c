@@ -2,6 +2,7 @@
 #include "gbuffer.h"
 #include "gbuffer_args.h"
 #include "gbuffer_fragment.frag.h"
+#include "gbuffer_resolve.comp.h"
 #include "gbuffer_vertex.vert.h"
 
 static const tyn_port ports[GBUFFER_NUM_PORTS] = {
@@ -22,10 +23,13 @@ static const tyn_port ports[GBUFFER_NUM_PORTS] = {
     [GBUFFER_PORT_EMISSION] = {"emission", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
                                false,
                                "radiance to the camera, W/(m^2 sr); y of the facet's normal"},
+    [GBUFFER_PORT_SEEN] = {"seen", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32_UINT, false,
+                           "index of the triangle + 1, 0: none"},
     [GBUFFER_PORT_DEPTH] = {"depth", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT, false,
                             "reversed"},
 };
 
+// The drawing kernel has the first four.
 static const tyn_binding bindings[] = {
     {GBUFFER_PORT_CAMERA, TYN_USE_UNIFORM, false},
     {GBUFFER_PORT_SURFACES, TYN_USE_UNIFORM, false},
@@ -34,12 +38,14 @@ static const tyn_binding bindings[] = {
     {GBUFFER_PORT_MATERIALS, TYN_USE_STORAGE_READ, false},
     {GBUFFER_PORT_TEXTURES, TYN_USE_STORAGE_READ, false},
     {GBUFFER_PORT_TEXELS, TYN_USE_STORAGE_READ, false},
+    {GBUFFER_PORT_SEEN, TYN_USE_STORAGE_READ, false},
+    {GBUFFER_PORT_SURFACE, TYN_USE_STORAGE_WRITE, false},
+    {GBUFFER_PORT_ALBEDO, TYN_USE_STORAGE_WRITE, false},
+    {GBUFFER_PORT_EMISSION, TYN_USE_STORAGE_WRITE, false},
 };
 
 static const tyn_binding attachments[] = {
-    {GBUFFER_PORT_SURFACE, TYN_USE_COLOR, false},
-    {GBUFFER_PORT_ALBEDO, TYN_USE_COLOR, false},
-    {GBUFFER_PORT_EMISSION, TYN_USE_COLOR, false},
+    {GBUFFER_PORT_SEEN, TYN_USE_COLOR, false},
     {GBUFFER_PORT_DEPTH, TYN_USE_DEPTH, false},
 };
 
@@ -47,19 +53,27 @@ static const tyn_raster raster = {
     .fragment = gbuffer_fragment_spirv,
     .fragment_size = sizeof(gbuffer_fragment_spirv),
     .attachments = attachments,
-    .num_attachments = 4,
+    .num_attachments = 2,
     .depth = VK_COMPARE_OP_GREATER,
     .clear_depth = 0.0f,
 };
 
-static const tyn_kernel kernels[] = {
-    {.name = "gbuffer",
-     .spirv = gbuffer_vertex_spirv,
-     .spirv_size = sizeof(gbuffer_vertex_spirv),
-     .args_size = sizeof(struct gbuffer_args),
-     .bindings = bindings,
-     .num_bindings = 7,
-     .raster = &raster},
+enum { KERNEL_DRAW, KERNEL_RESOLVE, NUM_KERNELS };
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_DRAW] = {.name = "gbuffer_draw",
+                     .spirv = gbuffer_vertex_spirv,
+                     .spirv_size = sizeof(gbuffer_vertex_spirv),
+                     .bindings = bindings,
+                     .num_bindings = 4,
+                     .raster = &raster},
+    [KERNEL_RESOLVE] = {.name = "gbuffer_resolve",
+                        .spirv = gbuffer_resolve_spirv,
+                        .spirv_size = sizeof(gbuffer_resolve_spirv),
+                        .args_size = sizeof(struct gbuffer_args),
+                        .local_size = {8, 8, 1},
+                        .bindings = bindings,
+                        .num_bindings = sizeof(bindings) / sizeof(bindings[0])},
 };
 
 static const tyn_param params_table[] = {
@@ -75,6 +89,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_build_image(b, GBUFFER_PORT_SURFACE, size, 1);
     tyn_build_image(b, GBUFFER_PORT_ALBEDO, size, 1);
     tyn_build_image(b, GBUFFER_PORT_EMISSION, size, 1);
+    tyn_build_image(b, GBUFFER_PORT_SEEN, size, 1);
     tyn_build_image(b, GBUFFER_PORT_DEPTH, size, 1);
     return TYN_OK;
 }
@@ -83,7 +98,10 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_gbuffer_params *p = params;
     const struct gbuffer_args args = {.samples = (uint32_t)p->samples};
-    tyn_rec_draw(r, &(tyn_draw){.kernel = 0, .vertices = 3 * p->num_triangles, .args = &args});
+    tyn_rec_draw(r, &(tyn_draw){.kernel = KERNEL_DRAW, .vertices = 3 * p->num_triangles});
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_RESOLVE,
+                                        .cells = tyn_rec_extent(r, GBUFFER_PORT_SURFACE),
+                                        .args = &args});
     tyn_rec_work(r, "triangles", p->num_triangles);
 }
 
@@ -93,7 +111,7 @@ const tyn_pass_desc tyn_pass_gbuffer = {
     .ports = ports,
     .num_ports = GBUFFER_NUM_PORTS,
     .kernels = kernels,
-    .num_kernels = 1,
+    .num_kernels = NUM_KERNELS,
     .params = params_table,
     .num_params = sizeof(params_table) / sizeof(params_table[0]),
     .params_size = sizeof(tyn_gbuffer_params),

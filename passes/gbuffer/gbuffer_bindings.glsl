@@ -1,7 +1,6 @@
 // gbuffer_bindings.glsl -- what both shaders of the G-buffer read.
 #include "camera.glsl"
 #include "surface_args.h"
-#include "gbuffer_args.h"
 
 layout(set = 0, binding = 0, scalar) uniform camera_buffer
 {
@@ -19,11 +18,6 @@ layout(set = 0, binding = 3, scalar) readonly buffer vertices_buffer
 {
     surface_vertex vertices[];
 };
-layout(push_constant, scalar) uniform args_block
-{
-    gbuffer_args args;
-};
-
 vec3 turn(vec4 rows[3], vec3 v)
 {
     return vec3(dot(rows[0].xyz, v), dot(rows[1].xyz, v), dot(rows[2].xyz, v));
