@@ -53,7 +53,13 @@ static void survey_attachments(tyn_recorder *r, const tyn_kernel *k)
     }
 }
 
-static void begin_rendering(tyn_recorder *r, const tyn_kernel *k, tyn_extent size, bool keep)
+static bool keeps(const tyn_draw *d, tyn_use use)
+{
+    return d->keep || (d->keep_depth && use == TYN_USE_DEPTH);
+}
+
+static void begin_rendering(tyn_recorder *r, const tyn_kernel *k, tyn_extent size,
+                            const tyn_draw *d)
 {
     const node *n = &r->g->nodes[r->node];
     VkRenderingAttachmentInfo colors[TYN_MAX_ATTACHMENTS], depth;
@@ -68,8 +74,8 @@ static void begin_rendering(tyn_recorder *r, const tyn_kernel *k, tyn_extent siz
             .imageView = res->kind == RESOURCE_IMPORT ? res->image.view
                          : p->mip_views[0]            ? p->mip_views[0]
                                                       : p->view,
-            .imageLayout = attachment_access(a->use, keep).layout,
-            .loadOp = keep ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR,
+            .imageLayout = attachment_access(a->use, keeps(d, a->use)).layout,
+            .loadOp = keeps(d, a->use) ? VK_ATTACHMENT_LOAD_OP_LOAD : VK_ATTACHMENT_LOAD_OP_CLEAR,
             .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
             .clearValue.depthStencil.depth =
                 a->use == TYN_USE_DEPTH ? k->raster->clear_depth : 0.0f,
@@ -121,7 +127,7 @@ void tyn_rec_draw(tyn_recorder *r, const tyn_draw *d)
     launch l = launch_begin(r, d->kernel, d->ports, NULL, d->spec);
     for (uint32_t i = 0; i < k->raster->num_attachments; i++) {
         const tyn_binding *a = &k->raster->attachments[i];
-        launch_touch(&l, n->res[a->port] - 1, attachment_access(a->use, d->keep));
+        launch_touch(&l, n->res[a->port] - 1, attachment_access(a->use, keeps(d, a->use)));
     }
     if (r->mode == RECORD_SURVEY) {
         survey_attachments(r, k);
@@ -140,7 +146,7 @@ void tyn_rec_draw(tyn_recorder *r, const tyn_draw *d)
     if (!pl) {
         return;
     }
-    begin_rendering(r, k, size, d->keep);
+    begin_rendering(r, k, size, d);
     for (uint32_t i = 0; i < num_tiles && d->vertices; i++) {
         draw_tile(r, k, pl, &tiles[i], d->vertices);
     }

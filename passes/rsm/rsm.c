@@ -21,9 +21,9 @@ static const tyn_port ports[RSM_NUM_PORTS] = {
 };
 
 static const tyn_binding bindings[] = {
-    {RSM_PORT_SURFACES, TYN_USE_UNIFORM, false},
     {RSM_PORT_TRIANGLES, TYN_USE_STORAGE_READ, false},
     {RSM_PORT_VERTICES, TYN_USE_STORAGE_READ, false},
+    {RSM_PORT_SURFACES, TYN_USE_UNIFORM, false}, // from here on for light only
     {RSM_PORT_MATERIALS, TYN_USE_STORAGE_READ, false},
     {RSM_PORT_TEXTURES, TYN_USE_STORAGE_READ, false},
     {RSM_PORT_TEXELS, TYN_USE_STORAGE_READ, false},
@@ -36,23 +36,39 @@ static const tyn_binding attachments[] = {
     {RSM_PORT_DEPTH, TYN_USE_DEPTH, false},
 };
 
+// Depth first, so that what is reflected is computed for what is seen alone.
+static const tyn_raster raster_depth = {
+    .attachments = &attachments[3],
+    .num_attachments = 1,
+    .depth = VK_COMPARE_OP_GREATER,
+    .clear_depth = 0.0f,
+};
+
 static const tyn_raster raster = {
     .fragment = rsm_fragment_spirv,
     .fragment_size = sizeof(rsm_fragment_spirv),
     .attachments = attachments,
     .num_attachments = 4,
-    .depth = VK_COMPARE_OP_GREATER,
-    .clear_depth = 0.0f,
+    .depth = VK_COMPARE_OP_EQUAL,
 };
 
-static const tyn_kernel kernels[] = {
-    {.name = "rsm",
-     .spirv = rsm_vertex_spirv,
-     .spirv_size = sizeof(rsm_vertex_spirv),
-     .args_size = sizeof(struct rsm_draw_args),
-     .bindings = bindings,
-     .num_bindings = 6,
-     .raster = &raster},
+enum { KERNEL_DEPTH, KERNEL_LIGHT, NUM_KERNELS };
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_DEPTH] = {.name = "rsm_depth",
+                      .spirv = rsm_vertex_spirv,
+                      .spirv_size = sizeof(rsm_vertex_spirv),
+                      .args_size = sizeof(struct rsm_draw_args),
+                      .bindings = bindings,
+                      .num_bindings = 2,
+                      .raster = &raster_depth},
+    [KERNEL_LIGHT] = {.name = "rsm_light",
+                      .spirv = rsm_vertex_spirv,
+                      .spirv_size = sizeof(rsm_vertex_spirv),
+                      .args_size = sizeof(struct rsm_draw_args),
+                      .bindings = bindings,
+                      .num_bindings = 6,
+                      .raster = &raster},
 };
 
 static const tyn_param params_table[] = {
@@ -104,10 +120,13 @@ static void record(tyn_recorder *r, const void *params)
         const struct rsm_tile *t = &p->tiles[i];
         tiles[i] = (tyn_tile){t->offset[0], t->offset[1], t->texels, t->texels, &p->draws[i]};
     }
-    tyn_rec_draw(r, &(tyn_draw){.kernel = 0,
-                                .vertices = 3 * p->num_triangles,
-                                .tiles = tiles,
-                                .num_tiles = p->num_tiles});
+    for (uint32_t kernel = 0; kernel < NUM_KERNELS; kernel++) {
+        tyn_rec_draw(r, &(tyn_draw){.kernel = kernel,
+                                    .vertices = 3 * p->num_triangles,
+                                    .tiles = tiles,
+                                    .num_tiles = p->num_tiles,
+                                    .keep_depth = kernel == KERNEL_LIGHT});
+    }
     tyn_rec_work(r, "triangles", (double)p->num_triangles * p->num_tiles);
 }
 
@@ -117,7 +136,7 @@ const tyn_pass_desc tyn_pass_rsm = {
     .ports = ports,
     .num_ports = RSM_NUM_PORTS,
     .kernels = kernels,
-    .num_kernels = 1,
+    .num_kernels = NUM_KERNELS,
     .params = params_table,
     .num_params = sizeof(params_table) / sizeof(params_table[0]),
     .params_size = sizeof(tyn_rsm_params),

@@ -8,6 +8,10 @@
 #include "surface_texture.glsl"
 #include "shadow_args.h"
 
+layout(set = 0, binding = 2, scalar) uniform surfaces_buffer
+{
+    surface_block surfaces;
+};
 layout(set = 0, binding = 3, scalar) readonly buffer materials_buffer
 {
     surface_material materials[];
@@ -19,6 +23,12 @@ layout(location = 1) out vec4 position;
 layout(location = 2) out vec4 normal;
 
 const float LEAST_COSINE = 1e-3; // of light and surface: what is seen edge-on has no area to speak of
+
+vec3 to_m(vec3 v)
+{
+    return vec3(dot(surfaces.from_world[0].xyz, v), dot(surfaces.from_world[1].xyz, v),
+                dot(surfaces.from_world[2].xyz, v));
+}
 
 // Share of a spot's intensity at an angle to its axis (KHR_lights_punctual).
 float falloff(float cosine)

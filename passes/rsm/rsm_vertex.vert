@@ -4,6 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "rsm_bindings.glsl"
 
+invariant gl_Position; // two kernels must agree on depths
 layout(location = 0) flat out uint triangle;
 layout(location = 1) out vec3 weights; // of the corners
 

@@ -194,6 +194,7 @@ typedef struct tyn_draw {
     uint32_t num_tiles;
     const void *args;
     bool keep;            // draw over what is there; else all of the attachments is cleared first
+    bool keep_depth;      // ... but for the depth, which an earlier draw has laid down
     const uint8_t *ports; // NULL = the table's; else num_bindings port indices
     const uint32_t *spec; // num_spec values, NULL = zeros
     const char *label;
