@@ -1,0 +1,133 @@
+// pop_surfaces.c -- surfaces without a medium in `pop`: closed forms under every kind of light, rooms against
+// `path`, VPLs that move with the light.
+#include "gpu_test.h"
+#include "picture.h"
+#include "solids.h"
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+enum { SIZE = 16 };
+
+static const float BLACK[3] = {0, 0, 0};
+static const float albedo[3] = {0.2f, 0.5f, 0.8f};
+
+// A floor of 4 m x 4 m at y = 0, seen from above: columns along x, rows along z, 2 m wide.
+static void make_floor(tyn_scene *scene, tyn_view *view)
+{
+    tyn_scene_init(scene);
+    uint32_t material = solids_material(scene, albedo, BLACK);
+    solids_quad(scene, (float[]){-2, 0, -2}, (float[]){0, 0, 4}, (float[]){4, 0, 0}, material);
+    solids_hierarchy(scene, 4);
+    *view = (tyn_view){0};
+    view_orthographic(view, (float[]){0, 1, 0}, 0, -1, 0, (float[]){0, 0, -1}, 1, SIZE);
+}
+
+// Irradiance on the floor at (x, 0, z).
+typedef double (*irradiance_fn)(double x, double z);
+
+static void check(void **state, tyn_scene *scene, tyn_view *view, const char *name,
+                  irradiance_fn irradiance, double tolerance)
+{
+    picture p;
+    picture_render(&p, ((gpu_test *)*state)->dev, "pop", scene, view, NULL, 1);
+    double worst = 0;
+    for (uint32_t i = 0; i < SIZE * SIZE; i++) {
+        double x = 2 * (i % SIZE + 0.5) / SIZE - 1, z = 2 * (i / SIZE + 0.5) / SIZE - 1;
+        for (uint32_t c = 0; c < 3; c++) {
+            double expected = albedo[c] / PI * irradiance(x, z);
+            worst = fmax(worst, fabs(p.rgb[3 * i + c] - expected) / (expected + 1e-3));
+        }
+    }
+    print_message("%s: %.1e off at most\n", name, worst);
+    assert_true(worst < tolerance);
+    picture_free(&p);
+    tyn_scene_finish(scene);
+}
+
+static double under_sun(double x, double z)
+{
+    (void)x;
+    (void)z;
+    return 3 * 0.8;
+}
+
+static double under_lamp(double x, double z)
+{
+    double rr = (x - 0.3) * (x - 0.3) + 1.5 * 1.5 + (z + 0.2) * (z + 0.2);
+    return 5 * 1.5 / (rr * sqrt(rr));
+}
+
+static double under_spot(double x, double z)
+{
+    double rr = x * x + 4 + z * z, cosine = 2 / sqrt(rr);
+    double t = fmin(fmax((cosine - cos(0.5)) / (cos(0.2) - cos(0.5)), 0), 1);
+    return 7 * t * t * 2 / (rr * sqrt(rr));
+}
+
+static double under_sky(double x, double z)
+{
+    (void)x;
+    (void)z;
+    return PI * 0.7;
+}
+
+static void floors(void **state)
+{
+    tyn_scene scene;
+    tyn_view view;
+    make_floor(&scene, &view);
+    scene_add_sun(&scene, 0.6f, -0.8f, 0, 3, 3, 3);
+    check(state, &scene, &view, "sun", under_sun, 1e-4);
+
+    make_floor(&scene, &view);
+    scene.lights[scene.num_lights++] =
+        (tyn_light){.kind = TYN_LIGHT_POINT, .color = {5, 5, 5}, .position = {0.3f, 1.5f, -0.2f}};
+    check(state, &scene, &view, "point", under_lamp, 3e-3);
+
+    make_floor(&scene, &view);
+    scene.lights[scene.num_lights++] = (tyn_light){.kind = TYN_LIGHT_SPOT,
+                                                   .color = {7, 7, 7},
+                                                   .position = {0, 2, 0},
+                                                   .direction = {0, -1, 0},
+                                                   .cos_inner = cosf(0.2f),
+                                                   .cos_outer = cosf(0.5f)};
+    check(state, &scene, &view, "spot", under_spot, 2e-2); // pixels are means
+
+    make_floor(&scene, &view);
+    scene_set_sky(&scene, 0.7f);
+    check(state, &scene, &view, "sky", under_sky, 1e-4);
+}
+
+// A floor under a parallel emitter: the irradiance of a square, by its form factor at the middle.
+static void under_emitter(void **state)
+{
+    const double h = 0.5, a = 0.5; // height and half side, m
+    double s = sqrt(a * a + h * h), form = 4 / PI * (a / s) * atan(a / s); // twice two corners
+    tyn_scene scene;
+    tyn_view view;
+    make_floor(&scene, &view);
+    uint32_t lamp = solids_material(&scene, BLACK, (float[]){2, 2, 2});
+    solids_quad(&scene, (float[]){-0.5f, 0.5f, -0.5f}, (float[]){1, 0, 0}, (float[]){0, 0, 1},
+                lamp);
+    solids_hierarchy(&scene, 4);
+    view_orthographic(&view, (float[]){0, 0.25f, 0}, 0, -1, 0, (float[]){0, 0, -1}, 0.02f, SIZE);
+    picture p;
+    picture_render(&p, ((gpu_test *)*state)->dev, "pop", &scene, &view, NULL, 1);
+    double mean = 0;
+    for (uint32_t i = 0; i < SIZE * SIZE; i++) {
+        mean += p.rgb[3 * i + 1] / (SIZE * SIZE);
+    }
+    double expected = albedo[1] * 2 * form;
+    print_message("square emitter: %.4f, expected %.4f\n", mean, expected);
+    assert_float_equal(mean / expected, 1, 0.02);
+    picture_free(&p);
+    tyn_scene_finish(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(floors), cmocka_unit_test(under_emitter)};
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
