@@ -372,6 +372,21 @@ static tyn_result check_repeat(const tyn_job *job)
     return TYN_OK;
 }
 
+static tyn_result add_distance(tyn_graph *g, const tyn_job *job, tyn_ref *distance)
+{
+    const tyn_path_distance_params params = {job->view->width, job->view->height};
+    tyn_ref refs[PATH_DISTANCE_NUM_PORTS] = {
+        [PATH_DISTANCE_PORT_CAMERA] = job->refs.camera,
+        [PATH_DISTANCE_PORT_SURFACES] = job->refs.surfaces,
+        [PATH_DISTANCE_PORT_VERTICES] = job->refs.vertices,
+        [PATH_DISTANCE_PORT_TRIANGLES] = job->refs.triangles,
+        [PATH_DISTANCE_PORT_NODES] = job->refs.nodes,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_path_distance, &params, refs);
+    *distance = refs[PATH_DISTANCE_PORT_DISTANCE];
+    return result;
+}
+
 // Depths have no noise to take away: the ray march finds them, and does nothing else here.
 static tyn_result add_depth(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media)
 {
@@ -383,8 +398,10 @@ static tyn_result add_depth(tyn_graph *g, const tyn_job *job, const tyn_media_re
     }
     tyn_job depth = *job;
     depth.outputs = TYN_OUTPUT_DEPTH;
-    const tyn_picture_inputs in = {.media = *media};
-    return tyn_add_picture(g, &depth, job->frame->empty ? NULL : &in);
+    tyn_picture_inputs in = {.media = *media};
+    tyn_result result = job->frame->num_triangles ? add_distance(g, &depth, &in.surface) : TYN_OK;
+    bool nothing = job->frame->empty && !job->frame->num_triangles;
+    return result == TYN_OK ? tyn_add_picture(g, &depth, nothing ? NULL : &in) : result;
 }
 
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
@@ -411,13 +428,8 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,
-    &tyn_pass_path,
-    &tyn_pass_path_probe,
-    &tyn_pass_path_balance,
-    &tyn_pass_raymarch,
-    &tyn_pass_tonemap,
-    NULL,
+    &tyn_pass_medium,        &tyn_pass_path,     &tyn_pass_path_probe, &tyn_pass_path_balance,
+    &tyn_pass_path_distance, &tyn_pass_raymarch, &tyn_pass_tonemap,    NULL,
 };
 
 const tyn_method tyn_method_path = {

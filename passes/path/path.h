@@ -15,9 +15,9 @@ typedef struct tyn_path_params {
     uint32_t threads;     // at most, of a dispatch: what keeps one below the time limit
     uint32_t homogeneous; // one shape and no density grid
     uint32_t num_shapes;
-    uint32_t sphere; // the only shape is one
-    uint32_t grey;   // sigma_s, sigma_a and g are equal in all channels
-    uint32_t repeat; // some axis is periodic
+    uint32_t sphere;   // the only shape is one
+    uint32_t grey;     // sigma_s, sigma_a and g are equal in all channels
+    uint32_t repeat;   // some axis is periodic
     uint32_t surfaces; // there are triangles
     uint32_t emitters; // some of them emit and are in the table
     uint32_t emissive;
@@ -91,15 +91,30 @@ extern const tyn_pass_desc tyn_pass_path_probe;
 // Where the energy goes.
 enum {
     PATH_BALANCE_PORT_STATE =
-        PATH_NUM_SCENE_PORTS,  // INOUT buffer, tyn_path_balance_state_size bytes: a history
-    PATH_BALANCE_PORT_BALANCE, // OUT buffer tyn_balance
-    PATH_BALANCE_PORT_RESULT,  // OUT buffer struct path_balance_result: values and standard errors
+        PATH_NUM_SCENE_PORTS,   // INOUT buffer, tyn_path_balance_state_size bytes: a history
+    PATH_BALANCE_PORT_BALANCE,  // OUT buffer tyn_balance
+    PATH_BALANCE_PORT_RESULT,   // OUT buffer struct path_balance_result: values and standard errors
     PATH_BALANCE_PORT_COUNTERS, // OUT buffer struct counters_block
     PATH_BALANCE_PORT_PARTIALS, // SCRATCH
     PATH_BALANCE_PORT_AREAS,    // IN buffer struct surface_table and cells, optional
     PATH_BALANCE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_path_balance;
+
+// Where surfaces are, in the pixels' middles.
+typedef struct tyn_path_distance_params {
+    uint32_t width, height; // of the picture
+} tyn_path_distance_params;
+enum {
+    PATH_DISTANCE_PORT_CAMERA,   // IN buffer struct camera_block
+    PATH_DISTANCE_PORT_SURFACES, // IN buffers, surface_args.h
+    PATH_DISTANCE_PORT_VERTICES,
+    PATH_DISTANCE_PORT_TRIANGLES,
+    PATH_DISTANCE_PORT_NODES,    // optional
+    PATH_DISTANCE_PORT_DISTANCE, // OUT 2D RGBA32F: a = distance, m
+    PATH_DISTANCE_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_path_distance;
 
 // Bytes of the probes' history.
 uint64_t tyn_path_probe_state_size(uint32_t num_points);

@@ -162,6 +162,43 @@ static void form_factors(void **state)
     }
 }
 
+// Layers of a quad at a distance of 2 m in a medium: transmittance and depth end there, the alpha of the medium
+// alone is what it hides, a background makes it opaque.
+static void layers(void **state)
+{
+    (void)state;
+    tyn_scene scene;
+    tyn_scene_init(&scene);
+    uint32_t lamp = solids_material(&scene, BLACK, (float[]){4, 2, 1});
+    solids_quad(&scene, (float[]){-1, -2, 0}, (float[]){1, 0, 0}, (float[]){0, 4, 0}, lamp);
+    solids_hierarchy(&scene, 1);
+    tyn_medium m = grey_medium(0, 0.5f, 0);
+    scene_add_box(&scene, &m, (float[]){-3, -3, -1}, (float[]){3, 3, 2}, NULL, NULL);
+    tyn_view view = {0};
+    view_orthographic(&view, (float[]){0, 0, 2}, 0, 0, -1, (float[]){0, 1, 0}, 1, 8);
+    for (int a = 0; a < 3; a++) {
+        view.camera.position[a] = a == 2 ? 2 : 0; // at the medium's face
+    }
+    for (int i = 0; i < 2; i++) {
+        view.no_background = i;
+        const uint32_t samples = 4096;
+        const float *depth = path_run_layer(&runs, &scene, &view, TYN_OUTPUT_DEPTH, 1);
+        assert_true(fabsf(depth[0] - 2) < 1e-5f); // left: the quad
+        assert_true(fabsf(depth[1] - logf(2) / 0.5f) < 0.02f);
+        assert_true(isinf(depth[4 * 7]));
+        const float *t = path_run_layer(&runs, &scene, &view, TYN_OUTPUT_TRANSMITTANCE, samples);
+        double left = exp(-0.5 * 2), right = exp(-0.5 * 3);
+        check("transmittance to the quad", t[0], sqrt(left * (1 - left) / samples), left);
+        check("transmittance beside it", t[4 * 7], sqrt(right * (1 - right) / samples), right);
+        const float *p = path_run_layer(&runs, &scene, &view, TYN_OUTPUT_RADIANCE, samples);
+        check("alpha of the quad", p[3], sqrt(left * (1 - left) / samples), i ? 1 - left : 1);
+        check("alpha beside it", p[4 * 7 + 3], sqrt(right * (1 - right) / samples), 1 - right);
+        check("radiance of the quad", p[0], 4 * sqrt(left * (1 - left) / samples),
+              i ? 0 : 4 * left);
+    }
+    tyn_scene_finish(&scene);
+}
+
 // What is emitted is absorbed or escapes. The balance has no standard errors; these are bounds on what is left.
 static void balances(void **state)
 {
@@ -211,10 +248,8 @@ static void balances(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(furnaces),
-        cmocka_unit_test(closed_box),
-        cmocka_unit_test(form_factors),
-        cmocka_unit_test(balances),
+        cmocka_unit_test(furnaces), cmocka_unit_test(closed_box), cmocka_unit_test(form_factors),
+        cmocka_unit_test(layers),   cmocka_unit_test(balances),
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));

@@ -1,0 +1,58 @@
+// path_distance.c -- tables and dispatch of the distances to surfaces.
+#include "path.h"
+#include "path_distance.comp.h"
+
+static const tyn_port ports[PATH_DISTANCE_NUM_PORTS] = {
+    {"camera", TYN_IN, TYN_BUFFER, 0, false, "rays of the pixels"},
+    {"surfaces", TYN_IN, TYN_BUFFER, 0, false, "frame and box of the triangles"},
+    {"vertices", TYN_IN, TYN_BUFFER, 0, false, "of the triangles"},
+    {"triangles", TYN_IN, TYN_BUFFER, 0, false, "in the hierarchy's order"},
+    {"nodes", TYN_IN, TYN_BUFFER, 0, true, "hierarchy of the triangles"},
+    {"distance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
+     "a = distance along the ray to the first surface, m; infinity: none"},
+};
+
+static const tyn_binding bindings[] = {
+    {PATH_DISTANCE_PORT_CAMERA, TYN_USE_UNIFORM, false},
+    {PATH_DISTANCE_PORT_SURFACES, TYN_USE_UNIFORM, false},
+    {PATH_DISTANCE_PORT_VERTICES, TYN_USE_STORAGE_READ, false},
+    {PATH_DISTANCE_PORT_TRIANGLES, TYN_USE_STORAGE_READ, false},
+    {PATH_DISTANCE_PORT_NODES, TYN_USE_STORAGE_READ, false},
+    {PATH_DISTANCE_PORT_DISTANCE, TYN_USE_STORAGE_WRITE, false},
+};
+
+static const tyn_kernel kernel = {"path_distance",
+                                  path_distance_spirv,
+                                  sizeof path_distance_spirv,
+                                  0,
+                                  {8, 8, 1},
+                                  bindings,
+                                  sizeof bindings / sizeof *bindings,
+                                  0};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_path_distance_params *p = params;
+    tyn_build_image(b, PATH_DISTANCE_PORT_DISTANCE, (tyn_extent){p->width, p->height, 1}, 1);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_path_distance_params *p = params;
+    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = {p->width, p->height, 1}});
+}
+
+const tyn_pass_desc tyn_pass_path_distance = {
+    .name = "path_distance",
+    .summary = "distances to the surfaces that the camera sees",
+    .ports = ports,
+    .num_ports = PATH_DISTANCE_NUM_PORTS,
+    .kernels = &kernel,
+    .num_kernels = 1,
+    .params_size = sizeof(tyn_path_distance_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = PATH_DISTANCE_PORT_DISTANCE,
+    .debug_meaning = "distance to the first surface",
+};

@@ -1,0 +1,31 @@
+// path_distance.comp -- where the ray through the middle of each pixel meets the first surface.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "surface_args.h"
+#include "camera.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(set = 0, binding = 0, scalar) uniform camera_uniform { camera_block camera; };
+layout(set = 0, binding = 1, scalar) uniform surfaces_uniform { surface_block surfaces; };
+layout(set = 0, binding = 2, scalar) readonly buffer vertices_buffer { surface_vertex vertices[]; };
+layout(set = 0, binding = 3, scalar) readonly buffer triangles_buffer { surface_triangle triangles[]; };
+layout(set = 0, binding = 4, scalar) readonly buffer nodes_buffer { surface_node nodes[]; };
+layout(set = 0, binding = 5, rgba32f) uniform writeonly image2D distance_image;
+
+#include "surface_trace.glsl"
+
+void main()
+{
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (any(greaterThanEqual(pixel, camera.size))) {
+        return;
+    }
+    camera_ray from = camera_ray_through(camera, vec2(pixel) + 0.5);
+    surface_ray ray = surface_ray_make(surface_transform(surfaces.to_world, from.origin),
+                                       surface_turn(surfaces.to_world, from.direction), SURFACE_NONE);
+    surface_hit hit = surface_hit(uintBitsToFloat(0x7f800000u), SURFACE_NONE, vec2(0.0)); // infinity: none
+    surface_trace_world(ray, false, hit);
+    imageStore(distance_image, ivec2(pixel), vec4(0.0, 0.0, 0.0, hit.t));
+}
