@@ -377,6 +377,9 @@ vec4 path_lobe(inout rng_state rng, float u)
     if ((FLAGS & TYN_PATH_MIXTURE) == 0u) {
         return vec4(0.0, 0.0, 0.0, -1.0);
     }
+    if (LIGHTS == 0u && EMITTERS && ENVIRONMENT != TYN_PATH_ENV_MAP) {
+        return vec4(path_emitters.xyz, 1.0);
+    }
     if (LIGHTS == 1u && ENVIRONMENT != TYN_PATH_ENV_MAP) {
         bool distant = (FLAGS & TYN_PATH_LAMPS) == 0u || path_light0.kind == TYN_LIGHT_KIND_DIRECTIONAL;
         return distant ? vec4(-path_light0.direction, 0.0) : vec4(path_light0.position, 1.0);
@@ -537,7 +540,7 @@ void path_run(uint element, uint first, uint end)
                 }
                 if ((FLAGS & TYN_PATH_MIXTURE) != 0u && lobe.w >= 0.0) {
                     toward = lobe.xyz;
-                    if ((FLAGS & TYN_PATH_LAMPS) != 0u && lobe.w > 0.0) {
+                    if ((FLAGS & (TYN_PATH_LAMPS | TYN_PATH_EMITTERS)) != 0u && lobe.w > 0.0) {
                         toward -= f.at;
                         toward *= inversesqrt(max(dot(toward, toward), 1e-30));
                     }

@@ -166,7 +166,7 @@ struct path_args path_trace_args(const tyn_path_params *p)
 void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_path_params *p)
 {
     // A lobe needs a light; under a constant sky every direction is as good.
-    bool lights = p->num_lights > 0 || p->environment == TYN_PATH_ENV_MAP;
+    bool lights = p->num_lights > 0 || p->environment == TYN_PATH_ENV_MAP || p->emitters;
     spec[TYN_PATH_SPEC_SHAPES] = p->num_shapes <= TYN_PATH_SHAPES_MAX ? p->num_shapes : 0;
     spec[TYN_PATH_SPEC_HOMOGENEOUS] = p->homogeneous ? 1 : 0;
     spec[TYN_PATH_SPEC_GREY] = p->grey ? 1 : 0;
