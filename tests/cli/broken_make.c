@@ -61,6 +61,24 @@ static void make_gltf(void)
     scene(ASSET "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":9}}]}]}");
     scene(ASSET "\"extensions\":{\"TYN_participating_media\":{\"media\":[{\"absorption\":-1}]}}}");
     scene(ASSET "\"extensions\":{\"TYN_participating_media\":{\"media\":[{\"anisotropy\":1}]}}}");
+    // A triangle of 36 bytes, with one thing wrong.
+    static const char buffer[] =
+        "\"buffers\":[{\"byteLength\":36,\"uri\":\"data:application/octet-stream;base64,"
+        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAAAAAAAAA\"}],\"bufferViews\":[{\"buffer\":0,"
+        "\"byteLength\":36}],\"nodes\":[{\"mesh\":0}]";
+    static const char *const wrong[][2] = {
+        {"\"count\":4,\"componentType\":5126,\"type\":\"VEC3\"", ""}, // beyond the buffer
+        {"\"count\":3,\"componentType\":5126,\"type\":\"SCALAR\"", ""},
+        {"\"count\":3,\"componentType\":5126,\"type\":\"VEC3\"", ",\"indices\":0"},
+        {"\"count\":3,\"componentType\":5126,\"type\":\"VEC3\"", ",\"material\":0"},
+        {"\"count\":3,\"componentType\":5126,\"type\":\"VEC3\"", ",\"mode\":9"},
+        {"\"count\":2,\"componentType\":5126,\"type\":\"VEC3\"", ""}, // no triangle
+    };
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        scene(ASSET "%s,\"accessors\":[{\"bufferView\":0,%s}],\"meshes\":[{\"primitives\":[{"
+                    "\"attributes\":{\"POSITION\":0}%s}]}]}",
+              buffer, wrong[i][0], wrong[i][1]);
+    }
     char deep[2100];
     memset(deep, '[', 1000);
     memset(deep + 1000, ']', 1000);

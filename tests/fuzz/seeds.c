@@ -104,6 +104,33 @@ static void put_gltf(void)
     put("gltf", "binary", glb, total);
 }
 
+// Indices, sparse values, quantised coordinates, a strip, a texture in the document.
+static void put_mesh(void)
+{
+    static const char text[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"mesh\":0,\"scale\":[-1,2,1]}],\"mes"
+        "hes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"TEXCOORD_0\":2},\"indice"
+        "s\":1,\"material\":0},{\"attributes\":{\"POSITION\":0,\"NORMAL\":3,\"COLOR_0\":3},"
+        "\"mode\":5}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4"
+        ",\"type\":\"VEC3\",\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":2,\"compone"
+        "ntType\":5121},\"values\":{\"bufferView\":3}}},{\"bufferView\":1,\"componentType\""
+        ":5121,\"count\":6,\"type\":\"SCALAR\"},{\"bufferView\":4,\"componentType\":5121,\""
+        "count\":4,\"type\":\"VEC2\",\"normalized\":true},{\"bufferView\":0,\"componentType"
+        "\":5126,\"count\":4,\"type\":\"VEC3\"}],\"bufferViews\":[{\"buffer\":0,\"byteLengt"
+        "h\":48},{\"buffer\":0,\"byteOffset\":48,\"byteLength\":6},{\"buffer\":0,\"byteOffs"
+        "et\":56,\"byteLength\":1},{\"buffer\":0,\"byteOffset\":60,\"byteLength\":12},{\"bu"
+        "ffer\":0,\"byteOffset\":72,\"byteLength\":8}],\"buffers\":[{\"byteLength\":80,\"ur"
+        "i\":\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwA"
+        "AgD8AAAAAAAAAAAAAgD8AAAAAAAECAAIDAAACAAAAAACAPwAAgD8AAAAAAAD/AP//AP8=\"}],\"materi"
+        "als\":[{\"pbrMetallicRoughness\":{\"metallicFactor\":0.5,\"baseColorTexture\":{\"i"
+        "ndex\":0,\"extensions\":{\"KHR_texture_transform\":{\"rotation\":1}}}},\"emissiveF"
+        "actor\":[1,1,1],\"emissiveTexture\":{\"index\":0},\"doubleSided\":true}],\"texture"
+        "s\":[{\"source\":0,\"sampler\":0}],\"samplers\":[{\"wrapS\":33071}],\"images\":[{"
+        "\"uri\":\"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAIAAAABCAIAAAB7QOjdAAAAD0"
+        "lEQVR4nGP4z8DA8J8BAAf/Af8Bf4mnAAAAAElFTkSuQmCC\"}]}";
+    put("gltf", "mesh", text, sizeof text - 1);
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 2) {
@@ -116,6 +143,7 @@ int main(int argc, char **argv)
     put_exr();
     put_hdr();
     put_gltf();
+    put_mesh();
     const uint8_t raw[7 + 8] = {2, 2, 0, 2, 0, 2, 0, 1, 2, 3, 4, 5, 6, 7, 8};
     put("raw", "u8", raw, sizeof raw);
     return 0;
