@@ -73,6 +73,24 @@ float radial_share(uint n, vec3 away, float r)
                        radials[n].light.cos_outer, away / max(r, 1e-20));
 }
 
+// Mean of 1 / r^2 over a cube of edge d whose middle is at r, both squared: 1 / r^2 (1 + d^2 / (12 r^2) + ...)
+// far away, 7.67 / d^2 around its own middle.
+float radial_mean_inverse_square(float r2, float d2)
+{
+    return r2 < d2 ? 1.0 / (0.1304 * d2 + 0.79 * r2) : (1.0 + d2 / (12.0 * r2)) / r2;
+}
+
+#ifdef RADIAL_SHADOWS // shadow.glsl and, with VPL_DISTANCES, vpl_visibility.glsl were included
+// Share of light n that surfaces let through to the point p, `away` from it.
+float radial_visibility(uint n, vec3 p, vec3 away)
+{
+    if (radials[n].light.light != TYN_RADIAL_NO_LIGHT) {
+        return shadow_visibility_lamp(radials[n].light.light, p);
+    }
+    return n < radial_num_lamps ? 1.0 : vpl_visibility(n - radial_num_lamps, radials[n].light.axis, away, vec3(0.0));
+}
+#endif
+
 // Mode DENSITY: column density, m times texture value.
 float radial_column(radial_place place)
 {

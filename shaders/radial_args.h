@@ -24,7 +24,7 @@ struct radial_light {
     tyn_vec3 axis;      // M, unit, direction in which it shines; not of isotropic lights
     float cos_outer;    // spot
     float radius;       // of the disc that it stands for, m; 0: a point. Bounds 1 / r^2
-    tyn_uint light;     // of a lamp: its index in "lights"; else TYN_RADIAL_NO_LIGHT
+    tyn_uint light;     // its shadow map, TYN_SHADOW_LAMP(n); TYN_RADIAL_NO_LIGHT: none
 };
 TYN_ASSERT_SIZE(radial_light, 56);
 

@@ -331,6 +331,17 @@ float march_lamp_step(march_lamps ray, float s)
     return MARCH_LAMP_STEP * max(sqrt(least), march_least_h(ray, s));
 }
 
+float march_lamp_shadow(uint n, march_lamps ray, float s, float ds)
+{
+    uint map = radials[n].light.light;
+    float longest = max(max(medium.extent.x, medium.extent.y), medium.extent.z) / RAYMARCH_SHADOWS_ACROSS;
+    float count = clamp(ceil(ds / longest), 1.0, 16.0), part = ds / count, sum = 0.0;
+    for (float i = 0.5; i < count; i += 1.0) {
+        sum += shadow_visibility_lamp(map, ray.origin + (s + i * part) * ray.direction);
+    }
+    return sum / count;
+}
+
 // As march_sunlight, of a lamp in the step from s to s + ds, of which `at` is the middle. 1 / r^2 changes most:
 // its mean is exact, (angle under which the lamp sees the step) / (h ds), h the ray's distance from it.
 vec3 march_lamplight(uint n, march_lamps ray, march_medium unit, march_medium m, float s, float ds,
@@ -348,10 +359,13 @@ vec3 march_lamplight(uint n, march_lamps ray, march_medium unit, march_medium m,
     away += (clamp(middle, a, b) - along) * ray.direction;
     float r = length(away);
     float share = radial_share(n, away, r);
-    vec3 irradiance = radials[n].light.intensity * (share * mean);
+    if (raymarch_has(RAYMARCH_SHADOWS) && share > 0.0) {
+        share *= march_lamp_shadow(n, ray, s, ds);
+    }
     if (share <= 0.0) {
         return vec3(0.0);
     }
+    vec3 irradiance = radials[n].light.intensity * (share * mean);
     vec3 turn = ray.direction + away / max(r, 1e-20);
     float one_minus_mu = 0.5 * dot(turn, turn);
     radial_place place = radial_place_of(n, away, r);

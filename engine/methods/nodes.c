@@ -224,6 +224,8 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
     }
     tyn_raymarch_params params;
     set_march_params(&params, job, in);
+    const tyn_ref none = {0};
+    const bool beams = in->num_suns || in->num_marched_lamps; // that surfaces may stop
     tyn_ref refs[TYN_MAX_PORTS] = {
         [RAYMARCH_PORT_MEDIUM] = job->refs.medium,
         [RAYMARCH_PORT_DENSITY] = in->media.density,
@@ -246,8 +248,8 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
         [RAYMARCH_PORT_INSCATTER] = in->inscatter,
         [RAYMARCH_PORT_WALL_LINKS] = in->wall_links,
         [RAYMARCH_PORT_WALL_CELLS] = in->wall_cells,
-        [RAYMARCH_PORT_SHADOW_ATLAS] = in->num_suns ? in->shadows.atlas : (tyn_ref){0},
-        [RAYMARCH_PORT_SHADOWS] = in->num_suns ? in->shadows.lights : (tyn_ref){0},
+        [RAYMARCH_PORT_SHADOW_ATLAS] = beams ? in->shadows.atlas : none,
+        [RAYMARCH_PORT_SHADOWS] = beams ? in->shadows.lights : none,
         [RAYMARCH_PORT_CAMERA] = job->refs.camera,
         [RAYMARCH_PORT_ENVIRONMENT] = job->refs.environment,
         [RAYMARCH_PORT_ENV_MAP] = job->refs.env_map,

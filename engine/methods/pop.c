@@ -380,6 +380,11 @@ static tyn_result add_lamps(tyn_graph *g, const tyn_job *job, field *f)
         [LATTICE_LAMPS_PORT_COLUMN] = lamps->column,
         [LATTICE_LAMPS_PORT_TAU_A] = lamps->tau_a,
         [LATTICE_LAMPS_PORT_TAU_P] = lamps->tau_p,
+        [LATTICE_LAMPS_PORT_WALL_LINKS] = f->walls.links,
+        [LATTICE_LAMPS_PORT_WALL_CELLS] = f->walls.cells,
+        [LATTICE_LAMPS_PORT_SHADOW_ATLAS] = f->picture.shadows.atlas,
+        [LATTICE_LAMPS_PORT_SHADOWS] = f->picture.shadows.lights,
+        [LATTICE_LAMPS_PORT_VPL_DISTANCES] = f->picture.vpls.distances,
         [LATTICE_LAMPS_PORT_OTHERS] = f->source,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_lamps, &params, refs);
@@ -439,6 +444,19 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, field *f)
         refs[MERGE_PORT_COLUMNS] = f->columns;
         refs[MERGE_PORT_TMS] = f->tms;
         refs[MERGE_PORT_LUT_BLOCK] = f->picture.lut_block;
+    }
+    const tyn_radial_refs *lamps = &f->picture.lamps;
+    params.marched_lamps = f->picture.num_marched_lamps;
+    if (lamps->num_lamps > params.marched_lamps || lamps->vpls) {
+        refs[MERGE_PORT_RADIALS] = lamps->radials;
+        refs[MERGE_PORT_RADIAL_COLUMN] = lamps->column;
+        refs[MERGE_PORT_RADIAL_TAU_A] = lamps->tau_a;
+        refs[MERGE_PORT_RADIAL_TAU_P] = lamps->tau_p;
+        refs[MERGE_PORT_LUT] = f->picture.lut;
+        refs[MERGE_PORT_LUT_BLOCK] = f->picture.lut_block;
+        refs[MERGE_PORT_SHADOW_ATLAS] = f->picture.shadows.atlas;
+        refs[MERGE_PORT_SHADOWS] = f->picture.shadows.lights;
+        refs[MERGE_PORT_VPL_DISTANCES] = f->picture.vpls.distances;
     }
     tyn_result result = tyn_graph_add(g, &tyn_pass_merge, &params, refs);
     tyn_job_counters(g, job, "merge", refs[MERGE_PORT_COUNTERS]);
@@ -576,7 +594,7 @@ static tyn_result add_lights(tyn_graph *g, const tyn_job *job, field *f)
     if (result == TYN_OK) {
         result =
             tyn_add_radials(g, job, &f->picture.media, f->picture.vpls.lights, &f->picture.lamps);
-        f->picture.num_marched_lamps = f->picture.lamps.num_lamps;
+        f->picture.num_marched_lamps = f->picture.lamps.num_fine;
     }
     if (result == TYN_OK) {
         result = tyn_add_shadows(g, job, f->picture.num_suns, &f->picture.shadows);
@@ -714,7 +732,10 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     bool lit_by_environment = f.from_all_sides || f.sky.ordinates.resource;
     bool lamps = f.picture.lamps.radials.resource != 0;
     bool scattered_light = f.picture.num_suns || lamps || lit_by_environment || frame->emissive;
-    bool solve = scattered_light && (lit_by_environment || !is_thin(frame));
+    bool solve = scattered_light && (lit_by_environment || f.picture.lamps.vpls || !is_thin(frame));
+    if (!solve) {
+        f.picture.num_marched_lamps = f.picture.lamps.num_lamps;
+    }
     const step steps[] = {
         {picture && (f.picture.num_suns || lamps || f.sky.ordinates.resource), add_lut},
         {picture && f.sky.sky.resource, add_glow},

@@ -16,6 +16,7 @@
 #include "passes/probe/probe.h"
 #include "passes/propagate_radial/propagate_radial.h"
 #include "passes/propagate_rect/propagate_rect.h"
+#include "passes/radial_beam/radial_beam.h"
 #include "passes/raymarch/raymarch.h"
 #include "passes/residuum/residuum.h"
 #include "passes/rsm/rsm.h"
@@ -34,12 +35,14 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_beam,
     &tyn_pass_columns_average,
     &tyn_pass_columns,
+    &tyn_pass_radial_beam,
     &tyn_pass_scatter_lut,
     &tyn_pass_walls,
     &tyn_pass_wall_light,
     &tyn_pass_lattice_cells,
     &tyn_pass_lattice_source,
     &tyn_pass_lattice_ordinates,
+    &tyn_pass_lattice_lamps,
     &tyn_pass_lattice,
     &tyn_pass_merge,
     &tyn_pass_probe,

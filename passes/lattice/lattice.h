@@ -21,10 +21,10 @@ enum { TYN_LATTICE_MAX_CELLS = 64, TYN_LATTICE_MAX_SUNS = 4 };
 
 // What all passes of a lattice have in common; a method fills it once.
 typedef struct tyn_lattice_shape {
-    float extent[3];   // medium_block.extent, m
-    int32_t cells;     // along the longest side: the param "lattice.cells"
-    uint32_t channels; // 1 or 3 that are solved
-    float tint[3];     // of the one channel (see tyn_lattice_tint), else 1, 1, 1
+    float extent[3];    // medium_block.extent, m
+    int32_t cells;      // along the longest side: the param "lattice.cells"
+    uint32_t channels;  // 1 or 3 that are solved
+    float tint[3];      // of the one channel (see tyn_lattice_tint), else 1, 1, 1
     uint32_t repeat[3]; // medium_block.repeat; not all three. Such sides are whole numbers of cells
 } tyn_lattice_shape;
 
@@ -126,10 +126,16 @@ enum {
     LATTICE_LAMPS_PORT_COLUMN,  // IN 3D: column, or tau_s in mode COEFFICIENTS; of radial_beam
     LATTICE_LAMPS_PORT_TAU_A,   // IN optional 3D: mode COEFFICIENTS, as the one below
     LATTICE_LAMPS_PORT_TAU_P,
+    LATTICE_LAMPS_PORT_WALL_LINKS, // IN optional buffers, of walls
+    LATTICE_LAMPS_PORT_WALL_CELLS,
+    LATTICE_LAMPS_PORT_SHADOW_ATLAS,  // IN optional 2D, of shadow_map, as the next
+    LATTICE_LAMPS_PORT_SHADOWS,       // IN optional buffer
+    LATTICE_LAMPS_PORT_VPL_DISTANCES, // IN optional 2D, of vpl
     LATTICE_LAMPS_PORT_OTHERS, // IN optional 3D: `source` of suns and ordinates, which is added to
     LATTICE_LAMPS_PORT_SOURCE, // OUT 3D RGBA32F, stacked: fluence and flux of unscattered light, W/m^2
     LATTICE_LAMPS_PORT_POWER, // OUT buffer struct lattice_lamp_power per group and channel
-    LATTICE_LAMPS_PORT_LIT,   // SCRATCH
+    LATTICE_LAMPS_PORT_LIT,   // SCRATCH, as the next
+    LATTICE_LAMPS_PORT_UNSHADOWED,
     LATTICE_LAMPS_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_lattice_lamps;

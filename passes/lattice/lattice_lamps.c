@@ -17,6 +17,12 @@ static const tyn_port ports[LATTICE_LAMPS_NUM_PORTS] = {
                                    "mean density (or sigma_s) on the way from the lights"},
     [LATTICE_LAMPS_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "mean sigma_a"},
     [LATTICE_LAMPS_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true, "mean (1 - f) sigma_s"},
+    [LATTICE_LAMPS_PORT_WALL_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
+    [LATTICE_LAMPS_PORT_WALL_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
+    [LATTICE_LAMPS_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, 0, true,
+                                         "of shadow_map"},
+    [LATTICE_LAMPS_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, true, "of shadow_map"},
+    [LATTICE_LAMPS_PORT_VPL_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
     [LATTICE_LAMPS_PORT_OTHERS] = {"others", TYN_IN, TYN_IMAGE_3D, 0, true,
                                    "source of lattice_source or lattice_ordinates"},
     [LATTICE_LAMPS_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
@@ -27,6 +33,9 @@ static const tyn_port ports[LATTICE_LAMPS_NUM_PORTS] = {
                                   "struct lattice_lamp_power per group of lights and channel"},
     [LATTICE_LAMPS_PORT_LIT] = {"lit", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                                 false, "fluence and flux of each group of lights, before scaling"},
+    [LATTICE_LAMPS_PORT_UNSHADOWED] = {"unshadowed", TYN_SCRATCH, TYN_IMAGE_3D,
+                                       VK_FORMAT_R32_SFLOAT, false,
+                                       "fluence without shadows, before scaling"},
 };
 
 enum { KERNEL_CELLS, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
@@ -41,6 +50,12 @@ static const tyn_binding cells_bindings[] = {
     {LATTICE_LAMPS_PORT_TAU_P, TYN_USE_SAMPLED},
     {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
     {LATTICE_LAMPS_PORT_LIT, TYN_USE_STORAGE_WRITE},
+    {LATTICE_LAMPS_PORT_UNSHADOWED, TYN_USE_STORAGE_WRITE},
+    {LATTICE_LAMPS_PORT_WALL_LINKS, TYN_USE_STORAGE_READ},
+    {LATTICE_LAMPS_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
+    {LATTICE_LAMPS_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_SHADOWS, TYN_USE_STORAGE_READ},
+    {LATTICE_LAMPS_PORT_VPL_DISTANCES, TYN_USE_SAMPLED},
 };
 
 static const tyn_binding sum_bindings[] = {
@@ -50,7 +65,7 @@ static const tyn_binding sum_bindings[] = {
     {LATTICE_LAMPS_PORT_TAU_A, TYN_USE_SAMPLED},
     {LATTICE_LAMPS_PORT_TAU_P, TYN_USE_SAMPLED},
     {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_LAMPS_PORT_LIT, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_UNSHADOWED, TYN_USE_SAMPLED},
     {LATTICE_LAMPS_PORT_POWER, TYN_USE_STORAGE_WRITE},
 };
 
@@ -67,8 +82,8 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                       sizeof(struct lattice_lamps_args),
                       {8, 4, 2},
                       cells_bindings,
-                      9,
-                      2},
+                      15,
+                      4},
     [KERNEL_SUM] = {"sum",
                     lattice_lamps_sum_spirv,
                     sizeof lattice_lamps_sum_spirv,
@@ -106,6 +121,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
     uint32_t layers = dims.z * p->shape.channels;
     tyn_build_image(b, LATTICE_LAMPS_PORT_SOURCE, (tyn_extent){dims.x, dims.y, layers}, 1);
     tyn_build_image(b, LATTICE_LAMPS_PORT_LIT, (tyn_extent){dims.x, dims.y, layers * groups}, 1);
+    tyn_build_image(b, LATTICE_LAMPS_PORT_UNSHADOWED, (tyn_extent){dims.x, dims.y, layers * groups},
+                    1);
     tyn_build_buffer(b, LATTICE_LAMPS_PORT_POWER,
                      sizeof(struct lattice_lamp_power) * groups * p->shape.channels);
     return TYN_OK;
@@ -131,7 +148,10 @@ static void record(tyn_recorder *r, const void *params)
         voxels = fmaxf(voxels, dx * (float)size[a] / extent[a]);
     }
     args.samples = (uint32_t)fminf(fmaxf(ceilf(0.5f * voxels - 1e-3f), 2), 4);
-    const uint32_t spec[2] = {p->mode, p->shape.channels};
+    const uint32_t spec[4] = {p->mode, p->shape.channels,
+                              tyn_rec_has(r, LATTICE_LAMPS_PORT_WALL_LINKS),
+                              tyn_rec_has(r, LATTICE_LAMPS_PORT_SHADOW_ATLAS) ||
+                                  tyn_rec_has(r, LATTICE_LAMPS_PORT_VPL_DISTANCES)};
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_CELLS,
                                         .cells = {dims.x, dims.y, dims.z * args.num_groups},
                                         .args = &args,

@@ -1,8 +1,7 @@
 // lattice_lamps_cells.comp -- unscattered light of local lights in a cell; z: cells of each group.
 //
 // Fluence is the mean of I e^-tau' / r^2 over what scatters in the cell. Cells near a light are cut into up to
-// 8^3 pieces; of each the mean of 1 / r^2 is taken, which is finite at the light itself:
-//   1 / r^2 (1 + d^2 / (12 r^2)) far away, 7.67 / d^2 where the light is in the middle of a cube of edge d.
+// 8^3 pieces; of each the mean of 1 / r^2 is taken, which is finite at the light itself.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -14,10 +13,19 @@
 #define RADIAL_COLUMN 4
 #define RADIAL_TAU_A 5
 #define RADIAL_TAU_P 6
+#define WALLS_LINKS 10
+#define WALLS_CELLS 11
+#define SHADOW_ATLAS 12
+#define SHADOW_LIGHTS 13
+#define VPL_DISTANCES 14
+#define RADIAL_SHADOWS
 #include "medium.glsl"
-#include "radial.glsl"
 #include "lattice.glsl"
 #include "lattice_sweep.glsl"
+#include "lattice_walls.glsl"
+#include "shadow.glsl"
+#include "vpl_visibility.glsl"
+#include "radial.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(push_constant, scalar) uniform push
@@ -28,13 +36,13 @@ layout(binding = 7) uniform sampler3D cells;
 // [group][channel][z][y][x]
 layout(binding = 8, rgba32f) uniform writeonly image3D lit;
 
-layout(constant_id = 1) const uint num_channels = 3;
-#include "lattice_lamps.glsl"
+// The fluence alone, as if nothing stood before the lights: what their power is balanced by.
+layout(binding = 9, r32f) uniform writeonly image3D unshadowed;
 
-float mean_inverse_square(float r2, float d2)
-{
-    return r2 < d2 ? 1.0 / (0.1304 * d2 + 0.79 * r2) : (1.0 + d2 / (12.0 * r2)) / r2;
-}
+layout(constant_id = 1) const uint num_channels = 3;
+layout(constant_id = 2) const uint walls = 0;
+layout(constant_id = 3) const uint shadowed = 0;
+#include "lattice_lamps.glsl"
 
 uint pieces(uint n, float cells_away)
 {
@@ -43,15 +51,20 @@ uint pieces(uint n, float cells_away)
 }
 
 // Adds light n to the moments of the channels.
-void add_light(uint n, vec3 corner, float dx, inout vec4 sums[3])
+void add_light(uint n, lattice_box box, ivec3 c, inout vec4 sums[3], inout vec3 all)
 {
+    float dx = box.dx;
+    vec3 corner = lattice_to_m(box, vec3(c));
     vec3 position = radials[n].light.position;
     uint count = pieces(n, length(corner + 0.5 * dx - position) / dx);
     float d = dx / float(count), radius = radials[n].light.radius;
     vec4 weighted[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
-    vec3 weight = vec3(0.0);
+    vec3 weight = vec3(0.0), open = vec3(0.0);
     for (uint i = 0u; i < count * count * count; i++) {
         vec3 p = corner + (vec3(i % count, i / count % count, i / (count * count)) + 0.5) * d;
+        if (walls == 1 && !walls_same_side(box, c, p)) {
+            continue;
+        }
         medium_point m = medium_sample(p);
         similarity_clamp(m.sigma_s, m.g);
         vec3 scaled = (1.0 - delta_fraction(m.g)) * m.sigma_s;
@@ -69,17 +82,21 @@ void add_light(uint n, vec3 corner, float dx, inout vec4 sums[3])
         vec3 unit = away / max(r, 1e-20), a = abs(unit);
         // Half the depth of a piece along the light.
         float half_way = 0.5 * d / max(max(a.x, max(a.y, a.z)), 0.57);
-        float fluence = share * mean_inverse_square(r * r, d * d);
+        float fluence = share * radial_mean_inverse_square(r * r, d * d);
         // Seen under an angle, a disc does not shine along one direction.
         float cosine = 1.0 - 0.25 * radius * radius / max(r * r, radius * radius + 1e-20);
+        float visible = shadowed == 1 ? radial_visibility(n, p, away) : 1.0;
         for (uint ch = 0u; ch < num_channels; ch++) {
             float t = mean_transmittance(tau.a[ch] + tau.p[ch], half_way * (scaled[ch] + m.sigma_a[ch]));
-            weighted[ch] += (w[ch] * t * fluence) * vec4(1.0, cosine * unit);
+            open[ch] += w[ch] * t * fluence;
+            weighted[ch] += (visible * w[ch] * t * fluence) * vec4(1.0, cosine * unit);
         }
     }
     for (uint ch = 0u; ch < num_channels; ch++) {
         float e = lattice_channel(radials[n].light.intensity, num_channels, ch, args.tint);
-        sums[ch] += weight[ch] > 0.0 ? weighted[ch] * (e / weight[ch]) : vec4(0.0);
+        float scale = weight[ch] > 0.0 ? e / weight[ch] : 0.0;
+        sums[ch] += scale * weighted[ch];
+        all[ch] += scale * open[ch];
     }
 }
 
@@ -92,6 +109,7 @@ void main()
         return;
     }
     vec4 sums[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
+    vec3 all = vec3(0.0);
     float extinction = 0.0;
     for (uint ch = 0u; ch < num_channels; ch++) {
         vec4 cell = texelFetch(cells, c + ivec3(0, 0, int(ch) * dims.z), 0);
@@ -101,11 +119,12 @@ void main()
         lattice_box box = lattice_box_of(medium.extent, dims);
         uvec2 range = lattice_lamps_of(group);
         for (uint n = range.x; n < range.y; n++) {
-            add_light(n, lattice_to_m(box, vec3(c)), box.dx, sums);
+            add_light(n, box, c, sums, all);
         }
     }
     for (uint ch = 0u; ch < num_channels; ch++) {
         ivec3 at = c + ivec3(0, 0, int(group * num_channels + ch) * dims.z);
         imageStore(lit, at, sums[ch]);
+        imageStore(unshadowed, at, vec4(all[ch]));
     }
 }

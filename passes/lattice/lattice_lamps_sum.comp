@@ -2,7 +2,8 @@
 //
 // One workgroup per group of lights and channel. What a light within the box loses is its power times the mean
 // of 1 - e^-tau' over its directions; of one outside the integral over the faces where its light leaves
-// the box. Sums have a fixed order: every thread its own terms, then pairwise.
+// the box, both as if nothing stood before the lights: what surfaces keep from the cells is left out after
+// scaling. Sums have a fixed order: every thread its own terms, then pairwise.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -24,7 +25,7 @@ layout(push_constant, scalar) uniform push
     lattice_lamps_args args;
 };
 layout(binding = 5) uniform sampler3D cells;
-layout(binding = 6) uniform sampler3D lit;
+layout(binding = 6) uniform sampler3D unshadowed;
 layout(binding = 7, scalar) writeonly buffer power_buffer
 {
     lattice_lamp_power power[];
@@ -80,7 +81,7 @@ float collided_in_cells(uint group, uint ch, float volume)
     for (uint i = gl_LocalInvocationIndex; i < count; i += LATTICE_SUN_GROUP) {
         ivec3 c = ivec3(i % args.dims.x, i / args.dims.x % args.dims.y, i / plane);
         vec4 cell = texelFetch(cells, c + ivec3(0, 0, ch * args.dims.z), 0);
-        float phi = texelFetch(lit, c + ivec3(0, 0, (group * args.channels + ch) * args.dims.z), 0).x;
+        float phi = texelFetch(unshadowed, c + ivec3(0, 0, (group * args.channels + ch) * args.dims.z), 0).x;
         collided += volume * (cell.x + cell.y) * phi;
     }
     return collided;

@@ -4,6 +4,7 @@
 #include "counters.h"
 #include "merge_cells.comp.h"
 #include "merge_ordinates.comp.h"
+#include "merge_radials.comp.h"
 #include "merge_one.comp.h"
 #include "merge_three.comp.h"
 
@@ -17,6 +18,16 @@ static const tyn_port ports[MERGE_NUM_PORTS] = {
                             "optical depths along the ordinates"},
     [MERGE_PORT_TMS] = {"tms", TYN_IN, TYN_IMAGE_3D, 0, true, "kernels, of scatter_lut"},
     [MERGE_PORT_LUT_BLOCK] = {"lut_block", TYN_IN, TYN_BUFFER, 0, true, "struct lut_block"},
+    [MERGE_PORT_RADIALS] = {"radials", TYN_IN, TYN_BUFFER, 0, true, "struct radial_block"},
+    [MERGE_PORT_RADIAL_COLUMN] = {"radial_column", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                  "mean density (or sigma_s) on the way from local lights"},
+    [MERGE_PORT_RADIAL_TAU_A] = {"radial_tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "mean sigma_a"},
+    [MERGE_PORT_RADIAL_TAU_P] = {"radial_tau_p", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                 "mean (1 - f) sigma_s"},
+    [MERGE_PORT_LUT] = {"lut", TYN_IN, TYN_IMAGE_2D, 0, true, "forward scattering, of scatter_lut"},
+    [MERGE_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, 0, true, "of shadow_map"},
+    [MERGE_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, true, "of shadow_map"},
+    [MERGE_PORT_VPL_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
     [MERGE_PORT_INSCATTER] = {"inscatter", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                               false,
                               "radiance scattered towards the eye per sigma_s', W/(m^2 sr); one "
@@ -26,7 +37,7 @@ static const tyn_port ports[MERGE_NUM_PORTS] = {
                           "what each cell scatters towards the eye, before the clamp at 0"},
 };
 
-enum { KERNEL_CELLS, KERNEL_ORDINATES, KERNEL_ONE, KERNEL_THREE, NUM_KERNELS };
+enum { KERNEL_CELLS, KERNEL_ORDINATES, KERNEL_RADIALS, KERNEL_ONE, KERNEL_THREE, NUM_KERNELS };
 
 static const tyn_binding cells_bindings[] = {
     {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},      {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
@@ -40,6 +51,16 @@ static const tyn_binding ordinates_bindings[] = {
     {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},  {MERGE_PORT_COLUMNS, TYN_USE_STORAGE_READ},
     {MERGE_PORT_TMS, TYN_USE_SAMPLED},       {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},
     {MERGE_PORT_ORDINATES, TYN_USE_UNIFORM},
+};
+
+static const tyn_binding radials_bindings[] = {
+    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},        {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
+    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},         {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},
+    {MERGE_PORT_RADIALS, TYN_USE_STORAGE_READ},  {MERGE_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED},
+    {MERGE_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED},  {MERGE_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED},
+    {MERGE_PORT_LUT, TYN_USE_SAMPLED},           {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},
+    {MERGE_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED},  {MERGE_PORT_SHADOWS, TYN_USE_STORAGE_READ},
+    {MERGE_PORT_VPL_DISTANCES, TYN_USE_SAMPLED},
 };
 
 static const tyn_binding ghosts_bindings[] = {
@@ -65,6 +86,14 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                           ordinates_bindings,
                           9,
                           3},
+    [KERNEL_RADIALS] = {"radials",
+                        merge_radials_spirv,
+                        sizeof merge_radials_spirv,
+                        sizeof(struct merge_args),
+                        {8, 4, 2},
+                        radials_bindings,
+                        13,
+                        4},
     [KERNEL_ONE] = {"one",
                     merge_one_spirv,
                     sizeof merge_one_spirv,
@@ -88,13 +117,18 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_merge_params *p = params;
     tyn_extent dims = tyn_build_extent(b, MERGE_PORT_MOMENTS);
     bool ordinates = tyn_build_has(b, MERGE_PORT_ORDINATES);
-    for (uint8_t port = MERGE_PORT_COLUMNS; port <= MERGE_PORT_LUT_BLOCK; port++) {
+    for (uint8_t port = MERGE_PORT_COLUMNS; port <= MERGE_PORT_TMS; port++) {
         if (tyn_build_has(b, port) != ordinates) {
             tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
                           "merge: '%s' and '%s' must be connected both or neither",
                           ports[MERGE_PORT_ORDINATES].name, ports[port].name);
             return TYN_ERR_PARAMS;
         }
+    }
+    bool radials = tyn_build_has(b, MERGE_PORT_RADIALS);
+    if ((ordinates || radials) && !tyn_build_has(b, MERGE_PORT_LUT_BLOCK)) {
+        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR, "merge: 'lut_block' must be connected");
+        return TYN_ERR_PARAMS;
     }
     if (p->channels == 1) {
         tyn_build_format(b, MERGE_PORT_INSCATTER, VK_FORMAT_R32_SFLOAT);
@@ -115,6 +149,7 @@ static void record(tyn_recorder *r, const void *params)
     struct merge_args args = {.dims = {dims.x, dims.y, dims.z},
                               .channels = p->channels,
                               .tint = {p->tint[0], p->tint[1], p->tint[2]},
+                              .first_radial = p->marched_lamps,
                               .repeat = {p->repeat[0], p->repeat[1], p->repeat[2]}};
     tyn_rec_fill(r, MERGE_PORT_COUNTERS, 0);
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_CELLS, .cells = dims, .args = &args});
@@ -123,6 +158,14 @@ static void record(tyn_recorder *r, const void *params)
         tyn_rec_dispatch(
             r, &(tyn_dispatch){
                    .kernel = KERNEL_ORDINATES, .cells = dims, .args = &args, .spec = spec});
+    }
+    if (tyn_rec_has(r, MERGE_PORT_RADIALS)) {
+        const uint32_t spec[4] = {p->mode, p->grey, p->channels,
+                                  tyn_rec_has(r, MERGE_PORT_SHADOW_ATLAS) ||
+                                      tyn_rec_has(r, MERGE_PORT_VPL_DISTANCES)};
+        tyn_rec_dispatch(
+            r,
+            &(tyn_dispatch){.kernel = KERNEL_RADIALS, .cells = dims, .args = &args, .spec = spec});
     }
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = p->channels == 1 ? KERNEL_ONE : KERNEL_THREE,
                                         .cells = size,

@@ -4,11 +4,12 @@
 #include <tyndall/pass.h>
 
 typedef struct tyn_merge_params {
-    uint32_t channels; // of `moments`: 1 or 3
-    float tint[3];     // of the one channel (see tyn_lattice_tint), else 1, 1, 1
-    uint32_t mode;     // TYN_MEDIUM_*, read where there are ordinates, as the next
-    uint32_t repeat[3]; // medium_block.repeat
-    uint32_t grey;     // 1: sigma_s, sigma_a and g are equal in all channels (mode DENSITY)
+    uint32_t channels;      // of `moments`: 1 or 3
+    float tint[3];          // of the one channel (see tyn_lattice_tint), else 1, 1, 1
+    uint32_t mode;          // TYN_MEDIUM_*, read where there are ordinates, as the next
+    uint32_t repeat[3];     // medium_block.repeat
+    uint32_t marched_lamps; // local lights that the march itself does, the first ones
+    uint32_t grey;          // 1: sigma_s, sigma_a and g are equal in all channels (mode DENSITY)
 } tyn_merge_params;
 
 enum {
@@ -16,12 +17,20 @@ enum {
     MERGE_PORT_CAMERA,    // IN buffer struct camera_block
     MERGE_PORT_CELLS,     // IN 3D, of lattice_cells
     MERGE_PORT_MOMENTS,   // IN 3D, of lattice
-    MERGE_PORT_ORDINATES, // IN optional buffer struct ordinates_block; all four or none
+    MERGE_PORT_ORDINATES, // IN optional buffer struct ordinates_block; with the next three
     MERGE_PORT_COLUMNS,   // IN optional buffer, of columns
     MERGE_PORT_TMS,       // IN optional 3D, of scatter_lut
-    MERGE_PORT_LUT_BLOCK, // IN optional buffer struct lut_block
+    MERGE_PORT_LUT_BLOCK, // IN optional buffer struct lut_block; with ordinates or radials
+    MERGE_PORT_RADIALS,   // IN optional buffer struct radial_block; with the next and both tables
+    MERGE_PORT_RADIAL_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS; of radial_beam
+    MERGE_PORT_RADIAL_TAU_A, // IN optional 3D: mode COEFFICIENTS, as the next
+    MERGE_PORT_RADIAL_TAU_P,
+    MERGE_PORT_LUT,           // IN optional 2D, of scatter_lut
+    MERGE_PORT_SHADOW_ATLAS,  // IN optional 2D, of shadow_map, as the next
+    MERGE_PORT_SHADOWS,       // IN optional buffer
+    MERGE_PORT_VPL_DISTANCES, // IN optional 2D, of vpl
     MERGE_PORT_INSCATTER, // OUT 3D RGBA32F (one channel: R32F), dims + 2: J = max(0, (phi + 3 g' v.F) / (4 pi)
-    // + sum over ordinates of E e^-tau' k), W/(m^2 sr), v the direction from the cell to
+    // + sum over ordinates of E e^-tau' k + local lights, see merge_radials.comp), W/(m^2 sr), v the direction from the cell to
     // the eye, k of tms.glsl; sample at lattice_inscatter_uvw
     MERGE_PORT_COUNTERS, // OUT buffer struct counters_block: cells that were clamped or not finite
     MERGE_PORT_FIELD,    // SCRATCH buffer: J of the cells

@@ -6,8 +6,9 @@
 struct merge_args {
     tyn_uvec3 dims; // cells
     tyn_uint channels;
-    tyn_vec3 tint; // of the one channel
-    tyn_uvec3 repeat; // medium_block.repeat
+    tyn_vec3 tint;         // of the one channel
+    tyn_uint first_radial; // local light that is not marched
+    tyn_uvec3 repeat;      // medium_block.repeat
 };
 
 #endif

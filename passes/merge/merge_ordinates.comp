@@ -35,21 +35,7 @@ layout(binding = 8, scalar) uniform ordinates_uniform
     ordinates_block ordinates;
 };
 #include "merge.glsl"
-
-// Does the picture read this cell? It does so around every cell that scatters.
-bool is_read(ivec3 c, ivec3 dims)
-{
-    ivec3 lo = max(c - 1, ivec3(0)), hi = min(c + 1, dims - 1);
-    float most = 0.0;
-    for (int z = lo.z; z <= hi.z; z++) {
-        for (int y = lo.y; y <= hi.y; y++) {
-            for (int x = lo.x; x <= hi.x; x++) {
-                most = max(most, field[merge_index(ivec3(x, y, z), channels)]);
-            }
-        }
-    }
-    return most > 0.0;
-}
+#include "merge_read.glsl"
 
 // k e^-tau' of an ordinate, per channel.
 vec3 grey_share(uint n, uvec3 cell, beam_tau unit, tms_row row, float mu, float level)
@@ -99,7 +85,7 @@ void main()
         }
     }
     vec3 sum = vec3(0.0);
-    uint count = is_read(c, dims) ? min(ordinates.count, uint(TYN_ORDINATES_MAX)) : 0u;
+    uint count = merge_is_read(c, dims, channels) ? min(ordinates.count, uint(TYN_ORDINATES_MAX)) : 0u;
     for (uint n = 0u; n < count; n++) {
         ordinate o = ordinates.list[n];
         float mu = dot(o.direction, v), level = tms_level(1.0 - o.mean_cosine);

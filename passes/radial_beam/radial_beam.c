@@ -1,6 +1,7 @@
 // radial_beam.c -- lays out the grids of local lights and sweeps them in one dispatch.
 #include "radial_beam.h"
 #include "radial_beam_args.h"
+#include "shadow_args.h"
 #include "radial_beam_setup.comp.h"
 #include "radial_beam_density.comp.h"
 #include "radial_beam_coefficients.comp.h"
@@ -104,7 +105,7 @@ struct radial_light tyn_radial_of_lamp(const struct light_block *lamp, uint32_t 
         .kind = lamp->kind == TYN_LIGHT_KIND_SPOT ? TYN_RADIAL_SPOT : TYN_RADIAL_ISOTROPIC,
         .cos_inner = lamp->cos_inner,
         .cos_outer = lamp->cos_outer,
-        .light = index,
+        .light = TYN_SHADOW_LAMP(index),
     };
     memcpy(light.position, lamp->position, sizeof light.position);
     memcpy(light.intensity, lamp->color, sizeof light.intensity);
@@ -123,7 +124,7 @@ void tyn_radial_beam_plan(tyn_radial_beam_params *params, const struct medium_bl
 {
     uint32_t count = 0;
     for (uint32_t i = first_lamp; i < num_lights && count < TYN_RADIAL_LAMPS_MAX; i++) {
-        struct radial_light light = tyn_radial_of_lamp(&lights[i], i);
+        struct radial_light light = tyn_radial_of_lamp(&lights[i], i - first_lamp);
         if (!(strength(&light) > 0)) {
             continue;
         }

@@ -34,7 +34,7 @@ enum {
 };
 extern const tyn_pass_desc tyn_pass_radial_beam;
 
-// A point or spot light of the scene as a radial light; `index` = its place among them.
+// A point or spot light of the scene as a radial light; `index` = its place among all lights that are no suns.
 struct radial_light tyn_radial_of_lamp(const struct light_block *lamp, uint32_t index);
 
 // Fills what the method sets: lamps sorted by their intensity, the first `fine` of them in fine grids.

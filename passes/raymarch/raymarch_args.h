@@ -27,7 +27,7 @@
 #define RAYMARCH_REPEAT (1u << 22)    // the medium is periodic
 #define RAYMARCH_WALLS (1u << 21)     // surfaces part the cells of inscatter
 #define RAYMARCH_SURFACE_SEEN (1u << 20)
-#define RAYMARCH_SHADOWS (1u << 22) // surfaces stand before the suns
+#define RAYMARCH_SHADOWS (1u << 22) // surfaces stand before suns and lamps
 
 struct raymarch_args {
     float step;      // longest step, m

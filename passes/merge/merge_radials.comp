@@ -1,0 +1,144 @@
+// merge_radials.comp -- adds what a cell scatters towards the eye of the unscattered light of local lights that
+// are not marched.
+//
+// Per sigma_s' and seen through e^-tau', as the march takes it: I / r^2 e^-tau_a (K_tms + K_lobe e^-(tau - tau'))
+// / (1 - f); what is scattered forward goes to the eye through e^-tau, and the difference of the depths of the
+// way there is summed over the cells that it passes. Of 1 / r^2 the mean over the cell is taken.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 2 // not read
+#include "medium.glsl"
+#define RADIAL_BLOCK 4
+#define RADIAL_COLUMN 5
+#define RADIAL_TAU_A 6
+#define RADIAL_TAU_P 7
+#define SCATTER_LUT 8
+#define SCATTER_LUT_BLOCK 9
+#define SCATTER_LUT_SOFT false
+#include "scatter_lut.glsl"
+#define SHADOW_ATLAS 10
+#define SHADOW_LIGHTS 11
+#include "shadow.glsl"
+#define VPL_DISTANCES 12
+#include "vpl_visibility.glsl"
+#define RADIAL_SHADOWS
+#include "radial.glsl"
+#include "merge_args.h"
+#include "lattice.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(constant_id = 1) const bool grey = false; // all channels of the medium are equal
+layout(constant_id = 2) const uint channels = 3;
+layout(constant_id = 3) const uint shadowed = 0;
+layout(push_constant, scalar) uniform push
+{
+    merge_args args;
+};
+layout(binding = 1, scalar) uniform camera_uniform
+{
+    camera_block camera;
+};
+layout(binding = 2) uniform sampler3D cells;
+layout(binding = 3, scalar) buffer field_buffer
+{
+    float field[];
+};
+#include "merge.glsl"
+#include "merge_read.glsl"
+
+const uint DEPTH_STEPS = 12u;
+
+vec4 cell_of(ivec3 c, uint ch)
+{
+    return texelFetch(cells, c + ivec3(0, 0, int(min(ch, channels - 1u) * args.dims.z)), 0);
+}
+
+// g of a cell from its g' = g / (1 + g).
+float plain_g(float scaled)
+{
+    return scaled > 0.0 ? min(scaled / (1.0 - scaled), HG_MAX) : scaled;
+}
+
+// e^-(tau - tau') between the middle of a cell and the eye.
+vec3 forward_part(lattice_box box, ivec3 c, vec3 v)
+{
+    vec3 p = lattice_to_m(box, vec3(c) + 0.5);
+    vec3 way = mix(medium.extent - p, -p, lessThan(v, vec3(0.0))) /
+               mix(v, vec3(1e-12), lessThan(abs(v), vec3(1e-12)));
+    float far = max(min(way.x, min(way.y, way.z)), 0.0);
+    if (camera.orthographic == 0u) {
+        far = min(far, length(camera.origin - p));
+    }
+    float ds = far / float(DEPTH_STEPS);
+    vec3 depth = vec3(0.0);
+    for (uint i = 0u; i < DEPTH_STEPS; i++) {
+        vec3 at = lattice_from_m(box, p + (float(i) + 0.5) * ds * v);
+        ivec3 q = clamp(ivec3(at), ivec3(0), box.dims - 1);
+        for (uint ch = 0u; ch < 3u; ch++) {
+            vec4 cell = cell_of(q, ch);
+            float f = delta_fraction(plain_g(cell.z));
+            depth[ch] += ds * cell.x * f / (1.0 - f);
+        }
+    }
+    return exp(-depth);
+}
+
+// (K_tms + K_lobe `forward`) / (1 - f) of a channel.
+float kernel(uint ch, float g, float one_minus_mu, float tau_s, float tau_p, float forward)
+{
+    if (medium_mode == TYN_MEDIUM_DENSITY) {
+        scatter_angle angle = scatter_angle_of_point(ch, one_minus_mu);
+        vec2 k = scatter_kernels(angle, tau_s);
+        return (k.x + forward * k.y) / angle.loss;
+    }
+    vec2 k = scatter_kernels_mixed(0u, 1.0, one_minus_mu, g, tau_s, tau_p);
+    return (k.x + forward * k.y) / (1.0 - delta_fraction(g));
+}
+
+void main()
+{
+    ivec3 c = ivec3(gl_GlobalInvocationID), dims = ivec3(args.dims);
+    if (any(greaterThanEqual(c, dims))) {
+        return;
+    }
+    uint count = merge_is_read(c, dims, channels) ? radial_count : 0u;
+    if (count <= args.first_radial) {
+        return;
+    }
+    lattice_box box = lattice_box_of(medium.extent, dims);
+    vec3 v = merge_towards_eye(camera, box, c), p = clamp(lattice_to_m(box, vec3(c) + 0.5), vec3(0.0), medium.extent);
+    vec3 forward = forward_part(box, c, v), g, sum = vec3(0.0);
+    for (uint ch = 0u; ch < 3u; ch++) {
+        g[ch] = plain_g(cell_of(c, ch).z);
+    }
+    bool same = grey || (medium_mode == TYN_MEDIUM_DENSITY && channels == 1u);
+    for (uint n = args.first_radial; n < count; n++) {
+        vec3 away = p - radials[n].light.position;
+        float r = length(away), share = radial_share(n, away, r);
+        if (share > 0.0 && shadowed == 1u) {
+            share *= radial_visibility(n, p, away);
+        }
+        if (share <= 0.0) {
+            continue;
+        }
+        vec3 turn = away / max(r, 1e-20) - v;
+        float one_minus_mu = 0.5 * dot(turn, turn);
+        beam_tau tau = radial_tau(radial_place_of(n, away, r));
+        vec3 k = vec3(kernel(0u, g.r, one_minus_mu, tau.s.r, tau.p.r, forward.r));
+        if (!same) {
+            k.g = kernel(1u, g.g, one_minus_mu, tau.s.g, tau.p.g, forward.g);
+            k.b = kernel(2u, g.b, one_minus_mu, tau.s.b, tau.p.b, forward.b);
+        }
+        sum += radials[n].light.intensity * (share * radial_mean_inverse_square(r * r, box.dx * box.dx)) *
+               exp(-tau.a) * k;
+    }
+    if (channels == 1u) {
+        field[merge_index(c, 0u)] += dot(sum, args.tint) / dot(args.tint, args.tint);
+    } else {
+        for (uint ch = 0u; ch < 3u; ch++) {
+            field[merge_index(c, ch)] += sum[ch];
+        }
+    }
+}
