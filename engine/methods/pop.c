@@ -46,7 +46,7 @@ typedef struct field {
     tyn_picture_inputs picture;
     tyn_sky_refs sky;
     tyn_ref tms, columns;
-    tyn_ref cells, source, power, lamp_power, moments, leaks, wall_power;
+    tyn_ref cells, source, power, lamp_power, vpl_light, moments, leaks, wall_power;
     tyn_wall_refs walls; // surfaces on the lattice; {0} without
     tyn_ref wall_light;  // what they reflect of light that is not the lattice's; {0} if nothing
     bool from_all_sides; // the mean of the environment lights the medium
@@ -390,6 +390,7 @@ static tyn_result add_lamps(tyn_graph *g, const tyn_job *job, field *f)
     tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_lamps, &params, refs);
     f->source = refs[LATTICE_LAMPS_PORT_SOURCE];
     f->lamp_power = refs[LATTICE_LAMPS_PORT_POWER];
+    f->vpl_light = refs[LATTICE_LAMPS_PORT_VPL_LIGHT];
     return result;
 }
 
@@ -447,7 +448,8 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, field *f)
     }
     const tyn_radial_refs *lamps = &f->picture.lamps;
     params.marched_lamps = f->picture.num_marched_lamps;
-    if (lamps->num_lamps > params.marched_lamps || lamps->vpls) {
+    refs[MERGE_PORT_VPL_LIGHT] = f->vpl_light;
+    if (lamps->num_lamps > params.marched_lamps) {
         refs[MERGE_PORT_RADIALS] = lamps->radials;
         refs[MERGE_PORT_RADIAL_COLUMN] = lamps->column;
         refs[MERGE_PORT_RADIAL_TAU_A] = lamps->tau_a;
@@ -456,7 +458,6 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, field *f)
         refs[MERGE_PORT_LUT_BLOCK] = f->picture.lut_block;
         refs[MERGE_PORT_SHADOW_ATLAS] = f->picture.shadows.atlas;
         refs[MERGE_PORT_SHADOWS] = f->picture.shadows.lights;
-        refs[MERGE_PORT_VPL_DISTANCES] = f->picture.vpls.distances;
     }
     tyn_result result = tyn_graph_add(g, &tyn_pass_merge, &params, refs);
     tyn_job_counters(g, job, "merge", refs[MERGE_PORT_COUNTERS]);

@@ -133,8 +133,9 @@ enum {
     LATTICE_LAMPS_PORT_VPL_DISTANCES, // IN optional 2D, of vpl
     LATTICE_LAMPS_PORT_OTHERS, // IN optional 3D: `source` of suns and ordinates, which is added to
     LATTICE_LAMPS_PORT_SOURCE, // OUT 3D RGBA32F, stacked: fluence and flux of unscattered light, W/m^2
-    LATTICE_LAMPS_PORT_POWER, // OUT buffer struct lattice_lamp_power per group and channel
-    LATTICE_LAMPS_PORT_LIT,   // SCRATCH, as the next
+    LATTICE_LAMPS_PORT_VPL_LIGHT, // OUT 3D RGBA32F, only with `vpls`: what of it is theirs
+    LATTICE_LAMPS_PORT_POWER,     // OUT buffer struct lattice_lamp_power per group and channel
+    LATTICE_LAMPS_PORT_LIT,       // SCRATCH, as the next
     LATTICE_LAMPS_PORT_UNSHADOWED,
     LATTICE_LAMPS_NUM_PORTS,
 };

@@ -29,6 +29,9 @@ static const tyn_port ports[LATTICE_LAMPS_NUM_PORTS] = {
                                    false,
                                    "unscattered fluence and flux of all lights, W/m^2; channels "
                                    "stacked along z"},
+    [LATTICE_LAMPS_PORT_VPL_LIGHT] = {"vpl_light", TYN_OUT, TYN_IMAGE_3D,
+                                      VK_FORMAT_R32G32B32A32_SFLOAT, false,
+                                      "unscattered fluence and flux of VPLs, W/m^2"},
     [LATTICE_LAMPS_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false,
                                   "struct lattice_lamp_power per group of lights and channel"},
     [LATTICE_LAMPS_PORT_LIT] = {"lit", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
@@ -70,9 +73,12 @@ static const tyn_binding sum_bindings[] = {
 };
 
 static const tyn_binding source_bindings[] = {
-    {LATTICE_LAMPS_PORT_POWER, TYN_USE_STORAGE_READ},   {LATTICE_LAMPS_PORT_LIT, TYN_USE_SAMPLED},
-    {LATTICE_LAMPS_PORT_OTHERS, TYN_USE_SAMPLED},       {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_POWER, TYN_USE_STORAGE_READ},
+    {LATTICE_LAMPS_PORT_LIT, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_OTHERS, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
     {LATTICE_LAMPS_PORT_SOURCE, TYN_USE_STORAGE_WRITE},
+    {LATTICE_LAMPS_PORT_VPL_LIGHT, TYN_USE_STORAGE_WRITE},
 };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
@@ -98,8 +104,8 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                        sizeof(struct lattice_lamps_args),
                        {8, 4, 2},
                        source_bindings,
-                       5,
-                       0},
+                       6,
+                       1},
 };
 
 static uint32_t num_groups(const tyn_lattice_lamps_params *p)
@@ -120,6 +126,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
     }
     uint32_t layers = dims.z * p->shape.channels;
     tyn_build_image(b, LATTICE_LAMPS_PORT_SOURCE, (tyn_extent){dims.x, dims.y, layers}, 1);
+    if (p->vpls) {
+        tyn_build_image(b, LATTICE_LAMPS_PORT_VPL_LIGHT, (tyn_extent){dims.x, dims.y, layers}, 1);
+    }
     tyn_build_image(b, LATTICE_LAMPS_PORT_LIT, (tyn_extent){dims.x, dims.y, layers * groups}, 1);
     tyn_build_image(b, LATTICE_LAMPS_PORT_UNSHADOWED, (tyn_extent){dims.x, dims.y, layers * groups},
                     1);
@@ -161,9 +170,20 @@ static void record(tyn_recorder *r, const void *params)
                            .cells = {args.num_groups * LATTICE_SUN_GROUP, p->shape.channels, 1},
                            .args = &args,
                            .spec = &p->mode});
+    // Without VPLs nothing is written to their image, so any will do.
+    const uint8_t source_ports[] = {
+        LATTICE_LAMPS_PORT_POWER,
+        LATTICE_LAMPS_PORT_LIT,
+        LATTICE_LAMPS_PORT_OTHERS,
+        LATTICE_LAMPS_PORT_CELLS,
+        LATTICE_LAMPS_PORT_SOURCE,
+        p->vpls ? LATTICE_LAMPS_PORT_VPL_LIGHT : LATTICE_LAMPS_PORT_SOURCE,
+    };
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SOURCE,
                                         .cells = {dims.x, dims.y, dims.z * p->shape.channels},
-                                        .args = &args});
+                                        .args = &args,
+                                        .ports = source_ports,
+                                        .spec = &p->vpls});
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * p->num_lamps);
 }
 

@@ -18,6 +18,9 @@ layout(binding = 1) uniform sampler3D lit;
 layout(binding = 2) uniform sampler3D others;
 layout(binding = 3) uniform sampler3D cells;
 layout(binding = 4, rgba32f) uniform writeonly image3D source;
+layout(binding = 5, rgba32f) uniform writeonly image3D vpl_light;
+
+layout(constant_id = 0) const uint vpls = 0; // 1: the last group are VPLs
 
 void main()
 {
@@ -29,7 +32,11 @@ void main()
     vec4 sum = lattice_fetch_source(others, cells, texel);
     for (int group = 0; group < int(args.num_groups); group++) {
         ivec3 at = texel + ivec3(0, 0, group * int(args.channels) * dims.z);
-        sum += power[group * int(args.channels) + ch].scale * texelFetch(lit, at, 0);
+        vec4 light = power[group * int(args.channels) + ch].scale * texelFetch(lit, at, 0);
+        sum += light;
+        if (vpls == 1 && group + 1 == int(args.num_groups)) {
+            imageStore(vpl_light, texel, light);
+        }
     }
     imageStore(source, texel, sum);
 }

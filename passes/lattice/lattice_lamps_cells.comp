@@ -46,18 +46,54 @@ layout(constant_id = 3) const uint shadowed = 0;
 
 uint pieces(uint n, float cells_away)
 {
+    if (n >= args.num_lamps) { // VPLs are smooth: each stands for a piece of a surface
+        return cells_away < 1.0 ? 3u : cells_away < 2.0 ? 2u : 1u;
+    }
     uint base = max(args.samples - (n < args.num_fine ? 0u : 1u), 1u);
     return max(base, cells_away < 1.0 ? 8u : cells_away < 2.0 ? 4u : cells_away < 5.0 ? 2u : 1u);
 }
 
+float mean_cosine(uint n, float r)
+{
+    // Seen under an angle, a disc does not shine along one direction.
+    float radius = radials[n].light.radius;
+    return 1.0 - 0.25 * radius * radius / max(r * r, radius * radius + 1e-20);
+}
+
+// Of a light that is far away: the cell as a whole. `extinction`: sigma_t' of its channels.
+void add_far_light(uint n, lattice_box box, vec3 p, vec3 extinction, inout vec4 sums[3], inout vec3 all)
+{
+    vec3 away = p - radials[n].light.position;
+    float r = length(away), share = radial_share(n, away, r);
+    if (share <= 0.0) {
+        return;
+    }
+    vec3 unit = away / max(r, 1e-20), a = abs(unit);
+    beam_tau tau = radial_tau(radial_place_of(n, away, r));
+    float half_way = 0.5 * box.dx / max(max(a.x, max(a.y, a.z)), 0.57);
+    float fluence = share * radial_mean_inverse_square(r * r, box.dx * box.dx);
+    float visible = shadowed == 1 ? radial_visibility(n, p, away) : 1.0;
+    vec4 moments = visible * vec4(1.0, mean_cosine(n, r) * unit);
+    for (uint ch = 0u; ch < num_channels; ch++) {
+        float t = mean_transmittance(tau.a[ch] + tau.p[ch], half_way * extinction[ch]);
+        float e = lattice_channel(radials[n].light.intensity, num_channels, ch, args.tint);
+        sums[ch] += e * t * fluence * moments;
+        all[ch] += e * t * fluence;
+    }
+}
+
 // Adds light n to the moments of the channels.
-void add_light(uint n, lattice_box box, ivec3 c, inout vec4 sums[3], inout vec3 all)
+void add_light(uint n, lattice_box box, ivec3 c, vec3 extinction, inout vec4 sums[3], inout vec3 all)
 {
     float dx = box.dx;
     vec3 corner = lattice_to_m(box, vec3(c));
     vec3 position = radials[n].light.position;
     uint count = pieces(n, length(corner + 0.5 * dx - position) / dx);
-    float d = dx / float(count), radius = radials[n].light.radius;
+    if (count == 1u) {
+        add_far_light(n, box, corner + 0.5 * dx, extinction, sums, all);
+        return;
+    }
+    float d = dx / float(count);
     vec4 weighted[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
     vec3 weight = vec3(0.0), open = vec3(0.0);
     for (uint i = 0u; i < count * count * count; i++) {
@@ -83,8 +119,7 @@ void add_light(uint n, lattice_box box, ivec3 c, inout vec4 sums[3], inout vec3 
         // Half the depth of a piece along the light.
         float half_way = 0.5 * d / max(max(a.x, max(a.y, a.z)), 0.57);
         float fluence = share * radial_mean_inverse_square(r * r, d * d);
-        // Seen under an angle, a disc does not shine along one direction.
-        float cosine = 1.0 - 0.25 * radius * radius / max(r * r, radius * radius + 1e-20);
+        float cosine = mean_cosine(n, r);
         float visible = shadowed == 1 ? radial_visibility(n, p, away) : 1.0;
         for (uint ch = 0u; ch < num_channels; ch++) {
             float t = mean_transmittance(tau.a[ch] + tau.p[ch], half_way * (scaled[ch] + m.sigma_a[ch]));
@@ -109,17 +144,16 @@ void main()
         return;
     }
     vec4 sums[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
-    vec3 all = vec3(0.0);
-    float extinction = 0.0;
+    vec3 all = vec3(0.0), extinction = vec3(0.0);
     for (uint ch = 0u; ch < num_channels; ch++) {
         vec4 cell = texelFetch(cells, c + ivec3(0, 0, int(ch) * dims.z), 0);
-        extinction += cell.x + cell.y;
+        extinction[ch] = cell.x + cell.y;
     }
-    if (extinction > 0.0) { // where there is no medium light does nothing
+    if (extinction.r + extinction.g + extinction.b > 0.0) { // where there is no medium light does nothing
         lattice_box box = lattice_box_of(medium.extent, dims);
         uvec2 range = lattice_lamps_of(group);
         for (uint n = range.x; n < range.y; n++) {
-            add_light(n, box, c, sums, all);
+            add_light(n, box, c, extinction, sums, all);
         }
     }
     for (uint ch = 0u; ch < num_channels; ch++) {

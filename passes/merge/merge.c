@@ -27,7 +27,7 @@ static const tyn_port ports[MERGE_NUM_PORTS] = {
     [MERGE_PORT_LUT] = {"lut", TYN_IN, TYN_IMAGE_2D, 0, true, "forward scattering, of scatter_lut"},
     [MERGE_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, 0, true, "of shadow_map"},
     [MERGE_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, true, "of shadow_map"},
-    [MERGE_PORT_VPL_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
+    [MERGE_PORT_VPL_LIGHT] = {"vpl_light", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_lamps"},
     [MERGE_PORT_INSCATTER] = {"inscatter", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                               false,
                               "radiance scattered towards the eye per sigma_s', W/(m^2 sr); one "
@@ -42,7 +42,7 @@ enum { KERNEL_CELLS, KERNEL_ORDINATES, KERNEL_RADIALS, KERNEL_ONE, KERNEL_THREE,
 static const tyn_binding cells_bindings[] = {
     {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},      {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
     {MERGE_PORT_CELLS, TYN_USE_SAMPLED},       {MERGE_PORT_MOMENTS, TYN_USE_SAMPLED},
-    {MERGE_PORT_FIELD, TYN_USE_STORAGE_WRITE},
+    {MERGE_PORT_FIELD, TYN_USE_STORAGE_WRITE}, {MERGE_PORT_VPL_LIGHT, TYN_USE_SAMPLED},
 };
 
 static const tyn_binding ordinates_bindings[] = {
@@ -54,13 +54,12 @@ static const tyn_binding ordinates_bindings[] = {
 };
 
 static const tyn_binding radials_bindings[] = {
-    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},        {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
-    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},         {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},
-    {MERGE_PORT_RADIALS, TYN_USE_STORAGE_READ},  {MERGE_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED},
-    {MERGE_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED},  {MERGE_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED},
-    {MERGE_PORT_LUT, TYN_USE_SAMPLED},           {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},
-    {MERGE_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED},  {MERGE_PORT_SHADOWS, TYN_USE_STORAGE_READ},
-    {MERGE_PORT_VPL_DISTANCES, TYN_USE_SAMPLED},
+    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},       {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
+    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},        {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},
+    {MERGE_PORT_RADIALS, TYN_USE_STORAGE_READ}, {MERGE_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED},
+    {MERGE_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED}, {MERGE_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED},
+    {MERGE_PORT_LUT, TYN_USE_SAMPLED},          {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},
+    {MERGE_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED}, {MERGE_PORT_SHADOWS, TYN_USE_STORAGE_READ},
 };
 
 static const tyn_binding ghosts_bindings[] = {
@@ -76,7 +75,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                       sizeof(struct merge_args),
                       {8, 4, 2},
                       cells_bindings,
-                      5,
+                      6,
                       0},
     [KERNEL_ORDINATES] = {"ordinates",
                           merge_ordinates_spirv,
@@ -92,7 +91,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                         sizeof(struct merge_args),
                         {8, 4, 2},
                         radials_bindings,
-                        13,
+                        12,
                         4},
     [KERNEL_ONE] = {"one",
                     merge_one_spirv,
@@ -161,8 +160,7 @@ static void record(tyn_recorder *r, const void *params)
     }
     if (tyn_rec_has(r, MERGE_PORT_RADIALS)) {
         const uint32_t spec[4] = {p->mode, p->grey, p->channels,
-                                  tyn_rec_has(r, MERGE_PORT_SHADOW_ATLAS) ||
-                                      tyn_rec_has(r, MERGE_PORT_VPL_DISTANCES)};
+                                  tyn_rec_has(r, MERGE_PORT_SHADOW_ATLAS)};
         tyn_rec_dispatch(
             r,
             &(tyn_dispatch){.kernel = KERNEL_RADIALS, .cells = dims, .args = &args, .spec = spec});

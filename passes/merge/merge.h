@@ -25,10 +25,10 @@ enum {
     MERGE_PORT_RADIAL_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS; of radial_beam
     MERGE_PORT_RADIAL_TAU_A, // IN optional 3D: mode COEFFICIENTS, as the next
     MERGE_PORT_RADIAL_TAU_P,
-    MERGE_PORT_LUT,           // IN optional 2D, of scatter_lut
-    MERGE_PORT_SHADOW_ATLAS,  // IN optional 2D, of shadow_map, as the next
-    MERGE_PORT_SHADOWS,       // IN optional buffer
-    MERGE_PORT_VPL_DISTANCES, // IN optional 2D, of vpl
+    MERGE_PORT_LUT,          // IN optional 2D, of scatter_lut
+    MERGE_PORT_SHADOW_ATLAS, // IN optional 2D, of shadow_map, as the next
+    MERGE_PORT_SHADOWS,      // IN optional buffer
+    MERGE_PORT_VPL_LIGHT,    // IN optional 3D, of lattice_lamps
     MERGE_PORT_INSCATTER, // OUT 3D RGBA32F (one channel: R32F), dims + 2: J = max(0, (phi + 3 g' v.F) / (4 pi)
     // + sum over ordinates of E e^-tau' k + local lights, see merge_radials.comp), W/(m^2 sr), v the direction from the cell to
     // the eye, k of tms.glsl; sample at lattice_inscatter_uvw

@@ -1,10 +1,12 @@
-// merge_cells.comp -- what a cell scatters towards the eye of the light that has scattered before.
+// merge_cells.comp -- what a cell scatters towards the eye of the light that has scattered before, and of that
+// of VPLs, which comes from all around as well.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "scene_args.h"
 #include "merge_args.h"
 #include "lattice.glsl"
+#include "lattice_sweep.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(push_constant, scalar) uniform push
@@ -21,6 +23,7 @@ layout(binding = 1, scalar) uniform camera_uniform
 };
 layout(binding = 2) uniform sampler3D cells;
 layout(binding = 3) uniform sampler3D moments;
+layout(binding = 5) uniform sampler3D vpl_light; // of lattice_lamps; one texel if there is none
 layout(binding = 4, scalar) writeonly buffer field_buffer
 {
     float field[];
@@ -39,6 +42,7 @@ void main()
     for (int ch = 0; ch < int(args.channels); ch++) {
         ivec3 texel = c + ivec3(0, 0, ch * dims.z);
         vec4 cell = texelFetch(cells, texel, 0), m = texelFetch(moments, texel, 0);
+        m += lattice_fetch_source(vpl_light, cells, texel);
         field[merge_index(c, uint(ch))] = (m.x + 3.0 * cell.z * dot(v, m.yzw)) / 12.56637061;
         most = max(most, cell.x);
     }

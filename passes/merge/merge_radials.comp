@@ -1,5 +1,5 @@
-// merge_radials.comp -- adds what a cell scatters towards the eye of the unscattered light of local lights that
-// are not marched.
+// merge_radials.comp -- adds what a cell scatters towards the eye of the unscattered light of lamps that are not
+// marched.
 //
 // Per sigma_s' and seen through e^-tau', as the march takes it: I / r^2 e^-tau_a (K_tms + K_lobe e^-(tau - tau'))
 // / (1 - f); what is scattered forward goes to the eye through e^-tau, and the difference of the depths of the
@@ -21,9 +21,6 @@
 #define SHADOW_ATLAS 10
 #define SHADOW_LIGHTS 11
 #include "shadow.glsl"
-#define VPL_DISTANCES 12
-#include "vpl_visibility.glsl"
-#define RADIAL_SHADOWS
 #include "radial.glsl"
 #include "merge_args.h"
 #include "lattice.glsl"
@@ -103,7 +100,7 @@ void main()
     if (any(greaterThanEqual(c, dims))) {
         return;
     }
-    uint count = merge_is_read(c, dims, channels) ? radial_count : 0u;
+    uint count = merge_is_read(c, dims, channels) ? radial_num_lamps : 0u;
     if (count <= args.first_radial) {
         return;
     }
@@ -118,7 +115,7 @@ void main()
         vec3 away = p - radials[n].light.position;
         float r = length(away), share = radial_share(n, away, r);
         if (share > 0.0 && shadowed == 1u) {
-            share *= radial_visibility(n, p, away);
+            share *= shadow_visibility_lamp(radials[n].light.light, p);
         }
         if (share <= 0.0) {
             continue;
