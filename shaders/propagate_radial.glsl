@@ -50,37 +50,15 @@ uint propagate_radial_index(ivec3 cell, uint stack, uint cells, uint layers)
 }
 
 // ---- one hop --------------------------------------------------------------------------------------
+//
+// As in grids that are aligned with parallel light: cells count as cubes of their depth along the radius, which
+// they are in the mean, so that light that is equal on a shell stays so. The ball has its radius as half a cell.
 
-// A cell as buffer "cells" has it. The ball has its whole radius instead of half a cell.
-struct propagate_radial_cell {
-    float decay; // ln of what half a cell along the radius takes of a
-    float loss;  // ... of the power: optical depth of absorption
-    float g;
-    float mu;    // cosine between the principal direction and that to the eye; below -1: not in the grid
-};
-
-propagate_radial_cell propagate_radial_cell_of(vec4 stored)
+// What leaves a cell outwards, to each side and inwards; its spread. All of the ball's light goes outwards.
+vec4 propagate_radial_outgoing(propagate_cell cell, bool ball, float light, float spread, uint rate)
 {
-    return propagate_radial_cell(stored.x, stored.y, stored.z, stored.w);
-}
-
-// What leaves a cell outwards, to each side and inwards; its spread, which the next cell changes on the
-// way. `wide`: sideways extent of the cell over that along the radius. All of the ball's light goes outwards.
-vec4 propagate_radial_outgoing(propagate_radial_cell cell, bool ball, float wide, float light, float spread)
-{
-    if (ball) {
-        return vec4(light * exp(-cell.loss), 0.0, 0.0, spread);
-    }
-    vec4 state = propagate_state(light, spread);
-    float along = exp(-cell.loss), beside = exp(-cell.loss * wide);
-    return vec4(propagate_part(state, 1) * along, propagate_part(state, 0) * beside,
-                propagate_part(state, -1) * along, spread);
-}
-
-// Spread after a way that takes e^-decay of a.
-float propagate_radial_spread(float spread, float decay)
-{
-    return spread + (1.0 - spread) * propagate_loss(decay);
+    return ball ? vec4(light * propagate_kept(cell), 0.0, 0.0, propagate_more_spread(cell, spread, rate))
+                : propagate_outgoing(cell, light, spread, rate);
 }
 
 #endif

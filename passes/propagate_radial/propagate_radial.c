@@ -24,11 +24,9 @@ static const tyn_port ports[PROPAGATE_RADIAL_NUM_PORTS] = {
     [PORT(PLACES)] = {"places", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_radial_place[]"},
     [PORT(SEEN)] = {"seen", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
                     .meaning = "r^2 L_acc: light sent to the eye, per intensity, 1/sr"},
-    [PORT(MAP)] = {"map", TYN_OUT, TYN_BUFFER,
-                   .meaning = "power at the start, solid angle, width over depth of the cells"},
+    [PORT(MAP)] = {"map", TYN_OUT, TYN_BUFFER, .meaning = "power at the start, solid angle"},
     [PORT(CELLS)] = {"cells", TYN_OUT, TYN_BUFFER,
-                     .meaning =
-                         "what half a cell takes of a and of the light, g, cosine to the eye"},
+                     .meaning = "scattering and absorption depths of a cell, g, cosine to the eye"},
     [PORT(STATE)] = {"state", TYN_OUT, TYN_BUFFER,
                      .meaning = "light that leaves outwards, to a side, inwards; its 1 - a"},
     [PORT(SUM)] = {"sum", TYN_OUT, TYN_BUFFER, .meaning = "r^2 L_acc of the last batch of grids"},
@@ -163,7 +161,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
     uint64_t numbers = (uint64_t)batch(p) * cells_of_grid(p);
     tyn_build_buffer(b, PORT(GRIDS), num_grids(p) * sizeof(struct propagate_radial_grid));
     tyn_build_buffer(b, PORT(PLACES), num_grids(p) * sizeof(struct propagate_radial_place));
-    tyn_build_buffer(b, PORT(MAP), (uint64_t)num_grids(p) * side * side * 4 * sizeof(float));
+    tyn_build_buffer(b, PORT(MAP), (uint64_t)num_grids(p) * side * side * 2 * sizeof(float));
     tyn_build_buffer(b, PORT(CELLS), numbers * 4 * sizeof(float));
     tyn_build_buffer(b, PORT(STATE), numbers * 4 * sizeof(float));
     tyn_build_buffer(b, PORT(STATE_OTHER), numbers * 4 * sizeof(float));

@@ -49,11 +49,10 @@ enum {
     PROPAGATE_RADIAL_PORT_PLACES, // OUT buffer struct propagate_radial_place[], so
     PROPAGATE_RADIAL_PORT_SEEN, // OUT 3D R32F, tiles of grids and channels: r^2 L_acc, sum over iterations of
     // L towards the eye, in units of the intensity, 1/sr
-    PROPAGATE_RADIAL_PORT_MAP, // OUT buffer, vec4[grids][cells^2]: power that starts there, sr; solid
-    // angle; sideways extent of the cells over that along the radius; 0
-    PROPAGATE_RADIAL_PORT_CELLS, // OUT buffer, vec4[grids][channels][layers][cells^2] of the last batch: what
-    // half a cell along the radius takes of a (exponent) and of the light (exponent),
-    // g, cosine between the radius and the direction to the eye (-2: not in the grid)
+    PROPAGATE_RADIAL_PORT_MAP, // OUT buffer, vec2[grids][cells^2]: power that starts there, sr; solid angle
+    PROPAGATE_RADIAL_PORT_CELLS, // OUT buffer, vec4[grids][channels][layers][cells^2] of the last batch: optical
+    // depths of scattering and absorption along the radius (of the ball: twice), g, cosine between the
+    // radius and the direction to the eye (-2: not in the grid)
     PROPAGATE_RADIAL_PORT_STATE, // OUT buffer, vec4, so: after the last iteration what leaves the cell
     // outwards, to each side and inwards, sr, and 1 - a of it
     PROPAGATE_RADIAL_PORT_SUM,         // OUT buffer, float, so: r^2 L_acc

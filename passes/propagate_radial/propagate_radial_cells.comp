@@ -14,7 +14,7 @@
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 4, scalar) readonly buffer grids_buffer { propagate_radial_grid grids[]; };
 layout(set = 0, binding = 5, scalar) uniform camera_uniform { camera_block camera; };
-layout(set = 0, binding = 6, scalar) readonly buffer map_buffer { vec4 map[]; };
+layout(set = 0, binding = 6, scalar) readonly buffer map_buffer { vec2 map[]; };
 layout(set = 0, binding = 7, scalar) writeonly buffer cells_buffer { vec4 cells[]; };
 layout(push_constant, scalar) uniform push { propagate_radial_args args; };
 
@@ -61,7 +61,7 @@ void main()
         }
     }
     g /= max(sigma_s, vec3(1e-30));
-    float each = (cell.z == 0 ? 1.0 : 0.5) * edge / max(area * float(deep), 1e-30);
+    float each = (cell.z == 0 ? 2.0 : 1.0) * edge / max(area * float(deep), 1e-30);
     vec3 d = normalize(propagate_radial_heading(grid, octahedral_texel(cell.xy, int(args.cells))));
     float mu = dot(d, propagate_to_eye(camera, o + 0.5 * (span.x + span.y) * d));
     for (uint c = 0u; c < args.channels; c++) {

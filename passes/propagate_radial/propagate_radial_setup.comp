@@ -12,7 +12,7 @@ layout(set = 0, binding = 1, scalar) readonly buffer lamp_buffer { radial_light 
 layout(set = 0, binding = 2, scalar) readonly buffer vpl_buffer { radial_vpls vpls; };
 layout(set = 0, binding = 3, scalar) writeonly buffer grids_buffer { propagate_radial_grid grids[]; };
 layout(set = 0, binding = 4, scalar) writeonly buffer places_buffer { propagate_radial_place places[]; };
-layout(set = 0, binding = 5, scalar) buffer map_buffer { vec4 map[]; };
+layout(set = 0, binding = 5, scalar) buffer map_buffer { vec2 map[]; };
 layout(push_constant, scalar) uniform push { propagate_radial_args args; };
 
 shared float sums[PROPAGATE_RADIAL_LANES];
@@ -98,8 +98,7 @@ void main()
     for (uint q = lane; q < total; q += PROPAGATE_RADIAL_LANES) {
         ivec2 texel = ivec2(q % args.cells, q / args.cells);
         vec2 power = integrals(grid, texel, along);
-        float wide = sqrt(power.y) * 0.5 * (grid.growth + 1.0) / (grid.growth - 1.0);
-        map[base + q] = vec4(power, wide, 0.0);
+        map[base + q] = power;
         sum += power.x;
     }
     sums[lane] = sum;

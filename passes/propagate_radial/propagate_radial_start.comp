@@ -8,7 +8,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 0, scalar) readonly buffer grids_buffer { propagate_radial_grid grids[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer map_buffer { vec4 map[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer map_buffer { vec2 map[]; };
 layout(set = 0, binding = 2, scalar) buffer cells_buffer { vec4 cells[]; };
 layout(set = 0, binding = 3, scalar) writeonly buffer state_buffer { vec4 out_state[]; };
 layout(set = 0, binding = 4, scalar) writeonly buffer other_buffer { vec4 out_other[]; };
@@ -28,8 +28,8 @@ void main()
     if (any(greaterThanEqual(uvec2(texel), uvec2(args.cells)))) {
         return;
     }
-    vec4 entry = map[n * args.cells * args.cells + uint(texel.y) * args.cells + uint(texel.x)];
-    float start = entry.x, solid_angle = entry.y, wide = entry.z, mean_cosine = grids[n].mean_cosine;
+    vec2 entry = map[n * args.cells * args.cells + uint(texel.y) * args.cells + uint(texel.x)];
+    float start = entry.x, solid_angle = entry.y, mean_cosine = grids[n].mean_cosine;
     int first = int(args.layers), last = -1;
     for (int k = 0; k < int(args.layers); k++) {
         vec4 here = cells[propagate_radial_index(ivec3(texel, k), stack, args.cells, args.layers)];
@@ -46,26 +46,23 @@ void main()
         vec4 state = vec4(0.0);
         float seen = 0.0;
         if (inside) {
-            vec4 stored = cells[q]; // optical depths
-            float g = stored.z, mu = stored.w, whole = k == 0 ? 1.0 : 2.0;
-            propagate_radial_cell here = propagate_radial_cell_of(stored);
-            here.decay = propagate_decay(stored.x, g, args.rate);
+            propagate_cell here = propagate_cell_of(cells[q]);
             float light = k == first ? start : 0.0, spread = 1.0 - mean_cosine;
             if (args.init == PROPAGATE_RADIAL_INIT_FIRST_COLLISION) {
                 // The beam is not in the grid: what it scatters is.
-                float tau = whole * (stored.x + stored.y);
+                float part = k == 0 ? 0.5 : 1.0, tau = part * (here.sigma_s + here.sigma_a);
                 float beam = start * exp(-depth) * mean_transmittance(tau);
-                light = beam * whole * stored.x;
-                spread = 1.0 - g * mean_cosine;
-                seen = beam * propagate_towards_eye(mu, mean_cosine, g, true) +
-                       0.5 * light * propagate_towards_eye(mu, 1.0 - spread, g, args.last_event != 0u);
+                light = beam * part * here.sigma_s;
+                spread = 1.0 - here.g * mean_cosine;
+                seen = beam * propagate_towards_eye(here.mu, mean_cosine, here.g, true) +
+                       0.5 * light * propagate_towards_eye(here.mu, 1.0 - spread, here.g,
+                                                           args.last_event != 0u);
                 depth += tau;
             } else if (k == 0) {
                 // No other cell lights the ball: its own beam is seen in it, as that of a shell is when it comes.
-                seen = light * propagate_towards_eye(mu, mean_cosine, g, args.last_event != 0u);
+                seen = light * propagate_towards_eye(here.mu, mean_cosine, here.g, args.last_event != 0u);
             }
-            state = propagate_radial_outgoing(here, k == 0, wide, light, spread);
-            cells[q].x = here.decay;
+            state = propagate_radial_outgoing(here, k == 0, light, spread, args.rate);
             seen /= solid_angle;
         } else {
             cells[q] = propagate_no_cell;

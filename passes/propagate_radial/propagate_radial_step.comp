@@ -8,7 +8,7 @@
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 0, scalar) readonly buffer grids_buffer { propagate_radial_grid grids[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer map_buffer { vec4 map[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer map_buffer { vec2 map[]; };
 layout(set = 0, binding = 2, scalar) readonly buffer cells_buffer { vec4 cells[]; };
 layout(set = 0, binding = 3, scalar) readonly buffer in_buffer { vec4 in_state[]; };
 layout(set = 0, binding = 4, scalar) writeonly buffer out_buffer { vec4 out_state[]; };
@@ -19,10 +19,10 @@ layout(push_constant, scalar) uniform push { propagate_radial_args args; };
 // would lose light that is the same everywhere. So they exchange as much as the smaller one sends, and what
 // else the larger one would send stays there.
 
-// Light that has come to the middle of the cell, and its share of the spread.
-void add(inout vec2 light, float power, float spread, float decay)
+// Light that comes to the cell's faces, and its share of the spread.
+void add(inout vec2 light, float power, float spread)
 {
-    light += power * vec2(1.0, propagate_radial_spread(spread, decay));
+    light += power * vec2(1.0, spread);
 }
 
 void main()
@@ -37,9 +37,9 @@ void main()
     int side = int(args.cells);
     uint layer = args.cells * args.cells, base = n * layer;
     uint q = propagate_radial_index(cell, stack, args.cells, args.layers);
-    propagate_radial_cell here = propagate_radial_cell_of(cells[q]);
-    vec4 own = map[base + uint(cell.y * side + cell.x)];
-    float growth = grids[n].growth, flatter = args.narrowing != 0u ? growth * growth : 1.0;
+    propagate_cell here = propagate_cell_of(cells[q]);
+    float solid_angle = map[base + uint(cell.y * side + cell.x)].y, growth = grids[n].growth;
+    float flatter = args.narrowing != 0u ? growth * growth : 1.0;
     bool spacing = args.scale == TYN_PROPAGATE_SCALE_SPACING;
     float smaller = args.scale == TYN_PROPAGATE_SCALE_RECIPROCAL ? 1.0 / (growth * growth) : 1.0;
     // A loop, because that is what a processor without masks for whole workgroups can skip.
@@ -51,39 +51,40 @@ void main()
             uint there = propagate_radial_index(ivec3(across, 0), stack, args.cells, args.layers);
             if (args.layers > 1u) {
                 vec4 shell = in_state[there + layer];
-                float decay = cells[there + layer].x + cells[there].x;
+                propagate_cell near = propagate_cell_of(cells[there]); // the half of the ball that comes first
                 // The light's a, about the direction in which it goes now.
-                add(light, shell.z * smaller * exp(-cells[there].y), min(shell.w, 2.0 - shell.w), decay);
+                float spread = propagate_more_spread(near, min(shell.w, 2.0 - shell.w), args.rate);
+                light = shell.z * smaller * propagate_kept(near) * vec2(1.0, spread);
             }
             times = 2.0; // once on either side of the light
         } else {
             // Outwards, from a cell further in; then inwards. In units of power the growth of the area is in;
             // in those of radiance the paper's factor is that of the spacing instead.
-            float kept = exp(-here.loss), kept_beside = exp(-here.loss * own.z), stays = 0.0;
+            float stays = 0.0;
             vec4 mine = in_state[q], inner = in_state[q - layer];
-            add(light, inner.x * kept * (spacing && cell.z > 1 ? growth : 1.0),
-                cell.z > 1 ? inner.w / flatter : inner.w, here.decay + cells[q - layer].x);
+            add(light, inner.x * (spacing && cell.z > 1 ? growth : 1.0),
+                cell.z > 1 ? inner.w / flatter : inner.w);
             if (cell.z + 1 < int(args.layers)) {
                 vec4 outer = in_state[q + layer];
-                add(light, outer.z * kept * (spacing ? 1.0 / growth : smaller),
-                    min(outer.w * flatter, 2.0), here.decay + cells[q + layer].x);
+                add(light, outer.z * (spacing ? 1.0 / growth : smaller), min(outer.w * flatter, 2.0));
             }
             for (int s = 0; s < 4; s++) {
                 int by = s < 2 ? -1 : 1;
                 ivec2 t = octahedral_fold(cell.xy + ((s & 1) == 0 ? ivec2(by, 0) : ivec2(0, by)), side);
-                uint there = propagate_radial_index(ivec3(t, cell.z), stack, args.cells, args.layers);
-                vec4 beside = in_state[there], its = map[base + uint(t.y * side + t.x)];
-                add(light, beside.y * kept_beside * (spacing ? own.y / its.y : min(own.y / its.y, 1.0)),
-                    beside.w, here.decay * own.z + cells[there].x * its.z);
-                stays += spacing ? 0.0 : max(1.0 - its.y / own.y, 0.0);
+                vec4 beside = in_state[propagate_radial_index(ivec3(t, cell.z), stack, args.cells, args.layers)];
+                float larger = solid_angle / map[base + uint(t.y * side + t.x)].y;
+                add(light, beside.y * (spacing ? larger : min(larger, 1.0)), beside.w);
+                stays += spacing ? 0.0 : max(1.0 - 1.0 / larger, 0.0);
             }
             // The rest of what would go to smaller cells.
-            add(light, mine.y * kept_beside * stays, mine.w, 2.0 * here.decay * own.z);
-            add(light, mine.z * kept * (spacing ? 0.0 : 1.0 - smaller), mine.w, 2.0 * here.decay);
+            add(light, mine.y * stays + mine.z * (spacing ? 0.0 : 1.0 - smaller), mine.w);
+            float spread = light.x > 0.0 ? clamp(light.y / light.x, 0.0, 2.0) : 1.0;
+            light.x *= propagate_kept(here);
+            light.y = light.x * propagate_more_spread(here, spread, args.rate);
         }
         float spread = light.x > 0.0 ? clamp(light.y / light.x, 0.0, 2.0) : 1.0;
-        sum[q] += times / own.y * light.x *
+        sum[q] += times / solid_angle * light.x *
                   propagate_towards_eye(here.mu, 1.0 - spread, here.g, args.last_event != 0u);
-        out_state[q] = propagate_radial_outgoing(here, cell.z == 0, own.z, light.x, spread);
+        out_state[q] = propagate_radial_outgoing(here, cell.z == 0, light.x, spread, args.rate);
     }
 }

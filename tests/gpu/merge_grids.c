@@ -1,6 +1,7 @@
 // merge_grids.c -- the merge of the aligned grids against a CPU twin in double precision, and its limits.
 #include "gpu_test.h"
 #include "passes/merge_grids/merge_grids.h"
+#include "propagate_radial_grid.h"
 #include "scene_args.h"
 #include <math.h>
 #include <stdlib.h>
@@ -131,8 +132,124 @@ static void equals_twin(void **state)
     }
 }
 
+// ---- radial grids -------------------------------------------------------------------------------
+
+enum { SIDE = 12, LAYERS = 9, FINE = 20 };
+
+// r^2 L_acc of a lamp: smooth in the direction and along the radius.
+static double radial_seen(const double away[3])
+{
+    double r = sqrt(away[0] * away[0] + away[1] * away[1] + away[2] * away[2]);
+    return (2 + away[0] / r + 0.5 * away[2] / r) / (1 + r);
+}
+
+// A point of the octahedral map, r away. What lies beyond an edge is at the mirrored place of that edge.
+static void point_of_map(double u, double v, double r, double d[3])
+{
+    double length = 0;
+    if (fabs(u) > 1) {
+        u = copysign(2 - fabs(u), u);
+        v = -v;
+    }
+    if (fabs(v) > 1) {
+        v = copysign(2 - fabs(v), v);
+        u = -u;
+    }
+    d[2] = 1 - fabs(u) - fabs(v);
+    d[0] = d[2] >= 0 ? u : copysign(1 - fabs(v), u);
+    d[1] = d[2] >= 0 ? v : copysign(1 - fabs(u), v);
+    for (int a = 0; a < 3; a++) {
+        length += d[a] * d[a];
+    }
+    for (int a = 0; a < 3; a++) {
+        d[a] *= r / sqrt(length);
+    }
+}
+
+static double mean_of_cell(uint32_t q, double dx, const double lamp[3])
+{
+    double mean = 0;
+    for (int n = 0; n < FINE * FINE * FINE; n++) {
+        const int part[3] = {n % FINE, n / FINE % FINE, n / FINE / FINE};
+        const uint32_t cell[3] = {q % 24, q / 24 % 20, q / 480};
+        double away[3], r2 = 0;
+        for (int a = 0; a < 3; a++) {
+            away[a] = (cell[a] + (part[a] + 0.5) / FINE) * dx - lamp[a];
+            r2 += away[a] * away[a];
+        }
+        mean += radial_seen(away) / r2;
+    }
+    return mean / (FINE * FINE * FINE);
+}
+
+// A lamp's light arrives with the power that its own grid has, wherever the cells are.
+static void radial_power(void **state)
+{
+    gpu_test *t = *state;
+    static const double lamp[3] = {0.43, 0.52, 0.31};
+    static float tile[LAYERS][SIDE + 2][SIDE + 2];
+    const double growth = exp(sqrt(4 * 3.14159265358979) / SIDE);
+    const double inner = 1.2 * pow(growth, 1 - LAYERS);
+    for (int k = 0; k < LAYERS; k++) {
+        double r = k == 0 ? 0.5 * inner : inner * pow(growth, k - 0.5);
+        for (int j = 0; j < SIDE + 2; j++) {
+            for (int i = 0; i < SIDE + 2; i++) {
+                double d[3];
+                point_of_map((2 * i - 1.0) / SIDE - 1, (2 * j - 1.0) / SIDE - 1, r, d);
+                tile[k][j][i] = (float)radial_seen(d);
+            }
+        }
+    }
+    struct medium_block medium = {.extent = {extent[0], extent[1], extent[2]},
+                                  .size = {NX, NY, NZ},
+                                  .voxel = {extent[0] / NX, extent[1] / NY, extent[2] / NZ}};
+    struct propagate_radial_place place = {
+        .position = {(float)lamp[0], (float)lamp[1], (float)lamp[2]},
+        .per_inner = (float)(1 / inner),
+        .to_map = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+        .per_layer = (float)(1 / log(growth)),
+        .intensity = {1, 2, 4},
+        .layers = LAYERS,
+    };
+    tyn_merge_grids_params params;
+    tyn_pass_defaults(&tyn_pass_merge_grids, &params);
+    params.grid_cells = 4;
+    params.num_radial = params.channels = 1;
+    params.radial_cells = SIDE;
+    memcpy(params.extent, extent, sizeof extent);
+    tyn_ref refs[MERGE_GRIDS_NUM_PORTS] = {{0}};
+    tyn_graph_begin(t->graph);
+    refs[MERGE_GRIDS_PORT_MEDIUM] = gpu_buffer(t, "medium", &medium, sizeof medium);
+    refs[MERGE_GRIDS_PORT_DENSITY] =
+        gpu_image(t, "density", TYN_IMAGE_3D, (tyn_extent){NX, NY, NZ}, 1, density);
+    refs[MERGE_GRIDS_PORT_RADIAL_PLACES] = gpu_buffer(t, "places", &place, sizeof place);
+    refs[MERGE_GRIDS_PORT_RADIAL_SEEN] = gpu_image(
+        t, "seen", TYN_IMAGE_3D, (tyn_extent){SIDE + 2, SIDE + 2, LAYERS}, 1, &tile[0][0][0]);
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_merge_grids, &params, refs), TYN_OK);
+    tyn_graph_output(t->graph, "merged", refs[MERGE_GRIDS_PORT_MERGED], true);
+    gpu_run(t);
+    tyn_extent size;
+    VkFormat format;
+    const float *found = tyn_graph_map(t->graph, "merged", &size, &format);
+    assert_true(size.x == 24 && size.y == 20 && size.z == 16); // twice as fine as the map
+    double sum = 0, expected = 0, worst = 0;
+    for (uint32_t q = 0; q < size.x * size.y * size.z; q++) {
+        double of_cell = (double)found[4 * q], mean = mean_of_cell(q, 1.2 / 24, lamp);
+        assert_float_equal(found[4 * q + 2], 4 * of_cell, 1e-5 * of_cell);
+        sum += of_cell;
+        expected += mean;
+        worst = fmax(worst, fabs(of_cell - mean) / mean);
+    }
+    print_message("light of a lamp: sum %+.2f %%, worst cell %.1f %%\n", 100 * (sum / expected - 1),
+                  100 * worst);
+    assert_true(fabs(sum / expected - 1) < 0.01 && worst < 0.06);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(equals_twin)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(equals_twin),
+        cmocka_unit_test(radial_power),
+    };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

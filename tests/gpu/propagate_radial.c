@@ -24,8 +24,13 @@ typedef struct texel {
     float c[4];
 } texel;
 
+typedef struct entry { // of the map: what starts, solid angle
+    float c[2];
+} entry;
+
 typedef struct outcome {
-    const texel *map, *cells, *state;
+    const entry *map;
+    const texel *cells, *state;
     const float *sum;
     const struct propagate_radial_grid *grids;
     uint32_t n, layers, channels;
@@ -84,19 +89,19 @@ static outcome run(gpu_test *t, const setup *s)
 }
 
 // Power in the middle of cell q of a stack.
-static double light_of(const outcome *o, const texel *map, uint32_t stack, uint32_t q)
+static double light_of(const outcome *o, uint32_t stack, uint32_t q)
 {
-    uint32_t layer = o->n * o->n, at = stack * layer * o->layers + q;
-    const float *state = o->state[at].c, *cell = o->cells[at].c;
-    double along = exp((double)cell[1]), beside = exp((double)(cell[1] * map[q % layer].c[2]));
-    return state[0] * along + 4.0 * state[1] * beside + state[2] * along;
+    uint32_t at = stack * o->n * o->n * o->layers + q;
+    const float *c = o->state[at].c;
+    return ((double)c[0] + 4.0 * (double)c[1] + (double)c[2]) *
+           exp(0.5 * (double)o->cells[at].c[1]);
 }
 
 static double held(const outcome *o, uint32_t grid, uint32_t channel)
 {
     double sum = 0;
     for (uint32_t q = 0; q < o->n * o->n * o->layers; q++) {
-        sum += light_of(o, o->map + grid * o->n * o->n, grid * o->channels + channel, q);
+        sum += light_of(o, grid * o->channels + channel, q);
     }
     return sum;
 }
@@ -192,7 +197,7 @@ static void maps(void **state)
             assert_true(fabs(start / power[k] - 1) < (k == 2 ? 0.05 : 1e-5));
         }
         print_message("%d x %d: solid angles within %.1e\n", n, n, worst);
-        assert_true(worst < 5e-3); // of texels that the fold cuts
+        assert_true(worst < 5e-3);              // of texels that the fold cuts
         double r = 0.5 * sqrt(0.25 + 0.25 + 1); // half the way to the farthest corner
         assert_float_equal(o.grids[3].mean_cosine, 0.5 + 0.5 * r / sqrt(r * r + 0.25), 1e-5);
         assert_int_equal(o.grids[3].layers, o.layers);
@@ -243,26 +248,24 @@ static double worst_of(const double *found, const double *expected, int n)
 static double compare(const setup *s, const outcome *o, uint32_t grid, uint32_t channel,
                       radial_twin_sums *sums)
 {
-    static double start[144], angle[144], wide[144], decay[MAX_CELLS], loss[MAX_CELLS],
-        g[MAX_CELLS], mu[MAX_CELLS], light[MAX_CELLS], cosine[MAX_CELLS], seen[MAX_CELLS],
-        found[3][MAX_CELLS];
+    static double start[144], angle[144], tau_s[MAX_CELLS], tau_a[MAX_CELLS], g[MAX_CELLS],
+        mu[MAX_CELLS], light[MAX_CELLS], cosine[MAX_CELLS], seen[MAX_CELLS], found[3][MAX_CELLS];
     static bool cell[MAX_CELLS];
     static int first[144];
     int layer = (int)(o->n * o->n), total = layer * (int)o->layers;
-    const texel *map = o->map + grid * (uint32_t)layer;
+    const entry *map = o->map + grid * (uint32_t)layer;
     uint32_t stack = grid * o->channels + channel;
     const texel *cells = o->cells + stack * (uint32_t)total;
     for (int q = 0; q < layer; q++) {
         start[q] = map[q].c[0];
         angle[q] = map[q].c[1];
-        wide[q] = map[q].c[2];
         first[q] = -1;
     }
     for (int q = 0; q < total; q++) {
         const float *c = cells[q].c;
         cell[q] = c[3] > -1.5f;
-        decay[q] = c[0];
-        loss[q] = c[1];
+        tau_s[q] = c[0];
+        tau_a[q] = c[1];
         g[q] = c[2];
         mu[q] = c[3];
         first[q % layer] = cell[q] && first[q % layer] < 0 ? q / layer : first[q % layer];
@@ -275,9 +278,8 @@ static double compare(const setup *s, const outcome *o, uint32_t grid, uint32_t 
                         own->growth,
                         start,
                         angle,
-                        wide,
-                        decay,
-                        loss,
+                        tau_s,
+                        tau_a,
                         g,
                         mu,
                         cell,
@@ -285,13 +287,16 @@ static double compare(const setup *s, const outcome *o, uint32_t grid, uint32_t 
                         own->mean_cosine,
                         scales[s->params.scale],
                         s->params.narrowing != 0,
-                        s->params.last_event != 0};
+                        s->params.last_event != 0,
+                        s->params.rate == TYN_PROPAGATE_RATE_EXACT};
     *sums = radial_twin_run(&twin, s->params.iterations, light, cosine, seen);
     for (int q = 0; q < total; q++) {
-        double of_cell = light_of(o, map, stack, (uint32_t)q);
+        double of_cell = light_of(o, stack, (uint32_t)q);
         found[0][q] = cell[q] ? of_cell : 0;
-        found[1][q] = (1.0 - (double)o->state[stack * (uint32_t)total + (uint32_t)q].c[3]) *
-                      (cell[q] ? of_cell : 0);
+        double spread = o->state[stack * (uint32_t)total + (uint32_t)q].c[3]; // after half a cell
+        double half = 0.5 * tau_s[q],
+               left = twin.exact_rate ? exp(-(1 - g[q]) * half) : pow(g[q], half);
+        found[1][q] = cell[q] ? (1 - spread) / left * of_cell : 0;
         found[2][q] = o->sum[stack * (uint32_t)total + (uint32_t)q];
         cosine[q] *= light[q];
     }
@@ -360,12 +365,178 @@ static void equals_twin(void **state)
     }
 }
 
+// ---- what holds for any light -------------------------------------------------------------------
+
+// Before any light is out of the grid all that started is in it.
+static void keeps_power(void **state)
+{
+    setup s = setup_of((float[]){1, 1, 1}, (uint32_t[]){1, 1, 1}, &one_voxel);
+    s.medium.sigma_s[0] = 5;
+    s.medium.g[0] = 0.4f;
+    s.params.cells = 10;
+    s.params.shells = 12;
+    s.params.iterations = 8;
+    add_lamp(&s, 0.5f, 0.5f, 0.5f);
+    for (s.params.scale = 0; s.params.scale < TYN_PROPAGATE_SCALE_SPACING; s.params.scale++) {
+        outcome o = run(*state, &s);
+        double error = held(&o, 0, 0) / (4 * PI) - 1;
+        print_message("scale %d: power off by %.1e\n", s.params.scale, error);
+        assert_true(fabs(error) < 1e-5);
+    }
+    s.params.scale = TYN_PROPAGATE_SCALE_POWER;
+    // After 8 iterations a beam is in the middle of the eighth shell, and has crossed all that is before.
+    s.medium.sigma_a[0] = 2;
+    s.medium.sigma_s[0] = 0;
+    outcome o = run(*state, &s);
+    double width = sqrt(4 * PI) / 10, outer = sqrt(0.75) * exp(-width * 4);
+    double r = 0.5 * (outer * exp(-width) + outer);
+    print_message("beam: %.6f of %.6f\n", held(&o, 0, 0) / (4 * PI), exp(-2 * r));
+    assert_float_equal(held(&o, 0, 0) / (4 * PI), exp(-2 * r), 1e-5);
+}
+
+enum { BALL = 32 };
+
+// A soft ball around a lamp that shines alike in all directions. `axis`: of the map; NULL: that of M.
+static setup soft_ball(float *density, const float axis[3])
+{
+    for (int q = 0; q < BALL * BALL * BALL; q++) {
+        double x = (q % BALL + 0.5) / BALL - 0.5, y = (q / BALL % BALL + 0.5) / BALL - 0.5;
+        double z = ((q / BALL / BALL) + 0.5) / BALL - 0.5, r = sqrt(x * x + y * y + z * z);
+        density[q] = (float)fmax(1 - r / 0.48, 0);
+    }
+    setup s = setup_of((float[]){1, 1, 1}, (uint32_t[]){BALL, BALL, BALL}, density);
+    s.medium.sigma_s[0] = 12;
+    s.medium.sigma_a[0] = 1;
+    s.medium.g[0] = 0.5f;
+    s.params.cells = s.params.shells = 16;
+    s.params.iterations = 24;
+    struct radial_light *lamp = add_lamp(&s, 0.5f, 0.5f, 0.5f);
+    if (axis) {
+        lamp->kind = TYN_RADIAL_SPOT;
+        lamp->cos_outer = -1;
+        lamp->cos_inner = -0.999999f;
+        memcpy(lamp->axis, axis, 3 * sizeof(float));
+    }
+    return s;
+}
+
+// Equal light stays equal over edges, corners and middle of the map, however that lies.
+static void stays_symmetric(void **state)
+{
+    static float density[BALL * BALL * BALL];
+    static double mean[2][17];
+    for (int turned = 0; turned < 2; turned++) {
+        setup s = soft_ball(density, turned ? (float[]){0.36f, 0.48f, 0.8f} : NULL);
+        outcome o = run(*state, &s);
+        const int n = 16, layer = 256;
+        double spread = 0, mirrored = 0;
+        for (int k = 0; k < 17; k++) {
+            double low = INFINITY, high = 0, power = 0, angle = 0;
+            for (int q = 0; q < layer; q++) {
+                double light = light_of(&o, 0, (uint32_t)(k * layer + q));
+                double per_angle = light / (double)o.map[q].c[1];
+                low = fmin(low, per_angle);
+                high = fmax(high, per_angle);
+                power += light;
+                angle += o.map[q].c[1];
+                if (!turned) { // the map's own symmetries
+                    int i = q % n, j = q / n;
+                    int other[3] = {i * n + j, j * n + n - 1 - i, (n - 1 - i) * n + n - 1 - j};
+                    for (int x = 0; x < 3; x++) {
+                        double its = light_of(&o, 0, (uint32_t)(k * layer + other[x]));
+                        mirrored = fmax(mirrored, fabs(its - light) / fmax(light, 1e-6));
+                    }
+                }
+            }
+            mean[turned][k] = power / angle;
+            if (k < 15) { // the outermost are where the ball is thin
+                spread = fmax(spread, (high - low) / (power / angle));
+            }
+        }
+        print_message("turned %d: spread over a shell %.3f, of mirrored texels %.1e\n", turned,
+                      spread, mirrored);
+        assert_true(spread < 0.03 && mirrored < 1e-4);
+    }
+    double worst = 0;
+    for (int k = 0; k < 15; k++) {
+        worst = fmax(worst, fabs(mean[1][k] / mean[0][k] - 1));
+    }
+    print_message("shells of the turned grid differ by %.1e\n", worst);
+    assert_true(worst < 1e-3);
+}
+
+static void batches(void **state)
+{
+    static float density[9 * 12 * 7], seen[1 << 16];
+    setup s = blobs(density);
+    run(*state, &s);
+    tyn_extent size;
+    VkFormat format;
+    const void *all = tyn_graph_map(((gpu_test *)*state)->graph, "seen", &size, &format);
+    size_t bytes = (size_t)size.x * size.y * size.z * sizeof(float);
+    assert_true(bytes <= sizeof seen);
+    memcpy(seen, all, bytes);
+    s.params.buffer_bytes = 12 * 12 * 10 * 3 * 16; // one grid
+    run(*state, &s);
+    assert_memory_equal(seen, gpu_map(*state, "seen"), bytes);
+}
+
+static void stress(void **state)
+{
+    static const float places[][3] = {{0.5f, 0.5f, 0.5f},   {0, 0, 0},      {1, 0.3f, 0},
+                                      {1.001f, 0.5f, 0.5f}, {-40, 3, 1000}, {0.5f, 0.5f, -1e6f}};
+    static const float media[][3] = {{0, 0, 0},    {1e-6f, 0, 0},   {1e5f, 0, 0.999f},
+                                     {0, 1e5f, 0}, {1e8f, 1e8f, 0}, {3, 1, -0.9f},
+                                     {1e5f, 1, 0}};
+    for (size_t m = 0; m < sizeof media / sizeof *media; m++) {
+        setup s = setup_of((float[]){1, 1, 1}, (uint32_t[]){1, 1, 1}, &one_voxel);
+        s.medium.sigma_s[0] = media[m][0];
+        s.medium.sigma_a[0] = media[m][1];
+        s.medium.g[0] = media[m][2];
+        for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+            add_lamp(&s, places[i][0], places[i][1], places[i][2]);
+        }
+        for (int reading = 0; reading < 12; reading++) {
+            s.params.cells = reading % 2 ? 6 : 2;
+            s.params.shells = reading % 2 ? 5 : 1;
+            s.params.scale = reading / 2 % 3;
+            s.params.narrowing = (uint32_t)(reading / 6);
+            s.params.init = reading / 6;
+            s.params.iterations = 40;
+            outcome o = run(*state, &s);
+            uint32_t cells = o.n * o.n * o.layers * s.params.num_lamps;
+            for (uint32_t q = 0; q < cells; q++) {
+                const float *c = o.state[q].c;
+                assert_true(isfinite(c[0]) && isfinite(c[1]) && isfinite(c[2]) && isfinite(c[3]));
+                assert_true(c[0] >= 0 && c[1] >= 0 && c[2] >= 0);
+                assert_true(isfinite(o.sum[q]) && o.sum[q] >= 0);
+                assert_true(m > 0 || o.sum[q] == 0); // no medium, no light
+            }
+            for (uint32_t k = 0; k < s.params.num_lamps; k++) {
+                if (s.params.scale != TYN_PROPAGATE_SCALE_SPACING && s.params.init == 0) {
+                    double started = 0;
+                    for (uint32_t q = 0; q < o.n * o.n; q++) {
+                        started += o.map[k * o.n * o.n + q].c[0];
+                    }
+                    // Where next to nothing passes half a cell, what is in its middle is not to be had
+                    // from what leaves it.
+                    assert_true(media[m][1] > 10 || held(&o, k, 0) <= started * (1 + 1e-5));
+                }
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(maps),
         cmocka_unit_test(folds),
         cmocka_unit_test(equals_twin),
+        cmocka_unit_test(keeps_power),
+        cmocka_unit_test(stays_symmetric),
+        cmocka_unit_test(batches),
+        cmocka_unit_test(stress),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

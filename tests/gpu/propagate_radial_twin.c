@@ -36,26 +36,36 @@ typedef struct arrival {
     const radial_twin *t;
 } arrival;
 
-// Power that leaves the middle of cell `from` of mean cosine `a` for the middle of `to` (-1: none).
-// along: the way is that along the radius. `factor`: of the power on arrival.
-static void move(arrival *to, int from, int target, double power, double a, bool along,
+// What half a cell leaves of the light and of its mean cosine.
+static double kept(const radial_twin *t, int q)
+{
+    return exp(-0.5 * t->tau_a[q]);
+}
+
+static double kept_cosine(const radial_twin *t, int q)
+{
+    double tau = 0.5 * t->tau_s[q], g = t->g[q];
+    return tau <= 0 ? 1 : t->exact_rate || g < 0 ? exp(-(1 - g) * tau) : pow(g, tau);
+}
+
+// Power that leaves the middle of cell `from` of mean cosine `a` for the middle of `target` (-1: none).
+// `factor`: of the power on arrival; `wider`: of 1 - a at the face between them.
+static void move(arrival *to, int from, int target, double power, double a, double wider,
                  double factor)
 {
     const radial_twin *t = to->t;
-    int layer = t->n * t->n;
-    double w0 = along ? 1 : t->wide[from % layer];
-    double out = power * exp(-t->loss[from] * w0);
+    double out = power * kept(t, from);
     to->sums->absorbed += power - out;
     if (target < 0 || !t->cell[target]) {
         to->sums->escaped += out;
         return;
     }
-    double w1 = along ? 1 : t->wide[target % layer];
-    double in = out * exp(-t->loss[target] * w1);
+    double in = out * kept(t, target);
     to->sums->absorbed += out - in;
     in *= factor;
+    a = fmax(1 - (1 - a * kept_cosine(t, from)) * wider, -1);
     to->light[target] += in;
-    to->weighted[target] += in * a * exp(-t->decay[from] * w0 - t->decay[target] * w1);
+    to->weighted[target] += in * a * kept_cosine(t, target);
 }
 
 static void scatter(arrival *to, int q, double power, double a)
@@ -68,29 +78,28 @@ static void scatter(arrival *to, int q, double power, double a)
     double rho2 = t->growth * t->growth,
            inwards = t->scale == RADIAL_TWIN_RECIPROCAL ? 1 / rho2 : 1;
     if (k == 0) {
-        move(to, q, t->layers > 1 ? q + layer : -1, power, a, true, 1);
+        move(to, q, t->layers > 1 ? q + layer : -1, power, a, 1, 1);
         return;
     }
-    double narrower = t->narrowing ? 1 - (1 - a) / rho2 : a;
-    double wider = t->narrowing ? fmax(1 - (1 - a) * rho2, -1) : a;
-    move(to, q, k + 1 < t->layers ? q + layer : -1, power * (1 - front), narrower, true,
+    double wider = t->narrowing ? rho2 : 1;
+    move(to, q, k + 1 < t->layers ? q + layer : -1, power * (1 - front), a, 1 / wider,
          spacing ? t->growth : 1);
     if (k == 1) {
         // Through the ball: its near half, then up to its middle is all that a hop does.
         int near = q - layer, far = opposite(n, texel);
-        double go = power * behind * inwards, out = go * exp(-t->loss[q]);
-        double in = out * exp(-t->loss[near]);
+        double go = power * behind * inwards, out = go * kept(t, q);
+        double in = out * kept(t, near);
         to->sums->absorbed += go - in;
         if (t->cell[far]) {
             to->light[far] += in;
-            to->weighted[far] += in * fabs(a) * exp(-t->decay[q] - t->decay[near]);
+            to->weighted[far] += in * fabs(a) * kept_cosine(t, q) * kept_cosine(t, near);
         } else {
             to->sums->escaped += in;
         }
     } else {
-        move(to, q, q - layer, power * behind * inwards, wider, true, spacing ? 1 / t->growth : 1);
+        move(to, q, q - layer, power * behind * inwards, a, wider, spacing ? 1 / t->growth : 1);
     }
-    move(to, q, q, power * behind * (1 - inwards), a, true, 1);
+    move(to, q, q, power * behind * (1 - inwards), a, 1, 1);
     for (int s = 0; s < 4; s++) {
         static const int step[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
         int at[2];
@@ -98,8 +107,8 @@ static void scatter(arrival *to, int q, double power, double a)
         int other = at[1] * n + at[0];
         double ratio = t->solid_angle[other] / t->solid_angle[texel];
         double share = spacing ? 1 : fmin(ratio, 1);
-        move(to, q, k * layer + other, power * side * share, a, false, spacing ? ratio : 1);
-        move(to, q, q, power * side * (1 - share), a, false, 1);
+        move(to, q, k * layer + other, power * side * share, a, 1, spacing ? ratio : 1);
+        move(to, q, q, power * side * (1 - share), a, 1, 1);
     }
 }
 

@@ -10,18 +10,17 @@ typedef enum radial_twin_scale {
 } radial_twin_scale;
 
 typedef struct radial_twin {
-    int n, layers;              // of the map along a side; shells and the ball
-    double growth;              // of the radii
-    const double *start;        // [n^2] power that starts, sr
-    const double *solid_angle;  // [n^2]
-    const double *wide;         // [n^2] width of a cell over its depth
-    const double *decay, *loss; // [layers][n^2] of half a cell, the ball: its radius
+    int n, layers;               // of the map along a side; shells and the ball
+    double growth;               // of the radii
+    const double *start;         // [n^2] power that starts, sr
+    const double *solid_angle;   // [n^2]
+    const double *tau_s, *tau_a; // [layers][n^2] along the radius; of the ball: twice
     const double *g, *mu;
     const bool *cell;   // in the grid?
     const int *first;   // [n^2] layer in which the light starts
     double mean_cosine; // at the start
     radial_twin_scale scale;
-    bool narrowing, last_event;
+    bool narrowing, last_event, exact_rate;
 } radial_twin;
 
 typedef struct radial_twin_sums {
