@@ -93,7 +93,7 @@ static void rings(void **state)
         {"power", "", {0.95, 0.42}},
         {"spacing", "propagate_radial.scale=spacing", {1.1, 11}},
         {"reciprocal", "propagate_radial.scale=reciprocal", {0.95, 0.42}},
-        {"power, narrowing", "propagate_radial.narrowing=1", {0.9, 0.07}},
+        {"power, narrowing", "propagate_radial.narrowing=1", {0.9, 0.09}},
         {"power, 80 iterations", "propagate_radial.iterations=80", {0}},
         {"spacing, 80 iterations",
          "propagate_radial.scale=spacing propagate_radial.iterations=80",
