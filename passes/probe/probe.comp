@@ -194,6 +194,9 @@ void main()
         if (args.scattered_only != 0) {
             e -= exp(-(tau.a + tau.s));
         }
+        if (shadowed == 1 && radials[n].light.light != TYN_RADIAL_NO_LIGHT) {
+            e *= shadow_visibility_lamp(radials[n].light.light, p);
+        }
         e *= share * radials[n].light.intensity;
         for (uint ch = 0; ch < 3; ch++) {
             field[ch] += e[ch] * vec4(1.0, away / max(r, 1e-20));

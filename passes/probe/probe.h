@@ -32,7 +32,7 @@ enum {
     PROBE_PORT_RADIAL_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS; of radial_beam
     PROBE_PORT_RADIAL_TAU_A, // IN optional 3D: mode COEFFICIENTS, as the one below
     PROBE_PORT_RADIAL_TAU_P,
-    PROBE_PORT_SHADOW_ATLAS, // IN optional 2D, of shadow_map: surfaces stand before the suns
+    PROBE_PORT_SHADOW_ATLAS, // IN optional 2D, of shadow_map: surfaces stand before the lights
     PROBE_PORT_SHADOWS,      // IN optional buffer
     PROBE_PORT_POINTS,  // IN buffer vec3[], M, m
     PROBE_PORT_RESULTS, // OUT buffer tyn_probe_result[]

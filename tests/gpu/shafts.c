@@ -136,7 +136,7 @@ static void all_orders(void **state)
     tyn_scene_finish(&scene);
 }
 
-// Unscattered sunlight at points: there in the shaft, none beside it.
+// Unscattered light of a sun or a lamp at points: there in the shaft, none beside it.
 static void probes(void **state)
 {
     gpu_test *t = *state;
@@ -156,6 +156,19 @@ static void probes(void **state)
     print_message("fluence %g in the shaft, %g beside it\n", (double)r[0].fluence[0],
                   (double)r[1].fluence[0]);
     assert_true(fabs((double)r[0].fluence[0] / (3 * exp(-(double)sigma_a * way)) - 1) < 0.01);
+    assert_true(r[1].fluence[0] < 1e-6f);
+    // A lamp above the slit instead.
+    scene.lights[0] =
+        (tyn_light){.kind = TYN_LIGHT_POINT, .color = {2, 2, 2}, .position = {0.5f, 1.5f, 0.5f}};
+    const float below[2][3] = {{0.55f, 0.5f, 0.5f}, {0.9f, 0.5f, 0.5f}};
+    view.points = below;
+    assert_int_equal(tyn_offline_frame(off, &scene, &view, false), TYN_OK);
+    r = tyn_offline_output(off, TYN_OUTPUT_PROBE);
+    const double r2 = 0.05 * 0.05 + 1,
+                 depth = (double)sigma_a * sqrt(r2) / 2; // half the way in the fog
+    print_message("of a lamp: %g below the slit, %g beside it\n", (double)r[0].fluence[0],
+                  (double)r[1].fluence[0]);
+    assert_true(fabs((double)r[0].fluence[0] / (2 / r2 * exp(-depth)) - 1) < 0.01);
     assert_true(r[1].fluence[0] < 1e-6f);
     tyn_offline_destroy(&off);
     tyn_scene_finish(&scene);
