@@ -174,12 +174,72 @@ static void probes(void **state)
     tyn_scene_finish(&scene);
 }
 
+// A closed box without thickness in fog under a sun and a lamp, off the planes of the lattice and turned by 30
+// degrees: what is inside sees less than 1e-4 of the light outside.
+static void sealed(void **state)
+{
+    gpu_test *t = *state;
+    enum { N = 3000 };
+    static float points[N][3];
+    const float lo[3] = {0.27f, 0.31f, 0.26f}, hi[3] = {0.72f, 0.68f, 0.7f};
+    tyn_scene scene;
+    tyn_scene_init(&scene);
+    const tyn_medium fog = grey_medium(2, 0.1f, 0.5f);
+    scene_add_box(&scene, &fog, (float[]){0, 0, 0}, (float[]){1, 1, 1}, NULL, NULL);
+    scene_add_sun(&scene, 0.48f, -0.8f, 0.36f, 3, 2, 1);
+    scene.lights[scene.num_lights++] = (tyn_light){
+        .kind = TYN_LIGHT_POINT, .color = {0.2f, 0.2f, 0.2f}, .position = {0.1f, 0.6f, 0.9f}};
+    const uint32_t m = solids_material(&scene, (float[]){0.7f, 0.7f, 0.7f}, (float[3]){0});
+    solids_box(&scene, lo, hi, 0.5236f, false, m);
+    srand(7);
+    for (int i = 0; i < N; i++) {
+        for (int a = 0; a < 3; a++) {
+            points[i][a] = 0.02f + 0.96f * (float)rand() / (float)RAND_MAX;
+        }
+    }
+    tyn_view view = {.width = 1,
+                     .height = 1,
+                     .outputs = TYN_OUTPUT_PROBE,
+                     .points = (const float(*)[3])points,
+                     .num_points = N};
+    tyn_camera_frame_scene(&view.camera, &scene);
+    tyn_offline *off = NULL;
+    assert_int_equal(tyn_offline_create(t->dev, tyn_offline_params(.method = "pop"), &off), TYN_OK);
+    assert_int_equal(tyn_offline_frame(off, &scene, &view, false), TYN_OK);
+    const tyn_probe_result *r = tyn_offline_output(off, TYN_OUTPUT_PROBE);
+    double inside = 0, most = 0, outside = 0;
+    uint32_t count[2] = {0};
+    for (int i = 0; i < N; i++) {
+        const double x = (double)points[i][0] - 0.495, y = (double)points[i][1],
+                     z = (double)points[i][2] - 0.48, c = cos(0.5236), n = sin(0.5236);
+        const double u = fabs(c * x - n * z) - 0.225, w = fabs(n * x + c * z) - 0.22,
+                     v = fabs(y - 0.495) - 0.185;
+        const double far = fmax(fmax(u, w), v);
+        const double fluence = (double)r[i].fluence[0];
+        if (far < -1e-4) {
+            inside += fluence;
+            most = fmax(most, fluence);
+            count[0]++;
+        } else if (far > 1e-4) {
+            outside += fluence;
+            count[1]++;
+        }
+    }
+    inside /= count[0], outside /= count[1];
+    print_message("%u points inside, %u outside: mean %g and %g, at most %g inside\n", count[0],
+                  count[1], inside, outside, most);
+    assert_true(count[0] > 50 && inside < 1e-4 * outside && most < 1e-4 * outside);
+    tyn_offline_destroy(&off);
+    tyn_scene_finish(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(once_through_a_slit),
         cmocka_unit_test(all_orders),
         cmocka_unit_test(probes),
+        cmocka_unit_test(sealed),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
