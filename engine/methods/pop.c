@@ -733,7 +733,9 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     bool lit_by_environment = f.from_all_sides || f.sky.ordinates.resource;
     bool lamps = f.picture.lamps.radials.resource != 0;
     bool scattered_light = f.picture.num_suns || lamps || lit_by_environment || frame->emissive;
-    bool solve = scattered_light && (lit_by_environment || f.picture.lamps.vpls || !is_thin(frame));
+    // Walls reflect more than thin media scatter.
+    bool solve = scattered_light && (lit_by_environment || f.picture.lamps.vpls ||
+                                     tyn_has_walls(frame) || !is_thin(frame));
     if (!solve) {
         f.picture.num_marched_lamps = f.picture.lamps.num_lamps;
     }
