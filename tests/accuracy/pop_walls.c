@@ -130,7 +130,7 @@ static void slab_table(gpu_test *t, const char *name, double bound)
                                  {0.1f, 0.2f, 0.75f},
                                  {0.9f, 0.1f, 0.5f},
                                  {0.2f, 0.9f, 0.25f},
-                                 {0.5f, 0.5f, 0.001f}};
+                                 {0.5f, 0.5f, 0.01f}};
     static const char *const thick[][2] = {{"lattice.cells", "64"}, {"lattice.sweeps", "6"}};
     double worst = 0;
     int rows = 0, level = 0;
@@ -161,7 +161,7 @@ static void slab_table(gpu_test *t, const char *name, double bound)
         if (k[4] > 0) {
             uint32_t ground =
                 solids_material(&scene, (float[]){k[4], k[4], k[4]}, (float[]){0, 0, 0});
-            solids_quad(&scene, (float[]){-50, -50, 0}, (float[]){100, 0, 0}, (float[]){0, 100, 0},
+            solids_quad(&scene, (float[]){-2, -2, 0}, (float[]){5, 0, 0}, (float[]){0, 5, 0},
                         ground);
         }
         scene_add_sun(&scene, sqrtf(1 - k[3] * k[3]), 0, -k[3], 1 / k[3], 1 / k[3], 1 / k[3]);
