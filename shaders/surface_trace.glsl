@@ -126,30 +126,31 @@ bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
     if (surface_enter(ray, nodes[0].lo, nodes[0].hi, hit.t) > hit.t) {
         return false;
     }
-    for (;;) {
+    // Lanes that run together look for leaves together, then try their triangles together.
+    for (bool more = true; more;) {
         uint first = nodes[at].first, count = nodes[at].count;
-        bool down = false;
-        if (count == 0u) {
+        while (count == 0u && more) {
             float left = surface_enter(ray, nodes[first].lo, nodes[first].hi, hit.t);
             float right = surface_enter(ray, nodes[first + 1u].lo, nodes[first + 1u].hi, hit.t);
-            bool right_first = right < left;
-            down = min(left, right) <= hit.t;
-            at = right_first ? first + 1u : first;
+            uint near = right < left ? first + 1u : first;
             if (max(left, right) <= hit.t) {
-                stack[depth++] = right_first ? first : first + 1u;
+                stack[depth++] = 2u * first + 1u - near;
             }
-        } else {
-            for (uint i = first; i < first + count; i++) {
-                found = surface_meet(ray, i, hit) || found;
+            if (min(left, right) <= hit.t) {
+                at = near;
+            } else if (depth > 0) {
+                at = stack[--depth];
+            } else {
+                more = false;
             }
-            if (any && found) {
-                break;
-            }
+            first = nodes[at].first;
+            count = nodes[at].count;
         }
-        if (!down) {
-            if (depth == 0) {
-                break;
-            }
+        for (uint i = first; more && i < first + count; i++) {
+            found = surface_meet(ray, i, hit) || found;
+        }
+        more = more && depth > 0 && !(any && found);
+        if (more) {
             at = stack[--depth];
         }
     }

@@ -162,6 +162,72 @@ static void form_factors(void **state)
     }
 }
 
+// A textured floor under a constant sky, the same sky as a map, a sun, a spot light: albedo x E / pi; and the same
+// beside a wall.
+static void lit_floors(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 8; i++) {
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t floor = solids_material(&scene, (float[]){0.8f, 0.6f, 0.4f}, BLACK);
+        tyn_surfaces *s = &scene.surfaces;
+        s->textures = calloc(1, sizeof *s->textures);
+        s->num_textures = 1;
+        s->textures[0] = (tyn_texture){
+            .size = {2, 1}, .texels = malloc(8), .wrap = {TYN_WRAP_MIRROR, TYN_WRAP_REPEAT}};
+        memcpy(s->textures[0].texels, (uint8_t[]){255, 255, 255, 255, 188, 0, 64, 255}, 8);
+        s->materials[floor].texture = 0;
+        solids_quad(&scene, (float[]){-2, 0, 2}, (float[]){4, 0, 0}, (float[]){0, 0, -4}, floor);
+        const bool wall = i >= 4;
+        if (wall) { // black, in front of half of the sky
+            uint32_t black = solids_material(&scene, BLACK, BLACK);
+            solids_quad(&scene, (float[]){0, 0, -900}, (float[]){0, 0, 1800}, (float[]){0, 900, 0},
+                        black);
+        }
+        double irradiance = wall ? M_PI / 2 : M_PI;
+        if (i % 4 < 2) {
+            scene_set_sky(&scene, 1);
+        }
+        if (i % 4 == 1) {
+            tyn_environment *map = &scene.environment;
+            map->size[0] = 16;
+            map->size[1] = 8;
+            map->data = malloc(16 * 8 * 3 * sizeof(float));
+            for (int k = 0; k < 16 * 8 * 3; k++) {
+                map->data[k] = 1;
+            }
+        } else if (i % 4 == 2) {
+            scene_add_sun(&scene, -0.6f, -0.8f, 0, 3, 3, 3); // from behind the wall
+            irradiance = wall ? 0 : 3 * 0.8;
+        } else if (i % 4 == 3) {
+            scene_add_lamp(&scene, (float[]){-0.01f, 2, 0}, 5);
+            scene.lights[0].kind = TYN_LIGHT_SPOT;
+            scene.lights[0].cos_inner = scene.lights[0].cos_outer = 0.9f;
+            irradiance = 5.0 / 4;
+        }
+        solids_hierarchy(&scene, 1);
+        tyn_view view = {0};
+        // At x = -0.01: texture coordinate 0.4975 of two texels, between their middles.
+        view_orthographic(&view, (float[]){-0.01f, 0, 0}, 0, -1, 0, (float[]){0, 0, -1}, 1e-4f, 1);
+        view.camera.position[1] = 1;
+        picture p = {0};
+        path_run_picture(&runs, &p, &scene, &view, path_effort(4096));
+        for (int c = 0; c < 3; c++) {
+            double srgb = (const double[]){188, 0, 64}[c] / 255;
+            double texel = srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
+            double part = 0.4975 * 2 - 0.5, albedo = (double)s->materials[0].albedo[c];
+            albedo *= 1 - part + part * texel;
+            char name[64];
+            snprintf(name, sizeof name, "floor, light %d%s, %d", i % 4, wall ? ", wall" : "", c);
+            double se = irradiance > 0 ? hypot(p.se[c], 1e-4 * albedo * irradiance) : 1e-9;
+            check(name, p.rgb[c], se, albedo * irradiance / M_PI);
+        }
+        picture_free(&p);
+        tyn_scene_finish(&scene);
+    }
+}
+
 // Layers of a quad at a distance of 2 m in a medium: transmittance and depth end there, the alpha of the medium
 // alone is what it hides, a background makes it opaque.
 static void layers(void **state)
@@ -248,8 +314,8 @@ static void balances(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(furnaces), cmocka_unit_test(closed_box), cmocka_unit_test(form_factors),
-        cmocka_unit_test(layers),   cmocka_unit_test(balances),
+        cmocka_unit_test(furnaces),   cmocka_unit_test(closed_box), cmocka_unit_test(form_factors),
+        cmocka_unit_test(lit_floors), cmocka_unit_test(layers),     cmocka_unit_test(balances),
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
