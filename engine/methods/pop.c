@@ -208,6 +208,9 @@ static tyn_result add_walls(tyn_graph *g, const tyn_job *job, field *f)
 // medium also sunlight: light from single points on walls knows no periods.
 static tyn_result add_wall_light(tyn_graph *g, const tyn_job *job, field *f)
 {
+    if (f->picture.vpls.lights.resource && tyn_vpls_bounce(job)) {
+        return TYN_OK; // VPLs carry what walls reflect of theirs
+    }
     const uint32_t *repeat = f->shape.repeat;
     uint32_t suns = repeat[0] || repeat[1] || repeat[2] ? f->picture.num_suns : 0;
     return tyn_add_wall_light(g, job, &f->shape, &f->walls, &f->picture.beams, suns,

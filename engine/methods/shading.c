@@ -4,6 +4,7 @@
 #include "passes/shade/shade.h"
 #include "passes/vpl/vpl.h"
 #include <tyndall/registry.h>
+#include <math.h>
 #include <string.h>
 
 enum { MOST_WITHOUT_HIERARCHY = 256 }; // triangles that every ray may be tested against
@@ -22,6 +23,28 @@ static uint32_t emitters(const tyn_surfaces *surfaces)
     return most;
 }
 
+bool tyn_vpls_bounce(const tyn_job *job)
+{
+    const tyn_frame_scene *frame = job->frame;
+    if (frame->empty) {
+        return true;
+    }
+    const float *m = frame->m_from_world, *extent = frame->medium.extent;
+    const float margin = 0.15f * fmaxf(extent[0], fmaxf(extent[1], extent[2]));
+    bool beyond = false;
+    for (int corner = 0; corner < 8; corner++) {
+        float p[3];
+        for (int a = 0; a < 3; a++) {
+            p[a] = corner >> a & 1 ? frame->surfaces.hi[a] : frame->surfaces.lo[a];
+        }
+        for (int a = 0; a < 3; a++) {
+            float x = m[a] * p[0] + m[4 + a] * p[1] + m[8 + a] * p[2] + m[12 + a];
+            beyond = beyond || x < -margin || x > extent[a] + margin;
+        }
+    }
+    return beyond;
+}
+
 tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
                         uint32_t num_suns, tyn_vpl_refs *vpls)
 {
@@ -35,6 +58,7 @@ tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *
     params.num_suns = job->frame->num_suns;
     params.num_triangles = job->frame->num_triangles;
     params.emitters = emitters(&job->scene->surfaces);
+    params.bounces = tyn_vpls_bounce(job);
     if (params.count == 0) {
         return TYN_OK;
     }
@@ -67,6 +91,8 @@ tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *
         [VPL_PORT_TRIANGLES] = job->refs.triangles,
         [VPL_PORT_MATERIALS] = job->refs.materials,
         [VPL_PORT_NODES] = job->refs.nodes,
+        [VPL_PORT_TEXTURES] = job->refs.textures,
+        [VPL_PORT_TEXELS] = job->refs.texels,
     };
     result = tyn_graph_add(g, &tyn_pass_vpl, &params, refs);
     *vpls = (tyn_vpl_refs){refs[VPL_PORT_VPLS], refs[VPL_PORT_DISTANCES]};

@@ -2,6 +2,10 @@
 #pragma once
 #include "methods/nodes.h"
 
+// Do VPLs carry all reflections between surfaces? So they do where surfaces reach far beyond the medium's box, which
+// the lattice fills; else they carry the first, and the lattice's walls the others.
+bool tyn_vpls_bounce(const tyn_job *job);
+
 // Virtual point lights of what surfaces reflect first and emit. {0} without surfaces, or
 // if none of them can shine. `num_suns`: the first of frame->suns.
 tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,

@@ -1,16 +1,21 @@
 // vpl.c -- see vpl.h.
 #include "vpl.h"
 #include "vpl_args.h"
+#include "vpl_bounce.comp.h"
+#include "vpl_bounce_args.h"
 #include "vpl_distances.comp.h"
 #include "vpl_lights.comp.h"
 
+#include "vpl_power.comp.h"
 #include "vpl_strata.comp.h"
 #include "vpl_weights.comp.h"
 #include "radial_args.h"
 #include "scene_args.h"
+#include <math.h>
 #include <string.h>
 
 #define PORT(name) VPL_PORT_##name
+#define IMAGE2 TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT
 
 static const tyn_port ports[VPL_NUM_PORTS] = {
     [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
@@ -37,6 +42,15 @@ static const tyn_port ports[VPL_NUM_PORTS] = {
                          .meaning = "struct surface_material[]"},
     [PORT(NODES)] = {"nodes", TYN_IN, TYN_BUFFER, .optional = true,
                      .meaning = "struct surface_node[]"},
+    [PORT(TEXTURES)] = {"textures", TYN_IN, TYN_BUFFER, .optional = true,
+                        .meaning = "struct surface_texture[]"},
+    [PORT(TEXELS)] = {"texels", TYN_IN, TYN_BUFFER, .optional = true,
+                      .meaning = "uint[]: R8 G8 B8 A8, sRGB"},
+    [PORT(HITS)] = {"hits", TYN_SCRATCH, IMAGE2, .meaning = "normals where maps' rays end (M)"},
+    [PORT(BINS)] = {"bins", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_bins"},
+    [PORT(BIN_FLUX)] = {"bin_flux", TYN_SCRATCH, IMAGE2, .meaning = "power of bins, W"},
+    [PORT(BIN_POSITION)] = {"bin_position", TYN_SCRATCH, IMAGE2, .meaning = "where (M, m)"},
+    [PORT(BIN_NORMAL)] = {"bin_normal", TYN_SCRATCH, IMAGE2, .meaning = "normal (M)"},
     [PORT(VPLS)] = {"vpls", TYN_OUT, TYN_BUFFER, .meaning = "struct radial_vpls"},
     [PORT(DISTANCES)] = {"vpl_distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
                          .meaning = "of the first surface in every direction of a VPL, m"},
@@ -64,7 +78,7 @@ static const tyn_binding strata_bindings[] = {
     {PORT(PLAN), TYN_USE_STORAGE_READ},
     {PORT(BLOCKS), TYN_USE_STORAGE_RW},
     {PORT(STRATA), TYN_USE_STORAGE_WRITE},
-    {PORT(VPLS), TYN_USE_STORAGE_WRITE},
+    {PORT(VPLS), TYN_USE_STORAGE_RW},
 };
 static const tyn_binding lights_bindings[] = {
     ELEMENT_BINDINGS,
@@ -81,12 +95,34 @@ static const tyn_binding lights_bindings[] = {
 };
 
 static const tyn_binding distances_bindings[] = {
-    {PORT(SURFACES), TYN_USE_UNIFORM},       {PORT(VERTICES), TYN_USE_STORAGE_READ},
-    {PORT(TRIANGLES), TYN_USE_STORAGE_READ}, {PORT(NODES), TYN_USE_STORAGE_READ},
-    {PORT(VPLS), TYN_USE_STORAGE_READ},      {PORT(DISTANCES), TYN_USE_STORAGE_WRITE},
+    {PORT(SURFACES), TYN_USE_UNIFORM},
+    {PORT(VERTICES), TYN_USE_STORAGE_READ},
+    {PORT(TRIANGLES), TYN_USE_STORAGE_READ},
+    {PORT(NODES), TYN_USE_STORAGE_READ},
+    {PORT(VPLS), TYN_USE_STORAGE_READ},
+    {PORT(DISTANCES), TYN_USE_STORAGE_WRITE},
+    {PORT(HITS), TYN_USE_STORAGE_WRITE},
+    {PORT(BINS), TYN_USE_STORAGE_RW},
+    {PORT(MATERIALS), TYN_USE_STORAGE_READ},
+    {PORT(TEXTURES), TYN_USE_STORAGE_READ},
+    {PORT(TEXELS), TYN_USE_STORAGE_READ},
+    {PORT(MEDIUM), TYN_USE_UNIFORM},
+    {PORT(DENSITY), TYN_USE_SAMPLED},
+    {PORT(SIGMA_A), TYN_USE_SAMPLED},
+    {PORT(G), TYN_USE_SAMPLED},
+};
+static const tyn_binding power_bindings[] = {
+    {PORT(VPLS), TYN_USE_STORAGE_READ},
+    {PORT(BINS), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding bounce_bindings[] = {
+    {PORT(VPLS), TYN_USE_STORAGE_READ},          {PORT(BINS), TYN_USE_STORAGE_READ},
+    {PORT(DISTANCES), TYN_USE_SAMPLED},          {PORT(HITS), TYN_USE_SAMPLED},
+    {PORT(SURFACES), TYN_USE_UNIFORM},           {PORT(BIN_FLUX), TYN_USE_STORAGE_WRITE},
+    {PORT(BIN_POSITION), TYN_USE_STORAGE_WRITE}, {PORT(BIN_NORMAL), TYN_USE_STORAGE_WRITE},
 };
 
-enum { WEIGHTS = 0, STRATA, LIGHTS, DISTANCES, NUM_KERNELS };
+enum { WEIGHTS = 0, STRATA, LIGHTS, DISTANCES, POWER, BOUNCE, NUM_KERNELS };
 
 #define KERNEL(step, x, y, args, specs)                                                            \
     .name = "vpl_" #step, .spirv = vpl_##step##_spirv, .spirv_size = sizeof vpl_##step##_spirv,    \
@@ -97,7 +133,9 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [WEIGHTS] = {KERNEL(weights, VPL_BLOCK, 1, 0, 0)},
     [STRATA] = {KERNEL(strata, VPL_BLOCK, 1, sizeof(struct vpl_args), 0)},
     [LIGHTS] = {KERNEL(lights, VPL_BLOCK, 1, sizeof(struct vpl_args), 1)},
-    [DISTANCES] = {KERNEL(distances, 8, 8, 0, 0)},
+    [DISTANCES] = {KERNEL(distances, 8, 8, sizeof(struct vpl_distances_args), 1)},
+    [POWER] = {KERNEL(power, TYN_RADIAL_VPLS_MAX, 1, 0, 0)},
+    [BOUNCE] = {KERNEL(bounce, VPL_BLOCK, 1, 0, 0)},
 };
 
 static const tyn_param params[] = {
@@ -158,16 +196,75 @@ static uint32_t make_plan(const tyn_vpl_params *p, struct vpl_plan *plan)
     return blocks;
 }
 
+static bool bounces(const tyn_vpl_params *p, bool triangles)
+{
+    return p->bounces && p->count >= 8 && map_side(p, triangles);
+}
+
+// Solid angle of a texel in the middle of a map: so that the power of all directions is the VPL's.
+static float texel_solid_angle(uint32_t side)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < side * side; i++) {
+        const uint32_t x = i % side, y = i / side;
+        const double u = 2.0 * x / (side - 1) - 1, v = 2.0 * y / (side - 1) - 1;
+        const double p[2] = {0.5 * (u + v), 0.5 * (u - v)}, z = 1 - fabs(p[0]) - fabs(p[1]);
+        const double away2 = p[0] * p[0] + p[1] * p[1] + z * z;
+        const double whole = (x % (side - 1) ? 1 : 0.5) * (y % (side - 1) ? 1 : 0.5);
+        sum += whole * z / (away2 * away2);
+    }
+    return (float)(3.14159265358979 / sum);
+}
+
 static tyn_result declare(tyn_builder *b, const void *data)
 {
-    const uint64_t blocks = make_plan(data, NULL);
+    const tyn_vpl_params *p = data;
+    const bool triangles = tyn_build_has(b, PORT(TRIANGLES)), again = bounces(p, triangles);
+    uint64_t blocks = make_plan(p, NULL);
+    blocks = blocks > VPL_BINS / VPL_BLOCK ? blocks : VPL_BINS / VPL_BLOCK;
+    const tyn_extent atlas = atlas_size(p, triangles), texel = {1, 1, 1};
+    const tyn_extent bins = again ? (tyn_extent){VPL_BIN_SIDE, VPL_BIN_SIDE, 1} : texel;
     tyn_build_buffer(b, PORT(VPLS), sizeof(struct radial_vpls));
-    tyn_build_image(b, PORT(DISTANCES), atlas_size(data, tyn_build_has(b, PORT(TRIANGLES))), 1);
+    tyn_build_image(b, PORT(DISTANCES), atlas, 1);
+    tyn_build_image(b, PORT(HITS), again ? atlas : texel, 1);
     tyn_build_buffer(b, PORT(PLAN), sizeof(struct vpl_plan));
     tyn_build_buffer(b, PORT(WEIGHTS), (blocks + 1) * VPL_BLOCK * sizeof(float));
     tyn_build_buffer(b, PORT(BLOCKS), (blocks + 1) * sizeof(float));
     tyn_build_buffer(b, PORT(STRATA), TYN_RADIAL_VPLS_MAX * sizeof(struct vpl_stratum));
+    tyn_build_buffer(b, PORT(BINS), sizeof(struct vpl_bins));
+    tyn_build_image(b, PORT(BIN_FLUX), bins, 1);
+    tyn_build_image(b, PORT(BIN_POSITION), bins, 1);
+    tyn_build_image(b, PORT(BIN_NORMAL), bins, 1);
     return TYN_OK;
+}
+
+// At most `args->count` VPLs of the elements of a plan: of the reflective shadow maps, or of bins.
+static void make_lights(tyn_recorder *r, const struct vpl_plan *plan, const struct vpl_args *args,
+                        bool of_bins, uint32_t mode)
+{
+    uint8_t weights[sizeof weights_bindings / sizeof *weights_bindings];
+    uint8_t lights[sizeof lights_bindings / sizeof *lights_bindings];
+    for (size_t i = 0; i < sizeof lights; i++) {
+        lights[i] = lights_bindings[i].port;
+        if (of_bins && lights[i] >= PORT(FLUX) && lights[i] <= PORT(NORMAL)) {
+            lights[i] = (uint8_t)(lights[i] - PORT(FLUX) + PORT(BIN_FLUX));
+        }
+    }
+    for (size_t i = 0; i < sizeof weights; i++) {
+        weights[i] = i < 4 ? lights[i] : weights_bindings[i].port;
+    }
+    tyn_rec_update(r, PORT(PLAN), 0, plan, sizeof *plan);
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = WEIGHTS,
+                                        .cells = {plan->num_blocks * VPL_BLOCK, 1, 1},
+                                        .ports = weights});
+    tyn_rec_dispatch(r,
+                     &(tyn_dispatch){.kernel = STRATA, .cells = {VPL_BLOCK, 1, 1}, .args = args});
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = LIGHTS,
+                                        .cells = {args->count * VPL_BLOCK, 1, 1},
+                                        .args = args,
+                                        .ports = lights,
+                                        .spec = &mode});
+    tyn_rec_work(r, "elements", (double)plan->num_blocks * VPL_BLOCK);
 }
 
 static void record(tyn_recorder *r, const void *data)
@@ -179,24 +276,37 @@ static void record(tyn_recorder *r, const void *data)
         tyn_rec_fill(r, PORT(VPLS), 0);
         return;
     }
-    const struct vpl_args args = {(uint32_t)p->count, p->num_suns, tyn_rec_has(r, PORT(DENSITY))};
-    tyn_rec_update(r, PORT(PLAN), 0, &plan, sizeof plan);
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = WEIGHTS, .cells = {plan.num_blocks * VPL_BLOCK, 1, 1}});
-    tyn_rec_dispatch(r,
-                     &(tyn_dispatch){.kernel = STRATA, .cells = {VPL_BLOCK, 1, 1}, .args = &args});
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = LIGHTS,
-                                        .cells = {args.count * VPL_BLOCK, 1, 1},
-                                        .args = &args,
-                                        .spec = &p->mode});
-    const bool triangles = tyn_rec_has(r, PORT(TRIANGLES));
-    if (map_side(p, triangles)) {
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = DISTANCES, .cells = tyn_rec_extent(r, PORT(DISTANCES))});
-        tyn_rec_work(r, "rays", (double)args.count * p->visibility * p->visibility);
+    const bool triangles = tyn_rec_has(r, PORT(TRIANGLES)), again = bounces(p, triangles);
+    const uint32_t side = map_side(p, triangles), media = tyn_rec_has(r, PORT(DENSITY));
+    const uint32_t later = again ? 3 * (uint32_t)p->count / 8 : 0; // VPLs of further reflections
+    const struct vpl_args args = {(uint32_t)p->count - later, p->num_suns, media, 0};
+    struct vpl_distances_args maps = {0, again, side ? texel_solid_angle(side) : 0, media};
+    const tyn_dispatch see = {.kernel = DISTANCES,
+                              .cells = tyn_rec_extent(r, PORT(DISTANCES)),
+                              .args = &maps,
+                              .spec = &p->mode};
+    make_lights(r, &plan, &args, false, p->mode);
+    if (again) {
+        tyn_rec_fill(r, PORT(BINS), 0);
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = POWER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1}});
     }
-    tyn_rec_work(r, "elements", (double)plan.num_blocks * VPL_BLOCK);
-    tyn_rec_work(r, "vpls", args.count);
+    if (side) {
+        tyn_rec_dispatch(r, &see);
+    }
+    if (again) {
+        const struct vpl_args added = {later, p->num_suns, 0, 1};
+        memset(&plan, 0, sizeof plan);
+        plan.num_blocks = plan.front = plan.back = VPL_BINS / VPL_BLOCK;
+        plan.num_tiles = plan.num_sources = 1;
+        plan.tiles[0].map.texels = VPL_BIN_SIDE;
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = BOUNCE, .cells = {VPL_BLOCK, 1, 1}});
+        make_lights(r, &plan, &added, true, p->mode);
+        maps.later = 1;
+        maps.bounce = 0;
+        tyn_rec_dispatch(r, &see);
+    }
+    tyn_rec_work(r, "rays", (double)p->count * side * side);
+    tyn_rec_work(r, "vpls", p->count);
 }
 
 const tyn_pass_desc tyn_pass_vpl = {

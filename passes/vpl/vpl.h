@@ -13,6 +13,7 @@ typedef struct tyn_vpl_params {
     uint32_t num_suns; // directional lights in "lights": lamps come after them
     uint32_t emitters; // 1: there are materials that emit; 2: some of them on both sides
     uint32_t num_triangles;
+    uint32_t bounces;   // 1: what VPLs light sends on all it reflects, as VPLs too
     uint32_t num_tiles; // of the reflective shadow maps
     struct rsm_tile tiles[TYN_RSM_MAX_TILES];
 } tyn_vpl_params;
@@ -27,17 +28,24 @@ enum {
     VPL_PORT_FLUX,   // IN optional 2D: rsm_args.h, as the two below
     VPL_PORT_POSITION,
     VPL_PORT_NORMAL,
-    VPL_PORT_SURFACES, // IN optional buffer struct surface_block: with triangles, as the four below
+    VPL_PORT_SURFACES, // IN optional buffer struct surface_block: with triangles, as the six below
     VPL_PORT_VERTICES, // IN optional buffers, surface_args.h
     VPL_PORT_TRIANGLES,
     VPL_PORT_MATERIALS,
     VPL_PORT_NODES,
+    VPL_PORT_TEXTURES,
+    VPL_PORT_TEXELS,
     VPL_PORT_VPLS,      // OUT buffer struct radial_vpls
     VPL_PORT_DISTANCES, // OUT 2D R32F: what vpl_visibility.glsl reads; without surfaces or maps 1 x 1
     VPL_PORT_PLAN,      // SCRATCH buffer struct vpl_plan
     VPL_PORT_WEIGHTS,   // SCRATCH buffer float[]: of the elements
     VPL_PORT_BLOCKS, // SCRATCH buffer float[]: sums of blocks of elements, then what is before each
     VPL_PORT_STRATA, // SCRATCH buffer struct vpl_stratum[]
+    VPL_PORT_HITS,   // SCRATCH 2D RGBA32F: normals where the rays of maps end
+    VPL_PORT_BINS,   // SCRATCH buffer struct vpl_bins
+    VPL_PORT_BIN_FLUX, // SCRATCH 2D RGBA32F: of bins, as rsm_args.h has it
+    VPL_PORT_BIN_POSITION,
+    VPL_PORT_BIN_NORMAL,
     VPL_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_vpl;

@@ -37,8 +37,9 @@ TYN_ASSERT_SIZE(vpl_stratum, 8);
 struct vpl_args {
     tyn_uint count; // VPLs at most
     tyn_uint num_suns;
-    tyn_uint media; // 1: there is a medium
+    tyn_uint media;  // 1: there is a medium
+    tyn_uint append; // 1: VPLs are added to those that are there
 };
-TYN_ASSERT_SIZE(vpl_args, 12);
+TYN_ASSERT_SIZE(vpl_args, 16);
 
 #endif

@@ -1,10 +1,12 @@
-// vpl_distances.comp -- what each VPL sees: the distance of the first surface in every direction of its map.
+// vpl_distances.comp -- what each VPL sees: the distance of the first surface in every direction of its map;
+// and what that reflects of its light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "surface_args.h"
 #include "radial_args.h"
 #include "vpl_visibility.glsl"
+#include "vpl_bounce_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -27,29 +29,119 @@ layout(binding = 3, scalar) readonly buffer nodes_buffer
 layout(binding = 4, scalar) readonly buffer vpl_buffer
 {
     uint vpl_count;
-    uvec3 vpl_pad;
+    uint vpl_before;
+    uvec2 vpl_pad;
     radial_light vpls[];
 };
 layout(binding = 5, r32f) uniform writeonly image2D distance_image;
+layout(binding = 6, rgba32f) uniform writeonly image2D hit_image;
+layout(binding = 7, scalar) buffer bin_buffer
+{
+    vpl_bins bins;
+};
+layout(binding = 8, scalar) readonly buffer materials_buffer
+{
+    surface_material materials[];
+};
+#define SURFACE_TEXTURES 9
+#define SURFACE_TEXELS 10
+#define MEDIUM_BLOCK 11
+#define MEDIUM_DENSITY 12
+#define MEDIUM_SIGMA_A 13
+#define MEDIUM_G 14
+#include "surface_texture.glsl"
 #include "surface_trace.glsl"
+#include "medium.glsl"
+#include "camera.glsl"
+layout(push_constant, scalar) uniform Args
+{
+    vpl_distances_args args;
+};
+
+const int MEDIUM_STEPS = 16;
+
+// What the medium leaves of light from `from` (M) after a distance; forward scattering takes nothing.
+vec3 through_medium(vec3 from, vec3 d, float distance)
+{
+    vec2 span = ray_box(from, ray_inverse(d), vec3(0.0), medium.extent);
+    span = vec2(max(span.x, 0.0), min(span.y, distance));
+    float ds = max(span.y - span.x, 0.0) / float(MEDIUM_STEPS);
+    vec3 depth = vec3(0.0);
+    for (int i = 0; i < MEDIUM_STEPS && ds > 0.0; i++) {
+        medium_point m = medium_sample(from + (span.x + (float(i) + 0.5) * ds) * d);
+        vec3 sigma_s = m.sigma_s, g = m.g;
+        similarity_clamp(sigma_s, g);
+        depth += ds * (m.sigma_a + sigma_s * (1.0 - delta_fraction(g)));
+    }
+    return exp(-depth);
+}
+
+// Bits of a coordinate of the grid, two apart.
+uint spread(uint x)
+{
+    return (x & 1u) | (x & 2u) << 2 | (x & 4u) << 4;
+}
+
+void put_into_bin(vec3 world, vec3 normal, vec3 flux, uint texel)
+{
+    vec3 share = flux / max(bins.power, vec3(1e-30));
+    vec3 size = max(surfaces.hi - surfaces.lo, vec3(1e-20));
+    uvec3 cell = uvec3(clamp((world - surfaces.lo) / size, 0.0, 0.999) * float(VPL_BIN_CELLS));
+    vec3 a = abs(normal);
+    uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
+    uint facing = 2u * axis + (normal[axis] < 0.0 ? 1u : 0u);
+    uint bin = facing * 512u + (spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2);
+    for (int c = 0; c < 3; c++) {
+        atomicAdd(bins.list[bin].flux[c], uint(clamp(share[c], 0.0, 1.0) * VPL_BIN_UNIT + 0.5));
+    }
+    float bright = max(share.r, max(share.g, share.b));
+    uint rank = uint(clamp(log2(max(bright, 1e-12)) * 100.0 + 4000.0, 1.0, 4095.0));
+    atomicMax(bins.list[bin].best, rank << 20 | texel);
+}
 
 void main()
 {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(distance_image);
     int side = size.x / VPL_MAPS_IN_A_ROW;
     uint vpl = uint(texel.y / side * VPL_MAPS_IN_A_ROW + texel.x / side);
-    if (any(greaterThanEqual(texel, size)) || vpl >= vpl_count) {
+    bool wanted = vpl < vpl_count && (args.later == 0u || vpl >= vpl_before);
+    if (any(greaterThanEqual(texel, size)) || !wanted) {
         return;
     }
     radial_light light = vpls[vpl];
-    vec3 d = vpl_frame(light.axis) *
-             normalize(vpl_map_direction(vec2(texel % side) / float(side - 1)));
+    ivec2 at = texel % side;
+    vec3 on_map = vpl_map_direction(vec2(at) / float(side - 1));
+    float away = length(on_map);
+    vec3 d = vpl_frame(light.axis) * (on_map / away);
     // From a little above the surface: the middle of what the VPL stands for may be below a curved one.
     vec3 reach = max(abs(light.position), vec3(light.radius));
     float lift = 0.02 * light.radius + 1e-5 * max(max(reach.x, reach.y), reach.z);
-    vec3 from = surface_transform(surfaces.to_world, light.position + lift * light.axis);
+    vec3 from = light.position + lift * light.axis;
     surface_hit hit = surface_hit(3e38, SURFACE_NONE, vec2(0.0));
-    surface_ray ray = surface_ray_make(from, surface_turn(surfaces.to_world, d), SURFACE_NONE);
-    surface_trace_world(ray, false, hit);
+    surface_ray ray = surface_ray_make(surface_transform(surfaces.to_world, from),
+                                       surface_turn(surfaces.to_world, d), SURFACE_NONE);
+    bool met = surface_trace_world(ray, false, hit);
     imageStore(distance_image, texel, vec4(hit.t));
+    if (args.bounce == 0u || !met) {
+        return;
+    }
+    // Texels at the edges of a map are halves.
+    vec2 whole = mix(vec2(1.0), vec2(0.5), lessThan(min(at, side - 1 - at), ivec2(1)));
+    float solid_angle = args.solid_angle * whole.x * whole.y / (away * away * away);
+    surface_triangle tri = triangles[hit.triangle];
+    surface_material m = materials[tri.material];
+    vec3 albedo = m.albedo;
+    if (m.texture != TYN_SURFACE_NO_TEXTURE) { // its mean
+        albedo *= surface_texture_level(textures[m.texture], vec2(0.5),
+                                        textures[m.texture].levels - 1u);
+    }
+    vec3 flux = light.intensity * albedo * (solid_angle * on_map.z / away);
+    if (args.media != 0u) {
+        flux *= through_medium(from, d, hit.t);
+    }
+    surface_point p = surface_point_at(hit.triangle, hit.barycentric);
+    vec3 normal = dot(p.normal, d) > 0.0 ? -p.normal : p.normal;
+    imageStore(hit_image, texel, vec4(normal, 0.0));
+    vec3 world = ray.origin + hit.t * ray.direction;
+    put_into_bin(world, normal, flux, uint(texel.y * size.x + texel.x));
 }

@@ -6,6 +6,7 @@
 #define TYN_VPL_ELEMENTS_GLSL
 #include "vpl_args.h"
 #include "surface_args.h"
+#include "vpl_hilbert.glsl"
 
 layout(binding = VPL_PLAN, scalar) readonly buffer vpl_plan_buffer
 {
@@ -33,22 +34,6 @@ layout(binding = VPL_MATERIALS, scalar) readonly buffer vpl_materials_buffer
 
 const float VPL_PI = 3.14159265358979;
 const uint VPL_NO_TRIANGLE = 0xffffffffu;
-
-// Texel d of a Hilbert curve through side x side texels, a power of two.
-uvec2 vpl_hilbert(uint side, uint d)
-{
-    uvec2 p = uvec2(0u);
-    for (uint s = 1u; s < side; s *= 2u) {
-        uint rx = 1u & (d / 2u), ry = 1u & (d ^ rx);
-        if (ry == 0u) {
-            p = rx == 1u ? s - 1u - p : p;
-            p = p.yx;
-        }
-        p += s * uvec2(rx, ry);
-        d /= 4u;
-    }
-    return p;
-}
 
 // The map that a block belongs to; blocks of maps come before those of triangles.
 uint vpl_tile_of(uint block)

@@ -50,8 +50,9 @@ layout(binding = 16, scalar) uniform light_uniform
 };
 layout(binding = 17, scalar) buffer vpl_buffer
 {
-    uint vpl_count;
-    uvec3 vpl_pad;
+        uint vpl_count;
+    uint vpl_before;
+    uvec2 vpl_pad;
     radial_light vpls[];
 };
 layout(push_constant, scalar) uniform Args
@@ -153,7 +154,7 @@ float same_piece(vec3 offset, vec3 normal, vec3 centre_normal, float area)
 void main()
 {
     uint index = gl_WorkGroupID.x, lane = gl_LocalInvocationIndex;
-    if (index >= vpl_count) {
+    if (vpl_before + index >= vpl_count) {
         return;
     }
     vpl_stratum stratum = strata[index];
@@ -234,6 +235,6 @@ void main()
     }
     light.intensity = flux.rgb * exp(-depth) / VPL_PI;
     if (lane == 0u) {
-        vpls[index] = light;
+        vpls[vpl_before + index] = light;
     }
 }

@@ -23,10 +23,11 @@ layout(binding = 2, scalar) writeonly buffer strata_buffer
 {
     vpl_stratum strata[];
 };
-layout(binding = 3, scalar) writeonly buffer vpl_buffer
+layout(binding = 3, scalar) buffer vpl_buffer
 {
     uint vpl_count;
-    uvec3 vpl_pad;
+    uint vpl_before; // before those of this time
+    uvec2 vpl_pad;
 };
 layout(push_constant, scalar) uniform Args
 {
@@ -87,6 +88,8 @@ void main()
         count += strata_here;
     }
     if (lane == 0u) {
-        vpl_count = min(count, args.count);
+                uint before_these = args.append != 0u ? vpl_count : 0u;
+        vpl_before = before_these;
+        vpl_count = before_these + min(count, args.count);
     }
 }

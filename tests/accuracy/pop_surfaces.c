@@ -126,8 +126,51 @@ static void under_emitter(void **state)
     tyn_scene_finish(&scene);
 }
 
+// A closed room with a block and a lamp, and one with an emitter: all reflections, against `path`.
+static void rooms(void **state)
+{
+    for (int emitter = 0; emitter < 2; emitter++) {
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t wall = solids_material(&scene, (float[]){0.6f, 0.5f, 0.4f}, BLACK);
+        uint32_t red = solids_material(&scene, (float[]){0.7f, 0.1f, 0.1f}, BLACK);
+        uint32_t bright = solids_material(&scene, BLACK, (float[]){8, 8, 8});
+        solids_box(&scene, (float[]){-1, 0, -1}, (float[]){1, 2, 1}, 0, true, wall);
+        solids_box(&scene, (float[]){-0.7f, 0, -0.7f}, (float[]){-0.1f, 0.8f, -0.1f}, 0.4f, false,
+                   red);
+        if (emitter) {
+            solids_quad(&scene, (float[]){-0.25f, 1.95f, -0.25f}, (float[]){0.5f, 0, 0},
+                        (float[]){0, 0, 0.5f}, bright);
+        } else {
+            scene.lights[scene.num_lights++] = (tyn_light){
+                .kind = TYN_LIGHT_POINT, .color = {2, 2, 2}, .position = {0.3f, 1.5f, 0.2f}};
+        }
+        solids_hierarchy(&scene, 4);
+        tyn_view view = {.width = 32, .height = 32};
+        view.camera = (tyn_camera){.projection = TYN_PERSPECTIVE,
+                                   .position = {0, 1, 0.95f},
+                                   .right = {1, 0, 0},
+                                   .up = {0, 1, 0},
+                                   .back = {0, 0, 1},
+                                   .yfov = 1.3f};
+        picture pop, path;
+        tyn_device *dev = ((gpu_test *)*state)->dev;
+        picture_render(&pop, dev, "pop", &scene, &view, NULL, 1);
+        picture_render(&path, dev, "path", &scene, &view, NULL, 64);
+        picture_error e = picture_compare(&pop, &path, 8);
+        print_message("room with %s: rel_l1 %.1f %% (noise %.1f), bias %+.1f %%\n",
+                      emitter ? "an emitter" : "a lamp", 100 * e.rel_l1, 100 * e.noise,
+                      100 * e.bias);
+        assert_true(e.rel_l1 < 0.15 && fabs(e.bias) < 0.12);
+        picture_free(&pop);
+        picture_free(&path);
+        tyn_scene_finish(&scene);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(floors), cmocka_unit_test(under_emitter)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(floors), cmocka_unit_test(under_emitter),
+                                       cmocka_unit_test(rooms)};
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

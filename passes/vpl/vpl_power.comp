@@ -1,0 +1,36 @@
+// vpl_power.comp -- the power of all VPLs: what bins count in.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "radial_args.h"
+#include "vpl_bounce_args.h"
+
+layout(local_size_x = TYN_RADIAL_VPLS_MAX) in;
+
+layout(binding = 0, scalar) readonly buffer vpl_buffer
+{
+    uint vpl_count;
+    uvec3 vpl_pad;
+    radial_light vpls[];
+};
+layout(binding = 1, scalar) writeonly buffer bin_buffer
+{
+    vpl_bins bins;
+};
+
+shared vec3 sums[TYN_RADIAL_VPLS_MAX];
+
+void main()
+{
+    uint lane = gl_LocalInvocationIndex;
+    sums[lane] = lane < vpl_count ? vpls[lane].intensity * 3.14159265 : vec3(0.0);
+    for (uint half_size = TYN_RADIAL_VPLS_MAX / 2u; half_size > 0u; half_size /= 2u) {
+        barrier();
+        if (lane < half_size) {
+            sums[lane] += sums[lane + half_size];
+        }
+    }
+    if (lane == 0u) {
+        bins.power = sums[0];
+    }
+}
