@@ -226,9 +226,10 @@ void main()
     vec3 offset = place.w > 0.0 ? place.xyz / place.w : vec3(0.0);
     light.position = centre.position + offset;
     light.axis = dot(normal.xyz, normal.xyz) > 0.0 ? normalize(normal.xyz) : centre.normal;
-    // A disc of radius r has the mean squared distance r^2 / 2 from its centre.
+    // Of a disc with the area, or with the spread if that is less: a disc of radius r has the mean squared
+    // distance r^2 / 2 from its centre.
     float spread = place.w > 0.0 ? normal.w / place.w - dot(offset, offset) : 0.0;
-    light.radius = sqrt(2.0 * max(spread, 0.0));
+    light.radius = sqrt(min(2.0 * max(spread, 0.0), flux.a / VPL_PI));
     vec3 depth = vec3(0.0);
     if (args.media != 0u && block < plan.front) {
         depth = depth_from_light(plan.tiles[vpl_tile_of(block)].map.light, light.position);

@@ -161,7 +161,7 @@ static void rooms(void **state)
         print_message("room with %s: rel_l1 %.1f %% (noise %.1f), bias %+.1f %%\n",
                       emitter ? "an emitter" : "a lamp", 100 * e.rel_l1, 100 * e.noise,
                       100 * e.bias);
-        assert_true(e.rel_l1 < 0.15 && fabs(e.bias) < 0.12);
+        assert_true(e.rel_l1 < 0.09 && fabs(e.bias) < 0.08);
         picture_free(&pop);
         picture_free(&path);
         tyn_scene_finish(&scene);
