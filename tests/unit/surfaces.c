@@ -2,7 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "frame/surfaces.h"
+#include "frame/frame_scene.h"
 #include "io_test.h"
 #include "solids.h"
 
@@ -221,10 +221,88 @@ static void update(void **state)
     tyn_scene_finish(&scene);
 }
 
+static void apply(const tyn_vec4 rows[3], const float p[3], double out[3])
+{
+    for (int i = 0; i < 3; i++) {
+        out[i] = (double)rows[i][0] * p[0] + (double)rows[i][1] * p[1] + (double)rows[i][2] * p[2] +
+                 rows[i][3];
+    }
+}
+
+static tyn_frame_scene frame_of(const tyn_scene *scene)
+{
+    tyn_frame_scene frame;
+    tyn_surface_data data = {0};
+    io_log log;
+    io_log_init(&log);
+    const tyn_view view = {.width = 8, .height = 8, .camera = {.yfov = 1}};
+    const tyn_map_light map = {{0}};
+    assert_int_equal(tyn_surface_data_update(&data, &scene->surfaces, &log.log), TYN_OK);
+    assert_int_equal(tyn_frame_scene_build(&frame, scene, &view, &map, &data, &log.log), TYN_OK);
+    tyn_surface_data_finish(&data);
+    return frame;
+}
+
+// M and the world are rigid to each other, and M's origin is a corner of its box, whoever spans it.
+static void frames(void **state)
+{
+    tyn_scene scene;
+    (void)state;
+    fill(&scene);
+    for (int with_medium = 0; with_medium < 2; with_medium++) {
+        if (with_medium) { // a box of 2 x 3 x 4 m, turned about y
+            scene.num_media = scene.num_shapes = 1;
+            scene.media[0] = (tyn_medium){.density_scale = 1, .volume = -1, .sigma_s = {1, 1, 1}};
+            scene.shapes[0] = (tyn_shape){
+                .to_world = {1.2f, 0, 1.6f, 0, 0, 3, 0, 0, -3.2f, 0, 2.4f, 0, 5, 6, 7, 1}};
+        }
+        const tyn_frame_scene f = frame_of(&scene);
+        assert_int_equal(f.num_triangles, 12);
+        assert_int_equal(f.surfaces.num_nodes, 3);
+        assert_true(f.empty == !with_medium);
+        const float *extent = f.medium.extent,
+                    size[3] = {2, with_medium ? 3 : 2, with_medium ? 4 : 2};
+        double corner[3], back[3];
+        apply(f.surfaces.to_world, (float[]){0, 0, 0}, corner);
+        for (int a = 0; a < 3; a++) {
+            const float p[3] = {(float)corner[0], (float)corner[1], (float)corner[2]};
+            apply(f.surfaces.from_world, p, back);
+            assert_true(fabs(back[a]) < 1e-5);
+            assert_true(fabsf(extent[a] - size[a]) < 1e-5f);
+            assert_true(f.surfaces.lo[a] == (float)a && f.surfaces.hi[a] == (float)(a + 2));
+            for (int b = 0; b < 3; b++) { // rows are orthonormal, columns of the inverse
+                double dot = 0;
+                for (int c = 0; c < 3; c++) {
+                    dot += (double)f.surfaces.to_world[a][c] * f.surfaces.to_world[b][c];
+                }
+                assert_true(fabs(dot - (a == b)) < 1e-5);
+                assert_true(f.surfaces.to_world[a][b] == f.surfaces.from_world[b][a]);
+                assert_true(f.m_from_world[4 * b + a] == f.surfaces.from_world[a][b]);
+            }
+        }
+        // The corner: of the cube; of the turned box 5 - 0.6 - (-1.6), 6 - 1.5, 7 - 0.8 - 1.2.
+        const double at[3] = {with_medium ? 6 : 0, with_medium ? 4.5 : 1, with_medium ? 5 : 2};
+        for (int a = 0; a < 3; a++) {
+            assert_true(fabs(corner[a] - at[a]) < 1e-5);
+        }
+    }
+    tyn_scene_finish(&scene);
+    // One wall alone: a box with a little depth.
+    tyn_scene_init(&scene);
+    solids_quad(&scene, (float[]){1, 2, 3}, (float[]){4, 0, 0}, (float[]){0, 5, 0},
+                solids_material(&scene, grey, dark));
+    const tyn_frame_scene flat = frame_of(&scene);
+    assert_true(fabsf(flat.medium.extent[2] - 0.005f) < 1e-6f && flat.medium.extent[1] == 5);
+    tyn_scene_finish(&scene);
+    const tyn_frame_scene none = frame_of(&scene);
+    assert_int_equal(none.num_triangles, 0);
+    assert_true(none.medium.extent[0] == 0);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(boxes), cmocka_unit_test(check),
-                                       cmocka_unit_test(hash), cmocka_unit_test(mip_chain),
-                                       cmocka_unit_test(update)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(boxes),  cmocka_unit_test(check),
+                                       cmocka_unit_test(hash),   cmocka_unit_test(mip_chain),
+                                       cmocka_unit_test(update), cmocka_unit_test(frames)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
