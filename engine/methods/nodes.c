@@ -22,10 +22,10 @@ void tyn_method_warn(const tyn_job *job, const char *format, ...)
     }
 }
 
-void tyn_method_warn_surfaces(const tyn_job *job)
+void tyn_method_warn_surfaces(const tyn_job *job, const char *what)
 {
     if (job->frame->num_triangles) {
-        tyn_method_warn(job, "surfaces are left out: %u triangles", job->frame->num_triangles);
+        tyn_method_warn(job, "surfaces %s: %u triangles", what, job->frame->num_triangles);
     }
 }
 

@@ -74,5 +74,5 @@ void tyn_method_warn(const tyn_job *job, const char *format, ...) TYN_PRINTF(2, 
 
 // TYN_ERR_PARAMS with a log line if a shape of the scene is periodic.
 tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method);
-// Warns that a method leaves the surfaces out, if there are any.
-void tyn_method_warn_surfaces(const tyn_job *job);
+// Warns of what a method does not do with surfaces, if there are any: "are left out".
+void tyn_method_warn_surfaces(const tyn_job *job, const char *what);

@@ -212,7 +212,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (result != TYN_OK) {
         return result;
     }
-    tyn_method_warn_surfaces(job);
+    tyn_method_warn_surfaces(job, "are left out");
     if (frame->empty) {
         return tyn_add_picture(g, job, NULL);
     }
