@@ -1,8 +1,8 @@
 // wall_light_suns.comp -- sunlight that arrives at the walls of a cell, as radiance they send out.
 //
-// Each cut link stands for the wall's area that isotropic light meets along it, 4 a_j dx^2 (walls_args.h).
-// What arrives there is irradiance times the cosine to the triangle that the link meets; the radiance of all
-// links together is its mean, weighted with those areas, times albedo / pi. Light in the forward peak of the
+// Each cut link along an axis stands for |n.axis| dx^2 of the wall that it meets (normal n): a wall of area A is
+// met by A |n.axis| / dx^2 links of an axis, so all areas add up to A. What arrives there, times albedo, is the
+// power that the walls send out: 4 pi dx^2 area times their radiance (walls_args.h). Light in the forward peak of the
 // medium counts as not scattered (delta scaling), as in the lattice.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -83,7 +83,7 @@ void main()
     uint i = walls_cell_index(c), cells = args.dims.x * args.dims.y * args.dims.z, cut = links[i];
     lattice_box box = lattice_box_of(args.extent, ivec3(args.dims));
     vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z), sum = vec3(0.0);
-    for (uint link = 0u; link < 14u; link++) {
+    for (uint link = 0u; link < 6u; link++) {
         if ((cut >> link & 1u) == 0u) {
             continue;
         }
@@ -92,9 +92,8 @@ void main()
         float rise = -dot(n, d);
         float where = abs(rise) > 1e-6 ? clamp(dot(n, vec3(c) - t.a) / rise, 0.0, 1.0) : 0.5;
         vec3 p = lattice_to_m(box, vec3(c) + where * d + 0.5 + shift);
-        float a = lattice_weight(link) * (link < 6u ? 1.0 : inversesqrt(3.0));
-        sum += a * sunlight(p, rise < 0.0 ? -n : n);
+        sum += abs(rise) * sunlight(p, rise < 0.0 ? -n : n);
     }
     float area = wall_cells[i].area;
-    wall_light[i] = area > 0.0 ? wall_cells[i].albedo * sum / (area * 3.14159265) : vec3(0.0);
+    wall_light[i] = area > 0.0 ? wall_cells[i].albedo * sum / (LATTICE_4PI * area) : vec3(0.0);
 }

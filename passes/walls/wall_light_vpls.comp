@@ -78,7 +78,7 @@ void main()
     vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);
     wall_side sides[SIDES];
     uint num_sides = 0u;
-    for (uint link = 0u; link < 14u; link++) {
+    for (uint link = 0u; link < 6u; link++) {
         if ((cut >> link & 1u) == 0u) {
             continue;
         }
@@ -88,12 +88,15 @@ void main()
         float where = abs(rise) > 1e-6 ? clamp(dot(n, vec3(c) - t.a) / rise, 0.0, 1.0) : 0.5;
         vec3 p = lattice_to_m(box, vec3(c) + where * d + 0.5 + shift);
         n = rise < 0.0 ? -n : n;
-        float a = lattice_weight(link) * (link < 6u ? 1.0 : inversesqrt(3.0));
+        float a = abs(rise); // of the wall, over dx^2
         uint k = 0u;
         while (k < num_sides && dot(sides[k].normal, n) < 0.95 * sides[k].area) {
             k++;
         }
         k = min(k, SIDES - 1u);
+        if (a <= 1e-6) {
+            continue;
+        }
         if (k == num_sides) {
             sides[num_sides++] = wall_side(vec3(0.0), vec3(0.0), 0.0);
         }
@@ -103,7 +106,7 @@ void main()
     }
     for (uint k = 0u; k < num_sides; k++) {
         sides[k].normal = normalize(sides[k].normal);
-        sides[k].place /= sides[k].area;
+        sides[k].place /= max(sides[k].area, 1e-6);
     }
     for (uint n = radial_num_lamps; n < radial_count; n++) {
         radial_light light = radials[n].light;
@@ -123,6 +126,6 @@ void main()
             sum += walls_visible(box, c, from) ? light.intensity * irradiance : vec3(0.0);
         }
     }
-    vec3 radiance = albedo * sum / (area * 3.14159265);
+    vec3 radiance = albedo * sum / (LATTICE_4PI * area);
     wall_light[i] = added == 1 ? wall_light[i] + radiance : radiance;
 }
