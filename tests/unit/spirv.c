@@ -60,12 +60,33 @@ typedef struct shaders { // of a kernel
     int num;
 } shaders;
 
+// Reads a module once: the tests ask for each of them many times.
+static bool reflect_once(const uint32_t *spirv, size_t size, reflect_shader *out, const char **why)
+{
+    enum { MODULES = 1024 };
+    static struct {
+        const uint32_t *spirv;
+        reflect_shader shader;
+    } known[MODULES];
+    size_t slot = ((uintptr_t)spirv >> 5) % MODULES;
+    if (known[slot].spirv != spirv || !spirv) {
+        if (!reflect(spirv, size, out, why)) {
+            return false;
+        }
+        known[slot].spirv = spirv;
+        known[slot].shader = *out;
+    }
+    *out = known[slot].shader;
+    return true;
+}
+
 static bool reflect_kernel(const tyn_kernel *kernel, shaders *out, const char **why)
 {
     const tyn_raster *raster = kernel->raster;
     out->num = raster && raster->fragment ? 2 : 1;
-    return reflect(kernel->spirv, kernel->spirv_size, &out->at[0], why) &&
-           (out->num == 1 || reflect(raster->fragment, raster->fragment_size, &out->at[1], why));
+    return reflect_once(kernel->spirv, kernel->spirv_size, &out->at[0], why) &&
+           (out->num == 1 ||
+            reflect_once(raster->fragment, raster->fragment_size, &out->at[1], why));
 }
 
 // Does some kernel store to this port in the format of the port table? (A pass may have variants of
@@ -76,7 +97,7 @@ static bool stored_as_declared(const tyn_pass_desc *pass, uint8_t port)
         const tyn_kernel *kernel = &pass->kernels[k];
         reflect_shader shader;
         const char *why;
-        if (kernel->raster || !reflect(kernel->spirv, kernel->spirv_size, &shader, &why)) {
+        if (kernel->raster || !reflect_once(kernel->spirv, kernel->spirv_size, &shader, &why)) {
             continue;
         }
         for (uint32_t i = 0; i < shader.num_bindings; i++) {
