@@ -24,6 +24,15 @@ void radial_sweep(uint n, ivec2 texel)
     vec3 lo = min(t0, t1), hi = max(t0, t1);
     float enter = max(max(max(lo.x, lo.y), lo.z), 0.0), leave = min(min(hi.x, hi.y), hi.z);
     bool outside = radials[n].inside == 0u;
+    // So far beside the box a ray may still be mixed with rays in it, per distance from the light.
+    float spread = 6.0 / float(cells);
+    if (outside && enter >= leave) {
+        float margin = spread * length(0.5 * medium.extent - origin);
+        vec3 near_lo = min(t0 - margin * inverse, t1 + margin * inverse);
+        vec3 near_hi = max(t0 - margin * inverse, t1 + margin * inverse);
+        enter = max(max(max(near_lo.x, near_lo.y), near_lo.z), 0.0);
+        leave = min(min(near_hi.x, near_hi.y), near_hi.z);
+    }
     if (outside && enter >= leave) {
         // Beside the box: what its neighbours mix with their own.
         float closest = clamp(dot(0.5 * medium.extent - origin, d), 0.0, 1e20);
@@ -42,7 +51,9 @@ void radial_sweep(uint n, ivec2 texel)
         float r = begin + near * (power - 1.0);
         power *= growth;
         // Beyond the box the medium goes on as at its face, as far as it is mixed with what is inside.
-        if (r > done && done < max(leave, enter)) {
+        vec3 p = origin + done * d;
+        float beside = length(max(max(-p, p - medium.extent), vec3(0.0)));
+        if (r > done && (done < leave || beside <= spread * done)) {
             uint samples = uint(clamp(ceil((r - done) / voxel - 0.01), 1.0, 4096.0));
             float ds = (r - done) / float(samples);
             RADIAL_VALUE part = RADIAL_VALUE(0.0);

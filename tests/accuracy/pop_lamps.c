@@ -161,11 +161,191 @@ static void sphere_rings(void **state)
     }
 }
 
+// ---- an infinite medium -----------------------------------------------------------------------------
+
+// Fluence at distances from a source of 1 W in a cube from -half to half.
+static void fluence_of(gpu_test *t, float albedo, float half, int cells, const float (*points)[3],
+                       uint32_t count, double *fluence)
+{
+    tyn_medium medium = grey_medium(albedo, 1 - albedo, 0);
+    tyn_scene *scene = malloc(sizeof *scene);
+    tyn_scene_init(scene);
+    scene_add_box(scene, &medium, (float[]){-half, -half, -half}, (float[]){half, half, half}, NULL,
+                  NULL);
+    add_lamp(scene, (float[]){0, 0, 0}, 0.25f / (float)M_PI);
+    tyn_settings *settings;
+    char number[16];
+    snprintf(number, sizeof number, "%d", cells);
+    assert_int_equal(tyn_settings_create(&settings), TYN_OK);
+    assert_int_equal(tyn_settings_set(settings, "lattice.cells", number, NULL), TYN_OK);
+    assert_int_equal(tyn_settings_set(settings, "lattice.sweeps", "12", NULL), TYN_OK);
+    tyn_offline *off;
+    assert_int_equal(
+        tyn_offline_create(t->dev, tyn_offline_params(.method = "pop", .settings = settings), &off),
+        TYN_OK);
+    tyn_settings_destroy(&settings);
+    tyn_view view = {.width = 1,
+                     .height = 1,
+                     .outputs = TYN_OUTPUT_PROBE,
+                     .points = points,
+                     .num_points = count};
+    tyn_camera_frame_scene(&view.camera, scene);
+    assert_int_equal(tyn_offline_frame(off, scene, &view, false), TYN_OK);
+    const tyn_probe_result *results = tyn_offline_output(off, TYN_OUTPUT_PROBE);
+    for (uint32_t i = 0; i < count; i++) {
+        fluence[i] = results[i].fluence[0];
+    }
+    tyn_offline_destroy(&off);
+    tyn_scene_finish(scene);
+    free(scene);
+}
+
+// How far light of an albedo gets, as e^-(distance / this), in an isotropically scattering medium.
+static double decay_length(double albedo)
+{
+    double nu = 1; // 1 = albedo nu atanh(1 / nu), nu > 1: decay as e^-(r / nu)
+    double lo = 1 + 1e-12, hi = 1e4;
+    for (int i = 0; i < 200; i++) {
+        nu = 0.5 * (lo + hi);
+        *(albedo * nu * atanh(1 / nu) > 1 ? &lo : &hi) = nu;
+    }
+    return nu;
+}
+
+static void infinite_medium(void **state)
+{
+    static double rows[MAX_ROWS][MAX_COLUMNS];
+    uint32_t count = read_table("reference/pointsource_infinite_exact.csv", rows, 5);
+    if (count == 0) {
+        print_message("skipped: no pointsource_infinite_exact.csv\n");
+        skip();
+    }
+    enum { CELLS = 48, DIRECTIONS = 128 };
+    double worst = 0;
+    uint32_t done = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        double albedo = rows[i][0], r = rows[i][1];
+        if (albedo >= 1) {
+            // No box is large enough: its vacuum takes 3 / (4 pi (half + 0.71)) from every fluence.
+            print_message("albedo 1, r %g: skipped, needs a box without end\n", r);
+            continue;
+        }
+        double half = r + 8 * decay_length(albedo), cell = 2 * half / CELLS;
+        if (r < cell) {
+            print_message("albedo %g, r %g: skipped, needs more than %d cells\n", albedo, r, CELLS);
+            continue;
+        }
+        static float points[DIRECTIONS][3];
+        for (int k = 0; k < DIRECTIONS; k++) { // evenly over the sphere
+            double z = 1 - (2 * k + 1.0) / DIRECTIONS, phi = 2.399963 * k;
+            points[k][0] = (float)(r * sqrt(1 - z * z) * cos(phi));
+            points[k][1] = (float)(r * sqrt(1 - z * z) * sin(phi));
+            points[k][2] = (float)(r * z);
+        }
+        double got[DIRECTIONS], mean = 0, least = INFINITY, most = 0;
+        fluence_of(*state, (float)albedo, (float)half, CELLS, (const float(*)[3])points, DIRECTIONS,
+                   got);
+        for (int k = 0; k < DIRECTIONS; k++) {
+            mean += got[k] / DIRECTIONS;
+            least = fmin(least, got[k]);
+            most = fmax(most, got[k]);
+        }
+        double exact = rows[i][2], error = mean / exact - 1;
+        print_message(
+            "albedo %g, r %g (%.1f cells): mean of all directions %+.1f %%, least %+.1f %%, "
+            "most %+.1f %%\n",
+            albedo, r, r / cell, 100 * error, 100 * (least / exact - 1), 100 * (most / exact - 1));
+        worst = fmax(worst, fabs(error));
+        done++;
+    }
+    print_message("%u rows, worst %.1f %%\n", done, 100 * worst);
+    assert_true(done >= 2 && worst <= 0.05);
+}
+
+// ---- energy, and what may go wrong --------------------------------------------------------------------
+
+static void balance(void **state)
+{
+    gpu_test *t = *state;
+    static const float places[][3] = {
+        {0.5f, 0.5f, 0.5f}, {0, 0, 0}, {0.51f, 0.3f, 0.9f}, {0.5f, 0.5f, -1}};
+    for (int i = 0; i < 12; i++) {
+        tyn_medium medium = grey_medium(4, i % 3 == 1 ? 1 : 0, i % 3 == 2 ? 0.9f : 0);
+        tyn_scene *scene = malloc(sizeof *scene);
+        tyn_scene_init(scene);
+        scene_add_box(scene, &medium, (float[]){0, 0, 0}, (float[]){1, 1, 1}, NULL, NULL);
+        add_lamp(scene, places[i / 3], 2);
+        double four = scene_imbalance(t->dev, "pop", scene, "lattice.cells=16 lattice.sweeps=6");
+        print_message("lamp %d, medium %d: imbalance %.3f %%\n", i / 3, i % 3, 100 * four);
+        assert_true(four <= 0.01);
+        tyn_scene_finish(scene);
+        free(scene);
+    }
+}
+
+// Nothing may be infinite, negative or no number, whatever the medium and wherever the lamps are.
+static void stress(void **state)
+{
+    gpu_test *t = *state;
+    static const float sigmas[] = {0, 1e-6f, 1, 1e5f};
+    static const float powers[] = {1e-6f, 1, 1e8f};
+    float *grid = malloc(8 * 8 * 8 * sizeof *grid);
+    for (int i = 0; i < 512; i++) {
+        grid[i] = (float)((i * 7919) % 11) / 10;
+    }
+    for (int k = 0; k < 12; k++) {
+        tyn_medium medium = grey_medium(sigmas[k % 4], 0.1f * sigmas[k % 4], k % 2 ? 0.9f : 0);
+        tyn_scene *scene = malloc(sizeof *scene);
+        tyn_scene_init(scene);
+        scene_add_box(scene, &medium, (float[]){-1, -1, -1}, (float[]){1, 1, 1},
+                      (uint32_t[]){8, 8, 8}, k % 3 ? grid : NULL);
+        float power = powers[k / 4];
+        add_lamp(scene, (float[]){0, 0, 0}, power);                // a face of voxels
+        add_lamp(scene, (float[]){0, 0, 0}, power);                // and another one there
+        add_lamp(scene, (float[]){0.125f, 0.125f, 0.125f}, power); // the centre of a voxel
+        add_lamp(scene, (float[]){1, 1, 1}, power);                // a corner of the box
+        add_lamp(scene, (float[]){0, 0, 3}, power);                // outside, on a camera ray
+        add_lamp(scene, (float[]){0, -1, 0.3f}, power);            // in a face
+        scene->lights[5].kind = TYN_LIGHT_SPOT;                    // of equal angles
+        scene->lights[5].cos_inner = scene->lights[5].cos_outer = 0.7f;
+        for (int inside = 0; inside < 2; inside++) {
+            tyn_view view = {.width = 17, .height = 17};
+            view.camera = (tyn_camera){.projection = TYN_PERSPECTIVE,
+                                       .position = {0, 0, inside ? 0.5f : 6},
+                                       .right = {1, 0, 0},
+                                       .up = {0, 1, 0},
+                                       .back = {0, 0, 1},
+                                       .yfov = 0.6f};
+            for (int m = 0; m < 2; m++) {
+                picture p;
+                picture_render(&p, t->dev, m ? "single" : "pop", scene, &view, "lattice.cells=12",
+                               0);
+                uint32_t wrong = 0;
+                double sum = 0;
+                for (int i = 0; i < 17 * 17 * 3; i++) {
+                    wrong += !(p.rgb[i] >= 0 && p.rgb[i] < 1e30f);
+                    sum += p.rgb[i];
+                }
+                print_message("sigma %g, power %g, %s, %s: %u wrong, mean %g\n",
+                              (double)sigmas[k % 4], (double)power, inside ? "inside" : "outside",
+                              m ? "single" : "pop", wrong, sum / (17 * 17 * 3));
+                assert_int_equal(wrong, 0);
+                assert_true(sigmas[k % 4] > 1 || (sigmas[k % 4] > 0) == (sum > 0));
+                picture_free(&p);
+            }
+        }
+        tyn_scene_finish(scene);
+        free(scene);
+    }
+    free(grid);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(airlight_rows),
-        cmocka_unit_test(sphere_rings),
+        cmocka_unit_test(airlight_rows),   cmocka_unit_test(sphere_rings),
+        cmocka_unit_test(infinite_medium), cmocka_unit_test(balance),
+        cmocka_unit_test(stress),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

@@ -1,0 +1,29 @@
+// radial_eval.comp -- optical depths between local lights and given points.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 1
+#include "medium.glsl"
+#define RADIAL_BLOCK 2
+#define RADIAL_COLUMN 3
+#define RADIAL_TAU_A 4
+#define RADIAL_TAU_P 5
+#include "radial.glsl"
+
+layout(local_size_x = 64) in;
+struct point {
+    vec3 p;
+    uint light;
+};
+layout(set = 0, binding = 6, scalar) readonly buffer points_buffer { point points[]; };
+layout(set = 0, binding = 7, scalar) writeonly buffer results_buffer { beam_tau results[]; };
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i < points.length()) {
+        vec3 away = points[i].p - radials[points[i].light].light.position;
+        results[i] = radial_tau(radial_place_of(points[i].light, away, length(away)));
+    }
+}
