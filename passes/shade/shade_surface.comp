@@ -27,6 +27,8 @@ layout(binding = 27, rgba32f) uniform writeonly image2D radiance_image; // and d
 const float PI = 3.14159265358979;
 #define NOWHERE uintBitsToFloat(0x7f800000u) // infinity
 
+const float LIFT = 0.4; // cells
+
 // Light of the medium and of far walls, and of the sky where it comes along the lattice's lines.
 vec3 light_of_lattice(shade_point p)
 {
@@ -43,12 +45,18 @@ vec3 light_of_lattice(shade_point p)
     if (any(lessThan(x, vec3(-0.02))) || any(greaterThan(x, vec3(dims) + 0.02))) {
         return sky; // outside
     }
-    if (shade_has(SHADE_ONE_CHANNEL)) {
-        return walls_irradiance(moments_tex, box, p.position, p.facet, 0) * args.tint;
+    // The flux through a plane in radiance that is linear in direction, phi / 4 - F.n / 2, a little off the
+    // surface: cells that surfaces pass through hardly know of its side.
+    vec3 off = p.position + LIFT * box.dx * p.facet;
+    walls_place place = walls_place_of(box, off);
+    walls_blend blend = walls_blend_of(box, place, off);
+    vec3 irradiance = vec3(0.0);
+    int channels = shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
+    for (int ch = 0; ch < channels; ch++) {
+        vec4 m = walls_fetch(moments_tex, box, blend, ivec3(0, 0, ch * dims.z));
+        irradiance[ch] = max(0.25 * m.x - 0.5 * dot(m.yzw, p.facet), 0.0);
     }
-    return vec3(walls_irradiance(moments_tex, box, p.position, p.facet, 0),
-                walls_irradiance(moments_tex, box, p.position, p.facet, 1),
-                walls_irradiance(moments_tex, box, p.position, p.facet, 2));
+    return channels == 1 ? irradiance.r * args.tint : irradiance;
 }
 
 // The VPLs' light at a sample of a pixel whose samples lie on several surfaces: of the pixels around the one
