@@ -70,6 +70,9 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_path_params *p = params;
     uint32_t spec[TYN_PATH_NUM_SPEC];
     path_specialise(spec, p);
+    if (p->surfaces && p->num_lamps && !p->repeat) {
+        spec[TYN_PATH_SPEC_FLAGS] |= TYN_PATH_FROM_LAMPS;
+    }
     tyn_rec_fill(r, PATH_BALANCE_PORT_COUNTERS, 0);
     for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
         struct path_args args = path_trace_args(p);

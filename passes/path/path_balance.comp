@@ -1,7 +1,8 @@
 // path_balance.comp -- where the energy goes, by paths from random points: inside the media for what they absorb
 // and emit, on solid surfaces for what these absorb, on the boundary for what comes in and goes out. The kinds of
 // points know nothing of each other, so that the sums agree is a check. The boundary is that of the media; with
-// solid surfaces a box around everything.
+// solid surfaces a box around everything. Next to lamps light is too uneven for such points: where there are
+// surfaces, the first flights of lamplight are followed from the lamps, and the points are spared it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -21,12 +22,27 @@ layout(set = 0, binding = 18, scalar) readonly buffer areas_buffer {
 #include "path_heading.glsl"
 
 path_balance_partial partial;
-const uint IN_MEDIA = 0u, ON_BOUNDARY = 1u, ON_SURFACE = 2u;
+const uint IN_MEDIA = 0u, ON_BOUNDARY = 1u, ON_SURFACE = 2u, AT_LAMP = 3u;
+const bool FROM_LAMPS = (FLAGS & TYN_PATH_FROM_LAMPS) != 0u;
+
+// How many kinds of points there are.
+uint num_places()
+{
+    if (FROM_LAMPS) { // not by ?:, of which glslang 12 makes invalid constants
+        return 4u;
+    }
+    if (SURFACES) {
+        return 3u;
+    }
+    return 2u;
+}
+
 uint place;
 vec3 normal;      // of the boundary, outwards, or of the surface
 vec3 measure;     // what a unit of radiance per steradian at the point stands for: area, or volume times sigma_a
 vec3 emitted;     // of the media at the point, W
 vec3 direct_in, direct_out; // of lamps and suns; direct_out: inside, absorbed
+vec3 lamp_media, lamp_surfaces, lamp_escaped; // where a lamp's light ends its first flight, W
 
 // A point of a box's surface, from numbers in [0, 1).
 vec3 box_face_point(vec3 lo, vec3 hi, uvec4 bits)
@@ -123,13 +139,89 @@ vec3 volume_point(uvec4 bits)
     return p;
 }
 
+// Solid angle into which a lamp shines, sr, uniform but for a spot's falloff.
+float lamp_angle(light_block light)
+{
+    return 2.0 * HG_PI * (light.kind == TYN_LIGHT_KIND_SPOT ? 1.0 - light.cos_outer : 2.0);
+}
+
+// The first flight of light from a lamp, drawn by power.
+void follow_lamp(inout rng_state rng)
+{
+    float total = 0.0;
+    for (uint i = 0u; i < args.num_lights; i++) {
+        light_block light = light_get(i);
+        total += light.kind == TYN_LIGHT_KIND_DIRECTIONAL ? 0.0 : max3(light.color) * lamp_angle(light);
+    }
+    uvec4 bits = rng_next(rng);
+    float left = rng_float(bits.x) * total, weight = 0.0;
+    light_block lamp = light_get(args.num_lights - 1u); // lamps follow the suns
+    for (uint i = 0u; i < args.num_lights; i++) {
+        light_block light = light_get(i);
+        weight = light.kind == TYN_LIGHT_KIND_DIRECTIONAL ? 0.0 : max3(light.color) * lamp_angle(light);
+        if (left < weight) {
+            lamp = light;
+            break;
+        }
+        left -= weight;
+    }
+    float z = 1.0 - rng_float(bits.y) * (lamp_angle(lamp) * (0.5 / HG_PI));
+    float across = sqrt(max(1.0 - z * z, 0.0)), azimuth = 2.0 * HG_PI * rng_float(bits.z);
+    vec3 axis = lamp.kind == TYN_LIGHT_KIND_SPOT ? lamp.direction : vec3(0.0, 0.0, 1.0);
+    vec3 side = normalize(abs(axis.x) < 0.7 ? cross(axis, vec3(1.0, 0.0, 0.0)) : cross(axis, vec3(0.0, 1.0, 0.0)));
+    vec3 way = z * axis + across * (cos(azimuth) * side + sin(azimuth) * cross(axis, side));
+    float falloff = lamp.kind == TYN_LIGHT_KIND_SPOT ? spot_falloff(lamp, way) : 1.0;
+    vec3 power = lamp.color * (falloff * total / max3(lamp.color));
+
+    path_state path;
+    path.vertex = lamp.position;
+    path.way = way;
+    path.beta = vec3(1.0);
+    path.rho = vec3(1.0);
+    float u = 3.0 * rng_float(bits.w);
+    path.hero = GREY ? vec3(1.0, 0.0, 0.0) : vec3(u < 1.0, u >= 1.0 && u < 2.0, u >= 2.0);
+    path.depth = 0u;
+    path.steps = 0u;
+    surface_hit ahead = surface_hit(PATH_FAR, SURFACE_NONE, vec2(0.0));
+    vec3 period;
+    surface_trace(path.vertex, path.way, false, ahead, period);
+    path.end = ahead.t;
+    bool met = false;
+    path_flight f = path_fly(path, rng, met);
+    if (f.collided) {
+        float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero);
+        path.beta *= max(f.m.sigma_t - f.m.sigma_s, 0.0) / sigma_t;
+        path.rho *= GREY ? vec3(1.0) : f.m.sigma_t / sigma_t;
+        lamp_media = power * path_weight(path);
+    } else if (path.end < PATH_FAR) {
+        lamp_surfaces = power * path_weight(path) * (1.0 - surface_find(ahead, period, path.way).albedo);
+    } else {
+        lamp_escaped = power * path_weight(path);
+    }
+}
+
 void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction)
 {
     emitted = vec3(0.0);
     direct_in = vec3(0.0);
     direct_out = vec3(0.0);
-    place = SURFACES ? rng.key.y % 3u : random.x < 0.5 ? ON_BOUNDARY : IN_MEDIA; // key.y counts the samples
+    lamp_media = vec3(0.0);
+    lamp_surfaces = vec3(0.0);
+    lamp_escaped = vec3(0.0);
+    place = SURFACES ? rng.key.y % num_places() : random.x < 0.5 ? ON_BOUNDARY : IN_MEDIA; // key.y counts the samples
     uvec4 bits = rng_next(rng);
+    if (FROM_LAMPS && place == AT_LAMP) {
+        follow_lamp(rng);
+        measure = vec3(0.0);
+        normal = vec3(0.0);
+        origin = 2.0 * args.box_hi - args.box_lo; // and out of sight
+        direction = vec3(0.0, 0.0, 1.0);
+        heading = direction;
+        heading_normal = vec3(0.0);
+        heading_axis = direction;
+        heading_pdf = 1.0;
+        return;
+    }
     if (SURFACES && place == ON_SURFACE) {
         origin = solid_point(bits, rng_next(rng).x);
     } else if (SURFACES && place == ON_BOUNDARY) {
@@ -151,6 +243,9 @@ float outward_cosine(vec3 direction)
 
 void path_direct(vec3 direction, vec3 irradiance)
 {
+    if (FROM_LAMPS && path_direct_lamp) {
+        return;
+    }
     float outwards = outward_cosine(direction);
     direct_in = measure * irradiance * max(-outwards, 0.0);
     direct_out = measure * irradiance * max(outwards, 0.0);
@@ -171,14 +266,14 @@ void path_end(path_result result)
     vec3 outgoing = direct_out + measure * fluence * max(outwards, 0.0);
     partial.count++;
     float share = 1.0 / float(partial.count);
-    float kinds = SURFACES ? 3.0 : 2.0; // each is drawn so seldom
+    float kinds = float(num_places()); // each is drawn so seldom
     vec3 lit = SURFACES && emitters.count > 0u ? emitters.power : vec3(0.0);
     for (uint c = 0u; c < 3u; c++) {
         add_value(c, place == ON_BOUNDARY ? kinds * incoming[c] : 0.0, share);
         add_value(3u + c, kinds * emitted[c] + lit[c], share);
-        add_value(6u + c, place == IN_MEDIA ? kinds * outgoing[c] : 0.0, share);
-        add_value(9u + c, place == ON_BOUNDARY ? kinds * outgoing[c] : 0.0, share);
-        add_value(12u + c, place == ON_SURFACE ? kinds * outgoing[c] : 0.0, share);
+        add_value(6u + c, kinds * (place == IN_MEDIA ? outgoing[c] : lamp_media[c]), share);
+        add_value(9u + c, kinds * (place == ON_BOUNDARY ? outgoing[c] : lamp_escaped[c]), share);
+        add_value(12u + c, kinds * (place == ON_SURFACE ? outgoing[c] : lamp_surfaces[c]), share);
     }
 }
 
