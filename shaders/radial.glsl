@@ -1,7 +1,7 @@
 // radial.glsl -- local lights: what they send to a point, and the optical depth on the way.
 //
 // Include after medium.glsl and define the bindings:
-//   RADIAL_BLOCK   buffer radial_block: "radials"; RADIAL_UNIFORM defined: a uniform buffer of lamps alone
+//   RADIAL_BLOCK   buffer radial_block: "radials"
 //   RADIAL_COLUMN  sampler: `column` (mode DENSITY) or `tau_s` (mode COEFFICIENTS)
 //   RADIAL_TAU_A, RADIAL_TAU_P   samplers, mode COEFFICIENTS (leave out in kernels that know DENSITY only)
 //
@@ -15,21 +15,12 @@
 #include "radial_lobe.glsl"
 #include "beam_tau.glsl"
 
-#ifdef RADIAL_UNIFORM
-layout(set = 0, binding = RADIAL_BLOCK, scalar) uniform radial_uniform
-{
-    uint radial_count, radial_num_lamps;
-    uvec2 radial_pad;
-    radial_grid radials[TYN_RADIAL_LAMPS_MAX];
-};
-#else
 layout(set = 0, binding = RADIAL_BLOCK, scalar) readonly buffer radial_buffer
 {
     uint radial_count, radial_num_lamps;
     uvec2 radial_pad;
     radial_grid radials[];
 };
-#endif
 layout(set = 0, binding = RADIAL_COLUMN) uniform sampler3D radial_column_tex;
 #ifdef RADIAL_TAU_A
 layout(set = 0, binding = RADIAL_TAU_A) uniform sampler3D radial_tau_a_tex;

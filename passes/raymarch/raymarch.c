@@ -93,7 +93,9 @@ static const tyn_binding bindings[] = {
     {RAYMARCH_PORT_WALL_CELLS, TYN_USE_STORAGE_READ, false},
     {RAYMARCH_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_SHADOWS, TYN_USE_STORAGE_READ, false},
-    {RAYMARCH_PORT_RADIALS, TYN_USE_UNIFORM, false},
+    // No eighth uniform buffer: where a branch depends on one, the compiler of lavapipe 22.3 writes beyond
+    // its memory (its table of inlinable uniforms).
+    {RAYMARCH_PORT_RADIALS, TYN_USE_STORAGE_READ, false},
     {RAYMARCH_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_SIGMA_A, TYN_USE_SAMPLED, false}, // from here on colour only
     {RAYMARCH_PORT_G, TYN_USE_SAMPLED, false},

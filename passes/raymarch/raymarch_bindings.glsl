@@ -54,7 +54,6 @@ layout(binding = 21) uniform sampler2D surface_tex;
 #define SHADOW_ATLAS 24
 #define SHADOW_LIGHTS 25
 #define RADIAL_BLOCK 26
-#define RADIAL_UNIFORM
 #define RADIAL_COLUMN 27
 #ifndef RAYMARCH_GREY
 #define MEDIUM_SIGMA_A 28
