@@ -130,10 +130,14 @@ int scene_open(app *a, const scene_options *options, tyn_scene *scene)
 int scene_prepare(app *a, const tyn_method_info *method, tyn_scene *scene)
 {
     tyn_surfaces *surfaces = &scene->surfaces;
-    if (!method->traces_rays || surfaces->nodes) {
+    if (surfaces->nodes) {
         return EXIT_DONE;
     }
-    return app_exit_code(a, tyn_surfaces_build_nodes(surfaces, &a->log), true);
+    // Other methods are better for one, and say so where there is none.
+    const tyn_log nobody = {0};
+    tyn_result result =
+        tyn_surfaces_build_nodes(surfaces, method->traces_rays ? &a->log : &nobody);
+    return method->traces_rays ? app_exit_code(a, result, true) : EXIT_DONE;
 }
 
 // ---- the camera -------------------------------------------------------------------------------

@@ -35,7 +35,7 @@ enum { VIEW_TABLE_SIZE = 5 };
 // Loads and changes the scene. Gives the exit code; tyn_scene_finish is due in any case.
 int scene_open(app *a, const scene_options *options, tyn_scene *scene);
 
-// Builds what the method needs for the scene's surfaces: a hierarchy, if it traces rays. Gives the exit
+// Builds a hierarchy of the scene's surfaces; without one methods that trace rays are refused. Gives the exit
 // code.
 int scene_prepare(app *a, const tyn_method_info *method, tyn_scene *scene);
 
