@@ -73,15 +73,15 @@ void gen_add_ball(gen_mesh *mesh, const float center[3], float radius, int segme
 // Smooth normals: the mean of the triangles around every place, weighed by their areas.
 void gen_smooth(gen_mesh *mesh);
 
-// A wall with a row of openings under round arches. `along` goes with -z from `from`, the face towards +x is
-// made of `outer` where that is not NULL.
+// A wall with a row of openings under round arches. It runs from `from` towards -z; the face towards +x
+// goes to `outer` where that is not NULL.
 typedef struct gen_arches {
     int bays;
-    float bay;         // width of one
-    float bottom, top; // of the wall
-    float sill,
-        spring; // of the openings: where their sides start (bottom: open below), and the arch
-    float half; // half the width of an opening, the arch's radius
+    float bay;             // width of one
+    float bottom, top;     // of the wall
+    float sill;            // lower end of the openings; that of the wall: they are open below
+    float spring;          // where the arches start
+    float half;            // half the width of an opening, the arch's radius
     float inside, outside; // x of the two faces, inside < outside
     float from;            // z of its beginning
     int steps;             // of a quarter of the arch, even
