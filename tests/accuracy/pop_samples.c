@@ -1,0 +1,120 @@
+// pop_samples.c -- `pop` on the sample scenes with lamps and walls: against pictures of `path`, and where their
+// energy goes.
+//
+// The pictures of `path` are tables in tests/data/walls: means of 12x12 blocks with their standard errors. They are made
+// by this program from pictures of `path` with the layer `error`, square, of a multiple of 12 pixels:
+// TYN_WALLS_MAKE=<folder of NAME-path.exr>. `docs/pictures` leaves such pictures in out/pictures.
+#include "gpu_test.h"
+#include "picture.h"
+#include "sky.h"
+#include <tyndall/io.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BLOCKS = 12, SIZE = 96 };
+
+static const struct wall_case {
+    const char *name;
+    double error, bias; // of the picture, at most
+} cases[] = {
+    {"room", 0.12, 0.05},          {"fog-hall", 0.15, 0.08}, {"lantern", 0.15, 0.08},
+    {"cornell-smoke", 0.12, 0.05}, {"vpl-cave", 0.2, 0.1},   {"many-lights", 0.15, 0.08},
+};
+enum { NUM_CASES = sizeof cases / sizeof cases[0] };
+
+static void load(gpu_test *t, const char *name, tyn_scene *scene)
+{
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s.gltf", TYN_SAMPLE_SCENES, name);
+    tyn_scene_init(scene);
+    assert_int_equal(tyn_scene_load(scene, path, NULL, &t->log), TYN_OK);
+}
+
+static void make_table(gpu_test *t, const char *folder, const char *name)
+{
+    static const char *const names[6] = {"R", "G", "B", "error.R", "error.G", "error.B"};
+    char path[512], comment[128];
+    snprintf(path, sizeof path, "%s/%s-path.exr", folder, name);
+    tyn_image_file image;
+    if (tyn_exr_read(&image, path, &t->log) != TYN_OK) {
+        return;
+    }
+    assert_true(image.width == image.height && image.width % BLOCKS == 0);
+    const size_t count = 3 * (size_t)image.width * image.height;
+    picture p = {image.width, image.height, malloc(count * sizeof(float)),
+                 malloc(count * sizeof(float))};
+    for (size_t i = 0; i < 2 * count; i++) {
+        const size_t c = i / count * 3 + i % 3;
+        const float *from = tyn_image_file_channel(&image, names[c]);
+        assert_non_null(from);
+        (c < 3 ? p.rgb : p.se)[i % count] = from[i % count / 3];
+    }
+    picture blocks;
+    picture_blocks(&blocks, &p, image.width / BLOCKS);
+    snprintf(path, sizeof path, "%s/walls/%s.csv", TYN_TEST_DATA, name);
+    snprintf(comment, sizeof comment, "%s, %ux%u pixels in blocks of %u: path", name, image.width,
+             image.height, image.width / BLOCKS);
+    picture_write_table(&blocks, path, comment);
+    picture_free(&blocks);
+    picture_free(&p);
+    tyn_image_file_finish(&image);
+}
+
+static void pictures(void **state)
+{
+    gpu_test *t = *state;
+    const char *folder = getenv("TYN_WALLS_MAKE");
+    bool good = true;
+    for (int i = 0; folder && i < NUM_CASES; i++) {
+        make_table(t, folder, cases[i].name);
+    }
+    for (int i = 0; i < NUM_CASES; i++) {
+        const struct wall_case *k = &cases[i];
+        char path[512];
+        picture reference, p, blocks;
+        snprintf(path, sizeof path, "%s/walls/%s.csv", TYN_TEST_DATA, k->name);
+        assert_true(picture_read_table(&reference, path));
+        tyn_scene *scene = malloc(sizeof *scene);
+        load(t, k->name, scene);
+        tyn_view view = {.camera = scene->cameras[0], .width = SIZE, .height = SIZE};
+        picture_render(&p, t->dev, "pop", scene, &view, NULL, 0);
+        picture_blocks(&blocks, &p, SIZE / BLOCKS);
+        const picture_error e = picture_compare(&blocks, &reference, 1);
+        print_message("%-14s error %5.2f %% (rel_l1 %5.2f, noise %4.2f), bias %+6.2f %%\n", k->name,
+                      100 * e.reported, 100 * e.rel_l1, 100 * e.noise, 100 * e.bias);
+        good = good && e.reported <= k->error && fabs(e.bias) <= k->bias;
+        picture_free(&blocks);
+        picture_free(&p);
+        picture_free(&reference);
+        tyn_scene_finish(scene);
+        free(scene);
+    }
+    assert_true(good);
+}
+
+// What lamps, suns and the environment send in is absorbed or leaves.
+static void energy(void **state)
+{
+    gpu_test *t = *state;
+    bool good = true;
+    for (int i = 0; i < NUM_CASES; i++) {
+        tyn_scene *scene = malloc(sizeof *scene);
+        load(t, cases[i].name, scene);
+        const double off = scene_imbalance(t->dev, "pop", scene, NULL);
+        print_message("%-14s imbalance %.2f %%\n", cases[i].name, 100 * off);
+        good = good && fabs(off) <= 0.02;
+        tyn_scene_finish(scene);
+        free(scene);
+    }
+    assert_true(good);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pictures), cmocka_unit_test(energy)};
+    setvbuf(stdout, NULL, _IOLBF, 0);
+    cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
