@@ -30,6 +30,7 @@ static void load(gpu_test *t, const char *name, tyn_scene *scene)
     snprintf(path, sizeof path, "%s/%s.gltf", TYN_SAMPLE_SCENES, name);
     tyn_scene_init(scene);
     assert_int_equal(tyn_scene_load(scene, path, NULL, &t->log), TYN_OK);
+    assert_int_equal(tyn_surfaces_build_nodes(&scene->surfaces, &t->log), TYN_OK);
 }
 
 static void make_table(gpu_test *t, const char *folder, const char *name)
