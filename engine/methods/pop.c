@@ -793,5 +793,6 @@ const tyn_method tyn_method_pop = {
     .summary = "principal ordinates: exact beams, one lattice for scattered light",
     .passes = passes,
     .outputs = TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE,
+    .traces_rays = true, // virtual lights see what stands around them
     .declare = declare,
 };
