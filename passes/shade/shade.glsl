@@ -160,8 +160,8 @@ vec3 shade_lamps(shade_point p)
     vec3 sum = vec3(0.0);
     for (uint i = 0u; i < args.num_lamps; i++) {
         // Grids are in the order of the lamps' strength.
-        uint light = shade_has(SHADE_MEDIUM) ? radials[i].light.light : args.num_directional + i;
-        sum += shade_lamp(p, lights[light], light - args.num_directional, i);
+        uint lamp = shade_has(SHADE_MEDIUM) ? radials[i].light.light - TYN_SHADOW_LAMP(0u) : i;
+        sum += shade_lamp(p, lights[args.num_directional + lamp], lamp, i);
     }
     return sum;
 }
