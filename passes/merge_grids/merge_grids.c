@@ -14,10 +14,14 @@ static const tyn_port ports[MERGE_GRIDS_NUM_PORTS] = {
                       .meaning = "struct propagate_place[]"},
     [PORT(SEEN)] = {"seen", TYN_IN, TYN_IMAGE_3D, .optional = true,
                     .meaning = "of propagate_rect: L_acc, 1/sr"},
-    [PORT(RADIAL_PLACES)] = {"radial_places", TYN_IN, TYN_BUFFER, .optional = true,
-                             .meaning = "struct propagate_radial_place[]"},
-    [PORT(RADIAL_SEEN)] = {"radial_seen", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                           .meaning = "of propagate_radial: r^2 L_acc, 1/sr"},
+    [PORT(LAMP_PLACES)] = {"lamp_places", TYN_IN, TYN_BUFFER, .optional = true,
+                           .meaning = "struct propagate_radial_place[]"},
+    [PORT(LAMP_SEEN)] = {"lamp_seen", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                         .meaning = "of propagate_radial: r^2 L_acc, 1/sr"},
+    [PORT(VPL_PLACES)] = {"vpl_places", TYN_IN, TYN_BUFFER, .optional = true,
+                          .meaning = "struct propagate_radial_place[]"},
+    [PORT(VPL_SEEN)] = {"vpl_seen", TYN_IN, TYN_IMAGE_3D, .optional = true,
+                        .meaning = "of propagate_radial: r^2 L_acc, 1/sr"},
     [PORT(RESIDUUM)] = {"residuum", TYN_IN, TYN_IMAGE_3D, .optional = true,
                         .meaning = "of residuum: light to the eye, W/(m^2 sr)"},
     [PORT(MERGED)] = {"merged", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
@@ -25,14 +29,11 @@ static const tyn_port ports[MERGE_GRIDS_NUM_PORTS] = {
 };
 
 static const tyn_binding sum_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},
-    {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(PLACES), TYN_USE_UNIFORM},
-    {PORT(SEEN), TYN_USE_SAMPLED},
-    {PORT(RESIDUUM), TYN_USE_SAMPLED},
-    {PORT(MERGED), TYN_USE_STORAGE_WRITE},
-    {PORT(RADIAL_PLACES), TYN_USE_STORAGE_READ},
-    {PORT(RADIAL_SEEN), TYN_USE_SAMPLED},
+    {PORT(MEDIUM), TYN_USE_UNIFORM},           {PORT(DENSITY), TYN_USE_SAMPLED},
+    {PORT(PLACES), TYN_USE_UNIFORM},           {PORT(SEEN), TYN_USE_SAMPLED},
+    {PORT(RESIDUUM), TYN_USE_SAMPLED},         {PORT(MERGED), TYN_USE_STORAGE_WRITE},
+    {PORT(LAMP_PLACES), TYN_USE_STORAGE_READ}, {PORT(LAMP_SEEN), TYN_USE_SAMPLED},
+    {PORT(VPL_PLACES), TYN_USE_STORAGE_READ},  {PORT(VPL_SEEN), TYN_USE_SAMPLED},
 };
 
 static const tyn_kernel kernels[] = {
@@ -54,8 +55,9 @@ static const tyn_param params[] = {
 static tyn_extent dims_of(const tyn_merge_grids_params *p)
 {
     float longest = fmaxf(p->extent[0], fmaxf(p->extent[1], p->extent[2]));
-    uint32_t finest =
-        p->num_radial && p->radial_cells > p->grid_cells ? p->radial_cells : p->grid_cells;
+    uint32_t finest = p->grid_cells;
+    finest = p->num_lamps && p->lamp_cells > finest ? p->lamp_cells : finest;
+    finest = p->num_vpls && p->vpl_cells > finest ? p->vpl_cells : finest;
     float dx = longest / (float)(finest * (uint32_t)p->finer);
     uint32_t dims[3];
     for (int i = 0; i < 3; i++) {
@@ -70,6 +72,13 @@ static tyn_result declare(tyn_builder *b, const void *data)
     return TYN_OK;
 }
 
+static struct merge_grids_radial radial(const tyn_recorder *r, uint8_t seen, uint32_t count,
+                                        uint32_t cells)
+{
+    return (struct merge_grids_radial){count, cells,
+                                       count ? tyn_rec_extent(r, seen).x / (cells + 2) : 1};
+}
+
 static void record(tyn_recorder *r, const void *data)
 {
     const tyn_merge_grids_params *p = data;
@@ -81,13 +90,12 @@ static void record(tyn_recorder *r, const void *data)
         .channels = p->channels,
         .tiles = p->num_grids ? tyn_rec_extent(r, PORT(SEEN)).x / p->grid_cells : 1,
         .residuum = tyn_rec_has(r, PORT(RESIDUUM)),
-        .num_radial = p->num_radial,
-        .radial_cells = p->radial_cells,
-        .radial_tiles =
-            p->num_radial ? tyn_rec_extent(r, PORT(RADIAL_SEEN)).x / (p->radial_cells + 2) : 1,
+        .lamps = radial(r, PORT(LAMP_SEEN), p->num_lamps, p->lamp_cells),
+        .vpls = radial(r, PORT(VPL_SEEN), p->num_vpls, p->vpl_cells),
     };
     tyn_rec_dispatch(r, &(tyn_dispatch){.cells = dims, .args = &args, .spec = &p->mode});
-    tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * (p->num_grids + p->num_radial));
+    tyn_rec_work(r, "cells",
+                 (double)dims.x * dims.y * dims.z * (p->num_grids + p->num_lamps + p->num_vpls));
 }
 
 const tyn_pass_desc tyn_pass_merge_grids = {

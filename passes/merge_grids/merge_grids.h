@@ -8,24 +8,28 @@
 #include "propagate_args.h"
 
 typedef struct tyn_merge_grids_params {
-    int32_t finer;         // cells of the result per cell of the aligned grids, along an axis; 1..8
-    uint32_t num_grids;    // of propagate_rect; set by the method, as all below
-    uint32_t grid_cells;   // of propagate_rect, along the longest side
-    uint32_t channels;     // of propagate_rect and propagate_radial
-    uint32_t num_radial;   // grids of propagate_radial
-    uint32_t radial_cells; // of its maps, along a side
-    uint32_t mode;         // TYN_MEDIUM_*
-    float extent[3];       // medium_block.extent, m
+    int32_t finer;       // cells of the result per cell of the aligned grids, along an axis; 1..8
+    uint32_t num_grids;  // of propagate_rect; set by the method, as all below
+    uint32_t grid_cells; // of propagate_rect, along the longest side
+    uint32_t channels;   // of propagate_rect and propagate_radial
+    uint32_t num_lamps;  // grids of propagate_radial
+    uint32_t lamp_cells; // of its maps, along a side
+    uint32_t num_vpls;   // grids of another node of propagate_radial
+    uint32_t vpl_cells;
+    uint32_t mode;   // TYN_MEDIUM_*
+    float extent[3]; // medium_block.extent, m
 } tyn_merge_grids_params;
 
 enum {
-    MERGE_GRIDS_PORT_MEDIUM,        // IN buffer struct medium_block
-    MERGE_GRIDS_PORT_DENSITY,       // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
-    MERGE_GRIDS_PORT_PLACES,        // IN optional buffer, of propagate_rect
-    MERGE_GRIDS_PORT_SEEN,          // IN optional 3D, of propagate_rect
-    MERGE_GRIDS_PORT_RADIAL_PLACES, // IN optional buffer, of propagate_radial
-    MERGE_GRIDS_PORT_RADIAL_SEEN,   // IN optional 3D, of propagate_radial
-    MERGE_GRIDS_PORT_RESIDUUM,      // IN optional 3D RGBA32F: of residuum, added
+    MERGE_GRIDS_PORT_MEDIUM,      // IN buffer struct medium_block
+    MERGE_GRIDS_PORT_DENSITY,     // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
+    MERGE_GRIDS_PORT_PLACES,      // IN optional buffer, of propagate_rect
+    MERGE_GRIDS_PORT_SEEN,        // IN optional 3D, of propagate_rect
+    MERGE_GRIDS_PORT_LAMP_PLACES, // IN optional buffer, of propagate_radial
+    MERGE_GRIDS_PORT_LAMP_SEEN,   // IN optional 3D, of propagate_radial
+    MERGE_GRIDS_PORT_VPL_PLACES,  // so
+    MERGE_GRIDS_PORT_VPL_SEEN,
+    MERGE_GRIDS_PORT_RESIDUUM, // IN optional 3D RGBA32F: of residuum, added
     MERGE_GRIDS_PORT_MERGED, // OUT 3D RGBA32F, cubic cells that span the medium's box (lattice.glsl):
     // rgb = light to the eye per unit of sigma_s, W/(m^2 sr); a = mean sigma_s
     // of the cell and the channels, 1/m

@@ -3,6 +3,12 @@
 #define TYN_MERGE_GRIDS_ARGS_H
 #include "shared.h"
 
+struct merge_grids_radial { // grids of one node of propagate_radial
+    tyn_uint count;
+    tyn_uint cells; // of a map along a side; the edge of a tile, less 2
+    tyn_uint tiles; // a row of its `seen`
+};
+
 struct merge_grids_args {
     tyn_uvec3 dims; // cells of the result
     tyn_uint num_grids;
@@ -10,10 +16,9 @@ struct merge_grids_args {
     tyn_uint channels;
     tyn_uint tiles;    // a row of `seen`
     tyn_uint residuum; // 1: add it
-    tyn_uint num_radial;
-    tyn_uint radial_cells; // of a map along a side; the edge of a tile, less 2
-    tyn_uint radial_tiles; // a row of `radial_seen`
+    TYN_STRUCT(merge_grids_radial) lamps;
+    TYN_STRUCT(merge_grids_radial) vpls;
 };
-TYN_ASSERT_SIZE(merge_grids_args, 44);
+TYN_ASSERT_SIZE(merge_grids_args, 56);
 
 #endif

@@ -18,11 +18,16 @@ layout(set = 0, binding = 2, scalar) uniform places_uniform
 layout(set = 0, binding = 3) uniform sampler3D seen;
 layout(set = 0, binding = 4) uniform sampler3D residuum;
 layout(set = 0, binding = 5, rgba32f) uniform writeonly image3D out_merged;
-layout(set = 0, binding = 6, scalar) readonly buffer radial_places_buffer
+layout(set = 0, binding = 6, scalar) readonly buffer lamp_places_buffer
 {
-    propagate_radial_place radial_places[];
+    propagate_radial_place lamp_places[];
 };
-layout(set = 0, binding = 7) uniform sampler3D radial_seen;
+layout(set = 0, binding = 7) uniform sampler3D lamp_seen;
+layout(set = 0, binding = 8, scalar) readonly buffer vpl_places_buffer
+{
+    propagate_radial_place vpl_places[];
+};
+layout(set = 0, binding = 9) uniform sampler3D vpl_seen;
 layout(push_constant, scalar) uniform push { merge_grids_args args; };
 
 // Mean of sigma_s over a cell and the channels: a trilinear fetch is a mean over two voxels.
@@ -55,28 +60,29 @@ float inverse_square(float r, float h)
     return 0.75 / (R * R * R) * (2.0 * R - (r - R * R / r) * log((r + R) / apart));
 }
 
-// Light of a lamp at p, per intensity and channel, times r^2.
-vec3 seen_from(propagate_radial_place place, uint n, vec3 away, float r)
+// Light of a local light at a point, per intensity and channel, times r^2.
+vec3 seen_from(propagate_radial_place place, merge_grids_radial grids, sampler3D found_in, uint n,
+               vec3 away, float r)
 {
     float k = r * place.per_inner;
     vec2 e = octahedral_of(r > 0.0 ? vec3(dot(place.to_map[0], away), dot(place.to_map[1], away),
                                           dot(place.to_map[2], away))
                                    : vec3(0.0, 0.0, 1.0));
     float layer = clamp(k < 1.0 ? k : 1.0 + log(k) * place.per_layer, 0.5, float(place.layers) - 0.5);
-    vec3 at = vec3(1.0 + (0.5 * e + 0.5) * float(args.radial_cells), layer);
-    vec3 texel = 1.0 / vec3(textureSize(radial_seen, 0)), found = vec3(0.0);
+    vec3 at = vec3(1.0 + (0.5 * e + 0.5) * float(grids.cells), layer);
+    vec3 texel = 1.0 / vec3(textureSize(found_in, 0)), found = vec3(0.0);
     for (uint c = 0u; c < args.channels; c++) {
         uint stack = n * args.channels + c;
-        uvec2 corner = uvec2(stack % args.radial_tiles, stack / args.radial_tiles) * (args.radial_cells + 2u);
-        found[c] = textureLod(radial_seen, (vec3(corner, 0.0) + at) * texel, 0.0).r;
+        uvec2 corner = uvec2(stack % grids.tiles, stack / grids.tiles) * (grids.cells + 2u);
+        found[c] = textureLod(found_in, (vec3(corner, 0.0) + at) * texel, 0.0).r;
     }
     return args.channels == 1u ? found.rrr : found;
 }
 
 // Mean over a cell of edge dx: the cells of the radial grid are small next to the light.
-vec3 radial_mean(uint n, vec3 middle, float dx)
+vec3 radial_mean(propagate_radial_place place, merge_grids_radial grids, sampler3D found_in, uint n,
+                 vec3 middle, float dx)
 {
-    propagate_radial_place place = radial_places[n];
     float distant = length(middle - place.position);
     int along = place.layers == 0u ? 0 : distant < 2.0 * dx ? 8 : distant < 6.0 * dx ? 2 : 1;
     float h = dx / float(max(along, 1));
@@ -85,7 +91,7 @@ vec3 radial_mean(uint n, vec3 middle, float dx)
         vec3 part = (vec3(i % along, i / along % along, i / (along * along)) + 0.5) * h - 0.5 * dx;
         vec3 away = middle + part - place.position;
         float r = length(away);
-        sum += inverse_square(r, h) * seen_from(place, n, away, r);
+        sum += inverse_square(r, h) * seen_from(place, grids, found_in, n, away, r);
     }
     return place.intensity * sum / float(max(along * along * along, 1));
 }
@@ -112,8 +118,11 @@ void main()
         }
         light += places[n].irradiance * (args.channels == 1u ? found.rrr : found);
     }
-    for (uint n = 0u; n < args.num_radial; n++) {
-        light += radial_mean(n, p, box.dx);
+    for (uint n = 0u; n < args.lamps.count; n++) {
+        light += radial_mean(lamp_places[n], args.lamps, lamp_seen, n, p, box.dx);
+    }
+    for (uint n = 0u; n < args.vpls.count; n++) {
+        light += radial_mean(vpl_places[n], args.vpls, vpl_seen, n, p, box.dx);
     }
     if (args.residuum != 0u) {
         lattice_box own = lattice_box_of(medium.extent, textureSize(residuum, 0));

@@ -106,6 +106,9 @@ static const tyn_param params[] = {
     {"prefilter", TYN_PARAM_BOOL, FIELD(prefilter), 1, 0, 1, "",
      "lights that stand for a disc start with its mean cosine"},
     {"beta", TYN_PARAM_FLOAT, FIELD(beta), 1, 0.01, 1000, "", "exponent of the prefilter"},
+    {"vpl_cells", TYN_PARAM_INT, FIELD(vpl_cells), 8, 2, 32, "cells",
+     "along a side of the maps of lights that stand for reflections and emission of surfaces, and "
+     "shells"},
 };
 
 // ---- sizes ------------------------------------------------------------------------------------

@@ -18,16 +18,19 @@
 #include "propagate_radial_grid.h"
 
 typedef struct tyn_propagate_radial_params {
-    int32_t cells;         // of the octahedral map along a side, made even; 2..64
-    int32_t shells;        // 1..64
-    int32_t iterations;    // 1..256
-    int32_t init;          // PROPAGATE_RADIAL_INIT_*
-    int32_t scale;         // TYN_PROPAGATE_SCALE_*
-    uint32_t narrowing;    // 1: lobes narrow on their way outwards, 1 - a ~ r^-2
-    uint32_t last_event;   // 1: the light is scattered once more towards the eye: hg(mu, g a)
-    int32_t rate;          // TYN_PROPAGATE_RATE_*
-    uint32_t prefilter;    // 1: lights that stand for a disc start with its mean cosine
-    float beta;            // exponent of that
+    int32_t cells;       // of the octahedral map along a side, made even; 2..64
+    int32_t shells;      // 1..64
+    int32_t iterations;  // 1..256
+    int32_t init;        // PROPAGATE_RADIAL_INIT_*
+    int32_t scale;       // TYN_PROPAGATE_SCALE_*
+    uint32_t narrowing;  // 1: lobes narrow on their way outwards, 1 - a ~ r^-2
+    uint32_t last_event; // 1: the light is scattered once more towards the eye: hg(mu, g a)
+    int32_t rate;        // TYN_PROPAGATE_RATE_*
+    uint32_t prefilter;  // 1: lights that stand for a disc start with its mean cosine
+    float beta;          // exponent of that
+    int32_t
+        vpl_cells; // cells and shells of the grids of VPLs, 2..32: for the method, which gives them a
+                   // node of their own; no kernel reads it
     uint32_t num_lamps;    // set by the method, as all below
     uint32_t max_vpls;     // room for VPLs, 0 to TYN_RADIAL_VPLS_MAX
     uint32_t channels;     // 1 if the medium is the same in all channels, else 3

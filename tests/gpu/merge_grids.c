@@ -182,7 +182,8 @@ static double mean_of_cell(uint32_t q, double dx, const double lamp[3])
     return mean / (FINE * FINE * FINE);
 }
 
-// A lamp's light arrives with the power that its own grid has, wherever the cells are.
+// A lamp's light, and that of an equal VPL, arrives with the power that its own grid has, wherever the
+// cells are.
 static void radial_power(void **state)
 {
     gpu_test *t = *state;
@@ -214,16 +215,17 @@ static void radial_power(void **state)
     tyn_merge_grids_params params;
     tyn_pass_defaults(&tyn_pass_merge_grids, &params);
     params.grid_cells = 4;
-    params.num_radial = params.channels = 1;
-    params.radial_cells = SIDE;
+    params.num_lamps = params.num_vpls = params.channels = 1;
+    params.lamp_cells = params.vpl_cells = SIDE;
     memcpy(params.extent, extent, sizeof extent);
     tyn_ref refs[MERGE_GRIDS_NUM_PORTS] = {{0}};
     tyn_graph_begin(t->graph);
     refs[MERGE_GRIDS_PORT_MEDIUM] = gpu_buffer(t, "medium", &medium, sizeof medium);
     refs[MERGE_GRIDS_PORT_DENSITY] =
         gpu_image(t, "density", TYN_IMAGE_3D, (tyn_extent){NX, NY, NZ}, 1, density);
-    refs[MERGE_GRIDS_PORT_RADIAL_PLACES] = gpu_buffer(t, "places", &place, sizeof place);
-    refs[MERGE_GRIDS_PORT_RADIAL_SEEN] = gpu_image(
+    refs[MERGE_GRIDS_PORT_LAMP_PLACES] = refs[MERGE_GRIDS_PORT_VPL_PLACES] =
+        gpu_buffer(t, "places", &place, sizeof place);
+    refs[MERGE_GRIDS_PORT_LAMP_SEEN] = refs[MERGE_GRIDS_PORT_VPL_SEEN] = gpu_image(
         t, "seen", TYN_IMAGE_3D, (tyn_extent){SIDE + 2, SIDE + 2, LAYERS}, 1, &tile[0][0][0]);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_merge_grids, &params, refs), TYN_OK);
     tyn_graph_output(t->graph, "merged", refs[MERGE_GRIDS_PORT_MERGED], true);
@@ -234,7 +236,7 @@ static void radial_power(void **state)
     assert_true(size.x == 24 && size.y == 20 && size.z == 16); // twice as fine as the map
     double sum = 0, expected = 0, worst = 0;
     for (uint32_t q = 0; q < size.x * size.y * size.z; q++) {
-        double of_cell = (double)found[4 * q], mean = mean_of_cell(q, 1.2 / 24, lamp);
+        double of_cell = (double)found[4 * q], mean = 2 * mean_of_cell(q, 1.2 / 24, lamp);
         assert_float_equal(found[4 * q + 2], 4 * of_cell, 1e-5 * of_cell);
         sum += of_cell;
         expected += mean;
