@@ -319,6 +319,14 @@ float march_least_h(march_lamps ray, float s)
     return 0.282 * (ray.pixel + ray.spread * (ray.start + s)) + 1e-6 * medium.voxel.x;
 }
 
+// ... and one that passes the lamp at `x` pixels has more than its own 1 / h: over a square 1.20 of it at 0.5,
+// 1.25 at 0.71, the corner, and 1 + 1 / (24 x^2) far away.
+float march_pixel_mean(float x)
+{
+    float y = 1.0 / max(x * x, 0.08);
+    return 1.0 + min(max(x - 0.282, 0.0), min(y * (1.0 / 24.0 + 0.02 * y * y), 0.25));
+}
+
 const float MARCH_LAMP_STEP = 0.15; // steps are no longer than this part of the distance from a lamp
 
 float march_lamp_step(march_lamps ray, float s)
@@ -353,6 +361,7 @@ vec3 march_lamplight(uint n, march_lamps ray, march_medium unit, march_medium m,
     float h2 = max(dot(across, across), least * least);
     float a = along + (s - at), b = a + ds, q = h2 + a * b, z = sqrt(h2) * ds;
     float mean = q > 4.0 * z ? (1.0 - z * z / (3.0 * q * q)) / q : atan(z, q) / z;
+    mean *= march_pixel_mean(length(across) * (0.282 / least));
     // Where the angle from the lamp is in the middle: half of the light is on either side.
     float ra = sqrt(h2 + a * a), rb = sqrt(h2 + b * b);
     float middle = (a * rb + b * ra) / (ra + rb) + (at - s - 0.5 * ds);
