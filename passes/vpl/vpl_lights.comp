@@ -78,6 +78,21 @@ vec4 total_of(vec4 v)
     return sums[0];
 }
 
+float most_of(float v)
+{
+    uint lane = gl_LocalInvocationIndex;
+    barrier();
+    sums[lane].x = v;
+    for (uint half_size = VPL_BLOCK / 2u; half_size > 0u; half_size /= 2u) {
+        barrier();
+        if (lane < half_size) {
+            sums[lane].x = max(sums[lane].x, sums[lane + half_size].x);
+        }
+    }
+    barrier();
+    return sums[0].x;
+}
+
 // Cumulated weights before and after this thread's element of a block: the same for every VPL.
 vec2 weights_around(uint block)
 {
@@ -230,6 +245,21 @@ void main()
     // distance r^2 / 2 from its centre.
     float spread = place.w > 0.0 ? normal.w / place.w - dot(offset, offset) : 0.0;
     light.radius = sqrt(min(2.0 * max(spread, 0.0), flux.a / VPL_PI));
+    // The mean of a curved or rough piece lies below some of it, which would be in its light's way.
+    float above = 0.0;
+    for (uint b = first; b < plan.num_blocks && blocks[b] < stratum.to; b++) {
+        if (blocks[b + 1u] > blocks[b]) {
+            vec2 part = part_of(b, stratum);
+            uint pieces = part.y > part.x ? vpl_pieces(b) : 0u;
+            for (uint k = 0u; k < pieces; k++) {
+                vpl_piece p = vpl_piece_of(b, lane, part, k, pieces);
+                vec3 d = p.position - centre.position;
+                float v = same_piece(d, p.normal, centre.normal, flux.a);
+                above = max(above, min(v, 1.0) * dot(d - offset, light.axis));
+            }
+        }
+    }
+    light.position += most_of(above) * light.axis;
     vec3 depth = vec3(0.0);
     if (args.media != 0u && block < plan.front) {
         depth = depth_from_light(plan.tiles[vpl_tile_of(block)].map.light, light.position);

@@ -347,5 +347,6 @@ int main(void)
         cmocka_unit_test(infinite_medium), cmocka_unit_test(balance),
         cmocka_unit_test(stress),
     };
+    cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
