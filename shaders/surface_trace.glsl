@@ -17,6 +17,7 @@
 
 const uint SURFACE_NONE = 0xffffffffu;
 const float SURFACE_EPSILON = 5.9604645e-8; // half an ulp of 1
+const float SURFACE_MISSED = 3e38; // of a box: the ray does not enter it
 
 struct surface_hit {
     float t;         // m; surface_trace finds hits nearer than the value it is given
@@ -99,7 +100,7 @@ bool surface_meet(surface_ray ray, uint index, inout surface_hit hit)
     return true;
 }
 
-// Where the ray enters a box; beyond `far` if it does not before `far`. Never misses a box for rounding: Ize,
+// Where the ray enters a box; SURFACE_MISSED if it does not before `far`. Never misses a box for rounding: Ize,
 // "Robust BVH ray traversal" (JCGT 2(2), 2013).
 float surface_enter(surface_ray ray, vec3 lo, vec3 hi, float far)
 {
@@ -107,7 +108,7 @@ float surface_enter(surface_ray ray, vec3 lo, vec3 hi, float far)
     vec3 enter = min(a, b), leave = max(a, b);
     float near = max(max(enter.x, enter.y), max(enter.z, 0.0));
     float end = min(min(leave.x, leave.y), leave.z) * (1.0 + 8.0 * SURFACE_EPSILON);
-    return near <= min(end, far) ? near : 3e38;
+    return near <= min(end, far) ? near : SURFACE_MISSED;
 }
 
 // The nearest hit before `hit.t`, or with `any` the first that is found. False if there is none.
@@ -123,7 +124,7 @@ bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
     uint stack[TYN_SURFACE_STACK];
     int depth = 0;
     uint at = 0u;
-    if (surface_enter(ray, nodes[0].lo, nodes[0].hi, hit.t) > hit.t) {
+    if (surface_enter(ray, nodes[0].lo, nodes[0].hi, hit.t) == SURFACE_MISSED) {
         return false;
     }
     // Lanes that run together look for leaves together, then try their triangles together.
@@ -133,10 +134,10 @@ bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
             float left = surface_enter(ray, nodes[first].lo, nodes[first].hi, hit.t);
             float right = surface_enter(ray, nodes[first + 1u].lo, nodes[first + 1u].hi, hit.t);
             uint near = right < left ? first + 1u : first;
-            if (max(left, right) <= hit.t) {
+            if (max(left, right) < SURFACE_MISSED) { // the ray may reach as far as infinity
                 stack[depth++] = 2u * first + 1u - near;
             }
-            if (min(left, right) <= hit.t) {
+            if (min(left, right) < SURFACE_MISSED) {
                 at = near;
             } else if (depth > 0) {
                 at = stack[--depth];

@@ -269,12 +269,48 @@ static void from_surfaces(void **state)
     }
 }
 
+// Only boxes that a ray meets are opened, also as long as nothing has been hit: a quad that stands in its way but
+// outside its leaf's box is not seen.
+static void only_boxes_met(void **state)
+{
+    tyn_scene scene;
+    tyn_scene_init(&scene);
+    uint32_t m = solids_material(&scene, (float[]){0, 0, 0}, (float[]){0, 0, 0});
+    solids_quad(&scene, (float[]){-1, -1, 2}, (float[]){2, 0, 0}, (float[]){0, 2, 0}, m);
+    solids_quad(&scene, (float[]){-1, -1, 5}, (float[]){2, 0, 0}, (float[]){0, 2, 0}, m);
+    tyn_surface_node nodes[3] = {
+        {.lo = {-1, -1, 1}, .hi = {9, 9, 5}, .first = 1},
+        {.lo = {5, 5, 1}, .hi = {9, 9, 3}, .first = 0, .count = 2},
+        {.lo = {-1, -1, 5}, .hi = {1, 1, 5}, .first = 2, .count = 2},
+    };
+    scene.surfaces.nodes = nodes;
+    scene.surfaces.num_nodes = 3;
+    struct surface_block block = {.num_triangles = 0};
+    make_frame(&block, 0, (float[]){0, 0, 0});
+    for (int k = 0; k < COUNT; k++) {
+        const float origin[3] = {(float)(uniform() - 0.5), (float)(uniform() - 0.5), 0};
+        memcpy(rays[k].origin, origin, sizeof origin);
+        memcpy(rays[k].direction, (float[]){0, 0, k % 2 ? 1 : -1}, sizeof origin);
+    }
+    const ray_out *out = trace(*state, &scene, &block, false, true);
+    for (int k = 0; k < COUNT; k++) {
+        if (k % 2) {
+            assert_float_equal(out[k].t, 5, 1e-5);
+        } else {
+            assert_true(out[k].t > 1e37f); // nothing is met
+        }
+    }
+    scene.surfaces.nodes = NULL;
+    tyn_scene_finish(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(closed_meshes),
         cmocka_unit_test(same_as_all),
         cmocka_unit_test(from_surfaces),
+        cmocka_unit_test(only_boxes_met),
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
