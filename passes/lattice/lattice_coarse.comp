@@ -39,6 +39,8 @@ layout(constant_id = 0) const uint walls = 0;
 shared float correction[LATTICE_COARSE_CELLS * 11 / 8];
 shared float rhs[LATTICE_COARSE_CELLS * 3 / 8];
 
+shared vec2 sums[LATTICE_COARSE_GROUP];
+
 // On the coarsest level, at most 4^3 cells, over-relaxed.
 const uint COARSEST_RELAXATIONS = 8;
 const float COARSEST_OMEGA = 1.5;
@@ -124,7 +126,51 @@ void restrict_to_next()
     barrier();
 }
 
-void interpolate_from_next()
+// How much of the correction e of the level at work the next finer one is to get.
+//
+// Beside walls corrections are carried over unblended, as steps between coarse cells. Such steps e hold
+// twice the energy e.A e that they have on the coarse level, whose conductances are right for blended
+// ones. Corrections that mostly are steps would be too large by up to 2 on every level, and the cycle
+// would diverge: so they are scaled to the least energy, r.e / e.A e (Braess, "Towards algebraic
+// multigrid for elliptic problems of second order", Computing 55, 1995).
+float step_length()
+{
+    if (walls == 0) {
+        return 1.0;
+    }
+    vec2 sum = vec2(0.0);
+    uint n = lattice_num_cells(at.size), me = gl_LocalInvocationIndex;
+    for (uint i = me; i < n; i += LATTICE_COARSE_GROUP) {
+        ivec3 c = cell_of(i, at.size);
+        uint id = channel + lattice_index(at, c);
+        lattice_stencil k = lattice_stencil_of(stencil_lo[id], stencil_hi[id]);
+        float e = correction[index_of(c)];
+        float r = at.first == first.first ? rhs_in[id] : rhs[index_of(c) - lattice_num_cells(first.size)];
+        // Each cell has half of the energy of its faces.
+        float steps = lattice_open(stencil_lo[id], stencil_hi[id]) ? 0.5 : 1.0;
+        vec3 lo = vec3(0.0), hi = vec3(0.0);
+        for (int axis = 0; axis < 3; axis++) {
+            ivec3 q = c;
+            q[axis]--;
+            lo[axis] = c[axis] > 0 ? correction[index_of(q)] - e : sqrt(2.0) * e;
+            q[axis] += 2;
+            hi[axis] = c[axis] < at.size[axis] - 1 ? correction[index_of(q)] - e : sqrt(2.0) * e;
+        }
+        sum += vec2(r * e, k.absorption * e * e + steps * (dot(k.lo, lo * lo) + dot(k.hi, hi * hi)));
+    }
+    barrier();
+    sums[me] = sum;
+    for (uint half_n = LATTICE_COARSE_GROUP / 2; half_n > 0; half_n /= 2) {
+        barrier();
+        if (me < half_n) {
+            sums[me] += sums[me + half_n];
+        }
+    }
+    barrier();
+    return sums[0].y > 0.0 ? clamp(sums[0].x / sums[0].y, 0.0, 4.0) : 1.0;
+}
+
+void interpolate_from_next(float scale)
 {
     lattice_level next = lattice_next_level(at);
     uint to = at.first - first.first;
@@ -147,7 +193,7 @@ void interpolate_from_next()
             uint q = lattice_index(next, c) - first.first;
             sum += lattice_corner_weight(corner) * correction[q];
         }
-        correction[to + i] += sum;
+        correction[to + i] += scale * sum;
     }
     barrier();
 }
@@ -169,11 +215,13 @@ void main()
     }
     relax(COARSEST_RELAXATIONS, COARSEST_OMEGA);
     for (uint level = args.levels - 1; level > args.level; level--) {
+        float scale = step_length();
         at = lattice_level_of(ivec3(args.dims), level - 1);
-        interpolate_from_next();
+        interpolate_from_next(scale);
         relax(1, 1.0);
     }
+    float scale = args.level > 0u ? step_length() : 1.0;
     for (uint i = gl_LocalInvocationIndex; i < n; i += LATTICE_COARSE_GROUP) {
-        correction_out[in_buffer + i] = correction[i];
+        correction_out[in_buffer + i] = scale * correction[i];
     }
 }
