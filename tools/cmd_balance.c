@@ -22,6 +22,7 @@ static int print_balance(app *a, const tyn_balance *balance, bool json)
         {"absorbed_surfaces", balance->absorbed_surfaces},
         {"escaped", balance->escaped},
         {"imbalance", balance->imbalance},
+        {"imbalance_se", balance->imbalance_se},
     };
     cJSON *object = json ? cJSON_CreateObject() : NULL;
     for (size_t i = 0; i < ARRAY_SIZE(rows); i++) {
@@ -30,7 +31,7 @@ static int print_balance(app *a, const tyn_balance *balance, bool json)
             cJSON_AddItemToObject(object, rows[i].name, cJSON_CreateDoubleArray(v, 3));
         } else {
             printf("%-18s %14.7g %14.7g %14.7g%s\n", rows[i].name, v[0], v[1], v[2],
-                   v == balance->imbalance ? "" : " W");
+                   i < 5 ? " W" : "");
         }
     }
     return json ? json_write(a, object, NULL) : EXIT_DONE;

@@ -89,24 +89,25 @@ struct path_probe_result { // as tyn_probe_result
 };
 TYN_ASSERT_SIZE(path_probe_result, 96);
 
-// A balance's values, 3 channels each: entering, emitted, absorbed by media, escaped, absorbed by surfaces; W.
-#define TYN_PATH_BALANCE_VALUES 15
+// A balance's values, 3 channels each: entering, emitted, absorbed by media, escaped, absorbed by surfaces; W. Then
+// what is given less what is taken of the same samples, for its standard error.
+#define TYN_PATH_BALANCE_VALUES 18
 
 struct path_balance_partial { // likewise
     float mean[TYN_PATH_BALANCE_VALUES], deviation[TYN_PATH_BALANCE_VALUES];
     tyn_uint count;
 };
-TYN_ASSERT_SIZE(path_balance_partial, 124);
+TYN_ASSERT_SIZE(path_balance_partial, 148);
 
 struct path_balance_state {
     float mean[TYN_PATH_BALANCE_VALUES], low[TYN_PATH_BALANCE_VALUES],
         deviation[TYN_PATH_BALANCE_VALUES];
 };
-TYN_ASSERT_SIZE(path_balance_state, 180);
+TYN_ASSERT_SIZE(path_balance_state, 216);
 
 struct path_balance_result {
     float value[TYN_PATH_BALANCE_VALUES], error[TYN_PATH_BALANCE_VALUES];
 };
-TYN_ASSERT_SIZE(path_balance_result, 120);
+TYN_ASSERT_SIZE(path_balance_result, 144);
 
 #endif

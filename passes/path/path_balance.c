@@ -57,7 +57,7 @@ uint64_t tyn_path_balance_state_size(void)
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_path_params *p = params;
-    tyn_build_buffer(b, PATH_BALANCE_PORT_BALANCE, 6 * 3 * sizeof(double));
+    tyn_build_buffer(b, PATH_BALANCE_PORT_BALANCE, 7 * 3 * sizeof(double));
     tyn_build_buffer(b, PATH_BALANCE_PORT_RESULT, sizeof(struct path_balance_result));
     tyn_build_buffer(b, PATH_BALANCE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, PATH_BALANCE_PORT_PARTIALS,

@@ -269,11 +269,16 @@ void path_end(path_result result)
     float kinds = float(num_places()); // each is drawn so seldom
     vec3 lit = SURFACES && emitters.count > 0u ? emitters.power : vec3(0.0);
     for (uint c = 0u; c < 3u; c++) {
-        add_value(c, place == ON_BOUNDARY ? kinds * incoming[c] : 0.0, share);
+        float entering = place == ON_BOUNDARY ? kinds * incoming[c] : 0.0;
+        float media = kinds * (place == IN_MEDIA ? outgoing[c] : lamp_media[c]);
+        float escaped = kinds * (place == ON_BOUNDARY ? outgoing[c] : lamp_escaped[c]);
+        float solid = kinds * (place == ON_SURFACE ? outgoing[c] : lamp_surfaces[c]);
+        add_value(c, entering, share);
         add_value(3u + c, kinds * emitted[c] + lit[c], share);
-        add_value(6u + c, kinds * (place == IN_MEDIA ? outgoing[c] : lamp_media[c]), share);
-        add_value(9u + c, kinds * (place == ON_BOUNDARY ? outgoing[c] : lamp_escaped[c]), share);
-        add_value(12u + c, kinds * (place == ON_SURFACE ? outgoing[c] : lamp_surfaces[c]), share);
+        add_value(6u + c, media, share);
+        add_value(9u + c, escaped, share);
+        add_value(12u + c, solid, share);
+        add_value(15u + c, entering + kinds * emitted[c] - media - escaped - solid, share);
     }
 }
 

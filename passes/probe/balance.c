@@ -48,7 +48,7 @@ static const tyn_kernel kernels[] = {
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     (void)params;
-    tyn_build_buffer(b, BALANCE_PORT_BALANCE, 6 * 3 * sizeof(double)); // tyn_balance: six triples
+    tyn_build_buffer(b, BALANCE_PORT_BALANCE, 7 * 3 * sizeof(double)); // tyn_balance: seven triples
     return TYN_OK;
 }
 

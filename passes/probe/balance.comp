@@ -46,10 +46,10 @@ layout(binding = 7, scalar) readonly buffer leak_buffer
 {
     float leaks[];
 };
-// tyn_balance: six triples of doubles, each as two words; a device need not know doubles.
+// tyn_balance: seven triples of doubles, each as two words; a device need not know doubles.
 layout(binding = 8, scalar) writeonly buffer balance_buffer
 {
-    uvec2 balance[6][3];
+    uvec2 balance[7][3];
 };
 
 layout(binding = 9, scalar) uniform ordinates_uniform
@@ -150,4 +150,5 @@ void main()
     write(3, ch, wall_sums[0].x);
     write(4, ch, escaped);
     write(5, ch, given > 0.0 ? 1.0 - (absorbed + wall_sums[0].x + escaped) / given : 0.0);
+    write(6, ch, 0.0); // nothing is drawn at random
 }

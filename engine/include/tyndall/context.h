@@ -57,6 +57,7 @@ typedef struct tyn_probe_result {
 
 typedef struct tyn_balance { // W, per channel
     double entering[3], emitted[3], absorbed_media[3], absorbed_surfaces[3], escaped[3], imbalance[3];
+    double imbalance_se[3]; // its standard error (path), else 0
 } tyn_balance;
 
 // What to compute and from where.
