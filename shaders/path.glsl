@@ -29,6 +29,9 @@
 //   void path_end(path_result)                       -- the path's contribution
 #ifndef TYN_PATH_GLSL
 #define TYN_PATH_GLSL
+#ifndef PATH_ENDS_AT_FIRST_SURFACE
+#define PATH_ENDS_AT_FIRST_SURFACE false // only what the surface emits counts then
+#endif
 #include "env_sampling.glsl"
 #include "path_lights.glsl"
 #include "path_media.glsl"
@@ -519,7 +522,7 @@ void path_run(uint element, uint first, uint end)
                 }
                 path_add(result, sky, path.depth);
             }
-        } else if (path.depth >= args.max_depth) {
+        } else if (path.depth >= args.max_depth || (at_surface && path.depth == 0u && PATH_ENDS_AT_FIRST_SURFACE)) {
             ended = true;
         } else {
             path.depth++;

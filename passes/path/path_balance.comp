@@ -2,7 +2,9 @@
 // and emit, on solid surfaces for what these absorb, on the boundary for what comes in and goes out. The kinds of
 // points know nothing of each other, so that the sums agree is a check. The boundary is that of the media; with
 // solid surfaces a box around everything. Next to lamps light is too uneven for such points: where there are
-// surfaces, the first flights of lamplight are followed from the lamps, and the points are spared it.
+// surfaces, the first flights of lamplight are followed from the lamps, and the points are spared it. And a
+// boundary's point hardly ever finds the small patches that lamps light: what surfaces reflect out of the box is followed from
+// the surfaces.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -18,11 +20,13 @@ layout(set = 0, binding = 18, scalar) readonly buffer areas_buffer {
     surface_cell area_cells[];
 };
 
+const uint IN_MEDIA = 0u, ON_BOUNDARY = 1u, ON_SURFACE = 2u, AT_LAMP = 3u;
+uint place;
+#define PATH_ENDS_AT_FIRST_SURFACE (place == ON_BOUNDARY)
 #include "path.glsl"
 #include "path_heading.glsl"
 
 path_balance_partial partial;
-const uint IN_MEDIA = 0u, ON_BOUNDARY = 1u, ON_SURFACE = 2u, AT_LAMP = 3u;
 const bool FROM_LAMPS = (FLAGS & TYN_PATH_FROM_LAMPS) != 0u;
 
 // How many kinds of points there are.
@@ -37,12 +41,13 @@ uint num_places()
     return 2u;
 }
 
-uint place;
 vec3 normal;      // of the boundary, outwards, or of the surface
 vec3 measure;     // what a unit of radiance per steradian at the point stands for: area, or volume times sigma_a
 vec3 emitted;     // of the media at the point, W
 vec3 direct_in, direct_out; // of lamps and suns; direct_out: inside, absorbed
 vec3 lamp_media, lamp_surfaces, lamp_escaped; // where a lamp's light ends its first flight, W
+vec3 kept;     // of the light that arrives at a surface, what it absorbs,
+vec3 sent_out; // and what it reflects and leaves without meeting anything
 
 // A point of a box's surface, from numbers in [0, 1).
 vec3 box_face_point(vec3 lo, vec3 hi, uvec4 bits)
@@ -58,8 +63,36 @@ vec3 box_face_point(vec3 lo, vec3 hi, uvec4 bits)
     return lo + mix(random, vec3(side), greaterThan(along, vec3(0.0))) * size;
 }
 
-// A point of the triangles, on either side; weighed by what the surface absorbs.
-vec3 solid_point(uvec4 bits, uint more)
+// What is left, out of sight of everything, of light that goes on from a surface by the cosine.
+vec3 reflected_out(path_state path, surface_point point, vec3 side, inout rng_state rng)
+{
+    uvec4 bits = rng_next(rng);
+    path.vertex = surface_offset(point, side);
+    path.way = cosine_sample(side, rng_vec2(bits.xy));
+    surface_hit ahead = surface_hit(PATH_FAR, SURFACE_NONE, vec2(0.0));
+    vec3 period;
+    if (surface_trace(path.vertex, path.way, true, ahead, period)) {
+        return vec3(0.0);
+    }
+    path.end = PATH_FAR;
+    bool met = false;
+    path_flight f = path_fly(path, rng, met);
+    return f.collided ? vec3(0.0) : path_weight(path);
+}
+
+path_state path_new(float u)
+{
+    path_state path;
+    path.beta = vec3(1.0);
+    path.rho = vec3(1.0);
+    path.hero = GREY ? vec3(1.0, 0.0, 0.0) : vec3(u < 1.0, u >= 1.0 && u < 2.0, u >= 2.0);
+    path.depth = 0u;
+    path.steps = 0u;
+    return path;
+}
+
+// A point of the triangles, on either side.
+vec3 solid_point(uvec4 bits, inout rng_state rng)
 {
     uint high, low;
     umulExtended(bits.x, areas.count, high, low);
@@ -67,8 +100,12 @@ vec3 solid_point(uvec4 bits, uint more)
     vec2 barycentric = triangle_sample(rng_vec2(bits.zw));
     surface_point point = surface_point_at(index, barycentric);
     surface_material material = materials[triangles[index].material];
-    normal = rng_float(more) < 0.5 ? point.normal : -point.normal;
-    measure = 2.0 * areas.weight * (1.0 - surface_albedo(material, index, barycentric));
+    uvec4 more = rng_next(rng);
+    normal = rng_float(more.x) < 0.5 ? point.normal : -point.normal;
+    measure = vec3(2.0 * areas.weight);
+    vec3 albedo = surface_albedo(material, index, barycentric);
+    kept = 1.0 - albedo;
+    sent_out = albedo * reflected_out(path_new(3.0 * rng_float(more.y)), point, normal, rng);
     return surface_offset(point, normal);
 }
 
@@ -173,15 +210,9 @@ void follow_lamp(inout rng_state rng)
     float falloff = lamp.kind == TYN_LIGHT_KIND_SPOT ? spot_falloff(lamp, way) : 1.0;
     vec3 power = lamp.color * (falloff * total / max3(lamp.color));
 
-    path_state path;
+    path_state path = path_new(3.0 * rng_float(bits.w));
     path.vertex = lamp.position;
     path.way = way;
-    path.beta = vec3(1.0);
-    path.rho = vec3(1.0);
-    float u = 3.0 * rng_float(bits.w);
-    path.hero = GREY ? vec3(1.0, 0.0, 0.0) : vec3(u < 1.0, u >= 1.0 && u < 2.0, u >= 2.0);
-    path.depth = 0u;
-    path.steps = 0u;
     surface_hit ahead = surface_hit(PATH_FAR, SURFACE_NONE, vec2(0.0));
     vec3 period;
     surface_trace(path.vertex, path.way, false, ahead, period);
@@ -194,7 +225,10 @@ void follow_lamp(inout rng_state rng)
         path.rho *= GREY ? vec3(1.0) : f.m.sigma_t / sigma_t;
         lamp_media = power * path_weight(path);
     } else if (path.end < PATH_FAR) {
-        lamp_surfaces = power * path_weight(path) * (1.0 - surface_find(ahead, period, path.way).albedo);
+        surface_finding found = surface_find(ahead, period, path.way);
+        lamp_surfaces = power * path_weight(path) * (1.0 - found.albedo);
+        path.beta *= found.albedo;
+        lamp_escaped = power * reflected_out(path, found.point, found.point.normal, rng);
     } else {
         lamp_escaped = power * path_weight(path);
     }
@@ -208,6 +242,8 @@ void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 dire
     lamp_media = vec3(0.0);
     lamp_surfaces = vec3(0.0);
     lamp_escaped = vec3(0.0);
+    kept = vec3(0.0);
+    sent_out = vec3(0.0);
     place = SURFACES ? rng.key.y % num_places() : random.x < 0.5 ? ON_BOUNDARY : IN_MEDIA; // key.y counts the samples
     uvec4 bits = rng_next(rng);
     if (FROM_LAMPS && place == AT_LAMP) {
@@ -223,7 +259,7 @@ void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 dire
         return;
     }
     if (SURFACES && place == ON_SURFACE) {
-        origin = solid_point(bits, rng_next(rng).x);
+        origin = solid_point(bits, rng);
     } else if (SURFACES && place == ON_BOUNDARY) {
         origin = box_face_point(args.box_lo, args.box_hi, bits);
     } else if (place == ON_BOUNDARY) {
@@ -271,8 +307,10 @@ void path_end(path_result result)
     for (uint c = 0u; c < 3u; c++) {
         float entering = place == ON_BOUNDARY ? kinds * incoming[c] : 0.0;
         float media = kinds * (place == IN_MEDIA ? outgoing[c] : lamp_media[c]);
-        float escaped = kinds * (place == ON_BOUNDARY ? outgoing[c] : lamp_escaped[c]);
-        float solid = kinds * (place == ON_SURFACE ? outgoing[c] : lamp_surfaces[c]);
+        float escaped = kinds * (place == ON_BOUNDARY ? outgoing[c]
+                                 : place == ON_SURFACE ? sent_out[c] * outgoing[c]
+                                                       : lamp_escaped[c]);
+        float solid = kinds * (place == ON_SURFACE ? kept[c] * outgoing[c] : lamp_surfaces[c]);
         add_value(c, entering, share);
         add_value(3u + c, kinds * emitted[c] + lit[c], share);
         add_value(6u + c, media, share);

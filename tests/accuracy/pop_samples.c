@@ -1,5 +1,4 @@
-// pop_samples.c -- `pop` on the sample scenes with lamps and walls: against pictures of `path`, and where their
-// energy goes.
+// pop_samples.c -- `pop` on the sample scenes with lamps and walls: against pictures of `path`.
 //
 // The pictures of `path` are tables in tests/data/walls: means of 12x12 blocks with their standard errors. They are made
 // by this program from pictures of `path` with the layer `error`, square, of a multiple of 12 pixels:
@@ -95,26 +94,9 @@ static void pictures(void **state)
     assert_true(good);
 }
 
-// What lamps, suns and the environment send in is absorbed or leaves.
-static void energy(void **state)
-{
-    gpu_test *t = *state;
-    bool good = true;
-    for (int i = 0; i < NUM_CASES; i++) {
-        tyn_scene *scene = malloc(sizeof *scene);
-        load(t, cases[i].name, scene);
-        const double off = scene_imbalance(t->dev, "pop", scene, NULL);
-        print_message("%-14s imbalance %.2f %%\n", cases[i].name, 100 * off);
-        good = good && fabs(off) <= 0.02;
-        tyn_scene_finish(scene);
-        free(scene);
-    }
-    assert_true(good);
-}
-
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(pictures), cmocka_unit_test(energy)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pictures)};
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
