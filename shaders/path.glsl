@@ -399,7 +399,7 @@ vec4 path_lobe(inout rng_state rng, float u)
                                            : vec4(0.0, 0.0, 0.0, -1.0);
 }
 
-bool path_direct_lamp = false; // path_direct is given light of a lamp
+bool path_direct_light = false; // path_direct is given light of a sun or a lamp
 
 // Probes: the light of lamps, suns and emitters at the first point of a path, and how likely emitters were drawn.
 float path_meet_lights(inout path_state path, inout rng_state rng)
@@ -419,7 +419,7 @@ float path_meet_lights(inout path_state path, inout rng_state rng)
     } else {
         light = light_towards(choice.index, path.vertex);
     }
-    path_direct_lamp = light.distance < PATH_FAR && target == SURFACE_NONE;
+    path_direct_light = target == SURFACE_NONE;
     if (max3(light.arriving) > 0.0 && !surface_hides(path.vertex, light.direction, light.distance, target)) {
         vec3 passed = path_transmittance(path.vertex, light.direction, light.distance, rng, path.steps);
         path_direct(light.direction, light.arriving * passed / choice.probability);

@@ -28,7 +28,7 @@
 #define TYN_PATH_SCATTERED 32u   // probes leave out light that comes straight from its source
 #define TYN_PATH_SURFACES 256u   // there are triangles
 #define TYN_PATH_EMITTERS 512u   // ... and a table by which emissive ones are drawn
-#define TYN_PATH_FROM_LAMPS 1024u // balance: the first flights of lamplight are followed from the lamps
+#define TYN_PATH_FROM_LIGHTS 1024u // balance: the first flights of light are followed from suns and lamps
 
 struct path_args {
     tyn_uint first;       // pixel or point of this dispatch's first thread

@@ -70,29 +70,36 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_path_params *p = params;
     uint32_t spec[TYN_PATH_NUM_SPEC];
     path_specialise(spec, p);
-    if (p->surfaces && p->num_lamps && !p->repeat) {
-        spec[TYN_PATH_SPEC_FLAGS] |= TYN_PATH_FROM_LAMPS;
+    if (p->surfaces && p->num_lights && !p->repeat) {
+        spec[TYN_PATH_SPEC_FLAGS] |= TYN_PATH_FROM_LIGHTS;
     }
+    // A sample of the balance is one of each kind of points.
+    const uint32_t kinds = !p->surfaces                                       ? 2
+                           : spec[TYN_PATH_SPEC_FLAGS] & TYN_PATH_FROM_LIGHTS ? 4
+                                                                              : 3;
+    const uint32_t groups = p->num_samples > kinds ? p->num_samples / kinds : 1;
+    const uint32_t before = p->first_sample / p->num_samples;
+    const uint32_t threads = groups < p->threads ? groups : p->threads;
     tyn_rec_fill(r, PATH_BALANCE_PORT_COUNTERS, 0);
     for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
         struct path_args args = path_trace_args(p);
         args.num = 1;
-        args.slots = p->threads;
-        args.first_sample = p->first_sample + chunk * p->num_samples;
+        args.slots = threads;
+        args.num_samples = groups * kinds;
+        args.first_sample = (before + chunk) * args.num_samples;
         tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = 0, .cells = {p->threads, 1, 1}, .args = &args, .spec = spec});
+            r, &(tyn_dispatch){.kernel = 0, .cells = {threads, 1, 1}, .args = &args, .spec = spec});
         struct path_resolve_args sum = {
             .num = 1,
-            .slots = p->threads,
-            .samples_before = args.first_sample,
+            .slots = threads,
+            .samples_before = (before + chunk) * groups,
             .lamps = {p->lamp_power[0], p->lamp_power[1], p->lamp_power[2]},
         };
         tyn_rec_dispatch(
             r,
             &(tyn_dispatch){.kernel = 1, .cells = {TYN_PATH_BALANCE_VALUES, 1, 1}, .args = &sum});
     }
-    tyn_rec_work(r, "paths", (double)p->chunks * p->num_samples);
+    tyn_rec_work(r, "paths", (double)p->chunks * groups * kinds);
 }
 
 const tyn_pass_desc tyn_pass_path_balance = {

@@ -20,19 +20,19 @@ layout(set = 0, binding = 18, scalar) readonly buffer areas_buffer {
     surface_cell area_cells[];
 };
 
-const uint IN_MEDIA = 0u, ON_BOUNDARY = 1u, ON_SURFACE = 2u, AT_LAMP = 3u;
+const uint IN_MEDIA = 0u, ON_BOUNDARY = 1u, ON_SURFACE = 2u, AT_LIGHT = 3u;
 uint place;
 #define PATH_ENDS_AT_FIRST_SURFACE (place == ON_BOUNDARY)
 #include "path.glsl"
 #include "path_heading.glsl"
 
 path_balance_partial partial;
-const bool FROM_LAMPS = (FLAGS & TYN_PATH_FROM_LAMPS) != 0u;
+const bool FROM_LIGHTS = (FLAGS & TYN_PATH_FROM_LIGHTS) != 0u;
 
 // How many kinds of points there are.
 uint num_places()
 {
-    if (FROM_LAMPS) { // not by ?:, of which glslang 12 makes invalid constants
+    if (FROM_LIGHTS) { // not by ?:, of which glslang 12 makes invalid constants
         return 4u;
     }
     if (SURFACES) {
@@ -45,7 +45,8 @@ vec3 normal;      // of the boundary, outwards, or of the surface
 vec3 measure;     // what a unit of radiance per steradian at the point stands for: area, or volume times sigma_a
 vec3 emitted;     // of the media at the point, W
 vec3 direct_in, direct_out; // of lamps and suns; direct_out: inside, absorbed
-vec3 lamp_media, lamp_surfaces, lamp_escaped; // where a lamp's light ends its first flight, W
+vec3 light_media, light_surfaces, light_escaped; // where a lamp's light ends its first flight, W
+vec3 group_entering, group_emitted, group_media, group_escaped, group_solid; // sums of a group of samples, W
 vec3 kept;     // of the light that arrives at a surface, what it absorbs,
 vec3 sent_out; // and what it reflects and leaves without meeting anything
 
@@ -176,42 +177,62 @@ vec3 volume_point(uvec4 bits)
     return p;
 }
 
-// Solid angle into which a lamp shines, sr, uniform but for a spot's falloff.
-float lamp_angle(light_block light)
+// Solid angle into which a lamp shines, sr, uniform but for a spot's falloff; of a sun the area across its light, m^2.
+float light_measure(light_block light)
 {
-    return 2.0 * HG_PI * (light.kind == TYN_LIGHT_KIND_SPOT ? 1.0 - light.cos_outer : 2.0);
+    vec3 size = args.box_hi - args.box_lo;
+    return light.kind == TYN_LIGHT_KIND_DIRECTIONAL ? dot(size.yzx * size.zxy, abs(light.direction))
+                                                    : 2.0 * HG_PI * (light.kind == TYN_LIGHT_KIND_SPOT ? 1.0 - light.cos_outer : 2.0);
 }
 
-// The first flight of light from a lamp, drawn by power.
-void follow_lamp(inout rng_state rng)
+// Where a sun's light comes into the box.
+vec3 sun_entry(vec3 way, vec3 random)
+{
+    vec3 size = args.box_hi - args.box_lo, across = size.yzx * size.zxy * abs(way);
+    float at = random.z * (across.x + across.y + across.z);
+    vec3 along = at < across.x ? vec3(1.0, 0.0, 0.0) : at < across.x + across.y ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
+    vec3 share = along.x > 0.0 ? vec3(0.0, random.xy) : along.y > 0.0 ? vec3(random.x, 0.0, random.y) : vec3(random.xy, 0.0);
+    vec3 side = step(way, vec3(0.0)); // 1: comes down this axis
+    return args.box_lo + mix(share, side, along) * size;
+}
+
+vec3 lamp_way(light_block lamp, vec2 random)
+{
+    float z = 1.0 - random.x * (light_measure(lamp) * (0.5 / HG_PI));
+    float across = sqrt(max(1.0 - z * z, 0.0)), azimuth = 2.0 * HG_PI * random.y;
+    vec3 axis = lamp.kind == TYN_LIGHT_KIND_SPOT ? lamp.direction : vec3(0.0, 0.0, 1.0);
+    vec3 side = normalize(abs(axis.x) < 0.7 ? cross(axis, vec3(1.0, 0.0, 0.0)) : cross(axis, vec3(0.0, 1.0, 0.0)));
+    return z * axis + across * (cos(azimuth) * side + sin(azimuth) * cross(axis, side));
+}
+
+// The first flight of light from a lamp or a sun, drawn by power.
+void follow_light(inout rng_state rng)
 {
     float total = 0.0;
     for (uint i = 0u; i < args.num_lights; i++) {
         light_block light = light_get(i);
-        total += light.kind == TYN_LIGHT_KIND_DIRECTIONAL ? 0.0 : max3(light.color) * lamp_angle(light);
+        total += max3(light.color) * light_measure(light);
     }
-    uvec4 bits = rng_next(rng);
+    uvec4 bits = rng_next(rng), more = rng_next(rng);
     float left = rng_float(bits.x) * total, weight = 0.0;
-    light_block lamp = light_get(args.num_lights - 1u); // lamps follow the suns
+    light_block lamp = light_get(args.num_lights - 1u);
     for (uint i = 0u; i < args.num_lights; i++) {
         light_block light = light_get(i);
-        weight = light.kind == TYN_LIGHT_KIND_DIRECTIONAL ? 0.0 : max3(light.color) * lamp_angle(light);
+        weight = max3(light.color) * light_measure(light);
         if (left < weight) {
             lamp = light;
             break;
         }
         left -= weight;
     }
-    float z = 1.0 - rng_float(bits.y) * (lamp_angle(lamp) * (0.5 / HG_PI));
-    float across = sqrt(max(1.0 - z * z, 0.0)), azimuth = 2.0 * HG_PI * rng_float(bits.z);
-    vec3 axis = lamp.kind == TYN_LIGHT_KIND_SPOT ? lamp.direction : vec3(0.0, 0.0, 1.0);
-    vec3 side = normalize(abs(axis.x) < 0.7 ? cross(axis, vec3(1.0, 0.0, 0.0)) : cross(axis, vec3(0.0, 1.0, 0.0)));
-    vec3 way = z * axis + across * (cos(azimuth) * side + sin(azimuth) * cross(axis, side));
+    bool sun = lamp.kind == TYN_LIGHT_KIND_DIRECTIONAL;
+    vec3 random = vec3(rng_vec2(bits.yz), rng_float(more.x));
+    vec3 way = sun ? lamp.direction : lamp_way(lamp, random.xy);
     float falloff = lamp.kind == TYN_LIGHT_KIND_SPOT ? spot_falloff(lamp, way) : 1.0;
     vec3 power = lamp.color * (falloff * total / max3(lamp.color));
 
     path_state path = path_new(3.0 * rng_float(bits.w));
-    path.vertex = lamp.position;
+    path.vertex = sun ? sun_entry(way, random) : lamp.position;
     path.way = way;
     surface_hit ahead = surface_hit(PATH_FAR, SURFACE_NONE, vec2(0.0));
     vec3 period;
@@ -223,14 +244,14 @@ void follow_lamp(inout rng_state rng)
         float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero);
         path.beta *= max(f.m.sigma_t - f.m.sigma_s, 0.0) / sigma_t;
         path.rho *= GREY ? vec3(1.0) : f.m.sigma_t / sigma_t;
-        lamp_media = power * path_weight(path);
+        light_media = power * path_weight(path);
     } else if (path.end < PATH_FAR) {
         surface_finding found = surface_find(ahead, period, path.way);
-        lamp_surfaces = power * path_weight(path) * (1.0 - found.albedo);
+        light_surfaces = power * path_weight(path) * (1.0 - found.albedo);
         path.beta *= found.albedo;
-        lamp_escaped = power * reflected_out(path, found.point, found.point.normal, rng);
+        light_escaped = power * reflected_out(path, found.point, found.point.normal, rng);
     } else {
-        lamp_escaped = power * path_weight(path);
+        light_escaped = power * path_weight(path);
     }
 }
 
@@ -239,15 +260,18 @@ void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 dire
     emitted = vec3(0.0);
     direct_in = vec3(0.0);
     direct_out = vec3(0.0);
-    lamp_media = vec3(0.0);
-    lamp_surfaces = vec3(0.0);
-    lamp_escaped = vec3(0.0);
+    light_media = vec3(0.0);
+    light_surfaces = vec3(0.0);
+    light_escaped = vec3(0.0);
     kept = vec3(0.0);
     sent_out = vec3(0.0);
-    place = SURFACES ? rng.key.y % num_places() : random.x < 0.5 ? ON_BOUNDARY : IN_MEDIA; // key.y counts the samples
+    place = rng.key.y % num_places(); // key.y counts the samples
+    if (place == 0u) {
+        group_entering = group_emitted = group_media = group_escaped = group_solid = vec3(0.0);
+    }
     uvec4 bits = rng_next(rng);
-    if (FROM_LAMPS && place == AT_LAMP) {
-        follow_lamp(rng);
+    if (FROM_LIGHTS && place == AT_LIGHT) {
+        follow_light(rng);
         measure = vec3(0.0);
         normal = vec3(0.0);
         origin = 2.0 * args.box_hi - args.box_lo; // and out of sight
@@ -279,7 +303,7 @@ float outward_cosine(vec3 direction)
 
 void path_direct(vec3 direction, vec3 irradiance)
 {
-    if (FROM_LAMPS && path_direct_lamp) {
+    if (FROM_LIGHTS && path_direct_light) {
         return;
     }
     float outwards = outward_cosine(direction);
@@ -294,29 +318,43 @@ void add_value(uint i, float value, float share)
     partial.deviation[i] += delta * (value - partial.mean[i]);
 }
 
+// Samples of all kinds of points, one each, are one of the balance.
+void add_group()
+{
+    vec3 sunlight = vec3(0.0);
+    for (uint i = 0u; FROM_LIGHTS && i < args.num_lights; i++) {
+        light_block light = light_get(i);
+        sunlight += light.kind == TYN_LIGHT_KIND_DIRECTIONAL ? light.color * light_measure(light) : vec3(0.0);
+    }
+    vec3 shining = SURFACES && emitters.count > 0u ? emitters.power : vec3(0.0);
+    partial.count++;
+    float share = 1.0 / float(partial.count);
+    for (uint c = 0u; c < 3u; c++) {
+        float entering = group_entering[c] + sunlight[c], given = group_emitted[c] + shining[c];
+        add_value(c, entering, share);
+        add_value(3u + c, given, share);
+        add_value(6u + c, group_media[c], share);
+        add_value(9u + c, group_escaped[c], share);
+        add_value(12u + c, group_solid[c], share);
+        add_value(15u + c, entering + given - group_media[c] - group_escaped[c] - group_solid[c], share);
+    }
+}
+
 void path_end(path_result result)
 {
     vec3 fluence = (result.radiance + result.background + result.reflected) / heading_pdf;
     float outwards = outward_cosine(heading);
     vec3 incoming = direct_in + measure * fluence * max(-outwards, 0.0);
     vec3 outgoing = direct_out + measure * fluence * max(outwards, 0.0);
-    partial.count++;
-    float share = 1.0 / float(partial.count);
-    float kinds = float(num_places()); // each is drawn so seldom
-    vec3 lit = SURFACES && emitters.count > 0u ? emitters.power : vec3(0.0);
-    for (uint c = 0u; c < 3u; c++) {
-        float entering = place == ON_BOUNDARY ? kinds * incoming[c] : 0.0;
-        float media = kinds * (place == IN_MEDIA ? outgoing[c] : lamp_media[c]);
-        float escaped = kinds * (place == ON_BOUNDARY ? outgoing[c]
-                                 : place == ON_SURFACE ? sent_out[c] * outgoing[c]
-                                                       : lamp_escaped[c]);
-        float solid = kinds * (place == ON_SURFACE ? kept[c] * outgoing[c] : lamp_surfaces[c]);
-        add_value(c, entering, share);
-        add_value(3u + c, kinds * emitted[c] + lit[c], share);
-        add_value(6u + c, media, share);
-        add_value(9u + c, escaped, share);
-        add_value(12u + c, solid, share);
-        add_value(15u + c, entering + kinds * emitted[c] - media - escaped - solid, share);
+    vec3 escapes = place == ON_BOUNDARY ? outgoing : place == ON_SURFACE ? sent_out * outgoing : light_escaped;
+    vec3 stays = place == ON_SURFACE ? kept * outgoing : light_surfaces;
+    group_entering += place == ON_BOUNDARY ? incoming : vec3(0.0);
+    group_emitted += emitted;
+    group_media += place == IN_MEDIA ? outgoing : light_media;
+    group_escaped += escapes;
+    group_solid += stays;
+    if (place + 1u == num_places()) {
+        add_group();
     }
 }
 
@@ -332,9 +370,10 @@ void main()
         partial.deviation[i] = 0.0;
     }
     partial.count = 0u;
-    uint each = args.num_samples / args.slots, more = args.num_samples % args.slots;
-    uint first = args.first_sample + thread * each + min(thread, more);
-    path_run(0u, first, first + each + (thread < more ? 1u : 0u));
+    uint groups = args.num_samples / num_places();
+    uint each = groups / args.slots, more = groups % args.slots;
+    uint first = args.first_sample + num_places() * (thread * each + min(thread, more));
+    path_run(0u, first, first + num_places() * (each + (thread < more ? 1u : 0u)));
     partials[thread] = partial;
     path_tally(thread);
 }

@@ -1,8 +1,7 @@
 // path_balance_sum.comp -- merges what the threads found, and writes the balance so far as doubles, with the lamps
 // that are inside the media and what is missing. One thread a value.
 //
-// The standard error of the imbalance is that of what is given less what is taken, over what is given. Kinds of points take
-// turns, so that it is a little too large: it counts the differences between kinds, too.
+// The standard error of the imbalance is that of what is given less what is taken, over what is given.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

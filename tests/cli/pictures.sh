@@ -128,7 +128,7 @@ works probe "$scenes/cube.gltf" --points points.csv --quiet --method path --spp 
 sed -n 2p out | grep -q '^0.5,0.5,0.5,' || fail "probe: order of the points"
 works balance "$scenes/cube.gltf" --json --quiet
 cp out balance.json
-for key in entering emitted absorbed_media absorbed_surfaces escaped imbalance; do
+for key in entering emitted absorbed_media absorbed_surfaces escaped imbalance imbalance_se; do
     [ "$("$helpers/json_get" balance.json $key)" = "list 3" ] || fail "balance: $key"
 done
 near "$(get balance.json entering.0)" 1 1e-3 "power that enters the cube, W"
