@@ -485,9 +485,32 @@ static void drift_is_found(void **state)
     faults = 0;
 }
 
+// lavapipe of Mesa 22.3 writes past its own tables when it compiles a kernel with an eighth uniform buffer: crashes,
+// now and then, elsewhere.
+static void few_uniform_buffers(void **state)
+{
+    (void)state;
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < tyn_num_passes(); i++) {
+        const tyn_pass_desc *pass = tyn_pass_at(i);
+        for (uint32_t k = 0; k < pass->num_kernels; k++) {
+            uint32_t count = 0;
+            for (uint32_t b = 0; b < pass->kernels[k].num_bindings; b++) {
+                count += pass->kernels[k].bindings[b].use == TYN_USE_UNIFORM;
+            }
+            if (count > 7) {
+                fail_msg("%s: %u uniform buffers", pass->kernels[k].name, count);
+            }
+            most = most > count ? most : count;
+        }
+    }
+    print_message("%u uniform buffers at most\n", most);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_pass),
-                                       cmocka_unit_test(drift_is_found)};
+                                       cmocka_unit_test(drift_is_found),
+                                       cmocka_unit_test(few_uniform_buffers)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
