@@ -130,9 +130,9 @@ enum { WEIGHTS = 0, STRATA, LIGHTS, DISTANCES, POWER, BOUNCE, NUM_KERNELS };
     .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [WEIGHTS] = {KERNEL(weights, VPL_BLOCK, 1, 0, 0)},
+    [WEIGHTS] = {KERNEL(weights, VPL_LANES, 1, 0, 0)},
     [STRATA] = {KERNEL(strata, VPL_BLOCK, 1, sizeof(struct vpl_args), 0)},
-    [LIGHTS] = {KERNEL(lights, VPL_BLOCK, 1, sizeof(struct vpl_args), 1)},
+    [LIGHTS] = {KERNEL(lights, VPL_LANES, 1, sizeof(struct vpl_args), 1)},
     [DISTANCES] = {KERNEL(distances, 8, 8, sizeof(struct vpl_distances_args), 1)},
     [POWER] = {KERNEL(power, TYN_RADIAL_VPLS_MAX, 1, 0, 0)},
     [BOUNCE] = {KERNEL(bounce, VPL_BLOCK, 1, 0, 0)},
@@ -255,12 +255,12 @@ static void make_lights(tyn_recorder *r, const struct vpl_plan *plan, const stru
     }
     tyn_rec_update(r, PORT(PLAN), 0, plan, sizeof *plan);
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = WEIGHTS,
-                                        .cells = {plan->num_blocks * VPL_BLOCK, 1, 1},
+                                        .cells = {plan->num_blocks * VPL_LANES, 1, 1},
                                         .ports = weights});
     tyn_rec_dispatch(r,
                      &(tyn_dispatch){.kernel = STRATA, .cells = {VPL_BLOCK, 1, 1}, .args = args});
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = LIGHTS,
-                                        .cells = {args->count * VPL_BLOCK, 1, 1},
+                                        .cells = {args->count * VPL_LANES, 1, 1},
                                         .args = args,
                                         .ports = lights,
                                         .spec = &mode});

@@ -8,6 +8,7 @@
 #include "rsm_args.h"
 
 #define VPL_BLOCK 256
+#define VPL_LANES 32 // threads for a block: few, as they wait for each other
 #define VPL_MAX_SOURCES (4 + 64 + 2)
 
 struct vpl_tile {

@@ -35,30 +35,41 @@ layout(binding = VPL_MATERIALS, scalar) readonly buffer vpl_materials_buffer
 const float VPL_PI = 3.14159265358979;
 const uint VPL_NO_TRIANGLE = 0xffffffffu;
 
-// The map that a block belongs to; blocks of maps come before those of triangles.
-uint vpl_tile_of(uint block)
+// A block of elements, and the map that it is part of.
+struct vpl_block {
+    uint index;
+    uint before; // blocks of the map before this one
+    rsm_tile map; // not of triangles
+};
+
+// Blocks of maps come before those of triangles.
+vpl_block vpl_block_at(uint index)
 {
+    vpl_block block;
+    block.index = index;
+    if (index >= plan.front) {
+        return block;
+    }
     uint lo = 0u, hi = plan.num_tiles - 1u;
     while (lo < hi) {
         uint mid = (lo + hi + 1u) / 2u;
-        bool before = plan.tiles[mid].first <= block;
+        bool before = plan.tiles[mid].first <= index;
         lo = before ? mid : lo;
         hi = before ? hi : mid - 1u;
     }
-    return lo;
+    block.before = index - plan.tiles[lo].first;
+    block.map = plan.tiles[lo].map;
+    return block;
 }
 
-ivec2 vpl_texel(uint block, uint lane)
+ivec2 vpl_texel(vpl_block block, uint element)
 {
-    uint tile = vpl_tile_of(block);
-    rsm_tile map = plan.tiles[tile].map;
-    uint d = (block - plan.tiles[tile].first) * VPL_BLOCK + lane;
-    return ivec2(map.offset + vpl_hilbert(map.texels, d));
+    return ivec2(block.map.offset + vpl_hilbert(block.map.texels, block.before * VPL_BLOCK + element));
 }
 
-uint vpl_triangle(uint block, uint lane)
+uint vpl_triangle(uint block, uint element)
 {
-    uint i = (block - (block >= plan.back ? plan.back : plan.front)) * VPL_BLOCK + lane;
+    uint i = (block - (block >= plan.back ? plan.back : plan.front)) * VPL_BLOCK + element;
     return i < plan.num_triangles ? i : VPL_NO_TRIANGLE;
 }
 
@@ -71,17 +82,17 @@ vec3 vpl_corner(uint vertex)
 }
 
 // Power that leaves an element, W.
-vec3 vpl_flux(uint block, uint lane)
+vec3 vpl_flux(vpl_block block, uint element)
 {
-    if (block < plan.front) {
-        return texelFetch(rsm_flux_tex, vpl_texel(block, lane), 0).rgb;
+    if (block.index < plan.front) {
+        return texelFetch(rsm_flux_tex, vpl_texel(block, element), 0).rgb;
     }
-    uint i = vpl_triangle(block, lane);
+    uint i = vpl_triangle(block.index, element);
     if (i == VPL_NO_TRIANGLE) {
         return vec3(0.0);
     }
     surface_material m = materials[triangles[i].material];
-    bool lit = block < plan.back || (m.flags & TYN_SURFACE_DOUBLE_SIDED) != 0u;
+    bool lit = block.index < plan.back || (m.flags & TYN_SURFACE_DOUBLE_SIDED) != 0u;
     if (!lit || m.emission.r + m.emission.g + m.emission.b <= 0.0) {
         return vec3(0.0);
     }
@@ -125,33 +136,33 @@ vec3 vpl_on_triangle(vec3 a, vec3 b, vec3 c, float t)
 }
 
 // Piece k of `pieces` of the part [from, to) of an element.
-vpl_piece vpl_piece_of(uint block, uint lane, vec2 part, uint k, uint pieces)
+vpl_piece vpl_piece_of(vpl_block block, uint element, vec2 part, uint k, uint pieces)
 {
     vpl_piece piece;
-    if (block < plan.front) {
-        ivec2 texel = vpl_texel(block, lane);
+    if (block.index < plan.front) {
+        ivec2 texel = vpl_texel(block, element);
         vec4 position = texelFetch(rsm_position_tex, texel, 0);
         piece.position = position.xyz;
         piece.area = position.w * (part.y - part.x);
         piece.normal = texelFetch(rsm_normal_tex, texel, 0).xyz;
         return piece;
     }
-    surface_triangle tri = triangles[vpl_triangle(block, lane)];
+    surface_triangle tri = triangles[vpl_triangle(block.index, element)];
     vec3 a = vpl_corner(tri.v0), b = vpl_corner(tri.v1), c = vpl_corner(tri.v2);
     vec3 n = cross(b - a, c - a);
     float twice = length(n), share = (part.y - part.x) / float(pieces);
     piece.position = vpl_on_triangle(a, b, c, part.x + (float(k) + 0.5) * share);
     piece.area = 0.5 * twice * share;
     piece.normal = n / max(twice, 1e-30);
-    if (block >= plan.back) {
+    if (block.index >= plan.back) {
         piece.normal = -piece.normal;
     }
     return piece;
 }
 
-uint vpl_pieces(uint block)
+uint vpl_pieces(vpl_block block)
 {
-    return block < plan.front ? 1u : 8u;
+    return block.index < plan.front ? 1u : 8u;
 }
 
 #endif

@@ -26,11 +26,11 @@
 #include "radial_args.h"
 #include "shadow_args.h"
 
-layout(local_size_x = VPL_BLOCK) in;
+layout(local_size_x = VPL_LANES) in;
 
 layout(binding = 12, scalar) readonly buffer weight_buffer
 {
-    float weights[];
+    float weights[]; // of an element and those before it in its block
 };
 layout(binding = 13, scalar) readonly buffer block_buffer
 {
@@ -50,7 +50,7 @@ layout(binding = 16, scalar) uniform light_uniform
 };
 layout(binding = 17, scalar) buffer vpl_buffer
 {
-        uint vpl_count;
+    uint vpl_count;
     uint vpl_before;
     uvec2 vpl_pad;
     radial_light vpls[];
@@ -60,15 +60,15 @@ layout(push_constant, scalar) uniform Args
     vpl_args args;
 };
 
-shared vec4 sums[VPL_BLOCK];
-shared uint middle, last_lit; // elements of the block, from 1 on
+const uint DEPTH_SAMPLES = 256u; // on the way from a light
+shared vec4 sums[VPL_LANES];
 
 vec4 total_of(vec4 v)
 {
     uint lane = gl_LocalInvocationIndex;
     barrier();
     sums[lane] = v;
-    for (uint half_size = VPL_BLOCK / 2u; half_size > 0u; half_size /= 2u) {
+    for (uint half_size = VPL_LANES / 2u; half_size > 0u; half_size /= 2u) {
         barrier();
         if (lane < half_size) {
             sums[lane] += sums[lane + half_size];
@@ -83,7 +83,7 @@ float most_of(float v)
     uint lane = gl_LocalInvocationIndex;
     barrier();
     sums[lane].x = v;
-    for (uint half_size = VPL_BLOCK / 2u; half_size > 0u; half_size /= 2u) {
+    for (uint half_size = VPL_LANES / 2u; half_size > 0u; half_size /= 2u) {
         barrier();
         if (lane < half_size) {
             sums[lane].x = max(sums[lane].x, sums[lane + half_size].x);
@@ -93,22 +93,21 @@ float most_of(float v)
     return sums[0].x;
 }
 
-// Cumulated weights before and after this thread's element of a block: the same for every VPL.
-vec2 weights_around(uint block)
+// The first element of a block with which cumulated weights reach beyond one; rounding may leave none: then the
+// last that has a weight.
+uint element_of(uint block, float weight)
 {
-    uint lane = gl_LocalInvocationIndex;
-    float weight = weights[block * VPL_BLOCK + lane];
-    barrier();
-    sums[lane].x = weight;
-    for (uint step = 1u; step < VPL_BLOCK; step *= 2u) {
-        barrier();
-        float before = lane >= step ? sums[lane - step].x : 0.0;
-        barrier();
-        sums[lane].x += before;
+    float start = blocks[block], last = weights[(block + 1u) * VPL_BLOCK - 1u];
+    bool none = start + last <= weight;
+    uint lo = 0u, hi = VPL_BLOCK - 1u;
+    while (lo < hi) {
+        uint mid = (lo + hi) / 2u;
+        float sum = weights[block * VPL_BLOCK + mid];
+        bool beyond = none ? sum >= last : start + sum > weight;
+        lo = beyond ? lo : mid + 1u;
+        hi = beyond ? mid : hi;
     }
-    barrier();
-    float start = blocks[block];
-    return vec2(lane > 0u ? start + sums[lane - 1u].x : start, start + sums[lane].x);
+    return lo;
 }
 
 // The last block that starts at or before a cumulated weight.
@@ -124,7 +123,7 @@ uint block_of(float weight)
     return lo;
 }
 
-// Optical depth from the light of a map to a place, per channel: a sample a thread.
+// Optical depth from the light of a map to a place, per channel.
 vec3 depth_from_light(uint light, vec3 p)
 {
     vec3 towards;
@@ -139,21 +138,26 @@ vec3 depth_from_light(uint light, vec3 p)
     }
     vec2 span = ray_box(p, ray_inverse(towards), vec3(0.0), medium.extent);
     span = vec2(max(span.x, 0.0), min(span.y, reach));
-    float ds = max(span.y - span.x, 0.0) / float(VPL_BLOCK);
-    medium_point m =
-        medium_sample(p + (span.x + (float(gl_LocalInvocationIndex) + 0.5) * ds) * towards);
-    vec3 sigma_s = m.sigma_s, g = m.g;
-    similarity_clamp(sigma_s, g);
-    vec3 sigma_t = m.sigma_a + sigma_s * (1.0 - delta_fraction(g));
+    float ds = max(span.y - span.x, 0.0) / float(DEPTH_SAMPLES);
+    vec3 sigma_t = vec3(0.0);
+    for (uint i = gl_LocalInvocationIndex; i < DEPTH_SAMPLES; i += VPL_LANES) {
+        medium_point m = medium_sample(p + (span.x + (float(i) + 0.5) * ds) * towards);
+        vec3 sigma_s = m.sigma_s, g = m.g;
+        similarity_clamp(sigma_s, g);
+        sigma_t += m.sigma_a + sigma_s * (1.0 - delta_fraction(g));
+    }
     return total_of(vec4(sigma_t * ds, 0.0)).rgb;
 }
 
-// The part of this thread's element that is in the stratum.
-vec2 part_of(uint block, vpl_stratum stratum)
+// The part of an element that is in the stratum: from where, to where, and its weight.
+vec3 part_of(uint block, uint element, vpl_stratum stratum)
 {
-    vec2 w = weights_around(block);
+    uint at = block * VPL_BLOCK + element;
+    float before = element > 0u ? weights[at - 1u] : 0.0, after = weights[at];
+    vec2 w = blocks[block] + vec2(before, after);
     vec2 part = (vec2(stratum.from, stratum.to) - w.x) / max(w.y - w.x, 1e-30);
-    return clamp(part, 0.0, w.y > w.x ? 1.0 : 0.0);
+    part = clamp(part, 0.0, w.y > w.x ? 1.0 : 0.0);
+    return vec3(part, (after - before) * (part.y - part.x));
 }
 
 // Does a piece go on from the centre's? Within some 20 degrees of its plane, facing the same way, and not
@@ -175,40 +179,27 @@ void main()
     vpl_stratum stratum = strata[index];
     uint first = block_of(stratum.from);
 
-    // The first element that reaches beyond the middle.
+    // The element in the middle, and how far into it (into a triangle) that is.
     float half_way = 0.5 * (stratum.from + stratum.to);
-    uint block = block_of(half_way);
-    if (lane == 0u) {
-        middle = VPL_BLOCK + 1u;
-        last_lit = 1u;
-    }
-    barrier();
-    vec2 around = weights_around(block);
-    if (around.y > around.x) {
-        atomicMin(middle, around.y > half_way ? lane + 1u : VPL_BLOCK + 1u);
-        atomicMax(last_lit, lane + 1u);
-    }
-    barrier();
-    uint at = (middle <= VPL_BLOCK ? middle : last_lit) - 1u; // rounding may leave none beyond
-    float weight_at = weights[block * VPL_BLOCK + at];
-    float inside = 0.0; // how far into the triangle the middle is
-    if (block >= plan.front) {
-        float before = blocks[block];
-        for (uint i = 0u; i < at; i++) {
-            before += weights[block * VPL_BLOCK + i];
-        }
-        inside = clamp((half_way - before) / max(weight_at, 1e-30), 0.0, 0.999);
-    }
+    vpl_block block = vpl_block_at(block_of(half_way));
+    uint at = element_of(block.index, half_way);
+    float before = at > 0u ? weights[block.index * VPL_BLOCK + at - 1u] : 0.0;
+    float weight_at = weights[block.index * VPL_BLOCK + at] - before;
+    float inside = (half_way - blocks[block.index] - before) / max(weight_at, 1e-30);
+    inside = clamp(inside, 0.0, 0.999);
     vpl_piece centre = vpl_piece_of(block, at, vec2(inside, inside + 1e-4), 0u, 1u);
 
     vec4 flux = vec4(0.0); // and the area, m^2
-    for (uint b = first; b < plan.num_blocks && blocks[b] < stratum.to; b++) {
-        if (blocks[b + 1u] > blocks[b]) {
-            vec2 part = part_of(b, stratum);
-            float share = part.y - part.x;
-            if (share > 0.0) {
-                flux.rgb += share * vpl_flux(b, lane);
-                flux.a += vpl_piece_of(b, lane, vec2(0.0, share), 0u, 1u).area;
+    for (uint i = first; i < plan.num_blocks && blocks[i] < stratum.to; i++) {
+        if (blocks[i + 1u] > blocks[i]) {
+            vpl_block b = vpl_block_at(i);
+            for (uint e = lane; e < VPL_BLOCK; e += VPL_LANES) {
+                vec3 part = part_of(i, e, stratum);
+                float share = part.y - part.x;
+                if (share > 0.0) {
+                    flux.rgb += share * vpl_flux(b, e);
+                    flux.a += vpl_piece_of(b, e, vec2(0.0, share), 0u, 1u).area;
+                }
             }
         }
     }
@@ -216,18 +207,20 @@ void main()
 
     vec4 place = vec4(0.0);  // offset from the centre; weight
     vec4 normal = vec4(0.0); // normal; squared offset
-    for (uint b = first; b < plan.num_blocks && blocks[b] < stratum.to; b++) {
-        if (blocks[b + 1u] > blocks[b]) {
-            vec2 part = part_of(b, stratum);
-            float share = part.y - part.x;
-            uint pieces = share > 0.0 ? vpl_pieces(b) : 0u;
-            float weight = weights[b * VPL_BLOCK + lane] * share / float(max(pieces, 1u));
-            for (uint k = 0u; k < pieces; k++) {
-                vpl_piece p = vpl_piece_of(b, lane, part, k, pieces);
-                vec3 d = p.position - centre.position;
-                float v = weight * same_piece(d, p.normal, centre.normal, flux.a);
-                place += v * vec4(d, 1.0);
-                normal += v * vec4(p.normal, dot(d, d) + p.area / (2.0 * VPL_PI));
+    for (uint i = first; i < plan.num_blocks && blocks[i] < stratum.to; i++) {
+        if (blocks[i + 1u] > blocks[i]) {
+            vpl_block b = vpl_block_at(i);
+            for (uint e = lane; e < VPL_BLOCK; e += VPL_LANES) {
+                vec3 part = part_of(i, e, stratum);
+                uint pieces = part.y > part.x ? vpl_pieces(b) : 0u;
+                for (uint k = 0u; k < pieces; k++) {
+                    vpl_piece p = vpl_piece_of(b, e, part.xy, k, pieces);
+                    vec3 d = p.position - centre.position;
+                    float v = part.z / float(pieces);
+                    v *= same_piece(d, p.normal, centre.normal, flux.a);
+                    place += v * vec4(d, 1.0);
+                    normal += v * vec4(p.normal, dot(d, d) + p.area / (2.0 * VPL_PI));
+                }
             }
         }
     }
@@ -247,22 +240,25 @@ void main()
     light.radius = sqrt(min(2.0 * max(spread, 0.0), flux.a / VPL_PI));
     // The mean of a curved or rough piece lies below some of it, which would be in its light's way.
     float above = 0.0;
-    for (uint b = first; b < plan.num_blocks && blocks[b] < stratum.to; b++) {
-        if (blocks[b + 1u] > blocks[b]) {
-            vec2 part = part_of(b, stratum);
-            uint pieces = part.y > part.x ? vpl_pieces(b) : 0u;
-            for (uint k = 0u; k < pieces; k++) {
-                vpl_piece p = vpl_piece_of(b, lane, part, k, pieces);
-                vec3 d = p.position - centre.position;
-                float v = same_piece(d, p.normal, centre.normal, flux.a);
-                above = max(above, min(v, 1.0) * dot(d - offset, light.axis));
+    for (uint i = first; i < plan.num_blocks && blocks[i] < stratum.to; i++) {
+        if (blocks[i + 1u] > blocks[i]) {
+            vpl_block b = vpl_block_at(i);
+            for (uint e = lane; e < VPL_BLOCK; e += VPL_LANES) {
+                vec3 part = part_of(i, e, stratum);
+                uint pieces = part.y > part.x ? vpl_pieces(b) : 0u;
+                for (uint k = 0u; k < pieces; k++) {
+                    vpl_piece p = vpl_piece_of(b, e, part.xy, k, pieces);
+                    vec3 d = p.position - centre.position;
+                    float v = same_piece(d, p.normal, centre.normal, flux.a);
+                    above = max(above, min(v, 1.0) * dot(d - offset, light.axis));
+                }
             }
         }
     }
     light.position += most_of(above) * light.axis;
     vec3 depth = vec3(0.0);
-    if (args.media != 0u && block < plan.front) {
-        depth = depth_from_light(plan.tiles[vpl_tile_of(block)].map.light, light.position);
+    if (args.media != 0u && block.index < plan.front) {
+        depth = depth_from_light(block.map.light, light.position);
     }
     light.intensity = flux.rgb * exp(-depth) / VPL_PI;
     if (lane == 0u) {

@@ -1,4 +1,4 @@
-// vpl_weights.comp -- weights of elements and of blocks of them.
+// vpl_weights.comp -- weights of elements, cumulated within their blocks, and of blocks.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -13,32 +13,42 @@
 #define VPL_MATERIALS 7
 #include "vpl_elements.glsl"
 
-layout(local_size_x = VPL_BLOCK) in;
+layout(local_size_x = VPL_LANES) in;
 
 layout(binding = 8, scalar) writeonly buffer weight_buffer
 {
-    float weights[];
+    float weights[]; // of an element and those before it in its block
 };
 layout(binding = 9, scalar) writeonly buffer block_buffer
 {
     float blocks[];
 };
 
-shared float sums[VPL_BLOCK];
+const uint EACH = VPL_BLOCK / VPL_LANES; // elements of a thread, one after the other
+shared float sums[VPL_LANES];
 
 void main()
 {
-    uint block = gl_WorkGroupID.x, lane = gl_LocalInvocationIndex;
-    float weight = vpl_weight(vpl_flux(block, lane));
-    weights[block * VPL_BLOCK + lane] = weight;
-    sums[lane] = weight;
-    for (uint half_size = VPL_BLOCK / 2u; half_size > 0u; half_size /= 2u) {
-        barrier();
-        if (lane < half_size) {
-            sums[lane] += sums[lane + half_size];
-        }
+    uint index = gl_WorkGroupID.x, lane = gl_LocalInvocationIndex;
+    vpl_block block = vpl_block_at(index);
+    float own[EACH], sum = 0.0;
+    for (uint i = 0u; i < EACH; i++) {
+        sum += vpl_weight(vpl_flux(block, EACH * lane + i));
+        own[i] = sum;
     }
-    if (lane == 0u) {
-        blocks[block] = sums[0];
+    sums[lane] = sum;
+    for (uint step = 1u; step < VPL_LANES; step *= 2u) {
+        barrier();
+        float before = lane >= step ? sums[lane - step] : 0.0;
+        barrier();
+        sums[lane] += before;
+    }
+    barrier();
+    float before = lane > 0u ? sums[lane - 1u] : 0.0;
+    for (uint i = 0u; i < EACH; i++) {
+        weights[index * VPL_BLOCK + EACH * lane + i] = before + own[i];
+    }
+    if (lane == VPL_LANES - 1u) {
+        blocks[index] = before + sum;
     }
 }
