@@ -596,5 +596,5 @@ bool tyn_context_inspection(tyn_context *ctx, tyn_inspection *inspection)
 
 char *tyn_context_graph(tyn_context *ctx, bool dot)
 {
-    return tyn_graph_dump(ctx->graph, dot);
+    return tyn_graph_dump(ctx->graph, dot, ctx->method->passes);
 }

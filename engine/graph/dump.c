@@ -117,7 +117,18 @@ static void put_plan(text *t, tyn_graph *g, uint32_t index, tyn_track *tracks)
     g->nodes[index].pass->record(&r, g->nodes[index].params);
 }
 
-static char *dump_text(tyn_graph *g)
+// Could the method have declared it, and did not? It says so of passes that not all scenes need.
+static bool left_out(const tyn_graph *g, const tyn_pass_desc *pass)
+{
+    for (uint32_t i = 0; i < g->num_nodes; i++) {
+        if (g->nodes[i].pass == pass) {
+            return false;
+        }
+    }
+    return pass->serves != NULL;
+}
+
+static char *dump_text(tyn_graph *g, const tyn_pass_desc *const *passes)
 {
     text t = {0};
     tyn_track *tracks = calloc(g->num_resources ? g->num_resources : 1, sizeof *tracks);
@@ -156,6 +167,11 @@ static char *dump_text(tyn_graph *g)
             put_plan(&t, g, i, tracks);
         }
     }
+    for (; passes && *passes; passes++) {
+        if (left_out(g, *passes)) {
+            put(&t, "left out %s: only for %s\n", (*passes)->name, (*passes)->serves);
+        }
+    }
     for (uint32_t i = 0; i < g->num_outputs; i++) {
         put(&t, "output %s = %s%s\n", g->outputs[i].name,
             g->resources[g->outputs[i].ref.resource - 1].name,
@@ -175,8 +191,8 @@ static bool draws(const tyn_pass_desc *pass)
     return false;
 }
 
-// Nodes that draw are green, those that only compute blue.
-static char *dump_dot(tyn_graph *g)
+// Nodes that draw are green, those that only compute blue, those that are culled or left out grey.
+static char *dump_dot(tyn_graph *g, const tyn_pass_desc *const *passes)
 {
     text t = {0};
     put(&t, "digraph tyndall {\n  rankdir=LR;\n  node [fontname=\"sans-serif\"];\n");
@@ -209,12 +225,20 @@ static char *dump_dot(tyn_graph *g)
                 kind_name(r->kind));
         }
     }
+    for (uint32_t i = 0; passes && passes[i]; i++) {
+        if (left_out(g, passes[i])) {
+            put(&t,
+                "  out%u [label=\"%s\\nleft out: only for\\n%s\" shape=box "
+                "style=\"filled,dashed\" fillcolor=\"#eeeeee\"];\n",
+                i, passes[i]->name, passes[i]->serves);
+        }
+    }
     put(&t, "}\n");
     return t.data;
 }
 
-char *tyn_graph_dump(tyn_graph *g, bool dot)
+char *tyn_graph_dump(tyn_graph *g, bool dot, const tyn_pass_desc *const *passes)
 {
     graph_cull(g);
-    return dot ? dump_dot(g) : dump_text(g);
+    return dot ? dump_dot(g, passes) : dump_text(g, passes);
 }

@@ -111,7 +111,7 @@ typedef struct tyn_node_stats {
     double cpu_ms; // recording
     uint32_t dispatches, barriers;
     bool media_only; // depends on the media alone
-    uint64_t bytes; // memory of the node's OUT and SCRATCH resources
+    uint64_t bytes;  // memory of the node's OUT and SCRATCH resources
     struct {
         const char *name;
         double amount;
@@ -123,5 +123,6 @@ uint32_t tyn_graph_stats(tyn_graph *g, const tyn_node_stats **stats);
 void tyn_graph_memory(const tyn_graph *g, uint64_t *persistent, uint64_t *transient);
 
 // Text or Graphviz of the compiled graph: nodes, resources, lifetimes, barriers, what is culled and
-// why. The caller frees the string.
-char *tyn_graph_dump(tyn_graph *g, bool dot);
+// why. `passes`: those that could have been declared, to the first NULL, to tell which were left out and what they
+// are for; may be NULL. The caller frees the string.
+char *tyn_graph_dump(tyn_graph *g, bool dot, const tyn_pass_desc *const *passes);

@@ -283,6 +283,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_beam = {
     .name = "beam",
     .summary = "optical depth along directional lights, in a grid aligned with each",
+    .serves = "suns in media",
     .ports = ports,
     .num_ports = BEAM_NUM_PORTS,
     .kernels = kernels,

@@ -164,6 +164,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_columns = {
     .name = "columns",
     .summary = "optical depth along the principal ordinates to the cells of the lattice",
+    .serves = "principal ordinates: an environment map, and no walls in the medium",
     .ports = ports,
     .num_ports = COLUMNS_NUM_PORTS,
     .kernels = kernels,

@@ -106,6 +106,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_columns_average = {
     .name = "columns_average",
     .summary = "the medium averaged over half cells of the lattice, for columns",
+    .serves = "principal ordinates in a medium much finer than the lattice",
     .ports = ports,
     .num_ports = COLUMNS_AVERAGE_NUM_PORTS,
     .kernels = kernels,

@@ -65,6 +65,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_composite = {
     .name = "composite",
     .summary = "lays the medium over the host's picture",
+    .serves = "a host's picture",
     .ports = ports,
     .num_ports = COMPOSITE_NUM_PORTS,
     .kernels = kernels,

@@ -236,6 +236,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_env_glow = {
     .name = "env_glow",
     .summary = "the environment as it looks through a medium that scatters forward",
+    .serves = "principal ordinates: an environment map, and no walls in the medium",
     .ports = ports,
     .num_ports = ENV_GLOW_NUM_PORTS,
     .kernels = kernels,

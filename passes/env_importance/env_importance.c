@@ -105,6 +105,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_env_importance = {
     .name = "env_importance",
     .summary = "the environment map without its suns, by solid angle",
+    .serves = "principal ordinates: an environment map, and no walls in the medium",
     .ports = ports,
     .num_ports = ENV_IMPORTANCE_NUM_PORTS,
     .kernels = kernels,

@@ -108,6 +108,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_gbuffer = {
     .name = "gbuffer",
     .summary = "surfaces as the camera sees them",
+    .serves = "pictures of surfaces",
     .ports = ports,
     .num_ports = GBUFFER_NUM_PORTS,
     .kernels = kernels,

@@ -146,6 +146,7 @@ static void record(tyn_recorder *r, const void *data)
 const tyn_pass_desc tyn_pass_importance = {
     .name = "importance",
     .summary = "directions whose light matters for the picture (Elek 2014, section 5.2)",
+    .serves = "ordinates that follow what the camera sees (ordinates.importance)",
     .ports = ports,
     .num_ports = IMPORTANCE_NUM_PORTS,
     .kernels = kernels,

@@ -477,6 +477,7 @@ const tyn_pass_desc tyn_pass_lattice = {
     .name = "lattice",
     .summary =
         "light that has scattered, solved on a lattice of cubic cells for all lights at once",
+    .serves = "media that scatter more than once",
     .ports = ports,
     .num_ports = NUM_PORTS,
     .kernels = kernels,

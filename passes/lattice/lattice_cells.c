@@ -75,6 +75,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_lattice_cells = {
     .name = "lattice_cells",
     .summary = "the medium averaged over the cells of the lattice",
+    .serves = "media that scatter more than once",
     .ports = ports,
     .num_ports = LATTICE_CELLS_NUM_PORTS,
     .kernels = kernels,

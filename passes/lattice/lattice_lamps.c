@@ -190,6 +190,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_lattice_lamps = {
     .name = "lattice_lamps",
     .summary = "unscattered light of lamps and surfaces in the cells of the lattice",
+    .serves = "lamps and virtual point lights in media",
     .ports = ports,
     .num_ports = LATTICE_LAMPS_NUM_PORTS,
     .kernels = kernels,

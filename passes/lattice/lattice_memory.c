@@ -100,6 +100,7 @@ static void record_recall(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_lattice_recall = {
     .name = "lattice_recall",
     .summary = "the last frame's scattered light at the places of this frame's cells",
+    .serves = "sequences that start from the last solution (lattice.warm)",
     .ports = recall_ports,
     .num_ports = LATTICE_RECALL_NUM_PORTS,
     .kernels = recall_kernels,
@@ -153,6 +154,7 @@ static void record_keep(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_lattice_keep = {
     .name = "lattice_keep",
     .summary = "puts the scattered light away for the next frame",
+    .serves = "sequences that start from the last solution (lattice.warm)",
     .ports = keep_ports,
     .num_ports = LATTICE_KEEP_NUM_PORTS,
     .kernels = keep_kernels,

@@ -72,6 +72,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_lattice_ordinates = {
     .name = "lattice_ordinates",
     .summary = "unscattered light of the principal ordinates in the cells of the lattice",
+    .serves = "principal ordinates: an environment map, and no walls in the medium",
     .ports = ports,
     .num_ports = LATTICE_ORDINATES_NUM_PORTS,
     .kernels = kernels,

@@ -154,6 +154,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_lattice_source = {
     .name = "lattice_source",
     .summary = "unscattered sunlight in the cells of the lattice",
+    .serves = "suns in media that scatter more than once",
     .ports = ports,
     .num_ports = LATTICE_SOURCE_NUM_PORTS,
     .kernels = kernels,

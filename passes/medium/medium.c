@@ -160,6 +160,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_medium = {
     .name = "medium",
     .summary = "textures of all media together, ranges over bricks, distances through empty space",
+    .serves = "media",
     .ports = ports,
     .num_ports = MEDIUM_NUM_PORTS,
     .kernels = kernels,

@@ -174,6 +174,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_merge = {
     .name = "merge",
     .summary = "light that each cell scatters towards the eye",
+    .serves = "pictures of media that scatter more than once",
     .ports = ports,
     .num_ports = MERGE_NUM_PORTS,
     .kernels = kernels,

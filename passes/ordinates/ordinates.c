@@ -164,6 +164,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_ordinates = {
     .name = "ordinates",
     .summary = "directions from which the surroundings light the medium",
+    .serves = "principal ordinates: an environment map, and no walls in the medium",
     .ports = ports,
     .num_ports = ORDINATES_NUM_PORTS,
     .kernels = kernels,

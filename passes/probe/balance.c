@@ -72,6 +72,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_balance = {
     .name = "balance",
     .summary = "power that enters, is emitted, is absorbed and escapes",
+    .serves = "a balance",
     .ports = ports,
     .num_ports = BALANCE_NUM_PORTS,
     .kernels = kernels,

@@ -92,6 +92,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_probe = {
     .name = "probe",
     .summary = "fluence and net flux at points",
+    .serves = "probes",
     .ports = ports,
     .num_ports = PROBE_NUM_PORTS,
     .kernels = kernels,

@@ -249,6 +249,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_radial_beam = {
     .name = "radial_beam",
     .summary = "optical depth from local lights outwards, in a grid around each",
+    .serves = "lamps and virtual point lights in media",
     .ports = ports,
     .num_ports = RADIAL_BEAM_NUM_PORTS,
     .kernels = kernels,

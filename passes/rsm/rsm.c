@@ -133,6 +133,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_rsm = {
     .name = "rsm",
     .summary = "what surfaces reflect of each light",
+    .serves = "surfaces that suns or lamps shine on, with virtual point lights",
     .ports = ports,
     .num_ports = RSM_NUM_PORTS,
     .kernels = kernels,

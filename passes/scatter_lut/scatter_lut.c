@@ -259,6 +259,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_scatter_lut = {
     .name = "scatter_lut",
     .summary = "light scattered forward any number of times around a beam, as a table per g",
+    .serves = "suns, lamps and ordinates in media",
     .ports = ports,
     .num_ports = SCATTER_LUT_NUM_PORTS,
     .kernels = kernels,

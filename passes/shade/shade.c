@@ -155,6 +155,7 @@ static void record(tyn_recorder *r, const void *data)
 const tyn_pass_desc tyn_pass_shade = {
     .name = "shade",
     .summary = "radiance of the surfaces that the camera sees",
+    .serves = "pictures of surfaces",
     .ports = ports,
     .num_ports = SHADE_NUM_PORTS,
     .kernels = kernels,

@@ -75,6 +75,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_shadow_map = {
     .name = "shadow_map",
     .summary = "what each light sees of the surfaces",
+    .serves = "surfaces that suns or lamps shine on",
     .ports = ports,
     .num_ports = SHADOW_MAP_NUM_PORTS,
     .kernels = kernels,

@@ -61,6 +61,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_tonemap = {
     .name = "tonemap",
     .summary = "scene-linear radiance to 8-bit sRGB",
+    .serves = "pictures of 8 bits",
     .ports = ports,
     .num_ports = TONEMAP_NUM_PORTS,
     .kernels = kernels,

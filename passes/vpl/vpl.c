@@ -312,6 +312,7 @@ static void record(tyn_recorder *r, const void *data)
 const tyn_pass_desc tyn_pass_vpl = {
     .name = "vpl",
     .summary = "what surfaces reflect first and emit, as virtual point lights (Keller 1997)",
+    .serves = "surfaces that emit or are shone on, with virtual point lights (vpl.count)",
     .ports = ports,
     .num_ports = VPL_NUM_PORTS,
     .kernels = kernels,

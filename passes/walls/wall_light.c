@@ -116,6 +116,8 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_wall_light = {
     .name = "wall_light",
     .summary = "sunlight on the walls of the lattice's cells",
+    .serves = "walls in media that suns shine on periodically, or virtual point lights without "
+              "further reflections",
     .ports = ports,
     .num_ports = WALL_LIGHT_NUM_PORTS,
     .kernels = kernels,

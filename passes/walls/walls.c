@@ -110,6 +110,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_walls = {
     .name = "walls",
     .summary = "links between cells of the lattice that surfaces cut, and what they meet",
+    .serves = "surfaces in media",
     .ports = ports,
     .num_ports = WALLS_NUM_PORTS,
     .kernels = kernels,

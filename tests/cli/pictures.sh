@@ -145,6 +145,57 @@ done
 refuses 2 "makes no image" graph "$scenes/cube.gltf" --size 16x16 --view composite -o view.png
 refuses 2 "has no pass 'paint'; it has: medium" graph "$scenes/cube.gltf" --view paint -o view.png
 
+# ---- a node that a scene does not need is not there, and the graph says what it is for ----
+# nodes FILE: "name milliseconds" of each in the stats
+nodes() {
+    awk -F'"' '/"name":/ { name = $4 } /"gpu_ms":/ { gsub(/[^0-9.e+-]/, "", $3); print name, $3 }' "$1"
+}
+# has_nodes WHAT FILE NAMES / lacks_nodes WHAT FILE NAMES
+has_nodes() {
+    what=$1 file=$2
+    shift 2
+    for name; do
+        nodes "$file" | grep -q "^$name " || fail "$what: no node $name: $(nodes "$file")"
+    done
+}
+lacks_nodes() {
+    what=$1 file=$2
+    shift 2
+    for name; do
+        nodes "$file" | grep -q "^$name " && fail "$what: a node $name: $(nodes "$file")"
+        grep -q "^left out $name: only for " out || fail "$what: the graph does not tell of $name"
+        grep -q "label=\"$name.nleft out" dot || fail "$what: graph --dot does not tell of $name"
+    done
+}
+# drawn SCENE ARGUMENTS: leaves k.json, out and dot
+drawn() {
+    scene=$scenes/$1.gltf
+    shift
+    works render "$scene" --size 32x32 --quiet -o k.exr --stats k.json "$@"
+    [ "$3" = --frames ] && set -- "$1" "$2" # not of graph
+    works graph "$scene" --size 32x32 --quiet --dot "$@"
+    cp out dot
+    works graph "$scene" --size 32x32 --quiet "$@"
+}
+raster="shadow_map rsm gbuffer"
+local="vpl radial_beam lattice_lamps"
+field="medium beam scatter_lut lattice_cells walls lattice_source lattice merge"
+drawn smoke-sky -D lattice.cells=12
+has_nodes "no surfaces" k.json medium beam lattice merge raymarch
+lacks_nodes "no surfaces" k.json $raster $local shade walls wall_light
+drawn fog-hall -D vpl.count=0 -D lattice.cells=12
+has_nodes "surfaces and a sun" k.json shadow_map gbuffer shade walls beam lattice raymarch
+lacks_nodes "no lamps, no virtual ones" k.json rsm $local wall_light
+drawn fog-hall --density-scale 0 --frames 3
+has_nodes "no medium" k.json $raster vpl shade raymarch
+lacks_nodes "no medium" k.json $field radial_beam lattice_lamps
+# What is left of the march lays the surfaces over the background.
+nodes k.json | awk '$1 == "raymarch" { march = $2 } { all += $2 } END { exit !(march < 0.5 * all) }' ||
+    fail "no medium: the march costs more than the surfaces: $(nodes k.json)"
+drawn room -D vpl.count=16 -D lattice.cells=12
+has_nodes "a lamp" k.json $raster $local medium scatter_lut lattice_cells walls lattice merge shade raymarch
+lacks_nodes "no suns" k.json beam lattice_source
+
 # ---- warnings: once, and in the stats ----
 run render "$scenes/two-media.gltf" --size 16x16 --frames 3 -o w.png --stats w.json
 warnings=$(grep -c warning: err)

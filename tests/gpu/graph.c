@@ -156,7 +156,7 @@ static void dump(void **state)
     float input[W * H] = {0};
     declare_chain(t, input, 2, 2);
     gpu_run(t);
-    char *text = tyn_graph_dump(t->graph, false), *dot = tyn_graph_dump(t->graph, true);
+    char *text = tyn_graph_dump(t->graph, false, NULL), *dot = tyn_graph_dump(t->graph, true, NULL);
     assert_non_null(strstr(text, "barrier tmp: COMPUTE STORAGE_WRITE -> COMPUTE SAMPLED_READ"));
     assert_non_null(strstr(text, "culled: no output needs it"));
     assert_non_null(strstr(dot, "digraph"));

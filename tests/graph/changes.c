@@ -181,7 +181,7 @@ static void frame(tyn_graph *g, const plan_graph *p, int seed, int number)
     assert_int_equal(tyn_graph_record(g, VK_NULL_HANDLE), TYN_OK);
     for (uint32_t i = NUM_UPLOADS; i < MAX_NODES + NUM_UPLOADS; i++) {
         if (p->wanted[i] && content[slots[i].resource - 1] != expected[i]) {
-            char *dump = tyn_graph_dump(g, false);
+            char *dump = tyn_graph_dump(g, false, NULL);
             print_message("%s", dump);
             free(dump);
             fail_msg("graph %d, frame %d: output of slot %u is not what it should be", seed, number,

@@ -329,7 +329,7 @@ static void drawing(void **state)
     declare_drawing(f->g, (node_params){0});
     assert_int_equal(frame(f), TYN_OK);
     compare_golden("drawing.txt", f->fake->text);
-    char *dump = tyn_graph_dump(f->g, false), *dot = tyn_graph_dump(f->g, true);
+    char *dump = tyn_graph_dump(f->g, false, NULL), *dot = tyn_graph_dump(f->g, true, NULL);
     assert_non_null(strstr(dump, "    draw corners 6 vertices, 2 tiles\n"));
     assert_non_null(strstr(dump, "    draw again 3 vertices, 1 tiles\n"));
     assert_non_null(strstr(dump, "depth (D32F 64 x 32, persistent)"));
@@ -412,7 +412,7 @@ static void dump_tells_the_truth(void **state)
     fixture *f = *state;
     declare_chain(f->g, &default_chain);
     assert_int_equal(frame(f), TYN_OK);
-    char *dump = tyn_graph_dump(f->g, false), *dot = tyn_graph_dump(f->g, true);
+    char *dump = tyn_graph_dump(f->g, false, NULL), *dot = tyn_graph_dump(f->g, true, NULL);
     compare_golden("dump.txt", dump);
     compare_golden("dump.dot", dot);
     char planned[8192], recorded[8192];

@@ -143,6 +143,8 @@ typedef struct tyn_pass_desc {
     // The debug view: the OUT port whose middle slice `tyndall graph --view` shows, and a word on it.
     uint8_t debug_port;
     const char *debug_meaning;
+    // What there must be for a method to declare the node, as `tyndall graph` says of those it left out.
+    const char *serves;
 } tyn_pass_desc;
 
 // Fills params with zeros, then the defaults of the table.
