@@ -137,6 +137,8 @@ static void record(tyn_recorder *r, const void *data)
     features |= vpls ? SHADE_VPLS : 0;
     features |= tyn_rec_has(r, PORT(MOMENTS)) ? SHADE_LATTICE : 0;
     features |= p->one_channel ? SHADE_ONE_CHANNEL : 0;
+    features |=
+        tyn_rec_has(r, PORT(BEAMS)) && tyn_rec_has(r, PORT(SHADOWS)) && vpls ? SHADE_SPREAD : 0;
     features |= p->sky ? SHADE_SKY : 0;
     const uint32_t spec[2] = {p->mode, features};
     const tyn_extent pixels = {p->size[0], p->size[1], 1};

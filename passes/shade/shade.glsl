@@ -93,19 +93,30 @@ float shade_cosine(shade_point p, vec3 towards)
     return dot(p.facet, towards) > 0.0 ? max(dot(p.normal, towards), 0.0) : 0.0;
 }
 
-// What is left of a sun's light: 1 where the way to it does not touch the medium's box.
-vec3 shade_through_sun(uint n, vec3 p, vec3 towards)
+// The way of a sun's light through the medium's box to p: from x to y away from p towards the sun; x >= y: none.
+vec2 shade_way(vec3 p, vec3 towards)
 {
     vec2 span = ray_box(p, ray_inverse(towards), vec3(0.0), medium.extent);
-    span.x = max(span.x, 0.0);
-    return span.x < span.y ? shade_left(beam_depth(n, p + span.x * towards)) : vec3(1.0);
+    return vec2(max(span.x, 0.0), span.y);
+}
+
+beam_tau shade_sun_depth(uint n, vec3 p, vec3 towards)
+{
+    vec2 way = shade_way(p, towards);
+    beam_tau none = beam_tau(vec3(0.0), vec3(0.0), vec3(0.0));
+    return way.x < way.y ? beam_depth(n, p + way.x * towards) : none;
+}
+
+uint shade_sun_light(uint n)
+{
+    return shade_has(SHADE_MEDIUM) ? beams[n].light : n;
 }
 
 vec3 shade_suns(shade_point p)
 {
     vec3 sum = vec3(0.0);
     for (uint n = 0u; n < args.num_suns; n++) {
-        uint sun = shade_has(SHADE_MEDIUM) ? beams[n].light : n;
+        uint sun = shade_sun_light(n);
         vec3 towards = -suns[sun].direction;
         vec3 light = suns[sun].color * shade_cosine(p, towards);
         if (light.r + light.g + light.b > 0.0) {
@@ -113,12 +124,46 @@ vec3 shade_suns(shade_point p)
                 light *= shadow_visibility_surface(sun, p.position, p.facet);
             }
             if (shade_has(SHADE_MEDIUM)) {
-                light *= shade_through_sun(n, p.position, towards);
+                beam_tau tau = shade_sun_depth(n, p.position, towards);
+                light *= exp(-(tau.a + (shade_has(SHADE_SPREAD) ? tau.s : tau.p)));
             }
             sum += light;
         }
     }
     return sum;
+}
+
+// Sunlight that was scattered forward, e^-tau' - e^-tau of it, comes from around the sun: a shadow's edge
+// is as soft as the medium is deep. Of SHADE_PATHS places on the way to the light, in directions of the
+// forward lobe, the one with this index: is it in the sun?
+vec3 shade_spread_suns(shade_point p, uint index)
+{
+    vec3 sum = vec3(0.0);
+    for (uint n = 0u; n < args.num_suns; n++) {
+        uint sun = shade_sun_light(n);
+        vec3 towards = -suns[sun].direction;
+        vec2 way = shade_way(p.position, towards);
+        if (way.x >= way.y) {
+            continue;
+        }
+        beam_tau tau = shade_sun_depth(n, p.position, towards);
+        vec3 forward = exp(-(tau.a + tau.p)) - exp(-(tau.a + tau.s));
+        // f = g^2 is what the depth that counts as scattering leaves out.
+        vec3 kept = tau.p / max(tau.s, vec3(1e-20));
+        float f = clamp(1.0 - (kept.r + kept.g + kept.b) / 3.0, 0.0, 0.98), g = sqrt(f);
+        float along = (float(index) + 0.5) / float(SHADE_PATHS);
+        float turn = 2.399963 * float(index); // the golden angle
+        float u = fract(0.5 + 0.618034 * float(index));
+        // Of Henyey and Greenstein's distribution the most forward part, f of it.
+        float h = g > 1e-3 ? (1.0 - f) / (1.0 + g - 2.0 * g * f * u) : 1.0;
+        float c = g > 1e-3 ? clamp((1.0 + f - h * h) / (2.0 * g), -1.0, 1.0) : 1.0;
+        float s = sqrt(1.0 - c * c);
+        vec3 from = vpl_frame(towards) * vec3(s * cos(turn), s * sin(turn), c);
+        vec3 at = p.position + mix(way.x, way.y, along) * from;
+        float share = shade_cosine(p, from) * shadow_visibility_sun(sun, at);
+        sum += suns[sun].color * forward * share;
+    }
+    return sum / float(SHADE_PATHS);
 }
 
 // What is left of a local light at a point that may be outside the medium's box.

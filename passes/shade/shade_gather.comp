@@ -57,7 +57,11 @@ void main()
     }
     vec3 all = sum.rgb * (float(SHADE_SIDE * SHADE_SIDE) / max(sum.w, 1e-6));
     if (sum.w < 4.0) {
-        all = shade_vpls(shade_point(place.xyz, normal, normal), 0u, 1u);
+        shade_point p = shade_point(place.xyz, normal, normal);
+        all = shade_vpls(p, 0u, 1u);
+        for (uint i = 0u; shade_has(SHADE_SPREAD) && i < SHADE_PATHS; i++) {
+            all += shade_spread_suns(p, i);
+        }
     }
     imageStore(indirect_image, pixel, vec4(all, 1.0));
 }

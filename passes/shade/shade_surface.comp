@@ -18,6 +18,7 @@ layout(binding = 23) uniform sampler3D moments_tex;
 #define WALLS_LINKS 24
 #define WALLS_CELLS 25
 #include "lattice_walls.glsl"
+#include "walls_irradiance.glsl"
 layout(binding = 26, scalar) uniform env_uniform
 {
     env_block environment;
@@ -26,8 +27,6 @@ layout(binding = 27, rgba32f) uniform writeonly image2D radiance_image; // and d
 
 const float PI = 3.14159265358979;
 #define NOWHERE uintBitsToFloat(0x7f800000u) // infinity
-
-const float LIFT = 0.4; // cells
 
 // Light of the medium and of far walls, and of the sky where it comes along the lattice's lines.
 vec3 light_of_lattice(shade_point p)
@@ -45,17 +44,8 @@ vec3 light_of_lattice(shade_point p)
     if (any(lessThan(x, vec3(-0.02))) || any(greaterThan(x, vec3(dims) + 0.02))) {
         return sky; // outside
     }
-    // The flux through a plane in radiance that is linear in direction, phi / 4 - F.n / 2, a little off the
-    // surface: cells that surfaces pass through hardly know of its side.
-    vec3 off = p.position + LIFT * box.dx * p.facet;
-    walls_place place = walls_place_of(box, off);
-    walls_blend blend = walls_blend_of(box, place, off);
-    vec3 irradiance = vec3(0.0);
     int channels = shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
-    for (int ch = 0; ch < channels; ch++) {
-        vec4 m = walls_fetch(moments_tex, box, blend, ivec3(0, 0, ch * dims.z));
-        irradiance[ch] = max(0.25 * m.x - 0.5 * dot(m.yzw, p.facet), 0.0);
-    }
+    vec3 irradiance = walls_irradiance_at(moments_tex, box, p.position, p.normal, channels);
     return channels == 1 ? irradiance.r * args.tint : irradiance;
 }
 
@@ -114,7 +104,7 @@ void main()
         shade_point p = shade_point(middle * share, normalize(normal), first.facet);
         vec3 irradiance = irradiance_at(p);
         if (shade_has(SHADE_VPLS)) {
-            irradiance += texelFetch(indirect_tex, pixel, 0).rgb;
+            irradiance = max(irradiance + texelFetch(indirect_tex, pixel, 0).rgb, vec3(0.0));
         }
         radiance = share * (emission + albedo * irradiance / PI);
     }
@@ -129,7 +119,7 @@ void main()
                 shade_point p = shade_point(shade_position(texel, distance), s.normal, s.facet);
                 vec3 irradiance = irradiance_at(p);
                 if (shade_has(SHADE_VPLS)) {
-                    irradiance += light_of_vpls(pixel, p);
+                    irradiance = max(irradiance + light_of_vpls(pixel, p), vec3(0.0));
                 }
                 radiance = s.emission + s.albedo * irradiance / PI;
             }

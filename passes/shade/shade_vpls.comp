@@ -39,6 +39,9 @@ void main()
     shade_point p = shade_point(shade_position(texel, found.distance), found.normal, found.facet);
     ivec2 cell = pixel & (SHADE_SIDE - 1);
     vec3 part = shade_vpls(p, uint(cell.y * SHADE_SIDE + cell.x), SHADE_SIDE * SHADE_SIDE);
+    if (shade_has(SHADE_SPREAD)) {
+        part += shade_spread_suns(p, uint(cell.y * SHADE_SIDE + cell.x));
+    }
     vec2 normal = gbuffer_fold(p.normal);
     imageStore(place_image, pixel, vec4(p.position, normal.x));
     imageStore(part_image, pixel, vec4(part, normal.y));
