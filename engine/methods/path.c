@@ -88,21 +88,6 @@ static bool has_grids(const tyn_job *job)
     return false;
 }
 
-// Bounds in M of the world box around the surfaces; empty without surfaces.
-static void surfaces_box(const tyn_frame_scene *frame, float lo[3], float hi[3])
-{
-    const struct surface_block *s = &frame->surfaces;
-    for (int a = 0; a < 3; a++) {
-        float centre = s->from_world[a][3], reach = 0;
-        for (int w = 0; w < 3; w++) {
-            centre += s->from_world[a][w] * 0.5f * (s->lo[w] + s->hi[w]);
-            reach += fabsf(s->from_world[a][w]) * 0.5f * (s->hi[w] - s->lo[w]);
-        }
-        lo[a] = centre - reach;
-        hi[a] = centre + reach;
-    }
-}
-
 static bool equal3(const float v[3])
 {
     return v[0] == v[1] && v[1] == v[2];
@@ -262,37 +247,13 @@ static tyn_result add_probes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     return result;
 }
 
-static void include(float lo[3], float hi[3], const float p[3])
-{
-    for (int a = 0; a < 3; a++) {
-        lo[a] = fminf(lo[a], p[a]);
-        hi[a] = fmaxf(hi[a], p[a]);
-    }
-}
-
-// The box that is balanced: the media's; with surfaces a little more than media, surfaces and lamps together,
-// but for periodic axes.
+// The box that is balanced.
 static void set_box(tyn_path_params *p, const tyn_frame_scene *frame)
 {
-    const struct medium_block *m = &frame->medium;
     memset(p->box[0], 0, sizeof p->box[0]);
-    memcpy(p->box[1], m->extent, sizeof p->box[1]);
-    if (!frame->num_triangles) {
-        return;
-    }
-    float corners[2][3], size = 0;
-    surfaces_box(frame, corners[0], corners[1]);
-    include(p->box[0], p->box[1], corners[0]);
-    include(p->box[0], p->box[1], corners[1]);
-    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
-        include(p->box[0], p->box[1], frame->lights[i].position);
-    }
-    for (int a = 0; a < 3; a++) {
-        size = fmaxf(size, p->box[1][a] - p->box[0][a]);
-    }
-    for (int a = 0; a < 3; a++) {
-        p->box[0][a] = m->repeat[a] ? 0 : p->box[0][a] - 0.05f * size;
-        p->box[1][a] = m->repeat[a] ? m->extent[a] : p->box[1][a] + 0.05f * size;
+    memcpy(p->box[1], frame->medium.extent, sizeof p->box[1]);
+    if (frame->num_triangles) {
+        tyn_scene_box(frame, p->box[0], p->box[1]);
     }
 }
 
@@ -359,7 +320,7 @@ static tyn_result check_repeat(const tyn_job *job)
         }
     }
     float lo[3], hi[3];
-    surfaces_box(job->frame, lo, hi);
+    tyn_surfaces_box(job->frame, lo, hi);
     for (int a = 0; repeat && a < 3; a++) {
         if (m->repeat[a] && hi[a] - lo[a] > 1.0001f * m->extent[a]) {
             tyn_log_print(job->log, TYN_LOG_ERROR,

@@ -112,3 +112,46 @@ tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_
     rsm->normal = refs[RSM_PORT_NORMAL];
     return result;
 }
+
+void tyn_surfaces_box(const tyn_frame_scene *frame, float lo[3], float hi[3])
+{
+    const struct surface_block *s = &frame->surfaces;
+    for (int a = 0; a < 3; a++) {
+        float centre = s->from_world[a][3], reach = 0;
+        for (int w = 0; w < 3; w++) {
+            centre += s->from_world[a][w] * 0.5f * (s->lo[w] + s->hi[w]);
+            reach += fabsf(s->from_world[a][w]) * 0.5f * (s->hi[w] - s->lo[w]);
+        }
+        lo[a] = centre - reach;
+        hi[a] = centre + reach;
+    }
+}
+
+static void include(float lo[3], float hi[3], const float p[3])
+{
+    for (int a = 0; a < 3; a++) {
+        lo[a] = fminf(lo[a], p[a]);
+        hi[a] = fmaxf(hi[a], p[a]);
+    }
+}
+
+void tyn_scene_box(const tyn_frame_scene *frame, float lo[3], float hi[3])
+{
+    const struct medium_block *m = &frame->medium;
+    float corners[2][3], size = 0;
+    memset(lo, 0, 3 * sizeof *lo);
+    memcpy(hi, m->extent, 3 * sizeof *hi);
+    tyn_surfaces_box(frame, corners[0], corners[1]);
+    include(lo, hi, corners[0]);
+    include(lo, hi, corners[1]);
+    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
+        include(lo, hi, frame->lights[i].position);
+    }
+    for (int a = 0; a < 3; a++) {
+        size = fmaxf(size, hi[a] - lo[a]);
+    }
+    for (int a = 0; a < 3; a++) {
+        lo[a] = m->repeat[a] ? 0 : lo[a] - 0.05f * size;
+        hi[a] = m->repeat[a] ? m->extent[a] : hi[a] + 0.05f * size;
+    }
+}

@@ -27,3 +27,9 @@ typedef struct tyn_rsm_refs {
     struct rsm_tile tiles[TYN_RSM_MAX_TILES];
 } tyn_rsm_refs;
 tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_rsm_refs *rsm);
+
+// Bounds in M of the world box around the surfaces; empty without surfaces.
+void tyn_surfaces_box(const tyn_frame_scene *frame, float lo[3], float hi[3]);
+
+// Bounds in M of a box a little larger than media, surfaces and lamps together, but for periodic axes.
+void tyn_scene_box(const tyn_frame_scene *frame, float lo[3], float hi[3]);

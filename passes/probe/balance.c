@@ -1,7 +1,10 @@
 // balance.c -- where the energy goes.
 #include "probe.h"
 #include "probe_args.h"
+#include "radial_args.h"
 #include "balance.comp.h"
+#include "balance_lights.comp.h"
+#include <string.h>
 
 static const tyn_port ports[BALANCE_NUM_PORTS] = {
     [BALANCE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
@@ -16,6 +19,29 @@ static const tyn_port ports[BALANCE_NUM_PORTS] = {
     [BALANCE_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, true, "struct ordinates_block"},
     [BALANCE_PORT_WALL_POWER] = {"wall_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice"},
     [BALANCE_PORT_LAMP_POWER] = {"lamp_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice_lamps"},
+    [BALANCE_PORT_BEAMS] = {"beams", TYN_IN, TYN_BUFFER, 0, true, "struct beam_block[]"},
+    [BALANCE_PORT_COLUMN] = {"column", TYN_IN, TYN_IMAGE_3D, 0, true,
+                             "depth along the suns, or that of sigma_s"},
+    [BALANCE_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "of absorption"},
+    [BALANCE_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true, "of sigma_s'"},
+    [BALANCE_PORT_RADIALS] = {"radials", TYN_IN, TYN_BUFFER, 0, true, "struct radial_block"},
+    [BALANCE_PORT_RADIAL_COLUMN] = {"radial_column", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                    "mean density (or sigma_s) on the way from local lights"},
+    [BALANCE_PORT_RADIAL_TAU_A] = {"radial_tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "mean sigma_a"},
+    [BALANCE_PORT_RADIAL_TAU_P] = {"radial_tau_p", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                   "mean (1 - f) sigma_s"},
+    [BALANCE_PORT_SURFACES] = {"surfaces", TYN_IN, TYN_BUFFER, 0, true, "struct surface_block"},
+    [BALANCE_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, true, "struct surface_vertex[]"},
+    [BALANCE_PORT_TRIANGLES] = {"triangles", TYN_IN, TYN_BUFFER, 0, true,
+                                "struct surface_triangle[]"},
+    [BALANCE_PORT_NODES] = {"nodes", TYN_IN, TYN_BUFFER, 0, true, "struct surface_node[]"},
+    [BALANCE_PORT_MATERIALS] = {"materials", TYN_IN, TYN_BUFFER, 0, true,
+                                "struct surface_material[]"},
+    [BALANCE_PORT_TEXTURES] = {"textures", TYN_IN, TYN_BUFFER, 0, true,
+                               "struct surface_texture[]"},
+    [BALANCE_PORT_TEXELS] = {"texels", TYN_IN, TYN_BUFFER, 0, true, "uint[]: R8 G8 B8 A8, sRGB"},
+    [BALANCE_PORT_EMITTERS] = {"emitters", TYN_IN, TYN_BUFFER, 0, true, "struct surface_table"},
+    [BALANCE_PORT_FOUND] = {"found", TYN_SCRATCH, TYN_BUFFER, 0, false, "struct balance_light[]"},
     [BALANCE_PORT_BALANCE] = {"balance", TYN_OUT, TYN_BUFFER, 0, false, "tyn_balance, W"},
 };
 
@@ -32,6 +58,29 @@ static const tyn_binding bindings[] = {
     {BALANCE_PORT_ORDINATES, TYN_USE_UNIFORM},
     {BALANCE_PORT_WALL_POWER, TYN_USE_STORAGE_READ},
     {BALANCE_PORT_LAMP_POWER, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_FOUND, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_EMITTERS, TYN_USE_STORAGE_READ},
+};
+
+static const tyn_binding light_bindings[] = {
+    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {BALANCE_PORT_BEAMS, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_COLUMN, TYN_USE_SAMPLED},
+    {BALANCE_PORT_TAU_A, TYN_USE_SAMPLED},
+    {BALANCE_PORT_TAU_P, TYN_USE_SAMPLED},
+    {BALANCE_PORT_RADIALS, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED},
+    {BALANCE_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED},
+    {BALANCE_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED},
+    {BALANCE_PORT_SURFACES, TYN_USE_UNIFORM},
+    {BALANCE_PORT_VERTICES, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_TRIANGLES, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_NODES, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_MATERIALS, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_TEXTURES, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_TEXELS, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_FOUND, TYN_USE_STORAGE_WRITE},
 };
 
 static const tyn_kernel kernels[] = {
@@ -41,13 +90,27 @@ static const tyn_kernel kernels[] = {
      sizeof(struct balance_args),
      {BALANCE_GROUP, 1, 1},
      bindings,
-     12,
+     sizeof bindings / sizeof *bindings,
+     1},
+    {"balance_lights",
+     balance_lights_spirv,
+     sizeof balance_lights_spirv,
+     sizeof(struct balance_lights_args),
+     {BALANCE_GROUP, 1, 1},
+     light_bindings,
+     sizeof light_bindings / sizeof *light_bindings,
      1},
 };
 
+// Suns, and as many lamps and VPLs as there may be.
+static uint32_t num_followed(const tyn_balance_params *p)
+{
+    return p->num_suns + TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX;
+}
+
 static tyn_result declare(tyn_builder *b, const void *params)
 {
-    (void)params;
+    tyn_build_buffer(b, BALANCE_PORT_FOUND, num_followed(params) * sizeof(struct balance_light));
     tyn_build_buffer(b, BALANCE_PORT_BALANCE, 7 * 3 * sizeof(double)); // tyn_balance: seven triples
     return TYN_OK;
 }
@@ -62,7 +125,21 @@ static void record(tyn_recorder *r, const void *params)
         .num_groups = p->num_groups,
         .num_leaks =
             tyn_rec_extent(r, BALANCE_PORT_LEAKS).x / (uint32_t)sizeof(float) / p->channels,
+        .emitters = tyn_rec_has(r, BALANCE_PORT_EMITTERS),
     };
+    if (tyn_rec_has(r, BALANCE_PORT_SURFACES)) {
+        args.num_followed = num_followed(p);
+        struct balance_lights_args lights = {
+            .num_suns = p->num_suns,
+            .locals = tyn_rec_has(r, BALANCE_PORT_RADIALS),
+        };
+        memcpy(&lights.lo, p->box[0], sizeof lights.lo);
+        memcpy(&lights.hi, p->box[1], sizeof lights.hi);
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = 1,
+                                            .cells = {BALANCE_GROUP * args.num_followed, 1, 1},
+                                            .args = &lights,
+                                            .spec = &p->mode});
+    }
     const uint32_t walls = tyn_rec_has(r, BALANCE_PORT_WALL_POWER);
     tyn_rec_dispatch(r, &(tyn_dispatch){.cells = {BALANCE_GROUP * p->channels, 1, 1},
                                         .args = &args,
@@ -76,7 +153,7 @@ const tyn_pass_desc tyn_pass_balance = {
     .ports = ports,
     .num_ports = BALANCE_NUM_PORTS,
     .kernels = kernels,
-    .num_kernels = 1,
+    .num_kernels = 2,
     .params_size = sizeof(tyn_balance_params),
     .declare = declare,
     .record = record,

@@ -9,6 +9,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "scene_args.h"
 #include "ordinate_args.h"
+#include "surface_table_args.h"
 #include "probe_args.h"
 #include "lattice_power.h"
 #include "lattice.glsl"
@@ -61,6 +62,14 @@ layout(binding = 10, scalar) readonly buffer wall_buffer
 {
     vec2 wall_power[]; // absorbed by a cell's walls, sent out by them; W
 };
+layout(binding = 12, scalar) readonly buffer found_buffer
+{
+    balance_light found[];
+};
+layout(binding = 13, scalar) readonly buffer emitter_buffer
+{
+    surface_table emitters;
+};
 layout(constant_id = 0) const uint walls = 0;
 
 shared vec2 wall_sums[BALANCE_GROUP];
@@ -85,6 +94,37 @@ void write(uint row, uint ch, float value)
     } else {
         balance[row][ch] = double_bits(value);
     }
+}
+
+void write_all(uint ch, float entering, float emitted, float absorbed, float on_surfaces, float escaped)
+{
+    float given = entering + emitted;
+    write(0, ch, entering);
+    write(1, ch, emitted);
+    write(2, ch, absorbed);
+    write(3, ch, on_surfaces);
+    write(4, ch, escaped);
+    write(5, ch, given > 0.0 ? 1.0 - (absorbed + on_surfaces + escaped) / given : 0.0);
+    write(6, ch, 0.0); // nothing is drawn at random
+}
+
+// With surfaces: what lights send out, and where it ends that was not scattered, was found by following it. `cells`:
+// absorbed, emitted, leak, lost by the lights; `sky` enters the medium's box.
+void among_surfaces(uint ch, vec4 cells_sum, float on_walls, float sky)
+{
+    balance_light all = balance_light(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    for (uint n = 0; n < args.num_followed; n++) {
+        all.entering += found[n].entering;
+        all.emitted += found[n].emitted;
+        all.kept += found[n].kept;
+        all.escaped += found[n].escaped;
+    }
+    all.emitted += args.emitters == 1u ? emitters.power : vec3(0.0);
+    float entering = sky + lattice_channel(all.entering, args.channels, ch, args.tint);
+    float emitted = cells_sum.y + lattice_channel(all.emitted, args.channels, ch, args.tint);
+    float kept = on_walls + lattice_channel(all.kept, args.channels, ch, args.tint);
+    float escaped = sky + cells_sum.z + lattice_channel(all.escaped, args.channels, ch, args.tint);
+    write_all(ch, entering, emitted, cells_sum.x, kept, escaped);
 }
 
 void main()
@@ -131,6 +171,10 @@ void main()
         float e = lattice_channel(ordinates.list[n].irradiance, args.channels, ch, args.tint);
         entering += e * dot(faces, abs(ordinates.list[n].direction));
     }
+    if (args.num_followed > 0) {
+        among_surfaces(ch, sums[0], wall_sums[0].x, entering);
+        return;
+    }
     for (uint sun = 0; sun < args.num_suns; sun++) {
         lattice_power w = power[sun * args.channels + ch];
         float e = lattice_channel(lights[sun].color, args.channels, ch, args.tint);
@@ -143,12 +187,5 @@ void main()
     }
     float lamps = emitted - sums[0].y - wall_sums[0].y; // their light that does not collide escapes
     float escaped = lamps + entering + sums[0].z - sums[0].w;
-    float absorbed = sums[0].x, given = entering + emitted;
-    write(0, ch, entering);
-    write(1, ch, emitted);
-    write(2, ch, absorbed);
-    write(3, ch, wall_sums[0].x);
-    write(4, ch, escaped);
-    write(5, ch, given > 0.0 ? 1.0 - (absorbed + wall_sums[0].x + escaped) / given : 0.0);
-    write(6, ch, 0.0); // nothing is drawn at random
+    write_all(ch, entering, emitted, sums[0].x, wall_sums[0].x, escaped);
 }

@@ -45,6 +45,8 @@ typedef struct tyn_balance_params {
     float tint[3];
     uint32_t num_suns;
     uint32_t num_groups; // of local lights
+    uint32_t mode;       // TYN_MEDIUM_*
+    float box[2][3];     // M: with surfaces, the box around everything
 } tyn_balance_params;
 
 enum {
@@ -59,7 +61,25 @@ enum {
     BALANCE_PORT_ORDINATES,   // IN optional buffer struct ordinates_block
     BALANCE_PORT_WALL_POWER,  // IN optional buffer, of lattice
     BALANCE_PORT_LAMP_POWER,  // IN optional buffer, of lattice_lamps
-    BALANCE_PORT_BALANCE,     // OUT buffer tyn_balance
+    // With surfaces, of which no axis repeats:
+    BALANCE_PORT_BEAMS,  // IN optional, as of probe
+    BALANCE_PORT_COLUMN,
+    BALANCE_PORT_TAU_A,
+    BALANCE_PORT_TAU_P,
+    BALANCE_PORT_RADIALS,
+    BALANCE_PORT_RADIAL_COLUMN,
+    BALANCE_PORT_RADIAL_TAU_A,
+    BALANCE_PORT_RADIAL_TAU_P,
+    BALANCE_PORT_SURFACES, // IN optional buffers, surface_args.h
+    BALANCE_PORT_VERTICES,
+    BALANCE_PORT_TRIANGLES,
+    BALANCE_PORT_NODES,
+    BALANCE_PORT_MATERIALS,
+    BALANCE_PORT_TEXTURES,
+    BALANCE_PORT_TEXELS,
+    BALANCE_PORT_EMITTERS, // IN optional buffer struct surface_table
+    BALANCE_PORT_FOUND,    // SCRATCH buffer struct balance_light[]
+    BALANCE_PORT_BALANCE,  // OUT buffer tyn_balance
     BALANCE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_balance;

@@ -28,7 +28,26 @@ struct balance_args {
     tyn_uint num_suns;
     tyn_uint num_leaks;  // per channel
     tyn_uint num_groups; // of local lights
+    tyn_uint emitters;     // 1: there are surfaces that emit
+    tyn_uint num_followed; // lights in balance_lights; 0: there is none
 };
+
+struct balance_lights_args {
+    tyn_vec3 lo; // M: of the box around media, surfaces and lamps
+    tyn_uint num_suns;
+    tyn_vec3 hi;
+    tyn_uint locals; // 1: there are lamps or VPLs
+};
+TYN_ASSERT_SIZE(balance_lights_args, 32);
+
+// Of one sun, lamp or VPL: W.
+struct balance_light {
+    tyn_vec3 entering;
+    tyn_vec3 emitted;
+    tyn_vec3 kept; // by surfaces that its light meets
+    tyn_vec3 escaped;
+};
+TYN_ASSERT_SIZE(balance_light, 48);
 
 #define BALANCE_GROUP 256
 

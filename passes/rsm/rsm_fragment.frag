@@ -16,6 +16,7 @@ layout(set = 0, binding = 3, scalar) readonly buffer materials_buffer
 {
     surface_material materials[];
 };
+#include "surface_faces.glsl"
 layout(location = 0) flat in uint triangle;
 layout(location = 1) in vec3 weights;
 layout(location = 0) out vec4 flux;
@@ -39,19 +40,6 @@ float falloff(float cosine)
     }
     float a = clamp((cosine - args.cos_outer) / width, 0.0, 1.0);
     return a * a;
-}
-
-// Is there anything in front of a surface at p, of the media or of other surfaces? Light reflected by the outer
-// walls of a house is not seen by what is inside. (Less than a hundredth of the scene counts as nothing.)
-bool faces_something(vec3 p, vec3 world, vec3 n)
-{
-    vec3 size = surfaces.hi - surfaces.lo;
-    vec3 m = vec3(dot(surfaces.to_world[0].xyz, n), dot(surfaces.to_world[1].xyz, n),
-                  dot(surfaces.to_world[2].xyz, n));
-    // How far the boxes reach beyond the plane of the surface.
-    float media = args.extent.x > 0.0 ? dot(max(n, vec3(0.0)), args.extent) - dot(n, p) : 0.0;
-    float others = dot(m, 0.5 * (surfaces.lo + surfaces.hi) - world) + 0.5 * dot(abs(m), size);
-    return max(media, others) > 0.01 * max(length(size), length(args.extent));
 }
 
 void main()
@@ -90,7 +78,7 @@ void main()
         albedo *= surface_texture_around(m.texture, ua + weights.y * u1 + weights.z * u2,
                                          vec2(scale, 0.0), vec2(0.0, scale));
     }
-    flux = faces_something(p, world, n) ? vec4(args.flux * share * albedo, 0.0) : vec4(0.0);
+    flux = surface_faces_something(p, world, n, args.extent) ? vec4(args.flux * share * albedo, 0.0) : vec4(0.0);
     position = vec4(p, area);
     normal = vec4(n, 0.0);
 }

@@ -1,0 +1,204 @@
+// balance_lights.comp -- where the light of suns, lamps and virtual point lights (VPLs) ends its first flight. One
+// workgroup per light, suns first; rays, and the depths of the beams.
+//
+// This knows nothing of shadow maps, of the cells' first collisions and of what VPLs were made from: that
+// the sums agree is a check of these.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "scene_args.h"
+#include "probe_args.h"
+#include "surface_args.h"
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 2 // the medium itself is not read
+#define BEAM_BLOCKS 1
+#define BEAM_COLUMN 2
+#define BEAM_TAU_A 3
+#define BEAM_TAU_P 4
+#define RADIAL_BLOCK 5
+#define RADIAL_COLUMN 6
+#define RADIAL_TAU_A 7
+#define RADIAL_TAU_P 8
+#define SURFACE_TEXTURES 14
+#define SURFACE_TEXELS 15
+#include "medium.glsl"
+#include "beam.glsl"
+#include "radial.glsl"
+#include "camera.glsl"
+#include "rng.glsl"
+#include "surface_texture.glsl"
+
+layout(local_size_x = BALANCE_GROUP) in;
+layout(push_constant, scalar) uniform push
+{
+    balance_lights_args args;
+};
+layout(binding = 9, scalar) uniform surfaces_uniform
+{
+    surface_block surfaces;
+};
+layout(binding = 10, scalar) readonly buffer vertices_buffer
+{
+    surface_vertex vertices[];
+};
+layout(binding = 11, scalar) readonly buffer triangles_buffer
+{
+    surface_triangle triangles[];
+};
+layout(binding = 12, scalar) readonly buffer nodes_buffer
+{
+    surface_node nodes[];
+};
+layout(binding = 13, scalar) readonly buffer materials_buffer
+{
+    surface_material materials[];
+};
+layout(binding = 16, scalar) readonly buffer light_buffer
+{
+    light_block lights[];
+};
+layout(binding = 17, scalar) writeonly buffer balance_light_buffer
+{
+    balance_light found[];
+};
+#include "surface_trace.glsl"
+#include "surface_faces.glsl"
+
+const uint SUN_RAYS = 160u, LAMP_RAYS = 96u, VPL_RAYS = 24u; // squared: of a sun for each face
+
+shared vec3 sums[BALANCE_GROUP];
+vec3 kept = vec3(0.0), escaped = vec3(0.0); // W
+
+vec3 albedo_at(surface_hit hit)
+{
+    surface_triangle t = triangles[hit.triangle];
+    surface_material m = materials[t.material];
+    if (m.texture == TYN_SURFACE_NO_TEXTURE) {
+        return m.albedo;
+    }
+    vec2 b = hit.barycentric;
+    vec2 uv = (1.0 - b.x - b.y) * vec2(vertices[t.v0].u, vertices[t.v0].v) +
+              b.x * vec2(vertices[t.v1].u, vertices[t.v1].v) + b.y * vec2(vertices[t.v2].u, vertices[t.v2].v);
+    return m.albedo * surface_texture_level(textures[m.texture], uv, 0u);
+}
+
+// Follows the power of a ray of light n (a sun; of the others the number in `radials`) from `origin` (M).
+void follow(uint n, bool sun, bool lamp, vec3 origin, vec3 d, vec3 power)
+{
+    surface_hit hit = surface_hit(3e38, SURFACE_NONE, vec2(0.0));
+    surface_ray ray = surface_ray_make(surface_transform(surfaces.to_world, origin),
+                                       surface_turn(surfaces.to_world, d), SURFACE_NONE);
+    bool met = surface_trace_world(ray, false, hit);
+    vec2 span = ray_box(origin, ray_inverse(d), vec3(0.0), medium.extent);
+    float end = min(hit.t, span.y);
+    if (end > max(span.x, 0.0)) { // through the medium's box
+        beam_tau tau;
+        if (sun) {
+            tau = beam_depth(n, origin + end * d);
+        } else {
+            vec3 away = origin + end * d - radials[n].light.position;
+            tau = radial_tau(radial_place_of(n, away, length(away)));
+        }
+        power *= exp(-(tau.a + tau.p));
+    }
+    if (!met) {
+        escaped += power;
+        return;
+    }
+    vec3 albedo = albedo_at(hit);
+    kept += power * (1.0 - albedo);
+    if (sun || lamp) { // what VPLs do not carry: it is not seen by anything
+        surface_point p = surface_point_at(hit.triangle, hit.barycentric);
+        vec3 normal = dot(p.normal, d) > 0.0 ? -p.normal : p.normal;
+        if (!surface_faces_something(p.at, ray.origin + hit.t * ray.direction, normal, medium.extent)) {
+            escaped += power * albedo;
+        }
+    }
+}
+
+// A place in the k-th of n x n cells of a square.
+vec2 place_in(uint k, uint n, inout rng_state rng)
+{
+    return (vec2(k % n, k / n) + rng_vec2(rng_next(rng).xy)) / float(n);
+}
+
+void follow_sun(uint n)
+{
+    vec3 d = lights[n].direction, size = args.hi - args.lo;
+    for (uint axis = 0u; axis < 3u; axis++) {
+        uint u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
+        float across = size[u] * size[v] * abs(d[axis]) / float(SUN_RAYS * SUN_RAYS);
+        for (uint k = gl_LocalInvocationIndex; across > 0.0 && k < SUN_RAYS * SUN_RAYS; k += BALANCE_GROUP) {
+            rng_state rng = rng_start(n, k, axis);
+            vec2 at = place_in(k, SUN_RAYS, rng);
+            vec3 p = args.lo;
+            p[axis] = d[axis] > 0.0 ? args.lo[axis] : args.hi[axis];
+            p[u] += at.x * size[u];
+            p[v] += at.y * size[v];
+            follow(n, true, false, p, d, across * lights[n].color);
+        }
+    }
+}
+
+void follow_local(uint n)
+{
+    radial_light light = radials[n].light;
+    bool lamp = n < radial_num_lamps;
+    uint rays = lamp ? LAMP_RAYS : VPL_RAYS;
+    vec3 axis = light.kind == TYN_RADIAL_ISOTROPIC ? vec3(0.0, 0.0, 1.0) : light.axis;
+    vec3 side = normalize(abs(axis.x) < 0.7 ? cross(axis, vec3(1.0, 0.0, 0.0)) : cross(axis, vec3(0.0, 1.0, 0.0)));
+    float least = light.kind == TYN_RADIAL_ISOTROPIC ? -1.0 : light.kind == TYN_RADIAL_SPOT ? light.cos_outer : 0.0;
+    // A VPL is a little above its surface, as its own map of distances is.
+    vec3 reach = max(abs(light.position), vec3(light.radius));
+    float lift = lamp ? 0.0 : 0.02 * light.radius + 1e-5 * max(max(reach.x, reach.y), reach.z);
+    for (uint k = gl_LocalInvocationIndex; k < rays * rays; k += BALANCE_GROUP) {
+        rng_state rng = rng_start(n, k, 3u);
+        vec2 at = place_in(k, rays, rng);
+        // Uniform in the solid angle; of a cosine lobe in its power.
+        float z = lamp ? 1.0 - at.x * (1.0 - least) : sqrt(1.0 - at.x);
+        float solid_angle = 2.0 * 3.14159265 * (1.0 - least) / float(rays * rays);
+        float r = sqrt(max(1.0 - z * z, 0.0)), azimuth = 2.0 * 3.14159265 * at.y;
+        vec3 d = z * axis + r * (cos(azimuth) * side + sin(azimuth) * cross(axis, side));
+        vec3 power = light.intensity * (lamp ? solid_angle * radial_lobe(light.kind, axis, light.cos_inner, light.cos_outer, d)
+                                             : 3.14159265 / float(rays * rays));
+        follow(n, false, lamp, light.position + lift * axis, d, power);
+    }
+}
+
+vec3 total_of(vec3 v)
+{
+    uint lane = gl_LocalInvocationIndex;
+    barrier();
+    sums[lane] = v;
+    for (uint half_n = BALANCE_GROUP / 2u; half_n > 0u; half_n /= 2u) {
+        barrier();
+        if (lane < half_n) {
+            sums[lane] += sums[lane + half_n];
+        }
+    }
+    barrier();
+    return sums[0];
+}
+
+void main()
+{
+    uint light = gl_WorkGroupID.x;
+    bool sun = light < args.num_suns, shines = sun || (args.locals != 0u && light - args.num_suns < radial_count);
+    vec3 given = vec3(0.0);
+    bool lamp = false;
+    if (sun) {
+        vec3 size = args.hi - args.lo;
+        given = lights[light].color * dot(size.yzx * size.zxy, abs(lights[light].direction));
+        follow_sun(light);
+    } else if (shines) {
+        uint n = light - args.num_suns;
+        radial_light l = radials[n].light;
+        lamp = n < radial_num_lamps;
+        given = l.intensity * radial_lobe_integral(l.kind, l.cos_inner, l.cos_outer);
+        follow_local(n);
+    }
+    vec3 all_kept = total_of(kept), all_escaped = total_of(escaped);
+    if (gl_LocalInvocationIndex == 0u) {
+        found[light] = balance_light(sun ? given : vec3(0.0), lamp ? given : vec3(0.0), all_kept, all_escaped);
+    }
+}
