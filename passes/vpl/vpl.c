@@ -2,6 +2,7 @@
 #include "vpl.h"
 #include "vpl_args.h"
 #include "vpl_bounce.comp.h"
+#include "vpl_further.comp.h"
 #include "vpl_bounce_args.h"
 #include "vpl_distances.comp.h"
 #include "vpl_lights.comp.h"
@@ -115,6 +116,10 @@ static const tyn_binding power_bindings[] = {
     {PORT(VPLS), TYN_USE_STORAGE_READ},
     {PORT(BINS), TYN_USE_STORAGE_WRITE},
 };
+static const tyn_binding further_bindings[] = {
+    {PORT(VPLS), TYN_USE_STORAGE_RW},
+    {PORT(BINS), TYN_USE_STORAGE_READ},
+};
 static const tyn_binding bounce_bindings[] = {
     {PORT(VPLS), TYN_USE_STORAGE_READ},          {PORT(BINS), TYN_USE_STORAGE_READ},
     {PORT(DISTANCES), TYN_USE_SAMPLED},          {PORT(HITS), TYN_USE_SAMPLED},
@@ -122,7 +127,7 @@ static const tyn_binding bounce_bindings[] = {
     {PORT(BIN_POSITION), TYN_USE_STORAGE_WRITE}, {PORT(BIN_NORMAL), TYN_USE_STORAGE_WRITE},
 };
 
-enum { WEIGHTS = 0, STRATA, LIGHTS, DISTANCES, POWER, BOUNCE, NUM_KERNELS };
+enum { WEIGHTS = 0, STRATA, LIGHTS, DISTANCES, POWER, BOUNCE, FURTHER, NUM_KERNELS };
 
 #define KERNEL(step, x, y, args, specs)                                                            \
     .name = "vpl_" #step, .spirv = vpl_##step##_spirv, .spirv_size = sizeof vpl_##step##_spirv,    \
@@ -136,6 +141,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [DISTANCES] = {KERNEL(distances, 8, 8, sizeof(struct vpl_distances_args), 1)},
     [POWER] = {KERNEL(power, TYN_RADIAL_VPLS_MAX, 1, 0, 0)},
     [BOUNCE] = {KERNEL(bounce, VPL_BLOCK, 1, 0, 0)},
+    [FURTHER] = {KERNEL(further, TYN_RADIAL_VPLS_MAX, 1, 0, 0)},
 };
 
 static const tyn_param params[] = {
@@ -267,6 +273,13 @@ static void make_lights(tyn_recorder *r, const struct vpl_plan *plan, const stru
     tyn_rec_work(r, "elements", (double)plan->num_blocks * VPL_BLOCK);
 }
 
+// What the maps of distances put into bins starts from nothing, in units of the power of all VPLs.
+static void count_reflections(tyn_recorder *r)
+{
+    tyn_rec_fill(r, PORT(BINS), 0);
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = POWER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1}});
+}
+
 static void record(tyn_recorder *r, const void *data)
 {
     const tyn_vpl_params *p = data;
@@ -287,8 +300,7 @@ static void record(tyn_recorder *r, const void *data)
                               .spec = &p->mode};
     make_lights(r, &plan, &args, false, p->mode);
     if (again) {
-        tyn_rec_fill(r, PORT(BINS), 0);
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = POWER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1}});
+        count_reflections(r);
     }
     if (side) {
         tyn_rec_dispatch(r, &see);
@@ -302,8 +314,10 @@ static void record(tyn_recorder *r, const void *data)
         tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = BOUNCE, .cells = {VPL_BLOCK, 1, 1}});
         make_lights(r, &plan, &added, true, p->mode);
         maps.later = 1;
-        maps.bounce = 0;
+        count_reflections(r);
         tyn_rec_dispatch(r, &see);
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = FURTHER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1}});
     }
     tyn_rec_work(r, "rays", (double)p->count * side * side);
     tyn_rec_work(r, "vpls", p->count);

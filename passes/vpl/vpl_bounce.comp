@@ -1,7 +1,4 @@
 // vpl_bounce.comp -- bins as a map of what reflects light again, for the next VPLs. One workgroup.
-//
-// All further reflections are taken to be like the second: if of the power P of the VPLs q P is reflected, what
-// will ever be reflected is (q + q^2 + ...) P. So the second reflection is scaled by 1 / (1 - q).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -12,7 +9,6 @@
 #include "vpl_hilbert.glsl"
 
 const uint GROUP = 256u;
-const float MOST_REFLECTED = 0.95;
 layout(local_size_x = GROUP) in;
 
 layout(binding = 0, scalar) readonly buffer vpl_buffer
@@ -35,8 +31,6 @@ layout(binding = 5, rgba32f) uniform writeonly image2D flux_image; // as rsm_arg
 layout(binding = 6, rgba32f) uniform writeonly image2D position_image;
 layout(binding = 7, rgba32f) uniform writeonly image2D normal_image;
 
-shared vec3 sums[GROUP];
-
 vec3 flux_of(uint bin)
 {
     vpl_bin b = bins.list[bin];
@@ -46,26 +40,12 @@ vec3 flux_of(uint bin)
 void main()
 {
     uint lane = gl_LocalInvocationIndex;
-    vec3 sum = vec3(0.0);
-    for (uint bin = lane; bin < VPL_BINS; bin += GROUP) {
-        sum += flux_of(bin);
-    }
-    sums[lane] = sum;
-    for (uint half_size = GROUP / 2u; half_size > 0u; half_size /= 2u) {
-        barrier();
-        if (lane < half_size) {
-            sums[lane] += sums[lane + half_size];
-        }
-    }
-    barrier();
-    vec3 again = 1.0 / (1.0 - min(sums[0] / max(bins.power, vec3(1e-30)), vec3(MOST_REFLECTED)));
-
     vec3 cell = (surfaces.hi - surfaces.lo) / float(VPL_BIN_CELLS);
     float area = pow(max(cell.x * cell.y * cell.z, 1e-30), 2.0 / 3.0);
     int width = textureSize(distance_tex, 0).x, side = width / VPL_MAPS_IN_A_ROW;
     for (uint bin = lane; bin < VPL_BINS; bin += GROUP) {
         ivec2 to = ivec2(vpl_hilbert(VPL_BIN_SIDE, bin));
-        vec3 flux = again * flux_of(bin);
+        vec3 flux = flux_of(bin);
         vec4 position = vec4(0.0), normal = vec4(0.0);
         if (flux.r + flux.g + flux.b > 0.0) {
             int best = int(bins.list[bin].best & 0xfffffu);

@@ -1,0 +1,56 @@
+// vpl_further.comp -- gives the VPLs of the second reflection the power of all further ones. One workgroup.
+//
+// All further reflections are taken to be where the second is, and to meet what its light meets. If of its power P
+// surfaces reflect q P, what will ever be sent out from there is (1 + q + q^2 + ...) P: with P / (1 - q) what these
+// VPLs send out, less what surfaces reflect of it, is P, and no light is lost or made.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "radial_args.h"
+#include "vpl_bounce_args.h"
+
+const float MOST_REFLECTED = 0.95;
+layout(local_size_x = TYN_RADIAL_VPLS_MAX) in;
+
+layout(binding = 0, scalar) buffer vpl_buffer
+{
+    uint vpl_count;
+    uint vpl_before;
+    uvec2 vpl_pad;
+    radial_light vpls[];
+};
+layout(binding = 1, scalar) readonly buffer bin_buffer
+{
+    vpl_bins bins; // what surfaces reflect of these VPLs' light
+};
+
+shared vec3 sums[TYN_RADIAL_VPLS_MAX];
+
+vec3 total_of(vec3 v)
+{
+    uint lane = gl_LocalInvocationIndex;
+    barrier();
+    sums[lane] = v;
+    for (uint half_size = TYN_RADIAL_VPLS_MAX / 2u; half_size > 0u; half_size /= 2u) {
+        barrier();
+        if (lane < half_size) {
+            sums[lane] += sums[lane + half_size];
+        }
+    }
+    barrier();
+    return sums[0];
+}
+
+void main()
+{
+    uint lane = gl_LocalInvocationIndex;
+    bool further = lane >= vpl_before && lane < vpl_count;
+    vec3 power = total_of(further ? vpls[lane].intensity * 3.14159265 : vec3(0.0)), sum = vec3(0.0);
+    for (uint bin = lane; bin < VPL_BINS; bin += TYN_RADIAL_VPLS_MAX) {
+        sum += vec3(bins.list[bin].flux[0], bins.list[bin].flux[1], bins.list[bin].flux[2]);
+    }
+    vec3 reflected = total_of(sum / VPL_BIN_UNIT) * bins.power;
+    if (further) {
+        vpls[lane].intensity /= 1.0 - min(reflected / max(power, vec3(1e-30)), vec3(MOST_REFLECTED));
+    }
+}
