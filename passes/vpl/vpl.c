@@ -316,8 +316,8 @@ static void record(tyn_recorder *r, const void *data)
         maps.later = 1;
         count_reflections(r);
         tyn_rec_dispatch(r, &see);
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = FURTHER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1}});
+        tyn_rec_dispatch(r,
+                         &(tyn_dispatch){.kernel = FURTHER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1}});
     }
     tyn_rec_work(r, "rays", (double)p->count * side * side);
     tyn_rec_work(r, "vpls", p->count);
