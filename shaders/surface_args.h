@@ -59,4 +59,12 @@ struct surface_node { // element of storage buffer "nodes": a binary hierarchy, 
 };
 TYN_ASSERT_SIZE(surface_node, 32);
 
+// Triangles that one draw takes: those that may be in a view are a few ranges, as neighbours in space are
+// neighbours in the hierarchy's order.
+#define TYN_SURFACE_RANGES 4
+struct surface_range {
+    tyn_uint first, count; // count 0: none
+};
+TYN_ASSERT_SIZE(surface_range, 8);
+
 #endif

@@ -97,7 +97,7 @@ static void begin_rendering(tyn_recorder *r, const tyn_kernel *k, tyn_extent siz
 }
 
 static void draw_tile(tyn_recorder *r, const tyn_kernel *k, const tyn_pipeline *pl,
-                      const tyn_tile *tile, uint32_t vertices)
+                      const tyn_tile *tile, uint32_t all)
 {
     const tyn_procs *vk = &r->g->dev->vk;
     vk->CmdSetViewport(r->cmd, 0, 1,
@@ -109,7 +109,8 @@ static void draw_tile(tyn_recorder *r, const tyn_kernel *k, const tyn_pipeline *
     if (k->args_size) {
         vk->CmdPushConstants(r->cmd, pl->layout, tyn_kernel_stages(k), 0, k->args_size, tile->args);
     }
-    vk->CmdDraw(r->cmd, vertices, 1, 0, 0);
+    const bool part = tile->first + tile->vertices > 0;
+    vk->CmdDraw(r->cmd, part ? tile->vertices : all, 1, tile->first, 0);
 }
 
 void tyn_rec_draw(tyn_recorder *r, const tyn_draw *d)

@@ -85,6 +85,8 @@ void tyn_rsm_add(tyn_rsm_params *p, const struct rsm_tile *tile, uint32_t kind,
         return;
     }
     p->tiles[p->num_tiles] = *tile;
+    memset(p->drawn[p->num_tiles], 0, sizeof p->drawn[0]);
+    p->drawn[p->num_tiles][0].count = p->num_triangles;
     struct rsm_draw_args *d = &p->draws[p->num_tiles++];
     *d = (struct rsm_draw_args){
         .kind = kind, .cos_inner = -2.0f, .cos_outer = -2.0f, .texel = texel};
@@ -115,19 +117,25 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_rsm_params *p = params;
-    tyn_tile tiles[TYN_RSM_MAX_TILES];
+    tyn_tile tiles[TYN_RSM_MAX_TILES * TYN_SURFACE_RANGES];
+    uint32_t num_tiles = 0, drawn = 0;
     for (uint32_t i = 0; i < p->num_tiles; i++) {
         const struct rsm_tile *t = &p->tiles[i];
-        tiles[i] = (tyn_tile){t->offset[0], t->offset[1], t->texels, t->texels, &p->draws[i]};
+        for (uint32_t k = 0; k < TYN_SURFACE_RANGES && p->drawn[i][k].count; k++) {
+            const struct surface_range *d = &p->drawn[i][k];
+            tiles[num_tiles++] = (tyn_tile){t->offset[0], t->offset[1], t->texels,   t->texels,
+                                            &p->draws[i], 3 * d->first, 3 * d->count};
+            drawn += d->count;
+        }
     }
     for (uint32_t kernel = 0; kernel < NUM_KERNELS; kernel++) {
         tyn_rec_draw(r, &(tyn_draw){.kernel = kernel,
                                     .vertices = 3 * p->num_triangles,
                                     .tiles = tiles,
-                                    .num_tiles = p->num_tiles,
+                                    .num_tiles = num_tiles,
                                     .keep_depth = kernel == KERNEL_LIGHT});
     }
-    tyn_rec_work(r, "triangles", (double)p->num_triangles * p->num_tiles);
+    tyn_rec_work(r, "triangles", drawn);
 }
 
 const tyn_pass_desc tyn_pass_rsm = {

@@ -59,17 +59,23 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_shadow_map_params *p = params;
-    tyn_tile tiles[TYN_SHADOW_VIEWS];
+    tyn_tile tiles[TYN_SHADOW_VIEWS * TYN_SURFACE_RANGES];
+    uint32_t num_tiles = 0, drawn = 0;
     for (uint32_t i = 0; i < p->num_views; i++) {
         const tyn_shadow_view *v = &p->views[i];
-        tiles[i] = (tyn_tile){v->place[0], v->place[1], v->texels, v->texels, &v->args};
+        for (uint32_t k = 0; k < TYN_SURFACE_RANGES && v->drawn[k].count; k++) {
+            tiles[num_tiles++] = (tyn_tile){
+                v->place[0],           v->place[1],          v->texels, v->texels, &v->args,
+                3 * v->drawn[k].first, 3 * v->drawn[k].count};
+            drawn += v->drawn[k].count;
+        }
     }
     tyn_rec_update(r, SHADOW_MAP_PORT_SHADOWS, 0, p->lights, sizeof p->lights);
     tyn_rec_draw(r, &(tyn_draw){.kernel = 0,
                                 .vertices = 3 * p->num_triangles,
                                 .tiles = tiles,
-                                .num_tiles = p->num_views});
-    tyn_rec_work(r, "triangles", (double)p->num_triangles * p->num_views);
+                                .num_tiles = num_tiles});
+    tyn_rec_work(r, "triangles", drawn);
 }
 
 const tyn_pass_desc tyn_pass_shadow_map = {

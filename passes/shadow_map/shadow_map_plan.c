@@ -134,6 +134,7 @@ static void plan_sun(tyn_shadow_map_params *p, struct shadow_light *l,
     view->place[0] = (uint32_t)l->offset[0];
     view->place[1] = (uint32_t)l->offset[1];
     view->texels = (uint32_t)l->texels;
+    view->drawn[0].count = s->num_triangles;
     view->light = (uint32_t)(l - p->lights);
     for (int r = 0; r < 3; r++) {
         clip_row(view->args.clip[r], f.rows[r], 1, s);
@@ -182,6 +183,7 @@ static void plan_lamp(tyn_shadow_map_params *p, struct shadow_light *l,
         view->place[0] = (uint32_t)l->offset[0] + (uint32_t)(face % 3) * (uint32_t)l->texels;
         view->place[1] = (uint32_t)l->offset[1] + (uint32_t)(face / 3) * (uint32_t)l->texels;
         view->texels = (uint32_t)l->texels;
+        view->drawn[0].count = s->num_triangles;
         view->light = (uint32_t)(l - p->lights);
         clip_row(view->args.clip[0], f.rows[(w + 1) % 3], (double)l->scale, s);
         clip_row(view->args.clip[1], f.rows[(w + 2) % 3], (double)l->scale, s);

@@ -185,6 +185,7 @@ TYN_API void tyn_rec_dispatch_indirect(tyn_recorder *r, const tyn_dispatch *d, u
 typedef struct tyn_tile {
     uint32_t x, y, width, height; // texels: viewport and scissor
     const void *args;
+    uint32_t first, vertices; // of the draw's: from which on, and how many; 0, 0: all of them
 } tyn_tile;
 
 // One draw into each tile; all tiles in one go, in order, without barriers between them. The attachments
