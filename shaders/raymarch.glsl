@@ -471,6 +471,9 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset, flo
     vec3 field0 = lattice_inscatter_uvw(medium.extent, field_size, origin);
     vec3 field1 = lattice_inscatter_uvw(medium.extent, field_size, origin + direction) - field0;
 
+    // A ray may end a little behind the surface that it stands for: light is not looked up there.
+    float inside = raymarch_has(RAYMARCH_WALLS) ? max(end - 5e-4 * (start + end), 0.0) : end;
+
     spectrum through = spectrum(1.0), through_scaled = spectrum(1.0); // e^-tau, e^-tau'
     spectrum hidden = spectrum(0.0);
     vec3 before = vec3(0.0);                // radiance before the last step
@@ -512,7 +515,8 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset, flo
             through_before = through_scaled;
 
             if (raymarch_has(RAYMARCH_FIELD)) {
-                vec3 J = march_field(origin + at * direction, field0 + at * field1);
+                float there = min(at, inside);
+                vec3 J = march_field(origin + there * direction, field0 + there * field1);
                 if (raymarch_has(RAYMARCH_ONE_CHANNEL)) {
                     J = J.r * args.tint;
                 }

@@ -104,7 +104,7 @@ float shadow_visibility(uint light, vec3 p)
                                    : shadow_visibility_lamp(light, p);
 }
 
-// The same for a point of a surface with the normal `n` (M, either side), blended between texels. Depths
+// The same for a point of a surface with the normal `n` (M, either side). Depths
 // that do not change with u and v except linearly (parallel maps as they are, perspective ones because
 // they are reciprocal) are those of the surface's own plane at the four texels: so it does not shadow
 // itself, whatever its slope, and what is in front of it by more than a tenth of a texel does.
@@ -135,17 +135,19 @@ float shadow_visibility_surface(uint light, vec3 p, vec3 n)
         return 1.0;
     }
     slope *= 2.0 / l.texels; // by texels
-    float steepest = 0.25 * place.depth + SHADOW_EPSILON; // edge-on, where little light arrives
+    // Depths of suns are 0 to 1, of lamps as small as the nearest surface makes them: near / z.
+    float unit = light < TYN_SHADOW_SUNS ? 1.0 : 0.0;
+    float rounding = SHADOW_EPSILON * (unit + (4.0 - 3.0 * unit) * place.depth);
+    float steepest = 0.25 * place.depth + unit * SHADOW_EPSILON; // edge-on, where little light arrives
     slope = clamp(slope, vec2(-steepest), vec2(steepest));
     vec2 first;
     vec4 stored = shadow_gather(place, first);
     vec2 w = place.texel - 0.5 - first; // of the texel to the right and below
-    float slack = 0.1 * (abs(slope.x) + abs(slope.y)) + SHADOW_EPSILON * (1.0 + place.depth);
+    float slack = 0.1 * (abs(slope.x) + abs(slope.y)) + rounding;
     vec4 x = vec4(0.0, 1.0, 1.0, 0.0) - w.x, y = vec4(1.0, 1.0, 0.0, 0.0) - w.y;
     vec4 own = max(place.depth + slope.x * x + slope.y * y, 0.0) + slack;
     vec4 lit = vec4(lessThanEqual(stored, own));
-    vec4 weights = vec4((1.0 - w.x) * w.y, w.x * w.y, w.x * (1.0 - w.y), (1.0 - w.x) * (1.0 - w.y));
-    return dot(lit, weights);
+    return all(equal(lit, vec4(1.0))) ? 1.0 : 0.0;
 }
 
 #endif

@@ -14,7 +14,7 @@ surface_samples surface_samples_of(sampler2D surfaces, camera_block camera, ivec
 {
     surface_samples s;
     s.side = textureSize(surfaces, 0).x / int(camera.size.x);
-    float nearest = TYN_INFINITY, farthest = 0.0, count = float(s.side * s.side);
+    float nearest = TYN_INFINITY, farthest = 0.0, inverses = 0.0, count = float(s.side * s.side);
     vec4 sum = vec4(0.0);
     s.covered = 0.0;
     for (int i = 0; i < s.side * s.side; i++) {
@@ -23,9 +23,11 @@ surface_samples surface_samples_of(sampler2D surfaces, camera_block camera, ivec
         s.covered += found.a < TYN_INFINITY ? 1.0 / count : 0.0;
         nearest = min(nearest, found.a);
         farthest = max(farthest, found.a);
+        inverses += 1.0 / max(found.a, 1e-30);
     }
+    // The reciprocal of the distance to a plane is nearly linear over the pixel.
     s.even = nearest == TYN_INFINITY || farthest < 1.05 * nearest;
-    s.mean = vec4(sum.rgb / count, s.even && nearest < TYN_INFINITY ? sum.a / count : nearest);
+    s.mean = vec4(sum.rgb / count, s.even && nearest < TYN_INFINITY ? count / inverses : nearest);
     return s;
 }
 

@@ -15,7 +15,8 @@ float vpl_irradiance(radial_light light, vec3 p, vec3 n)
 {
     vec3 away = p - light.position;
     float h = dot(away, light.axis), towards = -dot(away, n);
-    if (h <= 0.0 || towards <= 0.0) {
+    // The other side of the VPL's own surface is in its plane, give or take rounding.
+    if (h <= 1e-3 * light.radius || towards <= 0.0) {
         return 0.0;
     }
     float RR = light.radius * light.radius, d = dot(away, away) - RR;
