@@ -113,13 +113,15 @@ float shadow_visibility_surface(uint light, vec3 p, vec3 n)
     shadow_light l = shadows[light];
     vec3 q = shadow_frame(l, p), m = shadow_frame_direction(l, n);
     shadow_place place;
-    vec2 slope; // of depth by u and v
+    vec2 slope;     // of depth by u and v
+    float rounding; // of depth
     if (light < TYN_SHADOW_SUNS) {
         place = shadow_place_sun(l, q);
         // Rows are orthogonal but not of unit length: normals divide by its square.
         m /= vec3(dot(l.rows[0].xyz, l.rows[0].xyz), dot(l.rows[1].xyz, l.rows[1].xyz),
                   dot(l.rows[2].xyz, l.rows[2].xyz)) + 1e-30;
         slope = -m.xy / (abs(m.z) > 1e-20 ? m.z : 1e-20);
+        rounding = SHADOW_EPSILON * (1.0 + place.depth);
     } else {
         uint face = l.kind == TYN_SHADOW_CUBE ? shadow_face(q) : 0u;
         if (l.kind == TYN_SHADOW_CUBE) {
@@ -130,15 +132,14 @@ float shadow_visibility_surface(uint light, vec3 p, vec3 n)
         // 1 / z = (m.x u / scale + m.y v / scale + m.z) / dot(m, q)
         float height = dot(m, q);
         slope = l.near * m.xy / (l.scale * (abs(height) > 1e-20 ? height : 1e-20));
+        // Depths are as small as near makes them. What p is off its plane by is to be seen from the lamp.
+        rounding = place.depth * min(1.5e-4 * length(p) / max(abs(height), 1e-20), 0.25);
     }
     if (!place.inside) {
         return 1.0;
     }
     slope *= 2.0 / l.texels; // by texels
-    // Depths of suns are 0 to 1, of lamps as small as the nearest surface makes them: near / z.
-    float unit = light < TYN_SHADOW_SUNS ? 1.0 : 0.0;
-    float rounding = SHADOW_EPSILON * (unit + (4.0 - 3.0 * unit) * place.depth);
-    float steepest = 0.25 * place.depth + unit * SHADOW_EPSILON; // edge-on, where little light arrives
+    float steepest = 0.25 * place.depth + rounding; // edge-on, where little light arrives
     slope = clamp(slope, vec2(-steepest), vec2(steepest));
     vec2 first;
     vec4 stored = shadow_gather(place, first);
