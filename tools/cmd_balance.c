@@ -89,8 +89,9 @@ const command cmd_balance = {
     .details =
         "entering: through the surface of the media's shapes together; emitted: by media and by\n"
         "lamps inside; imbalance = 1 - (absorbed + escaped) / (entering + emitted). With\n"
-        "--method path a sample (--spp) is some ten thousand paths, and where there are surfaces\n"
-        "the boundary is a box around media, surfaces and lamps.",
+        "--method path a sample (--spp) is some ten thousand paths, and imbalance_se is the\n"
+        "standard error of the imbalance. Where there are surfaces the boundary is a box around\n"
+        "media, surfaces and lamps (docs/balance.md).",
     .positionals = positionals,
     .num_positionals = ARRAY_SIZE(positionals),
     .groups = groups,

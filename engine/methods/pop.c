@@ -513,6 +513,7 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, field *f)
         [PROBE_PORT_MEDIUM] = job->refs.medium,
         [PROBE_PORT_LIGHTS] = job->refs.suns,
         [PROBE_PORT_MOMENTS] = f->moments,
+        [PROBE_PORT_CELLS] = f->cells,
         [PROBE_PORT_BEAMS] = beams->beams,
         [PROBE_PORT_COLUMN] = beams->column,
         [PROBE_PORT_TAU_A] = beams->tau_a,

@@ -27,6 +27,7 @@ static const tyn_port ports[PROBE_NUM_PORTS] = {
                                  "mean (1 - f) sigma_s"},
     [PROBE_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, 0, true, "of shadow_map"},
     [PROBE_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, true, "of shadow_map"},
+    [PROBE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_cells"},
     [PROBE_PORT_POINTS] = {"points", TYN_IN, TYN_BUFFER, 0, false, "vec3[], m"},
     [PROBE_PORT_RESULTS] = {"results", TYN_OUT, TYN_BUFFER, 0, false, "tyn_probe_result[], W/m^2"},
 };
@@ -42,6 +43,7 @@ static const tyn_binding bindings[] = {
     {PROBE_PORT_RADIALS, TYN_USE_STORAGE_READ},    {PROBE_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED},
     {PROBE_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED},    {PROBE_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED},
     {PROBE_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED},    {PROBE_PORT_SHADOWS, TYN_USE_STORAGE_READ},
+    {PROBE_PORT_CELLS, TYN_USE_SAMPLED},
 };
 
 static const tyn_kernel kernels[] = {
@@ -51,7 +53,7 @@ static const tyn_kernel kernels[] = {
      sizeof(struct probe_args),
      {64, 1, 1},
      bindings,
-     20,
+     sizeof bindings / sizeof *bindings,
      3},
 };
 
@@ -80,6 +82,7 @@ static void record(tyn_recorder *r, const void *params)
         .num_points = num_points(tyn_rec_extent(r, PROBE_PORT_POINTS)),
         .scattered_only = p->scattered_only,
         .local_lights = p->local_lights,
+        .cells = tyn_rec_has(r, PROBE_PORT_CELLS),
     };
     memcpy(args.world, p->world, sizeof args.world);
     const uint32_t spec[3] = {p->mode, tyn_rec_has(r, PROBE_PORT_WALL_LINKS),

@@ -39,6 +39,7 @@ layout(binding = 1, scalar) readonly buffer light_buffer
     light_block lights[];
 };
 layout(binding = 2) uniform sampler3D moments;
+layout(binding = 20) uniform sampler3D cells;
 layout(binding = 9, scalar) uniform environment_uniform
 {
     env_block environment;
@@ -104,6 +105,50 @@ vec4 moments_at(lattice_box box, vec3 p, uint ch)
     return sum;
 }
 
+// Mean of e^-tau over a cell between whose ends tau is linear.
+vec3 mean_of(vec3 tau0, vec3 tau1)
+{
+    vec3 x = tau1 - tau0;
+    vec3 mean = (exp(-tau0) - exp(-tau1)) / mix(x, vec3(1.0), lessThan(abs(x), vec3(1e-3)));
+    return mix(mean, exp(-0.5 * (tau0 + tau1)), lessThan(abs(x), vec3(1e-3)));
+}
+
+// In the outer half of the outermost cells moments go on as a line. Next to a lit face the scattered flux does not: what
+// it gains is what sunlight loses in first scatterings, e^-tau over a fraction of a cell. The line through two cells'
+// means is that of their sum, which changes little. So this adds what the line has of sunlight, less the sunlight at
+// p, per unit of its irradiance: as much as of its losses is scattered.
+vec3 sunlight_in_line(lattice_box box, uint sun, vec3 p)
+{
+    vec3 x = lattice_from_m(box, p), sum = vec3(0.0);
+    if (args.cells == 0u || any(lessThan(x, vec3(0.0))) || any(greaterThan(x, vec3(box.dims)))) {
+        return sum;
+    }
+    ivec3 c = clamp(ivec3(floor(x)), ivec3(0), box.dims - 1);
+    vec3 albedo;
+    for (uint ch = 0; ch < 3; ch++) {
+        vec4 cell = texelFetch(cells, c + ivec3(0, 0, int(args.channels == 1 ? 0 : ch) * box.dims.z), 0);
+        albedo[ch] = cell.x / max(cell.x + cell.y, 1e-30);
+    }
+    beam_tau here = beam_depth(sun, p);
+    for (int axis = 0; axis < 3; axis++) {
+        bool first = x[axis] < 0.5, last = x[axis] > float(box.dims[axis]) - 0.5;
+        if (!(first || last) || medium.repeat[axis] != 0u || box.dims[axis] < 2) {
+            continue;
+        }
+        float depth = first ? x[axis] : float(box.dims[axis]) - x[axis];
+        vec3 tau[3]; // at the ends of the two cells
+        for (int k = 0; k < 3; k++) {
+            vec3 q = x;
+            q[axis] = first ? float(k) : float(box.dims[axis] - k);
+            beam_tau at = beam_depth(sun, lattice_to_m(box, q));
+            tau[k] = at.a + at.p;
+        }
+        vec3 line = mix(mean_of(tau[0], tau[1]), mean_of(tau[1], tau[2]), depth - 0.5);
+        sum += albedo * (line - exp(-(here.a + here.p)));
+    }
+    return sum;
+}
+
 beam_tau ordinate_tau(lattice_box box, vec3 p, uint n)
 {
     cell_corners corners = corners_of(box, p);
@@ -161,6 +206,8 @@ void main()
     for (uint ch = 0; ch < 3; ch++) {
         field[ch] = args.tint[ch] * moments_at(box, p, args.channels == 1 ? 0 : ch);
     }
+    // Next to walls moments are not taken along lines.
+    bool near_wall = walls == 1 && walls_near(walls_place_of(box, p));
     for (uint sun = 0; sun < args.num_suns; sun++) {
         vec3 last;
         beam_tau tau = beam_tau(vec3(0.0), vec3(0.0), vec3(0.0));
@@ -177,7 +224,9 @@ void main()
             e *= shadow_visibility_sun(sun, p);
         }
         vec3 flux = lights[sun].mean_cosine * lights[sun].direction;
+        vec3 beyond = near_wall ? vec3(0.0) : sunlight_in_line(box, sun, p);
         for (uint ch = 0; ch < 3; ch++) {
+            field[ch].yzw += beyond[ch] * lights[sun].color[ch] * flux;
             field[ch] += e[ch] * lights[sun].color[ch] * vec4(1.0, flux);
         }
     }
