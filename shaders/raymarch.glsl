@@ -52,7 +52,8 @@ float spectrum_mean(vec3 x)
 #endif
 
 const int RAYMARCH_CHUNK = 32; // steps between two looks at the distance map: empty ones are cheap
-const float RAYMARCH_SHADOWS_ACROSS = 256.0; // looks at a shadow map along the box's longest side
+const float RAYMARCH_SHADOWS_ACROSS = 128.0; // looks at a shadow map along the box's longest side, and
+const float RAYMARCH_SHADOW_HALVES = 8.0; // parts of which where it has an edge in between
 const float RAYMARCH_GONE = 9.0; // scaled depth behind args.stop, in every channel, of what hides all
 
 bool raymarch_has(uint feature)
@@ -169,12 +170,9 @@ struct march_sun {
 
 struct march_result {
     vec3 radiance; // of the medium alone
-    vec3 single;   // its first-order part, where a layer wants it
     vec3 transmittance;
     vec3 scaled_transmittance; // e^-tau'
     spectrum forward_depth;    // tau - tau'
-    float half_distance;       // where the mean transmittance falls to 1/2, or infinity
-    uint steps;
 };
 
 march_sun march_sun_of(uint n, march_medium unit, vec3 origin, vec3 direction)
@@ -273,33 +271,82 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, fl
     return light * (k_tms * weight_scaled + k_lobe * weight);
 }
 
-// Mean visibility of a sun from distance s of the ray over a step: what moves along a view ray moves
-// evenly over the sun's map. Steps follow the medium, shadows do not: so a step looks at several places.
-float march_shadow(shadow_light map, vec3 from, vec3 along, float s, float ds)
+// What lights see from where a ray has been marched to: bits 0 to 3 of suns, 4 on of lamps.
+struct march_shadows {
+    uint known, lit;
+};
+
+bool march_sees(bool sun, uint light, vec3 from, vec3 along, float s)
 {
-    float longest = max(max(medium.extent.x, medium.extent.y), medium.extent.z) / RAYMARCH_SHADOWS_ACROSS;
-    float count = clamp(ceil(ds / longest), 1.0, 16.0), part = ds / count, sum = 0.0;
-    for (float i = 0.5; i < count; i += 1.0) {
-        sum += shadow_all_lit(shadow_place_sun(map, from + (s + i * part) * along));
-    }
-    return sum / count;
+    vec3 p = from + s * along;
+    return (sun ? shadow_all_lit(shadow_place_sun(shadows[light], p)) : shadow_visibility_lamp(light, p)) > 0.0;
 }
 
-// Light of the lattice at a point, as texture inscatter has it; uvw is its place there.
-vec3 march_field(vec3 p, vec3 uvw)
+// Share of the step from s to s + ds that a light sees, on its map (of suns: what moves along a view ray moves
+// evenly over it) or in M. Steps follow the medium, shadows do not: so a step looks at several places, and
+// halves what is between two that differ.
+float march_lit(bool sun, uint light, uint bit, vec3 from, vec3 along, float s, float ds,
+                inout march_shadows shadow)
+{
+    float longest = max(max(medium.extent.x, medium.extent.y), medium.extent.z) / RAYMARCH_SHADOWS_ACROSS;
+    float part = ds / max(ceil(ds / longest), 1.0), finest = part / RAYMARCH_SHADOW_HALVES, sum = 0.0;
+    bool known = (shadow.known >> bit & 1u) != 0u, lit = (shadow.lit >> bit & 1u) != 0u;
+    // Up to `lo` it is known what the light sees; at `hi`, if > 0, it is the opposite. One look an iteration, as
+    // these are what costs time.
+    float lo = 0.0, hi = 0.0;
+    while (lo < ds) {
+        float next = hi > 0.0 ? 0.5 * (lo + hi) : lo + 1.01 * part > ds ? ds : lo + part;
+        next = known ? next : 0.0;
+        bool sees = march_sees(sun, light, from, along, s + next);
+        lit = known ? lit : sees;
+        known = true;
+        sum += lit && sees ? next - lo : 0.0;
+        hi = lit == sees ? hi : next;
+        lo = lit == sees ? next : lo;
+        if (hi - lo > 0.0 && hi - lo <= finest) { // the edge is in the middle
+            sum += 0.5 * (hi - lo);
+            lo = hi;
+            hi = 0.0;
+            lit = !lit;
+        }
+    }
+    shadow.known |= 1u << bit;
+    shadow.lit = lit ? shadow.lit | 1u << bit : shadow.lit & ~(1u << bit);
+    return sum / ds;
+}
+
+// Is there a wall about p, so that the lattice must not be blended freely?
+bool march_near_walls(vec3 p)
 {
     if (raymarch_has(RAYMARCH_REPEAT)) {
         p = medium_wrap(p);
-        uvw = lattice_inscatter_uvw(medium.extent, textureSize(inscatter_tex, 0), p);
     }
-    if (raymarch_has(RAYMARCH_WALLS)) {
-        lattice_box box = lattice_box_of(medium.extent, textureSize(inscatter_tex, 0) - 2);
-        walls_place place = walls_place_of(box, p);
-        if (walls_near(place)) {
-            return walls_fetch(inscatter_tex, box, walls_blend_of(box, place, p), ivec3(1)).rgb;
-        }
+    lattice_box box = lattice_box_of(medium.extent, textureSize(inscatter_tex, 0) - 2);
+    return walls_near(walls_place_of(box, p));
+}
+
+// Light of the lattice at a point, as texture inscatter has it.
+vec3 march_field_between_walls(vec3 p)
+{
+    if (raymarch_has(RAYMARCH_REPEAT)) {
+        p = medium_wrap(p);
+    }
+    lattice_box box = lattice_box_of(medium.extent, textureSize(inscatter_tex, 0) - 2);
+    return walls_fetch(inscatter_tex, box, walls_blend_of(box, walls_place_of(box, p), p), ivec3(1)).rgb;
+}
+
+// The same without walls about; uvw is its place in the texture.
+vec3 march_field(vec3 p, vec3 uvw)
+{
+    if (raymarch_has(RAYMARCH_REPEAT)) {
+        uvw = lattice_inscatter_uvw(medium.extent, textureSize(inscatter_tex, 0), medium_wrap(p));
     }
     return textureLod(inscatter_tex, uvw, 0.0).rgb;
+}
+
+vec3 march_tinted(vec3 J)
+{
+    return raymarch_has(RAYMARCH_ONE_CHANNEL) ? J.r * args.tint : J;
 }
 
 // ---- lamps ----------------------------------------------------------------------------------------
@@ -339,42 +386,12 @@ float march_lamp_step(march_lamps ray, float s)
     return MARCH_LAMP_STEP * max(sqrt(least), march_least_h(ray, s));
 }
 
-float march_lamp_shadow(uint n, march_lamps ray, float s, float ds)
+// Light of a lamp that is scattered towards the eye `away` from it, r = length(away). `per_intensity`: what
+// a W/sr sends there as if nothing stood before it, 1/m^2.
+vec3 march_lamplight_seen(uint n, march_lamps ray, march_medium unit, march_medium m, vec3 away, float r,
+                          float per_intensity, spectrum weight, spectrum weight_scaled, inout vec3 first)
 {
-    uint map = radials[n].light.light;
-    float longest = max(max(medium.extent.x, medium.extent.y), medium.extent.z) / RAYMARCH_SHADOWS_ACROSS;
-    float count = clamp(ceil(ds / longest), 1.0, 16.0), part = ds / count, sum = 0.0;
-    for (float i = 0.5; i < count; i += 1.0) {
-        sum += shadow_visibility_lamp(map, ray.origin + (s + i * part) * ray.direction);
-    }
-    return sum / count;
-}
-
-// As march_sunlight, of a lamp in the step from s to s + ds, of which `at` is the middle. 1 / r^2 changes most:
-// its mean is exact, (angle under which the lamp sees the step) / (h ds), h the ray's distance from it.
-vec3 march_lamplight(uint n, march_lamps ray, march_medium unit, march_medium m, float s, float ds,
-                     float at, spectrum weight, spectrum weight_scaled, inout vec3 first)
-{
-    vec3 away = ray.origin + at * ray.direction - radials[n].light.position;
-    float along = dot(away, ray.direction), least = march_least_h(ray, at);
-    vec3 across = away - along * ray.direction;
-    float h2 = max(dot(across, across), least * least);
-    float a = along + (s - at), b = a + ds, q = h2 + a * b, z = sqrt(h2) * ds;
-    float mean = q > 4.0 * z ? (1.0 - z * z / (3.0 * q * q)) / q : atan(z, q) / z;
-    mean *= march_pixel_mean(length(across) * (0.282 / least));
-    // Where the angle from the lamp is in the middle: half of the light is on either side.
-    float ra = sqrt(h2 + a * a), rb = sqrt(h2 + b * b);
-    float middle = (a * rb + b * ra) / (ra + rb) + (at - s - 0.5 * ds);
-    away += (clamp(middle, a, b) - along) * ray.direction;
-    float r = length(away);
-    float share = radial_share(n, away, r);
-    if (raymarch_has(RAYMARCH_SHADOWS) && share > 0.0) {
-        share *= march_lamp_shadow(n, ray, s, ds);
-    }
-    if (share <= 0.0) {
-        return vec3(0.0);
-    }
-    vec3 irradiance = radials[n].light.intensity * (share * mean);
+    vec3 irradiance = radials[n].light.intensity * per_intensity;
     vec3 turn = ray.direction + away / max(r, 1e-20);
     float one_minus_mu = 0.5 * dot(turn, turn);
     radial_place place = radial_place_of(n, away, r);
@@ -419,6 +436,33 @@ vec3 march_lamplight(uint n, march_lamps ray, march_medium unit, march_medium m,
     return raymarch_has(RAYMARCH_KERNELS) ? light * (k_tms * weight_scaled + k_lobe * weight) : once;
 }
 
+// As march_sunlight, of a lamp in the step from s to s + ds, of which `at` is the middle. 1 / r^2 changes most:
+// its mean is exact, (angle under which the lamp sees the step) / (h ds), h the ray's distance from it.
+vec3 march_lamplight(uint n, march_lamps ray, march_medium unit, march_medium m, float s, float ds,
+                     float at, spectrum weight, spectrum weight_scaled, inout march_shadows shadow,
+                     inout vec3 first)
+{
+    vec3 away = ray.origin + at * ray.direction - radials[n].light.position;
+    float along = dot(away, ray.direction), least = march_least_h(ray, at);
+    vec3 across = away - along * ray.direction;
+    float h2 = max(dot(across, across), least * least);
+    float a = along + (s - at), b = a + ds, q = h2 + a * b, z = sqrt(h2) * ds;
+    float mean = q > 4.0 * z ? (1.0 - z * z / (3.0 * q * q)) / q : atan(z, q) / z;
+    mean *= march_pixel_mean(length(across) * (0.282 / least));
+    // Where the angle from the lamp is in the middle: half of the light is on either side.
+    float ra = sqrt(h2 + a * a), rb = sqrt(h2 + b * b);
+    float middle = (a * rb + b * ra) / (ra + rb) + (at - s - 0.5 * ds);
+    away += (clamp(middle, a, b) - along) * ray.direction;
+    float r = length(away);
+    float share = radial_share(n, away, r);
+    if (raymarch_has(RAYMARCH_SHADOWS) && share > 0.0) {
+        share *= march_lit(false, radials[n].light.light, 4u + n, ray.origin, ray.direction, s, ds, shadow);
+    }
+    if (share <= 0.0) {
+        return vec3(0.0);
+    }
+    return march_lamplight_seen(n, ray, unit, m, away, r, share * mean, weight, weight_scaled, first);
+}
 // Moves `s` on to the next brick that is not empty, or to `end`.
 float march_skip(vec3 origin, vec3 direction, vec3 inverse, float s, float end)
 {
@@ -445,16 +489,40 @@ float march_skip(vec3 origin, vec3 direction, vec3 inverse, float s, float end)
     return end;
 }
 
-// Marches from `origin`, which is inside the box, over the distance `end`. `offset` in (0, 1] is the
-// length of the first step in steps. `start`: how far from the eye the origin is.
-march_result march_ray(vec3 origin, vec3 direction, float end, float offset, float start)
-{
-    march_result result;
-    result.radiance = vec3(0.0);
-    result.single = vec3(0.0);
-    result.half_distance = TYN_INFINITY;
-    result.steps = 0u;
+// Where a ray has been marched to, and what it has brought so far.
+struct march_state {
+    float s;    // distance, m
+    float next; // longest next step, m
+    spectrum through, through_scaled; // e^-tau, e^-tau'
+    spectrum hidden;
+    vec3 radiance; // of the medium alone
+    vec3 before;   // that before the last step
+    spectrum through_before; // through_scaled before it
+    vec3 single;   // first-order part, where a layer wants it
+    float half_distance; // where the mean transmittance falls to 1/2, or infinity
+    uint steps;
+    march_shadows shadow;
+};
 
+// `offset` in (0, 1] is the length of the first step in steps.
+march_state march_start(float offset)
+{
+    march_state state;
+    state.s = 0.0;
+    state.next = offset * args.step;
+    state.through = state.through_scaled = state.through_before = spectrum(1.0);
+    state.hidden = spectrum(0.0);
+    state.radiance = state.before = state.single = vec3(0.0);
+    state.half_distance = TYN_INFINITY;
+    state.steps = 0u;
+    state.shadow = march_shadows(0u, 0u);
+    return state;
+}
+
+// Marches on from where `state` is to the distance `end` from `origin`, which is inside the box. `start`: how far
+// from the eye the origin is. The result is that of a ray that ends there; `state` can be marched farther.
+march_result march_ray(inout march_state state, vec3 origin, vec3 direction, float end, float start)
+{
     march_medium unit = march_medium_of(medium_of_density(1.0));
     march_sun suns[TYN_BEAM_MAX_SUNS];
     for (uint n = 0u; n < raymarch_num_suns; n++) {
@@ -472,18 +540,19 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset, flo
     vec3 field1 = lattice_inscatter_uvw(medium.extent, field_size, origin + direction) - field0;
 
     // A ray may end a little behind the surface that it stands for: light is not looked up there.
-    float inside = raymarch_has(RAYMARCH_WALLS) ? max(end - 5e-4 * (start + end), 0.0) : end;
+    float inside = raymarch_has(RAYMARCH_WALLS | RAYMARCH_SHADOWS) ? max(end - 5e-4 * (start + end), 0.0) : end;
 
-    spectrum through = spectrum(1.0), through_scaled = spectrum(1.0); // e^-tau, e^-tau'
-    spectrum hidden = spectrum(0.0);
-    vec3 before = vec3(0.0);                // radiance before the last step
-    spectrum through_before = spectrum(1.0); // through_scaled before it
-    float s = 0.0, length_next = offset * args.step;
-
-    while (s < end && spectrum_max(through_scaled) > args.stop) {
+    float s = state.s;
+    while (s < end && spectrum_max(state.through_scaled) > args.stop) {
+        float from = s;
         s = march_skip(origin, direction, inverse, s, end);
-        for (int i = 0; i < RAYMARCH_CHUNK; i++) {
-            if (s >= end || spectrum_max(through_scaled) <= args.stop) {
+        state.shadow.known = s > from ? 0u : state.shadow.known;
+        // Walls are looked at outside this loop, as some devices run what only few rays need for all: a step
+        // near them leaves it.
+        float wall_at = -1.0;
+        spectrum wall_weight;
+        for (int i = 0; i < RAYMARCH_CHUNK && wall_at < 0.0; i++) {
+            if (s >= end || spectrum_max(state.through_scaled) <= args.stop) {
                 break;
             }
             // Empty steps cost one fetch: neighbouring rays look for the next full one together.
@@ -491,8 +560,8 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset, flo
             float ds;
             bool full = false;
             do {
-                ds = min(length_next, end - s);
-                length_next = args.step;
+                ds = min(state.next, end - s);
+                state.next = args.step;
                 if (raymarch_num_lamps > 0u) {
                     ds = min(ds, march_lamp_step(lamps, s));
                 }
@@ -500,7 +569,8 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset, flo
                 full = march_any(m);
                 s += full ? 0.0 : ds;
                 i += full ? 0 : 1;
-                result.steps++;
+                state.shadow.known = full ? state.shadow.known : 0u;
+                state.steps++;
             } while (!full && i < RAYMARCH_CHUNK && s < end);
             if (!full) {
                 break;
@@ -509,55 +579,64 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset, flo
             float at = s + ds * step_centroid(0.5 * spectrum_mean(
                                     raymarch_has(RAYMARCH_KERNELS) ? x + x_scaled : x + x));
             spectrum e = exp(-x), e_scaled = exp(-x_scaled);
-            spectrum weight = ds * through * mean_attenuation(x, e);
-            spectrum weight_scaled = ds * through_scaled * mean_attenuation(x_scaled, e_scaled);
-            before = result.radiance;
-            through_before = through_scaled;
+            spectrum weight = ds * state.through * mean_attenuation(x, e);
+            spectrum weight_scaled = ds * state.through_scaled * mean_attenuation(x_scaled, e_scaled);
+            state.before = state.radiance;
+            state.through_before = state.through_scaled;
 
             if (raymarch_has(RAYMARCH_FIELD)) {
                 float there = min(at, inside);
-                vec3 J = march_field(origin + there * direction, field0 + there * field1);
-                if (raymarch_has(RAYMARCH_ONE_CHANNEL)) {
-                    J = J.r * args.tint;
-                }
+                vec3 p = origin + there * direction;
+                vec3 J = march_tinted(march_field(p, field0 + there * field1));
                 spectrum per_metre = m.scaled_scattering;
                 if (raymarch_has(RAYMARCH_SOURCE)) {
                     per_metre = spectrum(spectrum_max(m.extinction) > 0.0 ? 1.0 : 0.0);
                 }
-                result.radiance += per_metre * weight_scaled * J;
+                bool near = raymarch_has(RAYMARCH_WALLS) && march_near_walls(p);
+                wall_weight = per_metre * weight_scaled;
+                wall_at = near ? there : -1.0;
+                state.radiance += near ? vec3(0.0) : wall_weight * J;
             }
             if (raymarch_has(RAYMARCH_EMISSION)) {
-                result.radiance += m.emission * weight_scaled;
+                state.radiance += m.emission * weight_scaled;
             }
             for (uint n = 0u; n < raymarch_num_suns; n++) {
                 float lit = 1.0;
                 if (raymarch_has(RAYMARCH_SHADOWS)) {
-                    shadow_light map = shadows[beams[n].light];
-                    lit = march_shadow(map, shadow_frame(map, origin),
-                                       shadow_frame_direction(map, direction), s, ds);
+                    uint light = beams[n].light;
+                    lit = march_lit(true, light, n, shadow_frame(shadows[light], origin),
+                                    shadow_frame_direction(shadows[light], direction), s, ds, state.shadow);
                 }
-                result.radiance += march_sunlight(suns[n], unit, m, origin + at * direction, at, lit * weight,
-                                                  lit * weight_scaled, result.single);
+                state.radiance += march_sunlight(suns[n], unit, m, origin + at * direction, at, lit * weight,
+                                                 lit * weight_scaled, state.single);
             }
             for (uint n = 0u; n < raymarch_num_lamps; n++) {
-                result.radiance += march_lamplight(n, lamps, unit, m, s, ds, at, weight, weight_scaled,
-                                                   result.single);
+                state.radiance += march_lamplight(n, lamps, unit, m, s, ds, at, weight, weight_scaled,
+                                                   state.shadow, state.single);
             }
             if (raymarch_has(RAYMARCH_DEPTH)) {
-                float t0 = spectrum_mean(through * exp(-hidden));
-                float t1 = spectrum_mean(through * e * exp(-hidden - m.hidden * ds));
+                float t0 = spectrum_mean(state.through * exp(-state.hidden));
+                float t1 = spectrum_mean(state.through * e * exp(-state.hidden - m.hidden * ds));
                 if (t0 > 0.5 && t1 <= 0.5) {
-                    result.half_distance = s + ds * log(2.0 * t0) / log(t0 / t1);
+                    state.half_distance = s + ds * log(2.0 * t0) / log(t0 / t1);
                 }
             }
-            through *= e;
-            through_scaled *= e_scaled;
-            hidden += m.hidden * ds;
+            state.through *= e;
+            state.through_scaled *= e_scaled;
+            state.hidden += m.hidden * ds;
             s += ds;
         }
+        if (raymarch_has(RAYMARCH_WALLS) && wall_at >= 0.0) {
+            vec3 J = march_tinted(march_field_between_walls(origin + wall_at * direction));
+            state.radiance += wall_weight * J;
+        }
     }
+    state.s = s;
 
-    if (s < end && result.steps > 0u) {
+    march_result result;
+    result.radiance = state.radiance;
+    spectrum through = state.through, through_scaled = state.through_scaled, hidden = state.hidden;
+    if (s < end && state.steps > 0u) {
         // Nearly opaque. What is behind may be a thousand times brighter, so its attenuation is followed
         // to the end; the light of the rest is as bright as a medium that goes on as in the last step.
         spectrum through_end = spectrum(0.0);
@@ -578,8 +657,8 @@ march_result march_ray(vec3 origin, vec3 direction, float end, float offset, flo
             through *= exp(-tau);
             through_end = through_scaled * exp(-tau_scaled);
         }
-        vec3 last = vec3(through_before - through_scaled), rest = vec3(through_scaled - through_end);
-        result.radiance += (result.radiance - before) * min(rest / max(last, 1e-9), 99.0);
+        vec3 last = vec3(state.through_before - through_scaled), rest = vec3(through_scaled - through_end);
+        result.radiance += (result.radiance - state.before) * min(rest / max(last, 1e-9), 99.0);
         through_scaled = through_end;
     }
     result.transmittance = vec3(through * exp(-hidden));

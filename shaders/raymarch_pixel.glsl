@@ -53,50 +53,41 @@ bool is_finite(vec3 v)
     return !any(isnan(v)) && !any(isinf(v));
 }
 
-void shade_pixel(ivec2 pixel)
+// What is shown of the pixel: the light of its rays, and how much of it is covered.
+struct pixel_light {
+    vec3 radiance, single, multiple, transmittance;
+    float cover;
+    float nearest, half_distance;
+    uint steps;
+    bool met; // the medium's box
+};
+
+// Adds the ray through `where` in the pixel. To samples of several surfaces it has the same way as far as the first
+// of them, and goes on through the middle of the others: these never see what is behind the first.
+void add_ray(inout pixel_light sum, ivec2 pixel, vec2 where, float footprint, surface_group group)
 {
-    vec3 radiance = vec3(0.0), single = vec3(0.0), multiple = vec3(0.0), transmittance = vec3(0.0);
-    float surface = TYN_INFINITY, half_distance = TYN_INFINITY, nearest = TYN_INFINITY, cover = 0.0;
-    uint steps = 0u, num_rays = rays_of_pixel(pixel);
-    bool met = false;
-    vec4 first = vec4(vec3(0.0), TYN_INFINITY); // surface of the scene
-    int side = 0; // of the samples of several surfaces: a ray each
-    if (raymarch_has(RAYMARCH_SURFACE)) {
-        surface_samples samples = surface_samples_of(surface_tex, camera, pixel);
-        first = samples.mean;
-        side = samples.even ? 0 : samples.side;
-        num_rays = samples.even ? num_rays : uint(side * side);
+    vec3 beyond = vec3(0.0); // a periodic medium: so many periods that none sees farther
+    if (raymarch_has(RAYMARCH_REPEAT)) {
+        beyond = 256.0 * medium.extent * vec3(medium.repeat);
     }
-    for (uint i = 0u; i < num_rays; i++) {
-        vec2 where = num_rays == 1u ? vec2(0.5) : quarter_pixel(i);
-        if (raymarch_has(RAYMARCH_SURFACE) && side > 0) {
-            ivec2 at = ivec2(int(i) % side, int(i) / side);
-            where = (vec2(at) + 0.5) / float(side);
-            first = texelFetch(surface_tex, pixel * side + at, 0);
-        }
-        camera_ray ray = camera_ray_through(camera, vec2(pixel) + where);
-        vec3 beyond = vec3(0.0); // a periodic medium: so many periods that none sees farther
-        if (raymarch_has(RAYMARCH_REPEAT)) {
-            beyond = 256.0 * medium.extent * vec3(medium.repeat);
-        }
+    float left = 1.0, start = 0.0;
+    march_state state = march_start(display_bayer(uvec2(pixel)));
+    while (left > 1e-3) {
+        camera_ray ray = camera_ray_through(camera, vec2(pixel) + (group.share < 1.0 ? group.where : where));
         vec2 span = ray_box(ray.origin, ray_inverse(ray.direction), -beyond, medium.extent + beyond);
         span.x = max(span.x, 0.0);
-        surface = first.a;
+        start = span.x;
+        float surface = group.mean.a;
         if (raymarch_has(RAYMARCH_HOST_DEPTH)) {
-            surface = min(surface, host_distance(host_depth_tex, camera, args.depth, pixel,
-                                                 ray.direction));
+            surface = min(surface, host_distance(host_depth_tex, camera, args.depth, pixel, ray.direction));
         }
-        bool shown = raymarch_has(RAYMARCH_SURFACE) && first.a < TYN_INFINITY && first.a == surface;
-        nearest = min(nearest, surface);
-        span.y = min(span.y, surface);
-        met = met || span.x < span.y;
+        float end = min(span.y, surface);
+        bool shown = raymarch_has(RAYMARCH_SURFACE) && group.mean.a < TYN_INFINITY && group.mean.a == surface;
+        sum.nearest = min(sum.nearest, surface);
+        sum.met = sum.met || span.x < end;
         // Distances from where the ray enters: the camera may be far away.
-        march_result r = march_ray(ray.origin + span.x * ray.direction, ray.direction,
-                                   max(span.y - span.x, 0.0), display_bayer(uvec2(pixel)), span.x);
-        steps += r.steps;
-        transmittance += r.transmittance;
-        single += r.single;
-        half_distance = min(half_distance, span.x + r.half_distance);
+        march_result r = march_ray(state, ray.origin + span.x * ray.direction, ray.direction,
+                                   max(end - span.x, 0.0), span.x);
         // Light of what is behind that was scattered forward only: of the environment or, hardly out of
         // place, of the surface. In front of a host's surface it is not what lies behind that; the mean
         // keeps uniform surroundings uniform.
@@ -104,52 +95,79 @@ void shade_pixel(ivec2 pixel)
         if (raymarch_has(RAYMARCH_GLOW | RAYMARCH_MEAN | RAYMARCH_SURFACE)) {
             vec3 smeared = raymarch_has(RAYMARCH_GLOW | RAYMARCH_MEAN) ? environment.sky : vec3(0.0);
             if (shown) {
-                smeared = first.rgb;
+                smeared = group.mean.rgb;
             } else if (raymarch_has(RAYMARCH_GLOW) && surface == TYN_INFINITY) {
                 smeared = environment.radiance *
                           glow_radiance(glow_tex, environment, ray.direction, r.forward_depth);
             }
             light += smeared * max(r.scaled_transmittance - r.transmittance, 0.0);
         }
-        multiple += max(light - r.single, 0.0);
-        radiance += light;
+        sum.transmittance += group.share * r.transmittance;
+        sum.single += group.share * state.single;
+        sum.multiple += group.share * max(light - state.single, 0.0);
         if (raymarch_has(RAYMARCH_SURFACE_SEEN) && shown) {
-            radiance += r.transmittance * first.rgb;
-            cover += 1.0;
+            light += r.transmittance * group.mean.rgb;
+            sum.cover += group.share;
         } else if (!raymarch_has(RAYMARCH_BACKGROUND)) {
-            cover += 1.0 - dot(r.transmittance, vec3(1.0 / 3.0));
+            sum.cover += group.share * (1.0 - dot(r.transmittance, vec3(1.0 / 3.0)));
         } else if (surface == TYN_INFINITY) {
-            radiance += r.transmittance *
-                        background_radiance(environment, environment_tex, camera, ray.direction,
-                                            vec2(pixel) + where, num_rays == 1u ? 1.0 : 0.5);
+            light += r.transmittance * background_radiance(environment, environment_tex, camera, ray.direction,
+                                                           vec2(pixel) + where, footprint);
+        }
+        sum.radiance += group.share * light;
+        left -= group.share;
+        if (!raymarch_has(RAYMARCH_SURFACE)) {
+            break;
+        }
+        if (left > 1e-3) {
+            group = surface_group_from(surface_tex, camera, pixel, group.end);
         }
     }
+    sum.half_distance = min(sum.half_distance, start + state.half_distance);
+    sum.steps += state.steps;
+}
+
+void shade_pixel(ivec2 pixel)
+{
+    pixel_light sum = pixel_light(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, TYN_INFINITY, TYN_INFINITY, 0u,
+                                  false);
+    uint num_rays = rays_of_pixel(pixel);
+    surface_group group = surface_group(vec4(vec3(0.0), TYN_INFINITY), 1.0, TYN_INFINITY, vec2(0.5));
+    if (raymarch_has(RAYMARCH_SURFACE)) {
+        group = surface_group_from(surface_tex, camera, pixel, 0.0);
+        num_rays = group.share < 1.0 ? 1u : num_rays;
+    }
+    for (uint i = 0u; i < num_rays; i++) {
+        vec2 where = num_rays == 1u ? vec2(0.5) : quarter_pixel(i);
+        add_ray(sum, pixel, where, num_rays == 1u ? 1.0 : 0.5, group);
+    }
     float share = 1.0 / float(num_rays);
-    radiance *= share;
-    transmittance *= share;
+    vec3 radiance = share * sum.radiance, transmittance = share * sum.transmittance;
+    vec3 single = share * sum.single, multiple = share * sum.multiple;
+    float cover = share * sum.cover;
     if (!is_finite(radiance) || !is_finite(transmittance)) {
         atomicAdd(counters.non_finite, 1u);
         radiance = single = multiple = vec3(0.0);
         transmittance = vec3(1.0);
         cover = 0.0;
     }
-    if (met) {
-        atomicAdd(counters.steps, steps);
+    if (sum.met) {
+        atomicAdd(counters.steps, sum.steps);
         atomicAdd(counters.pixels, 1u);
     }
-    cover = raymarch_has(RAYMARCH_BACKGROUND) ? 1.0 : cover * share;
+    cover = raymarch_has(RAYMARCH_BACKGROUND) ? 1.0 : cover;
     imageStore(radiance_image, pixel, vec4(max(radiance, 0.0), cover));
     if (raymarch_has(RAYMARCH_TRANSMITTANCE)) {
         imageStore(transmittance_image, pixel, vec4(transmittance, 1.0));
     }
     if (raymarch_has(RAYMARCH_DEPTH)) {
-        imageStore(depth_image, pixel, vec4(nearest, half_distance, 0.0, 0.0));
+        imageStore(depth_image, pixel, vec4(sum.nearest, sum.half_distance, 0.0, 0.0));
     }
     if (raymarch_has(RAYMARCH_SINGLE)) {
-        imageStore(single_image, pixel, vec4(single * share, 1.0));
+        imageStore(single_image, pixel, vec4(single, 1.0));
     }
     if (raymarch_has(RAYMARCH_MULTIPLE)) {
-        imageStore(multiple_image, pixel, vec4(multiple * share, 1.0));
+        imageStore(multiple_image, pixel, vec4(multiple, 1.0));
     }
 }
 

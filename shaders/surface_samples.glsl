@@ -10,6 +10,44 @@ struct surface_samples {
     float covered; // share that shows a surface
 };
 
+// Samples that are about equally far away.
+struct surface_group {
+    vec4 mean;   // radiance and distance; with distance infinity: no surface
+    float share; // of the pixel's samples
+    float end;   // all are nearer than this
+    vec2 where;  // their middle in the pixel
+};
+
+// Of those not nearer than `from`, the nearest and what is up to 1.05 times as far.
+surface_group surface_group_from(sampler2D surfaces, camera_block camera, ivec2 pixel, float from)
+{
+    int side = textureSize(surfaces, 0).x / int(camera.size.x);
+    float nearest = TYN_INFINITY, count = 0.0;
+    for (int i = 0; i < side * side; i++) {
+        float away = texelFetch(surfaces, pixel * side + ivec2(i % side, i / side), 0).a;
+        nearest = away >= from ? min(nearest, away) : nearest;
+    }
+    vec4 sum = vec4(0.0);
+    vec2 where = vec2(0.0);
+    float end = 1.05 * nearest, inverses = 0.0;
+    for (int i = 0; i < side * side; i++) {
+        vec4 found = texelFetch(surfaces, pixel * side + ivec2(i % side, i / side), 0);
+        bool here = found.a >= nearest && (found.a < end || nearest == TYN_INFINITY);
+        sum += here && nearest < TYN_INFINITY ? found : vec4(0.0);
+        count += here ? 1.0 : 0.0;
+        inverses += here ? 1.0 / max(found.a, 1e-30) : 0.0;
+        where += here ? (vec2(i % side, i / side) + 0.5) / float(side) : vec2(0.0);
+    }
+    surface_group group;
+    group.mean = sum / max(count, 1.0);
+    // The reciprocal of the distance to a plane is nearly linear over the pixel.
+    group.mean.a = nearest < TYN_INFINITY ? count / inverses : TYN_INFINITY;
+    group.share = count / float(side * side);
+    group.end = end;
+    group.where = where / max(count, 1.0);
+    return group;
+}
+
 surface_samples surface_samples_of(sampler2D surfaces, camera_block camera, ivec2 pixel)
 {
     surface_samples s;

@@ -24,10 +24,10 @@
 #define RAYMARCH_GLOW (1u << 17)      // what is scattered forward comes from the texture glow
 #define RAYMARCH_SOFT_SUNS (1u << 18) // there are suns that are seen under an angle
 #define RAYMARCH_SURFACE (1u << 19)   // rays end at the scene's surfaces
-#define RAYMARCH_REPEAT (1u << 22)    // the medium is periodic
-#define RAYMARCH_WALLS (1u << 21)     // surfaces part the cells of inscatter
 #define RAYMARCH_SURFACE_SEEN (1u << 20)
+#define RAYMARCH_WALLS (1u << 21)   // surfaces part the cells of inscatter
 #define RAYMARCH_SHADOWS (1u << 22) // surfaces stand before suns and lamps
+#define RAYMARCH_REPEAT (1u << 23)  // the medium is periodic
 
 struct raymarch_args {
     float step;      // longest step, m
