@@ -274,7 +274,13 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, fl
 // What lights see from where a ray has been marched to: bits 0 to 3 of suns, 4 on of lamps.
 struct march_shadows {
     uint known, lit;
+    float inside; // where to look at the farthest
 };
+
+float march_shadow_piece()
+{
+    return max(max(medium.extent.x, medium.extent.y), medium.extent.z) / RAYMARCH_SHADOWS_ACROSS;
+}
 
 bool march_sees(bool sun, uint light, vec3 from, vec3 along, float s)
 {
@@ -288,8 +294,7 @@ bool march_sees(bool sun, uint light, vec3 from, vec3 along, float s)
 float march_lit(bool sun, uint light, uint bit, vec3 from, vec3 along, float s, float ds,
                 inout march_shadows shadow)
 {
-    float longest = max(max(medium.extent.x, medium.extent.y), medium.extent.z) / RAYMARCH_SHADOWS_ACROSS;
-    float part = ds / max(ceil(ds / longest), 1.0), finest = part / RAYMARCH_SHADOW_HALVES, sum = 0.0;
+    float part = ds / max(ceil(ds / march_shadow_piece()), 1.0), finest = part / RAYMARCH_SHADOW_HALVES, sum = 0.0;
     bool known = (shadow.known >> bit & 1u) != 0u, lit = (shadow.lit >> bit & 1u) != 0u;
     // Up to `lo` it is known what the light sees; at `hi`, if > 0, it is the opposite. One look an iteration, as
     // these are what costs time.
@@ -297,7 +302,7 @@ float march_lit(bool sun, uint light, uint bit, vec3 from, vec3 along, float s, 
     while (lo < ds) {
         float next = hi > 0.0 ? 0.5 * (lo + hi) : lo + 1.01 * part > ds ? ds : lo + part;
         next = known ? next : 0.0;
-        bool sees = march_sees(sun, light, from, along, s + next);
+        bool sees = march_sees(sun, light, from, along, min(s + next, shadow.inside));
         lit = known ? lit : sees;
         known = true;
         sum += lit && sees ? next - lo : 0.0;
@@ -515,7 +520,7 @@ march_state march_start(float offset)
     state.radiance = state.before = state.single = vec3(0.0);
     state.half_distance = TYN_INFINITY;
     state.steps = 0u;
-    state.shadow = march_shadows(0u, 0u);
+    state.shadow = march_shadows(0u, 0u, 0.0);
     return state;
 }
 
@@ -542,6 +547,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
     // A ray may end a little behind the surface that it stands for: light is not looked up there.
     float inside = raymarch_has(RAYMARCH_WALLS | RAYMARCH_SHADOWS) ? max(end - 5e-4 * (start + end), 0.0) : end;
 
+    state.shadow.inside = max(min(inside, end - 0.5 * march_shadow_piece()), 0.0);
     float s = state.s;
     while (s < end && spectrum_max(state.through_scaled) > args.stop) {
         float from = s;
