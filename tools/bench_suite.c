@@ -142,7 +142,7 @@ static void read_scene(reader *r, const cJSON *json, const cJSON *defaults, cons
     static const char *const keys[] = {
         "name",          "scene",      "environment",   "camera",  "size", "fov",
         "look_from",     "look_at",    "sigma_s",       "sigma_a", "g",    "albedo",
-        "density_scale", "env_rotate", "reference_spp", NULL};
+        "density_scale", "env_rotate", "reference_spp", "lights",  NULL};
     *s = (bench_scene){.json = json, .scene.env_strength = 1};
     check_keys(r, json, keys);
     const char *file = get_text(r, json, "scene", true);
@@ -160,6 +160,7 @@ static void read_scene(reader *r, const cJSON *json, const cJSON *defaults, cons
     get_vector(r, json, "sigma_a", true, &s->scene.sigma_a);
     get_vector(r, json, "g", true, &s->scene.g);
     get_vector(r, json, "albedo", true, &s->scene.albedo);
+    s->lights = (uint32_t)get_number(r, json, "lights", 0, 0, TYN_MAX_LIGHTS);
     s->view.camera = get_text(r, json, "camera", false);
     s->view.fov = (float)get_number(r, json, "fov", NAN, 1e-3, 179.9);
     get_vector(r, json, "look_from", false, &s->view.look_from);
@@ -249,11 +250,32 @@ static const cJSON *element(reader *r, const cJSON *root, const char *key, uint3
 
 // ---- the suite --------------------------------------------------------------------------------
 
+static const char *scene_name(reader *r, const cJSON *json, const char *key, const bench_suite *s)
+{
+    const char *name = get_text(r, json, key, true);
+    for (uint32_t i = 0; name && i < s->num_scenes; i++) {
+        if (s->scenes[i].name && strcmp(s->scenes[i].name, name) == 0) {
+            return name;
+        }
+    }
+    fault(r, key, "must be the name of a scene of this suite");
+    return NULL;
+}
+
+static void read_ratio(reader *r, const cJSON *json, const bench_suite *s, bench_ratio *ratio)
+{
+    static const char *const keys[] = {"name", "of", "to", NULL};
+    check_keys(r, json, keys);
+    ratio->name = get_text(r, json, "name", true);
+    ratio->of = scene_name(r, json, "of", s);
+    ratio->to = scene_name(r, json, "to", s);
+}
+
 static void read_suite(reader *r, const char *folder, bench_suite *s)
 {
-    static const char *const keys[] = {"name",      "about",       "scenes",        "runs",
-                                       "baselines", "block",       "reference_spp", "frames",
-                                       "pilot_spp", "max_seconds", "size",          NULL};
+    static const char *const keys[] = {
+        "name",   "about",     "scenes",      "runs", "baselines", "block", "reference_spp",
+        "frames", "pilot_spp", "max_seconds", "size", "ratios",    NULL};
     const cJSON *root = s->root;
     check_keys(r, root, keys);
     s->name = get_text(r, root, "name", true);
@@ -274,6 +296,11 @@ static void read_suite(reader *r, const char *folder, bench_suite *s)
     s->num_baselines = array_size(r, root, "baselines", 0, BENCH_MAX_BASELINES);
     for (uint32_t i = 0; i < s->num_baselines; i++) {
         read_run(r, element(r, root, "baselines", i), "path", &s->baselines[i]);
+    }
+    r->where[0] = '\0';
+    s->num_ratios = array_size(r, root, "ratios", 0, BENCH_MAX_RATIOS);
+    for (uint32_t i = 0; i < s->num_ratios; i++) {
+        read_ratio(r, element(r, root, "ratios", i), s, &s->ratios[i]);
     }
 }
 

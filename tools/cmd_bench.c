@@ -84,6 +84,9 @@ static int measure_scene(app *a, tyn_device *device, const bench_suite *suite,
                     .view = {.outputs = TYN_OUTPUT_RADIANCE, .no_background = true},
                     .fill = NAN};
     int code = scene_open(a, &spec->scene, &c.scene);
+    if (code == EXIT_DONE && spec->lights > 0 && spec->lights < c.scene.num_lights) {
+        c.scene.num_lights = spec->lights;
+    }
     if (code == EXIT_DONE) { // for the reference
         code = scene_prepare(a, &(tyn_method_info){.traces_rays = true}, &c.scene);
     }
@@ -136,6 +139,40 @@ static int write_report(app *a, cJSON *root, const bench_args *args)
     return code;
 }
 
+static double cold_ms(const cJSON *root, const char *scene, uint32_t run)
+{
+    const cJSON *s;
+    cJSON_ArrayForEach(s, cJSON_GetObjectItem(root, "scenes"))
+    {
+        if (strcmp(cJSON_GetStringValue(cJSON_GetObjectItem(s, "name")), scene) == 0) {
+            const cJSON *result = cJSON_GetArrayItem(cJSON_GetObjectItem(s, "runs"), (int)run);
+            const cJSON *ms = cJSON_GetObjectItem(cJSON_GetObjectItem(result, "frame_ms"), "cold");
+            return ms && cJSON_IsRaw(ms) ? strtod(ms->valuestring, NULL) : NAN;
+        }
+    }
+    return NAN;
+}
+
+static void measure_ratios(const bench_suite *suite, bool table, cJSON *root)
+{
+    cJSON *list = suite->num_ratios ? cJSON_AddArrayToObject(root, "ratios") : NULL;
+    for (uint32_t k = 0; k < suite->num_ratios; k++) {
+        const bench_ratio *ratio = &suite->ratios[k];
+        for (uint32_t i = 0; i < suite->num_runs; i++) {
+            const double times = cold_ms(root, ratio->of, i) / cold_ms(root, ratio->to, i);
+            if (table) {
+                printf("\n%s, %s: %.2f times the cold frame\n", ratio->name, suite->runs[i].name,
+                       times);
+            }
+            cJSON *entry = cJSON_CreateObject();
+            cJSON_AddStringToObject(entry, "name", ratio->name);
+            cJSON_AddStringToObject(entry, "run", suite->runs[i].name);
+            json_add_float(entry, "times", times);
+            cJSON_AddItemToArray(list, entry);
+        }
+    }
+}
+
 static int run_suite(app *a, const bench_args *args, const bench_suite *suite)
 {
     machine mach = {0};
@@ -159,6 +196,7 @@ static int run_suite(app *a, const bench_args *args, const bench_suite *suite)
             code = measure_scene(a, mach.device, suite, &suite->scenes[i], !args->json, scenes);
         }
         if (code == EXIT_DONE) {
+            measure_ratios(suite, !args->json, root);
             code = write_report(a, root, args);
         }
         cJSON_Delete(root);

@@ -92,6 +92,10 @@ refuses 2 "runs: must be a list" bench --suite runs.json --scenes "$scenes"
 echo '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{"settings": {"a.b": 1}}]}' >set.json
 refuses 2 "a.b" bench --suite set.json --scenes "$scenes"
 
+echo '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{}],
+       "ratios": [{"name": "r", "of": "cube.gltf", "to": "other"}]}' >ratio.json
+refuses 2 "ratios[0].to: must be the name of a scene" bench --suite ratio.json --scenes "$scenes"
+
 # ---- info ----
 works info "$scenes/smoke.gltf"
 grep -q "96x160x96 voxels" out || fail "info smoke: $(cat out)"
