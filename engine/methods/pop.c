@@ -564,29 +564,7 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, field *f)
         [BALANCE_PORT_WALL_POWER] = f->wall_power,
         [BALANCE_PORT_LAMP_POWER] = f->lamp_power,
     };
-    const uint32_t *repeat = job->frame->medium.repeat;
-    if (job->frame->num_triangles && !repeat[0] && !repeat[1] && !repeat[2]) {
-        const tyn_beam_refs *beams = &f->picture.beams;
-        const tyn_radial_refs *lamps = &f->picture.lamps;
-        params.mode = job->frame->medium.mode;
-        tyn_scene_box(job->frame, params.box[0], params.box[1]);
-        refs[BALANCE_PORT_BEAMS] = beams->beams;
-        refs[BALANCE_PORT_COLUMN] = beams->column;
-        refs[BALANCE_PORT_TAU_A] = beams->tau_a;
-        refs[BALANCE_PORT_TAU_P] = beams->tau_p;
-        refs[BALANCE_PORT_RADIALS] = lamps->radials;
-        refs[BALANCE_PORT_RADIAL_COLUMN] = lamps->column;
-        refs[BALANCE_PORT_RADIAL_TAU_A] = lamps->tau_a;
-        refs[BALANCE_PORT_RADIAL_TAU_P] = lamps->tau_p;
-        refs[BALANCE_PORT_SURFACES] = job->refs.surfaces;
-        refs[BALANCE_PORT_VERTICES] = job->refs.vertices;
-        refs[BALANCE_PORT_TRIANGLES] = job->refs.triangles;
-        refs[BALANCE_PORT_NODES] = job->refs.nodes;
-        refs[BALANCE_PORT_MATERIALS] = job->refs.materials;
-        refs[BALANCE_PORT_TEXTURES] = job->refs.textures;
-        refs[BALANCE_PORT_TEXELS] = job->refs.texels;
-        refs[BALANCE_PORT_EMITTERS] = job->refs.emitters;
-    }
+    tyn_follow_lights(job, &f->picture, &params, refs);
     tyn_result result = tyn_graph_add(g, &tyn_pass_balance, &params, refs);
     if (result == TYN_OK) {
         tyn_job_output(g, job, TYN_OUTPUT_BALANCE, refs[BALANCE_PORT_BALANCE]);

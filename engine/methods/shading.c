@@ -2,6 +2,7 @@
 #include "methods/shading.h"
 #include "methods/walls.h"
 #include "passes/shade/shade.h"
+#include "passes/probe/probe.h"
 #include "passes/vpl/vpl.h"
 #include <tyndall/registry.h>
 #include <math.h>
@@ -21,6 +22,11 @@ static uint32_t emitters(const tyn_surfaces *surfaces)
         }
     }
     return most;
+}
+
+bool tyn_can_trace(const tyn_job *job)
+{
+    return job->refs.nodes.resource || job->frame->num_triangles <= MOST_WITHOUT_HIERARCHY;
 }
 
 bool tyn_vpls_bounce(const tyn_job *job)
@@ -67,7 +73,7 @@ tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *
     if (result != TYN_OK || rsm.num_tiles + params.emitters == 0) {
         return result;
     }
-    if (!job->refs.nodes.resource && params.num_triangles > MOST_WITHOUT_HIERARCHY) {
+    if (!tyn_can_trace(job)) {
         tyn_method_warn(job, "the surfaces have no hierarchy: light that they reflect passes "
                              "through other surfaces");
         params.visibility = 0;
@@ -157,4 +163,36 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
     result = tyn_graph_add(g, &tyn_pass_shade, &params, refs);
     in->surface = refs[SHADE_PORT_RADIANCE];
     return result;
+}
+
+void tyn_follow_lights(const tyn_job *job, const tyn_picture_inputs *in, tyn_balance_params *params,
+                       tyn_ref *refs)
+{
+    const uint32_t *repeat = job->frame->medium.repeat;
+    const bool follow = job->frame->num_triangles && !repeat[0] && !repeat[1] && !repeat[2];
+    if (follow && !tyn_can_trace(job)) {
+        tyn_method_warn(job, "the surfaces have no hierarchy: light that meets them without having "
+                             "scattered counts as escaped in the balance");
+    } else if (follow) {
+        const tyn_beam_refs *beams = &in->beams;
+        const tyn_radial_refs *lamps = &in->lamps;
+        params->mode = job->frame->medium.mode;
+        tyn_scene_box(job->frame, params->box[0], params->box[1]);
+        refs[BALANCE_PORT_BEAMS] = beams->beams;
+        refs[BALANCE_PORT_COLUMN] = beams->column;
+        refs[BALANCE_PORT_TAU_A] = beams->tau_a;
+        refs[BALANCE_PORT_TAU_P] = beams->tau_p;
+        refs[BALANCE_PORT_RADIALS] = lamps->radials;
+        refs[BALANCE_PORT_RADIAL_COLUMN] = lamps->column;
+        refs[BALANCE_PORT_RADIAL_TAU_A] = lamps->tau_a;
+        refs[BALANCE_PORT_RADIAL_TAU_P] = lamps->tau_p;
+        refs[BALANCE_PORT_SURFACES] = job->refs.surfaces;
+        refs[BALANCE_PORT_VERTICES] = job->refs.vertices;
+        refs[BALANCE_PORT_TRIANGLES] = job->refs.triangles;
+        refs[BALANCE_PORT_NODES] = job->refs.nodes;
+        refs[BALANCE_PORT_MATERIALS] = job->refs.materials;
+        refs[BALANCE_PORT_TEXTURES] = job->refs.textures;
+        refs[BALANCE_PORT_TEXELS] = job->refs.texels;
+        refs[BALANCE_PORT_EMITTERS] = job->refs.emitters;
+    }
 }
