@@ -368,6 +368,8 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     }
     if (result == TYN_OK) {
         result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);
+        // Half floats save bandwidth; a CPU has to unpack them, which takes longer than to filter.
+        ctx->atlas.half &= ctx->dev->properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
     }
     if (result == TYN_OK) {
         look_at_grid(ctx, frame->scene);
