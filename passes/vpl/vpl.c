@@ -204,7 +204,7 @@ static uint32_t make_plan(const tyn_vpl_params *p, struct vpl_plan *plan)
 
 static bool bounces(const tyn_vpl_params *p, bool triangles)
 {
-    return p->bounces && p->count >= 8 && map_side(p, triangles);
+    return p->bounces && p->count >= 2 && map_side(p, triangles);
 }
 
 // Solid angle of a texel in the middle of a map: so that the power of all directions is the VPL's.
@@ -291,7 +291,8 @@ static void record(tyn_recorder *r, const void *data)
     }
     const bool triangles = tyn_rec_has(r, PORT(TRIANGLES)), again = bounces(p, triangles);
     const uint32_t side = map_side(p, triangles), media = tyn_rec_has(r, PORT(DENSITY));
-    const uint32_t later = again ? 3 * (uint32_t)p->count / 8 : 0; // VPLs of further reflections
+    const uint32_t later =
+        again ? (3 * (uint32_t)p->count + 7) / 8 : 0; // VPLs of further reflections
     const struct vpl_args args = {(uint32_t)p->count - later, p->num_suns, media, 0};
     struct vpl_distances_args maps = {0, again, side ? texel_solid_angle(side) : 0, media};
     const tyn_dispatch see = {.kernel = DISTANCES,
