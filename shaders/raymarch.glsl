@@ -172,8 +172,20 @@ struct march_result {
     vec3 radiance; // of the medium alone
     vec3 transmittance;
     vec3 scaled_transmittance; // e^-tau'
-    spectrum forward_depth;    // tau - tau'
 };
+
+// tau - tau'
+vec3 march_forward_depth(march_result r)
+{
+    // e^-tau may be too small for a float where e^-tau' is not; in one medium the depths are in proportion.
+    vec3 depth = log(max(r.scaled_transmittance, 1e-37) / max(r.transmittance, 1e-37));
+    if (medium_mode == TYN_MEDIUM_DENSITY) {
+        march_medium unit = march_medium_of(medium_of_density(1.0));
+        depth = -log(max(r.scaled_transmittance, 1e-37)) *
+                vec3((unit.extinction + unit.hidden - unit.scaled_extinction) / max(unit.scaled_extinction, 1e-30));
+    }
+    return depth;
+}
 
 march_sun march_sun_of(uint n, march_medium unit, vec3 origin, vec3 direction)
 {
@@ -669,13 +681,6 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
     }
     result.transmittance = vec3(through * exp(-hidden));
     result.scaled_transmittance = vec3(through_scaled);
-    // e^-tau may be too small for a float where e^-tau' is not; in one medium the depths are in proportion.
-    result.forward_depth = log(max(through_scaled, 1e-37) / max(through * exp(-hidden), 1e-37));
-    if (medium_mode == TYN_MEDIUM_DENSITY) {
-        spectrum forward = unit.extinction + unit.hidden - unit.scaled_extinction;
-        result.forward_depth =
-            -log(max(through_scaled, 1e-37)) * forward / max(unit.scaled_extinction, 1e-30);
-    }
     return result;
 }
 

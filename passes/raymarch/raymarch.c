@@ -63,6 +63,8 @@ static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
     [RAYMARCH_PORT_MULTIPLE] = {"multiple", TYN_OUT, IMAGE2, false,
                                 "light that has scattered more often, or was emitted"},
     [RAYMARCH_PORT_COUNTERS] = {"counters", TYN_OUT, TYN_BUFFER, 0, false, "counters_block"},
+    [RAYMARCH_PORT_SPARSE] = {"sparse", TYN_SCRATCH, IMAGE2, false,
+                              "radiance, transmittance and e^-tau' of a ray for 2x2 pixels"},
 };
 
 // The order of raymarch_bindings.glsl.
@@ -97,6 +99,8 @@ static const tyn_binding bindings[] = {
     // its memory (its table of inlinable uniforms).
     {RAYMARCH_PORT_RADIALS, TYN_USE_STORAGE_READ, false},
     {RAYMARCH_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_SPARSE, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_SPARSE, TYN_USE_STORAGE_WRITE, false},
     {RAYMARCH_PORT_SIGMA_A, TYN_USE_SAMPLED, false}, // from here on colour only
     {RAYMARCH_PORT_G, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_EMISSION, TYN_USE_SAMPLED, false},
@@ -122,6 +126,8 @@ enum {
     NUM_BACKGROUND_BINDINGS = sizeof(background_bindings) / sizeof(background_bindings[0]),
     NUM_BINDINGS = sizeof(bindings) / sizeof(bindings[0]),
     NUM_GREY_BINDINGS = NUM_BINDINGS - 7,
+    SPARSE_TEXTURE = 28, // of bindings
+    SPARSE_IMAGE,
     NUM_SPEC = 4, // mode, number of suns, features, number of lamps
 };
 
@@ -161,6 +167,8 @@ static const tyn_param params_table[] = {
      "transmittance at which a ray ends; the rest is extrapolated", NULL},
     {"antialias", TYN_PARAM_BOOL, offsetof(tyn_raymarch_params, antialias), 1, 0, 1, "",
      "four rays a pixel where they disagree on which shapes they hit", NULL},
+    {"sparse", TYN_PARAM_BOOL, offsetof(tyn_raymarch_params, sparse), 1, 0, 1, "",
+     "among surfaces and lamps one ray for 2x2 pixels where the light is smooth", NULL},
 };
 
 // Layers by their bit in `layers`.
@@ -188,6 +196,25 @@ float tyn_raymarch_longest_step(float sigma_t, float dx, const struct medium_blo
     return fminf(fminf(by_depth, side / 8.0f), dx > 0.0f ? dx : side);
 }
 
+// Where steps are costly rays are saved; layers that need one in every pixel have one.
+static bool is_sparse(const tyn_raymarch_params *p, bool surfaces, bool host_depth)
+{
+    const uint32_t dense = RAYMARCH_LAYER_DEPTH | RAYMARCH_LAYER_SINGLE | RAYMARCH_LAYER_MULTIPLE;
+    return p->sparse && (surfaces || p->num_lamps) && !host_depth && !(p->layers & dense);
+}
+
+static tyn_extent window_of(const tyn_raymarch_params *p)
+{
+    return p->end[0] == 0 ? (tyn_extent){p->width, p->height, 1}
+                          : (tyn_extent){p->end[0] - p->first[0], p->end[1] - p->first[1], 1};
+}
+
+static tyn_extent blocks_of(const tyn_raymarch_params *p)
+{
+    tyn_extent window = window_of(p);
+    return (tyn_extent){(window.x + 1) / 2, (window.y + 1) / 2, 1};
+}
+
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_raymarch_params *p = params;
@@ -197,6 +224,11 @@ static tyn_result declare(tyn_builder *b, const void *params)
         if (p->layers & layers[i].layer) {
             tyn_build_image(b, layers[i].port, size, 1);
         }
+    }
+    if (is_sparse(p, tyn_build_has(b, RAYMARCH_PORT_SHADOW_ATLAS) || tyn_build_has(b, RAYMARCH_PORT_WALL_LINKS),
+                  tyn_build_has(b, RAYMARCH_PORT_HOST_DEPTH))) {
+        tyn_extent blocks = blocks_of(p);
+        tyn_build_image(b, RAYMARCH_PORT_SPARSE, (tyn_extent){3 * blocks.x, blocks.y, 1}, 1);
     }
     tyn_build_buffer(b, RAYMARCH_PORT_COUNTERS, sizeof(struct counters_block));
     return TYN_OK;
@@ -294,7 +326,8 @@ static void bind(const tyn_raymarch_params *p, const tyn_binding *table, uint32_
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_raymarch_params *p = params;
-    uint32_t spec[NUM_SPEC] = {p->mode, p->num_suns, features_of(r, p), p->num_lamps};
+    const uint32_t features = features_of(r, p);
+    uint32_t spec[NUM_SPEC] = {p->mode, p->num_suns, features, p->num_lamps};
     float voxel = shortest_voxel(tyn_rec_extent(r, RAYMARCH_PORT_DENSITY), p->extent);
     struct raymarch_args args = {
         .step = p->step * fminf(voxel, p->longest_step),
@@ -313,7 +346,7 @@ static void record(tyn_recorder *r, const void *params)
     uint8_t background_ports[NUM_BACKGROUND_BINDINGS], ports_of[NUM_BINDINGS];
     bind(p, background_bindings, NUM_BACKGROUND_BINDINGS, background_ports);
     bind(p, bindings, NUM_BINDINGS, ports_of);
-    tyn_extent window = {args.end[0] - args.first[0], args.end[1] - args.first[1], 1};
+    const uint32_t kernel = p->grey ? KERNEL_GREY : KERNEL_COLOUR;
     tyn_rec_dispatch(r, &(tyn_dispatch){
                             .kernel = KERNEL_BACKGROUND,
                             .cells = {p->width, p->height, 1},
@@ -321,9 +354,25 @@ static void record(tyn_recorder *r, const void *params)
                             .ports = background_ports,
                             .spec = spec,
                         });
+    ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_RADIANCE; // bound, but not written to or read
+    ports_of[SPARSE_TEXTURE] = RAYMARCH_PORT_SURFACE;
+    if (is_sparse(p, features & (RAYMARCH_WALLS | RAYMARCH_SHADOWS), features & RAYMARCH_HOST_DEPTH)) {
+        ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_SPARSE;
+        spec[2] = features | RAYMARCH_SPARSE_FIRST;
+        tyn_rec_dispatch(r, &(tyn_dispatch){
+                                .kernel = kernel,
+                                .cells = blocks_of(p),
+                                .args = &args,
+                                .ports = ports_of,
+                                .spec = spec,
+                            });
+        ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_RADIANCE;
+        ports_of[SPARSE_TEXTURE] = RAYMARCH_PORT_SPARSE;
+        spec[2] = features | RAYMARCH_SPARSE;
+    }
     tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = p->grey ? KERNEL_GREY : KERNEL_COLOUR,
-                            .cells = window,
+                            .kernel = kernel,
+                            .cells = window_of(p),
                             .args = &args,
                             .ports = ports_of,
                             .spec = spec,

@@ -8,6 +8,7 @@ typedef struct tyn_raymarch_params {
         step; // "raymarch.step": longest step, in voxels (homogeneous: in steps that resolve the light)
     float stop;         // "raymarch.stop": transmittance at which a ray ends
     uint32_t antialias; // "raymarch.antialias": four rays a pixel where they disagree
+    uint32_t sparse;    // "raymarch.sparse": among surfaces and lamps one ray for 2x2 pixels where that will do
     // Set by the method.
     uint32_t grey;        // 1: one medium (mode DENSITY), equal in all channels
     uint32_t mode;        // TYN_MEDIUM_*
@@ -97,6 +98,7 @@ enum {
     RAYMARCH_PORT_SINGLE,   // OUT 2D RGBA32F: light that has scattered once
     RAYMARCH_PORT_MULTIPLE, // OUT 2D RGBA32F: more often, from the environment's mean, or emitted
     RAYMARCH_PORT_COUNTERS, // OUT buffer struct counters_block
+    RAYMARCH_PORT_SPARSE,   // SCRATCH 2D RGBA32F
     RAYMARCH_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_raymarch;

@@ -28,6 +28,8 @@
 #define RAYMARCH_WALLS (1u << 21)   // surfaces part the cells of inscatter
 #define RAYMARCH_SHADOWS (1u << 22) // surfaces stand before suns and lamps
 #define RAYMARCH_REPEAT (1u << 23)  // the medium is periodic
+#define RAYMARCH_SPARSE_FIRST (1u << 24) // one ray for 2x2 pixels, into the image "sparse"
+#define RAYMARCH_SPARSE (1u << 25)       // rays where that image is not smooth
 
 struct raymarch_args {
     float step;      // longest step, m

@@ -49,6 +49,8 @@ layout(binding = 19, scalar) buffer counter_buffer
 };
 layout(binding = 20) uniform sampler3D glow_tex;
 layout(binding = 21) uniform sampler2D surface_tex;
+layout(binding = 28) uniform sampler2D sparse_tex;
+layout(binding = 29, rgba32f) uniform writeonly image2D sparse_image;
 #define WALLS_LINKS 22
 #define WALLS_CELLS 23
 #define SHADOW_ATLAS 24
@@ -56,13 +58,13 @@ layout(binding = 21) uniform sampler2D surface_tex;
 #define RADIAL_BLOCK 26
 #define RADIAL_COLUMN 27
 #ifndef RAYMARCH_GREY
-#define MEDIUM_SIGMA_A 28
-#define MEDIUM_G 29
-#define MEDIUM_EMISSION 30
-#define BEAM_TAU_A 31
-#define BEAM_TAU_P 32
-#define RADIAL_TAU_A 33
-#define RADIAL_TAU_P 34
+#define MEDIUM_SIGMA_A 30
+#define MEDIUM_G 31
+#define MEDIUM_EMISSION 32
+#define BEAM_TAU_A 33
+#define BEAM_TAU_P 34
+#define RADIAL_TAU_A 35
+#define RADIAL_TAU_P 36
 #endif
 
 layout(push_constant, scalar) uniform Args

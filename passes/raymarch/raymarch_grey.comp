@@ -24,8 +24,12 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 void main()
 {
-    uvec2 pixel = args.first + pixel_of_thread(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
-    if (all(lessThan(pixel, args.end))) {
-        shade_pixel(ivec2(pixel));
+    uvec2 at = pixel_of_thread(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
+    if (raymarch_has(RAYMARCH_SPARSE_FIRST)) {
+        if (all(lessThan(args.first + 2u * at, args.end))) {
+            march_block(ivec2(at));
+        }
+    } else if (all(lessThan(args.first + at, args.end))) {
+        shade_pixel(ivec2(args.first + at));
     }
 }
