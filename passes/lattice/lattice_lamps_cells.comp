@@ -82,17 +82,12 @@ void add_far_light(uint n, lattice_box box, vec3 p, vec3 extinction, inout vec4 
     }
 }
 
-// Adds light n to the moments of the channels.
-void add_light(uint n, lattice_box box, ivec3 c, vec3 extinction, inout vec4 sums[3], inout vec3 all)
+// Of a light that is near: `count`^3 pieces of the cell.
+void add_near_light(uint n, uint count, lattice_box box, ivec3 c, inout vec4 sums[3], inout vec3 all)
 {
     float dx = box.dx;
     vec3 corner = lattice_to_m(box, vec3(c));
     vec3 position = radials[n].light.position;
-    uint count = pieces(n, length(corner + 0.5 * dx - position) / dx);
-    if (count == 1u) {
-        add_far_light(n, box, corner + 0.5 * dx, extinction, sums, all);
-        return;
-    }
     float d = dx / float(count);
     vec4 weighted[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
     vec3 weight = vec3(0.0), open = vec3(0.0);
@@ -152,8 +147,20 @@ void main()
     if (extinction.r + extinction.g + extinction.b > 0.0) { // where there is no medium light does nothing
         lattice_box box = lattice_box_of(medium.extent, dims);
         uvec2 range = lattice_lamps_of(group);
+        vec3 middle = lattice_to_m(box, vec3(c) + 0.5);
         for (uint n = range.x; n < range.y; n++) {
-            add_light(n, box, c, extinction, sums, all);
+            // Few lights are near. Some devices run what these need for all, if it is in the same loop.
+            uint count = 1u;
+            for (; n < range.y; n++) {
+                count = pieces(n, length(middle - radials[n].light.position) / box.dx);
+                if (count > 1u) {
+                    break;
+                }
+                add_far_light(n, box, middle, extinction, sums, all);
+            }
+            if (count > 1u) {
+                add_near_light(n, count, box, c, sums, all);
+            }
         }
     }
     for (uint ch = 0u; ch < num_channels; ch++) {
