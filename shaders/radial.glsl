@@ -35,23 +35,27 @@ struct radial_place {
 };
 
 // `away`: from the light to a point in the box; r = its length.
-radial_place radial_place_of(uint n, vec3 away, float r)
+radial_place radial_place_in(radial_grid grid, vec3 away, float r)
 {
-    vec3 d = vec3(dot(radials[n].to_map[0], away), dot(radials[n].to_map[1], away),
-                  dot(radials[n].to_map[2], away));
-    float way = log(1.0 + max(r - radials[n].begin, 0.0) * radials[n].inverse_near);
+    vec3 d = vec3(dot(grid.to_map[0], away), dot(grid.to_map[1], away), dot(grid.to_map[2], away));
+    float way = log(1.0 + max(r - grid.begin, 0.0) * grid.inverse_near);
     // At the light itself any direction will do.
     vec2 e = r > 0.0 ? octahedral_of(d) : vec2(0.0);
     radial_place place;
-    place.uvw = radials[n].base + radials[n].scale * vec3(e, way);
+    place.uvw = grid.base + grid.scale * vec3(e, way);
     place.inside = r;
-    if (radials[n].inside == 0u) {
-        vec3 o = radials[n].light.position;
+    if (grid.inside == 0u) {
+        vec3 o = grid.light.position;
         vec3 gap = max(-o, vec3(0.0)) - max(o - medium.extent, vec3(0.0));
         vec3 f = mix(vec3(0.0), gap / away, notEqual(gap, vec3(0.0)));
         place.inside = r * clamp(1.0 - max(f.x, max(f.y, f.z)), 0.0, 1.0);
     }
     return place;
+}
+
+radial_place radial_place_of(uint n, vec3 away, float r)
+{
+    return radial_place_in(radials[n], away, r);
 }
 
 // Share of the light's intensity that goes along `away`, r = its length.

@@ -82,10 +82,14 @@ float shadow_all_lit(shadow_place place)
     return lit || !place.inside ? 1.0 : 0.0;
 }
 
+float shadow_visibility_sun_of(shadow_light l, vec3 p)
+{
+    return shadow_all_lit(shadow_place_sun(l, shadow_frame(l, p)));
+}
+
 float shadow_visibility_sun(uint light, vec3 p)
 {
-    shadow_light l = shadows[light];
-    return shadow_all_lit(shadow_place_sun(l, shadow_frame(l, p)));
+    return shadow_visibility_sun_of(shadows[light], p);
 }
 
 float shadow_visibility_lamp(uint light, vec3 p)
@@ -108,14 +112,13 @@ float shadow_visibility(uint light, vec3 p)
 // that do not change with u and v except linearly (parallel maps as they are, perspective ones because
 // they are reciprocal) are those of the surface's own plane at the four texels: so it does not shadow
 // itself, whatever its slope, and what is in front of it by more than a tenth of a texel does.
-float shadow_visibility_surface(uint light, vec3 p, vec3 n)
+float shadow_visibility_surface_of(shadow_light l, vec3 p, vec3 n)
 {
-    shadow_light l = shadows[light];
     vec3 q = shadow_frame(l, p), m = shadow_frame_direction(l, n);
     shadow_place place;
     vec2 slope;     // of depth by u and v
     float rounding; // of depth
-    if (light < TYN_SHADOW_SUNS) {
+    if (l.kind == TYN_SHADOW_SUN) {
         place = shadow_place_sun(l, q);
         // Rows are orthogonal but not of unit length: normals divide by its square.
         m /= vec3(dot(l.rows[0].xyz, l.rows[0].xyz), dot(l.rows[1].xyz, l.rows[1].xyz),
@@ -149,6 +152,11 @@ float shadow_visibility_surface(uint light, vec3 p, vec3 n)
     vec4 own = max(place.depth + slope.x * x + slope.y * y, 0.0) + slack;
     vec4 lit = vec4(lessThanEqual(stored, own));
     return all(equal(lit, vec4(1.0))) ? 1.0 : 0.0;
+}
+
+float shadow_visibility_surface(uint light, vec3 p, vec3 n)
+{
+    return shadow_visibility_surface_of(shadows[light], p, n);
 }
 
 #endif

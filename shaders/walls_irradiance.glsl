@@ -1,6 +1,7 @@
 // walls_irradiance.glsl -- light of the lattice on a surface.
 //
-// Include after lattice_walls.glsl.
+// Include after lattice.glsl and walls_links.glsl, and define
+//   WALLS_TABLE   sampler3D: of each cell, channels of walls_table.glsl behind each other along z.
 //
 // Irradiance on a side n is phi / 4 - F.n / 2, the flux through a plane in radiance that is linear in direction,
 // of the cells in front of the surface. Of those around a place a little off it, cells count by trilinear
@@ -11,28 +12,68 @@
 // another solid: then one closer to the surface is tried, and cells farther around.
 #ifndef TYN_WALLS_IRRADIANCE_GLSL
 #define TYN_WALLS_IRRADIANCE_GLSL
+#include "walls_table.glsl"
+
+layout(set = 0, binding = WALLS_TABLE) uniform sampler3D walls_table_tex;
 
 const float WALLS_BEHIND = 1e-3;   // what cells behind one wall count
 const float WALLS_FEW = 0.02;      // the least share of a place's cells that tells that it is dark
 
 struct walls_spot {
-    vec3 p, n;         // on the surface, and its side (M)
-    vec3 off;          // the place before it, in the cell `own`
-    walls_place own;
-    uint behind;       // walls_behind of the place
+    vec3 p, n;     // on the surface, and its side (M)
+    vec3 off;      // the place before it
+    vec3 x;        // the same in cell edges; centres are at whole numbers
+    ivec3 cell;    // that the place is in
+    vec4 planes[TYN_WALLS_PLANES]; // of this cell
+    uint links;
+    uint behind;   // bit k: the place is behind plane k as seen from the cell's centre
 };
+
+vec4 walls_entry(lattice_box box, ivec3 cell, int entry)
+{
+    return texelFetch(walls_table_tex, cell + ivec3(0, 0, entry * box.dims.z), 0);
+}
+
+uint walls_side(vec4 planes[TYN_WALLS_PLANES], vec3 p)
+{
+    uint behind = 0u;
+    for (int k = 0; k < TYN_WALLS_PLANES; k++) {
+        behind |= dot(planes[k].xyz, p) + planes[k].w < 0.0 ? 1u << k : 0u;
+    }
+    return behind;
+}
+
+walls_spot walls_spot_of(lattice_box box, vec3 p, vec3 n, float lift)
+{
+    walls_spot s;
+    s.p = p;
+    s.n = n;
+    s.off = p + lift * box.dx * n;
+    s.x = lattice_from_m(box, s.off) - 0.5;
+    s.cell = clamp(ivec3(floor(s.x + 0.5)), ivec3(0), box.dims - 1);
+    for (int k = 0; k < TYN_WALLS_PLANES; k++) {
+        s.planes[k] = walls_entry(box, s.cell, k);
+    }
+    s.links = walls_table_links(walls_entry(box, s.cell, TYN_WALLS_PLANES));
+    s.behind = walls_side(s.planes, s.off);
+    return s;
+}
 
 // What cell q counts by itself; negative if it is behind walls.
 float walls_share(lattice_box box, walls_spot s, ivec3 q)
 {
-    vec3 centre = walls_centre(box, q);
-    uint index = uint((q.z * box.dims.y + q.y) * box.dims.x + q.x);
-    int between = bitCount(walls_behind(s.own.index, centre) ^ s.behind) + bitCount(walls_behind(index, s.off));
-    ivec3 d = q - s.own.cell;
-    bool next = all(lessThanEqual(abs(d), ivec3(1))); // else there may be walls that neither knows of
-    if (s.behind == 0u && d != ivec3(0) && between == 0) {
-        between = next ? int(s.own.links >> walls_link(d) & 1u) : 0;
+    vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);
+    vec3 centre = lattice_to_m(box, vec3(q) + 0.5 + shift);
+    vec4 planes[TYN_WALLS_PLANES];
+    for (int k = 0; k < TYN_WALLS_PLANES; k++) {
+        planes[k] = walls_entry(box, q, k);
     }
+    int between = bitCount(walls_side(s.planes, centre) ^ s.behind) + bitCount(walls_side(planes, s.off));
+    ivec3 d = q - s.cell;
+    bool next = all(lessThanEqual(abs(d), ivec3(1))); // else there may be walls that neither knows of
+    uint link = walls_link(next && d != ivec3(0) ? d : ivec3(1, 0, 0));
+    bool cut = s.behind == 0u && d != ivec3(0) && (s.links >> link & 1u) != 0u;
+    between = max(between, int(cut));
     float share = next ? smoothstep(0.0, 0.2, dot(centre - s.p, s.n) / box.dx) : 0.0;
     return between == 0 ? share : -share * pow(WALLS_BEHIND, float(between));
 }
@@ -40,45 +81,36 @@ float walls_share(lattice_box box, walls_spot s, ivec3 q)
 // Irradiance on the side n of a surface at p (M) of the first `channels` channels of `moments`, W/m^2.
 vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int channels)
 {
-    vec4 sum[3];
-    float whole = 0.0;
+    vec3 irradiance = vec3(0.0);
     bool lit = false;
     for (int attempt = 0; attempt < 3 && !lit; attempt++) {
-        float lift = attempt == 1 ? 0.15 : 0.5;
+        walls_spot s = walls_spot_of(box, p, n, attempt == 1 ? 0.15 : 0.5);
         int reach = attempt / 2, side = 2 + 2 * reach;
-        walls_spot s;
-        s.p = p;
-        s.n = n;
-        s.off = p + lift * box.dx * n;
-        s.own = walls_place_of(box, s.off);
-        s.behind = walls_behind(s.own.index, s.off);
-        sum = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
-        whole = 0.0;
-        float seen = 0.0; // no wall between
-        ivec3 base = ivec3(floor(s.own.x)) - reach;
+        ivec3 base = ivec3(floor(s.x)) - reach;
+        vec3 sum = vec3(0.0);
+        float whole = 0.0, seen = 0.0; // of all; without walls between
         for (int i = 0; i < side * side * side; i++) {
             ivec3 q = base + ivec3(i % side, i / side % side, i / (side * side));
-            vec3 t = max(1.0 - abs(vec3(q) - s.own.x) / float(1 + reach), vec3(0.0));
+            vec3 t = max(1.0 - abs(vec3(q) - s.x) / float(1 + reach), vec3(0.0));
             q = clamp(q, ivec3(0), box.dims - 1);
             float share = t.x * t.y * t.z * walls_share(box, s, q);
             seen += max(share, 0.0);
-            vec4 m[3];
+            vec3 light = vec3(0.0);
+            float fluence = 0.0;
             for (int ch = 0; ch < channels; ch++) {
-                m[ch] = texelFetch(moments, q + ivec3(0, 0, ch * box.dims.z), 0);
+                vec4 m = texelFetch(moments, q + ivec3(0, 0, ch * box.dims.z), 0);
+                light[ch] = 0.25 * m.x - 0.5 * dot(m.yzw, n);
+                fluence += max(m.x, 0.0);
             }
-            bool dark = m[0].x <= 0.0 && (channels == 1 || m[1].x + m[2].x <= 0.0);
+            bool dark = fluence <= 0.0;
             lit = lit || share > 0.0 && !dark;
-            share = share < 0.0 ? dark ? 0.0 : -share : dark ? 0.1 * share : share; // it may be within a solid
-            for (int ch = 0; ch < channels; ch++) {
-                sum[ch] += share * m[ch];
-            }
+            // A dark cell that seems to be in front may be within a solid.
+            share = share < 0.0 ? dark ? 0.0 : -share : dark ? 0.1 * share : share;
+            sum += share * light;
             whole += share;
         }
         lit = lit || attempt == 2 && seen < WALLS_FEW && whole > 1e-12;
-    }
-    vec3 irradiance = vec3(0.0);
-    for (int ch = 0; ch < channels && lit; ch++) {
-        irradiance[ch] = max(0.25 * sum[ch].x - 0.5 * dot(sum[ch].yzw, n), 0.0) / whole;
+        irradiance = lit ? max(sum / whole, vec3(0.0)) : vec3(0.0);
     }
     return irradiance;
 }

@@ -2,8 +2,12 @@
 #include "shade.h"
 #include "shade_args.h"
 #include "shade_gather.comp.h"
+#include "shade_lights.comp.h"
 #include "shade_surface.comp.h"
 #include "shade_vpls.comp.h"
+#include "shade_walls.comp.h"
+#include "shade_table.h"
+#include "walls_args.h"
 #include <string.h>
 
 #define PORT(name) SHADE_PORT_##name
@@ -47,6 +51,9 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
                           .meaning = "struct wall_cell[]"},
     [PORT(RADIANCE)] = {"surface_radiance", TYN_OUT, IMAGE2,
                         .meaning = "radiance to the camera, W/(m^2 sr); distance, m"},
+    [PORT(TABLE)] = {"lights_table", TYN_SCRATCH, IMAGE2, .meaning = "the lights"},
+    [PORT(WALL_TABLE)] = {"wall_table", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                          .meaning = "walls of the lattice's cells"},
     [PORT(PLACE)] = {"place", TYN_SCRATCH, IMAGE2, .meaning = "where a pixel is shaded (M, m)"},
     [PORT(PART)] = {"part", TYN_SCRATCH, IMAGE2,
                     .meaning = "irradiance of a part of the VPLs, W/m^2"},
@@ -54,7 +61,7 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
                         .meaning = "irradiance of all VPLs, W/m^2"},
 };
 
-// Bindings 0 to 19 of shade.glsl.
+// Bindings 0 to 20 of shade.glsl. What is in the table is not read from buffers.
 #define COMMON_BINDINGS                                                                            \
     {PORT(MEDIUM), TYN_USE_UNIFORM}, {PORT(COLUMN), TYN_USE_SAMPLED},                              \
         {PORT(BEAMS), TYN_USE_UNIFORM}, {PORT(COLUMN), TYN_USE_SAMPLED},                           \
@@ -65,11 +72,21 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
         {PORT(VPLS), TYN_USE_STORAGE_READ}, {PORT(SUNS), TYN_USE_UNIFORM},                         \
         {PORT(LIGHTS), TYN_USE_UNIFORM}, {PORT(CAMERA), TYN_USE_UNIFORM},                          \
         {PORT(SURFACE), TYN_USE_SAMPLED}, {PORT(ALBEDO), TYN_USE_SAMPLED},                         \
-        {PORT(EMISSION), TYN_USE_SAMPLED},                                                         \
+        {PORT(EMISSION), TYN_USE_SAMPLED}, {PORT(VPL_DISTANCES), TYN_USE_SAMPLED},                 \
     {                                                                                              \
-        PORT(VPL_DISTANCES), TYN_USE_SAMPLED                                                       \
+        PORT(TABLE), TYN_USE_SAMPLED                                                               \
     }
 
+static const tyn_binding lights_bindings[] = {
+    {PORT(RADIALS), TYN_USE_STORAGE_READ}, {PORT(SHADOWS), TYN_USE_STORAGE_READ},
+    {PORT(VPLS), TYN_USE_STORAGE_READ},    {PORT(LIGHTS), TYN_USE_UNIFORM},
+    {PORT(TABLE), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding walls_bindings[] = {
+    {PORT(WALL_LINKS), TYN_USE_STORAGE_READ},
+    {PORT(WALL_CELLS), TYN_USE_STORAGE_READ},
+    {PORT(WALL_TABLE), TYN_USE_STORAGE_WRITE},
+};
 static const tyn_binding vpls_bindings[] = {
     COMMON_BINDINGS,
     {PORT(PLACE), TYN_USE_STORAGE_WRITE},
@@ -87,24 +104,23 @@ static const tyn_binding surface_bindings[] = {
     {PORT(PLACE), TYN_USE_SAMPLED},
     {PORT(PART), TYN_USE_SAMPLED},
     {PORT(MOMENTS), TYN_USE_SAMPLED},
-    {PORT(WALL_LINKS), TYN_USE_STORAGE_READ},
-    {PORT(WALL_CELLS), TYN_USE_STORAGE_READ},
+    {PORT(WALL_TABLE), TYN_USE_SAMPLED},
     {PORT(ENVIRONMENT), TYN_USE_UNIFORM},
     {PORT(RADIANCE), TYN_USE_STORAGE_WRITE},
 };
 
-enum { VPLS = 0, GATHER, SURFACE, NUM_KERNELS };
+enum { LIGHTS = 0, WALLS, VPLS, GATHER, SURFACE, NUM_KERNELS };
 
-#define KERNEL(step)                                                                               \
+#define KERNEL(step, x, y, z)                                                                      \
     .name = "shade_" #step, .spirv = shade_##step##_spirv,                                         \
-    .spirv_size = sizeof shade_##step##_spirv, .args_size = sizeof(struct shade_args),             \
-    .local_size = {8, 8, 1}, .bindings = step##_bindings,                                          \
-    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = 2
+    .spirv_size = sizeof shade_##step##_spirv, .local_size = {x, y, z},                            \
+    .bindings = step##_bindings, .num_bindings = sizeof step##_bindings / sizeof *step##_bindings
+#define ARGS .args_size = sizeof(struct shade_args), .num_spec = 3
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [VPLS] = {KERNEL(vpls)},
-    [GATHER] = {KERNEL(gather)},
-    [SURFACE] = {KERNEL(surface)},
+    [LIGHTS] = {KERNEL(lights, 64, 1, 1), ARGS},  [WALLS] = {KERNEL(walls, 8, 4, 2)},
+    [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS},       [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS},
+    [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS},
 };
 
 static tyn_result declare(tyn_builder *b, const void *data)
@@ -114,6 +130,12 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_extent pixels =
         vpls ? (tyn_extent){p->size[0], p->size[1], 1} : (tyn_extent){1, 1, 1};
     tyn_build_image(b, PORT(RADIANCE), tyn_build_extent(b, PORT(SURFACE)), 1);
+    // The moments have a cell's channels behind each other along z.
+    tyn_extent cells = tyn_build_extent(b, PORT(MOMENTS));
+    cells.z = cells.z / (p->one_channel ? 1 : 3) * (TYN_WALLS_PLANES + 1);
+    const tyn_extent texel = {1, 1, 1};
+    tyn_build_image(b, PORT(WALL_TABLE), tyn_build_has(b, PORT(MOMENTS)) ? cells : texel, 1);
+    tyn_build_image(b, PORT(TABLE), (tyn_extent){SHADE_ENTRIES, SHADE_ROWS, 1}, 1);
     tyn_build_image(b, PORT(PLACE), pixels, 1);
     tyn_build_image(b, PORT(PART), pixels, 1);
     tyn_build_image(b, PORT(INDIRECT), pixels, 1);
@@ -126,7 +148,6 @@ static void record(tyn_recorder *r, const void *data)
     const bool vpls = tyn_rec_has(r, PORT(VPLS));
     const struct shade_args args = {
         .samples = tyn_rec_extent(r, PORT(SURFACE)).x / p->size[0],
-        .num_suns = p->num_suns,
         .num_directional = p->num_directional,
         .num_lamps = p->num_lamps,
         .tint = {p->tint[0], p->tint[1], p->tint[2]},
@@ -140,16 +161,27 @@ static void record(tyn_recorder *r, const void *data)
     features |=
         tyn_rec_has(r, PORT(BEAMS)) && tyn_rec_has(r, PORT(SHADOWS)) && vpls ? SHADE_SPREAD : 0;
     features |= p->sky ? SHADE_SKY : 0;
-    const uint32_t spec[2] = {p->mode, features};
+    const uint32_t spec[3] = {p->mode, features, p->num_suns};
     const tyn_extent pixels = {p->size[0], p->size[1], 1};
-    tyn_dispatch d = {.cells = pixels, .args = &args, .spec = spec};
+    tyn_dispatch d = {.kernel = LIGHTS, .cells = {SHADE_ROWS, 1, 1}, .args = &args, .spec = spec};
+    tyn_rec_dispatch(r, &d);
+    if (tyn_rec_has(r, PORT(MOMENTS))) {
+        tyn_extent cells = tyn_rec_extent(r, PORT(WALL_TABLE));
+        cells.z /= TYN_WALLS_PLANES + 1;
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = WALLS, .cells = cells});
+    }
     if (vpls) {
+        const uint32_t side = SHADE_SIDE;
         d.kernel = VPLS;
+        d.cells =
+            (tyn_extent){(pixels.x + side - 1) / side, (pixels.y + side - 1) / side, side * side};
         tyn_rec_dispatch(r, &d);
         d.kernel = GATHER;
+        d.cells = pixels;
         tyn_rec_dispatch(r, &d);
     }
     d.kernel = SURFACE;
+    d.cells = pixels;
     tyn_rec_dispatch(r, &d);
     tyn_rec_work(r, "pixels", (double)pixels.x * pixels.y);
 }

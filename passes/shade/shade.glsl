@@ -5,9 +5,11 @@
 // light becomes after it has met a surface.
 #ifndef TYN_SHADE_GLSL
 #define TYN_SHADE_GLSL
+#extension GL_EXT_control_flow_attributes : require
 #include "shade_args.h"
 
 layout(constant_id = 1) const uint shade_features = 0u;
+layout(constant_id = 2) const uint shade_num_suns = 0u;
 layout(push_constant, scalar) uniform Args
 {
     shade_args args;
@@ -25,7 +27,7 @@ layout(push_constant, scalar) uniform Args
 #define RADIAL_TAU_A 8
 #define RADIAL_TAU_P 9
 #define SHADOW_ATLAS 10
-#define SHADOW_LIGHTS 11
+#define SHADOW_LIGHTS 11 // not read: the table has them, as the radial block
 #include "camera.glsl"
 #include "medium.glsl"
 #include "beam.glsl"
@@ -33,20 +35,12 @@ layout(push_constant, scalar) uniform Args
 #include "shadow.glsl"
 #include "gbuffer.glsl"
 #include "vpl.glsl"
+#include "shade_table.h"
 
-layout(binding = 12, scalar) readonly buffer vpl_buffer
-{
-    uint vpl_count;
-    uvec3 vpl_pad;
-    radial_light vpls[];
-};
+layout(binding = 20) uniform sampler2D table_tex; // shade_table.h
 layout(binding = 13, scalar) uniform sun_uniform
 {
     light_block suns[TYN_LIGHTS_MAX];
-};
-layout(binding = 14, scalar) uniform light_uniform
-{
-    light_block lights[TYN_LIGHTS_MAX];
 };
 layout(binding = 15, scalar) uniform camera_uniform
 {
@@ -55,6 +49,12 @@ layout(binding = 15, scalar) uniform camera_uniform
 layout(binding = 16) uniform sampler2D surface_tex; // gbuffer.glsl
 layout(binding = 17) uniform sampler2D albedo_tex;
 layout(binding = 18) uniform sampler2D emission_tex;
+layout(binding = 12, scalar) readonly buffer vpl_buffer
+{
+    uint vpl_count;
+    uvec3 vpl_pad;
+    radial_light vpls[];
+};
 #define VPL_DISTANCES 19
 #include "vpl_visibility.glsl"
 
@@ -87,11 +87,33 @@ vec3 shade_left(beam_tau tau)
     return exp(-(tau.a + tau.p));
 }
 
+vec4 shade_entry(uint row, int entry)
+{
+    return texelFetch(table_tex, ivec2(entry, row), 0);
+}
+
+shadow_light shade_shadow(uint row)
+{
+    vec4 place = shade_entry(row, SHADE_SHADOW_PLACE), kind = shade_entry(row, SHADE_SHADOW_KIND);
+    shadow_light l;
+    for (int k = 0; k < 3; k++) {
+        l.rows[k] = shade_entry(row, SHADE_SHADOW_ROWS + k);
+    }
+    l.offset = place.xy;
+    l.texels = place.z;
+    l.scale = place.w;
+    l.near = kind.x;
+    l.kind = uint(kind.y);
+    return l;
+}
+
 // Cosine at which light from `towards` (unit) arrives; none where it comes from behind the facet.
 float shade_cosine(shade_point p, vec3 towards)
 {
     return dot(p.facet, towards) > 0.0 ? max(dot(p.normal, towards), 0.0) : 0.0;
 }
+
+// ---- suns ----
 
 // The way of a sun's light through the medium's box to p: from x to y away from p towards the sun; x >= y: none.
 vec2 shade_way(vec3 p, vec3 towards)
@@ -100,9 +122,8 @@ vec2 shade_way(vec3 p, vec3 towards)
     return vec2(max(span.x, 0.0), span.y);
 }
 
-beam_tau shade_sun_depth(uint n, vec3 p, vec3 towards)
+beam_tau shade_sun_depth(uint n, vec3 p, vec3 towards, vec2 way)
 {
-    vec2 way = shade_way(p, towards);
     beam_tau none = beam_tau(vec3(0.0), vec3(0.0), vec3(0.0));
     return way.x < way.y ? beam_depth(n, p + way.x * towards) : none;
 }
@@ -115,20 +136,21 @@ uint shade_sun_light(uint n)
 vec3 shade_suns(shade_point p)
 {
     vec3 sum = vec3(0.0);
-    for (uint n = 0u; n < args.num_suns; n++) {
+    [[unroll]] for (uint n = 0u; n < shade_num_suns; n++) {
         uint sun = shade_sun_light(n);
         vec3 towards = -suns[sun].direction;
         vec3 light = suns[sun].color * shade_cosine(p, towards);
-        if (light.r + light.g + light.b > 0.0) {
+        // A loop that nobody enters costs nothing; an `if` does.
+        for (bool once = light.r + light.g + light.b > 0.0; once; once = false) {
             if (shade_has(SHADE_SHADOWS)) {
-                light *= shadow_visibility_surface(sun, p.position, p.facet);
+                light *= shadow_visibility_surface_of(shade_shadow(uint(SHADE_ROW_SUNS) + sun), p.position, p.facet);
             }
             if (shade_has(SHADE_MEDIUM)) {
-                beam_tau tau = shade_sun_depth(n, p.position, towards);
+                beam_tau tau = shade_sun_depth(n, p.position, towards, shade_way(p.position, towards));
                 light *= exp(-(tau.a + (shade_has(SHADE_SPREAD) ? tau.s : tau.p)));
             }
-            sum += light;
         }
+        sum += light;
     }
     return sum;
 }
@@ -139,14 +161,11 @@ vec3 shade_suns(shade_point p)
 vec3 shade_spread_suns(shade_point p, uint index)
 {
     vec3 sum = vec3(0.0);
-    for (uint n = 0u; n < args.num_suns; n++) {
+    [[unroll]] for (uint n = 0u; n < shade_num_suns; n++) {
         uint sun = shade_sun_light(n);
         vec3 towards = -suns[sun].direction;
         vec2 way = shade_way(p.position, towards);
-        if (way.x >= way.y) {
-            continue;
-        }
-        beam_tau tau = shade_sun_depth(n, p.position, towards);
+        beam_tau tau = shade_sun_depth(n, p.position, towards, way);
         vec3 forward = exp(-(tau.a + tau.p)) - exp(-(tau.a + tau.s));
         // f = g^2 is what the depth that counts as scattering leaves out.
         vec3 kept = tau.p / max(tau.s, vec3(1e-20));
@@ -159,43 +178,52 @@ vec3 shade_spread_suns(shade_point p, uint index)
         float c = g > 1e-3 ? clamp((1.0 + f - h * h) / (2.0 * g), -1.0, 1.0) : 1.0;
         float s = sqrt(1.0 - c * c);
         vec3 from = vpl_frame(towards) * vec3(s * cos(turn), s * sin(turn), c);
-        vec3 at = p.position + mix(way.x, way.y, along) * from;
-        float share = shade_cosine(p, from) * shadow_visibility_sun(sun, at);
+        vec3 at = p.position + mix(way.x, max(way.x, way.y), along) * from;
+        float share = shade_cosine(p, from) *
+                      shadow_visibility_sun_of(shade_shadow(uint(SHADE_ROW_SUNS) + sun), at);
         sum += suns[sun].color * forward * share;
     }
     return sum / float(SHADE_PATHS);
 }
 
+// ---- local lights ----
+
 // What is left of a local light at a point that may be outside the medium's box.
-vec3 shade_through_radial(uint n, vec3 p)
+vec3 shade_through_radial(uint row, vec3 o, vec3 p)
 {
-    vec3 o = radials[n].light.position, away = p - o;
+    radial_light light = radial_light(o, TYN_RADIAL_COSINE, vec3(1.0), 0.0, vec3(0.0), 0.0, 0.0, 0u);
+    vec4 x = shade_entry(row, SHADE_TO_MAP), y = shade_entry(row, SHADE_TO_MAP + 1);
+    vec4 z = shade_entry(row, SHADE_TO_MAP + 2);
+    radial_grid grid = radial_grid(light, vec3[3](x.xyz, y.xyz, z.xyz), shade_entry(row, SHADE_BASE).xyz,
+                                   shade_entry(row, SHADE_SCALE).xyz, uvec3(0u), 0u, 0u, x.w, y.w, 0.0,
+                                   uint(z.w));
+    vec3 away = p - o;
     float r = length(away);
     vec3 d = away / max(r, 1e-20);
     vec2 span = ray_box(o, ray_inverse(d), vec3(0.0), medium.extent);
     float inside = min(r, span.y);
-    return max(span.x, 0.0) < inside ? shade_left(radial_tau(radial_place_of(n, inside * d, inside)))
+    return max(span.x, 0.0) < inside ? shade_left(radial_tau(radial_place_in(grid, inside * d, inside)))
                                      : vec3(1.0);
 }
 
-// `light` of the scene's lamps, the n-th; its grid is `grid` where there is a medium.
-vec3 shade_lamp(shade_point p, light_block light, uint n, uint grid)
+// Lamp `row` of the table.
+vec3 shade_lamp(shade_point p, uint row)
 {
-    vec3 way = light.position - p.position;
+    vec4 position = shade_entry(row, SHADE_POSITION), axis = shade_entry(row, SHADE_AXIS);
+    vec4 intensity = shade_entry(row, SHADE_INTENSITY), cone = shade_entry(row, SHADE_CONE);
+    vec3 way = position.xyz - p.position;
     float rr = max(dot(way, way), 1e-12);
     vec3 towards = way * inversesqrt(rr);
-    uint kind = light.kind == TYN_LIGHT_KIND_SPOT ? TYN_RADIAL_SPOT : TYN_RADIAL_ISOTROPIC;
     float share = shade_cosine(p, towards) *
-                  radial_lobe(kind, light.direction, light.cos_inner, light.cos_outer, -towards);
-    if (share <= 0.0) {
-        return vec3(0.0);
-    }
-    vec3 irradiance = light.color * (share / rr);
-    if (shade_has(SHADE_SHADOWS)) {
-        irradiance *= shadow_visibility_surface(TYN_SHADOW_LAMP(n), p.position, p.facet);
-    }
-    if (shade_has(SHADE_MEDIUM)) {
-        irradiance *= shade_through_radial(grid, p.position);
+                  radial_lobe(uint(axis.w), axis.xyz, intensity.w, cone.w, -towards);
+    vec3 irradiance = intensity.rgb * (share / rr);
+    for (bool once = share > 0.0; once; once = false) {
+        if (shade_has(SHADE_SHADOWS)) {
+            irradiance *= shadow_visibility_surface_of(shade_shadow(row), p.position, p.facet);
+        }
+        if (shade_has(SHADE_MEDIUM)) {
+            irradiance *= shade_through_radial(row, position.xyz, p.position);
+        }
     }
     return irradiance;
 }
@@ -203,10 +231,8 @@ vec3 shade_lamp(shade_point p, light_block light, uint n, uint grid)
 vec3 shade_lamps(shade_point p)
 {
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < args.num_lamps; i++) {
-        // Grids are in the order of the lamps' strength.
-        uint lamp = shade_has(SHADE_MEDIUM) ? radials[i].light.light - TYN_SHADOW_LAMP(0u) : i;
-        sum += shade_lamp(p, lights[args.num_directional + lamp], lamp, i);
+    for (uint row = 0u; row < args.num_lamps; row++) {
+        sum += shade_lamp(p, row);
     }
     return sum;
 }
@@ -217,15 +243,18 @@ vec3 shade_vpls(shade_point p, uint first, uint stride)
     vec3 sum = vec3(0.0);
     uint count = min(vpl_count, uint(TYN_RADIAL_VPLS_MAX));
     for (uint k = first; k < count; k += stride) {
-        float share = vpl_irradiance(vpls[k], p.position, p.normal);
-        share = dot(p.facet, vpls[k].position - p.position) > 0.0 ? share : 0.0;
-        if (share > 0.0) {
-            share *= vpl_visibility(k, vpls[k].axis, p.position - vpls[k].position, p.facet);
-        }
-        if (share > 0.0) {
-            vec3 irradiance = vpls[k].intensity * share;
+        uint row = uint(SHADE_ROW_VPLS) + k;
+        vec4 position = shade_entry(row, SHADE_POSITION);
+        vec3 axis = shade_entry(row, SHADE_AXIS).xyz;
+        radial_light light =
+            radial_light(position.xyz, TYN_RADIAL_COSINE, vec3(1.0), 0.0, axis, 0.0, position.w, 0u);
+        float share = vpl_irradiance(light, p.position, p.normal);
+        share = dot(p.facet, light.position - p.position) > 0.0 ? share : 0.0;
+        for (bool once = share > 0.0; once; once = false) {
+            vec3 irradiance = shade_entry(row, SHADE_INTENSITY).rgb * share;
+            irradiance *= vpl_visibility(k, axis, p.position - light.position, p.facet);
             if (shade_has(SHADE_MEDIUM)) {
-                irradiance *= shade_through_radial(args.num_lamps + k, p.position);
+                irradiance *= shade_through_radial(row, light.position, p.position);
             }
             sum += irradiance;
         }

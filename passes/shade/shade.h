@@ -41,6 +41,8 @@ enum {
     SHADE_PORT_WALL_CELLS,    // IN optional buffer struct wall_cell[]
     SHADE_PORT_RADIANCE, // OUT 2D RGBA32F, as large as the G-buffer: radiance to the camera, W/(m^2 sr);
                          // a = distance along the ray, m, or infinity
+    SHADE_PORT_TABLE, // SCRATCH 2D RGBA32F, shade_table.h
+    SHADE_PORT_WALL_TABLE, // SCRATCH 3D RGBA32F, walls_table.glsl: exists with the lattice
     SHADE_PORT_PLACE, // SCRATCH 2D RGBA32F: exist with VPLs
     SHADE_PORT_PART,
     SHADE_PORT_INDIRECT,

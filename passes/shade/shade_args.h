@@ -19,11 +19,10 @@
 
 struct shade_args {
     tyn_uint samples; // of the G-buffer along each side of a pixel
-    tyn_uint num_suns;
     tyn_uint num_directional; // lights before the lamps in "lights"
     tyn_uint num_lamps;
     tyn_vec3 tint;
 };
-TYN_ASSERT_SIZE(shade_args, 28);
+TYN_ASSERT_SIZE(shade_args, 24);
 
 #endif

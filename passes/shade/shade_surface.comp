@@ -2,22 +2,21 @@
 //
 //   L = emission + albedo / pi (suns + lamps + VPLs + light of the lattice, or of the sky where that is not)
 //
-// One thread a pixel. Samples of a pixel that lie on one plane are shaded once.
+// One thread a pixel. Samples of a pixel that lie on one plane are shaded together.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shade.glsl"
 #include "lattice.glsl"
+#include "walls_links.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 20) uniform sampler2D indirect_tex;
-layout(binding = 21) uniform sampler2D place_tex;
-layout(binding = 22) uniform sampler2D part_tex;
-layout(binding = 23) uniform sampler3D moments_tex;
-#define WALLS_LINKS 24
-#define WALLS_CELLS 25
-#include "lattice_walls.glsl"
+layout(binding = 21) uniform sampler2D indirect_tex;
+layout(binding = 22) uniform sampler2D place_tex;
+layout(binding = 23) uniform sampler2D part_tex;
+layout(binding = 24) uniform sampler3D moments_tex;
+#define WALLS_TABLE 25
 #include "walls_irradiance.glsl"
 layout(binding = 26, scalar) uniform env_uniform
 {
@@ -83,47 +82,55 @@ void main()
     }
     int side = int(args.samples), count = side * side;
     ivec2 corner = pixel * side;
-    gbuffer_point first = shade_sample(corner);
-    vec3 at_first = shade_position(corner, first.distance);
-    vec3 albedo = first.albedo, emission = first.emission, normal = first.normal, middle = at_first;
-    bool one_plane = first.distance > 0.0;
-    for (int k = 1; k < count && one_plane; k++) {
-        ivec2 texel = corner + ivec2(k % side, k / side);
-        gbuffer_point s = shade_sample(texel);
-        vec3 at = shade_position(texel, s.distance), d = at - at_first;
-        one_plane = s.distance > 0.0 && dot(s.facet, first.facet) > 0.99 &&
-                    abs(dot(d, first.facet)) < 0.05 * length(d) + 1e-5 * s.distance;
-        albedo += s.albedo;
-        emission += s.emission;
-        normal += s.normal;
-        middle += at;
+    uint left = 0u; // bit k: sample k shows a surface and is not shaded yet
+    for (int k = 0; k < count; k++) {
+        float distance = texelFetch(surface_tex, corner + ivec2(k % side, k / side), 0).w;
+        left |= distance > 0.0 ? 1u << k : 0u;
     }
-    vec3 radiance = vec3(0.0);
-    if (one_plane) {
-        float share = 1.0 / float(count);
-        shade_point p = shade_point(middle * share, normalize(normal), first.facet);
+    uint none = ~left & (1u << count) - 1u;
+    for (int k = 0; none != 0u && k < count; k++) {
+        if ((none >> k & 1u) != 0u) {
+            imageStore(radiance_image, corner + ivec2(k % side, k / side), vec4(vec3(0.0), NOWHERE));
+        }
+    }
+    while (left != 0u) {
+        int k0 = findLSB(left);
+        ivec2 texel0 = corner + ivec2(k0 % side, k0 / side);
+        gbuffer_point like = shade_sample(texel0);
+        vec3 at0 = shade_position(texel0, like.distance);
+        uint group = 0u;
+        float members = 0.0;
+        vec3 albedo = vec3(0.0), emission = vec3(0.0), normal = vec3(0.0), middle = vec3(0.0);
+        for (int k = 0; k < count; k++) {
+            ivec2 texel = corner + ivec2(k % side, k / side);
+            gbuffer_point s = shade_sample(texel);
+            vec3 at = shade_position(texel, s.distance), d = at - at0;
+            bool same = (left >> k & 1u) != 0u && dot(s.facet, like.facet) > 0.97 &&
+                        abs(dot(d, like.facet)) < 0.05 * length(d) + 1e-5 * s.distance;
+            float share = same || k == k0 ? 1.0 : 0.0;
+            group |= share > 0.0 ? 1u << k : 0u;
+            members += share;
+            albedo += share * s.albedo;
+            emission += share * s.emission;
+            normal += share * s.normal;
+            middle += share * at;
+        }
+        shade_point p = shade_point(middle / members, normalize(normal), like.facet);
         vec3 irradiance = irradiance_at(p);
         if (shade_has(SHADE_VPLS)) {
-            irradiance = max(irradiance + texelFetch(indirect_tex, pixel, 0).rgb, vec3(0.0));
+            vec3 indirect = texelFetch(indirect_tex, pixel, 0).rgb;
+            for (bool several = members < float(count); several; several = false) {
+                indirect = light_of_vpls(pixel, p);
+            }
+            irradiance += indirect;
         }
-        radiance = share * (emission + albedo * irradiance / PI);
-    }
-    for (int k = 0; k < count; k++) {
-        ivec2 texel = corner + ivec2(k % side, k / side);
-        float distance = one_plane ? texelFetch(surface_tex, texel, 0).w : 0.0;
-        if (!one_plane) {
-            gbuffer_point s = shade_sample(texel);
-            distance = s.distance;
-            radiance = vec3(0.0);
-            if (distance > 0.0) {
-                shade_point p = shade_point(shade_position(texel, distance), s.normal, s.facet);
-                vec3 irradiance = irradiance_at(p);
-                if (shade_has(SHADE_VPLS)) {
-                    irradiance = max(irradiance + light_of_vpls(pixel, p), vec3(0.0));
-                }
-                radiance = s.emission + s.albedo * irradiance / PI;
+        vec3 radiance = (emission + albedo * irradiance / PI) / members;
+        for (int k = 0; k < count; k++) {
+            if ((group >> k & 1u) != 0u) {
+                float distance = texelFetch(surface_tex, corner + ivec2(k % side, k / side), 0).w;
+                imageStore(radiance_image, corner + ivec2(k % side, k / side), vec4(radiance, distance));
             }
         }
-        imageStore(radiance_image, texel, vec4(radiance, distance > 0.0 ? distance : NOWHERE));
+        left &= ~group;
     }
 }

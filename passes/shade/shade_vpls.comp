@@ -1,7 +1,8 @@
 // shade_vpls.comp -- every pixel takes a sixteenth of the VPLs.
 //
 // Neighbours in a pattern of 4 x 4 pixels take different ones (Wald et al. 2002, interleaved sampling), and
-// shade_gather.comp sums over the pattern.
+// shade_gather.comp sums over the pattern. A workgroup has pixels of one place in the pattern, four apart:
+// where no light of theirs shines on any of them they are done with it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -9,12 +10,14 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 20, rgba32f) uniform writeonly image2D place_image; // position; x of the folded normal
-layout(binding = 21, rgba32f) uniform writeonly image2D part_image;  // irradiance; y of the normal
+layout(binding = 21, rgba32f) uniform writeonly image2D place_image; // position; x of the folded normal
+layout(binding = 22, rgba32f) uniform writeonly image2D part_image;  // irradiance; y of the normal
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    uint part_of = gl_WorkGroupID.z;
+    ivec2 cell = ivec2(part_of % SHADE_SIDE, part_of / SHADE_SIDE);
+    ivec2 pixel = SHADE_SIDE * ivec2(gl_GlobalInvocationID.xy) + cell;
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) {
         return;
     }
@@ -37,10 +40,9 @@ void main()
         return;
     }
     shade_point p = shade_point(shade_position(texel, found.distance), found.normal, found.facet);
-    ivec2 cell = pixel & (SHADE_SIDE - 1);
-    vec3 part = shade_vpls(p, uint(cell.y * SHADE_SIDE + cell.x), SHADE_SIDE * SHADE_SIDE);
+    vec3 part = shade_vpls(p, part_of, SHADE_SIDE * SHADE_SIDE);
     if (shade_has(SHADE_SPREAD)) {
-        part += shade_spread_suns(p, uint(cell.y * SHADE_SIDE + cell.x));
+        part += shade_spread_suns(p, part_of);
     }
     vec2 normal = gbuffer_fold(p.normal);
     imageStore(place_image, pixel, vec4(p.position, normal.x));

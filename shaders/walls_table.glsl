@@ -1,0 +1,20 @@
+// walls_table.glsl -- the walls of the lattice's cells as an image: per lane, a CPU device fetches texels much
+// faster than it reads buffers. No bindings.
+//
+// RGBA32F, TYN_WALLS_PLANES + 1 entries per cell, behind each other along z: planes, then links, as two halves of
+// whole numbers.
+#ifndef TYN_WALLS_TABLE_GLSL
+#define TYN_WALLS_TABLE_GLSL
+#include "walls_args.h"
+
+vec4 walls_table_entry_of(uint links)
+{
+    return vec4(float(links & 0xffffu), float(links >> 16), 0.0, 0.0);
+}
+
+uint walls_table_links(vec4 entry)
+{
+    return uint(entry.x) | uint(entry.y) << 16;
+}
+
+#endif
