@@ -89,8 +89,14 @@ vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int
         ivec3 base = ivec3(floor(s.x)) - reach;
         vec3 sum = vec3(0.0);
         float whole = 0.0, seen = 0.0; // of all; without walls between
-        for (int i = 0; i < side * side * side; i++) {
-            ivec3 q = base + ivec3(i % side, i / side % side, i / (side * side));
+        ivec3 d = ivec3(0); // counts; divisions are slow on a CPU device
+        for (int i = side * side * side; i > 0; i--) {
+            ivec3 q = base + d;
+            d.x++;
+            d.y += d.x == side ? 1 : 0;
+            d.x = d.x == side ? 0 : d.x;
+            d.z += d.y == side ? 1 : 0;
+            d.y = d.y == side ? 0 : d.y;
             vec3 t = max(1.0 - abs(vec3(q) - s.x) / float(1 + reach), vec3(0.0));
             q = clamp(q, ivec3(0), box.dims - 1);
             float share = t.x * t.y * t.z * walls_share(box, s, q);

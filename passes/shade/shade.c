@@ -115,12 +115,12 @@ enum { LIGHTS = 0, WALLS, VPLS, GATHER, SURFACE, NUM_KERNELS };
     .name = "shade_" #step, .spirv = shade_##step##_spirv,                                         \
     .spirv_size = sizeof shade_##step##_spirv, .local_size = {x, y, z},                            \
     .bindings = step##_bindings, .num_bindings = sizeof step##_bindings / sizeof *step##_bindings
-#define ARGS .args_size = sizeof(struct shade_args), .num_spec = 3
+#define ARGS(specs) .args_size = sizeof(struct shade_args), .num_spec = specs
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [LIGHTS] = {KERNEL(lights, 64, 1, 1), ARGS},  [WALLS] = {KERNEL(walls, 8, 4, 2)},
-    [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS},       [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS},
-    [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS},
+    [LIGHTS] = {KERNEL(lights, 64, 1, 1), ARGS(2)},  [WALLS] = {KERNEL(walls, 8, 4, 2)},
+    [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(3)},       [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(3)},
+    [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(3)},
 };
 
 static tyn_result declare(tyn_builder *b, const void *data)

@@ -27,7 +27,7 @@ layout(push_constant, scalar) uniform Args
 #define RADIAL_TAU_A 8
 #define RADIAL_TAU_P 9
 #define SHADOW_ATLAS 10
-#define SHADOW_LIGHTS 11 // not read: the table has them, as the radial block
+#define SHADOW_LIGHTS 11
 #include "camera.glsl"
 #include "medium.glsl"
 #include "beam.glsl"
@@ -41,6 +41,12 @@ layout(binding = 20) uniform sampler2D table_tex; // shade_table.h
 layout(binding = 13, scalar) uniform sun_uniform
 {
     light_block suns[TYN_LIGHTS_MAX];
+};
+// Lights and what else is in the table are not read from their buffers; but without them among the bindings
+// lavapipe crashes in what it does before a dispatch.
+layout(binding = 14, scalar) uniform light_uniform
+{
+    light_block lights[TYN_LIGHTS_MAX];
 };
 layout(binding = 15, scalar) uniform camera_uniform
 {
@@ -68,6 +74,14 @@ struct shade_point {
     vec3 normal;   // for shading
     vec3 facet;    // of the triangle: for shadows
 };
+
+// Sample k of a pixel whose first one is at `corner`. At most 4 a side; a division would be slow.
+ivec2 shade_texel(ivec2 corner, int k)
+{
+    int side = int(args.samples);
+    int row = int(k >= side) + int(k >= 2 * side) + int(k >= 3 * side);
+    return corner + ivec2(k - row * side, row);
+}
 
 gbuffer_point shade_sample(ivec2 texel)
 {

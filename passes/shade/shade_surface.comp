@@ -2,7 +2,7 @@
 //
 //   L = emission + albedo / pi (suns + lamps + VPLs + light of the lattice, or of the sky where that is not)
 //
-// One thread a pixel. Samples of a pixel that lie on one plane are shaded together.
+// One thread a pixel. Samples of a pixel on one piece of surface are shaded together.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -80,42 +80,41 @@ void main()
     if (any(greaterThanEqual(pixel, ivec2(camera.size)))) {
         return;
     }
-    int side = int(args.samples), count = side * side;
-    ivec2 corner = pixel * side;
+    int count = int(args.samples * args.samples);
+    ivec2 corner = pixel * int(args.samples);
     uint left = 0u; // bit k: sample k shows a surface and is not shaded yet
     for (int k = 0; k < count; k++) {
-        float distance = texelFetch(surface_tex, corner + ivec2(k % side, k / side), 0).w;
+        float distance = texelFetch(surface_tex, shade_texel(corner, k), 0).w;
         left |= distance > 0.0 ? 1u << k : 0u;
     }
     uint none = ~left & (1u << count) - 1u;
     for (int k = 0; none != 0u && k < count; k++) {
         if ((none >> k & 1u) != 0u) {
-            imageStore(radiance_image, corner + ivec2(k % side, k / side), vec4(vec3(0.0), NOWHERE));
+            imageStore(radiance_image, shade_texel(corner, k), vec4(vec3(0.0), NOWHERE));
         }
     }
     while (left != 0u) {
         int k0 = findLSB(left);
-        ivec2 texel0 = corner + ivec2(k0 % side, k0 / side);
+        ivec2 texel0 = shade_texel(corner, k0);
         gbuffer_point like = shade_sample(texel0);
         vec3 at0 = shade_position(texel0, like.distance);
         uint group = 0u;
         float members = 0.0;
-        vec3 albedo = vec3(0.0), emission = vec3(0.0), normal = vec3(0.0), middle = vec3(0.0);
+        vec3 albedo = vec3(0.0), emission = vec3(0.0), normal = vec3(0.0);
         for (int k = 0; k < count; k++) {
-            ivec2 texel = corner + ivec2(k % side, k / side);
+            ivec2 texel = shade_texel(corner, k);
             gbuffer_point s = shade_sample(texel);
             vec3 at = shade_position(texel, s.distance), d = at - at0;
-            bool same = (left >> k & 1u) != 0u && dot(s.facet, like.facet) > 0.97 &&
-                        abs(dot(d, like.facet)) < 0.05 * length(d) + 1e-5 * s.distance;
+            bool same = (left >> k & 1u) != 0u && dot(s.facet, like.facet) > 0.9 &&
+                        abs(dot(d, like.facet)) < 0.3 * length(d) + 1e-5 * s.distance;
             float share = same || k == k0 ? 1.0 : 0.0;
             group |= share > 0.0 ? 1u << k : 0u;
             members += share;
             albedo += share * s.albedo;
             emission += share * s.emission;
             normal += share * s.normal;
-            middle += share * at;
         }
-        shade_point p = shade_point(middle / members, normalize(normal), like.facet);
+        shade_point p = shade_point(at0, normalize(normal), like.facet);
         vec3 irradiance = irradiance_at(p);
         if (shade_has(SHADE_VPLS)) {
             vec3 indirect = texelFetch(indirect_tex, pixel, 0).rgb;
@@ -127,8 +126,8 @@ void main()
         vec3 radiance = (emission + albedo * irradiance / PI) / members;
         for (int k = 0; k < count; k++) {
             if ((group >> k & 1u) != 0u) {
-                float distance = texelFetch(surface_tex, corner + ivec2(k % side, k / side), 0).w;
-                imageStore(radiance_image, corner + ivec2(k % side, k / side), vec4(radiance, distance));
+                float distance = texelFetch(surface_tex, shade_texel(corner, k), 0).w;
+                imageStore(radiance_image, shade_texel(corner, k), vec4(radiance, distance));
             }
         }
         left &= ~group;

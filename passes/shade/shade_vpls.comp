@@ -27,8 +27,8 @@ void main()
     gbuffer_point found;
     ivec2 texel;
     for (int i = 0; i < count; i++) {
-        int k = (start + i) % count;
-        texel = pixel * side + ivec2(k % side, k / side);
+        int k = start + i;
+        texel = shade_texel(pixel * side, k < count ? k : k - count);
         found = shade_sample(texel);
         if (found.distance > 0.0) {
             break;
