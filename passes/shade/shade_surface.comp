@@ -100,7 +100,7 @@ void main()
         vec3 at0 = shade_position(texel0, like.distance);
         uint group = 0u;
         float members = 0.0;
-        vec3 albedo = vec3(0.0), emission = vec3(0.0), normal = vec3(0.0);
+        vec3 albedo = vec3(0.0), emission = vec3(0.0), normal = vec3(0.0), off = vec3(0.0);
         for (int k = 0; k < count; k++) {
             ivec2 texel = shade_texel(corner, k);
             gbuffer_point s = shade_sample(texel);
@@ -113,8 +113,11 @@ void main()
             albedo += share * s.albedo;
             emission += share * s.emission;
             normal += share * s.normal;
+            off += share * d;
         }
-        shade_point p = shade_point(at0, normalize(normal), like.facet);
+        // In their middle, but on the plane of the one whose facet is to be in a shadow or not.
+        off = (off - dot(off, like.facet) * like.facet) / members;
+        shade_point p = shade_point(at0 + off, normalize(normal), like.facet);
         vec3 irradiance = irradiance_at(p);
         if (shade_has(SHADE_VPLS)) {
             vec3 indirect = texelFetch(indirect_tex, pixel, 0).rgb;
