@@ -28,8 +28,10 @@ const float PI = 3.14159265358979;
 #define NOWHERE uintBitsToFloat(0x7f800000u) // infinity
 
 // Light of the medium and of far walls, and of the sky where it comes along the lattice's lines.
-vec3 light_of_lattice(shade_point p)
+// `dark`: there is none at all, as where surfaces let none in.
+vec3 light_of_lattice(shade_point p, out bool dark)
 {
+    dark = false;
     vec3 sky = shade_has(SHADE_SKY) ? PI * environment.sky : vec3(0.0);
     if (!shade_has(SHADE_LATTICE)) {
         return sky;
@@ -45,6 +47,7 @@ vec3 light_of_lattice(shade_point p)
     }
     int channels = shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
     vec3 irradiance = walls_irradiance_at(moments_tex, box, p.position, p.normal, channels);
+    dark = irradiance == vec3(0.0);
     return channels == 1 ? irradiance.r * args.tint : irradiance;
 }
 
@@ -69,9 +72,9 @@ vec3 light_of_vpls(ivec2 pixel, shade_point p)
     return light;
 }
 
-vec3 irradiance_at(shade_point p)
+vec3 irradiance_at(shade_point p, out bool dark)
 {
-    return shade_suns(p) + shade_lamps(p) + light_of_lattice(p);
+    return shade_suns(p) + shade_lamps(p) + light_of_lattice(p, dark);
 }
 
 void main()
@@ -118,13 +121,15 @@ void main()
         // In their middle, but on the plane of the one whose facet is to be in a shadow or not.
         off = (off - dot(off, like.facet) * like.facet) / members;
         shade_point p = shade_point(at0 + off, normalize(normal), like.facet);
-        vec3 irradiance = irradiance_at(p);
+        bool dark;
+        vec3 irradiance = irradiance_at(p, dark);
         if (shade_has(SHADE_VPLS)) {
             vec3 indirect = texelFetch(indirect_tex, pixel, 0).rgb;
             for (bool several = members < float(count); several; several = false) {
                 indirect = light_of_vpls(pixel, p);
             }
-            irradiance += indirect;
+            // Places that sunlight is scattered from may be beyond a wall. Where the lattice is dark no light is.
+            irradiance += shade_has(SHADE_SPREAD) && dark ? vec3(0.0) : indirect;
         }
         vec3 radiance = (emission + albedo * irradiance / PI) / members;
         for (int k = 0; k < count; k++) {
