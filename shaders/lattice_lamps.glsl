@@ -1,4 +1,4 @@
-// lattice_lamps.glsl -- which local lights make up a group. Include after lattice_args.h and radial.glsl.
+// lattice_lamps.glsl -- which local lights make up a group, and how they light cells. Include after lattice_args.h and radial.glsl.
 #ifndef TYN_LATTICE_LAMPS_GLSL
 #define TYN_LATTICE_LAMPS_GLSL
 
@@ -10,6 +10,20 @@ uvec2 lattice_lamps_of(uint group)
     }
     bool vpls = group > args.num_fine || args.num_fine == args.num_lamps;
     return vpls ? uvec2(args.num_lamps, radial_count) : uvec2(args.num_fine, args.num_lamps);
+}
+
+// Of the directions from a light of this radius at the distance r.
+float lattice_lamps_cosine(float radius, float r)
+{
+    // Seen under an angle, a disc does not shine along one direction.
+    return 1.0 - 0.25 * radius * radius / max(r * r, radius * radius + 1e-20);
+}
+
+// Pieces along each side that a cell is cut into for a VPL so many cells away. VPLs are smooth: each stands for
+// a piece of a surface.
+uint lattice_lamps_vpl_pieces(float cells_away)
+{
+    return cells_away < 1.0 ? 3u : cells_away < 2.0 ? 2u : 1u;
 }
 
 #endif

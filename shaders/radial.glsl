@@ -3,6 +3,7 @@
 // Include after medium.glsl and define the bindings:
 //   RADIAL_BLOCK   buffer radial_block: "radials"
 //   RADIAL_COLUMN  sampler: `column` (mode DENSITY) or `tau_s` (mode COEFFICIENTS)
+//   RADIAL_UNIFORM   if RADIAL_BLOCK is to be a uniform buffer: faster on lavapipe, which has room for seven
 //   RADIAL_TAU_A, RADIAL_TAU_P   samplers, mode COEFFICIENTS (leave out in kernels that know DENSITY only)
 //
 // The textures hold the mean of the medium between the light, or where the way from it enters the box,
@@ -15,12 +16,21 @@
 #include "radial_lobe.glsl"
 #include "beam_tau.glsl"
 
+#ifdef RADIAL_UNIFORM
+layout(set = 0, binding = RADIAL_BLOCK, scalar) uniform radial_buffer
+{
+    uint radial_count, radial_num_lamps;
+    uvec2 radial_pad;
+    radial_grid radials[TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX];
+};
+#else
 layout(set = 0, binding = RADIAL_BLOCK, scalar) readonly buffer radial_buffer
 {
     uint radial_count, radial_num_lamps;
     uvec2 radial_pad;
     radial_grid radials[];
 };
+#endif
 layout(set = 0, binding = RADIAL_COLUMN) uniform sampler3D radial_column_tex;
 #ifdef RADIAL_TAU_A
 layout(set = 0, binding = RADIAL_TAU_A) uniform sampler3D radial_tau_a_tex;
@@ -75,14 +85,12 @@ float radial_mean_inverse_square(float r2, float d2)
     return r2 < d2 ? 1.0 / (0.1304 * d2 + 0.79 * r2) : (1.0 + d2 / (12.0 * r2)) / r2;
 }
 
-#ifdef RADIAL_SHADOWS // shadow.glsl and, with VPL_DISTANCES, vpl_visibility.glsl were included
-// Share of light n that surfaces let through to the point p, `away` from it.
-float radial_visibility(uint n, vec3 p, vec3 away)
+#ifdef RADIAL_SHADOWS // shadow.glsl was included
+// Share of the light of lamp n that surfaces let through to the point p.
+float radial_visibility(uint n, vec3 p)
 {
-    if (radials[n].light.light != TYN_RADIAL_NO_LIGHT) {
-        return shadow_visibility_lamp(radials[n].light.light, p);
-    }
-    return n < radial_num_lamps ? 1.0 : vpl_visibility(n - radial_num_lamps, radials[n].light.axis, away, vec3(0.0));
+    uint light = radials[n].light.light;
+    return light != TYN_RADIAL_NO_LIGHT ? shadow_visibility_lamp(light, p) : 1.0;
 }
 #endif
 

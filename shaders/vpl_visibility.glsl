@@ -38,6 +38,29 @@ ivec2 vpl_map_corner(uint vpl, int side)
 #ifdef VPL_DISTANCES
 layout(set = 0, binding = VPL_DISTANCES) uniform sampler2D vpl_distances;
 
+// The map of one VPL, for many points of the medium.
+struct vpl_map {
+    mat3 frame;
+    vec2 corner, texel; // the first texel; 1 / size of the atlas
+    float last;         // texels along a side, less one; 0: no maps
+};
+
+vpl_map vpl_map_of(uint vpl, vec3 axis)
+{
+    ivec2 size = textureSize(vpl_distances, 0);
+    int side = size.x / VPL_MAPS_IN_A_ROW;
+    return vpl_map(vpl_frame(axis), vec2(vpl_map_corner(vpl, side)), 1.0 / vec2(size), float(max(side - 1, 0)));
+}
+
+// As vpl_visibility of a point in the medium, r = length(away).
+float vpl_map_visibility(vpl_map map, vec3 away, float r)
+{
+    vec2 x = vpl_map_place(away * map.frame) * map.last, first = min(floor(x), map.last - 1.0), w = x - first;
+    vec4 stored = textureGather(vpl_distances, (map.corner + first + 1.0) * map.texel).wzxy;
+    vec4 shares = vec4(1.0 - w.x, w.x, 1.0 - w.x, w.x) * vec4(1.0 - w.yy, w.yy);
+    return map.last > 0.0 ? dot(shares, vec4(greaterThanEqual(stored, vec4(0.95 * r)))) : 1.0;
+}
+
 // Share of the light of VPL `vpl`, whose axis is `axis`, that goes the way `away` and is not stopped by
 // surfaces: of the four rays around that way, those that reach beyond the point. `normal`: of the surface that
 // the point is on, whose plane the rays are to reach; (0, 0, 0) for a point in the medium.

@@ -2,7 +2,9 @@
 #include "lattice.h"
 #include "lattice_args.h"
 #include "lattice_lamps_cells.comp.h"
+#include "lattice_lamps_near.comp.h"
 #include "lattice_lamps_sum.comp.h"
+#include "lattice_lamps_vpls.comp.h"
 #include "lattice_lamps.comp.h"
 #include <math.h>
 
@@ -41,7 +43,7 @@ static const tyn_port ports[LATTICE_LAMPS_NUM_PORTS] = {
                                        "fluence without shadows, before scaling"},
 };
 
-enum { KERNEL_CELLS, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
+enum { KERNEL_CELLS, KERNEL_VPLS, KERNEL_NEAR, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
 
 static const tyn_binding cells_bindings[] = {
     {LATTICE_LAMPS_PORT_MEDIUM, TYN_USE_UNIFORM},
@@ -58,6 +60,33 @@ static const tyn_binding cells_bindings[] = {
     {LATTICE_LAMPS_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
     {LATTICE_LAMPS_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED},
     {LATTICE_LAMPS_PORT_SHADOWS, TYN_USE_STORAGE_READ},
+};
+
+static const tyn_binding vpl_bindings[] = {
+    {LATTICE_LAMPS_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {LATTICE_LAMPS_PORT_RADIALS, TYN_USE_UNIFORM},
+    {LATTICE_LAMPS_PORT_COLUMN, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_TAU_A, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_TAU_P, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_LIT, TYN_USE_STORAGE_WRITE},
+    {LATTICE_LAMPS_PORT_UNSHADOWED, TYN_USE_STORAGE_WRITE},
+    {LATTICE_LAMPS_PORT_VPL_DISTANCES, TYN_USE_SAMPLED},
+};
+
+static const tyn_binding near_bindings[] = {
+    {LATTICE_LAMPS_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {LATTICE_LAMPS_PORT_DENSITY, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_G, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_RADIALS, TYN_USE_UNIFORM},
+    {LATTICE_LAMPS_PORT_COLUMN, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_TAU_A, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_TAU_P, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_LIT, TYN_USE_STORAGE_RW},
+    {LATTICE_LAMPS_PORT_UNSHADOWED, TYN_USE_STORAGE_RW},
+    {LATTICE_LAMPS_PORT_WALL_LINKS, TYN_USE_STORAGE_READ},
+    {LATTICE_LAMPS_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
     {LATTICE_LAMPS_PORT_VPL_DISTANCES, TYN_USE_SAMPLED},
 };
 
@@ -88,8 +117,24 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                       sizeof(struct lattice_lamps_args),
                       {8, 4, 2},
                       cells_bindings,
-                      15,
+                      sizeof cells_bindings / sizeof cells_bindings[0],
                       4},
+    [KERNEL_VPLS] = {"vpls",
+                     lattice_lamps_vpls_spirv,
+                     sizeof lattice_lamps_vpls_spirv,
+                     sizeof(struct lattice_lamps_args),
+                     {8, 4, 2},
+                     vpl_bindings,
+                     sizeof vpl_bindings / sizeof vpl_bindings[0],
+                     3},
+    [KERNEL_NEAR] = {"near",
+                     lattice_lamps_near_spirv,
+                     sizeof lattice_lamps_near_spirv,
+                     sizeof(struct lattice_lamps_args),
+                     {8, 4, 2},
+                     near_bindings,
+                     sizeof near_bindings / sizeof near_bindings[0],
+                     4},
     [KERNEL_SUM] = {"sum",
                     lattice_lamps_sum_spirv,
                     sizeof lattice_lamps_sum_spirv,
@@ -157,14 +202,25 @@ static void record(tyn_recorder *r, const void *params)
         voxels = fmaxf(voxels, dx * (float)size[a] / extent[a]);
     }
     args.samples = (uint32_t)fminf(fmaxf(ceilf(0.5f * voxels - 1e-3f), 2), 4);
-    const uint32_t spec[4] = {p->mode, p->shape.channels,
-                              tyn_rec_has(r, LATTICE_LAMPS_PORT_WALL_LINKS),
-                              tyn_rec_has(r, LATTICE_LAMPS_PORT_SHADOW_ATLAS) ||
-                                  tyn_rec_has(r, LATTICE_LAMPS_PORT_VPL_DISTANCES)};
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_CELLS,
-                                        .cells = {dims.x, dims.y, dims.z * args.num_groups},
-                                        .args = &args,
-                                        .spec = spec});
+    const uint32_t walls = tyn_rec_has(r, LATTICE_LAMPS_PORT_WALL_LINKS);
+    if (args.num_groups > p->vpls) {
+        const uint32_t spec[4] = {p->mode, p->shape.channels, walls,
+                                  tyn_rec_has(r, LATTICE_LAMPS_PORT_SHADOW_ATLAS)};
+        const tyn_extent cells = {dims.x, dims.y, dims.z * (args.num_groups - p->vpls)};
+        tyn_rec_dispatch(
+            r,
+            &(tyn_dispatch){.kernel = KERNEL_CELLS, .cells = cells, .args = &args, .spec = spec});
+    }
+    if (p->vpls) {
+        const uint32_t spec[4] = {p->mode, p->shape.channels,
+                                  tyn_rec_has(r, LATTICE_LAMPS_PORT_VPL_DISTANCES), walls};
+        const tyn_extent blocks = {(dims.x + 1) / 2, (dims.y + 1) / 2, (dims.z + 1) / 2};
+        tyn_rec_dispatch(
+            r,
+            &(tyn_dispatch){.kernel = KERNEL_VPLS, .cells = blocks, .args = &args, .spec = spec});
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = KERNEL_NEAR, .cells = dims, .args = &args, .spec = spec});
+    }
     tyn_rec_dispatch(
         r, &(tyn_dispatch){.kernel = KERNEL_SUM,
                            .cells = {args.num_groups * LATTICE_SUN_GROUP, p->shape.channels, 1},

@@ -1,4 +1,4 @@
-// lattice_lamps_cells.comp -- unscattered light of local lights in a cell; z: cells of each group.
+// lattice_lamps_cells.comp -- unscattered light of lamps in a cell; z: cells of each group.
 //
 // Fluence is the mean of I e^-tau' / r^2 over what scatters in the cell. Cells near a light are cut into up to
 // 8^3 pieces; of each the mean of 1 / r^2 is taken, which is finite at the light itself.
@@ -17,14 +17,12 @@
 #define WALLS_CELLS 11
 #define SHADOW_ATLAS 12
 #define SHADOW_LIGHTS 13
-#define VPL_DISTANCES 14
 #define RADIAL_SHADOWS
 #include "medium.glsl"
 #include "lattice.glsl"
 #include "lattice_sweep.glsl"
 #include "lattice_walls.glsl"
 #include "shadow.glsl"
-#include "vpl_visibility.glsl"
 #include "radial.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
@@ -43,21 +41,13 @@ layout(constant_id = 1) const uint num_channels = 3;
 layout(constant_id = 2) const uint walls = 0;
 layout(constant_id = 3) const uint shadowed = 0;
 #include "lattice_lamps.glsl"
+#define LATTICE_LAMPS_VISIBILITY(n, p, away) radial_visibility(n, p)
+#include "lattice_lamps_pieces.glsl"
 
 uint pieces(uint n, float cells_away)
 {
-    if (n >= args.num_lamps) { // VPLs are smooth: each stands for a piece of a surface
-        return cells_away < 1.0 ? 3u : cells_away < 2.0 ? 2u : 1u;
-    }
     uint base = max(args.samples - (n < args.num_fine ? 0u : 1u), 1u);
     return max(base, cells_away < 1.0 ? 8u : cells_away < 2.0 ? 4u : cells_away < 5.0 ? 2u : 1u);
-}
-
-float mean_cosine(uint n, float r)
-{
-    // Seen under an angle, a disc does not shine along one direction.
-    float radius = radials[n].light.radius;
-    return 1.0 - 0.25 * radius * radius / max(r * r, radius * radius + 1e-20);
 }
 
 // Of a light that is far away: the cell as a whole. `extinction`: sigma_t' of its channels.
@@ -72,61 +62,13 @@ void add_far_light(uint n, lattice_box box, vec3 p, vec3 extinction, inout vec4 
     beam_tau tau = radial_tau(radial_place_of(n, away, r));
     float half_way = 0.5 * box.dx / max(max(a.x, max(a.y, a.z)), 0.57);
     float fluence = share * radial_mean_inverse_square(r * r, box.dx * box.dx);
-    float visible = shadowed == 1 ? radial_visibility(n, p, away) : 1.0;
-    vec4 moments = visible * vec4(1.0, mean_cosine(n, r) * unit);
+    float visible = shadowed == 1 ? radial_visibility(n, p) : 1.0;
+    vec4 moments = visible * vec4(1.0, lattice_lamps_cosine(radials[n].light.radius, r) * unit);
     for (uint ch = 0u; ch < num_channels; ch++) {
         float t = mean_transmittance(tau.a[ch] + tau.p[ch], half_way * extinction[ch]);
         float e = lattice_channel(radials[n].light.intensity, num_channels, ch, args.tint);
         sums[ch] += e * t * fluence * moments;
         all[ch] += e * t * fluence;
-    }
-}
-
-// Of a light that is near: `count`^3 pieces of the cell.
-void add_near_light(uint n, uint count, lattice_box box, ivec3 c, inout vec4 sums[3], inout vec3 all)
-{
-    float dx = box.dx;
-    vec3 corner = lattice_to_m(box, vec3(c));
-    vec3 position = radials[n].light.position;
-    float d = dx / float(count);
-    vec4 weighted[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
-    vec3 weight = vec3(0.0), open = vec3(0.0);
-    for (uint i = 0u; i < count * count * count; i++) {
-        vec3 p = corner + (vec3(i % count, i / count % count, i / (count * count)) + 0.5) * d;
-        if (walls == 1 && !walls_same_side(box, c, p)) {
-            continue;
-        }
-        medium_point m = medium_sample(p);
-        similarity_clamp(m.sigma_s, m.g);
-        vec3 scaled = (1.0 - delta_fraction(m.g)) * m.sigma_s;
-        vec3 w = scaled + 1e-6 * m.sigma_a;
-        weight += w;
-        if (w.r + w.g + w.b <= 0.0) {
-            continue;
-        }
-        vec3 away = p - position;
-        float r = length(away), share = radial_share(n, away, r);
-        if (share <= 0.0) {
-            continue;
-        }
-        beam_tau tau = radial_tau(radial_place_of(n, away, r));
-        vec3 unit = away / max(r, 1e-20), a = abs(unit);
-        // Half the depth of a piece along the light.
-        float half_way = 0.5 * d / max(max(a.x, max(a.y, a.z)), 0.57);
-        float fluence = share * radial_mean_inverse_square(r * r, d * d);
-        float cosine = mean_cosine(n, r);
-        float visible = shadowed == 1 ? radial_visibility(n, p, away) : 1.0;
-        for (uint ch = 0u; ch < num_channels; ch++) {
-            float t = mean_transmittance(tau.a[ch] + tau.p[ch], half_way * (scaled[ch] + m.sigma_a[ch]));
-            open[ch] += w[ch] * t * fluence;
-            weighted[ch] += (visible * w[ch] * t * fluence) * vec4(1.0, cosine * unit);
-        }
-    }
-    for (uint ch = 0u; ch < num_channels; ch++) {
-        float e = lattice_channel(radials[n].light.intensity, num_channels, ch, args.tint);
-        float scale = weight[ch] > 0.0 ? e / weight[ch] : 0.0;
-        sums[ch] += scale * weighted[ch];
-        all[ch] += scale * open[ch];
     }
 }
 
@@ -152,14 +94,14 @@ void main()
             // Few lights are near. Some devices run what these need for all, if it is in the same loop.
             uint count = 1u;
             for (; n < range.y; n++) {
-                count = pieces(n, length(middle - radials[n].light.position) / box.dx);
+                count = pieces(n, distance(middle, radials[n].light.position) / box.dx);
                 if (count > 1u) {
                     break;
                 }
                 add_far_light(n, box, middle, extinction, sums, all);
             }
             if (count > 1u) {
-                add_near_light(n, count, box, c, sums, all);
+                lattice_lamps_add_pieces(n, count, box, c, sums, all);
             }
         }
     }

@@ -1,0 +1,83 @@
+// lattice_lamps_near.comp -- unscattered light of virtual point lights (VPLs) in the cells next to them, added to
+// that of all others.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "lattice_args.h"
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 1
+#define MEDIUM_G 2
+#define RADIAL_UNIFORM
+#define RADIAL_BLOCK 3
+#define RADIAL_COLUMN 4
+#define RADIAL_TAU_A 5
+#define RADIAL_TAU_P 6
+#define WALLS_LINKS 10
+#define WALLS_CELLS 11
+#define VPL_DISTANCES 12
+#include "medium.glsl"
+#include "lattice.glsl"
+#include "lattice_sweep.glsl"
+#include "lattice_walls.glsl"
+#include "vpl_visibility.glsl"
+#include "radial.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(push_constant, scalar) uniform push
+{
+    lattice_lamps_args args;
+};
+layout(binding = 7) uniform sampler3D cells;
+layout(binding = 8, rgba32f) uniform image3D lit; // as in lattice_lamps_cells.comp
+layout(binding = 9, r32f) uniform image3D unshadowed;
+
+layout(constant_id = 1) const uint num_channels = 3;
+layout(constant_id = 2) const uint shadowed = 0;
+layout(constant_id = 3) const uint walls = 0;
+
+float visibility(uint n, vec3 away)
+{
+    return vpl_visibility(n - args.num_lamps, radials[n].light.axis, away, vec3(0.0));
+}
+
+#include "lattice_lamps.glsl"
+#define LATTICE_LAMPS_VISIBILITY(n, p, away) visibility(n, away)
+#include "lattice_lamps_pieces.glsl"
+
+void main()
+{
+    ivec3 c = ivec3(gl_GlobalInvocationID), dims = ivec3(args.dims);
+    if (any(greaterThanEqual(c, dims))) {
+        return;
+    }
+    vec4 sums[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
+    vec3 all = vec3(0.0);
+    float extinction = 0.0;
+    for (uint ch = 0u; ch < num_channels; ch++) {
+        vec4 cell = texelFetch(cells, c + ivec3(0, 0, int(ch) * dims.z), 0);
+        extinction += cell.x + cell.y;
+    }
+    lattice_box box = lattice_box_of(medium.extent, dims);
+    vec3 centre = lattice_to_m(box, vec3(c) + 0.5);
+    uint count = extinction > 0.0 ? radial_count : 0u;
+    for (uint n = args.num_lamps; n < count; n++) {
+        // Each thread goes on to the next VPL that is near to it.
+        uint cut = 1u;
+        for (; n < count; n++) {
+            cut = lattice_lamps_vpl_pieces(distance(centre, radials[n].light.position) / box.dx);
+            if (cut > 1u) {
+                break;
+            }
+        }
+        if (cut > 1u) {
+            lattice_lamps_add_pieces(n, cut, box, c, sums, all);
+        }
+    }
+    for (bool any = all.r + all.g + all.b > 0.0; any; any = false) {
+        for (uint ch = 0u; ch < num_channels; ch++) {
+            ivec3 at = c + ivec3(0, 0, int((args.num_groups - 1u) * num_channels + ch) * dims.z);
+            imageStore(lit, at, imageLoad(lit, at) + sums[ch]);
+            imageStore(unshadowed, at, imageLoad(unshadowed, at) + all[ch]);
+        }
+    }
+}

@@ -1,0 +1,122 @@
+// lattice_lamps_vpls.comp -- unscattered light of virtual point lights (VPLs) in a block of 2 x 2 x 2 cells.
+//
+// What of a VPL changes little across a block is read once: its grid, and the mean of the medium on the way to
+// the block, which is then taken times each cell's own way. Cells that are next to a VPL are left to
+// lattice_lamps_near.comp.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
+#include "lattice_args.h"
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 2 // the medium itself is not read
+#define RADIAL_UNIFORM
+#define RADIAL_BLOCK 1
+#define RADIAL_COLUMN 2
+#define RADIAL_TAU_A 3
+#define RADIAL_TAU_P 4
+#define VPL_DISTANCES 8
+#include "medium.glsl"
+#include "lattice.glsl"
+#include "lattice_sweep.glsl"
+#include "vpl_visibility.glsl"
+#include "radial.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(push_constant, scalar) uniform push
+{
+    lattice_lamps_args args;
+};
+layout(binding = 5) uniform sampler3D cells;
+layout(binding = 6, rgba32f) uniform writeonly image3D lit; // as in lattice_lamps_cells.comp
+layout(binding = 7, r32f) uniform writeonly image3D unshadowed;
+
+layout(constant_id = 1) const uint num_channels = 3;
+layout(constant_id = 2) const uint shadowed = 0;
+
+#include "lattice_lamps.glsl"
+
+const uint BLOCK = 8u;
+
+ivec3 corner_of(uint k)
+{
+    return ivec3(k & 1u, k >> 1 & 1u, k >> 2);
+}
+
+void main()
+{
+    ivec3 c = 2 * ivec3(gl_GlobalInvocationID), dims = ivec3(args.dims);
+    if (any(greaterThanEqual(c, dims))) {
+        return;
+    }
+    uint group = args.num_groups - 1u;
+    lattice_box box = lattice_box_of(medium.extent, dims);
+    float dx = box.dx, thickest = 0.0;
+    vec3 middle = lattice_to_m(box, vec3(c) + 1.0);
+    vec4 sums[BLOCK][3];
+    vec3 all[BLOCK], extinction[BLOCK];
+    [[unroll]] for (uint k = 0u; k < BLOCK; k++) {
+        ivec3 at = min(c + corner_of(k), dims - 1);
+        all[k] = vec3(0.0);
+        extinction[k] = vec3(0.0);
+        [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {
+            sums[k][ch] = vec4(0.0);
+            if (ch < num_channels) {
+                vec4 cell = texelFetch(cells, at + ivec3(0, 0, int(ch) * dims.z), 0);
+                extinction[k][ch] = cell.x + cell.y;
+                thickest = max(thickest, extinction[k][ch]);
+            }
+        }
+    }
+    // Where there is no medium light does nothing.
+    uint first = args.num_lamps, count = thickest > 0.0 ? min(radial_count - first, TYN_RADIAL_VPLS_MAX) : 0u;
+    for (uint v = 0u; v < count; v++) {
+        radial_light light = radials[first + v].light;
+        vec3 from = middle - light.position;
+        float way = length(from);
+        // A loop that runs once or not at all: it is left out where no lane is in front of the VPL.
+        for (bool before = dot(from, light.axis) > -0.87 * dx; before; before = false) {
+            // The mean of the medium on the way to the block, and the share of that way within the box.
+            radial_place place = radial_place_of(first + v, from, way);
+            beam_tau mean = radial_tau(place);
+            vec3 per_way = (mean.a + mean.p) / max(way, 1e-20);
+            vpl_map map = vpl_map_of(v, light.axis);
+            vec3 intensity = light.intensity;
+            if (num_channels == 1u) {
+                intensity = vec3(lattice_channel(intensity, 1u, 0u, args.tint));
+            }
+            [[unroll]] for (uint k = 0u; k < BLOCK; k++) {
+                vec3 away = from + (vec3(corner_of(k)) - 0.5) * dx;
+                float r2 = dot(away, away), r = sqrt(r2);
+                vec3 unit = away / max(r, 1e-20), a = abs(unit);
+                float share = lattice_lamps_vpl_pieces(r / dx) == 1u ? max(dot(unit, light.axis), 0.0) : 0.0;
+                float fluence = share * radial_mean_inverse_square(r2, dx * dx);
+                float half_way = 0.5 * dx / max(max(a.x, max(a.y, a.z)), 0.57);
+                float visible = shadowed == 1 ? vpl_map_visibility(map, away, r) : 1.0;
+                vec4 moments = visible * vec4(1.0, lattice_lamps_cosine(light.radius, r) * unit);
+                [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {
+                    if (ch < num_channels) {
+                        float t = mean_transmittance(r * per_way[ch], half_way * extinction[k][ch]);
+                        float lighted = intensity[ch] * t * fluence;
+                        sums[k][ch] += lighted * moments;
+                        all[k][ch] += lighted;
+                    }
+                }
+            }
+        }
+    }
+    [[unroll]] for (uint k = 0u; k < BLOCK; k++) {
+        ivec3 cell = c + corner_of(k);
+        if (any(greaterThanEqual(cell, dims))) {
+            continue;
+        }
+        bool lights = extinction[k].r + extinction[k].g + extinction[k].b > 0.0;
+        [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {
+            if (ch < num_channels) {
+                ivec3 at = cell + ivec3(0, 0, int(group * num_channels + ch) * dims.z);
+                imageStore(lit, at, lights ? sums[k][ch] : vec4(0.0));
+                imageStore(unshadowed, at, vec4(lights ? all[k][ch] : 0.0));
+            }
+        }
+    }
+}
