@@ -2,7 +2,7 @@
 #pragma once
 #include "methods/nodes.h"
 
-enum { TYN_METHOD_FINE_LAMPS = 4 };
+enum { TYN_METHOD_FINE_LAMPS = 2 };
 
 // `vpls`: buffer struct radial_vpls, or {0}.
 tyn_result tyn_add_radials(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
