@@ -1,6 +1,7 @@
 // walls_irradiance.glsl -- light of the lattice on a surface.
 //
 // Include after lattice.glsl and walls_links.glsl, and define
+//   WALLS_OTHERS  at most so many other fields are asked for
 //   WALLS_TABLE   sampler3D: of each cell, channels of walls_table.glsl behind each other along z.
 //
 // Irradiance on a side n is phi / 4 - F.n / 2, the flux through a plane in radiance that is linear in direction,
@@ -78,8 +79,10 @@ float walls_share(lattice_box box, walls_spot s, ivec3 q)
     return between == 0 ? share : -share * pow(WALLS_BEHIND, float(between));
 }
 
-// Irradiance on the side n of a surface at p (M) of the first `channels` channels of `moments`, W/m^2.
-vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int channels)
+// Irradiance on the side n of a surface at p (M) of the first `channels` channels of `moments`, W/m^2. `others`: the
+// same cells' mean of `num_others` fields that are behind each other along z; 0 where no cell has light.
+vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int channels, sampler3D fields,
+                         uint num_others, out vec4 others[WALLS_OTHERS])
 {
     vec3 irradiance = vec3(0.0);
     bool lit = false;
@@ -88,6 +91,9 @@ vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int
         int reach = attempt / 2, side = 2 + 2 * reach;
         ivec3 base = ivec3(floor(s.x)) - reach;
         vec3 sum = vec3(0.0);
+        [[unroll]] for (uint k = 0u; k < num_others; k++) {
+            others[k] = vec4(0.0);
+        }
         float whole = 0.0, seen = 0.0; // of all; without walls between
         ivec3 d = ivec3(0); // counts; divisions are slow on a CPU device
         for (int i = side * side * side; i > 0; i--) {
@@ -113,10 +119,17 @@ vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int
             // A dark cell that seems to be in front may be within a solid.
             share = share < 0.0 ? dark ? 0.0 : -share : dark ? 0.1 * share : share;
             sum += share * light;
+            [[unroll]] for (uint k = 0u; k < num_others; k++) {
+                others[k] += share * texelFetch(fields, q + ivec3(0, 0, int(k) * box.dims.z), 0);
+            }
             whole += share;
         }
         lit = lit || attempt == 2 && seen < WALLS_FEW && whole > 1e-12;
-        irradiance = lit ? max(sum / whole, vec3(0.0)) : vec3(0.0);
+        float scale = lit ? 1.0 / whole : 0.0;
+        irradiance = max(scale * sum, vec3(0.0));
+        [[unroll]] for (uint k = 0u; k < num_others; k++) {
+            others[k] *= scale;
+        }
     }
     return irradiance;
 }

@@ -1,6 +1,7 @@
 // shade.c -- see shade.h.
 #include "shade.h"
 #include "shade_args.h"
+#include "shade_forward.comp.h"
 #include "shade_gather.comp.h"
 #include "shade_lights.comp.h"
 #include "shade_surface.comp.h"
@@ -54,6 +55,8 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     [PORT(TABLE)] = {"lights_table", TYN_SCRATCH, IMAGE2, .meaning = "the lights"},
     [PORT(WALL_TABLE)] = {"wall_table", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                           .meaning = "walls of the lattice's cells"},
+    [PORT(FORWARD)] = {"forward", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                       .meaning = "from where sunlight comes that was scattered forward"},
     [PORT(PLACE)] = {"place", TYN_SCRATCH, IMAGE2, .meaning = "where a pixel is shaded (M, m)"},
     [PORT(PART)] = {"part", TYN_SCRATCH, IMAGE2,
                     .meaning = "irradiance of a part of the VPLs, W/m^2"},
@@ -87,6 +90,13 @@ static const tyn_binding walls_bindings[] = {
     {PORT(WALL_CELLS), TYN_USE_STORAGE_READ},
     {PORT(WALL_TABLE), TYN_USE_STORAGE_WRITE},
 };
+static const tyn_binding forward_bindings[] = {
+    {PORT(MEDIUM), TYN_USE_UNIFORM},       {PORT(COLUMN), TYN_USE_SAMPLED},
+    {PORT(BEAMS), TYN_USE_UNIFORM},        {PORT(COLUMN), TYN_USE_SAMPLED},
+    {PORT(TAU_A), TYN_USE_SAMPLED},        {PORT(TAU_P), TYN_USE_SAMPLED},
+    {PORT(SHADOW_ATLAS), TYN_USE_SAMPLED}, {PORT(SHADOWS), TYN_USE_STORAGE_READ},
+    {PORT(SUNS), TYN_USE_UNIFORM},         {PORT(FORWARD), TYN_USE_STORAGE_WRITE},
+};
 static const tyn_binding vpls_bindings[] = {
     COMMON_BINDINGS,
     {PORT(PLACE), TYN_USE_STORAGE_WRITE},
@@ -106,10 +116,11 @@ static const tyn_binding surface_bindings[] = {
     {PORT(MOMENTS), TYN_USE_SAMPLED},
     {PORT(WALL_TABLE), TYN_USE_SAMPLED},
     {PORT(ENVIRONMENT), TYN_USE_UNIFORM},
+    {PORT(FORWARD), TYN_USE_SAMPLED},
     {PORT(RADIANCE), TYN_USE_STORAGE_WRITE},
 };
 
-enum { LIGHTS = 0, WALLS, VPLS, GATHER, SURFACE, NUM_KERNELS };
+enum { LIGHTS = 0, WALLS, FORWARD, VPLS, GATHER, SURFACE, NUM_KERNELS };
 
 #define KERNEL(step, x, y, z)                                                                      \
     .name = "shade_" #step, .spirv = shade_##step##_spirv,                                         \
@@ -119,6 +130,7 @@ enum { LIGHTS = 0, WALLS, VPLS, GATHER, SURFACE, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [LIGHTS] = {KERNEL(lights, 64, 1, 1), ARGS(2)},  [WALLS] = {KERNEL(walls, 8, 4, 2)},
+    [FORWARD] = {KERNEL(forward, 8, 4, 2), .num_spec = 3},
     [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(3)},       [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(3)},
     [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(3)},
 };
@@ -132,8 +144,13 @@ static tyn_result declare(tyn_builder *b, const void *data)
     tyn_build_image(b, PORT(RADIANCE), tyn_build_extent(b, PORT(SURFACE)), 1);
     // The moments have a cell's channels behind each other along z.
     tyn_extent cells = tyn_build_extent(b, PORT(MOMENTS));
-    cells.z = cells.z / (p->one_channel ? 1 : 3) * (TYN_WALLS_PLANES + 1);
+    const uint32_t slices = cells.z / (p->one_channel ? 1 : 3);
     const tyn_extent texel = {1, 1, 1};
+    const bool spread = tyn_build_has(b, PORT(MOMENTS)) && tyn_build_has(b, PORT(BEAMS)) &&
+                        tyn_build_has(b, PORT(SHADOWS)) && p->num_suns;
+    cells.z = slices * p->num_suns;
+    tyn_build_image(b, PORT(FORWARD), spread ? cells : texel, 1);
+    cells.z = slices * (TYN_WALLS_PLANES + 1);
     tyn_build_image(b, PORT(WALL_TABLE), tyn_build_has(b, PORT(MOMENTS)) ? cells : texel, 1);
     tyn_build_image(b, PORT(TABLE), (tyn_extent){SHADE_ENTRIES, SHADE_ROWS, 1}, 1);
     tyn_build_image(b, PORT(PLACE), pixels, 1);
@@ -158,8 +175,8 @@ static void record(tyn_recorder *r, const void *data)
     features |= vpls ? SHADE_VPLS : 0;
     features |= tyn_rec_has(r, PORT(MOMENTS)) ? SHADE_LATTICE : 0;
     features |= p->one_channel ? SHADE_ONE_CHANNEL : 0;
-    features |=
-        tyn_rec_has(r, PORT(BEAMS)) && tyn_rec_has(r, PORT(SHADOWS)) && vpls ? SHADE_SPREAD : 0;
+    const tyn_extent forward = tyn_rec_extent(r, PORT(FORWARD));
+    features |= forward.x > 1 ? SHADE_SPREAD : 0;
     features |= p->sky ? SHADE_SKY : 0;
     const uint32_t spec[3] = {p->mode, features, p->num_suns};
     const tyn_extent pixels = {p->size[0], p->size[1], 1};
@@ -169,6 +186,10 @@ static void record(tyn_recorder *r, const void *data)
         tyn_extent cells = tyn_rec_extent(r, PORT(WALL_TABLE));
         cells.z /= TYN_WALLS_PLANES + 1;
         tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = WALLS, .cells = cells});
+    }
+    if (features & SHADE_SPREAD) {
+        tyn_extent cells = {forward.x, forward.y, forward.z / p->num_suns};
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = FORWARD, .cells = cells, .spec = spec});
     }
     if (vpls) {
         const uint32_t side = SHADE_SIDE;

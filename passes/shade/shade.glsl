@@ -147,57 +147,42 @@ uint shade_sun_light(uint n)
     return shade_has(SHADE_MEDIUM) ? beams[n].light : n;
 }
 
-vec3 shade_suns(shade_point p)
+// Irradiance per that of a beam, of light that comes from around: a beam lights a surface with its cosine, light from
+// everywhere with a quarter of its fluence. `around`: mean direction, not of unit length, and fluence.
+float shade_around(vec4 around, vec3 normal)
 {
-    vec3 sum = vec3(0.0);
-    [[unroll]] for (uint n = 0u; n < shade_num_suns; n++) {
-        uint sun = shade_sun_light(n);
-        vec3 towards = -suns[sun].direction;
-        vec3 light = suns[sun].color * shade_cosine(p, towards);
-        // A loop that nobody enters costs nothing; an `if` does.
-        for (bool once = light.r + light.g + light.b > 0.0; once; once = false) {
-            if (shade_has(SHADE_SHADOWS)) {
-                light *= shadow_visibility_surface_of(shade_shadow(uint(SHADE_ROW_SUNS) + sun), p.position, p.facet);
-            }
-            if (shade_has(SHADE_MEDIUM)) {
-                beam_tau tau = shade_sun_depth(n, p.position, towards, shade_way(p.position, towards));
-                light *= exp(-(tau.a + (shade_has(SHADE_SPREAD) ? tau.s : tau.p)));
-            }
-        }
-        sum += light;
-    }
-    return sum;
+    float toward = length(around.xyz) / max(around.w, 1e-6);
+    return max(mix(0.5, 1.0, toward) * dot(around.xyz, normal) + 0.25 * (1.0 - toward) * around.w, 0.0);
 }
 
-// Sunlight that was scattered forward, e^-tau' - e^-tau of it, comes from around the sun: a shadow's edge
-// is as soft as the medium is deep. Of SHADE_PATHS places on the way to the light, in directions of the
-// forward lobe, the one with this index: is it in the sun?
-vec3 shade_spread_suns(shade_point p, uint index)
+// `around[n]`: from where what the medium scattered forward of sun n comes, as shade_forward.comp has it, if `spread`.
+// Else it comes with what was not scattered.
+vec3 shade_suns(shade_point p, vec4 around[TYN_BEAM_MAX_SUNS], bool spread)
 {
     vec3 sum = vec3(0.0);
     [[unroll]] for (uint n = 0u; n < shade_num_suns; n++) {
         uint sun = shade_sun_light(n);
         vec3 towards = -suns[sun].direction;
-        vec2 way = shade_way(p.position, towards);
-        beam_tau tau = shade_sun_depth(n, p.position, towards, way);
-        vec3 forward = exp(-(tau.a + tau.p)) - exp(-(tau.a + tau.s));
-        // f = g^2 is what the depth that counts as scattering leaves out.
-        vec3 kept = tau.p / max(tau.s, vec3(1e-20));
-        float f = clamp(1.0 - (kept.r + kept.g + kept.b) / 3.0, 0.0, 0.98), g = sqrt(f);
-        float along = (float(index) + 0.5) / float(SHADE_PATHS);
-        float turn = 2.399963 * float(index); // the golden angle
-        float u = fract(0.5 + 0.618034 * float(index));
-        // Of Henyey and Greenstein's distribution the most forward part, f of it.
-        float h = g > 1e-3 ? (1.0 - f) / (1.0 + g - 2.0 * g * f * u) : 1.0;
-        float c = g > 1e-3 ? clamp((1.0 + f - h * h) / (2.0 * g), -1.0, 1.0) : 1.0;
-        float s = sqrt(1.0 - c * c);
-        vec3 from = vpl_frame(towards) * vec3(s * cos(turn), s * sin(turn), c);
-        vec3 at = p.position + mix(way.x, max(way.x, way.y), along) * from;
-        float share = shade_cosine(p, from) *
-                      shadow_visibility_sun_of(shade_shadow(uint(SHADE_ROW_SUNS) + sun), at);
-        sum += suns[sun].color * forward * share;
+        float straight = shade_cosine(p, towards), wide = spread ? shade_around(around[n], p.normal) : 0.0;
+        // A loop that nobody enters costs nothing; an `if` does.
+        for (bool once = straight + wide > 0.0; once; once = false) {
+            if (shade_has(SHADE_SHADOWS)) {
+                straight *= shadow_visibility_surface_of(shade_shadow(uint(SHADE_ROW_SUNS) + sun), p.position, p.facet);
+            }
+            vec3 light = vec3(straight);
+            if (shade_has(SHADE_MEDIUM)) {
+                beam_tau tau = shade_sun_depth(n, p.position, towards, shade_way(p.position, towards));
+                vec3 scaled = exp(-(tau.a + tau.p));
+                light *= scaled;
+                if (shade_has(SHADE_SPREAD)) {
+                    vec3 unscattered = exp(-(tau.a + tau.s));
+                    light = spread ? straight * unscattered + wide * (scaled - unscattered) : light;
+                }
+            }
+            sum += suns[sun].color * light;
+        }
     }
-    return sum / float(SHADE_PATHS);
+    return sum;
 }
 
 // ---- local lights ----

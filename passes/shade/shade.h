@@ -43,6 +43,7 @@ enum {
                          // a = distance along the ray, m, or infinity
     SHADE_PORT_TABLE, // SCRATCH 2D RGBA32F, shade_table.h
     SHADE_PORT_WALL_TABLE, // SCRATCH 3D RGBA32F, walls_table.glsl: exists with the lattice
+    SHADE_PORT_FORWARD, // SCRATCH 3D RGBA32F, shade_forward.comp: exists with a lattice, suns and shadows
     SHADE_PORT_PLACE, // SCRATCH 2D RGBA32F: exist with VPLs
     SHADE_PORT_PART,
     SHADE_PORT_INDIRECT,

@@ -10,9 +10,9 @@
 #define SHADE_LATTICE (1u << 3)     // there is light in the lattice
 #define SHADE_ONE_CHANNEL (1u << 4) // ... of one channel, to be multiplied with `tint`
 #define SHADE_SKY (1u << 5) // the mean of the environment lights what is outside the lattice
-#define SHADE_SPREAD (1u << 6) // suns are seen through a medium and past surfaces
+#define SHADE_SPREAD (1u << 6) // sunlight scattered forward comes from around its sun
 
-#define SHADE_PATHS 16  // = SHADE_SIDE^2: places that light may come from that was scattered forward
+#define SHADE_PLACES 64 // that light which was scattered forward may come from
 #define SHADE_SIDE 4   // pixels of a pattern along each side; each takes a part of the VPLs
 #define SHADE_REACH 2  // pixels around one that a gather looks at
 #define SHADE_NONE 4.0 // in place of a normal: no surface

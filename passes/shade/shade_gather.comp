@@ -49,9 +49,6 @@ void main()
     for (bool alone = sum.w < 4.0; alone; alone = false) { // a loop, as most need not go in
         shade_point p = shade_point(place.xyz, normal, normal);
         all = shade_vpls(p, 0u, 1u);
-        for (uint i = 0u; shade_has(SHADE_SPREAD) && i < SHADE_PATHS; i++) {
-            all += shade_spread_suns(p, i);
-        }
     }
     imageStore(indirect_image, pixel, vec4(all, 1.0));
 }

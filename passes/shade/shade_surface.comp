@@ -17,21 +17,24 @@ layout(binding = 22) uniform sampler2D place_tex;
 layout(binding = 23) uniform sampler2D part_tex;
 layout(binding = 24) uniform sampler3D moments_tex;
 #define WALLS_TABLE 25
+#define WALLS_OTHERS TYN_BEAM_MAX_SUNS
 #include "walls_irradiance.glsl"
 layout(binding = 26, scalar) uniform env_uniform
 {
     env_block environment;
 };
-layout(binding = 27, rgba32f) uniform writeonly image2D radiance_image; // and distance, or infinity
+layout(binding = 27) uniform sampler3D forward_tex; // shade_forward.comp
+layout(binding = 28, rgba32f) uniform writeonly image2D radiance_image; // and distance, or infinity
 
 const float PI = 3.14159265358979;
 #define NOWHERE uintBitsToFloat(0x7f800000u) // infinity
 
 // Light of the medium and of far walls, and of the sky where it comes along the lattice's lines.
-// `dark`: there is none at all, as where surfaces let none in.
-vec3 light_of_lattice(shade_point p, out bool dark)
+// `inside` the lattice: from where sunlight comes that was scattered forward. Its places may be beyond a wall; where the
+// lattice is dark, as where surfaces let no light in, it is, too.
+vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out bool inside)
 {
-    dark = false;
+    inside = false;
     vec3 sky = shade_has(SHADE_SKY) ? PI * environment.sky : vec3(0.0);
     if (!shade_has(SHADE_LATTICE)) {
         return sky;
@@ -46,8 +49,10 @@ vec3 light_of_lattice(shade_point p, out bool dark)
         return sky; // outside
     }
     int channels = shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
-    vec3 irradiance = walls_irradiance_at(moments_tex, box, p.position, p.normal, channels);
-    dark = irradiance == vec3(0.0);
+    uint num_suns = shade_has(SHADE_SPREAD) ? shade_num_suns : 0u;
+    inside = true;
+    vec3 irradiance = walls_irradiance_at(moments_tex, box, p.position, p.normal, channels, forward_tex, num_suns,
+                                          around);
     return channels == 1 ? irradiance.r * args.tint : irradiance;
 }
 
@@ -72,9 +77,12 @@ vec3 light_of_vpls(ivec2 pixel, shade_point p)
     return light;
 }
 
-vec3 irradiance_at(shade_point p, out bool dark)
+vec3 irradiance_at(shade_point p)
 {
-    return shade_suns(p) + shade_lamps(p) + light_of_lattice(p, dark);
+    vec4 around[TYN_BEAM_MAX_SUNS];
+    bool inside;
+    vec3 lattice = light_of_lattice(p, around, inside);
+    return shade_suns(p, around, inside && shade_has(SHADE_SPREAD)) + shade_lamps(p) + lattice;
 }
 
 void main()
@@ -121,15 +129,13 @@ void main()
         // In their middle, but on the plane of the one whose facet is to be in a shadow or not.
         off = (off - dot(off, like.facet) * like.facet) / members;
         shade_point p = shade_point(at0 + off, normalize(normal), like.facet);
-        bool dark;
-        vec3 irradiance = irradiance_at(p, dark);
+        vec3 irradiance = irradiance_at(p);
         if (shade_has(SHADE_VPLS)) {
             vec3 indirect = texelFetch(indirect_tex, pixel, 0).rgb;
             for (bool several = members < float(count); several; several = false) {
                 indirect = light_of_vpls(pixel, p);
             }
-            // Places that sunlight is scattered from may be beyond a wall. Where the lattice is dark no light is.
-            irradiance += shade_has(SHADE_SPREAD) && dark ? vec3(0.0) : indirect;
+            irradiance += indirect;
         }
         vec3 radiance = (emission + albedo * irradiance / PI) / members;
         for (int k = 0; k < count; k++) {

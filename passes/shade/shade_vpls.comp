@@ -41,9 +41,6 @@ void main()
     }
     shade_point p = shade_point(shade_position(texel, found.distance), found.normal, found.facet);
     vec3 part = shade_vpls(p, part_of, SHADE_SIDE * SHADE_SIDE);
-    if (shade_has(SHADE_SPREAD)) {
-        part += shade_spread_suns(p, part_of);
-    }
     vec2 normal = gbuffer_fold(p.normal);
     imageStore(place_image, pixel, vec4(p.position, normal.x));
     imageStore(part_image, pixel, vec4(part, normal.y));
