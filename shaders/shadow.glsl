@@ -108,16 +108,35 @@ float shadow_visibility(uint light, vec3 p)
                                    : shadow_visibility_lamp(light, p);
 }
 
-// The same for a point of a surface with the normal `n` (M, either side). Depths
+// The plane of a surface on a map: its depth at the place asked for, and how it changes from texel to texel.
+struct shadow_plane {
+    float depth;
+    vec2 slope;
+    float slack; // what is in front of it by less than this is the surface itself
+};
+
+// Do all four texels from `first` on see the surface?
+bool shadow_plane_lit(shadow_plane plane, vec2 texel, vec2 first)
+{
+    vec4 stored = textureGather(shadow_atlas, (first + 1.0) / vec2(textureSize(shadow_atlas, 0)));
+    vec2 w = texel - 0.5 - first;
+    vec4 x = vec4(0.0, 1.0, 1.0, 0.0) - w.x, y = vec4(1.0, 1.0, 0.0, 0.0) - w.y;
+    vec4 own = max(plane.depth + plane.slope.x * x + plane.slope.y * y, 0.0) + plane.slack;
+    return all(lessThanEqual(stored, own));
+}
+
+// The same for a point of a surface with the normal `n` (M, either side), in [0, 1]. Depths
 // that do not change with u and v except linearly (parallel maps as they are, perspective ones because
-// they are reciprocal) are those of the surface's own plane at the four texels: so it does not shadow
-// itself, whatever its slope, and what is in front of it by more than a tenth of a texel does.
+// they are reciprocal) are those of the surface's own plane at the texels: so it does not shadow
+// itself, whatever its slope, and what is in front of it by more than a tenth of a texel does. It is dark wherever
+// the medium would be, so that nothing leaks; beside that light fades in over half a texel.
 float shadow_visibility_surface_of(shadow_light l, vec3 p, vec3 n)
 {
     vec3 q = shadow_frame(l, p), m = shadow_frame_direction(l, n);
     shadow_place place;
     vec2 slope;     // of depth by u and v
     float rounding; // of depth
+    vec2 tile = l.offset;
     if (l.kind == TYN_SHADOW_SUN) {
         place = shadow_place_sun(l, q);
         // Rows are orthogonal but not of unit length: normals divide by its square.
@@ -132,6 +151,7 @@ float shadow_visibility_surface_of(shadow_light l, vec3 p, vec3 n)
             m = shadow_on_face(face, m);
         }
         place = shadow_place_lamp(l, face, q);
+        tile += l.texels * vec2(face % 3u, face / 3u);
         // 1 / z = (m.x u / scale + m.y v / scale + m.z) / dot(m, q)
         float height = dot(m, q);
         slope = l.near * m.xy / (l.scale * (abs(height) > 1e-20 ? height : 1e-20));
@@ -144,14 +164,21 @@ float shadow_visibility_surface_of(shadow_light l, vec3 p, vec3 n)
     slope *= 2.0 / l.texels; // by texels
     float steepest = 0.25 * place.depth + rounding; // edge-on, where little light arrives
     slope = clamp(slope, vec2(-steepest), vec2(steepest));
-    vec2 first;
-    vec4 stored = shadow_gather(place, first);
-    vec2 w = place.texel - 0.5 - first; // of the texel to the right and below
-    float slack = 0.1 * (abs(slope.x) + abs(slope.y)) + rounding;
-    vec4 x = vec4(0.0, 1.0, 1.0, 0.0) - w.x, y = vec4(1.0, 1.0, 0.0, 0.0) - w.y;
-    vec4 own = max(place.depth + slope.x * x + slope.y * y, 0.0) + slack;
-    vec4 lit = vec4(lessThanEqual(stored, own));
-    return all(equal(lit, vec4(1.0))) ? 1.0 : 0.0;
+    shadow_plane plane = shadow_plane(place.depth, slope, 0.1 * (abs(slope.x) + abs(slope.y)) + rounding);
+    // The square between four texels' centres that the place is in, and the three next to it.
+    vec2 first = floor(place.texel - 0.5), beside = place.texel - 1.0 - first, f = abs(beside);
+    if (!shadow_plane_lit(plane, place.texel, first)) {
+        return 0.0;
+    }
+    float lit = (1.0 - f.x) * (1.0 - f.y);
+    for (int i = 1; i < 4; i++) {
+        vec2 step = vec2(i & 1, i >> 1), next = first + step * sign(beside);
+        vec2 share = mix(1.0 - f, f, step);
+        // Beyond the map there is another one.
+        bool on_map = all(greaterThanEqual(next, tile)) && all(lessThan(next + 1.0, tile + l.texels));
+        lit += !on_map || shadow_plane_lit(plane, place.texel, next) ? share.x * share.y : 0.0;
+    }
+    return max(2.0 * lit - 1.0, 0.0);
 }
 
 float shadow_visibility_surface(uint light, vec3 p, vec3 n)
