@@ -367,6 +367,7 @@ static void build_surfaces(tyn_frame_scene *out, const tyn_surfaces *surfaces,
         return;
     }
     out->num_triangles = b->num_triangles = surfaces->num_triangles;
+    out->num_textures = surfaces->num_textures;
     b->num_nodes = surfaces->num_nodes;
     for (int r = 0; r < 3; r++) {
         for (int a = 0; a < 3; a++) {

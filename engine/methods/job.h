@@ -28,6 +28,7 @@ typedef struct tyn_frame_scene {
     float mean_density; // over the box, mode DENSITY: in units of the texture's values; 0 = not known
     bool empty;     // no medium at all, or no coefficient above 0
     uint32_t num_triangles; // of the surfaces; 0: there are none, nor their refs
+    uint32_t num_textures;  // of their materials
     struct surface_block surfaces;
     float m_from_world[16]; // rigid
 } tyn_frame_scene;

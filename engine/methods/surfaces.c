@@ -49,6 +49,7 @@ tyn_result tyn_add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *g
     params.size[0] = job->view->width;
     params.size[1] = job->view->height;
     params.num_triangles = job->frame->num_triangles;
+    params.textured = job->frame->num_textures > 0;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [GBUFFER_PORT_CAMERA] = job->refs.camera,
         [GBUFFER_PORT_SURFACES] = job->refs.surfaces,

@@ -71,6 +71,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                         .spirv = gbuffer_resolve_spirv,
                         .spirv_size = sizeof(gbuffer_resolve_spirv),
                         .args_size = sizeof(struct gbuffer_args),
+                        .num_spec = 1,
                         .local_size = {8, 8, 1},
                         .bindings = bindings,
                         .num_bindings = sizeof(bindings) / sizeof(bindings[0])},
@@ -98,10 +99,12 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_gbuffer_params *p = params;
     const struct gbuffer_args args = {.samples = (uint32_t)p->samples};
+    const uint32_t spec[1] = {p->textured};
     tyn_rec_draw(r, &(tyn_draw){.kernel = KERNEL_DRAW, .vertices = 3 * p->num_triangles});
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_RESOLVE,
                                         .cells = tyn_rec_extent(r, GBUFFER_PORT_SURFACE),
-                                        .args = &args});
+                                        .args = &args,
+                                        .spec = spec});
     tyn_rec_work(r, "triangles", p->num_triangles);
 }
 

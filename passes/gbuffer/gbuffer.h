@@ -4,8 +4,9 @@
 
 typedef struct tyn_gbuffer_params {
     int32_t samples;  // "gbuffer.samples"
-    uint32_t size[2]; // of the picture, pixels; set by the method, as the one below
+    uint32_t size[2]; // of the picture, pixels; set by the method, as the two below
     uint32_t num_triangles;
+    uint32_t textured; // 1: materials may have textures; else none is looked at
 } tyn_gbuffer_params;
 
 enum {

@@ -184,6 +184,7 @@ static images draw(gpu_test *t, const tyn_scene *scene, const struct camera_bloc
     params.size[0] = WIDTH;
     params.size[1] = HEIGHT;
     params.num_triangles = s->num_triangles;
+    params.textured = 1;
     tyn_graph_begin(t->graph);
     tyn_ref refs[GBUFFER_NUM_PORTS] = {
         gpu_buffer(t, "camera", camera, sizeof *camera),
