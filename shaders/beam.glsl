@@ -123,12 +123,6 @@ vec3 beam_fetch(sampler3D tex, beam_place place)
     return depth;
 }
 
-// Mode DENSITY: column density int density ds, m times texture value.
-float beam_column(uint sun, vec3 p)
-{
-    return beam_fetch(beam_column_tex, beam_place_of(sun, p)).r;
-}
-
 // Either mode.
 beam_tau beam_depth_at(beam_place place)
 {

@@ -72,10 +72,4 @@ vec2 ray_unit_shape(uint kind, vec3 origin, vec3 direction)
     return ray_box(origin, ray_inverse(direction), vec3(-0.5), vec3(0.5));
 }
 
-// Span of a ray in a shape of the scene.
-vec2 ray_shape(shape_block shape, vec3 origin, vec3 direction)
-{
-    return ray_unit_shape(shape.kind, shape_point(shape, origin), shape_vector(shape, direction));
-}
-
 #endif

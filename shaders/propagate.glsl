@@ -46,12 +46,6 @@ vec3 propagate_to_m(propagate_grid grid, vec3 cell)
     return grid.origin + grid.across_u * cell.x + grid.across_v * cell.y + grid.direction * cell.z;
 }
 
-vec3 propagate_from_m(propagate_grid grid, vec3 p)
-{
-    p -= grid.origin;
-    return vec3(dot(grid.across_u, p), dot(grid.across_v, p), dot(grid.direction, p)) / grid.cell;
-}
-
 propagate_place propagate_place_of(propagate_grid grid)
 {
     propagate_place place;

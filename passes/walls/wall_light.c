@@ -1,4 +1,4 @@
-// wall_light.c -- sunlight on the walls of the lattice.
+// wall_light.c -- light of suns and virtual point lights on the walls of the lattice.
 #include "walls.h"
 #include "wall_light_args.h"
 #include "wall_light_suns.comp.h"
@@ -115,7 +115,7 @@ static void record(tyn_recorder *r, const void *params)
 
 const tyn_pass_desc tyn_pass_wall_light = {
     .name = "wall_light",
-    .summary = "sunlight on the walls of the lattice's cells",
+    .summary = "light of suns and virtual point lights on the walls of the lattice's cells",
     .serves = "walls in media that suns shine on periodically, or virtual point lights without "
               "further reflections",
     .ports = ports,
