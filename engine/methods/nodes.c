@@ -146,9 +146,8 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->width = job->view->width;
     params->height = job->view->height;
     memcpy(params->extent, block->extent, sizeof params->extent);
-    params->longest_step =
-        tyn_raymarch_longest_step(block->sigma_t_max * block->max_density, in->cell, block);
-
+    params->majorant = block->sigma_t_max * block->max_density;
+    params->longest_step = tyn_raymarch_longest_step(params->majorant, in->cell, block);
     params->num_shapes = block->num_shapes;
     params->closed = !sunlight_enters_through_medium(frame, in->num_suns) ||
                      block->size[0] * block->size[1] * block->size[2] == 1;
@@ -158,10 +157,10 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     }
     if (!params->repeat) { // else it is to be seen everywhere
         tyn_raymarch_window(params, &frame->camera);
-    if (frame->empty) { // nothing to march through: a pixel, as no window would mean all
-        params->first[0] = params->first[1] = 0;
-        params->end[0] = params->end[1] = 1;
-    }
+        if (frame->empty) { // nothing to march through: a pixel, as no window would mean all
+            params->first[0] = params->first[1] = 0;
+            params->end[0] = params->end[1] = 1;
+        }
     }
 
     const struct env_block *env = &frame->environment;

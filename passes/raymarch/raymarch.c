@@ -8,6 +8,10 @@
 #include "raymarch_colour.comp.h"
 #include <math.h>
 
+// Steps among surfaces are up to this much longer than the medium alone asks for.
+#define STEPS_AMONG_SURFACES 2.0f
+#define DEPTH_AMONG_SURFACES 0.2f // ... where it is thin
+
 #define IMAGE2 TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT
 
 static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
@@ -131,6 +135,18 @@ enum {
     NUM_SPEC = 4, // mode, number of suns, features, number of lamps
 };
 
+// 26 powers of two with this sum are all different.
+_Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNEL +
+                       RAYMARCH_UNSCALED + RAYMARCH_SOURCE + RAYMARCH_EMISSION + RAYMARCH_MEAN +
+                       RAYMARCH_HOST_DEPTH + RAYMARCH_BACKGROUND + RAYMARCH_BEHIND +
+                       RAYMARCH_ONE_SHAPE + RAYMARCH_CLOSED + RAYMARCH_SUPERSAMPLE +
+                       RAYMARCH_TRANSMITTANCE + RAYMARCH_DEPTH + RAYMARCH_SINGLE +
+                       RAYMARCH_MULTIPLE + RAYMARCH_GLOW + RAYMARCH_SOFT_SUNS + RAYMARCH_SURFACE +
+                       RAYMARCH_SURFACE_SEEN + RAYMARCH_WALLS + RAYMARCH_SHADOWS + RAYMARCH_REPEAT +
+                       RAYMARCH_SPARSE_FIRST + RAYMARCH_SPARSE ==
+                   (1u << 26) - 1,
+               "features have bits of their own");
+
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
@@ -225,7 +241,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
             tyn_build_image(b, layers[i].port, size, 1);
         }
     }
-    if (is_sparse(p, tyn_build_has(b, RAYMARCH_PORT_SHADOW_ATLAS) || tyn_build_has(b, RAYMARCH_PORT_WALL_LINKS),
+    if (is_sparse(p,
+                  tyn_build_has(b, RAYMARCH_PORT_SHADOW_ATLAS) ||
+                      tyn_build_has(b, RAYMARCH_PORT_WALL_LINKS),
                   tyn_build_has(b, RAYMARCH_PORT_HOST_DEPTH))) {
         tyn_extent blocks = blocks_of(p);
         tyn_build_image(b, RAYMARCH_PORT_SPARSE, (tyn_extent){3 * blocks.x, blocks.y, 1}, 1);
@@ -329,8 +347,15 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t features = features_of(r, p);
     uint32_t spec[NUM_SPEC] = {p->mode, p->num_suns, features, p->num_lamps};
     float voxel = shortest_voxel(tyn_rec_extent(r, RAYMARCH_PORT_DENSITY), p->extent);
+    // Edges of shadows are found within steps, and what is left is far less than what the lattice is off by there.
+    bool surfaces = features & (RAYMARCH_WALLS | RAYMARCH_SHADOWS) && features & RAYMARCH_FIELD;
+    float longest = fminf(voxel, p->longest_step);
+    if (surfaces && p->majorant > 0) {
+        longest = fmaxf(longest,
+                        fminf(STEPS_AMONG_SURFACES * longest, DEPTH_AMONG_SURFACES / p->majorant));
+    }
     struct raymarch_args args = {
-        .step = p->step * fminf(voxel, p->longest_step),
+        .step = p->step * longest,
         .stop = p->stop,
         .depth = {p->depth[0], p->depth[1], p->depth[2], p->depth[3]},
         .first = {p->first[0], p->first[1]},
@@ -356,7 +381,8 @@ static void record(tyn_recorder *r, const void *params)
                         });
     ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_RADIANCE; // bound, but not written to or read
     ports_of[SPARSE_TEXTURE] = RAYMARCH_PORT_SURFACE;
-    if (is_sparse(p, features & (RAYMARCH_WALLS | RAYMARCH_SHADOWS), features & RAYMARCH_HOST_DEPTH)) {
+    if (is_sparse(p, features & (RAYMARCH_WALLS | RAYMARCH_SHADOWS),
+                  features & RAYMARCH_HOST_DEPTH)) {
         ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_SPARSE;
         spec[2] = features | RAYMARCH_SPARSE_FIRST;
         tyn_rec_dispatch(r, &(tyn_dispatch){

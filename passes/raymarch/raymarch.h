@@ -8,7 +8,7 @@ typedef struct tyn_raymarch_params {
         step; // "raymarch.step": longest step, in voxels (homogeneous: in steps that resolve the light)
     float stop;         // "raymarch.stop": transmittance at which a ray ends
     uint32_t antialias; // "raymarch.antialias": four rays a pixel where they disagree
-    uint32_t sparse;    // "raymarch.sparse": among surfaces and lamps one ray for 2x2 pixels where that will do
+    uint32_t sparse;    // "raymarch.sparse": among surfaces and lamps one ray for 2x2 pixels
     // Set by the method.
     uint32_t grey;        // 1: one medium (mode DENSITY), equal in all channels
     uint32_t mode;        // TYN_MEDIUM_*
@@ -26,6 +26,7 @@ typedef struct tyn_raymarch_params {
     uint32_t width, height;
     float extent[3];    // medium_block.extent, m
     float longest_step; // m; a step is no longer than this
+    float majorant;     // of sigma_t, 1/m; 0: not known
     uint32_t
         closed; // 1: the medium is empty at the faces through which suns shine in, or homogeneous: depths
                 // along suns take one fetch
