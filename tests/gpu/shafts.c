@@ -109,6 +109,41 @@ static void once_through_a_slit(void **state)
     tyn_scene_finish(&scene);
 }
 
+// One ray for 2x2 pixels: as good as all rays, with a shaft's edges, those of the plates, and the fog's.
+static void sparse_rays(void **state)
+{
+    gpu_test *t = *state;
+    enum { SIZE = 64, VALUES = 3 * SIZE * SIZE };
+    tyn_scene scene;
+    make_scene(&scene);
+    tyn_view view = {.width = SIZE, .height = SIZE};
+    view.camera.yfov = 0.7f;
+    const float from[3] = {1.2f, 1.0f, 2.6f};
+    assert_int_equal(tyn_camera_look_at(&view.camera, from, (float[]){0.5f, 0.6f, 0.5f}), TYN_OK);
+    picture all, sparse;
+    picture_render(&all, t->dev, "pop", &scene, &view, "lattice.cells=24 raymarch.sparse=0", 1);
+    picture_render(&sparse, t->dev, "pop", &scene, &view, "lattice.cells=24 raymarch.sparse=1", 1);
+    double sum = 0, apart = 0, worst = 0;
+    uint32_t differ = 0;
+    for (uint32_t i = 0; i < VALUES; i++) {
+        sum += (double)all.rgb[i];
+    }
+    for (uint32_t i = 0; i < VALUES; i++) {
+        const double off = fabs((double)sparse.rgb[i] - (double)all.rgb[i]);
+        apart += off;
+        worst = fmax(worst, off / ((double)all.rgb[i] + 0.1 * sum / VALUES));
+        differ += off > 0;
+    }
+    print_message(
+        "sparse rays: %.3f %% off, a pixel at most %.2f %%; %.0f %% of the values differ\n",
+        100 * apart / sum, 100 * worst, 100.0 * differ / VALUES);
+    assert_true(differ > VALUES / 30); // else nothing was saved
+    assert_true(apart < 0.002 * sum && worst < 0.03);
+    picture_free(&all);
+    picture_free(&sparse);
+    tyn_scene_finish(&scene);
+}
+
 // Everything that scatters on, too.
 static void all_orders(void **state)
 {
@@ -237,6 +272,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(once_through_a_slit),
+        cmocka_unit_test(sparse_rays),
         cmocka_unit_test(all_orders),
         cmocka_unit_test(probes),
         cmocka_unit_test(sealed),
