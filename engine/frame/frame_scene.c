@@ -260,12 +260,18 @@ static void build_shapes(tyn_frame_scene *out, const tyn_scene *scene, const rig
 
 // ---- lights, camera, environment --------------------------------------------------------------
 
+static bool is_dark(const tyn_light *light)
+{
+    return !(light->color[0] > 0 || light->color[1] > 0 || light->color[2] > 0);
+}
+
+// Lamps that do not shine are left out: nobody lays out grids or shadow maps for them.
 static void build_lights(tyn_frame_scene *out, const tyn_scene *scene, const rigid *m)
 {
     for (int pass = 0; pass < 2; pass++) { // directional lights first
         for (uint32_t i = 0; i < scene->num_lights; i++) {
             const tyn_light *light = &scene->lights[i];
-            if ((light->kind == TYN_LIGHT_DIRECTIONAL) != (pass == 0)) {
+            if ((light->kind == TYN_LIGHT_DIRECTIONAL) != (pass == 0) || (pass && is_dark(light))) {
                 continue;
             }
             struct light_block *b = &out->lights[out->num_lights++];

@@ -125,14 +125,11 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
     params.size[1] = job->view->height;
     params.num_suns = num_suns;
     params.num_directional = job->frame->num_suns;
-    params.num_lamps = job->frame->num_lights - job->frame->num_suns;
+    const bool media = in->media.density.resource != 0; // then lamps are those that have grids
+    params.num_lamps = media ? in->lamps.num_lamps : job->frame->num_lights - job->frame->num_suns;
     params.one_channel = in->one_channel;
     memcpy(params.tint, in->tint, sizeof params.tint);
     params.sky = sky[0] + sky[1] + sky[2] > 0.0f;
-    const bool media = in->media.density.resource != 0;
-    if (media && !in->lamps.radials.resource) {
-        params.num_lamps = 0;
-    }
     const tyn_vpl_refs vpls = !media || in->lamps.vpls ? in->vpls : (tyn_vpl_refs){{0}};
     tyn_ref refs[TYN_MAX_PORTS] = {
         [SHADE_PORT_MEDIUM] = job->refs.medium,

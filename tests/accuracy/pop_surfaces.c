@@ -168,9 +168,46 @@ static void rooms(void **state)
     }
 }
 
+// Lamps of intensity 0 are no lamps: the same picture, bit for bit.
+static void dark_lamps(void **state)
+{
+    picture p[2];
+    for (uint32_t dark = 0; dark < 2; dark++) {
+        tyn_scene scene;
+        tyn_view view;
+        make_floor(&scene, &view);
+        const uint32_t wall = solids_material(&scene, (float[]){0.7f, 0.2f, 0.1f}, BLACK);
+        solids_quad(&scene, (float[]){-1.2f, 0, -1}, (float[]){0, 1, 0}, (float[]){0, 0, 2}, wall);
+        solids_hierarchy(&scene, 4);
+        const tyn_medium fog = grey_medium(0.3f, 0.1f, 0.5f);
+        scene_add_box(&scene, &fog, (float[]){-1.5f, -0.1f, -1.5f}, (float[]){1.5f, 2, 1.5f}, NULL,
+                      NULL);
+        for (uint32_t i = 0; i < 8 * dark; i++) {
+            scene.lights[scene.num_lights++] =
+                (tyn_light){.kind = i % 2 ? TYN_LIGHT_SPOT : TYN_LIGHT_POINT,
+                            .position = {-1 + 0.2f * (float)i, 1.2f, 0},
+                            .direction = {0, -1, 0},
+                            .cos_inner = 0.9f,
+                            .cos_outer = 0.8f};
+        }
+        for (int i = 0; i < 2; i++) {
+            scene.lights[scene.num_lights++] = (tyn_light){.kind = TYN_LIGHT_POINT,
+                                                           .color = {2, 2, 1 + (float)i},
+                                                           .position = {-0.6f, 0.8f, (float)i}};
+        }
+        picture_render(&p[dark], ((gpu_test *)*state)->dev, "pop", &scene, &view,
+                       "lattice.cells=8 vpl.count=16", 1);
+        tyn_scene_finish(&scene);
+    }
+    assert_true(p[0].rgb[0] > 0);
+    assert_memory_equal(p[0].rgb, p[1].rgb, 3 * SIZE * SIZE * sizeof(float));
+    picture_free(&p[0]);
+    picture_free(&p[1]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(floors), cmocka_unit_test(under_emitter),
-                                       cmocka_unit_test(rooms)};
+                                       cmocka_unit_test(rooms), cmocka_unit_test(dark_lamps)};
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
