@@ -260,6 +260,24 @@ static void build_shapes(tyn_frame_scene *out, const tyn_scene *scene, const rig
 
 // ---- lights, camera, environment --------------------------------------------------------------
 
+static float strength(const struct light_block *light)
+{
+    return light->color[0] + light->color[1] + light->color[2];
+}
+
+// The strongest first: methods take as many as they have grids for. Equal ones keep their order.
+static void sort_suns(struct light_block *suns, uint32_t count)
+{
+    for (uint32_t i = 1; i < count; i++) {
+        const struct light_block sun = suns[i];
+        uint32_t at = i;
+        for (; at > 0 && strength(&suns[at - 1]) < strength(&sun); at--) {
+            suns[at] = suns[at - 1];
+        }
+        suns[at] = sun;
+    }
+}
+
 static bool is_dark(const tyn_light *light)
 {
     return !(light->color[0] > 0 || light->color[1] > 0 || light->color[2] > 0);
@@ -287,10 +305,12 @@ static void build_lights(tyn_frame_scene *out, const tyn_scene *scene, const rig
             }
             if (pass == 0) {
                 b->mean_cosine = 1;
-                out->suns[out->num_suns++] = *b;
+                out->num_suns++;
             }
         }
     }
+    sort_suns(out->lights, out->num_suns);
+    memcpy(out->suns, out->lights, out->num_suns * sizeof *out->suns);
 }
 
 static void build_camera(tyn_frame_scene *out, const tyn_view *view, const rigid *m)
@@ -313,7 +333,7 @@ static void build_camera(tyn_frame_scene *out, const tyn_view *view, const rigid
     b->size[1] = view->height;
 }
 
-// The map's suns as directional lights behind those of the scene.
+// The map's suns as directional lights among those of the scene.
 static void build_map_suns(tyn_frame_scene *out, const tyn_map_light *map)
 {
     const struct env_block *env = &out->environment;
@@ -330,6 +350,7 @@ static void build_map_suns(tyn_frame_scene *out, const tyn_map_light *map)
             }
         }
     }
+    sort_suns(out->suns, out->num_suns + out->num_map_suns);
 }
 
 static void build_environment(tyn_frame_scene *out, const tyn_environment *env,

@@ -14,9 +14,10 @@ typedef struct tyn_frame_scene {
     struct medium_block medium;
     struct shape_block shapes[TYN_MAX_SHAPES];
     struct light_block lights[TYN_LIGHTS_MAX];
-    uint32_t num_lights, num_suns; // suns = directional lights, first in `lights`
-    struct light_block suns[TYN_LIGHTS_MAX]; // the directional lights, then the environment map's suns
-    uint32_t num_map_suns; // suns[num_suns .. num_suns + num_map_suns); `path` has them in the map
+    uint32_t num_lights, num_suns; // suns = directional lights, first in `lights`, strongest first
+    // The directional lights and the num_map_suns of the environment's map, strongest first.
+    struct light_block suns[TYN_LIGHTS_MAX];
+    uint32_t num_map_suns; // `path` has them in the map
     tyn_map_light map; // of the environment, in the map's frame and units
     struct camera_block camera;
     struct env_block environment;

@@ -44,11 +44,28 @@ tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method)
     return TYN_OK;
 }
 
-uint32_t tyn_method_suns(const tyn_job *job, bool of_map)
+uint32_t tyn_method_suns(const tyn_job *job)
 {
-    const tyn_frame_scene *frame = job->frame;
-    uint32_t suns = frame->num_suns + (of_map ? frame->num_map_suns : 0);
+    const uint32_t suns = job->frame->num_suns + job->frame->num_map_suns;
     return suns < TYN_METHOD_MAX_SUNS ? suns : TYN_METHOD_MAX_SUNS;
+}
+
+void tyn_method_warn_suns(const tyn_job *job, const char *what)
+{
+    const uint32_t suns = job->frame->num_suns + job->frame->num_map_suns;
+    const uint32_t used = tyn_method_suns(job);
+    double left_out = 0, all = 0;
+    for (uint32_t i = 0; i < suns; i++) {
+        const float *color = job->frame->suns[i].color;
+        const double irradiance = (double)color[0] + (double)color[1] + (double)color[2];
+        all += irradiance;
+        left_out += i < used ? 0 : irradiance;
+    }
+    if (left_out > 0) {
+        tyn_method_warn(
+            job, "%u suns: the %u strongest light %s, %.2g %% of the suns' irradiance is left out",
+            suns, used, what, 100 * left_out / all);
+    }
 }
 
 tyn_result tyn_add_medium(tyn_graph *g, const tyn_job *job, tyn_media_refs *media)

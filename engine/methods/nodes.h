@@ -65,9 +65,10 @@ tyn_result tyn_add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance);
     (TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_SINGLE |       \
      TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_DISPLAY | TYN_OUTPUT_COMPOSITE)
 
-// Suns with an aligned grid, the first of frame->suns: at most TYN_METHOD_MAX_SUNS; those of the
-// environment's map among them if `of_map`.
-uint32_t tyn_method_suns(const tyn_job *job, bool of_map);
+// Suns with an aligned grid, the first of frame->suns: at most TYN_METHOD_MAX_SUNS.
+uint32_t tyn_method_suns(const tyn_job *job);
+// Says that the other suns do not light `what`, and how much light that is; nothing if there are none.
+void tyn_method_warn_suns(const tyn_job *job, const char *what);
 
 // A line among the report's warnings.
 void tyn_method_warn(const tyn_job *job, const char *format, ...) TYN_PRINTF(2, 3);

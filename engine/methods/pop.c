@@ -605,7 +605,11 @@ static tyn_result add_lights(tyn_graph *g, const tyn_job *job, field *f)
     if (result == TYN_OK) {
         result = tyn_add_shadows(g, job, f->picture.num_suns, &f->picture.shadows);
     }
-    if (result == TYN_OK && tyn_has_walls(job->frame)) {
+    const bool walls = tyn_has_walls(job->frame);
+    if (job->frame->num_triangles) {
+        tyn_method_warn_suns(job, walls ? "surfaces and the medium among them" : "surfaces");
+    }
+    if (result == TYN_OK && walls) {
         // Ordinates know of no walls; the mean of the sky comes in along the lattice's lines, which do.
         if (job->frame->environment.has_map) {
             tyn_method_warn(job,
@@ -691,7 +695,10 @@ static tyn_result add_surfaces_alone(tyn_graph *g, const tyn_job *job)
 {
     const tyn_media_refs no_media = {{0}};
     tyn_picture_inputs in = {.num_suns = 0};
-    uint32_t num_suns = tyn_method_suns(job, true);
+    uint32_t num_suns = tyn_method_suns(job);
+    if (job->frame->num_triangles) {
+        tyn_method_warn_suns(job, "surfaces");
+    }
     tyn_result result = tyn_add_shadows(g, job, num_suns, &in.shadows);
     if (result == TYN_OK) {
         result = tyn_add_vpls(g, job, &no_media, num_suns, &in.vpls);
@@ -726,7 +733,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         return TYN_ERR_PARAMS;
     }
 
-    field f = {.picture.num_suns = tyn_method_suns(job, true)};
+    field f = {.picture.num_suns = tyn_method_suns(job)};
     result = tyn_add_medium(g, job, &f.picture.media);
     if (result == TYN_OK) {
         result = add_lights(g, job, &f);

@@ -253,7 +253,8 @@ static tyn_result add_light(tyn_graph *g, const tyn_job *job, propagated *p)
 static tyn_result add_surfaces(tyn_graph *g, const tyn_job *job, propagated *p)
 {
     tyn_picture_inputs in = {.media = p->picture.media, .vpls = p->surface_lights};
-    in.num_suns = tyn_method_suns(job, true);
+    in.num_suns = tyn_method_suns(job);
+    tyn_method_warn_suns(job, "surfaces");
     tyn_result result = tyn_add_beams(g, job, &in.media, in.num_suns, &in.beams);
     if (result == TYN_OK) {
         result = tyn_add_radials(g, job, &in.media, in.vpls.lights, &in.lamps);
@@ -294,8 +295,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         result = tyn_add_sky(g, job, &p.picture.media, 0, false, &p.sky);
     }
     if (result == TYN_OK) {
-        result =
-            tyn_add_vpls(g, job, &p.picture.media, tyn_method_suns(job, true), &p.surface_lights);
+        result = tyn_add_vpls(g, job, &p.picture.media, tyn_method_suns(job), &p.surface_lights);
     }
     if (p.surface_lights.lights.resource) {
         set_vpls(&p.vpls, job);

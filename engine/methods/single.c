@@ -7,9 +7,26 @@
 #include "passes/shadow_map/shadow_map.h"
 #include "passes/tonemap/tonemap.h"
 #include <tyndall/registry.h>
+#include <string.h>
 
-static tyn_result declare(tyn_graph *g, const tyn_job *job)
+// Of the suns those of the scene alone: none of the environment's map.
+static void leave_out_map_suns(tyn_job *job, tyn_frame_scene *frame)
 {
+    *frame = *job->frame;
+    memcpy(frame->suns, frame->lights, sizeof frame->suns);
+    frame->num_map_suns = 0;
+    job->frame = frame;
+    job->refs.suns = job->refs.lights;
+}
+
+static tyn_result declare(tyn_graph *g, const tyn_job *given)
+{
+    tyn_job own = *given;
+    const tyn_job *job = &own;
+    tyn_frame_scene frame;
+    if (own.frame->num_map_suns) {
+        leave_out_map_suns(&own, &frame);
+    }
     tyn_result result = tyn_method_refuse_repeat(job, "single");
     if (result != TYN_OK) {
         return result;
@@ -23,11 +40,8 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         0.0f) {
         tyn_method_warn(job, "the environment is seen, but does not light the medium");
     }
-    tyn_picture_inputs in = {.num_suns = tyn_method_suns(job, false)};
-    if (job->frame->num_suns > in.num_suns) {
-        tyn_method_warn(job, "%u directional lights: the first %u are used", job->frame->num_suns,
-                        in.num_suns);
-    }
+    tyn_picture_inputs in = {.num_suns = tyn_method_suns(job)};
+    tyn_method_warn_suns(job, "the medium");
     result = tyn_add_medium(g, job, &in.media);
     if (result == TYN_OK) {
         result = tyn_add_beams(g, job, &in.media, in.num_suns, &in.beams);

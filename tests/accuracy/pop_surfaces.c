@@ -53,6 +53,13 @@ static double under_sun(double x, double z)
     return 3 * 0.8;
 }
 
+static double under_four_suns(double x, double z)
+{
+    (void)x;
+    (void)z;
+    return 3 + 6 + 5 + 4;
+}
+
 static double under_lamp(double x, double z)
 {
     double rr = (x - 0.3) * (x - 0.3) + 1.5 * 1.5 + (z + 0.2) * (z + 0.2);
@@ -205,9 +212,47 @@ static void dark_lamps(void **state)
     picture_free(&p[1]);
 }
 
+// Six suns: the strongest four light the floor, and the share of the others is told.
+static void many_suns(void **state)
+{
+    static const float irradiance[6] = {1, 3, 6, 1, 5, 4};
+    tyn_device *dev = ((gpu_test *)*state)->dev;
+    const tyn_medium fog = grey_medium(0.3f, 0.1f, 0.5f);
+    for (int medium = 0; medium < 2; medium++) {
+        tyn_scene scene;
+        tyn_view view;
+        make_floor(&scene, &view);
+        for (int i = 0; i < 6; i++) {
+            scene_add_sun(&scene, 0, -1, 0, irradiance[i], irradiance[i], irradiance[i]);
+        }
+        if (medium) {
+            scene_add_box(&scene, &fog, (float[]){-1, -0.1f, -1}, (float[]){1, 1, 1}, NULL, NULL);
+        }
+        tyn_offline *off;
+        assert_int_equal(tyn_offline_create(dev, tyn_offline_params(.method = "pop"), &off),
+                         TYN_OK);
+        assert_int_equal(tyn_offline_frame(off, &scene, &view, false), TYN_OK);
+        tyn_report report;
+        tyn_offline_report(off, &report);
+        assert_int_equal(report.num_warnings, 1);
+        assert_string_equal(report.warnings[0],
+                            medium ? "6 suns: the 4 strongest light surfaces and the medium among "
+                                     "them, 10 % of the suns' irradiance is left out"
+                                   : "6 suns: the 4 strongest light surfaces, 10 % of the suns' "
+                                     "irradiance is left out");
+        tyn_offline_destroy(&off);
+        if (medium) {
+            tyn_scene_finish(&scene);
+        } else {
+            check(state, &scene, &view, "six suns", under_four_suns, 1e-4);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(floors), cmocka_unit_test(under_emitter),
-                                       cmocka_unit_test(rooms), cmocka_unit_test(dark_lamps)};
+                                       cmocka_unit_test(rooms), cmocka_unit_test(dark_lamps),
+                                       cmocka_unit_test(many_suns)};
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

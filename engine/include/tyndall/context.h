@@ -5,7 +5,8 @@
 // tyn_context_record once a frame with its own command buffer.
 //
 // Contract:
-//  (a) Clobbered on `cmd`: compute pipeline, compute descriptor sets, push constants.
+//  (a) Clobbered on `cmd`: compute pipeline, compute descriptor sets, push constants; with surfaces in the
+//      scene also graphics pipeline, graphics descriptor sets, viewport, scissor and other dynamic state.
 //  (b) `before` of a host image is trusted, `after` is guaranteed; any layout, any stage. There is no
 //      queue family transfer.
 //  (c) If record fails, nothing was appended and host images are in their `before` state.
