@@ -1,4 +1,5 @@
-// lattice_lamps.glsl -- which local lights make up a group, and how they light cells. Include after lattice_args.h and radial.glsl.
+// lattice_lamps.glsl -- which local lights make up a group, and how they light cells. Include after
+// lattice_args.h and radial.glsl.
 #ifndef TYN_LATTICE_LAMPS_GLSL
 #define TYN_LATTICE_LAMPS_GLSL
 

@@ -175,42 +175,4 @@ vec4 walls_fetch(sampler3D field, lattice_box box, walls_blend b, ivec3 skip)
     return sum;
 }
 
-// Cells that have the light in front of a surface at p (M) on its side n (M, unit). As walls_blend_of a little
-// before it; where the walls of that cell say that this is behind them the centre in front of the surface that
-// is nearest and has the fewest walls in between. On rough surfaces there are always some: the planes of their
-// triangles go on beyond these.
-walls_blend walls_blend_before(lattice_box box, vec3 p, vec3 n)
-{
-    vec3 off = p + 0.1 * box.dx * n;
-    walls_place w = walls_place_of(box, off);
-    walls_blend b = walls_blend_of(box, w, off);
-    uint behind = walls_near(w) ? walls_behind(w.index, off) : 0u;
-    if (behind == 0u) {
-        return b;
-    }
-    float nearest = 1e30;
-    b.instead = ivec3(-1);
-    for (int i = 0; i < 125; i++) {
-        ivec3 q = w.cell + ivec3(i % 5, i / 5 % 5, i / 25) - 2;
-        vec3 away = walls_centre(box, q) - p;
-        if (any(lessThan(q, ivec3(0))) || any(greaterThanEqual(q, box.dims)) || dot(away, n) <= 0.0) {
-            continue;
-        }
-        int between = bitCount(walls_behind(w.index, walls_centre(box, q)) ^ behind);
-        float cost = distance(vec3(q), w.x) + 3.0 * float(between) + (walls_same_side(box, q, off) ? 0.0 : 3.0);
-        b.instead = cost < nearest ? q : b.instead;
-        nearest = min(cost, nearest);
-    }
-    return b;
-}
-
-// Irradiance on a surface at p (M) whose side n (M, unit) is asked for, of the light in the lattice:
-// phi / 4 - F.n / 2, the flux through a plane in radiance that is linear in direction. W/m^2 of what the
-// channel ch of `moments` solves.
-float walls_irradiance(sampler3D moments, lattice_box box, vec3 p, vec3 n, int ch)
-{
-    vec4 m = walls_fetch(moments, box, walls_blend_before(box, p, n), ivec3(0, 0, ch * box.dims.z));
-    return max(0.25 * m.x - 0.5 * dot(m.yzw, n), 0.0);
-}
-
 #endif

@@ -4,18 +4,19 @@
 //             + sigma_s sum_n E_n e^-tau_a(n) [K_tms e^-tau'(s) + K_lobe e^-tau(s)] } ds
 //       + e^-tau L_behind + (e^-tau' - e^-tau) B
 //
-// tau is the true optical depth along the view ray, tau' the one in which forward scattering counts as
-// not scattered (delta scaling), (n) are depths along sun or lamp n; E of a lamp is I / r^2. J is the light that has scattered out of
-// the suns' forward peaks (texture inscatter), K_tms and K_lobe hold the first and all forward orders
-// exactly (scatter_lut.glsl). B is the environment as forward scattering smears it (glow.glsl), of a
-// uniform one its radiance: the lattice has it delta scaled, so that what went through or was scattered
-// forward must add up to e^-tau', or a uniform surrounding would not look uniform.
+// tau is the true optical depth along the view ray, tau' the one in which forward scattering counts
+// as not scattered (delta scaling), (n) are depths along sun or lamp n; E of a lamp is I / r^2. J
+// is the light that has scattered out of the suns' forward peaks (texture inscatter), K_tms and
+// K_lobe hold the first and all forward orders exactly (scatter_lut.glsl). B is the environment as
+// forward scattering smears it (glow.glsl), of a uniform one its radiance: the lattice has it delta
+// scaled, so that what went through or was scattered forward must add up to e^-tau', or a uniform
+// surrounding would not look uniform.
 //
 // Every step takes the medium at its middle and integrates the attenuation exactly: int_0^ds e^(-sigma t)
 // dt = ds (1 - e^-x) / x with x = sigma ds. Light is taken at the centroid of that weight.
 //
-// Include after camera, environment, medium, beam, radial, scatter_lut, lattice, lattice_walls and shadow. RAYMARCH_GREY: all channels
-// of the medium are equal, so optical depths are scalars.
+// Include after camera, environment, medium, beam, radial, scatter_lut, lattice, lattice_walls and
+// shadow. RAYMARCH_GREY: all channels of the medium are equal, so optical depths are scalars.
 #ifndef TYN_RAYMARCH_GLSL
 #define TYN_RAYMARCH_GLSL
 

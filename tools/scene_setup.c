@@ -135,8 +135,7 @@ int scene_prepare(app *a, const tyn_method_info *method, tyn_scene *scene)
     }
     // Other methods are better for one, and say so where there is none.
     const tyn_log nobody = {0};
-    tyn_result result =
-        tyn_surfaces_build_nodes(surfaces, method->traces_rays ? &a->log : &nobody);
+    tyn_result result = tyn_surfaces_build_nodes(surfaces, method->traces_rays ? &a->log : &nobody);
     return method->traces_rays ? app_exit_code(a, result, true) : EXIT_DONE;
 }
 

@@ -91,7 +91,8 @@ static const tyn_param params[] = {
     {"iterations", TYN_PARAM_INT, FIELD_OF(iterations), 16, 1, 128, "",
      "hops from cell to cell; as many as cells, more scatter too much"},
     {"smoothing", TYN_PARAM_FLOAT, FIELD_OF(smoothing), 0, 0, 0.95, "",
-     "weight of the frames before, from one time index to the next; above 0 a picture depends on them"},
+     "weight of the frames before, from one time index to the next; above 0 a picture depends on "
+     "them"},
     {"floor", TYN_PARAM_FLOAT, FIELD_OF(floor), 0.1, 0, 1, "",
      "least importance of a direction; the mean is 1"},
 };

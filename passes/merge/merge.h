@@ -30,8 +30,8 @@ enum {
     MERGE_PORT_SHADOWS,      // IN optional buffer
     MERGE_PORT_VPL_LIGHT,    // IN optional 3D, of lattice_lamps
     MERGE_PORT_INSCATTER, // OUT 3D RGBA32F (one channel: R32F), dims + 2: J = max(0, (phi + 3 g' v.F) / (4 pi)
-    // + sum over ordinates of E e^-tau' k + local lights, see merge_radials.comp), W/(m^2 sr), v the direction from the cell to
-    // the eye, k of tms.glsl; sample at lattice_inscatter_uvw
+    // + sum over ordinates of E e^-tau' k + local lights, see merge_radials.comp), W/(m^2 sr), v
+    // the direction from the cell to the eye, k of tms.glsl; sample at lattice_inscatter_uvw
     MERGE_PORT_COUNTERS, // OUT buffer struct counters_block: cells that were clamped or not finite
     MERGE_PORT_FIELD,    // SCRATCH buffer: J of the cells
     MERGE_NUM_PORTS,

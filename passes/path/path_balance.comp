@@ -1,10 +1,11 @@
-// path_balance.comp -- where the energy goes, by paths from random points: inside the media for what they absorb
-// and emit, on solid surfaces for what these absorb, on the boundary for what comes in and goes out. The kinds of
-// points know nothing of each other, so that the sums agree is a check. The boundary is that of the media; with
-// solid surfaces a box around everything. Next to lamps light is too uneven for such points: where there are
-// surfaces, the first flights of lamplight are followed from the lamps, and the points are spared it. And a
-// boundary's point hardly ever finds the small patches that lamps light: what surfaces reflect out of the box is followed from
-// the surfaces.
+// path_balance.comp -- where the energy goes, by paths from random points: inside the media for
+// what they absorb and emit, on solid surfaces for what these absorb, on the boundary for what
+// comes in and goes out. The kinds of points know nothing of each other, so that the sums agree is
+// a check. The boundary is that of the media; with solid surfaces a box around everything. Next to
+// lamps light is too uneven for such points: where there are surfaces, the first flights of
+// lamplight are followed from the lamps, and the points are spared it. And a boundary's point
+// hardly ever finds the small patches that lamps light: what surfaces reflect out of the box is
+// followed from the surfaces.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -1,9 +1,9 @@
 // balance.comp -- where the energy goes: sums over cells and lines, one workgroup per channel.
 //
 // What the environment brings in is pi times its radiance and the surface of the medium's box, an
-// ordinate its irradiance times the area across it; the lines' leaks are net, so what they carry straight through the lattice counts on
-// both sides. Suns and ordinates lose what collides in the cells: that of a sun was made to be what its
-// beam loses.
+// ordinate its irradiance times the area across it; the lines' leaks are net, so what they carry
+// straight through the lattice counts on both sides. Suns and ordinates lose what collides in the
+// cells: that of a sun was made to be what its beam loses.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

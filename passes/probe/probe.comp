@@ -113,10 +113,11 @@ vec3 mean_of(vec3 tau0, vec3 tau1)
     return mix(mean, exp(-0.5 * (tau0 + tau1)), lessThan(abs(x), vec3(1e-3)));
 }
 
-// In the outer half of the outermost cells moments go on as a line. Next to a lit face the scattered flux does not: what
-// it gains is what sunlight loses in first scatterings, e^-tau over a fraction of a cell. The line through two cells'
-// means is that of their sum, which changes little. So this adds what the line has of sunlight, less the sunlight at
-// p, per unit of its irradiance: as much as of its losses is scattered.
+// In the outer half of the outermost cells moments go on as a line. Next to a lit face the
+// scattered flux does not: what it gains is what sunlight loses in first scatterings, e^-tau over a
+// fraction of a cell. The line through two cells' means is that of their sum, which changes little.
+// So this adds what the line has of sunlight, less the sunlight at p, per unit of its irradiance:
+// as much as of its losses is scattered.
 vec3 sunlight_in_line(lattice_box box, uint sun, vec3 p)
 {
     vec3 x = lattice_from_m(box, p), sum = vec3(0.0);

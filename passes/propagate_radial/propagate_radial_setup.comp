@@ -92,7 +92,8 @@ void main()
     }
     propagate_radial_grid grid = grid_of(light, used);
     uint total = args.cells * args.cells, base = n * total;
-    // 128 points along a side of the map at least: solid angles are right to half a percent, and lobes of a degree are met.
+    // 128 points along a side of the map at least: solid angles are right to half a percent, and
+    // lobes of a degree are met.
     int along = max(2, int((128u + args.cells - 1u) / args.cells));
     float sum = 0.0;
     for (uint q = lane; q < total; q += PROPAGATE_RADIAL_LANES) {

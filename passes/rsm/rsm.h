@@ -19,9 +19,10 @@ typedef struct tyn_rsm_params {
     struct surface_range drawn[TYN_RSM_MAX_TILES][TYN_SURFACE_RANGES];
 } tyn_rsm_params;
 
-// Adds the map of a light, or one face of it, with all triangles: `drawn` may leave out what is not in view. `kind`: TYN_SHADOW_*; a face of a CUBE ends where the angle to its
-// axis is 45 degrees, even if the map goes on. `clip`: rows, world -> clip space. `texel`: of a sun its area across
-// the light, m^2; of a lamp the solid angle of a texel in the middle, sr.
+// Adds the map of a light, or one face of it, with all triangles: `drawn` may leave out what is not
+// in view. `kind`: TYN_SHADOW_*; a face of a CUBE ends where the angle to its axis is 45 degrees,
+// even if the map goes on. `clip`: rows, world -> clip space. `texel`: of a sun its area across the
+// light, m^2; of a lamp the solid angle of a texel in the middle, sr.
 void tyn_rsm_add(tyn_rsm_params *params, const struct rsm_tile *tile, uint32_t kind,
                  const tyn_vec4 clip[4], const struct light_block *light, float texel);
 

@@ -129,9 +129,11 @@ enum { LIGHTS = 0, WALLS, FORWARD, VPLS, GATHER, SURFACE, NUM_KERNELS };
 #define ARGS(specs) .args_size = sizeof(struct shade_args), .num_spec = specs
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [LIGHTS] = {KERNEL(lights, 64, 1, 1), ARGS(2)},  [WALLS] = {KERNEL(walls, 8, 4, 2)},
+    [LIGHTS] = {KERNEL(lights, 64, 1, 1), ARGS(2)},
+    [WALLS] = {KERNEL(walls, 8, 4, 2)},
     [FORWARD] = {KERNEL(forward, 8, 4, 2), .num_spec = 3},
-    [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(3)},       [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(3)},
+    [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(3)},
+    [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(3)},
     [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(3)},
 };
 

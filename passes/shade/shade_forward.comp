@@ -73,7 +73,8 @@ vec4 forward_light(uint n, vec3 p)
         float turn = 2.399963 * float(k); // the golden angle
         float c = forward_cosine(g, fract(0.5 + 0.618034 * float(k))), s = sqrt(1.0 - c * c);
         vec3 from = frame * vec3(s * cos(turn), s * sin(turn), c);
-        sum += vec4(from, 1.0) * shadow_all_lit(shadow_place_sun(map, at + mix(way.x, way.y, along) * shadow_frame_direction(map, from)));
+        vec3 there = at + mix(way.x, way.y, along) * shadow_frame_direction(map, from);
+        sum += vec4(from, 1.0) * shadow_all_lit(shadow_place_sun(map, there));
     }
     return sum / float(SHADE_PLACES);
 }

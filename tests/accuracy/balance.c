@@ -1,9 +1,9 @@
-// balance.c -- where the energy goes, in every sample scene: what enters and is emitted is absorbed or leaves,
-// within 2 %.
+// balance.c -- where the energy goes, in every sample scene: what enters and is emitted is absorbed
+// or leaves, within 2 %.
 //
-// `path` draws what comes in, what is absorbed and what leaves by points of their own, so that its imbalance is noise:
-// it is averaged until its standard error is below 1 %, and may be 3 of these. TYN_LONG=1 does so for the scenes that
-// take minutes.
+// `path` draws what comes in, what is absorbed and what leaves by points of their own, so that its
+// imbalance is noise: it is averaged until its standard error is below 1 %, and may be 3 of these.
+// TYN_LONG=1 does so for the scenes that take minutes.
 #include "gpu_test.h"
 #include "path_run.h"
 #include <tyndall/io.h>
@@ -18,7 +18,7 @@ static const struct sample_scene {
     bool slow;        // hundreds of scatterings a path, or a small sun that few paths find
     double
         apart; // shares of the light that end in media, on surfaces and outside: pop from path, at most, beside 2
-        // standard errors; 0: as
+    // standard errors; 0: as
     // without surfaces, not compared
 } scenes[] = {
     {"room", 4, false, 0.005},       {"fog-hall", 4, false, 0.06},

@@ -146,8 +146,9 @@ static void maps(void **state)
     free(grid);
 }
 
-// A map of 1, then a constant, all of its light along ordinates (ordinates.split=0): rays from fourteen directions and one
-// in each of 64 regions are not all there is, but nearly. Only with the mean split off is it exact.
+// A map of 1, then a constant, all of its light along ordinates (ordinates.split=0): rays from
+// fourteen directions and one in each of 64 regions are not all there is, but nearly. Only with the
+// mean split off is it exact.
 static void unsplit(void **state)
 {
     gpu_test *t = *state;

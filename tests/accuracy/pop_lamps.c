@@ -212,9 +212,10 @@ static double decay_length(double albedo)
     return nu;
 }
 
-// Within 5 % as the mean over directions. In single directions only where light has hardly scattered: what has left the
-// lamp's cell travels along the lattice's 14 lines, and the more a medium absorbs the straighter is the light that
-// gets far. So each row says whether it holds in every direction.
+// Within 5 % as the mean over directions. In single directions only where light has hardly
+// scattered: what has left the lamp's cell travels along the lattice's 14 lines, and the more a
+// medium absorbs the straighter is the light that gets far. So each row says whether it holds in
+// every direction.
 static void infinite_medium(void **state)
 {
     static double rows[MAX_ROWS][MAX_COLUMNS];

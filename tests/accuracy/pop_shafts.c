@@ -1,8 +1,9 @@
 // pop_shafts.c -- where the edges of the sun's shafts are in the sample scene `fog-hall`: `pop` against `path`.
 //
-// An orthographic camera in the aisle looks straight down into the shaft of one window. The edges of the shaft that the
-// window's jambs make are planes through the vertical and the sun, so they are seen edge-on: columns of the picture run
-// along them, and the distance from the edge is that across the light, in which texels of the shadow map are measured.
+// An orthographic camera in the aisle looks straight down into the shaft of one window. The edges
+// of the shaft that the window's jambs make are planes through the vertical and the sun, so they
+// are seen edge-on: columns of the picture run along them, and the distance from the edge is that
+// across the light, in which texels of the shadow map are measured.
 #include "gpu_test.h"
 #include "path_run.h"
 #include "passes/shadow_map/shadow_map.h"

@@ -208,8 +208,9 @@ static void suns_add_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layers_add_up), cmocka_unit_test(refuses_what_repeats_everywhere), cmocka_unit_test(warns),
-        cmocka_unit_test(leaves_out),    cmocka_unit_test(suns_add_up),
+        cmocka_unit_test(layers_add_up), cmocka_unit_test(refuses_what_repeats_everywhere),
+        cmocka_unit_test(warns),         cmocka_unit_test(leaves_out),
+        cmocka_unit_test(suns_add_up),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

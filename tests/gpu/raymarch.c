@@ -510,7 +510,8 @@ static void furnace(void **state)
     free(s);
 }
 
-// The tail behind transmittance 1e-3 is not lost, and what is behind the medium is attenuated to the end.
+// The tail behind transmittance 1e-3 is not lost, and what is behind the medium is attenuated to
+// the end.
 static void opaque(void **state)
 {
     gpu_test *t = *state;
@@ -697,18 +698,12 @@ static void nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(single_scattering),
-        cmocka_unit_test(lumps_grey),
-        cmocka_unit_test(lumps_colour),
-        cmocka_unit_test(skipping),
-        cmocka_unit_test(furnace),
-        cmocka_unit_test(opaque),
-        cmocka_unit_test(surfaces),
-        cmocka_unit_test(host_depth),
-        cmocka_unit_test(bad_density),
-        cmocka_unit_test(opaque_in_one_colour),
-        cmocka_unit_test(antialias),
-        cmocka_unit_test(nothing),
+        cmocka_unit_test(single_scattering), cmocka_unit_test(lumps_grey),
+        cmocka_unit_test(lumps_colour),      cmocka_unit_test(skipping),
+        cmocka_unit_test(furnace),           cmocka_unit_test(opaque),
+        cmocka_unit_test(surfaces),          cmocka_unit_test(host_depth),
+        cmocka_unit_test(bad_density),       cmocka_unit_test(opaque_in_one_colour),
+        cmocka_unit_test(antialias),         cmocka_unit_test(nothing),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

@@ -30,11 +30,9 @@ void main()
         lattice_box box = lattice_box_of(extent, ivec3(dims));
         walls_place w = walls_place_of(box, points[i]);
         walls_blend b = walls_blend_of(box, w, points[i]);
-        float irradiance = walls_irradiance(field, box, points[i], vec3(0.0, 1.0, 0.0), 0);
         // Whether the point's cell sees that of the next.
         bool sees = walls_visible(box, w.cell, walls_place_of(box, points[(i + 1u) % uint(points.length())]).cell);
-        irradiance = sees ? irradiance : -1.0;
         results[i] = vec4(walls_fetch(field, box, b, ivec3(0)).x, float(walls_near(w)),
-                          float(walls_same_side(box, w.cell, points[i])), irradiance);
+                          float(walls_same_side(box, w.cell, points[i])), sees ? 1.0 : -1.0);
     }
 }

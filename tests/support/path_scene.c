@@ -291,7 +291,7 @@ const tyn_probe_result *path_scene_probe(gpu_test *t, path_scene *s, const float
 }
 
 const struct path_balance_result *path_scene_balance(gpu_test *t, path_scene *s, uint32_t samples,
-                                                   const tyn_balance **balance)
+                                                     const tyn_balance **balance)
 {
     tyn_ref refs[PATH_BALANCE_NUM_PORTS] = {{0}};
     tyn_graph_begin(t->graph);

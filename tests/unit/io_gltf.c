@@ -123,7 +123,8 @@ static float ramp(int32_t i, int32_t j, int32_t k)
     return (float)(i + 10 * j + 100 * k);
 }
 
-// Cameras stand in the order of the file's list, whatever the nodes' order, and know their place in it.
+// Cameras stand in the order of the file's list, whatever the nodes' order, and know their place in
+// it.
 static void camera_order(void **state)
 {
     tyn_scene s;
@@ -203,7 +204,8 @@ static void environments(void **state)
                      "{'uri': 'sky.hdr', 'radiance': [1, 2, 3], 'rotation': [0, 1, 0, 0]}]}}}");
     load(&s, text);
     // A map of 2 x 1 texels is refined: the centres of the old texels keep their values.
-    assert_true(s.environment.present && s.environment.size[0] == 66 && s.environment.size[1] == 33);
+    assert_true(s.environment.present && s.environment.size[0] == 66 &&
+                s.environment.size[1] == 33);
     NEAR(s.environment.data + 3 * 16, 1, 1, 1);
     NEAR(s.environment.data + 3 * 49, 0.5f, 0.5f, 0.5f);
     NEAR(s.environment.radiance, 1, 2, 3);

@@ -1,4 +1,5 @@
-// lantern.c -- a lantern at night, in smoke that creeps over the ground: its bars cast shadows into it.
+// lantern.c -- a lantern at night, in smoke that creeps over the ground: its bars cast shadows into
+// it.
 #include "noise.h"
 #include "portable.h"
 #include "scenes.h"
@@ -30,9 +31,9 @@ static void add_lantern(gen_model *model)
                       0.172f * (float)gen_sin(angle), 8, 1);
     }
     gen_place(model, 0, STAND, 0, 0, 1);
-    gen_add_lamp(
-        model,
-        &(gen_lamp){.position = {0, STAND + 0.22f, 0}, .intensity = 22, .color = {1, 0.62f, 0.28f}});
+    gen_add_lamp(model, &(gen_lamp){.position = {0, STAND + 0.22f, 0},
+                                    .intensity = 22,
+                                    .color = {1, 0.62f, 0.28f}});
 }
 
 static void add_crates(gen_model *model)

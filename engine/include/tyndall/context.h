@@ -104,8 +104,9 @@ typedef struct tyn_frame {
 TYN_API tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame);
 TYN_API tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame);
 
-// With `readback`: host memory of an output of the last record, once the GPU has finished it: 4 floats a pixel (DISPLAY:
-// 4 bytes), or the probe and balance structs. NULL if it was not asked for. Valid until the next call.
+// With `readback`: host memory of an output of the last record, once the GPU has finished it: 4
+// floats a pixel (DISPLAY: 4 bytes), or the probe and balance structs. NULL if it was not asked
+// for. Valid until the next call.
 TYN_API const void *tyn_context_output(tyn_context *ctx, tyn_output output);
 
 // ---- what happened --------------------------------------------------------------------------
