@@ -245,7 +245,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
                   tyn_build_has(b, RAYMARCH_PORT_SHADOW_ATLAS) ||
                       tyn_build_has(b, RAYMARCH_PORT_WALL_LINKS),
                   tyn_build_has(b, RAYMARCH_PORT_HOST_DEPTH))) {
-        tyn_extent blocks = blocks_of(p);
+        // As large as for all pixels: the window follows the camera, and frames must keep their sizes.
+        const tyn_extent blocks = {(p->width + 1) / 2, (p->height + 1) / 2, 1};
         tyn_build_image(b, RAYMARCH_PORT_SPARSE, (tyn_extent){3 * blocks.x, blocks.y, 1}, 1);
     }
     tyn_build_buffer(b, RAYMARCH_PORT_COUNTERS, sizeof(struct counters_block));
