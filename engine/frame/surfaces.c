@@ -1,6 +1,7 @@
 // surfaces.c -- mip chains of textures, made when surfaces change.
 #include "frame/surfaces.h"
 #include "methods/surface_tables.h"
+#include "methods/views.h"
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -155,6 +156,7 @@ void tyn_surface_data_finish(tyn_surface_data *data)
 {
     free(data->textures);
     free(data->texels);
+    free(data->below);
     free(data->emitters);
     free(data->areas);
     memset(data, 0, sizeof *data);
@@ -164,13 +166,21 @@ tyn_result tyn_surface_data_update(tyn_surface_data *data, const tyn_surfaces *s
                                    const tyn_log *log)
 {
     uint64_t hash = tyn_surfaces_hash(surfaces);
-    if (hash == data->hash) {
+    if (hash == data->hash && (!hash || surfaces->num_nodes == data->num_nodes)) {
         return TYN_OK;
     }
     tyn_surface_data_finish(data);
     tyn_result result = hash ? tyn_surfaces_check(surfaces, log) : TYN_OK;
     if (hash && result == TYN_OK) {
         result = build_textures(data, surfaces, log);
+    }
+    if (hash && result == TYN_OK && surfaces->num_nodes) {
+        data->num_nodes = surfaces->num_nodes;
+        data->below = tyn_views_prepare(surfaces);
+        if (!data->below) {
+            tyn_log_print(log, TYN_LOG_ERROR, "no memory for %u nodes", surfaces->num_nodes);
+            result = TYN_ERR_MEMORY;
+        }
     }
     if (result != TYN_OK) {
         tyn_surface_data_finish(data);

@@ -31,6 +31,7 @@ typedef struct tyn_frame_scene {
     uint32_t num_triangles; // of the surfaces; 0: there are none, nor their refs
     uint32_t num_textures;  // of their materials
     struct surface_block surfaces;
+    const struct surface_range *below; // of every node (methods/views.h); NULL without a hierarchy
     float m_from_world[16]; // rigid
 } tyn_frame_scene;
 

@@ -6,7 +6,6 @@
 #include "passes/shadow_map/shadow_map.h"
 #include <tyndall/registry.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
@@ -23,12 +22,10 @@ tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
     tyn_shadow_map_plan(&params, frame->suns, num_suns, frame->lights + frame->num_suns, num_lamps,
                         &frame->surfaces);
     const tyn_surfaces *surfaces = &job->scene->surfaces;
-    struct surface_range *below = tyn_views_prepare(surfaces);
     for (uint32_t i = 0; i < params.num_views; i++) {
         tyn_shadow_view *v = &params.views[i];
-        tyn_view_cull(surfaces, below, (const tyn_vec4 *)v->args.clip, v->drawn);
+        tyn_view_cull(surfaces, frame->below, (const tyn_vec4 *)v->args.clip, v->drawn);
     }
-    free(below);
     tyn_ref refs[TYN_MAX_PORTS] = {
         [SHADOW_MAP_PORT_TRIANGLES] = job->refs.triangles,
         [SHADOW_MAP_PORT_VERTICES] = job->refs.vertices,
@@ -101,7 +98,6 @@ tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_
         memcpy(params.extent, frame->medium.extent, sizeof params.extent);
     }
     const tyn_surfaces *surfaces = &job->scene->surfaces;
-    struct surface_range *below = tyn_views_prepare(surfaces);
     for (uint32_t i = 0; i < views.num_views; i++) {
         const tyn_shadow_view *v = &views.views[i];
         const struct shadow_light *l = &views.lights[v->light];
@@ -110,9 +106,8 @@ tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_
                     v->light < TYN_SHADOW_SUNS ? &frame->suns[v->light]
                                                : &lamps[v->light - TYN_SHADOW_SUNS],
                     texel_of(l));
-        tyn_view_cull(surfaces, below, v->args.clip, params.drawn[i]);
+        tyn_view_cull(surfaces, frame->below, v->args.clip, params.drawn[i]);
     }
-    free(below);
     rsm->num_tiles = params.num_tiles;
     memcpy(rsm->tiles, params.tiles, sizeof rsm->tiles);
     tyn_ref refs[TYN_MAX_PORTS] = {

@@ -212,6 +212,15 @@ static void update(void **state)
     fill(&scene);
     assert_int_equal(tyn_surface_data_update(&data, &scene.surfaces, &log.log), TYN_OK);
     assert_true(data.hash && data.hi[2] == 4);
+    // What views need of the hierarchy is made once, and anew for another one.
+    const struct surface_range *below = data.below;
+    assert_true(below && below[0].first == 0 && below[0].count == 12);
+    assert_int_equal(tyn_surface_data_update(&data, &scene.surfaces, &log.log), TYN_OK);
+    assert_ptr_equal(data.below, below);
+    scene.surfaces.num_nodes = 0;
+    assert_int_equal(tyn_surface_data_update(&data, &scene.surfaces, &log.log), TYN_OK);
+    assert_true(data.hash && !data.below);
+    scene.surfaces.num_nodes = 3;
     set_fault(&scene.surfaces, 3);
     assert_int_equal(tyn_surface_data_update(&data, &scene.surfaces, &log.log), TYN_ERR_PARAMS);
     assert_true(!data.hash && !data.texels && log.errors == 1);
