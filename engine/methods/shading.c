@@ -105,6 +105,19 @@ tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *
     return result;
 }
 
+// Do surfaces reach farther than the lattice, which has the sky's light with its shadows, by more than rounding?
+static bool reach_beyond_media(const tyn_frame_scene *frame, bool lattice)
+{
+    float lo[3], hi[3];
+    tyn_surfaces_box(frame, lo, hi);
+    bool beyond = !lattice;
+    for (int axis = 0; axis < 3; axis++) {
+        const float side = frame->medium.extent[axis];
+        beyond = beyond || lo[axis] < -0.02f * side || hi[axis] > 1.02f * side;
+    }
+    return beyond;
+}
+
 tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, uint32_t num_suns,
                             tyn_picture_inputs *in)
 {
@@ -130,6 +143,10 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
     params.one_channel = in->one_channel;
     memcpy(params.tint, in->tint, sizeof params.tint);
     params.sky = sky[0] + sky[1] + sky[2] > 0.0f;
+    if (params.sky && reach_beyond_media(job->frame, in->wall_links.resource != 0)) {
+        tyn_method_warn(job, "surfaces beyond the media's box are lit by the mean of the "
+                             "environment as if nothing stood around them");
+    }
     const tyn_vpl_refs vpls = !media || in->lamps.vpls ? in->vpls : (tyn_vpl_refs){{0}};
     tyn_ref refs[TYN_MAX_PORTS] = {
         [SHADE_PORT_MEDIUM] = job->refs.medium,
