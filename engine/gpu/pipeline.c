@@ -62,13 +62,15 @@ static tyn_result check_limits(const tyn_device *dev, const tyn_pass_desc *pass,
                                const tyn_kernel *k)
 {
     const VkPhysicalDeviceLimits *limits = &dev->properties.limits;
-    uint32_t threads = 1, images = 0, buffers = 0, textures = 0;
+    uint32_t threads = 1, images = 0, buffers = 0, textures = 0, uniforms = 0;
     for (uint32_t i = 0; i < k->num_bindings; i++) {
         VkDescriptorType type = tyn_descriptor_type(pass, &k->bindings[i]);
         images += type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
         buffers += type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         textures += type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+        uniforms += type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     }
+    const uint32_t resources = k->num_bindings + (k->raster ? k->raster->num_attachments : 0);
     bool wide = false;
     for (int a = 0; a < 3 && !k->raster; a++) {
         threads *= k->local_size[a];
@@ -87,6 +89,14 @@ static tyn_result check_limits(const tyn_device *dev, const tyn_pass_desc *pass,
          limits->maxPerStageDescriptorStorageBuffers, "storage buffers"},
         {textures > limits->maxPerStageDescriptorSampledImages, textures,
          limits->maxPerStageDescriptorSampledImages, "sampled images"},
+        {textures > limits->maxPerStageDescriptorSamplers, textures,
+         limits->maxPerStageDescriptorSamplers, "samplers"},
+        {uniforms > limits->maxPerStageDescriptorUniformBuffers, uniforms,
+         limits->maxPerStageDescriptorUniformBuffers, "uniform buffers"},
+        {resources > limits->maxPerStageResources, resources, limits->maxPerStageResources,
+         "resources in all"},
+        {k->args_size > limits->maxPushConstantsSize, k->args_size, limits->maxPushConstantsSize,
+         "bytes of push constants"},
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++) {
         if (tests[i].over) {

@@ -166,6 +166,19 @@ static tyn_result create_image(tyn_graph *g, tyn_heap *heap, const resource *r, 
                           "image '%s' of %u x %u x %u: the device's limit is %u per axis", r->name,
                           r->extent.x, r->extent.y, r->extent.z, limit);
     }
+    const uint32_t width = limits->maxFramebufferWidth < limits->maxViewportDimensions[0]
+                               ? limits->maxFramebufferWidth
+                               : limits->maxViewportDimensions[0];
+    const uint32_t height = limits->maxFramebufferHeight < limits->maxViewportDimensions[1]
+                                ? limits->maxFramebufferHeight
+                                : limits->maxViewportDimensions[1];
+    const bool drawn = p->image_usage & (VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT |
+                                         VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT);
+    if (drawn && (r->extent.x > width || r->extent.y > height)) {
+        return graph_fail(g, TYN_ERR_UNSUPPORTED,
+                          "image '%s' of %u x %u: the device draws at most %u x %u", r->name,
+                          r->extent.x, r->extent.y, width, height);
+    }
     VkImageType type = r->dim == TYN_IMAGE_3D ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
     // An image that no needed node reads still gets a view, which wants one of these.
     const VkImageUsageFlags shader_uses = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;

@@ -325,6 +325,29 @@ static void queues_without_graphics_are_refused(void **state)
     t->quiet = false;
 }
 
+static void targets_beyond_the_limits_are_refused(void **state)
+{
+    gpu_test *t = *state;
+    uint32_t *const most = &t->dev->properties.limits.maxFramebufferHeight, before = *most;
+    tyn_graph *used = t->graph; // has images already
+    assert_int_equal(tyn_graph_create(t->dev, 1, &t->graph), TYN_OK);
+    t->quiet = true;
+    *most = SIZE - 1;
+    corner c[12];
+    corners(c, 0);
+    tyn_graph_begin(t->graph);
+    tyn_ref refs[5] = {gpu_buffer(t, "corners", c, sizeof c)};
+    assert_int_equal(tyn_graph_add(t->graph, &triangles, &(draw_params){.vertices = 3}, refs),
+                     TYN_OK);
+    tyn_graph_output(t->graph, "color", refs[COLOR], true);
+    assert_int_equal(gpu_try(t), TYN_ERR_UNSUPPORTED);
+    assert_non_null(strstr(t->last_error, "the device draws at most"));
+    *most = before;
+    t->quiet = false;
+    tyn_graph_destroy(&t->graph);
+    t->graph = used;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -334,6 +357,7 @@ int main(void)
         cmocka_unit_test(second_draw_keeps_the_first),
         cmocka_unit_test(depth_alone_is_drawn),
         cmocka_unit_test(queues_without_graphics_are_refused),
+        cmocka_unit_test(targets_beyond_the_limits_are_refused),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

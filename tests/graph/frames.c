@@ -662,6 +662,34 @@ static void huge_image(void **state)
                         "image 'wide' of 20000 x 1 x 1: the device's limit is 16384 per axis\n");
 }
 
+// What a kernel asks for beyond the device's limits is told.
+static void small_device(void **state)
+{
+    fixture *f = *state;
+    VkPhysicalDeviceLimits *limits = &f->fake->dev.properties.limits;
+    const struct {
+        uint32_t *limit, value;
+        const char *line;
+    } cases[] = {
+        {&limits->maxPerStageDescriptorSampledImages, 0, "needs 1 sampled images; "},
+        {&limits->maxPerStageDescriptorSamplers, 0, "needs 1 samplers; "},
+        {&limits->maxPerStageDescriptorUniformBuffers, 0, "needs 1 uniform buffers; "},
+        {&limits->maxPerStageResources, 2, "needs 3 resources in all; "},
+        {&limits->maxPushConstantsSize, 2, "needs 4 bytes of push constants; "},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const uint32_t before = *cases[i].limit;
+        *cases[i].limit = cases[i].value;
+        fake_clear(f->fake);
+        declare_chain(f->g, &default_chain);
+        assert_int_equal(frame(f), TYN_ERR_UNSUPPORTED);
+        assert_non_null(strstr(f->fake->log, cases[i].line));
+        *cases[i].limit = before;
+    }
+    declare_chain(f->g, &default_chain);
+    assert_int_equal(frame(f), TYN_OK);
+}
+
 // Whichever allocation fails: an error, nothing leaks, and the next frame is made in full.
 static void out_of_memory(void **state)
 {
@@ -711,6 +739,7 @@ int main(void)
         TEST(histories),
         TEST(faults),
         TEST(huge_image),
+        TEST(small_device),
         TEST(out_of_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

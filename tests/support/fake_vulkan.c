@@ -412,6 +412,14 @@ fake_vulkan *fake_create(void)
     dev->properties.limits.maxPerStageDescriptorStorageImages = 32;
     dev->properties.limits.maxPerStageDescriptorStorageBuffers = 32;
     dev->properties.limits.maxPerStageDescriptorSampledImages = 32;
+    dev->properties.limits.maxPerStageDescriptorSamplers = 32;
+    dev->properties.limits.maxPerStageDescriptorUniformBuffers = 12;
+    dev->properties.limits.maxPerStageResources = 128;
+    dev->properties.limits.maxPushConstantsSize = 128;
+    dev->properties.limits.maxFramebufferWidth = 16384;
+    dev->properties.limits.maxFramebufferHeight = 16384;
+    dev->properties.limits.maxViewportDimensions[0] = 16384;
+    dev->properties.limits.maxViewportDimensions[1] = 16384;
     dev->properties.limits.bufferImageGranularity = 1024;
     dev->memory.memoryTypeCount = 1;
     dev->memory.memoryTypes[0].propertyFlags =
