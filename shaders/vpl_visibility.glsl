@@ -16,6 +16,14 @@ mat3 vpl_frame(vec3 n)
     return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
 }
 
+// Where a VPL's map is seen from: a little above the surface, as the middle of what the VPL stands for may be below a
+// curved one.
+vec3 vpl_map_origin(vec3 position, vec3 axis, float radius)
+{
+    vec3 reach = max(abs(position), vec3(radius));
+    return position + (0.02 * radius + 1e-5 * max(max(reach.x, reach.y), reach.z)) * axis;
+}
+
 // Direction in the VPL's frame of a place in the square [0, 1]^2, not normalised.
 vec3 vpl_map_direction(vec2 at)
 {

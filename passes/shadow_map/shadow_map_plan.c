@@ -174,7 +174,8 @@ static void plan_lamp(tyn_shadow_map_params *p, struct shadow_light *l,
     for (int c = 0; c < 3; c++) {
         diagonal += ((double)s->hi[c] - (double)s->lo[c]) * ((double)s->hi[c] - (double)s->lo[c]);
     }
-    l->near = (float)fmax(1e-4 * sqrt(diagonal), 1e-6);
+    // Depths are as fine however near this is: as near as vertices are exact.
+    l->near = (float)fmax(1e-7 * sqrt(diagonal), 1e-12);
     l->scale = (float)((side - 4) / side / tangent);
     for (int face = 0; face < (cube ? 6 : 1); face++) {
         // Of a cube the next two axes are u and v.

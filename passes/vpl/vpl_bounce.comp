@@ -54,8 +54,10 @@ void main()
                 vpls[texel.y / side * VPL_MAPS_IN_A_ROW + texel.x / side];
             vec3 d = vpl_frame(light.axis) *
                      normalize(vpl_map_direction(vec2(texel % side) / float(side - 1)));
-            vec3 at = light.position + texelFetch(distance_tex, texel, 0).r * d;
-            position = vec4(at, area);
+            float away = texelFetch(distance_tex, texel, 0).r;
+            vec3 at = vpl_map_origin(light.position, light.axis, light.radius) + away * d;
+            // Where a bin is much larger than what is lit, a VPL lights about as much as it is away.
+            position = vec4(at, min(area, 3.14159265 * away * away));
             normal = vec4(texelFetch(hit_tex, texel, 0).xyz, 0.0);
         }
         imageStore(flux_image, to, vec4(flux, 0.0));

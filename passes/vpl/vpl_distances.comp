@@ -113,10 +113,7 @@ void main()
     vec3 on_map = vpl_map_direction(vec2(at) / float(side - 1));
     float away = length(on_map);
     vec3 d = vpl_frame(light.axis) * (on_map / away);
-    // From a little above the surface: the middle of what the VPL stands for may be below a curved one.
-    vec3 reach = max(abs(light.position), vec3(light.radius));
-    float lift = 0.02 * light.radius + 1e-5 * max(max(reach.x, reach.y), reach.z);
-    vec3 from = light.position + lift * light.axis;
+    vec3 from = vpl_map_origin(light.position, light.axis, light.radius);
     surface_hit hit = surface_hit(3e38, SURFACE_NONE, vec2(0.0));
     surface_ray ray = surface_ray_make(surface_transform(surfaces.to_world, from),
                                        surface_turn(surfaces.to_world, d), SURFACE_NONE);

@@ -123,6 +123,39 @@ static void sealed(void **state)
     }
 }
 
+// A lamp in a box of 10 cm, sealed, above 1 km of ground and in fog: nearness is no matter of the scene's size.
+static void sealed_lamp(void **state)
+{
+    gpu_test *t = *state;
+    double brightest[2] = {0};
+    for (int open = 0; open < 2; open++) { // without the box, to compare with
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t m = solids_material(&scene, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, 0, 0});
+        solids_quad(&scene, (float[]){-500, 0, -500}, (float[]){0, 0, 1000}, (float[]){1000, 0, 0},
+                    m);
+        if (!open) {
+            solids_box(&scene, (float[]){-0.05f, 0.95f, -0.05f}, (float[]){0.05f, 1.05f, 0.05f}, 0,
+                       false, m);
+        }
+        solids_hierarchy(&scene, 4);
+        tyn_medium fog = grey_medium(0.1f, 0.01f, 0);
+        scene_add_box(&scene, &fog, (float[]){-3, 0, -3}, (float[]){3, 3, 3}, NULL, NULL);
+        scene_add_lamp(&scene, (float[]){0, 1, 0}, 10);
+        tyn_view view = {0};
+        view_perspective(&view, (float[]){0, 2, 4}, (float[]){0, 0.3f, 0}, 0.7f, 32);
+        picture p;
+        picture_render(&p, t->dev, "pop", &scene, &view, NULL, 0);
+        for (int i = 0; i < 32 * 32 * 3; i++) {
+            brightest[open] = fmax(brightest[open], p.rgb[i]);
+        }
+        picture_free(&p);
+        tyn_scene_finish(&scene);
+    }
+    printf("sealed lamp: brightest pixel %.1e, without the box %.3f\n", brightest[0], brightest[1]);
+    assert_true(brightest[0] < 1e-4 * brightest[1]);
+}
+
 // Net flux and fluence within a slab of thickness 1, z up; the box is a quarter of that wide in x: periods
 // need not be cubes.
 static void slab_table(gpu_test *t, const char *name, double bound)
@@ -239,9 +272,8 @@ static void pictures(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sealed),
-        cmocka_unit_test(slabs),
-        cmocka_unit_test(slabs_over_a_ground),
+        cmocka_unit_test(sealed),   cmocka_unit_test(sealed_lamp),
+        cmocka_unit_test(slabs),    cmocka_unit_test(slabs_over_a_ground),
         cmocka_unit_test(pictures),
     };
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
