@@ -6,7 +6,7 @@
 //   "rsm_position"  rgb: M, m; a: area of the surface in the texel, m^2
 //   "rsm_normal"    rgb: M, unit, on the side of the light
 // Texels that see no surface are 0. So is the flux of surfaces that face nothing, neither media nor other
-// surfaces: what they reflect leaves the scene.
+// surfaces (surface_faces.glsl): what they reflect leaves the scene.
 #ifndef TYN_RSM_ARGS_H
 #define TYN_RSM_ARGS_H
 #include "shared.h"

@@ -114,6 +114,7 @@ tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_
         [RSM_PORT_SURFACES] = job->refs.surfaces, [RSM_PORT_TRIANGLES] = job->refs.triangles,
         [RSM_PORT_VERTICES] = job->refs.vertices, [RSM_PORT_MATERIALS] = job->refs.materials,
         [RSM_PORT_TEXTURES] = job->refs.textures, [RSM_PORT_TEXELS] = job->refs.texels,
+        [RSM_PORT_NODES] = job->refs.nodes,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_rsm, &params, refs);
     rsm->flux = refs[RSM_PORT_FLUX];

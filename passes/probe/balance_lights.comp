@@ -82,8 +82,24 @@ vec3 albedo_at(surface_hit hit)
     return m.albedo * surface_texture_level(textures[m.texture], uv, 0u);
 }
 
+// Does light reflected at a point of a surface, to the side of `normal`, leave the scene? Along one way of many.
+bool leaves(surface_point p, vec3 normal, inout rng_state rng)
+{
+    vec2 u = rng_vec2(rng_next(rng).xy);
+    float z = sqrt(1.0 - u.x), r = sqrt(u.x), azimuth = 2.0 * 3.14159265 * u.y;
+    vec3 side = normalize(abs(normal.x) < 0.7 ? cross(normal, vec3(1.0, 0.0, 0.0)) : cross(normal, vec3(0.0, 1.0, 0.0)));
+    vec3 d = z * normal + r * (cos(azimuth) * side + sin(azimuth) * cross(normal, side));
+    vec3 origin = surface_offset(p, normal);
+    surface_hit hit = surface_hit(3e38, SURFACE_NONE, vec2(0.0));
+    surface_ray ray = surface_ray_make(surface_transform(surfaces.to_world, origin),
+                                       surface_turn(surfaces.to_world, d), SURFACE_NONE);
+    vec2 span = ray_box(origin, ray_inverse(d), vec3(0.0), medium.extent);
+    float rounding = 1e-4 * max(max(medium.extent.x, medium.extent.y), medium.extent.z);
+    return !surface_trace_world(ray, true, hit) && span.y <= max(span.x, 0.0) + rounding;
+}
+
 // Follows the power of a ray of light n (a sun; of the others the number in `radials`) from `origin` (M).
-void follow(uint n, bool sun, bool lamp, vec3 origin, vec3 d, vec3 power)
+void follow(uint n, bool sun, bool lamp, vec3 origin, vec3 d, vec3 power, inout rng_state rng)
 {
     surface_hit hit = surface_hit(3e38, SURFACE_NONE, vec2(0.0));
     surface_ray ray = surface_ray_make(surface_transform(surfaces.to_world, origin),
@@ -107,10 +123,11 @@ void follow(uint n, bool sun, bool lamp, vec3 origin, vec3 d, vec3 power)
     }
     vec3 albedo = albedo_at(hit);
     kept += power * (1.0 - albedo);
-    if (sun || lamp) { // what VPLs do not carry: it is not seen by anything
+    if (sun || lamp) { // what VPLs do not carry: it leaves, or it is missing from the sum
         surface_point p = surface_point_at(hit.triangle, hit.barycentric);
         vec3 normal = dot(p.normal, d) > 0.0 ? -p.normal : p.normal;
-        if (!surface_faces_something(p.at, ray.origin + hit.t * ray.direction, normal, medium.extent)) {
+        vec3 world = ray.origin + hit.t * ray.direction;
+        if (!surface_faces_something(hit.triangle, p.at, world, normal, medium.extent, rng) && leaves(p, normal, rng)) {
             escaped += power * albedo;
         }
     }
@@ -135,7 +152,7 @@ void follow_sun(uint n)
             p[axis] = d[axis] > 0.0 ? args.lo[axis] : args.hi[axis];
             p[u] += at.x * size[u];
             p[v] += at.y * size[v];
-            follow(n, true, false, p, d, across * lights[n].color);
+            follow(n, true, false, p, d, across * lights[n].color, rng);
         }
     }
 }
@@ -161,7 +178,7 @@ void follow_local(uint n)
         vec3 d = z * axis + r * (cos(azimuth) * side + sin(azimuth) * cross(axis, side));
         vec3 power = light.intensity * (lamp ? solid_angle * radial_lobe(light.kind, axis, light.cos_inner, light.cos_outer, d)
                                              : 3.14159265 / float(rays * rays));
-        follow(n, false, lamp, light.position + lift * axis, d, power);
+        follow(n, false, lamp, light.position + lift * axis, d, power, rng);
     }
 }
 

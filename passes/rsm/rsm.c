@@ -13,6 +13,7 @@ static const tyn_port ports[RSM_NUM_PORTS] = {
     [RSM_PORT_MATERIALS] = {"materials", TYN_IN, TYN_BUFFER, 0, false, "struct surface_material[]"},
     [RSM_PORT_TEXTURES] = {"textures", TYN_IN, TYN_BUFFER, 0, false, "struct surface_texture[]"},
     [RSM_PORT_TEXELS] = {"texels", TYN_IN, TYN_BUFFER, 0, false, "uint[]: R8 G8 B8 A8, sRGB"},
+    [RSM_PORT_NODES] = {"nodes", TYN_IN, TYN_BUFFER, 0, false, "struct surface_node[]"},
     [RSM_PORT_FLUX] = {"rsm_flux", TYN_OUT, IMAGE, "power that a texel reflects, W"},
     [RSM_PORT_POSITION] = {"rsm_position", TYN_OUT, IMAGE, "where (M, m); area of it, m^2"},
     [RSM_PORT_NORMAL] = {"rsm_normal", TYN_OUT, IMAGE, "of the surface (M), on the light's side"},
@@ -27,6 +28,7 @@ static const tyn_binding bindings[] = {
     {RSM_PORT_MATERIALS, TYN_USE_STORAGE_READ, false},
     {RSM_PORT_TEXTURES, TYN_USE_STORAGE_READ, false},
     {RSM_PORT_TEXELS, TYN_USE_STORAGE_READ, false},
+    {RSM_PORT_NODES, TYN_USE_STORAGE_READ, false},
 };
 
 static const tyn_binding attachments[] = {
@@ -67,7 +69,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                       .spirv_size = sizeof(rsm_vertex_spirv),
                       .args_size = sizeof(struct rsm_draw_args),
                       .bindings = bindings,
-                      .num_bindings = 6,
+                      .num_bindings = 7,
                       .raster = &raster},
 };
 

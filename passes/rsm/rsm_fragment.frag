@@ -16,6 +16,10 @@ layout(set = 0, binding = 3, scalar) readonly buffer materials_buffer
 {
     surface_material materials[];
 };
+layout(set = 0, binding = 6, scalar) readonly buffer nodes_buffer
+{
+    surface_node nodes[];
+};
 #include "surface_faces.glsl"
 layout(location = 0) flat in uint triangle;
 layout(location = 1) in vec3 weights;
@@ -78,7 +82,9 @@ void main()
         albedo *= surface_texture_around(m.texture, ua + weights.y * u1 + weights.z * u2,
                                          vec2(scale, 0.0), vec2(0.0, scale));
     }
-    flux = surface_faces_something(p, world, n, args.extent) ? vec4(args.flux * share * albedo, 0.0) : vec4(0.0);
+    rng_state rng = rng_start(uint(gl_FragCoord.x), uint(gl_FragCoord.y), 0u);
+    bool faces = surface_faces_something(triangle, p, world, n, args.extent, rng);
+    flux = faces ? vec4(args.flux * share * albedo, 0.0) : vec4(0.0);
     position = vec4(p, area);
     normal = vec4(n, 0.0);
 }

@@ -249,10 +249,51 @@ static void many_suns(void **state)
     }
 }
 
+// A panel of 3 m, 2 m above a floor of 20 m and of 1 km that a spot under it shines on: what the floor sends
+// up, seen from below.
+static void reflections_of_large_floors(void **state)
+{
+    for (int large = 0; large < 2; large++) {
+        const float half = large ? 500 : 10;
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t m = solids_material(&scene, (float[]){0.8f, 0.8f, 0.8f}, BLACK);
+        solids_quad(&scene, (float[]){-half, 0, -half}, (float[]){0, 0, 2 * half},
+                    (float[]){2 * half, 0, 0}, m);
+        solids_box(&scene, (float[]){-1.5f, 2, -1.5f}, (float[]){1.5f, 2.1f, 1.5f}, 0, false, m);
+        scene.lights[scene.num_lights++] = (tyn_light){.kind = TYN_LIGHT_SPOT,
+                                                       .color = {20, 20, 20},
+                                                       .position = {0, 1.9f, 0},
+                                                       .direction = {0, -1, 0},
+                                                       .cos_inner = cosf(0.5f),
+                                                       .cos_outer = cosf(0.9f)};
+        solids_hierarchy(&scene, 4);
+        tyn_view view = {.width = SIZE, .height = SIZE};
+        view.camera = (tyn_camera){.projection = TYN_PERSPECTIVE,
+                                   .position = {0, 0.4f, 0},
+                                   .right = {1, 0, 0},
+                                   .up = {0, 0, 1},
+                                   .back = {0, -1, 0},
+                                   .yfov = 1};
+        picture pop, path;
+        tyn_device *dev = ((gpu_test *)*state)->dev;
+        picture_render(&pop, dev, "pop", &scene, &view, NULL, 1);
+        picture_render(&path, dev, "path", &scene, &view, NULL, 256);
+        picture_error e = picture_compare(&pop, &path, 8);
+        print_message("panel over a floor of %g m: rel_l1 %.1f %% (noise %.1f), bias %+.1f %%\n",
+                      2 * (double)half, 100 * e.rel_l1, 100 * e.noise, 100 * e.bias);
+        assert_true(e.rel_l1 < 0.12 && fabs(e.bias) < 0.1);
+        picture_free(&pop);
+        picture_free(&path);
+        tyn_scene_finish(&scene);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(floors), cmocka_unit_test(under_emitter),
-                                       cmocka_unit_test(rooms), cmocka_unit_test(dark_lamps),
-                                       cmocka_unit_test(many_suns)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(floors),    cmocka_unit_test(under_emitter),
+        cmocka_unit_test(rooms),     cmocka_unit_test(dark_lamps),
+        cmocka_unit_test(many_suns), cmocka_unit_test(reflections_of_large_floors)};
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

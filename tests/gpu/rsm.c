@@ -76,6 +76,7 @@ static sums run(gpu_test *t, const tyn_scene *scene, const struct light_block *l
                                         s->num_materials * sizeof *s->materials),
                 .textures = gpu_buffer(t, "textures", nothing, sizeof nothing),
                 .texels = gpu_buffer(t, "texels", nothing, sizeof nothing),
+                .nodes = gpu_buffer(t, "nodes", nothing, sizeof nothing), // all are tried
             },
     };
     tyn_rsm_refs rsm;
