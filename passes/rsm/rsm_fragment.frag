@@ -83,8 +83,11 @@ void main()
                                          vec2(scale, 0.0), vec2(0.0, scale));
     }
     rng_state rng = rng_start(uint(gl_FragCoord.x), uint(gl_FragCoord.y), 0u);
-    bool faces = surface_faces_something(triangle, p, world, n, args.extent, rng);
-    flux = faces ? vec4(args.flux * share * albedo, 0.0) : vec4(0.0);
+    flux = vec4(args.flux * share * albedo, 0.0);
+    if (any(greaterThan(flux.rgb, vec3(0.0))) && // no rays for what is black
+        !surface_faces_something(triangle, p, world, n, args.extent, rng)) {
+        flux = vec4(0.0);
+    }
     position = vec4(p, area);
     normal = vec4(n, 0.0);
 }
