@@ -1,6 +1,6 @@
 // job.h -- what a method is given and the helpers that every method uses.
 //
-// A method is one file: it turns a job into graph nodes. It is called for every frame and must be
+// A method turns a job into graph nodes. It is called for every frame and must be
 // cheap and deterministic: no GPU calls, no allocation.
 #pragma once
 #include <tyndall/context.h>
