@@ -1,5 +1,5 @@
 // cmd_bench.c -- `tyndall bench`: error against time, every method of a suite.
-#include "bench.h"
+#include "bench/bench.h"
 #include "stats.h"
 #include <math.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-// bench_suite.h -- what to measure: a suite file (docs/bench.md).
+// suite.h -- what to measure: a suite file (docs/bench.md).
 #pragma once
 #include "method_setup.h"
 #include "scene_setup.h"
@@ -42,6 +42,6 @@ typedef struct bench_suite {
 } bench_suite;
 
 // `path` NULL = the suite that is built in. `scenes` = folder of the sample scenes. Gives the exit code;
-// bench_suite_finish is due in any case.
+// suite_finish is due in any case.
 int bench_suite_load(app *a, const char *path, const char *scenes, bench_suite *suite);
 void bench_suite_finish(bench_suite *suite);

@@ -1,4 +1,4 @@
-// bench_measure.c -- error, times and nodes of a run; what a baseline needs for the same error.
+// measure.c -- error, times and nodes of a run; what a baseline needs for the same error.
 #include "bench.h"
 #include "timing.h"
 #include <math.h>

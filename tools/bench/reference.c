@@ -1,4 +1,4 @@
-// bench_reference.c -- converged pictures by `path`, kept in a cache by what they depend on.
+// reference.c -- converged pictures by `path`, kept in a cache by what they depend on.
 #include "bench.h"
 #include "cache.h"
 #include <math.h>

@@ -1,4 +1,4 @@
-// bench_print.c -- results of the bench for people and for programs.
+// print.c -- results of the bench for people and for programs.
 #include "bench.h"
 #include "stats.h"
 #include <math.h>

@@ -1,6 +1,6 @@
 // bench.h -- measurements of a suite: errors, times, memory, and what a baseline needs for the same error.
 #pragma once
-#include "bench_suite.h"
+#include "suite.h"
 #include "metrics.h"
 #include "renderer.h"
 #include <tyndall/io.h>

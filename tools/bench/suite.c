@@ -1,6 +1,6 @@
-// bench_suite.c -- what to measure: reads and checks a suite file (docs/bench.md).
-#include "bench_suite.h"
-#include "bench_default.h"
+// suite.c -- what to measure: reads and checks a suite file (docs/bench.md).
+#include "suite.h"
+#include "bench/suite_default.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
