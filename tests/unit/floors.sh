@@ -30,7 +30,7 @@ check()
         dir = file
         sub(/[^\/]*$/, "", dir)
         if (quoted && exists(dir name)) { return plain(dir name) }
-        n = split("engine/include/ engine/ ./ shaders/", roots, " ")
+        n = split("engine/include/ engine/ ./ shaders/" (file ~ /^tools\// ? " tools/" : ""), roots, " ")
         for (i = 1; i <= n; i++) {
             if (exists(roots[i] name)) {
                 sub(/^\.\//, "", roots[i])
@@ -41,6 +41,7 @@ check()
             return dir name # made from the shader beside it
         }
         if (quoted && exists(dir name ".in")) { return dir name }
+        if (quoted && file ~ /^tools\// && exists("tools/" name ".in")) { return "tools/" name }
         return ""
     }
     # The folder that is one unit of the layering.
