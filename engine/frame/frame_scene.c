@@ -397,6 +397,7 @@ static void build_surfaces(tyn_frame_scene *out, const tyn_surfaces *surfaces,
     out->num_textures = surfaces->num_textures;
     b->num_nodes = surfaces->num_nodes;
     out->below = data->below;
+    out->seen = data->seen;
     for (int r = 0; r < 3; r++) {
         for (int a = 0; a < 3; a++) {
             b->to_world[r][a] = (float)m->axes[a][r];

@@ -157,6 +157,7 @@ void tyn_surface_data_finish(tyn_surface_data *data)
     free(data->textures);
     free(data->texels);
     free(data->below);
+    free(data->seen);
     free(data->emitters);
     free(data->areas);
     memset(data, 0, sizeof *data);
@@ -177,7 +178,8 @@ tyn_result tyn_surface_data_update(tyn_surface_data *data, const tyn_surfaces *s
     if (hash && result == TYN_OK && surfaces->num_nodes) {
         data->num_nodes = surfaces->num_nodes;
         data->below = tyn_views_prepare(surfaces);
-        if (!data->below) {
+        data->seen = calloc(1, sizeof *data->seen);
+        if (!data->below || !data->seen) {
             tyn_log_print(log, TYN_LOG_ERROR, "no memory for %u nodes", surfaces->num_nodes);
             result = TYN_ERR_MEMORY;
         }

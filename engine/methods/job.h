@@ -32,7 +32,8 @@ typedef struct tyn_frame_scene {
     uint32_t num_textures;  // of their materials
     struct surface_block surfaces;
     const struct surface_range *below; // of every node (methods/views.h); NULL without a hierarchy
-    float m_from_world[16]; // rigid
+    struct tyn_views_seen *seen; // with `below`
+    float m_from_world[16];      // rigid
 } tyn_frame_scene;
 
 // Resources every method starts from; a {0} ref does not exist in this scene.

@@ -8,6 +8,8 @@
 #include <math.h>
 #include <string.h>
 
+_Static_assert(2 * TYN_SHADOW_VIEWS <= TYN_VIEWS_SEEN, "a place for each view of both passes");
+
 tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
                            tyn_shadow_refs *shadows)
 {
@@ -24,7 +26,8 @@ tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
     const tyn_surfaces *surfaces = &job->scene->surfaces;
     for (uint32_t i = 0; i < params.num_views; i++) {
         tyn_shadow_view *v = &params.views[i];
-        tyn_view_cull(surfaces, frame->below, (const tyn_vec4 *)v->args.clip, v->drawn);
+        tyn_view_cull_seen(frame->seen, i, surfaces, frame->below, (const tyn_vec4 *)v->args.clip,
+                           v->drawn);
     }
     tyn_ref refs[TYN_MAX_PORTS] = {
         [SHADOW_MAP_PORT_TRIANGLES] = job->refs.triangles,
@@ -106,7 +109,8 @@ tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_
                     v->light < TYN_SHADOW_SUNS ? &frame->suns[v->light]
                                                : &lamps[v->light - TYN_SHADOW_SUNS],
                     texel_of(l));
-        tyn_view_cull(surfaces, frame->below, v->args.clip, params.drawn[i]);
+        tyn_view_cull_seen(frame->seen, TYN_SHADOW_VIEWS + i, surfaces, frame->below, v->args.clip,
+                           params.drawn[i]);
     }
     rsm->num_tiles = params.num_tiles;
     memcpy(rsm->tiles, params.tiles, sizeof rsm->tiles);

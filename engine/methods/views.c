@@ -56,8 +56,8 @@ static void span_of(const double row[4], const tyn_surface_node *n, double *leas
     *least = *most = row[3];
     for (int a = 0; a < 3; a++) {
         const double lo = row[a] * (double)n->lo[a], hi = row[a] * (double)n->hi[a];
-        *least += fmin(lo, hi);
-        *most += fmax(lo, hi);
+        *least += lo < hi ? lo : hi; // calls of fmin take most of the time
+        *most += lo < hi ? hi : lo;
     }
 }
 
@@ -131,4 +131,21 @@ void tyn_view_cull(const tyn_surfaces *s, const struct surface_range *below, con
         const range *r = &found.list[i];
         drawn[i] = (struct surface_range){r->first, r->end - r->first};
     }
+}
+
+void tyn_view_cull_seen(tyn_views_seen *seen, uint32_t view, const tyn_surfaces *s,
+                        const struct surface_range *below, const tyn_vec4 clip[4],
+                        struct surface_range drawn[TYN_SURFACE_RANGES])
+{
+    if (!seen || view >= TYN_VIEWS_SEEN) {
+        tyn_view_cull(s, below, clip, drawn);
+        return;
+    }
+    struct tyn_view_seen *v = &seen->views[view];
+    if (!v->known || memcmp(v->clip, clip, sizeof v->clip) != 0) {
+        memcpy(v->clip, clip, sizeof v->clip);
+        tyn_view_cull(s, below, clip, v->drawn);
+        v->known = true;
+    }
+    memcpy(drawn, v->drawn, sizeof v->drawn);
 }

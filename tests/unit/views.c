@@ -109,6 +109,46 @@ static void nothing_is_lost(void **state)
     tyn_scene_finish(&scene);
 }
 
+static void remembered(void **state)
+{
+    (void)state;
+    tyn_scene scene;
+    fill(&scene);
+    tyn_surfaces *s = &scene.surfaces;
+    io_log log;
+    io_log_init(&log);
+    assert_int_equal(tyn_surfaces_build_nodes(s, &log.log), TYN_OK);
+    struct surface_range *below = tyn_views_prepare(s);
+    struct surface_range drawn[TYN_SURFACE_RANGES], exact[TYN_SURFACE_RANGES];
+    tyn_views_seen *seen = calloc(1, sizeof *seen);
+    assert_true(below && seen);
+    const float eyes[2][3] = {{0, 1, 0}, {5.5f, 2, 1}};
+    // Of two views the second one changes, then both are as they were.
+    const int eye_of[4][2] = {{0, 0}, {0, 1}, {0, 1}, {0, 0}};
+    for (int frame = 0; frame < 4; frame++) {
+        for (uint32_t v = 0; v < 2; v++) {
+            tyn_vec4 clip[4];
+            face_of((int)v, eyes[eye_of[frame][v]], clip);
+            tyn_view_cull(s, below, (const tyn_vec4 *)clip, exact);
+            tyn_view_cull_seen(seen, v, s, below, (const tyn_vec4 *)clip, drawn);
+            assert_memory_equal(drawn, exact, sizeof exact);
+        }
+    }
+    // Nothing is looked for again: a planted range stays.
+    tyn_vec4 clip[4];
+    face_of(0, eyes[0], clip);
+    seen->views[0].drawn[0].count = 1;
+    tyn_view_cull_seen(seen, 0, s, below, (const tyn_vec4 *)clip, drawn);
+    assert_int_equal(drawn[0].count, 1);
+    // More views than there are places for.
+    tyn_view_cull(s, below, (const tyn_vec4 *)clip, exact);
+    tyn_view_cull_seen(seen, TYN_VIEWS_SEEN, s, below, (const tyn_vec4 *)clip, drawn);
+    assert_memory_equal(drawn, exact, sizeof exact);
+    free(seen);
+    free(below);
+    tyn_scene_finish(&scene);
+}
+
 static void ranges_in_any_order(void **state)
 {
     (void)state;
@@ -150,6 +190,7 @@ int main(void)
         return 77;
     }
     const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_is_lost),
+                                       cmocka_unit_test(remembered),
                                        cmocka_unit_test(ranges_in_any_order)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
