@@ -1,0 +1,268 @@
+// regime.c -- the regime of scenes whose figures are known in closed form.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+#include "regime.h"
+
+#define NEAR(value, expected, relative)                                                            \
+    assert_float_equal(value, expected, (relative) * fabs(expected) + 1e-12)
+static const double pi = 3.14159265358979323846;
+
+static void one_shape(tyn_scene *scene, tyn_shape_kind kind, float x, float y, float z)
+{
+    tyn_scene_init(scene);
+    scene->num_media = 1;
+    scene->media[0] = (tyn_medium){.sigma_s = {1, 2, 3},
+                                   .sigma_a = {0.5f, 0.5f, 0.5f},
+                                   .g = {0.5f, 0.5f, 0.8f},
+                                   .density_scale = 2,
+                                   .volume = -1};
+    scene->num_shapes = 1;
+    scene->shapes[0] =
+        (tyn_shape){.kind = kind, .to_world = {x, 0, 0, 0, 0, y, 0, 0, 0, 0, z, 0, 1, 2, 3, 1}};
+}
+
+static regime read(const tyn_scene *scene)
+{
+    regime r;
+    assert_true(regime_of(scene, NULL, &r));
+    return r;
+}
+
+// sigma_t 3, 5, 7; mean 5. sigma_s 2, 4, 6; transport: 3 - 1, 5 - 2, 7 - 4.8; mean 2.4.
+static void homogeneous_box(void **state)
+{
+    (void)state;
+    tyn_scene scene;
+    one_shape(&scene, TYN_SHAPE_BOX, 2, 4, 1);
+    const regime r = read(&scene);
+    for (int c = 0; c < 3; c++) { // ways of 2, 4 and 1 m, as many as there are columns: 64 x 16, ...
+        NEAR(r.depth_rgb[c], (3 + 2 * c) * r.optical_depth / 5, 1e-9);
+        NEAR(r.albedo_rgb[c], (2 + 2.0 * c) / (3 + 2 * c), 1e-6);
+    }
+    NEAR(r.depth_axis[0], 10, 1e-9);
+    NEAR(r.depth_axis[1], 20, 1e-9);
+    NEAR(r.depth_axis[2], 5, 1e-9);
+    NEAR(r.depth_densest, 20, 1e-9);
+    NEAR(r.depth_deepest, 20, 1e-9);
+    // Cauchy: the mean over ways along the axes is 3 V / (sum of the faces' areas).
+    NEAR(r.optical_depth, 5 * 3 * 8.0 / (4 + 2 + 8), 1e-9);
+    NEAR(r.albedo, 4.0 / 5, 1e-6);
+    NEAR(r.g, (2 * 0.5 + 4 * 0.5 + 6 * 0.8) / 12, 1e-6);
+    NEAR(r.mean_free_path, 0.2, 1e-9);
+    NEAR(r.transport_mean_free_path, 1 / 2.4, 1e-6);
+    NEAR(r.cell, 4.0 / 32, 1e-9);
+    NEAR(r.cell_depth, 2.4 * 4 / 32, 1e-6);
+    NEAR(r.cell_depth_max, 2.4 * 4 / 32, 1e-6);
+    NEAR(r.contrast, 1, 1e-9);
+    NEAR(r.fill, 1, 1e-9);
+    assert_int_equal(r.channels, 3);
+    assert_false(r.periodic);
+    tyn_scene_finish(&scene);
+}
+
+// Mean chord 4 R / 3, longest 2 R, pi / 6 of the box.
+static void homogeneous_sphere(void **state)
+{
+    (void)state;
+    tyn_scene scene;
+    one_shape(&scene, TYN_SHAPE_SPHERE, 2, 2, 2);
+    const regime r = read(&scene);
+    NEAR(r.optical_depth, 5 * 4.0 / 3, 0.01);
+    NEAR(r.depth_deepest, 10, 0.01);
+    NEAR(r.fill, pi / 6, 0.01);
+    NEAR(r.mean_free_path, 0.2, 1e-9);
+    NEAR(r.contrast, 1, 1e-9);
+    tyn_scene_finish(&scene);
+}
+
+// The figures of a medium do not depend on how it stands in the world.
+static void turned_box(void **state)
+{
+    (void)state;
+    tyn_scene scene;
+    one_shape(&scene, TYN_SHAPE_BOX, 1, 1, 1);
+    const float c = 0.8f, s = 0.6f;
+    const float turned[16] = {2 * c, 0, 2 * s, 0, 0, 4, 0, 0, -s, 0, c, 0, 0, 0, 0, 1};
+    memcpy(scene.shapes[0].to_world, turned, sizeof turned);
+    const regime r = read(&scene);
+    NEAR(r.depth_axis[0], 10, 1e-6);
+    NEAR(r.depth_axis[1], 20, 1e-6);
+    NEAR(r.depth_axis[2], 5, 1e-6);
+    NEAR(r.fill, 1, 1e-9);
+    tyn_scene_finish(&scene);
+}
+
+// Two boxes side by side, one three times as dense: along x a way crosses both.
+static void two_densities(void **state)
+{
+    (void)state;
+    tyn_scene scene;
+    one_shape(&scene, TYN_SHAPE_BOX, 1, 1, 1);
+    scene.media[1] = scene.media[0];
+    scene.media[1].density_scale = 6;
+    scene.num_media = scene.num_shapes = 2;
+    scene.shapes[1] = scene.shapes[0];
+    scene.shapes[1].medium = 1;
+    scene.shapes[1].to_world[12] += 1;
+    const regime r = read(&scene);
+    NEAR(r.depth_axis[0], 5 + 15, 1e-6);
+    NEAR(r.depth_axis[1], (5 + 15) / 2.0, 1e-6);
+    // 5 and 15 by the chances 1 : 3 of meeting light
+    NEAR(r.mean_free_path, 1 / (0.25 * 5 + 0.75 * 15), 1e-6);
+    NEAR(r.contrast, 1.5, 1e-6);
+    NEAR(r.cell_depth_max, 7.2 * 2 / 32, 1e-6);
+    tyn_scene_finish(&scene);
+}
+
+// A grid whose density grows with x: 0.5, 1.5, 2.5, ... at the centres of 8 voxels.
+static void grid(void **state)
+{
+    (void)state;
+    tyn_scene scene;
+    one_shape(&scene, TYN_SHAPE_BOX, 1, 1, 1);
+    scene.volumes = calloc(1, sizeof *scene.volumes);
+    scene.num_volumes = 1;
+    tyn_volume *v = &scene.volumes[0];
+    *v = (tyn_volume){.size = {8, 1, 1}, .max_density = 7.5f, .data = calloc(8, sizeof(float))};
+    for (int i = 0; i < 8; i++) {
+        v->data[i] = (float)i + 0.5f;
+    }
+    scene.media[0].volume = 0;
+    const regime r = read(&scene);
+    NEAR(r.depth_axis[0], 5 * 4, 1e-6);
+    NEAR(r.depth_axis[2], 5 * 4, 1e-6);
+    NEAR(r.depth_deepest, 5 * 7.5, 1e-6);
+    NEAR(r.contrast, 7.5 / 4, 1e-6);
+    assert_int_equal(r.voxels, 8);
+    tyn_scene_finish(&scene);
+}
+
+// A slab that goes on for ever has no depth along it.
+static void periodic_slab(void **state)
+{
+    (void)state;
+    tyn_scene scene;
+    one_shape(&scene, TYN_SHAPE_BOX, 8, 2, 8);
+    scene.shapes[0].repeat[0] = scene.shapes[0].repeat[2] = true;
+    const regime r = read(&scene);
+    NEAR(r.optical_depth, 10, 1e-6);
+    NEAR(r.depth_densest, 10, 1e-6);
+    assert_true(r.periodic);
+    tyn_scene_finish(&scene);
+}
+
+// On a box of 2 x 4 x 1 m: a sun along y, an even sky, a lamp inside, another far off.
+static void lights(void **state)
+{
+    (void)state;
+    tyn_scene scene;
+    one_shape(&scene, TYN_SHAPE_BOX, 2, 4, 1);
+    scene.num_lights = 3;
+    scene.lights[0] = (tyn_light){
+        .kind = TYN_LIGHT_DIRECTIONAL, .color = {3, 3, 3}, .direction = {0, -1, 0}};
+    scene.lights[1] =
+        (tyn_light){.kind = TYN_LIGHT_POINT, .color = {1, 1, 1}, .position = {1, 2, 3}};
+    scene.lights[2] = (tyn_light){
+        .kind = TYN_LIGHT_POINT, .color = {1000, 1000, 1000}, .position = {1, 2, 3003}};
+    scene.environment =
+        (tyn_environment){.present = true, .radiance = {0.5f, 0.5f, 0.5f}, .strength = 2};
+    scene.media[0].emission[1] = 0.25f;
+    const regime r = read(&scene);
+    const double r2 = 0.25 * (4 + 16 + 1);
+    const double power[REGIME_NUM_LIGHTS] = {
+        [REGIME_SUN] = 3 * 2,
+        [REGIME_SKY] = pi * 28,
+        [REGIME_LAMPS] = 4 * pi + 1000 * 2 * pi * (1 - sqrt(1 - r2 / 9e6)),
+        [REGIME_EMISSION] = 4 * pi * 0.7152 * 0.5 * 8,
+    };
+    double all = 0, sum = 0;
+    for (int i = 0; i < REGIME_NUM_LIGHTS; i++) {
+        all += power[i];
+    }
+    for (int i = 0; i < REGIME_NUM_LIGHTS; i++) {
+        assert_float_equal(r.share[i], power[i] / all, 1e-6);
+        sum += r.share[i];
+    }
+    NEAR(sum, 1, 1e-9);
+    assert_int_equal(r.num_suns, 1);
+    assert_int_equal(r.num_lamps, 2);
+    tyn_scene_finish(&scene);
+}
+
+static void camera(void **state)
+{
+    (void)state;
+    tyn_scene scene;
+    regime r;
+    one_shape(&scene, TYN_SHAPE_SPHERE, 2, 2, 2);
+    tyn_camera look = {.projection = TYN_PERSPECTIVE, .position = {1, 2, 3.9f}};
+    assert_true(regime_of(&scene, &look, &r) && r.camera_inside);
+    look.position[0] += 0.9f; // in the corner of the box, not in the sphere
+    assert_true(regime_of(&scene, &look, &r) && !r.camera_inside);
+    tyn_scene_finish(&scene);
+}
+
+// Nothing at all, black media and flat boxes give finite figures.
+static void degenerate(void **state)
+{
+    (void)state;
+    tyn_scene scene;
+    tyn_scene_init(&scene);
+    regime r = read(&scene);
+    assert_true(r.optical_depth == 0 && r.mean_free_path == 0);
+    one_shape(&scene, TYN_SHAPE_BOX, 1, 1, 1);
+    scene.media[0].density_scale = 0;
+    r = read(&scene);
+    assert_true(r.optical_depth == 0 && r.albedo == 0 && r.cell_depth == 0 && r.contrast == 0);
+    one_shape(&scene, TYN_SHAPE_BOX, 1e5f, 1e-4f, 1);
+    r = read(&scene);
+    NEAR(r.depth_axis[1], 5e-4, 1e-5);
+    assert_true(isfinite(r.optical_depth) && isfinite(r.cell_depth_max));
+    tyn_scene_finish(&scene);
+}
+
+// JSON and back: four digits.
+static void as_json(void **state)
+{
+    (void)state;
+    tyn_scene scene;
+    one_shape(&scene, TYN_SHAPE_BOX, 2, 4, 1);
+    scene.num_lights = 1;
+    scene.lights[0] = (tyn_light){
+        .kind = TYN_LIGHT_DIRECTIONAL, .color = {3, 3, 3}, .direction = {0, -1, 0}};
+    const regime r = read(&scene);
+    regime back;
+    cJSON *made = regime_json(&r);
+    char *text = cJSON_Print(made);
+    cJSON *json = cJSON_Parse(text);
+    assert_true(regime_read(json, &back));
+    NEAR(back.optical_depth, r.optical_depth, 1e-3);
+    NEAR(back.depth_rgb[2], r.depth_rgb[2], 1e-3);
+    NEAR(back.cell_depth_max, r.cell_depth_max, 1e-3);
+    assert_true(back.share[REGIME_SUN] == 1 && back.num_suns == 1 && back.channels == 3);
+    assert_string_equal(
+        cJSON_GetArrayItem(cJSON_GetObjectItem(json, "lights"), 0)->valuestring, "sun");
+    assert_false(regime_read(NULL, &back));
+    free(text);
+    cJSON_Delete(made);
+    cJSON_Delete(json);
+    tyn_scene_finish(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(homogeneous_box), cmocka_unit_test(homogeneous_sphere),
+        cmocka_unit_test(turned_box),      cmocka_unit_test(two_densities),
+        cmocka_unit_test(grid),            cmocka_unit_test(periodic_slab),
+        cmocka_unit_test(lights),          cmocka_unit_test(camera),
+        cmocka_unit_test(degenerate),      cmocka_unit_test(as_json),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

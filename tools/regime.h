@@ -1,0 +1,67 @@
+// regime.h -- the regime of a scene: the figures that decide which method suits it and what it costs.
+//
+// Read from the scene's media, lights and surfaces alone, without a device. Media are sampled at 64 places
+// along the longest side of their box, always the same ones, so that large grids cost no more than small
+// ones.
+#pragma once
+#include <cjson/cJSON.h>
+#include <tyndall/scene.h>
+
+typedef enum regime_light {
+    REGIME_SUN = 0,  // directional lights, and the suns of a map
+    REGIME_SKY,      // a constant environment
+    REGIME_MAP,      // an environment map without its suns
+    REGIME_LAMPS,    // point and spot lights
+    REGIME_EMISSION, // media that emit
+    REGIME_SURFACES, // surfaces that emit
+    REGIME_NUM_LIGHTS,
+} regime_light;
+
+// Cells of the lattice of `pop` along the longest side, as it is without settings.
+enum { REGIME_LATTICE_CELLS = 32 };
+
+// Depths and paths are 0 where the scene has no medium.
+typedef struct regime {
+    // Optical depth of straight ways through the medium, along the axes of its box (a lone shape's own, else
+    // the world's); those that miss it do not count, nor do axes along which it repeats.
+    double optical_depth;   // mean over all of them and over R, G, B
+    double depth_rgb[3];    // the same by channel
+    double depth_axis[3];   // mean over those along each axis
+    double depth_densest;   // the greatest of depth_axis
+    double depth_deepest;   // of any single one
+    double albedo;          // of what is met: scattering / extinction, over the whole medium
+    double albedo_rgb[3];
+    double g, g_rgb[3];     // mean cosine, weighted by scattering
+    // Weighted by extinction: at the places where light meets the medium.
+    double mean_free_path;           // 1 / sigma_t, m
+    double transport_mean_free_path; // 1 / (sigma_a + (1 - g) sigma_s), m
+    double cell;                     // side of a lattice cell, m
+    double cell_depth, cell_depth_max; // transport mean free paths across a cell: where light meets the
+                                       // medium, and in the densest cell
+    double contrast;   // densest place over the mean of where there is medium; 1: homogeneous
+    double fill;       // share of the box that holds medium
+    uint32_t channels; // 1: coefficients are grey, 3
+    uint64_t voxels;   // of all grids
+    bool periodic;     // a shape repeats
+
+    // Light. Shares of the power that comes into the box (or leaves emitters within it), about.
+    double share[REGIME_NUM_LIGHTS];
+    uint32_t num_suns, num_lamps;
+
+    uint32_t num_triangles;
+    bool camera_inside; // a perspective camera stands in the medium
+} regime;
+
+extern const char *const regime_light_names[REGIME_NUM_LIGHTS]; // "sun", "sky", "map", "lamps", ...
+
+// Of a scene that has passed tyn_scene_check. `camera` NULL: the scene's first, else the one it is framed
+// with. False: out of memory.
+bool regime_of(const tyn_scene *scene, const tyn_camera *camera, regime *r);
+
+// Of light that has scattered at all, about which part has scattered more than once: albedo x the chance
+// that light which has scattered meets the medium again, D / (1 + D) with the mean depth D (Wigner's
+// rational approximation of the escape from a lump).
+double regime_multiple(const regime *r);
+
+cJSON *regime_json(const regime *r); // the "regime" of report.json
+bool regime_read(const cJSON *json, regime *r); // and back; what is missing is 0. False: no regime
