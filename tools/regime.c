@@ -139,9 +139,10 @@ static double density_at(const tyn_volume *v, const double p[3])
         t[a] = x - (double)lo[a];
     }
     for (int k = 0; k < 8; k++) {
-        const size_t x = k & 1 ? hi[0] : lo[0], y = k & 2 ? hi[1] : lo[1], z = k & 4 ? hi[2] : lo[2];
-        const double weight = (k & 1 ? t[0] : 1 - t[0]) * (k & 2 ? t[1] : 1 - t[1]) *
-                              (k & 4 ? t[2] : 1 - t[2]);
+        const size_t x = k & 1 ? hi[0] : lo[0], y = k & 2 ? hi[1] : lo[1],
+                     z = k & 4 ? hi[2] : lo[2];
+        const double weight =
+            (k & 1 ? t[0] : 1 - t[0]) * (k & 2 ? t[1] : 1 - t[1]) * (k & 4 ? t[2] : 1 - t[2]);
         sum += weight * v->data[(z * v->size[1] + y) * v->size[0] + x];
     }
     return sum;
@@ -165,7 +166,8 @@ static double shape_density(const media *md, uint32_t i, const double world[3])
     if (shape->kind == TYN_SHAPE_SPHERE && r2 > 0.25) {
         return 0;
     }
-    const double density = medium->volume < 0 ? 1 : density_at(&md->scene->volumes[medium->volume], p);
+    const double density =
+        medium->volume < 0 ? 1 : density_at(&md->scene->volumes[medium->volume], p);
     return density * medium->density_scale;
 }
 
@@ -198,8 +200,8 @@ typedef struct columns {
 
 typedef struct sums {
     double sigma_s[3], sigma_t[3], g[3], emission[3];
-    double collisions;            // of the mean over channels, as those below
-    double squared, transport;    // weighted by extinction
+    double collisions;         // of the mean over channels, as those below
+    double squared, transport; // weighted by extinction
     double densest;
     size_t inside, all;
 } sums;
@@ -364,13 +366,12 @@ static double lamp_power(const box *b, const tyn_light *light)
 {
     double to[3], radius2 = 0;
     for (int a = 0; a < 3; a++) {
-        const double middle =
-            b->origin[a] + 0.5 * (b->edge[0][a] + b->edge[1][a] + b->edge[2][a]);
+        const double middle = b->origin[a] + 0.5 * (b->edge[0][a] + b->edge[1][a] + b->edge[2][a]);
         to[a] = middle - light->position[a];
         radius2 += 0.25 * b->length[a] * b->length[a];
     }
-    const double distance2 = dot(to, to), intensity[3] = {light->color[0], light->color[1],
-                                                          light->color[2]};
+    const double distance2 = dot(to, to),
+                 intensity[3] = {light->color[0], light->color[1], light->color[2]};
     double angle = 4 * pi;
     if (distance2 > radius2) {
         angle = 2 * pi * (1 - sqrt(1 - radius2 / distance2));
@@ -495,7 +496,8 @@ static bool camera_in_medium(const tyn_scene *scene, const media *md, const tyn_
 
 bool regime_of(const tyn_scene *scene, const tyn_camera *camera, regime *r)
 {
-    *r = (regime){.channels = all_grey(scene) ? 1 : 3, .num_triangles = scene->surfaces.num_triangles};
+    *r = (regime){.channels = all_grey(scene) ? 1 : 3,
+                  .num_triangles = scene->surfaces.num_triangles};
     media *md = malloc(sizeof *md);
     columns *col = calloc(1, sizeof *col);
     if (!md || !col) {

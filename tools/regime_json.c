@@ -1,14 +1,21 @@
 // regime_json.c -- a scene's regime as JSON, and back.
 #include "regime.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 const char *const regime_light_names[REGIME_NUM_LIGHTS] = {"sun",   "sky",      "map",
                                                            "lamps", "emission", "surfaces"};
 
 // Where each figure stands: one table for both ways.
-#define FIGURE(name, field) {name, offsetof(regime, field), 1}
-#define FIGURES(name, field) {name, offsetof(regime, field), 3}
+#define FIGURE(name, field)                                                                        \
+    {                                                                                              \
+        name, offsetof(regime, field), 1                                                           \
+    }
+#define FIGURES(name, field)                                                                       \
+    {                                                                                              \
+        name, offsetof(regime, field), 3                                                           \
+    }
 static const struct {
     const char *name;
     size_t offset;

@@ -10,7 +10,7 @@
 #include "regime.h"
 
 #define NEAR(value, expected, relative)                                                            \
-    assert_float_equal(value, expected, (relative) * fabs(expected) + 1e-12)
+    assert_float_equal(value, expected, (relative)*fabs(expected) + 1e-12)
 static const double pi = 3.14159265358979323846;
 
 static void one_shape(tyn_scene *scene, tyn_shape_kind kind, float x, float y, float z)
@@ -41,7 +41,8 @@ static void homogeneous_box(void **state)
     tyn_scene scene;
     one_shape(&scene, TYN_SHAPE_BOX, 2, 4, 1);
     const regime r = read(&scene);
-    for (int c = 0; c < 3; c++) { // ways of 2, 4 and 1 m, as many as there are columns: 64 x 16, ...
+    for (int c = 0; c < 3;
+         c++) { // ways of 2, 4 and 1 m, as many as there are columns: 64 x 16, ...
         NEAR(r.depth_rgb[c], (3 + 2 * c) * r.optical_depth / 5, 1e-9);
         NEAR(r.albedo_rgb[c], (2 + 2.0 * c) / (3 + 2 * c), 1e-6);
     }
@@ -164,12 +165,12 @@ static void lights(void **state)
     tyn_scene scene;
     one_shape(&scene, TYN_SHAPE_BOX, 2, 4, 1);
     scene.num_lights = 3;
-    scene.lights[0] = (tyn_light){
-        .kind = TYN_LIGHT_DIRECTIONAL, .color = {3, 3, 3}, .direction = {0, -1, 0}};
+    scene.lights[0] =
+        (tyn_light){.kind = TYN_LIGHT_DIRECTIONAL, .color = {3, 3, 3}, .direction = {0, -1, 0}};
     scene.lights[1] =
         (tyn_light){.kind = TYN_LIGHT_POINT, .color = {1, 1, 1}, .position = {1, 2, 3}};
-    scene.lights[2] = (tyn_light){
-        .kind = TYN_LIGHT_POINT, .color = {1000, 1000, 1000}, .position = {1, 2, 3003}};
+    scene.lights[2] =
+        (tyn_light){.kind = TYN_LIGHT_POINT, .color = {1000, 1000, 1000}, .position = {1, 2, 3003}};
     scene.environment =
         (tyn_environment){.present = true, .radiance = {0.5f, 0.5f, 0.5f}, .strength = 2};
     scene.media[0].emission[1] = 0.25f;
@@ -234,8 +235,8 @@ static void as_json(void **state)
     tyn_scene scene;
     one_shape(&scene, TYN_SHAPE_BOX, 2, 4, 1);
     scene.num_lights = 1;
-    scene.lights[0] = (tyn_light){
-        .kind = TYN_LIGHT_DIRECTIONAL, .color = {3, 3, 3}, .direction = {0, -1, 0}};
+    scene.lights[0] =
+        (tyn_light){.kind = TYN_LIGHT_DIRECTIONAL, .color = {3, 3, 3}, .direction = {0, -1, 0}};
     const regime r = read(&scene);
     regime back;
     cJSON *made = regime_json(&r);
@@ -246,8 +247,8 @@ static void as_json(void **state)
     NEAR(back.depth_rgb[2], r.depth_rgb[2], 1e-3);
     NEAR(back.cell_depth_max, r.cell_depth_max, 1e-3);
     assert_true(back.share[REGIME_SUN] == 1 && back.num_suns == 1 && back.channels == 3);
-    assert_string_equal(
-        cJSON_GetArrayItem(cJSON_GetObjectItem(json, "lights"), 0)->valuestring, "sun");
+    assert_string_equal(cJSON_GetArrayItem(cJSON_GetObjectItem(json, "lights"), 0)->valuestring,
+                        "sun");
     assert_false(regime_read(NULL, &back));
     free(text);
     cJSON_Delete(made);
@@ -258,11 +259,16 @@ static void as_json(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(homogeneous_box), cmocka_unit_test(homogeneous_sphere),
-        cmocka_unit_test(turned_box),      cmocka_unit_test(two_densities),
-        cmocka_unit_test(grid),            cmocka_unit_test(periodic_slab),
-        cmocka_unit_test(lights),          cmocka_unit_test(camera),
-        cmocka_unit_test(degenerate),      cmocka_unit_test(as_json),
+        cmocka_unit_test(homogeneous_box),
+        cmocka_unit_test(homogeneous_sphere),
+        cmocka_unit_test(turned_box),
+        cmocka_unit_test(two_densities),
+        cmocka_unit_test(grid),
+        cmocka_unit_test(periodic_slab),
+        cmocka_unit_test(lights),
+        cmocka_unit_test(camera),
+        cmocka_unit_test(degenerate),
+        cmocka_unit_test(as_json),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
