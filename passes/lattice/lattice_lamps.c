@@ -62,7 +62,7 @@ static const tyn_binding cells_bindings[] = {
     {LATTICE_LAMPS_PORT_SHADOWS, TYN_USE_STORAGE_READ},
 };
 
-static const tyn_binding vpl_bindings[] = {
+static const tyn_binding vpls_bindings[] = {
     {LATTICE_LAMPS_PORT_MEDIUM, TYN_USE_UNIFORM},
     {LATTICE_LAMPS_PORT_RADIALS, TYN_USE_UNIFORM},
     {LATTICE_LAMPS_PORT_COLUMN, TYN_USE_SAMPLED},
@@ -110,47 +110,17 @@ static const tyn_binding source_bindings[] = {
     {LATTICE_LAMPS_PORT_VPL_LIGHT, TYN_USE_STORAGE_WRITE},
 };
 
+#define KERNEL(step, code, x, y, z, specs)                                                         \
+    .name = #step, .spirv = code##_spirv, .spirv_size = sizeof code##_spirv,                       \
+    .args_size = sizeof(struct lattice_lamps_args), .local_size = {x, y, z},                       \
+    .bindings = step##_bindings, .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, \
+    .num_spec = specs
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_CELLS] = {"cells",
-                      lattice_lamps_cells_spirv,
-                      sizeof lattice_lamps_cells_spirv,
-                      sizeof(struct lattice_lamps_args),
-                      {8, 4, 2},
-                      cells_bindings,
-                      sizeof cells_bindings / sizeof cells_bindings[0],
-                      4},
-    [KERNEL_VPLS] = {"vpls",
-                     lattice_lamps_vpls_spirv,
-                     sizeof lattice_lamps_vpls_spirv,
-                     sizeof(struct lattice_lamps_args),
-                     {8, 4, 2},
-                     vpl_bindings,
-                     sizeof vpl_bindings / sizeof vpl_bindings[0],
-                     3},
-    [KERNEL_NEAR] = {"near",
-                     lattice_lamps_near_spirv,
-                     sizeof lattice_lamps_near_spirv,
-                     sizeof(struct lattice_lamps_args),
-                     {8, 4, 2},
-                     near_bindings,
-                     sizeof near_bindings / sizeof near_bindings[0],
-                     4},
-    [KERNEL_SUM] = {"sum",
-                    lattice_lamps_sum_spirv,
-                    sizeof lattice_lamps_sum_spirv,
-                    sizeof(struct lattice_lamps_args),
-                    {LATTICE_SUN_GROUP, 1, 1},
-                    sum_bindings,
-                    8,
-                    1},
-    [KERNEL_SOURCE] = {"source",
-                       lattice_lamps_spirv,
-                       sizeof lattice_lamps_spirv,
-                       sizeof(struct lattice_lamps_args),
-                       {8, 4, 2},
-                       source_bindings,
-                       6,
-                       1},
+    [KERNEL_CELLS] = {KERNEL(cells, lattice_lamps_cells, 8, 4, 2, 4)},
+    [KERNEL_VPLS] = {KERNEL(vpls, lattice_lamps_vpls, 8, 4, 2, 3)},
+    [KERNEL_NEAR] = {KERNEL(near, lattice_lamps_near, 8, 4, 2, 4)},
+    [KERNEL_SUM] = {KERNEL(sum, lattice_lamps_sum, LATTICE_SUN_GROUP, 1, 1, 1)},
+    [KERNEL_SOURCE] = {KERNEL(source, lattice_lamps, 8, 4, 2, 1)},
 };
 
 static uint32_t num_groups(const tyn_lattice_lamps_params *p)

@@ -30,7 +30,7 @@ static const tyn_port ports[WALL_LIGHT_NUM_PORTS] = {
                                "radiance that the walls of a cell send out, W/(m^2 sr)"},
 };
 
-static const tyn_binding vpl_bindings[] = {
+static const tyn_binding vpls_bindings[] = {
     {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},
     {WALL_LIGHT_PORT_RADIALS, TYN_USE_STORAGE_READ},
     {WALL_LIGHT_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED},
@@ -45,7 +45,7 @@ static const tyn_binding vpl_bindings[] = {
     {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_RW},
 };
 
-static const tyn_binding sun_bindings[] = {
+static const tyn_binding suns_bindings[] = {
     {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},
     {WALL_LIGHT_PORT_LIGHTS, TYN_USE_STORAGE_READ},
     {WALL_LIGHT_PORT_BEAMS, TYN_USE_STORAGE_READ},
@@ -61,23 +61,16 @@ static const tyn_binding sun_bindings[] = {
     {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},
 };
 
-static const tyn_kernel kernels[] = {
-    {"suns",
-     wall_light_suns_spirv,
-     sizeof wall_light_suns_spirv,
-     sizeof(struct wall_light_args),
-     {8, 4, 2},
-     sun_bindings,
-     sizeof sun_bindings / sizeof sun_bindings[0],
-     1},
-    {"vpls",
-     wall_light_vpls_spirv,
-     sizeof wall_light_vpls_spirv,
-     sizeof(struct wall_light_args),
-     {8, 4, 2},
-     vpl_bindings,
-     sizeof vpl_bindings / sizeof vpl_bindings[0],
-     2},
+enum { SUNS = 0, VPLS, NUM_KERNELS };
+
+#define KERNEL(step, specs)                                                                        \
+    .name = #step, .spirv = wall_light_##step##_spirv,                                             \
+    .spirv_size = sizeof wall_light_##step##_spirv, .args_size = sizeof(struct wall_light_args),   \
+    .local_size = {8, 4, 2}, .bindings = step##_bindings,                                          \
+    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [SUNS] = {KERNEL(suns, 1)},
+    [VPLS] = {KERNEL(vpls, 2)},
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -103,12 +96,12 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_extent cells = {p->dims[0], p->dims[1], p->dims[2]};
     if (p->num_suns > 0) {
         tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = 0, .cells = cells, .args = &args, .spec = &p->mode});
+            r, &(tyn_dispatch){.kernel = SUNS, .cells = cells, .args = &args, .spec = &p->mode});
     }
     if (tyn_rec_has(r, WALL_LIGHT_PORT_RADIALS)) {
         const uint32_t spec[2] = {p->mode, p->num_suns > 0};
-        tyn_rec_dispatch(r,
-                         &(tyn_dispatch){.kernel = 1, .cells = cells, .args = &args, .spec = spec});
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = VPLS, .cells = cells, .args = &args, .spec = spec});
     }
     tyn_rec_work(r, "cells", (double)p->dims[0] * p->dims[1] * p->dims[2]);
 }
@@ -121,7 +114,7 @@ const tyn_pass_desc tyn_pass_wall_light = {
     .ports = ports,
     .num_ports = WALL_LIGHT_NUM_PORTS,
     .kernels = kernels,
-    .num_kernels = 2,
+    .num_kernels = NUM_KERNELS,
     .params_size = sizeof(tyn_wall_light_params),
     .declare = declare,
     .record = record,
