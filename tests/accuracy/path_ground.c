@@ -4,30 +4,12 @@
 // Asserted: net flux and fluence at five depths, and leaving radiance, within 3 standard errors (4 for the largest of
 // all), RMS of z below 1.3. TYN_LONG=N: all rows, N times the samples.
 #include "path_run.h"
-#include "gpu_test.h"
 #include "npy.h"
 #include "solids.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static path_run runs;
-
-static int setup(void **state)
-{
-    int result = gpu_setup(state);
-    if (result == 0) {
-        path_run_open(&runs, ((gpu_test *)*state)->dev);
-    }
-    return result;
-}
-
-static int teardown(void **state)
-{
-    path_run_close(&runs);
-    return gpu_teardown(state);
-}
 
 typedef struct slab {
     float tau, g, albedo, mu0;
@@ -83,7 +65,7 @@ static bool chosen(const slab *s)
 
 static void fluxes(void **state)
 {
-    (void)state;
+    path_run *runs = *state;
     FILE *f = open_table("reference/slab_ground_flux.csv");
     if (!f) {
         skip();
@@ -114,7 +96,7 @@ static void fluxes(void **state)
         }
         tyn_scene scene;
         make_slab(&scene, &s, slabs++ % 2);
-        const tyn_probe_result *p = path_run_probe(&runs, &scene, (const float(*)[3])points, DEPTHS,
+        const tyn_probe_result *p = path_run_probe(runs, &scene, (const float(*)[3])points, DEPTHS,
                                                    false, path_effort(16384));
         for (int i = 0; i < DEPTHS; i++) {
             char what[64];
@@ -130,7 +112,7 @@ static void fluxes(void **state)
 
 static void radiances(void **state)
 {
-    (void)state;
+    path_run *runs = *state;
     FILE *f = open_table("reference/slab_ground_radiance.csv");
     if (!f) {
         skip();
@@ -162,7 +144,7 @@ static void radiances(void **state)
             view.camera.ymag = 1e-6f;
         }
         picture p = {0};
-        path_run_picture(&runs, &p, &scene, &view, path_effort(16384));
+        path_run_picture(runs, &p, &scene, &view, path_effort(16384));
         char what[64];
         snprintf(what, sizeof what, "radiance %s %.2f %d", side, mu, 90 * azimuth);
         check(&s, what, p.rgb[0], hypot(p.se[0], rel_err * radiance[azimuth]), radiance[azimuth]);
@@ -191,5 +173,5 @@ int main(void)
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, path_run_setup, path_run_teardown);
 }

@@ -4,7 +4,6 @@
 //
 // Asserted: every figure within 4 standard errors, RMS of z below 1.3. TYN_LONG=N: all rows, 8 N times the samples.
 #include "path_run.h"
-#include "gpu_test.h"
 #include "npy.h"
 #include "solids.h"
 #include <math.h>
@@ -12,24 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static path_run runs;
 static double largest, sum_z2;
 static int num_z;
-
-static int setup(void **state)
-{
-    int result = gpu_setup(state);
-    if (result == 0) {
-        path_run_open(&runs, ((gpu_test *)*state)->dev);
-    }
-    return result;
-}
-
-static int teardown(void **state)
-{
-    path_run_close(&runs);
-    return gpu_teardown(state);
-}
 
 static void check(const char *what, double value, double se, double expected)
 {
@@ -68,7 +51,7 @@ typedef struct profile {
 
 // Means over the rings between equal steps of (b / R)^2, by pixels whose middle is in a ring: pixels are small
 // against the rings but near the rim, whose last ring is left out.
-static void check_profile(const profile *ref)
+static void check_profile(path_run *runs, const profile *ref)
 {
     tyn_scene scene;
     tyn_scene_init(&scene);
@@ -87,7 +70,7 @@ static void check_profile(const profile *ref)
     tyn_view view = {.no_background = true}; // without what is seen of the source
     view_orthographic(&view, (float[]){0, 0, 0}, 0.3f, -1, 0.2f, (float[]){0, 0, 1}, 2.5f, PIXELS);
     picture p = {0};
-    path_run_picture(&runs, &p, &scene, &view, effort(ref->r > 0 ? 24 : 12));
+    path_run_picture(runs, &p, &scene, &view, effort(ref->r > 0 ? 24 : 12));
     double sum[BINS] = {0}, var[BINS] = {0}, count[BINS] = {0};
     for (int i = 0; i < PIXELS * PIXELS; i++) {
         double x = (i % PIXELS + 0.5) * 2 / PIXELS - 1, y = (i / PIXELS + 0.5) * 2 / PIXELS - 1;
@@ -122,7 +105,6 @@ static void check_profile(const profile *ref)
 
 static void sphere(void **state)
 {
-    (void)state;
     FILE *f = open_table("reference/sphere_profile.csv");
     char line[256];
     profile ref = {0};
@@ -138,7 +120,7 @@ static void sphere(void **state)
         }
         bins = 0;
         if (getenv("TYN_LONG") || ref.sigma_s == 1) {
-            check_profile(&ref);
+            check_profile(*state, &ref);
         }
     }
     fclose(f);
@@ -149,7 +131,7 @@ static void sphere(void **state)
 // A box that is large enough for what is beyond it not to count.
 static void airlight(void **state)
 {
-    (void)state;
+    path_run *runs = *state;
     FILE *f = open_table("reference/airlight_single.csv");
     char line[256];
     int row = 0;
@@ -172,7 +154,7 @@ static void airlight(void **state)
         memset(view.camera.position, 0, sizeof view.camera.position);
         view.max_depth = 1;
         picture p = {0};
-        path_run_picture(&runs, &p, &scene, &view, effort(8192));
+        path_run_picture(runs, &p, &scene, &view, effort(8192));
         char what[96];
         snprintf(what, sizeof what, "airlight %g %g, g %g, %g m, %g deg", (double)st, (double)ss,
                  (double)g, (double)d, (double)gamma);
@@ -187,7 +169,7 @@ static void airlight(void **state)
 
 static void point_source(void **state)
 {
-    (void)state;
+    path_run *runs = *state;
     FILE *f = open_table("reference/pointsource_infinite_exact.csv");
     char line[256];
     while (fgets(line, sizeof line, f)) {
@@ -205,7 +187,7 @@ static void point_source(void **state)
                       NULL);
         scene_add_lamp(&scene, (float[]){0, 0, 0}, 1 / (4 * (float)M_PI));
         const float points[1][3] = {{(float)(r * 0.6), (float)(r * -0.48), (float)(r * 0.64)}};
-        const tyn_probe_result *p = path_run_probe(&runs, &scene, points, 1, false, effort(16384));
+        const tyn_probe_result *p = path_run_probe(runs, &scene, points, 1, false, effort(16384));
         char what[96];
         snprintf(what, sizeof what, "point source, albedo %g at %g m", albedo, r);
         check(what, p->fluence[0], p->fluence_se[0], expected);
@@ -234,5 +216,5 @@ int main(void)
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, path_run_setup, path_run_teardown);
 }

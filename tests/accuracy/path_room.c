@@ -4,30 +4,12 @@
 // Asserted: means within 3 combined standard errors; z of 8x8 blocks, or of rings, has an RMS below 1.5. TYN_LONG=N
 // takes N times the samples.
 #include "path_run.h"
-#include "gpu_test.h"
 #include "reference_scenes.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-
-static path_run runs;
-
-static int setup(void **state)
-{
-    int result = gpu_setup(state);
-    if (result == 0) {
-        path_run_open(&runs, ((gpu_test *)*state)->dev);
-    }
-    return result;
-}
-
-static int teardown(void **state)
-{
-    path_run_close(&runs);
-    return gpu_teardown(state);
-}
 
 static double seconds(void)
 {
@@ -40,7 +22,7 @@ static double seconds(void)
 
 static void room(void **state)
 {
-    (void)state;
+    path_run *runs = *state;
     picture reference = {0}, p = {0};
     if (!picture_reference(&reference, "room")) {
         skip();
@@ -50,7 +32,7 @@ static void room(void **state)
     reference_room(&scene, &view);
     const uint32_t samples = path_effort(40);
     double start = seconds();
-    path_run_picture(&runs, &p, &scene, &view, samples);
+    path_run_picture(runs, &p, &scene, &view, samples);
     double took = seconds() - start;
     printf("room: %.1f s, %.0f ns a path\n", took, 1e9 * took / (64 * 64 * samples));
     for (uint32_t c = 0; c < 3; c++) {
@@ -101,7 +83,7 @@ static void check_rings(const picture *p, const picture *reference, float g)
 
 static void spheres(void **state)
 {
-    (void)state;
+    path_run *runs = *state;
     for (int k = 0; k < 2; k++) {
         const float g = k ? 0.8f : 0.2f;
         char name[64];
@@ -115,7 +97,7 @@ static void spheres(void **state)
         reference_sphere(&scene, &view, g);
         const uint32_t samples = path_effort(64);
         double start = seconds();
-        path_run_picture(&runs, &p, &scene, &view, samples);
+        path_run_picture(runs, &p, &scene, &view, samples);
         double took = seconds() - start;
         printf("%s: %.1f s, %.0f ns a path\n", name, took, 1e9 * took / (64 * 64 * samples));
         for (uint32_t c = 0; c < 3; c++) {
@@ -139,5 +121,5 @@ int main(void)
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, path_run_setup, path_run_teardown);
 }

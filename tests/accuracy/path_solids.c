@@ -1,6 +1,5 @@
 // path_solids.c -- `path` with surfaces against closed forms: furnaces, closed boxes, form factors, shadows.
 #include "path_run.h"
-#include "gpu_test.h"
 #include "solids.h"
 #include <math.h>
 #include <stdio.h>
@@ -8,23 +7,6 @@
 #include <string.h>
 
 static const float BLACK[3] = {0, 0, 0}, WHITE[3] = {1, 1, 1};
-
-static path_run runs;
-
-static int setup(void **state)
-{
-    int result = gpu_setup(state);
-    if (result == 0) {
-        path_run_open(&runs, ((gpu_test *)*state)->dev);
-    }
-    return result;
-}
-
-static int teardown(void **state)
-{
-    path_run_close(&runs);
-    return gpu_teardown(state);
-}
 
 static void check(const char *what, double value, double se, double expected)
 {
@@ -49,7 +31,7 @@ static double mean(const picture *p, int c, double *se)
 // White things under a sky of 1 cannot be seen, in and around a medium of albedo 1.
 static void furnaces(void **state)
 {
-    (void)state;
+    path_run *runs = *state;
     for (int i = 0; i < 6; i++) {
         tyn_scene scene;
         tyn_scene_init(&scene);
@@ -78,7 +60,7 @@ static void furnaces(void **state)
         tyn_view view = {0};
         view_perspective(&view, (float[]){1.5f, 1, 2}, (float[]){0, -0.1f, 0}, 0.7f, 24);
         picture p = {0};
-        path_run_picture(&runs, &p, &scene, &view, path_effort(16));
+        path_run_picture(runs, &p, &scene, &view, path_effort(16));
         for (int c = 0; c < 3; c++) {
             double se, value = mean(&p, c, &se);
             char name[64];
@@ -95,7 +77,7 @@ static void furnaces(void **state)
 // Closed box of albedo rho whose walls emit 1: 1 / (1 - rho) everywhere, with any medium of albedo 1 inside.
 static void closed_box(void **state)
 {
-    (void)state;
+    path_run *runs = *state;
     for (int i = 0; i < 4; i++) {
         const float scale = (const float[]){1, 1e-3f, 1e5f, 1}[i], rho = 0.5f;
         tyn_scene scene;
@@ -112,7 +94,7 @@ static void closed_box(void **state)
         view_perspective(&view, (float[]){scale, scale, scale}, (float[]){3 * scale, 0, 3 * scale},
                          1, 16);
         picture p = {0};
-        path_run_picture(&runs, &p, &scene, &view, path_effort(64));
+        path_run_picture(runs, &p, &scene, &view, path_effort(64));
         for (int c = 0; c < 3; c++) {
             double se, value = mean(&p, c, &se);
             char name[64];
@@ -134,7 +116,7 @@ static double form_factor(double a, double h)
 
 static void form_factors(void **state)
 {
-    (void)state;
+    path_run *runs = *state;
     for (int i = 0; i < 3; i++) {
         const float half = (const float[]){0.1f, 1, 5}[i], h = 1;
         tyn_scene scene;
@@ -150,7 +132,7 @@ static void form_factors(void **state)
         view.camera.position[0] = -0.05f; // below the emitter
         view.camera.position[1] = 0.01f;
         picture p = {0};
-        path_run_picture(&runs, &p, &scene, &view, path_effort(8192));
+        path_run_picture(runs, &p, &scene, &view, path_effort(8192));
         for (int c = 0; c < 3; c++) {
             char name[64];
             snprintf(name, sizeof name, "form factor, half side %g, %d", (double)half, c);
@@ -166,7 +148,7 @@ static void form_factors(void **state)
 // beside a wall.
 static void lit_floors(void **state)
 {
-    (void)state;
+    path_run *runs = *state;
     for (int i = 0; i < 8; i++) {
         tyn_scene scene;
         tyn_scene_init(&scene);
@@ -212,7 +194,7 @@ static void lit_floors(void **state)
         view_orthographic(&view, (float[]){-0.01f, 0, 0}, 0, -1, 0, (float[]){0, 0, -1}, 1e-4f, 1);
         view.camera.position[1] = 1;
         picture p = {0};
-        path_run_picture(&runs, &p, &scene, &view, path_effort(4096));
+        path_run_picture(runs, &p, &scene, &view, path_effort(4096));
         for (int c = 0; c < 3; c++) {
             double srgb = (const double[]){188, 0, 64}[c] / 255;
             double texel = srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
@@ -232,7 +214,7 @@ static void lit_floors(void **state)
 // alone is what it hides, a background makes it opaque.
 static void layers(void **state)
 {
-    (void)state;
+    path_run *runs = *state;
     tyn_scene scene;
     tyn_scene_init(&scene);
     uint32_t lamp = solids_material(&scene, BLACK, (float[]){4, 2, 1});
@@ -248,15 +230,15 @@ static void layers(void **state)
     for (int i = 0; i < 2; i++) {
         view.no_background = i;
         const uint32_t samples = 4096;
-        const float *depth = path_run_layer(&runs, &scene, &view, TYN_OUTPUT_DEPTH, 1);
+        const float *depth = path_run_layer(runs, &scene, &view, TYN_OUTPUT_DEPTH, 1);
         assert_true(fabsf(depth[0] - 2) < 1e-5f); // left: the quad
         assert_true(fabsf(depth[1] - logf(2) / 0.5f) < 0.02f);
         assert_true(isinf(depth[4 * 7]));
-        const float *t = path_run_layer(&runs, &scene, &view, TYN_OUTPUT_TRANSMITTANCE, samples);
+        const float *t = path_run_layer(runs, &scene, &view, TYN_OUTPUT_TRANSMITTANCE, samples);
         double left = exp(-0.5 * 2), right = exp(-0.5 * 3);
         check("transmittance to the quad", t[0], sqrt(left * (1 - left) / samples), left);
         check("transmittance beside it", t[4 * 7], sqrt(right * (1 - right) / samples), right);
-        const float *p = path_run_layer(&runs, &scene, &view, TYN_OUTPUT_RADIANCE, samples);
+        const float *p = path_run_layer(runs, &scene, &view, TYN_OUTPUT_RADIANCE, samples);
         check("alpha of the quad", p[3], sqrt(left * (1 - left) / samples), i ? 1 - left : 1);
         check("alpha beside it", p[4 * 7 + 3], sqrt(right * (1 - right) / samples), 1 - right);
         check("radiance of the quad", p[0], 4 * sqrt(left * (1 - left) / samples),
@@ -268,7 +250,7 @@ static void layers(void **state)
 // What is emitted is absorbed or escapes, within 3 standard errors and 4 %.
 static void balances(void **state)
 {
-    (void)state;
+    path_run *runs = *state;
     for (int i = getenv("TYN_LONG") ? 0 : 1; i < 4; i += getenv("TYN_LONG") ? 1 : 2) {
         tyn_scene scene;
         tyn_scene_init(&scene);
@@ -294,7 +276,7 @@ static void balances(void **state)
             scene_add_sun(&scene, 0.2f, -1, -0.7f, 2, 2, 2);
             scene_set_sky(&scene, 0.3f);
         }
-        const tyn_balance *b = path_run_balance(&runs, &scene, path_effort(12));
+        const tyn_balance *b = path_run_balance(runs, &scene, path_effort(12));
         for (int c = 0; c < 3; c++) {
             printf("balance %d, %d: entering %.4f emitted %.4f, media %.4f surfaces %.4f escaped "
                    "%.4f: "
@@ -320,5 +302,5 @@ int main(void)
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return cmocka_run_group_tests(tests, setup, teardown);
+    return cmocka_run_group_tests(tests, path_run_setup, path_run_teardown);
 }

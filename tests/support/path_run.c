@@ -1,12 +1,8 @@
 // path_run.c -- whole scenes through method `path`.
 #include "path_run.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 uint32_t path_effort(uint32_t samples)
 {
@@ -24,6 +20,28 @@ void path_run_open(path_run *r, tyn_device *dev)
 void path_run_close(path_run *r)
 {
     tyn_offline_destroy(&r->off);
+}
+
+int path_run_setup(void **state)
+{
+    void *gpu = NULL;
+    int result = gpu_setup(&gpu);
+    if (result == 0) {
+        path_run *r = malloc(sizeof *r);
+        path_run_open(r, ((gpu_test *)gpu)->dev);
+        r->gpu = gpu;
+        *state = r;
+    }
+    return result;
+}
+
+int path_run_teardown(void **state)
+{
+    path_run *r = *state;
+    void *gpu = r->gpu;
+    path_run_close(r);
+    free(r);
+    return gpu_teardown(&gpu);
 }
 
 static void run(path_run *r, const tyn_scene *scene, tyn_view *view, uint32_t samples)

@@ -1,5 +1,6 @@
 // path_run.h -- whole scenes through method `path`, for tests that compare with references.
 #pragma once
+#include "gpu_test.h"
 #include "picture.h"
 
 // Standard errors come with every figure. Scenes come from malloc'ed arrays as solids.h and picture.h make them.
@@ -7,10 +8,14 @@ typedef struct path_run {
     tyn_offline *off;
     tyn_device *dev;
     uint32_t seed;
+    gpu_test *gpu; // of path_run_setup; NULL otherwise
 } path_run;
 
 void path_run_open(path_run *r, tyn_device *dev);
 void path_run_close(path_run *r);
+// cmocka group setup and teardown for tests of `path` alone: *state is a path_run on the device of gpu_setup.
+int path_run_setup(void **state);
+int path_run_teardown(void **state);
 
 // Pictures of view->width x height; `samples` of each pixel. What was in `p` is freed.
 void path_run_picture(path_run *r, picture *p, const tyn_scene *scene, const tyn_view *view,
