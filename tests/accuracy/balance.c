@@ -6,7 +6,7 @@
 // TYN_LONG=1 does so for the scenes that take minutes.
 #include "gpu_test.h"
 #include "path_run.h"
-#include <tyndall/io.h>
+#include "sample_scene.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,15 +34,6 @@ static const struct sample_scene {
 };
 enum { NUM_SCENES = sizeof scenes / sizeof scenes[0], MOST_BATCHES = 6 };
 
-static void load(gpu_test *t, const char *name, tyn_scene *scene)
-{
-    char path[512];
-    snprintf(path, sizeof path, "%s/%s.gltf", TYN_SAMPLE_SCENES, name);
-    tyn_scene_init(scene);
-    assert_int_equal(tyn_scene_load(scene, path, NULL, &t->log), TYN_OK);
-    assert_int_equal(tyn_surfaces_build_nodes(&scene->surfaces, &t->log), TYN_OK);
-}
-
 static double worst_of(const double v[3])
 {
     return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
@@ -67,7 +58,7 @@ static void pop(void **state)
     bool good = true;
     for (int i = 0; i < NUM_SCENES; i++) {
         tyn_scene *scene = malloc(sizeof *scene);
-        load(t, scenes[i].name, scene);
+        sample_scene_load(scene, scenes[i].name, t);
         const tyn_balance b = pop_balance(t->dev, scene);
         print_message("%-15s imbalance %.2f %%\n", scenes[i].name, 100 * worst_of(b.imbalance));
         good = good && worst_of(b.imbalance) <= 0.02;
@@ -118,7 +109,7 @@ static void path(void **state)
             continue;
         }
         tyn_scene *scene = malloc(sizeof *scene);
-        load(t, scenes[i].name, scene);
+        sample_scene_load(scene, scenes[i].name, t);
         double mean[3], se[3], ends[3] = {0};
         const uint32_t samples = average(&runs, scene, scenes[i].samples, mean, se, ends);
         print_message("%-15s %4u samples, imbalance", scenes[i].name, samples);
@@ -154,7 +145,7 @@ static void white_walls(void **state)
     path_run_open(&runs, t->dev);
     for (int i = 0; i < 2; i++) {
         tyn_scene *scene = malloc(sizeof *scene);
-        load(t, "room", scene);
+        sample_scene_load(scene, "room", t);
         for (uint32_t m = 0; m < scene->surfaces.num_materials; m++) {
             for (int c = 0; c < 3; c++) {
                 scene->surfaces.materials[m].albedo[c] = i ? 1 : 0.95f;

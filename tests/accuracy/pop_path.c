@@ -6,7 +6,7 @@
 #include "gpu_test.h"
 #include "npy.h"
 #include "picture.h"
-#include <tyndall/io.h>
+#include "sample_scene.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -159,11 +159,8 @@ static void sample_scenes(void **state)
     } samples[] = {{"cube-oblique", 256}, {"smoke", 256}, {"cloud", 256}, {"two-media", 256}};
     double worst = 0;
     for (int i = 0; i < 4; i++) {
-        char path[512];
-        snprintf(path, sizeof path, "%s/%s.gltf", TYN_SAMPLE_SCENES, samples[i].name);
         tyn_scene *scene = malloc(sizeof *scene);
-        tyn_scene_init(scene);
-        assert_int_equal(tyn_scene_load(scene, path, NULL, &t->log), TYN_OK);
+        sample_scene_load(scene, samples[i].name, t);
         tyn_view view = {.width = 64, .height = 64};
         if (scene->num_cameras) {
             view.camera = scene->cameras[0];

@@ -6,6 +6,7 @@
 // pictures in out/pictures.
 #include "gpu_test.h"
 #include "picture.h"
+#include "sample_scene.h"
 #include "sky.h"
 #include <tyndall/io.h>
 #include <math.h>
@@ -23,15 +24,6 @@ static const struct wall_case {
     {"cornell-smoke", 0.13, 0.03}, {"vpl-cave", 0.24, 0.04}, {"many-lights", 0.08, 0.06},
 };
 enum { NUM_CASES = sizeof cases / sizeof cases[0] };
-
-static void load(gpu_test *t, const char *name, tyn_scene *scene)
-{
-    char path[512];
-    snprintf(path, sizeof path, "%s/%s.gltf", TYN_SAMPLE_SCENES, name);
-    tyn_scene_init(scene);
-    assert_int_equal(tyn_scene_load(scene, path, NULL, &t->log), TYN_OK);
-    assert_int_equal(tyn_surfaces_build_nodes(&scene->surfaces, &t->log), TYN_OK);
-}
 
 static void make_table(gpu_test *t, const char *folder, const char *name)
 {
@@ -78,7 +70,7 @@ static void pictures(void **state)
         snprintf(path, sizeof path, "%s/walls/%s.csv", TYN_TEST_DATA, k->name);
         assert_true(picture_read_table(&reference, path));
         tyn_scene *scene = malloc(sizeof *scene);
-        load(t, k->name, scene);
+        sample_scene_load(scene, k->name, t);
         tyn_view view = {.camera = scene->cameras[0], .width = SIZE, .height = SIZE};
         picture_render(&p, t->dev, "pop", scene, &view, NULL, 0);
         picture_blocks(&blocks, &p, SIZE / BLOCKS);

@@ -6,9 +6,9 @@
 // across the light, in which texels of the shadow map are measured.
 #include "gpu_test.h"
 #include "path_run.h"
+#include "sample_scene.h"
 #include "passes/shadow_map/shadow_map.h"
 #include "surface_args.h"
-#include <tyndall/io.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -69,12 +69,8 @@ static double step_of(const double *profile)
 static void edges(void **state)
 {
     gpu_test *t = *state;
-    char path[512];
-    snprintf(path, sizeof path, "%s/fog-hall.gltf", TYN_SAMPLE_SCENES);
     tyn_scene *scene = malloc(sizeof *scene);
-    tyn_scene_init(scene);
-    assert_int_equal(tyn_scene_load(scene, path, NULL, &t->log), TYN_OK);
-    assert_int_equal(tyn_surfaces_build_nodes(&scene->surfaces, &t->log), TYN_OK);
+    sample_scene_load(scene, "fog-hall", t);
     memset(scene->environment.radiance, 0, sizeof scene->environment.radiance);
     const float *d = scene->lights[0].direction;
     const double level = sqrt((double)(d[0] * d[0] + d[2] * d[2]));

@@ -12,6 +12,7 @@
 #include "gpu_test.h"
 #include "npy.h"
 #include "picture.h"
+#include "sample_scene.h"
 #include "sky.h"
 #include <tyndall/io.h>
 #include <math.h>
@@ -105,8 +106,7 @@ static bool load(gpu_test *t, const sky_case *k, tyn_scene *scene, tyn_view *vie
     case THIN_BLOBS:
         return make_blobs(scene, view, k->from == THIN_BLOBS);
     case SAMPLE:
-        snprintf(path, sizeof path, "%s/%s.gltf", TYN_SAMPLE_SCENES, k->name);
-        assert_int_equal(tyn_scene_load(scene, path, NULL, &t->log), TYN_OK);
+        sample_scene_load(scene, k->name, t);
         break;
     case VOLUME:
         if (!shared_path(path, sizeof path, k->file) || !shared_path(map, sizeof map, k->map)) {

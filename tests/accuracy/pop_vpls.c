@@ -2,8 +2,8 @@
 // clean, and what surfaces reflect is as much light however many lights carry it.
 #include "gpu_test.h"
 #include "picture.h"
+#include "sample_scene.h"
 #include "gpu/device.h"
-#include <tyndall/io.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,12 +44,8 @@ static void any_number(void **state)
     gpu_test *t = *state;
     bool good = true;
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        char path[512];
-        snprintf(path, sizeof path, "%s/%s.gltf", TYN_SAMPLE_SCENES, names[i]);
         tyn_scene scene;
-        tyn_scene_init(&scene);
-        assert_int_equal(tyn_scene_load(&scene, path, NULL, &t->log), TYN_OK);
-        assert_int_equal(tyn_surfaces_build_nodes(&scene.surfaces, &t->log), TYN_OK);
+        sample_scene_load(&scene, names[i], t);
         const double all = brightness(t, &scene, "");
         assert_true(all > 0);
         print_message("%-14s", names[i]);

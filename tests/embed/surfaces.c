@@ -14,19 +14,9 @@
 
 #include "host.h"
 #include "solids.h"
+#include "states.h"
 
 enum { WIDTH = 64, HEIGHT = 48, FRAMES = 5 };
-
-static const tyn_sync nothing_yet = {VK_PIPELINE_STAGE_2_NONE, VK_ACCESS_2_NONE,
-                                     VK_IMAGE_LAYOUT_UNDEFINED};
-static const tyn_sync copy_source = {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT,
-                                     VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL};
-static const tyn_sync copy_target = {VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
-                                     VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL};
-static const tyn_sync drawn_to = {VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                  VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT |
-                                      VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT,
-                                  VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
 
 static uint32_t errors;
 
