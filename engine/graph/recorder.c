@@ -27,6 +27,22 @@ tyn_extent tyn_rec_extent(const tyn_recorder *r, uint8_t port)
     return res ? res->extent : (tyn_extent){0, 0, 0};
 }
 
+const uint8_t *tyn_ports_exchanged(const tyn_kernel *kernel, const uint8_t (*pairs)[2],
+                                   uint32_t num_pairs, uint8_t out[TYN_MAX_BINDINGS])
+{
+    for (uint32_t i = 0; i < kernel->num_bindings; i++) {
+        const uint8_t port = kernel->bindings[i].port;
+        out[i] = port;
+        for (uint32_t k = 0; k < num_pairs; k++) {
+            if (port == pairs[k][0]) {
+                out[i] = pairs[k][1];
+                break;
+            }
+        }
+    }
+    return out;
+}
+
 void tyn_rec_work(tyn_recorder *r, const char *name, double amount)
 {
     for (uint32_t i = 0; i < r->num_work; i++) {

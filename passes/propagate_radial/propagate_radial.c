@@ -176,23 +176,12 @@ static tyn_result declare(tyn_builder *b, const void *data)
     return TYN_OK;
 }
 
-// Ports of a kernel's bindings with the two states exchanged.
-static const uint8_t *exchanged(uint8_t *out, uint32_t kernel, bool exchange)
-{
-    for (uint32_t i = 0; i < kernels[kernel].num_bindings; i++) {
-        uint8_t port = kernels[kernel].bindings[i].port;
-        out[i] = !exchange                   ? port
-                 : port == PORT(STATE)       ? PORT(STATE_OTHER)
-                 : port == PORT(STATE_OTHER) ? PORT(STATE)
-                                             : port;
-    }
-    return out;
-}
-
 // All iterations of args->count grids from args->first.
 static void record_batch(tyn_recorder *r, const tyn_propagate_radial_params *p,
                          const struct propagate_radial_args *args)
 {
+    static const uint8_t swap[][2] = {{PORT(STATE), PORT(STATE_OTHER)},
+                                      {PORT(STATE_OTHER), PORT(STATE)}};
     uint8_t table[TYN_MAX_BINDINGS];
     uint32_t side = args->cells, stacks = args->count * args->channels;
     uint32_t layers =
@@ -207,13 +196,15 @@ static void record_batch(tyn_recorder *r, const tyn_propagate_radial_params *p,
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
                                         .cells = {side, side, stacks},
                                         .args = args,
-                                        .ports = exchanged(table, START, other)});
+                                        .ports = tyn_ports_exchanged(&kernels[START], swap,
+                                                                     other ? 2 : 0, table)});
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
         tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
                                             .cells = all,
                                             .args = args,
-                                            .ports = exchanged(table, STEP, other)});
+                                            .ports = tyn_ports_exchanged(&kernels[STEP], swap,
+                                                                         other ? 2 : 0, table)});
     }
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = COLLECT,
                                         .cells = {side + 2, side + 2, layers * stacks},

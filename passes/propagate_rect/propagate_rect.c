@@ -232,21 +232,6 @@ static tyn_result declare(tyn_builder *b, const void *data)
     return TYN_OK;
 }
 
-// Ports of a kernel's bindings with some exchanged for others.
-static const uint8_t *exchange(uint8_t *out, uint32_t kernel, const uint8_t (*pairs)[2], int count)
-{
-    for (uint32_t i = 0; i < kernels[kernel].num_bindings; i++) {
-        out[i] = kernels[kernel].bindings[i].port;
-        for (int k = 0; k < count; k++) {
-            if (out[i] == pairs[k][0]) {
-                out[i] = pairs[k][1];
-                break;
-            }
-        }
-    }
-    return out;
-}
-
 static void record_shrink(tyn_recorder *r, const tyn_propagate_rect_params *p)
 {
     bool density = p->mode == TYN_MEDIUM_DENSITY;
@@ -268,26 +253,29 @@ static void record_batch(tyn_recorder *r, const tyn_propagate_rect_params *p,
     uint32_t layers = (args->cells + EDGE - 1) / EDGE * EDGE; // no workgroup has cells of two grids
     uint32_t stacks = args->count * args->channels, init = (uint32_t)p->init;
     tyn_extent all = {args->cells, args->cells, layers * stacks};
-    int shrunk = !small_of(p).x ? 0 : p->mode == TYN_MEDIUM_COEFFICIENTS ? 3 : 1;
+    uint32_t shrunk = !small_of(p).x ? 0 : p->mode == TYN_MEDIUM_COEFFICIENTS ? 3 : 1;
 
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = CELLS,
-                                        .cells = {args->cells, args->cells, layers * args->count},
-                                        .args = args,
-                                        .ports = exchange(table, CELLS, small, shrunk),
-                                        .spec = &p->mode});
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){.kernel = CELLS,
+                           .cells = {args->cells, args->cells, layers * args->count},
+                           .args = args,
+                           .ports = tyn_ports_exchanged(&kernels[CELLS], small, shrunk, table),
+                           .spec = &p->mode});
     // The states are written alternately, so that the last one lands in the output.
     bool other = p->iterations % 2 != 0;
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
                                         .cells = {args->cells, args->cells, stacks},
                                         .args = args,
-                                        .ports = exchange(table, START, swap, other ? 2 : 0),
+                                        .ports = tyn_ports_exchanged(&kernels[START], swap,
+                                                                     other ? 2 : 0, table),
                                         .spec = &init});
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
         tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
                                             .cells = all,
                                             .args = args,
-                                            .ports = exchange(table, STEP, swap, other ? 2 : 0)});
+                                            .ports = tyn_ports_exchanged(&kernels[STEP], swap,
+                                                                         other ? 2 : 0, table)});
     }
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = COLLECT, .cells = all, .args = args});
     if (p->keep_light) {

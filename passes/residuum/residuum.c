@@ -105,10 +105,9 @@ static tyn_result declare(tyn_builder *b, const void *data)
 static void record(tyn_recorder *r, const void *data)
 {
     // The states are written alternately, so that the last one lands in the output.
-    static const uint8_t start_other[] = {PORT(MEDIUM), PORT(DENSITY), PORT(SIGMA_A),
-                                          PORT(PLACES), PORT(LIGHT),   PORT(STATE_OTHER),
-                                          PORT(KEPT),   PORT(SUM)};
-    static const uint8_t step_other[] = {PORT(STATE), PORT(STATE_OTHER), PORT(KEPT), PORT(SUM)};
+    static const uint8_t swap[][2] = {{PORT(STATE), PORT(STATE_OTHER)},
+                                      {PORT(STATE_OTHER), PORT(STATE)}};
+    uint8_t table[TYN_MAX_BINDINGS];
     const tyn_residuum_params *p = data;
     tyn_extent dims = dims_of(p);
     struct residuum_args args = {
@@ -122,14 +121,16 @@ static void record(tyn_recorder *r, const void *data)
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
                                         .cells = dims,
                                         .args = &args,
-                                        .ports = other ? start_other : NULL,
+                                        .ports = tyn_ports_exchanged(&kernels[START], swap,
+                                                                     other ? 2 : 0, table),
                                         .spec = &p->mode});
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
         tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
                                             .cells = dims,
                                             .args = &args,
-                                            .ports = other ? step_other : NULL});
+                                            .ports = tyn_ports_exchanged(&kernels[STEP], swap,
+                                                                         other ? 2 : 0, table)});
     }
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = COLLECT, .cells = dims, .args = &args});
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * p->iterations);

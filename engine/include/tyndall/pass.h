@@ -178,6 +178,10 @@ typedef struct tyn_dispatch {
     const char *label;      // for captures and dumps; NULL = the kernel's name
 } tyn_dispatch;
 TYN_API void tyn_rec_dispatch(tyn_recorder *r, const tyn_dispatch *d);
+// For tyn_dispatch.ports: into `out` the ports of the kernel's table, pairs[i][0] replaced by pairs[i][1]. `out` is
+// returned.
+TYN_API const uint8_t *tyn_ports_exchanged(const tyn_kernel *kernel, const uint8_t (*pairs)[2],
+                                           uint32_t num_pairs, uint8_t out[TYN_MAX_BINDINGS]);
 // Workgroup counts from `offset` bytes into a buffer port (3 x uint32).
 TYN_API void tyn_rec_dispatch_indirect(tyn_recorder *r, const tyn_dispatch *d, uint8_t port,
                                        uint64_t offset);
