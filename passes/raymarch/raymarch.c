@@ -69,6 +69,8 @@ static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
     [RAYMARCH_PORT_COUNTERS] = {"counters", TYN_OUT, TYN_BUFFER, 0, false, "counters_block"},
     [RAYMARCH_PORT_SPARSE] = {"sparse", TYN_SCRATCH, IMAGE2, false,
                               "radiance, transmittance and e^-tau' of a ray for 2x2 pixels"},
+    [RAYMARCH_PORT_REST] = {"rest", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                            "2x2 pixels that have rays of their own"},
 };
 
 // The order of raymarch_bindings.glsl.
@@ -105,6 +107,7 @@ static const tyn_binding bindings[] = {
     {RAYMARCH_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_SPARSE, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_SPARSE, TYN_USE_STORAGE_WRITE, false},
+    {RAYMARCH_PORT_REST, TYN_USE_STORAGE_RW, false},
     {RAYMARCH_PORT_SIGMA_A, TYN_USE_SAMPLED, false}, // from here on colour only
     {RAYMARCH_PORT_G, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_EMISSION, TYN_USE_SAMPLED, false},
@@ -135,7 +138,7 @@ enum {
     NUM_SPEC = 4, // mode, number of suns, features, number of lamps
 };
 
-// 26 powers of two with this sum are all different.
+// 27 powers of two with this sum are all different.
 _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNEL +
                        RAYMARCH_UNSCALED + RAYMARCH_SOURCE + RAYMARCH_EMISSION + RAYMARCH_MEAN +
                        RAYMARCH_HOST_DEPTH + RAYMARCH_BACKGROUND + RAYMARCH_BEHIND +
@@ -143,8 +146,8 @@ _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNE
                        RAYMARCH_TRANSMITTANCE + RAYMARCH_DEPTH + RAYMARCH_SINGLE +
                        RAYMARCH_MULTIPLE + RAYMARCH_GLOW + RAYMARCH_SOFT_SUNS + RAYMARCH_SURFACE +
                        RAYMARCH_SURFACE_SEEN + RAYMARCH_WALLS + RAYMARCH_SHADOWS + RAYMARCH_REPEAT +
-                       RAYMARCH_SPARSE_FIRST + RAYMARCH_SPARSE ==
-                   (1u << 26) - 1,
+                       RAYMARCH_SPARSE_FIRST + RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_REST ==
+                   (1u << 27) - 1,
                "features have bits of their own");
 
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
@@ -241,14 +244,17 @@ static tyn_result declare(tyn_builder *b, const void *params)
             tyn_build_image(b, layers[i].port, size, 1);
         }
     }
+    tyn_extent blocks = {0, 0, 1};
     if (is_sparse(p,
                   tyn_build_has(b, RAYMARCH_PORT_SHADOW_ATLAS) ||
                       tyn_build_has(b, RAYMARCH_PORT_WALL_LINKS),
                   tyn_build_has(b, RAYMARCH_PORT_HOST_DEPTH))) {
         // As large as for all pixels: the window follows the camera, and frames must keep their sizes.
-        const tyn_extent blocks = {(p->width + 1) / 2, (p->height + 1) / 2, 1};
+        blocks = (tyn_extent){(p->width + 1) / 2, (p->height + 1) / 2, 1};
         tyn_build_image(b, RAYMARCH_PORT_SPARSE, (tyn_extent){3 * blocks.x, blocks.y, 1}, 1);
     }
+    tyn_build_buffer(b, RAYMARCH_PORT_REST,
+                     sizeof(struct raymarch_rest) + 4ull * blocks.x * blocks.y);
     tyn_build_buffer(b, RAYMARCH_PORT_COUNTERS, sizeof(struct counters_block));
     return TYN_OK;
 }
@@ -382,28 +388,28 @@ static void record(tyn_recorder *r, const void *params)
                         });
     ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_RADIANCE; // bound, but not written to or read
     ports_of[SPARSE_TEXTURE] = RAYMARCH_PORT_SURFACE;
+    tyn_dispatch rays = {.kernel = kernel, .args = &args, .ports = ports_of, .spec = spec};
     if (is_sparse(p, features & (RAYMARCH_WALLS | RAYMARCH_SHADOWS),
                   features & RAYMARCH_HOST_DEPTH)) {
+        const struct raymarch_rest none = {.groups = {RAYMARCH_REST_GROUPS, 0, 1}};
+        tyn_rec_update(r, RAYMARCH_PORT_REST, 0, &none, sizeof none);
+        rays.cells = blocks_of(p);
+        rays.label = "sparse rays";
         ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_SPARSE;
         spec[2] = features | RAYMARCH_SPARSE_FIRST;
-        tyn_rec_dispatch(r, &(tyn_dispatch){
-                                .kernel = kernel,
-                                .cells = blocks_of(p),
-                                .args = &args,
-                                .ports = ports_of,
-                                .spec = spec,
-                            });
+        tyn_rec_dispatch(r, &rays);
+        rays.label = "what lies between";
         ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_RADIANCE;
         ports_of[SPARSE_TEXTURE] = RAYMARCH_PORT_SPARSE;
-        spec[2] = features | RAYMARCH_SPARSE;
+        spec[2] = features | RAYMARCH_SPARSE_FILL;
+        tyn_rec_dispatch(r, &rays);
+        rays.label = "rays of the rest";
+        spec[2] = features | RAYMARCH_SPARSE_REST;
+        tyn_rec_dispatch_indirect(r, &rays, RAYMARCH_PORT_REST, 0);
+    } else {
+        rays.cells = window_of(p);
+        tyn_rec_dispatch(r, &rays);
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = kernel,
-                            .cells = window_of(p),
-                            .args = &args,
-                            .ports = ports_of,
-                            .spec = spec,
-                        });
 }
 
 const tyn_pass_desc tyn_pass_raymarch = {

@@ -100,6 +100,7 @@ enum {
     RAYMARCH_PORT_MULTIPLE, // OUT 2D RGBA32F: more often, from the environment's mean, or emitted
     RAYMARCH_PORT_COUNTERS, // OUT buffer struct counters_block
     RAYMARCH_PORT_SPARSE,   // SCRATCH 2D RGBA32F
+    RAYMARCH_PORT_REST,     // SCRATCH buffer struct raymarch_rest and what follows
     RAYMARCH_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_raymarch;

@@ -29,7 +29,8 @@
 #define RAYMARCH_SHADOWS (1u << 22) // surfaces stand before suns and lamps
 #define RAYMARCH_REPEAT (1u << 23)  // the medium is periodic
 #define RAYMARCH_SPARSE_FIRST (1u << 24) // one ray for 2x2 pixels, into the image "sparse"
-#define RAYMARCH_SPARSE (1u << 25)       // rays where that image is not smooth
+#define RAYMARCH_SPARSE_FILL (1u << 25)  // pixels where that image is smooth; the others are listed
+#define RAYMARCH_SPARSE_REST (1u << 26)  // rays of those that are listed
 
 struct raymarch_args {
     float step;      // longest step, m
@@ -40,5 +41,14 @@ struct raymarch_args {
     tyn_vec3 tint;   // of the one channel of inscatter
 };
 TYN_ASSERT_SIZE(raymarch_args, 52);
+
+// Start of the buffer "rest": 2x2 pixels that need rays of their own. uints x | y << 16 follow, one a block.
+struct raymarch_rest {
+    tyn_uvec3 groups; // of threads, for an indirect dispatch
+    tyn_uint count;   // of blocks
+};
+TYN_ASSERT_SIZE(raymarch_rest, 16);
+#define RAYMARCH_REST_BLOCKS 16u // of a group of threads
+#define RAYMARCH_REST_GROUPS 64u // groups.x
 
 #endif
