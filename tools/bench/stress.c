@@ -1,0 +1,225 @@
+// stress.c -- runs the stress suite: answers, methods, cells of the heat table.
+#include "stress.h"
+#include "stats.h"
+#include "stress_render.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const methods[] = {"pop", "pop-paper", "single", "path"};
+static const char *const answers[] = {"path", "furnace", "table", "imbalance"};
+
+// Reference pictures may take this long each, and `path` as a method that is judged.
+static const stress_effort reference_effort = {.noise = 0.005, .seconds = 3, .seed = 7};
+static const stress_effort quick_reference_effort = {.noise = 0.01, .seconds = 0.8, .seed = 7};
+static const stress_effort run_effort = {.noise = 0.02, .seconds = 0.6, .seed = 1};
+
+typedef struct suite {
+    app *a;
+    tyn_device *device;
+    const stress_options *options;
+    bool table;
+    cJSON *cells;
+    // The last reference that was rendered, of light scattered any number of times, and once.
+    const stress_case *made_of[2];
+    stress_picture made[2];
+} suite;
+
+// ---- answers ----------------------------------------------------------------------------------
+
+static void fill(stress_picture *p, double value)
+{
+    *p = (stress_picture){0};
+    for (int i = 0; i < 3 * STRESS_PIXELS; i++) {
+        p->rgb[i % 3][i / 3] = (float)value;
+    }
+}
+
+// Whose picture is the reference.
+static const stress_case *reference_case(const stress_case *c)
+{
+    return c->like ? c->like : c;
+}
+
+// `once`: light that scattered once, what "single" claims to compute.
+static int answer(suite *s, const stress_case *c, bool once, stress_picture *p)
+{
+    if (!once && c->answer == STRESS_BY_FURNACE) {
+        fill(p, 1);
+        return EXIT_DONE;
+    }
+    if (!once && c->answer == STRESS_BY_TABLE) {
+        fill(p, stress_half_space(c->albedo, 1, -stress_sun[1]));
+        return EXIT_DONE;
+    }
+    const stress_case *of = reference_case(c);
+    int code = EXIT_DONE;
+    if (s->made_of[once] != of) {
+        stress_effort effort = s->options->quick ? quick_reference_effort : reference_effort;
+        effort.max_depth = once ? 1 : 0;
+        stress_counts counts = {.warnings = cJSON_CreateArray()};
+        s->made_of[once] = NULL;
+        code = stress_render(s->a, s->device, "path", of, &effort, &s->made[once], &counts);
+        if (code == EXIT_DONE && counts.failure) {
+            app_error(s->a, "stress: the reference was %s", counts.failure);
+            code = EXIT_FAILED;
+        }
+        free(counts.failure);
+        cJSON_Delete(counts.warnings);
+        s->made_of[once] = code == EXIT_DONE ? of : NULL;
+    }
+    *p = s->made[once];
+    return code;
+}
+
+// ---- cells ------------------------------------------------------------------------------------
+
+typedef struct cell {
+    const stress_case *c;
+    const char *method, *against;
+    double error, se; // NAN: not known
+    stress_counts counts;
+} cell;
+
+static void add_cell(suite *s, const cell *k)
+{
+    cJSON *o = cJSON_CreateObject();
+    cJSON_AddStringToObject(o, "method", k->method);
+    cJSON_AddStringToObject(o, "axis", k->c->axis);
+    char name[48];
+    snprintf(name, sizeof name, "%g", k->c->x);
+    cJSON_AddStringToObject(o, "case", k->c->name ? k->c->name : name);
+    json_add_float(o, "x", k->c->x);
+    json_add_float(o, "sigma_t", k->c->sigma);
+    json_add_float(o, "albedo", k->c->albedo);
+    json_add_float(o, "g", k->c->g);
+    json_add_float(o, "error", k->error);
+    json_add_float(o, "se", k->se);
+    cJSON_AddStringToObject(o, "against", k->against);
+    cJSON_AddNumberToObject(o, "non_finite", k->counts.non_finite);
+    cJSON_AddNumberToObject(o, "negative", k->counts.negative);
+    cJSON_AddItemToObject(o, "warnings", k->counts.warnings);
+    json_add_float(o, "ms", round(100 * k->counts.ms) / 100);
+    if (k->counts.failure) {
+        cJSON_AddStringToObject(o, "failure", k->counts.failure);
+    }
+    cJSON_AddItemToArray(s->cells, o);
+    if (s->table) {
+        const cJSON *warning = cJSON_GetArrayItem(k->counts.warnings, 0);
+        char label[64], error[32] = "       -";
+        snprintf(label, sizeof label, "%s%s%g", k->c->name ? k->c->name : "",
+                 k->c->name ? ", " : "", k->c->x);
+        if (isfinite(k->error)) {
+            snprintf(error, sizeof error, "%7.2f%%", 100 * k->error);
+        }
+        printf("%-20s %-26s %-10s %s +- %.2f%% %s\n", k->c->axis, label, k->method, error,
+               100 * (isfinite(k->se) ? k->se : 0),
+               k->counts.failure ? k->counts.failure : warning ? warning->valuestring : "");
+        fflush(stdout);
+    }
+}
+
+// Relative error of block means without what noise explains.
+static double compare(const stress_picture *p, const stress_picture *reference, double *se)
+{
+    metrics_image image, ref;
+    metrics m = {0};
+    stress_image(p, &image);
+    stress_image(reference, &ref);
+    *se = hypot(p->noise, reference->noise);
+    metrics_status status = metrics_compare(&image, &ref, STRESS_BLOCK, &m);
+    if (status == METRICS_ZERO_REFERENCE) { // black: right if it is black
+        double sum = 0;
+        for (int i = 0; i < 3 * STRESS_PIXELS; i++) {
+            sum += fabs(p->rgb[i % 3][i / 3]);
+        }
+        return sum > 0 ? 1 : 0;
+    }
+    return status == METRICS_OK ? m.error : NAN;
+}
+
+static int run_cell(suite *s, const stress_case *c, const char *method)
+{
+    const bool once = strcmp(method, "single") == 0, path = strcmp(method, "path") == 0;
+    cell k = {.c = c, .method = method, .error = NAN, .se = NAN};
+    k.against = once && c->answer != STRESS_BY_IMBALANCE ? "path, single" : answers[c->answer];
+    k.counts.warnings = cJSON_CreateArray();
+    stress_picture *p = malloc(2 * sizeof *p);
+    int code = p ? EXIT_DONE : app_exit_code(s->a, TYN_ERR_MEMORY, false);
+    if (code == EXIT_DONE && c->answer == STRESS_BY_IMBALANCE) {
+        code = stress_balance(s->a, s->device, method, c, &run_effort, &k.error, &k.se, &k.counts);
+        k.error = fabs(k.error);
+    } else if (code == EXIT_DONE) {
+        code = stress_render(s->a, s->device, method, c, &run_effort, &p[0], &k.counts);
+        // `path` is not judged by itself.
+        bool judged = !path || c->like || c->answer != STRESS_BY_PATH;
+        if (code == EXIT_DONE && !k.counts.failure && judged) {
+            code = answer(s, c, once, &p[1]);
+            k.error = code == EXIT_DONE ? compare(&p[0], &p[1], &k.se) : NAN;
+        } else if (code == EXIT_DONE) {
+            k.se = p[0].noise;
+        }
+    }
+    free(p);
+    if (code == EXIT_DONE) {
+        add_cell(s, &k);
+    } else {
+        cJSON_Delete(k.counts.warnings);
+    }
+    free(k.counts.failure);
+    return code;
+}
+
+// Imbalance is told by the methods that have a balance; `path` needs days where nothing is absorbed.
+static bool is_wanted(const suite *s, const stress_case *c, const char *method)
+{
+    const stress_options *o = s->options;
+    return (!o->quick || c->quick) && (!o->axis || strstr(c->axis, o->axis)) &&
+           (!o->method || strcmp(o->method, method) == 0) &&
+           (c->answer != STRESS_BY_IMBALANCE || strcmp(method, "pop") == 0);
+}
+
+int stress_run(app *a, tyn_device *device, const stress_options *options, bool table,
+               cJSON **stress)
+{
+    suite *s = calloc(1, sizeof *s);
+    if (!s) {
+        return app_exit_code(a, TYN_ERR_MEMORY, false);
+    }
+    *s = (suite){.a = a, .device = device, .options = options, .table = table};
+    *stress = cJSON_CreateObject();
+    cJSON *axes = cJSON_AddArrayToObject(*stress, "axes");
+    cJSON *names = cJSON_AddArrayToObject(*stress, "methods");
+    for (size_t m = 0; m < ARRAY_SIZE(methods); m++) {
+        cJSON_AddItemToArray(names, cJSON_CreateString(methods[m]));
+    }
+    s->cells = cJSON_AddArrayToObject(*stress, "cells");
+    const bool quiet = a->quiet;
+    a->quiet = true; // warnings are in the cells
+    const char *axis = "";
+    const double start = app_seconds();
+    int code = EXIT_DONE;
+    for (uint32_t i = 0; i < stress_num_cases && code == EXIT_DONE; i++) {
+        const stress_case *c = &stress_cases[i];
+        bool any = false;
+        for (size_t m = 0; m < ARRAY_SIZE(methods) && code == EXIT_DONE; m++) {
+            if (is_wanted(s, c, methods[m])) {
+                code = run_cell(s, c, methods[m]);
+                any = true;
+            }
+        }
+        if (any && strcmp(axis, c->axis)) {
+            cJSON_AddItemToArray(axes, cJSON_CreateString(c->axis));
+            axis = c->axis;
+        }
+    }
+    json_add_float(*stress, "seconds", app_seconds() - start);
+    a->quiet = quiet;
+    if (code != EXIT_DONE) {
+        cJSON_Delete(*stress);
+        *stress = NULL;
+    }
+    free(s);
+    return code;
+}

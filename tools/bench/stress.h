@@ -1,0 +1,27 @@
+// stress.h -- numerical stress: every method where numbers get extreme, against answers that are known.
+//
+// Cases lie on axes (extinction, albedo, g, contrast, scale, grids, storage); docs/stress.md says what
+// is tried and against what. The result is the object "stress" of report.json (docs/report-schema.md).
+#pragma once
+#include "app.h"
+#include <cjson/cJSON.h>
+#include <tyndall/device.h>
+
+typedef struct stress_options {
+    bool quick;         // some cases of every axis: a minute instead of ten
+    const char *axis;   // NULL: all
+    const char *method; // NULL: all
+} stress_options;
+
+// Runs the cases and prints a line each while `table`. Gives the exit code; *stress is the caller's, NULL
+// after a failure.
+int stress_run(app *a, tyn_device *device, const stress_options *options, bool table,
+               cJSON **stress);
+
+// The heat table: a row of cases for every axis and method, a letter each.
+void stress_print(const cJSON *stress);
+
+// What must not be: values that are not finite or negative, and errors above STRESS_LOSSY without a
+// warning of the method. Says each in a line; gives their number.
+#define STRESS_LOSSY 0.10
+uint32_t stress_faults(app *a, const cJSON *stress);
