@@ -1,5 +1,6 @@
 // cmd_bench.c -- `tyndall bench`: error against time, every method of a suite.
 #include "bench/bench.h"
+#include "bench/stress.h"
 #include "stats.h"
 #include <math.h>
 #include <stdio.h>
@@ -10,8 +11,8 @@
 
 typedef struct bench_args {
     machine_options machine;
-    const char *suite, *report, *scenes;
-    bool json;
+    const char *suite, *report, *scenes, *axis;
+    bool json, stress, quick;
 } bench_args;
 
 // The sample scenes of a build tree, as seen from the program: ../samples/scenes.
@@ -209,6 +210,10 @@ static int run_bench(app *a, const void *arguments)
 {
     const bench_args *args = arguments;
     a->quiet = args->machine.quiet;
+    if (args->stress) {
+        const stress_options options = {.quick = args->quick, .axis = args->axis};
+        return stress_command(a, &args->machine, &options, args->report, args->json);
+    }
     char *samples = args->scenes ? text_format("%s", args->scenes) : default_scenes();
     bench_suite *suite = calloc(1, sizeof *suite);
     int code = EXIT_FAILED;
@@ -233,6 +238,10 @@ static const option bench_table[] = {
     {0, "report", OPT_TEXT, AT(report), "DIR", "write bench.json there"},
     {0, "scenes", OPT_TEXT, AT(scenes), "DIR",
      "folder of the sample scenes; else ../samples/scenes beside the program"},
+    {0, "stress", OPT_FLAG, AT(stress), NULL,
+     "instead of a suite: where numbers get extreme (docs/stress.md)"},
+    {0, "quick", OPT_FLAG, AT(quick), NULL, "with --stress: a minute instead of ten"},
+    {0, "axis", OPT_TEXT, AT(axis), "NAME", "with --stress: axes with this in their names"},
     {0, "json", OPT_FLAG, AT(json), NULL, "print JSON instead of the table"},
 };
 static const opt_group groups[] = {

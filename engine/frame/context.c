@@ -7,6 +7,7 @@
 #include "ordinate_args.h"
 #include "methods/env_cdf.h"
 #include "gpu/device.h"
+#include "passes/medium/medium.h"
 #include "scene/check.h"
 #include <stdlib.h>
 #include <string.h>
@@ -349,6 +350,18 @@ static void look_at_grid(tyn_context *ctx, const tyn_scene *scene)
     out->mean_density = ctx->mean_density;
 }
 
+static void choose_storage(tyn_context *ctx)
+{
+    tyn_medium_params medium = {0};
+    tyn_settings_params(ctx->settings, &tyn_pass_medium, &medium);
+    if (medium.storage == TYN_MEDIUM_STORAGE_AUTO) {
+        // Half floats save bandwidth; a CPU has to unpack them, which takes longer than to filter.
+        ctx->atlas.half &= ctx->dev->properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
+    } else {
+        ctx->atlas.half &= medium.storage == TYN_MEDIUM_STORAGE_HALF;
+    }
+}
+
 static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *job)
 {
     const tyn_view *view = frame->view;
@@ -368,8 +381,7 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     }
     if (result == TYN_OK) {
         result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);
-        // Half floats save bandwidth; a CPU has to unpack them, which takes longer than to filter.
-        ctx->atlas.half &= ctx->dev->properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
+        choose_storage(ctx);
     }
     if (result == TYN_OK) {
         look_at_grid(ctx, frame->scene);

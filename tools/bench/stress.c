@@ -115,7 +115,9 @@ static void add_cell(suite *s, const cell *k)
         }
         printf("%-20s %-26s %-10s %s +- %.2f%% %s\n", k->c->axis, label, k->method, error,
                100 * (isfinite(k->se) ? k->se : 0),
-               k->counts.failure ? k->counts.failure : warning ? warning->valuestring : "");
+               k->counts.failure ? k->counts.failure
+               : warning         ? warning->valuestring
+                                 : "");
         fflush(stdout);
     }
 }
@@ -139,19 +141,19 @@ static double compare(const stress_picture *p, const stress_picture *reference, 
     return status == METRICS_OK ? m.error : NAN;
 }
 
-static int run_cell(suite *s, const stress_case *c, const char *method)
+static int run_cell(suite *s, const stress_case *c, const char *with)
 {
-    const bool once = strcmp(method, "single") == 0, path = strcmp(method, "path") == 0;
-    cell k = {.c = c, .method = method, .error = NAN, .se = NAN};
+    const bool once = strcmp(with, "single") == 0, path = strcmp(with, "path") == 0;
+    cell k = {.c = c, .method = with, .error = NAN, .se = NAN};
     k.against = once && c->answer != STRESS_BY_IMBALANCE ? "path, single" : answers[c->answer];
     k.counts.warnings = cJSON_CreateArray();
     stress_picture *p = malloc(2 * sizeof *p);
     int code = p ? EXIT_DONE : app_exit_code(s->a, TYN_ERR_MEMORY, false);
     if (code == EXIT_DONE && c->answer == STRESS_BY_IMBALANCE) {
-        code = stress_balance(s->a, s->device, method, c, &run_effort, &k.error, &k.se, &k.counts);
+        code = stress_balance(s->a, s->device, with, c, &run_effort, &k.error, &k.se, &k.counts);
         k.error = fabs(k.error);
     } else if (code == EXIT_DONE) {
-        code = stress_render(s->a, s->device, method, c, &run_effort, &p[0], &k.counts);
+        code = stress_render(s->a, s->device, with, c, &run_effort, &p[0], &k.counts);
         // `path` is not judged by itself.
         bool judged = !path || c->like || c->answer != STRESS_BY_PATH;
         if (code == EXIT_DONE && !k.counts.failure && judged) {
@@ -172,12 +174,12 @@ static int run_cell(suite *s, const stress_case *c, const char *method)
 }
 
 // Imbalance is told by the methods that have a balance; `path` needs days where nothing is absorbed.
-static bool is_wanted(const suite *s, const stress_case *c, const char *method)
+static bool is_wanted(const suite *s, const stress_case *c, const char *with)
 {
     const stress_options *o = s->options;
     return (!o->quick || c->quick) && (!o->axis || strstr(c->axis, o->axis)) &&
-           (!o->method || strcmp(o->method, method) == 0) &&
-           (c->answer != STRESS_BY_IMBALANCE || strcmp(method, "pop") == 0);
+           (!o->method || strcmp(o->method, with) == 0) &&
+           (c->answer != STRESS_BY_IMBALANCE || strcmp(with, "pop") == 0);
 }
 
 int stress_run(app *a, tyn_device *device, const stress_options *options, bool table,

@@ -4,6 +4,7 @@
 // is tried and against what. The result is the object "stress" of report.json (docs/report-schema.md).
 #pragma once
 #include "app.h"
+#include "machine.h"
 #include <cjson/cJSON.h>
 #include <tyndall/device.h>
 
@@ -25,3 +26,8 @@ void stress_print(const cJSON *stress);
 // warning of the method. Says each in a line; gives their number.
 #define STRESS_LOSSY 0.10
 uint32_t stress_faults(app *a, const cJSON *stress);
+
+// `tyndall bench --stress`: all of it, on the device of `machine`; the object goes to DIR/stress.json and into
+// a report.json that is there. EXIT_FAILED if there are faults.
+int stress_command(app *a, const machine_options *options, const stress_options *what,
+                   const char *report, bool json);

@@ -12,65 +12,105 @@ static const stress_case waves = {
 // The short run has every third case or so.
 #define QUICK .quick = true
 
-#define SUN(s, ...) {.axis = "sigma", .x = s, .sigma = (float)(s), .albedo = 0.9f, .g = 0.5f, __VA_ARGS__}
+#define SUN(s, ...)                                                                                \
+    {                                                                                              \
+        .axis = "sigma", .x = s, .sigma = (float)(s), .albedo = 0.9f, .g = 0.5f, __VA_ARGS__       \
+    }
 #define FURNACE(s, ...)                                                                            \
-    {.axis = "sigma, furnace", .x = s, .sigma = (float)(s), .albedo = 1, .g = 0.5f,                \
-     .light = STRESS_AROUND, .answer = STRESS_BY_FURNACE, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "sigma, furnace", .x = s, .sigma = (float)(s), .albedo = 1, .g = 0.5f,             \
+        .light = STRESS_AROUND, .answer = STRESS_BY_FURNACE, __VA_ARGS__                           \
+    }
 #define DEEP(s, ...)                                                                               \
-    {.axis = "sigma, half-space", .x = s, .sigma = (float)(s), .albedo = 1,                        \
-     .answer = STRESS_BY_TABLE, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "sigma, half-space", .x = s, .sigma = (float)(s), .albedo = 1,                     \
+        .answer = STRESS_BY_TABLE, __VA_ARGS__                                                     \
+    }
 #define ENERGY(s, ...)                                                                             \
-    {.axis = "sigma, energy", .x = s, .sigma = (float)(s), .albedo = 1, .g = 0.5f,                 \
-     .answer = STRESS_BY_IMBALANCE, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "sigma, energy", .x = s, .sigma = (float)(s), .albedo = 1, .g = 0.5f,              \
+        .answer = STRESS_BY_IMBALANCE, __VA_ARGS__                                                 \
+    }
 #define ALBEDO(a, ...)                                                                             \
-    {.axis = "albedo", .x = a, .sigma = 10, .albedo = (float)(a), .g = 0.5f, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "albedo", .x = a, .sigma = 10, .albedo = (float)(a), .g = 0.5f, __VA_ARGS__        \
+    }
 #define ALBEDO_DEEP(a, ...)                                                                        \
-    {.axis = "albedo, half-space", .x = a, .sigma = 1e4f, .albedo = (float)(a),                    \
-     .answer = STRESS_BY_TABLE, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "albedo, half-space", .x = a, .sigma = 1e4f, .albedo = (float)(a),                 \
+        .answer = STRESS_BY_TABLE, __VA_ARGS__                                                     \
+    }
 #define G(mean, ...)                                                                               \
-    {.axis = "g", .x = mean, .sigma = 10, .albedo = 0.95f, .g = (float)(mean), __VA_ARGS__}
+    {                                                                                              \
+        .axis = "g", .x = mean, .sigma = 10, .albedo = 0.95f, .g = (float)(mean), __VA_ARGS__      \
+    }
 #define G_FURNACE(mean, s, ...)                                                                    \
-    {.axis = "g, furnace", .x = mean, .sigma = s, .albedo = 1, .g = (float)(mean),                 \
-     .light = STRESS_AROUND, .answer = STRESS_BY_FURNACE, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "g, furnace", .x = mean, .sigma = s, .albedo = 1, .g = (float)(mean),              \
+        .light = STRESS_AROUND, .answer = STRESS_BY_FURNACE, __VA_ARGS__                           \
+    }
 // As many transport mean free paths, however narrow the lobe: under light from all around, for which `path`
 // needs no luck.
 #define G_DEEP(mean, s, ...)                                                                       \
-    {.axis = "g, transport", .x = mean, .sigma = s, .albedo = 0.999f, .g = (float)(mean),          \
-     .light = STRESS_AROUND, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "g, transport", .x = mean, .sigma = s, .albedo = 0.999f, .g = (float)(mean),       \
+        .light = STRESS_AROUND, __VA_ARGS__                                                        \
+    }
 #define CONTRAST(text, ratio, s, ...)                                                              \
-    {.axis = "contrast", .name = text, .x = ratio, .contrast = (float)(ratio), .sigma = s,         \
-     .albedo = 0.9f, .g = 0.5f, .size = {16, 16, 16}, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "contrast", .name = text, .x = ratio, .contrast = (float)(ratio), .sigma = s,      \
+        .albedo = 0.9f, .g = 0.5f, .size = {16, 16, 16}, __VA_ARGS__                               \
+    }
 #define CONTRAST_FURNACE(text, ratio, s, ...)                                                      \
-    {.axis = "contrast, furnace", .name = text, .x = ratio, .contrast = (float)(ratio),            \
-     .sigma = s, .albedo = 1, .g = 0.5f, .size = {16, 16, 16}, .light = STRESS_AROUND,             \
-     .answer = STRESS_BY_FURNACE, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "contrast, furnace", .name = text, .x = ratio, .contrast = (float)(ratio),         \
+        .sigma = s, .albedo = 1, .g = 0.5f, .size = {16, 16, 16}, .light = STRESS_AROUND,          \
+        .answer = STRESS_BY_FURNACE, __VA_ARGS__                                                   \
+    }
 #define CONTRAST_ENERGY(text, ratio, s, ...)                                                       \
-    {.axis = "contrast, energy", .name = text, .x = ratio, .contrast = (float)(ratio), .sigma = s, \
-     .albedo = 1, .g = 0.5f, .size = {16, 16, 16}, .answer = STRESS_BY_IMBALANCE, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "contrast, energy", .name = text, .x = ratio, .contrast = (float)(ratio),          \
+        .sigma = s, .albedo = 1, .g = 0.5f, .size = {16, 16, 16}, .answer = STRESS_BY_IMBALANCE,   \
+        __VA_ARGS__                                                                                \
+    }
 #define SCALE(m, ...)                                                                              \
-    {.axis = "scale", .x = m, .sigma = (float)(4 / (m)), .albedo = 0.9f, .g = 0.5f,                \
-     .sides = {(float)(m), (float)(m), (float)(m)}, .like = &usual, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "scale", .x = m, .sigma = (float)(4 / (m)), .albedo = 0.9f, .g = 0.5f,             \
+        .sides = {(float)(m), (float)(m), (float)(m)}, .like = &usual, __VA_ARGS__                 \
+    }
 #define SCALE_LAMP(m, ...)                                                                         \
-    {.axis = "scale, lamp", .x = m, .sigma = (float)(4 / (m)), .albedo = 0.9f, .g = 0.5f,          \
-     .sides = {(float)(m), (float)(m), (float)(m)}, .light = STRESS_LAMP, .like = &usual_lamp,     \
-     __VA_ARGS__}
+    {                                                                                              \
+        .axis = "scale, lamp", .x = m, .sigma = (float)(4 / (m)), .albedo = 0.9f, .g = 0.5f,       \
+        .sides = {(float)(m), (float)(m), (float)(m)}, .light = STRESS_LAMP, .like = &usual_lamp,  \
+        __VA_ARGS__                                                                                \
+    }
 #define FAR(m, ...)                                                                                \
-    {.axis = "far from the origin", .x = m, .sigma = 4, .albedo = 0.9f, .g = 0.5f,                 \
-     .offset = (float)(m), .like = &usual, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "far from the origin", .x = m, .sigma = 4, .albedo = 0.9f, .g = 0.5f,              \
+        .offset = (float)(m), .like = &usual, __VA_ARGS__                                          \
+    }
 #define FLAT(text, wide, high, s, ...)                                                             \
-    {.axis = "flat", .name = text, .x = (double)(high) / (wide), .sigma = s, .albedo = 0.9f,       \
-     .g = 0.5f, .sides = {wide, high, wide}, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "flat", .name = text, .x = (double)(high) / (wide), .sigma = s, .albedo = 0.9f,    \
+        .g = 0.5f, .sides = {wide, high, wide}, __VA_ARGS__                                        \
+    }
 #define GRID(text, nx, ny, nz, ...)                                                                \
-    {.axis = "grid, constant", .name = text, .x = (double)(nx) * (ny) * (nz), .sigma = 4,          \
-     .albedo = 0.9f, .g = 0.5f, .pattern = STRESS_CONSTANT, .size = {nx, ny, nz}, .like = &usual,  \
-     __VA_ARGS__}
+    {                                                                                              \
+        .axis = "grid, constant", .name = text, .x = (double)(nx) * (ny) * (nz), .sigma = 4,       \
+        .albedo = 0.9f, .g = 0.5f, .pattern = STRESS_CONSTANT, .size = {nx, ny, nz},               \
+        .like = &usual, __VA_ARGS__                                                                \
+    }
 #define GRID_WAVES(text, nx, ny, nz, ...)                                                          \
-    {.axis = "grid, waves", .name = text, .x = (double)(nx) * (ny) * (nz), .sigma = 4,             \
-     .albedo = 0.9f, .g = 0.5f, .pattern = STRESS_WAVES, .size = {nx, ny, nz}, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "grid, waves", .name = text, .x = (double)(nx) * (ny) * (nz), .sigma = 4,          \
+        .albedo = 0.9f, .g = 0.5f, .pattern = STRESS_WAVES, .size = {nx, ny, nz}, __VA_ARGS__      \
+    }
 #define STORAGE(kind, u, ...)                                                                      \
-    {.axis = "storage, " kind, .x = u, .sigma = 4, .albedo = 0.9f, .g = 0.5f,                      \
-     .pattern = STRESS_WAVES, .size = {8, 8, 8}, .unit = (float)(u), .storage = kind,              \
-     .like = &waves, __VA_ARGS__}
+    {                                                                                              \
+        .axis = "storage, " kind, .x = u, .sigma = 4, .albedo = 0.9f, .g = 0.5f,                   \
+        .pattern = STRESS_WAVES, .size = {8, 8, 8}, .unit = (float)(u), .storage = kind,           \
+        .like = &waves, __VA_ARGS__                                                                \
+    }
 
 const stress_case stress_cases[] = {
     SUN(1e-6, QUICK),

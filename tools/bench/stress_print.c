@@ -15,9 +15,9 @@ static const char *text_of(const cJSON *cell, const char *name)
 static double number_of(const cJSON *cell, const char *name)
 {
     const cJSON *v = cJSON_GetObjectItem(cell, name);
-    return cJSON_IsNumber(v)            ? v->valuedouble
+    return cJSON_IsNumber(v)                                       ? v->valuedouble
            : v && cJSON_IsRaw(v) && strcmp(v->valuestring, "null") ? strtod(v->valuestring, NULL)
-                                        : NAN;
+                                                                   : NAN;
 }
 
 static bool is_silent(const cJSON *cell)

@@ -84,11 +84,11 @@ static bool find(const char *name, tyn_method_info *info)
     return false;
 }
 
-static int open_run(run *r, tyn_device *device, const char *method, const stress_case *c,
+static int open_run(run *r, tyn_device *device, const char *with, const stress_case *c,
                     const stress_effort *effort)
 {
     tyn_settings *settings = NULL;
-    bool ok = find(method, &r->info) && stress_scene(c, &r->scene);
+    bool ok = find(with, &r->info) && stress_scene(c, &r->scene);
     stress_view(c, &r->view);
     r->view.seed = effort->seed;
     r->view.max_depth = effort->max_depth;
@@ -98,7 +98,7 @@ static int open_run(run *r, tyn_device *device, const char *method, const stress
     }
     if (result == TYN_OK) {
         result = tyn_offline_create(
-            device, tyn_offline_params(.method = method, .settings = settings), &r->offline);
+            device, tyn_offline_params(.method = with, .settings = settings), &r->offline);
     }
     tyn_settings_destroy(&settings);
     if (result == TYN_OK) {
@@ -123,7 +123,7 @@ static int frame(run *r, uint32_t samples)
         return EXIT_INTERRUPTED;
     }
     if (result == TYN_ERR_PARAMS || result == TYN_ERR_UNSUPPORTED) {
-        r->counts->failure = text_format("refused (%s)", tyn_result_string(result));
+        r->counts->failure = text_format("refused by the method (%d)", (int)result);
         return EXIT_DONE;
     }
     r->counts->ms += tyn_offline_frame_ms(r->offline);
@@ -157,14 +157,13 @@ void stress_image(const stress_picture *p, metrics_image *image)
 }
 
 // Four times the samples each time, as long as the next time fits.
-int stress_render(app *a, tyn_device *device, const char *method, const stress_case *c,
+int stress_render(app *a, tyn_device *device, const char *with, const stress_case *c,
                   const stress_effort *effort, stress_picture *picture, stress_counts *counts)
 {
     run r = {.a = a, .counts = counts};
-    int code = open_run(&r, device, method, c, effort);
-    r.view.outputs =
-        TYN_OUTPUT_RADIANCE | (r.info.outputs & TYN_OUTPUT_ERROR) |
-        (r.info.progressive ? 0 : r.info.outputs & TYN_OUTPUT_TRANSMITTANCE);
+    int code = open_run(&r, device, with, c, effort);
+    r.view.outputs = TYN_OUTPUT_RADIANCE | (r.info.outputs & TYN_OUTPUT_ERROR) |
+                     (r.info.progressive ? 0 : r.info.outputs & TYN_OUTPUT_TRANSMITTANCE);
     uint32_t samples = 4;
     double start = app_seconds(), used = 0;
     bool more = code == EXIT_DONE;
@@ -188,13 +187,13 @@ int stress_render(app *a, tyn_device *device, const char *method, const stress_c
     return code;
 }
 
-int stress_balance(app *a, tyn_device *device, const char *method, const stress_case *c,
+int stress_balance(app *a, tyn_device *device, const char *with, const stress_case *c,
                    const stress_effort *effort, double *imbalance, double *se,
                    stress_counts *counts)
 {
     run r = {.a = a, .counts = counts};
     *imbalance = *se = 0;
-    int code = open_run(&r, device, method, c, effort);
+    int code = open_run(&r, device, with, c, effort);
     r.view.outputs = TYN_OUTPUT_BALANCE;
     if (code == EXIT_DONE) {
         code = frame(&r, 64);

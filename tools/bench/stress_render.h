@@ -28,10 +28,10 @@ typedef struct stress_effort {
 } stress_effort;
 
 // EXIT_DONE even where the method refuses: counts->failure says why then.
-int stress_render(app *a, tyn_device *device, const char *method, const stress_case *c,
+int stress_render(app *a, tyn_device *device, const char *with, const stress_case *c,
                   const stress_effort *effort, stress_picture *picture, stress_counts *counts);
 // The imbalance of the worst channel, and its standard error.
-int stress_balance(app *a, tyn_device *device, const char *method, const stress_case *c,
+int stress_balance(app *a, tyn_device *device, const char *with, const stress_case *c,
                    const stress_effort *effort, double *imbalance, double *se,
                    stress_counts *counts);
 
