@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SAMPLES = 64, MIN_SAMPLES = 8, MAP_WIDTH = 512, MAP_HEIGHT = 256 };
+enum { SAMPLES = 64, MIN_SAMPLES = 8 };
 static const double pi = 3.14159265358979323846;
 
 static double luminance(const double rgb[3])
@@ -382,22 +382,25 @@ static double lamp_power(const box *b, const tyn_light *light)
     return luminance(intensity) * angle;
 }
 
-// Mean luminance over the sphere of directions; every so many texels of a large map.
+// Mean luminance over the sphere of directions. Of all texels: a sun is a few of them.
 static double mean_of_map(const tyn_environment *env)
 {
-    const double scale[3] = {env->radiance[0], env->radiance[1], env->radiance[2]};
-    const uint32_t step_x = env->size[0] / MAP_WIDTH + 1, step_y = env->size[1] / MAP_HEIGHT + 1;
-    double sum = 0, weights = 0;
-    for (uint32_t y = step_y / 2; y < env->size[1]; y += step_y) {
+    double sum[3] = {0}, weights = 0;
+    for (uint32_t y = 0; y < env->size[1]; y++) {
+        const float *row = env->data + 3 * (size_t)y * env->size[0];
         const double weight = sin(pi * (y + 0.5) / env->size[1]);
-        for (uint32_t x = step_x / 2; x < env->size[0]; x += step_x) {
-            const float *texel = env->data + 3 * ((size_t)y * env->size[0] + x);
-            const double rgb[3] = {texel[0] * scale[0], texel[1] * scale[1], texel[2] * scale[2]};
-            sum += weight * luminance(rgb);
-            weights += weight;
+        double of_row[3] = {0};
+        for (uint32_t x = 0; x < env->size[0]; x++) {
+            for (int c = 0; c < 3; c++) {
+                of_row[c] += row[3 * (size_t)x + c];
+            }
         }
+        for (int c = 0; c < 3; c++) {
+            sum[c] += weight * of_row[c] * env->radiance[c];
+        }
+        weights += weight * env->size[0];
     }
-    return weights > 0 ? sum / weights * env->strength : 0;
+    return weights > 0 ? luminance(sum) / weights * env->strength : 0;
 }
 
 static void environment_power(const box *b, const tyn_environment *env, regime *r)

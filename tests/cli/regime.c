@@ -10,7 +10,7 @@
 #include "regime.h"
 
 #define NEAR(value, expected, relative)                                                            \
-    assert_float_equal(value, expected, (relative)*fabs(expected) + 1e-12)
+    assert_float_equal(value, expected, (relative)*fabs(1.0 * (expected)) + 1e-12)
 static const double pi = 3.14159265358979323846;
 
 static void one_shape(tyn_scene *scene, tyn_shape_kind kind, float x, float y, float z)
@@ -196,6 +196,33 @@ static void lights(void **state)
     tyn_scene_finish(&scene);
 }
 
+// A map of radiance 2 with one bright texel: that is a sun, the rest is the map.
+static void map_with_sun(void **state)
+{
+    (void)state;
+    tyn_scene scene;
+    one_shape(&scene, TYN_SHAPE_BOX, 1, 1, 1);
+    enum { WIDTH = 1024, HEIGHT = 512 };
+    float *texels = malloc(3 * sizeof *texels * WIDTH * HEIGHT);
+    for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
+        texels[i] = 2;
+    }
+    const int row = HEIGHT / 2, at = 3 * (row * WIDTH + WIDTH / 2); // ahead, along the z axis
+    texels[at] = texels[at + 1] = texels[at + 2] = 2 + 1e6f;
+    scene.environment = (tyn_environment){.present = true,
+                                          .size = {WIDTH, HEIGHT},
+                                          .data = texels,
+                                          .radiance = {1, 1, 1},
+                                          .strength = 1};
+    const regime r = read(&scene);
+    const double angle = 2 * pi / WIDTH * pi / HEIGHT; // of the texel
+    const double sun = 1e6 * angle, map = pi * 6 * 2;
+    assert_int_equal(r.num_suns, 1);
+    assert_float_equal(r.share[REGIME_SUN], sun / (sun + map), 0.01);
+    assert_float_equal(r.share[REGIME_MAP], map / (sun + map), 0.01);
+    tyn_scene_finish(&scene);
+}
+
 static void camera(void **state)
 {
     (void)state;
@@ -266,6 +293,7 @@ int main(void)
         cmocka_unit_test(grid),
         cmocka_unit_test(periodic_slab),
         cmocka_unit_test(lights),
+        cmocka_unit_test(map_with_sun),
         cmocka_unit_test(camera),
         cmocka_unit_test(degenerate),
         cmocka_unit_test(as_json),
