@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SAMPLES = 64, MIN_SAMPLES = 8 };
+enum { SAMPLES = 64, MIN_SAMPLES = 8, RAYS = 24, RAY_SAMPLES = 64 }; // rays along a picture's side
 static const double pi = 3.14159265358979323846;
 
 static double luminance(const double rgb[3])
@@ -483,7 +483,72 @@ static void light_figures(const tyn_scene *scene, const box *b, const sums *s, r
 
 // ---- all of it --------------------------------------------------------------------------------
 
-static bool camera_in_medium(const tyn_scene *scene, const media *md, const tyn_camera *camera)
+typedef struct ray {
+    double from[3], along[3];
+} ray;
+
+// Through (x, y) of the picture, both from -1 to 1.
+static ray camera_ray(const tyn_camera *c, double x, double y)
+{
+    const bool perspective = c->projection == TYN_PERSPECTIVE;
+    const double half = perspective ? tan(0.5 * c->yfov) : c->ymag;
+    const double aspect = c->aspect > 0 ? c->aspect : 16.0 / 9;
+    ray r;
+    for (int a = 0; a < 3; a++) {
+        const double aside = half * (aspect * x * c->right[a] + y * c->up[a]);
+        r.from[a] = c->position[a] + (perspective ? 0 : aside);
+        r.along[a] = (perspective ? aside : 0) - c->back[a];
+    }
+    return r;
+}
+
+// Where a ray is in the box, in units of its direction; false: nowhere.
+static bool cut_box(const box *b, const ray *r, double *enter, double *leave)
+{
+    *enter = 0;
+    *leave = INFINITY;
+    for (int a = 0; a < 3; a++) {
+        const double l2 = b->length[a] * b->length[a];
+        double from[3];
+        for (int k = 0; k < 3; k++) {
+            from[k] = r->from[k] - b->origin[k];
+        }
+        const double at = l2 > 0 ? dot(from, b->edge[a]) / l2 : 0.5;
+        const double speed = l2 > 0 ? dot(r->along, b->edge[a]) / l2 : 0;
+        if (speed == 0) {
+            if (at < 0 || at > 1) {
+                return false;
+            }
+            continue;
+        }
+        *enter = fmax(*enter, fmin(-at / speed, (1 - at) / speed));
+        *leave = fmin(*leave, fmax(-at / speed, (1 - at) / speed));
+    }
+    return *enter < *leave && isfinite(*leave);
+}
+
+static double depth_along(const media *md, const box *b, const ray *r)
+{
+    double enter, leave, tau = 0;
+    if (!cut_box(b, r, &enter, &leave)) {
+        return 0;
+    }
+    const double step = (leave - enter) / RAY_SAMPLES, metres = sqrt(dot(r->along, r->along));
+    for (int i = 0; i < RAY_SAMPLES; i++) {
+        double at[3];
+        coefficients k;
+        for (int a = 0; a < 3; a++) {
+            at[a] = r->from[a] + (enter + (i + 0.5) * step) * r->along[a];
+        }
+        if (media_at(md, at, &k)) {
+            tau += (mean3(k.sigma_s) + mean3(k.sigma_a)) * step * metres;
+        }
+    }
+    return tau;
+}
+
+static void view_figures(const tyn_scene *scene, const media *md, const box *b,
+                         const tyn_camera *camera, regime *r)
 {
     tyn_camera framed;
     if (!camera && scene->num_cameras) {
@@ -494,7 +559,17 @@ static bool camera_in_medium(const tyn_scene *scene, const media *md, const tyn_
     }
     const double at[3] = {camera->position[0], camera->position[1], camera->position[2]};
     coefficients k;
-    return camera->projection == TYN_PERSPECTIVE && media_at(md, at, &k);
+    r->camera_inside = camera->projection == TYN_PERSPECTIVE && media_at(md, at, &k);
+    int filled = 0;
+    for (int i = 0; i < RAYS * RAYS; i++) {
+        const double x = (i % RAYS + 0.5) / RAYS * 2 - 1, y = 1 - (i / RAYS + 0.5) / RAYS * 2;
+        const ray through = camera_ray(camera, x, y);
+        const double tau = depth_along(md, b, &through);
+        filled += tau > 0.01;
+        r->view_depth += tau > 0.01 ? tau : 0;
+    }
+    r->view_fill = (double)filled / (RAYS * RAYS);
+    r->view_depth /= filled ? filled : 1;
 }
 
 bool regime_of(const tyn_scene *scene, const tyn_camera *camera, regime *r)
@@ -527,7 +602,7 @@ bool regime_of(const tyn_scene *scene, const tyn_camera *camera, regime *r)
         const bool *repeat = scene->shapes[i].repeat;
         r->periodic |= repeat[0] || repeat[1] || repeat[2];
     }
-    r->camera_inside = camera_in_medium(scene, md, camera);
+    view_figures(scene, md, &b, camera, r);
     free(md);
     free(col);
     return true;

@@ -49,13 +49,17 @@ typedef struct regime {
     uint32_t num_suns, num_lamps;
 
     uint32_t num_triangles;
+
+    // The picture, as if there were no surfaces.
+    double view_fill;   // share of it whose rays lose 1 % of their light or more in the medium
+    double view_depth;  // mean optical depth of those
     bool camera_inside; // a perspective camera stands in the medium
 } regime;
 
 extern const char *const regime_light_names[REGIME_NUM_LIGHTS]; // "sun", "sky", "map", "lamps", ...
 
 // Of a scene that has passed tyn_scene_check. `camera` NULL: the scene's first, else the one it is framed
-// with. False: out of memory.
+// with; its aspect is that of the picture (0: 16:9). False: out of memory.
 bool regime_of(const tyn_scene *scene, const tyn_camera *camera, regime *r);
 
 // Of light that has scattered at all, about which part has scattered more than once: albedo x the chance

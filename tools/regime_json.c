@@ -37,6 +37,8 @@ static const struct {
     FIGURE("cell_depth_max", cell_depth_max),
     FIGURE("contrast", contrast),
     FIGURE("fill", fill),
+    FIGURE("view_fill", view_fill),
+    FIGURE("view_depth", view_depth),
 };
 enum { NUM_FIGURES = sizeof figures / sizeof figures[0] };
 

@@ -229,10 +229,26 @@ static void camera(void **state)
     tyn_scene scene;
     regime r;
     one_shape(&scene, TYN_SHAPE_SPHERE, 2, 2, 2);
-    tyn_camera look = {.projection = TYN_PERSPECTIVE, .position = {1, 2, 3.9f}};
+    tyn_camera look = {.projection = TYN_PERSPECTIVE,
+                       .position = {1, 2, 3.9f},
+                       .right = {1, 0, 0},
+                       .up = {0, 1, 0},
+                       .back = {0, 0, 1},
+                       .yfov = 1};
     assert_true(regime_of(&scene, &look, &r) && r.camera_inside);
     look.position[0] += 0.9f; // in the corner of the box, not in the sphere
     assert_true(regime_of(&scene, &look, &r) && !r.camera_inside);
+    // From afar: a disc of radius 1 in a picture of 8 x 4 m.
+    look = (tyn_camera){.projection = TYN_ORTHOGRAPHIC,
+                        .position = {1, 2, 13},
+                        .right = {1, 0, 0},
+                        .up = {0, 1, 0},
+                        .back = {0, 0, 1},
+                        .ymag = 2,
+                        .aspect = 2};
+    assert_true(regime_of(&scene, &look, &r) && !r.camera_inside);
+    NEAR(r.view_fill, pi / 32, 0.1);
+    NEAR(r.view_depth, 5 * 4 / 3.0, 0.05);
     tyn_scene_finish(&scene);
 }
 
