@@ -1,8 +1,9 @@
 // cmd_info.c -- `tyndall info`: what is in a file, what this machine has, what the passes take.
 #include "app.h"
 #include "devices.h"
+#include "info_scene.h"
 #include "scene_setup.h"
-#include <math.h>
+#include "stats.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +11,8 @@
 
 typedef struct info_args {
     scene_options scene;
-    bool devices, passes, methods, quiet;
+    view_options view;
+    bool devices, passes, methods, json, quiet;
 } info_args;
 
 // ---- the machine ------------------------------------------------------------------------------
@@ -100,169 +102,25 @@ static void print_methods(void)
 
 // ---- a scene ----------------------------------------------------------------------------------
 
-static const char *name_or(const char *name)
-{
-    return name ? name : "(no name)";
-}
-
-static void print_color(const char *title, const float v[3], const char *after)
-{
-    printf("%s%g %g %g%s", title, v[0], v[1], v[2], after);
-}
-
-static void print_media(const tyn_scene *scene)
-{
-    for (uint32_t i = 0; i < scene->num_volumes; i++) {
-        const tyn_volume *v = &scene->volumes[i];
-        printf("volume %u '%s': %ux%ux%u voxels, density up to %g\n", i, name_or(v->name),
-               v->size[0], v->size[1], v->size[2], v->max_density);
-    }
-    for (uint32_t i = 0; i < scene->num_media; i++) {
-        const tyn_medium *m = &scene->media[i];
-        printf("medium %u '%s': ", i, name_or(m->name));
-        if (m->volume < 0) {
-            printf("homogeneous");
-        } else {
-            printf("density of volume %d x %g", m->volume, m->density_scale);
-        }
-        print_color("\n  scattering  ", m->sigma_s, " 1/m\n");
-        print_color("  absorption  ", m->sigma_a, " 1/m\n");
-        print_color("  mean cosine ", m->g, "\n");
-        if (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0) {
-            print_color("  emission    ", m->emission, " W/(m^3 sr)\n");
-        }
-    }
-    for (uint32_t i = 0; i < scene->num_shapes; i++) {
-        const tyn_shape *s = &scene->shapes[i];
-        const float *m = s->to_world;
-        printf("shape %u: %s of medium %u, at %g %g %g, edges %g %g %g m%s\n", i,
-               s->kind == TYN_SHAPE_SPHERE ? "sphere" : "box", s->medium, m[12], m[13], m[14],
-               sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]),
-               sqrt(m[4] * m[4] + m[5] * m[5] + m[6] * m[6]),
-               sqrt(m[8] * m[8] + m[9] * m[9] + m[10] * m[10]),
-               s->repeat[0] || s->repeat[1] || s->repeat[2] ? ", periodic" : "");
-    }
-}
-
-// Area of a material's triangles, m^2.
-static double material_area(const tyn_surfaces *s, uint32_t material)
-{
-    double area = 0;
-    for (uint32_t i = 0; i < s->num_triangles; i++) {
-        const float *p[3];
-        double n2 = 0;
-        for (int k = 0; k < 3; k++) {
-            p[k] = s->vertices[s->triangles[i].vertices[k]].position;
-        }
-        for (int a = 0; a < 3; a++) {
-            const int b = (a + 1) % 3, c = (a + 2) % 3;
-            const double n = ((double)p[1][b] - p[0][b]) * ((double)p[2][c] - p[0][c]) -
-                             ((double)p[1][c] - p[0][c]) * ((double)p[2][b] - p[0][b]);
-            n2 += n * n;
-        }
-        area += s->triangles[i].material == material ? 0.5 * sqrt(n2) : 0;
-    }
-    return area;
-}
-
-static void print_surfaces(const tyn_scene *scene)
-{
-    static const char *const wraps[] = {"repeats", "clamped", "mirrored"};
-    const tyn_surfaces *s = &scene->surfaces;
-    if (!s->num_triangles) {
-        return;
-    }
-    printf("surfaces: %u meshes, %u triangles, %u vertices\n", scene->num_meshes, s->num_triangles,
-           s->num_vertices);
-    for (uint32_t i = 0; i < s->num_materials; i++) {
-        const tyn_surface_material *m = &s->materials[i];
-        const double area = material_area(s, i);
-        const int sides = m->flags & TYN_SURFACE_EMITS_BOTH_SIDES ? 2 : 1;
-        printf("material %u: albedo %g %g %g", i, m->albedo[0], m->albedo[1], m->albedo[2]);
-        if (m->texture != TYN_NO_TEXTURE) {
-            printf(" x texture %u", m->texture);
-        }
-        printf(", %.4g m^2\n", area);
-        if (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0) {
-            const double factor = 3.14159265358979 * area * sides; // of a Lambertian emitter
-            print_color("  emission ", m->emission, " W/(m^2 sr)");
-            printf(" from %s, %.4g %.4g %.4g W\n", sides == 2 ? "both sides" : "the front",
-                   factor * m->emission[0], factor * m->emission[1], factor * m->emission[2]);
-        }
-    }
-    for (uint32_t i = 0; i < s->num_textures; i++) {
-        const tyn_texture *t = &s->textures[i];
-        printf("texture %u '%s': %ux%u texels, %s along u, %s along v\n", i, name_or(t->name),
-               t->size[0], t->size[1], wraps[t->wrap[0]], wraps[t->wrap[1]]);
-    }
-}
-
-static void print_lights(const tyn_scene *scene)
-{
-    static const char *const kinds[] = {"directional", "point", "spot"};
-    for (uint32_t i = 0; i < scene->num_lights; i++) {
-        const tyn_light *l = &scene->lights[i];
-        bool sun = l->kind == TYN_LIGHT_DIRECTIONAL;
-        printf("light %u '%s': %s,", i, name_or(l->name), kinds[l->kind]);
-        print_color(" ", l->color, sun ? " W/m^2," : " W/sr,");
-        const float *v = sun ? l->direction : l->position;
-        printf(" %s %g %g %g\n", sun ? "travels along" : "at", 0 + v[0], 0 + v[1], 0 + v[2]);
-    }
-    const tyn_environment *env = &scene->environment;
-    if (env->present && env->data) {
-        printf("environment: %ux%u texels,", env->size[0], env->size[1]);
-    } else if (env->present) {
-        printf("environment: constant,");
-    }
-    if (env->present) {
-        print_color(" radiance ", env->radiance, "");
-        printf(" x %g\n", env->strength);
-        tyn_environment_sun suns[TYN_MAX_MAP_SUNS];
-        const uint32_t count = tyn_environment_suns(env, suns);
-        for (uint32_t i = 0; i < count; i++) {
-            const tyn_environment_sun *s = &suns[i];
-            printf("  sun %u of the map:", i);
-            print_color(" ", s->irradiance, " W/m^2,");
-            print_color(" travels along ", s->direction, "");
-            printf(", radius %.3g deg\n", s->radius * 180 / 3.14159265358979);
-        }
-    }
-}
-
-static void print_cameras(const tyn_scene *scene)
-{
-    for (uint32_t i = 0; i < scene->num_cameras; i++) {
-        const tyn_camera *c = &scene->cameras[i];
-        printf("camera %u '%s': ", c->index, name_or(c->name ? c->name : c->camera_name));
-        if (c->projection == TYN_PERSPECTIVE) {
-            printf("perspective, vertical field of view %g deg", c->yfov * 180 / 3.14159265358979);
-        } else {
-            printf("orthographic, half height %g m", c->ymag);
-        }
-        printf(", at %g %g %g, looks along %g %g %g\n", c->position[0], c->position[1],
-               c->position[2], 0 - c->back[0], 0 - c->back[1], 0 - c->back[2]);
-    }
-}
-
-static int print_scene(app *a, const scene_options *options)
+static int print_scene(app *a, const info_args *args)
 {
     tyn_scene scene;
-    int code = scene_open(a, options, &scene);
+    regime r = {0};
+    int code = scene_open(a, &args->scene, &scene);
+    tyn_view view = {0};
     if (code == EXIT_DONE) {
-        print_media(&scene);
-        print_surfaces(&scene);
-        print_lights(&scene);
-        print_cameras(&scene);
-        float lo[3], hi[3];
-        if (tyn_scene_bounds(&scene, lo, hi)) {
-            printf("bounds of the %s: %g %g %g to %g %g %g m\n",
-                   scene.num_shapes ? "media" : "surfaces", lo[0], lo[1], lo[2], hi[0], hi[1],
-                   hi[2]);
-        }
-        if (scene.clamped_negative) {
-            printf("negative densities set to 0: %llu\n",
-                   (unsigned long long)scene.clamped_negative);
-        }
+        code = view_setup(a, &args->view, &scene, &view);
+    }
+    if (code == EXIT_DONE) {
+        view.camera.aspect = (float)view.width / (float)view.height;
+        code = regime_of(&scene, &view.camera, &r) ? EXIT_DONE
+                                                   : app_exit_code(a, TYN_ERR_MEMORY, false);
+    }
+    if (code == EXIT_DONE && args->json) {
+        code = json_write(a, info_json_scene(args->scene.scene, &scene, &r), NULL);
+    } else if (code == EXIT_DONE) {
+        info_print_scene(&scene);
+        info_print_regime(&r);
     }
     tyn_scene_finish(&scene);
     return code;
@@ -285,7 +143,7 @@ static int run_info(app *a, const void *arguments)
     } else if (args->methods) {
         print_methods();
     } else {
-        return print_scene(a, &args->scene);
+        return print_scene(a, args);
     }
     return EXIT_DONE;
 }
@@ -300,16 +158,18 @@ static const option info_table[] = {
     {0, "devices", OPT_FLAG, AT(devices), NULL, "the Vulkan devices of this machine"},
     {0, "passes", OPT_FLAG, AT(passes), NULL, "every pass with its parameters"},
     {0, "methods", OPT_FLAG, AT(methods), NULL, "every method with its passes"},
+    {0, "json", OPT_FLAG, AT(json), NULL, "of SCENE: print JSON"},
     {'q', "quiet", OPT_FLAG, AT(quiet), NULL, "no warnings"},
 };
 static const opt_group groups[] = {
     {"what", info_table, ARRAY_SIZE(info_table), 0},
     {"scene", scene_table, SCENE_TABLE_SIZE, AT(scene)},
+    {"view", view_table, VIEW_TABLE_SIZE, AT(view)},
 };
 
 const command cmd_info = {
     .name = "info",
-    .summary = "What is in a file; what this machine has; every pass with its parameters.",
+    .summary = "What is in a file and which methods suit it; what this machine has; every pass.",
     .positionals = positionals,
     .num_positionals = ARRAY_SIZE(positionals),
     .groups = groups,

@@ -610,5 +610,5 @@ bool regime_of(const tyn_scene *scene, const tyn_camera *camera, regime *r)
 
 double regime_multiple(const regime *r)
 {
-    return r->albedo * r->optical_depth / (1 + r->optical_depth);
+    return r->albedo * r->optical_depth / (2 + r->optical_depth);
 }

@@ -62,9 +62,9 @@ extern const char *const regime_light_names[REGIME_NUM_LIGHTS]; // "sun", "sky",
 // with; its aspect is that of the picture (0: 16:9). False: out of memory.
 bool regime_of(const tyn_scene *scene, const tyn_camera *camera, regime *r);
 
-// Of light that has scattered at all, about which part has scattered more than once: albedo x the chance
-// that light which has scattered meets the medium again, D / (1 + D) with the mean depth D (Wigner's
-// rational approximation of the escape from a lump).
+// Of the light that has scattered, about which part has done so more than once, and `single` misses: albedo
+// x the chance of meeting the medium again, (D/2) / (1 + D/2) with the mean depth D, as half of it is still
+// to come on average. Measured: docs/choosing.md.
 double regime_multiple(const regime *r);
 
 cJSON *regime_json(const regime *r); // the "regime" of report.json
