@@ -3,10 +3,11 @@
 //
 // `path` draws what comes in, what is absorbed and what leaves by points of their own, so that its
 // imbalance is noise: it is averaged until its standard error is below 1 %, and may be 3 of these.
-// TYN_LONG=1 does so for the scenes that take minutes.
+// TYN_LONG=1 does so for the scenes that take minutes. Where that is known not to do, one run shows it.
 #include "gpu_test.h"
 #include "path_run.h"
 #include "sample_scene.h"
+#include "todo.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,21 +17,31 @@ static const struct sample_scene {
     const char *name;
     uint32_t samples; // of path, at once: about what its standard error needs
     bool slow;        // hundreds of scatterings a path, or a small sun that few paths find
-    double
-        apart; // shares of the light that end in media, on surfaces and outside: pop from path, at most, beside 2
-    // standard errors; 0: as
-    // without surfaces, not compared
+    // Shares of the light that end in media, on surfaces and outside: pop from path, at most, beside 2 standard errors;
+    // 0: as without surfaces, not compared.
+    double apart;
+    const char *noisy; // why the standard error is known not to get below 1 %
 } scenes[] = {
-    {"room", 4, false, 0.005},       {"fog-hall", 4, false, 0.06},
-    {"lantern", 4, false, 0.01},     {"cornell-smoke", 8, false, 0.1},
-    {"vpl-cave", 2, false, 0.01},    {"many-lights", 6, false, 0.01},
-    {"cube", 16, false, 0},          {"cube-oblique", 24, false, 0},
-    {"slab", 32, false, 0},          {"slab-60", 32, false, 0},
-    {"sphere", 48, false, 0},        {"furnace", 8, false, 0},
-    {"furnace-smoke", 32, false, 0}, {"smoke", 40, false, 0},
-    {"smoke-sky", 128, true, 0},     {"cloud", 48, false, 0},
-    {"cloud-sunset", 400, true, 0},  {"plume-contrast", 48, false, 0},
-    {"two-media", 48, false, 0},     {"milk", 400, true, 0},
+    {"room", 4, false, 0.005},
+    {"fog-hall", 4, false, 0.06},
+    {"lantern", 4, false, 0.01},
+    {"cornell-smoke", 8, false, 0.1},
+    {"vpl-cave", 2, false, 0.01},
+    {"many-lights", 6, false, 0.01},
+    {"cube", 16, false, 0},
+    {"cube-oblique", 24, false, 0},
+    {"slab", 32, false, 0},
+    {"slab-60", 32, false, 0},
+    {"sphere", 48, false, 0},
+    {"furnace", 8, false, 0},
+    {"furnace-smoke", 32, false, 0},
+    {"smoke", 40, false, 0},
+    {"smoke-sky", 128, true, 0},
+    {"cloud", 48, false, 0},
+    {"cloud-sunset", 400, true, 0},
+    {"plume-contrast", 48, false, 0},
+    {"two-media", 48, false, 0},
+    {"milk", 400, true, 0, "few paths get in deep, and they are long"},
 };
 enum { NUM_SCENES = sizeof scenes / sizeof scenes[0], MOST_BATCHES = 6 };
 
@@ -69,12 +80,12 @@ static void pop(void **state)
 }
 
 // Runs of their own, until the mean's standard error is small enough.
-static uint32_t average(path_run *runs, const tyn_scene *scene, uint32_t samples, double mean[3],
-                        double se[3], double ends[3])
+static uint32_t average(path_run *runs, const tyn_scene *scene, const struct sample_scene *k,
+                        double mean[3], double se[3], double ends[3])
 {
     double sum[3] = {0}, var[3] = {0};
     for (uint32_t n = 1;; n++) {
-        const tyn_balance *b = path_run_balance(runs, scene, samples);
+        const tyn_balance *b = path_run_balance(runs, scene, k->samples);
         for (int c = 0; c < 3; c++) {
             sum[c] += b->imbalance[c];
             var[c] += b->imbalance_se[c] * b->imbalance_se[c];
@@ -82,11 +93,11 @@ static uint32_t average(path_run *runs, const tyn_scene *scene, uint32_t samples
             se[c] = sqrt(var[c]) / n;
         }
         const double shares[3] = {b->absorbed_media[1], b->absorbed_surfaces[1], b->escaped[1]};
-        for (int k = 0; k < 3; k++) {
-            ends[k] += (shares[k] / (b->entering[1] + b->emitted[1]) - ends[k]) / n;
+        for (int i = 0; i < 3; i++) {
+            ends[i] += (shares[i] / (b->entering[1] + b->emitted[1]) - ends[i]) / n;
         }
-        if (worst_of(se) <= 0.01 || n == MOST_BATCHES) {
-            return n * samples;
+        if (worst_of(se) <= 0.01 || k->noisy || n == MOST_BATCHES) {
+            return n * k->samples;
         }
     }
 }
@@ -98,12 +109,6 @@ static void path(void **state)
     path_run runs;
     path_run_open(&runs, t->dev);
     for (int i = 0; i < NUM_SCENES; i++) {
-        if (!strcmp(scenes[i].name, "milk")) {
-            print_message(
-                "milk            todo: after 400 samples, 3 minutes, still +- 3 %%: few paths get "
-                "in deep, and they are long\n");
-            continue;
-        }
         if (scenes[i].slow && !getenv("TYN_LONG")) {
             print_message("%-15s skipped (TYN_LONG)\n", scenes[i].name);
             continue;
@@ -111,13 +116,16 @@ static void path(void **state)
         tyn_scene *scene = malloc(sizeof *scene);
         sample_scene_load(scene, scenes[i].name, t);
         double mean[3], se[3], ends[3] = {0};
-        const uint32_t samples = average(&runs, scene, scenes[i].samples, mean, se, ends);
+        const uint32_t samples = average(&runs, scene, &scenes[i], mean, se, ends);
         print_message("%-15s %4u samples, imbalance", scenes[i].name, samples);
         for (int c = 0; c < 3; c++) {
             print_message(" %+.2f +- %.2f %%", 100 * mean[c], 100 * se[c]);
-            good = good && se[c] <= 0.01 && fabs(mean[c]) <= fmax(0.02, 3 * se[c]);
+            good = good && fabs(mean[c]) <= fmax(0.02, 3 * se[c]);
         }
         print_message("\n");
+        good = todo_if(scenes[i].noisy, worst_of(se) <= 0.01, scenes[i].noisy,
+                       "%s: standard error within 1 %%", scenes[i].name) &&
+               good;
         if (scenes[i].apart > 0) {
             const tyn_balance b = pop_balance(t->dev, scene);
             const double given = b.entering[1] + b.emitted[1];

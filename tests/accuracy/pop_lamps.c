@@ -3,6 +3,7 @@
 #include "gpu_test.h"
 #include "npy.h"
 #include "picture.h"
+#include "todo.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -212,10 +213,9 @@ static double decay_length(double albedo)
     return nu;
 }
 
-// Within 5 % as the mean over directions. In single directions only where light has hardly
-// scattered: what has left the lamp's cell travels along the lattice's 14 lines, and the more a
-// medium absorbs the straighter is the light that gets far. So each row says whether it holds in
-// every direction.
+// Within 5 % as the mean over directions. In every direction only close to the lamp, where light has hardly
+// scattered: what has left the lamp's cell travels along the lattice's 14 lines, and the more a medium absorbs the
+// straighter is the light that gets far. So beyond 0.7 free paths that is known to fail.
 static void infinite_medium(void **state)
 {
     static double rows[MAX_ROWS][MAX_COLUMNS];
@@ -225,7 +225,9 @@ static void infinite_medium(void **state)
         skip();
     }
     enum { CELLS = 48, DIRECTIONS = 128 };
+    static const char rays[] = "light travels along the lattice's 14 lines";
     double worst = 0;
+    bool expected = true;
     uint32_t done = 0, single = 0;
     for (uint32_t i = 0; i < count; i++) {
         double albedo = rows[i][0], r = rows[i][1];
@@ -260,10 +262,11 @@ static void infinite_medium(void **state)
         const bool everywhere = fmax(-low, high) <= 0.05;
         print_message(
             "albedo %g, r %g (%.1f cells): mean of all directions %+.1f %%, least %+.1f %%, "
-            "most %+.1f %%, RMS %.1f %%: %s\n",
-            albedo, r, r / cell, 100 * error, 100 * low, 100 * high, 100 * sqrt(squares),
-            everywhere ? "every direction" : "the mean alone");
-        assert_true(r > 0.7 || everywhere);
+            "most %+.1f %%, RMS %.1f %%\n",
+            albedo, r, r / cell, 100 * error, 100 * low, 100 * high, 100 * sqrt(squares));
+        expected = todo_if(r > 0.7, everywhere, rays,
+                           "albedo %g, r %g within 5 %% in every direction", albedo, r) &&
+                   expected;
         assert_true(albedo < 0.9 || (low >= -0.15 && high <= 0.35));
         single += everywhere;
         worst = fmax(worst, fabs(error));
@@ -272,6 +275,7 @@ static void infinite_medium(void **state)
     print_message("%u rows, worst mean %.1f %%; %u of them within 5 %% in every direction\n", done,
                   100 * worst, single);
     assert_true(done >= 2 && worst <= 0.05);
+    assert_true(expected);
 }
 
 // ---- energy, and what may go wrong --------------------------------------------------------------------
