@@ -284,6 +284,9 @@ static tyn_result build_scene(tyn_scene *scene, const gltf_model *model, const j
         const cJSON *scenes = tyn_json_member(doc->root, "scenes");
         r = tyn_gltf_read_environment(scene, doc, cJSON_GetArrayItem(scenes, model->scene));
     }
+    if (!r) {
+        tyn_gltf_warn_unknown(scene, doc);
+    }
     scene->name = name_or_null(model->scene_name);
     return r ? r : check_scene(scene, doc);
 }

@@ -2,6 +2,7 @@
 #include "io/gltf_media.h"
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -307,4 +308,72 @@ tyn_result tyn_gltf_read_environment(tyn_scene *scene, const json_doc *doc, cons
         return tyn_json_fault(doc, from, "must be an object");
     }
     return read_map(&scene->environment, doc, from);
+}
+
+// ---- what is not known -----------------------------------------------------------------------
+
+// The first member that is not known, and how many there are.
+typedef struct unknown {
+    const cJSON *first;
+    const char *known; // of its object
+    uint32_t count;
+} unknown;
+
+// `known`: names, separated and enclosed by blanks. Any object of glTF may have extensions, extras and, in a list, a
+// name.
+static void look(unknown *u, const cJSON *object, const char *known)
+{
+    const cJSON *member, *members = cJSON_IsObject(object) ? object : NULL;
+    cJSON_ArrayForEach(member, members)
+    {
+        char word[64];
+        const int length = snprintf(word, sizeof word, " %s ", member->string);
+        const bool found = length < (int)sizeof word && !strchr(member->string, ' ') &&
+                           (strstr(known, word) || strstr(" name extensions extras ", word));
+        if (!found && u->count++ == 0) {
+            u->first = member;
+            u->known = known;
+        }
+    }
+}
+
+static const cJSON *extension_of(const cJSON *object, const char *name)
+{
+    return tyn_json_member(tyn_json_member(object, "extensions"), name);
+}
+
+static void look_at_all(unknown *u, const cJSON *list, const char *extension, const char *known)
+{
+    const cJSON *element;
+    cJSON_ArrayForEach(element, list)
+    {
+        look(u, extension ? extension_of(element, extension) : element, known);
+    }
+}
+
+void tyn_gltf_warn_unknown(tyn_scene *scene, const json_doc *doc)
+{
+    static const char media[] = "TYN_participating_media", maps[] = "TYN_environment_map";
+    unknown u = {0};
+    const cJSON *at = extension_of(doc->root, media), *list = tyn_json_member(at, "media"), *medium;
+    look(&u, at, " media ");
+    look_at_all(&u, list, NULL, " scattering absorption anisotropy emission density ");
+    cJSON_ArrayForEach(medium, list)
+    {
+        look(&u, tyn_json_member(medium, "density"), " uri grid scale size type ");
+    }
+    look_at_all(&u, tyn_json_member(doc->root, "nodes"), media, " medium shape repeat ");
+    at = extension_of(doc->root, maps);
+    look(&u, at, " environments ");
+    look_at_all(&u, tyn_json_member(at, "environments"), NULL, " uri radiance rotation ");
+    look_at_all(&u, tyn_json_member(doc->root, "scenes"), maps, " environment ");
+    if (u.count > 0) {
+        char path[512], others[32] = "";
+        tyn_json_path(doc, u.first, path, sizeof path);
+        if (u.count > 1) {
+            snprintf(others, sizeof others, " and %u more", u.count - 1);
+        }
+        tyn_scene_warn(scene, "%s%s: not known and left out; known here:%.*s", path, others,
+                       (int)strlen(u.known) - 1, u.known);
+    }
 }

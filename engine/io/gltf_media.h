@@ -17,3 +17,6 @@ tyn_result tyn_gltf_read_shape(tyn_scene *scene, const gltf_media *media, const 
 // A scene's TYN_environment_map, if it has one.
 tyn_result tyn_gltf_read_environment(tyn_scene *scene, const json_doc *doc,
                                      const cJSON *gltf_scene);
+
+// Warns of what is in the two extensions and is not known, wherever in the document they are.
+void tyn_gltf_warn_unknown(tyn_scene *scene, const json_doc *doc);

@@ -13,7 +13,7 @@ enum { MAX_VERTICES = 1 << 16 };
 enum { MAX_VERTICES = 1 << 27 }; // and triangles: nodes may show one mesh any number of times
 #endif
 
-enum { LACK_LINES, LACK_POSITION, LACK_MORPH, LACK_SKIN, LACK_COLOR };
+enum { LACK_LINES, LACK_POSITION, LACK_MORPH, LACK_SKIN, LACK_COLOR, LACK_AREA };
 enum { MODE_TRIANGLES = 4, MODE_STRIP, MODE_FAN };
 
 // ---- open, close ------------------------------------------------------------------------------
@@ -35,6 +35,7 @@ void tyn_gltf_meshes_close(gltf_meshes *m)
         [LACK_MORPH] = "morph targets are left out: its shape is that without them",
         [LACK_SKIN] = "skins are left out: its shape is that without one",
         [LACK_COLOR] = "of colours that vary from vertex to vertex the mean counts",
+        [LACK_AREA] = "a primitive whose triangles all have no area is left out",
     };
     tyn_scene *scene = m->materials.scene;
     for (size_t i = 0; scene && i < sizeof what / sizeof what[0]; i++) {
@@ -357,8 +358,12 @@ tyn_result tyn_gltf_mesh_add(gltf_meshes *m, const cJSON *node, int64_t mesh,
     for (int64_t i = 0; !r && i < primitives.count; i++) {
         primitive p = {.json = primitives.items[i], .mesh = mesh};
         r = read_primitive(m, &p);
+        const uint32_t before = m->materials.scene->surfaces.num_triangles;
         if (!r && p.positions.count) {
             r = add_triangles(m, &p, &at);
+            if (!r && m->materials.scene->surfaces.num_triangles == before) {
+                lack(m, mesh, LACK_AREA);
+            }
         }
         primitive_finish(&p);
     }

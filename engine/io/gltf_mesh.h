@@ -10,7 +10,7 @@ typedef struct gltf_meshes {
     struct {
         char name[64];
         uint32_t count;
-    } lacks[5]; // what is not done, told once each with the first mesh it is about
+    } lacks[6]; // what is not done, told once each with the first mesh it is about
 } gltf_meshes;
 tyn_result tyn_gltf_meshes_open(gltf_meshes *m, const json_doc *doc, const gltf_model *model,
                                 tyn_scene *scene);

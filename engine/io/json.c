@@ -32,6 +32,15 @@ static bool find_path(const cJSON *node, const cJSON *target, char *path, size_t
     return false;
 }
 
+void tyn_json_path(const json_doc *doc, const cJSON *at, char *path, size_t room)
+{
+    path[0] = 0;
+    find_path(doc->root, at, path, room);
+    for (char *c = path; *c; c++) { // a line stays a line, whatever members are called
+        *c = (unsigned char)*c < ' ' ? '?' : *c;
+    }
+}
+
 static void print_value(const cJSON *at, char *out, size_t room)
 {
     if (cJSON_IsObject(at)) {
@@ -49,12 +58,12 @@ static void print_value(const cJSON *at, char *out, size_t room)
 
 tyn_result tyn_json_fault(const json_doc *doc, const cJSON *at, const char *format, ...)
 {
-    char path[512] = "", value[80], message[512];
+    char path[512], value[80], message[512];
     va_list args;
     va_start(args, format);
     vsnprintf(message, sizeof message, format, args);
     va_end(args);
-    find_path(doc->root, at, path, sizeof path);
+    tyn_json_path(doc, at, path, sizeof path);
     print_value(at, value, sizeof value);
     if (at == doc->root) {
         tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: %s", doc->file, message);

@@ -20,6 +20,9 @@ void tyn_json_finish(json_doc *doc);
 tyn_result tyn_json_fault(const json_doc *doc, const cJSON *at, const char *format, ...)
     TYN_PRINTF(3, 4);
 
+// "path.to[3].value" of a node of the document; cut where there is no room.
+void tyn_json_path(const json_doc *doc, const cJSON *at, char *path, size_t room);
+
 // Members of objects. A member that is not there is no fault (the output keeps its value); one of
 // the wrong type or range is.
 tyn_result tyn_json_object(const json_doc *doc, const cJSON *parent, const char *name, cJSON **out);

@@ -191,6 +191,51 @@ static void volumes(void **state)
     tyn_scene_finish(&s);
 }
 
+// A member of the two extensions that is not known is named, the first of them; what any object may have is no such.
+static void unknown_members(void **state)
+{
+    static const struct {
+        const char *medium, *shape, *map, *warning;
+    } cases[] = {
+        {"'name': 'fog', 'scattering': 1, 'extras': {'a': 1}", "'extras': 2", "'name': 'sky'",
+         NULL},
+        {"'scatering': 1", "", "",
+         "extensions.TYN_participating_media.media[0].scatering: not known and left out; known "
+         "here: scattering absorption anisotropy emission density"},
+        {"'absorption': 1", "'Shape': 'sphere'", "'turn': 3",
+         "nodes[0].extensions.TYN_participating_media.Shape and 1 more: not known and left out; "
+         "known here: medium shape repeat"},
+        {"'density scattering': 1", "", "",
+         "extensions.TYN_participating_media.media[0].density scattering: not known and left out; "
+         "known here: scattering absorption anisotropy emission density"},
+        {"'scatt\\nering': 1", "", "",
+         "extensions.TYN_participating_media.media[0].scatt?ering: not known and left out; known "
+         "here: scattering absorption anisotropy emission density"},
+        {"", "", "'Radiance': [1, 1, 1]",
+         "extensions.TYN_environment_map.environments[0].Radiance: not known and left out; known "
+         "here: uri radiance rotation"},
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char text[2048];
+        tyn_scene s;
+        snprintf(text, sizeof text,
+                 ASSET ", 'scene': 0, 'scenes': [{'nodes': [0], 'extensions': "
+                       "{'TYN_environment_map': {'environment': 0}}}], 'nodes': [{'extensions': "
+                       "{'TYN_participating_media': {'medium': 0%s%s}}}], 'extensions': "
+                       "{'TYN_participating_media': {'media': [{%s}]}, 'TYN_environment_map': "
+                       "{'environments': [{'radiance': 1%s%s}]}}}",
+                 *cases[i].shape ? ", " : "", cases[i].shape, cases[i].medium,
+                 *cases[i].map ? ", " : "", cases[i].map);
+        load(&s, quoted(text));
+        assert_int_equal(s.num_warnings, cases[i].warning != NULL);
+        if (cases[i].warning) {
+            assert_string_equal(s.warnings[0], cases[i].warning);
+        }
+        tyn_scene_finish(&s);
+    }
+}
+
 static void environments(void **state)
 {
     const uint8_t hdr[] =
@@ -325,9 +370,9 @@ static void long_chain(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nodes),          cmocka_unit_test(camera_order),
-        cmocka_unit_test(volumes),        cmocka_unit_test(environments),
-        cmocka_unit_test(numbered_files), cmocka_unit_test(containers),
-        cmocka_unit_test(long_chain)};
+        cmocka_unit_test(nodes),        cmocka_unit_test(camera_order),
+        cmocka_unit_test(volumes),      cmocka_unit_test(unknown_members),
+        cmocka_unit_test(environments), cmocka_unit_test(numbered_files),
+        cmocka_unit_test(containers),   cmocka_unit_test(long_chain)};
     return cmocka_run_group_tests(tests, NULL, io_test_clean);
 }

@@ -314,6 +314,30 @@ static void left_out(void **state)
     tyn_scene_finish(&s);
 }
 
+// A mesh without any area is told of; triangles without area among others are not, since strips are sewn with them.
+static void without_area(void **state)
+{
+    static const float line[3][3] = {{0, 0, 0}, {1, 1, 0}, {2, 2, 0}};
+    static const uint8_t sewn[] = {0, 1, 2, 2, 2, 3, 0, 2, 3};
+    gltf_file f = {0};
+    (void)state;
+    gltf_file_array(&f, 5126, "VEC3", 4, square, sizeof square);
+    gltf_file_array(&f, 5126, "VEC3", 3, line, sizeof line);
+    gltf_file_array(&f, 5121, "SCALAR", 9, sewn, sizeof sewn);
+    tyn_scene s = load_primitive(&f, "{'attributes': {'POSITION': 0}, 'indices': 2}");
+    check_piece(&s, 2, 0, 0, 1);
+    assert_int_equal(s.num_warnings, 1); // of the material that is missing
+    assert_null(strstr(s.warnings[0], "area"));
+    tyn_scene_finish(&s);
+    s = load_primitive(&f, "{'attributes': {'POSITION': 0}, 'indices': 2},"
+                           "{'attributes': {'POSITION': 1}}");
+    check_piece(&s, 2, 0, 0, 1);
+    assert_int_equal(s.num_warnings, 2);
+    assert_string_equal(s.warnings[0],
+                        "mesh 'wall': a primitive whose triangles all have no area is left out");
+    tyn_scene_finish(&s);
+}
+
 // ---- wrong data -------------------------------------------------------------------------------
 
 static void check_broken(const gltf_file *f, const char *rest, const char *says)
@@ -386,9 +410,10 @@ static void broken(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(indices),      cmocka_unit_test(modes),    cmocka_unit_test(strip),
-        cmocka_unit_test(quantised),    cmocka_unit_test(sparse),   cmocka_unit_test(transforms),
-        cmocka_unit_test(odd_vertices), cmocka_unit_test(left_out), cmocka_unit_test(broken)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(indices),      cmocka_unit_test(modes),
+                                       cmocka_unit_test(strip),        cmocka_unit_test(quantised),
+                                       cmocka_unit_test(sparse),       cmocka_unit_test(transforms),
+                                       cmocka_unit_test(odd_vertices), cmocka_unit_test(left_out),
+                                       cmocka_unit_test(without_area), cmocka_unit_test(broken)};
     return cmocka_run_group_tests(tests, NULL, io_test_clean);
 }
