@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+"""page.py -- the page of a report: what is in it, and how it behaves in a browser.
+
+usage: page.py REPORT_MAKE     (skipped, exit 77, where no Chromium is installed)
+"""
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import browser
+
+failures = 0
+
+
+def check(what, is_so, detail=""):
+    global failures
+    if not is_so:
+        failures += 1
+        print(f"FAILED: {what} {detail}")
+
+
+def check_text(folder):
+    """What needs no browser: no script ends early, nothing is loaded, the report is in it as it is."""
+    page = open(f"{folder}/report.html", encoding="utf-8").read()
+    report = json.load(open(f"{folder}/report.json", encoding="utf-8"))
+    check("as many scripts end as begin", page.count("<script") == page.count("</script"))
+    check("names are not markup", "<script>window.harmed" not in page)
+    inside = re.search(r'<script type="application/json" id="report">\n(.*?)</script>', page, re.S)
+    check("the report is in the page", inside and json.loads(inside[1]) == report)
+    check("no address of a network", not re.search(r'(src|href|url|@import)\W{0,3}https?:', page))
+    check("no network is allowed", "default-src 'none'" in page)
+    pictures = re.findall(r'id="picture-(\d+)-(\w+)"', page)
+    for i, scene in enumerate(report["scenes"]):
+        here = {run for s, run in pictures if int(s) == i}
+        check("reference and at most 16 runs", "reference" in here and 1 < len(here) <= 17, str(len(here)))
+        front = {key for f in scene["fronts"] for key in f["runs"]}
+        on_front = {str(k) for k, run in enumerate(scene["runs"]) if run["key"] in front}
+        check("pictures of the front", on_front <= here, str(on_front - here))
+    return report
+
+
+def scene(index, script):
+    return f"(() => {{ const scene = document.getElementById('scene-{index}'); return {script}; }})()"
+
+
+def check_plots(b, report):
+    for i, s in enumerate(report["scenes"]):
+        good = sum(run["failed"] is None for run in s["runs"])
+        count = b.run(scene(i, "scene.querySelectorAll('.error-plot .point').length"))
+        check(f"scene {i}: a point for every run", count == good, f"{count} points, {good} runs")
+        front = sum(run["key"] in s["fronts"][0]["runs"] for run in s["runs"])
+        check(f"scene {i}: the front is marked", b.run(scene(i, "scene.querySelectorAll('.error-plot .ring').length")) == front)
+        check(f"scene {i}: noise is drawn", b.run(scene(i, "!!scene.querySelector('.error-plot .noise')")))
+        rows = b.run(scene(i, "scene.querySelectorAll('.runs tbody tr').length"))
+        check(f"scene {i}: a row for every run", rows == len(s["runs"]), f"{rows} rows")
+        check(f"scene {i}: its name is text", b.run(scene(i, "scene.querySelector('h2').textContent")) == s["name"])
+        check(f"scene {i}: bars of nodes", b.run(scene(i, "scene.querySelectorAll('.nodes .whole').length")) == 6)
+    # A point is where its figures say: in decades, as far apart as the ticks are.
+    places = b.run(scene(0, "[...scene.querySelectorAll('.error-plot .point')].map(p => [+p.dataset.run, "
+                            "...p.getAttribute('transform').match(/[-\\d.]+/g).map(Number)])"))
+    places = {run: (x, y) for run, x, y in places}
+    # runs 5 (31 %, 62 ms) and 7 (1.95 %, 9700 ms), 0 (8.1 %, 34 ms)
+    ratio = (places[5][0] - places[0][0]) / (places[7][0] - places[0][0])
+    check("points lie on a logarithmic axis of time", abs(ratio - 0.10627) < 0.002, str(ratio))  # ln(62/34)/ln(9700/34)
+    ratio = (places[5][1] - places[0][1]) / (places[5][1] - places[7][1])
+    check("and of error", abs(ratio - 0.48527) < 0.002, str(ratio))  # ln(31/8.1)/ln(31/1.95)
+
+    # Points are reached by keys and say what they are; Enter selects.
+    b.run(scene(0, "scene.querySelector('.error-plot .point[tabindex=\"0\"]').focus()"))
+    first = b.run("document.activeElement.dataset.run")
+    b.key("ArrowRight")
+    second = b.run("document.activeElement.dataset.run")
+    check("arrows go from point to point", first is not None and second not in (None, first), f"{first} {second}")
+    tip = b.run(scene(0, "scene.querySelector('.plot .tip').hidden ? '' : scene.querySelector('.plot .tip').textContent"))
+    run = report["scenes"][0]["runs"][int(second)]
+    check("the tooltip names the run and its settings", run["name"] in tip and all(k in tip for k in run["settings"]), tip)
+    b.key("Enter")
+    check("Enter selects", b.run(scene(0, "scene.querySelector('.details h3').textContent")) == run["name"])
+    record = b.run(scene(0, "scene.querySelector('.cite pre').textContent"))
+    for word in (report["tyndall"], run["key"], report["device"]["driver"], report["suite"]["hash"], "seed 0", "5be0cd19137e2179"):
+        check(f"the record to cite has {word}", word in record, record)
+
+    # Sorted by a column: what has no value last.
+    b.run(scene(1, "scene.querySelectorAll('.runs thead button')[4].click()"))
+    cold = b.run(scene(1, "[...scene.querySelectorAll('.runs tbody tr')].map(r => +r.dataset.run)"))
+    of = report["scenes"][1]["runs"]
+    times = [of[k]["frame_ms"]["cold"] for k in cold if of[k]["failed"] is None]
+    check("sorted by time", times == sorted(times) and of[cold[-1]]["failed"] is not None)
+
+
+READY = "[...document.querySelectorAll('.viewer')].every((v) => v.dataset.ready)"
+
+
+def pixel(b, canvas, x, y):
+    """Its bytes, through a canvas of our own: the page's are not made for reading."""
+    return b.run("(() => { const mine = document.createElement('canvas').getContext('2d', {willReadFrequently: true}); "
+                 f"mine.drawImage(document.querySelector('{canvas} canvas'), {-x}, {-y}); "
+                 "return [...mine.getImageData(0, 0, 1, 1).data]; })()")
+
+
+
+def settled(b):
+    """After an action: until the viewers have drawn."""
+    b.run("new Promise((r) => setTimeout(r, 150))")
+
+
+def check_pictures(b):
+    check("pictures are drawn", b.wait(READY))
+    now = "Number(document.querySelector('#scene-0 .handle').getAttribute('aria-valuenow'))"
+    clip = "getComputedStyle(document.querySelector('#scene-0 .layer.left')).clipPath"
+    role = b.run("(() => { const h = document.querySelector('#scene-0 .handle'); "
+                 "return [h.getAttribute('role'), h.tabIndex, h.getAttribute('aria-label')]; })()")
+    check("the split is a slider with a label", role[0] == "slider" and role[1] == 0 and role[2], str(role))
+    b.run("document.querySelector('#scene-0 .handle').focus()")
+    start, shape = b.run(now), b.run(clip)
+    b.key("ArrowLeft")
+    b.key("ArrowLeft")
+    check("arrows move the split", b.run(now) == start - 2 and b.run(clip) != shape, f"{start} {b.run(now)}")
+    b.key("Home")
+    check("Home moves it to the left", b.run(now) == 0)
+    b.key("PageUp")
+    check("PageUp by ten", b.run(now) == 10)
+    b.run("document.querySelector('#scene-0 .stage').scrollIntoView({block: 'center'})")
+    box = b.run("(() => { const r = document.querySelector('#scene-0 .stage').getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()")
+    b.drag(box[0] + 0.1 * box[2], box[1] + 0.5 * box[3], box[0] + 0.75 * box[2], box[1] + 0.5 * box[3])
+    check("the pointer moves it", abs(b.run(now) - 75) <= 1, str(b.run(now)))
+
+    # Half floats arrive as report_make wrote them: its formula again, to the three digits that are shown.
+    random, expected = 1, []
+    for step in range(3 * (48 * 96 + 48 + 1)):
+        random = (random * 1664525 + 1013904223) % 2**32
+        if step >= 3 * (48 * 96 + 48):
+            x = 48.5 / 96 * 2 - 1
+            light = (1 - 2 * x * x) ** 0.5 * (0.6 + 0.2 * x) * 0.02 * (1 - 0.2 * len(expected))
+            expected.append(light * (1 + 0.02 * 3.4 * (random / 2**32 - 0.5)))
+    b.call("Input.dispatchMouseEvent", type="mouseMoved", x=box[0] + 48.5 / 96 * box[2], y=box[1] + 48.5 / 96 * box[3])
+    read = b.run("document.querySelector('#scene-0 .readout').textContent")
+    shown = re.search(r"pixel 48, 48: .*right ([\d.]+) ([\d.]+) ([\d.]+)", read)
+    check("the pointer reads radiance", shown and all(abs(float(v) / e - 1) < 0.005 for v, e in zip(shown.groups(), expected)),
+          f"{read} {expected}")
+
+    # The signed difference: "pop, 48 cells" is 5.4 % too bright times x, in the ball; gain doubles it.
+    b.key("d")
+    settled(b)
+    check("d shows the difference", b.run("getComputedStyle(document.querySelector('#scene-0 .layer.difference')).visibility") == "visible")
+    difference = "#scene-0 .layer.difference"
+    right, left = pixel(b, difference, 80, 48), pixel(b, difference, 16, 48)
+    check("too bright is red, too dark blue", right[0] > right[2] and left[2] > left[0], f"{right} {left}")
+    words = b.run("document.querySelector('#scene-0 .scale').textContent")
+    b.key("+")
+    settled(b)
+    louder = pixel(b, difference, 80, 48)
+    check("gain makes it stronger", louder[1] < right[1], f"{right} {louder}")
+    check("and the scale says so", b.run("document.querySelector('#scene-0 .scale').textContent") != words)
+    b.key("-")
+    settled(b)
+    check("and back", pixel(b, difference, 80, 48) == right)
+    b.run("(() => { const g = document.querySelectorAll('#scene-0 .range input')[1]; g.value = 10; g.dispatchEvent(new Event('input')); })()")
+    settled(b)
+    check("the gain's own slider works", pixel(b, difference, 80, 48) != right)
+    b.key("d")
+    name = "document.querySelector('#scene-0 .word.left').textContent"
+    before = b.run(name)
+    b.key("a")
+    settled(b)
+    after = b.run(name)
+    check("a switches the method on the left", after != before)
+    b.key("s")
+    settled(b)
+    check("s swaps", b.run("document.querySelector('#scene-0 .word.right').textContent") == after)
+    lit = pixel(b, "#scene-0 .layer.right", 48, 48)
+    b.key("E", shift=True)
+    settled(b)
+    check("E lowers the exposure", pixel(b, "#scene-0 .layer.right", 48, 48)[0] < lit[0])
+
+    b.run("(() => { const s = document.querySelectorAll('#scene-2 .sides select')[0];"
+          "s.value = [...s.options].find((o) => o.textContent.startsWith('pop-paper, 20')).value; s.dispatchEvent(new Event('change')); })()")
+    settled(b)
+    spot = pixel(b, "#scene-2 .layer.left", 10, 10)
+    check("a pixel that is not a number is seen", spot == [255, 0, 220, 255], str(spot))
+
+
+def check_stress(b, report):
+    cells = report["stress"]["cells"]
+    check("a cell for every case", b.run("document.querySelectorAll('#stress .cell').length") == len(cells))
+    bad = sum(c["non_finite"] > 0 for c in cells)
+    check("what is not finite is flagged", bad > 0 and b.run("document.querySelectorAll('#stress .cell.spoiled').length") == bad
+          and b.run("!!document.querySelector('#stress .alert')"))
+    b.run("document.querySelector('#stress .cell.warned').focus()")
+    tip = b.run("document.querySelector('#stress .tip').hidden ? '' : document.querySelector('#stress .tip').textContent")
+    check("a cell tells its reason", "mean free paths wide" in tip, tip)
+    colors = b.run("new Set([...document.querySelectorAll('#stress .cell')].map((c) => getComputedStyle(c).backgroundColor)).size")
+    check("cells are coloured by error", colors >= 6, str(colors))
+
+
+def check_sizes(b):
+    for width, mobile, dark in ((360, True, False), (360, True, True), (768, False, False), (1280, False, True)):
+        b.window(width, 740, mobile)
+        b.media("", dark)
+        settled(b)
+        wide = b.run("document.documentElement.scrollWidth")
+        check(f"no horizontal scroll at {width} pixels", wide <= width, str(wide))
+    paper = b.run("getComputedStyle(document.body).backgroundColor")
+    check("dark follows the scheme", sum(map(int, re.findall(r"\d+", paper)[:3])) < 150, paper)
+    b.media("print", True)
+    check("paper is white", b.run("getComputedStyle(document.body).backgroundColor") == "rgb(255, 255, 255)")
+    check("no controls on paper", b.run("[...document.querySelectorAll('.controls, .sides, .contents, .handle')].every((e) => getComputedStyle(e).display === 'none')"))
+    check("tables are whole on paper", b.run("[...document.querySelectorAll('.tall')].every((e) => e.scrollHeight <= e.clientHeight + 1)"))
+    b.media()
+    b.window(1280, 900)
+    pdf = b.call("Page.printToPDF", printBackground=True, paperWidth=8.27, paperHeight=11.69)["data"]
+    check("it prints", len(pdf) > 40000 and pdf.startswith("JVBERi0"), str(len(pdf)))
+
+
+def main():
+    report_make = sys.argv[1]
+    with tempfile.TemporaryDirectory(prefix="tyndall-page-") as folder:
+        subprocess.run([report_make, folder], check=True)
+        report = check_text(folder)
+        program = browser.find()
+        if not program:
+            print("skipped: no Chromium here (Debian: chromium), so the page was not opened")
+            sys.exit(1 if failures else 77)
+        b = browser.Browser(program)
+        try:
+            b.window(1280, 900)
+            b.media()
+            b.open(f"{folder}/report.html")
+            check_pictures(b)
+            check_plots(b, report)
+            check_stress(b, report)
+            check_sizes(b)
+            check("markup in names does nothing", b.run("window.harmed === undefined && !document.querySelector('main b')"))
+            said = b.happened("Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded")
+            check("the console is silent", not said, str(said)[:2000])
+            asked = [r["request"]["url"] for r in b.happened("Network.requestWillBeSent")]
+            outside = [u for u in asked if not u.startswith(("file://" + folder, "data:"))]
+            check("nothing is asked of a network", not outside, str(outside))
+        finally:
+            b.close()
+    print("all right" if failures == 0 else f"{failures} failed")
+    sys.exit(1 if failures else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,85 @@
+// stress.js -- where methods lose accuracy when numbers get extreme: a cell per case, coloured by error.
+
+const STRESS_STEPS = [0.003, 0.01, 0.03, 0.1, 0.3]; // upper bounds of the colours; the last is above
+
+const stressStep = (error) => (isNumber(error) ? STRESS_STEPS.findIndex((s) => error <= s) >>> 0 : null);
+const stressClass = (error) => (isNumber(error) ? `heat-${Math.min(stressStep(error), STRESS_STEPS.length)}` : "heat-none");
+
+function stressWords(cell) {
+    const bad = [cell.non_finite > 0 && `${cell.non_finite} values not finite`, cell.negative > 0 && `${cell.negative} negative values`].filter(Boolean);
+    return {
+        title: `${cell.method}, ${cell.axis}: ${cell.case ?? axisValue(cell.x)}`,
+        figure: isNumber(cell.error)
+            ? `error ${percent(cell.error)}${isNumber(cell.se) ? ` \u00b1${NARROW}${percent(cell.se)}` : ""} against ${cell.against ?? "an exact answer"}${isNumber(cell.ms) ? `, ${duration(cell.ms)}` : ""}`
+            : "no figure", bad, warnings: list(cell.warnings),
+    };
+}
+
+function stressCell(cell, tip) {
+    const words = stressWords(cell), bad = words.bad.length > 0;
+    const label = cell.non_finite > 0 ? "NaN" : cell.negative > 0 ? "< 0" : isNumber(cell.error) ? digits(100 * cell.error, cell.error < 0.1 ? 1 : 2) : NONE;
+    const show = (event) => tip.show(event.currentTarget, words);
+    return make("button", {type: "button", class: `cell ${stressClass(cell.error)}${bad ? " spoiled" : ""}${words.warnings.length ? " warned" : ""}`,
+        "aria-label": [words.title, words.figure, ...words.bad, ...words.warnings].join(". "),
+        onfocus: show, onpointerenter: show, onblur: tip.hide, onpointerleave: tip.hide},
+        make("span", {class: "value"}, label), make("span", {class: "case"}, isNumber(cell.x) ? axisValue(cell.x) : String(cell.case ?? "")));
+}
+
+function stressTip(frame) {
+    const box = make("div", {class: "tip", role: "tooltip", hidden: true});
+    frame.append(box);
+    onWidth(frame, () => { box.hidden = true; });
+    return {
+        show(target, words) {
+            box.replaceChildren(make("strong", {}, words.title), make("span", {}, words.figure),
+                ...words.bad.map((b) => make("span", {class: "bad"}, b)), ...words.warnings.map((w) => make("span", {class: "warning"}, w)));
+            box.hidden = false;
+            const at = target.getBoundingClientRect(), outer = frame.getBoundingClientRect();
+            box.style.left = `${clamp(at.x + at.width / 2 - outer.x - box.offsetWidth / 2, 0, Math.max(0, outer.width - box.offsetWidth))}px`;
+            box.style.top = `${at.y + at.height - outer.y + 6}px`;
+        },
+        hide() { box.hidden = true; },
+    };
+}
+
+function stressSection(stress, styles) {
+    const cells = list((stress || {}).cells);
+    if (cells.length === 0) {
+        return null;
+    }
+    const unique = (values) => [...new Set(values)];
+    const methods = unique([...list(stress.methods).map((m) => (typeof m === "string" ? m : m.name)), ...cells.map((c) => c.method)]).filter(Boolean);
+    const axes = unique(cells.map((c) => c.axis));
+    const about = (axis) => {
+        const entry = Array.isArray(stress.axes) ? stress.axes.find((a) => a.name === axis) : (stress.axes || {})[axis];
+        return typeof entry === "string" ? entry : (entry || {}).about ?? (entry || {}).label ?? "";
+    };
+    const spoiledCells = cells.filter((c) => c.non_finite > 0 || c.negative > 0);
+    const lossy = cells.filter((c) => isNumber(c.error) && c.error > 0.1);
+    const section = make("section", {id: "stress", class: "stress"},
+        make("h2", {}, "Under stress"),
+        make("p", {}, `${cells.length} cases in which numbers get extreme, each against an exact answer or path. A cell shows the error in percent and, below it, the value on its axis; point at it for the reason.`),
+        spoiledCells.length > 0
+            ? make("p", {class: "alert", role: "alert"}, `${spoiledCells.length} cells hold values that are not finite or negative: `, spoiledCells.map((c) => `${c.method}, ${c.axis} ${c.case ?? c.x}`).join("; "))
+            : make("p", {class: "good"}, "No value of any cell is infinite, not a number or negative."),
+        make("p", {class: "legend heat"}, [...STRESS_STEPS, null].map((s, i) => make("span", {class: "key"}, make("span", {class: `swatch heat-${i}`}), s === null ? "more" : `to ${level(s)}`)),
+            make("span", {class: "key"}, make("span", {class: "swatch heat-none"}), "no figure"), make("span", {class: "key"}, make("span", {class: "swatch warned"}), "has a warning")));
+    const frame = make("div", {class: "holder stress-grid"}), tip = stressTip(frame);
+    for (const method of methods) {
+        const own = cells.filter((c) => c.method === method), style = styles.get(method);
+        own.length > 0 && frame.append(make("div", {class: "stress-method"},
+            make("h3", {}, style && marker(style, 14), method),
+            axes.filter((axis) => own.some((c) => c.axis === axis)).map((axis) => make("div", {class: "axis-row"},
+                make("div", {class: "axis-name"}, make("strong", {}, axis), about(axis) && make("small", {}, about(axis))),
+                make("div", {class: "cells", role: "group", "aria-label": `${method}, ${axis}`}, own.filter((c) => c.axis === axis).map((c) => stressCell(c, tip)))))));
+    }
+    section.append(frame);
+    if (lossy.length > 0) {
+        section.append(make("details", {}, make("summary", {}, `Where the error is above ${level(0.1)}: ${lossy.length} cells`),
+            make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "cells with large errors"}, make("table", {},
+                make("thead", {}, make("tr", {}, ["case", "error", "reason"].map((h) => make("th", {scope: "col"}, h)))),
+                make("tbody", {}, lossy.map((c) => make("tr", {}, make("th", {scope: "row"}, stressWords(c).title),
+                    make("td", {class: "number"}, percent(c.error)), make("td", {class: "reason"}, list(c.warnings).join("; ") || make("span", {class: "bad"}, "no warning")))))))));
+    }
+    return section;
+}
