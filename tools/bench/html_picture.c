@@ -19,8 +19,10 @@ uint16_t html_half(float value)
     if (size >= 65520.0f) {
         return sign | 0x7c00;
     }
-    int exponent;
-    frexpf(size, &exponent); // size < 2^exponent
+    int exponent = -24;
+    if (size > 0) { // size < 2^exponent
+        frexpf(size, &exponent);
+    }
     // A half holds multiples of 2^(exponent - 11), at the smallest 2^-24.
     const int unit = exponent - 11 > -24 ? exponent - 11 : -24;
     const uint32_t steps = (uint32_t)lrintf(ldexpf(size, -unit)); // at most 2^11
