@@ -34,6 +34,7 @@ static void print_log(void *user, tyn_log_level level, const char *message)
     app *a = user;
     if (level == TYN_LOG_ERROR) {
         a->num_errors++;
+        snprintf(a->last_error, sizeof a->last_error, "%s", message);
         print_line(a, "", message);
     } else if (!a->quiet) {
         print_line(a, level == TYN_LOG_WARN ? "warning: " : "", message);

@@ -112,8 +112,7 @@ static void add_param(cJSON *settings, const tyn_pass_desc *pass, const tyn_para
     }
 }
 
-// Every parameter of the method's passes by the name -D takes, and the samples.
-static cJSON *settings_of(const method *m, const tyn_view *view)
+cJSON *stats_settings(const method *m, const tyn_view *view)
 {
     cJSON *settings = cJSON_CreateObject();
     for (const tyn_pass_desc *const *pass = m->info.passes; *pass; pass++) {
@@ -142,26 +141,24 @@ static void add_hash(cJSON *object, const char *name, uint64_t hash)
     cJSON_AddStringToObject(object, name, text);
 }
 
-// The files as they are on disk, and the grids and the map as they were read.
-static cJSON *inputs_of(const stats *s)
+cJSON *stats_inputs(const tyn_scene *scene, const char *const *paths, size_t num_paths)
 {
     cJSON *inputs = cJSON_CreateObject();
-    for (size_t i = 0; i < ARRAY_SIZE(s->inputs); i++) {
+    for (size_t i = 0; i < num_paths; i++) {
         void *data = NULL;
         size_t size = 0;
-        if (s->inputs[i] &&
-            tyn_file_read(s->inputs[i], UINT64_C(1) << 32, &data, &size, NULL) == TYN_OK) {
-            add_hash(inputs, s->inputs[i], text_hash(data, size, 0));
+        if (paths[i] && tyn_file_read(paths[i], UINT64_C(1) << 32, &data, &size, NULL) == TYN_OK) {
+            add_hash(inputs, paths[i], text_hash(data, size, 0));
         }
         free(data);
     }
-    for (uint32_t i = 0; i < s->scene->num_volumes; i++) {
+    for (uint32_t i = 0; i < scene->num_volumes; i++) {
         char name[32];
         snprintf(name, sizeof name, "volume %u", i);
-        add_hash(inputs, name, s->scene->volumes[i].hash);
+        add_hash(inputs, name, scene->volumes[i].hash);
     }
-    if (s->scene->environment.data) {
-        add_hash(inputs, "environment", s->scene->environment.hash);
+    if (scene->environment.data) {
+        add_hash(inputs, "environment", scene->environment.hash);
     }
     return inputs;
 }
@@ -196,7 +193,7 @@ cJSON *stats_make(const stats *s)
             cJSON_AddItemToArray(warnings, cJSON_CreateString(s->warnings[i]));
         }
     }
-    cJSON_AddItemToObject(root, "settings", settings_of(s->method, s->view));
-    cJSON_AddItemToObject(root, "inputs", inputs_of(s));
+    cJSON_AddItemToObject(root, "settings", stats_settings(s->method, s->view));
+    cJSON_AddItemToObject(root, "inputs", stats_inputs(s->scene, s->inputs, ARRAY_SIZE(s->inputs)));
     return root;
 }

@@ -18,6 +18,10 @@ typedef struct stats {
 } stats;
 
 cJSON *stats_make(const stats *s);
+// Every parameter of the method's passes by the name -D takes, and the samples: the "settings".
+cJSON *stats_settings(const method *m, const tyn_view *view);
+// Hashes of the files at `paths` (NULL = none), and of grids and the map as they were read: the "inputs".
+cJSON *stats_inputs(const tyn_scene *scene, const char *const *paths, size_t num_paths);
 cJSON *stats_report_nodes(const tyn_report *report); // the "nodes" of the stats
 
 // Writes an object to a file, or to stdout with path NULL; deletes it. Gives the exit code.

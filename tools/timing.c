@@ -6,24 +6,24 @@
 
 static const double step_angle = 0.5 * 3.14159265358979323846 / 180; // each frame, about +Y
 
-static void turn(float v[3])
+static void turn(float v[3], double radians)
 {
-    const double c = cos(step_angle), s = sin(step_angle), x = v[0], z = v[2];
+    const double c = cos(radians), s = sin(radians), x = v[0], z = v[2];
     v[0] = (float)(c * x + s * z);
     v[2] = (float)(c * z - s * x);
 }
 
-static void step_camera(const tyn_scene *scene, tyn_camera *camera)
+void timing_turn_camera(const tyn_scene *scene, tyn_camera *camera, double radians)
 {
     float lo[3], hi[3], offset[3];
     tyn_scene_bounds(scene, lo, hi);
     for (int i = 0; i < 3; i++) {
         offset[i] = camera->position[i] - 0.5f * (lo[i] + hi[i]);
     }
-    turn(offset);
-    turn(camera->right);
-    turn(camera->up);
-    turn(camera->back);
+    turn(offset, radians);
+    turn(camera->right, radians);
+    turn(camera->up, radians);
+    turn(camera->back, radians);
     for (int i = 0; i < 3; i++) {
         camera->position[i] = offset[i] + 0.5f * (lo[i] + hi[i]);
     }
@@ -33,7 +33,7 @@ static void step_camera(const tyn_scene *scene, tyn_camera *camera)
 static void step_lights(tyn_scene *scene)
 {
     for (uint32_t i = 0; i < scene->num_lights; i++) {
-        turn(scene->lights[i].direction);
+        turn(scene->lights[i].direction, step_angle);
     }
     float *q = scene->environment.rotation;
     const float w = q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0 ? 1 : q[3];
@@ -75,7 +75,7 @@ int timing_run(app *a, renderer *r, tyn_scene *scene, const tyn_view *view, timi
     progress_start(&a->bar, "timing", a->quiet);
     for (uint32_t i = 0; i < frames && code == EXIT_DONE; i++) {
         if (change == TIMING_CAMERA) {
-            step_camera(scene, &moving.camera);
+            timing_turn_camera(scene, &moving.camera, step_angle);
         } else if (change == TIMING_LIGHT) {
             step_lights(scene);
         }

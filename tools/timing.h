@@ -14,4 +14,7 @@ typedef enum timing_change {
 int timing_run(app *a, renderer *r, tyn_scene *scene, const tyn_view *view, timing_change change,
                uint32_t frames, double *median_ms);
 
+// Turns a camera about +Y round the middle of the scene.
+void timing_turn_camera(const tyn_scene *scene, tyn_camera *camera, double radians);
+
 double timing_median(double *values, uint32_t count); // NaN if there are none; sorts

@@ -202,23 +202,7 @@ warnings=$(grep -c warning: err)
 near "$warnings" 1 1 "warnings of two-media: $(cat err)"
 [ "$(get w.json warnings)" = "list $warnings" ] || fail "stats: warnings are not those on stderr"
 
-# ---- bench, selftest ----
-cat >suite.json <<'END'
-{ "name": "tiny", "size": [24, 24], "reference_spp": 64, "block": 4, "frames": 2, "pilot_spp": 4,
-  "max_seconds": 1, "scenes": [ { "name": "cube", "scene": "cube.gltf", "g": 0.5 } ],
-  "runs": [ { "method": "pop", "settings": { "lattice.cells": 16 } }, { "method": "single" } ],
-  "baselines": [ { "name": "plain", "method": "path", "settings": { "path.mixture": 0 } } ] }
-END
-works bench --suite suite.json --scenes "$scenes" --report report --quiet
-grep -q "^cube, 24x24" out && grep -q "plain *needs for the same error" out || fail "bench: $(cat out)"
-ls cache/tyndall/references/*.exr >/dev/null 2>&1 || fail "bench kept no reference"
-for key in name size.0 fill reference.spp reference.n_pixel runs.0.errors.1.rel_l1 \
-    runs.0.frame_ms.cold runs.0.frame_ms.camera_moved runs.0.frame_ms.unchanged \
-    runs.0.memory.persistent runs.0.nodes.0.gpu_ms runs.0.equal_error.0.ms; do
-    get report/bench.json scenes.0.$key >/dev/null
-done
-near "$(get report/bench.json scenes.0.runs.0.errors.0.error)" 0.05 0.05 "bench: error of pop"
-near "$(get report/bench.json scenes.0.runs.1.errors.0.bias)" -0.5 0.4 "bench: bias of single"
+# ---- selftest ----
 works selftest --json --quiet
 cp out selftest.json
 [ "$(get selftest.json ok)" = true ] || fail "selftest: $(cat selftest.json)"

@@ -1,246 +1,555 @@
-// measure.c -- error, times and nodes of a run; what a baseline needs for the same error.
-#include "bench.h"
+// measure.c -- one run on one scene: errors, times, nodes, memory, imbalance, flicker, as a record.
+#include "measure.h"
+#include "flicker.h"
+#include "record.h"
+#include "renderer.h"
+#include "stats.h"
 #include "timing.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-// ---- a run ------------------------------------------------------------------------------------
+enum { MAX_NODES = 64, FLICKER_FRAMES = 8, BALANCE_SAMPLES = 16 };
+static const double flicker_step = 0.1 * 3.14159265358979323846 / 180; // of the camera, a frame
 
-static int compare_frame(bench_case *c, tyn_offline *offline, const tyn_view *view,
-                         metrics errors[BENCH_BLOCKS])
-{
-    float *planes = malloc(6 * sizeof *planes * view->width * view->height);
-    if (!planes) {
-        return app_exit_code(c->a, TYN_ERR_MEMORY, false);
-    }
+// A run that is being measured. Times are NAN where they were not measured.
+typedef struct measuring {
+    bench_case *c;
+    const bench_run *run;
+    method method;
+    renderer renderer;
+    tyn_view view;
+    float *planes; // 6 w h: the picture
     metrics_image image;
-    bench_planes(offline, view, planes, &image);
-    int code = EXIT_DONE;
-    for (int i = 0; i < BENCH_BLOCKS && code == EXIT_DONE; i++) {
-        if (metrics_compare(&image, &c->reference.image, c->blocks[i], &errors[i]) != METRICS_OK) {
-            app_error(c->a, "%s: the reference is black; nothing can be relative to it",
-                      c->spec->name);
-            code = EXIT_WRONG;
+    metrics errors[BENCH_BLOCKS];
+    double fill, setup_ms, cold_ms, camera_ms, unchanged_ms;
+    uint64_t persistent, transient;
+    cJSON *nodes, *warnings; // NULL until they are known
+    uint32_t num_nodes;
+    double node_ms[MAX_NODES];
+    double flicker, imbalance[3], imbalance_se[3];
+    bool has_balance;
+} measuring;
+
+// ---- the picture ------------------------------------------------------------------------------
+
+static int take_picture(measuring *m)
+{
+    bench_planes(m->renderer.offline, &m->view, m->planes, &m->image);
+    for (int i = 0; i < BENCH_BLOCKS; i++) {
+        if (metrics_compare(&m->image, &m->c->reference.image, m->c->blocks[i], &m->errors[i]) !=
+            METRICS_OK) {
+            app_error(m->c->a, "%s: the reference is black; nothing can be relative to it",
+                      m->c->spec->name);
+            return EXIT_WRONG;
         }
     }
-    free(planes);
-    return code;
-}
-
-// What of rel_l1 the noise of the reference does not explain.
-static double without_reference(const metrics *m, double reference_noise)
-{
-    return sqrt(fmax(0, m->rel_l1 * m->rel_l1 - reference_noise * reference_noise));
-}
-
-// Transmittance below 0.99 is medium.
-static void measure_fill(bench_case *c, tyn_offline *offline)
-{
-    const float *t = tyn_offline_output(offline, TYN_OUTPUT_TRANSMITTANCE);
-    const size_t num = (size_t)c->view.width * c->view.height;
+    // Transmittance below 0.99 is medium.
+    const float *t = tyn_offline_output(m->renderer.offline, TYN_OUTPUT_TRANSMITTANCE);
+    const size_t num = (size_t)m->view.width * m->view.height;
     size_t filled = 0;
     for (size_t i = 0; t && i < num; i++) {
         filled += t[4 * i] + t[4 * i + 1] + t[4 * i + 2] < 3 * 0.99f;
     }
-    c->fill = t ? (double)filled / (double)num : c->fill;
+    m->fill = t ? (double)filled / (double)num : NAN;
+    return EXIT_DONE;
 }
 
-static void take_nodes(tyn_offline *offline, bench_result *result)
+static cJSON *json_errors(const measuring *m)
+{
+    cJSON *list = cJSON_CreateArray();
+    for (int i = 0; i < BENCH_BLOCKS; i++) {
+        const metrics *e = &m->errors[i];
+        // What the noise of the reference explains goes; a run's own noise is an error of it.
+        const double n = m->c->reference.noise[i];
+        cJSON *error = cJSON_CreateObject();
+        cJSON_AddNumberToObject(error, "block", m->c->blocks[i]);
+        json_add_float(error, "error", sqrt(fmax(0, e->rel_l1 * e->rel_l1 - n * n)));
+        json_add_float(error, "rel_l1", e->rel_l1);
+        json_add_float(error, "n", m->c->reference.known_noise ? n : NAN);
+        json_add_float(error, "rmse", e->rmse);
+        json_add_float(error, "rel_rmse", e->rel_rmse);
+        json_add_float(error, "rel_mse", e->rel_mse);
+        json_add_float(error, "smape", e->smape);
+        json_add_float(error, "bias", e->bias);
+        json_add_float(error, "bias_se",
+                       m->c->reference.known_noise ? m->c->reference.bias_se : NAN);
+        json_add_float(error, "p95", e->p95);
+        cJSON_AddNumberToObject(error, "nan", (double)e->nan);
+        cJSON_AddItemToArray(list, error);
+    }
+    return list;
+}
+
+static void count_values(const measuring *m, double *non_finite, double *negative)
+{
+    const size_t num = (size_t)m->view.width * m->view.height;
+    *non_finite = *negative = 0;
+    for (size_t i = 0; i < 3 * num; i++) {
+        *non_finite += !isfinite(m->planes[i]);
+        *negative += m->planes[i] < 0;
+    }
+}
+
+// ---- nodes ------------------------------------------------------------------------------------
+
+static cJSON *json_node(const tyn_node_report *n)
+{
+    cJSON *node = cJSON_CreateObject(), *work = cJSON_CreateObject();
+    const node_work w = node_work_of(n);
+    cJSON_AddStringToObject(node, "name", n->name);
+    cJSON_AddBoolToObject(node, "setup", n->media_only);
+    cJSON_AddNumberToObject(node, "dispatches", n->dispatches);
+    cJSON_AddNumberToObject(node, "memory", (double)n->bytes);
+    json_add_float(node, "bytes", w.bytes > 0 ? w.bytes : NAN);
+    json_add_float(node, "flops", w.flops > 0 ? w.flops : NAN);
+    for (uint32_t k = 0; k < n->num_work; k++) {
+        cJSON_AddNumberToObject(work, n->work[k].name, n->work[k].amount);
+    }
+    cJSON_AddItemToObject(node, "work", work);
+    return node;
+}
+
+// Nodes, memory and warnings of the last frame; times of nodes into `times`.
+static void take_report(measuring *m, double times[MAX_NODES])
 {
     tyn_report report = {0};
-    tyn_offline_report(offline, &report);
-    result->persistent = report.persistent_bytes;
-    result->transient = report.transient_bytes;
-    result->num_nodes = 0;
-    for (uint32_t i = 0; i < report.num_nodes && i < BENCH_MAX_NODES; i++) {
-        const tyn_node_report *n = &report.nodes[i];
-        bench_node *node = &result->nodes[result->num_nodes++];
-        *node = (bench_node){.bytes = n->bytes, .gpu_ms = n->gpu_ms, .setup = n->media_only};
-        snprintf(node->name, sizeof node->name, "%s", n->name);
-        for (uint32_t k = 0; k < n->num_work; k++) {
-            node->steps = strcmp(n->work[k].name, "steps") == 0 ? n->work[k].amount : node->steps;
+    tyn_offline_report(m->renderer.offline, &report);
+    m->persistent = report.persistent_bytes;
+    m->transient = report.transient_bytes;
+    m->num_nodes = report.num_nodes < MAX_NODES ? report.num_nodes : MAX_NODES;
+    cJSON_Delete(m->nodes);
+    cJSON_Delete(m->warnings);
+    m->nodes = cJSON_CreateArray();
+    m->warnings = cJSON_CreateArray();
+    for (uint32_t i = 0; i < m->num_nodes; i++) {
+        times[i] = report.nodes[i].gpu_ms;
+        cJSON_AddItemToArray(m->nodes, json_node(&report.nodes[i]));
+    }
+    const tyn_scene *scene = &m->c->scene;
+    for (uint32_t i = 0; i < scene->num_warnings; i++) {
+        cJSON_AddItemToArray(m->warnings, cJSON_CreateString(scene->warnings[i]));
+    }
+    for (uint32_t i = 0; i < report.num_warnings; i++) {
+        cJSON_AddItemToArray(m->warnings, cJSON_CreateString(report.warnings[i]));
+    }
+    for (size_t i = 0; i < ARRAY_SIZE(m->renderer.warnings); i++) {
+        if (m->renderer.warnings[i]) {
+            cJSON_AddItemToArray(m->warnings, cJSON_CreateString(m->renderer.warnings[i]));
         }
     }
+}
+
+// Times of nodes, and the ceilings that bind them, into what take_report has made.
+static void finish_nodes(measuring *m)
+{
+    tyn_report report = {0};
+    tyn_offline_report(m->renderer.offline, &report);
+    uint32_t i = 0;
+    cJSON *node;
+    cJSON_ArrayForEach(node, m->nodes)
+    {
+        node_work work = {.gpu_ms = m->node_ms[i],
+                          .flops = json_figure(node, "flops"),
+                          .bytes = json_figure(node, "bytes"),
+                          .dispatches = (uint32_t)json_figure(node, "dispatches")};
+        if (i < report.num_nodes) {
+            work = node_work_of(&report.nodes[i]);
+            work.gpu_ms = m->node_ms[i];
+        }
+        double fraction = NAN;
+        const char *ceiling = ceilings_bind(&m->c->machine->ceilings, &work, &fraction);
+        json_add_float(node, "gpu_ms", m->node_ms[i]);
+        cJSON_AddItemToObject(node, "ceiling",
+                              ceiling ? cJSON_CreateString(ceiling) : cJSON_CreateNull());
+        json_add_float(node, "fraction", fraction);
+        i++;
+    }
+}
+
+// Which nodes a moved camera leaves alone.
+static void take_states(measuring *m)
+{
+    tyn_report report = {0};
+    tyn_offline_report(m->renderer.offline, &report);
+    uint32_t i = 0;
+    cJSON *node;
+    cJSON_ArrayForEach(node, m->nodes)
+    {
+        cJSON_AddStringToObject(node, "state_after_camera_moved",
+                                i < report.num_nodes ? report.nodes[i].state : "");
+        i++;
+    }
+}
+
+// ---- times ------------------------------------------------------------------------------------
+
+static bool go_on(double start, uint32_t done, uint32_t least, uint32_t most, double seconds)
+{
+    return done < least || (done < most && app_seconds() - start < seconds);
 }
 
 // Cold frames: medians of the whole and of every node.
-static int time_cold(bench_case *c, renderer *r, const tyn_view *view, bench_result *result)
+static int time_cold(measuring *m)
 {
-    const uint32_t frames = c->suite->frames;
-    double *whole = calloc(frames, sizeof *whole);
-    double *nodes = calloc((size_t)frames * BENCH_MAX_NODES, sizeof *nodes);
-    int code = whole && nodes ? EXIT_DONE : app_exit_code(c->a, TYN_ERR_MEMORY, false);
-    for (uint32_t i = 0; i < frames && code == EXIT_DONE; i++) {
-        code = renderer_frame(c->a, r, &c->scene, view, true, NULL);
+    const bench_suite *suite = m->c->suite;
+    const uint32_t most = suite->frames;
+    double *whole = calloc(most, sizeof *whole);
+    double *nodes = calloc((size_t)most * MAX_NODES, sizeof *nodes);
+    int code = whole && nodes ? EXIT_DONE : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
+    uint32_t done = 0;
+    const double start = app_seconds();
+    while (code == EXIT_DONE && go_on(start, done, 1, most, suite->timing_seconds)) {
+        code = renderer_frame(m->c->a, &m->renderer, &m->c->scene, &m->view, true, NULL);
         if (code == EXIT_DONE) {
-            whole[i] = r->frame_ms;
-            take_nodes(r->offline, result);
-            for (uint32_t k = 0; k < result->num_nodes; k++) {
-                nodes[k * frames + i] = result->nodes[k].gpu_ms;
+            double times[MAX_NODES] = {0};
+            take_report(m, times);
+            for (uint32_t k = 0; k < m->num_nodes; k++) {
+                nodes[k * most + done] = times[k];
             }
+            whole[done++] = m->renderer.frame_ms;
         }
     }
     if (code == EXIT_DONE) {
-        result->cold_ms = timing_median(whole, frames);
-        for (uint32_t k = 0; k < result->num_nodes; k++) {
-            result->nodes[k].gpu_ms = timing_median(nodes + k * frames, frames);
+        m->cold_ms = timing_median(whole, done);
+        for (uint32_t k = 0; k < m->num_nodes; k++) {
+            m->node_ms[k] = timing_median(nodes + k * most, done);
         }
+        finish_nodes(m);
     }
     free(whole);
     free(nodes);
     return code;
 }
 
-static void take_states(tyn_offline *offline, bench_result *result)
+// The camera turns by a little from frame to frame: times, and flicker. Of a method that samples every frame
+// has samples of its own, as it would have in a film.
+static int time_camera(measuring *m, uint32_t least, double seconds)
 {
-    tyn_report report = {0};
-    tyn_offline_report(offline, &report);
-    for (uint32_t i = 0; i < report.num_nodes && i < result->num_nodes; i++) {
-        snprintf(result->nodes[i].state, sizeof result->nodes[i].state, "%s",
-                 report.nodes[i].state);
-    }
-}
-
-static int time_frames(bench_case *c, renderer *r, const tyn_view *view, bench_result *result)
-{
-    const uint32_t frames = c->suite->frames;
-    int code = time_cold(c, r, view, result);
-    if (code == EXIT_DONE) {
-        code =
-            timing_run(c->a, r, &c->scene, view, TIMING_UNCHANGED, frames, &result->unchanged_ms);
-    }
-    if (code == EXIT_DONE) {
-        code = timing_run(c->a, r, &c->scene, view, TIMING_CAMERA, frames, &result->camera_ms);
-        take_states(r->offline, result);
-    }
-    return code;
-}
-
-int bench_measure(bench_case *c, const bench_run *run, bench_result *result)
-{
-    *result = (bench_result){.cold_ms = NAN, .camera_ms = NAN, .unchanged_ms = NAN};
-    method m = {0};
-    renderer r = {0};
-    tyn_view view = c->view;
-    method_view(&run->method, &view);
-    int code = method_open(c->a, &run->method, &m);
-    if (code == EXIT_DONE) {
-        code = renderer_open(c->a, c->device, &m, &r);
-    }
-    bool opened = code == EXIT_DONE;
-    if (opened) {
-        // The picture, with the layers that tell how much of it the medium fills and how noisy it is.
-        view.outputs |= m.info.outputs & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_ERROR);
-        char label[128];
-        snprintf(label, sizeof label, "%.50s: %.50s", c->spec->name, run->name);
-        code = renderer_frame(c->a, &r, &c->scene, &view, false, label);
-    }
-    if (opened && code == EXIT_WRONG) { // this method cannot do this scene; others may
-        result->failed = true;
-        code = EXIT_DONE;
-    } else if (code == EXIT_DONE) {
-        measure_fill(c, r.offline);
-        code = compare_frame(c, r.offline, &view, result->error);
-        for (int i = 0; i < BENCH_BLOCKS; i++) { // a run's own noise is an error of it
-            result->error[i].error = without_reference(&result->error[i], c->reference.noise[i]);
-        }
-        result->setup_ms = r.setup_ms;
-        view.outputs = TYN_OUTPUT_RADIANCE;
+    const uint32_t most =
+        m->c->suite->frames > FLICKER_FRAMES ? m->c->suite->frames : FLICKER_FRAMES;
+    double *times = calloc(most, sizeof *times);
+    flicker f;
+    int code = flicker_open(&f, m->view.width, m->view.height) && times
+                   ? EXIT_DONE
+                   : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
+    tyn_view view = m->view;
+    uint32_t done = 0;
+    const double start = app_seconds();
+    while (code == EXIT_DONE && go_on(start, done, least, most, seconds)) {
+        timing_turn_camera(&m->c->scene, &view.camera, flicker_step);
+        view.seed += m->method.info.progressive;
+        code = renderer_frame(m->c->a, &m->renderer, &m->c->scene, &view, false, NULL);
         if (code == EXIT_DONE) {
-            code = renderer_frame(c->a, &r, &c->scene, &view, true,
-                                  NULL); // allocates for these outputs
-        }
-        if (code == EXIT_DONE) {
-            code = time_frames(c, &r, &view, result);
+            times[done++] = m->renderer.frame_ms;
+            flicker_add(&f, tyn_offline_output(m->renderer.offline, TYN_OUTPUT_RADIANCE));
         }
     }
-    renderer_close(&r);
-    method_finish(&m);
+    if (code == EXIT_DONE) {
+        m->camera_ms = timing_median(times, done);
+        m->flicker = flicker_value(&f);
+    }
+    flicker_close(&f);
+    free(times);
     return code;
 }
 
-// ---- baselines --------------------------------------------------------------------------------
-
-static int render_baseline(bench_case *c, const bench_run *run, uint32_t spp, bench_sample *sample)
+static int time_unchanged(measuring *m)
 {
-    method m = {0};
-    renderer r = {0};
-    metrics errors[BENCH_BLOCKS];
-    tyn_view view = c->view;
-    method_view(&run->method, &view);
-    view.num_samples = spp;
-    view.outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_ERROR;
-    int code = method_open(c->a, &run->method, &m);
-    if (code == EXIT_DONE) {
-        code = renderer_open(c->a, c->device, &m, &r);
-    }
-    if (code == EXIT_DONE) { // pipelines and memory
-        view.num_samples = 1;
-        code = renderer_frame(c->a, &r, &c->scene, &view, false, NULL);
-        view.num_samples = spp;
+    const bench_suite *suite = m->c->suite;
+    double *times = calloc(suite->frames, sizeof *times);
+    int code = times ? EXIT_DONE : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
+    // what the camera left is put right first
+    code = code == EXIT_DONE
+               ? renderer_frame(m->c->a, &m->renderer, &m->c->scene, &m->view, false, NULL)
+               : code;
+    uint32_t done = 0;
+    const double start = app_seconds();
+    while (code == EXIT_DONE && go_on(start, done, 1, suite->frames, suite->timing_seconds)) {
+        code = renderer_frame(m->c->a, &m->renderer, &m->c->scene, &m->view, false, NULL);
+        times[done] = m->renderer.frame_ms;
+        done += code == EXIT_DONE;
     }
     if (code == EXIT_DONE) {
-        char label[128];
-        snprintf(label, sizeof label, "%.50s: %.50s, %u samples", c->spec->name, run->name, spp);
-        code = renderer_frame(c->a, &r, &c->scene, &view, true, label);
+        m->unchanged_ms = timing_median(times, done);
     }
-    if (code == EXIT_DONE) {
-        code = compare_frame(c, r.offline, &view, errors);
-    }
-    if (code == EXIT_DONE) {
-        *sample = (bench_sample){.spp = spp, .ms = r.frame_ms};
-        for (int i = 0; i < BENCH_BLOCKS; i++) {
-            sample->error[i] = without_reference(&errors[i], c->reference.noise[i]);
-        }
-    }
-    renderer_close(&r);
-    method_finish(&m);
+    free(times);
     return code;
 }
 
-int bench_baseline_pilot(bench_case *c, const bench_run *run, bench_baseline *b)
-{
-    *b = (bench_baseline){0};
-    return render_baseline(c, run, c->suite->pilot_spp, &b->pilot);
-}
+// ---- the energy -------------------------------------------------------------------------------
 
-// Noise falls as 1 / sqrt(samples): from the error of a sample to another error.
-static void by_the_rule(const bench_sample *sample, uint32_t block_index, double error,
-                        bench_equal *equal)
+// As `tyndall balance`: a frame of its own. A sample of `path` is some ten thousand paths there, so that as many
+// are taken as time allows.
+static int measure_balance(measuring *m)
 {
-    const double ratio = sample->error[block_index] / error, factor = ratio * ratio;
-    equal->spp = sample->spp * factor;
-    equal->ms = sample->ms * factor;
-}
-
-// The pilot tells by the rule how many samples are needed. As many are rendered as long as that is
-// affordable, else as many as are: the rule then has less far to go than from the pilot, whose few
-// samples have not met all of a long tail.
-int bench_baseline_equal(bench_case *c, const bench_run *run, bench_baseline *b,
-                         uint32_t block_index, double error, bench_equal *equal)
-{
-    *equal = (bench_equal){0};
-    if (!(error > 0)) {
+    tyn_view view = {.width = 1, .height = 1, .outputs = TYN_OUTPUT_BALANCE};
+    if (!(m->method.info.outputs & TYN_OUTPUT_BALANCE)) {
         return EXIT_DONE;
     }
-    by_the_rule(&b->pilot, block_index, error, equal);
-    const double affordable = 1e3 * c->suite->max_seconds * b->pilot.spp / b->pilot.ms;
-    const double needed = fmax(1, round(equal->spp));
-    bench_sample sample = {0};
-    int code = EXIT_DONE;
-    if (needed <= affordable) {
-        code = render_baseline(c, run, (uint32_t)needed, &sample);
-        equal->measured = code == EXIT_DONE;
-    } else if (affordable > b->pilot.spp) {
-        if (!b->longest.spp) {
-            code = render_baseline(c, run, (uint32_t)affordable, &b->longest);
+    tyn_camera_frame_scene(&view.camera, &m->c->scene);
+    method_view(&m->run->method, &view);
+    if (m->method.info.progressive) {
+        const double paths = (double)m->view.width * m->view.height * m->view.num_samples;
+        const double sample_ms = 2e4 * m->cold_ms / paths;
+        const double affordable = 1e3 * m->c->suite->timing_seconds / sample_ms;
+        view.num_samples = (uint32_t)fmin(fmin(view.num_samples, BALANCE_SAMPLES), affordable);
+        if (view.num_samples < 1) {
+            return EXIT_DONE;
         }
-        sample = b->longest;
     }
-    if (sample.spp) {
-        by_the_rule(&sample, block_index, error, equal);
+    renderer r = {0};
+    int code = renderer_open(m->c->a, m->c->machine->device, &m->method, &r);
+    if (code == EXIT_DONE) {
+        code = renderer_frame(m->c->a, &r, &m->c->scene, &view, false, NULL);
     }
+    const tyn_balance *balance =
+        code == EXIT_DONE ? tyn_offline_output(r.offline, TYN_OUTPUT_BALANCE) : NULL;
+    if (balance) {
+        m->has_balance = true;
+        memcpy(m->imbalance, balance->imbalance, sizeof m->imbalance);
+        memcpy(m->imbalance_se, balance->imbalance_se, sizeof m->imbalance_se);
+    }
+    renderer_close(&r);
+    return code == EXIT_WRONG ? EXIT_DONE : code; // there is no balance of such a scene
+}
+
+// ---- a run ------------------------------------------------------------------------------------
+
+static int open_run(measuring *m)
+{
+    app *a = m->c->a;
+    int code = method_open(a, &m->run->method, &m->method);
+    if (code == EXIT_DONE) {
+        code = renderer_open(a, m->c->machine->device, &m->method, &m->renderer);
+    }
+    m->view = m->c->view;
+    method_view(&m->run->method, &m->view);
+    m->planes = malloc(6 * sizeof *m->planes * m->view.width * m->view.height);
+    if (!m->planes) {
+        code = app_exit_code(a, TYN_ERR_MEMORY, false);
+    }
+    return code;
+}
+
+static void close_run(measuring *m)
+{
+    renderer_close(&m->renderer);
+    method_finish(&m->method);
+    cJSON_Delete(m->nodes);
+    cJSON_Delete(m->warnings);
+    free(m->planes);
+}
+
+// A method whose frame is done when it is done.
+static int measure_frames(measuring *m, const char *label)
+{
+    app *a = m->c->a;
+    // The picture, with the layers that tell how much of it the medium fills.
+    m->view.outputs = TYN_OUTPUT_RADIANCE | (m->method.info.outputs & TYN_OUTPUT_TRANSMITTANCE);
+    int code = renderer_frame(a, &m->renderer, &m->c->scene, &m->view, false, label);
+    m->setup_ms = m->renderer.setup_ms;
+    if (code == EXIT_DONE) {
+        code = take_picture(m);
+    }
+    m->view.outputs = TYN_OUTPUT_RADIANCE;
+    if (code == EXIT_DONE) { // allocates for these outputs
+        code = renderer_frame(a, &m->renderer, &m->c->scene, &m->view, true, NULL);
+    }
+    if (code == EXIT_DONE) {
+        code = time_cold(m);
+    }
+    if (code == EXIT_DONE) {
+        code = time_camera(m, 3, m->c->suite->timing_seconds);
+    }
+    if (code == EXIT_DONE) {
+        take_states(m);
+        code = time_unchanged(m);
+    }
+    return code;
+}
+
+// A method that samples: a frame is the whole rendering of its samples.
+static int measure_samples(measuring *m, const char *label)
+{
+    app *a = m->c->a;
+    const uint32_t spp = m->view.num_samples;
+    const double seconds = m->c->suite->timing_seconds;
+    m->view.outputs = TYN_OUTPUT_RADIANCE | (m->method.info.outputs & TYN_OUTPUT_ERROR);
+    m->view.num_samples = 1; // pipelines and memory
+    int code = renderer_frame(a, &m->renderer, &m->c->scene, &m->view, false, NULL);
+    m->setup_ms = m->renderer.setup_ms;
+    m->view.num_samples = spp;
+    if (code == EXIT_DONE) {
+        code = renderer_frame(a, &m->renderer, &m->c->scene, &m->view, true, label);
+    }
+    if (code == EXIT_DONE) {
+        m->cold_ms = m->renderer.frame_ms;
+        take_report(m, m->node_ms);
+        code = take_picture(m);
+    }
+    // Short ones again: a first millisecond is noise.
+    if (code == EXIT_DONE && m->cold_ms < 0.2e3 * seconds) {
+        code = time_cold(m);
+    } else if (code == EXIT_DONE) {
+        finish_nodes(m);
+    }
+    if (code == EXIT_DONE && 3e-3 * m->cold_ms < seconds) {
+        code = time_camera(m, 3, seconds);
+        m->camera_ms = NAN; // that of the whole rendering
+    }
+    return code;
+}
+
+static cJSON *json_settings(const measuring *m)
+{
+    cJSON *settings = cJSON_CreateObject();
+    const cJSON *item, *given = cJSON_GetObjectItemCaseSensitive(m->run->spec, "settings");
+    cJSON_ArrayForEach(item, given)
+    {
+        cJSON_AddItemToObject(settings, item->string, cJSON_Duplicate(item, true));
+    }
+    if (m->run->method.quality) {
+        cJSON_AddStringToObject(settings, "quality", m->run->method.quality);
+    }
+    if (m->method.info.progressive) {
+        cJSON_AddNumberToObject(settings, "spp", m->run->method.spp);
+    }
+    return settings;
+}
+
+static cJSON *doubles_or_null(const double *values, bool known)
+{
+    return known ? cJSON_CreateDoubleArray(values, 3) : cJSON_CreateNull();
+}
+
+static int write_picture(measuring *m, cJSON *json)
+{
+    if (!m->c->folder) {
+        cJSON_AddNullToObject(json, "picture");
+        return EXIT_DONE;
+    }
+    char *name = text_format("pictures/%s/%s.exr", m->c->spec->slug, m->run->slug);
+    char *path = name ? text_format("%s/%s", m->c->folder, name) : NULL;
+    int code = path ? bench_picture_write(m->c->a, &m->image, false, path)
+                    : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
+    cJSON_AddStringToObject(json, "picture", name ? name : "");
+    free(name);
+    free(path);
+    return code;
+}
+
+// What is known of every run; `reason` NULL: it was measured.
+static cJSON *json_run(const measuring *m, const char *key, const char *reason)
+{
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "key", key);
+    cJSON_AddStringToObject(json, "name", m->run->name);
+    cJSON_AddStringToObject(json, "method", m->run->method.method);
+    cJSON_AddStringToObject(json, "group", m->run->group);
+    cJSON_AddBoolToObject(json, "sampling", m->method.info.progressive);
+    cJSON_AddBoolToObject(json, "baseline", m->run->baseline);
+    cJSON_AddBoolToObject(json, "swept", m->run->swept);
+    cJSON_AddItemToObject(json, "spec", cJSON_Duplicate(m->run->spec, true));
+    cJSON_AddItemToObject(json, "settings", json_settings(m));
+    cJSON_AddItemToObject(json, "all_settings",
+                          m->method.settings ? stats_settings(&m->method, &m->view)
+                                             : cJSON_CreateObject());
+    cJSON_AddNumberToObject(json, "seed", m->view.seed);
+    cJSON_AddItemToObject(json, "failed", reason ? cJSON_CreateString(reason) : cJSON_CreateNull());
+    return json;
+}
+
+static int add_figures(measuring *m, cJSON *json)
+{
+    double non_finite = 0, negative = 0;
+    count_values(m, &non_finite, &negative);
+    json_add_float(json, "fill", m->fill);
+    cJSON_AddItemToObject(json, "errors", json_errors(m));
+    json_add_float(json, "setup_ms", m->setup_ms);
+    cJSON *frame = cJSON_AddObjectToObject(json, "frame_ms");
+    json_add_float(frame, "cold", m->cold_ms);
+    json_add_float(frame, "camera_moved", m->camera_ms);
+    json_add_float(frame, "unchanged", m->unchanged_ms);
+    cJSON *memory = cJSON_AddObjectToObject(json, "memory");
+    cJSON_AddNumberToObject(memory, "persistent", (double)m->persistent);
+    cJSON_AddNumberToObject(memory, "transient", (double)m->transient);
+    cJSON_AddItemToObject(json, "nodes", m->nodes);
+    cJSON_AddItemToObject(json, "imbalance", doubles_or_null(m->imbalance, m->has_balance));
+    cJSON_AddItemToObject(json, "imbalance_se", doubles_or_null(m->imbalance_se, m->has_balance));
+    json_add_float(json, "flicker", m->flicker);
+    cJSON_AddNumberToObject(json, "non_finite", non_finite);
+    cJSON_AddNumberToObject(json, "negative", negative);
+    cJSON_AddItemToObject(json, "warnings", m->warnings);
+    m->nodes = m->warnings = NULL;
+    const char *const paths[] = {m->c->spec->path, m->c->spec->scene.env, m->c->spec->reference};
+    cJSON *inputs = stats_inputs(&m->c->scene, paths, ARRAY_SIZE(paths));
+    json_add_hash(inputs, "scene", m->c->hash);
+    cJSON_AddItemToObject(json, "inputs", inputs);
+    return write_picture(m, json);
+}
+
+// The run with what it was measured on and against: all that a citation needs.
+static cJSON *make_record(const bench_case *c, const char *key, cJSON *run)
+{
+    cJSON *record = cJSON_CreateObject();
+    cJSON_AddStringToObject(record, "schema", "tyndall-record");
+    cJSON_AddNumberToObject(record, "version", BENCH_RECORD_VERSION);
+    cJSON_AddStringToObject(record, "key", key);
+    cJSON_AddStringToObject(record, "tyndall", tyn_version_string());
+    json_add_date(record);
+    cJSON_AddStringToObject(record, "suite", c->suite->name);
+    cJSON *device = cJSON_AddObjectToObject(record, "device");
+    cJSON_AddStringToObject(device, "name", c->machine->name);
+    cJSON_AddStringToObject(device, "driver", c->machine->driver);
+    cJSON_AddStringToObject(device, "type", c->machine->type);
+    cJSON *scene = cJSON_AddObjectToObject(record, "scene");
+    cJSON_AddStringToObject(scene, "name", c->spec->name);
+    cJSON_AddStringToObject(scene, "file", c->spec->scene.scene);
+    json_add_hash(scene, "hash", c->hash);
+    const int size[2] = {(int)c->view.width, (int)c->view.height};
+    cJSON_AddItemToObject(scene, "size", cJSON_CreateIntArray(size, 2));
+    cJSON *reference = cJSON_AddObjectToObject(record, "reference");
+    cJSON_AddStringToObject(reference, "method", c->spec->reference ? "file" : "path");
+    cJSON_AddStringToObject(reference, "key", c->reference.key);
+    if (!c->spec->reference) {
+        cJSON_AddNumberToObject(reference, "spp", c->spec->reference_spp);
+        cJSON_AddNumberToObject(reference, "seed", BENCH_REFERENCE_SEED);
+    }
+    cJSON_AddItemToObject(record, "run", run);
+    return record;
+}
+
+int bench_measure(bench_case *c, const bench_run *run, const char *key, cJSON **record)
+{
+    measuring m = {.c = c,
+                   .run = run,
+                   .fill = NAN,
+                   .setup_ms = NAN,
+                   .cold_ms = NAN,
+                   .camera_ms = NAN,
+                   .unchanged_ms = NAN,
+                   .flicker = NAN};
+    char label[192];
+    snprintf(label, sizeof label, "%.80s: %.80s", c->spec->name, run->name);
+    *record = NULL;
+    int code = open_run(&m);
+    bool opened = code == EXIT_DONE;
+    if (opened) {
+        code = m.method.info.progressive ? measure_samples(&m, label) : measure_frames(&m, label);
+    }
+    if (code == EXIT_DONE) {
+        code = measure_balance(&m);
+    }
+    if (code == EXIT_DONE) {
+        cJSON *json = json_run(&m, key, NULL);
+        code = add_figures(&m, json);
+        *record = make_record(c, key, json);
+    } else if (opened && code != EXIT_INTERRUPTED) { // this method cannot do this scene; others may
+        *record = make_record(c, key, json_run(&m, key, c->a->last_error));
+        code = code == EXIT_WRONG ? EXIT_DONE : code;
+    }
+    close_run(&m);
     return code;
 }

@@ -1,11 +1,20 @@
-// print.c -- results of the bench for people and for programs.
-#include "bench.h"
-#include "stats.h"
+// print.c -- the report for people, as a table on stdout.
+#include "print.h"
+#include "record.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-// ---- for people -------------------------------------------------------------------------------
+static bool is_true(const cJSON *object, const char *key)
+{
+    return cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(object, key));
+}
+
+static const cJSON *list_of(const cJSON *object, const char *key)
+{
+    return cJSON_GetObjectItemCaseSensitive(object, key);
+}
 
 static void print_ms(double ms)
 {
@@ -16,180 +25,200 @@ static void print_ms(double ms)
     }
 }
 
-void bench_print_scene(const bench_case *c)
+void bench_print_head(const cJSON *report)
 {
-    const bench_reference *r = &c->reference;
-    printf("\n%s, %ux%u", c->spec->name, c->view.width, c->view.height);
-    if (!isnan(c->fill)) {
-        printf(", %.0f %% of it medium", 100 * c->fill);
+    const cJSON *device = list_of(report, "device"), *c = list_of(report, "ceilings");
+    printf("suite %s, tyndall %s on %s, %s\n", json_text(list_of(report, "suite"), "name"),
+           json_text(report, "tyndall"), json_text(device, "name"), json_text(device, "driver"));
+    const struct {
+        const char *key, *unit;
+    } rows[] = {{"fma_gflops", "Gflop/s"},
+                {"copy_gb_s", "GB/s copied"},
+                {"trilinear_gsamples_s", "G trilinear fetches/s"},
+                {"exp_gops_s", "G exponentials/s"},
+                {"dispatch_us", "us a dispatch"}};
+    const char *between = "ceilings: ";
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        const cJSON *value = cJSON_GetObjectItemCaseSensitive(c, rows[i].key);
+        if (cJSON_IsRaw(value) && strcmp(value->valuestring, "null") != 0) {
+            printf("%s%.3g %s", between, strtod(value->valuestring, NULL), rows[i].unit);
+            between = ", ";
+        }
     }
-    printf(", reference %u samples (its noise: %.2f %% per pixel, %.2f %% per %ux%u block)",
-           c->spec->reference_spp, 100 * r->noise[1], 100 * r->noise[0], c->blocks[0],
-           c->blocks[0]);
-    if (r->seconds > 0) {
-        printf(", %.0f s", r->seconds);
-    }
-    printf("\n%-20s %8s %8s %8s %8s %8s %8s %8s\n", "", "error", "error", "cold", "camera", "same",
-           "set-up", "memory");
-    printf("%-20s %5u px %8s %8s %8s %8s %8s %8s\n", "", c->blocks[0], "1 px", "ms", "ms", "ms",
-           "ms", "MiB");
+    printf("%s", between[0] == ',' ? "\n" : "");
+    fflush(stdout);
 }
 
-// "path 812 ms, 15.2 times as long": one line per baseline.
-static void print_equal(const bench_case *c, const bench_result *result)
+static void print_scene_head(const cJSON *scene)
 {
-    for (uint32_t i = 0; i < c->suite->num_baselines; i++) {
-        printf("    %-20s needs for the same error", c->suite->baselines[i].name);
-        for (int k = 0; k < BENCH_BLOCKS; k++) {
-            const bench_equal *e = &result->equal[i][k];
-            if (e->ms > 0) {
-                printf("%s %s%.*f ms on %u px (%.1f times)", k ? "," : "",
-                       e->measured ? "" : "about ", e->ms < 10, e->ms, c->blocks[k],
-                       e->ms / result->cold_ms);
+    const cJSON *r = list_of(scene, "reference");
+    const int block = (int)json_figure(r, "noise.0.block");
+    printf("\n%s, %.0fx%.0f", json_text(scene, "name"), json_figure(scene, "size.0"),
+           json_figure(scene, "size.1"));
+    const double fill = json_figure(scene, "fill"), seconds = json_figure(r, "seconds");
+    if (!isnan(fill)) {
+        printf(", %.0f %% of it medium", 100 * fill);
+    }
+    if (isnan(json_figure(r, "spp"))) {
+        printf(", reference from a file");
+    } else {
+        printf(", reference %.0f samples", json_figure(r, "spp"));
+    }
+    if (isnan(json_figure(r, "noise.0.n"))) {
+        printf(" (its noise is not known)");
+    } else {
+        printf(" (its noise: %.2f %% per pixel, %.2f %% per %dx%d block)",
+               100 * json_figure(r, "noise.1.n"), 100 * json_figure(r, "noise.0.n"), block, block);
+    }
+    if (seconds > 0) {
+        printf(", %.0f s", seconds);
+    }
+    printf("\n%-24s %8s %8s %8s %8s %8s %8s %8s\n", "", "error", "error", "cold", "camera", "same",
+           "set-up", "memory");
+    printf("%-24s %5d px %8s %8s %8s %8s %8s %8s\n", "", block, "1 px", "ms", "ms", "ms", "ms",
+           "MiB");
+}
+
+// "plain path needs for the same error 812 ms on 8 px (15.2 times)": one line per baseline.
+static void print_equal(const cJSON *run)
+{
+    const cJSON *first, *e, *list = list_of(run, "equal_error");
+    cJSON_ArrayForEach(first, list)
+    {
+        const char *baseline = json_text(first, "baseline");
+        if (json_figure(first, "block") != json_figure(list, "0.block")) {
+            continue;
+        }
+        printf("    %-24s needs for the same error", baseline);
+        const char *between = "";
+        cJSON_ArrayForEach(e, list)
+        {
+            const double ms = json_figure(e, "ms");
+            if (strcmp(json_text(e, "baseline"), baseline) == 0 && !isnan(ms)) {
+                printf("%s %s%.*f ms on %.0f px (%.1f times)", between,
+                       is_true(e, "measured") ? "" : "about ", ms < 10, ms, json_figure(e, "block"),
+                       json_figure(e, "speedup"));
+                between = ",";
             }
         }
         printf("\n");
     }
 }
 
-static void print_nodes(const bench_result *result, bool setup, const char *title)
+static void print_nodes(const cJSON *run, bool setup, const char *title)
 {
-    for (uint32_t i = 0; i < result->num_nodes; i++) {
-        const bench_node *n = &result->nodes[i];
-        if (n->setup != setup || !(n->gpu_ms > 0)) {
+    const cJSON *n;
+    cJSON_ArrayForEach(n, list_of(run, "nodes"))
+    {
+        const double ms = json_figure(n, "gpu_ms"), steps = json_figure(n, "work.steps");
+        const double fraction = json_figure(n, "fraction");
+        if (is_true(n, "setup") != setup || !(ms > 0)) {
             continue;
         }
-        printf("%s %s %.*f", title, n->name, n->gpu_ms < 10 ? 2 : 1, n->gpu_ms);
+        printf("%s %s %.*f", title, json_text(n, "name"), ms < 10 ? 2 : 1, ms);
         title = "";
-        if (n->steps > 0) {
-            printf(" (%.1f ns a step)", 1e6 * n->gpu_ms / n->steps);
+        if (steps > 0) {
+            printf(" (%.1f ns a step)", 1e6 * ms / steps);
+        }
+        if (fraction >= 0.1) {
+            printf(" (%.0f %% of %s)", 100 * fraction, json_text(n, "ceiling"));
         }
     }
 }
 
-void bench_print_result(const bench_case *c, const bench_run *run, const bench_result *result)
+static void print_run(const cJSON *scene, const cJSON *run)
 {
-    if (result->failed) {
-        printf("%-20s cannot do this scene\n", run->name);
+    const char *failed = json_text(run, "failed");
+    if (failed[0]) {
+        printf("%-24s cannot do this scene: %s\n", json_text(run, "name"), failed);
         return;
     }
-    printf("%-20s", run->name);
-    for (int k = 0; k < BENCH_BLOCKS; k++) {
+    printf("%-24s", json_text(run, "name"));
+    for (int k = 0; k < 2; k++) {
+        char error[24], noise[24];
+        snprintf(error, sizeof error, "errors.%d.error", k);
+        snprintf(noise, sizeof noise, "reference.noise.%d.n", k);
         // An error near the noise of the reference is a small difference of large numbers.
-        bool vague = result->error[k].error < 2 * c->reference.noise[k];
-        printf(" %s%5.2f %%", vague ? "~" : " ", 100 * result->error[k].error);
+        bool vague = json_figure(run, error) < 2 * json_figure(scene, noise);
+        printf(" %s%5.2f %%", vague ? "~" : " ", 100 * json_figure(run, error));
     }
-    print_ms(result->cold_ms);
-    print_ms(result->camera_ms);
-    print_ms(result->unchanged_ms);
-    print_ms(result->setup_ms);
-    printf(" %8.1f\n", (double)(result->persistent + result->transient) / (1 << 20));
-    print_nodes(result, false, "    nodes, ms:");
-    print_nodes(result, true, "; set-up:");
+    print_ms(json_figure(run, "frame_ms.cold"));
+    print_ms(json_figure(run, "frame_ms.camera_moved"));
+    print_ms(json_figure(run, "frame_ms.unchanged"));
+    print_ms(json_figure(run, "setup_ms"));
+    printf(" %8.1f\n",
+           (json_figure(run, "memory.persistent") + json_figure(run, "memory.transient")) /
+               (1 << 20));
+    if (is_true(run, "sampling")) {
+        return;
+    }
+    print_nodes(run, false, "    nodes, ms:");
+    print_nodes(run, true, "; set-up:");
     printf("\n    camera moved, unchanged:");
-    for (uint32_t i = 0; i < result->num_nodes; i++) {
-        if (!result->nodes[i].setup && strcmp(result->nodes[i].state, "unchanged") == 0) {
-            printf(" %s", result->nodes[i].name);
+    const cJSON *n;
+    cJSON_ArrayForEach(n, list_of(run, "nodes"))
+    {
+        if (!is_true(n, "setup") &&
+            strcmp(json_text(n, "state_after_camera_moved"), "unchanged") == 0) {
+            printf(" %s", json_text(n, "name"));
         }
     }
+    printf("\n    bias %+.2f %%", 100 * json_figure(run, "errors.0.bias"));
+    if (!isnan(json_figure(run, "imbalance.0"))) {
+        printf(", imbalance %+.2f %+.2f %+.2f %%", 100 * json_figure(run, "imbalance.0"),
+               100 * json_figure(run, "imbalance.1"), 100 * json_figure(run, "imbalance.2"));
+    }
+    if (!isnan(json_figure(run, "flicker"))) {
+        printf(", flicker %.2g %%", 100 * json_figure(run, "flicker"));
+    }
     printf("\n");
-    print_equal(c, result);
+    print_equal(run);
+}
+
+void bench_print_scene(const cJSON *scene)
+{
+    const cJSON *item;
+    print_scene_head(scene);
+    cJSON_ArrayForEach(item, list_of(scene, "runs"))
+    {
+        print_run(scene, item);
+    }
+    cJSON_ArrayForEach(item, list_of(scene, "left_out"))
+    {
+        printf("%-24s left out: %s\n", json_text(item, "run"), json_text(item, "why"));
+    }
+    const char *between = "  ";
+    cJSON_ArrayForEach(item, list_of(scene, "verdicts"))
+    {
+        printf("%s%s", between, item->valuestring);
+        between = "; ";
+    }
+    printf("\n");
     fflush(stdout);
 }
 
-// ---- for programs -----------------------------------------------------------------------------
-
-cJSON *bench_json_scene(const bench_case *c)
+void bench_print_end(const cJSON *report)
 {
-    cJSON *scene = cJSON_CreateObject();
-    const int size[2] = {(int)c->view.width, (int)c->view.height};
-    cJSON_AddStringToObject(scene, "name", c->spec->name);
-    cJSON_AddItemToObject(scene, "size", cJSON_CreateIntArray(size, 2));
-    json_add_float(scene, "fill", c->fill);
-    cJSON *reference = cJSON_AddObjectToObject(scene, "reference");
-    cJSON_AddNumberToObject(reference, "spp", c->spec->reference_spp);
-    json_add_float(reference, "seconds", c->reference.seconds > 0 ? c->reference.seconds : NAN);
-    json_add_float(reference, "n_block", c->reference.noise[0]);
-    json_add_float(reference, "n_pixel", c->reference.noise[1]);
-    return scene;
-}
-
-static cJSON *json_errors(uint32_t block, const metrics *m)
-{
-    cJSON *error = cJSON_CreateObject();
-    cJSON_AddNumberToObject(error, "block", block);
-    json_add_float(error, "error", m->error);
-    json_add_float(error, "rel_l1", m->rel_l1);
-    json_add_float(error, "n", m->n);
-    json_add_float(error, "rel_rmse", m->rel_rmse);
-    json_add_float(error, "rel_mse", m->rel_mse);
-    json_add_float(error, "bias", m->bias);
-    json_add_float(error, "p95", m->p95);
-    cJSON_AddNumberToObject(error, "nan", (double)m->nan);
-    return error;
-}
-
-static cJSON *json_nodes(const bench_result *result)
-{
-    cJSON *nodes = cJSON_CreateArray();
-    for (uint32_t i = 0; i < result->num_nodes; i++) {
-        const bench_node *n = &result->nodes[i];
-        cJSON *node = cJSON_CreateObject();
-        cJSON_AddStringToObject(node, "name", n->name);
-        json_add_float(node, "gpu_ms", n->gpu_ms);
-        cJSON_AddBoolToObject(node, "setup", n->setup);
-        cJSON_AddNumberToObject(node, "bytes", (double)n->bytes);
-        if (n->steps > 0) {
-            cJSON_AddNumberToObject(node, "steps", n->steps);
-            json_add_float(node, "ns_per_step", 1e6 * n->gpu_ms / n->steps);
+    const cJSON *item;
+    cJSON_ArrayForEach(item, list_of(report, "ratios"))
+    {
+        printf("\n%s, %s: %.2f times the cold frame\n", json_text(item, "name"),
+               json_text(item, "run"), json_figure(item, "times"));
+    }
+    const char *title = "\nat equal error, geometric means over scenes:\n";
+    cJSON_ArrayForEach(item, list_of(report, "headline"))
+    {
+        const double scenes = json_figure(item, "scenes");
+        const cJSON *mean = list_of(item, "geometric_mean");
+        if (!(scenes > 0) || !cJSON_IsRaw(mean)) {
+            continue;
         }
-        cJSON_AddStringToObject(node, "state_after_camera_moved", n->state);
-        cJSON_AddItemToArray(nodes, node);
+        printf("%s%-16s %3.0f %% of %2.0f px: %7.1f times as fast as %s (%.0f scenes", title,
+               json_text(item, "method"), 100 * json_figure(item, "error"),
+               json_figure(item, "block"), strtod(mean->valuestring, NULL),
+               json_text(item, "baseline"), scenes);
+        const double extrapolated = json_figure(item, "extrapolated");
+        printf(extrapolated > 0 ? ", %.0f of them extrapolated)\n" : ")\n", extrapolated);
+        title = "";
     }
-    return nodes;
-}
-
-static cJSON *json_equal(const bench_case *c, const bench_result *result)
-{
-    cJSON *list = cJSON_CreateArray();
-    for (uint32_t i = 0; i < c->suite->num_baselines; i++) {
-        for (int k = 0; k < BENCH_BLOCKS; k++) {
-            const bench_equal *e = &result->equal[i][k];
-            cJSON *equal = cJSON_CreateObject();
-            cJSON_AddStringToObject(equal, "baseline", c->suite->baselines[i].name);
-            cJSON_AddNumberToObject(equal, "block", c->blocks[k]);
-            json_add_float(equal, "spp", e->spp);
-            json_add_float(equal, "ms", e->ms);
-            json_add_float(equal, "times_cold", e->ms / result->cold_ms);
-            cJSON_AddBoolToObject(equal, "measured", e->measured);
-            cJSON_AddItemToArray(list, equal);
-        }
-    }
-    return list;
-}
-
-cJSON *bench_json_result(const bench_case *c, const bench_run *run, const bench_result *result)
-{
-    cJSON *json = cJSON_CreateObject();
-    cJSON_AddStringToObject(json, "name", run->name);
-    cJSON_AddItemToObject(json, "spec", cJSON_Duplicate(run->json, true));
-    cJSON_AddBoolToObject(json, "failed", result->failed);
-    if (result->failed) {
-        return json;
-    }
-    cJSON *errors = cJSON_AddArrayToObject(json, "errors");
-    for (int i = 0; i < BENCH_BLOCKS; i++) {
-        cJSON_AddItemToArray(errors, json_errors(c->blocks[i], &result->error[i]));
-    }
-    json_add_float(json, "setup_ms", result->setup_ms);
-    cJSON *frame = cJSON_AddObjectToObject(json, "frame_ms");
-    json_add_float(frame, "cold", result->cold_ms);
-    json_add_float(frame, "camera_moved", result->camera_ms);
-    json_add_float(frame, "unchanged", result->unchanged_ms);
-    cJSON *memory = cJSON_AddObjectToObject(json, "memory");
-    cJSON_AddNumberToObject(memory, "persistent", (double)result->persistent);
-    cJSON_AddNumberToObject(memory, "transient", (double)result->transient);
-    cJSON_AddItemToObject(json, "nodes", json_nodes(result));
-    cJSON_AddItemToObject(json, "equal_error", json_equal(c, result));
-    return json;
 }

@@ -1,6 +1,7 @@
 // suite.c -- what to measure: reads and checks a suite file (docs/bench.md).
 #include "suite.h"
 #include "bench/suite_default.h"
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -114,7 +115,7 @@ static void check_keys(reader *r, const cJSON *object, const char *const *known)
 
 // ---- scenes -----------------------------------------------------------------------------------
 
-static char *find_scene(reader *r, const char *name, const char *folder)
+static char *find_file(reader *r, const char *key, const char *name, const char *folder)
 {
     const char *slash = strrchr(r->file, '/');
     char *beside = name[0] == '/' ? text_format("%s", name)
@@ -132,18 +133,40 @@ static char *find_scene(reader *r, const char *name, const char *folder)
     char right[512];
     snprintf(right, sizeof right, "'%s' is neither beside the suite nor in '%s' (--scenes)", name,
              folder ? folder : "");
-    fault(r, "scene", right);
+    fault(r, key, right);
     return NULL;
+}
+
+// "pop, 8 cells" -> "pop-8-cells": letters, digits, dots and dashes.
+static char *slug_of(const char *name)
+{
+    char *slug = text_format("%s", name);
+    size_t used = 0;
+    for (const char *c = name; slug && *c; c++) {
+        bool plain = isalnum((unsigned char)*c) || (*c == '.' && used > 0);
+        if (plain) {
+            slug[used++] = (char)tolower((unsigned char)*c);
+        } else if (used > 0 && slug[used - 1] != '-') {
+            slug[used++] = '-';
+        }
+    }
+    while (slug && used > 0 && slug[used - 1] == '-') {
+        used--;
+    }
+    if (slug) {
+        slug[used] = '\0';
+    }
+    return slug;
 }
 
 static void read_scene(reader *r, const cJSON *json, const cJSON *defaults, const char *folder,
                        bench_scene *s)
 {
     static const char *const keys[] = {
-        "name",          "scene",      "environment",   "camera",  "size", "fov",
-        "look_from",     "look_at",    "sigma_s",       "sigma_a", "g",    "albedo",
-        "density_scale", "env_rotate", "reference_spp", "lights",  NULL};
-    *s = (bench_scene){.json = json, .scene.env_strength = 1};
+        "name",          "scene",      "environment",   "camera",  "size",      "fov",
+        "look_from",     "look_at",    "sigma_s",       "sigma_a", "g",         "albedo",
+        "density_scale", "env_rotate", "reference_spp", "lights",  "reference", NULL};
+    *s = (bench_scene){.json = json, .scene.env_strength = 1, .scene.frame = NAN};
     check_keys(r, json, keys);
     const char *file = get_text(r, json, "scene", true);
     if (!file) {
@@ -151,7 +174,8 @@ static void read_scene(reader *r, const cJSON *json, const cJSON *defaults, cons
     }
     s->name = get_text(r, json, "name", false);
     s->name = s->name ? s->name : file;
-    s->path = find_scene(r, file, folder);
+    s->slug = slug_of(s->name);
+    s->path = find_file(r, "scene", file, folder);
     s->scene.scene = s->path;
     s->scene.env = get_text(r, json, "environment", false);
     s->scene.env_rotate = (float)get_number(r, json, "env_rotate", 0, -1e6, 1e6);
@@ -169,6 +193,8 @@ static void read_scene(reader *r, const cJSON *json, const cJSON *defaults, cons
     get_size(r, json, &s->view.size);
     double spp = get_number(r, defaults, "reference_spp", 1024, 2, 1 << 24);
     s->reference_spp = (uint32_t)get_number(r, json, "reference_spp", spp, 2, 1 << 24);
+    const char *reference = get_text(r, json, "reference", false);
+    s->reference = reference ? find_file(r, "reference", reference, folder) : NULL;
 }
 
 // ---- runs -------------------------------------------------------------------------------------
@@ -209,23 +235,120 @@ static void read_settings(reader *r, const cJSON *settings, bench_run *run)
     }
 }
 
-static void read_run(reader *r, const cJSON *json, const char *def_method, bench_run *run)
+// What the suite calls "spp" is one of a sampling method; the others are parameters of passes or "quality".
+static bool is_setting(const char *key)
 {
-    static const char *const keys[] = {"name", "method", "quality", "settings", "spp", NULL};
-    *run = (bench_run){.json = json};
-    check_keys(r, json, keys);
-    run->method.method = get_text(r, json, "method", false);
-    run->method.method = run->method.method ? run->method.method : def_method;
+    return strcmp(key, "spp") != 0 && strcmp(key, "quality") != 0;
+}
+
+// ", cells 32" for "lattice.cells", ", 64 spp": what tells the runs of a sweep apart.
+static char *with_value(const char *name, const char *key, const cJSON *value)
+{
+    const char *dot = strrchr(key, '.'), *tail = dot ? dot + 1 : key;
+    if (cJSON_IsString(value)) {
+        return is_setting(key) ? text_format("%s, %s %s", name, tail, value->valuestring)
+                               : text_format("%s, %s", name, value->valuestring);
+    }
+    double number = cJSON_IsNumber(value) ? value->valuedouble : cJSON_IsTrue(value);
+    return strcmp(key, "spp") == 0 ? text_format("%s, %.9g spp", name, number)
+                                   : text_format("%s, %s %.9g", name, tail, number);
+}
+
+// Puts a value of a sweep into the entry, and into the run's name.
+static void apply_value(reader *r, bench_run *run, const char *key, const cJSON *value)
+{
+    cJSON *copy = cJSON_Duplicate(value, true);
+    if (is_setting(key)) {
+        cJSON *settings = cJSON_GetObjectItemCaseSensitive(run->spec, "settings");
+        settings = settings ? settings : cJSON_AddObjectToObject(run->spec, "settings");
+        cJSON_DeleteItemFromObjectCaseSensitive(settings, key);
+        cJSON_AddItemToObject(settings, key, copy);
+    } else {
+        cJSON_DeleteItemFromObjectCaseSensitive(run->spec, key);
+        cJSON_AddItemToObject(run->spec, key, copy);
+    }
+    char *name = with_value(run->name, key, value);
+    free(run->name);
+    run->name = name;
+    if (!name) {
+        fault(r, "sweep", "out of memory");
+    }
+}
+
+// The run that `spec` describes; spec has no sweep any more.
+static void read_one(reader *r, bench_run *run)
+{
+    const cJSON *json = run->spec;
     run->method.quality = get_text(r, json, "quality", false);
     run->method.spp = (uint32_t)get_number(r, json, "spp", 64, 1, 1 << 24);
-    run->name = get_text(r, json, "name", false);
-    run->name = run->name ? run->name : run->method.method;
+    run->method.seed = (uint32_t)get_number(r, json, "seed", 0, 0, 4294967295.0);
     const cJSON *settings = cJSON_GetObjectItemCaseSensitive(json, "settings");
     if (settings && !cJSON_IsObject(settings)) {
         fault(r, "settings", "must be an object of \"pass.param\": value");
     } else if (settings) {
         read_settings(r, settings, run);
     }
+    run->slug = run->name ? slug_of(run->name) : NULL;
+}
+
+// One entry of `runs` or `baselines`: as many runs as its sweep has combinations of values.
+static void read_entry(reader *r, const cJSON *json, bool baseline, uint32_t entry, bench_suite *s)
+{
+    static const char *const keys[] = {"name", "method", "quality", "settings", "spp",
+                                       "seed", "group",  "sweep",   "only",     NULL};
+    check_keys(r, json, keys);
+    const char *how = get_text(r, json, "method", false);
+    how = how ? how : baseline ? "path" : "pop";
+    const char *name = get_text(r, json, "name", false);
+    name = name ? name : how;
+    const char *group = get_text(r, json, "group", false);
+    const cJSON *only = cJSON_GetObjectItemCaseSensitive(json, "only");
+    const cJSON *sweep = cJSON_GetObjectItemCaseSensitive(json, "sweep"), *axis;
+    cJSON *own = NULL;
+    if (baseline && !sweep && !cJSON_GetObjectItemCaseSensitive(json, "spp")) {
+        sweep = own = cJSON_Parse("{\"spp\": [1, 4, 16, 64, 256, 1024, 4096]}");
+    }
+    uint32_t count = 1, num_axes = 0;
+    if (sweep && !cJSON_IsObject(sweep)) {
+        fault(r, "sweep", "must be an object of \"pass.param\": [values]");
+        sweep = NULL;
+    }
+    cJSON_ArrayForEach(axis, sweep)
+    {
+        int values = cJSON_IsArray(axis) ? cJSON_GetArraySize(axis) : 0;
+        if (values < 1 || values > BENCH_MAX_RUNS || ++num_axes > BENCH_MAX_SWEEP) {
+            fault(r, "sweep", "must hold up to 4 lists of values");
+            break;
+        }
+        count *= (uint32_t)values;
+        count = count > BENCH_MAX_RUNS ? BENCH_MAX_RUNS + 1 : count;
+    }
+    if (s->num_runs + count > BENCH_MAX_RUNS) {
+        fault(r, "sweep", "gives more than 256 runs in all");
+    }
+    for (uint32_t i = 0; r->ok && i < count; i++) {
+        bench_run *run = &s->runs[s->num_runs++];
+        *run = (bench_run){.entry = entry,
+                           .swept = count > 1,
+                           .baseline = baseline,
+                           .group = group      ? group
+                                    : baseline ? name
+                                               : how,
+                           .method.method = how,
+                           .only = only,
+                           .name = text_format("%s", name),
+                           .spec = cJSON_Duplicate(json, true)};
+        cJSON_DeleteItemFromObjectCaseSensitive(run->spec, "sweep");
+        uint32_t place = i, rest = count;
+        cJSON_ArrayForEach(axis, sweep)
+        {
+            rest /= (uint32_t)cJSON_GetArraySize(axis);
+            apply_value(r, run, axis->string, cJSON_GetArrayItem(axis, (int)(place / rest)));
+            place %= rest;
+        }
+        read_one(r, run);
+    }
+    cJSON_Delete(own);
 }
 
 static uint32_t array_size(reader *r, const cJSON *root, const char *key, uint32_t min,
@@ -271,37 +394,91 @@ static void read_ratio(reader *r, const cJSON *json, const bench_suite *s, bench
     ratio->to = scene_name(r, json, "to", s);
 }
 
+static void check_only(reader *r, const bench_suite *s)
+{
+    for (uint32_t i = 0; r->ok && i < s->num_runs; i++) {
+        const cJSON *name;
+        bool list = !s->runs[i].only || cJSON_IsArray(s->runs[i].only);
+        cJSON_ArrayForEach(name, s->runs[i].only)
+        {
+            bool known = false;
+            for (uint32_t k = 0; k < s->num_scenes && cJSON_IsString(name); k++) {
+                known = known || strcmp(s->scenes[k].name, name->valuestring) == 0;
+            }
+            list = list && known;
+        }
+        if (!list) {
+            snprintf(r->where, sizeof r->where, "runs: '%.60s'", s->runs[i].name);
+            fault(r, "only", "must be a list of names of scenes of this suite");
+        }
+    }
+}
+
+// Names are what figures are found by, slugs what pictures are.
+static void check_names(reader *r, const bench_suite *s)
+{
+    r->where[0] = '\0';
+    for (uint32_t i = 0; r->ok && i < s->num_scenes; i++) {
+        for (uint32_t k = 0; r->ok && k < i; k++) {
+            if (!s->scenes[i].slug || strcmp(s->scenes[i].slug, s->scenes[k].slug) == 0) {
+                char right[192];
+                snprintf(right, sizeof right, "two have the name '%.80s'; give each a \"name\"",
+                         s->scenes[i].name);
+                fault(r, "scenes", right);
+            }
+        }
+    }
+    for (uint32_t i = 0; r->ok && i < s->num_runs; i++) {
+        for (uint32_t k = 0; r->ok && k < i; k++) {
+            if (!s->runs[i].slug || strcmp(s->runs[i].slug, s->runs[k].slug) == 0) {
+                char right[192];
+                snprintf(right, sizeof right, "two have the name '%.80s'; give each a \"name\"",
+                         s->runs[i].name);
+                fault(r, "runs", right);
+            }
+        }
+    }
+}
+
 static void read_suite(reader *r, const char *folder, bench_suite *s)
 {
     static const char *const keys[] = {
-        "name",   "about",     "scenes",      "runs", "baselines", "block", "reference_spp",
-        "frames", "pilot_spp", "max_seconds", "size", "ratios",    NULL};
+        "name",   "about",       "scenes",         "runs", "baselines", "block",    "reference_spp",
+        "frames", "max_seconds", "timing_seconds", "size", "ratios",    "ceilings", NULL};
     const cJSON *root = s->root;
     check_keys(r, root, keys);
     s->name = get_text(r, root, "name", true);
+    s->about = get_text(r, root, "about", false);
     s->block = (uint32_t)get_number(r, root, "block", 8, 1, 1024);
     s->frames = (uint32_t)get_number(r, root, "frames", 5, 1, 1000);
-    s->pilot_spp = (uint32_t)get_number(r, root, "pilot_spp", 16, 2, 65536);
+    s->timing_seconds = (float)get_number(r, root, "timing_seconds", 5, 0, 86400);
     s->max_seconds = (float)get_number(r, root, "max_seconds", 60, 0, 86400);
+    const cJSON *ceilings = cJSON_GetObjectItemCaseSensitive(root, "ceilings");
+    s->ceilings = !ceilings || cJSON_IsTrue(ceilings);
+    if (ceilings && !cJSON_IsBool(ceilings)) {
+        fault(r, "ceilings", "must be true or false");
+    }
     s->num_scenes = array_size(r, root, "scenes", 1, BENCH_MAX_SCENES);
     for (uint32_t i = 0; i < s->num_scenes; i++) {
         read_scene(r, element(r, root, "scenes", i), root, folder, &s->scenes[i]);
     }
     r->where[0] = '\0';
-    s->num_runs = array_size(r, root, "runs", 1, BENCH_MAX_RUNS);
-    for (uint32_t i = 0; i < s->num_runs; i++) {
-        read_run(r, element(r, root, "runs", i), "pop", &s->runs[i]);
+    const uint32_t runs = array_size(r, root, "runs", 1, BENCH_MAX_RUNS);
+    for (uint32_t i = 0; r->ok && i < runs; i++) {
+        read_entry(r, element(r, root, "runs", i), false, i, s);
     }
     r->where[0] = '\0';
-    s->num_baselines = array_size(r, root, "baselines", 0, BENCH_MAX_BASELINES);
-    for (uint32_t i = 0; i < s->num_baselines; i++) {
-        read_run(r, element(r, root, "baselines", i), "path", &s->baselines[i]);
+    const uint32_t baselines = array_size(r, root, "baselines", 0, BENCH_MAX_RUNS);
+    for (uint32_t i = 0; r->ok && i < baselines; i++) {
+        read_entry(r, element(r, root, "baselines", i), true, runs + i, s);
     }
     r->where[0] = '\0';
     s->num_ratios = array_size(r, root, "ratios", 0, BENCH_MAX_RATIOS);
     for (uint32_t i = 0; i < s->num_ratios; i++) {
         read_ratio(r, element(r, root, "ratios", i), s, &s->ratios[i]);
     }
+    check_only(r, s);
+    check_names(r, s);
 }
 
 int bench_suite_load(app *a, const char *path, const char *scenes, bench_suite *suite)
@@ -318,6 +495,7 @@ int bench_suite_load(app *a, const char *path, const char *scenes, bench_suite *
     const char *text = path ? data : bench_default_suite;
     size = path ? size : strlen(bench_default_suite);
     reader r = {.a = a, .file = path ? path : "the suite that is built in", .ok = true};
+    suite->hash = text_hash(text, size, 0);
     suite->root = cJSON_ParseWithLength(text, size);
     if (suite->root) {
         read_suite(&r, scenes, suite);
@@ -336,15 +514,29 @@ int bench_suite_load(app *a, const char *path, const char *scenes, bench_suite *
 
 void bench_suite_finish(bench_suite *suite)
 {
-    for (uint32_t i = 0; i < suite->num_scenes; i++) {
+    for (uint32_t i = 0; i < BENCH_MAX_SCENES; i++) {
         free(suite->scenes[i].path);
+        free(suite->scenes[i].slug);
+        free(suite->scenes[i].reference);
     }
     for (uint32_t i = 0; i < suite->num_runs; i++) {
+        free(suite->runs[i].name);
+        free(suite->runs[i].slug);
         free(suite->runs[i].defines);
-    }
-    for (uint32_t i = 0; i < suite->num_baselines; i++) {
-        free(suite->baselines[i].defines);
+        cJSON_Delete(suite->runs[i].spec);
     }
     cJSON_Delete(suite->root);
     *suite = (bench_suite){0};
+}
+
+bool bench_run_is_for(const bench_run *run, const bench_scene *scene)
+{
+    const cJSON *name;
+    cJSON_ArrayForEach(name, run->only)
+    {
+        if (strcmp(name->valuestring, scene->name) == 0) {
+            return true;
+        }
+    }
+    return !run->only;
 }

@@ -1,26 +1,34 @@
-// suite.h -- what to measure: a suite file (docs/bench.md).
+// suite.h -- what to measure: a suite file (docs/bench.md), its sweeps written out.
 #pragma once
 #include "method_setup.h"
 #include "scene_setup.h"
 #include <cjson/cJSON.h>
 
-enum { BENCH_MAX_SCENES = 32, BENCH_MAX_RUNS = 32, BENCH_MAX_BASELINES = 4, BENCH_MAX_RATIOS = 8 };
+enum { BENCH_MAX_SCENES = 64, BENCH_MAX_RUNS = 256, BENCH_MAX_RATIOS = 8, BENCH_MAX_SWEEP = 4 };
 
 typedef struct bench_scene {
     const char *name;
+    char *slug; // the name as part of a file's name, unique in the suite
     char *path; // found: beside the suite, or in the folder of the sample scenes
     scene_options scene;
     view_options view;
     uint32_t lights; // so many of the scene's alone, the first; 0: all
     uint32_t reference_spp;
-    const cJSON *json; // the entry itself; part of the reference's key
+    char *reference; // a file instead; NULL: `path` renders it
+    const cJSON *json;
 } bench_scene;
 
-typedef struct bench_run { // a method with settings
-    const char *name;
+// A method with settings. An entry with a sweep gives one for each combination of its values.
+typedef struct bench_run {
+    char *name, *slug;
+    const char *group; // the line of a plot that it is a point of
+    uint32_t entry;    // of the suite, its runs and then its baselines
+    bool swept;        // one of several of its entry
+    bool baseline;     // from the list of baselines: a method that samples
     method_options method;
     char *defines; // memory behind method.defines
-    const cJSON *json;
+    cJSON *spec;   // the entry with the values of its sweep put in place
+    const cJSON *only; // names of the scenes it is for; NULL: all
 } bench_run;
 
 typedef struct bench_ratio { // of the cold frames of two scenes
@@ -29,19 +37,23 @@ typedef struct bench_ratio { // of the cold frames of two scenes
 
 typedef struct bench_suite {
     cJSON *root;
-    const char *name;
+    const char *name, *about;
+    uint64_t hash; // of the file
     bench_scene scenes[BENCH_MAX_SCENES];
     bench_run runs[BENCH_MAX_RUNS];
-    bench_run baselines[BENCH_MAX_BASELINES]; // sampling methods, measured at the error of each run
     bench_ratio ratios[BENCH_MAX_RATIOS];
-    uint32_t num_scenes, num_runs, num_baselines, num_ratios;
-    uint32_t block;     // beside 1
-    uint32_t frames;    // timing frames of each kind
-    uint32_t pilot_spp; // samples that tell the noise of a baseline
-    float max_seconds;  // a baseline that would take longer is not rendered but extrapolated
+    uint32_t num_scenes, num_runs, num_ratios;
+    uint32_t block;       // beside 1
+    uint32_t frames;      // timing frames of each kind
+    float timing_seconds; // no further frame of a kind is begun after this long
+    float max_seconds;    // a rendering that would take longer is left out
+    bool ceilings;        // measure those of the device
 } bench_suite;
 
 // `path` NULL = the suite that is built in. `scenes` = folder of the sample scenes. Gives the exit code;
-// suite_finish is due in any case.
+// bench_suite_finish is due in any case.
 int bench_suite_load(app *a, const char *path, const char *scenes, bench_suite *suite);
 void bench_suite_finish(bench_suite *suite);
+
+// Whether a run is meant for a scene.
+bool bench_run_is_for(const bench_run *run, const bench_scene *scene);

@@ -1,0 +1,122 @@
+// bench_front.c -- fronts, times at equal error and ranges of who is fastest, against figures done by hand.
+#include "bench/front.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+enum { POP, PATH, SINGLE };
+
+// pop: three settings, one of them beaten by the others. path: error 0.16 / sqrt(n) of n samples of 10 ms.
+// single: fast and wrong.
+static const front_point points[] = {
+    {100, 0.05, POP, false}, {300, 0.03, POP, false},   {400, 0.04, POP, false},
+    {10, 0.16, PATH, true},  {40, 0.08, PATH, true},    {160, 0.04, PATH, true},
+    {640, 0.02, PATH, true}, {2560, 0.01, PATH, true},  {20, 0.6, SINGLE, false},
+    {5, NAN, SINGLE, false}, {INFINITY, 0, POP, false}, {0, 0.001, POP, false},
+};
+enum { COUNT = sizeof points / sizeof points[0] };
+
+static void pareto(void **state)
+{
+    (void)state;
+    uint32_t front[COUNT];
+    const uint32_t expected[] = {3, 4, 0, 5, 1, 6, 7};
+    assert_int_equal(front_pareto(points, COUNT, front), 7);
+    for (int i = 0; i < 7; i++) {
+        assert_int_equal(front[i], expected[i]);
+    }
+    assert_int_equal(front_pareto(points, 0, front), 0);
+    // of equal points one
+    const front_point same[] = {{1, 1, 0, false}, {1, 1, 1, false}, {1, 2, 2, false}};
+    assert_int_equal(front_pareto(same, 3, front), 1);
+    assert_int_equal(front[0], 0);
+}
+
+static void settings(void **state)
+{
+    (void)state;
+    front_time t = front_time_at(points, COUNT, POP, 0.045);
+    assert_true(t.measured && t.point == 1); // the fastest that is good enough, not between two
+    assert_float_equal(t.ms, 300, 1e-9);
+    t = front_time_at(points, COUNT, POP, 0.05);
+    assert_true(t.measured && t.point == 0);
+    t = front_time_at(points, COUNT, POP, 0.5);
+    assert_float_equal(t.ms, 100, 1e-9);
+    t = front_time_at(points, COUNT, POP, 0.0299);
+    assert_true(isnan(t.ms) && t.point < 0);
+    t = front_time_at(points, COUNT, 77, 0.1);
+    assert_true(isnan(t.ms));
+}
+
+static void samples(void **state)
+{
+    (void)state;
+    // on a point, between two (log-log: exactly 1/sqrt(n) here), beyond both ends
+    front_time t = front_time_at(points, COUNT, PATH, 0.08);
+    assert_true(t.measured && t.point == 4);
+    assert_float_equal(t.ms, 40, 1e-9);
+    t = front_time_at(points, COUNT, PATH, 0.05);
+    assert_true(t.measured && t.point < 0);
+    assert_float_equal(t.ms, 10 * (0.16 / 0.05) * (0.16 / 0.05), 1e-6);
+    t = front_time_at(points, COUNT, PATH, 0.32);
+    assert_false(t.measured);
+    assert_float_equal(t.ms, 2.5, 1e-9);
+    t = front_time_at(points, COUNT, PATH, 0.005);
+    assert_false(t.measured);
+    assert_float_equal(t.ms, 10240, 1e-6);
+    t = front_time_at(points, COUNT, PATH, 0);
+    assert_true(isnan(t.ms));
+    // another slope than 1/2: a biased end of the curve
+    const front_point bent[] = {{1, 0.1, 0, true}, {10, 0.01, 0, true}, {100, 0.009, 0, true}};
+    t = front_time_at(bent, 3, 0, 0.0316227766);
+    assert_float_equal(t.ms, 3.16227766, 1e-6);
+    // a point that noise has lifted is not followed upwards
+    const front_point noisy[] = {{1, 0.1, 0, true}, {4, 0.11, 0, true}, {16, 0.025, 0, true}};
+    t = front_time_at(noisy, 3, 0, 0.05);
+    assert_float_equal(t.ms, 4, 1e-9);
+    assert_true(t.measured);
+}
+
+static void ranges(void **state)
+{
+    (void)state;
+    front_range r[8];
+    // At 3 % pop takes 300 ms and path 284; at 5 % pop takes 100 and path 102.4, at 5.06 % path takes 100.
+    const uint32_t num = front_ranges(points, COUNT, 0.5, r, 8);
+    assert_int_equal(num, 3);
+    assert_int_equal(r[0].line, PATH);
+    assert_true(r[0].lowest && !r[0].highest);
+    assert_float_equal(r[0].low, 0.01, 1e-4);
+    assert_int_equal(r[1].line, POP);
+    assert_float_equal(r[1].low, 0.05, 6e-4);
+    assert_float_equal(r[1].high, 0.0506, 6e-4);
+    assert_int_equal(r[2].line, PATH); // its first sample, 10 ms, is faster than single
+    assert_true(r[2].highest && !r[2].lowest);
+    // what is extrapolated wins nothing: 20 ms is the least that path takes
+    const front_point few[] = {{20, 0.02, 0, true}, {10, 0.5, 1, false}};
+    assert_int_equal(front_ranges(few, 2, 0.9, r, 8), 2);
+    assert_int_equal(r[0].line, 0);
+    assert_int_equal(r[1].line, 1);
+    assert_float_equal(r[1].low, 0.5, 6e-3);
+    assert_int_equal(front_ranges(few, 0, 0.9, r, 8), 0);
+    assert_int_equal(front_ranges(few, 2, 0.9, r, 1), 1);
+}
+
+static void means(void **state)
+{
+    (void)state;
+    const double values[] = {2, NAN, 8, 0, -1, INFINITY};
+    assert_float_equal(front_geometric_mean(values, 6), 4, 1e-12);
+    assert_true(isnan(front_geometric_mean(values + 3, 2)));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pareto), cmocka_unit_test(settings), cmocka_unit_test(samples),
+        cmocka_unit_test(ranges), cmocka_unit_test(means),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,104 @@
+// case.c -- a scene of a suite, opened with its reference, and the keys of what is measured on it.
+#include "measure.h"
+#include "record.h"
+#include "stats.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+// ---- keys -------------------------------------------------------------------------------------
+
+static uint64_t hash_text(const char *text, uint64_t seed)
+{
+    return text ? text_hash(text, strlen(text), seed) : seed;
+}
+
+int bench_key(bench_case *c, const bench_run *run, char key[17])
+{
+    method m = {0};
+    int code = method_open(c->a, &run->method, &m);
+    if (code != EXIT_DONE) {
+        method_finish(&m);
+        return code;
+    }
+    tyn_view view = c->view;
+    method_view(&run->method, &view);
+    cJSON *settings = stats_settings(&m, &view);
+    char *text = cJSON_PrintUnformatted(settings);
+    uint64_t hash = hash_text(text, c->hash);
+    free(text);
+    cJSON_Delete(settings);
+    for (const tyn_pass_desc *const *pass = m.info.passes; *pass; pass++) {
+        for (uint32_t k = 0; k < (*pass)->num_kernels; k++) {
+            hash = text_hash((*pass)->kernels[k].spirv, (*pass)->kernels[k].spirv_size, hash);
+        }
+    }
+    hash = hash_text(m.info.name, hash);
+    hash = hash_text(run->name, hash);
+    hash = hash_text(run->group, hash);
+    hash = hash_text(c->spec->name, hash);
+    hash = hash_text(c->reference.key, hash);
+    hash = hash_text(tyn_version_string(), hash);
+    hash = hash_text(c->machine->name, hash);
+    hash = hash_text(c->machine->driver, hash);
+    const uint32_t numbers[] = {c->suite->frames, c->suite->block, BENCH_RECORD_VERSION};
+    hash = text_hash(numbers, sizeof numbers, hash);
+    hash = text_hash(&c->suite->timing_seconds, sizeof c->suite->timing_seconds, hash);
+    snprintf(key, 17, "%016llx", (unsigned long long)hash);
+    method_finish(&m);
+    return EXIT_DONE;
+}
+
+// ---- a scene ----------------------------------------------------------------------------------
+
+static int write_reference(const bench_case *c)
+{
+    char *all = text_format("%s/pictures", c->folder);
+    char *below = text_format("%s/pictures/%s", c->folder, c->spec->slug);
+    char *path = text_format("%s/pictures/%s/reference.exr", c->folder, c->spec->slug);
+    int code = EXIT_FAILED;
+    if (all && below && path) {
+        mkdir(all, 0777);
+        mkdir(below, 0777);
+        code = bench_picture_write(c->a, &c->reference.image, true, path);
+    }
+    free(all);
+    free(below);
+    free(path);
+    return code;
+}
+
+int bench_case_open(app *a, const bench_machine *on, const bench_suite *suite,
+                    const bench_scene *spec, const char *folder, bench_case *c)
+{
+    *c = (bench_case){.a = a,
+                      .machine = on,
+                      .suite = suite,
+                      .spec = spec,
+                      .folder = folder,
+                      .blocks = {suite->block, 1},
+                      .view = {.outputs = TYN_OUTPUT_RADIANCE, .no_background = true}};
+    int code = scene_open(a, &spec->scene, &c->scene);
+    if (code == EXIT_DONE && spec->lights > 0 && spec->lights < c->scene.num_lights) {
+        c->scene.num_lights = spec->lights;
+    }
+    if (code == EXIT_DONE) { // for the reference
+        code = scene_prepare(a, &(tyn_method_info){.traces_rays = true}, &c->scene);
+    }
+    if (code == EXIT_DONE) {
+        code = view_setup(a, &spec->view, &c->scene, &c->view);
+    }
+    if (code == EXIT_DONE) {
+        c->hash = bench_scene_hash(&c->scene, &c->view);
+        code = bench_reference_get(a, on->device, spec, &c->scene, &c->view, c->blocks,
+                                   &c->reference);
+    }
+    return code == EXIT_DONE && folder ? write_reference(c) : code;
+}
+
+void bench_case_close(bench_case *c)
+{
+    bench_reference_finish(&c->reference);
+    tyn_scene_finish(&c->scene);
+}

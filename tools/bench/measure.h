@@ -1,0 +1,38 @@
+// measure.h -- one run on one scene: errors, times, nodes, memory, imbalance, flicker, as a record.
+#pragma once
+#include "ceilings.h"
+#include "reference.h"
+#include "suite.h"
+
+// What is measured on.
+typedef struct bench_machine {
+    tyn_device *device;
+    const char *name, *driver, *type; // as in <tyndall/device.h>
+    ceilings ceilings;
+} bench_machine;
+
+// A scene that is being measured.
+typedef struct bench_case {
+    app *a;
+    const bench_machine *machine;
+    const bench_suite *suite;
+    const bench_scene *spec;
+    const char *folder; // of --report; NULL: nothing is kept
+    uint32_t blocks[BENCH_BLOCKS];
+    tyn_scene scene;
+    tyn_view view;
+    uint64_t hash; // bench_scene_hash
+    bench_reference reference;
+} bench_case;
+
+// Loads the scene, and gets its reference. Gives the exit code; bench_case_close is due in any case.
+int bench_case_open(app *a, const bench_machine *on, const bench_suite *suite,
+                    const bench_scene *spec, const char *folder, bench_case *c);
+void bench_case_close(bench_case *c);
+
+// The key of a run's record: of everything that its figures depend on.
+int bench_key(bench_case *c, const bench_run *run, char key[17]);
+
+// Measures a run, and gives its record (docs/report-schema.md, "A record"). A method that cannot do the scene
+// gives a record that says why, and EXIT_DONE.
+int bench_measure(bench_case *c, const bench_run *run, const char *key, cJSON **record);
