@@ -96,6 +96,32 @@ echo '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{}],
        "ratios": [{"name": "r", "of": "cube.gltf", "to": "other"}]}' >ratio.json
 refuses 2 "ratios[0].to: must be the name of a scene" bench --suite ratio.json --scenes "$scenes"
 
+suite() { # RUN: a suite of that one
+    echo "{\"name\": \"x\", \"scenes\": [{\"scene\": \"cube.gltf\"}], \"runs\": [$1]}" >run.json
+}
+suite '{"sweep": {"lattice.cells": 8}}'
+refuses 2 "runs[0].sweep: must hold up to 4 lists" bench --suite run.json --scenes "$scenes"
+suite '{"sweep": {"spp": [1, 0]}, "method": "path"}'
+refuses 2 "runs[0].spp: must be a number from 1" bench --suite run.json --scenes "$scenes"
+suite '{"sweep": {"lattice.cells": [8, 1e9]}}'
+refuses 2 "lattice.cells" bench --suite run.json --scenes "$scenes"
+suite '{"only": ["fog"]}'
+refuses 2 "only: must be a list of names of scenes" bench --suite run.json --scenes "$scenes"
+suite '{}, {"settings": {"lattice.cells": 8}}'
+refuses 2 "runs: two have the name 'pop'" bench --suite run.json --scenes "$scenes"
+suite '{"sweep": {"lattice.cells": [8, 12, 16, 20], "raymarch.step": [0.1, 0.2, 0.3, 0.4],
+    "ordinates.count": [4, 8, 16, 32], "lattice.sweeps": [1, 2, 3, 4, 5]}}'
+refuses 2 "gives more than 256 runs" bench --suite run.json --scenes "$scenes"
+echo '{"name": "x", "scenes": [{"scene": "cube.gltf", "reference": "nothere.exr"}], "runs": [{}]}' >reference.json
+refuses 2 "scenes[0].reference: 'nothere.exr' is neither" bench --suite reference.json --scenes "$scenes"
+echo '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{}], "baselines": [{"method": "pop"}]}' >base.json
+refuses 2 "does not sample" bench --suite base.json --scenes "$scenes"
+for bands in '{}' '{"bands": [{}]}' '{"bands": [{"scene": "*", "run": "*", "figure": "f", "reason": "r", "low": 1, "high": 0}]}' \
+    '{"bands": [{"scene": "*", "run": "*", "figure": "f", "reason": "r", "low": 0, "high": 1, "hi": 2}]}'; do
+    echo "$bands" >bands.json
+    refuses 2 "bands.json: " bench --bands bands.json --scenes "$scenes"
+done
+
 # ---- info ----
 works info "$scenes/smoke.gltf"
 grep -q "96x160x96 voxels" out || fail "info smoke: $(cat out)"
