@@ -2,6 +2,7 @@
 #include "report.h"
 #include "front.h"
 #include "record.h"
+#include "regime.h"
 #include "stats.h"
 #include <math.h>
 #include <stdio.h>
@@ -259,7 +260,9 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
         fill = isnan(fill) ? json_figure(run, "fill") : fill;
     }
     json_add_float(scene, "fill", fill);
-    cJSON_AddNullToObject(scene, "regime");
+    regime found;
+    bool known = regime_of(&c->scene, &c->view.camera, &found);
+    cJSON_AddItemToObject(scene, "regime", known ? regime_json(&found) : cJSON_CreateNull());
     cJSON_AddItemToObject(scene, "reference", json_reference(c));
     cJSON *fronts = cJSON_CreateArray(), *equal = cJSON_CreateArray();
     cJSON *floors = NULL, *verdicts = NULL;
