@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """page.py -- the page of a report: what is in it, and how it behaves in a browser.
 
-usage: page.py REPORT_MAKE     (skipped, exit 77, where no Chromium is installed)
+usage: page.py REPORT_MAKE TABLES     (the second is docs/tables; skipped, exit 77, where no Chromium is installed)
 """
 import json
 import os
@@ -41,6 +41,21 @@ def check_text(folder):
         on_front = {str(k) for k, run in enumerate(scene["runs"]) if run["key"] in front}
         check("pictures of the front", on_front <= here, str(on_front - here))
     return report
+
+
+def check_tables(folder, tables):
+    """The README's tables, from the same report."""
+    readme = f"{folder}/README.md"
+    with open(readme, "w", encoding="utf-8") as file:
+        file.write("before\n<!-- tables -->\nstale words\n<!-- end of tables -->\nafter\n")
+    subprocess.run([tables, f"{folder}/report.json", readme], check=True)
+    text = open(readme, encoding="utf-8").read()
+    check("what is around the tables stays", text.startswith("before\n<!-- tables -->\n") and text.endswith("<!-- end of tables -->\nafter\n") and "stale" not in text)
+    check("the headline", "6.3 times as long as `pop` at 10 % error (3 scenes), 15 times" in text, text)
+    check("a scene at equal error", "| smoke | 8.1 % in 34.0 ms to 2.7 % in 290 ms | 31.0 ms | 384 ms | 12 |" in text, text)
+    check("markup in names is none", "<script" not in text.replace("\\<", ""), text)
+    again = subprocess.run([tables, f"{folder}/report.json", readme + ".none"], capture_output=True)
+    check("a file that is not there is an error", again.returncode != 0)
 
 
 def scene(index, script):
@@ -217,10 +232,11 @@ def check_sizes(b):
 
 
 def main():
-    report_make = sys.argv[1]
+    report_make, tables = sys.argv[1:]
     with tempfile.TemporaryDirectory(prefix="tyndall-page-") as folder:
         subprocess.run([report_make, folder], check=True)
         report = check_text(folder)
+        check_tables(folder, tables)
         program = browser.find()
         if not program:
             print("skipped: no Chromium here (Debian: chromium), so the page was not opened")

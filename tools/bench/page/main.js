@@ -57,7 +57,10 @@ function sceneSection(report, styles, scene, index) {
                 plot.element),
             viewer.element && make("div", {class: "column"}, viewer.element)),
         make("h3", {}, `Runs`, make("small", {}, ` ${list(scene.runs).length}${failed ? `, ${failed} of which could not be done` : ""}; \u2605 on a front`)),
-        table.element, details);
+        table.element,
+        list(scene.left_out).length > 0 && make("details", {}, make("summary", {}, `Not run: ${list(scene.left_out).length}`),
+            make("ul", {}, list(scene.left_out).map((r) => make("li", {}, `${r.run}: ${r.why}`)))),
+        details);
 }
 
 function ratioList(ratios) {

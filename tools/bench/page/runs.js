@@ -141,5 +141,7 @@ function runDetails(report, scene, styles, index) {
         ]),
         list(run.warnings).length > 0 && make("ul", {class: "warnings"}, list(run.warnings).map((w) => make("li", {}, w))),
         nodeBars(run),
+        run.all_settings && make("details", {class: "everything"}, make("summary", {}, "All settings in effect"),
+            make("p", {class: "note"}, settingsText(run.all_settings))),
         make("div", {class: "cite"}, make("h4", {}, "To cite it", copy), record));
 }

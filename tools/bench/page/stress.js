@@ -5,13 +5,16 @@ const STRESS_STEPS = [0.003, 0.01, 0.03, 0.1, 0.3]; // upper bounds of the colou
 const stressStep = (error) => (isNumber(error) ? STRESS_STEPS.findIndex((s) => error <= s) >>> 0 : null);
 const stressClass = (error) => (isNumber(error) ? `heat-${Math.min(stressStep(error), STRESS_STEPS.length)}` : "heat-none");
 
+// "1e-06" -> 10\u207b\u2076; names that are more than their number stay.
+const caseName = (cell) => (isNumber(cell.x) && (cell.case === undefined || Number(cell.case) === cell.x) ? axisValue(cell.x) : String(cell.case ?? ""));
+
 function stressWords(cell) {
     const bad = [cell.non_finite > 0 && `${cell.non_finite} values not finite`, cell.negative > 0 && `${cell.negative} negative values`].filter(Boolean);
     return {
-        title: `${cell.method}, ${cell.axis}: ${cell.case ?? axisValue(cell.x)}`,
+        title: `${cell.method}, ${cell.axis}: ${caseName(cell)}`,
         figure: isNumber(cell.error)
             ? `error ${percent(cell.error)}${isNumber(cell.se) ? ` \u00b1${NARROW}${percent(cell.se)}` : ""} against ${cell.against ?? "an exact answer"}${isNumber(cell.ms) ? `, ${duration(cell.ms)}` : ""}`
-            : "no figure", bad, warnings: list(cell.warnings),
+            : cell.failure ?? "no figure: see the reason, or the case is not this method's", bad, warnings: list(cell.warnings),
     };
 }
 
@@ -22,14 +25,14 @@ function stressCell(cell, tip) {
     return make("button", {type: "button", class: `cell ${stressClass(cell.error)}${bad ? " spoiled" : ""}${words.warnings.length ? " warned" : ""}`,
         "aria-label": [words.title, words.figure, ...words.bad, ...words.warnings].join(". "),
         onfocus: show, onpointerenter: show, onblur: tip.hide, onpointerleave: tip.hide},
-        make("span", {class: "value"}, label), make("span", {class: "case"}, isNumber(cell.x) ? axisValue(cell.x) : String(cell.case ?? "")));
+        make("span", {class: "value"}, label), make("span", {class: "case"}, caseName(cell)));
 }
 
 function stressTip(frame) {
     const box = make("div", {class: "tip", role: "tooltip", hidden: true});
-    frame.append(box);
     onWidth(frame, () => { box.hidden = true; });
     return {
+        box,
         show(target, words) {
             box.replaceChildren(make("strong", {}, words.title), make("span", {}, words.figure),
                 ...words.bad.map((b) => make("span", {class: "bad"}, b)), ...words.warnings.map((w) => make("span", {class: "warning"}, w)));
@@ -50,30 +53,28 @@ function stressSection(stress, styles) {
     const unique = (values) => [...new Set(values)];
     const methods = unique([...list(stress.methods).map((m) => (typeof m === "string" ? m : m.name)), ...cells.map((c) => c.method)]).filter(Boolean);
     const axes = unique(cells.map((c) => c.axis));
-    const about = (axis) => {
-        const entry = Array.isArray(stress.axes) ? stress.axes.find((a) => a.name === axis) : (stress.axes || {})[axis];
-        return typeof entry === "string" ? entry : (entry || {}).about ?? (entry || {}).label ?? "";
-    };
     const spoiledCells = cells.filter((c) => c.non_finite > 0 || c.negative > 0);
     const lossy = cells.filter((c) => isNumber(c.error) && c.error > 0.1);
     const section = make("section", {id: "stress", class: "stress"},
         make("h2", {}, "Under stress"),
         make("p", {}, `${cells.length} cases in which numbers get extreme, each against an exact answer or path. A cell shows the error in percent and, below it, the value on its axis; point at it for the reason.`),
         spoiledCells.length > 0
-            ? make("p", {class: "alert", role: "alert"}, `${spoiledCells.length} cells hold values that are not finite or negative: `, spoiledCells.map((c) => `${c.method}, ${c.axis} ${c.case ?? c.x}`).join("; "))
+            ? make("p", {class: "alert", role: "alert"}, `${spoiledCells.length} cells hold values that are not finite or negative: `, spoiledCells.map((c) => stressWords(c).title).join("; "))
             : make("p", {class: "good"}, "No value of any cell is infinite, not a number or negative."),
         make("p", {class: "legend heat"}, [...STRESS_STEPS, null].map((s, i) => make("span", {class: "key"}, make("span", {class: `swatch heat-${i}`}), s === null ? "more" : `to ${level(s)}`)),
             make("span", {class: "key"}, make("span", {class: "swatch heat-none"}), "no figure"), make("span", {class: "key"}, make("span", {class: "swatch warned"}), "has a warning")));
     const frame = make("div", {class: "holder stress-grid"}), tip = stressTip(frame);
-    for (const method of methods) {
-        const own = cells.filter((c) => c.method === method), style = styles.get(method);
-        own.length > 0 && frame.append(make("div", {class: "stress-method"},
-            make("h3", {}, style && marker(style, 14), method),
-            axes.filter((axis) => own.some((c) => c.axis === axis)).map((axis) => make("div", {class: "axis-row"},
-                make("div", {class: "axis-name"}, make("strong", {}, axis), about(axis) && make("small", {}, about(axis))),
-                make("div", {class: "cells", role: "group", "aria-label": `${method}, ${axis}`}, own.filter((c) => c.axis === axis).map((c) => stressCell(c, tip)))))));
-    }
-    section.append(frame);
+    const name = (word) => [styles.get(word) && marker(styles.get(word), 13), word];
+    const show = (outer, inner, outerKey, innerKey) => frame.replaceChildren(tip.box, ...outer.map((o) => {
+        const own = cells.filter((c) => c[outerKey] === o);
+        return make("div", {class: "stress-group"}, make("h3", {}, name(o)),
+            inner.filter((i) => own.some((c) => c[innerKey] === i)).map((i) => make("div", {class: "axis-row"},
+                make("div", {class: "axis-name"}, name(i)),
+                make("div", {class: "cells", role: "group", "aria-label": `${o}, ${i}`}, own.filter((c) => c[innerKey] === i).map((c) => stressCell(c, tip))))));
+    }));
+    show(methods, axes, "method", "axis");
+    section.append(make("div", {class: "controls"}, segmented("order of the cells", [["method", "by method"], ["axis", "by axis"]], "method",
+        (by) => (by === "method" ? show(methods, axes, "method", "axis") : show(axes, methods, "axis", "method")))), frame);
     if (lossy.length > 0) {
         section.append(make("details", {}, make("summary", {}, `Where the error is above ${level(0.1)}: ${lossy.length} cells`),
             make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "cells with large errors"}, make("table", {},
