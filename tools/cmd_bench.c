@@ -6,6 +6,7 @@
 #include "bench/report.h"
 #include "bench/stress.h"
 #include "devices.h"
+#include "fronts.h"
 #include "stats.h"
 #include <errno.h>
 #include <math.h>
@@ -18,7 +19,7 @@
 
 typedef struct bench_args {
     machine_options machine;
-    const char *suite, *report, *scenes, *bands, *axis;
+    const char *suite, *report, *scenes, *bands, *fronts, *axis;
     bool json, fresh, stress, quick;
 } bench_args;
 
@@ -269,6 +270,9 @@ static int run_suite(app *a, const bench_args *args, const bench_suite *suite, c
         }
         inside = bands ? bands_apply(a, args->bands, bands, report.root) : EXIT_DONE;
         code = write_report(a, args, report.root);
+        if (code == EXIT_DONE && args->fronts) {
+            code = fronts_write(a, report.root, args->fronts);
+        }
     } else if (code == EXIT_INTERRUPTED && args->report) {
         app_note(a, "interrupted; the records made so far are kept: the same command goes on");
     }
@@ -317,6 +321,8 @@ static const option bench_table[] = {
     {0, "fresh", OPT_FLAG, AT(fresh), NULL, "measure anew what --report has records of"},
     {0, "bands", OPT_TEXT, AT(bands), "FILE",
      "figures and their bounds: exit 1 and a line for each that is outside"},
+    {0, "write-fronts", OPT_TEXT, AT(fronts), "FILE",
+     "what render --max-error and --budget-ms choose from (--fronts)"},
     {0, "scenes", OPT_TEXT, AT(scenes), "DIR",
      "folder of the sample scenes; else ../samples/scenes beside the program"},
     {0, "stress", OPT_FLAG, AT(stress), NULL,

@@ -1,5 +1,6 @@
 // cmd_render.c -- `tyndall render`: a scene to pictures and stats.
 #include "app.h"
+#include "choice_setup.h"
 #include "machine.h"
 #include "method_setup.h"
 #include "output.h"
@@ -18,6 +19,7 @@ typedef struct render_args {
     scene_options scene;
     view_options view;
     method_options method;
+    choice_options choice;
     machine_options machine;
     opt_list outputs;
     const char *aov, *stats, *frames, *change;
@@ -37,22 +39,64 @@ typedef struct first_look {
 // What stays the same over the pictures of a sequence.
 typedef struct render_job {
     const render_args *args;
-    const method *method;
-    const output_plan *plan;
-    uint32_t repeat; // timing frames
+    const opt_list *outputs;
+    bool numbered;
+    uint32_t repeat;    // timing frames
+    method_options how; // what was asked for, or chosen for the first picture
+    chosen chosen;
+    method method;
+    output_plan plan;
     machine machine; // opened for the first picture, when its scene has been read
     renderer renderer;
     first_look look;
 } render_job;
+
+static int open_machine(app *a, render_job *job)
+{
+    return job->machine.device ? EXIT_DONE
+                               : machine_open(a, &job->args->machine, false, &job->machine);
+}
 
 static int open_renderer(app *a, render_job *job)
 {
     if (job->renderer.offline) {
         return EXIT_DONE;
     }
-    int code = machine_open(a, &job->args->machine, false, &job->machine);
-    return code == EXIT_DONE ? renderer_open(a, job->machine.device, job->method, &job->renderer)
+    int code = open_machine(a, job);
+    return code == EXIT_DONE ? renderer_open(a, job->machine.device, &job->method, &job->renderer)
                              : code;
+}
+
+// The method, and what it can give of what is to be written.
+static int open_method(app *a, render_job *job)
+{
+    const render_args *args = job->args;
+    job->how.sequence = job->numbered;
+    int code = method_open(a, &job->how, &job->method);
+    if (code == EXIT_DONE) {
+        code = output_plan_make(a, &job->method.info, job->outputs, args->aov, args->full_float,
+                                &job->plan);
+    }
+    return code;
+}
+
+// --max-error, --budget-ms: the method for the first picture's scene, kept for the others.
+static int choose_method(app *a, render_job *job, const tyn_scene *scene)
+{
+    if (job->method.settings) {
+        return EXIT_DONE;
+    }
+    tyn_view view = {0};
+    int code = view_setup(a, &job->args->view, scene, &view);
+    if (code == EXIT_DONE) {
+        code = open_machine(a, job);
+    }
+    if (code == EXIT_DONE) {
+        code = choice_make(a, &job->args->choice, &job->args->method, &job->machine, scene, &view,
+                           &job->chosen);
+    }
+    job->how = job->chosen.method;
+    return code == EXIT_DONE ? open_method(a, job) : code;
 }
 
 // The paths of one picture, with its number in them: new strings.
@@ -118,7 +162,7 @@ static int time_frames(app *a, render_job *job, tyn_scene *scene, const tyn_view
 static int write_outputs(app *a, const render_job *job, const tyn_view *view, const opt_list *files)
 {
     for (uint32_t i = 0; i < files->count; i++) {
-        int code = output_write(a, job->plan, job->renderer.offline, view, files->items[i]);
+        int code = output_write(a, &job->plan, job->renderer.offline, view, files->items[i]);
         if (code != EXIT_DONE) {
             return code;
         }
@@ -168,11 +212,11 @@ static void keep_look(first_look *look, const char *path, tyn_scene *scene, tyn_
 static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t number,
                           const picture_paths *paths)
 {
-    tyn_view view = {.outputs = job->plan->outputs,
+    tyn_view view = {.outputs = job->plan.outputs,
                      .no_background = job->args->no_background,
                      .exposure_ev = job->args->exposure,
                      .time_index = number};
-    method_view(&job->args->method, &view);
+    method_view(&job->how, &view);
     // Later pictures of a sequence recompute only what differs: they are not cold.
     bool first = !job->renderer.offline;
     int code = view_setup(a, &job->args->view, scene, &view);
@@ -181,7 +225,7 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
         code = open_renderer(a, job);
     }
     if (code == EXIT_DONE) {
-        code = renderer_frame(a, &job->renderer, scene, &view, false, job->method->info.name);
+        code = renderer_frame(a, &job->renderer, scene, &view, false, job->method.info.name);
     }
     if (code != EXIT_DONE) {
         return code;
@@ -189,7 +233,7 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
     const double frame_ms = job->renderer.frame_ms;
     code = write_outputs(a, job, &view, &paths->outputs);
     stats s = {.device = tyn_device_name(job->machine.device),
-               .method = job->method,
+               .method = &job->method,
                .scene = scene,
                .view = &view,
                .setup_ms = job->renderer.setup_ms,
@@ -211,6 +255,8 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
         s.report = &report;
         s.warnings[0] = job->renderer.warnings[0];
         s.warnings[1] = job->renderer.warnings[1];
+        s.warnings[2] = job->chosen.warning;
+        s.choice = job->chosen.json;
         code = json_write(a, stats_make(&s), paths->stats);
     }
     return code;
@@ -235,7 +281,10 @@ static int load_and_render(app *a, render_job *job, const opt_list *outputs, boo
     tyn_scene scene;
     int code = scene_open(a, &options, &scene);
     if (code == EXIT_DONE) {
-        code = scene_prepare(a, &job->method->info, &scene);
+        code = choose_method(a, job, &scene);
+    }
+    if (code == EXIT_DONE) {
+        code = scene_prepare(a, &job->method.info, &scene);
     }
     if (code == EXIT_DONE) {
         code = render_picture(a, job, &scene, number, &p);
@@ -270,28 +319,27 @@ static int check_sequence(app *a, const render_args *args, const opt_list *outpu
 static int render_all(app *a, const render_args *args, const opt_list *outputs)
 {
     sequence s;
-    method meth = {0};
-    output_plan plan;
     int code = check_sequence(a, args, outputs, &s);
-    if (code == EXIT_DONE) {
-        method_options how = args->method;
-        how.sequence = s.numbered;
-        code = method_open(a, &how, &meth);
+    render_job job = {.args = args, .outputs = outputs, .how = args->method};
+    if (code == EXIT_DONE && !choice_check(a, &args->choice, &args->method)) {
+        code = EXIT_WRONG;
     }
     if (code == EXIT_DONE) {
-        code = output_plan_make(a, &meth.info, outputs, args->aov, args->full_float, &plan);
+        job.numbered = s.numbered;
+        job.repeat = s.repeat;
+        code = choice_is_asked(&args->choice) ? EXIT_DONE : open_method(a, &job);
     }
     if (code == EXIT_DONE && args->stats && !output_folder_is_writable(a, args->stats)) {
         code = EXIT_FAILED;
     }
-    render_job job = {.args = args, .method = &meth, .plan = &plan, .repeat = s.repeat};
     uint32_t first = s.numbered ? s.first : 0, last = s.numbered ? s.last : 0;
     for (uint32_t number = first; code == EXIT_DONE && number <= last; number++) {
         code = load_and_render(a, &job, outputs, s.numbered, number);
     }
     renderer_close(&job.renderer);
     machine_close(&job.machine);
-    method_finish(&meth);
+    method_finish(&job.method);
+    chosen_finish(&job.chosen);
     return code;
 }
 
@@ -334,6 +382,7 @@ static const option output_table[] = {
 static const opt_group groups[] = {
     {"output", output_table, ARRAY_SIZE(output_table), 0},
     {"method", method_table, METHOD_TABLE_SIZE, AT(method)},
+    {"choice", choice_table, CHOICE_TABLE_SIZE, AT(choice)},
     {"view", view_table, VIEW_TABLE_SIZE, AT(view)},
     {"scene", scene_table, SCENE_TABLE_SIZE, AT(scene)},
     {"machine", machine_table, MACHINE_TABLE_SIZE, AT(machine)},

@@ -329,6 +329,45 @@ static bool all_grey(const tyn_scene *scene)
     return grey;
 }
 
+// Is a colour black or a multiple of `tint`? The first that is not black becomes it.
+static bool of_tint(const float color[3], float tint[3])
+{
+    if (tint[0] == 0 && tint[1] == 0 && tint[2] == 0) {
+        memcpy(tint, color, 3 * sizeof *tint);
+    }
+    bool same = true;
+    for (int a = 0; a < 3; a++) {
+        const int b = (a + 1) % 3;
+        const float p = color[a] * tint[b], q = color[b] * tint[a];
+        same &= fabsf(p - q) <= 1e-5f * fabsf(p);
+    }
+    return same;
+}
+
+// One colour of all lights, of media that emit and of the sky; of surfaces that reflect, grey.
+static bool one_tint(const tyn_scene *scene)
+{
+    float tint[3] = {0};
+    bool same = !scene->environment.data;
+    for (uint32_t i = 0; i < scene->num_lights; i++) {
+        same &= of_tint(scene->lights[i].color, tint);
+    }
+    for (uint32_t i = 0; i < scene->num_media; i++) {
+        same &= of_tint(scene->media[i].emission, tint);
+    }
+    if (scene->environment.present) {
+        same &= of_tint(scene->environment.radiance, tint);
+    }
+    const float white[3] = {1, 1, 1};
+    for (uint32_t i = 0; i < scene->surfaces.num_materials; i++) {
+        const tyn_surface_material *m = &scene->surfaces.materials[i];
+        float of_white[3] = {white[0], white[1], white[2]};
+        same &= of_tint(m->albedo, of_white) && m->texture == TYN_NO_TEXTURE &&
+                of_tint(m->emission, tint);
+    }
+    return same;
+}
+
 static void medium_figures(const box *b, const int n[3], const columns *col, const sums *s,
                            regime *r)
 {
@@ -342,6 +381,10 @@ static void medium_figures(const box *b, const int n[3], const columns *col, con
     r->g = scattering > 0 ? mean3(s->g) / scattering : 0;
     r->cell = longest_side(b) / REGIME_LATTICE_CELLS;
     r->fill = (double)s->inside / (double)s->all;
+    r->box_share = 1;
+    for (int a = 0; a < 3; a++) {
+        r->box_share *= b->length[a] > 0 ? b->length[a] / longest_side(b) : 1;
+    }
     if (s->collisions > 0) {
         const double transport = s->transport / s->collisions;
         r->mean_free_path = s->collisions / s->squared;
@@ -574,7 +617,7 @@ static void view_figures(const tyn_scene *scene, const media *md, const box *b,
 
 bool regime_of(const tyn_scene *scene, const tyn_camera *camera, regime *r)
 {
-    *r = (regime){.channels = all_grey(scene) ? 1 : 3,
+    *r = (regime){.channels = all_grey(scene) && one_tint(scene) ? 1 : 3,
                   .num_triangles = scene->surfaces.num_triangles};
     media *md = malloc(sizeof *md);
     columns *col = calloc(1, sizeof *col);

@@ -40,7 +40,8 @@ typedef struct regime {
                                        // medium, and in the densest cell
     double contrast;   // densest place over the mean of where there is medium; 1: homogeneous
     double fill;       // share of the box that holds medium
-    uint32_t channels; // 1: coefficients are grey, 3
+    double box_share;  // volume of the box over that of a cube as long: so much of a lattice there is
+    uint32_t channels; // 1: media are grey and all light is of one colour, so one solve is enough; else 3
     uint64_t voxels;   // of all grids
     bool periodic;     // a shape repeats
 

@@ -37,6 +37,7 @@ static const struct {
     FIGURE("cell_depth_max", cell_depth_max),
     FIGURE("contrast", contrast),
     FIGURE("fill", fill),
+    FIGURE("box_share", box_share),
     FIGURE("view_fill", view_fill),
     FIGURE("view_depth", view_depth),
 };

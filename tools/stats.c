@@ -193,6 +193,9 @@ cJSON *stats_make(const stats *s)
             cJSON_AddItemToArray(warnings, cJSON_CreateString(s->warnings[i]));
         }
     }
+    if (s->choice) {
+        cJSON_AddItemToObject(root, "choice", cJSON_Duplicate(s->choice, true));
+    }
     cJSON_AddItemToObject(root, "settings", stats_settings(s->method, s->view));
     cJSON_AddItemToObject(root, "inputs", stats_inputs(s->scene, s->inputs, ARRAY_SIZE(s->inputs)));
     return root;

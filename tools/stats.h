@@ -13,7 +13,8 @@ typedef struct stats {
     double setup_ms;
     double cold_ms, camera_moved_ms, light_moved_ms, unchanged_ms; // medians; NaN = not run
     const tyn_report *report;
-    const char *warnings[2]; // beside those of the scene and the report; NULL = none
+    const char *warnings[3]; // beside those of the scene and the report; NULL = none
+    const cJSON *choice;     // what --max-error and --budget-ms chose; NULL = nothing was asked
     const char *inputs[4];   // paths; NULL = none
 } stats;
 

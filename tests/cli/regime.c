@@ -63,6 +63,7 @@ static void homogeneous_box(void **state)
     NEAR(r.contrast, 1, 1e-9);
     NEAR(r.fill, 1, 1e-9);
     assert_int_equal(r.channels, 3);
+    NEAR(r.box_share, 0.5 * 1 * 0.25, 1e-9);
     assert_false(r.periodic);
     tyn_scene_finish(&scene);
 }

@@ -1,0 +1,293 @@
+// choose.c -- what is chosen from made-up measurements, whose answers can be worked out by hand.
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+#include "choose.h"
+
+// A thin and a thick scene of 100 x 100 pixels, homogeneous under a sun. In the thin one pop needs 10 ms
+// and a microsecond a pixel; path 1 ms a sample.
+#define REGIME(depth)                                                                              \
+    "{\"optical_depth\": " depth ", \"albedo\": 0.9, \"view_fill\": 1, \"view_depth\": " depth     \
+    ", \"light_share\": {\"sun\": 1}, \"suns\": 1, \"channels\": 1, \"box_share\": 1}"
+#define RUN(method, settings, spp, error, pixel, fixed, pixels)                                    \
+    "{\"method\": \"" method "\", \"settings\": {" settings "}, \"spp\": " #spp                    \
+    ", \"error\": " #error ", \"error_pixel\": " #pixel ", \"ms\": {\"fixed\": " #fixed            \
+    ", \"pixels\": " #pixels "}}"
+static const char text[] =
+    "{\"schema\": \"tyndall-fronts\", \"version\": 1, \"device\": {\"name\": \"d\"}, \"scenes\": ["
+    "{\"name\": \"thin\", \"size\": [100, 100], \"regime\": " REGIME("0.1") ", \"runs\": [" //
+    RUN("pop", "", 0, 0.01, 0.02, 10, 10) ","                                               //
+    RUN("pop", "\"lattice.cells\": 8", 0, 0.04, 0.05, 1, 10) ","                            //
+    RUN("path", "", 4, 0.08, 0.6, 0, 4) ","                                                 //
+    RUN("path", "", 64, 0.02, 0.15, 0,
+        64) "]}," //
+            "{\"name\": \"thick\", \"size\": [100, 100], \"regime\": " REGIME(
+                "100") ", \"runs\": ["       //
+    RUN("pop", "", 0, 0.2, 0.2, 10, 10) ","  //
+    RUN("path", "", 4, 0.16, 1.2, 0, 40) "," //
+    RUN("path", "", 64, 0.04, 0.3, 0, 640) "]}]}";
+
+static app a;
+static fronts f;
+
+static int open_text(const char *content)
+{
+    char path[] = "/tmp/tyndall-fronts-XXXXXX";
+    const int file = mkstemp(path);
+    assert_true(file >= 0);
+    assert_int_equal(write(file, content, strlen(content)), strlen(content));
+    close(file);
+    const int code = fronts_open(&a, path, &f);
+    unlink(path);
+    return code;
+}
+
+static int setup(void **state)
+{
+    (void)state;
+    app_init(&a);
+    a.quiet = true;
+    return open_text(text) == EXIT_DONE ? 0 : -1;
+}
+
+static int teardown(void **state)
+{
+    (void)state;
+    fronts_finish(&f);
+    return 0;
+}
+
+static choose_request ask(double max_error, double budget_ms)
+{
+    return (choose_request){
+        .max_error = max_error, .budget_ms = budget_ms, .width = 100, .height = 100, .slowness = 1};
+}
+
+// In a stored scene the other one is far away: what is stored is what is predicted, and with so few scenes the
+// margin at distance 0 is 2^0.3.
+static const double margin = 1.2311444;
+
+static choice in_thin(const choose_request *request)
+{
+    choice c;
+    assert_true(choose(&f, &f.scenes[0].regime, request, &c));
+    return c;
+}
+
+static void the_fastest_within_an_error(void **state)
+{
+    (void)state;
+    choose_request request = ask(0.06, NAN);
+    choice c = in_thin(&request);
+    assert_string_equal(c.run->key, "pop lattice.cells=8"); // 11 ms; path needs 11 samples
+    assert_true(c.error_met && c.budget_met);
+    assert_float_equal(c.error, 0.04, 0.002);
+    assert_float_equal(c.ms, 11, 0.5);
+    assert_float_equal(c.error_margin, margin, 1e-3);
+    assert_string_equal(c.nearest[0]->name, "thin");
+    assert_string_equal(c.other->method, "path");
+    request.max_error = 0.0125 * margin; // pop's 1 % is within it, and cheaper than 164 samples
+    c = in_thin(&request);
+    assert_string_equal(c.run->key, "pop");
+}
+
+static void samples_by_the_rule(void **state)
+{
+    (void)state;
+    choose_request request = ask(0.005, NAN); // 1 % is the best that pop has
+    choice c = in_thin(&request);
+    assert_string_equal(c.run->key, "path");
+    assert_true(c.error_met);
+    const double needed = 64 * pow(0.02 * margin / 0.005, 2); // errors fall with the root
+    assert_in_range(c.spp, (uint64_t)(0.9 * needed), (uint64_t)(1.15 * needed));
+    assert_float_equal(c.ms, c.spp, 0.05 * c.spp);
+    request.method = "path";
+    request.max_error = 0.04 * margin; // between two measurements
+    c = in_thin(&request);
+    assert_in_range(c.spp, 15, 18);
+}
+
+static void the_best_within_a_time(void **state)
+{
+    (void)state;
+    choose_request request = ask(NAN, 30);
+    choice c = in_thin(&request);
+    assert_string_equal(c.run->key, "pop"); // 20 ms x margin
+    request.budget_ms = 20;
+    c = in_thin(&request);
+    assert_string_equal(c.run->key, "pop lattice.cells=8");
+    request.budget_ms = 5;
+    c = in_thin(&request);
+    assert_string_equal(c.run->key, "path");
+    assert_int_equal(c.spp, (uint32_t)(5 / margin));
+    assert_true(c.budget_met);
+    request.width = request.height = 50; // a quarter of the pixels
+    request.budget_ms = 20;
+    c = in_thin(&request);
+    assert_string_equal(c.run->key, "pop");
+    assert_float_equal(c.ms, 10 + 2.5, 0.5);
+    request.slowness = 4;
+    c = in_thin(&request);
+    assert_string_equal(c.run->key, "pop lattice.cells=8");
+    assert_float_equal(c.ms, 4 * (1 + 2.5), 0.5);
+}
+
+static void error_and_time(void **state)
+{
+    (void)state;
+    choose_request request = ask(0.02, 30);
+    choice c = in_thin(&request);
+    assert_string_equal(c.run->key,
+                        "pop"); // within the budget the best, not the fastest that will do
+    assert_true(c.error_met && c.budget_met);
+    request.budget_ms = 20;
+    c = in_thin(&request);
+    assert_string_equal(c.run->key, "pop lattice.cells=8");
+    assert_true(!c.error_met && c.budget_met);
+}
+
+static void what_cannot_be_had(void **state)
+{
+    (void)state;
+    choose_request request = ask(0.001, NAN);
+    request.method = "pop";
+    choice c = in_thin(&request);
+    assert_string_equal(c.run->key, "pop"); // the nearest there is
+    assert_false(c.error_met);
+    request = ask(NAN, 0.1);
+    c = in_thin(&request);
+    assert_string_equal(c.run->key, "path"); // one sample
+    assert_int_equal(c.spp, 1);
+    assert_false(c.budget_met);
+    request.method = "single"; // never measured
+    assert_false(choose(&f, &f.scenes[0].regime, &request, &c));
+}
+
+static void other_wishes(void **state)
+{
+    (void)state;
+    choose_request request = ask(0.06, NAN);
+    request.without = " pop ";
+    choice c = in_thin(&request);
+    assert_string_equal(c.run->key, "path");
+    request = ask(0.06, NAN);
+    request.by_pixel = true; // 5 % of pop with 8 cells x margin is too much, 2 % is not
+    c = in_thin(&request);
+    assert_string_equal(c.run->key, "pop");
+    assert_float_equal(c.error, 0.02, 0.001);
+    // In the thick scene pop is bad, and path is dear but right.
+    request = ask(0.1, NAN);
+    assert_true(choose(&f, &f.scenes[1].regime, &request, &c));
+    assert_string_equal(c.run->key, "path");
+    assert_string_equal(c.nearest[0]->name, "thick");
+}
+
+// Between two scenes a prediction is between theirs, and its margin is wider.
+static void between_scenes(void **state)
+{
+    (void)state;
+    regime r = f.scenes[0].regime;
+    r.optical_depth = r.view_depth = 3;
+    choose_request request = ask(NAN, 1000);
+    request.method = "pop";
+    choice c;
+    assert_true(choose(&f, &r, &request, &c));
+    assert_true(c.error > 0.011 && c.error < 0.19);
+    assert_true(c.error_margin > 1.5);
+}
+
+static void wrong_files(void **state)
+{
+    (void)state;
+    fronts kept = f;
+    static const char *const wrong[] = {
+        "",
+        "[]",
+        "{\"schema\": \"tyndall-fronts\", \"version\": 2, \"scenes\": []}",
+        "{\"schema\": \"tyndall-fronts\", \"version\": 1, \"scenes\": [{\"name\": \"s\"}]}",
+        "{\"schema\": \"tyndall-fronts\", \"version\": 1, \"scenes\": [{\"name\": \"s\", \"size\": "
+        "[0, 1], "
+        "\"regime\": {}, \"runs\": []}]}",
+        "{\"schema\": \"tyndall-fronts\", \"version\": 1, \"scenes\": [{\"name\": \"s\", \"size\": "
+        "[1, 1], "
+        "\"regime\": {}, \"runs\": [{\"method\": \"pop\", \"error\": -1, \"ms\": {}}]}]}",
+    };
+    fclose(stderr); // says what is wrong
+    for (size_t i = 0; i < ARRAY_SIZE(wrong); i++) {
+        assert_int_equal(open_text(wrong[i]), EXIT_WRONG);
+        fronts_finish(&f);
+    }
+    f = kept;
+}
+
+// A report becomes a file of fronts: setup nodes left out, pixels apart, errors below the noise lifted.
+static void from_a_report(void **state)
+{
+    (void)state;
+    static const char report[] =
+        "{\"schema\": \"tyndall-report\", \"version\": 1, \"device\": {\"name\": \"d\"}, "
+        "\"ceilings\": "
+        "{\"fma_gflops\": 10}, \"suite\": {\"name\": \"s\"}, \"scenes\": [{\"name\": \"thin\", "
+        "\"size\": [10, 20], \"regime\": " REGIME(
+            "0.1") ", \"runs\": ["
+                   "{\"method\": \"pop\", \"settings\": {\"lattice.cells\": 8}, \"failed\": null, "
+                   "\"errors\": "
+                   "[{\"block\": 1, \"error\": 0.5, \"n\": 0.1}, {\"block\": 8, \"error\": 0, "
+                   "\"n\": 0.03}], "
+                   "\"frame_ms\": {\"cold\": 8}, \"nodes\": [{\"name\": \"medium\", \"gpu_ms\": "
+                   "100, \"setup\": "
+                   "true}, {\"name\": \"lattice\", \"gpu_ms\": 3, \"setup\": false}, {\"name\": "
+                   "\"raymarch\", "
+                   "\"gpu_ms\": 1, \"setup\": false}]},"
+                   "{\"method\": \"path\", \"settings\": {\"spp\": 16}, \"failed\": null, "
+                   "\"errors\": [{\"block\": 8, "
+                   "\"error\": 0.1, \"n\": 0}], \"frame_ms\": {\"cold\": 5}, \"nodes\": []},"
+                   "{\"method\": \"single\", \"settings\": {}, \"failed\": \"cannot\", \"errors\": "
+                   "[], \"frame_ms\": "
+                   "{\"cold\": null}, \"nodes\": []}]}]}";
+    fronts kept = f;
+    char path[] = "/tmp/tyndall-fronts-XXXXXX";
+    close(mkstemp(path));
+    cJSON *json = cJSON_Parse(report);
+    assert_int_equal(fronts_write(&a, json, path), EXIT_DONE);
+    assert_int_equal(fronts_open(&a, path, &f), EXIT_DONE);
+    assert_true(f.num_scenes == 1 && f.scenes[0].num_runs == 2);
+    assert_float_equal(f.device.fma_gflops, 10, 0);
+    const fronts_run *run = f.scenes[0].runs;
+    assert_string_equal(run[0].key, "pop lattice.cells=8");
+    assert_float_equal(run[0].error, 0.01, 1e-6);
+    assert_float_equal(run[0].error_pixel, 0.5, 1e-6);
+    assert_float_equal(run[0].fixed_ms, 6, 1e-6);
+    assert_float_equal(run[0].pixel_ms, 2.0 / 200, 1e-9);
+    assert_string_equal(run[1].key, "path");
+    assert_int_equal(run[1].spp, 16);
+    assert_float_equal(run[1].fixed_ms, 0, 0);
+    assert_float_equal(run[1].pixel_ms, 5.0 / 200, 1e-9);
+    unlink(path);
+    cJSON_Delete(json);
+    fronts_finish(&f);
+    f = kept;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_fastest_within_an_error),
+        cmocka_unit_test(samples_by_the_rule),
+        cmocka_unit_test(the_best_within_a_time),
+        cmocka_unit_test(error_and_time),
+        cmocka_unit_test(what_cannot_be_had),
+        cmocka_unit_test(other_wishes),
+        cmocka_unit_test(between_scenes),
+        cmocka_unit_test(from_a_report),
+        cmocka_unit_test(wrong_files),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}

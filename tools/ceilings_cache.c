@@ -1,0 +1,86 @@
+// ceilings_cache.c -- the ceilings of a device, measured once a day.
+#include "ceilings_cache.h"
+#include "cache.h"
+#include "stats.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <tyndall/io.h>
+#include <unistd.h>
+
+enum { SECONDS_KEPT = 24 * 3600, SIZE_LIMIT = 1 << 16 };
+
+// Software devices are called alike on all processors: what tells these apart counts as well.
+static uint64_t processor_hash(uint64_t seed)
+{
+    void *data = NULL;
+    size_t size = 0;
+    const long count = sysconf(_SC_NPROCESSORS_ONLN);
+    uint64_t hash = text_hash(&count, sizeof count, seed);
+    if (tyn_file_read("/proc/cpuinfo", 1u << 24, &data, &size, NULL) == TYN_OK && size > 0) {
+        char *text = data;
+        text[size - 1] = '\0';
+        const char *line = strstr(text, "model name");
+        hash = line ? text_hash(line, strcspn(line, "\n"), hash) : hash;
+    }
+    free(data);
+    return hash;
+}
+
+static char *path_of(tyn_device *device)
+{
+    const char *const texts[] = {tyn_device_name(device), tyn_device_driver(device),
+                                 tyn_version_string()};
+    uint64_t hash = processor_hash(0);
+    for (size_t i = 0; i < ARRAY_SIZE(texts); i++) {
+        hash = text_hash(texts[i], strlen(texts[i]), hash);
+    }
+    char *name = text_format("ceilings-%016llx.json", (unsigned long long)hash);
+    char *path = name ? cache_path(name) : NULL;
+    free(name);
+    return path;
+}
+
+static double figure(const cJSON *json, const char *name)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(json, name);
+    return cJSON_IsNumber(item) ? item->valuedouble : NAN;
+}
+
+static bool load(const char *path, ceilings *c)
+{
+    struct stat status;
+    void *data = NULL;
+    size_t size = 0;
+    if (!path || stat(path, &status) != 0 || time(NULL) - status.st_mtime > SECONDS_KEPT ||
+        tyn_file_read(path, SIZE_LIMIT, &data, &size, NULL) != TYN_OK) {
+        return false;
+    }
+    cJSON *json = cJSON_ParseWithLength(data, size);
+    free(data);
+    *c = (ceilings){figure(json, "fma_gflops"), figure(json, "copy_gb_s"),
+                    figure(json, "trilinear_gsamples_s"), figure(json, "exp_gops_s"),
+                    figure(json, "dispatch_us")};
+    cJSON_Delete(json);
+    return c->fma_gflops > 0;
+}
+
+int ceilings_known(app *a, tyn_device *device, ceilings *c)
+{
+    char *path = path_of(device);
+    int code = EXIT_DONE;
+    if (!load(path, c)) {
+        code = ceilings_measure(a, device, c);
+        cJSON *json = code == EXIT_DONE && path ? ceilings_json(c) : NULL;
+        char *text = json ? cJSON_Print(json) : NULL;
+        if (text) { // without it they are measured again, and nothing else is lost
+            tyn_file_write(path, text, strlen(text), NULL);
+        }
+        free(text);
+        cJSON_Delete(json);
+    }
+    free(path);
+    return code;
+}

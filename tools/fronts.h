@@ -1,0 +1,46 @@
+// fronts.h -- error and time of methods over their settings, scene by scene: what a choice is made from.
+//
+// A file of them is what a report of `tyndall bench` says of that, and no more; docs/choosing.md has its
+// form. One is compiled into the tool.
+#pragma once
+#include "app.h"
+#include "regime.h"
+
+// One run. Errors are those of `tyndall compare` over blocks of 8x8 pixels and over single ones.
+typedef struct fronts_run {
+    char method[24];
+    cJSON *settings; // {"lattice.cells": 16}, without "spp"; borrowed from fronts.json
+    char *key;       // method and settings as text: the same in two scenes for the same run
+    uint32_t spp;    // of methods that sample, else 0
+    double error, error_pixel;
+    double fixed_ms,
+        pixel_ms; // of a cold frame: what does not grow with the picture, and for one pixel
+} fronts_run;
+
+typedef struct fronts_scene {
+    const char *name;
+    regime regime;
+    uint32_t width, height;
+    fronts_run *runs;
+    uint32_t num_runs;
+} fronts_scene;
+
+// Ceilings of the device that was measured; 0: not measured.
+typedef struct fronts_device {
+    const char *name, *driver;
+    double fma_gflops, copy_gb_s, trilinear_gsamples_s, exp_gops_s, dispatch_us;
+} fronts_device;
+
+typedef struct fronts {
+    cJSON *json;
+    fronts_device device;
+    fronts_scene *scenes;
+    uint32_t num_scenes;
+} fronts;
+
+// Reads FILE, or with NULL what is compiled in. Gives the exit code; fronts_finish is due in any case.
+int fronts_open(app *a, const char *path, fronts *f);
+void fronts_finish(fronts *f);
+
+// What a report.json says, as a file of fronts. Gives the exit code.
+int fronts_write(app *a, const cJSON *report, const char *path);
