@@ -225,7 +225,8 @@ static cJSON *make_scene(app *a, const char *dir, int index)
     for (int i = 0; i < (int)ARRAY_SIZE(made); i++) {
         cJSON *run = make_run(a, dir, index, i);
         cJSON_AddItemToArray(runs, run);
-        if (made[i].front && !cJSON_IsString(cJSON_GetObjectItem(run, "failed"))) {
+        if (made[i].front && !(index == 2 && i > 2 && i < 12) &&
+            !cJSON_IsString(cJSON_GetObjectItem(run, "failed"))) {
             cJSON_AddItemToArray(
                 keys, cJSON_CreateString(cJSON_GetStringValue(cJSON_GetObjectItem(run, "key"))));
         }

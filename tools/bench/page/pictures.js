@@ -130,7 +130,7 @@ function pictureViewer(scene, sceneIndex, first) {
     };
     add("reference", "reference");
     const largest = blocksOf(scene)[0];
-    list(scene.runs).forEach((run, i) => add(i, `${run.name}: ${percent(errorsOf(run, largest).error)}, ${duration(coldOf(run))}`));
+    list(scene.runs).forEach((run, i) => add(i, `${run.name}: ${errorText(errorsOf(run, largest))}, ${duration(coldOf(run))}`));
     const nothing = {element: null, choose() {}};
     if (sources.length === 0) {
         return nothing;

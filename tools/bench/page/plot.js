@@ -5,7 +5,7 @@ const plotTicks = (low, high, room) => { // exponents, pixels of a decade -> [va
     for (let decade = Math.floor(low); decade <= Math.ceil(high); decade++) {
         for (let step = 1; step < 10; step++) {
             const value = step * 10 ** decade, log = Math.log10(value);
-            if (log >= low - 1e-9 && log <= high + 1e-9) {
+            if (log >= low - 1e-9 && log <= high + 1e-9 && (room > 60 || step === 1)) {
                 ticks.push([value, step === 1 || (few && (step === 2 || step === 5))]);
             }
         }
@@ -37,14 +37,14 @@ function errorPlot(scene, styles, select) {
     })).filter((p) => !p.run.failed && isNumber(p.ms) && p.ms > 0 && isNumber(p.error));
 
     function describe(p) {
-        return `${p.run.name}: error ${p.error > 0 ? percent(p.error) : "below the noise"}, ${duration(p.ms)}`;
+        return `${p.run.name}: error ${errorText(errorsOf(p.run, block))}, ${duration(p.ms)}`;
     }
 
     function showTip(p, target) {
         const box = target.getBoundingClientRect(), frame = holder.getBoundingClientRect();
         const noise = errorsOf(p.run, block).n;
         tip.replaceChildren(make("strong", {}, marker(p.style), p.run.name),
-            make("span", {}, `error ${p.error > 0 ? percent(p.error) : "0, below the noise"} \u00b1${NARROW}${percent(noise)}, ${duration(p.ms)}`),
+            make("span", {}, `error ${errorText(errorsOf(p.run, block))}, noise of the reference ${percent(noise)}, ${duration(p.ms)}`),
             make("span", {}, settingsText(p.run.settings)),
             ...list(p.run.warnings).slice(0, 2).map((w) => make("span", {class: "warning"}, w)));
         tip.hidden = false;
@@ -86,7 +86,7 @@ function errorPlot(scene, styles, select) {
             holder.replaceChildren(make("p", {class: "note"}, "No run has an error and a time here."));
             return;
         }
-        const height = Math.round(clamp(width * 0.66, 300, 470));
+        const height = Math.round(clamp(width * 0.8, 300, 520));
         const left = 48, right = 12, top = 24, bottom = 42;
         const logs = (f) => points.map(f).filter((v) => v > 0).map(Math.log10);
         const ys = logs((p) => p.error).concat(noise > 0 ? [Math.log10(noise)] : []);
@@ -94,10 +94,10 @@ function errorPlot(scene, styles, select) {
             const low = Math.min(...values), high = Math.max(...values), extra = Math.max(pad, 0.04 * (high - low));
             return [low - extra, high + extra];
         };
-        const [x0, x1] = span(logs((p) => p.ms), 0.12), [y0, y1] = span(ys.length ? ys : [-2, 0], 0.14);
+        const [x0, x1] = span(logs((p) => p.ms), 0.12), [y0, y1] = span(ys.length ? ys : [-2, 0], points.some((p) => !(p.error > 0)) ? 0.22 : 0.14);
         const X = (ms) => left + (width - left - right) * (Math.log10(ms) - x0) / (x1 - x0);
-        const Y = (error) => top + (height - top - bottom) * (y1 - (error > 0 ? Math.max(Math.log10(error), y0) : y0)) / (y1 - y0);
-        const base = height - bottom;
+        const base = height - bottom; // what is below the noise stands on it, with an arrow
+        const Y = (error) => (error > 0 ? top + (base - top) * (y1 - Math.log10(error)) / (y1 - y0) : base - 12);
         const hatch = `hatch-${scene.name}`.replace(/[^\w-]/g, "_");
         const svg = draw("svg", {class: "error-plot", width, height, viewBox: `0 0 ${width} ${height}`, role: "group",
             "aria-label": `${scene.name}: error over ${blockName(block)} against time, ${points.length} runs; arrow keys go from point to point`},
@@ -154,7 +154,7 @@ function errorPlot(scene, styles, select) {
             },
             draw("circle", {class: "reach", r: 11}), onFront && draw("circle", {class: "ring", r: 8.5}),
             draw("path", {class: "shape", d: p.style.shape, fill: p.style.color, stroke: p.style.color}),
-            !(p.error > 0) && draw("path", {class: "below", d: "M0,7V15M-3.5,11.5L0,15L3.5,11.5", stroke: p.style.color}));
+            !(p.error > 0) && draw("path", {class: "below", d: "M0,6V12M-3.5,8.5L0,12L3.5,8.5", stroke: p.style.color}));
             svg.append(group);
         }
         holder.replaceChildren(svg, tip);

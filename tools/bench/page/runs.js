@@ -8,7 +8,7 @@ const spoiled = (run) => (run.non_finite || 0) + (run.negative || 0);
 // Columns: [heading, what it is, value to sort by, text]. Blocks: those of the scene's errors.
 function runColumns(blocks) {
     const error = (block) => [blockName(block).replace(" pixels", " px").replace("single px", "1 px"), `error over ${blockName(block)}`,
-        (run) => errorsOf(run, block).error, (run) => percent(errorsOf(run, block).error)];
+        (run) => errorsOf(run, block).error, (run) => errorText(errorsOf(run, block))];
     return [
         ...blocks.map(error),
         ["bias", "mean of the picture over that of the reference, less 1", (run) => errorsOf(run, blocks[0]).bias,
@@ -98,7 +98,7 @@ function nodeBars(run) {
 function citation(report, scene, run) {
     const device = report.device || {}, reference = scene.reference || {};
     const errors = list(run.errors).map((e) =>
-        `${e.error > 0 ? percent(e.error, 3) : "below the noise"} over ${blockName(e.block)} (noise of the reference ${percent(e.n)})`).join("; ");
+        `${e.error > 0 ? percent(e.error, 3) : errorText(e)} over ${blockName(e.block)} (noise of the reference ${percent(e.n)})`).join("; ");
     const inputs = Object.entries(run.inputs || {}).map(([k, v]) => `${k} ${v}`).join(", ");
     return [
         `Tyndall ${report.tyndall}, suite ${(report.suite || {}).name} (${(report.suite || {}).hash})`,
@@ -124,7 +124,7 @@ function runDetails(report, scene, styles, index) {
     const imbalance = list(run.imbalance).some(isNumber)
         ? list(run.imbalance).map((v, c) => signedPercent(v) + (isNumber(list(run.imbalance_se)[c]) ? ` \u00b1${NARROW}${percent(run.imbalance_se[c])}` : "")).join(" / ") : null;
     const errorLine = (e) => [`error over ${blockName(e.block)}`,
-        `${percent(e.error)} (measured ${percent(e.rel_l1)}, noise ${percent(e.n)}); rms ${percent(e.rel_rmse)}, bias ${signedPercent(e.bias)}, 95th percentile ${percent(e.p95)}`];
+        `${errorText(e)} (measured ${percent(e.rel_l1)}, noise ${percent(e.n)}); rms ${percent(e.rel_rmse)}, bias ${signedPercent(e.bias)}, 95th percentile ${percent(e.p95)}`];
     const frame = run.frame_ms || {};
     return make("div", {class: "details"},
         make("h3", {}, marker(style, 15), run.name),

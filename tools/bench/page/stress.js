@@ -6,7 +6,23 @@ const stressStep = (error) => (isNumber(error) ? STRESS_STEPS.findIndex((s) => e
 const stressClass = (error) => (isNumber(error) ? `heat-${Math.min(stressStep(error), STRESS_STEPS.length)}` : "heat-none");
 
 // "1e-06" -> 10\u207b\u2076; names that are more than their number stay.
-const caseName = (cell) => (isNumber(cell.x) && (cell.case === undefined || Number(cell.case) === cell.x) ? axisValue(cell.x) : String(cell.case ?? ""));
+function caseName(cell) {
+    const name = String(cell.case ?? ""), value = isNumber(cell.x) ? axisValue(cell.x) : "";
+    return value && (name === "" || Number(name) === cell.x) ? value : cell.ambiguous ? `${name} ${value}` : name;
+}
+
+// Names that occur twice on an axis need their value as well.
+function markAmbiguous(cells) {
+    const seen = new Map();
+    for (const cell of cells) {
+        const id = JSON.stringify([cell.method, cell.axis, cell.case]);
+        seen.set(id, [...(seen.get(id) || []), cell]);
+    }
+    seen.forEach((same) => same.forEach((cell) => { cell.ambiguous = same.length > 1; }));
+}
+
+// Percent in three characters or so.
+const stressFigure = (error) => (error === 0 ? "0" : error < 1e-3 ? "< 0.1" : error >= 10 ? "> 999" : digits(100 * error, error < 0.1 ? 1 : 2));
 
 function stressWords(cell) {
     const bad = [cell.non_finite > 0 && `${cell.non_finite} values not finite`, cell.negative > 0 && `${cell.negative} negative values`].filter(Boolean);
@@ -20,7 +36,7 @@ function stressWords(cell) {
 
 function stressCell(cell, tip) {
     const words = stressWords(cell), bad = words.bad.length > 0;
-    const label = cell.non_finite > 0 ? "NaN" : cell.negative > 0 ? "< 0" : isNumber(cell.error) ? digits(100 * cell.error, cell.error < 0.1 ? 1 : 2) : NONE;
+    const label = cell.non_finite > 0 ? "NaN" : cell.negative > 0 ? "< 0" : isNumber(cell.error) ? stressFigure(cell.error) : NONE;
     const show = (event) => tip.show(event.currentTarget, words);
     return make("button", {type: "button", class: `cell ${stressClass(cell.error)}${bad ? " spoiled" : ""}${words.warnings.length ? " warned" : ""}`,
         "aria-label": [words.title, words.figure, ...words.bad, ...words.warnings].join(". "),
@@ -50,6 +66,7 @@ function stressSection(stress, styles) {
     if (cells.length === 0) {
         return null;
     }
+    markAmbiguous(cells);
     const unique = (values) => [...new Set(values)];
     const methods = unique([...list(stress.methods).map((m) => (typeof m === "string" ? m : m.name)), ...cells.map((c) => c.method)]).filter(Boolean);
     const axes = unique(cells.map((c) => c.axis));

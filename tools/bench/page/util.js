@@ -44,7 +44,7 @@ function digits(x, count = 2) {
 }
 
 const percent = (x, count = 2) => (isNumber(x) ? digits(100 * x, count) + NARROW + "%" : NONE);
-const level = (x) => percent(Number((x ?? NaN).toPrecision(2)), 3).replace(/\.?0+(?=\u202f)/, ""); // "5 %", "0.3 %"
+const level = (x) => Number((100 * x).toPrecision(2)) + NARROW + "%"; // "5 %", "0.3 %", "100 %"
 const signedPercent = (x) => (isNumber(x) && x > 0 ? "+" : "") + percent(x);
 const times = (x) => (isNumber(x) ? digits(x, x < 100 ? 2 : 3) + TIMES : NONE);
 const mebibytes = (x) => (isNumber(x) ? digits(x / 1048576, 3) : NONE);
@@ -76,6 +76,8 @@ function settingsText(settings) {
 }
 
 const errorsOf = (run, block) => list(run.errors).find((e) => e.block === block) || {};
+// An error of 0 is one that the noise of the reference hides.
+const errorText = (e) => (e.error === 0 && e.n > 0 ? `< ${percent(e.n)}` : percent(e.error));
 const coldOf = (run) => (run.frame_ms || {}).cold;
 const frontOf = (scene, block) => new Set((list(scene.fronts).find((f) => f.block === block) || {}).runs);
 
