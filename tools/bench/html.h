@@ -7,5 +7,5 @@
 // report names them, and go into the page as linear half floats: at most HTML_PICTURES a scene beside its
 // reference, what is on a front first. One that is missing or broken is left out with a warning. Gives the
 // exit code.
-enum { HTML_PICTURES = 16 };
+enum { HTML_PICTURES = 12 };
 int html_write(app *a, const cJSON *report, const char *dir, const char *path);

@@ -100,8 +100,8 @@ function speedChart(width, rows, errors, means, method, baseline) {
         if (there.length === 0) {
             svg.append(draw("text", {class: "tick", x: x(1) + 8, y: y + 4}, list.map((e) => speedReason(e, method, baseline))[0] || ""));
         } else {
-            const xs = there.map((e) => x(e.speedup));
-            svg.append(draw("line", {class: "span", x1: x(1), x2: xs.reduce((a, b) => (Math.abs(a - x(1)) > Math.abs(b - x(1)) ? a : b)), y1: y, y2: y}));
+            const xs = [x(1), ...there.map((e) => x(e.speedup))];
+            svg.append(draw("line", {class: "span", x1: Math.min(...xs), x2: Math.max(...xs), y1: y, y2: y}));
             for (const e of there) {
                 const k = errors.indexOf(e.error);
                 svg.append(draw("path", {class: (k === 0 ? "mark" : "mark hollow") + (e.speedup < 1 ? " slower" : ""), d: SPEED_MARKS[k % 4],

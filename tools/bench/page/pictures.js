@@ -256,8 +256,12 @@ function pictureViewer(scene, sceneIndex, first) {
             stage.setPointerCapture(event.pointerId);
             handle.focus({preventScroll: true});
             event.preventDefault();
-            !state.difference && drag(event);
+            event.pointerType !== "touch" && !state.difference && drag(event); // a finger may be about to scroll
         }
+    });
+    stage.addEventListener("pointerup", (event) => {
+        read(event);
+        event.pointerType === "touch" && !state.difference && drag(event);
     });
     stage.addEventListener("pointermove", (event) => {
         read(event);

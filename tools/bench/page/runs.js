@@ -80,7 +80,7 @@ function nodeBars(run) {
         return null;
     }
     return make("div", {class: "nodes"}, make("h4", {}, "Time by node"),
-        make("table", {}, make("thead", {class: "unseen"}, make("tr", {}, ["node", "time", "bar", "of the ceiling"].map((h) => make("th", {scope: "col"}, h)))),
+        make("table", {}, make("colgroup", {}, ["name", "time", "bar", "limit"].map((c) => make("col", {class: c}))), make("thead", {class: "unseen"}, make("tr", {}, ["node", "time", "bar", "of the ceiling"].map((h) => make("th", {scope: "col"}, h)))),
             make("tbody", {}, nodes.map((n) => {
                 const share = 100 * n.gpu_ms / longest, fraction = isNumber(n.fraction) ? clamp(n.fraction, 0, 1) : 0;
                 const limit = isNumber(n.fraction) && n.ceiling ? `${percent(n.fraction)} of ${CEILINGS[n.ceiling] ?? n.ceiling}` : "";
@@ -92,7 +92,7 @@ function nodeBars(run) {
                     make("td", {class: "limit"}, limit));
             }))),
         nodes.some((n) => isNumber(n.fraction)) &&
-            make("p", {class: "note"}, "Dark: the part of the time that the device's ceiling alone would need."));
+            make("p", {class: "note"}, "In full colour: the part of the time that the device's ceiling alone would need."));
 }
 
 function citation(report, scene, run) {
@@ -122,7 +122,7 @@ function runDetails(report, scene, styles, index) {
     const text = citation(report, scene, run), record = make("pre", {tabindex: 0}, text);
     const copy = make("button", {type: "button", onclick() { copyText(text, record, copy); }}, "copy");
     const imbalance = list(run.imbalance).some(isNumber)
-        ? list(run.imbalance).map((v, c) => signedPercent(v) + (isNumber(list(run.imbalance_se)[c]) ? ` \u00b1${NARROW}${percent(run.imbalance_se[c])}` : "")).join(" / ") : null;
+        ? list(run.imbalance).map((v, c) => signedPercent(v) + (list(run.imbalance_se)[c] > 0 ? ` \u00b1${NARROW}${percent(run.imbalance_se[c])}` : "")).join(" / ") : null;
     const errorLine = (e) => [`error over ${blockName(e.block)}`,
         `${errorText(e)} (measured ${percent(e.rel_l1)}, noise ${percent(e.n)}); rms ${percent(e.rel_rmse)}, bias ${signedPercent(e.bias)}, 95th percentile ${percent(e.p95)}`];
     const frame = run.frame_ms || {};

@@ -38,10 +38,27 @@ function stressCell(cell, tip) {
     const words = stressWords(cell), bad = words.bad.length > 0;
     const label = cell.non_finite > 0 ? "NaN" : cell.negative > 0 ? "< 0" : isNumber(cell.error) ? stressFigure(cell.error) : NONE;
     const show = (event) => tip.show(event.currentTarget, words);
-    return make("button", {type: "button", class: `cell ${stressClass(cell.error)}${bad ? " spoiled" : ""}${words.warnings.length ? " warned" : ""}`,
+    return make("button", {type: "button", tabindex: -1, class: `cell ${stressClass(cell.error)}${bad ? " spoiled" : ""}${words.warnings.length ? " warned" : ""}`,
         "aria-label": [words.title, words.figure, ...words.bad, ...words.warnings].join(". "),
         onfocus: show, onpointerenter: show, onblur: tip.hide, onpointerleave: tip.hide},
         make("span", {class: "value"}, label), make("span", {class: "case"}, caseName(cell)));
+}
+
+// One stop for the tab key, arrows within: by cell, and by row at the same place.
+function stressKeys(frame) {
+    frame.addEventListener("keydown", (event) => {
+        const rows = [...frame.querySelectorAll(".cells")].map((r) => [...r.children]);
+        const row = rows.findIndex((r) => r.includes(event.target)), at = row < 0 ? -1 : rows[row].indexOf(event.target);
+        const [down, right] = {ArrowDown: [1, 0], ArrowUp: [-1, 0], ArrowRight: [0, 1], ArrowLeft: [0, -1]}[event.key] ?? [];
+        const next = at < 0 || right === undefined ? null : right ? rows[row][at + right]
+                   : rows[row + down] && rows[row + down][Math.min(at, rows[row + down].length - 1)];
+        if (next) {
+            event.preventDefault();
+            event.target.tabIndex = -1;
+            next.tabIndex = 0;
+            next.focus();
+        }
+    });
 }
 
 function stressTip(frame) {
@@ -82,13 +99,18 @@ function stressSection(stress, styles) {
             make("span", {class: "key"}, make("span", {class: "swatch heat-none"}), "no figure"), make("span", {class: "key"}, make("span", {class: "swatch warned"}), "has a warning")));
     const frame = make("div", {class: "holder stress-grid"}), tip = stressTip(frame);
     const name = (word) => [styles.get(word) && marker(styles.get(word), 13), word];
-    const show = (outer, inner, outerKey, innerKey) => frame.replaceChildren(tip.box, ...outer.map((o) => {
+    const show = (outer, inner, outerKey, innerKey) => {
+        frame.replaceChildren(tip.box, ...outer.map((o) => group(o, inner, outerKey, innerKey)));
+        frame.querySelector(".cell").tabIndex = 0;
+    };
+    const group = (o, inner, outerKey, innerKey) => {
         const own = cells.filter((c) => c[outerKey] === o);
         return make("div", {class: "stress-group"}, make("h3", {}, name(o)),
             inner.filter((i) => own.some((c) => c[innerKey] === i)).map((i) => make("div", {class: "axis-row"},
                 make("div", {class: "axis-name"}, name(i)),
                 make("div", {class: "cells", role: "group", "aria-label": `${o}, ${i}`}, own.filter((c) => c[innerKey] === i).map((c) => stressCell(c, tip))))));
-    }));
+    };
+    stressKeys(frame);
     show(methods, axes, "method", "axis");
     section.append(make("div", {class: "controls"}, segmented("order of the cells", [["method", "by method"], ["axis", "by axis"]], "method",
         (by) => (by === "method" ? show(methods, axes, "method", "axis") : show(axes, methods, "axis", "method")))), frame);
