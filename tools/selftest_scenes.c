@@ -1,5 +1,8 @@
 // selftest_scenes.c -- small scenes whose answers are known, made in memory.
 #include "selftest_scenes.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 static void unit_box(tyn_scene *scene, float sigma_s, float sigma_a, float g)
 {
@@ -36,11 +39,52 @@ void selftest_cube(tyn_scene *scene, float g, bool furnace)
     }
 }
 
-void selftest_slab(tyn_scene *scene)
+// A horizontal square at y 0, facing up.
+static bool ground_of(tyn_scene *scene, float albedo, bool wide)
 {
-    unit_box(scene, 0.9f, 0.1f, 0.5f);
+    tyn_surfaces *f = &scene->surfaces;
+    f->vertices = calloc(4, sizeof *f->vertices);
+    f->triangles = calloc(2, sizeof *f->triangles);
+    f->materials = calloc(1, sizeof *f->materials);
+    if (!f->vertices || !f->triangles || !f->materials) {
+        return false;
+    }
+    const float lo = wide ? -2 : 0, hi = wide ? 3 : 1;
+    f->num_vertices = 4;
+    f->num_triangles = 2;
+    f->num_materials = 1;
+    for (uint32_t i = 0; i < 4; i++) {
+        const bool u = i == 1 || i == 2, v = i >= 2;
+        f->vertices[i] =
+            (tyn_surface_vertex){.position = {u ? hi : lo, 0, v ? lo : hi}, .normal = {0, 1, 0}};
+    }
+    f->triangles[0] = (tyn_surface_triangle){{0, 1, 2}, 0};
+    f->triangles[1] = (tyn_surface_triangle){{0, 2, 3}, 0};
+    f->materials[0] =
+        (tyn_surface_material){.albedo = {albedo, albedo, albedo}, .texture = TYN_NO_TEXTURE};
+    return true;
+}
+
+bool selftest_slab(tyn_scene *scene, float tau, float g, float albedo, float mu0, float ground,
+                   bool wide)
+{
+    unit_box(scene, tau * albedo, tau - tau * albedo, g);
     scene->shapes[0].repeat[0] = scene->shapes[0].repeat[2] = true;
-    sun(scene, 0, -1, 0);
+    sun(scene, sqrtf(1 - mu0 * mu0), -mu0, 0);
+    for (int c = 0; c < 3; c++) {
+        scene->lights[0].color[c] = 1 / mu0;
+    }
+    return ground <= 0 || ground_of(scene, ground, wide);
+}
+
+void selftest_lamp(tyn_scene *scene, float albedo, float extinction, float side)
+{
+    unit_box(scene, extinction * albedo, extinction - extinction * albedo, 0);
+    const float to_world[16] = {side, 0, 0, 0, 0, side, 0, 0, 0, 0, side, 0, 0, 0, 0, 1};
+    memcpy(scene->shapes[0].to_world, to_world, sizeof to_world);
+    scene->num_lights = 1;
+    scene->lights[0] =
+        (tyn_light){.kind = TYN_LIGHT_POINT, .color = {1, 1, 1}, .direction = {0, 0, -1}};
 }
 
 void selftest_camera(tyn_camera *camera, float x, float y, float z, float half_height)

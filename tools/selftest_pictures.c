@@ -1,0 +1,195 @@
+// selftest_pictures.c -- furnaces, the unit cube against references, energy, and the same bytes twice.
+#include "selftest.h"
+#include <math.h>
+#include <stdio.h>
+
+enum { BALANCE_SAMPLES = 256 }; // of many thousand paths each
+static const double paper_side = 0.0576494;
+
+static double worst_of(const float *pixels, double expected)
+{
+    double worst = 0;
+    for (int i = 0; i < SELFTEST_SIZE * SELFTEST_SIZE; i++) {
+        for (int c = 0; c < 3; c++) {
+            double off = fabs(pixels[4 * i + c] - expected);
+            worst = off <= worst ? worst : off; // keeps NaN
+        }
+    }
+    return worst;
+}
+
+// Mean of a picture of the cube along a direction of view, with its standard error where the method has one.
+static int mean_of_cube(selftest *t, const char *with, float g, const float view_along[3],
+                        double *mean, double *se)
+{
+    tyn_scene scene;
+    renderer r;
+    tyn_method_info info;
+    if (!method_find(t->a, with, &info)) {
+        return EXIT_FAILED;
+    }
+    const bool noisy = info.outputs & TYN_OUTPUT_ERROR;
+    tyn_view view = selftest_picture(TYN_OUTPUT_RADIANCE | (noisy ? TYN_OUTPUT_ERROR : 0));
+    selftest_camera(&view.camera, view_along[0], view_along[1], view_along[2], 0.5f);
+    selftest_cube(&scene, g, false);
+    int code = selftest_render(t, with, &scene, &view, &r);
+    if (code == EXIT_DONE) {
+        *mean = selftest_mean(tyn_offline_output(r.offline, TYN_OUTPUT_RADIANCE),
+                              noisy ? tyn_offline_output(r.offline, TYN_OUTPUT_ERROR) : NULL, se);
+        renderer_close(&r);
+    }
+    tyn_scene_finish(&scene);
+    return code;
+}
+
+// Nothing is absorbed and 1 comes from everywhere: 1 is seen everywhere.
+int selftest_furnace(selftest *t)
+{
+    static const float g[] = {0, 0.5f, 0.9f};
+    static const char source[] = "exact";
+    renderer r;
+    tyn_scene scene;
+    int code = EXIT_DONE;
+    for (size_t i = 0; i < ARRAY_SIZE(g) && code == EXIT_DONE; i++) {
+        tyn_view view = selftest_picture(TYN_OUTPUT_RADIANCE);
+        selftest_camera(&view.camera, -0.5f, -0.7f, -0.4f, 0.9f);
+        selftest_cube(&scene, g[i], true);
+        char name[64];
+        snprintf(name, sizeof name, "furnace, pop, g %g: worst pixel off 1 by", g[i]);
+        code = selftest_render(t, "pop", &scene, &view, &r);
+        if (code == EXIT_DONE) {
+            selftest_check(t, name, worst_of(tyn_offline_output(r.offline, TYN_OUTPUT_RADIANCE), 1),
+                           0, 0.005, source);
+            renderer_close(&r);
+            view.outputs |= TYN_OUTPUT_ERROR;
+            code = selftest_render(t, "path", &scene, &view, &r);
+        }
+        if (code == EXIT_DONE) {
+            double se, mean = selftest_mean(tyn_offline_output(r.offline, TYN_OUTPUT_RADIANCE),
+                                            tyn_offline_output(r.offline, TYN_OUTPUT_ERROR), &se);
+            snprintf(name, sizeof name, "furnace, path, g %g: mean", g[i]);
+            selftest_check(t, name, mean, 1, 4 * se + 1e-4, source);
+            renderer_close(&r);
+        }
+        tyn_scene_finish(&scene);
+    }
+    return code;
+}
+
+static double henyey_greenstein(double g, double cosine)
+{
+    return (1 - g * g) / (4 * 3.14159265358979324 * pow(1 + g * g - 2 * g * cosine, 1.5));
+}
+
+// The cube's faces: all orders against reference images, one order against its closed form.
+int selftest_cubes(selftest *t)
+{
+    static const struct {
+        const char *name;
+        float along[3];
+        double g0, g5; // mean radiance at g 0 and 0.5
+    } views[] = {
+        {"side", {0, -1, 0}, 0.0631537, 0.0623459},
+        {"exit", {-1, 0, 0}, 0.0308069, 0.0972802},
+        {"entry", {1, 0, 0}, 0.108614, 0.0553141},
+    };
+    static const char pbrt[] = "pbrt-v3";
+    // sigma_s 4, the sun along x: its way in, then the way to the eye; p(0), p(1) and p(-1).
+    const double s = 4, e = exp(-s), g = 0.5, mean_in = (1 - e) / s;
+    const double once[] = {s * henyey_greenstein(g, 0) * mean_in * mean_in,
+                           s * henyey_greenstein(g, 1) * e,
+                           henyey_greenstein(g, -1) * (1 - e * e) / 2};
+    int code = EXIT_DONE;
+    for (size_t i = 0; i < ARRAY_SIZE(views) && code == EXIT_DONE; i++) {
+        double se, mean;
+        char name[64];
+        code = mean_of_cube(t, "pop", 0, views[i].along, &mean, &se);
+        if (code == EXIT_DONE) {
+            snprintf(name, sizeof name, "cube, pop, g 0, %s view: mean", views[i].name);
+            selftest_check(t, name, mean, views[i].g0, 0.03 * views[i].g0, pbrt);
+            code = mean_of_cube(t, "path", 0.5f, views[i].along, &mean, &se);
+        }
+        if (code == EXIT_DONE) {
+            snprintf(name, sizeof name, "cube, path, g 0.5, %s view: mean", views[i].name);
+            selftest_check(t, name, mean, views[i].g5, 4 * se + 0.001 * views[i].g5, pbrt);
+            code = mean_of_cube(t, "single", 0.5f, views[i].along, &mean, &se);
+        }
+        if (code == EXIT_DONE) {
+            snprintf(name, sizeof name, "cube, single, g 0.5, %s view: mean", views[i].name);
+            selftest_check(t, name, mean, once[i], 0.01 * once[i], "closed form");
+        }
+    }
+    if (code == EXIT_DONE) { // it is off by much: that it is what it was
+        double se, mean;
+        code = mean_of_cube(t, "pop-paper", 0.5f, views[0].along, &mean, &se);
+        if (code == EXIT_DONE) {
+            selftest_check(t, "cube, pop-paper, g 0.5, side view: mean", mean, paper_side,
+                           0.01 * paper_side, "as recorded");
+        }
+    }
+    return code;
+}
+
+// Entering = absorbed + escaped: with absorption, and with a lamp in the medium.
+int selftest_energy(selftest *t)
+{
+    static const char *const methods[] = {"pop", "path"};
+    int code = EXIT_DONE;
+    for (size_t i = 0; i < 2 * ARRAY_SIZE(methods) && code == EXIT_DONE; i++) {
+        const char *with = methods[i / 2];
+        const bool lamp = i % 2;
+        tyn_view view = {
+            .width = 1, .height = 1, .outputs = TYN_OUTPUT_BALANCE, .num_samples = BALANCE_SAMPLES};
+        selftest_camera(&view.camera, 0, 0, -1, 1);
+        tyn_scene scene;
+        if (lamp) {
+            selftest_lamp(&scene, 0.9f, 4, 2);
+        } else {
+            selftest_cube(&scene, 0.5f, false);
+        }
+        renderer r;
+        code = selftest_render(t, with, &scene, &view, &r);
+        if (code == EXIT_DONE) {
+            const tyn_balance *b = tyn_offline_output(r.offline, TYN_OUTPUT_BALANCE);
+            char name[64];
+            snprintf(name, sizeof name, "energy, %s, %s: imbalance", with,
+                     lamp ? "lamp in a medium" : "cube in the sun");
+            selftest_check(t, name, b->imbalance[1], 0, 0.01 + 4 * b->imbalance_se[1], "exact");
+            renderer_close(&r);
+        }
+        tyn_scene_finish(&scene);
+    }
+    return code;
+}
+
+// The same inputs give the same bytes.
+int selftest_repeats(selftest *t)
+{
+    int code = EXIT_DONE;
+    for (uint32_t i = 0; i < tyn_num_methods() && code == EXIT_DONE; i++) {
+        tyn_method_info info;
+        tyn_method_at(i, &info);
+        tyn_view view = selftest_picture(TYN_OUTPUT_RADIANCE);
+        view.num_samples = 8;
+        selftest_camera(&view.camera, -0.5f, -0.7f, -0.4f, 0.9f);
+        tyn_scene scene;
+        selftest_cube(&scene, 0.5f, false);
+        uint64_t hash[2] = {0};
+        for (int k = 0; k < 2 && code == EXIT_DONE; k++) {
+            renderer r;
+            code = selftest_render(t, info.name, &scene, &view, &r);
+            if (code == EXIT_DONE) {
+                hash[k] = text_hash(tyn_offline_output(r.offline, TYN_OUTPUT_RADIANCE),
+                                    sizeof(float[4]) * SELFTEST_SIZE * SELFTEST_SIZE, 0);
+                renderer_close(&r);
+            }
+        }
+        tyn_scene_finish(&scene);
+        if (code == EXIT_DONE) {
+            char name[64];
+            snprintf(name, sizeof name, "repeats, %s: differing pictures", info.name);
+            selftest_check(t, name, hash[0] != hash[1], 0, 0, "exact");
+        }
+    }
+    return code;
+}
