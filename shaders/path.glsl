@@ -16,6 +16,9 @@
 //    t gets weights of both that add up to 1; they need not be the true pdfs, so free flights in an unknown
 //    medium are weighed as in a homogeneous one.
 //  * Environment map: next-event estimation and phase sampling, balance heuristic over directions.
+//  * Thin media: the first flight is drawn as if the medium were args.stretch times as dense, with weights (Carter,
+//    Cashwell and Taylor, "Monte Carlo sampling with continuously varying cross sections", 1972), or next to no path
+//    would scatter; what is seen through the medium has its transmittance instead.
 //  * Surfaces: a flight ends at the first one. Directions are drawn by the cosine; emitters by next-event
 //    estimation (uniform over area, triangles by their power) and by directions, balance heuristic.
 //
@@ -38,6 +41,8 @@
 #include "path_phase.glsl"
 #include "rng.glsl"
 #include "path_surfaces.glsl"
+
+const bool THIN = (FLAGS & TYN_PATH_THIN) != 0u;
 
 struct path_result {
     vec3 radiance;      // scattered and emitted by the media
@@ -263,10 +268,13 @@ path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
         return f;
     }
     hit = true;
+    bool stretched = THIN && path.depth == 0u;
+    float stretch = stretched ? args.stretch : 1.0;
     if (HOMOGENEOUS) {
         // Distances from the hero's own exponential: a pdf for every channel, and no null collisions.
         f.m = media_at(path.vertex, 0.0, path.hero);
         float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero), left = span.y - span.x;
+        sigma_t *= stretch;
         f.collided = tau < sigma_t * left;
         float moved = f.collided ? tau / sigma_t : left;
         path.steps++;
@@ -280,17 +288,20 @@ path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
                              left * (1.0 - 0.5 * depth), lessThan(depth, vec3(1e-3)));
             f.glow = path_weight(path) * f.m.emission * reach;
         }
+        if (!GREY || stretched) {
+            path.beta *= exp((sigma_t - f.m.sigma_t) * moved) / (f.collided ? stretch : 1.0);
+        }
         if (!GREY) {
-            vec3 spread = exp((sigma_t - f.m.sigma_t) * moved);
-            path.beta *= spread;
-            path.rho *= spread;
+            path.rho *= exp((sigma_t - stretch * f.m.sigma_t) * moved);
         }
         return f;
     }
+    // A stretched flight leaves as much for null collisions as for others, or their weights would be large.
+    float room = stretched ? 2.0 * stretch : 1.0;
     f.at += span.x * path.way;
     f.distance = span.x;
     brick_walk walk = brick_start(medium, f.at, path.way);
-    float bound = media_bounds(walk.cell).y;
+    float bound = room * media_bounds(walk.cell).y;
     bool inside = true;
     while (path.steps < args.max_steps) {
         // Bricks without a collision.
@@ -309,7 +320,7 @@ path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
             if (!inside) {
                 break;
             }
-            bound = media_bounds(walk.cell).y;
+            bound = room * media_bounds(walk.cell).y;
             ahead = brick_exit(medium, walk, f.at, axis);
             ahead = SURFACES ? min(ahead, path.end - f.distance) : ahead;
         }
@@ -328,16 +339,17 @@ path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
         f.distance += moved;
         f.m = media_at(f.at, rng_float(bits.z), path.hero);
         float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero);
-        if (rng_float(bits.y) * bound < sigma_t) {
+        if (rng_float(bits.y) * bound < stretch * sigma_t) {
             f.collided = true;
+            path.beta /= stretch;
             break;
         }
-        if (!GREY) {
+        if (!GREY || stretched) {
             // A null collision: the path goes straight on, its colour does not.
-            vec3 none = max(bound - f.m.sigma_t, 0.0);
-            none /= max(dot(none, path.hero), 1e-30);
-            path.beta *= none;
-            path.rho *= none;
+            vec3 none = max(bound - stretch * f.m.sigma_t, 0.0);
+            float drawn = max(GREY ? none.x : dot(none, path.hero), 1e-30);
+            path.beta *= (stretched ? bound - f.m.sigma_t : none) / drawn;
+            path.rho *= GREY ? vec3(1.0) : none / drawn;
         }
     }
     return f;
@@ -427,6 +439,22 @@ float path_meet_lights(inout path_state path, inout rng_state rng)
     return choice.emitters;
 }
 
+// What a path that leaves the media sees, with its weight; `draw_map` and `pdf_way` are of its way.
+void path_leave(inout path_result result, path_state path, vec3 weight, float draw_map, float pdf_way)
+{
+    if (path.depth == 0u) {
+        result.transmittance = weight;
+    }
+    if (ENVIRONMENT != TYN_PATH_ENV_NONE) {
+        vec3 sky = weight * (ENVIRONMENT == TYN_PATH_ENV_MAP ? environment_radiance(env, env_map, path.way)
+                                                             : env.radiance);
+        if (ENVIRONMENT == TYN_PATH_ENV_MAP && draw_map > 0.0) {
+            sky *= pdf_way / (pdf_way + draw_map * env_pdf(env, path.way));
+        }
+        path_add(result, sky, path.depth);
+    }
+}
+
 // Follows samples [first, end) of one pixel or point.
 void path_run(uint element, uint first, uint end)
 {
@@ -483,6 +511,12 @@ void path_run(uint element, uint first, uint end)
             path_add(result, path_lamp(path, rng), path.depth + 1u);
         }
 
+        // What a stretched flight does not say.
+        vec3 through = vec3(1.0);
+        bool ends_thin = THIN && path.depth == 0u;
+        if (ends_thin) {
+            through = path_transmittance(path.vertex, path.way, PATH_FAR, rng, path.steps);
+        }
         path_flight f = path_fly(path, rng, result.hit);
         path_add(result, f.glow, path.depth + 2u); // of no single order
 
@@ -504,24 +538,17 @@ void path_run(uint element, uint first, uint end)
             }
         }
 
+        if (ends_thin) {
+            path_leave(result, path, through, draw_map, pdf_way);
+        }
         if (path.steps >= args.max_steps) {
             path_count.cut++;
             ended = true;
-        } else if (!f.collided && !at_surface) {
+        } else if (ends_thin && !f.collided) {
             ended = true;
-            vec3 weight = path_weight(path);
-            if (path.depth == 0u) {
-                result.transmittance = weight;
-            }
-            if (ENVIRONMENT != TYN_PATH_ENV_NONE) {
-                vec3 sky = weight * (ENVIRONMENT == TYN_PATH_ENV_MAP
-                                         ? environment_radiance(env, env_map, path.way)
-                                         : env.radiance);
-                if (ENVIRONMENT == TYN_PATH_ENV_MAP && draw_map > 0.0) {
-                    sky *= pdf_way / (pdf_way + draw_map * env_pdf(env, path.way));
-                }
-                path_add(result, sky, path.depth);
-            }
+        } else if (!f.collided && !at_surface && !ends_thin) {
+            path_leave(result, path, path_weight(path), draw_map, pdf_way);
+            ended = true;
         } else if (path.depth >= args.max_depth || (at_surface && path.depth == 0u && PATH_ENDS_AT_FIRST_SURFACE)) {
             ended = true;
         } else {

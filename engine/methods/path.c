@@ -109,6 +109,17 @@ static uint32_t count_near_lamps(const tyn_frame_scene *frame)
     return count;
 }
 
+// In a medium that is thin even along its longest diagonal, how much denser first flights should think it is.
+static float stretch_of(const tyn_frame_scene *frame)
+{
+    const float thin = 0.1f;
+    const struct medium_block *m = &frame->medium;
+    const float *e = m->extent;
+    float depth = m->sigma_t_max * m->max_density * sqrtf(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+    bool one = m->mode == TYN_MEDIUM_DENSITY && !m->repeat[0] && !m->repeat[1] && !m->repeat[2];
+    return one && !frame->num_triangles && depth > 0 && depth < thin ? fminf(1 / depth, 1e12f) : 1;
+}
+
 static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_desc *pass)
 {
     const tyn_frame_scene *frame = job->frame;
@@ -145,6 +156,7 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
                      : env->has_map ? TYN_PATH_ENV_MAP
                                     : TYN_PATH_ENV_CONSTANT;
     p->sigma_guess = p->homogeneous ? sigma_t : 0.3f * sigma_t * m->max_density;
+    p->stretch = stretch_of(frame);
     p->layers =
         (job->outputs & (TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_TRANSMITTANCE)) != 0;
     p->opaque = sky && !view->no_background;

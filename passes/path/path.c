@@ -155,6 +155,7 @@ struct path_args path_trace_args(const tyn_path_params *p)
         .rr_depth = p->rr_depth ? p->rr_depth : 4,
         .max_steps = (uint32_t)p->max_steps,
         .sigma_guess = p->sigma_guess,
+        .stretch = p->stretch,
         .world = {{p->world[0][0], p->world[0][1], p->world[0][2]},
                   {p->world[1][0], p->world[1][1], p->world[1][2]},
                   {p->world[2][0], p->world[2][1], p->world[2][2]}},
@@ -178,7 +179,7 @@ void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_path_params *p)
         (p->num_lamps ? TYN_PATH_LAMPS : 0) |
         (p->equiangular && p->near_lamps ? TYN_PATH_EQUIANGULAR : 0) |
         (p->layers ? TYN_PATH_LAYERS : 0) | (p->scattered ? TYN_PATH_SCATTERED : 0) |
-        (p->surfaces ? TYN_PATH_SURFACES : 0) |
+        (p->stretch > 1 ? TYN_PATH_THIN : 0) | (p->surfaces ? TYN_PATH_SURFACES : 0) |
         (p->surfaces && p->emitters ? TYN_PATH_EMITTERS : 0);
 }
 

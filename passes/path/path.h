@@ -26,6 +26,7 @@ typedef struct tyn_path_params {
     uint32_t near_lamps;  // those in or near the media
     uint32_t environment; // TYN_PATH_ENV_*
     float sigma_guess;    // typical extinction, 1/m
+    float stretch;        // > 1: images and probes draw first flights for so many times the extinction
     uint32_t layers;      // images: single, multiple and transmittance as well
     uint32_t opaque;      // images: a background is seen, alpha is 1
     uint32_t scattered;   // probes: without light that has not scattered

@@ -28,6 +28,7 @@
 #define TYN_PATH_SCATTERED 32u   // probes leave out light that comes straight from its source
 #define TYN_PATH_SURFACES 256u   // there are triangles
 #define TYN_PATH_EMITTERS 512u   // ... and a table by which emissive ones are drawn
+#define TYN_PATH_THIN 2048u      // first flights are stretched: args.stretch
 #define TYN_PATH_FROM_LIGHTS 1024u // balance: the first flights of light are followed from suns and lamps
 
 struct path_args {
@@ -41,10 +42,11 @@ struct path_args {
     tyn_uint rr_depth;    // Russian roulette from this many scatterings on
     tyn_uint max_steps;   // safety cap: tentative collisions and brick crossings of one path
     float sigma_guess;    // typical extinction, 1/m: weighs equi-angular against free-flight sampling
+    float stretch;        // thin media: first flights are drawn for an extinction so many times larger
     tyn_vec3 world[3];    // probes: the world's axes in M
     tyn_vec3 box_lo, box_hi; // balance of surfaces: the box that light enters and leaves, M
 };
-TYN_ASSERT_SIZE(path_args, 104);
+TYN_ASSERT_SIZE(path_args, 108);
 
 // What one thread found: mean and sum of squared deviations of its samples.
 struct path_partial {

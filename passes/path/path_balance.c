@@ -70,6 +70,7 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_path_params *p = params;
     uint32_t spec[TYN_PATH_NUM_SPEC];
     path_specialise(spec, p);
+    spec[TYN_PATH_SPEC_FLAGS] &= ~TYN_PATH_THIN;
     if (p->surfaces && p->num_lights && !p->repeat) {
         spec[TYN_PATH_SPEC_FLAGS] |= TYN_PATH_FROM_LIGHTS;
     }
