@@ -55,6 +55,9 @@ float spectrum_mean(vec3 x)
 const int RAYMARCH_CHUNK = 32; // steps between two looks at the distance map: empty ones are cheap
 const float RAYMARCH_SHADOWS_ACROSS = 128.0; // looks at a shadow map along the box's longest side, and
 const float RAYMARCH_SHADOW_HALVES = 8.0; // parts of which where it has an edge in between
+// Optical depth of a step (scaled, where that counts) above which it is shortened, and to what: light from outside
+// fades within it as much as the view does.
+const float RAYMARCH_DENSE = 1.0, RAYMARCH_SHORT = 0.5;
 const float RAYMARCH_GONE = 9.0; // scaled depth behind args.stop, in every channel, of what hides all
 
 bool raymarch_has(uint feature)
@@ -574,26 +577,31 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
             if (s >= end || spectrum_max(state.through_scaled) <= args.stop) {
                 break;
             }
-            // Empty steps cost one fetch: neighbouring rays look for the next full one together.
+            // Empty steps cost one fetch: neighbouring rays look for the next full one together. A turn must change
+            // nothing for a ray that has found its step: some devices use what the last turn gives for all.
             march_medium m;
-            float ds;
-            bool full = false;
+            float ds, next = state.next;
+            bool full = false, dense = false;
             do {
-                ds = min(state.next, end - s);
-                state.next = args.step;
+                ds = min(next, end - s);
                 if (raymarch_num_lamps > 0u) {
                     ds = min(ds, march_lamp_step(lamps, s));
                 }
                 m = march_medium_at(unit, medium0 + (s + 0.5 * ds) * medium1);
                 full = march_any(m);
+                float most = spectrum_max(raymarch_has(RAYMARCH_KERNELS) ? m.scaled_extinction : m.extinction);
+                dense = most * ds > RAYMARCH_DENSE;
+                next = dense ? RAYMARCH_SHORT / most : full ? next : args.step;
                 s += full ? 0.0 : ds;
-                i += full ? 0 : 1;
+                i += full && !dense ? 0 : 1;
                 state.shadow.known = full ? state.shadow.known : 0u;
                 state.steps++;
-            } while (!full && i < RAYMARCH_CHUNK && s < end);
-            if (!full) {
+            } while ((!full || dense) && i < RAYMARCH_CHUNK && s < end);
+            if (!full || dense) {
+                state.next = next;
                 break;
             }
+            state.next = args.step;
             spectrum x = m.extinction * ds, x_scaled = m.scaled_extinction * ds;
             float at = s + ds * step_centroid(0.5 * spectrum_mean(
                                     raymarch_has(RAYMARCH_KERNELS) ? x + x_scaled : x + x));
