@@ -56,7 +56,7 @@ const SPEED_MARKS = [SHAPES[0], SHAPES[3], SHAPES[1], SHAPES[2]]; // by error le
 
 function speedRows(report, method, baseline, block) {
     return list(report.scenes).map((scene) => ({
-        scene: scene.name,
+        scene: String(scene.name ?? ""),
         entries: list(scene.equal_error)
             .filter((e) => e.method === method && e.baseline === baseline && e.block === block)
             .sort((a, b) => b.error - a.error),
