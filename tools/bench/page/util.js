@@ -79,7 +79,7 @@ const errorsOf = (run, block) => list(run.errors).find((e) => e.block === block)
 // An error of 0 is one that the noise of the reference hides.
 const errorText = (e) => (e.error === 0 && e.n > 0 ? `< ${percent(e.n)}` : percent(e.error));
 const coldOf = (run) => (run.frame_ms || {}).cold;
-const frontOf = (scene, block) => new Set((list(scene.fronts).find((f) => f.block === block) || {}).runs);
+const frontOf = (scene, block) => new Set(list((list(scene.fronts).find((f) => f.block === block) || {}).runs));
 
 // A choice of one among few, as buttons: options are [value, label].
 function segmented(label, options, value, change) {
