@@ -120,7 +120,7 @@ function errorPlot(scene, styles, select) {
             const y = Y(noise), above = base - y < 16;
             svg.append(draw("rect", {x: left, y, width: width - left - right, height: Math.max(0, base - y), fill: `url(#${hatch})`}),
                 draw("line", {class: "noise", x1: left, x2: width - right, y1: y, y2: y}),
-                draw("text", {class: "noise-word", x: width - right - 4, y: above ? y - 5 : y + 13, "text-anchor": "end"},
+                draw("text", {class: "noise-word", x: left + 5, y: above ? y - 5 : y + 14},
                     `noise of the reference, ${percent(noise)}`));
         }
         svg.append(draw("text", {class: "axis", x: (left + width - right) / 2, y: height - 6, "text-anchor": "middle"}, "time of a cold frame"),
@@ -139,6 +139,7 @@ function errorPlot(scene, styles, select) {
                     stroke: style.color, "stroke-dasharray": style.dash}));
             }
         }
+        const size = width < 420 || points.length > 36 ? 0.78 : 1;
         const focusable = shown.some((p) => p.index === current) ? current : (shown[0] || {}).index;
         const best = new Set([...styles.values()].flatMap((s) => ownFront(shown.filter((p) => p.style === s)).map((p) => p.index)));
         for (const p of [...shown].sort((a, b) => best.has(a.index) - best.has(b.index))) {
@@ -152,8 +153,8 @@ function errorPlot(scene, styles, select) {
                 onpointerleave(event) { tip.hidden = document.activeElement !== event.currentTarget; },
                 onclick() { select(p.index); }, onkeydown(event) { keys(event, p); },
             },
-            draw("circle", {class: "reach", r: 11}), onFront && draw("circle", {class: "ring", r: 8.5}),
-            draw("path", {class: "shape", d: p.style.shape, fill: p.style.color, stroke: p.style.color}),
+            draw("circle", {class: "reach", r: 11 * size}), onFront && draw("circle", {class: "ring", r: 8.5 * size}),
+            draw("path", {class: "shape", d: p.style.shape, transform: size === 1 ? null : `scale(${size})`, fill: p.style.color, stroke: p.style.color}),
             !(p.error > 0) && draw("path", {class: "below", d: "M0,6V12M-3.5,8.5L0,12L3.5,8.5", stroke: p.style.color}));
             svg.append(group);
         }
