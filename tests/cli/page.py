@@ -107,7 +107,7 @@ def check_plots(b, report):
     check("sorted by time", times == sorted(times) and of[cold[-1]]["failed"] is not None)
 
 
-READY = "[...document.querySelectorAll('.viewer')].every((v) => v.dataset.ready)"
+READY = "[...document.querySelectorAll('.viewer')].every((v) => v.dataset.ready && v.dataset.ready === v.dataset.turn)"
 
 
 def pixel(b, canvas, x, y):
@@ -119,8 +119,9 @@ def pixel(b, canvas, x, y):
 
 
 def settled(b):
-    """After an action: until the viewers have drawn."""
-    b.run("new Promise((r) => setTimeout(r, 150))")
+    """After an action: until the page is laid out and the viewers have drawn."""
+    b.run("new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(r, 20))))")
+    b.wait(READY)
 
 
 def check_pictures(b):
@@ -142,13 +143,13 @@ def check_pictures(b):
     b.run("document.querySelector('#scene-0 .stage').scrollIntoView({block: 'center'})")
     box = b.run("(() => { const r = document.querySelector('#scene-0 .stage').getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; })()")
     b.drag(box[0] + 0.1 * box[2], box[1] + 0.5 * box[3], box[0] + 0.75 * box[2], box[1] + 0.5 * box[3])
-    check("the pointer moves it", abs(b.run(now) - 75) <= 1, str(b.run(now)))
+    check("the pointer moves it", b.wait(f"Math.abs({now} - 75) <= 1", 5), str(b.run(now)))
 
     b.call("Emulation.setTouchEmulationEnabled", enabled=True)
     for kind, x in (("touchStart", 0.5), ("touchMove", 0.4), ("touchMove", 0.3), ("touchEnd", None)):
         b.call("Input.dispatchTouchEvent", type=kind,
                touchPoints=[] if x is None else [{"x": box[0] + x * box[2], "y": box[1] + 0.5 * box[3]}])
-    check("a finger moves it", abs(b.run(now) - 30) <= 1, str(b.run(now)))
+    check("a finger moves it", b.wait(f"Math.abs({now} - 30) <= 1", 5), str(b.run(now)))
     b.call("Emulation.setTouchEmulationEnabled", enabled=False)
 
     # Half floats arrive as report_make wrote them: its formula again, to the three digits that are shown.
@@ -230,8 +231,8 @@ def check_sizes(b):
         b.window(width, 740, mobile)
         b.media("", dark)
         settled(b)
-        wide = b.run("document.documentElement.scrollWidth")
-        check(f"no horizontal scroll at {width} pixels", wide <= width, str(wide))
+        fits = b.wait(f"document.documentElement.scrollWidth <= {width}", 5)
+        check(f"no horizontal scroll at {width} pixels", fits, str(b.run("document.documentElement.scrollWidth")))
     paper = b.run("getComputedStyle(document.body).backgroundColor")
     check("dark follows the scheme", sum(map(int, re.findall(r"\d+", paper)[:3])) < 150, paper)
     b.media("print", True)

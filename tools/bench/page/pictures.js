@@ -191,6 +191,7 @@ function pictureViewer(scene, sceneIndex, first) {
 
     async function update() {
         const turn = ++state.busy;
+        element.dataset.turn = turn; // drawn once "ready" is the same
         const [left, right] = await Promise.all([load(sources[state.left]), load(sources[state.right])]);
         const reference = has("reference") >= 0 ? await load(sources[has("reference")]) : right;
         if (turn !== state.busy) {
@@ -227,7 +228,7 @@ function pictureViewer(scene, sceneIndex, first) {
         exposure.set(state.exposure);
         gain.set(state.gain);
         placeSplit();
-        element.dataset.ready = String(turn);
+        element.dataset.ready = turn;
     }
 
     function read(event) {
