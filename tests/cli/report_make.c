@@ -278,7 +278,7 @@ static void add_cell(cJSON *cells, const char *method, const char *axis, double 
 {
     cJSON *c = cJSON_CreateObject();
     char name[64];
-    snprintf(name, sizeof name, "%s %g", axis, x);
+    snprintf(name, sizeof name, "%g", x);
     cJSON_AddStringToObject(c, "method", method);
     cJSON_AddStringToObject(c, "axis", axis);
     cJSON_AddStringToObject(c, "case", name);

@@ -47,7 +47,7 @@ function bandsAlert(bands) {
     return make("section", {class: "alert", role: "alert"},
         make("h2", {}, `${outside.length} figure${outside.length > 1 ? "s" : ""} outside the recorded bands`),
         make("ul", {}, outside.map((o) => make("li", {}, make("strong", {}, `${o.scene}, ${o.run}: ${o.figure} `),
-            `${digits(o.value, 3)}, band ${digits(o.low, 3)} to ${digits(o.high, 3)}. ${o.reason ?? ""}`))));
+            `${digits(o.value, 3)}, band ${digits(o.low, 3)} to ${digits(o.high, 3)}${o.reason ? ` (${o.reason})` : ""}`))));
 }
 
 // ---- speed-up at equal error ------------------------------------------------------------------

@@ -93,7 +93,7 @@ function stressSection(stress, styles) {
         make("h2", {}, "Under stress"),
         make("p", {}, `${cells.length} cases in which numbers get extreme, each against an exact answer or path. A cell shows the error in percent and, below it, the value on its axis; point at it for the reason.`),
         spoiledCells.length > 0
-            ? make("p", {class: "alert", role: "alert"}, `${spoiledCells.length} cells hold values that are not finite or negative: `, spoiledCells.map((c) => stressWords(c).title).join("; "))
+            ? make("p", {class: "alert", role: "alert"}, `${spoiledCells.length} cell${spoiledCells.length > 1 ? "s hold" : " holds"} values that are not finite or negative: `, spoiledCells.map((c) => stressWords(c).title).join("; "))
             : make("p", {class: "good"}, "No value of any cell is infinite, not a number or negative."),
         make("p", {class: "legend heat"}, [...STRESS_STEPS, null].map((s, i) => make("span", {class: "key"}, make("span", {class: `swatch heat-${i}`}), s === null ? "more" : `to ${level(s)}`)),
             make("span", {class: "key"}, make("span", {class: "swatch heat-none"}), "no figure"), make("span", {class: "key"}, make("span", {class: "swatch warned"}), "has a warning")));
