@@ -71,63 +71,104 @@ vec3 walls_centre(lattice_box box, ivec3 cell)
     return lattice_to_m(box, vec3(cell) + 0.5 + shift);
 }
 
-// Shares of the cells around a point: corner i is cell base + (i & 1, i >> 1 & 1, i >> 2), within the
-// lattice. They sum to 1, or are all 0 where no cell near has light for the point.
+// Shares of the cells around a point: corner i is `cell`, and `step` away from it along x, y, z as bits 0, 1, 2 of i
+// are set. They sum to 1, or are all 0 where no cell near has light for the point.
 struct walls_blend {
-    ivec3 base;
+    ivec3 cell, step; // 0 where that would be beyond the lattice: the same cell counts twice then
     float share[8];
     ivec3 instead; // where all shares are 0: the cell to take alone; x < 0: none
 };
 
-ivec3 walls_corner(lattice_box box, ivec3 base, uint i)
+ivec3 walls_corner(walls_blend b, uint i)
 {
-    return clamp(base + ivec3(i & 1u, i >> 1 & 1u, i >> 2), ivec3(0), box.dims - 1);
+    return b.cell + b.step * ivec3(i & 1u, i >> 1 & 1u, i >> 2);
 }
 
-// `behind` = walls_behind of the point in its own cell.
+// Does a point that is behind walls of its cell see cell q? `behind` = walls_behind of the point.
+bool walls_sees_behind(lattice_box box, walls_place w, vec3 p, uint behind, ivec3 q)
+{
+    // Walls between p and q that do not touch the point's cell are in that of q.
+    return q != w.cell && walls_behind(w.index, walls_centre(box, q)) == behind && walls_same_side(box, q, p);
+}
+
 bool walls_sees(lattice_box box, walls_place w, vec3 p, uint behind, ivec3 q)
 {
-    ivec3 d = q - w.cell;
-    if (d == ivec3(0)) {
-        return behind == 0u;
+    if (behind != 0u) {
+        return walls_sees_behind(box, w, p, behind, q);
     }
-    if (behind == 0u) {
-        return (w.links >> walls_link(d) & 1u) == 0u;
-    }
-    // Walls between p and q that do not touch the point's cell are in that of q.
-    return walls_behind(w.index, walls_centre(box, q)) == behind && walls_same_side(box, q, p);
+    return q == w.cell || (w.links >> walls_link(q - w.cell) & 1u) == 0u;
+}
+
+// Bit i: corner i may be reached, the steps being down where negative[axis] is 1.
+uint walls_open_corners(uint links, uvec3 negative)
+{
+    uvec3 axis = uvec3(links) >> (uvec3(0u, 2u, 4u) + negative);
+    uvec3 face = uvec3(links) >> (uvec3(14u, 18u, 22u) + negative.yxx + 2u * negative.zzy); // across x, y, z
+    uint diagonal = links >> (6u + negative.x + 2u * negative.y + 4u * negative.z);
+    return 1u | (~axis.x & 1u) << 1 | (~axis.y & 1u) << 2 | (~face.z & 1u) << 3 | (~axis.z & 1u) << 4 |
+           (~face.y & 1u) << 5 | (~face.x & 1u) << 6 | (~diagonal & 1u) << 7;
 }
 
 walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
 {
-    uint behind = walls_behind(w.index, p);
+    vec4 planes[TYN_WALLS_PLANES];
+    uint behind = 0u;
+    for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
+        planes[k] = wall_cells[w.index].planes[k];
+        behind |= dot(planes[k].xyz, p) + planes[k].w < 0.0 ? 1u << k : 0u;
+    }
+    vec3 away = w.x - vec3(w.cell);
+    bvec3 down = lessThan(away, vec3(0.0));
+    ivec3 step = mix(ivec3(1), ivec3(-1), down);
+    bvec3 beyond = notEqual(clamp(w.cell + step, ivec3(0), box.dims - 1), w.cell + step);
+    step = mix(step, ivec3(0), beyond);
     walls_blend b;
-    b.base = ivec3(floor(w.x));
+    b.cell = w.cell;
+    b.step = step;
     b.instead = ivec3(-1);
-    vec3 f = w.x - vec3(b.base);
+
+    uint seen = walls_open_corners(w.links, uvec3(down));
+    seen = beyond.x ? (seen & 0x55u) * 3u : seen;
+    seen = beyond.y ? (seen & 0x33u) * 5u : seen;
+    seen = beyond.z ? (seen & 0x0fu) * 17u : seen;
+    // Behind walls, those that these do not part from the point and which have no wall of their own towards it: that
+    // is asked for in a loop, as some devices run both sides of a branch.
+    uint same = 0u;
+    vec3 centre = walls_centre(box, w.cell), dx = box.dx * vec3(step);
+    for (uint i = 1u; i < 8u; i++) {
+        vec3 q = centre + dx * vec3(i & 1u, i >> 1 & 1u, i >> 2);
+        uint side = 0u;
+        for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
+            side |= dot(planes[k].xyz, q) + planes[k].w < 0.0 ? 1u << k : 0u;
+        }
+        same |= side == behind && q != centre ? 1u << i : 0u;
+    }
+    seen = behind == 0u ? seen : same;
+    for (uint left = behind == 0u ? 0u : same; left != 0u; left &= left - 1u) {
+        uint i = uint(findLSB(left));
+        bool sees = walls_same_side(box, walls_corner(b, i), p);
+        seen = sees ? seen : seen & ~(1u << i);
+    }
+    vec3 f = min(abs(away), vec3(0.5));
     float sum = 0.0;
     for (uint i = 0u; i < 8u; i++) {
         vec3 t = mix(1.0 - f, f, vec3(i & 1u, i >> 1 & 1u, i >> 2));
-        // Beyond the outermost centres the same cell counts twice.
-        ivec3 q = clamp(walls_corner(box, b.base, i), w.cell - 1, w.cell + 1);
-        b.share[i] = walls_sees(box, w, p, behind, q) ? t.x * t.y * t.z : 0.0;
+        b.share[i] = (seen >> i & 1u) != 0u ? t.x * t.y * t.z : 0.0;
         sum += b.share[i];
     }
+    bool any_seen = sum > 1e-6;
     for (uint i = 0u; i < 8u; i++) {
-        b.share[i] = sum > 1e-6 ? b.share[i] / sum : 0.0;
+        b.share[i] = any_seen ? b.share[i] / sum : 0.0;
     }
-    if (sum <= 1e-6) {
-        float nearest = 1e30;
-        for (int i = 0; i < 27; i++) {
-            ivec3 q = w.cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1;
-            if (any(lessThan(q, ivec3(0))) || any(greaterThanEqual(q, box.dims)) ||
-                !walls_sees(box, w, p, behind, q)) {
-                continue;
-            }
-            float away = distance(vec3(q), w.x);
-            b.instead = away < nearest ? q : b.instead;
-            nearest = min(away, nearest);
+    float nearest = 1e30;
+    for (int i = any_seen ? 27 : 0; i < 27; i++) {
+        ivec3 q = w.cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+        if (any(lessThan(q, ivec3(0))) || any(greaterThanEqual(q, box.dims)) || !walls_sees(box, w, p, behind, q)) {
+            continue;
         }
+        float far = distance(vec3(q), w.x);
+        b.instead = far < nearest ? q : b.instead;
+        nearest = min(far, nearest);
     }
     return b;
 }
@@ -169,7 +210,7 @@ vec4 walls_fetch(sampler3D field, lattice_box box, walls_blend b, ivec3 skip)
     }
     for (uint i = 0u; i < 8u; i++) {
         if (b.share[i] > 0.0) {
-            sum += b.share[i] * texelFetch(field, walls_corner(box, b.base, i) + skip, 0);
+            sum += b.share[i] * texelFetch(field, walls_corner(b, i) + skip, 0);
         }
     }
     return sum;

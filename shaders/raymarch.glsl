@@ -53,6 +53,7 @@ float spectrum_mean(vec3 x)
 #endif
 
 const int RAYMARCH_CHUNK = 32; // steps between two looks at the distance map: empty ones are cheap
+const int RAYMARCH_LATER = 8; // steps near walls that are dealt with together
 const float RAYMARCH_SHADOWS_ACROSS = 128.0; // looks at a shadow map along the box's longest side, and
 const float RAYMARCH_SHADOW_HALVES = 8.0; // parts of which where it has an edge in between
 // Optical depth of a step (scaled, where that counts) above which it is shortened, and to what: light from outside
@@ -346,6 +347,16 @@ bool march_near_walls(vec3 p)
     return walls_near(walls_place_of(box, p));
 }
 
+// How long the step after one through `m` may be.
+float march_next_step(march_medium m)
+{
+    if (!raymarch_has(RAYMARCH_WALLS | RAYMARCH_SHADOWS)) {
+        return args.step;
+    }
+    float by_depth = args.step_depth / max(spectrum_max(m.extinction), 1e-30);
+    return march_any(m) ? clamp(by_depth, args.step, args.longest) : args.step;
+}
+
 // Light of the lattice at a point, as texture inscatter has it.
 vec3 march_field_between_walls(vec3 p)
 {
@@ -569,11 +580,11 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
         float from = s;
         s = march_skip(origin, direction, inverse, s, end);
         state.shadow.known = s > from ? 0u : state.shadow.known;
-        // Walls are looked at outside this loop, as some devices run what only few rays need for all: a step
-        // near them leaves it.
-        float wall_at = -1.0;
-        spectrum wall_weight;
-        for (int i = 0; i < RAYMARCH_CHUNK && wall_at < 0.0; i++) {
+        // Steps near walls wait until after this loop, as some devices run what only few rays need for all.
+        float wall_at[RAYMARCH_LATER]; // where the lattice's light is looked up, m
+        spectrum wall_weight[RAYMARCH_LATER];
+        int walls = 0, last_wall = -1; // how many; the last step's
+        for (int i = 0; i < RAYMARCH_CHUNK && walls < RAYMARCH_LATER; i++) {
             if (s >= end || spectrum_max(state.through_scaled) <= args.stop) {
                 break;
             }
@@ -601,7 +612,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
                 state.next = next;
                 break;
             }
-            state.next = args.step;
+            state.next = march_next_step(m);
             spectrum x = m.extinction * ds, x_scaled = m.scaled_extinction * ds;
             float at = s + ds * step_centroid(0.5 * spectrum_mean(
                                     raymarch_has(RAYMARCH_KERNELS) ? x + x_scaled : x + x));
@@ -619,10 +630,19 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
                 if (raymarch_has(RAYMARCH_SOURCE)) {
                     per_metre = spectrum(spectrum_max(m.extinction) > 0.0 ? 1.0 : 0.0);
                 }
-                bool near = raymarch_has(RAYMARCH_WALLS) && march_near_walls(p);
-                wall_weight = per_metre * weight_scaled;
-                wall_at = near ? there : -1.0;
-                state.radiance += near ? vec3(0.0) : wall_weight * J;
+                vec3 light = (per_metre * weight_scaled) * J;
+                if (raymarch_has(RAYMARCH_WALLS)) {
+                    bool near = march_near_walls(p);
+                    last_wall = -1;
+                    if (near) {
+                        wall_at[walls] = there;
+                        wall_weight[walls] = per_metre * weight_scaled;
+                        last_wall = walls;
+                        walls++;
+                    }
+                    light = near ? vec3(0.0) : light;
+                }
+                state.radiance += light;
             }
             if (raymarch_has(RAYMARCH_EMISSION)) {
                 state.radiance += m.emission * weight_scaled;
@@ -634,8 +654,11 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
                     lit = march_lit(true, light, n, shadow_frame(shadows[light], origin),
                                     shadow_frame_direction(shadows[light], direction), s, ds, state.shadow);
                 }
-                state.radiance += march_sunlight(suns[n], unit, m, origin + at * direction, at, lit * weight,
-                                                 lit * weight_scaled, state.single);
+                // A loop, as some devices run both sides of a branch.
+                for (bool dark = lit <= 0.0; !dark; dark = true) {
+                    state.radiance += march_sunlight(suns[n], unit, m, origin + at * direction, at, lit * weight,
+                                                     lit * weight_scaled, state.single);
+                }
             }
             for (uint n = 0u; n < raymarch_num_lamps; n++) {
                 state.radiance += march_lamplight(n, lamps, unit, m, s, ds, at, weight, weight_scaled,
@@ -653,9 +676,10 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
             state.hidden += m.hidden * ds;
             s += ds;
         }
-        if (raymarch_has(RAYMARCH_WALLS) && wall_at >= 0.0) {
-            vec3 J = march_tinted(march_field_between_walls(origin + wall_at * direction));
-            state.radiance += wall_weight * J;
+        for (int i = 0; raymarch_has(RAYMARCH_WALLS) && i < walls; i++) {
+            vec3 J = march_tinted(march_field_between_walls(origin + wall_at[i] * direction));
+            state.radiance += wall_weight[i] * J;
+            state.before += i == last_wall ? vec3(0.0) : wall_weight[i] * J;
         }
     }
     state.s = s;

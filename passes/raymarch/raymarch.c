@@ -357,12 +357,14 @@ static void record(tyn_recorder *r, const void *params)
     // Edges of shadows are found within steps, and what is left is far less than what the lattice is off by there.
     bool surfaces = features & (RAYMARCH_WALLS | RAYMARCH_SHADOWS) && features & RAYMARCH_FIELD;
     float longest = fminf(voxel, p->longest_step);
-    if (surfaces && p->majorant > 0) {
-        longest = fmaxf(longest,
-                        fminf(STEPS_AMONG_SURFACES * longest, DEPTH_AMONG_SURFACES / p->majorant));
+    float thin = surfaces ? STEPS_AMONG_SURFACES * longest : longest;
+    if (surfaces && p->majorant > 0) { // nowhere deeper
+        longest = fmaxf(longest, fminf(thin, DEPTH_AMONG_SURFACES / p->majorant));
     }
     struct raymarch_args args = {
         .step = p->step * longest,
+        .longest = p->step * thin,
+        .step_depth = p->step * DEPTH_AMONG_SURFACES,
         .stop = p->stop,
         .depth = {p->depth[0], p->depth[1], p->depth[2], p->depth[3]},
         .first = {p->first[0], p->first[1]},

@@ -33,14 +33,16 @@
 #define RAYMARCH_SPARSE_REST (1u << 26)  // rays of those that are listed
 
 struct raymarch_args {
-    float step;      // longest step, m
-    float stop;      // a ray ends where the transmittance is below this
-    tyn_vec4 depth;  // p10, p14, p11, p15 of the host's view_to_clip
-    tyn_uvec2 first; // pixels in which the box of the media may be seen: from `first` ...
-    tyn_uvec2 end;   // ... to before `end`
-    tyn_vec3 tint;   // of the one channel of inscatter
+    float step;       // longest step, m
+    float longest;    // ... where the medium is so thin that it
+    float step_depth; // ... is no deeper than this
+    float stop;       // a ray ends where the transmittance is below this
+    tyn_vec4 depth;   // p10, p14, p11, p15 of the host's view_to_clip
+    tyn_uvec2 first;  // pixels in which the box of the media may be seen: from `first` ...
+    tyn_uvec2 end;    // ... to before `end`
+    tyn_vec3 tint;    // of the one channel of inscatter
 };
-TYN_ASSERT_SIZE(raymarch_args, 52);
+TYN_ASSERT_SIZE(raymarch_args, 60);
 
 // Start of the buffer "rest": 2x2 pixels that need rays of their own. uints x | y << 16 follow, one a block.
 struct raymarch_rest {
