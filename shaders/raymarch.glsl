@@ -599,7 +599,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
                     ds = min(ds, march_lamp_step(lamps, s));
                 }
                 m = march_medium_at(unit, medium0 + (s + 0.5 * ds) * medium1);
-                full = march_any(m);
+                full = ds > 0.0 && march_any(m); // such a turn finds the ray at its end
                 float most = spectrum_max(raymarch_has(RAYMARCH_KERNELS) ? m.scaled_extinction : m.extinction);
                 dense = most * ds > RAYMARCH_DENSE;
                 next = dense ? RAYMARCH_SHORT / most : full ? next : args.step;

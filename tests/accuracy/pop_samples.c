@@ -87,9 +87,45 @@ static void pictures(void **state)
     assert_true(good);
 }
 
+// A ray that has come to its end through an empty step makes none of no length. Of so many rays a few do.
+static void ends_of_rays(void **state)
+{
+    gpu_test *t = *state;
+    tyn_scene *scene = malloc(sizeof *scene);
+    sample_scene_load(scene, "lantern", t);
+    tyn_settings *settings;
+    assert_int_equal(tyn_settings_create(&settings), TYN_OK);
+    assert_int_equal(tyn_settings_set(settings, "raymarch.sparse", "0", &t->log), TYN_OK);
+    tyn_offline *off;
+    assert_int_equal(
+        tyn_offline_create(t->dev, tyn_offline_params(.method = "single", .settings = settings),
+                           &off),
+        TYN_OK);
+    tyn_view view = {
+        .camera = scene->cameras[0], .width = 512, .height = 512, .outputs = TYN_OUTPUT_RADIANCE};
+    assert_int_equal(tyn_offline_frame(off, scene, &view, false), TYN_OK);
+    tyn_report report;
+    tyn_offline_report(off, &report);
+    double non_finite = -1;
+    for (uint32_t i = 0; i < report.num_nodes; i++) {
+        for (uint32_t k = 0; k < report.nodes[i].num_work; k++) {
+            if (!strcmp(report.nodes[i].name, "raymarch") &&
+                !strcmp(report.nodes[i].work[k].name, "non_finite")) {
+                non_finite = report.nodes[i].work[k].amount;
+            }
+        }
+    }
+    print_message("pixels that were no numbers: %g\n", non_finite);
+    assert_true(non_finite == 0);
+    tyn_offline_destroy(&off);
+    tyn_settings_destroy(&settings);
+    tyn_scene_finish(scene);
+    free(scene);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(pictures)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pictures), cmocka_unit_test(ends_of_rays)};
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
