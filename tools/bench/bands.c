@@ -123,7 +123,8 @@ static void tell(app *a, const cJSON *band, const char *scene, const char *run, 
 int bands_apply(app *a, const char *path, const cJSON *bands, cJSON *report)
 {
     cJSON *result = cJSON_CreateObject();
-    cJSON_AddStringToObject(result, "file", path);
+    const char *slash = strrchr(path, '/');
+    cJSON_AddStringToObject(result, "file", slash ? slash + 1 : path);
     cJSON *outside = cJSON_AddArrayToObject(result, "outside");
     const cJSON *scenes = cJSON_GetObjectItemCaseSensitive(report, "scenes"), *band, *scene, *run;
     uint32_t checked = 0;

@@ -461,6 +461,16 @@ static cJSON *json_run(const measuring *m, const char *key, const char *reason)
     return json;
 }
 
+static void add_file_hash(cJSON *inputs, const char *name, const char *path)
+{
+    void *data = NULL;
+    size_t size = 0;
+    if (path && tyn_file_read(path, UINT64_C(1) << 32, &data, &size, NULL) == TYN_OK) {
+        json_add_hash(inputs, name, text_hash(data, size, 0));
+    }
+    free(data);
+}
+
 static int add_figures(measuring *m, cJSON *json)
 {
     double non_finite = 0, negative = 0;
@@ -483,8 +493,12 @@ static int add_figures(measuring *m, cJSON *json)
     cJSON_AddNumberToObject(json, "negative", negative);
     cJSON_AddItemToObject(json, "warnings", m->warnings);
     m->nodes = m->warnings = NULL;
-    const char *const paths[] = {m->c->spec->path, m->c->spec->scene.env, m->c->spec->reference};
-    cJSON *inputs = stats_inputs(&m->c->scene, paths, ARRAY_SIZE(paths));
+    // by the names that the suite calls them, wherever they lie
+    cJSON *inputs = stats_inputs(&m->c->scene, NULL, 0);
+    const cJSON *spec = m->c->spec->json;
+    add_file_hash(inputs, json_text(spec, "scene"), m->c->spec->path);
+    add_file_hash(inputs, json_text(spec, "environment"), m->c->spec->scene.env);
+    add_file_hash(inputs, json_text(spec, "reference"), m->c->spec->reference);
     json_add_hash(inputs, "scene", m->c->hash);
     cJSON_AddItemToObject(json, "inputs", inputs);
     return write_picture(m, json);
@@ -506,7 +520,7 @@ static cJSON *make_record(const bench_case *c, const char *key, cJSON *run)
     cJSON_AddStringToObject(device, "type", c->machine->type);
     cJSON *scene = cJSON_AddObjectToObject(record, "scene");
     cJSON_AddStringToObject(scene, "name", c->spec->name);
-    cJSON_AddStringToObject(scene, "file", c->spec->scene.scene);
+    cJSON_AddStringToObject(scene, "file", json_text(c->spec->json, "scene"));
     json_add_hash(scene, "hash", c->hash);
     const int size[2] = {(int)c->view.width, (int)c->view.height};
     cJSON_AddItemToObject(scene, "size", cJSON_CreateIntArray(size, 2));

@@ -250,7 +250,7 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
     const int size[2] = {(int)c->view.width, (int)c->view.height};
     cJSON_AddStringToObject(scene, "name", c->spec->name);
     cJSON_AddStringToObject(scene, "slug", c->spec->slug);
-    cJSON_AddStringToObject(scene, "file", c->spec->scene.scene);
+    cJSON_AddStringToObject(scene, "file", json_text(c->spec->json, "scene"));
     json_add_hash(scene, "hash", c->hash);
     cJSON_AddItemToObject(scene, "size", cJSON_CreateIntArray(size, 2));
     double fill = NAN;
