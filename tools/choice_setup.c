@@ -61,7 +61,8 @@ bool choice_check(app *a, const choice_options *options, const method_options *h
                   how->quality);
         return false;
     }
-    return true;
+    tyn_method_info info;
+    return !choice_is_asked(options) || method_find(a, how->method, &info);
 }
 
 // ---- what may be chosen -----------------------------------------------------------------------

@@ -491,3 +491,18 @@ bool choose(const fronts *f, const regime *r, const choose_request *request, cho
     neighbours_finish(&c.near);
     return found;
 }
+
+bool choose_outlook(const fronts *f, const regime *r, const char *method, uint32_t spp,
+                    uint32_t width, uint32_t height, double *error, double *ms)
+{
+    neighbours n;
+    prediction p;
+    const bool found = neighbours_make(f, r, NULL, false, &n) &&
+                       predict(&n, r, method, spp, (double)width * height, &p);
+    neighbours_finish(&n);
+    if (found) {
+        *error = p.error;
+        *ms = p.ms;
+    }
+    return found;
+}

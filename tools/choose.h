@@ -37,5 +37,10 @@ typedef struct choice {
 // False: no stored run is of that method, or out of memory.
 bool choose(const fronts *f, const regime *r, const choose_request *request, choice *c);
 
+// Error (on blocks of 8x8) and time of a cold frame that a method is likely to have as it is, on the device that was
+// measured; `spp` 0: it does not sample. False: it has not been measured so, or out of memory.
+bool choose_outlook(const fronts *f, const regime *r, const char *method, uint32_t spp,
+                    uint32_t width, uint32_t height, double *error, double *ms);
+
 // How far two regimes are from each other; at 1 they differ in one respect that matters.
 double choose_distance(const regime *a, const regime *b);

@@ -116,12 +116,20 @@ static int print_scene(app *a, const info_args *args)
         code = regime_of(&scene, &view.camera, &r) ? EXIT_DONE
                                                    : app_exit_code(a, TYN_ERR_MEMORY, false);
     }
+    fronts f = {0};
+    if (code == EXIT_DONE) {
+        code = fronts_open(a, NULL, &f);
+    }
     if (code == EXIT_DONE && args->json) {
-        code = json_write(a, info_json_scene(args->scene.scene, &scene, &r), NULL);
+        cJSON *json = info_json_scene(args->scene.scene, &scene, &r);
+        cJSON_AddItemToObject(json, "outlook", info_json_outlook(&f, &r, view.width, view.height));
+        code = json_write(a, json, NULL);
     } else if (code == EXIT_DONE) {
         info_print_scene(&scene);
         info_print_regime(&r);
+        info_print_outlook(&f, &r, view.width, view.height);
     }
+    fronts_finish(&f);
     tyn_scene_finish(&scene);
     return code;
 }

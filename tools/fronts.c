@@ -48,7 +48,8 @@ static char *key_of(const char *name, const cJSON *settings)
     qsort(items, count, sizeof items[0], by_name);
     char *key = text_format("%s", name);
     for (size_t i = 0; i < count && key; i++) {
-        char *value = cJSON_PrintUnformatted(items[i]);
+        char *value = cJSON_IsString(items[i]) ? text_format("%s", items[i]->valuestring)
+                                               : cJSON_PrintUnformatted(items[i]);
         char *longer = value ? text_format("%s %s=%s", key, items[i]->string, value) : NULL;
         free(value);
         free(key);

@@ -167,7 +167,7 @@ static void advise_path(advisor *to)
     const regime *r = to->r;
     to->method = "path";
     const double white = 1 - r->albedo, transport = r->optical_depth * (1 - fmax(r->g, 0));
-    if (white < 0.01 && transport > 3) {
+    if (white < 0.01 && transport >= 10) {
         say(to, ADVICE_STRAINED, source,
             "unbiased, but light scatters hundreds of times (albedo %.4g, %.3g transport mean free "
             "paths deep): samples are dear, and rare long paths make bright pixels",

@@ -1,0 +1,64 @@
+#!/bin/sh
+# choosing.sh -- render --max-error and --budget-ms: what is chosen, said and kept, and whether the error is as asked for
+# in scenes that were never measured.
+. "$(dirname "$0")/lib.sh"
+
+run info --devices
+if [ "$code" != 0 ] || ! grep -q "usable" out; then
+    echo "skipped: no Vulkan device"
+    exit 77
+fi
+
+get() {
+    "$helpers/json_get" "$1" "$2" || fail "$1 has no $2"
+}
+cube="$scenes/cube.gltf --size 32x32 -o x.png"
+
+# ---- wrong ----
+# shellcheck disable=SC2086
+{
+    refuses 2 "'abc' is neither a share like 0.05 nor a percentage like 5%" render $cube --max-error abc
+    refuses 2 "'-5%' is neither" render $cube --max-error -5%
+    refuses 2 "--quality draft: --max-error and --budget-ms choose" render $cube --max-error 5% --quality draft
+    refuses 2 "--fronts needs --max-error or --budget-ms" render $cube --fronts f.json
+    refuses 2 "nothere.json" render $cube --max-error 5% --fronts nothere.json
+    echo '{"schema": "tyndall-report"}' >report.json
+    refuses 2 "not a file of fronts" render $cube --max-error 5% --fronts report.json
+    refuses 2 "there is no method 'abacus'" render $cube --max-error 5% --method abacus
+}
+
+# ---- what is said and kept ----
+works render "$scenes/cube.gltf" --size 32x32 -o x.png --max-error 5% --stats s.json -D raymarch.step=0.5
+grep -q "chosen: .*; error on 8x8 pixels about .*, likely below .*; a cold frame about" err || fail "no word on the choice: $(cat err)"
+grep -q "measured scenes nearest in regime (distance): cube" err || fail "no word on where it is from: $(cat err)"
+[ "$(get s.json choice.method)" = "$(get s.json method)" ] || fail "stats: another method than chosen"
+[ "$(get s.json settings/raymarch.step)" = 0.5 ] || [ "$(get s.json method)" = path ] || fail "-D does not stay"
+near "$(get s.json choice.asked.max_error)" 0.05 1e-6 "stats: asked"
+[ "$(get s.json choice.error_met)" = true ] || fail "5 % in the cube is not met"
+works render "$scenes/cube.gltf" --size 32x32 -o x.png --max-error 0.05 --method single --stats s.json
+[ "$(get s.json method)" = single ] || fail "--method does not restrict the choice"
+[ "$(get s.json choice.error_met)" = false ] || fail "single claims 5 % in the cube"
+get s.json warnings.0 | grep -q "5 % is not likely here with single" || fail "stats: no warning: $(get s.json warnings.0)"
+works render "$scenes/cube.gltf" --size 32x32 -o x.png --budget-ms 0.01 --stats s.json
+get s.json warnings.0 | grep -q "this is the fastest" || fail "stats: no warning of the time: $(get s.json warnings.0)"
+works render "$scenes/slab.gltf" --size 32x32 -o x.png --max-error 90% --stats s.json
+case $(get s.json method) in pop | path) ;; *) fail "a method that refuses periods was chosen: $(get s.json method)" ;; esac
+
+# ---- scenes that were not measured: 10 % asked for, 15 % is the bound ----
+# as_asked NAME ARGUMENTS
+as_asked() {
+    name=$1
+    shift
+    works render "$@" --size 64x64 --float --quiet --method path --spp 256 --seed 99 --aov error -o ref.exr
+    works render "$@" --size 64x64 --float --quiet --max-error 10% -o x.exr --stats s.json
+    works compare x.exr ref.exr --block 8
+    error=$(value error)
+    echo "$name: error $error; $(get s.json choice.why.0)"
+    near "$error" 0 0.15 "$name: error where 10 % were asked for"
+    near "$(get s.json choice.predicted.error_likely)" 0 0.1 "$name: promised"
+}
+as_asked "thin smoke" "$scenes/smoke.gltf" --density-scale 0.4 --g 0.5
+as_asked "cloud in a courtyard" "$scenes/cloud.gltf" --density-scale 0.3 --env "$scenes/courtyard.exr"
+as_asked "dark sphere" "$scenes/sphere.gltf" --albedo 0.7
+as_asked "white cube" "$scenes/cube-oblique.gltf" --albedo 1 --density-scale 3 --camera oblique
+finish
