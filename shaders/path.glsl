@@ -142,6 +142,7 @@ struct path_state {
     vec3 vertex, way;   // where it is, and where it goes on to
     vec3 beta, rho;     // see above
     vec3 hero;          // 1 in the hero channel
+    float kept;         // of its power: what was neither absorbed nor lost in roulette
     uint depth, steps;  // scatterings and reflections; effort
     float end;          // distance to the surface ahead, m
 };
@@ -480,6 +481,7 @@ void path_run(uint element, uint first, uint end)
             path.beta = vec3(1.0);
             path.rho = vec3(1.0);
             path.hero = vec3(1.0, 0.0, 0.0);
+            path.kept = 1.0;
             path.depth = 0u;
             path.steps = 0u;
             path.end = PATH_FAR;
@@ -558,6 +560,7 @@ void path_run(uint element, uint first, uint end)
             if (at_surface) {
                 f.at = surface_offset(found.point, found.point.normal);
                 path.beta *= found.albedo;
+                path.kept *= max3(found.albedo);
             } else {
                 // A real collision, drawn for the hero. With several media the path goes on in one of them.
                 float sigma_t = GREY ? f.m.sigma_t.x : dot(f.m.sigma_t, path.hero);
@@ -568,6 +571,7 @@ void path_run(uint element, uint first, uint end)
                     chosen = f.m.part_s / max(f.m.sigma_s, vec3(1e-30));
                 }
                 path.beta *= f.m.part_s * (part / sigma_t);
+                path.kept *= dot(f.m.sigma_s, path.hero) / sigma_t;
                 if (!GREY) {
                     path.rho *= f.m.sigma_t * chosen * (part / sigma_t);
                 }
@@ -652,12 +656,16 @@ void path_run(uint element, uint first, uint end)
             path.vertex = f.at;
             path.way = d;
 
+            // A way that the phase function hardly takes has next to no weight, but may lead right into the light's own
+            // narrow lobe: roulette by the weight would leave all of that to a few fireflies.
             float most = max3(path_weight(path));
             ended = !(most > 0.0);
+            most = max(most, path.kept);
             if (path.depth >= args.rr_depth && most < PATH_ROULETTE) {
                 float survival = most / PATH_ROULETTE;
                 ended = f.spare >= survival;
                 path.beta /= max(survival, 1e-30);
+                path.kept /= max(survival, 1e-30);
             }
         }
 
