@@ -157,6 +157,8 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
         [SHADE_PORT_SURFACE] = seen.surface,
         [SHADE_PORT_ALBEDO] = seen.albedo,
         [SHADE_PORT_EMISSION] = seen.emission,
+        [SHADE_PORT_EDGE_COUNT] = seen.edge_count,
+        [SHADE_PORT_EDGES] = seen.edges,
         [SHADE_PORT_BEAMS] = in->beams.beams,
         [SHADE_PORT_COLUMN] = in->beams.column,
         [SHADE_PORT_TAU_A] = in->beams.tau_a,

@@ -1,6 +1,7 @@
 // gbuffer.c -- the surfaces drawn as the camera sees them.
 #include "gbuffer.h"
-#include "gbuffer_args.h"
+#include "gbuffer_edge_args.h"
+#include "gbuffer_mixed.comp.h"
 #include "gbuffer_fragment.frag.h"
 #include "gbuffer_resolve.comp.h"
 #include "gbuffer_vertex.vert.h"
@@ -23,13 +24,21 @@ static const tyn_port ports[GBUFFER_NUM_PORTS] = {
     [GBUFFER_PORT_EMISSION] = {"emission", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
                                false,
                                "radiance to the camera, W/(m^2 sr); y of the facet's normal"},
+    [GBUFFER_PORT_EDGE_COUNT] = {"edge_count", TYN_OUT, TYN_BUFFER, 0, false,
+                                 "struct gbuffer_edge_count"},
+    [GBUFFER_PORT_EDGES] = {"edges", TYN_OUT, TYN_BUFFER, 0, false,
+                            "uint[]: pixels that show several pieces of surface"},
+    [GBUFFER_PORT_MIXED_COUNT] = {"mixed_count", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                                  "struct gbuffer_edge_count"},
+    [GBUFFER_PORT_MIXED] = {"mixed", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                            "uint[]: pixels whose samples see several triangles"},
     [GBUFFER_PORT_SEEN] = {"seen", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32_UINT, false,
                            "index of the triangle + 1, 0: none"},
     [GBUFFER_PORT_DEPTH] = {"depth", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT, false,
                             "reversed"},
 };
 
-// The drawing kernel has the first four.
+// The drawing kernel has the first four, that of single triangles all but the last two.
 static const tyn_binding bindings[] = {
     {GBUFFER_PORT_CAMERA, TYN_USE_UNIFORM, false},
     {GBUFFER_PORT_SURFACES, TYN_USE_UNIFORM, false},
@@ -42,6 +51,10 @@ static const tyn_binding bindings[] = {
     {GBUFFER_PORT_SURFACE, TYN_USE_STORAGE_WRITE, false},
     {GBUFFER_PORT_ALBEDO, TYN_USE_STORAGE_WRITE, false},
     {GBUFFER_PORT_EMISSION, TYN_USE_STORAGE_WRITE, false},
+    {GBUFFER_PORT_MIXED_COUNT, TYN_USE_STORAGE_RW, false},
+    {GBUFFER_PORT_MIXED, TYN_USE_STORAGE_RW, false},
+    {GBUFFER_PORT_EDGE_COUNT, TYN_USE_STORAGE_RW, false},
+    {GBUFFER_PORT_EDGES, TYN_USE_STORAGE_WRITE, false},
 };
 
 static const tyn_binding attachments[] = {
@@ -58,7 +71,7 @@ static const tyn_raster raster = {
     .clear_depth = 0.0f,
 };
 
-enum { KERNEL_DRAW, KERNEL_RESOLVE, NUM_KERNELS };
+enum { KERNEL_DRAW, KERNEL_RESOLVE, KERNEL_MIXED, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_DRAW] = {.name = "gbuffer_draw",
@@ -70,11 +83,17 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_RESOLVE] = {.name = "gbuffer_resolve",
                         .spirv = gbuffer_resolve_spirv,
                         .spirv_size = sizeof(gbuffer_resolve_spirv),
-                        .args_size = sizeof(struct gbuffer_args),
-                        .num_spec = 1,
+                        .num_spec = 2,
                         .local_size = {8, 8, 1},
                         .bindings = bindings,
-                        .num_bindings = sizeof(bindings) / sizeof(bindings[0])},
+                        .num_bindings = sizeof(bindings) / sizeof(bindings[0]) - 2},
+    [KERNEL_MIXED] = {.name = "gbuffer_mixed",
+                      .spirv = gbuffer_mixed_spirv,
+                      .spirv_size = sizeof(gbuffer_mixed_spirv),
+                      .num_spec = 2,
+                      .local_size = {GBUFFER_EDGES, 1, 1},
+                      .bindings = bindings,
+                      .num_bindings = sizeof(bindings) / sizeof(bindings[0])},
 };
 
 static const tyn_param params_table[] = {
@@ -90,6 +109,10 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_build_image(b, GBUFFER_PORT_SURFACE, size, 1);
     tyn_build_image(b, GBUFFER_PORT_ALBEDO, size, 1);
     tyn_build_image(b, GBUFFER_PORT_EMISSION, size, 1);
+    tyn_build_buffer(b, GBUFFER_PORT_EDGE_COUNT, sizeof(struct gbuffer_edge_count));
+    tyn_build_buffer(b, GBUFFER_PORT_EDGES, sizeof(uint32_t) * p->size[0] * p->size[1]);
+    tyn_build_buffer(b, GBUFFER_PORT_MIXED_COUNT, sizeof(struct gbuffer_edge_count));
+    tyn_build_buffer(b, GBUFFER_PORT_MIXED, sizeof(uint32_t) * p->size[0] * p->size[1]);
     tyn_build_image(b, GBUFFER_PORT_SEEN, size, 1);
     tyn_build_image(b, GBUFFER_PORT_DEPTH, size, 1);
     return TYN_OK;
@@ -98,13 +121,16 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_gbuffer_params *p = params;
-    const struct gbuffer_args args = {.samples = (uint32_t)p->samples};
-    const uint32_t spec[1] = {p->textured};
+    const uint32_t spec[2] = {p->textured, (uint32_t)p->samples};
     tyn_rec_draw(r, &(tyn_draw){.kernel = KERNEL_DRAW, .vertices = 3 * p->num_triangles});
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_RESOLVE,
-                                        .cells = tyn_rec_extent(r, GBUFFER_PORT_SURFACE),
-                                        .args = &args,
-                                        .spec = spec});
+    tyn_rec_fill(r, GBUFFER_PORT_EDGE_COUNT, 0);
+    tyn_rec_fill(r, GBUFFER_PORT_MIXED_COUNT, 0);
+    tyn_dispatch d = {.kernel = KERNEL_RESOLVE, .cells = {p->size[0], p->size[1], 1}, .spec = spec};
+    tyn_rec_dispatch(r, &d);
+    if (p->samples > 1) {
+        d.kernel = KERNEL_MIXED;
+        tyn_rec_dispatch_indirect(r, &d, GBUFFER_PORT_MIXED_COUNT, 0);
+    }
     tyn_rec_work(r, "triangles", p->num_triangles);
 }
 

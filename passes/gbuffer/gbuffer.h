@@ -20,6 +20,10 @@ enum {
     GBUFFER_PORT_SURFACE,  // OUT 2D RGBA32F: gbuffer.glsl, as the two below
     GBUFFER_PORT_ALBEDO,   // OUT 2D RGBA32F
     GBUFFER_PORT_EMISSION, // OUT 2D RGBA32F
+    GBUFFER_PORT_EDGE_COUNT, // OUT buffers, gbuffer_edge_args.h: pixels that show several pieces of surface
+    GBUFFER_PORT_EDGES,
+    GBUFFER_PORT_MIXED_COUNT, // SCRATCH buffers, the same of pixels whose samples see several triangles
+    GBUFFER_PORT_MIXED,
     GBUFFER_PORT_SEEN,     // SCRATCH 2D R32UI: triangle + 1
     GBUFFER_PORT_DEPTH,    // SCRATCH 2D D32
     GBUFFER_NUM_PORTS,

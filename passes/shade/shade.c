@@ -1,6 +1,7 @@
 // shade.c -- see shade.h.
 #include "shade.h"
 #include "shade_args.h"
+#include "shade_edges.comp.h"
 #include "shade_forward.comp.h"
 #include "shade_gather.comp.h"
 #include "shade_lights.comp.h"
@@ -8,6 +9,7 @@
 #include "shade_vpls.comp.h"
 #include "shade_walls.comp.h"
 #include "shade_table.h"
+#include "gbuffer_edge_args.h"
 #include "walls_args.h"
 #include <string.h>
 
@@ -23,6 +25,9 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     [PORT(SURFACE)] = {"surface", TYN_IN, TYN_IMAGE_2D, .meaning = "shading normal, distance in m"},
     [PORT(ALBEDO)] = {"albedo", TYN_IN, TYN_IMAGE_2D, .meaning = "albedo"},
     [PORT(EMISSION)] = {"emission", TYN_IN, TYN_IMAGE_2D, .meaning = "radiance, W/(m^2 sr)"},
+    [PORT(EDGE_COUNT)] = {"edge_count", TYN_IN, TYN_BUFFER, .meaning = "struct gbuffer_edge_count"},
+    [PORT(EDGES)] = {"edges", TYN_IN, TYN_BUFFER,
+                     .meaning = "uint[]: pixels that show several pieces of surface"},
     [PORT(BEAMS)] = {"beams", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "beam_block[]"},
     [PORT(COLUMN)] = {"column", TYN_IN, TYN_IMAGE_3D, .optional = true,
                       .meaning = "density (or sigma_s) along the suns"},
@@ -108,19 +113,27 @@ static const tyn_binding gather_bindings[] = {
     {PORT(PART), TYN_USE_SAMPLED},
     {PORT(INDIRECT), TYN_USE_STORAGE_WRITE},
 };
+// Bindings 0 to 27 of shade_piece.glsl.
+#define SURFACE_BINDINGS                                                                           \
+    COMMON_BINDINGS, {PORT(INDIRECT), TYN_USE_SAMPLED}, {PORT(PLACE), TYN_USE_SAMPLED},            \
+        {PORT(PART), TYN_USE_SAMPLED}, {PORT(MOMENTS), TYN_USE_SAMPLED},                           \
+        {PORT(WALL_TABLE), TYN_USE_SAMPLED}, {PORT(ENVIRONMENT), TYN_USE_UNIFORM},                 \
+    {                                                                                              \
+        PORT(FORWARD), TYN_USE_SAMPLED                                                             \
+    }
+
 static const tyn_binding surface_bindings[] = {
-    COMMON_BINDINGS,
-    {PORT(INDIRECT), TYN_USE_SAMPLED},
-    {PORT(PLACE), TYN_USE_SAMPLED},
-    {PORT(PART), TYN_USE_SAMPLED},
-    {PORT(MOMENTS), TYN_USE_SAMPLED},
-    {PORT(WALL_TABLE), TYN_USE_SAMPLED},
-    {PORT(ENVIRONMENT), TYN_USE_UNIFORM},
-    {PORT(FORWARD), TYN_USE_SAMPLED},
+    SURFACE_BINDINGS,
     {PORT(RADIANCE), TYN_USE_STORAGE_WRITE},
 };
+static const tyn_binding edges_bindings[] = {
+    SURFACE_BINDINGS,
+    {PORT(RADIANCE), TYN_USE_STORAGE_WRITE},
+    {PORT(EDGE_COUNT), TYN_USE_STORAGE_READ},
+    {PORT(EDGES), TYN_USE_STORAGE_READ},
+};
 
-enum { LIGHTS = 0, WALLS, FORWARD, VPLS, GATHER, SURFACE, NUM_KERNELS };
+enum { LIGHTS = 0, WALLS, FORWARD, VPLS, GATHER, SURFACE, EDGES, NUM_KERNELS };
 
 #define KERNEL(step, x, y, z)                                                                      \
     .name = "shade_" #step, .spirv = shade_##step##_spirv,                                         \
@@ -132,9 +145,10 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [LIGHTS] = {KERNEL(lights, 64, 1, 1), ARGS(2)},
     [WALLS] = {KERNEL(walls, 8, 4, 2)},
     [FORWARD] = {KERNEL(forward, 8, 4, 2), .num_spec = 3},
-    [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(3)},
-    [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(3)},
-    [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(3)},
+    [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(5)},
+    [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(5)},
+    [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(5)},
+    [EDGES] = {KERNEL(edges, GBUFFER_EDGES, 1, 1), ARGS(5)},
 };
 
 static tyn_result declare(tyn_builder *b, const void *data)
@@ -166,7 +180,6 @@ static void record(tyn_recorder *r, const void *data)
     const tyn_shade_params *p = data;
     const bool vpls = tyn_rec_has(r, PORT(VPLS));
     const struct shade_args args = {
-        .samples = tyn_rec_extent(r, PORT(SURFACE)).x / p->size[0],
         .num_directional = p->num_directional,
         .num_lamps = p->num_lamps,
         .tint = {p->tint[0], p->tint[1], p->tint[2]},
@@ -180,7 +193,10 @@ static void record(tyn_recorder *r, const void *data)
     const tyn_extent forward = tyn_rec_extent(r, PORT(FORWARD));
     features |= forward.x > 1 ? SHADE_SPREAD : 0;
     features |= p->sky ? SHADE_SKY : 0;
-    const uint32_t spec[3] = {p->mode, features, p->num_suns};
+    const uint32_t samples = tyn_rec_extent(r, PORT(SURFACE)).x / p->size[0];
+    const uint32_t shorter = p->size[0] < p->size[1] ? p->size[0] : p->size[1];
+    const uint32_t side = shorter < SHADE_SMALL ? SHADE_SIDE_SMALL : SHADE_SIDE;
+    const uint32_t spec[5] = {p->mode, features, p->num_suns, samples, side};
     const tyn_extent pixels = {p->size[0], p->size[1], 1};
     tyn_dispatch d = {.kernel = LIGHTS, .cells = {SHADE_ROWS, 1, 1}, .args = &args, .spec = spec};
     tyn_rec_dispatch(r, &d);
@@ -194,7 +210,6 @@ static void record(tyn_recorder *r, const void *data)
         tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = FORWARD, .cells = cells, .spec = spec});
     }
     if (vpls) {
-        const uint32_t side = SHADE_SIDE;
         d.kernel = VPLS;
         d.cells =
             (tyn_extent){(pixels.x + side - 1) / side, (pixels.y + side - 1) / side, side * side};
@@ -206,6 +221,10 @@ static void record(tyn_recorder *r, const void *data)
     d.kernel = SURFACE;
     d.cells = pixels;
     tyn_rec_dispatch(r, &d);
+    if (samples > 1) {
+        d.kernel = EDGES;
+        tyn_rec_dispatch_indirect(r, &d, PORT(EDGE_COUNT), 0);
+    }
     tyn_rec_work(r, "pixels", (double)pixels.x * pixels.y);
 }
 

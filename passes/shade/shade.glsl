@@ -10,6 +10,8 @@
 
 layout(constant_id = 1) const uint shade_features = 0u;
 layout(constant_id = 2) const uint shade_num_suns = 0u;
+layout(constant_id = 3) const int shade_samples = 2; // of the G-buffer along each side of a pixel
+layout(constant_id = 4) const int shade_side = SHADE_SIDE; // of the pattern
 layout(push_constant, scalar) uniform Args
 {
     shade_args args;
@@ -75,12 +77,10 @@ struct shade_point {
     vec3 facet;    // of the triangle: for shadows
 };
 
-// Sample k of a pixel whose first one is at `corner`. At most 4 a side; a division would be slow.
+// Sample k of a pixel whose first one is at `corner`.
 ivec2 shade_texel(ivec2 corner, int k)
 {
-    int side = int(args.samples);
-    int row = int(k >= side) + int(k >= 2 * side) + int(k >= 3 * side);
-    return corner + ivec2(k - row * side, row);
+    return corner + ivec2(k % shade_samples, k / shade_samples);
 }
 
 gbuffer_point shade_sample(ivec2 texel)
@@ -92,7 +92,7 @@ gbuffer_point shade_sample(ivec2 texel)
 // Where the ray of a sample ends.
 vec3 shade_position(ivec2 texel, float distance)
 {
-    camera_ray ray = camera_ray_through(camera, (vec2(texel) + 0.5) / float(args.samples));
+    camera_ray ray = camera_ray_through(camera, (vec2(texel) + 0.5) / float(shade_samples));
     return ray.origin + distance * ray.direction;
 }
 

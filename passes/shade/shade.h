@@ -24,6 +24,8 @@ enum {
     SHADE_PORT_SURFACE,     // IN 2D: gbuffer.glsl, as the two below
     SHADE_PORT_ALBEDO,
     SHADE_PORT_EMISSION,
+    SHADE_PORT_EDGE_COUNT, // IN buffers, gbuffer_edge_args.h: pixels that show several pieces of surface
+    SHADE_PORT_EDGES,
     SHADE_PORT_BEAMS, // IN optional buffer struct beam_block[]: with a medium and suns, as the three below
     SHADE_PORT_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS
     SHADE_PORT_TAU_A,

@@ -13,16 +13,19 @@
 #define SHADE_SPREAD (1u << 6) // sunlight scattered forward comes from around its sun
 
 #define SHADE_PLACES 64 // that light which was scattered forward may come from
-#define SHADE_SIDE 4   // pixels of a pattern along each side; each takes a part of the VPLs
+// Pixels of a pattern along each side; each takes a part of the VPLs. Of small pictures five pixels are much.
+#define SHADE_SIDE 5
+#define SHADE_SIDE_SMALL 4
+#define SHADE_SMALL 64 // pixels along the shorter side
 #define SHADE_REACH 2  // pixels around one that a gather looks at
+#define SHADE_MOST 8   // VPLs that a pixel takes in any case
 #define SHADE_NONE 4.0 // in place of a normal: no surface
 
 struct shade_args {
-    tyn_uint samples; // of the G-buffer along each side of a pixel
     tyn_uint num_directional; // lights before the lamps in "lights"
     tyn_uint num_lamps;
     tyn_vec3 tint;
 };
-TYN_ASSERT_SIZE(shade_args, 24);
+TYN_ASSERT_SIZE(shade_args, 20);
 
 #endif

@@ -1,6 +1,7 @@
 // shade_gather.comp -- all VPLs' light at a pixel, from the parts that it and its neighbours took.
 //
-// The 5 x 5 pixels around one, the outermost by half, hold every place of the pattern once, symmetrically.
+// The 5 x 5 pixels around one hold every place of the pattern once (in small pictures, where it is 4 x 4, if the
+// outermost count by half).
 // Only neighbours on the same piece of surface count; few of them stand for all, as every place of the
 // pattern takes VPLs from everywhere. Where next to none are left the pixel takes all VPLs itself.
 #version 460
@@ -31,22 +32,25 @@ void main()
     float width = 2.0 * camera.half_height / float(camera.size.y) * across;
     float tolerance = 1.0 / (width * width);
     vec4 sum = vec4(0.0);
-    for (int y = -SHADE_REACH; y <= SHADE_REACH; y++) {
-        for (int x = -SHADE_REACH; x <= SHADE_REACH; x++) {
-            ivec2 at = pixel + ivec2(x, y);
-            vec4 there = texelFetch(place_tex, clamp(at, ivec2(0), last), 0);
-            vec4 part = texelFetch(part_tex, clamp(at, ivec2(0), last), 0);
-            float share = (abs(x) == SHADE_REACH ? 0.5 : 1.0) * (abs(y) == SHADE_REACH ? 0.5 : 1.0);
+    // All of them within the picture: every place of the pattern counts at its borders, too.
+    bool odd = shade_side == SHADE_SIDE;
+    ivec2 first = pixel - SHADE_REACH;
+    first = odd ? clamp(first, ivec2(0), last - 2 * SHADE_REACH) : first;
+    for (int y = 0; y <= 2 * SHADE_REACH; y++) {
+        for (int x = 0; x <= 2 * SHADE_REACH; x++) {
+            ivec2 at = first + ivec2(x, y), held = clamp(at, ivec2(0), last);
+            vec4 there = texelFetch(place_tex, held, 0);
+            vec4 part = texelFetch(part_tex, held, 0);
+            float share = odd ? 1.0 : (x % 4 == 0 ? 0.5 : 1.0) * (y % 4 == 0 ? 0.5 : 1.0);
             float off = dot(normal, there.xyz - place.xyz);
             float turned = dot(normal, gbuffer_unfold(vec2(there.w, part.w)));
-            bool inside = all(greaterThanEqual(at, ivec2(0))) && all(lessThanEqual(at, last));
-            bool surface = inside && there.w != SHADE_NONE;
+            bool surface = at == held && there.w != SHADE_NONE;
             share *= surface ? smoothstep(0.7, 0.9, turned) / (1.0 + tolerance * off * off) : 0.0;
             sum += share * vec4(part.rgb, 1.0);
         }
     }
-    vec3 all = sum.rgb * (float(SHADE_SIDE * SHADE_SIDE) / max(sum.w, 1e-6));
-    for (bool alone = sum.w < 4.0; alone; alone = false) { // a loop, as most need not go in
+    vec3 all = sum.rgb * (float(shade_side * shade_side) / max(sum.w, 1e-6));
+    for (bool alone = sum.w < float(shade_side); alone; alone = false) { // a loop, as most need not go in
         shade_point p = shade_point(place.xyz, normal, normal);
         all = shade_vpls(p, 0u, 1u);
     }

@@ -1,6 +1,7 @@
 // wall_light.c -- light of suns and virtual point lights on the walls of the lattice.
 #include "walls.h"
 #include "wall_light_args.h"
+#include "wall_light_cells.comp.h"
 #include "wall_light_suns.comp.h"
 #include "wall_light_vpls.comp.h"
 
@@ -28,11 +29,13 @@ static const tyn_port ports[WALL_LIGHT_NUM_PORTS] = {
     [WALL_LIGHT_PORT_HITS] = {"hits", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
     [WALL_LIGHT_PORT_LIGHT] = {"wall_light", TYN_OUT, TYN_BUFFER, 0, false,
                                "radiance that the walls of a cell send out, W/(m^2 sr)"},
+    [WALL_LIGHT_PORT_LIST] = {"list", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                              "struct wall_light_list, uint[]: cells whose walls reflect"},
 };
 
 static const tyn_binding vpls_bindings[] = {
     {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {WALL_LIGHT_PORT_RADIALS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_RADIALS, TYN_USE_UNIFORM},
     {WALL_LIGHT_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED},
     {WALL_LIGHT_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED},
     {WALL_LIGHT_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED},
@@ -43,6 +46,13 @@ static const tyn_binding vpls_bindings[] = {
     {WALL_LIGHT_PORT_CELLS, TYN_USE_STORAGE_READ},
     {WALL_LIGHT_PORT_HITS, TYN_USE_STORAGE_READ},
     {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_RW},
+    {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_READ},
+};
+
+static const tyn_binding cells_bindings[] = {
+    {WALL_LIGHT_PORT_CELLS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_RW},
+    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},
 };
 
 static const tyn_binding suns_bindings[] = {
@@ -61,16 +71,17 @@ static const tyn_binding suns_bindings[] = {
     {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},
 };
 
-enum { SUNS = 0, VPLS, NUM_KERNELS };
+enum { SUNS = 0, VPLS, WALL_CELLS, NUM_KERNELS };
 
-#define KERNEL(step, specs)                                                                        \
+#define KERNEL(step, x, y, z, specs)                                                               \
     .name = #step, .spirv = wall_light_##step##_spirv,                                             \
     .spirv_size = sizeof wall_light_##step##_spirv, .args_size = sizeof(struct wall_light_args),   \
-    .local_size = {8, 4, 2}, .bindings = step##_bindings,                                          \
+    .local_size = {x, y, z}, .bindings = step##_bindings,                                          \
     .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SUNS] = {KERNEL(suns, 1)},
-    [VPLS] = {KERNEL(vpls, 2)},
+    [SUNS] = {KERNEL(suns, 8, 4, 2, 1)},
+    [VPLS] = {KERNEL(vpls, WALL_LIGHT_GROUP, 1, 1, 2)},
+    [WALL_CELLS] = {KERNEL(cells, WALL_LIGHT_GROUP, 1, 1, 1)},
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -81,7 +92,11 @@ static tyn_result declare(tyn_builder *b, const void *params)
                       "pass 'wall_light': neither suns nor 'radials': nothing shines");
         return TYN_ERR_PARAMS;
     }
-    tyn_build_buffer(b, WALL_LIGHT_PORT_LIGHT, 12ull * p->dims[0] * p->dims[1] * p->dims[2]);
+    const uint64_t cells = (uint64_t)p->dims[0] * p->dims[1] * p->dims[2];
+    tyn_build_buffer(b, WALL_LIGHT_PORT_LIGHT, 12 * cells);
+    const bool listed = tyn_build_has(b, WALL_LIGHT_PORT_RADIALS);
+    tyn_build_buffer(b, WALL_LIGHT_PORT_LIST,
+                     sizeof(struct wall_light_list) + (listed ? 4 * cells : 0));
     return TYN_OK;
 }
 
@@ -100,8 +115,13 @@ static void record(tyn_recorder *r, const void *params)
     }
     if (tyn_rec_has(r, WALL_LIGHT_PORT_RADIALS)) {
         const uint32_t spec[2] = {p->mode, p->num_suns > 0};
+        const tyn_extent all = {p->dims[0] * p->dims[1] * p->dims[2], 1, 1};
+        tyn_rec_fill(r, WALL_LIGHT_PORT_LIST, 0);
         tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = VPLS, .cells = cells, .args = &args, .spec = spec});
+            r,
+            &(tyn_dispatch){.kernel = WALL_CELLS, .cells = all, .args = &args, .spec = spec + 1});
+        tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = VPLS, .args = &args, .spec = spec},
+                                  WALL_LIGHT_PORT_LIST, 0);
     }
     tyn_rec_work(r, "cells", (double)p->dims[0] * p->dims[1] * p->dims[2]);
 }

@@ -9,4 +9,14 @@ struct wall_light_args {
     tyn_uint num_suns;
 };
 
+
+#define WALL_LIGHT_GROUP 64 // cells of a workgroup that goes through the list of those that reflect light
+
+// The list's head, then the cells' indices; their order does not matter.
+struct wall_light_list {
+    tyn_uvec3 groups; // workgroups
+    tyn_uint count;
+};
+TYN_ASSERT_SIZE(wall_light_list, 16);
+
 #endif

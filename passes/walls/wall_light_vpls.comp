@@ -12,6 +12,7 @@
 #define MEDIUM_BLOCK 0
 #define MEDIUM_DENSITY 2 // the medium itself is not read
 #define RADIAL_BLOCK 1
+#define RADIAL_UNIFORM
 #define RADIAL_COLUMN 2
 #define RADIAL_TAU_A 3
 #define RADIAL_TAU_P 4
@@ -23,7 +24,7 @@
 #include "lattice_walls.glsl"
 #include "walls_triangle.glsl"
 
-layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(local_size_x = WALL_LIGHT_GROUP) in; // through the list
 layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
@@ -48,6 +49,11 @@ layout(binding = 11, scalar) buffer wall_light_buffer
 {
     vec3 wall_light[];
 };
+layout(binding = 12, scalar) readonly buffer list_buffer
+{
+    wall_light_list list;
+    uint list_cells[];
+};
 layout(constant_id = 1) const uint added = 0; // 1: to the suns' light
 
 #include "walls_place.glsl"
@@ -61,19 +67,13 @@ struct wall_side {
 
 void main()
 {
-    ivec3 c = ivec3(gl_GlobalInvocationID);
-    if (any(greaterThanEqual(c, ivec3(args.dims)))) {
+    if (gl_GlobalInvocationID.x >= list.count) {
         return;
     }
-    uint i = walls_cell_index(c), cells = args.dims.x * args.dims.y * args.dims.z, cut = wall_links[i];
-    vec3 albedo = wall_cells[i].albedo, sum = vec3(0.0);
-    float area = wall_cells[i].area;
-    if (area == 0.0 || albedo == vec3(0.0)) {
-        if (added == 0) {
-            wall_light[i] = vec3(0.0);
-        }
-        return;
-    }
+    uint i = list_cells[gl_GlobalInvocationID.x], cells = args.dims.x * args.dims.y * args.dims.z;
+    ivec3 c = ivec3(i % args.dims.x, i / args.dims.x % args.dims.y, i / (args.dims.x * args.dims.y));
+    uint cut = wall_links[i];
+    vec3 sum = vec3(0.0);
     lattice_box box = lattice_box_of(args.extent, ivec3(args.dims));
     vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);
     wall_side sides[SIDES];
@@ -110,22 +110,26 @@ void main()
     }
     for (uint n = radial_num_lamps; n < radial_count; n++) {
         radial_light light = radials[n].light;
-        vec3 irradiance = vec3(0.0);
+        float least = max(light.radius * light.radius, 0.25 * box.dx * box.dx);
+        ivec3 from = walls_cell_before(box, light.position, light.axis);
+        // Loops that nobody enters cost nothing.
+        bool faces = false;
         for (uint k = 0u; k < num_sides; k++) {
             vec3 away = sides[k].place - light.position;
-            float r2 = dot(away, away), r = sqrt(r2), cosine = -dot(away, sides[k].normal) / max(r, 1e-20);
-            float share = cosine > 0.0 ? radial_share(n, away, r) : 0.0;
-            if (share > 0.0) {
-                beam_tau tau = radial_tau(radial_place_of(n, away, r));
-                float bounded = max(r2, max(light.radius * light.radius, 0.25 * box.dx * box.dx));
-                irradiance += sides[k].area * cosine * share / bounded * exp(-(tau.a + tau.p));
+            faces = faces || dot(away, sides[k].normal) < 0.0 && dot(away, light.axis) > 0.0;
+        }
+        for (bool lit = faces && walls_visible(box, c, from); lit; lit = false) {
+            for (uint k = 0u; k < num_sides; k++) {
+                vec3 away = sides[k].place - light.position;
+                float r2 = dot(away, away), r = sqrt(r2), cosine = -dot(away, sides[k].normal) / max(r, 1e-20);
+                float share = max(cosine, 0.0) * radial_share(n, away, r);
+                for (bool some = share > 0.0; some; some = false) {
+                    beam_tau tau = radial_tau(radial_place_of(n, away, r));
+                    sum += light.intensity * (sides[k].area * share / max(r2, least) * exp(-(tau.a + tau.p)));
+                }
             }
         }
-        if (irradiance.r + irradiance.g + irradiance.b > 0.0) {
-            ivec3 from = walls_cell_before(box, light.position, light.axis);
-            sum += walls_visible(box, c, from) ? light.intensity * irradiance : vec3(0.0);
-        }
     }
-    vec3 radiance = albedo * sum / (LATTICE_4PI * area);
+    vec3 radiance = wall_cells[i].albedo * sum / (LATTICE_4PI * wall_cells[i].area);
     wall_light[i] = added == 1 ? wall_light[i] + radiance : radiance;
 }

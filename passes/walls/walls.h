@@ -54,6 +54,7 @@ enum {
     WALL_LIGHT_PORT_CELLS,
     WALL_LIGHT_PORT_HITS,
     WALL_LIGHT_PORT_LIGHT, // OUT buffer vec3[cell]: LATTICE_PORT_WALL_LIGHT
+    WALL_LIGHT_PORT_LIST, // SCRATCH buffer, wall_light_args.h: cells whose walls reflect
     WALL_LIGHT_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_wall_light;

@@ -229,19 +229,22 @@ static void expect_near(const float *found, const float *right, float tolerance,
     }
 }
 
-static void check_sample(const tyn_surfaces *s, const images *got, uint32_t i, const hit *h,
-                         const double d[3])
+typedef struct expected {
+    double distance; // 0: no surface
+    float facet[3], normal[3], albedo[3], emission[3];
+    bool doubtful; // at an edge, where rounding may decide
+    bool textured; // then the albedo is not looked at here
+} expected;
+
+static expected expect(const tyn_surfaces *s, const hit *h, const double d[3])
 {
+    expected right = {.distance = h->triangle < 0 ? 0 : h->distance};
     if (h->triangle < 0) {
-        assert_true(got->surface[i][3] == 0);
-        return;
-    }
-    if (!(fabs((double)got->surface[i][3] - h->distance) <= 1e-5 * h->distance + 2e-6)) {
-        fail_msg("sample %u: distance %g, not %g", i, (double)got->surface[i][3], h->distance);
+        return right;
     }
     const tyn_surface_triangle *t = &s->triangles[h->triangle];
     const tyn_surface_material *m = &s->materials[t->material];
-    float facet[3], normal[3] = {0}, right[3], found[3], e[2][3];
+    float facet[3], normal[3] = {0}, e[2][3];
     for (int c = 0; c < 3; c++) {
         e[0][c] = s->vertices[t->vertices[1]].position[c] - s->vertices[t->vertices[0]].position[c];
         e[1][c] = s->vertices[t->vertices[2]].position[c] - s->vertices[t->vertices[0]].position[c];
@@ -261,16 +264,84 @@ static void check_sample(const tyn_surfaces *s, const images *got, uint32_t i, c
         facet[c] = front ? facet[c] : -facet[c];
         normal[c] = front ? normal[c] : -normal[c];
     }
-    turn(facet, right);
-    unfold(got->albedo[i][3], got->emission[i][3], found);
-    expect_near(found, right, 1e-5f, "facet", i);
-    turn(normal, right);
-    expect_near(got->surface[i], right, 1e-4f, "normal", i);
-    const float none[3] = {0};
+    turn(facet, right.facet);
+    turn(normal, right.normal);
     const bool emits = front || (m->flags & TYN_SURFACE_EMITS_BOTH_SIDES);
-    expect_near(got->emission[i], emits ? m->emission : none, 0, "emission", i);
-    if (m->texture == TYN_NO_TEXTURE) {
-        expect_near(got->albedo[i], m->albedo, 0, "albedo", i);
+    memcpy(right.emission, emits ? m->emission : (float[3]){0}, sizeof right.emission);
+    memcpy(right.albedo, m->albedo, sizeof right.albedo);
+    right.textured = m->texture != TYN_NO_TEXTURE;
+    return right;
+}
+
+static void check_distance(const images *got, uint32_t i, const expected *right)
+{
+    if (!(fabs((double)got->surface[i][3] - right->distance) <= 1e-5 * right->distance + 2e-6)) {
+        fail_msg("sample %u: distance %g, not %g", i, (double)got->surface[i][3], right->distance);
+    }
+}
+
+static void check_sample(const images *got, uint32_t i, const expected *right, float flag,
+                         float tolerance)
+{
+    float found[3];
+    unfold(got->albedo[i][3], got->emission[i][3] - flag, found);
+    expect_near(found, right->facet, 1e-5f, "facet", i);
+    expect_near(got->surface[i], right->normal, tolerance, "normal", i);
+    expect_near(got->emission[i], right->emission, flag > 0 ? 1e-5f : 0, "emission", i);
+    if (!right->textured) {
+        expect_near(got->albedo[i], right->albedo, flag > 0 ? 1e-6f : 0, "albedo", i);
+    }
+}
+
+// A pixel of samples[0 .. side^2 - 1], at image.
+static void check_pixel(const images *got, const uint32_t *image, const expected *samples,
+                        uint32_t count, uint32_t counts[3])
+{
+    bool doubtful = false;
+    uint32_t shown = 0;
+    expected mean = samples[0];
+    for (uint32_t k = 0; k < count; k++) {
+        doubtful |= samples[k].doubtful;
+        shown += samples[k].distance > 0;
+        for (int c = 0; k > 0 && c < 3; c++) {
+            mean.normal[c] += samples[k].normal[c];
+            mean.albedo[c] += samples[k].albedo[c];
+            mean.emission[c] += samples[k].emission[c];
+        }
+        mean.textured |= samples[k].textured;
+    }
+    if (doubtful) {
+        return;
+    }
+    const float flag = got->emission[image[0]][3];
+    const bool whole = flag > 2 && flag<6, none = flag> 6;
+    assert_true(none == (shown == 0) && !(whole && shown < count));
+    for (uint32_t k = 0; k < count; k++) {
+        check_distance(got, image[k], &samples[k]);
+        if (!whole && samples[k].distance > 0) {
+            check_sample(got, image[k], &samples[k], 0, 1e-4f);
+        }
+    }
+    counts[whole ? 0 : none ? 1 : 2]++;
+    if (whole) {
+        normalise(mean.normal);
+        for (int c = 0; c < 3; c++) {
+            mean.albedo[c] /= (float)count;
+            mean.emission[c] /= (float)count;
+        }
+        check_sample(got, image[0], &mean, 4, count > 1 ? 1e-3f : 1e-4f);
+    } else if (
+        !none) { // several pieces: some sample's facet is turned, or off the first one's plane
+        bool several = shown < count;
+        for (uint32_t k = 1; k < count; k++) {
+            float cosine = 0;
+            for (int c = 0; c < 3; c++) {
+                cosine += samples[k].facet[c] * samples[0].facet[c];
+            }
+            several |= cosine < 0.9f ||
+                       fabs(samples[k].distance - samples[0].distance) > 1e-3 * samples[0].distance;
+        }
+        assert_true(several);
     }
 }
 
@@ -292,7 +363,8 @@ static void as_rays_find_it(void **state)
         const int32_t samples = 1 + (int32_t)(k % 2);
         images got = draw(t, &scene, &cameras[k], &texture, &white, 1, samples);
         const uint32_t width = WIDTH * (uint32_t)samples;
-        uint32_t edges = 0, seen = 0;
+        uint32_t edges = 0, seen = 0, counts[3] = {0};
+        static expected right[4 * WIDTH * HEIGHT];
         for (uint32_t y = 0; y < HEIGHT * (uint32_t)samples; y++) {
             for (uint32_t x = 0; x < width; x++) {
                 double o[3], d[3];
@@ -306,17 +378,28 @@ static void as_rays_find_it(void **state)
                     h = trace(&scene.surfaces, o, d);
                     triangles[j] = h.triangle;
                 }
-                bool edge = false;
+                expected *e = &right[y * width + x];
+                *e = expect(&scene.surfaces, &h, d);
                 for (int j = 0; j < 4; j++) {
-                    edge |= triangles[j] != triangles[4];
+                    e->doubtful |= triangles[j] != triangles[4];
                 }
-                edges += edge;
+                edges += e->doubtful;
                 seen += h.triangle >= 0;
-                if (!edge) {
-                    check_sample(&scene.surfaces, &got, y * width + x, &h, d);
-                }
             }
         }
+        for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
+            const uint32_t side = (uint32_t)samples;
+            uint32_t image[4];
+            expected of[4];
+            for (uint32_t j = 0; j < side * side; j++) {
+                image[j] = (i / WIDTH * side + j / side) * width + i % WIDTH * side + j % side;
+                of[j] = right[image[j]];
+            }
+            check_pixel(&got, image, of, side * side, counts);
+        }
+        assert_true(counts[0] > 100 && (samples == 1) == (counts[2] == 0));
+        print_message("camera %zu: %u pixels of one surface, %u of none, %u of several\n", k,
+                      counts[0], counts[1], counts[2]);
         print_message("camera %zu: %u samples of surfaces, %u at edges\n", k, seen, edges);
         assert_true(seen > 500 && edges < seen / 20);
     }
