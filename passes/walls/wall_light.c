@@ -53,6 +53,7 @@ static const tyn_binding cells_bindings[] = {
     {WALL_LIGHT_PORT_CELLS, TYN_USE_STORAGE_READ},
     {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_RW},
     {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},
+    {WALL_LIGHT_PORT_LINKS, TYN_USE_STORAGE_READ},
 };
 
 static const tyn_binding suns_bindings[] = {
@@ -96,7 +97,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_build_buffer(b, WALL_LIGHT_PORT_LIGHT, 12 * cells);
     const bool listed = tyn_build_has(b, WALL_LIGHT_PORT_RADIALS);
     tyn_build_buffer(b, WALL_LIGHT_PORT_LIST,
-                     sizeof(struct wall_light_list) + (listed ? 4 * cells : 0));
+                     sizeof(struct wall_light_list) + (listed ? 8 * cells : 0));
     return TYN_OK;
 }
 

@@ -12,7 +12,8 @@ struct wall_light_args {
 
 #define WALL_LIGHT_GROUP 64 // cells of a workgroup that goes through the list of those that reflect light
 
-// The list's head, then the cells' indices; their order does not matter.
+// The list's head, then per cell of the lattice which links are cut, bit 13 + dx + 3 dy + 9 dz for the one to the
+// neighbour that is (dx, dy, dz) away, then the indices of the cells; their order does not matter.
 struct wall_light_list {
     tyn_uvec3 groups; // workgroups
     tyn_uint count;

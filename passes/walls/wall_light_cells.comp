@@ -3,8 +3,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
 #include "wall_light_args.h"
-#include "walls_args.h"
+#include "walls_links.glsl"
 
 layout(local_size_x = WALL_LIGHT_GROUP) in;
 layout(push_constant, scalar) uniform push
@@ -18,11 +19,15 @@ layout(binding = 0, scalar) readonly buffer cell_buffer
 layout(binding = 1, scalar) buffer list_buffer
 {
     wall_light_list list;
-    uint list_cells[];
+    uint list_entries[];
 };
 layout(binding = 2, scalar) writeonly buffer wall_light_buffer
 {
     vec3 wall_light[];
+};
+layout(binding = 3, scalar) readonly buffer link_buffer
+{
+    uint links[];
 };
 layout(constant_id = 0) const uint added = 0; // 1: to the suns' light
 
@@ -32,12 +37,19 @@ void main()
     if (i == 0u) {
         list.groups.yz = uvec2(1u);
     }
-    if (i >= args.dims.x * args.dims.y * args.dims.z) {
+    uint cells = args.dims.x * args.dims.y * args.dims.z;
+    if (i >= cells) {
         return;
     }
+    uint cut = 0u, found = links[i];
+    [[unroll]] for (uint link = 0u; link < uint(TYN_WALLS_LINKS); link++) {
+        ivec3 d = walls_step(link);
+        cut |= (found >> link & 1u) << uint(13 + d.x + 3 * d.y + 9 * d.z);
+    }
+    list_entries[i] = cut;
     if (wall_cells[i].area > 0.0 && wall_cells[i].albedo != vec3(0.0)) {
         uint n = atomicAdd(list.count, 1u);
-        list_cells[n] = i;
+        list_entries[cells + n] = i;
         atomicMax(list.groups.x, n / WALL_LIGHT_GROUP + 1u);
     } else if (added == 0) {
         wall_light[i] = vec3(0.0);
