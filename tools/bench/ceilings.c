@@ -31,7 +31,7 @@ static const tyn_port ports[NUM_PORTS] = {
 };
 static const tyn_binding writes[] = {{PORT_RESULT, TYN_USE_STORAGE_WRITE, false}};
 static const tyn_binding samples[] = {{PORT_RESULT, TYN_USE_STORAGE_WRITE, false},
-                                      {PORT_VOLUME, TYN_USE_SAMPLED, false}};
+                                      {PORT_VOLUME, TYN_USE_SAMPLED, true}};
 static const tyn_binding changes[] = {{PORT_RESULT, TYN_USE_STORAGE_RW, false}};
 static const tyn_kernel kernels[] = {
     [WHAT_FMA] = {.name = "ceiling_fma",

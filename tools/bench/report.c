@@ -174,25 +174,58 @@ static const char *percent(double error, char text[16])
     return text;
 }
 
+// Ranges of errors in which one method is fastest, from small to large errors; null: without an end.
+static cJSON *json_ranges(const plane *p, uint32_t block)
+{
+    enum { MAX_RANGES = 16 };
+    front_range ranges[MAX_RANGES];
+    const uint32_t num = front_ranges(p->points, p->count, 0.5, ranges, MAX_RANGES);
+    cJSON *list = cJSON_CreateArray();
+    for (uint32_t i = 0; i < num; i++) {
+        const front_range *r = &ranges[i];
+        cJSON *range = cJSON_CreateObject();
+        cJSON_AddNumberToObject(range, "block", block);
+        cJSON_AddStringToObject(range, "method", p->lines[r->line].name);
+        json_add_float(range, "low", r->lowest ? NAN : r->low);
+        json_add_float(range, "high", r->highest ? NAN : r->high);
+        cJSON_AddItemToArray(list, range);
+    }
+    return list;
+}
+
+static void add_verdict(cJSON *verdicts, char *text)
+{
+    cJSON_AddItemToArray(verdicts, cJSON_CreateString(text ? text : ""));
+    free(text);
+}
+
 static cJSON *json_verdicts(const plane *p)
 {
     enum { MAX_RANGES = 16 };
     front_range ranges[MAX_RANGES];
     const uint32_t num = front_ranges(p->points, p->count, 0.5, ranges, MAX_RANGES);
     cJSON *verdicts = cJSON_CreateArray();
+    bool has_pop = false, pop_wins = false;
+    for (uint32_t i = 0; i < p->num_lines; i++) {
+        has_pop = has_pop || strcmp(p->lines[i].name, "pop") == 0;
+    }
     for (uint32_t i = num; i-- > 0;) { // from what is asked for most
         const front_range *r = &ranges[i];
         const char *name = p->lines[r->line].name;
-        const char *does = strcmp(name, "pop") == 0 ? "is on the front" : "wins";
+        bool is_pop = strcmp(name, "pop") == 0;
+        const char *does = is_pop ? "is on the front" : "wins";
         char low[16], high[16];
         percent(r->low, low);
         percent(r->high, high);
-        char *text = r->lowest && r->highest ? text_format("%s %s at all errors", name, does)
-                     : r->highest            ? text_format("%s %s above %s", name, does, low)
-                     : r->lowest             ? text_format("%s %s below %s", name, does, high)
-                                 : text_format("%s %s from %s to %s", name, does, low, high);
-        cJSON_AddItemToArray(verdicts, cJSON_CreateString(text ? text : ""));
-        free(text);
+        pop_wins = pop_wins || is_pop;
+        add_verdict(verdicts,
+                    r->lowest && r->highest ? text_format("%s %s at all errors", name, does)
+                    : r->highest            ? text_format("%s %s above %s", name, does, low)
+                    : r->lowest             ? text_format("%s %s below %s", name, does, high)
+                                : text_format("%s %s from %s to %s", name, does, low, high));
+    }
+    if (has_pop && !pop_wins) {
+        add_verdict(verdicts, text_format("pop is nowhere on the front"));
     }
     return verdicts;
 }
@@ -265,13 +298,14 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
     cJSON_AddItemToObject(scene, "regime", known ? regime_json(&found) : cJSON_CreateNull());
     cJSON_AddItemToObject(scene, "reference", json_reference(c));
     cJSON *fronts = cJSON_CreateArray(), *equal = cJSON_CreateArray();
-    cJSON *floors = NULL, *verdicts = NULL;
+    cJSON *floors = NULL, *ranges = NULL, *verdicts = NULL;
     for (int i = 0; i < BENCH_BLOCKS; i++) {
         plane p;
         if (plane_make(&p, runs, i)) {
             if (i == 0) {
                 choose_pictures(&p, runs);
                 floors = json_floors(&p, c->blocks[i]);
+                ranges = json_ranges(&p, c->blocks[i]);
                 verdicts = json_verdicts(&p);
             }
             cJSON_AddItemToArray(fronts, json_front(&p, c->blocks[i]));
@@ -285,6 +319,7 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
     cJSON_AddItemToObject(scene, "fronts", fronts);
     cJSON_AddItemToObject(scene, "equal_error", equal);
     cJSON_AddItemToObject(scene, "floors", floors ? floors : cJSON_CreateArray());
+    cJSON_AddItemToObject(scene, "ranges", ranges ? ranges : cJSON_CreateArray());
     cJSON_AddItemToObject(scene, "verdicts", verdicts ? verdicts : cJSON_CreateArray());
     // What is used from here on is what a reader of the file sees.
     char *text = cJSON_PrintUnformatted(scene);
