@@ -174,14 +174,14 @@ cJSON *ceilings_json(const ceilings *c)
 
 // ---- nodes ------------------------------------------------------------------------------------
 
-// What a counted step costs at least, by hand from the shaders. March: the density and the lattice (or the
-// column) are fetched, two exponentials of the step and two of the sun's light, about eighty flops between.
-// Path: a step is sixteen tentative collisions, each with a fetch, a logarithm and a random number.
+// What a counted step costs at least, by hand from the shaders. March: where there is no medium it is a fetch of the
+// density and some twenty flops; full steps cost more, and are not counted apart. Path: a step is sixteen tentative
+// collisions, each with a fetch, a logarithm and a random number.
 static const struct {
     const char *node;
     double flops, samples, exps;
 } steps[] = {
-    {"raymarch", 80, 2, 4},
+    {"raymarch", 20, 1, 0},
     {"path", 16 * 60, 16, 16},
 };
 
