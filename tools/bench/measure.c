@@ -169,10 +169,8 @@ static int time_cold(measuring *m)
 
 // The camera turns by a little from frame to frame: times, and flicker. Of a method that samples every frame
 // has samples of its own, as it would have in a film.
-static int time_camera(measuring *m, uint32_t least, double seconds)
+static int time_camera(measuring *m, uint32_t least, uint32_t most, double seconds)
 {
-    const uint32_t most =
-        m->c->suite->frames > FLICKER_FRAMES ? m->c->suite->frames : FLICKER_FRAMES;
     double *times = calloc(most, sizeof *times);
     flicker f;
     int code = flicker_open(&f, m->view.width, m->view.height) && times
@@ -308,7 +306,9 @@ static int measure_frames(measuring *m, const char *label)
         code = time_cold(m);
     }
     if (code == EXIT_DONE) {
-        code = time_camera(m, slow ? 1 : 3, seconds);
+        const uint32_t frames = m->c->suite->frames;
+        code = time_camera(m, slow ? 1 : 3, frames > FLICKER_FRAMES ? frames : FLICKER_FRAMES,
+                           seconds);
     }
     if (code == EXIT_DONE) {
         take_states(m);
@@ -337,13 +337,13 @@ static int measure_samples(measuring *m, const char *label)
         code = take_picture(m);
     }
     // Short ones again: a first millisecond is noise.
-    if (code == EXIT_DONE && m->cold_ms < 0.2e3 * seconds) {
+    if (code == EXIT_DONE && m->cold_ms < fmin(0.2e3 * seconds, 300)) {
         code = time_cold(m);
     } else if (code == EXIT_DONE) {
         finish_nodes(m);
     }
     if (code == EXIT_DONE && 3e-3 * m->cold_ms < seconds) {
-        code = time_camera(m, 3, seconds);
+        code = time_camera(m, 3, 3, seconds);
         m->camera_ms = NAN; // that of the whole rendering
     }
     return code;
