@@ -146,6 +146,23 @@ static int64_t fastest_line(const front_point *points, uint32_t count, double er
     return best;
 }
 
+// What is narrower than 5 % is noise of times: it goes to the range below.
+static uint32_t without_slivers(front_range *ranges, uint32_t num)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < num; i++) {
+        const front_range *r = &ranges[i];
+        bool sliver = !r->lowest && !r->highest && r->high < 1.05 * r->low;
+        if (kept > 0 && (sliver || ranges[kept - 1].line == r->line)) {
+            ranges[kept - 1].high = r->high;
+            ranges[kept - 1].highest = r->highest;
+        } else {
+            ranges[kept++] = *r;
+        }
+    }
+    return kept;
+}
+
 uint32_t front_ranges(const front_point *points, uint32_t count, double high, front_range *ranges,
                       uint32_t max)
 {
@@ -174,7 +191,7 @@ uint32_t front_ranges(const front_point *points, uint32_t count, double high, fr
         ranges[num - 1].high = high;
         ranges[num - 1].highest = true;
     }
-    return num;
+    return without_slivers(ranges, num);
 }
 
 double front_geometric_mean(const double *values, uint32_t count)

@@ -34,7 +34,8 @@ typedef struct front_range {
     bool lowest, highest; // the range has no lower, no upper end
 } front_range;
 // From the least error of any point up to `high`, in steps of 1 %; from small to large errors. Nothing is
-// counted as faster than its fastest point. Gives the number of ranges, at most `max`.
+// counted as faster than its fastest point. Ranges of less than 5 % between two others go to the one below. Gives
+// the number of ranges, at most `max`.
 uint32_t front_ranges(const front_point *points, uint32_t count, double high, front_range *ranges,
                       uint32_t max);
 
