@@ -66,7 +66,7 @@ float vpl_map_visibility(vpl_map map, vec3 away, float r)
     vec2 x = vpl_map_place(away * map.frame) * map.last, first = min(floor(x), map.last - 1.0), w = x - first;
     vec4 stored = textureGather(vpl_distances, (map.corner + first + 1.0) * map.texel).wzxy;
     vec4 shares = vec4(1.0 - w.x, w.x, 1.0 - w.x, w.x) * vec4(1.0 - w.yy, w.yy);
-    return map.last > 0.0 ? dot(shares, vec4(greaterThanEqual(stored, vec4(0.95 * r)))) : 1.0;
+    return map.last > 0.0 ? dot(shares, vec4(greaterThanEqual(stored, vec4(r)))) : 1.0;
 }
 
 // Share of the light of VPL `vpl`, whose axis is `axis`, that goes the way `away` and is not stopped by
@@ -95,7 +95,9 @@ float vpl_visibility(uint vpl, vec3 axis, vec3 away, vec3 normal)
     // One gather is cheaper than four fetches; its order is (0, 1), (1, 1), (1, 0), (0, 0).
     vec4 stored = textureGather(vpl_distances, (vec2(corner + first) + 1.0) / vec2(size)).wzxy;
     vec4 shares = vec4(1.0 - w.x, w.x, 1.0 - w.x, w.x) * vec4(1.0 - w.yy, w.yy);
-    return dot(shares, vec4(greaterThanEqual(stored, 0.95 * reach)));
+    // A surface is not in its own shadow; cells behind a wall, however close, are.
+    float slack = plane != 0.0 ? 0.95 : 1.0;
+    return dot(shares, vec4(greaterThanEqual(stored, slack * reach)));
 }
 #endif
 

@@ -4,6 +4,7 @@
 #include "npy.h"
 #include "path_run.h"
 #include "solids.h"
+#include "todo.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -123,37 +124,54 @@ static void sealed(void **state)
     }
 }
 
-// A lamp in a box of 10 cm, sealed, above 1 km of ground and in fog: nearness is no matter of the scene's size.
+// The brightest pixel of a lamp in fog 1 m above a floor, in a sealed box of the edge `box` about it, or in none.
+static double brightest_of_lamp(gpu_test *t, float floor, float box)
+{
+    tyn_scene scene;
+    tyn_scene_init(&scene);
+    uint32_t m = solids_material(&scene, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, 0, 0});
+    solids_quad(&scene, (float[]){-0.5f * floor, 0, -0.5f * floor}, (float[]){0, 0, floor},
+                (float[]){floor, 0, 0}, m);
+    if (box > 0) {
+        const float h = 0.5f * box;
+        solids_box(&scene, (float[]){-h, 1 - h, -h}, (float[]){h, 1 + h, h}, 0, false, m);
+    }
+    solids_hierarchy(&scene, 4);
+    tyn_medium fog = grey_medium(0.1f, 0.01f, 0);
+    scene_add_box(&scene, &fog, (float[]){-3, 0, -3}, (float[]){3, 3, 3}, NULL, NULL);
+    scene_add_lamp(&scene, (float[]){0, 1, 0}, 10);
+    tyn_view view = {0};
+    view_perspective(&view, (float[]){0, 2, 4}, (float[]){0, 0.3f, 0}, 0.7f, 32);
+    picture p;
+    picture_render(&p, t->dev, "pop", &scene, &view, NULL, 0);
+    double brightest = 0;
+    for (int i = 0; i < 32 * 32 * 3; i++) {
+        brightest = fmax(brightest, p.rgb[i]);
+    }
+    picture_free(&p);
+    tyn_scene_finish(&scene);
+    return brightest;
+}
+
+// A lamp in a sealed box of 10 cm above 1 km of ground: nearness is no matter of the scene's size. And in one of 1 m,
+// which is five cells of the lattice: there virtual lights stand on the walls' insides.
 static void sealed_lamp(void **state)
 {
-    gpu_test *t = *state;
-    double brightest[2] = {0};
-    for (int open = 0; open < 2; open++) { // without the box, to compare with
-        tyn_scene scene;
-        tyn_scene_init(&scene);
-        uint32_t m = solids_material(&scene, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, 0, 0});
-        solids_quad(&scene, (float[]){-500, 0, -500}, (float[]){0, 0, 1000}, (float[]){1000, 0, 0},
-                    m);
-        if (!open) {
-            solids_box(&scene, (float[]){-0.05f, 0.95f, -0.05f}, (float[]){0.05f, 1.05f, 0.05f}, 0,
-                       false, m);
-        }
-        solids_hierarchy(&scene, 4);
-        tyn_medium fog = grey_medium(0.1f, 0.01f, 0);
-        scene_add_box(&scene, &fog, (float[]){-3, 0, -3}, (float[]){3, 3, 3}, NULL, NULL);
-        scene_add_lamp(&scene, (float[]){0, 1, 0}, 10);
-        tyn_view view = {0};
-        view_perspective(&view, (float[]){0, 2, 4}, (float[]){0, 0.3f, 0}, 0.7f, 32);
-        picture p;
-        picture_render(&p, t->dev, "pop", &scene, &view, NULL, 0);
-        for (int i = 0; i < 32 * 32 * 3; i++) {
-            brightest[open] = fmax(brightest[open], p.rgb[i]);
-        }
-        picture_free(&p);
-        tyn_scene_finish(&scene);
+    static const float floors[2] = {1000, 10}, boxes[2] = {0.1f, 1};
+    bool good = true;
+    for (int k = 0; k < 2; k++) {
+        const double open = brightest_of_lamp(*state, floors[k], 0);
+        const double sealed = brightest_of_lamp(*state, floors[k], boxes[k]);
+        printf("sealed lamp: box of %g m, brightest pixel %.1e, without the box %.3f\n",
+               (double)boxes[k], sealed, open);
+        assert_true(sealed < 5e-3 * open);
+        good =
+            todo_if(k == 1, sealed < 1e-4 * open,
+                    "virtual lights see through walls where maps of 16 x 16 directions blend rays",
+                    "sealed lamp in a box of %g m", (double)boxes[k]) &&
+            good;
     }
-    printf("sealed lamp: brightest pixel %.1e, without the box %.3f\n", brightest[0], brightest[1]);
-    assert_true(brightest[0] < 1e-4 * brightest[1]);
+    assert_true(good);
 }
 
 // Net flux and fluence within a slab of thickness 1, z up; the box is a quarter of that wide in x: periods
