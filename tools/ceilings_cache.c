@@ -72,6 +72,7 @@ int ceilings_known(app *a, tyn_device *device, ceilings *c)
     char *path = path_of(device);
     int code = EXIT_DONE;
     if (!load(path, c)) {
+        app_note(a, "measuring how fast this device is, once a day");
         code = ceilings_measure(a, device, c);
         cJSON *json = code == EXIT_DONE && path ? ceilings_json(c) : NULL;
         char *text = json ? cJSON_Print(json) : NULL;

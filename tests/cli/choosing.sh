@@ -44,6 +44,18 @@ get s.json warnings.0 | grep -q "this is the fastest" || fail "stats: no warning
 works render "$scenes/slab.gltf" --size 32x32 -o x.png --max-error 90% --stats s.json
 case $(get s.json method) in pop | path) ;; *) fail "a method that refuses periods was chosen: $(get s.json method)" ;; esac
 
+# ---- measurements of one's own ----
+cat >suite.json <<END
+{ "name": "small", "size": [32, 32], "reference_spp": 16, "block": 8, "frames": 1, "max_seconds": 1,
+  "scenes": [ { "scene": "cube.gltf" } ],
+  "runs": [ { "name": "pop", "method": "pop", "settings": { "lattice.cells": 8 } },
+            { "name": "path", "method": "path", "spp": 4 } ] }
+END
+works bench --suite suite.json --scenes "$scenes" --quiet --write-fronts own.json
+works render "$scenes/cube.gltf" --size 32x32 -o x.png --max-error 80% --fronts own.json --method pop --stats s.json
+[ "$(get s.json choice.nearest.0.name)" = cube.gltf ] || [ "$(get s.json choice.nearest.0.name)" = cube ] || fail "not from the measurements given: $(get s.json choice.nearest.0.name)"
+[ "$(get s.json settings/lattice.cells)" = 8 ] || fail "not with the measured settings"
+
 # ---- scenes that were not measured: 10 % asked for, 15 % is the bound ----
 # as_asked NAME ARGUMENTS
 as_asked() {
