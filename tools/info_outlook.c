@@ -20,6 +20,9 @@ static uint32_t look(const fronts *f, const regime *r, uint32_t width, uint32_t 
 {
     static const char *const methods[] = {"pop", "pop-paper", "single"};
     uint32_t count = 0;
+    if (!(r->optical_depth > 0) && !r->num_triangles) {
+        return 0; // nothing is in the picture but the sky
+    }
     for (size_t i = 0; i < ARRAY_SIZE(methods); i++) {
         char word[32];
         snprintf(word, sizeof word, " %s ", methods[i]);
@@ -53,8 +56,9 @@ void info_print_outlook(const fronts *f, const regime *r, uint32_t width, uint32
         if (o->spp) {
             snprintf(samples, sizeof samples, ", %u samples a pixel", o->spp);
         }
-        printf("  %-10s %s%.2g %% off on 8x8 pixels, %.3g %s%s\n", o->method, "", 100 * o->error,
-               o->ms < 1000 ? o->ms : o->ms / 1000, o->ms < 1000 ? "ms" : "s", samples);
+        printf("  %-10s %.*f %% off on 8x8 pixels, %.3g %s%s\n", o->method, o->error < 0.1,
+               100 * o->error, o->ms < 1000 ? o->ms : o->ms / 1000, o->ms < 1000 ? "ms" : "s",
+               samples);
     }
 }
 

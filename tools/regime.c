@@ -631,6 +631,9 @@ bool regime_of(const tyn_scene *scene, const tyn_camera *camera, regime *r)
     int n[3];
     media_make(scene, md);
     const bool found = box_of(scene, &b);
+    for (int a = 0; a < 3 && !found; a++) { // nothing is lit: shares are those on a cube
+        b.edge[a][a] = b.length[a] = 1;
+    }
     if (found && scene->num_shapes) {
         sample_counts(&b, n);
         sample_box(md, &b, n, col, &s);
