@@ -69,13 +69,17 @@ radial_place radial_place_of(uint n, vec3 away, float r)
 }
 
 // Share of the light's intensity that goes along `away`, r = its length.
-float radial_share(uint n, vec3 away, float r)
+float radial_share_of(radial_light light, vec3 away, float r)
 {
-    if (radials[n].light.kind == TYN_RADIAL_ISOTROPIC) {
+    if (light.kind == TYN_RADIAL_ISOTROPIC) {
         return 1.0;
     }
-    return radial_lobe(radials[n].light.kind, radials[n].light.axis, radials[n].light.cos_inner,
-                       radials[n].light.cos_outer, away / max(r, 1e-20));
+    return radial_lobe(light.kind, light.axis, light.cos_inner, light.cos_outer, away / max(r, 1e-20));
+}
+
+float radial_share(uint n, vec3 away, float r)
+{
+    return radial_share_of(radials[n].light, away, r);
 }
 
 // Mean of 1 / r^2 over a cube of edge d whose middle is at r, both squared: 1 / r^2 (1 + d^2 / (12 r^2) + ...)

@@ -156,9 +156,27 @@ bool march_any(march_medium m)
     return most > 0.0;
 }
 
+// What stands before a light, as a view ray sees it. Read once a ray, as some devices read buffers slowly.
+struct march_map {
+    shadow_light map;
+    vec3 from, along; // the ray in the light's frame: what moves along it moves evenly there
+};
+
+march_map march_map_of(uint light, vec3 origin, vec3 direction)
+{
+    march_map m;
+    if (raymarch_has(RAYMARCH_SHADOWS)) {
+        m.map = shadows[light];
+        m.from = shadow_frame(m.map, origin);
+        m.along = shadow_frame_direction(m.map, direction);
+    }
+    return m;
+}
+
 // A sun as one view ray sees it: its grid's coordinates are linear along the ray.
 struct march_sun {
     beam_ray beam;
+    march_map map;
     uint grid; // number of its grid
     vec3 irradiance; // W/m^2
     float mean_cosine;
@@ -202,6 +220,7 @@ march_sun march_sun_of(uint n, march_medium unit, vec3 origin, vec3 direction)
     sun.beam = beam_ray_of(n, origin, direction);
     // Said at compile time, as some devices run both sides of a branch.
     sun.beam.edges = sun.beam.edges && !raymarch_has(RAYMARCH_CLOSED);
+    sun.map = march_map_of(beams[n].light, origin, direction);
     sun.irradiance = light.color;
     sun.mean_cosine = light.mean_cosine;
 #ifdef RAYMARCH_GREY
@@ -299,17 +318,15 @@ float march_shadow_piece()
     return max(max(medium.extent.x, medium.extent.y), medium.extent.z) / RAYMARCH_SHADOWS_ACROSS;
 }
 
-bool march_sees(bool sun, uint light, vec3 from, vec3 along, float s)
+bool march_sees(bool sun, march_map m, float s)
 {
-    vec3 p = from + s * along;
-    return (sun ? shadow_all_lit(shadow_place_sun(shadows[light], p)) : shadow_visibility_lamp(light, p)) > 0.0;
+    vec3 q = m.from + s * m.along;
+    return (sun ? shadow_all_lit(shadow_place_sun(m.map, q)) : shadow_visibility_lamp_at(m.map, q)) > 0.0;
 }
 
-// Share of the step from s to s + ds that a light sees, on its map (of suns: what moves along a view ray moves
-// evenly over it) or in M. Steps follow the medium, shadows do not: so a step looks at several places, and
+// Share of the step from s to s + ds that a light sees. Steps follow the medium, shadows do not: so a step looks at several places, and
 // halves what is between two that differ.
-float march_lit(bool sun, uint light, uint bit, vec3 from, vec3 along, float s, float ds,
-                inout march_shadows shadow)
+float march_lit(bool sun, march_map map, uint bit, float s, float ds, inout march_shadows shadow)
 {
     float part = ds / max(ceil(ds / march_shadow_piece()), 1.0), finest = part / RAYMARCH_SHADOW_HALVES, sum = 0.0;
     bool known = (shadow.known >> bit & 1u) != 0u, lit = (shadow.lit >> bit & 1u) != 0u;
@@ -319,7 +336,7 @@ float march_lit(bool sun, uint light, uint bit, vec3 from, vec3 along, float s, 
     while (lo < ds) {
         float next = hi > 0.0 ? 0.5 * (lo + hi) : lo + 1.01 * part > ds ? ds : lo + part;
         next = known ? next : 0.0;
-        bool sees = march_sees(sun, light, from, along, min(s + next, shadow.inside));
+        bool sees = march_sees(sun, map, min(s + next, shadow.inside));
         lit = known ? lit : sees;
         known = true;
         sum += lit && sees ? next - lo : 0.0;
@@ -408,11 +425,32 @@ float march_pixel_mean(float x)
 
 const float MARCH_LAMP_STEP = 0.15; // steps are no longer than this part of the distance from a lamp
 
-float march_lamp_step(march_lamps ray, float s)
+// A lamp as a view ray sees it. The first ones are read once a ray.
+struct march_lamp {
+    radial_grid grid;
+    march_map map;
+};
+const uint MARCH_LAMPS_KEPT = 2u;
+const uint march_lamps_kept = raymarch_num_lamps < MARCH_LAMPS_KEPT ? raymarch_num_lamps : MARCH_LAMPS_KEPT;
+
+march_lamp march_lamp_of(uint n, march_lamps ray)
+{
+    march_lamp lamp;
+    lamp.grid = radials[n];
+    lamp.map = march_map_of(lamp.grid.light.light, ray.origin, ray.direction);
+    return lamp;
+}
+
+float march_lamp_step(march_lamps ray, march_lamp kept[MARCH_LAMPS_KEPT], float s)
 {
     float least = TYN_INFINITY;
-    for (uint n = 0u; n < raymarch_num_lamps; n++) {
-        vec3 away = ray.origin + s * ray.direction - radials[n].light.position;
+    vec3 p = ray.origin + s * ray.direction;
+    [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
+        vec3 away = p - kept[n].grid.light.position;
+        least = min(least, dot(away, away));
+    }
+    for (uint n = MARCH_LAMPS_KEPT; n < raymarch_num_lamps; n++) {
+        vec3 away = p - radials[n].light.position;
         least = min(least, dot(away, away));
     }
     return MARCH_LAMP_STEP * max(sqrt(least), march_least_h(ray, s));
@@ -420,13 +458,13 @@ float march_lamp_step(march_lamps ray, float s)
 
 // Light of a lamp that is scattered towards the eye `away` from it, r = length(away). `per_intensity`: what
 // a W/sr sends there as if nothing stood before it, 1/m^2.
-vec3 march_lamplight_seen(uint n, march_lamps ray, march_medium unit, march_medium m, vec3 away, float r,
+vec3 march_lamplight_seen(march_lamp lamp, march_lamps ray, march_medium unit, march_medium m, vec3 away, float r,
                           float per_intensity, spectrum weight, spectrum weight_scaled, inout vec3 first)
 {
-    vec3 irradiance = radials[n].light.intensity * per_intensity;
+    vec3 irradiance = lamp.grid.light.intensity * per_intensity;
     vec3 turn = ray.direction + away / max(r, 1e-20);
     float one_minus_mu = 0.5 * dot(turn, turn);
-    radial_place place = radial_place_of(n, away, r);
+    radial_place place = radial_place_in(lamp.grid, away, r);
     spectrum tau_s, tau_a, phase, k_tms, k_lobe;
 #ifdef RAYMARCH_GREY
     float column = radial_column(place);
@@ -470,11 +508,11 @@ vec3 march_lamplight_seen(uint n, march_lamps ray, march_medium unit, march_medi
 
 // As march_sunlight, of a lamp in the step from s to s + ds, of which `at` is the middle. 1 / r^2 changes most:
 // its mean is exact, (angle under which the lamp sees the step) / (h ds), h the ray's distance from it.
-vec3 march_lamplight(uint n, march_lamps ray, march_medium unit, march_medium m, float s, float ds,
+vec3 march_lamplight(march_lamp lamp, uint bit, march_lamps ray, march_medium unit, march_medium m, float s, float ds,
                      float at, spectrum weight, spectrum weight_scaled, inout march_shadows shadow,
                      inout vec3 first)
 {
-    vec3 away = ray.origin + at * ray.direction - radials[n].light.position;
+    vec3 away = ray.origin + at * ray.direction - lamp.grid.light.position;
     float along = dot(away, ray.direction), least = march_least_h(ray, at);
     vec3 across = away - along * ray.direction;
     float h2 = max(dot(across, across), least * least);
@@ -486,14 +524,14 @@ vec3 march_lamplight(uint n, march_lamps ray, march_medium unit, march_medium m,
     float middle = (a * rb + b * ra) / (ra + rb) + (at - s - 0.5 * ds);
     away += (clamp(middle, a, b) - along) * ray.direction;
     float r = length(away);
-    float share = radial_share(n, away, r);
+    float share = radial_share_of(lamp.grid.light, away, r);
     if (raymarch_has(RAYMARCH_SHADOWS) && share > 0.0) {
-        share *= march_lit(false, radials[n].light.light, 4u + n, ray.origin, ray.direction, s, ds, shadow);
+        share *= march_lit(false, lamp.map, bit, s, ds, shadow);
     }
     if (share <= 0.0) {
         return vec3(0.0);
     }
-    return march_lamplight_seen(n, ray, unit, m, away, r, share * mean, weight, weight_scaled, first);
+    return march_lamplight_seen(lamp, ray, unit, m, away, r, share * mean, weight, weight_scaled, first);
 }
 // Moves `s` on to the next brick that is not empty, or to `end`.
 float march_skip(vec3 origin, vec3 direction, vec3 inverse, float s, float end)
@@ -564,6 +602,10 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
     bool orthographic = camera.orthographic != 0u;
     march_lamps lamps = march_lamps(origin, direction, start, orthographic ? pixel : 0.0,
                                     orthographic ? 0.0 : pixel);
+    march_lamp kept[MARCH_LAMPS_KEPT];
+    [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
+        kept[n] = march_lamp_of(n, lamps);
+    }
     vec3 inverse = ray_inverse(direction);
     // Texture coordinates are linear along the ray.
     vec3 medium0 = origin / medium.extent, medium1 = direction / medium.extent;
@@ -596,7 +638,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
             do {
                 ds = min(next, end - s);
                 if (raymarch_num_lamps > 0u) {
-                    ds = min(ds, march_lamp_step(lamps, s));
+                    ds = min(ds, march_lamp_step(lamps, kept, s));
                 }
                 m = march_medium_at(unit, medium0 + (s + 0.5 * ds) * medium1);
                 full = ds > 0.0 && march_any(m); // such a turn finds the ray at its end
@@ -650,9 +692,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
             for (uint n = 0u; n < raymarch_num_suns; n++) {
                 float lit = 1.0;
                 if (raymarch_has(RAYMARCH_SHADOWS)) {
-                    uint light = beams[n].light;
-                    lit = march_lit(true, light, n, shadow_frame(shadows[light], origin),
-                                    shadow_frame_direction(shadows[light], direction), s, ds, state.shadow);
+                    lit = march_lit(true, suns[n].map, n, s, ds, state.shadow);
                 }
                 // A loop, as some devices run both sides of a branch.
                 for (bool dark = lit <= 0.0; !dark; dark = true) {
@@ -660,9 +700,13 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
                                                      lit * weight_scaled, state.single);
                 }
             }
-            for (uint n = 0u; n < raymarch_num_lamps; n++) {
-                state.radiance += march_lamplight(n, lamps, unit, m, s, ds, at, weight, weight_scaled,
-                                                   state.shadow, state.single);
+            [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
+                state.radiance += march_lamplight(kept[n], 4u + n, lamps, unit, m, s, ds, at, weight, weight_scaled,
+                                                  state.shadow, state.single);
+            }
+            for (uint n = MARCH_LAMPS_KEPT; n < raymarch_num_lamps; n++) {
+                state.radiance += march_lamplight(march_lamp_of(n, lamps), 4u + n, lamps, unit, m, s, ds, at, weight,
+                                                  weight_scaled, state.shadow, state.single);
             }
             if (raymarch_has(RAYMARCH_DEPTH)) {
                 float t0 = spectrum_mean(state.through * exp(-state.hidden));

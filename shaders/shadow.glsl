@@ -92,13 +92,18 @@ float shadow_visibility_sun(uint light, vec3 p)
     return shadow_visibility_sun_of(shadows[light], p);
 }
 
-float shadow_visibility_lamp(uint light, vec3 p)
+// `q` in the lamp's frame.
+float shadow_visibility_lamp_at(shadow_light l, vec3 q)
 {
-    shadow_light l = shadows[light];
-    vec3 q = shadow_frame(l, p);
     uint face = l.kind == TYN_SHADOW_CUBE ? shadow_face(q) : 0u;
     q = l.kind == TYN_SHADOW_CUBE ? shadow_on_face(face, q) : q;
     return shadow_all_lit(shadow_place_lamp(l, face, q));
+}
+
+float shadow_visibility_lamp(uint light, vec3 p)
+{
+    shadow_light l = shadows[light];
+    return shadow_visibility_lamp_at(l, shadow_frame(l, p));
 }
 
 // 1 where the light (an index of shadow_args.h) sees the point `p` of the medium (M), else 0.
