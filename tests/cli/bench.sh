@@ -51,6 +51,12 @@ rm "$record"
 works bench --suite suite.json --scenes "$scenes" --report report --quiet
 [ "$(get report/report.json scenes.0.runs.0.frame_ms.cold)" = "$before" ] || fail "bench: measured again"
 [ -s "$record" ] || fail "bench: a missing record was not made anew"
+# ... unless it is asked for
+touch -d 2000-01-01 report/records/*.json
+works bench --suite suite.json --scenes "$scenes" --report report --quiet
+[ "$(find report/records -name '*.json' -newer suite.json | wc -l)" = 0 ] || fail "bench: measured what there were records of"
+works bench --suite suite.json --scenes "$scenes" --report report --fresh --quiet
+[ "$(find report/records -name '*.json' -newer suite.json | wc -l)" = 6 ] || fail "bench: --fresh did not measure anew"
 # a reference of the user's own, and bands
 cat >file.json <<'END'
 { "name": "file", "size": [24, 24], "block": 4, "frames": 1, "timing_seconds": 0, "ceilings": false,
