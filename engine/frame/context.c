@@ -32,7 +32,7 @@ struct tyn_context {
     uint64_t env_hash;
     uint64_t grid_hash; // of the grid that the two below were found for
     uint32_t open_faces;
-    float mean_density;
+    float mean_density, typical_density;
     uint64_t checked_data; // hash of the densities and texels that were found fit
     tyn_map_light map_light;
     void *env_cdf; // of a method that reads it
@@ -344,10 +344,12 @@ static void look_at_grid(tyn_context *ctx, const tyn_scene *scene)
     if (hash != ctx->grid_hash) {
         ctx->open_faces = tyn_volume_open_faces(&scene->volumes[0]);
         ctx->mean_density = tyn_volume_mean(&scene->volumes[0]);
+        ctx->typical_density = tyn_volume_typical(&scene->volumes[0]);
         ctx->grid_hash = hash;
     }
     out->open_faces = ctx->open_faces;
     out->mean_density = ctx->mean_density;
+    out->typical_density = ctx->typical_density;
 }
 
 static void choose_storage(tyn_context *ctx)

@@ -443,6 +443,17 @@ float tyn_volume_mean(const tyn_volume *volume)
     return (float)(sum / (double)count);
 }
 
+float tyn_volume_typical(const tyn_volume *volume)
+{
+    size_t count = (size_t)volume->size[0] * volume->size[1] * volume->size[2];
+    double sum = 0, squares = 0;
+    for (size_t i = 0; volume->data && i < count; i++) {
+        sum += volume->data[i];
+        squares += (double)volume->data[i] * (double)volume->data[i];
+    }
+    return sum > 0 ? (float)(squares / sum) : 0;
+}
+
 tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, const tyn_view *view,
                                  const tyn_map_light *map, const tyn_surface_data *surfaces,
                                  const tyn_log *log)

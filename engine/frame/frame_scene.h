@@ -26,3 +26,4 @@ uint32_t tyn_volume_open_faces(const tyn_volume *volume);
 
 // Mean of a grid's values; 0 if the host brings them.
 float tyn_volume_mean(const tyn_volume *volume);
+float tyn_volume_typical(const tyn_volume *volume); // its mean weighted with itself

@@ -1,5 +1,6 @@
 // field.c -- the lattice of method "pop": everything that has scattered, for all lights together.
 #include "methods/field.h"
+#include "methods/limits.h"
 #include "methods/lamps.h"
 #include "methods/shading.h"
 #include "passes/columns/columns.h"
@@ -462,6 +463,7 @@ tyn_result tyn_add_field(tyn_graph *g, const tyn_job *job, tyn_field *f)
     choose_channels(f, job->scene, frame);
     float longest = fmaxf(f->shape.extent[0], fmaxf(f->shape.extent[1], f->shape.extent[2]));
     f->picture.cell = longest / (float)f->shape.cells;
+    tyn_limits_lattice(job, f->picture.cell);
     const bool ordinates = f->sky.ordinates.resource != 0;
     const tyn_field_step steps[] = {
         {true, add_cells},

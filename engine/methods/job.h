@@ -26,6 +26,7 @@ typedef struct tyn_frame_scene {
     bool emissive;
     uint32_t
         open_faces; // of the box, where the density may not be 0: bit 2 a + (1: high face of axis a)
+    float typical_density; // mean over the medium's mass, likewise; 0 = not known
     float mean_density; // over the box, mode DENSITY: in units of the texture's values; 0 = not known
     bool empty;     // no medium at all, or no coefficient above 0
     uint32_t num_triangles; // of the surfaces; 0: there are none, nor their refs

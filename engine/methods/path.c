@@ -1,5 +1,6 @@
 // path.c -- method "path": unbiased path tracing, the reference that the other methods are judged by.
 #include "methods/nodes.h"
+#include "methods/limits.h"
 #include "passes/medium/medium.h"
 #include "passes/path/path.h"
 #include "passes/path/path_args.h"
@@ -382,6 +383,12 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     const uint32_t not_images = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_DEPTH;
     tyn_result result = check_repeat(job);
     tyn_media_refs media = {{0}};
+    if (result == TYN_OK && !job->frame->empty) {
+        tyn_path_params params;
+        tyn_settings_params(job->settings, &tyn_pass_path, &params);
+        tyn_limits_rays(job);
+        tyn_limits_paths(job, (uint32_t)params.max_steps);
+    }
     if (result == TYN_OK && !job->frame->empty) {
         result = tyn_add_medium(g, job, &media);
     }

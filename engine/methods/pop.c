@@ -7,6 +7,7 @@
 // into one solve on a lattice of cubic cells for all lights together, seen from the camera by merge
 // and raymarch. A node that a scene does not need is not declared.
 #include "methods/field.h"
+#include "methods/limits.h"
 #include "methods/lamps.h"
 #include "methods/shading.h"
 #include "methods/sky.h"
@@ -246,6 +247,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         return TYN_ERR_PARAMS;
     }
 
+    tyn_limits_rays(job);
     tyn_field f = {.picture.num_suns = tyn_method_suns(job)};
     result = tyn_add_medium(g, job, &f.picture.media);
     if (result == TYN_OK) {

@@ -5,6 +5,7 @@
 // marched. Kept as it was published (the readings are settings of propagate_rect): the baseline of
 // method "pop".
 #include "methods/lamps.h"
+#include "methods/limits.h"
 #include "methods/shading.h"
 #include "methods/sky.h"
 #include "methods/surfaces.h"
@@ -219,6 +220,7 @@ static tyn_result add_upsampling(tyn_graph *g, const tyn_job *job, propagated *p
     tyn_result result = tyn_graph_add(g, &tyn_pass_upsample, &params, refs);
     p->picture.inscatter = refs[UPSAMPLE_PORT_INSCATTER];
     p->picture.cell = longest_side(job) / (float)p->grids.cells;
+    tyn_limits_hops(job, p->picture.cell);
     p->picture.field = p->grids.source == TYN_PROPAGATE_SOURCE_ACCUMULATED
                            ? RAYMARCH_INSCATTER_SOURCE
                            : RAYMARCH_INSCATTER_PLAIN;
@@ -284,6 +286,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         tyn_method_warn(job, "emission is seen, but does not light the medium");
     }
     tyn_method_warn_surfaces(job, "do not stop light on its way through the medium");
+    tyn_limits_rays(job);
     propagated p = {.picture.field = RAYMARCH_INSCATTER_PLAIN};
     tyn_settings_params(job->settings, &tyn_pass_propagate_rect, &p.grids);
     tyn_settings_params(job->settings, &tyn_pass_propagate_radial, &p.lamps);

@@ -1,5 +1,6 @@
 // single.c -- method "single": light that has scattered exactly once, and emission.
 #include "methods/lamps.h"
+#include "methods/limits.h"
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
 #include "passes/radial_beam/radial_beam.h"
@@ -40,6 +41,8 @@ static tyn_result declare(tyn_graph *g, const tyn_job *given)
         0.0f) {
         tyn_method_warn(job, "the environment is seen, but does not light the medium");
     }
+    tyn_limits_single(job);
+    tyn_limits_rays(job);
     tyn_picture_inputs in = {.num_suns = tyn_method_suns(job)};
     tyn_method_warn_suns(job, "the medium");
     result = tyn_add_medium(g, job, &in.media);
