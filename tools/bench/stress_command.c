@@ -1,6 +1,8 @@
 // stress_command.c -- `tyndall bench --stress`.
 #include "stress.h"
+#include "html.h"
 #include "stats.h"
+#include <tyndall/io.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,30 +10,15 @@
 
 static cJSON *read_json(const char *path)
 {
-    cJSON *root = NULL;
-    FILE *f = fopen(path, "rb");
-    char *text = NULL;
-    size_t size = 0, got;
-    char block[4096];
-    while (f && (got = fread(block, 1, sizeof block, f)) > 0) {
-        char *longer = realloc(text, size + got + 1);
-        if (!longer) {
-            break;
-        }
-        text = longer;
-        memcpy(text + size, block, got);
-        size += got;
-    }
-    if (text) {
-        root = cJSON_ParseWithLength(text, size);
-    }
-    if (f) {
-        fclose(f);
-    }
-    free(text);
+    void *data = NULL;
+    size_t size = 0;
+    bool read = tyn_file_read(path, 256u << 20, &data, &size, NULL) == TYN_OK;
+    cJSON *root = read ? cJSON_ParseWithLength(data, size) : NULL;
+    free(data);
     return root;
 }
 
+// The object goes into a report that is there, and onto its page.
 static int write_stress(app *a, const cJSON *stress, const char *dir)
 {
     mkdir(dir, 0777);
@@ -40,9 +27,12 @@ static int write_stress(app *a, const cJSON *stress, const char *dir)
                              : app_exit_code(a, TYN_ERR_MEMORY, false);
     cJSON *root = code == EXIT_DONE ? read_json(report) : NULL;
     if (root) {
+        char *page = text_format("%s/report.html", dir);
         cJSON_DeleteItemFromObject(root, "stress");
         cJSON_AddItemToObject(root, "stress", cJSON_Duplicate(stress, true));
-        code = json_write(a, root, report);
+        code = page ? html_write(a, root, dir, page) : app_exit_code(a, TYN_ERR_MEMORY, false);
+        code = code == EXIT_DONE ? json_write(a, root, report) : code;
+        free(page);
     }
     free(own);
     free(report);
