@@ -233,6 +233,11 @@ vec3 path_transmittance(vec3 origin, vec3 direction, float distance, inout rng_s
             passed /= survival;
         }
     }
+    // Not followed to the end: the safety cap, or a device that ends long loops by itself.
+    if (left > 0.0 && max3(passed) > 0.0) {
+        steps = args.max_steps;
+        passed = vec3(0.0);
+    }
     return passed;
 }
 
@@ -352,6 +357,9 @@ path_flight path_fly(inout path_state path, inout rng_state rng, inout bool hit)
             path.beta *= (stretched ? bound - f.m.sigma_t : none) / drawn;
             path.rho *= GREY ? vec3(1.0) : none / drawn;
         }
+    }
+    if (!f.collided && inside) { // as there
+        path.steps = args.max_steps;
     }
     return f;
 }
@@ -678,6 +686,9 @@ void path_run(uint element, uint first, uint end)
             path_count.hits += result.hit ? 1u : 0u;
             path_end(result);
         }
+    }
+    if (!ended || index < end) { // a device has ended the loop: these samples are missing
+        path_count.cut++;
     }
 }
 

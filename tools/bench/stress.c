@@ -24,6 +24,7 @@ typedef struct suite {
     // The last reference that was rendered, of light scattered any number of times, and once.
     const stress_case *made_of[2];
     stress_picture made[2];
+    bool cut[2]; // some of its paths were ended: it is no reference
 } suite;
 
 // ---- answers ----------------------------------------------------------------------------------
@@ -65,11 +66,13 @@ static int answer(suite *s, const stress_case *c, bool once, stress_picture *p)
             app_error(s->a, "stress: the reference was %s", counts.failure);
             code = EXIT_FAILED;
         }
+        s->cut[once] = counts.cut > 0;
         free(counts.failure);
         cJSON_Delete(counts.warnings);
         s->made_of[once] = code == EXIT_DONE ? of : NULL;
     }
     *p = s->made[once];
+    p->cut = s->cut[once];
     return code;
 }
 
@@ -158,7 +161,7 @@ static int run_cell(suite *s, const stress_case *c, const char *with)
         bool judged = !path || c->like || c->answer != STRESS_BY_PATH;
         if (code == EXIT_DONE && !k.counts.failure && judged) {
             code = answer(s, c, once, &p[1]);
-            k.error = code == EXIT_DONE ? compare(&p[0], &p[1], &k.se) : NAN;
+            k.error = code == EXIT_DONE && !p[1].cut ? compare(&p[0], &p[1], &k.se) : NAN;
         } else if (code == EXIT_DONE) {
             k.se = p[0].noise;
         }

@@ -35,11 +35,11 @@ typedef struct stress_case {
     stress_pattern pattern;
     uint32_t size[3]; // voxels
     float contrast;
-    float sides[3];           // m; 0: 1
-    float offset;             // of the box from the origin, m
-    float unit;               // values of the grid are in units of it; 0: 1
-    const char *storage;      // "medium.storage"; NULL: default
-    bool coloured;            // extinction sigma / 1000, sigma, 1000 sigma
+    float sides[3];      // m; 0: 1
+    float offset;        // of the box from the origin, m
+    float unit;          // values of the grid are in units of it; 0: 1
+    const char *storage; // "medium.storage"; NULL: default
+    bool coloured;       // extinction sigma / 1000, sigma, 1000 sigma
     stress_light light;
     stress_answer answer;
     // The same light field as another scene: by scaling, or because a grid is constant. Its picture is

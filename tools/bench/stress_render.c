@@ -49,7 +49,8 @@ static void take_report(tyn_offline *offline, stress_counts *counts)
     for (uint32_t i = 0; i < report.num_warnings; i++) {
         add_warning(counts->warnings, report.warnings[i]);
     }
-    if (counted(&report, "cut") > 0) { // as the stats of a rendering say it
+    counts->cut += counted(&report, "cut");
+    if (counts->cut > 0) { // as the stats of a rendering say it
         add_warning(counts->warnings, "paths were ended by the safety cap: the result is too dark");
     }
 }
