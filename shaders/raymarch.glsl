@@ -642,7 +642,10 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
                 }
                 m = march_medium_at(unit, medium0 + (s + 0.5 * ds) * medium1);
                 full = ds > 0.0 && march_any(m); // such a turn finds the ray at its end
-                float most = spectrum_max(raymarch_has(RAYMARCH_KERNELS) ? m.scaled_extinction : m.extinction);
+                // Of the channels that are not gone: a dense one must not hold up the others.
+                spectrum left = step(args.stop, state.through_scaled);
+                float most =
+                    spectrum_max(left * (raymarch_has(RAYMARCH_KERNELS) ? m.scaled_extinction : m.extinction));
                 dense = most * ds > RAYMARCH_DENSE;
                 next = dense ? RAYMARCH_SHORT / most : full ? next : args.step;
                 s += full ? 0.0 : ds;

@@ -76,12 +76,12 @@ static const stress_case waves = {
     }
 #define SCALE(m, ...)                                                                              \
     {                                                                                              \
-        .axis = "scale", .x = m, .sigma = (float)(4 / (m)), .albedo = 0.9f, .g = 0.5f,             \
+        .axis = "scale", .x = m, .sigma = (float)(4.0 / (m)), .albedo = 0.9f, .g = 0.5f,           \
         .sides = {(float)(m), (float)(m), (float)(m)}, .like = &usual, __VA_ARGS__                 \
     }
 #define SCALE_LAMP(m, ...)                                                                         \
     {                                                                                              \
-        .axis = "scale, lamp", .x = m, .sigma = (float)(4 / (m)), .albedo = 0.9f, .g = 0.5f,       \
+        .axis = "scale, lamp", .x = m, .sigma = (float)(4.0 / (m)), .albedo = 0.9f, .g = 0.5f,     \
         .sides = {(float)(m), (float)(m), (float)(m)}, .light = STRESS_LAMP, .like = &usual_lamp,  \
         __VA_ARGS__                                                                                \
     }
