@@ -263,7 +263,9 @@ static void dispatches_do_not_depend_on_ordinates(void **state)
     for (int i = 0; i < 3; i++) {
         tyn_report report = frame_report(t, &off, &scene, &view, "ordinates.count",
                                          ((const char *[]){"1", "64", "256"})[i]);
-        assert_int_equal(report.num_warnings, 0);
+        for (uint32_t k = 0; k < report.num_warnings; k++) { // only of what the method cannot
+            assert_true(!strncmp(report.warnings[k], "accuracy:", 9));
+        }
         expected = i ? expected : dispatches(&report);
         assert_int_equal(dispatches(&report), expected);
         tyn_offline_destroy(&off);
