@@ -1,6 +1,6 @@
 // offline.c -- rendering to host memory with a device of our own: submit and wait.
 #include <tyndall/offline.h>
-#include "gpu/device.h"
+#include "frame/submission.h"
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -8,9 +8,7 @@
 struct tyn_offline {
     tyn_device *dev;
     tyn_context *context;
-    VkCommandPool pool;
-    VkCommandBuffer cmd;
-    VkFence fence;
+    tyn_submission submission;
     double setup_ms, frame_ms;
     tyn_progress_fn progress;
     void *progress_user;
@@ -39,34 +37,14 @@ tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params *params,
         return TYN_ERR_MEMORY;
     }
     off->dev = dev;
-    const tyn_procs *vk = &dev->vk;
+    off->submission.dev = dev;
     tyn_result result = tyn_context_create(
         dev,
         tyn_context_params(.method = params->method, .settings = params->settings,
                            .frames_in_flight = 1, .readback = true),
         &off->context);
     if (result == TYN_OK) {
-        VkResult made = vk->CreateCommandPool(
-            dev->device,
-            &(VkCommandPoolCreateInfo){.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                       .queueFamilyIndex = dev->queue_family},
-            NULL, &off->pool);
-        result = tyn_vk_check(dev, made, "vkCreateCommandPool");
-    }
-    if (result == TYN_OK) {
-        VkResult made = vk->AllocateCommandBuffers(
-            dev->device,
-            &(VkCommandBufferAllocateInfo){.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                           .commandPool = off->pool,
-                                           .commandBufferCount = 1},
-            &off->cmd);
-        result = tyn_vk_check(dev, made, "vkAllocateCommandBuffers");
-    }
-    if (result == TYN_OK) {
-        VkResult made = vk->CreateFence(
-            dev->device, &(VkFenceCreateInfo){.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO}, NULL,
-            &off->fence);
-        result = tyn_vk_check(dev, made, "vkCreateFence");
+        result = tyn_submission_create(dev, &off->submission);
     }
     if (result != TYN_OK) {
         tyn_offline_destroy(&off);
@@ -83,8 +61,7 @@ void tyn_offline_destroy(tyn_offline **offline)
     }
     *offline = NULL;
     tyn_context_destroy(&off->context);
-    off->dev->vk.DestroyFence(off->dev->device, off->fence, NULL);
-    off->dev->vk.DestroyCommandPool(off->dev->device, off->pool, NULL);
+    tyn_submission_destroy(&off->submission);
     free(off->nodes);
     free(off);
 }
@@ -98,39 +75,12 @@ void tyn_offline_on_progress(tyn_offline *off, tyn_progress_fn fn, void *user)
 // Records, submits and waits.
 static tyn_result submit(tyn_offline *off, tyn_frame *frame)
 {
-    const tyn_device *dev = off->dev;
-    const tyn_procs *vk = &dev->vk;
-    frame->cmd = off->cmd;
-    VkResult r = vk->ResetCommandPool(dev->device, off->pool, 0);
-    if (r == VK_SUCCESS) {
-        r = vk->BeginCommandBuffer(
-            off->cmd,
-            &(VkCommandBufferBeginInfo){.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT});
-    }
-    tyn_result result = tyn_vk_check(dev, r, "vkBeginCommandBuffer");
+    frame->cmd = off->submission.cmd;
+    tyn_result result = tyn_submission_begin(&off->submission);
     if (result == TYN_OK) {
         result = tyn_context_record(off->context, frame);
-        r = vk->EndCommandBuffer(off->cmd);
     }
-    if (result == TYN_OK && r == VK_SUCCESS) {
-        r = vk->QueueSubmit2(
-            dev->queue, 1,
-            &(VkSubmitInfo2){.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
-                             .commandBufferInfoCount = 1,
-                             .pCommandBufferInfos =
-                                 &(VkCommandBufferSubmitInfo){
-                                     .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
-                                     .commandBuffer = off->cmd}},
-            off->fence);
-        if (r == VK_SUCCESS) {
-            r = vk->WaitForFences(dev->device, 1, &off->fence, VK_TRUE, UINT64_MAX);
-        }
-        if (r == VK_SUCCESS) {
-            r = vk->ResetFences(dev->device, 1, &off->fence);
-        }
-    }
-    return result == TYN_OK ? tyn_vk_check(dev, r, "rendering a frame") : result;
+    return result == TYN_OK ? tyn_submission_run(&off->submission, "rendering a frame") : result;
 }
 
 // Adds what the last record did. A node that did not run in it still reports its last run.
