@@ -29,17 +29,11 @@ static int check_validation(selftest *t, const char *device)
     for (uint32_t i = 0; i < tyn_num_methods() && code == EXIT_DONE; i++) {
         tyn_method_info info;
         tyn_method_at(i, &info);
-        tyn_view view = selftest_picture(TYN_OUTPUT_RADIANCE);
-        view.num_samples = 1;
-        selftest_camera(&view.camera, -0.5f, -0.7f, -0.4f, 0.9f);
-        tyn_scene scene;
-        selftest_cube(&scene, 0.5f, false);
         renderer r;
-        code = selftest_render(t, info.name, &scene, &view, &r);
+        code = selftest_render_cube(t, info.name, 1, &r);
         if (code == EXIT_DONE) {
             renderer_close(&r);
         }
-        tyn_scene_finish(&scene);
     }
     t->device = own;
     selftest_check(t, "validation, every method: messages",

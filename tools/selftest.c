@@ -76,6 +76,18 @@ tyn_view selftest_picture(uint32_t outputs)
                       .num_samples = SELFTEST_SAMPLES};
 }
 
+int selftest_render_cube(selftest *t, const char *name, uint32_t samples, renderer *r)
+{
+    tyn_view view = selftest_picture(TYN_OUTPUT_RADIANCE);
+    view.num_samples = samples;
+    selftest_camera(&view.camera, -0.5f, -0.7f, -0.4f, 0.9f);
+    tyn_scene scene;
+    selftest_cube(&scene, 0.5f, false);
+    int code = selftest_render(t, name, &scene, &view, r);
+    tyn_scene_finish(&scene);
+    return code;
+}
+
 double selftest_mean(const float *pixels, const float *errors, double *se)
 {
     enum { PIXELS = SELFTEST_SIZE * SELFTEST_SIZE };

@@ -22,6 +22,9 @@ void selftest_skip(selftest *t, const char *name, const char *why); // neither p
 int selftest_render(selftest *t, const char *method, tyn_scene *scene, const tyn_view *view,
                     renderer *r);
 
+// The cube with g 0.5 under its sun: what every method can do.
+int selftest_render_cube(selftest *t, const char *name, uint32_t samples, renderer *r);
+
 enum { SELFTEST_SIZE = 32, SELFTEST_SAMPLES = 64 }; // pixels along a side; samples a pixel
 tyn_view selftest_picture(uint32_t outputs);        // without a camera
 

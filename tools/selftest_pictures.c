@@ -169,22 +169,16 @@ int selftest_repeats(selftest *t)
     for (uint32_t i = 0; i < tyn_num_methods() && code == EXIT_DONE; i++) {
         tyn_method_info info;
         tyn_method_at(i, &info);
-        tyn_view view = selftest_picture(TYN_OUTPUT_RADIANCE);
-        view.num_samples = 8;
-        selftest_camera(&view.camera, -0.5f, -0.7f, -0.4f, 0.9f);
-        tyn_scene scene;
-        selftest_cube(&scene, 0.5f, false);
         uint64_t hash[2] = {0};
         for (int k = 0; k < 2 && code == EXIT_DONE; k++) {
             renderer r;
-            code = selftest_render(t, info.name, &scene, &view, &r);
+            code = selftest_render_cube(t, info.name, 8, &r);
             if (code == EXIT_DONE) {
                 hash[k] = text_hash(tyn_offline_output(r.offline, TYN_OUTPUT_RADIANCE),
                                     sizeof(float[4]) * SELFTEST_SIZE * SELFTEST_SIZE, 0);
                 renderer_close(&r);
             }
         }
-        tyn_scene_finish(&scene);
         if (code == EXIT_DONE) {
             char name[64];
             snprintf(name, sizeof name, "repeats, %s: differing pictures", info.name);
