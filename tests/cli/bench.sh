@@ -2,15 +2,7 @@
 # bench.sh -- `tyndall bench`: its table, report.json and records, resuming, bands, interruption.
 . "$(dirname "$0")/lib.sh"
 
-run info --devices
-if [ "$code" != 0 ] || ! grep -q "usable" out; then
-    echo "skipped: no Vulkan device"
-    exit 77
-fi
-
-get() {
-    "$helpers/json_get" "$1" "$2" || fail "$1 has no $2"
-}
+needs_device
 
 cat >suite.json <<'END'
 { "name": "tiny", "size": [24, 24], "reference_spp": 64, "block": 4, "frames": 2, "timing_seconds": 0.2,

@@ -2,11 +2,7 @@
 # bench_ci.sh -- the small suite within its recorded bands; and out of them with a bug planted in method "pop".
 . "$(dirname "$0")/lib.sh"
 
-run info --devices
-if [ "$code" != 0 ] || ! grep -q "usable" out; then
-    echo "skipped: no Vulkan device"
-    exit 77
-fi
+needs_device
 
 suite="$source/tools/bench/suites/ci.json" bands="$source/tools/bench/bands/ci.json"
 export XDG_CACHE_HOME="$helpers/bench-cache" # references are made once a build

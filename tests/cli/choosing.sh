@@ -3,15 +3,7 @@
 # in scenes that were never measured.
 . "$(dirname "$0")/lib.sh"
 
-run info --devices
-if [ "$code" != 0 ] || ! grep -q "usable" out; then
-    echo "skipped: no Vulkan device"
-    exit 77
-fi
-
-get() {
-    "$helpers/json_get" "$1" "$2" || fail "$1 has no $2"
-}
+needs_device
 cube="$scenes/cube.gltf --size 32x32 -o x.png"
 
 # ---- wrong ----

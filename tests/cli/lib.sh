@@ -37,6 +37,20 @@ works() {
     [ "$code" = 0 ] || fail "tyndall $*: exit $code: $(cat err)"
 }
 
+# get FILE NAME: a member of a JSON file
+get() {
+    "$helpers/json_get" "$1" "$2" || fail "$1 has no $2"
+}
+
+# needs_device: skips the test where there is none
+needs_device() {
+    run info --devices
+    if [ "$code" != 0 ] || ! grep -q "usable" out; then
+        echo "skipped: no Vulkan device"
+        exit 77
+    fi
+}
+
 # near VALUE EXPECTED TOLERANCE WHAT
 near() {
     awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { d = a - b; exit !(a != "" && d <= t && -d <= t) }' ||

@@ -2,15 +2,7 @@
 # pictures.sh -- what the tool makes on a device: files, stats, probe, balance, graph, the same bytes twice.
 . "$(dirname "$0")/lib.sh"
 
-run info --devices
-if [ "$code" != 0 ] || ! grep -q "usable" out; then
-    echo "skipped: no Vulkan device"
-    exit 77
-fi
-
-get() {
-    "$helpers/json_get" "$1" "$2" || fail "$1 has no $2"
-}
+needs_device
 
 # ---- render ----
 refuses 2 "no device 'abacus'" render "$scenes/cube.gltf" --device abacus
