@@ -297,7 +297,7 @@ static bool check(const char *method, const experiment *e, const means *m, doubl
         }
         const double off = m->value[k] - consensus[k];
         printf("%s %-5s %c %.5f +- %.5f, consensus %.5f: %+.2f %%\n", e->name, method, "RTA"[k],
-               m->value[k], m->se[k], consensus[k], 100 * off / consensus[k]);
+               m -> value[k], m -> se[k], consensus[k], 100 * off / consensus[k]);
         const double allowed = bound * consensus[k] + 2 * m->se[k] + consensus_off;
         const bool known = missed && strchr(missed, "RTA"[k]);
         const bool holds = fabs(off) <= allowed;

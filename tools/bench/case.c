@@ -91,8 +91,8 @@ int bench_case_open(app *a, const bench_machine *on, const bench_suite *suite,
     }
     if (code == EXIT_DONE) {
         c->hash = bench_scene_hash(&c->scene, &c->view);
-        code = bench_reference_get(a, on->device, spec, &c->scene, &c->view, c->blocks,
-                                   &c->reference);
+        code =
+            bench_reference_get(a, on->device, spec, &c->scene, &c->view, c->blocks, &c->reference);
     }
     return code == EXIT_DONE && folder ? write_reference(c) : code;
 }
