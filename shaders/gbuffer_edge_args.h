@@ -4,11 +4,12 @@
 #include "shared.h"
 
 #define GBUFFER_EDGES 64 // pixels of a workgroup that goes through the list of edges
+#define GBUFFER_ROW 32768 // workgroups along x, at most; further ones follow along y: devices run 65535 along an axis
 
 // Pixels that show several pieces of surface, or one beside nothing: buffers "edge_count" and "edges"; an element of
 // the latter is x | y << 16. Their order does not matter.
 struct gbuffer_edge_count {
-    tyn_uvec3 groups; // workgroups of GBUFFER_EDGES pixels
+    tyn_uvec3 groups; // workgroups of GBUFFER_EDGES pixels, in rows; all start as zeros
     tyn_uint count;
 };
 TYN_ASSERT_SIZE(gbuffer_edge_count, 16);

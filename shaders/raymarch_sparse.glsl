@@ -12,6 +12,13 @@
 
 const float SPARSE_BEND = 0.06;
 
+// Where part k, 0 to 2, of what a block's ray brings is: the image has no more texels than the picture, at whose size
+// other images may have reached what the device can hold.
+ivec2 sparse_texel(ivec2 block, int k)
+{
+    return 2 * block + ivec2(k & 1, k >> 1);
+}
+
 // Stores what the block's ray brings; alpha -1 where one ray cannot stand for the block.
 void march_block(ivec2 block)
 {
@@ -41,17 +48,16 @@ void march_block(ivec2 block)
                                even ? max(min(span.y, surface) - span.x, 0.0) : 0.0, span.x);
     even = even && is_finite(r.radiance) && is_finite(r.transmittance);
     atomicAdd(counters.steps, state.steps);
-    ivec2 texel = ivec2(3 * block.x, block.y);
-    imageStore(sparse_image, texel, vec4(r.radiance, even ? 1.0 : -1.0));
-    imageStore(sparse_image, texel + ivec2(1, 0), vec4(r.transmittance, 1.0));
-    imageStore(sparse_image, texel + ivec2(2, 0), vec4(r.scaled_transmittance, 1.0));
+    imageStore(sparse_image, sparse_texel(block, 0), vec4(r.radiance, even ? 1.0 : -1.0));
+    imageStore(sparse_image, sparse_texel(block, 1), vec4(r.transmittance, 1.0));
+    imageStore(sparse_image, sparse_texel(block, 2), vec4(r.scaled_transmittance, 1.0));
 }
 
 vec4 sparse_fetch(ivec2 block, int k)
 {
     ivec2 last = (ivec2(args.end - args.first) + 1) / 2 - 1;
     block = clamp(block, ivec2(0), last);
-    return texelFetch(sparse_tex, ivec2(3 * block.x + k, block.y), 0);
+    return texelFetch(sparse_tex, sparse_texel(block, k), 0);
 }
 
 bool sparse_bends(vec4 a, vec4 b, vec4 c)

@@ -90,6 +90,18 @@ VkFormat tyn_graph_format(const tyn_graph *g, tyn_ref ref)
     return r ? r->format : VK_FORMAT_UNDEFINED;
 }
 
+uint32_t tyn_graph_drawn_side(const tyn_graph *g)
+{
+    const VkPhysicalDeviceLimits *limits = &g->dev->properties.limits;
+    const uint32_t sides[] = {limits->maxFramebufferWidth, limits->maxFramebufferHeight,
+                              limits->maxViewportDimensions[0], limits->maxViewportDimensions[1]};
+    uint32_t side = limits->maxImageDimension2D;
+    for (uint32_t i = 0; i < sizeof sides / sizeof sides[0]; i++) {
+        side = side < sides[i] ? side : sides[i];
+    }
+    return side;
+}
+
 // ---- resources from outside -------------------------------------------------------------------
 
 tyn_ref tyn_graph_import_image(tyn_graph *g, const char *name, tyn_dim dim, const tyn_image *image,

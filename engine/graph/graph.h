@@ -73,6 +73,9 @@ void tyn_graph_inspect(tyn_graph *g, const char *pass);
 
 VkFormat tyn_graph_format(const tyn_graph *g, tyn_ref ref);
 
+// The longest side that a 2D image may have into which a node draws.
+uint32_t tyn_graph_drawn_side(const tyn_graph *g);
+
 // ---- compile, record ------------------------------------------------------------------------
 
 // The first error of the declaration, or TYN_OK.

@@ -1,5 +1,6 @@
 // surfaces.c -- the surfaces' part of a frame.
 #include "methods/surfaces.h"
+#include "methods/nodes.h"
 #include "methods/views.h"
 #include "passes/gbuffer/gbuffer.h"
 #include "passes/rsm/rsm.h"
@@ -38,6 +39,21 @@ tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
     return result;
 }
 
+// All samples of a picture are in one image, which has no more texels along a side than the device can draw.
+static void fit_samples(tyn_gbuffer_params *params, uint32_t side, const tyn_job *job)
+{
+    const uint32_t longest = params->size[0] > params->size[1] ? params->size[0] : params->size[1];
+    const int32_t most = (int32_t)(side / longest), asked = params->samples;
+    if (asked > most && asked > 1) {
+        params->samples = most > 1 ? most : 1;
+        tyn_method_warn(job,
+                        "%u x %u pixels with %d x %d samples of the surfaces are more than this "
+                        "device draws (%u along a side): %d x %d, edges are less smooth",
+                        params->size[0], params->size[1], asked, asked, side, params->samples,
+                        params->samples);
+    }
+}
+
 tyn_result tyn_add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *gbuffer)
 {
     *gbuffer = (tyn_gbuffer_refs){{0}};
@@ -48,6 +64,7 @@ tyn_result tyn_add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *g
     tyn_settings_params(job->settings, &tyn_pass_gbuffer, &params);
     params.size[0] = job->view->width;
     params.size[1] = job->view->height;
+    fit_samples(&params, tyn_graph_drawn_side(g), job);
     params.num_triangles = job->frame->num_triangles;
     params.textured = job->frame->num_textures > 0;
     tyn_ref refs[TYN_MAX_PORTS] = {

@@ -83,14 +83,14 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_RESOLVE] = {.name = "gbuffer_resolve",
                         .spirv = gbuffer_resolve_spirv,
                         .spirv_size = sizeof(gbuffer_resolve_spirv),
-                        .num_spec = 2,
+                        .num_spec = 3,
                         .local_size = {8, 8, 1},
                         .bindings = bindings,
                         .num_bindings = sizeof(bindings) / sizeof(bindings[0]) - 2},
     [KERNEL_MIXED] = {.name = "gbuffer_mixed",
                       .spirv = gbuffer_mixed_spirv,
                       .spirv_size = sizeof(gbuffer_mixed_spirv),
-                      .num_spec = 2,
+                      .num_spec = 3,
                       .local_size = {GBUFFER_EDGES, 1, 1},
                       .bindings = bindings,
                       .num_bindings = sizeof(bindings) / sizeof(bindings[0])},
@@ -121,7 +121,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_gbuffer_params *p = params;
-    const uint32_t spec[2] = {p->textured, (uint32_t)p->samples};
+    const uint32_t spec[3] = {p->textured, (uint32_t)p->samples, p->row ? p->row : GBUFFER_ROW};
     tyn_rec_draw(r, &(tyn_draw){.kernel = KERNEL_DRAW, .vertices = 3 * p->num_triangles});
     tyn_rec_fill(r, GBUFFER_PORT_EDGE_COUNT, 0);
     tyn_rec_fill(r, GBUFFER_PORT_MIXED_COUNT, 0);

@@ -7,6 +7,7 @@ typedef struct tyn_gbuffer_params {
     uint32_t size[2]; // of the picture, pixels; set by the method, as the two below
     uint32_t num_triangles;
     uint32_t textured; // 1: materials may have textures; else none is looked at
+    uint32_t row;      // workgroups along x that go through a list of pixels; 0: as many as suit all devices
 } tyn_gbuffer_params;
 
 enum {

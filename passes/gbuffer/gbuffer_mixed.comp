@@ -18,9 +18,9 @@ layout(set = 0, binding = 14, scalar) writeonly buffer edges_buffer
 
 void main()
 {
-    uint n = gl_GlobalInvocationID.x;
+    uint n = gbuffer_edge();
     if (n == 0u) {
-        edge_count.groups.yz = uvec2(1u);
+        edge_count.groups.z = 1u;
     }
     if (n >= mixed_count.count) {
         return;
@@ -61,6 +61,8 @@ void main()
     } else {
         uint m = atomicAdd(edge_count.count, 1u);
         edges[m] = pixel;
-        atomicMax(edge_count.groups.x, m / GBUFFER_EDGES + 1u);
+        uvec2 groups = gbuffer_edge_groups(m, row);
+        atomicMax(edge_count.groups.x, groups.x);
+        atomicMax(edge_count.groups.y, groups.y);
     }
 }

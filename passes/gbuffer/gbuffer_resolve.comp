@@ -47,10 +47,12 @@ void main()
         uint n = atomicAdd(mixed_count.count, 1u);
         mixed[n] = uint(pixel.y) << 16 | uint(pixel.x);
         for (bool next = n % GBUFFER_EDGES == 0u; next; next = false) {
-            atomicMax(mixed_count.groups.x, n / GBUFFER_EDGES + 1u);
+            uvec2 groups = gbuffer_edge_groups(n, row);
+            atomicMax(mixed_count.groups.x, groups.x);
+            atomicMax(mixed_count.groups.y, groups.y);
         }
     }
     if (pixel == ivec2(0)) {
-        mixed_count.groups.yz = uvec2(1u);
+        mixed_count.groups.z = 1u;
     }
 }

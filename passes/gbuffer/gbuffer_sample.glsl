@@ -3,7 +3,7 @@
 // The rasteriser says which triangle it is; where the ray meets its plane is computed here, so that the
 // point does not depend on the precision of interpolation (and is the one that a ray tracer finds).
 #include "gbuffer_bindings.glsl"
-#include "gbuffer_edge_args.h"
+#include "gbuffer_edges.glsl"
 #define SURFACE_TEXTURES 5
 #define SURFACE_TEXELS 6
 #include "surface_texture.glsl"
@@ -11,6 +11,7 @@
 
 layout(constant_id = 0) const uint textured = 1u;
 layout(constant_id = 1) const int samples = 2; // along each side of a pixel
+layout(constant_id = 2) const uint row = GBUFFER_ROW;
 layout(set = 0, binding = 4, scalar) readonly buffer materials_buffer
 {
     surface_material materials[];

@@ -251,7 +251,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
                   tyn_build_has(b, RAYMARCH_PORT_HOST_DEPTH))) {
         // As large as for all pixels: the window follows the camera, and frames must keep their sizes.
         blocks = (tyn_extent){(p->width + 1) / 2, (p->height + 1) / 2, 1};
-        tyn_build_image(b, RAYMARCH_PORT_SPARSE, (tyn_extent){3 * blocks.x, blocks.y, 1}, 1);
+        tyn_build_image(b, RAYMARCH_PORT_SPARSE, (tyn_extent){2 * blocks.x, 2 * blocks.y, 1}, 1);
     }
     tyn_build_buffer(b, RAYMARCH_PORT_REST,
                      sizeof(struct raymarch_rest) + 4ull * blocks.x * blocks.y);

@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "gbuffer_edge_args.h"
+#include "gbuffer_edges.glsl"
 #include "shade_piece.glsl"
 
 layout(local_size_x = GBUFFER_EDGES) in;
@@ -68,7 +68,7 @@ shade_point piece_of(ivec2 corner, uint left, out vec3 albedo, out vec3 emission
 
 void main()
 {
-    uint n = gl_GlobalInvocationID.x;
+    uint n = gbuffer_edge();
     if (n >= edge_count.count) {
         return;
     }

@@ -29,6 +29,13 @@ for file in cache/tyndall/pipelines-*; do
 done
 works render "$scenes/cube.gltf" --size 16x16 --quiet -o c.png
 
+# pictures of surfaces up to the size of all others: with fewer samples a pixel, which is said
+works render "$scenes/cornell-smoke.gltf" --size 16384x2 -o wide.exr -D lattice.cells=8
+grep -q "warning: .*16384 x 2 pixels .* 1 x 1" err || fail "fewer samples are not said: $(cat err)"
+works render "$scenes/cornell-smoke.gltf" --size 2x8193 -o high.exr -D lattice.cells=8
+grep -q "warning: .*2 x 8193 pixels .* 1 x 1" err || fail "fewer samples are not said: $(cat err)"
+rm -f wide.exr high.exr
+
 # ---- stats ----
 [ "$(get a.json method)" = pop ] || fail "stats: method"
 [ "$(get a.json size.0)" = 64 ] && [ "$(get a.json size.1)" = 48 ] || fail "stats: size"

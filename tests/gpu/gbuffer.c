@@ -1,6 +1,7 @@
 // gbuffer.c -- the G-buffer against rays through all triangles, in double precision.
 #include "gpu_test.h"
 #include "passes/gbuffer/gbuffer.h"
+#include "gbuffer_edge_args.h"
 #include "scene_args.h"
 #include "solids.h"
 #include "surface_args.h"
@@ -9,6 +10,7 @@
 #include <string.h>
 
 enum { WIDTH = 48, HEIGHT = 32 };
+enum { ROW = 1 }; // workgroup in a row, so that lists have several rows
 
 // ---- the scene --------------------------------------------------------------------------------
 
@@ -170,6 +172,7 @@ static hit trace(const tyn_surfaces *s, const double o[3], const double d[3])
 
 typedef struct images {
     const float (*surface)[4], (*albedo)[4], (*emission)[4];
+    const struct gbuffer_edge_count *edges;
 } images;
 
 static images draw(gpu_test *t, const tyn_scene *scene, const struct camera_block *camera,
@@ -185,6 +188,7 @@ static images draw(gpu_test *t, const tyn_scene *scene, const struct camera_bloc
     params.size[1] = HEIGHT;
     params.num_triangles = s->num_triangles;
     params.textured = 1;
+    params.row = ROW;
     tyn_graph_begin(t->graph);
     tyn_ref refs[GBUFFER_NUM_PORTS] = {
         gpu_buffer(t, "camera", camera, sizeof *camera),
@@ -199,10 +203,11 @@ static images draw(gpu_test *t, const tyn_scene *scene, const struct camera_bloc
     tyn_graph_output(t->graph, "surface", refs[GBUFFER_PORT_SURFACE], true);
     tyn_graph_output(t->graph, "albedo", refs[GBUFFER_PORT_ALBEDO], true);
     tyn_graph_output(t->graph, "emission", refs[GBUFFER_PORT_EMISSION], true);
+    tyn_graph_output(t->graph, "edge_count", refs[GBUFFER_PORT_EDGE_COUNT], true);
     gpu_run(t);
     return (images){(const float(*)[4])gpu_map(t, "surface"),
                     (const float(*)[4])gpu_map(t, "albedo"),
-                    (const float(*)[4])gpu_map(t, "emission")};
+                    (const float(*)[4])gpu_map(t, "emission"), gpu_map(t, "edge_count")};
 }
 
 static void unfold(float x, float y, float n[3])
@@ -345,6 +350,15 @@ static void check_pixel(const images *got, const uint32_t *image, const expected
     }
 }
 
+// Do rows of workgroups hold the whole list, in one row or in full ones?
+static void check_rows(const struct gbuffer_edge_count *edges)
+{
+    const uint32_t groups = (edges->count + GBUFFER_EDGES - 1) / GBUFFER_EDGES;
+    const uint32_t *rows = (const uint32_t *)&edges->groups;
+    assert_int_equal(rows[0], groups < ROW ? groups : ROW);
+    assert_int_equal(rows[1], (groups + ROW - 1) / ROW);
+}
+
 static void as_rays_find_it(void **state)
 {
     gpu_test *t = *state;
@@ -359,6 +373,7 @@ static void as_rays_find_it(void **state)
         make_camera((float[]){0.5f, 2, 5}, (float[]){0, -0.3f, -1}, true),
         make_camera((float[]){0, 1, 0}, (float[]){1, -0.3f, 0.2f}, true), // starts within the box
     };
+    uint32_t most = 0;
     for (size_t k = 0; k < sizeof cameras / sizeof cameras[0]; k++) {
         const int32_t samples = 1 + (int32_t)(k % 2);
         images got = draw(t, &scene, &cameras[k], &texture, &white, 1, samples);
@@ -397,12 +412,15 @@ static void as_rays_find_it(void **state)
             }
             check_pixel(&got, image, of, side * side, counts);
         }
+        check_rows(got.edges);
+        most = got.edges->count > most ? got.edges->count : most;
         assert_true(counts[0] > 100 && (samples == 1) == (counts[2] == 0));
         print_message("camera %zu: %u pixels of one surface, %u of none, %u of several\n", k,
                       counts[0], counts[1], counts[2]);
         print_message("camera %zu: %u samples of surfaces, %u at edges\n", k, seen, edges);
         assert_true(seen > 500 && edges < seen / 20);
     }
+    assert_true(most > ROW * GBUFFER_EDGES); // else no list went on in a second row
     tyn_scene_finish(&scene);
 }
 
