@@ -144,6 +144,15 @@ static bool sunlight_enters_through_medium(const tyn_frame_scene *frame, uint32_
     return (lit & frame->open_faces) != 0;
 }
 
+static bool has_spots(const tyn_frame_scene *frame)
+{
+    bool spots = false;
+    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
+        spots = spots || frame->lights[i].kind == TYN_LIGHT_KIND_SPOT;
+    }
+    return spots;
+}
+
 static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
                              const tyn_picture_inputs *in)
 {
@@ -154,6 +163,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->mode = block->mode;
     params->num_suns = in->num_suns;
     params->num_lamps = in->num_marched_lamps;
+    params->spots = in->num_marched_lamps > 0 && has_spots(frame);
     params->kernels = in->lut.resource != 0;
     params->mean = in->mean_in_field;
     params->field = in->field;

@@ -138,7 +138,7 @@ enum {
     NUM_SPEC = 4, // mode, number of suns, features, number of lamps
 };
 
-// 27 powers of two with this sum are all different.
+// 28 powers of two with this sum are all different.
 _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNEL +
                        RAYMARCH_UNSCALED + RAYMARCH_SOURCE + RAYMARCH_EMISSION + RAYMARCH_MEAN +
                        RAYMARCH_HOST_DEPTH + RAYMARCH_BACKGROUND + RAYMARCH_BEHIND +
@@ -146,8 +146,9 @@ _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNE
                        RAYMARCH_TRANSMITTANCE + RAYMARCH_DEPTH + RAYMARCH_SINGLE +
                        RAYMARCH_MULTIPLE + RAYMARCH_GLOW + RAYMARCH_SOFT_SUNS + RAYMARCH_SURFACE +
                        RAYMARCH_SURFACE_SEEN + RAYMARCH_WALLS + RAYMARCH_SHADOWS + RAYMARCH_REPEAT +
-                       RAYMARCH_SPARSE_FIRST + RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_REST ==
-                   (1u << 27) - 1,
+                       RAYMARCH_SPARSE_FIRST + RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_REST +
+                       RAYMARCH_SPOTS ==
+                   (1u << 28) - 1,
                "features have bits of their own");
 
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
@@ -328,6 +329,7 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= p->closed ? RAYMARCH_CLOSED : 0;
     features |= p->repeat ? RAYMARCH_REPEAT : 0;
     features |= p->antialias ? RAYMARCH_SUPERSAMPLE : 0;
+    features |= p->spots ? RAYMARCH_SPOTS : 0;
     features |= p->one_channel ? RAYMARCH_ONE_CHANNEL : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_WALL_LINKS) ? RAYMARCH_WALLS : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_SHADOW_ATLAS) ? RAYMARCH_SHADOWS : 0;

@@ -31,6 +31,7 @@
 #define RAYMARCH_SPARSE_FIRST (1u << 24) // one ray for 2x2 pixels, into the image "sparse"
 #define RAYMARCH_SPARSE_FILL (1u << 25)  // pixels where that image is smooth; the others are listed
 #define RAYMARCH_SPARSE_REST (1u << 26)  // rays of those that are listed
+#define RAYMARCH_SPOTS (1u << 27)        // there are lamps that shine in a cone
 
 struct raymarch_args {
     float step;       // longest step, m

@@ -1,0 +1,119 @@
+// pop_spots.c -- the cone of a spot in a medium: its light along a ray against fine quadrature. Cones narrower than
+// a step must not be hit or missed by chance.
+#include "gpu_test.h"
+#include "picture.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { PIXELS = 48 };
+
+static const float sigma_s = 0.2f, sigma_a = 0.1f, anisotropy = 0.4f;
+static const double half = 2, view_half = 1.2; // of the box and of the picture, m
+
+typedef struct spot {
+    double at[3], axis[3]; // M
+    double inner, outer;   // degrees
+} spot;
+
+static double dot(const double *a, const double *b)
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// glTF: ((cos - cos_outer) / (cos_inner - cos_outer))^2 between the cones.
+static double falloff(const spot *s, double cosine)
+{
+    double inner = cos(s->inner * M_PI / 180), outer = cos(s->outer * M_PI / 180);
+    double x = fmin(fmax((cosine - outer) / (inner - outer), 0), 1);
+    return x * x;
+}
+
+// Radiance once scattered along the ray from (x, y, half) along -z; W/sr = 1.
+static double exact(const spot *s, double x, double y)
+{
+    const int steps = 40000;
+    const double sigma_t = sigma_s + sigma_a, ds = 2 * half / steps, g = anisotropy;
+    double sum = 0;
+    for (int i = 0; i < steps; i++) {
+        double t = (i + 0.5) * ds;
+        double d[3] = {x - s->at[0], y - s->at[1], half - t - s->at[2]};
+        double r = sqrt(dot(d, d)), before = fmax(-half - s->at[0], 0) / d[0]; // the box
+        double mu = d[2] / r;                                                  // to the eye
+        double phase = (1 - g * g) / (4 * M_PI * pow(1 + g * g - 2 * g * mu, 1.5));
+        sum += falloff(s, dot(d, s->axis) / r) * phase * exp(-sigma_t * (r * (1 - before) + t)) /
+               (r * r) * ds;
+    }
+    return sigma_s * sum;
+}
+
+static void compare(gpu_test *t, const char *method, spot s)
+{
+    double size = sqrt(dot(s.axis, s.axis));
+    for (int a = 0; a < 3; a++) {
+        s.axis[a] /= size;
+    }
+    tyn_medium medium = grey_medium(sigma_s, sigma_a, anisotropy);
+    tyn_scene *scene = malloc(sizeof *scene);
+    tyn_scene_init(scene);
+    const float hi = (float)half;
+    scene_add_box(scene, &medium, (float[]){-hi, -hi, -hi}, (float[]){hi, hi, hi}, NULL, NULL);
+    scene->lights[scene->num_lights++] = (tyn_light){
+        .kind = TYN_LIGHT_SPOT,
+        .color = {1, 1, 1},
+        .position = {(float)s.at[0], (float)s.at[1], (float)s.at[2]},
+        .direction = {(float)s.axis[0], (float)s.axis[1], (float)s.axis[2]},
+        .cos_inner = (float)cos(s.inner * M_PI / 180),
+        .cos_outer = (float)cos(s.outer * M_PI / 180),
+    };
+    tyn_view view = {0};
+    view_orthographic(&view, (float[]){0, 0, 0}, 0, 0, -1, (float[]){0, 1, 0}, (float)view_half,
+                      PIXELS);
+    picture p;
+    picture_render(&p, t->dev, method, scene, &view, "raymarch.sparse=0", 0);
+    double most = 0, worst = 0, want[PIXELS];
+    uint32_t seen = 0;
+    for (uint32_t row = 0; row < PIXELS; row += 5) {
+        double y = view_half * (1 - (2 * row + 1.0) / PIXELS);
+        for (uint32_t i = 0; i < PIXELS; i++) {
+            want[i] = exact(&s, view_half * ((2 * i + 1.0) / PIXELS - 1), y);
+            most = fmax(most, want[i]);
+        }
+        for (uint32_t i = 0; i < PIXELS; i++) {
+            double got = p.rgb[3 * (row * PIXELS + i)];
+            // Relative, but where a pixel's middle only touches the cone.
+            worst = fmax(worst, fabs(got - want[i]) / (want[i] + 0.01 * most));
+            seen += want[i] > 0.01 * most;
+        }
+    }
+    print_message("%s, cones of %g and %g degrees: worst %.2f %% of %u pixels\n", method, s.inner,
+                  s.outer, 100 * worst, seen);
+    picture_free(&p);
+    tyn_scene_finish(scene);
+    free(scene);
+    assert_true(seen >= 20);
+    assert_true(worst <= 0.01);
+}
+
+static void cones(void **state)
+{
+    const spot across = {{-1.5, 0.1, 0.3}, {1, 0.05, -0.1}, 1.5, 3};
+    const spot sharp = {{-1.5, 0.1, 0.3}, {1, 0.05, -0.1}, 2.999, 3};
+    const spot oblique = {{-1.2, 0.9, 1.2}, {0.8, -0.6, -1}, 0, 4};
+    const spot wide = {{0.3, 1.6, -0.2}, {0, -1, 0.2}, 25, 60};
+    const spot half_space = {{0.3, 1.6, -0.2}, {0, -1, 0.2}, 0, 90};
+    const spot outside = {{-4, 0.3, 0}, {1, 0, 0.1}, 2, 5};
+    const spot *all[] = {&across, &sharp, &oblique, &wide, &half_space, &outside};
+    for (int i = 0; i < 6; i++) {
+        compare(*state, "single", *all[i]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cones),
+    };
+    cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
