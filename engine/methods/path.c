@@ -169,12 +169,26 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
     }
 }
 
+// A sample of fluxes. Few threads with many paths each: those that have their last path wait for the longest.
+enum { FLUX_THREADS = 512, FLUX_SAMPLE_PATHS = 8 };
+
+// Of a thread in one dispatch.
+static double flux_paths(const tyn_job *job, bool homogeneous)
+{
+    return DISPATCH_NS / (path_cost_ns(job, homogeneous) * FLUX_THREADS);
+}
+
 static uint32_t batch(const tyn_job *job)
 {
     if (job->outputs & TYN_OUTPUT_BALANCE) {
         return 1;
     }
     tyn_path_params p;
+    if (job->outputs & TYN_OUTPUT_FLUXES) {
+        set_params(&p, job, &tyn_pass_path_fluxes);
+        double samples = flux_paths(job, p.homogeneous) / FLUX_SAMPLE_PATHS;
+        return samples < 1 ? 1 : (uint32_t)fmin(samples, 1024);
+    }
     bool probes = job->outputs & TYN_OUTPUT_PROBE;
     set_params(&p, job, probes ? &tyn_pass_path_probe : &tyn_pass_path);
     double elements = probes ? job->view->num_points : (double)job->view->width * job->view->height;
@@ -318,6 +332,64 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     return result;
 }
 
+// What paths from suns and surroundings do not carry.
+static tyn_result check_fluxes(const tyn_job *job)
+{
+    const tyn_frame_scene *frame = job->frame;
+    const struct medium_block *m = &frame->medium;
+    const struct env_block *env = &frame->environment;
+    const char *wrong = NULL;
+    bool sky = env->radiance[0] + env->radiance[1] + env->radiance[2] > 0;
+    if (frame->empty && !frame->num_triangles) {
+        wrong = "there is no medium and no surface";
+    } else if (frame->num_lights > frame->num_suns) {
+        wrong =
+            "there are lamps, whose light starts inside; only suns and the environment may shine "
+            "(balance knows lamps)";
+    } else if (frame->emissive || job->refs.emitters.resource) {
+        wrong = "media or surfaces emit; only suns and the environment may shine (balance knows "
+                "emission)";
+    } else if (!frame->num_lights && !sky) {
+        wrong = "there is neither a sun nor an environment";
+    } else if (m->repeat[0] && m->repeat[1] && m->repeat[2]) {
+        wrong = "the medium repeats along all axes: no light enters it";
+    }
+    if (wrong) {
+        tyn_log_print(job->log, TYN_LOG_ERROR, "output 'fluxes': %s", wrong);
+    }
+    return wrong ? TYN_ERR_UNSUPPORTED : TYN_OK;
+}
+
+static tyn_result add_fluxes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
+{
+    tyn_path_params params;
+    set_params(&params, job, &tyn_pass_path_fluxes);
+    set_box(&params, job->frame);
+    params.threads = FLUX_THREADS;
+    // A record's structure may not depend on the number of its samples.
+    double paths = flux_paths(job, params.homogeneous);
+    params.chunks = 1;
+    while (params.chunks < FLUX_SAMPLE_PATHS && params.chunks * paths < FLUX_SAMPLE_PATHS) {
+        params.chunks *= 2;
+    }
+    params.first_sample *= FLUX_SAMPLE_PATHS;
+    params.num_samples *= FLUX_SAMPLE_PATHS / params.chunks;
+    tyn_ref refs[PATH_FLUXES_NUM_PORTS] = {
+        [PATH_FLUXES_PORT_STATE] =
+            tyn_graph_history_buffer(g, "path_fluxes", tyn_path_fluxes_state_size(), 1),
+    };
+    connect_scene(refs, job, bricks);
+    tyn_result result = check_fluxes(job);
+    if (result == TYN_OK) {
+        result = tyn_graph_add(g, &tyn_pass_path_fluxes, &params, refs);
+    }
+    if (result == TYN_OK) {
+        tyn_job_output(g, job, TYN_OUTPUT_FLUXES, refs[PATH_FLUXES_PORT_FLUXES]);
+        tyn_job_counters(g, job, "path_fluxes", refs[PATH_FLUXES_PORT_COUNTERS]);
+    }
+    return result;
+}
+
 // A periodic medium's own axes must be those of M; surfaces repeat with it, each copy in a period of its own.
 static tyn_result check_repeat(const tyn_job *job)
 {
@@ -380,7 +452,8 @@ static tyn_result add_depth(tyn_graph *g, const tyn_job *job, const tyn_media_re
 
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
 {
-    const uint32_t not_images = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_DEPTH;
+    const uint32_t not_images =
+        TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_FLUXES;
     tyn_result result = check_repeat(job);
     tyn_media_refs media = {{0}};
     if (result == TYN_OK && !job->frame->empty) {
@@ -404,12 +477,16 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (result == TYN_OK && job->outputs & TYN_OUTPUT_BALANCE) {
         result = add_balance(g, job, media.bricks);
     }
+    if (result == TYN_OK && job->outputs & TYN_OUTPUT_FLUXES) {
+        result = add_fluxes(g, job, media.bricks);
+    }
     return result;
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,        &tyn_pass_path,     &tyn_pass_path_probe, &tyn_pass_path_balance,
-    &tyn_pass_path_distance, &tyn_pass_raymarch, &tyn_pass_tonemap,    NULL,
+    &tyn_pass_medium,       &tyn_pass_path,        &tyn_pass_path_probe,
+    &tyn_pass_path_balance, &tyn_pass_path_fluxes, &tyn_pass_path_distance,
+    &tyn_pass_raymarch,     &tyn_pass_tonemap,     NULL,
 };
 
 const tyn_method tyn_method_path = {
@@ -418,7 +495,7 @@ const tyn_method tyn_method_path = {
     .passes = passes,
     .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH |
                TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_ERROR | TYN_OUTPUT_DISPLAY |
-               TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE,
+               TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_FLUXES,
     .progressive = true,
     .reads_env_cdf = true,
     .traces_rays = true,

@@ -65,6 +65,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_path,
     &tyn_pass_path_probe,
     &tyn_pass_path_balance,
+    &tyn_pass_path_fluxes,
     &tyn_pass_path_distance,
     &tyn_pass_composite,
     &tyn_pass_tonemap,

@@ -33,7 +33,7 @@ typedef struct tyn_path_params {
     float world[3][3];    // probes: the world's axes in M
     float lamp_power[3];  // balance: of the lamps inside, W
     float box[2][3];      // balance of surfaces: corners of the box around everything, M
-    uint32_t chunks;      // balance: dispatches of num_samples paths each
+    uint32_t chunks;      // balance: dispatches of num_samples paths each; fluxes: of each thread
 } tyn_path_params;
 
 // What every tracing pass reads.
@@ -102,6 +102,17 @@ enum {
 };
 extern const tyn_pass_desc tyn_pass_path_balance;
 
+// Where the light of suns and surroundings goes.
+enum {
+    PATH_FLUXES_PORT_STATE =
+        PATH_NUM_SCENE_PORTS,  // INOUT buffer, tyn_path_fluxes_state_size bytes: a history
+    PATH_FLUXES_PORT_FLUXES,   // OUT buffer tyn_fluxes
+    PATH_FLUXES_PORT_COUNTERS, // OUT buffer struct counters_block
+    PATH_FLUXES_PORT_PARTIALS, // SCRATCH
+    PATH_FLUXES_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_path_fluxes;
+
 // Where surfaces are, in the pixels' middles.
 typedef struct tyn_path_distance_params {
     uint32_t width, height; // of the picture
@@ -119,5 +130,6 @@ extern const tyn_pass_desc tyn_pass_path_distance;
 
 // Bytes of the probes' history.
 uint64_t tyn_path_probe_state_size(uint32_t num_points);
-// ... and of a balance's.
+// ... and of a balance's, and of fluxes'.
 uint64_t tyn_path_balance_state_size(void);
+uint64_t tyn_path_fluxes_state_size(void);

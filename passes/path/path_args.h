@@ -112,4 +112,35 @@ struct path_balance_result {
 };
 TYN_ASSERT_SIZE(path_balance_result, 144);
 
+// The fluxes' values, 3 channels each, W: as tyn_flux_values.
+#define TYN_PATH_FLUX_INCIDENT 0
+#define TYN_PATH_FLUX_LEAVING 1 // six faces
+#define TYN_PATH_FLUX_DIRECT 7
+#define TYN_PATH_FLUX_REFLECTED 8
+#define TYN_PATH_FLUX_TRANSMITTED 9
+#define TYN_PATH_FLUX_ABSORBED_MEDIA 10
+#define TYN_PATH_FLUX_ABSORBED_SURFACES 11
+#define TYN_PATH_FLUX_ARRIVING_SURFACES 12
+#define TYN_PATH_FLUX_MISSING 13
+#define TYN_PATH_FLUX_VALUES 42
+#define TYN_PATH_FLUX_LANES 64 // of a workgroup that sums
+
+struct path_fluxes_state { // running statistics
+    float mean[TYN_PATH_FLUX_VALUES], low[TYN_PATH_FLUX_VALUES], deviation[TYN_PATH_FLUX_VALUES];
+    float threads[TYN_PATH_FLUX_VALUES]; // so far
+};
+TYN_ASSERT_SIZE(path_fluxes_state, 672);
+
+struct path_fluxes_result { // as tyn_fluxes
+    float value[TYN_PATH_FLUX_VALUES], error[TYN_PATH_FLUX_VALUES];
+};
+TYN_ASSERT_SIZE(path_fluxes_result, 336);
+
+struct path_fluxes_sum_args {
+    tyn_uint threads;      // of this dispatch, a multiple of TYN_PATH_FLUX_LANES
+    tyn_uint paths;        // of each
+    tyn_uint paths_before; // of each, in the running statistics; 0: start anew
+};
+TYN_ASSERT_SIZE(path_fluxes_sum_args, 12);
+
 #endif

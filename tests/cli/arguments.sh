@@ -10,7 +10,7 @@ works --help
 grep -q "selftest" out || fail "--help lists no selftest"
 works --version
 grep -qE '^tyndall [0-9]+\.[0-9]+\.[0-9]+$' out || fail "--version: $(cat out)"
-for command in render compare probe balance bench graph info selftest view; do
+for command in render compare probe balance fluxes bench graph info selftest view; do
     works $command --help
     grep -q "usage: tyndall $command" out || fail "$command --help: $(head -1 out)"
     refuses 2 "unknown option '--paint'" $command --paint

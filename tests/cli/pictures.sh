@@ -132,6 +132,16 @@ for key in entering emitted absorbed_media absorbed_surfaces escaped imbalance i
 done
 near "$(get balance.json entering.0)" 1 1e-3 "power that enters the cube, W"
 near "$(get balance.json imbalance.0)" 0 0.01 "imbalance of the cube"
+works fluxes "$scenes/slab.gltf" --json --quiet
+cp out fluxes.json
+for key in incident reflected reflected_se transmitted absorbed_media missing leaving.+y leaving.+y_se; do
+    [ "$("$helpers/json_get" fluxes.json $key)" = "list 3" ] || fail "fluxes: $key"
+done
+near "$(get fluxes.json incident.0)" 1 1e-5 "power that enters the slab, W"
+near "$(get fluxes.json missing.0)" 0 1e-4 "energy of the slab's fluxes"
+works fluxes "$scenes/slab.gltf" --quiet --spp 2
+grep -q '^reflected .* +- ' out || fail "fluxes: $(cat out)"
+refuses 2 "output 'fluxes': there are lamps" fluxes "$scenes/room.gltf"
 works graph "$scenes/cube.gltf" --quiet
 grep -q raymarch out || fail "graph: no raymarch: $(head -5 out)"
 works graph "$scenes/cube.gltf" --dot --quiet

@@ -106,6 +106,14 @@ const tyn_balance *path_run_balance(path_run *r, const tyn_scene *scene, uint32_
     return tyn_offline_output(r->off, TYN_OUTPUT_BALANCE);
 }
 
+const tyn_fluxes *path_run_fluxes(path_run *r, const tyn_scene *scene, uint32_t samples)
+{
+    tyn_view v = {.width = 1, .height = 1, .outputs = TYN_OUTPUT_FLUXES};
+    tyn_camera_frame_scene(&v.camera, scene);
+    run(r, scene, &v, samples);
+    return tyn_offline_output(r->off, TYN_OUTPUT_FLUXES);
+}
+
 void view_perspective(tyn_view *view, const float from[3], const float at[3], float tangent,
                       uint32_t n)
 {

@@ -29,6 +29,8 @@ const tyn_probe_result *path_run_probe(path_run *r, const tyn_scene *scene,
                                        bool scattered, uint32_t samples);
 // Samples of some ten thousand paths.
 const tyn_balance *path_run_balance(path_run *r, const tyn_scene *scene, uint32_t samples);
+// Samples of 4096 paths.
+const tyn_fluxes *path_run_fluxes(path_run *r, const tyn_scene *scene, uint32_t samples);
 
 // A pinhole at `from`; `tangent` of half the vertical field of view.
 void view_perspective(tyn_view *view, const float from[3], const float at[3], float tangent,

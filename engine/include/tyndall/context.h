@@ -48,6 +48,7 @@ typedef enum tyn_output {
     TYN_OUTPUT_PROBE = 1 << 7,         // buffer of tyn_probe_result, one a point
     TYN_OUTPUT_BALANCE = 1 << 8,       // buffer: tyn_balance
     TYN_OUTPUT_COMPOSITE = 1 << 9,     // into tyn_frame.color
+    TYN_OUTPUT_FLUXES = 1 << 10,       // buffer: tyn_fluxes (path)
 } tyn_output;
 
 typedef struct tyn_probe_result {
@@ -60,6 +61,23 @@ typedef struct tyn_balance { // W, per channel
     double entering[3], emitted[3], absorbed_media[3], absorbed_surfaces[3], escaped[3], imbalance[3];
     double imbalance_se[3]; // its standard error (path), else 0
 } tyn_balance;
+
+// Where light of suns and surroundings goes that enters the media's box, along the axes of that box; with
+// surfaces the box of a balance (docs/balance.md). Along axes on which the medium repeats the box has no faces,
+// and its others stand for one period.
+typedef struct tyn_flux_values { // W, per channel
+    float incident[3];
+    float leaving[6][3];        // through the faces -x, +x, -y, +y, -z, +z
+    float direct[3];            // of that, what has met nothing
+    float reflected[3];         // leaves through faces that its light shines on when it enters; `transmitted`:
+    float transmitted[3];       // through others. The two are all that leaves
+    float absorbed_media[3], absorbed_surfaces[3];
+    float arriving_surfaces[3]; // on surfaces, each time light meets one
+    float missing[3];           // incident less all of it: 0 but for noise and for paths that were cut
+} tyn_flux_values;
+typedef struct tyn_fluxes {
+    tyn_flux_values mean, se; // and standard errors
+} tyn_fluxes;
 
 // What to compute and from where.
 typedef struct tyn_view {
