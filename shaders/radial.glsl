@@ -89,6 +89,34 @@ float radial_mean_inverse_square(float r2, float d2)
     return r2 < d2 ? 1.0 / (0.1304 * d2 + 0.79 * r2) : (1.0 + d2 / (12.0 * r2)) / r2;
 }
 
+// Of most lamps only the light that is near them is followed exactly, with the weight (1 - (r / reach)^4)^2; the rest,
+// which is smooth even at the lamp, is left to cells. A narrow beam is followed until it is as wide as the reach
+// of lamps that shine all around, m.
+float radial_reach(radial_light light, float around)
+{
+    float c = light.kind == TYN_RADIAL_SPOT ? max(light.cos_outer, 0.0) : 0.0;
+    return around * inversesqrt(max(1.0 - c * c, 1e-4));
+}
+
+// What is left to cells of 1 / r^2; r squared.
+float radial_rest(float r2, float reach)
+{
+    float q = 1.0 / (reach * reach), t2 = r2 * q, t4 = t2 * t2;
+    return t2 < 1.0 ? q * t2 * (2.0 - t4) : 1.0 / r2;
+}
+
+// ... and the integral of what is followed, from a to b on a line that passes the light at a distance of sqrt(h2).
+// `all`: that of 1 / r^2.
+float radial_near(float all, float h2, float a, float b, float reach)
+{
+    float q = 1.0 / reach;
+    h2 *= q * q;
+    vec2 x = vec2(a, b) * q, x2 = x * x;
+    vec2 r2 = x * (h2 + x2 / 3.0);
+    vec2 r6 = x * (h2 * h2 * h2 + x2 * (h2 * h2 + x2 * (0.6 * h2 + x2 / 7.0)));
+    return max(all - q * ((2.0 * r2 - r6).y - (2.0 * r2 - r6).x), 0.0);
+}
+
 #ifdef RADIAL_SHADOWS // shadow.glsl was included
 // Share of the light of lamp n that surfaces let through to the point p.
 float radial_visibility(uint n, vec3 p)

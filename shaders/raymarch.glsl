@@ -398,7 +398,16 @@ vec3 march_tinted(vec3 J)
     return raymarch_has(RAYMARCH_ONE_CHANNEL) ? J.r * args.tint : J;
 }
 
+// Centroid of a step's weights, in steps.
+float march_centroid(march_medium m, float ds)
+{
+    return step_centroid((0.5 * ds) * spectrum_mean(m.extinction + (raymarch_has(RAYMARCH_KERNELS)
+                                                                        ? m.scaled_extinction
+                                                                        : m.extinction)));
+}
+
 #include "raymarch_lamps.glsl"
+#include "raymarch_near.glsl"
 
 // Moves `s` on to the next brick that is not empty, or to `end`.
 float march_skip(vec3 origin, vec3 direction, vec3 inverse, float s, float end)
@@ -473,6 +482,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
     [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
         kept[n] = march_lamp_of(n, lamps);
     }
+    march_near near = march_near_of(lamps, end);
     vec3 inverse = ray_inverse(direction);
     // Texture coordinates are linear along the ray.
     vec3 medium0 = origin / medium.extent, medium1 = direction / medium.extent;
@@ -493,7 +503,10 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
         float wall_at[RAYMARCH_LATER]; // where the lattice's light is looked up, m
         spectrum wall_weight[RAYMARCH_LATER];
         int walls = 0, last_wall = -1; // how many; the last step's
-        for (int i = 0; i < RAYMARCH_CHUNK && walls < RAYMARCH_LATER; i++) {
+        march_near_steps near_steps;   // those near lamps as well
+        near_steps.count = 0;
+        bool last_near = false;
+        for (int i = 0; i < RAYMARCH_CHUNK && walls < RAYMARCH_LATER && near_steps.count < MARCH_NEAR_STEPS; i++) {
             if (s >= end || spectrum_max(state.through_scaled) <= args.stop) {
                 break;
             }
@@ -526,8 +539,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
             }
             state.next = march_next_step(m);
             spectrum x = m.extinction * ds, x_scaled = m.scaled_extinction * ds;
-            float at = s + ds * step_centroid(0.5 * spectrum_mean(
-                                    raymarch_has(RAYMARCH_KERNELS) ? x + x_scaled : x + x));
+            float at = s + ds * march_centroid(m, ds);
             spectrum e = exp(-x), e_scaled = exp(-x_scaled);
             spectrum weight = ds * state.through * mean_attenuation(x, e);
             spectrum weight_scaled = ds * state.through_scaled * mean_attenuation(x_scaled, e_scaled);
@@ -578,6 +590,15 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
                 state.radiance += march_lamplight(march_lamp_of(n, lamps), 4u + n, lamps, unit, m, s, ds, at, weight,
                                                   weight_scaled, state.shadow, state.single);
             }
+            last_near = false;
+            if (raymarch_num_near > 0u && s < near.span.y && s + ds > near.span.x) {
+                near_steps.at[near_steps.count] = s;
+                near_steps.ds[near_steps.count] = ds;
+                near_steps.weight[near_steps.count] = weight;
+                near_steps.weight_scaled[near_steps.count] = weight_scaled;
+                near_steps.count++;
+                last_near = true;
+            }
             if (raymarch_has(RAYMARCH_DEPTH)) {
                 float t0 = spectrum_mean(state.through * exp(-state.hidden));
                 float t1 = spectrum_mean(state.through * e * exp(-state.hidden - m.hidden * ds));
@@ -594,6 +615,12 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
             vec3 J = march_tinted(march_field_between_walls(origin + wall_at[i] * direction));
             state.radiance += wall_weight[i] * J;
             state.before += i == last_wall ? vec3(0.0) : wall_weight[i] * J;
+        }
+        if (raymarch_num_near > 0u) {
+            vec3 last, light = march_near_light(near, lamps, unit, near_steps, medium0, medium1, inside,
+                                                state.single, last);
+            state.radiance += light;
+            state.before += last_near ? light - last : light;
         }
     }
     state.s = s;

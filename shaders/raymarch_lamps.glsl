@@ -164,6 +164,13 @@ vec3 march_lamplight_seen(march_lamp lamp, march_lamps ray, march_medium unit, m
     return raymarch_has(RAYMARCH_KERNELS) ? light * (k_tms * weight_scaled + k_lobe * weight) : once;
 }
 
+// Integral of 1 / (h2 + x^2) from a to b.
+float march_inverse_square(float h2, float a, float b)
+{
+    float q = h2 + a * b, h = sqrt(h2), z = h * (b - a);
+    return q > 4.0 * z ? (b - a) * (1.0 - z * z / (3.0 * q * q)) / q : atan(z, q) / h;
+}
+
 // As march_sunlight, of a lamp in the step from s to s + ds, of which `at` is the middle. 1 / r^2 changes most:
 // its mean is exact, (angle under which the lamp sees the step) / (h ds), h the ray's distance from it.
 vec3 march_lamplight(march_lamp lamp, uint bit, march_lamps ray, march_medium unit, march_medium m, float s, float ds,
@@ -174,9 +181,8 @@ vec3 march_lamplight(march_lamp lamp, uint bit, march_lamps ray, march_medium un
     float along = dot(away, ray.direction), least = march_least_h(ray, at);
     vec3 across = away - along * ray.direction;
     float h2 = max(dot(across, across), least * least);
-    float a = along + (s - at), b = a + ds, q = h2 + a * b, z = sqrt(h2) * ds;
-    float mean = q > 4.0 * z ? (1.0 - z * z / (3.0 * q * q)) / q : atan(z, q) / z;
-    mean *= march_pixel_mean(length(across) * (0.282 / least));
+    float a = along + (s - at), b = a + ds;
+    float mean = march_inverse_square(h2, a, b) / ds * march_pixel_mean(length(across) * (0.282 / least));
     // Where the angle from the lamp is in the middle: half of the light is on either side.
     float middle, share = 1.0;
     if (raymarch_has(RAYMARCH_SPOTS)) {

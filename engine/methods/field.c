@@ -322,6 +322,8 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, tyn_field *f)
     params.marched_lamps = f->picture.num_marched_lamps;
     refs[MERGE_PORT_VPL_LIGHT] = f->vpl_light;
     if (lamps->num_lamps > params.marched_lamps) {
+        f->picture.num_near_lamps = lamps->num_lamps - params.marched_lamps;
+        params.reach = TYN_METHOD_LAMP_REACH * f->picture.cell;
         refs[MERGE_PORT_RADIALS] = lamps->radials;
         refs[MERGE_PORT_RADIAL_COLUMN] = lamps->column;
         refs[MERGE_PORT_RADIAL_TAU_A] = lamps->tau_a;

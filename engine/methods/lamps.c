@@ -2,6 +2,28 @@
 #include "methods/lamps.h"
 #include "passes/radial_beam/radial_beam.h"
 #include <tyndall/registry.h>
+#include <math.h>
+
+static float strength(const struct radial_light *lamp)
+{
+    return fmaxf(lamp->intensity[0], fmaxf(lamp->intensity[1], lamp->intensity[2]));
+}
+
+// Of many lamps those that are followed everywhere have nearly a third of what all have, so that equal ones are
+// treated alike, whatever their order. `lamps` are sorted.
+static uint32_t num_fine(const struct radial_light *lamps, uint32_t count)
+{
+    float sum = 0.0f;
+    for (uint32_t i = 0; i < count; i++) {
+        sum += strength(&lamps[i]);
+    }
+    uint32_t fine = 0;
+    while (fine < count &&
+           (count <= TYN_METHOD_FINE_LAMPS || strength(&lamps[fine]) > 0.3f * sum)) {
+        fine++;
+    }
+    return fine;
+}
 
 tyn_result tyn_add_radials(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
                            tyn_ref vpls, tyn_radial_refs *out)
@@ -11,7 +33,8 @@ tyn_result tyn_add_radials(tyn_graph *g, const tyn_job *job, const tyn_media_ref
     tyn_radial_beam_params params;
     tyn_settings_params(job->settings, &tyn_pass_radial_beam, &params);
     tyn_radial_beam_plan(&params, &frame->medium, frame->lights, frame->num_suns, frame->num_lights,
-                         TYN_METHOD_FINE_LAMPS, out->vpls ? TYN_RADIAL_VPLS_MAX : 0);
+                         TYN_RADIAL_LAMPS_MAX, out->vpls ? TYN_RADIAL_VPLS_MAX : 0);
+    params.num_fine = num_fine(params.lamps, params.num_lamps);
     if (params.num_lamps == 0 && !out->vpls) {
         return TYN_OK;
     }

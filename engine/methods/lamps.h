@@ -2,7 +2,10 @@
 #pragma once
 #include "methods/nodes.h"
 
-enum { TYN_METHOD_FINE_LAMPS = 2 };
+enum { TYN_METHOD_FINE_LAMPS = 2 }; // so many are always followed everywhere
+
+// Cells of the lattice within which all others are followed too: beams of spots farther, until they are as wide.
+#define TYN_METHOD_LAMP_REACH 3.0f
 
 // `vpls`: buffer struct radial_vpls, or {0}.
 tyn_result tyn_add_radials(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,

@@ -1,5 +1,6 @@
 // nodes.c -- parts of a frame that several methods have in common.
 #include "methods/nodes.h"
+#include "methods/lamps.h"
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
 #include "passes/composite/composite.h"
@@ -163,7 +164,9 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->mode = block->mode;
     params->num_suns = in->num_suns;
     params->num_lamps = in->num_marched_lamps;
-    params->spots = in->num_marched_lamps > 0 && has_spots(frame);
+    params->num_near_lamps = in->inscatter.resource ? in->num_near_lamps : 0;
+    params->reach = TYN_METHOD_LAMP_REACH * in->cell;
+    params->spots = params->num_lamps + params->num_near_lamps > 0 && has_spots(frame);
     params->kernels = in->lut.resource != 0;
     params->mean = in->mean_in_field;
     params->field = in->field;

@@ -149,7 +149,8 @@ static void record(tyn_recorder *r, const void *params)
                               .channels = p->channels,
                               .tint = {p->tint[0], p->tint[1], p->tint[2]},
                               .first_radial = p->marched_lamps,
-                              .repeat = {p->repeat[0], p->repeat[1], p->repeat[2]}};
+                              .repeat = {p->repeat[0], p->repeat[1], p->repeat[2]},
+                              .reach = p->reach};
     tyn_rec_fill(r, MERGE_PORT_COUNTERS, 0);
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_CELLS, .cells = dims, .args = &args});
     if (tyn_rec_has(r, MERGE_PORT_ORDINATES)) {

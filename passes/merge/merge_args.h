@@ -9,6 +9,7 @@ struct merge_args {
     tyn_vec3 tint;         // of the one channel
     tyn_uint first_radial; // local light that is not marched
     tyn_uvec3 repeat;      // medium_block.repeat
+    float reach;           // of local lights, what is nearer is marched; m
 };
 
 #endif

@@ -3,7 +3,8 @@
 //
 // Per sigma_s' and seen through e^-tau', as the march takes it: I / r^2 e^-tau_a (K_tms + K_lobe e^-(tau - tau'))
 // / (1 - f); what is scattered forward goes to the eye through e^-tau, and the difference of the depths of the
-// way there is summed over the cells that it passes. Of 1 / r^2 the mean over the cell is taken.
+// way there is summed over the cells that it passes. Of 1 / r^2 there is what the march leaves (radial_rest), which
+// is smooth, or the mean over the cell.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -128,8 +129,9 @@ void main()
             k.g = kernel(1u, g.g, one_minus_mu, tau.s.g, tau.p.g, forward.g);
             k.b = kernel(2u, g.b, one_minus_mu, tau.s.b, tau.p.b, forward.b);
         }
-        sum += radials[n].light.intensity * (share * radial_mean_inverse_square(r * r, box.dx * box.dx)) *
-               exp(-tau.a) * k;
+        float per_intensity = args.reach > 0.0 ? radial_rest(r * r, radial_reach(radials[n].light, args.reach))
+                                               : radial_mean_inverse_square(r * r, box.dx * box.dx);
+        sum += radials[n].light.intensity * (share * per_intensity) * exp(-tau.a) * k;
     }
     if (channels == 1u) {
         field[merge_index(c, 0u)] += dot(sum, args.tint) / dot(args.tint, args.tint);

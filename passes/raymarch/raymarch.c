@@ -135,7 +135,7 @@ enum {
     NUM_GREY_BINDINGS = NUM_BINDINGS - 7,
     SPARSE_TEXTURE = 28, // of bindings
     SPARSE_IMAGE,
-    NUM_SPEC = 4, // mode, number of suns, features, number of lamps
+    NUM_SPEC = 5, // mode, number of suns, features, numbers of lamps
 };
 
 // 28 powers of two with this sum are all different.
@@ -177,7 +177,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                            .local_size = {8, 8, 1},
                            .bindings = background_bindings,
                            .num_bindings = NUM_BACKGROUND_BINDINGS,
-                           .num_spec = NUM_SPEC - 1},
+                           .num_spec = NUM_SPEC - 2},
 };
 
 static const tyn_param params_table[] = {
@@ -220,7 +220,8 @@ float tyn_raymarch_longest_step(float sigma_t, float dx, const struct medium_blo
 static bool is_sparse(const tyn_raymarch_params *p, bool surfaces, bool host_depth)
 {
     const uint32_t dense = RAYMARCH_LAYER_DEPTH | RAYMARCH_LAYER_SINGLE | RAYMARCH_LAYER_MULTIPLE;
-    return p->sparse && (surfaces || p->num_lamps) && !host_depth && !(p->layers & dense);
+    return p->sparse && (surfaces || p->num_lamps || p->num_near_lamps) && !host_depth &&
+           !(p->layers & dense);
 }
 
 static tyn_extent window_of(const tyn_raymarch_params *p)
@@ -354,7 +355,7 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_raymarch_params *p = params;
     const uint32_t features = features_of(r, p);
-    uint32_t spec[NUM_SPEC] = {p->mode, p->num_suns, features, p->num_lamps};
+    uint32_t spec[NUM_SPEC] = {p->mode, p->num_suns, features, p->num_lamps, p->num_near_lamps};
     float voxel = shortest_voxel(tyn_rec_extent(r, RAYMARCH_PORT_DENSITY), p->extent);
     // Edges of shadows are found within steps, and what is left is far less than what the lattice is off by there.
     bool surfaces = features & (RAYMARCH_WALLS | RAYMARCH_SHADOWS) && features & RAYMARCH_FIELD;
@@ -372,6 +373,7 @@ static void record(tyn_recorder *r, const void *params)
         .first = {p->first[0], p->first[1]},
         .end = {p->end[0], p->end[1]},
         .tint = {p->tint[0], p->tint[1], p->tint[2]},
+        .reach = p->reach,
     };
     if (p->end[0] == 0) {
         args.end[0] = p->width;

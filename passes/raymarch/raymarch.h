@@ -14,7 +14,9 @@ typedef struct tyn_raymarch_params {
     uint32_t mode;        // TYN_MEDIUM_*
     uint32_t num_suns;    // 0..4
     uint32_t num_lamps;   // that are marched: the first of `radials`
-    uint32_t spots;       // 1: some of these shine in a cone only
+    uint32_t num_near_lamps; // that are marched nearby only, the next ones; `inscatter` has the rest of their light
+    float reach;          // ... of these, m (shaders/radial.glsl: radial_reach)
+    uint32_t spots;       // 1: some of all these shine in a cone only
     uint32_t kernels;     // 1: sunlight scattered forward any number of times (lut); else once only
     uint32_t mean;        // 1: the mean of the environment came in through the field
     uint32_t emissive;    // 1: media emit light

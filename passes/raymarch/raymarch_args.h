@@ -42,8 +42,9 @@ struct raymarch_args {
     tyn_uvec2 first;  // pixels in which the box of the media may be seen: from `first` ...
     tyn_uvec2 end;    // ... to before `end`
     tyn_vec3 tint;    // of the one channel of inscatter
+    float reach;      // of lamps that are marched nearby only, m (radial_reach)
 };
-TYN_ASSERT_SIZE(raymarch_args, 60);
+TYN_ASSERT_SIZE(raymarch_args, 64);
 
 // Start of the buffer "rest": 2x2 pixels that need rays of their own. uints x | y << 16 follow, one a block.
 struct raymarch_rest {
