@@ -4,6 +4,7 @@
 // of light n that surfaces let through to p. The kernel has the constants num_channels, walls and shadowed.
 #ifndef TYN_LATTICE_LAMPS_PIECES_GLSL
 #define TYN_LATTICE_LAMPS_PIECES_GLSL
+#include "quotient.glsl"
 
 // Adds light n to the moments of the channels, the cell cut into count^3 pieces.
 void lattice_lamps_add_pieces(uint n, uint count, lattice_box box, ivec3 c, inout vec4 sums[3], inout vec3 all)
@@ -13,7 +14,7 @@ void lattice_lamps_add_pieces(uint n, uint count, lattice_box box, ivec3 c, inou
     vec4 weighted[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
     vec3 weight = vec3(0.0), open = vec3(0.0);
     for (uint i = 0u; i < count * count * count; i++) {
-        vec3 p = corner + (vec3(i % count, i / count % count, i / (count * count)) + 0.5) * d;
+        vec3 p = corner + (vec3(quotient_place(i, ivec3(count))) + 0.5) * d;
         if (walls == 1 && !walls_same_side(box, c, p)) {
             continue;
         }

@@ -15,7 +15,7 @@ struct lattice_stencil {
 
 lattice_stencil lattice_stencil_of(vec4 lo, vec4 hi)
 {
-    return lattice_stencil(lo.xyz, hi.xyz, lo.w, abs(hi.w));
+    return lattice_stencil(lo.xyz, hi.xyz, abs(lo.w), abs(hi.w));
 }
 
 // Walls may part the eight cells that a coarse one is made of. It stands for those of the largest part
@@ -23,6 +23,13 @@ lattice_stencil lattice_stencil_of(vec4 lo, vec4 hi)
 bool lattice_orphan(vec4 hi)
 {
     return hi.w < 0.0;
+}
+
+// Corrections are not carried through walls: with one about, a cell takes that of the coarse cell around it alone. Its
+// absorption, which is not 0 among walls, is stored with a minus.
+bool lattice_alone(vec4 lo)
+{
+    return lo.w < 0.0;
 }
 
 // Is no wall in this cell's faces?

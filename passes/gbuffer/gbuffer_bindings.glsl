@@ -10,14 +10,6 @@ layout(set = 0, binding = 1, scalar) uniform surfaces_buffer
 {
     surface_block surfaces;
 };
-layout(set = 0, binding = 2, scalar) readonly buffer triangles_buffer
-{
-    surface_triangle triangles[];
-};
-layout(set = 0, binding = 3, scalar) readonly buffer vertices_buffer
-{
-    surface_vertex vertices[];
-};
 vec3 turn(vec4 rows[3], vec3 v)
 {
     return vec3(dot(rows[0].xyz, v), dot(rows[1].xyz, v), dot(rows[2].xyz, v));

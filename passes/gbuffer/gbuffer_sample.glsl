@@ -12,9 +12,18 @@
 layout(constant_id = 0) const uint textured = 1u;
 layout(constant_id = 1) const int samples = 2; // along each side of a pixel
 layout(constant_id = 2) const uint row = GBUFFER_ROW;
-layout(set = 0, binding = 4, scalar) readonly buffer materials_buffer
+// The scene's structs as rows of four: a CPU device reads a vector per lane in little more than the time of a number.
+layout(set = 0, binding = 2, scalar) readonly buffer triangle_rows_buffer
 {
-    surface_material materials[];
+    uvec4 triangle_rows[]; // surface_triangle
+};
+layout(set = 0, binding = 3, scalar) readonly buffer vertex_rows_buffer
+{
+    vec4 vertex_rows[]; // surface_vertex: position, u; normal, v
+};
+layout(set = 0, binding = 4, scalar) readonly buffer material_rows_buffer
+{
+    vec4 material_rows[]; // surface_material: albedo, flags; emission, texture
 };
 layout(set = 0, binding = 7, r32ui) uniform readonly uimage2D seen;
 layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D surface_image;
@@ -39,17 +48,19 @@ struct gbuffer_triangle { // world
 
 gbuffer_triangle triangle_of(uint index)
 {
-    surface_triangle t = triangles[index];
-    surface_vertex a = vertices[t.v0], b = vertices[t.v1], c = vertices[t.v2];
+    uvec4 t = triangle_rows[index]; // corners, material
+    vec4 a = vertex_rows[2u * t.x], b = vertex_rows[2u * t.y], c = vertex_rows[2u * t.z];
     gbuffer_triangle f;
-    f.corner = a.position;
-    f.e1 = b.position - a.position;
-    f.e2 = c.position - a.position;
+    f.corner = a.xyz;
+    f.e1 = b.xyz - a.xyz;
+    f.e2 = c.xyz - a.xyz;
     f.normal = cross(f.e1, f.e2);
     f.facet = normalize(turn(surfaces.from_world, f.normal));
-    f.normals = vec3[3](a.normal, b.normal, c.normal);
-    f.uvs = vec2[3](vec2(a.u, a.v), vec2(b.u, b.v), vec2(c.u, c.v));
-    f.material = materials[t.material];
+    vec4 na = vertex_rows[2u * t.x + 1u], nb = vertex_rows[2u * t.y + 1u], nc = vertex_rows[2u * t.z + 1u];
+    f.normals = vec3[3](na.xyz, nb.xyz, nc.xyz);
+    f.uvs = vec2[3](vec2(a.w, na.w), vec2(b.w, nb.w), vec2(c.w, nc.w));
+    vec4 reflected = material_rows[2u * t.w], sent = material_rows[2u * t.w + 1u];
+    f.material = surface_material(reflected.rgb, floatBitsToUint(reflected.a), sent.rgb, floatBitsToUint(sent.a));
     return f;
 }
 

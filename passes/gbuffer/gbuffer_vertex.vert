@@ -7,6 +7,15 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "gbuffer_bindings.glsl"
 
+layout(set = 0, binding = 2, scalar) readonly buffer triangles_buffer
+{
+    surface_triangle triangles[];
+};
+layout(set = 0, binding = 3, scalar) readonly buffer vertices_buffer
+{
+    surface_vertex vertices[];
+};
+
 layout(location = 0) flat out uint triangle;
 
 void main()

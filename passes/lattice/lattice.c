@@ -5,6 +5,7 @@
 #include "lattice_start.comp.h"
 #include "lattice_stencil.comp.h"
 #include "lattice_stencil_coarse.comp.h"
+#include "lattice_stencil_finish.comp.h"
 #include "lattice_sweep.comp.h"
 #include "lattice_collect.comp.h"
 #include "lattice_relax.comp.h"
@@ -24,6 +25,8 @@ enum {
     PORT_SWEPT,
     PORT_STENCIL_LO,
     PORT_STENCIL_HI,
+    PORT_FINISHED_LO, // as images
+    PORT_FINISHED_HI,
     PORT_RHS,
     PORT_CORRECTION,
     PORT_RESULT,                   // and two more: of the last three sweeps
@@ -34,7 +37,8 @@ enum {
     NUM_PORTS,
 };
 
-// The state is in buffers: a software device stores to images several times more slowly.
+// The state is in buffers: a software device stores to images several times more slowly. What is read far more often
+// than it is stored is in images, which it reads as much faster.
 #define SCRATCH(port, name, meaning) [port] = {name, TYN_SCRATCH, TYN_BUFFER, 0, false, meaning}
 
 static const tyn_port ports[NUM_PORTS] = {
@@ -62,6 +66,10 @@ static const tyn_port ports[NUM_PORTS] = {
     SCRATCH(PORT_SWEPT, "swept", "moments after the sweep"),
     SCRATCH(PORT_STENCIL_LO, "stencil_lo", "conductance to -x, -y, -z; absorption"),
     SCRATCH(PORT_STENCIL_HI, "stencil_hi", "conductance to +x, +y, +z; sum of all"),
+    [PORT_FINISHED_LO] = {"finished_lo", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                          false, "stencil_lo, a minus where corrections are not blended"},
+    [PORT_FINISHED_HI] = {"finished_hi", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                          false, "stencil_hi"},
     SCRATCH(PORT_RHS, "rhs", "of the diffusion correction, W"),
     SCRATCH(PORT_CORRECTION, "correction", "of the fluence, W/m^2"),
     SCRATCH(PORT_RESULT, "result_0", "corrected moments"),
@@ -81,6 +89,7 @@ enum {
     KERNEL_START,
     KERNEL_STENCIL,
     KERNEL_STENCIL_COARSE,
+    KERNEL_STENCIL_FINISH,
     KERNEL_SWEEP,
     KERNEL_COLLECT,
     KERNEL_RELAX,
@@ -109,6 +118,12 @@ static const tyn_binding stencil_coarse_bindings[] = {
     {PORT_STENCIL_LO, TYN_USE_STORAGE_RW},
     {PORT_STENCIL_HI, TYN_USE_STORAGE_RW},
 };
+static const tyn_binding stencil_finish_bindings[] = {
+    {PORT_STENCIL_LO, TYN_USE_STORAGE_READ},
+    {PORT_STENCIL_HI, TYN_USE_STORAGE_READ},
+    {PORT_FINISHED_LO, TYN_USE_STORAGE_WRITE},
+    {PORT_FINISHED_HI, TYN_USE_STORAGE_WRITE},
+};
 static const tyn_binding sweep_bindings[] = {
     {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM}, {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
     {PORT_EMITTED, TYN_USE_STORAGE_READ},        {PORT_MEAN_PSI, TYN_USE_STORAGE_WRITE},
@@ -127,27 +142,28 @@ static const tyn_binding collect_bindings[] = {
     {LATTICE_PORT_WALL_POWER, TYN_USE_STORAGE_WRITE},
     {LATTICE_PORT_WALL_LINKS, TYN_USE_STORAGE_READ},
     {LATTICE_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
+    {PORT_FINISHED_HI, TYN_USE_SAMPLED},
 };
 static const tyn_binding relax_bindings[] = {
-    {PORT_STENCIL_LO, TYN_USE_STORAGE_READ},
-    {PORT_STENCIL_HI, TYN_USE_STORAGE_READ},
+    {PORT_FINISHED_LO, TYN_USE_SAMPLED},
+    {PORT_FINISHED_HI, TYN_USE_SAMPLED},
     {PORT_RHS, TYN_USE_STORAGE_READ},
     {PORT_CORRECTION, TYN_USE_STORAGE_RW},
 };
 static const tyn_binding restrict_bindings[] = {
-    {PORT_STENCIL_LO, TYN_USE_STORAGE_READ},
-    {PORT_STENCIL_HI, TYN_USE_STORAGE_READ},
+    {PORT_FINISHED_LO, TYN_USE_SAMPLED},
+    {PORT_FINISHED_HI, TYN_USE_SAMPLED},
     {PORT_RHS, TYN_USE_STORAGE_RW},
     {PORT_CORRECTION, TYN_USE_STORAGE_RW},
 };
 static const tyn_binding interpolate_bindings[] = {
     {PORT_CORRECTION, TYN_USE_STORAGE_RW},
-    {PORT_STENCIL_LO, TYN_USE_STORAGE_READ},
-    {PORT_STENCIL_HI, TYN_USE_STORAGE_READ},
+    {PORT_FINISHED_LO, TYN_USE_SAMPLED},
+    {PORT_FINISHED_HI, TYN_USE_SAMPLED},
 };
 static const tyn_binding coarse_bindings[] = {
-    {PORT_STENCIL_LO, TYN_USE_STORAGE_READ},
-    {PORT_STENCIL_HI, TYN_USE_STORAGE_READ},
+    {PORT_FINISHED_LO, TYN_USE_SAMPLED},
+    {PORT_FINISHED_HI, TYN_USE_SAMPLED},
     {PORT_RHS, TYN_USE_STORAGE_READ},
     {PORT_CORRECTION, TYN_USE_STORAGE_RW},
 };
@@ -184,6 +200,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_START] = KERNEL(start, lattice_args, 1, 8, 4, 2),
     [KERNEL_STENCIL] = KERNEL(stencil, lattice_level_args, 1, 8, 4, 2),
     [KERNEL_STENCIL_COARSE] = KERNEL(stencil_coarse, lattice_level_args, 1, 4, 4, 4),
+    [KERNEL_STENCIL_FINISH] = KERNEL(stencil_finish, lattice_level_args, 1, LATTICE_GROUP, 1, 1),
     [KERNEL_SWEEP] = KERNEL(sweep, lattice_args, 2, LATTICE_SWEEP_GROUP, 1, 1),
     [KERNEL_COLLECT] = KERNEL(collect, lattice_args, 2, 8, 4, 2),
     [KERNEL_RELAX] = KERNEL(relax, lattice_level_args, 0, 8, 4, 2),
@@ -279,6 +296,11 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_build_buffer(b, PORT_SWEPT, 4 * scalar * elements);
     tyn_build_buffer(b, PORT_STENCIL_LO, 4 * scalar * all_levels);
     tyn_build_buffer(b, PORT_STENCIL_HI, 4 * scalar * all_levels);
+    const uint32_t all_texels = (uint32_t)all_levels * channels;
+    const tyn_extent finished = {
+        LATTICE_STENCIL_WIDTH, (all_texels + LATTICE_STENCIL_WIDTH - 1) / LATTICE_STENCIL_WIDTH, 1};
+    tyn_build_image(b, PORT_FINISHED_LO, finished, 1);
+    tyn_build_image(b, PORT_FINISHED_HI, finished, 1);
     tyn_build_buffer(b, PORT_RHS, scalar * all_levels);
     tyn_build_buffer(b, PORT_CORRECTION, scalar * all_levels);
     for (uint8_t i = 0; i < 3; i++) {
@@ -347,27 +369,31 @@ static tyn_extent cells_of(const solve *s, uint32_t level)
     return (tyn_extent){e.x, e.y, e.z * s->params->shape.channels};
 }
 
-static void relax(const solve *s, uint32_t level)
+// Of colours `first` to 1.
+static void relax(const solve *s, uint32_t level, uint32_t first)
 {
     tyn_extent threads = cells_of(s, level);
     threads.x = (threads.x + 1) / 2;
-    on_level(s, KERNEL_RELAX, level, threads, 0);
-    on_level(s, KERNEL_RELAX, level, threads, 1);
+    for (uint32_t colour = first; colour < 2; colour++) {
+        on_level(s, KERNEL_RELAX, level, threads, colour);
+    }
 }
 
-// V(1,1): two of them are better than one V(2,2), which costs as much.
-static void v_cycle(const solve *s)
+// V(1,1): two of them are better than one V(2,2), which costs as much. Where corrections start from 0 whoever starts
+// them has relaxed colour 0.
+static void v_cycle(const solve *s, bool fresh)
 {
     const uint32_t small = s->levels.first_small;
     for (uint32_t l = 0; l < small; l++) {
-        relax(s, l);
+        relax(s, l, l > 0 || fresh);
         on_level(s, KERNEL_RESTRICT, l + 1, cells_of(s, l + 1), 0);
     }
     on_level(s, KERNEL_COARSE, small,
-             (tyn_extent){LATTICE_COARSE_GROUP * s->params->shape.channels, 1, 1}, 0);
+             (tyn_extent){LATTICE_COARSE_GROUP * s->params->shape.channels, 1, 1},
+             small > 0 || fresh);
     for (uint32_t l = small; l-- > 0;) {
         on_level(s, KERNEL_INTERPOLATE, l, cells_of(s, l), 0);
-        relax(s, l);
+        relax(s, l, 0);
     }
 }
 
@@ -442,6 +468,10 @@ static void record(tyn_recorder *r, const void *params)
             on_level_as(&s, KERNEL_STENCIL_COARSE, l, cells_of(&s, l), 0, 2 * s.walls[0]);
         }
     }
+    if (p->cycles > 0) {
+        on_level(&s, KERNEL_STENCIL_FINISH, 0, (tyn_extent){s.levels.cells, p->shape.channels, 1},
+                 0);
+    }
     for (uint32_t i = 0; i < (uint32_t)p->sweeps; i++) {
         tyn_rec_dispatch(
             r, &(tyn_dispatch){.kernel = KERNEL_SWEEP,
@@ -450,7 +480,7 @@ static void record(tyn_recorder *r, const void *params)
                                .spec = sweep_spec});
         on_cells(&s, KERNEL_COLLECT);
         for (int32_t c = 0; c < p->cycles; c++) {
-            v_cycle(&s);
+            v_cycle(&s, c == 0);
         }
         mix(&s, i);
     }

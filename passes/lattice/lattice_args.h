@@ -80,7 +80,7 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
     tyn_uint levels; // how many there are
     tyn_uint stride; // cells of all
     tyn_uint channels;
-    tyn_uint colour;       // relax: 0 or 1
+    tyn_uint colour;       // relax: 0 or 1; coarse: the first of the first relaxation
     float dx;              // of level 0, m
     float least_transport; // that a cell's sigma_tr is taken for, 1/m
     tyn_uvec3 repeat;      // stencil: periodic axes
@@ -93,6 +93,7 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
 #define LATTICE_NUM_DOTS 5                       // dot products of Anderson mixing
 #define LATTICE_COARSE_CELLS 4096 // a level of at most so many cells is solved inside one workgroup
 #define LATTICE_COARSE_GROUP 256
+#define LATTICE_STENCIL_WIDTH 1024 // texels of a row of the images of stencils
 #define LATTICE_SUN_GROUP 256
 
 #endif

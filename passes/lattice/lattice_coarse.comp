@@ -4,23 +4,19 @@
 // stencils; the corrections of all levels and the other right hand sides are in shared memory.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
+#include "quotient.glsl"
 #include "lattice_levels.glsl"
-#include "lattice_stencil.glsl"
+#define LATTICE_STENCIL_LO 0
+#define LATTICE_STENCIL_HI 1
+#include "lattice_stencil_image.glsl"
 
 layout(local_size_x = LATTICE_COARSE_GROUP) in;
 layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the first that is solved here
-};
-layout(binding = 0, scalar) readonly buffer lo_buffer
-{
-    vec4 stencil_lo[];
-};
-layout(binding = 1, scalar) readonly buffer hi_buffer
-{
-    vec4 stencil_hi[];
 };
 layout(binding = 2, scalar) readonly buffer rhs_buffer
 {
@@ -55,20 +51,9 @@ uint index_of(ivec3 c)
     return lattice_index(at, c) - first.first;
 }
 
-ivec3 cell_of(uint i, ivec3 size)
-{
-    return ivec3(i % size.x, i / size.x % size.y, i / (size.x * size.y));
-}
-
 lattice_stencil stencil_at(ivec3 c)
 {
-    uint i = channel + lattice_index(at, c);
-    return lattice_stencil_of(stencil_lo[i], stencil_hi[i]);
-}
-
-bool is_orphan(ivec3 c)
-{
-    return walls == 1 && lattice_orphan(stencil_hi[channel + lattice_index(at, c)]);
+    return lattice_stencil_at(channel + lattice_index(at, c));
 }
 
 // Right hand side plus what flows in from the neighbours.
@@ -86,13 +71,14 @@ float inflow(ivec3 c, lattice_stencil k)
     return sum;
 }
 
-void relax(uint times, float omega)
+// Half relaxations from `begin` on, of even and odd cells in turn.
+void relax(uint begin, uint end, float omega)
 {
     ivec3 half_size = ivec3((at.size.x + 1) / 2, at.size.yz);
     uint n = lattice_num_cells(half_size);
-    for (uint t = 0; t < 2 * times; t++) {
+    for (uint t = begin; t < end; t++) {
         for (uint i = gl_LocalInvocationIndex; i < n; i += LATTICE_COARSE_GROUP) {
-            ivec3 c = cell_of(i, half_size);
+            ivec3 c = quotient_place(i, half_size);
             c.x = 2 * c.x + (c.y + c.z + int(t) & 1);
             if (c.x < at.size.x) {
                 lattice_stencil k = stencil_at(c);
@@ -104,24 +90,28 @@ void relax(uint times, float omega)
     }
 }
 
-// Residual of the level at work, summed into the right hand side of the next.
-void restrict_to_next()
+// Residual of the level at work, summed into the right hand side of the next; half of that one's first relaxation.
+void restrict_to_next(float omega)
 {
     lattice_level next = lattice_next_level(at);
     uint to = next.first - first.first;
     uint n = lattice_num_cells(next.size);
     for (uint i = gl_LocalInvocationIndex; i < n; i += LATTICE_COARSE_GROUP) {
-        ivec3 c = cell_of(i, next.size);
+        ivec3 c = quotient_place(i, next.size);
         float sum = 0.0;
-        for (int child = 0; child < 8; child++) {
+        const int even[4] = int[](0, 3, 5, 6); // the others were relaxed last: no residual
+        [[unroll]] for (int k = 0; k < 4; k++) {
+            int child = even[k];
             ivec3 f = 2 * c + ivec3(child & 1, child >> 1 & 1, child >> 2);
-            if (all(lessThan(f, at.size)) && !is_orphan(f)) {
-                lattice_stencil k = stencil_at(f);
+            vec4 hi = lattice_stencil_hi_at(channel + lattice_index(at, min(f, at.size - 1)));
+            if (all(lessThan(f, at.size)) && !lattice_orphan(hi)) {
+                lattice_stencil k = lattice_stencil_of(lattice_stencil_lo_at(channel + lattice_index(at, f)), hi);
                 sum += inflow(f, k) - k.diagonal * correction[index_of(f)];
             }
         }
         rhs[to + i - lattice_num_cells(first.size)] = sum;
-        correction[to + i] = 0.0;
+        float diagonal = abs(lattice_stencil_hi_at(channel + lattice_index(next, c)).w);
+        correction[to + i] = (c.x + c.y + c.z & 1) == 0 ? omega * sum / diagonal : 0.0;
     }
     barrier();
 }
@@ -141,13 +131,14 @@ float step_length()
     vec2 sum = vec2(0.0);
     uint n = lattice_num_cells(at.size), me = gl_LocalInvocationIndex;
     for (uint i = me; i < n; i += LATTICE_COARSE_GROUP) {
-        ivec3 c = cell_of(i, at.size);
+        ivec3 c = quotient_place(i, at.size);
         uint id = channel + lattice_index(at, c);
-        lattice_stencil k = lattice_stencil_of(stencil_lo[id], stencil_hi[id]);
+        vec4 k_lo = lattice_stencil_lo_at(id), k_hi = lattice_stencil_hi_at(id);
+        lattice_stencil k = lattice_stencil_of(k_lo, k_hi);
         float e = correction[index_of(c)];
         float r = at.first == first.first ? rhs_in[id] : rhs[index_of(c) - lattice_num_cells(first.size)];
         // Each cell has half of the energy of its faces.
-        float steps = lattice_open(stencil_lo[id], stencil_hi[id]) ? 0.5 : 1.0;
+        float steps = lattice_open(k_lo, k_hi) ? 0.5 : 1.0;
         vec3 lo = vec3(0.0), hi = vec3(0.0);
         for (int axis = 0; axis < 3; axis++) {
             ivec3 q = c;
@@ -176,16 +167,14 @@ void interpolate_from_next(float scale)
     uint to = at.first - first.first;
     uint n = lattice_num_cells(at.size);
     for (uint i = gl_LocalInvocationIndex; i < n; i += LATTICE_COARSE_GROUP) {
-        lattice_interpolation from = lattice_interpolation_of(cell_of(i, at.size), next.size);
+        lattice_interpolation from = lattice_interpolation_of(quotient_place(i, at.size), next.size);
         bool blended = true;
         if (walls == 1) {
-            if (is_orphan(cell_of(i, at.size))) {
+            uint k = channel + at.first + i;
+            if (lattice_orphan(lattice_stencil_hi_at(k))) {
                 continue;
             }
-            for (uint corner = 0; corner < 8; corner++) {
-                uint k = channel + lattice_index(next, lattice_corner(from, corner));
-                blended = blended && lattice_open(stencil_lo[k], stencil_hi[k]);
-            }
+            blended = !lattice_alone(lattice_stencil_lo_at(k));
         }
         float sum = 0.0;
         for (uint corner = 0; corner < 8; corner++) {
@@ -209,16 +198,16 @@ void main()
     barrier();
     at = first;
     for (uint level = args.level; level + 1 < args.levels; level++) {
-        relax(1, 1.0);
-        restrict_to_next();
+        relax(level == args.level ? args.colour : 1, 2, 1.0);
+        restrict_to_next(level + 2 < args.levels ? 1.0 : COARSEST_OMEGA);
         at = lattice_next_level(at);
     }
-    relax(COARSEST_RELAXATIONS, COARSEST_OMEGA);
+    relax(args.level + 1 < args.levels ? 1 : 0, 2 * COARSEST_RELAXATIONS, COARSEST_OMEGA);
     for (uint level = args.levels - 1; level > args.level; level--) {
         float scale = step_length();
         at = lattice_level_of(ivec3(args.dims), level - 1);
         interpolate_from_next(scale);
-        relax(1, 1.0);
+        relax(0, 2, 1.0);
     }
     float scale = args.level > 0u ? step_length() : 1.0;
     for (uint i = gl_LocalInvocationIndex; i < n; i += LATTICE_COARSE_GROUP) {

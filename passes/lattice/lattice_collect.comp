@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
+#include "quotient.glsl"
 #include "lattice_sweep.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
@@ -46,6 +47,7 @@ layout(binding = 8, scalar) writeonly buffer power_buffer
 {
     vec2 wall_power[]; // absorbed, sent out of wall_light; W
 };
+layout(binding = 11) uniform sampler2D stencil_hi_tex; // lattice_stencil_image.glsl
 #define LATTICE_WALL_LINKS 9
 #define LATTICE_WALL_CELLS 10
 #include "lattice_wall_state.glsl"
@@ -59,33 +61,36 @@ float reflect_light(uint i, uint ch, uint per_direction)
 {
     uint cell = i - ch * lattice_all_cells(), vector = lattice_wall_vector(ch, cell);
     uint cut = wall_links[cell];
-    wall_cell wall = wall_cells[cell];
-    float sum = 0.0;
-    for (uint d = 0; d < LATTICE_DIRECTIONS; d++) {
-        if ((cut >> d & 1u) != 0u) {
-            float share = lattice_weight(d) * (d < 6u ? 1.0 : inversesqrt(3.0));
-            sum += share * arrived[d * per_direction + i];
+    float albedo = 0.0, area = 0.0, per_radiance = LATTICE_4PI * args.dx * args.dx, sent = 0.0, sum = 0.0;
+    // A loop instead of a condition: what nobody enters costs nothing.
+    for (bool some = (cut & (1u << LATTICE_DIRECTIONS) - 1u) != 0u; some; some = false) {
+        for (uint d = 0; d < LATTICE_DIRECTIONS; d++) {
+            if ((cut >> d & 1u) != 0u) {
+                float share = lattice_weight(d) * (d < 6u ? 1.0 : inversesqrt(3.0));
+                sum += share * arrived[d * per_direction + i];
+            }
+        }
+        albedo = wall_cells[cell].albedo[ch];
+        area = wall_cells[cell].area;
+        if (lit_walls == 1) {
+            sent = lattice_channel(wall_light[cell], args.channels, ch, args.tint);
         }
     }
-    float albedo = wall.albedo[ch], per_radiance = LATTICE_4PI * args.dx * args.dx, sent = 0.0;
-    if (lit_walls == 1) {
-        sent = lattice_channel(wall_light[cell], args.channels, ch, args.tint);
-    }
-    float radiance = wall.area > 0.0 ? albedo * sum / wall.area + sent : 0.0;
+    float radiance = area > 0.0 ? albedo * sum / area + sent : 0.0;
     swept[vector][cell % 4u] = radiance;
     for (uint k = cell % 4u + 1u; cell + 1u == lattice_all_cells() && k < 4u; k++) {
         swept[vector][k] = 0.0;
     }
-    wall_power[i] = per_radiance * vec2((1.0 - albedo) * sum, sent * wall.area);
+    wall_power[i] = per_radiance * vec2((1.0 - albedo) * sum, sent * area);
     // Marshak's condition for a wall that reflects and shines.
     float change = radiance - state[vector][cell % 4u];
-    return per_radiance * wall.area * change * 2.0 / (1.0 + albedo);
+    return per_radiance * area * change * 2.0 / (1.0 + albedo);
 }
 
 void main()
 {
     uvec3 texel = gl_GlobalInvocationID;
-    uint ch = texel.z / args.dims.z, plane = args.dims.x * args.dims.y;
+    uint ch = uint(quotient(int(texel.z), int(args.dims.z))), plane = args.dims.x * args.dims.y;
     if (any(greaterThanEqual(texel.xy, args.dims.xy)) || ch >= args.channels) {
         return;
     }
@@ -115,5 +120,10 @@ void main()
         change += reflect_light(i, ch, per_direction);
     }
     rhs[l] = change;
-    correction[l] = 0.0;
+    // The first half of the first relaxation, from corrections of 0.
+    float corrected = 0.0;
+    if (args.corrected == 1 && ((texel.x + texel.y + texel.z - ch * args.dims.z) & 1) == 0) {
+        corrected = change / abs(texelFetch(stencil_hi_tex, ivec2(l % LATTICE_STENCIL_WIDTH, l / LATTICE_STENCIL_WIDTH), 0).w);
+    }
+    correction[l] = corrected;
 }

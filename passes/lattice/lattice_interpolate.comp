@@ -3,8 +3,11 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
+#include "quotient.glsl"
 #include "lattice_levels.glsl"
-#include "lattice_stencil.glsl"
+#define LATTICE_STENCIL_LO 1
+#define LATTICE_STENCIL_HI 2
+#include "lattice_stencil_image.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(push_constant, scalar) uniform push
@@ -16,14 +19,6 @@ layout(binding = 0, scalar) buffer correction_buffer
     float correction[];
 };
 
-layout(binding = 1, scalar) readonly buffer lo_buffer
-{
-    vec4 stencil_lo[];
-};
-layout(binding = 2, scalar) readonly buffer hi_buffer
-{
-    vec4 stencil_hi[];
-};
 layout(constant_id = 0) const uint walls = 0;
 
 void main()
@@ -31,8 +26,8 @@ void main()
     lattice_level fine = lattice_level_of(ivec3(args.dims), args.level);
     lattice_level coarse = lattice_level_of(ivec3(args.dims), args.level + 1);
     ivec3 c = ivec3(gl_GlobalInvocationID);
-    int ch = c.z / fine.size.z;
-    c.z %= fine.size.z;
+    int ch = quotient(c.z, fine.size.z);
+    c.z -= ch * fine.size.z;
     if (any(greaterThanEqual(c.xy, fine.size.xy)) || ch >= int(args.channels)) {
         return;
     }
@@ -40,14 +35,11 @@ void main()
     lattice_interpolation from = lattice_interpolation_of(c, coarse.size);
     bool blended = true;
     if (walls == 1) {
-        if (lattice_orphan(stencil_hi[channel + lattice_index(fine, c)])) {
+        uint i = channel + lattice_index(fine, c);
+        if (lattice_orphan(lattice_stencil_hi_at(i))) {
             return;
         }
-        // Not through walls: with one about, from the near cell alone.
-        for (uint corner = 0; corner < 8; corner++) {
-            uint i = channel + lattice_index(coarse, lattice_corner(from, corner));
-            blended = blended && lattice_open(stencil_lo[i], stencil_hi[i]);
-        }
+        blended = !lattice_alone(lattice_stencil_lo_at(i));
     }
     float sum = 0.0;
     for (uint corner = 0; corner < 8; corner++) {

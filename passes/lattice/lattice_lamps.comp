@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
+#include "quotient.glsl"
 #include "lattice_sweep.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
@@ -25,7 +26,7 @@ layout(constant_id = 0) const uint vpls = 0; // 1: the last group are VPLs
 void main()
 {
     ivec3 texel = ivec3(gl_GlobalInvocationID), dims = ivec3(args.dims);
-    int ch = texel.z / dims.z;
+    int ch = quotient(texel.z, dims.z);
     if (any(greaterThanEqual(texel.xy, dims.xy)) || ch >= int(args.channels)) {
         return;
     }

@@ -8,6 +8,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
+#include "quotient.glsl"
 #define MEDIUM_BLOCK 0
 #define MEDIUM_DENSITY 2 // the medium itself is not read
 #define RADIAL_BLOCK 1
@@ -79,7 +80,7 @@ float collided_in_cells(uint group, uint ch, float volume)
     float collided = 0.0;
     uint plane = args.dims.x * args.dims.y, count = plane * args.dims.z;
     for (uint i = gl_LocalInvocationIndex; i < count; i += LATTICE_SUN_GROUP) {
-        ivec3 c = ivec3(i % args.dims.x, i / args.dims.x % args.dims.y, i / plane);
+        ivec3 c = quotient_place(i, ivec3(args.dims));
         vec4 cell = texelFetch(cells, c + ivec3(0, 0, ch * args.dims.z), 0);
         float phi = texelFetch(unshadowed, c + ivec3(0, 0, (group * args.channels + ch) * args.dims.z), 0).x;
         collided += volume * (cell.x + cell.y) * phi;

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
+#include "quotient.glsl"
 #include "lattice_sweep.glsl"
 #include "counters.h"
 
@@ -64,7 +65,7 @@ void mix_walls(uint ch, uint cell)
 void main()
 {
     uvec3 texel = gl_GlobalInvocationID;
-    uint ch = texel.z / args.dims.z;
+    uint ch = uint(quotient(int(texel.z), int(args.dims.z)));
     if (any(greaterThanEqual(texel.xy, args.dims.xy)) || ch >= args.channels) {
         return;
     }

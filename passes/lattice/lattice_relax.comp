@@ -3,21 +3,16 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
+#include "quotient.glsl"
 #include "lattice_levels.glsl"
-#include "lattice_stencil.glsl"
+#define LATTICE_STENCIL_LO 0
+#define LATTICE_STENCIL_HI 1
+#include "lattice_stencil_image.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(push_constant, scalar) uniform push
 {
     lattice_level_args args;
-};
-layout(binding = 0, scalar) readonly buffer lo_buffer
-{
-    vec4 stencil_lo[];
-};
-layout(binding = 1, scalar) readonly buffer hi_buffer
-{
-    vec4 stencil_hi[];
 };
 layout(binding = 2, scalar) readonly buffer rhs_buffer
 {
@@ -32,14 +27,14 @@ void main()
 {
     lattice_level level = lattice_level_of(ivec3(args.dims), args.level);
     ivec3 c = ivec3(gl_GlobalInvocationID);
-    int ch = c.z / level.size.z;
-    c.z %= level.size.z;
+    int ch = quotient(c.z, level.size.z);
+    c.z -= ch * level.size.z;
     c.x = 2 * c.x + (c.y + c.z + int(args.colour) & 1);
     if (any(greaterThanEqual(c.xy, level.size.xy)) || ch >= int(args.channels)) {
         return;
     }
     uint i = uint(ch) * args.stride + lattice_index(level, c);
-    lattice_stencil k = lattice_stencil_of(stencil_lo[i], stencil_hi[i]);
+    lattice_stencil k = lattice_stencil_at(i);
     uint step_y = level.size.x, step_z = level.size.x * level.size.y;
     float sum = rhs[i];
     sum += c.x > 0 ? k.lo.x * correction[i - 1] : 0.0;

@@ -91,12 +91,15 @@ void main()
         bool wall = walls == 1 && c >= cells;
         uint i = wall ? args.channels * cells + ch * (args.elements - cells) + c - cells : ch * cells + c;
         vec4 m = swept[i];
-        if (!wall) {
+        vec4 old = state[i];
+        // Loops instead of conditions: what nobody enters costs nothing.
+        for (bool cell = !wall; cell; cell = false) {
             m.x += correction[ch * args.stride + c];
-        } else if (args.corrected == 1) {
-            m = corrected_walls(c - cells, ch, m, m - state[i]);
         }
-        vec4 r = m - state[i];
+        for (bool some = wall && args.corrected == 1; some; some = false) {
+            m = corrected_walls(c - cells, ch, m, m - old);
+        }
+        vec4 r = m - old;
         result[i] = m;
         change[i] = r;
         if (args.history >= 1) {

@@ -1,23 +1,22 @@
-// lattice_restrict.comp -- right hand side of a level: the residual of the next finer one, summed.
+// lattice_restrict.comp -- right hand side of a level: the residual of the next finer one, summed. And the first half
+// of its first relaxation, from corrections of 0.
+//
+// Cells of the finer level whose indices have an odd sum were relaxed last: their residual is 0.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
+#include "quotient.glsl"
 #include "lattice_levels.glsl"
-#include "lattice_stencil.glsl"
+#define LATTICE_STENCIL_LO 0
+#define LATTICE_STENCIL_HI 1
+#include "lattice_stencil_image.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the coarse one
-};
-layout(binding = 0, scalar) readonly buffer lo_buffer
-{
-    vec4 stencil_lo[];
-};
-layout(binding = 1, scalar) readonly buffer hi_buffer
-{
-    vec4 stencil_hi[];
 };
 layout(binding = 2, scalar) buffer rhs_buffer
 {
@@ -33,22 +32,25 @@ void main()
     lattice_level coarse = lattice_level_of(ivec3(args.dims), args.level);
     lattice_level fine = lattice_level_of(ivec3(args.dims), args.level - 1);
     ivec3 c = ivec3(gl_GlobalInvocationID);
-    int ch = c.z / coarse.size.z;
-    c.z %= coarse.size.z;
+    int ch = quotient(c.z, coarse.size.z);
+    c.z -= ch * coarse.size.z;
     if (any(greaterThanEqual(c.xy, coarse.size.xy)) || ch >= int(args.channels)) {
         return;
     }
     uint channel = uint(ch) * args.stride;
     uint step_y = fine.size.x, step_z = fine.size.x * fine.size.y;
     float sum = 0.0;
-    for (int child = 0; child < 8; child++) {
+    const int even[4] = int[](0, 3, 5, 6);
+    [[unroll]] for (int n = 0; n < 4; n++) {
+        int child = even[n];
         ivec3 f = 2 * c + ivec3(child & 1, child >> 1 & 1, child >> 2);
         if (any(greaterThanEqual(f, fine.size))) {
             continue;
         }
         uint i = channel + lattice_index(fine, f);
-        lattice_stencil k = lattice_stencil_of(stencil_lo[i], stencil_hi[i]);
-        if (lattice_orphan(stencil_hi[i])) {
+        vec4 hi = lattice_stencil_hi_at(i);
+        lattice_stencil k = lattice_stencil_of(lattice_stencil_lo_at(i), hi);
+        if (lattice_orphan(hi)) {
             continue;
         }
         sum += rhs[i] - k.diagonal * correction[i];
@@ -61,5 +63,5 @@ void main()
     }
     uint i = channel + lattice_index(coarse, c);
     rhs[i] = sum;
-    correction[i] = 0.0;
+    correction[i] = (c.x + c.y + c.z & 1) == 0 ? sum / abs(lattice_stencil_hi_at(i).w) : 0.0;
 }

@@ -7,6 +7,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
+#include "quotient.glsl"
 #define LATTICE_ENVIRONMENT 0
 #include "lattice_unhindered.glsl"
 
@@ -35,7 +36,7 @@ layout(constant_id = 0) const uint walls = 0;
 void main()
 {
     uvec3 texel = gl_GlobalInvocationID; // channels stacked along z
-    uint ch = texel.z / args.dims.z;
+    uint ch = uint(quotient(int(texel.z), int(args.dims.z)));
     if (any(greaterThanEqual(texel.xy, args.dims.xy)) || ch >= args.channels) {
         return;
     }

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
+#include "quotient.glsl"
 #include "lattice_stencil.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
@@ -42,7 +43,8 @@ void main()
     if (any(greaterThanEqual(texel.xy, dims.xy)) || texel.z >= dims.z * int(args.channels)) {
         return;
     }
-    ivec3 c = ivec3(texel.xy, texel.z % dims.z);
+    int ch = quotient(texel.z, dims.z);
+    ivec3 c = ivec3(texel.xy, texel.z - ch * dims.z);
     vec4 cell = texelFetch(cells, texel, 0);
     float d = diffusion_coefficient(cell);
     vec3 k[2];
@@ -69,12 +71,12 @@ void main()
             k[1][axis] = (cut >> (2 * axis) & 1u) != 0u ? 0.0 : k[1][axis];
         }
         float area = 4.0 * wall_cells[id].area * args.dx * args.dx;
-        float albedo = wall_cells[id].albedo[texel.z / dims.z];
+        float albedo = wall_cells[id].albedo[ch];
         absorption += area * (1.0 - albedo) / (2.0 * (1.0 + albedo) + (1.0 - albedo) * args.dx / (2.0 * d));
         absorption += 1e-5 * args.dx * args.dx; // there is a solution also where nothing absorbs
     }
     lattice_stencil s = lattice_stencil(k[0], k[1], absorption, 0.0);
-    uint i = uint(texel.z / dims.z) * args.stride + uint((c.z * dims.y + c.y) * dims.x + c.x);
+    uint i = uint(ch) * args.stride + uint((c.z * dims.y + c.y) * dims.x + c.x);
     stencil_lo[i] = lattice_stencil_lo(s);
     stencil_hi[i] = lattice_stencil_hi(s);
 }

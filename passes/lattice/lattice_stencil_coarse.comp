@@ -6,6 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
+#include "quotient.glsl"
 #include "lattice_levels.glsl"
 #include "lattice_stencil.glsl"
 
@@ -88,8 +89,8 @@ void main()
     lattice_level coarse = lattice_level_of(ivec3(args.dims), args.level);
     lattice_level fine = lattice_level_of(ivec3(args.dims), args.level - 1);
     ivec3 c = ivec3(gl_GlobalInvocationID);
-    int ch = c.z / coarse.size.z;
-    c.z %= coarse.size.z;
+    int ch = quotient(c.z, coarse.size.z);
+    c.z -= ch * coarse.size.z;
     if (any(greaterThanEqual(c.xy, coarse.size.xy)) || ch >= int(args.channels)) {
         return;
     }
