@@ -106,11 +106,11 @@ tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *
 }
 
 // Do surfaces reach farther than the lattice, which has the sky's light with its shadows, by more than rounding?
-static bool reach_beyond_media(const tyn_frame_scene *frame, bool lattice)
+static bool reach_beyond_media(const tyn_frame_scene *frame)
 {
     float lo[3], hi[3];
     tyn_surfaces_box(frame, lo, hi);
-    bool beyond = !lattice;
+    bool beyond = false;
     for (int axis = 0; axis < 3; axis++) {
         const float side = frame->medium.extent[axis];
         beyond = beyond || lo[axis] < -0.02f * side || hi[axis] > 1.02f * side;
@@ -143,7 +143,9 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
     params.one_channel = in->one_channel;
     memcpy(params.tint, in->tint, sizeof params.tint);
     params.sky = sky[0] + sky[1] + sky[2] > 0.0f;
-    if (params.sky && reach_beyond_media(job->frame, in->wall_links.resource != 0)) {
+    const uint32_t *repeat = job->frame->medium.repeat;
+    params.outside = !repeat[0] && !repeat[1] && !repeat[2] && reach_beyond_media(job->frame);
+    if (params.sky && (in->wall_links.resource == 0 || reach_beyond_media(job->frame))) {
         tyn_method_warn(job, "surfaces beyond the media's box are lit by the mean of the "
                              "environment as if nothing stood around them");
     }
@@ -172,7 +174,7 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
         [SHADE_PORT_VPLS] = vpls.lights,
         [SHADE_PORT_VPL_DISTANCES] = vpls.distances,
         // Surfaces far from the medium's box are no walls of the lattice, and outside it.
-        [SHADE_PORT_MOMENTS] = in->wall_links.resource ? moments : (tyn_ref){0},
+        [SHADE_PORT_MOMENTS] = in->wall_links.resource || params.outside ? moments : (tyn_ref){0},
         [SHADE_PORT_WALL_LINKS] = in->wall_links,
         [SHADE_PORT_WALL_CELLS] = in->wall_cells,
     };

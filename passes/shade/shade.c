@@ -2,6 +2,8 @@
 #include "shade.h"
 #include "shade_args.h"
 #include "shade_edges.comp.h"
+#include "shade_faces.comp.h"
+#include "shade_faces.h"
 #include "shade_forward.comp.h"
 #include "shade_gather.comp.h"
 #include "shade_lights.comp.h"
@@ -62,6 +64,7 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
                           .meaning = "walls of the lattice's cells"},
     [PORT(FORWARD)] = {"forward", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                        .meaning = "from where sunlight comes that was scattered forward"},
+    [PORT(FACES)] = {"faces", TYN_SCRATCH, IMAGE2, .meaning = "light that leaves the medium's box"},
     [PORT(PLACE)] = {"place", TYN_SCRATCH, IMAGE2, .meaning = "where a pixel is shaded (M, m)"},
     [PORT(PART)] = {"part", TYN_SCRATCH, IMAGE2,
                     .meaning = "irradiance of a part of the VPLs, W/m^2"},
@@ -102,6 +105,11 @@ static const tyn_binding forward_bindings[] = {
     {PORT(SHADOW_ATLAS), TYN_USE_SAMPLED}, {PORT(SHADOWS), TYN_USE_STORAGE_READ},
     {PORT(SUNS), TYN_USE_UNIFORM},         {PORT(FORWARD), TYN_USE_STORAGE_WRITE},
 };
+static const tyn_binding faces_bindings[] = {
+    {PORT(MEDIUM), TYN_USE_UNIFORM},      {PORT(ENVIRONMENT), TYN_USE_UNIFORM},
+    {PORT(MOMENTS), TYN_USE_SAMPLED},     {PORT(WALL_TABLE), TYN_USE_SAMPLED},
+    {PORT(FACES), TYN_USE_STORAGE_WRITE},
+};
 static const tyn_binding vpls_bindings[] = {
     COMMON_BINDINGS,
     {PORT(PLACE), TYN_USE_STORAGE_WRITE},
@@ -113,13 +121,14 @@ static const tyn_binding gather_bindings[] = {
     {PORT(PART), TYN_USE_SAMPLED},
     {PORT(INDIRECT), TYN_USE_STORAGE_WRITE},
 };
-// Bindings 0 to 27 of shade_piece.glsl.
+// Bindings 0 to 28 of shade_piece.glsl.
 #define SURFACE_BINDINGS                                                                           \
     COMMON_BINDINGS, {PORT(INDIRECT), TYN_USE_SAMPLED}, {PORT(PLACE), TYN_USE_SAMPLED},            \
         {PORT(PART), TYN_USE_SAMPLED}, {PORT(MOMENTS), TYN_USE_SAMPLED},                           \
         {PORT(WALL_TABLE), TYN_USE_SAMPLED}, {PORT(ENVIRONMENT), TYN_USE_UNIFORM},                 \
+        {PORT(FORWARD), TYN_USE_SAMPLED},                                                          \
     {                                                                                              \
-        PORT(FORWARD), TYN_USE_SAMPLED                                                             \
+        PORT(FACES), TYN_USE_SAMPLED                                                               \
     }
 
 static const tyn_binding surface_bindings[] = {
@@ -133,7 +142,7 @@ static const tyn_binding edges_bindings[] = {
     {PORT(EDGES), TYN_USE_STORAGE_READ},
 };
 
-enum { LIGHTS = 0, WALLS, FORWARD, VPLS, GATHER, SURFACE, EDGES, NUM_KERNELS };
+enum { LIGHTS = 0, WALLS, FORWARD, FACES, VPLS, GATHER, SURFACE, EDGES, NUM_KERNELS };
 
 #define KERNEL(step, x, y, z)                                                                      \
     .name = "shade_" #step, .spirv = shade_##step##_spirv,                                         \
@@ -145,6 +154,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [LIGHTS] = {KERNEL(lights, 64, 1, 1), ARGS(2)},
     [WALLS] = {KERNEL(walls, 8, 4, 2)},
     [FORWARD] = {KERNEL(forward, 8, 4, 2), .num_spec = 3},
+    [FACES] = {KERNEL(faces, 32, 1, 1), ARGS(2)},
     [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(5)},
     [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(5)},
     [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(5)},
@@ -157,17 +167,20 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const bool vpls = tyn_build_has(b, PORT(VPLS));
     const tyn_extent pixels =
         vpls ? (tyn_extent){p->size[0], p->size[1], 1} : (tyn_extent){1, 1, 1};
+    const bool outside = p->outside && tyn_build_has(b, PORT(MOMENTS));
+    const tyn_extent faces = {SHADE_FACE_PATCHES * SHADE_FACE_ENTRIES, 6, 1};
     tyn_build_image(b, PORT(RADIANCE), tyn_build_extent(b, PORT(SURFACE)), 1);
     // The moments have a cell's channels behind each other along z.
     tyn_extent cells = tyn_build_extent(b, PORT(MOMENTS));
     const uint32_t slices = cells.z / (p->one_channel ? 1 : 3);
     const tyn_extent texel = {1, 1, 1};
-    const bool spread = tyn_build_has(b, PORT(MOMENTS)) && tyn_build_has(b, PORT(BEAMS)) &&
+    const bool spread = tyn_build_has(b, PORT(WALL_LINKS)) && tyn_build_has(b, PORT(BEAMS)) &&
                         tyn_build_has(b, PORT(SHADOWS)) && p->num_suns;
     cells.z = slices * p->num_suns;
     tyn_build_image(b, PORT(FORWARD), spread ? cells : texel, 1);
     cells.z = slices * (TYN_WALLS_PLANES + 1);
-    tyn_build_image(b, PORT(WALL_TABLE), tyn_build_has(b, PORT(MOMENTS)) ? cells : texel, 1);
+    tyn_build_image(b, PORT(WALL_TABLE), tyn_build_has(b, PORT(WALL_LINKS)) ? cells : texel, 1);
+    tyn_build_image(b, PORT(FACES), outside ? faces : texel, 1);
     tyn_build_image(b, PORT(TABLE), (tyn_extent){SHADE_ENTRIES, SHADE_ROWS, 1}, 1);
     tyn_build_image(b, PORT(PLACE), pixels, 1);
     tyn_build_image(b, PORT(PART), pixels, 1);
@@ -188,7 +201,8 @@ static void record(tyn_recorder *r, const void *data)
     features |= tyn_rec_has(r, PORT(BEAMS)) || tyn_rec_has(r, PORT(RADIALS)) ? SHADE_MEDIUM : 0;
     features |= tyn_rec_has(r, PORT(SHADOWS)) ? SHADE_SHADOWS : 0;
     features |= vpls ? SHADE_VPLS : 0;
-    features |= tyn_rec_has(r, PORT(MOMENTS)) ? SHADE_LATTICE : 0;
+    features |= tyn_rec_has(r, PORT(WALL_LINKS)) ? SHADE_LATTICE : 0;
+    features |= p->outside && tyn_rec_has(r, PORT(MOMENTS)) ? SHADE_OUTSIDE : 0;
     features |= p->one_channel ? SHADE_ONE_CHANNEL : 0;
     const tyn_extent forward = tyn_rec_extent(r, PORT(FORWARD));
     features |= forward.x > 1 ? SHADE_SPREAD : 0;
@@ -200,7 +214,7 @@ static void record(tyn_recorder *r, const void *data)
     const tyn_extent pixels = {p->size[0], p->size[1], 1};
     tyn_dispatch d = {.kernel = LIGHTS, .cells = {SHADE_ROWS, 1, 1}, .args = &args, .spec = spec};
     tyn_rec_dispatch(r, &d);
-    if (tyn_rec_has(r, PORT(MOMENTS))) {
+    if (tyn_rec_has(r, PORT(WALL_LINKS))) {
         tyn_extent cells = tyn_rec_extent(r, PORT(WALL_TABLE));
         cells.z /= TYN_WALLS_PLANES + 1;
         tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = WALLS, .cells = cells});
@@ -208,6 +222,11 @@ static void record(tyn_recorder *r, const void *data)
     if (features & SHADE_SPREAD) {
         tyn_extent cells = {forward.x, forward.y, forward.z / p->num_suns};
         tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = FORWARD, .cells = cells, .spec = spec});
+    }
+    if (features & SHADE_OUTSIDE) {
+        d.kernel = FACES;
+        d.cells = (tyn_extent){6 * SHADE_FACE_PATCHES, 1, 1};
+        tyn_rec_dispatch(r, &d);
     }
     if (vpls) {
         d.kernel = VPLS;

@@ -12,6 +12,7 @@ typedef struct tyn_shade_params {
     uint32_t num_lamps;
     uint32_t one_channel; // 1: "moments" has one channel, to be multiplied with `tint`
     float tint[3];
+    uint32_t outside; // 1: surfaces outside the lattice get the light that leaves it, if there are "moments"
     uint32_t sky; // 1: the mean of the environment lights what is outside the lattice
 } tyn_shade_params;
 
@@ -38,14 +39,15 @@ enum {
     SHADE_PORT_SHADOWS,       // IN optional buffer struct shadow_light[]
     SHADE_PORT_VPLS,          // IN optional buffer struct radial_vpls
     SHADE_PORT_VPL_DISTANCES, // IN optional 2D, vpl_visibility.glsl: with VPLs
-    SHADE_PORT_MOMENTS,       // IN optional 3D: light of the lattice, as the two below
-    SHADE_PORT_WALL_LINKS,    // IN optional buffer uint[]
+    SHADE_PORT_MOMENTS,       // IN optional 3D: light of the lattice
+    SHADE_PORT_WALL_LINKS,    // IN optional buffer uint[]: with surfaces within it, as the one below
     SHADE_PORT_WALL_CELLS,    // IN optional buffer struct wall_cell[]
     SHADE_PORT_RADIANCE, // OUT 2D RGBA32F, as large as the G-buffer: radiance to the camera, W/(m^2 sr);
                          // a = distance along the ray, m, or infinity
     SHADE_PORT_TABLE, // SCRATCH 2D RGBA32F, shade_table.h
-    SHADE_PORT_WALL_TABLE, // SCRATCH 3D RGBA32F, walls_table.glsl: exists with the lattice
+    SHADE_PORT_WALL_TABLE, // SCRATCH 3D RGBA32F, walls_table.glsl: exists with wall_links
     SHADE_PORT_FORWARD, // SCRATCH 3D RGBA32F, shade_forward.comp: exists with a lattice, suns and shadows
+    SHADE_PORT_FACES, // SCRATCH 2D RGBA32F, shade_faces.h
     SHADE_PORT_PLACE, // SCRATCH 2D RGBA32F: exist with VPLs
     SHADE_PORT_PART,
     SHADE_PORT_INDIRECT,

@@ -12,6 +12,8 @@
 #define SHADE_SKY (1u << 5) // the mean of the environment lights what is outside the lattice
 #define SHADE_SPREAD (1u << 6) // sunlight scattered forward comes from around its sun
 
+#define SHADE_OUTSIDE (1u << 7) // surfaces outside the box get light that leaves it: shade_faces.h
+
 #define SHADE_PLACES 64 // that light which was scattered forward may come from
 // Pixels of a pattern along each side; each takes a part of the VPLs. Of small pictures five pixels are much.
 #define SHADE_SIDE 5

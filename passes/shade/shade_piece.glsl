@@ -21,10 +21,13 @@ layout(binding = 26, scalar) uniform env_uniform
     env_block environment;
 };
 layout(binding = 27) uniform sampler3D forward_tex; // shade_forward.comp
-layout(binding = 28, rgba32f) uniform writeonly image2D radiance_image; // and distance, or infinity
+layout(binding = 28) uniform sampler2D faces_tex; // shade_faces.h
+layout(binding = 29, rgba32f) uniform writeonly image2D radiance_image; // and distance, or infinity
 
 const float PI = 3.14159265358979;
 #define NOWHERE uintBitsToFloat(0x7f800000u) // infinity
+
+#include "shade_outside.glsl"
 
 // Light of the medium and of far walls, and of the sky where it comes along the lattice's lines.
 // `inside` the lattice: from where sunlight comes that was scattered forward. Its places may be
@@ -33,7 +36,7 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
 {
     inside = false;
     vec3 sky = shade_has(SHADE_SKY) ? PI * environment.sky : vec3(0.0);
-    if (!shade_has(SHADE_LATTICE)) {
+    if (!shade_has(SHADE_LATTICE | SHADE_OUTSIDE)) {
         return sky;
     }
     ivec3 dims = textureSize(moments_tex, 0);
@@ -42,15 +45,38 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
     }
     lattice_box box = lattice_box_of(medium.extent, dims);
     vec3 x = lattice_from_m(box, p.position + 0.02 * box.dx * p.facet);
-    if (any(lessThan(x, vec3(-0.02))) || any(greaterThan(x, vec3(dims) + 0.02))) {
-        return sky; // outside
+    inside = all(greaterThan(x, vec3(-0.02))) && all(lessThan(x, vec3(dims) + 0.02));
+    bool has_outside = shade_has(SHADE_OUTSIDE);
+    // The nearest place on a face of the box that the surface goes through, as seen from inside and from just
+    // outside; 1 there: how near.
+    vec3 lo = box.origin, hi = lattice_to_m(box, vec3(dims));
+    vec3 beyond = x - clamp(x, vec3(0.5), vec3(dims) - 0.5), across = 1.0 - p.normal * p.normal, far = abs(beyond) * across;
+    int axis = far.x >= far.y && far.x >= far.z ? 0 : far.y >= far.z ? 1 : 2;
+    vec3 place = clamp(p.position, lo, hi), before = place;
+    before[axis] = beyond[axis] > 0.0 ? hi[axis] : lo[axis];
+    vec3 away = p.position - before, push = mix(sign(away), vec3(0.0), equal(p.position, place));
+    push[axis] = sign(beyond[axis]);
+    float near = inside ? clamp(2.0 * abs(beyond[axis]), 0.0, 1.0) : max(1.0 - length(away) / shade_reach(lo, hi), 0.0);
+    near = has_outside && shade_has(SHADE_LATTICE) ? near * near * across[axis] : 0.0;
+
+    vec3 irradiance = vec3(0.0), within = vec3(0.0);
+    for (bool once = !inside; once; once = false) {
+        irradiance = has_outside ? max(sky + shade_outside(p.position, p.normal, lo, hi), vec3(0.0)) : sky;
     }
-    int channels = shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
-    uint num_suns = shade_has(SHADE_SPREAD) ? shade_num_suns : 0u;
-    inside = true;
-    vec3 irradiance = walls_irradiance_at(moments_tex, box, p.position, p.normal, channels, forward_tex, num_suns,
-                                          around);
-    return channels == 1 ? irradiance.r * args.tint : irradiance;
+    for (bool once = shade_has(SHADE_LATTICE) && (inside || near > 0.0); once; once = false) {
+        int channels = shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
+        uint num_suns = shade_has(SHADE_SPREAD) ? shade_num_suns : 0u;
+        within = walls_irradiance_at(moments_tex, box, place, p.normal, channels, forward_tex, num_suns, around);
+        within = channels == 1 ? within.r * args.tint : within;
+        irradiance = inside ? within : irradiance;
+    }
+    // Four moments a cell are too bright at the box's face, patches too dark: their geometric mean is right.
+    for (bool once = near > 0.0; once; once = false) {
+        vec3 seen = max(sky + shade_outside(before + 0.03 * box.dx * push, p.normal, lo, hi), vec3(0.0));
+        vec3 change = sqrt(clamp(within / max(seen, vec3(1e-30)), 0.1, 10.0));
+        irradiance *= mix(vec3(1.0), inside ? 1.0 / change : change, near * vec3(notEqual(seen, sky)) * vec3(greaterThan(min(seen, within), vec3(0.0))));
+    }
+    return irradiance;
 }
 
 vec3 irradiance_at(shade_point p)

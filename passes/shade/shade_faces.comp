@@ -1,0 +1,109 @@
+// shade_faces.comp -- what leaves the medium's box, for the surfaces outside it: into the image of shade_faces.h.
+//
+// A thread a patch. Light that a cell at the box's face sends out is the net flux there, on the line through the
+// fluxes of the last two cells; so what the box takes of the sky behind it is in it, too. Its directions are those of
+// radiance that is linear in direction, (phi + 3 w.F) / 4 pi, scaled to that flux.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shade_args.h"
+#include "shade_faces.h"
+#include "scene_args.h"
+#include "env_args.h"
+#include "lattice.glsl"
+#include "walls_links.glsl"
+#include "walls_table.glsl"
+
+layout(local_size_x = 32) in;
+layout(constant_id = 1) const uint shade_features = 0u;
+layout(push_constant, scalar) uniform Args
+{
+    shade_args args;
+};
+
+layout(binding = 0, scalar) uniform medium_uniform
+{
+    medium_block medium;
+};
+layout(binding = 1, scalar) uniform env_uniform
+{
+    env_block environment;
+};
+layout(binding = 2) uniform sampler3D moments_tex;
+layout(binding = 3) uniform sampler3D walls_table_tex;
+layout(binding = 4, rgba32f) uniform writeonly image2D faces_image;
+
+const float PI = 3.14159265358979;
+
+bool has(uint feature)
+{
+    return (shade_features & feature) != 0u;
+}
+
+void main()
+{
+    int n = int(gl_GlobalInvocationID.x), face = n / SHADE_FACE_PATCHES, number = n % SHADE_FACE_PATCHES;
+    int side = number < 1 ? 1 : number < 5 ? 2 : 4, k = number - (side * side - 1) / 3;
+    if (face >= 6) {
+        return;
+    }
+    int channels = has(SHADE_ONE_CHANNEL) ? 1 : 3;
+    ivec3 dims = textureSize(moments_tex, 0);
+    dims.z /= channels;
+    lattice_box box = lattice_box_of(medium.extent, dims);
+    int axis = face / 2, u = axis == 0 ? 1 : 0, v = axis == 2 ? 1 : 2;
+    bool upper = (face & 1) != 0;
+    ivec2 sides = ivec2(dims[u], dims[v]), at = ivec2(k % side, k / side);
+    ivec2 from = at * sides / side, to = (at + 1) * sides / side;
+    ivec3 outwards = ivec3(0);
+    outwards[axis] = upper ? 1 : -1;
+    uint link = walls_link(outwards);
+
+    ivec2 first = to, last = from;
+    vec3 net = vec3(0.0);
+    vec4 mean = vec4(0.0); // of the channels, without the light of the sky
+    for (int j = from.y; j < to.y; j++) {
+        for (int i = from.x; i < to.x; i++) {
+            ivec3 c;
+            c[u] = i;
+            c[v] = j;
+            c[axis] = upper ? dims[axis] - 1 : 0;
+            uint links = has(SHADE_LATTICE) ?
+                walls_table_links(texelFetch(walls_table_tex, c + ivec3(0, 0, TYN_WALLS_PLANES * dims.z), 0)) : 0u;
+            ivec3 behind = c - (dims[axis] > 1 ? outwards : ivec3(0));
+            uint back = walls_link(-outwards);
+            behind = (links >> back & 1u) != 0u ? c : behind;
+            bool open = (links >> link & 1u) == 0u, lit = false;
+            for (int ch = 0; ch < channels && open; ch++) {
+                ivec3 shift = ivec3(0, 0, ch * dims.z);
+                vec4 m = texelFetch(moments_tex, c + shift, 0), inner = texelFetch(moments_tex, behind + shift, 0);
+                m.yzw += 0.5 * (m.yzw - inner.yzw);
+                lit = lit || m.x > 0.0;
+                float out_flux = dot(m.yzw, vec3(outwards));
+                vec3 tint = channels == 1 ? args.tint : vec3(ch == 0, ch == 1, ch == 2);
+                net += out_flux * tint;
+                float sky = has(SHADE_SKY) ? 4.0 * PI * dot(environment.sky, tint) / dot(tint, tint) : 0.0;
+                mean += dot(tint, vec3(1.0)) * vec4(m.x - sky, m.yzw);
+            }
+            if (lit) {
+                first = min(first, ivec2(i, j));
+                last = max(last, ivec2(i, j) + 1);
+            }
+        }
+    }
+    bool any_lit = all(lessThan(first, last));
+    // As many cells as the rectangle has share what all of them send out.
+    ivec2 cells = max(last - first, ivec2(1));
+    net /= PI * float(cells.x * cells.y);
+    float flux = dot(mean.yzw, vec3(outwards)), all_out = mean.x + 2.0 * flux;
+    vec4 shape = vec4(1.0, vec3(0.0));
+    if (abs(all_out) > abs(flux) && all_out * flux > 0.0) {
+        shape.yzw = 3.0 / all_out * (mean.yzw - flux * vec3(outwards));
+    }
+    vec2 origin = vec2(box.origin[u], box.origin[v]);
+    ivec2 texel = ivec2(number * SHADE_FACE_ENTRIES, face);
+    imageStore(faces_image, texel + ivec2(SHADE_FACE_RECT, 0),
+               vec4(origin + box.dx * vec2(first), origin + box.dx * vec2(last)));
+    imageStore(faces_image, texel + ivec2(SHADE_FACE_LIGHT, 0), any_lit ? vec4(net, 1.0) : vec4(0.0));
+    imageStore(faces_image, texel + ivec2(SHADE_FACE_SHAPE, 0), shape);
+}
