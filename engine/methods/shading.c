@@ -178,6 +178,12 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
         [SHADE_PORT_WALL_LINKS] = in->wall_links,
         [SHADE_PORT_WALL_CELLS] = in->wall_cells,
     };
+    if (params.outside && tyn_can_trace(job)) {
+        refs[SHADE_PORT_SURFACES] = job->refs.surfaces;
+        refs[SHADE_PORT_VERTICES] = job->refs.vertices;
+        refs[SHADE_PORT_TRIANGLES] = job->refs.triangles;
+        refs[SHADE_PORT_NODES] = job->refs.nodes;
+    }
     result = tyn_graph_add(g, &tyn_pass_shade, &params, refs);
     in->surface = refs[SHADE_PORT_RADIANCE];
     return result;

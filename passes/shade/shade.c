@@ -7,6 +7,7 @@
 #include "shade_forward.comp.h"
 #include "shade_gather.comp.h"
 #include "shade_lights.comp.h"
+#include "shade_sight.comp.h"
 #include "shade_surface.comp.h"
 #include "shade_vpls.comp.h"
 #include "shade_walls.comp.h"
@@ -57,6 +58,13 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     [PORT(WALL_LINKS)] = {"wall_links", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "uint[]"},
     [PORT(WALL_CELLS)] = {"wall_cells", TYN_IN, TYN_BUFFER, .optional = true,
                           .meaning = "struct wall_cell[]"},
+    [PORT(SURFACES)] = {"surfaces", TYN_IN, TYN_BUFFER, .optional = true,
+                        .meaning = "struct surface_block"},
+    [PORT(VERTICES)] = {"vertices", TYN_IN, TYN_BUFFER, .optional = true,
+                        .meaning = "surface_vertex[]"},
+    [PORT(TRIANGLES)] = {"triangles", TYN_IN, TYN_BUFFER, .optional = true,
+                         .meaning = "surface_triangle[]"},
+    [PORT(NODES)] = {"nodes", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "surface_node[]"},
     [PORT(RADIANCE)] = {"surface_radiance", TYN_OUT, IMAGE2,
                         .meaning = "radiance to the camera, W/(m^2 sr); distance, m"},
     [PORT(TABLE)] = {"lights_table", TYN_SCRATCH, IMAGE2, .meaning = "the lights"},
@@ -65,6 +73,8 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     [PORT(FORWARD)] = {"forward", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                        .meaning = "from where sunlight comes that was scattered forward"},
     [PORT(FACES)] = {"faces", TYN_SCRATCH, IMAGE2, .meaning = "light that leaves the medium's box"},
+    [PORT(SIGHT)] = {"sight", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
+                     .meaning = "what faces of the medium's box see, m"},
     [PORT(PLACE)] = {"place", TYN_SCRATCH, IMAGE2, .meaning = "where a pixel is shaded (M, m)"},
     [PORT(PART)] = {"part", TYN_SCRATCH, IMAGE2,
                     .meaning = "irradiance of a part of the VPLs, W/m^2"},
@@ -110,6 +120,12 @@ static const tyn_binding faces_bindings[] = {
     {PORT(MOMENTS), TYN_USE_SAMPLED},     {PORT(WALL_TABLE), TYN_USE_SAMPLED},
     {PORT(FACES), TYN_USE_STORAGE_WRITE},
 };
+static const tyn_binding sight_bindings[] = {
+    {PORT(SURFACES), TYN_USE_UNIFORM},       {PORT(VERTICES), TYN_USE_STORAGE_READ},
+    {PORT(TRIANGLES), TYN_USE_STORAGE_READ}, {PORT(NODES), TYN_USE_STORAGE_READ},
+    {PORT(MEDIUM), TYN_USE_UNIFORM},         {PORT(FACES), TYN_USE_SAMPLED},
+    {PORT(MOMENTS), TYN_USE_SAMPLED},        {PORT(SIGHT), TYN_USE_STORAGE_WRITE},
+};
 static const tyn_binding vpls_bindings[] = {
     COMMON_BINDINGS,
     {PORT(PLACE), TYN_USE_STORAGE_WRITE},
@@ -121,14 +137,14 @@ static const tyn_binding gather_bindings[] = {
     {PORT(PART), TYN_USE_SAMPLED},
     {PORT(INDIRECT), TYN_USE_STORAGE_WRITE},
 };
-// Bindings 0 to 28 of shade_piece.glsl.
+// Bindings 0 to 29 of shade_piece.glsl.
 #define SURFACE_BINDINGS                                                                           \
     COMMON_BINDINGS, {PORT(INDIRECT), TYN_USE_SAMPLED}, {PORT(PLACE), TYN_USE_SAMPLED},            \
         {PORT(PART), TYN_USE_SAMPLED}, {PORT(MOMENTS), TYN_USE_SAMPLED},                           \
         {PORT(WALL_TABLE), TYN_USE_SAMPLED}, {PORT(ENVIRONMENT), TYN_USE_UNIFORM},                 \
-        {PORT(FORWARD), TYN_USE_SAMPLED},                                                          \
+        {PORT(FORWARD), TYN_USE_SAMPLED}, {PORT(FACES), TYN_USE_SAMPLED},                          \
     {                                                                                              \
-        PORT(FACES), TYN_USE_SAMPLED                                                               \
+        PORT(SIGHT), TYN_USE_SAMPLED                                                               \
     }
 
 static const tyn_binding surface_bindings[] = {
@@ -142,7 +158,7 @@ static const tyn_binding edges_bindings[] = {
     {PORT(EDGES), TYN_USE_STORAGE_READ},
 };
 
-enum { LIGHTS = 0, WALLS, FORWARD, FACES, VPLS, GATHER, SURFACE, EDGES, NUM_KERNELS };
+enum { LIGHTS = 0, WALLS, FORWARD, FACES, SIGHT, VPLS, GATHER, SURFACE, EDGES, NUM_KERNELS };
 
 #define KERNEL(step, x, y, z)                                                                      \
     .name = "shade_" #step, .spirv = shade_##step##_spirv,                                         \
@@ -155,6 +171,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [WALLS] = {KERNEL(walls, 8, 4, 2)},
     [FORWARD] = {KERNEL(forward, 8, 4, 2), .num_spec = 3},
     [FACES] = {KERNEL(faces, 32, 1, 1), ARGS(2)},
+    [SIGHT] = {KERNEL(sight, 8, 8, 1), .num_spec = 1},
     [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(5)},
     [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(5)},
     [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(5)},
@@ -181,6 +198,8 @@ static tyn_result declare(tyn_builder *b, const void *data)
     cells.z = slices * (TYN_WALLS_PLANES + 1);
     tyn_build_image(b, PORT(WALL_TABLE), tyn_build_has(b, PORT(WALL_LINKS)) ? cells : texel, 1);
     tyn_build_image(b, PORT(FACES), outside ? faces : texel, 1);
+    const tyn_extent maps = {SHADE_FACE_MAPS * SHADE_FACE_TEXELS, 6 * SHADE_FACE_TEXELS, 1};
+    tyn_build_image(b, PORT(SIGHT), outside && tyn_build_has(b, PORT(SURFACES)) ? maps : texel, 1);
     tyn_build_image(b, PORT(TABLE), (tyn_extent){SHADE_ENTRIES, SHADE_ROWS, 1}, 1);
     tyn_build_image(b, PORT(PLACE), pixels, 1);
     tyn_build_image(b, PORT(PART), pixels, 1);
@@ -227,6 +246,11 @@ static void record(tyn_recorder *r, const void *data)
         d.kernel = FACES;
         d.cells = (tyn_extent){6 * SHADE_FACE_PATCHES, 1, 1};
         tyn_rec_dispatch(r, &d);
+        const uint32_t channels = p->one_channel ? 1 : 3;
+        const tyn_extent maps = tyn_rec_extent(r, PORT(SIGHT));
+        if (tyn_rec_has(r, PORT(SURFACES))) {
+            tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SIGHT, .cells = maps, .spec = &channels});
+        }
     }
     if (vpls) {
         d.kernel = VPLS;

@@ -42,12 +42,17 @@ enum {
     SHADE_PORT_MOMENTS,       // IN optional 3D: light of the lattice
     SHADE_PORT_WALL_LINKS,    // IN optional buffer uint[]: with surfaces within it, as the one below
     SHADE_PORT_WALL_CELLS,    // IN optional buffer struct wall_cell[]
+    SHADE_PORT_SURFACES,      // IN optional buffers, surface_args.h: what hides the box from surfaces outside it
+    SHADE_PORT_VERTICES,
+    SHADE_PORT_TRIANGLES,
+    SHADE_PORT_NODES,
     SHADE_PORT_RADIANCE, // OUT 2D RGBA32F, as large as the G-buffer: radiance to the camera, W/(m^2 sr);
                          // a = distance along the ray, m, or infinity
     SHADE_PORT_TABLE, // SCRATCH 2D RGBA32F, shade_table.h
     SHADE_PORT_WALL_TABLE, // SCRATCH 3D RGBA32F, walls_table.glsl: exists with wall_links
     SHADE_PORT_FORWARD, // SCRATCH 3D RGBA32F, shade_forward.comp: exists with a lattice, suns and shadows
     SHADE_PORT_FACES, // SCRATCH 2D RGBA32F, shade_faces.h
+    SHADE_PORT_SIGHT, // SCRATCH 2D R32F, the same
     SHADE_PORT_PLACE, // SCRATCH 2D RGBA32F: exist with VPLs
     SHADE_PORT_PART,
     SHADE_PORT_INDIRECT,

@@ -7,11 +7,11 @@
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
-layout(binding = 30, scalar) readonly buffer edge_count_buffer
+layout(binding = 31, scalar) readonly buffer edge_count_buffer
 {
     gbuffer_edge_count edge_count;
 };
-layout(binding = 31, scalar) readonly buffer edges_buffer
+layout(binding = 32, scalar) readonly buffer edges_buffer
 {
     uint edges[];
 };

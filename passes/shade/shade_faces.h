@@ -14,4 +14,9 @@
 #define SHADE_FACE_SHAPE 2 // radiance into the direction w over that: max(x + dot(yzw, w), 0)
 #define SHADE_FACE_ENTRIES 3
 
+// What surfaces leave of the view of a whole face and of its 2 x 2 patches: R32F, maps of distances as VPLs have them
+// (vpl_visibility.glsl), faces as rows.
+#define SHADE_FACE_MAPS 5
+#define SHADE_FACE_TEXELS 16
+
 #endif

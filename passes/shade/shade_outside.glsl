@@ -65,8 +65,38 @@ float shade_reach(vec3 lo, vec3 hi)
     return max(size.x, max(size.y, size.z)) / float(SHADE_FACE_SIDE);
 }
 
-// `lo`, `hi`: the lattice's box.
-vec3 shade_outside(vec3 p, vec3 n, vec3 lo, vec3 hi)
+vec3 shade_middle(int axis, float plane, vec4 rect)
+{
+    vec2 m = 0.5 * (rect.xy + rect.zw);
+    return axis == 0 ? vec3(plane, m) : axis == 1 ? vec3(m.x, plane, m.y) : vec3(m, plane);
+}
+
+// Share of the rays of map `map` of a face around the way `away` that are not stopped before the plane of the surface
+// there, whose normal is `facet`, as for VPLs.
+float shade_sight(int face, int map, vec3 outwards, vec3 away, vec3 facet)
+{
+    ivec2 size = textureSize(sight_tex, 0);
+    if (size.x < SHADE_FACE_TEXELS) {
+        return 1.0; // no maps
+    }
+    mat3 frame = vpl_frame(outwards);
+    vec3 d = away * frame, n = facet * frame;
+    const float last = float(SHADE_FACE_TEXELS - 1);
+    vec2 x = vpl_map_place(d) * last, first = min(floor(x), last - 1.0), w = x - first;
+    float r = length(d), plane = dot(n, d);
+    vec4 reach = vec4(r);
+    for (int i = 0; i < 4; i++) {
+        float facing = dot(n, normalize(vpl_map_direction((first + vec2(i & 1, i >> 1)) / last)));
+        reach[i] = facing * plane > 0.25 * abs(plane * plane) / r ? min(plane / facing, 4.0 * r) : r;
+    }
+    vec2 corner = vec2(map, face) * float(SHADE_FACE_TEXELS) + first + 1.0;
+    vec4 stored = textureGather(sight_tex, corner / vec2(size)).wzxy;
+    vec4 shares = vec4(1.0 - w.x, w.x, 1.0 - w.x, w.x) * vec4(1.0 - w.yy, w.yy);
+    return dot(shares, vec4(greaterThanEqual(stored, 0.95 * reach)));
+}
+
+// `lo`, `hi`: the lattice's box. `facet`: the triangle's normal.
+vec3 shade_outside(vec3 p, vec3 n, vec3 facet, vec3 lo, vec3 hi)
 {
     vec3 sum = vec3(0.0);
     float far = length(p - clamp(p, lo, hi)) / shade_reach(lo, hi);
@@ -80,11 +110,14 @@ vec3 shade_outside(vec3 p, vec3 n, vec3 lo, vec3 hi)
             vec4 light = texelFetch(faces_tex, texel + ivec2(SHADE_FACE_LIGHT, 0), 0);
             vec4 rect = texelFetch(faces_tex, texel + ivec2(SHADE_FACE_RECT, 0), 0);
             vec4 shape = texelFetch(faces_tex, texel + ivec2(SHADE_FACE_SHAPE, 0), 0);
-            vec2 middle = 0.5 * (rect.xy + rect.zw);
-            vec3 from = axis == 0 ? vec3(plane, middle) : axis == 1 ? vec3(middle.x, plane, middle.y) :
-                                                                      vec3(middle, plane);
+            vec3 from = shade_middle(axis, plane, rect);
+            int map = k < SHADE_FACE_MAPS ? k : 1 + ((k - 5) / 8) * 2 + ((k - 5) % 4) / 2;
+            vec3 outwards = vec3(0.0);
+            outwards[axis] = upper ? 1.0 : -1.0;
+            vec4 mapped = texelFetch(faces_tex, ivec2(map * SHADE_FACE_ENTRIES + SHADE_FACE_RECT, face), 0);
+            float seen = shade_sight(face, map, outwards, p - shade_middle(axis, plane, mapped), facet);
             float directed = max(shape.x + dot(shape.yzw, normalize(p - from)), 0.0);
-            sum += light.rgb * (light.a * directed * shade_rectangle(p, n, axis, plane, rect));
+            sum += light.rgb * (light.a * seen * directed * shade_rectangle(p, n, axis, plane, rect));
         }
     }
     return sum;

@@ -22,7 +22,8 @@ layout(binding = 26, scalar) uniform env_uniform
 };
 layout(binding = 27) uniform sampler3D forward_tex; // shade_forward.comp
 layout(binding = 28) uniform sampler2D faces_tex; // shade_faces.h
-layout(binding = 29, rgba32f) uniform writeonly image2D radiance_image; // and distance, or infinity
+layout(binding = 29) uniform sampler2D sight_tex; // shade_sight.comp
+layout(binding = 30, rgba32f) uniform writeonly image2D radiance_image; // and distance, or infinity
 
 const float PI = 3.14159265358979;
 #define NOWHERE uintBitsToFloat(0x7f800000u) // infinity
@@ -61,7 +62,7 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
 
     vec3 irradiance = vec3(0.0), within = vec3(0.0);
     for (bool once = !inside; once; once = false) {
-        irradiance = has_outside ? max(sky + shade_outside(p.position, p.normal, lo, hi), vec3(0.0)) : sky;
+        irradiance = has_outside ? max(sky + shade_outside(p.position, p.normal, p.facet, lo, hi), vec3(0.0)) : sky;
     }
     for (bool once = shade_has(SHADE_LATTICE) && (inside || near > 0.0); once; once = false) {
         int channels = shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
@@ -72,7 +73,7 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
     }
     // Four moments a cell are too bright at the box's face, patches too dark: their geometric mean is right.
     for (bool once = near > 0.0; once; once = false) {
-        vec3 seen = max(sky + shade_outside(before + 0.03 * box.dx * push, p.normal, lo, hi), vec3(0.0));
+        vec3 seen = max(sky + shade_outside(before + 0.03 * box.dx * push, p.normal, p.facet, lo, hi), vec3(0.0));
         vec3 change = sqrt(clamp(within / max(seen, vec3(1e-30)), 0.1, 10.0));
         irradiance *= mix(vec3(1.0), inside ? 1.0 / change : change, near * vec3(notEqual(seen, sky)) * vec3(greaterThan(min(seen, within), vec3(0.0))));
     }
