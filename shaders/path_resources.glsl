@@ -34,7 +34,7 @@ layout(set = 0, binding = 10, scalar) readonly buffer triangles_buffer { surface
 layout(set = 0, binding = 11, scalar) readonly buffer materials_buffer { surface_material materials[]; };
 layout(set = 0, binding = 12, scalar) readonly buffer textures_buffer { surface_texture textures[]; };
 layout(set = 0, binding = 13, scalar) readonly buffer texels_buffer { uint texels[]; };
-layout(set = 0, binding = 14, scalar) readonly buffer nodes_buffer { surface_node nodes[]; };
+layout(set = 0, binding = 14, scalar) readonly buffer nodes_buffer { uvec4 nodes[]; };
 layout(set = 0, binding = 15, scalar) readonly buffer emitters_buffer {
     surface_table emitters;
     surface_cell emitter_cells[];

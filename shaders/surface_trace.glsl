@@ -10,7 +10,9 @@
 // surface_offset moves origins to the side they belong to. A ray towards a point of a triangle leaves that triangle
 // out.
 //
-// The includer declares `surfaces` (surface_block), `vertices[]`, `triangles[]` and `nodes[]` (surface_args.h).
+// The includer declares `surfaces` (surface_block), `vertices[]`, `triangles[]` (surface_args.h) and `nodes[]`, which is
+// uvec4[]: a struct surface_node is two of them, as a CPU device reads a vector per lane in little more than the time
+// of a number.
 #ifndef TYN_SURFACE_TRACE_GLSL
 #define TYN_SURFACE_TRACE_GLSL
 #include "surface_args.h"
@@ -111,6 +113,17 @@ float surface_enter(surface_ray ray, vec3 lo, vec3 hi, float far)
     return near <= min(end, far) ? near : SURFACE_MISSED;
 }
 
+struct surface_entry {
+    float at;          // where the ray enters the node's box, or SURFACE_MISSED
+    uint first, count; // of the node
+};
+
+surface_entry surface_enter_node(surface_ray ray, uint node, float far)
+{
+    uvec4 lo = nodes[2u * node], hi = nodes[2u * node + 1u];
+    return surface_entry(surface_enter(ray, uintBitsToFloat(lo.xyz), uintBitsToFloat(hi.xyz), far), lo.w, hi.w);
+}
+
 // The nearest hit before `hit.t`, or with `any` the first that is found. False if there is none.
 bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
 {
@@ -123,36 +136,39 @@ bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
     }
     uint stack[TYN_SURFACE_STACK];
     int depth = 0;
-    uint at = 0u;
-    if (surface_enter(ray, nodes[0].lo, nodes[0].hi, hit.t) == SURFACE_MISSED) {
+    surface_entry root = surface_enter_node(ray, 0u, hit.t);
+    if (root.at == SURFACE_MISSED) {
         return false;
     }
+    uint first = root.first, count = root.count;
     // Lanes that run together look for leaves together, then try their triangles together.
     for (bool more = true; more;) {
-        uint first = nodes[at].first, count = nodes[at].count;
         while (count == 0u && more) {
-            float left = surface_enter(ray, nodes[first].lo, nodes[first].hi, hit.t);
-            float right = surface_enter(ray, nodes[first + 1u].lo, nodes[first + 1u].hi, hit.t);
-            uint near = right < left ? first + 1u : first;
-            if (max(left, right) < SURFACE_MISSED) { // the ray may reach as far as infinity
-                stack[depth++] = 2u * first + 1u - near;
+            surface_entry left = surface_enter_node(ray, first, hit.t);
+            surface_entry right = surface_enter_node(ray, first + 1u, hit.t);
+            bool turned = right.at < left.at;
+            if (max(left.at, right.at) < SURFACE_MISSED) { // the ray may reach as far as infinity
+                stack[depth++] = turned ? first : first + 1u;
             }
-            if (min(left, right) < SURFACE_MISSED) {
-                at = near;
-            } else if (depth > 0) {
-                at = stack[--depth];
-            } else {
-                more = false;
+            bool goes_on = min(left.at, right.at) < SURFACE_MISSED;
+            first = turned ? right.first : left.first;
+            count = turned ? right.count : left.count;
+            more = goes_on || depth > 0;
+            // A loop instead of a condition: what nobody enters costs nothing.
+            for (bool back = !goes_on && more; back; back = false) {
+                uint at = stack[--depth];
+                first = nodes[2u * at].w;
+                count = nodes[2u * at + 1u].w;
             }
-            first = nodes[at].first;
-            count = nodes[at].count;
         }
         for (uint i = first; more && i < first + count; i++) {
             found = surface_meet(ray, i, hit) || found;
         }
         more = more && depth > 0 && !(any && found);
         if (more) {
-            at = stack[--depth];
+            uint at = stack[--depth];
+            first = nodes[2u * at].w;
+            count = nodes[2u * at + 1u].w;
         }
     }
     return found;

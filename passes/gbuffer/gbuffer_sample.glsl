@@ -23,7 +23,7 @@ layout(set = 0, binding = 3, scalar) readonly buffer vertex_rows_buffer
 };
 layout(set = 0, binding = 4, scalar) readonly buffer material_rows_buffer
 {
-    vec4 material_rows[]; // surface_material: albedo, flags; emission, texture
+    uvec4 material_rows[]; // surface_material: albedo, flags; emission, texture
 };
 layout(set = 0, binding = 7, r32ui) uniform readonly uimage2D seen;
 layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D surface_image;
@@ -59,8 +59,8 @@ gbuffer_triangle triangle_of(uint index)
     vec4 na = vertex_rows[2u * t.x + 1u], nb = vertex_rows[2u * t.y + 1u], nc = vertex_rows[2u * t.z + 1u];
     f.normals = vec3[3](na.xyz, nb.xyz, nc.xyz);
     f.uvs = vec2[3](vec2(a.w, na.w), vec2(b.w, nb.w), vec2(c.w, nc.w));
-    vec4 reflected = material_rows[2u * t.w], sent = material_rows[2u * t.w + 1u];
-    f.material = surface_material(reflected.rgb, floatBitsToUint(reflected.a), sent.rgb, floatBitsToUint(sent.a));
+    uvec4 reflected = material_rows[2u * t.w], sent = material_rows[2u * t.w + 1u];
+    f.material = surface_material(uintBitsToFloat(reflected.rgb), reflected.a, uintBitsToFloat(sent.rgb), sent.a);
     return f;
 }
 

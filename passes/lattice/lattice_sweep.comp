@@ -119,7 +119,8 @@ void main()
             leak -= enters ? psi : 0.0;
             if (walls == 1) {
                 uint id = uint(at - int(ch) * per_channel), cut = wall_links[id];
-                if ((cut & back) != 0u) {
+                // Loops instead of conditions: what nobody enters costs nothing.
+                for (bool starts = (cut & back) != 0u; starts; starts = false) {
                     leak += enters ? psi : 0.0;
                     psi = state[lattice_wall_vector(ch, id)][id % 4u];
                     enters = true;
@@ -148,7 +149,7 @@ void main()
             through *= w.e;
             psi = psi * w.e + q * (s * w.a0 + slope * w.w1) + emission * w.a0;
             leak += counted ? psi : 0.0;
-            if (ends) {
+            for (bool stored = ends; stored; stored = false) {
                 arrived[at + to_mean] = psi;
             }
             before = s;

@@ -11,7 +11,7 @@ layout(set = 0, binding = 0, scalar) uniform camera_uniform { camera_block camer
 layout(set = 0, binding = 1, scalar) uniform surfaces_uniform { surface_block surfaces; };
 layout(set = 0, binding = 2, scalar) readonly buffer vertices_buffer { surface_vertex vertices[]; };
 layout(set = 0, binding = 3, scalar) readonly buffer triangles_buffer { surface_triangle triangles[]; };
-layout(set = 0, binding = 4, scalar) readonly buffer nodes_buffer { surface_node nodes[]; };
+layout(set = 0, binding = 4, scalar) readonly buffer nodes_buffer { uvec4 nodes[]; };
 layout(set = 0, binding = 5, rgba32f) uniform writeonly image2D distance_image;
 
 #include "surface_trace.glsl"

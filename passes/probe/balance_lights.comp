@@ -47,7 +47,7 @@ layout(binding = 11, scalar) readonly buffer triangles_buffer
 };
 layout(binding = 12, scalar) readonly buffer nodes_buffer
 {
-    surface_node nodes[];
+    uvec4 nodes[];
 };
 layout(binding = 13, scalar) readonly buffer materials_buffer
 {

@@ -18,7 +18,7 @@ layout(set = 0, binding = 3, scalar) readonly buffer materials_buffer
 };
 layout(set = 0, binding = 6, scalar) readonly buffer nodes_buffer
 {
-    surface_node nodes[];
+    uvec4 nodes[];
 };
 #include "surface_faces.glsl"
 layout(location = 0) flat in uint triangle;

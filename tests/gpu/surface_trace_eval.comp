@@ -24,7 +24,7 @@ struct ray_out {
 layout(set = 0, binding = 0, scalar) uniform surfaces_uniform { surface_block surfaces; };
 layout(set = 0, binding = 1, scalar) readonly buffer vertices_buffer { surface_vertex vertices[]; };
 layout(set = 0, binding = 2, scalar) readonly buffer triangles_buffer { surface_triangle triangles[]; };
-layout(set = 0, binding = 3, scalar) readonly buffer nodes_buffer { surface_node nodes[]; };
+layout(set = 0, binding = 3, scalar) readonly buffer nodes_buffer { uvec4 nodes[]; };
 layout(set = 0, binding = 4, scalar) readonly buffer rays_buffer { ray_in rays[]; };
 layout(set = 0, binding = 5, scalar) writeonly buffer results_buffer { ray_out results[]; };
 
