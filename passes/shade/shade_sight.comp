@@ -24,7 +24,7 @@ layout(binding = 2, scalar) readonly buffer triangles_buffer
 };
 layout(binding = 3, scalar) readonly buffer nodes_buffer
 {
-    surface_node nodes[];
+    uvec4 nodes[];
 };
 layout(binding = 4, scalar) uniform medium_uniform
 {
