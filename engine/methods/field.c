@@ -9,6 +9,7 @@
 #include "passes/probe/probe.h"
 #include <tyndall/registry.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static bool emits(const tyn_surface_material *m)
@@ -453,6 +454,19 @@ tyn_result tyn_add_steps(tyn_graph *g, const tyn_job *job, tyn_field *f,
     return result;
 }
 
+// A lattice may be as long as a row of clouds, but not have more cells than a cube of 64.
+static void warn_of_cells(const tyn_job *job, const tyn_field *f, int32_t asked)
+{
+    const tyn_extent n = tyn_lattice_dims(f->shape.extent, asked);
+    if ((uint64_t)n.x * n.y * n.z > TYN_LATTICE_MAX_ALL) {
+        char line[160];
+        snprintf(line, sizeof line,
+                 "pop: lattice.cells is %d, which makes more than %d cells; %d are used",
+                 (int)asked, TYN_LATTICE_MAX_ALL, (int)f->shape.cells);
+        job->warn(job->warn_user, line);
+    }
+}
+
 tyn_result tyn_add_field(tyn_graph *g, const tyn_job *job, tyn_field *f)
 {
     const tyn_frame_scene *frame = job->frame;
@@ -462,6 +476,7 @@ tyn_result tyn_add_field(tyn_graph *g, const tyn_job *job, tyn_field *f)
     memcpy(f->shape.repeat, frame->medium.repeat, sizeof f->shape.repeat);
     f->shape.cells =
         tyn_lattice_fit(frame->medium.extent, frame->medium.repeat, lattice.shape.cells);
+    warn_of_cells(job, f, lattice.shape.cells);
     choose_channels(f, job->scene, frame);
     float longest = fmaxf(f->shape.extent[0], fmaxf(f->shape.extent[1], f->shape.extent[2]));
     f->picture.cell = longest / (float)f->shape.cells;

@@ -274,8 +274,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
     if ((repeat[0] && repeat[1] && repeat[2]) ||
         tyn_lattice_fit(p->shape.extent, repeat, p->shape.cells) != p->shape.cells) {
         tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "pass 'lattice': sides that repeat must be whole numbers of cells, and one "
-                      "side must not repeat");
+                      "pass 'lattice': sides that repeat must be whole numbers of cells, one "
+                      "side must not repeat, and there may be %d cells",
+                      TYN_LATTICE_MAX_ALL);
         return TYN_ERR_PARAMS;
     }
     const bool walls = tyn_build_has(b, LATTICE_PORT_WALL_LINKS);
@@ -492,7 +493,8 @@ static void record(tyn_recorder *r, const void *params)
 
 static const tyn_param param_table[] = {
     {"cells", TYN_PARAM_INT, offsetof(tyn_lattice_params, shape.cells), 32, 4,
-     TYN_LATTICE_MAX_CELLS, "cells", "lattice cells along the longest side of the medium", NULL},
+     TYN_LATTICE_MAX_CELLS, "cells",
+     "lattice cells along the longest side of the medium; 262144 in all", NULL},
     {"sweeps", TYN_PARAM_INT, offsetof(tyn_lattice_params, sweeps), 4, 1, 256, "",
      "iterations of the solve; the error falls about tenfold with each two", NULL},
     {"cycles", TYN_PARAM_INT, offsetof(tyn_lattice_params, cycles), 2, 0, 8, "",

@@ -17,7 +17,8 @@
 #include <tyndall/pass.h>
 #include "scene_args.h"
 
-enum { TYN_LATTICE_MAX_CELLS = 64, TYN_LATTICE_MAX_SUNS = 4 };
+// Cells along the longest side, and of all: long and flat media may have more along it than others.
+enum { TYN_LATTICE_MAX_CELLS = 256, TYN_LATTICE_MAX_ALL = 64 * 64 * 64, TYN_LATTICE_MAX_SUNS = 4 };
 
 // What all passes of a lattice have in common; a method fills it once.
 typedef struct tyn_lattice_shape {
@@ -31,7 +32,8 @@ typedef struct tyn_lattice_shape {
 // Cells along each axis: cubes of longest side / cells; the box they fill holds the medium's.
 tyn_extent tyn_lattice_dims(const float extent[3], int32_t cells);
 
-// The most cells, up to `cells`, with which the sides that repeat are whole numbers of cells; 0: none.
+// The most cells along the longest side, up to `cells`, with which the sides that repeat are whole numbers of
+// cells and there are not more than TYN_LATTICE_MAX_ALL; 0: none.
 int32_t tyn_lattice_fit(const float extent[3], const uint32_t repeat[3], int32_t cells);
 
 // True if `n` colours (lights, emission, mean of the environment) are multiples of one colour, its

@@ -18,7 +18,8 @@ int32_t tyn_lattice_fit(const float extent[3], const uint32_t repeat[3], int32_t
 {
     float longest = fmaxf(extent[0], fmaxf(extent[1], extent[2]));
     for (; cells > 0; cells--) {
-        bool fits = true;
+        const tyn_extent n = tyn_lattice_dims(extent, cells);
+        bool fits = (uint64_t)n.x * n.y * n.z <= TYN_LATTICE_MAX_ALL;
         for (int a = 0; a < 3; a++) {
             double exact = longest > 0 ? (double)extent[a] / longest * cells : 1;
             double whole = fmax(1, round(exact));

@@ -50,6 +50,7 @@ static const tyn_binding beam_bindings[] = {
     {LATTICE_SOURCE_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
     {LATTICE_SOURCE_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED},
     {LATTICE_SOURCE_PORT_SHADOWS, TYN_USE_STORAGE_READ},
+    {LATTICE_SOURCE_PORT_CELLS, TYN_USE_SAMPLED},
 };
 
 static const tyn_binding sum_bindings[] = {
@@ -77,7 +78,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                      sizeof(struct lattice_source_args),
                      {8, 4, 2},
                      beam_bindings,
-                     12,
+                     13,
                      4},
     [KERNEL_SUM] = {"sum",
                     lattice_source_sum_spirv,

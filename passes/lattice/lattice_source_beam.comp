@@ -2,8 +2,13 @@
 //
 // The mean is weighted with sigma_s', so that sigma_s' T' is the cell's true first scattering; with
 // sigma_a where nothing scatters. Each sub-sample is the mean along the light over its own length:
-// e^-tau sinh(x) / x with tau to its centre. What surfaces keep from the cell is the fraction of that light
-// that it does not see: kept apart, because the beam's energy is compared without surfaces.
+// e^-tau sinh(x) / x with tau to its centre. Where one is dense that is not enough: light that comes in obliquely
+// through a face is at the face everywhere in it, not where its own length ends. There the mean is that over the cube,
+// e^-tau times sinh(a_i) / a_i for each axis, with tau as linear as the gradient says: along the light it is the
+// extinction, across it, it is measured over the cell. Without it a face that the
+// sun grazes was dark, and the one it is square to too bright.
+// What surfaces keep from the cell is the fraction of that light that it does not see: kept apart, because
+// the beam's energy is compared without surfaces.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -33,9 +38,45 @@ layout(push_constant, scalar) uniform push
 // Suns stacked along z: T' per colour channel; a = the part of that light which no surface stops.
 layout(binding = 7, rgba32f) uniform writeonly image3D sunlit;
 
+layout(binding = 12) uniform sampler3D cells;
+
 layout(constant_id = 1) const uint num_channels = 3;
 layout(constant_id = 2) const uint walls = 0;
 layout(constant_id = 3) const uint shadowed = 0;
+
+const float DENSE = 0.25; // half depth of a sub-sample from which on its mean is taken over the cube
+
+float sum3(vec3 v)
+{
+    return v.x + v.y + v.z;
+}
+
+// Gradient of the depth, summed over channels, across the light: from four corners of the middle half of what
+// the cell has of the medium, 1/m.
+vec3 depth_across(uint sun, lattice_box box, ivec3 c, vec3 direction)
+{
+    vec3 lo = max(lattice_to_m(box, vec3(c)), vec3(0.0));
+    vec3 hi = min(lattice_to_m(box, vec3(c + 1)), medium.extent);
+    vec3 reach = 0.25 * max(hi - lo, vec3(1e-3 * box.dx)), sum = vec3(0.0);
+    for (uint corner = 0; corner < 4; corner++) {
+        vec3 way = vec3(corner < 2 ? 1.0 : -1.0, corner % 2 == 0 ? 1.0 : -1.0,
+                        corner == 0 || corner == 3 ? 1.0 : -1.0);
+        beam_tau tau = beam_depth(sun, 0.5 * (lo + hi) + way * reach);
+        sum += way * sum3(tau.a + tau.p);
+    }
+    vec3 gradient = 0.25 * sum / reach;
+    return gradient - dot(gradient, direction) * direction;
+}
+
+// Mean of e^-tau over a cube of edge `size` with depth `centre` in its middle.
+float mean_over_cube(float centre, vec3 gradient, float size)
+{
+    vec3 a = max(0.5 * size * abs(gradient), vec3(1e-3));
+    a *= min(centre / sum3(a), 1.0); // nowhere in it is a depth negative
+    a = max(a, vec3(1e-3));
+    vec3 means = (1.0 - exp(-2.0 * a)) / (2.0 * a); // each is e^-a sinh(a) / a
+    return exp(-max(centre - sum3(a), 0.0)) * means.x * means.y * means.z;
+}
 
 void main()
 {
@@ -48,6 +89,16 @@ void main()
     lattice_box box = lattice_box_of(medium.extent, dims);
     vec3 d = abs(beams[sun].direction);
     vec3 weighted = vec3(0.0), weight = vec3(0.0);
+    vec3 across = vec3(0.0);
+    float depth = 0.0; // of a sub-sample, half, as the cell has it on average
+    for (int ch = 0; ch < int(args.channels); ch++) {
+        vec4 cell = texelFetch(cells, c + ivec3(0, 0, ch * dims.z), 0);
+        depth = max(depth, 0.5 * box.dx / float(args.samples) * (cell.x + cell.y));
+    }
+    bool dense = depth > DENSE;
+    for (uint once = 0; once < (dense ? 1u : 0u); once++) { // threads without it pass by
+        across = depth_across(sun, box, c, beams[sun].direction);
+    }
     vec2 seen = vec2(0.0); // of the light in all channels: by the cell, and all
     float step_length = box.dx / float(args.samples);
     float length_h = step_length / max(d.x, max(d.y, d.z)); // of a sub-sample along the light
@@ -73,6 +124,16 @@ void main()
                 if (num_channels == 3) {
                     t.g = mean_transmittance(centre.g, x.g);
                     t.b = mean_transmittance(centre.b, x.b);
+                }
+                for (uint once = 0; once < (dense ? 1u : 0u); once++) {
+                    vec3 extinction = scaled + m.sigma_a, ahead = beams[sun].direction;
+                    vec3 sideways = across / max(sum3(extinction), 1e-30);
+                    for (uint ch = 0; ch < num_channels; ch++) {
+                        // At least that along the light: gradients of what is ragged split it up.
+                        t[ch] = max(t[ch], mean_over_cube(centre[ch], extinction[ch] * (ahead + sideways),
+                                                          step_length));
+                    }
+                    t = num_channels == 3 ? t : t.rrr;
                 }
                 weighted += w * t;
                 weight += w;

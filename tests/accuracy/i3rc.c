@@ -46,20 +46,18 @@ typedef struct experiment {
     const char *why;
 } experiment;
 
-// Of a homogeneous slab of depth 2 under this sun `pop` has T 5 % too large (0.716, `path` 0.682), of one of depth 10
-// 1 % too small.
+// Of a homogeneous slab of depth 2 under this sun `pop` has T 4 % too large (0.746, `path` 0.719), of one of depth 10
+// 1 % too small. The lattice solves its own equation right: a Monte Carlo of delta scaling with a linear phase
+// function in its 14 directions has 0.744 +- 0.002. Two moments do not hold what this one sends up and down.
 static const char *const low_sun =
     "what a thin layer scatters forward out of a low sun goes on straight, too short a way";
-static const char *const wide_cells =
-    "the lattice's 64 cells along 32 km are 500 m wide, the cloud is 1.8 km high";
-
 static const experiment experiments[] = {
     {"case1_exp1", 1, 0, 1, 0, false, NULL, NULL},
     {"case1_exp2", 1, 60, 1, 0, false, "R", low_sun},
     {"case1_exp4", 1, 60, 0.99f, 0, true, "TA", low_sun},
     {"case2_exp1", 2, 0, 1, 0, true, NULL, NULL},
     {"case2_exp4", 2, 60, 0.99f, 0, false, NULL, NULL},
-    {"case2_exp5", 2, 60, 1, 0.4f, false, "T", wide_cells},
+    {"case2_exp5", 2, 60, 1, 0.4f, false, NULL, NULL},
     {"case3_exp1", 3, 0, 1, 0, false, NULL, NULL},
     {"case3_exp3", 3, 0, 0.99f, 0, false, NULL, NULL},
     {"case3_exp4", 3, 60, 0.99f, 0, true, NULL, NULL},
@@ -320,19 +318,24 @@ static bool open_field(int field, cloud *c)
     return field == 1 ? step_cloud(c) : field == 2 ? radar_cloud(c) : satellite_cloud(c);
 }
 
-// All experiments of all fields.
-static void run(gpu_test *t, const char *method, const char *settings, uint32_t samples,
-                double bound)
+// The radar's field is 18 times as long as it is high.
+static tyn_offline *open_method(gpu_test *t, const char *method, int field)
 {
     tyn_settings *s = NULL;
     assert_int_equal(tyn_settings_create(&s), TYN_OK);
-    if (settings) {
-        assert_int_equal(tyn_settings_set(s, "lattice.cells", settings, NULL), TYN_OK);
-    }
+    assert_int_equal(tyn_settings_set(s, "lattice.cells", field == 2 ? "256" : "64", NULL), TYN_OK);
     tyn_offline *off = NULL;
     assert_int_equal(
         tyn_offline_create(t->dev, tyn_offline_params(.method = method, .settings = s), &off),
         TYN_OK);
+    tyn_settings_destroy(&s);
+    return off;
+}
+
+// All experiments of all fields.
+static void run(gpu_test *t, const char *method, uint32_t samples, double bound)
+{
+    tyn_offline *off = NULL;
     cloud c = {0};
     bool good = true;
     int field = 0;
@@ -344,6 +347,8 @@ static void run(gpu_test *t, const char *method, const char *settings, uint32_t 
         if (e->field != field) {
             free(c.extinction);
             field = e->field;
+            tyn_offline_destroy(&off);
+            off = open_method(t, method, field);
             if (!open_field(field, &c)) {
                 c.extinction = NULL;
                 continue;
@@ -367,18 +372,17 @@ static void run(gpu_test *t, const char *method, const char *settings, uint32_t 
     }
     free(c.extinction);
     tyn_offline_destroy(&off);
-    tyn_settings_destroy(&s);
     assert_true(good);
 }
 
 static void by_path(void **state)
 {
-    run(*state, "path", NULL, path_effort(110), 0.005);
+    run(*state, "path", path_effort(110), 0.005);
 }
 
 static void by_pop(void **state)
 {
-    run(*state, "pop", "64", 0, 0.05);
+    run(*state, "pop", 0, 0.05);
 }
 
 int main(void)
