@@ -17,7 +17,7 @@ uvec2 lattice_lamps_of(uint group)
 float lattice_lamps_cosine(float radius, float r)
 {
     // Seen under an angle, a disc does not shine along one direction.
-    return 1.0 - 0.25 * radius * radius / max(r * r, radius * radius + 1e-20);
+    return 1.0 - 0.25 * radius * radius / max(r * r, radius * radius + 1e-36);
 }
 
 // Pieces along each side that a cell is cut into for a VPL so many cells away. VPLs are smooth: each stands for

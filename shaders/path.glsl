@@ -83,7 +83,7 @@ lamp_view lamp_see(vec3 lamp, vec3 origin, vec3 direction, vec2 span)
     // Any height gives an unbiased sampler. A ray through a lamp beyond its ends gets one that leaves the
     // two angles apart in floats.
     float beyond = max(v.span.x - v.closest, v.closest - v.span.y);
-    v.height = max(length(lamp - origin - v.closest * direction), max(1e-6, 1e-3 * beyond));
+    v.height = max(length(lamp - origin - v.closest * direction), max(1e-6 * length(medium.extent), 1e-3 * beyond));
     v.angle0 = atan((v.span.x - v.closest) / v.height);
     v.angle1 = max(atan((v.span.y - v.closest) / v.height), v.angle0 + 1e-7);
     return v;
@@ -117,7 +117,7 @@ uint lamp_choose(vec3 origin, vec3 direction, float u, out float probability)
         }
         vec3 to = light.position - origin;
         float height = length(to - max(dot(to, direction), 0.0) * direction);
-        float weight = max3(light.color) / max(height, 1e-6);
+        float weight = max3(light.color) / max(height, 1e-6 * length(medium.extent));
         total += weight;
         float share = weight / max(total, 1e-30);
         if (u < share) {

@@ -48,7 +48,7 @@ light_sample light_towards(uint index, vec3 p)
         return light_sample(-light.direction, 1e30, light.color);
     }
     vec3 to = light.position - p;
-    float distance2 = max(dot(to, to), 1e-20);
+    float distance2 = max(dot(to, to), 1e-34);
     float distance = sqrt(distance2);
     vec3 direction = to / distance;
     float falloff = light.kind == TYN_LIGHT_KIND_SPOT ? spot_falloff(light, -direction) : 1.0;

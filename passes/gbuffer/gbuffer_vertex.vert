@@ -32,9 +32,9 @@ void main()
         // The farthest corner of the scene's box.
         vec3 forward = turn(surfaces.to_world, camera.forward);
         vec3 middle = shift(surfaces.from_world, 0.5 * (surfaces.lo + surfaces.hi)) - camera.origin;
-        float farthest = dot(middle, camera.forward) + 0.501 * dot(size, abs(forward)) + 1e-6;
+        float farthest = dot(middle, camera.forward) + 0.501 * dot(size, abs(forward)) + 1e-6 * length(size);
         across -= camera.shift;
-        gl_Position = vec4(across.x, -across.y, 1.0 - z / max(farthest, 1e-6), 1.0);
+        gl_Position = vec4(across.x, -across.y, 1.0 - z / max(farthest, 1e-6 * length(size)), 1.0);
     } else {
         across -= z * camera.shift;
         gl_Position = vec4(across.x, -across.y, 1e-6 * length(size), z);

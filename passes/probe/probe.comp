@@ -235,7 +235,7 @@ void main()
     for (uint n = 0; n < lights; n++) {
         vec3 away = p - radials[n].light.position;
         float r = length(away), radius = radials[n].light.radius;
-        float share = radial_share(n, away, r) / max(r * r, max(radius * radius, 1e-12));
+        float share = radial_share(n, away, r) / max(r * r, max(radius * radius, 1e-13 * dot(medium.extent, medium.extent)));
         if (share <= 0.0) {
             continue;
         }

@@ -211,7 +211,7 @@ vec3 shade_lamp(shade_point p, uint row)
     vec4 position = shade_entry(row, SHADE_POSITION), axis = shade_entry(row, SHADE_AXIS);
     vec4 intensity = shade_entry(row, SHADE_INTENSITY), cone = shade_entry(row, SHADE_CONE);
     vec3 way = position.xyz - p.position;
-    float rr = max(dot(way, way), 1e-12);
+    float rr = max(dot(way, way), 1e-13 * dot(medium.extent, medium.extent));
     vec3 towards = way * inversesqrt(rr);
     float share = shade_cosine(p, towards) *
                   radial_lobe(uint(axis.w), axis.xyz, intensity.w, cone.w, -towards);

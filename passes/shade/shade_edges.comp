@@ -28,7 +28,7 @@ vec3 light_of_vpls(ivec2 pixel, shade_point p)
         vec4 place = texelFetch(place_tex, at, 0);
         vec3 normal = gbuffer_unfold(vec2(place.w, texelFetch(part_tex, at, 0).w));
         vec3 d = place.xyz - p.position;
-        float like = dot(normal, p.normal) - abs(dot(d, p.normal)) * inversesqrt(dot(d, d) + 1e-20);
+        float like = dot(normal, p.normal) - abs(dot(d, p.normal)) * inversesqrt(dot(d, d) + 1e-36);
         if (found.a > 0.0 && like > best) {
             best = like;
             light = found.rgb;

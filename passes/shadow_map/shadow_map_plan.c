@@ -103,9 +103,10 @@ static frame fit_sun(const float direction[3], double margin, const struct surfa
         }
         range(uv[0], s, &lo[0], &hi[0]);
         range(uv[1], s, &lo[1], &hi[1]);
+        const double least_side = 1e-6 * fmax(hi[0] - lo[0], hi[1] - lo[1]) + 1e-30;
         double area = (hi[0] - lo[0]) * (hi[1] - lo[1]);
         for (int k = 0; area < least && k < 2; k++) {
-            double half = fmax(0.5 * (hi[k] - lo[k]), 1e-6) * margin;
+            double half = fmax(0.5 * (hi[k] - lo[k]), least_side) * margin;
             for (int c = 0; c < 3; c++) {
                 best.rows[k][c] = uv[k][c] / half;
             }
@@ -115,7 +116,11 @@ static frame fit_sun(const float direction[3], double margin, const struct surfa
     }
     double lo, hi;
     range(axis, s, &lo, &hi);
-    double slack = 1e-3 * (hi - lo) + 1e-6; // the farthest surface is not at the depth of none
+    const double sizes = fabs((double)s->hi[0] - (double)s->lo[0]) +
+                         fabs((double)s->hi[1] - (double)s->lo[1]) +
+                         fabs((double)s->hi[2] - (double)s->lo[2]);
+    double slack =
+        1e-3 * (hi - lo) + 1e-6 * sizes + 1e-30; // the farthest surface is not at the depth of none
     lo -= slack, hi += slack;
     for (int c = 0; c < 3; c++) {
         best.rows[2][c] = -axis[c] / (hi - lo);
@@ -175,7 +180,7 @@ static void plan_lamp(tyn_shadow_map_params *p, struct shadow_light *l,
         diagonal += ((double)s->hi[c] - (double)s->lo[c]) * ((double)s->hi[c] - (double)s->lo[c]);
     }
     // Depths are as fine however near this is: as near as vertices are exact.
-    l->near = (float)fmax(1e-7 * sqrt(diagonal), 1e-12);
+    l->near = (float)fmax(1e-7 * sqrt(diagonal), 1e-30);
     l->scale = (float)((side - 4) / side / tangent);
     for (int face = 0; face < (cube ? 6 : 1); face++) {
         // Of a cube the next two axes are u and v.

@@ -165,7 +165,7 @@ vec3 part_of(uint block, uint element, vpl_stratum stratum)
 float same_piece(vec3 offset, vec3 normal, vec3 centre_normal, float area)
 {
     float dd = dot(offset, offset);
-    float off = abs(dot(centre_normal, offset)) * inversesqrt(max(dd, 1e-20));
+    float off = abs(dot(centre_normal, offset)) * inversesqrt(max(dd, 1e-36));
     return smoothstep(0.5, 0.8, dot(normal, centre_normal)) * (1.0 - smoothstep(0.15, 0.35, off)) *
            (1.0 - smoothstep(6.0 * area, 12.0 * area, dd));
 }
