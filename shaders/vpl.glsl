@@ -15,10 +15,9 @@ float vpl_irradiance(radial_light light, vec3 p, vec3 n)
 {
     vec3 away = p - light.position;
     float h = dot(away, light.axis), towards = -dot(away, n);
-    // The other side of the VPL's own surface is in its plane, give or take rounding.
-    if (h <= 1e-3 * light.radius || towards <= 0.0) {
-        return 0.0;
-    }
+    // The other side of the VPL's own surface is in its plane, give or take rounding. No early return: lavapipe would
+    // go on anyway, under a mask.
+    bool lit = h > 1e-3 * light.radius && towards > 0.0;
     // In units of the distance, whose fourth power may be too small or too large a number.
     float per_area = 1.0 / max(dot(away, away), 1e-36), RR = light.radius * light.radius * per_area, d = 1.0 - RR;
     h *= sqrt(per_area);
@@ -27,7 +26,7 @@ float vpl_irradiance(radial_light light, vec3 p, vec3 n)
     // s + d without cancellation: (s + d) (s - d) = 4 R^2 h^2.
     float sum = d >= 0.0 ? s + d : 4.0 * RR * h * h / max(s - d, 1e-30);
     float most = (0.5 - 0.5 * dot(n, light.axis)) / max(RR, 1e-20);
-    return min(2.0 * h * towards / max(s * sum, 1e-30), most) * per_area;
+    return lit ? min(2.0 * h * towards / max(s * sum, 1e-30), most) * per_area : 0.0;
 }
 
 #endif

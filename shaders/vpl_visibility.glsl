@@ -5,6 +5,7 @@
 // the square. Texels lie on its edges too, so that nothing beyond them is needed.
 #ifndef TYN_VPL_VISIBILITY_GLSL
 #define TYN_VPL_VISIBILITY_GLSL
+#extension GL_EXT_control_flow_attributes : require
 
 #define VPL_MAPS_IN_A_ROW 16
 
@@ -69,35 +70,32 @@ float vpl_map_visibility(vpl_map map, vec3 away, float r)
     return map.last > 0.0 ? dot(shares, vec4(greaterThanEqual(stored, vec4(r)))) : 1.0;
 }
 
-// Share of the light of VPL `vpl`, whose axis is `axis`, that goes the way `away` and is not stopped by
-// surfaces: of the four rays around that way, those that reach beyond the point. `normal`: of the surface that
-// the point is on, whose plane the rays are to reach; (0, 0, 0) for a point in the medium.
-float vpl_visibility(uint vpl, vec3 axis, vec3 away, vec3 normal)
+// Share of a VPL's light that goes the way `away` and is not stopped by surfaces: of the four rays around that way,
+// those that reach beyond the point. `normal`: of the surface that the point is on, whose plane the rays are to
+// reach; (0, 0, 0) for a point in the medium.
+float vpl_map_visibility_surface(vpl_map map, vec3 away, vec3 normal)
 {
-    ivec2 size = textureSize(vpl_distances, 0);
-    int side = size.x / VPL_MAPS_IN_A_ROW;
-    if (side < 2) {
-        return 1.0; // no maps
-    }
-    mat3 frame = vpl_frame(axis);
-    vec3 d = away * frame, n = normal * frame; // multiplied from the left: into the frame
-    vec2 x = vpl_map_place(d) * float(side - 1);
-    ivec2 first = min(ivec2(x), ivec2(side - 2)), corner = vpl_map_corner(vpl, side);
-    vec2 w = x - vec2(first);
-    float r = length(d), plane = dot(n, d);
-    vec4 reach = vec4(r);
-    for (int i = 0; i < 4 && plane != 0.0; i++) {
-        ivec2 at = first + ivec2(i & 1, i >> 1);
-        float facing = dot(n, normalize(vpl_map_direction(vec2(at) / float(side - 1))));
+    vec3 d = away * map.frame, n = normal * map.frame; // multiplied from the left: into the frame
+    vec2 x = vpl_map_place(d) * map.last, first = min(floor(x), map.last - 1.0), w = x - first;
+    float r = length(d), plane = dot(n, d), least = 0.25 * plane * plane / max(r, 1e-20);
+    vec4 reach;
+    [[unroll]] for (int i = 0; i < 4; i++) {
+        float facing = dot(n, normalize(vpl_map_direction((first + vec2(i & 1, i >> 1)) / max(map.last, 1.0))));
         // Beyond the plane's horizon, or far off: as far as the point is.
-        reach[i] = facing * plane > 0.25 * abs(plane * plane) / r ? min(plane / facing, 4.0 * r) : r;
+        reach[i] = facing * plane > least ? min(plane / facing, 4.0 * r) : r;
     }
     // One gather is cheaper than four fetches; its order is (0, 1), (1, 1), (1, 0), (0, 0).
-    vec4 stored = textureGather(vpl_distances, (vec2(corner + first) + 1.0) / vec2(size)).wzxy;
+    vec4 stored = textureGather(vpl_distances, (map.corner + first + 1.0) * map.texel).wzxy;
     vec4 shares = vec4(1.0 - w.x, w.x, 1.0 - w.x, w.x) * vec4(1.0 - w.yy, w.yy);
     // A surface is not in its own shadow; cells behind a wall, however close, are.
     float slack = plane != 0.0 ? 0.95 : 1.0;
-    return dot(shares, vec4(greaterThanEqual(stored, slack * reach)));
+    return map.last > 0.0 ? dot(shares, vec4(greaterThanEqual(stored, slack * reach))) : 1.0;
+}
+
+// The same of VPL `vpl`, whose axis is `axis`.
+float vpl_visibility(uint vpl, vec3 axis, vec3 away, vec3 normal)
+{
+    return vpl_map_visibility_surface(vpl_map_of(vpl, axis), away, normal);
 }
 #endif
 

@@ -255,7 +255,7 @@ static void record(tyn_recorder *r, const void *data)
     if (vpls) {
         d.kernel = VPLS;
         d.cells =
-            (tyn_extent){(pixels.x + side - 1) / side, (pixels.y + side - 1) / side, side * side};
+            (tyn_extent){(pixels.x + side - 1) / side, (pixels.y + side * SHADE_MANY - 1) / (side * SHADE_MANY), side * side};
         tyn_rec_dispatch(r, &d);
         d.kernel = GATHER;
         d.cells = pixels;

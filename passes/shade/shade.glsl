@@ -187,16 +187,20 @@ vec3 shade_suns(shade_point p, vec4 around[TYN_BEAM_MAX_SUNS], bool spread)
 
 // ---- local lights ----
 
-// What is left of a local light at a point that may be outside the medium's box.
-vec3 shade_through_radial(uint row, vec3 o, vec3 p)
+// The grid of the light in a row of the table.
+radial_grid shade_grid(uint row, vec3 o)
 {
     radial_light light = radial_light(o, TYN_RADIAL_COSINE, vec3(1.0), 0.0, vec3(0.0), 0.0, 0.0, 0u);
     vec4 x = shade_entry(row, SHADE_TO_MAP), y = shade_entry(row, SHADE_TO_MAP + 1);
     vec4 z = shade_entry(row, SHADE_TO_MAP + 2);
-    radial_grid grid = radial_grid(light, vec3[3](x.xyz, y.xyz, z.xyz), shade_entry(row, SHADE_BASE).xyz,
-                                   shade_entry(row, SHADE_SCALE).xyz, uvec3(0u), 0u, 0u, x.w, y.w, 0.0,
-                                   uint(z.w));
-    vec3 away = p - o;
+    return radial_grid(light, vec3[3](x.xyz, y.xyz, z.xyz), shade_entry(row, SHADE_BASE).xyz,
+                       shade_entry(row, SHADE_SCALE).xyz, uvec3(0u), 0u, 0u, x.w, y.w, 0.0, uint(z.w));
+}
+
+// What is left of a local light at a point that may be outside the medium's box.
+vec3 shade_through_radial(radial_grid grid, vec3 p)
+{
+    vec3 o = grid.light.position, away = p - o;
     float r = length(away);
     vec3 d = away / max(r, 1e-20);
     vec2 span = ray_box(o, ray_inverse(d), vec3(0.0), medium.extent);
@@ -221,7 +225,7 @@ vec3 shade_lamp(shade_point p, uint row)
             irradiance *= shadow_visibility_surface_of(shade_shadow(row), p.position, p.facet);
         }
         if (shade_has(SHADE_MEDIUM)) {
-            irradiance *= shade_through_radial(row, position.xyz, p.position);
+            irradiance *= shade_through_radial(shade_grid(row, position.xyz), p.position);
         }
     }
     return irradiance;
@@ -236,26 +240,36 @@ vec3 shade_lamps(shade_point p)
     return sum;
 }
 
-// Of VPLs first, first + stride, ...
-vec3 shade_vpls(shade_point p, uint first, uint stride)
+// Of VPLs first, first + stride, ..., on SHADE_MANY points: a light is read once for all of them. Nothing is left out
+// where a light does not shine: lavapipe would go through it anyway, under a mask.
+vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], uint first, uint stride)
 {
-    vec3 sum = vec3(0.0);
+    vec3 sum[SHADE_MANY];
+    [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
+        sum[i] = vec3(0.0);
+    }
     uint count = min(vpl_count, uint(TYN_RADIAL_VPLS_MAX));
     for (uint k = first; k < count; k += stride) {
         uint row = uint(SHADE_ROW_VPLS) + k;
         vec4 position = shade_entry(row, SHADE_POSITION);
-        vec3 axis = shade_entry(row, SHADE_AXIS).xyz;
+        vec3 axis = shade_entry(row, SHADE_AXIS).xyz, intensity = shade_entry(row, SHADE_INTENSITY).rgb;
         radial_light light =
             radial_light(position.xyz, TYN_RADIAL_COSINE, vec3(1.0), 0.0, axis, 0.0, position.w, 0u);
-        float share = vpl_irradiance(light, p.position, p.normal);
-        share = dot(p.facet, light.position - p.position) > 0.0 ? share : 0.0;
-        for (bool once = share > 0.0; once; once = false) {
-            vec3 irradiance = shade_entry(row, SHADE_INTENSITY).rgb * share;
-            irradiance *= vpl_visibility(k, axis, p.position - light.position, p.facet);
+        vpl_map map = vpl_map_of(k, axis);
+        radial_grid grid;
+        if (shade_has(SHADE_MEDIUM)) {
+            grid = shade_grid(row, light.position);
+        }
+        [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
+            vec3 away = p[i].position - light.position;
+            float share = vpl_irradiance(light, p[i].position, p[i].normal);
+            share = dot(p[i].facet, away) < 0.0 ? share : 0.0;
+            share *= vpl_map_visibility_surface(map, away, p[i].facet);
+            vec3 irradiance = intensity * share;
             if (shade_has(SHADE_MEDIUM)) {
-                irradiance *= shade_through_radial(row, light.position, p.position);
+                irradiance *= shade_through_radial(grid, p[i].position);
             }
-            sum += irradiance;
+            sum[i] += irradiance;
         }
     }
     return sum;

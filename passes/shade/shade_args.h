@@ -21,6 +21,7 @@
 #define SHADE_SMALL 64 // pixels along the shorter side
 #define SHADE_REACH 2  // pixels around one that a gather looks at
 #define SHADE_MOST 8   // VPLs that a pixel takes in any case
+#define SHADE_MANY 4   // pixels that a thread takes VPLs at
 #define SHADE_NONE 4.0 // in place of a normal: no surface
 
 struct shade_args {

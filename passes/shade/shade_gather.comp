@@ -52,7 +52,8 @@ void main()
     vec3 all = sum.rgb * (float(shade_side * shade_side) / max(sum.w, 1e-6));
     for (bool alone = sum.w < float(shade_side); alone; alone = false) { // a loop, as most need not go in
         shade_point p = shade_point(place.xyz, normal, normal);
-        all = shade_vpls(p, 0u, 1u);
+        shade_point same[SHADE_MANY] = shade_point[](p, p, p, p); // the compiler sees that they are
+        all = shade_vpls(same, 0u, 1u)[0];
     }
     imageStore(indirect_image, pixel, vec4(all, 1.0));
 }
