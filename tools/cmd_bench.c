@@ -1,6 +1,7 @@
 // cmd_bench.c -- `tyndall bench`: error against time, every method of a suite.
 #include "bench/bands.h"
 #include "bench/html.h"
+#include "bench/library.h"
 #include "bench/print.h"
 #include "bench/record.h"
 #include "bench/report.h"
@@ -184,6 +185,7 @@ static int open_machine(app *a, const bench_args *args, const bench_suite *suite
         on->name = tyn_device_name(m->device);
         on->driver = tyn_device_driver(m->device);
         on->type = device_type(a, on);
+        on->library = library_hash();
         code = suite->ceilings ? ceilings_measure(a, m->device, &on->ceilings) : EXIT_DONE;
     }
     return code;

@@ -34,7 +34,7 @@ near "$(get report/report.json ceilings.fma_gflops)" 5000 4999.9 "bench: ceiling
 [ -s report/pictures/cube/pop-cells-16.exr ] && [ -s report/report.html ] || fail "bench: no picture, no page"
 # a record can be cited: it says what was measured, with what, on what
 record=report/records/$(get report/report.json scenes.0.runs.1.key).json
-for key in tyndall date device.driver scene.hash reference.seed run/settings/lattice.cells run/all_settings/lattice.cells run.errors.0.error; do
+for key in tyndall library date device.driver scene.hash reference.seed run/settings/lattice.cells run/all_settings/lattice.cells run.errors.0.error; do
     get "$record" "$key" >/dev/null
 done
 # a second time nothing is measured: the figures are those of the records, the one that is not there is made

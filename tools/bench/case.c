@@ -29,11 +29,6 @@ int bench_key(bench_case *c, const bench_run *run, char key[17])
     uint64_t hash = hash_text(text, c->hash);
     free(text);
     cJSON_Delete(settings);
-    for (const tyn_pass_desc *const *pass = m.info.passes; *pass; pass++) {
-        for (uint32_t k = 0; k < (*pass)->num_kernels; k++) {
-            hash = text_hash((*pass)->kernels[k].spirv, (*pass)->kernels[k].spirv_size, hash);
-        }
-    }
     hash = hash_text(m.info.name, hash);
     hash = hash_text(run->name, hash);
     hash = hash_text(run->group, hash);
@@ -42,6 +37,7 @@ int bench_key(bench_case *c, const bench_run *run, char key[17])
     hash = hash_text(tyn_version_string(), hash);
     hash = hash_text(c->machine->name, hash);
     hash = hash_text(c->machine->driver, hash);
+    hash = text_hash(&c->machine->library, sizeof c->machine->library, hash);
     const uint32_t numbers[] = {c->suite->frames, c->suite->block, BENCH_RECORD_VERSION};
     hash = text_hash(numbers, sizeof numbers, hash);
     hash = text_hash(&c->suite->timing_seconds, sizeof c->suite->timing_seconds, hash);

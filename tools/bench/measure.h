@@ -8,6 +8,7 @@
 typedef struct bench_machine {
     tyn_device *device;
     const char *name, *driver, *type; // as in <tyndall/device.h>
+    uint64_t library;                 // library_hash
     ceilings ceilings;
 } bench_machine;
 

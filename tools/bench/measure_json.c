@@ -153,6 +153,7 @@ static cJSON *make_record(const bench_case *c, const char *key, cJSON *run)
     cJSON_AddNumberToObject(record, "version", BENCH_RECORD_VERSION);
     cJSON_AddStringToObject(record, "key", key);
     cJSON_AddStringToObject(record, "tyndall", tyn_version_string());
+    json_add_hash(record, "library", c->machine->library);
     json_add_date(record);
     cJSON_AddStringToObject(record, "suite", c->suite->name);
     cJSON *device = cJSON_AddObjectToObject(record, "device");
