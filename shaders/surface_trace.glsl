@@ -154,8 +154,7 @@ bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
             first = turned ? right.first : left.first;
             count = turned ? right.count : left.count;
             more = goes_on || depth > 0;
-            // A loop instead of a condition: what nobody enters costs nothing.
-            for (bool back = !goes_on && more; back; back = false) {
+            if (!goes_on && more) { // no loop of one turn: turns are counted (docs/writing-a-pass.md, "Shaders")
                 uint at = stack[--depth];
                 first = nodes[2u * at].w;
                 count = nodes[2u * at + 1u].w;

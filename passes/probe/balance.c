@@ -92,10 +92,10 @@ static const tyn_kernel kernels[] = {
      1},
 };
 
-// Suns, and as many lamps and VPLs as there may be.
+// Parts of suns, and as many lamps and VPLs as there may be.
 static uint32_t num_followed(const tyn_balance_params *p)
 {
-    return p->num_suns + TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX;
+    return p->num_suns * BALANCE_SUN_PARTS + TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX;
 }
 
 static tyn_result declare(tyn_builder *b, const void *params)

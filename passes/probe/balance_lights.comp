@@ -139,13 +139,15 @@ vec2 place_in(uint k, uint n, inout rng_state rng)
     return (vec2(k % n, k / n) + rng_vec2(rng_next(rng).xy)) / float(n);
 }
 
-void follow_sun(uint n)
+// The rays of its part: a CPU device ends all loops of a thread after 65535 turns in total, without a word.
+void follow_sun(uint n, uint part)
 {
     vec3 d = lights[n].direction, size = args.hi - args.lo;
     for (uint axis = 0u; axis < 3u; axis++) {
         uint u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
         float across = size[u] * size[v] * abs(d[axis]) / float(SUN_RAYS * SUN_RAYS);
-        for (uint k = gl_LocalInvocationIndex; across > 0.0 && k < SUN_RAYS * SUN_RAYS; k += BALANCE_GROUP) {
+        uint first = part * BALANCE_GROUP + gl_LocalInvocationIndex;
+        for (uint k = first; across > 0.0 && k < SUN_RAYS * SUN_RAYS; k += BALANCE_SUN_PARTS * BALANCE_GROUP) {
             rng_state rng = rng_start(n, k, axis);
             vec2 at = place_in(k, SUN_RAYS, rng);
             vec3 p = args.lo;
@@ -199,16 +201,17 @@ vec3 total_of(vec3 v)
 
 void main()
 {
-    uint light = gl_WorkGroupID.x;
-    bool sun = light < args.num_suns, shines = sun || (args.locals != 0u && light - args.num_suns < radial_count);
+    uint sun_groups = args.num_suns * BALANCE_SUN_PARTS, group = gl_WorkGroupID.x;
+    bool sun = group < sun_groups, shines = sun || (args.locals != 0u && group - sun_groups < radial_count);
     vec3 given = vec3(0.0);
     bool lamp = false;
     if (sun) {
+        uint light = group / BALANCE_SUN_PARTS, part = group % BALANCE_SUN_PARTS;
         vec3 size = args.hi - args.lo;
-        given = lights[light].color * dot(size.yzx * size.zxy, abs(lights[light].direction));
-        follow_sun(light);
+        given = lights[light].color * dot(size.yzx * size.zxy, abs(lights[light].direction)) / float(BALANCE_SUN_PARTS);
+        follow_sun(light, part);
     } else if (shines) {
-        uint n = light - args.num_suns;
+        uint n = group - sun_groups;
         radial_light l = radials[n].light;
         lamp = n < radial_num_lamps;
         given = l.intensity * radial_lobe_integral(l.kind, l.cos_inner, l.cos_outer);
@@ -216,6 +219,6 @@ void main()
     }
     vec3 all_kept = total_of(kept), all_escaped = total_of(escaped);
     if (gl_LocalInvocationIndex == 0u) {
-        found[light] = balance_light(sun ? given : vec3(0.0), lamp ? given : vec3(0.0), all_kept, all_escaped);
+        found[group] = balance_light(sun ? given : vec3(0.0), lamp ? given : vec3(0.0), all_kept, all_escaped);
     }
 }

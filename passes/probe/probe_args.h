@@ -30,7 +30,7 @@ struct balance_args {
     tyn_uint num_leaks;  // per channel
     tyn_uint num_groups; // of local lights
     tyn_uint emitters;     // 1: there are surfaces that emit
-    tyn_uint num_followed; // lights in balance_lights; 0: there is none
+    tyn_uint num_followed; // groups of balance_lights; 0: there are none
 };
 
 struct balance_lights_args {
@@ -41,7 +41,7 @@ struct balance_lights_args {
 };
 TYN_ASSERT_SIZE(balance_lights_args, 32);
 
-// Of one sun, lamp or VPL: W.
+// Of one part of a sun, of one lamp or VPL: W.
 struct balance_light {
     tyn_vec3 entering;
     tyn_vec3 emitted;
@@ -51,5 +51,6 @@ struct balance_light {
 TYN_ASSERT_SIZE(balance_light, 48);
 
 #define BALANCE_GROUP 256
+#define BALANCE_SUN_PARTS 16 // groups that share the rays of a sun
 
 #endif
