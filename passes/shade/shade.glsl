@@ -209,8 +209,85 @@ vec3 shade_through_radial(radial_grid grid, vec3 p)
                                      : vec3(1.0);
 }
 
+// What one point stands for: as much of its plane as a part of the picture shows.
+struct shade_footprint {
+    vec4 part;   // from xy to zw, pixels
+    float width; // at most, m
+};
+const float SHADE_NEAR = 8.0; // widths; at lamps farther away the point's irradiance is the mean, within half a per cent
+
+shade_footprint shade_footprint_of(shade_point p, vec4 part)
+{
+    bool orthographic = camera.orthographic != 0u;
+    vec3 ray = p.position - camera.origin;
+    vec2 size = 2.0 * vec2(camera.half_width, camera.half_height) / vec2(camera.size) * (part.zw - part.xy);
+    float slope = dot(orthographic ? camera.forward : normalize(ray), p.facet);
+    float wide = length(size) * (orthographic ? 1.0 : dot(ray, camera.forward));
+    return shade_footprint(part, wide / max(abs(slope), 1e-3));
+}
+
+// Where the plane of p is seen in the picture; what is beyond its horizon, or nearly, is drawn nearer.
+vec3 shade_seen(shade_point p, vec2 pixel)
+{
+    camera_ray ray = camera_ray_through(camera, pixel);
+    vec3 way = p.position - ray.origin;
+    float along = dot(way, ray.direction), height = min(dot(way, p.facet), -1e-6 * along);
+    float slope = min(dot(ray.direction, p.facet), 0.25 * height / along);
+    vec3 off = height / slope * ray.direction - way;
+    return p.position + off - dot(off, p.facet) * p.facet;
+}
+
+// Where the picture shows q.
+vec2 shade_shown(vec3 q)
+{
+    vec3 way = q - camera.origin;
+    float z = camera.orthographic != 0u ? 1.0 : max(dot(way, camera.forward), 1e-6 * length(way));
+    vec2 s = vec2(dot(way, camera.right) / camera.half_width, dot(way, camera.up) / camera.half_height) / z - camera.shift;
+    return (0.5 + 0.5 * vec2(s.x, -s.y)) * vec2(camera.size);
+}
+
+// Solid angle of a triangle whose plane is at the height h from 0; twice_area: that of the triangle (Van Oosterom and
+// Strackee, "The solid angle of a plane triangle", IEEE Trans. Biomed. Eng. 30(2), 1983; their triple product is
+// h * twice_area, without cancellation).
+float shade_triangle(vec3 a, vec3 b, vec3 c, float h, out float twice_area)
+{
+    float la = length(a), lb = length(b), lc = length(c);
+    twice_area = length(cross(b - a, c - a));
+    return 2.0 * atan(h * twice_area, la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+}
+
+// Mean irradiance of a lamp, per intensity, over the footprint of p. What a lamp sends through a part of a plane is its
+// intensity times the solid angle under which it sees that part: exact, however near it is. Of a
+// spot's light no more arrives than it sends.
+float shade_lamp_near(shade_point p, shade_footprint foot, uint row, vec3 position)
+{
+    vec4 axis = shade_entry(row, SHADE_AXIS);
+    float cos_inner = shade_entry(row, SHADE_INTENSITY).w, cos_outer = shade_entry(row, SHADE_CONE).w;
+    float unit = 1.0 / foot.width, h = dot(position - p.position, p.facet);
+    vec3 a = (shade_seen(p, foot.part.xy) - position) * unit, b = (shade_seen(p, foot.part.zy) - position) * unit;
+    vec3 c = (shade_seen(p, foot.part.zw) - position) * unit, d = (shade_seen(p, foot.part.xw) - position) * unit;
+    vec2 twice;
+    float angle = shade_triangle(a, b, c, h * unit, twice.x) + shade_triangle(a, c, d, h * unit, twice.y);
+    float density = 2.0 / max((twice.x + twice.y) * foot.width * foot.width, 1e-37); // of the picture, in parts by m^2
+    // The place below the lamp, or next to it, has most of the light where the lamp is near.
+    vec2 shown = clamp(shade_shown(position - h * p.facet), foot.part.xy, foot.part.zw);
+    vec3 most = shade_seen(p, shown);
+    float nearness = 1.0 / (1.0 + 3.0 * unit * distance(position, most));
+    if (camera.orthographic == 0u) { // what is nearer to the eye takes more of the picture
+        vec2 size = 2.0 * vec2(camera.half_width, camera.half_height) / vec2(camera.size) * (foot.part.zw - foot.part.xy);
+        float z = dot(most - camera.origin, camera.forward);
+        float there = abs(dot(most - camera.origin, p.facet)) / (size.x * size.y) / z / z / z;
+        density = mix(density, there, nearness);
+    }
+    vec3 towards = normalize(position - mix(p.position, most, nearness));
+    float straight = max(dot(towards, p.facet), 1e-6);
+    float lobe = angle * radial_lobe(uint(axis.w), axis.xyz, cos_inner, cos_outer, -towards);
+    lobe = min(lobe, radial_lobe_integral(uint(axis.w), cos_inner, cos_outer));
+    return lobe * density * clamp(dot(p.normal, towards) / straight, 0.0, 2.0);
+}
+
 // Lamp `row` of the table.
-vec3 shade_lamp(shade_point p, uint row)
+vec3 shade_lamp(shade_point p, shade_footprint foot, uint row)
 {
     vec4 position = shade_entry(row, SHADE_POSITION), axis = shade_entry(row, SHADE_AXIS);
     vec4 intensity = shade_entry(row, SHADE_INTENSITY), cone = shade_entry(row, SHADE_CONE);
@@ -218,8 +295,13 @@ vec3 shade_lamp(shade_point p, uint row)
     float rr = max(dot(way, way), 1e-13 * dot(medium.extent, medium.extent));
     vec3 towards = way * inversesqrt(rr);
     float share = shade_cosine(p, towards) *
-                  radial_lobe(uint(axis.w), axis.xyz, intensity.w, cone.w, -towards);
-    vec3 irradiance = intensity.rgb * (share / rr);
+                  radial_lobe(uint(axis.w), axis.xyz, intensity.w, cone.w, -towards) / rr;
+    float reach = SHADE_NEAR * foot.width;
+    // A loop that nobody enters costs nothing; an `if` does.
+    for (bool once = rr < reach * reach && dot(way, p.facet) > 0.0; once; once = false) {
+        share = shade_lamp_near(p, foot, row, position.xyz);
+    }
+    vec3 irradiance = intensity.rgb * share;
     for (bool once = share > 0.0; once; once = false) {
         if (shade_has(SHADE_SHADOWS)) {
             irradiance *= shadow_visibility_surface_of(shade_shadow(row), p.position, p.facet);
@@ -231,11 +313,11 @@ vec3 shade_lamp(shade_point p, uint row)
     return irradiance;
 }
 
-vec3 shade_lamps(shade_point p)
+vec3 shade_lamps(shade_point p, shade_footprint foot)
 {
     vec3 sum = vec3(0.0);
     for (uint row = 0u; row < args.num_lamps; row++) {
-        sum += shade_lamp(p, row);
+        sum += shade_lamp(p, foot, row);
     }
     return sum;
 }

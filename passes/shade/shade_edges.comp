@@ -66,6 +66,17 @@ shade_point piece_of(ivec2 corner, uint left, out vec3 albedo, out vec3 emission
     return shade_point(at0 + off, normalize(normal), first.facet);
 }
 
+// The part of the picture that the samples `members` of a pixel fill, or the rectangle around them.
+vec4 part_of(ivec2 corner, uint members)
+{
+    vec4 part = vec4(1e9, 1e9, -1e9, -1e9);
+    for (uint some = members; some != 0u; some &= some - 1u) {
+        vec2 texel = vec2(shade_texel(corner, findLSB(some)));
+        part = vec4(min(part.xy, texel), max(part.zw, texel + 1.0));
+    }
+    return part / float(shade_samples);
+}
+
 void main()
 {
     uint n = gbuffer_edge();
@@ -87,7 +98,7 @@ void main()
         vec3 albedo, emission;
         uint members;
         shade_point p = piece_of(corner, left, albedo, emission, members);
-        vec3 irradiance = irradiance_at(p);
+        vec3 irradiance = irradiance_at(p, part_of(corner, members));
         if (shade_has(SHADE_VPLS)) {
             irradiance += light_of_vpls(pixel, p);
         }

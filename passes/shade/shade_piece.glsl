@@ -80,12 +80,14 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
     return irradiance;
 }
 
-vec3 irradiance_at(shade_point p)
+// `part` of the picture that p stands for: from xy to zw, pixels.
+vec3 irradiance_at(shade_point p, vec4 part)
 {
     vec4 around[TYN_BEAM_MAX_SUNS];
     bool inside;
     vec3 lattice = light_of_lattice(p, around, inside);
-    return shade_suns(p, around, inside && shade_has(SHADE_SPREAD)) + shade_lamps(p) + lattice;
+    return shade_suns(p, around, inside && shade_has(SHADE_SPREAD)) + shade_lamps(p, shade_footprint_of(p, part)) +
+           lattice;
 }
 
 #endif

@@ -31,7 +31,7 @@ void main()
         }
         off = (off - dot(off, seen.facet) * seen.facet) / float(shade_samples * shade_samples);
         shade_point p = shade_point(at + off, seen.normal, seen.facet);
-        vec3 irradiance = irradiance_at(p);
+        vec3 irradiance = irradiance_at(p, vec4(pixel, pixel + 1));
         if (shade_has(SHADE_VPLS)) {
             irradiance += texelFetch(indirect_tex, pixel, 0).rgb;
         }
