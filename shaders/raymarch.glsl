@@ -307,7 +307,7 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, fl
     return light * (k_tms * weight_scaled + k_lobe * weight);
 }
 
-// What lights see from where a ray has been marched to: bits 0 to 3 of suns, 4 on of lamps.
+// What lights see from where a ray has been marched to: bits 0 to 3 of suns, 4 to 31 of lamps.
 struct march_shadows {
     uint known, lit;
     float inside; // where to look at the farthest
@@ -329,7 +329,8 @@ bool march_sees(bool sun, march_map m, float s)
 float march_lit(bool sun, march_map map, uint bit, float s, float ds, inout march_shadows shadow)
 {
     float part = ds / max(ceil(ds / march_shadow_piece()), 1.0), finest = part / RAYMARCH_SHADOW_HALVES, sum = 0.0;
-    bool known = (shadow.known >> bit & 1u) != 0u, lit = (shadow.lit >> bit & 1u) != 0u;
+    uint mask = bit < 32u ? 1u << bit : 0u; // lights beyond are looked at afresh
+    bool known = (shadow.known & mask) != 0u, lit = (shadow.lit & mask) != 0u;
     // Up to `lo` it is known what the light sees; at `hi`, if > 0, it is the opposite. One look an iteration, as
     // these are what costs time.
     float lo = 0.0, hi = 0.0;
@@ -349,8 +350,8 @@ float march_lit(bool sun, march_map map, uint bit, float s, float ds, inout marc
             lit = !lit;
         }
     }
-    shadow.known |= 1u << bit;
-    shadow.lit = lit ? shadow.lit | 1u << bit : shadow.lit & ~(1u << bit);
+    shadow.known |= mask;
+    shadow.lit = lit ? shadow.lit | mask : shadow.lit & ~mask;
     return sum / ds;
 }
 

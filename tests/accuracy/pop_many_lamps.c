@@ -1,6 +1,7 @@
 // pop_many_lamps.c -- many lamps in `pop`: each looks as it does alone, whatever the others are and in whatever order.
 #include "gpu_test.h"
 #include "picture.h"
+#include "solids.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,10 +96,62 @@ static void alone_or_not(void **state)
     assert_true(good);
 }
 
+// Lamps first to last - 1 of 40, all but the first 12 in small boxes of their own.
+static void render_walled(gpu_test *t, picture *p, int first, int last)
+{
+    const tyn_medium medium = grey_medium(0.1f, 0, 0);
+    tyn_scene *scene = malloc(sizeof *scene);
+    tyn_scene_init(scene);
+    scene_add_box(scene, &medium, (float[]){-2, -2, -2}, (float[]){2, 2, 2}, NULL, NULL);
+    uint32_t black = solids_material(scene, (float[]){0, 0, 0}, (float[]){0, 0, 0});
+    for (int i = 0; i < 40; i++) {
+        float x = -1.75f + 0.5f * (float)(i % 8), y = -1.6f + 0.8f * (float)(i / 8), half = 0.05f;
+        if (i >= 12) {
+            solids_box(scene, (float[]){x - half, y - half, -half},
+                       (float[]){x + half, y + half, half}, 0, false, black);
+        }
+        if (i >= first && i < last) {
+            float strength = 1 - 0.005f * (float)i; // kernels have them in this order
+            scene->lights[scene->num_lights++] =
+                (tyn_light){.kind = TYN_LIGHT_POINT,
+                            .color = {strength, strength, strength},
+                            .position = {x, y, 0}};
+        }
+    }
+    solids_hierarchy(scene, 4);
+    tyn_view view = {.width = 0};
+    view_orthographic(&view, (float[]){0, 0, 0}, 0, 0, -1, (float[]){0, 1, 0}, 2, SIZE);
+    picture_render(p, t->dev, "single", scene, &view, "raymarch.sparse=0", 0);
+    tyn_scene_finish(scene);
+    free(scene);
+}
+
+static void own_walls(void **state)
+{
+    picture all, first, second;
+    render_walled(*state, &all, 0, 40);
+    render_walled(*state, &first, 0, 20);
+    render_walled(*state, &second, 20, 40);
+    double sum = 0, off = 0;
+    for (int k = 0; k < 3 * SIZE * SIZE; k++) {
+        const double parts = (double)first.rgb[k] + second.rgb[k];
+        sum += parts;
+        off += fabs(all.rgb[k] - parts);
+    }
+    print_message("40 lamps with walls of their own: %.2f %% off the sum of twice 20\n",
+                  100 * off / sum);
+    assert_true(off <= 0.005 * sum);
+    picture_free(&all);
+    picture_free(&first);
+    picture_free(&second);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(alone_or_not),
+        cmocka_unit_test(own_walls),
     };
+    cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
