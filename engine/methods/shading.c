@@ -2,6 +2,7 @@
 #include "methods/shading.h"
 #include "methods/walls.h"
 #include "passes/shade/shade.h"
+#include "passes/shade/shade_faces.h"
 #include "passes/probe/probe.h"
 #include "passes/vpl/vpl.h"
 #include <tyndall/registry.h>
@@ -118,6 +119,25 @@ static bool reach_beyond_media(const tyn_frame_scene *frame)
     return beyond;
 }
 
+// Places around the surfaces and the box, where they are not far from it, from where it is asked what hides the box.
+static void place_sight(const tyn_frame_scene *frame, tyn_shade_params *params)
+{
+    const float *extent = frame->medium.extent;
+    const float most = 3 * fmaxf(extent[0], fmaxf(extent[1], extent[2]));
+    float lo[3], hi[3], longest = 0;
+    tyn_surfaces_box(frame, lo, hi);
+    for (int axis = 0; axis < 3; axis++) {
+        lo[axis] = fmaxf(fminf(lo[axis], 0), -most);
+        hi[axis] = fminf(fmaxf(hi[axis], extent[axis]), extent[axis] + most);
+        longest = fmaxf(longest, hi[axis] - lo[axis]);
+    }
+    params->sight_edge = longest / SHADE_SIGHT_PLACES;
+    for (int axis = 0; axis < 3; axis++) {
+        params->sight_lo[axis] = lo[axis];
+        params->sight_places[axis] = (uint32_t)ceilf(0.999f * (hi[axis] - lo[axis]) / params->sight_edge);
+    }
+}
+
 tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, uint32_t num_suns,
                             tyn_picture_inputs *in)
 {
@@ -145,6 +165,9 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
     params.sky = sky[0] + sky[1] + sky[2] > 0.0f;
     const uint32_t *repeat = job->frame->medium.repeat;
     params.outside = !repeat[0] && !repeat[1] && !repeat[2] && reach_beyond_media(job->frame);
+    if (params.outside) {
+        place_sight(job->frame, &params);
+    }
     if (params.sky && (in->wall_links.resource == 0 || reach_beyond_media(job->frame))) {
         tyn_method_warn(job, "surfaces beyond the media's box are lit by the mean of the "
                              "environment as if nothing stood around them");

@@ -73,8 +73,8 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     [PORT(FORWARD)] = {"forward", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                        .meaning = "from where sunlight comes that was scattered forward"},
     [PORT(FACES)] = {"faces", TYN_SCRATCH, IMAGE2, .meaning = "light that leaves the medium's box"},
-    [PORT(SIGHT)] = {"sight", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
-                     .meaning = "what faces of the medium's box see, m"},
+    [PORT(SIGHT)] = {"sight", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                     .meaning = "from where faces of the medium's box are seen"},
     [PORT(PLACE)] = {"place", TYN_SCRATCH, IMAGE2, .meaning = "where a pixel is shaded (M, m)"},
     [PORT(PART)] = {"part", TYN_SCRATCH, IMAGE2,
                     .meaning = "irradiance of a part of the VPLs, W/m^2"},
@@ -171,7 +171,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [WALLS] = {KERNEL(walls, 8, 4, 2)},
     [FORWARD] = {KERNEL(forward, 8, 4, 2), .num_spec = 3},
     [FACES] = {KERNEL(faces, 32, 1, 1), ARGS(2)},
-    [SIGHT] = {KERNEL(sight, 8, 8, 1), .num_spec = 1},
+    [SIGHT] = {KERNEL(sight, 8, 4, 1), ARGS(1)},
     [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(5)},
     [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(5)},
     [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(5)},
@@ -198,8 +198,9 @@ static tyn_result declare(tyn_builder *b, const void *data)
     cells.z = slices * (TYN_WALLS_PLANES + 1);
     tyn_build_image(b, PORT(WALL_TABLE), tyn_build_has(b, PORT(WALL_LINKS)) ? cells : texel, 1);
     tyn_build_image(b, PORT(FACES), outside ? faces : texel, 1);
-    const tyn_extent maps = {SHADE_FACE_MAPS * SHADE_FACE_TEXELS, 6 * SHADE_FACE_TEXELS, 1};
-    tyn_build_image(b, PORT(SIGHT), outside && tyn_build_has(b, PORT(SURFACES)) ? maps : texel, 1);
+    const uint32_t *places = p->sight_places;
+    const tyn_extent fields = {places[0], places[1], places[2] * SHADE_SIGHT_FIELDS};
+    tyn_build_image(b, PORT(SIGHT), outside && tyn_build_has(b, PORT(SURFACES)) ? fields : texel, 1);
     tyn_build_image(b, PORT(TABLE), (tyn_extent){SHADE_ENTRIES, SHADE_ROWS, 1}, 1);
     tyn_build_image(b, PORT(PLACE), pixels, 1);
     tyn_build_image(b, PORT(PART), pixels, 1);
@@ -215,6 +216,8 @@ static void record(tyn_recorder *r, const void *data)
         .num_directional = p->num_directional,
         .num_lamps = p->num_lamps,
         .tint = {p->tint[0], p->tint[1], p->tint[2]},
+        .sight_lo = {p->sight_lo[0], p->sight_lo[1], p->sight_lo[2]},
+        .sight_edge = p->sight_edge,
     };
     uint32_t features = 0;
     features |= tyn_rec_has(r, PORT(BEAMS)) || tyn_rec_has(r, PORT(RADIALS)) ? SHADE_MEDIUM : 0;
@@ -247,9 +250,13 @@ static void record(tyn_recorder *r, const void *data)
         d.cells = (tyn_extent){6 * SHADE_FACE_PATCHES, 1, 1};
         tyn_rec_dispatch(r, &d);
         const uint32_t channels = p->one_channel ? 1 : 3;
-        const tyn_extent maps = tyn_rec_extent(r, PORT(SIGHT));
         if (tyn_rec_has(r, PORT(SURFACES))) {
-            tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SIGHT, .cells = maps, .spec = &channels});
+            d.kernel = SIGHT;
+            d.cells = tyn_rec_extent(r, PORT(SIGHT));
+            d.cells.z /= SHADE_SIGHT_FIELDS;
+            d.spec = &channels;
+            tyn_rec_dispatch(r, &d);
+            d.spec = spec;
         }
     }
     if (vpls) {

@@ -13,6 +13,8 @@ typedef struct tyn_shade_params {
     uint32_t one_channel; // 1: "moments" has one channel, to be multiplied with `tint`
     float tint[3];
     uint32_t outside; // 1: surfaces outside the lattice get the light that leaves it, if there are "moments"
+    float sight_lo[3], sight_edge; // places from where it is asked what hides the box: corner, distance (M, m)
+    uint32_t sight_places[3];
     uint32_t sky; // 1: the mean of the environment lights what is outside the lattice
 } tyn_shade_params;
 
@@ -52,7 +54,7 @@ enum {
     SHADE_PORT_WALL_TABLE, // SCRATCH 3D RGBA32F, walls_table.glsl: exists with wall_links
     SHADE_PORT_FORWARD, // SCRATCH 3D RGBA32F, shade_forward.comp: exists with a lattice, suns and shadows
     SHADE_PORT_FACES, // SCRATCH 2D RGBA32F, shade_faces.h
-    SHADE_PORT_SIGHT, // SCRATCH 2D R32F, the same
+    SHADE_PORT_SIGHT, // SCRATCH 3D RGBA32F, the same
     SHADE_PORT_PLACE, // SCRATCH 2D RGBA32F: exist with VPLs
     SHADE_PORT_PART,
     SHADE_PORT_INDIRECT,

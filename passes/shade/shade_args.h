@@ -28,7 +28,9 @@ struct shade_args {
     tyn_uint num_directional; // lights before the lamps in "lights"
     tyn_uint num_lamps;
     tyn_vec3 tint;
+    tyn_vec3 sight_lo; // corner of the places of shade_sight.comp, and their distance (M, m)
+    float sight_edge;
 };
-TYN_ASSERT_SIZE(shade_args, 20);
+TYN_ASSERT_SIZE(shade_args, 36);
 
 #endif

@@ -61,6 +61,8 @@ void main()
 
     ivec2 first = to, last = from;
     vec3 net = vec3(0.0);
+    vec2 aim = 0.5 * vec2(from + to), centre = aim;
+    float off = 1e30; // of `aim` from the patch's centre, squared
     vec4 mean = vec4(0.0); // of the channels, without the light of the sky
     for (int j = from.y; j < to.y; j++) {
         for (int i = from.x; i < to.x; i++) {
@@ -88,6 +90,10 @@ void main()
             if (lit) {
                 first = min(first, ivec2(i, j));
                 last = max(last, ivec2(i, j) + 1);
+                vec2 here = vec2(i, j) + 0.5;
+                float away = dot(here - centre, here - centre);
+                aim = away < off ? here : aim;
+                off = min(off, away);
             }
         }
     }
@@ -106,4 +112,9 @@ void main()
                vec4(origin + box.dx * vec2(first), origin + box.dx * vec2(last)));
     imageStore(faces_image, texel + ivec2(SHADE_FACE_LIGHT, 0), any_lit ? vec4(net, 1.0) : vec4(0.0));
     imageStore(faces_image, texel + ivec2(SHADE_FACE_SHAPE, 0), shape);
+    vec3 target;
+    target[u] = origin.x + box.dx * aim.x;
+    target[v] = origin.y + box.dx * aim.y;
+    target[axis] = box.origin[axis] + (upper ? box.dx * float(dims[axis]) : 0.0);
+    imageStore(faces_image, texel + ivec2(SHADE_FACE_AIM, 0), vec4(target, 0.0));
 }

@@ -12,11 +12,14 @@
 #define SHADE_FACE_LIGHT 1 // radiance into all directions that carries the patch's net flux (may be negative: the box
                            // takes light of the sky); what is not 0: there is any
 #define SHADE_FACE_SHAPE 2 // radiance into the direction w over that: max(x + dot(yzw, w), 0)
-#define SHADE_FACE_ENTRIES 3
+#define SHADE_FACE_AIM 3   // the middle of a lit cell (M, m), as near to the patch's as there is
+#define SHADE_FACE_ENTRIES 4
 
-// What surfaces leave of the view of a whole face and of its 2 x 2 patches: R32F, maps of distances as VPLs have them
-// (vpl_visibility.glsl), faces as rows.
-#define SHADE_FACE_MAPS 5
-#define SHADE_FACE_TEXELS 16
+// What surfaces leave of the view of the faces: RGBA32F, on a grid of places (struct shade_args). Six fields, one a
+// face, are behind each other along z: which of its 2 x 2 patches are seen from there. One more: 0 at places that see none
+// of the box, as within solids, which are left out where others are near.
+#define SHADE_SIGHT_PLACES 16 // along the longest side
+#define SHADE_SIGHT_SHARE 6
+#define SHADE_SIGHT_FIELDS 7
 
 #endif

@@ -71,28 +71,10 @@ vec3 shade_middle(int axis, float plane, vec4 rect)
     return axis == 0 ? vec3(plane, m) : axis == 1 ? vec3(m.x, plane, m.y) : vec3(m, plane);
 }
 
-// Share of the rays of map `map` of a face around the way `away` that are not stopped before the plane of the surface
-// there, whose normal is `facet`, as for VPLs.
-float shade_sight(int face, int map, vec3 outwards, vec3 away, vec3 facet)
+vec4 shade_sight_field(vec3 place, int field)
 {
-    ivec2 size = textureSize(sight_tex, 0);
-    if (size.x < SHADE_FACE_TEXELS) {
-        return 1.0; // no maps
-    }
-    mat3 frame = vpl_frame(outwards);
-    vec3 d = away * frame, n = facet * frame;
-    const float last = float(SHADE_FACE_TEXELS - 1);
-    vec2 x = vpl_map_place(d) * last, first = min(floor(x), last - 1.0), w = x - first;
-    float r = length(d), plane = dot(n, d);
-    vec4 reach = vec4(r);
-    for (int i = 0; i < 4; i++) {
-        float facing = dot(n, normalize(vpl_map_direction((first + vec2(i & 1, i >> 1)) / last)));
-        reach[i] = facing * plane > 0.25 * abs(plane * plane) / r ? min(plane / facing, 4.0 * r) : r;
-    }
-    vec2 corner = vec2(map, face) * float(SHADE_FACE_TEXELS) + first + 1.0;
-    vec4 stored = textureGather(sight_tex, corner / vec2(size)).wzxy;
-    vec4 shares = vec4(1.0 - w.x, w.x, 1.0 - w.x, w.x) * vec4(1.0 - w.yy, w.yy);
-    return dot(shares, vec4(greaterThanEqual(stored, 0.95 * reach)));
+    vec3 size = vec3(textureSize(sight_tex, 0));
+    return textureLod(sight_tex, (place + vec3(0.0, 0.0, float(field) * size.z / float(SHADE_SIGHT_FIELDS))) / size, 0.0);
 }
 
 // `lo`, `hi`: the lattice's box. `facet`: the triangle's normal.
@@ -101,23 +83,52 @@ vec3 shade_outside(vec3 p, vec3 n, vec3 facet, vec3 lo, vec3 hi)
     vec3 sum = vec3(0.0);
     float far = length(p - clamp(p, lo, hi)) / shade_reach(lo, hi);
     int first = far > 8.0 ? 0 : far > 2.0 ? 1 : 5, count = far > 8.0 ? 1 : far > 2.0 ? 4 : 16;
+    // So far off that no place behind the surface's plane counts.
+    vec3 places = vec3(textureSize(sight_tex, 0)) / vec3(1.0, 1.0, float(SHADE_SIGHT_FIELDS));
+    bool hidden = places.z >= 1.0; // may be
+    vec3 place = (p - args.sight_lo) / args.sight_edge + dot(abs(facet), vec3(1.0)) * facet;
+    place = clamp(place, vec3(0.5), places - 0.5);
+    float share = hidden ? 1.0 / max(shade_sight_field(place, SHADE_SIGHT_SHARE).r, 0.25) : 1.0;
     for (int face = 0; face < 6; face++) {
         int axis = face / 2;
         bool upper = (face & 1) != 0;
         float plane = upper ? hi[axis] : lo[axis], before = upper ? p[axis] - plane : plane - p[axis];
+        vec4 seen = vec4(1.0);
+        for (bool once = hidden && before > 0.0; once; once = false) {
+            seen = min(share * shade_sight_field(place, face), 1.0);
+            // What the surface hides itself is below its horizon: patches that end there are as the others.
+            vec4 above = vec4(0.0);
+            for (int k = 0; k < 4; k++) {
+                vec3 aim = texelFetch(faces_tex, ivec2((1 + k) * SHADE_FACE_ENTRIES + SHADE_FACE_AIM, face), 0).xyz;
+                above[k] = dot(aim - p, facet) > 0.0 ? 1.0 : 0.0;
+            }
+            float some = dot(above, vec4(1.0)), others = some > 0.0 ? dot(above, seen) / some : 1.0;
+            seen = mix(vec4(others), seen, above);
+        }
+        // Patches are not to be told from each other close to the box: there they shine as it is interpolated.
+        vec3 local = vec3(0.0);
+        for (bool once = before > 0.0 && far < 1.0; once; once = false) {
+            vec3 x = clamp((p - lo) / (hi - lo) * float(SHADE_FACE_SIDE) - 0.5, 0.0, float(SHADE_FACE_SIDE - 1));
+            vec2 at = axis == 0 ? x.yz : axis == 1 ? x.xz : x.xy, corner = min(floor(at), float(SHADE_FACE_SIDE - 2));
+            at -= corner;
+            for (int i = 0; i < 4; i++) {
+                ivec2 q = ivec2(corner) + ivec2(i & 1, i >> 1);
+                vec4 light = texelFetch(faces_tex, ivec2((5 + q.y * SHADE_FACE_SIDE + q.x) * SHADE_FACE_ENTRIES + SHADE_FACE_LIGHT, face), 0);
+                vec2 t = vec2((i & 1) != 0 ? at.x : 1.0 - at.x, i >= 2 ? at.y : 1.0 - at.y);
+                local += t.x * t.y * light.a * light.rgb;
+            }
+        }
         for (int k = before > 0.0 ? first : first + count; k < first + count; k++) {
             ivec2 texel = ivec2(k * SHADE_FACE_ENTRIES, face);
             vec4 light = texelFetch(faces_tex, texel + ivec2(SHADE_FACE_LIGHT, 0), 0);
             vec4 rect = texelFetch(faces_tex, texel + ivec2(SHADE_FACE_RECT, 0), 0);
             vec4 shape = texelFetch(faces_tex, texel + ivec2(SHADE_FACE_SHAPE, 0), 0);
             vec3 from = shade_middle(axis, plane, rect);
-            int map = k < SHADE_FACE_MAPS ? k : 1 + ((k - 5) / 8) * 2 + ((k - 5) % 4) / 2;
-            vec3 outwards = vec3(0.0);
-            outwards[axis] = upper ? 1.0 : -1.0;
-            vec4 mapped = texelFetch(faces_tex, ivec2(map * SHADE_FACE_ENTRIES + SHADE_FACE_RECT, face), 0);
-            float seen = shade_sight(face, map, outwards, p - shade_middle(axis, plane, mapped), facet);
+            int quarter = k < 5 ? k - 1 : ((k - 5) / 8) * 2 + ((k - 5) % 4) / 2;
+            float open = k == 0 ? dot(seen, vec4(0.25)) : seen[max(quarter, 0)];
             float directed = max(shape.x + dot(shape.yzw, normalize(p - from)), 0.0);
-            sum += light.rgb * (light.a * seen * directed * shade_rectangle(p, n, axis, plane, rect));
+            light.rgb = mix(light.rgb, local, max(1.0 - far, 0.0));
+            sum += light.rgb * (light.a * open * directed * shade_rectangle(p, n, axis, plane, rect));
         }
     }
     return sum;

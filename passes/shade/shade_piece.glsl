@@ -22,7 +22,7 @@ layout(binding = 26, scalar) uniform env_uniform
 };
 layout(binding = 27) uniform sampler3D forward_tex; // shade_forward.comp
 layout(binding = 28) uniform sampler2D faces_tex; // shade_faces.h
-layout(binding = 29) uniform sampler2D sight_tex; // shade_sight.comp
+layout(binding = 29) uniform sampler3D sight_tex; // shade_sight.comp
 layout(binding = 30, rgba32f) uniform writeonly image2D radiance_image; // and distance, or infinity
 
 const float PI = 3.14159265358979;
@@ -58,7 +58,10 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
     vec3 away = p.position - before, push = mix(sign(away), vec3(0.0), equal(p.position, place));
     push[axis] = sign(beyond[axis]);
     float near = inside ? clamp(2.0 * abs(beyond[axis]), 0.0, 1.0) : max(1.0 - length(away) / shade_reach(lo, hi), 0.0);
-    near = has_outside && shade_has(SHADE_LATTICE) ? near * near * across[axis] : 0.0;
+    // Another surface's light does not matter here: the place is to be on this one.
+    float off = abs(dot(p.position - place, p.facet)) / (0.25 * box.dx);
+    bool through = has_outside && shade_has(SHADE_LATTICE) && (inside || beyond[axis] != 0.0);
+    near = through ? near * near * across[axis] * max(1.0 - off, 0.0) : 0.0;
 
     vec3 irradiance = vec3(0.0), within = vec3(0.0);
     for (bool once = !inside; once; once = false) {
@@ -71,11 +74,11 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
         within = channels == 1 ? within.r * args.tint : within;
         irradiance = inside ? within : irradiance;
     }
-    // Four moments a cell are too bright at the box's face, patches too dark: their geometric mean is right.
+    // Four moments a cell are too bright at the box's face, patches too dark: their mean is right.
     for (bool once = near > 0.0; once; once = false) {
         vec3 seen = max(sky + shade_outside(before + 0.03 * box.dx * push, p.normal, p.facet, lo, hi), vec3(0.0));
-        vec3 change = sqrt(clamp(within / max(seen, vec3(1e-30)), 0.1, 10.0));
-        irradiance *= mix(vec3(1.0), inside ? 1.0 / change : change, near * vec3(notEqual(seen, sky)) * vec3(greaterThan(min(seen, within), vec3(0.0))));
+        vec3 change = 0.5 * near * (within - seen) * vec3(notEqual(seen, sky)) * vec3(greaterThan(min(seen, within), vec3(0.0)));
+        irradiance = max(irradiance + (inside ? -change : change), vec3(0.0));
     }
     return irradiance;
 }

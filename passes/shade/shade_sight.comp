@@ -1,4 +1,6 @@
-// shade_sight.comp -- the distances of the first surfaces around patches of the box's faces: a ray a texel.
+// shade_sight.comp -- which patches of the box's faces are seen from places around it: a ray a patch.
+//
+// Far fewer places than pixels, and between them it is interpolated: light of so large emitters has no sharp shadows.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -6,9 +8,13 @@
 #include "scene_args.h"
 #include "lattice.glsl"
 #include "shade_faces.h"
-#include "vpl_visibility.glsl"
+#include "shade_args.h"
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 8, local_size_y = 4) in;
+layout(push_constant, scalar) uniform Args
+{
+    shade_args args;
+};
 
 layout(binding = 0, scalar) uniform surfaces_uniform
 {
@@ -32,32 +38,52 @@ layout(binding = 4, scalar) uniform medium_uniform
 };
 layout(binding = 5) uniform sampler2D faces_tex;
 layout(binding = 6) uniform sampler3D moments_tex;
-layout(binding = 7, r32f) uniform writeonly image2D sight_image;
+layout(binding = 7, rgba32f) uniform writeonly image3D sight_image;
 layout(constant_id = 0) const uint channels = 1u;
 #include "surface_trace.glsl"
 
+// Is nothing between two places (M)?
+bool open_between(vec3 from, vec3 to)
+{
+    float far = distance(from, to);
+    surface_hit hit = surface_hit(0.999 * far, SURFACE_NONE, vec2(0.0));
+    surface_ray ray = surface_ray_make(surface_transform(surfaces.to_world, from),
+                                       surface_turn(surfaces.to_world, (to - from) / max(far, 1e-30)), SURFACE_NONE);
+    return !surface_trace_world(ray, true, hit);
+}
+
 void main()
 {
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(texel, imageSize(sight_image)))) {
+    ivec3 at = ivec3(gl_GlobalInvocationID), size = imageSize(sight_image);
+    size.z /= SHADE_SIGHT_FIELDS;
+    if (any(greaterThanEqual(at, size))) {
         return;
     }
-    ivec2 map = texel / SHADE_FACE_TEXELS, at = texel % SHADE_FACE_TEXELS;
     ivec3 dims = textureSize(moments_tex, 0);
     dims.z /= int(channels);
     lattice_box box = lattice_box_of(medium.extent, dims);
-    int axis = map.y / 2;
-    bool upper = (map.y & 1) != 0;
-    vec3 lo = box.origin, hi = lattice_to_m(box, vec3(dims)), outwards = vec3(0.0);
-    outwards[axis] = upper ? 1.0 : -1.0;
-    vec4 rect = texelFetch(faces_tex, ivec2(map.x * SHADE_FACE_ENTRIES + SHADE_FACE_RECT, map.y), 0);
-    vec2 middle = 0.5 * (rect.xy + rect.zw);
-    float plane = upper ? hi[axis] : lo[axis];
-    vec3 from = axis == 0 ? vec3(plane, middle) : axis == 1 ? vec3(middle.x, plane, middle.y) : vec3(middle, plane);
-    vec3 d = vpl_frame(outwards) * normalize(vpl_map_direction(vec2(at) / float(SHADE_FACE_TEXELS - 1)));
-    surface_hit hit = surface_hit(3e38, SURFACE_NONE, vec2(0.0));
-    surface_ray ray = surface_ray_make(surface_transform(surfaces.to_world, from),
-                                       surface_turn(surfaces.to_world, d), SURFACE_NONE);
-    surface_trace_world(ray, false, hit);
-    imageStore(sight_image, texel, vec4(hit.t));
+    vec3 lo = box.origin, hi = lattice_to_m(box, vec3(dims));
+    vec3 p = args.sight_lo + (vec3(at) + 0.5) * args.sight_edge;
+    bool asked = false, sees = false;
+    for (int face = 0; face < 6; face++) {
+        int axis = face / 2;
+        bool upper = (face & 1) != 0;
+        float plane = upper ? hi[axis] : lo[axis], before = upper ? p[axis] - plane : plane - p[axis];
+        // A place a little behind the face is asked for in front of it: surfaces there lie between it and others.
+        vec3 from = p;
+        float lift = max(before, 0.25 * args.sight_edge);
+        from[axis] = upper ? plane + lift : plane - lift;
+        vec4 seen = vec4(1.0);
+        for (int k = before > -3.0 * args.sight_edge ? 0 : 4; k < 4; k++) {
+            int texel = (1 + k) * SHADE_FACE_ENTRIES;
+            bool lit = texelFetch(faces_tex, ivec2(texel + SHADE_FACE_LIGHT, face), 0).a > 0.0;
+            for (; lit; lit = false) {
+                seen[k] = open_between(from, texelFetch(faces_tex, ivec2(texel + SHADE_FACE_AIM, face), 0).xyz) ? 1.0 : 0.0;
+                asked = true;
+                sees = sees || seen[k] > 0.0;
+            }
+        }
+        imageStore(sight_image, at + ivec3(0, 0, face * size.z), seen);
+    }
+    imageStore(sight_image, at + ivec3(0, 0, SHADE_SIGHT_SHARE * size.z), vec4(asked && !sees ? 0.0 : 1.0));
 }
