@@ -117,4 +117,7 @@ void main()
     target[v] = origin.y + box.dx * aim.y;
     target[axis] = box.origin[axis] + (upper ? box.dx * float(dims[axis]) : 0.0);
     imageStore(faces_image, texel + ivec2(SHADE_FACE_AIM, 0), vec4(target, 0.0));
+    if (side == SHADE_FACE_SIDE) {
+        imageStore(faces_image, ivec2(face * SHADE_FACE_SIDE, 6) + at, vec4(any_lit ? net : vec3(0.0), 1.0));
+    }
 }

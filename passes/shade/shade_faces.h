@@ -1,7 +1,7 @@
 // shade_faces.h -- the light that leaves the medium's box, as an image. Included by C and GLSL.
 //
 // RGBA32F. Each of the six faces of the lattice (-x, +x, -y, +y, -z, +z) is a row; along it are its patches: the whole,
-// then 2 x 2, then 4 x 4 of them, SHADE_FACE_ENTRIES texels each. A patch shines as what of it is lit: the rectangle around those of its cells that have
+// then 2 x 2, then 4 x 4 of them, SHADE_FACE_ENTRIES texels each. Below are tiles of the light of 4 x 4, face beside face, to interpolate in. A patch shines as what of it is lit: the rectangle around those of its cells that have
 // light and no wall outwards.
 #ifndef SHADE_FACES_H
 #define SHADE_FACES_H
@@ -18,7 +18,7 @@
 // What surfaces leave of the view of the faces: RGBA32F, on a grid of places (struct shade_args). Six fields, one a
 // face, are behind each other along z: which of its 2 x 2 patches are seen from there. One more: 0 at places that see none
 // of the box, as within solids, which are left out where others are near.
-#define SHADE_SIGHT_PLACES 16 // along the longest side
+#define SHADE_SIGHT_PLACES 10 // along the longest side
 #define SHADE_SIGHT_SHARE 6
 #define SHADE_SIGHT_FIELDS 7
 

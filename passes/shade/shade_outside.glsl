@@ -77,12 +77,12 @@ vec4 shade_sight_field(vec3 place, int field)
     return textureLod(sight_tex, (place + vec3(0.0, 0.0, float(field) * size.z / float(SHADE_SIGHT_FIELDS))) / size, 0.0);
 }
 
-// `lo`, `hi`: the lattice's box. `facet`: the triangle's normal.
+// `lo`, `hi`: the lattice's box. `facet`: the triangle's normal. A face is one emitter. How bright it is: as its 2 x 2
+// patches weigh at p by their middles, what is hidden dark, but close to it as it is there.
 vec3 shade_outside(vec3 p, vec3 n, vec3 facet, vec3 lo, vec3 hi)
 {
     vec3 sum = vec3(0.0);
-    float far = length(p - clamp(p, lo, hi)) / shade_reach(lo, hi);
-    int first = far > 8.0 ? 0 : far > 2.0 ? 1 : 5, count = far > 8.0 ? 1 : far > 2.0 ? 4 : 16;
+    float patch_side = shade_reach(lo, hi), near = max(1.0 - length(p - clamp(p, lo, hi)) / patch_side, 0.0);
     // So far off that no place behind the surface's plane counts.
     vec3 places = vec3(textureSize(sight_tex, 0)) / vec3(1.0, 1.0, float(SHADE_SIGHT_FIELDS));
     bool hidden = places.z >= 1.0; // may be
@@ -93,42 +93,34 @@ vec3 shade_outside(vec3 p, vec3 n, vec3 facet, vec3 lo, vec3 hi)
         int axis = face / 2;
         bool upper = (face & 1) != 0;
         float plane = upper ? hi[axis] : lo[axis], before = upper ? p[axis] - plane : plane - p[axis];
-        vec4 seen = vec4(1.0);
-        for (bool once = hidden && before > 0.0; once; once = false) {
-            seen = min(share * shade_sight_field(place, face), 1.0);
-            // What the surface hides itself is below its horizon: patches that end there are as the others.
-            vec4 above = vec4(0.0);
-            for (int k = 0; k < 4; k++) {
-                vec3 aim = texelFetch(faces_tex, ivec2((1 + k) * SHADE_FACE_ENTRIES + SHADE_FACE_AIM, face), 0).xyz;
-                above[k] = dot(aim - p, facet) > 0.0 ? 1.0 : 0.0;
+        vec4 whole = texelFetch(faces_tex, ivec2(SHADE_FACE_LIGHT, face), 0);
+        for (bool once = before > 0.0 && whole.a > 0.0; once; once = false) {
+            vec4 seen = hidden ? min(share * shade_sight_field(place, face), 1.0) : vec4(1.0);
+            vec3 light = vec3(0.0);
+            float all = 0.0, open = 0.0;
+            [[unroll]] for (int k = 0; k < 4; k++) {
+                ivec2 texel = ivec2((1 + k) * SHADE_FACE_ENTRIES, face);
+                vec3 d = texelFetch(faces_tex, texel + ivec2(SHADE_FACE_AIM, 0), 0).xyz - p;
+                float rr = dot(d, d) + 0.25 * patch_side * patch_side;
+                float weight = max(dot(d, n), 1e-4 * patch_side) / (rr * rr);
+                vec4 patch_light = texelFetch(faces_tex, texel + ivec2(SHADE_FACE_LIGHT, 0), 0);
+                light += weight * seen[k] * patch_light.a * patch_light.rgb;
+                open += weight * seen[k];
+                all += weight;
             }
-            float some = dot(above, vec4(1.0)), others = some > 0.0 ? dot(above, seen) / some : 1.0;
-            seen = mix(vec4(others), seen, above);
-        }
-        // Patches are not to be told from each other close to the box: there they shine as it is interpolated.
-        vec3 local = vec3(0.0);
-        for (bool once = before > 0.0 && far < 1.0; once; once = false) {
-            vec3 x = clamp((p - lo) / (hi - lo) * float(SHADE_FACE_SIDE) - 0.5, 0.0, float(SHADE_FACE_SIDE - 1));
-            vec2 at = axis == 0 ? x.yz : axis == 1 ? x.xz : x.xy, corner = min(floor(at), float(SHADE_FACE_SIDE - 2));
-            at -= corner;
-            for (int i = 0; i < 4; i++) {
-                ivec2 q = ivec2(corner) + ivec2(i & 1, i >> 1);
-                vec4 light = texelFetch(faces_tex, ivec2((5 + q.y * SHADE_FACE_SIDE + q.x) * SHADE_FACE_ENTRIES + SHADE_FACE_LIGHT, face), 0);
-                vec2 t = vec2((i & 1) != 0 ? at.x : 1.0 - at.x, i >= 2 ? at.y : 1.0 - at.y);
-                local += t.x * t.y * light.a * light.rgb;
-            }
-        }
-        for (int k = before > 0.0 ? first : first + count; k < first + count; k++) {
-            ivec2 texel = ivec2(k * SHADE_FACE_ENTRIES, face);
-            vec4 light = texelFetch(faces_tex, texel + ivec2(SHADE_FACE_LIGHT, 0), 0);
-            vec4 rect = texelFetch(faces_tex, texel + ivec2(SHADE_FACE_RECT, 0), 0);
-            vec4 shape = texelFetch(faces_tex, texel + ivec2(SHADE_FACE_SHAPE, 0), 0);
-            vec3 from = shade_middle(axis, plane, rect);
-            int quarter = k < 5 ? k - 1 : ((k - 5) / 8) * 2 + ((k - 5) % 4) / 2;
-            float open = k == 0 ? dot(seen, vec4(0.25)) : seen[max(quarter, 0)];
-            float directed = max(shape.x + dot(shape.yzw, normalize(p - from)), 0.0);
-            light.rgb = mix(light.rgb, local, max(1.0 - far, 0.0));
-            sum += light.rgb * (light.a * open * directed * shade_rectangle(p, n, axis, plane, rect));
+            // Where the surface looks to: between its normal and the face's.
+            vec3 towards = n, at = p;
+            towards[axis] += upper ? -1.0 : 1.0;
+            at += towards * before / max(abs(towards[axis]), 0.1);
+            at = clamp((at - lo) / (hi - lo) * float(SHADE_FACE_SIDE), 0.5, float(SHADE_FACE_SIDE) - 0.5);
+            vec2 tile = axis == 0 ? at.yz : axis == 1 ? at.xz : at.xy;
+            tile += vec2(float(face * SHADE_FACE_SIDE), 6.0);
+            vec3 local = textureLod(faces_tex, tile / vec2(textureSize(faces_tex, 0)), 0.0).rgb;
+            light = mix(light, local * open, near) / all;
+            vec4 rect = texelFetch(faces_tex, ivec2(SHADE_FACE_RECT, face), 0);
+            vec4 shape = texelFetch(faces_tex, ivec2(SHADE_FACE_SHAPE, face), 0);
+            float directed = max(shape.x + dot(shape.yzw, normalize(p - shade_middle(axis, plane, rect))), 0.0);
+            sum += light * (directed * shade_rectangle(p, n, axis, plane, rect));
         }
     }
     return sum;

@@ -74,11 +74,11 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
         within = channels == 1 ? within.r * args.tint : within;
         irradiance = inside ? within : irradiance;
     }
-    // Four moments a cell are too bright at the box's face, patches too dark: their mean is right.
+    // Four moments a cell are up to 1.4 times too bright at the box's face, patches .7 times: they meet in between.
     for (bool once = near > 0.0; once; once = false) {
         vec3 seen = max(sky + shade_outside(before + 0.03 * box.dx * push, p.normal, p.facet, lo, hi), vec3(0.0));
-        vec3 change = 0.5 * near * (within - seen) * vec3(notEqual(seen, sky)) * vec3(greaterThan(min(seen, within), vec3(0.0)));
-        irradiance = max(irradiance + (inside ? -change : change), vec3(0.0));
+        vec3 change = near * (within - seen) * vec3(notEqual(seen, sky)) * vec3(greaterThan(min(seen, within), vec3(0.0)));
+        irradiance = max(irradiance + (inside ? -0.6 : 0.4) * change, vec3(0.0));
     }
     return irradiance;
 }
