@@ -1,8 +1,9 @@
 // shade_outside.glsl -- light that the medium's box sends to a surface outside it.
 //
-// The patches of the box's faces (shade_faces.h) are emitters of uniform radiance. Their irradiance is Lambert's integral
-// around the contour: half the angle of every edge times the cosine between the normals of its plane and of the surface.
-// Where a patch goes below the surface's plane its contour goes along the horizon, above which that is half the angle.
+// The box's faces (shade_faces.h) are emitters. Their irradiance is Lambert's integral around the contour: half the angle
+// of every edge times the cosine between the normals of its plane and of the surface, with the mean of their radiance
+// as it is from there. Where a face goes below the surface's plane its contour goes along the horizon, above which
+// that is half the angle.
 #ifndef TYN_SHADE_OUTSIDE_GLSL
 #define TYN_SHADE_OUTSIDE_GLSL
 #include "shade_faces.h"
@@ -58,7 +59,7 @@ float shade_rectangle(vec3 p, vec3 n, int axis, float plane, vec4 rect)
     return abs(sum);
 }
 
-// How far from the box the patches show.
+// The side of a part of 4 x 4 of a face, about.
 float shade_reach(vec3 lo, vec3 hi)
 {
     vec3 size = hi - lo;
