@@ -184,7 +184,9 @@ static void record(tyn_recorder *r, const void *params)
     if (p->vpls) {
         const uint32_t spec[4] = {p->mode, p->shape.channels,
                                   tyn_rec_has(r, LATTICE_LAMPS_PORT_VPL_DISTANCES), walls};
-        const tyn_extent blocks = {(dims.x + 1) / 2, (dims.y + 1) / 2, (dims.z + 1) / 2};
+        // Workgroups are cubes of 4^3 blocks.
+        const tyn_extent blocks = {(dims.x + 7) / 8 * 8, (dims.y + 7) / 8 * 4,
+                                   (dims.z + 7) / 8 * 2};
         tyn_rec_dispatch(
             r,
             &(tyn_dispatch){.kernel = KERNEL_VPLS, .cells = blocks, .args = &args, .spec = spec});

@@ -22,7 +22,7 @@
 #include "vpl_visibility.glsl"
 #include "radial.glsl"
 
-layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in; // 4^3 blocks
 layout(push_constant, scalar) uniform push
 {
     lattice_lamps_args args;
@@ -45,7 +45,11 @@ ivec3 corner_of(uint k)
 
 void main()
 {
-    ivec3 c = 2 * ivec3(gl_GlobalInvocationID), dims = ivec3(args.dims);
+    // Threads of a row are corners of a cube: some devices run them together, and what one of them leaves out most of
+    // the others do then, too.
+    uvec3 local = gl_LocalInvocationID;
+    ivec3 block = corner_of(local.x) + 2 * corner_of(local.y | local.z << 2), dims = ivec3(args.dims);
+    ivec3 c = 2 * (4 * ivec3(gl_WorkGroupID) + block);
     if (any(greaterThanEqual(c, dims))) {
         return;
     }

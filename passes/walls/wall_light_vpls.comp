@@ -136,12 +136,13 @@ void main()
             faces = faces || dot(away, sides[k].normal) < 0.0 && dot(away, light.axis) > 0.0;
         }
         for (bool lit = faces && sees(c, i, from); lit; lit = false) {
+            radial_grid grid = radials[n]; // once: some devices read buffers slowly
             for (uint k = 0u; k < num_sides; k++) {
                 vec3 away = sides[k].place - light.position;
                 float r2 = dot(away, away), r = sqrt(r2), cosine = -dot(away, sides[k].normal) / max(r, 1e-20);
-                float share = max(cosine, 0.0) * radial_share(n, away, r);
+                float share = max(cosine, 0.0) * radial_share_of(light, away, r);
                 for (bool some = share > 0.0; some; some = false) {
-                    beam_tau tau = radial_tau(radial_place_of(n, away, r));
+                    beam_tau tau = radial_tau(radial_place_in(grid, away, r));
                     sum += light.intensity * (sides[k].area * share / max(r2, least) * exp(-(tau.a + tau.p)));
                 }
             }
