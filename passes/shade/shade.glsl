@@ -215,6 +215,7 @@ struct shade_footprint {
     float width; // at most, m
 };
 const float SHADE_NEAR = 8.0; // widths; at lamps farther away the point's irradiance is the mean, within half a per cent
+const int SHADE_SPOT_PARTS = 16; // of a footprint, along each side
 
 shade_footprint shade_footprint_of(shade_point p, vec4 part)
 {
@@ -259,7 +260,7 @@ float shade_triangle(vec3 a, vec3 b, vec3 c, float h, out float twice_area)
 // Mean irradiance of a lamp, per intensity, over the footprint of p. What a lamp sends through a part of a plane is its
 // intensity times the solid angle under which it sees that part: exact, however near it is. Of a
 // spot's light no more arrives than it sends.
-float shade_lamp_near(shade_point p, shade_footprint foot, uint row, vec3 position)
+float shade_lamp_on(shade_point p, shade_footprint foot, uint row, vec3 position)
 {
     vec4 axis = shade_entry(row, SHADE_AXIS);
     float cos_inner = shade_entry(row, SHADE_INTENSITY).w, cos_outer = shade_entry(row, SHADE_CONE).w;
@@ -279,11 +280,38 @@ float shade_lamp_near(shade_point p, shade_footprint foot, uint row, vec3 positi
         float there = abs(dot(most - camera.origin, p.facet)) / (size.x * size.y) / z / z / z;
         density = mix(density, there, nearness);
     }
-    vec3 towards = normalize(position - mix(p.position, most, nearness));
+    vec3 towards = normalize(position - mix(shade_seen(p, 0.5 * (foot.part.xy + foot.part.zw)), most, nearness));
     float straight = max(dot(towards, p.facet), 1e-6);
     float lobe = angle * radial_lobe(uint(axis.w), axis.xyz, cos_inner, cos_outer, -towards);
     lobe = min(lobe, radial_lobe_integral(uint(axis.w), cos_inner, cos_outer));
     return lobe * density * clamp(dot(p.normal, towards) / straight, 0.0, 2.0);
+}
+
+// Borders of a footprint's parts, which are the smaller the nearer they are to `middle`; t is 0 to 1, as they are.
+vec2 shade_border(vec2 t, vec2 middle)
+{
+    vec2 before = max(middle - t, 0.0), after = max(t - middle, 0.0);
+    return middle - before * before / max(middle, 1e-6) + after * after / max(1.0 - middle, 1e-6);
+}
+
+// ... of a spot, whose cone may be narrower than the footprint, over parts of it.
+float shade_lamp_near(shade_point p, shade_footprint foot, uint row, vec3 position)
+{
+    bool spot = uint(shade_entry(row, SHADE_AXIS).w) == TYN_RADIAL_SPOT;
+    bool close = distance(position, p.position) < 2.0 * foot.width;
+    int side = !spot ? 1 : close ? SHADE_SPOT_PARTS : SHADE_SPOT_PARTS / 4;
+    vec2 size = foot.part.zw - foot.part.xy;
+    vec2 shown = shade_shown(position - dot(position - p.position, p.facet) * p.facet);
+    vec2 middle = clamp((shown - foot.part.xy) / size, 0.0, 1.0);
+    float sum = 0.0;
+    for (int k = 0; k < side * side; k++) {
+        vec2 t = vec2(k % side, k / side) / float(side);
+        vec2 first = shade_border(t, middle), last = shade_border(t + 1.0 / float(side), middle), share = last - first;
+        shade_footprint part = shade_footprint(foot.part.xyxy + vec4(first, last) * size.xyxy,
+                                               foot.width * max(max(share.x, share.y), 1e-6));
+        sum += share.x * share.y * shade_lamp_on(p, part, row, position);
+    }
+    return sum;
 }
 
 // Lamp `row` of the table.
