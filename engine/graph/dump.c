@@ -58,6 +58,8 @@ static const char *format_name(VkFormat format)
         return "RGBA16F";
     case VK_FORMAT_R32G32B32A32_SFLOAT:
         return "RGBA32F";
+    case VK_FORMAT_R32G32B32A32_UINT:
+        return "RGBA32UI";
     case VK_FORMAT_R8G8B8A8_UNORM:
         return "RGBA8";
     case VK_FORMAT_D32_SFLOAT:

@@ -7,6 +7,7 @@
 #include "shade_forward.comp.h"
 #include "shade_gather.comp.h"
 #include "shade_lights.comp.h"
+#include "shade_rows.comp.h"
 #include "shade_sight.comp.h"
 #include "shade_surface.comp.h"
 #include "shade_vpls.comp.h"
@@ -14,10 +15,12 @@
 #include "shade_table.h"
 #include "gbuffer_edge_args.h"
 #include "walls_args.h"
+#include <stddef.h>
 #include <string.h>
 
 #define PORT(name) SHADE_PORT_##name
 #define IMAGE2 TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT
+#define TEXELS TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_UINT // shade_part.glsl
 
 static const tyn_port ports[SHADE_NUM_PORTS] = {
     [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
@@ -75,11 +78,8 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     [PORT(FACES)] = {"faces", TYN_SCRATCH, IMAGE2, .meaning = "light that leaves the medium's box"},
     [PORT(SIGHT)] = {"sight", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                      .meaning = "from where faces of the medium's box are seen"},
-    [PORT(PLACE)] = {"place", TYN_SCRATCH, IMAGE2, .meaning = "where a pixel is shaded (M, m)"},
-    [PORT(PART)] = {"part", TYN_SCRATCH, IMAGE2,
-                    .meaning = "irradiance of a part of the VPLs, W/m^2"},
-    [PORT(INDIRECT)] = {"indirect", TYN_SCRATCH, IMAGE2,
-                        .meaning = "irradiance of all VPLs, W/m^2"},
+    [PORT(PART)] = {"part", TYN_SCRATCH, TEXELS, .meaning = "a pixel's part of the VPLs' light"},
+    [PORT(ROWS)] = {"part_rows", TYN_SCRATCH, TEXELS, .meaning = "summed along rows"},
 };
 
 // Bindings 0 to 20 of shade.glsl. What is in the table is not read from buffers.
@@ -128,19 +128,22 @@ static const tyn_binding sight_bindings[] = {
 };
 static const tyn_binding vpls_bindings[] = {
     COMMON_BINDINGS,
-    {PORT(PLACE), TYN_USE_STORAGE_WRITE},
     {PORT(PART), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding rows_bindings[] = {
+    {PORT(CAMERA), TYN_USE_UNIFORM},
+    {PORT(VPLS), TYN_USE_STORAGE_READ},
+    {PORT(PART), TYN_USE_STORAGE_READ},
+    {PORT(ROWS), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding gather_bindings[] = {
     COMMON_BINDINGS,
-    {PORT(PLACE), TYN_USE_SAMPLED},
-    {PORT(PART), TYN_USE_SAMPLED},
-    {PORT(INDIRECT), TYN_USE_STORAGE_WRITE},
+    {PORT(ROWS), TYN_USE_STORAGE_READ},
+    {PORT(PART), TYN_USE_STORAGE_WRITE},
 };
-// Bindings 0 to 29 of shade_piece.glsl.
+// Bindings 0 to 27 of shade_piece.glsl.
 #define SURFACE_BINDINGS                                                                           \
-    COMMON_BINDINGS, {PORT(INDIRECT), TYN_USE_SAMPLED}, {PORT(PLACE), TYN_USE_SAMPLED},            \
-        {PORT(PART), TYN_USE_SAMPLED}, {PORT(MOMENTS), TYN_USE_SAMPLED},                           \
+    COMMON_BINDINGS, {PORT(PART), TYN_USE_STORAGE_READ}, {PORT(MOMENTS), TYN_USE_SAMPLED},         \
         {PORT(WALL_TABLE), TYN_USE_SAMPLED}, {PORT(ENVIRONMENT), TYN_USE_UNIFORM},                 \
         {PORT(FORWARD), TYN_USE_SAMPLED}, {PORT(FACES), TYN_USE_SAMPLED},                          \
     {                                                                                              \
@@ -158,7 +161,7 @@ static const tyn_binding edges_bindings[] = {
     {PORT(EDGES), TYN_USE_STORAGE_READ},
 };
 
-enum { LIGHTS = 0, WALLS, FORWARD, FACES, SIGHT, VPLS, GATHER, SURFACE, EDGES, NUM_KERNELS };
+enum { LIGHTS = 0, WALLS, FORWARD, FACES, SIGHT, VPLS, SUM_ROWS, GATHER, SURFACE, EDGES, NUM_KERNELS };
 
 #define KERNEL(step, x, y, z)                                                                      \
     .name = "shade_" #step, .spirv = shade_##step##_spirv,                                         \
@@ -173,9 +176,16 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [FACES] = {KERNEL(faces, 32, 1, 1), ARGS(2)},
     [SIGHT] = {KERNEL(sight, 8, 4, 1), ARGS(1)},
     [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(5)},
+    [SUM_ROWS] = {KERNEL(rows, 8, 8, 1), .num_spec = 1},
     [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(5)},
     [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(5)},
     [EDGES] = {KERNEL(edges, GBUFFER_EDGES, 1, 1), ARGS(5)},
+};
+
+static const tyn_param params[] = {
+    {"pattern", TYN_PARAM_INT, offsetof(tyn_shade_params, pattern), 0, 0, 8, "pixels",
+     "along each side of the pattern whose pixels share the virtual lights; 1 = every pixel takes "
+     "all; 0 = 5, in small pictures 4"},
 };
 
 static tyn_result declare(tyn_builder *b, const void *data)
@@ -202,9 +212,8 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_extent fields = {places[0], places[1], places[2] * SHADE_SIGHT_FIELDS};
     tyn_build_image(b, PORT(SIGHT), outside && tyn_build_has(b, PORT(SURFACES)) ? fields : texel, 1);
     tyn_build_image(b, PORT(TABLE), (tyn_extent){SHADE_ENTRIES, SHADE_ROWS, 1}, 1);
-    tyn_build_image(b, PORT(PLACE), pixels, 1);
     tyn_build_image(b, PORT(PART), pixels, 1);
-    tyn_build_image(b, PORT(INDIRECT), pixels, 1);
+    tyn_build_image(b, PORT(ROWS), pixels, 1);
     return TYN_OK;
 }
 
@@ -231,7 +240,8 @@ static void record(tyn_recorder *r, const void *data)
     features |= p->sky ? SHADE_SKY : 0;
     const uint32_t samples = tyn_rec_extent(r, PORT(SURFACE)).x / p->size[0];
     const uint32_t shorter = p->size[0] < p->size[1] ? p->size[0] : p->size[1];
-    const uint32_t side = shorter < SHADE_SMALL ? SHADE_SIDE_SMALL : SHADE_SIDE;
+    const uint32_t usual = shorter < SHADE_SMALL ? SHADE_SIDE_SMALL : SHADE_SIDE;
+    const uint32_t side = p->pattern ? (uint32_t)p->pattern : usual;
     const uint32_t spec[5] = {p->mode, features, p->num_suns, samples, side};
     const tyn_extent pixels = {p->size[0], p->size[1], 1};
     tyn_dispatch d = {.kernel = LIGHTS, .cells = {SHADE_ROWS, 1, 1}, .args = &args, .spec = spec};
@@ -264,6 +274,7 @@ static void record(tyn_recorder *r, const void *data)
         d.cells =
             (tyn_extent){(pixels.x + side - 1) / side, (pixels.y + side * SHADE_MANY - 1) / (side * SHADE_MANY), side * side};
         tyn_rec_dispatch(r, &d);
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SUM_ROWS, .cells = pixels, .spec = &side});
         d.kernel = GATHER;
         d.cells = pixels;
         tyn_rec_dispatch(r, &d);
@@ -286,6 +297,8 @@ const tyn_pass_desc tyn_pass_shade = {
     .num_ports = SHADE_NUM_PORTS,
     .kernels = kernels,
     .num_kernels = NUM_KERNELS,
+    .params = params,
+    .num_params = sizeof params / sizeof *params,
     .params_size = sizeof(tyn_shade_params),
     .declare = declare,
     .record = record,

@@ -3,7 +3,8 @@
 #include <tyndall/pass.h>
 
 typedef struct tyn_shade_params {
-    // All set by the method:
+    int32_t pattern; // pixels along each side that share VPLs; 0: as many as the picture's size asks for
+    // Set by the method:
     uint32_t mode;    // TYN_MEDIUM_*
     uint32_t size[2]; // of the picture, pixels
     uint32_t
@@ -55,9 +56,8 @@ enum {
     SHADE_PORT_FORWARD, // SCRATCH 3D RGBA32F, shade_forward.comp: exists with a lattice, suns and shadows
     SHADE_PORT_FACES, // SCRATCH 2D RGBA32F, shade_faces.h
     SHADE_PORT_SIGHT, // SCRATCH 3D RGBA32F, the same
-    SHADE_PORT_PLACE, // SCRATCH 2D RGBA32F: exist with VPLs
-    SHADE_PORT_PART,
-    SHADE_PORT_INDIRECT,
+    SHADE_PORT_PART, // SCRATCH 2D RGBA32UI, shade_part.glsl: exist with VPLs
+    SHADE_PORT_ROWS,
     SHADE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_shade;

@@ -19,10 +19,8 @@
 #define SHADE_SIDE 5
 #define SHADE_SIDE_SMALL 4
 #define SHADE_SMALL 64 // pixels along the shorter side
-#define SHADE_REACH 2  // pixels around one that a gather looks at
 #define SHADE_MOST 8   // VPLs that a pixel takes in any case
 #define SHADE_MANY 4   // pixels that a thread takes VPLs at
-#define SHADE_NONE 4.0 // in place of a normal: no surface
 
 struct shade_args {
     tyn_uint num_directional; // lights before the lamps in "lights"

@@ -7,11 +7,11 @@
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
-layout(binding = 31, scalar) readonly buffer edge_count_buffer
+layout(binding = 29, scalar) readonly buffer edge_count_buffer
 {
     gbuffer_edge_count edge_count;
 };
-layout(binding = 32, scalar) readonly buffer edges_buffer
+layout(binding = 30, scalar) readonly buffer edges_buffer
 {
     uint edges[];
 };
@@ -24,14 +24,12 @@ vec3 light_of_vpls(ivec2 pixel, shade_point p)
     vec3 light = vec3(0.0);
     for (int i = 0; i < 9; i++) {
         ivec2 at = clamp(pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), ivec2(camera.size) - 1);
-        vec4 found = texelFetch(indirect_tex, at, 0);
-        vec4 place = texelFetch(place_tex, at, 0);
-        vec3 normal = gbuffer_unfold(vec2(place.w, texelFetch(part_tex, at, 0).w));
-        vec3 d = place.xyz - p.position;
-        float like = dot(normal, p.normal) - abs(dot(d, p.normal)) * inversesqrt(dot(d, d) + 1e-36);
-        if (found.a > 0.0 && like > best) {
+        shade_part found = shade_unpack(imageLoad(indirect_image, at));
+        vec3 d = shade_part_position(at, found.along) - p.position;
+        float like = dot(found.facet, p.facet) - abs(dot(d, p.facet)) * inversesqrt(dot(d, d) + 1e-36);
+        if (found.along > 0.0 && like > best) {
             best = like;
-            light = found.rgb;
+            light = found.irradiance;
         }
     }
     return light;

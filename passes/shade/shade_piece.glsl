@@ -6,24 +6,23 @@
 #ifndef TYN_SHADE_PIECE_GLSL
 #define TYN_SHADE_PIECE_GLSL
 #include "shade.glsl"
+#include "shade_part.glsl"
 #include "lattice.glsl"
 #include "walls_links.glsl"
 
-layout(binding = 21) uniform sampler2D indirect_tex;
-layout(binding = 22) uniform sampler2D place_tex;
-layout(binding = 23) uniform sampler2D part_tex;
-layout(binding = 24) uniform sampler3D moments_tex;
-#define WALLS_TABLE 25
+layout(binding = 21, rgba32ui) uniform readonly uimage2D indirect_image; // shade_part.glsl
+layout(binding = 22) uniform sampler3D moments_tex;
+#define WALLS_TABLE 23
 #define WALLS_OTHERS TYN_BEAM_MAX_SUNS
 #include "walls_irradiance.glsl"
-layout(binding = 26, scalar) uniform env_uniform
+layout(binding = 24, scalar) uniform env_uniform
 {
     env_block environment;
 };
-layout(binding = 27) uniform sampler3D forward_tex; // shade_forward.comp
-layout(binding = 28) uniform sampler2D faces_tex; // shade_faces.h
-layout(binding = 29) uniform sampler3D sight_tex; // shade_sight.comp
-layout(binding = 30, rgba32f) uniform writeonly image2D radiance_image; // and distance, or infinity
+layout(binding = 25) uniform sampler3D forward_tex; // shade_forward.comp
+layout(binding = 26) uniform sampler2D faces_tex; // shade_faces.h
+layout(binding = 27) uniform sampler3D sight_tex; // shade_sight.comp
+layout(binding = 28, rgba32f) uniform writeonly image2D radiance_image; // and distance, or infinity
 
 const float PI = 3.14159265358979;
 #define NOWHERE uintBitsToFloat(0x7f800000u) // infinity

@@ -33,7 +33,7 @@ void main()
         shade_point p = shade_point(at + off, seen.normal, seen.facet);
         vec3 irradiance = irradiance_at(p, vec4(pixel, pixel + 1));
         if (shade_has(SHADE_VPLS)) {
-            irradiance += texelFetch(indirect_tex, pixel, 0).rgb;
+            irradiance += shade_unpack(imageLoad(indirect_image, pixel)).irradiance;
         }
         vec3 radiance = seen.emission + seen.albedo * irradiance / PI;
         for (int k = 0; k < shade_samples * shade_samples; k++) {

@@ -1,0 +1,36 @@
+// shade_rows.comp -- VPLs' light summed over the pattern along rows. shade_gather.comp sums these sums along columns.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shade_args.h"
+#include "camera.glsl"
+#include "gbuffer.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(constant_id = 0) const int shade_side = SHADE_SIDE; // of the pattern
+layout(binding = 0, scalar) uniform camera_uniform
+{
+    camera_block camera;
+};
+layout(binding = 1, scalar) readonly buffer vpl_buffer
+{
+    uint vpl_count;
+};
+layout(binding = 2, rgba32ui) uniform readonly uimage2D tent_image;
+layout(binding = 3, rgba32ui) uniform writeonly uimage2D rows_image;
+#include "shade_part.glsl"
+#include "shade_tent.glsl"
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(pixel, ivec2(camera.size)))) {
+        return;
+    }
+    shade_part sum = shade_unpack(imageLoad(tent_image, pixel));
+    for (bool shown = sum.along > 0.0 && vpl_count > SHADE_MOST; shown; shown = false) {
+        sum = shade_tent(pixel, ivec2(1, 0), sum);
+    }
+    imageStore(rows_image, pixel, shade_pack(sum));
+}
