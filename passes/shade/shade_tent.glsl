@@ -28,9 +28,11 @@ shade_part shade_tent(ivec2 pixel, ivec2 step, shade_part here)
             int d = i == 0 ? k : k - shade_side;
             ivec2 at = pixel + d * step, held = clamp(at, ivec2(0), last);
             shade_part there = shade_unpack(imageLoad(tent_image, held));
-            // Neighbours may be as far off the plane as the pixel is wide.
-            float off = float(d) * (a + c * there.along) + b * (there.along - here.along);
-            float like = clamp(2.0 - abs(off), 0.0, 1.0) * smoothstep(0.7, 0.9, dot(here.facet, there.facet));
+            // Neighbours may be as far off the plane as the pixel is wide. Those that are a bit worse count where there are
+            // no others.
+            float off = abs(float(d) * (a + c * there.along) + b * (there.along - here.along));
+            float turned = dot(here.facet, there.facet), like = clamp(2.0 - off, 0.0, 1.0) * smoothstep(0.7, 0.9, turned);
+            like = max(like, off < 6.0 && turned > 0.5 ? 0.01 : 0.0);
             bool counts = at == held && there.along > 0.0 && there.whole;
             mean += (counts ? like * (1.0 - float(abs(d)) / float(shade_side)) : 0.0) * vec4(there.irradiance, 1.0);
         }
