@@ -8,8 +8,8 @@
 #define SHADE_TENT_GLSL
 #extension GL_EXT_control_flow_attributes : require
 
-// The sum at `pixel`, whose own part is `here`; `step` to its neighbours. Not whole where for some place of the pattern
-// there is no pixel on this surface nearby.
+// The sum at `pixel`, whose own part is `here`; `step` to its neighbours. Not whole where most places of the pattern
+// have no pixel on this surface nearby.
 shade_part shade_tent(ivec2 pixel, ivec2 step, shade_part here)
 {
     // How far a neighbour d steps off is from the facet's plane: a d + b (z' - z) + c z' d, z along the axis.
@@ -22,6 +22,7 @@ shade_part shade_tent(ivec2 pixel, ivec2 step, shade_part here)
     float b = dot(here.facet, ray.direction) / dot(ray.direction, camera.forward) * per;
     ivec2 last = ivec2(size) - 1;
     shade_part sum = here;
+    int met = 1;
     [[unroll]] for (int k = 1; k < shade_side; k++) {
         vec4 mean = vec4(0.0);
         [[unroll]] for (int i = 0; i < 2; i++) {
@@ -37,8 +38,11 @@ shade_part shade_tent(ivec2 pixel, ivec2 step, shade_part here)
             mean += (counts ? like * (1.0 - float(abs(d)) / float(shade_side)) : 0.0) * vec4(there.irradiance, 1.0);
         }
         sum.irradiance += mean.rgb / max(mean.a, 1e-6);
-        sum.whole = sum.whole && mean.a > 1e-3;
+        met += mean.a > 1e-3 ? 1 : 0;
     }
+    // Any place of the pattern takes VPLs from everywhere, so most stand for all.
+    sum.irradiance *= float(shade_side) / float(met);
+    sum.whole = here.whole && 2 * met > shade_side;
     return sum;
 }
 

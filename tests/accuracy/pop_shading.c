@@ -1,0 +1,107 @@
+// pop_shading.c -- how `pop` shares virtual lights among neighbouring pixels: no squares where few of them are most of
+// what arrives, and as much light as if every pixel took all.
+#include "gpu_test.h"
+#include "picture.h"
+#include "solids.h"
+#include <math.h>
+#include <stdio.h>
+
+enum { SIZE = 100 };
+
+// A floor close below a strip of light, whose virtual lights each are most of what is below them, and a block that
+// stands on it: edges, and sides that are seen at grazing angles.
+static void render(gpu_test *t, picture *p, bool block, const char *settings)
+{
+    tyn_scene scene;
+    tyn_view view = {0};
+    tyn_scene_init(&scene);
+    uint32_t grey = solids_material(&scene, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, 0, 0});
+    uint32_t lamp = solids_material(&scene, (float[]){0, 0, 0}, (float[]){20, 20, 20});
+    solids_quad(&scene, (float[]){-2, 0, -2}, (float[]){0, 0, 4}, (float[]){4, 0, 0}, grey);
+    solids_quad(&scene, (float[]){-2, 0.3f, -0.01f}, (float[]){4, 0, 0}, (float[]){0, 0, 0.02f},
+                lamp);
+    if (block) {
+        solids_box(&scene, (float[]){-0.2f, 0, 0.1f}, (float[]){0.1f, 0.2f, 0.3f}, 0.4f, false,
+                   grey);
+    }
+    solids_hierarchy(&scene, 4);
+    const float y = block ? -0.6f : -1, z = block ? -0.8f : 0;
+    const float up[3] = {0, block ? 0.8f : 0, block ? -0.6f : -1};
+    const float at[3] = {0, block ? 0.15f : 0.1f, block ? 0.16f : 0};
+    view_orthographic(&view, at, 0, y, z, up, 0.5f, SIZE);
+    picture_render(p, t->dev, "pop", &scene, &view, settings, 1);
+    tyn_scene_finish(&scene);
+}
+
+static double value(const picture *p, int x, int y)
+{
+    return p->rgb[3 * (y * SIZE + x)];
+}
+
+// The second difference from one pixel of a row or column to the next but one; squares make it large at their borders.
+static double bend(const picture *p, int x, int y, int dx, int dy)
+{
+    return value(p, x - dx, y - dy) - 2 * value(p, x, y) + value(p, x + dx, y + dy);
+}
+
+static void no_squares(void **state)
+{
+    static const struct {
+        const char *settings; // and what the truth is rendered with
+        bool block;
+        // The nearest pixel of each part alone would give 130, 105, 287 %; 12.5, 7.2, 12.7 %; .49, .00, .46 %; 16, 11,
+        // 17 %.
+        double worst, rms, mean,
+            bend; // of the mean; `bend`: how much more of it there may be, root mean square
+    } cases[] = {
+        {"vpl.count=128", false, 0.12, 0.015, 0.001, 0.01},
+        {"vpl.count=32", false, 0.19, 0.011, 0.0005, 0.02},
+        {"vpl.count=128", true, 2.2, 0.1, 0.001, 0.1},
+    };
+    bool good = true;
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        picture p, truth;
+        char settings[64];
+        snprintf(settings, sizeof settings, "%s shade.pattern=1", cases[k].settings);
+        render(*state, &p, cases[k].block, cases[k].settings);
+        render(*state, &truth, cases[k].block, settings);
+        double worst = 0, sum = 0, off = 0, squares = 0, bends = 0, true_bends = 0;
+        for (int y = 0; y < SIZE; y++) {
+            for (int x = 0; x < SIZE; x++) {
+                double v = value(&truth, x, y), d = value(&p, x, y) - v;
+                worst = fmax(worst, fabs(d));
+                sum += v;
+                off += d;
+                squares += d * d;
+            }
+        }
+        for (int y = 1; y < SIZE - 1; y++) {
+            for (int x = 1; x < SIZE - 1; x++) {
+                for (int along = 0; along < 2; along++) {
+                    double a = bend(&p, x, y, along, 1 - along);
+                    double b = bend(&truth, x, y, along, 1 - along);
+                    bends += (a - b) * (a - b);
+                    true_bends += b * b;
+                }
+            }
+        }
+        const double mean = sum / (SIZE * SIZE), rms = sqrt(squares) / SIZE / mean;
+        const double bent = sqrt(0.5 * bends) / SIZE / mean;
+        print_message(
+            "%s%s: a pixel %.2f %% off at most, rms %.3f %%, mean %+.4f %%; second differences "
+            "%.4f %% off (they are %.4f %%)\n",
+            cases[k].settings, cases[k].block ? ", block" : "", 100 * worst / mean, 100 * rms,
+            100 * off / sum, 100 * bent, 100 * sqrt(0.5 * true_bends) / SIZE / mean);
+        good = good && sum > 0 && worst < cases[k].worst * mean && rms < cases[k].rms;
+        good = good && fabs(off / sum) < cases[k].mean && bent < cases[k].bend;
+        picture_free(&p);
+        picture_free(&truth);
+    }
+    assert_true(good);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(no_squares)};
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
