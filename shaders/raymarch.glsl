@@ -489,7 +489,8 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
     vec3 medium0 = origin / medium.extent, medium1 = direction / medium.extent;
     ivec3 field_size = textureSize(inscatter_tex, 0);
     vec3 field0 = lattice_inscatter_uvw(medium.extent, field_size, origin);
-    vec3 field1 = lattice_inscatter_uvw(medium.extent, field_size, origin + direction) - field0;
+    // A difference of two places a metre apart is lost to rounding where a box is many kilometres wide.
+    vec3 field1 = direction / (lattice_box_of(medium.extent, field_size - 2).dx * vec3(field_size));
 
     // A ray may end a little behind the surface that it stands for: light is not looked up there.
     float inside = raymarch_has(RAYMARCH_WALLS | RAYMARCH_SHADOWS) ? max(end - 5e-4 * (start + end), 0.0) : end;

@@ -116,11 +116,14 @@ static frame fit_sun(const float direction[3], double margin, const struct surfa
     }
     double lo, hi;
     range(axis, s, &lo, &hi);
-    const double sizes = fabs((double)s->hi[0] - (double)s->lo[0]) +
-                         fabs((double)s->hi[1] - (double)s->lo[1]) +
-                         fabs((double)s->hi[2] - (double)s->lo[2]);
-    double slack =
-        1e-3 * (hi - lo) + 1e-6 * sizes + 1e-30; // the farthest surface is not at the depth of none
+    // The farthest surface is not at the depth of none. And depths are compared within SHADOW_EPSILON of this
+    // range: where all surfaces lie in a plane across the sun that still is more than places are rounded by.
+    double reach = 1e-30;
+    for (int c = 0; c < 3; c++) {
+        reach += fmax(fabs((double)s->lo[c]), fabs((double)s->hi[c]));
+        reach += fabs((double)s->from_world[c][3]);
+    }
+    double slack = 1e-3 * (hi - lo) + 0.05 * reach;
     lo -= slack, hi += slack;
     for (int c = 0; c < 3; c++) {
         best.rows[2][c] = -axis[c] / (hi - lo);

@@ -1,0 +1,102 @@
+// scales.c -- the same scene, from a tenth of a micrometre to a hundred thousand kilometres: the same picture.
+//
+// Lengths times s, coefficients by s, intensities of lamps times s^2 leave every radiance as it is. All differences
+// are a bound in metres, or places that rounding has lost. Powers of ten: those of two would round alike.
+#include "gpu_test.h"
+#include "picture.h"
+#include "solids.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { PIXELS = 32 };
+
+typedef enum light { SUN, LAMP, SPOT } light;
+
+static const char *const light_names[] = {"sun", "lamp", "spot"};
+
+static tyn_scene *scene_of(light kind, float s)
+{
+    tyn_scene *scene = malloc(sizeof *scene);
+    tyn_scene_init(scene);
+    tyn_medium medium = grey_medium(0.3f / s, 0.02f / s, 0.3f);
+    scene_add_box(scene, &medium, (float[]){-s, -s, -s}, (float[]){s, s, s}, NULL, NULL);
+    // A floor in the plane of the box's face, as wide again, and a block on it that stands out of the box.
+    uint32_t material = solids_material(scene, (float[]){0.7f, 0.7f, 0.7f}, (float[]){0, 0, 0});
+    solids_quad(scene, (float[]){-2 * s, -s, -2 * s}, (float[]){0, 0, 4 * s},
+                (float[]){4 * s, 0, 0}, material);
+    if (kind != SUN) { // under the sun all surfaces lie in a plane across it
+        solids_box(scene, (float[]){0.5f * s, -s, -0.3f * s}, (float[]){1.2f * s, 0, 0.3f * s},
+                   0.4f, false, material);
+    }
+    solids_hierarchy(scene, 4);
+    if (kind == SUN) {
+        scene_add_sun(scene, 0, -1, 0, 5, 5, 5);
+    } else {
+        scene->lights[scene->num_lights++] = (tyn_light){
+            .kind = kind == SPOT ? TYN_LIGHT_SPOT : TYN_LIGHT_POINT,
+            .color = {10 * s * s, 10 * s * s, 10 * s * s},
+            .position = {-0.2f * s, 0.5f * s, 0.1f * s},
+            .direction = {0.6f, -0.8f, 0},
+            .cos_inner = 0.95f,
+            .cos_outer = 0.8f,
+        };
+    }
+    return scene;
+}
+
+static picture picture_of(gpu_test *t, const char *method, light kind, float s)
+{
+    tyn_scene *scene = scene_of(kind, s);
+    tyn_view view = {0};
+    view_orthographic(&view, (float[]){0, 0, 0}, 0.2f, -0.4f, -1, (float[]){0, 1, 0}, 1, PIXELS);
+    view.camera.projection = TYN_PERSPECTIVE;
+    view.camera.yfov = 0.35f;
+    for (int c = 0; c < 3; c++) {
+        view.camera.position[c] *= s;
+    }
+    picture p;
+    picture_render(&p, t->dev, method, scene, &view, NULL, 8);
+    tyn_scene_finish(scene);
+    free(scene);
+    return p;
+}
+
+static void compare(gpu_test *t, const char *method, light kind, double bound)
+{
+    const float scales[] = {1e-7f, 1e-2f, 1e8f};
+    double worst = 0;
+    picture plain = picture_of(t, method, kind, 1);
+    for (size_t i = 0; i < sizeof scales / sizeof *scales; i++) {
+        picture p = picture_of(t, method, kind, scales[i]);
+        picture_error e = picture_compare(&p, &plain, 1);
+        print_message("%s, %s, x %g: rel_l1 %.4f %%, bias %+.4f %%\n", method, light_names[kind],
+                      (double)scales[i], 100 * e.rel_l1, 100 * e.bias);
+        worst = fmax(worst, e.rel_l1);
+        picture_free(&p);
+    }
+    picture_free(&plain);
+    assert_true(worst < bound);
+}
+
+static void pop(void **state)
+{
+    compare(*state, "pop", SUN, 1e-3);
+    compare(*state, "pop", LAMP, 1e-3);
+    compare(*state, "pop", SPOT, 1e-3);
+}
+
+// The same random numbers: paths differ where rounding sends one another way.
+static void path(void **state)
+{
+    compare(*state, "path", SPOT, 1e-3);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pop),
+        cmocka_unit_test(path),
+    };
+    cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
