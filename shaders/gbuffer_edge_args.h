@@ -4,7 +4,8 @@
 #include "shared.h"
 
 #define GBUFFER_EDGES 64 // pixels of a workgroup that goes through the list of edges
-#define GBUFFER_ROW 32768 // workgroups along x, at most; further ones follow along y: devices run 65535 along an axis
+// Workgroups along x, at most; further ones follow along y: devices run 65535 along an axis.
+#define GBUFFER_ROW 32768
 
 // Pixels that show several pieces of surface, or one beside nothing: buffers "edge_count" and "edges"; an element of
 // the latter is x | y << 16. Their order does not matter.

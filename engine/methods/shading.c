@@ -134,7 +134,8 @@ static void place_sight(const tyn_frame_scene *frame, tyn_shade_params *params)
     params->sight_edge = longest / SHADE_SIGHT_PLACES;
     for (int axis = 0; axis < 3; axis++) {
         params->sight_lo[axis] = lo[axis];
-        params->sight_places[axis] = (uint32_t)ceilf(0.999f * (hi[axis] - lo[axis]) / params->sight_edge);
+        params->sight_places[axis] =
+            (uint32_t)ceilf(0.999f * (hi[axis] - lo[axis]) / params->sight_edge);
     }
 }
 
@@ -164,11 +165,12 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
     memcpy(params.tint, in->tint, sizeof params.tint);
     params.sky = sky[0] + sky[1] + sky[2] > 0.0f;
     const uint32_t *repeat = job->frame->medium.repeat;
-    params.outside = !repeat[0] && !repeat[1] && !repeat[2] && reach_beyond_media(job->frame);
+    const bool beyond = reach_beyond_media(job->frame);
+    params.outside = beyond && !repeat[0] && !repeat[1] && !repeat[2];
     if (params.outside) {
         place_sight(job->frame, &params);
     }
-    if (params.sky && (in->wall_links.resource == 0 || reach_beyond_media(job->frame))) {
+    if (params.sky && (in->wall_links.resource == 0 || beyond)) {
         tyn_method_warn(job, "surfaces beyond the media's box are lit by the mean of the "
                              "environment as if nothing stood around them");
     }

@@ -9,7 +9,7 @@ typedef struct tyn_merge_params {
     uint32_t mode;          // TYN_MEDIUM_*, read where there are ordinates, as the next
     uint32_t repeat[3];     // medium_block.repeat
     uint32_t marched_lamps; // local lights that the march itself does, the first ones
-    float reach;            // ... and so far from the others it does a part of them, m (radial_reach); 0: none
+    float reach;            // ... and so far from the others it does a part of them, m; 0: none
     uint32_t grey;          // 1: sigma_s, sigma_a and g are equal in all channels (mode DENSITY)
 } tyn_merge_params;
 

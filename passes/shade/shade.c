@@ -195,7 +195,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_extent pixels =
         vpls ? (tyn_extent){p->size[0], p->size[1], 1} : (tyn_extent){1, 1, 1};
     const bool outside = p->outside && tyn_build_has(b, PORT(MOMENTS));
-    const tyn_extent faces = {SHADE_FACE_PATCHES * SHADE_FACE_ENTRIES, 6 + SHADE_FACE_SIDE, 1};
+    const tyn_extent faces = {SHADE_FACE_WIDTH, 6 + SHADE_FACE_SIDE, 1};
     tyn_build_image(b, PORT(RADIANCE), tyn_build_extent(b, PORT(SURFACE)), 1);
     // The moments have a cell's channels behind each other along z.
     tyn_extent cells = tyn_build_extent(b, PORT(MOMENTS));

@@ -106,6 +106,10 @@ void main()
     if (abs(all_out) > abs(flux) && all_out * flux > 0.0) {
         shape.yzw = 3.0 / all_out * (mean.yzw - flux * vec3(outwards));
     }
+    if (side == SHADE_FACE_SIDE) {
+        imageStore(faces_image, ivec2(face * SHADE_FACE_SIDE, 6) + at, vec4(any_lit ? net : vec3(0.0), 1.0));
+        return;
+    }
     vec2 origin = vec2(box.origin[u], box.origin[v]);
     ivec2 texel = ivec2(number * SHADE_FACE_ENTRIES, face);
     imageStore(faces_image, texel + ivec2(SHADE_FACE_RECT, 0),
@@ -117,7 +121,4 @@ void main()
     target[v] = origin.y + box.dx * aim.y;
     target[axis] = box.origin[axis] + (upper ? box.dx * float(dims[axis]) : 0.0);
     imageStore(faces_image, texel + ivec2(SHADE_FACE_AIM, 0), vec4(target, 0.0));
-    if (side == SHADE_FACE_SIDE) {
-        imageStore(faces_image, ivec2(face * SHADE_FACE_SIDE, 6) + at, vec4(any_lit ? net : vec3(0.0), 1.0));
-    }
 }

@@ -65,7 +65,7 @@ struct wall_side {
     float area;
 };
 
-// As walls_visible; `index` is that of cell a. This is most of the pass's time.
+// As walls_visible; `index` is that of cell a.
 bool sees(ivec3 a, uint index, ivec3 b)
 {
     ivec3 dims = ivec3(args.dims), at = a;

@@ -97,15 +97,22 @@ static void slabs(void **state)
     fclose(f);
 }
 
-static void ground(void **state)
+// Skips the test where it is absent.
+static FILE *open_reference(const char *name)
 {
-    char path[512], line[512];
-    FILE *f =
-        shared_path(path, sizeof path, "reference/slab_ground_flux.csv") ? fopen(path, "r") : NULL;
+    char path[512];
+    FILE *f = shared_path(path, sizeof path, name) ? fopen(path, "r") : NULL;
     if (!f) {
         printf("skipped: no %s\n", path);
         skip();
     }
+    return f;
+}
+
+static void ground(void **state)
+{
+    FILE *f = open_reference("reference/slab_ground_flux.csv");
+    char line[512];
     double reflected = 0;
     for (int i = 0; fgets(line, sizeof line, f);) {
         double tau, g, albedo, mu0, surface, depth, direct, down, up;
@@ -142,13 +149,8 @@ static void ground(void **state)
 
 static void cube(void **state)
 {
-    char path[512], line[256];
-    FILE *f =
-        shared_path(path, sizeof path, "reference/cube_face_flux.csv") ? fopen(path, "r") : NULL;
-    if (!f) {
-        printf("skipped: no %s\n", path);
-        skip();
-    }
+    FILE *f = open_reference("reference/cube_face_flux.csv");
+    char line[256];
     double last_g = NAN;
     tyn_fluxes x = {0};
     while (fgets(line, sizeof line, f)) {
