@@ -1,13 +1,21 @@
 // gbuffer.glsl -- what pass gbuffer stores of the surface that a ray of the camera meets first.
 //
-// Three RGBA32F images of camera.size * samples texels, sample (i, j) of a pixel beside its neighbours:
-// `surface`: shading normal, distance along the ray in m (0: no surface); `albedo`: albedo, x of the
-// facet's normal; `emission`: radiance towards the camera, y of it. Normals are in M, on the camera's side.
+// `distances`, R32F, a texel a sample, those of a pixel side by side: m along the ray; 0: no surface.
+// `facing`, RGBA32UI, a texel a pixel: what it shows (GBUFFER_*), the facet's normal and that for shading, in M and on
+// the camera's side.
+// `colours`, RGBA32UI, gbuffer_texels(samples along a side) texels a pixel, side by side.
 //
-// Where all samples of a pixel lie on one piece of surface, its first sample holds their mean normal, albedo and
-// emission, and of the others there is the distance only. The pixels of several pieces are in a list.
+// Where all samples of a pixel lie on one piece of surface, `facing` has the first one's facet and their mean normal, and
+// the first of `colours` their mean albedo and emission. Of a pixel that shows several pieces, or one beside nothing,
+// `facing` is that of the sample nearest its middle, and `colours` hold the triangles that samples see, four a texel:
+// index + 1, 0: none. These pixels are in a list as well.
 #ifndef TYN_GBUFFER_GLSL
 #define TYN_GBUFFER_GLSL
+#include "packed_colour.glsl"
+
+#define GBUFFER_NONE 0u
+#define GBUFFER_WHOLE 1u
+#define GBUFFER_SEVERAL 2u
 
 struct gbuffer_point {
     float distance; // m along the ray; 0: no surface
@@ -15,6 +23,12 @@ struct gbuffer_point {
     vec3 facet;     // of the triangle
     vec3 albedo;
     vec3 emission; // W/(m^2 sr)
+};
+
+struct gbuffer_facing {
+    uint shown; // GBUFFER_*
+    int which;  // of the pixel's samples it is for
+    vec3 normal, facet;
 };
 
 // The octahedral map of unit vectors to [-1, 1]^2 (Cigolle et al., "A survey of efficient representations
@@ -34,26 +48,40 @@ vec3 gbuffer_unfold(vec2 p)
     return normalize(n);
 }
 
-void gbuffer_pack(gbuffer_point p, out vec4 surface, out vec4 albedo, out vec4 emission)
+// Floats, but for the lowest bits of the shading normal: they tell what is shown, and of which sample it is.
+uvec4 gbuffer_facing_pack(gbuffer_facing f)
 {
-    vec2 facet = gbuffer_fold(p.facet);
-    surface = vec4(p.normal, p.distance);
-    albedo = vec4(p.albedo, facet.x);
-    emission = vec4(p.emission, facet.y);
+    uvec4 texel = floatBitsToUint(vec4(gbuffer_fold(f.facet), gbuffer_fold(f.normal)));
+    return uvec4(texel.xy, (texel.z & ~3u) | f.shown, (texel.w & ~15u) | uint(f.which));
 }
 
-// The facet's y is within -1 to 1; of a pixel's first sample it tells what the pixel shows.
-#define GBUFFER_WHOLE 4.0 // added: one piece of surface
-#define GBUFFER_NONE 8.0  // instead: none
-
-bool gbuffer_whole(vec4 emission)
+gbuffer_facing gbuffer_facing_unpack(uvec4 texel)
 {
-    return emission.w > 2.0 && emission.w < 6.0;
+    return gbuffer_facing(texel.z & 3u, int(texel.w & 15u), gbuffer_unfold(uintBitsToFloat(texel.zw & ~uvec2(3u, 15u))),
+                          gbuffer_unfold(uintBitsToFloat(texel.xy)));
 }
 
-bool gbuffer_none(vec4 emission)
+// Texels of `colours` that a pixel has side by side.
+int gbuffer_texels(int samples)
 {
-    return emission.w > 6.0;
+    return (samples * samples + 3) / 4;
+}
+
+// Albedo, 0 to 1: 20 bits a channel.
+uvec4 gbuffer_colours_pack(vec3 albedo, vec3 emission)
+{
+    uvec3 c = uvec3(clamp(albedo, 0.0, 1.0) * 1048575.0 + 0.5);
+    return uvec4(colour_pack(emission), c.r | c.b << 20, c.g | (c.b >> 12) << 20);
+}
+
+vec3 gbuffer_albedo(uvec4 texel)
+{
+    return vec3(texel.z & 0xfffffu, texel.w & 0xfffffu, texel.z >> 20 | (texel.w >> 20) << 12) / 1048575.0;
+}
+
+vec3 gbuffer_emission(uvec4 texel)
+{
+    return colour_unpack(texel.xy);
 }
 
 // Do a sample at `other` (M) with the normal `facet`, in the distance `distance` from the camera, and one at `first`
@@ -62,12 +90,6 @@ bool gbuffer_same(gbuffer_point first, vec3 at, vec3 facet, vec3 other, float di
 {
     vec3 d = other - at;
     return dot(facet, first.facet) > 0.9 && abs(dot(d, first.facet)) < 0.3 * length(d) + 1e-5 * distance;
-}
-
-gbuffer_point gbuffer_unpack(vec4 surface, vec4 albedo, vec4 emission)
-{
-    return gbuffer_point(surface.w, surface.xyz, gbuffer_unfold(vec2(albedo.w, emission.w - (gbuffer_whole(emission) ? GBUFFER_WHOLE : 0.0))),
-                         albedo.rgb, emission.rgb);
 }
 
 #endif

@@ -150,7 +150,7 @@ void add_ray(inout pixel_light sum, ivec2 pixel, vec2 where, float footprint, su
             break;
         }
         if (left > 1e-3) {
-            group = surface_group_from(surface_tex, camera, pixel, group.end);
+            group = surface_group_from(camera, pixel, group.end);
         }
     }
     sum.half_distance = min(sum.half_distance, start + state.half_distance);
@@ -166,7 +166,7 @@ pixel_light pixel_light_none()
 surface_group first_surface(ivec2 pixel)
 {
     if (raymarch_has(RAYMARCH_SURFACE)) {
-        return surface_group_from(surface_tex, camera, pixel, 0.0);
+        return surface_group_from(camera, pixel, 0.0);
     }
     return surface_group(vec4(vec3(0.0), TYN_INFINITY), 1.0, TYN_INFINITY, vec2(0.5));
 }

@@ -29,7 +29,7 @@ void march_block(ivec2 block)
         ivec2 pixel = min(corner + ivec2(i & 1, i >> 1), ivec2(args.end) - 1);
         even = even && rays_of_pixel(pixel) == 1u;
         if (raymarch_has(RAYMARCH_SURFACE)) {
-            surface_group group = surface_group_from(surface_tex, camera, pixel, 0.0);
+            surface_group group = surface_group_from(camera, pixel, 0.0);
             even = even && group.share > 0.999;
             nearest = min(nearest, group.mean.a);
             farthest = max(farthest, group.mean.a);

@@ -1,7 +1,31 @@
 // surface_samples.glsl -- the samples of the scene's surfaces in a pixel: radiance, and distance or infinity.
+//
+// Before including: SURFACE_RADIANCE and SURFACE_DISTANCES as bindings of what passes shade and gbuffer made.
 #ifndef TYN_SURFACE_SAMPLES_GLSL
 #define TYN_SURFACE_SAMPLES_GLSL
 #include "host_depth.glsl"
+#include "packed_colour.glsl"
+
+layout(binding = SURFACE_RADIANCE, rg32ui) uniform readonly uimage2D surface_image;
+layout(binding = SURFACE_DISTANCES) uniform sampler2D surface_distances_tex;
+
+// Samples along each side of a pixel.
+int surface_side(camera_block camera)
+{
+    return textureSize(surface_distances_tex, 0).x / int(camera.size.x);
+}
+
+// Of sample i: radiance, and distance or infinity.
+float surface_distance(ivec2 pixel, int side, int i)
+{
+    float away = texelFetch(surface_distances_tex, pixel * side + ivec2(i % side, i / side), 0).r;
+    return away > 0.0 ? away : TYN_INFINITY;
+}
+
+vec3 surface_radiance(ivec2 pixel, int side, int i)
+{
+    return colour_unpack(imageLoad(surface_image, pixel * side + ivec2(i % side, i / side)).xy);
+}
 
 struct surface_samples {
     int side;     // samples along each side of the pixel
@@ -19,53 +43,53 @@ struct surface_group {
 };
 
 // Of those not nearer than `from`, the nearest and what is up to 1.05 times as far.
-surface_group surface_group_from(sampler2D surfaces, camera_block camera, ivec2 pixel, float from)
+surface_group surface_group_from(camera_block camera, ivec2 pixel, float from)
 {
-    int side = textureSize(surfaces, 0).x / int(camera.size.x);
+    int side = surface_side(camera);
     float nearest = TYN_INFINITY, count = 0.0;
     for (int i = 0; i < side * side; i++) {
-        float away = texelFetch(surfaces, pixel * side + ivec2(i % side, i / side), 0).a;
+        float away = surface_distance(pixel, side, i);
         nearest = away >= from ? min(nearest, away) : nearest;
     }
-    vec4 sum = vec4(0.0);
+    vec3 sum = vec3(0.0);
     vec2 where = vec2(0.0);
     float end = 1.05 * nearest, inverses = 0.0;
     for (int i = 0; i < side * side; i++) {
-        vec4 found = texelFetch(surfaces, pixel * side + ivec2(i % side, i / side), 0);
-        bool here = found.a >= nearest && (found.a < end || nearest == TYN_INFINITY);
-        sum += here && nearest < TYN_INFINITY ? found : vec4(0.0);
+        float away = surface_distance(pixel, side, i);
+        bool here = away >= nearest && (away < end || nearest == TYN_INFINITY);
+        sum += here && nearest < TYN_INFINITY ? surface_radiance(pixel, side, i) : vec3(0.0);
         count += here ? 1.0 : 0.0;
-        inverses += here ? 1.0 / max(found.a, 1e-30) : 0.0;
+        inverses += here ? 1.0 / max(away, 1e-30) : 0.0;
         where += here ? (vec2(i % side, i / side) + 0.5) / float(side) : vec2(0.0);
     }
     surface_group group;
-    group.mean = sum / max(count, 1.0);
     // The reciprocal of the distance to a plane is nearly linear over the pixel.
-    group.mean.a = nearest < TYN_INFINITY ? count / inverses : TYN_INFINITY;
+    group.mean = vec4(sum / max(count, 1.0), nearest < TYN_INFINITY ? count / inverses : TYN_INFINITY);
     group.share = count / float(side * side);
     group.end = end;
     group.where = where / max(count, 1.0);
     return group;
 }
 
-surface_samples surface_samples_of(sampler2D surfaces, camera_block camera, ivec2 pixel)
+surface_samples surface_samples_of(camera_block camera, ivec2 pixel)
 {
     surface_samples s;
-    s.side = textureSize(surfaces, 0).x / int(camera.size.x);
+    s.side = surface_side(camera);
     float nearest = TYN_INFINITY, farthest = 0.0, inverses = 0.0, count = float(s.side * s.side);
-    vec4 sum = vec4(0.0);
+    vec3 sum = vec3(0.0);
     s.covered = 0.0;
     for (int i = 0; i < s.side * s.side; i++) {
-        vec4 found = texelFetch(surfaces, pixel * s.side + ivec2(i % s.side, i / s.side), 0);
-        sum += found.a < TYN_INFINITY ? found : vec4(0.0);
-        s.covered += found.a < TYN_INFINITY ? 1.0 / count : 0.0;
-        nearest = min(nearest, found.a);
-        farthest = max(farthest, found.a);
-        inverses += 1.0 / max(found.a, 1e-30);
+        float away = surface_distance(pixel, s.side, i);
+        bool found = away < TYN_INFINITY;
+        sum += found ? surface_radiance(pixel, s.side, i) : vec3(0.0);
+        s.covered += found ? 1.0 / count : 0.0;
+        nearest = min(nearest, away);
+        farthest = max(farthest, away);
+        inverses += 1.0 / max(away, 1e-30);
     }
     // The reciprocal of the distance to a plane is nearly linear over the pixel.
     s.even = nearest == TYN_INFINITY || farthest < 1.05 * nearest;
-    s.mean = vec4(sum.rgb / count, s.even && nearest < TYN_INFINITY ? count / inverses : nearest);
+    s.mean = vec4(sum / count, s.even && nearest < TYN_INFINITY ? count / inverses : nearest);
     return s;
 }
 

@@ -15,6 +15,7 @@
 // of a number.
 #ifndef TYN_SURFACE_TRACE_GLSL
 #define TYN_SURFACE_TRACE_GLSL
+#include "surface_frame.glsl"
 #include "surface_args.h"
 
 const uint SURFACE_NONE = 0xffffffffu;
@@ -174,16 +175,6 @@ bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
 }
 
 // ---- frames -----------------------------------------------------------------------------------
-
-vec3 surface_turn(tyn_vec4 rows[3], vec3 d)
-{
-    return vec3(dot(rows[0].xyz, d), dot(rows[1].xyz, d), dot(rows[2].xyz, d));
-}
-
-vec3 surface_transform(tyn_vec4 rows[3], vec3 p)
-{
-    return surface_turn(rows, p) + vec3(rows[0].w, rows[1].w, rows[2].w);
-}
 
 // Bounds of a vector's components, turned.
 vec3 surface_turn_sizes(tyn_vec4 rows[3], vec3 sizes)

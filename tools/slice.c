@@ -11,7 +11,7 @@ enum { SMALLEST = 256 }; // pixels along the longer side
 
 typedef struct texel_format {
     VkFormat format;
-    uint32_t channels, bytes; // bytes of a channel: 4 = float, 2 = half, 1 = 0 to 1
+    uint32_t channels, bytes; // bytes of a channel: 4 = float, 2 = half, 1 = 0 to 1, 0 = packed
 } texel_format;
 
 static const texel_format formats[] = {
@@ -19,6 +19,7 @@ static const texel_format formats[] = {
     {VK_FORMAT_R32G32B32A32_SFLOAT, 4, 4}, {VK_FORMAT_R16_SFLOAT, 1, 2},
     {VK_FORMAT_R16G16_SFLOAT, 2, 2},       {VK_FORMAT_R16G16B16A16_SFLOAT, 4, 2},
     {VK_FORMAT_R8G8B8A8_UNORM, 4, 1},      {VK_FORMAT_D32_SFLOAT, 1, 4},
+    {VK_FORMAT_R32G32_UINT, 3, 0},
 };
 
 static float half_value(uint16_t h)
@@ -30,8 +31,19 @@ static float half_value(uint16_t h)
     return h & 0x8000 ? -value : value;
 }
 
+// Three numbers of 18 bits with a common exponent, in two words: radiance of surfaces.
+static float packed_value(const uint32_t words[2], size_t channel)
+{
+    const uint32_t c[3] = {words[0] & 0x3ffff, words[1] & 0x3ffff,
+                           words[0] >> 18 | (words[1] >> 18 & 15) << 14};
+    return ldexpf((float)c[channel], (int)(words[1] >> 22 & 255) - 127 - 17);
+}
+
 static float channel_value(const texel_format *f, const void *texels, size_t i)
 {
+    if (!f->bytes) {
+        return packed_value((const uint32_t *)texels + i / 3 * 2, i % 3);
+    }
     if (f->bytes == 4) {
         return ((const float *)texels)[i];
     }
@@ -128,7 +140,7 @@ int slice_write(app *a, const tyn_inspection *inspection, const char *path)
                 // The medium's y points up, a picture's down.
                 const uint32_t row = volume ? height - 1 - y / zoom : y / zoom;
                 const float *texel = values + shown * ((size_t)row * width + x / zoom);
-                color_of(texel, shown, black, full, f->bytes > 1,
+                color_of(texel, shown, black, full, f->bytes != 1,
                          pixels + 3 * ((size_t)y * width * zoom + x));
             }
         }

@@ -18,6 +18,7 @@ uint32_t graph_texel_size(VkFormat format)
     case VK_FORMAT_D32_SFLOAT:
         return 4;
     case VK_FORMAT_R32G32_SFLOAT:
+    case VK_FORMAT_R32G32_UINT:
     case VK_FORMAT_R16G16B16A16_SFLOAT:
         return 8;
     case VK_FORMAT_R32G32B32A32_SFLOAT:
@@ -331,15 +332,19 @@ static tyn_result create_dummies(tyn_graph *g)
                       VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
                           VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                       TYN_MEMORY_DEVICE, 0, "none", &g->dummy[TYN_BUFFER].buffer, NULL);
-    for (tyn_dim dim = TYN_IMAGE_2D; result == TYN_OK && dim <= TYN_IMAGE_3D; dim++) {
-        g->dummy[dim].image_usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-        result = create_image(g, &g->heap,
-                              &(resource){.name = "none",
-                                          .dim = dim,
-                                          .format = VK_FORMAT_R32G32B32A32_SFLOAT,
-                                          .extent = {1, 1, 1},
-                                          .mips = 1},
-                              &g->dummy[dim], 0);
+    for (int d = TYN_IMAGE_2D; result == TYN_OK && d < NUM_DUMMIES; d++) {
+        const bool words = d == DUMMY_WORDS;
+        g->dummy[d].image_usage =
+            (words ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT) |
+            VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        result = create_image(
+            g, &g->heap,
+            &(resource){.name = "none",
+                        .dim = words ? TYN_IMAGE_2D : (tyn_dim)d,
+                        .format = words ? VK_FORMAT_R32G32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT,
+                        .extent = {1, 1, 1},
+                        .mips = 1},
+            &g->dummy[d], 0);
     }
     g->dummy_ready = false;
     return result;
@@ -494,7 +499,7 @@ void graph_release(tyn_graph *g)
     for (uint32_t i = 0; i < g->num_phys; i++) {
         destroy_phys(g, &g->phys[i]);
     }
-    for (int d = 0; d < 3; d++) {
+    for (int d = 0; d < NUM_DUMMIES; d++) {
         destroy_phys(g, &g->dummy[d]);
     }
     for (uint32_t i = 0; i < g->num_slots; i++) {

@@ -54,6 +54,8 @@ static const char *format_name(VkFormat format)
         return "R32UI";
     case VK_FORMAT_R32G32_SFLOAT:
         return "RG32F";
+    case VK_FORMAT_R32G32_UINT:
+        return "RG32UI";
     case VK_FORMAT_R16G16B16A16_SFLOAT:
         return "RGBA16F";
     case VK_FORMAT_R32G32B32A32_SFLOAT:

@@ -10,6 +10,7 @@
 #include "gpu/memory.h"
 
 enum { MAX_VERSIONS = 8, MAX_MIPS = 14, MAX_SLOTS = 8, INLINE_UPLOAD = 65536 };
+enum { DUMMY_WORDS = TYN_IMAGE_3D + 1, NUM_DUMMIES }; // of two words a texel: what is stored packed
 
 typedef enum resource_kind {
     RESOURCE_OUT = 0, // made by a node, kept between frames
@@ -126,7 +127,7 @@ struct tyn_graph {
     uint32_t num_phys;
     node_run *runs;
     uint32_t num_runs;
-    phys dummy[3]; // by tyn_dim: bound where an optional input is absent
+    phys dummy[NUM_DUMMIES]; // by tyn_dim: bound where an optional input is absent
     bool dummy_ready;
     tyn_heap heap, staging_heap;
     VkDeviceSize persistent_bytes, transient_bytes;

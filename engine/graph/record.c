@@ -117,8 +117,9 @@ static void record_dummies(tyn_graph *g, VkCommandBuffer cmd)
         (g->dev->graphics
              ? VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT
              : 0);
-    VkImageMemoryBarrier2 images[2];
-    for (int d = 0; d < 2; d++) {
+    enum { IMAGES = NUM_DUMMIES - TYN_IMAGE_2D };
+    VkImageMemoryBarrier2 images[IMAGES];
+    for (int d = 0; d < IMAGES; d++) {
         images[d] = (VkImageMemoryBarrier2){
             .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
             .dstStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
@@ -129,19 +130,22 @@ static void record_dummies(tyn_graph *g, VkCommandBuffer cmd)
         };
     }
     VkDependencyInfo barrier = {.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                .imageMemoryBarrierCount = 2,
+                                .imageMemoryBarrierCount = IMAGES,
                                 .pImageMemoryBarriers = images};
     g->dev->vk.CmdPipelineBarrier2(cmd, &barrier);
     g->dev->vk.CmdFillBuffer(cmd, g->dummy[TYN_BUFFER].buffer, 0, VK_WHOLE_SIZE, 0);
-    for (int d = 0; d < 2; d++) {
+    for (int d = 0; d < IMAGES; d++) {
+        const bool words = d == DUMMY_WORDS - TYN_IMAGE_2D;
         g->dev->vk.CmdClearColorImage(cmd, images[d].image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                                       &(VkClearColorValue){{0}}, 1, &images[d].subresourceRange);
         images[d].srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT;
         images[d].srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT;
         images[d].dstStageMask = shaders;
-        images[d].dstAccessMask = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
+        images[d].dstAccessMask =
+            words ? VK_ACCESS_2_SHADER_STORAGE_READ_BIT : VK_ACCESS_2_SHADER_SAMPLED_READ_BIT;
         images[d].oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
-        images[d].newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        images[d].newLayout =
+            words ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
     }
     barrier.bufferMemoryBarrierCount = 1;
     barrier.pBufferMemoryBarriers = &(VkBufferMemoryBarrier2){

@@ -199,7 +199,10 @@ static tyn_access access_of(const tyn_port *port, tyn_use use, VkPipelineStageFl
 static const phys *physical(const tyn_recorder *r, uint8_t port)
 {
     uint32_t res = node_of(r)->res[port];
-    return res ? &r->g->phys[res - 1] : &r->g->dummy[node_of(r)->pass->ports[port].dim];
+    const tyn_port *p = &node_of(r)->pass->ports[port];
+    return res                                  ? &r->g->phys[res - 1]
+           : p->format == VK_FORMAT_R32G32_UINT ? &r->g->dummy[DUMMY_WORDS]
+                                                : &r->g->dummy[p->dim];
 }
 
 static VkImageView view_of(const tyn_recorder *r, uint8_t port, uint8_t mip, bool sampled)
@@ -247,7 +250,8 @@ static VkDescriptorSet find_or_make_set(tyn_recorder *r, const launch *l, const 
             h = tyn_hash_u64(h, (uint64_t)buffers[i].buffer);
         } else {
             // The layout that this dispatch has the image in (two bindings may share it).
-            VkImageLayout layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+            VkImageLayout layout = use == TYN_USE_SAMPLED ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
+                                                          : VK_IMAGE_LAYOUT_GENERAL;
             for (uint32_t t = 0; t < l->num_touches; t++) {
                 if (l->touches[t].resource + 1 == node_of(r)->res[ports[i]]) {
                     layout = l->touches[t].access.layout;

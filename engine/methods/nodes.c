@@ -285,6 +285,7 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
         [RAYMARCH_PORT_GLOW] = in->glow,
         [RAYMARCH_PORT_HOST_DEPTH] = job->refs.depth,
         [RAYMARCH_PORT_SURFACE] = in->surface,
+        [RAYMARCH_PORT_DISTANCES] = in->distances,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_raymarch, &params, refs);
     if (result != TYN_OK) {

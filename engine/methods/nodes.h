@@ -44,7 +44,7 @@ typedef struct tyn_picture_inputs {
     tyn_ref wall_links, wall_cells; // of walls: surfaces among the cells of inscatter
     tyn_shadow_refs shadows;        // surfaces before the lights
     tyn_vpl_refs vpls;              // light that surfaces send on (methods/shading.h)
-    tyn_ref surface;                // radiance and distance of surfaces before the camera
+    tyn_ref surface, distances;     // radiance and distances of surfaces before the camera
     tyn_ref glow;                   // the map scattered forward (env_glow)
     uint32_t num_suns;
     float cell;       // of the lattice behind inscatter, m; 0 = none

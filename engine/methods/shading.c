@@ -142,7 +142,7 @@ static void place_sight(const tyn_frame_scene *frame, tyn_shade_params *params)
 tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, uint32_t num_suns,
                             tyn_picture_inputs *in)
 {
-    in->surface = (tyn_ref){0};
+    in->surface = in->distances = (tyn_ref){0};
     if (!job->frame->num_triangles) {
         return TYN_OK;
     }
@@ -167,6 +167,8 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
     const uint32_t *repeat = job->frame->medium.repeat;
     const bool beyond = reach_beyond_media(job->frame);
     params.outside = beyond && !repeat[0] && !repeat[1] && !repeat[2];
+    params.hidden = params.outside && tyn_can_trace(job);
+    params.textured = job->frame->num_textures > 0;
     if (params.outside) {
         place_sight(job->frame, &params);
     }
@@ -181,9 +183,9 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
         [SHADE_PORT_ENVIRONMENT] = job->refs.environment,
         [SHADE_PORT_SUNS] = job->refs.suns,
         [SHADE_PORT_LIGHTS] = job->refs.lights,
-        [SHADE_PORT_SURFACE] = seen.surface,
-        [SHADE_PORT_ALBEDO] = seen.albedo,
-        [SHADE_PORT_EMISSION] = seen.emission,
+        [SHADE_PORT_DISTANCES] = seen.distances,
+        [SHADE_PORT_FACING] = seen.facing,
+        [SHADE_PORT_COLOURS] = seen.colours,
         [SHADE_PORT_EDGE_COUNT] = seen.edge_count,
         [SHADE_PORT_EDGES] = seen.edges,
         [SHADE_PORT_BEAMS] = in->beams.beams,
@@ -202,15 +204,17 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
         [SHADE_PORT_MOMENTS] = in->wall_links.resource || params.outside ? moments : (tyn_ref){0},
         [SHADE_PORT_WALL_LINKS] = in->wall_links,
         [SHADE_PORT_WALL_CELLS] = in->wall_cells,
+        [SHADE_PORT_SURFACES] = job->refs.surfaces,
+        [SHADE_PORT_VERTICES] = job->refs.vertices,
+        [SHADE_PORT_TRIANGLES] = job->refs.triangles,
+        [SHADE_PORT_MATERIALS] = job->refs.materials,
+        [SHADE_PORT_TEXTURES] = job->refs.textures,
+        [SHADE_PORT_TEXELS] = job->refs.texels,
+        [SHADE_PORT_NODES] = job->refs.nodes,
     };
-    if (params.outside && tyn_can_trace(job)) {
-        refs[SHADE_PORT_SURFACES] = job->refs.surfaces;
-        refs[SHADE_PORT_VERTICES] = job->refs.vertices;
-        refs[SHADE_PORT_TRIANGLES] = job->refs.triangles;
-        refs[SHADE_PORT_NODES] = job->refs.nodes;
-    }
     result = tyn_graph_add(g, &tyn_pass_shade, &params, refs);
     in->surface = refs[SHADE_PORT_RADIANCE];
+    in->distances = seen.distances;
     return result;
 }
 

@@ -77,8 +77,8 @@ tyn_result tyn_add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *g
         [GBUFFER_PORT_TEXELS] = job->refs.texels,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_gbuffer, &params, refs);
-    *gbuffer = (tyn_gbuffer_refs){refs[GBUFFER_PORT_SURFACE], refs[GBUFFER_PORT_ALBEDO],
-                                  refs[GBUFFER_PORT_EMISSION], refs[GBUFFER_PORT_EDGE_COUNT],
+    *gbuffer = (tyn_gbuffer_refs){refs[GBUFFER_PORT_DISTANCES], refs[GBUFFER_PORT_FACING],
+                                  refs[GBUFFER_PORT_COLOURS], refs[GBUFFER_PORT_EDGE_COUNT],
                                   refs[GBUFFER_PORT_EDGES]};
     return result;
 }

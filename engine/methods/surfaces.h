@@ -15,8 +15,9 @@ tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
 
 // Surfaces as the camera sees them: what shaders/gbuffer.glsl reads. {0} without surfaces.
 typedef struct tyn_gbuffer_refs {
-    tyn_ref surface, albedo, emission; // 2D RGBA32F, gbuffer.samples^2 texels a pixel
-    tyn_ref edge_count, edges;         // gbuffer_edge_args.h
+    tyn_ref distances;         // 2D R32F, gbuffer.samples^2 texels a pixel
+    tyn_ref facing, colours;   // 2D RGBA32UI
+    tyn_ref edge_count, edges; // gbuffer_edge_args.h
 } tyn_gbuffer_refs;
 tyn_result tyn_add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *gbuffer);
 

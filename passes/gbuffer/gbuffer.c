@@ -17,13 +17,12 @@ static const tyn_port ports[GBUFFER_NUM_PORTS] = {
     [GBUFFER_PORT_TEXTURES] = {"textures", TYN_IN, TYN_BUFFER, 0, false,
                                "struct surface_texture[]"},
     [GBUFFER_PORT_TEXELS] = {"texels", TYN_IN, TYN_BUFFER, 0, false, "uint[]: R8 G8 B8 A8, sRGB"},
-    [GBUFFER_PORT_SURFACE] = {"surface", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                              false, "shading normal (M); distance along the ray, m, 0: none"},
-    [GBUFFER_PORT_ALBEDO] = {"albedo", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                             "albedo; x of the facet's normal, folded"},
-    [GBUFFER_PORT_EMISSION] = {"emission", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                               false,
-                               "radiance to the camera, W/(m^2 sr); y of the facet's normal"},
+    [GBUFFER_PORT_DISTANCES] = {"distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false,
+                                "along the rays of a pixel's samples, m; 0: no surface"},
+    [GBUFFER_PORT_FACING] = {"facing", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_UINT, false,
+                             "what a pixel shows; normals (M) of facet and for shading, folded"},
+    [GBUFFER_PORT_COLOURS] = {"colours", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_UINT, false,
+                              "albedo and emission in W/(m^2 sr); of edges, triangles of samples"},
     [GBUFFER_PORT_EDGE_COUNT] = {"edge_count", TYN_OUT, TYN_BUFFER, 0, false,
                                  "struct gbuffer_edge_count"},
     [GBUFFER_PORT_EDGES] = {"edges", TYN_OUT, TYN_BUFFER, 0, false,
@@ -48,9 +47,9 @@ static const tyn_binding bindings[] = {
     {GBUFFER_PORT_TEXTURES, TYN_USE_STORAGE_READ, false},
     {GBUFFER_PORT_TEXELS, TYN_USE_STORAGE_READ, false},
     {GBUFFER_PORT_SEEN, TYN_USE_STORAGE_READ, false},
-    {GBUFFER_PORT_SURFACE, TYN_USE_STORAGE_WRITE, false},
-    {GBUFFER_PORT_ALBEDO, TYN_USE_STORAGE_WRITE, false},
-    {GBUFFER_PORT_EMISSION, TYN_USE_STORAGE_WRITE, false},
+    {GBUFFER_PORT_DISTANCES, TYN_USE_STORAGE_WRITE, false},
+    {GBUFFER_PORT_FACING, TYN_USE_STORAGE_WRITE, false},
+    {GBUFFER_PORT_COLOURS, TYN_USE_STORAGE_WRITE, false},
     {GBUFFER_PORT_MIXED_COUNT, TYN_USE_STORAGE_RW, false},
     {GBUFFER_PORT_MIXED, TYN_USE_STORAGE_RW, false},
     {GBUFFER_PORT_EDGE_COUNT, TYN_USE_STORAGE_RW, false},
@@ -106,9 +105,10 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_gbuffer_params *p = params;
     const tyn_extent size = {p->size[0] * (uint32_t)p->samples, p->size[1] * (uint32_t)p->samples,
                              1};
-    tyn_build_image(b, GBUFFER_PORT_SURFACE, size, 1);
-    tyn_build_image(b, GBUFFER_PORT_ALBEDO, size, 1);
-    tyn_build_image(b, GBUFFER_PORT_EMISSION, size, 1);
+    const uint32_t texels = (uint32_t)(p->samples * p->samples + 3) / 4; // gbuffer_texels
+    tyn_build_image(b, GBUFFER_PORT_DISTANCES, size, 1);
+    tyn_build_image(b, GBUFFER_PORT_FACING, (tyn_extent){p->size[0], p->size[1], 1}, 1);
+    tyn_build_image(b, GBUFFER_PORT_COLOURS, (tyn_extent){p->size[0] * texels, p->size[1], 1}, 1);
     tyn_build_buffer(b, GBUFFER_PORT_EDGE_COUNT, sizeof(struct gbuffer_edge_count));
     tyn_build_buffer(b, GBUFFER_PORT_EDGES, sizeof(uint32_t) * p->size[0] * p->size[1]);
     tyn_build_buffer(b, GBUFFER_PORT_MIXED_COUNT, sizeof(struct gbuffer_edge_count));
@@ -147,6 +147,6 @@ const tyn_pass_desc tyn_pass_gbuffer = {
     .params_size = sizeof(tyn_gbuffer_params),
     .declare = declare,
     .record = record,
-    .debug_port = GBUFFER_PORT_ALBEDO,
-    .debug_meaning = "albedo of what the camera sees",
+    .debug_port = GBUFFER_PORT_DISTANCES,
+    .debug_meaning = "distance of what the camera sees",
 };

@@ -18,9 +18,9 @@ enum {
     GBUFFER_PORT_MATERIALS,
     GBUFFER_PORT_TEXTURES,
     GBUFFER_PORT_TEXELS,
-    GBUFFER_PORT_SURFACE,  // OUT 2D RGBA32F: gbuffer.glsl, as the two below
-    GBUFFER_PORT_ALBEDO,   // OUT 2D RGBA32F
-    GBUFFER_PORT_EMISSION, // OUT 2D RGBA32F
+    GBUFFER_PORT_DISTANCES, // OUT 2D R32F: gbuffer.glsl, as the two below
+    GBUFFER_PORT_FACING,    // OUT 2D RGBA32UI
+    GBUFFER_PORT_COLOURS,   // OUT 2D RGBA32UI
     GBUFFER_PORT_EDGE_COUNT, // OUT buffers, gbuffer_edge_args.h: pixels that show several pieces of surface
     GBUFFER_PORT_EDGES,
     GBUFFER_PORT_MIXED_COUNT, // SCRATCH buffers, the same of pixels whose samples see several triangles

@@ -1,5 +1,5 @@
-// gbuffer_mixed.comp -- pixels whose samples see several triangles, or one beside nothing. If they make up one piece of
-// surface the first sample gets the means; else the pixel is an edge.
+// gbuffer_mixed.comp -- pixels whose samples see several triangles, or one beside nothing. They may make up one piece of
+// surface; else the pixel is an edge.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -25,28 +25,35 @@ void main()
     if (n >= mixed_count.count) {
         return;
     }
-    uint pixel = mixed[n];
-    ivec2 corner = samples * ivec2(pixel & 0xffffu, pixel >> 16);
+    ivec2 pixel = ivec2(mixed[n] & 0xffffu, mixed[n] >> 16), corner = samples * pixel;
+    const int count = samples * samples, middle = (samples / 2) * (samples + 1);
     bool whole = true;
     gbuffer_point first, mean;
+    gbuffer_facing nearest = gbuffer_facing(GBUFFER_SEVERAL, 0, vec3(0.0), vec3(0.0));
+    int nearest_rank = count;
     mean.normal = mean.albedo = mean.emission = vec3(0.0);
     vec3 at = vec3(0.0);
-    for (int k = 0; k < samples * samples; k++) {
-        ivec2 texel = corner + ivec2(k % samples, k / samples);
+    for (int k = 0; k < count; k++) {
+        ivec2 texel = texel_of(corner, k);
         uint index = imageLoad(seen, texel).r;
         if (index == 0u) {
             whole = false;
-            store_none(texel, 0.0);
+            imageStore(distance_image, texel, vec4(0.0));
             continue;
         }
         vec2 place = vec2(texel) + 0.5;
-        camera_ray ray = ray_at(place);
-        gbuffer_point p = point_of(triangle_of(index - 1u), place, ray);
-        store(texel, p, 0.0);
+        camera_ray ray = gbuffer_ray(place);
+        gbuffer_point p = gbuffer_point_of(gbuffer_triangle_of(index - 1u), place, ray);
+        imageStore(distance_image, texel, vec4(p.distance));
         vec3 there = ray.origin + p.distance * ray.direction;
         if (k == 0) {
             first = p;
             at = there;
+        }
+        int rank = (k - middle + count) % count; // from the middle on
+        if (rank < nearest_rank) {
+            nearest_rank = rank;
+            nearest = gbuffer_facing(GBUFFER_SEVERAL, k, p.normal, p.facet);
         }
         whole = whole && gbuffer_same(first, at, p.facet, there, p.distance);
         mean.normal += p.normal;
@@ -54,13 +61,21 @@ void main()
         mean.emission += p.emission;
     }
     if (whole) {
-        float share = 1.0 / float(samples * samples);
-        mean = gbuffer_point(first.distance, normalize(mean.normal), first.facet, share * mean.albedo,
-                             share * mean.emission);
-        store(corner, mean, GBUFFER_WHOLE);
+        float share = 1.0 / float(count);
+        store_whole(pixel, gbuffer_point(first.distance, normalize(mean.normal), first.facet, share * mean.albedo,
+                                         share * mean.emission));
     } else {
+        imageStore(facing_image, pixel, gbuffer_facing_pack(nearest));
+        int texels = gbuffer_texels(samples);
+        for (int t = 0; t < texels; t++) {
+            uvec4 indices = uvec4(0u);
+            for (int k = 0; k < min(4, count - 4 * t); k++) {
+                indices[k] = imageLoad(seen, texel_of(corner, 4 * t + k)).r;
+            }
+            imageStore(colour_image, ivec2(pixel.x * texels + t, pixel.y), indices);
+        }
         uint m = atomicAdd(edge_count.count, 1u);
-        edges[m] = pixel;
+        edges[m] = uint(pixel.y) << 16 | uint(pixel.x);
         uvec2 groups = gbuffer_edge_groups(m, row);
         atomicMax(edge_count.groups.x, groups.x);
         atomicMax(edge_count.groups.y, groups.y);

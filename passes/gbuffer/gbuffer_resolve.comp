@@ -17,31 +17,29 @@ void main()
     uint index = imageLoad(seen, corner).r;
     bool same = true;
     for (int k = 1; k < samples * samples; k++) {
-        same = same && imageLoad(seen, corner + ivec2(k % samples, k / samples)).r == index;
+        same = same && imageLoad(seen, texel_of(corner, k)).r == index;
     }
     // Loops instead of conditions: what nobody enters costs nothing.
     for (bool none = same && index == 0u; none; none = false) {
         for (int k = 0; k < samples * samples; k++) {
-            store_none(corner + ivec2(k % samples, k / samples), k == 0 ? GBUFFER_NONE : 0.0);
+            imageStore(distance_image, texel_of(corner, k), vec4(0.0));
         }
+        imageStore(facing_image, pixel, uvec4(0u, 0u, GBUFFER_NONE, 0u));
     }
     for (bool one = same && index != 0u; one; one = false) {
-        gbuffer_triangle triangle = triangle_of(index - 1u);
+        gbuffer_triangle triangle = gbuffer_triangle_of(index - 1u);
         vec2 middle = vec2(corner) + 0.5 * float(samples);
-        gbuffer_point p = point_of(triangle, middle, ray_at(middle));
+        gbuffer_point p = gbuffer_point_of(triangle, middle, gbuffer_ray(middle));
         vec3 albedo = vec3(0.0), direction;
         for (int k = 0; k < samples * samples; k++) {
-            ivec2 texel = corner + ivec2(k % samples, k / samples);
+            ivec2 texel = texel_of(corner, k);
             vec2 at = vec2(texel) + 0.5;
-            vec4 w = meet(triangle, ray_at(at), direction);
-            albedo += textured != 0u ? albedo_of(triangle, at, w.xyz) : vec3(0.0);
-            p.distance = k == 0 ? w.w : p.distance;
-            if (k > 0) {
-                imageStore(surface_image, texel, vec4(0.0, 0.0, 0.0, w.w));
-            }
+            vec4 w = gbuffer_meet(triangle, gbuffer_ray(at), direction);
+            albedo += textured != 0u ? gbuffer_albedo_at(triangle, at, w.xyz) : vec3(0.0);
+            imageStore(distance_image, texel, vec4(w.w));
         }
         p.albedo = textured != 0u ? albedo / float(samples * samples) : p.albedo;
-        store(corner, p, GBUFFER_WHOLE);
+        store_whole(pixel, p);
     }
     for (bool several = !same; several; several = false) {
         uint n = atomicAdd(mixed_count.count, 1u);

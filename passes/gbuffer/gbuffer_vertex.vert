@@ -5,8 +5,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "gbuffer_bindings.glsl"
+#include "scene_args.h"
+#include "surface_args.h"
+#include "surface_frame.glsl"
 
+layout(set = 0, binding = 0, scalar) uniform camera_buffer
+{
+    camera_block camera;
+};
+layout(set = 0, binding = 1, scalar) uniform surfaces_buffer
+{
+    surface_block surfaces;
+};
 layout(set = 0, binding = 2, scalar) readonly buffer triangles_buffer
 {
     surface_triangle triangles[];
@@ -24,14 +34,14 @@ void main()
     uint corner = uint(gl_VertexIndex) % 3u;
     surface_triangle t = triangles[triangle];
     uint v = corner == 0u ? t.v0 : corner == 1u ? t.v1 : t.v2;
-    vec3 p = shift(surfaces.from_world, vertices[v].position) - camera.origin;
+    vec3 p = surface_transform(surfaces.from_world, vertices[v].position) - camera.origin;
     vec2 across = vec2(dot(p, camera.right) / camera.half_width, dot(p, camera.up) / camera.half_height);
     float z = dot(p, camera.forward);
     vec3 size = surfaces.hi - surfaces.lo;
     if (camera.orthographic != 0u) {
         // The farthest corner of the scene's box.
-        vec3 forward = turn(surfaces.to_world, camera.forward);
-        vec3 middle = shift(surfaces.from_world, 0.5 * (surfaces.lo + surfaces.hi)) - camera.origin;
+        vec3 forward = surface_turn(surfaces.to_world, camera.forward);
+        vec3 middle = surface_transform(surfaces.from_world, 0.5 * (surfaces.lo + surfaces.hi)) - camera.origin;
         float farthest = dot(middle, camera.forward) + 0.501 * dot(size, abs(forward)) + 1e-6 * length(size);
         across -= camera.shift;
         gl_Position = vec4(across.x, -across.y, 1.0 - z / max(farthest, 1e-6 * length(size)), 1.0);

@@ -55,8 +55,10 @@ static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
                             "the map as forward scattering smears it, W/(m^2 sr)"},
     [RAYMARCH_PORT_HOST_DEPTH] = {"host_depth", TYN_IN, TYN_IMAGE_2D, 0, true,
                                   "hardware depth of the host's surfaces"},
-    [RAYMARCH_PORT_SURFACE] = {"surface", TYN_IN, TYN_IMAGE_2D, 0, true,
-                               "radiance of the first surface, W/(m^2 sr); distance, m"},
+    [RAYMARCH_PORT_SURFACE] = {"surface", TYN_IN, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT, true,
+                               "radiance of the first surface, W/(m^2 sr)"},
+    [RAYMARCH_PORT_DISTANCES] = {"distances", TYN_IN, TYN_IMAGE_2D, 0, true,
+                                 "to the first surface, m; 0: none"},
     [RAYMARCH_PORT_RADIANCE] = {"radiance", TYN_OUT, IMAGE2, false,
                                 "radiance, W/(m^2 sr); a = 1 - mean transmittance"},
     [RAYMARCH_PORT_TRANSMITTANCE] = {"transmittance", TYN_OUT, IMAGE2, false,
@@ -96,7 +98,7 @@ static const tyn_binding bindings[] = {
     {RAYMARCH_PORT_MULTIPLE, TYN_USE_STORAGE_WRITE, false},
     {RAYMARCH_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
     {RAYMARCH_PORT_GLOW, TYN_USE_SAMPLED, true},
-    {RAYMARCH_PORT_SURFACE, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_SURFACE, TYN_USE_STORAGE_READ, false},
     {RAYMARCH_PORT_WALL_LINKS, TYN_USE_STORAGE_READ, false},
     {RAYMARCH_PORT_WALL_CELLS, TYN_USE_STORAGE_READ, false},
     {RAYMARCH_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED, false},
@@ -108,6 +110,7 @@ static const tyn_binding bindings[] = {
     {RAYMARCH_PORT_SPARSE, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_SPARSE, TYN_USE_STORAGE_WRITE, false},
     {RAYMARCH_PORT_REST, TYN_USE_STORAGE_RW, false},
+    {RAYMARCH_PORT_DISTANCES, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_SIGMA_A, TYN_USE_SAMPLED, false}, // from here on colour only
     {RAYMARCH_PORT_G, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_EMISSION, TYN_USE_SAMPLED, false},
@@ -127,7 +130,8 @@ static const tyn_binding background_bindings[] = {
     {RAYMARCH_PORT_DEPTH, TYN_USE_STORAGE_WRITE, false},
     {RAYMARCH_PORT_SINGLE, TYN_USE_STORAGE_WRITE, false},
     {RAYMARCH_PORT_MULTIPLE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_SURFACE, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_SURFACE, TYN_USE_STORAGE_READ, false},
+    {RAYMARCH_PORT_DISTANCES, TYN_USE_SAMPLED, false},
 };
 enum {
     NUM_BACKGROUND_BINDINGS = sizeof(background_bindings) / sizeof(background_bindings[0]),
@@ -393,7 +397,7 @@ static void record(tyn_recorder *r, const void *params)
                             .spec = spec,
                         });
     ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_RADIANCE; // bound, but not written to or read
-    ports_of[SPARSE_TEXTURE] = RAYMARCH_PORT_SURFACE;
+    ports_of[SPARSE_TEXTURE] = RAYMARCH_PORT_DISTANCES;
     tyn_dispatch rays = {.kernel = kernel, .args = &args, .ports = ports_of, .spec = spec};
     if (is_sparse(p, features & (RAYMARCH_WALLS | RAYMARCH_SHADOWS),
                   features & RAYMARCH_HOST_DEPTH)) {

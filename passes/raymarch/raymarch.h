@@ -92,7 +92,8 @@ enum {
     RAYMARCH_PORT_GLOW, // IN optional 3D: of env_glow, the map scattered forward; without it what
                         // is scattered forward comes from the mean alone (`mean`)
     RAYMARCH_PORT_HOST_DEPTH, // IN optional 2D: hardware depth; rays end there
-    RAYMARCH_PORT_SURFACE, // IN optional 2D: radiance of the first surface, W/(m^2 sr); a = its distance
+    RAYMARCH_PORT_SURFACE, // IN optional 2D: surface_samples.glsl: radiance of the first surface, packed, and its distance
+    RAYMARCH_PORT_DISTANCES,
                            // along the ray, m, or infinity; rays end there. n x n samples a pixel
     RAYMARCH_PORT_RADIANCE, // OUT 2D RGBA32F: radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where
                             // an environment or a surface is seen

@@ -5,6 +5,8 @@
 #include "camera.glsl"
 #include "background.glsl"
 #include "host_depth.glsl"
+#define SURFACE_RADIANCE 9
+#define SURFACE_DISTANCES 10
 #include "surface_samples.glsl"
 #include "raymarch_args.h"
 
@@ -26,7 +28,6 @@ layout(binding = 5, rgba32f) uniform writeonly image2D transmittance_image;
 layout(binding = 6, rgba32f) uniform writeonly image2D depth_image;
 layout(binding = 7, rgba32f) uniform writeonly image2D single_image;
 layout(binding = 8, rgba32f) uniform writeonly image2D multiple_image;
-layout(binding = 9) uniform sampler2D surface_tex;
 
 layout(push_constant, scalar) uniform Args
 {
@@ -54,7 +55,7 @@ void main()
     vec4 radiance = vec4(0.0);
     float open = surface == TYN_INFINITY ? 1.0 : 0.0; // share in which the environment is seen
     if (has(RAYMARCH_SURFACE)) {
-        surface_samples samples = surface_samples_of(surface_tex, camera, pixel);
+        surface_samples samples = surface_samples_of(camera, pixel);
         if (has(RAYMARCH_SURFACE_SEEN) && samples.mean.a < surface) {
             radiance = vec4(samples.mean.rgb, samples.covered);
         }

@@ -49,7 +49,6 @@ layout(binding = 19, scalar) buffer counter_buffer
     counters_block counters;
 };
 layout(binding = 20) uniform sampler3D glow_tex;
-layout(binding = 21) uniform sampler2D surface_tex;
 layout(binding = 28) uniform sampler2D sparse_tex;
 layout(binding = 29, rgba32f) uniform writeonly image2D sparse_image;
 layout(binding = 30, scalar) buffer sparse_rest_buffer
@@ -57,6 +56,8 @@ layout(binding = 30, scalar) buffer sparse_rest_buffer
     raymarch_rest head;
     uint blocks[];
 } sparse_rest;
+#define SURFACE_RADIANCE 21
+#define SURFACE_DISTANCES 31
 #define WALLS_LINKS 22
 #define WALLS_CELLS 23
 #define SHADOW_ATLAS 24
@@ -64,13 +65,13 @@ layout(binding = 30, scalar) buffer sparse_rest_buffer
 #define RADIAL_BLOCK 26
 #define RADIAL_COLUMN 27
 #ifndef RAYMARCH_GREY
-#define MEDIUM_SIGMA_A 31
-#define MEDIUM_G 32
-#define MEDIUM_EMISSION 33
-#define BEAM_TAU_A 34
-#define BEAM_TAU_P 35
-#define RADIAL_TAU_A 36
-#define RADIAL_TAU_P 37
+#define MEDIUM_SIGMA_A 32
+#define MEDIUM_G 33
+#define MEDIUM_EMISSION 34
+#define BEAM_TAU_A 35
+#define BEAM_TAU_P 36
+#define RADIAL_TAU_A 37
+#define RADIAL_TAU_P 38
 #endif
 
 layout(push_constant, scalar) uniform Args

@@ -28,9 +28,10 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     [PORT(ENVIRONMENT)] = {"environment", TYN_IN, TYN_BUFFER, .meaning = "struct env_block"},
     [PORT(SUNS)] = {"suns", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
     [PORT(LIGHTS)] = {"lights", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
-    [PORT(SURFACE)] = {"surface", TYN_IN, TYN_IMAGE_2D, .meaning = "shading normal, distance in m"},
-    [PORT(ALBEDO)] = {"albedo", TYN_IN, TYN_IMAGE_2D, .meaning = "albedo"},
-    [PORT(EMISSION)] = {"emission", TYN_IN, TYN_IMAGE_2D, .meaning = "radiance, W/(m^2 sr)"},
+    [PORT(DISTANCES)] = {"distances", TYN_IN, TYN_IMAGE_2D, .meaning = "of samples, m"},
+    [PORT(FACING)] = {"facing", TYN_IN, TEXELS, .meaning = "what pixels show; normals"},
+    [PORT(COLOURS)] = {"colours", TYN_IN, TEXELS,
+                       .meaning = "albedo and emission; of edges, triangles of samples"},
     [PORT(EDGE_COUNT)] = {"edge_count", TYN_IN, TYN_BUFFER, .meaning = "struct gbuffer_edge_count"},
     [PORT(EDGES)] = {"edges", TYN_IN, TYN_BUFFER,
                      .meaning = "uint[]: pixels that show several pieces of surface"},
@@ -61,15 +62,15 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     [PORT(WALL_LINKS)] = {"wall_links", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "uint[]"},
     [PORT(WALL_CELLS)] = {"wall_cells", TYN_IN, TYN_BUFFER, .optional = true,
                           .meaning = "struct wall_cell[]"},
-    [PORT(SURFACES)] = {"surfaces", TYN_IN, TYN_BUFFER, .optional = true,
-                        .meaning = "struct surface_block"},
-    [PORT(VERTICES)] = {"vertices", TYN_IN, TYN_BUFFER, .optional = true,
-                        .meaning = "surface_vertex[]"},
-    [PORT(TRIANGLES)] = {"triangles", TYN_IN, TYN_BUFFER, .optional = true,
-                         .meaning = "surface_triangle[]"},
+    [PORT(SURFACES)] = {"surfaces", TYN_IN, TYN_BUFFER, .meaning = "struct surface_block"},
+    [PORT(VERTICES)] = {"vertices", TYN_IN, TYN_BUFFER, .meaning = "struct surface_vertex[]"},
+    [PORT(TRIANGLES)] = {"triangles", TYN_IN, TYN_BUFFER, .meaning = "struct surface_triangle[]"},
+    [PORT(MATERIALS)] = {"materials", TYN_IN, TYN_BUFFER, .meaning = "struct surface_material[]"},
+    [PORT(TEXTURES)] = {"textures", TYN_IN, TYN_BUFFER, .meaning = "struct surface_texture[]"},
+    [PORT(TEXELS)] = {"texels", TYN_IN, TYN_BUFFER, .meaning = "uint[]: R8 G8 B8 A8, sRGB"},
     [PORT(NODES)] = {"nodes", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "surface_node[]"},
-    [PORT(RADIANCE)] = {"surface_radiance", TYN_OUT, IMAGE2,
-                        .meaning = "radiance to the camera, W/(m^2 sr); distance, m"},
+    [PORT(RADIANCE)] = {"surface_radiance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT,
+                        .meaning = "radiance to the camera, W/(m^2 sr)"},
     [PORT(TABLE)] = {"lights_table", TYN_SCRATCH, IMAGE2, .meaning = "the lights"},
     [PORT(WALL_TABLE)] = {"wall_table", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                           .meaning = "walls of the lattice's cells"},
@@ -92,8 +93,8 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
         {PORT(SHADOW_ATLAS), TYN_USE_SAMPLED}, {PORT(SHADOWS), TYN_USE_STORAGE_READ},              \
         {PORT(VPLS), TYN_USE_STORAGE_READ}, {PORT(SUNS), TYN_USE_UNIFORM},                         \
         {PORT(LIGHTS), TYN_USE_UNIFORM}, {PORT(CAMERA), TYN_USE_UNIFORM},                          \
-        {PORT(SURFACE), TYN_USE_SAMPLED}, {PORT(ALBEDO), TYN_USE_SAMPLED},                         \
-        {PORT(EMISSION), TYN_USE_SAMPLED}, {PORT(VPL_DISTANCES), TYN_USE_SAMPLED},                 \
+        {PORT(DISTANCES), TYN_USE_SAMPLED}, {PORT(FACING), TYN_USE_STORAGE_READ},                  \
+        {PORT(COLOURS), TYN_USE_STORAGE_READ}, {PORT(VPL_DISTANCES), TYN_USE_SAMPLED},             \
     {                                                                                              \
         PORT(TABLE), TYN_USE_SAMPLED                                                               \
     }
@@ -159,6 +160,12 @@ static const tyn_binding edges_bindings[] = {
     {PORT(RADIANCE), TYN_USE_STORAGE_WRITE},
     {PORT(EDGE_COUNT), TYN_USE_STORAGE_READ},
     {PORT(EDGES), TYN_USE_STORAGE_READ},
+    {PORT(SURFACES), TYN_USE_UNIFORM},
+    {PORT(TRIANGLES), TYN_USE_STORAGE_READ},
+    {PORT(VERTICES), TYN_USE_STORAGE_READ},
+    {PORT(MATERIALS), TYN_USE_STORAGE_READ},
+    {PORT(TEXTURES), TYN_USE_STORAGE_READ},
+    {PORT(TEXELS), TYN_USE_STORAGE_READ},
 };
 
 enum { LIGHTS = 0, WALLS, FORWARD, FACES, SIGHT, VPLS, SUM_ROWS, GATHER, SURFACE, EDGES, NUM_KERNELS };
@@ -196,7 +203,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
         vpls ? (tyn_extent){p->size[0], p->size[1], 1} : (tyn_extent){1, 1, 1};
     const bool outside = p->outside && tyn_build_has(b, PORT(MOMENTS));
     const tyn_extent faces = {SHADE_FACE_WIDTH, 6 + SHADE_FACE_SIDE, 1};
-    tyn_build_image(b, PORT(RADIANCE), tyn_build_extent(b, PORT(SURFACE)), 1);
+    tyn_build_image(b, PORT(RADIANCE), tyn_build_extent(b, PORT(DISTANCES)), 1);
     // The moments have a cell's channels behind each other along z.
     tyn_extent cells = tyn_build_extent(b, PORT(MOMENTS));
     const uint32_t slices = cells.z / (p->one_channel ? 1 : 3);
@@ -210,7 +217,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
     tyn_build_image(b, PORT(FACES), outside ? faces : texel, 1);
     const uint32_t *places = p->sight_places;
     const tyn_extent fields = {places[0], places[1], places[2] * SHADE_SIGHT_FIELDS};
-    tyn_build_image(b, PORT(SIGHT), outside && tyn_build_has(b, PORT(SURFACES)) ? fields : texel, 1);
+    tyn_build_image(b, PORT(SIGHT), outside && p->hidden ? fields : texel, 1);
     tyn_build_image(b, PORT(TABLE), (tyn_extent){SHADE_ENTRIES, SHADE_ROWS, 1}, 1);
     tyn_build_image(b, PORT(PART), pixels, 1);
     tyn_build_image(b, PORT(ROWS), pixels, 1);
@@ -238,7 +245,8 @@ static void record(tyn_recorder *r, const void *data)
     const tyn_extent forward = tyn_rec_extent(r, PORT(FORWARD));
     features |= forward.x > 1 ? SHADE_SPREAD : 0;
     features |= p->sky ? SHADE_SKY : 0;
-    const uint32_t samples = tyn_rec_extent(r, PORT(SURFACE)).x / p->size[0];
+    features |= p->textured ? SHADE_TEXTURED : 0;
+    const uint32_t samples = tyn_rec_extent(r, PORT(DISTANCES)).x / p->size[0];
     const uint32_t shorter = p->size[0] < p->size[1] ? p->size[0] : p->size[1];
     const uint32_t usual = shorter < SHADE_SMALL ? SHADE_SIDE_SMALL : SHADE_SIDE;
     const uint32_t side = p->pattern ? (uint32_t)p->pattern : usual;
@@ -260,7 +268,7 @@ static void record(tyn_recorder *r, const void *data)
         d.cells = (tyn_extent){6 * SHADE_FACE_PATCHES, 1, 1};
         tyn_rec_dispatch(r, &d);
         const uint32_t channels = p->one_channel ? 1 : 3;
-        if (tyn_rec_has(r, PORT(SURFACES))) {
+        if (p->hidden) {
             d.kernel = SIGHT;
             d.cells = tyn_rec_extent(r, PORT(SIGHT));
             d.cells.z /= SHADE_SIGHT_FIELDS;

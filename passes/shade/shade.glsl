@@ -54,9 +54,9 @@ layout(binding = 15, scalar) uniform camera_uniform
 {
     camera_block camera;
 };
-layout(binding = 16) uniform sampler2D surface_tex; // gbuffer.glsl
-layout(binding = 17) uniform sampler2D albedo_tex;
-layout(binding = 18) uniform sampler2D emission_tex;
+layout(binding = 16) uniform sampler2D distances_tex; // gbuffer.glsl
+layout(binding = 17, rgba32ui) uniform readonly uimage2D facing_image;
+layout(binding = 18, rgba32ui) uniform readonly uimage2D colour_image;
 layout(binding = 12, scalar) readonly buffer vpl_buffer
 {
     uint vpl_count;
@@ -83,10 +83,22 @@ ivec2 shade_texel(ivec2 corner, int k)
     return corner + ivec2(k % shade_samples, k / shade_samples);
 }
 
-gbuffer_point shade_sample(ivec2 texel)
+// What the pixel shows; its normals.
+gbuffer_facing shade_facing(ivec2 pixel)
 {
-    return gbuffer_unpack(texelFetch(surface_tex, texel, 0), texelFetch(albedo_tex, texel, 0),
-                          texelFetch(emission_tex, texel, 0));
+    return gbuffer_facing_unpack(imageLoad(facing_image, pixel));
+}
+
+// The distance of a sample, m; 0: no surface.
+float shade_distance(ivec2 texel)
+{
+    return texelFetch(distances_tex, texel, 0).r;
+}
+
+// Part k of a pixel's colours.
+uvec4 shade_colours(ivec2 pixel, int k)
+{
+    return imageLoad(colour_image, ivec2(pixel.x * gbuffer_texels(shade_samples) + k, pixel.y));
 }
 
 // Where the ray of a sample ends.

@@ -16,6 +16,8 @@ typedef struct tyn_shade_params {
     uint32_t outside; // 1: surfaces outside the lattice get the light that leaves it, if there are "moments"
     float sight_lo[3], sight_edge; // places from where it is asked what hides the box: corner, distance (M, m)
     uint32_t sight_places[3];
+    uint32_t hidden;   // 1: surfaces may hide that light: can rays be traced?
+    uint32_t textured; // 1: materials may have textures
     uint32_t sky; // 1: the mean of the environment lights what is outside the lattice
 } tyn_shade_params;
 
@@ -25,9 +27,9 @@ enum {
     SHADE_PORT_ENVIRONMENT, // IN buffer struct env_block
     SHADE_PORT_SUNS,        // IN buffer struct light_block[]
     SHADE_PORT_LIGHTS,      // IN buffer struct light_block[]: directional lights, then lamps
-    SHADE_PORT_SURFACE,     // IN 2D: gbuffer.glsl, as the two below
-    SHADE_PORT_ALBEDO,
-    SHADE_PORT_EMISSION,
+    SHADE_PORT_DISTANCES,   // IN 2D: gbuffer.glsl, as the two below
+    SHADE_PORT_FACING,
+    SHADE_PORT_COLOURS,
     SHADE_PORT_EDGE_COUNT, // IN buffers, gbuffer_edge_args.h: pixels that show several pieces of surface
     SHADE_PORT_EDGES,
     SHADE_PORT_BEAMS, // IN optional buffer struct beam_block[]: with a medium and suns, as the three below
@@ -45,12 +47,14 @@ enum {
     SHADE_PORT_MOMENTS,       // IN optional 3D: light of the lattice
     SHADE_PORT_WALL_LINKS,    // IN optional buffer uint[]: with surfaces within it, as the one below
     SHADE_PORT_WALL_CELLS,    // IN optional buffer struct wall_cell[]
-    SHADE_PORT_SURFACES,      // IN optional buffers, surface_args.h: what hides the box from surfaces outside it
+    SHADE_PORT_SURFACES,      // IN buffers, surface_args.h
     SHADE_PORT_VERTICES,
     SHADE_PORT_TRIANGLES,
-    SHADE_PORT_NODES,
-    SHADE_PORT_RADIANCE, // OUT 2D RGBA32F, as large as the G-buffer: radiance to the camera, W/(m^2 sr);
-                         // a = distance along the ray, m, or infinity
+    SHADE_PORT_MATERIALS,
+    SHADE_PORT_TEXTURES,
+    SHADE_PORT_TEXELS,
+    SHADE_PORT_NODES, // IN optional buffer: their hierarchy
+    SHADE_PORT_RADIANCE, // OUT 2D RG32UI, packed_colour.glsl, as large as "distances": radiance to the camera, W/(m^2 sr)
     SHADE_PORT_TABLE, // SCRATCH 2D RGBA32F, shade_table.h
     SHADE_PORT_WALL_TABLE, // SCRATCH 3D RGBA32F, walls_table.glsl: exists with wall_links
     SHADE_PORT_FORWARD, // SCRATCH 3D RGBA32F, shade_forward.comp: exists with a lattice, suns and shadows

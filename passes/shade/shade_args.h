@@ -13,6 +13,7 @@
 #define SHADE_SPREAD (1u << 6) // sunlight scattered forward comes from around its sun
 
 #define SHADE_OUTSIDE (1u << 7) // surfaces outside the box get light that leaves it: shade_faces.h
+#define SHADE_TEXTURED (1u << 8) // materials may have textures
 
 #define SHADE_PLACES 64 // that light which was scattered forward may come from
 // Pixels of a pattern along each side; each takes a part of the VPLs. Of small pictures five pixels are much.

@@ -4,6 +4,15 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "gbuffer_edges.glsl"
 #include "shade_piece.glsl"
+#define GBUFFER_SURFACES 31
+#define GBUFFER_TRIANGLES 32
+#define GBUFFER_VERTICES 33
+#define GBUFFER_MATERIALS 34
+#define SURFACE_TEXTURES 35
+#define SURFACE_TEXELS 36
+#define GBUFFER_TEXTURED shade_has(SHADE_TEXTURED)
+#define GBUFFER_SAMPLES shade_samples
+#include "gbuffer_triangle.glsl"
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
@@ -35,22 +44,33 @@ vec3 light_of_vpls(ivec2 pixel, shade_point p)
     return light;
 }
 
-// The piece of surface that the first of the samples `left` of a pixel shows, and those that show it: bits.
-shade_point piece_of(ivec2 corner, uint left, out vec3 albedo, out vec3 emission, out uint members)
+// What sample k of a pixel shows, a surface, and where (M).
+gbuffer_point sample_of(ivec2 pixel, int k, out vec3 at)
 {
-    int count = shade_samples * shade_samples, k0 = findLSB(left);
-    ivec2 texel0 = shade_texel(corner, k0);
-    gbuffer_point first = shade_sample(texel0);
-    vec3 at0 = shade_position(texel0, first.distance), normal = vec3(0.0), off = vec3(0.0);
+    vec2 place = vec2(shade_texel(pixel * shade_samples, k)) + 0.5;
+    camera_ray ray = gbuffer_ray(place);
+    gbuffer_point s = gbuffer_point_of(gbuffer_triangle_of(shade_colours(pixel, k / 4)[k % 4] - 1u), place, ray);
+    at = ray.origin + s.distance * ray.direction;
+    return s;
+}
+
+// The piece of surface that the first of the samples `left` of a pixel shows, and those that show it: bits.
+shade_point piece_of(ivec2 pixel, uint left, out vec3 albedo, out vec3 emission, out uint members)
+{
+    gbuffer_point first;
+    vec3 at0 = vec3(0.0), normal = vec3(0.0), off = vec3(0.0);
     albedo = emission = vec3(0.0);
     members = 0u;
-    for (int k = k0; k < count; k++) {
-        ivec2 texel = shade_texel(corner, k);
-        gbuffer_point s = shade_sample(texel);
-        vec3 at = shade_position(texel, s.distance);
-        bool same = (left >> k & 1u) != 0u && gbuffer_same(first, at0, s.facet, at, s.distance);
-        float share = same || k == k0 ? 1.0 : 0.0;
-        members |= share > 0.0 ? 1u << k : 0u;
+    for (uint some = left; some != 0u; some &= some - 1u) {
+        vec3 at;
+        gbuffer_point s = sample_of(pixel, findLSB(some), at);
+        if (members == 0u) {
+            first = s;
+            at0 = at;
+        }
+        bool same = members == 0u || gbuffer_same(first, at0, s.facet, at, s.distance);
+        float share = same ? 1.0 : 0.0;
+        members |= same ? some & -some : 0u;
         albedo += share * s.albedo;
         emission += share * s.emission;
         normal += share * s.normal;
@@ -86,24 +106,23 @@ void main()
     uint left = 0u; // bit k: sample k shows a surface and is not shaded yet
     for (int k = 0; k < count; k++) {
         ivec2 texel = shade_texel(corner, k);
-        bool shown = texelFetch(surface_tex, texel, 0).w > 0.0;
+        bool shown = shade_distance(texel) > 0.0;
         left |= shown ? 1u << k : 0u;
         if (!shown) {
-            imageStore(radiance_image, texel, vec4(vec3(0.0), NOWHERE));
+            imageStore(radiance_image, texel, uvec4(0u));
         }
     }
     while (left != 0u) {
         vec3 albedo, emission;
         uint members;
-        shade_point p = piece_of(corner, left, albedo, emission, members);
+        shade_point p = piece_of(pixel, left, albedo, emission, members);
         vec3 irradiance = irradiance_at(p, part_of(corner, members));
         if (shade_has(SHADE_VPLS)) {
             irradiance += light_of_vpls(pixel, p);
         }
-        vec3 radiance = emission + albedo * irradiance / PI;
+        uvec2 radiance = colour_pack(emission + albedo * irradiance / PI);
         for (uint some = members; some != 0u; some &= some - 1u) {
-            ivec2 texel = shade_texel(corner, findLSB(some));
-            imageStore(radiance_image, texel, vec4(radiance, texelFetch(surface_tex, texel, 0).w));
+            imageStore(radiance_image, shade_texel(corner, findLSB(some)), uvec4(radiance, 0u, 0u));
         }
         left &= ~members;
     }

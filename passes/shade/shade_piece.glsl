@@ -22,10 +22,9 @@ layout(binding = 24, scalar) uniform env_uniform
 layout(binding = 25) uniform sampler3D forward_tex; // shade_forward.comp
 layout(binding = 26) uniform sampler2D faces_tex; // shade_faces.h
 layout(binding = 27) uniform sampler3D sight_tex; // shade_sight.comp
-layout(binding = 28, rgba32f) uniform writeonly image2D radiance_image; // and distance, or infinity
+layout(binding = 28, rg32ui) uniform writeonly uimage2D radiance_image; // packed_colour.glsl
 
 const float PI = 3.14159265358979;
-#define NOWHERE uintBitsToFloat(0x7f800000u) // infinity
 
 #include "shade_outside.glsl"
 

@@ -14,20 +14,18 @@ void main()
         return;
     }
     ivec2 corner = pixel * shade_samples;
-    vec4 emission = texelFetch(emission_tex, corner, 0);
-    for (bool none = gbuffer_none(emission); none; none = false) {
+    gbuffer_facing seen = shade_facing(pixel);
+    for (bool none = seen.shown == GBUFFER_NONE; none; none = false) {
         for (int k = 0; k < shade_samples * shade_samples; k++) {
-            imageStore(radiance_image, shade_texel(corner, k), vec4(vec3(0.0), NOWHERE));
+            imageStore(radiance_image, shade_texel(corner, k), uvec4(0u));
         }
     }
-    for (bool whole = gbuffer_whole(emission); whole; whole = false) {
-        vec4 surface = texelFetch(surface_tex, corner, 0);
-        gbuffer_point seen = gbuffer_unpack(surface, texelFetch(albedo_tex, corner, 0), emission);
+    for (bool whole = seen.shown == GBUFFER_WHOLE; whole; whole = false) {
         // In the middle of the samples, but on the plane of the one whose facet is to be in a shadow or not.
-        vec3 at = shade_position(corner, surface.w), off = vec3(0.0);
+        vec3 at = shade_position(corner, shade_distance(corner)), off = vec3(0.0);
         for (int k = 1; k < shade_samples * shade_samples; k++) {
             ivec2 texel = shade_texel(corner, k);
-            off += shade_position(texel, texelFetch(surface_tex, texel, 0).w) - at;
+            off += shade_position(texel, shade_distance(texel)) - at;
         }
         off = (off - dot(off, seen.facet) * seen.facet) / float(shade_samples * shade_samples);
         shade_point p = shade_point(at + off, seen.normal, seen.facet);
@@ -35,10 +33,10 @@ void main()
         if (shade_has(SHADE_VPLS)) {
             irradiance += shade_unpack(imageLoad(indirect_image, pixel)).irradiance;
         }
-        vec3 radiance = seen.emission + seen.albedo * irradiance / PI;
+        uvec4 colours = shade_colours(pixel, 0);
+        uvec2 radiance = colour_pack(gbuffer_emission(colours) + gbuffer_albedo(colours) * irradiance / PI);
         for (int k = 0; k < shade_samples * shade_samples; k++) {
-            ivec2 texel = shade_texel(corner, k);
-            imageStore(radiance_image, texel, vec4(radiance, texelFetch(surface_tex, texel, 0).w));
+            imageStore(radiance_image, shade_texel(corner, k), uvec4(radiance, 0u, 0u));
         }
     }
 }

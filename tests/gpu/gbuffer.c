@@ -170,10 +170,38 @@ static hit trace(const tyn_surfaces *s, const double o[3], const double d[3])
 
 // ---- the device -------------------------------------------------------------------------------
 
+enum { NONE, WHOLE, SEVERAL }; // GBUFFER_*
+
 typedef struct images {
-    const float (*surface)[4], (*albedo)[4], (*emission)[4];
+    const float *distances;
+    const uint32_t (*facing)[4], (*colours)[4]; // one texel a pixel up to 2 x 2 samples
     const struct gbuffer_edge_count *edges;
 } images;
+
+static float float_of(uint32_t bits)
+{
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+static void albedo_of(const uint32_t texel[4], float albedo[3])
+{
+    const uint32_t c[3] = {texel[2] & 0xfffff, texel[3] & 0xfffff,
+                           texel[2] >> 20 | texel[3] >> 20 << 12};
+    for (int k = 0; k < 3; k++) {
+        albedo[k] = (float)c[k] / 1048575;
+    }
+}
+
+static void emission_of(const uint32_t texel[4], float emission[3])
+{
+    const uint32_t c[3] = {texel[0] & 0x3ffff, texel[1] & 0x3ffff,
+                           texel[0] >> 18 | (texel[1] >> 18 & 15) << 14};
+    for (int k = 0; k < 3; k++) {
+        emission[k] = ldexpf((float)c[k], (int)(texel[1] >> 22 & 255) - 127 - 17);
+    }
+}
 
 static images draw(gpu_test *t, const tyn_scene *scene, const struct camera_block *camera,
                    const struct surface_texture *texture, const uint32_t *texels, size_t count,
@@ -200,14 +228,13 @@ static images draw(gpu_test *t, const tyn_scene *scene, const struct camera_bloc
         gpu_buffer(t, "texels", texels, count * sizeof *texels),
     };
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_gbuffer, &params, refs), TYN_OK);
-    tyn_graph_output(t->graph, "surface", refs[GBUFFER_PORT_SURFACE], true);
-    tyn_graph_output(t->graph, "albedo", refs[GBUFFER_PORT_ALBEDO], true);
-    tyn_graph_output(t->graph, "emission", refs[GBUFFER_PORT_EMISSION], true);
+    tyn_graph_output(t->graph, "distances", refs[GBUFFER_PORT_DISTANCES], true);
+    tyn_graph_output(t->graph, "facing", refs[GBUFFER_PORT_FACING], true);
+    tyn_graph_output(t->graph, "colours", refs[GBUFFER_PORT_COLOURS], true);
     tyn_graph_output(t->graph, "edge_count", refs[GBUFFER_PORT_EDGE_COUNT], true);
     gpu_run(t);
-    return (images){(const float(*)[4])gpu_map(t, "surface"),
-                    (const float(*)[4])gpu_map(t, "albedo"),
-                    (const float(*)[4])gpu_map(t, "emission"), gpu_map(t, "edge_count")};
+    return (images){gpu_map(t, "distances"), (const uint32_t(*)[4])gpu_map(t, "facing"),
+                    (const uint32_t(*)[4])gpu_map(t, "colours"), gpu_map(t, "edge_count")};
 }
 
 static void unfold(float x, float y, float n[3])
@@ -235,7 +262,8 @@ static void expect_near(const float *found, const float *right, float tolerance,
 }
 
 typedef struct expected {
-    double distance; // 0: no surface
+    double distance;   // 0: no surface
+    uint32_t triangle; // + 1; 0: none
     float facet[3], normal[3], albedo[3], emission[3];
     bool doubtful; // at an edge, where rounding may decide
     bool textured; // then the albedo is not looked at here
@@ -243,7 +271,8 @@ typedef struct expected {
 
 static expected expect(const tyn_surfaces *s, const hit *h, const double d[3])
 {
-    expected right = {.distance = h->triangle < 0 ? 0 : h->distance};
+    expected right = {.distance = h->triangle < 0 ? 0 : h->distance,
+                      .triangle = (uint32_t)(h->triangle + 1)};
     if (h->triangle < 0) {
         return right;
     }
@@ -280,27 +309,35 @@ static expected expect(const tyn_surfaces *s, const hit *h, const double d[3])
 
 static void check_distance(const images *got, uint32_t i, const expected *right)
 {
-    if (!(fabs((double)got->surface[i][3] - right->distance) <= 1e-5 * right->distance + 2e-6)) {
-        fail_msg("sample %u: distance %g, not %g", i, (double)got->surface[i][3], right->distance);
+    if (!(fabs((double)got->distances[i] - right->distance) <= 1e-5 * right->distance + 2e-6)) {
+        fail_msg("sample %u: distance %g, not %g", i, (double)got->distances[i], right->distance);
     }
 }
 
-static void check_sample(const images *got, uint32_t i, const expected *right, float flag,
-                         float tolerance)
+static void check_facing(const images *got, uint32_t pixel, const expected *right, float tolerance)
+{
+    const uint32_t *texel = got->facing[pixel];
+    float found[3];
+    unfold(float_of(texel[0]), float_of(texel[1]), found);
+    expect_near(found, right->facet, 1e-5f, "facet", pixel);
+    unfold(float_of(texel[2]), float_of(texel[3]), found);
+    expect_near(found, right->normal, tolerance, "normal", pixel);
+}
+
+static void check_colours(const images *got, uint32_t pixel, const expected *right)
 {
     float found[3];
-    unfold(got->albedo[i][3], got->emission[i][3] - flag, found);
-    expect_near(found, right->facet, 1e-5f, "facet", i);
-    expect_near(got->surface[i], right->normal, tolerance, "normal", i);
-    expect_near(got->emission[i], right->emission, flag > 0 ? 1e-5f : 0, "emission", i);
+    emission_of(got->colours[pixel], found);
+    expect_near(found, right->emission, 1e-5f, "emission", pixel);
+    albedo_of(got->colours[pixel], found);
     if (!right->textured) {
-        expect_near(got->albedo[i], right->albedo, flag > 0 ? 1e-6f : 0, "albedo", i);
+        expect_near(found, right->albedo, 1e-6f, "albedo", pixel);
     }
 }
 
 // A pixel of samples[0 .. side^2 - 1], at image.
-static void check_pixel(const images *got, const uint32_t *image, const expected *samples,
-                        uint32_t count, uint32_t counts[3])
+static void check_pixel(const images *got, uint32_t pixel, const uint32_t *image,
+                        const expected *samples, uint32_t count, uint32_t counts[3])
 {
     bool doubtful = false;
     uint32_t shown = 0;
@@ -318,25 +355,32 @@ static void check_pixel(const images *got, const uint32_t *image, const expected
     if (doubtful) {
         return;
     }
-    const float flag = got->emission[image[0]][3];
-    const bool whole = flag > 2 && flag<6, none = flag> 6;
-    assert_true(none == (shown == 0) && !(whole && shown < count));
+    const uint32_t what = got->facing[pixel][2] & 3;
+    assert_true((what == NONE) == (shown == 0) && !(what == WHOLE && shown < count));
     for (uint32_t k = 0; k < count; k++) {
         check_distance(got, image[k], &samples[k]);
-        if (!whole && samples[k].distance > 0) {
-            check_sample(got, image[k], &samples[k], 0, 1e-4f);
-        }
     }
-    counts[whole ? 0 : none ? 1 : 2]++;
-    if (whole) {
+    counts[what == WHOLE ? 0 : what == NONE ? 1 : 2]++;
+    if (what == WHOLE) {
         normalise(mean.normal);
         for (int c = 0; c < 3; c++) {
             mean.albedo[c] /= (float)count;
             mean.emission[c] /= (float)count;
         }
-        check_sample(got, image[0], &mean, 4, count > 1 ? 1e-3f : 1e-4f);
-    } else if (
-        !none) { // several pieces: some sample's facet is turned, or off the first one's plane
+        check_facing(got, pixel, &mean, count > 1 ? 1e-3f : 1e-4f);
+        check_colours(got, pixel, &mean);
+    } else if (what == SEVERAL) {
+        uint32_t nearest = count - 1; // right below the middle, or what comes after it
+        for (uint32_t k = 0; samples[nearest].distance <= 0 && k < count; k++) {
+            nearest = k;
+        }
+        assert_int_equal(got->facing[pixel][3] & 15, nearest);
+        check_facing(got, pixel, &samples[nearest], 1e-4f);
+        assert_memory_equal(got->colours[pixel],
+                            ((uint32_t[4]){samples[0].triangle, samples[1].triangle,
+                                           samples[2].triangle, samples[3].triangle}),
+                            sizeof got->colours[pixel]);
+        // Some sample's facet is turned, or off the first one's plane.
         bool several = shown < count;
         for (uint32_t k = 1; k < count; k++) {
             float cosine = 0;
@@ -410,7 +454,7 @@ static void as_rays_find_it(void **state)
                 image[j] = (i / WIDTH * side + j / side) * width + i % WIDTH * side + j % side;
                 of[j] = right[image[j]];
             }
-            check_pixel(&got, image, of, side * side, counts);
+            check_pixel(&got, i, image, of, side * side, counts);
         }
         check_rows(got.edges);
         most = got.edges->count > most ? got.edges->count : most;
@@ -449,9 +493,11 @@ static void textures(void **state)
     images got = draw(t, &scene, &above, &texture, texels, count, 1);
     uint32_t white = 0, black = 0;
     for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
-        white += fabsf(got.albedo[i][0] - 0.5f) < 1e-4f;
-        black += got.albedo[i][0] < 1e-4f;
-        assert_true(got.albedo[i][1] == 0);
+        float albedo[3];
+        albedo_of(got.colours[i], albedo);
+        white += fabsf(albedo[0] - 0.5f) < 1e-4f;
+        black += albedo[0] < 1e-4f;
+        assert_true(albedo[1] == 0);
     }
     print_message("%u white, %u black of %d\n", white, black, WIDTH * HEIGHT);
     assert_true(white > WIDTH * HEIGHT / 4 && black > WIDTH * HEIGHT / 4 &&
@@ -460,8 +506,10 @@ static void textures(void **state)
         make_camera((float[]){0, 150, 0}, (float[]){0.01f, -1, 0}, false);
     got = draw(t, &scene, &far, &texture, texels, count, 1);
     for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
-        if (!(fabsf(got.albedo[i][0] - 0.25f) < 2e-3f)) {
-            fail_msg("far away, sample %u: %g", i, (double)got.albedo[i][0]);
+        float albedo[3];
+        albedo_of(got.colours[i], albedo);
+        if (!(fabsf(albedo[0] - 0.25f) < 2e-3f)) {
+            fail_msg("far away, sample %u: %g", i, (double)albedo[0]);
         }
     }
     tyn_scene_finish(&scene);

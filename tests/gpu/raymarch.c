@@ -125,6 +125,14 @@ static tyn_ref upload(gpu_test *t, const char *name, const texture *x)
                      x->channels, x->texels);
 }
 
+// As packed_colour.glsl, of whole numbers below 2^17; the words are kept in floats.
+static void pack_colour(const float colour[3], float packed[2])
+{
+    const uint32_t c[3] = {(uint32_t)colour[0], (uint32_t)colour[1], (uint32_t)colour[2]};
+    const uint32_t words[2] = {c[0] | c[2] << 18, c[1] | c[2] >> 14 << 18 | (127u + 17u) << 22};
+    memcpy(packed, words, sizeof words);
+}
+
 static void run(gpu_test *t, march_scene *s)
 {
     tyn_graph_begin(t->graph);
@@ -158,8 +166,15 @@ static void run(gpu_test *t, march_scene *s)
                       (tyn_extent){s->params.width, s->params.height, 1}, 1, s->host_depth);
     }
     if (s->surface) {
-        refs[RAYMARCH_PORT_SURFACE] =
-            gpu_image(t, "surface", TYN_IMAGE_2D, (tyn_extent){16, 16, 1}, 4, s->surface);
+        const tyn_extent size = {16, 16, 1};
+        float distances[16 * 16], packed[16 * 16][2];
+        for (int i = 0; i < 16 * 16; i++) {
+            const float *of = s->surface + 4 * i;
+            distances[i] = of[3] < INFINITY ? of[3] : 0;
+            pack_colour(of, packed[i]);
+        }
+        refs[RAYMARCH_PORT_SURFACE] = gpu_image(t, "surface", TYN_IMAGE_2D, size, -2, packed[0]);
+        refs[RAYMARCH_PORT_DISTANCES] = gpu_image(t, "distances", TYN_IMAGE_2D, size, 1, distances);
     }
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_raymarch, &s->params, refs), TYN_OK);
     for (uint8_t p = RAYMARCH_PORT_RADIANCE; p < RAYMARCH_NUM_PORTS; p++) {

@@ -123,10 +123,11 @@ tyn_ref gpu_image(gpu_test *t, const char *name, tyn_dim dim, tyn_extent extent,
 {
     size_t texels = (size_t)extent.x * extent.y * extent.z;
     pixels *p = malloc(sizeof *p);
-    VkFormat format = channels == -1  ? VK_FORMAT_R16_SFLOAT
-                      : channels == 1 ? VK_FORMAT_R32_SFLOAT
-                      : channels == 2 ? VK_FORMAT_R32G32_SFLOAT
-                                      : VK_FORMAT_R32G32B32A32_SFLOAT;
+    VkFormat format = channels == -1   ? VK_FORMAT_R16_SFLOAT
+                      : channels == 1  ? VK_FORMAT_R32_SFLOAT
+                      : channels == 2  ? VK_FORMAT_R32G32_SFLOAT
+                      : channels == -2 ? VK_FORMAT_R32G32_UINT
+                                       : VK_FORMAT_R32G32B32A32_SFLOAT;
     if (channels == -1) {
         p->bytes = texels * 2;
         uint16_t *half = malloc(p->bytes);
@@ -135,7 +136,7 @@ tyn_ref gpu_image(gpu_test *t, const char *name, tyn_dim dim, tyn_extent extent,
         }
         p->data = half;
     } else {
-        p->bytes = texels * (size_t)channels * 4;
+        p->bytes = texels * (size_t)abs(channels) * 4;
         p->data = malloc(p->bytes);
         memcpy(p->data, data, p->bytes);
     }
