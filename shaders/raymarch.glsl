@@ -324,11 +324,16 @@ bool march_sees(bool sun, march_map m, float s)
     return (sun ? shadow_all_lit(shadow_place_sun(m.map, q)) : shadow_visibility_lamp_at(m.map, q)) > 0.0;
 }
 
-// Share of the step from s to s + ds that a light sees. Steps follow the medium, shadows do not: so a step looks at several places, and
-// halves what is between two that differ.
-float march_lit(bool sun, march_map map, uint bit, float s, float ds, inout march_shadows shadow)
+// What a light sees of the step from s to s + ds: how much of it, and where the middle of that is. Steps follow the medium, shadows do not: so
+// a step looks at several places, and halves what is between two that differ.
+struct march_lit {
+    float metres, middle;
+};
+
+march_lit march_lit_of(bool sun, march_map map, uint bit, float s, float ds, inout march_shadows shadow)
 {
-    float part = ds / max(ceil(ds / march_shadow_piece()), 1.0), finest = part / RAYMARCH_SHADOW_HALVES, sum = 0.0;
+    float part = ds / max(ceil(ds / march_shadow_piece()), 1.0), finest = part / RAYMARCH_SHADOW_HALVES;
+    float sum = 0.0, moment = 0.0;
     uint mask = bit < 32u ? 1u << bit : 0u; // lights beyond are looked at afresh
     bool known = (shadow.known & mask) != 0u, lit = (shadow.lit & mask) != 0u;
     // Up to `lo` it is known what the light sees; at `hi`, if > 0, it is the opposite. One look an iteration, as
@@ -340,11 +345,15 @@ float march_lit(bool sun, march_map map, uint bit, float s, float ds, inout marc
         bool sees = march_sees(sun, map, min(s + next, shadow.inside));
         lit = known ? lit : sees;
         known = true;
-        sum += lit && sees ? next - lo : 0.0;
+        float more = lit && sees ? next - lo : 0.0;
+        sum += more;
+        moment += more * (lo + next);
         hi = lit == sees ? hi : next;
         lo = lit == sees ? next : lo;
         if (hi - lo > 0.0 && hi - lo <= finest) { // the edge is in the middle
-            sum += 0.5 * (hi - lo);
+            more = 0.5 * (hi - lo);
+            sum += more;
+            moment += more * (hi + lo);
             lo = hi;
             hi = 0.0;
             lit = !lit;
@@ -352,7 +361,7 @@ float march_lit(bool sun, march_map map, uint bit, float s, float ds, inout marc
     }
     shadow.known |= mask;
     shadow.lit = lit ? shadow.lit | mask : shadow.lit & ~mask;
-    return sum / ds;
+    return march_lit(sum, s + 0.5 * moment / max(sum, 1e-30));
 }
 
 // Is there a wall about p, so that the lattice must not be blended freely?
@@ -576,7 +585,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
             for (uint n = 0u; n < raymarch_num_suns; n++) {
                 float lit = 1.0;
                 if (raymarch_has(RAYMARCH_SHADOWS)) {
-                    lit = march_lit(true, suns[n].map, n, s, ds, state.shadow);
+                    lit = march_lit_of(true, suns[n].map, n, s, ds, state.shadow).metres / ds;
                 }
                 // A loop, as some devices run both sides of a branch.
                 for (bool dark = lit <= 0.0; !dark; dark = true) {

@@ -171,8 +171,9 @@ float march_inverse_square(float h2, float a, float b)
     return q > 4.0 * z ? (b - a) * (1.0 - z * z / (3.0 * q * q)) / q : atan(z, q) / h;
 }
 
-// As march_sunlight, of a lamp in the step from s to s + ds, of which `at` is the middle. 1 / r^2 changes most:
-// its mean is exact, (angle under which the lamp sees the step) / (h ds), h the ray's distance from it.
+// As march_sunlight, of a lamp in the step from s to s + ds, of which `at` is the middle: of what the lamp sees of it
+// and shines on. 1 / r^2 changes most: its integral is exact, (angle under which the lamp sees that part) / h, h the ray's
+// distance from it.
 vec3 march_lamplight(march_lamp lamp, uint bit, march_lamps ray, march_medium unit, march_medium m, float s, float ds,
                      float at, spectrum weight, spectrum weight_scaled, inout march_shadows shadow,
                      inout vec3 first)
@@ -180,32 +181,45 @@ vec3 march_lamplight(march_lamp lamp, uint bit, march_lamps ray, march_medium un
     vec3 away = ray.origin + at * ray.direction - lamp.grid.light.position;
     float along = dot(away, ray.direction), least = march_least_h(ray, at);
     vec3 across = away - along * ray.direction;
-    float h2 = max(dot(across, across), least * least);
+    float h2 = max(dot(across, across), least * least), h = sqrt(h2);
     float a = along + (s - at), b = a + ds;
-    float mean = march_inverse_square(h2, a, b) / ds * march_pixel_mean(length(across) * (0.282 / least));
-    // Where the angle from the lamp is in the middle: half of the light is on either side.
-    float middle, share = 1.0;
+    float angle, share = 1.0;
     if (raymarch_has(RAYMARCH_SPOTS)) {
-        float h = sqrt(h2), angle;
         share = march_share(lamp.grid.light, lamp.cone, atan(a, h), atan(b, h), angle);
-        middle = clamp(h * tan(clamp(angle, -1.5707, 1.5707)), a, b);
-        // What is lit need not be where the step's weight has its centroid.
-        float nearer = at - s - (middle - a);
-        weight *= exp(m.extinction * nearer);
-        weight_scaled *= exp(m.scaled_extinction * nearer);
-    } else {
-        float ra = sqrt(h2 + a * a), rb = sqrt(h2 + b * b);
-        middle = (a * rb + b * ra) / (ra + rb) + (at - s - 0.5 * ds);
     }
-    away += (clamp(middle, a, b) - along) * ray.direction;
-    float r = length(away);
     if (raymarch_has(RAYMARCH_SHADOWS) && share > 0.0) {
-        share *= march_lit(false, lamp.map, bit, s, ds, shadow);
+        march_lit lit = march_lit_of(false, lamp.map, bit, s, ds, shadow);
+        if (lit.metres < ds) {
+            float middle = along + (lit.middle - at);
+            a = middle - 0.5 * lit.metres;
+            b = middle + 0.5 * lit.metres;
+            if (raymarch_has(RAYMARCH_SPOTS)) {
+                share = march_share(lamp.grid.light, lamp.cone, atan(a, h), atan(b, h), angle);
+            }
+            share = lit.metres > 0.0 ? share : 0.0;
+        }
     }
     if (share <= 0.0) {
         return vec3(0.0);
     }
-    return march_lamplight_seen(lamp, ray, unit, m, away, r, share * mean, weight, weight_scaled, first);
+    float mean = march_inverse_square(h2, a, b) / ds * march_pixel_mean(length(across) * (0.282 / least));
+    // Where the angle from the lamp is in the middle: half of the light is on either side.
+    float middle;
+    if (raymarch_has(RAYMARCH_SPOTS)) {
+        middle = h * tan(clamp(angle, -1.5707, 1.5707));
+    } else {
+        float ra = sqrt(h2 + a * a), rb = sqrt(h2 + b * b);
+        middle = (a * rb + b * ra) / (ra + rb) + (at - s - 0.5 * ds);
+    }
+    middle = clamp(middle, a, b);
+    if (raymarch_has(RAYMARCH_SPOTS)) {
+        // What is lit need not be where the step's weight has its centroid.
+        float nearer = along - middle;
+        weight *= exp(m.extinction * nearer);
+        weight_scaled *= exp(m.scaled_extinction * nearer);
+    }
+    away += (middle - along) * ray.direction;
+    return march_lamplight_seen(lamp, ray, unit, m, away, length(away), share * mean, weight, weight_scaled, first);
 }
 
 #endif
