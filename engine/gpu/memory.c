@@ -4,7 +4,7 @@
 
 static const VkDeviceSize MIN_BLOCK = 1u << 20, MAX_BLOCK = 256u << 20;
 
-static int find_type(const tyn_device *dev, uint32_t allowed, tyn_memory_kind kind)
+int tyn_memory_type(const tyn_device *dev, uint32_t allowed, tyn_memory_kind kind)
 {
     const VkMemoryPropertyFlags host =
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
@@ -59,7 +59,7 @@ static tyn_result allocate(tyn_device *dev, tyn_heap *heap, const VkMemoryRequir
                            tyn_memory_kind kind, VkDeviceSize expected, tyn_block **out,
                            VkDeviceSize *offset)
 {
-    int type = find_type(dev, need->memoryTypeBits, kind);
+    int type = tyn_memory_type(dev, need->memoryTypeBits, kind);
     if (type < 0) {
         tyn_log_print(&dev->log, TYN_LOG_ERROR, "the device has no memory type of kind %d", kind);
         return TYN_ERR_DEVICE;
@@ -91,6 +91,18 @@ static tyn_result allocate(tyn_device *dev, tyn_heap *heap, const VkMemoryRequir
     b->used = need->size;
     *out = b;
     *offset = 0;
+    return TYN_OK;
+}
+
+tyn_result tyn_heap_add(tyn_device *dev, tyn_heap *heap, uint32_t type, VkDeviceSize size,
+                        VkDeviceMemory *memory)
+{
+    tyn_block *b = add_block(dev, heap, type, size, false);
+    if (!b) {
+        return TYN_ERR_MEMORY;
+    }
+    b->used = size;
+    *memory = b->memory;
     return TYN_OK;
 }
 

@@ -26,4 +26,9 @@ tyn_result tyn_heap_bind_buffer(tyn_device *dev, tyn_heap *heap, VkBuffer buffer
                                 tyn_memory_kind kind, VkDeviceSize expected, void **mapped);
 tyn_result tyn_heap_bind_image(tyn_device *dev, tyn_heap *heap, VkImage image,
                                VkDeviceSize expected);
+// A block that the caller binds things to, of a memory type from tyn_memory_type.
+tyn_result tyn_heap_add(tyn_device *dev, tyn_heap *heap, uint32_t type, VkDeviceSize size,
+                        VkDeviceMemory *memory);
+// The best of the `allowed` types (bits), or -1.
+int tyn_memory_type(const tyn_device *dev, uint32_t allowed, tyn_memory_kind kind);
 void tyn_heap_finish(tyn_device *dev, tyn_heap *heap);

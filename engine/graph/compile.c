@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { SHARED_LEAST = 64 << 10 }; // bytes
+
 uint32_t graph_texel_size(VkFormat format)
 {
     switch (format) {
@@ -156,8 +158,7 @@ bool tyn_graph_matches(const tyn_graph *graph)
 
 // ---- allocate ---------------------------------------------------------------------------------
 
-static tyn_result create_image(tyn_graph *g, tyn_heap *heap, const resource *r, phys *p,
-                               VkDeviceSize expected)
+static tyn_result make_image(tyn_graph *g, const resource *r, phys *p)
 {
     tyn_device *dev = g->dev;
     const VkPhysicalDeviceLimits *limits = &dev->properties.limits;
@@ -199,10 +200,15 @@ static tyn_result create_image(tyn_graph *g, tyn_heap *heap, const resource *r, 
                                           : p->image_usage | VK_IMAGE_USAGE_SAMPLED_BIT,
                              .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED},
         NULL, &p->image);
-    tyn_result result = tyn_vk_check(dev, made, r->name);
-    if (result == TYN_OK) {
-        result = tyn_heap_bind_image(dev, heap, p->image, expected);
-    }
+    tyn_device_name_object(dev, VK_OBJECT_TYPE_IMAGE, (uint64_t)p->image, r->name);
+    return tyn_vk_check(dev, made, r->name);
+}
+
+// Of an image that has memory.
+static tyn_result make_views(tyn_graph *g, const resource *r, phys *p)
+{
+    tyn_device *dev = g->dev;
+    tyn_result result = TYN_OK;
     // View 0 sees all mips, the others one each.
     for (uint32_t v = 0; result == TYN_OK && v < (r->mips > 1 ? r->mips + 1 : 1); v++) {
         VkImageSubresourceRange range = {graph_aspect(r->format), 0, r->mips, 0, 1};
@@ -210,7 +216,7 @@ static tyn_result create_image(tyn_graph *g, tyn_heap *heap, const resource *r, 
             range.baseMipLevel = v - 1;
             range.levelCount = 1;
         }
-        made = dev->vk.CreateImageView(
+        const VkResult made = dev->vk.CreateImageView(
             dev->device,
             &(VkImageViewCreateInfo){.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
                                      .image = p->image,
@@ -221,14 +227,21 @@ static tyn_result create_image(tyn_graph *g, tyn_heap *heap, const resource *r, 
             NULL, v ? &p->mip_views[v - 1] : &p->view);
         result = tyn_vk_check(dev, made, r->name);
     }
-    tyn_device_name_object(dev, VK_OBJECT_TYPE_IMAGE, (uint64_t)p->image, r->name);
     return result;
 }
 
-static tyn_result create_buffer(tyn_graph *g, tyn_heap *heap, VkDeviceSize size,
-                                VkBufferUsageFlags usage, tyn_memory_kind kind,
-                                VkDeviceSize expected, const char *name, VkBuffer *out,
-                                void **mapped)
+static tyn_result create_image(tyn_graph *g, tyn_heap *heap, const resource *r, phys *p,
+                               VkDeviceSize expected)
+{
+    tyn_result result = make_image(g, r, p);
+    if (result == TYN_OK) {
+        result = tyn_heap_bind_image(g->dev, heap, p->image, expected);
+    }
+    return result == TYN_OK ? make_views(g, r, p) : result;
+}
+
+static tyn_result make_buffer(tyn_graph *g, VkDeviceSize size, VkBufferUsageFlags usage,
+                              const char *name, VkBuffer *out)
 {
     VkResult made = g->dev->vk.CreateBuffer(
         g->dev->device,
@@ -236,9 +249,17 @@ static tyn_result create_buffer(tyn_graph *g, tyn_heap *heap, VkDeviceSize size,
                               .size = size,
                               .usage = usage ? usage : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT},
         NULL, out);
-    tyn_result result = tyn_vk_check(g->dev, made, name);
+    tyn_device_name_object(g->dev, VK_OBJECT_TYPE_BUFFER, (uint64_t)*out, name);
+    return tyn_vk_check(g->dev, made, name);
+}
+
+static tyn_result create_buffer(tyn_graph *g, tyn_heap *heap, VkDeviceSize size,
+                                VkBufferUsageFlags usage, tyn_memory_kind kind,
+                                VkDeviceSize expected, const char *name, VkBuffer *out,
+                                void **mapped)
+{
+    tyn_result result = make_buffer(g, size, usage, name, out);
     if (result == TYN_OK) {
-        tyn_device_name_object(g->dev, VK_OBJECT_TYPE_BUFFER, (uint64_t)*out, name);
         result = tyn_heap_bind_buffer(g->dev, heap, *out, kind, expected, mapped);
     }
     return result;
@@ -275,13 +296,64 @@ static bool inherit(heritage *from, const resource *r, phys *p)
     return false;
 }
 
+// What nodes make, unless it is too small to be worth the barriers. Tests that fill it with NaN want it apart.
+static bool may_share(const tyn_graph *g, const resource *r)
+{
+    return (r->kind == RESOURCE_OUT || r->kind == RESOURCE_SCRATCH) && !g->poison &&
+           resource_bytes(r) >= SHARED_LEAST;
+}
+
+static tyn_result create_resource(tyn_graph *g, const resource *r, phys *p, VkDeviceSize expected)
+{
+    const VkDeviceSize bytes = p->bytes ? p->bytes : 4;
+    if (p->shared) {
+        return r->dim == TYN_BUFFER ? make_buffer(g, bytes, p->buffer_usage, r->name, &p->buffer)
+                                    : make_image(g, r, p);
+    }
+    const bool history = r->kind == RESOURCE_HISTORY;
+    tyn_heap *heap = history ? &p->heap : &g->heap;
+    expected = history ? 0 : expected;
+    return r->dim == TYN_BUFFER ? create_buffer(g, heap, bytes, p->buffer_usage, TYN_MEMORY_DEVICE,
+                                                expected, r->name, &p->buffer, NULL)
+                                : create_image(g, heap, r, p, expected);
+}
+
+// Memory, and views, of what shares it.
+static tyn_result complete_shared(tyn_graph *g)
+{
+    VkDeviceSize passing = 0;
+    tyn_result result = graph_bind_shared(g, &passing);
+    g->transient_bytes += passing;
+    for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
+        if (g->phys[i].shared && g->resources[i].dim != TYN_BUFFER) {
+            result = make_views(g, &g->resources[i], &g->phys[i]);
+        }
+    }
+    return result;
+}
+
+static tyn_result create_readbacks(tyn_graph *g)
+{
+    tyn_result result = TYN_OK;
+    for (uint32_t i = 0; result == TYN_OK && i < g->num_outputs; i++) {
+        phys *p = &g->phys[g->outputs[i].ref.resource - 1];
+        if (g->outputs[i].readback && !p->readback) {
+            result = create_buffer(g, &g->heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                   TYN_MEMORY_READBACK, p->bytes, "readback", &p->readback,
+                                   &p->readback_ptr);
+        }
+    }
+    return result;
+}
+
 static tyn_result create_resources(tyn_graph *g, heritage *old)
 {
     VkDeviceSize expected = 0;
     for (uint32_t i = 0; i < g->num_resources; i++) {
-        expected += g->resources[i].kind == RESOURCE_IMPORT
-                        ? 0
-                        : resource_bytes(&g->resources[i]) + (64u << 10);
+        const resource *r = &g->resources[i];
+        g->phys[i].shared = may_share(g, r);
+        expected +=
+            r->kind == RESOURCE_IMPORT || g->phys[i].shared ? 0 : resource_bytes(r) + (64u << 10);
     }
     g->persistent_bytes = g->transient_bytes = 0;
     tyn_result result = TYN_OK;
@@ -294,34 +366,25 @@ static tyn_result create_resources(tyn_graph *g, heritage *old)
             p->borrowed = true;
             continue;
         }
-        *(r->kind == RESOURCE_SCRATCH ? &g->transient_bytes : &g->persistent_bytes) += p->bytes;
+        if (r->kind != RESOURCE_SCRATCH) {
+            g->persistent_bytes += p->bytes;
+        } else if (!p->shared) {
+            g->transient_bytes += p->bytes;
+        }
         if (r->kind == RESOURCE_UPLOAD || r->kind == RESOURCE_HISTORY || g->poison) {
             p->buffer_usage |= VK_BUFFER_USAGE_TRANSFER_DST_BIT;
             p->image_usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
         }
-        const bool history = r->kind == RESOURCE_HISTORY;
-        if (history && inherit(old, r, p)) {
+        if (r->kind == RESOURCE_HISTORY && inherit(old, r, p)) {
             continue;
         }
-        tyn_heap *heap = history ? &p->heap : &g->heap;
-        const VkDeviceSize block = history ? 0 : expected;
-        result = r->dim == TYN_BUFFER
-                     ? create_buffer(g, heap, p->bytes ? p->bytes : 4, p->buffer_usage,
-                                     TYN_MEMORY_DEVICE, block, r->name, &p->buffer, NULL)
-                     : create_image(g, heap, r, p, block);
-        expected -= expected > p->bytes ? p->bytes : expected;
-    }
-    for (uint32_t i = 0; result == TYN_OK && i < g->num_outputs; i++) {
-        if (g->outputs[i].readback) {
-            phys *p = &g->phys[g->outputs[i].ref.resource - 1];
-            if (!p->readback) {
-                result = create_buffer(g, &g->heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                       TYN_MEMORY_READBACK, p->bytes, "readback", &p->readback,
-                                       &p->readback_ptr);
-            }
+        result = create_resource(g, r, p, expected);
+        if (!p->shared) {
+            expected -= expected > p->bytes ? p->bytes : expected;
         }
     }
-    return result;
+    result = result == TYN_OK ? complete_shared(g) : result;
+    return result == TYN_OK ? create_readbacks(g) : result;
 }
 
 // Zero-filled stand-ins for optional inputs that nothing is connected to.

@@ -118,6 +118,7 @@ static void put_plan(text *t, tyn_graph *g, uint32_t index, tyn_track *tracks)
                       .tracks = tracks,
                       .print = put_line,
                       .print_user = t};
+    recorder_enter(&r);
     g->nodes[index].pass->record(&r, g->nodes[index].params);
 }
 

@@ -1,4 +1,4 @@
-// internal.h -- the inside of the render graph, shared by declare.c, compile.c, recorder.c, draw.c,
+// internal.h -- the inside of the render graph, shared by declare.c, compile.c, shared_memory.c, recorder.c, draw.c,
 // record.c and dump.c.
 //
 // A declaration is two lists, resources and nodes, rebuilt for every frame. What was compiled is kept
@@ -64,6 +64,9 @@ typedef struct phys {
     VkImageView mip_views[MAX_MIPS];
     VkBuffer buffer;
     VkDeviceSize bytes;
+    bool shared; // lies in a block with others, some of them in the same place (share.h)
+    uint32_t block;
+    VkDeviceSize offset, size;
     VkImageUsageFlags image_usage;
     VkBufferUsageFlags buffer_usage;
     tyn_track track;
@@ -183,6 +186,9 @@ void graph_cull(tyn_graph *g);
 tyn_result graph_survey(tyn_graph *g, survey *s, phys *usage);
 uint64_t graph_structure(const tyn_graph *g, const survey *s);
 void graph_release(tyn_graph *g); // everything compiled
+// Memory for the resources that are `shared`, and how many bytes of it none has for good.
+tyn_result graph_bind_shared(tyn_graph *g, VkDeviceSize *passing);
+bool graph_overlap(const phys *a, const phys *b);
 void graph_free_staging(tyn_graph *g);
 bool graph_uploads_staged(const tyn_graph *g);
 uint32_t graph_texel_size(VkFormat format);
@@ -190,6 +196,8 @@ VkImageAspectFlags graph_aspect(VkFormat format);
 
 // Records a barrier for one access outside any node (uploads, readback, host images).
 void recorder_access(tyn_recorder *r, uint32_t resource_index, tyn_access access);
+// Before a node: what it makes may lie where others are; whoever used that memory has to be done with it.
+void recorder_enter(tyn_recorder *r);
 void recorder_fail(tyn_recorder *r, tyn_result result, const char *what, const char *which);
 
 // Starts with what the kernel's bindings touch; `ports`, `spec` and `mips` may be NULL.

@@ -251,6 +251,36 @@ static bool add_in_place(const tyn_graph *g, bool *run_node)
     return more;
 }
 
+// Does a node that runs have scratch where this resource is?
+static bool is_overwritten(const tyn_graph *g, const bool *run_node, uint32_t index)
+{
+    for (uint32_t i = 0; g->phys[index].shared && i < g->num_nodes; i++) {
+        const node *n = &g->nodes[i];
+        for (uint32_t p = 0; run_node[i] && p < n->pass->num_ports; p++) {
+            if (n->res[p] && n->pass->ports[p].dir == TYN_SCRATCH &&
+                graph_overlap(&g->phys[n->res[p] - 1], &g->phys[index])) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+// Nodes that must run because another's scratch is where they put what they make. True if any was added.
+static bool add_overwritten(const tyn_graph *g, bool *run_node)
+{
+    bool more = false;
+    for (uint32_t i = 0; i < g->num_resources; i++) {
+        const resource *r = &g->resources[i];
+        const uint32_t maker = r->kind == RESOURCE_OUT ? r->writers[0] : 0;
+        const node *n = maker ? &g->nodes[maker - 1] : NULL;
+        const bool can = n && n->needed && (n->media_only || !g->setup_only);
+        more |= can && !run_node[maker - 1] && is_overwritten(g, run_node, i) &&
+                also_run(run_node, maker);
+    }
+    return more;
+}
+
 // Which needed nodes run: those whose inputs or params changed, and what these need of resources that
 // are changed in place.
 static void choose_nodes(const tyn_graph *g, bool *run_node)
@@ -261,7 +291,7 @@ static void choose_nodes(const tyn_graph *g, bool *run_node)
         run_node[i] = wanted && ((g->recompute && !n->media_only) || g->runs[i].hash != n->hash ||
                                  !outputs_current(g, n, i));
     }
-    while (add_in_place(g, run_node)) {
+    while (add_in_place(g, run_node) || add_overwritten(g, run_node)) {
     }
 }
 
@@ -271,6 +301,20 @@ static void timestamp(tyn_graph *g, VkCommandBuffer cmd, uint32_t query)
     if (slot->queries) {
         g->dev->vk.CmdWriteTimestamp2(cmd, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot->queries,
                                       query);
+    }
+}
+
+// What was in the place of a node's scratch is gone; a frame that sets up only does not make it again.
+static void forget_overwritten(tyn_graph *g, const node *n)
+{
+    for (uint32_t p = 0; p < n->pass->num_ports; p++) {
+        const bool scratch = n->res[p] && n->pass->ports[p].dir == TYN_SCRATCH;
+        for (uint32_t i = 0; scratch && i < g->num_resources; i++) {
+            if (g->resources[i].kind == RESOURCE_OUT &&
+                graph_overlap(&g->phys[n->res[p] - 1], &g->phys[i])) {
+                g->phys[i].content = 0;
+            }
+        }
     }
 }
 
@@ -291,8 +335,10 @@ static tyn_result run_one(tyn_graph *g, VkCommandBuffer cmd, uint32_t index)
             g->phys[n->res[p] - 1].track.layout = VK_IMAGE_LAYOUT_UNDEFINED;
         }
     }
+    forget_overwritten(g, n);
     timestamp(g, cmd, index * 2);
     tyn_recorder r = {.g = g, .node = index, .mode = RECORD_LIVE, .cmd = cmd};
+    recorder_enter(&r);
     n->pass->record(&r, n->params);
     timestamp(g, cmd, index * 2 + 1);
     if (dev->debug_names) {

@@ -127,15 +127,19 @@ static void print_barrier(tyn_recorder *r, uint32_t index, const tyn_barrier *b)
     r->print(r->print_user, line);
 }
 
+static tyn_track *track_of(tyn_recorder *r, uint32_t index)
+{
+    return r->mode == RECORD_PLAN ? &r->tracks[index] : &r->g->phys[index].track;
+}
+
 // Puts the barriers that the touched resources need into the stream.
 static void synchronise(tyn_recorder *r, const touch *touches, uint32_t count)
 {
     barrier_batch batch = {.num_buffers = 0};
     for (uint32_t i = 0; i < count; i++) {
         uint32_t index = touches[i].resource;
-        tyn_track *track = r->mode == RECORD_PLAN ? &r->tracks[index] : &r->g->phys[index].track;
         tyn_barrier barrier;
-        if (!tyn_plan(track, touches[i].access, &barrier)) {
+        if (!tyn_plan(track_of(r, index), touches[i].access, &barrier)) {
             continue;
         }
         r->barriers++;
@@ -152,6 +156,62 @@ static void synchronise(tyn_recorder *r, const touch *touches, uint32_t count)
                                         .pBufferMemoryBarriers = batch.buffers,
                                         .imageMemoryBarrierCount = batch.num_images,
                                         .pImageMemoryBarriers = batch.images});
+    }
+}
+
+// One barrier for all memory: those of single images and buffers say nothing of others in the same place.
+static void put_memory_barrier(tyn_recorder *r, VkPipelineStageFlags2 stages, VkAccessFlags2 access)
+{
+    r->barriers++;
+    if (r->mode == RECORD_PLAN) {
+        char src[128], src_access[128], line[320];
+        tyn_print_stages(src, sizeof src, stages);
+        tyn_print_access(src_access, sizeof src_access, access);
+        snprintf(line, sizeof line, "    barrier of shared memory: %s %s -> ALL", src, src_access);
+        r->print(r->print_user, line);
+        return;
+    }
+    r->g->dev->vk.CmdPipelineBarrier2(
+        r->cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                    .memoryBarrierCount = 1,
+                                    .pMemoryBarriers = &(VkMemoryBarrier2){
+                                        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                        .srcStageMask = stages,
+                                        .srcAccessMask = access,
+                                        .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                        .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT |
+                                                         VK_ACCESS_2_MEMORY_WRITE_BIT}});
+}
+
+void recorder_enter(tyn_recorder *r)
+{
+    const node *n = node_of(r);
+    VkPipelineStageFlags2 stages = 0;
+    VkAccessFlags2 access = 0;
+    for (uint32_t p = 0; p < n->pass->num_ports; p++) {
+        const tyn_port_dir dir = n->pass->ports[p].dir;
+        const uint32_t index = n->res[p] - 1;
+        if (!n->res[p] || (dir != TYN_OUT && dir != TYN_SCRATCH) || !r->g->phys[index].shared) {
+            continue;
+        }
+        tyn_track *own = track_of(r, index);
+        VkPipelineStageFlags2 others = 0;
+        for (uint32_t i = 0; i < r->g->num_resources; i++) {
+            const tyn_track *t = track_of(r, i);
+            if (i != index && graph_overlap(&r->g->phys[i], &r->g->phys[index])) {
+                others |= t->write_stages | t->read_stages;
+                access |= t->write_access;
+            }
+        }
+        if (others) { // what follows waits for the barrier, which waits for all of them
+            stages |= others | own->write_stages | own->read_stages;
+            access |= own->write_access;
+            *own = (tyn_track){.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                               .write_access = VK_ACCESS_2_MEMORY_WRITE_BIT};
+        }
+    }
+    if (stages) {
+        put_memory_barrier(r, stages, access);
     }
 }
 

@@ -3,7 +3,8 @@
 //
 // A resource's content is a number here. A node that runs mixes its value and the numbers of its
 // inputs into its outputs, so a node that was left out wrongly, or that saw the wrong version of a
-// resource that is changed in place, shows in the outputs.
+// resource that is changed in place, shows in the outputs. So does one whose memory another node has used: most
+// nodes have scratch, and what lies in the place of what a node writes is lost.
 #include "fake_vulkan.h"
 #include "graph/internal.h"
 #include "base/hash.h"
@@ -18,7 +19,7 @@
 enum { MAX_NODES = 10, MAX_RESOURCES = 32, NUM_UPLOADS = 3 };
 
 static uint64_t content[MAX_RESOURCES]; // by resource, as the device has it
-static uint32_t runs;
+static uint32_t runs, overlaps;
 
 static uint64_t mix(uint64_t value, uint64_t a, uint64_t b)
 {
@@ -28,21 +29,25 @@ static uint64_t mix(uint64_t value, uint64_t a, uint64_t b)
 // ---- passes -----------------------------------------------------------------------------------
 
 typedef struct node_params {
-    uint32_t value;
+    uint32_t value, made, scratch; // bytes
 } node_params;
 
-enum { MAKE_A, MAKE_B, MAKE_OUT };
+enum { MAKE_A, MAKE_B, MAKE_OUT, MAKE_SCRATCH };
 static const tyn_port make_ports[] = {{"a", TYN_IN, TYN_BUFFER, 0, false, "read"},
                                       {"b", TYN_IN, TYN_BUFFER, 0, true, "read"},
-                                      {"out", TYN_OUT, TYN_BUFFER, 0, false, "made"}};
+                                      {"out", TYN_OUT, TYN_BUFFER, 0, false, "made"},
+                                      {"scratch", TYN_SCRATCH, TYN_BUFFER, 0, false, "private"}};
 enum { CHANGE_IT, CHANGE_A };
 static const tyn_port change_ports[] = {{"it", TYN_INOUT, TYN_BUFFER, 0, false, "changed in place"},
                                         {"a", TYN_IN, TYN_BUFFER, 0, false, "read"}};
 
 static tyn_result make_declare(tyn_builder *b, const void *params)
 {
-    (void)params;
-    tyn_build_buffer(b, MAKE_OUT, 64);
+    const node_params *p = params;
+    tyn_build_buffer(b, MAKE_OUT, p->made);
+    if (p->scratch) {
+        tyn_build_buffer(b, MAKE_SCRATCH, p->scratch);
+    }
     return TYN_OK;
 }
 
@@ -58,9 +63,23 @@ static uint64_t read_content(const tyn_recorder *r, uint8_t port)
     return res ? content[res - 1] : 0;
 }
 
+// Others in the same place are lost.
+static void use(const tyn_recorder *r, uint8_t port)
+{
+    const uint32_t res = r->g->nodes[r->node].res[port];
+    for (uint32_t i = 0; res && i < r->g->num_resources; i++) {
+        if (i != res - 1 && graph_overlap(&r->g->phys[i], &r->g->phys[res - 1])) {
+            content[i] = 0xdead;
+            overlaps++;
+        }
+    }
+}
+
 static void make_record(tyn_recorder *r, const void *params)
 {
     if (r->mode == RECORD_LIVE) {
+        use(r, MAKE_OUT);
+        use(r, MAKE_SCRATCH);
         const node_params *p = params;
         content[r->g->nodes[r->node].res[MAKE_OUT] - 1] =
             mix(p->value, read_content(r, MAKE_A), read_content(r, MAKE_B));
@@ -81,7 +100,7 @@ static void change_record(tyn_recorder *r, const void *params)
 static const tyn_pass_desc make = {.name = "make",
                                    .summary = "makes",
                                    .ports = make_ports,
-                                   .num_ports = 3,
+                                   .num_ports = 4,
                                    .params_size = sizeof(node_params),
                                    .declare = make_declare,
                                    .record = make_record};
@@ -98,7 +117,7 @@ static const tyn_pass_desc change = {.name = "change",
 typedef struct plan_node {
     bool changes;
     uint32_t inputs[2]; // slots
-    uint32_t value;
+    uint32_t value, made, scratch;
 } plan_node;
 
 // Slots hold the newest handle of a buffer: uploads first, then one per making node. A changing node
@@ -122,6 +141,8 @@ static plan_graph random_graph(void)
     for (uint32_t i = 0; i < p.num_nodes; i++) {
         plan_node *n = &p.nodes[i];
         n->value = below(1000);
+        n->made = below(3) ? 4 + below(400 << 10) : 64; // small ones have memory of their own
+        n->scratch = below(4) ? below(400 << 10) : 0;
         n->changes = slots > NUM_UPLOADS && below(3) == 0;
         n->inputs[0] = n->changes ? NUM_UPLOADS + below(slots - NUM_UPLOADS) : below(slots);
         do {
@@ -150,8 +171,8 @@ static void declare_graph(tyn_graph *g, const plan_graph *p, tyn_ref *slots, uin
     }
     for (uint32_t i = 0; i < p->num_nodes; i++) {
         const plan_node *n = &p->nodes[i];
-        node_params params = {n->value};
-        tyn_ref refs[3] = {slots[n->inputs[0]], slots[n->inputs[1]]};
+        node_params params = {n->value, n->made, n->scratch};
+        tyn_ref refs[4] = {slots[n->inputs[0]], slots[n->inputs[1]]};
         uint64_t made = mix(n->value, expected[n->inputs[0]], expected[n->inputs[1]]);
         assert_int_equal(tyn_graph_add(g, n->changes ? &change : &make, &params, refs), TYN_OK);
         if (n->changes) {
@@ -218,7 +239,8 @@ static void random_changes(void **state)
         tyn_graph_destroy(&g);
         fake_destroy(&fake);
     }
-    print_message("%u of %u nodes ran\n", ran, all);
+    print_message("%u of %u nodes ran, %u times in the place of others\n", ran, all, overlaps);
+    assert_true(overlaps > all / 20);
     assert_true(ran < all * 6 / 10); // it must still be worth something
 }
 

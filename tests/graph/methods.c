@@ -265,6 +265,35 @@ static void every_method_on_every_scene(void **state)
     }
 }
 
+// What a picture takes on the device grows with its pixels by no more than a few values for each, four samples of
+// surfaces and all: 12 B of distance and radiance a sample, 32 of normals and colours, 16 of the picture, 16 of the march's
+// scratch, 4 of the list of edges; all else that passes keep for themselves has a place among these.
+static void bytes_of_a_pixel(void **state)
+{
+    (void)state;
+    const struct {
+        int scene;
+        uint64_t most;
+    } rows[] = {{0, 20}, {6, 120}, {7, 120}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        uint64_t bytes[2];
+        for (uint32_t k = 0; k < 2; k++) {
+            stage st;
+            open_stage(&st, "pop", rows[i].scene);
+            st.view.outputs = TYN_OUTPUT_RADIANCE;
+            st.view.width = st.view.height = 1024 * (k + 1);
+            frame(&st);
+            tyn_report report;
+            tyn_context_report(st.ctx, &report);
+            bytes[k] = report.persistent_bytes + report.transient_bytes;
+            close_stage(&st);
+        }
+        const double each = (double)(bytes[1] - bytes[0]) / (3 << 20);
+        print_message("%s: %.1f B a pixel\n", scene_names[rows[i].scene], each);
+        assert_true(each <= (double)rows[i].most);
+    }
+}
+
 // Memory fails at any call of any method's first frame: an error, and nothing is left.
 static void out_of_memory(void **state)
 {
@@ -289,6 +318,7 @@ static void out_of_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(every_method_on_every_scene),
+                                       cmocka_unit_test(bytes_of_a_pixel),
                                        cmocka_unit_test(out_of_memory)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
 // fake_vulkan.c -- see fake_vulkan.h. Handles are numbers of entries in a table of names.
 #include "fake_vulkan.h"
+#include "graph/internal.h"
 #include "graph/plan.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -98,7 +99,9 @@ static const char *name_of(uint64_t handle)
 
 static VkDeviceSize image_bytes(const VkImageCreateInfo *info)
 {
-    return 32 * (VkDeviceSize)info->extent.width * info->extent.height * info->extent.depth;
+    const VkDeviceSize bytes = (VkDeviceSize)graph_texel_size(info->format) * info->extent.width *
+                               info->extent.height * info->extent.depth;
+    return info->mipLevels > 1 ? 2 * bytes : bytes;
 }
 
 FAKE_OBJECT(Buffer, VkBufferCreateInfo, info->size)

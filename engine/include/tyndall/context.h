@@ -144,7 +144,7 @@ typedef struct tyn_node_report {
 typedef struct tyn_report {
     const tyn_node_report *nodes;
     uint32_t num_nodes;
-    uint64_t persistent_bytes, transient_bytes;
+    uint64_t persistent_bytes, transient_bytes; // on the device: kept between frames; what more nodes need while they run
     const char *const *warnings; // what the method left out or approximated, one line each
     uint32_t num_warnings;
 } tyn_report;
