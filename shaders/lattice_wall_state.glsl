@@ -8,16 +8,21 @@
 #include "walls_args.h"
 
 #ifdef LATTICE_WALL_LINKS
-layout(binding = LATTICE_WALL_LINKS, scalar) readonly buffer wall_link_buffer
+layout(binding = LATTICE_WALL_LINKS) uniform usamplerBuffer wall_link_texels;
+
+uint lattice_wall_links(uint cell)
 {
-    uint wall_links[];
-};
+    return texelFetch(wall_link_texels, int(cell)).x;
+}
 #endif
 #ifdef LATTICE_WALL_CELLS
-layout(binding = LATTICE_WALL_CELLS, scalar) readonly buffer wall_cell_buffer
+layout(binding = LATTICE_WALL_CELLS) uniform samplerBuffer wall_cell_texels; // four to a struct wall_cell
+
+// Albedo; a = area.
+vec4 lattice_wall_surface(uint cell)
 {
-    wall_cell wall_cells[];
-};
+    return texelFetch(wall_cell_texels, int(4u * cell + 3u));
+}
 #endif
 
 uint lattice_all_cells()

@@ -10,6 +10,10 @@ VkDescriptorType tyn_descriptor_type(const tyn_pass_desc *pass, const tyn_bindin
         return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     case TYN_USE_UNIFORM:
         return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    case TYN_USE_TEXELS_FLOAT:
+    case TYN_USE_TEXELS_VEC4:
+    case TYN_USE_TEXELS_UINT:
+        return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
     default:
         return pass->ports[binding->port].dim == TYN_BUFFER ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER
                                                             : VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
@@ -62,12 +66,13 @@ static tyn_result check_limits(const tyn_device *dev, const tyn_pass_desc *pass,
                                const tyn_kernel *k)
 {
     const VkPhysicalDeviceLimits *limits = &dev->properties.limits;
-    uint32_t threads = 1, images = 0, buffers = 0, textures = 0, uniforms = 0;
+    uint32_t threads = 1, images = 0, buffers = 0, textures = 0, texels = 0, uniforms = 0;
     for (uint32_t i = 0; i < k->num_bindings; i++) {
         VkDescriptorType type = tyn_descriptor_type(pass, &k->bindings[i]);
         images += type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
         buffers += type == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         textures += type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+        texels += type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
         uniforms += type == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
     }
     const uint32_t resources = k->num_bindings + (k->raster ? k->raster->num_attachments : 0);
@@ -87,7 +92,7 @@ static tyn_result check_limits(const tyn_device *dev, const tyn_pass_desc *pass,
          limits->maxPerStageDescriptorStorageImages, "storage images"},
         {buffers > limits->maxPerStageDescriptorStorageBuffers, buffers,
          limits->maxPerStageDescriptorStorageBuffers, "storage buffers"},
-        {textures > limits->maxPerStageDescriptorSampledImages, textures,
+        {textures + texels > limits->maxPerStageDescriptorSampledImages, textures + texels,
          limits->maxPerStageDescriptorSampledImages, "sampled images"},
         {textures > limits->maxPerStageDescriptorSamplers, textures,
          limits->maxPerStageDescriptorSamplers, "samplers"},

@@ -42,6 +42,23 @@ VkImageAspectFlags graph_aspect(VkFormat format)
     }
 }
 
+const VkFormat graph_texel_formats[NUM_TEXEL_FORMATS] = {
+    VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32_UINT};
+
+int graph_texel_index(tyn_use use)
+{
+    switch (use) {
+    case TYN_USE_TEXELS_FLOAT:
+        return 0;
+    case TYN_USE_TEXELS_VEC4:
+        return 1;
+    case TYN_USE_TEXELS_UINT:
+        return 2;
+    default:
+        return -1;
+    }
+}
+
 static uint64_t resource_bytes(const resource *r)
 {
     if (r->dim == TYN_BUFFER) {
@@ -265,6 +282,36 @@ static tyn_result create_buffer(tyn_graph *g, tyn_heap *heap, VkDeviceSize size,
     return result;
 }
 
+static tyn_result create_texel_views(tyn_graph *g, phys *p, const char *name)
+{
+    const tyn_device *dev = g->dev;
+    const uint32_t limit = dev->properties.limits.maxTexelBufferElements;
+    tyn_result result = TYN_OK;
+    for (int i = 0; result == TYN_OK && i < NUM_TEXEL_FORMATS; i++) {
+        if (!(p->texel_uses >> i & 1) || p->texels[i]) { // histories have them already
+            continue;
+        }
+        const uint32_t size = graph_texel_size(graph_texel_formats[i]);
+        if (p->bytes / size > limit) {
+            return graph_fail(g, TYN_ERR_UNSUPPORTED,
+                              "buffer '%s' of %llu bytes: the device reads at most %u texels of %u "
+                              "bytes from one",
+                              name, (unsigned long long)p->bytes, limit, size);
+        }
+        result = tyn_vk_check(
+            dev,
+            dev->vk.CreateBufferView(
+                dev->device,
+                &(VkBufferViewCreateInfo){.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                          .buffer = p->buffer,
+                                          .format = graph_texel_formats[i],
+                                          .range = p->bytes < size ? size : p->bytes / size * size},
+                NULL, &p->texels[i]),
+            name);
+    }
+    return result;
+}
+
 // Histories of the last compilation, which this one may take over.
 typedef struct heritage {
     phys *items;
@@ -286,7 +333,8 @@ static bool inherit(heritage *from, const resource *r, phys *p)
     for (uint32_t i = 0; i < from->count; i++) {
         phys *old = &from->items[i];
         if (old->history == identity && (p->image_usage & ~old->image_usage) == 0 &&
-            (p->buffer_usage & ~old->buffer_usage) == 0) {
+            (p->buffer_usage & ~old->buffer_usage) == 0 &&
+            (p->texel_uses & ~old->texel_uses) == 0) {
             *p = *old;
             *old = (phys){0};
             return true;
@@ -305,7 +353,7 @@ static bool may_share(const tyn_graph *g, const resource *r)
 
 static tyn_result create_resource(tyn_graph *g, const resource *r, phys *p, VkDeviceSize expected)
 {
-    const VkDeviceSize bytes = p->bytes ? p->bytes : 4;
+    const VkDeviceSize bytes = p->bytes < 16 ? 16 : p->bytes; // a texel at least
     if (p->shared) {
         return r->dim == TYN_BUFFER ? make_buffer(g, bytes, p->buffer_usage, r->name, &p->buffer)
                                     : make_image(g, r, p);
@@ -384,17 +432,23 @@ static tyn_result create_resources(tyn_graph *g, heritage *old)
         }
     }
     result = result == TYN_OK ? complete_shared(g) : result;
+    for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
+        result = create_texel_views(g, &g->phys[i], g->resources[i].name);
+    }
     return result == TYN_OK ? create_readbacks(g) : result;
 }
 
 // Zero-filled stand-ins for optional inputs that nothing is connected to.
 static tyn_result create_dummies(tyn_graph *g)
 {
-    tyn_result result =
-        create_buffer(g, &g->heap, 256,
-                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
-                          VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                      TYN_MEMORY_DEVICE, 0, "none", &g->dummy[TYN_BUFFER].buffer, NULL);
+    tyn_result result = create_buffer(
+        g, &g->heap, 256,
+        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+            VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+        TYN_MEMORY_DEVICE, 0, "none", &g->dummy[TYN_BUFFER].buffer, NULL);
+    g->dummy[TYN_BUFFER].bytes = 256;
+    g->dummy[TYN_BUFFER].texel_uses = (1u << NUM_TEXEL_FORMATS) - 1;
+    result = result == TYN_OK ? create_texel_views(g, &g->dummy[TYN_BUFFER], "none") : result;
     for (int d = TYN_IMAGE_2D; result == TYN_OK && d < NUM_DUMMIES; d++) {
         const bool words = d == DUMMY_WORDS;
         g->dummy[d].image_usage =
@@ -443,6 +497,7 @@ static tyn_result create_slots(tyn_graph *g, const survey *s)
     const VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, s->uniform_buffers + 1},
         {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, s->storage_buffers + 1},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, s->texel_buffers + 1},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, s->storage_images + 1},
         {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, s->sampled_images + 1},
     };
@@ -502,6 +557,9 @@ static void destroy_phys(tyn_graph *g, phys *p)
     dev->vk.DestroyImageView(dev->device, p->view, NULL);
     if (!p->borrowed) {
         dev->vk.DestroyImage(dev->device, p->image, NULL);
+    }
+    for (int i = 0; i < NUM_TEXEL_FORMATS; i++) {
+        dev->vk.DestroyBufferView(dev->device, p->texels[i], NULL);
     }
     dev->vk.DestroyBuffer(dev->device, p->buffer, NULL);
     dev->vk.DestroyBuffer(dev->device, p->readback, NULL);

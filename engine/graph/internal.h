@@ -10,6 +10,7 @@
 #include "gpu/memory.h"
 
 enum { MAX_VERSIONS = 8, MAX_MIPS = 14, MAX_SLOTS = 8, INLINE_UPLOAD = 65536 };
+enum { NUM_TEXEL_FORMATS = 3 };
 enum { DUMMY_WORDS = TYN_IMAGE_3D + 1, NUM_DUMMIES }; // of two words a texel: what is stored packed
 
 typedef enum resource_kind {
@@ -69,6 +70,8 @@ typedef struct phys {
     VkDeviceSize offset, size;
     VkImageUsageFlags image_usage;
     VkBufferUsageFlags buffer_usage;
+    uint32_t texel_uses; // bit i: it is read as texels in graph_texel_formats[i]
+    VkBufferView texels[NUM_TEXEL_FORMATS];
     tyn_track track;
     uint64_t content; // what is in it; 0 = nothing
     uint64_t key;     // HISTORY
@@ -97,7 +100,7 @@ typedef struct frame_slot { // one per frame in flight
 // What a dry run of the recorder learns.
 typedef struct survey {
     uint64_t hash; // of all kernels, bindings and specialisations: the structure of the dispatches
-    uint32_t sets, uniform_buffers, storage_buffers, storage_images, sampled_images;
+    uint32_t sets, uniform_buffers, storage_buffers, texel_buffers, storage_images, sampled_images;
 } survey;
 
 typedef struct set_key {
@@ -193,6 +196,8 @@ void graph_free_staging(tyn_graph *g);
 bool graph_uploads_staged(const tyn_graph *g);
 uint32_t graph_texel_size(VkFormat format);
 VkImageAspectFlags graph_aspect(VkFormat format);
+extern const VkFormat graph_texel_formats[NUM_TEXEL_FORMATS];
+int graph_texel_index(tyn_use use); // into them; < 0: not a use as texels
 
 // Records a barrier for one access outside any node (uploads, readback, host images).
 void recorder_access(tyn_recorder *r, uint32_t resource_index, tyn_access access);

@@ -153,7 +153,8 @@ static void record_dummies(tyn_graph *g, VkCommandBuffer cmd)
         .srcStageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
         .srcAccessMask = VK_ACCESS_2_TRANSFER_WRITE_BIT,
         .dstStageMask = shaders,
-        .dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT,
+        .dstAccessMask = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT |
+                         VK_ACCESS_2_SHADER_SAMPLED_READ_BIT,
         .buffer = g->dummy[TYN_BUFFER].buffer,
         .size = VK_WHOLE_SIZE};
     g->dev->vk.CmdPipelineBarrier2(cmd, &barrier);

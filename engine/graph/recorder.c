@@ -243,6 +243,10 @@ static tyn_access access_of(const tyn_port *port, tyn_use use, VkPipelineStageFl
         return (tyn_access){stages, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, true, false,
                             port->dir == TYN_IN ? VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL
                                                 : VK_IMAGE_LAYOUT_GENERAL};
+    case TYN_USE_TEXELS_FLOAT:
+    case TYN_USE_TEXELS_VEC4:
+    case TYN_USE_TEXELS_UINT:
+        return (tyn_access){stages, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, true, false, general};
     case TYN_USE_UNIFORM:
         return (tyn_access){stages, VK_ACCESS_2_UNIFORM_READ_BIT, true, false, general};
     case TYN_USE_STORAGE_READ:
@@ -294,6 +298,7 @@ static VkDescriptorSet find_or_make_set(tyn_recorder *r, const launch *l, const 
     uint64_t h = tyn_hash_u64(TYN_HASH_SEED, (uint64_t)(uintptr_t)k);
     VkDescriptorImageInfo images[TYN_MAX_BINDINGS];
     VkDescriptorBufferInfo buffers[TYN_MAX_BINDINGS];
+    VkBufferView views[TYN_MAX_BINDINGS];
     VkWriteDescriptorSet writes[TYN_MAX_BINDINGS];
     for (uint32_t i = 0; i < k->num_bindings; i++) {
         const tyn_port *port = &node_of(r)->pass->ports[ports[i]];
@@ -304,7 +309,12 @@ static VkDescriptorSet find_or_make_set(tyn_recorder *r, const launch *l, const 
             .descriptorCount = 1,
             .descriptorType = tyn_descriptor_type(node_of(r)->pass, &k->bindings[i]),
         };
-        if (port->dim == TYN_BUFFER) {
+        const int texels = graph_texel_index(use);
+        if (texels >= 0) {
+            views[i] = physical(r, ports[i])->texels[texels];
+            writes[i].pTexelBufferView = &views[i];
+            h = tyn_hash_u64(h, (uint64_t)views[i]);
+        } else if (port->dim == TYN_BUFFER) {
             buffers[i] = (VkDescriptorBufferInfo){physical(r, ports[i])->buffer, 0, VK_WHOLE_SIZE};
             writes[i].pBufferInfo = &buffers[i];
             h = tyn_hash_u64(h, (uint64_t)buffers[i].buffer);
@@ -370,14 +380,18 @@ static void survey_launch(tyn_recorder *r, const launch *l)
         bool buffer = n->pass->ports[ports[i]].dim == TYN_BUFFER;
         s->uniform_buffers += use == TYN_USE_UNIFORM;
         s->sampled_images += use == TYN_USE_SAMPLED;
-        s->storage_buffers += buffer && use != TYN_USE_UNIFORM;
+        const int texels = graph_texel_index(use);
+        s->texel_buffers += texels >= 0;
+        s->storage_buffers += buffer && use != TYN_USE_UNIFORM && texels < 0;
         s->storage_images += !buffer && use != TYN_USE_SAMPLED;
         if (r->usage && n->res[ports[i]]) {
             phys *p = &r->usage[n->res[ports[i]] - 1];
             p->image_usage |=
                 use == TYN_USE_SAMPLED ? VK_IMAGE_USAGE_SAMPLED_BIT : VK_IMAGE_USAGE_STORAGE_BIT;
-            p->buffer_usage |= use == TYN_USE_UNIFORM ? VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT
-                                                      : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+            p->buffer_usage |= texels >= 0              ? VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT
+                               : use == TYN_USE_UNIFORM ? VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT
+                                                        : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+            p->texel_uses |= texels >= 0 ? 1u << texels : 0u;
         }
     }
 }

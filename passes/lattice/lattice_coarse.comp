@@ -18,10 +18,7 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the first that is solved here
 };
-layout(binding = 2, scalar) readonly buffer rhs_buffer
-{
-    float rhs_in[];
-};
+layout(binding = 2) uniform samplerBuffer rhs_in;
 layout(binding = 3, scalar) buffer correction_buffer
 {
     float correction_out[];
@@ -60,7 +57,7 @@ lattice_stencil stencil_at(ivec3 c)
 float inflow(ivec3 c, lattice_stencil k)
 {
     uint i = index_of(c), step_y = at.size.x, step_z = at.size.x * at.size.y;
-    float sum = at.first == first.first ? rhs_in[channel + lattice_index(at, c)]
+    float sum = at.first == first.first ? texelFetch(rhs_in, int(channel + lattice_index(at, c))).x
                                         : rhs[i - lattice_num_cells(first.size)];
     sum += c.x > 0 ? k.lo.x * correction[i - 1] : 0.0;
     sum += c.x < at.size.x - 1 ? k.hi.x * correction[i + 1] : 0.0;
@@ -136,7 +133,7 @@ float step_length()
         vec4 k_lo = lattice_stencil_lo_at(id), k_hi = lattice_stencil_hi_at(id);
         lattice_stencil k = lattice_stencil_of(k_lo, k_hi);
         float e = correction[index_of(c)];
-        float r = at.first == first.first ? rhs_in[id] : rhs[index_of(c) - lattice_num_cells(first.size)];
+        float r = at.first == first.first ? texelFetch(rhs_in, int(id)).x : rhs[index_of(c) - lattice_num_cells(first.size)];
         // Each cell has half of the energy of its faces.
         float steps = lattice_open(k_lo, k_hi) ? 0.5 : 1.0;
         vec3 lo = vec3(0.0), hi = vec3(0.0);

@@ -13,14 +13,8 @@ layout(push_constant, scalar) uniform push
     lattice_args args;
 };
 layout(binding = 0) uniform sampler3D cells;
-layout(binding = 1, scalar) readonly buffer mean_buffer
-{
-    float mean_psi[]; // [direction][channel][cell]
-};
-layout(binding = 2, scalar) readonly buffer state_buffer
-{
-    vec4 state[];
-};
+layout(binding = 1) uniform samplerBuffer mean_psi; // [direction][channel][cell]
+layout(binding = 2) uniform samplerBuffer state;    // floats
 layout(binding = 3, scalar) writeonly buffer swept_buffer
 {
     vec4 swept[];
@@ -35,10 +29,7 @@ layout(binding = 5, scalar) writeonly buffer correction_buffer
     float correction[];
 };
 
-layout(binding = 6, scalar) readonly buffer arrived_buffer
-{
-    float arrived[]; // as mean_psi, at the ends of cut links
-};
+layout(binding = 6) uniform samplerBuffer arrived; // as mean_psi, at the ends of cut links
 layout(binding = 7, scalar) readonly buffer light_buffer
 {
     vec3 wall_light[];
@@ -60,18 +51,19 @@ layout(constant_id = 1) const uint lit_walls = 0; // there is wall_light
 float reflect_light(uint i, uint ch, uint per_direction)
 {
     uint cell = i - ch * lattice_all_cells(), vector = lattice_wall_vector(ch, cell);
-    uint cut = wall_links[cell];
+    uint cut = lattice_wall_links(cell);
     float albedo = 0.0, area = 0.0, per_radiance = LATTICE_4PI * args.dx * args.dx, sent = 0.0, sum = 0.0;
     // A loop instead of a condition: what nobody enters costs nothing.
     for (bool some = (cut & (1u << LATTICE_DIRECTIONS) - 1u) != 0u; some; some = false) {
         for (uint d = 0; d < LATTICE_DIRECTIONS; d++) {
             if ((cut >> d & 1u) != 0u) {
                 float share = lattice_weight(d) * (d < 6u ? 1.0 : inversesqrt(3.0));
-                sum += share * arrived[d * per_direction + i];
+                sum += share * texelFetch(arrived, int(d * per_direction + i)).x;
             }
         }
-        albedo = wall_cells[cell].albedo[ch];
-        area = wall_cells[cell].area;
+        vec4 surface = lattice_wall_surface(cell);
+        albedo = surface[ch];
+        area = surface.a;
         if (lit_walls == 1) {
             sent = lattice_channel(wall_light[cell], args.channels, ch, args.tint);
         }
@@ -83,7 +75,7 @@ float reflect_light(uint i, uint ch, uint per_direction)
     }
     wall_power[i] = per_radiance * vec2((1.0 - albedo) * sum, sent * area);
     // Marshak's condition for a wall that reflects and shines.
-    float change = radiance - state[vector][cell % 4u];
+    float change = radiance - texelFetch(state, int(4u * vector + cell % 4u)).x;
     return per_radiance * area * change * 2.0 / (1.0 + albedo);
 }
 
@@ -99,7 +91,7 @@ void main()
     float axes = 0.0, diagonals = 0.0;
     vec3 axis_flux = vec3(0.0), diagonal_flux = vec3(0.0);
     for (uint d = 0; d < LATTICE_DIRECTIONS; d++) {
-        float psi = mean_psi[d * per_direction + i];
+        float psi = texelFetch(mean_psi, int(d * per_direction + i)).x;
         vec3 o = vec3(lattice_step(d));
         if (d < 6) {
             axes += psi;
@@ -115,7 +107,7 @@ void main()
     swept[i] = m;
     float sigma_s = texelFetch(cells, ivec3(texel), 0).x;
     uint l = ch * args.stride + i - ch * plane * args.dims.z; // on level 0
-    float change = args.dx * args.dx * args.dx * sigma_s * (m.x - state[i].x);
+    float change = args.dx * args.dx * args.dx * sigma_s * (m.x - texelFetch(state, int(4u * i)).x);
     if (walls == 1) {
         change += reflect_light(i, ch, per_direction);
     }

@@ -14,10 +14,11 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the fine one
 };
-layout(binding = 0, scalar) buffer correction_buffer
+layout(binding = 0, scalar) writeonly buffer correction_buffer
 {
     float correction[];
 };
+layout(binding = 3) uniform samplerBuffer uncorrected; // the same
 
 layout(constant_id = 0) const uint walls = 0;
 
@@ -44,7 +45,8 @@ void main()
     float sum = 0.0;
     for (uint corner = 0; corner < 8; corner++) {
         uint i = channel + lattice_index(coarse, blended ? lattice_corner(from, corner) : from.near);
-        sum += lattice_corner_weight(corner) * correction[i];
+        sum += lattice_corner_weight(corner) * texelFetch(uncorrected, int(i)).x;
     }
-    correction[channel + lattice_index(fine, c)] += sum;
+    uint i = channel + lattice_index(fine, c);
+    correction[i] = texelFetch(uncorrected, int(i)).x + sum;
 }

@@ -14,18 +14,9 @@ layout(push_constant, scalar) uniform push
 };
 layout(binding = 0) uniform sampler3D cells;
 layout(binding = 1) uniform sampler3D source;
-layout(binding = 2, scalar) readonly buffer result_buffer
-{
-    vec4 result[];
-};
-layout(binding = 3, scalar) readonly buffer result_1_buffer
-{
-    vec4 result_1[];
-};
-layout(binding = 4, scalar) readonly buffer result_2_buffer
-{
-    vec4 result_2[];
-};
+layout(binding = 2) uniform samplerBuffer result;
+layout(binding = 3) uniform samplerBuffer result_1;
+layout(binding = 4) uniform samplerBuffer result_2;
 layout(binding = 5, scalar) readonly buffer weight_buffer
 {
     vec2 weights[];
@@ -51,13 +42,14 @@ layout(constant_id = 1) const uint walls = 0;
 // The next radiance of the walls of a cell.
 void mix_walls(uint ch, uint cell)
 {
-    uint v = lattice_wall_vector(ch, cell), k = cell % 4u;
-    float newest = result[v][k], radiance = newest;
+    uint k = cell % 4u;
+    int v = int(lattice_wall_vector(ch, cell));
+    float newest = texelFetch(result, v)[k], radiance = newest;
     if (args.history >= 1) {
-        radiance += weights[ch].x * (result_1[v][k] - newest);
+        radiance += weights[ch].x * (texelFetch(result_1, v)[k] - newest);
     }
     if (args.history >= 2) {
-        radiance += weights[ch].y * (result_2[v][k] - newest);
+        radiance += weights[ch].y * (texelFetch(result_2, v)[k] - newest);
     }
     state[v][k] = isnan(radiance) || isinf(radiance) ? 0.0 : max(radiance, 0.0);
 }
@@ -70,12 +62,12 @@ void main()
         return;
     }
     uint i = (texel.z * args.dims.y + texel.y) * args.dims.x + texel.x;
-    vec4 newest = result[i], m = newest;
+    vec4 newest = texelFetch(result, int(i)), m = newest;
     if (args.history >= 1) {
-        m += weights[ch].x * (result_1[i] - newest);
+        m += weights[ch].x * (texelFetch(result_1, int(i)) - newest);
     }
     if (args.history >= 2) {
-        m += weights[ch].y * (result_2[i] - newest);
+        m += weights[ch].y * (texelFetch(result_2, int(i)) - newest);
     }
     if (any(isnan(m)) || any(isinf(m))) {
         m = vec4(0.0);

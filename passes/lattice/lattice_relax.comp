@@ -14,14 +14,17 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args;
 };
-layout(binding = 2, scalar) readonly buffer rhs_buffer
-{
-    float rhs[];
-};
-layout(binding = 3, scalar) buffer correction_buffer
+layout(binding = 2) uniform samplerBuffer rhs;
+layout(binding = 3) uniform samplerBuffer neighbours; // the correction: cells of the other colour
+layout(binding = 4, scalar) writeonly buffer correction_buffer
 {
     float correction[];
 };
+
+float correction_at(uint i)
+{
+    return texelFetch(neighbours, int(i)).x;
+}
 
 void main()
 {
@@ -36,12 +39,12 @@ void main()
     uint i = uint(ch) * args.stride + lattice_index(level, c);
     lattice_stencil k = lattice_stencil_at(i);
     uint step_y = level.size.x, step_z = level.size.x * level.size.y;
-    float sum = rhs[i];
-    sum += c.x > 0 ? k.lo.x * correction[i - 1] : 0.0;
-    sum += c.x < level.size.x - 1 ? k.hi.x * correction[i + 1] : 0.0;
-    sum += c.y > 0 ? k.lo.y * correction[i - step_y] : 0.0;
-    sum += c.y < level.size.y - 1 ? k.hi.y * correction[i + step_y] : 0.0;
-    sum += c.z > 0 ? k.lo.z * correction[i - step_z] : 0.0;
-    sum += c.z < level.size.z - 1 ? k.hi.z * correction[i + step_z] : 0.0;
+    float sum = texelFetch(rhs, int(i)).x;
+    sum += c.x > 0 ? k.lo.x * correction_at(i - 1) : 0.0;
+    sum += c.x < level.size.x - 1 ? k.hi.x * correction_at(i + 1) : 0.0;
+    sum += c.y > 0 ? k.lo.y * correction_at(i - step_y) : 0.0;
+    sum += c.y < level.size.y - 1 ? k.hi.y * correction_at(i + step_y) : 0.0;
+    sum += c.z > 0 ? k.lo.z * correction_at(i - step_z) : 0.0;
+    sum += c.z < level.size.z - 1 ? k.hi.z * correction_at(i + step_z) : 0.0;
     correction[i] = sum / k.diagonal;
 }

@@ -15,26 +15,11 @@ layout(push_constant, scalar) uniform push
 {
     lattice_args args;
 };
-layout(binding = 0, scalar) readonly buffer state_buffer
-{
-    vec4 state[];
-};
-layout(binding = 1, scalar) readonly buffer swept_buffer
-{
-    vec4 swept[];
-};
-layout(binding = 2, scalar) readonly buffer correction_buffer
-{
-    float correction[];
-};
-layout(binding = 3, scalar) readonly buffer change_1_buffer
-{
-    vec4 change_1[];
-};
-layout(binding = 4, scalar) readonly buffer change_2_buffer
-{
-    vec4 change_2[];
-};
+layout(binding = 0) uniform samplerBuffer state;
+layout(binding = 1) uniform samplerBuffer swept;
+layout(binding = 2) uniform samplerBuffer correction; // floats
+layout(binding = 3) uniform samplerBuffer change_1;
+layout(binding = 4) uniform samplerBuffer change_2;
 layout(binding = 5, scalar) writeonly buffer result_buffer
 {
     vec4 result[];
@@ -71,9 +56,10 @@ vec4 corrected_walls(uint quad, uint ch, vec4 radiance, vec4 change)
 {
     for (uint k = 0u; k < 4u; k++) {
         uint cell = 4u * quad + k;
-        if (cell < lattice_all_cells() && wall_cells[cell].area > 0.0) {
-            float albedo = wall_cells[cell].albedo[ch];
-            float e = correction[ch * args.stride + cell];
+        vec4 surface = lattice_wall_surface(min(cell, lattice_all_cells() - 1u));
+        if (cell < lattice_all_cells() && surface.a > 0.0) {
+            float albedo = surface[ch];
+            float e = texelFetch(correction, int(ch * args.stride + cell)).x;
             radiance[k] += albedo * (e * 0.15915494 - change[k]) / (1.0 + albedo);
         }
     }
@@ -90,11 +76,11 @@ void main()
     for (uint c = begin + me; c < end; c += LATTICE_GROUP) {
         bool wall = walls == 1 && c >= cells;
         uint i = wall ? args.channels * cells + ch * (args.elements - cells) + c - cells : ch * cells + c;
-        vec4 m = swept[i];
-        vec4 old = state[i];
+        vec4 m = texelFetch(swept, int(i));
+        vec4 old = texelFetch(state, int(i));
         // Loops instead of conditions: what nobody enters costs nothing.
         for (bool cell = !wall; cell; cell = false) {
-            m.x += correction[ch * args.stride + c];
+            m.x += texelFetch(correction, int(ch * args.stride + c)).x;
         }
         for (bool some = wall && args.corrected == 1; some; some = false) {
             m = corrected_walls(c - cells, ch, m, m - old);
@@ -103,8 +89,8 @@ void main()
         result[i] = m;
         change[i] = r;
         if (args.history >= 1) {
-            vec4 d1 = change_1[i] - r;
-            vec4 d2 = args.history >= 2 ? change_2[i] - r : vec4(0.0);
+            vec4 d1 = texelFetch(change_1, int(i)) - r;
+            vec4 d2 = args.history >= 2 ? texelFetch(change_2, int(i)) - r : vec4(0.0);
             dots[0] += wall ? norm_dot_walls(d1, d1) : norm_dot(d1, d1);
             dots[3] += wall ? norm_dot_walls(d1, r) : norm_dot(d1, r);
             dots[1] += wall ? norm_dot_walls(d2, d2) : norm_dot(d2, d2);

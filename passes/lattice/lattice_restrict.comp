@@ -18,14 +18,21 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the coarse one
 };
-layout(binding = 2, scalar) buffer rhs_buffer
+layout(binding = 2) uniform samplerBuffer fine_rhs; // the buffers below, at another level
+layout(binding = 3) uniform samplerBuffer fine_correction;
+layout(binding = 4, scalar) writeonly buffer rhs_buffer
 {
     float rhs[];
 };
-layout(binding = 3, scalar) buffer correction_buffer
+layout(binding = 5, scalar) writeonly buffer correction_buffer
 {
     float correction[];
 };
+
+float correction_at(uint i)
+{
+    return texelFetch(fine_correction, int(i)).x;
+}
 
 void main()
 {
@@ -53,13 +60,13 @@ void main()
         if (lattice_orphan(hi)) {
             continue;
         }
-        sum += rhs[i] - k.diagonal * correction[i];
-        sum += f.x > 0 ? k.lo.x * correction[i - 1] : 0.0;
-        sum += f.x < fine.size.x - 1 ? k.hi.x * correction[i + 1] : 0.0;
-        sum += f.y > 0 ? k.lo.y * correction[i - step_y] : 0.0;
-        sum += f.y < fine.size.y - 1 ? k.hi.y * correction[i + step_y] : 0.0;
-        sum += f.z > 0 ? k.lo.z * correction[i - step_z] : 0.0;
-        sum += f.z < fine.size.z - 1 ? k.hi.z * correction[i + step_z] : 0.0;
+        sum += texelFetch(fine_rhs, int(i)).x - k.diagonal * correction_at(i);
+        sum += f.x > 0 ? k.lo.x * correction_at(i - 1) : 0.0;
+        sum += f.x < fine.size.x - 1 ? k.hi.x * correction_at(i + 1) : 0.0;
+        sum += f.y > 0 ? k.lo.y * correction_at(i - step_y) : 0.0;
+        sum += f.y < fine.size.y - 1 ? k.hi.y * correction_at(i + step_y) : 0.0;
+        sum += f.z > 0 ? k.lo.z * correction_at(i - step_z) : 0.0;
+        sum += f.z < fine.size.z - 1 ? k.hi.z * correction_at(i + step_z) : 0.0;
     }
     uint i = channel + lattice_index(coarse, c);
     rhs[i] = sum;

@@ -30,7 +30,12 @@ layout(binding = 5, scalar) readonly buffer guess_buffer
 {
     vec4 guess[];
 };
+layout(binding = 6, scalar) readonly buffer light_buffer
+{
+    vec3 wall_light[];
+};
 layout(constant_id = 0) const uint walls = 0;
+layout(constant_id = 1) const uint lit_walls = 0; // there is wall_light
 #include "lattice_wall_state.glsl"
 
 void main()
@@ -45,8 +50,11 @@ void main()
     if (walls == 1) {
         m = args.warm == 1 ? m : vec4(0.0);
         uint cell = i - ch * lattice_all_cells();
-        for (uint k = cell % 4u; k < (cell + 1u == lattice_all_cells() ? 4u : cell % 4u + 1u); k++) {
-            state[lattice_wall_vector(ch, cell)][k] = 0.0;
+        uint vector = lattice_wall_vector(ch, cell);
+        float sent = lit_walls == 1 ? lattice_channel(wall_light[cell], args.channels, ch, args.tint) : 0.0;
+        state[vector][cell % 4u] = sent;
+        for (uint k = cell % 4u + 1u; cell + 1u == lattice_all_cells() && k < 4u; k++) {
+            state[vector][k] = 0.0;
         }
     }
     state[i] = m;

@@ -65,13 +65,13 @@ void main()
     if (walls == 1) {
         // No flow through cut faces. What the walls absorb: D de/dn = -(e / 2) (1 - albedo) / (1 + albedo),
         // in series with the half cell.
-        uint id = uint((c.z * dims.y + c.y) * dims.x + c.x), cut = wall_links[id];
+        uint id = uint((c.z * dims.y + c.y) * dims.x + c.x), cut = lattice_wall_links(id);
         for (int axis = 0; axis < 3; axis++) {
             k[0][axis] = (cut >> (2 * axis + 1) & 1u) != 0u ? 0.0 : k[0][axis];
             k[1][axis] = (cut >> (2 * axis) & 1u) != 0u ? 0.0 : k[1][axis];
         }
-        float area = 4.0 * wall_cells[id].area * args.dx * args.dx;
-        float albedo = wall_cells[id].albedo[ch];
+        vec4 surface = lattice_wall_surface(id);
+        float area = 4.0 * surface.a * args.dx * args.dx, albedo = surface[ch];
         absorption += area * (1.0 - albedo) / (2.0 * (1.0 + albedo) + (1.0 - albedo) * args.dx / (2.0 * d));
         absorption += 1e-5 * args.dx * args.dx; // there is a solution also where nothing absorbs
     }

@@ -17,10 +17,7 @@ layout(push_constant, scalar) uniform push
     lattice_args args;
 };
 layout(binding = 1) uniform sampler3D cells;
-layout(binding = 2, scalar) readonly buffer emitted_buffer
-{
-    vec4 emitted[];
-};
+layout(binding = 2) uniform samplerBuffer emitted; // vec4 per cell
 layout(binding = 3, scalar) writeonly buffer mean_buffer
 {
     float mean_psi[]; // mean radiance in a cell: [direction][channel][cell]
@@ -30,10 +27,7 @@ layout(binding = 4, scalar) writeonly buffer leak_buffer
     float leaks[]; // per thread: what leaves the box less what enters, W
 };
 
-layout(binding = 5, scalar) readonly buffer state_buffer
-{
-    vec4 state[];
-};
+layout(binding = 5) uniform samplerBuffer state; // floats
 layout(binding = 6, scalar) writeonly buffer arrived_buffer
 {
     float arrived[]; // radiance at the end of a cut link: [direction][channel][cell]
@@ -86,7 +80,7 @@ void main()
         uint ahead = 1u << direction, back = 1u << walls_reverse(direction);
 
         float psi = boundary, before = 0.0;
-        vec4 e = emitted[at];
+        vec4 e = texelFetch(emitted, at);
         float s = e.x + dot(omega, e.yzw);
         bvec3 open = bvec3(true);
         bool closed = false; // the line comes back to where it began
@@ -98,7 +92,7 @@ void main()
             if (closed) { // the first time round finds out what comes back
                 psi = 0.0;
                 steps *= 2;
-                vec4 end = emitted[at + (dims[axis] - 1) * o[axis] * strides[axis]];
+                vec4 end = texelFetch(emitted, at + (dims[axis] - 1) * o[axis] * strides[axis]);
                 before = end.x + dot(omega, end.yzw);
             }
         }
@@ -118,11 +112,11 @@ void main()
             }
             leak -= enters ? psi : 0.0;
             if (walls == 1) {
-                uint id = uint(at - int(ch) * per_channel), cut = wall_links[id];
+                uint id = uint(at - int(ch) * per_channel), cut = lattice_wall_links(id);
                 // Loops instead of conditions: what nobody enters costs nothing.
                 for (bool starts = (cut & back) != 0u; starts; starts = false) {
                     leak += enters ? psi : 0.0;
-                    psi = state[lattice_wall_vector(ch, id)][id % 4u];
+                    psi = texelFetch(state, int(4u * lattice_wall_vector(ch, id) + id % 4u)).x;
                     enters = true;
                     through = 0.0;
                 }
@@ -136,7 +130,7 @@ void main()
                        (at_last.y ? step_back.y : o.y * strides.y) +
                        (at_last.z ? step_back.z : o.z * strides.z);
             c = mix(c + o, first, at_last);
-            e = emitted[next];
+            e = texelFetch(emitted, next);
             float behind = e.x + dot(omega, e.yzw);
             // Central difference, one-sided at the box; limited so that the source keeps its sign.
             float slope = enters ? (leaves ? 0.0 : behind - s)

@@ -107,6 +107,7 @@ static VkDeviceSize image_bytes(const VkImageCreateInfo *info)
 FAKE_OBJECT(Buffer, VkBufferCreateInfo, info->size)
 FAKE_OBJECT(Image, VkImageCreateInfo, image_bytes(info))
 FAKE_OBJECT(DeviceMemory, VkMemoryAllocateInfo, info->allocationSize)
+FAKE_OBJECT(BufferView, VkBufferViewCreateInfo, 0)
 FAKE_OBJECT(ImageView, VkImageViewCreateInfo, 0)
 FAKE_OBJECT(DescriptorSetLayout, VkDescriptorSetLayoutCreateInfo, 0)
 FAKE_OBJECT(PipelineLayout, VkPipelineLayoutCreateInfo, 0)
@@ -202,8 +203,9 @@ static void update_sets(VkDevice dev, uint32_t count, const VkWriteDescriptorSet
 {
     (void)dev, (void)copies, (void)copy;
     for (uint32_t i = 0; i < count; i++) { // every binding must name something
-        assert_true(writes[i].pBufferInfo ? writes[i].pBufferInfo->buffer != VK_NULL_HANDLE
-                                          : writes[i].pImageInfo->imageView != VK_NULL_HANDLE);
+        assert_true(writes[i].pTexelBufferView ? *writes[i].pTexelBufferView != VK_NULL_HANDLE
+                    : writes[i].pBufferInfo    ? writes[i].pBufferInfo->buffer != VK_NULL_HANDLE
+                                               : writes[i].pImageInfo->imageView != VK_NULL_HANDLE);
     }
 }
 
@@ -407,6 +409,7 @@ fake_vulkan *fake_create(void)
     dev->properties.limits.maxStorageBufferRange = 128u << 20;
     dev->properties.limits.maxImageDimension2D = 16384;
     dev->properties.limits.maxImageDimension3D = 2048;
+    dev->properties.limits.maxTexelBufferElements = 1u << 27;
     for (int a = 0; a < 3; a++) {
         dev->properties.limits.maxComputeWorkGroupCount[a] = 65535;
         dev->properties.limits.maxComputeWorkGroupSize[a] = a < 2 ? 1024 : 64;
@@ -433,6 +436,8 @@ fake_vulkan *fake_create(void)
         .DestroyBuffer = destroy_Buffer,
         .CreateImage = create_Image,
         .DestroyImage = destroy_Image,
+        .CreateBufferView = create_BufferView,
+        .DestroyBufferView = destroy_BufferView,
         .CreateImageView = create_ImageView,
         .DestroyImageView = destroy_ImageView,
         .CreateDescriptorSetLayout = create_DescriptorSetLayout,

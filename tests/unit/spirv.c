@@ -173,6 +173,11 @@ static void check_binding(const tyn_pass_desc *pass, const tyn_kernel *kernel,
     case TYN_USE_UNIFORM:
         wanted = image ? REFLECT_OTHER : REFLECT_UNIFORM_BUFFER;
         break;
+    case TYN_USE_TEXELS_FLOAT:
+    case TYN_USE_TEXELS_VEC4:
+    case TYN_USE_TEXELS_UINT:
+        wanted = image ? REFLECT_OTHER : REFLECT_TEXELS;
+        break;
     case TYN_USE_STORAGE_READ:
     case TYN_USE_STORAGE_WRITE:
     case TYN_USE_STORAGE_RW:
@@ -189,7 +194,11 @@ static void check_binding(const tyn_pass_desc *pass, const tyn_kernel *kernel,
     if (image) {
         check_image(pass, kernel, port, b);
     }
-    if (entry->use != TYN_USE_SAMPLED && entry->use != TYN_USE_UNIFORM) {
+    if (wanted == REFLECT_TEXELS && b->float_texels == (entry->use == TYN_USE_TEXELS_UINT)) {
+        fault(pass, kernel->name, "binding %u, port %s: another kind of texels in the shader",
+              b->binding, port->name);
+    }
+    if (wanted == REFLECT_STORAGE_BUFFER || wanted == REFLECT_STORAGE_IMAGE) {
         check_access(pass, kernel, entry->use, port->name, b);
     }
 }
@@ -200,6 +209,7 @@ static bool capability_known(uint32_t capability)
     switch (capability) {
     case SpvCapabilityShader:
     case SpvCapabilityImageQuery:
+    case SpvCapabilitySampledBuffer:
     case SpvCapabilityStorageImageExtendedFormats: // core formats beyond the short list
         return true;
     default:

@@ -146,6 +146,9 @@ static void add_binding(const module *m, const uint32_t *var, uint32_t type, uin
     } else if (op_of(t) == SpvOpTypeImage && t[7] == 2) {
         b->kind = REFLECT_STORAGE_IMAGE;
         image = t;
+    } else if (op_of(t) == SpvOpTypeImage && t[7] == 1 && t[3] == SpvDimBuffer) {
+        b->kind = REFLECT_TEXELS;
+        image = t;
     } else if (op_of(t) == SpvOpTypeStruct) {
         b->kind = var[3] == SpvStorageClassStorageBuffer ? REFLECT_STORAGE_BUFFER
                                                          : REFLECT_UNIFORM_BUFFER;

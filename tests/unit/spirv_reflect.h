@@ -12,6 +12,7 @@ typedef enum reflect_kind {
     REFLECT_STORAGE_IMAGE,
     REFLECT_STORAGE_BUFFER,
     REFLECT_UNIFORM_BUFFER,
+    REFLECT_TEXELS, // uniform texel buffer
 } reflect_kind;
 
 typedef struct reflect_binding {
@@ -19,7 +20,7 @@ typedef struct reflect_binding {
     reflect_kind kind;
     uint32_t dim;    // SpvDim of images
     uint32_t format; // SpvImageFormat of storage images
-    bool arrayed, multisampled, float_texels;
+    bool arrayed, multisampled, float_texels; // float_texels: else integers
     bool non_writable, non_readable; // of the variable, or of every member of the block
 } reflect_binding;
 
