@@ -11,9 +11,9 @@ struct walls_pass_args {
     tyn_uint slices; // workgroups for each
 };
 
-#define WALLS_GROUP 16  // threads that look at one triangle
+#define WALLS_GROUP 8  // threads that look at one triangle
 #define WALLS_FEW 1024  // triangles: fewer are likely to be large ...
-#define WALLS_SLICES 8  // and are looked at by so many workgroups
+#define WALLS_SLICES 16  // and are looked at by so many workgroups
 #define WALLS_SLOTS 6   // walls in a cell, one for each main direction of the normal
 #define WALLS_ROW 32768 // workgroups along x
 

@@ -6,6 +6,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
 #include "walls_pass_args.h"
 #include "surface_args.h"
 #include "lattice.glsl"
@@ -23,11 +24,11 @@ layout(binding = 0, scalar) uniform surface_uniform
 };
 layout(binding = 1, scalar) readonly buffer vertex_buffer
 {
-    surface_vertex vertices[];
+    vec4 vertex_rows[]; // surface_vertex: position, u; normal, v
 };
 layout(binding = 2, scalar) readonly buffer triangle_buffer
 {
-    surface_triangle triangles[];
+    uvec4 triangle_rows[]; // surface_triangle: corners, material
 };
 layout(binding = 3, scalar) buffer link_buffer
 {
@@ -43,6 +44,7 @@ layout(binding = 5, scalar) buffer nearest_buffer
 {
     uint nearest[];
 };
+#define WALLS_ROWS
 #include "walls_place.glsl"
 
 uint key_of(float share, uint triangle)
@@ -67,17 +69,43 @@ void cut(ivec3 c, uint link, bool inner, float where, uint triangle)
     }
 }
 
-// Of a link and its reverse one is looked at: that whose first component is > 0.
-const uint HALF = 13u;
-const uint FORWARD[HALF] = uint[](0u, 2u, 4u, 6u, 8u, 10u, 12u, 14u, 16u, 18u, 20u, 22u, 24u);
+// Of a link and its reverse one is looked at: that whose first component but zeros is > 0.
+const int HALF = 13;
 
-// Cells from which a link along d has a box that meets the triangle's.
-void range_of(vec3 least, vec3 most, vec3 d, out ivec3 first, out ivec3 count)
+ivec3 half_step(int k)
 {
-    vec3 lo = ceil(least - max(d, vec3(0.0))), hi = floor(most - min(d, vec3(0.0)));
-    first = ivec3(clamp(lo, vec3(-1.0), vec3(args.dims) + 1.0));
-    ivec3 last = ivec3(clamp(hi, vec3(-2.0), vec3(args.dims)));
-    count = max(last - first + 1, ivec3(0));
+    return ivec3((k + 14) / 9, (k + 14) / 3 % 3, (k + 14) % 3) - 1;
+}
+
+// Where along each axis links may start whose boxes meet the triangle's, by their step -1, 0, 1 along the axis.
+struct starts {
+    ivec3 first, first_up; // of steps <= 0, of 1
+    ivec3 count_down, count, count_up;
+};
+
+starts starts_of(vec3 least, vec3 most)
+{
+    vec3 dims = vec3(args.dims);
+    starts s;
+    s.first = ivec3(clamp(ceil(least), vec3(-1.0), dims + 1.0));
+    s.first_up = ivec3(clamp(ceil(least - 1.0), vec3(-1.0), dims + 1.0));
+    ivec3 last = ivec3(clamp(floor(most), vec3(-2.0), dims)), last_down = ivec3(clamp(floor(most + 1.0), vec3(-2.0), dims));
+    s.count_down = max(last_down - s.first + 1, ivec3(0));
+    s.count = max(last - s.first + 1, ivec3(0));
+    s.count_up = max(last - s.first_up + 1, ivec3(0));
+    return s;
+}
+
+ivec3 count_of(starts s, ivec3 d)
+{
+    return mix(mix(s.count, s.count_down, lessThan(d, ivec3(0))), s.count_up, greaterThan(d, ivec3(0)));
+}
+
+// Element i of a box of n cells, x fastest. Whole numbers below 2^22: a CPU device divides them one after another.
+ivec3 cell_of(int i, ivec3 n)
+{
+    int row = int((float(i) + 0.5) / float(n.x)), slice = int((float(row) + 0.5) / float(n.y));
+    return ivec3(i - row * n.x, row - slice * n.y, slice);
 }
 
 void main()
@@ -86,41 +114,40 @@ void main()
     if (triangle >= args.num_triangles) {
         return;
     }
-    uvec3 v = uvec3(triangles[triangle].v0, triangles[triangle].v1, triangles[triangle].v2);
-    walls_triangle t = walls_triangle_of(walls_lattice_place(vertices[v.x].position), walls_lattice_place(vertices[v.y].position),
-                                         walls_lattice_place(vertices[v.z].position));
+    uvec4 v = triangle_rows[triangle];
+    walls_triangle t = walls_triangle_of(walls_lattice_place(vertex_rows[2u * v.x].xyz),
+                                         walls_lattice_place(vertex_rows[2u * v.y].xyz),
+                                         walls_lattice_place(vertex_rows[2u * v.z].xyz));
     vec3 least = min(t.a, min(t.b, t.c)), most = max(t.a, max(t.b, t.c));
     float size = length(t.normal);
     if (!(all(lessThan(abs(least), vec3(1e9))) && all(lessThan(abs(most), vec3(1e9)))) || size == 0.0) {
         return; // not finite, or without area
     }
-    uint me = gl_WorkGroupID.z * WALLS_GROUP + gl_LocalInvocationIndex, stride = args.slices * WALLS_GROUP;
+    int me = int(gl_WorkGroupID.z * WALLS_GROUP + gl_LocalInvocationIndex), stride = int(args.slices * WALLS_GROUP);
     // What rounding may move the triangle by.
     vec3 slack = 1e-4 + 4e-7 * max(abs(least), abs(most));
     least -= slack;
     most += slack;
 
     // All links whose boxes meet the triangle's, one direction after another.
-    ivec3 first[HALF], count[HALF];
-    uint total = 0u;
-    for (uint k = 0u; k < HALF; k++) {
-        range_of(least, most, vec3(walls_step(FORWARD[k])), first[k], count[k]);
-        total += uint(count[k].x * count[k].y * count[k].z);
+    starts from = starts_of(least, most);
+    int ends[HALF], total = 0;
+    [[unroll]] for (int k = 0; k < HALF; k++) {
+        ivec3 n = count_of(from, half_step(k));
+        total += n.x * n.y * n.z;
+        ends[k] = total;
     }
-    for (uint i = me; i < total; i += stride) {
-        uint k = 0u, of = i;
-        for (uint n = uint(count[k].x * count[k].y * count[k].z); of >= n && k < HALF - 1u;
-             n = uint(count[k].x * count[k].y * count[k].z)) {
-            of -= n;
-            k++;
+    for (int i = me; i < total; i += stride) {
+        int k = 0, before = 0;
+        [[unroll]] for (int j = 0; j < HALF - 1; j++) {
+            k = i >= ends[j] ? j + 1 : k;
+            before = i >= ends[j] ? ends[j] : before;
         }
-        ivec3 c = first[k] + ivec3(int(of) % count[k].x, int(of) / count[k].x % count[k].y,
-                                   int(of) / (count[k].x * count[k].y));
-        uint link = FORWARD[k];
-        ivec3 d = walls_step(link);
+        ivec3 d = half_step(k), c = mix(from.first, from.first_up, greaterThan(d, ivec3(0))) + cell_of(i - before, count_of(from, d));
         bool here = in_lattice(c), there = in_lattice(c + d);
         float where;
         if ((here || there) && walls_cuts(t, vec3(c), vec3(d), where)) {
+            uint link = walls_link(d);
             cut(c, link, here && there, where, triangle);
             cut(c + d, walls_reverse(link), here && there, 1.0 - where, triangle);
         }
@@ -132,8 +159,8 @@ void main()
     ivec3 hi = ivec3(clamp(floor(most + shift + 0.5), vec3(-1.0), vec3(args.dims) - 1.0));
     ivec3 box = max(hi - lo + 1, ivec3(0));
     uint cells = args.dims.x * args.dims.y * args.dims.z;
-    for (uint i = me; i < uint(box.x * box.y * box.z); i += stride) {
-        ivec3 c = lo + ivec3(int(i) % box.x, int(i) / box.x % box.y, int(i) / (box.x * box.y));
+    for (int i = me; i < box.x * box.y * box.z; i += stride) {
+        ivec3 c = lo + cell_of(i, box);
         if (walls_in_cube(t, vec3(c) - shift, 0.499)) {
             float height = walls_height(t, vec3(c)).x;
             vec3 outward = height < 0.0 ? -t.normal : t.normal, main = abs(outward);
