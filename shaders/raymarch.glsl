@@ -23,6 +23,10 @@
 #ifdef RAYMARCH_GREY
 #define spectrum float
 #define spectrum_of(v) (v).r
+float spectrum_above(float x, float least) // 1 or 0
+{
+    return step(least, x);
+}
 float spectrum_max(float x)
 {
     return x;
@@ -38,6 +42,10 @@ float spectrum_mean(float x)
 #else
 #define spectrum vec3
 #define spectrum_of(v) (v)
+vec3 spectrum_above(vec3 x, float least)
+{
+    return step(least, x);
+}
 float spectrum_max(vec3 x)
 {
     return max(max(x.r, x.g), x.b);
@@ -311,6 +319,7 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, fl
 struct march_shadows {
     uint known, lit;
     float inside; // where to look at the farthest
+    uint cells;   // what is known of all of the step (light_cells_args.h)
 };
 
 float march_shadow_piece()
@@ -324,13 +333,32 @@ bool march_sees(bool sun, march_map m, float s)
     return (sun ? shadow_all_lit(shadow_place_sun(m.map, q)) : shadow_visibility_lamp_at(m.map, q)) > 0.0;
 }
 
-// What a light sees of the step from s to s + ds: how much of it, and where the middle of that is. Steps follow the medium, shadows do not: so
-// a step looks at several places, and halves what is between two that differ.
+// What is known of lights for all of the step from s to s + ds.
+uint march_light_cells(vec3 origin, vec3 direction, float s, float ds)
+{
+    if (!raymarch_has(RAYMARCH_LIGHT_CELLS)) {
+        return 0u;
+    }
+    ivec3 dims = textureSize(light_cells_tex, 0);
+    float per_edge = float(max(max(dims.x, dims.y), dims.z)) / max(max(medium.extent.x, medium.extent.y), medium.extent.z);
+    vec3 middle = origin + (s + 0.5 * ds) * direction;
+    uint cells = uint(texelFetch(light_cells_tex, clamp(ivec3(middle * per_edge), ivec3(0), dims - 1), 0).r);
+    return 0.5 * ds * per_edge <= TYN_LIGHT_CELLS_REACH ? cells : 0u;
+}
+
+uint march_light_cell(march_shadows shadow, uint light)
+{
+    return light < TYN_LIGHT_CELLS ? shadow.cells >> (2u * light) & 3u : TYN_LIGHT_CELLS_MIXED;
+}
+
+// What a light sees of the step from s to s + ds: how much of it, and where the middle of that is. Steps follow the
+// medium, shadows do not: so a step looks at several places, and halves what is between two that differ.
 struct march_lit {
     float metres, middle;
 };
 
-march_lit march_lit_of(bool sun, march_map map, uint bit, float s, float ds, inout march_shadows shadow)
+// `bit`: of the light in `shadow`.
+march_lit march_lit_of(bool sun, march_map map, uint light, uint bit, float s, float ds, inout march_shadows shadow)
 {
     float part = ds / max(ceil(ds / march_shadow_piece()), 1.0), finest = part / RAYMARCH_SHADOW_HALVES;
     float sum = 0.0, moment = 0.0;
@@ -339,6 +367,13 @@ march_lit march_lit_of(bool sun, march_map map, uint bit, float s, float ds, ino
     // Up to `lo` it is known what the light sees; at `hi`, if > 0, it is the opposite. One look an iteration, as
     // these are what costs time.
     float lo = 0.0, hi = 0.0;
+    uint cell = march_light_cell(shadow, light);
+    if (cell != TYN_LIGHT_CELLS_MIXED) {
+        lit = cell == TYN_LIGHT_CELLS_LIT;
+        lo = ds;
+        sum = lit ? ds : 0.0;
+        moment = ds * sum;
+    }
     while (lo < ds) {
         float next = hi > 0.0 ? 0.5 * (lo + hi) : lo + 1.01 * part > ds ? ds : lo + part;
         next = known ? next : 0.0;
@@ -471,8 +506,156 @@ march_state march_start(float offset)
     state.radiance = state.before = state.single = vec3(0.0);
     state.half_distance = TYN_INFINITY;
     state.steps = 0u;
-    state.shadow = march_shadows(0u, 0u, 0.0);
+    state.shadow = march_shadows(0u, 0u, 0.0, 0u);
     return state;
+}
+
+// What is constant along a ray. Texture coordinates are linear along it.
+struct march_line {
+    vec3 origin, direction;
+    vec3 medium0, medium1; // of the medium
+    vec3 field0, field1;   // of the lattice's light
+    float inside; // light is not looked up beyond: a ray may end a little behind the surface it stands for
+};
+
+march_line march_line_of(vec3 origin, vec3 direction, float inside)
+{
+    ivec3 size = textureSize(inscatter_tex, 0);
+    march_line line;
+    line.origin = origin;
+    line.direction = direction;
+    line.medium0 = origin / medium.extent;
+    line.medium1 = direction / medium.extent;
+    line.field0 = lattice_inscatter_uvw(medium.extent, size, origin);
+    // A difference of two places a metre apart is lost to rounding where a box is many kilometres wide.
+    line.field1 = direction / (lattice_box_of(medium.extent, size - 2).dx * vec3(size));
+    line.inside = inside;
+    return line;
+}
+
+// Steps whose light is gathered after others, as some devices run what only few rays need for all.
+struct march_waiting {
+    float wall_at[RAYMARCH_LATER]; // near walls: where the lattice's light is looked up, m
+    spectrum wall_weight[RAYMARCH_LATER];
+    int walls, last_wall;       // how many; the last step's, or -1
+    march_near_steps near_lamps; // near lamps as well
+    bool last_near;             // the last step is
+};
+
+// Not an argument, as some compilers copy arrays that are.
+march_waiting waiting;
+
+bool march_has_room()
+{
+    return waiting.walls < RAYMARCH_LATER && waiting.near_lamps.count < MARCH_NEAR_STEPS;
+}
+
+// A step, and the integrals of e^-tau and e^-tau' over it, m.
+struct march_step {
+    float s, ds, at; // beginning, length and centroid, m
+    spectrum weight, weight_scaled;
+};
+
+// Is there a sun or a lamp that may shine on the step?
+bool march_any_light(march_shadows shadow, march_lamp kept[MARCH_LAMPS_KEPT])
+{
+    bool any = false;
+    for (uint n = 0u; n < raymarch_num_suns; n++) {
+        any = any || march_light_cell(shadow, n) != TYN_LIGHT_CELLS_DARK;
+    }
+    [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
+        any = any || march_light_cell(shadow, kept[n].grid.light.light) != TYN_LIGHT_CELLS_DARK;
+    }
+    return any || raymarch_num_lamps > MARCH_LAMPS_KEPT;
+}
+
+// Light of suns and lamps that the step scatters towards the eye.
+vec3 march_beams(march_sun suns[TYN_BEAM_MAX_SUNS], march_lamp kept[MARCH_LAMPS_KEPT], march_lamps lamps,
+                 march_medium unit, march_medium m, vec3 origin, vec3 direction, march_step b,
+                 inout march_shadows shadow, inout vec3 single)
+{
+    vec3 light = vec3(0.0);
+    for (uint n = 0u; n < raymarch_num_suns; n++) {
+        float lit = 1.0;
+        if (raymarch_has(RAYMARCH_SHADOWS)) {
+            lit = march_lit_of(true, suns[n].map, n, n, b.s, b.ds, shadow).metres / max(b.ds, 1e-30);
+        }
+        light += march_sunlight(suns[n], unit, m, origin + b.at * direction, b.at, lit * b.weight,
+                                lit * b.weight_scaled, single);
+    }
+    [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
+        light += march_lamplight(kept[n], 4u + n, lamps, unit, m, b.s, b.ds, b.at, b.weight, b.weight_scaled,
+                                 shadow, single);
+    }
+    for (uint n = MARCH_LAMPS_KEPT; n < raymarch_num_lamps; n++) {
+        light += march_lamplight(march_lamp_of(n, lamps), 4u + n, lamps, unit, m, b.s, b.ds, b.at, b.weight,
+                                 b.weight_scaled, shadow, single);
+    }
+    return light;
+}
+
+// Goes through the step of the length ds through m; `is`: false if there is none, and then ds is 0. All its light but
+// that of suns and lamps.
+march_step march_through(march_medium m, float ds, bool is, march_line line, vec2 near_lamps, inout march_state state)
+{
+    spectrum x = m.extinction * ds, x_scaled = m.scaled_extinction * ds;
+    spectrum e = exp(-x), e_scaled = exp(-x_scaled);
+    march_step step;
+    step.s = state.s;
+    step.ds = ds;
+    step.at = state.s + ds * march_centroid(m, ds);
+    step.weight = ds * state.through * mean_attenuation(x, e);
+    step.weight_scaled = ds * state.through_scaled * mean_attenuation(x_scaled, e_scaled);
+    state.before = is ? state.radiance : state.before;
+    state.through_before = is ? state.through_scaled : state.through_before;
+    if (raymarch_has(RAYMARCH_FIELD)) {
+        float there = min(step.at, line.inside);
+        vec3 p = line.origin + there * line.direction;
+        vec3 J = march_tinted(march_field(p, line.field0 + there * line.field1));
+        spectrum per_metre = m.scaled_scattering;
+        if (raymarch_has(RAYMARCH_SOURCE)) {
+            per_metre = spectrum(spectrum_max(m.extinction) > 0.0 ? 1.0 : 0.0);
+        }
+        vec3 light = (per_metre * step.weight_scaled) * J;
+        if (raymarch_has(RAYMARCH_WALLS)) {
+            bool near = is && march_near_walls(p);
+            waiting.last_wall = near ? waiting.walls : is ? -1 : waiting.last_wall;
+            if (near) {
+                waiting.wall_at[waiting.walls] = there;
+                waiting.wall_weight[waiting.walls] = per_metre * step.weight_scaled;
+                waiting.walls++;
+            }
+            light = near ? vec3(0.0) : light;
+        }
+        state.radiance += light;
+    }
+    if (raymarch_has(RAYMARCH_EMISSION)) {
+        state.radiance += m.emission * step.weight_scaled;
+    }
+    if (raymarch_num_near > 0u) {
+        bool near = is && state.s < near_lamps.y && state.s + ds > near_lamps.x;
+        waiting.last_near = is ? near : waiting.last_near;
+        if (near) {
+            waiting.near_lamps.at[waiting.near_lamps.count] = state.s;
+            waiting.near_lamps.ds[waiting.near_lamps.count] = ds;
+            waiting.near_lamps.weight[waiting.near_lamps.count] = step.weight;
+            waiting.near_lamps.weight_scaled[waiting.near_lamps.count] = step.weight_scaled;
+            waiting.near_lamps.count++;
+        }
+    }
+    if (raymarch_has(RAYMARCH_DEPTH)) {
+        float t0 = spectrum_mean(state.through * exp(-state.hidden));
+        float t1 = spectrum_mean(state.through * e * exp(-state.hidden - m.hidden * ds));
+        if (t0 > 0.5 && t1 <= 0.5) {
+            state.half_distance = state.s + ds * log(2.0 * t0) / log(t0 / t1);
+        }
+    }
+    state.through *= e;
+    state.through_scaled *= e_scaled;
+    state.hidden += m.hidden * ds;
+    state.s += ds;
+    state.next = is ? march_next_step(m) : state.next;
+    return step;
 }
 
 // Marches on from where `state` is to the distance `end` from `origin`, which is inside the box. `start`: how far
@@ -494,151 +677,88 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
     }
     march_near near = march_near_of(lamps, end);
     vec3 inverse = ray_inverse(direction);
-    // Texture coordinates are linear along the ray.
-    vec3 medium0 = origin / medium.extent, medium1 = direction / medium.extent;
-    ivec3 field_size = textureSize(inscatter_tex, 0);
-    vec3 field0 = lattice_inscatter_uvw(medium.extent, field_size, origin);
-    // A difference of two places a metre apart is lost to rounding where a box is many kilometres wide.
-    vec3 field1 = direction / (lattice_box_of(medium.extent, field_size - 2).dx * vec3(field_size));
-
-    // A ray may end a little behind the surface that it stands for: light is not looked up there.
     float inside = raymarch_has(RAYMARCH_WALLS | RAYMARCH_SHADOWS) ? max(end - 5e-4 * (start + end), 0.0) : end;
-
+    march_line line = march_line_of(origin, direction, inside);
     state.shadow.inside = max(min(inside, end - 0.5 * march_shadow_piece()), 0.0);
-    float s = state.s;
-    while (s < end && spectrum_max(state.through_scaled) > args.stop) {
-        float from = s;
-        s = march_skip(origin, direction, inverse, s, end);
-        state.shadow.known = s > from ? 0u : state.shadow.known;
-        // Steps near walls wait until after this loop, as some devices run what only few rays need for all.
-        float wall_at[RAYMARCH_LATER]; // where the lattice's light is looked up, m
-        spectrum wall_weight[RAYMARCH_LATER];
-        int walls = 0, last_wall = -1; // how many; the last step's
-        march_near_steps near_steps;   // those near lamps as well
-        near_steps.count = 0;
-        bool last_near = false;
-        for (int i = 0; i < RAYMARCH_CHUNK && walls < RAYMARCH_LATER && near_steps.count < MARCH_NEAR_STEPS; i++) {
-            if (s >= end || spectrum_max(state.through_scaled) <= args.stop) {
-                break;
-            }
-            // Empty steps cost one fetch: neighbouring rays look for the next full one together. A turn must change
+    while (state.s < end && spectrum_max(state.through_scaled) > args.stop) {
+        float from = state.s;
+        state.s = march_skip(origin, direction, inverse, from, end);
+        state.shadow.known = state.s > from ? 0u : state.shadow.known;
+        waiting.walls = waiting.near_lamps.count = 0;
+        waiting.last_wall = -1;
+        waiting.last_near = false;
+        int i = 0;
+        while (i < RAYMARCH_CHUNK && state.s < end && spectrum_max(state.through_scaled) > args.stop &&
+               march_has_room()) {
+            // Neighbouring rays look for their next step that is not empty together; where it is known what lights see,
+            // for their next one that is not in the dark, and go through the others on the way. A turn must change
             // nothing for a ray that has found its step: some devices use what the last turn gives for all.
             march_medium m;
-            float ds, next = state.next;
-            bool full = false, dense = false;
+            march_step step = march_step(0.0, 0.0, 0.0, spectrum(0.0), spectrum(0.0));
+            bool found = false;
             do {
-                ds = min(next, end - s);
+                float ds = min(state.next, end - state.s);
                 if (raymarch_num_lamps > 0u) {
-                    ds = min(ds, march_lamp_step(lamps, kept, s));
+                    ds = min(ds, march_lamp_step(lamps, kept, state.s));
                 }
-                m = march_medium_at(unit, medium0 + (s + 0.5 * ds) * medium1);
-                full = ds > 0.0 && march_any(m); // such a turn finds the ray at its end
+                m = march_medium_at(unit, line.medium0 + (state.s + 0.5 * ds) * line.medium1);
+                bool any = march_any(m);
                 // Of the channels that are not gone: a dense one must not hold up the others.
-                spectrum left = step(args.stop, state.through_scaled);
+                spectrum left = spectrum_above(state.through_scaled, args.stop);
                 float most =
                     spectrum_max(left * (raymarch_has(RAYMARCH_KERNELS) ? m.scaled_extinction : m.extinction));
-                dense = most * ds > RAYMARCH_DENSE;
-                next = dense ? RAYMARCH_SHORT / most : full ? next : args.step;
-                s += full ? 0.0 : ds;
-                i += full && !dense ? 0 : 1;
-                state.shadow.known = full ? state.shadow.known : 0u;
-                state.steps++;
-            } while ((!full || dense) && i < RAYMARCH_CHUNK && s < end);
-            if (!full || dense) {
-                state.next = next;
-                break;
-            }
-            state.next = march_next_step(m);
-            spectrum x = m.extinction * ds, x_scaled = m.scaled_extinction * ds;
-            float at = s + ds * march_centroid(m, ds);
-            spectrum e = exp(-x), e_scaled = exp(-x_scaled);
-            spectrum weight = ds * state.through * mean_attenuation(x, e);
-            spectrum weight_scaled = ds * state.through_scaled * mean_attenuation(x_scaled, e_scaled);
-            state.before = state.radiance;
-            state.through_before = state.through_scaled;
-
-            if (raymarch_has(RAYMARCH_FIELD)) {
-                float there = min(at, inside);
-                vec3 p = origin + there * direction;
-                vec3 J = march_tinted(march_field(p, field0 + there * field1));
-                spectrum per_metre = m.scaled_scattering;
-                if (raymarch_has(RAYMARCH_SOURCE)) {
-                    per_metre = spectrum(spectrum_max(m.extinction) > 0.0 ? 1.0 : 0.0);
-                }
-                vec3 light = (per_metre * weight_scaled) * J;
-                if (raymarch_has(RAYMARCH_WALLS)) {
-                    bool near = march_near_walls(p);
-                    last_wall = -1;
-                    if (near) {
-                        wall_at[walls] = there;
-                        wall_weight[walls] = per_metre * weight_scaled;
-                        last_wall = walls;
-                        walls++;
+                bool dense = any && most * ds > RAYMARCH_DENSE, full = any && !dense && !found;
+                i += found ? 0 : 1;
+                state.steps += found ? 0u : 1u;
+                state.shadow.known = any || found ? state.shadow.known : 0u;
+                state.s += any || found ? 0.0 : ds;
+                state.next = full || found ? state.next : dense ? RAYMARCH_SHORT / most : args.step;
+                if (raymarch_has(RAYMARCH_LIGHT_CELLS)) {
+                    state.shadow.cells = full ? march_light_cells(origin, direction, state.s, ds) : state.shadow.cells;
+                    bool lit = full && march_any_light(state.shadow, kept);
+                    // Where all is dark nothing need be looked for at the next step's beginning.
+                    state.shadow.lit = full && !lit ? 0u : state.shadow.lit;
+                    state.shadow.known = full && !lit ? ~0u : state.shadow.known;
+                    march_step here =
+                        march_through(m, full ? ds : 0.0, full, line, near.span, state);
+                    if (lit) {
+                        step = here;
                     }
-                    light = near ? vec3(0.0) : light;
+                    found = found || lit;
+                } else {
+                    step.ds = full ? ds : step.ds;
+                    found = found || full;
                 }
+            } while (!found && i < RAYMARCH_CHUNK && state.s < end &&
+                     spectrum_max(state.through_scaled) > args.stop && march_has_room());
+            if (raymarch_has(RAYMARCH_LIGHT_CELLS)) {
+                m = march_medium_at(unit, line.medium0 + (step.s + 0.5 * step.ds) * line.medium1);
+            } else if (found) {
+                step = march_through(m, step.ds, true, line, near.span, state);
+            }
+            if (raymarch_num_suns + raymarch_num_lamps > 0u) {
+                vec3 light =
+                    march_beams(suns, kept, lamps, unit, m, origin, direction, step, state.shadow, state.single);
                 state.radiance += light;
             }
-            if (raymarch_has(RAYMARCH_EMISSION)) {
-                state.radiance += m.emission * weight_scaled;
-            }
-            for (uint n = 0u; n < raymarch_num_suns; n++) {
-                float lit = 1.0;
-                if (raymarch_has(RAYMARCH_SHADOWS)) {
-                    lit = march_lit_of(true, suns[n].map, n, s, ds, state.shadow).metres / ds;
-                }
-                // A loop, as some devices run both sides of a branch.
-                for (bool dark = lit <= 0.0; !dark; dark = true) {
-                    state.radiance += march_sunlight(suns[n], unit, m, origin + at * direction, at, lit * weight,
-                                                     lit * weight_scaled, state.single);
-                }
-            }
-            [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
-                state.radiance += march_lamplight(kept[n], 4u + n, lamps, unit, m, s, ds, at, weight, weight_scaled,
-                                                  state.shadow, state.single);
-            }
-            for (uint n = MARCH_LAMPS_KEPT; n < raymarch_num_lamps; n++) {
-                state.radiance += march_lamplight(march_lamp_of(n, lamps), 4u + n, lamps, unit, m, s, ds, at, weight,
-                                                  weight_scaled, state.shadow, state.single);
-            }
-            last_near = false;
-            if (raymarch_num_near > 0u && s < near.span.y && s + ds > near.span.x) {
-                near_steps.at[near_steps.count] = s;
-                near_steps.ds[near_steps.count] = ds;
-                near_steps.weight[near_steps.count] = weight;
-                near_steps.weight_scaled[near_steps.count] = weight_scaled;
-                near_steps.count++;
-                last_near = true;
-            }
-            if (raymarch_has(RAYMARCH_DEPTH)) {
-                float t0 = spectrum_mean(state.through * exp(-state.hidden));
-                float t1 = spectrum_mean(state.through * e * exp(-state.hidden - m.hidden * ds));
-                if (t0 > 0.5 && t1 <= 0.5) {
-                    state.half_distance = s + ds * log(2.0 * t0) / log(t0 / t1);
-                }
-            }
-            state.through *= e;
-            state.through_scaled *= e_scaled;
-            state.hidden += m.hidden * ds;
-            s += ds;
         }
-        for (int i = 0; raymarch_has(RAYMARCH_WALLS) && i < walls; i++) {
-            vec3 J = march_tinted(march_field_between_walls(origin + wall_at[i] * direction));
-            state.radiance += wall_weight[i] * J;
-            state.before += i == last_wall ? vec3(0.0) : wall_weight[i] * J;
+        for (int i = 0; raymarch_has(RAYMARCH_WALLS) && i < waiting.walls; i++) {
+            vec3 J = march_tinted(march_field_between_walls(origin + waiting.wall_at[i] * direction));
+            state.radiance += waiting.wall_weight[i] * J;
+            state.before += i == waiting.last_wall ? vec3(0.0) : waiting.wall_weight[i] * J;
         }
         if (raymarch_num_near > 0u) {
-            vec3 last, light = march_near_light(near, lamps, unit, near_steps, medium0, medium1, inside,
-                                                state.single, last);
+            vec3 last, light = march_near_light(near, lamps, unit, waiting.near_lamps, line.medium0, line.medium1,
+                                                inside, state.single, last);
             state.radiance += light;
-            state.before += last_near ? light - last : light;
+            state.before += waiting.last_near ? light - last : light;
         }
     }
-    state.s = s;
 
     march_result result;
     result.radiance = state.radiance;
     spectrum through = state.through, through_scaled = state.through_scaled, hidden = state.hidden;
+    float s = state.s;
     if (s < end && state.steps > 0u) {
         // Nearly opaque. What is behind may be a thousand times brighter, so its attenuation is followed
         // to the end; the light of the rest is as bright as a medium that goes on as in the last step.
@@ -650,7 +770,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
                 s = march_skip(origin, direction, inverse, s, end);
                 for (int i = 0; i < 8 && s < end; i++) {
                     float ds = min(step, end - s);
-                    march_medium m = march_medium_at(unit, medium0 + (s + 0.5 * ds) * medium1);
+                    march_medium m = march_medium_at(unit, line.medium0 + (s + 0.5 * ds) * line.medium1);
                     tau += m.extinction * ds;
                     tau_scaled += m.scaled_extinction * ds;
                     hidden += m.hidden * ds;

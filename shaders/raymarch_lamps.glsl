@@ -188,7 +188,7 @@ vec3 march_lamplight(march_lamp lamp, uint bit, march_lamps ray, march_medium un
         share = march_share(lamp.grid.light, lamp.cone, atan(a, h), atan(b, h), angle);
     }
     if (raymarch_has(RAYMARCH_SHADOWS) && share > 0.0) {
-        march_lit lit = march_lit_of(false, lamp.map, bit, s, ds, shadow);
+        march_lit lit = march_lit_of(false, lamp.map, lamp.grid.light.light, bit, s, ds, shadow);
         if (lit.metres < ds) {
             float middle = along + (lit.middle - at);
             a = middle - 0.5 * lit.metres;
@@ -202,7 +202,7 @@ vec3 march_lamplight(march_lamp lamp, uint bit, march_lamps ray, march_medium un
     if (share <= 0.0) {
         return vec3(0.0);
     }
-    float mean = march_inverse_square(h2, a, b) / ds * march_pixel_mean(length(across) * (0.282 / least));
+    float mean = march_inverse_square(h2, a, b) / max(ds, 1e-30) * march_pixel_mean(length(across) * (0.282 / least));
     // Where the angle from the lamp is in the middle: half of the light is on either side.
     float middle;
     if (raymarch_has(RAYMARCH_SPOTS)) {

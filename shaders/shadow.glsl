@@ -4,26 +4,11 @@
 // what its light's map has in front of it; where there is no map everything is lit.
 #ifndef TYN_SHADOW_GLSL
 #define TYN_SHADOW_GLSL
-#include "shadow_args.h"
+#include "shadow_frame.glsl"
 
 layout(set = 0, binding = SHADOW_ATLAS) uniform sampler2D shadow_atlas;
-layout(set = 0, binding = SHADOW_LIGHTS, scalar) readonly buffer shadow_lights_buffer
-{
-    shadow_light shadows[];
-};
 
 const float SHADOW_EPSILON = 4e-6; // of depths: rounding in maps and projections
-
-vec3 shadow_frame(shadow_light l, vec3 p)
-{
-    return vec3(dot(l.rows[0].xyz, p) + l.rows[0].w, dot(l.rows[1].xyz, p) + l.rows[1].w,
-                dot(l.rows[2].xyz, p) + l.rows[2].w);
-}
-
-vec3 shadow_frame_direction(shadow_light l, vec3 n)
-{
-    return vec3(dot(l.rows[0].xyz, n), dot(l.rows[1].xyz, n), dot(l.rows[2].xyz, n));
-}
 
 // A point on a map.
 struct shadow_place {
@@ -31,21 +16,6 @@ struct shadow_place {
     float depth;
     bool inside; // of the map
 };
-
-// The face of the cube that a direction goes through, and the components along its u, v and axis.
-uint shadow_face(vec3 q)
-{
-    vec3 a = abs(q);
-    bool x = a.x >= a.y && a.x >= a.z, y = a.y >= a.z;
-    float major = x ? q.x : y ? q.y : q.z;
-    return (x ? 0u : y ? 2u : 4u) + (major < 0.0 ? 1u : 0u);
-}
-
-vec3 shadow_on_face(uint face, vec3 q)
-{
-    vec3 turned = face < 2u ? q.yzx : face < 4u ? q.zxy : q;
-    return vec3(turned.xy, (face & 1u) != 0u ? -turned.z : turned.z);
-}
 
 shadow_place shadow_place_sun(shadow_light l, vec3 q)
 {

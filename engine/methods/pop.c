@@ -23,6 +23,7 @@
 #include "passes/gbuffer/gbuffer.h"
 #include "passes/rsm/rsm.h"
 #include "passes/shade/shade.h"
+#include "passes/light_cells/light_cells.h"
 #include "passes/shadow_map/shadow_map.h"
 #include "passes/vpl/vpl.h"
 #include "passes/lattice/lattice.h"
@@ -283,6 +284,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_medium,
     &tyn_pass_beam,
     &tyn_pass_shadow_map,
+    &tyn_pass_light_cells,
     &tyn_pass_rsm,
     &tyn_pass_vpl,
     &tyn_pass_env_importance,

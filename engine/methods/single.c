@@ -5,6 +5,7 @@
 #include "passes/beam/beam.h"
 #include "passes/radial_beam/radial_beam.h"
 #include "passes/composite/composite.h"
+#include "passes/light_cells/light_cells.h"
 #include "passes/shadow_map/shadow_map.h"
 #include "passes/tonemap/tonemap.h"
 #include <tyndall/registry.h>
@@ -60,8 +61,9 @@ static tyn_result declare(tyn_graph *g, const tyn_job *given)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,   &tyn_pass_beam,      &tyn_pass_shadow_map, &tyn_pass_radial_beam,
-    &tyn_pass_raymarch, &tyn_pass_composite, &tyn_pass_tonemap,    NULL,
+    &tyn_pass_medium,      &tyn_pass_beam,        &tyn_pass_shadow_map,
+    &tyn_pass_light_cells, &tyn_pass_radial_beam, &tyn_pass_raymarch,
+    &tyn_pass_composite,   &tyn_pass_tonemap,     NULL,
 };
 
 const tyn_method tyn_method_single = {

@@ -7,6 +7,7 @@
 typedef struct tyn_shadow_refs {
     tyn_ref atlas;  // 2D D32
     tyn_ref lights; // struct shadow_light[]
+    tyn_ref cells;  // 3D R32F: where looks at the maps are needed (light_cells_args.h)
 } tyn_shadow_refs;
 
 // {0} without surfaces, or without lights. `num_suns`: the first of frame->suns.

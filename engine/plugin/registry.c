@@ -22,6 +22,7 @@
 #include "passes/rsm/rsm.h"
 #include "passes/scatter_lut/scatter_lut.h"
 #include "passes/shade/shade.h"
+#include "passes/light_cells/light_cells.h"
 #include "passes/shadow_map/shadow_map.h"
 #include "passes/tonemap/tonemap.h"
 #include "passes/upsample/upsample.h"
@@ -59,6 +60,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_gbuffer,
     &tyn_pass_rsm,
     &tyn_pass_shadow_map,
+    &tyn_pass_light_cells,
     &tyn_pass_vpl,
     &tyn_pass_shade,
     &tyn_pass_raymarch,

@@ -86,6 +86,7 @@ enum {
     RAYMARCH_PORT_WALL_CELLS,
     RAYMARCH_PORT_SHADOW_ATLAS, // IN optional 2D, of shadow_map: surfaces stand before the lights
     RAYMARCH_PORT_SHADOWS,      // IN optional buffer
+    RAYMARCH_PORT_LIGHT_CELLS,  // IN optional 3D, of light_cells: where looks at the maps are needed
     RAYMARCH_PORT_CAMERA,       // IN buffer struct camera_block
     RAYMARCH_PORT_ENVIRONMENT,  // IN buffer struct env_block
     RAYMARCH_PORT_ENV_MAP,      // IN optional 2D

@@ -4,6 +4,7 @@
 #include "scene_args.h"
 #include "counters.h"
 #include "raymarch_args.h"
+#include "light_cells_args.h"
 
 // Specialisation constant 0 is the medium's mode (medium.glsl).
 layout(constant_id = 1) const uint raymarch_num_suns = 1u;
@@ -51,6 +52,7 @@ layout(binding = 19, scalar) buffer counter_buffer
 layout(binding = 20) uniform sampler3D glow_tex;
 layout(binding = 28) uniform sampler2D sparse_tex;
 layout(binding = 29, rgba32f) uniform writeonly image2D sparse_image;
+layout(binding = 32) uniform sampler3D light_cells_tex;
 layout(binding = 30, scalar) buffer sparse_rest_buffer
 {
     raymarch_rest head;
@@ -65,13 +67,13 @@ layout(binding = 30, scalar) buffer sparse_rest_buffer
 #define RADIAL_BLOCK 26
 #define RADIAL_COLUMN 27
 #ifndef RAYMARCH_GREY
-#define MEDIUM_SIGMA_A 32
-#define MEDIUM_G 33
-#define MEDIUM_EMISSION 34
-#define BEAM_TAU_A 35
-#define BEAM_TAU_P 36
-#define RADIAL_TAU_A 37
-#define RADIAL_TAU_P 38
+#define MEDIUM_SIGMA_A 33
+#define MEDIUM_G 34
+#define MEDIUM_EMISSION 35
+#define BEAM_TAU_A 36
+#define BEAM_TAU_P 37
+#define RADIAL_TAU_A 38
+#define RADIAL_TAU_P 39
 #endif
 
 layout(push_constant, scalar) uniform Args

@@ -1,0 +1,116 @@
+// light_cells.c -- which lights see all, or nothing, of a piece of the medium's box.
+#include "light_cells.h"
+#include "light_cells_blocks.comp.h"
+#include "light_cells_see.comp.h"
+#include <math.h>
+
+static const tyn_port ports[LIGHT_CELLS_NUM_PORTS] = {
+    [LIGHT_CELLS_PORT_ATLAS] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, 0, false, "of shadow_map"},
+    [LIGHT_CELLS_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, false, "of shadow_map"},
+    [LIGHT_CELLS_PORT_BLOCKS] = {"blocks", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32G32_SFLOAT,
+                                 false, "least and greatest depth in blocks of the atlas"},
+    [LIGHT_CELLS_PORT_CELLS] = {"light_cells", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
+                                "a whole number: two bits a light, 1 dark, 2 lit, 0 neither"},
+};
+
+static const tyn_binding blocks_bindings[] = {
+    {LIGHT_CELLS_PORT_ATLAS, TYN_USE_SAMPLED, false},
+    {LIGHT_CELLS_PORT_BLOCKS, TYN_USE_STORAGE_WRITE, false},
+    {LIGHT_CELLS_PORT_BLOCKS, TYN_USE_STORAGE_WRITE, false},
+    {LIGHT_CELLS_PORT_BLOCKS, TYN_USE_STORAGE_WRITE, false},
+    {LIGHT_CELLS_PORT_BLOCKS, TYN_USE_STORAGE_WRITE, false},
+};
+static const tyn_binding see_bindings[] = {
+    {LIGHT_CELLS_PORT_BLOCKS, TYN_USE_SAMPLED, false},
+    {LIGHT_CELLS_PORT_SHADOWS, TYN_USE_UNIFORM, false},
+    {LIGHT_CELLS_PORT_CELLS, TYN_USE_STORAGE_WRITE, false},
+};
+
+enum { KERNEL_BLOCKS, KERNEL_SEE, NUM_KERNELS };
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_BLOCKS] = {.name = "light_cells_blocks",
+                       .spirv = light_cells_blocks_spirv,
+                       .spirv_size = sizeof light_cells_blocks_spirv,
+                       .local_size = {8, 8, 1},
+                       .bindings = blocks_bindings,
+                       .num_bindings = 1 + LIGHT_CELLS_LEVELS},
+    [KERNEL_SEE] = {.name = "light_cells_see",
+                    .spirv = light_cells_see_spirv,
+                    .spirv_size = sizeof light_cells_see_spirv,
+                    .args_size = sizeof(struct light_cells_args),
+                    .local_size = {4, 4, 4},
+                    .bindings = see_bindings,
+                    .num_bindings = 3,
+                    .num_spec = 2},
+};
+
+static const tyn_param params_table[] = {
+    {"cells", TYN_PARAM_INT, offsetof(tyn_light_cells_params, cells), 32, 4, 256, "cells",
+     "along the longest side of the box", NULL},
+};
+
+static struct light_cells_args args_of(const tyn_light_cells_params *p)
+{
+    struct light_cells_args args;
+    const float *extent = p->extent;
+    args.edge = fmaxf(fmaxf(extent[0], extent[1]), extent[2]) / (float)p->cells;
+    for (int a = 0; a < 3; a++) {
+        const float count = fminf(ceilf(extent[a] / args.edge), (float)p->cells);
+        args.dims[a] = count >= 1 ? (uint32_t)count : 1;
+    }
+    return args;
+}
+
+// Whole blocks of the largest size cover the atlas.
+static tyn_extent blocks_of(tyn_extent atlas)
+{
+    const uint32_t side = LIGHT_CELLS_BLOCK << (LIGHT_CELLS_LEVELS - 1);
+    const uint32_t finest = 1u << (LIGHT_CELLS_LEVELS - 1);
+    return (tyn_extent){(atlas.x + side - 1) / side * finest, (atlas.y + side - 1) / side * finest,
+                        1};
+}
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const struct light_cells_args args = args_of(params);
+    tyn_build_image(b, LIGHT_CELLS_PORT_BLOCKS,
+                    blocks_of(tyn_build_extent(b, LIGHT_CELLS_PORT_ATLAS)), LIGHT_CELLS_LEVELS);
+    tyn_build_image(b, LIGHT_CELLS_PORT_CELLS,
+                    (tyn_extent){args.dims[0], args.dims[1], args.dims[2]}, 1);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_light_cells_params *p = params;
+    const struct light_cells_args args = args_of(p);
+    const uint32_t most_lamps = TYN_LIGHT_CELLS - TYN_SHADOW_SUNS;
+    const uint32_t spec[] = {p->num_suns, p->num_lamps < most_lamps ? p->num_lamps : most_lamps};
+    const uint8_t mips[1 + LIGHT_CELLS_LEVELS] = {0, 0, 1, 2, 3};
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_BLOCKS,
+                                        .cells = tyn_rec_extent(r, LIGHT_CELLS_PORT_BLOCKS),
+                                        .mips = mips});
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SEE,
+                                        .cells = {args.dims[0], args.dims[1], args.dims[2]},
+                                        .args = &args,
+                                        .spec = spec});
+    tyn_rec_work(r, "cells", (double)args.dims[0] * args.dims[1] * args.dims[2]);
+}
+
+const tyn_pass_desc tyn_pass_light_cells = {
+    .name = "light_cells",
+    .summary = "where lights see all of the medium, or nothing",
+    .serves = "surfaces before the lights of a medium",
+    .ports = ports,
+    .num_ports = LIGHT_CELLS_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params = params_table,
+    .num_params = sizeof(params_table) / sizeof(params_table[0]),
+    .params_size = sizeof(tyn_light_cells_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = LIGHT_CELLS_PORT_CELLS,
+    .debug_meaning = "two bits a light: 1 dark, 2 lit, 0 neither",
+};
