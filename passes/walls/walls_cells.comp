@@ -57,13 +57,9 @@ layout(binding = 9, scalar) writeonly buffer cell_buffer
 #include "walls_texture.glsl"
 
 // Mean over about a cell around the place where the link from p along d meets triangle i.
-vec3 albedo_at(uint i, vec3 p, vec3 d)
+vec3 texture_at(uint i, uint index, vec3 p, vec3 d)
 {
     surface_triangle s = triangles[i];
-    surface_material m = materials[s.material];
-    if (m.texture == TYN_SURFACE_NO_TEXTURE) {
-        return m.albedo;
-    }
     walls_triangle t = walls_triangle_at(i);
     float rise = -dot(t.normal, d);
     float where = abs(rise) > 1e-20 ? clamp(dot(t.normal, p - t.a) / rise, 0.0, 1.0) : 0.5;
@@ -72,10 +68,19 @@ vec3 albedo_at(uint i, vec3 p, vec3 d)
     vec2 share = vec2(dot(cross(hit, v), t.normal), dot(cross(u, hit), t.normal)) / area;
     surface_vertex v0 = vertices[s.v0], v1 = vertices[s.v1], v2 = vertices[s.v2];
     vec2 uv0 = vec2(v0.u, v0.v), uv1 = vec2(v1.u, v1.v) - uv0, uv2 = vec2(v2.u, v2.v) - uv0;
-    vec2 size = vec2(textures[m.texture].size);
+    vec2 size = vec2(textures[index].size);
     float texels_per_cell = abs(uv1.x * uv2.y - uv1.y * uv2.x) * size.x * size.y / sqrt(area);
-    return m.albedo *
-           walls_texture(m.texture, uv0 + share.x * uv1 + share.y * uv2, texels_per_cell);
+    return walls_texture(index, uv0 + share.x * uv1 + share.y * uv2, texels_per_cell);
+}
+
+vec3 albedo_at(uint i, vec3 p, vec3 d)
+{
+    uint material = triangles[i].material, index = materials[material].texture;
+    vec3 albedo = materials[material].albedo;
+    for (bool textured = index != TYN_SURFACE_NO_TEXTURE; textured; textured = false) {
+        albedo *= texture_at(i, index, p, d);
+    }
+    return albedo;
 }
 
 // In M, m, with the centre on its positive side.
@@ -96,18 +101,18 @@ void main()
     }
     uint i = walls_cell_index(c), n = args.dims.x * args.dims.y * args.dims.z, cut = links[i];
     wall_cell cell = wall_cell(vec4[3](vec4(0.0), vec4(0.0), vec4(0.0)), vec3(0.0), 0.0);
-    for (uint link = 0u; link < 14u; link++) {
-        if ((cut >> link & 1u) != 0u) {
-            float a = lattice_weight(link) * (link < 6u ? 1.0 : inversesqrt(3.0));
-            cell.area += a;
-            cell.albedo += a * albedo_at(hits[link * n + i] & 0xffffffu, vec3(c), vec3(walls_step(link)));
-        }
+    for (uint some = cut & 0x3fffu; some != 0u; some &= some - 1u) {
+        uint link = uint(findLSB(some));
+        float a = lattice_weight(link) * (link < 6u ? 1.0 : inversesqrt(3.0));
+        cell.area += a;
+        cell.albedo += a * albedo_at(hits[link * n + i] & 0xffffffu, vec3(c), vec3(walls_step(link)));
     }
     cell.albedo = cell.area > 0.0 ? clamp(cell.albedo / cell.area, vec3(0.0), vec3(1.0)) : vec3(0.0);
 
     lattice_box box = lattice_box_of(args.extent, ivec3(args.dims));
     uint used = 0u, found = 0u;
-    for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
+    // A cell far from walls has no planes.
+    for (uint k = (cut & TYN_WALLS_NEAR) != 0u ? 0u : TYN_WALLS_PLANES; k < TYN_WALLS_PLANES; k++) {
         uint best = 0xffffffffu, slot = 0u;
         for (uint s = 0u; s < WALLS_SLOTS; s++) {
             uint key = (used >> s & 1u) != 0u ? 0xffffffffu : nearest[s * n + i];
