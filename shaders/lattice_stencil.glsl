@@ -33,9 +33,9 @@ bool lattice_alone(vec4 lo)
 }
 
 // Is no wall in this cell's faces?
-bool lattice_open(vec4 lo, vec4 hi)
+bool lattice_open(vec3 lo, vec3 hi)
 {
-    return all(greaterThan(lo.xyz, vec3(0.0))) && all(greaterThan(hi.xyz, vec3(0.0)));
+    return all(greaterThan(lo, vec3(0.0))) && all(greaterThan(hi, vec3(0.0)));
 }
 
 vec4 lattice_stencil_lo(lattice_stencil k)

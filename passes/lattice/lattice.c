@@ -5,7 +5,7 @@
 #include "lattice_start.comp.h"
 #include "lattice_stencil.comp.h"
 #include "lattice_stencil_coarse.comp.h"
-#include "lattice_stencil_finish.comp.h"
+#include "lattice_stencil_walls.comp.h"
 #include "lattice_sweep.comp.h"
 #include "lattice_collect.comp.h"
 #include "lattice_relax.comp.h"
@@ -25,8 +25,6 @@ enum {
     PORT_SWEPT,
     PORT_STENCIL_LO,
     PORT_STENCIL_HI,
-    PORT_FINISHED_LO, // as images
-    PORT_FINISHED_HI,
     PORT_RHS,
     PORT_CORRECTION,
     PORT_RESULT,                   // and two more: of the last three sweeps
@@ -37,8 +35,8 @@ enum {
     NUM_PORTS,
 };
 
-// The state is in buffers: a software device stores to images several times more slowly. What is read far more often
-// than it is stored is in images, which it reads as much faster.
+// The state is in buffers: a software device stores to images several times more slowly. They are read as texels, which
+// it does as fast as with images.
 #define SCRATCH(port, name, meaning) [port] = {name, TYN_SCRATCH, TYN_BUFFER, 0, false, meaning}
 
 static const tyn_port ports[NUM_PORTS] = {
@@ -66,10 +64,6 @@ static const tyn_port ports[NUM_PORTS] = {
     SCRATCH(PORT_SWEPT, "swept", "moments after the sweep"),
     SCRATCH(PORT_STENCIL_LO, "stencil_lo", "conductance to -x, -y, -z; absorption"),
     SCRATCH(PORT_STENCIL_HI, "stencil_hi", "conductance to +x, +y, +z; sum of all"),
-    [PORT_FINISHED_LO] = {"finished_lo", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                          false, "stencil_lo, a minus where corrections are not blended"},
-    [PORT_FINISHED_HI] = {"finished_hi", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                          false, "stencil_hi"},
     SCRATCH(PORT_RHS, "rhs", "of the diffusion correction, W"),
     SCRATCH(PORT_CORRECTION, "correction", "of the fluence, W/m^2"),
     SCRATCH(PORT_RESULT, "result_0", "corrected moments"),
@@ -89,7 +83,7 @@ enum {
     KERNEL_START,
     KERNEL_STENCIL,
     KERNEL_STENCIL_COARSE,
-    KERNEL_STENCIL_FINISH,
+    KERNEL_STENCIL_WALLS,
     KERNEL_SWEEP,
     KERNEL_COLLECT,
     KERNEL_RELAX,
@@ -114,14 +108,14 @@ static const tyn_binding stencil_bindings[] = {
     {LATTICE_PORT_WALL_CELLS, TYN_USE_TEXELS_VEC4},
 };
 static const tyn_binding stencil_coarse_bindings[] = {
-    {PORT_STENCIL_LO, TYN_USE_STORAGE_RW},
-    {PORT_STENCIL_HI, TYN_USE_STORAGE_RW},
+    {PORT_STENCIL_LO, TYN_USE_STORAGE_WRITE},
+    {PORT_STENCIL_HI, TYN_USE_STORAGE_WRITE},
+    {PORT_STENCIL_LO, TYN_USE_TEXELS_VEC4},
+    {PORT_STENCIL_HI, TYN_USE_TEXELS_VEC4},
 };
-static const tyn_binding stencil_finish_bindings[] = {
-    {PORT_STENCIL_LO, TYN_USE_STORAGE_READ},
+static const tyn_binding stencil_walls_bindings[] = {
+    {PORT_STENCIL_LO, TYN_USE_STORAGE_RW},
     {PORT_STENCIL_HI, TYN_USE_STORAGE_READ},
-    {PORT_FINISHED_LO, TYN_USE_STORAGE_WRITE},
-    {PORT_FINISHED_HI, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding sweep_bindings[] = {
     {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM}, {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
@@ -141,27 +135,27 @@ static const tyn_binding collect_bindings[] = {
     {LATTICE_PORT_WALL_POWER, TYN_USE_STORAGE_WRITE},
     {LATTICE_PORT_WALL_LINKS, TYN_USE_TEXELS_UINT},
     {LATTICE_PORT_WALL_CELLS, TYN_USE_TEXELS_VEC4},
-    {PORT_FINISHED_HI, TYN_USE_SAMPLED},
+    {PORT_STENCIL_HI, TYN_USE_TEXELS_FLOAT},
 };
 static const tyn_binding relax_bindings[] = {
-    {PORT_FINISHED_LO, TYN_USE_SAMPLED},      {PORT_FINISHED_HI, TYN_USE_SAMPLED},
+    {PORT_STENCIL_LO, TYN_USE_TEXELS_VEC4},   {PORT_STENCIL_HI, TYN_USE_TEXELS_VEC4},
     {PORT_RHS, TYN_USE_TEXELS_FLOAT},         {PORT_CORRECTION, TYN_USE_TEXELS_FLOAT},
     {PORT_CORRECTION, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding restrict_bindings[] = {
-    {PORT_FINISHED_LO, TYN_USE_SAMPLED}, {PORT_FINISHED_HI, TYN_USE_SAMPLED},
-    {PORT_RHS, TYN_USE_TEXELS_FLOAT},    {PORT_CORRECTION, TYN_USE_TEXELS_FLOAT},
-    {PORT_RHS, TYN_USE_STORAGE_WRITE},   {PORT_CORRECTION, TYN_USE_STORAGE_WRITE},
+    {PORT_STENCIL_LO, TYN_USE_TEXELS_VEC4}, {PORT_STENCIL_HI, TYN_USE_TEXELS_VEC4},
+    {PORT_RHS, TYN_USE_TEXELS_FLOAT},       {PORT_CORRECTION, TYN_USE_TEXELS_FLOAT},
+    {PORT_RHS, TYN_USE_STORAGE_WRITE},      {PORT_CORRECTION, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding interpolate_bindings[] = {
     {PORT_CORRECTION, TYN_USE_STORAGE_WRITE},
-    {PORT_FINISHED_LO, TYN_USE_SAMPLED},
-    {PORT_FINISHED_HI, TYN_USE_SAMPLED},
+    {PORT_STENCIL_LO, TYN_USE_TEXELS_VEC4},
+    {PORT_STENCIL_HI, TYN_USE_TEXELS_VEC4},
     {PORT_CORRECTION, TYN_USE_TEXELS_FLOAT},
 };
 static const tyn_binding coarse_bindings[] = {
-    {PORT_FINISHED_LO, TYN_USE_SAMPLED},
-    {PORT_FINISHED_HI, TYN_USE_SAMPLED},
+    {PORT_STENCIL_LO, TYN_USE_TEXELS_VEC4},
+    {PORT_STENCIL_HI, TYN_USE_TEXELS_VEC4},
     {PORT_RHS, TYN_USE_TEXELS_FLOAT},
     {PORT_CORRECTION, TYN_USE_STORAGE_RW},
 };
@@ -198,7 +192,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_START] = KERNEL(start, lattice_args, 2, 8, 4, 2),
     [KERNEL_STENCIL] = KERNEL(stencil, lattice_level_args, 1, 8, 4, 2),
     [KERNEL_STENCIL_COARSE] = KERNEL(stencil_coarse, lattice_level_args, 1, 4, 4, 4),
-    [KERNEL_STENCIL_FINISH] = KERNEL(stencil_finish, lattice_level_args, 1, LATTICE_GROUP, 1, 1),
+    [KERNEL_STENCIL_WALLS] = KERNEL(stencil_walls, lattice_level_args, 0, LATTICE_GROUP, 1, 1),
     [KERNEL_SWEEP] = KERNEL(sweep, lattice_args, 2, LATTICE_SWEEP_GROUP, 1, 1),
     [KERNEL_COLLECT] = KERNEL(collect, lattice_args, 2, 8, 4, 2),
     [KERNEL_RELAX] = KERNEL(relax, lattice_level_args, 0, 8, 4, 2),
@@ -295,11 +289,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_build_buffer(b, PORT_SWEPT, 4 * scalar * elements);
     tyn_build_buffer(b, PORT_STENCIL_LO, 4 * scalar * all_levels);
     tyn_build_buffer(b, PORT_STENCIL_HI, 4 * scalar * all_levels);
-    const uint32_t all_texels = (uint32_t)all_levels * channels;
-    const tyn_extent finished = {
-        LATTICE_STENCIL_WIDTH, (all_texels + LATTICE_STENCIL_WIDTH - 1) / LATTICE_STENCIL_WIDTH, 1};
-    tyn_build_image(b, PORT_FINISHED_LO, finished, 1);
-    tyn_build_image(b, PORT_FINISHED_HI, finished, 1);
     tyn_build_buffer(b, PORT_RHS, scalar * all_levels);
     tyn_build_buffer(b, PORT_CORRECTION, scalar * all_levels);
     for (uint8_t i = 0; i < 3; i++) {
@@ -467,10 +456,12 @@ static void record(tyn_recorder *r, const void *params)
             on_level_as(&s, KERNEL_STENCIL_COARSE, l, cells_of(&s, l), 0, 2 * s.walls[0]);
         }
     }
-    if (p->cycles > 0) {
-        on_level(&s, KERNEL_STENCIL_FINISH, 0, (tyn_extent){s.levels.cells, p->shape.channels, 1},
+    if (p->cycles > 0 && s.walls[0]) {
+        on_level(&s, KERNEL_STENCIL_WALLS, 0, (tyn_extent){s.levels.cells, p->shape.channels, 1},
                  0);
     }
+    // Among walls a second cycle after each sweep brings nothing: pieces of levels are carried over as steps.
+    const int32_t cycles = s.walls[0] && p->cycles > 1 ? p->cycles - 1 : p->cycles;
     for (uint32_t i = 0; i < (uint32_t)p->sweeps; i++) {
         tyn_rec_dispatch(
             r, &(tyn_dispatch){.kernel = KERNEL_SWEEP,
@@ -478,7 +469,7 @@ static void record(tyn_recorder *r, const void *params)
                                .args = &s.args,
                                .spec = sweep_spec});
         on_cells(&s, KERNEL_COLLECT);
-        for (int32_t c = 0; c < p->cycles; c++) {
+        for (int32_t c = 0; c < cycles; c++) {
             v_cycle(&s, c == 0);
         }
         mix(&s, i);
@@ -486,7 +477,7 @@ static void record(tyn_recorder *r, const void *params)
     double cells = (double)num_cells(s.texels) * p->sweeps;
     tyn_rec_work(r, "cells", cells);
     // A line's segment: 30 operations; collecting, mixing: 130; a cycle: 8/7 * 9 stencils of 15.
-    tyn_rec_work(r, "flops", cells * (LATTICE_DIRECTIONS * 30 + 130 + 150 * p->cycles));
+    tyn_rec_work(r, "flops", cells * (LATTICE_DIRECTIONS * 30 + 130 + 150 * cycles));
 }
 
 static const tyn_param param_table[] = {
@@ -496,7 +487,10 @@ static const tyn_param param_table[] = {
     {"sweeps", TYN_PARAM_INT, offsetof(tyn_lattice_params, sweeps), 4, 1, 256, "",
      "iterations of the solve; the error falls about tenfold with each two", NULL},
     {"cycles", TYN_PARAM_INT, offsetof(tyn_lattice_params, cycles), 2, 0, 8, "",
-     "multigrid cycles of the diffusion correction after each sweep; 0 = no correction", NULL},
+     "multigrid cycles of the diffusion correction after each sweep, among walls one less but one "
+     "at "
+     "least; 0 = no correction",
+     NULL},
     {"anderson", TYN_PARAM_BOOL, offsetof(tyn_lattice_params, anderson), 1, 0, 1, "",
      "mix the results of the last three sweeps (Anderson acceleration)", NULL},
     {"warm", TYN_PARAM_BOOL, offsetof(tyn_lattice_params, warm), 0, 0, 1, "",

@@ -93,7 +93,6 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
 #define LATTICE_NUM_DOTS 5                       // dot products of Anderson mixing
 #define LATTICE_COARSE_CELLS 4096 // a level of at most so many cells is solved inside one workgroup
 #define LATTICE_COARSE_GROUP 256
-#define LATTICE_STENCIL_WIDTH 1024 // texels of a row of the images of stencils
 #define LATTICE_SUN_GROUP 256
 
 #endif

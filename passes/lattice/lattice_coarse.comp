@@ -11,7 +11,7 @@
 #include "lattice_levels.glsl"
 #define LATTICE_STENCIL_LO 0
 #define LATTICE_STENCIL_HI 1
-#include "lattice_stencil_image.glsl"
+#include "lattice_stencil_texels.glsl"
 
 layout(local_size_x = LATTICE_COARSE_GROUP) in;
 layout(push_constant, scalar) uniform push
@@ -135,7 +135,7 @@ float step_length()
         float e = correction[index_of(c)];
         float r = at.first == first.first ? texelFetch(rhs_in, int(id)).x : rhs[index_of(c) - lattice_num_cells(first.size)];
         // Each cell has half of the energy of its faces.
-        float steps = lattice_open(k_lo, k_hi) ? 0.5 : 1.0;
+        float steps = lattice_open(k.lo, k.hi) ? 0.5 : 1.0;
         vec3 lo = vec3(0.0), hi = vec3(0.0);
         for (int axis = 0; axis < 3; axis++) {
             ivec3 q = c;

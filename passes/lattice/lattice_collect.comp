@@ -38,7 +38,7 @@ layout(binding = 8, scalar) writeonly buffer power_buffer
 {
     vec2 wall_power[]; // absorbed, sent out of wall_light; W
 };
-layout(binding = 11) uniform sampler2D stencil_hi_tex; // lattice_stencil_image.glsl
+layout(binding = 11) uniform samplerBuffer stencil_hi; // four floats to a cell
 #define LATTICE_WALL_LINKS 9
 #define LATTICE_WALL_CELLS 10
 #include "lattice_wall_state.glsl"
@@ -115,7 +115,7 @@ void main()
     // The first half of the first relaxation, from corrections of 0.
     float corrected = 0.0;
     if (args.corrected == 1 && ((texel.x + texel.y + texel.z - ch * args.dims.z) & 1) == 0) {
-        corrected = change / abs(texelFetch(stencil_hi_tex, ivec2(l % LATTICE_STENCIL_WIDTH, l / LATTICE_STENCIL_WIDTH), 0).w);
+        corrected = change / abs(texelFetch(stencil_hi, int(4u * l + 3u)).x);
     }
     correction[l] = corrected;
 }

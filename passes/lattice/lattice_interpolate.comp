@@ -7,7 +7,7 @@
 #include "lattice_levels.glsl"
 #define LATTICE_STENCIL_LO 1
 #define LATTICE_STENCIL_HI 2
-#include "lattice_stencil_image.glsl"
+#include "lattice_stencil_texels.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(push_constant, scalar) uniform push

@@ -11,7 +11,7 @@
 #include "lattice_levels.glsl"
 #define LATTICE_STENCIL_LO 0
 #define LATTICE_STENCIL_HI 1
-#include "lattice_stencil_image.glsl"
+#include "lattice_stencil_texels.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(push_constant, scalar) uniform push

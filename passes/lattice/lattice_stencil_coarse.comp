@@ -8,21 +8,24 @@
 #include "lattice_args.h"
 #include "quotient.glsl"
 #include "lattice_levels.glsl"
-#include "lattice_stencil.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the coarse one
 };
-layout(binding = 0, scalar) buffer lo_buffer
+layout(binding = 0, scalar) writeonly buffer lo_buffer
 {
     vec4 stencil_lo[];
 };
-layout(binding = 1, scalar) buffer hi_buffer
+layout(binding = 1, scalar) writeonly buffer hi_buffer
 {
     vec4 stencil_hi[];
 };
+
+#define LATTICE_STENCIL_LO 2
+#define LATTICE_STENCIL_HI 3
+#include "lattice_stencil_texels.glsl" // the buffers above, of finer cells
 
 // 0: there are no walls; else two dispatches: 1 finds the orphans among the fine cells, 2 does the rest.
 layout(constant_id = 0) const uint walls = 0;
@@ -36,7 +39,7 @@ uint largest_part(lattice_level fine, ivec3 c, uint channel)
         ivec3 f = 2 * c + ivec3(child & 1, child >> 1 & 1, child >> 2);
         bool inside = all(lessThan(f, fine.size));
         part[child] = inside ? 1u << child : 0u;
-        hi[child] = inside ? stencil_hi[channel + lattice_index(fine, f)].xyz : vec3(0.0);
+        hi[child] = inside ? lattice_stencil_hi_at(channel + lattice_index(fine, f)).xyz : vec3(0.0);
     }
     for (int times = 0; times < 7; times++) {
         for (int child = 0; child < 8; child++) {
@@ -63,7 +66,7 @@ void mark_orphans(lattice_level fine, ivec3 c, uint channel)
         ivec3 f = 2 * c + ivec3(child & 1, child >> 1 & 1, child >> 2);
         if ((part >> child & 1u) == 0u && all(lessThan(f, fine.size))) {
             uint i = channel + lattice_index(fine, f);
-            stencil_hi[i].w = -abs(stencil_hi[i].w);
+            stencil_hi[i].w = -abs(lattice_stencil_hi_at(i).w);
         }
     }
 }
@@ -75,7 +78,7 @@ bool parted(lattice_level fine, ivec3 f, int axis, int way, uint channel)
         return false;
     }
     f[axis] += way;
-    return lattice_orphan(stencil_hi[channel + lattice_index(fine, f)]);
+    return lattice_orphan(lattice_stencil_hi_at(channel + lattice_index(fine, f)));
 }
 
 // In series with the half cell that is to become twice as long; no way out at all through a wall.
@@ -107,7 +110,7 @@ void main()
             continue;
         }
         uint i = channel + lattice_index(fine, f);
-        vec4 lo = stencil_lo[i], hi = stencil_hi[i];
+        vec4 lo = lattice_stencil_lo_at(i), hi = lattice_stencil_hi_at(i);
         if (lattice_orphan(hi)) {
             continue;
         }

@@ -1,0 +1,55 @@
+// lattice_stencil_walls.comp -- marks the cells to which corrections of the next coarser level come unblended, as there
+// are walls about.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "lattice_args.h"
+#include "quotient.glsl"
+#include "lattice_levels.glsl"
+#include "lattice_stencil.glsl"
+
+layout(local_size_x = LATTICE_GROUP) in; // along all levels of a channel
+layout(push_constant, scalar) uniform push
+{
+    lattice_level_args args;
+};
+layout(binding = 0, scalar) buffer lo_buffer
+{
+    vec4 stencil_lo[];
+};
+layout(binding = 1, scalar) readonly buffer hi_buffer
+{
+    vec4 stencil_hi[];
+};
+
+bool near_walls(uint in_level, lattice_level fine, lattice_level coarse, uint channel)
+{
+    ivec3 c = quotient_place(in_level, fine.size);
+    lattice_interpolation from = lattice_interpolation_of(c, coarse.size);
+    bool open = true;
+    for (uint corner = 0; corner < 8; corner++) {
+        uint k = channel + lattice_index(coarse, lattice_corner(from, corner));
+        open = open && lattice_open(stencil_lo[k].xyz, stencil_hi[k].xyz);
+    }
+    return !open;
+}
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x, channel = gl_GlobalInvocationID.y * args.stride;
+    if (i >= args.stride) {
+        return;
+    }
+    bool near = false;
+    lattice_level level = lattice_level_of(ivec3(args.dims), 0);
+    for (uint l = 0; l + 1 < args.levels; l++) {
+        lattice_level next = lattice_next_level(level);
+        for (bool here = i >= level.first && i < next.first; here; here = false) {
+            near = near_walls(i - level.first, level, next, channel);
+        }
+        level = next;
+    }
+    for (; near; near = false) {
+        stencil_lo[channel + i].w = -stencil_lo[channel + i].w;
+    }
+}
