@@ -65,6 +65,37 @@ bool walls_same_side(lattice_box box, ivec3 cell, vec3 p)
     return (wall_links[index] & TYN_WALLS_NEAR) == 0u || walls_behind(index, p) == 0u;
 }
 
+// The planes of a cell for many points of it; all 0 where there is no wall about.
+struct walls_sides {
+    vec4 planes[TYN_WALLS_PLANES];
+};
+
+walls_sides walls_sides_of(lattice_box box, ivec3 cell)
+{
+    uint index = uint((cell.z * box.dims.y + cell.y) * box.dims.x + cell.x);
+    walls_sides sides;
+    for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
+        sides.planes[k] = vec4(0.0);
+    }
+    // A loop instead of a condition: what nobody enters costs nothing.
+    for (bool near = (wall_links[index] & TYN_WALLS_NEAR) != 0u; near; near = false) {
+        for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
+            sides.planes[k] = wall_cells[index].planes[k];
+        }
+    }
+    return sides;
+}
+
+// As walls_same_side.
+bool walls_same_side_of(walls_sides sides, vec3 p)
+{
+    float least = 0.0;
+    for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
+        least = min(least, dot(sides.planes[k].xyz, p) + sides.planes[k].w);
+    }
+    return least >= 0.0;
+}
+
 vec3 walls_centre(lattice_box box, ivec3 cell)
 {
     vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);

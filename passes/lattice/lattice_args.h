@@ -17,6 +17,7 @@ struct lattice_source_args {
     tyn_vec3 tint;
     tyn_uint samples; // per cell along each axis
     tyn_uint num_suns;
+    tyn_uint sun; // beam: the one
 };
 
 struct lattice_ordinates_args {

@@ -60,16 +60,16 @@ void main()
     lattice_box box = lattice_box_of(medium.extent, dims);
     vec3 centre = lattice_to_m(box, vec3(c) + 0.5);
     uint count = extinction > 0.0 ? radial_count : 0u;
-    for (uint n = args.num_lamps; n < count; n++) {
-        // Each thread goes on to the next VPL that is near to it.
-        uint cut = 1u;
-        for (; n < count; n++) {
-            cut = lattice_lamps_vpl_pieces(distance(centre, radials[n].light.position) / box.dx);
-            if (cut > 1u) {
-                break;
-            }
+    for (uint first = args.num_lamps; first < count; first += 32u) {
+        // All threads look at the same VPL, and then each at those that are near to it.
+        uint near = 0u;
+        for (uint k = 0u; k < min(count - first, 32u); k++) {
+            float away = distance(centre, radials[first + k].light.position);
+            near |= lattice_lamps_vpl_pieces(away / box.dx) > 1u ? 1u << k : 0u;
         }
-        if (cut > 1u) {
+        for (; near != 0u; near &= near - 1u) {
+            uint n = first + uint(findLSB(near));
+            uint cut = lattice_lamps_vpl_pieces(distance(centre, radials[n].light.position) / box.dx);
             lattice_lamps_add_pieces(n, cut, box, c, sums, all);
         }
     }

@@ -85,6 +85,9 @@ void main()
             beam_tau mean = radial_tau(place);
             vec3 per_way = (mean.a + mean.p) / max(way, 1e-20);
             vpl_map map = vpl_map_of(v, light.axis);
+            // Of the block: how obliquely the light crosses a cell.
+            vec3 oblique = abs(from) / max(way, 1e-20);
+            float half_way = 0.5 * dx / max(max(oblique.x, max(oblique.y, oblique.z)), 0.57);
             vec3 intensity = light.intensity;
             if (num_channels == 1u) {
                 intensity = vec3(lattice_channel(intensity, 1u, 0u, args.tint));
@@ -92,10 +95,9 @@ void main()
             [[unroll]] for (uint k = 0u; k < BLOCK; k++) {
                 vec3 away = from + (vec3(corner_of(k)) - 0.5) * dx;
                 float r2 = dot(away, away), r = sqrt(r2);
-                vec3 unit = away / max(r, 1e-20), a = abs(unit);
+                vec3 unit = away / max(r, 1e-20);
                 float share = lattice_lamps_vpl_pieces(r / dx) == 1u ? max(dot(unit, light.axis), 0.0) : 0.0;
                 float fluence = share * radial_mean_inverse_square(r2, dx * dx);
-                float half_way = 0.5 * dx / max(max(a.x, max(a.y, a.z)), 0.57);
                 float visible = shadowed == 1 ? vpl_map_visibility(map, away, r) : 1.0;
                 vec4 moments = visible * vec4(1.0, lattice_lamps_cosine(light.radius, r) * unit);
                 [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {

@@ -41,7 +41,7 @@ static const tyn_binding beam_bindings[] = {
     {LATTICE_SOURCE_PORT_MEDIUM, TYN_USE_UNIFORM},
     {LATTICE_SOURCE_PORT_DENSITY, TYN_USE_SAMPLED},
     {LATTICE_SOURCE_PORT_G, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_BEAMS, TYN_USE_STORAGE_READ},
+    {LATTICE_SOURCE_PORT_BEAMS, TYN_USE_UNIFORM},
     {LATTICE_SOURCE_PORT_COLUMN, TYN_USE_SAMPLED},
     {LATTICE_SOURCE_PORT_TAU_A, TYN_USE_SAMPLED},
     {LATTICE_SOURCE_PORT_TAU_P, TYN_USE_SAMPLED},
@@ -136,10 +136,10 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t spec[4] = {p->mode, p->shape.channels,
                               tyn_rec_has(r, LATTICE_SOURCE_PORT_WALL_LINKS),
                               tyn_rec_has(r, LATTICE_SOURCE_PORT_SHADOW_ATLAS)};
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_BEAM,
-                                        .cells = {dims.x, dims.y, dims.z * p->num_suns},
-                                        .args = &args,
-                                        .spec = spec});
+    for (; args.sun < p->num_suns; args.sun++) { // one by one: then all threads read the same of it
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = KERNEL_BEAM, .cells = dims, .args = &args, .spec = spec});
+    }
     tyn_rec_dispatch(
         r, &(tyn_dispatch){.kernel = KERNEL_SUM,
                            .cells = {p->num_suns * LATTICE_SUN_GROUP, p->shape.channels, 1},

@@ -17,6 +17,7 @@
 #define MEDIUM_DENSITY 1
 #define MEDIUM_G 2
 #define BEAM_BLOCKS 3
+#define BEAM_UNIFORM
 #define BEAM_COLUMN 4
 #define BEAM_TAU_A 5
 #define BEAM_TAU_P 6
@@ -80,14 +81,13 @@ float mean_over_cube(float centre, vec3 gradient, float size)
 
 void main()
 {
-    ivec3 texel = ivec3(gl_GlobalInvocationID), dims = ivec3(args.dims);
-    ivec3 c = ivec3(texel.xy, texel.z % dims.z);
-    uint sun = uint(texel.z / dims.z);
-    if (any(greaterThanEqual(c, dims)) || sun >= args.num_suns) {
+    ivec3 c = ivec3(gl_GlobalInvocationID), dims = ivec3(args.dims);
+    uint sun = args.sun;
+    if (any(greaterThanEqual(c, dims))) {
         return;
     }
     lattice_box box = lattice_box_of(medium.extent, dims);
-    vec3 d = abs(beams[sun].direction);
+    vec3 direction = beams[sun].direction, d = abs(direction);
     vec3 weighted = vec3(0.0), weight = vec3(0.0);
     vec3 across = vec3(0.0);
     float depth = 0.0; // of a sub-sample, half, as the cell has it on average
@@ -96,8 +96,16 @@ void main()
         depth = max(depth, 0.5 * box.dx / float(args.samples) * (cell.x + cell.y));
     }
     bool dense = depth > DENSE;
-    for (uint once = 0; once < (dense ? 1u : 0u); once++) { // threads without it pass by
-        across = depth_across(sun, box, c, beams[sun].direction);
+    for (bool once = dense; once; once = false) { // threads without it pass by
+        across = depth_across(sun, box, c, direction);
+    }
+    walls_sides sides;
+    if (walls == 1) {
+        sides = walls_sides_of(box, c);
+    }
+    shadow_light shadow;
+    if (shadowed == 1) {
+        shadow = shadows[beams[sun].light];
     }
     vec2 seen = vec2(0.0); // of the light in all channels: by the cell, and all
     float step_length = box.dx / float(args.samples);
@@ -108,7 +116,7 @@ void main()
             beam_ray ray = beam_ray_of(sun, row, vec3(1.0, 0.0, 0.0));
             for (uint i = 0; i < args.samples; i++) {
                 float s = float(i) * step_length;
-                if (walls == 1 && !walls_same_side(box, c, row + vec3(s, 0.0, 0.0))) {
+                if (walls == 1 && !walls_same_side_of(sides, row + vec3(s, 0.0, 0.0))) {
                     continue;
                 }
                 medium_point m = medium_sample(row + vec3(s, 0.0, 0.0));
@@ -125,8 +133,8 @@ void main()
                     t.g = mean_transmittance(centre.g, x.g);
                     t.b = mean_transmittance(centre.b, x.b);
                 }
-                for (uint once = 0; once < (dense ? 1u : 0u); once++) {
-                    vec3 extinction = scaled + m.sigma_a, ahead = beams[sun].direction;
+                for (bool once = dense; once; once = false) {
+                    vec3 extinction = scaled + m.sigma_a, ahead = direction;
                     vec3 sideways = across / max(sum3(extinction), 1e-30);
                     for (uint ch = 0; ch < num_channels; ch++) {
                         // At least that along the light: gradients of what is ragged split it up.
@@ -139,14 +147,12 @@ void main()
                 weight += w;
                 if (shadowed == 1) {
                     float light = dot(w * t, vec3(1.0));
-                    seen += light * vec2(shadow_visibility_sun(beams[sun].light,
-                                                               row + vec3(s, 0.0, 0.0)),
-                                         1.0);
+                    seen += light * vec2(shadow_visibility_sun_of(shadow, row + vec3(s, 0.0, 0.0)), 1.0);
                 }
             }
         }
     }
     vec3 t = mix(vec3(0.0), weighted / max(weight, vec3(1e-30)), greaterThan(weight, vec3(0.0)));
     float visible = shadowed == 1 && seen.y > 0.0 ? seen.x / seen.y : 1.0;
-    imageStore(sunlit, texel, vec4(t, visible));
+    imageStore(sunlit, c + ivec3(0, 0, int(sun) * dims.z), vec4(t, visible));
 }
