@@ -100,65 +100,69 @@ bool shadow_plane_lit(shadow_plane plane, vec2 texel, vec2 first)
     return all(lessThanEqual(stored, own));
 }
 
-// The same for a point of a surface with the normal `n` (M, either side), in [0, 1]. Depths
-// that do not change with u and v except linearly (parallel maps as they are, perspective ones because
-// they are reciprocal) are those of the surface's own plane at the texels: so it does not shadow
-// itself, whatever its slope, and what is in front of it by more than a tenth of a texel does. It is dark wherever
-// the medium would be, so that nothing leaks; beside that light fades in over half a texel.
-float shadow_visibility_surface_of(shadow_light l, vec3 p, vec3 n)
+// What shadow_visibility_surface_sun_of and the like share: `tile` is the corner of the map, `slope` that of depth by u and
+// v, `rounding` of depth.
+float shadow_visibility_on_plane(shadow_light l, vec2 tile, shadow_place place, vec2 slope, float rounding)
 {
-    vec3 q = shadow_frame(l, p), m = shadow_frame_direction(l, n);
-    shadow_place place;
-    vec2 slope;     // of depth by u and v
-    float rounding; // of depth
-    vec2 tile = l.offset;
-    if (l.kind == TYN_SHADOW_SUN) {
-        place = shadow_place_sun(l, q);
-        // Rows are orthogonal but not of unit length: normals divide by its square.
-        m /= vec3(dot(l.rows[0].xyz, l.rows[0].xyz), dot(l.rows[1].xyz, l.rows[1].xyz),
-                  dot(l.rows[2].xyz, l.rows[2].xyz)) + 1e-30;
-        slope = -m.xy / (abs(m.z) > 1e-20 ? m.z : 1e-20);
-        rounding = SHADOW_EPSILON * (1.0 + place.depth);
-    } else {
-        uint face = l.kind == TYN_SHADOW_CUBE ? shadow_face(q) : 0u;
-        if (l.kind == TYN_SHADOW_CUBE) {
-            q = shadow_on_face(face, q);
-            m = shadow_on_face(face, m);
-        }
-        place = shadow_place_lamp(l, face, q);
-        tile += l.texels * vec2(face % 3u, face / 3u);
-        // 1 / z = (m.x u / scale + m.y v / scale + m.z) / dot(m, q)
-        float height = dot(m, q);
-        slope = l.near * m.xy / (l.scale * (abs(height) > 1e-20 ? height : 1e-20));
-        // Depths are as small as near makes them. What p is off its plane by is to be seen from the lamp.
-        rounding = place.depth * min(1.5e-4 * length(p) / max(abs(height), 1e-20), 0.25);
-    }
-    if (!place.inside) {
-        return 1.0;
-    }
     slope *= 2.0 / l.texels; // by texels
     float steepest = 0.25 * place.depth + rounding; // edge-on, where little light arrives
     slope = clamp(slope, vec2(-steepest), vec2(steepest));
     shadow_plane plane = shadow_plane(place.depth, slope, 0.1 * (abs(slope.x) + abs(slope.y)) + rounding);
     // The square between four texels' centres that the place is in, and the three next to it.
     vec2 first = floor(place.texel - 0.5), beside = place.texel - 1.0 - first, f = abs(beside);
-    if (!shadow_plane_lit(plane, place.texel, first)) {
-        return 0.0;
-    }
+    bool within = shadow_plane_lit(plane, place.texel, first);
     float lit = (1.0 - f.x) * (1.0 - f.y);
-    for (int i = 1; i < 4; i++) {
+    for (int i = 1; i < 4 && within && place.inside; i++) {
         vec2 step = vec2(i & 1, i >> 1), next = first + step * sign(beside);
         vec2 share = mix(1.0 - f, f, step);
         // Beyond the map there is another one.
         bool on_map = all(greaterThanEqual(next, tile)) && all(lessThan(next + 1.0, tile + l.texels));
         lit += !on_map || shadow_plane_lit(plane, place.texel, next) ? share.x * share.y : 0.0;
     }
-    return max(2.0 * lit - 1.0, 0.0);
+    return !place.inside ? 1.0 : within ? max(2.0 * lit - 1.0, 0.0) : 0.0;
+}
+
+// The same for a point of a surface with the normal `n` (M, either side), in [0, 1]. Depths
+// that do not change with u and v except linearly (parallel maps as they are, perspective ones because
+// they are reciprocal) are those of the surface's own plane at the texels: so it does not shadow
+// itself, whatever its slope, and what is in front of it by more than a tenth of a texel does. It is dark wherever
+// the medium would be, so that nothing leaks; beside that light fades in over half a texel.
+float shadow_visibility_surface_sun_of(shadow_light l, vec3 p, vec3 n)
+{
+    vec3 q = shadow_frame(l, p), m = shadow_frame_direction(l, n);
+    shadow_place place = shadow_place_sun(l, q);
+    place.inside = place.inside && l.kind == TYN_SHADOW_SUN;
+    // Rows are orthogonal but not of unit length: normals divide by its square.
+    m /= vec3(dot(l.rows[0].xyz, l.rows[0].xyz), dot(l.rows[1].xyz, l.rows[1].xyz),
+              dot(l.rows[2].xyz, l.rows[2].xyz)) + 1e-30;
+    vec2 slope = -m.xy / (abs(m.z) > 1e-20 ? m.z : 1e-20);
+    return shadow_visibility_on_plane(l, l.offset, place, slope, SHADOW_EPSILON * (1.0 + place.depth));
+}
+
+float shadow_visibility_surface_lamp_of(shadow_light l, vec3 p, vec3 n)
+{
+    vec3 q = shadow_frame(l, p), m = shadow_frame_direction(l, n);
+    uint face = 0u;
+    if (l.kind == TYN_SHADOW_CUBE) {
+        face = shadow_face(q);
+        q = shadow_on_face(face, q);
+        m = shadow_on_face(face, m);
+    }
+    shadow_place place = shadow_place_lamp(l, face, q);
+    vec2 tile = l.offset + l.texels * vec2(face % 3u, face / 3u);
+    // 1 / z = (m.x u / scale + m.y v / scale + m.z) / dot(m, q)
+    float height = dot(m, q);
+    vec2 slope = l.near * m.xy / (l.scale * (abs(height) > 1e-20 ? height : 1e-20));
+    // Depths are as small as near makes them. What p is off its plane by is to be seen from the lamp.
+    float rounding = place.depth * min(1.5e-4 * length(p) / max(abs(height), 1e-20), 0.25);
+    return shadow_visibility_on_plane(l, tile, place, slope, rounding);
 }
 
 float shadow_visibility_surface(uint light, vec3 p, vec3 n)
 {
-    return shadow_visibility_surface_of(shadows[light], p, n);
+    shadow_light l = shadows[light];
+    return l.kind == TYN_SHADOW_SUN ? shadow_visibility_surface_sun_of(l, p, n)
+                                    : shadow_visibility_surface_lamp_of(l, p, n);
 }
 
 #endif

@@ -9,6 +9,7 @@
 #include "shade_lights.comp.h"
 #include "shade_rows.comp.h"
 #include "shade_sight.comp.h"
+#include "shade_smooth.comp.h"
 #include "shade_surface.comp.h"
 #include "shade_vpls.comp.h"
 #include "shade_walls.comp.h"
@@ -79,8 +80,10 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     [PORT(FACES)] = {"faces", TYN_SCRATCH, IMAGE2, .meaning = "light that leaves the medium's box"},
     [PORT(SIGHT)] = {"sight", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                      .meaning = "from where faces of the medium's box are seen"},
-    [PORT(PART)] = {"part", TYN_SCRATCH, TEXELS, .meaning = "a pixel's part of the VPLs' light"},
-    [PORT(ROWS)] = {"part_rows", TYN_SCRATCH, TEXELS, .meaning = "summed along rows"},
+    [PORT(PART)] = {"part", TYN_SCRATCH, TEXELS,
+                    .meaning = "a block's part of the VPLs' light, then all"},
+    [PORT(ROWS)] = {"part_rows", TYN_SCRATCH, TEXELS,
+                    .meaning = "summed along rows, then all smooth light"},
 };
 
 // Bindings 0 to 20 of shade.glsl. What is in the table is not read from buffers.
@@ -155,6 +158,10 @@ static const tyn_binding surface_bindings[] = {
     SURFACE_BINDINGS,
     {PORT(RADIANCE), TYN_USE_STORAGE_WRITE},
 };
+static const tyn_binding smooth_bindings[] = {
+    SURFACE_BINDINGS,
+    {PORT(ROWS), TYN_USE_STORAGE_WRITE},
+};
 static const tyn_binding edges_bindings[] = {
     SURFACE_BINDINGS,
     {PORT(RADIANCE), TYN_USE_STORAGE_WRITE},
@@ -168,7 +175,20 @@ static const tyn_binding edges_bindings[] = {
     {PORT(TEXELS), TYN_USE_STORAGE_READ},
 };
 
-enum { LIGHTS = 0, WALLS, FORWARD, FACES, SIGHT, VPLS, SUM_ROWS, GATHER, SURFACE, EDGES, NUM_KERNELS };
+enum {
+    LIGHTS = 0,
+    WALLS,
+    FORWARD,
+    FACES,
+    SIGHT,
+    VPLS,
+    SUM_ROWS,
+    GATHER,
+    SMOOTH,
+    SURFACE,
+    EDGES,
+    NUM_KERNELS
+};
 
 #define KERNEL(step, x, y, z)                                                                      \
     .name = "shade_" #step, .spirv = shade_##step##_spirv,                                         \
@@ -182,25 +202,42 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [FORWARD] = {KERNEL(forward, 8, 4, 2), .num_spec = 3},
     [FACES] = {KERNEL(faces, 32, 1, 1), ARGS(2)},
     [SIGHT] = {KERNEL(sight, 8, 4, 1), ARGS(1)},
-    [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(5)},
-    [SUM_ROWS] = {KERNEL(rows, 8, 8, 1), .num_spec = 1},
-    [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(5)},
-    [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(5)},
-    [EDGES] = {KERNEL(edges, GBUFFER_EDGES, 1, 1), ARGS(5)},
+    [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(6)},
+    [SUM_ROWS] = {KERNEL(rows, 8, 8, 1), .num_spec = 2},
+    [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(6)},
+    [SMOOTH] = {KERNEL(smooth, 8, 8, 1), ARGS(6)},
+    [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(6)},
+    [EDGES] = {KERNEL(edges, GBUFFER_EDGES, 1, 1), ARGS(6)},
 };
 
 static const tyn_param params[] = {
     {"pattern", TYN_PARAM_INT, offsetof(tyn_shade_params, pattern), 0, 0, 8, "pixels",
      "along each side of the pattern whose pixels share the virtual lights; 1 = every pixel takes "
      "all; 0 = 5, in small pictures 4"},
+    {"step", TYN_PARAM_INT, offsetof(tyn_shade_params, step), 0, 0, 4, "pixels",
+     "along each side of a block that has one place where light of virtual lights and of the "
+     "lattice "
+     "is taken; 0 = 2, in small pictures 1"},
 };
+
+// Pixels along each side of a block that has one place for smooth light.
+static uint32_t step_of(const tyn_shade_params *p, bool smooth)
+{
+    const uint32_t shorter = p->size[0] < p->size[1] ? p->size[0] : p->size[1];
+    return !smooth ? 1 : p->step ? (uint32_t)p->step : shorter < SHADE_STEP_FROM ? 1 : SHADE_STEP;
+}
+
+static tyn_extent blocks_of(const tyn_shade_params *p, uint32_t step)
+{
+    return (tyn_extent){(p->size[0] + step - 1) / step, (p->size[1] + step - 1) / step, 1};
+}
 
 static tyn_result declare(tyn_builder *b, const void *data)
 {
     const tyn_shade_params *p = data;
     const bool vpls = tyn_build_has(b, PORT(VPLS));
-    const tyn_extent pixels =
-        vpls ? (tyn_extent){p->size[0], p->size[1], 1} : (tyn_extent){1, 1, 1};
+    const uint32_t step = step_of(p, vpls || tyn_build_has(b, PORT(MOMENTS)));
+    const tyn_extent blocks = vpls || step > 1 ? blocks_of(p, step) : (tyn_extent){1, 1, 1};
     const bool outside = p->outside && tyn_build_has(b, PORT(MOMENTS));
     const tyn_extent faces = {SHADE_FACE_WIDTH, 6 + SHADE_FACE_SIDE, 1};
     tyn_build_image(b, PORT(RADIANCE), tyn_build_extent(b, PORT(DISTANCES)), 1);
@@ -219,8 +256,8 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_extent fields = {places[0], places[1], places[2] * SHADE_SIGHT_FIELDS};
     tyn_build_image(b, PORT(SIGHT), outside && p->hidden ? fields : texel, 1);
     tyn_build_image(b, PORT(TABLE), (tyn_extent){SHADE_ENTRIES, SHADE_ROWS, 1}, 1);
-    tyn_build_image(b, PORT(PART), pixels, 1);
-    tyn_build_image(b, PORT(ROWS), pixels, 1);
+    tyn_build_image(b, PORT(PART), vpls ? blocks : texel, 1);
+    tyn_build_image(b, PORT(ROWS), blocks, 1);
     return TYN_OK;
 }
 
@@ -245,12 +282,15 @@ static void record(tyn_recorder *r, const void *data)
     const tyn_extent forward = tyn_rec_extent(r, PORT(FORWARD));
     features |= forward.x > 1 ? SHADE_SPREAD : 0;
     features |= p->sky ? SHADE_SKY : 0;
+    features |= p->num_lamps ? SHADE_LAMPS : 0;
     features |= p->textured ? SHADE_TEXTURED : 0;
     const uint32_t samples = tyn_rec_extent(r, PORT(DISTANCES)).x / p->size[0];
-    const uint32_t shorter = p->size[0] < p->size[1] ? p->size[0] : p->size[1];
+    const uint32_t step = step_of(p, vpls || tyn_rec_has(r, PORT(MOMENTS)));
+    const tyn_extent blocks = blocks_of(p, step);
+    const uint32_t shorter = blocks.x < blocks.y ? blocks.x : blocks.y;
     const uint32_t usual = shorter < SHADE_SMALL ? SHADE_SIDE_SMALL : SHADE_SIDE;
     const uint32_t side = p->pattern ? (uint32_t)p->pattern : usual;
-    const uint32_t spec[5] = {p->mode, features, p->num_suns, samples, side};
+    const uint32_t spec[6] = {p->mode, features, p->num_suns, samples, side, step};
     const tyn_extent pixels = {p->size[0], p->size[1], 1};
     tyn_dispatch d = {.kernel = LIGHTS, .cells = {SHADE_ROWS, 1, 1}, .args = &args, .spec = spec};
     tyn_rec_dispatch(r, &d);
@@ -280,13 +320,26 @@ static void record(tyn_recorder *r, const void *data)
     if (vpls) {
         d.kernel = VPLS;
         d.cells =
-            (tyn_extent){(pixels.x + side - 1) / side, (pixels.y + side * SHADE_MANY - 1) / (side * SHADE_MANY), side * side};
+            (tyn_extent){(blocks.x + side - 1) / side,
+                         (blocks.y + side * SHADE_MANY - 1) / (side * SHADE_MANY), side * side};
         tyn_rec_dispatch(r, &d);
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SUM_ROWS, .cells = pixels, .spec = &side});
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SUM_ROWS, .cells = blocks, .spec = spec + 4});
         d.kernel = GATHER;
-        d.cells = pixels;
+        d.cells = blocks;
         tyn_rec_dispatch(r, &d);
     }
+    if (step > 1) {
+        d.kernel = SMOOTH;
+        d.cells = blocks;
+        tyn_rec_dispatch(r, &d);
+    }
+    // Surfaces look up light of VPLs, or all smooth light.
+    uint8_t bound[sizeof edges_bindings / sizeof *edges_bindings];
+    for (size_t i = 0; i < sizeof bound; i++) {
+        bound[i] = edges_bindings[i].port;
+        bound[i] = step > 1 && bound[i] == PORT(PART) ? PORT(ROWS) : bound[i];
+    }
+    d.ports = bound;
     d.kernel = SURFACE;
     d.cells = pixels;
     tyn_rec_dispatch(r, &d);

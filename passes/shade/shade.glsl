@@ -12,6 +12,7 @@ layout(constant_id = 1) const uint shade_features = 0u;
 layout(constant_id = 2) const uint shade_num_suns = 0u;
 layout(constant_id = 3) const int shade_samples = 2; // of the G-buffer along each side of a pixel
 layout(constant_id = 4) const int shade_side = SHADE_SIDE; // of the pattern
+layout(constant_id = 5) const int shade_step = 1; // pixels along each side of a block: shade_part.glsl
 layout(push_constant, scalar) uniform Args
 {
     shade_args args;
@@ -168,30 +169,32 @@ float shade_around(vec4 around, vec3 normal)
 }
 
 // `around[n]`: from where what the medium scattered forward of sun n comes, as shade_forward.comp has it, if `spread`.
-// Else it comes with what was not scattered.
-vec3 shade_suns(shade_point p, vec4 around[TYN_BEAM_MAX_SUNS], bool spread)
+// Else it comes with what was not scattered. `sharp`: what comes straight; `soft`: what comes from around.
+vec3 shade_suns(shade_point p, vec4 around[TYN_BEAM_MAX_SUNS], bool spread, bool sharp, bool soft)
 {
     vec3 sum = vec3(0.0);
     [[unroll]] for (uint n = 0u; n < shade_num_suns; n++) {
         uint sun = shade_sun_light(n);
         vec3 towards = -suns[sun].direction;
-        float straight = shade_cosine(p, towards), wide = spread ? shade_around(around[n], p.normal) : 0.0;
-        // A loop that nobody enters costs nothing; an `if` does.
+        float straight = sharp ? shade_cosine(p, towards) : 0.0;
+        float wide = soft && spread ? shade_around(around[n], p.normal) : 0.0;
         for (bool once = straight + wide > 0.0; once; once = false) {
-            if (shade_has(SHADE_SHADOWS)) {
-                straight *= shadow_visibility_surface_of(shade_shadow(uint(SHADE_ROW_SUNS) + sun), p.position, p.facet);
+            if (sharp && shade_has(SHADE_SHADOWS)) {
+                straight *= shadow_visibility_surface_sun_of(shade_shadow(uint(SHADE_ROW_SUNS) + sun), p.position, p.facet);
             }
-            vec3 light = vec3(straight);
-            if (shade_has(SHADE_MEDIUM)) {
-                beam_tau tau = shade_sun_depth(n, p.position, towards, shade_way(p.position, towards));
-                vec3 scaled = exp(-(tau.a + tau.p));
-                light *= scaled;
-                if (shade_has(SHADE_SPREAD)) {
-                    vec3 unscattered = exp(-(tau.a + tau.s));
-                    light = spread ? straight * unscattered + wide * (scaled - unscattered) : light;
+            for (bool lit = straight + wide > 0.0; lit; lit = false) {
+                vec3 light = vec3(straight);
+                if (shade_has(SHADE_MEDIUM)) {
+                    beam_tau tau = shade_sun_depth(n, p.position, towards, shade_way(p.position, towards));
+                    vec3 scaled = exp(-(tau.a + tau.p));
+                    light *= scaled;
+                    if (shade_has(SHADE_SPREAD)) {
+                        vec3 unscattered = exp(-(tau.a + tau.s));
+                        light = spread ? straight * unscattered + wide * (scaled - unscattered) : light;
+                    }
                 }
+                sum += suns[sun].color * light;
             }
-            sum += suns[sun].color * light;
         }
     }
     return sum;
@@ -344,7 +347,7 @@ vec3 shade_lamp(shade_point p, shade_footprint foot, uint row)
     vec3 irradiance = intensity.rgb * share;
     for (bool once = share > 0.0; once; once = false) {
         if (shade_has(SHADE_SHADOWS)) {
-            irradiance *= shadow_visibility_surface_of(shade_shadow(row), p.position, p.facet);
+            irradiance *= shadow_visibility_surface_lamp_of(shade_shadow(row), p.position, p.facet);
         }
         if (shade_has(SHADE_MEDIUM)) {
             irradiance *= shade_through_radial(shade_grid(row, position.xyz), p.position);
@@ -353,9 +356,14 @@ vec3 shade_lamp(shade_point p, shade_footprint foot, uint row)
     return irradiance;
 }
 
-vec3 shade_lamps(shade_point p, shade_footprint foot)
+// `part` of the picture that p stands for: from xy to zw, pixels.
+vec3 shade_lamps(shade_point p, vec4 part)
 {
     vec3 sum = vec3(0.0);
+    if (!shade_has(SHADE_LAMPS)) {
+        return sum;
+    }
+    shade_footprint foot = shade_footprint_of(p, part);
     for (uint row = 0u; row < args.num_lamps; row++) {
         sum += shade_lamp(p, foot, row);
     }

@@ -4,6 +4,7 @@
 
 typedef struct tyn_shade_params {
     int32_t pattern; // pixels along each side that share VPLs; 0: as many as the picture's size asks for
+    int32_t step; // pixels along each side of a block that has one place for smooth light; 0: as the picture's size asks
     // Set by the method:
     uint32_t mode;    // TYN_MEDIUM_*
     uint32_t size[2]; // of the picture, pixels

@@ -11,15 +11,19 @@
 #define SHADE_ONE_CHANNEL (1u << 4) // ... of one channel, to be multiplied with `tint`
 #define SHADE_SKY (1u << 5) // the mean of the environment lights what is outside the lattice
 #define SHADE_SPREAD (1u << 6) // sunlight scattered forward comes from around its sun
-
 #define SHADE_OUTSIDE (1u << 7) // surfaces outside the box get light that leaves it: shade_faces.h
 #define SHADE_TEXTURED (1u << 8) // materials may have textures
+
+#define SHADE_LAMPS (1u << 9) // there are lamps: a loop of no turns costs a CPU device as much as one of one turn
 
 #define SHADE_PLACES 64 // that light which was scattered forward may come from
 // Pixels of a pattern along each side; each takes a part of the VPLs. Of small pictures five pixels are much.
 #define SHADE_SIDE 5
 #define SHADE_SIDE_SMALL 4
 #define SHADE_SMALL 64 // pixels along the shorter side
+// Pixels along each side of a block that has one place where light of VPLs and of the lattice is taken.
+#define SHADE_STEP 2
+#define SHADE_STEP_FROM 384 // pixels along the picture's shorter side; of smaller ones two pixels are much
 #define SHADE_MOST 8   // VPLs that a pixel takes in any case
 #define SHADE_MANY 4   // pixels that a thread takes VPLs at
 

@@ -16,6 +16,7 @@
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
+layout(binding = 28, rg32ui) uniform writeonly uimage2D radiance_image; // packed_colour.glsl
 layout(binding = 29, scalar) readonly buffer edge_count_buffer
 {
     gbuffer_edge_count edge_count;
@@ -24,25 +25,6 @@ layout(binding = 30, scalar) readonly buffer edges_buffer
 {
     uint edges[];
 };
-
-// The VPLs' light at a sample of a pixel whose samples lie on several surfaces: of the pixels around the one
-// that is most like it.
-vec3 light_of_vpls(ivec2 pixel, shade_point p)
-{
-    float best = -1e30;
-    vec3 light = vec3(0.0);
-    for (int i = 0; i < 9; i++) {
-        ivec2 at = clamp(pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), ivec2(camera.size) - 1);
-        shade_part found = shade_unpack(imageLoad(indirect_image, at));
-        vec3 d = shade_part_position(at, found.along) - p.position;
-        float like = dot(found.facet, p.facet) - abs(dot(d, p.facet)) * inversesqrt(dot(d, d) + 1e-36);
-        if (found.along > 0.0 && like > best) {
-            best = like;
-            light = found.irradiance;
-        }
-    }
-    return light;
-}
 
 // What sample k of a pixel shows, a surface, and where (M).
 gbuffer_point sample_of(ivec2 pixel, int k, out vec3 at)
@@ -116,9 +98,13 @@ void main()
         vec3 albedo, emission;
         uint members;
         shade_point p = piece_of(pixel, left, albedo, emission, members);
-        vec3 irradiance = irradiance_at(p, part_of(corner, members));
-        if (shade_has(SHADE_VPLS)) {
-            irradiance += light_of_vpls(pixel, p);
+        vec4 part = part_of(corner, members);
+        vec3 irradiance;
+        if (shade_step == 1) {
+            irradiance = irradiance_at(p, part);
+            irradiance += shade_has(SHADE_VPLS) ? smooth_light_beside(p, pixel) : vec3(0.0);
+        } else {
+            irradiance = smooth_light_around(p, 0.5 * (part.xy + part.zw)) + sharp_light_at(p, part);
         }
         uvec2 radiance = colour_pack(emission + albedo * irradiance / PI);
         for (uint some = members; some != 0u; some &= some - 1u) {

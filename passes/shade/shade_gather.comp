@@ -13,20 +13,20 @@ layout(binding = 22, rgba32ui) uniform writeonly uimage2D indirect_image;
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, ivec2(camera.size)))) {
+    ivec2 block = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(block, shade_blocks()))) {
         return;
     }
-    shade_part sum = shade_unpack(imageLoad(tent_image, pixel));
+    shade_part sum = shade_unpack(imageLoad(tent_image, block));
     // Loops, as most need not go in.
     for (bool shown = sum.along > 0.0 && vpl_count > SHADE_MOST * shade_side; shown; shown = false) {
-        sum = shade_tent(pixel, ivec2(0, 1), sum);
+        sum = shade_tent(block, ivec2(0, 1), sum);
     }
     for (bool alone = !sum.whole; alone; alone = false) {
         shade_part part;
-        shade_point p = shade_place(pixel, part);
+        shade_point p = shade_place(block, part);
         shade_point same[SHADE_MANY] = shade_point[](p, p, p, p); // the compiler sees that they are
         sum.irradiance = shade_vpls(same, 0u, 1u)[0];
     }
-    imageStore(indirect_image, pixel, shade_pack(sum));
+    imageStore(indirect_image, block, shade_pack(sum));
 }

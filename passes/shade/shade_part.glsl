@@ -1,5 +1,7 @@
-// shade_part.glsl -- what neighbouring pixels tell each other about VPLs' light, in one texel. Needs camera.glsl's block
-// `camera`.
+// shade_part.glsl -- what neighbouring places tell each other about light of VPLs and of the lattice, in one texel. Needs
+// camera.glsl's block `camera` and `shade_step`.
+//
+// Such light is smooth: in large pictures each block of `shade_step` pixels along a side has one place.
 //
 // The facet's normal is folded to 2 x 16 bits.
 #ifndef SHADE_PART_GLSL
@@ -8,7 +10,7 @@
 
 struct shade_part {
     vec3 irradiance; // of some VPLs, W/m^2
-    float along;     // where the facet's plane meets the ray through the pixel's middle: m along the camera's axis; 0: no surface
+    float along;     // where the facet's plane meets the ray through the block's middle: m along the camera's axis; 0: no surface
     vec3 facet;      // the facet's normal (M)
     bool whole;      // all VPLs that the irradiance is to have are in it
 };
@@ -26,10 +28,23 @@ shade_part shade_unpack(uvec4 texel)
                       (texel.y & 1u << 30) != 0u);
 }
 
-vec3 shade_part_position(ivec2 pixel, float along)
+ivec2 shade_blocks()
 {
-    camera_ray ray = camera_ray_through(camera, vec2(pixel) + 0.5);
-    return ray.origin + along / dot(ray.direction, camera.forward) * ray.direction;
+    return (ivec2(camera.size) + shade_step - 1) / shade_step;
+}
+
+// The middle of a block, pixels.
+vec2 shade_middle(ivec2 block)
+{
+    return (vec2(block) + 0.5) * float(shade_step);
+}
+
+vec3 shade_part_position(ivec2 block, float along)
+{
+    vec2 s = 2.0 * shade_middle(block) / vec2(camera.size) - 1.0;
+    vec3 across = (s.x + camera.shift.x) * camera.half_width * camera.right +
+                  (camera.shift.y - s.y) * camera.half_height * camera.up;
+    return camera.origin + along * camera.forward + (camera.orthographic != 0u ? 1.0 : along) * across;
 }
 
 #endif

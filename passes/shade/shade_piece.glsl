@@ -10,7 +10,7 @@
 #include "lattice.glsl"
 #include "walls_links.glsl"
 
-layout(binding = 21, rgba32ui) uniform readonly uimage2D indirect_image; // shade_part.glsl
+layout(binding = 21, rgba32ui) uniform readonly uimage2D smooth_image; // shade_part.glsl
 layout(binding = 22) uniform sampler3D moments_tex;
 #define WALLS_TABLE 23
 #define WALLS_OTHERS TYN_BEAM_MAX_SUNS
@@ -22,7 +22,6 @@ layout(binding = 24, scalar) uniform env_uniform
 layout(binding = 25) uniform sampler3D forward_tex; // shade_forward.comp
 layout(binding = 26) uniform sampler2D faces_tex; // shade_faces.h
 layout(binding = 27) uniform sampler3D sight_tex; // shade_sight.comp
-layout(binding = 28, rg32ui) uniform writeonly uimage2D radiance_image; // packed_colour.glsl
 
 const float PI = 3.14159265358979;
 
@@ -81,14 +80,86 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
     return irradiance;
 }
 
-// `part` of the picture that p stands for: from xy to zw, pixels.
+// Is p where the lattice has light?
+bool inside_lattice(shade_point p)
+{
+    ivec3 dims = textureSize(moments_tex, 0);
+    dims.z /= shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
+    lattice_box box = lattice_box_of(medium.extent, dims);
+    vec3 x = lattice_from_m(box, p.position + 0.02 * box.dx * p.facet);
+    return all(greaterThan(x, vec3(-0.02))) && all(lessThan(x, vec3(dims) + 0.02));
+}
+
+// Light that changes little from pixel to pixel, but for that of VPLs.
+vec3 smooth_light_at(shade_point p)
+{
+    vec4 around[TYN_BEAM_MAX_SUNS];
+    bool inside;
+    vec3 light = light_of_lattice(p, around, inside);
+    return shade_has(SHADE_SPREAD) ? light + shade_suns(p, around, inside, false, true) : light;
+}
+
+// All light but that of VPLs. `part` of the picture that p stands for: from xy to zw, pixels.
 vec3 irradiance_at(shade_point p, vec4 part)
 {
     vec4 around[TYN_BEAM_MAX_SUNS];
     bool inside;
-    vec3 lattice = light_of_lattice(p, around, inside);
-    return shade_suns(p, around, inside && shade_has(SHADE_SPREAD)) + shade_lamps(p, shade_footprint_of(p, part)) +
-           lattice;
+    vec3 light = light_of_lattice(p, around, inside);
+    light += shade_suns(p, around, inside && shade_has(SHADE_SPREAD), true, true);
+    return light + shade_lamps(p, part);
+}
+
+// All light of which shade_smooth.comp makes none.
+vec3 sharp_light_at(shade_point p, vec4 part)
+{
+    vec4 around[TYN_BEAM_MAX_SUNS];
+    bool spread = shade_has(SHADE_SPREAD) && inside_lattice(p);
+    return shade_suns(p, around, spread, true, false) + shade_lamps(p, part);
+}
+
+// Smooth light of the four blocks whose middles are around the place `at` of the picture (pixels): of those on the same
+// piece of surface, in proportion to how near they are, or of the one that is most like p.
+vec3 smooth_light_around(shade_point p, vec2 at)
+{
+    vec2 x = at / float(shade_step) - 0.5, first = floor(x), f = x - first;
+    ivec2 last = shade_blocks() - 1;
+    float size = float(shade_step) * 2.0 * camera.half_height / float(camera.size.y);
+    size *= camera.orthographic != 0u ? 1.0 : dot(p.position - camera.origin, camera.forward);
+    float per = 1.0 / max(size, 1e-30), best = -1e30;
+    vec4 sum = vec4(0.0);
+    vec3 other = vec3(0.0);
+    [[unroll]] for (int i = 0; i < 4; i++) {
+        ivec2 step = ivec2(i & 1, i >> 1), block = clamp(ivec2(first) + step, ivec2(0), last);
+        shade_part there = shade_unpack(imageLoad(smooth_image, block));
+        vec2 share = mix(1.0 - f, f, vec2(step));
+        // The nearer the normal, the more it counts: edges stay sharp, and what is curved is smooth.
+        float off = abs(dot(shade_part_position(block, there.along) - p.position, p.facet)) * per;
+        float turned = dot(p.normal, there.facet);
+        float like = (clamp(2.0 - off, 0.0, 1.0) + (off < 6.0 ? 1e-3 : 0.0)) * exp2(-200.0 * (1.0 - turned));
+        sum += (there.along > 0.0 ? like * share.x * share.y : 0.0) * vec4(there.irradiance, 1.0);
+        float alike = there.along > 0.0 ? turned - min(0.05 * off, 2.0) : -1e30;
+        other = alike > best ? there.irradiance : other;
+        best = max(best, alike);
+    }
+    return sum.a > 1e-9 ? sum.rgb / sum.a : other;
+}
+
+// Of the blocks around, the one that is most like p.
+vec3 smooth_light_beside(shade_point p, ivec2 pixel)
+{
+    ivec2 middle = pixel / shade_step, last = shade_blocks() - 1;
+    float best = -1e30;
+    vec3 light = vec3(0.0);
+    for (int i = 0; i < 9; i++) {
+        ivec2 block = clamp(middle + ivec2(i % 3, i / 3) - 1, ivec2(0), last);
+        shade_part there = shade_unpack(imageLoad(smooth_image, block));
+        vec3 d = shade_part_position(block, there.along) - p.position;
+        float like = dot(there.facet, p.facet) - abs(dot(d, p.facet)) * inversesqrt(dot(d, d) + 1e-36);
+        bool better = there.along > 0.0 && like > best;
+        best = better ? like : best;
+        light = better ? there.irradiance : light;
+    }
+    return light;
 }
 
 #endif

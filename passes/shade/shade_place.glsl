@@ -1,19 +1,29 @@
-// shade_place.glsl -- where VPLs light a pixel.
+// shade_place.glsl -- where light of VPLs and of the lattice is taken for a block of pixels.
 #ifndef SHADE_PLACE_GLSL
 #define SHADE_PLACE_GLSL
 #include "shade.glsl"
 #include "shade_part.glsl"
 
-// Of a pixel on one piece of surface its middle, of others their sample that `facing` is for. `part`: with no light
-// yet. Without a surface: facing nothing.
-shade_point shade_place(ivec2 pixel, out shade_part part)
+// Of a block's first pixel on one piece of surface the plane, at the block's middle; where there is none, a sample of the
+// first pixel that shows a surface: the one that `facing` is for. `part`: with no light yet. Without a surface: facing
+// nothing.
+shade_point shade_place(ivec2 block, out shade_part part)
 {
+    ivec2 pixel = block * shade_step, last = ivec2(camera.size) - 1;
     gbuffer_facing found = shade_facing(pixel);
+    for (int k = 1; k < shade_step * shade_step && found.shown != GBUFFER_WHOLE; k++) {
+        ivec2 next = min(block * shade_step + ivec2(k % shade_step, k / shade_step), last);
+        gbuffer_facing other = shade_facing(next);
+        if (other.shown == GBUFFER_WHOLE || found.shown == GBUFFER_NONE) {
+            found = other;
+            pixel = next;
+        }
+    }
     bool none = found.shown == GBUFFER_NONE, one = found.shown == GBUFFER_WHOLE;
     ivec2 texel = shade_texel(pixel * shade_samples, found.which);
     float away = none ? 0.0 : shade_distance(texel);
     vec3 position = shade_position(texel, away);
-    camera_ray ray = camera_ray_through(camera, vec2(pixel) + 0.5);
+    camera_ray ray = camera_ray_through(camera, shade_middle(block));
     float facing = dot(ray.direction, found.facet), distance = dot(position - ray.origin, found.facet) / facing;
     distance = abs(facing) > 0.02 && distance > 0.0 ? distance : away;
     part = shade_part(vec3(0.0), none ? 0.0 : distance * dot(ray.direction, camera.forward), found.facet, true);

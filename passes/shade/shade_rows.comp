@@ -9,6 +9,7 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const int shade_side = SHADE_SIDE; // of the pattern
+layout(constant_id = 1) const int shade_step = 1;          // pixels along each side of a block
 layout(binding = 0, scalar) uniform camera_uniform
 {
     camera_block camera;
@@ -24,13 +25,13 @@ layout(binding = 3, rgba32ui) uniform writeonly uimage2D rows_image;
 
 void main()
 {
-    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(pixel, ivec2(camera.size)))) {
+    ivec2 block = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(block, shade_blocks()))) {
         return;
     }
-    shade_part sum = shade_unpack(imageLoad(tent_image, pixel));
+    shade_part sum = shade_unpack(imageLoad(tent_image, block));
     for (bool shown = sum.along > 0.0 && vpl_count > SHADE_MOST; shown; shown = false) {
-        sum = shade_tent(pixel, ivec2(1, 0), sum);
+        sum = shade_tent(block, ivec2(1, 0), sum);
     }
-    imageStore(rows_image, pixel, shade_pack(sum));
+    imageStore(rows_image, block, shade_pack(sum));
 }

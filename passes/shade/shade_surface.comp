@@ -7,6 +7,8 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
+layout(binding = 28, rg32ui) uniform writeonly uimage2D radiance_image; // packed_colour.glsl
+
 void main()
 {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -29,9 +31,12 @@ void main()
         }
         off = (off - dot(off, seen.facet) * seen.facet) / float(shade_samples * shade_samples);
         shade_point p = shade_point(at + off, seen.normal, seen.facet);
-        vec3 irradiance = irradiance_at(p, vec4(pixel, pixel + 1));
-        if (shade_has(SHADE_VPLS)) {
-            irradiance += shade_unpack(imageLoad(indirect_image, pixel)).irradiance;
+        vec3 irradiance;
+        if (shade_step == 1) {
+            irradiance = irradiance_at(p, vec4(pixel, pixel + 1));
+            irradiance += shade_has(SHADE_VPLS) ? shade_unpack(imageLoad(smooth_image, pixel)).irradiance : vec3(0.0);
+        } else {
+            irradiance = smooth_light_around(p, vec2(pixel) + 0.5) + sharp_light_at(p, vec4(pixel, pixel + 1));
         }
         uvec4 colours = shade_colours(pixel, 0);
         uvec2 radiance = colour_pack(gbuffer_emission(colours) + gbuffer_albedo(colours) * irradiance / PI);

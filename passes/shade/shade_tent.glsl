@@ -1,35 +1,35 @@
 // shade_tent.glsl -- sums over the pattern of shade_vpls.comp, along a row or a column. Before it: `tent_image`, a
 // uimage2D of shade_part.glsl's texels; `camera`; `shade_side`.
 //
-// Every place of the pattern is met once in `shade_side` pixels. Between two pixels of one place the light of
+// Every place of the pattern is met once in `shade_side` blocks. Between two blocks of one place the light of
 // its VPLs is taken to be linear: the two nearest count in proportion to how near they are. (The nearest alone would
-// show as squares wherever one VPL is much of the light.) Of the two, pixels of other surfaces do not count.
+// show as squares wherever one VPL is much of the light.) Of the two, blocks of other surfaces do not count.
 #ifndef SHADE_TENT_GLSL
 #define SHADE_TENT_GLSL
 #extension GL_EXT_control_flow_attributes : require
 
-// The sum at `pixel`, whose own part is `here`; `step` to its neighbours. Not whole where most places of the pattern
-// have no pixel on this surface nearby.
-shade_part shade_tent(ivec2 pixel, ivec2 step, shade_part here)
+// The sum at `block`, whose own part is `here`; `step` to its neighbours. Not whole where most places of the pattern
+// have no block on this surface nearby.
+shade_part shade_tent(ivec2 block, ivec2 step, shade_part here)
 {
     // How far a neighbour d steps off is from the facet's plane: a d + b (z' - z) + c z' d, z along the axis.
-    vec2 size = vec2(camera.size);
+    vec2 size = vec2(camera.size) / float(shade_step);
     vec3 move = 2.0 * (float(step.x) / size.x * camera.half_width * camera.right - float(step.y) / size.y * camera.half_height * camera.up);
-    camera_ray ray = camera_ray_through(camera, vec2(pixel) + 0.5);
+    camera_ray ray = camera_ray_through(camera, shade_middle(block));
     bool flat_rays = camera.orthographic != 0u;
     float width = 2.0 * camera.half_height / size.y * (flat_rays ? 1.0 : here.along), per = 1.0 / max(width, 1e-30);
     float a = (flat_rays ? dot(here.facet, move) : 0.0) * per, c = (flat_rays ? 0.0 : dot(here.facet, move)) * per;
     float b = dot(here.facet, ray.direction) / dot(ray.direction, camera.forward) * per;
-    ivec2 last = ivec2(size) - 1;
+    ivec2 last = shade_blocks() - 1;
     shade_part sum = here;
     int met = 1;
     [[unroll]] for (int k = 1; k < shade_side; k++) {
         vec4 mean = vec4(0.0);
         [[unroll]] for (int i = 0; i < 2; i++) {
             int d = i == 0 ? k : k - shade_side;
-            ivec2 at = pixel + d * step, held = clamp(at, ivec2(0), last);
+            ivec2 at = block + d * step, held = clamp(at, ivec2(0), last);
             shade_part there = shade_unpack(imageLoad(tent_image, held));
-            // Neighbours may be as far off the plane as the pixel is wide. Those that are a bit worse count where there are
+            // Neighbours may be as far off the plane as the block is wide. Those that are a bit worse count where there are
             // no others.
             float off = abs(float(d) * (a + c * there.along) + b * (there.along - here.along));
             float turned = dot(here.facet, there.facet), like = clamp(2.0 - off, 0.0, 1.0) * smoothstep(0.7, 0.9, turned);

@@ -1,8 +1,8 @@
-// shade_vpls.comp -- every pixel takes a part of the VPLs.
+// shade_vpls.comp -- every block of pixels takes a part of the VPLs.
 //
-// Neighbours in a pattern of 5 x 5 pixels take different ones (Wald et al. 2002, interleaved sampling), and
+// Neighbours in a pattern of 5 x 5 blocks take different ones (Wald et al. 2002, interleaved sampling), and
 // shade_rows.comp and shade_gather.comp sum over the pattern.
-// A thread has several pixels of one place in the pattern.
+// A thread has several blocks of one place in the pattern.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -15,7 +15,7 @@ layout(binding = 21, rgba32ui) uniform writeonly uimage2D part_image; // shade_p
 void main()
 {
     uint part_of = gl_WorkGroupID.z;
-    ivec2 cell = ivec2(part_of % shade_side, part_of / shade_side), size = ivec2(camera.size);
+    ivec2 cell = ivec2(part_of % shade_side, part_of / shade_side), size = shade_blocks();
     ivec2 first = shade_side * ivec2(gl_GlobalInvocationID.xy * uvec2(1, SHADE_MANY)) + cell;
     shade_point p[SHADE_MANY];
     shade_part part[SHADE_MANY];
@@ -28,10 +28,10 @@ void main()
     part_of = parts < side * side ? uint(cell.x + 2 * cell.y) % parts : part_of;
     vec3 light[SHADE_MANY] = shade_vpls(p, part_of, parts);
     [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
-        ivec2 pixel = first + ivec2(0, i * shade_side);
-        if (all(lessThan(pixel, size))) {
+        ivec2 block = first + ivec2(0, i * shade_side);
+        if (all(lessThan(block, size))) {
             part[i].irradiance = part[i].along > 0.0 ? light[i] : vec3(0.0);
-            imageStore(part_image, pixel, shade_pack(part[i]));
+            imageStore(part_image, block, shade_pack(part[i]));
         }
     }
 }

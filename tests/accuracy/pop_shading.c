@@ -1,7 +1,8 @@
 // pop_shading.c -- how `pop` shares virtual lights among neighbouring pixels: no squares where few of them are most of
-// what arrives, and as much light as if every pixel took all.
+// what arrives, and as much light as if every pixel took all; and how blocks of pixels share one place.
 #include "gpu_test.h"
 #include "picture.h"
+#include "sample_scene.h"
 #include "solids.h"
 #include <math.h>
 #include <stdio.h>
@@ -57,12 +58,15 @@ static void no_squares(void **state)
         {"vpl.count=128", false, 0.12, 0.015, 0.001, 0.01},
         {"vpl.count=32", false, 0.19, 0.011, 0.0005, 0.02},
         {"vpl.count=128", true, 2.2, 0.1, 0.001, 0.1},
+        // Blocks of 2 x 2 pixels with one place each, as in pictures of 384 pixels and more.
+        {"vpl.count=128 shade.step=2", false, 0.3, 0.05, 0.003, 0.03},
+        {"vpl.count=128 shade.step=2", true, 4, 0.2, 0.01, 0.3},
     };
     bool good = true;
     for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
         picture p, truth;
         char settings[64];
-        snprintf(settings, sizeof settings, "%s shade.pattern=1", cases[k].settings);
+        snprintf(settings, sizeof settings, "%.13s shade.pattern=1", cases[k].settings);
         render(*state, &p, cases[k].block, cases[k].settings);
         render(*state, &truth, cases[k].block, settings);
         double worst = 0, sum = 0, off = 0, squares = 0, bends = 0, true_bends = 0;
@@ -100,8 +104,50 @@ static void no_squares(void **state)
     assert_true(good);
 }
 
+// Light of virtual lights and of the lattice once for 2 x 2 pixels against once for every pixel, where every place takes
+// all virtual lights.
+static void blocks_of_pixels(void **state)
+{
+    static const struct {
+        const char *scene;
+        double off, mean;
+    } cases[] = {
+        {"vpl-cave", 0.04, 0.002},
+        {"cornell-smoke", 0.014, 0.002},
+        {"lantern", 0.015, 0.007},
+    };
+    bool good = true;
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        tyn_scene scene;
+        sample_scene_load(&scene, cases[k].scene, *state);
+        const tyn_view view = {.camera = scene.cameras[0], .width = 101, .height = 99};
+        const char *common = "lattice.cells=16 shade.pattern=1 vpl.count=32";
+        char set[2][96];
+        picture p[2];
+        for (int i = 0; i < 2; i++) {
+            snprintf(set[i], sizeof set[i], "%s shade.step=%d", common, i + 1);
+            picture_render(&p[i], ((gpu_test *)*state)->dev, "pop", &scene, &view, set[i], 1);
+        }
+        double sum = 0, off = 0, all = 0;
+        for (int i = 0; i < 3 * 101 * 99; i++) {
+            const double d = (double)p[1].rgb[i] - (double)p[0].rgb[i];
+            sum += (double)p[0].rgb[i];
+            off += fabs(d);
+            all += d;
+        }
+        print_message("%s: %.3f %% off, mean %+.4f %%\n", cases[k].scene, 100 * off / sum,
+                      100 * all / sum);
+        good = good && sum > 0 && off < cases[k].off * sum && fabs(all) < cases[k].mean * sum;
+        picture_free(&p[0]);
+        picture_free(&p[1]);
+        tyn_scene_finish(&scene);
+    }
+    assert_true(good);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(no_squares)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(no_squares),
+                                       cmocka_unit_test(blocks_of_pixels)};
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

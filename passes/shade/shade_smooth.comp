@@ -1,0 +1,29 @@
+// shade_smooth.comp -- where blocks of several pixels have one place for smooth light: that of the lattice, and of suns
+// what the medium scattered forward, added to that of VPLs.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shade_place.glsl"
+#include "shade_piece.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+layout(binding = 28, rgba32ui) uniform writeonly uimage2D sum_image;
+
+void main()
+{
+    ivec2 block = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(block, shade_blocks()))) {
+        return;
+    }
+    shade_part part;
+    shade_point p = shade_place(block, part);
+    if (shade_has(SHADE_VPLS)) {
+        part.irradiance = shade_unpack(imageLoad(smooth_image, block)).irradiance;
+    }
+    for (bool shown = part.along > 0.0; shown; shown = false) {
+        part.irradiance += smooth_light_at(p);
+        part.facet = p.normal; // surfaces look for those that face the same way
+    }
+    imageStore(sum_image, block, shade_pack(part));
+}
