@@ -460,8 +460,6 @@ static void record(tyn_recorder *r, const void *params)
         on_level(&s, KERNEL_STENCIL_WALLS, 0, (tyn_extent){s.levels.cells, p->shape.channels, 1},
                  0);
     }
-    // Among walls a second cycle after each sweep brings nothing: pieces of levels are carried over as steps.
-    const int32_t cycles = s.walls[0] && p->cycles > 1 ? p->cycles - 1 : p->cycles;
     for (uint32_t i = 0; i < (uint32_t)p->sweeps; i++) {
         tyn_rec_dispatch(
             r, &(tyn_dispatch){.kernel = KERNEL_SWEEP,
@@ -469,7 +467,7 @@ static void record(tyn_recorder *r, const void *params)
                                .args = &s.args,
                                .spec = sweep_spec});
         on_cells(&s, KERNEL_COLLECT);
-        for (int32_t c = 0; c < cycles; c++) {
+        for (int32_t c = 0; c < p->cycles; c++) {
             v_cycle(&s, c == 0);
         }
         mix(&s, i);
@@ -477,7 +475,7 @@ static void record(tyn_recorder *r, const void *params)
     double cells = (double)num_cells(s.texels) * p->sweeps;
     tyn_rec_work(r, "cells", cells);
     // A line's segment: 30 operations; collecting, mixing: 130; a cycle: 8/7 * 9 stencils of 15.
-    tyn_rec_work(r, "flops", cells * (LATTICE_DIRECTIONS * 30 + 130 + 150 * cycles));
+    tyn_rec_work(r, "flops", cells * (LATTICE_DIRECTIONS * 30 + 130 + 150 * p->cycles));
 }
 
 static const tyn_param param_table[] = {
@@ -487,10 +485,7 @@ static const tyn_param param_table[] = {
     {"sweeps", TYN_PARAM_INT, offsetof(tyn_lattice_params, sweeps), 4, 1, 256, "",
      "iterations of the solve; the error falls about tenfold with each two", NULL},
     {"cycles", TYN_PARAM_INT, offsetof(tyn_lattice_params, cycles), 2, 0, 8, "",
-     "multigrid cycles of the diffusion correction after each sweep, among walls one less but one "
-     "at "
-     "least; 0 = no correction",
-     NULL},
+     "multigrid cycles of the diffusion correction after each sweep; 0 = no correction", NULL},
     {"anderson", TYN_PARAM_BOOL, offsetof(tyn_lattice_params, anderson), 1, 0, 1, "",
      "mix the results of the last three sweeps (Anderson acceleration)", NULL},
     {"warm", TYN_PARAM_BOOL, offsetof(tyn_lattice_params, warm), 0, 0, 1, "",
