@@ -12,6 +12,7 @@
 #include "lattice_restrict.comp.h"
 #include "lattice_interpolate.comp.h"
 #include "lattice_coarse.comp.h"
+#include "lattice_depth.comp.h"
 #include "lattice_residual.comp.h"
 #include "lattice_weights.comp.h"
 #include "lattice_mix.comp.h"
@@ -32,6 +33,7 @@ enum {
     PORT_PARTIALS = PORT_CHANGE + 3,
     PORT_WEIGHTS,
     PORT_ARRIVED,
+    PORT_LAUNCHES,
     NUM_PORTS,
 };
 
@@ -75,6 +77,7 @@ static const tyn_port ports[NUM_PORTS] = {
     SCRATCH(PORT_PARTIALS, "partials", "dot products by workgroup"),
     SCRATCH(PORT_WEIGHTS, "weights", "shares of earlier sweeps"),
     SCRATCH(PORT_ARRIVED, "arrived", "radiance that arrives at walls by direction"),
+    SCRATCH(PORT_LAUNCHES, "launches", "workgroups of the dispatches of a further cycle"),
 };
 
 // ---- kernels ------------------------------------------------------------------------------------
@@ -90,6 +93,7 @@ enum {
     KERNEL_RESTRICT,
     KERNEL_INTERPOLATE,
     KERNEL_COARSE,
+    KERNEL_DEPTH,
     KERNEL_RESIDUAL,
     KERNEL_WEIGHTS,
     KERNEL_MIX,
@@ -159,6 +163,10 @@ static const tyn_binding coarse_bindings[] = {
     {PORT_RHS, TYN_USE_TEXELS_FLOAT},
     {PORT_CORRECTION, TYN_USE_STORAGE_RW},
 };
+static const tyn_binding depth_bindings[] = {
+    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
+    {PORT_LAUNCHES, TYN_USE_STORAGE_RW},
+};
 static const tyn_binding residual_bindings[] = {
     {PORT_STATE, TYN_USE_TEXELS_VEC4},
     {PORT_SWEPT, TYN_USE_TEXELS_VEC4},
@@ -199,6 +207,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_RESTRICT] = KERNEL(restrict, lattice_level_args, 0, 4, 4, 4),
     [KERNEL_INTERPOLATE] = KERNEL(interpolate, lattice_level_args, 1, 8, 4, 2),
     [KERNEL_COARSE] = KERNEL(coarse, lattice_level_args, 1, LATTICE_COARSE_GROUP, 1, 1),
+    [KERNEL_DEPTH] = KERNEL(depth, lattice_args, 0, LATTICE_DEPTH_GROUP, 1, 1),
     [KERNEL_RESIDUAL] = KERNEL(residual, lattice_args, 1, LATTICE_GROUP, 1, 1),
     [KERNEL_WEIGHTS] = KERNEL(weights, lattice_args, 0, LATTICE_GROUP, 1, 1),
     [KERNEL_MIX] = KERNEL(mix, lattice_args, 2, 8, 4, 2),
@@ -297,6 +306,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
     }
     tyn_build_buffer(b, PORT_PARTIALS, LATTICE_NUM_DOTS * scalar * groups);
     tyn_build_buffer(b, PORT_WEIGHTS, 2 * scalar);
+    tyn_build_buffer(b, PORT_LAUNCHES, sizeof(uint32_t) * 3 * LATTICE_MAX_LAUNCHES);
     tyn_build_buffer(b, PORT_ARRIVED, walls ? LATTICE_DIRECTIONS * scalar * n : scalar);
     tyn_build_buffer(b, LATTICE_PORT_WALL_POWER, walls ? 2 * scalar * n : scalar);
     tyn_build_buffer(b, LATTICE_PORT_COUNTERS, sizeof(struct counters_block));
@@ -314,6 +324,10 @@ typedef struct solve { // what recording needs to know
     tyn_extent texels; // of the lattice with its channels
     uint32_t walls[2]; // there are walls; they shine
     struct lattice_args args;
+    // Launches of a cycle that the device may leave out:
+    enum { DIRECT, LISTED, INDIRECT } launch;
+    uint32_t num_launches;
+    uint32_t launches[LATTICE_MAX_LAUNCHES][3]; // in workgroups
 } solve;
 
 static void on_cells(const solve *s, uint32_t kernel)
@@ -323,7 +337,16 @@ static void on_cells(const solve *s, uint32_t kernel)
         &(tyn_dispatch){.kernel = kernel, .cells = s->texels, .args = &s->args, .spec = s->walls});
 }
 
-static void on_level_as(const solve *s, uint32_t kernel, uint32_t level, tyn_extent threads,
+static void list_launch(solve *s, uint32_t kernel, tyn_extent threads)
+{
+    const uint32_t n[3] = {threads.x, threads.y, threads.z}, *local = kernels[kernel].local_size;
+    for (int a = 0; a < 3; a++) {
+        s->launches[s->num_launches][a] = (n[a] + local[a] - 1) / local[a];
+    }
+    s->num_launches++;
+}
+
+static void on_level_as(solve *s, uint32_t kernel, uint32_t level, tyn_extent threads,
                         uint32_t colour, uint32_t spec)
 {
     const float *extent = s->params->shape.extent;
@@ -340,12 +363,18 @@ static void on_level_as(const solve *s, uint32_t kernel, uint32_t level, tyn_ext
                    s->params->shape.repeat[2]},
         .least_transport = 0.3f / fmaxf(extent[0], fmaxf(extent[1], extent[2])),
     };
-    tyn_rec_dispatch(
-        s->r, &(tyn_dispatch){.kernel = kernel, .cells = threads, .args = &args, .spec = &spec});
+    const tyn_dispatch d = {.kernel = kernel, .cells = threads, .args = &args, .spec = &spec};
+    if (s->launch == LISTED) {
+        list_launch(s, kernel, threads);
+    } else if (s->launch == INDIRECT) {
+        tyn_rec_dispatch_indirect(s->r, &d, PORT_LAUNCHES,
+                                  sizeof s->launches[0] * s->num_launches++);
+    } else {
+        tyn_rec_dispatch(s->r, &d);
+    }
 }
 
-static void on_level(const solve *s, uint32_t kernel, uint32_t level, tyn_extent threads,
-                     uint32_t colour)
+static void on_level(solve *s, uint32_t kernel, uint32_t level, tyn_extent threads, uint32_t colour)
 {
     on_level_as(s, kernel, level, threads, colour, s->walls[0]);
 }
@@ -358,7 +387,7 @@ static tyn_extent cells_of(const solve *s, uint32_t level)
 }
 
 // Of colours `first` to 1.
-static void relax(const solve *s, uint32_t level, uint32_t first)
+static void relax(solve *s, uint32_t level, uint32_t first)
 {
     tyn_extent threads = cells_of(s, level);
     threads.x = (threads.x + 1) / 2;
@@ -369,7 +398,7 @@ static void relax(const solve *s, uint32_t level, uint32_t first)
 
 // V(1,1): two of them are better than one V(2,2), which costs as much. Where corrections start from 0 whoever starts
 // them has relaxed colour 0.
-static void v_cycle(const solve *s, bool fresh)
+static void v_cycle(solve *s, bool fresh)
 {
     const uint32_t small = s->levels.first_small;
     for (uint32_t l = 0; l < small; l++) {
@@ -383,6 +412,26 @@ static void v_cycle(const solve *s, bool fresh)
         on_level(s, KERNEL_INTERPOLATE, l, cells_of(s, l), 0);
         relax(s, l, 0);
     }
+}
+
+// The second and further cycles of a correction: among walls the device leaves them out if the medium is thin.
+static void further_cycle(solve *s)
+{
+    s->launch = s->walls[0] ? INDIRECT : DIRECT;
+    s->num_launches = 0;
+    v_cycle(s, false);
+    s->launch = DIRECT;
+}
+
+static void list_further_cycle(solve *s)
+{
+    s->launch = LISTED;
+    v_cycle(s, false);
+    s->launch = DIRECT;
+    tyn_rec_update(s->r, PORT_LAUNCHES, 0, s->launches, sizeof s->launches);
+    tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = KERNEL_DEPTH,
+                                           .cells = {LATTICE_DEPTH_GROUP, 1, 1},
+                                           .args = &s->args});
 }
 
 // Mixes the result of sweep number `index` with those of the two before; the three newest go round.
@@ -460,6 +509,9 @@ static void record(tyn_recorder *r, const void *params)
         on_level(&s, KERNEL_STENCIL_WALLS, 0, (tyn_extent){s.levels.cells, p->shape.channels, 1},
                  0);
     }
+    if (p->cycles > 1 && s.walls[0]) {
+        list_further_cycle(&s);
+    }
     for (uint32_t i = 0; i < (uint32_t)p->sweeps; i++) {
         tyn_rec_dispatch(
             r, &(tyn_dispatch){.kernel = KERNEL_SWEEP,
@@ -468,7 +520,11 @@ static void record(tyn_recorder *r, const void *params)
                                .spec = sweep_spec});
         on_cells(&s, KERNEL_COLLECT);
         for (int32_t c = 0; c < p->cycles; c++) {
-            v_cycle(&s, c == 0);
+            if (c == 0) {
+                v_cycle(&s, true);
+            } else {
+                further_cycle(&s);
+            }
         }
         mix(&s, i);
     }
@@ -485,7 +541,10 @@ static const tyn_param param_table[] = {
     {"sweeps", TYN_PARAM_INT, offsetof(tyn_lattice_params, sweeps), 4, 1, 256, "",
      "iterations of the solve; the error falls about tenfold with each two", NULL},
     {"cycles", TYN_PARAM_INT, offsetof(tyn_lattice_params, cycles), 2, 0, 8, "",
-     "multigrid cycles of the diffusion correction after each sweep; 0 = no correction", NULL},
+     "multigrid cycles of the diffusion correction after each sweep; thin media among walls get "
+     "one; "
+     "0 = no correction",
+     NULL},
     {"anderson", TYN_PARAM_BOOL, offsetof(tyn_lattice_params, anderson), 1, 0, 1, "",
      "mix the results of the last three sweeps (Anderson acceleration)", NULL},
     {"warm", TYN_PARAM_BOOL, offsetof(tyn_lattice_params, warm), 0, 0, 1, "",

@@ -95,5 +95,7 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
 #define LATTICE_COARSE_CELLS 4096 // a level of at most so many cells is solved inside one workgroup
 #define LATTICE_COARSE_GROUP 256
 #define LATTICE_SUN_GROUP 256
+#define LATTICE_DEPTH_GROUP 256
+#define LATTICE_MAX_LAUNCHES 64 // of a cycle
 
 #endif

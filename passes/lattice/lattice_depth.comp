@@ -1,0 +1,46 @@
+// lattice_depth.comp -- leaves out the launches of further cycles of the diffusion correction where the medium is thin.
+//
+// There light goes from wall to wall, which corrections do little about: a second cycle brings nothing.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "lattice_args.h"
+#include "quotient.glsl"
+
+layout(local_size_x = LATTICE_DEPTH_GROUP) in; // one workgroup
+layout(push_constant, scalar) uniform push
+{
+    lattice_args args;
+};
+layout(binding = 0) uniform sampler3D cells;
+layout(binding = 1, scalar) buffer launch_buffer
+{
+    uint launches[3 * LATTICE_MAX_LAUNCHES]; // workgroups, as indirect dispatches read them
+};
+
+shared float sums[LATTICE_DEPTH_GROUP];
+
+const float THICK = 5.0; // mean sigma_s' times the longest side
+
+void main()
+{
+    uint me = gl_LocalInvocationIndex;
+    ivec3 size = ivec3(args.dims.xy, args.dims.z * args.channels);
+    uint count = size.x * size.y * size.z;
+    float sum = 0.0;
+    for (uint i = me; i < count; i += LATTICE_DEPTH_GROUP) {
+        sum += texelFetch(cells, quotient_place(i, size), 0).x;
+    }
+    sums[me] = sum;
+    for (uint half_n = LATTICE_DEPTH_GROUP / 2; half_n > 0; half_n /= 2) {
+        barrier();
+        if (me < half_n) {
+            sums[me] += sums[me + half_n];
+        }
+    }
+    barrier();
+    float longest = args.dx * float(max(args.dims.x, max(args.dims.y, args.dims.z)));
+    if (me < LATTICE_MAX_LAUNCHES && sums[0] / float(count) * longest <= THICK) {
+        launches[3 * me] = 0u;
+    }
+}
