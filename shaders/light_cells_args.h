@@ -7,7 +7,7 @@
 // TYN_LIGHT_CELLS lights of shadow_args.h, the first one lowest.
 #define TYN_LIGHT_CELLS 12u // 24 bits, which a float holds
 #define TYN_LIGHT_CELLS_MIXED 0u
-#define TYN_LIGHT_CELLS_DARK 1u
+#define TYN_LIGHT_CELLS_DARK 1u // nothing is seen, or shone on: beside the cone of a spot
 #define TYN_LIGHT_CELLS_LIT 2u
 // It holds within this many edges of the cube.
 #define TYN_LIGHT_CELLS_REACH 0.75f

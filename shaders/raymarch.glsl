@@ -64,6 +64,7 @@ const int RAYMARCH_CHUNK = 32; // steps between two looks at the distance map: e
 const int RAYMARCH_LATER = 8; // steps near walls that are dealt with together
 const float RAYMARCH_SHADOWS_ACROSS = 128.0; // looks at a shadow map along the box's longest side, and
 const float RAYMARCH_SHADOW_HALVES = 8.0; // parts of which where it has an edge in between
+const float RAYMARCH_CELLS_MOST = 8.0; // places of a step for which light_cells is asked
 // Optical depth of a step (scaled, where that counts) above which it is shortened, and to what: light from outside
 // fades within it as much as the view does.
 const float RAYMARCH_DENSE = 1.0, RAYMARCH_SHORT = 0.5;
@@ -341,9 +342,14 @@ uint march_light_cells(vec3 origin, vec3 direction, float s, float ds)
     }
     ivec3 dims = textureSize(light_cells_tex, 0);
     float per_edge = float(max(max(dims.x, dims.y), dims.z)) / max(max(medium.extent.x, medium.extent.y), medium.extent.z);
-    vec3 middle = origin + (s + 0.5 * ds) * direction;
-    uint cells = uint(texelFetch(light_cells_tex, clamp(ivec3(middle * per_edge), ivec3(0), dims - 1), 0).r);
-    return 0.5 * ds * per_edge <= TYN_LIGHT_CELLS_REACH ? cells : 0u;
+    // Each place tells of what is within reach of it; what not all of them say is mixed.
+    float places = clamp(ceil(ds * (per_edge / (2.0 * TYN_LIGHT_CELLS_REACH))), 1.0, RAYMARCH_CELLS_MOST), part = ds / places;
+    uint cells = part * per_edge <= 2.001 * TYN_LIGHT_CELLS_REACH ? ~0u : 0u;
+    for (float i = 0.5; i < places && cells != 0u; i += 1.0) {
+        vec3 p = origin + (s + i * part) * direction;
+        cells &= uint(texelFetch(light_cells_tex, clamp(ivec3(p * per_edge), ivec3(0), dims - 1), 0).r);
+    }
+    return cells;
 }
 
 uint march_light_cell(march_shadows shadow, uint light)

@@ -59,8 +59,11 @@ shadow_region shadow_region_lamp(shadow_light l, vec3 middle, float reach)
 uint shadow_region_seen(shadow_light l, shadow_region region)
 {
     const float margin = 1.0 + SHADOW_REGION_SLACK;
-    if (l.kind == TYN_SHADOW_NONE || region.beyond || any(greaterThan(region.lo, vec2(margin))) || any(lessThan(region.hi, vec2(-margin)))) {
-        return TYN_LIGHT_CELLS_LIT;
+    bool beside = region.before &&
+                  (any(greaterThan(region.lo, vec2(margin))) || any(lessThan(region.hi, vec2(-margin))));
+    if (l.kind == TYN_SHADOW_NONE || region.beyond || beside) {
+        // The map of a spot holds all of its cone.
+        return l.kind == TYN_SHADOW_CONE ? TYN_LIGHT_CELLS_DARK : TYN_LIGHT_CELLS_LIT;
     }
     // Texels that places are compared with: the four around each.
     vec2 first = floor(region.tile + l.texels * (0.5 + 0.5 * clamp(region.lo, -1.0, 1.0)) - 0.52);

@@ -452,7 +452,8 @@ static void cells_of_the_medium(void **state)
         const uint32_t seen = bits >> (2 * index_of(probes[i].light)) & 3;
         dark[probes[i].light] += seen == TYN_LIGHT_CELLS_DARK;
         lit[probes[i].light] += seen == TYN_LIGHT_CELLS_LIT;
-        wrong += (seen == TYN_LIGHT_CELLS_DARK && found[i] != 0) ||
+        const bool shines = in_cone(&l, probes[i].light, probes[i].world);
+        wrong += (seen == TYN_LIGHT_CELLS_DARK && found[i] != 0 && shines) ||
                  (seen == TYN_LIGHT_CELLS_LIT && found[i] != 1) || seen > TYN_LIGHT_CELLS_LIT;
     }
     for (int n = 0; n < SUNS + LAMPS; n++) {
