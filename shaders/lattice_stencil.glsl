@@ -50,16 +50,18 @@ vec4 lattice_stencil_hi(lattice_stencil k)
 
 // Trilinear interpolation of a correction from the next coarser level: along each axis the coarse
 // cell around the fine one counts 3/4 and its neighbour on the near side 1/4; at the box the former
-// 1.
+// 1. `repeat`: a bit for each axis along which the grid goes on beyond the box.
 struct lattice_interpolation {
     ivec3 near, far;
 };
 
-lattice_interpolation lattice_interpolation_of(ivec3 fine, ivec3 coarse_size)
+lattice_interpolation lattice_interpolation_of(ivec3 fine, ivec3 coarse_size, uint repeat)
 {
     ivec3 near = fine / 2, far = near + 2 * (fine % 2) - 1;
     for (int axis = 0; axis < 3; axis++) {
-        far[axis] = far[axis] < 0 || far[axis] >= coarse_size[axis] ? near[axis] : far[axis];
+        bool beyond = far[axis] < 0 || far[axis] >= coarse_size[axis];
+        bool wraps = (repeat >> axis & 1u) != 0u;
+        far[axis] = !beyond ? far[axis] : !wraps ? near[axis] : far[axis] < 0 ? coarse_size[axis] - 1 : 0;
     }
     return lattice_interpolation(near, far);
 }

@@ -198,15 +198,15 @@ static const tyn_binding mix_bindings[] = {
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_START] = KERNEL(start, lattice_args, 2, 8, 4, 2),
-    [KERNEL_STENCIL] = KERNEL(stencil, lattice_level_args, 1, 8, 4, 2),
-    [KERNEL_STENCIL_COARSE] = KERNEL(stencil_coarse, lattice_level_args, 1, 4, 4, 4),
-    [KERNEL_STENCIL_WALLS] = KERNEL(stencil_walls, lattice_level_args, 0, LATTICE_GROUP, 1, 1),
+    [KERNEL_STENCIL] = KERNEL(stencil, lattice_level_args, 2, 8, 4, 2),
+    [KERNEL_STENCIL_COARSE] = KERNEL(stencil_coarse, lattice_level_args, 2, 4, 4, 4),
+    [KERNEL_STENCIL_WALLS] = KERNEL(stencil_walls, lattice_level_args, 2, LATTICE_GROUP, 1, 1),
     [KERNEL_SWEEP] = KERNEL(sweep, lattice_args, 2, LATTICE_SWEEP_GROUP, 1, 1),
     [KERNEL_COLLECT] = KERNEL(collect, lattice_args, 2, 8, 4, 2),
-    [KERNEL_RELAX] = KERNEL(relax, lattice_level_args, 0, 8, 4, 2),
-    [KERNEL_RESTRICT] = KERNEL(restrict, lattice_level_args, 0, 4, 4, 4),
-    [KERNEL_INTERPOLATE] = KERNEL(interpolate, lattice_level_args, 1, 8, 4, 2),
-    [KERNEL_COARSE] = KERNEL(coarse, lattice_level_args, 1, LATTICE_COARSE_GROUP, 1, 1),
+    [KERNEL_RELAX] = KERNEL(relax, lattice_level_args, 2, 8, 4, 2),
+    [KERNEL_RESTRICT] = KERNEL(restrict, lattice_level_args, 2, 4, 4, 4),
+    [KERNEL_INTERPOLATE] = KERNEL(interpolate, lattice_level_args, 2, 8, 4, 2),
+    [KERNEL_COARSE] = KERNEL(coarse, lattice_level_args, 2, LATTICE_COARSE_GROUP, 1, 1),
     [KERNEL_DEPTH] = KERNEL(depth, lattice_args, 0, LATTICE_DEPTH_GROUP, 1, 1),
     [KERNEL_RESIDUAL] = KERNEL(residual, lattice_args, 1, LATTICE_GROUP, 1, 1),
     [KERNEL_WEIGHTS] = KERNEL(weights, lattice_args, 0, LATTICE_GROUP, 1, 1),
@@ -222,6 +222,7 @@ typedef struct levels {
     uint32_t num;         // until no side is longer than 4
     uint32_t first_small; // the first that is solved in one workgroup
     uint32_t cells;       // of all
+    uint32_t repeat;      // a bit for each axis along which they go on beyond the box
 } levels;
 
 static uint32_t num_cells(tyn_extent e)
@@ -229,7 +230,7 @@ static uint32_t num_cells(tyn_extent e)
     return e.x * e.y * e.z;
 }
 
-static levels plan_levels(tyn_extent dims)
+static levels plan_levels(tyn_extent dims, const uint32_t repeat[3])
 {
     levels l = {.size = {dims}, .num = 1, .cells = num_cells(dims)};
     while (dims.x > 4 || dims.y > 4 || dims.z > 4) {
@@ -239,6 +240,14 @@ static levels plan_levels(tyn_extent dims)
     }
     while (num_cells(l.size[l.first_small]) > LATTICE_COARSE_CELLS) {
         l.first_small++;
+    }
+    for (uint32_t a = 0; a < 3; a++) {
+        l.repeat |= (repeat[a] != 0) << a;
+    }
+    // The checkerboard has neighbours of one colour where an odd number of cells repeats: only small levels can deal with
+    // that. Else the sides are as if mirrored; a correction may be inexact.
+    for (uint32_t i = 0; i < l.first_small; i++) {
+        l.repeat &= ~((l.size[i].x & 1) | (l.size[i].y & 1) << 1 | (l.size[i].z & 1) << 2);
     }
     return l;
 }
@@ -289,7 +298,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
     }
     const uint64_t scalar = sizeof(float) * channels, n = num_cells(dims);
     const uint64_t elements = num_elements(dims, walls);
-    const uint64_t all_levels = plan_levels(dims).cells;
+    const uint64_t all_levels = plan_levels(dims, p->shape.repeat).cells;
     uint64_t groups = (elements + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
     tyn_build_image(b, LATTICE_PORT_MOMENTS, texels, 1);
     tyn_build_buffer(b, PORT_STATE, 4 * scalar * elements);
@@ -363,7 +372,8 @@ static void on_level_as(solve *s, uint32_t kernel, uint32_t level, tyn_extent th
                    s->params->shape.repeat[2]},
         .least_transport = 0.3f / fmaxf(extent[0], fmaxf(extent[1], extent[2])),
     };
-    const tyn_dispatch d = {.kernel = kernel, .cells = threads, .args = &args, .spec = &spec};
+    const uint32_t specs[2] = {spec, s->levels.repeat};
+    const tyn_dispatch d = {.kernel = kernel, .cells = threads, .args = &args, .spec = specs};
     if (s->launch == LISTED) {
         list_launch(s, kernel, threads);
     } else if (s->launch == INDIRECT) {
@@ -476,7 +486,7 @@ static void record(tyn_recorder *r, const void *params)
     solve s = {
         .r = r,
         .params = p,
-        .levels = plan_levels(dims),
+        .levels = plan_levels(dims, p->shape.repeat),
         .texels = {dims.x, dims.y, dims.z * p->shape.channels},
         .args = {.dims = {dims.x, dims.y, dims.z},
                  .channels = p->shape.channels,

@@ -21,6 +21,7 @@ layout(binding = 0, scalar) writeonly buffer correction_buffer
 layout(binding = 3) uniform samplerBuffer uncorrected; // the same
 
 layout(constant_id = 0) const uint walls = 0;
+layout(constant_id = 1) const uint lattice_repeat = 0; // a bit for each axis along which the grid goes on
 
 void main()
 {
@@ -33,7 +34,7 @@ void main()
         return;
     }
     uint channel = uint(ch) * args.stride;
-    lattice_interpolation from = lattice_interpolation_of(c, coarse.size);
+    lattice_interpolation from = lattice_interpolation_of(c, coarse.size, lattice_repeat);
     bool blended = true;
     if (walls == 1) {
         uint i = channel + lattice_index(fine, c);

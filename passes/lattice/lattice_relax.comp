@@ -26,6 +26,9 @@ float correction_at(uint i)
     return texelFetch(neighbours, int(i)).x;
 }
 
+#define LATTICE_REPEAT 1
+#include "lattice_inflow.glsl"
+
 void main()
 {
     lattice_level level = lattice_level_of(ivec3(args.dims), args.level);
@@ -38,13 +41,6 @@ void main()
     }
     uint i = uint(ch) * args.stride + lattice_index(level, c);
     lattice_stencil k = lattice_stencil_at(i);
-    uint step_y = level.size.x, step_z = level.size.x * level.size.y;
-    float sum = texelFetch(rhs, int(i)).x;
-    sum += c.x > 0 ? k.lo.x * correction_at(i - 1) : 0.0;
-    sum += c.x < level.size.x - 1 ? k.hi.x * correction_at(i + 1) : 0.0;
-    sum += c.y > 0 ? k.lo.y * correction_at(i - step_y) : 0.0;
-    sum += c.y < level.size.y - 1 ? k.hi.y * correction_at(i + step_y) : 0.0;
-    sum += c.z > 0 ? k.lo.z * correction_at(i - step_z) : 0.0;
-    sum += c.z < level.size.z - 1 ? k.hi.z * correction_at(i + step_z) : 0.0;
+    float sum = lattice_inflow(texelFetch(rhs, int(i)).x, level, c, i, k);
     correction[i] = sum / k.diagonal;
 }

@@ -34,6 +34,9 @@ float correction_at(uint i)
     return texelFetch(fine_correction, int(i)).x;
 }
 
+#define LATTICE_REPEAT 1
+#include "lattice_inflow.glsl"
+
 void main()
 {
     lattice_level coarse = lattice_level_of(ivec3(args.dims), args.level);
@@ -45,7 +48,6 @@ void main()
         return;
     }
     uint channel = uint(ch) * args.stride;
-    uint step_y = fine.size.x, step_z = fine.size.x * fine.size.y;
     float sum = 0.0;
     const int even[4] = int[](0, 3, 5, 6);
     [[unroll]] for (int n = 0; n < 4; n++) {
@@ -60,13 +62,7 @@ void main()
         if (lattice_orphan(hi)) {
             continue;
         }
-        sum += texelFetch(fine_rhs, int(i)).x - k.diagonal * correction_at(i);
-        sum += f.x > 0 ? k.lo.x * correction_at(i - 1) : 0.0;
-        sum += f.x < fine.size.x - 1 ? k.hi.x * correction_at(i + 1) : 0.0;
-        sum += f.y > 0 ? k.lo.y * correction_at(i - step_y) : 0.0;
-        sum += f.y < fine.size.y - 1 ? k.hi.y * correction_at(i + step_y) : 0.0;
-        sum += f.z > 0 ? k.lo.z * correction_at(i - step_z) : 0.0;
-        sum += f.z < fine.size.z - 1 ? k.hi.z * correction_at(i + step_z) : 0.0;
+        sum = lattice_inflow(sum + texelFetch(fine_rhs, int(i)).x - k.diagonal * correction_at(i), fine, f, i, k);
     }
     uint i = channel + lattice_index(coarse, c);
     rhs[i] = sum;

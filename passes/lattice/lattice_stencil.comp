@@ -22,6 +22,7 @@ layout(binding = 2, scalar) writeonly buffer hi_buffer
 };
 
 layout(constant_id = 0) const uint walls = 0;
+layout(constant_id = 1) const uint lattice_repeat = 0; // a bit for each axis along which the grid goes on
 #define LATTICE_WALL_LINKS 3
 #define LATTICE_WALL_CELLS 4
 #include "lattice_wall_state.glsl"
@@ -50,12 +51,15 @@ void main()
     vec3 k[2];
     for (int side = 0; side < 2; side++) {
         for (int axis = 0; axis < 3; axis++) {
-            if (c[axis] == (side == 0 ? 0 : dims[axis] - 1)) {
-                // Across a periodic side as if mirrored there: a correction may be inexact.
-                k[side][axis] = args.repeat[axis] != 0u ? 0.0 : args.dx * args.dx / (2.0 + args.dx / (2.0 * d));
+            bool border = c[axis] == (side == 0 ? 0 : dims[axis] - 1);
+            bool goes_on = (lattice_repeat >> axis & 1u) != 0u;
+            if (border && args.repeat[axis] == 0u) {
+                k[side][axis] = args.dx * args.dx / (2.0 + args.dx / (2.0 * d));
+            } else if (border && !goes_on) {
+                k[side][axis] = 0.0; // as if mirrored there
             } else {
                 ivec3 q = texel;
-                q[axis] += 2 * side - 1;
+                q[axis] += (border ? 1 - dims[axis] : 1) * (2 * side - 1);
                 float behind = diffusion_coefficient(texelFetch(cells, q, 0));
                 k[side][axis] = args.dx * 2.0 * d * behind / (d + behind);
             }

@@ -29,6 +29,7 @@ layout(binding = 1, scalar) writeonly buffer hi_buffer
 
 // 0: there are no walls; else two dispatches: 1 finds the orphans among the fine cells, 2 does the rest.
 layout(constant_id = 0) const uint walls = 0;
+layout(constant_id = 1) const uint lattice_repeat = 0; // a bit for each axis along which the grid goes on
 
 // Children of coarse cell c that are connected with each other, most of them: bit = child.
 uint largest_part(lattice_level fine, ivec3 c, uint channel)
@@ -77,7 +78,7 @@ bool parted(lattice_level fine, ivec3 f, int axis, int way, uint channel)
     if (walls == 0) {
         return false;
     }
-    f[axis] += way;
+    f[axis] = (f[axis] + way + fine.size[axis]) % fine.size[axis];
     return lattice_orphan(lattice_stencil_hi_at(channel + lattice_index(fine, f)));
 }
 
@@ -118,16 +119,18 @@ void main()
         for (int axis = 0; axis < 3; axis++) {
             // At the box the half cell becomes twice as long. A coarse cell that reaches beyond the
             // box has its centre on it, so that only the Robin condition is left.
-            if (f[axis] == 0) {
+            const bool goes_on = (lattice_repeat >> axis & 1u) != 0u, alone = goes_on && coarse.size[axis] == 1;
+            if (f[axis] == 0 && !goes_on) {
                 k.lo[axis] += longer(area, lo[axis]);
-            } else if (f[axis] % 2 == 0 && !parted(fine, f, axis, -1, channel)) {
+            } else if (f[axis] % 2 == 0 && !alone && !parted(fine, f, axis, -1, channel)) {
                 k.lo[axis] += 0.5 * lo[axis];
             }
-            if (f[axis] == fine.size[axis] - 1) {
+            const bool last = f[axis] == fine.size[axis] - 1;
+            if (last && !goes_on) {
                 bool beyond = f[axis] % 2 == 0;
                 float out_of_box = beyond && hi[axis] > 0.0 ? area / 2.0 : longer(area, hi[axis]);
                 k.hi[axis] += out_of_box;
-            } else if (f[axis] % 2 == 1 && !parted(fine, f, axis, 1, channel)) {
+            } else if ((f[axis] % 2 == 1 || last) && !alone && !parted(fine, f, axis, 1, channel)) {
                 k.hi[axis] += 0.5 * hi[axis];
             }
         }

@@ -22,10 +22,12 @@ layout(binding = 1, scalar) readonly buffer hi_buffer
     vec4 stencil_hi[];
 };
 
+layout(constant_id = 1) const uint lattice_repeat = 0; // a bit for each axis along which the grid goes on
+
 bool near_walls(uint in_level, lattice_level fine, lattice_level coarse, uint channel)
 {
     ivec3 c = quotient_place(in_level, fine.size);
-    lattice_interpolation from = lattice_interpolation_of(c, coarse.size);
+    lattice_interpolation from = lattice_interpolation_of(c, coarse.size, lattice_repeat);
     bool open = true;
     for (uint corner = 0; corner < 8; corner++) {
         uint k = channel + lattice_index(coarse, lattice_corner(from, corner));

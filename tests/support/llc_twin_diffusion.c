@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_LEVELS = 8, COARSEST_SWEEPS = 8 };
+enum { MAX_LEVELS = 8, COARSEST_SWEEPS = 8, MOST_SCALED = 4096 };
 
 static const double coarsest_omega = 1.5;
 
@@ -135,8 +135,22 @@ static void relax(level *l, double omega)
     }
 }
 
+// By what the correction x of a level has the least energy x.A x / 2 - b.x. Only levels that one workgroup of the device
+// solves are scaled.
+static double step_length(const level *l)
+{
+    double along = 0, energy = 0;
+    FOR_CELLS(l, c, id)
+    {
+        along += l->b[id] * l->x[id];
+        energy += (l->b[id] - residual(l, c, id)) * l->x[id];
+    }
+    return count(l) > MOST_SCALED || energy <= 0 ? 1 : fmin(fmax(along / energy, 0), 4);
+}
+
 static void interpolate(level *f, const level *l)
 {
+    const double scale = step_length(l);
     FOR_CELLS(f, c, id)
     {
         for (int corner = 0; corner < 8; corner++) {
@@ -148,7 +162,7 @@ static void interpolate(level *f, const level *l)
                 q[a] = q[a] < 0 || q[a] >= l->n[a] ? c[a] / 2 : q[a];
                 w *= far ? 0.25 : 0.75;
             }
-            f->x[id] += w * l->x[(q[2] * l->n[1] + q[1]) * l->n[0] + q[0]];
+            f->x[id] += scale * w * l->x[(q[2] * l->n[1] + q[1]) * l->n[0] + q[0]];
         }
     }
 }
