@@ -5,6 +5,7 @@
 #include "bench/print.h"
 #include "bench/record.h"
 #include "bench/report.h"
+#include "bench/runs.h"
 #include "bench/stress.h"
 #include "devices.h"
 #include "fronts.h"
@@ -15,7 +16,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <tyndall/io.h>
 #include <unistd.h>
 
 typedef struct bench_args {
@@ -38,98 +38,7 @@ static char *default_scenes(void)
                  : text_format("samples/scenes");
 }
 
-// ---- runs -------------------------------------------------------------------------------------
-
-// The settings of every run are tried before hours may be spent on the first.
-static int check_methods(app *a, const bench_suite *suite)
-{
-    int code = EXIT_DONE;
-    for (uint32_t i = 0; i < suite->num_runs && code == EXIT_DONE; i++) {
-        const bench_run *run = &suite->runs[i];
-        method m;
-        code = method_open(a, &run->method, &m);
-        if (code == EXIT_DONE && run->baseline && !m.info.progressive) {
-            app_error(a, "baselines: '%s' does not sample; its error does not fall with time",
-                      run->name);
-            code = EXIT_WRONG;
-        }
-        method_finish(&m);
-    }
-    return code;
-}
-
-// The record of a run, from the folder or measured now.
-static int get_record(bench_case *c, const bench_run *run, bool fresh, cJSON **record)
-{
-    char key[17];
-    int code = bench_key(c, run, key);
-    *record = code == EXIT_DONE && !fresh ? record_load(c->folder, key) : NULL;
-    if (*record || code != EXIT_DONE) {
-        return code;
-    }
-    code = bench_measure(c, run, key, record);
-    if (*record && code == EXIT_DONE) {
-        code = record_store(c->a, c->folder, key, record);
-    } else if (
-        *record) { // it failed for want of memory or of the device, which is no property of it
-        code = record_store(c->a, NULL, key, record);
-    }
-    return code;
-}
-
-// What the most samples of the sweep so far have taken tells what the next will take.
-static double expected_seconds(const bench_suite *suite, uint32_t index, const cJSON *runs)
-{
-    const bench_run *run = &suite->runs[index];
-    double seconds = 0, most = 0;
-    const cJSON *done;
-    cJSON_ArrayForEach(done, runs)
-    {
-        const double spp = json_figure(done, "settings.spp");
-        if (strcmp(json_text(done, "group"), run->group) == 0 && spp > most &&
-            spp < run->method.spp) {
-            most = spp;
-            seconds = 1e-3 * json_figure(done, "frame_ms.cold") * run->method.spp / spp;
-        }
-    }
-    return seconds;
-}
-
-static void leave_out(const bench_run *run, double seconds, double most, cJSON *left_out)
-{
-    char *why = text_format("would take about %.0f s; max_seconds is %g", seconds, most);
-    cJSON *entry = cJSON_CreateObject();
-    cJSON_AddStringToObject(entry, "run", run->name);
-    cJSON_AddStringToObject(entry, "group", run->group);
-    cJSON_AddStringToObject(entry, "why", why ? why : "");
-    cJSON_AddItemToArray(left_out, entry);
-    free(why);
-}
-
-static int measure_runs(bench_case *c, bool fresh, cJSON *runs, cJSON *left_out)
-{
-    int code = EXIT_DONE;
-    for (uint32_t i = 0; i < c->suite->num_runs && code == EXIT_DONE; i++) {
-        const bench_run *run = &c->suite->runs[i];
-        if (!bench_run_is_for(run, c->spec)) {
-            continue;
-        }
-        const double seconds = expected_seconds(c->suite, i, runs);
-        if (seconds > c->suite->max_seconds) {
-            leave_out(run, seconds, c->suite->max_seconds, left_out);
-            continue;
-        }
-        cJSON *record = NULL;
-        code = get_record(c, run, fresh, &record);
-        if (code == EXIT_DONE) {
-            cJSON *measured = cJSON_DetachItemFromObjectCaseSensitive(record, "run");
-            cJSON_AddStringToObject(measured, "date", json_text(record, "date"));
-            cJSON_AddItemToArray(runs, measured);
-        }
-        cJSON_Delete(record);
-    }
-    return code;
-}
+// ---- a scene ----------------------------------------------------------------------------------
 
 static int measure_scene(app *a, const bench_machine *on, const bench_suite *suite,
                          const bench_scene *spec, const bench_args *args, bench_report *report)
@@ -138,7 +47,7 @@ static int measure_scene(app *a, const bench_machine *on, const bench_suite *sui
     int code = bench_case_open(a, on, suite, spec, args->report, &c);
     cJSON *runs = cJSON_CreateArray(), *left_out = cJSON_CreateArray();
     if (code == EXIT_DONE) {
-        code = measure_runs(&c, args->fresh, runs, left_out);
+        code = bench_runs(&c, args->fresh, runs, left_out);
     }
     if (code == EXIT_DONE) {
         bench_report_scene(report, &c, runs, left_out);
@@ -204,27 +113,15 @@ static int make_folder(app *a, const char *path)
     return EXIT_FAILED;
 }
 
-// What `--stress` has left in the folder belongs to its report.
-static void add_stress(const char *folder, cJSON *root)
-{
-    void *data = NULL;
-    size_t size = 0;
-    char *path = text_format("%s/stress.json", folder);
-    if (path && tyn_file_read(path, 256u << 20, &data, &size, NULL) == TYN_OK) {
-        cJSON *stress = cJSON_ParseWithLength(data, size);
-        if (stress) {
-            cJSON_ReplaceItemInObjectCaseSensitive(root, "stress", stress);
-        }
-    }
-    free(data);
-    free(path);
-}
-
-static int write_report(app *a, const bench_args *args, cJSON *root)
+static int write_report(app *a, const bench_args *args, const bench_machine *on, cJSON *root)
 {
     int code = EXIT_DONE;
     if (args->report) {
-        add_stress(args->report, root);
+        // What `--stress` has left in the folder belongs to its report.
+        cJSON *stress = stress_read(a, args->report, on->library, on->device);
+        if (stress) {
+            cJSON_ReplaceItemInObjectCaseSensitive(root, "stress", stress);
+        }
         char *json = text_format("%s/report.json", args->report);
         char *html = text_format("%s/report.html", args->report);
         code = json && html ? json_write(a, cJSON_Duplicate(root, true), json)
@@ -246,7 +143,7 @@ static int run_suite(app *a, const bench_args *args, const bench_suite *suite, c
     machine mach = {0};
     bench_machine on;
     bench_report report = {0};
-    int code = check_methods(a, suite);
+    int code = bench_check(a, suite);
     if (code == EXIT_DONE) {
         code = make_folder(a, args->report);
     }
@@ -271,7 +168,7 @@ static int run_suite(app *a, const bench_args *args, const bench_suite *suite, c
             bench_print_end(report.root);
         }
         inside = bands ? bands_apply(a, args->bands, bands, report.root) : EXIT_DONE;
-        code = write_report(a, args, report.root);
+        code = write_report(a, args, &on, report.root);
         if (code == EXIT_DONE && args->fronts) {
             code = fronts_write(a, report.root, args->fronts);
         }
@@ -283,10 +180,56 @@ static int run_suite(app *a, const bench_args *args, const bench_suite *suite, c
     return code == EXIT_DONE ? inside : code;
 }
 
+// An option that does nothing would be taken for one that does. False: said.
+static bool check_options(app *a, const bench_args *args)
+{
+    const struct {
+        bool given;
+        const char *name;
+        bool needed;
+        const char *why;
+    } rules[] = {
+        {args->suite, "suite", !args->stress, "goes with no --stress, which has scenes of its own"},
+        {args->scenes, "scenes", !args->stress,
+         "goes with no --stress, which has scenes of its own"},
+        {args->bands, "bands", !args->stress, "goes with no --stress, whose bounds are fixed"},
+        {args->fronts, "write-fronts", !args->stress, "goes with no --stress, which has no fronts"},
+        {args->fresh, "fresh", !args->stress, "goes with no --stress, which keeps no records"},
+        {args->fresh, "fresh", args->report, "needs --report, whose records it leaves alone"},
+        {args->quick, "quick", args->stress, "needs --stress"},
+        {args->axis, "axis", args->stress, "needs --stress"},
+    };
+    for (size_t i = 0; i < ARRAY_SIZE(rules); i++) {
+        if (rules[i].given && !rules[i].needed) {
+            app_error(a, "--%s %s", rules[i].name, rules[i].why);
+            return false;
+        }
+    }
+    if (args->axis && !stress_has_axis(args->axis)) {
+        app_error(a, "--axis: no axis has '%s' in its name (docs/stress.md lists them)",
+                  args->axis);
+        return false;
+    }
+    return true;
+}
+
+// Fronts are of blocks of 8x8 pixels, whatever scenes they are measured on. False: said.
+static bool check_fronts(app *a, const bench_args *args, const bench_suite *suite)
+{
+    if (args->fronts && suite->block != 8) {
+        app_error(a, "--write-fronts needs a suite whose \"block\" is 8, not %u", suite->block);
+        return false;
+    }
+    return true;
+}
+
 static int run_bench(app *a, const void *arguments)
 {
     const bench_args *args = arguments;
     a->quiet = args->machine.quiet;
+    if (!check_options(a, args)) {
+        return EXIT_WRONG;
+    }
     if (args->stress) {
         const stress_options options = {.quick = args->quick, .axis = args->axis};
         return stress_command(a, &args->machine, &options, args->report, args->json);
@@ -297,6 +240,9 @@ static int run_bench(app *a, const void *arguments)
     int code = EXIT_FAILED;
     if (suite) {
         code = bench_suite_load(a, args->suite, samples, suite);
+        if (code == EXIT_DONE && !check_fronts(a, args, suite)) {
+            code = EXIT_WRONG;
+        }
         if (code == EXIT_DONE && args->bands) {
             code = bands_load(a, args->bands, &bands);
         }

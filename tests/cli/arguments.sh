@@ -116,6 +116,46 @@ echo '{"name": "x", "scenes": [{"scene": "cube.gltf", "reference": "nothere.exr"
 refuses 2 "scenes[0].reference: 'nothere.exr' is neither" bench --suite reference.json --scenes "$scenes"
 echo '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{}], "baselines": [{"method": "pop"}]}' >base.json
 refuses 2 "does not sample" bench --suite base.json --scenes "$scenes"
+# text that is not one JSON value in UTF-8, or says a thing twice
+printf '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}\n\n}\n' >after.json
+refuses 2 "after.json:3: is not JSON" bench --suite after.json --scenes "$scenes"
+printf '{"name":\n "caf\351", "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}\n' >latin.json
+refuses 2 "latin.json:2: is not UTF-8" bench --suite latin.json --scenes "$scenes"
+echo '[]' >list.json
+refuses 2 "list.json: must be an object" bench --suite list.json --scenes "$scenes"
+suite '{"settings": {"lattice.cells": 8, "lattice.cells": 16}}'
+refuses 2 "lattice.cells: is there twice" bench --suite run.json --scenes "$scenes"
+suite '{"only": []}'
+refuses 2 "only: must be a list of names of scenes of this suite, one at least" bench --suite run.json --scenes "$scenes"
+suite '{"method": "path", "spp": 1.5}'
+refuses 2 "runs[0].spp: must be a whole number" bench --suite run.json --scenes "$scenes"
+suite '{"method": "path", "seed": 1000003}'
+refuses 2 "'path': seed 1000003 is that of references" bench --suite run.json --scenes "$scenes"
+# SCENE MORE: a suite of that one, all of which is tried before anything is measured
+scene_suite() {
+    echo "{\"name\": \"x\", \"scenes\": [{\"name\": \"first\", \"scene\": \"cube.gltf\"}, $1], \"runs\": [{\"only\": [\"first\"]}${2:-, {\"name\": \"all\"\}}]}" >scenes.json
+}
+scene_suite '{"scene": "cube.gltf"}' ' '
+refuses 2 "scenes[1]: no run is for it" bench --suite scenes.json --scenes "$scenes"
+scene_suite '{"scene": "cube.gltf", "size": [16.7, 16]}'
+refuses 2 "scenes[1].size: must be [width, height], whole numbers" bench --suite scenes.json --scenes "$scenes"
+scene_suite '{"scene": "cube.gltf", "camera": "nope"}'
+refuses 2 "there is no camera 'nope'" bench --suite scenes.json --scenes "$scenes"
+scene_suite '{"scene": "cube.gltf", "g": 2}'
+refuses 2 "g" bench --suite scenes.json --scenes "$scenes"
+scene_suite '{"scene": "cube.gltf", "environment": "nothere.hdr"}'
+refuses 2 "scenes[1].environment: 'nothere.hdr' is neither beside the suite" bench --suite scenes.json --scenes "$scenes"
+# options that would do nothing
+suite '{}'
+refuses 2 "--suite goes with no --stress" bench --stress --axis nosuch --suite nothere.json --bands nothere.json
+refuses 2 "--axis: no axis has 'nosuch'" bench --stress --axis nosuch
+refuses 2 "--quick needs --stress" bench --quick --suite run.json
+refuses 2 "--axis needs --stress" bench --axis sigma --suite run.json
+refuses 2 "--fresh needs --report" bench --fresh --suite run.json
+echo '{"name": "x", "block": 4, "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}' >block.json
+refuses 2 "--write-fronts needs a suite whose \"block\" is 8, not 4" bench --suite block.json --scenes "$scenes" --write-fronts f.json
+echo '{"name": "x", "block": 1, "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}' >block.json
+refuses 2 "block: must be a number from 2" bench --suite block.json --scenes "$scenes"
 for bands in '{}' '{"bands": [{}]}' '{"bands": [{"scene": "*", "run": "*", "figure": "f", "reason": "r", "low": 1, "high": 0}]}' \
     '{"bands": [{"scene": "*", "run": "*", "figure": "f", "reason": "r", "low": 0, "high": 1, "hi": 2}]}'; do
     echo "$bands" >bands.json

@@ -1,6 +1,6 @@
 // bands.c -- figures that must stay within recorded bounds: what continuous integration asks a report.
 #include "bands.h"
-#include "record.h"
+#include "json.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -52,7 +52,8 @@ static int write_reference(const bench_case *c)
 {
     char *all = text_format("%s/pictures", c->folder);
     char *below = text_format("%s/pictures/%s", c->folder, c->spec->slug);
-    char *path = text_format("%s/pictures/%s/reference.exr", c->folder, c->spec->slug);
+    char *name = bench_picture(c->spec, BENCH_REFERENCE_SLUG);
+    char *path = name ? text_format("%s/%s", c->folder, name) : NULL;
     int code = EXIT_FAILED;
     if (all && below && path) {
         mkdir(all, 0777);
@@ -61,29 +62,48 @@ static int write_reference(const bench_case *c)
     }
     free(all);
     free(below);
+    free(name);
     free(path);
     return code;
 }
 
-int bench_case_open(app *a, const bench_machine *on, const bench_suite *suite,
-                    const bench_scene *spec, const char *folder, bench_case *c)
+// The scene and its view.
+static int open_scene(app *a, const bench_suite *suite, const bench_scene *spec, bench_case *c)
 {
     *c = (bench_case){.a = a,
-                      .machine = on,
                       .suite = suite,
                       .spec = spec,
-                      .folder = folder,
                       .blocks = {suite->block, 1},
                       .view = {.outputs = TYN_OUTPUT_RADIANCE, .no_background = true}};
     int code = scene_open(a, &spec->scene, &c->scene);
     if (code == EXIT_DONE && spec->lights > 0 && spec->lights < c->scene.num_lights) {
         c->scene.num_lights = spec->lights;
     }
+    return code == EXIT_DONE ? view_setup(a, &spec->view, &c->scene, &c->view) : code;
+}
+
+int bench_case_check(app *a, const bench_suite *suite, const bench_scene *spec)
+{
+    bench_case c;
+    const bool quiet = a->quiet;
+    a->quiet = true; // what is not wrong is said when it is measured
+    int code = open_scene(a, suite, spec, &c);
+    if (code == EXIT_DONE && spec->reference) {
+        code = bench_reference_get(a, NULL, spec, &c.scene, &c.view, c.blocks, &c.reference);
+    }
+    a->quiet = quiet;
+    bench_case_close(&c);
+    return code;
+}
+
+int bench_case_open(app *a, const bench_machine *on, const bench_suite *suite,
+                    const bench_scene *spec, const char *folder, bench_case *c)
+{
+    int code = open_scene(a, suite, spec, c);
+    c->machine = on;
+    c->folder = folder;
     if (code == EXIT_DONE) { // for the reference
         code = scene_prepare(a, &(tyn_method_info){.traces_rays = true}, &c->scene);
-    }
-    if (code == EXIT_DONE) {
-        code = view_setup(a, &spec->view, &c->scene, &c->view);
     }
     if (code == EXIT_DONE) {
         c->hash = bench_scene_hash(&c->scene, &c->view);

@@ -13,6 +13,7 @@ static bool counts(const front_point *p)
 typedef struct ranked {
     double ms, error;
     uint32_t index;
+    bool bound;
 } ranked;
 
 static int by_time(const void *a, const void *b)
@@ -34,7 +35,7 @@ static ranked *envelope(const front_point *points, uint32_t count, int64_t line,
     uint32_t used = 0, kept = 0;
     for (uint32_t i = 0; rank && i < count; i++) {
         if (counts(&points[i]) && (line < 0 || points[i].line == line)) {
-            rank[used++] = (ranked){points[i].ms, points[i].error, i};
+            rank[used++] = (ranked){points[i].ms, points[i].error, i, points[i].bound};
         }
     }
     if (used) {
@@ -84,10 +85,14 @@ static front_time time_of_samples(const ranked *curve, uint32_t num, double erro
             return (front_time){curve[i].ms, (int32_t)curve[i].index, true};
         }
         const ranked *a = &curve[i - 1], *b = &curve[i];
+        if (b->bound) {
+            return (front_time){fmin(by_the_rule(a, error), b->ms), -1, true};
+        }
         const double share = log(a->error / error) / log(a->error / b->error);
         return (front_time){a->ms * pow(b->ms / a->ms, share), -1, true};
     }
-    return (front_time){by_the_rule(&curve[num - 1], error), -1, false};
+    const ranked *last = &curve[num - 1];
+    return (front_time){last->bound ? NAN : by_the_rule(last, error), -1, false};
 }
 
 front_time front_time_at(const front_point *points, uint32_t count, uint32_t line, double error)
@@ -163,33 +168,36 @@ static uint32_t without_slivers(front_range *ranges, uint32_t num)
     return kept;
 }
 
-uint32_t front_ranges(const front_point *points, uint32_t count, double high, front_range *ranges,
-                      uint32_t max)
+uint32_t front_ranges(const front_point *points, uint32_t count, front_range *ranges, uint32_t max)
 {
-    double least = INFINITY;
-    for (uint32_t i = 0; i < count; i++) {
-        least = counts(&points[i]) ? fmin(least, points[i].error) : least;
-    }
-    if (!(fmax(least, 1e-4) < high)) {
+    uint32_t num_front = 0;
+    ranked *front = envelope(points, count, -1, &num_front);
+    if (num_front == 0) {
+        free(front);
         return 0;
     }
+    // From its last point to its first; 1 ppm: rounding must not put them out of reach.
+    const double low = fmax(front[num_front - 1].error, 1e-4) * (1 + 1e-6);
+    const double high = fmax(front[0].error * (1 + 1e-6), low);
+    const bool bound = front[num_front - 1].bound;
+    free(front);
     uint32_t num = 0;
-    int64_t last = -1;
-    // 1 ppm: rounding must not put the least point out of reach
-    for (double error = fmax(least, 1e-4) * (1 + 1e-6); error <= high; error *= 1.01) {
+    for (double error = low;; error = fmin(1.01 * error, high)) {
         const int64_t line = fastest_line(points, count, error);
-        if (line != last && line >= 0 && num < max) {
+        if (line >= 0 && (num == 0 || line != ranges[num - 1].line)) {
             if (num > 0) {
                 ranges[num - 1].high = error;
             }
-            ranges[num] = (front_range){.line = (uint32_t)line, .low = error, .lowest = num == 0};
+            if (num == max) {
+                break;
+            }
+            ranges[num] = (front_range){(uint32_t)line, error, error, num == 0 && !bound, false};
             num++;
         }
-        last = line;
-    }
-    if (num > 0) {
-        ranges[num - 1].high = high;
-        ranges[num - 1].highest = true;
+        if (error >= high) {
+            ranges[num - 1].highest = true;
+            break;
+        }
     }
     return without_slivers(ranges, num);
 }

@@ -3,6 +3,9 @@
 // Pure functions of numbers. A line is the points of one method over its settings. The points of a method
 // that samples are one curve, along which its error falls with time, and between two of them it is
 // interpolated; the points of any other are what they are.
+//
+// An error that the noise of the reference hides is known to be at most that noise, and no more: such a point
+// stands at the noise, `bound`, and nothing is said of errors below it.
 #pragma once
 #include <stdbool.h>
 #include <stdint.h>
@@ -11,6 +14,7 @@ typedef struct front_point {
     double ms, error; // > 0 and >= 0; a point with anything else is not looked at
     uint32_t line;
     bool sampling;
+    bool bound; // the error is this or less
 } front_point;
 
 // Indices of the points that no other beats in both, by time; gives their number. Of equal points the
@@ -24,7 +28,7 @@ typedef struct front_time {
 } front_time;
 
 // How long a line needs for an error. Sampling: log-log between the neighbours on the lower envelope of the
-// curve. Else: the fastest point with this error or less.
+// curve; by 1/sqrt(samples) towards a bound one, as far as its time. Else: the fastest point with this error or less.
 front_time front_time_at(const front_point *points, uint32_t count, uint32_t line, double error);
 
 // A range of errors in which one line is the fastest of all.
@@ -33,11 +37,11 @@ typedef struct front_range {
     double low, high;
     bool lowest, highest; // the range has no lower, no upper end
 } front_range;
-// From the least error of any point up to `high`, in steps of 1 %; from small to large errors. Nothing is
-// counted as faster than its fastest point. Ranges of less than 5 % between two others go to the one below. Gives
-// the number of ranges, at most `max`.
-uint32_t front_ranges(const front_point *points, uint32_t count, double high, front_range *ranges,
-                      uint32_t max);
+// From the least error of any point to that of the fastest, from which on nothing changes, in steps of 1 %; from small to
+// large errors. Where the least is bound the first range ends there. Nothing is counted as faster than its fastest
+// point. Ranges of less than 5 % between two others go to the one below. Gives the number of ranges, at most
+// `max`; what does not fit is left out at the upper end.
+uint32_t front_ranges(const front_point *points, uint32_t count, front_range *ranges, uint32_t max);
 
 // Of those that are > 0 and finite; NAN if there are none.
 double front_geometric_mean(const double *values, uint32_t count);

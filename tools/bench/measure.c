@@ -157,6 +157,7 @@ static int time_cold(measuring *m)
     }
     if (code == EXIT_DONE) {
         m->cold_ms = timing_median(whole, done);
+        m->cold_frames = done;
         for (uint32_t k = 0; k < m->num_nodes; k++) {
             m->node_ms[k] = timing_median(nodes + k * most, done);
         }
@@ -190,6 +191,7 @@ static int time_camera(measuring *m, uint32_t least, uint32_t most, double secon
     }
     if (code == EXIT_DONE) {
         m->camera_ms = timing_median(times, done);
+        m->camera_frames = done;
         m->flicker = flicker_value(&f);
     }
     flicker_close(&f);
@@ -215,6 +217,7 @@ static int time_unchanged(measuring *m)
     }
     if (code == EXIT_DONE) {
         m->unchanged_ms = timing_median(times, done);
+        m->unchanged_frames = done;
     }
     free(times);
     return code;
@@ -333,6 +336,7 @@ static int measure_samples(measuring *m, const char *label)
     }
     if (code == EXIT_DONE) {
         m->cold_ms = m->renderer.frame_ms;
+        m->cold_frames = 1;
         take_report(m, m->node_ms);
         code = take_picture(m);
     }
@@ -345,6 +349,7 @@ static int measure_samples(measuring *m, const char *label)
     if (code == EXIT_DONE && 3e-3 * m->cold_ms < seconds) {
         code = time_camera(m, 3, 3, seconds);
         m->camera_ms = NAN; // that of the whole rendering
+        m->camera_frames = 0;
     }
     return code;
 }

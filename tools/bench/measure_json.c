@@ -70,7 +70,7 @@ static int write_picture(measuring *m, cJSON *json)
         cJSON_AddNullToObject(json, "picture");
         return EXIT_DONE;
     }
-    char *name = text_format("pictures/%s/%s.exr", m->c->spec->slug, m->run->slug);
+    char *name = bench_picture(m->c->spec, m->run->slug);
     char *path = name ? text_format("%s/%s", m->c->folder, name) : NULL;
     int code = path ? bench_picture_write(m->c->a, &m->image, false, path)
                     : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
@@ -85,13 +85,9 @@ static cJSON *json_run(const measuring *m, const char *key, const char *reason)
 {
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "key", key);
-    cJSON_AddStringToObject(json, "name", m->run->name);
     cJSON_AddStringToObject(json, "method", m->run->method.method);
-    cJSON_AddStringToObject(json, "group", m->run->group);
     cJSON_AddBoolToObject(json, "sampling", m->method.info.progressive);
-    cJSON_AddBoolToObject(json, "baseline", m->run->baseline);
-    cJSON_AddBoolToObject(json, "swept", m->run->swept);
-    cJSON_AddItemToObject(json, "spec", cJSON_Duplicate(m->run->spec, true));
+    record_name_run(json, m->run);
     cJSON_AddItemToObject(json, "settings", json_settings(m));
     cJSON_AddItemToObject(json, "all_settings",
                           m->method.settings ? stats_settings(&m->method, &m->view)
@@ -123,6 +119,10 @@ static int add_figures(measuring *m, cJSON *json)
     json_add_float(frame, "cold", m->cold_ms);
     json_add_float(frame, "camera_moved", m->camera_ms);
     json_add_float(frame, "unchanged", m->unchanged_ms);
+    cJSON *frames = cJSON_AddObjectToObject(json, "frames");
+    cJSON_AddNumberToObject(frames, "cold", m->cold_frames);
+    cJSON_AddNumberToObject(frames, "camera_moved", m->camera_frames);
+    cJSON_AddNumberToObject(frames, "unchanged", m->unchanged_frames);
     cJSON *memory = cJSON_AddObjectToObject(json, "memory");
     cJSON_AddNumberToObject(memory, "persistent", (double)m->persistent);
     cJSON_AddNumberToObject(memory, "transient", (double)m->transient);

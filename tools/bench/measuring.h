@@ -16,6 +16,7 @@ typedef struct measuring {
     metrics_image image;
     metrics errors[BENCH_BLOCKS];
     double fill, setup_ms, cold_ms, camera_ms, unchanged_ms;
+    uint32_t cold_frames, camera_frames, unchanged_frames; // that these are medians of
     uint64_t persistent, transient;
     cJSON *nodes, *warnings; // NULL until they are known
     uint32_t num_nodes;

@@ -6,11 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_true(const cJSON *object, const char *key)
-{
-    return cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(object, key));
-}
-
 static const cJSON *list_of(const cJSON *object, const char *key)
 {
     return cJSON_GetObjectItemCaseSensitive(object, key);
@@ -73,13 +68,14 @@ static void print_scene_head(const cJSON *scene)
     if (seconds > 0) {
         printf(", %.0f s", seconds);
     }
-    printf("\n%-24s %8s %8s %8s %8s %8s %8s %8s\n", "", "error", "error", "cold", "camera", "same",
+    printf("\n%-24s %9s %9s %8s %8s %8s %8s %8s\n", "", "error", "error", "cold", "camera", "same",
            "set-up", "memory");
-    printf("%-24s %5d px %8s %8s %8s %8s %8s %8s\n", "", block, "1 px", "ms", "ms", "ms", "ms",
+    printf("%-24s %6d px %9s %8s %8s %8s %8s %8s\n", "", block, "1 px", "ms", "ms", "ms", "ms",
            "MiB");
 }
 
-// "plain path needs for the same error 812 ms on 8 px (15.2 times)": one line per baseline.
+// "plain path needs for the same error 812 ms on 8 px (15.2 times)": one line per baseline; none where noise hides the
+// errors.
 static void print_equal(const cJSON *run)
 {
     const cJSON *first, *e, *list = list_of(run, "equal_error");
@@ -89,19 +85,21 @@ static void print_equal(const cJSON *run)
         if (json_figure(first, "block") != json_figure(list, "0.block")) {
             continue;
         }
-        printf("    %-24s needs for the same error", baseline);
-        const char *between = "";
+        bool any = false;
         cJSON_ArrayForEach(e, list)
         {
             const double ms = json_figure(e, "ms");
             if (strcmp(json_text(e, "baseline"), baseline) == 0 && !isnan(ms)) {
-                printf("%s %s%.*f ms on %.0f px (%.1f times)", between,
-                       is_true(e, "measured") ? "" : "about ", ms < 10, ms, json_figure(e, "block"),
-                       json_figure(e, "speedup"));
-                between = ",";
+                if (!any) {
+                    printf("    %-24s needs for the same error", baseline);
+                }
+                printf("%s %s%.*f ms on %.0f px (%.1f times)", any ? "," : "",
+                       json_true(e, "measured") ? "" : "about ", ms < 10, ms,
+                       json_figure(e, "block"), json_figure(e, "speedup"));
+                any = true;
             }
         }
-        printf("\n");
+        printf("%s", any ? "\n" : "");
     }
 }
 
@@ -112,7 +110,7 @@ static void print_nodes(const cJSON *run, bool setup, const char *title)
     {
         const double ms = json_figure(n, "gpu_ms"), steps = json_figure(n, "work.steps");
         const double fraction = json_figure(n, "fraction");
-        if (is_true(n, "setup") != setup || !(ms > 0)) {
+        if (json_true(n, "setup") != setup || !(ms > 0)) {
             continue;
         }
         printf("%s %s %.*f", title, json_text(n, "name"), ms < 10 ? 2 : 1, ms);
@@ -126,7 +124,19 @@ static void print_nodes(const cJSON *run, bool setup, const char *title)
     }
 }
 
-static void print_run(const cJSON *scene, const cJSON *run)
+// An error near the noise of the reference is a small difference of large numbers; below it, it is not known.
+static void print_error(const cJSON *error)
+{
+    const double value = json_figure(error, "error"), noise = json_figure(error, "n");
+    const bool hidden = value < noise;
+    printf(" %s%5.2f %%",
+           hidden                      ? "<="
+           : json_true(error, "vague") ? " ~"
+                                       : "  ",
+           100 * (hidden ? noise : value));
+}
+
+static void print_run(const cJSON *run)
 {
     const char *failed = json_text(run, "failed");
     if (failed[0]) {
@@ -134,13 +144,10 @@ static void print_run(const cJSON *scene, const cJSON *run)
         return;
     }
     printf("%-24s", json_text(run, "name"));
-    for (int k = 0; k < 2; k++) {
-        char error[24], noise[24];
-        snprintf(error, sizeof error, "errors.%d.error", k);
-        snprintf(noise, sizeof noise, "reference.noise.%d.n", k);
-        // An error near the noise of the reference is a small difference of large numbers.
-        bool vague = json_figure(run, error) < 2 * json_figure(scene, noise);
-        printf(" %s%5.2f %%", vague ? "~" : " ", 100 * json_figure(run, error));
+    const cJSON *error;
+    cJSON_ArrayForEach(error, list_of(run, "errors"))
+    {
+        print_error(error);
     }
     print_ms(json_figure(run, "frame_ms.cold"));
     print_ms(json_figure(run, "frame_ms.camera_moved"));
@@ -149,7 +156,7 @@ static void print_run(const cJSON *scene, const cJSON *run)
     printf(" %8.1f\n",
            (json_figure(run, "memory.persistent") + json_figure(run, "memory.transient")) /
                (1 << 20));
-    if (is_true(run, "sampling")) {
+    if (json_true(run, "sampling")) {
         return;
     }
     print_nodes(run, false, "    nodes, ms:");
@@ -158,7 +165,7 @@ static void print_run(const cJSON *scene, const cJSON *run)
     const cJSON *n;
     cJSON_ArrayForEach(n, list_of(run, "nodes"))
     {
-        if (!is_true(n, "setup") &&
+        if (!json_true(n, "setup") &&
             strcmp(json_text(n, "state_after_camera_moved"), "unchanged") == 0) {
             printf(" %s", json_text(n, "name"));
         }
@@ -181,7 +188,7 @@ void bench_print_scene(const cJSON *scene)
     print_scene_head(scene);
     cJSON_ArrayForEach(item, list_of(scene, "runs"))
     {
-        print_run(scene, item);
+        print_run(item);
     }
     cJSON_ArrayForEach(item, list_of(scene, "left_out"))
     {
@@ -209,15 +216,15 @@ void bench_print_end(const cJSON *report)
     cJSON_ArrayForEach(item, list_of(report, "headline"))
     {
         const double scenes = json_figure(item, "scenes");
+        const double extrapolated = json_figure(item, "extrapolated");
         const cJSON *mean = list_of(item, "geometric_mean");
         if (!(scenes > 0) || !cJSON_IsRaw(mean)) {
             continue;
         }
-        printf("%s%-16s %3.0f %% of %2.0f px: %7.1f times as fast as %s (%.0f scenes", title,
+        printf("%s%-16s %3.0f %% of %2.0f px: %s%.1f times as fast as %s (%.0f scenes", title,
                json_text(item, "method"), 100 * json_figure(item, "error"),
-               json_figure(item, "block"), strtod(mean->valuestring, NULL),
-               json_text(item, "baseline"), scenes);
-        const double extrapolated = json_figure(item, "extrapolated");
+               json_figure(item, "block"), extrapolated > 0 ? "about " : "",
+               strtod(mean->valuestring, NULL), json_text(item, "baseline"), scenes);
         printf(extrapolated > 0 ? ", %.0f of them extrapolated)\n" : ")\n", extrapolated);
         title = "";
     }

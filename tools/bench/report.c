@@ -1,6 +1,7 @@
 // report.c -- records put together: report.json (docs/report-schema.md).
 #include "report.h"
 #include "front.h"
+#include "plane.h"
 #include "record.h"
 #include "regime.h"
 #include "stats.h"
@@ -9,226 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { REPORT_VERSION = 1, MAX_LINES = 64, NUM_ASKED = 3 };
-static const double asked[NUM_ASKED] = {0.10, 0.05, 0.03}; // errors at which methods are compared
-
-// ---- a scene's runs as points -----------------------------------------------------------------
-
-typedef struct line { // the runs of one group
-    const char *name;
-    bool sampling;
-} line;
-
-typedef struct plane {   // error against time, of one scene and block size
-    front_point *points; // one a run
-    const cJSON **runs;
-    uint32_t count;
-    line lines[MAX_LINES];
-    uint32_t num_lines;
-} plane;
-
-static uint32_t line_of(plane *p, const cJSON *run)
-{
-    const char *name = json_text(run, "group");
-    for (uint32_t i = 0; i < p->num_lines; i++) {
-        if (strcmp(p->lines[i].name, name) == 0) {
-            return i;
-        }
-    }
-    if (p->num_lines == MAX_LINES) {
-        return MAX_LINES - 1;
-    }
-    const cJSON *sampling = cJSON_GetObjectItemCaseSensitive(run, "sampling");
-    p->lines[p->num_lines] = (line){name, cJSON_IsTrue(sampling)};
-    return p->num_lines++;
-}
-
-// `block`: which of the errors. False: out of memory; plane_finish is due in any case.
-static bool plane_make(plane *p, const cJSON *runs, int block)
-{
-    const uint32_t count = (uint32_t)cJSON_GetArraySize(runs);
-    char error[32];
-    snprintf(error, sizeof error, "errors.%d.error", block);
-    *p = (plane){.points = calloc(count + 1, sizeof *p->points),
-                 .runs = calloc(count + 1, sizeof *p->runs)};
-    const cJSON *run;
-    cJSON_ArrayForEach(run, runs)
-    {
-        if (!p->points || !p->runs) {
-            return false;
-        }
-        const uint32_t of = line_of(p, run);
-        p->runs[p->count] = run;
-        p->points[p->count++] = (front_point){.ms = json_figure(run, "frame_ms.cold"),
-                                              .error = json_figure(run, error),
-                                              .line = of,
-                                              .sampling = p->lines[of].sampling};
-    }
-    return p->points && p->runs;
-}
-
-static void plane_finish(plane *p)
-{
-    free(p->points);
-    free(p->runs);
-}
-
-static cJSON *json_key(const plane *p, int32_t point)
-{
-    return point >= 0 ? cJSON_CreateString(json_text(p->runs[point], "key")) : cJSON_CreateNull();
-}
-
-// ---- what follows from them -------------------------------------------------------------------
-
-static cJSON *json_front(const plane *p, uint32_t block)
-{
-    uint32_t *indices = calloc(p->count + 1, sizeof *indices);
-    const uint32_t num = indices ? front_pareto(p->points, p->count, indices) : 0;
-    cJSON *front = cJSON_CreateObject();
-    cJSON_AddNumberToObject(front, "block", block);
-    cJSON *list = cJSON_AddArrayToObject(front, "runs");
-    for (uint32_t i = 0; i < num; i++) {
-        cJSON_AddItemToArray(list, json_key(p, (int32_t)indices[i]));
-    }
-    free(indices);
-    return front;
-}
-
-// Every method against every one that samples, at the errors asked for.
-static void add_equal_errors(const plane *p, uint32_t block, cJSON *list)
-{
-    for (int e = 0; e < NUM_ASKED; e++) {
-        for (uint32_t m = 0; m < p->num_lines; m++) {
-            for (uint32_t b = 0; b < p->num_lines; b++) {
-                if (p->lines[m].sampling || !p->lines[b].sampling) {
-                    continue;
-                }
-                const front_time own = front_time_at(p->points, p->count, m, asked[e]);
-                const front_time base = front_time_at(p->points, p->count, b, asked[e]);
-                cJSON *entry = cJSON_CreateObject();
-                cJSON_AddNumberToObject(entry, "block", block);
-                cJSON_AddNumberToObject(entry, "error", asked[e]);
-                cJSON_AddStringToObject(entry, "method", p->lines[m].name);
-                json_add_float(entry, "ms", own.ms);
-                cJSON_AddItemToObject(entry, "run", json_key(p, own.point));
-                cJSON_AddStringToObject(entry, "baseline", p->lines[b].name);
-                json_add_float(entry, "baseline_ms", base.ms);
-                json_add_float(entry, "speedup", base.ms / own.ms);
-                cJSON_AddBoolToObject(entry, "measured", base.measured);
-                cJSON_AddItemToArray(list, entry);
-            }
-        }
-    }
-}
-
-// What the methods that sample need for the error of each other run.
-static void add_own_equal_errors(const plane *p, uint32_t block, cJSON *runs)
-{
-    for (uint32_t i = 0; i < p->count; i++) {
-        const front_point *point = &p->points[i];
-        if (point->sampling || !isfinite(point->error)) {
-            continue;
-        }
-        cJSON *run = cJSON_GetArrayItem(runs, (int)i);
-        cJSON *list = cJSON_GetObjectItemCaseSensitive(run, "equal_error");
-        list = list ? list : cJSON_AddArrayToObject(run, "equal_error");
-        for (uint32_t b = 0; b < p->num_lines; b++) {
-            if (!p->lines[b].sampling) {
-                continue;
-            }
-            const front_time base = front_time_at(p->points, p->count, b, point->error);
-            cJSON *entry = cJSON_CreateObject();
-            cJSON_AddNumberToObject(entry, "block", block);
-            cJSON_AddStringToObject(entry, "baseline", p->lines[b].name);
-            json_add_float(entry, "ms", base.ms);
-            json_add_float(entry, "speedup", base.ms / point->ms);
-            cJSON_AddBoolToObject(entry, "measured", base.measured);
-            cJSON_AddItemToArray(list, entry);
-        }
-    }
-}
-
-// The least error of each method: what no setting of this suite gets below.
-static cJSON *json_floors(const plane *p, uint32_t block)
-{
-    cJSON *floors = cJSON_CreateArray();
-    for (uint32_t m = 0; m < p->num_lines; m++) {
-        double least = NAN;
-        for (uint32_t i = 0; i < p->count; i++) {
-            least = p->points[i].line == m ? fmin(least, p->points[i].error) : least;
-        }
-        if (!p->lines[m].sampling && isfinite(least)) {
-            cJSON *floor = cJSON_CreateObject();
-            cJSON_AddNumberToObject(floor, "block", block);
-            cJSON_AddStringToObject(floor, "method", p->lines[m].name);
-            json_add_float(floor, "error", least);
-            cJSON_AddItemToArray(floors, floor);
-        }
-    }
-    return floors;
-}
-
-static const char *percent(double error, char text[16])
-{
-    snprintf(text, 16, error < 0.1 ? "%.1f %%" : "%.0f %%", 100 * error);
-    return text;
-}
-
-// Ranges of errors in which one method is fastest, from small to large errors; null: without an end.
-static cJSON *json_ranges(const plane *p, uint32_t block)
-{
-    enum { MAX_RANGES = 16 };
-    front_range ranges[MAX_RANGES];
-    const uint32_t num = front_ranges(p->points, p->count, 0.5, ranges, MAX_RANGES);
-    cJSON *list = cJSON_CreateArray();
-    for (uint32_t i = 0; i < num; i++) {
-        const front_range *r = &ranges[i];
-        cJSON *range = cJSON_CreateObject();
-        cJSON_AddNumberToObject(range, "block", block);
-        cJSON_AddStringToObject(range, "method", p->lines[r->line].name);
-        json_add_float(range, "low", r->lowest ? NAN : r->low);
-        json_add_float(range, "high", r->highest ? NAN : r->high);
-        cJSON_AddItemToArray(list, range);
-    }
-    return list;
-}
-
-static void add_verdict(cJSON *verdicts, char *text)
-{
-    cJSON_AddItemToArray(verdicts, cJSON_CreateString(text ? text : ""));
-    free(text);
-}
-
-static cJSON *json_verdicts(const plane *p)
-{
-    enum { MAX_RANGES = 16 };
-    front_range ranges[MAX_RANGES];
-    const uint32_t num = front_ranges(p->points, p->count, 0.5, ranges, MAX_RANGES);
-    cJSON *verdicts = cJSON_CreateArray();
-    bool has_pop = false, pop_wins = false;
-    for (uint32_t i = 0; i < p->num_lines; i++) {
-        has_pop = has_pop || strcmp(p->lines[i].name, "pop") == 0;
-    }
-    for (uint32_t i = num; i-- > 0;) { // from what is asked for most
-        const front_range *r = &ranges[i];
-        const char *name = p->lines[r->line].name;
-        bool is_pop = strcmp(name, "pop") == 0;
-        const char *does = is_pop ? "is on the front" : "wins";
-        char low[16], high[16];
-        percent(r->low, low);
-        percent(r->high, high);
-        pop_wins = pop_wins || is_pop;
-        add_verdict(verdicts,
-                    r->lowest && r->highest ? text_format("%s %s at all errors", name, does)
-                    : r->highest            ? text_format("%s %s above %s", name, does, low)
-                    : r->lowest             ? text_format("%s %s below %s", name, does, high)
-                                : text_format("%s %s from %s to %s", name, does, low, high));
-    }
-    if (has_pop && !pop_wins) {
-        add_verdict(verdicts, text_format("pop is nowhere on the front"));
-    }
-    return verdicts;
-}
+enum { REPORT_VERSION = 1 };
 
 // ---- a scene ----------------------------------------------------------------------------------
 
@@ -242,7 +24,7 @@ static cJSON *json_reference(const bench_case *c)
     json_add_float(json, "seconds", r->seconds > 0 ? r->seconds : NAN);
     cJSON_AddBoolToObject(json, "cached", r->cached);
     cJSON_AddStringToObject(json, "key", r->key);
-    char *picture = c->folder ? text_format("pictures/%s/reference.exr", c->spec->slug) : NULL;
+    char *picture = c->folder ? bench_picture(c->spec, BENCH_REFERENCE_SLUG) : NULL;
     cJSON_AddItemToObject(json, "picture",
                           picture ? cJSON_CreateString(picture) : cJSON_CreateNull());
     free(picture);
@@ -254,27 +36,6 @@ static cJSON *json_reference(const bench_case *c)
         cJSON_AddItemToArray(noise, entry);
     }
     return json;
-}
-
-// Pages hold pictures: of a sweep only those on a front, the best and what no sweep made are worth it.
-static void choose_pictures(const plane *p, cJSON *runs)
-{
-    uint32_t *front = calloc(p->count + 1, sizeof *front);
-    const uint32_t num = front ? front_pareto(p->points, p->count, front) : 0;
-    for (uint32_t i = 0; i < p->count; i++) {
-        cJSON *run = cJSON_GetArrayItem(runs, (int)i);
-        bool shown = !cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(run, "swept"));
-        bool best = true;
-        for (uint32_t k = 0; k < num; k++) {
-            shown = shown || front[k] == i;
-        }
-        for (uint32_t k = 0; k < p->count; k++) {
-            best = best && !(p->points[k].line == p->points[i].line &&
-                             p->points[k].error < p->points[i].error);
-        }
-        cJSON_AddBoolToObject(run, "shown", (shown || best) && isfinite(p->points[i].error));
-    }
-    free(front);
 }
 
 void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON *left_out)
@@ -301,16 +62,16 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
     cJSON *floors = NULL, *ranges = NULL, *verdicts = NULL;
     for (int i = 0; i < BENCH_BLOCKS; i++) {
         plane p;
-        if (plane_make(&p, runs, i)) {
+        if (plane_make(&p, runs, i, c->blocks[i])) {
             if (i == 0) {
-                choose_pictures(&p, runs);
-                floors = json_floors(&p, c->blocks[i]);
-                ranges = json_ranges(&p, c->blocks[i]);
-                verdicts = json_verdicts(&p);
+                plane_choose_pictures(&p, runs);
+                floors = plane_floors(&p);
+                ranges = plane_ranges(&p);
+                verdicts = plane_verdicts(&p);
             }
-            cJSON_AddItemToArray(fronts, json_front(&p, c->blocks[i]));
-            add_equal_errors(&p, c->blocks[i], equal);
-            add_own_equal_errors(&p, c->blocks[i], runs);
+            cJSON_AddItemToArray(fronts, plane_front(&p));
+            plane_add_equal_errors(&p, equal);
+            plane_add_own_equal_errors(&p, runs);
         }
         plane_finish(&p);
     }
@@ -341,6 +102,7 @@ void bench_report_begin(bench_report *r, const bench_machine *on, const bench_su
     cJSON_AddStringToObject(r->root, "schema", "tyndall-report");
     cJSON_AddNumberToObject(r->root, "version", REPORT_VERSION);
     cJSON_AddStringToObject(r->root, "tyndall", tyn_version_string());
+    json_add_hash(r->root, "library", on->library);
     json_add_date(r->root);
     cJSON *about = cJSON_AddObjectToObject(r->root, "suite");
     cJSON_AddStringToObject(about, "name", suite->name);
@@ -372,7 +134,10 @@ static bool same_comparison(const cJSON *a, const cJSON *b)
 // Why a scene has no speed-up at this error.
 static char *why_missing(const cJSON *scene, const cJSON *entry)
 {
-    const char *name = json_text(scene, "name");
+    const char *name = json_text(scene, "name"), *why = json_text(entry, "why");
+    if (why[0]) {
+        return text_format("%s: %s", name, why);
+    }
     if (!isnan(json_figure(entry, "ms"))) {
         return text_format("%s: %s was not measured", name, json_text(entry, "baseline"));
     }
@@ -405,7 +170,7 @@ static cJSON *json_headline(const cJSON *scenes, const cJSON *first)
             const double speedup = json_figure(entry, "speedup");
             if (isfinite(speedup) && num < BENCH_MAX_SCENES) {
                 values[num++] = speedup;
-                extrapolated += !cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(entry, "measured"));
+                extrapolated += !json_true(entry, "measured");
             } else {
                 char *why = why_missing(scene, entry);
                 cJSON_AddItemToArray(missing, cJSON_CreateString(why ? why : ""));

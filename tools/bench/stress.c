@@ -1,5 +1,6 @@
 // stress.c -- runs the stress suite: answers, methods, cells of the heat table.
 #include "stress.h"
+#include "json.h"
 #include "stats.h"
 #include "stress_render.h"
 #include <math.h>
@@ -85,14 +86,23 @@ typedef struct cell {
     stress_counts counts;
 } cell;
 
+static void case_name(const stress_case *c, char name[48])
+{
+    if (c->name) {
+        snprintf(name, 48, "%s", c->name);
+    } else {
+        snprintf(name, 48, "%g", c->x);
+    }
+}
+
 static void add_cell(suite *s, const cell *k)
 {
     cJSON *o = cJSON_CreateObject();
     cJSON_AddStringToObject(o, "method", k->method);
     cJSON_AddStringToObject(o, "axis", k->c->axis);
     char name[48];
-    snprintf(name, sizeof name, "%g", k->c->x);
-    cJSON_AddStringToObject(o, "case", k->c->name ? k->c->name : name);
+    case_name(k->c, name);
+    cJSON_AddStringToObject(o, "case", name);
     json_add_float(o, "x", k->c->x);
     json_add_float(o, "sigma_t", k->c->sigma);
     json_add_float(o, "albedo", k->c->albedo);
@@ -177,54 +187,94 @@ static int run_cell(suite *s, const stress_case *c, const char *with)
 }
 
 // Imbalance is told by the methods that have a balance; `path` needs days where nothing is absorbed.
-static bool is_wanted(const suite *s, const stress_case *c, const char *with)
+static bool belongs(const stress_options *o, const stress_case *c, const char *with)
 {
-    const stress_options *o = s->options;
-    return (!o->quick || c->quick) && (!o->axis || strstr(c->axis, o->axis)) &&
-           (!o->method || strcmp(o->method, with) == 0) &&
+    return (!o->quick || c->quick) &&
            (c->answer != STRESS_BY_IMBALANCE || strcmp(with, "pop") == 0);
 }
 
+static bool is_asked(const stress_options *o, const stress_case *c, const char *with)
+{
+    return (!o->axis || strstr(c->axis, o->axis)) && (!o->method || strcmp(o->method, with) == 0);
+}
+
+bool stress_has_axis(const char *part)
+{
+    for (uint32_t i = 0; i < stress_num_cases; i++) {
+        if (strstr(stress_cases[i].axis, part)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// The cell of an earlier run, or NULL.
+static const cJSON *find_cell(const cJSON *before, const stress_case *c, const char *with)
+{
+    char name[48];
+    case_name(c, name);
+    const cJSON *known;
+    cJSON_ArrayForEach(known, cJSON_GetObjectItemCaseSensitive(before, "cells"))
+    {
+        if (strcmp(json_text(known, "axis"), c->axis) == 0 &&
+            strcmp(json_text(known, "case"), name) == 0 &&
+            strcmp(json_text(known, "method"), with) == 0 &&
+            (float)json_figure(known, "x") == (float)c->x) {
+            return known;
+        }
+    }
+    return NULL;
+}
+
+// A cell of the suite: run, or kept, or neither.
+static int take_cell(suite *s, const stress_case *c, const char *with, const cJSON *before)
+{
+    if (is_asked(s->options, c, with)) {
+        return run_cell(s, c, with);
+    }
+    const cJSON *kept = find_cell(before, c, with);
+    if (kept) {
+        cJSON_AddItemToArray(s->cells, cJSON_Duplicate(kept, true));
+    }
+    return EXIT_DONE;
+}
+
 int stress_run(app *a, tyn_device *device, const stress_options *options, bool table,
-               cJSON **stress)
+               const cJSON *before, cJSON *stress)
 {
     suite *s = calloc(1, sizeof *s);
     if (!s) {
         return app_exit_code(a, TYN_ERR_MEMORY, false);
     }
     *s = (suite){.a = a, .device = device, .options = options, .table = table};
-    *stress = cJSON_CreateObject();
-    cJSON *axes = cJSON_AddArrayToObject(*stress, "axes");
-    cJSON *names = cJSON_AddArrayToObject(*stress, "methods");
+    cJSON *axes = cJSON_AddArrayToObject(stress, "axes");
+    cJSON *names = cJSON_AddArrayToObject(stress, "methods");
     for (size_t m = 0; m < ARRAY_SIZE(methods); m++) {
         cJSON_AddItemToArray(names, cJSON_CreateString(methods[m]));
     }
-    s->cells = cJSON_AddArrayToObject(*stress, "cells");
+    s->cells = cJSON_AddArrayToObject(stress, "cells");
     const bool quiet = a->quiet;
     a->quiet = true; // warnings are in the cells
     const char *axis = "";
     const double start = app_seconds();
-    int code = EXIT_DONE;
+    int code = EXIT_DONE, expected = 0;
     for (uint32_t i = 0; i < stress_num_cases && code == EXIT_DONE; i++) {
         const stress_case *c = &stress_cases[i];
-        bool any = false;
+        const int there = cJSON_GetArraySize(s->cells);
         for (size_t m = 0; m < ARRAY_SIZE(methods) && code == EXIT_DONE; m++) {
-            if (is_wanted(s, c, methods[m])) {
-                code = run_cell(s, c, methods[m]);
-                any = true;
+            if (belongs(options, c, methods[m])) {
+                code = take_cell(s, c, methods[m], before);
+                expected++;
             }
         }
-        if (any && strcmp(axis, c->axis)) {
+        if (cJSON_GetArraySize(s->cells) > there && strcmp(axis, c->axis)) {
             cJSON_AddItemToArray(axes, cJSON_CreateString(c->axis));
             axis = c->axis;
         }
     }
-    json_add_float(*stress, "seconds", app_seconds() - start);
+    cJSON_AddNumberToObject(stress, "expected", expected);
+    json_add_float(stress, "seconds", app_seconds() - start);
     a->quiet = quiet;
-    if (code != EXIT_DONE) {
-        cJSON_Delete(*stress);
-        *stress = NULL;
-    }
     free(s);
     return code;
 }

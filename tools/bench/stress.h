@@ -14,10 +14,12 @@ typedef struct stress_options {
     const char *method; // NULL: all
 } stress_options;
 
-// Runs the cases and prints a line each while `table`. Gives the exit code; *stress is the caller's, NULL
-// after a failure.
+// Runs the cases and prints a line each while `table`; fills the object `stress`. Cells of `before` (NULL: none) that
+// are not asked for stay. Gives the exit code.
 int stress_run(app *a, tyn_device *device, const stress_options *options, bool table,
-               cJSON **stress);
+               const cJSON *before, cJSON *stress);
+
+bool stress_has_axis(const char *part); // an axis with this in its name
 
 // The heat table: a row of cases for every axis and method, a letter each.
 void stress_print(const cJSON *stress);
@@ -26,6 +28,9 @@ void stress_print(const cJSON *stress);
 // warning of the method. Says each in a line; gives their number.
 #define STRESS_LOSSY 0.10
 uint32_t stress_faults(app *a, const cJSON *stress);
+
+// DIR/stress.json if this build of the library made it on this device; else NULL, and a word if there is another.
+cJSON *stress_read(app *a, const char *dir, uint64_t library, tyn_device *device);
 
 // `tyndall bench --stress`: all of it, on the device of `machine`; the object goes to DIR/stress.json and into
 // a report.json that is there. EXIT_FAILED if there are faults.

@@ -6,10 +6,13 @@
 
 enum { BENCH_MAX_SCENES = 64, BENCH_MAX_RUNS = 256, BENCH_MAX_RATIOS = 8, BENCH_MAX_SWEEP = 4 };
 
+// The reference's picture, beside those of the runs.
+#define BENCH_REFERENCE_SLUG "reference"
+
 typedef struct bench_scene {
     const char *name;
     char *slug; // the name as part of a file's name, unique in the suite
-    char *path; // found: beside the suite, or in the folder of the sample scenes
+    char *path, *environment; // found: beside the suite, or in the folder of the sample scenes
     scene_options scene;
     view_options view;
     uint32_t lights; // so many of the scene's alone, the first; 0: all
@@ -43,7 +46,7 @@ typedef struct bench_suite {
     bench_run runs[BENCH_MAX_RUNS];
     bench_ratio ratios[BENCH_MAX_RATIOS];
     uint32_t num_scenes, num_runs, num_ratios;
-    uint32_t block;       // beside 1
+    uint32_t block;       // beside 1; 2 or more
     uint32_t frames;      // timing frames of each kind
     float timing_seconds; // no further frame of a kind is begun after this long
     float max_seconds;    // a rendering that would take longer is left out
@@ -54,6 +57,9 @@ typedef struct bench_suite {
 // bench_suite_finish is due in any case.
 int bench_suite_load(app *a, const char *path, const char *scenes, bench_suite *suite);
 void bench_suite_finish(bench_suite *suite);
+
+// "pictures/SCENE/SLUG.exr": a new string, below the report's folder.
+char *bench_picture(const bench_scene *scene, const char *slug);
 
 // Whether a run is meant for a scene.
 bool bench_run_is_for(const bench_run *run, const bench_scene *scene);

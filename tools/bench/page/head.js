@@ -64,7 +64,7 @@ function speedRows(report, method, baseline, block) {
 }
 
 function speedReason(entry, method, baseline) {
-    return !isNumber(entry.ms) ? `${method} does not reach it`
+    return entry.why ? entry.why : !isNumber(entry.ms) ? `${method} does not reach it`
          : !isNumber(entry.baseline_ms) ? `${baseline} does not reach it` : "";
 }
 
@@ -130,7 +130,7 @@ function speedTable(rows, errors, method, baseline) {
             }
             return [make("td", {class: "number"}, duration(e.ms)),
                 make("td", {class: "number"}, e.measured === false && isNumber(e.baseline_ms) ? "about " : "", duration(e.baseline_ms)),
-                make("td", {class: "number"}, isNumber(e.speedup) ? times(e.speedup) : speedReason(e, method, baseline))];
+                make("td", {class: "number"}, isNumber(e.speedup) ? (e.measured === false ? "about " : "") + times(e.speedup) : speedReason(e, method, baseline))];
         }))))));
 }
 
@@ -163,8 +163,8 @@ function headline(report) {
         const missing = entries.flatMap((e) => list(e.missing).map((m) => `${level(e.error)}: ${m}`));
         body.replaceChildren(
             make("div", {class: "figures"}, entries.map((e) => make("p", {class: "figure"},
-                make("strong", {}, times(e.geometric_mean)),
-                make("span", {}, `the time of ${baseline} over that of ${method} at ${level(e.error)} error, geometric mean of ${e.scenes} scene${e.scenes === 1 ? "" : "s"}`)))),
+                make("strong", {}, (e.extrapolated > 0 ? "about " : "") + times(e.geometric_mean)),
+                make("span", {}, `the time of ${baseline} over that of ${method} at ${level(e.error)} error, geometric mean of ${e.scenes} scene${e.scenes === 1 ? "" : "s"}${e.extrapolated > 0 ? `, ${e.extrapolated} of ${e.scenes} extrapolated` : ""}`)))),
             chart,
             make("details", {}, make("summary", {}, "The times behind it"), speedTable(rows, errors, method, baseline)),
             missing.length > 0 ? make("details", {}, make("summary", {}, `Left out of the means: ${missing.length}`),

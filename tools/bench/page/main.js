@@ -25,7 +25,7 @@ function referenceWords(scene) {
 function firstRun(scene, block) {
     const runs = list(scene.runs), front = frontOf(scene, block);
     const good = runs.map((run, i) => [run, i]).filter(([run]) => !run.failed && isNumber(errorsOf(run, block).error));
-    const best = (entries) => entries.sort((a, b) => errorsOf(a[0], block).error - errorsOf(b[0], block).error)[0];
+    const best = (entries) => entries.sort((a, b) => errorValue(errorsOf(a[0], block)) - errorValue(errorsOf(b[0], block)))[0];
     const found = best(good.filter(([r]) => r.method === "pop" && front.has(r.key))) || best(good.filter(([r]) => r.method === "pop")) || best(good);
     return found ? found[1] : runs.length > 0 ? 0 : -1;
 }
@@ -71,7 +71,7 @@ function ratioList(ratios) {
 function notes() {
     const entry = (name, text) => [make("dt", {}, name), make("dd", {}, text)];
     return make("section", {id: "notes", class: "notes"}, make("h2", {}, "How to read it"), make("dl", {},
-        entry("error", "rel_l1, sum of |x - r| over sum of |r| of linear radiance, without what the noise of the reference explains: sqrt(rel_l1\u00b2 - n\u00b2). Over blocks, the pixels of a block are averaged first. A sampling method's own noise is an error of it."),
+        entry("error", "rel_l1, sum of |x - r| over sum of |r| of linear radiance, without what the noise of the reference explains: sqrt(rel_l1\u00b2 - n\u00b2). Over blocks, the pixels of a block are averaged first. \u201c\u2264\u201d: the noise hides it, and it is this or less; \u201c~\u201d: below twice the noise, where it comes out too small. A sampling method's own noise is an error of it."),
         entry("time", "Median of cold frames, in which every node runs, wall clock from submission to the end; of path the whole rendering."),
         entry("equal error", "The time of the cheapest run of a method that has this error, interpolated along its line in the plot; \u201cabout\u201d where it had to be extrapolated."),
         entry("ceilings", "What the device reached in kernels that do one thing only, in the same run; a node's share is the time that its work would take at that ceiling over the time it took."),

@@ -166,7 +166,7 @@ function pictureViewer(scene, sceneIndex, first) {
     const gain = range("gain", 0, 10, 1, (v) => 2 ** v + TIMES);
     const toggle = (label, key, name) => make("button", {type: "button", "aria-pressed": "false", "aria-keyshortcuts": key,
         onclick() { state[name] = !state[name]; update(); }}, label);
-    const differenceButton = toggle("difference", "d", "difference"), blockButton = toggle("8\u00d78 means", "m", "blocks");
+    const differenceButton = toggle("difference", "d", "difference"), blockButton = toggle(`${largest}\u00d7${largest} means`, "m", "blocks");
     const swapButton = make("button", {type: "button", "aria-keyshortcuts": "s", onclick() { swap(); }}, "swap");
     const scale = make("div", {class: "scale"}, make("span"), make("canvas", {width: 128, height: 1, "aria-hidden": "true"}), make("span"));
     const dark = matchMedia("(prefers-color-scheme: dark)");
@@ -174,7 +174,7 @@ function pictureViewer(scene, sceneIndex, first) {
 
     async function load(entry) {
         entry.picture = entry.picture || await unpackPicture(entry.source);
-        entry.means = entry.means || blockMeans(entry.picture, 8);
+        entry.means = entry.means || blockMeans(entry.picture, largest);
         return state.blocks ? entry.means : entry.picture;
     }
 

@@ -33,7 +33,7 @@ function errorPlot(scene, styles, select) {
 
     const runsOf = () => list(scene.runs).map((run, index) => ({
         run, index, style: styles.get(String(run.group ?? run.method)),
-        ms: coldOf(run), error: errorsOf(run, block).error,
+        ms: coldOf(run), error: errorValue(errorsOf(run, block)), hidden: isHidden(errorsOf(run, block)),
     })).filter((p) => !p.run.failed && isNumber(p.ms) && p.ms > 0 && isNumber(p.error));
 
     function describe(p) {
@@ -94,9 +94,9 @@ function errorPlot(scene, styles, select) {
             const low = Math.min(...values), high = Math.max(...values), extra = Math.max(pad, 0.04 * (high - low));
             return [low - extra, high + extra];
         };
-        const [x0, x1] = span(logs((p) => p.ms), 0.12), [y0, y1] = span(ys.length ? ys : [-2, 0], points.some((p) => !(p.error > 0)) ? 0.22 : 0.14);
+        const [x0, x1] = span(logs((p) => p.ms), 0.12), [y0, y1] = span(ys.length ? ys : [-2, 0], points.some((p) => p.hidden) ? 0.22 : 0.14);
         const X = (ms) => left + (width - left - right) * (Math.log10(ms) - x0) / (x1 - x0);
-        const base = height - bottom; // what is below the noise stands on it, with an arrow
+        const base = height - bottom; // what is below the noise stands at it, with an arrow
         const Y = (error) => (error > 0 ? top + (base - top) * (y1 - Math.log10(error)) / (y1 - y0) : base - 12);
         const hatch = `hatch-${scene.name}`.replace(/[^\w-]/g, "_");
         const svg = draw("svg", {class: "error-plot", width, height, viewBox: `0 0 ${width} ${height}`, role: "group",
@@ -155,7 +155,7 @@ function errorPlot(scene, styles, select) {
             },
             draw("circle", {class: "reach", r: 11 * size}), onFront && draw("circle", {class: "ring", r: 8.5 * size}),
             draw("path", {class: "shape", d: p.style.shape, transform: size === 1 ? null : `scale(${size})`, fill: p.style.color, stroke: p.style.color}),
-            !(p.error > 0) && draw("path", {class: "below", d: "M0,6V12M-3.5,8.5L0,12L3.5,8.5", stroke: p.style.color}));
+            p.hidden && draw("path", {class: "below", d: "M0,6V12M-3.5,8.5L0,12L3.5,8.5", stroke: p.style.color}));
             svg.append(group);
         }
         holder.replaceChildren(svg, tip);

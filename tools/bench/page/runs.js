@@ -8,7 +8,7 @@ const spoiled = (run) => (run.non_finite || 0) + (run.negative || 0);
 // Columns: [heading, what it is, value to sort by, text]. Blocks: those of the scene's errors.
 function runColumns(blocks) {
     const error = (block) => [blockName(block).replace(" pixels", " px").replace("single px", "1 px"), `error over ${blockName(block)}`,
-        (run) => errorsOf(run, block).error, (run) => errorText(errorsOf(run, block))];
+        (run) => errorValue(errorsOf(run, block)), (run) => errorText(errorsOf(run, block))];
     return [
         ...blocks.map(error),
         ["bias", "mean of the picture over that of the reference, less 1", (run) => errorsOf(run, blocks[0]).bias,
@@ -98,7 +98,7 @@ function nodeBars(run) {
 function citation(report, scene, run) {
     const device = report.device || {}, reference = scene.reference || {};
     const errors = list(run.errors).map((e) =>
-        `${e.error > 0 ? percent(e.error, 3) : errorText(e)} over ${blockName(e.block)} (noise of the reference ${percent(e.n)})`).join("; ");
+        `${errorText(e, 3)} over ${blockName(e.block)} (noise of the reference ${percent(e.n)})`).join("; ");
     const inputs = Object.entries(run.inputs || {}).map(([k, v]) => `${k} ${v}`).join(", ");
     return [
         `Tyndall ${report.tyndall}, suite ${(report.suite || {}).name} (${(report.suite || {}).hash})`,

@@ -89,9 +89,11 @@ function stressSection(stress, styles) {
     const axes = unique(cells.map((c) => c.axis));
     const spoiledCells = cells.filter((c) => c.non_finite > 0 || c.negative > 0);
     const lossy = cells.filter((c) => isNumber(c.error) && c.error > 0.1);
+    const missing = isNumber(stress.expected) ? stress.expected - cells.length : 0;
     const section = make("section", {id: "stress", class: "stress"},
         make("h2", {}, "Under stress"),
-        make("p", {}, `${cells.length} cases in which numbers get extreme, each against an exact answer or path. A cell shows the error in percent and, below it, the value on its axis; point at it for the reason.`),
+        missing > 0 && make("p", {class: "note part"}, `${missing} of the ${stress.expected} cells of the ${stress.quick ? "quick" : "whole"} suite were not run.`),
+        make("p", {}, `${cells.length} cases in which numbers get extreme, each against an exact answer or path${stress.quick ? " (the quick suite)" : ""}. A cell shows the error in percent and, below it, the value on its axis; point at it for the reason.`),
         spoiledCells.length > 0
             ? make("p", {class: "alert", role: "alert"}, `${spoiledCells.length} cell${spoiledCells.length > 1 ? "s hold" : " holds"} values that are not finite or negative: `, spoiledCells.map((c) => stressWords(c).title).join("; "))
             : make("p", {class: "good"}, "No value of any cell is infinite, not a number or negative."),

@@ -76,8 +76,10 @@ function settingsText(settings) {
 }
 
 const errorsOf = (run, block) => list(run.errors).find((e) => e.block === block) || {};
-// An error of 0 is one that the noise of the reference hides.
-const errorText = (e) => (e.error === 0 && e.n > 0 ? `< ${percent(e.n)}` : percent(e.error));
+// An error below the noise of the reference is known to be that noise or less; below twice the noise it is vague.
+const isHidden = (e) => isNumber(e.error) && isNumber(e.n) && e.error < e.n;
+const errorValue = (e) => (isHidden(e) ? e.n : e.error);
+const errorText = (e, count = 2) => (isHidden(e) ? `\u2264${NARROW}` : isNumber(e.error) && e.error < 2 * e.n ? "~" : "") + percent(errorValue(e), count);
 const coldOf = (run) => (run.frame_ms || {}).cold;
 const frontOf = (scene, block) => new Set(list((list(scene.fronts).find((f) => f.block === block) || {}).runs));
 

@@ -1,0 +1,114 @@
+// bench_plane.c -- what a report says of a scene: what the reference's noise hides, many groups, large errors.
+#include "bench/json.h"
+#include "bench/plane.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+static void add_run(cJSON *runs, const char *group, bool sampling, double ms, double error,
+                    double n)
+{
+    char text[512];
+    snprintf(
+        text, sizeof text,
+        "{\"key\": \"%d\", \"group\": \"%s\", \"sampling\": %s, \"swept\": true, \"frame_ms\": "
+        "{\"cold\": %g}, \"errors\": [{\"block\": 8, \"error\": %g, \"n\": %g}]}",
+        cJSON_GetArraySize(runs), group, sampling ? "true" : "false", ms, error, n);
+    cJSON_AddItemToArray(runs, cJSON_Parse(text));
+}
+
+static void has_text(cJSON *list, int index, const char *expected)
+{
+    assert_string_equal(cJSON_GetStringValue(cJSON_GetArrayItem(list, index)), expected);
+}
+
+// A reference so noisy that nothing can be said of most of what is measured.
+static void noisy(void **state)
+{
+    (void)state;
+    cJSON *runs = cJSON_CreateArray(), *equal = cJSON_CreateArray();
+    add_run(runs, "pop", false, 30, 0.01, 0.034);
+    add_run(runs, "pop", false, 90, 0, 0.034);
+    add_run(runs, "path", true, 10, 0.2, 0.034);
+    add_run(runs, "path", true, 40, 0.05, 0.034);
+    add_run(runs, "path", true, 640, 0, 0.034);
+    plane p;
+    assert_true(plane_make(&p, runs, 0, 8));
+    cJSON *verdicts = plane_verdicts(&p), *ranges = plane_ranges(&p), *floors = plane_floors(&p);
+    has_text(verdicts, cJSON_GetArraySize(verdicts) - 1,
+             "pop is on the front from 3.4 %, the noise of the reference, to 12 %");
+    assert_float_equal(json_figure(ranges, "0.low"), 0.034, 1e-6);
+    assert_float_equal(json_figure(floors, "0.error"), 0.034, 1e-9);
+    assert_true(json_true(cJSON_GetArrayItem(floors, 0), "vague"));
+    plane_add_equal_errors(&p, equal); // at 10, 5 and 3 %
+    cJSON *at_ten = cJSON_GetArrayItem(equal, 0), *at_five = cJSON_GetArrayItem(equal, 1);
+    assert_true(cJSON_IsNull(cJSON_GetObjectItem(at_ten, "why")));
+    assert_string_equal(json_text(at_five, "why"),
+                        "the noise of its reference, 3.4 %, is more than half of this");
+    assert_string_equal(cJSON_GetObjectItem(at_five, "speedup")->valuestring, "null");
+    plane_add_own_equal_errors(&p, runs);
+    assert_true(
+        json_true(cJSON_GetArrayItem(cJSON_GetObjectItem(cJSON_GetArrayItem(runs, 3), "errors"), 0),
+                  "vague"));
+    assert_true(isnan(json_figure(runs, "0.equal_error.0.ms"))); // of an error that nobody knows
+    // of the two that are at the noise one is shown
+    plane_choose_pictures(&p, runs);
+    assert_true(json_true(cJSON_GetArrayItem(runs, 0), "shown"));
+    assert_false(json_true(cJSON_GetArrayItem(runs, 1), "shown"));
+    plane_finish(&p);
+    cJSON_Delete(floors);
+    cJSON_Delete(ranges);
+    cJSON_Delete(verdicts);
+    cJSON_Delete(equal);
+    cJSON_Delete(runs);
+}
+
+// As many groups as a suite may have runs: none is counted as another.
+static void many_groups(void **state)
+{
+    (void)state;
+    cJSON *runs = cJSON_CreateArray(), *equal = cJSON_CreateArray();
+    char name[16];
+    for (int i = 0; i < 100; i++) {
+        snprintf(name, sizeof name, "group %d", i);
+        add_run(runs, name, i == 0, 10 + i, 0.2 / (1 + i), 0);
+    }
+    plane p;
+    assert_true(plane_make(&p, runs, 0, 8));
+    assert_int_equal(p.num_lines, 100);
+    plane_add_equal_errors(&p, equal);
+    assert_int_equal(cJSON_GetArraySize(equal), 3 * 99);
+    plane_finish(&p);
+    cJSON_Delete(equal);
+    cJSON_Delete(runs);
+}
+
+static void large_errors(void **state)
+{
+    (void)state;
+    cJSON *runs = cJSON_CreateArray();
+    add_run(runs, "pop", false, 1, 2.0, 0);
+    add_run(runs, "path", true, 10, 0.6, 0);
+    plane p;
+    assert_true(plane_make(&p, runs, 0, 8));
+    cJSON *verdicts = plane_verdicts(&p);
+    has_text(verdicts, 0, "pop is on the front above 200 %");
+    has_text(verdicts, 1, "path wins below 200 %");
+    plane_finish(&p);
+    cJSON_Delete(verdicts);
+    cJSON_Delete(runs);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(noisy),
+        cmocka_unit_test(many_groups),
+        cmocka_unit_test(large_errors),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,273 @@
+// plane.c -- the runs of a scene as points of error against time: fronts, times at equal error, verdicts.
+#include "plane.h"
+#include "app.h"
+#include "json.h"
+#include "stats.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NUM_ASKED = 3, MAX_RANGES = 64 };
+static const double asked[NUM_ASKED] = {0.10, 0.05, 0.03}; // errors at which methods are compared
+
+// ---- runs as points ---------------------------------------------------------------------------
+
+static uint32_t line_of(plane *p, const cJSON *run)
+{
+    const char *name = json_text(run, "group");
+    for (uint32_t i = 0; i < p->num_lines; i++) {
+        if (strcmp(p->lines[i].name, name) == 0) {
+            return i;
+        }
+    }
+    p->lines[p->num_lines] = (plane_line){name, json_true(run, "sampling")};
+    return p->num_lines++;
+}
+
+bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block)
+{
+    const uint32_t count = (uint32_t)cJSON_GetArraySize(runs);
+    char error_path[32], noise_path[32];
+    snprintf(error_path, sizeof error_path, "errors.%d.error", index);
+    snprintf(noise_path, sizeof noise_path, "errors.%d.n", index);
+    *p = (plane){.points = calloc(count + 1, sizeof *p->points),
+                 .runs = calloc(count + 1, sizeof *p->runs),
+                 .lines = calloc(count + 1, sizeof *p->lines),
+                 .block = block};
+    if (!p->points || !p->runs || !p->lines) {
+        return false;
+    }
+    const cJSON *run;
+    cJSON_ArrayForEach(run, runs)
+    {
+        const double error = json_figure(run, error_path), noise = json_figure(run, noise_path);
+        const uint32_t of = line_of(p, run);
+        p->noise = noise > 0 ? noise : p->noise;
+        p->runs[p->count] = run;
+        p->points[p->count++] = (front_point){.ms = json_figure(run, "frame_ms.cold"),
+                                              .error = error < noise ? noise : error,
+                                              .line = of,
+                                              .sampling = p->lines[of].sampling,
+                                              .bound = error < noise};
+    }
+    return true;
+}
+
+void plane_finish(plane *p)
+{
+    free(p->points);
+    free(p->runs);
+    free(p->lines);
+}
+
+static cJSON *json_key(const plane *p, int32_t point)
+{
+    return point >= 0 ? cJSON_CreateString(json_text(p->runs[point], "key")) : cJSON_CreateNull();
+}
+
+static const char *percent(double error, char text[16])
+{
+    snprintf(text, 16, error < 0.1 ? "%.1f %%" : "%.0f %%", 100 * error);
+    return text;
+}
+
+// ---- the front --------------------------------------------------------------------------------
+
+cJSON *plane_front(const plane *p)
+{
+    uint32_t *indices = calloc(p->count + 1, sizeof *indices);
+    const uint32_t num = indices ? front_pareto(p->points, p->count, indices) : 0;
+    cJSON *front = cJSON_CreateObject();
+    cJSON_AddNumberToObject(front, "block", p->block);
+    cJSON *list = cJSON_AddArrayToObject(front, "runs");
+    for (uint32_t i = 0; i < num; i++) {
+        cJSON_AddItemToArray(list, json_key(p, (int32_t)indices[i]));
+    }
+    free(indices);
+    return front;
+}
+
+cJSON *plane_floors(const plane *p)
+{
+    cJSON *floors = cJSON_CreateArray();
+    for (uint32_t m = 0; m < p->num_lines; m++) {
+        double least = NAN;
+        for (uint32_t i = 0; i < p->count; i++) {
+            least = p->points[i].line == m ? fmin(least, p->points[i].error) : least;
+        }
+        if (!p->lines[m].sampling && isfinite(least)) {
+            cJSON *floor = cJSON_CreateObject();
+            cJSON_AddNumberToObject(floor, "block", p->block);
+            cJSON_AddStringToObject(floor, "method", p->lines[m].name);
+            json_add_float(floor, "error", least);
+            cJSON_AddBoolToObject(floor, "vague", least < 2 * p->noise);
+            cJSON_AddItemToArray(floors, floor);
+        }
+    }
+    return floors;
+}
+
+void plane_choose_pictures(const plane *p, cJSON *runs)
+{
+    uint32_t *front = calloc(p->count + 1, sizeof *front);
+    const uint32_t num = front ? front_pareto(p->points, p->count, front) : 0;
+    for (uint32_t i = 0; i < p->count; i++) {
+        const front_point *own = &p->points[i];
+        cJSON *run = cJSON_GetArrayItem(runs, (int)i);
+        bool shown = !json_true(run, "swept"), best = true;
+        for (uint32_t k = 0; k < num; k++) {
+            shown = shown || front[k] == i;
+        }
+        for (uint32_t k = 0; k < p->count; k++) {
+            const front_point *other = &p->points[k];
+            best = best && !(other->line == own->line &&
+                             (other->error < own->error ||
+                              (other->error == own->error && other->ms < own->ms)));
+        }
+        cJSON_AddBoolToObject(run, "shown", (shown || best) && isfinite(own->error));
+    }
+    free(front);
+}
+
+// ---- times at equal error ---------------------------------------------------------------------
+
+// Below twice the noise of the reference an error is not known well enough to be asked for: "why", and no times.
+static cJSON *json_equal_error(const plane *p, double error, uint32_t own_line, uint32_t base_line)
+{
+    char noise[16];
+    const bool vague = error < 2 * p->noise;
+    front_time own = {NAN, -1, false}, base = own;
+    if (!vague) {
+        own = front_time_at(p->points, p->count, own_line, error);
+        base = front_time_at(p->points, p->count, base_line, error);
+    }
+    cJSON *entry = cJSON_CreateObject();
+    cJSON_AddNumberToObject(entry, "block", p->block);
+    cJSON_AddNumberToObject(entry, "error", error);
+    cJSON_AddStringToObject(entry, "method", p->lines[own_line].name);
+    json_add_float(entry, "ms", own.ms);
+    cJSON_AddItemToObject(entry, "run", json_key(p, own.point));
+    cJSON_AddStringToObject(entry, "baseline", p->lines[base_line].name);
+    json_add_float(entry, "baseline_ms", base.ms);
+    json_add_float(entry, "speedup", base.ms / own.ms);
+    cJSON_AddBoolToObject(entry, "measured", base.measured);
+    char *why = vague ? text_format("the noise of its reference, %s, is more than half of this",
+                                    percent(p->noise, noise))
+                      : NULL;
+    cJSON_AddItemToObject(entry, "why", why ? cJSON_CreateString(why) : cJSON_CreateNull());
+    free(why);
+    return entry;
+}
+
+void plane_add_equal_errors(const plane *p, cJSON *list)
+{
+    for (int e = 0; e < NUM_ASKED; e++) {
+        for (uint32_t m = 0; m < p->num_lines; m++) {
+            for (uint32_t b = 0; b < p->num_lines; b++) {
+                if (!p->lines[m].sampling && p->lines[b].sampling) {
+                    cJSON_AddItemToArray(list, json_equal_error(p, asked[e], m, b));
+                }
+            }
+        }
+    }
+}
+
+static void add_own(const plane *p, const front_point *point, cJSON *list)
+{
+    for (uint32_t b = 0; b < p->num_lines; b++) {
+        if (!p->lines[b].sampling) {
+            continue;
+        }
+        const front_time base = point->bound ? (front_time){NAN, -1, false}
+                                             : front_time_at(p->points, p->count, b, point->error);
+        cJSON *entry = cJSON_CreateObject();
+        cJSON_AddNumberToObject(entry, "block", p->block);
+        cJSON_AddStringToObject(entry, "baseline", p->lines[b].name);
+        json_add_float(entry, "ms", base.ms);
+        json_add_float(entry, "speedup", base.ms / point->ms);
+        cJSON_AddBoolToObject(entry, "measured", base.measured);
+        cJSON_AddItemToArray(list, entry);
+    }
+}
+
+void plane_add_own_equal_errors(const plane *p, cJSON *runs)
+{
+    for (uint32_t i = 0; i < p->count; i++) {
+        const front_point *point = &p->points[i];
+        cJSON *run = cJSON_GetArrayItem(runs, (int)i), *error;
+        cJSON_ArrayForEach(error, cJSON_GetObjectItemCaseSensitive(run, "errors"))
+        {
+            if (json_figure(error, "block") == p->block) {
+                cJSON_AddBoolToObject(error, "vague", point->error < 2 * p->noise);
+            }
+        }
+        if (!point->sampling && isfinite(point->error)) {
+            cJSON *list = cJSON_GetObjectItemCaseSensitive(run, "equal_error");
+            add_own(p, point, list ? list : cJSON_AddArrayToObject(run, "equal_error"));
+        }
+    }
+}
+
+// ---- who is fastest ---------------------------------------------------------------------------
+
+cJSON *plane_ranges(const plane *p)
+{
+    front_range ranges[MAX_RANGES];
+    const uint32_t num = front_ranges(p->points, p->count, ranges, MAX_RANGES);
+    cJSON *list = cJSON_CreateArray();
+    for (uint32_t i = 0; i < num; i++) {
+        const front_range *r = &ranges[i];
+        cJSON *range = cJSON_CreateObject();
+        cJSON_AddNumberToObject(range, "block", p->block);
+        cJSON_AddStringToObject(range, "method", p->lines[r->line].name);
+        json_add_float(range, "low", r->lowest ? NAN : r->low);
+        json_add_float(range, "high", r->highest ? NAN : r->high);
+        cJSON_AddItemToArray(list, range);
+    }
+    return list;
+}
+
+static void add_verdict(cJSON *verdicts, char *text)
+{
+    cJSON_AddItemToArray(verdicts, cJSON_CreateString(text ? text : ""));
+    free(text);
+}
+
+// "pop is on the front above 2.7 %"
+static char *verdict(const plane *p, const front_range *r, bool first)
+{
+    const char *name = p->lines[r->line].name;
+    const char *does = strcmp(name, "pop") == 0 ? "is on the front" : "wins";
+    // The first of all begins where the noise of the reference ends what is known.
+    const char *noise = first && !r->lowest ? ", the noise of the reference" : "";
+    char low[16], high[16];
+    percent(r->low, low);
+    percent(r->high, high);
+    return r->lowest && r->highest ? text_format("%s %s at all errors", name, does)
+           : r->highest            ? text_format("%s %s above %s%s", name, does, low, noise)
+           : r->lowest             ? text_format("%s %s below %s", name, does, high)
+                       : text_format("%s %s from %s%s to %s", name, does, low, noise, high);
+}
+
+cJSON *plane_verdicts(const plane *p)
+{
+    front_range ranges[MAX_RANGES];
+    const uint32_t num = front_ranges(p->points, p->count, ranges, MAX_RANGES);
+    cJSON *verdicts = cJSON_CreateArray();
+    bool has_pop = false, pop_wins = false;
+    for (uint32_t i = 0; i < p->num_lines; i++) {
+        has_pop = has_pop || strcmp(p->lines[i].name, "pop") == 0;
+    }
+    for (uint32_t i = num; i-- > 0;) { // from what is asked for most
+        pop_wins = pop_wins || strcmp(p->lines[ranges[i].line].name, "pop") == 0;
+        add_verdict(verdicts, verdict(p, &ranges[i], i == 0));
+    }
+    if (has_pop && num > 0 && !pop_wins) {
+        char low[16];
+        add_verdict(verdicts, ranges[0].lowest ? text_format("pop is nowhere the fastest")
+                                               : text_format("pop is nowhere the fastest above %s",
+                                                             percent(ranges[0].low, low)));
+    }
+    return verdicts;
+}

@@ -1,0 +1,36 @@
+// plane.h -- the runs of a scene as points of error against time, over blocks of one size: what follows from them.
+#pragma once
+#include "front.h"
+#include <cjson/cJSON.h>
+
+typedef struct plane_line { // the runs of one group
+    const char *name;
+    bool sampling;
+} plane_line;
+
+typedef struct plane {
+    front_point *points; // one a run
+    const cJSON **runs;
+    uint32_t count, block;
+    plane_line *lines;
+    uint32_t num_lines;
+    double noise; // of the reference; 0: not known. An error below it is one of it or less, below twice it vague
+} plane;
+
+// `index`: which of the errors; `block`: what they are of. Borrows from `runs`. False: out of memory; plane_finish is
+// due in any case.
+bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block);
+void plane_finish(plane *p);
+
+// As report.json has them (docs/report-schema.md).
+cJSON *plane_front(const plane *p);
+cJSON *plane_floors(const plane *p);   // the least error of each method: what no setting of this suite gets below
+cJSON *plane_ranges(const plane *p);   // of errors in which one method is fastest
+cJSON *plane_verdicts(const plane *p); // the same as sentences
+// Every method against every one that samples, at the errors asked for.
+void plane_add_equal_errors(const plane *p, cJSON *list);
+// What the methods that sample need for the error of each other run; which errors are vague; `runs` are those of
+// plane_make.
+void plane_add_own_equal_errors(const plane *p, cJSON *runs);
+// Pages hold pictures: of a sweep only those on a front, the best and what no sweep made are worth it.
+void plane_choose_pictures(const plane *p, cJSON *runs);
