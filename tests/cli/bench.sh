@@ -49,6 +49,40 @@ works bench --suite suite.json --scenes "$scenes" --report report --quiet
 [ "$(find report/records -name '*.json' -newer suite.json | wc -l)" = 0 ] || fail "bench: measured what there were records of"
 works bench --suite suite.json --scenes "$scenes" --report report --fresh --quiet
 [ "$(find report/records -name '*.json' -newer suite.json | wc -l)" = 6 ] || fail "bench: --fresh did not measure anew"
+# figures say how many frames they are medians of
+[ "$(get report/report.json scenes.0.runs.0.frames.cold)" -ge 1 ] || fail "bench: no number of frames"
+[ "$(get report/report.json scenes.0.runs.3.frames.camera_moved)" = 0 ] || fail "bench: frames of a moved camera of path"
+# records that are cut, and pictures that are gone, are made anew; what the suite says of a run is the suite's
+key() { # INDEX: of the run
+    get report/report.json "scenes.0.runs.$1.key"
+}
+single=report/records/$(key 2).json pop=report/records/$(key 0).json plain=report/records/$(key 3).json
+echo "{\"version\": 1, \"key\": \"$(key 2)\"}" >"$single"
+sed 's/"rel_l1"/"rel"/' "$pop" >cut && mv cut "$pop"
+sed 's/"baseline":\t*true/"baseline": false/; s/"swept":\t*true/"swept": false/' "$plain" >stale && mv stale "$plain"
+rm report/pictures/cube/pop-cells-16.exr
+touch -d 2000-01-01 report/records/*.json
+works bench --suite suite.json --scenes "$scenes" --report report --quiet
+[ "$(find report/records -name '*.json' -newer suite.json | wc -l)" = 3 ] || fail "bench: not three of the records made anew"
+[ -s report/pictures/cube/pop-cells-16.exr ] || fail "bench: a picture that is gone was not made"
+[ "$(get report/report.json scenes.0.runs)" = "list 6" ] || fail "bench: a run is lost"
+[ "$(get report/report.json scenes.0.runs.3.baseline)" = true ] || fail "bench: a record overrules the suite"
+# names that look alike as files, none of which is the reference; samples in whatever order; files beside the suite
+mkdir beside && "$helpers/exr_make" beside/map.exr 4 2 R=1 G=1 B=1
+cat >beside/names.json <<'END'
+{ "name": "names", "size": [16, 16], "reference_spp": 4, "block": 4, "frames": 1, "timing_seconds": 0, "ceilings": false,
+  "max_seconds": 0.5, "scenes": [ { "name": "雲", "scene": "cube.gltf", "environment": "map.exr" } ],
+  "runs": [ { "name": "reference", "method": "single" }, { "name": "a b", "method": "single" },
+            { "name": "a-b", "method": "single" } ],
+  "baselines": [ { "sweep": { "spp": [4000000, 1, 4] } } ] }
+END
+works bench --suite beside/names.json --scenes "$scenes" --report names --quiet
+for file in reference reference-2 a-b a-b-2 path-1-spp; do
+    [ -s "names/pictures/scene/$file.exr" ] || fail "bench: no picture $file: $(ls names/pictures/*)"
+done
+cmp -s names/pictures/scene/reference.exr names/pictures/scene/reference-2.exr && fail "bench: a run is the reference"
+[ "$(get names/report.json scenes.0.left_out)" = "list 1" ] || fail "bench: max_seconds depends on the order"
+[ "$(get names/report.json scenes.0.runs.3.name)" = "path, 1 spp" ] || fail "bench: runs are not in the order of the suite"
 # a reference of the user's own, and bands
 cat >file.json <<'END'
 { "name": "file", "size": [24, 24], "block": 4, "frames": 1, "timing_seconds": 0, "ceilings": false,
@@ -70,6 +104,22 @@ bands 0.5 0.6
 run bench --suite file.json --scenes "$scenes" --bands bands.json --quiet
 [ "$code" = 1 ] && [ "$(grep -c 'cube: pop: errors.0.bias is .*, outside of 0.5 to 0.6 (a test)' err)" = 1 ] ||
     fail "bench: a band that is left: exit $code, $(cat err)"
+# the stress suite in parts: cells of the same build are kept, others are not
+run bench --stress --quick --axis "scale, lamp" --report parts --quiet
+first=$(get parts/stress.json cells)
+run bench --stress --quick --axis "storage, half" --report parts --quiet
+cells=$(get parts/stress.json cells) expected=$(get parts/stress.json expected)
+[ "${first#list }" -gt 0 ] && [ "${cells#list }" -gt "${first#list }" ] || fail "stress: $first cells, then $cells"
+[ "$expected" -gt "${cells#list }" ] || fail "stress: $cells of $expected: a part is not told from the whole"
+[ "$(get parts/stress.json schema) $(get parts/stress.json version) $(get parts/stress.json quick)" = "tyndall-stress 1 true" ] ||
+    fail "stress: no schema"
+sed 's/"library":[^,]*,/"library": "0123456789abcdef",/' parts/stress.json >other && mv other parts/stress.json
+run bench --suite file.json --scenes "$scenes" --report parts
+grep -q "parts/stress.json is not of this build" err || fail "stress of another build is not refused: $(cat err)"
+[ "$(get parts/report.json stress)" = null ] || fail "stress of another build in a report"
+run bench --stress --quick --axis "scale, lamp" --report parts --quiet
+[ "$(get parts/stress.json cells)" = "$first" ] || fail "stress: cells of two builds in one file"
+[ "$(get parts/report.json stress.cells)" = "$first" ] || fail "stress: not in the report that is there"
 # Ctrl-C: what is done is kept
 sed 's/\[1, 4, 16\]/[1, 4, 4000000]/; s/"max_seconds": 5/"max_seconds": 80000/' suite.json >long.json
 "$tool" bench --suite long.json --scenes "$scenes" --report long --quiet >out 2>err &

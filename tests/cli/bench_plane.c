@@ -21,6 +21,17 @@ static void add_run(cJSON *runs, const char *group, bool sampling, double ms, do
     cJSON_AddItemToArray(runs, cJSON_Parse(text));
 }
 
+// As a reader of the file sees it.
+static cJSON *written(cJSON *tree)
+{
+    char *text = cJSON_PrintUnformatted(tree);
+    cJSON *seen = cJSON_Parse(text);
+    cJSON_free(text);
+    cJSON_Delete(tree);
+    assert_non_null(seen);
+    return seen;
+}
+
 static void has_text(cJSON *list, int index, const char *expected)
 {
     assert_string_equal(cJSON_GetStringValue(cJSON_GetArrayItem(list, index)), expected);
@@ -38,28 +49,32 @@ static void noisy(void **state)
     add_run(runs, "path", true, 640, 0, 0.034);
     plane p;
     assert_true(plane_make(&p, runs, 0, 8));
-    cJSON *verdicts = plane_verdicts(&p), *ranges = plane_ranges(&p), *floors = plane_floors(&p);
+    cJSON *verdicts = plane_verdicts(&p), *ranges = written(plane_ranges(&p));
+    cJSON *floors = written(plane_floors(&p));
     has_text(verdicts, cJSON_GetArraySize(verdicts) - 1,
-             "pop is on the front from 3.4 %, the noise of the reference, to 12 %");
-    assert_float_equal(json_figure(ranges, "0.low"), 0.034, 1e-6);
-    assert_float_equal(json_figure(floors, "0.error"), 0.034, 1e-9);
+             "pop is on the front from 3.4 %, the noise of the reference, to 6.7 %");
+    assert_true(fabs(json_figure(ranges, "0.low") - 0.034) < 1e-6);
+    assert_true(fabs(json_figure(floors, "0.error") - 0.034) < 1e-9);
     assert_true(json_true(cJSON_GetArrayItem(floors, 0), "vague"));
     plane_add_equal_errors(&p, equal); // at 10, 5 and 3 %
+    equal = written(equal);
     cJSON *at_ten = cJSON_GetArrayItem(equal, 0), *at_five = cJSON_GetArrayItem(equal, 1);
     assert_true(cJSON_IsNull(cJSON_GetObjectItem(at_ten, "why")));
     assert_string_equal(json_text(at_five, "why"),
                         "the noise of its reference, 3.4 %, is more than half of this");
-    assert_string_equal(cJSON_GetObjectItem(at_five, "speedup")->valuestring, "null");
+    assert_true(json_figure(at_ten, "speedup") > 0);
+    assert_true(isnan(json_figure(at_five, "speedup")));
     plane_add_own_equal_errors(&p, runs);
     assert_true(
         json_true(cJSON_GetArrayItem(cJSON_GetObjectItem(cJSON_GetArrayItem(runs, 3), "errors"), 0),
                   "vague"));
-    assert_true(isnan(json_figure(runs, "0.equal_error.0.ms"))); // of an error that nobody knows
     // of the two that are at the noise one is shown
     plane_choose_pictures(&p, runs);
     assert_true(json_true(cJSON_GetArrayItem(runs, 0), "shown"));
     assert_false(json_true(cJSON_GetArrayItem(runs, 1), "shown"));
     plane_finish(&p);
+    runs = written(runs);
+    assert_true(isnan(json_figure(runs, "0.equal_error.0.ms"))); // of an error that nobody knows
     cJSON_Delete(floors);
     cJSON_Delete(ranges);
     cJSON_Delete(verdicts);

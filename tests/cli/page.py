@@ -51,9 +51,16 @@ def check_tables(folder, tables):
     subprocess.run([tables, f"{folder}/report.json", readme], check=True)
     text = open(readme, encoding="utf-8").read()
     check("what is around the tables stays", text.startswith("before\n<!-- tables -->\n") and text.endswith("<!-- end of tables -->\nafter\n") and "stale" not in text)
-    check("the headline", "6.3 times as long as `pop` at 10 % error (3 scenes), 15 times" in text, text)
+    check("the headline", "takes 6.3 times as long as `pop` at 10 % error (3 scenes), about 15 times as long as `pop` at 5 % error (1 of 3 scenes extrapolated)" in text, text)
     check("a scene at equal error", "| smoke | 8.1 % in 34.0 ms to 2.7 % in 290 ms | 31.0 ms | 384 ms | 12 |" in text, text)
+    check("what the noise hides", "to <= 1.3 % in" in text, text)
     check("markup in names is none", "<script" not in text.replace("\\<", ""), text)
+    root = os.path.dirname(os.path.dirname(os.path.abspath(tables)))
+    shown = open(f"{root}/README.md", encoding="utf-8").read()
+    with open(readme, "w", encoding="utf-8") as file:
+        file.write(shown)
+    subprocess.run([tables, f"{root}/tools/bench/results/ci.json", readme], check=True)
+    check("the README shows results/ci.json: docs/tables tools/bench/results/ci.json README.md", open(readme, encoding="utf-8").read() == shown)
     again = subprocess.run([tables, f"{folder}/report.json", readme + ".none"], capture_output=True)
     check("a file that is not there is an error", again.returncode != 0)
 
@@ -99,6 +106,15 @@ def check_plots(b, report):
     for word in (report["tyndall"], run["key"], report["device"]["driver"], report["suite"]["hash"], "seed 0", "5be0cd19137e2179"):
         check(f"the record to cite has {word}", word in record, record)
 
+    # What the noise of the reference hides is not drawn or said to be better than that noise.
+    hidden = b.run(scene(2, "[...scene.querySelectorAll('.error-plot .point')].filter(p => p.querySelector('.below')).map(p => [+p.dataset.run, p.getAttribute('aria-label')])"))
+    check("an error below the noise", len(hidden) == 1 and hidden[0][0] == 2 and "error \u2264" in hidden[0][1], str(hidden))
+    places = b.run(scene(2, "[scene.querySelector('.error-plot line.noise').getAttribute('y1'), scene.querySelector('.point[data-run=\"2\"]').getAttribute('transform')]"))
+    check("stands at the noise", places[1].endswith(f" {places[0]})"), str(places))
+    figures = b.run("[...document.querySelectorAll('#equal-error .figure')].map((f) => f.textContent)")
+    check("what is extrapolated is said to be", figures[0].startswith("6.3") and "extrapolated" not in figures[0]
+          and figures[1].startswith("about 15") and "1 of 3 extrapolated" in figures[1], str(figures))
+
     # Sorted by a column: what has no value last.
     b.run(scene(1, "scene.querySelectorAll('.runs thead button')[4].click()"))
     cold = b.run(scene(1, "[...scene.querySelectorAll('.runs tbody tr')].map(r => +r.dataset.run)"))
@@ -126,6 +142,8 @@ def settled(b):
 
 def check_pictures(b):
     check("pictures are drawn", b.wait(READY))
+    for i, block in enumerate((8, 4, 8)):
+        check(f"scene {i}: means are of its blocks", b.run(scene(i, f"[...scene.querySelectorAll('.viewer button')].some((e) => e.textContent === '{block}\u00d7{block} means')")))
     now = "Number(document.querySelector('#scene-0 .handle').getAttribute('aria-valuenow'))"
     clip = "getComputedStyle(document.querySelector('#scene-0 .layer.left')).clipPath"
     role = b.run("(() => { const h = document.querySelector('#scene-0 .handle'); "
@@ -213,6 +231,8 @@ def check_stress(b, report):
     bad = sum(c["non_finite"] > 0 for c in cells)
     check("what is not finite is flagged", bad > 0 and b.run("document.querySelectorAll('#stress .cell.spoiled').length") == bad
           and b.run("!!document.querySelector('#stress .alert')"))
+    part = b.run("(document.querySelector('#stress .part') || {}).textContent")
+    check("a part of the suite is said to be one", part and part.startswith(f"4 of the {len(cells) + 4} cells"), str(part))
     stops = b.run("document.querySelectorAll('#stress .cell[tabindex=\"0\"]').length")
     b.run("document.querySelector('#stress .cell[tabindex=\"0\"]').focus()")
     b.key("ArrowRight")

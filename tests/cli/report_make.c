@@ -1,6 +1,6 @@
 // report_make.c -- writes a report with invented figures and its page into a folder: report_make DIR
 //
-// Three scenes. The second has markup for a name and in its warnings; the third has a run below the noise
+// Three scenes. The second has blocks of 4x4 pixels, and markup for a name and in its warnings; the third has a run below the noise
 // and a picture with a pixel that is not a number.
 #include "bench/html.h"
 #include <tyndall/io.h>
@@ -53,6 +53,12 @@ static cJSON *error_entry(double block, double error, double n, double noise)
     cJSON_AddNumberToObject(e, "p95", 2.1 * whole);
     cJSON_AddNumberToObject(e, "nan", 0);
     return e;
+}
+
+// Of the blocks that errors of a scene are of.
+static int block_of(int scene)
+{
+    return scene == 1 ? 4 : 8;
 }
 
 typedef struct made_run {
@@ -131,7 +137,7 @@ static cJSON *make_run(app *a, const char *dir, int scene, int index)
     if (failed) {
         return run;
     }
-    cJSON_AddItemToArray(errors, error_entry(8, error, 0.006 * harder, m->noise));
+    cJSON_AddItemToArray(errors, error_entry(block_of(scene), error, 0.006 * harder, m->noise));
     cJSON_AddItemToArray(
         errors, error_entry(1, m->noise > 0 ? 7 * error : 1.15 * error, 0.05 * harder, m->noise));
     cJSON_AddNumberToObject(run, "setup_ms", 180);
@@ -210,16 +216,16 @@ static cJSON *make_scene(app *a, const char *dir, int index)
     snprintf(path, sizeof path, "%s/pictures/%d/reference.exr", dir, index);
     write_picture(a, path, 0, 0.02, false);
     cJSON *noise = cJSON_AddArrayToObject(reference, "noise");
-    for (int block = 8; block > 0; block -= 7) {
+    for (int i = 0; i < 2; i++) {
         cJSON *n = cJSON_CreateObject();
-        cJSON_AddNumberToObject(n, "block", block);
-        cJSON_AddNumberToObject(n, "n", (block == 8 ? 0.006 : 0.05) * (1 + 0.6 * index));
+        cJSON_AddNumberToObject(n, "block", i ? 1 : block_of(index));
+        cJSON_AddNumberToObject(n, "n", (i ? 0.05 : 0.006) * (1 + 0.6 * index));
         cJSON_AddItemToArray(noise, n);
     }
     cJSON *runs = cJSON_AddArrayToObject(scene, "runs"),
           *fronts = cJSON_AddArrayToObject(scene, "fronts");
     cJSON *front = cJSON_CreateObject(), *keys;
-    cJSON_AddNumberToObject(front, "block", 8);
+    cJSON_AddNumberToObject(front, "block", block_of(index));
     keys = cJSON_AddArrayToObject(front, "runs");
     cJSON_AddItemToArray(fronts, front);
     for (int i = 0; i < (int)ARRAY_SIZE(made); i++) {
@@ -264,6 +270,7 @@ static cJSON *make_headline(void)
                                               : 50.5) *
                                     (k < 3 ? 1 : 2));
         cJSON_AddNumberToObject(h, "scenes", k % 3 == 2 ? 2 : 3);
+        cJSON_AddNumberToObject(h, "extrapolated", k % 3);
         cJSON *missing = cJSON_AddArrayToObject(h, "missing");
         if (k % 3 == 2) {
             cJSON_AddItemToArray(missing, cJSON_CreateString("milk: pop does not reach it"));
@@ -302,6 +309,7 @@ static cJSON *make_stress(bool spoiled)
     cJSON *stress = cJSON_CreateObject(), *axes = cJSON_AddArrayToObject(stress, "axes");
     (void)axes;
     cJSON_AddItemToObject(stress, "methods", cJSON_CreateStringArray(methods, 3));
+    cJSON_AddNumberToObject(stress, "expected", 3 * (15 + 6) + 4);
     cJSON *cells = cJSON_AddArrayToObject(stress, "cells");
     for (int m = 0; m < 3; m++) {
         for (int i = -6; i <= 8; i++) {

@@ -244,10 +244,13 @@ static char *verdict(const plane *p, const front_range *r, bool first)
     char low[16], high[16];
     percent(r->low, low);
     percent(r->high, high);
-    return r->lowest && r->highest ? text_format("%s %s at all errors", name, does)
-           : r->highest            ? text_format("%s %s above %s%s", name, does, low, noise)
-           : r->lowest             ? text_format("%s %s below %s", name, does, high)
-                       : text_format("%s %s from %s%s to %s", name, does, low, noise, high);
+    if (r->lowest && r->highest) {
+        return text_format("%s %s at all errors", name, does);
+    }
+    return r->highest  ? text_format("%s %s above %s%s", name, does, low, noise)
+           : r->lowest ? text_format("%s %s below %s", name, does, high)
+                       : text_format("%s %s from %s%s%s to %s", name, does, low, noise,
+                                     noise[0] ? "," : "", high);
 }
 
 cJSON *plane_verdicts(const plane *p)
