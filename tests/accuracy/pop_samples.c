@@ -80,8 +80,8 @@ static void pictures(void **state)
                       100 * e.reported, 100 * e.rel_l1, 100 * e.noise, 100 * e.bias);
         good = good && e.reported <= k->error;
         good = todo_if(strcmp(k->name, "cornell-smoke") == 0, fabs(e.bias) <= k->bias,
-                       "pixels at the edge of the lit panel (four samples a pixel) and the smoke "
-                       "beside the blocks are too bright, each by 1.6 % of the picture",
+                       "four samples a pixel do not tell how much of one the edge of the lit panel "
+                       "fills: with 9 the mean is 1.1 % too bright, with 16 it is right",
                        "%s: mean within %g %%", k->name, 100 * k->bias) &&
                good;
         picture_free(&blocks);
