@@ -3,6 +3,7 @@
 // Include after lattice.glsl and define the bindings of the buffers that the pass walls makes:
 //   WALLS_LINKS   storage buffer uint wall_links[]
 //   WALLS_CELLS   storage buffer wall_cell wall_cells[]
+//   WALLS_TEXELS  if both are to be read as texels
 // Call nothing of this where the scene has no surfaces: then the buffers hold nothing.
 //
 // A point in a cell through which no wall passes sees all 26 neighbours, and is served by trilinear
@@ -14,6 +15,20 @@
 #include "walls_args.h"
 #include "walls_links.glsl"
 
+#ifdef WALLS_TEXELS
+layout(set = 0, binding = WALLS_LINKS) uniform usamplerBuffer walls_link_texels;
+layout(set = 0, binding = WALLS_CELLS) uniform samplerBuffer walls_cell_texels; // four to a struct wall_cell
+
+uint walls_links_of(uint cell)
+{
+    return texelFetch(walls_link_texels, int(cell)).x;
+}
+
+vec4 walls_plane(uint cell, uint k)
+{
+    return texelFetch(walls_cell_texels, int(4u * cell + k));
+}
+#else
 layout(set = 0, binding = WALLS_LINKS, scalar) readonly buffer walls_link_buffer
 {
     uint wall_links[];
@@ -22,6 +37,17 @@ layout(set = 0, binding = WALLS_CELLS, scalar) readonly buffer walls_cell_buffer
 {
     wall_cell wall_cells[];
 };
+
+uint walls_links_of(uint cell)
+{
+    return wall_links[cell];
+}
+
+vec4 walls_plane(uint cell, uint k)
+{
+    return wall_cells[cell].planes[k];
+}
+#endif
 
 struct walls_place {
     ivec3 cell;
@@ -37,7 +63,7 @@ walls_place walls_place_of(lattice_box box, vec3 p)
     w.x = lattice_from_m(box, p) - 0.5;
     w.cell = clamp(ivec3(floor(w.x + 0.5)), ivec3(0), box.dims - 1);
     w.index = uint((w.cell.z * box.dims.y + w.cell.y) * box.dims.x + w.cell.x);
-    w.links = wall_links[w.index];
+    w.links = walls_links_of(w.index);
     return w;
 }
 
@@ -52,7 +78,7 @@ uint walls_behind(uint index, vec3 p)
 {
     uint behind = 0u;
     for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
-        vec4 plane = wall_cells[index].planes[k];
+        vec4 plane = walls_plane(index, k);
         behind |= dot(plane.xyz, p) + plane.w < 0.0 ? 1u << k : 0u;
     }
     return behind;
@@ -62,7 +88,7 @@ uint walls_behind(uint index, vec3 p)
 bool walls_same_side(lattice_box box, ivec3 cell, vec3 p)
 {
     uint index = uint((cell.z * box.dims.y + cell.y) * box.dims.x + cell.x);
-    return (wall_links[index] & TYN_WALLS_NEAR) == 0u || walls_behind(index, p) == 0u;
+    return (walls_links_of(index) & TYN_WALLS_NEAR) == 0u || walls_behind(index, p) == 0u;
 }
 
 // The planes of a cell for many points of it; all 0 where there is no wall about.
@@ -78,9 +104,9 @@ walls_sides walls_sides_of(lattice_box box, ivec3 cell)
         sides.planes[k] = vec4(0.0);
     }
     // A loop instead of a condition: what nobody enters costs nothing.
-    for (bool near = (wall_links[index] & TYN_WALLS_NEAR) != 0u; near; near = false) {
+    for (bool near = (walls_links_of(index) & TYN_WALLS_NEAR) != 0u; near; near = false) {
         for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
-            sides.planes[k] = wall_cells[index].planes[k];
+            sides.planes[k] = walls_plane(index, k);
         }
     }
     return sides;
@@ -145,7 +171,7 @@ walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
     vec4 planes[TYN_WALLS_PLANES];
     uint behind = 0u;
     for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
-        planes[k] = wall_cells[w.index].planes[k];
+        planes[k] = walls_plane(w.index, k);
         behind |= dot(planes[k].xyz, p) + planes[k].w < 0.0 ? 1u << k : 0u;
     }
     vec3 away = w.x - vec3(w.cell);
@@ -213,7 +239,7 @@ bool walls_visible(lattice_box box, ivec3 a, ivec3 b)
     int n = max(way.x, max(way.y, way.z));
     for (int i = 1; i <= n; i++) {
         ivec3 next = a + ivec3(floor(vec3(b - a) * (float(i) / float(n)) + 0.5));
-        uint links = wall_links[uint((at.z * box.dims.y + at.y) * box.dims.x + at.x)];
+        uint links = walls_links_of(uint((at.z * box.dims.y + at.y) * box.dims.x + at.x));
         if ((links >> walls_link(next - at) & 1u) != 0u) {
             return false;
         }

@@ -100,8 +100,8 @@ static const tyn_binding bindings[] = {
     {RAYMARCH_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
     {RAYMARCH_PORT_GLOW, TYN_USE_SAMPLED, true},
     {RAYMARCH_PORT_SURFACE, TYN_USE_STORAGE_READ, false},
-    {RAYMARCH_PORT_WALL_LINKS, TYN_USE_STORAGE_READ, false},
-    {RAYMARCH_PORT_WALL_CELLS, TYN_USE_STORAGE_READ, false},
+    {RAYMARCH_PORT_WALL_LINKS, TYN_USE_TEXELS_UINT, false},
+    {RAYMARCH_PORT_WALL_CELLS, TYN_USE_TEXELS_VEC4, false},
     {RAYMARCH_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_SHADOWS, TYN_USE_STORAGE_READ, false},
     // No eighth uniform buffer: where a branch depends on one, the compiler of lavapipe 22.3 writes beyond

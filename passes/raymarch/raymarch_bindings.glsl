@@ -62,6 +62,7 @@ layout(binding = 30, scalar) buffer sparse_rest_buffer
 #define SURFACE_DISTANCES 31
 #define WALLS_LINKS 22
 #define WALLS_CELLS 23
+#define WALLS_TEXELS
 #define SHADOW_ATLAS 24
 #define SHADOW_LIGHTS 25
 #define RADIAL_BLOCK 26
