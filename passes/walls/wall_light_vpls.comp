@@ -125,26 +125,29 @@ void main()
         sides[k].normal = normalize(sides[k].normal);
         sides[k].place /= max(sides[k].area, 1e-6);
     }
-    for (uint n = radial_num_lamps; n < radial_count; n++) {
-        radial_light light = radials[n].light;
-        float least = max(light.radius * light.radius, 0.25 * box.dx * box.dx);
-        ivec3 from = walls_cell_before(box, light.position, light.axis);
-        // Loops that nobody enters cost nothing.
-        bool faces = false;
-        for (uint k = 0u; k < num_sides; k++) {
-            vec3 away = sides[k].place - light.position;
-            faces = faces || dot(away, sides[k].normal) < 0.0 && dot(away, light.axis) > 0.0;
+    // First which VPLs are seen, then their light: threads that run together each go through their own, which are few.
+    for (uint first = radial_num_lamps; first < radial_count; first += 32u) {
+        uint seen = 0u, last = min(radial_count - first, 32u);
+        for (uint k = 0u; k < last; k++) {
+            radial_light light = radials[first + k].light;
+            bool faces = false;
+            for (uint side = 0u; side < num_sides; side++) {
+                vec3 away = sides[side].place - light.position;
+                faces = faces || dot(away, sides[side].normal) < 0.0 && dot(away, light.axis) > 0.0;
+            }
+            ivec3 from = walls_cell_before(box, light.position, light.axis);
+            seen |= faces && sees(c, i, from) ? 1u << k : 0u;
         }
-        for (bool lit = faces && sees(c, i, from); lit; lit = false) {
-            radial_grid grid = radials[n]; // once: some devices read buffers slowly
+        for (; seen != 0u; seen &= seen - 1u) {
+            radial_grid grid = radials[first + findLSB(seen)]; // once: some devices read buffers slowly
+            float least = max(grid.light.radius * grid.light.radius, 0.25 * box.dx * box.dx);
             for (uint k = 0u; k < num_sides; k++) {
-                vec3 away = sides[k].place - light.position;
+                vec3 away = sides[k].place - grid.light.position;
                 float r2 = dot(away, away), r = sqrt(r2), cosine = -dot(away, sides[k].normal) / max(r, 1e-20);
-                float share = max(cosine, 0.0) * radial_share_of(light, away, r);
-                for (bool some = share > 0.0; some; some = false) {
-                    beam_tau tau = radial_tau(radial_place_in(grid, away, r));
-                    sum += light.intensity * (sides[k].area * share / max(r2, least) * exp(-(tau.a + tau.p)));
-                }
+                float share = max(cosine, 0.0) * radial_share_of(grid.light, away, r);
+                beam_tau tau = radial_tau(radial_place_in(grid, away, r));
+                vec3 light = grid.light.intensity * (sides[k].area * share / max(r2, least) * exp(-(tau.a + tau.p)));
+                sum += share > 0.0 ? light : vec3(0.0);
             }
         }
     }
