@@ -12,11 +12,18 @@
 //
 // The includer declares `surfaces` (surface_block), `vertices[]`, `triangles[]` (surface_args.h) and `nodes[]`, which is
 // uvec4[]: a struct surface_node is two of them, as a CPU device reads a vector per lane in little more than the time
-// of a number.
+// of a number. Or it defines SURFACE_POSITION(i) of vertex i, SURFACE_TRIANGLE(i) and SURFACE_NODE(i), which are uvec4, to read
+// them by itself.
 #ifndef TYN_SURFACE_TRACE_GLSL
 #define TYN_SURFACE_TRACE_GLSL
 #include "surface_frame.glsl"
 #include "surface_args.h"
+
+#ifndef SURFACE_NODE
+#define SURFACE_POSITION(i) vertices[i].position
+#define SURFACE_TRIANGLE(i) uvec4(triangles[i].v0, triangles[i].v1, triangles[i].v2, triangles[i].material)
+#define SURFACE_NODE(i) nodes[i]
+#endif
 
 const uint SURFACE_NONE = 0xffffffffu;
 const float SURFACE_EPSILON = 5.9604645e-8; // half an ulp of 1
@@ -67,9 +74,8 @@ vec3 surface_cross(vec3 a, vec3 b, out vec3 sizes)
 // Takes the triangle as the new hit if the ray meets it before `hit.t`.
 bool surface_meet(surface_ray ray, uint index, inout surface_hit hit)
 {
-    surface_triangle triangle = triangles[index];
-    vec3 v0 = vertices[triangle.v0].position, v1 = vertices[triangle.v1].position,
-         v2 = vertices[triangle.v2].position;
+    uvec4 corners = SURFACE_TRIANGLE(index);
+    vec3 v0 = SURFACE_POSITION(corners.x), v1 = SURFACE_POSITION(corners.y), v2 = SURFACE_POSITION(corners.z);
     vec3 a = surface_permute(v0 - ray.origin, ray.axis), b = surface_permute(v1 - ray.origin, ray.axis),
          c = surface_permute(v2 - ray.origin, ray.axis);
     // `precise`: neighbours must see the same numbers at their common edge, but for the sign.
@@ -121,7 +127,7 @@ struct surface_entry {
 
 surface_entry surface_enter_node(surface_ray ray, uint node, float far)
 {
-    uvec4 lo = nodes[2u * node], hi = nodes[2u * node + 1u];
+    uvec4 lo = SURFACE_NODE(2u * node), hi = SURFACE_NODE(2u * node + 1u);
     return surface_entry(surface_enter(ray, uintBitsToFloat(lo.xyz), uintBitsToFloat(hi.xyz), far), lo.w, hi.w);
 }
 
@@ -157,8 +163,8 @@ bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
             more = goes_on || depth > 0;
             if (!goes_on && more) { // no loop of one turn: turns are counted (docs/writing-a-pass.md, "Shaders")
                 uint at = stack[--depth];
-                first = nodes[2u * at].w;
-                count = nodes[2u * at + 1u].w;
+                first = SURFACE_NODE(2u * at).w;
+                count = SURFACE_NODE(2u * at + 1u).w;
             }
         }
         for (uint i = first; more && i < first + count; i++) {
@@ -167,8 +173,8 @@ bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
         more = more && depth > 0 && !(any && found);
         if (more) {
             uint at = stack[--depth];
-            first = nodes[2u * at].w;
-            count = nodes[2u * at + 1u].w;
+            first = SURFACE_NODE(2u * at).w;
+            count = SURFACE_NODE(2u * at + 1u).w;
         }
     }
     return found;
@@ -198,9 +204,8 @@ struct surface_point {
 
 surface_point surface_point_at(uint index, vec2 barycentric)
 {
-    surface_triangle triangle = triangles[index];
-    vec3 v0 = vertices[triangle.v0].position, v1 = vertices[triangle.v1].position,
-         v2 = vertices[triangle.v2].position;
+    uvec4 corners = SURFACE_TRIANGLE(index);
+    vec3 v0 = SURFACE_POSITION(corners.x), v1 = SURFACE_POSITION(corners.y), v2 = SURFACE_POSITION(corners.z);
     vec3 e1 = v1 - v0, e2 = v2 - v0;
     vec3 longest = max(abs(e1), abs(e2));
     float scale = 1.0 / max(max(longest.x, max(longest.y, longest.z)), 1e-37); // squares stay in range

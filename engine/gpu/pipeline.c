@@ -13,6 +13,7 @@ VkDescriptorType tyn_descriptor_type(const tyn_pass_desc *pass, const tyn_bindin
     case TYN_USE_TEXELS_FLOAT:
     case TYN_USE_TEXELS_VEC4:
     case TYN_USE_TEXELS_UINT:
+    case TYN_USE_TEXELS_UVEC4:
         return VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
     default:
         return pass->ports[binding->port].dim == TYN_BUFFER ? VK_DESCRIPTOR_TYPE_STORAGE_BUFFER

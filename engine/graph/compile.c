@@ -43,7 +43,8 @@ VkImageAspectFlags graph_aspect(VkFormat format)
 }
 
 const VkFormat graph_texel_formats[NUM_TEXEL_FORMATS] = {
-    VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32_UINT};
+    VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R32_UINT,
+    VK_FORMAT_R32G32B32A32_UINT};
 
 int graph_texel_index(tyn_use use)
 {
@@ -54,6 +55,8 @@ int graph_texel_index(tyn_use use)
         return 1;
     case TYN_USE_TEXELS_UINT:
         return 2;
+    case TYN_USE_TEXELS_UVEC4:
+        return 3;
     default:
         return -1;
     }

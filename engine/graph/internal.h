@@ -10,7 +10,7 @@
 #include "gpu/memory.h"
 
 enum { MAX_VERSIONS = 8, MAX_MIPS = 14, MAX_SLOTS = 8, INLINE_UPLOAD = 65536 };
-enum { NUM_TEXEL_FORMATS = 3 };
+enum { NUM_TEXEL_FORMATS = 4 };
 enum { DUMMY_WORDS = TYN_IMAGE_3D + 1, NUM_DUMMIES }; // of two words a texel: what is stored packed
 
 typedef enum resource_kind {

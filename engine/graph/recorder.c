@@ -246,6 +246,7 @@ static tyn_access access_of(const tyn_port *port, tyn_use use, VkPipelineStageFl
     case TYN_USE_TEXELS_FLOAT:
     case TYN_USE_TEXELS_VEC4:
     case TYN_USE_TEXELS_UINT:
+    case TYN_USE_TEXELS_UVEC4:
         return (tyn_access){stages, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT, true, false, general};
     case TYN_USE_UNIFORM:
         return (tyn_access){stages, VK_ACCESS_2_UNIFORM_READ_BIT, true, false, general};

@@ -14,18 +14,13 @@ layout(binding = 0, scalar) uniform surfaces_uniform
 {
     surface_block surfaces;
 };
-layout(binding = 1, scalar) readonly buffer vertices_buffer
-{
-    surface_vertex vertices[];
-};
-layout(binding = 2, scalar) readonly buffer triangles_buffer
-{
-    surface_triangle triangles[];
-};
-layout(binding = 3, scalar) readonly buffer nodes_buffer
-{
-    uvec4 nodes[];
-};
+// Texels, as rays of a CPU device that run together read different ones.
+layout(binding = 1) uniform samplerBuffer vertices_tex;
+layout(binding = 2) uniform usamplerBuffer triangles_tex;
+layout(binding = 3) uniform usamplerBuffer nodes_tex;
+#define SURFACE_POSITION(i) texelFetch(vertices_tex, int(2u * (i))).xyz
+#define SURFACE_TRIANGLE(i) texelFetch(triangles_tex, int(i))
+#define SURFACE_NODE(i) texelFetch(nodes_tex, int(i))
 layout(binding = 4, scalar) readonly buffer vpl_buffer
 {
     uint vpl_count;
@@ -125,8 +120,7 @@ void main()
     // Texels at the edges of a map are halves.
     vec2 whole = mix(vec2(1.0), vec2(0.5), lessThan(min(at, side - 1 - at), ivec2(1)));
     float solid_angle = args.solid_angle * whole.x * whole.y / (away * away * away);
-    surface_triangle tri = triangles[hit.triangle];
-    surface_material m = materials[tri.material];
+    surface_material m = materials[SURFACE_TRIANGLE(hit.triangle).w];
     vec3 albedo = m.albedo;
     if (m.texture != TYN_SURFACE_NO_TEXTURE) { // its mean
         albedo *= surface_texture_level(textures[m.texture], vec2(0.5),

@@ -176,6 +176,7 @@ static void check_binding(const tyn_pass_desc *pass, const tyn_kernel *kernel,
     case TYN_USE_TEXELS_FLOAT:
     case TYN_USE_TEXELS_VEC4:
     case TYN_USE_TEXELS_UINT:
+    case TYN_USE_TEXELS_UVEC4:
         wanted = image ? REFLECT_OTHER : REFLECT_TEXELS;
         break;
     case TYN_USE_STORAGE_READ:
@@ -194,7 +195,8 @@ static void check_binding(const tyn_pass_desc *pass, const tyn_kernel *kernel,
     if (image) {
         check_image(pass, kernel, port, b);
     }
-    if (wanted == REFLECT_TEXELS && b->float_texels == (entry->use == TYN_USE_TEXELS_UINT)) {
+    const bool floats = entry->use == TYN_USE_TEXELS_FLOAT || entry->use == TYN_USE_TEXELS_VEC4;
+    if (wanted == REFLECT_TEXELS && b->float_texels != floats) {
         fault(pass, kernel->name, "binding %u, port %s: another kind of texels in the shader",
               b->binding, port->name);
     }
