@@ -47,8 +47,9 @@ static double fraction(const char *text)
 
 bool choice_check(app *a, const choice_options *options, const method_options *how)
 {
-    if (options->fronts && !choice_is_asked(options)) {
-        app_error(a, "--fronts needs --max-error or --budget-ms, for which it is read");
+    if (!choice_is_asked(options) && (options->fronts || options->blocks)) {
+        app_error(a, "--%s needs --max-error or --budget-ms, for which it is",
+                  options->fronts ? "fronts" : "error-block");
         return false;
     }
     if (options->max_error && isnan(fraction(options->max_error))) {
@@ -59,6 +60,11 @@ bool choice_check(app *a, const choice_options *options, const method_options *h
     if (choice_is_asked(options) && how->quality) {
         app_error(a, "--quality %s: --max-error and --budget-ms choose the settings themselves",
                   how->quality);
+        return false;
+    }
+    if (choice_is_asked(options) && how->spp) {
+        app_error(a, "--spp %u: --max-error and --budget-ms choose the samples themselves",
+                  how->spp);
         return false;
     }
     tyn_method_info info;
@@ -203,7 +209,9 @@ static bool lines_of(const choose_request *request, const choice *best, char *li
         time_text(ms, best->other_ms);
         percent_text(error, best->other_error);
         name = name_of(best->other, best->other_spp);
-        snprintf(traded, sizeof traded, "; instead of %s: %s, %s", name ? name : "", error, ms);
+        const char *why = regime_limit_names[best->other_limit];
+        snprintf(traded, sizeof traded, "; instead of %s: %s%s%s%s, %s", name ? name : "", error,
+                 why ? " (" : "", why ? why : "", why ? ")" : "", ms);
         free(name);
     }
     lines[1] = text_format("measured scenes nearest in regime (distance): %s%s", near, traded);
@@ -314,6 +322,29 @@ static int slowness_of(app *a, const fronts_device *measured, const machine *mac
     return code;
 }
 
+// Longer than that no frame begins that nobody has said a time for.
+static const double longest_ms = 600e3;
+
+// False: said.
+static bool is_short(app *a, const choose_request *request, const choice *best)
+{
+    char ms[32], most[32], error[32];
+    if (!isnan(request->budget_ms) || best->ms <= longest_ms) {
+        return true;
+    }
+    time_text(ms, best->ms);
+    time_text(most, longest_ms);
+    percent_text(error, request->max_error);
+    char *name = name_of(best->run, best->spp);
+    app_error(a,
+              "--max-error %s: here that takes %s, a frame of about %s, more than the %s that are "
+              "begun unasked; "
+              "--budget-ms %.0f takes the best within that, or say how long it may be",
+              error, name ? name : best->run->method, ms, most, longest_ms);
+    free(name);
+    return false;
+}
+
 int choice_make(app *a, const choice_options *options, const method_options *how,
                 const machine *mach, const tyn_scene *scene, const tyn_view *view, chosen *out)
 {
@@ -336,6 +367,7 @@ int choice_make(app *a, const choice_options *options, const method_options *how
         const choose_request request = {
             .max_error = options->max_error ? fraction(options->max_error) : NAN,
             .budget_ms = options->budget_ms,
+            .no_background = view->no_background,
             .by_pixel = options->blocks && strcmp(options->blocks, "1") == 0,
             .method = how->method,
             .without = without,
@@ -345,7 +377,8 @@ int choice_make(app *a, const choice_options *options, const method_options *how
         };
         choice best;
         if (choose(&f, &r, &request, &best)) {
-            code = take_choice(a, &request, &best, how, out);
+            code = is_short(a, &request, &best) ? take_choice(a, &request, &best, how, out)
+                                                : EXIT_WRONG;
         } else {
             app_error(a,
                       "--max-error, --budget-ms: no run of %s that can do this scene is among the "

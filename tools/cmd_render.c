@@ -86,7 +86,7 @@ static int choose_method(app *a, render_job *job, const tyn_scene *scene)
     if (job->method.settings) {
         return EXIT_DONE;
     }
-    tyn_view view = {0};
+    tyn_view view = {.no_background = job->args->no_background};
     int code = view_setup(a, &job->args->view, scene, &view);
     if (code == EXIT_DONE) {
         code = open_machine(a, job);

@@ -6,12 +6,17 @@
 #include "app.h"
 #include "regime.h"
 
-// One run. Errors are those of `tyndall compare` over blocks of 8x8 pixels and over single ones.
+extern const char fronts_schema[];
+enum { FRONTS_VERSION = 1 };
+
+// One run. Errors are those of `tyndall compare` over blocks of 8x8 pixels and over single ones, of pictures
+// without background, as the bench takes them.
 typedef struct fronts_run {
     char method[24];
     cJSON *settings; // {"lattice.cells": 16}, without "spp"; borrowed from fronts.json
     char *key;       // method and settings as text: the same in two scenes for the same run
     uint32_t spp;    // of methods that sample, else 0
+    double cells;    // of the lattice along its longest side, of `pop`
     double error, error_pixel;
     double fixed_ms,
         pixel_ms; // of a cold frame: what does not grow with the picture, and for one pixel

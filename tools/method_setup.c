@@ -1,5 +1,6 @@
 // method_setup.c -- --method, --quality, -D and the options of sampling methods.
 #include "method_setup.h"
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,8 +14,8 @@ const option method_table[METHOD_TABLE_SIZE] = {
      .names = qualities},
     {'D', NULL, OPT_LIST, AT(defines), "PASS.PARAM=VALUE",
      "set one parameter ('tyndall info --passes'); repeatable, after --quality"},
-    {0, "spp", OPT_UINT, AT(spp), "N", "samples a pixel or point, of methods that sample", 64, 1,
-     16777216},
+    {0, "spp", OPT_UINT, AT(spp), "N", "samples a pixel or point, of methods that sample; else 64",
+     NAN, 1, 16777216},
     {0, "seed", OPT_UINT, AT(seed), "N", "of the random numbers", 0, 0, 4294967295.0},
     {0, "max-depth", OPT_UINT, AT(max_depth), "N", "longest path in scatterings; 0 = no limit", 0},
     {0, "rr-depth", OPT_UINT, AT(rr_depth), "N",
@@ -84,7 +85,7 @@ void method_finish(method *m)
 
 void method_view(const method_options *options, tyn_view *view)
 {
-    view->num_samples = options->spp;
+    view->num_samples = options->spp ? options->spp : 64;
     view->seed = options->seed;
     view->max_depth = options->max_depth;
     view->rr_depth = options->rr_depth;

@@ -20,7 +20,7 @@ static void set_defaults(const command *cmd, void *args)
         for (uint32_t k = 0; k < group->num_options; k++) {
             const option *o = &group->options[k];
             if (o->kind == OPT_UINT) {
-                *(uint32_t *)field(args, group, o) = (uint32_t)o->def;
+                *(uint32_t *)field(args, group, o) = isnan(o->def) ? 0 : (uint32_t)o->def;
             } else if (o->kind == OPT_NUMBER) {
                 *(float *)field(args, group, o) = (float)o->def;
             }

@@ -10,7 +10,7 @@ typedef enum opt_kind {
     OPT_FLAG = 0, // bool
     OPT_TEXT,     // const char *
     OPT_LIST,     // opt_list: may be given several times
-    OPT_UINT,     // uint32_t
+    OPT_UINT,     // uint32_t; default NaN: 0 = not given
     OPT_NUMBER,   // float; NAN = not given
     OPT_VECTOR,   // opt_vector: "X,Y,Z"
     OPT_COLOR,    // opt_vector: "R,G,B", or one number for all three

@@ -24,7 +24,7 @@ enum { REGIME_LATTICE_CELLS = 32 };
 typedef struct regime {
     // Optical depth of straight ways through the medium, along the axes of its box (a lone shape's own, else
     // the world's); those that miss it do not count, nor do axes along which it repeats.
-    double optical_depth;   // mean over all of them and over R, G, B
+    double optical_depth;   // mean over all of them, by cross-section, and over R, G, B
     double depth_rgb[3];    // the same by channel
     double depth_axis[3];   // mean over those along each axis
     double depth_densest;   // the greatest of depth_axis
@@ -32,9 +32,14 @@ typedef struct regime {
     double albedo;          // of what is met: scattering / extinction, over the whole medium
     double albedo_rgb[3];
     double g, g_rgb[3];     // mean cosine, weighted by scattering
+    double least_g, most_g; // of any channel of any medium that scatters
     // Weighted by extinction: at the places where light meets the medium.
     double mean_free_path;           // 1 / sigma_t, m
     double transport_mean_free_path; // 1 / (sigma_a + (1 - g) sigma_s), m
+    double scaled_mean_free_path;    // 1 / (sigma_a + (1 - g^2) sigma_s), m (delta scaling; g > 0), of the
+                                     // densest channel
+    double sides[3];                 // of the box, m
+    double thickness;                // of the box: its shortest side along which it does not repeat, m
     double cell;                     // side of a lattice cell, m
     double cell_depth, cell_depth_max; // transport mean free paths across a cell: where light meets the
                                        // medium, and in the densest cell
@@ -67,6 +72,10 @@ bool regime_of(const tyn_scene *scene, const tyn_camera *camera, regime *r);
 // x the chance of meeting the medium again, (D/2) / (1 + D/2) with the mean depth D, as half of it is still
 // to come on average. Measured: docs/choosing.md.
 double regime_multiple(const regime *r);
+
+// As many lattice cells along the longest side as `pop` takes where `cells` are asked for: 256, and no more than
+// 64 x 64 x 64 in all.
+double regime_cells(const regime *r, double cells);
 
 cJSON *regime_json(const regime *r); // the "regime" of report.json
 bool regime_read(const cJSON *json, regime *r); // and back; what is missing is 0. False: no regime

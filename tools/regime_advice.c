@@ -1,7 +1,9 @@
 // regime_advice.c -- which assumptions of which method hold in a regime.
 //
-// The thresholds are those of the measurements in docs/choosing.md and the pages that are named.
+// The thresholds are those of the measurements in docs/choosing.md and the pages that are named; what is known of
+// errors is in regime_limits.c.
 #include "regime_advice.h"
+#include "regime_limits.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -31,53 +33,91 @@ static void say(advisor *to, advice_level level, const char *source, const char 
 
 // ---- pop --------------------------------------------------------------------------------------
 
+static advice_level level_of(double error)
+{
+    return error < 0.03 ? ADVICE_HOLDS : error < 0.1 ? ADVICE_STRAINED : ADVICE_BREAKS;
+}
+
+// How many cells it takes for a cell to be one mean free path, in words.
+static void more_cells(const regime *r, double needed, char help[96])
+{
+    needed = ceil(needed - 1e-6);
+    if (regime_cells(r, needed) >= needed) {
+        snprintf(help, 96, "-D lattice.cells=%.0f brings them to one", needed);
+    } else {
+        snprintf(help, 96, "more cells do not reach one (%.0f at most)", regime_cells(r, 1e4));
+    }
+}
+
 static void lattice_cells(advisor *to)
 {
     static const char source[] = "docs/choosing.md, \"Thick cells\"";
-    const double depth = to->r->cell_depth_max;
-    const double needed = ceil(REGIME_LATTICE_CELLS * depth);
-    if (depth <= 0.5) {
-        say(to, ADVICE_HOLDS, source,
-            "lattice: %.2g transport mean free paths across its densest cell (0.5: within 1 %%)",
-            depth);
-    } else if (depth <= 1) {
+    const regime *r = to->r;
+    const double most = regime_cells(r, REGIME_LATTICE_CELLS);
+    const double depth = r->cell_depth_max * REGIME_LATTICE_CELLS / most;
+    const double error = regime_thick_error(r, most);
+    char help[96];
+    if (depth <= 1 && error < 0.03) {
         say(to, ADVICE_HOLDS, source,
             "lattice: %.2g transport mean free paths across its densest cell (0.5: within 1 %%; 1: "
             "2 %%)",
             depth);
+    } else if (depth <= 1) { // a narrow lobe: long on the way to forgetting where it came from
+        more_cells(r, most * regime_cell_depth(r, most), help);
+        say(to, level_of(error), source,
+            "lattice: %.2g mean free paths (delta scaled) across a dense cell (1: 2 %%; 2: 10 %%; "
+            "7: "
+            "20 %%; 24: 40 %%); %s",
+            regime_cell_depth(r, most), help);
     } else {
-        char help[96] = "more cells do not reach one";
-        if (needed <= 64) {
-            snprintf(help, sizeof help, "-D lattice.cells=%.0f brings them to one", needed);
-        }
-        say(to, depth <= 2 ? ADVICE_STRAINED : ADVICE_BREAKS, source,
+        more_cells(r, most * depth, help);
+        say(to, depth <= 2 && error < 0.1 ? ADVICE_STRAINED : ADVICE_BREAKS, source,
             "lattice: %.2g transport mean free paths across its densest cell; what comes out of "
-            "the "
-            "lit side is too bright (1: 2 %%; 2: 6 %%; 4: 14 %%; 8: 16 %%); %s",
+            "its "
+            "faces is off (1: 2 %%; 2: 6 to 10 %%; 7: 20 %%; 24: 40 %%); %s",
             depth, help);
+    }
+}
+
+static void thin_box(advisor *to)
+{
+    const regime *r = to->r;
+    const double error = regime_thin_error(r, REGIME_LATTICE_CELLS);
+    if (error > 0) {
+        say(to, level_of(error), "docs/choosing.md, \"Flat boxes and poles\"",
+            "thickness: %.2g lattice cells through the box; light along its longer sides is not "
+            "resolved (about %.0f %% off; below one cell all that scatters twice is lost); more "
+            "cells "
+            "help (-D lattice.cells=%.0f at most)",
+            regime_cells_thick(r, REGIME_LATTICE_CELLS), 100 * error, regime_cells(r, 1e4));
+    }
+}
+
+static void backward_peak(advisor *to)
+{
+    const double error = regime_backward_error(to->r);
+    if (error > 0.01) {
+        say(to, level_of(error), "docs/choosing.md, \"Backward scattering\"",
+            "backward peak: four moments a cell do not hold it (depth 4: 2 %% off at g -0.5, 6 %% "
+            "at "
+            "-0.7, 40 %% at -0.9, a factor of 8 at -0.99)");
     }
 }
 
 static void forward_lobe(advisor *to)
 {
+    static const char source[] = "docs/choosing.md, \"Forward scattering\"";
     const regime *r = to->r;
-    if (r->g >= 0.98) {
-        say(to, ADVICE_BREAKS, "docs/choosing.md, \"Forward scattering\"",
+    if (r->most_g >= 0.98) {
+        say(to, ADVICE_BREAKS, source,
             "forward lobe: g %.3g is narrower than its tables follow (a cube of depth 4 at g "
-            "0.995: "
-            "38 %% off)",
-            r->g);
+            "0.995: 38 %% off)",
+            r->most_g);
     } else if (r->g >= 0.75 && r->optical_depth > 1) {
-        say(to, ADVICE_STRAINED, "docs/choosing.md, \"Forward scattering\"",
+        say(to, ADVICE_STRAINED, source,
             "forward lobe: it does not spread sideways (a cube of depth 4: 2.5 %% off at g 0.5, "
-            "9.5 "
-            "%% at 0.8, 12 %% at 0.9)%s",
+            "9.5 %% at 0.8, 12 %% at 0.9)%s",
             r->albedo < 0.7 ? "; dark smoke shows it most" : "");
-    } else if (r->g <= -0.5 && r->optical_depth > 10) {
-        say(to, ADVICE_STRAINED, "docs/accuracy-of-skies.md",
-            "backward peak: four moments a cell do not hold it (depth 30, g -0.9: 7 %% under a "
-            "sky, "
-            "46 %% under a sun)");
     }
 }
 
@@ -116,7 +156,9 @@ static void advise_pop(advisor *to)
     }
     if (to->r->optical_depth > 0) {
         lattice_cells(to);
+        thin_box(to);
         forward_lobe(to);
+        backward_peak(to);
     }
     lights_of_pop(to);
 }
