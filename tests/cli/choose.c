@@ -227,7 +227,8 @@ static void wrong_files(void **state)
     f = kept;
 }
 
-// A report becomes a file of fronts: setup nodes left out, pixels apart, errors below the noise lifted.
+// A report becomes a file of fronts: setup nodes left out, pixels apart, errors below the noise lifted to it, what path
+// takes before its first sample apart.
 static void from_a_report(void **state)
 {
     (void)state;
@@ -249,6 +250,12 @@ static void from_a_report(void **state)
                    "{\"method\": \"path\", \"settings\": {\"spp\": 16}, \"failed\": null, "
                    "\"errors\": [{\"block\": 8, "
                    "\"error\": 0.1, \"n\": 0}], \"frame_ms\": {\"cold\": 5}, \"nodes\": []},"
+                   "{\"method\": \"path\", \"settings\": {\"spp\": 64}, \"failed\": null, "
+                   "\"errors\": [{\"block\": 8, "
+                   "\"error\": 0.05, \"n\": 0}], \"frame_ms\": {\"cold\": 14}, \"nodes\": []},"
+                   "{\"method\": \"path\", \"settings\": {\"spp\": 1, \"path.mixture\": 0}, \"failed\": null, "
+                   "\"errors\": [{\"block\": 8, "
+                   "\"error\": 0.5, \"n\": 0}], \"frame_ms\": {\"cold\": 1}, \"nodes\": []},"
                    "{\"method\": \"single\", \"settings\": {}, \"failed\": \"cannot\", \"errors\": "
                    "[], \"frame_ms\": "
                    "{\"cold\": null}, \"nodes\": []}]}]}";
@@ -258,18 +265,22 @@ static void from_a_report(void **state)
     cJSON *json = cJSON_Parse(report);
     assert_int_equal(fronts_write(&a, json, path), EXIT_DONE);
     assert_int_equal(fronts_open(&a, path, &f), EXIT_DONE);
-    assert_true(f.num_scenes == 1 && f.scenes[0].num_runs == 2);
+    assert_true(f.num_scenes == 1 && f.scenes[0].num_runs == 4);
     assert_float_equal(f.device.fma_gflops, 10, 0);
     const fronts_run *run = f.scenes[0].runs;
     assert_string_equal(run[0].key, "pop lattice.cells=8");
-    assert_float_equal(run[0].error, 0.01, 1e-6);
+    assert_float_equal(run[0].error, 0.03, 1e-6);
     assert_float_equal(run[0].error_pixel, 0.5, 1e-6);
     assert_float_equal(run[0].fixed_ms, 6, 1e-6);
     assert_float_equal(run[0].pixel_ms, 2.0 / 200, 1e-9);
     assert_string_equal(run[1].key, "path");
     assert_int_equal(run[1].spp, 16);
-    assert_float_equal(run[1].fixed_ms, 0, 0);
-    assert_float_equal(run[1].pixel_ms, 5.0 / 200, 1e-9);
+    // 9 ms for 48 samples: 3 of the 5 ms are for 16, as are 12 of the 14 for 64; of the last there is but one.
+    assert_float_equal(run[1].fixed_ms, 2, 1e-6);
+    assert_float_equal(run[1].pixel_ms, 3.0 / 200, 1e-9);
+    assert_float_equal(run[2].fixed_ms, 2, 1e-6);
+    assert_float_equal(run[2].pixel_ms, 12.0 / 200, 1e-9);
+    assert_float_equal(run[3].fixed_ms, 0, 0);
     unlink(path);
     cJSON_Delete(json);
     fronts_finish(&f);
