@@ -35,7 +35,7 @@ static void say(advisor *to, advice_level level, const char *source, const char 
 
 static advice_level level_of(double error)
 {
-    return error < 0.03 ? ADVICE_HOLDS : error < 0.1 ? ADVICE_STRAINED : ADVICE_BREAKS;
+    return error < 0.03 ? ADVICE_HOLDS : error < 0.15 ? ADVICE_STRAINED : ADVICE_BREAKS;
 }
 
 // How many cells it takes for a cell to be one mean free path, in words.
@@ -71,7 +71,7 @@ static void lattice_cells(advisor *to)
             regime_cell_depth(r, most), help);
     } else {
         more_cells(r, most * depth, help);
-        say(to, depth <= 2 && error < 0.1 ? ADVICE_STRAINED : ADVICE_BREAKS, source,
+        say(to, level_of(fmax(error, 0.03)), source,
             "lattice: %.2g transport mean free paths across its densest cell; what comes out of "
             "its "
             "faces is off (1: 2 %%; 2: 6 to 10 %%; 7: 20 %%; 24: 40 %%); %s",

@@ -20,7 +20,8 @@ typedef struct point {
 // Depth of a lattice cell. (Half a per cent and less below.)
 static const point thick[] = {{1, 0.02}, {2, 0.1}, {7, 0.2}, {24, 0.4}, {300, 1}};
 // Lattice cells through the box: share of the light that has scattered more than once.
-static const point thin[] = {{0.5, 1.2}, {1, 0.35}, {2, 0.3}, {3, 0.15}, {4, 0.05}};
+static const point thin[] = {{0.5, 1.2}, {1, 0.35}, {2, 0.3}, {3, 0.15},
+                             {4, 0.07},  {6, 0.04}, {8, 0.01}};
 // 1 / (1 + g): g -0.5, -0.7, -0.8, -0.9, -0.99; from depth 1 on.
 static const point backward[] = {{2, 0.025}, {1 / 0.3, 0.09}, {5, 0.2}, {10, 0.6}, {100, 10}};
 // 1 / (1 - g): g 0.98 and 0.995.
@@ -127,8 +128,11 @@ regime_limit regime_limit_of(const regime *r, const char *method, double cells)
         {LIMIT_FLOATS, floats_error(r)},
     };
     regime_limit worst = {LIMIT_NONE, 0};
+    double squares = 0;
     for (size_t i = 0; i < COUNT(limits); i++) {
         worst = limits[i].error > worst.error ? limits[i] : worst;
+        squares += limits[i].error * limits[i].error;
     }
+    worst.error = sqrt(squares);
     return worst;
 }

@@ -24,7 +24,8 @@ typedef struct regime_limit {
     double error; // of the medium's light, as `compare --block 8` gives it; 0: none is known
 } regime_limit;
 
-// The largest of them, of a method by its name with so many lattice cells along the longest side.
+// Of a method by its name with so many lattice cells along the longest side: the largest, and the root of the sum
+// of the squares of all.
 regime_limit regime_limit_of(const regime *r, const char *method, double cells);
 
 // One of them, of `pop`.

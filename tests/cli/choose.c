@@ -253,7 +253,8 @@ static void from_a_report(void **state)
                    "{\"method\": \"path\", \"settings\": {\"spp\": 64}, \"failed\": null, "
                    "\"errors\": [{\"block\": 8, "
                    "\"error\": 0.05, \"n\": 0}], \"frame_ms\": {\"cold\": 14}, \"nodes\": []},"
-                   "{\"method\": \"path\", \"settings\": {\"spp\": 1, \"path.mixture\": 0}, \"failed\": null, "
+                   "{\"method\": \"path\", \"settings\": {\"spp\": 1, \"path.mixture\": 0}, "
+                   "\"failed\": null, "
                    "\"errors\": [{\"block\": 8, "
                    "\"error\": 0.5, \"n\": 0}], \"frame_ms\": {\"cold\": 1}, \"nodes\": []},"
                    "{\"method\": \"single\", \"settings\": {}, \"failed\": \"cannot\", \"errors\": "
@@ -287,6 +288,115 @@ static void from_a_report(void **state)
     f = kept;
 }
 
+// ---- the range of docs/stress.md, by what is compiled in ---------------------------------------
+
+// Boxes in one oblique sun, and the error of `pop` with 32 cells that was measured against `path` (64x64 pixels,
+// over blocks of 8x8; docs/choosing.md).
+static const struct {
+    float sides[3], sigma, albedo, g;
+    double measured;
+} boxes[] = {
+    {{1, 1, 1}, 0.3f, 0.95f, -0.5f, 0.006},
+    {{1, 1, 1}, 1, 0.95f, -0.5f, 0.013},
+    {{1, 1, 1}, 4, 0.95f, -0.5f, 0.020},
+    {{1, 1, 1}, 10, 0.95f, -0.5f, 0.025},
+    {{1, 1, 1}, 100, 0.95f, -0.5f, 0.171},
+    {{1, 1, 1}, 0.3f, 0.95f, -0.7f, 0.025},
+    {{1, 1, 1}, 1, 0.95f, -0.7f, 0.053},
+    {{1, 1, 1}, 10, 0.95f, -0.7f, 0.069},
+    {{1, 1, 1}, 100, 0.95f, -0.7f, 0.293},
+    {{1, 1, 1}, 1, 0.95f, -0.8f, 0.099},
+    {{1, 1, 1}, 10, 0.95f, -0.8f, 0.145},
+    {{1, 1, 1}, 0.3f, 0.95f, -0.9f, 0.093},
+    {{1, 1, 1}, 4, 0.95f, -0.9f, 0.393},
+    {{1, 1, 1}, 100, 0.95f, -0.9f, 1.017},
+    {{1, 1, 1}, 0.3f, 0.95f, -0.99f, 0.998},
+    {{1, 1, 1}, 10, 0.95f, -0.99f, 7.295},
+    {{32, 0.32f, 32}, 0.9375f, 1, 0, 0.321},
+    {{32, 0.32f, 32}, 3.125f, 1, 0, 0.548},
+    {{32, 0.32f, 32}, 12.5f, 0.8f, 0.5f, 0.628},
+    {{32, 1, 32}, 4, 1, 0, 0.072},
+    {{32, 1, 32}, 32, 1, 0, 0.167},
+    {{32, 2, 32}, 2, 1, 0, 0.167},
+    {{32, 2, 32}, 16, 1, 0, 0.278},
+    {{32, 3, 32}, 1.333f, 1, 0, 0.098},
+    {{32, 4, 32}, 8, 1, 0, 0.224},
+    {{32, 6, 32}, 0.667f, 1, 0, 0.027},
+    {{32, 6, 32}, 5.333f, 1, 0, 0.209},
+    {{2, 32, 2}, 2, 1, 0, 0.260},
+    {{4, 32, 4}, 1, 1, 0, 0.065},
+};
+
+static regime regime_of_box(size_t i)
+{
+    tyn_scene scene;
+    regime r;
+    tyn_scene_init(&scene);
+    const float s = boxes[i].sigma * boxes[i].albedo, k = boxes[i].sigma - s, g = boxes[i].g;
+    const float *x = boxes[i].sides;
+    scene.num_media = scene.num_shapes = scene.num_lights = 1;
+    scene.media[0] = (tyn_medium){.sigma_s = {s, s, s},
+                                  .sigma_a = {k, k, k},
+                                  .g = {g, g, g},
+                                  .density_scale = 1,
+                                  .volume = -1};
+    scene.shapes[0] =
+        (tyn_shape){.kind = TYN_SHAPE_BOX,
+                    .to_world = {x[0], 0, 0, 0, 0, x[1], 0, 0, 0, 0, x[2], 0, 0, 0, 0, 1}};
+    scene.lights[0] = (tyn_light){
+        .kind = TYN_LIGHT_DIRECTIONAL, .color = {1, 1, 1}, .direction = {0.48f, -0.8f, -0.36f}};
+    assert_true(regime_of(&scene, NULL, &r));
+    tyn_scene_finish(&scene);
+    return r;
+}
+
+// What is said of `pop` where it breaks is no less than what was measured, the error is not promised there, and it is
+// not given up where it does not break.
+static void pop_where_it_breaks(void **state)
+{
+    (void)state;
+    fronts kept = f;
+    size_t wrong = 0;
+    assert_int_equal(fronts_open(&a, NULL, &f), EXIT_DONE);
+    for (size_t i = 0; i < ARRAY_SIZE(boxes); i++) {
+        const regime r = regime_of_box(i);
+        const double measured = boxes[i].measured;
+        choose_request request = ask(0.05, NAN);
+        request.method = "pop";
+        choice c;
+        double as_it_is, ms;
+        assert_true(choose(&f, &r, &request, &c));
+        assert_true(choose_outlook(&f, &r, "pop", 0, 100, 100, &as_it_is, &ms));
+        if ((measured > 0.08 && c.error_met) || as_it_is < 0.6 * measured - 0.01 ||
+            (measured < 0.03 && c.error * c.error_margin > 0.12)) {
+            print_error("box %zu: %.3f as it is; %s, likely below %.3f; measured %.3f\n", i,
+                        as_it_is, c.run->key, c.error * c.error_margin, measured);
+            wrong++;
+        }
+    }
+    fronts_finish(&f);
+    f = kept;
+    assert_int_equal(wrong, 0);
+}
+
+// A sky beside the medium is right in every method: it thins the error where it is in the picture.
+static void background(void **state)
+{
+    (void)state;
+    regime r = f.scenes[0].regime;
+    r.share[REGIME_SUN] = 0;
+    r.share[REGIME_SKY] = 1;
+    r.view_fill = 0.5;
+    choose_request request = ask(NAN, 1000);
+    choice with, without;
+    assert_true(choose(&f, &r, &request, &with));
+    request.no_background = true;
+    assert_true(choose(&f, &r, &request, &without));
+    const double opaque = 0.5 * (1 - exp(-0.1)), sent = opaque * 0.9 * 0.9 * 0.9;
+    assert_string_equal(with.run->key, without.run->key);
+    assert_float_equal(with.error / without.error, sent / (sent + 1 - opaque), 1e-6);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -298,6 +408,8 @@ int main(void)
         cmocka_unit_test(other_wishes),
         cmocka_unit_test(between_scenes),
         cmocka_unit_test(from_a_report),
+        cmocka_unit_test(pop_where_it_breaks),
+        cmocka_unit_test(background),
         cmocka_unit_test(wrong_files),
     };
     return cmocka_run_group_tests(tests, setup, teardown);

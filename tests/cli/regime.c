@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
-#include "regime.h"
+#include "regime_limits.h"
 
 #define NEAR(value, expected, relative)                                                            \
     assert_float_equal(value, expected, (relative)*fabs(1.0 * (expected)) + 1e-12)
@@ -41,8 +41,7 @@ static void homogeneous_box(void **state)
     tyn_scene scene;
     one_shape(&scene, TYN_SHAPE_BOX, 2, 4, 1);
     const regime r = read(&scene);
-    for (int c = 0; c < 3;
-         c++) { // ways of 2, 4 and 1 m, as many as there are columns: 64 x 16, ...
+    for (int c = 0; c < 3; c++) {
         NEAR(r.depth_rgb[c], (3 + 2 * c) * r.optical_depth / 5, 1e-9);
         NEAR(r.albedo_rgb[c], (2 + 2.0 * c) / (3 + 2 * c), 1e-6);
     }
@@ -57,6 +56,11 @@ static void homogeneous_box(void **state)
     NEAR(r.g, (2 * 0.5 + 4 * 0.5 + 6 * 0.8) / 12, 1e-6);
     NEAR(r.mean_free_path, 0.2, 1e-9);
     NEAR(r.transport_mean_free_path, 1 / 2.4, 1e-6);
+    NEAR(r.scaled_mean_free_path, 1 / 4.0, 1e-6); // 3 - 0.25 x 2, 5 - 0.25 x 4, 7 - 0.64 x 6
+    NEAR(r.least_g, 0.5, 1e-6);
+    NEAR(r.most_g, 0.8, 1e-6);
+    NEAR(r.sides[1], 4, 1e-9);
+    NEAR(r.thickness, 1, 1e-9);
     NEAR(r.cell, 4.0 / 32, 1e-9);
     NEAR(r.cell_depth, 2.4 * 4 / 32, 1e-6);
     NEAR(r.cell_depth_max, 2.4 * 4 / 32, 1e-6);
@@ -81,6 +85,79 @@ static void homogeneous_sphere(void **state)
     NEAR(r.mean_free_path, 0.2, 1e-9);
     NEAR(r.contrast, 1, 1e-9);
     tyn_scene_finish(&scene);
+}
+
+// Cauchy holds however flat or long it is; a cell is never finer than the samples along a short side.
+static void flat_and_long_boxes(void **state)
+{
+    (void)state;
+    static const float sides[][3] = {{100, 1, 100}, {1000, 1, 30}, {10, 1, 1}, {1, 300, 1}};
+    for (size_t i = 0; i < sizeof sides / sizeof sides[0]; i++) {
+        const float *x = sides[i];
+        const float longest = fmaxf(x[0], fmaxf(x[1], x[2]));
+        tyn_scene scene;
+        one_shape(&scene, TYN_SHAPE_BOX, x[0], x[1], x[2]);
+        const regime r = read(&scene);
+        const double volume = (double)x[0] * x[1] * x[2],
+                     faces = (double)x[0] * x[1] + (double)x[1] * x[2] + (double)x[2] * x[0];
+        NEAR(r.optical_depth, 5 * 3 * volume / faces, 1e-6);
+        NEAR(r.thickness, 1, 1e-9);
+        NEAR(r.cell_depth_max, 2.4 * longest / 32, 1e-6);
+        tyn_scene_finish(&scene);
+    }
+}
+
+static void lattice_cells(void **state)
+{
+    (void)state;
+    regime r = {.sides = {1, 1, 1}};
+    assert_float_equal(regime_cells(&r, 32), 32, 0);
+    assert_float_equal(regime_cells(&r, 100), 64, 0);
+    r.sides[1] = r.sides[2] = 0.1; // 162 x 17 x 17 and 256 x 26 x 26
+    assert_float_equal(regime_cells(&r, 100), 100, 0);
+    assert_float_equal(regime_cells(&r, 1e4), 256, 0);
+}
+
+// In what regimes which limits bind.
+static void limits(void **state)
+{
+    (void)state;
+    static const struct {
+        float sides[3], sigma, g;
+        const char *method;
+        regime_limit_kind kind;
+        double least, most;
+    } cases[] = {
+        {{1, 1, 1}, 1, 0, "pop", LIMIT_NONE, 0, 0},
+        {{1, 1, 1}, 0.01f, -0.99f, "pop", LIMIT_NONE, 0, 0}, // nothing scatters twice
+        {{1, 1, 1}, 64, 0, "pop", LIMIT_THICK, 0.06, 0.12},
+        {{1, 1, 1}, 1000, 0, "pop", LIMIT_THICK, 0.4, 0.6},
+        {{1, 1, 1}, 10, -0.9f, "pop", LIMIT_BACKWARD, 0.5, 0.7},
+        {{1, 1, 1}, 10, -0.99f, "pop", LIMIT_BACKWARD, 7, 12},
+        {{1, 1, 1}, 10, 0.995f, "pop", LIMIT_FORWARD, 0.3, 0.5},
+        {{100, 1, 100}, 4, 0, "pop", LIMIT_THIN, 0.7, 1.2},
+        {{10, 1, 1}, 10, 0, "pop", LIMIT_THICK, 0.1, 0.2},
+        {{1, 1, 1}, 10, 0, "single", LIMIT_MULTIPLE, 0.8, 0.9},
+        {{1, 1, 1}, 1, 0, "pop-paper", LIMIT_HOPS, 0.2, 0.2},
+        {{1, 1, 1}, 1000, 0, "path", LIMIT_NONE, 0, 0},
+        {{1, 1, 1}, 2e5f, 0, "path", LIMIT_STEPS, 0.1, 0.1},
+        {{1, 1, 1}, 1e8f, 0, "path", LIMIT_FLOATS, 0.4, 0.4},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        tyn_scene scene;
+        const float s = cases[i].sigma, g = cases[i].g, *x = cases[i].sides;
+        one_shape(&scene, TYN_SHAPE_BOX, x[0], x[1], x[2]);
+        scene.media[0] =
+            (tyn_medium){.sigma_s = {s, s, s}, .g = {g, g, g}, .density_scale = 1, .volume = -1};
+        const regime r = read(&scene);
+        const regime_limit limit = regime_limit_of(&r, cases[i].method, 32);
+        if (limit.kind != cases[i].kind || limit.error < cases[i].least - 1e-9 ||
+            limit.error > cases[i].most + 1e-9) {
+            print_error("case %zu: limit %d, %.3f\n", i, (int)limit.kind, limit.error);
+            fail();
+        }
+        tyn_scene_finish(&scene);
+    }
 }
 
 // The figures of a medium do not depend on how it stands in the world.
@@ -305,6 +382,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(homogeneous_box),
         cmocka_unit_test(homogeneous_sphere),
+        cmocka_unit_test(flat_and_long_boxes),
+        cmocka_unit_test(lattice_cells),
+        cmocka_unit_test(limits),
         cmocka_unit_test(turned_box),
         cmocka_unit_test(two_densities),
         cmocka_unit_test(grid),
