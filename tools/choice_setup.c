@@ -322,25 +322,28 @@ static int slowness_of(app *a, const fronts_device *measured, const machine *mac
     return code;
 }
 
-// Longer than that no frame begins that nobody has said a time for.
-static const double longest_ms = 600e3;
+// Longer than that no frame begins that nobody has said a time for; less long one that is not even likely to be
+// within the error.
+static const double longest_ms = 600e3, longest_in_vain_ms = 60e3;
 
 // False: said.
 static bool is_short(app *a, const choose_request *request, const choice *best)
 {
     char ms[32], most[32], error[32];
-    if (!isnan(request->budget_ms) || best->ms <= longest_ms) {
+    const double allowed = best->error_met ? longest_ms : longest_in_vain_ms;
+    if (!isnan(request->budget_ms) || best->ms <= allowed) {
         return true;
     }
     time_text(ms, best->ms);
-    time_text(most, longest_ms);
+    time_text(most, allowed);
     percent_text(error, request->max_error);
     char *name = name_of(best->run, best->spp);
-    app_error(a,
-              "--max-error %s: here that takes %s, a frame of about %s, more than the %s that are "
-              "begun unasked; "
-              "--budget-ms %.0f takes the best within that, or say how long it may be",
-              error, name ? name : best->run->method, ms, most, longest_ms);
+    app_error(
+        a,
+        "--max-error: %s %s %s here, a frame of about %s; none of more than %s begins unasked: "
+        "say with --budget-ms how long it may take",
+        error, best->error_met ? "takes" : "is not likely even with",
+        name ? name : best->run->method, ms, most);
     free(name);
     return false;
 }

@@ -193,10 +193,10 @@ static void advise_single(advisor *to)
                                    : missing < 0.15 ? ADVICE_STRAINED
                                                     : ADVICE_BREAKS;
         say(to, level, source,
-            "one scattering: about %.2g %% of the scattered light has scattered again (albedo "
+            "one scattering: about %.*f %% of the scattered light has scattered again (albedo "
             "%.3g, "
-            "depth %.3g) and is missing",
-            100 * missing, to->r->albedo, to->r->optical_depth);
+            "depth %.4g) and is missing",
+            missing < 0.1, 100 * missing, to->r->albedo, to->r->optical_depth);
     }
     if (to->r->num_triangles) {
         say(to, ADVICE_BREAKS, "README.md, \"Not yet\"", "surfaces: their shadows alone are drawn");
@@ -211,7 +211,7 @@ static void advise_path(advisor *to)
     const double white = 1 - r->albedo, transport = r->optical_depth * (1 - fmax(r->g, 0));
     if (white < 0.01 && transport >= 10) {
         say(to, ADVICE_STRAINED, source,
-            "unbiased, but light scatters hundreds of times (albedo %.4g, %.3g transport mean free "
+            "unbiased, but light scatters hundreds of times (albedo %.4g, %.4g transport mean free "
             "paths deep): samples are dear, and rare long paths make bright pixels",
             r->albedo, transport);
     } else {

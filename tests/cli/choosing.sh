@@ -13,6 +13,9 @@ cube="$scenes/cube.gltf --size 32x32 -o x.png"
     refuses 2 "'-5%' is neither" render $cube --max-error -5%
     refuses 2 "--quality draft: --max-error and --budget-ms choose" render $cube --max-error 5% --quality draft
     refuses 2 "--fronts needs --max-error or --budget-ms" render $cube --fronts f.json
+    refuses 2 "--error-block needs --max-error or --budget-ms" render $cube --error-block 1
+    refuses 2 "--spp 3: --max-error and --budget-ms choose the samples themselves" render $cube --max-error 5% --spp 3 --method path
+    refuses 2 "say with --budget-ms how long it may take" render "$scenes/smoke.gltf" --size 512x512 -o x.png --max-error 0.01%
     refuses 2 "nothere.json" render $cube --max-error 5% --fronts nothere.json
     echo '{"schema": "tyndall-report"}' >report.json
     refuses 2 "not a file of fronts" render $cube --max-error 5% --fronts report.json
@@ -74,4 +77,17 @@ as_asked "thin smoke" "$scenes/smoke.gltf" --density-scale 0.4 --g 0.5
 as_asked "cloud in a courtyard" "$scenes/cloud.gltf" --density-scale 0.3 --env "$scenes/courtyard.exr"
 as_asked "dark sphere" "$scenes/sphere.gltf" --albedo 0.7
 as_asked "white cube" "$scenes/cube-oblique.gltf" --albedo 1 --density-scale 3 --camera oblique
+# Where pop breaks: a backward peak, and boxes that are flat or long. `box` SCALE: of the unit cube.
+box() {
+    sed "s/\"scale\": \[1, 1, 1\]/\"scale\": [$1]/" "$scenes/cube.gltf" >box.gltf
+    grep -q "\"scale\": \[$1\]" box.gltf || fail "no box of $1"
+}
+box "1, 1, 1"
+as_asked "backward peak" box.gltf --sigma-s 3 --sigma-a 0.15 --g -0.8
+box "0.01, 1, 1"
+as_asked "flat box" box.gltf --sigma-s 400 --sigma-a 20 --g 0.5
+box "0.1, 1, 0.1"
+as_asked "long box" box.gltf --sigma-s 100 --sigma-a 1
+works render "$scenes/cube.gltf" --size 32x32 -o x.png --max-error 5% --method pop --sigma-s 10 --g -0.99 --stats s.json
+[ "$(get s.json choice.error_met)" = false ] || fail "pop claims 5 % at g -0.99"
 finish
