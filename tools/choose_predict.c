@@ -114,7 +114,7 @@ static double work_of_pixels(const regime *r, uint32_t spp)
 static double noise_of(const regime *r, uint32_t spp)
 {
     const double lobe = fmax(1 - fabs(r->g), 1e-3);
-    return spp ? pow(scatterings(r), 1.0 / 3) * pow(lobe, r->g < 0 ? -1 : -2.0 / 3) : 1;
+    return spp ? pow(scatterings(r), 1.0 / 3) * pow(lobe, r->g < 0 ? -0.8 : -2.0 / 3) : 1;
 }
 
 // ---- a run in a scene -------------------------------------------------------------------------
