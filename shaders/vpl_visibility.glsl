@@ -61,13 +61,16 @@ vpl_map vpl_map_of(uint vpl, vec3 axis)
     return vpl_map(vpl_frame(axis), vec2(vpl_map_corner(vpl, side)), 1.0 / vec2(size), float(max(side - 1, 0)));
 }
 
-// As vpl_visibility of a point in the medium, r = length(away).
-float vpl_map_visibility(vpl_map map, vec3 away, float r)
+// As vpl_visibility of a point in the medium, r = length(away). `closed`: of a cell beside a wall, which all four rays
+// must reach: some of them may end beyond it where the wall is seen under a small angle.
+float vpl_map_visibility(vpl_map map, vec3 away, float r, bool closed)
 {
     vec2 x = vpl_map_place(away * map.frame) * map.last, first = min(floor(x), map.last - 1.0), w = x - first;
     vec4 stored = textureGather(vpl_distances, (map.corner + first + 1.0) * map.texel).wzxy;
     vec4 shares = vec4(1.0 - w.x, w.x, 1.0 - w.x, w.x) * vec4(1.0 - w.yy, w.yy);
-    return map.last > 0.0 ? dot(shares, vec4(greaterThanEqual(stored, vec4(r)))) : 1.0;
+    vec4 lit = vec4(greaterThanEqual(stored, vec4(r)));
+    float share = closed ? lit.x * lit.y * lit.z * lit.w : dot(shares, lit);
+    return map.last > 0.0 ? share : 1.0;
 }
 
 // Share of a VPL's light that goes the way `away` and is not stopped by surfaces: of the four rays around that way,

@@ -72,6 +72,7 @@ static const tyn_binding vpls_bindings[] = {
     {LATTICE_LAMPS_PORT_LIT, TYN_USE_STORAGE_WRITE},
     {LATTICE_LAMPS_PORT_UNSHADOWED, TYN_USE_STORAGE_WRITE},
     {LATTICE_LAMPS_PORT_VPL_DISTANCES, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_WALL_LINKS, TYN_USE_TEXELS_UINT},
 };
 
 static const tyn_binding near_bindings[] = {
@@ -117,7 +118,7 @@ static const tyn_binding source_bindings[] = {
     .num_spec = specs
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_CELLS] = {KERNEL(cells, lattice_lamps_cells, 8, 4, 2, 4)},
-    [KERNEL_VPLS] = {KERNEL(vpls, lattice_lamps_vpls, 8, 4, 2, 3)},
+    [KERNEL_VPLS] = {KERNEL(vpls, lattice_lamps_vpls, 8, 4, 2, 4)},
     [KERNEL_NEAR] = {KERNEL(near, lattice_lamps_near, 8, 4, 2, 4)},
     [KERNEL_SUM] = {KERNEL(sum, lattice_lamps_sum, LATTICE_SUN_GROUP, 1, 1, 1)},
     [KERNEL_SOURCE] = {KERNEL(source, lattice_lamps, 8, 4, 2, 1)},

@@ -35,9 +35,12 @@ layout(constant_id = 1) const uint num_channels = 3;
 layout(constant_id = 2) const uint shadowed = 0;
 layout(constant_id = 3) const uint walls = 0;
 
+bool closed = false; // a wall is beside the cell
+
 float visibility(uint n, vec3 away)
 {
-    return vpl_visibility(n - args.num_lamps, radials[n].light.axis, away, vec3(0.0));
+    vpl_map map = vpl_map_of(n - args.num_lamps, radials[n].light.axis);
+    return vpl_map_visibility(map, away, length(away), closed);
 }
 
 #include "lattice_lamps.glsl"
@@ -56,6 +59,9 @@ void main()
     for (uint ch = 0u; ch < num_channels; ch++) {
         vec4 cell = texelFetch(cells, c + ivec3(0, 0, int(ch) * dims.z), 0);
         extinction += cell.x + cell.y;
+    }
+    if (walls == 1) {
+        closed = (wall_links[(c.z * dims.y + c.y) * dims.x + c.x] & TYN_WALLS_NEAR) != 0u;
     }
     lattice_box box = lattice_box_of(medium.extent, dims);
     vec3 centre = lattice_to_m(box, vec3(c) + 0.5);

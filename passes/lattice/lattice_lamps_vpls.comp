@@ -20,6 +20,7 @@
 #include "lattice.glsl"
 #include "lattice_sweep.glsl"
 #include "vpl_visibility.glsl"
+#include "walls_args.h"
 #include "radial.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in; // 4^3 blocks
@@ -32,7 +33,10 @@ layout(binding = 6, rgba32f) uniform writeonly image3D lit; // as in lattice_lam
 layout(binding = 7, r32f) uniform writeonly image3D unshadowed;
 
 layout(constant_id = 1) const uint num_channels = 3;
+layout(binding = 9) uniform usamplerBuffer wall_links;
+
 layout(constant_id = 2) const uint shadowed = 0;
+layout(constant_id = 3) const uint walls = 0;
 
 #include "lattice_lamps.glsl"
 
@@ -59,9 +63,14 @@ void main()
     vec3 middle = lattice_to_m(box, vec3(c) + 1.0);
     vec4 sums[BLOCK][3];
     vec3 all[BLOCK], extinction[BLOCK];
+    bool closed[BLOCK];
     [[unroll]] for (uint k = 0u; k < BLOCK; k++) {
         ivec3 at = min(c + corner_of(k), dims - 1);
         all[k] = vec3(0.0);
+        closed[k] = false;
+        if (walls == 1u) {
+            closed[k] = (texelFetch(wall_links, (at.z * dims.y + at.y) * dims.x + at.x).x & TYN_WALLS_NEAR) != 0u;
+        }
         extinction[k] = vec3(0.0);
         [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {
             sums[k][ch] = vec4(0.0);
@@ -98,7 +107,7 @@ void main()
                 vec3 unit = away / max(r, 1e-20);
                 float share = lattice_lamps_vpl_pieces(r / dx) == 1u ? max(dot(unit, light.axis), 0.0) : 0.0;
                 float fluence = share * radial_mean_inverse_square(r2, dx * dx);
-                float visible = shadowed == 1 ? vpl_map_visibility(map, away, r) : 1.0;
+                float visible = shadowed == 1 ? vpl_map_visibility(map, away, r, closed[k]) : 1.0;
                 vec4 moments = visible * vec4(1.0, lattice_lamps_cosine(light.radius, r) * unit);
                 [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {
                     if (ch < num_channels) {
