@@ -279,7 +279,9 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
         [RAYMARCH_PORT_WALL_CELLS] = in->wall_cells,
         [RAYMARCH_PORT_SHADOW_ATLAS] = beams ? in->shadows.atlas : none,
         [RAYMARCH_PORT_SHADOWS] = beams ? in->shadows.lights : none,
-        [RAYMARCH_PORT_LIGHT_CELLS] = beams ? in->shadows.cells : none,
+        // A lamp that shines all around leaves little in the dark: the cubes would cost more than they save.
+        [RAYMARCH_PORT_LIGHT_CELLS] =
+            beams && (in->num_suns || params.spots) ? in->shadows.cells : none,
         [RAYMARCH_PORT_CAMERA] = job->refs.camera,
         [RAYMARCH_PORT_ENVIRONMENT] = job->refs.environment,
         [RAYMARCH_PORT_ENV_MAP] = job->refs.env_map,
