@@ -85,7 +85,7 @@ double regime_thin_error(const regime *r, double cells)
     if (!scatters_again(r) || !(depth_of(r, r->thickness) > 0.1) || x > thin[COUNT(thin) - 1].x) {
         return 0;
     }
-    return along(thin, COUNT(thin), fmax(x, thin[0].x)) * regime_multiple(r);
+    return fmin(1, along(thin, COUNT(thin), fmax(x, thin[0].x)) * regime_multiple(r));
 }
 
 double regime_backward_error(const regime *r)
