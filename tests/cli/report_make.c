@@ -145,6 +145,10 @@ static cJSON *make_run(app *a, const char *dir, int scene, int index)
     cJSON_AddNumberToObject(frame, "cold", m->ms * slower);
     cJSON_AddNumberToObject(frame, "camera_moved", 0.7 * m->ms * slower);
     cJSON_AddNumberToObject(frame, "unchanged", 0.07);
+    frame = cJSON_AddObjectToObject(run, "frames");
+    cJSON_AddNumberToObject(frame, "cold", 5);
+    cJSON_AddNumberToObject(frame, "camera_moved", 8);
+    cJSON_AddNumberToObject(frame, "unchanged", 5);
     memory = cJSON_AddObjectToObject(run, "memory");
     cJSON_AddNumberToObject(memory, "persistent", 12e6 + 3e5 * index);
     cJSON_AddNumberToObject(memory, "transient", 4e6);

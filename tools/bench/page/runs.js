@@ -105,7 +105,7 @@ function citation(report, scene, run) {
         `scene ${scene.name}, ${list(scene.size).join(TIMES)} pixels (${scene.hash})`,
         `run ${run.name}: method ${run.method}; ${settingsText(run.settings) || "default settings"}; seed ${run.seed ?? NONE}`,
         `error ${errors || NONE}`,
-        `time ${duration(coldOf(run))} a cold frame`,
+        `time ${duration(coldOf(run))} a cold frame${run.frames ? `, median of ${run.frames.cold}` : ""}`,
         `reference ${reference.method}${isNumber(reference.spp) ? `, ${reference.spp} samples a pixel, seed ${reference.seed}` : ""} (${reference.key})`,
         `device ${device.name}; driver ${device.driver}`,
         inputs && `inputs ${inputs}`,
@@ -133,7 +133,8 @@ function runDetails(report, scene, styles, index) {
         facts([
             ["method", run.method], ["settings", settingsText(run.settings) || "defaults"],
             ...list(run.errors).map(errorLine),
-            ["frame: cold, camera moved, unchanged", [frame.cold, frame.camera_moved, frame.unchanged].map(duration).join(", ")],
+            ["frame: cold, camera moved, unchanged", [frame.cold, frame.camera_moved, frame.unchanged].map(duration).join(", ")
+                + (run.frames ? ` (medians of ${[run.frames.cold, run.frames.camera_moved, run.frames.unchanged].join(", ")})` : "")],
             ["set-up", duration(run.setup_ms)],
             ["memory", run.memory ? `${mebibytes(run.memory.persistent)} MiB kept, ${mebibytes(run.memory.transient)} MiB a frame` : null],
             ["flicker", isNumber(run.flicker) ? percent(run.flicker) : null],
