@@ -1,0 +1,232 @@
+// raymarch_suns.glsl -- what lights see of a view ray, and the light of suns that a step of it scatters to the eye.
+//
+// Included by raymarch.glsl.
+#ifndef TYN_RAYMARCH_SUNS_GLSL
+#define TYN_RAYMARCH_SUNS_GLSL
+
+const float RAYMARCH_SHADOWS_ACROSS = 128.0; // looks at a shadow map along the box's longest side, and
+const float RAYMARCH_SHADOW_HALVES = 8.0; // parts of which where it has an edge in between
+const float RAYMARCH_CELLS_MOST = 8.0; // places of a step for which light_cells is asked
+
+// What stands before a light, as a view ray sees it. Read once a ray, as some devices read buffers slowly.
+struct march_map {
+    shadow_light map;
+    vec3 from, along; // the ray in the light's frame: what moves along it moves evenly there
+};
+
+march_map march_map_of(uint light, vec3 origin, vec3 direction)
+{
+    march_map m;
+    if (raymarch_has(RAYMARCH_SHADOWS)) {
+        m.map = shadows[light];
+        m.from = shadow_frame(m.map, origin);
+        m.along = shadow_frame_direction(m.map, direction);
+    }
+    return m;
+}
+
+// A sun as one view ray sees it: its grid's coordinates are linear along the ray.
+struct march_sun {
+    beam_ray beam;
+    march_map map;
+    uint grid; // number of its grid
+    vec3 irradiance; // W/m^2
+    float mean_cosine;
+#ifdef RAYMARCH_GREY
+    scatter_angle angle;
+    float phase; // of one scattering; mode DENSITY, as `angle`
+#else
+    scatter_angle angle[3];
+    vec3 phase;
+    uint light;
+    float one_minus_mu;
+#endif
+};
+
+march_sun march_sun_of(uint n, march_medium unit, vec3 origin, vec3 direction)
+{
+    light_block light = lights[beams[n].light];
+    vec3 turn = direction + light.direction;
+    float one_minus_mu = 0.5 * dot(turn, turn);
+    march_sun sun;
+    sun.grid = n;
+    sun.beam = beam_ray_of(n, origin, direction);
+    // Said at compile time, as some devices run both sides of a branch.
+    sun.beam.edges = sun.beam.edges && !raymarch_has(RAYMARCH_CLOSED);
+    sun.map = march_map_of(beams[n].light, origin, direction);
+    sun.irradiance = light.color;
+    sun.mean_cosine = light.mean_cosine;
+#ifdef RAYMARCH_GREY
+    sun.phase = hg_near(unit.g * light.mean_cosine, one_minus_mu);
+    if (raymarch_has(RAYMARCH_KERNELS)) {
+        sun.angle = scatter_angle_of(beams[n].light, 0u, one_minus_mu);
+        vec2 once = scatter_kernels(sun.angle, 0.0);
+        sun.phase = once.x + once.y;
+    }
+#else
+    sun.light = beams[n].light;
+    sun.one_minus_mu = one_minus_mu;
+    for (uint c = 0u; c < 3u && medium_mode == TYN_MEDIUM_DENSITY; c++) {
+        sun.phase[c] = hg_near(unit.g[c] * light.mean_cosine, one_minus_mu);
+        if (raymarch_has(RAYMARCH_KERNELS)) {
+            sun.angle[c] = scatter_angle_of(beams[n].light, c, one_minus_mu);
+            vec2 once = scatter_kernels(sun.angle[c], 0.0);
+            sun.phase[c] = once.x + once.y;
+        }
+    }
+#endif
+    return sun;
+}
+
+// Light of one sun that is scattered towards the eye at distance s of the ray. `weight` and
+// `weight_scaled`: integrals of e^-tau and e^-tau' over the step, m. `first`: the part that has
+// scattered once, W/(m^2 sr), as the result.
+vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, float s,
+                    spectrum weight, spectrum weight_scaled, inout vec3 first)
+{
+    beam_place place;
+    if (raymarch_has(RAYMARCH_REPEAT)) {
+        place = beam_place_of(sun.grid, p);
+    } else {
+        place = beam_ray_at(sun.beam, s);
+    }
+    spectrum tau_s, tau_a, phase = sun.phase, k_tms, k_lobe;
+#ifdef RAYMARCH_GREY
+    float column = beam_fetch(beam_column_tex, place).r;
+    tau_s = unit.scattering * column;
+    tau_a = unit.absorption * column;
+    if (raymarch_has(RAYMARCH_KERNELS)) {
+        vec2 k = scatter_kernels(sun.angle, tau_s);
+        k_tms = k.x;
+        k_lobe = k.y;
+    }
+#else
+    if (medium_mode == TYN_MEDIUM_DENSITY) {
+        float column = beam_fetch(beam_column_tex, place).r;
+        tau_s = unit.scattering * column;
+        tau_a = unit.absorption * column;
+        if (raymarch_has(RAYMARCH_KERNELS)) {
+            for (int c = 0; c < 3; c++) {
+                vec2 k = scatter_kernels(sun.angle[c], tau_s[c]);
+                k_tms[c] = k.x;
+                k_lobe[c] = k.y;
+            }
+        }
+    } else {
+        tau_s = beam_fetch(beam_column_tex, place);
+        tau_a = beam_fetch(beam_tau_a_tex, place);
+        for (int c = 0; c < 3; c++) {
+            phase[c] = hg_near(m.g[c] * sun.mean_cosine, sun.one_minus_mu);
+        }
+        if (raymarch_has(RAYMARCH_KERNELS)) {
+            vec3 tau_p = beam_fetch(beam_tau_p_tex, place);
+            for (int c = 0; c < 3; c++) {
+                vec2 k = scatter_kernels_mixed(lut.sun_set[sun.light], sun.mean_cosine, sun.one_minus_mu, m.g[c],
+                                               tau_s[c], tau_p[c]);
+                k_tms[c] = k.x;
+                k_lobe[c] = k.y;
+            }
+        }
+    }
+#endif
+    vec3 light = m.scattering * exp(-tau_a) * sun.irradiance;
+    vec3 once = light * (phase * exp(-tau_s) * weight);
+    if (raymarch_has(RAYMARCH_SINGLE | RAYMARCH_MULTIPLE)) {
+        first += once;
+    }
+    if (!raymarch_has(RAYMARCH_KERNELS)) {
+        return once;
+    }
+    return light * (k_tms * weight_scaled + k_lobe * weight);
+}
+
+// What lights see from where a ray has been marched to: bits 0 to 3 of suns, 4 to 31 of lamps.
+struct march_shadows {
+    uint known, lit;
+    float inside; // where to look at the farthest
+    uint cells;   // what is known of all of the step (light_cells_args.h)
+};
+
+float march_shadow_piece()
+{
+    return max(max(medium.extent.x, medium.extent.y), medium.extent.z) / RAYMARCH_SHADOWS_ACROSS;
+}
+
+bool march_sees(bool sun, march_map m, float s)
+{
+    vec3 q = m.from + s * m.along;
+    return (sun ? shadow_all_lit(shadow_place_sun(m.map, q)) : shadow_visibility_lamp_at(m.map, q)) > 0.0;
+}
+
+// What is known of lights for all of the step from s to s + ds.
+uint march_light_cells(vec3 origin, vec3 direction, float s, float ds)
+{
+    if (!raymarch_has(RAYMARCH_LIGHT_CELLS)) {
+        return 0u;
+    }
+    ivec3 dims = textureSize(light_cells_tex, 0);
+    float per_edge = float(max(max(dims.x, dims.y), dims.z)) / max(max(medium.extent.x, medium.extent.y), medium.extent.z);
+    // Each place tells of what is within reach of it; what not all of them say is mixed.
+    float places = clamp(ceil(ds * (per_edge / (2.0 * TYN_LIGHT_CELLS_REACH))), 1.0, RAYMARCH_CELLS_MOST), part = ds / places;
+    uint cells = part * per_edge <= 2.001 * TYN_LIGHT_CELLS_REACH ? ~0u : 0u;
+    for (float i = 0.5; i < places && cells != 0u; i += 1.0) {
+        vec3 p = origin + (s + i * part) * direction;
+        cells &= uint(texelFetch(light_cells_tex, clamp(ivec3(p * per_edge), ivec3(0), dims - 1), 0).r);
+    }
+    return cells;
+}
+
+uint march_light_cell(march_shadows shadow, uint light)
+{
+    return light < TYN_LIGHT_CELLS ? shadow.cells >> (2u * light) & 3u : TYN_LIGHT_CELLS_MIXED;
+}
+
+// What a light sees of the step from s to s + ds: how much of it, and where the middle of that is. Steps follow the
+// medium, shadows do not: so a step looks at several places, and halves what is between two that differ.
+struct march_lit {
+    float metres, middle;
+};
+
+// `bit`: of the light in `shadow`.
+march_lit march_lit_of(bool sun, march_map map, uint light, uint bit, float s, float ds, inout march_shadows shadow)
+{
+    float part = ds / max(ceil(ds / march_shadow_piece()), 1.0), finest = part / RAYMARCH_SHADOW_HALVES;
+    float sum = 0.0, moment = 0.0;
+    uint mask = bit < 32u ? 1u << bit : 0u; // lights beyond are looked at afresh
+    bool known = (shadow.known & mask) != 0u, lit = (shadow.lit & mask) != 0u;
+    // Up to `lo` it is known what the light sees; at `hi`, if > 0, it is the opposite. One look an iteration, as
+    // these are what costs time.
+    float lo = 0.0, hi = 0.0;
+    uint cell = march_light_cell(shadow, light);
+    if (cell != TYN_LIGHT_CELLS_MIXED) {
+        lit = cell == TYN_LIGHT_CELLS_LIT;
+        lo = ds;
+        sum = lit ? ds : 0.0;
+        moment = ds * sum;
+    }
+    while (lo < ds) {
+        float next = hi > 0.0 ? 0.5 * (lo + hi) : lo + 1.01 * part > ds ? ds : lo + part;
+        next = known ? next : 0.0;
+        bool sees = march_sees(sun, map, min(s + next, shadow.inside));
+        lit = known ? lit : sees;
+        known = true;
+        float more = lit && sees ? next - lo : 0.0;
+        sum += more;
+        moment += more * (lo + next);
+        hi = lit == sees ? hi : next;
+        lo = lit == sees ? next : lo;
+        if (hi - lo > 0.0 && hi - lo <= finest) { // the edge is in the middle
+            more = 0.5 * (hi - lo);
+            sum += more;
+            moment += more * (hi + lo);
+            lo = hi;
+            hi = 0.0;
+            lit = !lit;
+        }
+    }
+    shadow.known |= mask;
+    shadow.lit = lit ? shadow.lit | mask : shadow.lit & ~mask;
+    return march_lit(sum, s + 0.5 * moment / max(sum, 1e-30));
+}
+
+#endif
