@@ -314,9 +314,24 @@ static uint16_t *to_half(const float *data, size_t count, uint64_t *saturated)
     return half;
 }
 
+typedef exr_result_t (*compressor)(exr_encode_pipeline_t *encode);
+
+// OpenEXR stores rows as they are if that is smaller, and readers tell by the size; but its version 3.1 leaves
+// compressed ones that have just that size.
+static exr_result_t compress_smaller(exr_encode_pipeline_t *encode)
+{
+    const compressor *library = encode->encoding_user_data;
+    const exr_result_t e = (*library)(encode);
+    if (e == EXR_ERR_SUCCESS && encode->compressed_bytes == encode->packed_bytes) {
+        memcpy(encode->compressed_buffer, encode->packed_buffer, (size_t)encode->packed_bytes);
+    }
+    return e;
+}
+
 static exr_result_t write_chunks(exr_context_t context, const tyn_image_file *image,
                                  void *const *data, size_t element)
 {
+    compressor library = NULL;
     exr_encode_pipeline_t encode = EXR_ENCODE_PIPELINE_INITIALIZER;
     bool encoding = false;
     int32_t step;
@@ -344,6 +359,9 @@ static exr_result_t write_chunks(exr_context_t context, const tyn_image_file *im
         }
         if (e == EXR_ERR_SUCCESS && !encoding) {
             e = exr_encoding_choose_default_routines(context, 0, &encode);
+            library = encode.compress_fn;
+            encode.compress_fn = library ? compress_smaller : NULL;
+            encode.encoding_user_data = &library;
         }
         encoding = true;
         e = e == EXR_ERR_SUCCESS ? exr_encoding_run(context, 0, &encode) : e;
