@@ -418,7 +418,7 @@ static tyn_result check_repeat(const tyn_job *job)
     return TYN_OK;
 }
 
-static tyn_result add_distance(tyn_graph *g, const tyn_job *job, tyn_ref *distance)
+static tyn_result add_distances(tyn_graph *g, const tyn_job *job, tyn_picture_inputs *in)
 {
     const tyn_path_distance_params params = {job->view->width, job->view->height};
     tyn_ref refs[PATH_DISTANCE_NUM_PORTS] = {
@@ -429,7 +429,8 @@ static tyn_result add_distance(tyn_graph *g, const tyn_job *job, tyn_ref *distan
         [PATH_DISTANCE_PORT_NODES] = job->refs.nodes,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_path_distance, &params, refs);
-    *distance = refs[PATH_DISTANCE_PORT_DISTANCE];
+    in->surface = refs[PATH_DISTANCE_PORT_RADIANCE];
+    in->distances = refs[PATH_DISTANCE_PORT_DISTANCES];
     return result;
 }
 
@@ -445,7 +446,7 @@ static tyn_result add_depth(tyn_graph *g, const tyn_job *job, const tyn_media_re
     tyn_job depth = *job;
     depth.outputs = TYN_OUTPUT_DEPTH;
     tyn_picture_inputs in = {.media = *media};
-    tyn_result result = job->frame->num_triangles ? add_distance(g, &depth, &in.surface) : TYN_OK;
+    tyn_result result = job->frame->num_triangles ? add_distances(g, &depth, &in) : TYN_OK;
     bool nothing = job->frame->empty && !job->frame->num_triangles;
     return result == TYN_OK ? tyn_add_picture(g, &depth, nothing ? NULL : &in) : result;
 }

@@ -123,7 +123,8 @@ enum {
     PATH_DISTANCE_PORT_VERTICES,
     PATH_DISTANCE_PORT_TRIANGLES,
     PATH_DISTANCE_PORT_NODES,    // optional
-    PATH_DISTANCE_PORT_DISTANCE, // OUT 2D RGBA32F: a = distance, m
+    PATH_DISTANCE_PORT_RADIANCE,  // OUT 2D RG32UI: none, packed_colour.glsl
+    PATH_DISTANCE_PORT_DISTANCES, // OUT 2D R32F, m; 0: none
     PATH_DISTANCE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_path_distance;

@@ -8,8 +8,10 @@ static const tyn_port ports[PATH_DISTANCE_NUM_PORTS] = {
     {"vertices", TYN_IN, TYN_BUFFER, 0, false, "of the triangles"},
     {"triangles", TYN_IN, TYN_BUFFER, 0, false, "in the hierarchy's order"},
     {"nodes", TYN_IN, TYN_BUFFER, 0, true, "hierarchy of the triangles"},
-    {"distance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-     "a = distance along the ray to the first surface, m; infinity: none"},
+    {"radiance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT, false,
+     "none: surfaces as the ray march takes them, in the dark"},
+    {"distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false,
+     "along the ray to the first surface, m; 0: none"},
 };
 
 static const tyn_binding bindings[] = {
@@ -18,7 +20,8 @@ static const tyn_binding bindings[] = {
     {PATH_DISTANCE_PORT_VERTICES, TYN_USE_STORAGE_READ, false},
     {PATH_DISTANCE_PORT_TRIANGLES, TYN_USE_STORAGE_READ, false},
     {PATH_DISTANCE_PORT_NODES, TYN_USE_STORAGE_READ, false},
-    {PATH_DISTANCE_PORT_DISTANCE, TYN_USE_STORAGE_WRITE, false},
+    {PATH_DISTANCE_PORT_RADIANCE, TYN_USE_STORAGE_WRITE, false},
+    {PATH_DISTANCE_PORT_DISTANCES, TYN_USE_STORAGE_WRITE, false},
 };
 
 static const tyn_kernel kernel = {"path_distance",
@@ -33,7 +36,8 @@ static const tyn_kernel kernel = {"path_distance",
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_path_distance_params *p = params;
-    tyn_build_image(b, PATH_DISTANCE_PORT_DISTANCE, (tyn_extent){p->width, p->height, 1}, 1);
+    tyn_build_image(b, PATH_DISTANCE_PORT_RADIANCE, (tyn_extent){p->width, p->height, 1}, 1);
+    tyn_build_image(b, PATH_DISTANCE_PORT_DISTANCES, (tyn_extent){p->width, p->height, 1}, 1);
     return TYN_OK;
 }
 
@@ -53,6 +57,6 @@ const tyn_pass_desc tyn_pass_path_distance = {
     .params_size = sizeof(tyn_path_distance_params),
     .declare = declare,
     .record = record,
-    .debug_port = PATH_DISTANCE_PORT_DISTANCE,
+    .debug_port = PATH_DISTANCE_PORT_DISTANCES,
     .debug_meaning = "distance to the first surface",
 };

@@ -4,6 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "surface_args.h"
 #include "camera.glsl"
+#include "packed_colour.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -12,7 +13,8 @@ layout(set = 0, binding = 1, scalar) uniform surfaces_uniform { surface_block su
 layout(set = 0, binding = 2, scalar) readonly buffer vertices_buffer { surface_vertex vertices[]; };
 layout(set = 0, binding = 3, scalar) readonly buffer triangles_buffer { surface_triangle triangles[]; };
 layout(set = 0, binding = 4, scalar) readonly buffer nodes_buffer { uvec4 nodes[]; };
-layout(set = 0, binding = 5, rgba32f) uniform writeonly image2D distance_image;
+layout(set = 0, binding = 5, rg32ui) uniform writeonly uimage2D radiance_image;
+layout(set = 0, binding = 6, r32f) uniform writeonly image2D distance_image;
 
 #include "surface_trace.glsl"
 
@@ -27,5 +29,6 @@ void main()
                                        surface_turn(surfaces.to_world, from.direction), SURFACE_NONE);
     surface_hit hit = surface_hit(uintBitsToFloat(0x7f800000u), SURFACE_NONE, vec2(0.0)); // infinity: none
     surface_trace_world(ray, false, hit);
-    imageStore(distance_image, ivec2(pixel), vec4(0.0, 0.0, 0.0, hit.t));
+    imageStore(radiance_image, ivec2(pixel), uvec4(colour_pack(vec3(0.0)), 0u, 0u));
+    imageStore(distance_image, ivec2(pixel), vec4(isinf(hit.t) ? 0.0 : hit.t));
 }
