@@ -61,8 +61,8 @@ vpl_map vpl_map_of(uint vpl, vec3 axis)
     return vpl_map(vpl_frame(axis), vec2(vpl_map_corner(vpl, side)), 1.0 / vec2(size), float(max(side - 1, 0)));
 }
 
-// As vpl_visibility of a point in the medium, r = length(away). `closed`: of a cell beside a wall, which all four rays
-// must reach: some of them may end beyond it where the wall is seen under a small angle.
+// As vpl_visibility of a point in the medium, r = length(away). `closed`: of a cell that has a wall between
+// it and the VPL, which all four rays must reach: some of them may end beyond it where that is seen under a small angle.
 float vpl_map_visibility(vpl_map map, vec3 away, float r, bool closed)
 {
     vec2 x = vpl_map_place(away * map.frame) * map.last, first = min(floor(x), map.last - 1.0), w = x - first;

@@ -73,6 +73,7 @@ static const tyn_binding vpls_bindings[] = {
     {LATTICE_LAMPS_PORT_UNSHADOWED, TYN_USE_STORAGE_WRITE},
     {LATTICE_LAMPS_PORT_VPL_DISTANCES, TYN_USE_SAMPLED},
     {LATTICE_LAMPS_PORT_WALL_LINKS, TYN_USE_TEXELS_UINT},
+    {LATTICE_LAMPS_PORT_WALL_CELLS, TYN_USE_TEXELS_VEC4},
 };
 
 static const tyn_binding near_bindings[] = {

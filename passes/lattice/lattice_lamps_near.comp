@@ -35,11 +35,13 @@ layout(constant_id = 1) const uint num_channels = 3;
 layout(constant_id = 2) const uint shadowed = 0;
 layout(constant_id = 3) const uint walls = 0;
 
-bool closed = false; // a wall is beside the cell
+walls_sides sides; // of the cell
+bool hidden = false; // a wall beside it may hide any VPL
 
 float visibility(uint n, vec3 away)
 {
     vpl_map map = vpl_map_of(n - args.num_lamps, radials[n].light.axis);
+    bool closed = hidden || walls == 1u && !walls_same_side_of(sides, radials[n].light.position);
     return vpl_map_visibility(map, away, length(away), closed);
 }
 
@@ -54,6 +56,7 @@ void main()
         return;
     }
     vec4 sums[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
+    lattice_box box = lattice_box_of(medium.extent, dims);
     vec3 all = vec3(0.0);
     float extinction = 0.0;
     for (uint ch = 0u; ch < num_channels; ch++) {
@@ -61,9 +64,10 @@ void main()
         extinction += cell.x + cell.y;
     }
     if (walls == 1) {
-        closed = (wall_links[(c.z * dims.y + c.y) * dims.x + c.x] & TYN_WALLS_NEAR) != 0u;
+        sides = walls_sides_of(box, c);
+        uint index = uint((c.z * dims.y + c.y) * dims.x + c.x);
+        hidden = (walls_links_of(index) & TYN_WALLS_NEAR) != 0u && sides.planes[0] == vec4(0.0);
     }
-    lattice_box box = lattice_box_of(medium.extent, dims);
     vec3 centre = lattice_to_m(box, vec3(c) + 0.5);
     uint count = extinction > 0.0 ? radial_count : 0u;
     for (uint first = args.num_lamps; first < count; first += 32u) {

@@ -16,11 +16,14 @@
 #define RADIAL_TAU_A 3
 #define RADIAL_TAU_P 4
 #define VPL_DISTANCES 8
+#define WALLS_LINKS 9
+#define WALLS_CELLS 10
+#define WALLS_TEXELS
 #include "medium.glsl"
 #include "lattice.glsl"
 #include "lattice_sweep.glsl"
 #include "vpl_visibility.glsl"
-#include "walls_args.h"
+#include "lattice_walls.glsl"
 #include "radial.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in; // 4^3 blocks
@@ -33,14 +36,20 @@ layout(binding = 6, rgba32f) uniform writeonly image3D lit; // as in lattice_lam
 layout(binding = 7, r32f) uniform writeonly image3D unshadowed;
 
 layout(constant_id = 1) const uint num_channels = 3;
-layout(binding = 9) uniform usamplerBuffer wall_links;
-
 layout(constant_id = 2) const uint shadowed = 0;
 layout(constant_id = 3) const uint walls = 0;
 
 #include "lattice_lamps.glsl"
 
 const uint BLOCK = 8u;
+
+// Planes that nothing, or all, is behind.
+const vec4 OPEN = vec4(0.0, 0.0, 0.0, 1.0), HIDING = vec4(0.0, 0.0, 0.0, -1.0);
+
+vec4 plane_or(vec4 plane, vec4 other)
+{
+    return plane == vec4(0.0) ? other : plane;
+}
 
 ivec3 corner_of(uint k)
 {
@@ -63,13 +72,18 @@ void main()
     vec3 middle = lattice_to_m(box, vec3(c) + 1.0);
     vec4 sums[BLOCK][3];
     vec3 all[BLOCK], extinction[BLOCK];
-    bool closed[BLOCK];
+    // Of the cells' walls. A wall that cuts a link of a cell, but is not in it, has no plane there: it may hide any VPL.
+    vec4 first_plane[BLOCK], second_plane[BLOCK], third_plane[BLOCK];
     [[unroll]] for (uint k = 0u; k < BLOCK; k++) {
         ivec3 at = min(c + corner_of(k), dims - 1);
         all[k] = vec3(0.0);
-        closed[k] = false;
+        first_plane[k] = second_plane[k] = third_plane[k] = OPEN;
         if (walls == 1u) {
-            closed[k] = (texelFetch(wall_links, (at.z * dims.y + at.y) * dims.x + at.x).x & TYN_WALLS_NEAR) != 0u;
+            uint index = uint((at.z * dims.y + at.y) * dims.x + at.x);
+            bool near = (walls_links_of(index) & TYN_WALLS_NEAR) != 0u;
+            first_plane[k] = near ? plane_or(walls_plane(index, 0u), HIDING) : OPEN;
+            second_plane[k] = near ? plane_or(walls_plane(index, 1u), OPEN) : OPEN;
+            third_plane[k] = near ? plane_or(walls_plane(index, 2u), OPEN) : OPEN;
         }
         extinction[k] = vec3(0.0);
         [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {
@@ -107,7 +121,12 @@ void main()
                 vec3 unit = away / max(r, 1e-20);
                 float share = lattice_lamps_vpl_pieces(r / dx) == 1u ? max(dot(unit, light.axis), 0.0) : 0.0;
                 float fluence = share * radial_mean_inverse_square(r2, dx * dx);
-                float visible = shadowed == 1 ? vpl_map_visibility(map, away, r, closed[k]) : 1.0;
+                bool closed = false;
+                if (walls == 1u) {
+                    vec4 at = vec4(light.position, 1.0);
+                    closed = min(min(dot(first_plane[k], at), dot(second_plane[k], at)), dot(third_plane[k], at)) < 0.0;
+                }
+                float visible = shadowed == 1 ? vpl_map_visibility(map, away, r, closed) : 1.0;
                 vec4 moments = visible * vec4(1.0, lattice_lamps_cosine(light.radius, r) * unit);
                 [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {
                     if (ch < num_channels) {
