@@ -102,7 +102,7 @@ void main()
         vec3 irradiance;
         if (shade_step == 1) {
             irradiance = irradiance_at(p, part);
-            irradiance += shade_has(SHADE_VPLS) ? smooth_light_beside(p, pixel) : vec3(0.0);
+            irradiance += shade_has(SHADE_VPLS) ? smooth_light_beside(p, 0.5 * (part.xy + part.zw)) : vec3(0.0);
         } else {
             irradiance = smooth_light_around(p, 0.5 * (part.xy + part.zw)) + sharp_light_at(p, part);
         }

@@ -144,22 +144,26 @@ vec3 smooth_light_around(shade_point p, vec2 at)
     return sum.a > 1e-9 ? sum.rgb / sum.a : other;
 }
 
-// Of the blocks around, the one that is most like p.
-vec3 smooth_light_beside(shade_point p, ivec2 pixel)
+// Of the nine blocks around the place `at` of the picture (pixels): of those on the same plane, the nearer the more. Not of
+// the one that is most like p: of several on one plane that is a matter of rounding, which changes with the scale.
+vec3 smooth_light_beside(shade_point p, vec2 at)
 {
-    ivec2 middle = pixel / shade_step, last = shade_blocks() - 1;
-    float best = -1e30;
-    vec3 light = vec3(0.0);
+    vec2 x = at / float(shade_step);
+    ivec2 last = shade_blocks() - 1;
+    float size = float(shade_step) * 2.0 * camera.half_height / float(camera.size.y);
+    size *= camera.orthographic != 0u ? 1.0 : dot(p.position - camera.origin, camera.forward);
+    vec4 sum = vec4(0.0);
     for (int i = 0; i < 9; i++) {
-        ivec2 block = clamp(middle + ivec2(i % 3, i / 3) - 1, ivec2(0), last);
+        ivec2 block = clamp(ivec2(x) + ivec2(i % 3, i / 3) - 1, ivec2(0), last);
         shade_part there = shade_unpack(imageLoad(smooth_image, block));
         vec3 d = shade_part_position(block, there.along) - p.position;
-        float like = dot(there.facet, p.facet) - abs(dot(d, p.facet)) * inversesqrt(dot(d, d) + 1e-36);
-        bool better = there.along > 0.0 && like > best;
-        best = better ? like : best;
-        light = better ? there.irradiance : light;
+        vec2 away = vec2(block) + 0.5 - x;
+        // A place nearer than a block tells nothing of planes: it may be p, but for rounding.
+        float off = abs(dot(d, p.facet)) / max(max(length(d), size), 1e-30);
+        float like = exp2(max(-40.0 * (1.0 - dot(there.facet, p.facet) + off), -100.0) - 4.0 * dot(away, away));
+        sum += (there.along > 0.0 ? like : 0.0) * vec4(there.irradiance, 1.0);
     }
-    return light;
+    return sum.rgb / max(sum.a, 1e-37);
 }
 
 #endif
