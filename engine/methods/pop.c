@@ -178,6 +178,29 @@ static bool is_sheared(const tyn_frame_scene *frame)
     return sheared;
 }
 
+static bool any_emits(const tyn_surfaces *s)
+{
+    bool emits = false;
+    for (uint32_t i = 0; i < s->num_triangles; i++) {
+        const float *e = s->materials[s->triangles[i].material].emission;
+        emits = emits || e[0] > 0 || e[1] > 0 || e[2] > 0;
+    }
+    return emits;
+}
+
+// Do all surfaces stand in one period, as those do that repeat with the medium?
+static bool fit_a_period(const tyn_frame_scene *frame)
+{
+    float lo[3], hi[3];
+    tyn_surfaces_box(frame, lo, hi);
+    bool fit = frame->num_triangles > 0;
+    for (int a = 0; a < 3; a++) {
+        fit =
+            fit && (!frame->medium.repeat[a] || hi[a] - lo[a] <= 1.0001f * frame->medium.extent[a]);
+    }
+    return fit;
+}
+
 // TYN_ERR_PARAMS with a log line where a periodic medium is more than the lattice can do.
 static tyn_result check_repeat(const tyn_job *job)
 {
@@ -201,6 +224,18 @@ static tyn_result check_repeat(const tyn_job *job)
     if (problem) {
         tyn_log_print(job->log, TYN_LOG_ERROR, "shape 0 %s ('pop')", problem);
         return TYN_ERR_PARAMS;
+    }
+    if (any_emits(&job->scene->surfaces)) {
+        tyn_log_print(
+            job->log, TYN_LOG_ERROR,
+            "surfaces that emit cannot light periodic media (\"repeat\") with this method; "
+            "'path' can");
+        return TYN_ERR_PARAMS;
+    }
+    if (fit_a_period(job->frame)) {
+        tyn_method_warn(job,
+                        "surfaces do not repeat with the medium: there is one copy of them, and "
+                        "none of what others would hide and reflect; 'path' repeats them");
     }
     return TYN_OK;
 }

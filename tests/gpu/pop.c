@@ -1,6 +1,7 @@
 // pop.c -- method `pop` as a whole: what it refuses, warns of and leaves out; its layers add up.
 #include "gpu_test.h"
 #include "picture.h"
+#include "solids.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -125,6 +126,29 @@ static void refuses_what_repeats_everywhere(void **state)
     strike(s);
 }
 
+// Surfaces do not repeat with a medium: a floor of one period is told of, and one that shines is refused.
+static void periodic_surfaces(void **state)
+{
+    gpu_test *t = *state;
+    for (int shines = 0; shines < 2; shines++) {
+        stage *s = set_stage(t, 4);
+        const float light = (float)shines;
+        s->scene.shapes[0].repeat[0] = true;
+        const uint32_t m =
+            solids_material(&s->scene, (float[]){0.5f, 0.5f, 0.5f}, (float[]){light, light, light});
+        solids_quad(&s->scene, (float[]){-0.4f, -0.4f, -0.4f}, (float[]){0, 0, 0.8f},
+                    (float[]){0.8f, 0, 0}, m);
+        solids_hierarchy(&s->scene, 2);
+        t->quiet = shines;
+        assert_int_equal(tyn_offline_frame(s->off, &s->scene, &s->view, false),
+                         shines ? TYN_ERR_PARAMS : TYN_OK);
+        assert_true(shines ? strstr(t->last_error, "surfaces that emit") != NULL
+                           : warns_of(s, "surfaces do not repeat"));
+        t->quiet = false;
+        strike(s);
+    }
+}
+
 static void warns(void **state)
 {
     stage *s = set_stage(*state, 4);
@@ -208,9 +232,9 @@ static void suns_add_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layers_add_up), cmocka_unit_test(refuses_what_repeats_everywhere),
-        cmocka_unit_test(warns),         cmocka_unit_test(leaves_out),
-        cmocka_unit_test(suns_add_up),
+        cmocka_unit_test(layers_add_up),     cmocka_unit_test(refuses_what_repeats_everywhere),
+        cmocka_unit_test(periodic_surfaces), cmocka_unit_test(warns),
+        cmocka_unit_test(leaves_out),        cmocka_unit_test(suns_add_up),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
