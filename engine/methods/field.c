@@ -397,6 +397,7 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, tyn_field *f)
         [PROBE_PORT_POINTS] = job->refs.points,
         [PROBE_PORT_SHADOW_ATLAS] = f->picture.shadows.atlas,
         [PROBE_PORT_SHADOWS] = f->picture.shadows.lights,
+        [PROBE_PORT_VPL_DISTANCES] = f->picture.vpls.distances,
         [PROBE_PORT_WALL_LINKS] = f->walls.links,
         [PROBE_PORT_WALL_CELLS] = f->walls.cells,
         [PROBE_PORT_ENVIRONMENT] = environment_of(job, f),

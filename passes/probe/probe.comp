@@ -26,9 +26,12 @@
 #define SHADOW_ATLAS 18
 #define SHADOW_LIGHTS 19
 #include "shadow.glsl"
+#define VPL_DISTANCES 21
+#include "vpl_visibility.glsl"
 
 layout(constant_id = 1) const uint walls = 0;
 layout(constant_id = 2) const uint shadowed = 0;
+layout(constant_id = 3) const uint mapped = 0; // what virtual point lights (VPLs) see
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform push
 {
@@ -193,6 +196,39 @@ beam_tau lamp_tau(uint n, vec3 away)
     return radial_tau(radial_place_of(n, last, length(last)));
 }
 
+// The cell that stands for p: its own, or the one on p's side of walls that has most to say of it.
+ivec3 cell_for(lattice_box box, walls_place place, vec3 p)
+{
+    ivec3 cell = place.cell;
+    if (walls_near(place)) {
+        walls_blend b = walls_blend_of(box, place, p);
+        float most = 0.0;
+        for (uint i = 0; i < 8; i++) {
+            cell = b.share[i] > most ? walls_corner(b, i) : cell;
+            most = max(most, b.share[i]);
+        }
+        cell = b.instead.x >= 0 ? b.instead : cell;
+    }
+    return cell;
+}
+
+// Share of a VPL's light that surfaces let through to p. Its map is coarse, and the edge of a body that stands towards
+// the VPL may pass between its rays: unless all of them go on far beyond p, and no wall at p parts it from the VPL, the
+// lattice is asked, too, which no light leaks through.
+float vpl_share(lattice_box box, uint n, vec3 p, vec3 away, float r)
+{
+    vec3 position = radials[n].light.position, axis = radials[n].light.axis;
+    vpl_map map = vpl_map_of(n - radial_num_lamps, axis);
+    walls_place place = walls_place_of(box, p);
+    bool parted = walls_near(place) && walls_behind(place.index, position) != walls_behind(place.index, p);
+    float share = vpl_map_visibility(map, away, r, parted);
+    if (share > 0.0 && (parted || vpl_map_visibility(map, away, 2.0 * r, true) < 1.0)) {
+        ivec3 from = walls_cell_before(box, position, axis);
+        share = walls_visible(box, cell_for(box, place, p), from) ? share : 0.0;
+    }
+    return share;
+}
+
 void main()
 {
     uint i = gl_GlobalInvocationID.x;
@@ -246,6 +282,9 @@ void main()
         }
         if (shadowed == 1 && radials[n].light.light != TYN_RADIAL_NO_LIGHT) {
             e *= shadow_visibility_lamp(radials[n].light.light, p);
+        }
+        if (walls == 1 && mapped == 1 && n >= radial_num_lamps) {
+            e *= vpl_share(box, n, p, away, r);
         }
         e *= share * radials[n].light.intensity;
         for (uint ch = 0; ch < 3; ch++) {

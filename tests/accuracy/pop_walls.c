@@ -167,6 +167,76 @@ static void sealed_lamp(void **state)
     }
 }
 
+// A lamp and a sealed box above a floor, the lamp beside the box or in it: virtual lights stand on the floor and on the
+// walls' either sides. What of their light was not scattered, the difference of two probes, stays on their side.
+static void sealed_from_virtual_lights(void **state)
+{
+    gpu_test *t = *state;
+    enum { N = 2000 };
+    static float points[N][3];
+    static float first[N];
+    const float lo[3] = {-0.41f, -0.37f, -0.44f}, hi[3] = {0.46f, 0.39f, 0.4f};
+    const double c = cos(M_PI / 6), s = sin(M_PI / 6);
+    srand(1);
+    for (int lamp_inside = 0; lamp_inside < 2; lamp_inside++) {
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t wall = solids_material(&scene, (float[]){0.7f, 0.7f, 0.7f}, (float[]){0, 0, 0});
+        solids_box(&scene, lo, hi, (float)(M_PI / 6), false, wall);
+        solids_quad(&scene, (float[]){-2, -1.4f, -2}, (float[]){0, 0, 4}, (float[]){4, 0, 0}, wall);
+        solids_hierarchy(&scene, 2);
+        tyn_medium m = grey_medium(0.5f, 0.02f, 0.3f);
+        scene_add_box(&scene, &m, (float[]){-1, -1, -1}, (float[]){1, 1, 1}, NULL, NULL);
+        scene_add_lamp(&scene,
+                       lamp_inside ? (float[]){0.02f, 0.01f, 0} : (float[]){-0.8f, 0.1f, 0.3f}, 10);
+        for (int i = 0; i < N; i++) {
+            for (int a = 0; a < 3; a++) {
+                points[i][a] = (float)(1.9 * rand() / RAND_MAX - 0.95);
+            }
+        }
+        tyn_view v = {.width = 1,
+                      .height = 1,
+                      .outputs = TYN_OUTPUT_PROBE,
+                      .points = (const float(*)[3])points,
+                      .num_points = N};
+        tyn_camera_frame_scene(&v.camera, &scene);
+        double sums[2] = {0, 0}, most[2] = {0, 0}; // outside and inside
+        int counts[2] = {0, 0};
+        for (int scattered = 0; scattered < 2; scattered++) {
+            v.scattered_only = scattered;
+            tyn_offline *off = open_pop(t, NULL, 0);
+            assert_int_equal(tyn_offline_frame(off, &scene, &v, false), TYN_OK);
+            const tyn_probe_result *p = tyn_offline_output(off, TYN_OUTPUT_PROBE);
+            for (int i = 0; i < N; i++) {
+                double depth[2], beyond[2]; // whichever way the box is turned
+                for (int way = 0; way < 2; way++) {
+                    double x = points[i][0] - 0.5 * (lo[0] + hi[0]),
+                           z = points[i][2] - 0.5 * (lo[2] + hi[2]), turn = way ? s : -s;
+                    double y = 0.5 * (hi[1] - lo[1]) - fabs(points[i][1] - 0.5 * (lo[1] + hi[1]));
+                    double u = 0.5 * (hi[0] - lo[0]) - fabs(c * x + turn * z);
+                    double w = 0.5 * (hi[2] - lo[2]) - fabs(-turn * x + c * z);
+                    depth[way] = beyond[way] = fmin(u, fmin(y, w));
+                }
+                double in = fmin(depth[0], depth[1]), out = -fmax(beyond[0], beyond[1]);
+                if (scattered == 0) {
+                    first[i] = p[i].fluence[1];
+                } else if (in > 1e-4 || out > 1e-4) {
+                    double light = first[i] - p[i].fluence[1];
+                    sums[in > 0] += light;
+                    most[in > 0] = fmax(most[in > 0], light);
+                    counts[in > 0]++;
+                }
+            }
+            tyn_offline_destroy(&off);
+        }
+        double lit = sums[lamp_inside] / counts[lamp_inside], dark = most[!lamp_inside];
+        printf("sealed, lamp %s: %d points in, %d out; lit %.3f, most in the dark %.1e\n",
+               lamp_inside ? "inside" : "beside", counts[1], counts[0], lit, dark);
+        assert_true(counts[1] > 50 && counts[0] > 500 && dark < 1e-4 * lit);
+        tyn_scene_finish(&scene);
+    }
+}
+
 // Net flux and fluence within a slab of thickness 1, z up; the box is a quarter of that wide in x: periods
 // need not be cubes.
 static void slab_table(gpu_test *t, const char *name, double bound)
@@ -310,9 +380,13 @@ static void deep_slab(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sealed),   cmocka_unit_test(sealed_lamp),
-        cmocka_unit_test(slabs),    cmocka_unit_test(slabs_over_a_ground),
-        cmocka_unit_test(pictures), cmocka_unit_test(deep_slab),
+        cmocka_unit_test(sealed),
+        cmocka_unit_test(sealed_lamp),
+        cmocka_unit_test(sealed_from_virtual_lights),
+        cmocka_unit_test(slabs),
+        cmocka_unit_test(slabs_over_a_ground),
+        cmocka_unit_test(pictures),
+        cmocka_unit_test(deep_slab),
     };
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
