@@ -4,7 +4,8 @@
 #include "shared.h"
 
 struct env_table_block { // head of the storage buffer; width * height entries follow
-    tyn_uint width, height; // cells of the table, a coarser image of the map (rows from +Y downwards)
+    // Cells of the table, a coarser image of the map (rows from +Y downwards).
+    tyn_uint width, height;
     tyn_uint pad[2];
 };
 TYN_ASSERT_SIZE(env_table_block, 16);

@@ -20,8 +20,8 @@ struct importance_grid {
     tyn_vec3 up;
     tyn_uint orthographic;
     tyn_vec3 forward;
-    tyn_uint empty;  // 1: no medium in front of the camera
-    tyn_vec2 low;    // (s, t) of the grid
+    tyn_uint empty; // 1: no medium in front of the camera
+    tyn_vec2 low;   // (s, t) of the grid
     tyn_vec2 high;
     tyn_vec2 window_low; // of the picture
     tyn_vec2 window_high;
@@ -33,16 +33,17 @@ struct importance_cell { // the medium in a cell; the mean over the channels
     float sigma_s;       // 1/m, of the last scattering: delta-scaled where the method wants it
     float sigma_t;
     float g;
-    float volume; // m^3
-    float along;  // length of the cell in its column, m
-    float across; // width, m
-    tyn_vec2 hop_along;  // what half a cell does: part of the power left, loss of the mean cosine
+    float volume;       // m^3
+    float along;        // length of the cell in its column, m
+    float across;       // width, m
+    tyn_vec2 hop_along; // what half a cell does: part of the power left, loss of the mean cosine
     tyn_vec2 hop_across;
 };
 TYN_ASSERT_SIZE(importance_cell, 40);
 
 struct importance_light { // importance on its way out of a cell, half a hop done
-    float ahead, side, behind; // power to the neighbour in front, each of the four beside, the one behind
+    // Power to the neighbour in front, each of the four beside, the one behind.
+    float ahead, side, behind;
     float spread_along;  // 1 - mean cosine of what goes ahead or back
     float spread_across; // ... and to the sides
 };

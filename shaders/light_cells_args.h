@@ -12,10 +12,12 @@
 // It holds within this many edges of the cube.
 #define TYN_LIGHT_CELLS_REACH 0.75f
 
-#define LIGHT_CELLS_BLOCK 8    // texels of the atlas along a side of the finest blocks
-#define LIGHT_CELLS_LEVELS 4   // sizes of blocks, each twice the last
-#define LIGHT_CELLS_ACROSS 2.0 // so many blocks are about as wide as what a cube covers of a map ...
-#define LIGHT_CELLS_MOST 6.0   // ... and no more than so many of the largest
+#define LIGHT_CELLS_BLOCK 8  // texels of the atlas along a side of the finest blocks
+#define LIGHT_CELLS_LEVELS 4 // sizes of blocks, each twice the last
+// So many blocks are about as wide as what a cube covers of a map, and no more than so many of the
+// largest.
+#define LIGHT_CELLS_ACROSS 2.0
+#define LIGHT_CELLS_MOST 6.0
 
 struct light_cells_args {
     tyn_uvec3 dims; // cubes

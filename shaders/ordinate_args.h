@@ -10,11 +10,14 @@
 #define TYN_ORDINATES_MAX 256
 
 struct ordinate {
-    tyn_vec3 irradiance; // W/m^2 across the direction: integral of the radiance over the region. Where the
-                         // mean of the sky was split off it may be negative.
-    float mean_cosine;   // of the region about its own mean direction: 1 - solid_angle / (4 pi), 1 = a point
-    tyn_vec3 direction;  // of travel, M, unit: the opposite of the region's energy-weighted mean direction
-    float solid_angle;   // of its cone, sr: its region's, or the mean of those folded into it
+    // W/m^2 across the direction: integral of the radiance over the region. Where the mean of the
+    // sky was split off it may be negative.
+    tyn_vec3 irradiance;
+    // Of the region about its own mean direction: 1 - solid_angle / (4 pi), 1 = a point.
+    float mean_cosine;
+    // Of travel, M, unit: the opposite of the region's energy-weighted mean direction.
+    tyn_vec3 direction;
+    float solid_angle; // of its cone, sr: its region's, or the mean of those folded into it
     // What an even radiance of 1 from its region and those folded into it gives: 4 pi and 0 over all
     // ordinates; of suns 0.
     float even;

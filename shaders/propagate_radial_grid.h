@@ -11,16 +11,17 @@
 
 // What becomes of light from shell to shell. Sideways, light is exchanged at the rate of the smaller cell but
 // for SPACING.
-#define TYN_PROPAGATE_SCALE_POWER 0      // power is kept both ways: radiance falls with the area, r^-2
-#define TYN_PROPAGATE_SCALE_RECIPROCAL 1 // ... and inwards goes what the smaller cell would send outwards: light
-                                         // that is the same everywhere stays so
-#define TYN_PROPAGATE_SCALE_SPACING 2    // radiance falls with the spacing, r^-1, as the paper says
+#define TYN_PROPAGATE_SCALE_POWER 0 // power is kept both ways: radiance falls with the area, r^-2
+// ... and inwards goes what the smaller cell would send outwards: light that is the same everywhere
+// stays so.
+#define TYN_PROPAGATE_SCALE_RECIPROCAL 1
+#define TYN_PROPAGATE_SCALE_SPACING 2 // radiance falls with the spacing, r^-1, as the paper says
 
 struct propagate_radial_grid { // element of storage buffer "grids"
     TYN_STRUCT(radial_light) light;
-    tyn_vec3 to_map
-        [3]; // rows, orthogonal: M direction -> direction of the map. The last one is short where
-             // the light is far away: the medium gets most of the map
+    // Rows, orthogonal: M direction -> direction of the map. The last one is short where the light is far
+    // away: the medium gets most of the map.
+    tyn_vec3 to_map[3];
     float inner;       // radius of the ball, m
     float growth;      // of the radii from shell to shell
     tyn_uint layers;   // the ball and the shells in use; 0: no light

@@ -13,7 +13,7 @@
 
 #define TYN_RSM_MAX_TILES (4 + 6 * 64)
 
-struct rsm_tile { // one map: of a sun or a spot, or a face of a point light's cube
+struct rsm_tile {     // one map: of a sun or a spot, or a face of a point light's cube
     tyn_uvec2 offset; // in the atlas, texels
     tyn_uint texels;  // of each side: a power of two, 16 or more
     tyn_uint light;   // index of shadow_args.h: suns first, then lamps from TYN_SHADOW_SUNS on; the

@@ -17,16 +17,16 @@
 
 struct lut_block { // storage buffer "lut_block"
     tyn_uint num_rows;
-    tyn_uint spread;        // 0: a row per distinct g; 1: rows evenly spread in ln(g / (1 - g))
-    float log_first;        // spread: ln(g / (1 - g)) of the first row
-    float log_step;         // spread: ... from row to row
-    tyn_uvec3 channel_row;  // not spread: row of each colour channel
+    tyn_uint spread;       // 0: a row per distinct g; 1: rows evenly spread in ln(g / (1 - g))
+    float log_first;       // spread: ln(g / (1 - g)) of the first row
+    float log_step;        // spread: ... from row to row
+    tyn_uvec3 channel_row; // not spread: row of each colour channel
     tyn_uint num_sets;
     tyn_uint sun_set[TYN_LUT_MAX_SUNS];
     float blur[TYN_LUT_MAX_SETS]; // 1 - mean cosine of the set's sun; 0 = a point
     float g[TYN_LUT_MAX_ROWS];
-    float theta_1[TYN_LUT_MAX_ROWS]; // half width of the forward lobe, radians; 0 = no lobe
-    tyn_uint terms[TYN_LUT_MAX_ROWS]; // length of the row's series
+    float theta_1[TYN_LUT_MAX_ROWS];       // half width of the forward lobe, radians; 0 = no lobe
+    tyn_uint terms[TYN_LUT_MAX_ROWS];      // length of the row's series
     tyn_uint first_term[TYN_LUT_MAX_ROWS]; // where it starts in the buffer "moments"
     tyn_uint tms_terms[TYN_LUT_MAX_ROWS];  // length of the series of "tms"
 };

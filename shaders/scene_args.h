@@ -8,8 +8,9 @@
 #include "shared.h"
 
 // How the solvers (not `path`) read the medium.
-#define TYN_MEDIUM_DENSITY 0      // one texture: density; coefficients are the constants below
-#define TYN_MEDIUM_COEFFICIENTS 1 // textures sigma_s, sigma_a, g, emission (media of unequal coefficients)
+#define TYN_MEDIUM_DENSITY 0 // one texture: density; coefficients are the constants below
+// Textures sigma_s, sigma_a, g, emission (media of unequal coefficients).
+#define TYN_MEDIUM_COEFFICIENTS 1
 
 #define TYN_SHAPE_KIND_BOX 0
 #define TYN_SHAPE_KIND_SPHERE 1
@@ -29,27 +30,31 @@ struct medium_block { // uniform buffer "medium"
     tyn_uint mode;    // TYN_MEDIUM_*
     tyn_uvec3 size;   // texels of the medium texture(s) that the solvers sample; they fill the box
     tyn_uint num_shapes;
-    tyn_vec3 voxel;   // extent / size, m
+    tyn_vec3 voxel;    // extent / size, m
     float max_density; // largest texture value (DENSITY), else 1
-    tyn_vec3 sigma_s; // 1/m at texture value 1 (DENSITY), else 0
+    tyn_vec3 sigma_s;  // 1/m at texture value 1 (DENSITY), else 0
     tyn_vec3 sigma_a;
     tyn_vec3 g;
-    tyn_vec3 emission; // W/(m^3 sr) at texture value 1
-    tyn_uvec3 bricks;  // brick counts, ceil(size / TYN_BRICK)
+    tyn_vec3 emission;   // W/(m^3 sr) at texture value 1
+    tyn_uvec3 bricks;    // brick counts, ceil(size / TYN_BRICK)
     tyn_vec3 brick_size; // voxel * TYN_BRICK, m (the last brick may reach beyond the box)
-    tyn_uvec3 repeat;  // 1 = periodic along this axis of M with period extent
-    float sigma_t_max; // largest channel of sigma_s + sigma_a at texture value 1 (DENSITY), else 1: what a
-                       // brick's maximum is multiplied with to give the majorant in 1/m
+    tyn_uvec3 repeat;    // 1 = periodic along this axis of M with period extent
+    // Largest channel of sigma_s + sigma_a at texture value 1 (DENSITY), else 1: what a brick's
+    // maximum is multiplied with to give the majorant in 1/m.
+    float sigma_t_max;
 };
 TYN_ASSERT_SIZE(medium_block, 136);
 
 struct shape_block { // element of storage buffer "shapes": the exact media, as `path` reads them
-    tyn_vec4 rows[3];  // M -> local unit box [-0.5, 0.5]^3: local_i = dot(rows[i].xyz, p) + rows[i].w
-    tyn_uvec3 size;    // voxels of its density grid; (1,1,1) if homogeneous
-    tyn_uint kind;     // TYN_SHAPE_KIND_*
-    tyn_uvec3 offset;  // first texel in the atlas; neighbours in the atlas are never blended in if the
-    tyn_uint pad;      // texel coordinate is clamped to [0.5, size - 0.5]
-    tyn_vec3 sigma_s;  // at atlas value 1; density_scale is in
+    // M -> local unit box [-0.5, 0.5]^3: local_i = dot(rows[i].xyz, p) + rows[i].w.
+    tyn_vec4 rows[3];
+    tyn_uvec3 size; // voxels of its density grid; (1,1,1) if homogeneous
+    tyn_uint kind;  // TYN_SHAPE_KIND_*
+    // First texel in the atlas; neighbours in the atlas are never blended in if the texel coordinate is
+    // clamped to [0.5, size - 0.5].
+    tyn_uvec3 offset;
+    tyn_uint pad;
+    tyn_vec3 sigma_s; // at atlas value 1; density_scale is in
     tyn_vec3 sigma_a;
     tyn_vec3 g;
     tyn_vec3 emission;
@@ -59,11 +64,11 @@ TYN_ASSERT_SIZE(shape_block, 128);
 struct light_block { // element of storage buffers "lights" (directional lights first) and "suns"
     tyn_vec3 color;  // W/m^2 (directional) or W/sr
     tyn_uint kind;
-    tyn_vec3 position;  // M, m
+    tyn_vec3 position; // M, m
     float cos_inner;
     tyn_vec3 direction; // M, unit, direction of travel
     float cos_outer;
-    float mean_cosine;  // of its disc as seen from the medium: 1 = all light comes along `direction`
+    float mean_cosine; // of its disc as seen from the medium: 1 = all light comes along `direction`
 };
 TYN_ASSERT_SIZE(light_block, 52);
 
@@ -76,8 +81,8 @@ struct camera_block { // uniform buffer "camera"
     float half_height;
     tyn_vec3 forward;
     tyn_uint background; // 1: environment seen through the medium goes into RGB
-    tyn_uvec2 size;   // pixels
-    tyn_vec2 shift;   // of the principal point, in half sizes (0 = centred)
+    tyn_uvec2 size;      // pixels
+    tyn_vec2 shift;      // of the principal point, in half sizes (0 = centred)
 };
 TYN_ASSERT_SIZE(camera_block, 80);
 // Ray through image position (s, t) in [-1, 1], t up: perspective: direction = normalize(forward +
@@ -85,15 +90,15 @@ TYN_ASSERT_SIZE(camera_block, 80);
 // moved by that, direction forward. Pixel (x, y), row 0 on top: s = 2 (x + u) / w - 1,
 // t = 1 - 2 (y + v) / h with (u, v) in [0, 1)^2.
 
-struct env_block { // uniform buffer "environment"
+struct env_block {     // uniform buffer "environment"
     tyn_vec4 rows[3];  // M direction -> map direction (xyz used)
     tyn_vec3 radiance; // multiplies texels; or is the constant radiance
     tyn_uint has_map;  // 0: constant `radiance` (0,0,0 = no environment)
     tyn_vec3 mean;     // mean radiance over the sphere, W/(m^2 sr)
     tyn_uint pad;
-    tyn_vec3 sky;      // ... without the map's suns, which are in the buffer "suns": Lbar
+    tyn_vec3 sky; // ... without the map's suns, which are in the buffer "suns": Lbar
     tyn_uint pad2;
-    tyn_uvec2 size;    // texels
+    tyn_uvec2 size; // texels
     tyn_uvec2 pad3;
 };
 TYN_ASSERT_SIZE(env_block, 112);

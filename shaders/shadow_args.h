@@ -19,16 +19,16 @@
 struct shadow_light { // element of storage buffer "shadows", TYN_SHADOW_MAX of them
     tyn_vec4 rows[3]; // M -> the light's frame. SUN: (u, v, depth), u and v in [-1, 1] on the map.
                       // CONE: m, along the axis z. CUBE: m, axes of the cube
-    tyn_vec2 offset; // of the first map in the atlas, texels
-    float texels;    // a side of a map
-    float scale;     // CONE, CUBE: u = scale x / z, v = scale y / z
-    float near;      // CONE, CUBE: m; what is nearer to the light casts no shadow
-    tyn_uint kind;   // TYN_SHADOW_*
+    tyn_vec2 offset;  // of the first map in the atlas, texels
+    float texels;     // a side of a map
+    float scale;      // CONE, CUBE: u = scale x / z, v = scale y / z
+    float near;       // CONE, CUBE: m; what is nearer to the light casts no shadow
+    tyn_uint kind;    // TYN_SHADOW_*
 };
 TYN_ASSERT_SIZE(shadow_light, 72);
 
 struct shadow_map_args { // of a map
-    tyn_vec4 clip[4]; // world -> clip space, row by row
+    tyn_vec4 clip[4];    // world -> clip space, row by row
 };
 TYN_ASSERT_SIZE(shadow_map_args, 64);
 

@@ -15,7 +15,7 @@
 
 #define SKY_SUNS_MAX 4
 
-struct sky_sun { // of the map, taken out of it: within its disc a texel is at most `around`
+struct sky_sun {        // of the map, taken out of it: within its disc a texel is at most `around`
     tyn_vec3 direction; // towards it, map frame
     float cos_radius;
     tyn_vec3 around;

@@ -10,7 +10,7 @@
 #define TYN_SURFACE_NO_TEXTURE 0xffffffffu
 #define TYN_SURFACE_STACK 64 // levels of the hierarchy at most, so nodes that wait in a traversal
 
-struct surface_block { // uniform buffer "surfaces"
+struct surface_block {    // uniform buffer "surfaces"
     tyn_vec4 to_world[3]; // M -> world: world_i = dot(rows[i].xyz, p) + rows[i].w
     tyn_vec4 from_world[3];
     tyn_vec3 lo; // world box of all triangles, m
@@ -21,7 +21,7 @@ struct surface_block { // uniform buffer "surfaces"
 TYN_ASSERT_SIZE(surface_block, 128);
 
 struct surface_vertex { // element of storage buffer "vertices"
-    tyn_vec3 position; // world, m
+    tyn_vec3 position;  // world, m
     float u;
     tyn_vec3 normal; // world, unit, for shading only; its side is that of the triangle's front
     float v;
@@ -36,24 +36,25 @@ struct surface_triangle { // element of storage buffer "triangles", in the hiera
 TYN_ASSERT_SIZE(surface_triangle, 16);
 
 struct surface_material { // element of storage buffer "materials"
-    tyn_vec3 albedo; // linear, 0 to 1: baseColor (1 - metallic)
-    tyn_uint flags;  // TYN_SURFACE_*
-    tyn_vec3 emission; // radiance, W/(m^2 sr)
-    tyn_uint texture; // index of its struct surface_texture, or TYN_SURFACE_NO_TEXTURE
+    tyn_vec3 albedo;      // linear, 0 to 1: baseColor (1 - metallic)
+    tyn_uint flags;       // TYN_SURFACE_*
+    tyn_vec3 emission;    // radiance, W/(m^2 sr)
+    tyn_uint texture;     // index of its struct surface_texture, or TYN_SURFACE_NO_TEXTURE
 };
 TYN_ASSERT_SIZE(surface_material, 32);
 
-struct surface_texture { // element of storage buffer "textures": a mip chain in storage buffer "texels"
-    tyn_uint first;    // texel (a uint: R8 G8 B8 A8, sRGB) of level 0; level l + 1 follows level l
+// Element of storage buffer "textures": a mip chain in storage buffer "texels".
+struct surface_texture {
+    tyn_uint first; // texel (a uint: R8 G8 B8 A8, sRGB) of level 0; level l + 1 follows level l
     tyn_uint levels;
-    tyn_uvec2 size;    // of level 0; level l has max(1, size >> l)
-    tyn_uvec2 wrap;    // per axis: 0 repeat, 1 clamp, 2 mirror
+    tyn_uvec2 size; // of level 0; level l has max(1, size >> l)
+    tyn_uvec2 wrap; // per axis: 0 repeat, 1 clamp, 2 mirror
 };
 TYN_ASSERT_SIZE(surface_texture, 24);
 
 struct surface_node { // element of storage buffer "nodes": a binary hierarchy, node 0 is the root
-    tyn_vec3 lo;    // world, m
-    tyn_uint first; // inner: its two children are `first` and `first` + 1; leaf: first triangle
+    tyn_vec3 lo;      // world, m
+    tyn_uint first;   // inner: its two children are `first` and `first` + 1; leaf: first triangle
     tyn_vec3 hi;
     tyn_uint count; // triangles; 0: inner
 };

@@ -6,9 +6,9 @@
 #define TYN_VPL_BOUNCE_ARGS_H
 #include "shared.h"
 
-#define VPL_BIN_CELLS 8   // of the grid along each side
-#define VPL_BINS 4096     // 8 directions, of which 6 are used, of 512 cells in Morton order
-#define VPL_BIN_SIDE 64   // of the image of bins, along its Hilbert curve
+#define VPL_BIN_CELLS 8           // of the grid along each side
+#define VPL_BINS 4096             // 8 directions, of which 6 are used, of 512 cells in Morton order
+#define VPL_BIN_SIDE 64           // of the image of bins, along its Hilbert curve
 #define VPL_BIN_UNIT 1073741824.0 // of the power of all VPLs
 
 struct vpl_bin {
@@ -25,8 +25,8 @@ struct vpl_bins {
 TYN_ASSERT_SIZE(vpl_bins, 16 + 16 * 4096);
 
 struct vpl_distances_args {
-    tyn_uint later;  // 1: only of the VPLs that were added last
-    tyn_uint bounce; // 1: what they light is put into bins
+    tyn_uint later;    // 1: only of the VPLs that were added last
+    tyn_uint bounce;   // 1: what they light is put into bins
     float solid_angle; // of a texel in the middle of a map, sr
     tyn_uint media;
 };

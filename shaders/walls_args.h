@@ -10,8 +10,9 @@
 #define TYN_WALLS_LINKS 26
 #define TYN_WALLS_PLANES 3
 // Element of storage buffer "wall_links", one per cell, x fastest: bit i = link i is cut, and:
-#define TYN_WALLS_NEAR (1u << 26) // a wall passes through the cell or cuts a link to a cell of the lattice:
-                                  // only then `planes` say anything, and light must not be blended freely
+// A wall passes through the cell or cuts a link to a cell of the lattice: only then `planes` say
+// anything, and light must not be blended freely.
+#define TYN_WALLS_NEAR (1u << 26)
 
 // A cell belongs to one side of its walls, that of its centre, which counts as moved by so many cell
 // edges: walls that lie exactly in the plane of the centres are below them, on all axes. Powers of two
@@ -21,10 +22,12 @@
 #define TYN_WALLS_SHIFT_Z 0.00341796875f
 
 struct wall_cell { // element of storage buffer "wall_cells"
-    tyn_vec4 planes[TYN_WALLS_PLANES]; // of the walls in the cell, nearest first: dot(xyz, p) + w, p in M,
-                                       // is its distance in m, > 0 on the side of the centre; 0: none
-    tyn_vec3 albedo; // of what the cut links among 0..13 meet, by the power isotropic light brings along each
-    float area;      // sum of w_j dx / L_j over those links: a quarter of the wall's area over dx^2
+    // Of the walls in the cell, nearest first: dot(xyz, p) + w, p in M, is its distance in m, > 0
+    // on the side of the centre; 0: none.
+    tyn_vec4 planes[TYN_WALLS_PLANES];
+    // Of what the cut links among 0..13 meet, by the power isotropic light brings along each.
+    tyn_vec3 albedo;
+    float area; // sum of w_j dx / L_j over those links: a quarter of the wall's area over dx^2
 };
 TYN_ASSERT_SIZE(wall_cell, 64);
 

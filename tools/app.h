@@ -14,8 +14,8 @@ enum {
 struct app {
     const char *command; // name of the subcommand, "" before it is known
     bool quiet;
-    tyn_log log;         // to stderr; give this to the library
-    uint32_t num_errors; // messages at TYN_LOG_ERROR so far
+    tyn_log log;           // to stderr; give this to the library
+    uint32_t num_errors;   // messages at TYN_LOG_ERROR so far
     char last_error[2048]; // the newest of them
     progress bar;
 };

@@ -23,9 +23,9 @@ typedef struct choose_request {
 } choose_request;
 
 typedef struct choice {
-    const fronts_run *run; // method and settings: as it was run in the nearest scene that has it
-    uint32_t spp;          // 0: the method does not sample
-    double error, ms;      // predicted
+    const fronts_run *run;   // method and settings: as it was run in the nearest scene that has it
+    uint32_t spp;            // 0: the method does not sample
+    double error, ms;        // predicted
     regime_limit_kind limit; // why the error is what it is, where it is known to be that at least
     double error_margin, ms_margin; // factors that four in five predictions stay below
     bool error_met, budget_met;     // with the margins; true where nothing was asked for
@@ -42,8 +42,9 @@ typedef struct choice {
 // False: no stored run is of that method, or out of memory.
 bool choose(const fronts *f, const regime *r, const choose_request *request, choice *c);
 
-// Error (on blocks of 8x8, with the background) and time of a cold frame that a method is likely to have as it is, on the device that was
-// measured; `spp` 0: it does not sample. False: it has not been measured so, or out of memory.
+// Error (on blocks of 8x8, with the background) and time of a cold frame that a method is likely to have as it
+// is, on the device that was measured; `spp` 0: it does not sample. False: it has not been measured so, or out
+// of memory.
 bool choose_outlook(const fronts *f, const regime *r, const char *method, uint32_t spp,
                     uint32_t width, uint32_t height, double *error, double *ms);
 

@@ -83,7 +83,8 @@ double share_of_medium(const regime *r)
     return fmax(opaque * brightness / (opaque * brightness + 1 - opaque), 0.01);
 }
 
-// What a frame costs whatever its pixels: of methods that do not sample a solve on a lattice, about, besides the settings.
+// What a frame costs whatever its pixels: of methods that do not sample a solve on a lattice, about, besides the
+// settings.
 static double fixed_work(const regime *r, uint32_t spp)
 {
     return spp ? 1 : 0.5 + r->channels * r->box_share;
@@ -211,9 +212,9 @@ void neighbours_finish(neighbours *n)
     free(n->cost);
 }
 
-// The nearest that have the run, weighted with the inverse square of their distance; errors of paths of one scattering,
-// times of a lattice and of pixels with something in them. Gives the distance of the
-// nearest, or a negative number if none has it.
+// The nearest that have the run, weighted with the inverse square of their distance; errors of paths of one
+// scattering, times of a lattice and of pixels with something in them. Gives the distance of the nearest, or a
+// negative number if none has it.
 static double mean_of(const neighbours *n, bool cost, const char *key, uint32_t spp, figures *mean)
 {
     const neighbour *list = cost ? n->cost : n->error;

@@ -6,7 +6,7 @@
 typedef struct method_options {
     const char *method, *quality;
     opt_list defines; // pass.param=value
-    uint32_t spp; // 0: not given
+    uint32_t spp;     // 0: not given
     uint32_t seed, max_depth, rr_depth;
     bool sequence; // the pictures are one after another: a solve starts from the last one's
 } method_options;

@@ -24,31 +24,34 @@ enum { REGIME_LATTICE_CELLS = 32 };
 typedef struct regime {
     // Optical depth of straight ways through the medium, along the axes of its box (a lone shape's own, else
     // the world's); those that miss it do not count, nor do axes along which it repeats.
-    double optical_depth;   // mean over all of them, by cross-section, and over R, G, B
-    double depth_rgb[3];    // the same by channel
-    double depth_axis[3];   // mean over those along each axis
-    double depth_densest;   // the greatest of depth_axis
-    double depth_deepest;   // of any single one
-    double albedo;          // of what is met: scattering / extinction, over the whole medium
+    double optical_depth; // mean over all of them, by cross-section, and over R, G, B
+    double depth_rgb[3];  // the same by channel
+    double depth_axis[3]; // mean over those along each axis
+    double depth_densest; // the greatest of depth_axis
+    double depth_deepest; // of any single one
+    double albedo;        // of what is met: scattering / extinction, over the whole medium
     double albedo_rgb[3];
     double g, g_rgb[3];     // mean cosine, weighted by scattering
     double least_g, most_g; // of any channel of any medium that scatters
     // Weighted by extinction: at the places where light meets the medium.
     double mean_free_path;           // 1 / sigma_t, m
     double transport_mean_free_path; // 1 / (sigma_a + (1 - g) sigma_s), m
-    double scaled_mean_free_path;    // 1 / (sigma_a + (1 - g^2) sigma_s), m (delta scaling; g > 0), of the
-                                     // densest channel
-    double sides[3];                 // of the box, m
-    double thickness;                // of the box: its shortest side along which it does not repeat, m
-    double cell;                     // side of a lattice cell, m
-    double cell_depth, cell_depth_max; // transport mean free paths across a cell: where light meets the
-                                       // medium, and in the densest cell
-    double contrast;   // densest place over the mean of where there is medium; 1: homogeneous
-    double fill;       // share of the box that holds medium
-    double box_share;  // volume of the box over that of a cube as long: so much of a lattice there is
-    uint32_t channels; // 1: media are grey and all light is of one colour, so one solve is enough; else 3
-    uint64_t voxels;   // of all grids
-    bool periodic;     // a shape repeats
+    // 1 / (sigma_a + (1 - g^2) sigma_s), m (delta scaling; g > 0), of the densest channel
+    double scaled_mean_free_path;
+
+    double sides[3];  // of the box, m
+    double thickness; // of the box: its shortest side along which it does not repeat, m
+    double cell;      // side of a lattice cell, m
+    // Transport mean free paths across a cell: where light meets the medium, and in the densest cell.
+    double cell_depth, cell_depth_max;
+    double contrast; // densest place over the mean of where there is medium; 1: homogeneous
+    double fill;     // share of the box that holds medium
+    // Volume of the box over that of a cube as long: so much of a lattice there is.
+    double box_share;
+    // 1: media are grey and all light is of one colour, so one solve is enough; else 3.
+    uint32_t channels;
+    uint64_t voxels; // of all grids
+    bool periodic;   // a shape repeats
 
     // Light. Shares of the power that comes into the box (or leaves emitters within it), about.
     double share[REGIME_NUM_LIGHTS];
@@ -77,5 +80,6 @@ double regime_multiple(const regime *r);
 // 64 x 64 x 64 in all.
 double regime_cells(const regime *r, double cells);
 
-cJSON *regime_json(const regime *r); // the "regime" of report.json
+// The "regime" of report.json.
+cJSON *regime_json(const regime *r);
 bool regime_read(const cJSON *json, regime *r); // and back; what is missing is 0. False: no regime

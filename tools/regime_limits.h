@@ -33,6 +33,7 @@ double regime_thick_error(const regime *r, double cells);
 double regime_thin_error(const regime *r, double cells);
 double regime_backward_error(const regime *r);
 
-double regime_cell_depth(const regime *r, double cells); // of a lattice cell where the medium is dense: mean free
-                                                         // paths (delta scaled), transport ones if they are shorter
+// Of a lattice cell where the medium is dense: mean free paths (delta scaled), transport ones if they are
+// shorter.
+double regime_cell_depth(const regime *r, double cells);
 double regime_cells_thick(const regime *r, double cells); // lattice cells through the box

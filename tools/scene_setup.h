@@ -11,7 +11,8 @@ typedef struct scene_options {
     opt_vector sigma_s, sigma_a, g, albedo;
     float density_scale;
     float frame; // NAN: not given
-    const uint32_t *number; // of a picture of a sequence, for the files that a scene names; NULL: none
+    // Of a picture of a sequence, for the files that a scene names; NULL: none.
+    const uint32_t *number;
 } scene_options;
 extern const option scene_table[];
 enum { SCENE_TABLE_SIZE = 9 };

@@ -32,12 +32,12 @@ tyn_view selftest_picture(uint32_t outputs);        // without a camera
 double selftest_mean(const float *pixels, const float *errors, double *se);
 
 // The groups of checks; each gives an exit code.
-int selftest_furnace(selftest *t);  // selftest_pictures.c
+int selftest_furnace(selftest *t); // selftest_pictures.c
 int selftest_cubes(selftest *t);
 int selftest_energy(selftest *t);
 int selftest_repeats(selftest *t);
-int selftest_slabs(selftest *t);    // selftest_tables.c
+int selftest_slabs(selftest *t); // selftest_tables.c
 int selftest_half_space(selftest *t);
 int selftest_lamps(selftest *t);
-int selftest_graphs(selftest *t);   // selftest_graphs.c
-int selftest_files(selftest *t);    // selftest_files.c
+int selftest_graphs(selftest *t); // selftest_graphs.c
+int selftest_files(selftest *t);  // selftest_files.c

@@ -7,8 +7,8 @@
 typedef struct tyn_surface_data {
     uint64_t hash; // 0: no surfaces
     float lo[3], hi[3];
-    struct surface_texture
-        *textures; // at least one element, so that there is always a buffer to bind
+    // At least one element, so that there is always a buffer to bind.
+    struct surface_texture *textures;
     uint32_t num_textures;
     uint32_t *texels; // of all levels of all textures; at least one
     size_t num_texels;

@@ -21,8 +21,8 @@ typedef struct tyn_field_step {
 } tyn_field_step;
 
 // Runs the `count` steps in order until one fails.
-tyn_result tyn_add_steps(tyn_graph *g, const tyn_job *job, tyn_field *f, const tyn_field_step *steps,
-                         size_t count);
+tyn_result tyn_add_steps(tyn_graph *g, const tyn_job *job, tyn_field *f,
+                         const tyn_field_step *steps, size_t count);
 
 // The lattice: its cells and walls, what shines into them, the solve, and what the job wants of the solution: merged
 // for the camera (f->picture.inscatter), probed, balanced. The media, the lights and the sky are in `f` already.

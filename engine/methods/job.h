@@ -18,23 +18,24 @@ typedef struct tyn_frame_scene {
     // The directional lights and the num_map_suns of the environment's map, strongest first.
     struct light_block suns[TYN_LIGHTS_MAX];
     uint32_t num_map_suns; // `path` has them in the map
-    tyn_map_light map; // of the environment, in the map's frame and units
+    tyn_map_light map;     // of the environment, in the map's frame and units
     struct camera_block camera;
     struct env_block environment;
     bool direct; // one unsheared box: the atlas is the density texture, `medium` need not resample
     bool grey;   // sigma_s, sigma_a, g equal in all channels (and no coefficient textures)
     bool emissive;
-    uint32_t
-        open_faces; // of the box, where the density may not be 0: bit 2 a + (1: high face of axis a)
+    // Of the box, where the density may not be 0: bit 2 a + (1: high face of axis a).
+    uint32_t open_faces;
     float typical_density; // mean over the medium's mass, likewise; 0 = not known
-    float mean_density; // over the box, mode DENSITY: in units of the texture's values; 0 = not known
-    bool empty;     // no medium at all, or no coefficient above 0
+    // Over the box, mode DENSITY: in units of the texture's values; 0 = not known.
+    float mean_density;
+    bool empty;             // no medium at all, or no coefficient above 0
     uint32_t num_triangles; // of the surfaces; 0: there are none, nor their refs
     uint32_t num_textures;  // of their materials
     struct surface_block surfaces;
     const struct surface_range *below; // of every node (methods/views.h); NULL without a hierarchy
-    struct tyn_views_seen *seen; // with `below`
-    float m_from_world[16];      // rigid
+    struct tyn_views_seen *seen;       // with `below`
+    float m_from_world[16];            // rigid
 } tyn_frame_scene;
 
 // Resources every method starts from; a {0} ref does not exist in this scene.
@@ -49,18 +50,18 @@ typedef struct tyn_scene_refs {
     tyn_ref env_map;     // 2D RGBA32F; {0} if constant
     tyn_ref env_cdf;     // methods/env_cdf.h; {0} if constant or not read
     // Surfaces (surface_args.h); all {0} without them.
-    tyn_ref surfaces;    // struct surface_block
-    tyn_ref vertices;    // struct surface_vertex[]
-    tyn_ref triangles;   // struct surface_triangle[]
-    tyn_ref materials;   // struct surface_material[]
-    tyn_ref textures;    // struct surface_texture[], at least one
-    tyn_ref texels;      // uint[], at least one
-    tyn_ref nodes;       // struct surface_node[]; {0} if the scene has no hierarchy
-    tyn_ref emitters;    // struct surface_table and cells; {0} if nothing emits, or if it is not read
-    tyn_ref areas;       // the same; {0} but for BALANCE
-    tyn_ref points;      // PROBE: vec3 in M, scalar
-    tyn_ref depth;       // COMPOSITE: host depth
-    tyn_ref color;       // COMPOSITE: host colour
+    tyn_ref surfaces;  // struct surface_block
+    tyn_ref vertices;  // struct surface_vertex[]
+    tyn_ref triangles; // struct surface_triangle[]
+    tyn_ref materials; // struct surface_material[]
+    tyn_ref textures;  // struct surface_texture[], at least one
+    tyn_ref texels;    // uint[], at least one
+    tyn_ref nodes;     // struct surface_node[]; {0} if the scene has no hierarchy
+    tyn_ref emitters;  // struct surface_table and cells; {0} if nothing emits, or if it is not read
+    tyn_ref areas;     // the same; {0} but for BALANCE
+    tyn_ref points;    // PROBE: vec3 in M, scalar
+    tyn_ref depth;     // COMPOSITE: host depth
+    tyn_ref color;     // COMPOSITE: host colour
 } tyn_scene_refs;
 
 typedef struct tyn_job {
@@ -91,7 +92,8 @@ typedef struct tyn_method {
     uint32_t outputs;                   // set of tyn_output it can make
     bool progressive;                   // uses view.first_sample, num_samples
     bool reads_env_cdf;                 // wants refs.env_cdf
-    bool traces_rays; // wants refs.nodes and refs.emitters where there are surfaces, and refs.areas for a balance
+    // Wants refs.nodes and refs.emitters where there are surfaces, and refs.areas for a balance.
+    bool traces_rays;
     // Largest work a single record may be given (view.num_samples) to keep a dispatch short; NULL if
     // not progressive.
     uint32_t (*batch)(const tyn_job *job);

@@ -39,7 +39,7 @@ typedef struct tyn_picture_inputs {
     tyn_radial_refs lamps;
     uint32_t num_marched_lamps;
     uint32_t num_near_lamps; // that are marched nearby, the next ones
-    tyn_ref lut, lut_block; // given: all forward orders of the suns, else the first
+    tyn_ref lut, lut_block;  // given: all forward orders of the suns, else the first
     tyn_ref inscatter;
     tyn_ref wall_links, wall_cells; // of walls: surfaces among the cells of inscatter
     tyn_shadow_refs shadows;        // surfaces before the lights

@@ -3,10 +3,10 @@
 #include "methods/nodes.h"
 
 typedef struct tyn_sky_refs {
-    tyn_ref sky;       // the map without its suns (env_importance); {0} if the environment is constant
+    tyn_ref sky; // the map without its suns (env_importance); {0} if the environment is constant
     tyn_ref ordinates; // struct ordinates_block; {0} if nothing shines from ordinates
     uint32_t count;    // ordinates at most
-    bool split;        // they carry the map less its mean, env_block.sky, which is left to the caller
+    bool split; // they carry the map less its mean, env_block.sky, which is left to the caller
 } tyn_sky_refs;
 
 // Adds env_importance, importance (where the setting wants it) and ordinates as far as the scene has

@@ -14,10 +14,10 @@ typedef struct tyn_importance_params {
     float smoothing;    // weight of the frames before, 0..0.95
     float floor;        // least value of the map, whose mean is 1
     uint32_t mode;      // set by the method: TYN_MEDIUM_*
-    uint32_t scaled;    // set by the method: 1 = scattering within the delta of the delta-scaled phase
-                        // function is not scattering (it reaches the eye by other ways than ordinates)
-    uint32_t time;      // set by the method: of the frame. With smoothing another one is another step of
-                        // the filter; without, 0
+    uint32_t scaled; // set by the method: 1 = scattering within the delta of the delta-scaled phase
+                     // function is not scattering (it reaches the eye by other ways than ordinates)
+    uint32_t time; // set by the method: of the frame. With smoothing another one is another step of
+                   // the filter; without, 0
 } tyn_importance_params;
 
 enum {
@@ -27,16 +27,17 @@ enum {
     IMPORTANCE_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as g
     IMPORTANCE_PORT_G,
     IMPORTANCE_PORT_HISTORY, // INOUT buffer struct importance_history
-    IMPORTANCE_PORT_MAP,     // OUT 2D R32F: importance by the direction light comes from, latitude and
-                             // longitude of M (environment_uv); mean over the sphere 1
-    IMPORTANCE_PORT_FIELD,   // OUT 3D RGBA32F, the grid: importance scattered, 1/m^3 per picture; times
-                             // its mean cosine about the column; sigma_t, 1/m
-    IMPORTANCE_PORT_GRID,    // OUT buffer struct importance_grid
-    IMPORTANCE_PORT_CELLS,   // SCRATCH buffer struct importance_cell[]
-    IMPORTANCE_PORT_LIGHT,   // SCRATCH buffer struct importance_light[]
+    IMPORTANCE_PORT_MAP, // OUT 2D R32F: importance by the direction light comes from, latitude and
+                         // longitude of M (environment_uv); mean over the sphere 1
+    // OUT 3D RGBA32F, the grid: importance scattered, 1/m^3 per picture; times its mean cosine
+    // about the column; sigma_t, 1/m.
+    IMPORTANCE_PORT_FIELD,
+    IMPORTANCE_PORT_GRID,  // OUT buffer struct importance_grid
+    IMPORTANCE_PORT_CELLS, // SCRATCH buffer struct importance_cell[]
+    IMPORTANCE_PORT_LIGHT, // SCRATCH buffer struct importance_light[]
     IMPORTANCE_PORT_LIGHT_OTHER,
     IMPORTANCE_PORT_TRACKS, // SCRATCH buffer vec2[]: sum of power times length, and times spread
-    IMPORTANCE_PORT_SENT,   // SCRATCH buffer float[]: what leaves the medium along a direction, 1/sr
+    IMPORTANCE_PORT_SENT, // SCRATCH buffer float[]: what leaves the medium along a direction, 1/sr
     IMPORTANCE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_importance;

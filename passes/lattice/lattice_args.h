@@ -50,7 +50,8 @@ struct lattice_args { // kernels on the whole lattice
     tyn_uint stride;  // cells of all levels of the diffusion grid
     tyn_uint history; // residual, weights, mix: earlier sweeps to mix in, 0..2
     tyn_uint warm;    // start: 1 = from the guess
-    tyn_uint elements;  // vectors of the state per channel: cells, then the radiance of their walls by fours
+    // Vectors of the state per channel: cells, then the radiance of their walls by fours.
+    tyn_uint elements;
     tyn_uint corrected; // residual: 1 = there is a diffusion correction
     tyn_uvec3 repeat;   // sweep: periodic axes
     tyn_uint march;     // sweep: axis from whose planes diagonal lines start; not a periodic one

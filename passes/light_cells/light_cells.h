@@ -1,4 +1,5 @@
-// light_cells.h -- which lights see all, or nothing, of a piece of the medium's box: no look at their maps is needed there.
+// light_cells.h -- which lights see all, or nothing, of a piece of the medium's box: no look at their
+// maps is needed there.
 #pragma once
 #include <tyndall/pass.h>
 #include "light_cells_args.h"
@@ -6,15 +7,16 @@
 typedef struct tyn_light_cells_params {
     int32_t cells; // "light_cells.cells"
     // Set by the method.
-    float extent[3]; // of the medium's box, m
+    float extent[3];              // of the medium's box, m
     uint32_t num_suns, num_lamps; // of shadow_map
 } tyn_light_cells_params;
 
 enum {
     LIGHT_CELLS_PORT_ATLAS,   // IN 2D D32: of shadow_map, as the next
     LIGHT_CELLS_PORT_SHADOWS, // IN buffer struct shadow_light[]
-    LIGHT_CELLS_PORT_BLOCKS,  // SCRATCH 2D RG32F, with mips: least and greatest depth in blocks of the atlas
-    LIGHT_CELLS_PORT_CELLS,   // OUT 3D R32F: light_cells_args.h
+    // SCRATCH 2D RG32F, with mips: least and greatest depth in blocks of the atlas
+    LIGHT_CELLS_PORT_BLOCKS,
+    LIGHT_CELLS_PORT_CELLS, // OUT 3D R32F: light_cells_args.h
     LIGHT_CELLS_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_light_cells;

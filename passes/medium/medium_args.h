@@ -8,9 +8,9 @@ struct resample_args {
 };
 
 struct bricks_args {
-    float
-        grow; // voxels by which the shapes are looked at beyond the brick: 1 where resampled textures are
-        // read, as interpolation in the brick reaches voxels next to it; 0 for the shapes alone
+    // Voxels by which the shapes are looked at beyond the brick: 1 where resampled textures are read, as
+    // interpolation in the brick reaches voxels next to it; 0 for the shapes alone.
+    float grow;
 };
 
 struct distance_args {

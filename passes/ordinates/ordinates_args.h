@@ -18,7 +18,7 @@ struct ordinates_piece { // what comes from a region, before folding
     float size;          // luminance of its absolute value
     tyn_vec3 moment;     // towards where it comes from, map frame; any length
     float solid_angle;
-    tyn_vec3 outwards;   // integral of the direction over the region, map frame
+    tyn_vec3 outwards; // integral of the direction over the region, map frame
 };
 TYN_ASSERT_SIZE(ordinates_piece, 44);
 

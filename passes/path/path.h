@@ -26,14 +26,14 @@ typedef struct tyn_path_params {
     uint32_t near_lamps;  // those in or near the media
     uint32_t environment; // TYN_PATH_ENV_*
     float sigma_guess;    // typical extinction, 1/m
-    float stretch;        // > 1: images and probes draw first flights for so many times the extinction
-    uint32_t layers;      // images: single, multiple and transmittance as well
-    uint32_t opaque;      // images: a background is seen, alpha is 1
-    uint32_t scattered;   // probes: without light that has not scattered
-    float world[3][3];    // probes: the world's axes in M
-    float lamp_power[3];  // balance: of the lamps inside, W
-    float box[2][3];      // balance of surfaces: corners of the box around everything, M
-    uint32_t chunks;      // balance: dispatches of num_samples paths each; fluxes: of each thread
+    float stretch;   // > 1: images and probes draw first flights for so many times the extinction
+    uint32_t layers; // images: single, multiple and transmittance as well
+    uint32_t opaque; // images: a background is seen, alpha is 1
+    uint32_t scattered;  // probes: without light that has not scattered
+    float world[3][3];   // probes: the world's axes in M
+    float lamp_power[3]; // balance: of the lamps inside, W
+    float box[2][3];     // balance of surfaces: corners of the box around everything, M
+    uint32_t chunks;     // balance: dispatches of num_samples paths each; fluxes: of each thread
 } tyn_path_params;
 
 // What every tracing pass reads.
@@ -122,7 +122,7 @@ enum {
     PATH_DISTANCE_PORT_SURFACES, // IN buffers, surface_args.h
     PATH_DISTANCE_PORT_VERTICES,
     PATH_DISTANCE_PORT_TRIANGLES,
-    PATH_DISTANCE_PORT_NODES,    // optional
+    PATH_DISTANCE_PORT_NODES,     // optional
     PATH_DISTANCE_PORT_RADIANCE,  // OUT 2D RG32UI: none, packed_colour.glsl
     PATH_DISTANCE_PORT_DISTANCES, // OUT 2D R32F, m; 0: none
     PATH_DISTANCE_NUM_PORTS,

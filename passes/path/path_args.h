@@ -18,32 +18,33 @@
 #define TYN_PATH_ENV_CONSTANT 1
 #define TYN_PATH_ENV_MAP 2
 
-#define TYN_PATH_REPEAT 1u       // some axis is periodic
-#define TYN_PATH_EMISSIVE 2u     // some medium emits
-#define TYN_PATH_MIXTURE 4u      // light-lobe mixture sampling
-#define TYN_PATH_EQUIANGULAR 8u  // lamps in or near the media: equi-angular distance sampling
-#define TYN_PATH_LAYERS 16u      // first-order light and transmittance are kept as well
-#define TYN_PATH_SPHERE 128u     // the only shape is a sphere
-#define TYN_PATH_LAMPS 64u       // some light is a point or spot light
-#define TYN_PATH_SCATTERED 32u   // probes leave out light that comes straight from its source
-#define TYN_PATH_SURFACES 256u   // there are triangles
-#define TYN_PATH_EMITTERS 512u   // ... and a table by which emissive ones are drawn
-#define TYN_PATH_THIN 2048u      // first flights are stretched: args.stretch
-#define TYN_PATH_FROM_LIGHTS 1024u // balance: the first flights of light are followed from suns and lamps
+#define TYN_PATH_REPEAT 1u      // some axis is periodic
+#define TYN_PATH_EMISSIVE 2u    // some medium emits
+#define TYN_PATH_MIXTURE 4u     // light-lobe mixture sampling
+#define TYN_PATH_EQUIANGULAR 8u // lamps in or near the media: equi-angular distance sampling
+#define TYN_PATH_LAYERS 16u     // first-order light and transmittance are kept as well
+#define TYN_PATH_SPHERE 128u    // the only shape is a sphere
+#define TYN_PATH_LAMPS 64u      // some light is a point or spot light
+#define TYN_PATH_SCATTERED 32u  // probes leave out light that comes straight from its source
+#define TYN_PATH_SURFACES 256u  // there are triangles
+#define TYN_PATH_EMITTERS 512u  // ... and a table by which emissive ones are drawn
+#define TYN_PATH_THIN 2048u     // first flights are stretched: args.stretch
+// Balance: the first flights of light are followed from suns and lamps.
+#define TYN_PATH_FROM_LIGHTS 1024u
 
 struct path_args {
-    tyn_uint first;       // pixel or point of this dispatch's first thread
-    tyn_uint num;         // pixels or points of this dispatch
-    tyn_uint slots;       // threads a pixel
+    tyn_uint first;                     // pixel or point of this dispatch's first thread
+    tyn_uint num;                       // pixels or points of this dispatch
+    tyn_uint slots;                     // threads a pixel
     tyn_uint first_sample, num_samples; // of this dispatch, for every pixel
     tyn_uint seed;
     tyn_uint num_lights;
-    tyn_uint max_depth;   // longest path, scatterings
-    tyn_uint rr_depth;    // Russian roulette from this many scatterings on
-    tyn_uint max_steps;   // safety cap: tentative collisions and brick crossings of one path
-    float sigma_guess;    // typical extinction, 1/m: weighs equi-angular against free-flight sampling
-    float stretch;        // thin media: first flights are drawn for an extinction so many times larger
-    tyn_vec3 world[3];    // probes: the world's axes in M
+    tyn_uint max_depth; // longest path, scatterings
+    tyn_uint rr_depth;  // Russian roulette from this many scatterings on
+    tyn_uint max_steps; // safety cap: tentative collisions and brick crossings of one path
+    float sigma_guess;  // typical extinction, 1/m: weighs equi-angular against free-flight sampling
+    float stretch;     // thin media: first flights are drawn for an extinction so many times larger
+    tyn_vec3 world[3]; // probes: the world's axes in M
     tyn_vec3 box_lo, box_hi; // balance of surfaces: the box that light enters and leaves, M
 };
 TYN_ASSERT_SIZE(path_args, 108);
@@ -62,7 +63,7 @@ struct path_partial_layers { // means
 TYN_ASSERT_SIZE(path_partial_layers, 36);
 
 struct path_resolve_args {
-    tyn_uint first, num;     // pixels or points, as in path_args
+    tyn_uint first, num; // pixels or points, as in path_args
     tyn_uint slots;
     tyn_uint width;          // of the image, pixels
     tyn_uint samples_before; // in the running statistics; 0: start anew

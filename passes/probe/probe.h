@@ -9,10 +9,10 @@ typedef struct tyn_probe_params {
     uint32_t num_suns;      // 0..4
     uint32_t num_ordinates; // at most (tyn_columns_params.count); 0: there are none
     uint32_t local_lights;  // 1: there are lamps or VPLs
-    uint32_t
-        scattered_only; // 1: without light that has not scattered: that of suns and ordinates, and
-                        // of the mean of the sky where there are ordinates, along them
-    float world[3][3];  // the world's axes in M: what the flux is given along
+    // 1: without light that has not scattered: that of suns and ordinates, and of the mean of the sky
+    // where there are ordinates, along them.
+    uint32_t scattered_only;
+    float world[3][3]; // the world's axes in M: what the flux is given along
 } tyn_probe_params;
 
 enum {
@@ -32,12 +32,12 @@ enum {
     PROBE_PORT_RADIAL_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS; of radial_beam
     PROBE_PORT_RADIAL_TAU_A, // IN optional 3D: mode COEFFICIENTS, as the one below
     PROBE_PORT_RADIAL_TAU_P,
-    PROBE_PORT_SHADOW_ATLAS, // IN optional 2D, of shadow_map: surfaces stand before the lights
-    PROBE_PORT_SHADOWS,      // IN optional buffer
+    PROBE_PORT_SHADOW_ATLAS,  // IN optional 2D, of shadow_map: surfaces stand before the lights
+    PROBE_PORT_SHADOWS,       // IN optional buffer
     PROBE_PORT_VPL_DISTANCES, // IN optional 2D, of vpl: with walls and VPLs
-    PROBE_PORT_CELLS,   // IN optional 3D, of lattice_cells: flux at the box's faces
-    PROBE_PORT_POINTS,  // IN buffer vec3[], M, m
-    PROBE_PORT_RESULTS, // OUT buffer tyn_probe_result[]
+    PROBE_PORT_CELLS,         // IN optional 3D, of lattice_cells: flux at the box's faces
+    PROBE_PORT_POINTS,        // IN buffer vec3[], M, m
+    PROBE_PORT_RESULTS,       // OUT buffer tyn_probe_result[]
     PROBE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_probe;
@@ -64,7 +64,7 @@ enum {
     BALANCE_PORT_WALL_POWER,  // IN optional buffer, of lattice
     BALANCE_PORT_LAMP_POWER,  // IN optional buffer, of lattice_lamps
     // With surfaces, of which no axis repeats:
-    BALANCE_PORT_BEAMS,  // IN optional, as of probe
+    BALANCE_PORT_BEAMS, // IN optional, as of probe
     BALANCE_PORT_COLUMN,
     BALANCE_PORT_TAU_A,
     BALANCE_PORT_TAU_P,

@@ -27,8 +27,8 @@ struct balance_args {
     tyn_vec3 tint;
     tyn_uint channels;
     tyn_uint num_suns;
-    tyn_uint num_leaks;  // per channel
-    tyn_uint num_groups; // of local lights
+    tyn_uint num_leaks;    // per channel
+    tyn_uint num_groups;   // of local lights
     tyn_uint emitters;     // 1: there are surfaces that emit
     tyn_uint num_followed; // groups of balance_lights; 0: there are none
 };

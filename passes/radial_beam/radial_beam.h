@@ -13,8 +13,8 @@ typedef struct tyn_radial_beam_params {
     uint32_t num_lamps;
     uint32_t num_fine; // the first of them have `cells`
     uint32_t max_vpls; // room for VPLs, 0 to TYN_RADIAL_VPLS_MAX
-    uint32_t
-        finest; // cells at which a map is as fine as the medium; 2 where that is the same everywhere
+    // Cells at which a map is as fine as the medium; 2 where that is the same everywhere.
+    uint32_t finest;
     struct radial_light lamps[TYN_RADIAL_LAMPS_MAX];
 } tyn_radial_beam_params;
 

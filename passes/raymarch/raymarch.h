@@ -4,17 +4,18 @@
 #include "scene_args.h"
 
 typedef struct tyn_raymarch_params {
-    float
-        step; // "raymarch.step": longest step, in voxels (homogeneous: in steps that resolve the light)
+    // "raymarch.step": longest step, in voxels (homogeneous: in steps that resolve the light).
+    float step;
     float stop;         // "raymarch.stop": transmittance at which a ray ends
     uint32_t antialias; // "raymarch.antialias": four rays a pixel where they disagree
     uint32_t sparse;    // "raymarch.sparse": among surfaces and lamps one ray for 2x2 pixels
     // Set by the method.
-    uint32_t grey;        // 1: one medium (mode DENSITY), equal in all channels
-    uint32_t mode;        // TYN_MEDIUM_*
-    uint32_t num_suns;    // 0..4
-    uint32_t num_lamps;   // that are marched: the first of `radials`
-    uint32_t num_near_lamps; // that are marched nearby only, the next ones; `inscatter` has the rest of their light
+    uint32_t grey;      // 1: one medium (mode DENSITY), equal in all channels
+    uint32_t mode;      // TYN_MEDIUM_*
+    uint32_t num_suns;  // 0..4
+    uint32_t num_lamps; // that are marched: the first of `radials`
+    // That are marched nearby only, the next ones; `inscatter` has the rest of their light.
+    uint32_t num_near_lamps;
     float reach;          // ... of these, m (shaders/radial.glsl: radial_reach)
     uint32_t spots;       // 1: some of all these shine in a cone only
     uint32_t kernels;     // 1: sunlight scattered forward any number of times (lut); else once only
@@ -30,9 +31,9 @@ typedef struct tyn_raymarch_params {
     float extent[3];    // medium_block.extent, m
     float longest_step; // m; a step is no longer than this
     float majorant;     // of sigma_t, 1/m; 0: not known
-    uint32_t
-        closed; // 1: the medium is empty at the faces through which suns shine in, or homogeneous: depths
-                // along suns take one fetch
+    // 1: the medium is empty at the faces through which suns shine in, or homogeneous: depths along
+    // suns take one fetch.
+    uint32_t closed;
     uint32_t num_shapes;
     uint32_t repeat; // 1: the medium is periodic along an axis
     uint32_t first[2],
@@ -86,16 +87,16 @@ enum {
     RAYMARCH_PORT_WALL_CELLS,
     RAYMARCH_PORT_SHADOW_ATLAS, // IN optional 2D, of shadow_map: surfaces stand before the lights
     RAYMARCH_PORT_SHADOWS,      // IN optional buffer
-    RAYMARCH_PORT_LIGHT_CELLS,  // IN optional 3D, of light_cells: where looks at the maps are needed
-    RAYMARCH_PORT_CAMERA,       // IN buffer struct camera_block
-    RAYMARCH_PORT_ENVIRONMENT,  // IN buffer struct env_block
-    RAYMARCH_PORT_ENV_MAP,      // IN optional 2D
+    RAYMARCH_PORT_LIGHT_CELLS, // IN optional 3D, of light_cells: where looks at the maps are needed
+    RAYMARCH_PORT_CAMERA,      // IN buffer struct camera_block
+    RAYMARCH_PORT_ENVIRONMENT, // IN buffer struct env_block
+    RAYMARCH_PORT_ENV_MAP,     // IN optional 2D
     RAYMARCH_PORT_GLOW, // IN optional 3D: of env_glow, the map scattered forward; without it what
                         // is scattered forward comes from the mean alone (`mean`)
     RAYMARCH_PORT_HOST_DEPTH, // IN optional 2D: hardware depth; rays end there
-    RAYMARCH_PORT_SURFACE, // IN optional 2D: surface_samples.glsl: radiance of the first surface, packed, and its distance
-    RAYMARCH_PORT_DISTANCES,
-                           // along the ray, m, or infinity; rays end there. n x n samples a pixel
+    RAYMARCH_PORT_SURFACE,    // IN optional 2D: radiance of the first surface, packed
+                              // (packed_colour.glsl); n x n samples a pixel, as the next
+    RAYMARCH_PORT_DISTANCES, // IN optional 2D: its distance along the ray, m, or 0: none; rays end there
     RAYMARCH_PORT_RADIANCE, // OUT 2D RGBA32F: radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where
                             // an environment or a surface is seen
     RAYMARCH_PORT_TRANSMITTANCE, // OUT 2D RGBA32F, asked for by `layers`, as all below

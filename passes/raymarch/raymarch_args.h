@@ -25,9 +25,9 @@
 #define RAYMARCH_SOFT_SUNS (1u << 18) // there are suns that are seen under an angle
 #define RAYMARCH_SURFACE (1u << 19)   // rays end at the scene's surfaces
 #define RAYMARCH_SURFACE_SEEN (1u << 20)
-#define RAYMARCH_WALLS (1u << 21)   // surfaces part the cells of inscatter
-#define RAYMARCH_SHADOWS (1u << 22) // surfaces stand before suns and lamps
-#define RAYMARCH_REPEAT (1u << 23)  // the medium is periodic
+#define RAYMARCH_WALLS (1u << 21)        // surfaces part the cells of inscatter
+#define RAYMARCH_SHADOWS (1u << 22)      // surfaces stand before suns and lamps
+#define RAYMARCH_REPEAT (1u << 23)       // the medium is periodic
 #define RAYMARCH_SPARSE_FIRST (1u << 24) // one ray for 2x2 pixels, into the image "sparse"
 #define RAYMARCH_SPARSE_FILL (1u << 25)  // pixels where that image is smooth; the others are listed
 #define RAYMARCH_SPARSE_REST (1u << 26)  // rays of those that are listed

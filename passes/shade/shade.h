@@ -3,23 +3,28 @@
 #include <tyndall/pass.h>
 
 typedef struct tyn_shade_params {
-    int32_t pattern; // pixels along each side that share VPLs; 0: as many as the picture's size asks for
-    int32_t step; // pixels along each side of a block that has one place for smooth light; 0: as the picture's size asks
+    // Pixels along each side that share VPLs; 0: as many as the picture's size asks for.
+    int32_t pattern;
+    // Pixels along each side of a block that has one place for smooth light; 0: as the picture's
+    // size asks.
+    int32_t step;
     // Set by the method:
     uint32_t mode;    // TYN_MEDIUM_*
     uint32_t size[2]; // of the picture, pixels
-    uint32_t
-        num_suns; // that shine on surfaces: of "beams", or the first of "suns" without a medium
+    // That shine on surfaces: of "beams", or the first of "suns" without a medium.
+    uint32_t num_suns;
     uint32_t num_directional; // lights before the lamps in "lights"
     uint32_t num_lamps;
     uint32_t one_channel; // 1: "moments" has one channel, to be multiplied with `tint`
     float tint[3];
-    uint32_t outside; // 1: surfaces outside the lattice get the light that leaves it, if there are "moments"
-    float sight_lo[3], sight_edge; // places from where it is asked what hides the box: corner, distance (M, m)
+    // 1: surfaces outside the lattice get the light that leaves it, if there are "moments".
+    uint32_t outside;
+    // Places from where it is asked what hides the box: corner, distance (M, m).
+    float sight_lo[3], sight_edge;
     uint32_t sight_places[3];
     uint32_t hidden;   // 1: surfaces may hide that light: can rays be traced?
     uint32_t textured; // 1: materials may have textures
-    uint32_t sky; // 1: the mean of the environment lights what is outside the lattice
+    uint32_t sky;      // 1: the mean of the environment lights what is outside the lattice
 } tyn_shade_params;
 
 enum {
@@ -31,9 +36,11 @@ enum {
     SHADE_PORT_DISTANCES,   // IN 2D: gbuffer.glsl, as the two below
     SHADE_PORT_FACING,
     SHADE_PORT_COLOURS,
-    SHADE_PORT_EDGE_COUNT, // IN buffers, gbuffer_edge_args.h: pixels that show several pieces of surface
+    // IN buffers, gbuffer_edge_args.h: pixels that show several pieces of surface.
+    SHADE_PORT_EDGE_COUNT,
     SHADE_PORT_EDGES,
-    SHADE_PORT_BEAMS, // IN optional buffer struct beam_block[]: with a medium and suns, as the three below
+    // IN optional buffer struct beam_block[]: with a medium and suns, as the three below.
+    SHADE_PORT_BEAMS,
     SHADE_PORT_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS
     SHADE_PORT_TAU_A,
     SHADE_PORT_TAU_P,
@@ -46,22 +53,25 @@ enum {
     SHADE_PORT_VPLS,          // IN optional buffer struct radial_vpls
     SHADE_PORT_VPL_DISTANCES, // IN optional 2D, vpl_visibility.glsl: with VPLs
     SHADE_PORT_MOMENTS,       // IN optional 3D: light of the lattice
-    SHADE_PORT_WALL_LINKS,    // IN optional buffer uint[]: with surfaces within it, as the one below
-    SHADE_PORT_WALL_CELLS,    // IN optional buffer struct wall_cell[]
-    SHADE_PORT_SURFACES,      // IN buffers, surface_args.h
+    SHADE_PORT_WALL_LINKS, // IN optional buffer uint[]: with surfaces within it, as the one below
+    SHADE_PORT_WALL_CELLS, // IN optional buffer struct wall_cell[]
+    SHADE_PORT_SURFACES,   // IN buffers, surface_args.h
     SHADE_PORT_VERTICES,
     SHADE_PORT_TRIANGLES,
     SHADE_PORT_MATERIALS,
     SHADE_PORT_TEXTURES,
     SHADE_PORT_TEXELS,
     SHADE_PORT_NODES, // IN optional buffer: their hierarchy
-    SHADE_PORT_RADIANCE, // OUT 2D RG32UI, packed_colour.glsl, as large as "distances": radiance to the camera, W/(m^2 sr)
-    SHADE_PORT_TABLE, // SCRATCH 2D RGBA32F, shade_table.h
+    // OUT 2D RG32UI, packed_colour.glsl, as large as "distances": radiance to the camera, W/(m^2
+    // sr).
+    SHADE_PORT_RADIANCE,
+    SHADE_PORT_TABLE,      // SCRATCH 2D RGBA32F, shade_table.h
     SHADE_PORT_WALL_TABLE, // SCRATCH 3D RGBA32F, walls_table.glsl: exists with wall_links
-    SHADE_PORT_FORWARD, // SCRATCH 3D RGBA32F, shade_forward.comp: exists with a lattice, suns and shadows
+    // SCRATCH 3D RGBA32F, shade_forward.comp: exists with a lattice, suns and shadows.
+    SHADE_PORT_FORWARD,
     SHADE_PORT_FACES, // SCRATCH 2D RGBA32F, shade_faces.h
     SHADE_PORT_SIGHT, // SCRATCH 3D RGBA32F, the same
-    SHADE_PORT_PART, // SCRATCH 2D RGBA32UI, shade_part.glsl: exist with VPLs
+    SHADE_PORT_PART,  // SCRATCH 2D RGBA32UI, shade_part.glsl: exist with VPLs
     SHADE_PORT_ROWS,
     SHADE_NUM_PORTS,
 };

@@ -9,12 +9,13 @@
 #define SHADE_VPLS (1u << 2)
 #define SHADE_LATTICE (1u << 3)     // there is light in the lattice
 #define SHADE_ONE_CHANNEL (1u << 4) // ... of one channel, to be multiplied with `tint`
-#define SHADE_SKY (1u << 5) // the mean of the environment lights what is outside the lattice
-#define SHADE_SPREAD (1u << 6) // sunlight scattered forward comes from around its sun
-#define SHADE_OUTSIDE (1u << 7) // surfaces outside the box get light that leaves it: shade_faces.h
+#define SHADE_SKY (1u << 5)      // the mean of the environment lights what is outside the lattice
+#define SHADE_SPREAD (1u << 6)   // sunlight scattered forward comes from around its sun
+#define SHADE_OUTSIDE (1u << 7)  // surfaces outside the box get light that leaves it: shade_faces.h
 #define SHADE_TEXTURED (1u << 8) // materials may have textures
 
-#define SHADE_LAMPS (1u << 9) // there are lamps: a loop of no turns costs a CPU device as much as one of one turn
+// There are lamps: a loop of no turns costs a CPU device as much as one of one turn.
+#define SHADE_LAMPS (1u << 9)
 
 #define SHADE_PLACES 64 // that light which was scattered forward may come from
 // Pixels of a pattern along each side; each takes a part of the VPLs. Of small pictures five pixels are much.
@@ -23,9 +24,10 @@
 #define SHADE_SMALL 64 // pixels along the shorter side
 // Pixels along each side of a block that has one place where light of VPLs and of the lattice is taken.
 #define SHADE_STEP 2
-#define SHADE_STEP_FROM 384 // pixels along the picture's shorter side; of smaller ones two pixels are much
-#define SHADE_MOST 8   // VPLs that a pixel takes in any case
-#define SHADE_MANY 4   // pixels that a thread takes VPLs at
+// Pixels along the picture's shorter side; of smaller ones two pixels are much.
+#define SHADE_STEP_FROM 384
+#define SHADE_MOST 8 // VPLs that a pixel takes in any case
+#define SHADE_MANY 4 // pixels that a thread takes VPLs at
 
 struct shade_args {
     tyn_uint num_directional; // lights before the lamps in "lights"

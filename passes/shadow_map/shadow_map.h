@@ -11,8 +11,8 @@ typedef struct tyn_shadow_view {
     uint32_t place[2], texels; // in the atlas
     uint32_t light;            // index of shadow_args.h
     struct shadow_map_args args;
-    struct surface_range
-        drawn[TYN_SURFACE_RANGES]; // the plan: all; a method may leave out what is not in view
+    // The plan: all; a method may leave out what is not in view.
+    struct surface_range drawn[TYN_SURFACE_RANGES];
 } tyn_shadow_view;
 
 typedef struct tyn_shadow_map_params {

@@ -9,8 +9,8 @@ struct wall_light_args {
     tyn_uint num_suns;
 };
 
-
-#define WALL_LIGHT_GROUP 64 // cells of a workgroup that goes through the list of those that reflect light
+// Cells of a workgroup that goes through the list of those that reflect light.
+#define WALL_LIGHT_GROUP 64
 
 // The list's head, then per cell of the lattice which links are cut, bit 13 + dx + 3 dy + 9 dz for the one to the
 // neighbour that is (dx, dy, dz) away, then the indices of the cells; their order does not matter.

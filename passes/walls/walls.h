@@ -19,8 +19,9 @@ enum {
     WALLS_PORT_TEXELS,    // IN optional buffer uint[]
     WALLS_PORT_LINKS,     // OUT buffer uint[cell]: walls_args.h
     WALLS_PORT_CELLS,     // OUT buffer struct wall_cell[cell]
-    WALLS_PORT_HITS, // OUT buffer uint[link 0..13][cell]: the triangle that a cut link meets, in the low
-                     // 24 bits, and 255 times its share of the link in the others
+    // OUT buffer uint[link 0..13][cell]: the triangle that a cut link meets, in the low 24 bits,
+    // and 255 times its share of the link in the others.
+    WALLS_PORT_HITS,
     WALLS_PORT_NEAREST, // SCRATCH
     WALLS_NUM_PORTS,
 };
@@ -43,7 +44,8 @@ enum {
     WALL_LIGHT_PORT_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS
     WALL_LIGHT_PORT_TAU_A,  // IN optional 3D: mode COEFFICIENTS, as the one below
     WALL_LIGHT_PORT_TAU_P,
-    WALL_LIGHT_PORT_RADIALS, // IN optional buffer struct radial_block: its VPLs shine on walls, as the three below
+    // IN optional buffer struct radial_block: its VPLs shine on walls, as the three below.
+    WALL_LIGHT_PORT_RADIALS,
     WALL_LIGHT_PORT_RADIAL_COLUMN,
     WALL_LIGHT_PORT_RADIAL_TAU_A,
     WALL_LIGHT_PORT_RADIAL_TAU_P,
@@ -54,7 +56,7 @@ enum {
     WALL_LIGHT_PORT_CELLS,
     WALL_LIGHT_PORT_HITS,
     WALL_LIGHT_PORT_LIGHT, // OUT buffer vec3[cell]: LATTICE_PORT_WALL_LIGHT
-    WALL_LIGHT_PORT_LIST, // SCRATCH buffer, wall_light_args.h: cells whose walls reflect
+    WALL_LIGHT_PORT_LIST,  // SCRATCH buffer, wall_light_args.h: cells whose walls reflect
     WALL_LIGHT_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_wall_light;

@@ -14,7 +14,7 @@ typedef struct light_chain {
     float sigma_s[3], sigma_a[3], g[3], emission[3];
     uint32_t num_suns;
     float sun_color[4][3], sun_direction[4][3];
-    float mean_cosine; // of the suns' discs; 0: points, 1
+    float mean_cosine;                       // of the suns' discs; 0: points, 1
     float environment[3];                    // from all sides
     const struct ordinates_block *ordinates; // NULL: none
     int cells, sweeps;

@@ -39,7 +39,7 @@ void path_scene_render(gpu_test *t, path_scene *s, uint32_t samples, const float
                        const float **error);
 // Entering, emitted, absorbed, escaped (3 channels each), W, and their standard errors.
 const struct path_balance_result *path_scene_balance(gpu_test *t, path_scene *s, uint32_t samples,
-                                                   const tyn_balance **balance);
+                                                     const tyn_balance **balance);
 // A record's samples more, after `done`.
 const tyn_probe_result *path_scene_probe_more(gpu_test *t, path_scene *s, const float (*points)[3],
                                               uint32_t num_points, uint32_t done);

@@ -18,10 +18,10 @@ typedef enum reflect_kind {
 typedef struct reflect_binding {
     uint32_t set, binding;
     reflect_kind kind;
-    uint32_t dim;    // SpvDim of images
-    uint32_t format; // SpvImageFormat of storage images
+    uint32_t dim;                             // SpvDim of images
+    uint32_t format;                          // SpvImageFormat of storage images
     bool arrayed, multisampled, float_texels; // float_texels: else integers
-    bool non_writable, non_readable; // of the variable, or of every member of the block
+    bool non_writable, non_readable;          // of the variable, or of every member of the block
 } reflect_binding;
 
 typedef struct reflect_shader {

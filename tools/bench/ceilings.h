@@ -6,8 +6,8 @@
 #include <tyndall/device.h>
 
 typedef struct ceilings { // NAN: not measured
-    double fma_gflops;           // 10^9 multiplications and additions a second, in chains of x a + b
-    double copy_gb_s;            // 10^9 bytes a second, read and written, of a buffer beyond all caches
+    double fma_gflops;    // 10^9 multiplications and additions a second, in chains of x a + b
+    double copy_gb_s;     // 10^9 bytes a second, read and written, of a buffer beyond all caches
     double trilinear_gsamples_s; // 10^9 trilinear fetches of one float a second, along rays
     double exp_gops_s;           // 10^9 exponentials a second
     double dispatch_us;          // of an empty dispatch that waits for the one before

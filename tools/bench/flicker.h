@@ -15,7 +15,8 @@ typedef struct flicker {
 // False: out of memory; flicker_close is due in any case.
 bool flicker_open(flicker *f, uint32_t width, uint32_t height);
 void flicker_close(flicker *f);
-void flicker_add(flicker *f, const float *rgba); // the next picture, four floats a pixel; NULL: there is none
+// The next picture, four floats a pixel; NULL: there is none.
+void flicker_add(flicker *f, const float *rgba);
 
 // Sum over pixels, channels and all but the first and last picture of |x[k-1] - 2 x[k] + x[k+1]|, relative to
 // that of |x[k]|. Independent noise of relative standard deviation s gives 1.95 s. NAN below three pictures.

@@ -14,7 +14,8 @@ typedef struct plane {
     uint32_t count, block;
     plane_line *lines;
     uint32_t num_lines;
-    double noise; // of the reference; 0: not known. An error below it is one of it or less, below twice it vague
+    // Of the reference; 0: not known. An error below it is one of it or less, below twice it vague.
+    double noise;
 } plane;
 
 // `index`: which of the errors; `block`: what they are of. Borrows from `runs`. False: out of memory; plane_finish is
@@ -24,7 +25,8 @@ void plane_finish(plane *p);
 
 // As report.json has them (docs/report-schema.md).
 cJSON *plane_front(const plane *p);
-cJSON *plane_floors(const plane *p);   // the least error of each method: what no setting of this suite gets below
+// The least error of each method: what no setting of this suite gets below.
+cJSON *plane_floors(const plane *p);
 cJSON *plane_ranges(const plane *p);   // of errors in which one method is fastest
 cJSON *plane_verdicts(const plane *p); // the same as sentences
 // Every method against every one that samples, at the errors asked for.

@@ -7,7 +7,8 @@
 #include <tyndall/io.h>
 #include <tyndall/offline.h>
 
-enum { BENCH_BLOCKS = 2, BENCH_REFERENCE_SEED = 1000003 }; // errors over blocks of suite->block, and per pixel
+// Errors over blocks of suite->block, and per pixel.
+enum { BENCH_BLOCKS = 2, BENCH_REFERENCE_SEED = 1000003 };
 
 typedef struct bench_reference {
     tyn_image_file file;

@@ -11,7 +11,7 @@ enum { BENCH_MAX_SCENES = 64, BENCH_MAX_RUNS = 256, BENCH_MAX_RATIOS = 8, BENCH_
 
 typedef struct bench_scene {
     const char *name;
-    char *slug; // the name as part of a file's name, unique in the suite
+    char *slug;               // the name as part of a file's name, unique in the suite
     char *path, *environment; // found: beside the suite, or in the folder of the sample scenes
     scene_options scene;
     view_options view;
@@ -29,8 +29,8 @@ typedef struct bench_run {
     bool swept;        // one of several of its entry
     bool baseline;     // from the list of baselines: a method that samples
     method_options method;
-    char *defines; // memory behind method.defines
-    cJSON *spec;   // the entry with the values of its sweep put in place
+    char *defines;     // memory behind method.defines
+    cJSON *spec;       // the entry with the values of its sweep put in place
     const cJSON *only; // names of the scenes it is for; NULL: all
 } bench_run;
 

@@ -29,7 +29,8 @@ void suite_vector(suite_reader *r, const cJSON *object, const char *key, bool sp
 void suite_size(suite_reader *r, const cJSON *object, opt_size *size); // "size"
 
 // The number of objects in a list, and one of them; from then on faults are in it.
-uint32_t suite_list(suite_reader *r, const cJSON *root, const char *key, uint32_t min, uint32_t max);
+uint32_t suite_list(suite_reader *r, const cJSON *root, const char *key, uint32_t min,
+                    uint32_t max);
 const cJSON *suite_element(suite_reader *r, const cJSON *root, const char *key, uint32_t index);
 
 // The file that a key names, beside the suite or in `folder`: a new string; NULL: the key is not there, or a fault.

@@ -50,7 +50,12 @@ typedef enum tyn_result {
     TYN_ERR_STOPPED = -6,     // a callback of the caller's asked to stop
 } tyn_result;
 
-typedef enum tyn_log_level { TYN_LOG_ERROR = 0, TYN_LOG_WARN, TYN_LOG_INFO, TYN_LOG_DEBUG } tyn_log_level;
+typedef enum tyn_log_level {
+    TYN_LOG_ERROR = 0,
+    TYN_LOG_WARN,
+    TYN_LOG_INFO,
+    TYN_LOG_DEBUG
+} tyn_log_level;
 
 // Where messages go. A NULL `tyn_log *` and a NULL `fn` are silence. One message is one line
 // without a newline: what, where, and what would be right. Called on the calling thread.

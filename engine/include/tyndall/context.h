@@ -30,7 +30,7 @@ typedef struct tyn_context_params {
     uint32_t frames_in_flight;    // 1..8; 0 = 2
     bool readback;                // copy outputs to host memory (tyn_context_output)
 } tyn_context_params;
-#define tyn_context_params(...) \
+#define tyn_context_params(...)                                                                    \
     (&(tyn_context_params){.struct_size = sizeof(tyn_context_params), __VA_ARGS__})
 TYN_API tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params,
                                       tyn_context **out);
@@ -38,7 +38,7 @@ TYN_API void tyn_context_destroy(tyn_context **ctx); // the GPU must be done wit
 
 // What a frame can give back, as a set.
 typedef enum tyn_output {
-    TYN_OUTPUT_RADIANCE = 1 << 0,      // RGBA32F; RGB radiance, A as in docs/scene-format.md, "Output"
+    TYN_OUTPUT_RADIANCE = 1 << 0, // RGBA32F; RGB radiance, A as in docs/scene-format.md, "Output"
     TYN_OUTPUT_TRANSMITTANCE = 1 << 1, // RGBA32F
     TYN_OUTPUT_DEPTH = 1 << 2,         // RGBA32F: depth, depth_t50, 0, 0
     TYN_OUTPUT_SINGLE = 1 << 3,        // RGBA32F
@@ -52,13 +52,14 @@ typedef enum tyn_output {
 } tyn_output;
 
 typedef struct tyn_probe_result {
-    float fluence[3];        // W/m^2
-    float flux[9];           // net flux, x_r x_g x_b y_r ... z_b, W/m^2
+    float fluence[3];                // W/m^2
+    float flux[9];                   // net flux, x_r x_g x_b y_r ... z_b, W/m^2
     float fluence_se[3], flux_se[9]; // standard errors (path), else 0
 } tyn_probe_result;
 
 typedef struct tyn_balance { // W, per channel
-    double entering[3], emitted[3], absorbed_media[3], absorbed_surfaces[3], escaped[3], imbalance[3];
+    double entering[3], emitted[3], absorbed_media[3], absorbed_surfaces[3], escaped[3],
+        imbalance[3];
     double imbalance_se[3]; // its standard error (path), else 0
 } tyn_balance;
 
@@ -67,13 +68,14 @@ typedef struct tyn_balance { // W, per channel
 // and its others stand for one period.
 typedef struct tyn_flux_values { // W, per channel
     float incident[3];
-    float leaving[6][3];        // through the faces -x, +x, -y, +y, -z, +z
-    float direct[3];            // of that, what has met nothing
-    float reflected[3];         // leaves through faces that its light shines on when it enters; `transmitted`:
-    float transmitted[3];       // through others. The two are all that leaves
+    float leaving[6][3]; // through the faces -x, +x, -y, +y, -z, +z
+    float direct[3];     // of that, what has met nothing
+    // Leaves through faces that its light shines on when it enters, and through others: together all
+    // that leaves.
+    float reflected[3], transmitted[3];
     float absorbed_media[3], absorbed_surfaces[3];
     float arriving_surfaces[3]; // on surfaces, each time light meets one
-    float missing[3];           // incident less all of it: 0 but for noise and for paths that were cut
+    float missing[3]; // incident less all of it: 0 but for noise and for paths that were cut
 } tyn_flux_values;
 typedef struct tyn_fluxes {
     tyn_flux_values mean, se; // and standard errors
@@ -82,10 +84,10 @@ typedef struct tyn_fluxes {
 // What to compute and from where.
 typedef struct tyn_view {
     tyn_camera camera;
-    uint32_t width, height;   // pixels, 1..16384
-    uint32_t outputs;         // set of tyn_output; 0 = RADIANCE
-    bool no_background;       // RGB is the medium alone, premultiplied
-    float exposure_ev;        // for DISPLAY
+    uint32_t width, height; // pixels, 1..16384
+    uint32_t outputs;       // set of tyn_output; 0 = RADIANCE
+    bool no_background;     // RGB is the medium alone, premultiplied
+    float exposure_ev;      // for DISPLAY
     uint32_t seed;
     // Progressive methods (path): this record adds samples [first_sample, first_sample + num_samples)
     // of every pixel or point to what the context has accumulated; first_sample 0 starts anew.
@@ -94,24 +96,25 @@ typedef struct tyn_view {
     uint32_t rr_depth;        // path: Russian roulette from this depth on; 0 = default
     const float (*points)[3]; // PROBE: world positions
     uint32_t num_points;
-    bool scattered_only;      // PROBE: without the uncollided light
-    uint64_t time_index;      // frame number of a sequence: importance.smoothing takes a step when it changes
-    uint32_t cut;             // another number forgets what earlier frames left (importance.smoothing,
-                              // lattice.warm): for another scene, or a camera that jumps
+    bool scattered_only; // PROBE: without the uncollided light
+    // Frame number of a sequence: importance.smoothing takes a step when it changes.
+    uint64_t time_index;
+    uint32_t cut; // another number forgets what earlier frames left (importance.smoothing,
+                  // lattice.warm): for another scene, or a camera that jumps
 } tyn_view;
 
 typedef struct tyn_frame {
     size_t struct_size;
-    VkCommandBuffer cmd;     // Required: recording, outside a render pass
-    const tyn_scene *scene;  // Required: same counts and sizes as prepared; values may
-                             // differ, but some choose other kernels or grids: record refuses
-                             // then, and prepare mends it (docs/embedding.md)
-    const tyn_view *view;    // Required: same size, outputs and point count as prepared
-    const tyn_image *densities;         // one per volume whose data is NULL, in order
-    const uint64_t *density_versions;   // NULL = they may have changed every frame
-    const tyn_image *depth;  // COMPOSITE: may be NULL; hardware depth of the host's surfaces
-    float view_to_clip[16];  // Required with depth: how depth was made (Vulkan clip z in [0, 1])
-    const tyn_image *color;  // COMPOSITE: Required; rgba16f or rgba32f with STORAGE usage
+    VkCommandBuffer cmd;        // Required: recording, outside a render pass
+    const tyn_scene *scene;     // Required: same counts and sizes as prepared; values may
+                                // differ, but some choose other kernels or grids: record refuses
+                                // then, and prepare mends it (docs/embedding.md)
+    const tyn_view *view;       // Required: same size, outputs and point count as prepared
+    const tyn_image *densities; // one per volume whose data is NULL, in order
+    const uint64_t *density_versions; // NULL = they may have changed every frame
+    const tyn_image *depth; // COMPOSITE: may be NULL; hardware depth of the host's surfaces
+    float view_to_clip[16]; // Required with depth: how depth was made (Vulkan clip z in [0, 1])
+    const tyn_image *color; // COMPOSITE: Required; rgba16f or rgba32f with STORAGE usage
     bool recompute;  // run every node but those that depend on the media alone, changed or not
     bool setup_only; // record only uploads and nodes that depend on the media alone
 } tyn_frame;
@@ -136,7 +139,10 @@ typedef struct tyn_node_report {
     uint32_t dispatches, barriers;
     uint64_t bytes;
     double flops;
-    struct { const char *name; double amount; } work[8];
+    struct {
+        const char *name;
+        double amount;
+    } work[8];
     uint32_t num_work;
     bool media_only; // depends on the media alone: part of the set-up, not of a frame
 } tyn_node_report;
@@ -144,7 +150,8 @@ typedef struct tyn_node_report {
 typedef struct tyn_report {
     const tyn_node_report *nodes;
     uint32_t num_nodes;
-    uint64_t persistent_bytes, transient_bytes; // on the device: kept between frames; what more nodes need while they run
+    // On the device: kept between frames; what more nodes need while they run.
+    uint64_t persistent_bytes, transient_bytes;
     const char *const *warnings; // what the method left out or approximated, one line each
     uint32_t num_warnings;
 } tyn_report;

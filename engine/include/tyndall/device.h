@@ -21,21 +21,21 @@ typedef struct tyn_requirements {
 TYN_API const tyn_requirements *tyn_requirements_get(void);
 
 typedef struct tyn_device_params {
-    size_t struct_size; // sizeof; set by the macro
-    VkInstance instance;             // Required, borrowed
-    VkPhysicalDevice physical_device; // Required
-    VkDevice device;                  // Required, borrowed
+    size_t struct_size;                               // sizeof; set by the macro
+    VkInstance instance;                              // Required, borrowed
+    VkPhysicalDevice physical_device;                 // Required
+    VkDevice device;                                  // Required, borrowed
     PFN_vkGetInstanceProcAddr get_instance_proc_addr; // Required
-    uint32_t api_version;             // Required: as given in VkApplicationInfo
-    const VkPhysicalDeviceFeatures2 *features; // Required: as enabled on `device`
-    uint32_t queue_family;            // of the command buffers we will be given: one with compute, and
-                                      // with graphics if scenes are to have surfaces
-    bool debug_names;                 // VK_EXT_debug_utils is enabled: name objects, label nodes
-    const void *pipeline_cache;       // from an earlier tyn_device_pipeline_cache; may be NULL
+    uint32_t api_version;                             // Required: as given in VkApplicationInfo
+    const VkPhysicalDeviceFeatures2 *features;        // Required: as enabled on `device`
+    uint32_t queue_family;      // of the command buffers we will be given: one with compute, and
+                                // with graphics if scenes are to have surfaces
+    bool debug_names;           // VK_EXT_debug_utils is enabled: name objects, label nodes
+    const void *pipeline_cache; // from an earlier tyn_device_pipeline_cache; may be NULL
     size_t pipeline_cache_size;
     tyn_log log;
 } tyn_device_params;
-#define tyn_device_params(...) \
+#define tyn_device_params(...)                                                                     \
     (&(tyn_device_params){.struct_size = sizeof(tyn_device_params), __VA_ARGS__})
 TYN_API tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out);
 TYN_API void tyn_device_destroy(tyn_device **dev); // the GPU must be done with our work
@@ -43,13 +43,14 @@ TYN_API void tyn_device_destroy(tyn_device **dev); // the GPU must be done with 
 // A device of our own: loads the Vulkan loader at run time, makes instance, device and queue.
 typedef struct tyn_device_open_params {
     size_t struct_size;
-    const char *select;   // index or part of the name; NULL = the first discrete, integrated, then any
-    bool validation;      // validation and synchronization validation; messages go to the log as errors
+    // Index or part of the name; NULL = the first discrete, integrated, then any.
+    const char *select;
+    bool validation; // validation and synchronization validation; messages go to the log as errors
     const void *pipeline_cache;
     size_t pipeline_cache_size;
     tyn_log log;
 } tyn_device_open_params;
-#define tyn_device_open_params(...) \
+#define tyn_device_open_params(...)                                                                \
     (&(tyn_device_open_params){.struct_size = sizeof(tyn_device_open_params), __VA_ARGS__})
 TYN_API tyn_result tyn_device_open(const tyn_device_open_params *params, tyn_device **out);
 
@@ -83,7 +84,7 @@ typedef struct tyn_sync {
 // A host image: never destroyed by us; alive until the GPU work is done.
 typedef struct tyn_image {
     VkImage image;
-    VkImageView view;  // of mip 0, layer 0; for a depth image a depth-only view
+    VkImageView view; // of mip 0, layer 0; for a depth image a depth-only view
     VkFormat format;
     VkExtent3D extent;
     VkImageUsageFlags usage;

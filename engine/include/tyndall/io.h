@@ -57,7 +57,8 @@ TYN_API tyn_result tyn_exr_read(tyn_image_file *image, const char *path, const t
 TYN_API tyn_result tyn_exr_write(const tyn_image_file *image, const char *path, bool full_float,
                                  const tyn_log *log);
 TYN_API void tyn_image_file_finish(tyn_image_file *image);
-TYN_API float *tyn_image_file_channel(const tyn_image_file *image, const char *name); // NULL: not there
+// NULL: not there.
+TYN_API float *tyn_image_file_channel(const tyn_image_file *image, const char *name);
 
 // 8-bit RGB(A), row 0 at the top.
 TYN_API tyn_result tyn_png_write(const char *path, uint32_t width, uint32_t height,

@@ -15,7 +15,7 @@ typedef struct tyn_offline_params {
     const char *method;
     const tyn_settings *settings;
 } tyn_offline_params;
-#define tyn_offline_params(...) \
+#define tyn_offline_params(...)                                                                    \
     (&(tyn_offline_params){.struct_size = sizeof(tyn_offline_params), __VA_ARGS__})
 
 // `dev` must come from tyn_device_open; borrowed.
@@ -39,14 +39,15 @@ TYN_API const void *tyn_offline_output(tyn_offline *off, tyn_output output);
 TYN_API void tyn_offline_report(tyn_offline *off, tyn_report *report);
 TYN_API tyn_context *tyn_offline_context(tyn_offline *off);
 TYN_API double tyn_offline_setup_ms(const tyn_offline *off); // pipelines, uploads, media-only nodes
-TYN_API double tyn_offline_frame_ms(const tyn_offline *off); // wall clock of the last frame, fence to fence
+// Wall clock of the last frame, fence to fence.
+TYN_API double tyn_offline_frame_ms(const tyn_offline *off);
 
 // Runs one node of a pass alone, `runs` times, and gives the shortest time in ms (GPU time where the device
 // has timestamps). The pass may be anybody's: it need not be registered. Its inputs are not connected, so
 // all of them must be optional; what it makes is thrown away. `params` has pass->params_size bytes. The first
 // run counts the compilation of the kernels on some devices: ask for more than one.
-TYN_API tyn_result tyn_offline_time_pass(tyn_device *dev, const tyn_pass_desc *pass, const void *params,
-                                         uint32_t runs, double *best_ms);
+TYN_API tyn_result tyn_offline_time_pass(tyn_device *dev, const tyn_pass_desc *pass,
+                                         const void *params, uint32_t runs, double *best_ms);
 
 #ifdef __cplusplus
 }

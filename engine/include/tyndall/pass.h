@@ -44,13 +44,14 @@ typedef enum tyn_port_dir {
 } tyn_port_dir;
 
 typedef struct tyn_port {
-    const char *name; // "density", "radiance": for dumps, messages and tests, never looked up in a frame
+    // "density", "radiance": for dumps, messages and tests, never looked up in a frame.
+    const char *name;
     tyn_port_dir dir;
     tyn_dim dim;
-    VkFormat format;  // of images this pass makes (OUT, SCRATCH) or stores to; 0 for buffers and for
-                      // images that are only sampled (any float format)
-    bool optional;    // IN only: when nothing is connected a 1x1(x1) zero image or a zeroed
-                      // 256-byte buffer is bound
+    VkFormat format; // of images this pass makes (OUT, SCRATCH) or stores to; 0 for buffers and for
+                     // images that are only sampled (any float format)
+    bool optional;   // IN only: when nothing is connected a 1x1(x1) zero image or a zeroed
+                     // 256-byte buffer is bound
     const char *meaning; // "extinction at cell centres, 1/m": printed by the dumps
 } tyn_port;
 
@@ -79,7 +80,7 @@ typedef enum tyn_use {
 typedef struct tyn_binding {
     uint8_t port; // index into ports; a dispatch may point it at another port of equal kind
     tyn_use use;
-    bool repeat;  // SAMPLED: wrap instead of clamp (latitude-longitude maps: x wraps, y clamps)
+    bool repeat; // SAMPLED: wrap instead of clamp (latitude-longitude maps: x wraps, y clamps)
 } tyn_binding;
 
 // What makes a kernel draw triangles. Vertices come from storage buffers by gl_VertexIndex; there is no
@@ -87,8 +88,9 @@ typedef struct tyn_binding {
 typedef struct tyn_raster {
     const uint32_t *fragment; // SPIR-V of the fragment shader; NULL: depth alone is drawn
     size_t fragment_size;     // bytes
-    const tyn_binding *attachments; // COLOR (location 0, 1, ... in this order) and at most one DEPTH, of
-                                    // 2D ports that have the format of the table
+    // COLOR (location 0, 1, ... in this order) and at most one DEPTH, of 2D ports that have the
+    // format of the table.
+    const tyn_binding *attachments;
     uint32_t num_attachments;
     VkCompareOp depth; // new depth `op` old one = drawn; with a DEPTH attachment only
     float clear_depth; // what a draw that does not keep starts from (colours: 0)
@@ -97,29 +99,36 @@ typedef struct tyn_raster {
 
 typedef struct tyn_kernel {
     const char *name;
-    const uint32_t *spirv; // embedded at build time (see passes/meson.build); raster: the vertex shader
-    size_t spirv_size;     // bytes
-    uint32_t args_size;    // push constants, bytes, <= 128
+    // Embedded at build time (see passes/meson.build); raster: the vertex shader.
+    const uint32_t *spirv;
+    size_t spirv_size;  // bytes
+    uint32_t args_size; // push constants, bytes, <= 128
     uint32_t local_size[3];
     const tyn_binding *bindings;
     uint32_t num_bindings;
-    uint32_t num_spec;     // specialisation constants 0..n-1, 32 bits each, given per dispatch
-    const tyn_raster *raster; // NULL: a compute kernel. Else both shaders see all bindings (none of them
-                              // written), constants and args; local_size is 0
+    uint32_t num_spec; // specialisation constants 0..n-1, 32 bits each, given per dispatch
+    // NULL: a compute kernel. Else both shaders see all bindings (none of them written), constants
+    // and args; local_size is 0.
+    const tyn_raster *raster;
 } tyn_kernel;
 
 // ---- parameters -----------------------------------------------------------------------------
 
-typedef enum tyn_param_type { TYN_PARAM_FLOAT = 0, TYN_PARAM_INT, TYN_PARAM_BOOL, TYN_PARAM_ENUM } tyn_param_type;
+typedef enum tyn_param_type {
+    TYN_PARAM_FLOAT = 0,
+    TYN_PARAM_INT,
+    TYN_PARAM_BOOL,
+    TYN_PARAM_ENUM
+} tyn_param_type;
 
 // One user-visible field of the params struct: float, int32_t (INT, ENUM) or uint32_t 0/1 (BOOL).
 typedef struct tyn_param {
     const char *name; // `-D pass.name=value`
     tyn_param_type type;
     size_t offset;
-    double def, min, max; // default and inclusive range; for ENUM min = 0, max = count - 1
-    const char *unit;     // "1/m", "cells", "" for none
-    const char *doc;      // one line
+    double def, min, max;     // default and inclusive range; for ENUM min = 0, max = count - 1
+    const char *unit;         // "1/m", "cells", "" for none
+    const char *doc;          // one line
     const char *const *names; // ENUM: the values' names
 } tyn_param;
 
@@ -134,12 +143,15 @@ typedef struct tyn_pass_desc {
     uint32_t num_ports;
     const tyn_kernel *kernels;
     uint32_t num_kernels;
-    const tyn_param *params; // user-visible; the struct may hold further fields that the method sets
+    // User-visible; the struct may hold further fields that the method sets.
+    const tyn_param *params;
     uint32_t num_params;
-    size_t params_size; // the struct must have no uninitialised padding: start from tyn_pass_defaults
-    bool media_only; // params and inputs depend on the media alone, or on what changes as seldom (which
-                     // kinds of light there are; no light's strength or direction, no camera): with
-                     // media-only inputs the node is part of the set-up and not of a frame's cost
+    // The struct must have no uninitialised padding: start from tyn_pass_defaults.
+    size_t params_size;
+    // Params and inputs depend on the media alone, or on what changes as seldom (which kinds of
+    // light there are; no light's strength or direction, no camera): with media-only inputs the
+    // node is part of the set-up and not of a frame's cost.
+    bool media_only;
     // Gives every OUT and SCRATCH port its extent (tyn_build_*). Depends only on params and on the
     // extents of the inputs. An OUT port that is given none does not exist in this configuration.
     tyn_result (*declare)(tyn_builder *b, const void *params);
@@ -158,8 +170,9 @@ TYN_API void tyn_pass_defaults(const tyn_pass_desc *pass, void *params);
 
 // ---- declare --------------------------------------------------------------------------------
 
-TYN_API bool tyn_build_has(const tyn_builder *b, uint8_t port);         // is the input connected?
-TYN_API tyn_extent tyn_build_extent(const tyn_builder *b, uint8_t port); // of an input, or one set before
+TYN_API bool tyn_build_has(const tyn_builder *b, uint8_t port); // is the input connected?
+// Of an input, or one set before.
+TYN_API tyn_extent tyn_build_extent(const tyn_builder *b, uint8_t port);
 TYN_API void tyn_build_image(tyn_builder *b, uint8_t port, tyn_extent extent, uint32_t mips);
 TYN_API void tyn_build_buffer(tyn_builder *b, uint8_t port, uint64_t bytes);
 // Overrides the port's format for this node (a pass with half and float variants whose kernels
@@ -175,13 +188,13 @@ TYN_API tyn_extent tyn_rec_extent(const tyn_recorder *r, uint8_t port);
 
 // One dispatch: enough workgroups of the kernel's local size to cover `cells` threads.
 typedef struct tyn_dispatch {
-    uint32_t kernel;        // index into kernels
-    tyn_extent cells;       // threads; a component 0 counts as 1
-    const void *args;       // args_size bytes of push constants, NULL if args_size is 0
-    const uint8_t *ports;   // NULL = the table's; else num_bindings port indices (ping-pong)
-    const uint8_t *mips;    // NULL = 0; else num_bindings mip levels (storage uses; sampled see all)
-    const uint32_t *spec;   // num_spec values, NULL = zeros
-    const char *label;      // for captures and dumps; NULL = the kernel's name
+    uint32_t kernel;      // index into kernels
+    tyn_extent cells;     // threads; a component 0 counts as 1
+    const void *args;     // args_size bytes of push constants, NULL if args_size is 0
+    const uint8_t *ports; // NULL = the table's; else num_bindings port indices (ping-pong)
+    const uint8_t *mips;  // NULL = 0; else num_bindings mip levels (storage uses; sampled see all)
+    const uint32_t *spec; // num_spec values, NULL = zeros
+    const char *label;    // for captures and dumps; NULL = the kernel's name
 } tyn_dispatch;
 TYN_API void tyn_rec_dispatch(tyn_recorder *r, const tyn_dispatch *d);
 // For tyn_dispatch.ports: into `out` the ports of the kernel's table, pairs[i][0] replaced by pairs[i][1]. `out` is
@@ -220,7 +233,7 @@ TYN_API void tyn_rec_update(tyn_recorder *r, uint8_t port, uint64_t offset, cons
 // tyn_rec_update and the amounts of tyn_rec_work are not looked at, so what is costly may be left out.
 TYN_API bool tyn_rec_live(const tyn_recorder *r);
 TYN_API void tyn_rec_fill(tyn_recorder *r, uint8_t port, uint32_t value); // whole buffer
-TYN_API void tyn_rec_clear(tyn_recorder *r, uint8_t port); // image (mip 0..) to zero
+TYN_API void tyn_rec_clear(tyn_recorder *r, uint8_t port);                // image (mip 0..) to zero
 TYN_API void tyn_rec_copy_buffer(tyn_recorder *r, uint8_t src, uint8_t dst, uint64_t bytes);
 // Work done, for the stats: "steps", "cells", "flops", "bytes" are known names.
 TYN_API void tyn_rec_work(tyn_recorder *r, const char *name, double amount);

@@ -13,8 +13,8 @@ TYN_API const tyn_pass_desc *tyn_pass_at(uint32_t index);
 typedef struct tyn_method_info {
     const char *name, *summary;
     const tyn_pass_desc *const *passes; // NULL-terminated, in the order of the frame
-    uint32_t outputs; // set of tyn_output it can make
-    bool progressive; // adds view.num_samples samples a call to what it has
+    uint32_t outputs;                   // set of tyn_output it can make
+    bool progressive;                   // adds view.num_samples samples a call to what it has
     bool traces_rays; // surfaces need a hierarchy: tyn_surfaces_build_nodes of <tyndall/io.h>
 } tyn_method_info;
 TYN_API uint32_t tyn_num_methods(void);
@@ -27,9 +27,11 @@ TYN_API void tyn_settings_destroy(tyn_settings **settings);
 TYN_API tyn_result tyn_settings_set(tyn_settings *settings, const char *name, const char *value,
                                     const tyn_log *log);
 // "draft", "normal", "high".
-TYN_API tyn_result tyn_settings_quality(tyn_settings *settings, const char *preset, const tyn_log *log);
+TYN_API tyn_result tyn_settings_quality(tyn_settings *settings, const char *preset,
+                                        const tyn_log *log);
 // Defaults of the pass, then what was set.
-TYN_API void tyn_settings_params(const tyn_settings *settings, const tyn_pass_desc *pass, void *params);
+TYN_API void tyn_settings_params(const tyn_settings *settings, const tyn_pass_desc *pass,
+                                 void *params);
 
 #ifdef __cplusplus
 }

@@ -14,25 +14,27 @@ enum { TYN_MAX_MEDIA = 16, TYN_MAX_SHAPES = 64, TYN_MAX_LIGHTS = 64 };
 // A dense density grid. Values sit at voxel centres, trilinear between them, clamped to the edge
 // value in the outer half voxel. `data` is x fastest, then y, z; >= 0 and finite.
 typedef struct tyn_volume {
-    char *name;              // for messages; may be NULL
-    uint32_t size[3];        // voxels, >= 1
-    float *data;             // size[0]*size[1]*size[2]; owned by the scene. NULL: the host brings an
-                             // image each frame (tyn_frame.densities), and max_density is Required
-    float max_density;       // largest value
-    double index_to_world[16]; // of the file: voxel index in data (centres at whole numbers) -> its own
-                               // world, column-major; used by shape "grid" at load
-    uint64_t hash;           // content hash of data, for change tracking
+    char *name;        // for messages; may be NULL
+    uint32_t size[3];  // voxels, >= 1
+    float *data;       // size[0]*size[1]*size[2]; owned by the scene. NULL: the host brings an
+                       // image each frame (tyn_frame.densities), and max_density is Required
+    float max_density; // largest value
+    // Of the file: voxel index in data (centres at whole numbers) -> its own world, column-major;
+    // used by shape "grid" at load.
+    double index_to_world[16];
+    uint64_t hash; // content hash of data, for change tracking
 } tyn_volume;
 
 // Coefficients at density 1, linear RGB.
 typedef struct tyn_medium {
     char *name;
-    float sigma_s[3];    // scattering, 1/m, >= 0
-    float sigma_a[3];    // absorption, 1/m, >= 0
-    float g[3];          // Henyey-Greenstein mean cosine, (-1, 1)
-    float emission[3];   // W/(m^3 sr), >= 0
-    float density_scale; // multiplies the density, >= 0; after load the file's density.scale, else 1
-    int32_t volume;      // index into scene.volumes; -1: homogeneous, density 1
+    float sigma_s[3];  // scattering, 1/m, >= 0
+    float sigma_a[3];  // absorption, 1/m, >= 0
+    float g[3];        // Henyey-Greenstein mean cosine, (-1, 1)
+    float emission[3]; // W/(m^3 sr), >= 0
+    // Multiplies the density, >= 0; after load the file's density.scale, else 1.
+    float density_scale;
+    int32_t volume; // index into scene.volumes; -1: homogeneous, density 1
 } tyn_medium;
 
 typedef enum tyn_shape_kind { TYN_SHAPE_BOX = 0, TYN_SHAPE_SPHERE = 1 } tyn_shape_kind;
@@ -46,14 +48,18 @@ typedef struct tyn_shape {
     bool repeat[3];     // periodic along local axes (box only)
 } tyn_shape;
 
-typedef enum tyn_light_kind { TYN_LIGHT_DIRECTIONAL = 0, TYN_LIGHT_POINT, TYN_LIGHT_SPOT } tyn_light_kind;
+typedef enum tyn_light_kind {
+    TYN_LIGHT_DIRECTIONAL = 0,
+    TYN_LIGHT_POINT,
+    TYN_LIGHT_SPOT
+} tyn_light_kind;
 
 typedef struct tyn_light {
     char *name;
     tyn_light_kind kind;
-    float color[3];     // directional: irradiance on a perpendicular plane, W/m^2; point and spot: W/sr
-    float position[3];  // world, metres (point, spot)
-    float direction[3]; // unit, direction of travel (directional, spot axis)
+    float color[3]; // directional: irradiance on a perpendicular plane, W/m^2; point and spot: W/sr
+    float position[3];          // world, metres (point, spot)
+    float direction[3];         // unit, direction of travel (directional, spot axis)
     float cos_inner, cos_outer; // spot: cosines of the cone half angles, cos_inner >= cos_outer
 } tyn_light;
 
@@ -117,12 +123,12 @@ typedef struct tyn_surfaces { // arrays are owned by the scene, from malloc; NUL
 // A latitude-longitude map, or a constant. Mapping: docs/scene-format.md.
 typedef struct tyn_environment {
     bool present;
-    uint32_t size[2];    // texels; {0,0}: constant
-    float *data;         // RGB float triples, row 0 is up (+Y); owned by the scene
-    float radiance[3];   // scales the map, or is the constant radiance, W/(m^2 sr)
-    float rotation[4];   // quaternion x, y, z, w: turns the map in the world; {0,0,0,0} = identity
-    float strength;      // multiplies everything; 1 after load
-    uint64_t hash;       // content hash of data
+    uint32_t size[2];  // texels; {0,0}: constant
+    float *data;       // RGB float triples, row 0 is up (+Y); owned by the scene
+    float radiance[3]; // scales the map, or is the constant radiance, W/(m^2 sr)
+    float rotation[4]; // quaternion x, y, z, w: turns the map in the world; {0,0,0,0} = identity
+    float strength;    // multiplies everything; 1 after load
+    uint64_t hash;     // content hash of data
 } tyn_environment;
 
 // A compact spot of a map with much of its light: methods treat it as a directional light.
@@ -139,15 +145,15 @@ TYN_API uint32_t tyn_environment_suns(const tyn_environment *env,
 typedef enum tyn_projection { TYN_PERSPECTIVE = 0, TYN_ORTHOGRAPHIC = 1 } tyn_projection;
 
 typedef struct tyn_camera {
-    char *name;           // node's name; may be NULL
-    char *camera_name;    // glTF camera's name; may be NULL
-    uint32_t index;       // in the file's list of cameras, which several nodes may use
+    char *name;        // node's name; may be NULL
+    char *camera_name; // glTF camera's name; may be NULL
+    uint32_t index;    // in the file's list of cameras, which several nodes may use
     tyn_projection projection;
-    float position[3];    // world, metres
+    float position[3];              // world, metres
     float right[3], up[3], back[3]; // orthonormal, right-handed; looks along -back
-    float yfov;           // perspective: full vertical field of view, radians, (0, pi)
-    float ymag;           // orthographic: half height, metres, > 0
-    float aspect;         // width / height as stored in the file; 0 = not given
+    float yfov;                     // perspective: full vertical field of view, radians, (0, pi)
+    float ymag;                     // orthographic: half height, metres, > 0
+    float aspect;                   // width / height as stored in the file; 0 = not given
 } tyn_camera;
 
 typedef struct tyn_scene {
@@ -164,13 +170,13 @@ typedef struct tyn_scene {
     tyn_camera *cameras;
     uint32_t num_cameras;
     tyn_surfaces surfaces;
-    uint32_t num_meshes; // of the file, as many times as its nodes show them
+    uint32_t num_meshes;       // of the file, as many times as its nodes show them
     uint64_t clamped_negative; // negative densities that were set to 0 at load
     char **warnings;           // one line each, e.g. "mesh 'wall': its lines are left out"
     uint32_t num_warnings;
 } tyn_scene;
 
-TYN_API void tyn_scene_init(tyn_scene *scene); // an empty scene; call before filling by hand
+TYN_API void tyn_scene_init(tyn_scene *scene);   // an empty scene; call before filling by hand
 TYN_API void tyn_scene_finish(tyn_scene *scene); // frees everything it owns, leaves an empty scene
 TYN_API void tyn_scene_warn(tyn_scene *scene, const char *format, ...) TYN_PRINTF(2, 3);
 
