@@ -5,10 +5,10 @@
 // the camera's side.
 // `colours`, RGBA32UI, gbuffer_texels(samples along a side) texels a pixel, side by side.
 //
-// Where all samples of a pixel lie on one piece of surface, `facing` has the first one's facet and their mean normal, and
-// the first of `colours` their mean albedo and emission. Of a pixel that shows several pieces, or one beside nothing,
-// `facing` is that of the sample nearest its middle, and `colours` hold the triangles that samples see, four a texel:
-// index + 1, 0: none. These pixels are in a list as well.
+// Where all samples of a pixel lie on one piece of surface, `facing` has the first one's facet and their mean normal,
+// and the first of `colours` their mean albedo and emission. Of a pixel that shows several pieces, or one beside
+// nothing, `facing` is that of the sample nearest its middle, and `colours` hold the triangles that samples see, four a
+// texel: index + 1, 0: none. These pixels are in a list as well.
 #ifndef TYN_GBUFFER_GLSL
 #define TYN_GBUFFER_GLSL
 #include "packed_colour.glsl"

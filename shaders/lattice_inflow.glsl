@@ -1,8 +1,8 @@
-// lattice_inflow.glsl -- what flows into a cell of the diffusion grid from its neighbours, and how it is carried over from
-// coarser levels, also through the sides of the box where the medium repeats.
+// lattice_inflow.glsl -- what flows into a cell of the diffusion grid from its neighbours, and how it is carried over
+// from coarser levels, also through the sides of the box where the medium repeats.
 //
-// Before including: correction_at(uint index), lattice_stencil.glsl, lattice_levels.glsl, and LATTICE_REPEAT, the number of a
-// specialisation constant: a bit for each axis along which the grid goes on beyond the box.
+// Before including: correction_at(uint index), lattice_stencil.glsl, lattice_levels.glsl, and LATTICE_REPEAT, the
+// number of a specialisation constant: a bit for each axis along which the grid goes on beyond the box.
 #ifndef TYN_LATTICE_INFLOW_GLSL
 #define TYN_LATTICE_INFLOW_GLSL
 
@@ -13,8 +13,8 @@ bool lattice_repeats(int axis)
     return (lattice_repeat >> axis & 1u) != 0u;
 }
 
-// Correction of the cell before (way -1) or after (1) cell i, which is number `at` of `size` along an axis; cells along it are
-// `step` apart.
+// Correction of the cell before (way -1) or after (1) cell i, which is number `at` of `size` along an axis; cells along
+// it are `step` apart.
 float lattice_beside(uint i, int at, int size, int step, int way, int axis)
 {
     bool border = at == (way < 0 ? 0 : size - 1);

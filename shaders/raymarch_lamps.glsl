@@ -172,8 +172,8 @@ float march_inverse_square(float h2, float a, float b)
 }
 
 // As march_sunlight, of a lamp in the step from s to s + ds, of which `at` is the middle: of what the lamp sees of it
-// and shines on. 1 / r^2 changes most: its integral is exact, (angle under which the lamp sees that part) / h, h the ray's
-// distance from it.
+// and shines on. 1 / r^2 changes most: its integral is exact, (angle under which the lamp sees that part) / h, h the
+// ray's distance from it.
 vec3 march_lamplight(march_lamp lamp, uint bit, march_lamps ray, march_medium unit, march_medium m, float s, float ds,
                      float at, spectrum weight, spectrum weight_scaled, inout march_shadows shadow,
                      inout vec3 first)

@@ -100,8 +100,8 @@ bool shadow_plane_lit(shadow_plane plane, vec2 texel, vec2 first)
     return all(lessThanEqual(stored, own));
 }
 
-// What shadow_visibility_surface_sun_of and the like share: `tile` is the corner of the map, `slope` that of depth by u and
-// v, `rounding` of depth.
+// What shadow_visibility_surface_sun_of and the like share: `tile` is the corner of the map, `slope` that of depth by u
+// and v, `rounding` of depth.
 float shadow_visibility_on_plane(shadow_light l, vec2 tile, shadow_place place, vec2 slope, float rounding)
 {
     slope *= 2.0 / l.texels; // by texels

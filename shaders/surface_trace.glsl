@@ -10,10 +10,10 @@
 // surface_offset moves origins to the side they belong to. A ray towards a point of a triangle leaves that triangle
 // out.
 //
-// The includer declares `surfaces` (surface_block), `vertices[]`, `triangles[]` (surface_args.h) and `nodes[]`, which is
-// uvec4[]: a struct surface_node is two of them, as a CPU device reads a vector per lane in little more than the time
-// of a number. Or it defines SURFACE_POSITION(i) of vertex i, SURFACE_TRIANGLE(i) and SURFACE_NODE(i), which are uvec4, to read
-// them by itself.
+// The includer declares `surfaces` (surface_block), `vertices[]`, `triangles[]` (surface_args.h) and `nodes[]`, which
+// is uvec4[]: a struct surface_node is two of them, as a CPU device reads a vector per lane in little more than the
+// time of a number. Or it defines SURFACE_POSITION(i) of vertex i, SURFACE_TRIANGLE(i) and SURFACE_NODE(i), which are
+// uvec4, to read them by itself.
 #ifndef TYN_SURFACE_TRACE_GLSL
 #define TYN_SURFACE_TRACE_GLSL
 #include "surface_frame.glsl"

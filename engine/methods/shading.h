@@ -15,8 +15,8 @@ bool tyn_vpls_bounce(const tyn_job *job);
 tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
                         uint32_t num_suns, tyn_vpl_refs *vpls);
 
-// Radiance and distances of the surfaces that the camera sees, for the march (in->surface, in->distances). `moments`: light
-// of the lattice, or {0}. `num_suns`: the first of frame->suns.
+// Radiance and distances of the surfaces that the camera sees, for the march (in->surface, in->distances). `moments`:
+// light of the lattice, or {0}. `num_suns`: the first of frame->suns.
 tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, uint32_t num_suns,
                             tyn_picture_inputs *in);
 

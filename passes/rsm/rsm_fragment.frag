@@ -70,7 +70,8 @@ void main()
         across *= r * r;
     }
     float cosine = dot(n, way);
-    // On the side of the light: of a lamp's place by a corner of the triangle, not by a point between, which is rounded.
+    // On the side of the light: of a lamp's place by a corner of the triangle, not by a point between, which is
+    // rounded.
     vec3 corner = to_m(a.position) + vec3(surfaces.from_world[0].w, surfaces.from_world[1].w, surfaces.from_world[2].w);
     float behind = args.kind != TYN_SHADOW_SUN ? dot(n, corner - args.origin) : cosine;
     n = behind > 0.0 ? -n : n;

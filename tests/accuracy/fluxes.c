@@ -1,6 +1,7 @@
-// fluxes.c -- `path`'s fluxes of light that is followed from suns and surroundings: against slabs (tests/data/slabs.csv,
-// from DISORT), over a ground (../shared/reference/slab_ground_flux.csv; skipped where absent), the faces of a cube
-// (cube_face_flux.csv there), closed forms, and the same scene seen by paths that look for the light (the balance).
+// fluxes.c -- `path`'s fluxes of light that is followed from suns and surroundings: against slabs
+// (tests/data/slabs.csv, from DISORT), over a ground (../shared/reference/slab_ground_flux.csv; skipped where absent),
+// the faces of a cube (cube_face_flux.csv there), closed forms, and the same scene seen by paths that look for the
+// light (the balance).
 //
 // Asserted: all within 4 standard errors, which are at most 0.5 % of what is incident; what enters is what leaves and
 // is absorbed: exactly where nothing is absorbed, else within 4 standard errors of paths that roulette has ended.

@@ -7,8 +7,8 @@
 // ours are allowed for. Those of `path`, whose paths start at the sun, are at most half of the bound, with TYN_LONG
 // at most a quarter.
 //
-// Cells are constant in these clouds and trilinear here: each is SPLIT voxels wide (FINER in case 2, whose depths are the
-// most uneven), so that what is blended is 1 / SPLIT of it.
+// Cells are constant in these clouds and trilinear here: each is SPLIT voxels wide (FINER in case 2, whose depths are
+// the most uneven), so that what is blended is 1 / SPLIT of it.
 #include "path_run.h"
 #include "gpu_test.h"
 #include "npy.h"

@@ -2,7 +2,8 @@
 // scattered at the lit faces, against `path` through the same probes.
 //
 // Asserted: the fluence one and a half mean free paths behind the middle of each lit face within 25 %, of the
-// three together within 10 %. First collisions by rays through the middle of what is sampled had 65 % too little at one.
+// three together within 10 %. First collisions by rays through the middle of what is sampled had 65 % too little at
+// one.
 #include "path_run.h"
 #include "gpu_test.h"
 #include <math.h>

@@ -1,5 +1,5 @@
-// pop_outside.c -- what leaves the box of a medium lights surfaces outside it in `pop`, as in `path`: floors that run out
-// of the box, under it and through it, about media that glow, scatter sunlight and take light of the sky.
+// pop_outside.c -- what leaves the box of a medium lights surfaces outside it in `pop`, as in `path`: floors that run
+// out of the box, under it and through it, about media that glow, scatter sunlight and take light of the sky.
 #include "gpu_test.h"
 #include "path_run.h"
 #include "picture.h"
@@ -74,7 +74,8 @@ static void floors(void **state)
         printf("%-34s rel_l1 %4.1f %% (noise %.1f), bias %+.1f %%; strips", cases[i].name,
                100 * e.rel_l1, 100 * e.noise, 100 * e.bias);
         good = good && e.reported < cases[i].error && fabs(e.bias) < 0.03;
-        // The box's edge is in the middle column whatever the height of the floor; which side is to the right is not said.
+        // The box's edge is in the middle column whatever the height of the floor; which side is to the right is not
+        // said.
         const bool turned =
             strip(&reference, 0, SIZE / 4) < strip(&reference, SIZE - SIZE / 4, SIZE);
         static const int widths[3] = {2, 6, 18};

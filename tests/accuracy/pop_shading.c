@@ -104,8 +104,8 @@ static void no_squares(void **state)
     assert_true(good);
 }
 
-// Light of virtual lights and of the lattice once for 2 x 2 pixels against once for every pixel, where every place takes
-// all virtual lights.
+// Light of virtual lights and of the lattice once for 2 x 2 pixels against once for every pixel, where every place
+// takes all virtual lights.
 static void blocks_of_pixels(void **state)
 {
     static const struct {

@@ -110,8 +110,8 @@ static void cones(void **state)
     }
 }
 
-// A spot or a point light above a lid with a hole in it: a shaft narrower than the steps of a coarse lattice's march. Light
-// that was taken in the middle of steps, visible or not, was 11 % too much.
+// A spot or a point light above a lid with a hole in it: a shaft narrower than the steps of a coarse lattice's march.
+// Light that was taken in the middle of steps, visible or not, was 11 % too much.
 static void through_a_hole(void **state)
 {
     gpu_test *t = *state;

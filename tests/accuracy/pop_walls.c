@@ -350,8 +350,9 @@ static void pictures(void **state)
     path_run_close(&runs);
 }
 
-// A deep slab that absorbs nothing, of even and odd numbers of cells: the solve converges, in a few sweeps, and stays there. With
-// a diffusion correction that did not go on through the sides what is left grew threefold a sweep, from rounding on.
+// A deep slab that absorbs nothing, of even and odd numbers of cells: the solve converges, in a few sweeps, and stays
+// there. With a diffusion correction that did not go on through the sides what is left grew threefold a sweep, from
+// rounding on.
 static void deep_slab(void **state)
 {
     gpu_test *t = *state;

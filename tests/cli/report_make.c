@@ -1,7 +1,7 @@
 // report_make.c -- writes a report with invented figures and its page into a folder: report_make DIR
 //
-// Three scenes. The second has blocks of 4x4 pixels, and markup for a name and in its warnings; the third has a run below the noise
-// and a picture with a pixel that is not a number.
+// Three scenes. The second has blocks of 4x4 pixels, and markup for a name and in its warnings; the third has a run
+// below the noise and a picture with a pixel that is not a number.
 #include "bench/html.h"
 #include <tyndall/io.h>
 #include <math.h>

@@ -266,8 +266,8 @@ static void every_method_on_every_scene(void **state)
 }
 
 // What a picture takes on the device grows with its pixels by no more than a few values for each, four samples of
-// surfaces and all: 12 B of distance and radiance a sample, 32 of normals and colours, 16 of the picture, 16 of the march's
-// scratch, 4 of the list of edges; all else that passes keep for themselves has a place among these.
+// surfaces and all: 12 B of distance and radiance a sample, 32 of normals and colours, 16 of the picture, 16 of the
+// march's scratch, 4 of the list of edges; all else that passes keep for themselves has a place among these.
 static void bytes_of_a_pixel(void **state)
 {
     (void)state;

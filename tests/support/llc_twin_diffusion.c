@@ -135,8 +135,8 @@ static void relax(level *l, double omega)
     }
 }
 
-// By what the correction x of a level has the least energy x.A x / 2 - b.x. Only levels that one workgroup of the device
-// solves are scaled.
+// By what the correction x of a level has the least energy x.A x / 2 - b.x. Only levels that one workgroup of the
+// device solves are scaled.
 static double step_length(const level *l)
 {
     double along = 0, energy = 0;

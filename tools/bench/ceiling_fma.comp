@@ -1,4 +1,5 @@
-// ceiling_fma.comp -- as many multiplications and additions as a device can do: chains that wait for nothing but themselves.
+// ceiling_fma.comp -- as many multiplications and additions as a device can do: chains that wait for nothing but
+// themselves.
 #version 460
 #extension GL_EXT_control_flow_attributes : require
 

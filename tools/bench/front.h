@@ -37,10 +37,10 @@ typedef struct front_range {
     double low, high;
     bool lowest, highest; // the range has no lower, no upper end
 } front_range;
-// From the least error of any point to that of the fastest, from which on nothing changes, in steps of 1 %; from small to
-// large errors. Where the least is bound the first range ends there. Nothing is counted as faster than its fastest
-// point. Ranges of less than 5 % between two others go to the one below. Gives the number of ranges, at most
-// `max`; what does not fit is left out at the upper end.
+// From the least error of any point to that of the fastest, from which on nothing changes, in steps of 1 %; from small
+// to large errors. Where the least is bound the first range ends there. Nothing is counted as faster than its fastest
+// point. Ranges of less than 5 % between two others go to the one below. Gives the number of ranges, at most `max`;
+// what does not fit is left out at the upper end.
 uint32_t front_ranges(const front_point *points, uint32_t count, front_range *ranges, uint32_t max);
 
 // Of those that are > 0 and finite; NAN if there are none.

@@ -26,7 +26,8 @@ typedef struct bench_case {
     bench_reference reference;
 } bench_case;
 
-// Opens the scene and a reference that is a file, and closes them: what is wrong with them is said. Gives the exit code.
+// Opens the scene and a reference that is a file, and closes them: what is wrong with them is said. Gives the exit
+// code.
 int bench_case_check(app *a, const bench_suite *suite, const bench_scene *spec);
 
 // Loads the scene, and gets its reference. Gives the exit code; bench_case_close is due in any case.

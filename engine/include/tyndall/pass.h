@@ -68,8 +68,9 @@ typedef enum tyn_use {
     TYN_USE_TRANSFER_DST,
     TYN_USE_COLOR, // drawn to: only in tyn_raster.attachments
     TYN_USE_DEPTH, // tested against and drawn to: only there
-    // Buffers read as texels, by texelFetch(b, i): samplerBuffer of floats (in .x), of vec4, usamplerBuffer of uints, of uvec4.
-    // Where every thread reads another place a CPU device is several times faster at it than at storage buffers.
+    // Buffers read as texels, by texelFetch(b, i): samplerBuffer of floats (in .x), of vec4, usamplerBuffer of uints,
+    // of uvec4. Where every thread reads another place a CPU device is several times faster at it than at storage
+    // buffers.
     TYN_USE_TEXELS_FLOAT,
     TYN_USE_TEXELS_VEC4,
     TYN_USE_TEXELS_UINT,
