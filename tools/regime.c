@@ -43,10 +43,15 @@ double regime_multiple(const regime *r)
     return r->albedo * r->optical_depth / (2 + r->optical_depth);
 }
 
+double regime_longest(const regime *r)
+{
+    return fmax(r->sides[0], fmax(r->sides[1], r->sides[2]));
+}
+
 double regime_cells(const regime *r, double cells)
 {
     enum { MOST_ALONG = 256, MOST_IN_ALL = 64 * 64 * 64 };
-    const double longest = fmax(r->sides[0], fmax(r->sides[1], r->sides[2]));
+    const double longest = regime_longest(r);
     for (cells = fmin(cells, MOST_ALONG); cells > 1; cells--) {
         double all = 1;
         for (int a = 0; a < 3; a++) {

@@ -76,6 +76,8 @@ bool regime_of(const tyn_scene *scene, const tyn_camera *camera, regime *r);
 // to come on average. Measured: docs/choosing.md.
 double regime_multiple(const regime *r);
 
+double regime_longest(const regime *r); // side of the box, m
+
 // As many lattice cells along the longest side as `pop` takes where `cells` are asked for: 256, and no more than
 // 64 x 64 x 64 in all.
 double regime_cells(const regime *r, double cells);

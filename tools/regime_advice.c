@@ -66,15 +66,13 @@ static void lattice_cells(advisor *to)
         more_cells(r, most * regime_cell_depth(r, most), help);
         say(to, level_of(error), source,
             "lattice: %.2g mean free paths (delta scaled) across a dense cell (1: 2 %%; 2: 10 %%; "
-            "7: "
-            "20 %%; 24: 40 %%); %s",
+            "7: 20 %%; 24: 40 %%); %s",
             regime_cell_depth(r, most), help);
     } else {
         more_cells(r, most * depth, help);
         say(to, level_of(fmax(error, 0.03)), source,
             "lattice: %.2g transport mean free paths across its densest cell; what comes out of "
-            "its "
-            "faces is off (1: 2 %%; 2: 6 to 10 %%; 7: 20 %%; 24: 40 %%); %s",
+            "its faces is off (1: 2 %%; 2: 6 to 10 %%; 7: 20 %%; 24: 40 %%); %s",
             depth, help);
     }
 }
@@ -87,8 +85,7 @@ static void thin_box(advisor *to)
         say(to, level_of(error), "docs/choosing.md, \"Flat boxes and poles\"",
             "thickness: %.2g lattice cells through the box; light along its longer sides is not "
             "resolved (about %.0f %% off; below one cell all that scatters twice is lost); more "
-            "cells "
-            "help (-D lattice.cells=%.0f at most)",
+            "cells help (-D lattice.cells=%.0f at most)",
             regime_cells_thick(r, REGIME_LATTICE_CELLS), 100 * error, regime_cells(r, 1e4));
     }
 }
@@ -99,8 +96,7 @@ static void backward_peak(advisor *to)
     if (error > 0.01) {
         say(to, level_of(error), "docs/choosing.md, \"Backward scattering\"",
             "backward peak: four moments a cell do not hold it (depth 4: 2 %% off at g -0.5, 6 %% "
-            "at "
-            "-0.7, 40 %% at -0.9, a factor of 8 at -0.99)");
+            "at -0.7, 40 %% at -0.9, a factor of 8 at -0.99)");
     }
 }
 
@@ -174,8 +170,7 @@ static void advise_paper(advisor *to)
     } else if (to->r->optical_depth > 0) {
         say(to, ADVICE_BREAKS, source,
             "propagation as published: light that is moved without being lost adds up (cubes of "
-            "depth "
-            "0.1 to 10: 28 to 79 %% off); it is here to be compared with");
+            "depth 0.1 to 10: 28 to 79 %% off); it is here to be compared with");
     }
 }
 
@@ -189,13 +184,9 @@ static void advise_single(advisor *to)
         return;
     }
     if (to->r->optical_depth > 0) {
-        const advice_level level = missing < 0.03   ? ADVICE_HOLDS
-                                   : missing < 0.15 ? ADVICE_STRAINED
-                                                    : ADVICE_BREAKS;
-        say(to, level, source,
+        say(to, level_of(missing), source,
             "one scattering: about %.*f %% of the scattered light has scattered again (albedo "
-            "%.3g, "
-            "depth %.4g) and is missing",
+            "%.3g, depth %.4g) and is missing",
             missing < 0.1, 100 * missing, to->r->albedo, to->r->optical_depth);
     }
     if (to->r->num_triangles) {

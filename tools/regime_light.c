@@ -48,23 +48,27 @@ static bool one_tint(const tyn_scene *scene)
     if (scene->environment.present) {
         same &= of_tint(scene->environment.radiance, tint);
     }
-    const float white[3] = {1, 1, 1};
     for (uint32_t i = 0; i < scene->surfaces.num_materials; i++) {
         const tyn_surface_material *m = &scene->surfaces.materials[i];
-        float of_white[3] = {white[0], white[1], white[2]};
-        same &= of_tint(m->albedo, of_white) && m->texture == TYN_NO_TEXTURE &&
-                of_tint(m->emission, tint);
+        float white[3] = {1, 1, 1};
+        same &=
+            of_tint(m->albedo, white) && m->texture == TYN_NO_TEXTURE && of_tint(m->emission, tint);
     }
     return same;
 }
 
 // ---- powers -----------------------------------------------------------------------------------
 
+static double luminance(const float color[3])
+{
+    const double rgb[3] = {color[0], color[1], color[2]};
+    return regime_luminance(rgb);
+}
+
 static double sun_power(const regime_box *b, const float direction[3], const float color[3])
 {
     const double d[3] = {direction[0], direction[1], direction[2]};
-    const double e[3] = {color[0], color[1], color[2]};
-    return regime_luminance(e) * regime_box_shadow(b, d);
+    return luminance(color) * regime_box_shadow(b, d);
 }
 
 // What of a lamp's light meets the sphere around the box.
@@ -76,8 +80,7 @@ static double lamp_power(const regime_box *b, const tyn_light *light)
         to[a] = middle - light->position[a];
         radius2 += 0.25 * b->length[a] * b->length[a];
     }
-    const double distance2 = regime_dot(to, to),
-                 intensity[3] = {light->color[0], light->color[1], light->color[2]};
+    const double distance2 = regime_dot(to, to);
     double angle = 4 * pi;
     if (distance2 > radius2) {
         angle = 2 * pi * (1 - sqrt(1 - radius2 / distance2));
@@ -85,7 +88,7 @@ static double lamp_power(const regime_box *b, const tyn_light *light)
     if (light->kind == TYN_LIGHT_SPOT) {
         angle = fmin(angle, 2 * pi * (1 - 0.5 * (light->cos_inner + light->cos_outer)));
     }
-    return regime_luminance(intensity) * angle;
+    return luminance(light->color) * angle;
 }
 
 // Mean luminance over the sphere of directions. Of all texels: a sun is a few of them.
@@ -115,17 +118,16 @@ static void environment_power(const regime_box *b, const tyn_environment *env, r
         return;
     }
     if (!env->data) {
-        const double rgb[3] = {env->radiance[0], env->radiance[1], env->radiance[2]};
-        r->share[REGIME_SKY] = pi * regime_box_surface(b) * regime_luminance(rgb) * env->strength;
+        r->share[REGIME_SKY] =
+            pi * regime_box_surface(b) * luminance(env->radiance) * env->strength;
         return;
     }
     tyn_environment_sun suns[TYN_MAX_MAP_SUNS];
     const uint32_t num = tyn_environment_suns(env, suns);
     double mean = mean_of_map(env);
     for (uint32_t i = 0; i < num; i++) {
-        const double e[3] = {suns[i].irradiance[0], suns[i].irradiance[1], suns[i].irradiance[2]};
         r->share[REGIME_SUN] += sun_power(b, suns[i].direction, suns[i].irradiance);
-        mean -= regime_luminance(e) / (4 * pi);
+        mean -= luminance(suns[i].irradiance) / (4 * pi);
     }
     r->num_suns += num;
     r->share[REGIME_MAP] = pi * regime_box_surface(b) * fmax(mean, 0);
@@ -150,8 +152,7 @@ static double emitted_by(const tyn_surfaces *s)
     double power = 0;
     for (uint32_t i = 0; i < s->num_triangles; i++) {
         const tyn_surface_material *m = &s->materials[s->triangles[i].material];
-        const double emission[3] = {m->emission[0], m->emission[1], m->emission[2]};
-        const double light = regime_luminance(emission);
+        const double light = luminance(m->emission);
         if (light > 0) {
             const int sides = m->flags & TYN_SURFACE_EMITS_BOTH_SIDES ? 2 : 1;
             power += pi * light * triangle_area(s, &s->triangles[i]) * sides;

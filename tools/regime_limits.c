@@ -46,11 +46,6 @@ static double along(const point *table, size_t count, double x)
     return table[count - 1].error;
 }
 
-static double longest(const regime *r)
-{
-    return fmax(r->sides[0], fmax(r->sides[1], r->sides[2]));
-}
-
 // Of `length`, in the shorter of scaled and transport mean free paths.
 static double depth_of(const regime *r, double length)
 {
@@ -60,18 +55,19 @@ static double depth_of(const regime *r, double length)
 
 double regime_cell_depth(const regime *r, double cells)
 {
-    return depth_of(r, longest(r) / regime_cells(r, cells));
+    return depth_of(r, regime_longest(r) / regime_cells(r, cells));
 }
 
 double regime_cells_thick(const regime *r, double cells)
 {
-    return longest(r) > 0 ? r->thickness / longest(r) * regime_cells(r, cells) : cells;
+    return regime_longest(r) > 0 ? r->thickness / regime_longest(r) * regime_cells(r, cells)
+                                 : cells;
 }
 
 // Is there light on the lattice at all?
 static bool scatters_again(const regime *r)
 {
-    return r->albedo * depth_of(r, longest(r)) > 0.05;
+    return r->albedo * depth_of(r, regime_longest(r)) > 0.05;
 }
 
 double regime_thick_error(const regime *r, double cells)
@@ -103,13 +99,14 @@ static double forward_error(const regime *r)
 static double floats_error(const regime *r)
 {
     const double mean_free_path = r->mean_free_path;
-    return mean_free_path > 0 ? along(floats, COUNT(floats), longest(r) / mean_free_path) : 0;
+    return mean_free_path > 0 ? along(floats, COUNT(floats), regime_longest(r) / mean_free_path)
+                              : 0;
 }
 
 // Paths are ended after some steps: what is left of them is lost where hardly anything is absorbed.
 static double steps_error(const regime *r)
 {
-    const bool deep = r->mean_free_path > 0 && longest(r) / r->mean_free_path > 1e5;
+    const bool deep = r->mean_free_path > 0 && regime_longest(r) / r->mean_free_path > 1e5;
     return deep && r->albedo > 0.9999 ? 0.1 : 0;
 }
 
