@@ -1,9 +1,9 @@
 // cmd_bench.c -- `tyndall bench`: error against time, every method of a suite.
 #include "bench/bands.h"
 #include "bench/html.h"
+#include "bench/json.h"
 #include "bench/library.h"
 #include "bench/print.h"
-#include "bench/record.h"
 #include "bench/report.h"
 #include "bench/runs.h"
 #include "bench/stress.h"

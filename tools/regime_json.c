@@ -2,7 +2,6 @@
 #include "regime.h"
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 const char *const regime_light_names[REGIME_NUM_LIGHTS] = {"sun",   "sky",      "map",
                                                            "lamps", "emission", "surfaces"};

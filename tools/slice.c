@@ -2,7 +2,6 @@
 #include "slice.h"
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include <tyndall/io.h>
 
 enum { SMALLEST = 256 }; // pixels along the longer side

@@ -2,7 +2,6 @@
 #include "graph/internal.h"
 #include "graph/share.h"
 #include <stdlib.h>
-#include <string.h>
 
 static const VkDeviceSize MAX_BLOCK = 256u << 20;
 

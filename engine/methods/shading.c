@@ -1,6 +1,5 @@
 // shading.c -- see shading.h.
 #include "methods/shading.h"
-#include "methods/walls.h"
 #include "passes/shade/shade.h"
 #include "passes/shade/shade_faces.h"
 #include "passes/probe/probe.h"

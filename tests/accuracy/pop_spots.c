@@ -5,7 +5,6 @@
 #include "solids.h"
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { PIXELS = 48 };
 

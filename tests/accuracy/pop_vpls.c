@@ -4,7 +4,6 @@
 #include "picture.h"
 #include "sample_scene.h"
 #include "todo.h"
-#include "gpu/device.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -5,7 +5,6 @@
 #include "beam_args.h"
 #include "scatter_lut_args.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

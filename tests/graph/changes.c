@@ -11,9 +11,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <cmocka.h>
 
 enum { MAX_NODES = 10, MAX_RESOURCES = 32, NUM_UPLOADS = 3 };

@@ -1,7 +1,7 @@
 // measure.c -- one run on one scene: errors, times, nodes, memory, imbalance, flicker, as a record.
 #include "measuring.h"
 #include "flicker.h"
-#include "record.h"
+#include "json.h"
 #include "stats.h"
 #include "timing.h"
 #include <math.h>

@@ -1,6 +1,6 @@
 // print.c -- the report for people, as a table on stdout.
 #include "print.h"
-#include "record.h"
+#include "json.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

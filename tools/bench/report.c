@@ -1,12 +1,11 @@
 // report.c -- records put together: report.json (docs/report-schema.md).
 #include "report.h"
 #include "front.h"
+#include "json.h"
 #include "plane.h"
-#include "record.h"
 #include "regime.h"
 #include "stats.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
