@@ -83,79 +83,65 @@ refuses 2 "short.csv:3: '1,2' is not x,y,z" probe "$scenes/cube.gltf" --points s
 refuses 2 "nothere.json" bench --suite nothere.json
 printf '{\n"name": "x",\n"scenes" [] }\n' >broken.json
 refuses 2 "broken.json:3: is not JSON" bench --suite broken.json
-echo '{"name": "x", "scenes": [{"scene": "cube.gltf", "fog": 1}], "runs": [{}]}' >key.json
-refuses 2 "scenes[0].fog: is not a known key" bench --suite key.json --scenes "$scenes"
-echo '{"name": "x", "scenes": [{"scene": "nothere.gltf"}], "runs": [{}]}' >scene.json
-refuses 2 "'nothere.gltf' is neither" bench --suite scene.json --scenes "$scenes"
-echo '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": []}' >runs.json
-refuses 2 "runs: must be a list" bench --suite runs.json --scenes "$scenes"
-echo '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{"settings": {"a.b": 1}}]}' >set.json
-refuses 2 "a.b" bench --suite set.json --scenes "$scenes"
-
-echo '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{}],
-       "ratios": [{"name": "r", "of": "cube.gltf", "to": "other"}]}' >ratio.json
-refuses 2 "ratios[0].to: must be the name of a scene" bench --suite ratio.json --scenes "$scenes"
-
-suite() { # RUN: a suite of that one
-    echo "{\"name\": \"x\", \"scenes\": [{\"scene\": \"cube.gltf\"}], \"runs\": [$1]}" >run.json
+# MESSAGE JSON: a suite
+bad_suite() {
+    echo "$2" >suite.json
+    refuses 2 "$1" bench --suite suite.json --scenes "$scenes"
 }
-suite '{"sweep": {"lattice.cells": 8}}'
-refuses 2 "runs[0].sweep: must hold up to 4 lists" bench --suite run.json --scenes "$scenes"
-suite '{"sweep": {"spp": [1, 0]}, "method": "path"}'
-refuses 2 "runs[0].spp: must be a number from 1" bench --suite run.json --scenes "$scenes"
-suite '{"sweep": {"lattice.cells": [8, 1e9]}}'
-refuses 2 "lattice.cells" bench --suite run.json --scenes "$scenes"
-suite '{"only": ["fog"]}'
-refuses 2 "only: must be a list of names of scenes" bench --suite run.json --scenes "$scenes"
-suite '{}, {"settings": {"lattice.cells": 8}}'
-refuses 2 "runs: two have the name 'pop'" bench --suite run.json --scenes "$scenes"
-suite '{"sweep": {"lattice.cells": [8, 12, 16, 20], "raymarch.step": [0.1, 0.2, 0.3, 0.4],
+# MESSAGE RUNS: of a suite of one scene
+bad_runs() {
+    bad_suite "$1" "{\"name\": \"x\", \"scenes\": [{\"scene\": \"cube.gltf\"}], \"runs\": [$2]}"
+}
+# MESSAGE SCENE RUN: of a suite with a scene and a run before, all of which is tried before anything is measured
+bad_scene() {
+    bad_suite "$1" "{\"name\": \"x\", \"scenes\": [{\"name\": \"first\", \"scene\": \"cube.gltf\"}, $2],
+        \"runs\": [{\"only\": [\"first\"]}${3+, $3}]}"
+}
+bad_suite "scenes[0].fog: is not a known key" '{"name": "x", "scenes": [{"scene": "cube.gltf", "fog": 1}], "runs": [{}]}'
+bad_suite "'nothere.gltf' is neither" '{"name": "x", "scenes": [{"scene": "nothere.gltf"}], "runs": [{}]}'
+bad_suite "ratios[0].to: must be the name of a scene" '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{}],
+    "ratios": [{"name": "r", "of": "cube.gltf", "to": "other"}]}'
+bad_suite "scenes[0].reference: 'nothere.exr' is neither" \
+    '{"name": "x", "scenes": [{"scene": "cube.gltf", "reference": "nothere.exr"}], "runs": [{}]}'
+bad_suite "does not sample" \
+    '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{}], "baselines": [{"method": "pop"}]}'
+bad_suite "block: must be a number from 2" \
+    '{"name": "x", "block": 1, "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}'
+bad_suite "suite.json: must be an object" '[]'
+bad_runs "runs: must be a list" ''
+bad_runs "a.b" '{"settings": {"a.b": 1}}'
+bad_runs "lattice.cells: is there twice" '{"settings": {"lattice.cells": 8, "lattice.cells": 16}}'
+bad_runs "runs[0].sweep: must hold up to 4 lists" '{"sweep": {"lattice.cells": 8}}'
+bad_runs "runs[0].spp: must be a number from 1" '{"sweep": {"spp": [1, 0]}, "method": "path"}'
+bad_runs "runs[0].spp: must be a whole number" '{"method": "path", "spp": 1.5}'
+bad_runs "'path': seed 1000003 is that of references" '{"method": "path", "seed": 1000003}'
+bad_runs "lattice.cells" '{"sweep": {"lattice.cells": [8, 1e9]}}'
+bad_runs "only: must be a list of names of scenes" '{"only": ["fog"]}'
+bad_runs "only: must be a list of names of scenes of this suite, one at least" '{"only": []}'
+bad_runs "runs: two have the name 'pop'" '{}, {"settings": {"lattice.cells": 8}}'
+bad_runs "gives more than 256 runs" '{"sweep": {"lattice.cells": [8, 12, 16, 20], "raymarch.step": [0.1, 0.2, 0.3, 0.4],
     "ordinates.count": [4, 8, 16, 32], "lattice.sweeps": [1, 2, 3, 4, 5]}}'
-refuses 2 "gives more than 256 runs" bench --suite run.json --scenes "$scenes"
-echo '{"name": "x", "scenes": [{"scene": "cube.gltf", "reference": "nothere.exr"}], "runs": [{}]}' >reference.json
-refuses 2 "scenes[0].reference: 'nothere.exr' is neither" bench --suite reference.json --scenes "$scenes"
-echo '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{}], "baselines": [{"method": "pop"}]}' >base.json
-refuses 2 "does not sample" bench --suite base.json --scenes "$scenes"
-# text that is not one JSON value in UTF-8, or says a thing twice
+bad_scene "scenes[1]: no run is for it" '{"scene": "cube.gltf"}'
+all='{"name": "all"}'
+bad_scene "scenes[1].size: must be [width, height], whole numbers" '{"scene": "cube.gltf", "size": [16.7, 16]}' "$all"
+bad_scene "there is no camera 'nope'" '{"scene": "cube.gltf", "camera": "nope"}' "$all"
+bad_scene "g" '{"scene": "cube.gltf", "g": 2}' "$all"
+bad_scene "scenes[1].environment: 'nothere.hdr' is neither beside the suite" \
+    '{"scene": "cube.gltf", "environment": "nothere.hdr"}' "$all"
+# text that is not one JSON value in UTF-8
 printf '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}\n\n}\n' >after.json
 refuses 2 "after.json:3: is not JSON" bench --suite after.json --scenes "$scenes"
 printf '{"name":\n "caf\351", "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}\n' >latin.json
 refuses 2 "latin.json:2: is not UTF-8" bench --suite latin.json --scenes "$scenes"
-echo '[]' >list.json
-refuses 2 "list.json: must be an object" bench --suite list.json --scenes "$scenes"
-suite '{"settings": {"lattice.cells": 8, "lattice.cells": 16}}'
-refuses 2 "lattice.cells: is there twice" bench --suite run.json --scenes "$scenes"
-suite '{"only": []}'
-refuses 2 "only: must be a list of names of scenes of this suite, one at least" bench --suite run.json --scenes "$scenes"
-suite '{"method": "path", "spp": 1.5}'
-refuses 2 "runs[0].spp: must be a whole number" bench --suite run.json --scenes "$scenes"
-suite '{"method": "path", "seed": 1000003}'
-refuses 2 "'path': seed 1000003 is that of references" bench --suite run.json --scenes "$scenes"
-# SCENE MORE: a suite of that one, all of which is tried before anything is measured
-scene_suite() {
-    echo "{\"name\": \"x\", \"scenes\": [{\"name\": \"first\", \"scene\": \"cube.gltf\"}, $1], \"runs\": [{\"only\": [\"first\"]}${2:-, {\"name\": \"all\"\}}]}" >scenes.json
-}
-scene_suite '{"scene": "cube.gltf"}' ' '
-refuses 2 "scenes[1]: no run is for it" bench --suite scenes.json --scenes "$scenes"
-scene_suite '{"scene": "cube.gltf", "size": [16.7, 16]}'
-refuses 2 "scenes[1].size: must be [width, height], whole numbers" bench --suite scenes.json --scenes "$scenes"
-scene_suite '{"scene": "cube.gltf", "camera": "nope"}'
-refuses 2 "there is no camera 'nope'" bench --suite scenes.json --scenes "$scenes"
-scene_suite '{"scene": "cube.gltf", "g": 2}'
-refuses 2 "g" bench --suite scenes.json --scenes "$scenes"
-scene_suite '{"scene": "cube.gltf", "environment": "nothere.hdr"}'
-refuses 2 "scenes[1].environment: 'nothere.hdr' is neither beside the suite" bench --suite scenes.json --scenes "$scenes"
 # options that would do nothing
-suite '{}'
+echo '{"name": "x", "block": 4, "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}' >block.json
 refuses 2 "--suite goes with no --stress" bench --stress --axis nosuch --suite nothere.json --bands nothere.json
 refuses 2 "--axis: no axis has 'nosuch'" bench --stress --axis nosuch
-refuses 2 "--quick needs --stress" bench --quick --suite run.json
-refuses 2 "--axis needs --stress" bench --axis sigma --suite run.json
-refuses 2 "--fresh needs --report" bench --fresh --suite run.json
-echo '{"name": "x", "block": 4, "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}' >block.json
-refuses 2 "--write-fronts needs a suite whose \"block\" is 8, not 4" bench --suite block.json --scenes "$scenes" --write-fronts f.json
-echo '{"name": "x", "block": 1, "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}' >block.json
-refuses 2 "block: must be a number from 2" bench --suite block.json --scenes "$scenes"
+refuses 2 "--quick needs --stress" bench --quick --suite block.json
+refuses 2 "--axis needs --stress" bench --axis sigma --suite block.json
+refuses 2 "--fresh needs --report" bench --fresh --suite block.json
+refuses 2 "--write-fronts needs a suite whose \"block\" is 8, not 4" \
+    bench --suite block.json --scenes "$scenes" --write-fronts f.json
 for bands in '{}' '{"bands": [{}]}' '{"bands": [{"scene": "*", "run": "*", "figure": "f", "reason": "r", "low": 1, "high": 0}]}' \
     '{"bands": [{"scene": "*", "run": "*", "figure": "f", "reason": "r", "low": 0, "high": 1, "hi": 2}]}'; do
     echo "$bands" >bands.json
