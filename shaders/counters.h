@@ -10,7 +10,8 @@ struct counters_block {
     tyn_uint clamped;    // negative sums set to 0
     tyn_uint cut;        // paths ended by the safety cap
     tyn_uint pixels;     // pixels or points that hit a medium
-    tyn_uint spare[3];
+    // lattice: by channel, share of the solution that further sweeps would change, about
+    float unsettled[3];
 };
 TYN_ASSERT_SIZE(counters_block, 32);
 

@@ -6,9 +6,11 @@
 #include "counters.h"
 #include "ordinate_args.h"
 #include "methods/env_cdf.h"
+#include "methods/limits.h"
 #include "gpu/device.h"
 #include "passes/medium/medium.h"
 #include "scene/check.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -532,10 +534,10 @@ static void add_work(tyn_node_report *node, const char *name, double amount)
 
 // What the node itself counted: struct counters_block, or the head of struct ordinates_block. By the
 // node's name there may also be an output of the frame ("balance"), of another size.
-static void add_counters(tyn_node_report *node, tyn_graph *graph)
+static void add_counters(tyn_node_report *node, tyn_context *ctx)
 {
     tyn_extent size = {0};
-    const void *data = tyn_graph_map(graph, node->name, &size, NULL);
+    const void *data = tyn_graph_map(ctx->graph, node->name, &size, NULL);
     if (data && size.x == sizeof(struct counters_block)) {
         const struct counters_block *c = data;
         add_work(node, "steps", c->steps);
@@ -543,6 +545,11 @@ static void add_counters(tyn_node_report *node, tyn_graph *graph)
         add_work(node, "non_finite", c->non_finite);
         add_work(node, "clamped", c->clamped);
         add_work(node, "cut", c->cut);
+        const float *left = c->unsettled, most = fmaxf(left[0], fmaxf(left[1], left[2]));
+        if (most > 0) {
+            add_work(node, "unsettled", (double)most);
+            tyn_limits_solve(most, add_warning, ctx);
+        }
     } else if (data && size.x == sizeof(struct ordinates_block)) {
         const struct ordinates_block *o = data;
         add_work(node, "ordinates", o->count);
@@ -552,8 +559,7 @@ static void add_counters(tyn_node_report *node, tyn_graph *graph)
 
 void tyn_context_report(tyn_context *ctx, tyn_report *report)
 {
-    *report = (tyn_report){.warnings = (const char *const *)ctx->warnings,
-                           .num_warnings = ctx->num_warnings};
+    *report = (tyn_report){0};
     const tyn_node_stats *stats;
     uint32_t count = tyn_graph_stats(ctx->graph, &stats);
     tyn_node_report *nodes = realloc(ctx->nodes, (count ? count : 1) * sizeof *nodes);
@@ -579,11 +585,13 @@ void tyn_context_report(tyn_context *ctx, tyn_report *report)
             }
         }
         if (s->state != TYN_NODE_CULLED) {
-            add_counters(&nodes[i], ctx->graph);
+            add_counters(&nodes[i], ctx);
         }
     }
     report->nodes = nodes;
     report->num_nodes = count;
+    report->warnings = (const char *const *)ctx->warnings;
+    report->num_warnings = ctx->num_warnings;
     tyn_graph_memory(ctx->graph, &report->persistent_bytes, &report->transient_bytes);
 }
 

@@ -3,6 +3,7 @@
 #include "methods/limits.h"
 #include "methods/nodes.h"
 #include <math.h>
+#include <stdio.h>
 
 static const float cell_depth_limit = 1.8f;    // scaled depths of a cell
 static const float thin_side_limit = 3;        // cells across a side
@@ -10,6 +11,7 @@ static const float backward_limit = -0.75f;    // g
 static const float narrow_limit = 0.995f;      // g, as HG_MAX of shaders/hg.glsl
 static const float float_depth_limit = 3e6f;   // depths of the box
 static const float multiple_limit = 0.3f;      // scaled scattering depths
+static const float unsettled_limit = 0.02f;    // of the scattered light
 static const float sampled_depth_limit = 1e5f; // depths of the box where nothing is absorbed
 
 // The medium where it matters: in a grid at the density of the average particle of the medium; where several media
@@ -173,5 +175,20 @@ void tyn_limits_paths(const tyn_job *job, uint32_t max_steps)
             "accuracy: the medium is %.2g mean free paths deep and absorbs next to nothing; "
             "paths end after %u steps (-D path.max_steps), what is left of them is lost",
             (double)depth, max_steps);
+    }
+}
+
+void tyn_limits_solve(float unsettled, void (*warn)(void *user, const char *line), void *user)
+{
+    if (unsettled > unsettled_limit) {
+        // To one digit: no more is known, and frames of a film say the same line.
+        const double percent = 100 * (double)unsettled, unit = pow(10, floor(log10(percent)));
+        char line[256];
+        snprintf(
+            line, sizeof line,
+            "accuracy: the lattice is not solved to the end: about %g %% of the scattered light "
+            "would still change; more sweeps are needed (-D lattice.sweeps)",
+            unit * round(percent / unit));
+        warn(user, line);
     }
 }

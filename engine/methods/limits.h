@@ -1,6 +1,7 @@
 // limits.h -- says in the report's warnings where a method is known to lose accuracy, and why (docs/stress.md).
 //
-// From figures of the scene alone, so that it costs nothing: each line starts with "accuracy:".
+// From figures of the scene alone, or from what a frame counted anyway, so that it costs nothing: each line starts
+// with "accuracy:".
 #pragma once
 #include "methods/job.h"
 
@@ -14,3 +15,5 @@ void tyn_limits_single(const tyn_job *job);
 void tyn_limits_rays(const tyn_job *job);
 // Of `path`: its safety cap.
 void tyn_limits_paths(const tyn_job *job, uint32_t max_steps);
+// Of `pop`, once a frame is done: counters_block.unsettled of the lattice.
+void tyn_limits_solve(float unsettled, void (*warn)(void *user, const char *line), void *user);

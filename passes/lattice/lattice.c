@@ -181,6 +181,7 @@ static const tyn_binding residual_bindings[] = {
 static const tyn_binding weights_bindings[] = {
     {PORT_PARTIALS, TYN_USE_STORAGE_READ},
     {PORT_WEIGHTS, TYN_USE_STORAGE_WRITE},
+    {LATTICE_PORT_COUNTERS, TYN_USE_STORAGE_RW},
 };
 static const tyn_binding mix_bindings[] = {
     {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},       {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},
@@ -208,8 +209,8 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_INTERPOLATE] = KERNEL(interpolate, lattice_level_args, 2, 8, 4, 2),
     [KERNEL_COARSE] = KERNEL(coarse, lattice_level_args, 2, LATTICE_COARSE_GROUP, 1, 1),
     [KERNEL_DEPTH] = KERNEL(depth, lattice_args, 0, LATTICE_DEPTH_GROUP, 1, 1),
-    [KERNEL_RESIDUAL] = KERNEL(residual, lattice_args, 1, LATTICE_GROUP, 1, 1),
-    [KERNEL_WEIGHTS] = KERNEL(weights, lattice_args, 0, LATTICE_GROUP, 1, 1),
+    [KERNEL_RESIDUAL] = KERNEL(residual, lattice_args, 2, LATTICE_GROUP, 1, 1),
+    [KERNEL_WEIGHTS] = KERNEL(weights, lattice_args, 1, LATTICE_GROUP, 1, 1),
     [KERNEL_MIX] = KERNEL(mix, lattice_args, 2, 8, 4, 2),
 };
 
@@ -455,18 +456,20 @@ static void mix(solve *s, uint32_t index)
     }
     s->args.history = !p->anderson ? 0 : index < 2 ? index : 2;
     uint32_t groups = (s->args.elements + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
+    const uint32_t spec[2] = {index + 1 == (uint32_t)p->sweeps, s->walls[0]};
+    const uint32_t residual_spec[2] = {s->walls[0], spec[0]};
     tyn_rec_dispatch(
         s->r, &(tyn_dispatch){.kernel = KERNEL_RESIDUAL,
                               .cells = {groups * LATTICE_GROUP, p->shape.channels, 1},
                               .args = &s->args,
-                              .spec = s->walls,
+                              .spec = residual_spec,
                               .ports = (const uint8_t[]){PORT_STATE, PORT_SWEPT, PORT_CORRECTION,
                                                          change[1], change[2], result[0], change[0],
                                                          PORT_PARTIALS, LATTICE_PORT_WALL_CELLS}});
     tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = KERNEL_WEIGHTS,
                                            .cells = {LATTICE_GROUP * p->shape.channels, 1, 1},
-                                           .args = &s->args});
-    const uint32_t spec[2] = {index + 1 == (uint32_t)p->sweeps, s->walls[0]};
+                                           .args = &s->args,
+                                           .spec = spec});
     tyn_rec_dispatch(
         s->r, &(tyn_dispatch){.kernel = KERNEL_MIX,
                               .cells = s->texels,

@@ -92,7 +92,8 @@ struct lattice_level_args { // kernels on one level of the diffusion grid
 #define LATTICE_SWEEP_GROUP 64                   // threads of a workgroup: lines
 #define LATTICE_GROUP 64                         // ... of kernels that reduce
 #define LATTICE_GROUP_CELLS (16 * LATTICE_GROUP) // that it reduces
-#define LATTICE_NUM_DOTS 5                       // dot products of Anderson mixing
+#define LATTICE_MIX_DOTS 5                       // dot products of Anderson mixing
+#define LATTICE_NUM_DOTS 7                       // ... and of the last sweep
 #define LATTICE_COARSE_CELLS 4096 // a level of at most so many cells is solved inside one workgroup
 #define LATTICE_COARSE_GROUP 256
 #define LATTICE_SUN_GROUP 256

@@ -1,9 +1,10 @@
 // lattice_residual.comp -- what a sweep and its correction give, and the dot products that say how
-// to mix it with the results of earlier sweeps.
+// to mix it with the results of earlier sweeps, and after the last sweep how far it is from settled.
 //
 // The change r = result - start of up to three sweeps is kept; with d_i = r_i - r the products are
 // d1.d1, d2.d2, d1.d2, d1.r, d2.r, where flux counts three times (then the norm is that of the
-// radiance whose first moments these are). Each thread adds its cells in order, each workgroup its
+// radiance whose first moments these are); of the last sweep also r.r and that of the result itself. A first sweep's r
+// is the whole solution: what the diffusion correction added stands for it. Each thread adds its cells in order, each workgroup its
 // threads pairwise.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -36,6 +37,8 @@ layout(binding = 7, scalar) writeonly buffer partial_buffer
 #define LATTICE_WALL_CELLS 8
 #include "lattice_wall_state.glsl"
 layout(constant_id = 0) const uint walls = 0;
+layout(constant_id = 1) const uint last = 0; // 1: of the last sweep, with the two norms
+const uint num_dots = last == 1 ? LATTICE_NUM_DOTS : LATTICE_MIX_DOTS;
 
 shared float sums[LATTICE_NUM_DOTS][LATTICE_GROUP];
 
@@ -72,11 +75,12 @@ void main()
     uint cells = args.dims.x * args.dims.y * args.dims.z;
     uint begin = gl_WorkGroupID.x * LATTICE_GROUP_CELLS;
     uint end = min(begin + LATTICE_GROUP_CELLS, args.elements);
-    float dots[LATTICE_NUM_DOTS] = float[](0.0, 0.0, 0.0, 0.0, 0.0);
+    float dots[LATTICE_NUM_DOTS] = float[](0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     for (uint c = begin + me; c < end; c += LATTICE_GROUP) {
         bool wall = walls == 1 && c >= cells;
         uint i = wall ? args.channels * cells + ch * (args.elements - cells) + c - cells : ch * cells + c;
-        vec4 m = texelFetch(swept, int(i));
+        const vec4 plain = texelFetch(swept, int(i));
+        vec4 m = plain;
         vec4 old = texelFetch(state, int(i));
         // Loops instead of conditions: what nobody enters costs nothing.
         for (bool cell = !wall; cell; cell = false) {
@@ -88,6 +92,11 @@ void main()
         vec4 r = m - old;
         result[i] = m;
         change[i] = r;
+        if (last == 1) {
+            const vec4 left = args.history == 0 && args.corrected == 1 ? m - plain : r;
+            dots[5] += wall ? norm_dot_walls(left, left) : norm_dot(left, left);
+            dots[6] += wall ? norm_dot_walls(m, m) : norm_dot(m, m);
+        }
         if (args.history >= 1) {
             vec4 d1 = texelFetch(change_1, int(i)) - r;
             vec4 d2 = args.history >= 2 ? texelFetch(change_2, int(i)) - r : vec4(0.0);
@@ -98,19 +107,19 @@ void main()
             dots[4] += wall ? norm_dot_walls(d2, r) : norm_dot(d2, r);
         }
     }
-    for (uint k = 0; k < LATTICE_NUM_DOTS; k++) {
+    for (uint k = 0; k < num_dots; k++) {
         sums[k][me] = dots[k];
     }
     for (uint half_n = LATTICE_GROUP / 2; half_n > 0; half_n /= 2) {
         barrier();
         if (me < half_n) {
-            for (uint k = 0; k < LATTICE_NUM_DOTS; k++) {
+            for (uint k = 0; k < num_dots; k++) {
                 sums[k][me] += sums[k][me + half_n];
             }
         }
     }
     barrier();
-    if (me < LATTICE_NUM_DOTS) {
+    if (me < num_dots) {
         partials[(ch * gl_NumWorkGroups.x + gl_WorkGroupID.x) * LATTICE_NUM_DOTS + me] = sums[me][0];
     }
 }

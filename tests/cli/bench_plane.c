@@ -117,12 +117,55 @@ static void large_errors(void **state)
     cJSON_Delete(runs);
 }
 
+// What is promised of pop begins at 3 %, or 1.2 times its floor; below nobody asks who is faster.
+static void promise(void **state)
+{
+    (void)state;
+    cJSON *runs = cJSON_CreateArray();
+    add_run(runs, "pop", false, 20, 0.05, 0);
+    add_run(runs, "pop", false, 60, 0.04, 0);
+    add_run(runs, "path", true, 25, 0.06, 0); // 0.05 after 36 ms, 0.03 after 100
+    add_run(runs, "path", true, 625, 0.012, 0);
+    plane p;
+    assert_true(plane_make(&p, runs, 0, 8));
+    cJSON *kept = written(plane_promise(&p));
+    assert_true(json_true(kept, "holds"));
+    assert_true(fabs(json_figure(kept, "above") - 0.048) < 1e-9);
+    assert_string_equal(json_text(kept, "text"), "pop is on the front at all errors above 4.8 %");
+    plane_finish(&p);
+    cJSON_Delete(kept);
+
+    add_run(runs, "path", true, 5, 0.1,
+            0); // the fastest of all from 10 % on; no longer 0.06 after 25 ms
+    assert_true(plane_make(&p, runs, 0, 8));
+    kept = written(plane_promise(&p));
+    assert_false(json_true(kept, "holds"));
+    const char *text = json_text(kept, "text");
+    assert_non_null(
+        strstr(text, "pop is not on the front at all errors above 4.8 %: path wins above"));
+    assert_true(fabs(json_figure(kept, "beaten.0.low") - 0.0644) < 0.002); // 20 ms of path
+    assert_true(isnan(json_figure(kept, "beaten.0.high")));
+    plane_finish(&p);
+    cJSON_Delete(kept);
+    cJSON_Delete(runs);
+
+    runs = cJSON_CreateArray();
+    add_run(runs, "path", true, 5, 0.1, 0);
+    assert_true(plane_make(&p, runs, 0, 8));
+    kept = plane_promise(&p);
+    assert_true(cJSON_IsNull(kept));
+    plane_finish(&p);
+    cJSON_Delete(kept);
+    cJSON_Delete(runs);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(noisy),
         cmocka_unit_test(many_groups),
         cmocka_unit_test(large_errors),
+        cmocka_unit_test(promise),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

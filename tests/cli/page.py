@@ -53,14 +53,26 @@ def check_tables(folder, tables):
     check("what is around the tables stays", text.startswith("before\n<!-- tables -->\n") and text.endswith("<!-- end of tables -->\nafter\n") and "stale" not in text)
     check("the headline", "takes 6.3 times as long as `pop` at 10 % error (3 scenes), about 15 times as long as `pop` at 5 % error (1 of 3 scenes extrapolated)" in text, text)
     check("a scene at equal error", "| smoke | 8.1 % in 34.0 ms to 2.7 % in 290 ms | 31.0 ms | 384 ms | 12 |" in text, text)
+    check("whether what is promised holds", "so it is in 2 of 3 scenes" in text and "| smoke | 3.0 % | yes | pop is on the front above 2.7 %" in text
+          and re.search(r"\| 3\.0 % \| no \|", text), text)
     check("what the noise hides", "to <= 1.3 % in" in text, text)
     check("markup in names is none", "<script" not in text.replace("\\<", ""), text)
     root = os.path.dirname(os.path.dirname(os.path.abspath(tables)))
     shown = open(f"{root}/README.md", encoding="utf-8").read()
     with open(readme, "w", encoding="utf-8") as file:
         file.write(shown)
-    subprocess.run([tables, f"{root}/tools/bench/results/ci.json", readme], check=True)
-    check("the README shows results/ci.json: docs/tables tools/bench/results/ci.json README.md", open(readme, encoding="utf-8").read() == shown)
+    full = "tools/bench/results/full.json"
+    stored = full if os.path.exists(f"{root}/{full}") else "tools/bench/results/ci.json"
+    subprocess.run([tables, f"{root}/{stored}", readme], check=True)
+    check(f"the README shows what is stored: docs/tables {stored} README.md", open(readme, encoding="utf-8").read() == shown)
+    check("and that is small", os.path.getsize(f"{root}/{stored}") <= 1.5e6)
+    subprocess.run([tables, "--keep", f"{folder}/report.json", f"{folder}/kept.json"], check=True)
+    kept, whole = (json.load(open(f"{folder}/{name}.json", encoding="utf-8")) for name in ("kept", "report"))
+    check("what is kept gives the same tables", subprocess.run([tables, f"{folder}/kept.json"], check=True, capture_output=True).stdout
+          == subprocess.run([tables, f"{folder}/report.json"], check=True, capture_output=True).stdout)
+    check("and has all runs, with nodes where they are shown", all(
+        a["key"] == b["key"] and a["errors"] == b["errors"] and (a["nodes"] == b["nodes"] if b.get("shown") else a["nodes"] is None)
+        for s, t in zip(kept["scenes"], whole["scenes"]) for a, b in zip(s["runs"], t["runs"]) if not b["failed"]))
     again = subprocess.run([tables, f"{folder}/report.json", readme + ".none"], capture_output=True)
     check("a file that is not there is an error", again.returncode != 0)
 
@@ -114,6 +126,10 @@ def check_plots(b, report):
     figures = b.run("[...document.querySelectorAll('#equal-error .figure')].map((f) => f.textContent)")
     check("what is extrapolated is said to be", figures[0].startswith("6.3") and "extrapolated" not in figures[0]
           and figures[1].startswith("about 15") and "1 of 3 extrapolated" in figures[1], str(figures))
+
+    promises = b.run("[...document.querySelectorAll('#verdicts .promise')].map((p) => [p.classList.contains('kept'), p.textContent])")
+    check("a line says whether what is promised holds", [p[0] for p in promises] == [True, True, False]
+          and promises[0][1].startswith("yes pop is on") and promises[2][1].startswith("no pop is not on"), str(promises))
 
     # Sorted by a column: what has no value last.
     b.run(scene(1, "scene.querySelectorAll('.runs thead button')[4].click()"))

@@ -255,6 +255,14 @@ static cJSON *make_scene(app *a, const char *dir, int index)
     cJSON *verdicts = cJSON_AddArrayToObject(scene, "verdicts");
     cJSON_AddItemToArray(verdicts, cJSON_CreateString("pop is on the front above 2.7 %"));
     cJSON_AddItemToArray(verdicts, cJSON_CreateString("path wins below 2.7 %"));
+    cJSON *promise = cJSON_AddObjectToObject(scene, "promise");
+    cJSON_AddStringToObject(promise, "method", "pop");
+    cJSON_AddNumberToObject(promise, "above", 0.03);
+    cJSON_AddBoolToObject(promise, "holds", index != 2);
+    cJSON_AddStringToObject(promise, "text",
+                            index != 2 ? "pop is on the front at all errors above 3.0 %"
+                                       : "pop is not on the front at all errors above 3.0 %: path "
+                                         "wins above 12 %");
     return scene;
 }
 

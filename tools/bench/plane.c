@@ -9,6 +9,8 @@
 #include <string.h>
 
 enum { NUM_ASKED = 3, MAX_RANGES = 64 };
+// What is promised of `pop`: the front at errors above both of these.
+static const double promised_error = 0.03, promised_floors = 1.2;
 static const double asked[NUM_ASKED] = {0.10, 0.05, 0.03}; // errors at which methods are compared
 
 // ---- runs as points ---------------------------------------------------------------------------
@@ -234,6 +236,88 @@ static void add_verdict(cJSON *verdicts, char *text)
     free(text);
 }
 
+// "above 12 %", "from 3.0 % to 5.1 %"
+static char *where(double low, double high)
+{
+    char from[16], to[16];
+    percent(low, from);
+    return isfinite(high) ? text_format("from %s to %s", from, percent(high, to))
+                          : text_format("above %s", from);
+}
+
+static int64_t find_line(const plane *p, const char *name)
+{
+    for (uint32_t i = 0; i < p->num_lines; i++) {
+        if (strcmp(p->lines[i].name, name) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+// "at errors above 5.0 % pop is not on the front everywhere: path wins above 12 %"
+static char *promise_text(double above, const cJSON *beaten)
+{
+    char from[16];
+    percent(above, from);
+    if (cJSON_GetArraySize(beaten) == 0) {
+        return text_format("pop is on the front at all errors above %s", from);
+    }
+    char *text = text_format("pop is not on the front at all errors above %s:", from);
+    for (int i = cJSON_GetArraySize(beaten); text && i-- > 0;) {
+        const cJSON *b = cJSON_GetArrayItem(beaten, i);
+        const cJSON *low = cJSON_GetObjectItemCaseSensitive(b, "low");
+        const cJSON *high = cJSON_GetObjectItemCaseSensitive(b, "high");
+        char *range = where(cJSON_IsNumber(low) ? low->valuedouble : NAN,
+                            cJSON_IsNumber(high) ? high->valuedouble : INFINITY);
+        char *longer = text_format("%s %s wins %s%s", text, json_text(b, "method"),
+                                   range ? range : "", i > 0 ? ";" : "");
+        free(range);
+        free(text);
+        text = longer;
+    }
+    return text;
+}
+
+cJSON *plane_promise(const plane *p)
+{
+    const int64_t pop = find_line(p, "pop");
+    double floor = NAN;
+    for (uint32_t i = 0; i < p->count; i++) {
+        floor = p->points[i].line == pop ? fmin(floor, p->points[i].error) : floor;
+    }
+    if (isnan(floor)) {
+        return cJSON_CreateNull();
+    }
+    const double above = fmax(promised_error, promised_floors * floor);
+    front_range ranges[MAX_RANGES];
+    const uint32_t num = front_ranges(p->points, p->count, ranges, MAX_RANGES);
+    cJSON *promise = cJSON_CreateObject(), *beaten = cJSON_CreateArray();
+    for (uint32_t i = 0; i < num; i++) {
+        const front_range *r = &ranges[i];
+        const double low = fmax(r->low, above), high = r->highest ? INFINITY : r->high;
+        // As with ranges: what is narrower than 5 % is noise of times.
+        if (r->line != pop && high > 1.05 * low) {
+            cJSON *other = cJSON_CreateObject();
+            cJSON_AddStringToObject(other, "method", p->lines[r->line].name);
+            cJSON_AddNumberToObject(other, "low", low);
+            cJSON_AddItemToObject(other, "high",
+                                  r->highest ? cJSON_CreateNull() : cJSON_CreateNumber(high));
+            cJSON_AddItemToArray(beaten, other);
+        }
+    }
+    char *text = promise_text(above, beaten);
+    cJSON_AddNumberToObject(promise, "block", p->block);
+    cJSON_AddStringToObject(promise, "method", "pop");
+    json_add_float(promise, "floor", floor);
+    json_add_float(promise, "above", above);
+    cJSON_AddBoolToObject(promise, "holds", cJSON_GetArraySize(beaten) == 0);
+    cJSON_AddItemToObject(promise, "beaten", beaten);
+    cJSON_AddStringToObject(promise, "text", text ? text : "");
+    free(text);
+    return promise;
+}
+
 // "pop is on the front above 2.7 %"
 static char *verdict(const plane *p, const front_range *r, bool first)
 {
@@ -258,10 +342,8 @@ cJSON *plane_verdicts(const plane *p)
     front_range ranges[MAX_RANGES];
     const uint32_t num = front_ranges(p->points, p->count, ranges, MAX_RANGES);
     cJSON *verdicts = cJSON_CreateArray();
-    bool has_pop = false, pop_wins = false;
-    for (uint32_t i = 0; i < p->num_lines; i++) {
-        has_pop = has_pop || strcmp(p->lines[i].name, "pop") == 0;
-    }
+    const bool has_pop = find_line(p, "pop") >= 0;
+    bool pop_wins = false;
     for (uint32_t i = num; i-- > 0;) { // from what is asked for most
         pop_wins = pop_wins || strcmp(p->lines[ranges[i].line].name, "pop") == 0;
         add_verdict(verdicts, verdict(p, &ranges[i], i == 0));

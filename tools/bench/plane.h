@@ -29,6 +29,8 @@ cJSON *plane_front(const plane *p);
 cJSON *plane_floors(const plane *p);
 cJSON *plane_ranges(const plane *p);   // of errors in which one method is fastest
 cJSON *plane_verdicts(const plane *p); // the same as sentences
+// What is promised of `pop`: that it is on the front at errors above max(3 %, 1.2 times its floor). Null without `pop`.
+cJSON *plane_promise(const plane *p);
 // Every method against every one that samples, at the errors asked for.
 void plane_add_equal_errors(const plane *p, cJSON *list);
 // What the methods that sample need for the error of each other run; which errors are vague; `runs` are those of

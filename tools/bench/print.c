@@ -201,6 +201,10 @@ void bench_print_scene(const cJSON *scene)
         between = "; ";
     }
     printf("\n");
+    const char *promise = json_text(list_of(scene, "promise"), "text");
+    if (promise[0]) {
+        printf("  %s\n", promise);
+    }
     fflush(stdout);
 }
 

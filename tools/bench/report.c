@@ -58,7 +58,7 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
     cJSON_AddItemToObject(scene, "regime", known ? regime_json(&found) : cJSON_CreateNull());
     cJSON_AddItemToObject(scene, "reference", json_reference(c));
     cJSON *fronts = cJSON_CreateArray(), *equal = cJSON_CreateArray();
-    cJSON *floors = NULL, *ranges = NULL, *verdicts = NULL;
+    cJSON *floors = NULL, *ranges = NULL, *verdicts = NULL, *promise = NULL;
     for (int i = 0; i < BENCH_BLOCKS; i++) {
         plane p;
         if (plane_make(&p, runs, i, c->blocks[i])) {
@@ -67,6 +67,7 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
                 floors = plane_floors(&p);
                 ranges = plane_ranges(&p);
                 verdicts = plane_verdicts(&p);
+                promise = plane_promise(&p);
             }
             cJSON_AddItemToArray(fronts, plane_front(&p));
             plane_add_equal_errors(&p, equal);
@@ -81,6 +82,7 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
     cJSON_AddItemToObject(scene, "floors", floors ? floors : cJSON_CreateArray());
     cJSON_AddItemToObject(scene, "ranges", ranges ? ranges : cJSON_CreateArray());
     cJSON_AddItemToObject(scene, "verdicts", verdicts ? verdicts : cJSON_CreateArray());
+    cJSON_AddItemToObject(scene, "promise", promise ? promise : cJSON_CreateNull());
     // What is used from here on is what a reader of the file sees.
     char *text = cJSON_PrintUnformatted(scene);
     cJSON *seen = text ? cJSON_Parse(text) : NULL;

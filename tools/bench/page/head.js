@@ -189,10 +189,23 @@ function verdictList(styles, verdicts) {
     }));
 }
 
+// Yes or no, and where not: a line of its own for each scene.
+function promiseLine(promise) {
+    return promise && make("p", {class: promise.holds ? "promise kept" : "promise"},
+        make("strong", {}, promise.holds ? "yes " : "no "), make("span", {}, promise.text));
+}
+
+function promiseSummary(scenes) {
+    const said = scenes.map(([scene]) => scene.promise).filter(Boolean), kept = said.filter((p) => p.holds).length;
+    return said.length > 0 && make("p", {}, `${said[0].method} should be on the front at all errors above 3${NARROW}% and above 1.2 times the least that it reaches in a scene. `,
+        make("strong", {}, `So it is in ${kept} of ${said.length} scene${said.length === 1 ? "" : "s"}.`));
+}
+
 function verdicts(report, styles) {
     const scenes = list(report.scenes).map((scene, i) => [scene, i]).filter(([s]) => list(s.verdicts).length > 0);
     return scenes.length > 0 && make("section", {id: "verdicts"},
         make("h2", {}, "Who wins where"),
+        promiseSummary(scenes),
         make("div", {class: "verdict-grid"}, scenes.map(([scene, i]) => make("div", {},
-            make("h3", {}, make("a", {href: `#scene-${i}`}, scene.name)), verdictList(styles, list(scene.verdicts))))));
+            make("h3", {}, make("a", {href: `#scene-${i}`}, scene.name)), promiseLine(scene.promise), verdictList(styles, list(scene.verdicts))))));
 }
