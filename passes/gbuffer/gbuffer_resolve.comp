@@ -19,14 +19,13 @@ void main()
     for (int k = 1; k < samples * samples; k++) {
         same = same && imageLoad(seen, texel_of(corner, k)).r == index;
     }
-    // Loops instead of conditions: what nobody enters costs nothing.
-    for (bool none = same && index == 0u; none; none = false) {
+    if (same && index == 0u) {
         for (int k = 0; k < samples * samples; k++) {
             imageStore(distance_image, texel_of(corner, k), vec4(0.0));
         }
         imageStore(facing_image, pixel, uvec4(0u, 0u, GBUFFER_NONE, 0u));
     }
-    for (bool one = same && index != 0u; one; one = false) {
+    if (same && index != 0u) {
         gbuffer_triangle triangle = gbuffer_triangle_of(index - 1u);
         vec2 middle = vec2(corner) + 0.5 * float(samples);
         gbuffer_point p = gbuffer_point_of(triangle, middle, gbuffer_ray(middle));
@@ -41,10 +40,10 @@ void main()
         p.albedo = textured != 0u ? albedo / float(samples * samples) : p.albedo;
         store_whole(pixel, p);
     }
-    for (bool several = !same; several; several = false) {
+    if (!same) {
         uint n = atomicAdd(mixed_count.count, 1u);
         mixed[n] = uint(pixel.y) << 16 | uint(pixel.x);
-        for (bool next = n % GBUFFER_EDGES == 0u; next; next = false) {
+        if (n % GBUFFER_EDGES == 0u) {
             uvec2 groups = gbuffer_edge_groups(n, row);
             atomicMax(mixed_count.groups.x, groups.x);
             atomicMax(mixed_count.groups.y, groups.y);
