@@ -150,7 +150,8 @@ static void through_a_hole(void **state)
         picture_free(&fine);
         tyn_scene_finish(scene);
         free(scene);
-        assert_true(fabs(e.bias) <= 0.01 && e.rel_l1 <= 0.02);
+        // Twice what the usual steps leave.
+        assert_true(fabs(e.bias) <= 0.007 && e.rel_l1 <= 0.009);
     }
 }
 

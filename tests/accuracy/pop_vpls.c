@@ -58,7 +58,7 @@ static void any_number(void **state)
                                (!strcmp(names[i], "cornell-smoke") && k == 2);
             good = todo_if(known, fabs(off) <= settings[k].off,
                            "one or two lights are close to what they light: 16 x 16 pixels sample "
-                           "a spot (fog-hall has 60 % too much light at 64 x 64, too)",
+                           "a spot (of fog-hall 64 x 64 do, too)",
                            "%s %s", names[i], settings[k].set) &&
                    good;
         }
