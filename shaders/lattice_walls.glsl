@@ -103,8 +103,7 @@ walls_sides walls_sides_of(lattice_box box, ivec3 cell)
     for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
         sides.planes[k] = vec4(0.0);
     }
-    // A loop instead of a condition: what nobody enters costs nothing.
-    for (bool near = (walls_links_of(index) & TYN_WALLS_NEAR) != 0u; near; near = false) {
+    if ((walls_links_of(index) & TYN_WALLS_NEAR) != 0u) {
         for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
             sides.planes[k] = walls_plane(index, k);
         }

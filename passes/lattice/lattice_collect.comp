@@ -53,8 +53,7 @@ float reflect_light(uint i, uint ch, uint per_direction)
     uint cell = i - ch * lattice_all_cells(), vector = lattice_wall_vector(ch, cell);
     uint cut = lattice_wall_links(cell);
     float albedo = 0.0, area = 0.0, per_radiance = LATTICE_4PI * args.dx * args.dx, sent = 0.0, sum = 0.0;
-    // A loop instead of a condition: what nobody enters costs nothing.
-    for (bool some = (cut & (1u << LATTICE_DIRECTIONS) - 1u) != 0u; some; some = false) {
+    if ((cut & (1u << LATTICE_DIRECTIONS) - 1u) != 0u) {
         for (uint d = 0; d < LATTICE_DIRECTIONS; d++) {
             if ((cut >> d & 1u) != 0u) {
                 float share = lattice_weight(d) * (d < 6u ? 1.0 : inversesqrt(3.0));

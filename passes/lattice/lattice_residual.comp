@@ -82,11 +82,10 @@ void main()
         const vec4 plain = texelFetch(swept, int(i));
         vec4 m = plain;
         vec4 old = texelFetch(state, int(i));
-        // Loops instead of conditions: what nobody enters costs nothing.
-        for (bool cell = !wall; cell; cell = false) {
+        if (!wall) {
             m.x += texelFetch(correction, int(ch * args.stride + c)).x;
         }
-        for (bool some = wall && args.corrected == 1; some; some = false) {
+        if (wall && args.corrected == 1) {
             m = corrected_walls(c - cells, ch, m, m - old);
         }
         vec4 r = m - old;

@@ -113,8 +113,7 @@ void main()
             leak -= enters ? psi : 0.0;
             if (walls == 1) {
                 uint id = uint(at - int(ch) * per_channel), cut = lattice_wall_links(id);
-                // Loops instead of conditions: what nobody enters costs nothing.
-                for (bool starts = (cut & back) != 0u; starts; starts = false) {
+                if ((cut & back) != 0u) {
                     leak += enters ? psi : 0.0;
                     psi = texelFetch(state, int(4u * lattice_wall_vector(ch, id) + id % 4u)).x;
                     enters = true;
@@ -143,7 +142,7 @@ void main()
             through *= w.e;
             psi = psi * w.e + q * (s * w.a0 + slope * w.w1) + emission * w.a0;
             leak += counted ? psi : 0.0;
-            for (bool stored = ends; stored; stored = false) {
+            if (ends) {
                 arrived[at + to_mean] = psi;
             }
             before = s;
