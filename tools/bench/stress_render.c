@@ -120,6 +120,7 @@ static int frame(run *r, uint32_t samples)
     r->view.num_samples = r->info.progressive ? samples : 0;
     tyn_result result = tyn_offline_frame(r->offline, &r->scene, &r->view, false);
     r->view.first_sample += r->view.num_samples;
+    r->counts->paths += (double)r->view.num_samples * STRESS_PIXELS;
     if (result == TYN_ERR_STOPPED) {
         return EXIT_INTERRUPTED;
     }

@@ -10,13 +10,15 @@ enum { STRESS_PIXELS = STRESS_SIZE * STRESS_SIZE };
 
 typedef struct stress_picture {
     float rgb[3][STRESS_PIXELS], se[3][STRESS_PIXELS];
-    bool has_se, cut; // cut: a reference that is none, as paths were ended by their cap
-    double noise;     // of block means, relative (metrics.n); 0 without standard errors
+    bool has_se;
+    double cut;   // share of its paths that were ended by their cap
+    double noise; // of block means, relative (metrics.n); 0 without standard errors
 } stress_picture;
 
 typedef struct stress_counts {
     double non_finite, negative; // values
     double cut;                  // paths ended by the safety cap
+    double paths;                // how many there were
     double ms;
     cJSON *warnings; // array, the caller's
     char *failure;   // NULL, or why the method gave nothing; the caller's

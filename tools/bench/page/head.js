@@ -104,7 +104,7 @@ function speedChart(width, rows, errors, means, method, baseline) {
             svg.append(draw("line", {class: "span", x1: Math.min(...xs), x2: Math.max(...xs), y1: y, y2: y}));
             for (const e of there) {
                 const k = errors.indexOf(e.error);
-                svg.append(draw("path", {class: (k === 0 ? "mark" : "mark hollow") + (e.speedup < 1 ? " slower" : ""), d: SPEED_MARKS[k % 4],
+                svg.append(draw("path", {class: (k === 0 ? "mark" : "mark hollow") + (e.speedup < 1 ? " slower" : "") + (e.measured === false ? " guessed" : ""), d: SPEED_MARKS[k % 4],
                     transform: `translate(${x(e.speedup)} ${y}) scale(1.15)`},
                     draw("title", {}, `${name}, ${level(e.error)}: ${times(e.speedup)}${e.measured === false ? " (extrapolated)" : ""}`)));
             }
@@ -158,6 +158,7 @@ function headline(report) {
                 make("figcaption", {}, errors.map((e, k) => make("span", {class: "key"},
                     draw("svg", {class: "marker", width: 13, height: 13, viewBox: "-6.5 -6.5 13 13", "aria-hidden": "true"},
                         draw("path", {class: k === 0 ? "mark" : "mark hollow", d: SPEED_MARKS[k % 4]})), `at ${level(e)} error`)),
+                    rows.some((r) => r.entries.some((e) => e.measured === false && isNumber(e.speedup))) && make("span", {}, "pale: extrapolated"),
                     make("span", {}, `right of 1${TIMES}: ${method} is faster; left: ${baseline} is`)));
         });
         const missing = entries.flatMap((e) => list(e.missing).map((m) => `${level(e.error)}: ${m}`));
@@ -185,14 +186,19 @@ function headline(report) {
 function verdictList(styles, verdicts) {
     return make("ul", {class: "verdicts"}, verdicts.map((v) => {
         const style = groupOfSentence(styles, v);
-        return make("li", {}, style ? marker(style) : "", make("span", {}, v));
+        return make("li", {}, style ? marker(style) : "", make("span", {}, unbroken(v)));
     }));
+}
+
+// A number stays with its per cent sign.
+function unbroken(text) {
+    return String(text).replace(/ %/g, `${NARROW}%`);
 }
 
 // Yes or no, and where not: a line of its own for each scene.
 function promiseLine(promise) {
     return promise && make("p", {class: promise.holds ? "promise kept" : "promise"},
-        make("strong", {}, promise.holds ? "yes " : "no "), make("span", {}, promise.text));
+        make("strong", {}, promise.holds ? "yes " : "no "), make("span", {}, unbroken(promise.text)));
 }
 
 function promiseSummary(scenes) {

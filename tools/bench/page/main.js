@@ -82,6 +82,7 @@ function notes() {
 function contents(report) {
     const link = (id, text) => make("a", {href: `#${id}`}, text);
     return make("nav", {class: "contents", "aria-label": "contents"}, link("equal-error", "equal error"),
+        list(report.scenes).some((scene) => list(scene.verdicts).length > 0) && link("verdicts", "who wins"),
         list(report.scenes).map((scene, i) => link(`scene-${i}`, scene.name)),
         list((report.stress || {}).cells).length > 0 && link("stress", "stress"), link("notes", "how to read it"));
 }
