@@ -2,14 +2,14 @@
 // faster than it reads buffers. No bindings.
 //
 // RGBA32F, TYN_WALLS_PLANES + 1 entries per cell, behind each other along z: planes, then links, as two halves of
-// whole numbers.
+// whole numbers, and the cell's room (rooms.h).
 #ifndef TYN_WALLS_TABLE_GLSL
 #define TYN_WALLS_TABLE_GLSL
 #include "walls_args.h"
 
-vec4 walls_table_entry_of(uint links)
+vec4 walls_table_entry_of(uint links, uint room)
 {
-    return vec4(float(links & 0xffffu), float(links >> 16), 0.0, 0.0);
+    return vec4(float(links & 0xffffu), float(links >> 16), float(room), 0.0);
 }
 
 uint walls_table_links(vec4 entry)

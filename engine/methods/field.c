@@ -74,6 +74,11 @@ static tyn_result add_walls(tyn_graph *g, const tyn_job *job, tyn_field *f)
     return result;
 }
 
+static tyn_result add_rooms(tyn_graph *g, const tyn_job *job, tyn_field *f)
+{
+    return tyn_add_rooms(g, job, &f->shape, &f->walls, &f->picture.vpls, &f->picture.rooms);
+}
+
 // What walls reflect of light that is not the lattice's: second reflections, of what the VPLs send. In a periodic
 // medium also sunlight: light from single points on walls knows no periods.
 static tyn_result add_wall_light(tyn_graph *g, const tyn_job *job, tyn_field *f)
@@ -84,7 +89,7 @@ static tyn_result add_wall_light(tyn_graph *g, const tyn_job *job, tyn_field *f)
     const uint32_t *repeat = f->shape.repeat;
     uint32_t suns = repeat[0] || repeat[1] || repeat[2] ? f->picture.num_suns : 0;
     return tyn_add_wall_light(g, job, &f->shape, &f->walls, &f->picture.beams, suns,
-                              &f->picture.lamps, &f->wall_light);
+                              &f->picture.lamps, f->picture.rooms, &f->wall_light);
 }
 
 static tyn_result add_source(tyn_graph *g, const tyn_job *job, tyn_field *f)
@@ -258,6 +263,7 @@ static tyn_result add_lamps(tyn_graph *g, const tyn_job *job, tyn_field *f)
         [LATTICE_LAMPS_PORT_SHADOW_ATLAS] = f->picture.shadows.atlas,
         [LATTICE_LAMPS_PORT_SHADOWS] = f->picture.shadows.lights,
         [LATTICE_LAMPS_PORT_VPL_DISTANCES] = f->picture.vpls.distances,
+        [LATTICE_LAMPS_PORT_ROOMS] = f->picture.rooms,
         [LATTICE_LAMPS_PORT_OTHERS] = f->source,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_lamps, &params, refs);
@@ -398,6 +404,7 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, tyn_field *f)
         [PROBE_PORT_SHADOW_ATLAS] = f->picture.shadows.atlas,
         [PROBE_PORT_SHADOWS] = f->picture.shadows.lights,
         [PROBE_PORT_VPL_DISTANCES] = f->picture.vpls.distances,
+        [PROBE_PORT_ROOMS] = f->picture.rooms,
         [PROBE_PORT_WALL_LINKS] = f->walls.links,
         [PROBE_PORT_WALL_CELLS] = f->walls.cells,
         [PROBE_PORT_ENVIRONMENT] = environment_of(job, f),
@@ -486,6 +493,7 @@ tyn_result tyn_add_field(tyn_graph *g, const tyn_job *job, tyn_field *f)
     const tyn_field_step steps[] = {
         {true, add_cells},
         {true, add_walls},
+        {f->picture.lamps.vpls, add_rooms},
         {ordinates, add_columns},
         {f->picture.num_suns, add_source},
         {ordinates, add_ordinates},

@@ -42,6 +42,7 @@ typedef struct tyn_picture_inputs {
     tyn_ref lut, lut_block;  // given: all forward orders of the suns, else the first
     tyn_ref inscatter;
     tyn_ref wall_links, wall_cells; // of walls: surfaces among the cells of inscatter
+    tyn_ref rooms;                  // cells that are joined, and VPLs in them
     tyn_shadow_refs shadows;        // surfaces before the lights
     tyn_vpl_refs vpls;              // light that surfaces send on (methods/shading.h)
     tyn_ref surface, distances;     // radiance and distances of surfaces before the camera

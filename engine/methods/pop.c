@@ -331,6 +331,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_lattice_cells,
     &tyn_pass_walls,
     &tyn_pass_wall_light,
+    &tyn_pass_rooms,
     &tyn_pass_columns_average,
     &tyn_pass_columns,
     &tyn_pass_lattice_source,

@@ -203,6 +203,7 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
         [SHADE_PORT_MOMENTS] = in->wall_links.resource || params.outside ? moments : (tyn_ref){0},
         [SHADE_PORT_WALL_LINKS] = in->wall_links,
         [SHADE_PORT_WALL_CELLS] = in->wall_cells,
+        [SHADE_PORT_ROOMS] = in->rooms,
         [SHADE_PORT_SURFACES] = job->refs.surfaces,
         [SHADE_PORT_VERTICES] = job->refs.vertices,
         [SHADE_PORT_TRIANGLES] = job->refs.triangles,

@@ -55,7 +55,8 @@ tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_sha
 
 tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
                               const tyn_wall_refs *walls, const tyn_beam_refs *beams,
-                              uint32_t num_suns, const tyn_radial_refs *radials, tyn_ref *light)
+                              uint32_t num_suns, const tyn_radial_refs *radials, tyn_ref rooms,
+                              tyn_ref *light)
 {
     *light = (tyn_ref){0};
     if (!walls->links.resource || (num_suns == 0 && !radials->vpls)) {
@@ -89,8 +90,35 @@ tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattic
         [WALL_LIGHT_PORT_LINKS] = walls->links,
         [WALL_LIGHT_PORT_CELLS] = walls->cells,
         [WALL_LIGHT_PORT_HITS] = walls->hits,
+        [WALL_LIGHT_PORT_ROOMS] = rooms,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_wall_light, &params, refs);
     *light = refs[WALL_LIGHT_PORT_LIGHT];
+    return result;
+}
+
+tyn_result tyn_add_rooms(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
+                         const tyn_wall_refs *walls, const tyn_vpl_refs *vpls, tyn_ref *rooms)
+{
+    *rooms = (tyn_ref){0};
+    if (!walls->links.resource || !vpls->distances.resource) {
+        return TYN_OK;
+    }
+    tyn_extent dims = tyn_lattice_dims(shape->extent, shape->cells);
+    tyn_rooms_params params;
+    tyn_settings_params(job->settings, &tyn_pass_rooms, &params);
+    params.dims[0] = dims.x;
+    params.dims[1] = dims.y;
+    params.dims[2] = dims.z;
+    for (int a = 0; a < 3; a++) {
+        params.extent[a] = shape->extent[a];
+    }
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [ROOMS_PORT_LINKS] = walls->links,
+        [ROOMS_PORT_VPLS] = vpls->lights,
+        [ROOMS_PORT_DISTANCES] = vpls->distances,
+    };
+    tyn_result result = tyn_graph_add(g, &tyn_pass_rooms, &params, refs);
+    *rooms = refs[ROOMS_PORT_ROOMS];
     return result;
 }

@@ -40,6 +40,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_scatter_lut,
     &tyn_pass_walls,
     &tyn_pass_wall_light,
+    &tyn_pass_rooms,
     &tyn_pass_lattice_cells,
     &tyn_pass_lattice_source,
     &tyn_pass_lattice_ordinates,

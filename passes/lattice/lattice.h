@@ -133,6 +133,7 @@ enum {
     LATTICE_LAMPS_PORT_SHADOW_ATLAS,  // IN optional 2D, of shadow_map, as the next
     LATTICE_LAMPS_PORT_SHADOWS,       // IN optional buffer
     LATTICE_LAMPS_PORT_VPL_DISTANCES, // IN optional 2D, of vpl
+    LATTICE_LAMPS_PORT_ROOMS,         // IN optional buffer, rooms.h: with walls and maps of VPLs
     LATTICE_LAMPS_PORT_OTHERS, // IN optional 3D: `source` of suns and ordinates, which is added to
     LATTICE_LAMPS_PORT_SOURCE, // OUT 3D RGBA32F, stacked: fluence and flux of unscattered light, W/m^2
     LATTICE_LAMPS_PORT_VPL_LIGHT, // OUT 3D RGBA32F, only with `vpls`: what of it is theirs

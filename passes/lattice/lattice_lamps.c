@@ -25,6 +25,8 @@ static const tyn_port ports[LATTICE_LAMPS_NUM_PORTS] = {
                                          "of shadow_map"},
     [LATTICE_LAMPS_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, true, "of shadow_map"},
     [LATTICE_LAMPS_PORT_VPL_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
+    [LATTICE_LAMPS_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true,
+                                  "of cells and VPLs: rooms.h"},
     [LATTICE_LAMPS_PORT_OTHERS] = {"others", TYN_IN, TYN_IMAGE_3D, 0, true,
                                    "source of lattice_source or lattice_ordinates"},
     [LATTICE_LAMPS_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
@@ -74,6 +76,7 @@ static const tyn_binding vpls_bindings[] = {
     {LATTICE_LAMPS_PORT_VPL_DISTANCES, TYN_USE_SAMPLED},
     {LATTICE_LAMPS_PORT_WALL_LINKS, TYN_USE_TEXELS_UINT},
     {LATTICE_LAMPS_PORT_WALL_CELLS, TYN_USE_TEXELS_VEC4},
+    {LATTICE_LAMPS_PORT_ROOMS, TYN_USE_TEXELS_UINT},
 };
 
 static const tyn_binding near_bindings[] = {
@@ -90,6 +93,7 @@ static const tyn_binding near_bindings[] = {
     {LATTICE_LAMPS_PORT_WALL_LINKS, TYN_USE_STORAGE_READ},
     {LATTICE_LAMPS_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
     {LATTICE_LAMPS_PORT_VPL_DISTANCES, TYN_USE_SAMPLED},
+    {LATTICE_LAMPS_PORT_ROOMS, TYN_USE_TEXELS_UINT},
 };
 
 static const tyn_binding sum_bindings[] = {
@@ -119,8 +123,8 @@ static const tyn_binding source_bindings[] = {
     .num_spec = specs
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_CELLS] = {KERNEL(cells, lattice_lamps_cells, 8, 4, 2, 4)},
-    [KERNEL_VPLS] = {KERNEL(vpls, lattice_lamps_vpls, 8, 4, 2, 4)},
-    [KERNEL_NEAR] = {KERNEL(near, lattice_lamps_near, 8, 4, 2, 4)},
+    [KERNEL_VPLS] = {KERNEL(vpls, lattice_lamps_vpls, 8, 4, 2, 5)},
+    [KERNEL_NEAR] = {KERNEL(near, lattice_lamps_near, 8, 4, 2, 5)},
     [KERNEL_SUM] = {KERNEL(sum, lattice_lamps_sum, LATTICE_SUN_GROUP, 1, 1, 1)},
     [KERNEL_SOURCE] = {KERNEL(source, lattice_lamps, 8, 4, 2, 1)},
 };
@@ -184,8 +188,9 @@ static void record(tyn_recorder *r, const void *params)
             &(tyn_dispatch){.kernel = KERNEL_CELLS, .cells = cells, .args = &args, .spec = spec});
     }
     if (p->vpls) {
-        const uint32_t spec[4] = {p->mode, p->shape.channels,
-                                  tyn_rec_has(r, LATTICE_LAMPS_PORT_VPL_DISTANCES), walls};
+        const uint32_t spec[5] = {p->mode, p->shape.channels,
+                                  tyn_rec_has(r, LATTICE_LAMPS_PORT_VPL_DISTANCES), walls,
+                                  tyn_rec_has(r, LATTICE_LAMPS_PORT_ROOMS)};
         // Workgroups are cubes of 4^3 blocks.
         const tyn_extent blocks = {(dims.x + 7) / 8 * 8, (dims.y + 7) / 8 * 4,
                                    (dims.z + 7) / 8 * 2};

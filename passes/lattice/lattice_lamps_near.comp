@@ -15,10 +15,12 @@
 #define WALLS_LINKS 10
 #define WALLS_CELLS 11
 #define VPL_DISTANCES 12
+#define LATTICE_ROOMS 13
 #include "medium.glsl"
 #include "lattice.glsl"
 #include "lattice_sweep.glsl"
 #include "lattice_walls.glsl"
+#include "lattice_rooms.glsl"
 #include "vpl_visibility.glsl"
 #include "radial.glsl"
 
@@ -34,15 +36,19 @@ layout(binding = 9, r32f) uniform image3D unshadowed;
 layout(constant_id = 1) const uint num_channels = 3;
 layout(constant_id = 2) const uint shadowed = 0;
 layout(constant_id = 3) const uint walls = 0;
+layout(constant_id = 4) const uint rooms = 0;
 
 walls_sides sides; // of the cell
 bool hidden = false; // a wall beside it may hide any VPL
+uint room = 0u;
 
 float visibility(uint n, vec3 away)
 {
     vpl_map map = vpl_map_of(n - args.num_lamps, radials[n].light.axis);
     bool closed = hidden || walls == 1u && !walls_same_side_of(sides, radials[n].light.position);
-    return vpl_map_visibility(map, away, length(away), closed);
+    float visible = vpl_map_visibility(map, away, length(away), closed);
+    uint shines_in = rooms == 1u ? rooms_of_vpl(ivec3(args.dims), n - args.num_lamps) : 0u;
+    return rooms_joined(shines_in, room) ? visible : 0.0;
 }
 
 #include "lattice_lamps.glsl"
@@ -67,6 +73,9 @@ void main()
         sides = walls_sides_of(box, c);
         uint index = uint((c.z * dims.y + c.y) * dims.x + c.x);
         hidden = (walls_links_of(index) & TYN_WALLS_NEAR) != 0u && sides.planes[0] == vec4(0.0);
+    }
+    if (rooms == 1) {
+        room = rooms_of_cell(dims, c);
     }
     vec3 centre = lattice_to_m(box, vec3(c) + 0.5);
     uint count = extinction > 0.0 ? radial_count : 0u;

@@ -19,11 +19,13 @@
 #define WALLS_LINKS 9
 #define WALLS_CELLS 10
 #define WALLS_TEXELS
+#define LATTICE_ROOMS 11
 #include "medium.glsl"
 #include "lattice.glsl"
 #include "lattice_sweep.glsl"
 #include "vpl_visibility.glsl"
 #include "lattice_walls.glsl"
+#include "lattice_rooms.glsl"
 #include "radial.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in; // 4^3 blocks
@@ -38,6 +40,7 @@ layout(binding = 7, r32f) uniform writeonly image3D unshadowed;
 layout(constant_id = 1) const uint num_channels = 3;
 layout(constant_id = 2) const uint shadowed = 0;
 layout(constant_id = 3) const uint walls = 0;
+layout(constant_id = 4) const uint rooms = 0;
 
 #include "lattice_lamps.glsl"
 
@@ -72,11 +75,13 @@ void main()
     vec3 middle = lattice_to_m(box, vec3(c) + 1.0);
     vec4 sums[BLOCK][3];
     vec3 all[BLOCK], extinction[BLOCK];
+    uint room[BLOCK];
     // Of the cells' walls. A wall that cuts a link of a cell, but is not in it, has no plane there: it may hide any VPL.
     vec4 first_plane[BLOCK], second_plane[BLOCK], third_plane[BLOCK];
     [[unroll]] for (uint k = 0u; k < BLOCK; k++) {
         ivec3 at = min(c + corner_of(k), dims - 1);
         all[k] = vec3(0.0);
+        room[k] = rooms == 1u ? rooms_of_cell(dims, at) : 0u;
         first_plane[k] = second_plane[k] = third_plane[k] = OPEN;
         if (walls == 1u) {
             uint index = uint((at.z * dims.y + at.y) * dims.x + at.x);
@@ -112,6 +117,7 @@ void main()
             vec3 oblique = abs(from) / max(way, 1e-20);
             float half_way = 0.5 * dx / max(max(oblique.x, max(oblique.y, oblique.z)), 0.57);
             vec3 intensity = light.intensity;
+            uint shines_in = rooms == 1u ? rooms_of_vpl(dims, v) : 0u;
             if (num_channels == 1u) {
                 intensity = vec3(lattice_channel(intensity, 1u, 0u, args.tint));
             }
@@ -127,6 +133,7 @@ void main()
                     closed = min(min(dot(first_plane[k], at), dot(second_plane[k], at)), dot(third_plane[k], at)) < 0.0;
                 }
                 float visible = shadowed == 1 ? vpl_map_visibility(map, away, r, closed) : 1.0;
+                visible = rooms_joined(shines_in, room[k]) ? visible : 0.0;
                 vec4 moments = visible * vec4(1.0, lattice_lamps_cosine(light.radius, r) * unit);
                 [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {
                     if (ch < num_channels) {

@@ -28,6 +28,7 @@ static const tyn_port ports[PROBE_NUM_PORTS] = {
     [PROBE_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, 0, true, "of shadow_map"},
     [PROBE_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, true, "of shadow_map"},
     [PROBE_PORT_VPL_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
+    [PROBE_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true, "of cells and VPLs: rooms.h"},
     [PROBE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_cells"},
     [PROBE_PORT_POINTS] = {"points", TYN_IN, TYN_BUFFER, 0, false, "vec3[], m"},
     [PROBE_PORT_RESULTS] = {"results", TYN_OUT, TYN_BUFFER, 0, false, "tyn_probe_result[], W/m^2"},
@@ -45,6 +46,7 @@ static const tyn_binding bindings[] = {
     {PROBE_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED},    {PROBE_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED},
     {PROBE_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED},    {PROBE_PORT_SHADOWS, TYN_USE_STORAGE_READ},
     {PROBE_PORT_CELLS, TYN_USE_SAMPLED},           {PROBE_PORT_VPL_DISTANCES, TYN_USE_SAMPLED},
+    {PROBE_PORT_ROOMS, TYN_USE_TEXELS_UINT},
 };
 
 static const tyn_kernel kernels[] = {
@@ -55,7 +57,7 @@ static const tyn_kernel kernels[] = {
      {64, 1, 1},
      bindings,
      sizeof bindings / sizeof *bindings,
-     4},
+     5},
 };
 
 static uint32_t num_points(tyn_extent bytes)
@@ -86,9 +88,10 @@ static void record(tyn_recorder *r, const void *params)
         .cells = tyn_rec_has(r, PROBE_PORT_CELLS),
     };
     memcpy(args.world, p->world, sizeof args.world);
-    const uint32_t spec[4] = {p->mode, tyn_rec_has(r, PROBE_PORT_WALL_LINKS),
+    const uint32_t spec[5] = {p->mode, tyn_rec_has(r, PROBE_PORT_WALL_LINKS),
                               tyn_rec_has(r, PROBE_PORT_SHADOW_ATLAS),
-                              tyn_rec_has(r, PROBE_PORT_VPL_DISTANCES)};
+                              tyn_rec_has(r, PROBE_PORT_VPL_DISTANCES),
+                              tyn_rec_has(r, PROBE_PORT_ROOMS)};
     tyn_rec_dispatch(
         r, &(tyn_dispatch){.cells = {args.num_points, 1, 1}, .args = &args, .spec = spec});
     tyn_rec_work(r, "points", args.num_points);

@@ -27,11 +27,14 @@
 #define SHADOW_LIGHTS 19
 #include "shadow.glsl"
 #define VPL_DISTANCES 21
+#define LATTICE_ROOMS 22
 #include "vpl_visibility.glsl"
+#include "lattice_rooms.glsl"
 
 layout(constant_id = 1) const uint walls = 0;
 layout(constant_id = 2) const uint shadowed = 0;
 layout(constant_id = 3) const uint mapped = 0; // what virtual point lights (VPLs) see
+layout(constant_id = 4) const uint rooms = 0;  // and where they shine
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform push
 {
@@ -223,8 +226,14 @@ float vpl_share(lattice_box box, uint n, vec3 p, vec3 away, float r)
     bool parted = walls_near(place) && walls_behind(place.index, position) != walls_behind(place.index, p);
     float share = vpl_map_visibility(map, away, r, parted);
     if (share > 0.0 && (parted || vpl_map_visibility(map, away, 2.0 * r, true) < 1.0)) {
-        ivec3 from = walls_cell_before(box, position, axis);
-        share = walls_visible(box, cell_for(box, place, p), from) ? share : 0.0;
+        ivec3 from = walls_cell_before(box, position, axis), cell = cell_for(box, place, p);
+        uint vpl = n - radial_num_lamps;
+        bool joined = true;
+        if (rooms == 1) {
+            joined = rooms_cell_before(box.dims, vpl, from) &&
+                     rooms_joined(rooms_of_vpl(box.dims, vpl), rooms_of_cell(box.dims, cell));
+        }
+        share = joined && walls_visible(box, cell, from) ? share : 0.0;
     }
     return share;
 }

@@ -35,6 +35,7 @@ enum {
     PROBE_PORT_SHADOW_ATLAS,  // IN optional 2D, of shadow_map: surfaces stand before the lights
     PROBE_PORT_SHADOWS,       // IN optional buffer
     PROBE_PORT_VPL_DISTANCES, // IN optional 2D, of vpl: with walls and VPLs
+    PROBE_PORT_ROOMS,         // IN optional buffer, rooms.h: with these
     PROBE_PORT_CELLS,         // IN optional 3D, of lattice_cells: flux at the box's faces
     PROBE_PORT_POINTS,        // IN buffer vec3[], M, m
     PROBE_PORT_RESULTS,       // OUT buffer tyn_probe_result[]

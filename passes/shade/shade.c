@@ -63,6 +63,7 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     [PORT(WALL_LINKS)] = {"wall_links", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "uint[]"},
     [PORT(WALL_CELLS)] = {"wall_cells", TYN_IN, TYN_BUFFER, .optional = true,
                           .meaning = "struct wall_cell[]"},
+    [PORT(ROOMS)] = {"rooms", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "of cells and VPLs"},
     [PORT(SURFACES)] = {"surfaces", TYN_IN, TYN_BUFFER, .meaning = "struct surface_block"},
     [PORT(VERTICES)] = {"vertices", TYN_IN, TYN_BUFFER, .meaning = "struct surface_vertex[]"},
     [PORT(TRIANGLES)] = {"triangles", TYN_IN, TYN_BUFFER, .meaning = "struct surface_triangle[]"},
@@ -105,12 +106,13 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
 static const tyn_binding lights_bindings[] = {
     {PORT(RADIALS), TYN_USE_STORAGE_READ}, {PORT(SHADOWS), TYN_USE_STORAGE_READ},
     {PORT(VPLS), TYN_USE_STORAGE_READ},    {PORT(LIGHTS), TYN_USE_UNIFORM},
-    {PORT(TABLE), TYN_USE_STORAGE_WRITE},
+    {PORT(TABLE), TYN_USE_STORAGE_WRITE},  {PORT(ROOMS), TYN_USE_STORAGE_READ},
 };
 static const tyn_binding walls_bindings[] = {
     {PORT(WALL_LINKS), TYN_USE_STORAGE_READ},
     {PORT(WALL_CELLS), TYN_USE_STORAGE_READ},
     {PORT(WALL_TABLE), TYN_USE_STORAGE_WRITE},
+    {PORT(ROOMS), TYN_USE_STORAGE_READ},
 };
 static const tyn_binding forward_bindings[] = {
     {PORT(MEDIUM), TYN_USE_UNIFORM},       {PORT(COLUMN), TYN_USE_SAMPLED},
@@ -133,6 +135,7 @@ static const tyn_binding sight_bindings[] = {
 static const tyn_binding vpls_bindings[] = {
     COMMON_BINDINGS,
     {PORT(PART), TYN_USE_STORAGE_WRITE},
+    {PORT(WALL_TABLE), TYN_USE_SAMPLED},
 };
 static const tyn_binding rows_bindings[] = {
     {PORT(CAMERA), TYN_USE_UNIFORM},
@@ -144,6 +147,7 @@ static const tyn_binding gather_bindings[] = {
     COMMON_BINDINGS,
     {PORT(ROWS), TYN_USE_STORAGE_READ},
     {PORT(PART), TYN_USE_STORAGE_WRITE},
+    {PORT(WALL_TABLE), TYN_USE_SAMPLED},
 };
 // Bindings 0 to 27 of shade_piece.glsl.
 #define SURFACE_BINDINGS                                                                           \
@@ -198,7 +202,7 @@ enum {
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [LIGHTS] = {KERNEL(lights, 64, 1, 1), ARGS(2)},
-    [WALLS] = {KERNEL(walls, 8, 4, 2)},
+    [WALLS] = {KERNEL(walls, 8, 4, 2), .num_spec = 1},
     [FORWARD] = {KERNEL(forward, 8, 4, 2), .num_spec = 3},
     [FACES] = {KERNEL(faces, 32, 1, 1), ARGS(2)},
     [SIGHT] = {KERNEL(sight, 8, 4, 1), ARGS(1)},
@@ -284,6 +288,8 @@ static void record(tyn_recorder *r, const void *data)
     features |= p->sky ? SHADE_SKY : 0;
     features |= p->num_lamps ? SHADE_LAMPS : 0;
     features |= p->textured ? SHADE_TEXTURED : 0;
+    const uint32_t rooms = tyn_rec_has(r, PORT(ROOMS));
+    features |= vpls && rooms && tyn_rec_has(r, PORT(WALL_LINKS)) ? SHADE_ROOMS : 0;
     const uint32_t samples = tyn_rec_extent(r, PORT(DISTANCES)).x / p->size[0];
     const uint32_t step = step_of(p, vpls || tyn_rec_has(r, PORT(MOMENTS)));
     const tyn_extent blocks = blocks_of(p, step);
@@ -297,7 +303,7 @@ static void record(tyn_recorder *r, const void *data)
     if (tyn_rec_has(r, PORT(WALL_LINKS))) {
         tyn_extent cells = tyn_rec_extent(r, PORT(WALL_TABLE));
         cells.z /= TYN_WALLS_PLANES + 1;
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = WALLS, .cells = cells});
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = WALLS, .cells = cells, .spec = &rooms});
     }
     if (features & SHADE_SPREAD) {
         tyn_extent cells = {forward.x, forward.y, forward.z / p->num_suns};

@@ -371,8 +371,8 @@ vec3 shade_lamps(shade_point p, vec4 part)
 }
 
 // Of VPLs first, first + stride, ..., on SHADE_MANY points: a light is read once for all of them. Nothing is left out
-// where a light does not shine: lavapipe would go through it anyway, under a mask.
-vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], uint first, uint stride)
+// where a light does not shine: lavapipe would go through it anyway, under a mask. `rooms` of the points: shade_rooms.glsl.
+vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], float rooms[SHADE_MANY], uint first, uint stride)
 {
     vec3 sum[SHADE_MANY];
     [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
@@ -382,7 +382,8 @@ vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], uint first, uint stride)
     for (uint k = first; k < count; k += stride) {
         uint row = uint(SHADE_ROW_VPLS) + k;
         vec4 position = shade_entry(row, SHADE_POSITION);
-        vec3 axis = shade_entry(row, SHADE_AXIS).xyz, intensity = shade_entry(row, SHADE_INTENSITY).rgb;
+        vec4 faces = shade_entry(row, SHADE_AXIS);
+        vec3 axis = faces.xyz, intensity = shade_entry(row, SHADE_INTENSITY).rgb;
         radial_light light =
             radial_light(position.xyz, TYN_RADIAL_COSINE, vec3(1.0), 0.0, axis, 0.0, position.w, 0u);
         vpl_map map = vpl_map_of(k, axis);
@@ -395,6 +396,9 @@ vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], uint first, uint stride)
             float share = vpl_irradiance(light, p[i].position, p[i].normal);
             share = dot(p[i].facet, away) < 0.0 ? share : 0.0;
             share *= vpl_map_visibility_surface(map, away, p[i].facet);
+            if (shade_has(SHADE_ROOMS)) {
+                share = faces.w == rooms[i] || min(faces.w, rooms[i]) < 0.0 ? share : 0.0;
+            }
             vec3 irradiance = intensity * share;
             if (shade_has(SHADE_MEDIUM)) {
                 irradiance *= shade_through_radial(grid, p[i].position);

@@ -55,6 +55,7 @@ enum {
     SHADE_PORT_MOMENTS,       // IN optional 3D: light of the lattice
     SHADE_PORT_WALL_LINKS, // IN optional buffer uint[]: with surfaces within it, as the one below
     SHADE_PORT_WALL_CELLS, // IN optional buffer struct wall_cell[]
+    SHADE_PORT_ROOMS,      // IN optional buffer, rooms.h: with walls and VPLs
     SHADE_PORT_SURFACES,   // IN buffers, surface_args.h
     SHADE_PORT_VERTICES,
     SHADE_PORT_TRIANGLES,

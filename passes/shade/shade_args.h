@@ -17,6 +17,8 @@
 // There are lamps: a loop of no turns costs a CPU device as much as one of one turn.
 #define SHADE_LAMPS (1u << 9)
 
+#define SHADE_ROOMS (1u << 10) // VPLs shine in rooms of the lattice
+
 #define SHADE_PLACES 64 // that light which was scattered forward may come from
 // Pixels of a pattern along each side; each takes a part of the VPLs. Of small pictures five pixels are much.
 #define SHADE_SIDE 5

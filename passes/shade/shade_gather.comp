@@ -4,6 +4,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shade_place.glsl"
+#define SHADE_ROOMS_TABLE 23
+#include "shade_rooms.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -26,7 +28,8 @@ void main()
         shade_part part;
         shade_point p = shade_place(block, part);
         shade_point same[SHADE_MANY] = shade_point[](p, p, p, p); // the compiler sees that they are
-        sum.irradiance = shade_vpls(same, 0u, 1u)[0];
+        float room = shade_has(SHADE_ROOMS) ? shade_room_of(p.position) : -1.0;
+        sum.irradiance = shade_vpls(same, float[SHADE_MANY](room, room, room, room), 0u, 1u)[0];
     }
     imageStore(indirect_image, block, shade_pack(sum));
 }

@@ -7,6 +7,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shade_place.glsl"
+#define SHADE_ROOMS_TABLE 22
+#include "shade_rooms.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -19,14 +21,16 @@ void main()
     ivec2 first = shade_side * ivec2(gl_GlobalInvocationID.xy * uvec2(1, SHADE_MANY)) + cell;
     shade_point p[SHADE_MANY];
     shade_part part[SHADE_MANY];
+    float rooms[SHADE_MANY];
     [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
         p[i] = shade_place(min(first + ivec2(0, i * shade_side), size - 1), part[i]);
+        rooms[i] = shade_has(SHADE_ROOMS) ? shade_room_of(p[i].position) : -1.0;
     }
     // Of many each place takes a 25th; of fewer a fifth, so that any row takes all; of few all. Else differences
     // between parts would be larger than what sums even out.
     uint side = uint(shade_side), parts = vpl_count <= SHADE_MOST ? 1u : vpl_count <= SHADE_MOST * side ? side : side * side;
     part_of = parts < side * side ? uint(cell.x + 2 * cell.y) % parts : part_of;
-    vec3 light[SHADE_MANY] = shade_vpls(p, part_of, parts);
+    vec3 light[SHADE_MANY] = shade_vpls(p, rooms, part_of, parts);
     [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
         ivec2 block = first + ivec2(0, i * shade_side);
         if (all(lessThan(block, size))) {

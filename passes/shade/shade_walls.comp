@@ -14,6 +14,11 @@ layout(binding = 1, scalar) readonly buffer cell_buffer
 {
     wall_cell wall_cells[];
 };
+layout(binding = 3, scalar) readonly buffer room_buffer
+{
+    uint rooms[];
+};
+layout(constant_id = 0) const uint has_rooms = 0;
 layout(binding = 2, rgba32f) uniform writeonly image3D table_image;
 
 void main()
@@ -28,5 +33,5 @@ void main()
     for (int k = 0; k < TYN_WALLS_PLANES; k++) {
         imageStore(table_image, c + ivec3(0, 0, k * dims.z), near ? wall_cells[i].planes[k] : vec4(0.0));
     }
-    imageStore(table_image, c + ivec3(0, 0, TYN_WALLS_PLANES * dims.z), walls_table_entry_of(links));
+    imageStore(table_image, c + ivec3(0, 0, TYN_WALLS_PLANES * dims.z), walls_table_entry_of(links, has_rooms == 1u ? rooms[1u + i] : 0u));
 }

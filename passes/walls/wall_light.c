@@ -27,6 +27,7 @@ static const tyn_port ports[WALL_LIGHT_NUM_PORTS] = {
     [WALL_LIGHT_PORT_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
     [WALL_LIGHT_PORT_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
     [WALL_LIGHT_PORT_HITS] = {"hits", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
+    [WALL_LIGHT_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true, "of rooms"},
     [WALL_LIGHT_PORT_LIGHT] = {"wall_light", TYN_OUT, TYN_BUFFER, 0, false,
                                "radiance that the walls of a cell send out, W/(m^2 sr)"},
     [WALL_LIGHT_PORT_LIST] = {"list", TYN_SCRATCH, TYN_BUFFER, 0, false,
@@ -47,6 +48,7 @@ static const tyn_binding vpls_bindings[] = {
     {WALL_LIGHT_PORT_HITS, TYN_USE_STORAGE_READ},
     {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_RW},
     {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
 };
 
 static const tyn_binding cells_bindings[] = {
@@ -81,7 +83,7 @@ enum { SUNS = 0, VPLS, WALL_CELLS, NUM_KERNELS };
     .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [SUNS] = {KERNEL(suns, 8, 4, 2, 1)},
-    [VPLS] = {KERNEL(vpls, WALL_LIGHT_GROUP, 1, 1, 2)},
+    [VPLS] = {KERNEL(vpls, WALL_LIGHT_GROUP, 1, 1, 3)},
     [WALL_CELLS] = {KERNEL(cells, WALL_LIGHT_GROUP, 1, 1, 1)},
 };
 
@@ -115,7 +117,7 @@ static void record(tyn_recorder *r, const void *params)
             r, &(tyn_dispatch){.kernel = SUNS, .cells = cells, .args = &args, .spec = &p->mode});
     }
     if (tyn_rec_has(r, WALL_LIGHT_PORT_RADIALS)) {
-        const uint32_t spec[2] = {p->mode, p->num_suns > 0};
+        const uint32_t spec[3] = {p->mode, p->num_suns > 0, tyn_rec_has(r, WALL_LIGHT_PORT_ROOMS)};
         const tyn_extent all = {p->dims[0] * p->dims[1] * p->dims[2], 1, 1};
         tyn_rec_fill(r, WALL_LIGHT_PORT_LIST, 0);
         tyn_rec_dispatch(

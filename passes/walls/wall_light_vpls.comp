@@ -55,6 +55,9 @@ layout(binding = 12, scalar) readonly buffer list_buffer
     uint list_entries[];
 };
 layout(constant_id = 1) const uint added = 0; // 1: to the suns' light
+layout(constant_id = 2) const uint rooms = 0;
+#define LATTICE_ROOMS 13
+#include "lattice_rooms.glsl"
 
 #include "walls_place.glsl"
 
@@ -136,6 +139,9 @@ void main()
                 faces = faces || dot(away, sides[side].normal) < 0.0 && dot(away, light.axis) > 0.0;
             }
             ivec3 from = walls_cell_before(box, light.position, light.axis);
+            if (rooms == 1) {
+                faces = rooms_cell_before(box.dims, first + k - radial_num_lamps, from) && faces;
+            }
             seen |= faces && sees(c, i, from) ? 1u << k : 0u;
         }
         for (; seen != 0u; seen &= seen - 1u) {

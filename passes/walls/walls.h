@@ -55,11 +55,31 @@ enum {
     WALL_LIGHT_PORT_LINKS, // IN buffers, of walls
     WALL_LIGHT_PORT_CELLS,
     WALL_LIGHT_PORT_HITS,
+    WALL_LIGHT_PORT_ROOMS, // IN optional buffer, of rooms
     WALL_LIGHT_PORT_LIGHT, // OUT buffer vec3[cell]: LATTICE_PORT_WALL_LIGHT
     WALL_LIGHT_PORT_LIST,  // SCRATCH buffer, wall_light_args.h: cells whose walls reflect
     WALL_LIGHT_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_wall_light;
+
+// ---- rooms ------------------------------------------------------------------------------------------
+
+// Parts of the lattice that open links join; what is sealed is one of its own, which no light of virtual point lights
+// (VPLs) elsewhere reaches.
+typedef struct tyn_rooms_params {
+    float extent[3];  // medium_block.extent, m
+    uint32_t dims[3]; // cells of the lattice
+} tyn_rooms_params;
+
+enum {
+    ROOMS_PORT_LINKS,     // IN buffer, of walls
+    ROOMS_PORT_VPLS,      // IN buffer struct radial_vpls
+    ROOMS_PORT_DISTANCES, // IN 2D, vpl_visibility.glsl
+    ROOMS_PORT_ROOMS,     // OUT buffer, rooms.h
+    ROOMS_PORT_FOREST,    // SCRATCH
+    ROOMS_NUM_PORTS,
+};
+extern const tyn_pass_desc tyn_pass_rooms;
 
 // Triangles that the pass can tell apart.
 enum { TYN_WALLS_MAX_TRIANGLES = 1 << 24 };

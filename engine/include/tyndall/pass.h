@@ -19,7 +19,7 @@ extern "C" {
 #endif
 
 enum {
-    TYN_MAX_PORTS = 40,
+    TYN_MAX_PORTS = 48,
     TYN_MAX_BINDINGS = 40,
     TYN_MAX_SPEC = 8,
     TYN_MAX_ARGS = 128,
