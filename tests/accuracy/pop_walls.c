@@ -167,18 +167,31 @@ static void sealed_lamp(void **state)
     }
 }
 
+// How far a point is within the box that solids_box makes, turned by 30 degrees this or that way; < 0: outside.
+static double depth_in_box(const float p[3], const float lo[3], const float hi[3], int way)
+{
+    const double c = cos(M_PI / 6), s = way * sin(M_PI / 6);
+    const double x = p[0] - 0.5 * (lo[0] + hi[0]), z = p[2] - 0.5 * (lo[2] + hi[2]);
+    const double u = 0.5 * (hi[0] - lo[0]) - fabs(c * x + s * z);
+    const double v = 0.5 * (hi[1] - lo[1]) - fabs(p[1] - 0.5 * (lo[1] + hi[1]));
+    const double w = 0.5 * (hi[2] - lo[2]) - fabs(-s * x + c * z);
+    return fmin(u, fmin(v, w));
+}
+
 // A lamp and a sealed box above a floor, the lamp beside the box or in it: virtual lights stand on the floor and on the
-// walls' either sides. What of their light was not scattered, the difference of two probes, stays on their side.
+// walls' either sides. All light stays on its side: at points, and in pictures from the dark side. In the small
+// medium the floor is outside the lattice, and virtual lights carry all reflections; in the large one the lattice
+// has the second and further ones.
 static void sealed_from_virtual_lights(void **state)
 {
     gpu_test *t = *state;
-    enum { N = 2000 };
+    enum { N = 2000, SIDE = 64 };
     static float points[N][3];
-    static float first[N];
     const float lo[3] = {-0.41f, -0.37f, -0.44f}, hi[3] = {0.46f, 0.39f, 0.4f};
-    const double c = cos(M_PI / 6), s = sin(M_PI / 6);
     srand(1);
-    for (int lamp_inside = 0; lamp_inside < 2; lamp_inside++) {
+    for (int k = 0; k < 4; k++) {
+        const bool lamp_inside = k & 1, large = k & 2;
+        const float reach[3] = {large ? 2 : 1, large ? 1.5f : 1, large ? 2 : 1};
         tyn_scene scene;
         tyn_scene_init(&scene);
         uint32_t wall = solids_material(&scene, (float[]){0.7f, 0.7f, 0.7f}, (float[]){0, 0, 0});
@@ -186,53 +199,58 @@ static void sealed_from_virtual_lights(void **state)
         solids_quad(&scene, (float[]){-2, -1.4f, -2}, (float[]){0, 0, 4}, (float[]){4, 0, 0}, wall);
         solids_hierarchy(&scene, 2);
         tyn_medium m = grey_medium(0.5f, 0.02f, 0.3f);
-        scene_add_box(&scene, &m, (float[]){-1, -1, -1}, (float[]){1, 1, 1}, NULL, NULL);
+        scene_add_box(&scene, &m, (float[]){-reach[0], -reach[1], -reach[2]}, reach, NULL, NULL);
         scene_add_lamp(&scene,
-                       lamp_inside ? (float[]){0.02f, 0.01f, 0} : (float[]){-0.8f, 0.1f, 0.3f}, 10);
+                       lamp_inside ? (float[]){0.02f, 0.01f, 0}
+                       : large     ? (float[]){1.2f, 0.7f, 0.4f}
+                                   : (float[]){-0.8f, 0.1f, 0.3f},
+                       10);
         for (int i = 0; i < N; i++) {
-            for (int a = 0; a < 3; a++) {
+            for (int a = 0; a < 3; a++) { // most of them near the box
                 points[i][a] = (float)(1.9 * rand() / RAND_MAX - 0.95);
             }
         }
-        tyn_view v = {.width = 1,
-                      .height = 1,
-                      .outputs = TYN_OUTPUT_PROBE,
-                      .points = (const float(*)[3])points,
-                      .num_points = N};
-        tyn_camera_frame_scene(&v.camera, &scene);
+        tyn_offline *off = open_pop(t, NULL, 0);
+        const tyn_probe_result *p = probe(t, off, &scene, (const float(*)[3])points, N);
         double sums[2] = {0, 0}, most[2] = {0, 0}; // outside and inside
         int counts[2] = {0, 0};
-        for (int scattered = 0; scattered < 2; scattered++) {
-            v.scattered_only = scattered;
-            tyn_offline *off = open_pop(t, NULL, 0);
-            assert_int_equal(tyn_offline_frame(off, &scene, &v, false), TYN_OK);
-            const tyn_probe_result *p = tyn_offline_output(off, TYN_OUTPUT_PROBE);
-            for (int i = 0; i < N; i++) {
-                double depth[2], beyond[2]; // whichever way the box is turned
-                for (int way = 0; way < 2; way++) {
-                    double x = points[i][0] - 0.5 * (lo[0] + hi[0]),
-                           z = points[i][2] - 0.5 * (lo[2] + hi[2]), turn = way ? s : -s;
-                    double y = 0.5 * (hi[1] - lo[1]) - fabs(points[i][1] - 0.5 * (lo[1] + hi[1]));
-                    double u = 0.5 * (hi[0] - lo[0]) - fabs(c * x + turn * z);
-                    double w = 0.5 * (hi[2] - lo[2]) - fabs(-turn * x + c * z);
-                    depth[way] = beyond[way] = fmin(u, fmin(y, w));
-                }
-                double in = fmin(depth[0], depth[1]), out = -fmax(beyond[0], beyond[1]);
-                if (scattered == 0) {
-                    first[i] = p[i].fluence[1];
-                } else if (in > 1e-4 || out > 1e-4) {
-                    double light = first[i] - p[i].fluence[1];
-                    sums[in > 0] += light;
-                    most[in > 0] = fmax(most[in > 0], light);
-                    counts[in > 0]++;
-                }
+        for (int i = 0; i < N; i++) {
+            const double a = depth_in_box(points[i], lo, hi, 1),
+                         b = depth_in_box(points[i], lo, hi, -1);
+            const bool in = fmin(a, b) > 1e-4;
+            if (in || fmax(a, b) < -1e-4) {
+                sums[in] += p[i].fluence[1];
+                most[in] = fmax(most[in], p[i].fluence[1]);
+                counts[in]++;
             }
-            tyn_offline_destroy(&off);
         }
-        double lit = sums[lamp_inside] / counts[lamp_inside], dark = most[!lamp_inside];
-        printf("sealed, lamp %s: %d points in, %d out; lit %.3f, most in the dark %.1e\n",
-               lamp_inside ? "inside" : "beside", counts[1], counts[0], lit, dark);
+        tyn_offline_destroy(&off);
+        const double lit = sums[lamp_inside] / counts[lamp_inside], dark = most[!lamp_inside];
+        printf("sealed, lamp %s, box of %g m: %d points in, %d out; lit %.3f, most in the dark "
+               "%.1e\n",
+               lamp_inside ? "inside" : "beside", 2.0 * (double)reach[0], counts[1], counts[0], lit,
+               dark);
         assert_true(counts[1] > 50 && counts[0] > 500 && dark < 1e-4 * lit);
+
+        static const float eyes[2][3][3] = {
+            {{0, 0, 0.05f}, {-0.2f, 0.1f, 0}, {0.2f, -0.1f, 0.1f}},
+            {{0, 0, 3.5f}, {-0.9f, 0.6f, 0.8f}, {0.7f, -0.6f, 0.75f}},
+        };
+        double brightest = 0;
+        for (int eye = 0; eye < 3; eye++) {
+            tyn_view view = {0};
+            view_perspective(&view, eyes[lamp_inside][eye],
+                             lamp_inside ? (float[]){0, -0.1f, 0} : (float[]){0.1f, -0.2f, -0.9f},
+                             1.2f, SIDE);
+            picture dark_side;
+            picture_render(&dark_side, t->dev, "pop", &scene, &view, NULL, 0);
+            for (int i = 0; i < SIDE * SIDE * 3; i++) {
+                brightest = fmax(brightest, dark_side.rgb[i]);
+            }
+            picture_free(&dark_side);
+        }
+        printf("    brightest of %d pixels on the dark side %.1e\n", 3 * SIDE * SIDE, brightest);
+        assert_true(brightest < 1e-4 * lit / (4 * M_PI));
         tyn_scene_finish(&scene);
     }
 }
