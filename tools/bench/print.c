@@ -225,10 +225,14 @@ void bench_print_end(const cJSON *report)
         if (!(scenes > 0) || !cJSON_IsRaw(mean)) {
             continue;
         }
-        printf("%s%-16s %3.0f %% of %2.0f px: %s%.1f times as fast as %s (%.0f scenes", title,
+        const double times = strtod(mean->valuestring, NULL);
+        printf("%s%-16s %3.0f %% of %2.0f px: %s%.*f times as fast as %s (%.0f scenes", title,
                json_text(item, "method"), 100 * json_figure(item, "error"),
                json_figure(item, "block"), extrapolated > 0 ? "about " : "",
-               strtod(mean->valuestring, NULL), json_text(item, "baseline"), scenes);
+               times < 0.1 ? 3
+               : times < 1 ? 2
+                           : 1,
+               times, json_text(item, "baseline"), scenes);
         printf(extrapolated > 0 ? ", %.0f of them extrapolated)\n" : ")\n", extrapolated);
         title = "";
     }

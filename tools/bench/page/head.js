@@ -29,7 +29,7 @@ function pageHead(report) {
             ["date", String(report.date ?? "").replace("T", " ").replace("Z", " UTC")],
             ["scenes, runs", `${scenes.length}, ${runs}`],
             ["time measuring", isNumber(seconds.measuring) ? duration(1e3 * seconds.measuring) : null],
-            ["time for references", isNumber(seconds.references) ? duration(1e3 * seconds.references) : null],
+            ["time for references", !isNumber(seconds.references) ? null : seconds.references > 0 ? duration(1e3 * seconds.references) : "none, all were there"],
             ["suite hash", suite.hash && make("code", {}, suite.hash)],
         ]),
         make("h2", {class: "minor"}, "What the device can do at most, measured in the same run"),
@@ -98,7 +98,9 @@ function speedChart(width, rows, errors, means, method, baseline) {
             "text-anchor": narrow ? "start" : "end"}, name.length > 26 ? name.slice(0, 25) + "\u2026" : name));
         const there = list.filter((e) => isNumber(e.speedup) && e.speedup > 0);
         if (there.length === 0) {
-            svg.append(draw("text", {class: "tick", x: x(1) + 8, y: y + 4}, list.map((e) => speedReason(e, method, baseline))[0] || ""));
+            // Right of 1 where it fits, else to the end of the row.
+            const reason = list.map((e) => speedReason(e, method, baseline))[0] || "", fits = x(1) + 8 + 6 * reason.length < width;
+            svg.append(draw("text", {class: "tick", x: fits ? x(1) + 8 : width - 4, y: y + 4, "text-anchor": fits ? "start" : "end"}, reason));
         } else {
             const xs = [x(1), ...there.map((e) => x(e.speedup))];
             svg.append(draw("line", {class: "span", x1: Math.min(...xs), x2: Math.max(...xs), y1: y, y2: y}));
