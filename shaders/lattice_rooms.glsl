@@ -3,6 +3,7 @@
 #define TYN_LATTICE_ROOMS_GLSL
 #include "radial_args.h"
 #include "rooms.h"
+#include "quotient.glsl"
 
 layout(set = 0, binding = LATTICE_ROOMS) uniform usamplerBuffer room_texels;
 
@@ -22,8 +23,7 @@ bool rooms_cell_before(ivec3 dims, uint vpl, inout ivec3 before)
 {
     int cells = dims.x * dims.y * dims.z;
     uint instead = texelFetch(room_texels, 1 + cells + TYN_RADIAL_VPLS_MAX + int(vpl)).x;
-    int slice = int(instead) / (dims.x * dims.y), row = int(instead) / dims.x;
-    before = instead < uint(cells) ? ivec3(int(instead) - dims.x * row, row - dims.y * slice, slice) : before;
+    before = instead < uint(cells) ? quotient_place(instead, dims) : before;
     return instead != TYN_ROOMS_NONE;
 }
 

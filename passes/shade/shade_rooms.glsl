@@ -12,7 +12,7 @@ layout(binding = SHADE_ROOMS_TABLE) uniform sampler3D rooms_table_tex;
 const int SHADE_ROOM_STEPS = 8;
 
 // What the camera sees of a surface is in the room of every place on the way to it: of the nearest one in a cell without
-// walls, else of one on the side of its cell's centre. -1: unknown.
+// walls. -1: unknown.
 float shade_room_of(vec3 p)
 {
     ivec3 dims = textureSize(rooms_table_tex, 0);
@@ -22,27 +22,18 @@ float shade_room_of(vec3 p)
     vec3 way = camera.orthographic != 0u ? -far * camera.forward : camera.origin - p;
     far = length(way);
     way /= max(far, 1e-20);
-    float room = -1.0, likely = -1.0;
+    float room = -1.0;
     for (int k = 0; k < SHADE_ROOM_STEPS && room < 0.0; k++) {
         float s = (0.5 + 0.75 * float(k)) * box.dx;
-        vec3 place = p + s * way;
-        ivec3 c = ivec3(floor(lattice_from_m(box, place)));
-        ivec3 at = clamp(c, ivec3(0), dims - 1);
-        vec4 entry = texelFetch(rooms_table_tex, at + ivec3(0, 0, TYN_WALLS_PLANES * dims.z), 0);
-        bool inside = at == c, near = (walls_table_links(entry) & TYN_WALLS_NEAR) != 0u;
-        float there = inside ? entry.z : 0.0;
         if (s >= far) {
             break;
         }
-        room = inside && near ? -1.0 : there;
-        bool same_side = room < 0.0 && likely < 0.0;
-        for (int i = 0; i < TYN_WALLS_PLANES && same_side; i++) {
-            vec4 plane = texelFetch(rooms_table_tex, at + ivec3(0, 0, i * dims.z), 0);
-            same_side = dot(plane.xyz, place) + plane.w >= 0.0;
-        }
-        likely = same_side ? there : likely;
+        ivec3 c = ivec3(floor(lattice_from_m(box, p + s * way))), at = clamp(c, ivec3(0), dims - 1);
+        vec4 entry = texelFetch(rooms_table_tex, at + ivec3(0, 0, TYN_WALLS_PLANES * dims.z), 0);
+        bool near = (walls_table_links(entry) & TYN_WALLS_NEAR) != 0u;
+        room = at != c ? 0.0 : near ? -1.0 : entry.z;
     }
-    return room < 0.0 ? likely : room;
+    return room;
 }
 
 #endif
