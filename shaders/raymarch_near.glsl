@@ -81,7 +81,7 @@ vec3 march_near_piece(march_lamp lamp, march_lamps ray, march_medium unit, march
     float all = march_inverse_square(h2, a, b) * march_pixel_mean(length(across) * (0.282 / least));
     float light = share * radial_near(all, h2, a, b, radial_reach(lamp.grid.light, args.reach));
     float middle = clamp(h * tan(clamp(angle, -1.5707, 1.5707)), a, b);
-    if (raymarch_has(RAYMARCH_SHADOWS) && !march_sees(false, lamp.map, min(closest + middle, inside))) {
+    if (raymarch_has(RAYMARCH_SHADOWS) && !march_sees(false, lamp.map, min(closest + middle, inside), SHADOW_LIT_BY_ALL)) {
         light = 0.0;
     }
     if (light <= 0.0) {

@@ -152,10 +152,11 @@ float march_shadow_piece()
     return max(max(medium.extent.x, medium.extent.y), medium.extent.z) / RAYMARCH_SHADOWS_ACROSS;
 }
 
-bool march_sees(bool sun, march_map m, float s)
+// `by`: SHADOW_LIT_BY_*.
+bool march_sees(bool sun, march_map m, float s, uint by)
 {
     vec3 q = m.from + s * m.along;
-    return (sun ? shadow_all_lit(shadow_place_sun(m.map, q)) : shadow_visibility_lamp_at(m.map, q)) > 0.0;
+    return ((sun ? shadow_lit_by(shadow_place_sun(m.map, q)) : shadow_lamp_lights_at(m.map, q)) & by) != 0u;
 }
 
 // What is known of lights for all of the step from s to s + ds.
@@ -207,7 +208,10 @@ march_lit march_lit_of(bool sun, march_map map, uint light, uint bit, float s, f
     while (lo < ds) {
         float next = hi > 0.0 ? 0.5 * (lo + hi) : lo + 1.01 * part > ds ? ds : lo + part;
         next = known ? next : 0.0;
-        bool sees = march_sees(sun, map, min(s + next, shadow.inside));
+        // Light is found where it is for sure, and goes on from there as far as half of the texels see it: no wall is
+        // within the ray.
+        uint by = lit || hi > 0.0 ? SHADOW_LIT_BY_HALF : SHADOW_LIT_BY_ALL;
+        bool sees = march_sees(sun, map, min(s + next, shadow.inside), by);
         lit = known ? lit : sees;
         known = true;
         float more = lit && sees ? next - lo : 0.0;

@@ -42,19 +42,35 @@ vec4 shadow_gather(shadow_place place, out vec2 first)
     return textureGather(shadow_atlas, (first + 1.0) / vec2(textureSize(shadow_atlas, 0)));
 }
 
-// Only what all four texels see is lit: a place behind the straight edge of a surface has one of the four
-// behind it, so that nothing leaks around edges into closed rooms. Shadows are larger by half a texel.
-float shadow_all_lit(shadow_place place)
+// Only what all four texels see is lit for sure: a place behind the straight edge of a surface has one of the four
+// behind it, so that nothing leaks around edges into closed rooms. Such shadows are larger by half a texel.
+const uint SHADOW_LIT_BY_HALF = 1u, SHADOW_LIT_BY_ALL = 2u;
+
+// By half of the texels, the nearer counting more: shadows are as large as they should be. Where no wall is between a place
+// and one that all four light, that is what lights it. 0: dark.
+uint shadow_lit_by(shadow_place place)
 {
     vec2 first;
-    vec4 stored = shadow_gather(place, first);
-    bool lit = all(lessThanEqual(stored, vec4(place.depth)));
-    return lit || !place.inside ? 1.0 : 0.0;
+    vec4 lit = vec4(lessThanEqual(shadow_gather(place, first), vec4(place.depth)));
+    vec2 w = place.texel - 0.5 - first, along_x = mix(lit.wx, lit.zy, w.x);
+    uint by = (mix(along_x.x, along_x.y, w.y) >= 0.5 ? SHADOW_LIT_BY_HALF : 0u) |
+              (lit.x * lit.y * lit.z * lit.w > 0.0 ? SHADOW_LIT_BY_ALL : 0u);
+    return place.inside ? by : SHADOW_LIT_BY_HALF | SHADOW_LIT_BY_ALL;
+}
+
+float shadow_all_lit(shadow_place place)
+{
+    return (shadow_lit_by(place) & SHADOW_LIT_BY_ALL) != 0u ? 1.0 : 0.0;
+}
+
+uint shadow_sun_lights(shadow_light l, vec3 p)
+{
+    return shadow_lit_by(shadow_place_sun(l, shadow_frame(l, p)));
 }
 
 float shadow_visibility_sun_of(shadow_light l, vec3 p)
 {
-    return shadow_all_lit(shadow_place_sun(l, shadow_frame(l, p)));
+    return (shadow_sun_lights(l, p) & SHADOW_LIT_BY_ALL) != 0u ? 1.0 : 0.0;
 }
 
 float shadow_visibility_sun(uint light, vec3 p)
@@ -63,11 +79,16 @@ float shadow_visibility_sun(uint light, vec3 p)
 }
 
 // `q` in the lamp's frame.
-float shadow_visibility_lamp_at(shadow_light l, vec3 q)
+uint shadow_lamp_lights_at(shadow_light l, vec3 q)
 {
     uint face = l.kind == TYN_SHADOW_CUBE ? shadow_face(q) : 0u;
     q = l.kind == TYN_SHADOW_CUBE ? shadow_on_face(face, q) : q;
-    return shadow_all_lit(shadow_place_lamp(l, face, q));
+    return shadow_lit_by(shadow_place_lamp(l, face, q));
+}
+
+float shadow_visibility_lamp_at(shadow_light l, vec3 q)
+{
+    return (shadow_lamp_lights_at(l, q) & SHADOW_LIT_BY_ALL) != 0u ? 1.0 : 0.0;
 }
 
 float shadow_visibility_lamp(uint light, vec3 p)

@@ -108,6 +108,7 @@ void main()
         shadow = shadows[beams[sun].light];
     }
     vec2 seen = vec2(0.0); // of the light in all channels: by the cell, and all
+    bool any_lit = false;  // for sure: all that is looked at is on one side of the cell's walls
     float step_length = box.dx / float(args.samples);
     float length_h = step_length / max(d.x, max(d.y, d.z)); // of a sub-sample along the light
     for (uint k = 0; k < args.samples; k++) {
@@ -147,12 +148,14 @@ void main()
                 weight += w;
                 if (shadowed == 1) {
                     float light = dot(w * t, vec3(1.0));
-                    seen += light * vec2(shadow_visibility_sun_of(shadow, row + vec3(s, 0.0, 0.0)), 1.0);
+                    uint by = shadow_sun_lights(shadow, row + vec3(s, 0.0, 0.0));
+                    any_lit = any_lit || (by & SHADOW_LIT_BY_ALL) != 0u;
+                    seen += light * vec2((by & SHADOW_LIT_BY_HALF) != 0u ? 1.0 : 0.0, 1.0);
                 }
             }
         }
     }
     vec3 t = mix(vec3(0.0), weighted / max(weight, vec3(1e-30)), greaterThan(weight, vec3(0.0)));
-    float visible = shadowed == 1 && seen.y > 0.0 ? seen.x / seen.y : 1.0;
+    float visible = shadowed == 1 && seen.y > 0.0 ? (any_lit ? seen.x / seen.y : 0.0) : 1.0;
     imageStore(sunlit, c + ivec3(0, 0, int(sun) * dims.z), vec4(t, visible));
 }
