@@ -83,6 +83,10 @@ refuses 2 "short.csv:3: '1,2' is not x,y,z" probe "$scenes/cube.gltf" --points s
 refuses 2 "nothere.json" bench --suite nothere.json
 printf '{\n"name": "x",\n"scenes" [] }\n' >broken.json
 refuses 2 "broken.json:3: is not JSON" bench --suite broken.json
+# Suites of the project are read before the bands are looked for.
+for suite in "$source"/tools/bench/suites/*.json; do
+    refuses 2 "nothere.json" bench --suite "$suite" --scenes "$scenes" --bands nothere.json
+done
 # MESSAGE JSON: a suite
 bad_suite() {
     echo "$2" >suite.json
