@@ -111,7 +111,7 @@ vec3 march_near_light(march_near near, march_lamps ray, march_medium unit, march
             span = march_near_span(n, ray);
             found = max(span.x, begin) < min(span.y, end);
         }
-        for (bool there = found; there; there = false) {
+        if (found) {
             march_lamp lamp = march_lamp_of(raymarch_num_lamps + n, ray);
             vec3 away = ray.origin - lamp.grid.light.position;
             float closest = -dot(away, ray.direction), h = length(away + closest * ray.direction);

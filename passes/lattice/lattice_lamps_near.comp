@@ -92,7 +92,7 @@ void main()
             lattice_lamps_add_pieces(n, cut, box, c, sums, all);
         }
     }
-    for (bool any = all.r + all.g + all.b > 0.0; any; any = false) {
+    if (all.r + all.g + all.b > 0.0) {
         for (uint ch = 0u; ch < num_channels; ch++) {
             ivec3 at = c + ivec3(0, 0, int((args.num_groups - 1u) * num_channels + ch) * dims.z);
             imageStore(lit, at, imageLoad(lit, at) + sums[ch]);

@@ -106,8 +106,7 @@ void main()
         radial_light light = radials[first + v].light;
         vec3 from = middle - light.position;
         float way = length(from);
-        // A loop that runs once or not at all: it is left out where no lane is in front of the VPL.
-        for (bool before = dot(from, light.axis) > -0.87 * dx; before; before = false) {
+        if (dot(from, light.axis) > -0.87 * dx) {
             // The mean of the medium on the way to the block, and the share of that way within the box.
             radial_place place = radial_place_of(first + v, from, way);
             beam_tau mean = radial_tau(place);

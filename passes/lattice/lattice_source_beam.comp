@@ -96,7 +96,7 @@ void main()
         depth = max(depth, 0.5 * box.dx / float(args.samples) * (cell.x + cell.y));
     }
     bool dense = depth > DENSE;
-    for (bool once = dense; once; once = false) { // threads without it pass by
+    if (dense) { // threads without it pass by
         across = depth_across(sun, box, c, direction);
     }
     walls_sides sides;
@@ -134,7 +134,7 @@ void main()
                     t.g = mean_transmittance(centre.g, x.g);
                     t.b = mean_transmittance(centre.b, x.b);
                 }
-                for (bool once = dense; once; once = false) {
+                if (dense) {
                     vec3 extinction = scaled + m.sigma_a, ahead = direction;
                     vec3 sideways = across / max(sum3(extinction), 1e-30);
                     for (uint ch = 0; ch < num_channels; ch++) {

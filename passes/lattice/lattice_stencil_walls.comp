@@ -46,7 +46,7 @@ void main()
     lattice_level level = lattice_level_of(ivec3(args.dims), 0);
     for (uint l = 0; l + 1 < args.levels; l++) {
         lattice_level next = lattice_next_level(level);
-        for (bool here = i >= level.first && i < next.first; here; here = false) {
+        if (i >= level.first && i < next.first) {
             near = near_walls(i - level.first, level, next, channel);
         }
         level = next;

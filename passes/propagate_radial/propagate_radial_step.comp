@@ -42,8 +42,7 @@ void main()
     float flatter = args.narrowing != 0u ? growth * growth : 1.0;
     bool spacing = args.scale == TYN_PROPAGATE_SCALE_SPACING;
     float smaller = args.scale == TYN_PROPAGATE_SCALE_RECIPROCAL ? 1.0 / (growth * growth) : 1.0;
-    // A loop, because that is what a processor without masks for whole workgroups can skip.
-    for (bool inside = here.mu >= -1.5; inside; inside = false) {
+    if (here.mu >= -1.5) {
         vec2 light = vec2(0.0);
         float times = 1.0; // how often the light goes through the cell
         if (cell.z == 0) {

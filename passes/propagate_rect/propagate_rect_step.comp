@@ -32,8 +32,7 @@ void main()
     }
     uint q = propagate_index(cell, stack, args.cells);
     propagate_cell here = propagate_cell_of(cells[q]);
-    // A loop, because that is what a processor without masks for whole workgroups can skip.
-    for (bool inside = here.mu >= -1.5; inside; inside = false) {
+    if (here.mu >= -1.5) {
         // Beyond the grid is vacuum: nothing comes in.
         vec2 light = from(q, -layer, cell.z > 0, 0) + from(q, layer, cell.z < last, 2) +
                      from(q, -1, cell.x > 0, 1) + from(q, 1, cell.x < last, 1) +

@@ -178,11 +178,11 @@ vec3 shade_suns(shade_point p, vec4 around[TYN_BEAM_MAX_SUNS], bool spread, bool
         vec3 towards = -suns[sun].direction;
         float straight = sharp ? shade_cosine(p, towards) : 0.0;
         float wide = soft && spread ? shade_around(around[n], p.normal) : 0.0;
-        for (bool once = straight + wide > 0.0; once; once = false) {
+        if (straight + wide > 0.0) {
             if (sharp && shade_has(SHADE_SHADOWS)) {
                 straight *= shadow_visibility_surface_sun_of(shade_shadow(uint(SHADE_ROW_SUNS) + sun), p.position, p.facet);
             }
-            for (bool lit = straight + wide > 0.0; lit; lit = false) {
+            if (straight + wide > 0.0) {
                 vec3 light = vec3(straight);
                 if (shade_has(SHADE_MEDIUM)) {
                     beam_tau tau = shade_sun_depth(n, p.position, towards, shade_way(p.position, towards));
@@ -340,12 +340,11 @@ vec3 shade_lamp(shade_point p, shade_footprint foot, uint row)
     float share = shade_cosine(p, towards) *
                   radial_lobe(uint(axis.w), axis.xyz, intensity.w, cone.w, -towards) / rr;
     float reach = SHADE_NEAR * foot.width;
-    // A loop that nobody enters costs nothing; an `if` does.
-    for (bool once = rr < reach * reach && dot(way, p.facet) > 0.0; once; once = false) {
+    if (rr < reach * reach && dot(way, p.facet) > 0.0) {
         share = shade_lamp_near(p, foot, row, position.xyz);
     }
     vec3 irradiance = intensity.rgb * share;
-    for (bool once = share > 0.0; once; once = false) {
+    if (share > 0.0) {
         if (shade_has(SHADE_SHADOWS)) {
             irradiance *= shadow_visibility_surface_lamp_of(shade_shadow(row), p.position, p.facet);
         }

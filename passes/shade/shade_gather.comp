@@ -20,11 +20,10 @@ void main()
         return;
     }
     shade_part sum = shade_unpack(imageLoad(tent_image, block));
-    // Loops, as most need not go in.
-    for (bool shown = sum.along > 0.0 && vpl_count > SHADE_MOST * shade_side; shown; shown = false) {
+    if (sum.along > 0.0 && vpl_count > SHADE_MOST * shade_side) {
         sum = shade_tent(block, ivec2(0, 1), sum);
     }
-    for (bool alone = !sum.whole; alone; alone = false) {
+    if (!sum.whole) {
         shade_part part;
         shade_point p = shade_place(block, part);
         shade_point same[SHADE_MANY] = shade_point[](p, p, p, p); // the compiler sees that they are

@@ -46,12 +46,12 @@ float shade_rectangle(vec3 p, vec3 n, int axis, float plane, vec4 rect)
     float lowest = min(min(heights.x, heights.y), min(heights.z, heights.w));
     float highest = max(max(heights.x, heights.y), max(heights.z, heights.w));
     float sum = 0.0;
-    for (bool whole = lowest >= -1e-5; whole; whole = false) {
+    if (lowest >= -1e-5) {
         [[unroll]] for (int k = 0; k < 4; k++) {
             sum += shade_edge(corners[k], corners[(k + 1) % 4], n);
         }
     }
-    for (bool cut = lowest < -1e-5 && highest > 0.0; cut; cut = false) {
+    if (lowest < -1e-5 && highest > 0.0) {
         for (int k = 0; k < 4; k++) {
             sum += shade_edge_horizon(corners[k], corners[(k + 1) % 4], n);
         }
@@ -95,7 +95,7 @@ vec3 shade_outside(vec3 p, vec3 n, vec3 facet, vec3 lo, vec3 hi)
         bool upper = (face & 1) != 0;
         float plane = upper ? hi[axis] : lo[axis], before = upper ? p[axis] - plane : plane - p[axis];
         vec4 whole = texelFetch(faces_tex, ivec2(SHADE_FACE_LIGHT, face), 0);
-        for (bool once = before > 0.0 && whole.a > 0.0; once; once = false) {
+        if (before > 0.0 && whole.a > 0.0) {
             vec4 seen = hidden ? min(share * shade_sight_field(place, face), 1.0) : vec4(1.0);
             vec3 light = vec3(0.0);
             float all = 0.0, open = 0.0;

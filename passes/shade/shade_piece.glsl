@@ -61,10 +61,10 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
     near = through ? near * near * across[axis] * max(1.0 - off, 0.0) : 0.0;
 
     vec3 irradiance = vec3(0.0), within = vec3(0.0);
-    for (bool once = !inside; once; once = false) {
+    if (!inside) {
         irradiance = has_outside ? max(sky + shade_outside(p.position, p.normal, p.facet, lo, hi), vec3(0.0)) : sky;
     }
-    for (bool once = shade_has(SHADE_LATTICE) && (inside || near > 0.0); once; once = false) {
+    if (shade_has(SHADE_LATTICE) && (inside || near > 0.0)) {
         int channels = shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
         uint num_suns = shade_has(SHADE_SPREAD) ? shade_num_suns : 0u;
         within = walls_irradiance_at(moments_tex, box, place, p.normal, channels, forward_tex, num_suns, around);
@@ -72,7 +72,7 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
         irradiance = inside ? within : irradiance;
     }
     // Four moments a cell are up to 1.4 times too bright at the box's face, patches .7 times: they meet in between.
-    for (bool once = near > 0.0; once; once = false) {
+    if (near > 0.0) {
         vec3 seen = max(sky + shade_outside(before + 0.03 * box.dx * push, p.normal, p.facet, lo, hi), vec3(0.0));
         vec3 change = near * (within - seen) * vec3(notEqual(seen, sky)) * vec3(greaterThan(min(seen, within), vec3(0.0)));
         irradiance = max(irradiance + (inside ? -0.6 : 0.4) * change, vec3(0.0));

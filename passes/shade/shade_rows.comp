@@ -30,7 +30,7 @@ void main()
         return;
     }
     shade_part sum = shade_unpack(imageLoad(tent_image, block));
-    for (bool shown = sum.along > 0.0 && vpl_count > SHADE_MOST; shown; shown = false) {
+    if (sum.along > 0.0 && vpl_count > SHADE_MOST) {
         sum = shade_tent(block, ivec2(1, 0), sum);
     }
     imageStore(rows_image, block, shade_pack(sum));

@@ -21,7 +21,7 @@ void main()
     if (shade_has(SHADE_VPLS)) {
         part.irradiance = shade_unpack(imageLoad(smooth_image, block)).irradiance;
     }
-    for (bool shown = part.along > 0.0; shown; shown = false) {
+    if (part.along > 0.0) {
         part.irradiance += smooth_light_at(p);
         part.facet = p.normal; // surfaces look for those that face the same way
     }

@@ -17,12 +17,12 @@ void main()
     }
     ivec2 corner = pixel * shade_samples;
     gbuffer_facing seen = shade_facing(pixel);
-    for (bool none = seen.shown == GBUFFER_NONE; none; none = false) {
+    if (seen.shown == GBUFFER_NONE) {
         for (int k = 0; k < shade_samples * shade_samples; k++) {
             imageStore(radiance_image, shade_texel(corner, k), uvec4(0u));
         }
     }
-    for (bool whole = seen.shown == GBUFFER_WHOLE; whole; whole = false) {
+    if (seen.shown == GBUFFER_WHOLE) {
         // In the middle of the samples, but on the plane of the one whose facet is to be in a shadow or not.
         vec3 at = shade_position(corner, shade_distance(corner)), off = vec3(0.0);
         for (int k = 1; k < shade_samples * shade_samples; k++) {

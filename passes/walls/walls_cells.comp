@@ -77,7 +77,7 @@ vec3 albedo_at(uint i, vec3 p, vec3 d)
 {
     uint material = triangles[i].material, index = materials[material].texture;
     vec3 albedo = materials[material].albedo;
-    for (bool textured = index != TYN_SURFACE_NO_TEXTURE; textured; textured = false) {
+    if (index != TYN_SURFACE_NO_TEXTURE) {
         albedo *= texture_at(i, index, p, d);
     }
     return albedo;
