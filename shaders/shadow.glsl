@@ -104,60 +104,51 @@ float shadow_visibility(uint light, vec3 p)
                                    : shadow_visibility_lamp(light, p);
 }
 
-// The plane of a surface on a map: its depth at the place asked for, and how it changes from texel to texel.
-struct shadow_plane {
-    float depth;
-    vec2 slope;
-    float slack; // what is in front of it by less than this is the surface itself
-};
+// What is in front of a surface by less than this many times a texel's size may be the foot of a wall.
+const float SHADOW_FOOT = 16.0;
 
-// Do all four texels from `first` on see the surface?
-bool shadow_plane_lit(shadow_plane plane, vec2 texel, vec2 first)
-{
-    vec4 stored = textureGather(shadow_atlas, (first + 1.0) / vec2(textureSize(shadow_atlas, 0)));
-    vec2 w = texel - 0.5 - first;
-    vec4 x = vec4(0.0, 1.0, 1.0, 0.0) - w.x, y = vec4(1.0, 1.0, 0.0, 0.0) - w.y;
-    vec4 own = max(plane.depth + plane.slope.x * x + plane.slope.y * y, 0.0) + plane.slack;
-    return all(lessThanEqual(stored, own));
-}
-
-// What shadow_visibility_surface_sun_of and the like share: `tile` is the corner of the map, `slope` that of depth by u
-// and v, `rounding` of depth.
-float shadow_visibility_on_plane(shadow_light l, vec2 tile, shadow_place place, vec2 slope, float rounding)
+// What shadow_visibility_surface_sun_of and the like share: `slope` is that of depth by u and v, `rounding` of depth, and
+// `texel` what one texel's size towards the light is of depth.
+//
+// A place is lit by those of the four texels around it that see its surface, the nearer counting more, so that shadows are as large as
+// they should be. That would let light in beneath the edges of closed rooms. So where a texel shows the foot of a wall,
+// which meets the surface, only what all four light is lit; and what sees past the surface does not count beside what is dark: of a room
+// whose walls are seen edge-on no foot is seen, but past its roof there is no more of its floor.
+float shadow_visibility_on_plane(shadow_light l, shadow_place place, vec2 slope, float rounding, float texel)
 {
     slope *= 2.0 / l.texels; // by texels
     float steepest = 0.25 * place.depth + rounding; // edge-on, where little light arrives
     slope = clamp(slope, vec2(-steepest), vec2(steepest));
-    shadow_plane plane = shadow_plane(place.depth, slope, 0.1 * (abs(slope.x) + abs(slope.y)) + rounding);
-    // The square between four texels' centres that the place is in, and the three next to it.
-    vec2 first = floor(place.texel - 0.5), beside = place.texel - 1.0 - first, f = abs(beside);
-    bool within = shadow_plane_lit(plane, place.texel, first);
-    float lit = (1.0 - f.x) * (1.0 - f.y);
-    for (int i = 1; i < 4 && within && place.inside; i++) {
-        vec2 step = vec2(i & 1, i >> 1), next = first + step * sign(beside);
-        vec2 share = mix(1.0 - f, f, step);
-        // Beyond the map there is another one.
-        bool on_map = all(greaterThanEqual(next, tile)) && all(lessThan(next + 1.0, tile + l.texels));
-        lit += !on_map || shadow_plane_lit(plane, place.texel, next) ? share.x * share.y : 0.0;
-    }
-    return !place.inside ? 1.0 : within ? max(2.0 * lit - 1.0, 0.0) : 0.0;
+    float steep = abs(slope.x) + abs(slope.y);
+    vec2 first;
+    vec4 stored = shadow_gather(place, first);
+    vec2 w = place.texel - 0.5 - first;
+    vec4 x = vec4(0.0, 1.0, 1.0, 0.0) - w.x, y = vec4(1.0, 1.0, 0.0, 0.0) - w.y;
+    // What is in front of the plane by no more than this is the surface itself: vertices are drawn to 1/256 of a texel.
+    vec4 before = stored - max(place.depth + slope.x * x + slope.y * y, 0.0) - (0.03 * steep + rounding);
+    bvec4 dark = greaterThan(before, vec4(0.0));
+    vec4 of_foot = vec4(dark) * vec4(lessThan(before, vec4(steep + SHADOW_FOOT * texel)));
+    vec4 own = (1.0 - vec4(dark)) * vec4(greaterThan(before, vec4(-(steep + texel))));
+    float share = any(greaterThan(of_foot, vec4(0.0))) ? 0.0 : dot(own, (1.0 - abs(x)) * (1.0 - abs(y)));
+    return any(dark) && place.inside ? share : 1.0;
 }
 
 // The same for a point of a surface with the normal `n` (M, either side), in [0, 1]. Depths
 // that do not change with u and v except linearly (parallel maps as they are, perspective ones because
 // they are reciprocal) are those of the surface's own plane at the texels: so it does not shadow
-// itself, whatever its slope, and what is in front of it by more than a tenth of a texel does. It is dark wherever
-// the medium would be, so that nothing leaks; beside that light fades in over half a texel.
+// itself, whatever its slope, and what is in front of it by more than a thirtieth of a texel does.
 float shadow_visibility_surface_sun_of(shadow_light l, vec3 p, vec3 n)
 {
     vec3 q = shadow_frame(l, p), m = shadow_frame_direction(l, n);
     shadow_place place = shadow_place_sun(l, q);
     place.inside = place.inside && l.kind == TYN_SHADOW_SUN;
     // Rows are orthogonal but not of unit length: normals divide by its square.
-    m /= vec3(dot(l.rows[0].xyz, l.rows[0].xyz), dot(l.rows[1].xyz, l.rows[1].xyz),
-              dot(l.rows[2].xyz, l.rows[2].xyz)) + 1e-30;
+    vec3 square = vec3(dot(l.rows[0].xyz, l.rows[0].xyz), dot(l.rows[1].xyz, l.rows[1].xyz),
+                       dot(l.rows[2].xyz, l.rows[2].xyz)) + 1e-30;
+    m /= square;
+    float texel = 2.0 / l.texels * sqrt(square.z / min(square.x, square.y));
     vec2 slope = -m.xy / (abs(m.z) > 1e-20 ? m.z : 1e-20);
-    return shadow_visibility_on_plane(l, l.offset, place, slope, SHADOW_EPSILON * (1.0 + place.depth));
+    return shadow_visibility_on_plane(l, place, slope, SHADOW_EPSILON * (1.0 + place.depth), texel);
 }
 
 float shadow_visibility_surface_lamp_of(shadow_light l, vec3 p, vec3 n)
@@ -170,13 +161,12 @@ float shadow_visibility_surface_lamp_of(shadow_light l, vec3 p, vec3 n)
         m = shadow_on_face(face, m);
     }
     shadow_place place = shadow_place_lamp(l, face, q);
-    vec2 tile = l.offset + l.texels * vec2(face % 3u, face / 3u);
     // 1 / z = (m.x u / scale + m.y v / scale + m.z) / dot(m, q)
     float height = dot(m, q);
     vec2 slope = l.near * m.xy / (l.scale * (abs(height) > 1e-20 ? height : 1e-20));
     // Depths are as small as near makes them. What p is off its plane by is to be seen from the lamp.
     float rounding = place.depth * min(1.5e-4 * length(p) / max(abs(height), 1e-20), 0.25);
-    return shadow_visibility_on_plane(l, tile, place, slope, rounding);
+    return shadow_visibility_on_plane(l, place, slope, rounding, 2.0 / (l.scale * l.texels) * place.depth);
 }
 
 float shadow_visibility_surface(uint light, vec3 p, vec3 n)

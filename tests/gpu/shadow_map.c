@@ -392,6 +392,192 @@ static void points_of_the_surfaces(void **state)
     tyn_scene_finish(&scene);
 }
 
+// ---- edges ------------------------------------------------------------------------------------
+
+// Where a point of the world is on a light's map, in texels; on the face of a cube that `axis` is of, and if that is
+// -1 on its own.
+static void place_on_map(const tyn_shadow_map_params *p, const struct surface_block *s, int light,
+                         const double w[3], int *axis, double out[2])
+{
+    const struct shadow_light *l = &p->lights[index_of(light)];
+    double q[3];
+    for (int r = 0; r < 3; r++) {
+        q[r] = (double)l->rows[r][3];
+        for (int c = 0; c < 3; c++) {
+            double m = (double)s->from_world[c][3];
+            for (int k = 0; k < 3; k++) {
+                m += (double)s->from_world[c][k] * w[k];
+            }
+            q[r] += (double)l->rows[r][c] * m;
+        }
+    }
+    if (*axis < 0) {
+        const int larger = fabs(q[0]) > fabs(q[1]) ? 0 : 1;
+        *axis = l->kind != TYN_SHADOW_CUBE || fabs(q[2]) > fabs(q[larger]) ? 2 : larger;
+    }
+    const double z = l->kind == TYN_SHADOW_SUN ? 1 : fabs(q[*axis]) / (double)l->scale;
+    for (int k = 0; k < 2; k++) {
+        out[k] = 0.5 * (double)l->texels * q[(*axis + 1 + k) % 3] / z;
+    }
+}
+
+// Where the light sends the shadow of `e` on the floor y = 0.
+static void shadow_of(const lights *l, int light, const double e[3], double out[3])
+{
+    double d[3];
+    for (int c = 0; c < 3; c++) {
+        d[c] = (double)l->from[light][c] - (light < SUNS ? 0 : e[c]);
+    }
+    for (int c = 0; c < 3; c++) {
+        out[c] = e[c] - e[1] / d[1] * d[c];
+    }
+}
+
+// The light on a floor, summed across the edges of a plate's shadow, is that of a shadow as large as it is, for suns, spots
+// and lamps: in the mean within a tenth of the map's texels.
+static void edges_of_shadows(void **state)
+{
+    gpu_test *t = *state;
+    static const float corner[3] = {-1.3f, 0.5f, -0.9f},
+                       sides[2][3] = {{0.4f, 0.05f, 1.7f}, {1.5f, -0.03f, -0.2f}};
+    enum { LINES = 64, STEPS = 48, EACH = 4 * LINES * STEPS, REACH = 3 };
+    tyn_scene scene;
+    tyn_scene_init(&scene);
+    const uint32_t m = solids_material(&scene, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, 0, 0});
+    solids_quad(&scene, (float[]){-7, 0, -7}, (float[]){0, 0, 14}, (float[]){14, 0, 0}, m);
+    solids_quad(&scene, corner, sides[0], sides[1], m);
+    struct surface_block s;
+    make_frame(&scene, &s);
+    lights l = make_lights(&s);
+    l.from[SUNS + 2][1] = 2;
+    rotate(&s, l.from[SUNS + 2], true, l.lamps[2].position);
+    tyn_shadow_map_params params;
+    tyn_pass_defaults(&tyn_pass_shadow_map, &params);
+    params.sun_texels = 1024;
+    params.lamp_texels = 512;
+    tyn_shadow_map_plan(&params, l.suns, SUNS, l.lamps, LAMPS, &s);
+    probe *probes = calloc((SUNS + LAMPS) * EACH, sizeof *probes), *next = probes;
+    float *found = calloc((SUNS + LAMPS) * EACH, sizeof *found);
+    srand(8);
+    for (int light = 0; light < SUNS + LAMPS; light++) {
+        for (int line = 0; line < 4 * LINES; line++) {
+            // A place on an edge, and where the edge goes on from there.
+            const int along = line % 2, far = line / 2 % 2;
+            int axis = -1;
+            double e[3], on[3], p[3], q[3], a[2], b[2], middle[3], centre[3];
+            const double x = 0.4 + 0.2 * uniform();
+            for (int c = 0; c < 3; c++) {
+                e[c] = (double)corner[c] + x * (double)sides[along][c] +
+                       far * (double)sides[1 - along][c];
+                on[c] = e[c] + 0.01 * (double)sides[along][c];
+                middle[c] = (double)corner[c] + 0.5 * (double)(sides[0][c] + sides[1][c]);
+            }
+            shadow_of(&l, light, e, p);
+            shadow_of(&l, light, on, q);
+            shadow_of(&l, light, middle, centre);
+            double across[3] = {q[2] - p[2], 0, p[0] - q[0]};
+            const double side = across[0] * (p[0] - centre[0]) + across[2] * (p[2] - centre[2]);
+            const double length = copysign(hypot(across[0], across[2]), side);
+            place_on_map(&params, &s, light, p, &axis, a);
+            for (int c = 0; c < 3; c++) {
+                across[c] /= length;
+                q[c] = p[c] + 0.01 * across[c];
+            }
+            place_on_map(&params, &s, light, q, &axis, b);
+            const double texel = 0.01 / hypot(b[0] - a[0], b[1] - a[1]);
+            for (int k = 0; k < STEPS; k++) {
+                const double at = REACH * texel * ((2 * k + 1.0) / STEPS - 1);
+                *next = (probe){.light = light, .surface = true, .normal = {0, 1, 0}};
+                for (int c = 0; c < 3; c++) {
+                    next->world[c] = p[c] + at * across[c];
+                }
+                assert_true(fabs(next->world[0]) < 7 && fabs(next->world[2]) < 7);
+                next++;
+            }
+        }
+    }
+    run(t, &scene, &s, &params, probes, (SUNS + LAMPS) * EACH, found);
+    for (int light = 0; light < SUNS + LAMPS; light++) {
+        double sum = 0, dark = 0, lit = 0;
+        for (int i = 0; i < EACH; i++) {
+            const double f = (double)found[light * EACH + i];
+            sum += f * 2 * REACH / EACH * STEPS;
+            dark += i % STEPS == 0 ? f : 0;
+            lit += i % STEPS == STEPS - 1 ? f : 0;
+        }
+        const double off = sum / STEPS - REACH;
+        print_message("light %d: edges %+.3f texels\n", light, off);
+        assert_true(dark == 0 && lit == 4 * LINES);
+        assert_true(fabs(off) < 0.1);
+    }
+    free(probes);
+    free(found);
+    tyn_scene_finish(&scene);
+}
+
+// Nothing lights the insides of a closed box, but for a tenth of a texel along its edges: there the wall that stands
+// on a surface is as near as the surface itself. Two of its walls are seen edge-on.
+static void insides_of_a_box(void **state)
+{
+    gpu_test *t = *state;
+    enum { COUNT = 60000 };
+    tyn_scene scene;
+    struct surface_block s;
+    lights l;
+    tyn_shadow_map_params params;
+    setup_scene(&scene, &s, &l, &params);
+    probe *probes = calloc(COUNT, sizeof *probes);
+    float *found = calloc(COUNT, sizeof *found);
+    srand(9);
+    const double c = cos(0.5236), n = sin(0.5236);
+    for (int i = 0; i < COUNT; i++) {
+        probe *q = &probes[i];
+        double p[3], normal[3] = {0}, edge, texel;
+        const int axis = i % 3, beside = (axis + 1 + i / 3 % 2) % 3;
+        q->light = i / 6 % (SUNS + LAMPS);
+        q->surface = true;
+        do { // on a face, beside one of its edges
+            for (int k = 0; k < 3; k++) {
+                p[k] = 0.6 * (2 * uniform() - 1);
+            }
+            normal[axis] = p[axis] > 0 ? -1 : 1;
+            p[axis] = -0.6 * normal[axis];
+            edge = 0.08 * uniform();
+            p[beside] = copysign(0.6 - edge, p[beside]);
+            edge = fmin(edge, 0.6 - fabs(p[3 - axis - beside]));
+            q->world[0] = 1.1 + c * p[0] + n * p[2];
+            q->world[1] = 1.1 + p[1];
+            q->world[2] = 1.1 - n * p[0] + c * p[2];
+            q->normal[0] = c * normal[0] + n * normal[2];
+            q->normal[1] = normal[1];
+            q->normal[2] = -n * normal[0] + c * normal[2];
+            double side = 0, length = 0;
+            for (int k = 0; k < 3; k++) {
+                const double from = (double)l.from[q->light][k];
+                const double to = q->light < SUNS ? from : from - q->world[k];
+                side += q->normal[k] * to;
+                length += to * to;
+            }
+            q->cosine = side / sqrt(length);
+            texel = texel_size(&params, &l, q);
+        } while (edge < 0.1 * texel / fmax(q->cosine, 0.1));
+    }
+    run(t, &scene, &s, &params, probes, COUNT, found);
+    int lit = 0, sides = 0;
+    for (int i = 0; i < COUNT; i++) {
+        const probe *q = &probes[i];
+        if (q->cosine > 0.02 && in_cone(&l, q->light, q->world)) {
+            sides++;
+            lit += found[i] > 0;
+        }
+    }
+    print_message("%d points inside a box, %d of them lit\n", sides, lit);
+    assert_true(sides > COUNT / 4 && lit == 0);
+    free(probes);
+    free(found);
+    tyn_scene_finish(&scene);
+}
+
 // Of the cubes of a box around the scene: what is said of a light holds at places in and around the cube.
 static void cells_of_the_medium(void **state)
 {
@@ -531,8 +717,10 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(points_of_the_medium), cmocka_unit_test(points_of_the_surfaces),
+        cmocka_unit_test(edges_of_shadows),     cmocka_unit_test(insides_of_a_box),
         cmocka_unit_test(cells_of_the_medium),  cmocka_unit_test(no_lights),
         cmocka_unit_test(tiles_do_not_overlap),
     };
+    cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
