@@ -89,7 +89,8 @@ static tyn_result add_wall_light(tyn_graph *g, const tyn_job *job, tyn_field *f)
     const uint32_t *repeat = f->shape.repeat;
     uint32_t suns = repeat[0] || repeat[1] || repeat[2] ? f->picture.num_suns : 0;
     return tyn_add_wall_light(g, job, &f->shape, &f->walls, &f->picture.beams, suns,
-                              &f->picture.lamps, f->picture.rooms, &f->wall_light);
+                              &f->picture.lamps, f->picture.vpls.distances, f->picture.rooms,
+                              &f->wall_light);
 }
 
 static tyn_result add_source(tyn_graph *g, const tyn_job *job, tyn_field *f)

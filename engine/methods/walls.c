@@ -55,8 +55,8 @@ tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_sha
 
 tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
                               const tyn_wall_refs *walls, const tyn_beam_refs *beams,
-                              uint32_t num_suns, const tyn_radial_refs *radials, tyn_ref rooms,
-                              tyn_ref *light)
+                              uint32_t num_suns, const tyn_radial_refs *radials, tyn_ref distances,
+                              tyn_ref rooms, tyn_ref *light)
 {
     *light = (tyn_ref){0};
     if (!walls->links.resource || (num_suns == 0 && !radials->vpls)) {
@@ -91,6 +91,7 @@ tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattic
         [WALL_LIGHT_PORT_CELLS] = walls->cells,
         [WALL_LIGHT_PORT_HITS] = walls->hits,
         [WALL_LIGHT_PORT_ROOMS] = rooms,
+        [WALL_LIGHT_PORT_DISTANCES] = distances,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_wall_light, &params, refs);
     *light = refs[WALL_LIGHT_PORT_LIGHT];

@@ -17,11 +17,12 @@ tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_sha
                          tyn_wall_refs *walls);
 
 // What the first of frame->suns (those whose light is not reflected otherwise) and the VPLs of `radials`
-// shine on the walls of the cells: LATTICE_PORT_WALL_LIGHT; {0} without walls or such lights.
+// shine on the walls of the cells: LATTICE_PORT_WALL_LIGHT; {0} without walls or such lights. `distances` and `rooms`
+// of the VPLs may be {0}.
 tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
                               const tyn_wall_refs *walls, const tyn_beam_refs *beams,
-                              uint32_t num_suns, const tyn_radial_refs *radials, tyn_ref rooms,
-                              tyn_ref *light);
+                              uint32_t num_suns, const tyn_radial_refs *radials, tyn_ref distances,
+                              tyn_ref rooms, tyn_ref *light);
 
 // Which cells are joined, and which of them the VPLs shine in (shaders/rooms.h); {0} without walls, or VPLs that see.
 tyn_result tyn_add_rooms(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,

@@ -1,7 +1,11 @@
 // wall_light.c -- light of suns and virtual point lights on the walls of the lattice.
 #include "walls.h"
 #include "wall_light_args.h"
+#include "radial_args.h"
 #include "wall_light_cells.comp.h"
+#include "wall_light_expected.comp.h"
+#include "wall_light_reflect.comp.h"
+#include "wall_light_sum.comp.h"
 #include "wall_light_suns.comp.h"
 #include "wall_light_vpls.comp.h"
 
@@ -28,10 +32,15 @@ static const tyn_port ports[WALL_LIGHT_NUM_PORTS] = {
     [WALL_LIGHT_PORT_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
     [WALL_LIGHT_PORT_HITS] = {"hits", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
     [WALL_LIGHT_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true, "of rooms"},
+    [WALL_LIGHT_PORT_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
     [WALL_LIGHT_PORT_LIGHT] = {"wall_light", TYN_OUT, TYN_BUFFER, 0, false,
                                "radiance that the walls of a cell send out, W/(m^2 sr)"},
     [WALL_LIGHT_PORT_LIST] = {"list", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                              "struct wall_light_list, uint[]: cells whose walls reflect"},
+                              "struct wall_light_list, uint[]: cells that have walls"},
+    [WALL_LIGHT_PORT_ARRIVED] = {"arrived", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                                 "irradiance by VPLs, W/m^2, times the area of walls over dx^2"},
+    [WALL_LIGHT_PORT_POWER] = {"power", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                               "struct wall_light_power"},
 };
 
 static const tyn_binding vpls_bindings[] = {
@@ -46,16 +55,36 @@ static const tyn_binding vpls_bindings[] = {
     {WALL_LIGHT_PORT_LINKS, TYN_USE_STORAGE_READ},
     {WALL_LIGHT_PORT_CELLS, TYN_USE_STORAGE_READ},
     {WALL_LIGHT_PORT_HITS, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_RW},
+    {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_WRITE},
     {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_READ},
     {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
 };
 
 static const tyn_binding cells_bindings[] = {
-    {WALL_LIGHT_PORT_CELLS, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_RW},
-    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},
-    {WALL_LIGHT_PORT_LINKS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_CELLS, TYN_USE_STORAGE_READ},    {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_RW},
+    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},   {WALL_LIGHT_PORT_LINKS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_binding expected_bindings[] = {
+    {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {WALL_LIGHT_PORT_RADIALS, TYN_USE_UNIFORM},
+    {WALL_LIGHT_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED},
+    {WALL_LIGHT_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED},
+    {WALL_LIGHT_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED},
+    {WALL_LIGHT_PORT_DISTANCES, TYN_USE_SAMPLED},
+    {WALL_LIGHT_PORT_POWER, TYN_USE_STORAGE_RW},
+};
+
+static const tyn_binding sum_bindings[] = {
+    {WALL_LIGHT_PORT_POWER, TYN_USE_STORAGE_RW},
+    {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_READ},
+};
+
+static const tyn_binding reflect_bindings[] = {
+    {WALL_LIGHT_PORT_CELLS, TYN_USE_STORAGE_READ},   {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_READ}, {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_RW},
+    {WALL_LIGHT_PORT_POWER, TYN_USE_STORAGE_READ},
 };
 
 static const tyn_binding suns_bindings[] = {
@@ -74,7 +103,8 @@ static const tyn_binding suns_bindings[] = {
     {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},
 };
 
-enum { SUNS = 0, VPLS, WALL_CELLS, NUM_KERNELS };
+enum { SUNS = 0, VPLS, WALL_CELLS, EXPECTED, SUM, REFLECT, NUM_KERNELS };
+_Static_assert(WALL_LIGHT_VPLS == TYN_RADIAL_VPLS_MAX, "of a workgroup each");
 
 #define KERNEL(step, x, y, z, specs)                                                               \
     .name = #step, .spirv = wall_light_##step##_spirv,                                             \
@@ -83,8 +113,11 @@ enum { SUNS = 0, VPLS, WALL_CELLS, NUM_KERNELS };
     .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [SUNS] = {KERNEL(suns, 8, 4, 2, 1)},
-    [VPLS] = {KERNEL(vpls, WALL_LIGHT_GROUP, 1, 1, 3)},
+    [VPLS] = {KERNEL(vpls, WALL_LIGHT_GROUP, 1, 1, 2)},
     [WALL_CELLS] = {KERNEL(cells, WALL_LIGHT_GROUP, 1, 1, 1)},
+    [EXPECTED] = {KERNEL(expected, WALL_LIGHT_GROUP, 1, 1, 1)},
+    [SUM] = {KERNEL(sum, WALL_LIGHT_SUM_GROUP, 1, 1, 0)},
+    [REFLECT] = {KERNEL(reflect, WALL_LIGHT_GROUP, 1, 1, 2)},
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -100,7 +133,34 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const bool listed = tyn_build_has(b, WALL_LIGHT_PORT_RADIALS);
     tyn_build_buffer(b, WALL_LIGHT_PORT_LIST,
                      sizeof(struct wall_light_list) + (listed ? 8 * cells : 0));
+    tyn_build_buffer(b, WALL_LIGHT_PORT_ARRIVED, 12 * (listed ? cells : 1));
+    tyn_build_buffer(b, WALL_LIGHT_PORT_POWER, sizeof(struct wall_light_power));
     return TYN_OK;
+}
+
+static void record_vpls(tyn_recorder *r, const tyn_wall_light_params *p,
+                        const struct wall_light_args *args)
+{
+    const bool scaled = tyn_rec_has(r, WALL_LIGHT_PORT_DISTANCES);
+    const uint32_t added = p->num_suns > 0;
+    const uint32_t vpls[2] = {p->mode, tyn_rec_has(r, WALL_LIGHT_PORT_ROOMS)};
+    const uint32_t reflect[2] = {added, scaled};
+    const tyn_extent all = {p->dims[0] * p->dims[1] * p->dims[2], 1, 1};
+    tyn_rec_fill(r, WALL_LIGHT_PORT_LIST, 0);
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){.kernel = WALL_CELLS, .cells = all, .args = args, .spec = &added});
+    tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = VPLS, .args = args, .spec = vpls},
+                              WALL_LIGHT_PORT_LIST, 0);
+    if (scaled) {
+        const tyn_extent groups = {WALL_LIGHT_VPLS * WALL_LIGHT_GROUP, 1, 1};
+        tyn_rec_dispatch(
+            r,
+            &(tyn_dispatch){.kernel = EXPECTED, .cells = groups, .args = args, .spec = &p->mode});
+        const tyn_extent one = {WALL_LIGHT_SUM_GROUP, 1, 1};
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SUM, .cells = one, .args = args});
+    }
+    tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = REFLECT, .args = args, .spec = reflect},
+                              WALL_LIGHT_PORT_LIST, 0);
 }
 
 static void record(tyn_recorder *r, const void *params)
@@ -117,14 +177,7 @@ static void record(tyn_recorder *r, const void *params)
             r, &(tyn_dispatch){.kernel = SUNS, .cells = cells, .args = &args, .spec = &p->mode});
     }
     if (tyn_rec_has(r, WALL_LIGHT_PORT_RADIALS)) {
-        const uint32_t spec[3] = {p->mode, p->num_suns > 0, tyn_rec_has(r, WALL_LIGHT_PORT_ROOMS)};
-        const tyn_extent all = {p->dims[0] * p->dims[1] * p->dims[2], 1, 1};
-        tyn_rec_fill(r, WALL_LIGHT_PORT_LIST, 0);
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = WALL_CELLS, .cells = all, .args = &args, .spec = spec + 1});
-        tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = VPLS, .args = &args, .spec = spec},
-                                  WALL_LIGHT_PORT_LIST, 0);
+        record_vpls(r, p, &args);
     }
     tyn_rec_work(r, "cells", (double)p->dims[0] * p->dims[1] * p->dims[2]);
 }

@@ -1,4 +1,4 @@
-// wall_light_cells.comp -- the cells whose walls reflect light: few, so that a list of them keeps all threads of
+// wall_light_cells.comp -- the cells that have walls: few, so that a list of them keeps all threads of
 // wall_light_vpls.comp busy on devices that run them in groups.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -29,6 +29,10 @@ layout(binding = 3, scalar) readonly buffer link_buffer
 {
     uint links[];
 };
+layout(binding = 4, scalar) writeonly buffer arrived_buffer
+{
+    vec3 arrived[];
+};
 layout(constant_id = 0) const uint added = 0; // 1: to the suns' light
 
 void main()
@@ -47,11 +51,14 @@ void main()
         cut |= (found >> link & 1u) << uint(13 + d.x + 3 * d.y + 9 * d.z);
     }
     list_entries[i] = cut;
-    if (wall_cells[i].area > 0.0 && wall_cells[i].albedo != vec3(0.0)) {
+    if (wall_cells[i].area > 0.0) {
         uint n = atomicAdd(list.count, 1u);
         list_entries[cells + n] = i;
         atomicMax(list.groups.x, n / WALL_LIGHT_GROUP + 1u);
-    } else if (added == 0) {
-        wall_light[i] = vec3(0.0);
+    } else {
+        arrived[i] = vec3(0.0);
+        if (added == 0) {
+            wall_light[i] = vec3(0.0);
+        }
     }
 }

@@ -1,7 +1,6 @@
-// wall_light_vpls.comp -- light of virtual point lights (VPLs) that arrives at the walls of a cell, as radiance
-// they send out.
+// wall_light_vpls.comp -- light of virtual point lights (VPLs) that arrives at the walls of a cell.
 //
-// As wall_light_suns.comp. Links that meet surfaces of about the same normal are taken together, at their mean
+// Areas as in wall_light_suns.comp. Links that meet surfaces of about the same normal are taken together, at their mean
 // place. 1 / r^2 is bounded by the disc that a VPL stands for and by half a cell. Whether a VPL is seen is
 // asked of the lattice, which no light leaks through.
 #version 460
@@ -45,17 +44,16 @@ layout(binding = 10, scalar) readonly buffer hit_buffer
 {
     uint hits[];
 };
-layout(binding = 11, scalar) buffer wall_light_buffer
+layout(binding = 11, scalar) writeonly buffer arrived_buffer
 {
-    vec3 wall_light[];
+    vec3 arrived[]; // irradiance, W/m^2, times the area over dx^2
 };
 layout(binding = 12, scalar) readonly buffer list_buffer
 {
     wall_light_list list;
     uint list_entries[];
 };
-layout(constant_id = 1) const uint added = 0; // 1: to the suns' light
-layout(constant_id = 2) const uint rooms = 0;
+layout(constant_id = 1) const uint rooms = 0;
 #define LATTICE_ROOMS 13
 #include "lattice_rooms.glsl"
 
@@ -157,6 +155,5 @@ void main()
             }
         }
     }
-    vec3 radiance = wall_cells[i].albedo * sum / (LATTICE_4PI * wall_cells[i].area);
-    wall_light[i] = added == 1 ? wall_light[i] + radiance : radiance;
+    arrived[i] = sum;
 }

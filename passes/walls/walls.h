@@ -55,9 +55,12 @@ enum {
     WALL_LIGHT_PORT_LINKS, // IN buffers, of walls
     WALL_LIGHT_PORT_CELLS,
     WALL_LIGHT_PORT_HITS,
-    WALL_LIGHT_PORT_ROOMS, // IN optional buffer, of rooms
-    WALL_LIGHT_PORT_LIGHT, // OUT buffer vec3[cell]: LATTICE_PORT_WALL_LIGHT
-    WALL_LIGHT_PORT_LIST,  // SCRATCH buffer, wall_light_args.h: cells whose walls reflect
+    WALL_LIGHT_PORT_ROOMS,     // IN optional buffer, of rooms
+    WALL_LIGHT_PORT_DISTANCES, // IN optional 2D, of vpl: power that VPLs send is what walls get
+    WALL_LIGHT_PORT_LIGHT,     // OUT buffer vec3[cell]: LATTICE_PORT_WALL_LIGHT
+    WALL_LIGHT_PORT_LIST,      // SCRATCH buffer, wall_light_args.h: cells that have walls
+    WALL_LIGHT_PORT_ARRIVED,   // SCRATCH buffer vec3[cell]
+    WALL_LIGHT_PORT_POWER,     // SCRATCH buffer struct wall_light_power
     WALL_LIGHT_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_wall_light;

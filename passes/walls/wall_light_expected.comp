@@ -1,0 +1,71 @@
+// wall_light_expected.comp -- the power that a virtual point light (VPL) sends to walls, as the rays of its map say.
+// One workgroup per VPL.
+//
+// The map's texels are directions on a grid with its edges: halves there. A ray that ends beyond the lattice's last links
+// meets no wall of a cell.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "wall_light_args.h"
+#define MEDIUM_BLOCK 0
+#define MEDIUM_DENSITY 2 // the medium itself is not read
+#define RADIAL_BLOCK 1
+#define RADIAL_UNIFORM
+#define RADIAL_COLUMN 2
+#define RADIAL_TAU_A 3
+#define RADIAL_TAU_P 4
+#include "medium.glsl"
+#include "radial.glsl"
+#include "lattice.glsl"
+#include "vpl_visibility.glsl"
+
+layout(local_size_x = WALL_LIGHT_GROUP) in;
+layout(push_constant, scalar) uniform push
+{
+    wall_light_args args;
+};
+layout(binding = 5) uniform sampler2D distances;
+layout(binding = 6, scalar) buffer power_buffer
+{
+    wall_light_power power;
+};
+
+shared vec4 sums[WALL_LIGHT_GROUP]; // arrives, per W/sr; of all directions
+
+const float PI = 3.14159265;
+
+void main()
+{
+    uint me = gl_LocalInvocationIndex, vpl = gl_WorkGroupID.x, n = radial_num_lamps + vpl;
+    bool shines = n < radial_count;
+    int side = textureSize(distances, 0).x / VPL_MAPS_IN_A_ROW;
+    uint rays = shines ? uint(side * side) : 0u;
+    radial_light light = radials[min(n, TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX - 1u)].light;
+    vec3 from = vpl_map_origin(light.position, light.axis, light.radius);
+    mat3 frame = vpl_frame(light.axis);
+    lattice_box box = lattice_box_of(args.extent, ivec3(args.dims));
+    ivec2 corner = vpl_map_corner(vpl, side);
+    vec4 sum = vec4(0.0);
+    for (uint k = me; k < rays; k += WALL_LIGHT_GROUP) {
+        ivec2 at = ivec2(k % uint(side), k / uint(side));
+        vec3 on_map = vpl_map_direction(vec2(at) / float(side - 1));
+        float size = length(on_map), end = texelFetch(distances, corner + at, 0).r;
+        vec2 whole = mix(vec2(1.0), vec2(0.5), lessThan(min(at, side - 1 - at), ivec2(1)));
+        float share = whole.x * whole.y * on_map.z / (size * size * size * size);
+        vec3 away = min(end, 1e6 * box.dx) * (frame * (on_map / size));
+        vec3 off = abs(from + away - 0.5 * args.extent) - 0.5 * args.extent;
+        bool meets = max(off.x, max(off.y, off.z)) < 0.5 * box.dx;
+        beam_tau tau = radial_tau(radial_place_of(n, away, length(away)));
+        sum += share * vec4(meets ? exp(-(tau.a + tau.p)) : vec3(0.0), 1.0);
+    }
+    sums[me] = sum;
+    for (uint half_n = WALL_LIGHT_GROUP / 2u; half_n > 0u; half_n /= 2u) {
+        barrier();
+        if (me < half_n) {
+            sums[me] += sums[me + half_n];
+        }
+    }
+    if (me == 0u) {
+        power.expected[vpl] = shines ? light.intensity * (PI * sums[0].rgb / max(sums[0].a, 1e-20)) : vec3(0.0);
+    }
+}
