@@ -184,11 +184,19 @@ static const tyn_binding weights_bindings[] = {
     {LATTICE_PORT_COUNTERS, TYN_USE_STORAGE_RW},
 };
 static const tyn_binding mix_bindings[] = {
-    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},       {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},
-    {PORT_RESULT, TYN_USE_TEXELS_VEC4},          {PORT_RESULT + 1, TYN_USE_TEXELS_VEC4},
-    {PORT_RESULT + 2, TYN_USE_TEXELS_VEC4},      {PORT_WEIGHTS, TYN_USE_STORAGE_READ},
-    {PORT_STATE, TYN_USE_STORAGE_WRITE},         {PORT_EMITTED, TYN_USE_STORAGE_WRITE},
-    {LATTICE_PORT_COUNTERS, TYN_USE_STORAGE_RW}, {LATTICE_PORT_MOMENTS, TYN_USE_STORAGE_WRITE},
+    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},
+    {PORT_RESULT, TYN_USE_TEXELS_VEC4},
+    {PORT_RESULT + 1, TYN_USE_TEXELS_VEC4},
+    {PORT_RESULT + 2, TYN_USE_TEXELS_VEC4},
+    {PORT_WEIGHTS, TYN_USE_STORAGE_READ},
+    {PORT_STATE, TYN_USE_STORAGE_WRITE},
+    {PORT_EMITTED, TYN_USE_STORAGE_WRITE},
+    {LATTICE_PORT_COUNTERS, TYN_USE_STORAGE_RW},
+    {LATTICE_PORT_MOMENTS, TYN_USE_STORAGE_WRITE},
+    {PORT_SWEPT, TYN_USE_TEXELS_VEC4},
+    {LATTICE_PORT_WALL_CELLS, TYN_USE_TEXELS_VEC4},
+    {LATTICE_PORT_WALL_POWER, TYN_USE_STORAGE_RW},
 };
 
 #define KERNEL(name, args, spec, x, y, z)                                                          \
@@ -478,7 +486,8 @@ static void mix(solve *s, uint32_t index)
                               .ports = (const uint8_t[]){
                                   LATTICE_PORT_CELLS, LATTICE_PORT_SOURCE, result[0], result[1],
                                   result[2], PORT_WEIGHTS, PORT_STATE, PORT_EMITTED,
-                                  LATTICE_PORT_COUNTERS, LATTICE_PORT_MOMENTS}});
+                                  LATTICE_PORT_COUNTERS, LATTICE_PORT_MOMENTS, PORT_SWEPT,
+                                  LATTICE_PORT_WALL_CELLS, LATTICE_PORT_WALL_POWER}});
 }
 
 static void record(tyn_recorder *r, const void *params)

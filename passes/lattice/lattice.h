@@ -168,7 +168,7 @@ enum {
     LATTICE_PORT_COUNTERS, // OUT buffer struct counters_block
     LATTICE_PORT_LEAKS,    // OUT buffer: what left the box in the last sweep, for balance
     LATTICE_PORT_WALL_POWER, // OUT buffer vec2[channel][cell], with walls: power that the walls of a cell
-                             // absorbed in the last sweep, and that `wall_light` brings, W
+    // absorb of the light that is in `moments`, and that `wall_light` brings, W
     LATTICE_PORT_FIRST_SCRATCH,
 };
 extern const tyn_pass_desc tyn_pass_lattice;

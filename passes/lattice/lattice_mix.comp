@@ -34,10 +34,28 @@ layout(binding = 8, scalar) buffer counter_buffer
     counters_block counters;
 };
 layout(binding = 9, rgba32f) uniform writeonly image3D moments;
+layout(binding = 10) uniform samplerBuffer swept;
+layout(binding = 12, scalar) buffer power_buffer
+{
+    vec2 wall_power[]; // absorbed in the sweep, sent out of wall_light; W
+};
 
 layout(constant_id = 0) const uint last = 0; // 1: of the last sweep
 layout(constant_id = 1) const uint walls = 0;
+#define LATTICE_WALL_CELLS 11
 #include "lattice_wall_state.glsl"
+
+// What the walls absorb of the light that is left in the end: the sweep's is that of the state before it.
+void absorb_change(uint ch, uint cell, int v, float radiance)
+{
+    vec4 surface = lattice_wall_surface(cell);
+    if (surface.a > 0.0 && surface[ch] > 0.0) {
+        float change = (radiance - texelFetch(swept, v)[cell % 4u]) / surface[ch]; // of what arrives
+        uint i = ch * lattice_all_cells() + cell;
+        float more = LATTICE_4PI * args.dx * args.dx * surface.a * (1.0 - surface[ch]) * change;
+        wall_power[i].x = max(wall_power[i].x + more, 0.0);
+    }
+}
 
 // The next radiance of the walls of a cell.
 void mix_walls(uint ch, uint cell)
@@ -51,7 +69,11 @@ void mix_walls(uint ch, uint cell)
     if (args.history >= 2) {
         radiance += weights[ch].y * (texelFetch(result_2, v)[k] - newest);
     }
-    state[v][k] = isnan(radiance) || isinf(radiance) ? 0.0 : max(radiance, 0.0);
+    radiance = isnan(radiance) || isinf(radiance) ? 0.0 : max(radiance, 0.0);
+    state[v][k] = radiance;
+    if (last == 1) {
+        absorb_change(ch, cell, v, radiance);
+    }
 }
 
 void main()
