@@ -7,6 +7,7 @@
 #include "gpu_test.h"
 #include "path_run.h"
 #include "sample_scene.h"
+#include "solids.h"
 #include "todo.h"
 #include <math.h>
 #include <stdio.h>
@@ -176,10 +177,54 @@ static void white_walls(void **state)
     path_run_close(&runs);
 }
 
+// A lamp in a sealed box of some cells that is turned off the lattice's planes, above a floor, in fog and in next to
+// none: virtual lights carry the first reflection, the lattice the others.
+static void sealed_lamp(void **state)
+{
+    gpu_test *t = *state;
+    static const struct {
+        int cells, sweeps;
+        const char *todo;
+    } lattices[] = {
+        {24, 12, "the lattice's box is five cells wide: its volume, in which fog scatters, is off"},
+        {32, 4, NULL},
+        {32, 12, NULL},
+        {48, 4, "the lattice is not solved to the end in 4 sweeps"},
+        {48, 12, NULL},
+    };
+    bool good = true;
+    for (int k = 0; k < 10; k++) {
+        const bool clear = k & 1;
+        const int cells = lattices[k / 2].cells, sweeps = lattices[k / 2].sweeps;
+        const char *todo = clear ? NULL : lattices[k / 2].todo;
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t wall = solids_material(&scene, (float[]){0.7f, 0.7f, 0.7f}, (float[]){0, 0, 0});
+        solids_box(&scene, (float[]){-0.41f, -0.37f, -0.44f}, (float[]){0.46f, 0.39f, 0.4f},
+                   (float)(M_PI / 6), false, wall);
+        solids_quad(&scene, (float[]){-2, -1.4f, -2}, (float[]){0, 0, 4}, (float[]){4, 0, 0}, wall);
+        solids_hierarchy(&scene, 2);
+        tyn_medium m = grey_medium(clear ? 1e-5f : 0.5f, clear ? 1e-5f : 0.02f, 0.3f);
+        scene_add_box(&scene, &m, (float[]){-2, -1.5f, -2}, (float[]){2, 1.5f, 2}, NULL, NULL);
+        scene_add_lamp(&scene, (float[]){0.02f, 0.01f, 0}, 10);
+        char settings[64];
+        snprintf(settings, sizeof settings, "lattice.cells=%d lattice.sweeps=%d", cells, sweeps);
+        const double off = fabs(scene_imbalance(t->dev, "pop", &scene, settings));
+        print_message("sealed lamp, %s, %d cells, %d sweeps: imbalance %.2f %%\n",
+                      clear ? "no fog" : "fog", cells, sweeps, 100 * off);
+        good = todo_if(todo, off <= (clear ? 0.005 : 0.02), todo,
+                       "sealed lamp, %d cells, %d sweeps: within 2 %%", cells, sweeps) &&
+               good;
+        tyn_scene_finish(&scene);
+    }
+    assert_true(good);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(pop), cmocka_unit_test(path),
-                                       cmocka_unit_test(white_walls)};
+                                       cmocka_unit_test(white_walls),
+                                       cmocka_unit_test(sealed_lamp)};
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
