@@ -29,11 +29,12 @@ struct vpl_plan {
 };
 TYN_ASSERT_SIZE(vpl_plan, 24 + 280 + 20 * 388);
 
-// A VPL stands for the elements with cumulated weights in [from, to), partly where they reach beyond.
+// A VPL stands for the elements with cumulated weights in [from, to), partly where they reach beyond,
+// and lies on the surface of the element at the weight `at`.
 struct vpl_stratum {
-    float from, to;
+    float from, to, at;
 };
-TYN_ASSERT_SIZE(vpl_stratum, 8);
+TYN_ASSERT_SIZE(vpl_stratum, 12);
 
 struct vpl_args {
     tyn_uint count; // VPLs at most

@@ -1,7 +1,7 @@
 // vpl_lights.comp -- one workgroup a VPL: the light that stands for a stratum of elements.
 //
 // All power of the stratum is the VPL's. Where it is and looks is the mean of those of its elements that
-// lie on one smooth piece of a surface with the element in the stratum's middle, weighted by power: it does
+// lie on one smooth piece of a surface with one that vpl_strata.comp has chosen, weighted by power: it does
 // not hang between two surfaces. What the medium takes from the light on its way to that place is taken from
 // the power; light scattered forward counts as not scattered, as everywhere outside the march.
 #version 460
@@ -179,13 +179,12 @@ void main()
     vpl_stratum stratum = strata[index];
     uint first = block_of(stratum.from);
 
-    // The element in the middle, and how far into it (into a triangle) that is.
-    float half_way = 0.5 * (stratum.from + stratum.to);
-    vpl_block block = vpl_block_at(block_of(half_way));
-    uint at = element_of(block.index, half_way);
+    // The element it lies on the surface of, and how far into it (into a triangle) that is.
+    vpl_block block = vpl_block_at(block_of(stratum.at));
+    uint at = element_of(block.index, stratum.at);
     float before = at > 0u ? weights[block.index * VPL_BLOCK + at - 1u] : 0.0;
     float weight_at = weights[block.index * VPL_BLOCK + at] - before;
-    float inside = (half_way - blocks[block.index] - before) / max(weight_at, 1e-30);
+    float inside = (stratum.at - blocks[block.index] - before) / max(weight_at, 1e-30);
     inside = clamp(inside, 0.0, 0.999);
     vpl_piece centre = vpl_piece_of(block, at, vec2(inside, inside + 1e-4), 0u, 1u);
 

@@ -289,11 +289,64 @@ static void reflections_of_large_floors(void **state)
     }
 }
 
+// Floor and wall under few and under many lamps: what each sends to the other, against `path`. The more lamps share
+// the VPLs the more each of these stands for, of which much lies where floor and wall meet.
+static void lamps_in_a_corner(void **state)
+{
+    tyn_device *dev = ((gpu_test *)*state)->dev;
+    bool good = true;
+    for (uint32_t count = 1; count <= 32; count *= 32) {
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t m = solids_material(&scene, (float[]){0.7f, 0.7f, 0.7f}, BLACK);
+        solids_quad(&scene, (float[]){-2, -1, -2}, (float[]){0, 0, 4}, (float[]){4, 0, 0}, m);
+        solids_quad(&scene, (float[]){-2, -1, -2}, (float[]){4, 0, 0}, (float[]){0, 3, 0}, m);
+        solids_hierarchy(&scene, 4);
+        uint32_t random = 1;
+        for (uint32_t i = 0; i < count; i++) {
+            tyn_light lamp = {.kind = TYN_LIGHT_POINT, .color = {0.3f, 0.3f, 0.3f}};
+            for (int axis = 0; axis < 3; axis++) {
+                random = 1664525 * random + 1013904223;
+                lamp.position[axis] = 1.8f * ((float)(random >> 8) / 16777216.0f - 0.5f);
+            }
+            scene.lights[scene.num_lights++] = lamp;
+        }
+        tyn_view view = {.width = 64, .height = 64};
+        view.camera = (tyn_camera){.projection = TYN_PERSPECTIVE,
+                                   .position = {0, 0, 3},
+                                   .right = {1, 0, 0},
+                                   .up = {0, 1, 0},
+                                   .back = {0, 0, 1},
+                                   .yfov = 0.9f};
+        picture pop, direct, path;
+        picture_render(&pop, dev, "pop", &scene, &view, NULL, 1);
+        picture_render(&direct, dev, "pop", &scene, &view, "vpl.count=0", 1);
+        picture_render(&path, dev, "path", &scene, &view, NULL, 64);
+        for (uint32_t i = 0; i < 3 * 64 * 64; i++) {
+            pop.rgb[i] -= direct.rgb[i];
+            path.rgb[i] -= direct.rgb[i];
+        }
+        picture_error e = picture_compare(&pop, &path, 8);
+        print_message("floor and wall, %u lamps, indirect light: rel_l1 %.1f %% (noise %.1f), "
+                      "bias %+.1f %%\n",
+                      count, 100 * e.rel_l1, 100 * e.noise, 100 * e.bias);
+        good = good && e.reported < 0.12 && fabs(e.bias) < 0.06;
+        picture_free(&pop);
+        picture_free(&direct);
+        picture_free(&path);
+        tyn_scene_finish(&scene);
+    }
+    assert_true(good);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(floors),    cmocka_unit_test(under_emitter),
-        cmocka_unit_test(rooms),     cmocka_unit_test(dark_lamps),
-        cmocka_unit_test(many_suns), cmocka_unit_test(reflections_of_large_floors)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(floors),
+                                       cmocka_unit_test(under_emitter),
+                                       cmocka_unit_test(rooms),
+                                       cmocka_unit_test(dark_lamps),
+                                       cmocka_unit_test(many_suns),
+                                       cmocka_unit_test(reflections_of_large_floors),
+                                       cmocka_unit_test(lamps_in_a_corner)};
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
