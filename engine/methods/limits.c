@@ -182,7 +182,8 @@ void tyn_limits_solve(float unsettled, void (*warn)(void *user, const char *line
 {
     if (unsettled > unsettled_limit) {
         // To one digit: no more is known, and frames of a film say the same line.
-        const double percent = 100 * (double)unsettled, unit = pow(10, floor(log10(percent)));
+        const double percent = 100 * fmin((double)unsettled, 1),
+                     unit = pow(10, floor(log10(percent)));
         char line[256];
         snprintf(
             line, sizeof line,

@@ -37,7 +37,7 @@ layout(binding = 9, rgba32f) uniform writeonly image3D moments;
 layout(binding = 10) uniform samplerBuffer swept;
 layout(binding = 12, scalar) buffer power_buffer
 {
-    vec2 wall_power[]; // absorbed in the sweep, sent out of wall_light; W
+    vec2 wall_power[]; // absorbed, sent out of wall_light; W
 };
 
 layout(constant_id = 0) const uint last = 0; // 1: of the last sweep

@@ -225,15 +225,17 @@ float vpl_share(lattice_box box, uint n, vec3 p, vec3 away, float r)
     walls_place place = walls_place_of(box, p);
     bool parted = walls_near(place) && walls_behind(place.index, position) != walls_behind(place.index, p);
     float share = vpl_map_visibility(map, away, r, parted);
-    if (share > 0.0 && (parted || vpl_map_visibility(map, away, 2.0 * r, true) < 1.0)) {
+    if (share > 0.0) {
         ivec3 from = walls_cell_before(box, position, axis), cell = cell_for(box, place, p);
         uint vpl = n - radial_num_lamps;
-        bool joined = true;
+        bool before = true; // a cell of the VPL's own room is before it
         if (rooms == 1) {
-            joined = rooms_cell_before(box.dims, vpl, from) &&
-                     rooms_joined(rooms_of_vpl(box.dims, vpl), rooms_of_cell(box.dims, cell));
+            before = rooms_cell_before(box.dims, vpl, from);
+            share = rooms_joined(rooms_of_vpl(box.dims, vpl), rooms_of_cell(box.dims, cell)) ? share : 0.0;
         }
-        share = joined && walls_visible(box, cell, from) ? share : 0.0;
+        if (parted || vpl_map_visibility(map, away, 2.0 * r, true) < 1.0) {
+            share = before && walls_visible(box, cell, from) ? share : 0.0;
+        }
     }
     return share;
 }

@@ -93,12 +93,14 @@ void main()
             bool last = k + 1u == strata_here;
             float start = from + float(k) * weight;
             float end = last ? to : from + float(k + 1u) * weight;
-            strata[lane] = vpl_stratum(start, end, mix(start, end, place_of(s, k)));
+            // Never at the end, where the next source begins.
+            float at = max(min(mix(start, end, place_of(s, k)), end * (1.0 - 2e-7)), start);
+            strata[lane] = vpl_stratum(start, end, at);
         }
         count += strata_here;
     }
     if (lane == 0u) {
-                uint before_these = args.append != 0u ? vpl_count : 0u;
+        uint before_these = args.append != 0u ? vpl_count : 0u;
         vpl_before = before_these;
         vpl_count = before_these + min(count, args.count);
     }

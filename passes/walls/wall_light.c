@@ -141,7 +141,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record_vpls(tyn_recorder *r, const tyn_wall_light_params *p,
                         const struct wall_light_args *args)
 {
-    const bool scaled = tyn_rec_has(r, WALL_LIGHT_PORT_DISTANCES);
+    // Without maps (vpl.visibility=0) nothing tells what should arrive.
+    const bool scaled = tyn_rec_extent(r, WALL_LIGHT_PORT_DISTANCES).x > 1;
     const uint32_t added = p->num_suns > 0;
     const uint32_t vpls[2] = {p->mode, tyn_rec_has(r, WALL_LIGHT_PORT_ROOMS)};
     const uint32_t reflect[2] = {added, scaled};

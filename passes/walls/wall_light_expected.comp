@@ -53,7 +53,7 @@ void main()
         vec2 whole = mix(vec2(1.0), vec2(0.5), lessThan(min(at, side - 1 - at), ivec2(1)));
         float share = whole.x * whole.y * on_map.z / (size * size * size * size);
         vec3 away = min(end, 1e6 * box.dx) * (frame * (on_map / size));
-        vec3 off = abs(from + away - 0.5 * args.extent) - 0.5 * args.extent;
+        vec3 off = abs(from + away - 0.5 * args.extent) - 0.5 * box.dx * vec3(args.dims);
         bool meets = max(off.x, max(off.y, off.z)) < 0.5 * box.dx;
         beam_tau tau = radial_tau(radial_place_of(n, away, length(away)));
         sum += share * vec4(meets ? exp(-(tau.a + tau.p)) : vec3(0.0), 1.0);

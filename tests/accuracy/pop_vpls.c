@@ -56,7 +56,10 @@ static void any_number(void **state)
             print_message("  %s %+6.1f %%", settings[k].set + 4, 100 * off);
             const bool known = (!strcmp(names[i], "fog-hall") && (k == 1 || k == 2)) ||
                                (!strcmp(names[i], "cornell-smoke") && k == 2);
-            good = todo_if(known, fabs(off) <= settings[k].off,
+            // Nothing in a room hides it from its lights: without their maps .4 % more, and 5.5 % less if the lattice's
+            // walls get half of what is theirs.
+            const bool open = !strcmp(names[i], "room") && k == NUM - 1;
+            good = todo_if(known, fabs(off) <= (open ? 0.01 : settings[k].off),
                            "one or two lights are close to what they light: 16 x 16 pixels sample "
                            "a spot (of fog-hall 64 x 64 do, too)",
                            "%s %s", names[i], settings[k].set) &&
