@@ -150,7 +150,7 @@ void add_ray(inout pixel_light sum, ivec2 pixel, vec2 where, float footprint, su
             break;
         }
         if (left > 1e-3) {
-            group = surface_group_from(camera, pixel, group.end);
+            group = surface_group_from(camera, pixel, group.left, true);
         }
     }
     sum.half_distance = min(sum.half_distance, start + state.half_distance);
@@ -162,13 +162,13 @@ pixel_light pixel_light_none()
     return pixel_light(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0, TYN_INFINITY, TYN_INFINITY, 0u, false);
 }
 
-// The nearest surfaces of a pixel, or that there are none.
-surface_group first_surface(ivec2 pixel)
+// The nearest surfaces of a pixel, or that there are none. `one_piece`: as surface_group_from has it.
+surface_group first_surface(ivec2 pixel, bool one_piece)
 {
     if (raymarch_has(RAYMARCH_SURFACE)) {
-        return surface_group_from(camera, pixel, 0.0);
+        return surface_group_from(camera, pixel, ~0u, one_piece);
     }
-    return surface_group(vec4(vec3(0.0), TYN_INFINITY), 1.0, TYN_INFINITY, vec2(0.5));
+    return surface_group(vec4(vec3(0.0), TYN_INFINITY), 1.0, 0u, vec2(0.5));
 }
 
 // `share` of the sum is the pixel's light.
@@ -202,7 +202,7 @@ void store_pixel(ivec2 pixel, pixel_light sum, float share)
 void shade_pixel(ivec2 pixel)
 {
     pixel_light sum = pixel_light_none();
-    surface_group group = first_surface(pixel);
+    surface_group group = first_surface(pixel, true);
     uint num_rays = group.share < 1.0 ? 1u : rays_of_pixel(pixel);
     for (uint i = 0u; i < num_rays; i++) {
         vec2 where = num_rays == 1u ? vec2(0.5) : quarter_pixel(i);

@@ -29,7 +29,7 @@ void march_block(ivec2 block)
         ivec2 pixel = min(corner + ivec2(i & 1, i >> 1), ivec2(args.end) - 1);
         even = even && rays_of_pixel(pixel) == 1u;
         if (raymarch_has(RAYMARCH_SURFACE)) {
-            surface_group group = surface_group_from(camera, pixel, 0.0);
+            surface_group group = surface_group_from(camera, pixel, ~0u, false);
             even = even && group.share > 0.999;
             nearest = min(nearest, group.mean.a);
             farthest = max(farthest, group.mean.a);
@@ -108,7 +108,7 @@ void fill_block(ivec2 block)
         march_result r = march_result(sparse_between(block, other, 0), sparse_between(block, other, 1),
                                       sparse_between(block, other, 2));
         pixel_light sum = pixel_light_none();
-        surface_group group = first_surface(pixel);
+        surface_group group = first_surface(pixel, false);
         add_light(sum, pixel, vec2(0.5), 1.0, group, ray_to(pixel, vec2(0.5), group), r, vec3(0.0));
         store_pixel(pixel, sum, 1.0);
         met += sum.met ? 1u : 0u;

@@ -27,6 +27,12 @@ vec3 surface_radiance(ivec2 pixel, int side, int i)
     return colour_unpack(imageLoad(surface_image, pixel * side + ivec2(i % side, i / side)).xy);
 }
 
+// The piece of surface that it shows, of those in the pixel.
+uint surface_piece(ivec2 pixel, int side, int i)
+{
+    return imageLoad(surface_image, pixel * side + ivec2(i % side, i / side)).y >> 30;
+}
+
 struct surface_samples {
     int side;     // samples along each side of the pixel
     vec4 mean;    // radiance and distance, if they are even; else the distance is the shortest
@@ -38,35 +44,41 @@ struct surface_samples {
 struct surface_group {
     vec4 mean;   // radiance and distance; with distance infinity: no surface
     float share; // of the pixel's samples
-    float end;   // all are nearer than this
+    uint left;   // bits: the samples that are not among them, nor were before
     vec2 where;  // their middle in the pixel
 };
 
-// Of those not nearer than `from`, the nearest and what is up to 1.05 times as far.
-surface_group surface_group_from(camera_block camera, ivec2 pixel, float from)
+// Of the samples `left` (bits), the nearest and those up to 1.05 times as far. `one_piece`: only on the same piece of
+// surface: their mean distance is on it, where that of both sides of an edge is behind the edge.
+surface_group surface_group_from(camera_block camera, ivec2 pixel, uint left, bool one_piece)
 {
     int side = surface_side(camera);
     float nearest = TYN_INFINITY, count = 0.0;
+    int first = 0;
     for (int i = 0; i < side * side; i++) {
-        float away = surface_distance(pixel, side, i);
-        nearest = away >= from ? min(nearest, away) : nearest;
+        float away = (left >> i & 1u) != 0u ? surface_distance(pixel, side, i) : TYN_INFINITY;
+        first = away < nearest ? i : first;
+        nearest = min(nearest, away);
     }
+    uint piece = surface_piece(pixel, side, first);
     vec3 sum = vec3(0.0);
     vec2 where = vec2(0.0);
-    float end = 1.05 * nearest, inverses = 0.0;
+    float inverses = 0.0;
     for (int i = 0; i < side * side; i++) {
         float away = surface_distance(pixel, side, i);
-        bool here = away >= nearest && (away < end || nearest == TYN_INFINITY);
+        bool here = (left >> i & 1u) != 0u && (away < 1.05 * nearest || nearest == TYN_INFINITY);
+        here = here && (!one_piece || nearest == TYN_INFINITY || surface_piece(pixel, side, i) == piece);
         sum += here && nearest < TYN_INFINITY ? surface_radiance(pixel, side, i) : vec3(0.0);
         count += here ? 1.0 : 0.0;
         inverses += here ? 1.0 / max(away, 1e-30) : 0.0;
         where += here ? (vec2(i % side, i / side) + 0.5) / float(side) : vec2(0.0);
+        left &= here ? ~(1u << i) : ~0u;
     }
     surface_group group;
     // The reciprocal of the distance to a plane is nearly linear over the pixel.
     group.mean = vec4(sum / max(count, 1.0), nearest < TYN_INFINITY ? count / inverses : TYN_INFINITY);
     group.share = count / float(side * side);
-    group.end = end;
+    group.left = left;
     group.where = where / max(count, 1.0);
     return group;
 }

@@ -10,12 +10,11 @@
 // blended. On rough surfaces the planes of some triangle, which go on beyond it, may be between the place and
 // every centre. So cells behind walls count as well, a thousandth for every wall, if there is any light in them
 // (within solids it is dark exactly); where there are others they do not matter. A place in the dark may be in
-// another solid: then one closer to the surface is tried, and cells farther around.
+// another solid: then one closer to the surface is tried, and cells farther around. Where it is known which room
+// (rooms.h) the surface is in, cells of other rooms are dark.
 #ifndef TYN_WALLS_IRRADIANCE_GLSL
 #define TYN_WALLS_IRRADIANCE_GLSL
 #include "walls_table.glsl"
-
-layout(set = 0, binding = WALLS_TABLE) uniform sampler3D walls_table_tex;
 
 const float WALLS_BEHIND = 1e-3;   // what cells behind one wall count
 const float WALLS_FEW = 0.02;      // the least share of a place's cells that tells that it is dark
@@ -80,9 +79,10 @@ float walls_share(lattice_box box, walls_spot s, ivec3 q)
 }
 
 // Irradiance on the side n of a surface at p (M) of the first `channels` channels of `moments`, W/m^2. `others`: the
-// same cells' mean of `num_others` fields that are behind each other along z; 0 where no cell has light.
+// same cells' mean of `num_others` fields that are behind each other along z; 0 where no cell has light. `room` of the
+// surface; -1: unknown.
 vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int channels, sampler3D fields,
-                         uint num_others, out vec4 others[WALLS_OTHERS])
+                         uint num_others, float room, out vec4 others[WALLS_OTHERS])
 {
     vec3 irradiance = vec3(0.0);
     bool lit = false;
@@ -114,11 +114,11 @@ vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int
                 light[ch] = 0.25 * m.x - 0.5 * dot(m.yzw, n);
                 fluence += max(m.x, 0.0);
             }
-            bool dark = fluence <= 0.0;
+            bool dark = fluence <= 0.0 || room >= 0.0 && walls_entry(box, q, TYN_WALLS_PLANES).z != room;
             lit = lit || share > 0.0 && !dark;
             // A dark cell that seems to be in front may be within a solid.
             share = share < 0.0 ? dark ? 0.0 : -share : dark ? 0.1 * share : share;
-            sum += share * light;
+            sum += dark ? vec3(0.0) : share * light;
             [[unroll]] for (uint k = 0u; k < num_others; k++) {
                 others[k] += share * texelFetch(fields, q + ivec3(0, 0, int(k) * box.dims.z), 0);
             }

@@ -16,7 +16,7 @@
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
-layout(binding = 28, rg32ui) uniform writeonly uimage2D radiance_image; // packed_colour.glsl
+layout(binding = 28, rg32ui) uniform writeonly uimage2D radiance_image; // packed_colour.glsl, and the piece's number
 layout(binding = 29, scalar) readonly buffer edge_count_buffer
 {
     gbuffer_edge_count edge_count;
@@ -94,7 +94,7 @@ void main()
             imageStore(radiance_image, texel, uvec4(0u));
         }
     }
-    while (left != 0u) {
+    for (uint piece = 0u; left != 0u; piece++) {
         vec3 albedo, emission;
         uint members;
         shade_point p = piece_of(pixel, left, albedo, emission, members);
@@ -106,7 +106,7 @@ void main()
         } else {
             irradiance = smooth_light_around(p, 0.5 * (part.xy + part.zw)) + sharp_light_at(p, part);
         }
-        uvec2 radiance = colour_pack(emission + albedo * irradiance / PI);
+        uvec2 radiance = colour_pack(emission + albedo * irradiance / PI) | uvec2(0u, piece << 30);
         for (uint some = members; some != 0u; some &= some - 1u) {
             imageStore(radiance_image, shade_texel(corner, findLSB(some)), uvec4(radiance, 0u, 0u));
         }

@@ -15,6 +15,7 @@ layout(binding = 22) uniform sampler3D moments_tex;
 #define WALLS_TABLE 23
 #define WALLS_OTHERS TYN_BEAM_MAX_SUNS
 #include "walls_irradiance.glsl"
+#include "shade_rooms.glsl"
 layout(binding = 24, scalar) uniform env_uniform
 {
     env_block environment;
@@ -67,7 +68,8 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
     if (shade_has(SHADE_LATTICE) && (inside || near > 0.0)) {
         int channels = shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
         uint num_suns = shade_has(SHADE_SPREAD) ? shade_num_suns : 0u;
-        within = walls_irradiance_at(moments_tex, box, place, p.normal, channels, forward_tex, num_suns, around);
+        float room = shade_has(SHADE_ROOMS) ? shade_room_of(p.position) : -1.0;
+        within = walls_irradiance_at(moments_tex, box, place, p.normal, channels, forward_tex, num_suns, room, around);
         within = channels == 1 ? within.r * args.tint : within;
         irradiance = inside ? within : irradiance;
     }

@@ -7,15 +7,13 @@
 #include "lattice.glsl"
 #include "walls_table.glsl"
 
-layout(binding = SHADE_ROOMS_TABLE) uniform sampler3D rooms_table_tex;
-
 const int SHADE_ROOM_STEPS = 8;
 
 // What the camera sees of a surface is in the room of every place on the way to it: of the nearest one in a cell without
 // walls. -1: unknown.
 float shade_room_of(vec3 p)
 {
-    ivec3 dims = textureSize(rooms_table_tex, 0);
+    ivec3 dims = textureSize(walls_table_tex, 0);
     dims.z /= TYN_WALLS_PLANES + 1;
     lattice_box box = lattice_box_of(medium.extent, dims);
     float far = dot(p - camera.origin, camera.forward);
@@ -29,7 +27,7 @@ float shade_room_of(vec3 p)
             break;
         }
         ivec3 c = ivec3(floor(lattice_from_m(box, p + s * way))), at = clamp(c, ivec3(0), dims - 1);
-        vec4 entry = texelFetch(rooms_table_tex, at + ivec3(0, 0, TYN_WALLS_PLANES * dims.z), 0);
+        vec4 entry = texelFetch(walls_table_tex, at + ivec3(0, 0, TYN_WALLS_PLANES * dims.z), 0);
         bool near = (walls_table_links(entry) & TYN_WALLS_NEAR) != 0u;
         room = at != c ? 0.0 : near ? -1.0 : entry.z;
     }

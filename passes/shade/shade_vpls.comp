@@ -7,7 +7,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shade_place.glsl"
-#define SHADE_ROOMS_TABLE 22
+#define WALLS_TABLE 22
 #include "shade_rooms.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -258,12 +258,12 @@ static void sealed_from_virtual_lights(void **state)
         printf("    %d pixels on the dark side: mean %.1e, brightest %.1e, %d shine\n",
                3 * SIDE * SIDE, mean, brightest, shining);
         assert_true(mean < 1e-4 * lit / (4 * M_PI));
-        assert_true(shining <= (k > 0 ? 3 * SIDE * SIDE / 1000 : 0));
-        good = todo_if(k > 0, shining == 0,
-                       "a few pixels at edges, by a cause that is not found; one of them shines "
-                       "without virtual lights, too",
-                       "lamp %s, box of %g m: %d pixels shine", lamp_inside ? "inside" : "beside",
-                       2.0 * (double)reach[0], shining) &&
+        assert_true(shining <= (k == 2 ? 2 : 0) && brightest < 1e-3 * lit / (4 * M_PI));
+        good = todo_if(
+                   k == 2, shining == 0,
+                   "rays see cells behind a wall that is neither in their own cell nor in that one",
+                   "lamp %s, box of %g m: %d pixels shine", lamp_inside ? "inside" : "beside",
+                   2.0 * (double)reach[0], shining) &&
                good;
         tyn_scene_finish(&scene);
     }
