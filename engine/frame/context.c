@@ -9,6 +9,7 @@
 #include "methods/limits.h"
 #include "gpu/device.h"
 #include "passes/medium/medium.h"
+#include "passes/walls/wall_light_args.h"
 #include "scene/check.h"
 #include <math.h>
 #include <stdlib.h>
@@ -532,7 +533,7 @@ static void add_work(tyn_node_report *node, const char *name, double amount)
     }
 }
 
-// What the node itself counted: struct counters_block, or the head of struct ordinates_block. By the
+// What the node itself counted: struct counters_block, struct wall_light_power, or the head of struct ordinates_block. By the
 // node's name there may also be an output of the frame ("balance"), of another size.
 static void add_counters(tyn_node_report *node, tyn_context *ctx)
 {
@@ -549,6 +550,16 @@ static void add_counters(tyn_node_report *node, tyn_context *ctx)
         if (most > 0) {
             add_work(node, "unsettled", (double)most);
             tyn_limits_solve(most, add_warning, ctx);
+        }
+    } else if (data && size.x == sizeof(struct wall_light_power)) {
+        const struct wall_light_power *p = data;
+        if (p->rooms > 0) {
+            add_work(node, "rooms", p->rooms);
+            add_work(node, "least", (double)p->least);
+            add_work(node, "most", (double)p->most);
+            add_work(node, "clamped", p->clamped);
+            add_work(node, "astray", (double)p->astray);
+            tyn_limits_walls(p->astray, add_warning, ctx);
         }
     } else if (data && size.x == sizeof(struct ordinates_block)) {
         const struct ordinates_block *o = data;

@@ -3,6 +3,7 @@
 #include "passes/walls/walls.h"
 #include <tyndall/registry.h>
 #include <math.h>
+#include <string.h>
 
 bool tyn_has_walls(const tyn_frame_scene *frame)
 {
@@ -27,6 +28,15 @@ bool tyn_has_walls(const tyn_frame_scene *frame)
     return true;
 }
 
+static void put_lattice(const tyn_lattice_shape *shape, float extent[3], uint32_t dims[3])
+{
+    const tyn_extent size = tyn_lattice_dims(shape->extent, shape->cells);
+    dims[0] = size.x;
+    dims[1] = size.y;
+    dims[2] = size.z;
+    memcpy(extent, shape->extent, sizeof shape->extent);
+}
+
 tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
                          tyn_wall_refs *walls)
 {
@@ -34,15 +44,9 @@ tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_sha
     if (!tyn_has_walls(job->frame)) {
         return TYN_OK;
     }
-    tyn_extent dims = tyn_lattice_dims(shape->extent, shape->cells);
     tyn_walls_params params;
     tyn_settings_params(job->settings, &tyn_pass_walls, &params);
-    params.dims[0] = dims.x;
-    params.dims[1] = dims.y;
-    params.dims[2] = dims.z;
-    for (int a = 0; a < 3; a++) {
-        params.extent[a] = shape->extent[a];
-    }
+    put_lattice(shape, params.extent, params.dims);
     tyn_ref refs[TYN_MAX_PORTS] = {
         [WALLS_PORT_SURFACES] = job->refs.surfaces,   [WALLS_PORT_VERTICES] = job->refs.vertices,
         [WALLS_PORT_TRIANGLES] = job->refs.triangles, [WALLS_PORT_MATERIALS] = job->refs.materials,
@@ -62,17 +66,11 @@ tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattic
     if (!walls->links.resource || (num_suns == 0 && !radials->vpls)) {
         return TYN_OK;
     }
-    tyn_extent dims = tyn_lattice_dims(shape->extent, shape->cells);
     tyn_wall_light_params params;
     tyn_settings_params(job->settings, &tyn_pass_wall_light, &params);
     params.mode = job->frame->medium.mode;
     params.num_suns = num_suns;
-    params.dims[0] = dims.x;
-    params.dims[1] = dims.y;
-    params.dims[2] = dims.z;
-    for (int a = 0; a < 3; a++) {
-        params.extent[a] = shape->extent[a];
-    }
+    put_lattice(shape, params.extent, params.dims);
     tyn_ref refs[TYN_MAX_PORTS] = {
         [WALL_LIGHT_PORT_MEDIUM] = job->refs.medium,
         [WALL_LIGHT_PORT_LIGHTS] = job->refs.suns,
@@ -95,6 +93,7 @@ tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattic
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_wall_light, &params, refs);
     *light = refs[WALL_LIGHT_PORT_LIGHT];
+    tyn_job_counters(g, job, "wall_light", refs[WALL_LIGHT_PORT_POWER]);
     return result;
 }
 
@@ -105,15 +104,9 @@ tyn_result tyn_add_rooms(tyn_graph *g, const tyn_job *job, const tyn_lattice_sha
     if (!walls->links.resource || !vpls->distances.resource) {
         return TYN_OK;
     }
-    tyn_extent dims = tyn_lattice_dims(shape->extent, shape->cells);
     tyn_rooms_params params;
     tyn_settings_params(job->settings, &tyn_pass_rooms, &params);
-    params.dims[0] = dims.x;
-    params.dims[1] = dims.y;
-    params.dims[2] = dims.z;
-    for (int a = 0; a < 3; a++) {
-        params.extent[a] = shape->extent[a];
-    }
+    put_lattice(shape, params.extent, params.dims);
     tyn_ref refs[TYN_MAX_PORTS] = {
         [ROOMS_PORT_LINKS] = walls->links,
         [ROOMS_PORT_VPLS] = vpls->lights,

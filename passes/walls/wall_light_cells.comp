@@ -1,5 +1,5 @@
-// wall_light_cells.comp -- the cells that have walls: few, so that a list of them keeps all threads of
-// wall_light_vpls.comp busy on devices that run them in groups.
+// wall_light_cells.comp -- the cells that have walls in rooms that virtual point lights shine in: few, so that a list of them
+// keeps all threads of wall_light_vpls.comp busy on devices that run them in groups.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -33,7 +33,12 @@ layout(binding = 4, scalar) writeonly buffer arrived_buffer
 {
     vec3 arrived[];
 };
-layout(constant_id = 0) const uint added = 0; // 1: to the suns' light
+layout(constant_id = 0) const uint added = 0;  // 1: to the suns' light
+layout(constant_id = 1) const uint scaled = 0; // 1: light that black walls get counts, too
+layout(constant_id = 2) const uint rooms = 0;
+#define LATTICE_ROOMS 5
+#define WALL_LIGHT_FIRST 6
+#include "wall_light_rooms.glsl"
 
 void main()
 {
@@ -51,7 +56,8 @@ void main()
         cut |= (found >> link & 1u) << uint(13 + d.x + 3 * d.y + 9 * d.z);
     }
     list_entries[i] = cut;
-    if (wall_cells[i].area > 0.0) {
+    bool reflects = wall_cells[i].area > 0.0 && (scaled == 1 || wall_cells[i].albedo != vec3(0.0));
+    if (reflects && first_vpl(i) != WALL_LIGHT_DARK) {
         uint n = atomicAdd(list.count, 1u);
         list_entries[cells + n] = i;
         atomicMax(list.groups.x, n / WALL_LIGHT_GROUP + 1u);

@@ -1,5 +1,5 @@
-// wall_light_expected.comp -- the power that a virtual point light (VPL) sends to walls, as the rays of its map say.
-// One workgroup per VPL.
+// wall_light_expected.comp -- the power that a virtual point light (VPL) sends to walls, as the rays of its map say, and the
+// room that it shines in. One workgroup per VPL.
 //
 // The map's texels are directions on a grid with its edges: halves there. A ray that ends beyond the lattice's last links
 // meets no wall of a cell.
@@ -29,10 +29,26 @@ layout(binding = 6, scalar) buffer power_buffer
 {
     wall_light_power power;
 };
+layout(constant_id = 1) const uint rooms = 0;
+#define LATTICE_ROOMS 7
+#include "lattice_rooms.glsl"
+layout(binding = 8, scalar) buffer first_buffer
+{
+    uint first[]; // by room: the first VPL that shines there
+};
 
 shared vec4 sums[WALL_LIGHT_GROUP]; // arrives, per W/sr; of all directions
 
 const float PI = 3.14159265;
+
+// Of the cell that light goes out from, as wall_light_vpls.comp has it: only cells that open links join with it see the VPL.
+uint room_of(uint vpl, radial_light light, lattice_box box)
+{
+    ivec3 from = ivec3(floor(lattice_from_m(box, light.position) + 0.75 * light.axis)); // walls_cell_before
+    bool shines = rooms == 0 || rooms_cell_before(box.dims, vpl, from);
+    bool inside = all(greaterThanEqual(from, ivec3(0))) && all(lessThan(from, box.dims));
+    return rooms == 0 || !inside ? TYN_ROOMS_OUTSIDE : shines ? rooms_of_cell(box.dims, from) : rooms_of_vpl(box.dims, vpl);
+}
 
 void main()
 {
@@ -40,7 +56,8 @@ void main()
     bool shines = n < radial_count;
     int side = textureSize(distances, 0).x / VPL_MAPS_IN_A_ROW;
     uint rays = shines ? uint(side * side) : 0u;
-    radial_light light = radials[min(n, TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX - 1u)].light;
+    radial_grid grid = radials[min(n, TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX - 1u)];
+    radial_light light = grid.light;
     vec3 from = vpl_map_origin(light.position, light.axis, light.radius);
     mat3 frame = vpl_frame(light.axis);
     lattice_box box = lattice_box_of(args.extent, ivec3(args.dims));
@@ -55,7 +72,7 @@ void main()
         vec3 away = min(end, 1e6 * box.dx) * (frame * (on_map / size));
         vec3 off = abs(from + away - 0.5 * args.extent) - 0.5 * box.dx * vec3(args.dims);
         bool meets = max(off.x, max(off.y, off.z)) < 0.5 * box.dx;
-        beam_tau tau = radial_tau(radial_place_of(n, away, length(away)));
+        beam_tau tau = radial_tau(radial_place_in(grid, away, length(away)));
         sum += share * vec4(meets ? exp(-(tau.a + tau.p)) : vec3(0.0), 1.0);
     }
     sums[me] = sum;
@@ -66,6 +83,11 @@ void main()
         }
     }
     if (me == 0u) {
+        uint room = shines ? room_of(vpl, light, box) : TYN_ROOMS_NONE;
+        power.room[vpl] = room;
         power.expected[vpl] = shines ? light.intensity * (PI * sums[0].rgb / max(sums[0].a, 1e-20)) : vec3(0.0);
+        if (room <= args.dims.x * args.dims.y * args.dims.z) {
+            atomicMin(first[room], vpl);
+        }
     }
 }

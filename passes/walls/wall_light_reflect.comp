@@ -34,6 +34,10 @@ layout(binding = 4, scalar) readonly buffer power_buffer
 };
 layout(constant_id = 0) const uint added = 0; // 1: to the suns' light
 layout(constant_id = 1) const uint scaled = 0;
+layout(constant_id = 2) const uint rooms = 0;
+#define LATTICE_ROOMS 5
+#define WALL_LIGHT_FIRST 6
+#include "wall_light_rooms.glsl"
 
 void main()
 {
@@ -43,7 +47,7 @@ void main()
     uint i = list_entries[args.dims.x * args.dims.y * args.dims.z + gl_GlobalInvocationID.x];
     vec3 radiance = wall_cells[i].albedo * arrived[i] / (LATTICE_4PI * wall_cells[i].area);
     if (scaled == 1u) {
-        radiance *= power.scale;
+        radiance *= power.scale[first_vpl(i)];
     }
     wall_light[i] = added == 1u ? wall_light[i] + radiance : radiance;
 }

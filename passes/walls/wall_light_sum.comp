@@ -1,60 +1,72 @@
-// wall_light_sum.comp -- the factor that makes the walls of all cells get what virtual point lights send to walls. One
-// workgroup; sums have a fixed order.
-//
-// The walls of the lattice are stairs: those of a box of seven cells are some percent more or less than its
-// own, and farther or nearer.
+// wall_light_sum.comp -- the light of virtual point lights (VPLs) that the walls of a part of the lattice get, by room. One
+// workgroup per part; sums have a fixed order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "wall_light_args.h"
-#include "lattice.glsl"
 
 layout(local_size_x = WALL_LIGHT_SUM_GROUP) in;
 layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
 };
-layout(binding = 0, scalar) buffer power_buffer
-{
-    wall_light_power power;
-};
-layout(binding = 1, scalar) readonly buffer arrived_buffer
+layout(binding = 0, scalar) readonly buffer arrived_buffer
 {
     vec3 arrived[]; // W/m^2, times the area over dx^2
 };
+layout(binding = 1, scalar) writeonly buffer part_buffer
+{
+    vec3 parts[]; // [room, by its first VPL][part]: 0, but for what is written here
+};
+layout(constant_id = 0) const uint rooms = 0;
+#define LATTICE_ROOMS 2
+#define WALL_LIGHT_FIRST 3
+#include "wall_light_rooms.glsl"
 
 shared vec3 sums[WALL_LIGHT_SUM_GROUP];
-
-vec3 total_of(vec3 v)
-{
-    uint me = gl_LocalInvocationIndex;
-    barrier();
-    sums[me] = v;
-    for (uint half_n = WALL_LIGHT_SUM_GROUP / 2u; half_n > 0u; half_n /= 2u) {
-        barrier();
-        if (me < half_n) {
-            sums[me] += sums[me + half_n];
-        }
-    }
-    barrier();
-    return sums[0];
-}
+shared uint next;
 
 void main()
 {
-    uint me = gl_LocalInvocationIndex, cells = args.dims.x * args.dims.y * args.dims.z;
-    float dx = lattice_box_of(args.extent, ivec3(args.dims)).dx;
-    vec3 sent = vec3(0.0), got = vec3(0.0);
-    for (uint v = me; v < WALL_LIGHT_VPLS; v += WALL_LIGHT_SUM_GROUP) {
-        sent += power.expected[v];
-    }
-    for (uint i = me; i < cells; i += WALL_LIGHT_SUM_GROUP) {
-        got += arrived[i];
-    }
-    sent = total_of(sent);
-    got = total_of(got) * (dx * dx);
-    if (me == 0u) {
-        // Surfaces that the lattice has few links for do not give all their light to others.
-        power.scale = mix(vec3(1.0), clamp(sent / max(got, vec3(1e-30)), 0.5, 2.0), greaterThan(got, vec3(0.0)));
+    uint me = gl_LocalInvocationIndex, part = gl_WorkGroupID.x, cells = args.dims.x * args.dims.y * args.dims.z;
+    uint size = (cells + args.num_parts - 1u) / args.num_parts;
+    uint begin = part * size + me, end = min((part + 1u) * size, cells);
+    // Room after room, in the order of their first VPLs; most parts have walls of one or two.
+    for (uint from = 0u; from < WALL_LIGHT_VPLS; from++) {
+        barrier();
+        if (me == 0u) {
+            next = WALL_LIGHT_DARK;
+        }
+        uint mine = WALL_LIGHT_DARK;
+        for (uint i = begin; i < end; i += WALL_LIGHT_SUM_GROUP) {
+            if (arrived[i] != vec3(0.0)) {
+                uint vpl = first_vpl(i);
+                mine = vpl >= from ? min(mine, vpl) : mine;
+            }
+        }
+        barrier();
+        if (mine != WALL_LIGHT_DARK) {
+            atomicMin(next, mine);
+        }
+        barrier();
+        from = next;
+        if (from == WALL_LIGHT_DARK) {
+            break;
+        }
+        vec3 sum = vec3(0.0);
+        for (uint i = begin; i < end; i += WALL_LIGHT_SUM_GROUP) {
+            vec3 light = arrived[i];
+            sum += light != vec3(0.0) && first_vpl(i) == from ? light : vec3(0.0);
+        }
+        sums[me] = sum;
+        for (uint half_n = WALL_LIGHT_SUM_GROUP / 2u; half_n > 0u; half_n /= 2u) {
+            barrier();
+            if (me < half_n) {
+                sums[me] += sums[me + half_n];
+            }
+        }
+        if (me == 0u) {
+            parts[from * WALL_LIGHT_PARTS + part] = sums[0];
+        }
     }
 }

@@ -106,7 +106,7 @@ void view_orthographic(tyn_view *view, const float centre[3], float x, float y, 
 
 // ---- pictures ---------------------------------------------------------------------------------
 
-static tyn_offline *open_method(tyn_device *dev, const char *method, const char *settings)
+tyn_offline *scene_open(tyn_device *dev, const char *method, const char *settings)
 {
     tyn_settings *values;
     assert_int_equal(tyn_settings_create(&values), TYN_OK);
@@ -138,7 +138,7 @@ static float *copy_rgb(const float *rgba, size_t pixels)
 void picture_render(picture *p, tyn_device *dev, const char *method, const tyn_scene *scene,
                     const tyn_view *view, const char *settings, uint32_t spp)
 {
-    tyn_offline *off = open_method(dev, method, settings);
+    tyn_offline *off = scene_open(dev, method, settings);
     tyn_view v = *view;
     bool sampled = !strcmp(method, "path");
     v.outputs = TYN_OUTPUT_RADIANCE | (sampled ? TYN_OUTPUT_ERROR : 0);
@@ -226,7 +226,7 @@ picture_error picture_compare(const picture *a, const picture *reference, uint32
 double scene_imbalance(tyn_device *dev, const char *method, const tyn_scene *scene,
                        const char *settings)
 {
-    tyn_offline *off = open_method(dev, method, settings);
+    tyn_offline *off = scene_open(dev, method, settings);
     tyn_view view = {.width = 1, .height = 1, .outputs = TYN_OUTPUT_BALANCE};
     tyn_camera_frame_scene(&view.camera, scene);
     assert_int_equal(tyn_offline_frame(off, scene, &view, false), TYN_OK);

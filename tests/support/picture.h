@@ -44,6 +44,9 @@ typedef struct picture_error {
 } picture_error;
 picture_error picture_compare(const picture *a, const picture *reference, uint32_t block);
 
+// A method with settings: "pass.option=value ...", or NULL.
+tyn_offline *scene_open(tyn_device *dev, const char *method, const char *settings);
+
 // The balance of a method: imbalance of the worst channel.
 double scene_imbalance(tyn_device *dev, const char *method, const tyn_scene *scene,
                        const char *settings);

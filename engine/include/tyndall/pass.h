@@ -63,11 +63,8 @@ typedef enum tyn_use {
     TYN_USE_STORAGE_WRITE, // writeonly image or buffer
     TYN_USE_STORAGE_RW,    // read and written in one dispatch (atomics, in-place)
     TYN_USE_UNIFORM,       // uniform buffer (std140 or scalar block layout)
-    TYN_USE_INDIRECT,      // implied by dispatch_indirect; not for bindings
-    TYN_USE_TRANSFER_SRC,  // implied by the recorder's copies; not for bindings
-    TYN_USE_TRANSFER_DST,
-    TYN_USE_COLOR, // drawn to: only in tyn_raster.attachments
-    TYN_USE_DEPTH, // tested against and drawn to: only there
+    TYN_USE_COLOR,         // drawn to: only in tyn_raster.attachments
+    TYN_USE_DEPTH,         // tested against and drawn to: only there
     // Buffers read as texels, by texelFetch(b, i): samplerBuffer of floats (in .x), of vec4, usamplerBuffer of uints,
     // of uvec4. Where every thread reads another place a CPU device is several times faster at it than at storage
     // buffers.
