@@ -1,0 +1,30 @@
+// vpl_eval.comp -- vpl.glsl at points, for the test of it.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "vpl.glsl"
+
+layout(local_size_x = 64) in;
+struct point {
+    vec3 p, n, position, axis;
+    float radius;
+};
+layout(binding = 0, scalar) readonly buffer point_buffer
+{
+    point points[];
+};
+layout(binding = 1, scalar) writeonly buffer result_buffer
+{
+    float results[];
+};
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+    if (i < uint(points.length())) {
+        point q = points[i];
+        radial_light light =
+            radial_light(q.position, TYN_RADIAL_COSINE, vec3(1.0), 0.0, q.axis, 0.0, q.radius, 0u);
+        results[i] = vpl_irradiance(light, q.p, q.n);
+    }
+}
