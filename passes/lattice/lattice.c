@@ -462,7 +462,8 @@ static void mix(solve *s, uint32_t index)
         result[age] = (uint8_t)(PORT_RESULT + (index + 3 - age) % 3);
         change[age] = (uint8_t)(PORT_CHANGE + (index + 3 - age) % 3);
     }
-    s->args.history = !p->anderson ? 0 : index < 2 ? index : 2;
+    s->args.history = index < 2 ? index : 2;
+    s->args.anderson = p->anderson;
     uint32_t groups = (s->args.elements + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
     const uint32_t spec[2] = {index + 1 == (uint32_t)p->sweeps, s->walls[0]};
     const uint32_t residual_spec[2] = {s->walls[0], spec[0]};

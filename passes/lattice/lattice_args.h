@@ -45,11 +45,12 @@ struct lattice_args { // kernels on the whole lattice
     tyn_uvec3 dims;
     tyn_uint channels;
     tyn_vec3 tint;
-    float dx;         // m
-    tyn_uint lines;   // sweep: threads per direction and channel
-    tyn_uint stride;  // cells of all levels of the diffusion grid
-    tyn_uint history; // residual, weights, mix: earlier sweeps to mix in, 0..2
-    tyn_uint warm;    // start: 1 = from the guess
+    float dx;          // m
+    tyn_uint lines;    // sweep: threads per direction and channel
+    tyn_uint stride;   // cells of all levels of the diffusion grid
+    tyn_uint history;  // residual, weights, mix: earlier sweeps that there are, 0..2
+    tyn_uint anderson; // weights: 1 = they are mixed in
+    tyn_uint warm;     // start: 1 = from the guess
     // Vectors of the state per channel: cells, then the radiance of their walls by fours.
     tyn_uint elements;
     tyn_uint corrected; // residual: 1 = there is a diffusion correction

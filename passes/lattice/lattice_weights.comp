@@ -27,13 +27,15 @@ layout(constant_id = 0) const uint last = 0; // 1: of the last sweep
 const uint num_dots = last == 1 ? LATTICE_NUM_DOTS : LATTICE_MIX_DOTS;
 
 shared float sums[LATTICE_NUM_DOTS][LATTICE_GROUP];
+shared float norms[3][LATTICE_GROUP]; // of the solution, by channel
 
-// Share of the solution that is still to come. Sweeps bring less and less, here by the factor of the last two:
-// after what mixing leaves of the last change come its rate, rate^2, ... Of one sweep no rate is known: half of
-// what the diffusion correction had to add (of 13 scenes it is 0.02 to 0.95 of that, by two thirds 0.1 to 0.6).
+// What is still to come, as a share of the solution in the brightest channel. Sweeps bring less and less, here by the factor
+// of the last two: after what mixing leaves of the last change come its rate, rate^2, ... Of one sweep no rate is known: half
+// of what the diffusion correction had to add (of 13 scenes it is 0.02 to 0.95 of that, by two thirds 0.1 to 0.6).
 float unsettled(vec2 g, float p, float q)
 {
-    float last_change = sums[5][0], all = sums[6][0], factor = 0.5, left = last_change;
+    float last_change = sums[5][0], factor = 0.5, left = last_change;
+    float all = max(norms[0][0], max(norms[1][0], norms[2][0]));
     if (args.history >= 1) {
         left -= g.x * p + g.y * q; // |r + sum g_i d_i|^2 at its least
         float rate = sqrt(last_change / max(sums[0][0] + 2.0 * sums[3][0] + last_change, 1e-37));
@@ -57,11 +59,21 @@ void main()
         }
         sums[k][me] = sum;
     }
+    for (uint c = 0; c < 3 && last == 1; c++) {
+        float sum = 0.0;
+        for (uint i = me; c < args.channels && i < groups; i += LATTICE_GROUP) {
+            sum += partials[(c * groups + i) * LATTICE_NUM_DOTS + 6];
+        }
+        norms[c][me] = sum;
+    }
     for (uint half_n = LATTICE_GROUP / 2; half_n > 0; half_n /= 2) {
         barrier();
         if (me < half_n) {
             for (uint k = 0; k < num_dots; k++) {
                 sums[k][me] += sums[k][me + half_n];
+            }
+            for (uint c = 0; c < 3 && last == 1; c++) {
+                norms[c][me] += norms[c][me + half_n];
             }
         }
     }
@@ -79,7 +91,7 @@ void main()
         } else if (args.history >= 1 && a > 0.0) {
             g = vec2(p / a, 0.0);
         }
-        g = any(isnan(g)) || any(isinf(g)) ? vec2(0.0) : g;
+        g = args.anderson == 0 || any(isnan(g)) || any(isinf(g)) ? vec2(0.0) : g;
         weights[ch] = g;
         if (last == 1) {
             counters.unsettled[ch] = unsettled(g, p, q);

@@ -268,13 +268,27 @@ static void unsettled(void **state)
     }
 }
 
+// A channel that is hardly there may be as unsettled as it likes: what counts is its share of the light.
+static void unsettled_channel(void **state)
+{
+    for (int k = 0; k < 2; k++) {
+        stage *s = set_stage_with(*state, 0.1f, "1");
+        s->scene.media[0].sigma_s[2] = 50;
+        s->scene.media[0].sigma_a[2] = 0;
+        s->scene.lights[0].color[2] = k == 0 ? 1 : 1e-4f;
+        show(s);
+        assert_int_equal(warns_of(s, "the lattice is not solved to the end"), k == 0);
+        strike(s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(layers_add_up),     cmocka_unit_test(refuses_what_repeats_everywhere),
         cmocka_unit_test(periodic_surfaces), cmocka_unit_test(warns),
         cmocka_unit_test(leaves_out),        cmocka_unit_test(suns_add_up),
-        cmocka_unit_test(unsettled),
+        cmocka_unit_test(unsettled),         cmocka_unit_test(unsettled_channel),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
