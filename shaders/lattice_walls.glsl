@@ -4,6 +4,7 @@
 //   WALLS_LINKS   storage buffer uint wall_links[]
 //   WALLS_CELLS   storage buffer wall_cell wall_cells[]
 //   WALLS_TEXELS  if both are to be read as texels
+//   LATTICE_ROOMS if it is known which cells are joined (lattice_rooms.glsl)
 // Call nothing of this where the scene has no surfaces: then the buffers hold nothing.
 //
 // A point in a cell through which no wall passes sees all 26 neighbours, and is served by trilinear
@@ -14,6 +15,10 @@
 #define TYN_LATTICE_WALLS_GLSL
 #include "walls_args.h"
 #include "walls_links.glsl"
+#include "rooms.h"
+#ifdef LATTICE_ROOMS
+#include "lattice_rooms.glsl"
+#endif
 
 #ifdef WALLS_TEXELS
 layout(set = 0, binding = WALLS_LINKS) uniform usamplerBuffer walls_link_texels;
@@ -165,7 +170,19 @@ uint walls_open_corners(uint links, uvec3 negative)
            (~face.y & 1u) << 5 | (~face.x & 1u) << 6 | (~diagonal & 1u) << 7;
 }
 
-walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
+// Is q a cell of `room`?
+bool walls_in_room(lattice_box box, ivec3 q, uint room)
+{
+#ifdef LATTICE_ROOMS
+    return room == TYN_ROOMS_ANY || rooms_of_cell(box.dims, q) == room;
+#else
+    return true;
+#endif
+}
+
+// `room` of the point, with LATTICE_ROOMS; or TYN_ROOMS_ANY. It tells what planes of two cells do not: walls in a third one
+// between them.
+walls_blend walls_blend_in(lattice_box box, walls_place w, vec3 p, uint room)
 {
     vec4 planes[TYN_WALLS_PLANES];
     uint behind = 0u;
@@ -202,7 +219,7 @@ walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
     seen = behind == 0u ? seen : same;
     for (uint left = behind == 0u ? 0u : same; left != 0u; left &= left - 1u) {
         uint i = uint(findLSB(left));
-        bool sees = walls_same_side(box, walls_corner(b, i), p);
+        bool sees = walls_same_side(box, walls_corner(b, i), p) && walls_in_room(box, walls_corner(b, i), room);
         seen = sees ? seen : seen & ~(1u << i);
     }
     vec3 f = min(abs(away), vec3(0.5));
@@ -219,7 +236,8 @@ walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
     float nearest = 1e30;
     for (int i = any_seen ? 27 : 0; i < 27; i++) {
         ivec3 q = w.cell + ivec3(i % 3, i / 3 % 3, i / 9) - 1;
-        if (any(lessThan(q, ivec3(0))) || any(greaterThanEqual(q, box.dims)) || !walls_sees(box, w, p, behind, q)) {
+        if (any(lessThan(q, ivec3(0))) || any(greaterThanEqual(q, box.dims)) || !walls_sees(box, w, p, behind, q) ||
+            !walls_in_room(box, q, room)) {
             continue;
         }
         float far = distance(vec3(q), w.x);
@@ -227,6 +245,11 @@ walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
         nearest = min(far, nearest);
     }
     return b;
+}
+
+walls_blend walls_blend_of(lattice_box box, walls_place w, vec3 p)
+{
+    return walls_blend_in(box, w, p, TYN_ROOMS_ANY);
 }
 
 // Do the centres of two cells see each other? Along the links next to the line between them: never through a

@@ -70,13 +70,30 @@ float march_next_step(march_medium m)
 }
 
 // Light of the lattice at a point, as texture inscatter has it.
-vec3 march_field_between_walls(vec3 p)
+vec3 march_field_between_walls(vec3 p, uint room)
 {
     if (raymarch_has(RAYMARCH_REPEAT)) {
         p = medium_wrap(p);
     }
     lattice_box box = lattice_box_of(medium.extent, textureSize(inscatter_tex, 0) - 2);
-    return walls_fetch(inscatter_tex, box, walls_blend_of(box, walls_place_of(box, p), p), ivec3(1)).rgb;
+    return walls_fetch(inscatter_tex, box, walls_blend_in(box, walls_place_of(box, p), p, room), ivec3(1)).rgb;
+}
+
+const int MARCH_ROOM_STEPS = 8;
+
+// The room (rooms.h) that a ray is in at the distance s from p, which it is in all the way from the eye: that of the nearest place
+// before in a cell without walls. `start`: the eye is so far before p. TYN_ROOMS_ANY: unknown.
+uint march_room(vec3 p, vec3 direction, float s, float start)
+{
+    lattice_box box = lattice_box_of(medium.extent, textureSize(inscatter_tex, 0) - 2);
+    uint room = TYN_ROOMS_ANY;
+    for (int k = 0; k < MARCH_ROOM_STEPS && s > -start && room == TYN_ROOMS_ANY; k++) {
+        ivec3 c = ivec3(floor(lattice_from_m(box, p + s * direction))), at = clamp(c, ivec3(0), box.dims - 1);
+        uint links = walls_links_of(uint((at.z * box.dims.y + at.y) * box.dims.x + at.x));
+        room = at != c ? TYN_ROOMS_OUTSIDE : (links & TYN_WALLS_NEAR) != 0u ? room : rooms_of_cell(box.dims, at);
+        s -= 0.75 * box.dx;
+    }
+    return room;
 }
 
 // The same without walls about; uvw is its place in the texture.
@@ -392,8 +409,12 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
                 state.radiance += light;
             }
         }
+        uint room = TYN_ROOMS_ANY;
+        if (raymarch_has(RAYMARCH_ROOMS) && waiting.walls > 0) {
+            room = march_room(origin, direction, waiting.wall_at[0], start);
+        }
         for (int i = 0; raymarch_has(RAYMARCH_WALLS) && i < waiting.walls; i++) {
-            vec3 J = march_tinted(march_field_between_walls(origin + waiting.wall_at[i] * direction));
+            vec3 J = march_tinted(march_field_between_walls(origin + waiting.wall_at[i] * direction, room));
             state.radiance += waiting.wall_weight[i] * J;
             state.before += i == waiting.last_wall ? vec3(0.0) : waiting.wall_weight[i] * J;
         }

@@ -277,6 +277,7 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
         [RAYMARCH_PORT_INSCATTER] = in->inscatter,
         [RAYMARCH_PORT_WALL_LINKS] = in->wall_links,
         [RAYMARCH_PORT_WALL_CELLS] = in->wall_cells,
+        [RAYMARCH_PORT_ROOMS] = in->rooms,
         [RAYMARCH_PORT_SHADOW_ATLAS] = beams ? in->shadows.atlas : none,
         [RAYMARCH_PORT_SHADOWS] = beams ? in->shadows.lights : none,
         // A lamp that shines all around leaves little in the dark: the cubes would cost more than they save.

@@ -45,6 +45,7 @@ static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
                                  "radiance scattered towards the eye, W/(m^2 sr)"},
     [RAYMARCH_PORT_WALL_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
     [RAYMARCH_PORT_WALL_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
+    [RAYMARCH_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true, "of cells"},
     [RAYMARCH_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, 0, true, "of shadow_map"},
     [RAYMARCH_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, true, "of shadow_map"},
     [RAYMARCH_PORT_LIGHT_CELLS] = {"light_cells", TYN_IN, TYN_IMAGE_3D, 0, true, "of light_cells"},
@@ -113,6 +114,7 @@ static const tyn_binding bindings[] = {
     {RAYMARCH_PORT_REST, TYN_USE_STORAGE_RW, false},
     {RAYMARCH_PORT_DISTANCES, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_LIGHT_CELLS, TYN_USE_SAMPLED, false},
+    {RAYMARCH_PORT_ROOMS, TYN_USE_TEXELS_UINT, false},
     {RAYMARCH_PORT_SIGMA_A, TYN_USE_SAMPLED, false}, // from here on colour only
     {RAYMARCH_PORT_G, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_EMISSION, TYN_USE_SAMPLED, false},
@@ -144,7 +146,7 @@ enum {
     NUM_SPEC = 5, // mode, number of suns, features, numbers of lamps
 };
 
-// 29 powers of two with this sum are all different.
+// 30 powers of two with this sum are all different.
 _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNEL +
                        RAYMARCH_UNSCALED + RAYMARCH_SOURCE + RAYMARCH_EMISSION + RAYMARCH_MEAN +
                        RAYMARCH_HOST_DEPTH + RAYMARCH_BACKGROUND + RAYMARCH_BEHIND +
@@ -153,8 +155,8 @@ _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNE
                        RAYMARCH_MULTIPLE + RAYMARCH_GLOW + RAYMARCH_SOFT_SUNS + RAYMARCH_SURFACE +
                        RAYMARCH_SURFACE_SEEN + RAYMARCH_WALLS + RAYMARCH_SHADOWS + RAYMARCH_REPEAT +
                        RAYMARCH_SPARSE_FIRST + RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_REST +
-                       RAYMARCH_SPOTS + RAYMARCH_LIGHT_CELLS ==
-                   (1u << 29) - 1,
+                       RAYMARCH_SPOTS + RAYMARCH_LIGHT_CELLS + RAYMARCH_ROOMS ==
+                   (1u << 30) - 1,
                "features have bits of their own");
 
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
@@ -339,6 +341,9 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= p->spots ? RAYMARCH_SPOTS : 0;
     features |= p->one_channel ? RAYMARCH_ONE_CHANNEL : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_WALL_LINKS) ? RAYMARCH_WALLS : 0;
+    features |= tyn_rec_has(r, RAYMARCH_PORT_WALL_LINKS) && tyn_rec_has(r, RAYMARCH_PORT_ROOMS)
+                    ? RAYMARCH_ROOMS
+                    : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_SHADOW_ATLAS) ? RAYMARCH_SHADOWS : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_LIGHT_CELLS) ? RAYMARCH_LIGHT_CELLS : 0;
     return features;

@@ -85,6 +85,7 @@ enum {
     RAYMARCH_PORT_INSCATTER,  // IN optional 3D: of merge; without it suns and emission only
     RAYMARCH_PORT_WALL_LINKS, // IN optional buffers, of walls: surfaces part the cells of inscatter
     RAYMARCH_PORT_WALL_CELLS,
+    RAYMARCH_PORT_ROOMS, // IN optional buffer, of rooms: with walls, what light of inscatter rays are among
     RAYMARCH_PORT_SHADOW_ATLAS, // IN optional 2D, of shadow_map: surfaces stand before the lights
     RAYMARCH_PORT_SHADOWS,      // IN optional buffer
     RAYMARCH_PORT_LIGHT_CELLS, // IN optional 3D, of light_cells: where looks at the maps are needed

@@ -33,6 +33,7 @@
 #define RAYMARCH_SPARSE_REST (1u << 26)  // rays of those that are listed
 #define RAYMARCH_SPOTS (1u << 27)        // there are lamps that shine in a cone
 #define RAYMARCH_LIGHT_CELLS (1u << 28)  // it is known where lights see all, or nothing
+#define RAYMARCH_ROOMS (1u << 29)        // it is known which cells are joined
 
 struct raymarch_args {
     float step;       // longest step, m

@@ -67,14 +67,15 @@ layout(binding = 30, scalar) buffer sparse_rest_buffer
 #define SHADOW_LIGHTS 25
 #define RADIAL_BLOCK 26
 #define RADIAL_COLUMN 27
+#define LATTICE_ROOMS 33
 #ifndef RAYMARCH_GREY
-#define MEDIUM_SIGMA_A 33
-#define MEDIUM_G 34
-#define MEDIUM_EMISSION 35
-#define BEAM_TAU_A 36
-#define BEAM_TAU_P 37
-#define RADIAL_TAU_A 38
-#define RADIAL_TAU_P 39
+#define MEDIUM_SIGMA_A 34
+#define MEDIUM_G 35
+#define MEDIUM_EMISSION 36
+#define BEAM_TAU_A 37
+#define BEAM_TAU_P 38
+#define RADIAL_TAU_A 39
+#define RADIAL_TAU_P 40
 #endif
 
 layout(push_constant, scalar) uniform Args
