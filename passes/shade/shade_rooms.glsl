@@ -6,6 +6,7 @@
 #define SHADE_ROOMS_GLSL
 #include "lattice.glsl"
 #include "walls_table.glsl"
+#include "walls_links.glsl"
 
 const int SHADE_ROOM_STEPS = 8;
 
@@ -29,7 +30,12 @@ float shade_room_of(vec3 p)
         ivec3 c = ivec3(floor(lattice_from_m(box, p + s * way))), at = clamp(c, ivec3(0), dims - 1);
         vec4 entry = texelFetch(walls_table_tex, at + ivec3(0, 0, TYN_WALLS_PLANES * dims.z), 0);
         bool near = (walls_table_links(entry) & TYN_WALLS_NEAR) != 0u;
-        room = at != c ? 0.0 : near ? -1.0 : entry.z;
+        // Right beside the lattice, with a wall on the way there: that may be farther away.
+        ivec3 out_of = c - at;
+        bool beside = out_of != ivec3(0) && all(lessThanEqual(abs(out_of), ivec3(1)));
+        uint link = walls_link(beside ? out_of : ivec3(1, 0, 0));
+        bool walled = beside && (walls_table_links(entry) >> link & 1u) != 0u;
+        room = walled ? -1.0 : at != c ? 0.0 : near ? -1.0 : entry.z;
     }
     return room;
 }

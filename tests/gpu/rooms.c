@@ -198,6 +198,23 @@ static void flood(const grid *g, const uint32_t *links, uint32_t *rooms)
     free(queue);
 }
 
+// Is c right beside the lattice, and a wall between it and the cell next to it?
+static bool walled(const grid *g, const uint32_t *links, const int c[3])
+{
+    int at[3];
+    for (int a = 0; a < 3; a++) {
+        at[a] = c[a] < 0 ? 0 : c[a] >= g->n[a] ? g->n[a] - 1 : c[a];
+    }
+    for (int link = 0; link < TYN_WALLS_LINKS; link++) {
+        int d[3];
+        step_of(link, d);
+        if (at[0] + d[0] == c[0] && at[1] + d[1] == c[1] && at[2] + d[2] == c[2]) {
+            return links[cell_of(g, at)] >> link & 1;
+        }
+    }
+    return false;
+}
+
 // The room that a ray of VPL k tells of: of the places 1.8 cells before its end, and at 0.6 of that, thrice, the first in a
 // cell without walls.
 static uint32_t told_by(const grid *g, const uint32_t *links, const uint32_t *rooms,
@@ -213,8 +230,11 @@ static uint32_t told_by(const grid *g, const uint32_t *links, const uint32_t *ro
             c[a] = (int)floor((o[a] + place * d[a]) / g->dx);
         }
         const int q = cell_of(g, c);
-        if (q < 0 || !(links[q] & TYN_WALLS_NEAR)) {
-            return q < 0 ? TYN_ROOMS_OUTSIDE : rooms[q];
+        if (q >= 0 && !(links[q] & TYN_WALLS_NEAR)) {
+            return rooms[q];
+        }
+        if (q < 0 && !walled(g, links, c)) {
+            return TYN_ROOMS_OUTSIDE;
         }
     }
     return TYN_ROOMS_ANY;
@@ -416,6 +436,30 @@ static void box_in_a_box(void **state)
     mesh_free(&m);
 }
 
+// A sealed box that is larger than the lattice, by less than half a cell: its VPLs shine in it, not outside.
+static void box_around_the_lattice(void **state)
+{
+    const grid g = grid_of(12, 12, 12, 1.0 / 12);
+    mesh m = mesh_box((double[]){0.5, 0.5, 0.5}, (double[]){0.535, 0.53, 0.538}, 0);
+    memset(&some, 0, sizeof some);
+    for (int i = 0; i < 12; i++) {
+        const double *corner = m.tri[i][0], *other = m.tri[i][2];
+        double p[3], inwards[3];
+        for (int a = 0; a < 3; a++) {
+            p[a] = 0.5 * (corner[a] + other[a]);
+            inwards[a] = fabs(p[a] - 0.5) > 0.5 ? 0.5 - p[a] : 0;
+            p[a] += 1e-3 * (0.5 - p[a]);
+        }
+        add_light(&some, &m, p, inwards);
+    }
+    const outcome found = check(*state, &g, &m, &some);
+    assert_int_equal(found.rooms, 1);
+    for (int i = 0; i < 12; i++) {
+        assert_int_equal(found.of_vpls[i], 1);
+    }
+    mesh_free(&m);
+}
+
 // A box whose wall has a slit that no link goes through: two rooms, which a VPL joins that sees through it.
 static void slit(void **state)
 {
@@ -463,6 +507,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(closed_meshes),
         cmocka_unit_test(box_in_a_box),
+        cmocka_unit_test(box_around_the_lattice),
         cmocka_unit_test(slit),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
