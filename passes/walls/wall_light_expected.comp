@@ -25,7 +25,7 @@ layout(push_constant, scalar) uniform push
     wall_light_args args;
 };
 layout(binding = 5) uniform sampler2D distances;
-layout(binding = 6, scalar) buffer power_buffer
+layout(binding = 6, scalar) writeonly buffer power_buffer
 {
     wall_light_power power;
 };
