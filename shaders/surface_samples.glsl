@@ -27,7 +27,7 @@ vec3 surface_radiance(ivec2 pixel, int side, int i)
     return colour_unpack(imageLoad(surface_image, pixel * side + ivec2(i % side, i / side)).xy);
 }
 
-// The piece of surface that it shows, of those in the pixel.
+// The piece of surface that it shows, of those in the pixel; all from the fourth on have one number.
 uint surface_piece(ivec2 pixel, int side, int i)
 {
     return imageLoad(surface_image, pixel * side + ivec2(i % side, i / side)).y >> 30;

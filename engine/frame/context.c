@@ -553,7 +553,7 @@ static void add_counters(tyn_node_report *node, tyn_context *ctx)
         }
     } else if (data && size.x == sizeof(struct wall_light_power)) {
         const struct wall_light_power *p = data;
-        if (p->rooms > 0) {
+        if (p->rooms > 0 || p->astray > 0) {
             add_work(node, "rooms", p->rooms);
             add_work(node, "least", (double)p->least);
             add_work(node, "most", (double)p->most);

@@ -106,7 +106,7 @@ void main()
         } else {
             irradiance = smooth_light_around(p, 0.5 * (part.xy + part.zw)) + sharp_light_at(p, part);
         }
-        uvec2 radiance = colour_pack(emission + albedo * irradiance / PI) | uvec2(0u, piece << 30);
+        uvec2 radiance = colour_pack(emission + albedo * irradiance / PI) | uvec2(0u, min(piece, 3u) << 30);
         for (uint some = members; some != 0u; some &= some - 1u) {
             imageStore(radiance_image, shade_texel(corner, findLSB(some)), uvec4(radiance, 0u, 0u));
         }
