@@ -11,7 +11,7 @@
 // every centre. So cells behind walls count as well, a thousandth for every wall, if there is any light in them
 // (within solids it is dark exactly); where there are others they do not matter. A place in the dark may be in
 // another solid: then one closer to the surface is tried, and cells farther around. Where it is known which room
-// (rooms.h) the surface is in, cells of other rooms are dark.
+// (rooms.h) the surface is in, cells of other rooms do not count.
 #ifndef TYN_WALLS_IRRADIANCE_GLSL
 #define TYN_WALLS_IRRADIANCE_GLSL
 #include "walls_table.glsl"
@@ -114,10 +114,11 @@ vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int
                 light[ch] = 0.25 * m.x - 0.5 * dot(m.yzw, n);
                 fluence += max(m.x, 0.0);
             }
-            bool dark = fluence <= 0.0 || room >= 0.0 && walls_entry(box, q, TYN_WALLS_PLANES).z != room;
+            bool other = room >= 0.0 && walls_entry(box, q, TYN_WALLS_PLANES).z != room, dark = other || fluence <= 0.0;
             lit = lit || share > 0.0 && !dark;
             // A dark cell that seems to be in front may be within a solid.
             share = share < 0.0 ? dark ? 0.0 : -share : dark ? 0.1 * share : share;
+            share = other ? 0.0 : share;
             sum += dark ? vec3(0.0) : share * light;
             [[unroll]] for (uint k = 0u; k < num_others; k++) {
                 others[k] += share * texelFetch(fields, q + ivec3(0, 0, int(k) * box.dims.z), 0);

@@ -29,8 +29,7 @@ const float PI = 3.14159265358979;
 #include "shade_outside.glsl"
 
 // Light of the medium and of far walls, and of the sky where it comes along the lattice's lines.
-// `inside` the lattice: from where sunlight comes that was scattered forward. Its places may be
-// beyond a wall; where the lattice is dark, as where surfaces let no light in, it is, too.
+// `inside` the lattice: from where sunlight comes that was scattered forward.
 vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out bool inside)
 {
     inside = false;

@@ -403,12 +403,102 @@ static void deep_slab(void **state)
     }
 }
 
+// A sealed, turned box in fog under a sun, a dim lamp in it, so that the lattice is not dark there: the sun adds nothing to
+// pictures from inside. They may be darker with it: virtual lights stand where most light arrives, and what the lamp sends
+// has fewer of them.
+static void sun_on_a_sealed_box(void **state)
+{
+    gpu_test *t = *state;
+    enum { SIDE = 48, PIXELS = SIDE * SIDE };
+    static const struct {
+        float lo[3], hi[3], angle, reach, at[3];
+    } boxes[3] = {
+        {{-0.41f, -0.37f, -0.44f}, {0.46f, 0.39f, 0.4f}, 0.52f, 1, {1, 0.3f, 0.2f}},
+        {{-0.56f, -0.33f, -0.5f}, {0.35f, 0.58f, 0.44f}, 1.1f, 1.7f, {-0.3f, -1, 0.5f}},
+        {{-0.31f, -0.52f, -0.38f}, {0.57f, 0.36f, 0.55f}, 0.2f, 2.4f, {0.4f, 0.1f, -1}},
+    };
+    for (int k = 0; k < 3; k++) {
+        picture p[2];
+        for (int sun = 0; sun < 2; sun++) {
+            tyn_scene scene;
+            tyn_scene_init(&scene);
+            uint32_t wall =
+                solids_material(&scene, (float[]){0.7f, 0.7f, 0.7f}, (float[]){0, 0, 0});
+            solids_box(&scene, boxes[k].lo, boxes[k].hi, boxes[k].angle, false, wall);
+            solids_hierarchy(&scene, 2);
+            tyn_medium m = grey_medium(1, 0.02f, 0.7f);
+            const float r = boxes[k].reach, e = sun ? 100 : 1e-6f;
+            scene_add_box(&scene, &m, (float[]){-r, -r, -r}, (float[]){r, r, r}, NULL, NULL);
+            scene_add_lamp(&scene, (float[]){0.02f, 0.03f, 0.01f}, 1e-3f);
+            scene_add_sun(&scene, 0.3f, -0.9f, 0.3f, e, e, e);
+            tyn_view view = {0};
+            view_perspective(&view, (float[]){0.05f, -0.03f, 0.04f}, boxes[k].at, 1.2f, SIDE);
+            picture_render(&p[sun], t->dev, "pop", &scene, &view, NULL, 0);
+            tyn_scene_finish(&scene);
+        }
+        double most = 0, lamp = 0;
+        for (int i = 0; i < PIXELS; i++) {
+            most = fmax(most, (double)p[1].rgb[3 * i + 1] - (double)p[0].rgb[3 * i + 1]);
+            lamp += p[0].rgb[3 * i + 1] / (double)PIXELS;
+        }
+        printf("sealed box in a medium of %g m: lamp's mean %.1e; a sun of 100 W/m^2 adds %.1e at "
+               "most\n",
+               2.0 * (double)boxes[k].reach, lamp, most);
+        assert_true(lamp > 1e-4 && most < 1e-4 * lamp);
+        picture_free(&p[0]);
+        picture_free(&p[1]);
+    }
+}
+
+// A room with one side open, away from the sun, in fog that scatters forward: the sun reaches its walls by what comes round
+// through the open side, not through the roof.
+static void room_open_on_one_side(void **state)
+{
+    gpu_test *t = *state;
+    enum { SIDE = 48 };
+    static const float kinds[3][2] = {{0.5f, 0.7f}, {1, 0.85f}, {0.15f, 0}}; // sigma_s, g
+    path_run runs;
+    path_run_open(&runs, t->dev);
+    for (int k = 0; k < 3; k++) {
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t wall = solids_material(&scene, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, 0, 0});
+        const float x[3] = {2, 0, 0}, y[3] = {0, 2, 0}, z[3] = {0, 0, 2}, corner[3] = {-1, -1, -1};
+        solids_quad(&scene, corner, z, x, wall);
+        solids_quad(&scene, (float[]){-1, 1, -1}, z, x, wall);
+        solids_quad(&scene, corner, z, y, wall);
+        solids_quad(&scene, (float[]){1, -1, -1}, z, y, wall);
+        solids_quad(&scene, corner, x, y, wall);
+        solids_hierarchy(&scene, 2);
+        tyn_medium m = grey_medium(kinds[k][0], 0.02f, kinds[k][1]);
+        scene_add_box(&scene, &m, (float[]){-2, -1, -2}, (float[]){2, 3, 3}, NULL, NULL);
+        scene_add_sun(&scene, 0.1f, -1, 0.15f, 10, 10, 10);
+        tyn_view view = {0};
+        view_perspective(&view, (float[]){0, 0, 0.9f}, (float[]){0, -0.3f, -1}, 1.2f, SIDE);
+        picture p, reference = {0};
+        picture_render(&p, t->dev, "pop", &scene, &view, NULL, 0);
+        path_run_picture(&runs, &reference, &scene, &view, 128);
+        picture_error e = picture_compare(&p, &reference, 8);
+        printf("open room, sigma_s %g, g %g: rel_l1 %.1f %% (noise %.1f), bias %+.1f %%\n",
+               (double)kinds[k][0], (double)kinds[k][1], 100 * e.rel_l1, 100 * e.noise,
+               100 * e.bias);
+        // Shadows of the roof's edge are as fine as the lattice, 0.16 m.
+        assert_true(e.reported < 0.15 && fabs(e.bias) < 0.06);
+        picture_free(&p);
+        picture_free(&reference);
+        tyn_scene_finish(&scene);
+    }
+    path_run_close(&runs);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sealed),
         cmocka_unit_test(sealed_lamp),
         cmocka_unit_test(sealed_from_virtual_lights),
+        cmocka_unit_test(sun_on_a_sealed_box),
+        cmocka_unit_test(room_open_on_one_side),
         cmocka_unit_test(slabs),
         cmocka_unit_test(slabs_over_a_ground),
         cmocka_unit_test(pictures),
