@@ -90,11 +90,7 @@ uint march_room(vec3 p, vec3 direction, float s, float start)
     for (int k = 0; k < MARCH_ROOM_STEPS && s > -start && room == TYN_ROOMS_ANY; k++) {
         ivec3 c = ivec3(floor(lattice_from_m(box, p + s * direction))), at = clamp(c, ivec3(0), box.dims - 1);
         uint links = walls_links_of(uint((at.z * box.dims.y + at.y) * box.dims.x + at.x));
-        // Right beside the lattice, with a wall on the way there: that may be farther away.
-        ivec3 out_of = c - at;
-        bool beside = out_of != ivec3(0) && all(lessThanEqual(abs(out_of), ivec3(1)));
-        bool walled = beside && (links >> walls_link(beside ? out_of : ivec3(1, 0, 0)) & 1u) != 0u;
-        room = walled ? room : at != c ? TYN_ROOMS_OUTSIDE : (links & TYN_WALLS_NEAR) != 0u ? room : rooms_of_cell(box.dims, at);
+        room = walls_cut_off(c, at, links) ? room : at != c ? TYN_ROOMS_OUTSIDE : (links & TYN_WALLS_NEAR) != 0u ? room : rooms_of_cell(box.dims, at);
         s -= 0.75 * box.dx;
     }
     return room;

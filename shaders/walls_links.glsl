@@ -37,4 +37,13 @@ uint walls_reverse(uint link)
     return link < 6u ? link ^ 1u : link < 14u ? 6u + (link - 6u ^ 7u) : 14u + (link - 14u ^ 3u);
 }
 
+// Is there a wall on the way from a place in c to the cell `at` of the lattice that is next to it and has these links? The
+// place is in that cell or outside; where it is right beside the lattice, the wall may be farther away than the place.
+bool walls_cut_off(ivec3 c, ivec3 at, uint links)
+{
+    ivec3 out_of = c - at;
+    bool beside = out_of != ivec3(0) && all(lessThanEqual(abs(out_of), ivec3(1)));
+    return beside && (links >> walls_link(beside ? out_of : ivec3(1, 0, 0)) & 1u) != 0u;
+}
+
 #endif

@@ -138,7 +138,6 @@ void main()
     }
     lattice_box box = lattice_box_of(medium.extent, dims);
     for (uint n = 0u; n < shade_num_suns; n++) {
-        imageStore(forward_image, c + ivec3(0, 0, int(n) * dims.z),
-                   forward_light(n, box, c));
+        imageStore(forward_image, c + ivec3(0, 0, int(n) * dims.z), forward_light(n, box, c));
     }
 }

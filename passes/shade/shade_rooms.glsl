@@ -24,18 +24,14 @@ float shade_room_told(lattice_box box, vec3 p, bool own)
 {
     ivec3 c = ivec3(floor(lattice_from_m(box, p))), at = clamp(c, ivec3(0), box.dims - 1);
     vec4 entry = texelFetch(walls_table_tex, at + ivec3(0, 0, TYN_WALLS_PLANES * box.dims.z), 0);
-    bool near = (walls_table_links(entry) & TYN_WALLS_NEAR) != 0u;
-    // Right beside the lattice, with a wall on the way there: that may be farther away.
-    ivec3 out_of = c - at;
-    bool beside = out_of != ivec3(0) && all(lessThanEqual(abs(out_of), ivec3(1)));
-    uint link = walls_link(beside ? out_of : ivec3(1, 0, 0));
-    bool walled = beside && (walls_table_links(entry) >> link & 1u) != 0u;
+    uint links = walls_table_links(entry);
+    bool near = (links & TYN_WALLS_NEAR) != 0u;
     bool behind = !own;
     for (int k = 0; own && k < TYN_WALLS_PLANES; k++) {
         vec4 plane = texelFetch(walls_table_tex, at + ivec3(0, 0, k * box.dims.z), 0);
         behind = behind || dot(plane.xyz, p) + plane.w < 0.0;
     }
-    return walled ? -1.0 : at != c ? 0.0 : near && behind ? -1.0 : entry.z;
+    return walls_cut_off(c, at, links) ? -1.0 : at != c ? 0.0 : near && behind ? -1.0 : entry.z;
 }
 
 // What the camera sees of a surface is in the room of every place on the way to it: of the nearest one in a cell without

@@ -39,16 +39,13 @@ uint told_by(lattice_box box, vec3 from, mat3 frame, ivec2 corner, ivec2 at, int
     float place = end - 1.8 * box.dx;
     for (int k = 0; k < TRIES && told == TYN_ROOMS_ANY && place > 0.0; k++) {
         ivec3 c = ivec3(floor(lattice_from_m(box, from + place * d)));
-        ivec3 at = clamp(c, ivec3(0), box.dims - 1), out_of = c - at;
+        ivec3 at = clamp(c, ivec3(0), box.dims - 1);
         int i = (at.z * box.dims.y + at.y) * box.dims.x + at.x;
-        if (out_of != ivec3(0)) {
-            // Right beside the lattice, with a wall on the way there: that may be farther away.
-            bool beside = all(lessThanEqual(abs(out_of), ivec3(1)));
-            uint link = walls_link(beside ? out_of : ivec3(1, 0, 0));
-            bool walled = beside && (texelFetch(link_texels, i).x >> link & 1u) != 0u;
-            told = walled ? told : TYN_ROOMS_OUTSIDE;
+        uint links = texelFetch(link_texels, i).x;
+        if (at != c) {
+            told = walls_cut_off(c, at, links) ? told : TYN_ROOMS_OUTSIDE;
         } else {
-            told = (texelFetch(link_texels, i).x & TYN_WALLS_NEAR) == 0u ? texelFetch(room_texels, 1 + i).x : told;
+            told = (links & TYN_WALLS_NEAR) == 0u ? texelFetch(room_texels, 1 + i).x : told;
         }
         place *= 0.6;
     }

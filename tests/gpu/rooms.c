@@ -20,24 +20,6 @@ typedef struct lights {
     float maps[SIDE][MAPS * SIDE];
 } lights;
 
-// Link i of walls_args.h.
-static void step_of(int link, int d[3])
-{
-    static const int across[4][2] = {{1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
-    d[0] = d[1] = d[2] = 0;
-    if (link < 6) {
-        d[link / 2] = link % 2 ? -1 : 1;
-    } else if (link < 14) {
-        for (int a = 0; a < 3; a++) {
-            d[a] = (link - 6) >> a & 1 ? -1 : 1;
-        }
-    } else {
-        const int zero = (link - 14) / 4, *s = across[(link - 14) % 4];
-        d[zero == 0 ? 1 : 0] = s[0];
-        d[zero == 2 ? 1 : 2] = s[1];
-    }
-}
-
 // The first triangle that a ray meets, m.
 static double distance_of(const mesh *m, const double o[3], const double d[3])
 {
@@ -179,7 +161,7 @@ static void flood(const grid *g, const uint32_t *links, uint32_t *rooms)
             const int i = queue[head++];
             for (int link = 0; link < TYN_WALLS_LINKS; link++) {
                 int d[3];
-                step_of(link, d);
+                wall_step(link, d);
                 const int c[3] = {i % g->n[0] + d[0], i / g->n[0] % g->n[1] + d[1],
                                   i / g->n[0] / g->n[1] + d[2]};
                 const int q = cell_of(g, c);
@@ -207,7 +189,7 @@ static bool walled(const grid *g, const uint32_t *links, const int c[3])
     }
     for (int link = 0; link < TYN_WALLS_LINKS; link++) {
         int d[3];
-        step_of(link, d);
+        wall_step(link, d);
         if (at[0] + d[0] == c[0] && at[1] + d[1] == c[1] && at[2] + d[2] == c[2]) {
             return links[cell_of(g, at)] >> link & 1;
         }

@@ -136,3 +136,20 @@ wall_refs mesh_walls(gpu_test *t, const grid *g, const mesh *m)
     return (wall_refs){p[WALLS_PORT_LINKS],    p[WALLS_PORT_CELLS],    p[WALLS_PORT_HITS],
                        p[WALLS_PORT_SURFACES], p[WALLS_PORT_VERTICES], p[WALLS_PORT_TRIANGLES]};
 }
+
+void wall_step(int link, int d[3])
+{
+    d[0] = d[1] = d[2] = 0;
+    if (link < 6) {
+        d[link / 2] = link % 2 ? -1 : 1;
+    } else if (link < 14) {
+        for (int a = 0; a < 3; a++) {
+            d[a] = (link - 6) >> a & 1 ? -1 : 1;
+        }
+    } else {
+        int zero = (link - 14) / 4, s = (link - 14) % 4, u = zero == 0 ? 1 : 0,
+            v = zero == 2 ? 1 : 2;
+        d[u] = s & 1 ? -1 : 1;
+        d[v] = s & 2 ? -1 : 1;
+    }
+}

@@ -28,3 +28,5 @@ typedef struct wall_refs {
 } wall_refs;
 // Adds the pass. Every triangle has vertices of its own and a material of its own.
 wall_refs mesh_walls(gpu_test *t, const grid *g, const mesh *m);
+// The step d to the neighbour that link 0..25 of walls_args.h goes to.
+void wall_step(int link, int d[3]);

@@ -40,29 +40,12 @@ static void result_free(result *r)
 
 // ---- the same once more -------------------------------------------------------------------------
 
-static void step_of(int link, int d[3])
-{
-    d[0] = d[1] = d[2] = 0;
-    if (link < 6) {
-        d[link / 2] = link % 2 ? -1 : 1;
-    } else if (link < 14) {
-        for (int a = 0; a < 3; a++) {
-            d[a] = (link - 6) >> a & 1 ? -1 : 1;
-        }
-    } else {
-        int zero = (link - 14) / 4, s = (link - 14) % 4, u = zero == 0 ? 1 : 0,
-            v = zero == 2 ? 1 : 2;
-        d[u] = s & 1 ? -1 : 1;
-        d[v] = s & 2 ? -1 : 1;
-    }
-}
-
 static int reverse_of(int link)
 {
     int d[3], e[3];
-    step_of(link, d);
+    wall_step(link, d);
     for (int i = 0; i < TYN_WALLS_LINKS; i++) {
-        step_of(i, e);
+        wall_step(i, e);
         if (e[0] == -d[0] && e[1] == -d[1] && e[2] == -d[2]) {
             return i;
         }
@@ -109,7 +92,7 @@ static void compare(const grid *g, const mesh *m, const result *r, const char *n
         double p[3] = {c[0] + 0.5 + shift[0], c[1] + 0.5 + shift[1], c[2] + 0.5 + shift[2]};
         for (int link = 0; link < TYN_WALLS_LINKS; link++) {
             int e[3], q = i, inside = 1;
-            step_of(link, e);
+            wall_step(link, e);
             double d[3] = {e[0], e[1], e[2]};
             int expect = 0, open = 1;
             for (int k = 0; k < m->n && expect != 1; k++) {
@@ -151,7 +134,7 @@ static int flood(const grid *g, const result *r, int from, bool *outside)
         int i = queue[head++], c[3] = {i % g->n[0], i / g->n[0] % g->n[1], i / g->n[0] / g->n[1]};
         for (int link = 0; link < TYN_WALLS_LINKS; link++) {
             int e[3];
-            step_of(link, e);
+            wall_step(link, e);
             if (r->links[i] >> link & 1) {
                 continue;
             }
@@ -234,7 +217,7 @@ static void walls_on_the_lattice(void **state)
                 int c[3] = {i % 8, i / 8 % 8, i / 64};
                 for (int link = 0; link < TYN_WALLS_LINKS; link++) {
                     int e[3];
-                    step_of(link, e);
+                    wall_step(link, e);
                     int expect = (c[axis] >= 4) != (c[axis] + e[axis] >= 4);
                     assert_int_equal(r.links[i] >> link & 1, expect);
                 }
