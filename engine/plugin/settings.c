@@ -175,7 +175,7 @@ typedef struct preset {
 
 // Normal is every pass's default.
 static const preset presets[] = {
-    {"draft", {{"lattice.cells", "16"}, {"lattice.sweeps", "2"}, {"beam.cells", "96"}}},
+    {"draft", {{"lattice.cells", "16"}, {"lattice.sweeps", "2"}, {"beam.cells", "48"}}},
     {"normal", {{NULL, NULL}}},
     {"high", {{"lattice.cells", "48"}, {"lattice.sweeps", "6"}, {"beam.cells", "160"}}},
 };

@@ -48,7 +48,7 @@ static void noisy(void **state)
     add_run(runs, "path", true, 40, 0.05, 0.034);
     add_run(runs, "path", true, 640, 0, 0.034);
     plane p;
-    assert_true(plane_make(&p, runs, 0, 8));
+    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
     cJSON *verdicts = plane_verdicts(&p), *ranges = written(plane_ranges(&p));
     cJSON *floors = written(plane_floors(&p));
     has_text(verdicts, cJSON_GetArraySize(verdicts) - 1,
@@ -93,7 +93,7 @@ static void many_groups(void **state)
         add_run(runs, name, i == 0, 10 + i, 0.2 / (1 + i), 0);
     }
     plane p;
-    assert_true(plane_make(&p, runs, 0, 8));
+    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
     assert_int_equal(p.num_lines, 100);
     plane_add_equal_errors(&p, equal);
     assert_int_equal(cJSON_GetArraySize(equal), 3 * 99);
@@ -109,7 +109,7 @@ static void large_errors(void **state)
     add_run(runs, "pop", false, 1, 2.0, 0);
     add_run(runs, "path", true, 10, 0.6, 0);
     plane p;
-    assert_true(plane_make(&p, runs, 0, 8));
+    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
     cJSON *verdicts = plane_verdicts(&p);
     has_text(verdicts, 0, "pop is on the front above 200 %");
     has_text(verdicts, 1, "path wins below 200 %");
@@ -128,7 +128,7 @@ static void promise(void **state)
     add_run(runs, "path", true, 25, 0.06, 0); // 0.05 after 36 ms, 0.03 after 100
     add_run(runs, "path", true, 625, 0.012, 0);
     plane p;
-    assert_true(plane_make(&p, runs, 0, 8));
+    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
     cJSON *kept = written(plane_promise(&p));
     assert_true(json_true(kept, "holds"));
     assert_true(fabs(json_figure(kept, "above") - 0.048) < 1e-9);
@@ -138,7 +138,7 @@ static void promise(void **state)
 
     add_run(runs, "path", true, 5, 0.1,
             0); // the fastest of all from 10 % on; no longer 0.06 after 25 ms
-    assert_true(plane_make(&p, runs, 0, 8));
+    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
     kept = written(plane_promise(&p));
     assert_false(json_true(kept, "holds"));
     const char *text = json_text(kept, "text");
@@ -152,7 +152,7 @@ static void promise(void **state)
 
     runs = cJSON_CreateArray();
     add_run(runs, "path", true, 5, 0.1, 0);
-    assert_true(plane_make(&p, runs, 0, 8));
+    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
     kept = plane_promise(&p);
     assert_true(cJSON_IsNull(kept));
     plane_finish(&p);
@@ -160,13 +160,40 @@ static void promise(void **state)
     cJSON_Delete(runs);
 }
 
+// In frames after the camera has moved what is kept is free, and what samples begins anew.
+static void moved_camera(void **state)
+{
+    (void)state;
+    cJSON *runs = cJSON_CreateArray();
+    add_run(runs, "pop", false, 30, 0.01, 0);
+    add_run(runs, "path", true, 10, 0.2, 0);
+    add_run(runs, "path", true, 40, 0.1, 0);
+    cJSON_AddNumberToObject(cJSON_GetObjectItem(cJSON_GetArrayItem(runs, 0), "frame_ms"),
+                            "camera_moved", 8);
+    plane p;
+    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
+    cJSON *kept = written(plane_promise(&p));
+    assert_false(json_true(kept, "holds"));
+    plane_finish(&p);
+    cJSON_Delete(kept);
+    assert_true(plane_make(&p, runs, 0, 8, PLANE_MOVED));
+    kept = written(plane_promise(&p));
+    assert_true(json_true(kept, "holds"));
+    cJSON *equal = cJSON_CreateArray();
+    plane_add_equal_errors(&p, equal);
+    equal = written(equal);
+    assert_true(fabs(json_figure(equal, "0.speedup") - 40.0 / 8) < 1e-9); // at 10 %
+    plane_finish(&p);
+    cJSON_Delete(kept);
+    cJSON_Delete(equal);
+    cJSON_Delete(runs);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(noisy),
-        cmocka_unit_test(many_groups),
-        cmocka_unit_test(large_errors),
-        cmocka_unit_test(promise),
+        cmocka_unit_test(noisy),   cmocka_unit_test(many_groups),  cmocka_unit_test(large_errors),
+        cmocka_unit_test(promise), cmocka_unit_test(moved_camera),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,7 +27,14 @@ static uint32_t line_of(plane *p, const cJSON *run)
     return p->num_lines++;
 }
 
-bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block)
+// A method that samples begins anew wherever the camera goes.
+static double time_of(const cJSON *run, bool sampling, plane_frame frame)
+{
+    return json_figure(run,
+                       frame == PLANE_COLD || sampling ? "frame_ms.cold" : "frame_ms.camera_moved");
+}
+
+bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block, plane_frame frame)
 {
     const uint32_t count = (uint32_t)cJSON_GetArraySize(runs);
     char error_path[32], noise_path[32];
@@ -47,7 +54,7 @@ bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block)
         const uint32_t of = line_of(p, run);
         p->noise = noise > 0 ? noise : p->noise;
         p->runs[p->count] = run;
-        p->points[p->count++] = (front_point){.ms = json_figure(run, "frame_ms.cold"),
+        p->points[p->count++] = (front_point){.ms = time_of(run, p->lines[of].sampling, frame),
                                               .error = error < noise ? noise : error,
                                               .line = of,
                                               .sampling = p->lines[of].sampling,

@@ -18,9 +18,12 @@ typedef struct plane {
     double noise;
 } plane;
 
+// Whose time: that of a frame in which every node runs, or of one after the camera has moved, the rest being as it was.
+typedef enum plane_frame { PLANE_COLD, PLANE_MOVED } plane_frame;
+
 // `index`: which of the errors; `block`: what they are of. Borrows from `runs`. False: out of memory; plane_finish is
 // due in any case.
-bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block);
+bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block, plane_frame frame);
 void plane_finish(plane *p);
 
 // As report.json has them (docs/report-schema.md).

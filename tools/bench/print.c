@@ -205,19 +205,18 @@ void bench_print_scene(const cJSON *scene)
     if (promise[0]) {
         printf("  %s\n", promise);
     }
+    const char *moved = json_text(list_of(list_of(scene, "moved"), "promise"), "text");
+    if (moved[0]) {
+        printf("  in frames after the camera has moved: %s\n", moved);
+    }
     fflush(stdout);
 }
 
-void bench_print_end(const cJSON *report)
+// One line for each comparison that any scene has.
+static void print_headlines(const cJSON *report, const char *name, const char *title)
 {
     const cJSON *item;
-    cJSON_ArrayForEach(item, list_of(report, "ratios"))
-    {
-        printf("\n%s, %s: %.2f times the cold frame\n", json_text(item, "name"),
-               json_text(item, "run"), json_figure(item, "times"));
-    }
-    const char *title = "\nat equal error, geometric means over scenes:\n";
-    cJSON_ArrayForEach(item, list_of(report, "headline"))
+    cJSON_ArrayForEach(item, list_of(report, name))
     {
         const double scenes = json_figure(item, "scenes");
         const double extrapolated = json_figure(item, "extrapolated");
@@ -236,4 +235,17 @@ void bench_print_end(const cJSON *report)
         printf(extrapolated > 0 ? ", %.0f of them extrapolated)\n" : ")\n", extrapolated);
         title = "";
     }
+}
+
+void bench_print_end(const cJSON *report)
+{
+    const cJSON *item;
+    cJSON_ArrayForEach(item, list_of(report, "ratios"))
+    {
+        printf("\n%s, %s: %.2f times the cold frame\n", json_text(item, "name"),
+               json_text(item, "run"), json_figure(item, "times"));
+    }
+    print_headlines(report, "headline", "\nat equal error, geometric means over scenes:\n");
+    print_headlines(report, "headline_moved",
+                    "\nthe same, with the times of frames after the camera has moved:\n");
 }

@@ -37,6 +37,33 @@ static cJSON *json_reference(const bench_case *c)
     return json;
 }
 
+// Fronts, comparisons at equal error, and who wins over blocks.
+static void add_planes(cJSON *to, const bench_case *c, cJSON *runs, plane_frame frame)
+{
+    cJSON *fronts = cJSON_AddArrayToObject(to, "fronts");
+    cJSON *equal = cJSON_AddArrayToObject(to, "equal_error");
+    for (int i = 0; i < BENCH_BLOCKS; i++) {
+        plane p;
+        if (plane_make(&p, runs, i, c->blocks[i], frame)) {
+            if (i == 0 && frame == PLANE_COLD) {
+                plane_choose_pictures(&p, runs);
+                cJSON_AddItemToObject(to, "floors", plane_floors(&p));
+            }
+            if (i == 0) {
+                cJSON_AddItemToObject(to, "ranges", plane_ranges(&p));
+                cJSON_AddItemToObject(to, "verdicts", plane_verdicts(&p));
+                cJSON_AddItemToObject(to, "promise", plane_promise(&p));
+            }
+            cJSON_AddItemToArray(fronts, plane_front(&p));
+            plane_add_equal_errors(&p, equal);
+            if (frame == PLANE_COLD) {
+                plane_add_own_equal_errors(&p, runs);
+            }
+        }
+        plane_finish(&p);
+    }
+}
+
 void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON *left_out)
 {
     cJSON *scene = cJSON_CreateObject();
@@ -57,32 +84,12 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
     bool known = regime_of(&c->scene, &c->view.camera, &found);
     cJSON_AddItemToObject(scene, "regime", known ? regime_json(&found) : cJSON_CreateNull());
     cJSON_AddItemToObject(scene, "reference", json_reference(c));
-    cJSON *fronts = cJSON_CreateArray(), *equal = cJSON_CreateArray();
-    cJSON *floors = NULL, *ranges = NULL, *verdicts = NULL, *promise = NULL;
-    for (int i = 0; i < BENCH_BLOCKS; i++) {
-        plane p;
-        if (plane_make(&p, runs, i, c->blocks[i])) {
-            if (i == 0) {
-                plane_choose_pictures(&p, runs);
-                floors = plane_floors(&p);
-                ranges = plane_ranges(&p);
-                verdicts = plane_verdicts(&p);
-                promise = plane_promise(&p);
-            }
-            cJSON_AddItemToArray(fronts, plane_front(&p));
-            plane_add_equal_errors(&p, equal);
-            plane_add_own_equal_errors(&p, runs);
-        }
-        plane_finish(&p);
-    }
+    cJSON *moved = cJSON_CreateObject();
+    add_planes(scene, c, runs, PLANE_COLD);
+    add_planes(moved, c, runs, PLANE_MOVED);
+    cJSON_AddItemToObject(scene, "moved", moved);
     cJSON_AddItemToObject(scene, "runs", runs);
     cJSON_AddItemToObject(scene, "left_out", left_out);
-    cJSON_AddItemToObject(scene, "fronts", fronts);
-    cJSON_AddItemToObject(scene, "equal_error", equal);
-    cJSON_AddItemToObject(scene, "floors", floors ? floors : cJSON_CreateArray());
-    cJSON_AddItemToObject(scene, "ranges", ranges ? ranges : cJSON_CreateArray());
-    cJSON_AddItemToObject(scene, "verdicts", verdicts ? verdicts : cJSON_CreateArray());
-    cJSON_AddItemToObject(scene, "promise", promise ? promise : cJSON_CreateNull());
     // What is used from here on is what a reader of the file sees.
     char *text = cJSON_PrintUnformatted(scene);
     cJSON *seen = text ? cJSON_Parse(text) : NULL;
@@ -154,8 +161,14 @@ static char *why_missing(const cJSON *scene, const cJSON *entry)
     return text_format("%s: the error is not reached", name);
 }
 
+// What a scene says of times of cold frames, or of those after the camera has moved.
+static const cJSON *said_of(const cJSON *scene, plane_frame frame)
+{
+    return frame == PLANE_COLD ? scene : cJSON_GetObjectItemCaseSensitive(scene, "moved");
+}
+
 // One comparison over all scenes, as the first scene that has it lists it.
-static cJSON *json_headline(const cJSON *scenes, const cJSON *first)
+static cJSON *json_headline(const cJSON *scenes, const cJSON *first, plane_frame frame)
 {
     cJSON *headline = cJSON_CreateObject(), *missing = cJSON_CreateArray();
     double values[BENCH_MAX_SCENES];
@@ -163,7 +176,8 @@ static cJSON *json_headline(const cJSON *scenes, const cJSON *first)
     const cJSON *scene, *entry;
     cJSON_ArrayForEach(scene, scenes)
     {
-        cJSON_ArrayForEach(entry, cJSON_GetObjectItemCaseSensitive(scene, "equal_error"))
+        cJSON_ArrayForEach(entry,
+                           cJSON_GetObjectItemCaseSensitive(said_of(scene, frame), "equal_error"))
         {
             if (!same_comparison(entry, first)) {
                 continue;
@@ -190,13 +204,14 @@ static cJSON *json_headline(const cJSON *scenes, const cJSON *first)
     return headline;
 }
 
-static cJSON *json_headlines(const cJSON *scenes)
+static cJSON *json_headlines(const cJSON *scenes, plane_frame frame)
 {
     cJSON *list = cJSON_CreateArray();
     const cJSON *scene, *entry, *known;
     cJSON_ArrayForEach(scene, scenes)
     {
-        cJSON_ArrayForEach(entry, cJSON_GetObjectItemCaseSensitive(scene, "equal_error"))
+        cJSON_ArrayForEach(entry,
+                           cJSON_GetObjectItemCaseSensitive(said_of(scene, frame), "equal_error"))
         {
             bool seen = false;
             cJSON_ArrayForEach(known, list)
@@ -204,7 +219,7 @@ static cJSON *json_headlines(const cJSON *scenes)
                 seen = seen || same_comparison(known, entry);
             }
             if (!seen) {
-                cJSON_AddItemToArray(list, json_headline(scenes, entry));
+                cJSON_AddItemToArray(list, json_headline(scenes, entry, frame));
             }
         }
     }
@@ -255,7 +270,8 @@ void bench_report_end(bench_report *r, const bench_suite *suite)
     cJSON *seconds = cJSON_GetObjectItemCaseSensitive(r->root, "seconds");
     json_add_float(seconds, "references", r->reference_seconds);
     json_add_float(seconds, "measuring", r->measuring_seconds);
-    cJSON_AddItemToObject(r->root, "headline", json_headlines(scenes));
+    cJSON_AddItemToObject(r->root, "headline", json_headlines(scenes, PLANE_COLD));
+    cJSON_AddItemToObject(r->root, "headline_moved", json_headlines(scenes, PLANE_MOVED));
     cJSON_AddItemToObject(r->root, "ratios", json_ratios(suite, scenes));
     cJSON_AddNullToObject(r->root, "bands");
     cJSON_AddNullToObject(r->root, "stress");

@@ -72,7 +72,7 @@ function notes() {
     const entry = (name, text) => [make("dt", {}, name), make("dd", {}, text)];
     return make("section", {id: "notes", class: "notes"}, make("h2", {}, "How to read it"), make("dl", {},
         entry("error", "rel_l1, sum of |x - r| over sum of |r| of linear radiance, without what the noise of the reference explains: sqrt(rel_l1\u00b2 - n\u00b2). Over blocks, the pixels of a block are averaged first. \u201c\u2264\u201d: the noise hides it, and it is this or less; \u201c~\u201d: below twice the noise, where it comes out too small. A sampling method's own noise is an error of it."),
-        entry("time", "Median of cold frames, in which every node runs, wall clock from submission to the end; of path the whole rendering."),
+        entry("time", "Median of cold frames, in which every node runs, wall clock from submission to the end; of path the whole rendering. Or, as chosen at the top, of frames after the camera has moved, in which what does not depend on it is as it was; path begins anew."),
         entry("equal error", "The time of the cheapest run of a method that has this error, interpolated along its line in the plot; \u201cabout\u201d where it had to be extrapolated."),
         entry("ceilings", "What the device reached in kernels that do one thing only, in the same run; a node's share is the time that its work would take at that ceiling over the time it took."),
         entry("difference", "Left minus right, mean of the channels, as a share of the reference's mean radiance. Pictures are in the page as linear half floats (steps of 0.05\u00a0%), tone-mapped here. Magenta is not a number."),
@@ -87,6 +87,32 @@ function contents(report) {
         list((report.stress || {}).cells).length > 0 && link("stress", "stress"), link("notes", "how to read it"));
 }
 
+// The report with what it says of frames after the camera has moved in the place of what it says of cold ones.
+function movedReport(report) {
+    return {...report, headline: report.headline_moved, scenes: list(report.scenes).map((scene) => ({...scene, ...scene.moved}))};
+}
+
+// All that compares times.
+function comparisons(report, styles) {
+    return [headline(report), verdicts(report, styles),
+        ...list(report.scenes).map((scene, i) => sceneSection(report, styles, scene, i))].filter(Boolean);
+}
+
+// The same of cold frames or of those after the camera has moved, as chosen.
+function chosenComparisons(report, styles) {
+    const holder = make("div", {class: "comparisons"});
+    const show = (frame) => {
+        frameShown = frame;
+        onScreen.abort();
+        onScreen = new AbortController();
+        holder.replaceChildren(...comparisons(frame === "cold" ? report : movedReport(report), styles));
+    };
+    show("cold");
+    const choice = list(report.headline_moved).length > 0
+        && make("div", {id: "frame", class: "controls"}, make("span", {}, "Times of"), segmented("times of", Object.entries(FRAMES), "cold", show));
+    return [choice, holder];
+}
+
 function startPage() {
     const page = document.getElementById("page");
     const report = JSON.parse(document.getElementById("report").textContent);
@@ -95,9 +121,8 @@ function startPage() {
         return;
     }
     const styles = groupStyles(report);
-    page.append(...[pageHead(report), contents(report), bandsAlert(report.bands), headline(report), verdicts(report, styles),
-        list(report.scenes).map((scene, i) => sceneSection(report, styles, scene, i)), ratioList(report.ratios),
-        stressSection(report.stress, styles), notes(),
+    page.append(...[pageHead(report), contents(report), bandsAlert(report.bands),
+        chosenComparisons(report, styles), ratioList(report.ratios), stressSection(report.stress, styles), notes(),
         make("footer", {}, `Tyndall ${report.tyndall ?? ""}. Made by tyndall bench; the figures are those of report.json.`)]
         .flat().filter(Boolean));
     // On paper everything that can be opened is open.

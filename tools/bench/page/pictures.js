@@ -130,7 +130,7 @@ function pictureViewer(scene, sceneIndex, first) {
     };
     add("reference", "reference");
     const largest = blocksOf(scene)[0];
-    list(scene.runs).forEach((run, i) => add(i, `${run.name}: ${errorText(errorsOf(run, largest))}, ${duration(coldOf(run))}`));
+    list(scene.runs).forEach((run, i) => add(i, `${run.name}: ${errorText(errorsOf(run, largest))}, ${duration(timeOf(run))}`));
     const nothing = {element: null, choose() {}};
     if (sources.length === 0) {
         return nothing;
@@ -300,9 +300,10 @@ function pictureViewer(scene, sceneIndex, first) {
         stage, scale,
         make("div", {class: "controls"}, differenceButton, blockButton, exposure.element, gain.element),
         hint, readout);
-    addEventListener("beforeprint", () => { printing = true; update(); });
-    addEventListener("afterprint", () => { printing = false; update(); });
-    dark.addEventListener("change", update);
+    const {signal} = onScreen;
+    addEventListener("beforeprint", () => { printing = true; update(); }, {signal});
+    addEventListener("afterprint", () => { printing = false; update(); }, {signal});
+    dark.addEventListener("change", update, {signal});
     update();
     return {
         element,

@@ -33,7 +33,7 @@ function errorPlot(scene, styles, select) {
 
     const runsOf = () => list(scene.runs).map((run, index) => ({
         run, index, style: styles.get(String(run.group ?? run.method)),
-        ms: coldOf(run), error: errorValue(errorsOf(run, block)), hidden: isHidden(errorsOf(run, block)),
+        ms: timeOf(run), error: errorValue(errorsOf(run, block)), hidden: isHidden(errorsOf(run, block)),
     })).filter((p) => !p.run.failed && isNumber(p.ms) && p.ms > 0 && isNumber(p.error));
 
     function describe(p) {
@@ -123,7 +123,7 @@ function errorPlot(scene, styles, select) {
                 draw("text", {class: "noise-word", x: left + 5, y: above ? y - 5 : y + 14},
                     `noise of the reference, ${percent(noise)}`));
         }
-        svg.append(draw("text", {class: "axis", x: (left + width - right) / 2, y: height - 6, "text-anchor": "middle"}, "time of a cold frame"),
+        svg.append(draw("text", {class: "axis", x: (left + width - right) / 2, y: height - 6, "text-anchor": "middle"}, `time of ${FRAMES[frameShown]}`),
             draw("text", {class: "axis", x: 0, y: 12}, `error over ${blockName(block)}`));
 
         const keysOnFront = frontOf(scene, block);

@@ -81,6 +81,11 @@ const isHidden = (e) => isNumber(e.error) && isNumber(e.n) && e.error < e.n;
 const errorValue = (e) => (isHidden(e) ? e.n : e.error);
 const errorText = (e, count = 2) => (isHidden(e) ? `\u2264${NARROW}` : isNumber(e.error) && e.error < 2 * e.n ? "~" : "") + percent(errorValue(e), count);
 const coldOf = (run) => (run.frame_ms || {}).cold;
+// Whose times the page compares. A method that samples begins anew wherever the camera goes.
+const FRAMES = {cold: "a cold frame", moved: "a frame after the camera has moved"};
+let frameShown = "cold";
+let onScreen = new AbortController(); // aborted when another choice takes the place of what is shown
+const timeOf = (run) => (frameShown === "cold" || run.sampling ? coldOf(run) : (run.frame_ms || {}).camera_moved);
 const frontOf = (scene, block) => new Set(list((list(scene.fronts).find((f) => f.block === block) || {}).runs));
 
 // A choice of one among few, as buttons: options are [value, label].
