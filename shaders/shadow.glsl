@@ -107,6 +107,14 @@ float shadow_visibility(uint light, vec3 p)
 // What is in front of a surface by less than this many times a texel's size may be the foot of a wall.
 const float SHADOW_FOOT = 16.0;
 
+// A place on a surface.
+struct shadow_surface {
+    vec3 p;     // M
+    vec3 n;     // of its plane, either side
+    float off;  // m: what the surface may be off the plane by there
+    float bend; // and how much more with each metre beside it: the slope of what a curved one goes on as
+};
+
 // What shadow_visibility_surface_sun_of and the like share: `slope` is that of depth by u and v, `rounding` of depth, and
 // `texel` what one texel's size towards the light is of depth.
 //
@@ -118,6 +126,7 @@ float shadow_visibility_on_plane(shadow_light l, shadow_place place, vec2 slope,
 {
     slope *= 2.0 / l.texels; // by texels
     float steepest = 0.25 * place.depth + rounding; // edge-on, where little light arrives
+    bool edge_on = any(greaterThan(abs(slope), vec2(steepest)));
     slope = clamp(slope, vec2(-steepest), vec2(steepest));
     float steep = abs(slope.x) + abs(slope.y);
     vec2 first;
@@ -129,17 +138,23 @@ float shadow_visibility_on_plane(shadow_light l, shadow_place place, vec2 slope,
     bvec4 dark = greaterThan(before, vec4(0.0));
     vec4 of_foot = vec4(dark) * vec4(lessThan(before, vec4(steep + SHADOW_FOOT * texel)));
     vec4 own = (1.0 - vec4(dark)) * vec4(greaterThan(before, vec4(-(steep + texel))));
+    // Beyond where it is followed, a plane seen edge-on tells nothing: there the edge of a room is beside what sees past it.
+    bool past = any(lessThanEqual(before, vec4(-(steep + texel))));
     float share = any(greaterThan(of_foot, vec4(0.0))) ? 0.0 : dot(own, (1.0 - abs(x)) * (1.0 - abs(y)));
-    return any(dark) && place.inside ? share : 1.0;
+    share = any(dark) ? share : edge_on && past ? 0.0 : 1.0;
+    return place.inside ? share : 1.0;
 }
 
-// The same for a point of a surface with the normal `n` (M, either side), in [0, 1]. Depths
-// that do not change with u and v except linearly (parallel maps as they are, perspective ones because
-// they are reciprocal) are those of the surface's own plane at the texels: so it does not shadow
-// itself, whatever its slope, and what is in front of it by more than a thirtieth of a texel does.
-float shadow_visibility_surface_sun_of(shadow_light l, vec3 p, vec3 n)
+// How far beside a place a texel may be that counts for it, texels.
+const float SHADOW_BESIDE = 1.5;
+
+// The same for a place on a surface, in [0, 1]. Depths that do not change with u and v except linearly (parallel maps
+// as they are, perspective ones because they are reciprocal) are those of the surface's own plane at the texels: so a
+// flat one does not shadow itself, whatever its slope, and what is in front of it by more than a thirtieth of a texel does.
+float shadow_visibility_surface_sun_of(shadow_light l, shadow_surface s)
 {
-    vec3 q = shadow_frame(l, p), m = shadow_frame_direction(l, n);
+    vec3 q = shadow_frame(l, s.p), m = shadow_frame_direction(l, s.n);
+    float slant = abs(m.z); // cosine of light and normal, in depths by metre
     shadow_place place = shadow_place_sun(l, q);
     place.inside = place.inside && l.kind == TYN_SHADOW_SUN;
     // Rows are orthogonal but not of unit length: normals divide by its square.
@@ -148,12 +163,15 @@ float shadow_visibility_surface_sun_of(shadow_light l, vec3 p, vec3 n)
     m /= square;
     float texel = 2.0 / l.texels * sqrt(square.z / min(square.x, square.y));
     vec2 slope = -m.xy / (abs(m.z) > 1e-20 ? m.z : 1e-20);
-    return shadow_visibility_on_plane(l, place, slope, SHADOW_EPSILON * (1.0 + place.depth), texel);
+    // Along the light what is off is longer.
+    float off = s.off * square.z + SHADOW_BESIDE * s.bend * texel * sqrt(square.z);
+    float rounding = SHADOW_EPSILON * (1.0 + place.depth) + min(off / max(slant, 1e-20), 0.25);
+    return shadow_visibility_on_plane(l, place, slope, rounding, texel);
 }
 
-float shadow_visibility_surface_lamp_of(shadow_light l, vec3 p, vec3 n)
+float shadow_visibility_surface_lamp_of(shadow_light l, shadow_surface s)
 {
-    vec3 q = shadow_frame(l, p), m = shadow_frame_direction(l, n);
+    vec3 q = shadow_frame(l, s.p), m = shadow_frame_direction(l, s.n);
     uint face = 0u;
     if (l.kind == TYN_SHADOW_CUBE) {
         face = shadow_face(q);
@@ -165,15 +183,16 @@ float shadow_visibility_surface_lamp_of(shadow_light l, vec3 p, vec3 n)
     float height = dot(m, q);
     vec2 slope = l.near * m.xy / (l.scale * (abs(height) > 1e-20 ? height : 1e-20));
     // Depths are as small as near makes them. What p is off its plane by is to be seen from the lamp.
-    float rounding = place.depth * min(1.5e-4 * length(p) / max(abs(height), 1e-20), 0.25);
-    return shadow_visibility_on_plane(l, place, slope, rounding, 2.0 / (l.scale * l.texels) * place.depth);
+    float texel = 2.0 / (l.scale * l.texels);
+    float off = 1e-5 * length(s.p) + s.off + SHADOW_BESIDE * s.bend * texel * q.z;
+    float rounding = place.depth * min(off / max(abs(height), 1e-20), 0.25);
+    return shadow_visibility_on_plane(l, place, slope, rounding, texel * place.depth);
 }
 
-float shadow_visibility_surface(uint light, vec3 p, vec3 n)
+float shadow_visibility_surface(uint light, shadow_surface s)
 {
     shadow_light l = shadows[light];
-    return l.kind == TYN_SHADOW_SUN ? shadow_visibility_surface_sun_of(l, p, n)
-                                    : shadow_visibility_surface_lamp_of(l, p, n);
+    return l.kind == TYN_SHADOW_SUN ? shadow_visibility_surface_sun_of(l, s) : shadow_visibility_surface_lamp_of(l, s);
 }
 
 #endif

@@ -140,6 +140,33 @@ float shade_cosine(shade_point p, vec3 towards)
     return dot(p.facet, towards) > 0.0 ? max(dot(p.normal, towards), 0.0) : 0.0;
 }
 
+// What one point stands for: as much of its plane as a part of the picture shows.
+struct shade_footprint {
+    vec4 part;   // from xy to zw, pixels
+    float width; // at most, m
+};
+
+shade_footprint shade_footprint_of(shade_point p, vec4 part)
+{
+    bool orthographic = camera.orthographic != 0u;
+    vec3 ray = p.position - camera.origin;
+    vec2 size = 2.0 * vec2(camera.half_width, camera.half_height) / vec2(camera.size) * (part.zw - part.xy);
+    float slope = dot(orthographic ? camera.forward : normalize(ray), p.facet);
+    float wide = length(size) * (orthographic ? 1.0 : dot(ray, camera.forward));
+    return shade_footprint(part, wide / max(abs(slope), 1e-3));
+}
+
+// A point for shadows. Its plane is one triangle's, but samples of a pixel, and texels of a map, show others beside
+// that, if the surface is curved: then normals for shading turn away from the facet's, by half the angle to the next
+// triangle where that begins. Not in edges of boxes, even if their corners have mean normals.
+shadow_surface shade_shadowed(shade_point p, shade_footprint foot)
+{
+    float turned = length(cross(p.facet, p.normal));
+    float bend = 2.0 * min(turned, max(1.4 - 2.0 * turned, 0.0));
+    float rounding = 2e-6 * distance(p.position, camera.origin);
+    return shadow_surface(p.position, p.facet, rounding + 0.5 * bend * foot.width, bend);
+}
+
 // ---- suns ----
 
 // The way of a sun's light through the medium's box to p: from x to y away from p towards the sun; x >= y: none.
@@ -170,9 +197,10 @@ float shade_around(vec4 around, vec3 normal)
 
 // `around[n]`: from where what the medium scattered forward of sun n comes, as shade_forward.comp has it, if `spread`.
 // Else it comes with what was not scattered. `sharp`: what comes straight; `soft`: what comes from around.
-vec3 shade_suns(shade_point p, vec4 around[TYN_BEAM_MAX_SUNS], bool spread, bool sharp, bool soft)
+vec3 shade_suns(shade_point p, vec4 part, vec4 around[TYN_BEAM_MAX_SUNS], bool spread, bool sharp, bool soft)
 {
     vec3 sum = vec3(0.0);
+    shadow_surface surface = shade_shadowed(p, shade_footprint_of(p, part));
     [[unroll]] for (uint n = 0u; n < shade_num_suns; n++) {
         uint sun = shade_sun_light(n);
         vec3 towards = -suns[sun].direction;
@@ -180,7 +208,7 @@ vec3 shade_suns(shade_point p, vec4 around[TYN_BEAM_MAX_SUNS], bool spread, bool
         float wide = soft && spread ? shade_around(around[n], p.normal) : 0.0;
         if (straight + wide > 0.0) {
             if (sharp && shade_has(SHADE_SHADOWS)) {
-                straight *= shadow_visibility_surface_sun_of(shade_shadow(uint(SHADE_ROW_SUNS) + sun), p.position, p.facet);
+                straight *= shadow_visibility_surface_sun_of(shade_shadow(uint(SHADE_ROW_SUNS) + sun), surface);
             }
             if (straight + wide > 0.0) {
                 vec3 light = vec3(straight);
@@ -224,23 +252,8 @@ vec3 shade_through_radial(radial_grid grid, vec3 p)
                                      : vec3(1.0);
 }
 
-// What one point stands for: as much of its plane as a part of the picture shows.
-struct shade_footprint {
-    vec4 part;   // from xy to zw, pixels
-    float width; // at most, m
-};
 const float SHADE_NEAR = 8.0; // widths; at lamps farther away the point's irradiance is the mean, within half a per cent
 const int SHADE_SPOT_PARTS = 16; // of a footprint, along each side
-
-shade_footprint shade_footprint_of(shade_point p, vec4 part)
-{
-    bool orthographic = camera.orthographic != 0u;
-    vec3 ray = p.position - camera.origin;
-    vec2 size = 2.0 * vec2(camera.half_width, camera.half_height) / vec2(camera.size) * (part.zw - part.xy);
-    float slope = dot(orthographic ? camera.forward : normalize(ray), p.facet);
-    float wide = length(size) * (orthographic ? 1.0 : dot(ray, camera.forward));
-    return shade_footprint(part, wide / max(abs(slope), 1e-3));
-}
 
 // Where the plane of p is seen in the picture; what is beyond its horizon, or nearly, is drawn nearer.
 vec3 shade_seen(shade_point p, vec2 pixel)
@@ -346,7 +359,7 @@ vec3 shade_lamp(shade_point p, shade_footprint foot, uint row)
     vec3 irradiance = intensity.rgb * share;
     if (share > 0.0) {
         if (shade_has(SHADE_SHADOWS)) {
-            irradiance *= shadow_visibility_surface_lamp_of(shade_shadow(row), p.position, p.facet);
+            irradiance *= shadow_visibility_surface_lamp_of(shade_shadow(row), shade_shadowed(p, foot));
         }
         if (shade_has(SHADE_MEDIUM)) {
             irradiance *= shade_through_radial(shade_grid(row, position.xyz), p.position);

@@ -97,7 +97,7 @@ vec3 smooth_light_at(shade_point p)
     vec4 around[TYN_BEAM_MAX_SUNS];
     bool inside;
     vec3 light = light_of_lattice(p, around, inside);
-    return shade_has(SHADE_SPREAD) ? light + shade_suns(p, around, inside, false, true) : light;
+    return shade_has(SHADE_SPREAD) ? light + shade_suns(p, vec4(0.0), around, inside, false, true) : light;
 }
 
 // All light but that of VPLs. `part` of the picture that p stands for: from xy to zw, pixels.
@@ -106,7 +106,7 @@ vec3 irradiance_at(shade_point p, vec4 part)
     vec4 around[TYN_BEAM_MAX_SUNS];
     bool inside;
     vec3 light = light_of_lattice(p, around, inside);
-    light += shade_suns(p, around, inside && shade_has(SHADE_SPREAD), true, true);
+    light += shade_suns(p, part, around, inside && shade_has(SHADE_SPREAD), true, true);
     return light + shade_lamps(p, part);
 }
 
@@ -115,7 +115,7 @@ vec3 sharp_light_at(shade_point p, vec4 part)
 {
     vec4 around[TYN_BEAM_MAX_SUNS];
     bool spread = shade_has(SHADE_SPREAD) && inside_lattice(p);
-    return shade_suns(p, around, spread, true, false) + shade_lamps(p, part);
+    return shade_suns(p, part, around, spread, true, false) + shade_lamps(p, part);
 }
 
 // Smooth light of the four blocks whose middles are around the place `at` of the picture (pixels): of those on the same

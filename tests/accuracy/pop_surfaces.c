@@ -1,9 +1,11 @@
 // pop_surfaces.c -- surfaces without a medium in `pop`: closed forms under every kind of light, rooms against
 // `path`, VPLs that move with the light.
 #include "gpu_test.h"
+#include "path_run.h"
 #include "picture.h"
 #include "solids.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846
@@ -339,6 +341,44 @@ static void lamps_in_a_corner(void **state)
     assert_true(good);
 }
 
+// A dome of triangles with normals of a sphere, seen and lit from below: none of it shades itself, though beside each of
+// its edges the next triangle stands before the plane of this one, and a pixel shows several of them.
+static void curved_surfaces(void **state)
+{
+    gpu_test *t = *state;
+    enum { SIDE = 96 };
+    static const char *const lights[] = {"sun", "lamp"};
+    bool good = true;
+    for (int lamp = 0; lamp < 2; lamp++) {
+        tyn_scene scene;
+        tyn_view view = {0};
+        tyn_scene_init(&scene);
+        const uint32_t material = solids_material(&scene, albedo, BLACK);
+        solids_sphere(&scene, (float[]){0, 0, 0}, 1, 16, true, material);
+        scene.surfaces.num_triangles /= 2; // those of the northern rings
+        solids_hierarchy(&scene, 4);
+        if (lamp) {
+            scene_add_lamp(&scene, (float[]){0.05f, 0.1f, 0}, 1);
+        } else {
+            scene_add_sun(&scene, 0.05f, 1, 0.1f, 1, 1, 1);
+        }
+        view_orthographic(&view, (float[]){0, -2, 0}, 0, 1, 0, (float[]){0, 0, -1}, 0.4f, SIDE);
+        picture p;
+        picture_render(&p, t->dev, "pop", &scene, &view, "vpl.count=0", 1);
+        double least = INFINITY, mean = 0;
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            least = fmin(least, p.rgb[3 * i + 1]);
+            mean += p.rgb[3 * i + 1] / (SIDE * SIDE);
+        }
+        print_message("dome under a %s: darkest pixel %.2f of the mean\n", lights[lamp],
+                      least / mean);
+        good = good && mean > 0 && least > 0.8 * mean;
+        picture_free(&p);
+        tyn_scene_finish(&scene);
+    }
+    assert_true(good);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(floors),
@@ -347,6 +387,8 @@ int main(void)
                                        cmocka_unit_test(dark_lamps),
                                        cmocka_unit_test(many_suns),
                                        cmocka_unit_test(reflections_of_large_floors),
-                                       cmocka_unit_test(lamps_in_a_corner)};
+                                       cmocka_unit_test(lamps_in_a_corner),
+                                       cmocka_unit_test(curved_surfaces)};
+    cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
