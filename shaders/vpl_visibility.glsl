@@ -1,4 +1,4 @@
-// vpl_visibility.glsl -- what surfaces leave of a VPL's view: distances of the first ones around it.
+// vpl_visibility.glsl -- what surfaces leave of a VPL's view: distances of the first ones around it, and their planes.
 //
 // Each VPL has a square map of its half space, 16 maps in a row of the atlas. A direction d with d.z along the
 // VPL's axis is at the octahedral coordinates p = d.xy / (|d.x| + |d.y| + d.z), a diamond that is turned to fill
@@ -61,7 +61,8 @@ vpl_map vpl_map_of(uint vpl, vec3 axis)
     return vpl_map(vpl_frame(axis), vec2(vpl_map_corner(vpl, side)), 1.0 / vec2(size), float(max(side - 1, 0)));
 }
 
-// As vpl_visibility of a point in the medium, r = length(away). `closed`: of a cell that has a wall between
+// Share of a VPL's light that goes the way `away` to a point in the medium and is not stopped by surfaces, r = length(away): of
+// the four rays around that way, those that reach beyond the point. `closed`: of a cell that has a wall between
 // it and the VPL, which all four rays must reach: some of them may end beyond it where that is seen under a small angle.
 float vpl_map_visibility(vpl_map map, vec3 away, float r, bool closed)
 {
@@ -73,9 +74,14 @@ float vpl_map_visibility(vpl_map map, vec3 away, float r, bool closed)
     return map.last > 0.0 ? share : 1.0;
 }
 
-// Share of a VPL's light that goes the way `away` and is not stopped by surfaces: of the four rays around that way,
-// those that reach beyond the point. `normal`: of the surface that the point is on, whose plane the rays are to
-// reach; (0, 0, 0) for a point in the medium.
+#ifdef VPL_PLANES
+layout(set = 0, binding = VPL_PLANES) uniform sampler2D vpl_planes;
+
+// Share of a VPL's light that goes the way `away` to a point of a surface with the normal `normal` and is not stopped by
+// others: of the four rays around that way, those that reach the surface's plane.
+//
+// In a corner some of them end before they do, on the other wall. That does not hide the point, which is before its plane, and
+// whether anything else does such rays do not tell: they are left out, and if all are such, nothing does.
 float vpl_map_visibility_surface(vpl_map map, vec3 away, vec3 normal)
 {
     vec3 d = away * map.frame, n = normal * map.frame; // multiplied from the left: into the frame
@@ -90,16 +96,17 @@ float vpl_map_visibility_surface(vpl_map map, vec3 away, vec3 normal)
     // One gather is cheaper than four fetches; its order is (0, 1), (1, 1), (1, 0), (0, 0).
     vec4 stored = textureGather(vpl_distances, (map.corner + first + 1.0) * map.texel).wzxy;
     vec4 shares = vec4(1.0 - w.x, w.x, 1.0 - w.x, w.x) * vec4(1.0 - w.yy, w.yy);
-    // A surface is not in its own shadow; cells behind a wall, however close, are.
-    float slack = plane != 0.0 ? 0.95 : 1.0;
-    return map.last > 0.0 ? dot(shares, vec4(greaterThanEqual(stored, slack * reach))) : 1.0;
+    vec4 hiding;
+    [[unroll]] for (int i = 0; i < 4; i++) {
+        vec4 met = texelFetch(vpl_planes, ivec2(map.corner + first) + ivec2(i & 1, i >> 1), 0);
+        hiding[i] = dot(met.xyz, away) < met.w ? 1.0 : 0.0;
+    }
+    // A surface is not in its own shadow.
+    vec4 lit = vec4(greaterThanEqual(stored, 0.95 * reach));
+    float through = dot(shares, lit), stopped = dot(shares, hiding * (1.0 - lit));
+    return map.last > 0.0 && stopped > 0.0 ? through / (through + stopped) : 1.0;
 }
-
-// The same of VPL `vpl`, whose axis is `axis`.
-float vpl_visibility(uint vpl, vec3 axis, vec3 away, vec3 normal)
-{
-    return vpl_map_visibility_surface(vpl_map_of(vpl, axis), away, normal);
-}
+#endif
 #endif
 
 #endif

@@ -30,6 +30,7 @@ typedef struct tyn_radial_refs {
 typedef struct tyn_vpl_refs {
     tyn_ref lights;    // struct radial_vpls
     tyn_ref distances; // 2D: what shaders/vpl_visibility.glsl reads
+    tyn_ref planes;    // 2D, the same
 } tyn_vpl_refs;
 
 // What the picture is gathered from; {0} refs are left out.

@@ -101,7 +101,7 @@ tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *
         [VPL_PORT_TEXELS] = job->refs.texels,
     };
     result = tyn_graph_add(g, &tyn_pass_vpl, &params, refs);
-    *vpls = (tyn_vpl_refs){refs[VPL_PORT_VPLS], refs[VPL_PORT_DISTANCES]};
+    *vpls = (tyn_vpl_refs){refs[VPL_PORT_VPLS], refs[VPL_PORT_DISTANCES], refs[VPL_PORT_PLANES]};
     return result;
 }
 
@@ -199,6 +199,7 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
         [SHADE_PORT_SHADOWS] = in->shadows.lights,
         [SHADE_PORT_VPLS] = vpls.lights,
         [SHADE_PORT_VPL_DISTANCES] = vpls.distances,
+        [SHADE_PORT_VPL_PLANES] = vpls.planes,
         // Surfaces far from the medium's box are no walls of the lattice, and outside it.
         [SHADE_PORT_MOMENTS] = in->wall_links.resource || params.outside ? moments : (tyn_ref){0},
         [SHADE_PORT_WALL_LINKS] = in->wall_links,

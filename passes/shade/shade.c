@@ -58,6 +58,8 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     [PORT(VPLS)] = {"vpls", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "struct radial_vpls"},
     [PORT(VPL_DISTANCES)] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, .optional = true,
                              .meaning = "what VPLs see, m"},
+    [PORT(VPL_PLANES)] = {"vpl_planes", TYN_IN, TYN_IMAGE_2D, .optional = true,
+                          .meaning = "and its planes"},
     [PORT(MOMENTS)] = {"moments", TYN_IN, TYN_IMAGE_3D, .optional = true,
                        .meaning = "fluence and flux on the lattice, W/m^2"},
     [PORT(WALL_LINKS)] = {"wall_links", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "uint[]"},
@@ -137,6 +139,7 @@ static const tyn_binding vpls_bindings[] = {
     COMMON_BINDINGS,
     {PORT(PART), TYN_USE_STORAGE_WRITE},
     {PORT(WALL_TABLE), TYN_USE_SAMPLED},
+    {PORT(VPL_PLANES), TYN_USE_SAMPLED},
 };
 static const tyn_binding rows_bindings[] = {
     {PORT(CAMERA), TYN_USE_UNIFORM},
@@ -149,6 +152,7 @@ static const tyn_binding gather_bindings[] = {
     {PORT(ROWS), TYN_USE_STORAGE_READ},
     {PORT(PART), TYN_USE_STORAGE_WRITE},
     {PORT(WALL_TABLE), TYN_USE_SAMPLED},
+    {PORT(VPL_PLANES), TYN_USE_SAMPLED},
 };
 // Bindings 0 to 27 of shade_piece.glsl.
 #define SURFACE_BINDINGS                                                                           \

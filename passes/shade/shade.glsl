@@ -382,6 +382,7 @@ vec3 shade_lamps(shade_point p, vec4 part)
     return sum;
 }
 
+#ifdef VPL_PLANES
 // Of VPLs first, first + stride, ..., on SHADE_MANY points: a light is read once for all of them. Nothing is left out
 // where a light does not shine: lavapipe would go through it anyway, under a mask. `rooms` of the points: shade_rooms.glsl.
 vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], float rooms[SHADE_MANY], uint first, uint stride)
@@ -420,5 +421,6 @@ vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], float rooms[SHADE_MANY], 
     }
     return sum;
 }
+#endif
 
 #endif

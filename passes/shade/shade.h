@@ -52,6 +52,7 @@ enum {
     SHADE_PORT_SHADOWS,       // IN optional buffer struct shadow_light[]
     SHADE_PORT_VPLS,          // IN optional buffer struct radial_vpls
     SHADE_PORT_VPL_DISTANCES, // IN optional 2D, vpl_visibility.glsl: with VPLs
+    SHADE_PORT_VPL_PLANES,    // IN optional 2D, the same
     SHADE_PORT_MOMENTS,       // IN optional 3D: light of the lattice
     SHADE_PORT_WALL_LINKS, // IN optional buffer uint[]: with surfaces within it, as the one below
     SHADE_PORT_WALL_CELLS, // IN optional buffer struct wall_cell[]

@@ -47,7 +47,6 @@ static const tyn_port ports[VPL_NUM_PORTS] = {
                         .meaning = "struct surface_texture[]"},
     [PORT(TEXELS)] = {"texels", TYN_IN, TYN_BUFFER, .optional = true,
                       .meaning = "uint[]: R8 G8 B8 A8, sRGB"},
-    [PORT(HITS)] = {"hits", TYN_SCRATCH, IMAGE2, .meaning = "normals where maps' rays end (M)"},
     [PORT(BINS)] = {"bins", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_bins"},
     [PORT(BIN_FLUX)] = {"bin_flux", TYN_SCRATCH, IMAGE2, .meaning = "power of bins, W"},
     [PORT(BIN_POSITION)] = {"bin_position", TYN_SCRATCH, IMAGE2, .meaning = "where (M, m)"},
@@ -55,6 +54,9 @@ static const tyn_port ports[VPL_NUM_PORTS] = {
     [PORT(VPLS)] = {"vpls", TYN_OUT, TYN_BUFFER, .meaning = "struct radial_vpls"},
     [PORT(DISTANCES)] = {"vpl_distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
                          .meaning = "of the first surface in every direction of a VPL, m"},
+    [PORT(PLANES)] = {"vpl_planes", TYN_OUT, IMAGE2,
+                      .meaning =
+                          "of these surfaces: normal towards the VPL (M), distance of it, m"},
     [PORT(PLAN)] = {"plan", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_plan"},
     [PORT(WEIGHTS)] = {"weights", TYN_SCRATCH, TYN_BUFFER, .meaning = "float[], of elements"},
     [PORT(BLOCKS)] = {"blocks", TYN_SCRATCH, TYN_BUFFER, .meaning = "float[], of their blocks"},
@@ -102,7 +104,7 @@ static const tyn_binding distances_bindings[] = {
     {PORT(NODES), TYN_USE_TEXELS_UVEC4},
     {PORT(VPLS), TYN_USE_STORAGE_READ},
     {PORT(DISTANCES), TYN_USE_STORAGE_WRITE},
-    {PORT(HITS), TYN_USE_STORAGE_WRITE},
+    {PORT(PLANES), TYN_USE_STORAGE_WRITE},
     {PORT(BINS), TYN_USE_STORAGE_RW},
     {PORT(MATERIALS), TYN_USE_STORAGE_READ},
     {PORT(TEXTURES), TYN_USE_STORAGE_READ},
@@ -122,7 +124,7 @@ static const tyn_binding further_bindings[] = {
 };
 static const tyn_binding bounce_bindings[] = {
     {PORT(VPLS), TYN_USE_STORAGE_READ},          {PORT(BINS), TYN_USE_STORAGE_READ},
-    {PORT(DISTANCES), TYN_USE_SAMPLED},          {PORT(HITS), TYN_USE_SAMPLED},
+    {PORT(DISTANCES), TYN_USE_SAMPLED},          {PORT(PLANES), TYN_USE_SAMPLED},
     {PORT(SURFACES), TYN_USE_UNIFORM},           {PORT(BIN_FLUX), TYN_USE_STORAGE_WRITE},
     {PORT(BIN_POSITION), TYN_USE_STORAGE_WRITE}, {PORT(BIN_NORMAL), TYN_USE_STORAGE_WRITE},
 };
@@ -232,7 +234,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_extent bins = again ? (tyn_extent){VPL_BIN_SIDE, VPL_BIN_SIDE, 1} : texel;
     tyn_build_buffer(b, PORT(VPLS), sizeof(struct radial_vpls));
     tyn_build_image(b, PORT(DISTANCES), atlas, 1);
-    tyn_build_image(b, PORT(HITS), again ? atlas : texel, 1);
+    tyn_build_image(b, PORT(PLANES), atlas, 1);
     tyn_build_buffer(b, PORT(PLAN), sizeof(struct vpl_plan));
     tyn_build_buffer(b, PORT(WEIGHTS), (blocks + 1) * VPL_BLOCK * sizeof(float));
     tyn_build_buffer(b, PORT(BLOCKS), (blocks + 1) * sizeof(float));

@@ -37,11 +37,11 @@ enum {
     VPL_PORT_TEXELS,
     VPL_PORT_VPLS,      // OUT buffer struct radial_vpls
     VPL_PORT_DISTANCES, // OUT 2D R32F: what vpl_visibility.glsl reads; without surfaces or maps 1 x 1
+    VPL_PORT_PLANES,    // OUT 2D RGBA32F, the same: of what the rays meet
     VPL_PORT_PLAN,      // SCRATCH buffer struct vpl_plan
     VPL_PORT_WEIGHTS,   // SCRATCH buffer float[]: of the elements
     VPL_PORT_BLOCKS, // SCRATCH buffer float[]: sums of blocks of elements, then what is before each
     VPL_PORT_STRATA, // SCRATCH buffer struct vpl_stratum[]
-    VPL_PORT_HITS,   // SCRATCH 2D RGBA32F: normals where the rays of maps end
     VPL_PORT_BINS,   // SCRATCH buffer struct vpl_bins
     VPL_PORT_BIN_FLUX, // SCRATCH 2D RGBA32F: of bins, as rsm_args.h has it
     VPL_PORT_BIN_POSITION,

@@ -22,7 +22,7 @@ layout(binding = 1, scalar) readonly buffer bin_buffer
     vpl_bins bins;
 };
 layout(binding = 2) uniform sampler2D distance_tex;
-layout(binding = 3) uniform sampler2D hit_tex; // normals
+layout(binding = 3) uniform sampler2D plane_tex;
 layout(binding = 4, scalar) uniform surfaces_uniform
 {
     surface_block surfaces;
@@ -58,7 +58,7 @@ void main()
             vec3 at = vpl_map_origin(light.position, light.axis, light.radius) + away * d;
             // Where a bin is much larger than what is lit, a VPL lights about as much as it is away.
             position = vec4(at, min(area, 3.14159265 * away * away));
-            normal = vec4(texelFetch(hit_tex, texel, 0).xyz, 0.0);
+            normal = vec4(texelFetch(plane_tex, texel, 0).xyz, 0.0);
         }
         imageStore(flux_image, to, vec4(flux, 0.0));
         imageStore(position_image, to, position);

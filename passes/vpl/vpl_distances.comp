@@ -1,4 +1,4 @@
-// vpl_distances.comp -- what each VPL sees: the distance of the first surface in every direction of its map;
+// vpl_distances.comp -- what each VPL sees: the distance of the first surface in every direction of its map, and its plane;
 // and what that reflects of its light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -29,7 +29,7 @@ layout(binding = 4, scalar) readonly buffer vpl_buffer
     radial_light vpls[];
 };
 layout(binding = 5, r32f) uniform writeonly image2D distance_image;
-layout(binding = 6, rgba32f) uniform writeonly image2D hit_image;
+layout(binding = 6, rgba32f) uniform writeonly image2D plane_image;
 layout(binding = 7, scalar) buffer bin_buffer
 {
     vpl_bins bins;
@@ -114,7 +114,14 @@ void main()
                                        surface_turn(surfaces.to_world, d), SURFACE_NONE);
     bool met = surface_trace_world(ray, false, hit);
     imageStore(distance_image, texel, vec4(hit.t));
-    if (args.bounce == 0u || !met) {
+    if (!met) {
+        imageStore(plane_image, texel, vec4(0.0)); // all is before it
+        return;
+    }
+    surface_point p = surface_point_at(hit.triangle, hit.barycentric);
+    vec3 normal = dot(p.normal, d) > 0.0 ? -p.normal : p.normal;
+    imageStore(plane_image, texel, vec4(normal, dot(normal, from + hit.t * d - light.position)));
+    if (args.bounce == 0u) {
         return;
     }
     // Texels at the edges of a map are halves.
@@ -130,9 +137,6 @@ void main()
     if (args.media != 0u) {
         flux *= through_medium(from, d, hit.t);
     }
-    surface_point p = surface_point_at(hit.triangle, hit.barycentric);
-    vec3 normal = dot(p.normal, d) > 0.0 ? -p.normal : p.normal;
-    imageStore(hit_image, texel, vec4(normal, 0.0));
     vec3 world = ray.origin + hit.t * ray.direction;
     put_into_bin(world, normal, flux, uint(texel.y * size.x + texel.x));
 }
