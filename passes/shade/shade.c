@@ -1,12 +1,14 @@
 // shade.c -- see shade.h.
 #include "shade.h"
 #include "shade_args.h"
+#include "shade_alone.comp.h"
 #include "shade_edges.comp.h"
 #include "shade_faces.comp.h"
 #include "shade_faces.h"
 #include "shade_forward.comp.h"
 #include "shade_gather.comp.h"
 #include "shade_lights.comp.h"
+#include "shade_places.comp.h"
 #include "shade_rows.comp.h"
 #include "shade_sight.comp.h"
 #include "shade_smooth.comp.h"
@@ -87,6 +89,10 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
                     .meaning = "a block's part of the VPLs' light, then all"},
     [PORT(ROWS)] = {"part_rows", TYN_SCRATCH, TEXELS,
                     .meaning = "summed along rows, then all smooth light"},
+    [PORT(ALONE_COUNT)] = {"alone_count", TYN_SCRATCH, TYN_BUFFER,
+                           .meaning = "struct gbuffer_edge_count"},
+    [PORT(ALONE)] = {"alone", TYN_SCRATCH, TYN_BUFFER,
+                     .meaning = "pixels with pieces that have smooth light of their own"},
 };
 
 // Bindings 0 to 20 of shade.glsl. What is in the table is not read from buffers.
@@ -151,7 +157,15 @@ static const tyn_binding gather_bindings[] = {
     COMMON_BINDINGS,
     {PORT(ROWS), TYN_USE_STORAGE_READ},
     {PORT(PART), TYN_USE_STORAGE_WRITE},
+    {PORT(ALONE_COUNT), TYN_USE_STORAGE_RW},
+    {PORT(ALONE), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding places_bindings[] = {
+    COMMON_BINDINGS,
+    {PORT(PART), TYN_USE_STORAGE_WRITE},
     {PORT(WALL_TABLE), TYN_USE_SAMPLED},
+    {PORT(ALONE_COUNT), TYN_USE_STORAGE_READ},
+    {PORT(ALONE), TYN_USE_STORAGE_READ},
     {PORT(VPL_PLANES), TYN_USE_SAMPLED},
 };
 // Bindings 0 to 27 of shade_piece.glsl.
@@ -166,6 +180,8 @@ static const tyn_binding gather_bindings[] = {
 static const tyn_binding surface_bindings[] = {
     SURFACE_BINDINGS,
     {PORT(RADIANCE), TYN_USE_STORAGE_WRITE},
+    {PORT(ALONE_COUNT), TYN_USE_STORAGE_RW},
+    {PORT(ALONE), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding smooth_bindings[] = {
     SURFACE_BINDINGS,
@@ -182,6 +198,21 @@ static const tyn_binding edges_bindings[] = {
     {PORT(MATERIALS), TYN_USE_STORAGE_READ},
     {PORT(TEXTURES), TYN_USE_STORAGE_READ},
     {PORT(TEXELS), TYN_USE_STORAGE_READ},
+    {PORT(ALONE_COUNT), TYN_USE_STORAGE_RW},
+    {PORT(ALONE), TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding alone_bindings[] = {
+    SURFACE_BINDINGS,
+    {PORT(RADIANCE), TYN_USE_STORAGE_RW},
+    {PORT(ALONE_COUNT), TYN_USE_STORAGE_READ},
+    {PORT(ALONE), TYN_USE_STORAGE_READ},
+    {PORT(SURFACES), TYN_USE_UNIFORM},
+    {PORT(TRIANGLES), TYN_USE_STORAGE_READ},
+    {PORT(VERTICES), TYN_USE_STORAGE_READ},
+    {PORT(MATERIALS), TYN_USE_STORAGE_READ},
+    {PORT(TEXTURES), TYN_USE_STORAGE_READ},
+    {PORT(TEXELS), TYN_USE_STORAGE_READ},
+    {PORT(VPL_PLANES), TYN_USE_SAMPLED},
 };
 
 enum {
@@ -193,9 +224,11 @@ enum {
     VPLS,
     SUM_ROWS,
     GATHER,
+    PLACES,
     SMOOTH,
     SURFACE,
     EDGES,
+    ALONE,
     NUM_KERNELS
 };
 
@@ -214,9 +247,11 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(6)},
     [SUM_ROWS] = {KERNEL(rows, 8, 8, 1), .num_spec = 2},
     [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(6)},
+    [PLACES] = {KERNEL(places, GBUFFER_EDGES, 1, 1), ARGS(6)},
     [SMOOTH] = {KERNEL(smooth, 8, 8, 1), ARGS(6)},
     [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(6)},
     [EDGES] = {KERNEL(edges, GBUFFER_EDGES, 1, 1), ARGS(6)},
+    [ALONE] = {KERNEL(alone, GBUFFER_EDGES, 1, 1), ARGS(6)},
 };
 
 static const tyn_param params[] = {
@@ -267,6 +302,9 @@ static tyn_result declare(tyn_builder *b, const void *data)
     tyn_build_image(b, PORT(TABLE), (tyn_extent){SHADE_ENTRIES, SHADE_ROWS, 1}, 1);
     tyn_build_image(b, PORT(PART), vpls ? blocks : texel, 1);
     tyn_build_image(b, PORT(ROWS), blocks, 1);
+    const bool alone = vpls || step > 1;
+    tyn_build_buffer(b, PORT(ALONE_COUNT), sizeof(struct gbuffer_edge_count));
+    tyn_build_buffer(b, PORT(ALONE), 8 * (alone ? (uint64_t)p->size[0] * p->size[1] : 1));
     return TYN_OK;
 }
 
@@ -335,28 +373,35 @@ static void record(tyn_recorder *r, const void *data)
                          (blocks.y + side * SHADE_MANY - 1) / (side * SHADE_MANY), side * side};
         tyn_rec_dispatch(r, &d);
         tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SUM_ROWS, .cells = blocks, .spec = spec + 4});
+        tyn_rec_fill(r, PORT(ALONE_COUNT), 0);
         d.kernel = GATHER;
         d.cells = blocks;
         tyn_rec_dispatch(r, &d);
+        d.kernel = PLACES;
+        tyn_rec_dispatch_indirect(r, &d, PORT(ALONE_COUNT), 0);
     }
     if (step > 1) {
         d.kernel = SMOOTH;
         d.cells = blocks;
         tyn_rec_dispatch(r, &d);
     }
+    tyn_rec_fill(r, PORT(ALONE_COUNT), 0);
     // Surfaces look up light of VPLs, or all smooth light.
-    uint8_t bound[sizeof edges_bindings / sizeof *edges_bindings];
-    for (size_t i = 0; i < sizeof bound; i++) {
-        bound[i] = edges_bindings[i].port;
-        bound[i] = step > 1 && bound[i] == PORT(PART) ? PORT(ROWS) : bound[i];
-    }
-    d.ports = bound;
+    const uint8_t looked_up[1][2] = {{PORT(PART), step > 1 ? PORT(ROWS) : PORT(PART)}};
+    uint8_t bound[3][TYN_MAX_BINDINGS];
     d.kernel = SURFACE;
     d.cells = pixels;
+    d.ports = tyn_ports_exchanged(&kernels[SURFACE], looked_up, 1, bound[0]);
     tyn_rec_dispatch(r, &d);
     if (samples > 1) {
         d.kernel = EDGES;
+        d.ports = tyn_ports_exchanged(&kernels[EDGES], looked_up, 1, bound[1]);
         tyn_rec_dispatch_indirect(r, &d, PORT(EDGE_COUNT), 0);
+    }
+    if (vpls || step > 1) {
+        d.kernel = ALONE;
+        d.ports = tyn_ports_exchanged(&kernels[ALONE], looked_up, 1, bound[2]);
+        tyn_rec_dispatch_indirect(r, &d, PORT(ALONE_COUNT), 0);
     }
     tyn_rec_work(r, "pixels", (double)pixels.x * pixels.y);
 }

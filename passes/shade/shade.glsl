@@ -385,11 +385,14 @@ vec3 shade_lamps(shade_point p, vec4 part)
 #ifdef VPL_PLANES
 // Of VPLs first, first + stride, ..., on SHADE_MANY points: a light is read once for all of them. Nothing is left out
 // where a light does not shine: lavapipe would go through it anyway, under a mask. `rooms` of the points: shade_rooms.glsl.
-vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], float rooms[SHADE_MANY], uint first, uint stride)
+// `nearest` of those that shine there: square of the distance or of the radius, which is more, m^2.
+vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], float rooms[SHADE_MANY], uint first, uint stride,
+                            out float nearest[SHADE_MANY])
 {
     vec3 sum[SHADE_MANY];
     [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
         sum[i] = vec3(0.0);
+        nearest[i] = 1e30;
     }
     uint count = min(vpl_count, uint(TYN_RADIAL_VPLS_MAX));
     for (uint k = first; k < count; k += stride) {
@@ -412,6 +415,8 @@ vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], float rooms[SHADE_MANY], 
             if (shade_has(SHADE_ROOMS)) {
                 share = faces.w == rooms[i] || min(faces.w, rooms[i]) < 0.0 ? share : 0.0;
             }
+            float far = max(dot(away, away), light.radius * light.radius);
+            nearest[i] = share > 0.0 ? min(nearest[i], far) : nearest[i];
             vec3 irradiance = intensity * share;
             if (shade_has(SHADE_MEDIUM)) {
                 irradiance *= shade_through_radial(grid, p[i].position);

@@ -75,6 +75,8 @@ enum {
     SHADE_PORT_SIGHT, // SCRATCH 3D RGBA32F, the same
     SHADE_PORT_PART,  // SCRATCH 2D RGBA32UI, shade_part.glsl: exist with VPLs
     SHADE_PORT_ROWS,
+    SHADE_PORT_ALONE_COUNT, // SCRATCH buffers, shade_alone.glsl
+    SHADE_PORT_ALONE,
     SHADE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_shade;

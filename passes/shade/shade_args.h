@@ -28,6 +28,8 @@
 #define SHADE_STEP 2
 // Pixels along the picture's shorter side; of smaller ones two pixels are much.
 #define SHADE_STEP_FROM 384
+// Widths of a pixel: VPLs nearer than that, and smaller, are near.
+#define SHADE_VPL_NEAR 20.0
 #define SHADE_MOST 8 // VPLs that a pixel takes in any case
 #define SHADE_MANY 4 // pixels that a thread takes VPLs at
 

@@ -1,12 +1,13 @@
 // shade_gather.comp -- all VPLs' light at a pixel, from what it and its neighbours took: sums of shade_rows.comp along
-// a column. Where too few neighbours lie on the same piece of surface the pixel takes all VPLs itself.
+// a column. Where too few neighbours lie on the same piece of surface, or on one side only and light changes from pixel to
+// pixel, the pixel takes all VPLs itself: that is left to shade_places.comp.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define VPL_PLANES 24
 #include "shade_place.glsl"
-#define WALLS_TABLE 23
-#include "shade_rooms.glsl"
+#define SHADE_ALONE_COUNT 23
+#define SHADE_ALONE 24
+#include "shade_alone.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -24,12 +25,11 @@ void main()
     if (sum.along > 0.0 && vpl_count > SHADE_MOST * shade_side) {
         sum = shade_tent(block, ivec2(0, 1), sum);
     }
-    if (!sum.whole) {
-        shade_part part;
-        shade_point p = shade_place(block, part);
-        shade_point same[SHADE_MANY] = shade_point[](p, p, p, p); // the compiler sees that they are
-        float room = shade_has(SHADE_ROOMS) ? shade_room_of(p.position) : -1.0;
-        sum.irradiance = shade_vpls(same, float[SHADE_MANY](room, room, room, room), 0u, 1u)[0];
+    bool alone = !sum.whole || sum.near && sum.aside;
+    sum.whole = true;
+    sum.aside = false;
+    if (alone) {
+        shade_list_alone(block, 0u, uint(SHADE_MANY));
     }
     imageStore(indirect_image, block, shade_pack(sum));
 }

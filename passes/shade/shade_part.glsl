@@ -13,19 +13,22 @@ struct shade_part {
     float along;     // where the facet's plane meets the ray through the block's middle: m along the camera's axis; 0: no surface
     vec3 facet;      // the facet's normal (M)
     bool whole;      // all VPLs that the irradiance is to have are in it
+    bool near;       // one of them is so near that its light changes within the pattern
+    bool aside;      // of some places of the pattern the neighbours on one side only are on this piece
 };
 
 uvec4 shade_pack(shade_part p)
 {
     uvec2 colour = colour_pack(p.irradiance);
-    return uvec4(colour.x, colour.y | (p.whole ? 1u << 30 : 0u), floatBitsToUint(p.along),
-                 packSnorm2x16(gbuffer_fold(p.facet)));
+    return uvec4(colour.x, colour.y | (p.whole ? 1u << 30 : 0u) | (p.near ? 1u << 31 : 0u),
+                 floatBitsToUint(p.along) | (p.aside ? 1u << 31 : 0u), packSnorm2x16(gbuffer_fold(p.facet)));
 }
 
 shade_part shade_unpack(uvec4 texel)
 {
-    return shade_part(colour_unpack(texel.xy), uintBitsToFloat(texel.z), gbuffer_unfold(unpackSnorm2x16(texel.w)),
-                      (texel.y & 1u << 30) != 0u);
+    return shade_part(colour_unpack(texel.xy), uintBitsToFloat(texel.z & 0x7fffffffu),
+                      gbuffer_unfold(unpackSnorm2x16(texel.w)), (texel.y & 1u << 30) != 0u, (texel.y & 1u << 31) != 0u,
+                      (texel.z & 1u << 31) != 0u);
 }
 
 ivec2 shade_blocks()

@@ -118,9 +118,12 @@ vec3 sharp_light_at(shade_point p, vec4 part)
     return shade_suns(p, part, around, spread, true, false) + shade_lamps(p, part);
 }
 
+// Weights of places on the same piece of surface, below which a piece is alone.
+const float SHADE_ALIKE = 0.001, SHADE_ALIKE_BESIDE = 0.01;
+
 // Smooth light of the four blocks whose middles are around the place `at` of the picture (pixels): of those on the same
-// piece of surface, in proportion to how near they are, or of the one that is most like p.
-vec3 smooth_light_around(shade_point p, vec2 at)
+// piece of surface, in proportion to how near they are, or of the one that is most like p. `alone`: that will not do.
+vec3 smooth_light_around(shade_point p, vec2 at, out bool alone)
 {
     vec2 x = at / float(shade_step) - 0.5, first = floor(x), f = x - first;
     ivec2 last = shade_blocks() - 1;
@@ -142,13 +145,16 @@ vec3 smooth_light_around(shade_point p, vec2 at)
         other = alike > best ? there.irradiance : other;
         best = max(best, alike);
     }
+    alone = sum.a < SHADE_ALIKE;
     return sum.a > 1e-9 ? sum.rgb / sum.a : other;
 }
 
 // Of the nine blocks around the place `at` of the picture (pixels): of those on the same plane, the nearer the more. Not of
 // the one that is most like p: of several on one plane that is a matter of rounding, which changes with the scale.
-vec3 smooth_light_beside(shade_point p, vec2 at)
+// `alone`: that will not do.
+vec3 smooth_light_beside(shade_point p, vec2 at, out bool alone)
 {
+    bool near = false;
     vec2 x = at / float(shade_step);
     ivec2 last = shade_blocks() - 1;
     float size = float(shade_step) * 2.0 * camera.half_height / float(camera.size.y);
@@ -163,7 +169,9 @@ vec3 smooth_light_beside(shade_point p, vec2 at)
         float off = abs(dot(d, p.facet)) / max(max(length(d), size), 1e-30);
         float like = exp2(max(-40.0 * (1.0 - dot(there.facet, p.facet) + off), -100.0) - 4.0 * dot(away, away));
         sum += (there.along > 0.0 ? like : 0.0) * vec4(there.irradiance, 1.0);
+        near = near || there.along > 0.0 && there.near && like > 1e-3;
     }
+    alone = near || sum.a < SHADE_ALIKE_BESIDE || shade_side == 1;
     return sum.rgb / max(sum.a, 1e-37);
 }
 

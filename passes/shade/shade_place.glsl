@@ -26,8 +26,16 @@ shade_point shade_place(ivec2 block, out shade_part part)
     camera_ray ray = camera_ray_through(camera, shade_middle(block));
     float facing = dot(ray.direction, found.facet), distance = dot(position - ray.origin, found.facet) / facing;
     distance = abs(facing) > 0.02 && distance > 0.0 ? distance : away;
-    part = shade_part(vec3(0.0), none ? 0.0 : distance * dot(ray.direction, camera.forward), found.facet, true);
+    part = shade_part(vec3(0.0), none ? 0.0 : distance * dot(ray.direction, camera.forward), found.facet, true, false,
+                      false);
     return shade_point(one ? ray.origin + distance * ray.direction : position, found.normal, found.facet);
+}
+
+// Does the light of VPLs of which shade_vpls found `nearest` change within the pattern around a block?
+bool shade_near(shade_point p, ivec2 block, float nearest)
+{
+    float reach = SHADE_VPL_NEAR * shade_footprint_of(p, vec4(block, block + 1) * float(shade_step)).width / float(shade_step);
+    return nearest < reach * reach;
 }
 
 #endif

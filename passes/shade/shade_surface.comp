@@ -4,6 +4,10 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shade_piece.glsl"
+#include "shade_whole.glsl"
+#define SHADE_ALONE_COUNT 29
+#define SHADE_ALONE 30
+#include "shade_alone.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -23,25 +27,23 @@ void main()
         }
     }
     if (seen.shown == GBUFFER_WHOLE) {
-        // In the middle of the samples, but on the plane of the one whose facet is to be in a shadow or not.
-        vec3 at = shade_position(corner, shade_distance(corner)), off = vec3(0.0);
-        for (int k = 1; k < shade_samples * shade_samples; k++) {
-            ivec2 texel = shade_texel(corner, k);
-            off += shade_position(texel, shade_distance(texel)) - at;
-        }
-        off = (off - dot(off, seen.facet) * seen.facet) / float(shade_samples * shade_samples);
-        shade_point p = shade_point(at + off, seen.normal, seen.facet);
+        shade_point p = shade_whole(pixel, seen);
+        bool alone = false;
         vec3 irradiance;
-        if (shade_step == 1) {
+        if (shade_step > 1) {
+            vec3 smoothed = smooth_light_around(p, vec2(pixel) + 0.5, alone);
+            irradiance = sharp_light_at(p, vec4(pixel, pixel + 1)) + (alone ? vec3(0.0) : smoothed);
+        } else {
             irradiance = irradiance_at(p, vec4(pixel, pixel + 1));
             irradiance += shade_has(SHADE_VPLS) ? shade_unpack(imageLoad(smooth_image, pixel)).irradiance : vec3(0.0);
-        } else {
-            irradiance = smooth_light_around(p, vec2(pixel) + 0.5) + sharp_light_at(p, vec4(pixel, pixel + 1));
         }
         uvec4 colours = shade_colours(pixel, 0);
         uvec2 radiance = colour_pack(gbuffer_emission(colours) + gbuffer_albedo(colours) * irradiance / PI);
         for (int k = 0; k < shade_samples * shade_samples; k++) {
             imageStore(radiance_image, shade_texel(corner, k), uvec4(radiance, 0u, 0u));
+        }
+        if (alone) {
+            shade_list_alone(pixel, SHADE_ALONE_WHOLE, 1u);
         }
     }
 }

@@ -25,6 +25,7 @@ shade_part shade_tent(ivec2 block, ivec2 step, shade_part here)
     int met = 1;
     [[unroll]] for (int k = 1; k < shade_side; k++) {
         vec4 mean = vec4(0.0);
+        float sides = 1.0;
         [[unroll]] for (int i = 0; i < 2; i++) {
             int d = i == 0 ? k : k - shade_side;
             ivec2 at = block + d * step, held = clamp(at, ivec2(0), last);
@@ -35,10 +36,15 @@ shade_part shade_tent(ivec2 block, ivec2 step, shade_part here)
             float turned = dot(here.facet, there.facet), like = clamp(2.0 - off, 0.0, 1.0) * smoothstep(0.7, 0.9, turned);
             like = max(like, off < 6.0 && turned > 0.5 ? 0.01 : 0.0);
             bool counts = at == held && there.along > 0.0 && there.whole;
+            sides *= counts ? like : 0.0;
+            bool tells = counts && like > 0.1;
+            sum.near = sum.near || tells && there.near;
+            sum.aside = sum.aside || tells && there.aside;
             mean += (counts ? like * (1.0 - float(abs(d)) / float(shade_side)) : 0.0) * vec4(there.irradiance, 1.0);
         }
         sum.irradiance += mean.rgb / max(mean.a, 1e-6);
         met += mean.a > 1e-3 ? 1 : 0;
+        sum.aside = sum.aside || sides < 0.01;
     }
     // Any place of the pattern takes VPLs from everywhere, so most stand for all.
     sum.irradiance *= float(shade_side) / float(met);

@@ -31,11 +31,13 @@ void main()
     // between parts would be larger than what sums even out.
     uint side = uint(shade_side), parts = vpl_count <= SHADE_MOST ? 1u : vpl_count <= SHADE_MOST * side ? side : side * side;
     part_of = parts < side * side ? uint(cell.x + 2 * cell.y) % parts : part_of;
-    vec3 light[SHADE_MANY] = shade_vpls(p, rooms, part_of, parts);
+    float nearest[SHADE_MANY];
+    vec3 light[SHADE_MANY] = shade_vpls(p, rooms, part_of, parts, nearest);
     [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
         ivec2 block = first + ivec2(0, i * shade_side);
         if (all(lessThan(block, size))) {
             part[i].irradiance = part[i].along > 0.0 ? light[i] : vec3(0.0);
+            part[i].near = part[i].along > 0.0 && shade_near(p[i], block, nearest[i]);
             imageStore(part_image, block, shade_pack(part[i]));
         }
     }

@@ -1,0 +1,53 @@
+// shade_alone.comp -- smooth light of pieces of surface that no place for it tells of, as bars thinner than a pixel: they
+// take all VPLs themselves.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define VPL_PLANES 37
+#include "shade_piece.glsl"
+#include "shade_several.glsl"
+#include "shade_whole.glsl"
+#define SHADE_ALONE_COUNT 29
+#define SHADE_ALONE 30
+#define SHADE_ALONE_TAKEN
+#include "shade_alone.glsl"
+
+layout(local_size_x = GBUFFER_EDGES) in;
+
+layout(binding = 28, rg32ui) uniform uimage2D radiance_image; // packed_colour.glsl
+
+void main()
+{
+    uint n = gbuffer_edge();
+    if (n >= alone_count.count) {
+        return;
+    }
+    uvec2 entry = alone_pixels[n];
+    ivec2 pixel = ivec2(entry.x & 0xffffu, entry.x >> 16), corner = pixel * shade_samples;
+    bool whole = entry.y == SHADE_ALONE_WHOLE;
+    uint left = whole ? (1u << shade_samples * shade_samples) - 1u : entry.y;
+    while (left != 0u) {
+        shade_point p;
+        vec3 albedo, emission;
+        uint members = left;
+        if (whole) {
+            p = shade_whole(pixel, shade_facing(pixel));
+            albedo = gbuffer_albedo(shade_colours(pixel, 0));
+        } else {
+            p = piece_of(pixel, left, albedo, emission, members);
+        }
+        vec3 light = shade_step > 1 ? smooth_light_at(p) : vec3(0.0);
+        if (shade_has(SHADE_VPLS)) {
+            shade_point same[SHADE_MANY] = shade_point[](p, p, p, p); // the compiler sees that they are
+            float room = shade_has(SHADE_ROOMS) ? shade_room_of(p.position) : -1.0;
+            float nearest[SHADE_MANY];
+            light += shade_vpls(same, float[SHADE_MANY](room, room, room, room), 0u, 1u, nearest)[0];
+        }
+        uvec2 others = imageLoad(radiance_image, shade_texel(corner, findLSB(members))).xy;
+        uvec2 radiance = colour_pack(colour_unpack(others) + albedo * light / PI) | uvec2(0u, others.y & 0xc0000000u);
+        for (uint some = members; some != 0u; some &= some - 1u) {
+            imageStore(radiance_image, shade_texel(corner, findLSB(some)), uvec4(radiance, 0u, 0u));
+        }
+        left &= ~members;
+    }
+}

@@ -1,0 +1,40 @@
+// shade_alone.glsl -- lists of what takes all VPLs itself, as neighbours do not tell of its light: blocks of pixels, for
+// shade_places.comp; then pixels with such pieces of surface, for shade_alone.comp. Order does not matter.
+#ifndef SHADE_ALONE_GLSL
+#define SHADE_ALONE_GLSL
+#include "gbuffer_edges.glsl"
+
+// SHADE_ALONE_TAKEN: the list is gone through; else added to.
+#ifdef SHADE_ALONE_TAKEN
+#define SHADE_ALONE_COUNTED readonly
+#define SHADE_ALONE_LISTED readonly
+#else
+#define SHADE_ALONE_COUNTED
+#define SHADE_ALONE_LISTED writeonly
+#endif
+
+layout(binding = SHADE_ALONE_COUNT, scalar) SHADE_ALONE_COUNTED buffer alone_count_buffer
+{
+    gbuffer_edge_count alone_count;
+};
+layout(binding = SHADE_ALONE, scalar) SHADE_ALONE_LISTED buffer alone_buffer
+{
+    uvec2 alone_pixels[]; // x | y << 16; samples on such pieces: bits, SHADE_ALONE_WHOLE: all, on one piece
+};
+
+const uint SHADE_ALONE_WHOLE = 1u << 31;
+
+#ifndef SHADE_ALONE_TAKEN
+// `many`: elements of the list that a thread takes.
+void shade_list_alone(ivec2 pixel, uint samples, uint many)
+{
+    uint n = atomicAdd(alone_count.count, 1u);
+    alone_pixels[n] = uvec2(uint(pixel.y) << 16 | uint(pixel.x), samples);
+    uvec2 groups = gbuffer_edge_groups(n / many, GBUFFER_ROW);
+    atomicMax(alone_count.groups.x, groups.x);
+    atomicMax(alone_count.groups.y, groups.y);
+    atomicMax(alone_count.groups.z, 1u);
+}
+#endif
+
+#endif

@@ -1,0 +1,42 @@
+// shade_places.comp -- blocks of pixels that take all VPLs themselves: those that shade_gather.comp lists.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define VPL_PLANES 25
+#include "shade_place.glsl"
+#define WALLS_TABLE 22
+#include "shade_rooms.glsl"
+#define SHADE_ALONE_COUNT 23
+#define SHADE_ALONE 24
+#define SHADE_ALONE_TAKEN
+#include "shade_alone.glsl"
+
+layout(local_size_x = GBUFFER_EDGES) in;
+
+layout(binding = 21, rgba32ui) uniform writeonly uimage2D indirect_image; // shade_part.glsl
+
+void main()
+{
+    uint n = gbuffer_edge() * uint(SHADE_MANY), count = alone_count.count;
+    if (n >= count) {
+        return;
+    }
+    shade_point p[SHADE_MANY];
+    shade_part part[SHADE_MANY];
+    float rooms[SHADE_MANY], nearest[SHADE_MANY];
+    ivec2 block[SHADE_MANY];
+    [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
+        uint entry = alone_pixels[min(n + uint(i), count - 1u)].x;
+        block[i] = ivec2(entry & 0xffffu, entry >> 16);
+        p[i] = shade_place(block[i], part[i]);
+        rooms[i] = shade_has(SHADE_ROOMS) ? shade_room_of(p[i].position) : -1.0;
+    }
+    vec3 light[SHADE_MANY] = shade_vpls(p, rooms, 0u, 1u, nearest);
+    [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
+        part[i].irradiance = light[i];
+        part[i].near = shade_near(p[i], block[i], nearest[i]);
+        if (n + uint(i) < count) {
+            imageStore(indirect_image, block[i], shade_pack(part[i]));
+        }
+    }
+}
