@@ -135,6 +135,117 @@ static void under_emitter(void **state)
     tyn_scene_finish(&scene);
 }
 
+// Irradiance at p on the side n of a rectangle of radiance 1 that is all before it, whose front sees p: Lambert's integral
+// around it.
+static double of_rectangle(const double p[3], const double n[3], const float corner[3],
+                           const float u[3], const float v[3])
+{
+    double at[4][3], sum = 0;
+    for (int k = 0; k < 4; k++) {
+        double length = 0;
+        for (int c = 0; c < 3; c++) {
+            const double a = k == 1 || k == 2, b = k >= 2;
+            at[k][c] = (double)corner[c] + a * (double)u[c] + b * (double)v[c] - p[c];
+            length += at[k][c] * at[k][c];
+        }
+        for (int c = 0; c < 3; c++) {
+            at[k][c] /= sqrt(length);
+        }
+    }
+    for (int k = 0; k < 4; k++) {
+        const double *a = at[k], *b = at[(k + 1) % 4];
+        const double across[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                                  a[0] * b[1] - a[1] * b[0]};
+        const double size =
+            sqrt(across[0] * across[0] + across[1] * across[1] + across[2] * across[2]);
+        const double angle = atan2(size, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+        sum += angle * (across[0] * n[0] + across[1] * n[1] + across[2] * n[2]) / size;
+    }
+    return fabs(sum) / 2;
+}
+
+// An emitter in a closed room whose walls reflect nearly nothing: floor and wall are lit into the corners, where maps of
+// what virtual lights see have rays that end on the other wall.
+static void corners(void **state)
+{
+    enum { WIDE = 32 };
+    const float dark = 1e-3f, corner[3] = {-0.25f, 1.95f, -0.25f}, u[3] = {0.5f, 0, 0},
+                v[3] = {0, 0, 0.5f};
+    for (int wall = 0; wall < 2; wall++) {
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        const uint32_t black = solids_material(&scene, (float[]){dark, dark, dark}, BLACK);
+        const uint32_t bright = solids_material(&scene, BLACK, (float[]){1, 1, 1});
+        solids_box(&scene, (float[]){-1, 0, -1}, (float[]){1, 2, 1}, 0, true, black);
+        solids_quad(&scene, corner, u, v, bright);
+        solids_hierarchy(&scene, 4);
+        // From the room's middle a wall of it fills the picture.
+        tyn_view view = {.width = WIDE, .height = WIDE};
+        view.camera = (tyn_camera){.projection = TYN_PERSPECTIVE,
+                                   .position = {0, 1, 0},
+                                   .right = {1, 0, 0},
+                                   .up = {0, (float)wall, (float)wall - 1},
+                                   .back = {0, 1 - (float)wall, (float)wall},
+                                   .yfov = (float)(PI / 2)};
+        picture p;
+        picture_render(&p, ((gpu_test *)*state)->dev, "pop", &scene, &view, "shade.pattern=1", 1);
+        double worst = 0, sum = 0, all = 0;
+        for (int i = 0; i < WIDE * WIDE; i++) {
+            const double x = 2 * (i % WIDE + 0.5) / WIDE - 1, y = 1 - 2 * (i / WIDE + 0.5) / WIDE;
+            const double at[3] = {x, wall ? 1 + y : 0, wall ? -1 : -y};
+            const double n[3] = {0, wall ? 0 : 1, wall ? 1 : 0};
+            // Higher up the wall than this the emitter is near enough for its virtual lights to be told apart.
+            if (at[1] > 1.5) {
+                continue;
+            }
+            const double expected = (double)dark / PI * of_rectangle(at, n, corner, u, v);
+            worst = fmax(worst, fabs((double)p.rgb[3 * i] / expected - 1));
+            sum += (double)p.rgb[3 * i];
+            all += expected;
+        }
+        print_message("%s of a room under an emitter: %.2f %% off at most, mean %+.2f %%\n",
+                      wall ? "wall" : "floor", 100 * worst, 100 * (sum / all - 1));
+        assert_true(worst < 0.02 && fabs(sum / all - 1) < 0.005);
+        picture_free(&p);
+        tyn_scene_finish(&scene);
+    }
+}
+
+// An emitter in the corner of two walls that stand on a floor: behind them the floor is dark, although it is before the
+// plane of the one or the other, on which rays end.
+static void behind_a_corner(void **state)
+{
+    enum { WIDE = 32 };
+    tyn_scene scene;
+    tyn_scene_init(&scene);
+    const uint32_t grey = solids_material(&scene, (float[]){1e-3f, 1e-3f, 1e-3f}, BLACK);
+    const uint32_t bright = solids_material(&scene, BLACK, (float[]){1, 1, 1});
+    solids_quad(&scene, (float[]){-2, 0, -2}, (float[]){0, 0, 4}, (float[]){4, 0, 0}, grey);
+    solids_quad(&scene, (float[]){-1.5f, 0, 0}, (float[]){1.5f, 0, 0}, (float[]){0, 2, 0}, grey);
+    solids_quad(&scene, (float[]){0, 0, 0}, (float[]){0, 0, 1.5f}, (float[]){0, 2, 0}, grey);
+    solids_quad(&scene, (float[]){-0.2f, 1, 0.5f}, (float[]){0.1f, 0, 0}, (float[]){0, 0, 0.1f},
+                bright);
+    solids_hierarchy(&scene, 4);
+    tyn_view view = {0};
+    view_orthographic(&view, (float[]){0, 1, 0}, 0, -1, 0, (float[]){0, 0, -1}, 1, WIDE);
+    picture p;
+    picture_render(&p, ((gpu_test *)*state)->dev, "pop", &scene, &view, "shade.pattern=1", 1);
+    double lit = 0, most = 0;
+    for (int i = 0; i < WIDE * WIDE; i++) {
+        const double x = 2 * (i % WIDE + 0.5) / WIDE - 1, z = 2 * (i / WIDE + 0.5) / WIDE - 1;
+        const double v = (double)p.rgb[3 * i];
+        if (x < 0 && z > 0) {
+            lit = fmax(lit, v < 0.5 ? v : 0);
+        } else if (z < -0.7 && x > -0.6) {
+            most = fmax(most, v);
+        }
+    }
+    print_message("behind a corner: at most %.1e of what is before it\n", most / lit);
+    assert_true(lit > 0 && most < 1e-3 * lit);
+    picture_free(&p);
+    tyn_scene_finish(&scene);
+}
+
 // A closed room with a block and a lamp, and one with an emitter: all reflections, against `path`.
 static void rooms(void **state)
 {
@@ -383,6 +494,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(floors),
                                        cmocka_unit_test(under_emitter),
+                                       cmocka_unit_test(corners),
+                                       cmocka_unit_test(behind_a_corner),
                                        cmocka_unit_test(rooms),
                                        cmocka_unit_test(dark_lamps),
                                        cmocka_unit_test(many_suns),
