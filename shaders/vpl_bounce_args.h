@@ -24,6 +24,11 @@ struct vpl_bins {
 };
 TYN_ASSERT_SIZE(vpl_bins, 16 + 16 * 4096);
 
+struct vpl_bounce_args {
+    tyn_uint later; // 1: bins are what VPLs of the second reflection light
+};
+TYN_ASSERT_SIZE(vpl_bounce_args, 4);
+
 struct vpl_distances_args {
     tyn_uint later;    // 1: only of the VPLs that were added last
     tyn_uint bounce;   // 1: what they light is put into bins

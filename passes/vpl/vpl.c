@@ -125,7 +125,7 @@ static const tyn_binding further_bindings[] = {
 static const tyn_binding bounce_bindings[] = {
     {PORT(VPLS), TYN_USE_STORAGE_READ},          {PORT(BINS), TYN_USE_STORAGE_READ},
     {PORT(DISTANCES), TYN_USE_SAMPLED},          {PORT(PLANES), TYN_USE_SAMPLED},
-    {PORT(SURFACES), TYN_USE_UNIFORM},           {PORT(BIN_FLUX), TYN_USE_STORAGE_WRITE},
+    {PORT(SURFACES), TYN_USE_UNIFORM},           {PORT(BIN_FLUX), TYN_USE_STORAGE_RW},
     {PORT(BIN_POSITION), TYN_USE_STORAGE_WRITE}, {PORT(BIN_NORMAL), TYN_USE_STORAGE_WRITE},
 };
 
@@ -142,7 +142,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [LIGHTS] = {KERNEL(lights, VPL_LANES, 1, sizeof(struct vpl_args), 1)},
     [DISTANCES] = {KERNEL(distances, 8, 8, sizeof(struct vpl_distances_args), 1)},
     [POWER] = {KERNEL(power, TYN_RADIAL_VPLS_MAX, 1, 0, 0)},
-    [BOUNCE] = {KERNEL(bounce, VPL_BLOCK, 1, 0, 0)},
+    [BOUNCE] = {KERNEL(bounce, VPL_BLOCK, 1, sizeof(struct vpl_bounce_args), 0)},
     [FURTHER] = {KERNEL(further, TYN_RADIAL_VPLS_MAX, 1, 0, 0)},
 };
 
@@ -309,16 +309,21 @@ static void record(tyn_recorder *r, const void *data)
         tyn_rec_dispatch(r, &see);
     }
     if (again) {
-        const struct vpl_args added = {later, p->num_suns, 0, 1};
+        struct vpl_args added = {later, p->num_suns, 0, 1};
         memset(&plan, 0, sizeof plan);
         plan.num_blocks = plan.front = plan.back = VPL_BINS / VPL_BLOCK;
         plan.num_tiles = plan.num_sources = 1;
         plan.tiles[0].map.texels = VPL_BIN_SIDE;
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = BOUNCE, .cells = {VPL_BLOCK, 1, 1}});
-        make_lights(r, &plan, &added, true, p->mode);
         maps.later = 1;
-        count_reflections(r);
-        tyn_rec_dispatch(r, &see);
+        for (uint32_t i = 0; i < 2; i++) {
+            const struct vpl_bounce_args of = {i};
+            added.append = 1 + i;
+            tyn_rec_dispatch(
+                r, &(tyn_dispatch){.kernel = BOUNCE, .cells = {VPL_BLOCK, 1, 1}, .args = &of});
+            make_lights(r, &plan, &added, true, p->mode);
+            count_reflections(r);
+            tyn_rec_dispatch(r, &see);
+        }
         tyn_rec_dispatch(r,
                          &(tyn_dispatch){.kernel = FURTHER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1}});
     }

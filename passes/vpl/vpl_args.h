@@ -39,8 +39,9 @@ TYN_ASSERT_SIZE(vpl_stratum, 12);
 struct vpl_args {
     tyn_uint count; // VPLs at most
     tyn_uint num_suns;
-    tyn_uint media;  // 1: there is a medium
-    tyn_uint append; // 1: VPLs are added to those that are there
+    tyn_uint media; // 1: there is a medium
+    tyn_uint
+        append; // 1: VPLs are added to those that are there; 2: in place of those that were added last
 };
 TYN_ASSERT_SIZE(vpl_args, 16);
 

@@ -1,4 +1,8 @@
 // vpl_bounce.comp -- bins as a map of what reflects light again, for the next VPLs. One workgroup.
+//
+// First of what the first VPLs light, P in all: VPLs of that, whose own light surfaces reflect, R in all. Then of all further
+// reflections: what R lights is taken to be lit by all that comes after it, too. If a share q = R / P is reflected each time,
+// P + R + q R + q^2 R + ... is P + R / (1 - q); the map is (1 - q) times that, whose sum is P, as vpl_further.comp has it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -27,9 +31,30 @@ layout(binding = 4, scalar) uniform surfaces_uniform
 {
     surface_block surfaces;
 };
-layout(binding = 5, rgba32f) uniform writeonly image2D flux_image; // as rsm_args.h has them
+layout(binding = 5, rgba32f) uniform image2D flux_image; // as rsm_args.h has them
 layout(binding = 6, rgba32f) uniform writeonly image2D position_image;
 layout(binding = 7, rgba32f) uniform writeonly image2D normal_image;
+layout(push_constant, scalar) uniform Args
+{
+    vpl_bounce_args args;
+};
+
+shared vec3 sums[GROUP];
+
+vec3 total_of(vec3 v)
+{
+    uint lane = gl_LocalInvocationIndex;
+    barrier();
+    sums[lane] = v;
+    for (uint half_size = GROUP / 2u; half_size > 0u; half_size /= 2u) {
+        barrier();
+        if (lane < half_size) {
+            sums[lane] += sums[lane + half_size];
+        }
+    }
+    barrier();
+    return sums[0];
+}
 
 vec3 flux_of(uint bin)
 {
@@ -43,9 +68,24 @@ void main()
     vec3 cell = (surfaces.hi - surfaces.lo) / float(VPL_BIN_CELLS);
     float area = pow(max(cell.x * cell.y * cell.z, 1e-30), 2.0 / 3.0);
     int width = textureSize(distance_tex, 0).x, side = width / VPL_MAPS_IN_A_ROW;
+    vec3 before_share = vec3(0.0), share = vec3(1.0);
+    if (args.later != 0u) {
+        vec3 before = vec3(0.0), now = vec3(0.0);
+        for (uint bin = lane; bin < VPL_BINS; bin += GROUP) {
+            before += imageLoad(flux_image, ivec2(vpl_hilbert(VPL_BIN_SIDE, bin))).rgb;
+            now += flux_of(bin);
+        }
+        before = total_of(before);
+        now = total_of(now);
+        before_share = 1.0 - min(now / max(before, vec3(1e-30)), vec3(1.0));
+        share = min(before / max(now, vec3(1e-30)), vec3(1.0));
+    }
     for (uint bin = lane; bin < VPL_BINS; bin += GROUP) {
         ivec2 to = ivec2(vpl_hilbert(VPL_BIN_SIDE, bin));
-        vec3 flux = flux_of(bin);
+        vec3 flux = share * flux_of(bin), before = vec3(0.0);
+        if (args.later != 0u) {
+            before = before_share * imageLoad(flux_image, to).rgb;
+        }
         vec4 position = vec4(0.0), normal = vec4(0.0);
         if (flux.r + flux.g + flux.b > 0.0) {
             int best = int(bins.list[bin].best & 0xfffffu);
@@ -60,8 +100,11 @@ void main()
             position = vec4(at, min(area, 3.14159265 * away * away));
             normal = vec4(texelFetch(plane_tex, texel, 0).xyz, 0.0);
         }
-        imageStore(flux_image, to, vec4(flux, 0.0));
-        imageStore(position_image, to, position);
-        imageStore(normal_image, to, normal);
+        imageStore(flux_image, to, vec4(before + flux, 0.0));
+        // Where more was before, it was brightest there.
+        if (args.later == 0u || dot(flux, vec3(1.0)) > dot(before, vec3(1.0))) {
+            imageStore(position_image, to, position);
+            imageStore(normal_image, to, normal);
+        }
     }
 }

@@ -1,8 +1,8 @@
-// vpl_further.comp -- gives the VPLs of the second reflection the power of all further ones. One workgroup.
+// vpl_further.comp -- gives the VPLs of further reflections the power of all of them. One workgroup.
 //
-// All further reflections are taken to be where the second is, and to meet what its light meets. If of its power P
-// surfaces reflect q P, what will ever be sent out from there is (1 + q + q^2 + ...) P: with P / (1 - q) what these
-// VPLs send out, less what surfaces reflect of it, is P, and no light is lost or made.
+// They come with P, what surfaces reflect of the first VPLs' light, and lie where vpl_bounce.comp takes all further reflections to
+// be. If surfaces reflect q P of it they get P / (1 - q): what these VPLs send out, less what surfaces reflect of it, is P, and no
+// light is lost or made.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

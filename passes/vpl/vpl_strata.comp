@@ -100,7 +100,7 @@ void main()
         count += strata_here;
     }
     if (lane == 0u) {
-        uint before_these = args.append != 0u ? vpl_count : 0u;
+        uint before_these = args.append == 0u ? 0u : args.append == 1u ? vpl_count : vpl_before;
         vpl_before = before_these;
         vpl_count = before_these + min(count, args.count);
     }
