@@ -72,7 +72,7 @@ float march_share(radial_light light, march_cone cone, float x, float y, out flo
 {
     const float TURN = 6.28318531;
     float shift = cone.middle + TURN * round((0.5 * (x + y) - cone.middle) / TURN);
-    float a = x - shift, b = max(y - shift, a + 1e-7);
+    float a = x - shift, b = max(y - shift, a + 1e-6); // more than what a float near pi is rounded by
     float from = max(a, -cone.inner), to = max(min(b, cone.inner), from);
     vec2 sum = (to - from) * vec2(1.0, 0.5 * (from + to)) + march_falloff(light, cone, a, b);
     sum += march_falloff(light, cone, -b, -a) * vec2(1.0, -1.0);

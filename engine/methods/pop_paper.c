@@ -269,6 +269,7 @@ static tyn_result add_surfaces(tyn_graph *g, const tyn_job *job, propagated *p)
         result = tyn_add_surfaces(g, job, (tyn_ref){0}, in.num_suns, &in);
     }
     p->picture.surface = in.surface;
+    p->picture.distances = in.distances;
     return result;
 }
 
