@@ -32,6 +32,7 @@ static cJSON *json_errors(const measuring *m)
     return list;
 }
 
+// In the picture and, as nodes count such values and put 0 in their place, on the way to it.
 static void count_values(const measuring *m, double *non_finite, double *negative)
 {
     const size_t num = (size_t)m->view.width * m->view.height;
@@ -39,6 +40,12 @@ static void count_values(const measuring *m, double *non_finite, double *negativ
     for (size_t i = 0; i < 3 * num; i++) {
         *non_finite += !isfinite(m->planes[i]);
         *negative += m->planes[i] < 0;
+    }
+    const cJSON *node;
+    cJSON_ArrayForEach(node, m->nodes)
+    {
+        const double counted = json_figure(node, "work.non_finite");
+        *non_finite += counted > 0 ? counted : 0;
     }
 }
 
