@@ -5,22 +5,29 @@
 // that the first of a set does not depend on the order in which sets are joined.
 #ifndef ROOMS_FOREST_GLSL
 #define ROOMS_FOREST_GLSL
+#extension GL_KHR_memory_scope_semantics : require
 
 layout(binding = 0, scalar) coherent buffer forest_buffer
 {
     uint forest[];
 };
 
+uint rooms_up(uint i)
+{
+    return atomicLoad(forest[i], gl_ScopeDevice, gl_StorageSemanticsNone, gl_SemanticsRelaxed);
+}
+
 uint rooms_first(uint i)
 {
-    uint up = forest[i];
+    uint up = rooms_up(i);
     while (up != 0u) {
-        uint parent = i - up, further = forest[parent];
+        uint parent = i - up, further = rooms_up(parent);
         if (further != 0u) {
-            forest[i] = up + further; // halves the way of those that come after
+            // Halves the way of those that come after.
+            atomicStore(forest[i], up + further, gl_ScopeDevice, gl_StorageSemanticsNone, gl_SemanticsRelaxed);
         }
         i = parent - further;
-        up = forest[i];
+        up = rooms_up(i);
     }
     return i;
 }
