@@ -197,8 +197,8 @@ static bool walled(const grid *g, const uint32_t *links, const int c[3])
     return false;
 }
 
-// The room that a ray of VPL k tells of: of the places 1.8 cells before its end, and at 0.6 of that, thrice, the first in a
-// cell without walls.
+// The room that a ray of VPL k tells of: of the places 1.8 cells before its end, and at 0.84 of that, eleven times, the
+// first in a cell without walls.
 static uint32_t told_by(const grid *g, const uint32_t *links, const uint32_t *rooms,
                         const lights *l, uint32_t k, int i, int j)
 {
@@ -206,7 +206,7 @@ static uint32_t told_by(const grid *g, const uint32_t *links, const uint32_t *ro
     origin_of(&l->vpls.list[k], o);
     direction_of(l->vpls.list[k].axis, i, j, d);
     double place = fmin((double)l->maps[j][(int)k * SIDE + i], 1e4 * g->dx) - 1.8 * g->dx;
-    for (int step = 0; step < 4 && place > 0; step++, place *= 0.6) {
+    for (int step = 0; step < 12 && place > 0; step++, place *= 0.84) {
         int c[3];
         for (int a = 0; a < 3; a++) {
             c[a] = (int)floor((o[a] + place * d[a]) / g->dx);
