@@ -564,6 +564,17 @@ static void sun_on_a_sealed_box(void **state)
     }
 }
 
+// Floor, ceiling and three walls of a room from -1 to 1, open towards +z.
+static void three_sides(tyn_scene *scene, uint32_t wall)
+{
+    const float x[3] = {2, 0, 0}, y[3] = {0, 2, 0}, z[3] = {0, 0, 2}, corner[3] = {-1, -1, -1};
+    solids_quad(scene, corner, z, x, wall);
+    solids_quad(scene, (float[]){-1, 1, -1}, z, x, wall);
+    solids_quad(scene, corner, z, y, wall);
+    solids_quad(scene, (float[]){1, -1, -1}, z, y, wall);
+    solids_quad(scene, corner, x, y, wall);
+}
+
 // A room with one side open, away from the sun, in fog that scatters forward: the sun reaches its walls by what comes round
 // through the open side, not through the roof.
 static void room_open_on_one_side(void **state)
@@ -577,12 +588,7 @@ static void room_open_on_one_side(void **state)
         tyn_scene scene;
         tyn_scene_init(&scene);
         uint32_t wall = solids_material(&scene, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, 0, 0});
-        const float x[3] = {2, 0, 0}, y[3] = {0, 2, 0}, z[3] = {0, 0, 2}, corner[3] = {-1, -1, -1};
-        solids_quad(&scene, corner, z, x, wall);
-        solids_quad(&scene, (float[]){-1, 1, -1}, z, x, wall);
-        solids_quad(&scene, corner, z, y, wall);
-        solids_quad(&scene, (float[]){1, -1, -1}, z, y, wall);
-        solids_quad(&scene, corner, x, y, wall);
+        three_sides(&scene, wall);
         solids_hierarchy(&scene, 2);
         tyn_medium m = grey_medium(kinds[k][0], 0.02f, kinds[k][1]);
         scene_add_box(&scene, &m, (float[]){-2, -1, -2}, (float[]){2, 3, 3}, NULL, NULL);
@@ -605,6 +611,51 @@ static void room_open_on_one_side(void **state)
     path_run_close(&runs);
 }
 
+// Light of a sky through a window, on the walls away from it.
+static void sky_through_a_window(void **state)
+{
+    gpu_test *t = *state;
+    enum { SIDE = 48 };
+    static const float windows[2] = {0.3f, 0.6f}; // half edges
+    path_run runs;
+    path_run_open(&runs, t->dev);
+    bool good = true;
+    for (int k = 0; k < 2; k++) {
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t wall = solids_material(&scene, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, 0, 0});
+        three_sides(&scene, wall);
+        const float w = windows[k], rest = 1 - w;
+        const float across[3] = {2, 0, 0}, beside[3] = {rest, 0, 0}, high[3] = {0, rest, 0};
+        solids_quad(&scene, (float[]){-1, -1, 1}, across, high, wall);
+        solids_quad(&scene, (float[]){-1, w, 1}, across, high, wall);
+        solids_quad(&scene, (float[]){-1, -w, 1}, beside, (float[]){0, 2 * w, 0}, wall);
+        solids_quad(&scene, (float[]){w, -w, 1}, beside, (float[]){0, 2 * w, 0}, wall);
+        solids_hierarchy(&scene, 2);
+        tyn_medium m = grey_medium(0.15f, 0.01f, 0);
+        scene_add_box(&scene, &m, (float[]){-1.3f, -1.3f, -1.3f}, (float[]){1.3f, 1.3f, 1.9f}, NULL,
+                      NULL);
+        scene_set_sky(&scene, 1);
+        tyn_view view = {0};
+        view_perspective(&view, (float[]){0, 0, 0.9f}, (float[]){0, -0.3f, -1}, 1.2f, SIDE);
+        picture p, reference = {0};
+        picture_render(&p, t->dev, "pop", &scene, &view, NULL, 0);
+        path_run_picture(&runs, &reference, &scene, &view, 512);
+        picture_error e = picture_compare(&p, &reference, 8);
+        printf("window of %g m: rel_l1 %.1f %% (noise %.1f), bias %+.1f %%\n", 2 * (double)w,
+               100 * e.rel_l1, 100 * e.noise, 100 * e.bias);
+        good = todo_if(true, e.reported < 0.15 && fabs(e.bias) < 0.06,
+                       "the environment's light comes between surfaces along 14 directions",
+                       "window of %g m", 2 * (double)w) &&
+               good;
+        picture_free(&p);
+        picture_free(&reference);
+        tyn_scene_finish(&scene);
+    }
+    path_run_close(&runs);
+    assert_true(good);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -613,6 +664,7 @@ int main(void)
         cmocka_unit_test(sealed_from_virtual_lights),
         cmocka_unit_test(sun_on_a_sealed_box),
         cmocka_unit_test(room_open_on_one_side),
+        cmocka_unit_test(sky_through_a_window),
         cmocka_unit_test(sealed_boxes_at_random),
         cmocka_unit_test(slabs),
         cmocka_unit_test(slabs_over_a_ground),
