@@ -4,7 +4,7 @@
 //
 // Asserted: `path` within 0.5 % of each value, `pop` within 5 %. The consensus is a mean over several Monte Carlo
 // models without a stated spread; its own R + T + A is off 1 by up to 8e-4, and this and 2 standard errors of
-// ours are allowed for. Those of `path`, whose paths start at the sun, are at most half of the bound, with TYN_LONG
+// ours are allowed for. Those of `path`, whose paths start at the sun, are at most half of the bound, with TYN_LONG=4
 // at most a quarter.
 //
 // Cells are constant in these clouds and trilinear here: each is SPLIT voxels wide (FINER in case 2, whose depths are
