@@ -155,18 +155,11 @@ void tyn_limits_single(const tyn_job *job)
     }
 }
 
-void tyn_limits_enclosed(const tyn_job *job, bool sky, bool beyond)
+void tyn_limits_sky(const tyn_job *job)
 {
-    if (sky) {
-        tyn_method_warn(
-            job, "accuracy: the environment's light comes between surfaces along the lattice's 14 "
-                 "directions: behind openings it falls in patches");
-    }
-    if (beyond) {
-        tyn_method_warn(job,
-                        "accuracy: surfaces reach beyond the media's box: light that goes from one "
-                        "to another out there is left out; a box about all of them has it");
-    }
+    tyn_method_warn(
+        job, "accuracy: the environment's light comes between surfaces along the lattice's 14 "
+             "directions: behind openings it falls in patches");
 }
 
 void tyn_limits_rays(const tyn_job *job)

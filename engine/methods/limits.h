@@ -11,8 +11,8 @@ void tyn_limits_lattice(const tyn_job *job, float cell);
 void tyn_limits_hops(const tyn_job *job, float hop);
 // Of `single`: what is left out.
 void tyn_limits_single(const tyn_job *job);
-// Of `pop` where walls are in its lattice: of `sky`, an environment's light; `beyond`: surfaces reach out of the media's box.
-void tyn_limits_enclosed(const tyn_job *job, bool sky, bool beyond);
+// Of `pop`: an environment lights the medium, and walls are in its lattice.
+void tyn_limits_sky(const tyn_job *job);
 // Of every method that follows rays: places are floats.
 void tyn_limits_rays(const tyn_job *job);
 // Of `path`: its safety cap.

@@ -176,8 +176,8 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
         tyn_method_warn(job, "surfaces beyond the media's box are lit by the mean of the "
                              "environment as if nothing stood around them");
     }
-    if (in->wall_links.resource) {
-        tyn_limits_enclosed(job, params.sky, params.outside && !params.sky);
+    if (params.sky && in->wall_links.resource) {
+        tyn_limits_sky(job);
     }
     const tyn_vpl_refs vpls = !media || in->lamps.vpls ? in->vpls : (tyn_vpl_refs){{0}};
     tyn_ref refs[TYN_MAX_PORTS] = {
