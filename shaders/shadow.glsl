@@ -107,12 +107,16 @@ float shadow_visibility(uint light, vec3 p)
 // What is in front of a surface by less than this many times a texel's size may be the foot of a wall.
 const float SHADOW_FOOT = 16.0;
 
+// A plane whose depth changes by more than this part of itself within a texel is seen edge-on, and little light arrives.
+const float SHADOW_EDGE_ON = 0.5;
+
 // A place on a surface.
 struct shadow_surface {
     vec3 p;     // M
     vec3 n;     // of its plane, either side
-    float off;  // m: what the surface may be off the plane by there
-    float bend; // and how much more with each metre beside it: the slope of what a curved one goes on as
+    float off;  // m: what rounding puts p off the plane by
+    float bent; // m: what a curved surface may be off the plane by there
+    float bend; // and how much more with each metre beside it: the slope of what it goes on as
 };
 
 // What shadow_visibility_surface_sun_of and the like share: `slope` is that of depth by u and v, `rounding` of depth, and
@@ -125,8 +129,9 @@ struct shadow_surface {
 float shadow_visibility_on_plane(shadow_light l, shadow_place place, vec2 slope, float rounding, float texel)
 {
     slope *= 2.0 / l.texels; // by texels
-    float steepest = 0.25 * place.depth + rounding; // edge-on, where little light arrives
-    bool edge_on = any(greaterThan(abs(slope), vec2(steepest)));
+    float steepest = place.depth + rounding; // followed no farther: there the depth doubles within a texel
+    vec2 plane = slope;
+    bool edge_on = any(greaterThan(abs(slope), vec2(SHADOW_EDGE_ON * steepest)));
     slope = clamp(slope, vec2(-steepest), vec2(steepest));
     float steep = abs(slope.x) + abs(slope.y);
     vec2 first;
@@ -138,8 +143,9 @@ float shadow_visibility_on_plane(shadow_light l, shadow_place place, vec2 slope,
     bvec4 dark = greaterThan(before, vec4(0.0));
     vec4 of_foot = vec4(dark) * vec4(lessThan(before, vec4(steep + SHADOW_FOOT * texel)));
     vec4 own = (1.0 - vec4(dark)) * vec4(greaterThan(before, vec4(-(steep + texel))));
-    // Beyond where it is followed, a plane seen edge-on tells nothing: there the edge of a room is beside what sees past it.
-    bool past = any(lessThanEqual(before, vec4(-(steep + texel))));
+    // Where a texel sees past a plane that is seen edge-on, the edge of a room may be beside it.
+    bool past = any(lessThan(stored + (0.03 * (abs(plane.x) + abs(plane.y)) + rounding + texel),
+                             place.depth + plane.x * x + plane.y * y));
     float share = any(greaterThan(of_foot, vec4(0.0))) ? 0.0 : dot(own, (1.0 - abs(x)) * (1.0 - abs(y)));
     share = any(dark) ? share : edge_on && past ? 0.0 : 1.0;
     return place.inside ? share : 1.0;
@@ -147,6 +153,10 @@ float shadow_visibility_on_plane(shadow_light l, shadow_place place, vec2 slope,
 
 // How far beside a place a texel may be that counts for it, texels.
 const float SHADOW_BESIDE = 1.5;
+
+// Along the light what a curved surface is off its plane by is longer: by 1 over this cosine at most, or where light grazes it, and
+// little arrives, a roof above would be taken for it.
+const float SHADOW_SLANT = 0.25;
 
 // The same for a place on a surface, in [0, 1]. Depths that do not change with u and v except linearly (parallel maps
 // as they are, perspective ones because they are reciprocal) are those of the surface's own plane at the texels: so a
@@ -163,9 +173,9 @@ float shadow_visibility_surface_sun_of(shadow_light l, shadow_surface s)
     m /= square;
     float texel = 2.0 / l.texels * sqrt(square.z / min(square.x, square.y));
     vec2 slope = -m.xy / (abs(m.z) > 1e-20 ? m.z : 1e-20);
-    // Along the light what is off is longer.
-    float off = s.off * square.z + SHADOW_BESIDE * s.bend * texel * sqrt(square.z);
-    float rounding = SHADOW_EPSILON * (1.0 + place.depth) + min(off / max(slant, 1e-20), 0.25);
+    float per_metre = sqrt(square.z), bent = s.bent * per_metre + SHADOW_BESIDE * s.bend * texel;
+    float rounding = SHADOW_EPSILON * (1.0 + place.depth) + min(s.off * square.z / max(slant, 1e-20), 0.25) +
+                     bent * per_metre / max(slant, SHADOW_SLANT * per_metre);
     return shadow_visibility_on_plane(l, place, slope, rounding, texel);
 }
 
@@ -184,8 +194,8 @@ float shadow_visibility_surface_lamp_of(shadow_light l, shadow_surface s)
     vec2 slope = l.near * m.xy / (l.scale * (abs(height) > 1e-20 ? height : 1e-20));
     // Depths are as small as near makes them. What p is off its plane by is to be seen from the lamp.
     float texel = 2.0 / (l.scale * l.texels);
-    float off = 1e-5 * length(s.p) + s.off + SHADOW_BESIDE * s.bend * texel * q.z;
-    float rounding = place.depth * min(off / max(abs(height), 1e-20), 0.25);
+    float off = 1e-5 * length(s.p) + s.off, bent = s.bent + SHADOW_BESIDE * s.bend * texel * q.z;
+    float rounding = place.depth * min(off / max(abs(height), 1e-20) + bent / max(abs(height), SHADOW_SLANT * length(q)), 0.25);
     return shadow_visibility_on_plane(l, place, slope, rounding, texel * place.depth);
 }
 

@@ -81,7 +81,10 @@ layout(set = 0, binding = VPL_PLANES) uniform sampler2D vpl_planes;
 // others: of the four rays around that way, those that reach the surface's plane.
 //
 // In a corner some of them end before they do, on the other wall. That does not hide the point, which is before its plane, and
-// whether anything else does such rays do not tell: they are left out, and if all are such, nothing does.
+// whether anything else does such rays do not tell, if the point is not far behind their ends: they are left out, and if all
+// are such, nothing does. Far behind, as in a corridor, there may be a door: it is hidden.
+const float VPL_ABSTAINS = 2.0; // times as far as the ray's end
+
 float vpl_map_visibility_surface(vpl_map map, vec3 away, vec3 normal)
 {
     vec3 d = away * map.frame, n = normal * map.frame; // multiplied from the left: into the frame
@@ -96,10 +99,12 @@ float vpl_map_visibility_surface(vpl_map map, vec3 away, vec3 normal)
     // One gather is cheaper than four fetches; its order is (0, 1), (1, 1), (1, 0), (0, 0).
     vec4 stored = textureGather(vpl_distances, (map.corner + first + 1.0) * map.texel).wzxy;
     vec4 shares = vec4(1.0 - w.x, w.x, 1.0 - w.x, w.x) * vec4(1.0 - w.yy, w.yy);
+    bvec4 near = lessThan(vec4(r), VPL_ABSTAINS * stored);
+    ivec2 place = ivec2(max(map.corner + first, vec2(0.0))); // without maps `first` is before them
     vec4 hiding;
     [[unroll]] for (int i = 0; i < 4; i++) {
-        vec4 met = texelFetch(vpl_planes, ivec2(map.corner + first) + ivec2(i & 1, i >> 1), 0);
-        hiding[i] = dot(met.xyz, away) < met.w ? 1.0 : 0.0;
+        vec4 met = texelFetch(vpl_planes, place + ivec2(i & 1, i >> 1), 0);
+        hiding[i] = dot(met.xyz, away) < met.w || !near[i] ? 1.0 : 0.0;
     }
     // A surface is not in its own shadow.
     vec4 lit = vec4(greaterThanEqual(stored, 0.95 * reach));

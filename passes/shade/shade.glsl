@@ -144,6 +144,7 @@ float shade_cosine(shade_point p, vec3 towards)
 struct shade_footprint {
     vec4 part;   // from xy to zw, pixels
     float width; // at most, m
+    float slope; // cosine of the view and the plane's normal
 };
 
 shade_footprint shade_footprint_of(shade_point p, vec4 part)
@@ -151,9 +152,9 @@ shade_footprint shade_footprint_of(shade_point p, vec4 part)
     bool orthographic = camera.orthographic != 0u;
     vec3 ray = p.position - camera.origin;
     vec2 size = 2.0 * vec2(camera.half_width, camera.half_height) / vec2(camera.size) * (part.zw - part.xy);
-    float slope = dot(orthographic ? camera.forward : normalize(ray), p.facet);
+    float slope = abs(dot(orthographic ? camera.forward : normalize(ray), p.facet));
     float wide = length(size) * (orthographic ? 1.0 : dot(ray, camera.forward));
-    return shade_footprint(part, wide / max(abs(slope), 1e-3));
+    return shade_footprint(part, wide / max(slope, 1e-3), slope);
 }
 
 // A point for shadows. Its plane is one triangle's, but samples of a pixel, and texels of a map, show others beside
@@ -164,7 +165,9 @@ shadow_surface shade_shadowed(shade_point p, shade_footprint foot)
     float turned = length(cross(p.facet, p.normal));
     float bend = 2.0 * min(turned, max(1.4 - 2.0 * turned, 0.0));
     float rounding = 2e-6 * distance(p.position, camera.origin);
-    return shadow_surface(p.position, p.facet, rounding + 0.5 * bend * foot.width, bend);
+    // Of a silhouette, which is seen edge-on, a part of the picture shows no more than the surface has.
+    float width = foot.width * max(foot.slope, 1e-3) / max(foot.slope, 0.25);
+    return shadow_surface(p.position, p.facet, rounding, 0.5 * bend * width, bend);
 }
 
 // ---- suns ----
@@ -336,7 +339,7 @@ float shade_lamp_near(shade_point p, shade_footprint foot, uint row, vec3 positi
         vec2 t = vec2(k % side, k / side) / float(side);
         vec2 first = shade_border(t, middle), last = shade_border(t + 1.0 / float(side), middle), share = last - first;
         shade_footprint part = shade_footprint(foot.part.xyxy + vec4(first, last) * size.xyxy,
-                                               foot.width * max(max(share.x, share.y), 1e-6));
+                                               foot.width * max(max(share.x, share.y), 1e-6), foot.slope);
         sum += share.x * share.y * shade_lamp_on(p, part, row, position);
     }
     return sum;

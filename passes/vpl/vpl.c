@@ -327,7 +327,8 @@ static void record(tyn_recorder *r, const void *data)
         tyn_rec_dispatch(r,
                          &(tyn_dispatch){.kernel = FURTHER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1}});
     }
-    tyn_rec_work(r, "rays", (double)p->count * side * side);
+    // Those of further reflections stand in two places, one after the other.
+    tyn_rec_work(r, "rays", ((double)p->count + later) * side * side);
     tyn_rec_work(r, "vpls", p->count);
 }
 

@@ -146,8 +146,9 @@ static void other_methods(void **state)
                 non_finite(t, method, scene, k ? "propagate_radial.cells=8" : NULL, 64, &mean);
             print_message("%-14s %-10s mean %.3g, pixels that were no numbers: %g\n", cases[i].name,
                           method, mean, pixels);
-            // Lamps and the sun light the medium of all; of an emitter `single` makes nothing.
-            good = good && pixels == 0 && (mean > 0 || !k);
+            // Of an emitter, the only light of one of them, `single` makes nothing.
+            good = good && pixels == 0 &&
+                   (mean > 0 || (!k && !strcmp(cases[i].name, "cornell-smoke")));
         }
         tyn_scene_finish(scene);
         free(scene);

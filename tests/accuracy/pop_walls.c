@@ -678,6 +678,90 @@ static void room_open_on_one_side(void **state)
     path_run_close(&runs);
 }
 
+// A ball in a sealed box under a sun or a lamp. What of a curved surface may be off its triangle's plane must not reach to
+// the roof.
+static void ball_in_a_sealed_box(void **state)
+{
+    gpu_test *t = *state;
+    enum { SIDE = 64 };
+    static const float gaps[3] = {0.02f, 0.05f, 0.1f};
+    int shining = 0;
+    for (int k = 0; k < 6; k++) {
+        const float gap = gaps[k / 2];
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t wall = solids_material(&scene, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, 0, 0});
+        solids_box(&scene, (float[]){-2, -1, -2}, (float[]){2, 1, 2}, 0, true, wall);
+        solids_sphere(&scene, (float[]){0, 0.5f - gap, 0}, 0.5f, 16, false, wall);
+        solids_hierarchy(&scene, 4);
+        if (k % 2) {
+            scene_add_sun(&scene, 0.3f, -1, 0.1f, 1, 1, 1);
+        } else {
+            scene_add_lamp(&scene, (float[]){0.3f, 3, 0.2f}, 1);
+        }
+        tyn_view view = {0};
+        view_perspective(&view, (float[]){0, 0.3f, 1.8f}, (float[]){0, 0.3f, 0}, 0.6f, SIDE);
+        picture p;
+        picture_render(&p, t->dev, "pop", &scene, &view, "vpl.count=0", 0);
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            shining += p.rgb[3 * i + 1] > 0;
+        }
+        picture_free(&p);
+        tyn_scene_finish(&scene);
+    }
+    printf("ball in a sealed box: %d of %d pixels shine\n", shining, 6 * SIDE * SIDE);
+    assert_int_equal(shining, 0);
+}
+
+// An emitter at the beginning of a corridor, and behind a door across it. Maps of virtual lights have few rays.
+static void door_of_a_corridor(void **state)
+{
+    gpu_test *t = *state;
+    enum { SIDE = 32 };
+    static const float ats[3] = {3, 10, 20};
+    bool good = true;
+    for (int k = 0; k < 3; k++) {
+        const float at = ats[k], end = at + 3;
+        const float along[3] = {0, 0, end}, across[3] = {1, 0, 0}, up[3] = {0, 1, 0};
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        uint32_t black =
+            solids_material(&scene, (float[]){1e-3f, 1e-3f, 1e-3f}, (float[]){0, 0, 0});
+        uint32_t bright = solids_material(&scene, (float[]){0, 0, 0}, (float[]){1, 1, 1});
+        solids_quad(&scene, (float[]){-0.5f, 0, -end}, along, across, black);
+        solids_quad(&scene, (float[]){-0.5f, 1, -end}, along, across, black);
+        solids_quad(&scene, (float[]){-0.5f, 0, -end}, along, up, black);
+        solids_quad(&scene, (float[]){0.5f, 0, -end}, along, up, black);
+        solids_quad(&scene, (float[]){-0.5f, 0, -end}, across, up, black);
+        solids_quad(&scene, (float[]){-0.5f, 0, -at}, across, up, black);
+        solids_quad(&scene, (float[]){-0.5f, 0, 0}, across, up, black);
+        solids_quad(&scene, (float[]){-0.25f, 0.25f, -0.01f}, (float[]){0, 0.5f, 0},
+                    (float[]){0.5f, 0, 0}, bright);
+        solids_hierarchy(&scene, 4);
+        tyn_view view = {0};
+        view_perspective(&view, (float[]){0, 0.5f, -at - 0.3f}, (float[]){0, 0.4f, -at - 3}, 0.6f,
+                         SIDE);
+        picture p;
+        picture_render(&p, t->dev, "pop", &scene, &view, "shade.pattern=1", 0);
+        double mean = 0;
+        for (int i = 0; i < SIDE * SIDE; i++) {
+            mean += p.rgb[3 * i + 1] / (SIDE * SIDE);
+        }
+        // What an emitter of .25 m^2 sends to so black an end of the corridor, were there no door.
+        const double open = 1e-3 / 3.14159265 * 0.25 / (double)(end * end);
+        printf("door at %g m: %.1e of what its end would have without it\n", (double)at,
+               mean / open);
+        good = todo_if(true, mean < 1e-4 * open,
+                       "a virtual light's map has 16 x 16 rays, which a corridor's walls stop "
+                       "before the door",
+                       "door at %g m", (double)at) &&
+               good;
+        picture_free(&p);
+        tyn_scene_finish(&scene);
+    }
+    assert_true(good);
+}
+
 // Light of a sky through a window, on the walls away from it.
 static void sky_through_a_window(void **state)
 {
@@ -734,6 +818,8 @@ int main(void)
         cmocka_unit_test(sky_through_a_window),
         cmocka_unit_test(rooms_apart),
         cmocka_unit_test(sealed_boxes_at_random),
+        cmocka_unit_test(ball_in_a_sealed_box),
+        cmocka_unit_test(door_of_a_corridor),
         cmocka_unit_test(slabs),
         cmocka_unit_test(slabs_over_a_ground),
         cmocka_unit_test(pictures),

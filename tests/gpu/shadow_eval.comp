@@ -21,6 +21,6 @@ void main()
     if (i < points.length()) {
         point q = points[i];
         results[i] = q.normal == vec3(0.0) ? shadow_visibility(q.light, q.p)
-                                           : shadow_visibility_surface(q.light, shadow_surface(q.p, q.normal, 0.0, 0.0));
+                                           : shadow_visibility_surface(q.light, shadow_surface(q.p, q.normal, 0.0, 0.0, 0.0));
     }
 }
