@@ -515,7 +515,7 @@ static void low_lamp(void **state)
             // Nearer than two pixels a pixel's mean is not what its middle has.
             most = r2 > 1 ? fmax(most, fabs(p.rgb[3 * i + 1] / due - 1)) : most;
         }
-        printf("lamp %g m above a floor: %.2f %% off at most\n", h, 100 * most);
+        print_message("lamp %g m above a floor: %.2f %% off at most\n", h, 100 * most);
         assert_true(most < 0.02);
         picture_free(&p);
         tyn_scene_finish(&scene);
