@@ -44,6 +44,26 @@ def check_text(folder):
     return report
 
 
+# Where the stored report of the full suite shows `pop` beaten above max(3 %, 1.2 times its least error), and by what.
+KNOWN_BEATEN = {
+    "cube": "over blocks of 64 pixels the noise of one to four samples of `path` is 5 to 60 %",
+}
+
+
+def check_promise(report):
+    """Of a stored report: `pop` is on the front wherever that is promised, but where it is known not to be."""
+    for scene in report["scenes"]:
+        name, promise = scene["name"], scene.get("promise")
+        if not promise:
+            check(f"{name}: the promise is judged", False)
+        elif name not in KNOWN_BEATEN:
+            check(f"{name}: pop is on the front", promise["holds"], promise["text"])
+        elif promise["holds"]:
+            check(f"{name}: known to be beaten, but is no longer: take the mark away", False)
+        else:
+            print(f"todo: {name}: {promise['text']}: {KNOWN_BEATEN[name]}")
+
+
 def check_tables(folder, tables):
     """The README's tables, from the same report."""
     readme = f"{folder}/README.md"
@@ -66,6 +86,8 @@ def check_tables(folder, tables):
     full = "tools/bench/results/full.json"
     stored = full if os.path.exists(f"{root}/{full}") else "tools/bench/results/ci.json"
     subprocess.run([tables, f"{root}/{stored}", readme], check=True)
+    if stored == full:
+        check_promise(json.load(open(f"{root}/{full}", encoding="utf-8")))
     check(f"the README shows what is stored: docs/tables {stored} README.md", open(readme, encoding="utf-8").read() == shown)
     check("and that is small", os.path.getsize(f"{root}/{stored}") <= 1.5e6)
     subprocess.run([tables, "--keep", f"{folder}/report.json", f"{folder}/kept.json"], check=True)
