@@ -48,22 +48,17 @@ vec3 background_radiance(env_block env, sampler2D map, camera_block camera, vec3
         return env.radiance;
     }
     vec3 d = environment_map_direction(env, direction);
-    vec2 uv = environment_uv(d), size = vec2(textureSize(map, 0)), footprint = vec2(0.0);
-    if (camera.orthographic == 0u) {
-        // What a step across and one down in the image are in texels. With rho the distance of d from the
-        // axis: d phi = (d.x dd.z - d.z dd.x) / rho^2, d theta = (d.y d.dd - dd.y) / rho. A box as wide as
-        // the root of the sum of squares has the footprint's variance.
-        float scale = 2.0 * side * dot(direction, camera.forward);
-        vec3 across = scale * camera.half_width / float(camera.size.x) *
-                      environment_map_direction(env, camera.right);
-        vec3 down = scale * camera.half_height / float(camera.size.y) *
-                    environment_map_direction(env, camera.up);
-        float rho2 = max(d.x * d.x + d.z * d.z, 1e-12);
-        vec2 phi = (d.x * vec2(across.z, down.z) - d.z * vec2(across.x, down.x)) / rho2;
-        vec2 theta = (d.y * vec2(dot(d, across), dot(d, down)) - vec2(across.y, down.y)) *
-                     inversesqrt(rho2);
-        footprint = size * vec2(0.5 * TYN_INV_PI * length(phi), TYN_INV_PI * length(theta));
-    }
+    vec2 uv = environment_uv(d), size = vec2(textureSize(map, 0));
+    // What a step across and one down in the image are in texels; of parallel rays nothing. With rho the distance of
+    // d from the axis: d phi = (d.x dd.z - d.z dd.x) / rho^2, d theta = (d.y d.dd - dd.y) / rho. A box as wide as
+    // the root of the sum of squares has the footprint's variance.
+    float scale = camera_select(camera, 0.0, 2.0 * side * dot(direction, camera.forward));
+    vec3 across = scale * camera.half_width / float(camera.size.x) * environment_map_direction(env, camera.right);
+    vec3 down = scale * camera.half_height / float(camera.size.y) * environment_map_direction(env, camera.up);
+    float rho2 = max(d.x * d.x + d.z * d.z, 1e-12);
+    vec2 phi = (d.x * vec2(across.z, down.z) - d.z * vec2(across.x, down.x)) / rho2;
+    vec2 theta = (d.y * vec2(dot(d, across), dot(d, down)) - vec2(across.y, down.y)) * inversesqrt(rho2);
+    vec2 footprint = size * vec2(0.5 * TYN_INV_PI * length(phi), TYN_INV_PI * length(theta));
     // The mean over the footprint's box where that has no more than a texel, else over a grid of such ones.
     float taps = clamp(ceil(max(footprint.x, footprint.y) - 0.01), 1.0, BACKGROUND_MAX_TAPS);
     vec2 width = mix(min(footprint / taps, vec2(1.0)), vec2(BACKGROUND_SMOOTH),

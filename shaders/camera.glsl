@@ -8,16 +8,26 @@ struct camera_ray {
     vec3 direction; // unit, away from the camera
 };
 
+// What is of parallel rays, or of rays that meet in the eye: both are computed, and one is taken. A branch on nothing
+// but values of a uniform buffer makes lavapipe compile the kernel anew when these change: whenever the camera moves.
+float camera_select(camera_block camera, float parallel, float perspective)
+{
+    return mix(perspective, parallel, camera.orthographic != 0u);
+}
+
+vec3 camera_select(camera_block camera, vec3 parallel, vec3 perspective)
+{
+    return mix(perspective, parallel, bvec3(camera.orthographic != 0u));
+}
+
 // Ray through image position `pixel` (column + u, row + v), row 0 on top, (u, v) in [0, 1)^2.
 camera_ray camera_ray_through(camera_block camera, vec2 pixel)
 {
     vec2 s = 2.0 * pixel / vec2(camera.size) - 1.0;
     vec3 across = (s.x + camera.shift.x) * camera.half_width * camera.right +
                   (camera.shift.y - s.y) * camera.half_height * camera.up;
-    if (camera.orthographic != 0u) {
-        return camera_ray(camera.origin + across, camera.forward);
-    }
-    return camera_ray(camera.origin, normalize(camera.forward + across));
+    return camera_ray(camera_select(camera, camera.origin + across, camera.origin),
+                      camera_select(camera, camera.forward, normalize(camera.forward + across)));
 }
 
 // 1 / direction with components that are never infinite, so that a ray within a face of a box gives

@@ -6,6 +6,7 @@
 // the largest sigma_s' of the channels.
 #ifndef TYN_MERGE_GLSL
 #define TYN_MERGE_GLSL
+#include "camera.glsl"
 
 uint merge_index(ivec3 cell, uint plane)
 {
@@ -17,7 +18,7 @@ uint merge_index(ivec3 cell, uint plane)
 vec3 merge_towards_eye(camera_block camera, lattice_box box, ivec3 cell)
 {
     vec3 v = camera.origin - lattice_to_m(box, vec3(cell) + 0.5);
-    return camera.orthographic != 0 ? -camera.forward : v / max(length(v), 1e-20);
+    return camera_select(camera, -camera.forward, v / max(length(v), 1e-20));
 }
 
 #endif

@@ -5,7 +5,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "scene_args.h"
+#include "camera.glsl"
 #include "surface_args.h"
 #include "surface_frame.glsl"
 
@@ -38,15 +38,12 @@ void main()
     vec2 across = vec2(dot(p, camera.right) / camera.half_width, dot(p, camera.up) / camera.half_height);
     float z = dot(p, camera.forward);
     vec3 size = surfaces.hi - surfaces.lo;
-    if (camera.orthographic != 0u) {
-        // The farthest corner of the scene's box.
-        vec3 forward = surface_turn(surfaces.to_world, camera.forward);
-        vec3 middle = surface_transform(surfaces.from_world, 0.5 * (surfaces.lo + surfaces.hi)) - camera.origin;
-        float farthest = dot(middle, camera.forward) + 0.501 * dot(size, abs(forward)) + 1e-6 * length(size);
-        across -= camera.shift;
-        gl_Position = vec4(across.x, -across.y, 1.0 - z / max(farthest, 1e-6 * length(size)), 1.0);
-    } else {
-        across -= z * camera.shift;
-        gl_Position = vec4(across.x, -across.y, 1e-6 * length(size), z);
-    }
+    // Of parallel rays the depth is a share of that of the farthest corner of the scene's box.
+    vec3 forward = surface_turn(surfaces.to_world, camera.forward);
+    vec3 middle = surface_transform(surfaces.from_world, 0.5 * (surfaces.lo + surfaces.hi)) - camera.origin;
+    float farthest = dot(middle, camera.forward) + 0.501 * dot(size, abs(forward)) + 1e-6 * length(size);
+    float depth = 1.0 - z / max(farthest, 1e-6 * length(size));
+    float w = camera_select(camera, 1.0, z);
+    across -= w * camera.shift;
+    gl_Position = vec4(across.x, -across.y, camera_select(camera, depth, 1e-6 * length(size)), w);
 }

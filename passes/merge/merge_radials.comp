@@ -66,9 +66,7 @@ vec3 forward_part(lattice_box box, ivec3 c, vec3 v)
     vec3 way = mix(medium.extent - p, -p, lessThan(v, vec3(0.0))) /
                mix(v, vec3(1e-12), lessThan(abs(v), vec3(1e-12)));
     float far = max(min(way.x, min(way.y, way.z)), 0.0);
-    if (camera.orthographic == 0u) {
-        far = min(far, length(camera.origin - p));
-    }
+    far = camera_select(camera, far, min(far, length(camera.origin - p)));
     float ds = far / float(DEPTH_STEPS);
     vec3 depth = vec3(0.0);
     for (uint i = 0u; i < DEPTH_STEPS; i++) {

@@ -149,11 +149,10 @@ struct shade_footprint {
 
 shade_footprint shade_footprint_of(shade_point p, vec4 part)
 {
-    bool orthographic = camera.orthographic != 0u;
     vec3 ray = p.position - camera.origin;
     vec2 size = 2.0 * vec2(camera.half_width, camera.half_height) / vec2(camera.size) * (part.zw - part.xy);
-    float slope = abs(dot(orthographic ? camera.forward : normalize(ray), p.facet));
-    float wide = length(size) * (orthographic ? 1.0 : dot(ray, camera.forward));
+    float slope = abs(dot(camera_select(camera, camera.forward, normalize(ray)), p.facet));
+    float wide = length(size) * camera_select(camera, 1.0, dot(ray, camera.forward));
     return shade_footprint(part, wide / max(slope, 1e-3), slope);
 }
 
@@ -273,7 +272,7 @@ vec3 shade_seen(shade_point p, vec2 pixel)
 vec2 shade_shown(vec3 q)
 {
     vec3 way = q - camera.origin;
-    float z = camera.orthographic != 0u ? 1.0 : max(dot(way, camera.forward), 1e-6 * length(way));
+    float z = camera_select(camera, 1.0, max(dot(way, camera.forward), 1e-6 * length(way)));
     vec2 s = vec2(dot(way, camera.right) / camera.half_width, dot(way, camera.up) / camera.half_height) / z - camera.shift;
     return (0.5 + 0.5 * vec2(s.x, -s.y)) * vec2(camera.size);
 }
@@ -305,12 +304,11 @@ float shade_lamp_on(shade_point p, shade_footprint foot, uint row, vec3 position
     vec2 shown = clamp(shade_shown(position - h * p.facet), foot.part.xy, foot.part.zw);
     vec3 most = shade_seen(p, shown);
     float nearness = 1.0 / (1.0 + 3.0 * unit * distance(position, most));
-    if (camera.orthographic == 0u) { // what is nearer to the eye takes more of the picture
-        vec2 size = 2.0 * vec2(camera.half_width, camera.half_height) / vec2(camera.size) * (foot.part.zw - foot.part.xy);
-        float z = dot(most - camera.origin, camera.forward);
-        float there = abs(dot(most - camera.origin, p.facet)) / (size.x * size.y) / z / z / z;
-        density = mix(density, there, nearness);
-    }
+    // In perspective what is nearer to the eye takes more of the picture.
+    vec2 size = 2.0 * vec2(camera.half_width, camera.half_height) / vec2(camera.size) * (foot.part.zw - foot.part.xy);
+    float z = dot(most - camera.origin, camera.forward);
+    float there = abs(dot(most - camera.origin, p.facet)) / (size.x * size.y) / z / z / z;
+    density = camera_select(camera, density, mix(density, there, nearness));
     vec3 towards = normalize(position - mix(shade_seen(p, 0.5 * (foot.part.xy + foot.part.zw)), most, nearness));
     float straight = max(dot(towards, p.facet), 1e-6);
     float lobe = angle * radial_lobe(uint(axis.w), axis.xyz, cos_inner, cos_outer, -towards);

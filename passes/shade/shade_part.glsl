@@ -47,7 +47,7 @@ vec3 shade_part_position(ivec2 block, float along)
     vec2 s = 2.0 * shade_middle(block) / vec2(camera.size) - 1.0;
     vec3 across = (s.x + camera.shift.x) * camera.half_width * camera.right +
                   (camera.shift.y - s.y) * camera.half_height * camera.up;
-    return camera.origin + along * camera.forward + (camera.orthographic != 0u ? 1.0 : along) * across;
+    return camera.origin + along * camera.forward + camera_select(camera, 1.0, along) * across;
 }
 
 #endif

@@ -42,7 +42,7 @@ float shade_room_of(vec3 p)
     dims.z /= TYN_WALLS_PLANES + 1;
     lattice_box box = lattice_box_of(medium.extent, dims);
     float far = dot(p - camera.origin, camera.forward);
-    vec3 way = camera.orthographic != 0u ? -far * camera.forward : camera.origin - p;
+    vec3 way = camera_select(camera, -far * camera.forward, camera.origin - p);
     far = length(way);
     way /= max(far, 1e-20);
     float room = -1.0;

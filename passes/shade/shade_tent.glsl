@@ -16,9 +16,9 @@ shade_part shade_tent(ivec2 block, ivec2 step, shade_part here)
     vec2 size = vec2(camera.size) / float(shade_step);
     vec3 move = 2.0 * (float(step.x) / size.x * camera.half_width * camera.right - float(step.y) / size.y * camera.half_height * camera.up);
     camera_ray ray = camera_ray_through(camera, shade_middle(block));
-    bool flat_rays = camera.orthographic != 0u;
-    float width = 2.0 * camera.half_height / size.y * (flat_rays ? 1.0 : here.along), per = 1.0 / max(width, 1e-30);
-    float a = (flat_rays ? dot(here.facet, move) : 0.0) * per, c = (flat_rays ? 0.0 : dot(here.facet, move)) * per;
+    float width = 2.0 * camera.half_height / size.y * camera_select(camera, 1.0, here.along), per = 1.0 / max(width, 1e-30);
+    float along = dot(here.facet, move);
+    float a = camera_select(camera, along, 0.0) * per, c = camera_select(camera, 0.0, along) * per;
     float b = dot(here.facet, ray.direction) / dot(ray.direction, camera.forward) * per;
     ivec2 last = shade_blocks() - 1;
     shade_part sum = here;
