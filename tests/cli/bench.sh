@@ -89,6 +89,21 @@ cat >file.json <<'END'
   "scenes": [ { "name": "cube", "scene": "cube.gltf", "g": 0.5, "reference": "report/pictures/cube/reference.exr" } ],
   "runs": [ { "method": "pop", "settings": { "lattice.cells": 16 } } ] }
 END
+# ... which must be one
+refuses_reference() { # WORDS CHANNELS
+    words=$1
+    shift
+    "$helpers/exr_make" wrong.exr 24 24 "$@"
+    sed 's/report.pictures.cube.reference/wrong/' file.json >wrong.json
+    refuses 2 "wrong.exr: $words" bench --suite wrong.json --scenes "$scenes" --quiet
+}
+refuses_reference "R is nan at pixel (1, 0)" R=1,nan,1 G=1 B=1
+refuses_reference "G is inf at pixel (0, 0)" R=1 G=inf B=1
+refuses_reference "R, G and B sum to 0" R=0 G=0 B=0
+refuses_reference "error.B is inf at pixel (0, 0)" R=1 G=1 B=1 error.R=0 error.G=0 error.B=inf
+refuses_reference "error.R is -1 at pixel (2, 0)" R=1 G=1 B=1 error.R=0,0,-1 error.G=0 error.B=0
+"$helpers/exr_make" wrong.exr 24 24 R=-0.1,1 G=1 B=1 # what a filter leaves
+works bench --suite wrong.json --scenes "$scenes" --quiet
 bands() { # LOW HIGH
     echo "{ \"bands\": [ { \"scene\": \"*\", \"run\": \"pop\", \"figure\": \"errors.0.bias\",
         \"low\": $1, \"high\": $2, \"reason\": \"a test\" } ] }" >bands.json
