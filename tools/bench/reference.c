@@ -193,6 +193,16 @@ static int render(app *a, tyn_device *device, const method *m, const bench_scene
     return code;
 }
 
+// What cannot be kept is rendered again by every call, which somebody who waits for it should know.
+static void keep(app *a, const bench_reference *r, const char *cached)
+{
+    if (!cached) {
+        app_warn(a, "the reference is not kept: XDG_CACHE_HOME or HOME must be an absolute path");
+    } else if (tyn_exr_write(&r->file, cached, true, NULL) != TYN_OK) {
+        app_warn(a, "%s: cannot be written; the reference is rendered again next time", cached);
+    }
+}
+
 static int from_path(app *a, tyn_device *device, const bench_scene *spec, const tyn_scene *scene,
                      const tyn_view *view, bench_reference *r)
 {
@@ -207,8 +217,8 @@ static int from_path(app *a, tyn_device *device, const bench_scene *spec, const 
         if (!r->cached) {
             tyn_image_file_finish(&r->file);
             code = render(a, device, &m, spec, scene, view, r);
-            if (code == EXIT_DONE && cached) {
-                tyn_exr_write(&r->file, cached, true, NULL);
+            if (code == EXIT_DONE) {
+                keep(a, r, cached);
             }
         }
         free(cached);
