@@ -77,7 +77,8 @@ static cJSON *json_key(const plane *p, int32_t point)
 
 static const char *percent(double error, char text[16])
 {
-    snprintf(text, 16, error < 0.1 ? "%.1f %%" : "%.0f %%", 100 * error);
+    const int digits = error < 0.01 ? 2 : error < 0.1 ? 1 : 0; // one would hide ranges there
+    snprintf(text, 16, "%.*f %%", digits, 100 * error);
     return text;
 }
 
