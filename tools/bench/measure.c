@@ -20,7 +20,10 @@ static int take_picture(measuring *m)
     for (int i = 0; i < BENCH_BLOCKS; i++) {
         if (metrics_compare(&m->image, &m->c->reference.image, m->c->blocks[i], &m->errors[i]) !=
             METRICS_OK) {
-            app_error(m->c->a, "%s: the reference is black; nothing can be relative to it",
+            app_error(m->c->a,
+                      m->errors[i].nan
+                          ? "%s: too few values of the picture are finite"
+                          : "%s: the reference is black; nothing can be relative to it",
                       m->c->spec->name);
             return EXIT_WRONG;
         }
