@@ -55,6 +55,8 @@ static uint64_t hash_surfaces(const tyn_surfaces *s, uint64_t key)
     for (uint32_t i = 0; i < s->num_textures; i++) {
         const tyn_texture *t = &s->textures[i];
         key = text_hash(t->texels, (size_t)4 * t->size[0] * t->size[1], HASH(t->wrap, key));
+        // The number of texels tells the size of a square; others may share it.
+        key = t->size[0] == t->size[1] ? key : HASH(t->size, key);
     }
     return key;
 }
