@@ -35,14 +35,16 @@ static double share_of_pixels(const cJSON *nodes)
     return all > 0 ? pixels / all : 1;
 }
 
-// Of a block size. An error below the noise of the reference is anything up to that noise: the most it may be.
+// Of a block size; NAN: not known. An error below the noise of the reference is anything up to that noise: the most it
+// may be.
 static double error_of(const cJSON *run, int block)
 {
     const cJSON *e;
     cJSON_ArrayForEach(e, json_at(run, "errors"))
     {
         if (json_number_at(e, "block", 0) == block) {
-            return fmax(json_number_at(e, "error", NAN), json_number_at(e, "n", 0));
+            const double error = json_number_at(e, "error", NAN);
+            return isnan(error) ? NAN : fmax(error, json_number_at(e, "n", 0));
         }
     }
     return NAN;

@@ -63,6 +63,28 @@ double timing_median(double *values, uint32_t count)
     return 0.5 * (values[(count - 1) / 2] + values[count / 2]);
 }
 
+// Changes what `change` says, by a step.
+static void step(tyn_scene *scene, tyn_camera *camera, timing_change change)
+{
+    if (change == TIMING_CAMERA) {
+        timing_turn_camera(scene, camera, step_angle);
+    } else if (change == TIMING_LIGHT) {
+        step_lights(scene);
+    }
+}
+
+// The first frame after a change is not timed: drivers compile in it what only such frames need. One sample does.
+static int warm_up(app *a, renderer *r, tyn_scene *scene, tyn_view *view, timing_change change)
+{
+    if (change != TIMING_CAMERA && change != TIMING_LIGHT) {
+        return EXIT_DONE;
+    }
+    step(scene, &view->camera, change);
+    tyn_view single = *view;
+    single.num_samples = 1;
+    return renderer_frame(a, r, scene, &single, false, NULL);
+}
+
 int timing_run(app *a, renderer *r, tyn_scene *scene, const tyn_view *view, timing_change change,
                uint32_t frames, double *median_ms)
 {
@@ -73,12 +95,9 @@ int timing_run(app *a, renderer *r, tyn_scene *scene, const tyn_view *view, timi
     int code = values ? EXIT_DONE : app_exit_code(a, TYN_ERR_MEMORY, false);
     tyn_view moving = *view;
     progress_start(&a->bar, "timing", a->quiet);
+    code = code == EXIT_DONE ? warm_up(a, r, scene, &moving, change) : code;
     for (uint32_t i = 0; i < frames && code == EXIT_DONE; i++) {
-        if (change == TIMING_CAMERA) {
-            timing_turn_camera(scene, &moving.camera, step_angle);
-        } else if (change == TIMING_LIGHT) {
-            step_lights(scene);
-        }
+        step(scene, &moving.camera, change);
         code = renderer_frame(a, r, scene, &moving, change == TIMING_COLD, NULL);
         if (code == EXIT_DONE) {
             values[i] = r->frame_ms;

@@ -9,7 +9,8 @@ typedef enum timing_change {
     TIMING_LIGHT,     // the lights turn
 } timing_change;
 
-// Renders `frames` frames and gives the median of their times in ms. TIMING_LIGHT leaves the scene's
+// Renders `frames` frames and gives the median of their times in ms; before them one that is not timed where
+// something changes. TIMING_LIGHT leaves the scene's
 // lights turned. Gives the exit code.
 int timing_run(app *a, renderer *r, tyn_scene *scene, const tyn_view *view, timing_change change,
                uint32_t frames, double *median_ms);

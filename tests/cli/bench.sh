@@ -57,6 +57,9 @@ key() { # INDEX: of the run
     get report/report.json "scenes.0.runs.$1.key"
 }
 single=report/records/$(key 2).json pop=report/records/$(key 0).json plain=report/records/$(key 3).json
+record() { # INDEX
+    echo "report/records/$(key "$1").json"
+}
 echo "{\"version\": 1, \"key\": \"$(key 2)\"}" >"$single"
 sed 's/"rel_l1"/"rel"/' "$pop" >cut && mv cut "$pop"
 sed 's/"baseline":\t*true/"baseline": false/; s/"swept":\t*true/"swept": false/' "$plain" >stale && mv stale "$plain"
@@ -67,6 +70,39 @@ works bench --suite suite.json --scenes "$scenes" --report report --quiet
 [ -s report/pictures/cube/pop-cells-16.exr ] || fail "bench: a picture that is gone was not made"
 [ "$(get report/report.json scenes.0.runs)" = "list 6" ] || fail "bench: a run is lost"
 [ "$(get report/report.json scenes.0.runs.3.baseline)" = true ] || fail "bench: a record overrules the suite"
+# ... so is a figure that is cut out, a list of nodes, a damaged picture, an empty one
+sed 's/"error":/"err":/' "$pop" >cut && mv cut "$pop"
+sed 's/"flicker":/"flick":/' "$(record 1)" >cut && mv cut "$(record 1)"
+sed 's/"ceiling":/"ceil":/' "$single" >cut && mv cut "$single"
+: >report/pictures/cube/plain-1-spp.exr
+head -c 300 report/pictures/cube/plain-4-spp.exr >cut && mv cut report/pictures/cube/plain-4-spp.exr
+touch -d 2000-01-01 report/records/*.json
+works bench --suite suite.json --scenes "$scenes" --report report --quiet
+[ "$(find report/records -name '*.json' -newer suite.json | wc -l)" = 5 ] || fail "bench: not five of the records made anew"
+[ "$(wc -c <report/pictures/cube/plain-1-spp.exr)" -gt 300 ] || fail "bench: an empty picture was not made anew"
+# a picture of which some values are not finite has no error, and is on no front
+TYN_PLANT=nan "$helpers/tyndall_planted" bench --suite suite.json --scenes "$scenes" --report spoiled >out 2>err ||
+    fail "bench: a picture with a NaN: $(cat err)"
+grep -q "pop, cells 8: 1 values of the picture are not finite" err || fail "bench: nothing is said of a NaN: $(cat err)"
+[ "$(get spoiled/report.json scenes.0.runs.1.errors.0.error)" = null ] || fail "bench: an error of a picture with a NaN"
+for front in 0 1; do
+    for i in 0 1 2 3; do
+        case "$("$helpers/json_get" spoiled/report.json "scenes.0.fronts.$front.runs.$i" 2>/dev/null)" in
+        "$(get spoiled/report.json scenes.0.runs.0.key)" | "$(get spoiled/report.json scenes.0.runs.1.key)")
+            fail "bench: a picture with a NaN is on a front" ;;
+        esac
+    done
+done
+# records without the device's ceilings are not those with them; a cache that cannot be written is said
+sed 's/"frames"/"ceilings": false, "frames"/; s/"cells": \[8, 16\]/"cells": 8/' suite.json >without.json
+sed 's/"ceilings": false/"ceilings": true/' without.json >with.json
+: >no-cache
+for suite in without with; do
+    XDG_CACHE_HOME="$work/no-cache" run bench --suite $suite.json --scenes "$scenes" --report ceilings
+    grep -q "no-cache/tyndall/references/.*: cannot be written; the reference is rendered again" err ||
+        fail "bench: a reference is not kept: $(cat err)"
+done
+[ "$(get ceilings/report.json scenes.0.runs.1.nodes.0.ceiling)" != null ] || fail "bench: a node without a ceiling"
 # names that look alike as files, none of which is the reference; samples in whatever order; files beside the suite
 mkdir beside && "$helpers/exr_make" beside/map.exr 4 2 R=1 G=1 B=1
 cat >beside/names.json <<'END'
@@ -89,6 +125,21 @@ cat >file.json <<'END'
   "scenes": [ { "name": "cube", "scene": "cube.gltf", "g": 0.5, "reference": "report/pictures/cube/reference.exr" } ],
   "runs": [ { "method": "pop", "settings": { "lattice.cells": 16 } } ] }
 END
+# ... which must be one
+refuses_reference() { # WORDS CHANNELS
+    words=$1
+    shift
+    "$helpers/exr_make" wrong.exr 24 24 "$@"
+    sed 's/report.pictures.cube.reference/wrong/' file.json >wrong.json
+    refuses 2 "wrong.exr: $words" bench --suite wrong.json --scenes "$scenes" --quiet
+}
+refuses_reference "R is nan at pixel (1, 0)" R=1,nan,1 G=1 B=1
+refuses_reference "G is inf at pixel (0, 0)" R=1 G=inf B=1
+refuses_reference "R, G and B sum to 0" R=0 G=0 B=0
+refuses_reference "error.B is inf at pixel (0, 0)" R=1 G=1 B=1 error.R=0 error.G=0 error.B=inf
+refuses_reference "error.R is -1 at pixel (2, 0)" R=1 G=1 B=1 error.R=0,0,-1 error.G=0 error.B=0
+"$helpers/exr_make" wrong.exr 24 24 R=-0.1,1 G=1 B=1 # what a filter leaves
+works bench --suite wrong.json --scenes "$scenes" --quiet
 bands() { # LOW HIGH
     echo "{ \"bands\": [ { \"scene\": \"*\", \"run\": \"pop\", \"figure\": \"errors.0.bias\",
         \"low\": $1, \"high\": $2, \"reason\": \"a test\" } ] }" >bands.json

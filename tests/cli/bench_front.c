@@ -147,6 +147,30 @@ static void below_the_noise(void **state)
     assert_true(r[1].line == PATH && r[1].highest);
 }
 
+// The first of all ranges, too, may be too narrow to be told.
+static void first_sliver(void **state)
+{
+    (void)state;
+    const front_point narrow[] = {{100, 0.002, PATH, true, true},
+                                  {50, 0.00205, POP, false, false},
+                                  {10, 0.1, SINGLE, false, false}};
+    front_range r[4];
+    assert_int_equal(front_ranges(narrow, 3, r, 4), 2);
+    assert_int_equal(r[0].line, POP);
+    assert_true(!r[0].lowest && !r[0].highest);
+    assert_float_equal(r[0].low, 0.002, 1e-6);
+    assert_int_equal(r[1].line, SINGLE);
+    assert_true(r[1].highest);
+    // one that has no lower end is not narrow
+    front_point open[3] = {narrow[0], narrow[1], narrow[2]};
+    open[0].bound = false;
+    assert_int_equal(front_ranges(open, 3, r, 4), 3);
+    assert_true(r[0].line == PATH && r[0].lowest);
+    // two that are narrow, and nothing beside them
+    assert_int_equal(front_ranges(narrow, 2, r, 4), 1);
+    assert_true(r[0].line == POP && r[0].highest);
+}
+
 static void means(void **state)
 {
     (void)state;
@@ -160,7 +184,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pareto), cmocka_unit_test(settings),     cmocka_unit_test(samples),
         cmocka_unit_test(ranges), cmocka_unit_test(large_errors), cmocka_unit_test(below_the_noise),
-        cmocka_unit_test(means),
+        cmocka_unit_test(means),  cmocka_unit_test(first_sliver),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -189,11 +189,39 @@ static void moved_camera(void **state)
     cJSON_Delete(runs);
 }
 
+// A picture of which some values are not finite has an error of the rest, and its own nobody knows.
+static void not_finite(void **state)
+{
+    (void)state;
+    cJSON *runs = cJSON_CreateArray();
+    add_run(runs, "pop", false, 1, 0.001, 0);
+    add_run(runs, "path", true, 10, 0.2, 0);
+    cJSON *pop = cJSON_GetArrayItem(runs, 0);
+    cJSON_AddNumberToObject(cJSON_GetArrayItem(cJSON_GetObjectItem(pop, "errors"), 0), "nan", 3);
+    plane p;
+    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
+    cJSON *front = plane_front(&p), *list = cJSON_GetObjectItem(front, "runs");
+    cJSON *equal = cJSON_CreateArray(), *floors = plane_floors(&p);
+    assert_int_equal(cJSON_GetArraySize(list), 1);
+    has_text(list, 0, "1");
+    assert_int_equal(cJSON_GetArraySize(floors), 0);
+    plane_add_equal_errors(&p, equal);
+    plane_add_own_equal_errors(&p, runs);
+    equal = written(equal);
+    assert_true(isnan(json_figure(equal, "0.ms")));
+    assert_null(cJSON_GetObjectItem(pop, "equal_error"));
+    plane_finish(&p);
+    cJSON_Delete(front);
+    cJSON_Delete(floors);
+    cJSON_Delete(equal);
+    cJSON_Delete(runs);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(noisy),   cmocka_unit_test(many_groups),  cmocka_unit_test(large_errors),
-        cmocka_unit_test(promise), cmocka_unit_test(moved_camera),
+        cmocka_unit_test(promise), cmocka_unit_test(moved_camera), cmocka_unit_test(not_finite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,8 @@
 // planted.c -- a bug for the bench to find: the tool is linked once more with these in front of the library, and
-// method "pop" has then 3 % too much light (TYN_PLANT=output), or scatters 3 % too little (TYN_PLANT=albedo).
+// method "pop" has then 3 % too much light (TYN_PLANT=output), scatters 3 % too little (TYN_PLANT=albedo),
+// or leaves a value that is not a number (TYN_PLANT=nan).
 #include <tyndall/offline.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,7 +52,8 @@ tyn_result __wrap_tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, co
 const void *__wrap_tyn_offline_output(tyn_offline *off, tyn_output output)
 {
     const float *values = __real_tyn_offline_output(off, output);
-    if (!values || output != TYN_OUTPUT_RADIANCE || !planted("output")) {
+    const bool light = planted("output"), nan = planted("nan");
+    if (!values || output != TYN_OUTPUT_RADIANCE || !(light || nan)) {
         return values;
     }
     float *more = realloc(brighter, num_values * sizeof *more);
@@ -59,7 +62,8 @@ const void *__wrap_tyn_offline_output(tyn_offline *off, tyn_output output)
     }
     brighter = more;
     for (size_t i = 0; i < num_values; i++) {
-        brighter[i] = i % 4 == 3 ? values[i] : 1.03f * values[i];
+        brighter[i] = i % 4 == 3 || nan ? values[i] : 1.03f * values[i];
     }
+    brighter[0] = nan ? NAN : brighter[0];
     return brighter;
 }

@@ -41,6 +41,8 @@ int bench_key(bench_case *c, const bench_run *run, char key[17])
     const uint32_t numbers[] = {c->suite->frames, c->suite->block, BENCH_RECORD_VERSION};
     hash = text_hash(numbers, sizeof numbers, hash);
     hash = text_hash(&c->suite->timing_seconds, sizeof c->suite->timing_seconds, hash);
+    // Without those of the device nodes have no ceilings.
+    hash = c->suite->ceilings ? hash : hash_text("no ceilings", hash);
     snprintf(key, 17, "%016llx", (unsigned long long)hash);
     method_finish(&m);
     return EXIT_DONE;

@@ -2,6 +2,7 @@
 #include "front.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static bool counts(const front_point *p)
 {
@@ -151,19 +152,28 @@ static int64_t fastest_line(const front_point *points, uint32_t count, double er
     return best;
 }
 
-// What is narrower than 5 % is noise of times: it goes to the range below.
+// What is narrower than 5 % is noise of times.
+static bool is_sliver(const front_range *r)
+{
+    return !r->lowest && !r->highest && r->high < 1.05 * r->low;
+}
+
+// A sliver goes to the range below, the first to the one above.
 static uint32_t without_slivers(front_range *ranges, uint32_t num)
 {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < num; i++) {
         const front_range *r = &ranges[i];
-        bool sliver = !r->lowest && !r->highest && r->high < 1.05 * r->low;
-        if (kept > 0 && (sliver || ranges[kept - 1].line == r->line)) {
+        if (kept > 0 && (is_sliver(r) || ranges[kept - 1].line == r->line)) {
             ranges[kept - 1].high = r->high;
             ranges[kept - 1].highest = r->highest;
         } else {
             ranges[kept++] = *r;
         }
+    }
+    if (kept > 1 && is_sliver(&ranges[0])) {
+        ranges[1].low = ranges[0].low;
+        memmove(ranges, ranges + 1, --kept * sizeof *ranges);
     }
     return kept;
 }

@@ -39,7 +39,7 @@ typedef struct front_range {
 } front_range;
 // From the least error of any point to that of the fastest, from which on nothing changes, in steps of 1 %; from small
 // to large errors. Where the least is bound the first range ends there. Nothing is counted as faster than its fastest
-// point. Ranges of less than 5 % between two others go to the one below. Gives the number of ranges, at most `max`;
+// point. Ranges of less than 5 % go to the one below, the first of all to the one above. Gives the number of ranges, at most `max`;
 // what does not fit is left out at the upper end.
 uint32_t front_ranges(const front_point *points, uint32_t count, front_range *ranges, uint32_t max);
 

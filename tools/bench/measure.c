@@ -20,7 +20,10 @@ static int take_picture(measuring *m)
     for (int i = 0; i < BENCH_BLOCKS; i++) {
         if (metrics_compare(&m->image, &m->c->reference.image, m->c->blocks[i], &m->errors[i]) !=
             METRICS_OK) {
-            app_error(m->c->a, "%s: the reference is black; nothing can be relative to it",
+            app_error(m->c->a,
+                      m->errors[i].nan
+                          ? "%s: too few values of the picture are finite"
+                          : "%s: the reference is black; nothing can be relative to it",
                       m->c->spec->name);
             return EXIT_WRONG;
         }
@@ -131,11 +134,11 @@ static void take_states(measuring *m)
 
 static bool go_on(double start, uint32_t done, uint32_t least, uint32_t most, double seconds)
 {
-    return done < least || (done < most && app_seconds() - start < seconds);
+    return done < most && (done < least || app_seconds() - start < seconds);
 }
 
 // Cold frames: medians of the whole and of every node.
-static int time_cold(measuring *m)
+static int time_cold(measuring *m, uint32_t least)
 {
     const bench_suite *suite = m->c->suite;
     const uint32_t most = suite->frames;
@@ -144,7 +147,7 @@ static int time_cold(measuring *m)
     int code = whole && nodes ? EXIT_DONE : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
     uint32_t done = 0;
     const double start = app_seconds();
-    while (code == EXIT_DONE && go_on(start, done, 1, most, suite->timing_seconds)) {
+    while (code == EXIT_DONE && go_on(start, done, least, most, suite->timing_seconds)) {
         code = renderer_frame(m->c->a, &m->renderer, &m->c->scene, &m->view, true, NULL);
         if (code == EXIT_DONE) {
             double times[MAX_NODES] = {0};
@@ -168,8 +171,20 @@ static int time_cold(measuring *m)
     return code;
 }
 
-// The camera turns by a little from frame to frame: times, and flicker. Of a method that samples every frame
-// has samples of its own, as it would have in a film.
+// The camera turns by a little, and a frame is rendered, with samples of its own where a method samples: as in a film.
+static int film_frame(measuring *m, tyn_view *view, flicker *f)
+{
+    timing_turn_camera(&m->c->scene, &view->camera, flicker_step);
+    view->seed += m->method.info.progressive;
+    const int code = renderer_frame(m->c->a, &m->renderer, &m->c->scene, view, false, NULL);
+    if (code == EXIT_DONE && f->frames < FLICKER_FRAMES) {
+        flicker_add(f, tyn_offline_output(m->renderer.offline, TYN_OUTPUT_RADIANCE));
+    }
+    return code;
+}
+
+// Frames after the camera has moved: times, and flicker. The first is not timed: drivers compile in it what only
+// such frames need.
 static int time_camera(measuring *m, uint32_t least, uint32_t most, double seconds)
 {
     double *times = calloc(most, sizeof *times);
@@ -179,15 +194,12 @@ static int time_camera(measuring *m, uint32_t least, uint32_t most, double secon
                    : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
     tyn_view view = m->view;
     uint32_t done = 0;
+    code = code == EXIT_DONE ? film_frame(m, &view, &f) : code;
     const double start = app_seconds();
     while (code == EXIT_DONE && go_on(start, done, least, most, seconds)) {
-        timing_turn_camera(&m->c->scene, &view.camera, flicker_step);
-        view.seed += m->method.info.progressive;
-        code = renderer_frame(m->c->a, &m->renderer, &m->c->scene, &view, false, NULL);
-        if (code == EXIT_DONE) {
-            times[done++] = m->renderer.frame_ms;
-            flicker_add(&f, tyn_offline_output(m->renderer.offline, TYN_OUTPUT_RADIANCE));
-        }
+        code = film_frame(m, &view, &f);
+        times[done] = m->renderer.frame_ms;
+        done += code == EXIT_DONE;
     }
     if (code == EXIT_DONE) {
         m->camera_ms = timing_median(times, done);
@@ -298,20 +310,22 @@ static int measure_frames(measuring *m, const char *label)
     if (code == EXIT_DONE) {
         code = take_picture(m);
     }
-    // Frames that take long are not rendered more often than times need; for flicker it would be three.
+    // Once without a clock: drivers compile kernels when they first run, and other ones for these outputs. The frame
+    // before was the first of all, so that only this one tells whether frames take long; such are not rendered more
+    // often than times need, for which flicker, of three pictures, is left out.
     const double seconds = m->c->suite->timing_seconds;
-    bool slow = m->renderer.frame_ms > 1e3 * seconds;
     m->view.outputs = TYN_OUTPUT_RADIANCE;
-    if (code == EXIT_DONE && !slow) { // allocates for these outputs
+    if (code == EXIT_DONE) {
         code = renderer_frame(a, &m->renderer, &m->c->scene, &m->view, true, NULL);
     }
+    const uint32_t least = m->renderer.frame_ms > 1e3 * seconds ? 1 : 2;
     if (code == EXIT_DONE) {
-        code = time_cold(m);
+        code = time_cold(m, least);
     }
     if (code == EXIT_DONE) {
         const uint32_t frames = m->c->suite->frames;
-        code = time_camera(m, slow ? 1 : 3, frames > FLICKER_FRAMES ? frames : FLICKER_FRAMES,
-                           seconds);
+        code =
+            time_camera(m, least, frames < FLICKER_FRAMES ? FLICKER_FRAMES - 1 : frames, seconds);
     }
     if (code == EXIT_DONE) {
         take_states(m);
@@ -342,13 +356,13 @@ static int measure_samples(measuring *m, const char *label)
     }
     // Short ones again: a first millisecond is noise.
     if (code == EXIT_DONE && m->cold_ms < fmin(0.2e3 * seconds, 300)) {
-        code = time_cold(m);
+        code = time_cold(m, 1);
     } else if (code == EXIT_DONE) {
         finish_nodes(m);
     }
     if (code == EXIT_DONE && 3e-3 * m->cold_ms < seconds) {
-        code = time_camera(m, 3, 3, seconds);
-        m->camera_ms = NAN; // that of the whole rendering
+        code = time_camera(m, 2, 2, seconds); // three pictures
+        m->camera_ms = NAN;                   // that of the whole rendering
         m->camera_frames = 0;
     }
     return code;

@@ -11,11 +11,12 @@ static cJSON *json_errors(const measuring *m)
     cJSON *list = cJSON_CreateArray();
     for (int i = 0; i < BENCH_BLOCKS; i++) {
         const metrics *e = &m->errors[i];
-        // What the noise of the reference explains goes; a run's own noise is an error of it.
+        // What the noise of the reference explains goes; a run's own noise is an error of it. Values that are not
+        // finite are left out of all sums: how wrong such a picture is nobody knows.
         const double n = m->c->reference.noise[i];
         cJSON *error = cJSON_CreateObject();
         cJSON_AddNumberToObject(error, "block", m->c->blocks[i]);
-        json_add_float(error, "error", sqrt(fmax(0, e->rel_l1 * e->rel_l1 - n * n)));
+        json_add_float(error, "error", e->nan ? NAN : sqrt(fmax(0, e->rel_l1 * e->rel_l1 - n * n)));
         json_add_float(error, "rel_l1", e->rel_l1);
         json_add_float(error, "n", m->c->reference.known_noise ? n : NAN);
         json_add_float(error, "rmse", e->rmse);
@@ -69,6 +70,20 @@ static cJSON *json_settings(const measuring *m)
 static cJSON *doubles_or_null(const double *values, bool known)
 {
     return known ? cJSON_CreateDoubleArray(values, 3) : cJSON_CreateNull();
+}
+
+static void warn_of_nan(measuring *m)
+{
+    const uint64_t count = m->errors[BENCH_BLOCKS - 1].nan;
+    char *text = count ? text_format("%llu values of the picture are not finite: its error is not "
+                                     "known, and it is on no front",
+                                     (unsigned long long)count)
+                       : NULL;
+    if (text) {
+        app_warn(m->c->a, "%s: %s: %s", m->c->spec->name, m->run->name, text);
+        cJSON_AddItemToArray(m->warnings, cJSON_CreateString(text));
+    }
+    free(text);
 }
 
 static int write_picture(measuring *m, cJSON *json)
@@ -139,6 +154,7 @@ static int add_figures(measuring *m, cJSON *json)
     json_add_float(json, "flicker", m->flicker);
     cJSON_AddNumberToObject(json, "non_finite", non_finite);
     cJSON_AddNumberToObject(json, "negative", negative);
+    warn_of_nan(m);
     cJSON_AddItemToObject(json, "warnings", m->warnings);
     m->nodes = m->warnings = NULL;
     // by the names that the suite calls them, wherever they lie

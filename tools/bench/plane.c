@@ -34,11 +34,19 @@ static double time_of(const cJSON *run, bool sampling, plane_frame frame)
                        frame == PLANE_COLD || sampling ? "frame_ms.cold" : "frame_ms.camera_moved");
 }
 
+// NAN: not known, as that of a picture of which some values are not finite.
+static double error_of(const cJSON *run, int index)
+{
+    char error[32], nan[32];
+    snprintf(error, sizeof error, "errors.%d.error", index);
+    snprintf(nan, sizeof nan, "errors.%d.nan", index);
+    return json_figure(run, nan) > 0 ? NAN : json_figure(run, error);
+}
+
 bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block, plane_frame frame)
 {
     const uint32_t count = (uint32_t)cJSON_GetArraySize(runs);
-    char error_path[32], noise_path[32];
-    snprintf(error_path, sizeof error_path, "errors.%d.error", index);
+    char noise_path[32];
     snprintf(noise_path, sizeof noise_path, "errors.%d.n", index);
     *p = (plane){.points = calloc(count + 1, sizeof *p->points),
                  .runs = calloc(count + 1, sizeof *p->runs),
@@ -50,7 +58,7 @@ bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block, plane_fr
     const cJSON *run;
     cJSON_ArrayForEach(run, runs)
     {
-        const double error = json_figure(run, error_path), noise = json_figure(run, noise_path);
+        const double error = error_of(run, index), noise = json_figure(run, noise_path);
         const uint32_t of = line_of(p, run);
         p->noise = noise > 0 ? noise : p->noise;
         p->runs[p->count] = run;
@@ -77,7 +85,8 @@ static cJSON *json_key(const plane *p, int32_t point)
 
 static const char *percent(double error, char text[16])
 {
-    snprintf(text, 16, error < 0.1 ? "%.1f %%" : "%.0f %%", 100 * error);
+    const int digits = error < 0.01 ? 2 : error < 0.1 ? 1 : 0; // one would hide ranges there
+    snprintf(text, 16, "%.*f %%", digits, 100 * error);
     return text;
 }
 

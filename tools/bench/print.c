@@ -129,6 +129,10 @@ static void print_error(const cJSON *error)
 {
     const double value = json_figure(error, "error"), noise = json_figure(error, "n");
     const bool hidden = value < noise;
+    if (isnan(value)) {
+        printf(" %9s", "-");
+        return;
+    }
     printf(" %s%5.2f %%",
            hidden                      ? "<="
            : json_true(error, "vague") ? " ~"

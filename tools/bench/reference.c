@@ -55,6 +55,8 @@ static uint64_t hash_surfaces(const tyn_surfaces *s, uint64_t key)
     for (uint32_t i = 0; i < s->num_textures; i++) {
         const tyn_texture *t = &s->textures[i];
         key = text_hash(t->texels, (size_t)4 * t->size[0] * t->size[1], HASH(t->wrap, key));
+        // The number of texels tells the size of a square; others may share it.
+        key = t->size[0] == t->size[1] ? key : HASH(t->size, key);
     }
     return key;
 }
@@ -193,6 +195,16 @@ static int render(app *a, tyn_device *device, const method *m, const bench_scene
     return code;
 }
 
+// What cannot be kept is rendered again by every call, which somebody who waits for it should know.
+static void keep(app *a, const bench_reference *r, const char *cached)
+{
+    if (!cached) {
+        app_warn(a, "the reference is not kept: XDG_CACHE_HOME or HOME must be an absolute path");
+    } else if (tyn_exr_write(&r->file, cached, true, NULL) != TYN_OK) {
+        app_warn(a, "%s: cannot be written; the reference is rendered again next time", cached);
+    }
+}
+
 static int from_path(app *a, tyn_device *device, const bench_scene *spec, const tyn_scene *scene,
                      const tyn_view *view, bench_reference *r)
 {
@@ -207,14 +219,50 @@ static int from_path(app *a, tyn_device *device, const bench_scene *spec, const 
         if (!r->cached) {
             tyn_image_file_finish(&r->file);
             code = render(a, device, &m, spec, scene, view, r);
-            if (code == EXIT_DONE && cached) {
-                tyn_exr_write(&r->file, cached, true, NULL);
+            if (code == EXIT_DONE) {
+                keep(a, r, cached);
             }
         }
         free(cached);
     }
     method_finish(&m);
     return code;
+}
+
+// Is one value what it must be? `channel`: of `names`.
+static bool is_sound(app *a, const bench_reference *r, const char *file, int channel, size_t i)
+{
+    const float *values = channel < 3 ? r->image.rgb[channel] : r->image.se[channel - 3];
+    const uint32_t x = (uint32_t)(i % r->image.width), y = (uint32_t)(i / r->image.width);
+    if (!values || (isfinite(values[i]) && (channel < 3 || values[i] >= 0))) {
+        return true;
+    }
+    app_error(a, "%s: %s is %g at pixel (%u, %u); values of a reference must be finite%s", file,
+              names[channel], (double)values[i], x, y,
+              channel < 3 ? "" : ", and standard errors not negative");
+    return false;
+}
+
+// A file may hold anything, and every error would be relative to it. Values below 0 are what filters leave.
+static bool check_values(app *a, const bench_reference *r, const char *file)
+{
+    const size_t num = (size_t)r->image.width * r->image.height;
+    double sum = 0;
+    for (size_t i = 0; i < num; i++) {
+        for (int c = 0; c < 6; c++) {
+            if (!is_sound(a, r, file, c, i)) {
+                return false;
+            }
+            sum += c < 3 ? r->image.rgb[c][i] : 0;
+        }
+    }
+    if (!(sum > 0)) {
+        app_error(a,
+                  "%s: R, G and B sum to %g over all pixels; errors are relative to that: it must "
+                  "be above 0",
+                  file, sum);
+    }
+    return sum > 0;
 }
 
 static int from_file(app *a, const bench_scene *spec, const tyn_view *view, bench_reference *r)
@@ -231,6 +279,9 @@ static int from_file(app *a, const bench_scene *spec, const tyn_view *view, benc
         app_error(a, "%s: must have the channels R, G, B and the size of '%s', %ux%u, not %ux%u",
                   spec->reference, spec->name, view->width, view->height, r->file.width,
                   r->file.height);
+        return EXIT_WRONG;
+    }
+    if (result == TYN_OK && !check_values(a, r, spec->reference)) {
         return EXIT_WRONG;
     }
     r->cached = true;
