@@ -25,7 +25,8 @@ bool app_interrupted(void)
 static void print_line(app *a, const char *kind, const char *message)
 {
     progress_hold(&a->bar);
-    fprintf(stderr, "tyndall%s%s: %s%s\n", a->command[0] ? " " : "", a->command, kind, message);
+    fprintf(stderr, "tyndall%s%s: %s%s%s%s\n", a->command[0] ? " " : "", a->command, kind,
+            a->within ? a->within : "", a->within ? ": " : "", message);
     progress_release(&a->bar);
 }
 
@@ -75,6 +76,11 @@ void app_note(app *a, const char *format, ...)
 {
     FORMAT_LINE(line, format);
     print_log(a, TYN_LOG_INFO, line);
+}
+
+const char *app_word(const app *a, const char *by_option, const char *by_key)
+{
+    return a->within ? by_key : by_option;
 }
 
 int app_exit_code(app *a, tyn_result result, bool input)

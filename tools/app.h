@@ -13,6 +13,8 @@ enum {
 
 struct app {
     const char *command; // name of the subcommand, "" before it is known
+    const char *
+        within; // the part of an input that is being tried, before every error; NULL: the command line
     bool quiet;
     tyn_log log;           // to stderr; give this to the library
     uint32_t num_errors;   // messages at TYN_LOG_ERROR so far
@@ -24,6 +26,9 @@ void app_init(app *a);
 void app_error(app *a, const char *format, ...) TYN_PRINTF(2, 3); // one line to stderr
 void app_warn(app *a, const char *format, ...) TYN_PRINTF(2, 3);
 void app_note(app *a, const char *format, ...) TYN_PRINTF(2, 3); // not with --quiet
+
+// What an error calls a value: the option that gave it, or the key in the file that is being tried.
+const char *app_word(const app *a, const char *by_option, const char *by_key);
 
 // The exit code for a result. With `input` the call read an input or worked on it: then a file that
 // cannot be read, or what this version cannot do yet, is a wrong input. Says what happened where the

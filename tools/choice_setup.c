@@ -29,20 +29,40 @@ bool choice_is_asked(const choice_options *options)
     return options->max_error || !isnan(options->budget_ms);
 }
 
-// "5%" or "0.05" -> 0.05; NaN: neither.
-static double fraction(const char *text)
+// "5%", "5 %" or "0.05" -> 0.05; NaN: neither.
+static double fraction(const char *text, bool *percent)
 {
     char *end;
     double value = strtod(text, &end);
     if (end == text) {
         return NAN;
     }
-    if (strcmp(end, "%") == 0) {
+    const char *sign = end + strspn(end, " ");
+    *percent = strcmp(sign, "%") == 0;
+    if (*percent) {
         value /= 100;
     } else if (*end) {
         return NAN;
     }
     return value > 0 && value < INFINITY ? value : NAN;
+}
+
+// Who asks for all of the light as error means percent. False: said.
+static bool check_error(app *a, const char *text)
+{
+    bool percent = false;
+    const double value = fraction(text, &percent);
+    if (isnan(value)) {
+        app_error(a, "--max-error: '%s' is neither a share like 0.05 nor a percentage like 5%%",
+                  text);
+        return false;
+    }
+    if (value >= 1 && !percent) {
+        app_error(a, "--max-error: '%s' is a share, of %g %%; did you mean %s%%?", text,
+                  100 * value, text);
+        return false;
+    }
+    return true;
 }
 
 bool choice_check(app *a, const choice_options *options, const method_options *how)
@@ -52,9 +72,7 @@ bool choice_check(app *a, const choice_options *options, const method_options *h
                   options->fronts ? "fronts" : "error-block");
         return false;
     }
-    if (options->max_error && isnan(fraction(options->max_error))) {
-        app_error(a, "--max-error: '%s' is neither a share like 0.05 nor a percentage like 5%%",
-                  options->max_error);
+    if (options->max_error && !check_error(a, options->max_error)) {
         return false;
     }
     if (choice_is_asked(options) && how->quality) {
@@ -367,8 +385,9 @@ int choice_make(app *a, const choice_options *options, const method_options *how
         code = slowness_of(a, &f.device, mach, &slowness);
     }
     if (code == EXIT_DONE) {
+        bool percent;
         const choose_request request = {
-            .max_error = options->max_error ? fraction(options->max_error) : NAN,
+            .max_error = options->max_error ? fraction(options->max_error, &percent) : NAN,
             .budget_ms = options->budget_ms,
             .no_background = view->no_background,
             .by_pixel = options->blocks && strcmp(options->blocks, "1") == 0,

@@ -8,14 +8,14 @@
 #include "bench/runs.h"
 #include "bench/stress.h"
 #include "devices.h"
+#include "folder.h"
 #include "fronts.h"
+#include "output.h"
 #include "stats.h"
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 typedef struct bench_args {
@@ -102,15 +102,14 @@ static int open_machine(app *a, const bench_args *args, const bench_suite *suite
 
 // ---- the report -------------------------------------------------------------------------------
 
-static int make_folder(app *a, const char *path)
+// Where nothing can be written, nothing is measured: the report's folder is made, the other file's tried.
+static int open_outputs(app *a, const bench_args *args)
 {
-    struct stat status;
-    if (!path || mkdir(path, 0777) == 0 ||
-        (stat(path, &status) == 0 && S_ISDIR(status.st_mode) && access(path, W_OK) == 0)) {
-        return EXIT_DONE;
+    int code = args->report ? folder_make(a, "--report", args->report) : EXIT_DONE;
+    if (code == EXIT_DONE && args->fronts && !output_folder_is_writable(a, args->fronts)) {
+        code = EXIT_FAILED;
     }
-    app_error(a, "--report: the folder '%s' cannot be made: %s", path, strerror(errno));
-    return EXIT_FAILED;
+    return code;
 }
 
 static int write_report(app *a, const bench_args *args, const bench_machine *on, cJSON *root)
@@ -145,7 +144,7 @@ static int run_suite(app *a, const bench_args *args, const bench_suite *suite, c
     bench_report report = {0};
     int code = bench_check(a, suite);
     if (code == EXIT_DONE) {
-        code = make_folder(a, args->report);
+        code = open_outputs(a, args);
     }
     if (code == EXIT_DONE) {
         code = open_machine(a, args, suite, &mach, &on);

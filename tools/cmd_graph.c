@@ -1,4 +1,5 @@
 // cmd_graph.c -- `tyndall graph`: the compiled render graph of a scene.
+#include "output.h"
 #include "session.h"
 #include "slice.h"
 #include <stdio.h>
@@ -86,6 +87,9 @@ static int run_graph(app *a, const void *arguments)
     }
     if (code == EXIT_DONE && args->node && !has_pass(a, &s.method.info, args->node)) {
         code = EXIT_WRONG;
+    }
+    if (code == EXIT_DONE && args->output && !output_folder_is_writable(a, args->output)) {
+        code = EXIT_FAILED;
     }
     if (code == EXIT_DONE) {
         code = session_start(a, &args->machine, &s);

@@ -1,4 +1,5 @@
 // cmd_probe.c -- `tyndall probe`: the light field at points.
+#include "output.h"
 #include "points.h"
 #include "session.h"
 #include <stdio.h>
@@ -101,6 +102,9 @@ static int run_probe(app *a, const void *arguments)
     int code = session_open(a, &args->scene, &args->method, TYN_OUTPUT_PROBE, &s);
     if (code == EXIT_DONE) {
         code = points_read(a, args->points, &p);
+        if (code == EXIT_DONE && args->output && !output_folder_is_writable(a, args->output)) {
+            code = EXIT_FAILED;
+        }
         if (code == EXIT_DONE) {
             code = probe_scene(a, args, &p, &s);
         }

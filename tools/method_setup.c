@@ -36,7 +36,8 @@ bool method_find(app *a, const char *name, tyn_method_info *info)
                                      info->name);
         }
     }
-    app_error(a, "--method: there is no method '%s'; there are:%s", name ? name : "pop", line);
+    app_error(a, "%s: there is no method '%s'; there are:%s", app_word(a, "--method", "method"),
+              name ? name : "pop", line);
     return false;
 }
 
@@ -46,8 +47,8 @@ bool method_define(app *a, tyn_settings *settings, const char *define)
     char name[128];
     if (!equals || equals == define || !equals[1] || (size_t)(equals - define) >= sizeof name) {
         app_error(a,
-                  "-D: '%s' is not PASS.PARAM=VALUE; 'tyndall info --passes' lists the parameters",
-                  define);
+                  "%s: '%s' is not PASS.PARAM=VALUE; 'tyndall info --passes' lists the parameters",
+                  app_word(a, "-D", "settings"), define);
         return false;
     }
     snprintf(name, sizeof name, "%.*s", (int)(equals - define), define);

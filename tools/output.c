@@ -79,7 +79,10 @@ bool output_folder_is_writable(app *a, const char *path)
     bool known = !sequence_has_number(folder);
     bool there = folder && stat(folder, &status) == 0 && S_ISDIR(status.st_mode);
     bool writable = !known || (there && access(folder, W_OK) == 0);
-    if (!writable) {
+    if (writable && stat(path, &status) == 0 && S_ISDIR(status.st_mode)) {
+        app_error(a, "%s: cannot be written: it is a folder; give the name of a file", path);
+        writable = false;
+    } else if (!writable) {
         app_error(a, "%s: cannot be written: the folder '%s' %s", path, folder ? folder : "",
                   there ? "is not writable" : "is not there");
     }

@@ -13,7 +13,7 @@ typedef struct output_plan {
 int output_plan_make(app *a, const tyn_method_info *method, const opt_list *files, const char *aov,
                      bool full_float, output_plan *plan);
 
-// A file that cannot be written is said before the work, not after it. False: said. A folder with a
+// A file that cannot be written is said before the work, not after it; nothing is touched. False: said. A folder with a
 // sequence's number in its name is not known yet, and passes.
 bool output_folder_is_writable(app *a, const char *path);
 

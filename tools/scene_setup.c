@@ -181,7 +181,8 @@ static void say_which_cameras(app *a, const tyn_scene *scene, const char *name)
         used += (size_t)snprintf(line + used, sizeof line - used, "%s %u '%s'", i ? "," : "",
                                  c->index, title);
     }
-    app_error(a, "--camera: there is no camera '%s'; the scene has:%s", name, line);
+    app_error(a, "%s: there is no camera '%s'; the scene has:%s", app_word(a, "--camera", "camera"),
+              name, line);
 }
 
 // The options' camera position and target; where one is missing, the camera's own position and the
@@ -197,8 +198,9 @@ static tyn_result aim(app *a, const view_options *options, const tyn_scene *scen
     }
     tyn_result result = tyn_camera_look_at(camera, from, at);
     if (result != TYN_OK) {
-        app_error(a, "--look-from and --look-at: %g,%g,%g and %g,%g,%g do not give a direction",
-                  from[0], from[1], from[2], at[0], at[1], at[2]);
+        app_error(a, "%s: %g,%g,%g and %g,%g,%g do not give a direction",
+                  app_word(a, "--look-from and --look-at", "look_from and look_at"), from[0],
+                  from[1], from[2], at[0], at[1], at[2]);
     }
     return result;
 }
@@ -220,7 +222,8 @@ int view_setup(app *a, const view_options *options, const tyn_scene *scene, tyn_
     }
     if (!isnan(options->fov)) {
         if (view->camera.projection != TYN_PERSPECTIVE) {
-            app_error(a, "--fov: the camera is orthographic and has no field of view");
+            app_error(a, "%s: the camera is orthographic and has no field of view",
+                      app_word(a, "--fov", "fov"));
             return EXIT_WRONG;
         }
         view->camera.yfov = options->fov * 3.14159265f / 180;

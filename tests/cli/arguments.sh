@@ -45,6 +45,9 @@ refuses 2 "no layer 'albedo'" render a.gltf -o a.exr --aov depth,albedo
 refuses 2 "need an .exr" render a.gltf -o a.png --aov depth
 refuses 1 "is not there" render a.gltf -o nowhere/a.png
 refuses 1 "is not there" render a.gltf -o a.png --stats nowhere/a.json
+refuses 1 "is not there" graph "$scenes/cube.gltf" --view beam -o nowhere/a.png
+printf 'x,y,z\n0,0,0\n' >origin.csv
+refuses 1 "is not there" probe "$scenes/cube.gltf" --points origin.csv -o nowhere/a.csv
 refuses 2 "no method 'magic'; there are: " render a.gltf --method magic
 refuses 2 "'lattice' is not PASS.PARAM=VALUE" render a.gltf -D lattice
 refuses 2 "comes with a later version" render "$scenes/cube.gltf" --plugin a.so
@@ -107,15 +110,26 @@ bad_suite "ratios[0].to: must be the name of a scene" '{"name": "x", "scenes": [
     "ratios": [{"name": "r", "of": "cube.gltf", "to": "other"}]}'
 bad_suite "scenes[0].reference: 'nothere.exr' is neither" \
     '{"name": "x", "scenes": [{"scene": "cube.gltf", "reference": "nothere.exr"}], "runs": [{}]}'
-bad_suite "does not sample" \
+bad_suite "baselines[0] 'pop, 1 spp': method 'pop' does not sample" \
     '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{}], "baselines": [{"method": "pop"}]}'
 bad_suite "block: must be a number from 2" \
     '{"name": "x", "block": 1, "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}'
 bad_suite "suite.json: must be an object" '[]'
 bad_runs "runs: must be a list" ''
 bad_runs "a.b" '{"settings": {"a.b": 1}}'
-bad_runs "lattice.cells: is there twice" '{"settings": {"lattice.cells": 8, "lattice.cells": 16}}'
-bad_runs "runs[0].sweep: must hold up to 4 lists" '{"sweep": {"lattice.cells": 8}}'
+bad_runs "runs[0].settings.lattice.cells: is there twice" '{"settings": {"lattice.cells": 8, "lattice.cells": 16}}'
+bad_runs "runs[0].sweep.lattice.cells: must be a list of values, one at least" '{"sweep": {"lattice.cells": 8}}'
+bad_runs "runs[0].sweep: must hold up to 4 lists" '{"sweep": {"a.a": [1], "a.b": [1], "a.c": [1], "a.d": [1], "a.e": [1]}}'
+bad_runs "runs[0].sweep.lattice.cells: 299 values give more than 256 runs" "{\"sweep\": {\"lattice.cells\": [$(seq -s , 299)]}}"
+# the fault's place, in the suite's words
+bad_runs "suite.json: runs[0] 'nope': method: there is no method 'nope'" '{"method": "nope"}'
+bad_runs "suite.json: runs[1] 'b': setting 'raymarch.stepp'" '{}, {"name": "b", "settings": {"raymarch.stepp": 1}}'
+bad_runs "suite.json: runs[0] 'pop': settings: 'raymarch.step=' is not" '{"settings": {"raymarch.step": ""}}'
+# what would do nothing, and lines of two kinds of runs
+bad_runs "runs[0] 'pop': spp: method 'pop' does not sample" '{"spp": 16}'
+bad_runs "runs[0] 'pop, 1 spp': spp: method 'pop' does not sample" '{"sweep": {"spp": [1, 4]}}'
+bad_runs "runs[0] 'single': seed: method 'single' does not sample" '{"method": "single", "seed": 3}'
+bad_runs "suite.json: group 'pop': 'path' samples and 'pop' does not" '{}, {"method": "path", "group": "pop"}'
 bad_runs "runs[0].spp: must be a number from 1" '{"sweep": {"spp": [1, 0]}, "method": "path"}'
 bad_runs "runs[0].spp: must be a whole number" '{"method": "path", "spp": 1.5}'
 bad_runs "'path': seed 1000003 is that of references" '{"method": "path", "seed": 1000003}'
@@ -128,7 +142,13 @@ bad_runs "gives more than 256 runs" '{"sweep": {"lattice.cells": [8, 12, 16, 20]
 bad_scene "scenes[1]: no run is for it" '{"scene": "cube.gltf"}'
 all='{"name": "all"}'
 bad_scene "scenes[1].size: must be [width, height], whole numbers" '{"scene": "cube.gltf", "size": [16.7, 16]}' "$all"
-bad_scene "there is no camera 'nope'" '{"scene": "cube.gltf", "camera": "nope"}' "$all"
+bad_suite "suite.json: size: must be [width, height]" \
+    '{"name": "x", "size": [0, 64], "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}'
+bad_suite "suite.json: reference_spp: must be a number from 2 to 16777216" \
+    '{"name": "x", "reference_spp": 1, "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}'
+bad_scene "suite.json: scenes[1] 'deep': sigma_s = inf" '{"name": "deep", "scene": "cube.gltf", "sigma_s": 1e39}' "$all"
+bad_scene "scenes[1] 'cube.gltf': fov: the camera is orthographic" '{"scene": "cube.gltf", "camera": "side", "fov": 40}' "$all"
+bad_scene "scenes[1] 'cube.gltf': camera: there is no camera 'nope'" '{"scene": "cube.gltf", "camera": "nope"}' "$all"
 bad_scene "g" '{"scene": "cube.gltf", "g": 2}' "$all"
 bad_scene "scenes[1].environment: 'nothere.hdr' is neither beside the suite" \
     '{"scene": "cube.gltf", "environment": "nothere.hdr"}' "$all"
@@ -150,6 +170,22 @@ for bands in '{}' '{"bands": [{}]}' '{"bands": [{"scene": "*", "run": "*", "figu
     '{"bands": [{"scene": "*", "run": "*", "figure": "f", "reason": "r", "low": 0, "high": 1, "hi": 2}]}'; do
     echo "$bands" >bands.json
     refuses 2 "bands.json: " bench --bands bands.json --scenes "$scenes"
+done
+band='"scene": "*", "run": "*", "figure": "f", "reason": "r", "low": 0, "high": 1'
+printf '{"bands": [{%s}]}\n}\n' "$band" >bands.json
+refuses 2 "bands.json:2: is not JSON" bench --bands bands.json --scenes "$scenes"
+echo "{\"bands\": [{$band, \"low\": 1}]}" >bands.json
+refuses 2 "bands.json: bands[0].low: is there twice" bench --bands bands.json --scenes "$scenes"
+# outputs are tried before anything is measured, and nothing is lost by that
+echo '{"name": "x", "scenes": [{"scene": "cube.gltf"}], "runs": [{}]}' >suite.json
+refuses 1 "nowhere/f.json: cannot be written: the folder 'nowhere' is not there" \
+    bench --suite suite.json --scenes "$scenes" --report new/deep/report --write-fronts nowhere/f.json
+[ -d new/deep/report ] || fail "bench: the folder of --report was not made with those above it"
+refuses 1 "new: cannot be written: it is a folder" bench --suite suite.json --scenes "$scenes" --write-fronts new
+for what in "--suite suite.json" --stress; do
+    # shellcheck disable=SC2086
+    refuses 1 "--report: the folder 'suite.json/report' cannot be made: Not a directory" \
+        bench $what --report suite.json/report
 done
 
 # ---- info ----

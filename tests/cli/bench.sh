@@ -112,7 +112,8 @@ cat >beside/names.json <<'END'
             { "name": "a-b", "method": "single" } ],
   "baselines": [ { "sweep": { "spp": [4000000, 1, 4] } } ] }
 END
-works bench --suite beside/names.json --scenes "$scenes" --report names --quiet
+works bench --suite beside/names.json --scenes "$scenes" --report new/deep/names --quiet
+mv new/deep/names names
 for file in reference reference-2 a-b a-b-2 path-1-spp; do
     [ -s "names/pictures/scene/$file.exr" ] || fail "bench: no picture $file: $(ls names/pictures/*)"
 done

@@ -11,6 +11,9 @@ cube="$scenes/cube.gltf --size 32x32 -o x.png"
 {
     refuses 2 "'abc' is neither a share like 0.05 nor a percentage like 5%" render $cube --max-error abc
     refuses 2 "'-5%' is neither" render $cube --max-error -5%
+    refuses 2 "'nan%' is neither" render $cube --max-error nan%
+    refuses 2 "'5' is a share, of 500 %; did you mean 5%?" render $cube --max-error 5
+    refuses 2 "did you mean 1%?" render $cube --max-error 1
     refuses 2 "--quality draft: --max-error and --budget-ms choose" render $cube --max-error 5% --quality draft
     refuses 2 "--fronts needs --max-error or --budget-ms" render $cube --fronts f.json
     refuses 2 "--error-block needs --max-error or --budget-ms" render $cube --error-block 1
@@ -23,7 +26,7 @@ cube="$scenes/cube.gltf --size 32x32 -o x.png"
 }
 
 # ---- what is said and kept ----
-works render "$scenes/cube.gltf" --size 32x32 -o x.png --max-error 5% --stats s.json -D raymarch.step=0.5
+works render "$scenes/cube.gltf" --size 32x32 -o x.png --max-error "5 %" --stats s.json -D raymarch.step=0.5
 grep -q "chosen: .*; error on 8x8 pixels about .*, likely below .*; a cold frame about" err || fail "no word on the choice: $(cat err)"
 grep -q "measured scenes nearest in regime (distance): cube" err || fail "no word on where it is from: $(cat err)"
 [ "$(get s.json choice.method)" = "$(get s.json method)" ] || fail "stats: another method than chosen"
@@ -55,8 +58,8 @@ cat >suite.json <<END
   "runs": [ { "name": "pop", "method": "pop", "settings": { "lattice.cells": 8 } },
             { "name": "path", "method": "path", "spp": 4 } ] }
 END
-works bench --suite suite.json --scenes "$scenes" --quiet --write-fronts own.json
-works render "$scenes/cube.gltf" --size 32x32 -o x.png --max-error 80% --fronts own.json --method pop --stats s.json
+works bench --suite suite.json --scenes "$scenes" --quiet --report new/deep --write-fronts new/deep/own.json
+works render "$scenes/cube.gltf" --size 32x32 -o x.png --max-error 80% --fronts new/deep/own.json --method pop --stats s.json
 [ "$(get s.json choice.nearest.0.name)" = cube.gltf ] || [ "$(get s.json choice.nearest.0.name)" = cube ] || fail "not from the measurements given: $(get s.json choice.nearest.0.name)"
 [ "$(get s.json settings/lattice.cells)" = 8 ] || fail "not with the measured settings"
 

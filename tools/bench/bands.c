@@ -1,6 +1,7 @@
 // bands.c -- figures that must stay within recorded bounds: what continuous integration asks a report.
 #include "bands.h"
 #include "json.h"
+#include "suite_reader.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -59,8 +60,12 @@ int bands_load(app *a, const char *path, cJSON **bands)
     if (result != TYN_OK) {
         return app_exit_code(a, result, true);
     }
-    *bands = cJSON_ParseWithLength(data, size);
+    suite_reader r = {.a = a, .file = path, .ok = true};
+    *bands = suite_parse(&r, data, size);
     free(data);
+    if (!*bands) {
+        return EXIT_WRONG;
+    }
     const cJSON *list = cJSON_GetObjectItemCaseSensitive(*bands, "bands"), *band;
     int code = EXIT_DONE, index = 0;
     if (!cJSON_IsArray(list) || cJSON_GetArraySize(list) == 0) {

@@ -6,34 +6,87 @@
 
 // ---- before the first -------------------------------------------------------------------------
 
-static int check_run(app *a, const bench_run *run)
+// A key that does nothing would be taken for one that does. False: said.
+static bool check_samples(app *a, const bench_run *run, const tyn_method_info *info)
 {
+    static const char *const keys[] = {"spp", "seed"};
+    if (run->baseline && !info->progressive) {
+        app_error(a, "method '%s' does not sample; its error does not fall with time", info->name);
+        return false;
+    }
+    for (size_t i = 0; i < ARRAY_SIZE(keys) && !info->progressive; i++) {
+        if (cJSON_GetObjectItemCaseSensitive(run->spec, keys[i])) {
+            app_error(a, "%s: method '%s' does not sample and would ignore it", keys[i],
+                      info->name);
+            return false;
+        }
+    }
+    if (info->progressive && run->method.seed == BENCH_REFERENCE_SEED) {
+        app_error(a,
+                  "seed %d is that of references: samples compared with themselves have no error",
+                  BENCH_REFERENCE_SEED);
+        return false;
+    }
+    return true;
+}
+
+static int check_run(app *a, const bench_suite *suite, const bench_run *run, bool *samples)
+{
+    char *place = bench_run_place(suite, run);
+    a->within = place;
     method m;
     int code = method_open(a, &run->method, &m);
-    if (code == EXIT_DONE && run->baseline && !m.info.progressive) {
-        app_error(a, "baselines: '%s' does not sample; its error does not fall with time",
-                  run->name);
-        code = EXIT_WRONG;
-    } else if (code == EXIT_DONE && m.info.progressive &&
-               run->method.seed == BENCH_REFERENCE_SEED) {
-        app_error(a,
-                  "'%s': seed %d is that of references: samples compared with themselves have no "
-                  "error",
-                  run->name, BENCH_REFERENCE_SEED);
+    if (code == EXIT_DONE && !check_samples(a, run, &m.info)) {
         code = EXIT_WRONG;
     }
+    *samples = m.info.progressive;
     method_finish(&m);
+    a->within = NULL;
+    free(place);
+    return code;
+}
+
+// A group is one line of error against time: either a moved camera costs all of its runs a cold frame, or none.
+static int check_groups(app *a, const bench_suite *suite, const bool *samples)
+{
+    for (uint32_t i = 0; i < suite->num_runs; i++) {
+        for (uint32_t k = 0; k < i; k++) {
+            const bench_run *one = &suite->runs[i], *other = &suite->runs[k];
+            if (samples[i] != samples[k] && strcmp(one->group, other->group) == 0) {
+                app_error(a,
+                          "%s: group '%s': '%s' samples and '%s' does not; give one of them "
+                          "another \"group\"",
+                          suite->file, one->group, samples[i] ? one->name : other->name,
+                          samples[i] ? other->name : one->name);
+                return EXIT_WRONG;
+            }
+        }
+    }
+    return EXIT_DONE;
+}
+
+static int check_scene(app *a, const bench_suite *suite, const bench_scene *scene)
+{
+    char *place = bench_scene_place(suite, scene);
+    a->within = place;
+    int code = bench_case_check(a, suite, scene);
+    a->within = NULL;
+    free(place);
     return code;
 }
 
 int bench_check(app *a, const bench_suite *suite)
 {
+    bool samples[BENCH_MAX_RUNS] = {false};
     int code = EXIT_DONE;
     for (uint32_t i = 0; i < suite->num_runs && code == EXIT_DONE; i++) {
-        code = check_run(a, &suite->runs[i]);
+        code = check_run(a, suite, &suite->runs[i], &samples[i]);
+    }
+    if (code == EXIT_DONE) {
+        code = check_groups(a, suite, samples);
     }
     for (uint32_t i = 0; i < suite->num_scenes && code == EXIT_DONE; i++) {
-        code = bench_case_check(a, suite, &suite->scenes[i]);
+        code = check_scene(a, suite, &suite->scenes[i]);
     }
     return code;
 }

@@ -1,5 +1,6 @@
 // stress_command.c -- `tyndall bench --stress`.
 #include "stress.h"
+#include "folder.h"
 #include "html.h"
 #include "json.h"
 #include "library.h"
@@ -8,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static cJSON *read_json(const char *path)
 {
@@ -70,7 +70,6 @@ cJSON *stress_read(app *a, const char *dir, uint64_t library, tyn_device *device
 static int write_stress(app *a, const cJSON *stress, const char *dir, uint64_t library,
                         tyn_device *device)
 {
-    mkdir(dir, 0777);
     char *own = text_format("%s/stress.json", dir), *report = text_format("%s/report.json", dir);
     char *page = text_format("%s/report.html", dir);
     int code = own && report && page ? json_write(a, cJSON_Duplicate(stress, true), own)
@@ -97,7 +96,10 @@ int stress_command(app *a, const machine_options *options, const stress_options 
     machine mach = {0};
     cJSON *stress = cJSON_CreateObject(), *before = NULL;
     const uint64_t library = library_hash();
-    int code = machine_open(a, options, false, &mach);
+    int code = report ? folder_make(a, "--report", report) : EXIT_DONE;
+    if (code == EXIT_DONE) {
+        code = machine_open(a, options, false, &mach);
+    }
     if (code == EXIT_DONE) {
         before = report ? stress_read(a, report, library, mach.device) : NULL;
         add_head(stress, library, mach.device, what->quick);

@@ -11,14 +11,21 @@
 
 // ---- scenes -----------------------------------------------------------------------------------
 
-static void read_scene(suite_reader *r, const cJSON *json, const cJSON *defaults,
+// What a scene has of the suite where it says nothing itself.
+typedef struct scene_defaults {
+    opt_size size;
+    uint32_t reference_spp;
+} scene_defaults;
+
+static void read_scene(suite_reader *r, const cJSON *json, const scene_defaults *defaults,
                        const char *folder, bench_scene *s)
 {
     static const char *const keys[] = {
         "name",          "scene",      "environment",   "camera",  "size",      "fov",
         "look_from",     "look_at",    "sigma_s",       "sigma_a", "g",         "albedo",
         "density_scale", "env_rotate", "reference_spp", "lights",  "reference", NULL};
-    *s = (bench_scene){.json = json, .scene.env_strength = 1, .scene.frame = NAN};
+    *s = (bench_scene){
+        .json = json, .scene.env_strength = 1, .scene.frame = NAN, .view.size = defaults->size};
     suite_check_keys(r, json, keys);
     const char *file = suite_text(r, json, "scene", true);
     if (!file) {
@@ -41,10 +48,8 @@ static void read_scene(suite_reader *r, const cJSON *json, const cJSON *defaults
     s->view.fov = (float)suite_number(r, json, "fov", NAN, 1e-3, 179.9);
     suite_vector(r, json, "look_from", false, &s->view.look_from);
     suite_vector(r, json, "look_at", false, &s->view.look_at);
-    suite_size(r, defaults, &s->view.size);
     suite_size(r, json, &s->view.size);
-    const uint32_t spp = suite_whole(r, defaults, "reference_spp", 1024, 2, 1 << 24);
-    s->reference_spp = suite_whole(r, json, "reference_spp", spp, 2, 1 << 24);
+    s->reference_spp = suite_whole(r, json, "reference_spp", defaults->reference_spp, 2, 1 << 24);
     s->reference = suite_file(r, json, "reference", folder);
 }
 
@@ -141,6 +146,35 @@ static void read_one(suite_reader *r, bench_run *run)
     }
 }
 
+// The number of combinations that a sweep has; BENCH_MAX_RUNS + 1: more than there may be.
+static uint32_t count_sweep(suite_reader *r, const cJSON *sweep)
+{
+    uint32_t count = 1, num_axes = 0;
+    const cJSON *axis;
+    cJSON_ArrayForEach(axis, sweep)
+    {
+        const int values = cJSON_IsArray(axis) ? cJSON_GetArraySize(axis) : 0;
+        char key[96], right[64];
+        snprintf(key, sizeof key, "sweep.%.80s", axis->string);
+        if (++num_axes > BENCH_MAX_SWEEP) {
+            snprintf(right, sizeof right, "must hold up to %d lists of values", BENCH_MAX_SWEEP);
+            suite_fault(r, "sweep", right);
+        } else if (values < 1) {
+            suite_fault(r, key, "must be a list of values, one at least");
+        } else if (values > BENCH_MAX_RUNS) {
+            snprintf(right, sizeof right, "%d values give more than %d runs", values,
+                     BENCH_MAX_RUNS);
+            suite_fault(r, key, right);
+        }
+        if (!r->ok) {
+            return 1;
+        }
+        count *= (uint32_t)values;
+        count = count > BENCH_MAX_RUNS ? BENCH_MAX_RUNS + 1 : count;
+    }
+    return count;
+}
+
 // One entry of `runs` or `baselines`: as many runs as its sweep has combinations of values.
 static void read_entry(suite_reader *r, const cJSON *json, bool baseline, uint32_t entry,
                        bench_suite *s)
@@ -159,21 +193,11 @@ static void read_entry(suite_reader *r, const cJSON *json, bool baseline, uint32
     if (baseline && !sweep && !cJSON_GetObjectItemCaseSensitive(json, "spp")) {
         sweep = own = cJSON_Parse("{\"spp\": [1, 4, 16, 64, 256, 1024, 4096]}");
     }
-    uint32_t count = 1, num_axes = 0;
     if (sweep && !cJSON_IsObject(sweep)) {
         suite_fault(r, "sweep", "must be an object of \"pass.param\": [values]");
         sweep = NULL;
     }
-    cJSON_ArrayForEach(axis, sweep)
-    {
-        int values = cJSON_IsArray(axis) ? cJSON_GetArraySize(axis) : 0;
-        if (values < 1 || values > BENCH_MAX_RUNS || ++num_axes > BENCH_MAX_SWEEP) {
-            suite_fault(r, "sweep", "must hold up to 4 lists of values");
-            break;
-        }
-        count *= (uint32_t)values;
-        count = count > BENCH_MAX_RUNS ? BENCH_MAX_RUNS + 1 : count;
-    }
+    const uint32_t count = count_sweep(r, sweep);
     if (s->num_runs + count > BENCH_MAX_RUNS) {
         suite_fault(r, "sweep", "gives more than 256 runs in all");
     }
@@ -363,9 +387,12 @@ static void read_suite(suite_reader *r, const char *folder, bench_suite *s)
     if (ceilings && !cJSON_IsBool(ceilings)) {
         suite_fault(r, "ceilings", "must be true or false");
     }
+    scene_defaults defaults = {.reference_spp =
+                                   suite_whole(r, root, "reference_spp", 1024, 2, 1 << 24)};
+    suite_size(r, root, &defaults.size);
     s->num_scenes = suite_list(r, root, "scenes", 1, BENCH_MAX_SCENES);
     for (uint32_t i = 0; i < s->num_scenes; i++) {
-        read_scene(r, suite_element(r, root, "scenes", i), root, folder, &s->scenes[i]);
+        read_scene(r, suite_element(r, root, "scenes", i), &defaults, folder, &s->scenes[i]);
     }
     r->where[0] = '\0';
     const uint32_t runs = suite_list(r, root, "runs", 1, BENCH_MAX_RUNS);
@@ -403,6 +430,7 @@ int bench_suite_load(app *a, const char *path, const char *scenes, bench_suite *
     const char *text = path ? data : bench_default_suite;
     size = path ? size : strlen(bench_default_suite);
     suite_reader r = {.a = a, .file = path ? path : "the suite that is built in", .ok = true};
+    suite->file = r.file;
     suite->hash = text_hash(text, size, 0);
     suite->root = suite_parse(&r, text, size);
     if (suite->root) {
@@ -428,6 +456,20 @@ void bench_suite_finish(bench_suite *suite)
     }
     cJSON_Delete(suite->root);
     *suite = (bench_suite){0};
+}
+
+char *bench_scene_place(const bench_suite *suite, const bench_scene *scene)
+{
+    return text_format("%s: scenes[%d] '%s'", suite->file, (int)(scene - suite->scenes),
+                       scene->name);
+}
+
+char *bench_run_place(const bench_suite *suite, const bench_run *run)
+{
+    const cJSON *runs = cJSON_GetObjectItemCaseSensitive(suite->root, "runs");
+    const uint32_t before = run->baseline ? (uint32_t)cJSON_GetArraySize(runs) : 0;
+    return text_format("%s: %s[%u] '%s'", suite->file, run->baseline ? "baselines" : "runs",
+                       run->entry - before, run->name);
 }
 
 char *bench_picture(const bench_scene *scene, const char *slug)

@@ -40,6 +40,7 @@ typedef struct bench_ratio { // of the cold frames of two scenes
 
 typedef struct bench_suite {
     cJSON *root;
+    const char *file; // for messages; the caller's
     const char *name, *about;
     uint64_t hash; // of the file
     bench_scene scenes[BENCH_MAX_SCENES];
@@ -57,6 +58,10 @@ typedef struct bench_suite {
 // bench_suite_finish is due in any case.
 int bench_suite_load(app *a, const char *path, const char *scenes, bench_suite *suite);
 void bench_suite_finish(bench_suite *suite);
+
+// "FILE: scenes[2] 'smoke'", "FILE: runs[0] 'pop, cells 8'": where a fault is. A new string.
+char *bench_scene_place(const bench_suite *suite, const bench_scene *scene);
+char *bench_run_place(const bench_suite *suite, const bench_run *run);
 
 // "pictures/SCENE/SLUG.exr": a new string, below the report's folder.
 char *bench_picture(const bench_scene *scene, const char *slug);

@@ -1,4 +1,4 @@
-// suite_reader.c -- values of a suite file, and a line about the first that is wrong.
+// suite_reader.c -- values of a file of the bench, a suite or bands, and a line about the first that is wrong.
 #include "suite_reader.h"
 #include <math.h>
 #include <stdio.h>
@@ -48,10 +48,24 @@ static void fault_at(suite_reader *r, const char *text, const char *at, const ch
     r->ok = false;
 }
 
+// Faults are in this element of what they were in before.
+static void enter(suite_reader *r, const cJSON *item, uint32_t index)
+{
+    const size_t used = strlen(r->where);
+    char *end = r->where + used;
+    if (item->string) {
+        snprintf(end, sizeof r->where - used, "%s%s", used ? "." : "", item->string);
+    } else {
+        snprintf(end, sizeof r->where - used, "[%u]", index);
+    }
+}
+
 // A value that is there twice would be two opinions, of which one silently wins.
 static void check_twice(suite_reader *r, const cJSON *tree)
 {
+    const size_t before = strlen(r->where);
     const cJSON *item, *other;
+    uint32_t index = 0;
     cJSON_ArrayForEach(item, tree)
     {
         for (other = tree->child; item->string && other != item; other = other->next) {
@@ -59,7 +73,9 @@ static void check_twice(suite_reader *r, const cJSON *tree)
                 suite_fault(r, item->string, "is there twice in the same object");
             }
         }
+        enter(r, item, index++);
         check_twice(r, item);
+        r->where[before] = '\0';
     }
 }
 
@@ -114,7 +130,7 @@ double suite_number(suite_reader *r, const cJSON *object, const char *key, doubl
     // written so that NaN is refused
     if (!cJSON_IsNumber(item) || !(item->valuedouble >= min && item->valuedouble <= max)) {
         char right[96];
-        snprintf(right, sizeof right, "must be a number from %g to %g", min, max);
+        snprintf(right, sizeof right, "must be a number from %.9g to %.9g", min, max);
         suite_fault(r, key, right);
         return def;
     }

@@ -1,4 +1,4 @@
-// suite_reader.h -- values of a suite file, and a line about the first that is wrong.
+// suite_reader.h -- values of a file of the bench, a suite or bands, and a line about the first that is wrong.
 #pragma once
 #include "app.h"
 #include <cjson/cJSON.h>
