@@ -287,6 +287,8 @@ typedef struct bench_name {
     char **slug;
 } bench_name;
 
+enum { MAX_SLUG = 100 };
+
 // "pop, 8 cells" -> "pop-8-cells": letters, digits, dots and dashes. NULL: out of memory.
 static char *plain_name(const char *name)
 {
@@ -300,6 +302,7 @@ static char *plain_name(const char *name)
             slug[used++] = '-';
         }
     }
+    used = used < MAX_SLUG ? used : MAX_SLUG; // a file's name may have 255 bytes
     while (slug && used > 0 && slug[used - 1] == '-') {
         used--;
     }
