@@ -48,10 +48,8 @@ vec3 beam_uvw(uint sun, vec3 p)
                     dot(beams[sun].rows[2].xyz, p)) +
                vec3(beams[sun].rows[0].w, beams[sun].rows[1].w, beams[sun].rows[2].w);
     vec2 period = beams[sun].period;
-    if (period.x + period.y > 0.0) {
-        vec2 periods = (uvw.xy - beams[sun].period_first) / max(period, vec2(1e-20));
-        uvw.xy -= mix(vec2(0.0), floor(periods), greaterThan(period, vec2(0.0))) * period;
-    }
+    vec2 periods = (uvw.xy - beams[sun].period_first) / max(period, vec2(1e-20));
+    uvw.xy -= mix(vec2(0.0), floor(periods), greaterThan(period, vec2(0.0))) * period;
     return uvw;
 }
 

@@ -81,8 +81,9 @@ float shadow_visibility_sun(uint light, vec3 p)
 // `q` in the lamp's frame.
 uint shadow_lamp_lights_at(shadow_light l, vec3 q)
 {
-    uint face = l.kind == TYN_SHADOW_CUBE ? shadow_face(q) : 0u;
-    q = l.kind == TYN_SHADOW_CUBE ? shadow_on_face(face, q) : q;
+    bool cube = l.kind == TYN_SHADOW_CUBE;
+    uint face = mix(0u, shadow_face(q), cube);
+    q = mix(q, shadow_on_face(face, q), bvec3(cube));
     return shadow_lit_by(shadow_place_lamp(l, face, q));
 }
 
