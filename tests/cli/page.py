@@ -99,6 +99,12 @@ def check_tables(folder, tables):
         for s, t in zip(kept["scenes"], whole["scenes"]) for a, b in zip(s["runs"], t["runs"]) if not b["failed"]))
     again = subprocess.run([tables, f"{folder}/report.json", readme + ".none"], capture_output=True)
     check("a file that is not there is an error", again.returncode != 0)
+    for name, text in ("none", None), ("empty", ""), ("bare", '{"schema": "tyndall-report", "version": 1}'):
+        if text is not None:
+            with open(f"{folder}/{name}.json", "w", encoding="utf-8") as file:
+                file.write(text)
+        again = subprocess.run([tables, f"{folder}/{name}.json"], capture_output=True, text=True)
+        check(f"a report that is {name} is one line", again.returncode != 0 and again.stderr.count("\n") == 1 and not again.stdout, again.stderr)
 
 
 def scene(index, script):

@@ -1,0 +1,26 @@
+#!/bin/sh
+# compiles.sh -- a camera that moves makes the driver compile nothing: lavapipe compiles a kernel anew for every value
+# of uniform buffers that its branches depend on, which takes longer than the frame. Told by the driver's cache of
+# shaders, so where that stays empty nothing is told.
+. "$(dirname "$0")/lib.sh"
+
+needs_device
+export MESA_SHADER_CACHE_DIR="$work/shaders"
+
+compiled() {
+    find "$work/shaders" -type f 2>/dev/null | wc -l
+}
+
+for scene in smoke-sky room fog-hall; do
+    works render "$scenes/$scene.gltf" --size 32x32 --quiet --look-from 1,1,1 --look-at 2,1.5,0.5 -o a.exr
+    [ "$(compiled)" -gt 0 ] || { echo "skipped: the driver keeps no cache of shaders"; exit 77; }
+    # Another place where the camera is, where it looks, and how wide: what is compiled for the first of such frames
+    # may be compiled.
+    works render "$scenes/$scene.gltf" --size 32x32 --quiet --look-from 1.1,1.2,0.9 --look-at 2,1.5,0.5 --fov 40 -o a.exr
+    before=$(compiled)
+    works render "$scenes/$scene.gltf" --size 32x32 --quiet --look-from 1.2,1.4,0.8 --look-at 1.9,1,0.4 --fov 55 -o a.exr
+    works render "$scenes/$scene.gltf" --size 32x32 --quiet --look-from 1.4,1.3,1.1 --look-at 1.8,1,0.9 --fov 50 -o a.exr
+    [ "$(compiled)" = "$before" ] || fail "$scene: $(($(compiled) - before)) kernels compiled as the camera moved"
+done
+
+finish
