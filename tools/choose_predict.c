@@ -118,6 +118,14 @@ static double noise_of(const regime *r, uint32_t spp)
     return spp ? pow(scatterings(r), 1.0 / 3) * pow(lobe, r->g < 0 ? -0.8 : -2.0 / 3) : 1;
 }
 
+// By how much more noise is left in blocks of 8x8 pixels, as blocks at the edges of what is seen are not full: a
+// square of that area lies in blocks that are together about 8 pixels longer and wider.
+static double noise_of_edges(const regime *r, uint32_t spp, double pixels, bool by_pixel)
+{
+    const double side = sqrt(costly(r) * pixels);
+    return spp && !by_pixel ? (side + 8) / side : 1;
+}
+
 // ---- a run in a scene -------------------------------------------------------------------------
 
 typedef struct figures {
@@ -226,7 +234,9 @@ static double mean_of(const neighbours *n, bool cost, const char *key, uint32_t 
         if (find(list[i].scene, key, spp, n->by_pixel, &v)) {
             const double weight = 1 / (list[i].distance * list[i].distance + 0.01);
             const regime *r = &list[i].scene->regime;
-            mean->error += weight * (v.error - log(noise_of(r, spp)));
+            const double shown = (double)list[i].scene->width * list[i].scene->height;
+            mean->error += weight * (v.error - log(noise_of(r, spp)) -
+                                     log(noise_of_edges(r, spp, shown, n->by_pixel)));
             mean->fixed_ms += weight * (v.fixed_ms - log(fixed_work(r, spp)));
             mean->pixel_ms += weight * (v.pixel_ms - log(work_of_pixels(r, spp)));
             weights += weight;
@@ -245,7 +255,7 @@ bool predict(const neighbours *n, const regime *r, const fronts_run *run, uint32
     figures error, cost;
     p->error_distance = mean_of(n, false, run->key, spp, &error);
     p->ms_distance = mean_of(n, true, run->key, spp, &cost);
-    p->error = exp(error.error) * noise_of(r, spp);
+    p->error = exp(error.error) * noise_of(r, spp) * noise_of_edges(r, spp, pixels, n->by_pixel);
     p->ms = exp(cost.fixed_ms) * fixed_work(r, spp) +
             exp(cost.pixel_ms) * work_of_pixels(r, spp) * pixels;
     p->limit = regime_limit_of(r, run->method, run->cells);

@@ -74,8 +74,9 @@ static bool same_but_samples(const cJSON *a, const cJSON *b)
     return same;
 }
 
-// Of a method that samples: what a frame takes before its first sample, on a line through the runs with the
-// fewest and the most samples.
+// Of a method that samples: what a frame takes before its first sample, on a line parallel to that through the runs
+// with the fewest and the most samples, above none of them: what samples take must be more than nothing in each, also
+// where a frame of one sample was disturbed.
 static double fixed_of_sampling(const cJSON *runs, const cJSON *like)
 {
     const cJSON *few = like, *many = like, *run;
@@ -90,7 +91,14 @@ static double fixed_of_sampling(const cJSON *runs, const cJSON *like)
         return 0;
     }
     const double a_sample = (cold_of(many) - cold_of(few)) / (samples_of(many) - samples_of(few));
-    return fmax(0, cold_of(few) - a_sample * samples_of(few));
+    double fixed = cold_of(few) - a_sample * samples_of(few);
+    cJSON_ArrayForEach(run, runs)
+    {
+        if (samples_of(run) > 0 && cold_of(run) >= 0 && same_but_samples(run, like)) {
+            fixed = fmin(fixed, cold_of(run) - a_sample * samples_of(run));
+        }
+    }
+    return fmax(0, fixed);
 }
 
 static cJSON *digits(double value)
