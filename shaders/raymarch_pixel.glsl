@@ -27,20 +27,17 @@ uint rays_of_pixel(ivec2 pixel)
     vec2 quarter = 0.5 / vec2(camera.size);
     vec3 across = quarter.x * camera.half_width * camera.right;
     vec3 up = quarter.y * camera.half_height * camera.up;
-    bool orthographic = camera.orthographic != 0u;
-    if (!orthographic) {
-        ray.direction /= dot(ray.direction, camera.forward);
-    }
+    vec3 direction = ray.direction / camera_select(camera, 1.0, dot(ray.direction, camera.forward));
     bool agree = true;
-    uint count = raymarch_has(RAYMARCH_ONE_SHAPE) ? 1u : medium.num_shapes;
-    for (uint i = 0u; i < count; i++) {
-        vec3 o = shape_point(shapes[i], ray.origin), d = shape_vector(shapes[i], ray.direction);
+    for (uint i = 0u; i < raymarch_num_shapes; i++) {
+        vec3 o = shape_point(shapes[i], ray.origin), d = shape_vector(shapes[i], direction);
         vec3 x = shape_vector(shapes[i], across), y = shape_vector(shapes[i], up);
         uint met = 0u;
         for (uint k = 0u; k < 4u; k++) {
             vec3 shift = ((k & 1u) == 0u ? -x : x) + ((k & 2u) == 0u ? -y : y);
-            vec2 span = orthographic ? ray_unit_shape(shapes[i].kind, o + shift, d)
-                                     : ray_unit_shape(shapes[i].kind, o, d + shift);
+            vec3 moved = camera_select(camera, shift, vec3(0.0)), turned = camera_select(camera, vec3(0.0), shift);
+            uint kind = raymarch_kind == TYN_SHAPE_KIND_ANY ? shapes[i].kind : raymarch_kind;
+            vec2 span = ray_unit_shape(kind, o + moved, d + turned);
             met += span.x < span.y && span.y > 0.0 ? 1u : 0u;
         }
         agree = agree && (met == 0u || met == 4u);

@@ -14,6 +14,7 @@
 
 #define TYN_SHAPE_KIND_BOX 0
 #define TYN_SHAPE_KIND_SPHERE 1
+#define TYN_SHAPE_KIND_ANY 2 // of several shapes: some are boxes, some spheres
 
 #define TYN_LIGHT_KIND_DIRECTIONAL 0
 #define TYN_LIGHT_KIND_POINT 1

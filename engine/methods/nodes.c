@@ -154,6 +154,17 @@ static bool has_spots(const tyn_frame_scene *frame)
     return spots;
 }
 
+// TYN_SHAPE_KIND_* of all of them, or TYN_SHAPE_KIND_ANY.
+static uint32_t kind_of_shapes(const tyn_frame_scene *frame, uint32_t count)
+{
+    for (uint32_t i = 1; i < count; i++) {
+        if (frame->shapes[i].kind != frame->shapes[0].kind) {
+            return TYN_SHAPE_KIND_ANY;
+        }
+    }
+    return frame->shapes[0].kind;
+}
+
 static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
                              const tyn_picture_inputs *in)
 {
@@ -179,6 +190,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->majorant = block->sigma_t_max * block->max_density;
     params->longest_step = tyn_raymarch_longest_step(params->majorant, in->cell, block);
     params->num_shapes = block->num_shapes;
+    params->kind = kind_of_shapes(frame, block->num_shapes);
     params->closed = !sunlight_enters_through_medium(frame, in->num_suns) ||
                      block->size[0] * block->size[1] * block->size[2] == 1;
     params->repeat = block->repeat[0] || block->repeat[1] || block->repeat[2];

@@ -143,20 +143,21 @@ enum {
     NUM_GREY_BINDINGS = NUM_BINDINGS - 7,
     SPARSE_TEXTURE = 28, // of bindings
     SPARSE_IMAGE,
-    NUM_SPEC = 5, // mode, number of suns, features, numbers of lamps
+    NUM_SPEC =
+        7, // mode, number of suns, features, numbers of lamps, number of shapes and their kind
 };
 
-// 30 powers of two with this sum are all different.
+// 29 powers of two with this sum are all different.
 _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNEL +
                        RAYMARCH_UNSCALED + RAYMARCH_SOURCE + RAYMARCH_EMISSION + RAYMARCH_MEAN +
                        RAYMARCH_HOST_DEPTH + RAYMARCH_BACKGROUND + RAYMARCH_BEHIND +
-                       RAYMARCH_ONE_SHAPE + RAYMARCH_CLOSED + RAYMARCH_SUPERSAMPLE +
-                       RAYMARCH_TRANSMITTANCE + RAYMARCH_DEPTH + RAYMARCH_SINGLE +
-                       RAYMARCH_MULTIPLE + RAYMARCH_GLOW + RAYMARCH_SOFT_SUNS + RAYMARCH_SURFACE +
-                       RAYMARCH_SURFACE_SEEN + RAYMARCH_WALLS + RAYMARCH_SHADOWS + RAYMARCH_REPEAT +
-                       RAYMARCH_SPARSE_FIRST + RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_REST +
-                       RAYMARCH_SPOTS + RAYMARCH_LIGHT_CELLS + RAYMARCH_ROOMS ==
-                   (1u << 30) - 1,
+                       RAYMARCH_CLOSED + RAYMARCH_SUPERSAMPLE + RAYMARCH_TRANSMITTANCE +
+                       RAYMARCH_DEPTH + RAYMARCH_SINGLE + RAYMARCH_MULTIPLE + RAYMARCH_GLOW +
+                       RAYMARCH_SOFT_SUNS + RAYMARCH_SURFACE + RAYMARCH_SURFACE_SEEN +
+                       RAYMARCH_WALLS + RAYMARCH_SHADOWS + RAYMARCH_REPEAT + RAYMARCH_SPARSE_FIRST +
+                       RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_REST + RAYMARCH_SPOTS +
+                       RAYMARCH_LIGHT_CELLS + RAYMARCH_ROOMS ==
+                   (1u << 29) - 1,
                "features have bits of their own");
 
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
@@ -185,7 +186,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                            .local_size = {8, 8, 1},
                            .bindings = background_bindings,
                            .num_bindings = NUM_BACKGROUND_BINDINGS,
-                           .num_spec = NUM_SPEC - 2},
+                           .num_spec = NUM_SPEC - 4},
 };
 
 static const tyn_param params_table[] = {
@@ -334,7 +335,6 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= surface ? RAYMARCH_SURFACE : 0;
     features |= surface && p->surfaces ? RAYMARCH_SURFACE_SEEN : 0;
     features |= behind ? RAYMARCH_BEHIND : 0;
-    features |= p->num_shapes == 1 ? RAYMARCH_ONE_SHAPE : 0;
     features |= p->closed ? RAYMARCH_CLOSED : 0;
     features |= p->repeat ? RAYMARCH_REPEAT : 0;
     features |= p->antialias ? RAYMARCH_SUPERSAMPLE : 0;
@@ -367,7 +367,8 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_raymarch_params *p = params;
     const uint32_t features = features_of(r, p);
-    uint32_t spec[NUM_SPEC] = {p->mode, p->num_suns, features, p->num_lamps, p->num_near_lamps};
+    uint32_t spec[NUM_SPEC] = {p->mode,           p->num_suns,   features, p->num_lamps,
+                               p->num_near_lamps, p->num_shapes, p->kind};
     float voxel = shortest_voxel(tyn_rec_extent(r, RAYMARCH_PORT_DENSITY), p->extent);
     // Edges of shadows are found within steps, and what is left is far less than what the lattice is off by there.
     bool surfaces = features & (RAYMARCH_WALLS | RAYMARCH_SHADOWS) && features & RAYMARCH_FIELD;

@@ -35,6 +35,7 @@ typedef struct tyn_raymarch_params {
     // suns take one fetch.
     uint32_t closed;
     uint32_t num_shapes;
+    uint32_t kind;   // of all shapes (TYN_SHAPE_KIND_*), or TYN_SHAPE_KIND_ANY
     uint32_t repeat; // 1: the medium is periodic along an axis
     uint32_t first[2],
         end[2];     // pixels that may see the media (tyn_raymarch_window); all 0: every pixel

@@ -14,7 +14,7 @@
 #define RAYMARCH_HOST_DEPTH (1u << 7)
 #define RAYMARCH_BACKGROUND (1u << 8) // the environment behind the medium is seen
 #define RAYMARCH_BEHIND (1u << 9) // follow every ray to its end: what is behind the medium matters
-#define RAYMARCH_ONE_SHAPE (1u << 10)
+#define RAYMARCH_ROOMS (1u << 10)        // it is known which cells are joined
 #define RAYMARCH_CLOSED (1u << 11)        // no light enters through a face at which there is medium
 #define RAYMARCH_SUPERSAMPLE (1u << 12)   // four rays where they disagree on which shapes they hit
 #define RAYMARCH_TRANSMITTANCE (1u << 13) // layers, as the three below
@@ -33,7 +33,6 @@
 #define RAYMARCH_SPARSE_REST (1u << 26)  // rays of those that are listed
 #define RAYMARCH_SPOTS (1u << 27)        // there are lamps that shine in a cone
 #define RAYMARCH_LIGHT_CELLS (1u << 28)  // it is known where lights see all, or nothing
-#define RAYMARCH_ROOMS (1u << 29)        // it is known which cells are joined
 
 struct raymarch_args {
     float step;       // longest step, m

@@ -11,6 +11,8 @@ layout(constant_id = 1) const uint raymarch_num_suns = 1u;
 layout(constant_id = 2) const uint raymarch_features = 0u;
 layout(constant_id = 3) const uint raymarch_num_lamps = 0u;
 layout(constant_id = 4) const uint raymarch_num_near = 0u; // lamps after these that are marched nearby only
+layout(constant_id = 5) const uint raymarch_num_shapes = 1u;
+layout(constant_id = 6) const uint raymarch_kind = 0u; // of all shapes, or TYN_SHAPE_KIND_ANY
 
 #define MEDIUM_BLOCK 0
 #define MEDIUM_DENSITY 1

@@ -665,7 +665,7 @@ static void antialias(void **state)
     gpu_test *t = *state;
     march_scene *s = malloc(sizeof *s);
     make_cube(s, 2, 0, 0);
-    s->shape.kind = TYN_SHAPE_KIND_SPHERE;
+    s->shape.kind = s->params.kind = TYN_SHAPE_KIND_SPHERE;
     set_sun(s, 1, 0, 0);
     set_camera(s, 0.1f, 1, 0.2f, 3);
     run(t, s);
