@@ -4,7 +4,7 @@
 // cheap and deterministic: no GPU calls, no allocation.
 #pragma once
 #include <tyndall/context.h>
-#include "graph/graph.h"
+#include "methods/refs.h"
 #include "scene/env_suns.h"
 #include "scene_args.h"
 #include "surface_args.h"

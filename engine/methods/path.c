@@ -456,7 +456,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     const uint32_t not_images =
         TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_FLUXES;
     tyn_result result = check_repeat(job);
-    tyn_media_refs media = {{0}};
+    tyn_media_refs media = {{{0}}};
     if (result == TYN_OK && !job->frame->empty) {
         tyn_path_params params;
         tyn_settings_params(job->settings, &tyn_pass_path, &params);

@@ -86,13 +86,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                         .local_size = {8, 8, 1},
                         .bindings = bindings,
                         .num_bindings = sizeof(bindings) / sizeof(bindings[0]) - 2},
-    [KERNEL_MIXED] = {.name = "gbuffer_mixed",
-                      .spirv = gbuffer_mixed_spirv,
-                      .spirv_size = sizeof(gbuffer_mixed_spirv),
-                      .num_spec = 3,
-                      .local_size = {GBUFFER_EDGES, 1, 1},
-                      .bindings = bindings,
-                      .num_bindings = sizeof(bindings) / sizeof(bindings[0])},
+    [KERNEL_MIXED] = TYN_KERNEL(gbuffer_mixed, 0, GBUFFER_EDGES, 1, 1, bindings, 3),
 };
 
 static const tyn_param params_table[] = {

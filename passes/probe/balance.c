@@ -19,17 +19,8 @@ static const tyn_port ports[BALANCE_NUM_PORTS] = {
     [BALANCE_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, true, "struct ordinates_block"},
     [BALANCE_PORT_WALL_POWER] = {"wall_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice"},
     [BALANCE_PORT_LAMP_POWER] = {"lamp_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice_lamps"},
-    [BALANCE_PORT_BEAMS] = {"beams", TYN_IN, TYN_BUFFER, 0, true, "struct beam_block[]"},
-    [BALANCE_PORT_COLUMN] = {"column", TYN_IN, TYN_IMAGE_3D, 0, true,
-                             "depth along the suns, or that of sigma_s"},
-    [BALANCE_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "of absorption"},
-    [BALANCE_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true, "of sigma_s'"},
-    [BALANCE_PORT_RADIALS] = {"radials", TYN_IN, TYN_BUFFER, 0, true, "struct radial_block"},
-    [BALANCE_PORT_RADIAL_COLUMN] = {"radial_column", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                    "mean density (or sigma_s) on the way from local lights"},
-    [BALANCE_PORT_RADIAL_TAU_A] = {"radial_tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "mean sigma_a"},
-    [BALANCE_PORT_RADIAL_TAU_P] = {"radial_tau_p", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                   "mean (1 - f) sigma_s"},
+    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, BALANCE),
+    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, BALANCE),
     [BALANCE_PORT_SURFACES] = {"surfaces", TYN_IN, TYN_BUFFER, 0, true, "struct surface_block"},
     [BALANCE_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, true, "struct surface_vertex[]"},
     [BALANCE_PORT_TRIANGLES] = {"triangles", TYN_IN, TYN_BUFFER, 0, true,
@@ -62,11 +53,8 @@ static const tyn_binding bindings[] = {
 };
 
 static const tyn_binding light_bindings[] = {
-    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},        {BALANCE_PORT_BEAMS, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_COLUMN, TYN_USE_SAMPLED},        {BALANCE_PORT_TAU_A, TYN_USE_SAMPLED},
-    {BALANCE_PORT_TAU_P, TYN_USE_SAMPLED},         {BALANCE_PORT_RADIALS, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED}, {BALANCE_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED},
-    {BALANCE_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED},  {BALANCE_PORT_SURFACES, TYN_USE_UNIFORM},
+    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},        TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, BALANCE),
+    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, BALANCE), {BALANCE_PORT_SURFACES, TYN_USE_UNIFORM},
     {BALANCE_PORT_VERTICES, TYN_USE_STORAGE_READ}, {BALANCE_PORT_TRIANGLES, TYN_USE_STORAGE_READ},
     {BALANCE_PORT_NODES, TYN_USE_STORAGE_READ},    {BALANCE_PORT_MATERIALS, TYN_USE_STORAGE_READ},
     {BALANCE_PORT_TEXTURES, TYN_USE_STORAGE_READ}, {BALANCE_PORT_TEXELS, TYN_USE_STORAGE_READ},
@@ -74,22 +62,9 @@ static const tyn_binding light_bindings[] = {
 };
 
 static const tyn_kernel kernels[] = {
-    {"balance",
-     balance_spirv,
-     sizeof balance_spirv,
-     sizeof(struct balance_args),
-     {BALANCE_GROUP, 1, 1},
-     bindings,
-     sizeof bindings / sizeof *bindings,
-     1},
-    {"balance_lights",
-     balance_lights_spirv,
-     sizeof balance_lights_spirv,
-     sizeof(struct balance_lights_args),
-     {BALANCE_GROUP, 1, 1},
-     light_bindings,
-     sizeof light_bindings / sizeof *light_bindings,
-     1},
+    TYN_KERNEL(balance, sizeof(struct balance_args), BALANCE_GROUP, 1, 1, bindings, 1),
+    TYN_KERNEL(balance_lights, sizeof(struct balance_lights_args), BALANCE_GROUP, 1, 1,
+               light_bindings, 1),
 };
 
 // Parts of suns, and as many lamps and VPLs as there may be.

@@ -10,15 +10,10 @@
 #include "probe_args.h"
 #include "surface_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 2 // the medium itself is not read
-#define BEAM_BLOCKS 1
-#define BEAM_COLUMN 2
-#define BEAM_TAU_A 3
-#define BEAM_TAU_P 4
-#define RADIAL_BLOCK 5
-#define RADIAL_COLUMN 6
-#define RADIAL_TAU_A 7
-#define RADIAL_TAU_P 8
+#define BEAMS_AT 1
+#define BEAMS_STORAGE
+#define RADIALS_AT 5
+#define RADIALS_STORAGE
 #define SURFACE_TEXTURES 14
 #define SURFACE_TEXELS 15
 #include "medium.glsl"

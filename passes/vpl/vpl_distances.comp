@@ -40,10 +40,7 @@ layout(binding = 8, scalar) readonly buffer materials_buffer
 };
 #define SURFACE_TEXTURES 9
 #define SURFACE_TEXELS 10
-#define MEDIUM_BLOCK 11
-#define MEDIUM_DENSITY 12
-#define MEDIUM_SIGMA_A 13
-#define MEDIUM_G 14
+#define MEDIUM_AT 11
 #include "surface_texture.glsl"
 #include "surface_trace.glsl"
 #include "medium.glsl"

@@ -10,11 +10,8 @@
 #include "wall_light_args.h"
 #include "surface_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 3 // the medium itself is not read
-#define BEAM_BLOCKS 2
-#define BEAM_COLUMN 3
-#define BEAM_TAU_A 4
-#define BEAM_TAU_P 5
+#define BEAMS_AT 2
+#define BEAMS_STORAGE
 #include "medium.glsl"
 #include "beam.glsl"
 #include "lattice.glsl"

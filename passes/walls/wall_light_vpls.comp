@@ -9,17 +9,12 @@
 #include "wall_light_args.h"
 #include "surface_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 2 // the medium itself is not read
-#define RADIAL_BLOCK 1
-#define RADIAL_UNIFORM
-#define RADIAL_COLUMN 2
-#define RADIAL_TAU_A 3
-#define RADIAL_TAU_P 4
+#define RADIALS_AT 1
 #include "medium.glsl"
 #include "radial.glsl"
 #include "lattice.glsl"
-#define WALLS_LINKS 8
-#define WALLS_CELLS 9
+#define WALLS_AT 8
+#define WALLS_STORAGE
 #include "lattice_walls.glsl"
 #include "walls_triangle.glsl"
 
