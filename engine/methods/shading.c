@@ -27,7 +27,7 @@ static uint32_t emitters(const tyn_surfaces *surfaces)
 
 bool tyn_can_trace(const tyn_job *job)
 {
-    return job->refs.nodes.resource || job->frame->num_triangles <= MOST_WITHOUT_HIERARCHY;
+    return job->refs.geometry.nodes.resource || job->frame->num_triangles <= MOST_WITHOUT_HIERARCHY;
 }
 
 bool tyn_vpls_bounce(const tyn_job *job)
@@ -83,21 +83,14 @@ tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_medium_refs 
     memcpy(params.tiles, rsm.tiles, sizeof params.tiles);
 
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [VPL_PORT_SUNS] = job->refs.suns,
-        [VPL_PORT_LIGHTS] = job->refs.lights,
-        [VPL_PORT_FLUX] = rsm.flux,
-        [VPL_PORT_POSITION] = rsm.position,
+        [VPL_PORT_SUNS] = job->refs.suns, [VPL_PORT_LIGHTS] = job->refs.lights,
+        [VPL_PORT_FLUX] = rsm.flux,       [VPL_PORT_POSITION] = rsm.position,
         [VPL_PORT_NORMAL] = rsm.normal,
-        [VPL_PORT_SURFACES] = job->refs.surfaces,
-        [VPL_PORT_VERTICES] = job->refs.vertices,
-        [VPL_PORT_TRIANGLES] = job->refs.triangles,
-        [VPL_PORT_MATERIALS] = job->refs.materials,
-        [VPL_PORT_NODES] = job->refs.nodes,
-        [VPL_PORT_TEXTURES] = job->refs.textures,
-        [VPL_PORT_TEXELS] = job->refs.texels,
     };
     tyn_connect(refs, VPL_PORT_MEDIUM, *medium);
     refs[VPL_PORT_MEDIUM] = job->refs.medium; // also without media
+    tyn_connect(refs, VPL_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, VPL_PORT_MATERIALS, job->refs.materials);
     result = tyn_graph_add(g, &tyn_pass_vpl, &params, refs);
     tyn_take(refs, VPL_PORT_VPLS, *vpls);
     return result;
@@ -192,13 +185,6 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
         [SHADE_PORT_MOMENTS] =
             in->walls.wall_links.resource || params.outside ? moments : (tyn_ref){0},
         [SHADE_PORT_ROOMS] = in->rooms,
-        [SHADE_PORT_SURFACES] = job->refs.surfaces,
-        [SHADE_PORT_VERTICES] = job->refs.vertices,
-        [SHADE_PORT_TRIANGLES] = job->refs.triangles,
-        [SHADE_PORT_MATERIALS] = job->refs.materials,
-        [SHADE_PORT_TEXTURES] = job->refs.textures,
-        [SHADE_PORT_TEXELS] = job->refs.texels,
-        [SHADE_PORT_NODES] = job->refs.nodes,
     };
     tyn_connect(refs, SHADE_PORT_BEAMS, in->beams);
     tyn_connect(refs, SHADE_PORT_RADIALS, in->lamps.radials);
@@ -207,6 +193,8 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
         tyn_connect(refs, SHADE_PORT_VPLS, in->vpls);
     }
     tyn_connect(refs, SHADE_PORT_WALL_LINKS, in->walls);
+    tyn_connect(refs, SHADE_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, SHADE_PORT_MATERIALS, job->refs.materials);
     result = tyn_graph_add(g, &tyn_pass_shade, &params, refs);
     in->surface = refs[SHADE_PORT_RADIANCE];
     in->distances = seen.distances;
@@ -226,13 +214,8 @@ void tyn_follow_lights(const tyn_job *job, const tyn_picture_inputs *in, tyn_bal
         tyn_scene_box(job->frame, params->box[0], params->box[1]);
         tyn_connect(refs, BALANCE_PORT_BEAMS, in->beams);
         tyn_connect(refs, BALANCE_PORT_RADIALS, in->lamps.radials);
-        refs[BALANCE_PORT_SURFACES] = job->refs.surfaces;
-        refs[BALANCE_PORT_VERTICES] = job->refs.vertices;
-        refs[BALANCE_PORT_TRIANGLES] = job->refs.triangles;
-        refs[BALANCE_PORT_NODES] = job->refs.nodes;
-        refs[BALANCE_PORT_MATERIALS] = job->refs.materials;
-        refs[BALANCE_PORT_TEXTURES] = job->refs.textures;
-        refs[BALANCE_PORT_TEXELS] = job->refs.texels;
+        tyn_connect(refs, BALANCE_PORT_SURFACES, job->refs.geometry);
+        tyn_connect(refs, BALANCE_PORT_MATERIALS, job->refs.materials);
         refs[BALANCE_PORT_EMITTERS] = job->refs.emitters;
     }
 }

@@ -49,8 +49,8 @@ tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
                            v->drawn);
     }
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [SHADOW_MAP_PORT_TRIANGLES] = job->refs.triangles,
-        [SHADOW_MAP_PORT_VERTICES] = job->refs.vertices,
+        [SHADOW_MAP_PORT_TRIANGLES] = job->refs.geometry.triangles,
+        [SHADOW_MAP_PORT_VERTICES] = job->refs.geometry.vertices,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_shadow_map, &params, refs);
     tyn_take(refs, SHADOW_MAP_PORT_SHADOW_ATLAS, *shadows);
@@ -91,13 +91,9 @@ tyn_result tyn_add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *g
     params.textured = job->frame->num_textures > 0;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [GBUFFER_PORT_CAMERA] = job->refs.camera,
-        [GBUFFER_PORT_SURFACES] = job->refs.surfaces,
-        [GBUFFER_PORT_TRIANGLES] = job->refs.triangles,
-        [GBUFFER_PORT_VERTICES] = job->refs.vertices,
-        [GBUFFER_PORT_MATERIALS] = job->refs.materials,
-        [GBUFFER_PORT_TEXTURES] = job->refs.textures,
-        [GBUFFER_PORT_TEXELS] = job->refs.texels,
     };
+    tyn_connect(refs, GBUFFER_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, GBUFFER_PORT_MATERIALS, job->refs.materials);
     tyn_result result = tyn_graph_add(g, &tyn_pass_gbuffer, &params, refs);
     *gbuffer = (tyn_gbuffer_refs){refs[GBUFFER_PORT_DISTANCES], refs[GBUFFER_PORT_FACING],
                                   refs[GBUFFER_PORT_COLOURS], refs[GBUFFER_PORT_EDGE_COUNT],
@@ -154,12 +150,9 @@ tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_
     }
     rsm->num_tiles = params.num_tiles;
     memcpy(rsm->tiles, params.tiles, sizeof rsm->tiles);
-    tyn_ref refs[TYN_MAX_PORTS] = {
-        [RSM_PORT_SURFACES] = job->refs.surfaces, [RSM_PORT_TRIANGLES] = job->refs.triangles,
-        [RSM_PORT_VERTICES] = job->refs.vertices, [RSM_PORT_MATERIALS] = job->refs.materials,
-        [RSM_PORT_TEXTURES] = job->refs.textures, [RSM_PORT_TEXELS] = job->refs.texels,
-        [RSM_PORT_NODES] = job->refs.nodes,
-    };
+    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+    tyn_connect(refs, RSM_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, RSM_PORT_MATERIALS, job->refs.materials);
     tyn_result result = tyn_graph_add(g, &tyn_pass_rsm, &params, refs);
     rsm->flux = refs[RSM_PORT_FLUX];
     rsm->position = refs[RSM_PORT_POSITION];

@@ -48,11 +48,9 @@ tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_sha
     tyn_walls_params params;
     tyn_settings_params(job->settings, &tyn_pass_walls, &params);
     put_lattice(shape, params.extent, params.dims);
-    tyn_ref refs[TYN_MAX_PORTS] = {
-        [WALLS_PORT_SURFACES] = job->refs.surfaces,   [WALLS_PORT_VERTICES] = job->refs.vertices,
-        [WALLS_PORT_TRIANGLES] = job->refs.triangles, [WALLS_PORT_MATERIALS] = job->refs.materials,
-        [WALLS_PORT_TEXTURES] = job->refs.textures,   [WALLS_PORT_TEXELS] = job->refs.texels,
-    };
+    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+    tyn_connect(refs, WALLS_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, WALLS_PORT_MATERIALS, job->refs.materials);
     tyn_result result = tyn_graph_add(g, &tyn_pass_walls, &params, refs);
     tyn_take(refs, WALLS_PORT_WALL_LINKS, *walls);
     *hits = refs[WALLS_PORT_HITS];
@@ -75,9 +73,6 @@ tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattic
     tyn_ref refs[TYN_MAX_PORTS] = {
         [WALL_LIGHT_PORT_MEDIUM] = job->refs.medium,
         [WALL_LIGHT_PORT_LIGHTS] = job->refs.suns,
-        [WALL_LIGHT_PORT_SURFACES] = job->refs.surfaces,
-        [WALL_LIGHT_PORT_VERTICES] = job->refs.vertices,
-        [WALL_LIGHT_PORT_TRIANGLES] = job->refs.triangles,
         [WALL_LIGHT_PORT_HITS] = hits,
         [WALL_LIGHT_PORT_ROOMS] = in->rooms,
         [WALL_LIGHT_PORT_DISTANCES] = in->vpls.vpl_distances,
@@ -88,6 +83,7 @@ tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattic
         refs[WALL_LIGHT_PORT_RADIALS] = (tyn_ref){0};
     }
     tyn_connect(refs, WALL_LIGHT_PORT_WALL_LINKS, in->walls);
+    tyn_connect(refs, WALL_LIGHT_PORT_SURFACES, job->refs.geometry);
     tyn_result result = tyn_graph_add(g, &tyn_pass_wall_light, &params, refs);
     *light = refs[WALL_LIGHT_PORT_LIGHT];
     tyn_job_counters(g, job, "wall_light", refs[WALL_LIGHT_PORT_POWER]);

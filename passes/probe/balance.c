@@ -21,15 +21,8 @@ static const tyn_port ports[BALANCE_NUM_PORTS] = {
     [BALANCE_PORT_LAMP_POWER] = {"lamp_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice_lamps"},
     TYN_BEAMS(TYN_BUNDLE_OPTIONAL, BALANCE),
     TYN_RADIALS(TYN_BUNDLE_OPTIONAL, BALANCE),
-    [BALANCE_PORT_SURFACES] = {"surfaces", TYN_IN, TYN_BUFFER, 0, true, "struct surface_block"},
-    [BALANCE_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, true, "struct surface_vertex[]"},
-    [BALANCE_PORT_TRIANGLES] = {"triangles", TYN_IN, TYN_BUFFER, 0, true,
-                                "struct surface_triangle[]"},
-    [BALANCE_PORT_NODES] = {"nodes", TYN_IN, TYN_BUFFER, 0, true, "struct surface_node[]"},
-    [BALANCE_PORT_MATERIALS] = {"materials", TYN_IN, TYN_BUFFER, 0, true,
-                                "struct surface_material[]"},
-    [BALANCE_PORT_TEXTURES] = {"textures", TYN_IN, TYN_BUFFER, 0, true, "struct surface_texture[]"},
-    [BALANCE_PORT_TEXELS] = {"texels", TYN_IN, TYN_BUFFER, 0, true, "uint[]: R8 G8 B8 A8, sRGB"},
+    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, BALANCE),
+    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, BALANCE),
     [BALANCE_PORT_EMITTERS] = {"emitters", TYN_IN, TYN_BUFFER, 0, true, "struct surface_table"},
     [BALANCE_PORT_FOUND] = {"found", TYN_SCRATCH, TYN_BUFFER, 0, false, "struct balance_light[]"},
     [BALANCE_PORT_BALANCE] = {"balance", TYN_OUT, TYN_BUFFER, 0, false, "tyn_balance, W"},
@@ -54,11 +47,9 @@ static const tyn_binding bindings[] = {
 
 static const tyn_binding light_bindings[] = {
     {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},        TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, BALANCE),
-    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, BALANCE), {BALANCE_PORT_SURFACES, TYN_USE_UNIFORM},
-    {BALANCE_PORT_VERTICES, TYN_USE_STORAGE_READ}, {BALANCE_PORT_TRIANGLES, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_NODES, TYN_USE_STORAGE_READ},    {BALANCE_PORT_MATERIALS, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_TEXTURES, TYN_USE_STORAGE_READ}, {BALANCE_PORT_TEXELS, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},   {BALANCE_PORT_FOUND, TYN_USE_STORAGE_WRITE},
+    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, BALANCE), TYN_GEOMETRY(TYN_BUNDLE_BIND, BALANCE),
+    TYN_MATERIALS(TYN_BUNDLE_BIND, BALANCE),       {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_FOUND, TYN_USE_STORAGE_WRITE},
 };
 
 static const tyn_kernel kernels[] = {

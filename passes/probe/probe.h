@@ -58,18 +58,13 @@ enum {
     BALANCE_PORT_WALL_POWER,  // IN optional buffer, of lattice
     BALANCE_PORT_LAMP_POWER,  // IN optional buffer, of lattice_lamps
     // With surfaces, of which no axis repeats:
-    TYN_BEAMS(TYN_BUNDLE_ENUM, BALANCE),   // IN optional
-    TYN_RADIALS(TYN_BUNDLE_ENUM, BALANCE), // IN optional
-    BALANCE_PORT_SURFACES,                 // IN optional buffers, surface_args.h
-    BALANCE_PORT_VERTICES,
-    BALANCE_PORT_TRIANGLES,
-    BALANCE_PORT_NODES,
-    BALANCE_PORT_MATERIALS,
-    BALANCE_PORT_TEXTURES,
-    BALANCE_PORT_TEXELS,
-    BALANCE_PORT_EMITTERS, // IN optional buffer struct surface_table
-    BALANCE_PORT_FOUND,    // SCRATCH buffer struct balance_light[]
-    BALANCE_PORT_BALANCE,  // OUT buffer tyn_balance
+    TYN_BEAMS(TYN_BUNDLE_ENUM, BALANCE),     // IN optional
+    TYN_RADIALS(TYN_BUNDLE_ENUM, BALANCE),   // IN optional
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, BALANCE),  // IN optional
+    TYN_MATERIALS(TYN_BUNDLE_ENUM, BALANCE), // IN optional
+    BALANCE_PORT_EMITTERS,                   // IN optional buffer struct surface_table
+    BALANCE_PORT_FOUND,                      // SCRATCH buffer struct balance_light[]
+    BALANCE_PORT_BALANCE,                    // OUT buffer tyn_balance
     BALANCE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_balance;

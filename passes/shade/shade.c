@@ -46,13 +46,8 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
                        .meaning = "fluence and flux on the lattice, W/m^2"},
     TYN_WALLS(TYN_BUNDLE_OPTIONAL, SHADE),
     [PORT(ROOMS)] = {"rooms", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "of cells and VPLs"},
-    [PORT(SURFACES)] = {"surfaces", TYN_IN, TYN_BUFFER, .meaning = "struct surface_block"},
-    [PORT(VERTICES)] = {"vertices", TYN_IN, TYN_BUFFER, .meaning = "struct surface_vertex[]"},
-    [PORT(TRIANGLES)] = {"triangles", TYN_IN, TYN_BUFFER, .meaning = "struct surface_triangle[]"},
-    [PORT(MATERIALS)] = {"materials", TYN_IN, TYN_BUFFER, .meaning = "struct surface_material[]"},
-    [PORT(TEXTURES)] = {"textures", TYN_IN, TYN_BUFFER, .meaning = "struct surface_texture[]"},
-    [PORT(TEXELS)] = {"texels", TYN_IN, TYN_BUFFER, .meaning = "uint[]: R8 G8 B8 A8, sRGB"},
-    [PORT(NODES)] = {"nodes", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "surface_node[]"},
+    TYN_GEOMETRY(TYN_BUNDLE_IN, SHADE),
+    TYN_MATERIALS(TYN_BUNDLE_IN, SHADE),
     [PORT(RADIANCE)] = {"surface_radiance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT,
                         .meaning = "radiance to the camera, W/(m^2 sr)"},
     [PORT(TABLE)] = {"lights_table", TYN_SCRATCH, IMAGE2, .meaning = "the lights"},
@@ -109,10 +104,9 @@ static const tyn_binding faces_bindings[] = {
     {PORT(FACES), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding sight_bindings[] = {
-    {PORT(SURFACES), TYN_USE_UNIFORM},       {PORT(VERTICES), TYN_USE_STORAGE_READ},
-    {PORT(TRIANGLES), TYN_USE_STORAGE_READ}, {PORT(NODES), TYN_USE_STORAGE_READ},
-    {PORT(MEDIUM), TYN_USE_UNIFORM},         {PORT(FACES), TYN_USE_SAMPLED},
-    {PORT(MOMENTS), TYN_USE_SAMPLED},        {PORT(SIGHT), TYN_USE_STORAGE_WRITE},
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, SHADE), {PORT(MEDIUM), TYN_USE_UNIFORM},
+    {PORT(FACES), TYN_USE_SAMPLED},       {PORT(MOMENTS), TYN_USE_SAMPLED},
+    {PORT(SIGHT), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding vpls_bindings[] = {
     COMMON_BINDINGS,
@@ -163,12 +157,8 @@ static const tyn_binding edges_bindings[] = {
     {PORT(RADIANCE), TYN_USE_STORAGE_WRITE},
     {PORT(EDGE_COUNT), TYN_USE_STORAGE_READ},
     {PORT(EDGES), TYN_USE_STORAGE_READ},
-    {PORT(SURFACES), TYN_USE_UNIFORM},
-    {PORT(TRIANGLES), TYN_USE_STORAGE_READ},
-    {PORT(VERTICES), TYN_USE_STORAGE_READ},
-    {PORT(MATERIALS), TYN_USE_STORAGE_READ},
-    {PORT(TEXTURES), TYN_USE_STORAGE_READ},
-    {PORT(TEXELS), TYN_USE_STORAGE_READ},
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, SHADE),
+    TYN_MATERIALS(TYN_BUNDLE_BIND, SHADE),
     {PORT(ALONE_COUNT), TYN_USE_STORAGE_RW},
     {PORT(ALONE), TYN_USE_STORAGE_WRITE},
 };
@@ -177,12 +167,8 @@ static const tyn_binding alone_bindings[] = {
     {PORT(RADIANCE), TYN_USE_STORAGE_RW},
     {PORT(ALONE_COUNT), TYN_USE_STORAGE_READ},
     {PORT(ALONE), TYN_USE_STORAGE_READ},
-    {PORT(SURFACES), TYN_USE_UNIFORM},
-    {PORT(TRIANGLES), TYN_USE_STORAGE_READ},
-    {PORT(VERTICES), TYN_USE_STORAGE_READ},
-    {PORT(MATERIALS), TYN_USE_STORAGE_READ},
-    {PORT(TEXTURES), TYN_USE_STORAGE_READ},
-    {PORT(TEXELS), TYN_USE_STORAGE_READ},
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, SHADE),
+    TYN_MATERIALS(TYN_BUNDLE_BIND, SHADE),
 };
 
 enum {

@@ -41,20 +41,15 @@ enum {
     SHADE_PORT_EDGE_COUNT,
     SHADE_PORT_EDGES,
     // IN optional buffer struct beam_block[]: with a medium and suns, as the three below.
-    TYN_BEAMS(TYN_BUNDLE_ENUM, SHADE),   // IN optional
-    TYN_RADIALS(TYN_BUNDLE_ENUM, SHADE), // IN optional
-    TYN_SHADOWS(TYN_BUNDLE_ENUM, SHADE), // IN optional
-    TYN_VPLS(TYN_BUNDLE_ENUM, SHADE),    // IN optional
-    SHADE_PORT_MOMENTS,                  // IN optional 3D: light of the lattice
-    TYN_WALLS(TYN_BUNDLE_ENUM, SHADE),   // IN optional
-    SHADE_PORT_ROOMS,                    // IN optional buffer, rooms.h: with walls and VPLs
-    SHADE_PORT_SURFACES,                 // IN buffers, surface_args.h
-    SHADE_PORT_VERTICES,
-    SHADE_PORT_TRIANGLES,
-    SHADE_PORT_MATERIALS,
-    SHADE_PORT_TEXTURES,
-    SHADE_PORT_TEXELS,
-    SHADE_PORT_NODES, // IN optional buffer: their hierarchy
+    TYN_BEAMS(TYN_BUNDLE_ENUM, SHADE),     // IN optional
+    TYN_RADIALS(TYN_BUNDLE_ENUM, SHADE),   // IN optional
+    TYN_SHADOWS(TYN_BUNDLE_ENUM, SHADE),   // IN optional
+    TYN_VPLS(TYN_BUNDLE_ENUM, SHADE),      // IN optional
+    SHADE_PORT_MOMENTS,                    // IN optional 3D: light of the lattice
+    TYN_WALLS(TYN_BUNDLE_ENUM, SHADE),     // IN optional
+    SHADE_PORT_ROOMS,                      // IN optional buffer, rooms.h: with walls and VPLs
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, SHADE),  // IN
+    TYN_MATERIALS(TYN_BUNDLE_ENUM, SHADE), // IN
     // OUT 2D RG32UI, packed_colour.glsl, as large as "distances": radiance to the camera, W/(m^2
     // sr).
     SHADE_PORT_RADIANCE,

@@ -28,20 +28,8 @@ static const tyn_port ports[VPL_NUM_PORTS] = {
                         .meaning = "where (M, m), and the area in a texel, m^2"},
     [PORT(NORMAL)] = {"rsm_normal", TYN_IN, TYN_IMAGE_2D, .optional = true,
                       .meaning = "normal (M), on the side of the light"},
-    [PORT(SURFACES)] = {"surfaces", TYN_IN, TYN_BUFFER, .optional = true,
-                        .meaning = "struct surface_block"},
-    [PORT(VERTICES)] = {"vertices", TYN_IN, TYN_BUFFER, .optional = true,
-                        .meaning = "struct surface_vertex[]"},
-    [PORT(TRIANGLES)] = {"triangles", TYN_IN, TYN_BUFFER, .optional = true,
-                         .meaning = "struct surface_triangle[]"},
-    [PORT(MATERIALS)] = {"materials", TYN_IN, TYN_BUFFER, .optional = true,
-                         .meaning = "struct surface_material[]"},
-    [PORT(NODES)] = {"nodes", TYN_IN, TYN_BUFFER, .optional = true,
-                     .meaning = "struct surface_node[]"},
-    [PORT(TEXTURES)] = {"textures", TYN_IN, TYN_BUFFER, .optional = true,
-                        .meaning = "struct surface_texture[]"},
-    [PORT(TEXELS)] = {"texels", TYN_IN, TYN_BUFFER, .optional = true,
-                      .meaning = "uint[]: R8 G8 B8 A8, sRGB"},
+    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, VPL),
+    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, VPL),
     [PORT(BINS)] = {"bins", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_bins"},
     [PORT(BIN_FLUX)] = {"bin_flux", TYN_SCRATCH, IMAGE2, .meaning = "power of bins, W"},
     [PORT(BIN_POSITION)] = {"bin_position", TYN_SCRATCH, IMAGE2, .meaning = "where (M, m)"},
@@ -61,11 +49,7 @@ static const tyn_port ports[VPL_NUM_PORTS] = {
 #define ELEMENT_BINDINGS                                                                           \
     {PORT(PLAN), TYN_USE_STORAGE_READ}, {PORT(FLUX), TYN_USE_SAMPLED},                             \
         {PORT(POSITION), TYN_USE_SAMPLED}, {PORT(NORMAL), TYN_USE_SAMPLED},                        \
-        {PORT(SURFACES), TYN_USE_UNIFORM}, {PORT(VERTICES), TYN_USE_STORAGE_READ},                 \
-        {PORT(TRIANGLES), TYN_USE_STORAGE_READ},                                                   \
-    {                                                                                              \
-        PORT(MATERIALS), TYN_USE_STORAGE_READ                                                      \
-    }
+        TYN_GEOMETRY(TYN_BUNDLE_BIND, VPL), TYN_MATERIALS(TYN_BUNDLE_BIND, VPL)
 
 static const tyn_binding weights_bindings[] = {
     ELEMENT_BINDINGS,
@@ -94,8 +78,7 @@ static const tyn_binding distances_bindings[] = {
     {PORT(TRIANGLES), TYN_USE_TEXELS_UVEC4},   {PORT(NODES), TYN_USE_TEXELS_UVEC4},
     {PORT(VPLS), TYN_USE_STORAGE_READ},        {PORT(VPL_DISTANCES), TYN_USE_STORAGE_WRITE},
     {PORT(VPL_PLANES), TYN_USE_STORAGE_WRITE}, {PORT(BINS), TYN_USE_STORAGE_RW},
-    {PORT(MATERIALS), TYN_USE_STORAGE_READ},   {PORT(TEXTURES), TYN_USE_STORAGE_READ},
-    {PORT(TEXELS), TYN_USE_STORAGE_READ},      TYN_MEDIUM(TYN_BUNDLE_BIND, VPL),
+    TYN_MATERIALS(TYN_BUNDLE_BIND, VPL),       TYN_MEDIUM(TYN_BUNDLE_BIND, VPL),
 };
 static const tyn_binding power_bindings[] = {
     {PORT(VPLS), TYN_USE_STORAGE_READ},

@@ -26,16 +26,11 @@ enum {
     VPL_PORT_FLUX,   // IN optional 2D: rsm_args.h, as the two below
     VPL_PORT_POSITION,
     VPL_PORT_NORMAL,
-    VPL_PORT_SURFACES, // IN optional buffer struct surface_block: with triangles, as the six below
-    VPL_PORT_VERTICES, // IN optional buffers, surface_args.h
-    VPL_PORT_TRIANGLES,
-    VPL_PORT_MATERIALS,
-    VPL_PORT_NODES,
-    VPL_PORT_TEXTURES,
-    VPL_PORT_TEXELS,
-    TYN_VPLS(TYN_BUNDLE_ENUM, VPL), // OUT
-    VPL_PORT_PLAN,                  // SCRATCH buffer struct vpl_plan
-    VPL_PORT_WEIGHTS,               // SCRATCH buffer float[]: of the elements
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, VPL),  // IN optional
+    TYN_MATERIALS(TYN_BUNDLE_ENUM, VPL), // IN optional
+    TYN_VPLS(TYN_BUNDLE_ENUM, VPL),      // OUT
+    VPL_PORT_PLAN,                       // SCRATCH buffer struct vpl_plan
+    VPL_PORT_WEIGHTS,                    // SCRATCH buffer float[]: of the elements
     VPL_PORT_BLOCKS, // SCRATCH buffer float[]: sums of blocks of elements, then what is before each
     VPL_PORT_STRATA, // SCRATCH buffer struct vpl_stratum[]
     VPL_PORT_BINS,   // SCRATCH buffer struct vpl_bins

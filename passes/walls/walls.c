@@ -7,14 +7,8 @@
 #include "walls_cells.comp.h"
 
 static const tyn_port ports[WALLS_NUM_PORTS] = {
-    [WALLS_PORT_SURFACES] = {"surfaces", TYN_IN, TYN_BUFFER, 0, false, "struct surface_block"},
-    [WALLS_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, false, "struct surface_vertex[]"},
-    [WALLS_PORT_TRIANGLES] = {"triangles", TYN_IN, TYN_BUFFER, 0, false,
-                              "struct surface_triangle[]"},
-    [WALLS_PORT_MATERIALS] = {"materials", TYN_IN, TYN_BUFFER, 0, false,
-                              "struct surface_material[]"},
-    [WALLS_PORT_TEXTURES] = {"textures", TYN_IN, TYN_BUFFER, 0, true, "struct surface_texture[]"},
-    [WALLS_PORT_TEXELS] = {"texels", TYN_IN, TYN_BUFFER, 0, true, "uint[], sRGB"},
+    TYN_GEOMETRY(TYN_BUNDLE_IN, WALLS),
+    TYN_MATERIALS(TYN_BUNDLE_IN, WALLS),
     [WALLS_PORT_WALL_LINKS] = {"wall_links", TYN_OUT, TYN_BUFFER, 0, false,
                                "which of its 26 links are cut, per cell"},
     [WALLS_PORT_WALL_CELLS] = {"wall_cells", TYN_OUT, TYN_BUFFER, 0, false,
@@ -27,17 +21,16 @@ static const tyn_port ports[WALLS_NUM_PORTS] = {
 enum { KERNEL_SCATTER, KERNEL_CELLS, NUM_KERNELS };
 
 static const tyn_binding scatter_bindings[] = {
-    {WALLS_PORT_SURFACES, TYN_USE_UNIFORM},       {WALLS_PORT_VERTICES, TYN_USE_STORAGE_READ},
-    {WALLS_PORT_TRIANGLES, TYN_USE_STORAGE_READ}, {WALLS_PORT_WALL_LINKS, TYN_USE_STORAGE_RW},
-    {WALLS_PORT_HITS, TYN_USE_STORAGE_RW},        {WALLS_PORT_NEAREST, TYN_USE_STORAGE_RW},
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, WALLS),
+    {WALLS_PORT_WALL_LINKS, TYN_USE_STORAGE_RW},
+    {WALLS_PORT_HITS, TYN_USE_STORAGE_RW},
+    {WALLS_PORT_NEAREST, TYN_USE_STORAGE_RW},
 };
 
 static const tyn_binding cells_bindings[] = {
-    {WALLS_PORT_SURFACES, TYN_USE_UNIFORM},       {WALLS_PORT_VERTICES, TYN_USE_STORAGE_READ},
-    {WALLS_PORT_TRIANGLES, TYN_USE_STORAGE_READ}, {WALLS_PORT_WALL_LINKS, TYN_USE_STORAGE_READ},
-    {WALLS_PORT_HITS, TYN_USE_STORAGE_READ},      {WALLS_PORT_NEAREST, TYN_USE_STORAGE_READ},
-    {WALLS_PORT_MATERIALS, TYN_USE_STORAGE_READ}, {WALLS_PORT_TEXTURES, TYN_USE_STORAGE_READ},
-    {WALLS_PORT_TEXELS, TYN_USE_STORAGE_READ},    {WALLS_PORT_WALL_CELLS, TYN_USE_STORAGE_WRITE},
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, WALLS),          TYN_MATERIALS(TYN_BUNDLE_BIND, WALLS),
+    {WALLS_PORT_WALL_LINKS, TYN_USE_STORAGE_READ}, {WALLS_PORT_HITS, TYN_USE_STORAGE_READ},
+    {WALLS_PORT_NEAREST, TYN_USE_STORAGE_READ},    {WALLS_PORT_WALL_CELLS, TYN_USE_STORAGE_WRITE},
 };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {

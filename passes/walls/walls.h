@@ -12,13 +12,9 @@ typedef struct tyn_walls_params {
 } tyn_walls_params;
 
 enum {
-    WALLS_PORT_SURFACES,  // IN buffer struct surface_block
-    WALLS_PORT_VERTICES,  // IN buffer struct surface_vertex[]
-    WALLS_PORT_TRIANGLES, // IN buffer struct surface_triangle[]: their number is the buffer's size
-    WALLS_PORT_MATERIALS, // IN buffer struct surface_material[]
-    WALLS_PORT_TEXTURES,  // IN optional buffer struct surface_texture[]
-    WALLS_PORT_TEXELS,    // IN optional buffer uint[]
-    TYN_WALLS(TYN_BUNDLE_ENUM, WALLS), // OUT
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, WALLS),  // IN
+    TYN_MATERIALS(TYN_BUNDLE_ENUM, WALLS), // IN
+    TYN_WALLS(TYN_BUNDLE_ENUM, WALLS),     // OUT
     // OUT buffer uint[link 0..13][cell]: the triangle that a cut link meets, in the low 24 bits,
     // and 255 times its share of the link in the others.
     WALLS_PORT_HITS,
@@ -42,11 +38,9 @@ enum {
     WALL_LIGHT_PORT_LIGHTS,                 // IN buffer struct light_block[]
     TYN_BEAMS(TYN_BUNDLE_ENUM, WALL_LIGHT), // IN optional
     // IN optional buffer struct radial_block: its VPLs shine on walls, as the three below.
-    TYN_RADIALS(TYN_BUNDLE_ENUM, WALL_LIGHT), // IN optional
-    WALL_LIGHT_PORT_SURFACES,                 // IN buffers, as walls has them
-    WALL_LIGHT_PORT_VERTICES,
-    WALL_LIGHT_PORT_TRIANGLES,
-    TYN_WALLS(TYN_BUNDLE_ENUM, WALL_LIGHT), // IN
+    TYN_RADIALS(TYN_BUNDLE_ENUM, WALL_LIGHT),  // IN optional
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, WALL_LIGHT), // IN
+    TYN_WALLS(TYN_BUNDLE_ENUM, WALL_LIGHT),    // IN
     WALL_LIGHT_PORT_HITS,
     WALL_LIGHT_PORT_ROOMS,     // IN optional buffer, of rooms
     WALL_LIGHT_PORT_DISTANCES, // IN optional 2D, of vpl: power that VPLs send is what walls get
