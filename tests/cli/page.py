@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """page.py -- the page of a report: what is in it, and how it behaves in a browser.
 
-usage: page.py REPORT_MAKE TABLES     (the second is docs/tables; skipped, exit 77, where no Chromium is installed)
+usage: page.py REPORT_MAKE TABLES     (the second is tools/docs/tables; skipped, exit 77, where no Chromium is installed)
 """
 import json
 import math
@@ -83,7 +83,7 @@ def check_tables(folder, tables):
           and re.search(r"\| 3\.0 % \| no \| yes \|", text), text)
     check("what the noise hides", "to <= 1.3 % in" in text, text)
     check("markup in names is none", "<script" not in text.replace("\\<", ""), text)
-    root = os.path.dirname(os.path.dirname(os.path.abspath(tables)))
+    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(tables))))
     shown = open(f"{root}/README.md", encoding="utf-8").read()
     with open(readme, "w", encoding="utf-8") as file:
         file.write(shown)
@@ -92,7 +92,7 @@ def check_tables(folder, tables):
     subprocess.run([tables, f"{root}/{stored}", readme], check=True)
     if stored == full:
         check_promise(json.load(open(f"{root}/{full}", encoding="utf-8")))
-    check(f"the README shows what is stored: docs/tables {stored} README.md", open(readme, encoding="utf-8").read() == shown)
+    check(f"the README shows what is stored: tools/docs/tables {stored} README.md", open(readme, encoding="utf-8").read() == shown)
     check("and that is small", os.path.getsize(f"{root}/{stored}") <= 1.5e6)
     subprocess.run([tables, "--keep", f"{folder}/report.json", f"{folder}/kept.json"], check=True)
     kept, whole = (json.load(open(f"{folder}/{name}.json", encoding="utf-8")) for name in ("kept", "report"))
