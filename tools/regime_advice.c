@@ -146,7 +146,7 @@ static void advise_pop(advisor *to)
 {
     to->method = "pop";
     if (pop_refuses(to->r)) {
-        say(to, ADVICE_REFUSED, "docs/walls.md, \"Periodic media\"",
+        say(to, ADVICE_REFUSED, "docs/method.md, \"Periodic media\"",
             "lamps and maps in media that repeat: refused");
         return;
     }
@@ -163,7 +163,7 @@ static void advise_pop(advisor *to)
 
 static void advise_paper(advisor *to)
 {
-    static const char source[] = "docs/method.md, \"pop-paper\"";
+    static const char source[] = "docs/pop-paper.md, \"Measured\"";
     to->method = "pop-paper";
     if (to->r->periodic) {
         say(to, ADVICE_REFUSED, source, "media that repeat: refused");
