@@ -2,6 +2,7 @@
 #include "path_scene.h"
 #include "base/hash.h"
 #include "methods/env_cdf.h"
+#include "vector.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,21 +15,6 @@ static void copy3(float to[3], const float from[3])
 static float largest(const float v[3])
 {
     return fmaxf(v[0], fmaxf(v[1], v[2]));
-}
-
-static void normalise(float v[3])
-{
-    float l = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; i++) {
-        v[i] /= l;
-    }
-}
-
-static void cross(const float a[3], const float b[3], float out[3])
-{
-    for (int i = 0; i < 3; i++) {
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-    }
 }
 
 void path_scene_box(path_scene *s, const float extent[3], const float sigma_s[3],
@@ -87,7 +73,7 @@ void path_scene_sun(path_scene *s, const float direction[3], const float irradia
     l->kind = TYN_LIGHT_KIND_DIRECTIONAL;
     copy3(l->color, irradiance);
     copy3(l->direction, direction);
-    normalise(l->direction);
+    vector_normalisef(l->direction);
 }
 
 void path_scene_lamp(path_scene *s, const float position[3], const float intensity[3])
@@ -118,10 +104,10 @@ void path_scene_orthographic(path_scene *s, const float centre[3], const float d
     struct camera_block *c = &s->camera;
     copy3(c->origin, centre);
     copy3(c->forward, direction);
-    normalise(c->forward);
-    cross(up, c->forward, c->right);
-    normalise(c->right);
-    cross(c->forward, c->right, c->up);
+    vector_normalisef(c->forward);
+    vector_crossf(up, c->forward, c->right);
+    vector_normalisef(c->right);
+    vector_crossf(c->forward, c->right, c->up);
     // Start well outside: the camera's plane cuts the media otherwise.
     float back = 2 * (s->medium.extent[0] + s->medium.extent[1] + s->medium.extent[2]);
     for (int i = 0; i < 3; i++) {
