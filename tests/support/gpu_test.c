@@ -127,6 +127,7 @@ tyn_ref gpu_image(gpu_test *t, const char *name, tyn_dim dim, tyn_extent extent,
                       : channels == 1  ? VK_FORMAT_R32_SFLOAT
                       : channels == 2  ? VK_FORMAT_R32G32_SFLOAT
                       : channels == -2 ? VK_FORMAT_R32G32_UINT
+                      : channels == -4 ? VK_FORMAT_R32G32B32A32_UINT
                                        : VK_FORMAT_R32G32B32A32_SFLOAT;
     if (channels == -1) {
         p->bytes = texels * 2;

@@ -35,7 +35,7 @@ tyn_result gpu_try(gpu_test *t);
 const void *gpu_map(gpu_test *t, const char *name);
 
 // Uploads float data as an image (format R32F, RG32F, RGBA32F by channels 1, 2, 4; R16F: channels = -1;
-// RG32UI: -2, two words a texel).
+// RG32UI, RGBA32UI: -2, -4, words a texel).
 tyn_ref gpu_image(gpu_test *t, const char *name, tyn_dim dim, tyn_extent extent, int channels,
                   const float *data);
 tyn_ref gpu_buffer(gpu_test *t, const char *name, const void *data, size_t size);
