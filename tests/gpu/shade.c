@@ -255,25 +255,7 @@ static void make_triangle(uint32_t k)
 
 static void set(tyn_ref *refs, const char *port, tyn_ref ref)
 {
-    const tyn_pass_desc *pass = &tyn_pass_shade;
-    for (uint32_t i = 0; i < pass->num_ports; i++) {
-        if (!strcmp(pass->ports[i].name, port)) {
-            refs[i] = ref;
-            return;
-        }
-    }
-    fail_msg("shade has no port %s", port);
-}
-
-static tyn_ref get(const tyn_ref *refs, const char *port)
-{
-    const tyn_pass_desc *pass = &tyn_pass_shade;
-    for (uint32_t i = 0; i < pass->num_ports; i++) {
-        if (!strcmp(pass->ports[i].name, port)) {
-            return refs[i];
-        }
-    }
-    return (tyn_ref){0};
+    *gpu_port(&tyn_pass_shade, refs, port) = ref;
 }
 
 // The medium is the same everywhere: textures hold its mean, and depths are that times lengths in the box.
@@ -436,7 +418,8 @@ static void draw(gpu_test *t)
         add_lattice(t, refs);
     }
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_shade, &s.params, refs), TYN_OK);
-    tyn_graph_output(t->graph, "radiance", get(refs, "surface_radiance"), true);
+    tyn_graph_output(t->graph, "radiance", *gpu_port(&tyn_pass_shade, refs, "surface_radiance"),
+                     true);
     gpu_run(t);
     radiance = (const uint32_t(*)[2])gpu_map(t, "radiance");
 }

@@ -152,6 +152,18 @@ tyn_ref gpu_buffer(gpu_test *t, const char *name, const void *data, size_t size)
     return tyn_graph_upload_buffer(t->graph, name, copy, size, 0);
 }
 
+tyn_ref *gpu_port(const tyn_pass_desc *pass, tyn_ref *refs, const char *name)
+{
+    uint32_t port = 0;
+    while (port < pass->num_ports && strcmp(pass->ports[port].name, name) != 0) {
+        port++;
+    }
+    if (port == pass->num_ports) {
+        fail_msg("pass %s has no port %s", pass->name, name);
+    }
+    return &refs[port];
+}
+
 double gpu_ms(gpu_test *t, const char *name)
 {
     const tyn_node_stats *stats;

@@ -40,5 +40,8 @@ tyn_ref gpu_image(gpu_test *t, const char *name, tyn_dim dim, tyn_extent extent,
                   const float *data);
 tyn_ref gpu_buffer(gpu_test *t, const char *name, const void *data, size_t size);
 
+// The port of a pass that is called `name`, of its `refs`; fails the test where there is none.
+tyn_ref *gpu_port(const tyn_pass_desc *pass, tyn_ref *refs, const char *name);
+
 // Milliseconds the node took in the last run (0 without timestamps).
 double gpu_ms(gpu_test *t, const char *node);
