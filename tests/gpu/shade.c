@@ -3,14 +3,12 @@
 // The G-buffer is made by hand: planes, of which the test says where the picture shows them. M is the world.
 #include "gpu_test.h"
 #include "passes/shade/shade.h"
-#include "beam_args.h"
 #include "gbuffer_edge_args.h"
-#include "radial_args.h"
+#include "homogeneous.h"
 #include "rooms.h"
 #include "scene_args.h"
 #include "shadow_args.h"
 #include "surface_args.h"
-#include "vector.h"
 #include "walls_args.h"
 #include <stdlib.h>
 #include <string.h>
@@ -281,33 +279,23 @@ static void add_fog(gpu_test *t, tyn_ref *refs)
     }
     struct beam_block beams[TYN_BEAM_MAX_SUNS] = {{.light = 0}};
     for (uint32_t n = 0; n < s.params.num_suns; n++) {
-        beams[n].light = n;
-        beams[n].even = 1;
-        for (int i = 0; i < 3; i++) {
-            const float d = s.suns[n].direction[i], extent = s.medium.extent[i];
-            beams[n].clip_scale[i] = fabsf(d) > 1e-6f ? 1 / d : 0;
-            beams[n].clip_offset[i] = fabsf(d) <= 1e-6f ? 1e9f : d > 0 ? 0 : -extent / d;
-        }
+        homogeneous_beam(&beams[n], s.medium.extent, s.suns[n].direction, n);
     }
     set(refs, "beams", gpu_buffer(t, "beams", beams, sizeof beams));
     static struct radial_block radials;
     radials = (struct radial_block){.count = s.params.num_lamps + s.vpls.count,
                                     .num_lamps = s.params.num_lamps};
     for (uint32_t n = 0; n < radials.count; n++) {
-        struct radial_grid *g = &radials.list[n];
-        const bool lamp = n < s.params.num_lamps;
         // The order of the grids is not that of the lamps.
-        const uint32_t which = lamp ? s.params.num_lamps - 1 - n : n - s.params.num_lamps;
-        const float *at = lamp ? s.lights[s.params.num_directional + which].position
-                               : s.vpls.list[which].position;
-        memcpy(g->light.position, at, sizeof g->light.position);
-        g->light.light = lamp ? TYN_SHADOW_LAMP(which) : TYN_RADIAL_NO_LIGHT;
-        g->inside = 1;
-        g->inverse_near = 1;
-        for (int i = 0; i < 3; i++) {
-            g->to_map[i][i] = 1;
-            g->inside = g->inside && at[i] >= 0 && at[i] <= s.medium.extent[i];
+        const uint32_t lamp = s.params.num_lamps - 1 - n;
+        struct radial_light light = {.light = TYN_SHADOW_LAMP(lamp)};
+        if (n < s.params.num_lamps) {
+            memcpy(light.position, s.lights[s.params.num_directional + lamp].position,
+                   sizeof light.position);
+        } else {
+            light = s.vpls.list[n - s.params.num_lamps];
         }
+        homogeneous_radial(&radials.list[n], s.medium.extent, &light);
     }
     set(refs, "radials", gpu_buffer(t, "radials", &radials, sizeof radials));
 }
@@ -502,18 +490,7 @@ static double compare(light_at light, bool (*sure)(const double p[3]), double to
 // Length within the medium's box of the way from a to b.
 static double length_in_box(const double a[3], const double b[3])
 {
-    double from = 0, to = 1, d[3];
-    for (int i = 0; i < 3; i++) {
-        d[i] = b[i] - a[i];
-        const double x = -a[i] / d[i], y = ((double)s.medium.extent[i] - a[i]) / d[i];
-        if (fabs(d[i]) > 1e-12) {
-            from = fmax(from, fmin(x, y));
-            to = fmin(to, fmax(x, y));
-        } else if (a[i] < 0 || a[i] > (double)s.medium.extent[i]) {
-            return 0;
-        }
-    }
-    return fmax(to - from, 0) * vector_length(d);
+    return homogeneous_length(s.medium.extent, a, b);
 }
 
 // What is left after a way in the medium, of which scattering forward counts as none.
