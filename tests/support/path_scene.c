@@ -4,6 +4,7 @@
 #include "methods/env_cdf.h"
 #include "vector.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,6 +66,17 @@ void path_scene_box(path_scene *s, const float extent[3], const float sigma_s[3]
     for (int i = 0; i < 3; i++) {
         s->params.world[i][i] = 1;
     }
+}
+
+void path_scene_cube(path_scene *s, float sigma_s, float sigma_a, float g, bool grid)
+{
+    static const float one[1] = {1};
+    path_scene_box(s, (float[]){1, 1, 1}, (float[]){sigma_s, sigma_s, sigma_s},
+                   (float[]){sigma_a, sigma_a, sigma_a}, (float[]){g, g, g}, grid ? one : NULL,
+                   (uint32_t[]){1, 1, 1});
+    path_scene_orthographic(s, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, -1, 0}, (float[]){0, 0, 1},
+                            0.5f, 16);
+    s->samples = 64;
 }
 
 void path_scene_sun(path_scene *s, const float direction[3], const float irradiance[3])
@@ -294,4 +306,31 @@ const struct path_balance_result *path_scene_balance(gpu_test *t, path_scene *s,
     gpu_run(t);
     *balance = gpu_map(t, "balance");
     return gpu_map(t, "result");
+}
+
+const tyn_fluxes *path_scene_fluxes(gpu_test *t, path_scene *s, uint32_t samples)
+{
+    tyn_ref refs[PATH_FLUXES_NUM_PORTS] = {{0}};
+    tyn_graph_begin(t->graph);
+    declare_scene(t, s, refs);
+    refs[PATH_FLUXES_PORT_STATE] =
+        tyn_graph_history_buffer(t->graph, "state", tyn_path_fluxes_state_size(), 1);
+    memcpy(s->params.box[1], s->medium.extent, sizeof s->params.box[1]);
+    s->params.first_sample = 0;
+    s->params.chunks = 4;
+    s->params.threads = 1024;
+    s->params.num_samples = samples / s->params.chunks / s->params.threads;
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_path_fluxes, &s->params, refs), TYN_OK);
+    tyn_graph_output(t->graph, "fluxes", refs[PATH_FLUXES_PORT_FLUXES], true);
+    tyn_graph_output(t->graph, "counters", refs[PATH_FLUXES_PORT_COUNTERS], true);
+    gpu_run(t);
+    const struct counters_block *counters = gpu_map(t, "counters");
+    assert_int_equal(counters->non_finite + counters->cut, 0);
+    return gpu_map(t, "fluxes");
+}
+
+void path_scene_check(const char *what, double value, double error, double expected)
+{
+    printf("%-44s %.6f +- %.6f  expected %.6f\n", what, value, error, expected);
+    assert_true(fabs(value - expected) <= 3.5 * error + 2e-5 * fabs(expected));
 }
