@@ -15,7 +15,7 @@
 
 static const double pi = 3.14159265358979;
 
-enum { WIDTH = 24, HEIGHT = 16, MOST_SAMPLES = 4, MAP = 64, CELLS = 4, VPL_MAP = 8 };
+enum { WIDTH = 24, HEIGHT = 16, MOST_SAMPLES = 4, MAP = 64, CELLS = 4, VPL_MAP = 8, GRIDS = 16 };
 enum { NONE, WHOLE, SEVERAL }; // what a pixel of the G-buffer shows
 enum { LIT, DARK, HALF };      // shadow maps: HALF hides what is at u > 0
 
@@ -256,6 +256,12 @@ static void set(tyn_ref *refs, const char *port, tyn_ref ref)
     *gpu_port(&tyn_pass_shade, refs, port) = ref;
 }
 
+// What virtual light k has of the medium on its ways: its grid is no other's.
+static double vpl_density(uint32_t k)
+{
+    return 1 + 0.25 * k;
+}
+
 // The medium is the same everywhere: textures hold its mean, and depths are that times lengths in the box.
 static void add_fog(gpu_test *t, tyn_ref *refs)
 {
@@ -268,8 +274,10 @@ static void add_fog(gpu_test *t, tyn_ref *refs)
     const char *const names[2][3] = {{"column", "tau_a", "tau_p"},
                                      {"radial_column", "radial_tau_a", "radial_tau_p"}};
     for (int i = 0; i < 2; i++) {
-        set(refs, names[i][0],
-            gpu_image(t, names[i][0], TYN_IMAGE_3D, texel, channels, scattering));
+        if (!density || i == 0) {
+            set(refs, names[i][0],
+                gpu_image(t, names[i][0], TYN_IMAGE_3D, texel, channels, scattering));
+        }
         if (!density) {
             set(refs, names[i][1],
                 gpu_image(t, names[i][1], TYN_IMAGE_3D, texel, channels, absorption));
@@ -296,6 +304,15 @@ static void add_fog(gpu_test *t, tyn_ref *refs)
             light = s.vpls.list[n - s.params.num_lamps];
         }
         homogeneous_radial(&radials.list[n], s.medium.extent, &light);
+        radials.list[n].base[0] = ((float)n + 0.5f) / GRIDS; // a texel each
+    }
+    if (density) {
+        float column[GRIDS];
+        for (uint32_t n = 0; n < GRIDS; n++) {
+            column[n] = n < s.params.num_lamps ? 1 : (float)vpl_density(n - s.params.num_lamps);
+        }
+        set(refs, "radial_column",
+            gpu_image(t, "radial_column", TYN_IMAGE_3D, (tyn_extent){GRIDS, 1, 1}, 1, column));
     }
     set(refs, "radials", gpu_buffer(t, "radials", &radials, sizeof radials));
 }
@@ -789,8 +806,9 @@ static void of_vpls(const double p[3], const double n[3], double irradiance[3])
         const double share = vector_dot(axis, n) < -0.9999 ? disc : height * towards / (rr * rr);
         const bool lit = height > 0 && towards > 0 && (int)k != s.hidden_vpl;
         for (int c = 0; c < 3; c++) {
-            irradiance[c] +=
-                lit ? (double)l->intensity[c] * share * left_of(length_in_box(p, at), c) : 0;
+            irradiance[c] += lit ? (double)l->intensity[c] * share *
+                                       left_of(vpl_density(k) * length_in_box(p, at), c)
+                                 : 0;
         }
     }
 }
@@ -811,6 +829,7 @@ static void vpls(void **state)
         }
         s.pieces[0].at[2] = 0.5f;
         look((float[]){2, 2, 3}, (float[]){0.1f, 0, -1}, 0.5f, false);
+        add_lamp(2, 2, 3, 0, 0, 0); // dark, but with a grid
         add_vpl(2, 2, 1.5f, down, 0.5f, 1);
         add_vpl(1, 3, 3.5f, (float[]){0.6f, 0, -0.8f}, 1e-3f, 9);
         add_vpl(2, 2, 3, (float[]){0, 0, 1}, 0.1f, 500); // faces the other way
