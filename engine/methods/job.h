@@ -86,7 +86,7 @@ typedef struct tyn_method {
     uint32_t outputs;                   // set of tyn_output it can make
     bool progressive;                   // uses view.first_sample, num_samples
     bool reads_env_cdf;                 // wants refs.env_cdf
-    // Wants refs.nodes and refs.emitters where there are surfaces, and refs.areas for a balance.
+    // Wants refs.geometry.nodes and refs.emitters where there are surfaces, and refs.areas for a balance.
     bool traces_rays;
     // Largest work a single record may be given (view.num_samples) to keep a dispatch short; NULL if
     // not progressive.
