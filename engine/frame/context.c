@@ -1,15 +1,15 @@
 // context.c -- tyn_context: a method on a scene, recorded into the caller's command buffer.
 #include <tyndall/context.h>
 #include "frame/frame_scene.h"
-#include "plugin/registry.h"
+#include "registry/registry.h"
 #include "base/hash.h"
-#include "counters.h"
-#include "ordinate_args.h"
-#include "methods/env_cdf.h"
+#include "shaders/common/counters.h"
+#include "shaders/light/ordinate_args.h"
+#include "frame/env_cdf.h"
 #include "methods/limits.h"
 #include "gpu/device.h"
 #include "passes/medium/medium.h"
-#include "passes/walls/wall_light_args.h"
+#include "passes/wall_light/wall_light_args.h"
 #include "scene/check.h"
 #include <math.h>
 #include <stdlib.h>

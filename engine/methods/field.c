@@ -4,9 +4,17 @@
 #include "methods/lamps.h"
 #include "methods/shading.h"
 #include "passes/columns/columns.h"
+#include "passes/columns_average/columns_average.h"
+#include "passes/lattice_cells/lattice_cells.h"
+#include "passes/lattice_source/lattice_source.h"
+#include "passes/lattice_ordinates/lattice_ordinates.h"
+#include "passes/lattice_lamps/lattice_lamps.h"
 #include "passes/lattice/lattice.h"
+#include "passes/lattice_recall/lattice_recall.h"
+#include "passes/lattice_keep/lattice_keep.h"
 #include "passes/merge/merge.h"
 #include "passes/probe/probe.h"
+#include "passes/balance/balance.h"
 #include <tyndall/registry.h>
 #include <math.h>
 #include <stdio.h>

@@ -6,8 +6,8 @@
 #include <tyndall/context.h>
 #include "methods/refs.h"
 #include "scene/env_suns.h"
-#include "scene_args.h"
-#include "surface_args.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/surfaces/surface_args.h"
 
 // The scene in the medium frame, made once per frame by the engine.
 typedef struct tyn_frame_scene {
@@ -48,7 +48,7 @@ typedef struct tyn_scene_refs {
     tyn_ref camera;              // struct camera_block
     tyn_ref environment;         // struct env_block
     tyn_ref env_map;             // 2D RGBA32F; {0} if constant
-    tyn_ref env_cdf;             // methods/env_cdf.h; {0} if constant or not read
+    tyn_ref env_cdf;             // frame/env_cdf.h; {0} if constant or not read
     tyn_geometry_refs geometry;  // {0} without surfaces, as the next
     tyn_material_refs materials; // textures and texels: one at least
     tyn_ref emitters; // struct surface_table and cells; {0} if nothing emits, or if it is not read

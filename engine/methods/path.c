@@ -3,7 +3,11 @@
 #include "methods/limits.h"
 #include "passes/medium/medium.h"
 #include "passes/path/path.h"
-#include "passes/path/path_args.h"
+#include "passes/path_probe/path_probe.h"
+#include "passes/path_balance/path_balance.h"
+#include "passes/path_fluxes/path_fluxes.h"
+#include "passes/path_distance/path_distance.h"
+#include "shaders/path/path_args.h"
 #include "passes/tonemap/tonemap.h"
 #include <tyndall/registry.h>
 #include <math.h>

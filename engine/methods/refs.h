@@ -1,7 +1,7 @@
-// refs.h -- the bundles of ports (shaders/bundles.h) as structs of refs.
+// refs.h -- the bundles of ports (shaders/common/bundles.h) as structs of refs.
 #pragma once
 #include "graph/graph.h"
-#include "bundles.h"
+#include "shaders/common/bundles.h"
 #include <string.h>
 
 // Of a bundle, into the refs of a node, from its first port on; and what a node made, out of them.

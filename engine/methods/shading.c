@@ -3,7 +3,7 @@
 #include "methods/shading.h"
 #include "passes/shade/shade.h"
 #include "passes/shade/shade_faces.h"
-#include "passes/probe/probe.h"
+#include "passes/balance/balance.h"
 #include "passes/vpl/vpl.h"
 #include <tyndall/registry.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 // shading.h -- what a picture shows of surfaces, and the light that they send on.
 #pragma once
 #include "methods/nodes.h"
-#include "passes/probe/probe.h"
+#include "passes/balance/balance.h"
 
 // Have the surfaces a hierarchy, or are they so few that rays need none?
 bool tyn_can_trace(const tyn_job *job);

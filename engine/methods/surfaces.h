@@ -1,14 +1,14 @@
 // surfaces.h -- the surfaces' part of a frame: what lights and camera see of them.
 #pragma once
 #include "methods/job.h"
-#include "rsm_args.h"
+#include "shaders/light/rsm_args.h"
 
 // Shadow maps of the suns that have beams, the first of frame->suns, and of the lamps; in `cells` where looks at the
 // maps are needed (light_cells_args.h).
 tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
                            tyn_shadow_refs *shadows, tyn_ref *cells);
 
-// Surfaces as the camera sees them: what shaders/gbuffer.glsl reads. {0} without surfaces.
+// Surfaces as the camera sees them: what shaders/surfaces/gbuffer.glsl reads. {0} without surfaces.
 typedef struct tyn_gbuffer_refs {
     tyn_ref distances;         // 2D R32F, gbuffer.samples^2 texels a pixel
     tyn_ref facing, colours;   // 2D RGBA32UI

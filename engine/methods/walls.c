@@ -1,6 +1,8 @@
 // walls.c -- surfaces as the lattice sees them.
 #include "methods/walls.h"
 #include "passes/walls/walls.h"
+#include "passes/wall_light/wall_light.h"
+#include "passes/rooms/rooms.h"
 #include <tyndall/registry.h>
 #include <math.h>
 #include <string.h>

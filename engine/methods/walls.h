@@ -16,6 +16,6 @@ tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattic
                               const tyn_picture_inputs *in, tyn_ref hits, uint32_t num_suns,
                               tyn_ref *light);
 
-// Which cells are joined, and which of them the VPLs shine in (shaders/rooms.h); {0} without walls, or VPLs that see.
+// Which cells are joined, and which of them the VPLs shine in (shaders/walls/rooms.h); {0} without walls, or VPLs that see.
 tyn_result tyn_add_rooms(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
                          const tyn_wall_refs *walls, const tyn_vpl_refs *vpls, tyn_ref *rooms);

@@ -1,9 +1,9 @@
 // beam.h -- optical depth of the medium along directional lights, in grids aligned with each.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
-#include "scene_args.h"
-#include "beam_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/beams/beam_args.h"
 
 typedef struct tyn_beam_params {
     int32_t cells; // "beam.cells": most grid cells along an axis

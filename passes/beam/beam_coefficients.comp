@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_AT 0
-#include "medium.glsl"
-#include "beam_args.h"
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/beam_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 0, binding = 5, scalar) buffer beam_buffer

@@ -8,11 +8,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "ordinate_args.h"
-#include "columns_args.h"
+#include "shaders/light/ordinate_args.h"
+#include "shaders/beams/columns_args.h"
 #define MEDIUM_AT 0
-#include "medium.glsl"
-#include "lattice.glsl"
+#include "shaders/medium/medium.glsl"
+#include "shaders/lattice/lattice.glsl"
 #include "columns_grid.glsl"
 
 layout(local_size_x = COLUMNS_GROUP) in;

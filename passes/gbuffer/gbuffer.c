@@ -1,6 +1,6 @@
 // gbuffer.c -- the surfaces drawn as the camera sees them.
 #include "gbuffer.h"
-#include "gbuffer_edge_args.h"
+#include "shaders/surfaces/gbuffer_edge_args.h"
 #include "gbuffer_mixed.comp.h"
 #include "gbuffer_fragment.frag.h"
 #include "gbuffer_resolve.comp.h"

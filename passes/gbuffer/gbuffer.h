@@ -1,7 +1,7 @@
 // gbuffer.h -- the surfaces that the camera sees: where, which way they face, what they reflect and emit.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
+#include "shaders/common/bundles.h"
 
 typedef struct tyn_gbuffer_params {
     int32_t samples;  // "gbuffer.samples"

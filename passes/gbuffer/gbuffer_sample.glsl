@@ -1,8 +1,8 @@
 // gbuffer_sample.glsl -- what both steps of the G-buffer that follow the drawing read and write.
 #ifndef GBUFFER_SAMPLE_GLSL
 #define GBUFFER_SAMPLE_GLSL
-#include "scene_args.h"
-#include "gbuffer_edges.glsl"
+#include "shaders/common/scene_args.h"
+#include "shaders/surfaces/gbuffer_edges.glsl"
 
 layout(constant_id = 0) const uint textured = 1u;
 layout(constant_id = 1) const int samples = 2; // along each side of a pixel
@@ -15,7 +15,7 @@ layout(set = 0, binding = 0, scalar) uniform camera_buffer
 #define MATERIALS_AT 5
 #define GBUFFER_TEXTURED (textured != 0u)
 #define GBUFFER_SAMPLES samples
-#include "gbuffer_triangle.glsl"
+#include "shaders/surfaces/gbuffer_triangle.glsl"
 layout(set = 0, binding = 8, r32ui) uniform readonly uimage2D seen;
 layout(set = 0, binding = 9, r32f) uniform writeonly image2D distance_image;
 layout(set = 0, binding = 10, rgba32ui) uniform writeonly uimage2D facing_image;

@@ -6,7 +6,7 @@
 #include "importance_send.comp.h"
 #include "importance_setup.comp.h"
 #include "importance_step.comp.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 
 #define PORT(name) IMPORTANCE_PORT_##name
 

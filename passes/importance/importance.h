@@ -6,7 +6,7 @@
 // background out of ordinates.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
+#include "shaders/common/bundles.h"
 #include "importance_args.h"
 
 typedef struct tyn_importance_params {

@@ -1,7 +1,7 @@
 // lattice.c -- the solve: sweeps, each followed by a diffusion correction and Anderson mixing.
 #include "lattice.h"
-#include "lattice_args.h"
-#include "counters.h"
+#include "shaders/lattice/lattice_args.h"
+#include "shaders/common/counters.h"
 #include "lattice_start.comp.h"
 #include "lattice_stencil.comp.h"
 #include "lattice_stencil_coarse.comp.h"

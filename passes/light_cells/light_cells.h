@@ -2,8 +2,8 @@
 // maps is needed there.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
-#include "light_cells_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/light/light_cells_args.h"
 
 typedef struct tyn_light_cells_params {
     int32_t cells; // "light_cells.cells"

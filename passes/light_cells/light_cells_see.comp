@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "light_cells_args.h"
+#include "shaders/light/light_cells_args.h"
 
 #define SHADOW_BLOCKS 0
 #define SHADOW_LIGHTS 1

@@ -4,8 +4,8 @@
 // voxels, and nothing else reads the medium coarser.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
-#include "scene_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/common/scene_args.h"
 
 enum { TYN_MEDIUM_STORAGE_AUTO, TYN_MEDIUM_STORAGE_HALF, TYN_MEDIUM_STORAGE_FLOAT };
 

@@ -1,7 +1,7 @@
 // merge.c -- the light field of the lattice and of the ordinates for one view.
 #include "merge.h"
 #include "merge_args.h"
-#include "counters.h"
+#include "shaders/common/counters.h"
 #include "merge_cells.comp.h"
 #include "merge_ordinates.comp.h"
 #include "merge_radials.comp.h"

@@ -2,7 +2,7 @@
 // cell.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
+#include "shaders/common/bundles.h"
 
 typedef struct tyn_merge_params {
     uint32_t channels;      // of `moments`: 1 or 3

@@ -3,15 +3,15 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
-#include "medium.glsl"
+#include "shaders/medium/medium.glsl"
 #define COLUMNS_AT 4
-#include "columns.glsl"
+#include "shaders/beams/columns.glsl"
 #define TMS 6
 #define SCATTER_LUT_BLOCK 7
 #include "tms.glsl"
 #include "merge_args.h"
-#include "ordinate_args.h"
-#include "lattice.glsl"
+#include "shaders/light/ordinate_args.h"
+#include "shaders/lattice/lattice.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(constant_id = 1) const bool grey = false; // all channels of the medium are equal

@@ -2,7 +2,7 @@
 #include "merge_grids.h"
 #include "merge_grids_args.h"
 #include "merge_grids_sum.comp.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) MERGE_GRIDS_PORT_##name

@@ -1,7 +1,7 @@
 // ordinates.c -- principal ordinates: the directions from which the surroundings light the medium.
 #include "ordinates.h"
 #include "ordinates_args.h"
-#include "sky_args.h"
+#include "shaders/light/sky_args.h"
 #include "ordinates_columns.comp.h"
 #include "ordinates_fold.comp.h"
 #include "ordinates_gather.comp.h"

@@ -3,28 +3,28 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "probe_args.h"
-#include "ordinate_args.h"
+#include "shaders/light/ordinate_args.h"
 #define MEDIUM_BLOCK 0
 #define BEAMS_AT 3
 #define BEAMS_STORAGE
 #define COLUMNS_AT 10
 #define RADIALS_AT 14
 #define RADIALS_STORAGE
-#include "medium.glsl"
-#include "beam.glsl"
-#include "columns.glsl"
-#include "radial.glsl"
-#include "lattice.glsl"
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/beam.glsl"
+#include "shaders/beams/columns.glsl"
+#include "shaders/beams/radial.glsl"
+#include "shaders/lattice/lattice.glsl"
 #define WALLS_AT 12
 #define WALLS_STORAGE
-#include "lattice_walls.glsl"
+#include "shaders/walls/lattice_walls.glsl"
 #define SHADOWS_AT 18
 #define SHADOWS_STORAGE
-#include "shadow.glsl"
+#include "shaders/light/shadow.glsl"
 #define VPL_DISTANCES 21
 #define LATTICE_ROOMS 22
-#include "vpl_visibility.glsl"
-#include "lattice_rooms.glsl"
+#include "shaders/light/vpl_visibility.glsl"
+#include "shaders/walls/lattice_rooms.glsl"
 
 layout(constant_id = 1) const uint walls = 0;
 layout(constant_id = 2) const uint shadowed = 0;

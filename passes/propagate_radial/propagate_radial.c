@@ -6,7 +6,7 @@
 #include "propagate_radial_setup.comp.h"
 #include "propagate_radial_start.comp.h"
 #include "propagate_radial_step.comp.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) PROPAGATE_RADIAL_PORT_##name

@@ -14,9 +14,9 @@
 // batches of grids.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
-#include "propagate_args.h"
-#include "propagate_radial_grid.h"
+#include "shaders/common/bundles.h"
+#include "shaders/beams/propagate_args.h"
+#include "shaders/beams/propagate_radial_grid.h"
 
 typedef struct tyn_propagate_radial_params {
     int32_t cells;       // of the octahedral map along a side, made even; 2..64

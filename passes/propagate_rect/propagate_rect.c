@@ -9,8 +9,8 @@
 #include "propagate_rect_shrink_density.comp.h"
 #include "propagate_rect_start.comp.h"
 #include "propagate_rect_step.comp.h"
-#include "ordinate_args.h"
-#include "scene_args.h"
+#include "shaders/light/ordinate_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) PROPAGATE_RECT_PORT_##name

@@ -8,8 +8,8 @@
 // device has, is done in several batches of grids, one after the other.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
-#include "propagate_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/beams/propagate_args.h"
 
 typedef struct tyn_propagate_rect_params {
     int32_t cells;       // along the longest side of the aligned box, 2..64

@@ -1,7 +1,7 @@
 // radial_beam.c -- lays out the grids of local lights and sweeps them in one dispatch.
 #include "radial_beam.h"
 #include "radial_beam_args.h"
-#include "shadow_args.h"
+#include "shaders/light/shadow_args.h"
 #include "radial_beam_setup.comp.h"
 #include "radial_beam_density.comp.h"
 #include "radial_beam_coefficients.comp.h"

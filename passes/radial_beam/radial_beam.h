@@ -1,9 +1,9 @@
 // radial_beam.h -- optical depth from local lights outwards, in a grid around each.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
-#include "scene_args.h"
-#include "radial_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/beams/radial_args.h"
 
 typedef struct tyn_radial_beam_params {
     int32_t cells;         // "radial_beam.cells"

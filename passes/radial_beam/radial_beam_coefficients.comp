@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_AT 0
-#include "medium.glsl"
-#include "radial_args.h"
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/radial_args.h"
 #include "radial_beam_args.h"
 
 layout(local_size_x = RADIAL_GROUP * RADIAL_GROUP) in;

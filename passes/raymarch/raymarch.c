@@ -1,8 +1,8 @@
 // raymarch.c -- the picture: light of the medium gathered along the rays of a camera.
 #include "raymarch.h"
 #include "raymarch_args.h"
-#include "scatter_lut_args.h"
-#include "counters.h"
+#include "shaders/phase/scatter_lut_args.h"
+#include "shaders/common/counters.h"
 #include "raymarch_background.comp.h"
 #include "raymarch_grey.comp.h"
 #include "raymarch_colour.comp.h"

@@ -1,8 +1,8 @@
 // raymarch.h -- the picture: light of the medium gathered along the rays of a camera.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
-#include "scene_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/common/scene_args.h"
 
 typedef struct tyn_raymarch_params {
     // "raymarch.step": longest step, in voxels (homogeneous: in steps that resolve the light).
@@ -17,7 +17,7 @@ typedef struct tyn_raymarch_params {
     uint32_t num_lamps; // that are marched: the first of `radials`
     // That are marched nearby only, the next ones; `inscatter` has the rest of their light.
     uint32_t num_near_lamps;
-    float reach;          // ... of these, m (shaders/radial.glsl: radial_reach)
+    float reach;          // ... of these, m (shaders/beams/radial.glsl: radial_reach)
     uint32_t spots;       // 1: some of all these shine in a cone only
     uint32_t kernels;     // 1: sunlight scattered forward any number of times (lut); else once only
     uint32_t mean;        // 1: the mean of the environment came in through the field

@@ -1,10 +1,10 @@
 // raymarch_bindings.glsl -- what the kernels of the ray march read and write, and their constants.
 #ifndef TYN_RAYMARCH_BINDINGS_GLSL
 #define TYN_RAYMARCH_BINDINGS_GLSL
-#include "scene_args.h"
-#include "counters.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/common/counters.h"
 #include "raymarch_args.h"
-#include "light_cells_args.h"
+#include "shaders/light/light_cells_args.h"
 
 // Specialisation constant 0 is the medium's mode (medium.glsl).
 layout(constant_id = 1) const uint raymarch_num_suns = 1u;

@@ -4,7 +4,7 @@
 #include "residuum_collect.comp.h"
 #include "residuum_start.comp.h"
 #include "residuum_step.comp.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) RESIDUUM_PORT_##name

@@ -5,8 +5,8 @@
 // neighbours in equal parts; what it sends to the eye is the same in all directions.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
-#include "propagate_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/beams/propagate_args.h"
 
 typedef struct tyn_residuum_params {
     uint32_t on;         // for the method, no kernel of this pass reads it, as the two below

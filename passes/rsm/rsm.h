@@ -1,11 +1,11 @@
 // rsm.h -- reflective shadow maps: what each light shines on, and the power reflected there.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
-#include "rsm_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/light/rsm_args.h"
 #include "rsm_draw_args.h"
-#include "scene_args.h"
-#include "surface_args.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/surfaces/surface_args.h"
 
 typedef struct tyn_rsm_params {
     int32_t sun_texels;  // "rsm.sun_texels"

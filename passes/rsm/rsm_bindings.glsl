@@ -1,9 +1,9 @@
 // rsm_bindings.glsl -- what both shaders of reflective shadow maps read.
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #include "rsm_draw_args.h"
 
 #define GEOMETRY_AT 0
-#include "surfaces.glsl"
+#include "shaders/surfaces/surfaces.glsl"
 layout(push_constant, scalar) uniform args_block
 {
     rsm_draw_args args;

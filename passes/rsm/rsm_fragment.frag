@@ -4,10 +4,10 @@
 #extension GL_EXT_scalar_block_layout : require
 #define MATERIALS_AT 4
 #include "rsm_bindings.glsl"
-#include "surface_texture.glsl"
-#include "shadow_args.h"
+#include "shaders/surfaces/surface_texture.glsl"
+#include "shaders/light/shadow_args.h"
 
-#include "surface_faces.glsl"
+#include "shaders/surfaces/surface_faces.glsl"
 layout(location = 0) flat in uint triangle;
 layout(location = 1) in vec3 weights;
 layout(location = 0) out vec4 flux;

@@ -16,8 +16,8 @@
 #include "shade_vpls.comp.h"
 #include "shade_walls.comp.h"
 #include "shade_table.h"
-#include "gbuffer_edge_args.h"
-#include "walls_args.h"
+#include "shaders/surfaces/gbuffer_edge_args.h"
+#include "shaders/walls/walls_args.h"
 #include <stddef.h>
 #include <string.h>
 

@@ -24,12 +24,12 @@ layout(push_constant, scalar) uniform Args
 #define RADIALS_STORAGE
 #define SHADOWS_AT 9
 #define SHADOWS_STORAGE
-#include "camera.glsl"
-#include "medium.glsl"
-#include "beam.glsl"
-#include "radial.glsl"
-#include "shadow.glsl"
-#include "gbuffer.glsl"
+#include "shaders/common/camera.glsl"
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/beam.glsl"
+#include "shaders/beams/radial.glsl"
+#include "shaders/light/shadow.glsl"
+#include "shaders/surfaces/gbuffer.glsl"
 #include "vpl.glsl"
 #include "shade_table.h"
 
@@ -52,7 +52,7 @@ layout(binding = 17) uniform sampler2D distances_tex; // gbuffer.glsl
 layout(binding = 18, rgba32ui) uniform readonly uimage2D facing_image;
 layout(binding = 19, rgba32ui) uniform readonly uimage2D colour_image;
 #define VPLS_AT 11
-#include "vpl_visibility.glsl"
+#include "shaders/light/vpl_visibility.glsl"
 
 bool shade_has(uint feature)
 {

@@ -1,7 +1,7 @@
 // shade.h -- radiance of the surfaces that the camera sees.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
+#include "shaders/common/bundles.h"
 
 typedef struct tyn_shade_params {
     // Pixels along each side that share VPLs; 0: as many as the picture's size asks for.

@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "gbuffer_edges.glsl"
+#include "shaders/surfaces/gbuffer_edges.glsl"
 #include "shade_piece.glsl"
 #include "shade_several.glsl"
 #define SHADE_ALONE_COUNT 38

@@ -8,17 +8,17 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shade_args.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #define MEDIUM_BLOCK 0
 #define BEAMS_AT 1
 #define SHADOWS_AT 5
 #define SHADOWS_STORAGE
-#include "camera.glsl"
-#include "medium.glsl"
-#include "beam.glsl"
-#include "shadow.glsl"
-#include "lattice.glsl"
-#include "walls_links.glsl"
+#include "shaders/common/camera.glsl"
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/beam.glsl"
+#include "shaders/light/shadow.glsl"
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/walls/walls_links.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(constant_id = 2) const uint shade_num_suns = 0u;

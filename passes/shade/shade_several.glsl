@@ -6,7 +6,7 @@
 #define MATERIALS_AT 35
 #define GBUFFER_TEXTURED shade_has(SHADE_TEXTURED)
 #define GBUFFER_SAMPLES shade_samples
-#include "gbuffer_triangle.glsl"
+#include "shaders/surfaces/gbuffer_triangle.glsl"
 
 // What sample k of a pixel shows, a surface, and where (M).
 gbuffer_point sample_of(ivec2 pixel, int k, out vec3 at)

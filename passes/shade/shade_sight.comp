@@ -4,9 +4,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "surface_args.h"
-#include "scene_args.h"
-#include "lattice.glsl"
+#include "shaders/surfaces/surface_args.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/lattice/lattice.glsl"
 #include "shade_faces.h"
 #include "shade_args.h"
 
@@ -17,7 +17,7 @@ layout(push_constant, scalar) uniform Args
 };
 
 #define GEOMETRY_AT 0
-#include "surfaces.glsl"
+#include "shaders/surfaces/surfaces.glsl"
 layout(binding = 4, scalar) uniform medium_uniform
 {
     medium_block medium;
@@ -26,7 +26,7 @@ layout(binding = 5) uniform sampler2D faces_tex;
 layout(binding = 6) uniform sampler3D moments_tex;
 layout(binding = 7, rgba32f) uniform writeonly image3D sight_image;
 layout(constant_id = 0) const uint channels = 1u;
-#include "surface_trace.glsl"
+#include "shaders/surfaces/surface_trace.glsl"
 
 // Is nothing between two places (M)?
 bool open_between(vec3 from, vec3 to)

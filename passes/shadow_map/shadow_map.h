@@ -1,10 +1,10 @@
 // shadow_map.h -- what the lights see of the surfaces: depth maps of all of them in one atlas.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
-#include "scene_args.h"
-#include "shadow_args.h"
-#include "surface_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/light/shadow_args.h"
+#include "shaders/surfaces/surface_args.h"
 
 enum { TYN_SHADOW_VIEWS = TYN_SHADOW_SUNS + 6 * TYN_SHADOW_LAMPS };
 

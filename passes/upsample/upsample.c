@@ -2,7 +2,7 @@
 #include "upsample.h"
 #include "upsample_args.h"
 #include "upsample_field.comp.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) UPSAMPLE_PORT_##name

@@ -5,7 +5,7 @@
 // count more, so that detail of the medium shows in light that was computed without it.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
+#include "shaders/common/bundles.h"
 
 typedef struct tyn_upsample_params {
     int32_t cells; // along the longest side, at most; 8..256

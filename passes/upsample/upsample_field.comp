@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_AT 0
-#include "medium.glsl"
-#include "lattice.glsl"
+#include "shaders/medium/medium.glsl"
+#include "shaders/lattice/lattice.glsl"
 #include "upsample_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

@@ -10,8 +10,8 @@
 #include "vpl_power.comp.h"
 #include "vpl_strata.comp.h"
 #include "vpl_weights.comp.h"
-#include "radial_args.h"
-#include "scene_args.h"
+#include "shaders/beams/radial_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 #include <string.h>
 

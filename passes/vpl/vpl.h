@@ -2,8 +2,8 @@
 // lights of a cosine lobe.
 #pragma once
 #include <tyndall/pass.h>
-#include "bundles.h"
-#include "rsm_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/light/rsm_args.h"
 
 typedef struct tyn_vpl_params {
     int32_t count;      // "vpl.count": lights at most

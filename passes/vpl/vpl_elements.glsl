@@ -4,12 +4,12 @@
 #ifndef TYN_VPL_ELEMENTS_GLSL
 #define TYN_VPL_ELEMENTS_GLSL
 #include "vpl_args.h"
-#include "surface_args.h"
+#include "shaders/surfaces/surface_args.h"
 #include "vpl_hilbert.glsl"
 
 #define GEOMETRY_AT 4
 #define MATERIALS_AT 8
-#include "surfaces.glsl"
+#include "shaders/surfaces/surfaces.glsl"
 layout(binding = 0, scalar) readonly buffer vpl_plan_buffer
 {
     vpl_plan plan;

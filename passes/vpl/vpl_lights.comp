@@ -10,10 +10,10 @@
 
 #define MEDIUM_AT 11
 #include "vpl_elements.glsl"
-#include "medium.glsl"
-#include "camera.glsl"
-#include "radial_args.h"
-#include "shadow_args.h"
+#include "shaders/medium/medium.glsl"
+#include "shaders/common/camera.glsl"
+#include "shaders/beams/radial_args.h"
+#include "shaders/light/shadow_args.h"
 
 layout(local_size_x = VPL_LANES) in;
 

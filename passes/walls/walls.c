@@ -1,8 +1,8 @@
 // walls.c -- surfaces on the lattice.
 #include "walls.h"
 #include "walls_pass_args.h"
-#include "surface_args.h"
-#include "walls_args.h"
+#include "shaders/surfaces/surface_args.h"
+#include "shaders/walls/walls_args.h"
 #include "walls_scatter.comp.h"
 #include "walls_cells.comp.h"
 

@@ -3,10 +3,10 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "walls_pass_args.h"
-#include "surface_args.h"
-#include "lattice.glsl"
-#include "walls_links.glsl"
-#include "walls_triangle.glsl"
+#include "shaders/surfaces/surface_args.h"
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/walls/walls_links.glsl"
+#include "shaders/walls/walls_triangle.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(push_constant, scalar) uniform push
@@ -15,7 +15,7 @@ layout(push_constant, scalar) uniform push
 };
 #define GEOMETRY_AT 0
 #define MATERIALS_AT 4
-#include "surfaces.glsl"
+#include "shaders/surfaces/surfaces.glsl"
 layout(binding = 7, scalar) readonly buffer link_buffer
 {
     uint links[];
@@ -32,7 +32,7 @@ layout(binding = 10, scalar) writeonly buffer cell_buffer
 {
     wall_cell wall_cells[];
 };
-#include "walls_place.glsl"
+#include "shaders/walls/walls_place.glsl"
 #include "walls_texture.glsl"
 
 // Mean over about a cell around the place where the link from p along d meets triangle i.

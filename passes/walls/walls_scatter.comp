@@ -8,10 +8,10 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
 #include "walls_pass_args.h"
-#include "surface_args.h"
-#include "lattice.glsl"
-#include "walls_links.glsl"
-#include "walls_triangle.glsl"
+#include "shaders/surfaces/surface_args.h"
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/walls/walls_links.glsl"
+#include "shaders/walls/walls_triangle.glsl"
 
 layout(local_size_x = WALLS_GROUP) in;
 layout(push_constant, scalar) uniform push
@@ -20,7 +20,7 @@ layout(push_constant, scalar) uniform push
 };
 #define GEOMETRY_AT 0
 #define SURFACE_ROWS
-#include "surfaces.glsl"
+#include "shaders/surfaces/surfaces.glsl"
 layout(binding = 4, scalar) buffer link_buffer
 {
     uint links[];
@@ -36,7 +36,7 @@ layout(binding = 6, scalar) buffer nearest_buffer
     uint nearest[];
 };
 #define WALLS_ROWS
-#include "walls_place.glsl"
+#include "shaders/walls/walls_place.glsl"
 
 uint key_of(float share, uint triangle)
 {

@@ -3,10 +3,10 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
-#include "medium.glsl"
+#include "shaders/medium/medium.glsl"
 #define BEAMS_AT 1
 #define BEAMS_STORAGE
-#include "beam.glsl"
+#include "shaders/beams/beam.glsl"
 
 layout(local_size_x = 64) in;
 struct point {

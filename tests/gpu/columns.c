@@ -2,6 +2,7 @@
 #include "gpu_test.h"
 #include "base/half.h"
 #include "passes/columns/columns.h"
+#include "passes/columns_average/columns_average.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 // gbuffer.c -- the G-buffer against rays through all triangles, in double precision.
 #include "gpu_test.h"
 #include "passes/gbuffer/gbuffer.h"
-#include "gbuffer_edge_args.h"
-#include "scene_args.h"
+#include "shaders/surfaces/gbuffer_edge_args.h"
+#include "shaders/common/scene_args.h"
 #include "solids.h"
-#include "surface_args.h"
+#include "shaders/surfaces/surface_args.h"
 #include "vector.h"
 #include <math.h>
 #include <stdlib.h>

@@ -2,10 +2,10 @@
 // over the cells.
 #include "gpu_test.h"
 #include "homogeneous.h"
-#include "lattice_power.h"
-#include "passes/lattice/lattice.h"
-#include "scene_args.h"
-#include "shadow_args.h"
+#include "shaders/lattice/lattice_power.h"
+#include "passes/lattice_lamps/lattice_lamps.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/light/shadow_args.h"
 #include <stdlib.h>
 
 enum { CELLS = 8, NX = 8, NY = 6, NZ = 4, N = NX * NY * NZ };

@@ -3,10 +3,10 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
-#include "medium.glsl"
+#include "shaders/medium/medium.glsl"
 #define RADIALS_AT 1
 #define RADIALS_STORAGE
-#include "radial.glsl"
+#include "shaders/beams/radial.glsl"
 
 layout(local_size_x = 64) in;
 struct point {

@@ -4,7 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #define SHADOWS_AT 0
 #define SHADOWS_STORAGE
-#include "shadow.glsl"
+#include "shaders/light/shadow.glsl"
 
 layout(local_size_x = 64) in;
 struct point {

@@ -1,7 +1,7 @@
 // wall_mesh.c -- closed meshes, and the pass walls on them, for tests.
 #include "wall_mesh.h"
 #include "passes/walls/walls.h"
-#include "surface_args.h"
+#include "shaders/surfaces/surface_args.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

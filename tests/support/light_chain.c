@@ -1,13 +1,17 @@
 // light_chain.c -- medium -> beam -> lattice_cells -> lattice_source -> lattice -> merge, probe,
 // balance.
 #include "light_chain.h"
-#include "counters.h"
+#include "shaders/common/counters.h"
 #include "methods/refs.h"
 #include "passes/beam/beam.h"
 #include "passes/columns/columns.h"
+#include "passes/lattice_cells/lattice_cells.h"
+#include "passes/lattice_source/lattice_source.h"
+#include "passes/lattice_ordinates/lattice_ordinates.h"
 #include "passes/lattice/lattice.h"
 #include "passes/merge/merge.h"
 #include "passes/probe/probe.h"
+#include "passes/balance/balance.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
