@@ -2,7 +2,6 @@
 #include "methods/limits.h"
 #include "methods/shading.h"
 #include "passes/shade/shade.h"
-#include "passes/shade/shade_faces.h"
 #include "passes/balance/balance.h"
 #include "passes/vpl/vpl.h"
 #include <tyndall/registry.h>

@@ -3,6 +3,9 @@
 #include <tyndall/pass.h>
 #include "shaders/common/bundles.h"
 
+// Along the longest side, of the places from where it is asked what hides the box.
+enum { SHADE_SIGHT_PLACES = 10 };
+
 typedef struct tyn_shade_params {
     // Pixels along each side that share VPLs; 0: as many as the picture's size asks for.
     int32_t pattern;
