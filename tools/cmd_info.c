@@ -80,6 +80,13 @@ static void print_passes(void)
             print_range(p);
             printf("\n        %s\n", p->doc);
         }
+        const char *separator = "    counts   ";
+        for (const tyn_counter *c = pass->counters; c && c->name; c++) {
+            printf("%s%s%s%s%s", separator, c->name, c->unit ? " (" : "", c->unit ? c->unit : "",
+                   c->unit ? ")" : "");
+            separator = ", ";
+        }
+        printf("%s", pass->counters ? "\n" : "");
         if (pass->debug_meaning && pass->debug_port < pass->num_ports) {
             printf("    debug view: %s, %s\n", pass->ports[pass->debug_port].name,
                    pass->debug_meaning);

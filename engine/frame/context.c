@@ -3,15 +3,12 @@
 #include "frame/frame_scene.h"
 #include "plugin/registry.h"
 #include "base/hash.h"
-#include "counters.h"
-#include "ordinate_args.h"
 #include "methods/env_cdf.h"
-#include "methods/limits.h"
 #include "gpu/device.h"
 #include "passes/medium/medium.h"
-#include "passes/walls/wall_light_args.h"
 #include "scene/check.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -482,35 +479,6 @@ uint32_t tyn_context_batch(tyn_context *ctx, const tyn_frame *frame)
 
 // ---- outputs ----------------------------------------------------------------------------------
 
-const char *tyn_output_name(tyn_output which)
-{
-    static const char *const names[] = {"radiance", "transmittance", "depth",   "single",
-                                        "multiple", "error",         "display", "probe",
-                                        "balance",  "composite",     "fluxes"};
-    for (uint32_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        if (which == (tyn_output)(1u << i)) {
-            return names[i];
-        }
-    }
-    return "unknown";
-}
-
-void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref)
-{
-    if (job->outputs & which) {
-        tyn_graph_output(g, tyn_output_name(which), ref,
-                         job->readback && which != TYN_OUTPUT_COMPOSITE);
-    }
-}
-
-void tyn_job_counters(tyn_graph *g, const tyn_job *job, const char *pass, tyn_ref ref)
-{
-    // Named as the pass: the report finds them by the node's name. Unasked, they keep nothing alive.
-    if (job->readback && ref.resource) {
-        tyn_graph_output(g, pass, ref, true);
-    }
-}
-
 const void *tyn_context_output(tyn_context *ctx, tyn_output output)
 {
     return ctx->outputs & output ? tyn_graph_map(ctx->graph, tyn_output_name(output), NULL, NULL)
@@ -533,38 +501,30 @@ static void add_work(tyn_node_report *node, const char *name, double amount)
     }
 }
 
-// What the node itself counted: struct counters_block, struct wall_light_power, or the head of struct ordinates_block. By the
-// node's name there may also be an output of the frame ("balance"), of another size.
+// In percent to one digit: no more is known, and frames of a film say the same line.
+static double percent_of(double share)
+{
+    const double percent = 100 * fmin(share, 1), unit = pow(10, floor(log10(percent)));
+    return unit * round(percent / unit);
+}
+
+// What the node itself counted, by the table of its pass.
 static void add_counters(tyn_node_report *node, tyn_context *ctx)
 {
-    tyn_extent size = {0};
-    const void *data = tyn_graph_map(ctx->graph, node->name, &size, NULL);
-    if (data && size.x == sizeof(struct counters_block)) {
-        const struct counters_block *c = data;
-        add_work(node, "steps", c->steps);
-        add_work(node, "pixels", c->pixels);
-        add_work(node, "non_finite", c->non_finite);
-        add_work(node, "clamped", c->clamped);
-        add_work(node, "cut", c->cut);
-        const float *left = c->unsettled, most = fmaxf(left[0], fmaxf(left[1], left[2]));
-        if (most > 0) {
-            add_work(node, "unsettled", (double)most);
-            tyn_limits_solve(most, add_warning, ctx);
+    const tyn_pass_desc *pass = tyn_pass_find(node->name);
+    const uint8_t *data = tyn_graph_map(ctx->graph, node->name, NULL, NULL);
+    for (const tyn_counter *c = pass && data ? pass->counters : NULL; c && c->name; c++) {
+        double most = 0;
+        for (uint32_t i = 0; i < (c->count ? c->count : 1); i++) {
+            const void *at = data + c->offset + 4 * i;
+            most = fmax(most, c->real ? (double)*(const float *)at : *(const uint32_t *)at);
         }
-    } else if (data && size.x == sizeof(struct wall_light_power)) {
-        const struct wall_light_power *p = data;
-        if (p->rooms > 0 || p->astray > 0) {
-            add_work(node, "rooms", p->rooms);
-            add_work(node, "least", (double)p->least);
-            add_work(node, "most", (double)p->most);
-            add_work(node, "clamped", p->clamped);
-            add_work(node, "astray", (double)p->astray);
-            tyn_limits_walls(p->astray, add_warning, ctx);
+        add_work(node, c->name, most);
+        if (c->warning && most > c->limit) {
+            char line[256];
+            snprintf(line, sizeof line, c->warning, percent_of(most));
+            add_warning(ctx, line);
         }
-    } else if (data && size.x == sizeof(struct ordinates_block)) {
-        const struct ordinates_block *o = data;
-        add_work(node, "ordinates", o->count);
-        add_work(node, "folded", o->folded);
     }
 }
 

@@ -301,7 +301,7 @@ static tyn_result add_solve(tyn_graph *g, const tyn_job *job, tyn_field *f)
     f->moments = refs[LATTICE_PORT_MOMENTS];
     f->leaks = refs[LATTICE_PORT_LEAKS];
     f->wall_power = f->walls.links.resource ? refs[LATTICE_PORT_WALL_POWER] : (tyn_ref){0};
-    tyn_job_counters(g, job, "lattice", refs[LATTICE_PORT_COUNTERS]);
+    tyn_job_counters(g, job, &tyn_pass_lattice, refs[LATTICE_PORT_COUNTERS]);
     return result == TYN_OK && params.warm ? add_keep(g, f, &last) : result;
 }
 
@@ -342,7 +342,7 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, tyn_field *f)
         refs[MERGE_PORT_SHADOWS] = f->picture.shadows.lights;
     }
     tyn_result result = tyn_graph_add(g, &tyn_pass_merge, &params, refs);
-    tyn_job_counters(g, job, "merge", refs[MERGE_PORT_COUNTERS]);
+    tyn_job_counters(g, job, &tyn_pass_merge, refs[MERGE_PORT_COUNTERS]);
     f->picture.inscatter = refs[MERGE_PORT_INSCATTER];
     f->picture.one_channel = f->shape.channels == 1;
     memcpy(f->picture.tint, f->shape.tint, sizeof f->picture.tint);

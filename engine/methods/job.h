@@ -80,9 +80,8 @@ typedef struct tyn_job {
 
 // Gives the graph what was made for an output; nothing happens if it is not wanted.
 void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref);
-// Has a pass's struct counters_block read back, for the report, or its struct ordinates_block. `pass` =
-// its node's name.
-void tyn_job_counters(tyn_graph *g, const tyn_job *job, const char *pass, tyn_ref ref);
+// Has the buffer read back in which a pass counts (tyn_pass_desc.counters), for the report.
+void tyn_job_counters(tyn_graph *g, const tyn_job *job, const tyn_pass_desc *pass, tyn_ref ref);
 // The names of outputs in the graph: "radiance", ...
 const char *tyn_output_name(tyn_output which);
 

@@ -3,7 +3,6 @@
 #include "methods/limits.h"
 #include "methods/nodes.h"
 #include <math.h>
-#include <stdio.h>
 
 static const float cell_depth_limit = 1.8f;    // scaled depths of a cell
 static const float thin_side_limit = 3;        // cells across a side
@@ -11,8 +10,6 @@ static const float backward_limit = -0.75f;    // g
 static const float narrow_limit = 0.995f;      // g, as HG_MAX of shaders/hg.glsl
 static const float float_depth_limit = 3e6f;   // depths of the box
 static const float multiple_limit = 0.3f;      // scaled scattering depths
-static const float unsettled_limit = 0.02f;    // of the scattered light
-static const float astray_limit = 0.05f;       // of what virtual lights send to walls
 static const float sampled_depth_limit = 1e5f; // depths of the box where nothing is absorbed
 
 // The medium where it matters: in a grid at the density of the average particle of the medium; where several media
@@ -183,38 +180,5 @@ void tyn_limits_paths(const tyn_job *job, uint32_t max_steps)
             "accuracy: the medium is %.2g mean free paths deep and absorbs next to nothing; "
             "paths end after %u steps (-D path.max_steps), what is left of them is lost",
             (double)depth, max_steps);
-    }
-}
-
-// In percent to one digit: no more is known, and frames of a film say the same line.
-static double percent_of(float share)
-{
-    const double percent = 100 * fmin((double)share, 1), unit = pow(10, floor(log10(percent)));
-    return unit * round(percent / unit);
-}
-
-void tyn_limits_walls(float astray, void (*warn)(void *user, const char *line), void *user)
-{
-    if (astray > astray_limit) {
-        char line[256];
-        snprintf(line, sizeof line,
-                 "accuracy: the lattice's walls get too much or too little of the light that "
-                 "virtual lights send to surfaces, about %g %% of it: rooms or walls of few cells "
-                 "(-D lattice.cells)",
-                 percent_of(astray));
-        warn(user, line);
-    }
-}
-
-void tyn_limits_solve(float unsettled, void (*warn)(void *user, const char *line), void *user)
-{
-    if (unsettled > unsettled_limit) {
-        char line[256];
-        snprintf(
-            line, sizeof line,
-            "accuracy: the lattice is not solved to the end: about %g %% of the scattered light "
-            "would still change; more sweeps are needed (-D lattice.sweeps)",
-            percent_of(unsettled));
-        warn(user, line);
     }
 }

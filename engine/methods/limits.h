@@ -17,7 +17,3 @@ void tyn_limits_sky(const tyn_job *job);
 void tyn_limits_rays(const tyn_job *job);
 // Of `path`: its safety cap.
 void tyn_limits_paths(const tyn_job *job, uint32_t max_steps);
-// Of `pop`, once a frame is done: counters_block.unsettled of the lattice.
-void tyn_limits_solve(float unsettled, void (*warn)(void *user, const char *line), void *user);
-// Of `pop`, once a frame is done: wall_light_power.astray.
-void tyn_limits_walls(float astray, void (*warn)(void *user, const char *line), void *user);

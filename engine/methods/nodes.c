@@ -320,7 +320,7 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
         tyn_job_output(g, job, images[i].output, refs[images[i].port]);
     }
-    tyn_job_counters(g, job, "raymarch", refs[RAYMARCH_PORT_COUNTERS]);
+    tyn_job_counters(g, job, &tyn_pass_raymarch, refs[RAYMARCH_PORT_COUNTERS]);
     if (result == TYN_OK && job->outputs & TYN_OUTPUT_DISPLAY) {
         result = tyn_add_display(g, job, refs[RAYMARCH_PORT_RADIANCE]);
     }

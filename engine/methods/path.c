@@ -251,7 +251,7 @@ static tyn_result add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     tyn_job_output(g, job, TYN_OUTPUT_SINGLE, refs[PATH_PORT_SINGLE]);
     tyn_job_output(g, job, TYN_OUTPUT_MULTIPLE, refs[PATH_PORT_MULTIPLE]);
     tyn_job_output(g, job, TYN_OUTPUT_TRANSMITTANCE, refs[PATH_PORT_TRANSMITTANCE]);
-    tyn_job_counters(g, job, "path", refs[PATH_PORT_COUNTERS]);
+    tyn_job_counters(g, job, &tyn_pass_path, refs[PATH_PORT_COUNTERS]);
     return job->outputs & TYN_OUTPUT_DISPLAY ? tyn_add_display(g, job, refs[PATH_PORT_RADIANCE])
                                              : TYN_OK;
 }
@@ -269,7 +269,7 @@ static tyn_result add_probes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     tyn_result result = tyn_graph_add(g, &tyn_pass_path_probe, &params, refs);
     if (result == TYN_OK) {
         tyn_job_output(g, job, TYN_OUTPUT_PROBE, refs[PATH_PROBE_PORT_RESULTS]);
-        tyn_job_counters(g, job, "path_probe", refs[PATH_PROBE_PORT_COUNTERS]);
+        tyn_job_counters(g, job, &tyn_pass_path_probe, refs[PATH_PROBE_PORT_COUNTERS]);
     }
     return result;
 }
@@ -327,7 +327,7 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     tyn_result result = tyn_graph_add(g, &tyn_pass_path_balance, &params, refs);
     if (result == TYN_OK) {
         tyn_job_output(g, job, TYN_OUTPUT_BALANCE, refs[PATH_BALANCE_PORT_BALANCE]);
-        tyn_job_counters(g, job, "path_balance", refs[PATH_BALANCE_PORT_COUNTERS]);
+        tyn_job_counters(g, job, &tyn_pass_path_balance, refs[PATH_BALANCE_PORT_COUNTERS]);
     }
     return result;
 }
@@ -385,7 +385,7 @@ static tyn_result add_fluxes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     }
     if (result == TYN_OK) {
         tyn_job_output(g, job, TYN_OUTPUT_FLUXES, refs[PATH_FLUXES_PORT_FLUXES]);
-        tyn_job_counters(g, job, "path_fluxes", refs[PATH_FLUXES_PORT_COUNTERS]);
+        tyn_job_counters(g, job, &tyn_pass_path_fluxes, refs[PATH_FLUXES_PORT_COUNTERS]);
     }
     return result;
 }

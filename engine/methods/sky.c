@@ -96,6 +96,7 @@ tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_media_refs *m
         result = tyn_graph_add(g, &tyn_pass_ordinates, &params, refs);
     }
     sky->ordinates = refs[ORDINATES_PORT_ORDINATES];
-    tyn_job_counters(g, job, "ordinates", sky->ordinates); // how many, and how many were folded
+    tyn_job_counters(g, job, &tyn_pass_ordinates,
+                     sky->ordinates); // how many, and how many were folded
     return result;
 }

@@ -248,6 +248,7 @@ const tyn_pass_desc tyn_pass_path = {
     .record = record_image,
     .debug_port = PATH_PORT_ERROR,
     .debug_meaning = "standard error of each pixel",
+    .counters = (const tyn_counter[]){TYN_COUNTERS, {NULL}},
 };
 
 // ---- probes -----------------------------------------------------------------------------------
@@ -309,4 +310,5 @@ const tyn_pass_desc tyn_pass_path_probe = {
     .record = record_probe,
     .debug_port = PATH_PROBE_PORT_RESULTS,
     .debug_meaning = "fluence and net flux",
+    .counters = (const tyn_counter[]){TYN_COUNTERS, {NULL}},
 };
