@@ -103,6 +103,15 @@ static void print_methods(void)
         for (const tyn_pass_desc *const *pass = m.passes; *pass; pass++) {
             printf(" %s", (*pass)->name);
         }
+        printf("\n%-10s limits:", "");
+        const char *last = "", *separator = "";
+        for (const tyn_limit *row = m.limits; row->key; row++) {
+            if (strcmp(row->key, last) != 0) {
+                printf("%s %s", separator, row->key);
+                separator = ",";
+            }
+            last = row->key;
+        }
         printf("\n");
     }
 }

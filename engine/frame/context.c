@@ -4,6 +4,7 @@
 #include "plugin/registry.h"
 #include "base/hash.h"
 #include "methods/env_cdf.h"
+#include "methods/limits.h"
 #include "gpu/device.h"
 #include "passes/medium/medium.h"
 #include "scene/check.h"
@@ -55,10 +56,12 @@ tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params,
                       "tyn_context_create: use the tyn_context_params() macro");
         return TYN_ERR_PARAMS;
     }
-    const tyn_method *method = tyn_method_find(params->method ? params->method : "pop");
+    const tyn_method *method = tyn_method_find(params->method);
     if (!method) {
+        char names[128];
+        tyn_method_names(names, sizeof names);
         tyn_log_print(&dev->log, TYN_LOG_ERROR, "method '%s' is not known; there are: %s",
-                      params->method, tyn_method_names());
+                      params->method, names);
         return TYN_ERR_PARAMS;
     }
     uint32_t slots = params->frames_in_flight ? params->frames_in_flight : 2;
@@ -122,7 +125,7 @@ static void log_warning(tyn_context *ctx, const char *line)
     }
     if (ctx->num_logged < MAX_WARNINGS) {
         ctx->logged[ctx->num_logged++] = hash;
-        tyn_log_print(&ctx->dev->log, TYN_LOG_WARN, "%s: %s", ctx->method->name, line);
+        tyn_log_print(&ctx->dev->log, TYN_LOG_WARN, "%s: %s", ctx->method->info.name, line);
     }
 }
 
@@ -151,10 +154,10 @@ static tyn_result check_frame(const tyn_context *ctx, const tyn_frame *frame)
     }
     const tyn_view *view = frame->view;
     uint32_t outputs = view->outputs ? view->outputs : TYN_OUTPUT_RADIANCE;
-    if (outputs & ~ctx->method->outputs) {
-        uint32_t missing = outputs & ~ctx->method->outputs;
+    if (outputs & ~ctx->method->info.outputs) {
+        uint32_t missing = outputs & ~ctx->method->info.outputs;
         tyn_log_print(log, TYN_LOG_ERROR, "method '%s' cannot make the output '%s'",
-                      ctx->method->name, tyn_output_name((tyn_output)(missing & -missing)));
+                      ctx->method->info.name, tyn_output_name((tyn_output)(missing & -missing)));
         return TYN_ERR_PARAMS;
     }
     if (!view->width || !view->height || view->width > 16384 || view->height > 16384) {
@@ -373,7 +376,7 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     if (result == TYN_OK) {
         result = tyn_surface_data_update(&ctx->surfaces, &frame->scene->surfaces, log);
     }
-    if (result == TYN_OK && ctx->method->traces_rays) {
+    if (result == TYN_OK && ctx->method->info.traces_rays) {
         result = tyn_surface_data_tables(&ctx->surfaces, &frame->scene->surfaces,
                                          view->outputs & TYN_OUTPUT_BALANCE);
     }
@@ -398,7 +401,8 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     if (result != TYN_OK) {
         return result;
     }
-    *job = (tyn_job){.scene = frame->scene,
+    *job = (tyn_job){.method = ctx->method,
+                     .scene = frame->scene,
                      .view = view,
                      .settings = ctx->settings,
                      .frame = &ctx->frame,
@@ -431,6 +435,7 @@ static tyn_result declare(tyn_context *ctx, const tyn_frame *frame)
     }
     tyn_graph_inspect(ctx->graph, ctx->readback ? ctx->inspect : NULL);
     upload_scene(ctx, frame, &job.refs);
+    tyn_limits_warn(&job, 0);
     result = ctx->method->declare(ctx->graph, &job);
     return result == TYN_OK ? tyn_graph_status(ctx->graph) : result;
 }
@@ -591,5 +596,5 @@ bool tyn_context_inspection(tyn_context *ctx, tyn_inspection *inspection)
 
 char *tyn_context_graph(tyn_context *ctx, bool dot)
 {
-    return tyn_graph_dump(ctx->graph, dot, ctx->method->passes);
+    return tyn_graph_dump(ctx->graph, dot, ctx->method->info.passes);
 }

@@ -489,7 +489,7 @@ tyn_result tyn_add_field(tyn_graph *g, const tyn_job *job, tyn_field *f)
     choose_channels(f, job->scene, frame);
     float longest = fmaxf(f->shape.extent[0], fmaxf(f->shape.extent[1], f->shape.extent[2]));
     f->picture.cell = longest / (float)f->shape.cells;
-    tyn_limits_lattice(job, f->picture.cell);
+    tyn_limits_warn(job, f->picture.cell);
     const bool ordinates = f->sky.ordinates.resource != 0;
     const tyn_field_step steps[] = {
         {true, add_cells},

@@ -3,7 +3,7 @@
 // A method turns a job into graph nodes. It is called for every frame and must be
 // cheap and deterministic: no GPU calls, no allocation.
 #pragma once
-#include <tyndall/context.h>
+#include <tyndall/registry.h>
 #include "graph/graph.h"
 #include "scene/env_suns.h"
 #include "scene_args.h"
@@ -65,6 +65,7 @@ typedef struct tyn_scene_refs {
 } tyn_scene_refs;
 
 typedef struct tyn_job {
+    const struct tyn_method *method;
     const tyn_scene *scene;
     const tyn_view *view;
     const tyn_settings *settings;
@@ -86,13 +87,9 @@ void tyn_job_counters(tyn_graph *g, const tyn_job *job, const tyn_pass_desc *pas
 const char *tyn_output_name(tyn_output which);
 
 typedef struct tyn_method {
-    const char *name, *summary;
-    const tyn_pass_desc *const *passes; // NULL-terminated, frame order
-    uint32_t outputs;                   // set of tyn_output it can make
-    bool progressive;                   // uses view.first_sample, num_samples
-    bool reads_env_cdf;                 // wants refs.env_cdf
-    // Wants refs.nodes and refs.emitters where there are surfaces, and refs.areas for a balance.
-    bool traces_rays;
+    // traces_rays: wants refs.nodes and refs.emitters where there are surfaces, and refs.areas for a balance.
+    tyn_method_info info;
+    bool reads_env_cdf; // wants refs.env_cdf
     // Largest work a single record may be given (view.num_samples) to keep a dispatch short; NULL if
     // not progressive.
     uint32_t (*batch)(const tyn_job *job);

@@ -30,7 +30,7 @@ void tyn_method_warn_surfaces(const tyn_job *job, const char *what)
     }
 }
 
-tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method)
+tyn_result tyn_method_refuse_repeat(const tyn_job *job)
 {
     for (uint32_t i = 0; i < job->scene->num_shapes; i++) {
         const bool *repeat = job->scene->shapes[i].repeat;
@@ -38,7 +38,7 @@ tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method)
             tyn_log_print(job->log, TYN_LOG_ERROR,
                           "shape %u: method '%s' cannot do periodic media (\"repeat\"); "
                           "'path' can",
-                          i, method);
+                          i, job->method->info.name);
             return TYN_ERR_PARAMS;
         }
     }

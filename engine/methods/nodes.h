@@ -77,6 +77,6 @@ void tyn_method_warn_suns(const tyn_job *job, const char *what);
 void tyn_method_warn(const tyn_job *job, const char *format, ...) TYN_PRINTF(2, 3);
 
 // TYN_ERR_PARAMS with a log line if a shape of the scene is periodic.
-tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method);
+tyn_result tyn_method_refuse_repeat(const tyn_job *job);
 // Warns of what a method does not do with surfaces, if there are any: "are left out".
 void tyn_method_warn_surfaces(const tyn_job *job, const char *what);

@@ -458,12 +458,6 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     tyn_result result = check_repeat(job);
     tyn_media_refs media = {{0}};
     if (result == TYN_OK && !job->frame->empty) {
-        tyn_path_params params;
-        tyn_settings_params(job->settings, &tyn_pass_path, &params);
-        tyn_limits_rays(job);
-        tyn_limits_paths(job, (uint32_t)params.max_steps);
-    }
-    if (result == TYN_OK && !job->frame->empty) {
         result = tyn_add_medium(g, job, &media);
     }
     if (result == TYN_OK && job->outputs & ~not_images) {
@@ -490,16 +484,46 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_raymarch,     &tyn_pass_tonemap,     NULL,
 };
 
+static double ended(const tyn_regime *r)
+{
+    (void)r;
+    return 0.1;
+}
+
+static const tyn_limit limits[] = {
+    {.key = "samples",
+     .where = {TYN_ABOVE(albedo, 0.99), TYN_ABOVE(transport_depth, 9.999)},
+     .level = TYN_LIMIT_STRAINED,
+     .advice = {"unbiased, but light scatters hundreds of times (albedo %.4g, %.4g transport mean "
+                "free paths deep): samples are dear, and rare long paths make bright pixels",
+                {TYN_FIGURE(albedo), TYN_FIGURE(transport_depth)}},
+     .source = "docs/choosing.md, \"Samples\""},
+    {.key = "samples",
+     .advice = {"unbiased: only the number of samples decides"},
+     .source = "docs/choosing.md, \"Samples\""},
+    {.key = "paths that are ended",
+     .where = {TYN_ABOVE(depth, 1e5), TYN_ABOVE(albedo, 0.9999)},
+     .error = ended,
+     .warning = {"accuracy: the medium is %.2g mean free paths deep and absorbs next to nothing; "
+                 "paths end after path.max_steps steps (-D), what is left of them is lost",
+                 {TYN_FIGURE(depth)}}},
+    TYN_LIMIT_FLOATS,
+    {NULL},
+};
+
 const tyn_method tyn_method_path = {
-    .name = "path",
-    .summary = "unbiased path tracing: the reference",
-    .passes = passes,
-    .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH |
-               TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_ERROR | TYN_OUTPUT_DISPLAY |
-               TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_FLUXES,
-    .progressive = true,
+    .info = {.name = "path",
+             .summary = "unbiased path tracing: the reference",
+             .passes = passes,
+             .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH |
+                        TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_ERROR |
+                        TYN_OUTPUT_DISPLAY | TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE |
+                        TYN_OUTPUT_FLUXES,
+             .progressive = true,
+             .traces_rays = true,
+             .reference = true,
+             .limits = limits},
     .reads_env_cdf = true,
-    .traces_rays = true,
     .batch = batch,
     .declare = declare,
 };

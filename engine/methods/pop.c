@@ -283,7 +283,6 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         return TYN_ERR_PARAMS;
     }
 
-    tyn_limits_rays(job);
     tyn_field f = {.picture.num_suns = tyn_method_suns(job)};
     result = tyn_add_medium(g, job, &f.picture.media);
     if (result == TYN_OK) {
@@ -352,10 +351,11 @@ static const tyn_pass_desc *const passes[] = {
 };
 
 const tyn_method tyn_method_pop = {
-    .name = "pop",
-    .summary = "principal ordinates: exact beams, one lattice for scattered light",
-    .passes = passes,
-    .outputs = TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE,
-    .traces_rays = true, // virtual lights see what stands around them
+    .info = {.name = "pop",
+             .summary = "principal ordinates: exact beams, one lattice for scattered light",
+             .passes = passes,
+             .outputs = TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE,
+             .traces_rays = true, // virtual lights see what stands around them
+             .limits = tyn_limits_pop},
     .declare = declare,
 };

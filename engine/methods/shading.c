@@ -1,5 +1,4 @@
 // shading.c -- see shading.h.
-#include "methods/limits.h"
 #include "methods/shading.h"
 #include "passes/shade/shade.h"
 #include "passes/shade/shade_faces.h"
@@ -175,9 +174,6 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
     if (params.sky && (in->wall_links.resource == 0 || beyond)) {
         tyn_method_warn(job, "surfaces beyond the media's box are lit by the mean of the "
                              "environment as if nothing stood around them");
-    }
-    if (params.sky && in->wall_links.resource) {
-        tyn_limits_sky(job);
     }
     const tyn_vpl_refs vpls = !media || in->lamps.vpls ? in->vpls : (tyn_vpl_refs){{0}};
     tyn_ref refs[TYN_MAX_PORTS] = {
