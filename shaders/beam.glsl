@@ -1,9 +1,9 @@
 // beam.glsl -- optical depth from a directional light to a point.
 //
-// Include after medium.glsl and define the bindings:
-//   BEAM_BLOCKS    storage buffer beam_block[]
-//   BEAM_COLUMN    sampler: `column` (mode DENSITY) or `tau_s` (mode COEFFICIENTS)
-//   BEAM_TAU_A, BEAM_TAU_P   samplers, mode COEFFICIENTS (leave out in kernels that know DENSITY only)
+// Include after medium.glsl and define:
+//   BEAMS_AT        first binding of the bundle TYN_BEAMS (bundles.h)
+//   BEAMS_STORAGE   if its buffer is a storage buffer: a uniform one, read at constant places by every thread, is
+//                   much cheaper on a CPU device
 //
 // The textures hold the integral C of the medium along each ray, the medium being continued beyond the
 // faces of its box by its values there. That field has no kinks where neighbouring rays enter the box
@@ -16,24 +16,21 @@
 #include "beam_args.h"
 #include "beam_tau.glsl"
 
-#ifdef BEAM_UNIFORM // read at constant places by every thread: much cheaper on a CPU device
-layout(set = 0, binding = BEAM_BLOCKS, scalar) uniform beam_uniform
-{
-    beam_block beams[TYN_BEAM_MAX_SUNS];
-};
-#else
-layout(set = 0, binding = BEAM_BLOCKS, scalar) readonly buffer beam_buffer
+#ifdef BEAMS_STORAGE
+layout(set = 0, binding = BEAMS_AT, scalar) readonly buffer beam_buffer
 {
     beam_block beams[];
 };
+#else
+layout(set = 0, binding = BEAMS_AT, scalar) uniform beam_uniform
+{
+    beam_block beams[TYN_BEAM_MAX_SUNS];
+};
 #endif
-layout(set = 0, binding = BEAM_COLUMN) uniform sampler3D beam_column_tex;
-#ifdef BEAM_TAU_A
-layout(set = 0, binding = BEAM_TAU_A) uniform sampler3D beam_tau_a_tex;
-#endif
-#ifdef BEAM_TAU_P
-layout(set = 0, binding = BEAM_TAU_P) uniform sampler3D beam_tau_p_tex;
-#endif
+// Integrals of the density (mode DENSITY) or of sigma_s, of sigma_a and of (1 - f) sigma_s.
+layout(set = 0, binding = BEAMS_AT + 1) uniform sampler3D beam_column_tex;
+layout(set = 0, binding = BEAMS_AT + 2) uniform sampler3D beam_tau_a_tex;
+layout(set = 0, binding = BEAMS_AT + 3) uniform sampler3D beam_tau_p_tex;
 
 // Distance from where the light enters the box, m.
 float beam_length(uint sun, vec3 p)
@@ -127,15 +124,8 @@ beam_tau beam_depth_at(beam_place place)
     if (medium_mode == TYN_MEDIUM_DENSITY) {
         return beam_of_column(beam_fetch(beam_column_tex, place).r);
     }
-    beam_tau tau = beam_tau(vec3(0.0), vec3(0.0), vec3(0.0));
-    tau.s = beam_fetch(beam_column_tex, place);
-#ifdef BEAM_TAU_A
-    tau.a = beam_fetch(beam_tau_a_tex, place);
-#endif
-#ifdef BEAM_TAU_P
-    tau.p = beam_fetch(beam_tau_p_tex, place);
-#endif
-    return tau;
+    return beam_tau(beam_fetch(beam_column_tex, place), beam_fetch(beam_tau_a_tex, place),
+                    beam_fetch(beam_tau_p_tex, place));
 }
 
 beam_tau beam_depth(uint sun, vec3 p)

@@ -3,34 +3,15 @@
 // The rasteriser says which triangle it is; where the ray meets its plane is computed here, so that the
 // point does not depend on the precision of interpolation (and is the one that a ray tracer finds).
 //
-// Before including: the block `camera`; SURFACE_TEXTURES, SURFACE_TEXELS (surface_texture.glsl), GBUFFER_SURFACES,
-// GBUFFER_TRIANGLES, GBUFFER_VERTICES and GBUFFER_MATERIALS as bindings; GBUFFER_TEXTURED: may materials have textures?
-// GBUFFER_SAMPLES: along each side of a pixel.
+// Before including: the block `camera`; GEOMETRY_AT and MATERIALS_AT (surfaces.glsl); GBUFFER_TEXTURED: may materials have
+// textures? GBUFFER_SAMPLES: along each side of a pixel.
 #ifndef TYN_GBUFFER_TRIANGLE_GLSL
 #define TYN_GBUFFER_TRIANGLE_GLSL
 #include "camera.glsl"
-#include "surface_args.h"
+#define SURFACE_ROWS
 #include "surface_frame.glsl"
 #include "surface_texture.glsl"
 #include "gbuffer.glsl"
-
-layout(set = 0, binding = GBUFFER_SURFACES, scalar) uniform gbuffer_surfaces_buffer
-{
-    surface_block gbuffer_surfaces;
-};
-// The scene's structs as rows of four: a CPU device reads a vector per lane in little more than the time of a number.
-layout(set = 0, binding = GBUFFER_TRIANGLES, scalar) readonly buffer gbuffer_triangles_buffer
-{
-    uvec4 triangle_rows[]; // surface_triangle
-};
-layout(set = 0, binding = GBUFFER_VERTICES, scalar) readonly buffer gbuffer_vertices_buffer
-{
-    vec4 vertex_rows[]; // surface_vertex: position, u; normal, v
-};
-layout(set = 0, binding = GBUFFER_MATERIALS, scalar) readonly buffer gbuffer_materials_buffer
-{
-    uvec4 material_rows[]; // surface_material: albedo, flags; emission, texture
-};
 
 struct gbuffer_triangle { // world
     vec3 corner, e1, e2, normal; // not of unit length
@@ -49,7 +30,7 @@ gbuffer_triangle gbuffer_triangle_of(uint index)
     f.e1 = b.xyz - a.xyz;
     f.e2 = c.xyz - a.xyz;
     f.normal = cross(f.e1, f.e2);
-    f.facet = normalize(surface_turn(gbuffer_surfaces.from_world, f.normal));
+    f.facet = normalize(surface_turn(surfaces.from_world, f.normal));
     vec4 na = vertex_rows[2u * t.x + 1u], nb = vertex_rows[2u * t.y + 1u], nc = vertex_rows[2u * t.z + 1u];
     f.normals = vec3[3](na.xyz, nb.xyz, nc.xyz);
     f.uvs = vec2[3](vec2(a.w, na.w), vec2(b.w, nb.w), vec2(c.w, nc.w));
@@ -66,8 +47,8 @@ camera_ray gbuffer_ray(vec2 at)
 // Where a ray meets the plane: weights of the corners, and distance.
 vec4 gbuffer_meet(gbuffer_triangle f, camera_ray ray, out vec3 direction)
 {
-    direction = surface_turn(gbuffer_surfaces.to_world, ray.direction);
-    vec3 from = surface_transform(gbuffer_surfaces.to_world, ray.origin) - f.corner;
+    direction = surface_turn(surfaces.to_world, ray.direction);
+    vec3 from = surface_transform(surfaces.to_world, ray.origin) - f.corner;
     // Cramer's rule: from + distance direction = b e1 + c e2.
     float det = -dot(direction, f.normal);
     vec3 q = cross(from, direction);
@@ -108,7 +89,7 @@ gbuffer_point gbuffer_point_of(gbuffer_triangle f, vec2 at, camera_ray ray)
     float side = front ? 1.0 : -1.0;
     p.facet = side * f.facet;
     p.normal =
-        dot(normal, normal) > 1e-12 ? side * normalize(surface_turn(gbuffer_surfaces.from_world, normal)) : p.facet;
+        dot(normal, normal) > 1e-12 ? side * normalize(surface_turn(surfaces.from_world, normal)) : p.facet;
     return p;
 }
 

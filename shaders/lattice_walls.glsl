@@ -1,9 +1,8 @@
 // lattice_walls.glsl -- light of the lattice at a point, not blended through walls.
 //
-// Include after lattice.glsl and define the bindings of the buffers that the pass walls makes:
-//   WALLS_LINKS   storage buffer uint wall_links[]
-//   WALLS_CELLS   storage buffer wall_cell wall_cells[]
-//   WALLS_TEXELS  if both are to be read as texels
+// Include after lattice.glsl and define:
+//   WALLS_AT      first binding of the bundle TYN_WALLS (bundles.h)
+//   WALLS_STORAGE if its buffers are storage buffers; else they are read as texels
 //   LATTICE_ROOMS if it is known which cells are joined (lattice_rooms.glsl)
 // Call nothing of this where the scene has no surfaces: then the buffers hold nothing.
 //
@@ -20,25 +19,12 @@
 #include "lattice_rooms.glsl"
 #endif
 
-#ifdef WALLS_TEXELS
-layout(set = 0, binding = WALLS_LINKS) uniform usamplerBuffer walls_link_texels;
-layout(set = 0, binding = WALLS_CELLS) uniform samplerBuffer walls_cell_texels; // four to a struct wall_cell
-
-uint walls_links_of(uint cell)
-{
-    return texelFetch(walls_link_texels, int(cell)).x;
-}
-
-vec4 walls_plane(uint cell, uint k)
-{
-    return texelFetch(walls_cell_texels, int(4u * cell + k));
-}
-#else
-layout(set = 0, binding = WALLS_LINKS, scalar) readonly buffer walls_link_buffer
+#ifdef WALLS_STORAGE
+layout(set = 0, binding = WALLS_AT, scalar) readonly buffer walls_link_buffer
 {
     uint wall_links[];
 };
-layout(set = 0, binding = WALLS_CELLS, scalar) readonly buffer walls_cell_buffer
+layout(set = 0, binding = WALLS_AT + 1, scalar) readonly buffer walls_cell_buffer
 {
     wall_cell wall_cells[];
 };
@@ -51,6 +37,19 @@ uint walls_links_of(uint cell)
 vec4 walls_plane(uint cell, uint k)
 {
     return wall_cells[cell].planes[k];
+}
+#else
+layout(set = 0, binding = WALLS_AT) uniform usamplerBuffer walls_link_texels;
+layout(set = 0, binding = WALLS_AT + 1) uniform samplerBuffer walls_cell_texels; // four to a struct wall_cell
+
+uint walls_links_of(uint cell)
+{
+    return texelFetch(walls_link_texels, int(cell)).x;
+}
+
+vec4 walls_plane(uint cell, uint k)
+{
+    return texelFetch(walls_cell_texels, int(4u * cell + k));
 }
 #endif
 

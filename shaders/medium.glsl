@@ -1,11 +1,9 @@
 // medium.glsl -- coefficients of the medium at a point, as the solvers see them.
 //
-// Before including, define the bindings that the kernel has:
-//   MEDIUM_BLOCK      uniform buffer medium_block
-//   MEDIUM_DENSITY    sampler: `density` (mode DENSITY) or `sigma_s` (mode COEFFICIENTS)
-//   MEDIUM_SIGMA_A, MEDIUM_G, MEDIUM_EMISSION   samplers, read in mode COEFFICIENTS only; what is not
-//                     defined reads as 0 there. In mode DENSITY bind anything (the zero image).
-//   MEDIUM_SPEC       id of the specialisation constant with the mode; default 0
+// Before including, define one of
+//   MEDIUM_AT      first binding of the bundle TYN_MEDIUM (bundles.h)
+//   MEDIUM_BLOCK   binding of a uniform buffer medium_block, where no coefficient is looked up
+// and MEDIUM_SPEC, id of the specialisation constant with the mode, if it is not 0.
 //
 // Texels are means at voxel centres; between them trilinear, in the outer half voxel constant. Along
 // periodic axes positions wrap, and the outer half voxels stay constant there too.
@@ -19,20 +17,17 @@
 #endif
 
 layout(constant_id = MEDIUM_SPEC) const uint medium_mode = TYN_MEDIUM_DENSITY;
+#ifdef MEDIUM_AT
+#define MEDIUM_BLOCK MEDIUM_AT
+layout(set = 0, binding = MEDIUM_AT + 1) uniform sampler3D medium_density_tex; // or sigma_s in mode COEFFICIENTS
+layout(set = 0, binding = MEDIUM_AT + 2) uniform sampler3D medium_sigma_a_tex; // this and the next: only there
+layout(set = 0, binding = MEDIUM_AT + 3) uniform sampler3D medium_g_tex;
+layout(set = 0, binding = MEDIUM_AT + 4) uniform sampler3D medium_emission_tex;
+#endif
 layout(set = 0, binding = MEDIUM_BLOCK, scalar) uniform medium_uniform
 {
     medium_block medium;
 };
-layout(set = 0, binding = MEDIUM_DENSITY) uniform sampler3D medium_density_tex;
-#ifdef MEDIUM_SIGMA_A
-layout(set = 0, binding = MEDIUM_SIGMA_A) uniform sampler3D medium_sigma_a_tex;
-#endif
-#ifdef MEDIUM_G
-layout(set = 0, binding = MEDIUM_G) uniform sampler3D medium_g_tex;
-#endif
-#ifdef MEDIUM_EMISSION
-layout(set = 0, binding = MEDIUM_EMISSION) uniform sampler3D medium_emission_tex;
-#endif
 
 struct medium_point {
     vec3 sigma_s; // 1/m
@@ -59,13 +54,6 @@ bool medium_inside(vec3 uvw)
     return all(greaterThanEqual(uvw, vec3(0.0))) && all(lessThanEqual(uvw, vec3(1.0)));
 }
 
-// Texture value of mode DENSITY, which the coefficients in the block are multiplied with; 0 outside.
-float medium_density(vec3 p)
-{
-    vec3 uvw = medium_uvw(p);
-    return medium_inside(uvw) ? textureLod(medium_density_tex, uvw, 0.0).r : 0.0;
-}
-
 // Coefficients of mode DENSITY at a texture value.
 medium_point medium_of_density(float density)
 {
@@ -73,7 +61,15 @@ medium_point medium_of_density(float density)
                         medium.emission * density);
 }
 
-// Coefficients of either mode; 0 outside. One fetch (DENSITY) or one per defined texture.
+#ifdef MEDIUM_AT
+// Texture value of mode DENSITY, which the coefficients in the block are multiplied with; 0 outside.
+float medium_density(vec3 p)
+{
+    vec3 uvw = medium_uvw(p);
+    return medium_inside(uvw) ? textureLod(medium_density_tex, uvw, 0.0).r : 0.0;
+}
+
+// Coefficients of either mode; 0 outside. One fetch (DENSITY) or one per coefficient that is used.
 medium_point medium_sample(vec3 p)
 {
     if (medium_mode == TYN_MEDIUM_DENSITY) {
@@ -83,17 +79,12 @@ medium_point medium_sample(vec3 p)
     vec3 uvw = medium_uvw(p);
     if (medium_inside(uvw)) {
         m.sigma_s = textureLod(medium_density_tex, uvw, 0.0).rgb;
-#ifdef MEDIUM_SIGMA_A
         m.sigma_a = textureLod(medium_sigma_a_tex, uvw, 0.0).rgb;
-#endif
-#ifdef MEDIUM_G
         m.g = textureLod(medium_g_tex, uvw, 0.0).rgb;
-#endif
-#ifdef MEDIUM_EMISSION
         m.emission = textureLod(medium_emission_tex, uvw, 0.0).rgb;
-#endif
     }
     return m;
 }
+#endif
 
 #endif

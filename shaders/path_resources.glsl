@@ -28,13 +28,9 @@ layout(set = 0, binding = 7, scalar) readonly buffer env_buffer {
     env_table_block env_table;
     env_cell env_cells[];
 };
-layout(set = 0, binding = 8, scalar) uniform surfaces_uniform { surface_block surfaces; };
-layout(set = 0, binding = 9, scalar) readonly buffer vertices_buffer { surface_vertex vertices[]; };
-layout(set = 0, binding = 10, scalar) readonly buffer triangles_buffer { surface_triangle triangles[]; };
-layout(set = 0, binding = 11, scalar) readonly buffer materials_buffer { surface_material materials[]; };
-layout(set = 0, binding = 12, scalar) readonly buffer textures_buffer { surface_texture textures[]; };
-layout(set = 0, binding = 13, scalar) readonly buffer texels_buffer { uint texels[]; };
-layout(set = 0, binding = 14, scalar) readonly buffer nodes_buffer { uvec4 nodes[]; };
+#define GEOMETRY_AT 8
+#define MATERIALS_AT 12
+#include "surfaces.glsl"
 layout(set = 0, binding = 15, scalar) readonly buffer emitters_buffer {
     surface_table emitters;
     surface_cell emitter_cells[];

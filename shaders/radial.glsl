@@ -1,10 +1,8 @@
 // radial.glsl -- local lights: what they send to a point, and the optical depth on the way.
 //
-// Include after medium.glsl and define the bindings:
-//   RADIAL_BLOCK   buffer radial_block: "radials"
-//   RADIAL_COLUMN  sampler: `column` (mode DENSITY) or `tau_s` (mode COEFFICIENTS)
-//   RADIAL_UNIFORM   if RADIAL_BLOCK is to be a uniform buffer: faster on lavapipe, which has room for seven
-//   RADIAL_TAU_A, RADIAL_TAU_P   samplers, mode COEFFICIENTS (leave out in kernels that know DENSITY only)
+// Include after medium.glsl and define:
+//   RADIALS_AT        first binding of the bundle TYN_RADIALS (bundles.h)
+//   RADIALS_STORAGE   if its buffer is a storage buffer: a uniform one is faster on lavapipe, which has room for seven
 //
 // The textures hold the mean of the medium between the light, or where the way from it enters the box,
 // and a point. Times the exact length of that way it is the depth: where the medium is the same
@@ -16,28 +14,25 @@
 #include "radial_lobe.glsl"
 #include "beam_tau.glsl"
 
-#ifdef RADIAL_UNIFORM
-layout(set = 0, binding = RADIAL_BLOCK, scalar) uniform radial_buffer
+#ifndef RADIALS_STORAGE
+layout(set = 0, binding = RADIALS_AT, scalar) uniform radial_buffer
 {
     uint radial_count, radial_num_lamps;
     uvec2 radial_pad;
     radial_grid radials[TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX];
 };
 #else
-layout(set = 0, binding = RADIAL_BLOCK, scalar) readonly buffer radial_buffer
+layout(set = 0, binding = RADIALS_AT, scalar) readonly buffer radial_buffer
 {
     uint radial_count, radial_num_lamps;
     uvec2 radial_pad;
     radial_grid radials[];
 };
 #endif
-layout(set = 0, binding = RADIAL_COLUMN) uniform sampler3D radial_column_tex;
-#ifdef RADIAL_TAU_A
-layout(set = 0, binding = RADIAL_TAU_A) uniform sampler3D radial_tau_a_tex;
-#endif
-#ifdef RADIAL_TAU_P
-layout(set = 0, binding = RADIAL_TAU_P) uniform sampler3D radial_tau_p_tex;
-#endif
+// Means of the density (mode DENSITY) or of sigma_s, of sigma_a and of (1 - f) sigma_s.
+layout(set = 0, binding = RADIALS_AT + 1) uniform sampler3D radial_column_tex;
+layout(set = 0, binding = RADIALS_AT + 2) uniform sampler3D radial_tau_a_tex;
+layout(set = 0, binding = RADIALS_AT + 3) uniform sampler3D radial_tau_p_tex;
 
 struct radial_place {
     vec3 uvw;
@@ -138,15 +133,9 @@ beam_tau radial_tau(radial_place place)
     if (medium_mode == TYN_MEDIUM_DENSITY) {
         return beam_of_column(radial_column(place));
     }
-    beam_tau tau = beam_tau(vec3(0.0), vec3(0.0), vec3(0.0));
-    tau.s = place.inside * textureLod(radial_column_tex, place.uvw, 0.0).rgb;
-#ifdef RADIAL_TAU_A
-    tau.a = place.inside * textureLod(radial_tau_a_tex, place.uvw, 0.0).rgb;
-#endif
-#ifdef RADIAL_TAU_P
-    tau.p = place.inside * textureLod(radial_tau_p_tex, place.uvw, 0.0).rgb;
-#endif
-    return tau;
+    return beam_tau(place.inside * textureLod(radial_column_tex, place.uvw, 0.0).rgb,
+                    place.inside * textureLod(radial_tau_a_tex, place.uvw, 0.0).rgb,
+                    place.inside * textureLod(radial_tau_p_tex, place.uvw, 0.0).rgb);
 }
 
 #endif

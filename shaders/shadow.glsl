@@ -1,12 +1,13 @@
 // shadow.glsl -- whether a light sees a point, past the surfaces of the scene.
 //
-// Define SHADOW_ATLAS and SHADOW_LIGHTS as the bindings of what pass shadow_map makes. A point is shadowed by
+// Define SHADOWS_AT as the first binding of the bundle TYN_SHADOWS (bundles.h). A point is shadowed by
 // what its light's map has in front of it; where there is no map everything is lit.
 #ifndef TYN_SHADOW_GLSL
 #define TYN_SHADOW_GLSL
+#define SHADOW_LIGHTS (SHADOWS_AT + 1)
 #include "shadow_frame.glsl"
 
-layout(set = 0, binding = SHADOW_ATLAS) uniform sampler2D shadow_atlas;
+layout(set = 0, binding = SHADOWS_AT) uniform sampler2D shadow_atlas;
 
 const float SHADOW_EPSILON = 4e-6; // of depths: rounding in maps and projections
 

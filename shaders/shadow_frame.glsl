@@ -1,20 +1,20 @@
 // shadow_frame.glsl -- the maps' list, and places in the frames of their lights.
 //
-// Define SHADOW_LIGHTS as the binding of the list that pass shadow_map makes, and SHADOW_UNIFORM if that is to be a
-// uniform buffer: faster on lavapipe, which has room for seven.
+// Define SHADOW_LIGHTS as the binding of the list that pass shadow_map makes, and SHADOWS_STORAGE if that is a
+// storage buffer: a uniform one is faster on lavapipe, which has room for seven.
 #ifndef TYN_SHADOW_FRAME_GLSL
 #define TYN_SHADOW_FRAME_GLSL
 #include "shadow_args.h"
 
-#ifdef SHADOW_UNIFORM
-layout(set = 0, binding = SHADOW_LIGHTS, scalar) uniform shadow_lights_buffer
-{
-    shadow_light shadows[TYN_SHADOW_MAX];
-};
-#else
+#ifdef SHADOWS_STORAGE
 layout(set = 0, binding = SHADOW_LIGHTS, scalar) readonly buffer shadow_lights_buffer
 {
     shadow_light shadows[];
+};
+#else
+layout(set = 0, binding = SHADOW_LIGHTS, scalar) uniform shadow_lights_buffer
+{
+    shadow_light shadows[TYN_SHADOW_MAX];
 };
 #endif
 

@@ -1,18 +1,9 @@
 // surface_texture.glsl -- textures of surfaces, filtered trilinearly from their mip chains in a buffer.
 //
-// Define SURFACE_TEXTURES and SURFACE_TEXELS as the bindings of the buffers `textures` and `texels`.
+// Define MATERIALS_AT (surfaces.glsl).
 #ifndef TYN_SURFACE_TEXTURE_GLSL
 #define TYN_SURFACE_TEXTURE_GLSL
-#include "surface_args.h"
-
-layout(set = 0, binding = SURFACE_TEXTURES, scalar) readonly buffer surface_textures_buffer
-{
-    surface_texture textures[];
-};
-layout(set = 0, binding = SURFACE_TEXELS, scalar) readonly buffer surface_texels_buffer
-{
-    uint texels[];
-};
+#include "surfaces.glsl"
 
 // Texel coordinate of a whole number, by the rule of its axis.
 int surface_wrap(int i, int size, uint rule)

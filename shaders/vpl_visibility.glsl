@@ -3,6 +3,9 @@
 // Each VPL has a square map of its half space, 16 maps in a row of the atlas. A direction d with d.z along the
 // VPL's axis is at the octahedral coordinates p = d.xy / (|d.x| + |d.y| + d.z), a diamond that is turned to fill
 // the square. Texels lie on its edges too, so that nothing beyond them is needed.
+//
+// Define VPLS_AT as the first binding of the bundle TYN_VPLS (bundles.h), VPL_DISTANCES as that of the maps alone, or
+// neither.
 #ifndef TYN_VPL_VISIBILITY_GLSL
 #define TYN_VPL_VISIBILITY_GLSL
 #extension GL_EXT_control_flow_attributes : require
@@ -44,6 +47,17 @@ ivec2 vpl_map_corner(uint vpl, int side)
     return side * ivec2(vpl % VPL_MAPS_IN_A_ROW, vpl / VPL_MAPS_IN_A_ROW);
 }
 
+#ifdef VPLS_AT
+#include "radial_args.h"
+#define VPL_DISTANCES (VPLS_AT + 1)
+#define VPL_PLANES (VPLS_AT + 2)
+layout(set = 0, binding = VPLS_AT, scalar) readonly buffer vpl_buffer
+{
+    uint vpl_count;
+    uvec3 vpl_pad;
+    radial_light vpls[];
+};
+#endif
 #ifdef VPL_DISTANCES
 layout(set = 0, binding = VPL_DISTANCES) uniform sampler2D vpl_distances;
 

@@ -3,16 +3,10 @@
 #include "methods/job.h"
 #include "rsm_args.h"
 
-// Shadow maps of the suns that have beams and of the lamps: what shaders/shadow.glsl reads.
-typedef struct tyn_shadow_refs {
-    tyn_ref atlas;  // 2D D32
-    tyn_ref lights; // struct shadow_light[]
-    tyn_ref cells;  // 3D R32F: where looks at the maps are needed (light_cells_args.h)
-} tyn_shadow_refs;
-
-// {0} without surfaces, or without lights. `num_suns`: the first of frame->suns.
+// Shadow maps of the suns that have beams, the first of frame->suns, and of the lamps; in `cells` where looks at the
+// maps are needed (light_cells_args.h).
 tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
-                           tyn_shadow_refs *shadows);
+                           tyn_shadow_refs *shadows, tyn_ref *cells);
 
 // Surfaces as the camera sees them: what shaders/gbuffer.glsl reads. {0} without surfaces.
 typedef struct tyn_gbuffer_refs {

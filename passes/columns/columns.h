@@ -2,6 +2,7 @@
 // box to the cells of the lattice: along the ray to a cell's centre, with the mean length over the cell.
 #pragma once
 #include <tyndall/pass.h>
+#include "bundles.h"
 #include "scene_args.h"
 #include "ordinate_args.h"
 #include "columns_args.h"
@@ -14,13 +15,10 @@ typedef struct tyn_columns_params {
 } tyn_columns_params;
 
 enum {
-    COLUMNS_PORT_MEDIUM,  // IN buffer struct medium_block
-    COLUMNS_PORT_DENSITY, // IN 3D: density, or sigma_s in mode COEFFICIENTS
-    COLUMNS_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as the one below
-    COLUMNS_PORT_G,
-    COLUMNS_PORT_ORDINATES, // IN buffer struct ordinates_block
-    COLUMNS_PORT_COLUMNS,   // OUT buffer: what columns.glsl reads
-    COLUMNS_PORT_NODES,     // SCRATCH
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, COLUMNS), // IN
+    COLUMNS_PORT_ORDINATES,               // IN buffer struct ordinates_block
+    COLUMNS_PORT_COLUMNS,                 // OUT buffer: what columns.glsl reads
+    COLUMNS_PORT_NODES,                   // SCRATCH
     COLUMNS_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_columns;

@@ -50,22 +50,11 @@ static const tyn_binding coefficients_bindings[] = {
 };
 
 static const tyn_kernel kernels[] = {
-    [KERNEL_DENSITY] = {"density",
-                        columns_average_density_spirv,
-                        sizeof columns_average_density_spirv,
-                        sizeof(struct columns_average_args),
-                        {8, 4, 2},
-                        density_bindings,
-                        2,
-                        0},
-    [KERNEL_COEFFICIENTS] = {"coefficients",
-                             columns_average_coefficients_spirv,
-                             sizeof columns_average_coefficients_spirv,
-                             sizeof(struct columns_average_args),
-                             {8, 4, 2},
-                             coefficients_bindings,
-                             6,
-                             0},
+    [KERNEL_DENSITY] = TYN_KERNEL(columns_average_density, sizeof(struct columns_average_args), 8,
+                                  4, 2, density_bindings, 0),
+    [KERNEL_COEFFICIENTS] =
+        TYN_KERNEL(columns_average_coefficients, sizeof(struct columns_average_args), 8, 4, 2,
+                   coefficients_bindings, 0),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

@@ -4,8 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "ordinate_args.h"
 #include "columns_args.h"
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
+#define MEDIUM_AT 0
 #include "medium.glsl"
 #include "lattice.glsl"
 #include "columns_grid.glsl"
@@ -15,11 +14,11 @@ layout(push_constant, scalar) uniform push
 {
     columns_args args;
 };
-layout(binding = 2, scalar) uniform ordinates_uniform
+layout(binding = 5, scalar) uniform ordinates_uniform
 {
     ordinates_block ordinates;
 };
-layout(binding = 3, scalar) writeonly buffer node_buffer
+layout(binding = 6, scalar) writeonly buffer node_buffer
 {
     float nodes[]; // [ordinate][slice][v][u]
 };

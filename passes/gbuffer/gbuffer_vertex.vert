@@ -13,18 +13,8 @@ layout(set = 0, binding = 0, scalar) uniform camera_buffer
 {
     camera_block camera;
 };
-layout(set = 0, binding = 1, scalar) uniform surfaces_buffer
-{
-    surface_block surfaces;
-};
-layout(set = 0, binding = 2, scalar) readonly buffer triangles_buffer
-{
-    surface_triangle triangles[];
-};
-layout(set = 0, binding = 3, scalar) readonly buffer vertices_buffer
-{
-    surface_vertex vertices[];
-};
+#define GEOMETRY_AT 1
+#include "surfaces.glsl"
 
 layout(location = 0) flat out uint triangle;
 

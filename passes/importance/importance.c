@@ -11,13 +11,8 @@
 #define PORT(name) IMPORTANCE_PORT_##name
 
 static const tyn_port ports[IMPORTANCE_NUM_PORTS] = {
-    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, IMPORTANCE),
     [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
-    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
-    [PORT(SIGMA_A)] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                       .meaning = "absorption, 1/m"},
-    [PORT(G)] = {"g", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                 .meaning = "mean cosine of scattering"},
     [PORT(HISTORY)] = {"history", TYN_INOUT, TYN_BUFFER, .meaning = "struct importance_history"},
     [PORT(MAP)] = {"importance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
                    .meaning = "importance by the direction light comes from, mean 1"},
@@ -42,10 +37,9 @@ static const tyn_binding setup_bindings[] = {
     {PORT(GRID), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding cells_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},      {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},     {PORT(G), TYN_USE_SAMPLED},
-    {PORT(GRID), TYN_USE_UNIFORM},        {PORT(CELLS), TYN_USE_STORAGE_WRITE},
-    {PORT(LIGHT), TYN_USE_STORAGE_WRITE}, {PORT(TRACKS), TYN_USE_STORAGE_WRITE},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, IMPORTANCE), {PORT(GRID), TYN_USE_UNIFORM},
+    {PORT(CELLS), TYN_USE_STORAGE_WRITE},    {PORT(LIGHT), TYN_USE_STORAGE_WRITE},
+    {PORT(TRACKS), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding step_bindings[] = {
     {PORT(CELLS), TYN_USE_STORAGE_READ},

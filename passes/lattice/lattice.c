@@ -47,8 +47,7 @@ static const tyn_port ports[NUM_PORTS] = {
     [LATTICE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
                                   "struct env_block: its mean without suns enters at the box"},
     [LATTICE_PORT_GUESS] = {"guess", TYN_IN, TYN_BUFFER, 0, true, "moments to start from"},
-    [LATTICE_PORT_WALL_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
-    [LATTICE_PORT_WALL_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
+    TYN_WALLS(TYN_BUNDLE_OPTIONAL, LATTICE),
     [LATTICE_PORT_WALL_LIGHT] = {"wall_light", TYN_IN, TYN_BUFFER, 0, true,
                                  "radiance that the walls of a cell send out, W/(m^2 sr)"},
     [LATTICE_PORT_MOMENTS] =
@@ -107,9 +106,10 @@ static const tyn_binding start_bindings[] = {
     {LATTICE_PORT_WALL_LIGHT, TYN_USE_STORAGE_READ},
 };
 static const tyn_binding stencil_bindings[] = {
-    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},          {PORT_STENCIL_LO, TYN_USE_STORAGE_WRITE},
-    {PORT_STENCIL_HI, TYN_USE_STORAGE_WRITE},       {LATTICE_PORT_WALL_LINKS, TYN_USE_TEXELS_UINT},
-    {LATTICE_PORT_WALL_CELLS, TYN_USE_TEXELS_VEC4},
+    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
+    {PORT_STENCIL_LO, TYN_USE_STORAGE_WRITE},
+    {PORT_STENCIL_HI, TYN_USE_STORAGE_WRITE},
+    TYN_WALLS(TYN_BUNDLE_BIND, LATTICE),
 };
 static const tyn_binding stencil_coarse_bindings[] = {
     {PORT_STENCIL_LO, TYN_USE_STORAGE_WRITE},
@@ -137,8 +137,7 @@ static const tyn_binding collect_bindings[] = {
     {PORT_ARRIVED, TYN_USE_TEXELS_FLOAT},
     {LATTICE_PORT_WALL_LIGHT, TYN_USE_STORAGE_READ},
     {LATTICE_PORT_WALL_POWER, TYN_USE_STORAGE_WRITE},
-    {LATTICE_PORT_WALL_LINKS, TYN_USE_TEXELS_UINT},
-    {LATTICE_PORT_WALL_CELLS, TYN_USE_TEXELS_VEC4},
+    TYN_WALLS(TYN_BUNDLE_BIND, LATTICE),
     {PORT_STENCIL_HI, TYN_USE_TEXELS_FLOAT},
 };
 static const tyn_binding relax_bindings[] = {

@@ -15,6 +15,7 @@
 // f counts as not scattered (Joseph, Wiscombe and Weinman 1976).
 #pragma once
 #include <tyndall/pass.h>
+#include "bundles.h"
 #include "scene_args.h"
 
 // Cells along the longest side, and of all: long and flat media may have more along it than others.
@@ -50,11 +51,7 @@ typedef struct tyn_lattice_cells_params {
 } tyn_lattice_cells_params;
 
 enum {
-    LATTICE_CELLS_PORT_MEDIUM,  // IN buffer struct medium_block
-    LATTICE_CELLS_PORT_DENSITY, // IN 3D: density, or sigma_s in mode COEFFICIENTS
-    LATTICE_CELLS_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as the two below
-    LATTICE_CELLS_PORT_G,
-    LATTICE_CELLS_PORT_EMISSION,
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, LATTICE_CELLS), // IN
     LATTICE_CELLS_PORT_CELLS, // OUT 3D RGBA32F, channels stacked along z: sigma_s', sigma_a, g', emission
     LATTICE_CELLS_NUM_PORTS,
 };
@@ -69,19 +66,12 @@ typedef struct tyn_lattice_source_params {
 } tyn_lattice_source_params;
 
 enum {
-    LATTICE_SOURCE_PORT_MEDIUM,  // IN buffer struct medium_block
-    LATTICE_SOURCE_PORT_LIGHTS,  // IN buffer struct light_block[]
-    LATTICE_SOURCE_PORT_CELLS,   // IN 3D
-    LATTICE_SOURCE_PORT_DENSITY, // IN 3D: density, or sigma_s in mode COEFFICIENTS
-    LATTICE_SOURCE_PORT_G,       // IN optional 3D: mode COEFFICIENTS
-    LATTICE_SOURCE_PORT_BEAMS,   // IN buffer struct beam_block[]
-    LATTICE_SOURCE_PORT_COLUMN,  // IN 3D: column, or tau_s in mode COEFFICIENTS
-    LATTICE_SOURCE_PORT_TAU_A,   // IN optional 3D: mode COEFFICIENTS, as the one below
-    LATTICE_SOURCE_PORT_TAU_P,
-    LATTICE_SOURCE_PORT_WALL_LINKS, // IN optional buffers, of walls: a cell has the light of its own side
-    LATTICE_SOURCE_PORT_WALL_CELLS,
-    LATTICE_SOURCE_PORT_SHADOW_ATLAS, // IN optional 2D, of shadow_map: surfaces stand before the suns
-    LATTICE_SOURCE_PORT_SHADOWS,      // IN optional buffer
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, LATTICE_SOURCE),  // IN
+    LATTICE_SOURCE_PORT_LIGHTS,                   // IN buffer struct light_block[]
+    LATTICE_SOURCE_PORT_CELLS,                    // IN 3D
+    TYN_BEAMS(TYN_BUNDLE_ENUM, LATTICE_SOURCE),   // IN
+    TYN_WALLS(TYN_BUNDLE_ENUM, LATTICE_SOURCE),   // IN optional
+    TYN_SHADOWS(TYN_BUNDLE_ENUM, LATTICE_SOURCE), // IN optional
     LATTICE_SOURCE_PORT_SOURCE, // OUT 3D RGBA32F, stacked: sum E T' over the suns, sum E T' direction (W/m^2)
     LATTICE_SOURCE_PORT_POWER, // OUT buffer: per sun the power that enters and that its beam loses, for balance
     LATTICE_SOURCE_PORT_SUNLIT, // SCRATCH
@@ -120,20 +110,13 @@ typedef struct tyn_lattice_lamps_params {
 } tyn_lattice_lamps_params;
 
 enum {
-    LATTICE_LAMPS_PORT_MEDIUM,  // IN buffer struct medium_block
-    LATTICE_LAMPS_PORT_CELLS,   // IN 3D, of lattice_cells
-    LATTICE_LAMPS_PORT_DENSITY, // IN 3D: density, or sigma_s in mode COEFFICIENTS
-    LATTICE_LAMPS_PORT_G,       // IN optional 3D: mode COEFFICIENTS
-    LATTICE_LAMPS_PORT_RADIALS, // IN buffer struct radial_block
-    LATTICE_LAMPS_PORT_COLUMN,  // IN 3D: column, or tau_s in mode COEFFICIENTS; of radial_beam
-    LATTICE_LAMPS_PORT_TAU_A,   // IN optional 3D: mode COEFFICIENTS, as the one below
-    LATTICE_LAMPS_PORT_TAU_P,
-    LATTICE_LAMPS_PORT_WALL_LINKS, // IN optional buffers, of walls
-    LATTICE_LAMPS_PORT_WALL_CELLS,
-    LATTICE_LAMPS_PORT_SHADOW_ATLAS,  // IN optional 2D, of shadow_map, as the next
-    LATTICE_LAMPS_PORT_SHADOWS,       // IN optional buffer
-    LATTICE_LAMPS_PORT_VPL_DISTANCES, // IN optional 2D, of vpl
-    LATTICE_LAMPS_PORT_ROOMS,         // IN optional buffer, rooms.h: with walls and maps of VPLs
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, LATTICE_LAMPS),  // IN
+    LATTICE_LAMPS_PORT_CELLS,                    // IN 3D, of lattice_cells
+    TYN_RADIALS(TYN_BUNDLE_ENUM, LATTICE_LAMPS), // IN
+    TYN_WALLS(TYN_BUNDLE_ENUM, LATTICE_LAMPS),   // IN optional
+    TYN_SHADOWS(TYN_BUNDLE_ENUM, LATTICE_LAMPS), // IN optional
+    LATTICE_LAMPS_PORT_VPL_DISTANCES,            // IN optional 2D, of vpl
+    LATTICE_LAMPS_PORT_ROOMS,  // IN optional buffer, rooms.h: with walls and maps of VPLs
     LATTICE_LAMPS_PORT_OTHERS, // IN optional 3D: `source` of suns and ordinates, which is added to
     LATTICE_LAMPS_PORT_SOURCE, // OUT 3D RGBA32F, stacked: fluence and flux of unscattered light, W/m^2
     LATTICE_LAMPS_PORT_VPL_LIGHT, // OUT 3D RGBA32F, only with `vpls`: what of it is theirs
@@ -159,8 +142,7 @@ enum {
     LATTICE_PORT_SOURCE,      // IN optional 3D, of the last of lattice_source, _ordinates, _lamps
     LATTICE_PORT_ENVIRONMENT, // IN optional buffer struct env_block: `sky` enters from all sides
     LATTICE_PORT_GUESS,       // IN optional buffer, of lattice_recall: where the solve starts
-    LATTICE_PORT_WALL_LINKS,  // IN optional buffer, of walls: light stops at them and is reflected
-    LATTICE_PORT_WALL_CELLS,  // IN optional buffer struct wall_cell[], of walls; both or neither
+    TYN_WALLS(TYN_BUNDLE_ENUM, LATTICE), // IN optional
     LATTICE_PORT_WALL_LIGHT, // IN optional buffer vec3[cell]: radiance that a cell's walls send out beside
                              // what they reflect of the lattice's light, RGB, W/(m^2 sr)
     LATTICE_PORT_MOMENTS, // OUT 3D RGBA32F, stacked: fluence phi and net flux (x, y, z) of the light that

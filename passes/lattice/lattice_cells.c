@@ -5,12 +5,7 @@
 #include <math.h>
 
 static const tyn_port ports[LATTICE_CELLS_NUM_PORTS] = {
-    [LATTICE_CELLS_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
-    [LATTICE_CELLS_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, false,
-                                    "density, or sigma_s in mode COEFFICIENTS"},
-    [LATTICE_CELLS_PORT_SIGMA_A] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, 0, true, "1/m"},
-    [LATTICE_CELLS_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "mean cosine"},
-    [LATTICE_CELLS_PORT_EMISSION] = {"emission", TYN_IN, TYN_IMAGE_3D, 0, true, "W/(m^3 sr)"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, LATTICE_CELLS),
     [LATTICE_CELLS_PORT_CELLS] = {"cells", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                                   false,
                                   "cell means of sigma_s', sigma_a (1/m), g', emission "
@@ -18,23 +13,12 @@ static const tyn_port ports[LATTICE_CELLS_NUM_PORTS] = {
 };
 
 static const tyn_binding bindings[] = {
-    {LATTICE_CELLS_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {LATTICE_CELLS_PORT_DENSITY, TYN_USE_SAMPLED},
-    {LATTICE_CELLS_PORT_SIGMA_A, TYN_USE_SAMPLED},
-    {LATTICE_CELLS_PORT_G, TYN_USE_SAMPLED},
-    {LATTICE_CELLS_PORT_EMISSION, TYN_USE_SAMPLED},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, LATTICE_CELLS),
     {LATTICE_CELLS_PORT_CELLS, TYN_USE_STORAGE_WRITE},
 };
 
 static const tyn_kernel kernels[] = {
-    {"average",
-     lattice_cells_spirv,
-     sizeof lattice_cells_spirv,
-     sizeof(struct lattice_cells_args),
-     {8, 4, 2},
-     bindings,
-     6,
-     1},
+    TYN_KERNEL(lattice_cells, sizeof(struct lattice_cells_args), 8, 4, 2, bindings, 1),
 };
 
 enum { MAX_SAMPLES = 8 }; // along each axis of a cell

@@ -6,11 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define MEDIUM_SIGMA_A 2
-#define MEDIUM_G 3
-#define MEDIUM_EMISSION 4
+#define MEDIUM_AT 0
 #include "medium.glsl"
 #include "lattice.glsl"
 

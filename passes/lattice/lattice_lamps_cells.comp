@@ -6,17 +6,13 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define MEDIUM_G 2
-#define RADIAL_BLOCK 3
-#define RADIAL_COLUMN 4
-#define RADIAL_TAU_A 5
-#define RADIAL_TAU_P 6
-#define WALLS_LINKS 10
-#define WALLS_CELLS 11
-#define SHADOW_ATLAS 12
-#define SHADOW_LIGHTS 13
+#define MEDIUM_AT 0
+#define RADIALS_AT 5
+#define RADIALS_STORAGE
+#define WALLS_AT 12
+#define WALLS_STORAGE
+#define SHADOWS_AT 14
+#define SHADOWS_STORAGE
 #define RADIAL_SHADOWS
 #include "medium.glsl"
 #include "lattice.glsl"
@@ -30,12 +26,12 @@ layout(push_constant, scalar) uniform push
 {
     lattice_lamps_args args;
 };
-layout(binding = 7) uniform sampler3D cells;
+layout(binding = 9) uniform sampler3D cells;
 // [group][channel][z][y][x]
-layout(binding = 8, rgba32f) uniform writeonly image3D lit;
+layout(binding = 10, rgba32f) uniform writeonly image3D lit;
 
 // The fluence alone, as if nothing stood before the lights: what their power is balanced by.
-layout(binding = 9, r32f) uniform writeonly image3D unshadowed;
+layout(binding = 11, r32f) uniform writeonly image3D unshadowed;
 
 layout(constant_id = 1) const uint num_channels = 3;
 layout(constant_id = 2) const uint walls = 0;

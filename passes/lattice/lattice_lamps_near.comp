@@ -4,18 +4,12 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define MEDIUM_G 2
-#define RADIAL_UNIFORM
-#define RADIAL_BLOCK 3
-#define RADIAL_COLUMN 4
-#define RADIAL_TAU_A 5
-#define RADIAL_TAU_P 6
-#define WALLS_LINKS 10
-#define WALLS_CELLS 11
-#define VPL_DISTANCES 12
-#define LATTICE_ROOMS 13
+#define MEDIUM_AT 0
+#define RADIALS_AT 5
+#define WALLS_AT 12
+#define WALLS_STORAGE
+#define VPL_DISTANCES 14
+#define LATTICE_ROOMS 15
 #include "medium.glsl"
 #include "lattice.glsl"
 #include "lattice_sweep.glsl"
@@ -29,9 +23,9 @@ layout(push_constant, scalar) uniform push
 {
     lattice_lamps_args args;
 };
-layout(binding = 7) uniform sampler3D cells;
-layout(binding = 8, rgba32f) uniform image3D lit; // as in lattice_lamps_cells.comp
-layout(binding = 9, r32f) uniform image3D unshadowed;
+layout(binding = 9) uniform sampler3D cells;
+layout(binding = 10, rgba32f) uniform image3D lit; // as in lattice_lamps_cells.comp
+layout(binding = 11, r32f) uniform image3D unshadowed;
 
 layout(constant_id = 1) const uint num_channels = 3;
 layout(constant_id = 2) const uint shadowed = 0;

@@ -10,11 +10,8 @@
 #include "lattice_args.h"
 #include "quotient.glsl"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 2 // the medium itself is not read
-#define RADIAL_BLOCK 1
-#define RADIAL_COLUMN 2
-#define RADIAL_TAU_A 3
-#define RADIAL_TAU_P 4
+#define RADIALS_AT 1
+#define RADIALS_STORAGE
 #include "medium.glsl"
 #include "radial.glsl"
 #include "lattice.glsl"

@@ -9,16 +9,9 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "lattice_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 2 // the medium itself is not read
-#define RADIAL_UNIFORM
-#define RADIAL_BLOCK 1
-#define RADIAL_COLUMN 2
-#define RADIAL_TAU_A 3
-#define RADIAL_TAU_P 4
+#define RADIALS_AT 1
 #define VPL_DISTANCES 8
-#define WALLS_LINKS 9
-#define WALLS_CELLS 10
-#define WALLS_TEXELS
+#define WALLS_AT 9
 #define LATTICE_ROOMS 11
 #include "medium.glsl"
 #include "lattice.glsl"

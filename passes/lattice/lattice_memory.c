@@ -58,22 +58,10 @@ static const tyn_binding recall_bindings[] = {
 };
 
 static const tyn_kernel recall_kernels[NUM_RECALL_KERNELS] = {
-    [KERNEL_POWER] = {"power",
-                      lattice_recall_power_spirv,
-                      sizeof lattice_recall_power_spirv,
-                      sizeof(struct lattice_recall_args),
-                      {LATTICE_SUN_GROUP, 1, 1},
-                      power_bindings,
-                      4,
-                      0},
-    [KERNEL_RECALL] = {"recall",
-                       lattice_recall_spirv,
-                       sizeof lattice_recall_spirv,
-                       sizeof(struct lattice_recall_args),
-                       {8, 4, 2},
-                       recall_bindings,
-                       4,
-                       0},
+    [KERNEL_POWER] = TYN_KERNEL(lattice_recall_power, sizeof(struct lattice_recall_args),
+                                LATTICE_SUN_GROUP, 1, 1, power_bindings, 0),
+    [KERNEL_RECALL] =
+        TYN_KERNEL(lattice_recall, sizeof(struct lattice_recall_args), 8, 4, 2, recall_bindings, 0),
 };
 
 static tyn_result declare_recall(tyn_builder *b, const void *params)
@@ -128,14 +116,7 @@ static const tyn_binding keep_bindings[] = {
 };
 
 static const tyn_kernel keep_kernels[] = {
-    {"keep",
-     lattice_keep_spirv,
-     sizeof lattice_keep_spirv,
-     sizeof(struct lattice_recall_args),
-     {8, 4, 2},
-     keep_bindings,
-     3,
-     0},
+    TYN_KERNEL(lattice_keep, sizeof(struct lattice_recall_args), 8, 4, 2, keep_bindings, 0),
 };
 
 static tyn_result declare_keep(tyn_builder *b, const void *params)

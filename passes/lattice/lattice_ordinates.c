@@ -28,14 +28,7 @@ static const tyn_binding bindings[] = {
 };
 
 static const tyn_kernel kernels[] = {
-    {"ordinates",
-     lattice_ordinates_spirv,
-     sizeof lattice_ordinates_spirv,
-     sizeof(struct lattice_ordinates_args),
-     {8, 4, 2},
-     bindings,
-     6,
-     2},
+    TYN_KERNEL(lattice_ordinates, sizeof(struct lattice_ordinates_args), 8, 4, 2, bindings, 2),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

@@ -13,7 +13,6 @@
 #include "ordinate_args.h"
 #include "lattice_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 3 // the medium itself is not read
 #define COLUMNS_BUFFER 2
 #include "medium.glsl"
 #include "columns.glsl"

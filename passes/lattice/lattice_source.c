@@ -7,22 +7,12 @@
 #include <math.h>
 
 static const tyn_port ports[LATTICE_SOURCE_NUM_PORTS] = {
-    [LATTICE_SOURCE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, LATTICE_SOURCE),
     [LATTICE_SOURCE_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "struct light_block[]"},
     [LATTICE_SOURCE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    [LATTICE_SOURCE_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, false,
-                                     "density, or sigma_s in mode COEFFICIENTS"},
-    [LATTICE_SOURCE_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "mean cosine"},
-    [LATTICE_SOURCE_PORT_BEAMS] = {"beams", TYN_IN, TYN_BUFFER, 0, false, "struct beam_block[]"},
-    [LATTICE_SOURCE_PORT_COLUMN] = {"column", TYN_IN, TYN_IMAGE_3D, 0, false,
-                                    "depth along the suns, or that of sigma_s"},
-    [LATTICE_SOURCE_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "of absorption"},
-    [LATTICE_SOURCE_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true, "of sigma_s'"},
-    [LATTICE_SOURCE_PORT_WALL_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
-    [LATTICE_SOURCE_PORT_WALL_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
-    [LATTICE_SOURCE_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, 0, true,
-                                          "of shadow_map"},
-    [LATTICE_SOURCE_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, true, "of shadow_map"},
+    TYN_BEAMS(TYN_BUNDLE_IN, LATTICE_SOURCE),
+    TYN_WALLS(TYN_BUNDLE_OPTIONAL, LATTICE_SOURCE),
+    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, LATTICE_SOURCE),
     [LATTICE_SOURCE_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                                     false,
                                     "unscattered fluence and flux of the suns, W/m^2; channels "
@@ -38,27 +28,17 @@ static const tyn_port ports[LATTICE_SOURCE_NUM_PORTS] = {
 enum { KERNEL_BEAM, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
 
 static const tyn_binding beam_bindings[] = {
-    {LATTICE_SOURCE_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {LATTICE_SOURCE_PORT_DENSITY, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_G, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_BEAMS, TYN_USE_UNIFORM},
-    {LATTICE_SOURCE_PORT_COLUMN, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_TAU_A, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_TAU_P, TYN_USE_SAMPLED},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, LATTICE_SOURCE),
+    TYN_BEAMS(TYN_BUNDLE_BIND, LATTICE_SOURCE),
     {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_STORAGE_WRITE},
-    {LATTICE_SOURCE_PORT_WALL_LINKS, TYN_USE_STORAGE_READ},
-    {LATTICE_SOURCE_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
-    {LATTICE_SOURCE_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_SHADOWS, TYN_USE_STORAGE_READ},
+    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, LATTICE_SOURCE),
+    TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, LATTICE_SOURCE),
     {LATTICE_SOURCE_PORT_CELLS, TYN_USE_SAMPLED},
 };
 
 static const tyn_binding sum_bindings[] = {
     {LATTICE_SOURCE_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {LATTICE_SOURCE_PORT_BEAMS, TYN_USE_STORAGE_READ},
-    {LATTICE_SOURCE_PORT_COLUMN, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_TAU_A, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_TAU_P, TYN_USE_SAMPLED},
+    TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, LATTICE_SOURCE),
     {LATTICE_SOURCE_PORT_CELLS, TYN_USE_SAMPLED},
     {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_SAMPLED},
     {LATTICE_SOURCE_PORT_POWER, TYN_USE_STORAGE_WRITE},
@@ -72,30 +52,12 @@ static const tyn_binding source_bindings[] = {
 };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_BEAM] = {"beam",
-                     lattice_source_beam_spirv,
-                     sizeof lattice_source_beam_spirv,
-                     sizeof(struct lattice_source_args),
-                     {8, 4, 2},
-                     beam_bindings,
-                     13,
-                     4},
-    [KERNEL_SUM] = {"sum",
-                    lattice_source_sum_spirv,
-                    sizeof lattice_source_sum_spirv,
-                    sizeof(struct lattice_source_args),
-                    {LATTICE_SUN_GROUP, 1, 1},
-                    sum_bindings,
-                    8,
-                    1},
-    [KERNEL_SOURCE] = {"source",
-                       lattice_source_spirv,
-                       sizeof lattice_source_spirv,
-                       sizeof(struct lattice_source_args),
-                       {8, 4, 2},
-                       source_bindings,
-                       4,
-                       0},
+    [KERNEL_BEAM] = TYN_KERNEL(lattice_source_beam, sizeof(struct lattice_source_args), 8, 4, 2,
+                               beam_bindings, 4),
+    [KERNEL_SUM] = TYN_KERNEL(lattice_source_sum, sizeof(struct lattice_source_args),
+                              LATTICE_SUN_GROUP, 1, 1, sum_bindings, 1),
+    [KERNEL_SOURCE] =
+        TYN_KERNEL(lattice_source, sizeof(struct lattice_source_args), 8, 4, 2, source_bindings, 0),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

@@ -13,22 +13,16 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define MEDIUM_G 2
-#define BEAM_BLOCKS 3
-#define BEAM_UNIFORM
-#define BEAM_COLUMN 4
-#define BEAM_TAU_A 5
-#define BEAM_TAU_P 6
+#define MEDIUM_AT 0
+#define BEAMS_AT 5
 #include "medium.glsl"
 #include "beam.glsl"
 #include "lattice.glsl"
-#define WALLS_LINKS 8
-#define WALLS_CELLS 9
+#define WALLS_AT 10
+#define WALLS_STORAGE
 #include "lattice_walls.glsl"
-#define SHADOW_ATLAS 10
-#define SHADOW_LIGHTS 11
+#define SHADOWS_AT 12
+#define SHADOWS_STORAGE
 #include "shadow.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
@@ -37,9 +31,9 @@ layout(push_constant, scalar) uniform push
     lattice_source_args args;
 };
 // Suns stacked along z: T' per colour channel; a = the part of that light which no surface stops.
-layout(binding = 7, rgba32f) uniform writeonly image3D sunlit;
+layout(binding = 9, rgba32f) uniform writeonly image3D sunlit;
 
-layout(binding = 12) uniform sampler3D cells;
+layout(binding = 14) uniform sampler3D cells;
 
 layout(constant_id = 1) const uint num_channels = 3;
 layout(constant_id = 2) const uint walls = 0;
@@ -121,6 +115,7 @@ void main()
                     continue;
                 }
                 medium_point m = medium_sample(row + vec3(s, 0.0, 0.0));
+                m.sigma_a = medium_mode == TYN_MEDIUM_DENSITY ? m.sigma_a : vec3(0.0); // left out of unequal media
                 similarity_clamp(m.sigma_s, m.g);
                 vec3 scaled = (1.0 - delta_fraction(m.g)) * m.sigma_s;
                 vec3 w = scaled + 1e-6 * m.sigma_a;

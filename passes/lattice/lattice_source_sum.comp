@@ -8,11 +8,8 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 2 // the medium itself is not read
-#define BEAM_BLOCKS 1
-#define BEAM_COLUMN 2
-#define BEAM_TAU_A 3
-#define BEAM_TAU_P 4
+#define BEAMS_AT 1
+#define BEAMS_STORAGE
 #include "medium.glsl"
 #include "beam.glsl"
 #include "lattice.glsl"

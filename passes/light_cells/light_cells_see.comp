@@ -6,7 +6,6 @@
 
 #define SHADOW_BLOCKS 0
 #define SHADOW_LIGHTS 1
-#define SHADOW_UNIFORM
 #include "shadow_region.glsl"
 
 layout(constant_id = 0) const uint num_suns = 1u;

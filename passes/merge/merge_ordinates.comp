@@ -3,12 +3,11 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 2 // not read
 #include "medium.glsl"
-#define COLUMNS_BUFFER 5
+#define COLUMNS_BUFFER 4
 #include "columns.glsl"
-#define TMS 6
-#define SCATTER_LUT_BLOCK 7
+#define TMS 5
+#define SCATTER_LUT_BLOCK 6
 #include "tms.glsl"
 #include "merge_args.h"
 #include "ordinate_args.h"
@@ -25,12 +24,12 @@ layout(binding = 1, scalar) uniform camera_uniform
 {
     camera_block camera;
 };
-layout(binding = 3) uniform sampler3D cells;
-layout(binding = 4, scalar) buffer field_buffer
+layout(binding = 2) uniform sampler3D cells;
+layout(binding = 3, scalar) buffer field_buffer
 {
     float field[];
 };
-layout(binding = 8, scalar) uniform ordinates_uniform
+layout(binding = 7, scalar) uniform ordinates_uniform
 {
     ordinates_block ordinates;
 };

@@ -9,18 +9,15 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 2 // not read
 #include "medium.glsl"
-#define RADIAL_BLOCK 4
-#define RADIAL_COLUMN 5
-#define RADIAL_TAU_A 6
-#define RADIAL_TAU_P 7
+#define RADIALS_AT 4
+#define RADIALS_STORAGE
 #define SCATTER_LUT 8
 #define SCATTER_LUT_BLOCK 9
 #define SCATTER_LUT_SOFT false
 #include "scatter_lut.glsl"
-#define SHADOW_ATLAS 10
-#define SHADOW_LIGHTS 11
+#define SHADOWS_AT 10
+#define SHADOWS_STORAGE
 #include "shadow.glsl"
 #include "radial.glsl"
 #include "merge_args.h"

@@ -67,22 +67,8 @@ static const tyn_binding resolve_bindings[] = {
 };
 
 static const tyn_kernel image_kernels[] = {
-    {"path_trace",
-     path_trace_spirv,
-     sizeof path_trace_spirv,
-     sizeof(struct path_args),
-     {64, 1, 1},
-     trace_bindings,
-     sizeof trace_bindings / sizeof *trace_bindings,
-     TYN_PATH_NUM_SPEC},
-    {"path_resolve",
-     path_resolve_spirv,
-     sizeof path_resolve_spirv,
-     sizeof(struct path_resolve_args),
-     {64, 1, 1},
-     resolve_bindings,
-     sizeof resolve_bindings / sizeof *resolve_bindings,
-     0},
+    TYN_KERNEL(path_trace, sizeof(struct path_args), 64, 1, 1, trace_bindings, TYN_PATH_NUM_SPEC),
+    TYN_KERNEL(path_resolve, sizeof(struct path_resolve_args), 64, 1, 1, resolve_bindings, 0),
 };
 
 static const tyn_port probe_ports[PATH_PROBE_NUM_PORTS] = {
@@ -108,22 +94,9 @@ static const tyn_binding probe_resolve_bindings[] = {
 };
 
 static const tyn_kernel probe_kernels[] = {
-    {"path_probe",
-     path_probe_spirv,
-     sizeof path_probe_spirv,
-     sizeof(struct path_args),
-     {64, 1, 1},
-     probe_bindings,
-     sizeof probe_bindings / sizeof *probe_bindings,
-     TYN_PATH_NUM_SPEC},
-    {"path_probe_resolve",
-     path_probe_resolve_spirv,
-     sizeof path_probe_resolve_spirv,
-     sizeof(struct path_resolve_args),
-     {64, 1, 1},
-     probe_resolve_bindings,
-     sizeof probe_resolve_bindings / sizeof *probe_resolve_bindings,
-     0},
+    TYN_KERNEL(path_probe, sizeof(struct path_args), 64, 1, 1, probe_bindings, TYN_PATH_NUM_SPEC),
+    TYN_KERNEL(path_probe_resolve, sizeof(struct path_resolve_args), 64, 1, 1,
+               probe_resolve_bindings, 0),
 };
 
 // ---- splitting the work -----------------------------------------------------------------------

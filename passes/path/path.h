@@ -1,6 +1,7 @@
 // path.h -- the unbiased path tracer: images and the light field at points.
 #pragma once
 #include <tyndall/pass.h>
+#include "bundles.h"
 
 // Of both passes. What is not in the parameter table is set by the method.
 typedef struct tyn_path_params {
@@ -46,14 +47,9 @@ enum {
     PATH_PORT_ENVIRONMENT, // IN buffer struct env_block, optional
     PATH_PORT_ENV_MAP,     // IN 2D, optional
     PATH_PORT_ENV_TABLE, // IN buffer struct env_table_block and cells, optional: methods/env_cdf.h
-    PATH_PORT_SURFACES,  // IN buffer struct surface_block; this and the rest are optional
-    PATH_PORT_VERTICES,  // IN buffer struct surface_vertex[]
-    PATH_PORT_TRIANGLES, // IN buffer struct surface_triangle[]
-    PATH_PORT_MATERIALS, // IN buffer struct surface_material[]
-    PATH_PORT_TEXTURES,  // IN buffer struct surface_texture[]
-    PATH_PORT_TEXELS,    // IN buffer uint[]
-    PATH_PORT_NODES,     // IN buffer struct surface_node[]; without it all triangles are tried
-    PATH_PORT_EMITTERS,  // IN buffer struct surface_table and cells: methods/surface_tables.h
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, PATH),  // IN optional; without nodes all triangles are tried
+    TYN_MATERIALS(TYN_BUNDLE_ENUM, PATH), // IN optional
+    PATH_PORT_EMITTERS, // IN buffer struct surface_table and cells: methods/surface_tables.h
     PATH_NUM_SCENE_PORTS,
 };
 
@@ -118,13 +114,10 @@ typedef struct tyn_path_distance_params {
     uint32_t width, height; // of the picture
 } tyn_path_distance_params;
 enum {
-    PATH_DISTANCE_PORT_CAMERA,   // IN buffer struct camera_block
-    PATH_DISTANCE_PORT_SURFACES, // IN buffers, surface_args.h
-    PATH_DISTANCE_PORT_VERTICES,
-    PATH_DISTANCE_PORT_TRIANGLES,
-    PATH_DISTANCE_PORT_NODES,     // optional
-    PATH_DISTANCE_PORT_RADIANCE,  // OUT 2D RG32UI: none, packed_colour.glsl
-    PATH_DISTANCE_PORT_DISTANCES, // OUT 2D R32F, m; 0: none
+    PATH_DISTANCE_PORT_CAMERA,                    // IN buffer struct camera_block
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, PATH_DISTANCE), // IN
+    PATH_DISTANCE_PORT_RADIANCE,                  // OUT 2D RG32UI: none, packed_colour.glsl
+    PATH_DISTANCE_PORT_DISTANCES,                 // OUT 2D R32F, m; 0: none
     PATH_DISTANCE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_path_distance;

@@ -31,22 +31,9 @@ static const tyn_binding sum_bindings[] = {
 };
 
 static const tyn_kernel kernels[] = {
-    {"path_balance",
-     path_balance_spirv,
-     sizeof path_balance_spirv,
-     sizeof(struct path_args),
-     {64, 1, 1},
-     trace_bindings,
-     sizeof trace_bindings / sizeof *trace_bindings,
-     TYN_PATH_NUM_SPEC},
-    {"path_balance_sum",
-     path_balance_sum_spirv,
-     sizeof path_balance_sum_spirv,
-     sizeof(struct path_resolve_args),
-     {TYN_PATH_BALANCE_VALUES, 1, 1},
-     sum_bindings,
-     sizeof sum_bindings / sizeof *sum_bindings,
-     0},
+    TYN_KERNEL(path_balance, sizeof(struct path_args), 64, 1, 1, trace_bindings, TYN_PATH_NUM_SPEC),
+    TYN_KERNEL(path_balance_sum, sizeof(struct path_resolve_args), TYN_PATH_BALANCE_VALUES, 1, 1,
+               sum_bindings, 0),
 };
 
 uint64_t tyn_path_balance_state_size(void)

@@ -4,10 +4,7 @@
 
 static const tyn_port ports[PATH_DISTANCE_NUM_PORTS] = {
     {"camera", TYN_IN, TYN_BUFFER, 0, false, "rays of the pixels"},
-    {"surfaces", TYN_IN, TYN_BUFFER, 0, false, "frame and box of the triangles"},
-    {"vertices", TYN_IN, TYN_BUFFER, 0, false, "of the triangles"},
-    {"triangles", TYN_IN, TYN_BUFFER, 0, false, "in the hierarchy's order"},
-    {"nodes", TYN_IN, TYN_BUFFER, 0, true, "hierarchy of the triangles"},
+    TYN_GEOMETRY(TYN_BUNDLE_IN, PATH_DISTANCE),
     {"radiance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT, false,
      "none: surfaces as the ray march takes them, in the dark"},
     {"distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false,
@@ -16,22 +13,12 @@ static const tyn_port ports[PATH_DISTANCE_NUM_PORTS] = {
 
 static const tyn_binding bindings[] = {
     {PATH_DISTANCE_PORT_CAMERA, TYN_USE_UNIFORM, false},
-    {PATH_DISTANCE_PORT_SURFACES, TYN_USE_UNIFORM, false},
-    {PATH_DISTANCE_PORT_VERTICES, TYN_USE_STORAGE_READ, false},
-    {PATH_DISTANCE_PORT_TRIANGLES, TYN_USE_STORAGE_READ, false},
-    {PATH_DISTANCE_PORT_NODES, TYN_USE_STORAGE_READ, false},
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, PATH_DISTANCE),
     {PATH_DISTANCE_PORT_RADIANCE, TYN_USE_STORAGE_WRITE, false},
     {PATH_DISTANCE_PORT_DISTANCES, TYN_USE_STORAGE_WRITE, false},
 };
 
-static const tyn_kernel kernel = {"path_distance",
-                                  path_distance_spirv,
-                                  sizeof path_distance_spirv,
-                                  0,
-                                  {8, 8, 1},
-                                  bindings,
-                                  sizeof bindings / sizeof *bindings,
-                                  0};
+static const tyn_kernel kernel = TYN_KERNEL(path_distance, 0, 8, 8, 1, bindings, 0);
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

@@ -9,10 +9,8 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0, scalar) uniform camera_uniform { camera_block camera; };
-layout(set = 0, binding = 1, scalar) uniform surfaces_uniform { surface_block surfaces; };
-layout(set = 0, binding = 2, scalar) readonly buffer vertices_buffer { surface_vertex vertices[]; };
-layout(set = 0, binding = 3, scalar) readonly buffer triangles_buffer { surface_triangle triangles[]; };
-layout(set = 0, binding = 4, scalar) readonly buffer nodes_buffer { uvec4 nodes[]; };
+#define GEOMETRY_AT 1
+#include "surfaces.glsl"
 layout(set = 0, binding = 5, rg32ui) uniform writeonly uimage2D radiance_image;
 layout(set = 0, binding = 6, r32f) uniform writeonly image2D distance_image;
 

@@ -27,22 +27,9 @@ static const tyn_binding sum_bindings[] = {
 };
 
 static const tyn_kernel kernels[] = {
-    {"path_fluxes",
-     path_fluxes_spirv,
-     sizeof path_fluxes_spirv,
-     sizeof(struct path_args),
-     {64, 1, 1},
-     trace_bindings,
-     sizeof trace_bindings / sizeof *trace_bindings,
-     TYN_PATH_NUM_SPEC},
-    {"path_fluxes_sum",
-     path_fluxes_sum_spirv,
-     sizeof path_fluxes_sum_spirv,
-     sizeof(struct path_fluxes_sum_args),
-     {TYN_PATH_FLUX_LANES, 1, 1},
-     sum_bindings,
-     sizeof sum_bindings / sizeof *sum_bindings,
-     0},
+    TYN_KERNEL(path_fluxes, sizeof(struct path_args), 64, 1, 1, trace_bindings, TYN_PATH_NUM_SPEC),
+    TYN_KERNEL(path_fluxes_sum, sizeof(struct path_fluxes_sum_args), TYN_PATH_FLUX_LANES, 1, 1,
+               sum_bindings, 0),
 };
 
 uint64_t tyn_path_fluxes_state_size(void)

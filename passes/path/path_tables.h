@@ -13,13 +13,8 @@
     {"environment", TYN_IN, TYN_BUFFER, 0, true, "the surroundings"},                              \
     {"env_map", TYN_IN, TYN_IMAGE_2D, 0, true, "radiance of the surroundings, W/(m^2 sr)"},        \
     {"env_table", TYN_IN, TYN_BUFFER, 0, true, "alias table of the map's brightness"},             \
-    {"surfaces", TYN_IN, TYN_BUFFER, 0, true, "frame and box of the triangles"},                   \
-    {"vertices", TYN_IN, TYN_BUFFER, 0, true, "of the triangles"},                                 \
-    {"triangles", TYN_IN, TYN_BUFFER, 0, true, "in the hierarchy's order"},                        \
-    {"materials", TYN_IN, TYN_BUFFER, 0, true, "albedo and emission"},                             \
-    {"textures", TYN_IN, TYN_BUFFER, 0, true, "where each texture's texels are"},                  \
-    {"texels", TYN_IN, TYN_BUFFER, 0, true, "of all textures"},                                    \
-    {"nodes", TYN_IN, TYN_BUFFER, 0, true, "hierarchy of the triangles"},                          \
+    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, PATH),                                                       \
+    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, PATH),                                                      \
     {"emitters", TYN_IN, TYN_BUFFER, 0, true, "alias table of the emissive triangles' power"}
 
 #define PATH_SCENE_BINDING_ROWS                                                                    \
@@ -31,13 +26,8 @@
     {PATH_PORT_ENVIRONMENT, TYN_USE_UNIFORM, false},                                               \
     {PATH_PORT_ENV_MAP, TYN_USE_SAMPLED, true},                                                    \
     {PATH_PORT_ENV_TABLE, TYN_USE_STORAGE_READ, false},                                            \
-    {PATH_PORT_SURFACES, TYN_USE_UNIFORM, false},                                                  \
-    {PATH_PORT_VERTICES, TYN_USE_STORAGE_READ, false},                                             \
-    {PATH_PORT_TRIANGLES, TYN_USE_STORAGE_READ, false},                                            \
-    {PATH_PORT_MATERIALS, TYN_USE_STORAGE_READ, false},                                            \
-    {PATH_PORT_TEXTURES, TYN_USE_STORAGE_READ, false},                                             \
-    {PATH_PORT_TEXELS, TYN_USE_STORAGE_READ, false},                                               \
-    {PATH_PORT_NODES, TYN_USE_STORAGE_READ, false},                                                \
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, PATH),                                                           \
+    TYN_MATERIALS(TYN_BUNDLE_BIND, PATH),                                                          \
     {PATH_PORT_EMITTERS, TYN_USE_STORAGE_READ, false}
 // clang-format on
 

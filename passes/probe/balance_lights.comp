@@ -10,48 +10,24 @@
 #include "probe_args.h"
 #include "surface_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 2 // the medium itself is not read
-#define BEAM_BLOCKS 1
-#define BEAM_COLUMN 2
-#define BEAM_TAU_A 3
-#define BEAM_TAU_P 4
-#define RADIAL_BLOCK 5
-#define RADIAL_COLUMN 6
-#define RADIAL_TAU_A 7
-#define RADIAL_TAU_P 8
-#define SURFACE_TEXTURES 14
-#define SURFACE_TEXELS 15
+#define BEAMS_AT 1
+#define BEAMS_STORAGE
+#define RADIALS_AT 5
+#define RADIALS_STORAGE
 #include "medium.glsl"
 #include "beam.glsl"
 #include "radial.glsl"
 #include "camera.glsl"
 #include "rng.glsl"
+#define GEOMETRY_AT 9
+#define MATERIALS_AT 13
+#include "surfaces.glsl"
 #include "surface_texture.glsl"
 
 layout(local_size_x = BALANCE_GROUP) in;
 layout(push_constant, scalar) uniform push
 {
     balance_lights_args args;
-};
-layout(binding = 9, scalar) uniform surfaces_uniform
-{
-    surface_block surfaces;
-};
-layout(binding = 10, scalar) readonly buffer vertices_buffer
-{
-    surface_vertex vertices[];
-};
-layout(binding = 11, scalar) readonly buffer triangles_buffer
-{
-    surface_triangle triangles[];
-};
-layout(binding = 12, scalar) readonly buffer nodes_buffer
-{
-    uvec4 nodes[];
-};
-layout(binding = 13, scalar) readonly buffer materials_buffer
-{
-    surface_material materials[];
 };
 layout(binding = 16, scalar) readonly buffer light_buffer
 {

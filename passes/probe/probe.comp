@@ -5,26 +5,21 @@
 #include "probe_args.h"
 #include "ordinate_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 4 // the medium itself is not read
-#define BEAM_BLOCKS 3
-#define BEAM_COLUMN 4
-#define BEAM_TAU_A 5
-#define BEAM_TAU_P 6
+#define BEAMS_AT 3
+#define BEAMS_STORAGE
 #define COLUMNS_BUFFER 11
-#define RADIAL_BLOCK 14
-#define RADIAL_COLUMN 15
-#define RADIAL_TAU_A 16
-#define RADIAL_TAU_P 17
+#define RADIALS_AT 14
+#define RADIALS_STORAGE
 #include "medium.glsl"
 #include "beam.glsl"
 #include "columns.glsl"
 #include "radial.glsl"
 #include "lattice.glsl"
-#define WALLS_LINKS 12
-#define WALLS_CELLS 13
+#define WALLS_AT 12
+#define WALLS_STORAGE
 #include "lattice_walls.glsl"
-#define SHADOW_ATLAS 18
-#define SHADOW_LIGHTS 19
+#define SHADOWS_AT 18
+#define SHADOWS_STORAGE
 #include "shadow.glsl"
 #define VPL_DISTANCES 21
 #define LATTICE_ROOMS 22

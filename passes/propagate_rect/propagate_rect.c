@@ -16,14 +16,9 @@
 #define PORT(name) PROPAGATE_RECT_PORT_##name
 
 static const tyn_port ports[PROPAGATE_RECT_NUM_PORTS] = {
-    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, PROPAGATE_RECT),
     [PORT(ORDINATES)] = {"ordinates", TYN_IN, TYN_BUFFER, .meaning = "struct ordinates_block"},
     [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
-    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
-    [PORT(SIGMA_A)] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                       .meaning = "absorption, 1/m"},
-    [PORT(G)] = {"g", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                 .meaning = "mean cosine of scattering"},
     [PORT(GRIDS)] = {"grids", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_grid[]"},
     [PORT(PLACES)] = {"places", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_place[]"},
     [PORT(SEEN)] = {"seen", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
@@ -65,20 +60,19 @@ static const tyn_binding setup_bindings[] = {
     {PORT(PLACES), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding shrink_density_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},
-    {PORT(DENSITY), TYN_USE_SAMPLED},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RECT),
     {PORT(SMALL), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding shrink_coefficients_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},        {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},       {PORT(G), TYN_USE_SAMPLED},
-    {PORT(SMALL), TYN_USE_STORAGE_WRITE},   {PORT(SMALL_SIGMA_A), TYN_USE_STORAGE_WRITE},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RECT),
+    {PORT(SMALL), TYN_USE_STORAGE_WRITE},
+    {PORT(SMALL_SIGMA_A), TYN_USE_STORAGE_WRITE},
     {PORT(SMALL_G), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding cells_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},      {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},     {PORT(G), TYN_USE_SAMPLED},
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},  {PORT(CAMERA), TYN_USE_UNIFORM},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RECT),
+    {PORT(GRIDS), TYN_USE_STORAGE_READ},
+    {PORT(CAMERA), TYN_USE_UNIFORM},
     {PORT(CELLS), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding start_bindings[] = {

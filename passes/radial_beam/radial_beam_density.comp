@@ -2,8 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
+#define MEDIUM_AT 0
 #include "medium.glsl"
 #include "radial_args.h"
 #include "radial_beam_args.h"
@@ -13,13 +12,13 @@ layout(push_constant, scalar) uniform push
 {
     radial_beam_args args;
 };
-layout(set = 0, binding = 2, scalar) readonly buffer radial_buffer
+layout(set = 0, binding = 5, scalar) readonly buffer radial_buffer
 {
     uint radial_count, radial_num_lamps;
     uvec2 radial_pad;
     radial_grid radials[];
 };
-layout(set = 0, binding = 3, r32f) writeonly uniform image3D column_image;
+layout(set = 0, binding = 6, r32f) writeonly uniform image3D column_image;
 
 #define RADIAL_VALUE float
 

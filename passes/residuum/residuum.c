@@ -21,10 +21,7 @@ uint32_t tyn_residuum_after(float a, float g, float sigma_s, float hop, float ep
 }
 
 static const tyn_port ports[RESIDUUM_NUM_PORTS] = {
-    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
-    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
-    [PORT(SIGMA_A)] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                       .meaning = "absorption, 1/m"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, RESIDUUM),
     [PORT(PLACES)] = {"places", TYN_IN, TYN_BUFFER, .meaning = "struct propagate_place[]"},
     [PORT(LIGHT)] = {"light", TYN_IN, TYN_IMAGE_3D,
                      .meaning = "of propagate_rect: L per irradiance"},
@@ -40,10 +37,9 @@ static const tyn_port ports[RESIDUUM_NUM_PORTS] = {
 enum { START, STEP, COLLECT, NUM_KERNELS };
 
 static const tyn_binding start_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},     {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},    {PORT(PLACES), TYN_USE_UNIFORM},
-    {PORT(LIGHT), TYN_USE_SAMPLED},      {PORT(STATE), TYN_USE_STORAGE_WRITE},
-    {PORT(KEPT), TYN_USE_STORAGE_WRITE}, {PORT(SUM), TYN_USE_STORAGE_WRITE},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, RESIDUUM), {PORT(PLACES), TYN_USE_UNIFORM},
+    {PORT(LIGHT), TYN_USE_SAMPLED},        {PORT(STATE), TYN_USE_STORAGE_WRITE},
+    {PORT(KEPT), TYN_USE_STORAGE_WRITE},   {PORT(SUM), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding step_bindings[] = {
     {PORT(STATE_OTHER), TYN_USE_STORAGE_READ},

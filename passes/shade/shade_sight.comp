@@ -16,22 +16,8 @@ layout(push_constant, scalar) uniform Args
     shade_args args;
 };
 
-layout(binding = 0, scalar) uniform surfaces_uniform
-{
-    surface_block surfaces;
-};
-layout(binding = 1, scalar) readonly buffer vertices_buffer
-{
-    surface_vertex vertices[];
-};
-layout(binding = 2, scalar) readonly buffer triangles_buffer
-{
-    surface_triangle triangles[];
-};
-layout(binding = 3, scalar) readonly buffer nodes_buffer
-{
-    uvec4 nodes[];
-};
+#define GEOMETRY_AT 0
+#include "surfaces.glsl"
 layout(binding = 4, scalar) uniform medium_uniform
 {
     medium_block medium;

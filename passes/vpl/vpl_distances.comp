@@ -34,16 +34,9 @@ layout(binding = 7, scalar) buffer bin_buffer
 {
     vpl_bins bins;
 };
-layout(binding = 8, scalar) readonly buffer materials_buffer
-{
-    surface_material materials[];
-};
-#define SURFACE_TEXTURES 9
-#define SURFACE_TEXELS 10
-#define MEDIUM_BLOCK 11
-#define MEDIUM_DENSITY 12
-#define MEDIUM_SIGMA_A 13
-#define MEDIUM_G 14
+#define MATERIALS_AT 8
+#include "surfaces.glsl"
+#define MEDIUM_AT 11
 #include "surface_texture.glsl"
 #include "surface_trace.glsl"
 #include "medium.glsl"

@@ -1,7 +1,6 @@
 // vpl_elements.glsl -- what may become a VPL: texels of reflective shadow maps, sides of triangles.
 //
-// Define the bindings VPL_PLAN, VPL_FLUX, VPL_POSITION, VPL_NORMAL, VPL_SURFACES, VPL_VERTICES,
-// VPL_TRIANGLES, VPL_MATERIALS.
+// Define the bindings VPL_PLAN, VPL_FLUX, VPL_POSITION, VPL_NORMAL, GEOMETRY_AT, MATERIALS_AT.
 #ifndef TYN_VPL_ELEMENTS_GLSL
 #define TYN_VPL_ELEMENTS_GLSL
 #include "vpl_args.h"
@@ -15,22 +14,7 @@ layout(binding = VPL_PLAN, scalar) readonly buffer vpl_plan_buffer
 layout(binding = VPL_FLUX) uniform sampler2D rsm_flux_tex;
 layout(binding = VPL_POSITION) uniform sampler2D rsm_position_tex;
 layout(binding = VPL_NORMAL) uniform sampler2D rsm_normal_tex;
-layout(binding = VPL_SURFACES, scalar) uniform vpl_surfaces_buffer
-{
-    surface_block surfaces;
-};
-layout(binding = VPL_VERTICES, scalar) readonly buffer vpl_vertices_buffer
-{
-    surface_vertex vertices[];
-};
-layout(binding = VPL_TRIANGLES, scalar) readonly buffer vpl_triangles_buffer
-{
-    surface_triangle triangles[];
-};
-layout(binding = VPL_MATERIALS, scalar) readonly buffer vpl_materials_buffer
-{
-    surface_material materials[];
-};
+#include "surfaces.glsl"
 
 const float VPL_PI = 3.14159265358979;
 const uint VPL_NO_TRIANGLE = 0xffffffffu;

@@ -8,12 +8,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "wall_light_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 2 // the medium itself is not read
-#define RADIAL_BLOCK 1
-#define RADIAL_UNIFORM
-#define RADIAL_COLUMN 2
-#define RADIAL_TAU_A 3
-#define RADIAL_TAU_P 4
+#define RADIALS_AT 1
 #include "medium.glsl"
 #include "radial.glsl"
 #include "lattice.glsl"

@@ -10,11 +10,8 @@
 #include "wall_light_args.h"
 #include "surface_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 3 // the medium itself is not read
-#define BEAM_BLOCKS 2
-#define BEAM_COLUMN 3
-#define BEAM_TAU_A 4
-#define BEAM_TAU_P 5
+#define BEAMS_AT 2
+#define BEAMS_STORAGE
 #include "medium.glsl"
 #include "beam.glsl"
 #include "lattice.glsl"
@@ -30,31 +27,21 @@ layout(binding = 1, scalar) readonly buffer light_buffer
 {
     light_block lights[];
 };
-layout(binding = 6, scalar) uniform surface_uniform
-{
-    surface_block surfaces;
-};
-layout(binding = 7, scalar) readonly buffer vertex_buffer
-{
-    surface_vertex vertices[];
-};
-layout(binding = 8, scalar) readonly buffer triangle_buffer
-{
-    surface_triangle triangles[];
-};
-layout(binding = 9, scalar) readonly buffer link_buffer
+#define GEOMETRY_AT 6
+#include "surfaces.glsl"
+layout(binding = 10, scalar) readonly buffer link_buffer
 {
     uint links[];
 };
-layout(binding = 10, scalar) readonly buffer cell_buffer
+layout(binding = 11, scalar) readonly buffer cell_buffer
 {
     wall_cell wall_cells[];
 };
-layout(binding = 11, scalar) readonly buffer hit_buffer
+layout(binding = 12, scalar) readonly buffer hit_buffer
 {
     uint hits[];
 };
-layout(binding = 12, scalar) writeonly buffer wall_light_buffer
+layout(binding = 13, scalar) writeonly buffer wall_light_buffer
 {
     vec3 wall_light[];
 };

@@ -9,17 +9,12 @@
 #include "wall_light_args.h"
 #include "surface_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 2 // the medium itself is not read
-#define RADIAL_BLOCK 1
-#define RADIAL_UNIFORM
-#define RADIAL_COLUMN 2
-#define RADIAL_TAU_A 3
-#define RADIAL_TAU_P 4
+#define RADIALS_AT 1
 #include "medium.glsl"
 #include "radial.glsl"
 #include "lattice.glsl"
-#define WALLS_LINKS 8
-#define WALLS_CELLS 9
+#define WALLS_AT 9
+#define WALLS_STORAGE
 #include "lattice_walls.glsl"
 #include "walls_triangle.glsl"
 
@@ -28,33 +23,23 @@ layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
 };
-layout(binding = 5, scalar) uniform surface_uniform
-{
-    surface_block surfaces;
-};
-layout(binding = 6, scalar) readonly buffer vertex_buffer
-{
-    surface_vertex vertices[];
-};
-layout(binding = 7, scalar) readonly buffer triangle_buffer
-{
-    surface_triangle triangles[];
-};
-layout(binding = 10, scalar) readonly buffer hit_buffer
+#define GEOMETRY_AT 5
+#include "surfaces.glsl"
+layout(binding = 11, scalar) readonly buffer hit_buffer
 {
     uint hits[];
 };
-layout(binding = 11, scalar) writeonly buffer arrived_buffer
+layout(binding = 12, scalar) writeonly buffer arrived_buffer
 {
     vec3 arrived[]; // irradiance, W/m^2, times the area over dx^2
 };
-layout(binding = 12, scalar) readonly buffer list_buffer
+layout(binding = 13, scalar) readonly buffer list_buffer
 {
     wall_light_list list;
     uint list_entries[];
 };
 layout(constant_id = 1) const uint rooms = 0;
-#define LATTICE_ROOMS 13
+#define LATTICE_ROOMS 14
 #include "lattice_rooms.glsl"
 
 #include "walls_place.glsl"

@@ -4,6 +4,7 @@
 // that a link crosses stops it. Nothing leaks through closed meshes, and both ends of a link agree.
 #pragma once
 #include <tyndall/pass.h>
+#include "bundles.h"
 
 typedef struct tyn_walls_params {
     float extent[3];  // medium_block.extent, m
@@ -11,14 +12,9 @@ typedef struct tyn_walls_params {
 } tyn_walls_params;
 
 enum {
-    WALLS_PORT_SURFACES,  // IN buffer struct surface_block
-    WALLS_PORT_VERTICES,  // IN buffer struct surface_vertex[]
-    WALLS_PORT_TRIANGLES, // IN buffer struct surface_triangle[]: their number is the buffer's size
-    WALLS_PORT_MATERIALS, // IN buffer struct surface_material[]
-    WALLS_PORT_TEXTURES,  // IN optional buffer struct surface_texture[]
-    WALLS_PORT_TEXELS,    // IN optional buffer uint[]
-    WALLS_PORT_LINKS,     // OUT buffer uint[cell]: walls_args.h
-    WALLS_PORT_CELLS,     // OUT buffer struct wall_cell[cell]
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, WALLS),  // IN
+    TYN_MATERIALS(TYN_BUNDLE_ENUM, WALLS), // IN
+    TYN_WALLS(TYN_BUNDLE_ENUM, WALLS),     // OUT
     // OUT buffer uint[link 0..13][cell]: the triangle that a cut link meets, in the low 24 bits,
     // and 255 times its share of the link in the others.
     WALLS_PORT_HITS,
@@ -38,22 +34,13 @@ typedef struct tyn_wall_light_params {
 } tyn_wall_light_params;
 
 enum {
-    WALL_LIGHT_PORT_MEDIUM, // IN buffer struct medium_block
-    WALL_LIGHT_PORT_LIGHTS, // IN buffer struct light_block[]
-    WALL_LIGHT_PORT_BEAMS,  // IN optional buffer struct beam_block[]: with suns, as the next
-    WALL_LIGHT_PORT_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS
-    WALL_LIGHT_PORT_TAU_A,  // IN optional 3D: mode COEFFICIENTS, as the one below
-    WALL_LIGHT_PORT_TAU_P,
+    WALL_LIGHT_PORT_MEDIUM,                 // IN buffer struct medium_block
+    WALL_LIGHT_PORT_LIGHTS,                 // IN buffer struct light_block[]
+    TYN_BEAMS(TYN_BUNDLE_ENUM, WALL_LIGHT), // IN optional
     // IN optional buffer struct radial_block: its VPLs shine on walls, as the three below.
-    WALL_LIGHT_PORT_RADIALS,
-    WALL_LIGHT_PORT_RADIAL_COLUMN,
-    WALL_LIGHT_PORT_RADIAL_TAU_A,
-    WALL_LIGHT_PORT_RADIAL_TAU_P,
-    WALL_LIGHT_PORT_SURFACES, // IN buffers, as walls has them
-    WALL_LIGHT_PORT_VERTICES,
-    WALL_LIGHT_PORT_TRIANGLES,
-    WALL_LIGHT_PORT_LINKS, // IN buffers, of walls
-    WALL_LIGHT_PORT_CELLS,
+    TYN_RADIALS(TYN_BUNDLE_ENUM, WALL_LIGHT),  // IN optional
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, WALL_LIGHT), // IN
+    TYN_WALLS(TYN_BUNDLE_ENUM, WALL_LIGHT),    // IN
     WALL_LIGHT_PORT_HITS,
     WALL_LIGHT_PORT_ROOMS,     // IN optional buffer, of rooms
     WALL_LIGHT_PORT_DISTANCES, // IN optional 2D, of vpl: power that VPLs send is what walls get

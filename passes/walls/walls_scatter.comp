@@ -18,29 +18,20 @@ layout(push_constant, scalar) uniform push
 {
     walls_pass_args args;
 };
-layout(binding = 0, scalar) uniform surface_uniform
-{
-    surface_block surfaces;
-};
-layout(binding = 1, scalar) readonly buffer vertex_buffer
-{
-    vec4 vertex_rows[]; // surface_vertex: position, u; normal, v
-};
-layout(binding = 2, scalar) readonly buffer triangle_buffer
-{
-    uvec4 triangle_rows[]; // surface_triangle: corners, material
-};
-layout(binding = 3, scalar) buffer link_buffer
+#define GEOMETRY_AT 0
+#define SURFACE_ROWS
+#include "surfaces.glsl"
+layout(binding = 4, scalar) buffer link_buffer
 {
     uint links[];
 };
 // [link 0..13][cell]: of the nearest hit, its share of the way (8 bits), its triangle (24 bits).
-layout(binding = 4, scalar) buffer hit_buffer
+layout(binding = 5, scalar) buffer hit_buffer
 {
     uint hits[];
 };
 // [slot][cell]: of the nearest plane that passes through the cell, the same.
-layout(binding = 5, scalar) buffer nearest_buffer
+layout(binding = 6, scalar) buffer nearest_buffer
 {
     uint nearest[];
 };

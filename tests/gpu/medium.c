@@ -459,7 +459,7 @@ static void lookup(void **state)
         tyn_ref refs[MEDIUM_NUM_PORTS], eval[7] = {{0}};
         declare_pass(t, &w, refs);
         eval[0] = refs[MEDIUM_PORT_MEDIUM];
-        eval[1] = k < 2 ? refs[MEDIUM_PORT_ATLAS] : refs[MEDIUM_PORT_SIGMA_S];
+        eval[1] = k < 2 ? refs[MEDIUM_PORT_ATLAS] : refs[MEDIUM_PORT_DENSITY];
         eval[2] = refs[MEDIUM_PORT_SIGMA_A];
         eval[3] = refs[MEDIUM_PORT_G];
         eval[4] = refs[MEDIUM_PORT_EMISSION];
@@ -470,7 +470,7 @@ static void lookup(void **state)
         static const char *names[] = {"sigma_s", "sigma_a", "g", "emission"};
         if (k == 2) {
             for (uint32_t p = 0; p < 4; p++) {
-                tyn_graph_output(t->graph, names[p], refs[MEDIUM_PORT_SIGMA_S + p], true);
+                tyn_graph_output(t->graph, names[p], refs[MEDIUM_PORT_DENSITY + p], true);
             }
         }
         gpu_run(t);

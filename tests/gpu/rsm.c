@@ -67,16 +67,17 @@ static sums run(gpu_test *t, const tyn_scene *scene, const struct light_block *l
         .settings = settings,
         .refs =
             {
-                .surfaces = gpu_buffer(t, "surfaces", &frame.surfaces, sizeof frame.surfaces),
-                .triangles = gpu_buffer(t, "triangles", s->triangles,
-                                        s->num_triangles * sizeof *s->triangles),
-                .vertices =
+                .geometry.surfaces =
+                    gpu_buffer(t, "surfaces", &frame.surfaces, sizeof frame.surfaces),
+                .geometry.triangles = gpu_buffer(t, "triangles", s->triangles,
+                                                 s->num_triangles * sizeof *s->triangles),
+                .geometry.vertices =
                     gpu_buffer(t, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices),
-                .materials = gpu_buffer(t, "materials", s->materials,
-                                        s->num_materials * sizeof *s->materials),
-                .textures = gpu_buffer(t, "textures", nothing, sizeof nothing),
-                .texels = gpu_buffer(t, "texels", nothing, sizeof nothing),
-                .nodes = gpu_buffer(t, "nodes", nothing, sizeof nothing), // all are tried
+                .materials.materials = gpu_buffer(t, "materials", s->materials,
+                                                  s->num_materials * sizeof *s->materials),
+                .materials.textures = gpu_buffer(t, "textures", nothing, sizeof nothing),
+                .materials.texels = gpu_buffer(t, "texels", nothing, sizeof nothing),
+                .geometry.nodes = gpu_buffer(t, "nodes", nothing, sizeof nothing), // all are tried
             },
     };
     tyn_rsm_refs rsm;

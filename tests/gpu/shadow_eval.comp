@@ -2,8 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define SHADOW_ATLAS 0
-#define SHADOW_LIGHTS 1
+#define SHADOWS_AT 0
+#define SHADOWS_STORAGE
 #include "shadow.glsl"
 
 layout(local_size_x = 64) in;

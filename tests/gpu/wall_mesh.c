@@ -133,8 +133,8 @@ wall_refs mesh_walls(gpu_test *t, const grid *g, const mesh *m)
     free(v);
     free(tri);
     free(mat);
-    return (wall_refs){p[WALLS_PORT_LINKS],    p[WALLS_PORT_CELLS],    p[WALLS_PORT_HITS],
-                       p[WALLS_PORT_SURFACES], p[WALLS_PORT_VERTICES], p[WALLS_PORT_TRIANGLES]};
+    return (wall_refs){p[WALLS_PORT_WALL_LINKS], p[WALLS_PORT_WALL_CELLS], p[WALLS_PORT_HITS],
+                       p[WALLS_PORT_SURFACES],   p[WALLS_PORT_VERTICES],   p[WALLS_PORT_TRIANGLES]};
 }
 
 void wall_step(int link, int d[3])

@@ -406,8 +406,8 @@ static void virtual_lights(void **state)
             [WALL_LIGHT_PORT_SURFACES] = w.surfaces,
             [WALL_LIGHT_PORT_VERTICES] = w.vertices,
             [WALL_LIGHT_PORT_TRIANGLES] = w.triangles,
-            [WALL_LIGHT_PORT_LINKS] = w.links,
-            [WALL_LIGHT_PORT_CELLS] = w.cells,
+            [WALL_LIGHT_PORT_WALL_LINKS] = w.links,
+            [WALL_LIGHT_PORT_WALL_CELLS] = w.cells,
             [WALL_LIGHT_PORT_HITS] = w.hits,
         };
         assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_wall_light, &params, refs), TYN_OK);

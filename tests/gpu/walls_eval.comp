@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "lattice.glsl"
-#define WALLS_LINKS 0
-#define WALLS_CELLS 1
+#define WALLS_AT 0
+#define WALLS_STORAGE
 #include "lattice_walls.glsl"
 
 layout(local_size_x = 64) in;
