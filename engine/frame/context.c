@@ -309,8 +309,8 @@ static void upload_scene(tyn_context *ctx, const tyn_frame *frame, tyn_scene_ref
     tyn_graph_mark_media(g, refs->medium);
     tyn_graph_mark_media(g, refs->shapes);
 
-    refs->lights = tyn_graph_upload_buffer(g, "lights", f->lights, sizeof f->lights, 0);
-    refs->suns = tyn_graph_upload_buffer(g, "suns", f->suns, sizeof f->suns, 0);
+    refs->lights = tyn_graph_upload_buffer(g, "lights", f->lights.scene, sizeof f->lights.scene, 0);
+    refs->suns = tyn_graph_upload_buffer(g, "suns", f->lights.suns, sizeof f->lights.suns, 0);
     refs->camera = tyn_graph_upload_buffer(g, "camera", &f->camera, sizeof f->camera, 0);
     refs->environment =
         tyn_graph_upload_buffer(g, "environment", &f->environment, sizeof f->environment, 0);

@@ -23,11 +23,11 @@ static void choose_channels(tyn_field *f, const tyn_scene *scene, const tyn_fram
     bool grey = frame->grey; // and so are the walls
     float colors[2 * TYN_LIGHTS_MAX + 2][3];
     uint32_t count = 0;
-    for (uint32_t i = 0; i < frame->num_suns + frame->num_map_suns; i++) {
-        memcpy(colors[count++], frame->suns[i].color, sizeof colors[0]);
+    for (uint32_t i = 0; i < frame->lights.num_suns; i++) {
+        memcpy(colors[count++], frame->lights.suns[i].color, sizeof colors[0]);
     }
-    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
-        memcpy(colors[count++], frame->lights[i].color, sizeof colors[0]);
+    for (uint32_t i = 0; i < frame->lights.num_lamps; i++) {
+        memcpy(colors[count++], tyn_first_lamp(&frame->lights)[i].color, sizeof colors[0]);
     }
     memcpy(colors[count++], frame->environment.sky, sizeof colors[0]);
     memcpy(colors[count++], frame->medium.emission, sizeof colors[0]);

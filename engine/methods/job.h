@@ -4,6 +4,7 @@
 // cheap and deterministic: no GPU calls, no allocation.
 #pragma once
 #include <tyndall/registry.h>
+#include "methods/lights.h"
 #include "methods/refs.h"
 #include "scene/env_suns.h"
 #include "scene_args.h"
@@ -13,12 +14,8 @@
 typedef struct tyn_frame_scene {
     struct medium_block medium;
     struct shape_block shapes[TYN_MAX_SHAPES];
-    struct light_block lights[TYN_LIGHTS_MAX];
-    uint32_t num_lights, num_suns; // suns = directional lights, first in `lights`, strongest first
-    // The directional lights and the num_map_suns of the environment's map, strongest first.
-    struct light_block suns[TYN_LIGHTS_MAX];
-    uint32_t num_map_suns; // `path` has them in the map
-    tyn_map_light map;     // of the environment, in the map's frame and units
+    tyn_lights lights;
+    tyn_map_light map; // of the environment, in the map's frame and units
     struct camera_block camera;
     struct env_block environment;
     bool direct; // one unsheared box: the atlas is the density texture, `medium` need not resample
@@ -43,8 +40,8 @@ typedef struct tyn_scene_refs {
     tyn_ref atlas;               // 3D R16F or R32F, all density grids (sampled)
     tyn_ref medium;              // struct medium_block
     tyn_ref shapes;              // struct shape_block[]
-    tyn_ref lights;              // struct light_block[]
-    tyn_ref suns;                // struct light_block[]: tyn_frame_scene.suns
+    tyn_ref lights;              // struct light_block[]: tyn_lights.scene
+    tyn_ref suns;                // struct light_block[]: tyn_lights.suns
     tyn_ref camera;              // struct camera_block
     tyn_ref environment;         // struct env_block
     tyn_ref env_map;             // 2D RGBA32F; {0} if constant

@@ -99,8 +99,8 @@ static uint32_t count_near_lamps(const tyn_frame_scene *frame)
     const float *e = frame->medium.extent;
     float reach = 0.5f * sqrtf(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
     uint32_t count = 0;
-    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
-        const float *p = frame->lights[i].position;
+    for (uint32_t i = 0; i < frame->lights.num_lamps; i++) {
+        const float *p = tyn_first_lamp(&frame->lights)[i].position;
         bool near = true;
         for (int a = 0; a < 3; a++) {
             near = near && p[a] > -reach && p[a] < e[a] + reach;
@@ -149,8 +149,8 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
     p->surfaces = frame->num_triangles > 0;
     p->emitters = job->refs.emitters.resource != 0 && !p->repeat; // else there is no end of them
     p->emissive = frame->emissive;
-    p->num_lights = frame->num_lights;
-    p->num_lamps = frame->num_lights - frame->num_suns;
+    p->num_lights = frame->lights.num_directional + frame->lights.num_lamps;
+    p->num_lamps = frame->lights.num_lamps;
     p->near_lamps = count_near_lamps(frame);
     bool sky = env->radiance[0] + env->radiance[1] + env->radiance[2] > 0;
     p->environment = !sky           ? TYN_PATH_ENV_NONE
@@ -282,8 +282,8 @@ static void set_box(tyn_path_params *p, const tyn_frame_scene *frame)
 // Power of the lamps inside the box, which count as emitted.
 static void set_lamp_power(tyn_path_params *p, const tyn_frame_scene *frame)
 {
-    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
-        const struct light_block *l = &frame->lights[i];
+    for (uint32_t i = 0; i < frame->lights.num_lamps; i++) {
+        const struct light_block *l = &tyn_first_lamp(&frame->lights)[i];
         bool inside = true;
         for (int a = 0; a < 3; a++) {
             inside = inside && l->position[a] >= p->box[0][a] && l->position[a] <= p->box[1][a];
@@ -337,14 +337,14 @@ static tyn_result check_fluxes(const tyn_job *job)
     bool sky = env->radiance[0] + env->radiance[1] + env->radiance[2] > 0;
     if (frame->empty && !frame->num_triangles) {
         wrong = "there is no medium and no surface";
-    } else if (frame->num_lights > frame->num_suns) {
+    } else if (frame->lights.num_lamps) {
         wrong =
             "there are lamps, whose light starts inside; only suns and the environment may shine "
             "(balance knows lamps)";
     } else if (frame->emissive || job->refs.emitters.resource) {
         wrong = "media or surfaces emit; only suns and the environment may shine (balance knows "
                 "emission)";
-    } else if (!frame->num_lights && !sky) {
+    } else if (!frame->lights.num_directional && !sky) {
         wrong = "there is neither a sun nor an environment";
     } else if (m->repeat[0] && m->repeat[1] && m->repeat[2]) {
         wrong = "the medium repeats along all axes: no light enters it";

@@ -85,10 +85,11 @@ static void set_lamps(tyn_propagate_radial_params *params, const tyn_job *job)
 {
     const tyn_frame_scene *frame = job->frame;
     set_radial(params, job);
-    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
-        const float *color = frame->lights[i].color;
+    for (uint32_t i = frame->lights.num_directional;
+         i < frame->lights.num_directional + frame->lights.num_lamps; i++) {
+        const float *color = frame->lights.scene[i].color;
         if (color[0] + color[1] + color[2] > 0.0f && params->num_lamps < TYN_RADIAL_LAMPS_MAX) {
-            params->lamps[params->num_lamps++] = tyn_radial_of_lamp(&frame->lights[i], i);
+            params->lamps[params->num_lamps++] = tyn_radial_of_lamp(&frame->lights.scene[i], i);
         }
     }
 }
@@ -246,17 +247,17 @@ static tyn_result add_light(tyn_graph *g, const tyn_job *job, propagated *p)
 static tyn_result add_surfaces(tyn_graph *g, const tyn_job *job, propagated *p)
 {
     tyn_picture_inputs in = {.media = p->picture.media, .vpls = p->surface_lights};
-    in.num_suns = tyn_method_suns(job);
+    in.num_suns = tyn_num_beams(&job->frame->lights);
     tyn_method_warn_suns(job, "surfaces");
-    tyn_result result = tyn_add_beams(g, job, &in.media.medium, in.num_suns, &in.beams);
+    tyn_result result = tyn_add_beams(g, job, &in.media.medium, &in.beams);
     if (result == TYN_OK) {
         result = tyn_add_radials(g, job, &in.media.medium, in.vpls.vpls, &in.lamps);
     }
     if (result == TYN_OK) {
-        result = tyn_add_shadows(g, job, in.num_suns, &in.shadows, &in.light_cells);
+        result = tyn_add_shadows(g, job, &in.shadows, &in.light_cells);
     }
     if (result == TYN_OK) {
-        result = tyn_add_surfaces(g, job, (tyn_ref){0}, in.num_suns, &in);
+        result = tyn_add_surfaces(g, job, (tyn_ref){0}, &in);
     }
     p->picture.surface = in.surface;
     p->picture.distances = in.distances;
@@ -289,8 +290,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         result = tyn_add_sky(g, job, &p.picture.media.medium, 0, false, &p.sky);
     }
     if (result == TYN_OK) {
-        result =
-            tyn_add_vpls(g, job, &p.picture.media.medium, tyn_method_suns(job), &p.surface_lights);
+        result = tyn_add_vpls(g, job, &p.picture.media.medium, &p.surface_lights);
     }
     if (p.surface_lights.vpls.resource) {
         set_vpls(&p.vpls, job);

@@ -15,8 +15,8 @@
 static void leave_out_map_suns(tyn_job *job, tyn_frame_scene *frame)
 {
     *frame = *job->frame;
-    memcpy(frame->suns, frame->lights, sizeof frame->suns);
-    frame->num_map_suns = 0;
+    memcpy(frame->lights.suns, frame->lights.scene, sizeof frame->lights.suns);
+    frame->lights.num_suns = frame->lights.num_directional;
     job->frame = frame;
     job->refs.suns = job->refs.lights;
 }
@@ -26,7 +26,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *given)
     tyn_job own = *given;
     const tyn_job *job = &own;
     tyn_frame_scene frame;
-    if (own.frame->num_map_suns) {
+    if (own.frame->lights.num_suns > own.frame->lights.num_directional) {
         leave_out_map_suns(&own, &frame);
     }
     tyn_result result = tyn_method_refuse_repeat(job);
@@ -42,14 +42,14 @@ static tyn_result declare(tyn_graph *g, const tyn_job *given)
         0.0f) {
         tyn_method_warn(job, "the environment is seen, but does not light the medium");
     }
-    tyn_picture_inputs in = {.num_suns = tyn_method_suns(job)};
+    tyn_picture_inputs in = {.num_suns = tyn_num_beams(&job->frame->lights)};
     tyn_method_warn_suns(job, "the medium");
     result = tyn_add_medium(g, job, &in.media);
     if (result == TYN_OK) {
-        result = tyn_add_beams(g, job, &in.media.medium, in.num_suns, &in.beams);
+        result = tyn_add_beams(g, job, &in.media.medium, &in.beams);
     }
     if (result == TYN_OK) {
-        result = tyn_add_shadows(g, job, in.num_suns, &in.shadows, &in.light_cells);
+        result = tyn_add_shadows(g, job, &in.shadows, &in.light_cells);
     }
     if (result == TYN_OK) {
         result = tyn_add_radials(g, job, &in.media.medium, (tyn_ref){0}, &in.lamps);
