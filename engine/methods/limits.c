@@ -2,6 +2,7 @@
 #include "methods/limits.h"
 #include "methods/nodes.h"
 #include "methods/walls.h"
+#include "base/forward_lobe.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -95,7 +96,7 @@ typedef struct dense {
 
 static void add_channel(dense *d, float s, float a, float g, float density)
 {
-    const float forward = fmaxf(g, 0), f = forward * forward;
+    const float f = (float)tyn_delta_fraction(g);
     s *= density;
     a *= density;
     d->extinction = fmaxf(d->extinction, s + a);

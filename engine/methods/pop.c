@@ -12,6 +12,7 @@
 #include "methods/shading.h"
 #include "methods/sky.h"
 #include "methods/walls.h"
+#include "base/forward_lobe.h"
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
 #include "passes/columns/columns.h"
@@ -90,8 +91,8 @@ static bool is_thin(const tyn_frame_scene *frame)
                           m->extent[2] * m->extent[2]);
     float scattering = 0.0f;
     for (int c = 0; c < 3; c++) {
-        float forward = fmaxf(m->g[c], 0.0f);
-        scattering = fmaxf(scattering, (1.0f - forward * forward) * m->sigma_s[c]);
+        const float f = (float)tyn_delta_fraction(m->g[c]);
+        scattering = fmaxf(scattering, (1.0f - f) * m->sigma_s[c]);
     }
     return scattering * m->max_density * longest < thin_depth;
 }
