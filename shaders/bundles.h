@@ -32,6 +32,12 @@
         X(P, RADIAL_TAU_P, radial_tau_p, TYN_IMAGE_3D, TYN_USE_SAMPLED, true,                      \
           "mean (1 - f) sigma_s")
 
+// Optical depths along the ordinates (columns.glsl).
+#define TYN_COLUMNS(X, P)                                                                          \
+    X(P, ORDINATES, ordinates, TYN_BUFFER, TYN_USE_UNIFORM, false, "struct ordinates_block"),      \
+        X(P, COLUMNS, columns, TYN_BUFFER, TYN_USE_STORAGE_READ, false,                            \
+          "optical depths along the ordinates")
+
 // Shadow maps of suns and lamps (shadow.glsl).
 #define TYN_SHADOWS(X, P)                                                                          \
     X(P, SHADOW_ATLAS, shadow_atlas, TYN_IMAGE_2D, TYN_USE_SAMPLED, false,                         \
@@ -52,6 +58,14 @@
           "what they see, m"),                                                                     \
         X(P, VPL_PLANES, vpl_planes, TYN_IMAGE_2D, TYN_USE_SAMPLED, false, "and its planes")
 
+// What the lights shine on (rsm_args.h).
+#define TYN_RSM(X, P)                                                                              \
+    X(P, FLUX, rsm_flux, TYN_IMAGE_2D, TYN_USE_SAMPLED, false, "power that a texel reflects, W"),  \
+        X(P, POSITION, rsm_position, TYN_IMAGE_2D, TYN_USE_SAMPLED, false,                         \
+          "where (M, m); area of it, m^2"),                                                        \
+        X(P, NORMAL, rsm_normal, TYN_IMAGE_2D, TYN_USE_SAMPLED, false,                             \
+          "of the surface (M), on the light's side")
+
 // Surfaces: where they are (surface_trace.glsl), ...
 #define TYN_GEOMETRY(X, P)                                                                         \
     X(P, SURFACES, surfaces, TYN_BUFFER, TYN_USE_UNIFORM, false, "struct surface_block"),          \
@@ -65,6 +79,6 @@
 #define TYN_MATERIALS(X, P)                                                                        \
     X(P, MATERIALS, materials, TYN_BUFFER, TYN_USE_STORAGE_READ, false,                            \
       "struct surface_material[]"),                                                                \
-        X(P, TEXTURES, textures, TYN_BUFFER, TYN_USE_STORAGE_READ, false,                          \
+        X(P, TEXTURES, textures, TYN_BUFFER, TYN_USE_STORAGE_READ, true,                           \
           "struct surface_texture[]"),                                                             \
-        X(P, TEXELS, texels, TYN_BUFFER, TYN_USE_STORAGE_READ, false, "uint[]: R8 G8 B8 A8, sRGB")
+        X(P, TEXELS, texels, TYN_BUFFER, TYN_USE_STORAGE_READ, true, "uint[]: R8 G8 B8 A8, sRGB")

@@ -1,7 +1,7 @@
 // columns.glsl -- optical depth along the principal ordinates, from where their light enters the
 // medium's box to the lattice's cells.
 //
-// Include after medium.glsl, and define COLUMNS_BUFFER, the binding of the storage buffer "columns".
+// Include after medium.glsl, and define COLUMNS_AT as the first binding of the bundle TYN_COLUMNS (bundles.h).
 //
 // The buffer is [ordinate][component][z][y][x]; components: int density ds (mode DENSITY), or the rgb of
 // int sigma_s, int sigma_a and int (1 - f) sigma_s. A value is the square of a half: 3 digits from 1e-9 to
@@ -11,8 +11,13 @@
 #define TYN_COLUMNS_GLSL
 #include "beam_tau.glsl"
 #include "columns_args.h"
+#include "ordinate_args.h"
 
-layout(set = 0, binding = COLUMNS_BUFFER, scalar) readonly buffer columns_buffer
+layout(set = 0, binding = COLUMNS_AT, scalar) uniform ordinates_uniform
+{
+    ordinates_block ordinates;
+};
+layout(set = 0, binding = COLUMNS_AT + 1, scalar) readonly buffer columns_buffer
 {
     uint columns_words[];
 };

@@ -146,7 +146,7 @@ static tyn_result add_columns(tyn_graph *g, const tyn_job *job, tyn_field *f)
     tyn_ref refs[TYN_MAX_PORTS] = {[COLUMNS_PORT_ORDINATES] = f->sky.ordinates};
     tyn_connect(refs, COLUMNS_PORT_MEDIUM, medium);
     result = tyn_graph_add(g, &tyn_pass_columns, &params, refs);
-    f->columns = refs[COLUMNS_PORT_COLUMNS];
+    tyn_take(refs, COLUMNS_PORT_ORDINATES, f->columns);
     return result;
 }
 
@@ -208,11 +208,10 @@ static tyn_result add_ordinates(tyn_graph *g, const tyn_job *job, tyn_field *f)
     params.count = f->sky.count;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [LATTICE_ORDINATES_PORT_MEDIUM] = job->refs.medium,
-        [LATTICE_ORDINATES_PORT_ORDINATES] = f->sky.ordinates,
-        [LATTICE_ORDINATES_PORT_COLUMNS] = f->columns,
         [LATTICE_ORDINATES_PORT_CELLS] = f->cells,
         [LATTICE_ORDINATES_PORT_SUNLIGHT] = f->source,
     };
+    tyn_connect(refs, LATTICE_ORDINATES_PORT_ORDINATES, f->columns);
     tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_ordinates, &params, refs);
     f->source = refs[LATTICE_ORDINATES_PORT_SOURCE];
     return result;
@@ -292,8 +291,7 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, tyn_field *f)
         [MERGE_PORT_MOMENTS] = f->moments,
     };
     if (f->sky.ordinates.resource) {
-        refs[MERGE_PORT_ORDINATES] = f->sky.ordinates;
-        refs[MERGE_PORT_COLUMNS] = f->columns;
+        tyn_connect(refs, MERGE_PORT_ORDINATES, f->columns);
         refs[MERGE_PORT_TMS] = f->tms;
         refs[MERGE_PORT_LUT_BLOCK] = f->picture.lut_block;
     }
@@ -363,9 +361,8 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, tyn_field *f)
         [PROBE_PORT_VPL_DISTANCES] = f->picture.vpls.vpl_distances,
         [PROBE_PORT_ROOMS] = f->picture.rooms,
         [PROBE_PORT_ENVIRONMENT] = environment_of(job, f),
-        [PROBE_PORT_ORDINATES] = f->sky.ordinates,
-        [PROBE_PORT_COLUMNS] = f->columns,
     };
+    tyn_connect(refs, PROBE_PORT_ORDINATES, f->columns);
     tyn_connect(refs, PROBE_PORT_BEAMS, f->picture.beams);
     tyn_connect(refs, PROBE_PORT_RADIALS, f->picture.lamps.radials);
     tyn_connect(refs, PROBE_PORT_WALL_LINKS, f->picture.walls);

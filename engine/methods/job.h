@@ -78,7 +78,7 @@ void tyn_job_counters(tyn_graph *g, const tyn_job *job, const tyn_pass_desc *pas
 const char *tyn_output_name(tyn_output which);
 
 typedef struct tyn_method {
-    // traces_rays: wants refs.nodes and refs.emitters where there are surfaces, and refs.areas for a balance.
+    // traces_rays: wants refs.geometry.nodes and refs.emitters where there are surfaces, and refs.areas for a balance.
     tyn_method_info info;
     bool reads_env_cdf; // wants refs.env_cdf
     // Largest work a single record may be given (view.num_samples) to keep a dispatch short; NULL if

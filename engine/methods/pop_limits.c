@@ -42,7 +42,7 @@ static double forward(const tyn_regime *r)
     {                                                                                              \
         .key = "periodic media", .where = {TYN_ABOVE(repeats, 0), TYN_ABOVE(light, 0)},            \
         .level = TYN_LIMIT_REFUSED, .advice = {"lamps and maps in media that repeat: refused"},    \
-        .source = "docs/walls.md, \"Periodic media\""                                              \
+        .source = "docs/method.md, \"Periodic media\""                                              \
     }
 
 #define THICK                                                                                      \
@@ -136,13 +136,13 @@ const tyn_limit tyn_limits_pop[] = {
      .level = TYN_LIMIT_STRAINED,
      .advice = {"surfaces: virtual lights and voxels of walls (sample scenes 4 to 11 %% off, "
                 "vpl-cave 21 %%)"},
-     .source = "README.md, \"How right it is\""},
+     .source = "docs/accuracy.md, \"Lamps and walls\""},
     {.key = "the sky among surfaces",
      .where = {TYN_ABOVE(sky_on_surfaces, 0.05)},
      .level = TYN_LIMIT_STRAINED,
      .advice = {"sky among surfaces: it lights the medium by its mean and suns alone, and surfaces "
                 "beyond the medium's box without shadows"},
-     .source = "README.md, \"Not yet\"",
+     .source = "docs/surfaces.md, \"Limits\"",
      .warning = {"accuracy: the environment's light comes between surfaces along the lattice's 14 "
                  "directions: behind openings it falls in patches"}},
     TYN_LIMIT_FLOATS,

@@ -338,14 +338,14 @@ static const tyn_limit limits[] = {
      .where = {TYN_ABOVE(repeats, 0)},
      .level = TYN_LIMIT_REFUSED,
      .advice = {"media that repeat: refused"},
-     .source = "docs/method.md, \"pop-paper\""},
+     .source = "docs/pop-paper.md, \"Measured\""},
     {.key = "propagation as published",
      .where = {TYN_ABOVE(mean_depth, 0)},
      .error = hops,
      .level = TYN_LIMIT_BREAKS,
      .advice = {"propagation as published: light that is moved without being lost adds up (cubes "
                 "of depth 0.1 to 10: 28 to 79 %% off); it is here to be compared with"},
-     .source = "docs/method.md, \"pop-paper\"",
+     .source = "docs/pop-paper.md, \"Measured\"",
      .warned = {TYN_ABOVE(scatterings, 0.05), TYN_ABOVE(cell_transport, 0)},
      .warning = {"accuracy: the published propagation turns light at every hop whether it has "
                  "scattered or not, as if a hop were 2 transport mean free paths; here it is "

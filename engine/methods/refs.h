@@ -22,6 +22,11 @@ typedef struct tyn_radial_refs {
     tyn_ref TYN_RADIALS(TYN_BUNDLE_NAME, );
 } tyn_radial_refs;
 
+// {0} without ordinates.
+typedef struct tyn_column_refs {
+    tyn_ref TYN_COLUMNS(TYN_BUNDLE_NAME, );
+} tyn_column_refs;
+
 // {0} without surfaces, or without lights.
 typedef struct tyn_shadow_refs {
     tyn_ref TYN_SHADOWS(TYN_BUNDLE_NAME, );
@@ -36,6 +41,11 @@ typedef struct tyn_wall_refs {
 typedef struct tyn_vpl_refs {
     tyn_ref TYN_VPLS(TYN_BUNDLE_NAME, );
 } tyn_vpl_refs;
+
+// {0} without surfaces, or without lights.
+typedef struct tyn_rsm_refs {
+    tyn_ref TYN_RSM(TYN_BUNDLE_NAME, );
+} tyn_rsm_refs;
 
 // {0} without surfaces; `nodes` also where they have no hierarchy.
 typedef struct tyn_geometry_refs {

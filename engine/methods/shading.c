@@ -68,7 +68,7 @@ tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_medium_refs 
     if (params.count == 0) {
         return TYN_OK;
     }
-    tyn_rsm_refs rsm;
+    tyn_rsm rsm;
     tyn_result result = tyn_add_rsm(g, job, &rsm);
     if (result != TYN_OK || rsm.num_tiles + params.emitters == 0) {
         return result;
@@ -82,10 +82,10 @@ tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_medium_refs 
     memcpy(params.tiles, rsm.tiles, sizeof params.tiles);
 
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [VPL_PORT_SUNS] = job->refs.suns, [VPL_PORT_LIGHTS] = job->refs.lights,
-        [VPL_PORT_FLUX] = rsm.flux,       [VPL_PORT_POSITION] = rsm.position,
-        [VPL_PORT_NORMAL] = rsm.normal,
+        [VPL_PORT_SUNS] = job->refs.suns,
+        [VPL_PORT_LIGHTS] = job->refs.lights,
     };
+    tyn_connect(refs, VPL_PORT_FLUX, rsm.maps);
     tyn_connect(refs, VPL_PORT_MEDIUM, *medium);
     refs[VPL_PORT_MEDIUM] = job->refs.medium; // also without media
     tyn_connect(refs, VPL_PORT_SURFACES, job->refs.geometry);

@@ -95,7 +95,7 @@ static const tyn_limit limits[] = {
      .where = {TYN_ABOVE(surfaces, 0)},
      .level = TYN_LIMIT_BREAKS,
      .advice = {"surfaces: their shadows alone are drawn"},
-     .source = "README.md, \"Not yet\""},
+     .source = "docs/method.md, \"single\""},
     TYN_LIMIT_FLOATS,
     {NULL},
 };

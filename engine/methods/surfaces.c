@@ -115,7 +115,7 @@ static float texel_of(const struct shadow_light *l)
     return area;
 }
 
-tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm_refs *rsm)
+tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm *rsm)
 {
     const tyn_frame_scene *frame = job->frame;
     const struct light_block *lamps = tyn_first_lamp(&frame->lights);
@@ -153,9 +153,7 @@ tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm_refs *rsm)
     tyn_connect(refs, RSM_PORT_SURFACES, job->refs.geometry);
     tyn_connect(refs, RSM_PORT_MATERIALS, job->refs.materials);
     tyn_result result = tyn_graph_add(g, &tyn_pass_rsm, &params, refs);
-    rsm->flux = refs[RSM_PORT_FLUX];
-    rsm->position = refs[RSM_PORT_POSITION];
-    rsm->normal = refs[RSM_PORT_NORMAL];
+    tyn_take(refs, RSM_PORT_FLUX, rsm->maps);
     return result;
 }
 

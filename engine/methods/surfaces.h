@@ -16,14 +16,13 @@ typedef struct tyn_gbuffer_refs {
 } tyn_gbuffer_refs;
 tyn_result tyn_add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *gbuffer);
 
-// What the lights shine on: reflective shadow maps of the same lights as tyn_add_shadows. {0} without surfaces, or
-// without lights; `num_tiles` maps, `tiles` of TYN_RSM_MAX_TILES.
-typedef struct tyn_rsm_refs {
-    tyn_ref flux, position, normal; // 2D RGBA32F (rsm_args.h)
+// What the lights shine on: reflective shadow maps of the same lights as tyn_add_shadows.
+typedef struct tyn_rsm {
+    tyn_rsm_refs maps;
     uint32_t num_tiles;
     struct rsm_tile tiles[TYN_RSM_MAX_TILES];
-} tyn_rsm_refs;
-tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm_refs *rsm);
+} tyn_rsm;
+tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm *rsm);
 
 // Bounds in M of the world box around the surfaces; empty without surfaces.
 void tyn_surfaces_box(const tyn_frame_scene *frame, float lo[3], float hi[3]);

@@ -15,10 +15,9 @@ typedef struct tyn_columns_params {
 } tyn_columns_params;
 
 enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, COLUMNS), // IN
-    COLUMNS_PORT_ORDINATES,               // IN buffer struct ordinates_block
-    COLUMNS_PORT_COLUMNS,                 // OUT buffer: what columns.glsl reads
-    COLUMNS_PORT_NODES,                   // SCRATCH
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, COLUMNS),  // IN
+    TYN_COLUMNS(TYN_BUNDLE_ENUM, COLUMNS), // the ordinates IN, the columns OUT
+    COLUMNS_PORT_NODES,                    // SCRATCH
     COLUMNS_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_columns;

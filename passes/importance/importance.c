@@ -65,17 +65,14 @@ static const tyn_binding map_bindings[] = {
 };
 
 #define KERNEL(step, x, y, z, specs)                                                               \
-    .name = "importance_" #step, .spirv = importance_##step##_spirv,                               \
-    .spirv_size = sizeof importance_##step##_spirv, .args_size = sizeof(struct importance_args),   \
-    .local_size = {x, y, z}, .bindings = step##_bindings,                                          \
-    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
+    TYN_KERNEL(importance_##step, sizeof(struct importance_args), x, y, z, step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = {KERNEL(setup, 1, 1, 1, 0)},
-    [CELLS] = {KERNEL(cells, 4, 4, 4, 1)},
-    [STEP] = {KERNEL(step, 4, 4, 4, 0)},
-    [FIELD] = {KERNEL(field, 4, 4, 4, 0)},
-    [SEND] = {KERNEL(send, TYN_IMPORTANCE_RAYS, 8, 1, 0)},
-    [MAP] = {KERNEL(map, TYN_IMPORTANCE_TEXELS, 1, 1, 0)},
+    [SETUP] = KERNEL(setup, 1, 1, 1, 0),
+    [CELLS] = KERNEL(cells, 4, 4, 4, 1),
+    [STEP] = KERNEL(step, 4, 4, 4, 0),
+    [FIELD] = KERNEL(field, 4, 4, 4, 0),
+    [SEND] = KERNEL(send, TYN_IMPORTANCE_RAYS, 8, 1, 0),
+    [MAP] = KERNEL(map, TYN_IMPORTANCE_TEXELS, 1, 1, 0),
 };
 
 #define FIELD_OF(name) offsetof(tyn_importance_params, name)

@@ -198,11 +198,8 @@ static const tyn_binding mix_bindings[] = {
     {LATTICE_PORT_WALL_POWER, TYN_USE_STORAGE_RW},
 };
 
-#define KERNEL(name, args, spec, x, y, z)                                                          \
-    {                                                                                              \
-#name, lattice_##name##_spirv, sizeof lattice_##name##_spirv, sizeof(struct args),         \
-            {x, y, z }, name##_bindings, sizeof name##_bindings / sizeof name##_bindings[0], spec  \
-    }
+#define KERNEL(step, args, specs, x, y, z)                                                         \
+    TYN_KERNEL(lattice_##step, sizeof(struct args), x, y, z, step##_bindings, specs)
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_START] = KERNEL(start, lattice_args, 2, 8, 4, 2),

@@ -89,10 +89,9 @@ typedef struct tyn_lattice_ordinates_params {
 } tyn_lattice_ordinates_params;
 
 enum {
-    LATTICE_ORDINATES_PORT_MEDIUM,    // IN buffer struct medium_block
-    LATTICE_ORDINATES_PORT_ORDINATES, // IN buffer struct ordinates_block
-    LATTICE_ORDINATES_PORT_COLUMNS,   // IN buffer, of columns
-    LATTICE_ORDINATES_PORT_CELLS,     // IN 3D, of lattice_cells
+    LATTICE_ORDINATES_PORT_MEDIUM,                   // IN buffer struct medium_block
+    TYN_COLUMNS(TYN_BUNDLE_ENUM, LATTICE_ORDINATES), // IN
+    LATTICE_ORDINATES_PORT_CELLS,                    // IN 3D, of lattice_cells
     LATTICE_ORDINATES_PORT_SUNLIGHT, // IN optional 3D: `source` of lattice_source, which is added to
     LATTICE_ORDINATES_PORT_SOURCE, // OUT 3D RGBA32F, stacked: sum E T', sum a E T' direction (W/m^2)
     LATTICE_ORDINATES_NUM_PORTS,

@@ -87,16 +87,13 @@ static const tyn_binding source_bindings[] = {
 };
 
 #define KERNEL(step, code, x, y, z, specs)                                                         \
-    .name = #step, .spirv = code##_spirv, .spirv_size = sizeof code##_spirv,                       \
-    .args_size = sizeof(struct lattice_lamps_args), .local_size = {x, y, z},                       \
-    .bindings = step##_bindings, .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, \
-    .num_spec = specs
+    TYN_KERNEL(code, sizeof(struct lattice_lamps_args), x, y, z, step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_CELLS] = {KERNEL(cells, lattice_lamps_cells, 8, 4, 2, 4)},
-    [KERNEL_VPLS] = {KERNEL(vpls, lattice_lamps_vpls, 8, 4, 2, 5)},
-    [KERNEL_NEAR] = {KERNEL(near, lattice_lamps_near, 8, 4, 2, 5)},
-    [KERNEL_SUM] = {KERNEL(sum, lattice_lamps_sum, LATTICE_SUN_GROUP, 1, 1, 1)},
-    [KERNEL_SOURCE] = {KERNEL(source, lattice_lamps, 8, 4, 2, 1)},
+    [KERNEL_CELLS] = KERNEL(cells, lattice_lamps_cells, 8, 4, 2, 4),
+    [KERNEL_VPLS] = KERNEL(vpls, lattice_lamps_vpls, 8, 4, 2, 5),
+    [KERNEL_NEAR] = KERNEL(near, lattice_lamps_near, 8, 4, 2, 5),
+    [KERNEL_SUM] = KERNEL(sum, lattice_lamps_sum, LATTICE_SUN_GROUP, 1, 1, 1),
+    [KERNEL_SOURCE] = KERNEL(source, lattice_lamps, 8, 4, 2, 1),
 };
 
 static uint32_t num_groups(const tyn_lattice_lamps_params *p)

@@ -6,9 +6,7 @@
 static const tyn_port ports[LATTICE_ORDINATES_NUM_PORTS] = {
     [LATTICE_ORDINATES_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false,
                                        "struct medium_block"},
-    [LATTICE_ORDINATES_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, false,
-                                          "struct ordinates_block"},
-    [LATTICE_ORDINATES_PORT_COLUMNS] = {"columns", TYN_IN, TYN_BUFFER, 0, false, "of columns"},
+    TYN_COLUMNS(TYN_BUNDLE_IN, LATTICE_ORDINATES),
     [LATTICE_ORDINATES_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
     [LATTICE_ORDINATES_PORT_SUNLIGHT] = {"sunlight", TYN_IN, TYN_IMAGE_3D, 0, true,
                                          "source of lattice_source"},
@@ -20,8 +18,7 @@ static const tyn_port ports[LATTICE_ORDINATES_NUM_PORTS] = {
 
 static const tyn_binding bindings[] = {
     {LATTICE_ORDINATES_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {LATTICE_ORDINATES_PORT_ORDINATES, TYN_USE_UNIFORM},
-    {LATTICE_ORDINATES_PORT_COLUMNS, TYN_USE_STORAGE_READ},
+    TYN_COLUMNS(TYN_BUNDLE_BIND, LATTICE_ORDINATES),
     {LATTICE_ORDINATES_PORT_CELLS, TYN_USE_SAMPLED},
     {LATTICE_ORDINATES_PORT_SUNLIGHT, TYN_USE_SAMPLED},
     {LATTICE_ORDINATES_PORT_SOURCE, TYN_USE_STORAGE_WRITE},

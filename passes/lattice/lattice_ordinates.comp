@@ -13,7 +13,7 @@
 #include "ordinate_args.h"
 #include "lattice_args.h"
 #define MEDIUM_BLOCK 0
-#define COLUMNS_BUFFER 2
+#define COLUMNS_AT 1
 #include "medium.glsl"
 #include "columns.glsl"
 #include "lattice.glsl"
@@ -23,10 +23,6 @@ layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(push_constant, scalar) uniform push
 {
     lattice_ordinates_args args;
-};
-layout(binding = 1, scalar) uniform ordinates_uniform
-{
-    ordinates_block ordinates;
 };
 layout(binding = 3) uniform sampler3D cells;
 layout(binding = 4) uniform sampler3D sunlight;

@@ -65,19 +65,15 @@ static const tyn_binding distance_bindings[] = {
     {MEDIUM_PORT_DISTANCE, TYN_USE_STORAGE_WRITE},
 };
 
-#define KERNEL(name, args, ...)                                                                    \
-    {                                                                                              \
-#name, medium_##name##_spirv, sizeof(medium_##name##_spirv), sizeof(struct args),          \
-            {__VA_ARGS__ }, name##_bindings, sizeof(name##_bindings) / sizeof(name##_bindings[0]), \
-             0                                                                                     \
-    }
+#define KERNEL(step, args)                                                                         \
+    TYN_KERNEL(medium_##step, sizeof(struct args), 4, 4, 4, step##_bindings, 0)
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = KERNEL(density, resample_args, 4, 4, 4),
-    [KERNEL_COEFFICIENTS] = KERNEL(coefficients, resample_args, 4, 4, 4),
-    [KERNEL_EMISSION] = KERNEL(emission, resample_args, 4, 4, 4),
-    [KERNEL_BRICKS] = KERNEL(bricks, bricks_args, 4, 4, 4),
-    [KERNEL_DISTANCE] = KERNEL(distance, distance_args, 4, 4, 4),
+    [KERNEL_DENSITY] = KERNEL(density, resample_args),
+    [KERNEL_COEFFICIENTS] = KERNEL(coefficients, resample_args),
+    [KERNEL_EMISSION] = KERNEL(emission, resample_args),
+    [KERNEL_BRICKS] = KERNEL(bricks, bricks_args),
+    [KERNEL_DISTANCE] = KERNEL(distance, distance_args),
 };
 
 static const char *const storages[] = {"auto", "half", "float"};

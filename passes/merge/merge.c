@@ -13,9 +13,7 @@ static const tyn_port ports[MERGE_NUM_PORTS] = {
     [MERGE_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "struct camera_block"},
     [MERGE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
     [MERGE_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
-    [MERGE_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, true, "struct ordinates_block"},
-    [MERGE_PORT_COLUMNS] = {"columns", TYN_IN, TYN_BUFFER, 0, true,
-                            "optical depths along the ordinates"},
+    TYN_COLUMNS(TYN_BUNDLE_OPTIONAL, MERGE),
     [MERGE_PORT_TMS] = {"tms", TYN_IN, TYN_IMAGE_3D, 0, true, "kernels, of scatter_lut"},
     [MERGE_PORT_LUT_BLOCK] = {"lut_block", TYN_IN, TYN_BUFFER, 0, true, "struct lut_block"},
     TYN_RADIALS(TYN_BUNDLE_OPTIONAL, MERGE),
@@ -40,10 +38,10 @@ static const tyn_binding cells_bindings[] = {
 };
 
 static const tyn_binding ordinates_bindings[] = {
-    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},       {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
-    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},        {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},
-    {MERGE_PORT_COLUMNS, TYN_USE_STORAGE_READ}, {MERGE_PORT_TMS, TYN_USE_SAMPLED},
-    {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},    {MERGE_PORT_ORDINATES, TYN_USE_UNIFORM},
+    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},    {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
+    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},     {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},
+    TYN_COLUMNS(TYN_BUNDLE_BIND, MERGE),     {MERGE_PORT_TMS, TYN_USE_SAMPLED},
+    {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},
 };
 
 static const tyn_binding radials_bindings[] = {

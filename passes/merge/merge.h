@@ -15,13 +15,12 @@ typedef struct tyn_merge_params {
 } tyn_merge_params;
 
 enum {
-    MERGE_PORT_MEDIUM,    // IN buffer struct medium_block
-    MERGE_PORT_CAMERA,    // IN buffer struct camera_block
-    MERGE_PORT_CELLS,     // IN 3D, of lattice_cells
-    MERGE_PORT_MOMENTS,   // IN 3D, of lattice
-    MERGE_PORT_ORDINATES, // IN optional buffer struct ordinates_block; with the next three
-    MERGE_PORT_COLUMNS,   // IN optional buffer, of columns
-    MERGE_PORT_TMS,       // IN optional 3D, of scatter_lut
+    MERGE_PORT_MEDIUM,                   // IN buffer struct medium_block
+    MERGE_PORT_CAMERA,                   // IN buffer struct camera_block
+    MERGE_PORT_CELLS,                    // IN 3D, of lattice_cells
+    MERGE_PORT_MOMENTS,                  // IN 3D, of lattice
+    TYN_COLUMNS(TYN_BUNDLE_ENUM, MERGE), // IN optional
+    MERGE_PORT_TMS,                      // IN optional 3D, of scatter_lut
     MERGE_PORT_LUT_BLOCK, // IN optional buffer struct lut_block; with ordinates or radials
     TYN_RADIALS(TYN_BUNDLE_ENUM, MERGE), // IN optional
     MERGE_PORT_LUT,                      // IN optional 2D, of scatter_lut

@@ -4,10 +4,10 @@
 #extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
 #include "medium.glsl"
-#define COLUMNS_BUFFER 4
+#define COLUMNS_AT 4
 #include "columns.glsl"
-#define TMS 5
-#define SCATTER_LUT_BLOCK 6
+#define TMS 6
+#define SCATTER_LUT_BLOCK 7
 #include "tms.glsl"
 #include "merge_args.h"
 #include "ordinate_args.h"
@@ -28,10 +28,6 @@ layout(binding = 2) uniform sampler3D cells;
 layout(binding = 3, scalar) buffer field_buffer
 {
     float field[];
-};
-layout(binding = 7, scalar) uniform ordinates_uniform
-{
-    ordinates_block ordinates;
 };
 #include "merge.glsl"
 #include "merge_read.glsl"

@@ -7,7 +7,7 @@
 #define MEDIUM_BLOCK 0
 #define BEAMS_AT 3
 #define BEAMS_STORAGE
-#define COLUMNS_BUFFER 11
+#define COLUMNS_AT 10
 #define RADIALS_AT 14
 #define RADIALS_STORAGE
 #include "medium.glsl"
@@ -44,10 +44,6 @@ layout(binding = 20) uniform sampler3D cells;
 layout(binding = 9, scalar) uniform environment_uniform
 {
     env_block environment;
-};
-layout(binding = 10, scalar) uniform ordinates_uniform
-{
-    ordinates_block ordinates;
 };
 layout(binding = 7, scalar) readonly buffer point_buffer
 {

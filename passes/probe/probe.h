@@ -22,8 +22,7 @@ enum {
     PROBE_PORT_MOMENTS,                // IN 3D, of lattice
     TYN_BEAMS(TYN_BUNDLE_ENUM, PROBE), // IN optional
     PROBE_PORT_ENVIRONMENT, // IN optional buffer struct env_block, what lattice was given
-    PROBE_PORT_ORDINATES,   // IN optional buffer struct ordinates_block
-    PROBE_PORT_COLUMNS,     // IN optional buffer, of columns
+    TYN_COLUMNS(TYN_BUNDLE_ENUM, PROBE), // IN optional
     TYN_WALLS(TYN_BUNDLE_ENUM, PROBE),   // IN optional
     TYN_RADIALS(TYN_BUNDLE_ENUM, PROBE), // IN optional
     TYN_SHADOWS(TYN_BUNDLE_ENUM, PROBE), // IN optional

@@ -62,17 +62,14 @@ static const tyn_binding collect_bindings[] = {
 
 #define EDGE PROPAGATE_RADIAL_GROUP
 #define KERNEL(step, x, y, z, specs)                                                               \
-    .name = "propagate_radial_" #step, .spirv = propagate_radial_##step##_spirv,                   \
-    .spirv_size = sizeof propagate_radial_##step##_spirv,                                          \
-    .args_size = sizeof(struct propagate_radial_args), .local_size = {x, y, z},                    \
-    .bindings = step##_bindings, .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, \
-    .num_spec = specs
+    TYN_KERNEL(propagate_radial_##step, sizeof(struct propagate_radial_args), x, y, z,             \
+               step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = {KERNEL(setup, PROPAGATE_RADIAL_LANES, 1, 1, 0)},
-    [CELLS] = {KERNEL(cells, EDGE, EDGE, EDGE, 1)},
-    [START] = {KERNEL(start, 8, 8, 1, 0)},
-    [STEP] = {KERNEL(step, EDGE, EDGE, EDGE, 0)},
-    [COLLECT] = {KERNEL(collect, EDGE, EDGE, EDGE, 0)},
+    [SETUP] = KERNEL(setup, PROPAGATE_RADIAL_LANES, 1, 1, 0),
+    [CELLS] = KERNEL(cells, EDGE, EDGE, EDGE, 1),
+    [START] = KERNEL(start, 8, 8, 1, 0),
+    [STEP] = KERNEL(step, EDGE, EDGE, EDGE, 0),
+    [COLLECT] = KERNEL(collect, EDGE, EDGE, EDGE, 0),
 };
 
 #define FIELD(name) offsetof(tyn_propagate_radial_params, name)

@@ -98,20 +98,17 @@ static const tyn_binding light_bindings[] = {
 
 #define EDGE PROPAGATE_RECT_GROUP
 #define KERNEL(step, x, y, z, specs, size)                                                         \
-    .name = "propagate_rect_" #step, .spirv = propagate_rect_##step##_spirv,                       \
-    .spirv_size = sizeof propagate_rect_##step##_spirv, .args_size = size,                         \
-    .local_size = {x, y, z}, .bindings = step##_bindings,                                          \
-    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
+    TYN_KERNEL(propagate_rect_##step, size, x, y, z, step##_bindings, specs)
 #define ARGS sizeof(struct propagate_rect_args)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = {KERNEL(setup, 64, 1, 1, 0, ARGS)},
-    [SHRINK_DENSITY] = {KERNEL(shrink_density, EDGE, EDGE, EDGE, 1, 0)},
-    [SHRINK_COEFFICIENTS] = {KERNEL(shrink_coefficients, EDGE, EDGE, EDGE, 1, 0)},
-    [CELLS] = {KERNEL(cells, EDGE, EDGE, EDGE, 1, ARGS)},
-    [START] = {KERNEL(start, 8, 8, 1, 1, ARGS)},
-    [STEP] = {KERNEL(step, EDGE, EDGE, EDGE, 0, ARGS)},
-    [COLLECT] = {KERNEL(collect, EDGE, EDGE, EDGE, 0, ARGS)},
-    [LIGHT] = {KERNEL(light, EDGE, EDGE, EDGE, 0, ARGS)},
+    [SETUP] = KERNEL(setup, 64, 1, 1, 0, ARGS),
+    [SHRINK_DENSITY] = KERNEL(shrink_density, EDGE, EDGE, EDGE, 1, 0),
+    [SHRINK_COEFFICIENTS] = KERNEL(shrink_coefficients, EDGE, EDGE, EDGE, 1, 0),
+    [CELLS] = KERNEL(cells, EDGE, EDGE, EDGE, 1, ARGS),
+    [START] = KERNEL(start, 8, 8, 1, 1, ARGS),
+    [STEP] = KERNEL(step, EDGE, EDGE, EDGE, 0, ARGS),
+    [COLLECT] = KERNEL(collect, EDGE, EDGE, EDGE, 0, ARGS),
+    [LIGHT] = KERNEL(light, EDGE, EDGE, EDGE, 0, ARGS),
 };
 
 #define FIELD(name) offsetof(tyn_propagate_rect_params, name)

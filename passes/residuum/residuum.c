@@ -53,14 +53,11 @@ static const tyn_binding collect_bindings[] = {
 };
 
 #define KERNEL(step, specs)                                                                        \
-    .name = "residuum_" #step, .spirv = residuum_##step##_spirv,                                   \
-    .spirv_size = sizeof residuum_##step##_spirv, .args_size = sizeof(struct residuum_args),       \
-    .local_size = {4, 4, 4}, .bindings = step##_bindings,                                          \
-    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
+    TYN_KERNEL(residuum_##step, sizeof(struct residuum_args), 4, 4, 4, step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [START] = {KERNEL(start, 1)},
-    [STEP] = {KERNEL(step, 0)},
-    [COLLECT] = {KERNEL(collect, 0)},
+    [START] = KERNEL(start, 1),
+    [STEP] = KERNEL(step, 0),
+    [COLLECT] = KERNEL(collect, 0),
 };
 
 #define FIELD(name) offsetof(tyn_residuum_params, name)

@@ -30,9 +30,7 @@ void tyn_rsm_add(tyn_rsm_params *params, const struct rsm_tile *tile, uint32_t k
 enum {
     TYN_GEOMETRY(TYN_BUNDLE_ENUM, RSM),  // IN
     TYN_MATERIALS(TYN_BUNDLE_ENUM, RSM), // IN
-    RSM_PORT_FLUX,                       // OUT 2D RGBA32F: rsm_args.h, as the two below
-    RSM_PORT_POSITION,                   // OUT 2D RGBA32F
-    RSM_PORT_NORMAL,                     // OUT 2D RGBA32F
+    TYN_RSM(TYN_BUNDLE_ENUM, RSM),       // OUT
     RSM_PORT_DEPTH,                      // SCRATCH 2D D32
     RSM_NUM_PORTS,
 };

@@ -188,26 +188,24 @@ enum {
     NUM_KERNELS
 };
 
-#define KERNEL(step, x, y, z)                                                                      \
-    .name = "shade_" #step, .spirv = shade_##step##_spirv,                                         \
-    .spirv_size = sizeof shade_##step##_spirv, .local_size = {x, y, z},                            \
-    .bindings = step##_bindings, .num_bindings = sizeof step##_bindings / sizeof *step##_bindings
-#define ARGS(specs) .args_size = sizeof(struct shade_args), .num_spec = specs
+#define KERNEL(step, x, y, z, args, specs)                                                         \
+    TYN_KERNEL(shade_##step, args, x, y, z, step##_bindings, specs)
+#define ARGS sizeof(struct shade_args)
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [LIGHTS] = {KERNEL(lights, 64, 1, 1), ARGS(2)},
-    [WALLS] = {KERNEL(walls, 8, 4, 2), .num_spec = 1},
-    [FORWARD] = {KERNEL(forward, 8, 4, 2), .num_spec = 3},
-    [FACES] = {KERNEL(faces, 32, 1, 1), ARGS(2)},
-    [SIGHT] = {KERNEL(sight, 8, 4, 1), ARGS(1)},
-    [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(6)},
-    [SUM_ROWS] = {KERNEL(rows, 8, 8, 1), .num_spec = 2},
-    [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(6)},
-    [PLACES] = {KERNEL(places, GBUFFER_EDGES, 1, 1), ARGS(6)},
-    [SMOOTH] = {KERNEL(smooth, 8, 8, 1), ARGS(6)},
-    [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(6)},
-    [EDGES] = {KERNEL(edges, GBUFFER_EDGES, 1, 1), ARGS(6)},
-    [ALONE] = {KERNEL(alone, GBUFFER_EDGES, 1, 1), ARGS(6)},
+    [LIGHTS] = KERNEL(lights, 64, 1, 1, ARGS, 2),
+    [WALLS] = KERNEL(walls, 8, 4, 2, 0, 1),
+    [FORWARD] = KERNEL(forward, 8, 4, 2, 0, 3),
+    [FACES] = KERNEL(faces, 32, 1, 1, ARGS, 2),
+    [SIGHT] = KERNEL(sight, 8, 4, 1, ARGS, 1),
+    [VPLS] = KERNEL(vpls, 8, 8, 1, ARGS, 6),
+    [SUM_ROWS] = KERNEL(rows, 8, 8, 1, 0, 2),
+    [GATHER] = KERNEL(gather, 8, 8, 1, ARGS, 6),
+    [PLACES] = KERNEL(places, GBUFFER_EDGES, 1, 1, ARGS, 6),
+    [SMOOTH] = KERNEL(smooth, 8, 8, 1, ARGS, 6),
+    [SURFACE] = KERNEL(surface, 8, 8, 1, ARGS, 6),
+    [EDGES] = KERNEL(edges, GBUFFER_EDGES, 1, 1, ARGS, 6),
+    [ALONE] = KERNEL(alone, GBUFFER_EDGES, 1, 1, ARGS, 6),
 };
 
 static const tyn_param params[] = {

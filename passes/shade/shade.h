@@ -40,13 +40,12 @@ enum {
     // IN buffers, gbuffer_edge_args.h: pixels that show several pieces of surface.
     SHADE_PORT_EDGE_COUNT,
     SHADE_PORT_EDGES,
-    // IN optional buffer struct beam_block[]: with a medium and suns, as the three below.
-    TYN_BEAMS(TYN_BUNDLE_ENUM, SHADE),     // IN optional
-    TYN_RADIALS(TYN_BUNDLE_ENUM, SHADE),   // IN optional
+    TYN_BEAMS(TYN_BUNDLE_ENUM, SHADE),     // IN optional: with a medium and suns
+    TYN_RADIALS(TYN_BUNDLE_ENUM, SHADE),   // IN optional: with a medium and lamps or VPLs
     TYN_SHADOWS(TYN_BUNDLE_ENUM, SHADE),   // IN optional
     TYN_VPLS(TYN_BUNDLE_ENUM, SHADE),      // IN optional
     SHADE_PORT_MOMENTS,                    // IN optional 3D: light of the lattice
-    TYN_WALLS(TYN_BUNDLE_ENUM, SHADE),     // IN optional
+    TYN_WALLS(TYN_BUNDLE_ENUM, SHADE),     // IN optional: with surfaces within it
     SHADE_PORT_ROOMS,                      // IN optional buffer, rooms.h: with walls and VPLs
     TYN_GEOMETRY(TYN_BUNDLE_ENUM, SHADE),  // IN
     TYN_MATERIALS(TYN_BUNDLE_ENUM, SHADE), // IN

@@ -22,12 +22,7 @@ static const tyn_port ports[VPL_NUM_PORTS] = {
     TYN_MEDIUM(TYN_BUNDLE_OPTIONAL, VPL),
     [PORT(SUNS)] = {"suns", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
     [PORT(LIGHTS)] = {"lights", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
-    [PORT(FLUX)] = {"rsm_flux", TYN_IN, TYN_IMAGE_2D, .optional = true,
-                    .meaning = "power that surfaces reflect, W a texel"},
-    [PORT(POSITION)] = {"rsm_position", TYN_IN, TYN_IMAGE_2D, .optional = true,
-                        .meaning = "where (M, m), and the area in a texel, m^2"},
-    [PORT(NORMAL)] = {"rsm_normal", TYN_IN, TYN_IMAGE_2D, .optional = true,
-                      .meaning = "normal (M), on the side of the light"},
+    TYN_RSM(TYN_BUNDLE_OPTIONAL, VPL),
     TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, VPL),
     TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, VPL),
     [PORT(BINS)] = {"bins", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_bins"},
@@ -47,8 +42,7 @@ static const tyn_port ports[VPL_NUM_PORTS] = {
 };
 
 #define ELEMENT_BINDINGS                                                                           \
-    {PORT(PLAN), TYN_USE_STORAGE_READ}, {PORT(FLUX), TYN_USE_SAMPLED},                             \
-        {PORT(POSITION), TYN_USE_SAMPLED}, {PORT(NORMAL), TYN_USE_SAMPLED},                        \
+    {PORT(PLAN), TYN_USE_STORAGE_READ}, TYN_RSM(TYN_BUNDLE_BIND, VPL),                             \
         TYN_GEOMETRY(TYN_BUNDLE_BIND, VPL), TYN_MATERIALS(TYN_BUNDLE_BIND, VPL)
 
 static const tyn_binding weights_bindings[] = {
@@ -98,18 +92,16 @@ static const tyn_binding bounce_bindings[] = {
 enum { WEIGHTS = 0, STRATA, LIGHTS, DISTANCES, POWER, BOUNCE, FURTHER, NUM_KERNELS };
 
 #define KERNEL(step, x, y, args, specs)                                                            \
-    .name = "vpl_" #step, .spirv = vpl_##step##_spirv, .spirv_size = sizeof vpl_##step##_spirv,    \
-    .args_size = args, .local_size = {x, y, 1}, .bindings = step##_bindings,                       \
-    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
+    TYN_KERNEL(vpl_##step, args, x, y, 1, step##_bindings, specs)
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [WEIGHTS] = {KERNEL(weights, VPL_LANES, 1, 0, 0)},
-    [STRATA] = {KERNEL(strata, VPL_BLOCK, 1, sizeof(struct vpl_args), 0)},
-    [LIGHTS] = {KERNEL(lights, VPL_LANES, 1, sizeof(struct vpl_args), 1)},
-    [DISTANCES] = {KERNEL(distances, 8, 8, sizeof(struct vpl_distances_args), 1)},
-    [POWER] = {KERNEL(power, TYN_RADIAL_VPLS_MAX, 1, 0, 0)},
-    [BOUNCE] = {KERNEL(bounce, VPL_BLOCK, 1, sizeof(struct vpl_bounce_args), 0)},
-    [FURTHER] = {KERNEL(further, TYN_RADIAL_VPLS_MAX, 1, 0, 0)},
+    [WEIGHTS] = KERNEL(weights, VPL_LANES, 1, 0, 0),
+    [STRATA] = KERNEL(strata, VPL_BLOCK, 1, sizeof(struct vpl_args), 0),
+    [LIGHTS] = KERNEL(lights, VPL_LANES, 1, sizeof(struct vpl_args), 1),
+    [DISTANCES] = KERNEL(distances, 8, 8, sizeof(struct vpl_distances_args), 1),
+    [POWER] = KERNEL(power, TYN_RADIAL_VPLS_MAX, 1, 0, 0),
+    [BOUNCE] = KERNEL(bounce, VPL_BLOCK, 1, sizeof(struct vpl_bounce_args), 0),
+    [FURTHER] = KERNEL(further, TYN_RADIAL_VPLS_MAX, 1, 0, 0),
 };
 
 static const tyn_param params[] = {

@@ -22,10 +22,8 @@ typedef struct tyn_vpl_params {
 enum {
     TYN_MEDIUM(TYN_BUNDLE_ENUM, VPL), // IN optional
     VPL_PORT_SUNS,                    // IN buffer struct light_block[]
-    VPL_PORT_LIGHTS, // IN buffer struct light_block[]: directional lights, then lamps
-    VPL_PORT_FLUX,   // IN optional 2D: rsm_args.h, as the two below
-    VPL_PORT_POSITION,
-    VPL_PORT_NORMAL,
+    VPL_PORT_LIGHTS,               // IN buffer struct light_block[]: directional lights, then lamps
+    TYN_RSM(TYN_BUNDLE_ENUM, VPL), // IN optional
     TYN_GEOMETRY(TYN_BUNDLE_ENUM, VPL),  // IN optional
     TYN_MATERIALS(TYN_BUNDLE_ENUM, VPL), // IN optional
     TYN_VPLS(TYN_BUNDLE_ENUM, VPL),      // OUT

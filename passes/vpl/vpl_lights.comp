@@ -8,12 +8,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-#define VPL_PLAN 0
-#define VPL_FLUX 1
-#define VPL_POSITION 2
-#define VPL_NORMAL 3
-#define GEOMETRY_AT 4
-#define MATERIALS_AT 8
 #define MEDIUM_AT 11
 #include "vpl_elements.glsl"
 #include "medium.glsl"

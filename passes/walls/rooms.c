@@ -33,13 +33,11 @@ static const tyn_binding vpls_bindings[] = {
 enum { KERNEL_LINKS, KERNEL_CELLS, KERNEL_VPLS, NUM_KERNELS };
 
 #define KERNEL(step, x, y)                                                                         \
-    .name = #step, .spirv = rooms_##step##_spirv, .spirv_size = sizeof rooms_##step##_spirv,       \
-    .args_size = sizeof(struct rooms_args), .local_size = {x, y, 1}, .bindings = step##_bindings,  \
-    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings
+    TYN_KERNEL(rooms_##step, sizeof(struct rooms_args), x, y, 1, step##_bindings, 0)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_LINKS] = {KERNEL(links, ROOMS_GROUP, 1)},
-    [KERNEL_CELLS] = {KERNEL(cells, ROOMS_GROUP, 1)},
-    [KERNEL_VPLS] = {KERNEL(vpls, 8, 8)},
+    [KERNEL_LINKS] = KERNEL(links, ROOMS_GROUP, 1),
+    [KERNEL_CELLS] = KERNEL(cells, ROOMS_GROUP, 1),
+    [KERNEL_VPLS] = KERNEL(vpls, 8, 8),
 };
 
 static uint32_t num_cells(const tyn_rooms_params *p)

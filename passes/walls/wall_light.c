@@ -90,18 +90,15 @@ enum { SUNS = 0, VPLS, WALL_CELLS, EXPECTED, SUM, SCALE, REFLECT, NUM_KERNELS };
 _Static_assert(WALL_LIGHT_VPLS == TYN_RADIAL_VPLS_MAX, "of a workgroup each");
 
 #define KERNEL(step, x, y, z, specs)                                                               \
-    .name = #step, .spirv = wall_light_##step##_spirv,                                             \
-    .spirv_size = sizeof wall_light_##step##_spirv, .args_size = sizeof(struct wall_light_args),   \
-    .local_size = {x, y, z}, .bindings = step##_bindings,                                          \
-    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
+    TYN_KERNEL(wall_light_##step, sizeof(struct wall_light_args), x, y, z, step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SUNS] = {KERNEL(suns, 8, 4, 2, 1)},
-    [VPLS] = {KERNEL(vpls, WALL_LIGHT_GROUP, 1, 1, 2)},
-    [WALL_CELLS] = {KERNEL(cells, WALL_LIGHT_GROUP, 1, 1, 3)},
-    [EXPECTED] = {KERNEL(expected, WALL_LIGHT_GROUP, 1, 1, 2)},
-    [SUM] = {KERNEL(sum, WALL_LIGHT_SUM_GROUP, 1, 1, 1)},
-    [SCALE] = {KERNEL(scale, WALL_LIGHT_VPLS, 1, 1, 0)},
-    [REFLECT] = {KERNEL(reflect, WALL_LIGHT_GROUP, 1, 1, 3)},
+    [SUNS] = KERNEL(suns, 8, 4, 2, 1),
+    [VPLS] = KERNEL(vpls, WALL_LIGHT_GROUP, 1, 1, 2),
+    [WALL_CELLS] = KERNEL(cells, WALL_LIGHT_GROUP, 1, 1, 3),
+    [EXPECTED] = KERNEL(expected, WALL_LIGHT_GROUP, 1, 1, 2),
+    [SUM] = KERNEL(sum, WALL_LIGHT_SUM_GROUP, 1, 1, 1),
+    [SCALE] = KERNEL(scale, WALL_LIGHT_VPLS, 1, 1, 0),
+    [REFLECT] = KERNEL(reflect, WALL_LIGHT_GROUP, 1, 1, 3),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

@@ -34,11 +34,10 @@ typedef struct tyn_wall_light_params {
 } tyn_wall_light_params;
 
 enum {
-    WALL_LIGHT_PORT_MEDIUM,                 // IN buffer struct medium_block
-    WALL_LIGHT_PORT_LIGHTS,                 // IN buffer struct light_block[]
-    TYN_BEAMS(TYN_BUNDLE_ENUM, WALL_LIGHT), // IN optional
-    // IN optional buffer struct radial_block: its VPLs shine on walls, as the three below.
-    TYN_RADIALS(TYN_BUNDLE_ENUM, WALL_LIGHT),  // IN optional
+    WALL_LIGHT_PORT_MEDIUM,                    // IN buffer struct medium_block
+    WALL_LIGHT_PORT_LIGHTS,                    // IN buffer struct light_block[]
+    TYN_BEAMS(TYN_BUNDLE_ENUM, WALL_LIGHT),    // IN optional
+    TYN_RADIALS(TYN_BUNDLE_ENUM, WALL_LIGHT),  // IN optional: their VPLs shine on walls
     TYN_GEOMETRY(TYN_BUNDLE_ENUM, WALL_LIGHT), // IN
     TYN_WALLS(TYN_BUNDLE_ENUM, WALL_LIGHT),    // IN
     WALL_LIGHT_PORT_HITS,

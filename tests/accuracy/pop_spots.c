@@ -3,6 +3,7 @@
 #include "gpu_test.h"
 #include "picture.h"
 #include "solids.h"
+#include "vector.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -15,11 +16,6 @@ typedef struct spot {
     double at[3], axis[3]; // M
     double inner, outer;   // degrees
 } spot;
-
-static double dot(const double *a, const double *b)
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // glTF: ((cos - cos_outer) / (cos_inner - cos_outer))^2 between the cones.
 static double falloff(const spot *s, double cosine)
@@ -38,18 +34,18 @@ static double exact(const spot *s, double x, double y)
     for (int i = 0; i < steps; i++) {
         double t = (i + 0.5) * ds;
         double d[3] = {x - s->at[0], y - s->at[1], half - t - s->at[2]};
-        double r = sqrt(dot(d, d)), before = fmax(-half - s->at[0], 0) / d[0]; // the box
-        double mu = d[2] / r;                                                  // to the eye
+        double r = sqrt(vector_dot(d, d)), before = fmax(-half - s->at[0], 0) / d[0]; // the box
+        double mu = d[2] / r;                                                         // to the eye
         double phase = (1 - g * g) / (4 * M_PI * pow(1 + g * g - 2 * g * mu, 1.5));
-        sum += falloff(s, dot(d, s->axis) / r) * phase * exp(-sigma_t * (r * (1 - before) + t)) /
-               (r * r) * ds;
+        sum += falloff(s, vector_dot(d, s->axis) / r) * phase *
+               exp(-sigma_t * (r * (1 - before) + t)) / (r * r) * ds;
     }
     return sigma_s * sum;
 }
 
 static void compare(gpu_test *t, const char *method, spot s)
 {
-    double size = sqrt(dot(s.axis, s.axis));
+    double size = sqrt(vector_dot(s.axis, s.axis));
     for (int a = 0; a < 3; a++) {
         s.axis[a] /= size;
     }

@@ -5,6 +5,7 @@
 #include "scene_args.h"
 #include "solids.h"
 #include "surface_args.h"
+#include "vector.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -71,21 +72,13 @@ static void turn(const float v[3], float out[3])
     }
 }
 
-static void normalise(float v[3])
-{
-    float length = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int c = 0; c < 3; c++) {
-        v[c] /= length;
-    }
-}
-
 // In the world; forward and up need not be normal to each other.
 static struct camera_block make_camera(const float at[3], const float forward[3], bool orthographic)
 {
     float f[3] = {forward[0], forward[1], forward[2]};
-    normalise(f);
+    vector_normalisef(f);
     float r[3] = {-f[2], 0, f[0]}; // f x y
-    normalise(r);
+    vector_normalisef(r);
     const float u[3] = {r[1] * f[2] - r[2] * f[1], r[2] * f[0] - r[0] * f[2],
                         r[0] * f[1] - r[1] * f[0]};
     struct camera_block c = {.orthographic = orthographic,
@@ -110,18 +103,6 @@ typedef struct hit {
     double distance, weights[3];
 } hit;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 // A ray of the camera through sample position (x, y) in pixels, in the world.
 static void make_ray(const struct camera_block *c, double x, double y, double o[3], double d[3])
 {
@@ -133,7 +114,7 @@ static void make_ray(const struct camera_block *c, double x, double y, double o[
         m[0][k] = (double)c->origin[k] - (double)frame_rows[k][3] + (c->orthographic ? across : 0);
         m[1][k] = (double)c->forward[k] + (c->orthographic ? 0 : across);
     }
-    double length = sqrt(dot(m[1], m[1]));
+    double length = sqrt(vector_dot(m[1], m[1]));
     for (int k = 0; k < 3; k++) { // the inverse of the turn
         o[k] = d[k] = 0;
         for (int j = 0; j < 3; j++) {
@@ -157,10 +138,10 @@ static hit trace(const tyn_surfaces *s, const double o[3], const double d[3])
             e[1][c] = (double)v[2][c] - (double)v[0][c];
             from[c] = o[c] - (double)v[0][c];
         }
-        cross(e[0], e[1], n);
-        cross(from, d, q);
-        double det = -dot(d, n), distance = dot(from, n) / det;
-        double b = dot(e[1], q) / det, c = -dot(e[0], q) / det;
+        vector_cross(e[0], e[1], n);
+        vector_cross(from, d, q);
+        double det = -vector_dot(d, n), distance = vector_dot(from, n) / det;
+        double b = vector_dot(e[1], q) / det, c = -vector_dot(e[0], q) / det;
         if (b >= 0 && c >= 0 && b + c <= 1 && distance > 0 && distance < best.distance) {
             best = (hit){(int)i, distance, {1 - b - c, b, c}};
         }
@@ -219,13 +200,16 @@ static images draw(gpu_test *t, const tyn_scene *scene, const struct camera_bloc
     params.row = ROW;
     tyn_graph_begin(t->graph);
     tyn_ref refs[GBUFFER_NUM_PORTS] = {
-        gpu_buffer(t, "camera", camera, sizeof *camera),
-        gpu_buffer(t, "surfaces", &block, sizeof block),
-        gpu_buffer(t, "triangles", s->triangles, s->num_triangles * sizeof *s->triangles),
-        gpu_buffer(t, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices),
-        gpu_buffer(t, "materials", s->materials, s->num_materials * sizeof *s->materials),
-        gpu_buffer(t, "textures", texture, sizeof *texture),
-        gpu_buffer(t, "texels", texels, count * sizeof *texels),
+        [GBUFFER_PORT_CAMERA] = gpu_buffer(t, "camera", camera, sizeof *camera),
+        [GBUFFER_PORT_SURFACES] = gpu_buffer(t, "surfaces", &block, sizeof block),
+        [GBUFFER_PORT_TRIANGLES] =
+            gpu_buffer(t, "triangles", s->triangles, s->num_triangles * sizeof *s->triangles),
+        [GBUFFER_PORT_VERTICES] =
+            gpu_buffer(t, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices),
+        [GBUFFER_PORT_MATERIALS] =
+            gpu_buffer(t, "materials", s->materials, s->num_materials * sizeof *s->materials),
+        [GBUFFER_PORT_TEXTURES] = gpu_buffer(t, "textures", texture, sizeof *texture),
+        [GBUFFER_PORT_TEXELS] = gpu_buffer(t, "texels", texels, count * sizeof *texels),
     };
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_gbuffer, &params, refs), TYN_OK);
     tyn_graph_output(t->graph, "distances", refs[GBUFFER_PORT_DISTANCES], true);
@@ -246,7 +230,7 @@ static void unfold(float x, float y, float n[3])
         n[0] = (1 - fabsf(y)) * (x >= 0 ? 1 : -1);
         n[1] = (1 - fabsf(x)) * (y >= 0 ? 1 : -1);
     }
-    normalise(n);
+    vector_normalisef(n);
 }
 
 static void expect_near(const float *found, const float *right, float tolerance, const char *what,
@@ -290,8 +274,8 @@ static expected expect(const tyn_surfaces *s, const hit *h, const double d[3])
         const int j = (c + 1) % 3, k = (c + 2) % 3;
         facet[c] = e[0][j] * e[1][k] - e[0][k] * e[1][j];
     }
-    normalise(facet);
-    normalise(normal);
+    vector_normalisef(facet);
+    vector_normalisef(normal);
     const bool front =
         (double)facet[0] * d[0] + (double)facet[1] * d[1] + (double)facet[2] * d[2] < 0;
     for (int c = 0; c < 3; c++) {
@@ -362,7 +346,7 @@ static void check_pixel(const images *got, uint32_t pixel, const uint32_t *image
     }
     counts[what == WHOLE ? 0 : what == NONE ? 1 : 2]++;
     if (what == WHOLE) {
-        normalise(mean.normal);
+        vector_normalisef(mean.normal);
         for (int c = 0; c < 3; c++) {
             mean.albedo[c] /= (float)count;
             mean.emission[c] /= (float)count;

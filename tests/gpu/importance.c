@@ -4,6 +4,7 @@
 #include "importance_twin.h"
 #include "passes/importance/importance.h"
 #include "scene_args.h"
+#include "vector.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,21 +22,6 @@ typedef struct setup {
     uint64_t scene; // key of the history
 } setup;
 
-static void cross(const float a[3], const float b[3], float c[3])
-{
-    for (int i = 0; i < 3; i++) {
-        c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-    }
-}
-
-static void normalise(float v[3])
-{
-    float length = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; i++) {
-        v[i] /= length;
-    }
-}
-
 static void look(struct camera_block *camera, const float from[3], const float towards[3],
                  float half_width, float half_height)
 {
@@ -44,10 +30,10 @@ static void look(struct camera_block *camera, const float from[3], const float t
         camera->origin[i] = from[i];
         camera->forward[i] = towards[i];
     }
-    normalise(camera->forward);
-    cross(camera->forward, up, camera->right);
-    normalise(camera->right);
-    cross(camera->right, camera->forward, camera->up);
+    vector_normalisef(camera->forward);
+    vector_crossf(camera->forward, up, camera->right);
+    vector_normalisef(camera->right);
+    vector_crossf(camera->right, camera->forward, camera->up);
     camera->half_width = half_width;
     camera->half_height = half_height;
 }

@@ -1,6 +1,7 @@
 // importance_twin.c -- see importance_twin.h. From the paper and the description of the pass; shares
 // no source with its shaders.
 #include "importance_twin.h"
+#include "vector.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -8,11 +9,6 @@
 
 #define PI 3.14159265358979323846
 enum { TEXELS = TWIN_WIDTH * TWIN_HEIGHT };
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 static double between(double x, double lo, double hi)
 {
@@ -87,9 +83,9 @@ typedef struct frustum {
 static void to_camera(const twin_scene *s, const double p[3], double q[3])
 {
     double d[3] = {p[0] - s->origin[0], p[1] - s->origin[1], p[2] - s->origin[2]};
-    q[0] = dot(d, s->right);
-    q[1] = dot(d, s->up);
-    q[2] = dot(d, s->forward);
+    q[0] = vector_dot(d, s->right);
+    q[1] = vector_dot(d, s->up);
+    q[2] = vector_dot(d, s->forward);
 }
 
 static double widening(const twin_scene *s, double z)
@@ -278,7 +274,7 @@ static double march(const twin_scene *s, const frustum *f, double (*field)[3], c
         leave = fmin(leave, fmax(a, b));
     }
     double way = fmax(leave - enter, 0) / STEPS;
-    double w_camera[3] = {dot(w, s->right), dot(w, s->up), dot(w, s->forward)};
+    double w_camera[3] = {vector_dot(w, s->right), vector_dot(w, s->up), vector_dot(w, s->forward)};
     for (int i = 0; i < STEPS && way > 0; i++) {
         double p[3], q[3], at[3], value[3];
         for (int c = 0; c < 3; c++) {
@@ -297,7 +293,8 @@ static double march(const twin_scene *s, const frustum *f, double (*field)[3], c
             const int n[3] = {s->cells, s->cells, s->cells};
             value[c] = trilinear(field_value, &(grid_field){field, c}, n, at);
         }
-        double mu = s->orthographic ? w_camera[2] : dot(q, w_camera) / sqrt(dot(q, q));
+        double mu =
+            s->orthographic ? w_camera[2] : vector_dot(q, w_camera) / sqrt(vector_dot(q, q));
         double x = value[2] * way;
         if (inside && value[0] > 0) {
             double cosine = between(value[1] / value[0], -0.9, 0.9);
@@ -319,7 +316,7 @@ static double sent_along(const twin_scene *s, const frustum *f, double (*field)[
         int j = (i + 1) % 3, k = (i + 2) % 3;
         u[i] = up[j] * w[k] - up[k] * w[j];
     }
-    double length = sqrt(dot(u, u));
+    double length = sqrt(vector_dot(u, u));
     for (int i = 0; i < 3; i++) {
         u[i] /= length;
     }
@@ -356,7 +353,7 @@ static void finish(const double *sent, double *map)
         for (int j = 0; j < TEXELS; j++) {
             if (abs(i / TWIN_WIDTH - j / TWIN_WIDTH) <= 2) {
                 twin_direction(j, other);
-                double weight = share(j) * exp(-36 * (1 - dot(w, other)));
+                double weight = share(j) * exp(-36 * (1 - vector_dot(w, other)));
                 sum += weight * sent[j];
                 weights += weight;
             }
@@ -410,7 +407,7 @@ static void scatter(uint64_t *seed, double g, double w[3])
     double mu = fabs(g) < 1e-4 ? 2 * u - 1 : (1 + g * g - q * q) / (2 * g);
     double s = sqrt(fmax(1 - mu * mu, 0));
     double a[3] = {fabs(w[0]) < 0.7, fabs(w[0]) >= 0.7, 0}, t[3], b[3];
-    double along = dot(a, w), length = sqrt(1 - along * along);
+    double along = vector_dot(a, w), length = sqrt(1 - along * along);
     for (int i = 0; i < 3; i++) {
         t[i] = (a[i] - along * w[i]) / length;
     }
@@ -436,7 +433,7 @@ void twin_photons(const twin_scene *s, int count, double map[TEXELS])
             p[i] = s->origin[i];
             w[i] = s->forward[i] + at[0] * s->right[i] + at[1] * s->up[i];
         }
-        double length = sqrt(dot(w, w)), enter = 0, leave = 1e30;
+        double length = sqrt(vector_dot(w, w)), enter = 0, leave = 1e30;
         for (int i = 0; i < 3; i++) {
             w[i] /= length;
             double a = -p[i] / w[i], b = (s->extent[i] - p[i]) / w[i];

@@ -163,9 +163,9 @@ static textures run(gpu_test *t, const world *w)
     textures out = {.bricks = (const float(*)[2])gpu_map(t, "bricks"),
                     .distance = gpu_map(t, "distance")};
     assert_int_equal(refs[MEDIUM_PORT_DENSITY].resource != 0,
-                     w->medium.mode == TYN_MEDIUM_DENSITY && !w->direct);
+                     w->medium.mode == TYN_MEDIUM_COEFFICIENTS || !w->direct);
     if (w->medium.mode == TYN_MEDIUM_COEFFICIENTS) {
-        out.sigma_s = gpu_map(t, "sigma_s");
+        out.sigma_s = gpu_map(t, "density");
         out.sigma_a = gpu_map(t, "sigma_a");
         out.g = gpu_map(t, "g");
         out.emission = w->emissive ? gpu_map(t, "emission") : NULL;

@@ -5,6 +5,7 @@
 #include "passes/ordinates/ordinates.h"
 #include "scene/env_suns.h"
 #include "scene_args.h"
+#include "vector.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,11 +40,6 @@ static double random_01(uint32_t *seed)
     return (double)(*seed >> 8) / 16777216.0;
 }
 
-static double dot3(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void fill_map(map_kind kind)
 {
     static const double Z[3] = {0.25, 0.5, 1.0}, Y[3] = {0.9, 0.95, 1.0}, G[3] = {0.15, 0.12, 0.10};
@@ -57,11 +53,11 @@ static void fill_map(map_kind kind)
                                    : Y[c] + (G[c] - Y[c]) * fmin(1, -5 * d[1]);
             double v = sky;
             if (kind == CONTRAST) { // a bright patch that is no sun
-                v = 0.05 * sky + 40 * exp(30 * (dot3(d, spots[0]) - 1));
+                v = 0.05 * sky + 40 * exp(30 * (vector_dot(d, spots[0]) - 1));
             } else if (kind == WINDOWS) {
                 v = 0.02;
                 for (int k = 0; k < 4; k++) {
-                    v += dot3(d, spots[k]) > 0.97 - 0.02 * k ? 3 + k + c : 0;
+                    v += vector_dot(d, spots[k]) > 0.97 - 0.02 * k ? 3 + k + c : 0;
                 }
             } else if (kind == NOISE) {
                 v = pow(random_01(&seed), 4);
@@ -391,7 +387,7 @@ static void make_importance(float *out, double peak)
     for (int i = 0; i < IMP_W * IMP_H; i++) {
         double d[3], share = sin((i / IMP_W + 0.5) / IMP_H * M_PI);
         direction(i % IMP_W + 0.5, i / IMP_W + 0.5, IMP_W, IMP_H, d);
-        out[i] = (float)(0.2 + peak * exp(3 * (dot3(d, towards) - 1)));
+        out[i] = (float)(0.2 + peak * exp(3 * (vector_dot(d, towards) - 1)));
         sum += share * out[i];
         area += share;
     }
@@ -468,7 +464,7 @@ static void against_twin(void **state)
                 double middle[3];
                 middle_of(&base, regions[i], split, luminance_of(s.light.sky), middle);
                 worst_angle = fmax(worst_angle, fabs(b.list[i].solid_angle / solid_angle - 1));
-                worst_turn = fmax(worst_turn, acos(fmin(1, dot3(middle, got))) * 180 / M_PI);
+                worst_turn = fmax(worst_turn, acos(fmin(1, vector_dot(middle, got))) * 180 / M_PI);
             }
             printf("%s, %d%s%s: light off by %.1e, solid angle by %.1e, direction by %.2g degrees; "
                    "%.2f ms\n",

@@ -5,6 +5,7 @@
 #include "passes/propagate_radial/propagate_radial.h"
 #include "passes/propagate_radial/propagate_radial_args.h"
 #include "scene_args.h"
+#include "vector.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -115,15 +116,7 @@ static void direction(double u, double v, double d[3])
     d[0] = z >= 0 ? u : copysign(1 - fabs(v), u);
     d[1] = z >= 0 ? v : copysign(1 - fabs(u), v);
     d[2] = z;
-    double r = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-    for (int i = 0; i < 3; i++) {
-        d[i] /= r;
-    }
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    vector_normalise(d);
 }
 
 // Solid angle of a triangle of directions (Van Oosterom and Strackee 1983).
@@ -131,7 +124,7 @@ static double triangle(const double a[3], const double b[3], const double c[3])
 {
     double volume = a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
                     a[2] * (b[0] * c[1] - b[1] * c[0]);
-    return fabs(2 * atan2(volume, 1 + dot(a, b) + dot(b, c) + dot(c, a)));
+    return fabs(2 * atan2(volume, 1 + vector_dot(a, b) + vector_dot(b, c) + vector_dot(c, a)));
 }
 
 // Edges of texels are great circles, and those that are cut by the fold |u| + |v| = 1 are cut along a diagonal.
@@ -218,7 +211,7 @@ static void folds(void **state)
             double a[3], b[3];
             direction((2 * i + 1.0) / n - 1, (2 * j + 1.0) / n - 1, a);
             direction((2 * at[0] + 1.0) / n - 1, (2 * at[1] + 1.0) / n - 1, b);
-            assert_true(acos(fmin(dot(a, b), 1)) < 6.0 / n);
+            assert_true(acos(fmin(vector_dot(a, b), 1)) < 6.0 / n);
             for (int k = 0; k < 4; k++) {
                 radial_twin_beside(n, at[0], at[1], step[k][0], step[k][1], back);
                 returns += back[0] == i && back[1] == j;

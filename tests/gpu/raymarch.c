@@ -4,6 +4,7 @@
 #include "counters.h"
 #include "beam_args.h"
 #include "scatter_lut_args.h"
+#include "vector.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,18 +76,10 @@ static void make_cube(march_scene *s, float sigma_s, float sigma_a, float g)
     s->params.longest_step = tyn_raymarch_longest_step(sigma_s + sigma_a, 0, m);
 }
 
-static void normalize(float v[3])
-{
-    float l = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; i++) {
-        v[i] /= l;
-    }
-}
-
 static void set_sun(march_scene *s, float x, float y, float z)
 {
     float d[3] = {x, y, z};
-    normalize(d);
+    vector_normalisef(d);
     for (int i = 0; i < 3; i++) {
         s->light.direction[i] = s->beam.direction[i] = d[i];
         s->beam.even = 1; // `column` holds the mean since the entry
@@ -100,14 +93,14 @@ static void set_sun(march_scene *s, float x, float y, float z)
 static void set_camera(march_scene *s, float x, float y, float z, float distance)
 {
     float d[3] = {x, y, z}, up[3] = {0, 0, 1};
-    normalize(d);
+    vector_normalisef(d);
     if (fabsf(d[2]) > 0.9f) {
         up[1] = 1;
         up[2] = 0;
     }
     float right[3] = {d[1] * up[2] - d[2] * up[1], d[2] * up[0] - d[0] * up[2],
                       d[0] * up[1] - d[1] * up[0]};
-    normalize(right);
+    vector_normalisef(right);
     float true_up[3] = {right[1] * d[2] - right[2] * d[1], right[2] * d[0] - right[0] * d[2],
                         right[0] * d[1] - right[1] * d[0]};
     for (int i = 0; i < 3; i++) {

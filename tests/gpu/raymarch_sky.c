@@ -3,6 +3,7 @@
 #include "passes/raymarch/raymarch.h"
 #include "glow_args.h"
 #include "counters.h"
+#include "vector.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,21 +24,6 @@ typedef struct sky_scene {
     bool with_glow;
 } sky_scene;
 
-static void normalize(float v[3])
-{
-    float l = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; i++) {
-        v[i] /= l;
-    }
-}
-
-static void cross(const float a[3], const float b[3], float c[3])
-{
-    for (int i = 0; i < 3; i++) {
-        c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-    }
-}
-
 static double noise(uint32_t *seed)
 {
     *seed = *seed * 1664525u + 1013904223u;
@@ -49,15 +35,15 @@ static void make_scene(sky_scene *s, float x, float y, float z, float tan_half)
 {
     memset(s, 0, sizeof *s);
     float forward[3] = {x, y, z}, right[3], up[3] = {0.1f, 0.2f, 1};
-    normalize(forward);
-    cross(forward, up, right);
-    normalize(right);
-    cross(right, forward, up);
+    vector_normalisef(forward);
+    vector_crossf(forward, up, right);
+    vector_normalisef(right);
+    vector_crossf(right, forward, up);
     float turned[3][3] = {{0.6f, 0.1f, 0.5f}, {0.3f, 0.9f, -0.2f}};
-    normalize(turned[0]);
-    cross(turned[0], turned[1], turned[2]);
-    normalize(turned[2]);
-    cross(turned[2], turned[0], turned[1]);
+    vector_normalisef(turned[0]);
+    vector_crossf(turned[0], turned[1], turned[2]);
+    vector_normalisef(turned[2]);
+    vector_crossf(turned[2], turned[0], turned[1]);
     uint32_t seed = 3;
     for (int i = 0; i < MAP_W * MAP_H * 4; i++) {
         s->map[i] = (float)(0.5 + noise(&seed));

@@ -81,12 +81,12 @@ static sums run(gpu_test *t, const tyn_scene *scene, const struct light_block *l
                 .geometry.nodes = gpu_buffer(t, "nodes", nothing, sizeof nothing), // all are tried
             },
     };
-    tyn_rsm_refs rsm;
+    tyn_rsm rsm;
     assert_int_equal(tyn_add_rsm(t->graph, &job, &rsm), TYN_OK);
     tyn_settings_destroy(&settings);
-    tyn_graph_output(t->graph, "flux", rsm.flux, true);
-    tyn_graph_output(t->graph, "position", rsm.position, true);
-    tyn_graph_output(t->graph, "normal", rsm.normal, true);
+    tyn_graph_output(t->graph, "flux", rsm.maps.rsm_flux, true);
+    tyn_graph_output(t->graph, "position", rsm.maps.rsm_position, true);
+    tyn_graph_output(t->graph, "normal", rsm.maps.rsm_normal, true);
     gpu_run(t);
     tyn_extent size;
     const float(*flux)[4] = (const float(*)[4])tyn_graph_map(t->graph, "flux", &size, NULL);

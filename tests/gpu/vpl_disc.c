@@ -3,6 +3,7 @@
 #include "gpu_test.h"
 #include "point_pass.h"
 #include "vpl_eval.comp.h"
+#include "vector.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,18 +30,6 @@ static const float *run(gpu_test *t)
     return gpu_map(t, "results");
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-    for (int k = 0; k < 3; k++) {
-        out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-    }
-}
-
 // Irradiance on the side n at p of a disc of radiance 1 / (pi R^2), all but what is beyond the plane's horizon:
 // half the sum over edges of angle times (normal of the edge's plane).n. `cut`: is some of it?
 static double irradiance_of(const point *q, bool *cut)
@@ -54,16 +43,16 @@ static double irradiance_of(const point *q, bool *cut)
     }
     const double radius = (double)q->radius;
     *cut = false;
-    if (dot(from, axis) >= 0) {
+    if (vector_dot(from, axis) >= 0) {
         return 0; // behind it
     }
     const int least = fabs(axis[0]) < 0.6 ? 0 : 1;
-    cross(axis, (double[]){least == 0, least == 1, 0}, u);
-    const double length = sqrt(dot(u, u));
+    vector_cross(axis, (double[]){least == 0, least == 1, 0}, u);
+    const double length = sqrt(vector_dot(u, u));
     for (int k = 0; k < 3; k++) {
         u[k] /= length;
     }
-    cross(axis, u, v);
+    vector_cross(axis, u, v);
     // As large as the disc, so that the polygon is within a millionth of it.
     const double scale = radius * sqrt(2 * M_PI / CORNERS / sin(2 * M_PI / CORNERS));
     int kept = 0;
@@ -73,7 +62,7 @@ static double irradiance_of(const point *q, bool *cut)
         for (int k = 0; k < 3; k++) {
             a[k] = from[k] + scale * (cos(angle) * u[k] + sin(angle) * v[k]);
         }
-        const double ha = dot(a, n), hl = i ? dot(last, n) : ha;
+        const double ha = vector_dot(a, n), hl = i ? vector_dot(last, n) : ha;
         *cut = *cut || ha < 0;
         // Corners of what is before the plane: where the contour goes through it, and the disc's own.
         int num = 0;
@@ -91,9 +80,11 @@ static double irradiance_of(const point *q, bool *cut)
                 memcpy(first, ends[j], sizeof first);
             } else {
                 double normal[3];
-                cross(closing, ends[j], normal);
-                const double size = sqrt(dot(normal, normal));
-                sum += size > 0 ? atan2(size, dot(closing, ends[j])) * dot(normal, n) / size : 0;
+                vector_cross(closing, ends[j], normal);
+                const double size = sqrt(vector_dot(normal, normal));
+                sum += size > 0 ? atan2(size, vector_dot(closing, ends[j])) *
+                                      vector_dot(normal, n) / size
+                                : 0;
             }
             memcpy(closing, ends[j], sizeof closing);
         }
@@ -101,9 +92,10 @@ static double irradiance_of(const point *q, bool *cut)
     }
     if (kept > 2) {
         double normal[3];
-        cross(closing, first, normal);
-        const double size = sqrt(dot(normal, normal));
-        sum += size > 0 ? atan2(size, dot(closing, first)) * dot(normal, n) / size : 0;
+        vector_cross(closing, first, normal);
+        const double size = sqrt(vector_dot(normal, normal));
+        sum +=
+            size > 0 ? atan2(size, vector_dot(closing, first)) * vector_dot(normal, n) / size : 0;
     }
     return fabs(sum) / 2 / (M_PI * radius * radius);
 }

@@ -153,3 +153,36 @@ void wall_step(int link, int d[3])
         d[v] = s & 2 ? -1 : 1;
     }
 }
+
+int mesh_flood(const grid *g, const uint32_t *links, int from, bool *outside)
+{
+    int total = g->n[0] * g->n[1] * g->n[2], found = 0, head = 0;
+    bool *seen = calloc(total, 1);
+    int *queue = malloc(total * sizeof *queue);
+    *outside = false;
+    queue[found++] = from;
+    seen[from] = true;
+    while (head < found) {
+        int i = queue[head++], c[3] = {i % g->n[0], i / g->n[0] % g->n[1], i / g->n[0] / g->n[1]};
+        for (int link = 0; link < TYN_WALLS_LINKS; link++) {
+            int e[3];
+            wall_step(link, e);
+            if (links[i] >> link & 1) {
+                continue;
+            }
+            bool inside = true;
+            for (int a = 0; a < 3; a++) {
+                inside = inside && c[a] + e[a] >= 0 && c[a] + e[a] < g->n[a];
+            }
+            *outside = *outside || !inside;
+            int q = i + (e[2] * g->n[1] + e[1]) * g->n[0] + e[0];
+            if (inside && !seen[q]) {
+                seen[q] = true;
+                queue[found++] = q;
+            }
+        }
+    }
+    free(seen);
+    free(queue);
+    return found;
+}

@@ -30,3 +30,5 @@ typedef struct wall_refs {
 wall_refs mesh_walls(gpu_test *t, const grid *g, const mesh *m);
 // The step d to the neighbour that link 0..25 of walls_args.h goes to.
 void wall_step(int link, int d[3]);
+// Cells that can be reached from cell `from` along links that are not cut; whether the outside can.
+int mesh_flood(const grid *g, const uint32_t *links, int from, bool *outside);

@@ -3,7 +3,6 @@
 #include "point_pass.h"
 #include "wall_mesh.h"
 #include "passes/walls/walls.h"
-#include "radial_args.h"
 #include "scene_args.h"
 #include "walls_eval.comp.h"
 #include <math.h>
@@ -121,40 +120,6 @@ static void compare(const grid *g, const mesh *m, const result *r, const char *n
     assert_true(cut > 0 && unclear < checked / 20);
 }
 
-// Cells that can be reached from cell `from`; whether the outside can.
-static int flood(const grid *g, const result *r, int from, bool *outside)
-{
-    int total = g->n[0] * g->n[1] * g->n[2], found = 0, head = 0;
-    bool *seen = calloc(total, 1);
-    int *queue = malloc(total * sizeof *queue);
-    *outside = false;
-    queue[found++] = from;
-    seen[from] = true;
-    while (head < found) {
-        int i = queue[head++], c[3] = {i % g->n[0], i / g->n[0] % g->n[1], i / g->n[0] / g->n[1]};
-        for (int link = 0; link < TYN_WALLS_LINKS; link++) {
-            int e[3];
-            wall_step(link, e);
-            if (r->links[i] >> link & 1) {
-                continue;
-            }
-            bool inside = true;
-            for (int a = 0; a < 3; a++) {
-                inside = inside && c[a] + e[a] >= 0 && c[a] + e[a] < g->n[a];
-            }
-            *outside = *outside || !inside;
-            int q = i + (e[2] * g->n[1] + e[1]) * g->n[0] + e[0];
-            if (inside && !seen[q]) {
-                seen[q] = true;
-                queue[found++] = q;
-            }
-        }
-    }
-    free(seen);
-    free(queue);
-    return found;
-}
-
 // ---- tests --------------------------------------------------------------------------------------
 
 static void matches_brute_force(void **state)
@@ -186,7 +151,7 @@ static void closed_meshes_are_closed(void **state)
                                   k % 4 ? 0.13 * k : 0);
         result r = run(*state, &g, &m);
         bool out;
-        int inside = flood(&g, &r, (10 * 20 + 10) * 20 + 10, &out);
+        int inside = mesh_flood(&g, r.links, (10 * 20 + 10) * 20 + 10, &out);
         assert_false(out);
         least = inside < least ? inside : least;
         assert_true(inside > 500 && inside < 6000);
@@ -243,7 +208,7 @@ static void box_is_the_room(void **state)
     mesh m = mesh_box(c, h, 0);
     result r = run(*state, &g, &m);
     bool out;
-    assert_int_equal(flood(&g, &r, 0, &out), 120);
+    assert_int_equal(mesh_flood(&g, r.links, 0, &out), 120);
     assert_false(out);
     for (int i = 0; i < 120; i++) {
         assert_int_equal(r.links[i] & TYN_WALLS_NEAR, 0);
@@ -361,88 +326,13 @@ static void blends_on_one_side(void **state)
     mesh_free(&m);
 }
 
-// All that a light on one wall of an empty room sends arrives at the others; outside the room nothing does.
-static void virtual_lights(void **state)
-{
-    gpu_test *t = *state;
-    for (int k = 0; k < 2; k++) {
-        grid g = grid_of(24, 24, 24, 1.0 / 24);
-        mesh m = mesh_box((double[]){0.5, 0.5, 0.5}, (double[]){0.37, 0.31, 0.34}, k * 0.4);
-        // In the middle of a wall, facing inwards.
-        double p[3], n[3], length = 0;
-        for (int a = 0; a < 3; a++) {
-            p[a] = 0.5 * (m.tri[4][0][a] + m.tri[4][2][a]);
-            n[a] = 0.5 - p[a];
-            length += n[a] * n[a];
-        }
-        struct radial_block lights = {.count = 1};
-        struct radial_grid *v = &lights.list[0];
-        for (int a = 0; a < 3; a++) {
-            n[a] /= sqrt(length);
-            v->light.position[a] = (float)(p[a] + 1e-4 * n[a]);
-            v->light.axis[a] = (float)n[a];
-            v->light.intensity[a] = 2;
-            v->to_map[a][a] = 1;
-        }
-        v->light.kind = TYN_RADIAL_COSINE;
-        v->inside = 1;
-        v->inverse_near = 1;
-        struct medium_block medium = {.extent = {1, 1, 1}, .size = {1, 1, 1}};
-        const float zero = 0;
-        tyn_graph_begin(t->graph);
-        wall_refs w = mesh_walls(t, &g, &m);
-        tyn_wall_light_params params;
-        tyn_pass_defaults(&tyn_pass_wall_light, &params);
-        for (int a = 0; a < 3; a++) {
-            params.extent[a] = 1;
-            params.dims[a] = 24;
-        }
-        tyn_ref refs[WALL_LIGHT_NUM_PORTS] = {
-            [WALL_LIGHT_PORT_MEDIUM] = gpu_buffer(t, "medium", &medium, sizeof medium),
-            [WALL_LIGHT_PORT_LIGHTS] = gpu_buffer(t, "lights", &medium, sizeof medium),
-            [WALL_LIGHT_PORT_RADIALS] = gpu_buffer(t, "radials", &lights, sizeof lights),
-            [WALL_LIGHT_PORT_RADIAL_COLUMN] =
-                gpu_image(t, "column", TYN_IMAGE_3D, (tyn_extent){1, 1, 1}, 1, &zero),
-            [WALL_LIGHT_PORT_SURFACES] = w.surfaces,
-            [WALL_LIGHT_PORT_VERTICES] = w.vertices,
-            [WALL_LIGHT_PORT_TRIANGLES] = w.triangles,
-            [WALL_LIGHT_PORT_WALL_LINKS] = w.links,
-            [WALL_LIGHT_PORT_WALL_CELLS] = w.cells,
-            [WALL_LIGHT_PORT_HITS] = w.hits,
-        };
-        assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_wall_light, &params, refs), TYN_OK);
-        tyn_graph_output(t->graph, "wall_light", refs[WALL_LIGHT_PORT_LIGHT], true);
-        tyn_graph_output(t->graph, "wall_cells", w.cells, true);
-        tyn_graph_output(t->graph, "links", w.links, true);
-        gpu_run(t);
-        const float(*light)[3] = (const float(*)[3])gpu_map(t, "wall_light");
-        const struct wall_cell *cells = gpu_map(t, "wall_cells");
-        result r = {(uint32_t *)gpu_map(t, "links"), NULL};
-        double arriving = 0;
-        int lit = 0;
-        for (int i = 0; i < 24 * 24 * 24; i++) {
-            double area = 4 * cells[i].area / 576, albedo = cells[i].albedo[1];
-            arriving += albedo > 0 ? M_PI * light[i][1] / albedo * area : 0;
-            if (light[i][1] > 0 && lit++ % 50 == 0) {
-                bool out;
-                flood(&g, &r, i, &out);
-                assert_false(out);
-            }
-        }
-        printf("turned by %.1f: %.3f of the light arrives, at %d cells; %.2f ms\n", k * 0.4,
-               arriving / (2 * M_PI), lit, gpu_ms(t, "wall_light"));
-        assert_true(fabs(arriving / (2 * M_PI) - 1) < (k ? 0.15 : 0.05));
-        mesh_free(&m);
-    }
-}
-
 static void many_triangles(void **state)
 {
     grid g = grid_of(32, 32, 32, 1.0 / 32);
     mesh m = mesh_sphere((double[]){0.5, 0.5, 0.5}, 0.4, 7); // 131072
     result r = run(*state, &g, &m);
     bool out;
-    int inside = flood(&g, &r, (16 * 32 + 16) * 32 + 16, &out);
+    int inside = mesh_flood(&g, r.links, (16 * 32 + 16) * 32 + 16, &out);
     assert_false(out);
     double sphere = 4. / 3 * M_PI * pow(0.4 * 32, 3);
     printf("%d triangles: %.1f ms; %d cells inside, the sphere's volume is %.0f\n", m.n,
@@ -460,8 +350,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(matches_brute_force),  cmocka_unit_test(closed_meshes_are_closed),
         cmocka_unit_test(walls_on_the_lattice), cmocka_unit_test(box_is_the_room),
-        cmocka_unit_test(blends_on_one_side),   cmocka_unit_test(virtual_lights),
-        cmocka_unit_test(many_triangles),
+        cmocka_unit_test(blends_on_one_side),   cmocka_unit_test(many_triangles),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

@@ -127,6 +127,7 @@ tyn_ref gpu_image(gpu_test *t, const char *name, tyn_dim dim, tyn_extent extent,
                       : channels == 1  ? VK_FORMAT_R32_SFLOAT
                       : channels == 2  ? VK_FORMAT_R32G32_SFLOAT
                       : channels == -2 ? VK_FORMAT_R32G32_UINT
+                      : channels == -4 ? VK_FORMAT_R32G32B32A32_UINT
                                        : VK_FORMAT_R32G32B32A32_SFLOAT;
     if (channels == -1) {
         p->bytes = texels * 2;
@@ -149,6 +150,18 @@ tyn_ref gpu_buffer(gpu_test *t, const char *name, const void *data, size_t size)
     void *copy = malloc(size);
     memcpy(copy, data, size);
     return tyn_graph_upload_buffer(t->graph, name, copy, size, 0);
+}
+
+tyn_ref *gpu_port(const tyn_pass_desc *pass, tyn_ref *refs, const char *name)
+{
+    uint32_t port = 0;
+    while (port < pass->num_ports && strcmp(pass->ports[port].name, name) != 0) {
+        port++;
+    }
+    if (port == pass->num_ports) {
+        fail_msg("pass %s has no port %s", pass->name, name);
+    }
+    return &refs[port];
 }
 
 double gpu_ms(gpu_test *t, const char *name)

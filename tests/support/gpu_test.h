@@ -35,10 +35,13 @@ tyn_result gpu_try(gpu_test *t);
 const void *gpu_map(gpu_test *t, const char *name);
 
 // Uploads float data as an image (format R32F, RG32F, RGBA32F by channels 1, 2, 4; R16F: channels = -1;
-// RG32UI: -2, two words a texel).
+// RG32UI, RGBA32UI: -2, -4, words a texel).
 tyn_ref gpu_image(gpu_test *t, const char *name, tyn_dim dim, tyn_extent extent, int channels,
                   const float *data);
 tyn_ref gpu_buffer(gpu_test *t, const char *name, const void *data, size_t size);
+
+// The port of a pass that is called `name`, of its `refs`; fails the test where there is none.
+tyn_ref *gpu_port(const tyn_pass_desc *pass, tyn_ref *refs, const char *name);
 
 // Milliseconds the node took in the last run (0 without timestamps).
 double gpu_ms(gpu_test *t, const char *node);

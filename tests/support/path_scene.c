@@ -2,7 +2,9 @@
 #include "path_scene.h"
 #include "base/hash.h"
 #include "methods/env_cdf.h"
+#include "vector.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,21 +16,6 @@ static void copy3(float to[3], const float from[3])
 static float largest(const float v[3])
 {
     return fmaxf(v[0], fmaxf(v[1], v[2]));
-}
-
-static void normalise(float v[3])
-{
-    float l = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; i++) {
-        v[i] /= l;
-    }
-}
-
-static void cross(const float a[3], const float b[3], float out[3])
-{
-    for (int i = 0; i < 3; i++) {
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-    }
 }
 
 void path_scene_box(path_scene *s, const float extent[3], const float sigma_s[3],
@@ -81,13 +68,24 @@ void path_scene_box(path_scene *s, const float extent[3], const float sigma_s[3]
     }
 }
 
+void path_scene_cube(path_scene *s, float sigma_s, float sigma_a, float g, bool grid)
+{
+    static const float one[1] = {1};
+    path_scene_box(s, (float[]){1, 1, 1}, (float[]){sigma_s, sigma_s, sigma_s},
+                   (float[]){sigma_a, sigma_a, sigma_a}, (float[]){g, g, g}, grid ? one : NULL,
+                   (uint32_t[]){1, 1, 1});
+    path_scene_orthographic(s, (float[]){0.5f, 0.5f, 0.5f}, (float[]){0, -1, 0}, (float[]){0, 0, 1},
+                            0.5f, 16);
+    s->samples = 64;
+}
+
 void path_scene_sun(path_scene *s, const float direction[3], const float irradiance[3])
 {
     struct light_block *l = &s->lights[s->params.num_lights++];
     l->kind = TYN_LIGHT_KIND_DIRECTIONAL;
     copy3(l->color, irradiance);
     copy3(l->direction, direction);
-    normalise(l->direction);
+    vector_normalisef(l->direction);
 }
 
 void path_scene_lamp(path_scene *s, const float position[3], const float intensity[3])
@@ -118,10 +116,10 @@ void path_scene_orthographic(path_scene *s, const float centre[3], const float d
     struct camera_block *c = &s->camera;
     copy3(c->origin, centre);
     copy3(c->forward, direction);
-    normalise(c->forward);
-    cross(up, c->forward, c->right);
-    normalise(c->right);
-    cross(c->forward, c->right, c->up);
+    vector_normalisef(c->forward);
+    vector_crossf(up, c->forward, c->right);
+    vector_normalisef(c->right);
+    vector_crossf(c->forward, c->right, c->up);
     // Start well outside: the camera's plane cuts the media otherwise.
     float back = 2 * (s->medium.extent[0] + s->medium.extent[1] + s->medium.extent[2]);
     for (int i = 0; i < 3; i++) {
@@ -308,4 +306,31 @@ const struct path_balance_result *path_scene_balance(gpu_test *t, path_scene *s,
     gpu_run(t);
     *balance = gpu_map(t, "balance");
     return gpu_map(t, "result");
+}
+
+const tyn_fluxes *path_scene_fluxes(gpu_test *t, path_scene *s, uint32_t samples)
+{
+    tyn_ref refs[PATH_FLUXES_NUM_PORTS] = {{0}};
+    tyn_graph_begin(t->graph);
+    declare_scene(t, s, refs);
+    refs[PATH_FLUXES_PORT_STATE] =
+        tyn_graph_history_buffer(t->graph, "state", tyn_path_fluxes_state_size(), 1);
+    memcpy(s->params.box[1], s->medium.extent, sizeof s->params.box[1]);
+    s->params.first_sample = 0;
+    s->params.chunks = 4;
+    s->params.threads = 1024;
+    s->params.num_samples = samples / s->params.chunks / s->params.threads;
+    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_path_fluxes, &s->params, refs), TYN_OK);
+    tyn_graph_output(t->graph, "fluxes", refs[PATH_FLUXES_PORT_FLUXES], true);
+    tyn_graph_output(t->graph, "counters", refs[PATH_FLUXES_PORT_COUNTERS], true);
+    gpu_run(t);
+    const struct counters_block *counters = gpu_map(t, "counters");
+    assert_int_equal(counters->non_finite + counters->cut, 0);
+    return gpu_map(t, "fluxes");
+}
+
+void path_scene_check(const char *what, double value, double error, double expected)
+{
+    printf("%-44s %.6f +- %.6f  expected %.6f\n", what, value, error, expected);
+    assert_true(fabs(value - expected) <= 3.5 * error + 2e-5 * fabs(expected));
 }

@@ -5,7 +5,6 @@
 #include "counters.h"
 #include "passes/path/path.h"
 #include "passes/path/path_args.h"
-#include "counters.h"
 #include "scene_args.h"
 #include <tyndall/context.h>
 
@@ -27,6 +26,8 @@ typedef struct path_scene {
 void path_scene_box(path_scene *s, const float extent[3], const float sigma_s[3],
                     const float sigma_a[3], const float g[3], const float *grid,
                     const uint32_t grid_size[3]);
+// A unit cube, homogeneous or the same through a grid of ones, seen from the side: 16 x 16 pixels along +y.
+void path_scene_cube(path_scene *s, float sigma_s, float sigma_a, float g, bool grid);
 void path_scene_sun(path_scene *s, const float direction[3], const float irradiance[3]);
 void path_scene_lamp(path_scene *s, const float position[3], const float intensity[3]);
 void path_scene_sky(path_scene *s, float radiance); // constant
@@ -45,3 +46,8 @@ const tyn_probe_result *path_scene_probe_more(gpu_test *t, path_scene *s, const 
                                               uint32_t num_points, uint32_t done);
 const tyn_probe_result *path_scene_probe(gpu_test *t, path_scene *s, const float (*points)[3],
                                          uint32_t num_points, uint32_t samples);
+// Where light of suns and surroundings goes; `samples` paths, a multiple of 4096.
+const tyn_fluxes *path_scene_fluxes(gpu_test *t, path_scene *s, uint32_t samples);
+
+// Prints a value, one standard error of it and what it should be; fails beyond 3.5 of these.
+void path_scene_check(const char *what, double value, double error, double expected);

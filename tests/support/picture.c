@@ -1,6 +1,7 @@
 // picture.c -- scenes made in code, pictures of them, and how far apart two pictures are.
 #include "picture.h"
 #include "npy.h"
+#include "vector.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -58,26 +59,11 @@ tyn_shape *scene_add_box(tyn_scene *scene, const tyn_medium *medium, const float
     return s;
 }
 
-static void normalise(float v[3])
-{
-    float l = sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; i++) {
-        v[i] /= l;
-    }
-}
-
-static void cross(const float a[3], const float b[3], float out[3])
-{
-    for (int i = 0; i < 3; i++) {
-        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-    }
-}
-
 void scene_add_sun(tyn_scene *scene, float x, float y, float z, float r, float g, float b)
 {
     tyn_light *l = &scene->lights[scene->num_lights++];
     *l = (tyn_light){.kind = TYN_LIGHT_DIRECTIONAL, .color = {r, g, b}, .direction = {x, y, z}};
-    normalise(l->direction);
+    vector_normalisef(l->direction);
 }
 
 void scene_set_sky(tyn_scene *scene, float radiance)
@@ -91,10 +77,10 @@ void view_orthographic(tyn_view *view, const float centre[3], float x, float y, 
 {
     tyn_camera *c = &view->camera;
     float d[3] = {x, y, z};
-    normalise(d);
-    cross(d, up, c->right);
-    normalise(c->right);
-    cross(c->right, d, c->up);
+    vector_normalisef(d);
+    vector_crossf(d, up, c->right);
+    vector_normalisef(c->right);
+    vector_crossf(c->right, d, c->up);
     for (int i = 0; i < 3; i++) {
         c->back[i] = -d[i];
         c->position[i] = centre[i] - 8 * half * d[i];

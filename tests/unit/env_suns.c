@@ -1,6 +1,7 @@
 // env_suns.c -- the suns of analytic maps, and of a real one.
 #include "scene/env_suns.h"
 #include "io_test.h"
+#include "vector.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -116,14 +117,9 @@ static void assert_consistent(const tyn_environment *env, const tyn_map_light *l
     }
 }
 
-static double length3(const double v[3])
-{
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 static lamp lobe(double x, double y, double z, double color, double sharpness)
 {
-    double d[3] = {x, y, z}, n = length3(d);
+    double d[3] = {x, y, z}, n = vector_length(d);
     return (lamp){{x / n, y / n, z / n}, {color, 0.9 * color, 0.75 * color}, sharpness};
 }
 

@@ -1,5 +1,5 @@
 #!/bin/sh
-# floors.sh SOURCE_ROOT -- checks the layering of the tree from its #include lines.
+# floors.sh SOURCE_ROOT -- checks the layering of the tree from its #include lines, and that passes have tests.
 #
 # Floors, bottom to top: base < gpu, scene < io < graph < passes < methods < plugin < frame < tools,
 # samples, tests. A file includes its own folder and lower floors only; passes do not include each
@@ -120,7 +120,29 @@ check()
     END { exit faults > 0 }'
 )
 
-# The check must find what it is for: every line below is a fault, and nothing else is.
+# untested ROOT: prints a line for each registered pass that has no test of its own, tests/gpu/PASS.c, or one that is
+# not built; status 1 if there is any, or no pass at all.
+untested()
+(
+    cd "$1"
+    grep -rhoE '^ *&tyn_pass_[a-z0-9_]+,' engine | sed 's/.*&tyn_pass_//; s/,//' | sort -u | {
+        passes=0
+        faults=0
+        while read -r pass; do
+            passes=$((passes + 1))
+            if [ ! -f "tests/gpu/$pass.c" ]; then
+                echo "pass $pass has no test of its own, tests/gpu/$pass.c"
+                faults=$((faults + 1))
+            elif ! grep -q "'$pass'" tests/gpu/meson.build; then
+                echo "tests/gpu/meson.build does not build $pass.c"
+                faults=$((faults + 1))
+            fi
+        done
+        [ "$passes" -gt 0 ] && [ "$faults" = 0 ]
+    }
+)
+
+# The checks must find what they are for: every line below is a fault, and nothing else is.
 self=$(mktemp -d)
 trap 'rm -rf "$self"' EXIT
 mkdir -p "$self/engine/include/tyndall" "$self/engine/base" "$self/engine/gpu" "$self/engine/scene" \
@@ -138,6 +160,9 @@ printf '%s\n' '#include "base/hash.h"' '#include <passes/a/a.h>' > tools/bad.c
 printf '%s\n' '#include "passes/a/a.h"' > shaders/bad.glsl
 printf '%s\n' '#include "a.h"' '#include "a_go.comp.h"' '#include "args.h"' '#include <tyndall/pass.h>' \
     '#include "base/hash.h"' '#include <math.h>' > passes/a/good.c
+mkdir -p "$self/engine/plugin" "$self/tests/gpu"
+printf '    &tyn_pass_%s,\n' tested bare unbuilt > engine/plugin/registry.c
+: > tests/gpu/tested.c; : > tests/gpu/unbuilt.c; echo "'tested': [], 'barely': []" > tests/gpu/meson.build
 cd - > /dev/null
 status=0
 found=$(check "$self") || status=$?
@@ -146,8 +171,16 @@ if [ "$status" = 0 ] || [ "$lines" != 14 ] || printf '%s\n' "$found" | grep -q g
     printf 'the check itself is broken: 14 faults expected, found %s:\n%s\n' "$lines" "$found"
     exit 1
 fi
+status=0
+found=$(untested "$self") || status=$?
+if [ "$status" = 0 ] || [ "$found" != "pass bare has no test of its own, tests/gpu/bare.c
+tests/gpu/meson.build does not build unbuilt.c" ]; then
+    printf 'the check of tests itself is broken: it found\n%s\n' "$found"
+    exit 1
+fi
 
 check "$1"
+untested "$1"
 
 # Every public header is compiled alone by the test beside this one.
 for header in "$1"/engine/include/tyndall/*.h; do

@@ -1,4 +1,4 @@
-// ordinates_light.c -- light of principal ordinates on the lattice, in probes and in the balance.
+// lattice_ordinates.c -- light of principal ordinates on the lattice, in probes and in the balance.
 #include "light_chain.h"
 #include "base/half.h"
 #include "passes/columns/columns.h"

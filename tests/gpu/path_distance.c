@@ -1,0 +1,139 @@
+// path_distance.c -- distances to surfaces, against rays through all triangles in double precision.
+#include "gpu_test.h"
+#include "passes/path/path.h"
+#include "scene_args.h"
+#include "solids.h"
+#include "surface_args.h"
+#include "vector.h"
+#include <string.h>
+
+enum { WIDTH = 40, HEIGHT = 24 };
+
+// World -> M: turned about y and moved.
+static const float rows[3][4] = {{0.8f, 0, 0.6f, 1}, {0, 1, 0, -0.5f}, {-0.6f, 0, 0.8f, 2}};
+
+static void make_scene(tyn_scene *scene)
+{
+    tyn_scene_init(scene);
+    const uint32_t m = solids_material(scene, (float[3]){0.5f, 0.5f, 0.5f}, (float[3]){0});
+    solids_quad(scene, (float[]){-3, 0, -3}, (float[]){0, 0, 6}, (float[]){6, 0, 0}, m);
+    solids_box(scene, (float[]){-1, 0.5f, -1}, (float[]){1, 1.5f, 0.5f}, 0.5f, false, m);
+    solids_sphere(scene, (float[]){1.5f, 0.6f, 1}, 0.5f, 8, false, m);
+}
+
+// Along the ray o + t d to the nearest triangle; 0: none. `doubtful`: it passes an edge that closely.
+static double trace(const tyn_surfaces *s, const double o[3], const double d[3], bool *doubtful)
+{
+    double best = INFINITY;
+    *doubtful = false;
+    for (uint32_t i = 0; i < s->num_triangles; i++) {
+        double e[2][3], from[3], n[3], q[3];
+        const float *v[3];
+        for (int k = 0; k < 3; k++) {
+            v[k] = s->vertices[s->triangles[i].vertices[k]].position;
+        }
+        for (int c = 0; c < 3; c++) {
+            e[0][c] = (double)v[1][c] - (double)v[0][c];
+            e[1][c] = (double)v[2][c] - (double)v[0][c];
+            from[c] = o[c] - (double)v[0][c];
+        }
+        vector_cross(e[0], e[1], n);
+        vector_cross(from, d, q);
+        const double det = -vector_dot(d, n), t = vector_dot(from, n) / det;
+        const double b = vector_dot(e[1], q) / det, c = -vector_dot(e[0], q) / det;
+        const double least = fmin(fmin(b, c), 1 - b - c);
+        *doubtful = *doubtful || (t > 0 && fabs(least) < 1e-4);
+        best = least >= 0 && t > 0 && t < best ? t : best;
+    }
+    return isinf(best) ? 0 : best;
+}
+
+static void distances(void **state)
+{
+    gpu_test *t = *state;
+    const tyn_pass_desc *pass = &tyn_pass_path_distance;
+    for (int variant = 0; variant < 4; variant++) {
+        tyn_scene scene;
+        make_scene(&scene);
+        solids_hierarchy(&scene, 2);
+        const tyn_surfaces *s = &scene.surfaces;
+        struct surface_block block = {
+            .num_triangles = s->num_triangles, .lo = {-3, 0, -3}, .hi = {3, 2, 3}};
+        block.num_nodes = s->num_nodes;
+        memcpy(block.from_world, rows, sizeof rows);
+        for (int r = 0; r < 3; r++) {
+            for (int c = 0; c < 3; c++) {
+                block.to_world[r][c] = rows[c][r];
+                block.to_world[r][3] -= rows[c][r] * rows[c][3];
+            }
+        }
+        const bool parallel = variant % 2, within = variant / 2;
+        struct camera_block camera = {.orthographic = parallel,
+                                      .half_width = parallel ? 3 : 0.8f,
+                                      .half_height = parallel ? 1.8f : 0.48f,
+                                      .size = {WIDTH, HEIGHT},
+                                      .shift = {0.1f, -0.2f}};
+        // In M; within the box, or from above and aside.
+        const float at[2][3] = {{5, 2.5f, 3.5f}, {1, 0.5f, 2}};
+        memcpy(camera.origin, at[within], sizeof camera.origin);
+        memcpy(camera.forward, (float[]){-0.8f, -0.6f, -0.1f}, sizeof camera.forward);
+        vector_normalisef(camera.forward);
+        vector_crossf(camera.forward, (float[]){0, 1, 0}, camera.right);
+        vector_normalisef(camera.right);
+        vector_crossf(camera.right, camera.forward, camera.up);
+        tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+        tyn_graph_begin(t->graph);
+        *gpu_port(pass, refs, "camera") = gpu_buffer(t, "camera", &camera, sizeof camera);
+        *gpu_port(pass, refs, "surfaces") = gpu_buffer(t, "surfaces", &block, sizeof block);
+        *gpu_port(pass, refs, "vertices") =
+            gpu_buffer(t, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices);
+        *gpu_port(pass, refs, "triangles") =
+            gpu_buffer(t, "triangles", s->triangles, s->num_triangles * sizeof *s->triangles);
+        *gpu_port(pass, refs, "nodes") =
+            gpu_buffer(t, "nodes", s->nodes, s->num_nodes * sizeof *s->nodes);
+        const tyn_path_distance_params params = {WIDTH, HEIGHT};
+        assert_int_equal(tyn_graph_add(t->graph, pass, &params, refs), TYN_OK);
+        tyn_graph_output(t->graph, "distances", *gpu_port(pass, refs, "distances"), true);
+        tyn_graph_output(t->graph, "radiance", *gpu_port(pass, refs, "radiance"), true);
+        gpu_run(t);
+        const float *found = gpu_map(t, "distances");
+        const uint32_t(*radiance)[2] = (const uint32_t(*)[2])gpu_map(t, "radiance");
+        int hits = 0, skipped = 0;
+        for (int i = 0; i < WIDTH * HEIGHT; i++) {
+            const double u = 2 * (i % WIDTH + 0.5) / WIDTH - 1 + (double)camera.shift[0];
+            const double v = 1 - 2 * (i / WIDTH + 0.5) / HEIGHT + (double)camera.shift[1];
+            double m[2][3], o[3], d[3];
+            for (int k = 0; k < 3; k++) {
+                const double across = u * (double)(camera.half_width * camera.right[k]) +
+                                      v * (double)(camera.half_height * camera.up[k]);
+                m[0][k] = (double)camera.origin[k] - (double)rows[k][3] + (parallel ? across : 0);
+                m[1][k] = (double)camera.forward[k] + (parallel ? 0 : across);
+            }
+            vector_normalise(m[1]);
+            for (int k = 0; k < 3; k++) { // the inverse of the turn
+                o[k] = d[k] = 0;
+                for (int j = 0; j < 3; j++) {
+                    o[k] += (double)rows[j][k] * m[0][j];
+                    d[k] += (double)rows[j][k] * m[1][j];
+                }
+            }
+            bool doubtful;
+            const double right = trace(s, o, d, &doubtful);
+            assert_true(radiance[i][0] == 0 && (radiance[i][1] & 0x3fffff) == 0);
+            skipped += doubtful;
+            hits += right > 0;
+            if (!doubtful && !(fabs((double)found[i] - right) <= 1e-5 * right + 2e-6)) {
+                fail_msg("pixel %d: %g, not %g", i, (double)found[i], right);
+            }
+        }
+        print_message("%d pixels show surfaces, %d too close to an edge to tell\n", hits, skipped);
+        assert_true(hits > WIDTH * HEIGHT / 4 && skipped < WIDTH * HEIGHT / 10);
+        tyn_scene_finish(&scene);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(distances)};
+    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+}
