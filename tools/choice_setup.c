@@ -1,7 +1,6 @@
 // choice_setup.c -- --max-error and --budget-ms: method and settings that are chosen for a scene.
 #include "choice_setup.h"
 #include "ceilings_cache.h"
-#include "regime_advice.h"
 #include "stats.h"
 #include <math.h>
 #include <stdio.h>
@@ -91,28 +90,18 @@ bool choice_check(app *a, const choice_options *options, const method_options *h
 
 // ---- what may be chosen -----------------------------------------------------------------------
 
-static bool is_here(const char *name)
-{
-    for (uint32_t i = 0; i < tyn_num_methods(); i++) {
-        tyn_method_info info;
-        tyn_method_at(i, &info);
-        if (strcmp(info.name, name) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
 // Methods that this build lacks or that refuse the scene, as " a b ". NULL: out of memory.
 static char *left_out(const fronts *f, const regime *r)
 {
-    char *list = text_format("%s", regime_refused(r));
+    char *list = text_format(" ");
     for (uint32_t i = 0; i < f->num_scenes; i++) {
         for (uint32_t k = 0; k < f->scenes[i].num_runs && list; k++) {
             const char *name = f->scenes[i].runs[k].method;
             char word[40];
+            tyn_method_info info;
             snprintf(word, sizeof word, " %s ", name);
-            if (!is_here(name) && !strstr(list, word)) {
+            const bool can = tyn_method_named(name, &info) && !regime_refused(r, &info);
+            if (!can && !strstr(list, word)) {
                 char *longer = text_format("%s%s ", list, name);
                 free(list);
                 list = longer;
@@ -227,7 +216,7 @@ static bool lines_of(const choose_request *request, const choice *best, char *li
         time_text(ms, best->other_ms);
         percent_text(error, best->other_error);
         name = name_of(best->other, best->other_spp);
-        const char *why = regime_limit_names[best->other_limit];
+        const char *why = best->other_limit;
         snprintf(traded, sizeof traded, "; instead of %s: %s%s%s%s, %s", name ? name : "", error,
                  why ? " (" : "", why ? why : "", why ? ")" : "", ms);
         free(name);

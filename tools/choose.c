@@ -159,7 +159,7 @@ bool choose(const fronts *f, const regime *r, const choose_request *request, cho
         out->spp = best.spp;
         out->error = best.p.error;
         out->ms = best.p.ms;
-        out->limit = best.p.limit.kind;
+        out->limit = best.p.limit.key;
         out->error_margin = error_margin(&best);
         out->ms_margin = ms_margin(&best);
         out->error_met = meets_error(&c, &best);
@@ -175,7 +175,7 @@ bool choose(const fronts *f, const regime *r, const choose_request *request, cho
             out->other_error = other.p.error;
             out->other_ms = other.p.ms;
             out->other_spp = other.spp;
-            out->other_limit = other.p.limit.kind;
+            out->other_limit = other.p.limit.key;
         }
     }
     neighbours_finish(&c.near);

@@ -23,10 +23,11 @@ typedef struct choose_request {
 } choose_request;
 
 typedef struct choice {
-    const fronts_run *run;   // method and settings: as it was run in the nearest scene that has it
-    uint32_t spp;            // 0: the method does not sample
-    double error, ms;        // predicted
-    regime_limit_kind limit; // why the error is what it is, where it is known to be that at least
+    const fronts_run *run; // method and settings: as it was run in the nearest scene that has it
+    uint32_t spp;          // 0: the method does not sample
+    double error, ms;      // predicted
+    const char *
+        limit; // tyn_limit.key: why the error is what it is, where it is known to be that at least; NULL
     double error_margin, ms_margin; // factors that four in five predictions stay below
     bool error_met, budget_met;     // with the margins; true where nothing was asked for
     const fronts_scene *nearest[CHOOSE_NEAREST]; // the most similar first
@@ -36,7 +37,7 @@ typedef struct choice {
     const fronts_run *other;
     double other_error, other_ms;
     uint32_t other_spp;
-    regime_limit_kind other_limit;
+    const char *other_limit;
 } choice;
 
 // False: no stored run is of that method, or out of memory.

@@ -262,7 +262,7 @@ bool predict(const neighbours *n, const regime *r, const fronts_run *run, uint32
     if (p->limit.error > p->error) {
         p->error = p->limit.error;
     } else {
-        p->limit = (regime_limit){LIMIT_NONE, 0};
+        p->limit = (regime_limit){NULL, 0};
     }
     return p->error_distance >= 0;
 }

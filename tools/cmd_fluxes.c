@@ -104,7 +104,7 @@ static int run_fluxes(app *a, const void *arguments)
 {
     fluxes_args args = *(const fluxes_args *)arguments;
     a->quiet = args.machine.quiet;
-    args.method.method = args.method.method ? args.method.method : "path";
+    args.method.method = args.method.method ? args.method.method : tyn_method_reference();
     session s;
     int code = session_open(a, &args.scene, &args.method, TYN_OUTPUT_FLUXES, &s);
     if (code == EXIT_DONE) {

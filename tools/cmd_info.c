@@ -80,6 +80,13 @@ static void print_passes(void)
             print_range(p);
             printf("\n        %s\n", p->doc);
         }
+        const char *separator = "    counts   ";
+        for (const tyn_counter *c = pass->counters; c && c->name; c++) {
+            printf("%s%s%s%s%s", separator, c->name, c->unit ? " (" : "", c->unit ? c->unit : "",
+                   c->unit ? ")" : "");
+            separator = ", ";
+        }
+        printf("%s", pass->counters ? "\n" : "");
         if (pass->debug_meaning && pass->debug_port < pass->num_ports) {
             printf("    debug view: %s, %s\n", pass->ports[pass->debug_port].name,
                    pass->debug_meaning);
@@ -95,6 +102,15 @@ static void print_methods(void)
         printf("%-10s %s\n%-10s passes:", m.name, m.summary, "");
         for (const tyn_pass_desc *const *pass = m.passes; *pass; pass++) {
             printf(" %s", (*pass)->name);
+        }
+        printf("\n%-10s limits:", "");
+        const char *last = "", *separator = "";
+        for (const tyn_limit *row = m.limits; row->key; row++) {
+            if (strcmp(row->key, last) != 0) {
+                printf("%s %s", separator, row->key);
+                separator = ",";
+            }
+            last = row->key;
         }
         printf("\n");
     }

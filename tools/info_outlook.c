@@ -12,32 +12,31 @@ typedef struct outlook {
     double error, ms;
 } outlook;
 
-enum { MAX_OUTLOOKS = 4 };
-static const double of_path = 0.05; // the error whose samples are asked for
+enum { MAX_OUTLOOKS = 8 };
+static const double of_samples = 0.05; // the error whose samples are asked for
 
 static uint32_t look(const fronts *f, const regime *r, uint32_t width, uint32_t height,
                      outlook list[MAX_OUTLOOKS])
 {
-    static const char *const methods[] = {"pop", "pop-paper", "single"};
     uint32_t count = 0;
     if (!(r->optical_depth > 0) && !r->num_triangles) {
         return 0; // nothing is in the picture but the sky
     }
-    for (size_t i = 0; i < ARRAY_SIZE(methods); i++) {
-        char word[32];
-        snprintf(word, sizeof word, " %s ", methods[i]);
+    for (uint32_t i = 0; i < tyn_num_methods() && count < MAX_OUTLOOKS; i++) {
+        tyn_method_info info;
+        tyn_method_at(i, &info);
         outlook *o = &list[count];
-        *o = (outlook){.method = methods[i]};
-        if (!strstr(regime_refused(r), word)) {
-            count += choose_outlook(f, r, methods[i], 0, width, height, &o->error, &o->ms);
+        *o = (outlook){.method = info.name, .spp = info.progressive ? 64 : 0};
+        if (regime_refused(r, &info) ||
+            !choose_outlook(f, r, o->method, o->spp, width, height, &o->error, &o->ms)) {
+            continue;
         }
-    }
-    outlook *o = &list[count];
-    *o = (outlook){.method = "path", .spp = 64};
-    if (choose_outlook(f, r, o->method, o->spp, width, height, &o->error, &o->ms)) {
-        // Noise falls with the root of the samples.
-        o->spp = (uint32_t)fmin(fmax(ceil(o->spp * pow(o->error / of_path, 2)), 1), 1u << 20);
-        count += choose_outlook(f, r, o->method, o->spp, width, height, &o->error, &o->ms);
+        if (o->spp) { // noise falls with the root of the samples
+            o->spp =
+                (uint32_t)fmin(fmax(ceil(o->spp * pow(o->error / of_samples, 2)), 1), 1u << 20);
+            choose_outlook(f, r, o->method, o->spp, width, height, &o->error, &o->ms);
+        }
+        count++;
     }
     return count;
 }

@@ -2,7 +2,7 @@
 #pragma once
 #include "app.h"
 #include "fronts.h"
-#include "regime_advice.h"
+#include "regime_limits.h"
 
 void info_print_scene(const tyn_scene *scene);
 void info_print_regime(const regime *r);

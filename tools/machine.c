@@ -11,8 +11,6 @@
 const option machine_table[MACHINE_TABLE_SIZE] = {
     {0, "device", OPT_TEXT, offsetof(machine_options, device), "INDEX|NAME",
      "which device ('tyndall info --devices'); else a discrete, an integrated, any other"},
-    {0, "plugin", OPT_TEXT, offsetof(machine_options, plugin), "FILE.so",
-     "load passes and methods from a module (comes with a later version)"},
     {'q', "quiet", OPT_FLAG, offsetof(machine_options, quiet), NULL,
      "errors only: no progress, notes or warnings"},
 };
@@ -155,10 +153,6 @@ int machine_open(app *a, const machine_options *options, bool validation, machin
 {
     *m = (machine){0};
     a->quiet = options->quiet;
-    if (options->plugin) {
-        app_error(a, "--plugin comes with a later version");
-        return EXIT_WRONG;
-    }
     devices d;
     int code = devices_list(a, &d);
     if (code == EXIT_DONE) {

@@ -4,11 +4,11 @@
 #include <tyndall/device.h>
 
 typedef struct machine_options {
-    const char *device, *plugin;
+    const char *device;
     bool quiet;
 } machine_options;
 extern const option machine_table[];
-enum { MACHINE_TABLE_SIZE = 3 };
+enum { MACHINE_TABLE_SIZE = 2 };
 
 typedef struct machine {
     tyn_device *device;
@@ -16,7 +16,6 @@ typedef struct machine {
     uint64_t cache_hash;
 } machine;
 
-// Opens the device and applies --quiet and --plugin. Gives the exit code; `m` may be closed after a
-// failure as well.
+// Opens the device and applies --quiet. Gives the exit code; `m` may be closed after a failure as well.
 int machine_open(app *a, const machine_options *options, bool validation, machine *m);
 void machine_close(machine *m); // writes the cache if it has grown; a failure of that is silent

@@ -24,20 +24,18 @@ const option method_table[METHOD_TABLE_SIZE] = {
 
 bool method_find(app *a, const char *name, tyn_method_info *info)
 {
+    if (tyn_method_named(name, info)) {
+        return true;
+    }
     char line[512] = "";
     size_t used = 0;
-    for (uint32_t i = 0; i < tyn_num_methods(); i++) {
+    for (uint32_t i = 0; i < tyn_num_methods() && used < sizeof line; i++) {
         tyn_method_at(i, info);
-        if (strcmp(info->name, name ? name : "pop") == 0) {
-            return true;
-        }
-        if (used < sizeof line) {
-            used += (size_t)snprintf(line + used, sizeof line - used, "%s %s", i ? "," : "",
-                                     info->name);
-        }
+        used +=
+            (size_t)snprintf(line + used, sizeof line - used, "%s %s", i ? "," : "", info->name);
     }
     app_error(a, "%s: there is no method '%s'; there are:%s", app_word(a, "--method", "method"),
-              name ? name : "pop", line);
+              name, line);
     return false;
 }
 

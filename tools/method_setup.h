@@ -18,7 +18,7 @@ typedef struct method {
     tyn_settings *settings;
 } method;
 
-// Finds a method by its name, NULL = pop. False: one line that lists those there are.
+// Finds a method by its name, NULL = the default. False: one line that lists those there are.
 bool method_find(app *a, const char *name, tyn_method_info *info);
 
 // Gives the exit code; method_finish is due in any case.

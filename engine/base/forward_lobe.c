@@ -47,7 +47,7 @@ static double find_theta_1(double g, const double x[POINTS], const double w[POIN
                 sum += w[q] / 8 * 6 * t * (1 - t) * fraction_within(g, (t + 0.5) * theta_1);
             }
         }
-        if (sum < g * g) {
+        if (sum < tyn_delta_fraction(g)) {
             lo = theta_1;
         } else {
             hi = theta_1;

@@ -3,15 +3,13 @@
 #include "frame/frame_scene.h"
 #include "registry/registry.h"
 #include "base/hash.h"
-#include "shaders/common/counters.h"
-#include "shaders/light/ordinate_args.h"
 #include "frame/env_cdf.h"
 #include "methods/limits.h"
 #include "gpu/device.h"
 #include "passes/medium/medium.h"
-#include "passes/wall_light/wall_light_args.h"
 #include "scene/check.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,10 +56,12 @@ tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params,
                       "tyn_context_create: use the tyn_context_params() macro");
         return TYN_ERR_PARAMS;
     }
-    const tyn_method *method = tyn_method_find(params->method ? params->method : "pop");
+    const tyn_method *method = tyn_method_find(params->method);
     if (!method) {
+        char names[128];
+        tyn_method_names(names, sizeof names);
         tyn_log_print(&dev->log, TYN_LOG_ERROR, "method '%s' is not known; there are: %s",
-                      params->method, tyn_method_names());
+                      params->method, names);
         return TYN_ERR_PARAMS;
     }
     uint32_t slots = params->frames_in_flight ? params->frames_in_flight : 2;
@@ -125,7 +125,7 @@ static void log_warning(tyn_context *ctx, const char *line)
     }
     if (ctx->num_logged < MAX_WARNINGS) {
         ctx->logged[ctx->num_logged++] = hash;
-        tyn_log_print(&ctx->dev->log, TYN_LOG_WARN, "%s: %s", ctx->method->name, line);
+        tyn_log_print(&ctx->dev->log, TYN_LOG_WARN, "%s: %s", ctx->method->info.name, line);
     }
 }
 
@@ -154,10 +154,10 @@ static tyn_result check_frame(const tyn_context *ctx, const tyn_frame *frame)
     }
     const tyn_view *view = frame->view;
     uint32_t outputs = view->outputs ? view->outputs : TYN_OUTPUT_RADIANCE;
-    if (outputs & ~ctx->method->outputs) {
-        uint32_t missing = outputs & ~ctx->method->outputs;
+    if (outputs & ~ctx->method->info.outputs) {
+        uint32_t missing = outputs & ~ctx->method->info.outputs;
         tyn_log_print(log, TYN_LOG_ERROR, "method '%s' cannot make the output '%s'",
-                      ctx->method->name, tyn_output_name((tyn_output)(missing & -missing)));
+                      ctx->method->info.name, tyn_output_name((tyn_output)(missing & -missing)));
         return TYN_ERR_PARAMS;
     }
     if (!view->width || !view->height || view->width > 16384 || view->height > 16384) {
@@ -309,8 +309,8 @@ static void upload_scene(tyn_context *ctx, const tyn_frame *frame, tyn_scene_ref
     tyn_graph_mark_media(g, refs->medium);
     tyn_graph_mark_media(g, refs->shapes);
 
-    refs->lights = tyn_graph_upload_buffer(g, "lights", f->lights, sizeof f->lights, 0);
-    refs->suns = tyn_graph_upload_buffer(g, "suns", f->suns, sizeof f->suns, 0);
+    refs->lights = tyn_graph_upload_buffer(g, "lights", f->lights.scene, sizeof f->lights.scene, 0);
+    refs->suns = tyn_graph_upload_buffer(g, "suns", f->lights.suns, sizeof f->lights.suns, 0);
     refs->camera = tyn_graph_upload_buffer(g, "camera", &f->camera, sizeof f->camera, 0);
     refs->environment =
         tyn_graph_upload_buffer(g, "environment", &f->environment, sizeof f->environment, 0);
@@ -379,7 +379,7 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     if (result == TYN_OK) {
         result = tyn_surface_data_update(&ctx->surfaces, &frame->scene->surfaces, log);
     }
-    if (result == TYN_OK && ctx->method->traces_rays) {
+    if (result == TYN_OK && ctx->method->info.traces_rays) {
         result = tyn_surface_data_tables(&ctx->surfaces, &frame->scene->surfaces,
                                          view->outputs & TYN_OUTPUT_BALANCE);
     }
@@ -404,7 +404,8 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     if (result != TYN_OK) {
         return result;
     }
-    *job = (tyn_job){.scene = frame->scene,
+    *job = (tyn_job){.method = ctx->method,
+                     .scene = frame->scene,
                      .view = view,
                      .settings = ctx->settings,
                      .frame = &ctx->frame,
@@ -437,6 +438,7 @@ static tyn_result declare(tyn_context *ctx, const tyn_frame *frame)
     }
     tyn_graph_inspect(ctx->graph, ctx->readback ? ctx->inspect : NULL);
     upload_scene(ctx, frame, &job.refs);
+    tyn_limits_warn(&job, 0);
     result = ctx->method->declare(ctx->graph, &job);
     return result == TYN_OK ? tyn_graph_status(ctx->graph) : result;
 }
@@ -485,35 +487,6 @@ uint32_t tyn_context_batch(tyn_context *ctx, const tyn_frame *frame)
 
 // ---- outputs ----------------------------------------------------------------------------------
 
-const char *tyn_output_name(tyn_output which)
-{
-    static const char *const names[] = {"radiance", "transmittance", "depth",   "single",
-                                        "multiple", "error",         "display", "probe",
-                                        "balance",  "composite",     "fluxes"};
-    for (uint32_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        if (which == (tyn_output)(1u << i)) {
-            return names[i];
-        }
-    }
-    return "unknown";
-}
-
-void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref)
-{
-    if (job->outputs & which) {
-        tyn_graph_output(g, tyn_output_name(which), ref,
-                         job->readback && which != TYN_OUTPUT_COMPOSITE);
-    }
-}
-
-void tyn_job_counters(tyn_graph *g, const tyn_job *job, const char *pass, tyn_ref ref)
-{
-    // Named as the pass: the report finds them by the node's name. Unasked, they keep nothing alive.
-    if (job->readback && ref.resource) {
-        tyn_graph_output(g, pass, ref, true);
-    }
-}
-
 const void *tyn_context_output(tyn_context *ctx, tyn_output output)
 {
     return ctx->outputs & output ? tyn_graph_map(ctx->graph, tyn_output_name(output), NULL, NULL)
@@ -536,38 +509,30 @@ static void add_work(tyn_node_report *node, const char *name, double amount)
     }
 }
 
-// What the node itself counted: struct counters_block, struct wall_light_power, or the head of struct ordinates_block. By the
-// node's name there may also be an output of the frame ("balance"), of another size.
+// In percent to one digit: no more is known, and frames of a film say the same line.
+static double percent_of(double share)
+{
+    const double percent = 100 * fmin(share, 1), unit = pow(10, floor(log10(percent)));
+    return unit * round(percent / unit);
+}
+
+// What the node itself counted, by the table of its pass.
 static void add_counters(tyn_node_report *node, tyn_context *ctx)
 {
-    tyn_extent size = {0};
-    const void *data = tyn_graph_map(ctx->graph, node->name, &size, NULL);
-    if (data && size.x == sizeof(struct counters_block)) {
-        const struct counters_block *c = data;
-        add_work(node, "steps", c->steps);
-        add_work(node, "pixels", c->pixels);
-        add_work(node, "non_finite", c->non_finite);
-        add_work(node, "clamped", c->clamped);
-        add_work(node, "cut", c->cut);
-        const float *left = c->unsettled, most = fmaxf(left[0], fmaxf(left[1], left[2]));
-        if (most > 0) {
-            add_work(node, "unsettled", (double)most);
-            tyn_limits_solve(most, add_warning, ctx);
+    const tyn_pass_desc *pass = tyn_pass_find(node->name);
+    const uint8_t *data = tyn_graph_map(ctx->graph, node->name, NULL, NULL);
+    for (const tyn_counter *c = pass && data ? pass->counters : NULL; c && c->name; c++) {
+        double most = 0;
+        for (uint32_t i = 0; i < (c->count ? c->count : 1); i++) {
+            const void *at = data + c->offset + 4 * i;
+            most = fmax(most, c->real ? (double)*(const float *)at : *(const uint32_t *)at);
         }
-    } else if (data && size.x == sizeof(struct wall_light_power)) {
-        const struct wall_light_power *p = data;
-        if (p->rooms > 0 || p->astray > 0) {
-            add_work(node, "rooms", p->rooms);
-            add_work(node, "least", (double)p->least);
-            add_work(node, "most", (double)p->most);
-            add_work(node, "clamped", p->clamped);
-            add_work(node, "astray", (double)p->astray);
-            tyn_limits_walls(p->astray, add_warning, ctx);
+        add_work(node, c->name, most);
+        if (c->warning && most > c->limit) {
+            char line[256];
+            snprintf(line, sizeof line, c->warning, percent_of(most));
+            add_warning(ctx, line);
         }
-    } else if (data && size.x == sizeof(struct ordinates_block)) {
-        const struct ordinates_block *o = data;
-        add_work(node, "ordinates", o->count);
-        add_work(node, "folded", o->folded);
     }
 }
 
@@ -634,5 +599,5 @@ bool tyn_context_inspection(tyn_context *ctx, tyn_inspection *inspection)
 
 char *tyn_context_graph(tyn_context *ctx, bool dot)
 {
-    return tyn_graph_dump(ctx->graph, dot, ctx->method->passes);
+    return tyn_graph_dump(ctx->graph, dot, ctx->method->info.passes);
 }

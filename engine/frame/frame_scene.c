@@ -286,13 +286,14 @@ static bool is_dark(const tyn_light *light)
 // Lamps that do not shine are left out: nobody lays out grids or shadow maps for them.
 static void build_lights(tyn_frame_scene *out, const tyn_scene *scene, const rigid *m)
 {
+    tyn_lights *lights = &out->lights;
     for (int pass = 0; pass < 2; pass++) { // directional lights first
         for (uint32_t i = 0; i < scene->num_lights; i++) {
             const tyn_light *light = &scene->lights[i];
             if ((light->kind == TYN_LIGHT_DIRECTIONAL) != (pass == 0) || (pass && is_dark(light))) {
                 continue;
             }
-            struct light_block *b = &out->lights[out->num_lights++];
+            struct light_block *b = &lights->scene[lights->num_directional + lights->num_lamps];
             memcpy(b->color, light->color, sizeof b->color);
             b->kind = (tyn_uint)light->kind;
             b->cos_inner = light->cos_inner;
@@ -305,12 +306,13 @@ static void build_lights(tyn_frame_scene *out, const tyn_scene *scene, const rig
             }
             if (pass == 0) {
                 b->mean_cosine = 1;
-                out->num_suns++;
             }
+            *(pass ? &lights->num_lamps : &lights->num_directional) += 1;
         }
     }
-    sort_suns(out->lights, out->num_suns);
-    memcpy(out->suns, out->lights, out->num_suns * sizeof *out->suns);
+    sort_suns(lights->scene, lights->num_directional);
+    memcpy(lights->suns, lights->scene, lights->num_directional * sizeof *lights->suns);
+    lights->num_suns = lights->num_directional;
 }
 
 static void build_camera(tyn_frame_scene *out, const tyn_view *view, const rigid *m)
@@ -340,7 +342,7 @@ static void build_map_suns(tyn_frame_scene *out, const tyn_map_light *map)
     out->map = *map;
     for (uint32_t i = 0; i < map->num_suns; i++) {
         const tyn_map_sun *sun = &map->suns[i];
-        struct light_block *b = &out->suns[out->num_suns + out->num_map_suns++];
+        struct light_block *b = &out->lights.suns[out->lights.num_suns++];
         *b = (struct light_block){.kind = TYN_LIGHT_KIND_DIRECTIONAL,
                                   .mean_cosine = sun->mean_cosine};
         for (int a = 0; a < 3; a++) {
@@ -350,7 +352,7 @@ static void build_map_suns(tyn_frame_scene *out, const tyn_map_light *map)
             }
         }
     }
-    sort_suns(out->suns, out->num_suns + out->num_map_suns);
+    sort_suns(out->lights.suns, out->lights.num_suns);
 }
 
 static void build_environment(tyn_frame_scene *out, const tyn_environment *env,

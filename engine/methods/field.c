@@ -31,11 +31,11 @@ static void choose_channels(tyn_field *f, const tyn_scene *scene, const tyn_fram
     bool grey = frame->grey; // and so are the walls
     float colors[2 * TYN_LIGHTS_MAX + 2][3];
     uint32_t count = 0;
-    for (uint32_t i = 0; i < frame->num_suns + frame->num_map_suns; i++) {
-        memcpy(colors[count++], frame->suns[i].color, sizeof colors[0]);
+    for (uint32_t i = 0; i < frame->lights.num_suns; i++) {
+        memcpy(colors[count++], frame->lights.suns[i].color, sizeof colors[0]);
     }
-    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
-        memcpy(colors[count++], frame->lights[i].color, sizeof colors[0]);
+    for (uint32_t i = 0; i < frame->lights.num_lamps; i++) {
+        memcpy(colors[count++], tyn_first_lamp(&frame->lights)[i].color, sizeof colors[0]);
     }
     memcpy(colors[count++], frame->environment.sky, sizeof colors[0]);
     memcpy(colors[count++], frame->medium.emission, sizeof colors[0]);
@@ -279,7 +279,7 @@ static tyn_result add_solve(tyn_graph *g, const tyn_job *job, tyn_field *f)
     f->leaks = refs[LATTICE_PORT_LEAKS];
     f->wall_power =
         f->picture.walls.wall_links.resource ? refs[LATTICE_PORT_WALL_POWER] : (tyn_ref){0};
-    tyn_job_counters(g, job, "lattice", refs[LATTICE_PORT_COUNTERS]);
+    tyn_job_counters(g, job, &tyn_pass_lattice, refs[LATTICE_PORT_COUNTERS]);
     return result == TYN_OK && params.warm ? add_keep(g, f, &last) : result;
 }
 
@@ -315,7 +315,7 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, tyn_field *f)
         tyn_connect(refs, MERGE_PORT_SHADOW_ATLAS, f->picture.shadows);
     }
     tyn_result result = tyn_graph_add(g, &tyn_pass_merge, &params, refs);
-    tyn_job_counters(g, job, "merge", refs[MERGE_PORT_COUNTERS]);
+    tyn_job_counters(g, job, &tyn_pass_merge, refs[MERGE_PORT_COUNTERS]);
     f->picture.inscatter = refs[MERGE_PORT_INSCATTER];
     f->picture.one_channel = f->shape.channels == 1;
     memcpy(f->picture.tint, f->shape.tint, sizeof f->picture.tint);
@@ -452,7 +452,7 @@ tyn_result tyn_add_field(tyn_graph *g, const tyn_job *job, tyn_field *f)
     choose_channels(f, job->scene, frame);
     float longest = fmaxf(f->shape.extent[0], fmaxf(f->shape.extent[1], f->shape.extent[2]));
     f->picture.cell = longest / (float)f->shape.cells;
-    tyn_limits_lattice(job, f->picture.cell);
+    tyn_limits_warn(job, f->picture.cell);
     const bool ordinates = f->sky.ordinates.resource != 0;
     const tyn_field_step steps[] = {
         {true, add_cells},

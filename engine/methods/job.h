@@ -3,7 +3,8 @@
 // A method turns a job into graph nodes. It is called for every frame and must be
 // cheap and deterministic: no GPU calls, no allocation.
 #pragma once
-#include <tyndall/context.h>
+#include <tyndall/registry.h>
+#include "methods/lights.h"
 #include "methods/refs.h"
 #include "scene/env_suns.h"
 #include "shaders/common/scene_args.h"
@@ -13,12 +14,8 @@
 typedef struct tyn_frame_scene {
     struct medium_block medium;
     struct shape_block shapes[TYN_MAX_SHAPES];
-    struct light_block lights[TYN_LIGHTS_MAX];
-    uint32_t num_lights, num_suns; // suns = directional lights, first in `lights`, strongest first
-    // The directional lights and the num_map_suns of the environment's map, strongest first.
-    struct light_block suns[TYN_LIGHTS_MAX];
-    uint32_t num_map_suns; // `path` has them in the map
-    tyn_map_light map;     // of the environment, in the map's frame and units
+    tyn_lights lights;
+    tyn_map_light map; // of the environment, in the map's frame and units
     struct camera_block camera;
     struct env_block environment;
     bool direct; // one unsheared box: the atlas is the density texture, `medium` need not resample
@@ -43,8 +40,8 @@ typedef struct tyn_scene_refs {
     tyn_ref atlas;               // 3D R16F or R32F, all density grids (sampled)
     tyn_ref medium;              // struct medium_block
     tyn_ref shapes;              // struct shape_block[]
-    tyn_ref lights;              // struct light_block[]
-    tyn_ref suns;                // struct light_block[]: tyn_frame_scene.suns
+    tyn_ref lights;              // struct light_block[]: tyn_lights.scene
+    tyn_ref suns;                // struct light_block[]: tyn_lights.suns
     tyn_ref camera;              // struct camera_block
     tyn_ref environment;         // struct env_block
     tyn_ref env_map;             // 2D RGBA32F; {0} if constant
@@ -59,6 +56,7 @@ typedef struct tyn_scene_refs {
 } tyn_scene_refs;
 
 typedef struct tyn_job {
+    const struct tyn_method *method;
     const tyn_scene *scene;
     const tyn_view *view;
     const tyn_settings *settings;
@@ -74,20 +72,15 @@ typedef struct tyn_job {
 
 // Gives the graph what was made for an output; nothing happens if it is not wanted.
 void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref);
-// Has a pass's struct counters_block read back, for the report, or its struct ordinates_block. `pass` =
-// its node's name.
-void tyn_job_counters(tyn_graph *g, const tyn_job *job, const char *pass, tyn_ref ref);
+// Has the buffer read back in which a pass counts (tyn_pass_desc.counters), for the report.
+void tyn_job_counters(tyn_graph *g, const tyn_job *job, const tyn_pass_desc *pass, tyn_ref ref);
 // The names of outputs in the graph: "radiance", ...
 const char *tyn_output_name(tyn_output which);
 
 typedef struct tyn_method {
-    const char *name, *summary;
-    const tyn_pass_desc *const *passes; // NULL-terminated, frame order
-    uint32_t outputs;                   // set of tyn_output it can make
-    bool progressive;                   // uses view.first_sample, num_samples
-    bool reads_env_cdf;                 // wants refs.env_cdf
-    // Wants refs.geometry.nodes and refs.emitters where there are surfaces, and refs.areas for a balance.
-    bool traces_rays;
+    // traces_rays: wants refs.geometry.nodes and refs.emitters where there are surfaces, and refs.areas for a balance.
+    tyn_method_info info;
+    bool reads_env_cdf; // wants refs.env_cdf
     // Largest work a single record may be given (view.num_samples) to keep a dispatch short; NULL if
     // not progressive.
     uint32_t (*batch)(const tyn_job *job);

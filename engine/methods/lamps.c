@@ -32,8 +32,10 @@ tyn_result tyn_add_radials(tyn_graph *g, const tyn_job *job, const tyn_medium_re
     *out = (tyn_lamps){.vpls = vpls.resource != 0};
     tyn_radial_beam_params params;
     tyn_settings_params(job->settings, &tyn_pass_radial_beam, &params);
-    tyn_radial_beam_plan(&params, &frame->medium, frame->lights, frame->num_suns, frame->num_lights,
-                         TYN_RADIAL_LAMPS_MAX, out->vpls ? TYN_RADIAL_VPLS_MAX : 0);
+    const uint32_t first = frame->lights.num_directional;
+    tyn_radial_beam_plan(&params, &frame->medium, frame->lights.scene, first,
+                         first + frame->lights.num_lamps, TYN_RADIAL_LAMPS_MAX,
+                         out->vpls ? TYN_RADIAL_VPLS_MAX : 0);
     params.num_fine = num_fine(params.lamps, params.num_lamps);
     if (params.num_lamps == 0 && !out->vpls) {
         return TYN_OK;

@@ -1,19 +1,87 @@
-// limits.c -- where methods are known to lose accuracy. The thresholds are where `tyndall bench --stress` finds
-// errors of 10 %.
+// limits.c -- the rows of methods' tables that count in a regime, and a frame's warnings from them.
 #include "methods/limits.h"
 #include "methods/nodes.h"
+#include "methods/walls.h"
+#include "base/forward_lobe.h"
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
-static const float cell_depth_limit = 1.8f;    // scaled depths of a cell
-static const float thin_side_limit = 3;        // cells across a side
-static const float backward_limit = -0.75f;    // g
-static const float narrow_limit = 0.995f;      // g, as HG_MAX of shaders/phase/hg.glsl
-static const float float_depth_limit = 3e6f;   // depths of the box
-static const float multiple_limit = 0.3f;      // scaled scattering depths
-static const float unsettled_limit = 0.02f;    // of the scattered light
-static const float astray_limit = 0.05f;       // of what virtual lights send to walls
-static const float sampled_depth_limit = 1e5f; // depths of the box where nothing is absorbed
+// ---- tables -----------------------------------------------------------------------------------
+
+static double figure_of(const tyn_regime *r, size_t offset)
+{
+    return *(const double *)((const char *)r + offset);
+}
+
+static bool hold(const tyn_bound *bounds, size_t count, const tyn_regime *r)
+{
+    for (size_t i = 0; i < count && bounds[i].above < bounds[i].below; i++) {
+        const double x = figure_of(r, bounds[i].figure);
+        if (!(x > bounds[i].above && x < bounds[i].below)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+const tyn_limit *tyn_limit_next(const tyn_limit *table, const tyn_limit *last, const tyn_regime *r)
+{
+    if (last && last->level == TYN_LIMIT_REFUSED) {
+        return NULL;
+    }
+    for (const tyn_limit *row = last ? last + 1 : table; row && row->key; row++) {
+        const bool another = !last || strcmp(row->key, last->key) != 0;
+        if (another && hold(row->where, TYN_LIMIT_BOUNDS, r)) {
+            return row;
+        }
+    }
+    return NULL;
+}
+
+double tyn_limit_error(const tyn_limit *limit, const tyn_regime *r)
+{
+    return limit->error ? limit->error(r) : 0;
+}
+
+void tyn_limit_say(const tyn_limit *limit, const tyn_limit_text *text, const tyn_regime *r,
+                   char *line, size_t size)
+{
+    double x[3];
+    for (int i = 0; i < 3; i++) {
+        if (text->figures[i] == TYN_LIMIT_ERROR) {
+            const double percent = 100 * tyn_limit_error(limit, r);
+            x[i] = percent < 10 ? round(10 * percent) / 10 : round(percent);
+        } else {
+            x[i] = figure_of(r, text->figures[i]);
+        }
+    }
+    snprintf(line, size, text->format, x[0], x[1], x[2]);
+}
+
+double tyn_limit_along(const tyn_limit_point *curve, size_t count, double x)
+{
+    if (!(x >= curve[0].x)) {
+        return 0;
+    }
+    for (size_t i = 1; i < count; i++) {
+        const tyn_limit_point *a = &curve[i - 1], *b = &curve[i];
+        if (x < b->x) {
+            const double t = log(x / a->x) / log(b->x / a->x);
+            return a->error * pow(b->error / a->error, t);
+        }
+    }
+    return curve[count - 1].error;
+}
+
+// Places are single precision.
+double tyn_limit_floats(const tyn_regime *r)
+{
+    static const tyn_limit_point curve[] = {{3e6, 0.1}, {1e8, 0.4}}; // depth of the box
+    return tyn_limit_along(curve, 2, r->depth);
+}
+
+// ---- a frame ----------------------------------------------------------------------------------
 
 // The medium where it matters: in a grid at the density of the average particle of the medium; where several media
 // overlap, the sum of their largest values. Largest channel.
@@ -28,7 +96,7 @@ typedef struct dense {
 
 static void add_channel(dense *d, float s, float a, float g, float density)
 {
-    const float forward = fmaxf(g, 0), f = forward * forward;
+    const float f = (float)tyn_delta_fraction(g);
     s *= density;
     a *= density;
     d->extinction = fmaxf(d->extinction, s + a);
@@ -90,131 +158,32 @@ static float shortest_side(const tyn_job *job)
     return shortest;
 }
 
-void tyn_limits_lattice(const tyn_job *job, float cell)
+void tyn_limits_warn(const tyn_job *job, float cell)
 {
     const dense d = dense_of(job);
-    const float depth = d.scaled * cell, side = shortest_side(job);
-    if (!(d.scattering * longest_side(job) > 0.05f)) {
-        return; // next to nothing scatters twice
-    }
-    if (depth > cell_depth_limit) {
-        tyn_method_warn(
-            job,
-            "accuracy: where the medium is dense a lattice cell is %.3g mean free paths (delta "
-            "scaled) wide; what comes out of its faces is off by about 10 %% at 2, 20 %% at 7 and "
-            "a factor of 2 from 30 on (-D lattice.cells)",
-            (double)depth);
-    }
-    if (side < thin_side_limit * cell && d.scaled * side > 0.1f) {
-        tyn_method_warn(
-            job,
-            "accuracy: the medium's box is %.2g lattice cells thick along its shortest side; "
-            "light along the others is not resolved (-D lattice.cells)",
-            (double)(side / cell));
-    }
-    if (d.least_g < backward_limit) {
-        tyn_method_warn(
-            job,
-            "accuracy: g is %.3g; four moments a lattice cell do not hold a backward peak: 9 %% "
-            "off at -0.7, 60 %% at -0.9, far more beyond",
-            (double)d.least_g);
-    }
-}
-
-void tyn_limits_hops(const tyn_job *job, float hop)
-{
-    const dense d = dense_of(job);
-    if (!((d.extinction - d.absorption) * longest_side(job) > 0.05f)) {
-        return;
-    }
-    tyn_method_warn(
-        job,
-        "accuracy: the published propagation turns light at every hop whether it has scattered "
-        "or not, as if a hop were 2 transport mean free paths; here it is %.2g: errors of tens "
-        "of per cent and more",
-        (double)(hop * d.transport));
-}
-
-void tyn_limits_single(const tyn_job *job)
-{
-    const dense d = dense_of(job);
-    const float depth = d.scattering * longest_side(job);
-    if (depth > multiple_limit) {
-        tyn_method_warn(
-            job,
-            "accuracy: light that has scattered more than once is left out; the medium is up to "
-            "%.3g scattering mean free paths (delta scaled) deep",
-            (double)depth);
-    }
-    if (d.most_g > narrow_limit) {
-        tyn_method_warn(
-            job,
-            "accuracy: g is %.6g; beyond 0.995 the medium counts as one of 0.995 that scatters "
-            "less, so that what is scattered by hardly any angle is not lost",
-            (double)d.most_g);
-    }
-}
-
-void tyn_limits_sky(const tyn_job *job)
-{
-    tyn_method_warn(
-        job, "accuracy: the environment's light comes between surfaces along the lattice's 14 "
-             "directions: behind openings it falls in patches");
-}
-
-void tyn_limits_rays(const tyn_job *job)
-{
-    const float depth = dense_of(job).extinction * longest_side(job);
-    if (depth > float_depth_limit) {
-        tyn_method_warn(job,
-                        "accuracy: a mean free path is %.2g of the medium's box; places are single "
-                        "precision numbers, of which 1e-7 of the box is the finest",
-                        (double)(1 / depth));
-    }
-}
-
-void tyn_limits_paths(const tyn_job *job, uint32_t max_steps)
-{
-    const dense d = dense_of(job);
-    const float depth = d.extinction * longest_side(job);
-    if (depth > sampled_depth_limit && d.absorption * 1e4f < d.scattering) {
-        tyn_method_warn(
-            job,
-            "accuracy: the medium is %.2g mean free paths deep and absorbs next to nothing; "
-            "paths end after %u steps (-D path.max_steps), what is left of them is lost",
-            (double)depth, max_steps);
-    }
-}
-
-// In percent to one digit: no more is known, and frames of a film say the same line.
-static double percent_of(float share)
-{
-    const double percent = 100 * fmin((double)share, 1), unit = pow(10, floor(log10(percent)));
-    return unit * round(percent / unit);
-}
-
-void tyn_limits_walls(float astray, void (*warn)(void *user, const char *line), void *user)
-{
-    if (astray > astray_limit) {
-        char line[256];
-        snprintf(line, sizeof line,
-                 "accuracy: the lattice's walls get too much or too little of the light that "
-                 "virtual lights send to surfaces, about %g %% of it: rooms or walls of few cells "
-                 "(-D lattice.cells)",
-                 percent_of(astray));
-        warn(user, line);
-    }
-}
-
-void tyn_limits_solve(float unsettled, void (*warn)(void *user, const char *line), void *user)
-{
-    if (unsettled > unsettled_limit) {
-        char line[256];
-        snprintf(
-            line, sizeof line,
-            "accuracy: the lattice is not solved to the end: about %g %% of the scattered light "
-            "would still change; more sweeps are needed (-D lattice.sweeps)",
-            percent_of(unsettled));
-        warn(user, line);
+    const float *sky = job->frame->environment.sky;
+    const float longest = longest_side(job), shortest = shortest_side(job);
+    const bool lit = sky[0] + sky[1] + sky[2] > 0.0f;
+    const tyn_regime r = {
+        .depth = d.extinction * longest,
+        .mean_free_path = 1 / (d.extinction * longest),
+        .mean_depth = d.extinction * longest,
+        .scatterings = d.scattering * longest,
+        .thickness = d.scaled * shortest,
+        .albedo = d.extinction > 0 ? 1 - d.absorption / d.extinction : 0,
+        .least_g = d.least_g,
+        .most_g = d.most_g,
+        .cell_depth = d.scaled * cell,
+        .cell_transport = d.transport * cell,
+        .cells_through = cell > 0 ? shortest / cell : INFINITY,
+        .sky_on_surfaces = lit && !job->frame->empty && tyn_has_walls(job->frame),
+    };
+    const tyn_limit *row = NULL;
+    while ((row = tyn_limit_next(job->method->info.limits, row, &r)) != NULL) {
+        if (row->warning.format && hold(row->warned, TYN_LIMIT_BOUNDS, &r)) {
+            char line[256];
+            tyn_limit_say(row, &row->warning, &r, line, sizeof line);
+            job->warn(job->warn_user, line);
+        }
     }
 }

@@ -1,23 +1,34 @@
-// limits.h -- says in the report's warnings where a method is known to lose accuracy, and why (docs/stress.md).
-//
-// From figures of the scene alone, or from what a frame counted anyway, so that it costs nothing: each line starts
-// with "accuracy:".
+// limits.h -- what the tables of methods' limits (tyn_limit, docs/stress.md) are written with.
 #pragma once
 #include "methods/job.h"
+#include <math.h>
 
-// Of `pop`: cells of the lattice, m.
-void tyn_limits_lattice(const tyn_job *job, float cell);
-// Of `pop-paper`: hops from cell to cell, m.
-void tyn_limits_hops(const tyn_job *job, float hop);
-// Of `single`: what is left out.
-void tyn_limits_single(const tyn_job *job);
-// Of `pop`: an environment lights the medium, and walls are in its lattice.
-void tyn_limits_sky(const tyn_job *job);
-// Of every method that follows rays: places are floats.
-void tyn_limits_rays(const tyn_job *job);
-// Of `path`: its safety cap.
-void tyn_limits_paths(const tyn_job *job, uint32_t max_steps);
-// Of `pop`, once a frame is done: counters_block.unsettled of the lattice.
-void tyn_limits_solve(float unsettled, void (*warn)(void *user, const char *line), void *user);
-// Of `pop`, once a frame is done: wall_light_power.astray.
-void tyn_limits_walls(float astray, void (*warn)(void *user, const char *line), void *user);
+#define TYN_FIGURE(name) offsetof(tyn_regime, name)
+// clang-format off
+#define TYN_ABOVE(name, x) {TYN_FIGURE(name), x, INFINITY}
+#define TYN_BELOW(name, x) {TYN_FIGURE(name), -INFINITY, x}
+// clang-format on
+
+// Measured errors: straight lines of logarithms between, 0 before the first, and no more than the last beyond.
+typedef struct tyn_limit_point {
+    double x, error;
+} tyn_limit_point;
+double tyn_limit_along(const tyn_limit_point *curve, size_t count, double x);
+
+// Of every method that follows rays.
+double tyn_limit_floats(const tyn_regime *r);
+#define TYN_LIMIT_FLOATS                                                                           \
+    {                                                                                              \
+        .key = "depths beyond single precision", .where = {TYN_ABOVE(depth, 3e6)},                 \
+        .error = tyn_limit_floats, .warning = {                                                    \
+            "accuracy: a mean free path is %.2g of the medium's box; places are single precision " \
+            "numbers, of which 1e-7 of the box is the finest",                                     \
+            {TYN_FIGURE(mean_free_path)}                                                           \
+        }                                                                                          \
+    }
+
+extern const tyn_limit tyn_limits_pop[];
+
+// Warns of what the job's method is known to lose in its scene (each line begins with "accuracy:"): from the scene's
+// figures alone, so that it costs nothing. `cell`: of the lattice, m; 0: there is none, or none yet.
+void tyn_limits_warn(const tyn_job *job, float cell);

@@ -30,7 +30,7 @@ void tyn_method_warn_surfaces(const tyn_job *job, const char *what)
     }
 }
 
-tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method)
+tyn_result tyn_method_refuse_repeat(const tyn_job *job)
 {
     for (uint32_t i = 0; i < job->scene->num_shapes; i++) {
         const bool *repeat = job->scene->shapes[i].repeat;
@@ -38,26 +38,20 @@ tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method)
             tyn_log_print(job->log, TYN_LOG_ERROR,
                           "shape %u: method '%s' cannot do periodic media (\"repeat\"); "
                           "'path' can",
-                          i, method);
+                          i, job->method->info.name);
             return TYN_ERR_PARAMS;
         }
     }
     return TYN_OK;
 }
 
-uint32_t tyn_method_suns(const tyn_job *job)
-{
-    const uint32_t suns = job->frame->num_suns + job->frame->num_map_suns;
-    return suns < TYN_METHOD_MAX_SUNS ? suns : TYN_METHOD_MAX_SUNS;
-}
-
 void tyn_method_warn_suns(const tyn_job *job, const char *what)
 {
-    const uint32_t suns = job->frame->num_suns + job->frame->num_map_suns;
-    const uint32_t used = tyn_method_suns(job);
+    const tyn_lights *lights = &job->frame->lights;
+    const uint32_t suns = lights->num_suns, used = tyn_num_beams(lights);
     double left_out = 0, all = 0;
     for (uint32_t i = 0; i < suns; i++) {
-        const float *color = job->frame->suns[i].color;
+        const float *color = lights->suns[i].color;
         const double irradiance = (double)color[0] + (double)color[1] + (double)color[2];
         all += irradiance;
         left_out += i < used ? 0 : irradiance;
@@ -96,15 +90,16 @@ tyn_result tyn_add_medium(tyn_graph *g, const tyn_job *job, tyn_media_refs *medi
 }
 
 tyn_result tyn_add_beams(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
-                         uint32_t num_suns, tyn_beam_refs *beams)
+                         tyn_beam_refs *beams)
 {
     *beams = (tyn_beam_refs){{0}};
-    if (num_suns == 0) {
+    const tyn_lights *lights = &job->frame->lights;
+    if (tyn_num_beams(lights) == 0) {
         return TYN_OK;
     }
     tyn_beam_params params;
     tyn_settings_params(job->settings, &tyn_pass_beam, &params);
-    tyn_beam_plan(&params, &job->frame->medium, job->frame->suns, num_suns);
+    tyn_beam_plan(&params, &job->frame->medium, lights->suns, tyn_num_beams(lights));
 
     tyn_ref refs[TYN_MAX_PORTS] = {{0}};
     tyn_connect(refs, BEAM_PORT_MEDIUM, *medium);
@@ -121,7 +116,7 @@ static bool sunlight_enters_through_medium(const tyn_frame_scene *frame, uint32_
     uint32_t lit = 0;
     for (uint32_t n = 0; n < num_suns; n++) {
         for (int a = 0; a < 3; a++) {
-            float d = frame->suns[n].direction[a];
+            float d = frame->lights.suns[n].direction[a];
             lit |= d > 0.0f ? 1u << (2 * a) : d < 0.0f ? 2u << (2 * a) : 0;
         }
     }
@@ -131,8 +126,8 @@ static bool sunlight_enters_through_medium(const tyn_frame_scene *frame, uint32_
 static bool has_spots(const tyn_frame_scene *frame)
 {
     bool spots = false;
-    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
-        spots = spots || frame->lights[i].kind == TYN_LIGHT_KIND_SPOT;
+    for (uint32_t i = 0; i < frame->lights.num_lamps; i++) {
+        spots = spots || tyn_first_lamp(&frame->lights)[i].kind == TYN_LIGHT_KIND_SPOT;
     }
     return spots;
 }
@@ -293,7 +288,7 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
         tyn_job_output(g, job, images[i].output, refs[images[i].port]);
     }
-    tyn_job_counters(g, job, "raymarch", refs[RAYMARCH_PORT_COUNTERS]);
+    tyn_job_counters(g, job, &tyn_pass_raymarch, refs[RAYMARCH_PORT_COUNTERS]);
     if (result == TYN_OK && job->outputs & TYN_OUTPUT_DISPLAY) {
         result = tyn_add_display(g, job, refs[RAYMARCH_PORT_RADIANCE]);
     }

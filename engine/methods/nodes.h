@@ -3,8 +3,6 @@
 #include "methods/surfaces.h"
 #include "passes/raymarch/raymarch.h"
 
-enum { TYN_METHOD_MAX_SUNS = 4 }; // suns that have their own aligned grid
-
 // {0} without a medium.
 typedef struct tyn_media_refs {
     tyn_medium_refs medium;
@@ -14,7 +12,7 @@ tyn_result tyn_add_medium(tyn_graph *g, const tyn_job *job, tyn_media_refs *medi
 
 // Optical depth along the suns.
 tyn_result tyn_add_beams(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
-                         uint32_t num_suns, tyn_beam_refs *beams);
+                         tyn_beam_refs *beams);
 
 // Local lights (methods/lamps.h).
 typedef struct tyn_lamps {
@@ -60,15 +58,13 @@ tyn_result tyn_add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance);
     (TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_SINGLE |       \
      TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_DISPLAY | TYN_OUTPUT_COMPOSITE)
 
-// Suns with an aligned grid, the first of frame->suns: at most TYN_METHOD_MAX_SUNS.
-uint32_t tyn_method_suns(const tyn_job *job);
-// Says that the other suns do not light `what`, and how much light that is; nothing if there are none.
+// Says that suns without a beam do not light `what`, and how much light that is; nothing if there are none.
 void tyn_method_warn_suns(const tyn_job *job, const char *what);
 
 // A line among the report's warnings.
 void tyn_method_warn(const tyn_job *job, const char *format, ...) TYN_PRINTF(2, 3);
 
 // TYN_ERR_PARAMS with a log line if a shape of the scene is periodic.
-tyn_result tyn_method_refuse_repeat(const tyn_job *job, const char *method);
+tyn_result tyn_method_refuse_repeat(const tyn_job *job);
 // Warns of what a method does not do with surfaces, if there are any: "are left out".
 void tyn_method_warn_surfaces(const tyn_job *job, const char *what);

@@ -103,8 +103,8 @@ static uint32_t count_near_lamps(const tyn_frame_scene *frame)
     const float *e = frame->medium.extent;
     float reach = 0.5f * sqrtf(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
     uint32_t count = 0;
-    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
-        const float *p = frame->lights[i].position;
+    for (uint32_t i = 0; i < frame->lights.num_lamps; i++) {
+        const float *p = tyn_first_lamp(&frame->lights)[i].position;
         bool near = true;
         for (int a = 0; a < 3; a++) {
             near = near && p[a] > -reach && p[a] < e[a] + reach;
@@ -153,8 +153,8 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
     p->surfaces = frame->num_triangles > 0;
     p->emitters = job->refs.emitters.resource != 0 && !p->repeat; // else there is no end of them
     p->emissive = frame->emissive;
-    p->num_lights = frame->num_lights;
-    p->num_lamps = frame->num_lights - frame->num_suns;
+    p->num_lights = frame->lights.num_directional + frame->lights.num_lamps;
+    p->num_lamps = frame->lights.num_lamps;
     p->near_lamps = count_near_lamps(frame);
     bool sky = env->radiance[0] + env->radiance[1] + env->radiance[2] > 0;
     p->environment = !sky           ? TYN_PATH_ENV_NONE
@@ -250,7 +250,7 @@ static tyn_result add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     tyn_job_output(g, job, TYN_OUTPUT_SINGLE, refs[PATH_PORT_SINGLE]);
     tyn_job_output(g, job, TYN_OUTPUT_MULTIPLE, refs[PATH_PORT_MULTIPLE]);
     tyn_job_output(g, job, TYN_OUTPUT_TRANSMITTANCE, refs[PATH_PORT_TRANSMITTANCE]);
-    tyn_job_counters(g, job, "path", refs[PATH_PORT_COUNTERS]);
+    tyn_job_counters(g, job, &tyn_pass_path, refs[PATH_PORT_COUNTERS]);
     return job->outputs & TYN_OUTPUT_DISPLAY ? tyn_add_display(g, job, refs[PATH_PORT_RADIANCE])
                                              : TYN_OK;
 }
@@ -268,7 +268,7 @@ static tyn_result add_probes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     tyn_result result = tyn_graph_add(g, &tyn_pass_path_probe, &params, refs);
     if (result == TYN_OK) {
         tyn_job_output(g, job, TYN_OUTPUT_PROBE, refs[PATH_PROBE_PORT_RESULTS]);
-        tyn_job_counters(g, job, "path_probe", refs[PATH_PROBE_PORT_COUNTERS]);
+        tyn_job_counters(g, job, &tyn_pass_path_probe, refs[PATH_PROBE_PORT_COUNTERS]);
     }
     return result;
 }
@@ -286,8 +286,8 @@ static void set_box(tyn_path_params *p, const tyn_frame_scene *frame)
 // Power of the lamps inside the box, which count as emitted.
 static void set_lamp_power(tyn_path_params *p, const tyn_frame_scene *frame)
 {
-    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
-        const struct light_block *l = &frame->lights[i];
+    for (uint32_t i = 0; i < frame->lights.num_lamps; i++) {
+        const struct light_block *l = &tyn_first_lamp(&frame->lights)[i];
         bool inside = true;
         for (int a = 0; a < 3; a++) {
             inside = inside && l->position[a] >= p->box[0][a] && l->position[a] <= p->box[1][a];
@@ -326,7 +326,7 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     tyn_result result = tyn_graph_add(g, &tyn_pass_path_balance, &params, refs);
     if (result == TYN_OK) {
         tyn_job_output(g, job, TYN_OUTPUT_BALANCE, refs[PATH_BALANCE_PORT_BALANCE]);
-        tyn_job_counters(g, job, "path_balance", refs[PATH_BALANCE_PORT_COUNTERS]);
+        tyn_job_counters(g, job, &tyn_pass_path_balance, refs[PATH_BALANCE_PORT_COUNTERS]);
     }
     return result;
 }
@@ -341,14 +341,14 @@ static tyn_result check_fluxes(const tyn_job *job)
     bool sky = env->radiance[0] + env->radiance[1] + env->radiance[2] > 0;
     if (frame->empty && !frame->num_triangles) {
         wrong = "there is no medium and no surface";
-    } else if (frame->num_lights > frame->num_suns) {
+    } else if (frame->lights.num_lamps) {
         wrong =
             "there are lamps, whose light starts inside; only suns and the environment may shine "
             "(balance knows lamps)";
     } else if (frame->emissive || job->refs.emitters.resource) {
         wrong = "media or surfaces emit; only suns and the environment may shine (balance knows "
                 "emission)";
-    } else if (!frame->num_lights && !sky) {
+    } else if (!frame->lights.num_directional && !sky) {
         wrong = "there is neither a sun nor an environment";
     } else if (m->repeat[0] && m->repeat[1] && m->repeat[2]) {
         wrong = "the medium repeats along all axes: no light enters it";
@@ -384,7 +384,7 @@ static tyn_result add_fluxes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     }
     if (result == TYN_OK) {
         tyn_job_output(g, job, TYN_OUTPUT_FLUXES, refs[PATH_FLUXES_PORT_FLUXES]);
-        tyn_job_counters(g, job, "path_fluxes", refs[PATH_FLUXES_PORT_COUNTERS]);
+        tyn_job_counters(g, job, &tyn_pass_path_fluxes, refs[PATH_FLUXES_PORT_COUNTERS]);
     }
     return result;
 }
@@ -454,12 +454,6 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     tyn_result result = check_repeat(job);
     tyn_media_refs media = {{{0}}};
     if (result == TYN_OK && !job->frame->empty) {
-        tyn_path_params params;
-        tyn_settings_params(job->settings, &tyn_pass_path, &params);
-        tyn_limits_rays(job);
-        tyn_limits_paths(job, (uint32_t)params.max_steps);
-    }
-    if (result == TYN_OK && !job->frame->empty) {
         result = tyn_add_medium(g, job, &media);
     }
     if (result == TYN_OK && job->outputs & ~not_images) {
@@ -486,16 +480,46 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_raymarch,     &tyn_pass_tonemap,     NULL,
 };
 
+static double ended(const tyn_regime *r)
+{
+    (void)r;
+    return 0.1;
+}
+
+static const tyn_limit limits[] = {
+    {.key = "samples",
+     .where = {TYN_ABOVE(albedo, 0.99), TYN_ABOVE(transport_depth, 9.999)},
+     .level = TYN_LIMIT_STRAINED,
+     .advice = {"unbiased, but light scatters hundreds of times (albedo %.4g, %.4g transport mean "
+                "free paths deep): samples are dear, and rare long paths make bright pixels",
+                {TYN_FIGURE(albedo), TYN_FIGURE(transport_depth)}},
+     .source = "docs/choosing.md, \"Samples\""},
+    {.key = "samples",
+     .advice = {"unbiased: only the number of samples decides"},
+     .source = "docs/choosing.md, \"Samples\""},
+    {.key = "paths that are ended",
+     .where = {TYN_ABOVE(depth, 1e5), TYN_ABOVE(albedo, 0.9999)},
+     .error = ended,
+     .warning = {"accuracy: the medium is %.2g mean free paths deep and absorbs next to nothing; "
+                 "paths end after path.max_steps steps (-D), what is left of them is lost",
+                 {TYN_FIGURE(depth)}}},
+    TYN_LIMIT_FLOATS,
+    {NULL},
+};
+
 const tyn_method tyn_method_path = {
-    .name = "path",
-    .summary = "unbiased path tracing: the reference",
-    .passes = passes,
-    .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH |
-               TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_ERROR | TYN_OUTPUT_DISPLAY |
-               TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_FLUXES,
-    .progressive = true,
+    .info = {.name = "path",
+             .summary = "unbiased path tracing: the reference",
+             .passes = passes,
+             .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH |
+                        TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_ERROR |
+                        TYN_OUTPUT_DISPLAY | TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE |
+                        TYN_OUTPUT_FLUXES,
+             .progressive = true,
+             .traces_rays = true,
+             .reference = true,
+             .limits = limits},
     .reads_env_cdf = true,
-    .traces_rays = true,
     .batch = batch,
     .declare = declare,
 };

@@ -12,6 +12,7 @@
 #include "methods/shading.h"
 #include "methods/sky.h"
 #include "methods/walls.h"
+#include "base/forward_lobe.h"
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
 #include "passes/columns/columns.h"
@@ -100,8 +101,8 @@ static bool is_thin(const tyn_frame_scene *frame)
                           m->extent[2] * m->extent[2]);
     float scattering = 0.0f;
     for (int c = 0; c < 3; c++) {
-        float forward = fmaxf(m->g[c], 0.0f);
-        scattering = fmaxf(scattering, (1.0f - forward * forward) * m->sigma_s[c]);
+        const float f = (float)tyn_delta_fraction(m->g[c]);
+        scattering = fmaxf(scattering, (1.0f - f) * m->sigma_s[c]);
     }
     return scattering * m->max_density * longest < thin_depth;
 }
@@ -116,7 +117,7 @@ static tyn_result add_lut(tyn_graph *g, const tyn_job *job, tyn_field *f)
     params.g_max = largest_g(job);
     params.num_suns = f->picture.num_suns;
     for (uint32_t n = 0; n < params.num_suns; n++) {
-        params.mean_cosine[n] = job->frame->suns[n].mean_cosine;
+        params.mean_cosine[n] = job->frame->lights.suns[n].mean_cosine;
     }
     params.tms = f->sky.ordinates.resource != 0;
     tyn_ref refs[TYN_MAX_PORTS] = {{0}};
@@ -145,12 +146,10 @@ static tyn_result add_glow(tyn_graph *g, const tyn_job *job, tyn_field *f)
 
 static tyn_result add_lights(tyn_graph *g, const tyn_job *job, tyn_field *f)
 {
-    tyn_result result =
-        tyn_add_beams(g, job, &f->picture.media.medium, f->picture.num_suns, &f->picture.beams);
+    tyn_result result = tyn_add_beams(g, job, &f->picture.media.medium, &f->picture.beams);
     const uint32_t *repeat = job->frame->medium.repeat;
     if (result == TYN_OK && !repeat[0] && !repeat[1] && !repeat[2]) {
-        result =
-            tyn_add_vpls(g, job, &f->picture.media.medium, f->picture.num_suns, &f->picture.vpls);
+        result = tyn_add_vpls(g, job, &f->picture.media.medium, &f->picture.vpls);
     }
     if (result == TYN_OK) {
         result = tyn_add_radials(g, job, &f->picture.media.medium, f->picture.vpls.vpls,
@@ -158,8 +157,7 @@ static tyn_result add_lights(tyn_graph *g, const tyn_job *job, tyn_field *f)
         f->picture.num_marched_lamps = f->picture.lamps.num_fine;
     }
     if (result == TYN_OK) {
-        result = tyn_add_shadows(g, job, f->picture.num_suns, &f->picture.shadows,
-                                 &f->picture.light_cells);
+        result = tyn_add_shadows(g, job, &f->picture.shadows, &f->picture.light_cells);
     }
     const bool walls = tyn_has_walls(job->frame);
     if (job->frame->num_triangles) {
@@ -257,23 +255,22 @@ static tyn_result add_surfaces_alone(tyn_graph *g, const tyn_job *job)
 {
     const tyn_medium_refs no_medium = {{0}};
     tyn_picture_inputs in = {.num_suns = 0};
-    uint32_t num_suns = tyn_method_suns(job);
     if (job->frame->num_triangles) {
         tyn_method_warn_suns(job, "surfaces");
     }
-    tyn_result result = tyn_add_shadows(g, job, num_suns, &in.shadows, &in.light_cells);
+    tyn_result result = tyn_add_shadows(g, job, &in.shadows, &in.light_cells);
     if (result == TYN_OK) {
-        result = tyn_add_vpls(g, job, &no_medium, num_suns, &in.vpls);
+        result = tyn_add_vpls(g, job, &no_medium, &in.vpls);
     }
     if (result == TYN_OK) {
-        result = tyn_add_surfaces(g, job, (tyn_ref){0}, num_suns, &in);
+        result = tyn_add_surfaces(g, job, (tyn_ref){0}, &in);
     }
     return result == TYN_OK ? tyn_add_picture(g, job, &in) : result;
 }
 
 static tyn_result add_surfaces(tyn_graph *g, const tyn_job *job, tyn_field *f)
 {
-    return tyn_add_surfaces(g, job, f->moments, f->picture.num_suns, &f->picture);
+    return tyn_add_surfaces(g, job, f->moments, &f->picture);
 }
 
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
@@ -295,8 +292,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         return TYN_ERR_PARAMS;
     }
 
-    tyn_limits_rays(job);
-    tyn_field f = {.picture.num_suns = tyn_method_suns(job)};
+    tyn_field f = {.picture.num_suns = tyn_num_beams(&frame->lights)};
     result = tyn_add_medium(g, job, &f.picture.media);
     if (result == TYN_OK) {
         result = add_lights(g, job, &f);
@@ -364,10 +360,11 @@ static const tyn_pass_desc *const passes[] = {
 };
 
 const tyn_method tyn_method_pop = {
-    .name = "pop",
-    .summary = "principal ordinates: exact beams, one lattice for scattered light",
-    .passes = passes,
-    .outputs = TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE,
-    .traces_rays = true, // virtual lights see what stands around them
+    .info = {.name = "pop",
+             .summary = "principal ordinates: exact beams, one lattice for scattered light",
+             .passes = passes,
+             .outputs = TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE,
+             .traces_rays = true, // virtual lights see what stands around them
+             .limits = tyn_limits_pop},
     .declare = declare,
 };

@@ -1,5 +1,4 @@
 // shading.c -- see shading.h.
-#include "methods/limits.h"
 #include "methods/shading.h"
 #include "passes/shade/shade.h"
 #include "passes/balance/balance.h"
@@ -52,7 +51,7 @@ bool tyn_vpls_bounce(const tyn_job *job)
 }
 
 tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
-                        uint32_t num_suns, tyn_vpl_refs *vpls)
+                        tyn_vpl_refs *vpls)
 {
     *vpls = (tyn_vpl_refs){{0}};
     if (!job->frame->num_triangles) {
@@ -61,7 +60,7 @@ tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_medium_refs 
     tyn_vpl_params params;
     tyn_settings_params(job->settings, &tyn_pass_vpl, &params);
     params.mode = job->frame->medium.mode;
-    params.num_suns = job->frame->num_suns;
+    params.num_suns = job->frame->lights.num_directional;
     params.num_triangles = job->frame->num_triangles;
     params.emitters = emitters(&job->scene->surfaces);
     params.bounces = tyn_vpls_bounce(job);
@@ -69,7 +68,7 @@ tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_medium_refs 
         return TYN_OK;
     }
     tyn_rsm rsm;
-    tyn_result result = tyn_add_rsm(g, job, num_suns, &rsm);
+    tyn_result result = tyn_add_rsm(g, job, &rsm);
     if (result != TYN_OK || rsm.num_tiles + params.emitters == 0) {
         return result;
     }
@@ -128,7 +127,7 @@ static void place_sight(const tyn_frame_scene *frame, tyn_shade_params *params)
     }
 }
 
-tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, uint32_t num_suns,
+tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments,
                             tyn_picture_inputs *in)
 {
     in->surface = in->distances = (tyn_ref){0};
@@ -146,11 +145,11 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
     params.mode = job->frame->medium.mode;
     params.size[0] = job->view->width;
     params.size[1] = job->view->height;
-    params.num_suns = num_suns;
-    params.num_directional = job->frame->num_suns;
+    params.num_suns = tyn_num_beams(&job->frame->lights);
+    params.num_directional = job->frame->lights.num_directional;
     const bool media =
         in->media.medium.density.resource != 0; // then lamps are those that have grids
-    params.num_lamps = media ? in->lamps.num_lamps : job->frame->num_lights - job->frame->num_suns;
+    params.num_lamps = media ? in->lamps.num_lamps : job->frame->lights.num_lamps;
     params.one_channel = in->one_channel;
     memcpy(params.tint, in->tint, sizeof params.tint);
     params.sky = sky[0] + sky[1] + sky[2] > 0.0f;
@@ -165,9 +164,6 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
     if (params.sky && (in->walls.wall_links.resource == 0 || beyond)) {
         tyn_method_warn(job, "surfaces beyond the media's box are lit by the mean of the "
                              "environment as if nothing stood around them");
-    }
-    if (params.sky && in->walls.wall_links.resource) {
-        tyn_limits_sky(job);
     }
     tyn_ref refs[TYN_MAX_PORTS] = {
         [SHADE_PORT_MEDIUM] = job->refs.medium,

@@ -15,8 +15,8 @@
 static void leave_out_map_suns(tyn_job *job, tyn_frame_scene *frame)
 {
     *frame = *job->frame;
-    memcpy(frame->suns, frame->lights, sizeof frame->suns);
-    frame->num_map_suns = 0;
+    memcpy(frame->lights.suns, frame->lights.scene, sizeof frame->lights.suns);
+    frame->lights.num_suns = frame->lights.num_directional;
     job->frame = frame;
     job->refs.suns = job->refs.lights;
 }
@@ -26,10 +26,10 @@ static tyn_result declare(tyn_graph *g, const tyn_job *given)
     tyn_job own = *given;
     const tyn_job *job = &own;
     tyn_frame_scene frame;
-    if (own.frame->num_map_suns) {
+    if (own.frame->lights.num_suns > own.frame->lights.num_directional) {
         leave_out_map_suns(&own, &frame);
     }
-    tyn_result result = tyn_method_refuse_repeat(job, "single");
+    tyn_result result = tyn_method_refuse_repeat(job);
     if (result != TYN_OK) {
         return result;
     }
@@ -42,16 +42,14 @@ static tyn_result declare(tyn_graph *g, const tyn_job *given)
         0.0f) {
         tyn_method_warn(job, "the environment is seen, but does not light the medium");
     }
-    tyn_limits_single(job);
-    tyn_limits_rays(job);
-    tyn_picture_inputs in = {.num_suns = tyn_method_suns(job)};
+    tyn_picture_inputs in = {.num_suns = tyn_num_beams(&job->frame->lights)};
     tyn_method_warn_suns(job, "the medium");
     result = tyn_add_medium(g, job, &in.media);
     if (result == TYN_OK) {
-        result = tyn_add_beams(g, job, &in.media.medium, in.num_suns, &in.beams);
+        result = tyn_add_beams(g, job, &in.media.medium, &in.beams);
     }
     if (result == TYN_OK) {
-        result = tyn_add_shadows(g, job, in.num_suns, &in.shadows, &in.light_cells);
+        result = tyn_add_shadows(g, job, &in.shadows, &in.light_cells);
     }
     if (result == TYN_OK) {
         result = tyn_add_radials(g, job, &in.media.medium, (tyn_ref){0}, &in.lamps);
@@ -66,10 +64,48 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_composite,   &tyn_pass_tonemap,     NULL,
 };
 
+static double again(const tyn_regime *r)
+{
+    return r->again;
+}
+
+static const tyn_limit limits[] = {
+    {.key = "periodic media",
+     .where = {TYN_ABOVE(repeats, 0)},
+     .level = TYN_LIMIT_REFUSED,
+     .advice = {"media that repeat: refused"},
+     .source = "docs/method.md"},
+    {.key = "one scattering alone",
+     .where = {TYN_ABOVE(mean_depth, 0)},
+     .error = again,
+     .advice = {"one scattering: about %g %% of the scattered light has scattered again (albedo "
+                "%.3g, depth %.4g) and is missing",
+                {TYN_LIMIT_ERROR, TYN_FIGURE(albedo), TYN_FIGURE(mean_depth)}},
+     .source = "docs/choosing.md, \"Single scattering\"",
+     .warned = {TYN_ABOVE(scatterings, 0.3)},
+     .warning = {"accuracy: light that has scattered more than once is left out; the medium is up "
+                 "to %.3g scattering mean free paths (delta scaled) deep",
+                 {TYN_FIGURE(scatterings)}}},
+    {.key = "a narrow forward lobe", // HG_MAX of shaders/phase/hg.glsl
+     .where = {TYN_ABOVE(most_g, 0.995)},
+     .warning = {"accuracy: g is %.6g; beyond 0.995 the medium counts as one of 0.995 that "
+                 "scatters less, so that what is scattered by hardly any angle is not lost",
+                 {TYN_FIGURE(most_g)}}},
+    {.key = "surfaces",
+     .where = {TYN_ABOVE(surfaces, 0)},
+     .level = TYN_LIMIT_BREAKS,
+     .advice = {"surfaces: their shadows alone are drawn"},
+     .source = "docs/method.md, \"single\""},
+    TYN_LIMIT_FLOATS,
+    {NULL},
+};
+
 const tyn_method tyn_method_single = {
-    .name = "single",
-    .summary = "light that has scattered exactly once",
-    .passes = passes,
-    .outputs = TYN_PICTURE_OUTPUTS,
+    .info = {.name = "single",
+             .summary = "light that has scattered exactly once",
+             .passes = passes,
+             .outputs = TYN_PICTURE_OUTPUTS,
+             .single_only = true,
+             .limits = limits},
     .declare = declare,
 };

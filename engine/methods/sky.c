@@ -63,8 +63,8 @@ tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *
     tyn_ordinates_params params;
     tyn_settings_params(job->settings, &tyn_pass_ordinates, &params);
     params.split = can_split && params.split;
-    for (uint32_t i = first_sun; i < frame->num_suns + frame->num_map_suns; i++) {
-        params.fixed[params.num_fixed++] = ordinate_of_sun(&frame->suns[i]);
+    for (uint32_t i = first_sun; i < frame->lights.num_suns; i++) {
+        params.fixed[params.num_fixed++] = ordinate_of_sun(&frame->lights.suns[i]);
     }
     *sky = (tyn_sky_refs){.split = params.split};
     bool lit = env->sky[0] + env->sky[1] + env->sky[2] > 0.0f;
@@ -93,6 +93,7 @@ tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *
         result = tyn_graph_add(g, &tyn_pass_ordinates, &params, refs);
     }
     sky->ordinates = refs[ORDINATES_PORT_ORDINATES];
-    tyn_job_counters(g, job, "ordinates", sky->ordinates); // how many, and how many were folded
+    tyn_job_counters(g, job, &tyn_pass_ordinates,
+                     sky->ordinates); // how many, and how many were folded
     return result;
 }

@@ -10,7 +10,7 @@ typedef struct tyn_sky_refs {
 } tyn_sky_refs;
 
 // Adds env_importance, importance (where the setting wants it) and ordinates as far as the scene has
-// use for them. `first_sun`: that of frame->suns from which on suns are given ordinates, since they
+// use for them. `first_sun`: that of tyn_lights.suns from which on suns are given ordinates, since they
 // have no aligned grid of their own. `can_split`: the method has a way for light that is equal from
 // all sides.
 tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,

@@ -12,15 +12,14 @@
 
 _Static_assert(2 * TYN_SHADOW_VIEWS <= TYN_VIEWS_SEEN, "a place for each view of both passes");
 
-static tyn_result add_light_cells(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
-                                  uint32_t num_lamps, const tyn_shadow_refs *shadows,
+static tyn_result add_light_cells(tyn_graph *g, const tyn_job *job, const tyn_shadow_refs *shadows,
                                   tyn_ref *cells)
 {
     tyn_light_cells_params params;
     tyn_settings_params(job->settings, &tyn_pass_light_cells, &params);
     memcpy(params.extent, job->frame->medium.extent, sizeof params.extent);
-    params.num_suns = num_suns;
-    params.num_lamps = num_lamps;
+    params.num_suns = tyn_num_beams(&job->frame->lights);
+    params.num_lamps = job->frame->lights.num_lamps;
     tyn_ref refs[TYN_MAX_PORTS] = {{0}};
     tyn_connect(refs, LIGHT_CELLS_PORT_SHADOW_ATLAS, *shadows);
     tyn_result result = tyn_graph_add(g, &tyn_pass_light_cells, &params, refs);
@@ -28,11 +27,11 @@ static tyn_result add_light_cells(tyn_graph *g, const tyn_job *job, uint32_t num
     return result;
 }
 
-tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
-                           tyn_shadow_refs *shadows, tyn_ref *cells)
+tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, tyn_shadow_refs *shadows,
+                           tyn_ref *cells)
 {
     const tyn_frame_scene *frame = job->frame;
-    const uint32_t num_lamps = frame->num_lights - frame->num_suns;
+    const uint32_t num_suns = tyn_num_beams(&frame->lights), num_lamps = frame->lights.num_lamps;
     *shadows = (tyn_shadow_refs){{0}};
     *cells = (tyn_ref){0};
     if (!frame->num_triangles || num_suns + num_lamps == 0) {
@@ -40,8 +39,8 @@ tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
     }
     tyn_shadow_map_params params;
     tyn_settings_params(job->settings, &tyn_pass_shadow_map, &params);
-    tyn_shadow_map_plan(&params, frame->suns, num_suns, frame->lights + frame->num_suns, num_lamps,
-                        &frame->surfaces);
+    tyn_shadow_map_plan(&params, frame->lights.suns, num_suns, tyn_first_lamp(&frame->lights),
+                        num_lamps, &frame->surfaces);
     const tyn_surfaces *surfaces = &job->scene->surfaces;
     for (uint32_t i = 0; i < params.num_views; i++) {
         tyn_shadow_view *v = &params.views[i];
@@ -56,7 +55,7 @@ tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
     tyn_take(refs, SHADOW_MAP_PORT_SHADOW_ATLAS, *shadows);
     const uint32_t *repeat = frame->medium.repeat;
     if (result == TYN_OK && !frame->empty && !repeat[0] && !repeat[1] && !repeat[2]) {
-        result = add_light_cells(g, job, num_suns, num_lamps, shadows, cells);
+        result = add_light_cells(g, job, shadows, cells);
     }
     return result;
 }
@@ -116,11 +115,11 @@ static float texel_of(const struct shadow_light *l)
     return area;
 }
 
-tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_rsm *rsm)
+tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm *rsm)
 {
     const tyn_frame_scene *frame = job->frame;
-    const struct light_block *lamps = frame->lights + frame->num_suns;
-    const uint32_t num_lamps = frame->num_lights - frame->num_suns;
+    const struct light_block *lamps = tyn_first_lamp(&frame->lights);
+    const uint32_t num_suns = tyn_num_beams(&frame->lights), num_lamps = frame->lights.num_lamps;
     memset(rsm, 0, sizeof *rsm);
     if (!frame->num_triangles || num_suns + num_lamps == 0) {
         return TYN_OK;
@@ -130,7 +129,7 @@ tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_
     // The same views as those of the shadow maps, smaller.
     tyn_shadow_map_params views = {.sun_texels = params.sun_texels,
                                    .lamp_texels = params.lamp_texels};
-    tyn_shadow_map_plan(&views, frame->suns, num_suns, lamps, num_lamps, &frame->surfaces);
+    tyn_shadow_map_plan(&views, frame->lights.suns, num_suns, lamps, num_lamps, &frame->surfaces);
     memcpy(params.size, views.size, sizeof params.size);
     params.num_triangles = frame->num_triangles;
     if (!frame->empty) {
@@ -142,7 +141,7 @@ tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_
         const struct shadow_light *l = &views.lights[v->light];
         const struct rsm_tile tile = {{v->place[0], v->place[1]}, v->texels, v->light};
         tyn_rsm_add(&params, &tile, l->kind, v->args.clip,
-                    v->light < TYN_SHADOW_SUNS ? &frame->suns[v->light]
+                    v->light < TYN_SHADOW_SUNS ? &frame->lights.suns[v->light]
                                                : &lamps[v->light - TYN_SHADOW_SUNS],
                     texel_of(l));
         tyn_view_cull_seen(frame->seen, TYN_SHADOW_VIEWS + i, surfaces, frame->below, v->args.clip,
@@ -189,8 +188,8 @@ void tyn_scene_box(const tyn_frame_scene *frame, float lo[3], float hi[3])
     tyn_surfaces_box(frame, corners[0], corners[1]);
     include(lo, hi, corners[0]);
     include(lo, hi, corners[1]);
-    for (uint32_t i = frame->num_suns; i < frame->num_lights; i++) {
-        include(lo, hi, frame->lights[i].position);
+    for (uint32_t i = 0; i < frame->lights.num_lamps; i++) {
+        include(lo, hi, tyn_first_lamp(&frame->lights)[i].position);
     }
     for (int a = 0; a < 3; a++) {
         size = fmaxf(size, hi[a] - lo[a]);

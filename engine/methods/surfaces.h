@@ -3,10 +3,10 @@
 #include "methods/job.h"
 #include "shaders/light/rsm_args.h"
 
-// Shadow maps of the suns that have beams, the first of frame->suns, and of the lamps; in `cells` where looks at the
+// Shadow maps of the suns that have beams and of the lamps; in `cells` where looks at the
 // maps are needed (light_cells_args.h).
-tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
-                           tyn_shadow_refs *shadows, tyn_ref *cells);
+tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, tyn_shadow_refs *shadows,
+                           tyn_ref *cells);
 
 // Surfaces as the camera sees them: what shaders/surfaces/gbuffer.glsl reads. {0} without surfaces.
 typedef struct tyn_gbuffer_refs {
@@ -22,7 +22,7 @@ typedef struct tyn_rsm {
     uint32_t num_tiles;
     struct rsm_tile tiles[TYN_RSM_MAX_TILES];
 } tyn_rsm;
-tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_rsm *rsm);
+tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm *rsm);
 
 // Bounds in M of the world box around the surfaces; empty without surfaces.
 void tyn_surfaces_box(const tyn_frame_scene *frame, float lo[3], float hi[3]);

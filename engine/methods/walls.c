@@ -88,7 +88,7 @@ tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattic
     tyn_connect(refs, WALL_LIGHT_PORT_SURFACES, job->refs.geometry);
     tyn_result result = tyn_graph_add(g, &tyn_pass_wall_light, &params, refs);
     *light = refs[WALL_LIGHT_PORT_LIGHT];
-    tyn_job_counters(g, job, "wall_light", refs[WALL_LIGHT_PORT_POWER]);
+    tyn_job_counters(g, job, &tyn_pass_wall_light, refs[WALL_LIGHT_PORT_POWER]);
     return result;
 }
 

@@ -10,7 +10,7 @@ bool tyn_has_walls(const tyn_frame_scene *frame);
 tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
                          tyn_wall_refs *walls, tyn_ref *hits);
 
-// What the first of frame->suns (those whose light is not reflected otherwise) and the VPLs of `radials`
+// What the first of tyn_lights.suns (those whose light is not reflected otherwise) and the VPLs of `radials`
 // shine on the walls of the cells: LATTICE_PORT_WALL_LIGHT; {0} without walls or such lights. `rooms` may be {0}.
 tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
                               const tyn_picture_inputs *in, tyn_ref hits, uint32_t num_suns,

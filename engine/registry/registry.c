@@ -40,6 +40,7 @@
 #include "passes/walls/walls.h"
 #include "passes/wall_light/wall_light.h"
 #include "passes/rooms/rooms.h"
+#include <stdio.h>
 #include <string.h>
 
 static const tyn_pass_desc *const passes[] = {
@@ -123,25 +124,44 @@ uint32_t tyn_num_methods(void)
 
 void tyn_method_at(uint32_t index, tyn_method_info *info)
 {
-    *info = (tyn_method_info){0};
-    if (index < NUM_METHODS) {
-        const tyn_method *m = methods[index];
-        *info = (tyn_method_info){m->name,    m->summary,     m->passes,
-                                  m->outputs, m->progressive, m->traces_rays};
-    }
+    *info = index < NUM_METHODS ? methods[index]->info : (tyn_method_info){0};
 }
 
 const tyn_method *tyn_method_find(const char *name)
 {
     for (uint32_t i = 0; i < NUM_METHODS; i++) {
-        if (!strcmp(methods[i]->name, name)) {
+        if (!strcmp(methods[i]->info.name, name ? name : tyn_method_default())) {
             return methods[i];
         }
     }
     return NULL;
 }
 
-const char *tyn_method_names(void)
+bool tyn_method_named(const char *name, tyn_method_info *info)
 {
-    return "pop, pop-paper, single, path";
+    const tyn_method *method = tyn_method_find(name);
+    *info = method ? method->info : (tyn_method_info){0};
+    return method != NULL;
+}
+
+const char *tyn_method_default(void)
+{
+    return methods[0]->info.name;
+}
+
+const char *tyn_method_reference(void)
+{
+    uint32_t i = 0;
+    while (!methods[i]->info.reference) {
+        i++;
+    }
+    return methods[i]->info.name;
+}
+
+void tyn_method_names(char *text, size_t size)
+{
+    size_t at = 0;
+    for (uint32_t i = 0; i < NUM_METHODS && at < size; i++) {
+        at += (size_t)snprintf(text + at, size - at, "%s%s", i ? ", " : "", methods[i]->info.name);
+    }
 }

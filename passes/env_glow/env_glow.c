@@ -74,7 +74,7 @@ static double clamped_g(const tyn_env_glow_params *p, int c)
 static uint32_t num_levels(const tyn_env_glow_params *p)
 {
     double g = fmax(clamped_g(p, 0), fmax(clamped_g(p, 1), clamped_g(p, 2)));
-    double deepest = 20 * g * g / (1 - g * g);
+    double deepest = 20 * tyn_delta_fraction(g) / (1 - tyn_delta_fraction(g));
     double last = ceil(log1p(deepest / TYN_GLOW_DEPTH) / TYN_GLOW_STEP);
     return (uint32_t)fmin(fmax(last + 1, 2), TYN_GLOW_LEVELS);
 }
@@ -118,7 +118,7 @@ static void make_series(const tyn_env_glow_params *p, struct glow_series *s)
         {1}, {1}, {1}}; // no lobe: the mean alone, which nothing is weighted with
     for (int c = 0; c < 3; c++) {
         double g = clamped_g(p, c);
-        if (g * g > 1e-6) {
+        if (tyn_delta_fraction(g) > 1e-6) {
             tyn_lobe_moments(g, phi[c], DEGREES);
             for (int l = DEGREES - 1; l >= 0; l--) {
                 phi[c][l] /= phi[c][0];

@@ -570,6 +570,20 @@ static const tyn_param param_table[] = {
      "start from the last frame's solution: for sequences", NULL},
 };
 
+static const tyn_counter counters[] = {
+    TYN_COUNTERS,
+    {.name = "unsettled",
+     .offset = offsetof(struct counters_block, unsettled),
+     .real = true,
+     .count = 3,
+     .unit = "of the scattered light",
+     .limit = 0.02,
+     .warning =
+         "accuracy: the lattice is not solved to the end: about %g %% of the scattered light "
+         "would still change; more sweeps are needed (-D lattice.sweeps)"},
+    {NULL},
+};
+
 const tyn_pass_desc tyn_pass_lattice = {
     .name = "lattice",
     .summary =
@@ -586,4 +600,5 @@ const tyn_pass_desc tyn_pass_lattice = {
     .record = record,
     .debug_port = LATTICE_PORT_MOMENTS,
     .debug_meaning = "fluence and flux of the scattered light in a slice, W/m^2",
+    .counters = counters,
 };

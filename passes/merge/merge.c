@@ -142,4 +142,5 @@ const tyn_pass_desc tyn_pass_merge = {
     .record = record,
     .debug_port = MERGE_PORT_INSCATTER,
     .debug_meaning = "radiance towards the eye per sigma_s' in a slice",
+    .counters = (const tyn_counter[]){TYN_COUNTERS, {NULL}},
 };

@@ -59,7 +59,7 @@ float tms_kernel(tms_row row, float mu, float tau_s, float level)
 // moments of the lobe, within 1.5 %.
 float tms_spread(float g)
 {
-    float f = g * g;
+    float f = delta_fraction(g);
     return f * f * (1.0 - g) / (0.871 + g * (1.35 + 2.47 * g));
 }
 
@@ -84,8 +84,8 @@ tms_last tms_last_of(float g)
 float tms_kernel_mixed(tms_last last, float mu, float tau_s, float tau_p, float level,
                        float mean_cosine)
 {
-    float f = tau_s > 0.0 ? clamp(1.0 - tau_p / tau_s, 0.0, HG_MAX * HG_MAX) : 0.0;
-    float depth = tau_s * tms_spread(sqrt(f)) * last.depth;
+    float f = tau_s > 0.0 ? clamp(1.0 - tau_p / tau_s, 0.0, delta_fraction(HG_MAX)) : 0.0;
+    float depth = tau_s * tms_spread(delta_lobe(f)) * last.depth;
     float forward = mix(tms_kernel(last.below, mu, depth, level),
                         tms_kernel(last.above, mu, depth, level), last.between);
     // Without a lobe the light is as narrow as it came.

@@ -129,6 +129,12 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_work(r, "regions", args.regions);
 }
 
+static const tyn_counter counters[] = {
+    {"ordinates", offsetof(struct ordinates_block, count)},
+    {"folded", offsetof(struct ordinates_block, folded)},
+    {NULL},
+};
+
 const tyn_pass_desc tyn_pass_ordinates = {
     .name = "ordinates",
     .summary = "directions from which the surroundings light the medium",
@@ -144,4 +150,5 @@ const tyn_pass_desc tyn_pass_ordinates = {
     .record = record,
     .debug_port = ORDINATES_PORT_ORDINATES,
     .debug_meaning = "struct ordinates_block",
+    .counters = counters,
 };

@@ -117,4 +117,5 @@ const tyn_pass_desc tyn_pass_path = {
     .record = record,
     .debug_port = PATH_PORT_ERROR,
     .debug_meaning = "standard error of each pixel",
+    .counters = (const tyn_counter[]){TYN_COUNTERS, {NULL}},
 };

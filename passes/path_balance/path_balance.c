@@ -103,4 +103,5 @@ const tyn_pass_desc tyn_pass_path_balance = {
     .record = record,
     .debug_port = PATH_BALANCE_PORT_RESULT,
     .debug_meaning = "power entering, emitted, absorbed, escaped",
+    .counters = (const tyn_counter[]){TYN_COUNTERS, {NULL}},
 };

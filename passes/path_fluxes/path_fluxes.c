@@ -86,4 +86,5 @@ const tyn_pass_desc tyn_pass_path_fluxes = {
     .record = record,
     .debug_port = PATH_FLUXES_PORT_FLUXES,
     .debug_meaning = "incident, leaving and absorbed power",
+    .counters = (const tyn_counter[]){TYN_COUNTERS, {NULL}},
 };

@@ -90,4 +90,5 @@ const tyn_pass_desc tyn_pass_path_probe = {
     .record = record,
     .debug_port = PATH_PROBE_PORT_RESULTS,
     .debug_meaning = "fluence and net flux",
+    .counters = (const tyn_counter[]){TYN_COUNTERS, {NULL}},
 };

@@ -395,4 +395,5 @@ const tyn_pass_desc tyn_pass_raymarch = {
     .record = record,
     .debug_port = RAYMARCH_PORT_RADIANCE,
     .debug_meaning = "radiance, exposed by its own mean",
+    .counters = (const tyn_counter[]){TYN_COUNTERS, {NULL}},
 };

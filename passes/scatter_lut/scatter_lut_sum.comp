@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#include "shaders/phase/hg.glsl"
 #include "shaders/phase/scatter_lut_map.glsl"
 
 const uint THREADS = TYN_LUT_ANGLES / 4, CHUNK = TYN_LUT_ANGLES;
@@ -49,7 +50,7 @@ void main()
 {
     uint thread = gl_LocalInvocationID.x, row = gl_WorkGroupID.z;
     float g = lut.g[row];
-    float f = lut.theta_1[row] > 0.0 ? g * g : 0.0;
+    float f = lut.theta_1[row] > 0.0 ? delta_fraction(g) : 0.0;
     float tau = lut_depth(gl_WorkGroupID.y % TYN_LUT_DEPTHS, f);
     float blur = lut.blur[gl_WorkGroupID.y / TYN_LUT_DEPTHS];
     uint terms = f > 0.0 || blur > 0.0 ? lut.terms[row] : 0u;

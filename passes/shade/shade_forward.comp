@@ -72,18 +72,11 @@ mat3 frame_of(vec3 n)
     return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
 }
 
-// Henyey and Greenstein's g of what scatters on the way: f = g^2 is what the scaled depth leaves out.
+// The lobe of what scatters on the way, by what the scaled depth leaves out.
 float lobe_of(beam_tau tau)
 {
     vec3 kept = tau.p / max(tau.s, vec3(1e-20));
-    return sqrt(clamp(1.0 - (kept.r + kept.g + kept.b) / 3.0, 0.0, 0.98));
-}
-
-// The cosine below which the lobe's most forward part, f of it, has the share u.
-float forward_cosine(float g, float u)
-{
-    float f = g * g, h = (1.0 - f) / (1.0 + g - 2.0 * g * f * u);
-    return g > 1e-3 ? clamp((1.0 + f - h * h) / (2.0 * g), -1.0, 1.0) : 1.0;
+    return delta_lobe(clamp(1.0 - (kept.r + kept.g + kept.b) / 3.0, 0.0, 0.98));
 }
 
 vec4 forward_light(uint n, lattice_box box, ivec3 c)
@@ -105,7 +98,7 @@ vec4 forward_light(uint n, lattice_box box, ivec3 c)
     for (uint k = 0u; k < SHADE_PLACES; k++) {
         float along = (float(k) + 0.5) / float(SHADE_PLACES);
         float turn = 2.399963 * float(k); // the golden angle
-        float cosine = forward_cosine(g, fract(0.5 + 0.618034 * float(k))), sine = sqrt(1.0 - cosine * cosine);
+        float cosine = delta_lobe_cosine(g, fract(0.5 + 0.618034 * float(k))), sine = sqrt(1.0 - cosine * cosine);
         vec3 from = frame * vec3(sine * cos(turn), sine * sin(turn), cosine);
         float far = mix(way.x, way.y, along);
         vec3 there = at + far * shadow_frame_direction(map, from);

@@ -182,6 +182,23 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_work(r, "cells", (double)p->dims[0] * p->dims[1] * p->dims[2]);
 }
 
+#define COUNTS(field) offsetof(struct wall_light_power, field)
+static const tyn_counter counters[] = {
+    {"rooms", COUNTS(rooms)},
+    {"least", COUNTS(least), true},
+    {"most", COUNTS(most), true},
+    {"clamped", COUNTS(clamped)},
+    {.name = "astray",
+     .offset = COUNTS(astray),
+     .real = true,
+     .unit = "of what virtual lights send to walls",
+     .limit = 0.05,
+     .warning = "accuracy: the lattice's walls get too much or too little of the light that "
+                "virtual lights send to surfaces, about %g %% of it: rooms or walls of few cells "
+                "(-D lattice.cells)"},
+    {NULL},
+};
+
 const tyn_pass_desc tyn_pass_wall_light = {
     .name = "wall_light",
     .summary = "light of suns and virtual point lights on the walls of the lattice's cells",
@@ -196,4 +213,5 @@ const tyn_pass_desc tyn_pass_wall_light = {
     .record = record,
     .debug_port = WALL_LIGHT_PORT_LIGHT,
     .debug_meaning = "radiance of the walls per cell, W/(m^2 sr)",
+    .counters = counters,
 };

@@ -15,4 +15,14 @@ struct counters_block {
 };
 TYN_ASSERT_SIZE(counters_block, 32);
 
+// Rows of tyn_pass_desc.counters.
+// clang-format off
+#define TYN_COUNTERS                                                                               \
+    {"steps", offsetof(struct counters_block, steps)},                                             \
+    {"pixels", offsetof(struct counters_block, pixels)},                                           \
+    {"non_finite", offsetof(struct counters_block, non_finite)},                                   \
+    {"clamped", offsetof(struct counters_block, clamped)},                                         \
+    {"cut", offsetof(struct counters_block, cut)}
+// clang-format on
+
 #endif

@@ -73,6 +73,19 @@ float delta_fraction(float g)
     return forward * forward;
 }
 
+// g of the lobe of which the part f goes straight on.
+float delta_lobe(float f)
+{
+    return sqrt(f);
+}
+
+// The cosine below which the most forward part of a lobe, f of it, has the share u; g >= 0.
+float delta_lobe_cosine(float g, float u)
+{
+    float f = g * g, h = (1.0 - f) / (1.0 + g - 2.0 * g * f * u);
+    return g > 1e-3 ? clamp((1.0 + f - h * h) / (2.0 * g), -1.0, 1.0) : 1.0;
+}
+
 // Mean cosine of what is left, (g - f) / (1 - f): g / (1 + g) for g > 0, else g.
 vec3 delta_cosine(vec3 g)
 {

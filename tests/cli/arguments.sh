@@ -10,7 +10,7 @@ works --help
 grep -q "selftest" out || fail "--help lists no selftest"
 works --version
 grep -qE '^tyndall [0-9]+\.[0-9]+\.[0-9]+$' out || fail "--version: $(cat out)"
-for command in render compare probe balance fluxes bench graph info selftest view; do
+for command in render compare probe balance fluxes bench graph info selftest; do
     works $command --help
     grep -q "usage: tyndall $command" out || fail "$command --help: $(head -1 out)"
     refuses 2 "unknown option '--paint'" $command --paint
@@ -50,8 +50,6 @@ printf 'x,y,z\n0,0,0\n' >origin.csv
 refuses 1 "is not there" probe "$scenes/cube.gltf" --points origin.csv -o nowhere/a.csv
 refuses 2 "no method 'magic'; there are: " render a.gltf --method magic
 refuses 2 "'lattice' is not PASS.PARAM=VALUE" render a.gltf -D lattice
-refuses 2 "comes with a later version" render "$scenes/cube.gltf" --plugin a.so
-refuses 2 "comes with a later version" view "$scenes/cube.gltf"
 refuses 2 "'single' cannot do that yet; these can: pop" balance "$scenes/cube.gltf" --method single
 refuses 2 "--points is missing" probe "$scenes/cube.gltf"
 refuses 2 "--view PASS and -o FILE.png go together" graph "$scenes/cube.gltf" --view beam

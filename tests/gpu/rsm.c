@@ -37,9 +37,10 @@ static sums run(gpu_test *t, const tyn_scene *scene, const struct light_block *l
     const tyn_surfaces *s = &scene->surfaces;
     static tyn_frame_scene frame;
     memset(&frame, 0, sizeof frame);
-    frame.num_lights = frame.num_triangles = 1;
-    frame.lights[0] = frame.suns[0] = *light;
-    frame.num_suns = light->kind == TYN_LIGHT_KIND_DIRECTIONAL;
+    frame.lights.scene[0] = frame.lights.suns[0] = *light;
+    frame.lights.num_suns = light->kind == TYN_LIGHT_KIND_DIRECTIONAL;
+    frame.lights.num_directional = frame.lights.num_suns;
+    frame.lights.num_lamps = 1 - frame.lights.num_suns;
     frame.num_triangles = frame.surfaces.num_triangles = s->num_triangles;
     frame.empty = true;
     memcpy(frame.surfaces.from_world, rows, sizeof rows);
@@ -81,7 +82,7 @@ static sums run(gpu_test *t, const tyn_scene *scene, const struct light_block *l
             },
     };
     tyn_rsm rsm;
-    assert_int_equal(tyn_add_rsm(t->graph, &job, frame.num_suns, &rsm), TYN_OK);
+    assert_int_equal(tyn_add_rsm(t->graph, &job, &rsm), TYN_OK);
     tyn_settings_destroy(&settings);
     tyn_graph_output(t->graph, "flux", rsm.maps.rsm_flux, true);
     tyn_graph_output(t->graph, "position", rsm.maps.rsm_position, true);
@@ -96,7 +97,7 @@ static sums run(gpu_test *t, const tyn_scene *scene, const struct light_block *l
     for (uint32_t k = 0; k < rsm.num_tiles; k++) {
         const struct rsm_tile *tile = &rsm.tiles[k];
         assert_int_equal(tile->texels & (tile->texels - 1), 0);
-        assert_int_equal(tile->light, frame.num_suns ? 0 : TYN_SHADOW_LAMP(0));
+        assert_int_equal(tile->light, frame.lights.num_suns ? 0 : TYN_SHADOW_LAMP(0));
         for (uint32_t i = 0; i < tile->texels * tile->texels; i++) {
             const uint32_t x = tile->offset[0] + i % tile->texels,
                            y = tile->offset[1] + i / tile->texels, at = y * size.x + x;
@@ -108,8 +109,8 @@ static sums run(gpu_test *t, const tyn_scene *scene, const struct light_block *l
             float way[3];
             double cosine = 0, length = 0;
             for (int c = 0; c < 3; c++) {
-                way[c] =
-                    frame.num_suns ? -light->direction[c] : light->position[c] - position[at][c];
+                way[c] = frame.lights.num_suns ? -light->direction[c]
+                                               : light->position[c] - position[at][c];
                 cosine += (double)(way[c] * normal[at][c]);
                 length += (double)(way[c] * way[c]);
                 sum.flux[c] += (double)flux[at][c];

@@ -190,7 +190,8 @@ static cJSON *make_record(const bench_case *c, const char *key, cJSON *run)
     const int size[2] = {(int)c->view.width, (int)c->view.height};
     cJSON_AddItemToObject(scene, "size", cJSON_CreateIntArray(size, 2));
     cJSON *reference = cJSON_AddObjectToObject(record, "reference");
-    cJSON_AddStringToObject(reference, "method", c->spec->reference ? "file" : "path");
+    cJSON_AddStringToObject(reference, "method",
+                            c->spec->reference ? "file" : tyn_method_reference());
     cJSON_AddStringToObject(reference, "key", c->reference.key);
     if (!c->spec->reference) {
         cJSON_AddNumberToObject(reference, "spp", c->spec->reference_spp);

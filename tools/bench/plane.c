@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <tyndall/registry.h>
 
 enum { NUM_ASKED = 3, MAX_RANGES = 64 };
 // What is promised of `pop`: the front at errors above both of these.
@@ -297,10 +298,10 @@ static char *promise_text(double above, const cJSON *beaten)
 
 cJSON *plane_promise(const plane *p)
 {
-    const int64_t pop = find_line(p, "pop");
+    const int64_t own = find_line(p, tyn_method_default());
     double floor = NAN;
     for (uint32_t i = 0; i < p->count; i++) {
-        floor = p->points[i].line == pop ? fmin(floor, p->points[i].error) : floor;
+        floor = p->points[i].line == own ? fmin(floor, p->points[i].error) : floor;
     }
     if (isnan(floor)) {
         return cJSON_CreateNull();
@@ -313,7 +314,7 @@ cJSON *plane_promise(const plane *p)
         const front_range *r = &ranges[i];
         const double low = fmax(r->low, above), high = r->highest ? INFINITY : r->high;
         // As with ranges: what is narrower than 5 % is noise of times.
-        if (r->line != pop && high > 1.05 * low) {
+        if (r->line != own && high > 1.05 * low) {
             cJSON *other = cJSON_CreateObject();
             cJSON_AddStringToObject(other, "method", p->lines[r->line].name);
             cJSON_AddNumberToObject(other, "low", low);
@@ -324,7 +325,7 @@ cJSON *plane_promise(const plane *p)
     }
     char *text = promise_text(above, beaten);
     cJSON_AddNumberToObject(promise, "block", p->block);
-    cJSON_AddStringToObject(promise, "method", "pop");
+    cJSON_AddStringToObject(promise, "method", tyn_method_default());
     json_add_float(promise, "floor", floor);
     json_add_float(promise, "above", above);
     cJSON_AddBoolToObject(promise, "holds", cJSON_GetArraySize(beaten) == 0);
@@ -338,7 +339,7 @@ cJSON *plane_promise(const plane *p)
 static char *verdict(const plane *p, const front_range *r, bool first)
 {
     const char *name = p->lines[r->line].name;
-    const char *does = strcmp(name, "pop") == 0 ? "is on the front" : "wins";
+    const char *does = strcmp(name, tyn_method_default()) == 0 ? "is on the front" : "wins";
     // The first of all begins where the noise of the reference ends what is known.
     const char *noise = first && !r->lowest ? ", the noise of the reference" : "";
     char low[16], high[16];
@@ -358,17 +359,17 @@ cJSON *plane_verdicts(const plane *p)
     front_range ranges[MAX_RANGES];
     const uint32_t num = front_ranges(p->points, p->count, ranges, MAX_RANGES);
     cJSON *verdicts = cJSON_CreateArray();
-    const bool has_pop = find_line(p, "pop") >= 0;
-    bool pop_wins = false;
+    const char *own = tyn_method_default();
+    bool wins = false;
     for (uint32_t i = num; i-- > 0;) { // from what is asked for most
-        pop_wins = pop_wins || strcmp(p->lines[ranges[i].line].name, "pop") == 0;
+        wins = wins || strcmp(p->lines[ranges[i].line].name, own) == 0;
         add_verdict(verdicts, verdict(p, &ranges[i], i == 0));
     }
-    if (has_pop && num > 0 && !pop_wins) {
+    if (find_line(p, own) >= 0 && num > 0 && !wins) {
         char low[16];
-        add_verdict(verdicts, ranges[0].lowest ? text_format("pop is nowhere the fastest")
-                                               : text_format("pop is nowhere the fastest above %s",
-                                                             percent(ranges[0].low, low)));
+        add_verdict(verdicts, ranges[0].lowest ? text_format("%s is nowhere the fastest", own)
+                                               : text_format("%s is nowhere the fastest above %s",
+                                                             own, percent(ranges[0].low, low)));
     }
     return verdicts;
 }

@@ -209,7 +209,7 @@ static int from_path(app *a, tyn_device *device, const bench_scene *spec, const 
                      const tyn_view *view, bench_reference *r)
 {
     method m = {0};
-    int code = method_open(a, &(method_options){.method = "path"}, &m);
+    int code = method_open(a, &(method_options){.method = tyn_method_reference()}, &m);
     if (code == EXIT_DONE) {
         snprintf(r->key, sizeof r->key, "%016llx",
                  (unsigned long long)reference_key(spec, scene, view, &m.info));

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <tyndall/registry.h>
 
 enum { REPORT_VERSION = 1 };
 
@@ -17,7 +18,7 @@ static cJSON *json_reference(const bench_case *c)
 {
     const bench_reference *r = &c->reference;
     cJSON *json = cJSON_CreateObject();
-    cJSON_AddStringToObject(json, "method", c->spec->reference ? "file" : "path");
+    cJSON_AddStringToObject(json, "method", c->spec->reference ? "file" : tyn_method_reference());
     json_add_float(json, "spp", c->spec->reference ? NAN : c->spec->reference_spp);
     json_add_float(json, "seed", c->spec->reference ? NAN : BENCH_REFERENCE_SEED);
     json_add_float(json, "seconds", r->seconds > 0 ? r->seconds : NAN);

@@ -7,11 +7,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <tyndall/registry.h>
 
-static const char *const methods[] = {"pop", "pop-paper", "single", "path"};
-static const char *const answers[] = {"path", "furnace", "table", "imbalance"};
+static const char *const answers[] = {NULL, "furnace", "table",
+                                      "imbalance"}; // NULL: the reference method
 
-// Reference pictures may take this long each, and `path` as a method that is judged.
+// Reference pictures may take this long each, and the reference method as one that is judged.
 static const stress_effort reference_effort = {.noise = 0.005, .seconds = 3, .seed = 7};
 static const stress_effort quick_reference_effort = {.noise = 0.01, .seconds = 0.8, .seed = 7};
 static const stress_effort run_effort = {.noise = 0.02, .seconds = 0.6, .seed = 1};
@@ -46,7 +47,7 @@ static const stress_case *reference_case(const stress_case *c)
     return c->like ? c->like : c;
 }
 
-// `once`: light that scattered once, what "single" claims to compute.
+// `once`: light that scattered once alone.
 static int answer(suite *s, const stress_case *c, bool once, stress_picture *p)
 {
     if (!once && c->answer == STRESS_BY_FURNACE) {
@@ -64,7 +65,8 @@ static int answer(suite *s, const stress_case *c, bool once, stress_picture *p)
         effort.max_depth = once ? 1 : 0;
         stress_counts counts = {.warnings = cJSON_CreateArray()};
         s->made_of[once] = NULL;
-        code = stress_render(s->a, s->device, "path", of, &effort, &s->made[once], &counts);
+        code = stress_render(s->a, s->device, tyn_method_reference(), of, &effort, &s->made[once],
+                             &counts);
         if (code == EXIT_DONE && counts.failure) {
             app_error(s->a, "stress: the reference was %s", counts.failure);
             code = EXIT_FAILED;
@@ -83,7 +85,8 @@ static int answer(suite *s, const stress_case *c, bool once, stress_picture *p)
 
 typedef struct cell {
     const stress_case *c;
-    const char *method, *against;
+    const char *method;
+    char against[64];
     double error, se; // NAN: not known
     stress_counts counts;
 } cell;
@@ -157,21 +160,23 @@ static double compare(const stress_picture *p, const stress_picture *reference, 
     return status == METRICS_OK ? m.error : NAN;
 }
 
-static int run_cell(suite *s, const stress_case *c, const char *with)
+static int run_cell(suite *s, const stress_case *c, const tyn_method_info *with)
 {
-    const bool once = strcmp(with, "single") == 0, path = strcmp(with, "path") == 0;
-    cell k = {.c = c, .method = with, .error = NAN, .se = NAN};
-    k.against = once && c->answer != STRESS_BY_IMBALANCE ? "path, single" : answers[c->answer];
+    const bool once = with->single_only && c->answer != STRESS_BY_IMBALANCE;
+    cell k = {.c = c, .method = with->name, .error = NAN, .se = NAN};
+    const char *by = once || !answers[c->answer] ? tyn_method_reference() : answers[c->answer];
+    snprintf(k.against, sizeof k.against, "%s%s%s", by, once ? ", " : "", once ? with->name : "");
     k.counts.warnings = cJSON_CreateArray();
     stress_picture *p = malloc(2 * sizeof *p);
     int code = p ? EXIT_DONE : app_exit_code(s->a, TYN_ERR_MEMORY, false);
     if (code == EXIT_DONE && c->answer == STRESS_BY_IMBALANCE) {
-        code = stress_balance(s->a, s->device, with, c, &run_effort, &k.error, &k.se, &k.counts);
+        code =
+            stress_balance(s->a, s->device, with->name, c, &run_effort, &k.error, &k.se, &k.counts);
         k.error = fabs(k.error);
     } else if (code == EXIT_DONE) {
-        code = stress_render(s->a, s->device, with, c, &run_effort, &p[0], &k.counts);
-        // `path` is not judged by itself.
-        bool judged = !path || c->like || c->answer != STRESS_BY_PATH;
+        code = stress_render(s->a, s->device, with->name, c, &run_effort, &p[0], &k.counts);
+        // Nobody is judged by himself.
+        bool judged = !with->reference || c->like || c->answer != STRESS_BY_PATH;
         if (code == EXIT_DONE && !k.counts.failure && judged) {
             code = answer(s, c, once, &p[1]);
             k.error =
@@ -190,11 +195,11 @@ static int run_cell(suite *s, const stress_case *c, const char *with)
     return code;
 }
 
-// Imbalance is told by the methods that have a balance; `path` needs days where nothing is absorbed.
-static bool belongs(const stress_options *o, const stress_case *c, const char *with)
+// Imbalance is told by the methods that have a balance; samples would need days where nothing is absorbed.
+static bool belongs(const stress_options *o, const stress_case *c, const tyn_method_info *with)
 {
-    return (!o->quick || c->quick) &&
-           (c->answer != STRESS_BY_IMBALANCE || strcmp(with, "pop") == 0);
+    const bool tells = with->outputs & TYN_OUTPUT_BALANCE && !with->progressive;
+    return (!o->quick || c->quick) && (c->answer != STRESS_BY_IMBALANCE || tells);
 }
 
 static bool is_asked(const stress_options *o, const stress_case *c, const char *with)
@@ -231,12 +236,13 @@ static const cJSON *find_cell(const cJSON *before, const stress_case *c, const c
 }
 
 // A cell of the suite: run, or kept, or neither.
-static int take_cell(suite *s, const stress_case *c, const char *with, const cJSON *before)
+static int take_cell(suite *s, const stress_case *c, const tyn_method_info *with,
+                     const cJSON *before)
 {
-    if (is_asked(s->options, c, with)) {
+    if (is_asked(s->options, c, with->name)) {
         return run_cell(s, c, with);
     }
-    const cJSON *kept = find_cell(before, c, with);
+    const cJSON *kept = find_cell(before, c, with->name);
     if (kept) {
         cJSON_AddItemToArray(s->cells, cJSON_Duplicate(kept, true));
     }
@@ -253,8 +259,10 @@ int stress_run(app *a, tyn_device *device, const stress_options *options, bool t
     *s = (suite){.a = a, .device = device, .options = options, .table = table};
     cJSON *axes = cJSON_AddArrayToObject(stress, "axes");
     cJSON *names = cJSON_AddArrayToObject(stress, "methods");
-    for (size_t m = 0; m < ARRAY_SIZE(methods); m++) {
-        cJSON_AddItemToArray(names, cJSON_CreateString(methods[m]));
+    tyn_method_info with;
+    for (uint32_t m = 0; m < tyn_num_methods(); m++) {
+        tyn_method_at(m, &with);
+        cJSON_AddItemToArray(names, cJSON_CreateString(with.name));
     }
     s->cells = cJSON_AddArrayToObject(stress, "cells");
     const bool quiet = a->quiet;
@@ -265,9 +273,10 @@ int stress_run(app *a, tyn_device *device, const stress_options *options, bool t
     for (uint32_t i = 0; i < stress_num_cases && code == EXIT_DONE; i++) {
         const stress_case *c = &stress_cases[i];
         const int there = cJSON_GetArraySize(s->cells);
-        for (size_t m = 0; m < ARRAY_SIZE(methods) && code == EXIT_DONE; m++) {
-            if (belongs(options, c, methods[m])) {
-                code = take_cell(s, c, methods[m], before);
+        for (uint32_t m = 0; m < tyn_num_methods() && code == EXIT_DONE; m++) {
+            tyn_method_at(m, &with);
+            if (belongs(options, c, &with)) {
+                code = take_cell(s, c, &with, before);
                 expected++;
             }
         }

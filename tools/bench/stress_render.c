@@ -74,22 +74,11 @@ static bool go_on(void *user, double fraction)
     return !app_interrupted();
 }
 
-static bool find(const char *name, tyn_method_info *info)
-{
-    for (uint32_t i = 0; i < tyn_num_methods(); i++) {
-        tyn_method_at(i, info);
-        if (strcmp(info->name, name) == 0) {
-            return true;
-        }
-    }
-    return false;
-}
-
 static int open_run(run *r, tyn_device *device, const char *with, const stress_case *c,
                     const stress_effort *effort)
 {
     tyn_settings *settings = NULL;
-    bool ok = find(with, &r->info) && stress_scene(c, &r->scene);
+    bool ok = tyn_method_named(with, &r->info) && stress_scene(c, &r->scene);
     stress_view(c, &r->view);
     r->view.seed = effort->seed;
     r->view.max_depth = effort->max_depth;

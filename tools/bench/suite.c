@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <tyndall/registry.h>
 #include <tyndall/io.h>
 
 // ---- scenes -----------------------------------------------------------------------------------
@@ -183,7 +184,7 @@ static void read_entry(suite_reader *r, const cJSON *json, bool baseline, uint32
                                        "seed", "group",  "sweep",   "only",     NULL};
     suite_check_keys(r, json, keys);
     const char *how = suite_text(r, json, "method", false);
-    how = how ? how : baseline ? "path" : "pop";
+    how = how ? how : baseline ? tyn_method_reference() : tyn_method_default();
     const char *name = suite_text(r, json, "name", false);
     name = name ? name : how;
     const char *group = suite_text(r, json, "group", false);

@@ -164,6 +164,20 @@ typedef struct tyn_param {
     const char *const *names; // ENUM: the values' names
 } tyn_param;
 
+// ---- counters -------------------------------------------------------------------------------
+
+// What a pass's kernels count for the report (tyn_node_report.work), in a buffer that they write. A method says which
+// one that is; rows end with one without a name.
+typedef struct tyn_counter {
+    const char *name; // "steps", "unsettled"
+    size_t offset;    // bytes into the buffer
+    bool real;        // a float; else a uint32
+    uint32_t count;   // numbers that follow each other, of which the largest is told; 0 counts as 1
+    const char *unit; // "of the scattered light"; NULL: a number of them
+    double limit;     // a share beyond which the report warns
+    const char *warning; // printf format of the share in percent, a double; NULL: none
+} tyn_counter;
+
 // ---- the pass -------------------------------------------------------------------------------
 
 typedef struct tyn_builder tyn_builder;   // answers and collects shapes while a node is declared
@@ -195,6 +209,7 @@ typedef struct tyn_pass_desc {
     const char *debug_meaning;
     // What there must be for a method to declare the node, as `tyndall graph` says of those it left out.
     const char *serves;
+    const tyn_counter *counters; // NULL: it counts nothing
 } tyn_pass_desc;
 
 // Fills params with zeros, then the defaults of the table.

@@ -10,15 +10,93 @@ extern "C" {
 TYN_API uint32_t tyn_num_passes(void);
 TYN_API const tyn_pass_desc *tyn_pass_at(uint32_t index);
 
+// ---- what methods are good and bad at --------------------------------------------------------
+
+// What decides how right a method is in a scene. Of what differs between channels and places: where the medium is dense,
+// the channel in which it is most. "Scaled": what is scattered forward counts as not scattered.
+typedef struct tyn_regime {
+    double depth;           // mean free paths along the longest side of the medium's box
+    double mean_free_path;  // of that side
+    double mean_depth;      // ... along a straight way through the medium, on average
+    double transport_depth; // transport mean free paths along it
+    double scatterings;     // scaled, along the longest side
+    double thickness;       // scaled mean free paths through the shortest side
+    double albedo;
+    double g, least_g, most_g; // mean cosines
+    double again;              // share of the scattered light that has scattered more than once
+    // Of the lattice of the method; 0: it has none.
+    double cell_depth;     // scaled mean free paths across a cell
+    double cell_transport; // transport mean free paths
+    double cells_through;  // the shortest side
+    double cells_needed;   // along the longest side, for a cell of one mean free path
+    double cells_most;     // along it, that there can be
+    double cells_spare;    // of these, beyond those needed
+    // Light: shares of its power.
+    double lamps, map;
+    double sky_on_surfaces;   // of an environment, where there are surfaces
+    double surfaces, repeats; // 1: there are surfaces; the medium is periodic
+} tyn_regime;
+
+enum { TYN_LIMIT_BOUNDS = 3 };
+typedef struct tyn_bound { // above < figure < below; both 0: the end of a list
+    size_t figure;         // offset in tyn_regime
+    double above, below;
+} tyn_bound;
+
+typedef struct tyn_limit_text {
+    const char *format; // of printf, for doubles; NULL: nothing is said
+    size_t figures[3];  // offsets in tyn_regime, or TYN_LIMIT_ERROR: the expected error in percent
+} tyn_limit_text;
+#define TYN_LIMIT_ERROR SIZE_MAX
+
+typedef enum tyn_limit_level {
+    TYN_LIMIT_HOLDS = 0,
+    TYN_LIMIT_STRAINED, // costs accuracy
+    TYN_LIMIT_BREAKS,   // do not rely on it
+    TYN_LIMIT_REFUSED,  // the method does not take such scenes
+} tyn_limit_level;
+
+// A row of a method's table: something that costs it accuracy. Rows of one key follow each other: the first that holds
+// counts.
+typedef struct tyn_limit {
+    const char *key;                      // "thick lattice cells"; NULL: the end of the table
+    tyn_bound where[TYN_LIMIT_BOUNDS];    // where it counts: all of them hold
+    double (*error)(const tyn_regime *r); // expected; NULL: not known (tyn_limit_error)
+    tyn_limit_level level;                // at least
+    tyn_limit_text advice;                // to who chooses a method: what is lost, what to do
+    const char *source;                   // page with the measurement
+    tyn_bound warned[TYN_LIMIT_BOUNDS];   // where these hold as well
+    tyn_limit_text warning;               // a frame's report says this
+} tyn_limit;
+
+// The row of a table that counts after `last` (NULL: the first); NULL: no more do.
+TYN_API const tyn_limit *tyn_limit_next(const tyn_limit *table, const tyn_limit *last,
+                                        const tyn_regime *r);
+// Expected relative error of the medium's light over blocks of 8x8 pixels; 0: none is known.
+TYN_API double tyn_limit_error(const tyn_limit *limit, const tyn_regime *r);
+TYN_API void tyn_limit_say(const tyn_limit *limit, const tyn_limit_text *text, const tyn_regime *r,
+                           char *line, size_t size);
+
+// ---- methods ---------------------------------------------------------------------------------
+
 typedef struct tyn_method_info {
     const char *name, *summary;
     const tyn_pass_desc *const *passes; // NULL-terminated, in the order of the frame
     uint32_t outputs;                   // set of tyn_output it can make
     bool progressive;                   // adds view.num_samples samples a call to what it has
     bool traces_rays; // surfaces need a hierarchy: tyn_surfaces_build_nodes of <tyndall/io.h>
+    bool reference;   // right but for noise: the others are judged by it
+    bool single_only; // its answer is the light that has scattered once
+    const tyn_limit *limits;
 } tyn_method_info;
 TYN_API uint32_t tyn_num_methods(void);
 TYN_API void tyn_method_at(uint32_t index, tyn_method_info *info);
+// NULL: the default. False: there is none of that name; `info` is all 0.
+TYN_API bool tyn_method_named(const char *name, tyn_method_info *info);
+TYN_API const char *tyn_method_default(void);   // the first one's name
+TYN_API const char *tyn_method_reference(void); // the name of the one that is `reference`
+
+// ---- settings --------------------------------------------------------------------------------
 
 TYN_API tyn_result tyn_settings_create(tyn_settings **out);
 TYN_API void tyn_settings_destroy(tyn_settings **settings);
