@@ -3,16 +3,11 @@
 #include "base/half.h"
 #include "passes/columns/columns.h"
 #include "passes/lattice/lattice.h"
+#include "random_unit.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static double random_unit(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (*seed >> 8) * 0x1p-24;
-}
 
 // Even over the sphere (Fibonacci's spiral), each with its share of it.
 static struct ordinates_block sphere(uint32_t count)
