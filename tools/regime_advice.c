@@ -126,12 +126,12 @@ static void lights_of_pop(advisor *to)
             "about a lamp: 3 %% off at depth 1, 6 %% at 4, 3 to 14 %% at 10)");
     }
     if (r->num_triangles) {
-        say(to, ADVICE_STRAINED, "README.md, \"How right it is\"",
+        say(to, ADVICE_STRAINED, "docs/accuracy.md, \"Lamps and walls\"",
             "surfaces: virtual lights and voxels of walls (sample scenes 4 to 11 %% off, vpl-cave "
             "21 %%)");
     }
     if (r->num_triangles && r->share[REGIME_MAP] + r->share[REGIME_SKY] > 0.05) {
-        say(to, ADVICE_STRAINED, "README.md, \"Not yet\"",
+        say(to, ADVICE_STRAINED, "docs/surfaces.md, \"Limits\"",
             "sky among surfaces: it lights the medium by its mean and suns alone, and surfaces "
             "beyond the medium's box without shadows");
     }
@@ -146,7 +146,7 @@ static void advise_pop(advisor *to)
 {
     to->method = "pop";
     if (pop_refuses(to->r)) {
-        say(to, ADVICE_REFUSED, "docs/walls.md, \"Periodic media\"",
+        say(to, ADVICE_REFUSED, "docs/method.md, \"Periodic media\"",
             "lamps and maps in media that repeat: refused");
         return;
     }
@@ -163,7 +163,7 @@ static void advise_pop(advisor *to)
 
 static void advise_paper(advisor *to)
 {
-    static const char source[] = "docs/method.md, \"pop-paper\"";
+    static const char source[] = "docs/pop-paper.md, \"Measured\"";
     to->method = "pop-paper";
     if (to->r->periodic) {
         say(to, ADVICE_REFUSED, source, "media that repeat: refused");
@@ -190,7 +190,8 @@ static void advise_single(advisor *to)
             missing < 0.1, 100 * missing, to->r->albedo, to->r->optical_depth);
     }
     if (to->r->num_triangles) {
-        say(to, ADVICE_BREAKS, "README.md, \"Not yet\"", "surfaces: their shadows alone are drawn");
+        say(to, ADVICE_BREAKS, "docs/method.md, \"single\"",
+            "surfaces: their shadows alone are drawn");
     }
 }
 

@@ -2,7 +2,7 @@
 //
 // The pictures of `path` are tables in tests/data/walls: means of 12x12 blocks with their standard
 // errors. They are made by this program from pictures of `path` with the layer `error`, square, of
-// a multiple of 12 pixels: TYN_WALLS_MAKE=<folder of NAME-path.exr>. `docs/pictures` leaves such
+// a multiple of 12 pixels: TYN_WALLS_MAKE=<folder of NAME-path.exr>. `tools/docs/pictures` leaves such
 // pictures in out/pictures.
 #include "gpu_test.h"
 #include "picture.h"

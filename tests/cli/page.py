@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """page.py -- the page of a report: what is in it, and how it behaves in a browser.
 
-usage: page.py REPORT_MAKE TABLES     (the second is docs/tables; skipped, exit 77, where no Chromium is installed)
+usage: page.py REPORT_MAKE TABLES     (the second is tools/docs/tables; skipped, exit 77, where no Chromium is installed)
 """
 import json
 import math
@@ -68,8 +68,21 @@ def check_promise(report):
             print(f"todo: {name}: {promise['text']}: {KNOWN_BEATEN[name]}")
 
 
+def check_page(folder, root, page):
+    """What stands between a page's marks is what the command prints that the page names: a line "    tools/docs/tables ... PAGE"."""
+    shown = open(f"{root}/{page}", encoding="utf-8").read()
+    named = re.findall(r"^    (tools/docs/tables .*) (\S+)$", shown, re.M)
+    check(f"{page} names the command that makes its tables", [of for _, of in named] == [page], str(named))
+    copy = f"{folder}/shown.md"
+    with open(copy, "w", encoding="utf-8") as file:
+        file.write(shown)
+    for command, _ in named:
+        subprocess.run([*command.split(), copy], cwd=root, check=True)
+    check(f"{page} shows what is stored", open(copy, encoding="utf-8").read() == shown)
+
+
 def check_tables(folder, tables):
-    """The README's tables, from the same report."""
+    """The tables of README.md and docs/error-against-time.md, and how they are made."""
     readme = f"{folder}/README.md"
     with open(readme, "w", encoding="utf-8") as file:
         file.write("before\n<!-- tables -->\nstale words\n<!-- end of tables -->\nafter\n")
@@ -83,17 +96,18 @@ def check_tables(folder, tables):
           and re.search(r"\| 3\.0 % \| no \| yes \|", text), text)
     check("what the noise hides", "to <= 1.3 % in" in text, text)
     check("markup in names is none", "<script" not in text.replace("\\<", ""), text)
-    root = os.path.dirname(os.path.dirname(os.path.abspath(tables)))
-    shown = open(f"{root}/README.md", encoding="utf-8").read()
-    with open(readme, "w", encoding="utf-8") as file:
-        file.write(shown)
-    full = "tools/bench/results/full.json"
-    stored = full if os.path.exists(f"{root}/{full}") else "tools/bench/results/ci.json"
-    subprocess.run([tables, f"{root}/{stored}", readme], check=True)
-    if stored == full:
-        check_promise(json.load(open(f"{root}/{full}", encoding="utf-8")))
-    check(f"the README shows what is stored: docs/tables {stored} README.md", open(readme, encoding="utf-8").read() == shown)
-    check("and that is small", os.path.getsize(f"{root}/{stored}") <= 1.5e6)
+    names = [s["name"] for s in json.load(open(f"{folder}/report.json", encoding="utf-8"))["scenes"]]
+    said = subprocess.run([tables, "--summary", f"{names[2]},{names[0]}", f"{folder}/report.json"], check=True, capture_output=True, text=True).stdout
+    check("one table of the scenes that are named, in that order", said.index(f"| {names[2]} |") < said.index(f"| {names[0]} |") and "harmed" not in said
+          and "| smoke | - | - | 31.0 ms | 384 ms, 12 times |" in said, said)
+    unknown = subprocess.run([tables, "--summary", "smoke,nowhere", f"{folder}/report.json"], capture_output=True, text=True)
+    check("a scene that is not in it is named", unknown.returncode != 0 and unknown.stderr.count("\n") == 1 and "nowhere" in unknown.stderr, unknown.stderr)
+    root = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(tables))))
+    for page in "README.md", "docs/error-against-time.md":
+        check_page(folder, root, page)
+    stored = f"{root}/tools/bench/results/full.json"
+    check_promise(json.load(open(stored, encoding="utf-8")))
+    check("and that is small", os.path.getsize(stored) <= 1.5e6)
     subprocess.run([tables, "--keep", f"{folder}/report.json", f"{folder}/kept.json"], check=True)
     kept, whole = (json.load(open(f"{folder}/{name}.json", encoding="utf-8")) for name in ("kept", "report"))
     check("what is kept gives the same tables", subprocess.run([tables, f"{folder}/kept.json"], check=True, capture_output=True).stdout
