@@ -1,15 +1,15 @@
 // context.c -- tyn_context: a method on a scene, recorded into the caller's command buffer.
 #include <tyndall/context.h>
 #include "frame/frame_scene.h"
-#include "plugin/registry.h"
+#include "registry/registry.h"
 #include "base/hash.h"
-#include "counters.h"
-#include "ordinate_args.h"
-#include "methods/env_cdf.h"
+#include "shaders/common/counters.h"
+#include "shaders/light/ordinate_args.h"
+#include "frame/env_cdf.h"
 #include "methods/limits.h"
 #include "gpu/device.h"
 #include "passes/medium/medium.h"
-#include "passes/walls/wall_light_args.h"
+#include "passes/wall_light/wall_light_args.h"
 #include "scene/check.h"
 #include <math.h>
 #include <stdlib.h>
@@ -268,16 +268,19 @@ static void upload_surfaces(tyn_context *ctx, const tyn_surfaces *s, tyn_scene_r
         const void *data;
         size_t size;
     } buffers[] = {
-        {&refs->vertices, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices},
-        {&refs->triangles, "triangles", s->triangles, s->num_triangles * sizeof *s->triangles},
-        {&refs->materials, "materials", s->materials, s->num_materials * sizeof *s->materials},
-        {&refs->textures, "textures", data->textures, data->num_textures * sizeof *data->textures},
-        {&refs->texels, "texels", data->texels, data->num_texels * sizeof *data->texels},
-        {&refs->nodes, "nodes", s->nodes, s->num_nodes * sizeof *s->nodes},
+        {&refs->geometry.vertices, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices},
+        {&refs->geometry.triangles, "triangles", s->triangles,
+         s->num_triangles * sizeof *s->triangles},
+        {&refs->materials.materials, "materials", s->materials,
+         s->num_materials * sizeof *s->materials},
+        {&refs->materials.textures, "textures", data->textures,
+         data->num_textures * sizeof *data->textures},
+        {&refs->materials.texels, "texels", data->texels, data->num_texels * sizeof *data->texels},
+        {&refs->geometry.nodes, "nodes", s->nodes, s->num_nodes * sizeof *s->nodes},
         {&refs->emitters, "emitters", data->emitters, data->emitters_size},
         {&refs->areas, "areas", data->areas, data->areas_size},
     };
-    refs->surfaces = tyn_graph_upload_buffer(g, "surfaces", block, sizeof *block, 0);
+    refs->geometry.surfaces = tyn_graph_upload_buffer(g, "surfaces", block, sizeof *block, 0);
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++) {
         if (buffers[i].size) {
             *buffers[i].ref = tyn_graph_upload_buffer(g, buffers[i].name, buffers[i].data,

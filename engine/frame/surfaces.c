@@ -1,6 +1,6 @@
 // surfaces.c -- mip chains of textures, made when surfaces change.
 #include "frame/surfaces.h"
-#include "methods/surface_tables.h"
+#include "frame/surface_tables.h"
 #include "methods/views.h"
 #include <math.h>
 #include <stddef.h>

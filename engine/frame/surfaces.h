@@ -1,7 +1,7 @@
 // surfaces.h -- surfaces as the GPU gets them: checked, textures with their mip chains.
 #pragma once
 #include "scene/surfaces.h"
-#include "surface_args.h"
+#include "shaders/surfaces/surface_args.h"
 
 // Made when the surfaces' hash changes and kept until the next one.
 typedef struct tyn_surface_data {
@@ -15,7 +15,7 @@ typedef struct tyn_surface_data {
     struct surface_range *below; // of every node (methods/views.h); NULL without a hierarchy
     struct tyn_views_seen *seen; // with `below`
     uint32_t num_nodes;
-    void *emitters, *areas; // methods/surface_tables.h; NULL if there are none or nobody reads them
+    void *emitters, *areas; // frame/surface_tables.h; NULL if there are none or nobody reads them
     size_t emitters_size, areas_size;
     bool has_emitters, has_areas; // were asked for and made
 } tyn_surface_data;

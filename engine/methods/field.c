@@ -4,9 +4,17 @@
 #include "methods/lamps.h"
 #include "methods/shading.h"
 #include "passes/columns/columns.h"
+#include "passes/columns_average/columns_average.h"
+#include "passes/lattice_cells/lattice_cells.h"
+#include "passes/lattice_source/lattice_source.h"
+#include "passes/lattice_ordinates/lattice_ordinates.h"
+#include "passes/lattice_lamps/lattice_lamps.h"
 #include "passes/lattice/lattice.h"
+#include "passes/lattice_recall/lattice_recall.h"
+#include "passes/lattice_keep/lattice_keep.h"
 #include "passes/merge/merge.h"
 #include "passes/probe/probe.h"
+#include "passes/balance/balance.h"
 #include <tyndall/registry.h>
 #include <math.h>
 #include <stdio.h>
@@ -53,14 +61,8 @@ static tyn_result add_cells(tyn_graph *g, const tyn_job *job, tyn_field *f)
     tyn_settings_params(job->settings, &tyn_pass_lattice_cells, &params);
     params.shape = f->shape;
     params.mode = job->frame->medium.mode;
-    const tyn_media_refs *media = &f->picture.media;
-    tyn_ref refs[TYN_MAX_PORTS] = {
-        [LATTICE_CELLS_PORT_MEDIUM] = job->refs.medium,
-        [LATTICE_CELLS_PORT_DENSITY] = media->density,
-        [LATTICE_CELLS_PORT_SIGMA_A] = media->sigma_a,
-        [LATTICE_CELLS_PORT_G] = media->g,
-        [LATTICE_CELLS_PORT_EMISSION] = media->emission,
-    };
+    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+    tyn_connect(refs, LATTICE_CELLS_PORT_MEDIUM, f->picture.media.medium);
     tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_cells, &params, refs);
     f->cells = refs[LATTICE_CELLS_PORT_CELLS];
     return result;
@@ -68,29 +70,24 @@ static tyn_result add_cells(tyn_graph *g, const tyn_job *job, tyn_field *f)
 
 static tyn_result add_walls(tyn_graph *g, const tyn_job *job, tyn_field *f)
 {
-    tyn_result result = tyn_add_walls(g, job, &f->shape, &f->walls);
-    f->picture.wall_links = f->walls.links;
-    f->picture.wall_cells = f->walls.cells;
-    return result;
+    return tyn_add_walls(g, job, &f->shape, &f->picture.walls, &f->wall_hits);
 }
 
 static tyn_result add_rooms(tyn_graph *g, const tyn_job *job, tyn_field *f)
 {
-    return tyn_add_rooms(g, job, &f->shape, &f->walls, &f->picture.vpls, &f->picture.rooms);
+    return tyn_add_rooms(g, job, &f->shape, &f->picture.walls, &f->picture.vpls, &f->picture.rooms);
 }
 
 // What walls reflect of light that is not the lattice's: second reflections, of what the VPLs send. In a periodic
 // medium also sunlight: light from single points on walls knows no periods.
 static tyn_result add_wall_light(tyn_graph *g, const tyn_job *job, tyn_field *f)
 {
-    if (f->picture.vpls.lights.resource && tyn_vpls_bounce(job)) {
+    if (f->picture.vpls.vpls.resource && tyn_vpls_bounce(job)) {
         return TYN_OK; // VPLs carry what walls reflect of theirs
     }
     const uint32_t *repeat = f->shape.repeat;
     uint32_t suns = repeat[0] || repeat[1] || repeat[2] ? f->picture.num_suns : 0;
-    return tyn_add_wall_light(g, job, &f->shape, &f->walls, &f->picture.beams, suns,
-                              &f->picture.lamps, f->picture.vpls.distances, f->picture.rooms,
-                              &f->wall_light);
+    return tyn_add_wall_light(g, job, &f->shape, &f->picture, f->wall_hits, suns, &f->wall_light);
 }
 
 static tyn_result add_source(tyn_graph *g, const tyn_job *job, tyn_field *f)
@@ -100,22 +97,14 @@ static tyn_result add_source(tyn_graph *g, const tyn_job *job, tyn_field *f)
     params.shape = f->shape;
     params.mode = job->frame->medium.mode;
     params.num_suns = f->picture.num_suns;
-    const tyn_beam_refs *beams = &f->picture.beams;
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [LATTICE_SOURCE_PORT_MEDIUM] = job->refs.medium,
         [LATTICE_SOURCE_PORT_LIGHTS] = job->refs.suns,
         [LATTICE_SOURCE_PORT_CELLS] = f->cells,
-        [LATTICE_SOURCE_PORT_DENSITY] = f->picture.media.density,
-        [LATTICE_SOURCE_PORT_G] = f->picture.media.g,
-        [LATTICE_SOURCE_PORT_BEAMS] = beams->beams,
-        [LATTICE_SOURCE_PORT_COLUMN] = beams->column,
-        [LATTICE_SOURCE_PORT_TAU_A] = beams->tau_a,
-        [LATTICE_SOURCE_PORT_TAU_P] = beams->tau_p,
-        [LATTICE_SOURCE_PORT_WALL_LINKS] = f->walls.links,
-        [LATTICE_SOURCE_PORT_WALL_CELLS] = f->walls.cells,
-        [LATTICE_SOURCE_PORT_SHADOW_ATLAS] = f->picture.shadows.atlas,
-        [LATTICE_SOURCE_PORT_SHADOWS] = f->picture.shadows.lights,
     };
+    tyn_connect(refs, LATTICE_SOURCE_PORT_MEDIUM, f->picture.media.medium);
+    tyn_connect(refs, LATTICE_SOURCE_PORT_BEAMS, f->picture.beams);
+    tyn_connect(refs, LATTICE_SOURCE_PORT_WALL_LINKS, f->picture.walls);
+    tyn_connect(refs, LATTICE_SOURCE_PORT_SHADOW_ATLAS, f->picture.shadows);
     tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_source, &params, refs);
     f->source = refs[LATTICE_SOURCE_PORT_SOURCE];
     f->power = refs[LATTICE_SOURCE_PORT_POWER];
@@ -124,7 +113,7 @@ static tyn_result add_source(tyn_graph *g, const tyn_job *job, tyn_field *f)
 
 // The medium as columns see it: averaged if it is much finer than they are.
 static tyn_result average_medium(tyn_graph *g, const tyn_job *job, const uint32_t dims[3],
-                                 tyn_media_refs *media)
+                                 tyn_medium_refs *medium)
 {
     const struct medium_block *m = &job->frame->medium;
     tyn_columns_average_params params;
@@ -134,15 +123,15 @@ static tyn_result average_medium(tyn_graph *g, const tyn_job *job, const uint32_
         return TYN_OK;
     }
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [COLUMNS_AVERAGE_PORT_DENSITY] = media->density,
-        [COLUMNS_AVERAGE_PORT_SIGMA_A] = media->sigma_a,
-        [COLUMNS_AVERAGE_PORT_G] = media->g,
+        [COLUMNS_AVERAGE_PORT_DENSITY] = medium->density,
+        [COLUMNS_AVERAGE_PORT_SIGMA_A] = medium->sigma_a,
+        [COLUMNS_AVERAGE_PORT_G] = medium->g,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_columns_average, &params, refs);
-    media->density = m->mode == TYN_MEDIUM_COEFFICIENTS ? refs[COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S]
-                                                        : refs[COLUMNS_AVERAGE_PORT_MEAN_DENSITY];
-    media->sigma_a = refs[COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A];
-    media->g = refs[COLUMNS_AVERAGE_PORT_MEAN_G];
+    medium->density = m->mode == TYN_MEDIUM_COEFFICIENTS ? refs[COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S]
+                                                         : refs[COLUMNS_AVERAGE_PORT_MEAN_DENSITY];
+    medium->sigma_a = refs[COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A];
+    medium->g = refs[COLUMNS_AVERAGE_PORT_MEAN_G];
     return result;
 }
 
@@ -157,18 +146,15 @@ static tyn_result add_columns(tyn_graph *g, const tyn_job *job, tyn_field *f)
     params.dims[2] = dims.z;
     params.mode = job->frame->medium.mode;
     params.count = f->sky.count;
-    tyn_media_refs media = f->picture.media;
-    tyn_result result = average_medium(g, job, params.dims, &media);
+    tyn_medium_refs medium = f->picture.media.medium;
+    tyn_result result = average_medium(g, job, params.dims, &medium);
     if (result != TYN_OK) {
         return result;
     }
-    tyn_ref refs[TYN_MAX_PORTS] = {
-        [COLUMNS_PORT_MEDIUM] = job->refs.medium,    [COLUMNS_PORT_DENSITY] = media.density,
-        [COLUMNS_PORT_SIGMA_A] = media.sigma_a,      [COLUMNS_PORT_G] = media.g,
-        [COLUMNS_PORT_ORDINATES] = f->sky.ordinates,
-    };
+    tyn_ref refs[TYN_MAX_PORTS] = {[COLUMNS_PORT_ORDINATES] = f->sky.ordinates};
+    tyn_connect(refs, COLUMNS_PORT_MEDIUM, medium);
     result = tyn_graph_add(g, &tyn_pass_columns, &params, refs);
-    f->columns = refs[COLUMNS_PORT_COLUMNS];
+    tyn_take(refs, COLUMNS_PORT_ORDINATES, f->columns);
     return result;
 }
 
@@ -230,11 +216,10 @@ static tyn_result add_ordinates(tyn_graph *g, const tyn_job *job, tyn_field *f)
     params.count = f->sky.count;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [LATTICE_ORDINATES_PORT_MEDIUM] = job->refs.medium,
-        [LATTICE_ORDINATES_PORT_ORDINATES] = f->sky.ordinates,
-        [LATTICE_ORDINATES_PORT_COLUMNS] = f->columns,
         [LATTICE_ORDINATES_PORT_CELLS] = f->cells,
         [LATTICE_ORDINATES_PORT_SUNLIGHT] = f->source,
     };
+    tyn_connect(refs, LATTICE_ORDINATES_PORT_ORDINATES, f->columns);
     tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_ordinates, &params, refs);
     f->source = refs[LATTICE_ORDINATES_PORT_SOURCE];
     return result;
@@ -242,7 +227,7 @@ static tyn_result add_ordinates(tyn_graph *g, const tyn_job *job, tyn_field *f)
 
 static tyn_result add_lamps(tyn_graph *g, const tyn_job *job, tyn_field *f)
 {
-    const tyn_radial_refs *lamps = &f->picture.lamps;
+    const tyn_lamps *lamps = &f->picture.lamps;
     tyn_lattice_lamps_params params;
     tyn_settings_params(job->settings, &tyn_pass_lattice_lamps, &params);
     params.shape = f->shape;
@@ -251,22 +236,15 @@ static tyn_result add_lamps(tyn_graph *g, const tyn_job *job, tyn_field *f)
     params.num_lamps = lamps->num_lamps;
     params.vpls = lamps->vpls;
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [LATTICE_LAMPS_PORT_MEDIUM] = job->refs.medium,
         [LATTICE_LAMPS_PORT_CELLS] = f->cells,
-        [LATTICE_LAMPS_PORT_DENSITY] = f->picture.media.density,
-        [LATTICE_LAMPS_PORT_G] = f->picture.media.g,
-        [LATTICE_LAMPS_PORT_RADIALS] = lamps->radials,
-        [LATTICE_LAMPS_PORT_COLUMN] = lamps->column,
-        [LATTICE_LAMPS_PORT_TAU_A] = lamps->tau_a,
-        [LATTICE_LAMPS_PORT_TAU_P] = lamps->tau_p,
-        [LATTICE_LAMPS_PORT_WALL_LINKS] = f->walls.links,
-        [LATTICE_LAMPS_PORT_WALL_CELLS] = f->walls.cells,
-        [LATTICE_LAMPS_PORT_SHADOW_ATLAS] = f->picture.shadows.atlas,
-        [LATTICE_LAMPS_PORT_SHADOWS] = f->picture.shadows.lights,
-        [LATTICE_LAMPS_PORT_VPL_DISTANCES] = f->picture.vpls.distances,
+        [LATTICE_LAMPS_PORT_VPL_DISTANCES] = f->picture.vpls.vpl_distances,
         [LATTICE_LAMPS_PORT_ROOMS] = f->picture.rooms,
         [LATTICE_LAMPS_PORT_OTHERS] = f->source,
     };
+    tyn_connect(refs, LATTICE_LAMPS_PORT_MEDIUM, f->picture.media.medium);
+    tyn_connect(refs, LATTICE_LAMPS_PORT_RADIALS, f->picture.lamps.radials);
+    tyn_connect(refs, LATTICE_LAMPS_PORT_WALL_LINKS, f->picture.walls);
+    tyn_connect(refs, LATTICE_LAMPS_PORT_SHADOW_ATLAS, f->picture.shadows);
     tyn_result result = tyn_graph_add(g, &tyn_pass_lattice_lamps, &params, refs);
     f->source = refs[LATTICE_LAMPS_PORT_SOURCE];
     f->lamp_power = refs[LATTICE_LAMPS_PORT_POWER];
@@ -289,10 +267,9 @@ static tyn_result add_solve(tyn_graph *g, const tyn_job *job, tyn_field *f)
         [LATTICE_PORT_CELLS] = f->cells,
         [LATTICE_PORT_SOURCE] = f->source,
         [LATTICE_PORT_ENVIRONMENT] = environment_of(job, f),
-        [LATTICE_PORT_WALL_LINKS] = f->walls.links,
-        [LATTICE_PORT_WALL_CELLS] = f->walls.cells,
         [LATTICE_PORT_WALL_LIGHT] = f->wall_light,
     };
+    tyn_connect(refs, LATTICE_PORT_WALL_LINKS, f->picture.walls);
     memory last = {0};
     tyn_result result = params.warm ? add_recall(g, job, f, refs, &last) : TYN_OK;
     if (result == TYN_OK) {
@@ -300,7 +277,8 @@ static tyn_result add_solve(tyn_graph *g, const tyn_job *job, tyn_field *f)
     }
     f->moments = refs[LATTICE_PORT_MOMENTS];
     f->leaks = refs[LATTICE_PORT_LEAKS];
-    f->wall_power = f->walls.links.resource ? refs[LATTICE_PORT_WALL_POWER] : (tyn_ref){0};
+    f->wall_power =
+        f->picture.walls.wall_links.resource ? refs[LATTICE_PORT_WALL_POWER] : (tyn_ref){0};
     tyn_job_counters(g, job, "lattice", refs[LATTICE_PORT_COUNTERS]);
     return result == TYN_OK && params.warm ? add_keep(g, f, &last) : result;
 }
@@ -321,25 +299,20 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, tyn_field *f)
         [MERGE_PORT_MOMENTS] = f->moments,
     };
     if (f->sky.ordinates.resource) {
-        refs[MERGE_PORT_ORDINATES] = f->sky.ordinates;
-        refs[MERGE_PORT_COLUMNS] = f->columns;
+        tyn_connect(refs, MERGE_PORT_ORDINATES, f->columns);
         refs[MERGE_PORT_TMS] = f->tms;
         refs[MERGE_PORT_LUT_BLOCK] = f->picture.lut_block;
     }
-    const tyn_radial_refs *lamps = &f->picture.lamps;
+    const tyn_lamps *lamps = &f->picture.lamps;
     params.marched_lamps = f->picture.num_marched_lamps;
     refs[MERGE_PORT_VPL_LIGHT] = f->vpl_light;
     if (lamps->num_lamps > params.marched_lamps) {
         f->picture.num_near_lamps = lamps->num_lamps - params.marched_lamps;
         params.reach = TYN_METHOD_LAMP_REACH * f->picture.cell;
-        refs[MERGE_PORT_RADIALS] = lamps->radials;
-        refs[MERGE_PORT_RADIAL_COLUMN] = lamps->column;
-        refs[MERGE_PORT_RADIAL_TAU_A] = lamps->tau_a;
-        refs[MERGE_PORT_RADIAL_TAU_P] = lamps->tau_p;
+        tyn_connect(refs, MERGE_PORT_RADIALS, lamps->radials);
         refs[MERGE_PORT_LUT] = f->picture.lut;
         refs[MERGE_PORT_LUT_BLOCK] = f->picture.lut_block;
-        refs[MERGE_PORT_SHADOW_ATLAS] = f->picture.shadows.atlas;
-        refs[MERGE_PORT_SHADOWS] = f->picture.shadows.lights;
+        tyn_connect(refs, MERGE_PORT_SHADOW_ATLAS, f->picture.shadows);
     }
     tyn_result result = tyn_graph_add(g, &tyn_pass_merge, &params, refs);
     tyn_job_counters(g, job, "merge", refs[MERGE_PORT_COUNTERS]);
@@ -375,7 +348,7 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, tyn_field *f)
     memcpy(params.tint, f->shape.tint, sizeof params.tint);
     params.num_suns = f->picture.num_suns;
     params.num_ordinates = f->sky.count;
-    params.local_lights = f->picture.lamps.radials.resource != 0;
+    params.local_lights = f->picture.lamps.radials.radials.resource != 0;
     params.scattered_only = job->view->scattered_only;
     for (int axis = 0; axis < 3; axis++) {
         memcpy(params.world[axis], job->frame->m_from_world + 4 * axis, sizeof params.world[axis]);
@@ -387,31 +360,21 @@ static tyn_result add_probe(tyn_graph *g, const tyn_job *job, tyn_field *f)
                         "light is the nearest face's, too much",
                         outside, job->view->num_points);
     }
-    const tyn_beam_refs *beams = &f->picture.beams;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [PROBE_PORT_MEDIUM] = job->refs.medium,
         [PROBE_PORT_LIGHTS] = job->refs.suns,
         [PROBE_PORT_MOMENTS] = f->moments,
         [PROBE_PORT_CELLS] = f->cells,
-        [PROBE_PORT_BEAMS] = beams->beams,
-        [PROBE_PORT_COLUMN] = beams->column,
-        [PROBE_PORT_TAU_A] = beams->tau_a,
-        [PROBE_PORT_TAU_P] = beams->tau_p,
-        [PROBE_PORT_RADIALS] = f->picture.lamps.radials,
-        [PROBE_PORT_RADIAL_COLUMN] = f->picture.lamps.column,
-        [PROBE_PORT_RADIAL_TAU_A] = f->picture.lamps.tau_a,
-        [PROBE_PORT_RADIAL_TAU_P] = f->picture.lamps.tau_p,
         [PROBE_PORT_POINTS] = job->refs.points,
-        [PROBE_PORT_SHADOW_ATLAS] = f->picture.shadows.atlas,
-        [PROBE_PORT_SHADOWS] = f->picture.shadows.lights,
-        [PROBE_PORT_VPL_DISTANCES] = f->picture.vpls.distances,
+        [PROBE_PORT_VPL_DISTANCES] = f->picture.vpls.vpl_distances,
         [PROBE_PORT_ROOMS] = f->picture.rooms,
-        [PROBE_PORT_WALL_LINKS] = f->walls.links,
-        [PROBE_PORT_WALL_CELLS] = f->walls.cells,
         [PROBE_PORT_ENVIRONMENT] = environment_of(job, f),
-        [PROBE_PORT_ORDINATES] = f->sky.ordinates,
-        [PROBE_PORT_COLUMNS] = f->columns,
     };
+    tyn_connect(refs, PROBE_PORT_ORDINATES, f->columns);
+    tyn_connect(refs, PROBE_PORT_BEAMS, f->picture.beams);
+    tyn_connect(refs, PROBE_PORT_RADIALS, f->picture.lamps.radials);
+    tyn_connect(refs, PROBE_PORT_WALL_LINKS, f->picture.walls);
+    tyn_connect(refs, PROBE_PORT_SHADOW_ATLAS, f->picture.shadows);
     tyn_result result = tyn_graph_add(g, &tyn_pass_probe, &params, refs);
     if (result == TYN_OK) {
         tyn_job_output(g, job, TYN_OUTPUT_PROBE, refs[PROBE_PORT_RESULTS]);
@@ -498,7 +461,7 @@ tyn_result tyn_add_field(tyn_graph *g, const tyn_job *job, tyn_field *f)
         {ordinates, add_columns},
         {f->picture.num_suns, add_source},
         {ordinates, add_ordinates},
-        {f->picture.lamps.radials.resource, add_lamps},
+        {f->picture.lamps.radials.radials.resource, add_lamps},
         {true, add_wall_light},
         {true, add_solve},
         {job->outputs & TYN_PICTURE_OUTPUTS, add_merge},

@@ -7,9 +7,10 @@ typedef struct tyn_field {
     tyn_lattice_shape shape;
     tyn_picture_inputs picture;
     tyn_sky_refs sky;
-    tyn_ref tms, columns;
+    tyn_ref tms;
+    tyn_column_refs columns;
     tyn_ref cells, source, power, lamp_power, vpl_light, moments, leaks, wall_power;
-    tyn_wall_refs walls; // surfaces on the lattice; {0} without
+    tyn_ref wall_hits;   // of the walls in `picture`
     tyn_ref wall_light;  // what they reflect of light that is not the lattice's; {0} if nothing
     bool from_all_sides; // the mean of the environment lights the medium
 } tyn_field;

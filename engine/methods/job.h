@@ -4,10 +4,10 @@
 // cheap and deterministic: no GPU calls, no allocation.
 #pragma once
 #include <tyndall/context.h>
-#include "graph/graph.h"
+#include "methods/refs.h"
 #include "scene/env_suns.h"
-#include "scene_args.h"
-#include "surface_args.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/surfaces/surface_args.h"
 
 // The scene in the medium frame, made once per frame by the engine.
 typedef struct tyn_frame_scene {
@@ -40,28 +40,22 @@ typedef struct tyn_frame_scene {
 
 // Resources every method starts from; a {0} ref does not exist in this scene.
 typedef struct tyn_scene_refs {
-    tyn_ref atlas;       // 3D R16F or R32F, all density grids (sampled)
-    tyn_ref medium;      // struct medium_block
-    tyn_ref shapes;      // struct shape_block[]
-    tyn_ref lights;      // struct light_block[]
-    tyn_ref suns;        // struct light_block[]: tyn_frame_scene.suns
-    tyn_ref camera;      // struct camera_block
-    tyn_ref environment; // struct env_block
-    tyn_ref env_map;     // 2D RGBA32F; {0} if constant
-    tyn_ref env_cdf;     // methods/env_cdf.h; {0} if constant or not read
-    // Surfaces (surface_args.h); all {0} without them.
-    tyn_ref surfaces;  // struct surface_block
-    tyn_ref vertices;  // struct surface_vertex[]
-    tyn_ref triangles; // struct surface_triangle[]
-    tyn_ref materials; // struct surface_material[]
-    tyn_ref textures;  // struct surface_texture[], at least one
-    tyn_ref texels;    // uint[], at least one
-    tyn_ref nodes;     // struct surface_node[]; {0} if the scene has no hierarchy
-    tyn_ref emitters;  // struct surface_table and cells; {0} if nothing emits, or if it is not read
-    tyn_ref areas;     // the same; {0} but for BALANCE
-    tyn_ref points;    // PROBE: vec3 in M, scalar
-    tyn_ref depth;     // COMPOSITE: host depth
-    tyn_ref color;     // COMPOSITE: host colour
+    tyn_ref atlas;               // 3D R16F or R32F, all density grids (sampled)
+    tyn_ref medium;              // struct medium_block
+    tyn_ref shapes;              // struct shape_block[]
+    tyn_ref lights;              // struct light_block[]
+    tyn_ref suns;                // struct light_block[]: tyn_frame_scene.suns
+    tyn_ref camera;              // struct camera_block
+    tyn_ref environment;         // struct env_block
+    tyn_ref env_map;             // 2D RGBA32F; {0} if constant
+    tyn_ref env_cdf;             // frame/env_cdf.h; {0} if constant or not read
+    tyn_geometry_refs geometry;  // {0} without surfaces, as the next
+    tyn_material_refs materials; // textures and texels: one at least
+    tyn_ref emitters; // struct surface_table and cells; {0} if nothing emits, or if it is not read
+    tyn_ref areas;    // the same; {0} but for BALANCE
+    tyn_ref points;   // PROBE: vec3 in M, scalar
+    tyn_ref depth;    // COMPOSITE: host depth
+    tyn_ref color;    // COMPOSITE: host colour
 } tyn_scene_refs;
 
 typedef struct tyn_job {
@@ -92,7 +86,7 @@ typedef struct tyn_method {
     uint32_t outputs;                   // set of tyn_output it can make
     bool progressive;                   // uses view.first_sample, num_samples
     bool reads_env_cdf;                 // wants refs.env_cdf
-    // Wants refs.nodes and refs.emitters where there are surfaces, and refs.areas for a balance.
+    // Wants refs.geometry.nodes and refs.emitters where there are surfaces, and refs.areas for a balance.
     bool traces_rays;
     // Largest work a single record may be given (view.num_samples) to keep a dispatch short; NULL if
     // not progressive.

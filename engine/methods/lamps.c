@@ -25,11 +25,11 @@ static uint32_t num_fine(const struct radial_light *lamps, uint32_t count)
     return fine;
 }
 
-tyn_result tyn_add_radials(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
-                           tyn_ref vpls, tyn_radial_refs *out)
+tyn_result tyn_add_radials(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
+                           tyn_ref vpls, tyn_lamps *out)
 {
     const tyn_frame_scene *frame = job->frame;
-    *out = (tyn_radial_refs){.vpls = vpls.resource != 0};
+    *out = (tyn_lamps){.vpls = vpls.resource != 0};
     tyn_radial_beam_params params;
     tyn_settings_params(job->settings, &tyn_pass_radial_beam, &params);
     tyn_radial_beam_plan(&params, &frame->medium, frame->lights, frame->num_suns, frame->num_lights,
@@ -45,25 +45,16 @@ tyn_result tyn_add_radials(tyn_graph *g, const tyn_job *job, const tyn_media_ref
                       "method; 'path' can");
         return TYN_ERR_PARAMS;
     }
-    bool coefficients = frame->medium.mode == TYN_MEDIUM_COEFFICIENTS;
-    tyn_ref refs[TYN_MAX_PORTS] = {
-        [RADIAL_BEAM_PORT_MEDIUM] = job->refs.medium,
-        [RADIAL_BEAM_PORT_DENSITY] = media->density,
-        [RADIAL_BEAM_PORT_SIGMA_A] = media->sigma_a,
-        [RADIAL_BEAM_PORT_G] = media->g,
-        [RADIAL_BEAM_PORT_VPLS] = vpls,
-    };
+    tyn_ref refs[TYN_MAX_PORTS] = {[RADIAL_BEAM_PORT_VPLS] = vpls};
+    tyn_connect(refs, RADIAL_BEAM_PORT_MEDIUM, *medium);
     tyn_result result = tyn_graph_add(g, &tyn_pass_radial_beam, &params, refs);
-    out->radials = refs[RADIAL_BEAM_PORT_RADIALS];
-    out->column = refs[coefficients ? RADIAL_BEAM_PORT_TAU_S : RADIAL_BEAM_PORT_COLUMN];
-    out->tau_a = refs[RADIAL_BEAM_PORT_TAU_A];
-    out->tau_p = refs[RADIAL_BEAM_PORT_TAU_P];
+    tyn_take(refs, RADIAL_BEAM_PORT_RADIALS, out->radials);
     out->num_lamps = params.num_lamps;
     out->num_fine = params.num_fine;
     return result;
 }
 
-uint32_t tyn_radial_groups(const tyn_radial_refs *radials)
+uint32_t tyn_radial_groups(const tyn_lamps *lamps)
 {
-    return radials->num_fine + (radials->num_lamps > radials->num_fine) + radials->vpls;
+    return lamps->num_fine + (lamps->num_lamps > lamps->num_fine) + lamps->vpls;
 }

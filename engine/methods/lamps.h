@@ -8,8 +8,8 @@ enum { TYN_METHOD_FINE_LAMPS = 2 }; // so many are always followed everywhere
 #define TYN_METHOD_LAMP_REACH 3.0f
 
 // `vpls`: buffer struct radial_vpls, or {0}.
-tyn_result tyn_add_radials(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
-                           tyn_ref vpls, tyn_radial_refs *out);
+tyn_result tyn_add_radials(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
+                           tyn_ref vpls, tyn_lamps *out);
 
 // Groups of local lights that the lattice keeps apart (lattice_lamps).
-uint32_t tyn_radial_groups(const tyn_radial_refs *radials);
+uint32_t tyn_radial_groups(const tyn_lamps *lamps);

@@ -8,7 +8,7 @@
 static const float cell_depth_limit = 1.8f;    // scaled depths of a cell
 static const float thin_side_limit = 3;        // cells across a side
 static const float backward_limit = -0.75f;    // g
-static const float narrow_limit = 0.995f;      // g, as HG_MAX of shaders/hg.glsl
+static const float narrow_limit = 0.995f;      // g, as HG_MAX of shaders/phase/hg.glsl
 static const float float_depth_limit = 3e6f;   // depths of the box
 static const float multiple_limit = 0.3f;      // scaled scattering depths
 static const float unsettled_limit = 0.02f;    // of the scattered light

@@ -86,47 +86,30 @@ tyn_result tyn_add_medium(tyn_graph *g, const tyn_job *job, tyn_media_refs *medi
         [MEDIUM_PORT_MEDIUM] = job->refs.medium,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_medium, &params, refs);
-    bool coefficients = block->mode == TYN_MEDIUM_COEFFICIENTS;
-    *media = (tyn_media_refs){
-        .density = coefficients         ? refs[MEDIUM_PORT_SIGMA_S]
-                   : job->frame->direct ? job->refs.atlas
-                                        : refs[MEDIUM_PORT_DENSITY],
-        .sigma_a = refs[MEDIUM_PORT_SIGMA_A],
-        .g = refs[MEDIUM_PORT_G],
-        .emission = refs[MEDIUM_PORT_EMISSION],
-        .bricks = refs[MEDIUM_PORT_BRICKS],
-        .distance = refs[MEDIUM_PORT_DISTANCE],
-    };
+    tyn_take(refs, MEDIUM_PORT_MEDIUM, media->medium);
+    if (job->frame->direct) {
+        media->medium.density = job->refs.atlas;
+    }
+    media->bricks = refs[MEDIUM_PORT_BRICKS];
+    media->distance = refs[MEDIUM_PORT_DISTANCE];
     return result;
 }
 
-tyn_result tyn_add_beams(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
+tyn_result tyn_add_beams(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
                          uint32_t num_suns, tyn_beam_refs *beams)
 {
     *beams = (tyn_beam_refs){{0}};
     if (num_suns == 0) {
         return TYN_OK;
     }
-    const struct medium_block *block = &job->frame->medium;
-    bool coefficients = block->mode == TYN_MEDIUM_COEFFICIENTS;
     tyn_beam_params params;
     tyn_settings_params(job->settings, &tyn_pass_beam, &params);
-    tyn_beam_plan(&params, block, job->frame->suns, num_suns);
+    tyn_beam_plan(&params, &job->frame->medium, job->frame->suns, num_suns);
 
-    tyn_ref refs[TYN_MAX_PORTS] = {
-        [BEAM_PORT_MEDIUM] = job->refs.medium,
-        [BEAM_PORT_DENSITY] = coefficients ? (tyn_ref){0} : media->density,
-        [BEAM_PORT_SIGMA_S] = coefficients ? media->density : (tyn_ref){0},
-        [BEAM_PORT_SIGMA_A] = media->sigma_a,
-        [BEAM_PORT_G] = media->g,
-    };
+    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+    tyn_connect(refs, BEAM_PORT_MEDIUM, *medium);
     tyn_result result = tyn_graph_add(g, &tyn_pass_beam, &params, refs);
-    *beams = (tyn_beam_refs){
-        .beams = refs[BEAM_PORT_BEAMS],
-        .column = coefficients ? refs[BEAM_PORT_TAU_S] : refs[BEAM_PORT_COLUMN],
-        .tau_a = refs[BEAM_PORT_TAU_A],
-        .tau_p = refs[BEAM_PORT_TAU_P],
-    };
+    tyn_take(refs, BEAM_PORT_BEAMS, *beams);
     return result;
 }
 
@@ -265,36 +248,14 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
     }
     tyn_raymarch_params params;
     set_march_params(&params, job, in);
-    const tyn_ref none = {0};
-    const bool beams = in->num_suns || in->num_marched_lamps; // that surfaces may stop
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [RAYMARCH_PORT_MEDIUM] = job->refs.medium,
-        [RAYMARCH_PORT_DENSITY] = in->media.density,
-        [RAYMARCH_PORT_SIGMA_A] = in->media.sigma_a,
-        [RAYMARCH_PORT_G] = in->media.g,
-        [RAYMARCH_PORT_EMISSION] = in->media.emission,
         [RAYMARCH_PORT_DISTANCE] = in->media.distance,
         [RAYMARCH_PORT_SHAPES] = job->refs.shapes,
         [RAYMARCH_PORT_LIGHTS] = job->refs.suns,
-        [RAYMARCH_PORT_BEAMS] = in->beams.beams,
-        [RAYMARCH_PORT_COLUMN] = in->beams.column,
-        [RAYMARCH_PORT_TAU_A] = in->beams.tau_a,
-        [RAYMARCH_PORT_TAU_P] = in->beams.tau_p,
-        [RAYMARCH_PORT_RADIALS] = in->lamps.radials,
-        [RAYMARCH_PORT_RADIAL_COLUMN] = in->lamps.column,
-        [RAYMARCH_PORT_RADIAL_TAU_A] = in->lamps.tau_a,
-        [RAYMARCH_PORT_RADIAL_TAU_P] = in->lamps.tau_p,
         [RAYMARCH_PORT_LUT] = in->lut,
         [RAYMARCH_PORT_LUT_BLOCK] = in->lut_block,
         [RAYMARCH_PORT_INSCATTER] = in->inscatter,
-        [RAYMARCH_PORT_WALL_LINKS] = in->wall_links,
-        [RAYMARCH_PORT_WALL_CELLS] = in->wall_cells,
         [RAYMARCH_PORT_ROOMS] = in->rooms,
-        [RAYMARCH_PORT_SHADOW_ATLAS] = beams ? in->shadows.atlas : none,
-        [RAYMARCH_PORT_SHADOWS] = beams ? in->shadows.lights : none,
-        // A lamp that shines all around leaves little in the dark: the cubes would cost more than they save.
-        [RAYMARCH_PORT_LIGHT_CELLS] =
-            beams && (in->num_suns || params.spots) ? in->shadows.cells : none,
         [RAYMARCH_PORT_CAMERA] = job->refs.camera,
         [RAYMARCH_PORT_ENVIRONMENT] = job->refs.environment,
         [RAYMARCH_PORT_ENV_MAP] = job->refs.env_map,
@@ -303,6 +264,18 @@ tyn_result tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_picture_i
         [RAYMARCH_PORT_SURFACE] = in->surface,
         [RAYMARCH_PORT_DISTANCES] = in->distances,
     };
+    tyn_connect(refs, RAYMARCH_PORT_MEDIUM, in->media.medium);
+    refs[RAYMARCH_PORT_MEDIUM] = job->refs.medium; // also without media
+    tyn_connect(refs, RAYMARCH_PORT_BEAMS, in->beams);
+    tyn_connect(refs, RAYMARCH_PORT_RADIALS, in->lamps.radials);
+    tyn_connect(refs, RAYMARCH_PORT_WALL_LINKS, in->walls);
+    if (in->num_suns || in->num_marched_lamps) { // light that surfaces may stop
+        tyn_connect(refs, RAYMARCH_PORT_SHADOW_ATLAS, in->shadows);
+        // A lamp that shines all around leaves little in the dark: the cubes would cost more than they save.
+        if (in->num_suns || params.spots) {
+            refs[RAYMARCH_PORT_LIGHT_CELLS] = in->light_cells;
+        }
+    }
     tyn_result result = tyn_graph_add(g, &tyn_pass_raymarch, &params, refs);
     if (result != TYN_OK) {
         return result;

@@ -5,49 +5,41 @@
 
 enum { TYN_METHOD_MAX_SUNS = 4 }; // suns that have their own aligned grid
 
-// The medium as textures. In mode COEFFICIENTS `density` is sigma_s.
+// {0} without a medium.
 typedef struct tyn_media_refs {
-    tyn_ref density, sigma_a, g, emission, bricks, distance;
+    tyn_medium_refs medium;
+    tyn_ref bricks, distance;
 } tyn_media_refs;
 tyn_result tyn_add_medium(tyn_graph *g, const tyn_job *job, tyn_media_refs *media);
 
-// Optical depth along the suns. In mode COEFFICIENTS `column` is tau_s. {0} without suns.
-typedef struct tyn_beam_refs {
-    tyn_ref beams, column, tau_a, tau_p;
-} tyn_beam_refs;
-tyn_result tyn_add_beams(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
+// Optical depth along the suns.
+tyn_result tyn_add_beams(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
                          uint32_t num_suns, tyn_beam_refs *beams);
 
-// Optical depths around local lights (methods/lamps.h). In mode COEFFICIENTS `column` is tau_s. {0} without.
-typedef struct tyn_radial_refs {
-    tyn_ref radials, column, tau_a, tau_p;
+// Local lights (methods/lamps.h).
+typedef struct tyn_lamps {
+    tyn_radial_refs radials;
     uint32_t num_lamps; // of them
     uint32_t num_fine;  // that have grids as fine as the medium, the first ones
-    bool vpls;          // VPLs follow them
-} tyn_radial_refs;
-
-// Virtual point lights (methods/shading.h).
-typedef struct tyn_vpl_refs {
-    tyn_ref lights;    // struct radial_vpls
-    tyn_ref distances; // 2D: what shaders/vpl_visibility.glsl reads
-    tyn_ref planes;    // 2D, the same
-} tyn_vpl_refs;
+    bool vpls;          // virtual point lights follow them
+} tyn_lamps;
 
 // What the picture is gathered from; {0} refs are left out.
 typedef struct tyn_picture_inputs {
     tyn_media_refs media;
     tyn_beam_refs beams;
-    tyn_radial_refs lamps;
+    tyn_lamps lamps;
     uint32_t num_marched_lamps;
     uint32_t num_near_lamps; // that are marched nearby, the next ones
     tyn_ref lut, lut_block;  // given: all forward orders of the suns, else the first
     tyn_ref inscatter;
-    tyn_ref wall_links, wall_cells; // of walls: surfaces among the cells of inscatter
-    tyn_ref rooms;                  // cells that are joined, and VPLs in them
-    tyn_shadow_refs shadows;        // surfaces before the lights
-    tyn_vpl_refs vpls;              // light that surfaces send on (methods/shading.h)
-    tyn_ref surface, distances;     // radiance and distances of surfaces before the camera
-    tyn_ref glow;                   // the map scattered forward (env_glow)
+    tyn_wall_refs walls;        // surfaces among the cells of inscatter
+    tyn_ref rooms;              // cells that are joined, and VPLs in them
+    tyn_shadow_refs shadows;    // surfaces before the lights
+    tyn_ref light_cells;        // where looks at their maps are needed (light_cells_args.h)
+    tyn_vpl_refs vpls;          // light that surfaces send on (methods/shading.h)
+    tyn_ref surface, distances; // radiance and distances of surfaces before the camera
+    tyn_ref glow;               // the map scattered forward (env_glow)
     uint32_t num_suns;
     float cell;       // of the lattice behind inscatter, m; 0 = none
     bool one_channel; // inscatter has one channel, to be multiplied with tint

@@ -3,7 +3,11 @@
 #include "methods/limits.h"
 #include "passes/medium/medium.h"
 #include "passes/path/path.h"
-#include "passes/path/path_args.h"
+#include "passes/path_probe/path_probe.h"
+#include "passes/path_balance/path_balance.h"
+#include "passes/path_fluxes/path_fluxes.h"
+#include "passes/path_distance/path_distance.h"
+#include "shaders/path/path_args.h"
 #include "passes/tonemap/tonemap.h"
 #include <tyndall/registry.h>
 #include <math.h>
@@ -210,13 +214,8 @@ static void connect_scene(tyn_ref *refs, const tyn_job *job, tyn_ref bricks)
     refs[PATH_PORT_ENVIRONMENT] = job->refs.environment;
     refs[PATH_PORT_ENV_MAP] = job->refs.env_map;
     refs[PATH_PORT_ENV_TABLE] = job->refs.env_cdf;
-    refs[PATH_PORT_SURFACES] = job->refs.surfaces;
-    refs[PATH_PORT_VERTICES] = job->refs.vertices;
-    refs[PATH_PORT_TRIANGLES] = job->refs.triangles;
-    refs[PATH_PORT_MATERIALS] = job->refs.materials;
-    refs[PATH_PORT_TEXTURES] = job->refs.textures;
-    refs[PATH_PORT_TEXELS] = job->refs.texels;
-    refs[PATH_PORT_NODES] = job->refs.nodes;
+    tyn_connect(refs, PATH_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, PATH_PORT_MATERIALS, job->refs.materials);
     refs[PATH_PORT_EMITTERS] = job->refs.emitters;
 }
 
@@ -423,11 +422,8 @@ static tyn_result add_distances(tyn_graph *g, const tyn_job *job, tyn_picture_in
     const tyn_path_distance_params params = {job->view->width, job->view->height};
     tyn_ref refs[PATH_DISTANCE_NUM_PORTS] = {
         [PATH_DISTANCE_PORT_CAMERA] = job->refs.camera,
-        [PATH_DISTANCE_PORT_SURFACES] = job->refs.surfaces,
-        [PATH_DISTANCE_PORT_VERTICES] = job->refs.vertices,
-        [PATH_DISTANCE_PORT_TRIANGLES] = job->refs.triangles,
-        [PATH_DISTANCE_PORT_NODES] = job->refs.nodes,
     };
+    tyn_connect(refs, PATH_DISTANCE_PORT_SURFACES, job->refs.geometry);
     tyn_result result = tyn_graph_add(g, &tyn_pass_path_distance, &params, refs);
     in->surface = refs[PATH_DISTANCE_PORT_RADIANCE];
     in->distances = refs[PATH_DISTANCE_PORT_DISTANCES];
@@ -456,7 +452,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     const uint32_t not_images =
         TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_FLUXES;
     tyn_result result = check_repeat(job);
-    tyn_media_refs media = {{0}};
+    tyn_media_refs media = {{{0}}};
     if (result == TYN_OK && !job->frame->empty) {
         tyn_path_params params;
         tyn_settings_params(job->settings, &tyn_pass_path, &params);

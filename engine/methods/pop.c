@@ -15,6 +15,7 @@
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
 #include "passes/columns/columns.h"
+#include "passes/columns_average/columns_average.h"
 #include "passes/env_glow/env_glow.h"
 #include "passes/env_importance/env_importance.h"
 #include "passes/importance/importance.h"
@@ -26,11 +27,20 @@
 #include "passes/light_cells/light_cells.h"
 #include "passes/shadow_map/shadow_map.h"
 #include "passes/vpl/vpl.h"
+#include "passes/lattice_cells/lattice_cells.h"
+#include "passes/lattice_source/lattice_source.h"
+#include "passes/lattice_ordinates/lattice_ordinates.h"
+#include "passes/lattice_lamps/lattice_lamps.h"
 #include "passes/lattice/lattice.h"
+#include "passes/lattice_recall/lattice_recall.h"
+#include "passes/lattice_keep/lattice_keep.h"
 #include "passes/merge/merge.h"
 #include "passes/probe/probe.h"
+#include "passes/balance/balance.h"
 #include "passes/radial_beam/radial_beam.h"
 #include "passes/walls/walls.h"
+#include "passes/wall_light/wall_light.h"
+#include "passes/rooms/rooms.h"
 #include "passes/composite/composite.h"
 #include "passes/tonemap/tonemap.h"
 #include <tyndall/registry.h>
@@ -136,18 +146,20 @@ static tyn_result add_glow(tyn_graph *g, const tyn_job *job, tyn_field *f)
 static tyn_result add_lights(tyn_graph *g, const tyn_job *job, tyn_field *f)
 {
     tyn_result result =
-        tyn_add_beams(g, job, &f->picture.media, f->picture.num_suns, &f->picture.beams);
+        tyn_add_beams(g, job, &f->picture.media.medium, f->picture.num_suns, &f->picture.beams);
     const uint32_t *repeat = job->frame->medium.repeat;
     if (result == TYN_OK && !repeat[0] && !repeat[1] && !repeat[2]) {
-        result = tyn_add_vpls(g, job, &f->picture.media, f->picture.num_suns, &f->picture.vpls);
+        result =
+            tyn_add_vpls(g, job, &f->picture.media.medium, f->picture.num_suns, &f->picture.vpls);
     }
     if (result == TYN_OK) {
-        result =
-            tyn_add_radials(g, job, &f->picture.media, f->picture.vpls.lights, &f->picture.lamps);
+        result = tyn_add_radials(g, job, &f->picture.media.medium, f->picture.vpls.vpls,
+                                 &f->picture.lamps);
         f->picture.num_marched_lamps = f->picture.lamps.num_fine;
     }
     if (result == TYN_OK) {
-        result = tyn_add_shadows(g, job, f->picture.num_suns, &f->picture.shadows);
+        result = tyn_add_shadows(g, job, f->picture.num_suns, &f->picture.shadows,
+                                 &f->picture.light_cells);
     }
     const bool walls = tyn_has_walls(job->frame);
     if (job->frame->num_triangles) {
@@ -163,7 +175,7 @@ static tyn_result add_lights(tyn_graph *g, const tyn_job *job, tyn_field *f)
         return result;
     }
     return result == TYN_OK
-               ? tyn_add_sky(g, job, &f->picture.media, f->picture.num_suns, true, &f->sky)
+               ? tyn_add_sky(g, job, &f->picture.media.medium, f->picture.num_suns, true, &f->sky)
                : result;
 }
 
@@ -243,15 +255,15 @@ static tyn_result check_repeat(const tyn_job *job)
 // The picture of a scene without a medium.
 static tyn_result add_surfaces_alone(tyn_graph *g, const tyn_job *job)
 {
-    const tyn_media_refs no_media = {{0}};
+    const tyn_medium_refs no_medium = {{0}};
     tyn_picture_inputs in = {.num_suns = 0};
     uint32_t num_suns = tyn_method_suns(job);
     if (job->frame->num_triangles) {
         tyn_method_warn_suns(job, "surfaces");
     }
-    tyn_result result = tyn_add_shadows(g, job, num_suns, &in.shadows);
+    tyn_result result = tyn_add_shadows(g, job, num_suns, &in.shadows, &in.light_cells);
     if (result == TYN_OK) {
-        result = tyn_add_vpls(g, job, &no_media, num_suns, &in.vpls);
+        result = tyn_add_vpls(g, job, &no_medium, num_suns, &in.vpls);
     }
     if (result == TYN_OK) {
         result = tyn_add_surfaces(g, job, (tyn_ref){0}, num_suns, &in);
@@ -295,7 +307,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     // What is scattered forward of a constant environment, whoever carries the rest.
     f.picture.mean_in_field = lit;
     bool lit_by_environment = f.from_all_sides || f.sky.ordinates.resource;
-    bool lamps = f.picture.lamps.radials.resource != 0;
+    bool lamps = f.picture.lamps.radials.radials.resource != 0;
     bool scattered_light = f.picture.num_suns || lamps || lit_by_environment || frame->emissive;
     // Walls reflect more than thin media scatter.
     bool solve = scattered_light && (lit_by_environment || f.picture.lamps.vpls ||

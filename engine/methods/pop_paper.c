@@ -106,14 +106,11 @@ static tyn_result add_radial(tyn_graph *g, const tyn_job *job, const propagated 
                              tyn_ref *seen)
 {
     tyn_ref refs[PROPAGATE_RADIAL_NUM_PORTS] = {
-        [PROPAGATE_RADIAL_PORT_MEDIUM] = job->refs.medium,
         [PROPAGATE_RADIAL_PORT_CAMERA] = job->refs.camera,
-        [PROPAGATE_RADIAL_PORT_DENSITY] = p->picture.media.density,
-        [PROPAGATE_RADIAL_PORT_SIGMA_A] = p->picture.media.sigma_a,
-        [PROPAGATE_RADIAL_PORT_G] = p->picture.media.g,
     };
+    tyn_connect(refs, PROPAGATE_RADIAL_PORT_MEDIUM, p->picture.media.medium);
     if (params->max_vpls) {
-        refs[PROPAGATE_RADIAL_PORT_VPLS] = p->surface_lights.lights;
+        refs[PROPAGATE_RADIAL_PORT_VPLS] = p->surface_lights.vpls;
     }
     tyn_result result = tyn_graph_add(g, &tyn_pass_propagate_radial, params, refs);
     *places = refs[PROPAGATE_RADIAL_PORT_PLACES];
@@ -138,13 +135,10 @@ static tyn_result add_propagation(tyn_graph *g, const tyn_job *job, propagated *
         p->grids.iterations = iterations_before_residuum(p, job);
     }
     tyn_ref refs[PROPAGATE_RECT_NUM_PORTS] = {
-        [PROPAGATE_RECT_PORT_MEDIUM] = job->refs.medium,
         [PROPAGATE_RECT_PORT_ORDINATES] = p->sky.ordinates,
         [PROPAGATE_RECT_PORT_CAMERA] = job->refs.camera,
-        [PROPAGATE_RECT_PORT_DENSITY] = p->picture.media.density,
-        [PROPAGATE_RECT_PORT_SIGMA_A] = p->picture.media.sigma_a,
-        [PROPAGATE_RECT_PORT_G] = p->picture.media.g,
     };
+    tyn_connect(refs, PROPAGATE_RECT_PORT_MEDIUM, p->picture.media.medium);
     tyn_result result = tyn_graph_add(g, &tyn_pass_propagate_rect, &p->grids, refs);
     p->places = refs[PROPAGATE_RECT_PORT_PLACES];
     p->seen = refs[PROPAGATE_RECT_PORT_SEEN];
@@ -152,7 +146,7 @@ static tyn_result add_propagation(tyn_graph *g, const tyn_job *job, propagated *
     return result;
 }
 
-static tyn_result add_residuum(tyn_graph *g, const tyn_job *job, propagated *p)
+static tyn_result add_residuum(tyn_graph *g, propagated *p)
 {
     p->residuum.num_grids = p->grids.num_ordinates;
     p->residuum.grid_cells = (uint32_t)p->grids.cells;
@@ -160,12 +154,10 @@ static tyn_result add_residuum(tyn_graph *g, const tyn_job *job, propagated *p)
     p->residuum.mode = p->grids.mode;
     memcpy(p->residuum.extent, p->grids.extent, sizeof p->residuum.extent);
     tyn_ref refs[RESIDUUM_NUM_PORTS] = {
-        [RESIDUUM_PORT_MEDIUM] = job->refs.medium,
-        [RESIDUUM_PORT_DENSITY] = p->picture.media.density,
-        [RESIDUUM_PORT_SIGMA_A] = p->picture.media.sigma_a,
         [RESIDUUM_PORT_PLACES] = p->places,
         [RESIDUUM_PORT_LIGHT] = p->light,
     };
+    tyn_connect(refs, RESIDUUM_PORT_MEDIUM, p->picture.media.medium);
     tyn_result result = tyn_graph_add(g, &tyn_pass_residuum, &p->residuum, refs);
     p->isotropic = refs[RESIDUUM_PORT_RESIDUUM];
     return result;
@@ -191,8 +183,6 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, propagated *p)
     params.mode = p->grids.mode;
     memcpy(params.extent, p->grids.extent, sizeof params.extent);
     tyn_ref refs[MERGE_GRIDS_NUM_PORTS] = {
-        [MERGE_GRIDS_PORT_MEDIUM] = job->refs.medium,
-        [MERGE_GRIDS_PORT_DENSITY] = p->picture.media.density,
         [MERGE_GRIDS_PORT_PLACES] = p->places,
         [MERGE_GRIDS_PORT_SEEN] = p->seen,
         [MERGE_GRIDS_PORT_LAMP_PLACES] = p->lamp_places,
@@ -201,6 +191,7 @@ static tyn_result add_merge(tyn_graph *g, const tyn_job *job, propagated *p)
         [MERGE_GRIDS_PORT_VPL_SEEN] = p->vpl_seen,
         [MERGE_GRIDS_PORT_RESIDUUM] = p->isotropic,
     };
+    tyn_connect(refs, MERGE_GRIDS_PORT_MEDIUM, p->picture.media.medium);
     tyn_result result = tyn_graph_add(g, &tyn_pass_merge_grids, &params, refs);
     p->merged = refs[MERGE_GRIDS_PORT_MERGED];
     return result;
@@ -214,10 +205,9 @@ static tyn_result add_upsampling(tyn_graph *g, const tyn_job *job, propagated *p
     memcpy(params.extent, p->grids.extent, sizeof params.extent);
     memcpy(params.size, p->grids.size, sizeof params.size);
     tyn_ref refs[UPSAMPLE_NUM_PORTS] = {
-        [UPSAMPLE_PORT_MEDIUM] = job->refs.medium,
-        [UPSAMPLE_PORT_DENSITY] = p->picture.media.density,
         [UPSAMPLE_PORT_MERGED] = p->merged,
     };
+    tyn_connect(refs, UPSAMPLE_PORT_MEDIUM, p->picture.media.medium);
     tyn_result result = tyn_graph_add(g, &tyn_pass_upsample, &params, refs);
     p->picture.inscatter = refs[UPSAMPLE_PORT_INSCATTER];
     p->picture.cell = longest_side(job) / (float)p->grids.cells;
@@ -237,7 +227,7 @@ static tyn_result add_light(tyn_graph *g, const tyn_job *job, propagated *p)
         result = add_propagation(g, job, p);
     }
     if (result == TYN_OK && p->sky.count && p->residuum.on) {
-        result = add_residuum(g, job, p);
+        result = add_residuum(g, p);
     }
     if (result == TYN_OK && p->lamps.num_lamps) {
         result = add_radial(g, job, p, &p->lamps, &p->lamp_places, &p->lamp_seen);
@@ -258,12 +248,12 @@ static tyn_result add_surfaces(tyn_graph *g, const tyn_job *job, propagated *p)
     tyn_picture_inputs in = {.media = p->picture.media, .vpls = p->surface_lights};
     in.num_suns = tyn_method_suns(job);
     tyn_method_warn_suns(job, "surfaces");
-    tyn_result result = tyn_add_beams(g, job, &in.media, in.num_suns, &in.beams);
+    tyn_result result = tyn_add_beams(g, job, &in.media.medium, in.num_suns, &in.beams);
     if (result == TYN_OK) {
-        result = tyn_add_radials(g, job, &in.media, in.vpls.lights, &in.lamps);
+        result = tyn_add_radials(g, job, &in.media.medium, in.vpls.vpls, &in.lamps);
     }
     if (result == TYN_OK) {
-        result = tyn_add_shadows(g, job, in.num_suns, &in.shadows);
+        result = tyn_add_shadows(g, job, in.num_suns, &in.shadows, &in.light_cells);
     }
     if (result == TYN_OK) {
         result = tyn_add_surfaces(g, job, (tyn_ref){0}, in.num_suns, &in);
@@ -297,12 +287,13 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     set_lamps(&p.lamps, job);
     result = tyn_add_medium(g, job, &p.picture.media);
     if (result == TYN_OK) {
-        result = tyn_add_sky(g, job, &p.picture.media, 0, false, &p.sky);
+        result = tyn_add_sky(g, job, &p.picture.media.medium, 0, false, &p.sky);
     }
     if (result == TYN_OK) {
-        result = tyn_add_vpls(g, job, &p.picture.media, tyn_method_suns(job), &p.surface_lights);
+        result =
+            tyn_add_vpls(g, job, &p.picture.media.medium, tyn_method_suns(job), &p.surface_lights);
     }
-    if (p.surface_lights.lights.resource) {
+    if (p.surface_lights.vpls.resource) {
         set_vpls(&p.vpls, job);
     }
     if (result == TYN_OK && (p.sky.count || p.lamps.num_lamps || p.vpls.max_vpls)) {

@@ -2,8 +2,7 @@
 #include "methods/limits.h"
 #include "methods/shading.h"
 #include "passes/shade/shade.h"
-#include "passes/shade/shade_faces.h"
-#include "passes/probe/probe.h"
+#include "passes/balance/balance.h"
 #include "passes/vpl/vpl.h"
 #include <tyndall/registry.h>
 #include <math.h>
@@ -27,7 +26,7 @@ static uint32_t emitters(const tyn_surfaces *surfaces)
 
 bool tyn_can_trace(const tyn_job *job)
 {
-    return job->refs.nodes.resource || job->frame->num_triangles <= MOST_WITHOUT_HIERARCHY;
+    return job->refs.geometry.nodes.resource || job->frame->num_triangles <= MOST_WITHOUT_HIERARCHY;
 }
 
 bool tyn_vpls_bounce(const tyn_job *job)
@@ -52,7 +51,7 @@ bool tyn_vpls_bounce(const tyn_job *job)
     return beyond;
 }
 
-tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
+tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
                         uint32_t num_suns, tyn_vpl_refs *vpls)
 {
     *vpls = (tyn_vpl_refs){{0}};
@@ -69,7 +68,7 @@ tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *
     if (params.count == 0) {
         return TYN_OK;
     }
-    tyn_rsm_refs rsm;
+    tyn_rsm rsm;
     tyn_result result = tyn_add_rsm(g, job, num_suns, &rsm);
     if (result != TYN_OK || rsm.num_tiles + params.emitters == 0) {
         return result;
@@ -83,26 +82,16 @@ tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *
     memcpy(params.tiles, rsm.tiles, sizeof params.tiles);
 
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [VPL_PORT_MEDIUM] = job->refs.medium,
-        [VPL_PORT_DENSITY] = media->density,
-        [VPL_PORT_SIGMA_A] = media->sigma_a,
-        [VPL_PORT_G] = media->g,
         [VPL_PORT_SUNS] = job->refs.suns,
         [VPL_PORT_LIGHTS] = job->refs.lights,
-        [VPL_PORT_FLUX] = rsm.flux,
-        [VPL_PORT_POSITION] = rsm.position,
-        [VPL_PORT_NORMAL] = rsm.normal,
-        [VPL_PORT_SURFACES] = job->refs.surfaces,
-
-        [VPL_PORT_VERTICES] = job->refs.vertices,
-        [VPL_PORT_TRIANGLES] = job->refs.triangles,
-        [VPL_PORT_MATERIALS] = job->refs.materials,
-        [VPL_PORT_NODES] = job->refs.nodes,
-        [VPL_PORT_TEXTURES] = job->refs.textures,
-        [VPL_PORT_TEXELS] = job->refs.texels,
     };
+    tyn_connect(refs, VPL_PORT_FLUX, rsm.maps);
+    tyn_connect(refs, VPL_PORT_MEDIUM, *medium);
+    refs[VPL_PORT_MEDIUM] = job->refs.medium; // also without media
+    tyn_connect(refs, VPL_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, VPL_PORT_MATERIALS, job->refs.materials);
     result = tyn_graph_add(g, &tyn_pass_vpl, &params, refs);
-    *vpls = (tyn_vpl_refs){refs[VPL_PORT_VPLS], refs[VPL_PORT_DISTANCES], refs[VPL_PORT_PLANES]};
+    tyn_take(refs, VPL_PORT_VPLS, *vpls);
     return result;
 }
 
@@ -159,7 +148,8 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
     params.size[1] = job->view->height;
     params.num_suns = num_suns;
     params.num_directional = job->frame->num_suns;
-    const bool media = in->media.density.resource != 0; // then lamps are those that have grids
+    const bool media =
+        in->media.medium.density.resource != 0; // then lamps are those that have grids
     params.num_lamps = media ? in->lamps.num_lamps : job->frame->num_lights - job->frame->num_suns;
     params.one_channel = in->one_channel;
     memcpy(params.tint, in->tint, sizeof params.tint);
@@ -172,14 +162,13 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
     if (params.outside) {
         place_sight(job->frame, &params);
     }
-    if (params.sky && (in->wall_links.resource == 0 || beyond)) {
+    if (params.sky && (in->walls.wall_links.resource == 0 || beyond)) {
         tyn_method_warn(job, "surfaces beyond the media's box are lit by the mean of the "
                              "environment as if nothing stood around them");
     }
-    if (params.sky && in->wall_links.resource) {
+    if (params.sky && in->walls.wall_links.resource) {
         tyn_limits_sky(job);
     }
-    const tyn_vpl_refs vpls = !media || in->lamps.vpls ? in->vpls : (tyn_vpl_refs){{0}};
     tyn_ref refs[TYN_MAX_PORTS] = {
         [SHADE_PORT_MEDIUM] = job->refs.medium,
         [SHADE_PORT_CAMERA] = job->refs.camera,
@@ -191,32 +180,20 @@ tyn_result tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_ref moments, u
         [SHADE_PORT_COLOURS] = seen.colours,
         [SHADE_PORT_EDGE_COUNT] = seen.edge_count,
         [SHADE_PORT_EDGES] = seen.edges,
-        [SHADE_PORT_BEAMS] = in->beams.beams,
-        [SHADE_PORT_COLUMN] = in->beams.column,
-        [SHADE_PORT_TAU_A] = in->beams.tau_a,
-        [SHADE_PORT_TAU_P] = in->beams.tau_p,
-        [SHADE_PORT_RADIALS] = in->lamps.radials,
-        [SHADE_PORT_RADIAL_COLUMN] = in->lamps.column,
-        [SHADE_PORT_RADIAL_TAU_A] = in->lamps.tau_a,
-        [SHADE_PORT_RADIAL_TAU_P] = in->lamps.tau_p,
-        [SHADE_PORT_SHADOW_ATLAS] = in->shadows.atlas,
-        [SHADE_PORT_SHADOWS] = in->shadows.lights,
-        [SHADE_PORT_VPLS] = vpls.lights,
-        [SHADE_PORT_VPL_DISTANCES] = vpls.distances,
-        [SHADE_PORT_VPL_PLANES] = vpls.planes,
         // Surfaces far from the medium's box are no walls of the lattice, and outside it.
-        [SHADE_PORT_MOMENTS] = in->wall_links.resource || params.outside ? moments : (tyn_ref){0},
-        [SHADE_PORT_WALL_LINKS] = in->wall_links,
-        [SHADE_PORT_WALL_CELLS] = in->wall_cells,
+        [SHADE_PORT_MOMENTS] =
+            in->walls.wall_links.resource || params.outside ? moments : (tyn_ref){0},
         [SHADE_PORT_ROOMS] = in->rooms,
-        [SHADE_PORT_SURFACES] = job->refs.surfaces,
-        [SHADE_PORT_VERTICES] = job->refs.vertices,
-        [SHADE_PORT_TRIANGLES] = job->refs.triangles,
-        [SHADE_PORT_MATERIALS] = job->refs.materials,
-        [SHADE_PORT_TEXTURES] = job->refs.textures,
-        [SHADE_PORT_TEXELS] = job->refs.texels,
-        [SHADE_PORT_NODES] = job->refs.nodes,
     };
+    tyn_connect(refs, SHADE_PORT_BEAMS, in->beams);
+    tyn_connect(refs, SHADE_PORT_RADIALS, in->lamps.radials);
+    tyn_connect(refs, SHADE_PORT_SHADOW_ATLAS, in->shadows);
+    if (!media || in->lamps.vpls) {
+        tyn_connect(refs, SHADE_PORT_VPLS, in->vpls);
+    }
+    tyn_connect(refs, SHADE_PORT_WALL_LINKS, in->walls);
+    tyn_connect(refs, SHADE_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, SHADE_PORT_MATERIALS, job->refs.materials);
     result = tyn_graph_add(g, &tyn_pass_shade, &params, refs);
     in->surface = refs[SHADE_PORT_RADIANCE];
     in->distances = seen.distances;
@@ -232,25 +209,12 @@ void tyn_follow_lights(const tyn_job *job, const tyn_picture_inputs *in, tyn_bal
         tyn_method_warn(job, "the surfaces have no hierarchy: light that meets them without having "
                              "scattered counts as escaped in the balance");
     } else if (follow) {
-        const tyn_beam_refs *beams = &in->beams;
-        const tyn_radial_refs *lamps = &in->lamps;
         params->mode = job->frame->medium.mode;
         tyn_scene_box(job->frame, params->box[0], params->box[1]);
-        refs[BALANCE_PORT_BEAMS] = beams->beams;
-        refs[BALANCE_PORT_COLUMN] = beams->column;
-        refs[BALANCE_PORT_TAU_A] = beams->tau_a;
-        refs[BALANCE_PORT_TAU_P] = beams->tau_p;
-        refs[BALANCE_PORT_RADIALS] = lamps->radials;
-        refs[BALANCE_PORT_RADIAL_COLUMN] = lamps->column;
-        refs[BALANCE_PORT_RADIAL_TAU_A] = lamps->tau_a;
-        refs[BALANCE_PORT_RADIAL_TAU_P] = lamps->tau_p;
-        refs[BALANCE_PORT_SURFACES] = job->refs.surfaces;
-        refs[BALANCE_PORT_VERTICES] = job->refs.vertices;
-        refs[BALANCE_PORT_TRIANGLES] = job->refs.triangles;
-        refs[BALANCE_PORT_NODES] = job->refs.nodes;
-        refs[BALANCE_PORT_MATERIALS] = job->refs.materials;
-        refs[BALANCE_PORT_TEXTURES] = job->refs.textures;
-        refs[BALANCE_PORT_TEXELS] = job->refs.texels;
+        tyn_connect(refs, BALANCE_PORT_BEAMS, in->beams);
+        tyn_connect(refs, BALANCE_PORT_RADIALS, in->lamps.radials);
+        tyn_connect(refs, BALANCE_PORT_SURFACES, job->refs.geometry);
+        tyn_connect(refs, BALANCE_PORT_MATERIALS, job->refs.materials);
         refs[BALANCE_PORT_EMITTERS] = job->refs.emitters;
     }
 }

@@ -1,7 +1,7 @@
 // shading.h -- what a picture shows of surfaces, and the light that they send on.
 #pragma once
 #include "methods/nodes.h"
-#include "passes/probe/probe.h"
+#include "passes/balance/balance.h"
 
 // Have the surfaces a hierarchy, or are they so few that rays need none?
 bool tyn_can_trace(const tyn_job *job);
@@ -12,7 +12,7 @@ bool tyn_vpls_bounce(const tyn_job *job);
 
 // Virtual point lights of what surfaces reflect first and emit. {0} without surfaces, or
 // if none of them can shine. `num_suns`: the first of frame->suns.
-tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
+tyn_result tyn_add_vpls(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
                         uint32_t num_suns, tyn_vpl_refs *vpls);
 
 // Radiance and distances of the surfaces that the camera sees, for the march (in->surface, in->distances). `moments`:

@@ -48,13 +48,13 @@ static tyn_result declare(tyn_graph *g, const tyn_job *given)
     tyn_method_warn_suns(job, "the medium");
     result = tyn_add_medium(g, job, &in.media);
     if (result == TYN_OK) {
-        result = tyn_add_beams(g, job, &in.media, in.num_suns, &in.beams);
+        result = tyn_add_beams(g, job, &in.media.medium, in.num_suns, &in.beams);
     }
     if (result == TYN_OK) {
-        result = tyn_add_shadows(g, job, in.num_suns, &in.shadows);
+        result = tyn_add_shadows(g, job, in.num_suns, &in.shadows, &in.light_cells);
     }
     if (result == TYN_OK) {
-        result = tyn_add_radials(g, job, &in.media, (tyn_ref){0}, &in.lamps);
+        result = tyn_add_radials(g, job, &in.media.medium, (tyn_ref){0}, &in.lamps);
         in.num_marched_lamps = in.lamps.num_lamps;
     }
     return result == TYN_OK ? tyn_add_picture(g, job, &in) : result;

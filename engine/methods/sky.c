@@ -26,7 +26,7 @@ static tyn_result add_env_importance(tyn_graph *g, const tyn_job *job, tyn_ref *
 }
 
 // Where light counts for the picture; nothing without a camera.
-static tyn_result add_importance(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
+static tyn_result add_importance(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
                                  bool scaled, tyn_ref *map)
 {
     tyn_importance_params params;
@@ -35,14 +35,11 @@ static tyn_result add_importance(tyn_graph *g, const tyn_job *job, const tyn_med
     params.scaled = scaled;
     params.time = params.smoothing > 0.0f ? (uint32_t)job->view->time_index : 0;
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [IMPORTANCE_PORT_MEDIUM] = job->refs.medium,
         [IMPORTANCE_PORT_CAMERA] = job->refs.camera,
-        [IMPORTANCE_PORT_DENSITY] = media->density,
-        [IMPORTANCE_PORT_SIGMA_A] = media->sigma_a,
-        [IMPORTANCE_PORT_G] = media->g,
         [IMPORTANCE_PORT_HISTORY] = tyn_graph_history_buffer(
             g, "importance_history", sizeof(struct importance_history), job->view->cut),
     };
+    tyn_connect(refs, IMPORTANCE_PORT_MEDIUM, *medium);
     tyn_result result = tyn_graph_add(g, &tyn_pass_importance, &params, refs);
     *map = refs[IMPORTANCE_PORT_MAP];
     return result;
@@ -58,7 +55,7 @@ static struct ordinate ordinate_of_sun(const struct light_block *sun)
     return o;
 }
 
-tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
+tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
                        uint32_t first_sun, bool can_split, tyn_sky_refs *sky)
 {
     const tyn_frame_scene *frame = job->frame;
@@ -90,7 +87,7 @@ tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_media_refs *m
     bool weighted = params.importance == ORDINATES_IMPORTANCE_ON ||
                     (params.importance == ORDINATES_IMPORTANCE_AUTO && !can_split);
     if (result == TYN_OK && regions && picture && weighted) {
-        result = add_importance(g, job, media, can_split, &refs[ORDINATES_PORT_IMPORTANCE]);
+        result = add_importance(g, job, medium, can_split, &refs[ORDINATES_PORT_IMPORTANCE]);
     }
     if (result == TYN_OK) {
         result = tyn_graph_add(g, &tyn_pass_ordinates, &params, refs);

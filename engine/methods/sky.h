@@ -13,5 +13,5 @@ typedef struct tyn_sky_refs {
 // use for them. `first_sun`: that of frame->suns from which on suns are given ordinates, since they
 // have no aligned grid of their own. `can_split`: the method has a way for light that is equal from
 // all sides.
-tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media,
+tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
                        uint32_t first_sun, bool can_split, tyn_sky_refs *sky);

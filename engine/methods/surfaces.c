@@ -13,28 +13,28 @@
 _Static_assert(2 * TYN_SHADOW_VIEWS <= TYN_VIEWS_SEEN, "a place for each view of both passes");
 
 static tyn_result add_light_cells(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
-                                  uint32_t num_lamps, tyn_shadow_refs *shadows)
+                                  uint32_t num_lamps, const tyn_shadow_refs *shadows,
+                                  tyn_ref *cells)
 {
     tyn_light_cells_params params;
     tyn_settings_params(job->settings, &tyn_pass_light_cells, &params);
     memcpy(params.extent, job->frame->medium.extent, sizeof params.extent);
     params.num_suns = num_suns;
     params.num_lamps = num_lamps;
-    tyn_ref refs[TYN_MAX_PORTS] = {
-        [LIGHT_CELLS_PORT_ATLAS] = shadows->atlas,
-        [LIGHT_CELLS_PORT_SHADOWS] = shadows->lights,
-    };
+    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+    tyn_connect(refs, LIGHT_CELLS_PORT_SHADOW_ATLAS, *shadows);
     tyn_result result = tyn_graph_add(g, &tyn_pass_light_cells, &params, refs);
-    shadows->cells = refs[LIGHT_CELLS_PORT_CELLS];
+    *cells = refs[LIGHT_CELLS_PORT_CELLS];
     return result;
 }
 
 tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
-                           tyn_shadow_refs *shadows)
+                           tyn_shadow_refs *shadows, tyn_ref *cells)
 {
     const tyn_frame_scene *frame = job->frame;
     const uint32_t num_lamps = frame->num_lights - frame->num_suns;
     *shadows = (tyn_shadow_refs){{0}};
+    *cells = (tyn_ref){0};
     if (!frame->num_triangles || num_suns + num_lamps == 0) {
         return TYN_OK;
     }
@@ -49,15 +49,14 @@ tyn_result tyn_add_shadows(tyn_graph *g, const tyn_job *job, uint32_t num_suns,
                            v->drawn);
     }
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [SHADOW_MAP_PORT_TRIANGLES] = job->refs.triangles,
-        [SHADOW_MAP_PORT_VERTICES] = job->refs.vertices,
+        [SHADOW_MAP_PORT_TRIANGLES] = job->refs.geometry.triangles,
+        [SHADOW_MAP_PORT_VERTICES] = job->refs.geometry.vertices,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_shadow_map, &params, refs);
-    *shadows = (tyn_shadow_refs){.atlas = refs[SHADOW_MAP_PORT_ATLAS],
-                                 .lights = refs[SHADOW_MAP_PORT_SHADOWS]};
+    tyn_take(refs, SHADOW_MAP_PORT_SHADOW_ATLAS, *shadows);
     const uint32_t *repeat = frame->medium.repeat;
     if (result == TYN_OK && !frame->empty && !repeat[0] && !repeat[1] && !repeat[2]) {
-        result = add_light_cells(g, job, num_suns, num_lamps, shadows);
+        result = add_light_cells(g, job, num_suns, num_lamps, shadows, cells);
     }
     return result;
 }
@@ -92,13 +91,9 @@ tyn_result tyn_add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *g
     params.textured = job->frame->num_textures > 0;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [GBUFFER_PORT_CAMERA] = job->refs.camera,
-        [GBUFFER_PORT_SURFACES] = job->refs.surfaces,
-        [GBUFFER_PORT_TRIANGLES] = job->refs.triangles,
-        [GBUFFER_PORT_VERTICES] = job->refs.vertices,
-        [GBUFFER_PORT_MATERIALS] = job->refs.materials,
-        [GBUFFER_PORT_TEXTURES] = job->refs.textures,
-        [GBUFFER_PORT_TEXELS] = job->refs.texels,
     };
+    tyn_connect(refs, GBUFFER_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, GBUFFER_PORT_MATERIALS, job->refs.materials);
     tyn_result result = tyn_graph_add(g, &tyn_pass_gbuffer, &params, refs);
     *gbuffer = (tyn_gbuffer_refs){refs[GBUFFER_PORT_DISTANCES], refs[GBUFFER_PORT_FACING],
                                   refs[GBUFFER_PORT_COLOURS], refs[GBUFFER_PORT_EDGE_COUNT],
@@ -121,7 +116,7 @@ static float texel_of(const struct shadow_light *l)
     return area;
 }
 
-tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_rsm_refs *rsm)
+tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_rsm *rsm)
 {
     const tyn_frame_scene *frame = job->frame;
     const struct light_block *lamps = frame->lights + frame->num_suns;
@@ -155,16 +150,11 @@ tyn_result tyn_add_rsm(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_
     }
     rsm->num_tiles = params.num_tiles;
     memcpy(rsm->tiles, params.tiles, sizeof rsm->tiles);
-    tyn_ref refs[TYN_MAX_PORTS] = {
-        [RSM_PORT_SURFACES] = job->refs.surfaces, [RSM_PORT_TRIANGLES] = job->refs.triangles,
-        [RSM_PORT_VERTICES] = job->refs.vertices, [RSM_PORT_MATERIALS] = job->refs.materials,
-        [RSM_PORT_TEXTURES] = job->refs.textures, [RSM_PORT_TEXELS] = job->refs.texels,
-        [RSM_PORT_NODES] = job->refs.nodes,
-    };
+    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+    tyn_connect(refs, RSM_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, RSM_PORT_MATERIALS, job->refs.materials);
     tyn_result result = tyn_graph_add(g, &tyn_pass_rsm, &params, refs);
-    rsm->flux = refs[RSM_PORT_FLUX];
-    rsm->position = refs[RSM_PORT_POSITION];
-    rsm->normal = refs[RSM_PORT_NORMAL];
+    tyn_take(refs, RSM_PORT_FLUX, rsm->maps);
     return result;
 }
 

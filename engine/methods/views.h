@@ -1,7 +1,7 @@
 // views.h -- which triangles a view of the surfaces may show.
 #pragma once
 #include <tyndall/scene.h>
-#include "surface_args.h"
+#include "shaders/surfaces/surface_args.h"
 
 // What was found for views of frames before: lights seldom move. All zero at first, as for other surfaces.
 enum { TYN_VIEWS_SEEN = 1024 }; // shadow maps and reflective ones of all lights

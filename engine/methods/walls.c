@@ -1,6 +1,8 @@
 // walls.c -- surfaces as the lattice sees them.
 #include "methods/walls.h"
 #include "passes/walls/walls.h"
+#include "passes/wall_light/wall_light.h"
+#include "passes/rooms/rooms.h"
 #include <tyndall/registry.h>
 #include <math.h>
 #include <string.h>
@@ -38,32 +40,31 @@ static void put_lattice(const tyn_lattice_shape *shape, float extent[3], uint32_
 }
 
 tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
-                         tyn_wall_refs *walls)
+                         tyn_wall_refs *walls, tyn_ref *hits)
 {
     *walls = (tyn_wall_refs){{0}};
+    *hits = (tyn_ref){0};
     if (!tyn_has_walls(job->frame)) {
         return TYN_OK;
     }
     tyn_walls_params params;
     tyn_settings_params(job->settings, &tyn_pass_walls, &params);
     put_lattice(shape, params.extent, params.dims);
-    tyn_ref refs[TYN_MAX_PORTS] = {
-        [WALLS_PORT_SURFACES] = job->refs.surfaces,   [WALLS_PORT_VERTICES] = job->refs.vertices,
-        [WALLS_PORT_TRIANGLES] = job->refs.triangles, [WALLS_PORT_MATERIALS] = job->refs.materials,
-        [WALLS_PORT_TEXTURES] = job->refs.textures,   [WALLS_PORT_TEXELS] = job->refs.texels,
-    };
+    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+    tyn_connect(refs, WALLS_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, WALLS_PORT_MATERIALS, job->refs.materials);
     tyn_result result = tyn_graph_add(g, &tyn_pass_walls, &params, refs);
-    *walls = (tyn_wall_refs){refs[WALLS_PORT_LINKS], refs[WALLS_PORT_CELLS], refs[WALLS_PORT_HITS]};
+    tyn_take(refs, WALLS_PORT_WALL_LINKS, *walls);
+    *hits = refs[WALLS_PORT_HITS];
     return result;
 }
 
 tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
-                              const tyn_wall_refs *walls, const tyn_beam_refs *beams,
-                              uint32_t num_suns, const tyn_radial_refs *radials, tyn_ref distances,
-                              tyn_ref rooms, tyn_ref *light)
+                              const tyn_picture_inputs *in, tyn_ref hits, uint32_t num_suns,
+                              tyn_ref *light)
 {
     *light = (tyn_ref){0};
-    if (!walls->links.resource || (num_suns == 0 && !radials->vpls)) {
+    if (!in->walls.wall_links.resource || (num_suns == 0 && !in->lamps.vpls)) {
         return TYN_OK;
     }
     tyn_wall_light_params params;
@@ -74,23 +75,17 @@ tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattic
     tyn_ref refs[TYN_MAX_PORTS] = {
         [WALL_LIGHT_PORT_MEDIUM] = job->refs.medium,
         [WALL_LIGHT_PORT_LIGHTS] = job->refs.suns,
-        [WALL_LIGHT_PORT_BEAMS] = beams->beams,
-        [WALL_LIGHT_PORT_COLUMN] = beams->column,
-        [WALL_LIGHT_PORT_TAU_A] = beams->tau_a,
-        [WALL_LIGHT_PORT_TAU_P] = beams->tau_p,
-        [WALL_LIGHT_PORT_RADIALS] = radials->vpls ? radials->radials : (tyn_ref){0},
-        [WALL_LIGHT_PORT_RADIAL_COLUMN] = radials->column,
-        [WALL_LIGHT_PORT_RADIAL_TAU_A] = radials->tau_a,
-        [WALL_LIGHT_PORT_RADIAL_TAU_P] = radials->tau_p,
-        [WALL_LIGHT_PORT_SURFACES] = job->refs.surfaces,
-        [WALL_LIGHT_PORT_VERTICES] = job->refs.vertices,
-        [WALL_LIGHT_PORT_TRIANGLES] = job->refs.triangles,
-        [WALL_LIGHT_PORT_LINKS] = walls->links,
-        [WALL_LIGHT_PORT_CELLS] = walls->cells,
-        [WALL_LIGHT_PORT_HITS] = walls->hits,
-        [WALL_LIGHT_PORT_ROOMS] = rooms,
-        [WALL_LIGHT_PORT_DISTANCES] = distances,
+        [WALL_LIGHT_PORT_HITS] = hits,
+        [WALL_LIGHT_PORT_ROOMS] = in->rooms,
+        [WALL_LIGHT_PORT_DISTANCES] = in->vpls.vpl_distances,
     };
+    tyn_connect(refs, WALL_LIGHT_PORT_BEAMS, in->beams);
+    tyn_connect(refs, WALL_LIGHT_PORT_RADIALS, in->lamps.radials);
+    if (!in->lamps.vpls) { // lamps alone, whose light VPLs reflect
+        refs[WALL_LIGHT_PORT_RADIALS] = (tyn_ref){0};
+    }
+    tyn_connect(refs, WALL_LIGHT_PORT_WALL_LINKS, in->walls);
+    tyn_connect(refs, WALL_LIGHT_PORT_SURFACES, job->refs.geometry);
     tyn_result result = tyn_graph_add(g, &tyn_pass_wall_light, &params, refs);
     *light = refs[WALL_LIGHT_PORT_LIGHT];
     tyn_job_counters(g, job, "wall_light", refs[WALL_LIGHT_PORT_POWER]);
@@ -101,16 +96,16 @@ tyn_result tyn_add_rooms(tyn_graph *g, const tyn_job *job, const tyn_lattice_sha
                          const tyn_wall_refs *walls, const tyn_vpl_refs *vpls, tyn_ref *rooms)
 {
     *rooms = (tyn_ref){0};
-    if (!walls->links.resource || !vpls->distances.resource) {
+    if (!walls->wall_links.resource || !vpls->vpl_distances.resource) {
         return TYN_OK;
     }
     tyn_rooms_params params;
     tyn_settings_params(job->settings, &tyn_pass_rooms, &params);
     put_lattice(shape, params.extent, params.dims);
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [ROOMS_PORT_LINKS] = walls->links,
-        [ROOMS_PORT_VPLS] = vpls->lights,
-        [ROOMS_PORT_DISTANCES] = vpls->distances,
+        [ROOMS_PORT_LINKS] = walls->wall_links,
+        [ROOMS_PORT_VPLS] = vpls->vpls,
+        [ROOMS_PORT_DISTANCES] = vpls->vpl_distances,
     };
     tyn_result result = tyn_graph_add(g, &tyn_pass_rooms, &params, refs);
     *rooms = refs[ROOMS_PORT_ROOMS];

@@ -3,27 +3,19 @@
 #include "methods/nodes.h"
 #include "passes/lattice/lattice.h"
 
-// What shaders/lattice_walls.glsl and the lattice read.
-typedef struct tyn_wall_refs {
-    tyn_ref links, cells;
-    tyn_ref hits; // the triangles that links meet, for wall_light
-} tyn_wall_refs;
-
 // Do surfaces come near the media's box? Else the lattice has no walls.
 bool tyn_has_walls(const tyn_frame_scene *frame);
 
-// {0} without walls.
+// `hits`: the triangles that links meet, for tyn_add_wall_light.
 tyn_result tyn_add_walls(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
-                         tyn_wall_refs *walls);
+                         tyn_wall_refs *walls, tyn_ref *hits);
 
 // What the first of frame->suns (those whose light is not reflected otherwise) and the VPLs of `radials`
-// shine on the walls of the cells: LATTICE_PORT_WALL_LIGHT; {0} without walls or such lights. `distances` and `rooms`
-// of the VPLs may be {0}.
+// shine on the walls of the cells: LATTICE_PORT_WALL_LIGHT; {0} without walls or such lights. `rooms` may be {0}.
 tyn_result tyn_add_wall_light(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
-                              const tyn_wall_refs *walls, const tyn_beam_refs *beams,
-                              uint32_t num_suns, const tyn_radial_refs *radials, tyn_ref distances,
-                              tyn_ref rooms, tyn_ref *light);
+                              const tyn_picture_inputs *in, tyn_ref hits, uint32_t num_suns,
+                              tyn_ref *light);
 
-// Which cells are joined, and which of them the VPLs shine in (shaders/rooms.h); {0} without walls, or VPLs that see.
+// Which cells are joined, and which of them the VPLs shine in (shaders/walls/rooms.h); {0} without walls, or VPLs that see.
 tyn_result tyn_add_rooms(tyn_graph *g, const tyn_job *job, const tyn_lattice_shape *shape,
                          const tyn_wall_refs *walls, const tyn_vpl_refs *vpls, tyn_ref *rooms);

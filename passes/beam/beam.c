@@ -14,16 +14,11 @@ enum { MAX_CELLS = 160, MAX_COEFFICIENT_CELLS = 96, MAX_SAMPLES = 1024 };
 static const double unbounded = 1e6;
 
 static const tyn_port ports[BEAM_NUM_PORTS] = {
-    [BEAM_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "the scene's medium_block"},
-    [BEAM_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, true, "texture value of the medium"},
-    [BEAM_PORT_SIGMA_S] = {"sigma_s", TYN_IN, TYN_IMAGE_3D, 0, true, "scattering, 1/m"},
-    [BEAM_PORT_SIGMA_A] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, 0, true, "absorption, 1/m"},
-    [BEAM_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "mean cosine"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, BEAM),
     [BEAM_PORT_BEAMS] = {"beams", TYN_OUT, TYN_BUFFER, 0, false, "beam_block per sun: its grid"},
-    [BEAM_PORT_COLUMN] = {"column", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-                          "density integrated along the light, m (homogeneous: its mean)"},
-    [BEAM_PORT_TAU_S] = {"tau_s", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                         "sigma_s integrated along the light (homogeneous: mean, 1/m)"},
+    [BEAM_PORT_COLUMN] =
+        {"column", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
+         "density (or sigma_s) integrated along the light, m (homogeneous: its mean)"},
     [BEAM_PORT_TAU_A] = {"tau_a", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
                          "sigma_a integrated along the light, likewise"},
     [BEAM_PORT_TAU_P] = {"tau_p", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
@@ -33,35 +28,19 @@ static const tyn_port ports[BEAM_NUM_PORTS] = {
 enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
 
 static const tyn_binding density_bindings[] = {
-    {BEAM_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {BEAM_PORT_DENSITY, TYN_USE_SAMPLED},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, BEAM),
     {BEAM_PORT_BEAMS, TYN_USE_STORAGE_RW},
     {BEAM_PORT_COLUMN, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding coefficients_bindings[] = {
-    {BEAM_PORT_MEDIUM, TYN_USE_UNIFORM},      {BEAM_PORT_SIGMA_S, TYN_USE_SAMPLED},
-    {BEAM_PORT_SIGMA_A, TYN_USE_SAMPLED},     {BEAM_PORT_G, TYN_USE_SAMPLED},
-    {BEAM_PORT_BEAMS, TYN_USE_STORAGE_RW},    {BEAM_PORT_TAU_S, TYN_USE_STORAGE_WRITE},
-    {BEAM_PORT_TAU_A, TYN_USE_STORAGE_WRITE}, {BEAM_PORT_TAU_P, TYN_USE_STORAGE_WRITE},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, BEAM),         {BEAM_PORT_BEAMS, TYN_USE_STORAGE_RW},
+    {BEAM_PORT_COLUMN, TYN_USE_STORAGE_WRITE}, {BEAM_PORT_TAU_A, TYN_USE_STORAGE_WRITE},
+    {BEAM_PORT_TAU_P, TYN_USE_STORAGE_WRITE},
 };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = {"density",
-                        beam_density_spirv,
-                        sizeof(beam_density_spirv),
-                        0,
-                        {8, 8, 1},
-                        density_bindings,
-                        4,
-                        1},
-    [KERNEL_COEFFICIENTS] = {"coefficients",
-                             beam_coefficients_spirv,
-                             sizeof(beam_coefficients_spirv),
-                             0,
-                             {8, 8, 1},
-                             coefficients_bindings,
-                             8,
-                             1},
+    [KERNEL_DENSITY] = TYN_KERNEL(beam_density, 0, 8, 8, 1, density_bindings, 1),
+    [KERNEL_COEFFICIENTS] = TYN_KERNEL(beam_coefficients, 0, 8, 8, 1, coefficients_bindings, 1),
 };
 
 static const tyn_param params_table[] = {
@@ -242,7 +221,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
     if (p->mode == TYN_MEDIUM_DENSITY) {
         tyn_build_image(b, BEAM_PORT_COLUMN, extent, 1);
     } else {
-        tyn_build_image(b, BEAM_PORT_TAU_S, extent, 1);
+        tyn_build_format(b, BEAM_PORT_COLUMN, VK_FORMAT_R32G32B32A32_SFLOAT);
+        tyn_build_image(b, BEAM_PORT_COLUMN, extent, 1);
         tyn_build_image(b, BEAM_PORT_TAU_A, extent, 1);
         tyn_build_image(b, BEAM_PORT_TAU_P, extent, 1);
     }
@@ -256,8 +236,7 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_update(r, BEAM_PORT_BEAMS, 0, p->beams, sizeof(p->beams));
     // Slices and columns that no point reads are not computed, but rounding lets a fetch beside them give
     // them a weight of 1e-7: they must be finite.
-    static const uint8_t textures[] = {BEAM_PORT_COLUMN, BEAM_PORT_TAU_S, BEAM_PORT_TAU_A,
-                                       BEAM_PORT_TAU_P};
+    static const uint8_t textures[] = {BEAM_PORT_COLUMN, BEAM_PORT_TAU_A, BEAM_PORT_TAU_P};
     for (size_t i = 0; i < sizeof(textures); i++) {
         if (tyn_rec_has(r, textures[i])) {
             tyn_rec_clear(r, textures[i]);

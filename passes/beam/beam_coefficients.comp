@@ -2,21 +2,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define MEDIUM_SIGMA_A 2
-#define MEDIUM_G 3
-#include "medium.glsl"
-#include "beam_args.h"
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/beam_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 0, binding = 4, scalar) buffer beam_buffer
+layout(set = 0, binding = 5, scalar) buffer beam_buffer
 {
     beam_block beams[];
 };
-layout(set = 0, binding = 5, rgba32f) writeonly uniform image3D tau_s_image;
-layout(set = 0, binding = 6, rgba32f) writeonly uniform image3D tau_a_image;
-layout(set = 0, binding = 7, rgba32f) writeonly uniform image3D tau_p_image;
+layout(set = 0, binding = 6, rgba32f) writeonly uniform image3D tau_s_image;
+layout(set = 0, binding = 7, rgba32f) writeonly uniform image3D tau_a_image;
+layout(set = 0, binding = 8, rgba32f) writeonly uniform image3D tau_p_image;
 
 #define BEAM_VALUE mat3x4 // sigma_s, sigma_a, (1 - f) sigma_s; w is the mean of the channels
 

@@ -2,17 +2,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#include "medium.glsl"
-#include "beam_args.h"
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/beam_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 0, binding = 2, scalar) buffer beam_buffer
+layout(set = 0, binding = 5, scalar) buffer beam_buffer
 {
     beam_block beams[];
 };
-layout(set = 0, binding = 3, r32f) writeonly uniform image3D column_image;
+layout(set = 0, binding = 6, r32f) writeonly uniform image3D column_image;
 
 #define BEAM_VALUE float
 

@@ -9,11 +9,7 @@
 static const uint64_t max_bytes = 128u << 20, batch_bytes = 64u << 20;
 
 static const tyn_port ports[COLUMNS_NUM_PORTS] = {
-    [COLUMNS_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
-    [COLUMNS_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, false,
-                              "density, or sigma_s in mode COEFFICIENTS"},
-    [COLUMNS_PORT_SIGMA_A] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, 0, true, "absorption, 1/m"},
-    [COLUMNS_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "mean cosine"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, COLUMNS),
     [COLUMNS_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, false,
                                 "struct ordinates_block"},
     [COLUMNS_PORT_COLUMNS] =
@@ -26,48 +22,29 @@ static const tyn_port ports[COLUMNS_NUM_PORTS] = {
 enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, KERNEL_GATHER, NUM_KERNELS };
 
 static const tyn_binding density_bindings[] = {
-    {COLUMNS_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {COLUMNS_PORT_DENSITY, TYN_USE_SAMPLED},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, COLUMNS),
     {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM},
     {COLUMNS_PORT_NODES, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding coefficients_bindings[] = {
-    {COLUMNS_PORT_MEDIUM, TYN_USE_UNIFORM},    {COLUMNS_PORT_DENSITY, TYN_USE_SAMPLED},
-    {COLUMNS_PORT_SIGMA_A, TYN_USE_SAMPLED},   {COLUMNS_PORT_G, TYN_USE_SAMPLED},
-    {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM}, {COLUMNS_PORT_NODES, TYN_USE_STORAGE_WRITE},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, COLUMNS),
+    {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM},
+    {COLUMNS_PORT_NODES, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding gather_bindings[] = {
-    {COLUMNS_PORT_MEDIUM, TYN_USE_UNIFORM},        {COLUMNS_PORT_DENSITY, TYN_USE_SAMPLED},
-    {COLUMNS_PORT_SIGMA_A, TYN_USE_SAMPLED},       {COLUMNS_PORT_G, TYN_USE_SAMPLED},
-    {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM},     {COLUMNS_PORT_NODES, TYN_USE_STORAGE_READ},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, COLUMNS),
+    {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM},
+    {COLUMNS_PORT_NODES, TYN_USE_STORAGE_READ},
     {COLUMNS_PORT_COLUMNS, TYN_USE_STORAGE_WRITE},
 };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = {"density",
-                        columns_density_spirv,
-                        sizeof columns_density_spirv,
-                        sizeof(struct columns_args),
-                        {COLUMNS_GROUP, 1, 1},
-                        density_bindings,
-                        4,
-                        1},
-    [KERNEL_COEFFICIENTS] = {"coefficients",
-                             columns_coefficients_spirv,
-                             sizeof columns_coefficients_spirv,
-                             sizeof(struct columns_args),
-                             {COLUMNS_GROUP, 1, 1},
-                             coefficients_bindings,
-                             6,
-                             1},
-    [KERNEL_GATHER] = {"gather",
-                       columns_gather_spirv,
-                       sizeof columns_gather_spirv,
-                       sizeof(struct columns_args),
-                       {COLUMNS_GROUP, 1, 1},
-                       gather_bindings,
-                       7,
-                       1},
+    [KERNEL_DENSITY] = TYN_KERNEL(columns_density, sizeof(struct columns_args), COLUMNS_GROUP, 1, 1,
+                                  density_bindings, 1),
+    [KERNEL_COEFFICIENTS] = TYN_KERNEL(columns_coefficients, sizeof(struct columns_args),
+                                       COLUMNS_GROUP, 1, 1, coefficients_bindings, 1),
+    [KERNEL_GATHER] = TYN_KERNEL(columns_gather, sizeof(struct columns_args), COLUMNS_GROUP, 1, 1,
+                                 gather_bindings, 1),
 };
 
 static uint32_t components(const tyn_columns_params *p)

@@ -3,14 +3,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "ordinate_args.h"
-#include "columns_args.h"
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define MEDIUM_SIGMA_A 2
-#define MEDIUM_G 3
-#include "medium.glsl"
-#include "lattice.glsl"
+#include "shaders/light/ordinate_args.h"
+#include "shaders/beams/columns_args.h"
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
+#include "shaders/lattice/lattice.glsl"
 #include "columns_grid.glsl"
 
 layout(local_size_x = COLUMNS_GROUP) in;
@@ -18,11 +15,11 @@ layout(push_constant, scalar) uniform push
 {
     columns_args args;
 };
-layout(binding = 4, scalar) uniform ordinates_uniform
+layout(binding = 5, scalar) uniform ordinates_uniform
 {
     ordinates_block ordinates;
 };
-layout(binding = 5, scalar) writeonly buffer node_buffer
+layout(binding = 6, scalar) writeonly buffer node_buffer
 {
     float nodes[]; // [ordinate][component][slice][v][u]
 };

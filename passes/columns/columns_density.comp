@@ -2,12 +2,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "ordinate_args.h"
-#include "columns_args.h"
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#include "medium.glsl"
-#include "lattice.glsl"
+#include "shaders/light/ordinate_args.h"
+#include "shaders/beams/columns_args.h"
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
+#include "shaders/lattice/lattice.glsl"
 #include "columns_grid.glsl"
 
 layout(local_size_x = COLUMNS_GROUP) in;
@@ -15,11 +14,11 @@ layout(push_constant, scalar) uniform push
 {
     columns_args args;
 };
-layout(binding = 2, scalar) uniform ordinates_uniform
+layout(binding = 5, scalar) uniform ordinates_uniform
 {
     ordinates_block ordinates;
 };
-layout(binding = 3, scalar) writeonly buffer node_buffer
+layout(binding = 6, scalar) writeonly buffer node_buffer
 {
     float nodes[]; // [ordinate][slice][v][u]
 };

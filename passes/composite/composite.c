@@ -21,18 +21,8 @@ static const tyn_binding bindings[] = {
 enum { KERNEL_FLOAT = 0, KERNEL_HALF, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_FLOAT] = {.name = "composite_float",
-                      .spirv = composite_float_spirv,
-                      .spirv_size = sizeof(composite_float_spirv),
-                      .local_size = {8, 8, 1},
-                      .bindings = bindings,
-                      .num_bindings = 3},
-    [KERNEL_HALF] = {.name = "composite_half",
-                     .spirv = composite_half_spirv,
-                     .spirv_size = sizeof(composite_half_spirv),
-                     .local_size = {8, 8, 1},
-                     .bindings = bindings,
-                     .num_bindings = 3},
+    [KERNEL_FLOAT] = TYN_KERNEL(composite_float, 0, 8, 8, 1, bindings, 0),
+    [KERNEL_HALF] = TYN_KERNEL(composite_half, 0, 8, 8, 1, bindings, 0),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

@@ -1,7 +1,7 @@
 // env_glow.h -- the environment as it looks through a medium that scatters forward.
 #pragma once
 #include <tyndall/pass.h>
-#include "glow_args.h"
+#include "shaders/light/glow_args.h"
 
 typedef struct tyn_env_glow_params {
     float g[3]; // of the colour channels, in (-1, 1). Where g varies in space, the largest one that

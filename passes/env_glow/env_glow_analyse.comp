@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "glow_args.h"
+#include "shaders/light/glow_args.h"
 #include "legendre.glsl"
 
 const uint ROWS = TYN_GLOW_HEIGHT, HALF = TYN_GLOW_HEIGHT / 2, DEGREES = TYN_GLOW_HEIGHT;

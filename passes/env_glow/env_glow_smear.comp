@@ -4,7 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "glow_args.h"
+#include "shaders/light/glow_args.h"
 
 const uint ROWS = TYN_GLOW_HEIGHT, DEGREES = TYN_GLOW_HEIGHT, PAIRS = 4, THREADS = ROWS / 2 / PAIRS;
 layout(local_size_x = TYN_GLOW_HEIGHT / 8) in;

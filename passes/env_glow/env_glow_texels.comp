@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "glow_args.h"
+#include "shaders/light/glow_args.h"
 
 const uint ROWS = TYN_GLOW_HEIGHT, ORDERS = TYN_GLOW_HEIGHT, WIDTH = TYN_GLOW_WIDTH;
 const uint FOURS = 4, THREADS = WIDTH / 4 / FOURS;

@@ -1,7 +1,7 @@
 // env_importance_args.h -- push constants of env_importance. Included by C and GLSL.
 #ifndef TYN_ENV_IMPORTANCE_ARGS_H
 #define TYN_ENV_IMPORTANCE_ARGS_H
-#include "sky_args.h"
+#include "shaders/light/sky_args.h"
 
 struct env_importance_args {
     tyn_uint num_suns;

@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "sky.glsl"
+#include "shaders/light/sky.glsl"
 
 layout(local_size_x = 64) in;
 layout(binding = 0, scalar) buffer sums_buffer

@@ -1,6 +1,6 @@
 // gbuffer.c -- the surfaces drawn as the camera sees them.
 #include "gbuffer.h"
-#include "gbuffer_edge_args.h"
+#include "shaders/surfaces/gbuffer_edge_args.h"
 #include "gbuffer_mixed.comp.h"
 #include "gbuffer_fragment.frag.h"
 #include "gbuffer_resolve.comp.h"
@@ -8,15 +8,8 @@
 
 static const tyn_port ports[GBUFFER_NUM_PORTS] = {
     [GBUFFER_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "struct camera_block"},
-    [GBUFFER_PORT_SURFACES] = {"surfaces", TYN_IN, TYN_BUFFER, 0, false, "struct surface_block"},
-    [GBUFFER_PORT_TRIANGLES] = {"triangles", TYN_IN, TYN_BUFFER, 0, false,
-                                "struct surface_triangle[]"},
-    [GBUFFER_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, false, "struct surface_vertex[]"},
-    [GBUFFER_PORT_MATERIALS] = {"materials", TYN_IN, TYN_BUFFER, 0, false,
-                                "struct surface_material[]"},
-    [GBUFFER_PORT_TEXTURES] = {"textures", TYN_IN, TYN_BUFFER, 0, false,
-                               "struct surface_texture[]"},
-    [GBUFFER_PORT_TEXELS] = {"texels", TYN_IN, TYN_BUFFER, 0, false, "uint[]: R8 G8 B8 A8, sRGB"},
+    TYN_GEOMETRY(TYN_BUNDLE_IN, GBUFFER),
+    TYN_MATERIALS(TYN_BUNDLE_IN, GBUFFER),
     [GBUFFER_PORT_DISTANCES] = {"distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false,
                                 "along the rays of a pixel's samples, m; 0: no surface"},
     [GBUFFER_PORT_FACING] = {"facing", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_UINT, false,
@@ -37,15 +30,11 @@ static const tyn_port ports[GBUFFER_NUM_PORTS] = {
                             "reversed"},
 };
 
-// The drawing kernel has the first four, that of single triangles all but the last two.
+// The drawing kernel has the camera and the geometry, that of single triangles all but the last two.
 static const tyn_binding bindings[] = {
     {GBUFFER_PORT_CAMERA, TYN_USE_UNIFORM, false},
-    {GBUFFER_PORT_SURFACES, TYN_USE_UNIFORM, false},
-    {GBUFFER_PORT_TRIANGLES, TYN_USE_STORAGE_READ, false},
-    {GBUFFER_PORT_VERTICES, TYN_USE_STORAGE_READ, false},
-    {GBUFFER_PORT_MATERIALS, TYN_USE_STORAGE_READ, false},
-    {GBUFFER_PORT_TEXTURES, TYN_USE_STORAGE_READ, false},
-    {GBUFFER_PORT_TEXELS, TYN_USE_STORAGE_READ, false},
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, GBUFFER),
+    TYN_MATERIALS(TYN_BUNDLE_BIND, GBUFFER),
     {GBUFFER_PORT_SEEN, TYN_USE_STORAGE_READ, false},
     {GBUFFER_PORT_DISTANCES, TYN_USE_STORAGE_WRITE, false},
     {GBUFFER_PORT_FACING, TYN_USE_STORAGE_WRITE, false},
@@ -77,7 +66,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                      .spirv = gbuffer_vertex_spirv,
                      .spirv_size = sizeof(gbuffer_vertex_spirv),
                      .bindings = bindings,
-                     .num_bindings = 4,
+                     .num_bindings = 5,
                      .raster = &raster},
     [KERNEL_RESOLVE] = {.name = "gbuffer_resolve",
                         .spirv = gbuffer_resolve_spirv,
@@ -86,13 +75,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                         .local_size = {8, 8, 1},
                         .bindings = bindings,
                         .num_bindings = sizeof(bindings) / sizeof(bindings[0]) - 2},
-    [KERNEL_MIXED] = {.name = "gbuffer_mixed",
-                      .spirv = gbuffer_mixed_spirv,
-                      .spirv_size = sizeof(gbuffer_mixed_spirv),
-                      .num_spec = 3,
-                      .local_size = {GBUFFER_EDGES, 1, 1},
-                      .bindings = bindings,
-                      .num_bindings = sizeof(bindings) / sizeof(bindings[0])},
+    [KERNEL_MIXED] = TYN_KERNEL(gbuffer_mixed, 0, GBUFFER_EDGES, 1, 1, bindings, 3),
 };
 
 static const tyn_param params_table[] = {

@@ -1,6 +1,7 @@
 // gbuffer.h -- the surfaces that the camera sees: where, which way they face, what they reflect and emit.
 #pragma once
 #include <tyndall/pass.h>
+#include "shaders/common/bundles.h"
 
 typedef struct tyn_gbuffer_params {
     int32_t samples;  // "gbuffer.samples"
@@ -12,16 +13,12 @@ typedef struct tyn_gbuffer_params {
 } tyn_gbuffer_params;
 
 enum {
-    GBUFFER_PORT_CAMERA,    // IN buffer struct camera_block
-    GBUFFER_PORT_SURFACES,  // IN buffer struct surface_block
-    GBUFFER_PORT_TRIANGLES, // IN buffers, surface_args.h
-    GBUFFER_PORT_VERTICES,
-    GBUFFER_PORT_MATERIALS,
-    GBUFFER_PORT_TEXTURES,
-    GBUFFER_PORT_TEXELS,
-    GBUFFER_PORT_DISTANCES, // OUT 2D R32F: gbuffer.glsl, as the two below
-    GBUFFER_PORT_FACING,    // OUT 2D RGBA32UI
-    GBUFFER_PORT_COLOURS,   // OUT 2D RGBA32UI
+    GBUFFER_PORT_CAMERA,                     // IN buffer struct camera_block
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, GBUFFER),  // IN
+    TYN_MATERIALS(TYN_BUNDLE_ENUM, GBUFFER), // IN
+    GBUFFER_PORT_DISTANCES,                  // OUT 2D R32F: gbuffer.glsl, as the two below
+    GBUFFER_PORT_FACING,                     // OUT 2D RGBA32UI
+    GBUFFER_PORT_COLOURS,                    // OUT 2D RGBA32UI
     // OUT buffers, gbuffer_edge_args.h: pixels that show several pieces of surface.
     GBUFFER_PORT_EDGE_COUNT,
     GBUFFER_PORT_EDGES,

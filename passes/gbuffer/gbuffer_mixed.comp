@@ -7,11 +7,11 @@
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
-layout(set = 0, binding = 13, scalar) buffer edge_count_buffer
+layout(set = 0, binding = 14, scalar) buffer edge_count_buffer
 {
     gbuffer_edge_count edge_count;
 };
-layout(set = 0, binding = 14, scalar) writeonly buffer edges_buffer
+layout(set = 0, binding = 15, scalar) writeonly buffer edges_buffer
 {
     uint edges[];
 };

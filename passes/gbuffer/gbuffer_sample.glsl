@@ -1,8 +1,8 @@
 // gbuffer_sample.glsl -- what both steps of the G-buffer that follow the drawing read and write.
 #ifndef GBUFFER_SAMPLE_GLSL
 #define GBUFFER_SAMPLE_GLSL
-#include "scene_args.h"
-#include "gbuffer_edges.glsl"
+#include "shaders/common/scene_args.h"
+#include "shaders/surfaces/gbuffer_edges.glsl"
 
 layout(constant_id = 0) const uint textured = 1u;
 layout(constant_id = 1) const int samples = 2; // along each side of a pixel
@@ -11,24 +11,20 @@ layout(set = 0, binding = 0, scalar) uniform camera_buffer
 {
     camera_block camera;
 };
-#define GBUFFER_SURFACES 1
-#define GBUFFER_TRIANGLES 2
-#define GBUFFER_VERTICES 3
-#define GBUFFER_MATERIALS 4
-#define SURFACE_TEXTURES 5
-#define SURFACE_TEXELS 6
+#define GEOMETRY_AT 1
+#define MATERIALS_AT 5
 #define GBUFFER_TEXTURED (textured != 0u)
 #define GBUFFER_SAMPLES samples
-#include "gbuffer_triangle.glsl"
-layout(set = 0, binding = 7, r32ui) uniform readonly uimage2D seen;
-layout(set = 0, binding = 8, r32f) uniform writeonly image2D distance_image;
-layout(set = 0, binding = 9, rgba32ui) uniform writeonly uimage2D facing_image;
-layout(set = 0, binding = 10, rgba32ui) uniform writeonly uimage2D colour_image;
-layout(set = 0, binding = 11, scalar) buffer mixed_count_buffer
+#include "shaders/surfaces/gbuffer_triangle.glsl"
+layout(set = 0, binding = 8, r32ui) uniform readonly uimage2D seen;
+layout(set = 0, binding = 9, r32f) uniform writeonly image2D distance_image;
+layout(set = 0, binding = 10, rgba32ui) uniform writeonly uimage2D facing_image;
+layout(set = 0, binding = 11, rgba32ui) uniform writeonly uimage2D colour_image;
+layout(set = 0, binding = 12, scalar) buffer mixed_count_buffer
 {
     gbuffer_edge_count mixed_count;
 };
-layout(set = 0, binding = 12, scalar) buffer mixed_buffer // as edges, of pixels whose samples see several triangles
+layout(set = 0, binding = 13, scalar) buffer mixed_buffer // as edges, of pixels whose samples see several triangles
 {
     uint mixed[];
 };

@@ -5,26 +5,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "camera.glsl"
-#include "surface_args.h"
-#include "surface_frame.glsl"
+#include "shaders/common/camera.glsl"
+#include "shaders/surfaces/surface_args.h"
+#include "shaders/surfaces/surface_frame.glsl"
 
 layout(set = 0, binding = 0, scalar) uniform camera_buffer
 {
     camera_block camera;
 };
-layout(set = 0, binding = 1, scalar) uniform surfaces_buffer
-{
-    surface_block surfaces;
-};
-layout(set = 0, binding = 2, scalar) readonly buffer triangles_buffer
-{
-    surface_triangle triangles[];
-};
-layout(set = 0, binding = 3, scalar) readonly buffer vertices_buffer
-{
-    surface_vertex vertices[];
-};
+#define GEOMETRY_AT 1
+#include "shaders/surfaces/surfaces.glsl"
 
 layout(location = 0) flat out uint triangle;
 

@@ -6,18 +6,13 @@
 #include "importance_send.comp.h"
 #include "importance_setup.comp.h"
 #include "importance_step.comp.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 
 #define PORT(name) IMPORTANCE_PORT_##name
 
 static const tyn_port ports[IMPORTANCE_NUM_PORTS] = {
-    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, IMPORTANCE),
     [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
-    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
-    [PORT(SIGMA_A)] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                       .meaning = "absorption, 1/m"},
-    [PORT(G)] = {"g", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                 .meaning = "mean cosine of scattering"},
     [PORT(HISTORY)] = {"history", TYN_INOUT, TYN_BUFFER, .meaning = "struct importance_history"},
     [PORT(MAP)] = {"importance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
                    .meaning = "importance by the direction light comes from, mean 1"},
@@ -42,10 +37,9 @@ static const tyn_binding setup_bindings[] = {
     {PORT(GRID), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding cells_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},      {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},     {PORT(G), TYN_USE_SAMPLED},
-    {PORT(GRID), TYN_USE_UNIFORM},        {PORT(CELLS), TYN_USE_STORAGE_WRITE},
-    {PORT(LIGHT), TYN_USE_STORAGE_WRITE}, {PORT(TRACKS), TYN_USE_STORAGE_WRITE},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, IMPORTANCE), {PORT(GRID), TYN_USE_UNIFORM},
+    {PORT(CELLS), TYN_USE_STORAGE_WRITE},    {PORT(LIGHT), TYN_USE_STORAGE_WRITE},
+    {PORT(TRACKS), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding step_bindings[] = {
     {PORT(CELLS), TYN_USE_STORAGE_READ},
@@ -71,17 +65,14 @@ static const tyn_binding map_bindings[] = {
 };
 
 #define KERNEL(step, x, y, z, specs)                                                               \
-    .name = "importance_" #step, .spirv = importance_##step##_spirv,                               \
-    .spirv_size = sizeof importance_##step##_spirv, .args_size = sizeof(struct importance_args),   \
-    .local_size = {x, y, z}, .bindings = step##_bindings,                                          \
-    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
+    TYN_KERNEL(importance_##step, sizeof(struct importance_args), x, y, z, step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = {KERNEL(setup, 1, 1, 1, 0)},
-    [CELLS] = {KERNEL(cells, 4, 4, 4, 1)},
-    [STEP] = {KERNEL(step, 4, 4, 4, 0)},
-    [FIELD] = {KERNEL(field, 4, 4, 4, 0)},
-    [SEND] = {KERNEL(send, TYN_IMPORTANCE_RAYS, 8, 1, 0)},
-    [MAP] = {KERNEL(map, TYN_IMPORTANCE_TEXELS, 1, 1, 0)},
+    [SETUP] = KERNEL(setup, 1, 1, 1, 0),
+    [CELLS] = KERNEL(cells, 4, 4, 4, 1),
+    [STEP] = KERNEL(step, 4, 4, 4, 0),
+    [FIELD] = KERNEL(field, 4, 4, 4, 0),
+    [SEND] = KERNEL(send, TYN_IMPORTANCE_RAYS, 8, 1, 0),
+    [MAP] = KERNEL(map, TYN_IMPORTANCE_TEXELS, 1, 1, 0),
 };
 
 #define FIELD_OF(name) offsetof(tyn_importance_params, name)

@@ -6,6 +6,7 @@
 // background out of ordinates.
 #pragma once
 #include <tyndall/pass.h>
+#include "shaders/common/bundles.h"
 #include "importance_args.h"
 
 typedef struct tyn_importance_params {
@@ -21,12 +22,9 @@ typedef struct tyn_importance_params {
 } tyn_importance_params;
 
 enum {
-    IMPORTANCE_PORT_MEDIUM,  // IN buffer struct medium_block
-    IMPORTANCE_PORT_CAMERA,  // IN buffer struct camera_block
-    IMPORTANCE_PORT_DENSITY, // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
-    IMPORTANCE_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as g
-    IMPORTANCE_PORT_G,
-    IMPORTANCE_PORT_HISTORY, // INOUT buffer struct importance_history
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, IMPORTANCE), // IN
+    IMPORTANCE_PORT_CAMERA,                  // IN buffer struct camera_block
+    IMPORTANCE_PORT_HISTORY,                 // INOUT buffer struct importance_history
     IMPORTANCE_PORT_MAP, // OUT 2D R32F: importance by the direction light comes from, latitude and
                          // longitude of M (environment_uv); mean over the sphere 1
     // OUT 3D RGBA32F, the grid: importance scattered, 1/m^3 per picture; times its mean cosine

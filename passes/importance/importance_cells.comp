@@ -3,18 +3,15 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define MEDIUM_SIGMA_A 2
-#define MEDIUM_G 3
-#include "medium.glsl"
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
 #include "importance.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 4, scalar) uniform grid_uniform { importance_grid grid; };
-layout(set = 0, binding = 5, scalar) writeonly buffer cells_buffer { importance_cell cells[]; };
-layout(set = 0, binding = 6, scalar) writeonly buffer light_buffer { importance_light light[]; };
-layout(set = 0, binding = 7, scalar) writeonly buffer tracks_buffer { vec2 tracks[]; };
+layout(set = 0, binding = 5, scalar) uniform grid_uniform { importance_grid grid; };
+layout(set = 0, binding = 6, scalar) writeonly buffer cells_buffer { importance_cell cells[]; };
+layout(set = 0, binding = 7, scalar) writeonly buffer light_buffer { importance_light light[]; };
+layout(set = 0, binding = 8, scalar) writeonly buffer tracks_buffer { vec2 tracks[]; };
 layout(push_constant, scalar) uniform push { importance_args args; };
 
 const int SAMPLES = 3; // along each edge of a cell

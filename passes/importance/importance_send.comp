@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "camera.glsl"
+#include "shaders/common/camera.glsl"
 #include "importance.glsl"
 
 layout(local_size_x = TYN_IMPORTANCE_RAYS, local_size_y = 8) in;

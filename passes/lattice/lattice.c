@@ -1,7 +1,7 @@
 // lattice.c -- the solve: sweeps, each followed by a diffusion correction and Anderson mixing.
 #include "lattice.h"
-#include "lattice_args.h"
-#include "counters.h"
+#include "shaders/lattice/lattice_args.h"
+#include "shaders/common/counters.h"
 #include "lattice_start.comp.h"
 #include "lattice_stencil.comp.h"
 #include "lattice_stencil_coarse.comp.h"
@@ -47,8 +47,7 @@ static const tyn_port ports[NUM_PORTS] = {
     [LATTICE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
                                   "struct env_block: its mean without suns enters at the box"},
     [LATTICE_PORT_GUESS] = {"guess", TYN_IN, TYN_BUFFER, 0, true, "moments to start from"},
-    [LATTICE_PORT_WALL_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
-    [LATTICE_PORT_WALL_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
+    TYN_WALLS(TYN_BUNDLE_OPTIONAL, LATTICE),
     [LATTICE_PORT_WALL_LIGHT] = {"wall_light", TYN_IN, TYN_BUFFER, 0, true,
                                  "radiance that the walls of a cell send out, W/(m^2 sr)"},
     [LATTICE_PORT_MOMENTS] =
@@ -107,9 +106,10 @@ static const tyn_binding start_bindings[] = {
     {LATTICE_PORT_WALL_LIGHT, TYN_USE_STORAGE_READ},
 };
 static const tyn_binding stencil_bindings[] = {
-    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},          {PORT_STENCIL_LO, TYN_USE_STORAGE_WRITE},
-    {PORT_STENCIL_HI, TYN_USE_STORAGE_WRITE},       {LATTICE_PORT_WALL_LINKS, TYN_USE_TEXELS_UINT},
-    {LATTICE_PORT_WALL_CELLS, TYN_USE_TEXELS_VEC4},
+    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
+    {PORT_STENCIL_LO, TYN_USE_STORAGE_WRITE},
+    {PORT_STENCIL_HI, TYN_USE_STORAGE_WRITE},
+    TYN_WALLS(TYN_BUNDLE_BIND, LATTICE),
 };
 static const tyn_binding stencil_coarse_bindings[] = {
     {PORT_STENCIL_LO, TYN_USE_STORAGE_WRITE},
@@ -137,8 +137,7 @@ static const tyn_binding collect_bindings[] = {
     {PORT_ARRIVED, TYN_USE_TEXELS_FLOAT},
     {LATTICE_PORT_WALL_LIGHT, TYN_USE_STORAGE_READ},
     {LATTICE_PORT_WALL_POWER, TYN_USE_STORAGE_WRITE},
-    {LATTICE_PORT_WALL_LINKS, TYN_USE_TEXELS_UINT},
-    {LATTICE_PORT_WALL_CELLS, TYN_USE_TEXELS_VEC4},
+    TYN_WALLS(TYN_BUNDLE_BIND, LATTICE),
     {PORT_STENCIL_HI, TYN_USE_TEXELS_FLOAT},
 };
 static const tyn_binding relax_bindings[] = {
@@ -199,11 +198,8 @@ static const tyn_binding mix_bindings[] = {
     {LATTICE_PORT_WALL_POWER, TYN_USE_STORAGE_RW},
 };
 
-#define KERNEL(name, args, spec, x, y, z)                                                          \
-    {                                                                                              \
-#name, lattice_##name##_spirv, sizeof lattice_##name##_spirv, sizeof(struct args),         \
-            {x, y, z }, name##_bindings, sizeof name##_bindings / sizeof name##_bindings[0], spec  \
-    }
+#define KERNEL(step, args, specs, x, y, z)                                                         \
+    TYN_KERNEL(lattice_##step, sizeof(struct args), x, y, z, step##_bindings, specs)
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_START] = KERNEL(start, lattice_args, 2, 8, 4, 2),

@@ -9,7 +9,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "lattice_args.h"
+#include "shaders/lattice/lattice_args.h"
 
 layout(local_size_x = LATTICE_GROUP) in;
 layout(push_constant, scalar) uniform push

@@ -6,8 +6,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #extension GL_EXT_scalar_block_layout : require
-#include "lattice_args.h"
-#include "quotient.glsl"
+#include "shaders/lattice/lattice_args.h"
+#include "shaders/common/quotient.glsl"
 #include "lattice_levels.glsl"
 #define LATTICE_STENCIL_LO 0
 #define LATTICE_STENCIL_HI 1

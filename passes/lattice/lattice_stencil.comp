@@ -2,8 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "lattice_args.h"
-#include "quotient.glsl"
+#include "shaders/lattice/lattice_args.h"
+#include "shaders/common/quotient.glsl"
 #include "lattice_stencil.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;

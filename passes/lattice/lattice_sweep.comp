@@ -7,9 +7,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "lattice_args.h"
+#include "shaders/lattice/lattice_args.h"
 #define LATTICE_ENVIRONMENT 0
-#include "lattice_unhindered.glsl"
+#include "shaders/lattice/lattice_unhindered.glsl"
 
 layout(local_size_x = LATTICE_SWEEP_GROUP) in;
 layout(push_constant, scalar) uniform push
@@ -34,7 +34,7 @@ layout(binding = 6, scalar) writeonly buffer arrived_buffer
 };
 #define LATTICE_WALL_LINKS 7
 #include "lattice_wall_state.glsl"
-#include "walls_links.glsl"
+#include "shaders/walls/walls_links.glsl"
 layout(constant_id = 0) const uint walls = 0;
 layout(constant_id = 1) const uint periodic = 0; // some axes are
 

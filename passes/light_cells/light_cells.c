@@ -5,8 +5,7 @@
 #include <math.h>
 
 static const tyn_port ports[LIGHT_CELLS_NUM_PORTS] = {
-    [LIGHT_CELLS_PORT_ATLAS] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, 0, false, "of shadow_map"},
-    [LIGHT_CELLS_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, false, "of shadow_map"},
+    TYN_SHADOWS(TYN_BUNDLE_IN, LIGHT_CELLS),
     [LIGHT_CELLS_PORT_BLOCKS] = {"blocks", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32G32_SFLOAT,
                                  false, "least and greatest depth in blocks of the atlas"},
     [LIGHT_CELLS_PORT_CELLS] = {"light_cells", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
@@ -14,7 +13,7 @@ static const tyn_port ports[LIGHT_CELLS_NUM_PORTS] = {
 };
 
 static const tyn_binding blocks_bindings[] = {
-    {LIGHT_CELLS_PORT_ATLAS, TYN_USE_SAMPLED, false},
+    {LIGHT_CELLS_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED, false},
     {LIGHT_CELLS_PORT_BLOCKS, TYN_USE_STORAGE_WRITE, false},
     {LIGHT_CELLS_PORT_BLOCKS, TYN_USE_STORAGE_WRITE, false},
     {LIGHT_CELLS_PORT_BLOCKS, TYN_USE_STORAGE_WRITE, false},
@@ -29,20 +28,9 @@ static const tyn_binding see_bindings[] = {
 enum { KERNEL_BLOCKS, KERNEL_SEE, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_BLOCKS] = {.name = "light_cells_blocks",
-                       .spirv = light_cells_blocks_spirv,
-                       .spirv_size = sizeof light_cells_blocks_spirv,
-                       .local_size = {8, 8, 1},
-                       .bindings = blocks_bindings,
-                       .num_bindings = 1 + LIGHT_CELLS_LEVELS},
-    [KERNEL_SEE] = {.name = "light_cells_see",
-                    .spirv = light_cells_see_spirv,
-                    .spirv_size = sizeof light_cells_see_spirv,
-                    .args_size = sizeof(struct light_cells_args),
-                    .local_size = {4, 4, 4},
-                    .bindings = see_bindings,
-                    .num_bindings = 3,
-                    .num_spec = 2},
+    [KERNEL_BLOCKS] = TYN_KERNEL(light_cells_blocks, 0, 8, 8, 1, blocks_bindings, 0),
+    [KERNEL_SEE] =
+        TYN_KERNEL(light_cells_see, sizeof(struct light_cells_args), 4, 4, 4, see_bindings, 2),
 };
 
 static const tyn_param params_table[] = {
@@ -75,7 +63,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
 {
     const struct light_cells_args args = args_of(params);
     tyn_build_image(b, LIGHT_CELLS_PORT_BLOCKS,
-                    blocks_of(tyn_build_extent(b, LIGHT_CELLS_PORT_ATLAS)), LIGHT_CELLS_LEVELS);
+                    blocks_of(tyn_build_extent(b, LIGHT_CELLS_PORT_SHADOW_ATLAS)),
+                    LIGHT_CELLS_LEVELS);
     tyn_build_image(b, LIGHT_CELLS_PORT_CELLS,
                     (tyn_extent){args.dims[0], args.dims[1], args.dims[2]}, 1);
     return TYN_OK;

@@ -2,7 +2,8 @@
 // maps is needed there.
 #pragma once
 #include <tyndall/pass.h>
-#include "light_cells_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/light/light_cells_args.h"
 
 typedef struct tyn_light_cells_params {
     int32_t cells; // "light_cells.cells"
@@ -12,8 +13,7 @@ typedef struct tyn_light_cells_params {
 } tyn_light_cells_params;
 
 enum {
-    LIGHT_CELLS_PORT_ATLAS,   // IN 2D D32: of shadow_map, as the next
-    LIGHT_CELLS_PORT_SHADOWS, // IN buffer struct shadow_light[]
+    TYN_SHADOWS(TYN_BUNDLE_ENUM, LIGHT_CELLS), // IN
     // SCRATCH 2D RG32F, with mips: least and greatest depth in blocks of the atlas
     LIGHT_CELLS_PORT_BLOCKS,
     LIGHT_CELLS_PORT_CELLS, // OUT 3D R32F: light_cells_args.h

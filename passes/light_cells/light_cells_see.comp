@@ -2,11 +2,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "light_cells_args.h"
+#include "shaders/light/light_cells_args.h"
 
 #define SHADOW_BLOCKS 0
 #define SHADOW_LIGHTS 1
-#define SHADOW_UNIFORM
 #include "shadow_region.glsl"
 
 layout(constant_id = 0) const uint num_suns = 1u;

@@ -12,9 +12,7 @@ static const tyn_port ports[MEDIUM_NUM_PORTS] = {
     [MEDIUM_PORT_SHAPES] = {"shapes", TYN_IN, TYN_BUFFER, 0, false, "shape_block per shape"},
     [MEDIUM_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "the scene's medium_block"},
     [MEDIUM_PORT_DENSITY] = {"density", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-                             "mean density per voxel"},
-    [MEDIUM_PORT_SIGMA_S] = {"sigma_s", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                             "scattering, 1/m; a = mean of the channels"},
+                             "mean density per voxel; or sigma_s, 1/m, a = mean of the channels"},
     [MEDIUM_PORT_SIGMA_A] = {"sigma_a", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
                              "absorption, 1/m; a = mean of the channels"},
     [MEDIUM_PORT_G] = {"g", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
@@ -46,7 +44,7 @@ static const tyn_binding density_bindings[] = {
 };
 static const tyn_binding coefficients_bindings[] = {
     {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},        {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
-    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},         {MEDIUM_PORT_SIGMA_S, TYN_USE_STORAGE_WRITE},
+    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},         {MEDIUM_PORT_DENSITY, TYN_USE_STORAGE_WRITE},
     {MEDIUM_PORT_SIGMA_A, TYN_USE_STORAGE_WRITE}, {MEDIUM_PORT_G, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding emission_bindings[] = {
@@ -67,19 +65,15 @@ static const tyn_binding distance_bindings[] = {
     {MEDIUM_PORT_DISTANCE, TYN_USE_STORAGE_WRITE},
 };
 
-#define KERNEL(name, args, ...)                                                                    \
-    {                                                                                              \
-#name, medium_##name##_spirv, sizeof(medium_##name##_spirv), sizeof(struct args),          \
-            {__VA_ARGS__ }, name##_bindings, sizeof(name##_bindings) / sizeof(name##_bindings[0]), \
-             0                                                                                     \
-    }
+#define KERNEL(step, args)                                                                         \
+    TYN_KERNEL(medium_##step, sizeof(struct args), 4, 4, 4, step##_bindings, 0)
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = KERNEL(density, resample_args, 4, 4, 4),
-    [KERNEL_COEFFICIENTS] = KERNEL(coefficients, resample_args, 4, 4, 4),
-    [KERNEL_EMISSION] = KERNEL(emission, resample_args, 4, 4, 4),
-    [KERNEL_BRICKS] = KERNEL(bricks, bricks_args, 4, 4, 4),
-    [KERNEL_DISTANCE] = KERNEL(distance, distance_args, 4, 4, 4),
+    [KERNEL_DENSITY] = KERNEL(density, resample_args),
+    [KERNEL_COEFFICIENTS] = KERNEL(coefficients, resample_args),
+    [KERNEL_EMISSION] = KERNEL(emission, resample_args),
+    [KERNEL_BRICKS] = KERNEL(bricks, bricks_args),
+    [KERNEL_DISTANCE] = KERNEL(distance, distance_args),
 };
 
 static const char *const storages[] = {"auto", "half", "float"};
@@ -106,7 +100,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
         }
     }
     if (p->mode == TYN_MEDIUM_COEFFICIENTS) {
-        tyn_build_image(b, MEDIUM_PORT_SIGMA_S, size, 1);
+        tyn_build_format(b, MEDIUM_PORT_DENSITY, VK_FORMAT_R32G32B32A32_SFLOAT);
+        tyn_build_image(b, MEDIUM_PORT_DENSITY, size, 1);
         tyn_build_image(b, MEDIUM_PORT_SIGMA_A, size, 1);
         tyn_build_image(b, MEDIUM_PORT_G, size, 1);
         if (p->emissive) {

@@ -4,7 +4,8 @@
 // voxels, and nothing else reads the medium coarser.
 #pragma once
 #include <tyndall/pass.h>
-#include "scene_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/common/scene_args.h"
 
 enum { TYN_MEDIUM_STORAGE_AUTO, TYN_MEDIUM_STORAGE_HALF, TYN_MEDIUM_STORAGE_FLOAT };
 
@@ -19,15 +20,10 @@ typedef struct tyn_medium_params {
 } tyn_medium_params;
 
 enum {
-    MEDIUM_PORT_ATLAS,   // IN 3D
-    MEDIUM_PORT_SHAPES,  // IN buffer struct shape_block[]
-    MEDIUM_PORT_MEDIUM,  // IN buffer struct medium_block
-    MEDIUM_PORT_DENSITY, // OUT 3D R32F: mode DENSITY, not direct
-    MEDIUM_PORT_SIGMA_S, // OUT 3D RGBA32F: mode COEFFICIENTS, 1/m; a = mean of the channels
-    MEDIUM_PORT_SIGMA_A, // OUT 3D RGBA32F: mode COEFFICIENTS, 1/m; a = mean of the channels
-    MEDIUM_PORT_G, // OUT 3D RGBA32F: mode COEFFICIENTS, sigma_s-weighted; a = over the channels
-    MEDIUM_PORT_EMISSION, // OUT 3D RGBA32F: mode COEFFICIENTS and emissive, W/(m^3 sr)
-    MEDIUM_PORT_BRICKS,   // OUT 3D RG32F: least and largest value over the brick: texture values
+    MEDIUM_PORT_ATLAS,                   // IN 3D
+    MEDIUM_PORT_SHAPES,                  // IN buffer struct shape_block[]
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, MEDIUM), // the block IN, the rest OUT
+    MEDIUM_PORT_BRICKS, // OUT 3D RG32F: least and largest value over the brick: texture values
     // (DENSITY), sigma_t of the largest channel in 1/m (COEFFICIENTS). Holds for
     // the trilinear textures and for the exact shapes
     MEDIUM_PORT_DISTANCE, // OUT 3D R32F: Chebyshev distance in bricks to the nearest brick that is not

@@ -1,7 +1,7 @@
 // medium_args.h -- push constants of the medium pass. Included by C and GLSL.
 #ifndef TYN_MEDIUM_ARGS_H
 #define TYN_MEDIUM_ARGS_H
-#include "shared.h"
+#include "shaders/common/shared.h"
 
 struct resample_args {
     tyn_uint samples; // per axis of a voxel at the edge of a shape

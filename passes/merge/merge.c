@@ -1,7 +1,7 @@
 // merge.c -- the light field of the lattice and of the ordinates for one view.
 #include "merge.h"
 #include "merge_args.h"
-#include "counters.h"
+#include "shaders/common/counters.h"
 #include "merge_cells.comp.h"
 #include "merge_ordinates.comp.h"
 #include "merge_radials.comp.h"
@@ -13,20 +13,12 @@ static const tyn_port ports[MERGE_NUM_PORTS] = {
     [MERGE_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "struct camera_block"},
     [MERGE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
     [MERGE_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
-    [MERGE_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, true, "struct ordinates_block"},
-    [MERGE_PORT_COLUMNS] = {"columns", TYN_IN, TYN_BUFFER, 0, true,
-                            "optical depths along the ordinates"},
+    TYN_COLUMNS(TYN_BUNDLE_OPTIONAL, MERGE),
     [MERGE_PORT_TMS] = {"tms", TYN_IN, TYN_IMAGE_3D, 0, true, "kernels, of scatter_lut"},
     [MERGE_PORT_LUT_BLOCK] = {"lut_block", TYN_IN, TYN_BUFFER, 0, true, "struct lut_block"},
-    [MERGE_PORT_RADIALS] = {"radials", TYN_IN, TYN_BUFFER, 0, true, "struct radial_block"},
-    [MERGE_PORT_RADIAL_COLUMN] = {"radial_column", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                  "mean density (or sigma_s) on the way from local lights"},
-    [MERGE_PORT_RADIAL_TAU_A] = {"radial_tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "mean sigma_a"},
-    [MERGE_PORT_RADIAL_TAU_P] = {"radial_tau_p", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                 "mean (1 - f) sigma_s"},
+    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, MERGE),
     [MERGE_PORT_LUT] = {"lut", TYN_IN, TYN_IMAGE_2D, 0, true, "forward scattering, of scatter_lut"},
-    [MERGE_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, 0, true, "of shadow_map"},
-    [MERGE_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, true, "of shadow_map"},
+    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, MERGE),
     [MERGE_PORT_VPL_LIGHT] = {"vpl_light", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_lamps"},
     [MERGE_PORT_INSCATTER] = {"inscatter", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                               false,
@@ -47,19 +39,16 @@ static const tyn_binding cells_bindings[] = {
 
 static const tyn_binding ordinates_bindings[] = {
     {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},    {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
-    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},     {MERGE_PORT_CELLS, TYN_USE_SAMPLED},
-    {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},  {MERGE_PORT_COLUMNS, TYN_USE_STORAGE_READ},
-    {MERGE_PORT_TMS, TYN_USE_SAMPLED},       {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},
-    {MERGE_PORT_ORDINATES, TYN_USE_UNIFORM},
+    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},     {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},
+    TYN_COLUMNS(TYN_BUNDLE_BIND, MERGE),     {MERGE_PORT_TMS, TYN_USE_SAMPLED},
+    {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},
 };
 
 static const tyn_binding radials_bindings[] = {
-    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},       {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
-    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},        {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},
-    {MERGE_PORT_RADIALS, TYN_USE_STORAGE_READ}, {MERGE_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED},
-    {MERGE_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED}, {MERGE_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED},
-    {MERGE_PORT_LUT, TYN_USE_SAMPLED},          {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},
-    {MERGE_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED}, {MERGE_PORT_SHADOWS, TYN_USE_STORAGE_READ},
+    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},        {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
+    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},         {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},
+    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, MERGE), {MERGE_PORT_LUT, TYN_USE_SAMPLED},
+    {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},     TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, MERGE),
 };
 
 static const tyn_binding ghosts_bindings[] = {
@@ -69,46 +58,14 @@ static const tyn_binding ghosts_bindings[] = {
 };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_CELLS] = {"cells",
-                      merge_cells_spirv,
-                      sizeof merge_cells_spirv,
-                      sizeof(struct merge_args),
-                      {8, 4, 2},
-                      cells_bindings,
-                      6,
-                      0},
-    [KERNEL_ORDINATES] = {"ordinates",
-                          merge_ordinates_spirv,
-                          sizeof merge_ordinates_spirv,
-                          sizeof(struct merge_args),
-                          {8, 4, 2},
-                          ordinates_bindings,
-                          9,
-                          3},
-    [KERNEL_RADIALS] = {"radials",
-                        merge_radials_spirv,
-                        sizeof merge_radials_spirv,
-                        sizeof(struct merge_args),
-                        {8, 4, 2},
-                        radials_bindings,
-                        12,
-                        4},
-    [KERNEL_ONE] = {"one",
-                    merge_one_spirv,
-                    sizeof merge_one_spirv,
-                    sizeof(struct merge_args),
-                    {8, 4, 2},
-                    ghosts_bindings,
-                    3,
-                    0},
-    [KERNEL_THREE] = {"three",
-                      merge_three_spirv,
-                      sizeof merge_three_spirv,
-                      sizeof(struct merge_args),
-                      {8, 4, 2},
-                      ghosts_bindings,
-                      3,
-                      0},
+    [KERNEL_CELLS] = TYN_KERNEL(merge_cells, sizeof(struct merge_args), 8, 4, 2, cells_bindings, 0),
+    [KERNEL_ORDINATES] =
+        TYN_KERNEL(merge_ordinates, sizeof(struct merge_args), 8, 4, 2, ordinates_bindings, 3),
+    [KERNEL_RADIALS] =
+        TYN_KERNEL(merge_radials, sizeof(struct merge_args), 8, 4, 2, radials_bindings, 4),
+    [KERNEL_ONE] = TYN_KERNEL(merge_one, sizeof(struct merge_args), 8, 4, 2, ghosts_bindings, 0),
+    [KERNEL_THREE] =
+        TYN_KERNEL(merge_three, sizeof(struct merge_args), 8, 4, 2, ghosts_bindings, 0),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

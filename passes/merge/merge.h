@@ -2,6 +2,7 @@
 // cell.
 #pragma once
 #include <tyndall/pass.h>
+#include "shaders/common/bundles.h"
 
 typedef struct tyn_merge_params {
     uint32_t channels;      // of `moments`: 1 or 3
@@ -14,22 +15,17 @@ typedef struct tyn_merge_params {
 } tyn_merge_params;
 
 enum {
-    MERGE_PORT_MEDIUM,    // IN buffer struct medium_block
-    MERGE_PORT_CAMERA,    // IN buffer struct camera_block
-    MERGE_PORT_CELLS,     // IN 3D, of lattice_cells
-    MERGE_PORT_MOMENTS,   // IN 3D, of lattice
-    MERGE_PORT_ORDINATES, // IN optional buffer struct ordinates_block; with the next three
-    MERGE_PORT_COLUMNS,   // IN optional buffer, of columns
-    MERGE_PORT_TMS,       // IN optional 3D, of scatter_lut
+    MERGE_PORT_MEDIUM,                   // IN buffer struct medium_block
+    MERGE_PORT_CAMERA,                   // IN buffer struct camera_block
+    MERGE_PORT_CELLS,                    // IN 3D, of lattice_cells
+    MERGE_PORT_MOMENTS,                  // IN 3D, of lattice
+    TYN_COLUMNS(TYN_BUNDLE_ENUM, MERGE), // IN optional
+    MERGE_PORT_TMS,                      // IN optional 3D, of scatter_lut
     MERGE_PORT_LUT_BLOCK, // IN optional buffer struct lut_block; with ordinates or radials
-    MERGE_PORT_RADIALS,   // IN optional buffer struct radial_block; with the next and both tables
-    MERGE_PORT_RADIAL_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS; of radial_beam
-    MERGE_PORT_RADIAL_TAU_A, // IN optional 3D: mode COEFFICIENTS, as the next
-    MERGE_PORT_RADIAL_TAU_P,
-    MERGE_PORT_LUT,          // IN optional 2D, of scatter_lut
-    MERGE_PORT_SHADOW_ATLAS, // IN optional 2D, of shadow_map, as the next
-    MERGE_PORT_SHADOWS,      // IN optional buffer
-    MERGE_PORT_VPL_LIGHT,    // IN optional 3D, of lattice_lamps
+    TYN_RADIALS(TYN_BUNDLE_ENUM, MERGE), // IN optional
+    MERGE_PORT_LUT,                      // IN optional 2D, of scatter_lut
+    TYN_SHADOWS(TYN_BUNDLE_ENUM, MERGE), // IN optional
+    MERGE_PORT_VPL_LIGHT,                // IN optional 3D, of lattice_lamps
     MERGE_PORT_INSCATTER, // OUT 3D RGBA32F (one channel: R32F), dims + 2: J = max(0, (phi + 3 g' v.F) / (4 pi)
     // + sum over ordinates of E e^-tau' k + local lights, see merge_radials.comp), W/(m^2 sr), v
     // the direction from the cell to the eye, k of tms.glsl; sample at lattice_inscatter_uvw

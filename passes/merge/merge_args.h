@@ -1,7 +1,7 @@
 // merge_args.h -- push constants of the merge kernels. Included by C and GLSL.
 #ifndef TYN_MERGE_ARGS_H
 #define TYN_MERGE_ARGS_H
-#include "shared.h"
+#include "shaders/common/shared.h"
 
 struct merge_args {
     tyn_uvec3 dims; // cells

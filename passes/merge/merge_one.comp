@@ -2,10 +2,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "scene_args.h"
-#include "counters.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/common/counters.h"
 #include "merge_args.h"
-#include "lattice.glsl"
+#include "shaders/lattice/lattice.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(push_constant, scalar) uniform push

@@ -3,16 +3,15 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 2 // not read
-#include "medium.glsl"
-#define COLUMNS_BUFFER 5
-#include "columns.glsl"
+#include "shaders/medium/medium.glsl"
+#define COLUMNS_AT 4
+#include "shaders/beams/columns.glsl"
 #define TMS 6
 #define SCATTER_LUT_BLOCK 7
 #include "tms.glsl"
 #include "merge_args.h"
-#include "ordinate_args.h"
-#include "lattice.glsl"
+#include "shaders/light/ordinate_args.h"
+#include "shaders/lattice/lattice.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(constant_id = 1) const bool grey = false; // all channels of the medium are equal
@@ -25,14 +24,10 @@ layout(binding = 1, scalar) uniform camera_uniform
 {
     camera_block camera;
 };
-layout(binding = 3) uniform sampler3D cells;
-layout(binding = 4, scalar) buffer field_buffer
+layout(binding = 2) uniform sampler3D cells;
+layout(binding = 3, scalar) buffer field_buffer
 {
     float field[];
-};
-layout(binding = 8, scalar) uniform ordinates_uniform
-{
-    ordinates_block ordinates;
 };
 #include "merge.glsl"
 #include "merge_read.glsl"

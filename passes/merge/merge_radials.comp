@@ -9,22 +9,19 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 2 // not read
-#include "medium.glsl"
-#define RADIAL_BLOCK 4
-#define RADIAL_COLUMN 5
-#define RADIAL_TAU_A 6
-#define RADIAL_TAU_P 7
+#include "shaders/medium/medium.glsl"
+#define RADIALS_AT 4
+#define RADIALS_STORAGE
 #define SCATTER_LUT 8
 #define SCATTER_LUT_BLOCK 9
 #define SCATTER_LUT_SOFT false
-#include "scatter_lut.glsl"
-#define SHADOW_ATLAS 10
-#define SHADOW_LIGHTS 11
-#include "shadow.glsl"
-#include "radial.glsl"
+#include "shaders/phase/scatter_lut.glsl"
+#define SHADOWS_AT 10
+#define SHADOWS_STORAGE
+#include "shaders/light/shadow.glsl"
+#include "shaders/beams/radial.glsl"
 #include "merge_args.h"
-#include "lattice.glsl"
+#include "shaders/lattice/lattice.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(constant_id = 1) const bool grey = false; // all channels of the medium are equal

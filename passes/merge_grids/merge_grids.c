@@ -2,14 +2,13 @@
 #include "merge_grids.h"
 #include "merge_grids_args.h"
 #include "merge_grids_sum.comp.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) MERGE_GRIDS_PORT_##name
 
 static const tyn_port ports[MERGE_GRIDS_NUM_PORTS] = {
-    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
-    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, MERGE_GRIDS),
     [PORT(PLACES)] = {"places", TYN_IN, TYN_BUFFER, .optional = true,
                       .meaning = "struct propagate_place[]"},
     [PORT(SEEN)] = {"seen", TYN_IN, TYN_IMAGE_3D, .optional = true,
@@ -29,22 +28,19 @@ static const tyn_port ports[MERGE_GRIDS_NUM_PORTS] = {
 };
 
 static const tyn_binding sum_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},           {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(PLACES), TYN_USE_UNIFORM},           {PORT(SEEN), TYN_USE_SAMPLED},
-    {PORT(RESIDUUM), TYN_USE_SAMPLED},         {PORT(MERGED), TYN_USE_STORAGE_WRITE},
-    {PORT(LAMP_PLACES), TYN_USE_STORAGE_READ}, {PORT(LAMP_SEEN), TYN_USE_SAMPLED},
-    {PORT(VPL_PLACES), TYN_USE_STORAGE_READ},  {PORT(VPL_SEEN), TYN_USE_SAMPLED},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, MERGE_GRIDS),
+    {PORT(PLACES), TYN_USE_UNIFORM},
+    {PORT(SEEN), TYN_USE_SAMPLED},
+    {PORT(RESIDUUM), TYN_USE_SAMPLED},
+    {PORT(MERGED), TYN_USE_STORAGE_WRITE},
+    {PORT(LAMP_PLACES), TYN_USE_STORAGE_READ},
+    {PORT(LAMP_SEEN), TYN_USE_SAMPLED},
+    {PORT(VPL_PLACES), TYN_USE_STORAGE_READ},
+    {PORT(VPL_SEEN), TYN_USE_SAMPLED},
 };
 
 static const tyn_kernel kernels[] = {
-    {.name = "merge_grids_sum",
-     .spirv = merge_grids_sum_spirv,
-     .spirv_size = sizeof merge_grids_sum_spirv,
-     .args_size = sizeof(struct merge_grids_args),
-     .local_size = {4, 4, 4},
-     .bindings = sum_bindings,
-     .num_bindings = sizeof sum_bindings / sizeof *sum_bindings,
-     .num_spec = 1},
+    TYN_KERNEL(merge_grids_sum, sizeof(struct merge_grids_args), 4, 4, 4, sum_bindings, 1),
 };
 
 static const tyn_param params[] = {

@@ -5,7 +5,8 @@
 // cell.
 #pragma once
 #include <tyndall/pass.h>
-#include "propagate_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/beams/propagate_args.h"
 
 typedef struct tyn_merge_grids_params {
     int32_t finer;       // cells of the result per cell of the aligned grids, along an axis; 1..8
@@ -21,13 +22,12 @@ typedef struct tyn_merge_grids_params {
 } tyn_merge_grids_params;
 
 enum {
-    MERGE_GRIDS_PORT_MEDIUM,      // IN buffer struct medium_block
-    MERGE_GRIDS_PORT_DENSITY,     // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
-    MERGE_GRIDS_PORT_PLACES,      // IN optional buffer, of propagate_rect
-    MERGE_GRIDS_PORT_SEEN,        // IN optional 3D, of propagate_rect
-    MERGE_GRIDS_PORT_LAMP_PLACES, // IN optional buffer, of propagate_radial
-    MERGE_GRIDS_PORT_LAMP_SEEN,   // IN optional 3D, of propagate_radial
-    MERGE_GRIDS_PORT_VPL_PLACES,  // so
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, MERGE_GRIDS), // IN
+    MERGE_GRIDS_PORT_PLACES,                  // IN optional buffer, of propagate_rect
+    MERGE_GRIDS_PORT_SEEN,                    // IN optional 3D, of propagate_rect
+    MERGE_GRIDS_PORT_LAMP_PLACES,             // IN optional buffer, of propagate_radial
+    MERGE_GRIDS_PORT_LAMP_SEEN,               // IN optional 3D, of propagate_radial
+    MERGE_GRIDS_PORT_VPL_PLACES,              // so
     MERGE_GRIDS_PORT_VPL_SEEN,
     MERGE_GRIDS_PORT_RESIDUUM, // IN optional 3D RGBA32F: of residuum, added
     MERGE_GRIDS_PORT_MERGED, // OUT 3D RGBA32F, cubic cells that span the medium's box (lattice.glsl):

@@ -1,7 +1,7 @@
 // merge_grids_args.h -- arguments of the kernel. Included by C and GLSL.
 #ifndef TYN_MERGE_GRIDS_ARGS_H
 #define TYN_MERGE_GRIDS_ARGS_H
-#include "shared.h"
+#include "shaders/common/shared.h"
 
 struct merge_grids_radial { // grids of one node of propagate_radial
     tyn_uint count;

@@ -2,32 +2,31 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#include "medium.glsl"
-#include "lattice.glsl"
-#include "propagate.glsl"
-#include "propagate_radial.glsl"
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/beams/propagate.glsl"
+#include "shaders/beams/propagate_radial.glsl"
 #include "merge_grids_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 2, scalar) uniform places_uniform
+layout(set = 0, binding = 5, scalar) uniform places_uniform
 {
     propagate_place places[TYN_ORDINATES_MAX];
 };
-layout(set = 0, binding = 3) uniform sampler3D seen;
-layout(set = 0, binding = 4) uniform sampler3D residuum;
-layout(set = 0, binding = 5, rgba32f) uniform writeonly image3D out_merged;
-layout(set = 0, binding = 6, scalar) readonly buffer lamp_places_buffer
+layout(set = 0, binding = 6) uniform sampler3D seen;
+layout(set = 0, binding = 7) uniform sampler3D residuum;
+layout(set = 0, binding = 8, rgba32f) uniform writeonly image3D out_merged;
+layout(set = 0, binding = 9, scalar) readonly buffer lamp_places_buffer
 {
     propagate_radial_place lamp_places[];
 };
-layout(set = 0, binding = 7) uniform sampler3D lamp_seen;
-layout(set = 0, binding = 8, scalar) readonly buffer vpl_places_buffer
+layout(set = 0, binding = 10) uniform sampler3D lamp_seen;
+layout(set = 0, binding = 11, scalar) readonly buffer vpl_places_buffer
 {
     propagate_radial_place vpl_places[];
 };
-layout(set = 0, binding = 9) uniform sampler3D vpl_seen;
+layout(set = 0, binding = 12) uniform sampler3D vpl_seen;
 layout(push_constant, scalar) uniform push { merge_grids_args args; };
 
 // Mean of sigma_s over a cell and the channels: a trilinear fetch is a mean over two voxels.

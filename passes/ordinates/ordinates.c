@@ -1,7 +1,7 @@
 // ordinates.c -- principal ordinates: the directions from which the surroundings light the medium.
 #include "ordinates.h"
 #include "ordinates_args.h"
-#include "sky_args.h"
+#include "shaders/light/sky_args.h"
 #include "ordinates_columns.comp.h"
 #include "ordinates_fold.comp.h"
 #include "ordinates_gather.comp.h"
@@ -57,46 +57,14 @@ static const tyn_binding fold_bindings[] = {
 enum { KERNEL_ROWS, KERNEL_COLUMNS, KERNEL_PARTITION, KERNEL_GATHER, KERNEL_FOLD, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_ROWS] = {"rows",
-                     ordinates_rows_spirv,
-                     sizeof ordinates_rows_spirv,
-                     0,
-                     {SKY_SUMS_WIDTH, 1, 1},
-                     rows_bindings,
-                     4,
-                     0},
-    [KERNEL_COLUMNS] = {"columns",
-                        ordinates_columns_spirv,
-                        sizeof ordinates_columns_spirv,
-                        0,
-                        {64, 1, 1},
-                        columns_bindings,
-                        1,
-                        0},
-    [KERNEL_PARTITION] = {"partition",
-                          ordinates_partition_spirv,
-                          sizeof ordinates_partition_spirv,
-                          sizeof(struct ordinates_args),
-                          {TYN_ORDINATES_MAX, 1, 1},
-                          partition_bindings,
-                          4,
-                          0},
-    [KERNEL_GATHER] = {"gather",
-                       ordinates_gather_spirv,
-                       sizeof ordinates_gather_spirv,
-                       sizeof(struct ordinates_args),
-                       {64, 1, 1},
-                       gather_bindings,
-                       4,
-                       0},
-    [KERNEL_FOLD] = {"fold",
-                     ordinates_fold_spirv,
-                     sizeof ordinates_fold_spirv,
-                     sizeof(struct ordinates_args),
-                     {TYN_ORDINATES_MAX, 1, 1},
-                     fold_bindings,
-                     3,
-                     0},
+    [KERNEL_ROWS] = TYN_KERNEL(ordinates_rows, 0, SKY_SUMS_WIDTH, 1, 1, rows_bindings, 0),
+    [KERNEL_COLUMNS] = TYN_KERNEL(ordinates_columns, 0, 64, 1, 1, columns_bindings, 0),
+    [KERNEL_PARTITION] = TYN_KERNEL(ordinates_partition, sizeof(struct ordinates_args),
+                                    TYN_ORDINATES_MAX, 1, 1, partition_bindings, 0),
+    [KERNEL_GATHER] =
+        TYN_KERNEL(ordinates_gather, sizeof(struct ordinates_args), 64, 1, 1, gather_bindings, 0),
+    [KERNEL_FOLD] = TYN_KERNEL(ordinates_fold, sizeof(struct ordinates_args), TYN_ORDINATES_MAX, 1,
+                               1, fold_bindings, 0),
 };
 
 static const tyn_param params_table[] = {

@@ -6,7 +6,7 @@
 // changes, every region moves a little and keeps its place in the list.
 #pragma once
 #include <tyndall/pass.h>
-#include "ordinate_args.h"
+#include "shaders/light/ordinate_args.h"
 
 enum { ORDINATES_MAX_FIXED = 68 };
 enum { ORDINATES_IMPORTANCE_OFF, ORDINATES_IMPORTANCE_ON, ORDINATES_IMPORTANCE_AUTO };

@@ -1,7 +1,7 @@
 // ordinates_args.h -- push constants of ordinates. Included by C and GLSL.
 #ifndef TYN_ORDINATES_ARGS_H
 #define TYN_ORDINATES_ARGS_H
-#include "shared.h"
+#include "shaders/common/shared.h"
 
 struct ordinates_args {
     tyn_uint regions;   // of the partition

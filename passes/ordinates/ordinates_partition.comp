@@ -7,10 +7,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "scene_args.h"
-#include "ordinate_args.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/light/ordinate_args.h"
 #include "ordinates_args.h"
-#include "sky_args.h"
+#include "shaders/light/sky_args.h"
 
 layout(local_size_x = TYN_ORDINATES_MAX) in;
 layout(push_constant, scalar) uniform arguments

@@ -2,8 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "environment.glsl"
-#include "sky.glsl"
+#include "shaders/light/environment.glsl"
+#include "shaders/light/sky.glsl"
 
 layout(local_size_x = SKY_SUMS_WIDTH) in;
 layout(binding = 0, scalar) uniform environment_uniform

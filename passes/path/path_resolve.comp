@@ -3,8 +3,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "path_args.h"
-#include "scene_args.h"
+#include "shaders/path/path_args.h"
+#include "shaders/common/scene_args.h"
 
 layout(local_size_x = 64) in;
 

@@ -2,17 +2,17 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "path_args.h"
+#include "shaders/path/path_args.h"
 
 const bool PROBE = false;
-#include "path_resources.glsl"
+#include "shaders/path/path_resources.glsl"
 
 layout(set = 0, binding = 16, scalar) uniform camera_uniform { camera_block camera_in; };
 layout(set = 0, binding = 17, scalar) writeonly buffer partial_buffer { path_partial partials[]; };
 layout(set = 0, binding = 18, scalar) buffer counters_buffer { counters_block counters; };
 layout(set = 0, binding = 19, scalar) writeonly buffer layers_buffer { path_partial_layers layers[]; };
 
-#include "path.glsl"
+#include "shaders/path/path.glsl"
 
 // Welford's running mean and sum of squared deviations: exact 0 for equal samples, however many.
 path_partial partial = path_partial(vec3(0.0), vec3(0.0), 0.0, 0u);

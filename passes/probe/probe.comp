@@ -3,33 +3,28 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "probe_args.h"
-#include "ordinate_args.h"
+#include "shaders/light/ordinate_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 4 // the medium itself is not read
-#define BEAM_BLOCKS 3
-#define BEAM_COLUMN 4
-#define BEAM_TAU_A 5
-#define BEAM_TAU_P 6
-#define COLUMNS_BUFFER 11
-#define RADIAL_BLOCK 14
-#define RADIAL_COLUMN 15
-#define RADIAL_TAU_A 16
-#define RADIAL_TAU_P 17
-#include "medium.glsl"
-#include "beam.glsl"
-#include "columns.glsl"
-#include "radial.glsl"
-#include "lattice.glsl"
-#define WALLS_LINKS 12
-#define WALLS_CELLS 13
-#include "lattice_walls.glsl"
-#define SHADOW_ATLAS 18
-#define SHADOW_LIGHTS 19
-#include "shadow.glsl"
+#define BEAMS_AT 3
+#define BEAMS_STORAGE
+#define COLUMNS_AT 10
+#define RADIALS_AT 14
+#define RADIALS_STORAGE
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/beam.glsl"
+#include "shaders/beams/columns.glsl"
+#include "shaders/beams/radial.glsl"
+#include "shaders/lattice/lattice.glsl"
+#define WALLS_AT 12
+#define WALLS_STORAGE
+#include "shaders/walls/lattice_walls.glsl"
+#define SHADOWS_AT 18
+#define SHADOWS_STORAGE
+#include "shaders/light/shadow.glsl"
 #define VPL_DISTANCES 21
 #define LATTICE_ROOMS 22
-#include "vpl_visibility.glsl"
-#include "lattice_rooms.glsl"
+#include "shaders/light/vpl_visibility.glsl"
+#include "shaders/walls/lattice_rooms.glsl"
 
 layout(constant_id = 1) const uint walls = 0;
 layout(constant_id = 2) const uint shadowed = 0;
@@ -49,10 +44,6 @@ layout(binding = 20) uniform sampler3D cells;
 layout(binding = 9, scalar) uniform environment_uniform
 {
     env_block environment;
-};
-layout(binding = 10, scalar) uniform ordinates_uniform
-{
-    ordinates_block ordinates;
 };
 layout(binding = 7, scalar) readonly buffer point_buffer
 {

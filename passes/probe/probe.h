@@ -1,6 +1,7 @@
-// probe.h -- the light field of the lattice at points, and where the energy goes.
+// probe.h -- the light field of the lattice at points.
 #pragma once
 #include <tyndall/pass.h>
+#include "shaders/common/bundles.h"
 
 typedef struct tyn_probe_params {
     uint32_t mode;          // TYN_MEDIUM_*
@@ -16,73 +17,20 @@ typedef struct tyn_probe_params {
 } tyn_probe_params;
 
 enum {
-    PROBE_PORT_MEDIUM,  // IN buffer struct medium_block
-    PROBE_PORT_LIGHTS,  // IN optional buffer struct light_block[]
-    PROBE_PORT_MOMENTS, // IN 3D, of lattice
-    PROBE_PORT_BEAMS,   // IN optional buffer struct beam_block[]
-    PROBE_PORT_COLUMN,  // IN optional 3D: column, or tau_s in mode COEFFICIENTS
-    PROBE_PORT_TAU_A,   // IN optional 3D: mode COEFFICIENTS, as the one below
-    PROBE_PORT_TAU_P,
+    PROBE_PORT_MEDIUM,                 // IN buffer struct medium_block
+    PROBE_PORT_LIGHTS,                 // IN optional buffer struct light_block[]
+    PROBE_PORT_MOMENTS,                // IN 3D, of lattice
+    TYN_BEAMS(TYN_BUNDLE_ENUM, PROBE), // IN optional
     PROBE_PORT_ENVIRONMENT, // IN optional buffer struct env_block, what lattice was given
-    PROBE_PORT_ORDINATES,   // IN optional buffer struct ordinates_block
-    PROBE_PORT_COLUMNS,     // IN optional buffer, of columns
-    PROBE_PORT_WALL_LINKS,  // IN optional buffers, of walls
-    PROBE_PORT_WALL_CELLS,
-    PROBE_PORT_RADIALS,       // IN optional buffer struct radial_block
-    PROBE_PORT_RADIAL_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS; of radial_beam
-    PROBE_PORT_RADIAL_TAU_A, // IN optional 3D: mode COEFFICIENTS, as the one below
-    PROBE_PORT_RADIAL_TAU_P,
-    PROBE_PORT_SHADOW_ATLAS,  // IN optional 2D, of shadow_map: surfaces stand before the lights
-    PROBE_PORT_SHADOWS,       // IN optional buffer
-    PROBE_PORT_VPL_DISTANCES, // IN optional 2D, of vpl: with walls and VPLs
-    PROBE_PORT_ROOMS,         // IN optional buffer, rooms.h: with these
-    PROBE_PORT_CELLS,         // IN optional 3D, of lattice_cells: flux at the box's faces
-    PROBE_PORT_POINTS,        // IN buffer vec3[], M, m
-    PROBE_PORT_RESULTS,       // OUT buffer tyn_probe_result[]
+    TYN_COLUMNS(TYN_BUNDLE_ENUM, PROBE), // IN optional
+    TYN_WALLS(TYN_BUNDLE_ENUM, PROBE),   // IN optional
+    TYN_RADIALS(TYN_BUNDLE_ENUM, PROBE), // IN optional
+    TYN_SHADOWS(TYN_BUNDLE_ENUM, PROBE), // IN optional
+    PROBE_PORT_VPL_DISTANCES,            // IN optional 2D, of vpl: with walls and VPLs
+    PROBE_PORT_ROOMS,                    // IN optional buffer, rooms.h: with these
+    PROBE_PORT_CELLS,   // IN optional 3D, of lattice_cells: flux at the box's faces
+    PROBE_PORT_POINTS,  // IN buffer vec3[], M, m
+    PROBE_PORT_RESULTS, // OUT buffer tyn_probe_result[]
     PROBE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_probe;
-
-typedef struct tyn_balance_params {
-    uint32_t channels;
-    float tint[3];
-    uint32_t num_suns;
-    uint32_t num_groups; // of local lights
-    uint32_t mode;       // TYN_MEDIUM_*
-    float box[2][3];     // M: with surfaces, the box around everything
-} tyn_balance_params;
-
-enum {
-    BALANCE_PORT_MEDIUM,      // IN buffer struct medium_block
-    BALANCE_PORT_LIGHTS,      // IN optional buffer struct light_block[]
-    BALANCE_PORT_CELLS,       // IN 3D, of lattice_cells
-    BALANCE_PORT_MOMENTS,     // IN 3D, of lattice
-    BALANCE_PORT_SOURCE,      // IN optional 3D, of the last of lattice_source, _ordinates, _lamps
-    BALANCE_PORT_POWER,       // IN optional buffer, of lattice_source
-    BALANCE_PORT_LEAKS,       // IN buffer, of lattice
-    BALANCE_PORT_ENVIRONMENT, // IN optional buffer struct env_block, what lattice was given
-    BALANCE_PORT_ORDINATES,   // IN optional buffer struct ordinates_block
-    BALANCE_PORT_WALL_POWER,  // IN optional buffer, of lattice
-    BALANCE_PORT_LAMP_POWER,  // IN optional buffer, of lattice_lamps
-    // With surfaces, of which no axis repeats:
-    BALANCE_PORT_BEAMS, // IN optional, as of probe
-    BALANCE_PORT_COLUMN,
-    BALANCE_PORT_TAU_A,
-    BALANCE_PORT_TAU_P,
-    BALANCE_PORT_RADIALS,
-    BALANCE_PORT_RADIAL_COLUMN,
-    BALANCE_PORT_RADIAL_TAU_A,
-    BALANCE_PORT_RADIAL_TAU_P,
-    BALANCE_PORT_SURFACES, // IN optional buffers, surface_args.h
-    BALANCE_PORT_VERTICES,
-    BALANCE_PORT_TRIANGLES,
-    BALANCE_PORT_NODES,
-    BALANCE_PORT_MATERIALS,
-    BALANCE_PORT_TEXTURES,
-    BALANCE_PORT_TEXELS,
-    BALANCE_PORT_EMITTERS, // IN optional buffer struct surface_table
-    BALANCE_PORT_FOUND,    // SCRATCH buffer struct balance_light[]
-    BALANCE_PORT_BALANCE,  // OUT buffer tyn_balance
-    BALANCE_NUM_PORTS,
-};
-extern const tyn_pass_desc tyn_pass_balance;

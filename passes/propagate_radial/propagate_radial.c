@@ -6,19 +6,14 @@
 #include "propagate_radial_setup.comp.h"
 #include "propagate_radial_start.comp.h"
 #include "propagate_radial_step.comp.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) PROPAGATE_RADIAL_PORT_##name
 
 static const tyn_port ports[PROPAGATE_RADIAL_NUM_PORTS] = {
-    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, PROPAGATE_RADIAL),
     [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
-    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
-    [PORT(SIGMA_A)] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                       .meaning = "absorption, 1/m"},
-    [PORT(G)] = {"g", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                 .meaning = "mean cosine of scattering"},
     [PORT(VPLS)] = {"vpls", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "struct radial_vpls"},
     [PORT(GRIDS)] = {"grids", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_radial_grid[]"},
     [PORT(PLACES)] = {"places", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_radial_place[]"},
@@ -43,10 +38,11 @@ static const tyn_binding setup_bindings[] = {
     {PORT(PLACES), TYN_USE_STORAGE_WRITE}, {PORT(MAP), TYN_USE_STORAGE_RW},
 };
 static const tyn_binding cells_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},     {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},    {PORT(G), TYN_USE_SAMPLED},
-    {PORT(GRIDS), TYN_USE_STORAGE_READ}, {PORT(CAMERA), TYN_USE_UNIFORM},
-    {PORT(MAP), TYN_USE_STORAGE_READ},   {PORT(CELLS), TYN_USE_STORAGE_WRITE},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RADIAL),
+    {PORT(GRIDS), TYN_USE_STORAGE_READ},
+    {PORT(CAMERA), TYN_USE_UNIFORM},
+    {PORT(MAP), TYN_USE_STORAGE_READ},
+    {PORT(CELLS), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding start_bindings[] = {
     {PORT(GRIDS), TYN_USE_STORAGE_READ},        {PORT(MAP), TYN_USE_STORAGE_READ},
@@ -66,17 +62,14 @@ static const tyn_binding collect_bindings[] = {
 
 #define EDGE PROPAGATE_RADIAL_GROUP
 #define KERNEL(step, x, y, z, specs)                                                               \
-    .name = "propagate_radial_" #step, .spirv = propagate_radial_##step##_spirv,                   \
-    .spirv_size = sizeof propagate_radial_##step##_spirv,                                          \
-    .args_size = sizeof(struct propagate_radial_args), .local_size = {x, y, z},                    \
-    .bindings = step##_bindings, .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, \
-    .num_spec = specs
+    TYN_KERNEL(propagate_radial_##step, sizeof(struct propagate_radial_args), x, y, z,             \
+               step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = {KERNEL(setup, PROPAGATE_RADIAL_LANES, 1, 1, 0)},
-    [CELLS] = {KERNEL(cells, EDGE, EDGE, EDGE, 1)},
-    [START] = {KERNEL(start, 8, 8, 1, 0)},
-    [STEP] = {KERNEL(step, EDGE, EDGE, EDGE, 0)},
-    [COLLECT] = {KERNEL(collect, EDGE, EDGE, EDGE, 0)},
+    [SETUP] = KERNEL(setup, PROPAGATE_RADIAL_LANES, 1, 1, 0),
+    [CELLS] = KERNEL(cells, EDGE, EDGE, EDGE, 1),
+    [START] = KERNEL(start, 8, 8, 1, 0),
+    [STEP] = KERNEL(step, EDGE, EDGE, EDGE, 0),
+    [COLLECT] = KERNEL(collect, EDGE, EDGE, EDGE, 0),
 };
 
 #define FIELD(name) offsetof(tyn_propagate_radial_params, name)

@@ -14,8 +14,9 @@
 // batches of grids.
 #pragma once
 #include <tyndall/pass.h>
-#include "propagate_args.h"
-#include "propagate_radial_grid.h"
+#include "shaders/common/bundles.h"
+#include "shaders/beams/propagate_args.h"
+#include "shaders/beams/propagate_radial_grid.h"
 
 typedef struct tyn_propagate_radial_params {
     int32_t cells;       // of the octahedral map along a side, made even; 2..64
@@ -42,12 +43,9 @@ typedef struct tyn_propagate_radial_params {
 } tyn_propagate_radial_params;
 
 enum {
-    PROPAGATE_RADIAL_PORT_MEDIUM,  // IN buffer struct medium_block
-    PROPAGATE_RADIAL_PORT_CAMERA,  // IN buffer struct camera_block
-    PROPAGATE_RADIAL_PORT_DENSITY, // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
-    PROPAGATE_RADIAL_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as g
-    PROPAGATE_RADIAL_PORT_G,
-    PROPAGATE_RADIAL_PORT_VPLS,   // IN optional buffer struct radial_vpls
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, PROPAGATE_RADIAL), // IN
+    PROPAGATE_RADIAL_PORT_CAMERA,                  // IN buffer struct camera_block
+    PROPAGATE_RADIAL_PORT_VPLS,                    // IN optional buffer struct radial_vpls
     PROPAGATE_RADIAL_PORT_GRIDS,  // OUT buffer struct propagate_radial_grid[]: lamps, then VPLs
     PROPAGATE_RADIAL_PORT_PLACES, // OUT buffer struct propagate_radial_place[], so
     PROPAGATE_RADIAL_PORT_SEEN, // OUT 3D R32F, tiles of grids and channels: r^2 L_acc, sum over iterations of

@@ -1,7 +1,7 @@
 // propagate_radial_args.h -- arguments of all kernels. Included by C and GLSL.
 #ifndef TYN_PROPAGATE_RADIAL_ARGS_H
 #define TYN_PROPAGATE_RADIAL_ARGS_H
-#include "shared.h"
+#include "shaders/common/shared.h"
 
 // Edge of the workgroups of kernels with one thread a cell.
 #define PROPAGATE_RADIAL_GROUP 4

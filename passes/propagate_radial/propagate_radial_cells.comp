@@ -3,19 +3,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define MEDIUM_SIGMA_A 2
-#define MEDIUM_G 3
-#include "medium.glsl"
-#include "propagate_radial.glsl"
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/propagate_radial.glsl"
 #include "propagate_radial_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 4, scalar) readonly buffer grids_buffer { propagate_radial_grid grids[]; };
-layout(set = 0, binding = 5, scalar) uniform camera_uniform { camera_block camera; };
-layout(set = 0, binding = 6, scalar) readonly buffer map_buffer { vec2 map[]; };
-layout(set = 0, binding = 7, scalar) writeonly buffer cells_buffer { vec4 cells[]; };
+layout(set = 0, binding = 5, scalar) readonly buffer grids_buffer { propagate_radial_grid grids[]; };
+layout(set = 0, binding = 6, scalar) uniform camera_uniform { camera_block camera; };
+layout(set = 0, binding = 7, scalar) readonly buffer map_buffer { vec2 map[]; };
+layout(set = 0, binding = 8, scalar) writeonly buffer cells_buffer { vec4 cells[]; };
 layout(push_constant, scalar) uniform push { propagate_radial_args args; };
 
 // Samples along an edge: one to two voxels (a trilinear fetch is a mean over as many), and some to tell how

@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "propagate_radial.glsl"
+#include "shaders/beams/propagate_radial.glsl"
 #include "propagate_radial_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;

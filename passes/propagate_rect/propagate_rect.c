@@ -9,21 +9,16 @@
 #include "propagate_rect_shrink_density.comp.h"
 #include "propagate_rect_start.comp.h"
 #include "propagate_rect_step.comp.h"
-#include "ordinate_args.h"
-#include "scene_args.h"
+#include "shaders/light/ordinate_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) PROPAGATE_RECT_PORT_##name
 
 static const tyn_port ports[PROPAGATE_RECT_NUM_PORTS] = {
-    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, PROPAGATE_RECT),
     [PORT(ORDINATES)] = {"ordinates", TYN_IN, TYN_BUFFER, .meaning = "struct ordinates_block"},
     [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
-    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
-    [PORT(SIGMA_A)] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                       .meaning = "absorption, 1/m"},
-    [PORT(G)] = {"g", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                 .meaning = "mean cosine of scattering"},
     [PORT(GRIDS)] = {"grids", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_grid[]"},
     [PORT(PLACES)] = {"places", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_place[]"},
     [PORT(SEEN)] = {"seen", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
@@ -65,20 +60,19 @@ static const tyn_binding setup_bindings[] = {
     {PORT(PLACES), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding shrink_density_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},
-    {PORT(DENSITY), TYN_USE_SAMPLED},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RECT),
     {PORT(SMALL), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding shrink_coefficients_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},        {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},       {PORT(G), TYN_USE_SAMPLED},
-    {PORT(SMALL), TYN_USE_STORAGE_WRITE},   {PORT(SMALL_SIGMA_A), TYN_USE_STORAGE_WRITE},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RECT),
+    {PORT(SMALL), TYN_USE_STORAGE_WRITE},
+    {PORT(SMALL_SIGMA_A), TYN_USE_STORAGE_WRITE},
     {PORT(SMALL_G), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding cells_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},      {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},     {PORT(G), TYN_USE_SAMPLED},
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},  {PORT(CAMERA), TYN_USE_UNIFORM},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RECT),
+    {PORT(GRIDS), TYN_USE_STORAGE_READ},
+    {PORT(CAMERA), TYN_USE_UNIFORM},
     {PORT(CELLS), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding start_bindings[] = {
@@ -104,20 +98,17 @@ static const tyn_binding light_bindings[] = {
 
 #define EDGE PROPAGATE_RECT_GROUP
 #define KERNEL(step, x, y, z, specs, size)                                                         \
-    .name = "propagate_rect_" #step, .spirv = propagate_rect_##step##_spirv,                       \
-    .spirv_size = sizeof propagate_rect_##step##_spirv, .args_size = size,                         \
-    .local_size = {x, y, z}, .bindings = step##_bindings,                                          \
-    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
+    TYN_KERNEL(propagate_rect_##step, size, x, y, z, step##_bindings, specs)
 #define ARGS sizeof(struct propagate_rect_args)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = {KERNEL(setup, 64, 1, 1, 0, ARGS)},
-    [SHRINK_DENSITY] = {KERNEL(shrink_density, EDGE, EDGE, EDGE, 1, 0)},
-    [SHRINK_COEFFICIENTS] = {KERNEL(shrink_coefficients, EDGE, EDGE, EDGE, 1, 0)},
-    [CELLS] = {KERNEL(cells, EDGE, EDGE, EDGE, 1, ARGS)},
-    [START] = {KERNEL(start, 8, 8, 1, 1, ARGS)},
-    [STEP] = {KERNEL(step, EDGE, EDGE, EDGE, 0, ARGS)},
-    [COLLECT] = {KERNEL(collect, EDGE, EDGE, EDGE, 0, ARGS)},
-    [LIGHT] = {KERNEL(light, EDGE, EDGE, EDGE, 0, ARGS)},
+    [SETUP] = KERNEL(setup, 64, 1, 1, 0, ARGS),
+    [SHRINK_DENSITY] = KERNEL(shrink_density, EDGE, EDGE, EDGE, 1, 0),
+    [SHRINK_COEFFICIENTS] = KERNEL(shrink_coefficients, EDGE, EDGE, EDGE, 1, 0),
+    [CELLS] = KERNEL(cells, EDGE, EDGE, EDGE, 1, ARGS),
+    [START] = KERNEL(start, 8, 8, 1, 1, ARGS),
+    [STEP] = KERNEL(step, EDGE, EDGE, EDGE, 0, ARGS),
+    [COLLECT] = KERNEL(collect, EDGE, EDGE, EDGE, 0, ARGS),
+    [LIGHT] = KERNEL(light, EDGE, EDGE, EDGE, 0, ARGS),
 };
 
 #define FIELD(name) offsetof(tyn_propagate_rect_params, name)

@@ -8,7 +8,8 @@
 // device has, is done in several batches of grids, one after the other.
 #pragma once
 #include <tyndall/pass.h>
-#include "propagate_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/beams/propagate_args.h"
 
 typedef struct tyn_propagate_rect_params {
     int32_t cells;       // along the longest side of the aligned box, 2..64
@@ -29,13 +30,10 @@ typedef struct tyn_propagate_rect_params {
 } tyn_propagate_rect_params;
 
 enum {
-    PROPAGATE_RECT_PORT_MEDIUM,    // IN buffer struct medium_block
-    PROPAGATE_RECT_PORT_ORDINATES, // IN buffer struct ordinates_block
-    PROPAGATE_RECT_PORT_CAMERA,    // IN buffer struct camera_block
-    PROPAGATE_RECT_PORT_DENSITY,   // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
-    PROPAGATE_RECT_PORT_SIGMA_A,   // IN optional 3D: mode COEFFICIENTS, as g
-    PROPAGATE_RECT_PORT_G,
-    PROPAGATE_RECT_PORT_GRIDS,  // OUT buffer struct propagate_grid[]
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, PROPAGATE_RECT), // IN
+    PROPAGATE_RECT_PORT_ORDINATES,               // IN buffer struct ordinates_block
+    PROPAGATE_RECT_PORT_CAMERA,                  // IN buffer struct camera_block
+    PROPAGATE_RECT_PORT_GRIDS,                   // OUT buffer struct propagate_grid[]
     PROPAGATE_RECT_PORT_PLACES, // OUT buffer struct propagate_place[TYN_ORDINATES_MAX], <= 16 KiB
     PROPAGATE_RECT_PORT_SEEN, // OUT 3D R32F, tiles of grids and channels (propagate_args.h): L_acc, sum
     // over iterations of L towards the eye, in units of the irradiance, 1/sr

@@ -2,8 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "propagate.glsl"
-#include "ordinate_args.h"
+#include "shaders/beams/propagate.glsl"
+#include "shaders/light/ordinate_args.h"
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 64) in;

@@ -3,16 +3,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define MEDIUM_SIGMA_A 2
-#define MEDIUM_G 3
-#include "medium.glsl"
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 4, rgba32f) uniform writeonly image3D out_sigma_s;
-layout(set = 0, binding = 5, rgba32f) uniform writeonly image3D out_sigma_a;
-layout(set = 0, binding = 6, rgba32f) uniform writeonly image3D out_g;
+layout(set = 0, binding = 5, rgba32f) uniform writeonly image3D out_sigma_s;
+layout(set = 0, binding = 6, rgba32f) uniform writeonly image3D out_sigma_a;
+layout(set = 0, binding = 7, rgba32f) uniform writeonly image3D out_g;
 #include "propagate_shrink.glsl"
 
 void main()

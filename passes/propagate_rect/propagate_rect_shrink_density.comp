@@ -2,12 +2,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#include "medium.glsl"
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 2, r32f) uniform writeonly image3D out_density;
+layout(set = 0, binding = 5, r32f) uniform writeonly image3D out_density;
 #include "propagate_shrink.glsl"
 
 void main()

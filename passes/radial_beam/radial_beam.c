@@ -1,7 +1,7 @@
 // radial_beam.c -- lays out the grids of local lights and sweeps them in one dispatch.
 #include "radial_beam.h"
 #include "radial_beam_args.h"
-#include "shadow_args.h"
+#include "shaders/light/shadow_args.h"
 #include "radial_beam_setup.comp.h"
 #include "radial_beam_density.comp.h"
 #include "radial_beam_coefficients.comp.h"
@@ -13,23 +13,18 @@ enum { MAX_CELLS = 160, MAX_COEFFICIENT_CELLS = 64 };
 enum { LEAST_WIDTH = 128 }; // texels that tiles of many lights are laid side by side in
 
 static const tyn_port ports[RADIAL_BEAM_NUM_PORTS] = {
-    [RADIAL_BEAM_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
-    [RADIAL_BEAM_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, false,
-                                  "density, or sigma_s in mode COEFFICIENTS"},
-    [RADIAL_BEAM_PORT_SIGMA_A] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, 0, true, "absorption, 1/m"},
-    [RADIAL_BEAM_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "mean cosine"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, RADIAL_BEAM),
     [RADIAL_BEAM_PORT_VPLS] = {"vpls", TYN_IN, TYN_BUFFER, 0, true, "struct radial_vpls"},
     [RADIAL_BEAM_PORT_RADIALS] = {"radials", TYN_OUT, TYN_BUFFER, 0, false,
                                   "struct radial_block: lamps, VPLs and their grids"},
-    [RADIAL_BEAM_PORT_COLUMN] =
-        {"column", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-         "mean density from a light, or from where its ray enters, to a node"},
-    [RADIAL_BEAM_PORT_TAU_S] = {"tau_s", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                false, "mean sigma_s, likewise, 1/m"},
-    [RADIAL_BEAM_PORT_TAU_A] = {"tau_a", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                false, "mean sigma_a"},
-    [RADIAL_BEAM_PORT_TAU_P] = {"tau_p", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                false, "mean sigma_s outside the forward peak"},
+    [RADIAL_BEAM_PORT_RADIAL_COLUMN] =
+        {"radial_column", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
+         "mean density (or sigma_s) from a light, or from where its ray enters, to a node"},
+    [RADIAL_BEAM_PORT_RADIAL_TAU_A] = {"radial_tau_a", TYN_OUT, TYN_IMAGE_3D,
+                                       VK_FORMAT_R32G32B32A32_SFLOAT, false, "mean sigma_a"},
+    [RADIAL_BEAM_PORT_RADIAL_TAU_P] = {"radial_tau_p", TYN_OUT, TYN_IMAGE_3D,
+                                       VK_FORMAT_R32G32B32A32_SFLOAT, false,
+                                       "mean sigma_s outside the forward peak"},
     [RADIAL_BEAM_PORT_LAMPS] = {"lamps", TYN_SCRATCH, TYN_BUFFER, 0, false,
                                 "struct radial_light[]"},
 };
@@ -43,47 +38,25 @@ static const tyn_binding setup_bindings[] = {
     {RADIAL_BEAM_PORT_RADIALS, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding density_bindings[] = {
-    {RADIAL_BEAM_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {RADIAL_BEAM_PORT_DENSITY, TYN_USE_SAMPLED},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, RADIAL_BEAM),
     {RADIAL_BEAM_PORT_RADIALS, TYN_USE_STORAGE_READ},
-    {RADIAL_BEAM_PORT_COLUMN, TYN_USE_STORAGE_WRITE},
+    {RADIAL_BEAM_PORT_RADIAL_COLUMN, TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding coefficients_bindings[] = {
-    {RADIAL_BEAM_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {RADIAL_BEAM_PORT_DENSITY, TYN_USE_SAMPLED},
-    {RADIAL_BEAM_PORT_SIGMA_A, TYN_USE_SAMPLED},
-    {RADIAL_BEAM_PORT_G, TYN_USE_SAMPLED},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, RADIAL_BEAM),
     {RADIAL_BEAM_PORT_RADIALS, TYN_USE_STORAGE_READ},
-    {RADIAL_BEAM_PORT_TAU_S, TYN_USE_STORAGE_WRITE},
-    {RADIAL_BEAM_PORT_TAU_A, TYN_USE_STORAGE_WRITE},
-    {RADIAL_BEAM_PORT_TAU_P, TYN_USE_STORAGE_WRITE},
+    {RADIAL_BEAM_PORT_RADIAL_COLUMN, TYN_USE_STORAGE_WRITE},
+    {RADIAL_BEAM_PORT_RADIAL_TAU_A, TYN_USE_STORAGE_WRITE},
+    {RADIAL_BEAM_PORT_RADIAL_TAU_P, TYN_USE_STORAGE_WRITE},
 };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SETUP] = {"setup",
-                      radial_beam_setup_spirv,
-                      sizeof radial_beam_setup_spirv,
-                      sizeof(struct radial_beam_args),
-                      {64, 1, 1},
-                      setup_bindings,
-                      4,
-                      0},
-    [KERNEL_DENSITY] = {"density",
-                        radial_beam_density_spirv,
-                        sizeof radial_beam_density_spirv,
-                        sizeof(struct radial_beam_args),
-                        {RADIAL_GROUP * RADIAL_GROUP, 1, 1},
-                        density_bindings,
-                        4,
-                        1},
-    [KERNEL_COEFFICIENTS] = {"coefficients",
-                             radial_beam_coefficients_spirv,
-                             sizeof radial_beam_coefficients_spirv,
-                             sizeof(struct radial_beam_args),
-                             {RADIAL_GROUP * RADIAL_GROUP, 1, 1},
-                             coefficients_bindings,
-                             8,
-                             1},
+    [KERNEL_SETUP] =
+        TYN_KERNEL(radial_beam_setup, sizeof(struct radial_beam_args), 64, 1, 1, setup_bindings, 0),
+    [KERNEL_DENSITY] = TYN_KERNEL(radial_beam_density, sizeof(struct radial_beam_args),
+                                  RADIAL_GROUP *RADIAL_GROUP, 1, 1, density_bindings, 1),
+    [KERNEL_COEFFICIENTS] = TYN_KERNEL(radial_beam_coefficients, sizeof(struct radial_beam_args),
+                                       RADIAL_GROUP *RADIAL_GROUP, 1, 1, coefficients_bindings, 1),
 };
 
 static const tyn_param params_table[] = {
@@ -211,11 +184,12 @@ static tyn_result declare(tyn_builder *b, const void *params)
                      offsetof(struct radial_block, list) + lights * sizeof(struct radial_grid));
     tyn_build_buffer(b, RADIAL_BEAM_PORT_LAMPS, sizeof p->lamps);
     if (p->mode == TYN_MEDIUM_DENSITY) {
-        tyn_build_image(b, RADIAL_BEAM_PORT_COLUMN, extent, 1);
+        tyn_build_image(b, RADIAL_BEAM_PORT_RADIAL_COLUMN, extent, 1);
     } else {
-        tyn_build_image(b, RADIAL_BEAM_PORT_TAU_S, extent, 1);
-        tyn_build_image(b, RADIAL_BEAM_PORT_TAU_A, extent, 1);
-        tyn_build_image(b, RADIAL_BEAM_PORT_TAU_P, extent, 1);
+        tyn_build_format(b, RADIAL_BEAM_PORT_RADIAL_COLUMN, VK_FORMAT_R32G32B32A32_SFLOAT);
+        tyn_build_image(b, RADIAL_BEAM_PORT_RADIAL_COLUMN, extent, 1);
+        tyn_build_image(b, RADIAL_BEAM_PORT_RADIAL_TAU_A, extent, 1);
+        tyn_build_image(b, RADIAL_BEAM_PORT_RADIAL_TAU_P, extent, 1);
     }
     return TYN_OK;
 }
@@ -259,6 +233,6 @@ const tyn_pass_desc tyn_pass_radial_beam = {
     .params_size = sizeof(tyn_radial_beam_params),
     .declare = declare,
     .record = record,
-    .debug_port = RADIAL_BEAM_PORT_COLUMN,
+    .debug_port = RADIAL_BEAM_PORT_RADIAL_COLUMN,
     .debug_meaning = "mean density from lights outwards: maps of directions",
 };

@@ -1,8 +1,9 @@
 // radial_beam.h -- optical depth from local lights outwards, in a grid around each.
 #pragma once
 #include <tyndall/pass.h>
-#include "scene_args.h"
-#include "radial_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/beams/radial_args.h"
 
 typedef struct tyn_radial_beam_params {
     int32_t cells;         // "radial_beam.cells"
@@ -19,17 +20,10 @@ typedef struct tyn_radial_beam_params {
 } tyn_radial_beam_params;
 
 enum {
-    RADIAL_BEAM_PORT_MEDIUM,  // IN buffer struct medium_block
-    RADIAL_BEAM_PORT_DENSITY, // IN 3D: density, or sigma_s in mode COEFFICIENTS
-    RADIAL_BEAM_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as the one below
-    RADIAL_BEAM_PORT_G,
-    RADIAL_BEAM_PORT_VPLS,    // IN optional buffer struct radial_vpls
-    RADIAL_BEAM_PORT_RADIALS, // OUT buffer struct radial_block, as long as its lights need
-    RADIAL_BEAM_PORT_COLUMN, // OUT 3D R32F (mode DENSITY): mean texture value between light and point
-    RADIAL_BEAM_PORT_TAU_S, // OUT 3D RGBA32F (mode COEFFICIENTS): mean sigma_s, as the two below
-    RADIAL_BEAM_PORT_TAU_A, // ... sigma_a
-    RADIAL_BEAM_PORT_TAU_P, // ... (1 - f) sigma_s, f = g^2 for g > 0
-    RADIAL_BEAM_PORT_LAMPS, // SCRATCH
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, RADIAL_BEAM),  // IN
+    RADIAL_BEAM_PORT_VPLS,                     // IN optional buffer struct radial_vpls
+    TYN_RADIALS(TYN_BUNDLE_ENUM, RADIAL_BEAM), // OUT
+    RADIAL_BEAM_PORT_LAMPS,                    // SCRATCH
     RADIAL_BEAM_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_radial_beam;

@@ -1,7 +1,7 @@
 // radial_beam_args.h -- push constants of radial_beam. Included by C and GLSL; scalar layout.
 #ifndef TYN_RADIAL_BEAM_ARGS_H
 #define TYN_RADIAL_BEAM_ARGS_H
-#include "shared.h"
+#include "shaders/common/shared.h"
 
 #define RADIAL_CLASSES                                                                             \
     3 // lamps that are marched, further lamps, VPLs: each with its own size of grid

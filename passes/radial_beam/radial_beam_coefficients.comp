@@ -2,12 +2,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define MEDIUM_SIGMA_A 2
-#define MEDIUM_G 3
-#include "medium.glsl"
-#include "radial_args.h"
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/radial_args.h"
 #include "radial_beam_args.h"
 
 layout(local_size_x = RADIAL_GROUP * RADIAL_GROUP) in;
@@ -15,15 +12,15 @@ layout(push_constant, scalar) uniform push
 {
     radial_beam_args args;
 };
-layout(set = 0, binding = 4, scalar) readonly buffer radial_buffer
+layout(set = 0, binding = 5, scalar) readonly buffer radial_buffer
 {
     uint radial_count, radial_num_lamps;
     uvec2 radial_pad;
     radial_grid radials[];
 };
-layout(set = 0, binding = 5, rgba32f) writeonly uniform image3D tau_s_image;
-layout(set = 0, binding = 6, rgba32f) writeonly uniform image3D tau_a_image;
-layout(set = 0, binding = 7, rgba32f) writeonly uniform image3D tau_p_image;
+layout(set = 0, binding = 6, rgba32f) writeonly uniform image3D tau_s_image;
+layout(set = 0, binding = 7, rgba32f) writeonly uniform image3D tau_a_image;
+layout(set = 0, binding = 8, rgba32f) writeonly uniform image3D tau_p_image;
 
 #define RADIAL_VALUE mat3 // sigma_s, sigma_a, (1 - f) sigma_s
 

@@ -2,10 +2,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#include "medium.glsl"
-#include "radial_args.h"
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/radial_args.h"
 #include "radial_beam_args.h"
 
 layout(local_size_x = RADIAL_GROUP * RADIAL_GROUP) in;
@@ -13,13 +12,13 @@ layout(push_constant, scalar) uniform push
 {
     radial_beam_args args;
 };
-layout(set = 0, binding = 2, scalar) readonly buffer radial_buffer
+layout(set = 0, binding = 5, scalar) readonly buffer radial_buffer
 {
     uint radial_count, radial_num_lamps;
     uvec2 radial_pad;
     radial_grid radials[];
 };
-layout(set = 0, binding = 3, r32f) writeonly uniform image3D column_image;
+layout(set = 0, binding = 6, r32f) writeonly uniform image3D column_image;
 
 #define RADIAL_VALUE float
 

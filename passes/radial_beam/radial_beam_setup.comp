@@ -2,8 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "scene_args.h"
-#include "radial_args.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/beams/radial_args.h"
 #include "radial_beam_args.h"
 
 layout(local_size_x = 64) in;

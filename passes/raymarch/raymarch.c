@@ -1,8 +1,8 @@
 // raymarch.c -- the picture: light of the medium gathered along the rays of a camera.
 #include "raymarch.h"
 #include "raymarch_args.h"
-#include "scatter_lut_args.h"
-#include "counters.h"
+#include "shaders/phase/scatter_lut_args.h"
+#include "shaders/common/counters.h"
 #include "raymarch_background.comp.h"
 #include "raymarch_grey.comp.h"
 #include "raymarch_colour.comp.h"
@@ -15,39 +15,20 @@
 #define IMAGE2 TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT
 
 static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
-    [RAYMARCH_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "medium_block"},
-    [RAYMARCH_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, true,
-                               "density, or sigma_s of unequal media, 1/m"},
-    [RAYMARCH_PORT_SIGMA_A] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, 0, true, "of unequal media, 1/m"},
-    [RAYMARCH_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "of unequal media"},
-    [RAYMARCH_PORT_EMISSION] = {"emission", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                "of unequal media, W/(m^3 sr)"},
+    TYN_MEDIUM(TYN_BUNDLE_OPTIONAL, RAYMARCH),
     [RAYMARCH_PORT_DISTANCE] = {"distance", TYN_IN, TYN_IMAGE_3D, 0, true,
                                 "bricks to the nearest one that is not empty"},
     [RAYMARCH_PORT_SHAPES] = {"shapes", TYN_IN, TYN_BUFFER, 0, false, "shape_block[]"},
     [RAYMARCH_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "light_block[]"},
-    [RAYMARCH_PORT_BEAMS] = {"beams", TYN_IN, TYN_BUFFER, 0, true, "beam_block[]"},
-    [RAYMARCH_PORT_COLUMN] = {"column", TYN_IN, TYN_IMAGE_3D, 0, true,
-                              "mean density (or sigma_s) along the suns"},
-    [RAYMARCH_PORT_TAU_A] = {"tau_a", TYN_IN, TYN_IMAGE_3D, 0, true, "mean sigma_a along the suns"},
-    [RAYMARCH_PORT_TAU_P] = {"tau_p", TYN_IN, TYN_IMAGE_3D, 0, true,
-                             "mean (1 - f) sigma_s along the suns"},
-    [RAYMARCH_PORT_RADIALS] = {"radials", TYN_IN, TYN_BUFFER, 0, true, "radial_block"},
-    [RAYMARCH_PORT_RADIAL_COLUMN] = {"radial_column", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                     "mean density (or sigma_s) on the way from lamps"},
-    [RAYMARCH_PORT_RADIAL_TAU_A] = {"radial_tau_a", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                    "mean sigma_a on the way from lamps"},
-    [RAYMARCH_PORT_RADIAL_TAU_P] = {"radial_tau_p", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                    "mean (1 - f) sigma_s on the way from lamps"},
+    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, RAYMARCH),
+    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, RAYMARCH),
     [RAYMARCH_PORT_LUT] = {"lut", TYN_IN, TYN_IMAGE_2D, 0, true, "forward scattering"},
     [RAYMARCH_PORT_LUT_BLOCK] = {"lut_block", TYN_IN, TYN_BUFFER, 0, true, "lut_block"},
     [RAYMARCH_PORT_INSCATTER] = {"inscatter", TYN_IN, TYN_IMAGE_3D, 0, true,
                                  "radiance scattered towards the eye, W/(m^2 sr)"},
-    [RAYMARCH_PORT_WALL_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
-    [RAYMARCH_PORT_WALL_CELLS] = {"wall_cells", TYN_IN, TYN_BUFFER, 0, true, "of walls"},
+    TYN_WALLS(TYN_BUNDLE_OPTIONAL, RAYMARCH),
     [RAYMARCH_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true, "of cells"},
-    [RAYMARCH_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, 0, true, "of shadow_map"},
-    [RAYMARCH_PORT_SHADOWS] = {"shadows", TYN_IN, TYN_BUFFER, 0, true, "of shadow_map"},
+    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, RAYMARCH),
     [RAYMARCH_PORT_LIGHT_CELLS] = {"light_cells", TYN_IN, TYN_IMAGE_3D, 0, true, "of light_cells"},
     [RAYMARCH_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "camera_block"},
     [RAYMARCH_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, false, "env_block"},
@@ -79,10 +60,8 @@ static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
 
 // The order of raymarch_bindings.glsl.
 static const tyn_binding bindings[] = {
-    {RAYMARCH_PORT_MEDIUM, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_DENSITY, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_BEAMS, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_COLUMN, TYN_USE_SAMPLED, false},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, RAYMARCH),
+    TYN_BEAMS(TYN_BUNDLE_BIND, RAYMARCH),
     {RAYMARCH_PORT_LUT, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_LUT_BLOCK, TYN_USE_UNIFORM, false},
     {RAYMARCH_PORT_DISTANCE, TYN_USE_SAMPLED, false},
@@ -101,27 +80,17 @@ static const tyn_binding bindings[] = {
     {RAYMARCH_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
     {RAYMARCH_PORT_GLOW, TYN_USE_SAMPLED, true},
     {RAYMARCH_PORT_SURFACE, TYN_USE_STORAGE_READ, false},
-    {RAYMARCH_PORT_WALL_LINKS, TYN_USE_TEXELS_UINT, false},
-    {RAYMARCH_PORT_WALL_CELLS, TYN_USE_TEXELS_VEC4, false},
-    {RAYMARCH_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_SHADOWS, TYN_USE_STORAGE_READ, false},
+    {RAYMARCH_PORT_DISTANCES, TYN_USE_SAMPLED, false},
+    TYN_WALLS(TYN_BUNDLE_BIND, RAYMARCH),
+    {RAYMARCH_PORT_ROOMS, TYN_USE_TEXELS_UINT, false},
     // No eighth uniform buffer: where a branch depends on one, the compiler of lavapipe 22.3 writes beyond
     // its memory (its table of inlinable uniforms).
-    {RAYMARCH_PORT_RADIALS, TYN_USE_STORAGE_READ, false},
-    {RAYMARCH_PORT_RADIAL_COLUMN, TYN_USE_SAMPLED, false},
+    TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, RAYMARCH),
+    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, RAYMARCH),
+    {RAYMARCH_PORT_LIGHT_CELLS, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_SPARSE, TYN_USE_SAMPLED, false},
     {RAYMARCH_PORT_SPARSE, TYN_USE_STORAGE_WRITE, false},
     {RAYMARCH_PORT_REST, TYN_USE_STORAGE_RW, false},
-    {RAYMARCH_PORT_DISTANCES, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_LIGHT_CELLS, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_ROOMS, TYN_USE_TEXELS_UINT, false},
-    {RAYMARCH_PORT_SIGMA_A, TYN_USE_SAMPLED, false}, // from here on colour only
-    {RAYMARCH_PORT_G, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_EMISSION, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_TAU_A, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_TAU_P, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_RADIAL_TAU_A, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_RADIAL_TAU_P, TYN_USE_SAMPLED, false},
 };
 // The order of raymarch_background.comp.
 static const tyn_binding background_bindings[] = {
@@ -140,8 +109,7 @@ static const tyn_binding background_bindings[] = {
 enum {
     NUM_BACKGROUND_BINDINGS = sizeof(background_bindings) / sizeof(background_bindings[0]),
     NUM_BINDINGS = sizeof(bindings) / sizeof(bindings[0]),
-    NUM_GREY_BINDINGS = NUM_BINDINGS - 7,
-    SPARSE_TEXTURE = 28, // of bindings
+    SPARSE_TEXTURE = NUM_BINDINGS - 3, // of bindings
     SPARSE_IMAGE,
     NUM_SPEC =
         7, // mode, number of suns, features, numbers of lamps, number of shapes and their kind
@@ -163,30 +131,12 @@ _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNE
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_GREY] = {.name = "raymarch_grey",
-                     .spirv = raymarch_grey_spirv,
-                     .spirv_size = sizeof(raymarch_grey_spirv),
-                     .args_size = sizeof(struct raymarch_args),
-                     .local_size = {8, 8, 1},
-                     .bindings = bindings,
-                     .num_bindings = NUM_GREY_BINDINGS,
-                     .num_spec = NUM_SPEC},
-    [KERNEL_COLOUR] = {.name = "raymarch_colour",
-                       .spirv = raymarch_colour_spirv,
-                       .spirv_size = sizeof(raymarch_colour_spirv),
-                       .args_size = sizeof(struct raymarch_args),
-                       .local_size = {8, 8, 1},
-                       .bindings = bindings,
-                       .num_bindings = NUM_BINDINGS,
-                       .num_spec = NUM_SPEC},
-    [KERNEL_BACKGROUND] = {.name = "raymarch_background",
-                           .spirv = raymarch_background_spirv,
-                           .spirv_size = sizeof(raymarch_background_spirv),
-                           .args_size = sizeof(struct raymarch_args),
-                           .local_size = {8, 8, 1},
-                           .bindings = background_bindings,
-                           .num_bindings = NUM_BACKGROUND_BINDINGS,
-                           .num_spec = NUM_SPEC - 4},
+    [KERNEL_GREY] =
+        TYN_KERNEL(raymarch_grey, sizeof(struct raymarch_args), 8, 8, 1, bindings, NUM_SPEC),
+    [KERNEL_COLOUR] =
+        TYN_KERNEL(raymarch_colour, sizeof(struct raymarch_args), 8, 8, 1, bindings, NUM_SPEC),
+    [KERNEL_BACKGROUND] = TYN_KERNEL(raymarch_background, sizeof(struct raymarch_args), 8, 8, 1,
+                                     background_bindings, NUM_SPEC - 4),
 };
 
 static const tyn_param params_table[] = {

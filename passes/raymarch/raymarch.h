@@ -1,7 +1,8 @@
 // raymarch.h -- the picture: light of the medium gathered along the rays of a camera.
 #pragma once
 #include <tyndall/pass.h>
-#include "scene_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/common/scene_args.h"
 
 typedef struct tyn_raymarch_params {
     // "raymarch.step": longest step, in voxels (homogeneous: in steps that resolve the light).
@@ -16,7 +17,7 @@ typedef struct tyn_raymarch_params {
     uint32_t num_lamps; // that are marched: the first of `radials`
     // That are marched nearby only, the next ones; `inscatter` has the rest of their light.
     uint32_t num_near_lamps;
-    float reach;          // ... of these, m (shaders/radial.glsl: radial_reach)
+    float reach;          // ... of these, m (shaders/beams/radial.glsl: radial_reach)
     uint32_t spots;       // 1: some of all these shine in a cone only
     uint32_t kernels;     // 1: sunlight scattered forward any number of times (lut); else once only
     uint32_t mean;        // 1: the mean of the environment came in through the field
@@ -65,30 +66,18 @@ enum {
 };
 
 enum {
-    RAYMARCH_PORT_MEDIUM,  // IN buffer struct medium_block
-    RAYMARCH_PORT_DENSITY, // IN 3D: density, or sigma_s in mode COEFFICIENTS
-    RAYMARCH_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as the two below
-    RAYMARCH_PORT_G,
-    RAYMARCH_PORT_EMISSION,
-    RAYMARCH_PORT_DISTANCE, // IN 3D: distance of empty bricks
-    RAYMARCH_PORT_SHAPES,   // IN buffer struct shape_block[]
-    RAYMARCH_PORT_LIGHTS,   // IN buffer struct light_block[]
-    RAYMARCH_PORT_BEAMS,    // IN optional buffer struct beam_block[]: with suns, as the next
-    RAYMARCH_PORT_COLUMN,   // IN optional 3D: column, or tau_s in mode COEFFICIENTS
-    RAYMARCH_PORT_TAU_A,    // IN optional 3D: mode COEFFICIENTS, as the one below
-    RAYMARCH_PORT_TAU_P,
-    RAYMARCH_PORT_RADIALS,       // IN optional buffer struct radial_block: with lamps, as the next
-    RAYMARCH_PORT_RADIAL_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS; of radial_beam
-    RAYMARCH_PORT_RADIAL_TAU_A, // IN optional 3D: mode COEFFICIENTS, as the one below
-    RAYMARCH_PORT_RADIAL_TAU_P,
-    RAYMARCH_PORT_LUT,        // IN optional 2D: with `kernels` and suns, as the next
-    RAYMARCH_PORT_LUT_BLOCK,  // IN optional buffer struct lut_block
-    RAYMARCH_PORT_INSCATTER,  // IN optional 3D: of merge; without it suns and emission only
-    RAYMARCH_PORT_WALL_LINKS, // IN optional buffers, of walls: surfaces part the cells of inscatter
-    RAYMARCH_PORT_WALL_CELLS,
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, RAYMARCH),  // IN optional
+    RAYMARCH_PORT_DISTANCE,                 // IN 3D: distance of empty bricks
+    RAYMARCH_PORT_SHAPES,                   // IN buffer struct shape_block[]
+    RAYMARCH_PORT_LIGHTS,                   // IN buffer struct light_block[]
+    TYN_BEAMS(TYN_BUNDLE_ENUM, RAYMARCH),   // IN optional
+    TYN_RADIALS(TYN_BUNDLE_ENUM, RAYMARCH), // IN optional
+    RAYMARCH_PORT_LUT,                      // IN optional 2D: with `kernels` and suns, as the next
+    RAYMARCH_PORT_LUT_BLOCK,                // IN optional buffer struct lut_block
+    RAYMARCH_PORT_INSCATTER, // IN optional 3D: of merge; without it suns and emission only
+    TYN_WALLS(TYN_BUNDLE_ENUM, RAYMARCH), // IN optional
     RAYMARCH_PORT_ROOMS, // IN optional buffer, of rooms: with walls, what light of inscatter rays are among
-    RAYMARCH_PORT_SHADOW_ATLAS, // IN optional 2D, of shadow_map: surfaces stand before the lights
-    RAYMARCH_PORT_SHADOWS,      // IN optional buffer
+    TYN_SHADOWS(TYN_BUNDLE_ENUM, RAYMARCH), // IN optional
     RAYMARCH_PORT_LIGHT_CELLS, // IN optional 3D, of light_cells: where looks at the maps are needed
     RAYMARCH_PORT_CAMERA,      // IN buffer struct camera_block
     RAYMARCH_PORT_ENVIRONMENT, // IN buffer struct env_block

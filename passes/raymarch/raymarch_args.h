@@ -1,7 +1,7 @@
 // raymarch_args.h -- push constants and features of the ray march. Included by C and GLSL.
 #ifndef RAYMARCH_ARGS_H
 #define RAYMARCH_ARGS_H
-#include "shared.h"
+#include "shaders/common/shared.h"
 
 // Bits of the specialisation constant "features".
 #define RAYMARCH_KERNELS (1u << 0) // sunlight scattered forward any number of times, else once only
@@ -13,9 +13,9 @@
 #define RAYMARCH_MEAN (1u << 6) // the mean of the environment came in through the field
 #define RAYMARCH_HOST_DEPTH (1u << 7)
 #define RAYMARCH_BACKGROUND (1u << 8) // the environment behind the medium is seen
-#define RAYMARCH_BEHIND (1u << 9) // follow every ray to its end: what is behind the medium matters
-#define RAYMARCH_ROOMS (1u << 10)        // it is known which cells are joined
-#define RAYMARCH_CLOSED (1u << 11)        // no light enters through a face at which there is medium
+#define RAYMARCH_BEHIND (1u << 9)  // follow every ray to its end: what is behind the medium matters
+#define RAYMARCH_ROOMS (1u << 10)  // it is known which cells are joined
+#define RAYMARCH_CLOSED (1u << 11) // no light enters through a face at which there is medium
 #define RAYMARCH_SUPERSAMPLE (1u << 12)   // four rays where they disagree on which shapes they hit
 #define RAYMARCH_TRANSMITTANCE (1u << 13) // layers, as the three below
 #define RAYMARCH_DEPTH (1u << 14)

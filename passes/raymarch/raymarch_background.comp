@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "camera.glsl"
+#include "shaders/common/camera.glsl"
 #include "background.glsl"
 #include "host_depth.glsl"
 #define SURFACE_RADIANCE 9

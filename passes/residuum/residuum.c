@@ -4,7 +4,7 @@
 #include "residuum_collect.comp.h"
 #include "residuum_start.comp.h"
 #include "residuum_step.comp.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) RESIDUUM_PORT_##name
@@ -21,10 +21,7 @@ uint32_t tyn_residuum_after(float a, float g, float sigma_s, float hop, float ep
 }
 
 static const tyn_port ports[RESIDUUM_NUM_PORTS] = {
-    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
-    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
-    [PORT(SIGMA_A)] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                       .meaning = "absorption, 1/m"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, RESIDUUM),
     [PORT(PLACES)] = {"places", TYN_IN, TYN_BUFFER, .meaning = "struct propagate_place[]"},
     [PORT(LIGHT)] = {"light", TYN_IN, TYN_IMAGE_3D,
                      .meaning = "of propagate_rect: L per irradiance"},
@@ -40,10 +37,9 @@ static const tyn_port ports[RESIDUUM_NUM_PORTS] = {
 enum { START, STEP, COLLECT, NUM_KERNELS };
 
 static const tyn_binding start_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},     {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},    {PORT(PLACES), TYN_USE_UNIFORM},
-    {PORT(LIGHT), TYN_USE_SAMPLED},      {PORT(STATE), TYN_USE_STORAGE_WRITE},
-    {PORT(KEPT), TYN_USE_STORAGE_WRITE}, {PORT(SUM), TYN_USE_STORAGE_WRITE},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, RESIDUUM), {PORT(PLACES), TYN_USE_UNIFORM},
+    {PORT(LIGHT), TYN_USE_SAMPLED},        {PORT(STATE), TYN_USE_STORAGE_WRITE},
+    {PORT(KEPT), TYN_USE_STORAGE_WRITE},   {PORT(SUM), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding step_bindings[] = {
     {PORT(STATE_OTHER), TYN_USE_STORAGE_READ},
@@ -57,14 +53,11 @@ static const tyn_binding collect_bindings[] = {
 };
 
 #define KERNEL(step, specs)                                                                        \
-    .name = "residuum_" #step, .spirv = residuum_##step##_spirv,                                   \
-    .spirv_size = sizeof residuum_##step##_spirv, .args_size = sizeof(struct residuum_args),       \
-    .local_size = {4, 4, 4}, .bindings = step##_bindings,                                          \
-    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
+    TYN_KERNEL(residuum_##step, sizeof(struct residuum_args), 4, 4, 4, step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [START] = {KERNEL(start, 1)},
-    [STEP] = {KERNEL(step, 0)},
-    [COLLECT] = {KERNEL(collect, 0)},
+    [START] = KERNEL(start, 1),
+    [STEP] = KERNEL(step, 0),
+    [COLLECT] = KERNEL(collect, 0),
 };
 
 #define FIELD(name) offsetof(tyn_residuum_params, name)

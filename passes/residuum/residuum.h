@@ -5,7 +5,8 @@
 // neighbours in equal parts; what it sends to the eye is the same in all directions.
 #pragma once
 #include <tyndall/pass.h>
-#include "propagate_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/beams/propagate_args.h"
 
 typedef struct tyn_residuum_params {
     uint32_t on;         // for the method, no kernel of this pass reads it, as the two below
@@ -26,11 +27,9 @@ typedef struct tyn_residuum_params {
 uint32_t tyn_residuum_after(float a, float g, float sigma_s, float hop, float epsilon);
 
 enum {
-    RESIDUUM_PORT_MEDIUM,  // IN buffer struct medium_block
-    RESIDUUM_PORT_DENSITY, // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
-    RESIDUUM_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS
-    RESIDUUM_PORT_PLACES,  // IN buffer, of propagate_rect
-    RESIDUUM_PORT_LIGHT,   // IN 3D, of propagate_rect
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, RESIDUUM), // IN
+    RESIDUUM_PORT_PLACES,                  // IN buffer, of propagate_rect
+    RESIDUUM_PORT_LIGHT,                   // IN 3D, of propagate_rect
     RESIDUUM_PORT_RESIDUUM, // OUT 3D RGBA32F, cubic cells that span the medium's box (lattice.glsl): light
                             // to the eye per unit of sigma_s, W/(m^2 sr)
     RESIDUUM_PORT_STATE, // OUT buffer vec4[], after the last iteration: light at the faces of a cell, its

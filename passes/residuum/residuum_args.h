@@ -1,7 +1,7 @@
 // residuum_args.h -- arguments of all kernels. Included by C and GLSL.
 #ifndef TYN_RESIDUUM_ARGS_H
 #define TYN_RESIDUUM_ARGS_H
-#include "shared.h"
+#include "shaders/common/shared.h"
 
 struct residuum_args {
     tyn_uvec3 dims; // cells

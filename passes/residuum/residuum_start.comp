@@ -2,23 +2,21 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define MEDIUM_SIGMA_A 2
-#include "medium.glsl"
-#include "lattice.glsl"
-#include "propagate.glsl"
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/beams/propagate.glsl"
 #include "residuum_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 3, scalar) uniform places_uniform
+layout(set = 0, binding = 5, scalar) uniform places_uniform
 {
     propagate_place places[TYN_ORDINATES_MAX];
 };
-layout(set = 0, binding = 4) uniform sampler3D light;
-layout(set = 0, binding = 5, scalar) writeonly buffer state_buffer { vec4 out_state[]; };
-layout(set = 0, binding = 6, scalar) writeonly buffer kept_buffer { vec4 out_kept[]; };
-layout(set = 0, binding = 7, scalar) writeonly buffer sum_buffer { vec4 out_sum[]; };
+layout(set = 0, binding = 6) uniform sampler3D light;
+layout(set = 0, binding = 7, scalar) writeonly buffer state_buffer { vec4 out_state[]; };
+layout(set = 0, binding = 8, scalar) writeonly buffer kept_buffer { vec4 out_kept[]; };
+layout(set = 0, binding = 9, scalar) writeonly buffer sum_buffer { vec4 out_sum[]; };
 layout(push_constant, scalar) uniform push { residuum_args args; };
 
 // Power per volume of all grids at a point, W/m^3: a cell of edge c holds L c^2 in its volume c^3.

@@ -7,13 +7,8 @@
 #define IMAGE TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, false
 
 static const tyn_port ports[RSM_NUM_PORTS] = {
-    [RSM_PORT_SURFACES] = {"surfaces", TYN_IN, TYN_BUFFER, 0, false, "struct surface_block"},
-    [RSM_PORT_TRIANGLES] = {"triangles", TYN_IN, TYN_BUFFER, 0, false, "struct surface_triangle[]"},
-    [RSM_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, false, "struct surface_vertex[]"},
-    [RSM_PORT_MATERIALS] = {"materials", TYN_IN, TYN_BUFFER, 0, false, "struct surface_material[]"},
-    [RSM_PORT_TEXTURES] = {"textures", TYN_IN, TYN_BUFFER, 0, false, "struct surface_texture[]"},
-    [RSM_PORT_TEXELS] = {"texels", TYN_IN, TYN_BUFFER, 0, false, "uint[]: R8 G8 B8 A8, sRGB"},
-    [RSM_PORT_NODES] = {"nodes", TYN_IN, TYN_BUFFER, 0, true, "struct surface_node[]"},
+    TYN_GEOMETRY(TYN_BUNDLE_IN, RSM),
+    TYN_MATERIALS(TYN_BUNDLE_IN, RSM),
     [RSM_PORT_FLUX] = {"rsm_flux", TYN_OUT, IMAGE, "power that a texel reflects, W"},
     [RSM_PORT_POSITION] = {"rsm_position", TYN_OUT, IMAGE, "where (M, m); area of it, m^2"},
     [RSM_PORT_NORMAL] = {"rsm_normal", TYN_OUT, IMAGE, "of the surface (M), on the light's side"},
@@ -22,13 +17,7 @@ static const tyn_port ports[RSM_NUM_PORTS] = {
 };
 
 static const tyn_binding bindings[] = {
-    {RSM_PORT_TRIANGLES, TYN_USE_STORAGE_READ, false},
-    {RSM_PORT_VERTICES, TYN_USE_STORAGE_READ, false},
-    {RSM_PORT_SURFACES, TYN_USE_UNIFORM, false}, // from here on for light only
-    {RSM_PORT_MATERIALS, TYN_USE_STORAGE_READ, false},
-    {RSM_PORT_TEXTURES, TYN_USE_STORAGE_READ, false},
-    {RSM_PORT_TEXELS, TYN_USE_STORAGE_READ, false},
-    {RSM_PORT_NODES, TYN_USE_STORAGE_READ, false},
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, RSM), TYN_MATERIALS(TYN_BUNDLE_BIND, RSM), // for light only
 };
 
 static const tyn_binding attachments[] = {
@@ -62,7 +51,7 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
                       .spirv_size = sizeof(rsm_vertex_spirv),
                       .args_size = sizeof(struct rsm_draw_args),
                       .bindings = bindings,
-                      .num_bindings = 2,
+                      .num_bindings = 4,
                       .raster = &raster_depth},
     [KERNEL_LIGHT] = {.name = "rsm_light",
                       .spirv = rsm_vertex_spirv,

@@ -1,10 +1,11 @@
 // rsm.h -- reflective shadow maps: what each light shines on, and the power reflected there.
 #pragma once
 #include <tyndall/pass.h>
-#include "rsm_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/light/rsm_args.h"
 #include "rsm_draw_args.h"
-#include "scene_args.h"
-#include "surface_args.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/surfaces/surface_args.h"
 
 typedef struct tyn_rsm_params {
     int32_t sun_texels;  // "rsm.sun_texels"
@@ -27,17 +28,10 @@ void tyn_rsm_add(tyn_rsm_params *params, const struct rsm_tile *tile, uint32_t k
                  const tyn_vec4 clip[4], const struct light_block *light, float texel);
 
 enum {
-    RSM_PORT_SURFACES,  // IN buffer struct surface_block
-    RSM_PORT_TRIANGLES, // IN buffers, surface_args.h
-    RSM_PORT_VERTICES,
-    RSM_PORT_MATERIALS,
-    RSM_PORT_TEXTURES,
-    RSM_PORT_TEXELS,
-    RSM_PORT_NODES,
-    RSM_PORT_FLUX,     // OUT 2D RGBA32F: rsm_args.h, as the two below
-    RSM_PORT_POSITION, // OUT 2D RGBA32F
-    RSM_PORT_NORMAL,   // OUT 2D RGBA32F
-    RSM_PORT_DEPTH,    // SCRATCH 2D D32
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, RSM),  // IN
+    TYN_MATERIALS(TYN_BUNDLE_ENUM, RSM), // IN
+    TYN_RSM(TYN_BUNDLE_ENUM, RSM),       // OUT
+    RSM_PORT_DEPTH,                      // SCRATCH 2D D32
     RSM_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_rsm;

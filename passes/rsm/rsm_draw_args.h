@@ -1,7 +1,7 @@
 // rsm_draw_args.h -- push constants of a reflective shadow map.
 #ifndef TYN_RSM_DRAW_ARGS_H
 #define TYN_RSM_DRAW_ARGS_H
-#include "shared.h"
+#include "shaders/common/shared.h"
 
 struct rsm_draw_args {
     tyn_vec4 clip[4]; // world -> clip space, row by row

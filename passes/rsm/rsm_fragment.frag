@@ -2,25 +2,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#define MATERIALS_AT 4
 #include "rsm_bindings.glsl"
-#define SURFACE_TEXTURES 4
-#define SURFACE_TEXELS 5
-#include "surface_texture.glsl"
-#include "shadow_args.h"
+#include "shaders/surfaces/surface_texture.glsl"
+#include "shaders/light/shadow_args.h"
 
-layout(set = 0, binding = 2, scalar) uniform surfaces_buffer
-{
-    surface_block surfaces;
-};
-layout(set = 0, binding = 3, scalar) readonly buffer materials_buffer
-{
-    surface_material materials[];
-};
-layout(set = 0, binding = 6, scalar) readonly buffer nodes_buffer
-{
-    uvec4 nodes[];
-};
-#include "surface_faces.glsl"
+#include "shaders/surfaces/surface_faces.glsl"
 layout(location = 0) flat in uint triangle;
 layout(location = 1) in vec3 weights;
 layout(location = 0) out vec4 flux;

@@ -46,22 +46,8 @@ static const tyn_binding tms_bindings[] = {
 };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SUM] = {"sum",
-                    scatter_lut_sum_spirv,
-                    sizeof(scatter_lut_sum_spirv),
-                    0,
-                    {TYN_LUT_ANGLES / 4, 1, 1},
-                    sum_bindings,
-                    3,
-                    0},
-    [KERNEL_TMS] = {"tms",
-                    scatter_lut_tms_spirv,
-                    sizeof(scatter_lut_tms_spirv),
-                    0,
-                    {TYN_TMS_ANGLES / 4, 1, 1},
-                    tms_bindings,
-                    4,
-                    0},
+    [KERNEL_SUM] = TYN_KERNEL(scatter_lut_sum, 0, TYN_LUT_ANGLES / 4, 1, 1, sum_bindings, 0),
+    [KERNEL_TMS] = TYN_KERNEL(scatter_lut_tms, 0, TYN_TMS_ANGLES / 4, 1, 1, tms_bindings, 0),
 };
 
 // ---- rows -----------------------------------------------------------------------------------------

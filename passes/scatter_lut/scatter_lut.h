@@ -1,8 +1,8 @@
 // scatter_lut.h -- table of the light scattered forward any number of times along a beam.
 #pragma once
 #include <tyndall/pass.h>
-#include "scene_args.h"
-#include "scatter_lut_args.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/phase/scatter_lut_args.h"
 
 typedef struct tyn_scatter_lut_params {
     uint32_t mode;                       // TYN_MEDIUM_*

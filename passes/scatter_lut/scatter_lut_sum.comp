@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "scatter_lut_map.glsl"
+#include "shaders/phase/scatter_lut_map.glsl"
 
 const uint THREADS = TYN_LUT_ANGLES / 4, CHUNK = TYN_LUT_ANGLES;
 layout(local_size_x = TYN_LUT_ANGLES / 4) in; // x: four angles, y: depth of a set, z: row

@@ -16,8 +16,8 @@
 #include "shade_vpls.comp.h"
 #include "shade_walls.comp.h"
 #include "shade_table.h"
-#include "gbuffer_edge_args.h"
-#include "walls_args.h"
+#include "shaders/surfaces/gbuffer_edge_args.h"
+#include "shaders/walls/walls_args.h"
 #include <stddef.h>
 #include <string.h>
 
@@ -38,43 +38,16 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     [PORT(EDGE_COUNT)] = {"edge_count", TYN_IN, TYN_BUFFER, .meaning = "struct gbuffer_edge_count"},
     [PORT(EDGES)] = {"edges", TYN_IN, TYN_BUFFER,
                      .meaning = "uint[]: pixels that show several pieces of surface"},
-    [PORT(BEAMS)] = {"beams", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "beam_block[]"},
-    [PORT(COLUMN)] = {"column", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                      .meaning = "density (or sigma_s) along the suns"},
-    [PORT(TAU_A)] = {"tau_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                     .meaning = "sigma_a along the suns"},
-    [PORT(TAU_P)] = {"tau_p", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                     .meaning = "(1 - f) sigma_s along the suns"},
-    [PORT(RADIALS)] = {"radials", TYN_IN, TYN_BUFFER, .optional = true,
-                       .meaning = "struct radial_block"},
-    [PORT(RADIAL_COLUMN)] = {"radial_column", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                             .meaning = "mean density (or sigma_s) from local lights"},
-    [PORT(RADIAL_TAU_A)] = {"radial_tau_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                            .meaning = "mean sigma_a"},
-    [PORT(RADIAL_TAU_P)] = {"radial_tau_p", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                            .meaning = "mean (1 - f) sigma_s"},
-    [PORT(SHADOW_ATLAS)] = {"shadow_atlas", TYN_IN, TYN_IMAGE_2D, .optional = true,
-                            .meaning = "depth maps of the lights"},
-    [PORT(SHADOWS)] = {"shadows", TYN_IN, TYN_BUFFER, .optional = true,
-                       .meaning = "struct shadow_light[]"},
-    [PORT(VPLS)] = {"vpls", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "struct radial_vpls"},
-    [PORT(VPL_DISTANCES)] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, .optional = true,
-                             .meaning = "what VPLs see, m"},
-    [PORT(VPL_PLANES)] = {"vpl_planes", TYN_IN, TYN_IMAGE_2D, .optional = true,
-                          .meaning = "and its planes"},
+    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, SHADE),
+    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, SHADE),
+    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, SHADE),
+    TYN_VPLS(TYN_BUNDLE_OPTIONAL, SHADE),
     [PORT(MOMENTS)] = {"moments", TYN_IN, TYN_IMAGE_3D, .optional = true,
                        .meaning = "fluence and flux on the lattice, W/m^2"},
-    [PORT(WALL_LINKS)] = {"wall_links", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "uint[]"},
-    [PORT(WALL_CELLS)] = {"wall_cells", TYN_IN, TYN_BUFFER, .optional = true,
-                          .meaning = "struct wall_cell[]"},
+    TYN_WALLS(TYN_BUNDLE_OPTIONAL, SHADE),
     [PORT(ROOMS)] = {"rooms", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "of cells and VPLs"},
-    [PORT(SURFACES)] = {"surfaces", TYN_IN, TYN_BUFFER, .meaning = "struct surface_block"},
-    [PORT(VERTICES)] = {"vertices", TYN_IN, TYN_BUFFER, .meaning = "struct surface_vertex[]"},
-    [PORT(TRIANGLES)] = {"triangles", TYN_IN, TYN_BUFFER, .meaning = "struct surface_triangle[]"},
-    [PORT(MATERIALS)] = {"materials", TYN_IN, TYN_BUFFER, .meaning = "struct surface_material[]"},
-    [PORT(TEXTURES)] = {"textures", TYN_IN, TYN_BUFFER, .meaning = "struct surface_texture[]"},
-    [PORT(TEXELS)] = {"texels", TYN_IN, TYN_BUFFER, .meaning = "uint[]: R8 G8 B8 A8, sRGB"},
-    [PORT(NODES)] = {"nodes", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "surface_node[]"},
+    TYN_GEOMETRY(TYN_BUNDLE_IN, SHADE),
+    TYN_MATERIALS(TYN_BUNDLE_IN, SHADE),
     [PORT(RADIANCE)] = {"surface_radiance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT,
                         .meaning = "radiance to the camera, W/(m^2 sr)"},
     [PORT(TABLE)] = {"lights_table", TYN_SCRATCH, IMAGE2, .meaning = "the lights"},
@@ -97,16 +70,12 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
 
 // Bindings 0 to 20 of shade.glsl. What is in the table is not read from buffers.
 #define COMMON_BINDINGS                                                                            \
-    {PORT(MEDIUM), TYN_USE_UNIFORM}, {PORT(COLUMN), TYN_USE_SAMPLED},                              \
-        {PORT(BEAMS), TYN_USE_UNIFORM}, {PORT(COLUMN), TYN_USE_SAMPLED},                           \
-        {PORT(TAU_A), TYN_USE_SAMPLED}, {PORT(TAU_P), TYN_USE_SAMPLED},                            \
-        {PORT(RADIALS), TYN_USE_STORAGE_READ}, {PORT(RADIAL_COLUMN), TYN_USE_SAMPLED},             \
-        {PORT(RADIAL_TAU_A), TYN_USE_SAMPLED}, {PORT(RADIAL_TAU_P), TYN_USE_SAMPLED},              \
-        {PORT(SHADOW_ATLAS), TYN_USE_SAMPLED}, {PORT(SHADOWS), TYN_USE_STORAGE_READ},              \
-        {PORT(VPLS), TYN_USE_STORAGE_READ}, {PORT(SUNS), TYN_USE_UNIFORM},                         \
+    {PORT(MEDIUM), TYN_USE_UNIFORM}, TYN_BEAMS(TYN_BUNDLE_BIND, SHADE),                            \
+        TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, SHADE), TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, SHADE),  \
+        TYN_VPLS(TYN_BUNDLE_BIND, SHADE), {PORT(SUNS), TYN_USE_UNIFORM},                           \
         {PORT(LIGHTS), TYN_USE_UNIFORM}, {PORT(CAMERA), TYN_USE_UNIFORM},                          \
         {PORT(DISTANCES), TYN_USE_SAMPLED}, {PORT(FACING), TYN_USE_STORAGE_READ},                  \
-        {PORT(COLOURS), TYN_USE_STORAGE_READ}, {PORT(VPL_DISTANCES), TYN_USE_SAMPLED},             \
+        {PORT(COLOURS), TYN_USE_STORAGE_READ},                                                     \
     {                                                                                              \
         PORT(TABLE), TYN_USE_SAMPLED                                                               \
     }
@@ -117,17 +86,16 @@ static const tyn_binding lights_bindings[] = {
     {PORT(TABLE), TYN_USE_STORAGE_WRITE},  {PORT(ROOMS), TYN_USE_STORAGE_READ},
 };
 static const tyn_binding walls_bindings[] = {
-    {PORT(WALL_LINKS), TYN_USE_STORAGE_READ},
-    {PORT(WALL_CELLS), TYN_USE_STORAGE_READ},
+    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, SHADE),
     {PORT(WALL_TABLE), TYN_USE_STORAGE_WRITE},
     {PORT(ROOMS), TYN_USE_STORAGE_READ},
 };
 static const tyn_binding forward_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},         {PORT(COLUMN), TYN_USE_SAMPLED},
-    {PORT(BEAMS), TYN_USE_UNIFORM},          {PORT(COLUMN), TYN_USE_SAMPLED},
-    {PORT(TAU_A), TYN_USE_SAMPLED},          {PORT(TAU_P), TYN_USE_SAMPLED},
-    {PORT(SHADOW_ATLAS), TYN_USE_SAMPLED},   {PORT(SHADOWS), TYN_USE_STORAGE_READ},
-    {PORT(SUNS), TYN_USE_UNIFORM},           {PORT(FORWARD), TYN_USE_STORAGE_WRITE},
+    {PORT(MEDIUM), TYN_USE_UNIFORM},
+    TYN_BEAMS(TYN_BUNDLE_BIND, SHADE),
+    TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, SHADE),
+    {PORT(SUNS), TYN_USE_UNIFORM},
+    {PORT(FORWARD), TYN_USE_STORAGE_WRITE},
     {PORT(WALL_LINKS), TYN_USE_TEXELS_UINT},
 };
 static const tyn_binding faces_bindings[] = {
@@ -136,16 +104,14 @@ static const tyn_binding faces_bindings[] = {
     {PORT(FACES), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding sight_bindings[] = {
-    {PORT(SURFACES), TYN_USE_UNIFORM},       {PORT(VERTICES), TYN_USE_STORAGE_READ},
-    {PORT(TRIANGLES), TYN_USE_STORAGE_READ}, {PORT(NODES), TYN_USE_STORAGE_READ},
-    {PORT(MEDIUM), TYN_USE_UNIFORM},         {PORT(FACES), TYN_USE_SAMPLED},
-    {PORT(MOMENTS), TYN_USE_SAMPLED},        {PORT(SIGHT), TYN_USE_STORAGE_WRITE},
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, SHADE), {PORT(MEDIUM), TYN_USE_UNIFORM},
+    {PORT(FACES), TYN_USE_SAMPLED},       {PORT(MOMENTS), TYN_USE_SAMPLED},
+    {PORT(SIGHT), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding vpls_bindings[] = {
     COMMON_BINDINGS,
     {PORT(PART), TYN_USE_STORAGE_WRITE},
     {PORT(WALL_TABLE), TYN_USE_SAMPLED},
-    {PORT(VPL_PLANES), TYN_USE_SAMPLED},
 };
 static const tyn_binding rows_bindings[] = {
     {PORT(CAMERA), TYN_USE_UNIFORM},
@@ -166,7 +132,6 @@ static const tyn_binding places_bindings[] = {
     {PORT(WALL_TABLE), TYN_USE_SAMPLED},
     {PORT(ALONE_COUNT), TYN_USE_STORAGE_READ},
     {PORT(ALONE), TYN_USE_STORAGE_READ},
-    {PORT(VPL_PLANES), TYN_USE_SAMPLED},
 };
 // Bindings 0 to 27 of shade_piece.glsl.
 #define SURFACE_BINDINGS                                                                           \
@@ -192,12 +157,8 @@ static const tyn_binding edges_bindings[] = {
     {PORT(RADIANCE), TYN_USE_STORAGE_WRITE},
     {PORT(EDGE_COUNT), TYN_USE_STORAGE_READ},
     {PORT(EDGES), TYN_USE_STORAGE_READ},
-    {PORT(SURFACES), TYN_USE_UNIFORM},
-    {PORT(TRIANGLES), TYN_USE_STORAGE_READ},
-    {PORT(VERTICES), TYN_USE_STORAGE_READ},
-    {PORT(MATERIALS), TYN_USE_STORAGE_READ},
-    {PORT(TEXTURES), TYN_USE_STORAGE_READ},
-    {PORT(TEXELS), TYN_USE_STORAGE_READ},
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, SHADE),
+    TYN_MATERIALS(TYN_BUNDLE_BIND, SHADE),
     {PORT(ALONE_COUNT), TYN_USE_STORAGE_RW},
     {PORT(ALONE), TYN_USE_STORAGE_WRITE},
 };
@@ -206,13 +167,8 @@ static const tyn_binding alone_bindings[] = {
     {PORT(RADIANCE), TYN_USE_STORAGE_RW},
     {PORT(ALONE_COUNT), TYN_USE_STORAGE_READ},
     {PORT(ALONE), TYN_USE_STORAGE_READ},
-    {PORT(SURFACES), TYN_USE_UNIFORM},
-    {PORT(TRIANGLES), TYN_USE_STORAGE_READ},
-    {PORT(VERTICES), TYN_USE_STORAGE_READ},
-    {PORT(MATERIALS), TYN_USE_STORAGE_READ},
-    {PORT(TEXTURES), TYN_USE_STORAGE_READ},
-    {PORT(TEXELS), TYN_USE_STORAGE_READ},
-    {PORT(VPL_PLANES), TYN_USE_SAMPLED},
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, SHADE),
+    TYN_MATERIALS(TYN_BUNDLE_BIND, SHADE),
 };
 
 enum {
@@ -232,26 +188,24 @@ enum {
     NUM_KERNELS
 };
 
-#define KERNEL(step, x, y, z)                                                                      \
-    .name = "shade_" #step, .spirv = shade_##step##_spirv,                                         \
-    .spirv_size = sizeof shade_##step##_spirv, .local_size = {x, y, z},                            \
-    .bindings = step##_bindings, .num_bindings = sizeof step##_bindings / sizeof *step##_bindings
-#define ARGS(specs) .args_size = sizeof(struct shade_args), .num_spec = specs
+#define KERNEL(step, x, y, z, args, specs)                                                         \
+    TYN_KERNEL(shade_##step, args, x, y, z, step##_bindings, specs)
+#define ARGS sizeof(struct shade_args)
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [LIGHTS] = {KERNEL(lights, 64, 1, 1), ARGS(2)},
-    [WALLS] = {KERNEL(walls, 8, 4, 2), .num_spec = 1},
-    [FORWARD] = {KERNEL(forward, 8, 4, 2), .num_spec = 3},
-    [FACES] = {KERNEL(faces, 32, 1, 1), ARGS(2)},
-    [SIGHT] = {KERNEL(sight, 8, 4, 1), ARGS(1)},
-    [VPLS] = {KERNEL(vpls, 8, 8, 1), ARGS(6)},
-    [SUM_ROWS] = {KERNEL(rows, 8, 8, 1), .num_spec = 2},
-    [GATHER] = {KERNEL(gather, 8, 8, 1), ARGS(6)},
-    [PLACES] = {KERNEL(places, GBUFFER_EDGES, 1, 1), ARGS(6)},
-    [SMOOTH] = {KERNEL(smooth, 8, 8, 1), ARGS(6)},
-    [SURFACE] = {KERNEL(surface, 8, 8, 1), ARGS(6)},
-    [EDGES] = {KERNEL(edges, GBUFFER_EDGES, 1, 1), ARGS(6)},
-    [ALONE] = {KERNEL(alone, GBUFFER_EDGES, 1, 1), ARGS(6)},
+    [LIGHTS] = KERNEL(lights, 64, 1, 1, ARGS, 2),
+    [WALLS] = KERNEL(walls, 8, 4, 2, 0, 1),
+    [FORWARD] = KERNEL(forward, 8, 4, 2, 0, 3),
+    [FACES] = KERNEL(faces, 32, 1, 1, ARGS, 2),
+    [SIGHT] = KERNEL(sight, 8, 4, 1, ARGS, 1),
+    [VPLS] = KERNEL(vpls, 8, 8, 1, ARGS, 6),
+    [SUM_ROWS] = KERNEL(rows, 8, 8, 1, 0, 2),
+    [GATHER] = KERNEL(gather, 8, 8, 1, ARGS, 6),
+    [PLACES] = KERNEL(places, GBUFFER_EDGES, 1, 1, ARGS, 6),
+    [SMOOTH] = KERNEL(smooth, 8, 8, 1, ARGS, 6),
+    [SURFACE] = KERNEL(surface, 8, 8, 1, ARGS, 6),
+    [EDGES] = KERNEL(edges, GBUFFER_EDGES, 1, 1, ARGS, 6),
+    [ALONE] = KERNEL(alone, GBUFFER_EDGES, 1, 1, ARGS, 6),
 };
 
 static const tyn_param params[] = {

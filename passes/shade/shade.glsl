@@ -19,53 +19,40 @@ layout(push_constant, scalar) uniform Args
 };
 
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define BEAM_BLOCKS 2
-#define BEAM_UNIFORM
-#define BEAM_COLUMN 3
-#define BEAM_TAU_A 4
-#define BEAM_TAU_P 5
-#define RADIAL_BLOCK 6
-#define RADIAL_COLUMN 7
-#define RADIAL_TAU_A 8
-#define RADIAL_TAU_P 9
-#define SHADOW_ATLAS 10
-#define SHADOW_LIGHTS 11
-#include "camera.glsl"
-#include "medium.glsl"
-#include "beam.glsl"
-#include "radial.glsl"
-#include "shadow.glsl"
-#include "gbuffer.glsl"
+#define BEAMS_AT 1
+#define RADIALS_AT 5
+#define RADIALS_STORAGE
+#define SHADOWS_AT 9
+#define SHADOWS_STORAGE
+#include "shaders/common/camera.glsl"
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/beam.glsl"
+#include "shaders/beams/radial.glsl"
+#include "shaders/light/shadow.glsl"
+#include "shaders/surfaces/gbuffer.glsl"
 #include "vpl.glsl"
 #include "shade_table.h"
 
 layout(binding = 20) uniform sampler2D table_tex; // shade_table.h
-layout(binding = 13, scalar) uniform sun_uniform
+layout(binding = 14, scalar) uniform sun_uniform
 {
     light_block suns[TYN_LIGHTS_MAX];
 };
 // Lights and what else is in the table are not read from their buffers; but without them among the bindings
 // lavapipe crashes in what it does before a dispatch.
-layout(binding = 14, scalar) uniform light_uniform
+layout(binding = 15, scalar) uniform light_uniform
 {
     light_block lights[TYN_LIGHTS_MAX];
 };
-layout(binding = 15, scalar) uniform camera_uniform
+layout(binding = 16, scalar) uniform camera_uniform
 {
     camera_block camera;
 };
-layout(binding = 16) uniform sampler2D distances_tex; // gbuffer.glsl
-layout(binding = 17, rgba32ui) uniform readonly uimage2D facing_image;
-layout(binding = 18, rgba32ui) uniform readonly uimage2D colour_image;
-layout(binding = 12, scalar) readonly buffer vpl_buffer
-{
-    uint vpl_count;
-    uvec3 vpl_pad;
-    radial_light vpls[];
-};
-#define VPL_DISTANCES 19
-#include "vpl_visibility.glsl"
+layout(binding = 17) uniform sampler2D distances_tex; // gbuffer.glsl
+layout(binding = 18, rgba32ui) uniform readonly uimage2D facing_image;
+layout(binding = 19, rgba32ui) uniform readonly uimage2D colour_image;
+#define VPLS_AT 11
+#include "shaders/light/vpl_visibility.glsl"
 
 bool shade_has(uint feature)
 {
@@ -383,7 +370,6 @@ vec3 shade_lamps(shade_point p, vec4 part)
     return sum;
 }
 
-#ifdef VPL_PLANES
 // Of VPLs first, first + stride, ..., on SHADE_MANY points: a light is read once for all of them. Nothing is left out
 // where a light does not shine: lavapipe would go through it anyway, under a mask. `rooms` of the points: shade_rooms.glsl.
 // `nearest` of those that shine there: square of the distance or of the radius, which is more, m^2.
@@ -427,6 +413,5 @@ vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], float rooms[SHADE_MANY], 
     }
     return sum;
 }
-#endif
 
 #endif

@@ -1,6 +1,10 @@
 // shade.h -- radiance of the surfaces that the camera sees.
 #pragma once
 #include <tyndall/pass.h>
+#include "shaders/common/bundles.h"
+
+// Along the longest side, of the places from where it is asked what hides the box.
+enum { SHADE_SIGHT_PLACES = 10 };
 
 typedef struct tyn_shade_params {
     // Pixels along each side that share VPLs; 0: as many as the picture's size asks for.
@@ -39,31 +43,15 @@ enum {
     // IN buffers, gbuffer_edge_args.h: pixels that show several pieces of surface.
     SHADE_PORT_EDGE_COUNT,
     SHADE_PORT_EDGES,
-    // IN optional buffer struct beam_block[]: with a medium and suns, as the three below.
-    SHADE_PORT_BEAMS,
-    SHADE_PORT_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS
-    SHADE_PORT_TAU_A,
-    SHADE_PORT_TAU_P,
-    SHADE_PORT_RADIALS, // IN optional buffer struct radial_block: with a medium and lamps or VPLs
-    SHADE_PORT_RADIAL_COLUMN,
-    SHADE_PORT_RADIAL_TAU_A,
-    SHADE_PORT_RADIAL_TAU_P,
-    SHADE_PORT_SHADOW_ATLAS,  // IN optional 2D, shadow.glsl
-    SHADE_PORT_SHADOWS,       // IN optional buffer struct shadow_light[]
-    SHADE_PORT_VPLS,          // IN optional buffer struct radial_vpls
-    SHADE_PORT_VPL_DISTANCES, // IN optional 2D, vpl_visibility.glsl: with VPLs
-    SHADE_PORT_VPL_PLANES,    // IN optional 2D, the same
-    SHADE_PORT_MOMENTS,       // IN optional 3D: light of the lattice
-    SHADE_PORT_WALL_LINKS, // IN optional buffer uint[]: with surfaces within it, as the one below
-    SHADE_PORT_WALL_CELLS, // IN optional buffer struct wall_cell[]
-    SHADE_PORT_ROOMS,      // IN optional buffer, rooms.h: with walls and VPLs
-    SHADE_PORT_SURFACES,   // IN buffers, surface_args.h
-    SHADE_PORT_VERTICES,
-    SHADE_PORT_TRIANGLES,
-    SHADE_PORT_MATERIALS,
-    SHADE_PORT_TEXTURES,
-    SHADE_PORT_TEXELS,
-    SHADE_PORT_NODES, // IN optional buffer: their hierarchy
+    TYN_BEAMS(TYN_BUNDLE_ENUM, SHADE),     // IN optional: with a medium and suns
+    TYN_RADIALS(TYN_BUNDLE_ENUM, SHADE),   // IN optional: with a medium and lamps or VPLs
+    TYN_SHADOWS(TYN_BUNDLE_ENUM, SHADE),   // IN optional
+    TYN_VPLS(TYN_BUNDLE_ENUM, SHADE),      // IN optional
+    SHADE_PORT_MOMENTS,                    // IN optional 3D: light of the lattice
+    TYN_WALLS(TYN_BUNDLE_ENUM, SHADE),     // IN optional: with surfaces within it
+    SHADE_PORT_ROOMS,                      // IN optional buffer, rooms.h: with walls and VPLs
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, SHADE),  // IN
+    TYN_MATERIALS(TYN_BUNDLE_ENUM, SHADE), // IN
     // OUT 2D RG32UI, packed_colour.glsl, as large as "distances": radiance to the camera, W/(m^2
     // sr).
     SHADE_PORT_RADIANCE,

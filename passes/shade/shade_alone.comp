@@ -3,7 +3,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define VPL_PLANES 37
 #include "shade_piece.glsl"
 #include "shade_several.glsl"
 #include "shade_whole.glsl"

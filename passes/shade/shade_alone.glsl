@@ -2,7 +2,7 @@
 // shade_places.comp; then pixels with such pieces of surface, for shade_alone.comp. Order does not matter.
 #ifndef SHADE_ALONE_GLSL
 #define SHADE_ALONE_GLSL
-#include "gbuffer_edges.glsl"
+#include "shaders/surfaces/gbuffer_edges.glsl"
 
 // SHADE_ALONE_TAKEN: the list is gone through; else added to.
 #ifdef SHADE_ALONE_TAKEN

@@ -1,7 +1,7 @@
 // shade_args.h -- features and push constants of the surfaces' shading. Included by C and GLSL.
 #ifndef SHADE_ARGS_H
 #define SHADE_ARGS_H
-#include "shared.h"
+#include "shaders/common/shared.h"
 
 // Bits of the specialisation constant "features".
 #define SHADE_MEDIUM (1u << 0)  // light is attenuated on its way

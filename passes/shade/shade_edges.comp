@@ -2,11 +2,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "gbuffer_edges.glsl"
+#include "shaders/surfaces/gbuffer_edges.glsl"
 #include "shade_piece.glsl"
 #include "shade_several.glsl"
-#define SHADE_ALONE_COUNT 37
-#define SHADE_ALONE 38
+#define SHADE_ALONE_COUNT 38
+#define SHADE_ALONE 39
 #include "shade_alone.glsl"
 
 layout(local_size_x = GBUFFER_EDGES) in;

@@ -8,10 +8,10 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shade_args.h"
 #include "shade_faces.h"
-#include "scene_args.h"
-#include "env_args.h"
-#include "lattice.glsl"
-#include "walls_links.glsl"
+#include "shaders/common/scene_args.h"
+#include "shaders/light/env_args.h"
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/walls/walls_links.glsl"
 #include "walls_table.glsl"
 
 layout(local_size_x = 32) in;

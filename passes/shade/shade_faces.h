@@ -25,7 +25,6 @@
 // What surfaces leave of the view of the faces: RGBA32F, on a grid of places (struct shade_args). Six fields, one a
 // face, are behind each other along z: which of its 2 x 2 patches are seen from there. One more: 0 at places that see
 // none of the box, as within solids, which are left out where others are near.
-#define SHADE_SIGHT_PLACES 10 // along the longest side
 #define SHADE_SIGHT_SHARE 6
 #define SHADE_SIGHT_FIELDS 7
 

@@ -8,33 +8,28 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shade_args.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#define BEAM_BLOCKS 2
-#define BEAM_UNIFORM
-#define BEAM_COLUMN 3
-#define BEAM_TAU_A 4
-#define BEAM_TAU_P 5
-#define SHADOW_ATLAS 6
-#define SHADOW_LIGHTS 7
-#include "camera.glsl"
-#include "medium.glsl"
-#include "beam.glsl"
-#include "shadow.glsl"
-#include "lattice.glsl"
-#include "walls_links.glsl"
+#define BEAMS_AT 1
+#define SHADOWS_AT 5
+#define SHADOWS_STORAGE
+#include "shaders/common/camera.glsl"
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/beam.glsl"
+#include "shaders/light/shadow.glsl"
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/walls/walls_links.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(constant_id = 2) const uint shade_num_suns = 0u;
 
-layout(binding = 8, scalar) uniform sun_uniform
+layout(binding = 7, scalar) uniform sun_uniform
 {
     light_block suns[TYN_LIGHTS_MAX];
 };
 // [sun][z][y][x]: mean direction that the light comes from, not of unit length; share of the places that are lit
-layout(binding = 9, rgba32f) uniform writeonly image3D forward_image;
-layout(binding = 10) uniform usamplerBuffer link_texels; // wall_links
+layout(binding = 8, rgba32f) uniform writeonly image3D forward_image;
+layout(binding = 9) uniform usamplerBuffer link_texels; // wall_links
 
 // The cell that light comes to from a place that is `way` from the centre of cell c (cell edges): the first beyond it, of those
 // along the line, if none of the links next to the line is cut. `near`: a wall is about. False: a wall is between.

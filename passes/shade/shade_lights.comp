@@ -3,11 +3,11 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shade_args.h"
-#include "scene_args.h"
-#include "radial_args.h"
-#include "shadow_args.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/beams/radial_args.h"
+#include "shaders/light/shadow_args.h"
 #include "shade_table.h"
-#include "rooms.h"
+#include "shaders/walls/rooms.h"
 
 layout(constant_id = 0) const uint mode = 0u; // as all kernels of the pass have it, and num_suns
 layout(constant_id = 1) const uint shade_features = 0u;

@@ -6,7 +6,7 @@
 // The facet's normal is folded to 2 x 16 bits.
 #ifndef SHADE_PART_GLSL
 #define SHADE_PART_GLSL
-#include "packed_colour.glsl"
+#include "shaders/colour/packed_colour.glsl"
 
 struct shade_part {
     vec3 irradiance; // of some VPLs, W/m^2

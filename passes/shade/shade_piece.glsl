@@ -7,8 +7,8 @@
 #define TYN_SHADE_PIECE_GLSL
 #include "shade.glsl"
 #include "shade_part.glsl"
-#include "lattice.glsl"
-#include "walls_links.glsl"
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/walls/walls_links.glsl"
 
 layout(binding = 21, rgba32ui) uniform readonly uimage2D smooth_image; // shade_part.glsl
 layout(binding = 22) uniform sampler3D moments_tex;

@@ -4,9 +4,9 @@
 // it, it may miss it. Rooms miss nothing that is closed.
 #ifndef SHADE_ROOMS_GLSL
 #define SHADE_ROOMS_GLSL
-#include "lattice.glsl"
+#include "shaders/lattice/lattice.glsl"
 #include "walls_table.glsl"
-#include "walls_links.glsl"
+#include "shaders/walls/walls_links.glsl"
 
 const int SHADE_ROOM_STEPS = 8;
 

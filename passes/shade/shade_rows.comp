@@ -3,8 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shade_args.h"
-#include "camera.glsl"
-#include "gbuffer.glsl"
+#include "shaders/common/camera.glsl"
+#include "shaders/surfaces/gbuffer.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

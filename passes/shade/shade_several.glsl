@@ -2,15 +2,11 @@
 #ifndef SHADE_SEVERAL_GLSL
 #define SHADE_SEVERAL_GLSL
 #include "shade.glsl"
-#define GBUFFER_SURFACES 31
-#define GBUFFER_TRIANGLES 32
-#define GBUFFER_VERTICES 33
-#define GBUFFER_MATERIALS 34
-#define SURFACE_TEXTURES 35
-#define SURFACE_TEXELS 36
+#define GEOMETRY_AT 31
+#define MATERIALS_AT 35
 #define GBUFFER_TEXTURED shade_has(SHADE_TEXTURED)
 #define GBUFFER_SAMPLES shade_samples
-#include "gbuffer_triangle.glsl"
+#include "shaders/surfaces/gbuffer_triangle.glsl"
 
 // What sample k of a pixel shows, a surface, and where (M).
 gbuffer_point sample_of(ivec2 pixel, int k, out vec3 at)

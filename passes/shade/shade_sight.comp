@@ -4,9 +4,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "surface_args.h"
-#include "scene_args.h"
-#include "lattice.glsl"
+#include "shaders/surfaces/surface_args.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/lattice/lattice.glsl"
 #include "shade_faces.h"
 #include "shade_args.h"
 
@@ -16,22 +16,8 @@ layout(push_constant, scalar) uniform Args
     shade_args args;
 };
 
-layout(binding = 0, scalar) uniform surfaces_uniform
-{
-    surface_block surfaces;
-};
-layout(binding = 1, scalar) readonly buffer vertices_buffer
-{
-    surface_vertex vertices[];
-};
-layout(binding = 2, scalar) readonly buffer triangles_buffer
-{
-    surface_triangle triangles[];
-};
-layout(binding = 3, scalar) readonly buffer nodes_buffer
-{
-    uvec4 nodes[];
-};
+#define GEOMETRY_AT 0
+#include "shaders/surfaces/surfaces.glsl"
 layout(binding = 4, scalar) uniform medium_uniform
 {
     medium_block medium;
@@ -40,7 +26,7 @@ layout(binding = 5) uniform sampler2D faces_tex;
 layout(binding = 6) uniform sampler3D moments_tex;
 layout(binding = 7, rgba32f) uniform writeonly image3D sight_image;
 layout(constant_id = 0) const uint channels = 1u;
-#include "surface_trace.glsl"
+#include "shaders/surfaces/surface_trace.glsl"
 
 // Is nothing between two places (M)?
 bool open_between(vec3 from, vec3 to)

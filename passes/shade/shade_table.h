@@ -4,8 +4,8 @@
 // RGBA32F, a row a light: the lamps, the VPLs, the shadow maps of the suns.
 #ifndef SHADE_TABLE_H
 #define SHADE_TABLE_H
-#include "radial_args.h"
-#include "shadow_args.h"
+#include "shaders/beams/radial_args.h"
+#include "shaders/light/shadow_args.h"
 
 #define SHADE_ROW_VPLS TYN_RADIAL_LAMPS_MAX
 #define SHADE_ROW_SUNS (TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX)

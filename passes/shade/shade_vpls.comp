@@ -6,7 +6,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define VPL_PLANES 23
 #include "shade_place.glsl"
 #define WALLS_TABLE 22
 #include "shade_rooms.glsl"

@@ -7,8 +7,9 @@ static const tyn_port ports[SHADOW_MAP_NUM_PORTS] = {
                                    "struct surface_triangle[]"},
     [SHADOW_MAP_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, false,
                                   "struct surface_vertex[]"},
-    [SHADOW_MAP_PORT_ATLAS] = {"shadow_atlas", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT, false,
-                               "reversed depth of what each light sees first; 0: nothing"},
+    [SHADOW_MAP_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT,
+                                      false,
+                                      "reversed depth of what each light sees first; 0: nothing"},
     [SHADOW_MAP_PORT_SHADOWS] = {"shadows", TYN_OUT, TYN_BUFFER, 0, false,
                                  "struct shadow_light[]: where each light's maps are"},
 };
@@ -18,7 +19,7 @@ static const tyn_binding bindings[] = {
     {SHADOW_MAP_PORT_VERTICES, TYN_USE_STORAGE_READ, false},
 };
 
-static const tyn_binding attachments[] = {{SHADOW_MAP_PORT_ATLAS, TYN_USE_DEPTH, false}};
+static const tyn_binding attachments[] = {{SHADOW_MAP_PORT_SHADOW_ATLAS, TYN_USE_DEPTH, false}};
 
 static const tyn_raster raster = {
     .attachments = attachments,
@@ -51,7 +52,7 @@ static const tyn_param params_table[] = {
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_shadow_map_params *p = params;
-    tyn_build_image(b, SHADOW_MAP_PORT_ATLAS, (tyn_extent){p->size[0], p->size[1], 1}, 1);
+    tyn_build_image(b, SHADOW_MAP_PORT_SHADOW_ATLAS, (tyn_extent){p->size[0], p->size[1], 1}, 1);
     tyn_build_buffer(b, SHADOW_MAP_PORT_SHADOWS, sizeof p->lights);
     return TYN_OK;
 }
@@ -91,6 +92,6 @@ const tyn_pass_desc tyn_pass_shadow_map = {
     .params_size = sizeof(tyn_shadow_map_params),
     .declare = declare,
     .record = record,
-    .debug_port = SHADOW_MAP_PORT_ATLAS,
+    .debug_port = SHADOW_MAP_PORT_SHADOW_ATLAS,
     .debug_meaning = "the maps of all lights: 1 near, 0 far",
 };

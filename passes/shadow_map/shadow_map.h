@@ -1,9 +1,10 @@
 // shadow_map.h -- what the lights see of the surfaces: depth maps of all of them in one atlas.
 #pragma once
 #include <tyndall/pass.h>
-#include "scene_args.h"
-#include "shadow_args.h"
-#include "surface_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/light/shadow_args.h"
+#include "shaders/surfaces/surface_args.h"
 
 enum { TYN_SHADOW_VIEWS = TYN_SHADOW_SUNS + 6 * TYN_SHADOW_LAMPS };
 
@@ -34,10 +35,9 @@ void tyn_shadow_map_plan(tyn_shadow_map_params *params, const struct light_block
                          const struct surface_block *surfaces);
 
 enum {
-    SHADOW_MAP_PORT_TRIANGLES, // IN buffer struct surface_triangle[]
-    SHADOW_MAP_PORT_VERTICES,  // IN buffer struct surface_vertex[]
-    SHADOW_MAP_PORT_ATLAS,     // OUT 2D D32: what shadow.glsl reads, with the buffer below
-    SHADOW_MAP_PORT_SHADOWS,   // OUT buffer struct shadow_light[TYN_SHADOW_MAX]
+    SHADOW_MAP_PORT_TRIANGLES,                // IN buffer struct surface_triangle[]
+    SHADOW_MAP_PORT_VERTICES,                 // IN buffer struct surface_vertex[]
+    TYN_SHADOWS(TYN_BUNDLE_ENUM, SHADOW_MAP), // OUT
     SHADOW_MAP_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_shadow_map;

@@ -2,8 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "surface_args.h"
-#include "shadow_args.h"
+#include "shaders/surfaces/surface_args.h"
+#include "shaders/light/shadow_args.h"
 
 layout(set = 0, binding = 0, scalar) readonly buffer triangles_buffer
 {

@@ -17,13 +17,7 @@ static const tyn_binding bindings[] = {
 };
 
 static const tyn_kernel kernels[] = {
-    {.name = "tonemap_display",
-     .spirv = tonemap_display_spirv,
-     .spirv_size = sizeof(tonemap_display_spirv),
-     .args_size = sizeof(struct tonemap_args),
-     .local_size = {8, 8, 1},
-     .bindings = bindings,
-     .num_bindings = 2},
+    TYN_KERNEL(tonemap_display, sizeof(struct tonemap_args), 8, 8, 1, bindings, 0),
 };
 
 static const char *const curve_names[TONEMAP_NUM_CURVES] = {"filmic", "linear"};

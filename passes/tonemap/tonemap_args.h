@@ -1,7 +1,7 @@
 // tonemap_args.h -- push constants of tonemap. Included by C and GLSL.
 #ifndef TONEMAP_ARGS_H
 #define TONEMAP_ARGS_H
-#include "shared.h"
+#include "shaders/common/shared.h"
 
 struct tonemap_args {
     float scale;     // 2^exposure

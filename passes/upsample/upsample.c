@@ -2,14 +2,13 @@
 #include "upsample.h"
 #include "upsample_args.h"
 #include "upsample_field.comp.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 
 #define PORT(name) UPSAMPLE_PORT_##name
 
 static const tyn_port ports[UPSAMPLE_NUM_PORTS] = {
-    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
-    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .meaning = "density, or sigma_s in 1/m"},
+    TYN_MEDIUM(TYN_BUNDLE_IN, UPSAMPLE),
     [PORT(MERGED)] = {"merged", TYN_IN, TYN_IMAGE_3D,
                       .meaning = "of merge_grids: light to the eye, W/(m^2 sr); mean sigma_s"},
     [PORT(INSCATTER)] = {"inscatter", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
@@ -17,21 +16,13 @@ static const tyn_port ports[UPSAMPLE_NUM_PORTS] = {
 };
 
 static const tyn_binding field_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},
-    {PORT(DENSITY), TYN_USE_SAMPLED},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, UPSAMPLE),
     {PORT(MERGED), TYN_USE_SAMPLED},
     {PORT(INSCATTER), TYN_USE_STORAGE_WRITE},
 };
 
 static const tyn_kernel kernels[] = {
-    {.name = "upsample_field",
-     .spirv = upsample_field_spirv,
-     .spirv_size = sizeof upsample_field_spirv,
-     .args_size = sizeof(struct upsample_args),
-     .local_size = {4, 4, 4},
-     .bindings = field_bindings,
-     .num_bindings = sizeof field_bindings / sizeof *field_bindings,
-     .num_spec = 1},
+    TYN_KERNEL(upsample_field, sizeof(struct upsample_args), 4, 4, 4, field_bindings, 1),
 };
 
 static const tyn_param params[] = {

@@ -5,6 +5,7 @@
 // count more, so that detail of the medium shows in light that was computed without it.
 #pragma once
 #include <tyndall/pass.h>
+#include "shaders/common/bundles.h"
 
 typedef struct tyn_upsample_params {
     int32_t cells; // along the longest side, at most; 8..256
@@ -15,9 +16,8 @@ typedef struct tyn_upsample_params {
 } tyn_upsample_params;
 
 enum {
-    UPSAMPLE_PORT_MEDIUM,    // IN buffer struct medium_block
-    UPSAMPLE_PORT_DENSITY,   // IN 3D: density (mode DENSITY) or sigma_s (mode COEFFICIENTS)
-    UPSAMPLE_PORT_MERGED,    // IN 3D RGBA32F, of merge_grids
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, UPSAMPLE), // IN
+    UPSAMPLE_PORT_MERGED,                  // IN 3D RGBA32F, of merge_grids
     UPSAMPLE_PORT_INSCATTER, // OUT 3D RGBA32F, dims + 2, W/(m^2 sr): sample at lattice_inscatter_uvw;
                              // the ghost layer repeats the outer cells
     UPSAMPLE_NUM_PORTS,

@@ -1,7 +1,7 @@
 // upsample_args.h -- arguments of the kernel. Included by C and GLSL.
 #ifndef TYN_UPSAMPLE_ARGS_H
 #define TYN_UPSAMPLE_ARGS_H
-#include "shared.h"
+#include "shaders/common/shared.h"
 
 struct upsample_args {
     tyn_uvec3 dims; // cells of the result, without the ghost layer

@@ -2,15 +2,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#include "medium.glsl"
-#include "lattice.glsl"
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
+#include "shaders/lattice/lattice.glsl"
 #include "upsample_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 2) uniform sampler3D merged;
-layout(set = 0, binding = 3, rgba32f) uniform writeonly image3D out_inscatter;
+layout(set = 0, binding = 5) uniform sampler3D merged;
+layout(set = 0, binding = 6, rgba32f) uniform writeonly image3D out_inscatter;
 layout(push_constant, scalar) uniform push { upsample_args args; };
 
 // Likeness of two scattering coefficients, in (0, 1]. The floor keeps a point that is like none of its

@@ -10,8 +10,8 @@
 #include "vpl_power.comp.h"
 #include "vpl_strata.comp.h"
 #include "vpl_weights.comp.h"
-#include "radial_args.h"
-#include "scene_args.h"
+#include "shaders/beams/radial_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 #include <string.h>
 
@@ -19,44 +19,22 @@
 #define IMAGE2 TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT
 
 static const tyn_port ports[VPL_NUM_PORTS] = {
-    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
-    [PORT(DENSITY)] = {"density", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                       .meaning = "density, or sigma_s in 1/m"},
-    [PORT(SIGMA_A)] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                       .meaning = "of unequal media, 1/m"},
-    [PORT(G)] = {"g", TYN_IN, TYN_IMAGE_3D, .optional = true, .meaning = "of unequal media"},
+    TYN_MEDIUM(TYN_BUNDLE_OPTIONAL, VPL),
     [PORT(SUNS)] = {"suns", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
     [PORT(LIGHTS)] = {"lights", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
-    [PORT(FLUX)] = {"rsm_flux", TYN_IN, TYN_IMAGE_2D, .optional = true,
-                    .meaning = "power that surfaces reflect, W a texel"},
-    [PORT(POSITION)] = {"rsm_position", TYN_IN, TYN_IMAGE_2D, .optional = true,
-                        .meaning = "where (M, m), and the area in a texel, m^2"},
-    [PORT(NORMAL)] = {"rsm_normal", TYN_IN, TYN_IMAGE_2D, .optional = true,
-                      .meaning = "normal (M), on the side of the light"},
-    [PORT(SURFACES)] = {"surfaces", TYN_IN, TYN_BUFFER, .optional = true,
-                        .meaning = "struct surface_block"},
-    [PORT(VERTICES)] = {"vertices", TYN_IN, TYN_BUFFER, .optional = true,
-                        .meaning = "struct surface_vertex[]"},
-    [PORT(TRIANGLES)] = {"triangles", TYN_IN, TYN_BUFFER, .optional = true,
-                         .meaning = "struct surface_triangle[]"},
-    [PORT(MATERIALS)] = {"materials", TYN_IN, TYN_BUFFER, .optional = true,
-                         .meaning = "struct surface_material[]"},
-    [PORT(NODES)] = {"nodes", TYN_IN, TYN_BUFFER, .optional = true,
-                     .meaning = "struct surface_node[]"},
-    [PORT(TEXTURES)] = {"textures", TYN_IN, TYN_BUFFER, .optional = true,
-                        .meaning = "struct surface_texture[]"},
-    [PORT(TEXELS)] = {"texels", TYN_IN, TYN_BUFFER, .optional = true,
-                      .meaning = "uint[]: R8 G8 B8 A8, sRGB"},
+    TYN_RSM(TYN_BUNDLE_OPTIONAL, VPL),
+    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, VPL),
+    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, VPL),
     [PORT(BINS)] = {"bins", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_bins"},
     [PORT(BIN_FLUX)] = {"bin_flux", TYN_SCRATCH, IMAGE2, .meaning = "power of bins, W"},
     [PORT(BIN_POSITION)] = {"bin_position", TYN_SCRATCH, IMAGE2, .meaning = "where (M, m)"},
     [PORT(BIN_NORMAL)] = {"bin_normal", TYN_SCRATCH, IMAGE2, .meaning = "normal (M)"},
     [PORT(VPLS)] = {"vpls", TYN_OUT, TYN_BUFFER, .meaning = "struct radial_vpls"},
-    [PORT(DISTANCES)] = {"vpl_distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
-                         .meaning = "of the first surface in every direction of a VPL, m"},
-    [PORT(PLANES)] = {"vpl_planes", TYN_OUT, IMAGE2,
-                      .meaning =
-                          "of these surfaces: normal towards the VPL (M), distance of it, m"},
+    [PORT(VPL_DISTANCES)] = {"vpl_distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
+                             .meaning = "of the first surface in every direction of a VPL, m"},
+    [PORT(VPL_PLANES)] = {"vpl_planes", TYN_OUT, IMAGE2,
+                          .meaning =
+                              "of these surfaces: normal towards the VPL (M), distance of it, m"},
     [PORT(PLAN)] = {"plan", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_plan"},
     [PORT(WEIGHTS)] = {"weights", TYN_SCRATCH, TYN_BUFFER, .meaning = "float[], of elements"},
     [PORT(BLOCKS)] = {"blocks", TYN_SCRATCH, TYN_BUFFER, .meaning = "float[], of their blocks"},
@@ -64,13 +42,8 @@ static const tyn_port ports[VPL_NUM_PORTS] = {
 };
 
 #define ELEMENT_BINDINGS                                                                           \
-    {PORT(PLAN), TYN_USE_STORAGE_READ}, {PORT(FLUX), TYN_USE_SAMPLED},                             \
-        {PORT(POSITION), TYN_USE_SAMPLED}, {PORT(NORMAL), TYN_USE_SAMPLED},                        \
-        {PORT(SURFACES), TYN_USE_UNIFORM}, {PORT(VERTICES), TYN_USE_STORAGE_READ},                 \
-        {PORT(TRIANGLES), TYN_USE_STORAGE_READ},                                                   \
-    {                                                                                              \
-        PORT(MATERIALS), TYN_USE_STORAGE_READ                                                      \
-    }
+    {PORT(PLAN), TYN_USE_STORAGE_READ}, TYN_RSM(TYN_BUNDLE_BIND, VPL),                             \
+        TYN_GEOMETRY(TYN_BUNDLE_BIND, VPL), TYN_MATERIALS(TYN_BUNDLE_BIND, VPL)
 
 static const tyn_binding weights_bindings[] = {
     ELEMENT_BINDINGS,
@@ -85,10 +58,7 @@ static const tyn_binding strata_bindings[] = {
 };
 static const tyn_binding lights_bindings[] = {
     ELEMENT_BINDINGS,
-    {PORT(MEDIUM), TYN_USE_UNIFORM},
-    {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},
-    {PORT(G), TYN_USE_SAMPLED},
+    TYN_MEDIUM(TYN_BUNDLE_BIND, VPL),
     {PORT(WEIGHTS), TYN_USE_STORAGE_READ},
     {PORT(BLOCKS), TYN_USE_STORAGE_READ},
     {PORT(STRATA), TYN_USE_STORAGE_READ},
@@ -98,21 +68,11 @@ static const tyn_binding lights_bindings[] = {
 };
 
 static const tyn_binding distances_bindings[] = {
-    {PORT(SURFACES), TYN_USE_UNIFORM},
-    {PORT(VERTICES), TYN_USE_TEXELS_VEC4},
-    {PORT(TRIANGLES), TYN_USE_TEXELS_UVEC4},
-    {PORT(NODES), TYN_USE_TEXELS_UVEC4},
-    {PORT(VPLS), TYN_USE_STORAGE_READ},
-    {PORT(DISTANCES), TYN_USE_STORAGE_WRITE},
-    {PORT(PLANES), TYN_USE_STORAGE_WRITE},
-    {PORT(BINS), TYN_USE_STORAGE_RW},
-    {PORT(MATERIALS), TYN_USE_STORAGE_READ},
-    {PORT(TEXTURES), TYN_USE_STORAGE_READ},
-    {PORT(TEXELS), TYN_USE_STORAGE_READ},
-    {PORT(MEDIUM), TYN_USE_UNIFORM},
-    {PORT(DENSITY), TYN_USE_SAMPLED},
-    {PORT(SIGMA_A), TYN_USE_SAMPLED},
-    {PORT(G), TYN_USE_SAMPLED},
+    {PORT(SURFACES), TYN_USE_UNIFORM},         {PORT(VERTICES), TYN_USE_TEXELS_VEC4},
+    {PORT(TRIANGLES), TYN_USE_TEXELS_UVEC4},   {PORT(NODES), TYN_USE_TEXELS_UVEC4},
+    {PORT(VPLS), TYN_USE_STORAGE_READ},        {PORT(VPL_DISTANCES), TYN_USE_STORAGE_WRITE},
+    {PORT(VPL_PLANES), TYN_USE_STORAGE_WRITE}, {PORT(BINS), TYN_USE_STORAGE_RW},
+    TYN_MATERIALS(TYN_BUNDLE_BIND, VPL),       TYN_MEDIUM(TYN_BUNDLE_BIND, VPL),
 };
 static const tyn_binding power_bindings[] = {
     {PORT(VPLS), TYN_USE_STORAGE_READ},
@@ -124,7 +84,7 @@ static const tyn_binding further_bindings[] = {
 };
 static const tyn_binding bounce_bindings[] = {
     {PORT(VPLS), TYN_USE_STORAGE_READ},          {PORT(BINS), TYN_USE_STORAGE_READ},
-    {PORT(DISTANCES), TYN_USE_SAMPLED},          {PORT(PLANES), TYN_USE_SAMPLED},
+    {PORT(VPL_DISTANCES), TYN_USE_SAMPLED},      {PORT(VPL_PLANES), TYN_USE_SAMPLED},
     {PORT(SURFACES), TYN_USE_UNIFORM},           {PORT(BIN_FLUX), TYN_USE_STORAGE_RW},
     {PORT(BIN_POSITION), TYN_USE_STORAGE_WRITE}, {PORT(BIN_NORMAL), TYN_USE_STORAGE_WRITE},
 };
@@ -132,18 +92,16 @@ static const tyn_binding bounce_bindings[] = {
 enum { WEIGHTS = 0, STRATA, LIGHTS, DISTANCES, POWER, BOUNCE, FURTHER, NUM_KERNELS };
 
 #define KERNEL(step, x, y, args, specs)                                                            \
-    .name = "vpl_" #step, .spirv = vpl_##step##_spirv, .spirv_size = sizeof vpl_##step##_spirv,    \
-    .args_size = args, .local_size = {x, y, 1}, .bindings = step##_bindings,                       \
-    .num_bindings = sizeof step##_bindings / sizeof *step##_bindings, .num_spec = specs
+    TYN_KERNEL(vpl_##step, args, x, y, 1, step##_bindings, specs)
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [WEIGHTS] = {KERNEL(weights, VPL_LANES, 1, 0, 0)},
-    [STRATA] = {KERNEL(strata, VPL_BLOCK, 1, sizeof(struct vpl_args), 0)},
-    [LIGHTS] = {KERNEL(lights, VPL_LANES, 1, sizeof(struct vpl_args), 1)},
-    [DISTANCES] = {KERNEL(distances, 8, 8, sizeof(struct vpl_distances_args), 1)},
-    [POWER] = {KERNEL(power, TYN_RADIAL_VPLS_MAX, 1, 0, 0)},
-    [BOUNCE] = {KERNEL(bounce, VPL_BLOCK, 1, sizeof(struct vpl_bounce_args), 0)},
-    [FURTHER] = {KERNEL(further, TYN_RADIAL_VPLS_MAX, 1, 0, 0)},
+    [WEIGHTS] = KERNEL(weights, VPL_LANES, 1, 0, 0),
+    [STRATA] = KERNEL(strata, VPL_BLOCK, 1, sizeof(struct vpl_args), 0),
+    [LIGHTS] = KERNEL(lights, VPL_LANES, 1, sizeof(struct vpl_args), 1),
+    [DISTANCES] = KERNEL(distances, 8, 8, sizeof(struct vpl_distances_args), 1),
+    [POWER] = KERNEL(power, TYN_RADIAL_VPLS_MAX, 1, 0, 0),
+    [BOUNCE] = KERNEL(bounce, VPL_BLOCK, 1, sizeof(struct vpl_bounce_args), 0),
+    [FURTHER] = KERNEL(further, TYN_RADIAL_VPLS_MAX, 1, 0, 0),
 };
 
 static const tyn_param params[] = {
@@ -233,8 +191,8 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_extent atlas = atlas_size(p, triangles), texel = {1, 1, 1};
     const tyn_extent bins = again ? (tyn_extent){VPL_BIN_SIDE, VPL_BIN_SIDE, 1} : texel;
     tyn_build_buffer(b, PORT(VPLS), sizeof(struct radial_vpls));
-    tyn_build_image(b, PORT(DISTANCES), atlas, 1);
-    tyn_build_image(b, PORT(PLANES), atlas, 1);
+    tyn_build_image(b, PORT(VPL_DISTANCES), atlas, 1);
+    tyn_build_image(b, PORT(VPL_PLANES), atlas, 1);
     tyn_build_buffer(b, PORT(PLAN), sizeof(struct vpl_plan));
     tyn_build_buffer(b, PORT(WEIGHTS), (blocks + 1) * VPL_BLOCK * sizeof(float));
     tyn_build_buffer(b, PORT(BLOCKS), (blocks + 1) * sizeof(float));
@@ -298,7 +256,7 @@ static void record(tyn_recorder *r, const void *data)
     const struct vpl_args args = {(uint32_t)p->count - later, p->num_suns, media, 0};
     struct vpl_distances_args maps = {0, again, side ? texel_solid_angle(side) : 0, media};
     const tyn_dispatch see = {.kernel = DISTANCES,
-                              .cells = tyn_rec_extent(r, PORT(DISTANCES)),
+                              .cells = tyn_rec_extent(r, PORT(VPL_DISTANCES)),
                               .args = &maps,
                               .spec = &p->mode};
     make_lights(r, &plan, &args, false, p->mode);
@@ -345,6 +303,6 @@ const tyn_pass_desc tyn_pass_vpl = {
     .params_size = sizeof(tyn_vpl_params),
     .declare = declare,
     .record = record,
-    .debug_port = PORT(DISTANCES),
+    .debug_port = PORT(VPL_DISTANCES),
     .debug_meaning = "what each light sees: distances of surfaces",
 };

@@ -2,7 +2,8 @@
 // lights of a cosine lobe.
 #pragma once
 #include <tyndall/pass.h>
-#include "rsm_args.h"
+#include "shaders/common/bundles.h"
+#include "shaders/light/rsm_args.h"
 
 typedef struct tyn_vpl_params {
     int32_t count;      // "vpl.count": lights at most
@@ -19,27 +20,15 @@ typedef struct tyn_vpl_params {
 } tyn_vpl_params;
 
 enum {
-    VPL_PORT_MEDIUM,  // IN buffer struct medium_block
-    VPL_PORT_DENSITY, // IN optional 3D: density, or sigma_s in mode COEFFICIENTS; none: no medium
-    VPL_PORT_SIGMA_A, // IN optional 3D: mode COEFFICIENTS, as the one below
-    VPL_PORT_G,
-    VPL_PORT_SUNS,   // IN buffer struct light_block[]
-    VPL_PORT_LIGHTS, // IN buffer struct light_block[]: directional lights, then lamps
-    VPL_PORT_FLUX,   // IN optional 2D: rsm_args.h, as the two below
-    VPL_PORT_POSITION,
-    VPL_PORT_NORMAL,
-    VPL_PORT_SURFACES, // IN optional buffer struct surface_block: with triangles, as the six below
-    VPL_PORT_VERTICES, // IN optional buffers, surface_args.h
-    VPL_PORT_TRIANGLES,
-    VPL_PORT_MATERIALS,
-    VPL_PORT_NODES,
-    VPL_PORT_TEXTURES,
-    VPL_PORT_TEXELS,
-    VPL_PORT_VPLS,      // OUT buffer struct radial_vpls
-    VPL_PORT_DISTANCES, // OUT 2D R32F: what vpl_visibility.glsl reads; without surfaces or maps 1 x 1
-    VPL_PORT_PLANES,    // OUT 2D RGBA32F, the same: of what the rays meet
-    VPL_PORT_PLAN,      // SCRATCH buffer struct vpl_plan
-    VPL_PORT_WEIGHTS,   // SCRATCH buffer float[]: of the elements
+    TYN_MEDIUM(TYN_BUNDLE_ENUM, VPL), // IN optional
+    VPL_PORT_SUNS,                    // IN buffer struct light_block[]
+    VPL_PORT_LIGHTS,               // IN buffer struct light_block[]: directional lights, then lamps
+    TYN_RSM(TYN_BUNDLE_ENUM, VPL), // IN optional
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, VPL),  // IN optional
+    TYN_MATERIALS(TYN_BUNDLE_ENUM, VPL), // IN optional
+    TYN_VPLS(TYN_BUNDLE_ENUM, VPL),      // OUT
+    VPL_PORT_PLAN,                       // SCRATCH buffer struct vpl_plan
+    VPL_PORT_WEIGHTS,                    // SCRATCH buffer float[]: of the elements
     VPL_PORT_BLOCKS, // SCRATCH buffer float[]: sums of blocks of elements, then what is before each
     VPL_PORT_STRATA, // SCRATCH buffer struct vpl_stratum[]
     VPL_PORT_BINS,   // SCRATCH buffer struct vpl_bins

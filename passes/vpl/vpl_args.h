@@ -4,8 +4,8 @@
 // triangle. Elements are in blocks of VPL_BLOCK; a map's run along its Hilbert curve.
 #ifndef VPL_ARGS_H
 #define VPL_ARGS_H
-#include "shared.h"
-#include "rsm_args.h"
+#include "shaders/common/shared.h"
+#include "shaders/light/rsm_args.h"
 
 #define VPL_BLOCK 256
 #define VPL_LANES 32 // threads for a block: few, as they wait for each other

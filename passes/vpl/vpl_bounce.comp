@@ -6,10 +6,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "radial_args.h"
-#include "surface_args.h"
+#include "shaders/beams/radial_args.h"
+#include "shaders/surfaces/surface_args.h"
 #include "vpl_bounce_args.h"
-#include "vpl_visibility.glsl"
+#include "shaders/light/vpl_visibility.glsl"
 #include "vpl_hilbert.glsl"
 
 const uint GROUP = 256u;

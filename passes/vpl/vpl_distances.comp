@@ -3,9 +3,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "surface_args.h"
-#include "radial_args.h"
-#include "vpl_visibility.glsl"
+#include "shaders/surfaces/surface_args.h"
+#include "shaders/beams/radial_args.h"
+#include "shaders/light/vpl_visibility.glsl"
 #include "vpl_bounce_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -34,20 +34,13 @@ layout(binding = 7, scalar) buffer bin_buffer
 {
     vpl_bins bins;
 };
-layout(binding = 8, scalar) readonly buffer materials_buffer
-{
-    surface_material materials[];
-};
-#define SURFACE_TEXTURES 9
-#define SURFACE_TEXELS 10
-#define MEDIUM_BLOCK 11
-#define MEDIUM_DENSITY 12
-#define MEDIUM_SIGMA_A 13
-#define MEDIUM_G 14
-#include "surface_texture.glsl"
-#include "surface_trace.glsl"
-#include "medium.glsl"
-#include "camera.glsl"
+#define MATERIALS_AT 8
+#include "shaders/surfaces/surfaces.glsl"
+#define MEDIUM_AT 11
+#include "shaders/surfaces/surface_texture.glsl"
+#include "shaders/surfaces/surface_trace.glsl"
+#include "shaders/medium/medium.glsl"
+#include "shaders/common/camera.glsl"
 layout(push_constant, scalar) uniform Args
 {
     vpl_distances_args args;

@@ -1,36 +1,22 @@
 // vpl_elements.glsl -- what may become a VPL: texels of reflective shadow maps, sides of triangles.
 //
-// Define the bindings VPL_PLAN, VPL_FLUX, VPL_POSITION, VPL_NORMAL, VPL_SURFACES, VPL_VERTICES,
-// VPL_TRIANGLES, VPL_MATERIALS.
+// Bindings 0 to 10.
 #ifndef TYN_VPL_ELEMENTS_GLSL
 #define TYN_VPL_ELEMENTS_GLSL
 #include "vpl_args.h"
-#include "surface_args.h"
+#include "shaders/surfaces/surface_args.h"
 #include "vpl_hilbert.glsl"
 
-layout(binding = VPL_PLAN, scalar) readonly buffer vpl_plan_buffer
+#define GEOMETRY_AT 4
+#define MATERIALS_AT 8
+#include "shaders/surfaces/surfaces.glsl"
+layout(binding = 0, scalar) readonly buffer vpl_plan_buffer
 {
     vpl_plan plan;
 };
-layout(binding = VPL_FLUX) uniform sampler2D rsm_flux_tex;
-layout(binding = VPL_POSITION) uniform sampler2D rsm_position_tex;
-layout(binding = VPL_NORMAL) uniform sampler2D rsm_normal_tex;
-layout(binding = VPL_SURFACES, scalar) uniform vpl_surfaces_buffer
-{
-    surface_block surfaces;
-};
-layout(binding = VPL_VERTICES, scalar) readonly buffer vpl_vertices_buffer
-{
-    surface_vertex vertices[];
-};
-layout(binding = VPL_TRIANGLES, scalar) readonly buffer vpl_triangles_buffer
-{
-    surface_triangle triangles[];
-};
-layout(binding = VPL_MATERIALS, scalar) readonly buffer vpl_materials_buffer
-{
-    surface_material materials[];
-};
+layout(binding = 1) uniform sampler2D rsm_flux_tex;
+layout(binding = 2) uniform sampler2D rsm_position_tex;
+layout(binding = 3) uniform sampler2D rsm_normal_tex;
 
 const float VPL_PI = 3.14159265358979;
 const uint VPL_NO_TRIANGLE = 0xffffffffu;

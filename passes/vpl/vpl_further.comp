@@ -6,7 +6,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "radial_args.h"
+#include "shaders/beams/radial_args.h"
 #include "vpl_bounce_args.h"
 
 const float MOST_REFLECTED = 0.95;

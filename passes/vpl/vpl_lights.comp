@@ -8,47 +8,36 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-#define VPL_PLAN 0
-#define VPL_FLUX 1
-#define VPL_POSITION 2
-#define VPL_NORMAL 3
-#define VPL_SURFACES 4
-#define VPL_VERTICES 5
-#define VPL_TRIANGLES 6
-#define VPL_MATERIALS 7
-#define MEDIUM_BLOCK 8
-#define MEDIUM_DENSITY 9
-#define MEDIUM_SIGMA_A 10
-#define MEDIUM_G 11
+#define MEDIUM_AT 11
 #include "vpl_elements.glsl"
-#include "medium.glsl"
-#include "camera.glsl"
-#include "radial_args.h"
-#include "shadow_args.h"
+#include "shaders/medium/medium.glsl"
+#include "shaders/common/camera.glsl"
+#include "shaders/beams/radial_args.h"
+#include "shaders/light/shadow_args.h"
 
 layout(local_size_x = VPL_LANES) in;
 
-layout(binding = 12, scalar) readonly buffer weight_buffer
+layout(binding = 16, scalar) readonly buffer weight_buffer
 {
     float weights[]; // of an element and those before it in its block
 };
-layout(binding = 13, scalar) readonly buffer block_buffer
+layout(binding = 17, scalar) readonly buffer block_buffer
 {
     float blocks[]; // weights before each, and the whole
 };
-layout(binding = 14, scalar) readonly buffer strata_buffer
+layout(binding = 18, scalar) readonly buffer strata_buffer
 {
     vpl_stratum strata[];
 };
-layout(binding = 15, scalar) uniform sun_uniform
+layout(binding = 19, scalar) uniform sun_uniform
 {
     light_block suns[TYN_LIGHTS_MAX];
 };
-layout(binding = 16, scalar) uniform light_uniform
+layout(binding = 20, scalar) uniform light_uniform
 {
     light_block lights[TYN_LIGHTS_MAX];
 };
-layout(binding = 17, scalar) buffer vpl_buffer
+layout(binding = 21, scalar) buffer vpl_buffer
 {
     uint vpl_count;
     uint vpl_before;

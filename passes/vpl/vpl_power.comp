@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "radial_args.h"
+#include "shaders/beams/radial_args.h"
 #include "vpl_bounce_args.h"
 
 layout(local_size_x = TYN_RADIAL_VPLS_MAX) in;

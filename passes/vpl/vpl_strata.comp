@@ -7,7 +7,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "vpl_args.h"
-#include "radial_args.h"
+#include "shaders/beams/radial_args.h"
 
 layout(local_size_x = VPL_BLOCK) in;
 

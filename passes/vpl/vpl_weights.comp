@@ -3,23 +3,15 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 
-#define VPL_PLAN 0
-#define VPL_FLUX 1
-#define VPL_POSITION 2
-#define VPL_NORMAL 3
-#define VPL_SURFACES 4
-#define VPL_VERTICES 5
-#define VPL_TRIANGLES 6
-#define VPL_MATERIALS 7
 #include "vpl_elements.glsl"
 
 layout(local_size_x = VPL_LANES) in;
 
-layout(binding = 8, scalar) writeonly buffer weight_buffer
+layout(binding = 11, scalar) writeonly buffer weight_buffer
 {
     float weights[]; // of an element and those before it in its block
 };
-layout(binding = 9, scalar) writeonly buffer block_buffer
+layout(binding = 12, scalar) writeonly buffer block_buffer
 {
     float blocks[];
 };

@@ -1,24 +1,18 @@
 // walls.c -- surfaces on the lattice.
 #include "walls.h"
 #include "walls_pass_args.h"
-#include "surface_args.h"
-#include "walls_args.h"
+#include "shaders/surfaces/surface_args.h"
+#include "shaders/walls/walls_args.h"
 #include "walls_scatter.comp.h"
 #include "walls_cells.comp.h"
 
 static const tyn_port ports[WALLS_NUM_PORTS] = {
-    [WALLS_PORT_SURFACES] = {"surfaces", TYN_IN, TYN_BUFFER, 0, false, "struct surface_block"},
-    [WALLS_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, false, "struct surface_vertex[]"},
-    [WALLS_PORT_TRIANGLES] = {"triangles", TYN_IN, TYN_BUFFER, 0, false,
-                              "struct surface_triangle[]"},
-    [WALLS_PORT_MATERIALS] = {"materials", TYN_IN, TYN_BUFFER, 0, false,
-                              "struct surface_material[]"},
-    [WALLS_PORT_TEXTURES] = {"textures", TYN_IN, TYN_BUFFER, 0, true, "struct surface_texture[]"},
-    [WALLS_PORT_TEXELS] = {"texels", TYN_IN, TYN_BUFFER, 0, true, "uint[], sRGB"},
-    [WALLS_PORT_LINKS] = {"wall_links", TYN_OUT, TYN_BUFFER, 0, false,
-                          "which of its 26 links are cut, per cell"},
-    [WALLS_PORT_CELLS] = {"wall_cells", TYN_OUT, TYN_BUFFER, 0, false,
-                          "struct wall_cell: mean albedo and planes of a cell's walls"},
+    TYN_GEOMETRY(TYN_BUNDLE_IN, WALLS),
+    TYN_MATERIALS(TYN_BUNDLE_IN, WALLS),
+    [WALLS_PORT_WALL_LINKS] = {"wall_links", TYN_OUT, TYN_BUFFER, 0, false,
+                               "which of its 26 links are cut, per cell"},
+    [WALLS_PORT_WALL_CELLS] = {"wall_cells", TYN_OUT, TYN_BUFFER, 0, false,
+                               "struct wall_cell: mean albedo and planes of a cell's walls"},
     [WALLS_PORT_HITS] = {"hits", TYN_OUT, TYN_BUFFER, 0, false, "nearest triangle per line"},
     [WALLS_PORT_NEAREST] = {"nearest", TYN_SCRATCH, TYN_BUFFER, 0, false,
                             "nearest triangle in the cell, per main direction of its normal"},
@@ -27,36 +21,23 @@ static const tyn_port ports[WALLS_NUM_PORTS] = {
 enum { KERNEL_SCATTER, KERNEL_CELLS, NUM_KERNELS };
 
 static const tyn_binding scatter_bindings[] = {
-    {WALLS_PORT_SURFACES, TYN_USE_UNIFORM},       {WALLS_PORT_VERTICES, TYN_USE_STORAGE_READ},
-    {WALLS_PORT_TRIANGLES, TYN_USE_STORAGE_READ}, {WALLS_PORT_LINKS, TYN_USE_STORAGE_RW},
-    {WALLS_PORT_HITS, TYN_USE_STORAGE_RW},        {WALLS_PORT_NEAREST, TYN_USE_STORAGE_RW},
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, WALLS),
+    {WALLS_PORT_WALL_LINKS, TYN_USE_STORAGE_RW},
+    {WALLS_PORT_HITS, TYN_USE_STORAGE_RW},
+    {WALLS_PORT_NEAREST, TYN_USE_STORAGE_RW},
 };
 
 static const tyn_binding cells_bindings[] = {
-    {WALLS_PORT_SURFACES, TYN_USE_UNIFORM},       {WALLS_PORT_VERTICES, TYN_USE_STORAGE_READ},
-    {WALLS_PORT_TRIANGLES, TYN_USE_STORAGE_READ}, {WALLS_PORT_LINKS, TYN_USE_STORAGE_READ},
-    {WALLS_PORT_HITS, TYN_USE_STORAGE_READ},      {WALLS_PORT_NEAREST, TYN_USE_STORAGE_READ},
-    {WALLS_PORT_MATERIALS, TYN_USE_STORAGE_READ}, {WALLS_PORT_TEXTURES, TYN_USE_STORAGE_READ},
-    {WALLS_PORT_TEXELS, TYN_USE_STORAGE_READ},    {WALLS_PORT_CELLS, TYN_USE_STORAGE_WRITE},
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, WALLS),          TYN_MATERIALS(TYN_BUNDLE_BIND, WALLS),
+    {WALLS_PORT_WALL_LINKS, TYN_USE_STORAGE_READ}, {WALLS_PORT_HITS, TYN_USE_STORAGE_READ},
+    {WALLS_PORT_NEAREST, TYN_USE_STORAGE_READ},    {WALLS_PORT_WALL_CELLS, TYN_USE_STORAGE_WRITE},
 };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SCATTER] = {"scatter",
-                        walls_scatter_spirv,
-                        sizeof walls_scatter_spirv,
-                        sizeof(struct walls_pass_args),
-                        {WALLS_GROUP, 1, 1},
-                        scatter_bindings,
-                        6,
-                        0},
-    [KERNEL_CELLS] = {"cells",
-                      walls_cells_spirv,
-                      sizeof walls_cells_spirv,
-                      sizeof(struct walls_pass_args),
-                      {8, 4, 2},
-                      cells_bindings,
-                      10,
-                      0},
+    [KERNEL_SCATTER] = TYN_KERNEL(walls_scatter, sizeof(struct walls_pass_args), WALLS_GROUP, 1, 1,
+                                  scatter_bindings, 0),
+    [KERNEL_CELLS] =
+        TYN_KERNEL(walls_cells, sizeof(struct walls_pass_args), 8, 4, 2, cells_bindings, 0),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -71,8 +52,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
                       TYN_WALLS_MAX_TRIANGLES);
         return TYN_ERR_PARAMS;
     }
-    tyn_build_buffer(b, WALLS_PORT_LINKS, 4 * n);
-    tyn_build_buffer(b, WALLS_PORT_CELLS, sizeof(struct wall_cell) * n);
+    tyn_build_buffer(b, WALLS_PORT_WALL_LINKS, 4 * n);
+    tyn_build_buffer(b, WALLS_PORT_WALL_CELLS, sizeof(struct wall_cell) * n);
     tyn_build_buffer(b, WALLS_PORT_HITS, 14 * 4 * n);
     tyn_build_buffer(b, WALLS_PORT_NEAREST, WALLS_SLOTS * 4 * n);
     return TYN_OK;
@@ -89,7 +70,7 @@ static void record(tyn_recorder *r, const void *params)
     };
     args.row = args.num_triangles < WALLS_ROW ? args.num_triangles : WALLS_ROW;
     args.slices = args.num_triangles < WALLS_FEW ? WALLS_SLICES : 1;
-    tyn_rec_fill(r, WALLS_PORT_LINKS, 0);
+    tyn_rec_fill(r, WALLS_PORT_WALL_LINKS, 0);
     tyn_rec_fill(r, WALLS_PORT_HITS, 0xffffffffu);
     tyn_rec_fill(r, WALLS_PORT_NEAREST, 0xffffffffu);
     if (args.row > 0) {
@@ -118,6 +99,6 @@ const tyn_pass_desc tyn_pass_walls = {
     .params_size = sizeof(tyn_walls_params),
     .declare = declare,
     .record = record,
-    .debug_port = WALLS_PORT_CELLS,
+    .debug_port = WALLS_PORT_WALL_CELLS,
     .debug_meaning = "albedo and planes of the walls per cell",
 };

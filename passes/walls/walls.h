@@ -4,6 +4,7 @@
 // that a link crosses stops it. Nothing leaks through closed meshes, and both ends of a link agree.
 #pragma once
 #include <tyndall/pass.h>
+#include "shaders/common/bundles.h"
 
 typedef struct tyn_walls_params {
     float extent[3];  // medium_block.extent, m
@@ -11,14 +12,9 @@ typedef struct tyn_walls_params {
 } tyn_walls_params;
 
 enum {
-    WALLS_PORT_SURFACES,  // IN buffer struct surface_block
-    WALLS_PORT_VERTICES,  // IN buffer struct surface_vertex[]
-    WALLS_PORT_TRIANGLES, // IN buffer struct surface_triangle[]: their number is the buffer's size
-    WALLS_PORT_MATERIALS, // IN buffer struct surface_material[]
-    WALLS_PORT_TEXTURES,  // IN optional buffer struct surface_texture[]
-    WALLS_PORT_TEXELS,    // IN optional buffer uint[]
-    WALLS_PORT_LINKS,     // OUT buffer uint[cell]: walls_args.h
-    WALLS_PORT_CELLS,     // OUT buffer struct wall_cell[cell]
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, WALLS),  // IN
+    TYN_MATERIALS(TYN_BUNDLE_ENUM, WALLS), // IN
+    TYN_WALLS(TYN_BUNDLE_ENUM, WALLS),     // OUT
     // OUT buffer uint[link 0..13][cell]: the triangle that a cut link meets, in the low 24 bits,
     // and 255 times its share of the link in the others.
     WALLS_PORT_HITS,
@@ -26,65 +22,6 @@ enum {
     WALLS_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_walls;
-
-// ---- wall_light -------------------------------------------------------------------------------------
-
-// Light of suns and of virtual point lights (VPLs) on the walls of the cells, as radiance that they send out.
-typedef struct tyn_wall_light_params {
-    float extent[3];   // medium_block.extent, m
-    uint32_t dims[3];  // cells of the lattice
-    uint32_t mode;     // TYN_MEDIUM_*
-    uint32_t num_suns; // 0..4: those whose light walls reflect here
-} tyn_wall_light_params;
-
-enum {
-    WALL_LIGHT_PORT_MEDIUM, // IN buffer struct medium_block
-    WALL_LIGHT_PORT_LIGHTS, // IN buffer struct light_block[]
-    WALL_LIGHT_PORT_BEAMS,  // IN optional buffer struct beam_block[]: with suns, as the next
-    WALL_LIGHT_PORT_COLUMN, // IN optional 3D: column, or tau_s in mode COEFFICIENTS
-    WALL_LIGHT_PORT_TAU_A,  // IN optional 3D: mode COEFFICIENTS, as the one below
-    WALL_LIGHT_PORT_TAU_P,
-    // IN optional buffer struct radial_block: its VPLs shine on walls, as the three below.
-    WALL_LIGHT_PORT_RADIALS,
-    WALL_LIGHT_PORT_RADIAL_COLUMN,
-    WALL_LIGHT_PORT_RADIAL_TAU_A,
-    WALL_LIGHT_PORT_RADIAL_TAU_P,
-    WALL_LIGHT_PORT_SURFACES, // IN buffers, as walls has them
-    WALL_LIGHT_PORT_VERTICES,
-    WALL_LIGHT_PORT_TRIANGLES,
-    WALL_LIGHT_PORT_LINKS, // IN buffers, of walls
-    WALL_LIGHT_PORT_CELLS,
-    WALL_LIGHT_PORT_HITS,
-    WALL_LIGHT_PORT_ROOMS,     // IN optional buffer, of rooms
-    WALL_LIGHT_PORT_DISTANCES, // IN optional 2D, of vpl: power that VPLs send is what walls get
-    WALL_LIGHT_PORT_LIGHT,     // OUT buffer vec3[cell]: LATTICE_PORT_WALL_LIGHT
-    WALL_LIGHT_PORT_LIST,      // SCRATCH buffer, wall_light_args.h: cells that have walls
-    WALL_LIGHT_PORT_ARRIVED,   // SCRATCH buffer vec3[cell]
-    WALL_LIGHT_PORT_POWER,     // OUT buffer struct wall_light_power
-    WALL_LIGHT_PORT_FIRST,     // SCRATCH buffer uint[1 + cells]
-    WALL_LIGHT_PORT_PARTS,     // SCRATCH buffer vec3[]
-    WALL_LIGHT_NUM_PORTS,
-};
-extern const tyn_pass_desc tyn_pass_wall_light;
-
-// ---- rooms ------------------------------------------------------------------------------------------
-
-// Parts of the lattice that open links join; what is sealed is one of its own, which no light of virtual point lights
-// (VPLs) elsewhere reaches.
-typedef struct tyn_rooms_params {
-    float extent[3];  // medium_block.extent, m
-    uint32_t dims[3]; // cells of the lattice
-} tyn_rooms_params;
-
-enum {
-    ROOMS_PORT_LINKS,     // IN buffer, of walls
-    ROOMS_PORT_VPLS,      // IN buffer struct radial_vpls
-    ROOMS_PORT_DISTANCES, // IN 2D, vpl_visibility.glsl
-    ROOMS_PORT_ROOMS,     // OUT buffer, rooms.h
-    ROOMS_PORT_FOREST,    // SCRATCH
-    ROOMS_NUM_PORTS,
-};
-extern const tyn_pass_desc tyn_pass_rooms;
 
 // Triangles that the pass can tell apart.
 enum { TYN_WALLS_MAX_TRIANGLES = 1 << 24 };

@@ -3,57 +3,36 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "walls_pass_args.h"
-#include "surface_args.h"
-#include "lattice.glsl"
-#include "walls_links.glsl"
-#include "walls_triangle.glsl"
+#include "shaders/surfaces/surface_args.h"
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/walls/walls_links.glsl"
+#include "shaders/walls/walls_triangle.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(push_constant, scalar) uniform push
 {
     walls_pass_args args;
 };
-layout(binding = 0, scalar) uniform surface_uniform
-{
-    surface_block surfaces;
-};
-layout(binding = 1, scalar) readonly buffer vertex_buffer
-{
-    surface_vertex vertices[];
-};
-layout(binding = 2, scalar) readonly buffer triangle_buffer
-{
-    surface_triangle triangles[];
-};
-layout(binding = 3, scalar) readonly buffer link_buffer
+#define GEOMETRY_AT 0
+#define MATERIALS_AT 4
+#include "shaders/surfaces/surfaces.glsl"
+layout(binding = 7, scalar) readonly buffer link_buffer
 {
     uint links[];
 };
-layout(binding = 4, scalar) readonly buffer hit_buffer
+layout(binding = 8, scalar) readonly buffer hit_buffer
 {
     uint hits[];
 };
-layout(binding = 5, scalar) readonly buffer nearest_buffer
+layout(binding = 9, scalar) readonly buffer nearest_buffer
 {
     uint nearest[];
 };
-layout(binding = 6, scalar) readonly buffer material_buffer
-{
-    surface_material materials[];
-};
-layout(binding = 7, scalar) readonly buffer texture_buffer
-{
-    surface_texture textures[];
-};
-layout(binding = 8, scalar) readonly buffer texel_buffer
-{
-    uint texels[];
-};
-layout(binding = 9, scalar) writeonly buffer cell_buffer
+layout(binding = 10, scalar) writeonly buffer cell_buffer
 {
     wall_cell wall_cells[];
 };
-#include "walls_place.glsl"
+#include "shaders/walls/walls_place.glsl"
 #include "walls_texture.glsl"
 
 // Mean over about a cell around the place where the link from p along d meets triangle i.

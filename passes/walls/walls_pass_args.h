@@ -1,7 +1,7 @@
 // walls_pass_args.h -- push constants of the kernels of the pass walls. Included by C and GLSL.
 #ifndef TYN_WALLS_PASS_ARGS_H
 #define TYN_WALLS_PASS_ARGS_H
-#include "shared.h"
+#include "shaders/common/shared.h"
 
 struct walls_pass_args {
     tyn_vec3 extent; // of the medium, m

@@ -8,44 +8,35 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
 #include "walls_pass_args.h"
-#include "surface_args.h"
-#include "lattice.glsl"
-#include "walls_links.glsl"
-#include "walls_triangle.glsl"
+#include "shaders/surfaces/surface_args.h"
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/walls/walls_links.glsl"
+#include "shaders/walls/walls_triangle.glsl"
 
 layout(local_size_x = WALLS_GROUP) in;
 layout(push_constant, scalar) uniform push
 {
     walls_pass_args args;
 };
-layout(binding = 0, scalar) uniform surface_uniform
-{
-    surface_block surfaces;
-};
-layout(binding = 1, scalar) readonly buffer vertex_buffer
-{
-    vec4 vertex_rows[]; // surface_vertex: position, u; normal, v
-};
-layout(binding = 2, scalar) readonly buffer triangle_buffer
-{
-    uvec4 triangle_rows[]; // surface_triangle: corners, material
-};
-layout(binding = 3, scalar) buffer link_buffer
+#define GEOMETRY_AT 0
+#define SURFACE_ROWS
+#include "shaders/surfaces/surfaces.glsl"
+layout(binding = 4, scalar) buffer link_buffer
 {
     uint links[];
 };
 // [link 0..13][cell]: of the nearest hit, its share of the way (8 bits), its triangle (24 bits).
-layout(binding = 4, scalar) buffer hit_buffer
+layout(binding = 5, scalar) buffer hit_buffer
 {
     uint hits[];
 };
 // [slot][cell]: of the nearest plane that passes through the cell, the same.
-layout(binding = 5, scalar) buffer nearest_buffer
+layout(binding = 6, scalar) buffer nearest_buffer
 {
     uint nearest[];
 };
 #define WALLS_ROWS
-#include "walls_place.glsl"
+#include "shaders/walls/walls_place.glsl"
 
 uint key_of(float share, uint triangle)
 {

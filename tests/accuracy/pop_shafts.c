@@ -8,7 +8,7 @@
 #include "path_run.h"
 #include "sample_scene.h"
 #include "passes/shadow_map/shadow_map.h"
-#include "surface_args.h"
+#include "shaders/surfaces/surface_args.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

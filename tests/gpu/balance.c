@@ -1,9 +1,9 @@
 // balance.c -- where the energy goes, against the same sums in double precision.
 #include "gpu_test.h"
-#include "lattice_power.h"
-#include "ordinate_args.h"
-#include "passes/probe/probe.h"
-#include "scene_args.h"
+#include "shaders/lattice/lattice_power.h"
+#include "shaders/light/ordinate_args.h"
+#include "passes/balance/balance.h"
+#include "shaders/common/scene_args.h"
 #include <tyndall/context.h>
 #include <math.h>
 #include <stdlib.h>

@@ -36,23 +36,23 @@ static const depth *evaluate(gpu_test *t, const medium_grid *m, const struct lig
 {
     static point_pass pass;
     static const point_input inputs[] = {
-        {"medium", TYN_BUFFER, TYN_USE_UNIFORM},     {"density", TYN_IMAGE_3D, TYN_USE_SAMPLED},
-        {"beams", TYN_BUFFER, TYN_USE_STORAGE_READ}, {"column", TYN_IMAGE_3D, TYN_USE_SAMPLED},
-        {"tau_a", TYN_IMAGE_3D, TYN_USE_SAMPLED},    {"tau_p", TYN_IMAGE_3D, TYN_USE_SAMPLED},
+        {"medium", TYN_BUFFER, TYN_USE_UNIFORM},   {"beams", TYN_BUFFER, TYN_USE_STORAGE_READ},
+        {"column", TYN_IMAGE_3D, TYN_USE_SAMPLED}, {"tau_a", TYN_IMAGE_3D, TYN_USE_SAMPLED},
+        {"tau_p", TYN_IMAGE_3D, TYN_USE_SAMPLED},
     };
-    point_pass_init(&pass, beam_eval_spirv, sizeof beam_eval_spirv, inputs, 6);
+    point_pass_init(&pass, beam_eval_spirv, sizeof beam_eval_spirv, inputs, 5);
     bool density = m->block.mode == TYN_MEDIUM_DENSITY;
     tyn_extent extent = {m->block.size[0], m->block.size[1], m->block.size[2]};
     int channels = density ? 1 : 4;
 
     tyn_graph_begin(t->graph);
-    tyn_ref beam[BEAM_NUM_PORTS] = {{0}}, refs[8] = {{0}};
+    tyn_ref beam[BEAM_NUM_PORTS] = {{0}}, refs[7] = {{0}};
     beam[BEAM_PORT_MEDIUM] = gpu_buffer(t, "medium", &m->block, sizeof m->block);
     if (density) {
         beam[BEAM_PORT_DENSITY] =
             gpu_image(t, "density", TYN_IMAGE_3D, extent, channels, m->texels[0]);
     } else {
-        beam[BEAM_PORT_SIGMA_S] =
+        beam[BEAM_PORT_DENSITY] =
             gpu_image(t, "sigma_s", TYN_IMAGE_3D, extent, channels, m->texels[0]);
         beam[BEAM_PORT_SIGMA_A] =
             gpu_image(t, "sigma_a", TYN_IMAGE_3D, extent, channels, m->texels[1]);
@@ -65,15 +65,13 @@ static const depth *evaluate(gpu_test *t, const medium_grid *m, const struct lig
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_beam, &params, beam), TYN_OK);
 
     refs[0] = beam[BEAM_PORT_MEDIUM];
-    refs[1] = density ? beam[BEAM_PORT_DENSITY] : beam[BEAM_PORT_SIGMA_S];
-    refs[2] = beam[BEAM_PORT_BEAMS];
-    refs[3] = density ? beam[BEAM_PORT_COLUMN] : beam[BEAM_PORT_TAU_S];
-    refs[4] = beam[BEAM_PORT_TAU_A];
-    refs[5] = beam[BEAM_PORT_TAU_P];
-    refs[6] = gpu_buffer(t, "points", points, count * sizeof *points);
+    for (int i = 0; i < 4; i++) {
+        refs[1 + i] = beam[BEAM_PORT_BEAMS + i];
+    }
+    refs[5] = gpu_buffer(t, "points", points, count * sizeof *points);
     point_pass_params eval = {count, sizeof(depth), m->block.mode, pass.results};
     assert_int_equal(tyn_graph_add(t->graph, &pass.desc, &eval, refs), TYN_OK);
-    tyn_graph_output(t->graph, "results", refs[7], true);
+    tyn_graph_output(t->graph, "results", refs[6], true);
     gpu_run(t);
     return gpu_map(t, "results");
 }

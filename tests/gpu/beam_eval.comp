@@ -3,21 +3,18 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#include "medium.glsl"
-#define BEAM_BLOCKS 2
-#define BEAM_COLUMN 3
-#define BEAM_TAU_A 4
-#define BEAM_TAU_P 5
-#include "beam.glsl"
+#include "shaders/medium/medium.glsl"
+#define BEAMS_AT 1
+#define BEAMS_STORAGE
+#include "shaders/beams/beam.glsl"
 
 layout(local_size_x = 64) in;
 struct point {
     vec3 p;
     uint sun;
 };
-layout(set = 0, binding = 6, scalar) readonly buffer points_buffer { point points[]; };
-layout(set = 0, binding = 7, scalar) writeonly buffer results_buffer { beam_tau results[]; };
+layout(set = 0, binding = 5, scalar) readonly buffer points_buffer { point points[]; };
+layout(set = 0, binding = 6, scalar) writeonly buffer results_buffer { beam_tau results[]; };
 
 void main()
 {

@@ -3,6 +3,7 @@
 #include "base/half.h"
 #include "medium_grid.h"
 #include "passes/columns/columns.h"
+#include "passes/columns_average/columns_average.h"
 #include "random_unit.h"
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,6 @@
 // columns_average.c -- the medium averaged, against means of voxels.
 #include "gpu_test.h"
-#include "passes/columns/columns.h"
+#include "passes/columns_average/columns_average.h"
 #include "voxels.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 // gbuffer.c -- the G-buffer against rays through all triangles, in double precision.
 #include "gpu_test.h"
 #include "passes/gbuffer/gbuffer.h"
-#include "gbuffer_edge_args.h"
-#include "scene_args.h"
+#include "shaders/surfaces/gbuffer_edge_args.h"
+#include "shaders/common/scene_args.h"
 #include "solids.h"
-#include "surface_args.h"
+#include "shaders/surfaces/surface_args.h"
 #include "vector.h"
 #include <math.h>
 #include <stdlib.h>
@@ -170,13 +170,16 @@ static images draw(gpu_test *t, const tyn_scene *scene, const struct camera_bloc
     params.row = ROW;
     tyn_graph_begin(t->graph);
     tyn_ref refs[GBUFFER_NUM_PORTS] = {
-        gpu_buffer(t, "camera", camera, sizeof *camera),
-        gpu_buffer(t, "surfaces", &block, sizeof block),
-        gpu_buffer(t, "triangles", s->triangles, s->num_triangles * sizeof *s->triangles),
-        gpu_buffer(t, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices),
-        gpu_buffer(t, "materials", s->materials, s->num_materials * sizeof *s->materials),
-        gpu_buffer(t, "textures", texture, sizeof *texture),
-        gpu_buffer(t, "texels", texels, count * sizeof *texels),
+        [GBUFFER_PORT_CAMERA] = gpu_buffer(t, "camera", camera, sizeof *camera),
+        [GBUFFER_PORT_SURFACES] = gpu_buffer(t, "surfaces", &block, sizeof block),
+        [GBUFFER_PORT_TRIANGLES] =
+            gpu_buffer(t, "triangles", s->triangles, s->num_triangles * sizeof *s->triangles),
+        [GBUFFER_PORT_VERTICES] =
+            gpu_buffer(t, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices),
+        [GBUFFER_PORT_MATERIALS] =
+            gpu_buffer(t, "materials", s->materials, s->num_materials * sizeof *s->materials),
+        [GBUFFER_PORT_TEXTURES] = gpu_buffer(t, "textures", texture, sizeof *texture),
+        [GBUFFER_PORT_TEXELS] = gpu_buffer(t, "texels", texels, count * sizeof *texels),
     };
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_gbuffer, &params, refs), TYN_OK);
     tyn_graph_output(t->graph, "distances", refs[GBUFFER_PORT_DISTANCES], true);

@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "hg.glsl"
+#include "shaders/phase/hg.glsl"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint unused = 0u;

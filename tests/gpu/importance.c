@@ -3,7 +3,7 @@
 #include "gpu_test.h"
 #include "importance_twin.h"
 #include "passes/importance/importance.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #include "vector.h"
 #include <math.h>
 #include <stdio.h>

@@ -1,6 +1,7 @@
 // lattice.c -- the lattice solver on the device against its twin on the CPU.
 #include "gpu_test.h"
 #include "llc_twin.h"
+#include "shaders/common/scene_args.h"
 #include "passes/lattice/lattice.h"
 #include "random_unit.h"
 #include <math.h>

@@ -1,7 +1,7 @@
 // lattice_cells.c -- coefficients averaged over cells, against means of voxels and closed forms.
 #include "gpu_test.h"
-#include "passes/lattice/lattice.h"
-#include "scene_args.h"
+#include "passes/lattice_cells/lattice_cells.h"
+#include "shaders/common/scene_args.h"
 #include "voxels.h"
 #include <math.h>
 #include <stdlib.h>

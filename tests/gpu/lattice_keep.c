@@ -1,7 +1,8 @@
 // lattice_keep.c -- what is put away for the next frame is what was solved, to the bit.
 #include "gpu_test.h"
-#include "passes/lattice/lattice.h"
-#include "passes/lattice/lattice_args.h"
+#include "passes/lattice_recall/lattice_recall.h"
+#include "passes/lattice_keep/lattice_keep.h"
+#include "shaders/lattice/lattice_args.h"
 #include <stdlib.h>
 #include <string.h>
 

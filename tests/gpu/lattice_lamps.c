@@ -2,10 +2,10 @@
 // over the cells.
 #include "gpu_test.h"
 #include "homogeneous.h"
-#include "lattice_power.h"
-#include "passes/lattice/lattice.h"
-#include "scene_args.h"
-#include "shadow_args.h"
+#include "shaders/lattice/lattice_power.h"
+#include "passes/lattice_lamps/lattice_lamps.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/light/shadow_args.h"
 #include <stdlib.h>
 
 enum { CELLS = 8, NX = 8, NY = 6, NZ = 4, N = NX * NY * NZ };
@@ -85,7 +85,7 @@ static void run(gpu_test *t)
     *gpu_port(pass, refs, "cells") = gpu_image(t, "cells", TYN_IMAGE_3D, size, 4, cells[0]);
     *gpu_port(pass, refs, "density") = gpu_image(t, "density", TYN_IMAGE_3D, texel, 1, &one);
     *gpu_port(pass, refs, "radials") = gpu_buffer(t, "radials", &s.radials, sizeof s.radials);
-    *gpu_port(pass, refs, "column") = gpu_image(t, "column", TYN_IMAGE_3D, texel, 1, &one);
+    *gpu_port(pass, refs, "radial_column") = gpu_image(t, "column", TYN_IMAGE_3D, texel, 1, &one);
     if (s.others) {
         *gpu_port(pass, refs, "others") = gpu_image(t, "others", TYN_IMAGE_3D, size, 4, others[0]);
     }

@@ -1,8 +1,8 @@
 // lattice_ordinates.c -- light of principal ordinates on the lattice, in probes and in the balance.
 #include "light_chain.h"
 #include "base/half.h"
-#include "passes/columns/columns.h"
-#include "passes/lattice/lattice.h"
+#include "shaders/beams/columns_args.h"
+#include "passes/lattice_ordinates/lattice_ordinates.h"
 #include "random_unit.h"
 #include <math.h>
 #include <stdio.h>

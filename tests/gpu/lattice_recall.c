@@ -1,8 +1,8 @@
 // lattice_recall.c -- the last frame's solution at this frame's cells, against a linear field and sums in double precision.
 #include "gpu_test.h"
-#include "passes/lattice/lattice.h"
-#include "passes/lattice/lattice_args.h"
-#include "scene_args.h"
+#include "passes/lattice_recall/lattice_recall.h"
+#include "shaders/lattice/lattice_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

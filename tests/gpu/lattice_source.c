@@ -1,10 +1,10 @@
 // lattice_source.c -- unscattered sunlight in cells of a homogeneous medium, against integrals over the cells.
 #include "gpu_test.h"
 #include "homogeneous.h"
-#include "lattice_power.h"
-#include "passes/lattice/lattice.h"
-#include "scene_args.h"
-#include "shadow_args.h"
+#include "shaders/lattice/lattice_power.h"
+#include "passes/lattice_source/lattice_source.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/light/shadow_args.h"
 #include "todo.h"
 
 enum { CELLS = 8, NX = 8, NY = 6, NZ = 4, N = NX * NY * NZ, SUNS = 2 };

@@ -1,6 +1,7 @@
 // lattice_walls.c -- the lattice among walls: against a twin, furnace, closed rooms, darkness, balance.
 #include "gpu_test.h"
 #include "wall_mesh.h"
+#include "shaders/common/scene_args.h"
 #include "passes/lattice/lattice.h"
 #include "random_unit.h"
 #include <math.h>

@@ -1,7 +1,7 @@
 // light_cells.c -- what is said of cubes of the medium's box, against texels of a hand-made atlas of shadow maps.
 #include "gpu_test.h"
 #include "passes/light_cells/light_cells.h"
-#include "shadow_args.h"
+#include "shaders/light/shadow_args.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -158,9 +158,9 @@ static textures run(gpu_test *t, const world *w)
     textures out = {.bricks = (const float(*)[2])gpu_map(t, "bricks"),
                     .distance = gpu_map(t, "distance")};
     assert_int_equal(refs[MEDIUM_PORT_DENSITY].resource != 0,
-                     w->medium.mode == TYN_MEDIUM_DENSITY && !w->direct);
+                     w->medium.mode == TYN_MEDIUM_COEFFICIENTS || !w->direct);
     if (w->medium.mode == TYN_MEDIUM_COEFFICIENTS) {
-        out.sigma_s = gpu_map(t, "sigma_s");
+        out.sigma_s = gpu_map(t, "density");
         out.sigma_a = gpu_map(t, "sigma_a");
         out.g = gpu_map(t, "g");
         out.emission = w->emissive ? gpu_map(t, "emission") : NULL;
@@ -454,7 +454,7 @@ static void lookup(void **state)
         tyn_ref refs[MEDIUM_NUM_PORTS], eval[7] = {{0}};
         declare_pass(t, &w, refs);
         eval[0] = refs[MEDIUM_PORT_MEDIUM];
-        eval[1] = k < 2 ? refs[MEDIUM_PORT_ATLAS] : refs[MEDIUM_PORT_SIGMA_S];
+        eval[1] = k < 2 ? refs[MEDIUM_PORT_ATLAS] : refs[MEDIUM_PORT_DENSITY];
         eval[2] = refs[MEDIUM_PORT_SIGMA_A];
         eval[3] = refs[MEDIUM_PORT_G];
         eval[4] = refs[MEDIUM_PORT_EMISSION];
@@ -465,7 +465,7 @@ static void lookup(void **state)
         static const char *names[] = {"sigma_s", "sigma_a", "g", "emission"};
         if (k == 2) {
             for (uint32_t p = 0; p < 4; p++) {
-                tyn_graph_output(t->graph, names[p], refs[MEDIUM_PORT_SIGMA_S + p], true);
+                tyn_graph_output(t->graph, names[p], refs[MEDIUM_PORT_DENSITY + p], true);
             }
         }
         gpu_run(t);

@@ -1,8 +1,8 @@
 // merge_grids.c -- the merge of the aligned grids against a CPU twin in double precision, and its limits.
 #include "gpu_test.h"
 #include "passes/merge_grids/merge_grids.h"
-#include "propagate_radial_grid.h"
-#include "scene_args.h"
+#include "shaders/beams/propagate_radial_grid.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

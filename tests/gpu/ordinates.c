@@ -4,7 +4,7 @@
 #include "passes/env_importance/env_importance.h"
 #include "passes/ordinates/ordinates.h"
 #include "scene/env_suns.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #include "vector.h"
 #include "random_unit.h"
 #include <math.h>

@@ -1,9 +1,9 @@
 // path_distance.c -- distances to surfaces, against rays through all triangles in double precision.
 #include "gpu_test.h"
-#include "passes/path/path.h"
-#include "scene_args.h"
+#include "passes/path_distance/path_distance.h"
+#include "shaders/common/scene_args.h"
 #include "solids.h"
-#include "surface_args.h"
+#include "shaders/surfaces/surface_args.h"
 #include "vector.h"
 #include <string.h>
 

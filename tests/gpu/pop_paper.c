@@ -7,8 +7,8 @@
 #include "passes/merge_grids/merge_grids.h"
 #include "passes/upsample/upsample.h"
 #include "passes/raymarch/raymarch.h"
-#include "ordinate_args.h"
-#include "scene_args.h"
+#include "shaders/light/ordinate_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include "propagate_radial_twin.h"
 #include "passes/propagate_radial/propagate_radial.h"
 #include "passes/propagate_radial/propagate_radial_args.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #include "vector.h"
 #include <math.h>
 #include <stdlib.h>

@@ -3,8 +3,8 @@
 #include "gpu_test.h"
 #include "propagate_twin.h"
 #include "passes/propagate_rect/propagate_rect.h"
-#include "ordinate_args.h"
-#include "scene_args.h"
+#include "shaders/light/ordinate_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -115,13 +115,13 @@ static const depth *evaluate(gpu_test *t, const struct medium_block *m, uint32_t
 {
     static point_pass pass;
     static const point_input inputs[] = {
-        {"medium", TYN_BUFFER, TYN_USE_UNIFORM},       {"density", TYN_IMAGE_3D, TYN_USE_SAMPLED},
-        {"radials", TYN_BUFFER, TYN_USE_STORAGE_READ}, {"column", TYN_IMAGE_3D, TYN_USE_SAMPLED},
-        {"tau_a", TYN_IMAGE_3D, TYN_USE_SAMPLED},      {"tau_p", TYN_IMAGE_3D, TYN_USE_SAMPLED},
+        {"medium", TYN_BUFFER, TYN_USE_UNIFORM},   {"radials", TYN_BUFFER, TYN_USE_STORAGE_READ},
+        {"column", TYN_IMAGE_3D, TYN_USE_SAMPLED}, {"tau_a", TYN_IMAGE_3D, TYN_USE_SAMPLED},
+        {"tau_p", TYN_IMAGE_3D, TYN_USE_SAMPLED},
     };
-    point_pass_init(&pass, radial_eval_spirv, sizeof radial_eval_spirv, inputs, 6);
+    point_pass_init(&pass, radial_eval_spirv, sizeof radial_eval_spirv, inputs, 5);
     tyn_graph_begin(t->graph);
-    tyn_ref beam[RADIAL_BEAM_NUM_PORTS] = {{0}}, refs[8] = {{0}};
+    tyn_ref beam[RADIAL_BEAM_NUM_PORTS] = {{0}}, refs[7] = {{0}};
     beam[RADIAL_BEAM_PORT_MEDIUM] = gpu_buffer(t, "medium", m, sizeof *m);
     beam[RADIAL_BEAM_PORT_DENSITY] = gpu_image(
         t, "density", TYN_IMAGE_3D, (tyn_extent){m->size[0], m->size[1], m->size[2]}, 1, texels);
@@ -131,13 +131,12 @@ static const depth *evaluate(gpu_test *t, const struct medium_block *m, uint32_t
     assert_int_equal(params.num_lamps, LIGHTS);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_radial_beam, &params, beam), TYN_OK);
     refs[0] = beam[RADIAL_BEAM_PORT_MEDIUM];
-    refs[1] = beam[RADIAL_BEAM_PORT_DENSITY];
-    refs[2] = beam[RADIAL_BEAM_PORT_RADIALS];
-    refs[3] = beam[RADIAL_BEAM_PORT_COLUMN];
-    refs[6] = gpu_buffer(t, "points", points, sizeof points);
+    refs[1] = beam[RADIAL_BEAM_PORT_RADIALS];
+    refs[2] = beam[RADIAL_BEAM_PORT_RADIAL_COLUMN];
+    refs[5] = gpu_buffer(t, "points", points, sizeof points);
     point_pass_params eval = {COUNT, sizeof(depth), m->mode, pass.results};
     assert_int_equal(tyn_graph_add(t->graph, &pass.desc, &eval, refs), TYN_OK);
-    tyn_graph_output(t->graph, "results", refs[7], true);
+    tyn_graph_output(t->graph, "results", refs[6], true);
     gpu_run(t);
     return gpu_map(t, "results");
 }

@@ -3,21 +3,18 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
-#define MEDIUM_DENSITY 1
-#include "medium.glsl"
-#define RADIAL_BLOCK 2
-#define RADIAL_COLUMN 3
-#define RADIAL_TAU_A 4
-#define RADIAL_TAU_P 5
-#include "radial.glsl"
+#include "shaders/medium/medium.glsl"
+#define RADIALS_AT 1
+#define RADIALS_STORAGE
+#include "shaders/beams/radial.glsl"
 
 layout(local_size_x = 64) in;
 struct point {
     vec3 p;
     uint light;
 };
-layout(set = 0, binding = 6, scalar) readonly buffer points_buffer { point points[]; };
-layout(set = 0, binding = 7, scalar) writeonly buffer results_buffer { beam_tau results[]; };
+layout(set = 0, binding = 5, scalar) readonly buffer points_buffer { point points[]; };
+layout(set = 0, binding = 6, scalar) writeonly buffer results_buffer { beam_tau results[]; };
 
 void main()
 {

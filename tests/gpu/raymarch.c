@@ -1,9 +1,9 @@
 // raymarch.c -- the ray march against closed forms and a CPU twin.
 #include "gpu_test.h"
 #include "passes/raymarch/raymarch.h"
-#include "counters.h"
-#include "beam_args.h"
-#include "scatter_lut_args.h"
+#include "shaders/common/counters.h"
+#include "shaders/beams/beam_args.h"
+#include "shaders/phase/scatter_lut_args.h"
 #include "random_unit.h"
 #include "vector.h"
 #include <math.h>

@@ -1,8 +1,8 @@
 // raymarch_sky.c -- an environment map seen past the medium and through it.
 #include "gpu_test.h"
 #include "passes/raymarch/raymarch.h"
-#include "glow_args.h"
-#include "counters.h"
+#include "shaders/light/glow_args.h"
+#include "shaders/common/counters.h"
 #include "random_unit.h"
 #include "vector.h"
 #include <math.h>

@@ -2,9 +2,9 @@
 // a flood fill, and rays, on the CPU.
 #include "gpu_test.h"
 #include "wall_mesh.h"
-#include "passes/walls/walls.h"
-#include "radial_args.h"
-#include "rooms.h"
+#include "passes/rooms/rooms.h"
+#include "shaders/beams/radial_args.h"
+#include "shaders/walls/rooms.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -67,24 +67,25 @@ static sums run(gpu_test *t, const tyn_scene *scene, const struct light_block *l
         .settings = settings,
         .refs =
             {
-                .surfaces = gpu_buffer(t, "surfaces", &frame.surfaces, sizeof frame.surfaces),
-                .triangles = gpu_buffer(t, "triangles", s->triangles,
-                                        s->num_triangles * sizeof *s->triangles),
-                .vertices =
+                .geometry.surfaces =
+                    gpu_buffer(t, "surfaces", &frame.surfaces, sizeof frame.surfaces),
+                .geometry.triangles = gpu_buffer(t, "triangles", s->triangles,
+                                                 s->num_triangles * sizeof *s->triangles),
+                .geometry.vertices =
                     gpu_buffer(t, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices),
-                .materials = gpu_buffer(t, "materials", s->materials,
-                                        s->num_materials * sizeof *s->materials),
-                .textures = gpu_buffer(t, "textures", nothing, sizeof nothing),
-                .texels = gpu_buffer(t, "texels", nothing, sizeof nothing),
-                .nodes = gpu_buffer(t, "nodes", nothing, sizeof nothing), // all are tried
+                .materials.materials = gpu_buffer(t, "materials", s->materials,
+                                                  s->num_materials * sizeof *s->materials),
+                .materials.textures = gpu_buffer(t, "textures", nothing, sizeof nothing),
+                .materials.texels = gpu_buffer(t, "texels", nothing, sizeof nothing),
+                .geometry.nodes = gpu_buffer(t, "nodes", nothing, sizeof nothing), // all are tried
             },
     };
-    tyn_rsm_refs rsm;
+    tyn_rsm rsm;
     assert_int_equal(tyn_add_rsm(t->graph, &job, frame.num_suns, &rsm), TYN_OK);
     tyn_settings_destroy(&settings);
-    tyn_graph_output(t->graph, "flux", rsm.flux, true);
-    tyn_graph_output(t->graph, "position", rsm.position, true);
-    tyn_graph_output(t->graph, "normal", rsm.normal, true);
+    tyn_graph_output(t->graph, "flux", rsm.maps.rsm_flux, true);
+    tyn_graph_output(t->graph, "position", rsm.maps.rsm_position, true);
+    tyn_graph_output(t->graph, "normal", rsm.maps.rsm_normal, true);
     gpu_run(t);
     tyn_extent size;
     const float(*flux)[4] = (const float(*)[4])tyn_graph_map(t->graph, "flux", &size, NULL);

@@ -5,7 +5,7 @@
 #define SCATTER_LUT 0
 #define SCATTER_LUT_BLOCK 1
 #define SCATTER_LUT_SOFT true
-#include "scatter_lut.glsl"
+#include "shaders/phase/scatter_lut.glsl"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint mixed = 0u;

@@ -3,13 +3,13 @@
 // The G-buffer is made by hand: planes, of which the test says where the picture shows them. M is the world.
 #include "gpu_test.h"
 #include "passes/shade/shade.h"
-#include "gbuffer_edge_args.h"
+#include "shaders/surfaces/gbuffer_edge_args.h"
 #include "homogeneous.h"
-#include "rooms.h"
-#include "scene_args.h"
-#include "shadow_args.h"
-#include "surface_args.h"
-#include "walls_args.h"
+#include "shaders/walls/rooms.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/light/shadow_args.h"
+#include "shaders/surfaces/surface_args.h"
+#include "shaders/walls/walls_args.h"
 #include <stdlib.h>
 #include <string.h>
 

@@ -2,9 +2,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#define SHADOW_ATLAS 0
-#define SHADOW_LIGHTS 1
-#include "shadow.glsl"
+#define SHADOWS_AT 0
+#define SHADOWS_STORAGE
+#include "shaders/light/shadow.glsl"
 
 layout(local_size_x = 64) in;
 struct point {

@@ -247,7 +247,7 @@ static void run(gpu_test *t, const tyn_scene *scene, const struct surface_block 
             gpu_buffer(t, "vertices", f->vertices, f->num_vertices * sizeof *f->vertices),
     };
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_shadow_map, params, refs), TYN_OK);
-    tyn_ref eval[4] = {refs[SHADOW_MAP_PORT_ATLAS], refs[SHADOW_MAP_PORT_SHADOWS],
+    tyn_ref eval[4] = {refs[SHADOW_MAP_PORT_SHADOW_ATLAS], refs[SHADOW_MAP_PORT_SHADOWS],
                        gpu_buffer(t, "points", points, count * sizeof *points)};
     point_pass_params eval_params = {count, sizeof(float), 0, pass.results};
     assert_int_equal(tyn_graph_add(t->graph, &pass.desc, &eval_params, eval), TYN_OK);
@@ -625,7 +625,7 @@ static void cells_of_the_medium(void **state)
     };
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_shadow_map, &params, maps), TYN_OK);
     tyn_ref refs[LIGHT_CELLS_NUM_PORTS] = {
-        [LIGHT_CELLS_PORT_ATLAS] = maps[SHADOW_MAP_PORT_ATLAS],
+        [LIGHT_CELLS_PORT_SHADOW_ATLAS] = maps[SHADOW_MAP_PORT_SHADOW_ATLAS],
         [LIGHT_CELLS_PORT_SHADOWS] = maps[SHADOW_MAP_PORT_SHADOWS],
     };
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_light_cells, &cells, refs), TYN_OK);

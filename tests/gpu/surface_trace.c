@@ -2,7 +2,7 @@
 #include "gpu_test.h"
 #include "point_pass.h"
 #include "solids.h"
-#include "surface_args.h"
+#include "shaders/surfaces/surface_args.h"
 #include "surface_trace_eval.comp.h"
 #include <math.h>
 #include <stdio.h>

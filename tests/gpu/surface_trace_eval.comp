@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "surface_args.h"
+#include "shaders/surfaces/surface_args.h"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint FROM_SURFACE = 0u;
@@ -28,7 +28,7 @@ layout(set = 0, binding = 3, scalar) readonly buffer nodes_buffer { uvec4 nodes[
 layout(set = 0, binding = 4, scalar) readonly buffer rays_buffer { ray_in rays[]; };
 layout(set = 0, binding = 5, scalar) writeonly buffer results_buffer { ray_out results[]; };
 
-#include "surface_trace.glsl"
+#include "shaders/surfaces/surface_trace.glsl"
 
 void main()
 {

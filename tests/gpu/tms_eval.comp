@@ -4,7 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #define TMS 0
 #define SCATTER_LUT_BLOCK 1
-#include "tms.glsl"
+#include "passes/merge/tms.glsl"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint mixed = 0u;

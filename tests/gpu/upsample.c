@@ -1,7 +1,7 @@
 // upsample.c -- the bilateral upsampling against a CPU twin in double precision, and its limits.
 #include "gpu_test.h"
 #include "passes/upsample/upsample.h"
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

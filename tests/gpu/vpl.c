@@ -1,9 +1,9 @@
 // vpl.c -- virtual point lights: no power lost, where they should be, steady, attenuated.
 #include "gpu_test.h"
 #include "passes/vpl/vpl.h"
-#include "radial_args.h"
-#include "scene_args.h"
-#include "surface_args.h"
+#include "shaders/beams/radial_args.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/surfaces/surface_args.h"
 #include <math.h>
 #include <string.h>
 

@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "vpl.glsl"
+#include "passes/shade/vpl.glsl"
 
 layout(local_size_x = 64) in;
 struct point {

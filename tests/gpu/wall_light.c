@@ -1,9 +1,9 @@
 // wall_light.c -- light of suns and of virtual lights on the walls of the lattice's cells: as much as they send.
 #include "gpu_test.h"
 #include "homogeneous.h"
-#include "passes/walls/walls.h"
-#include "scene_args.h"
-#include "surface_args.h"
+#include "passes/wall_light/wall_light.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/surfaces/surface_args.h"
 #include "wall_mesh.h"
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 // wall_mesh.c -- closed meshes, and the pass walls on them, for tests.
 #include "wall_mesh.h"
 #include "passes/walls/walls.h"
-#include "surface_args.h"
+#include "shaders/surfaces/surface_args.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -133,8 +133,8 @@ wall_refs mesh_walls(gpu_test *t, const grid *g, const mesh *m)
     free(v);
     free(tri);
     free(mat);
-    return (wall_refs){p[WALLS_PORT_LINKS],    p[WALLS_PORT_CELLS],    p[WALLS_PORT_HITS],
-                       p[WALLS_PORT_SURFACES], p[WALLS_PORT_VERTICES], p[WALLS_PORT_TRIANGLES]};
+    return (wall_refs){p[WALLS_PORT_WALL_LINKS], p[WALLS_PORT_WALL_CELLS], p[WALLS_PORT_HITS],
+                       p[WALLS_PORT_SURFACES],   p[WALLS_PORT_VERTICES],   p[WALLS_PORT_TRIANGLES]};
 }
 
 void wall_step(int link, int d[3])

@@ -1,7 +1,7 @@
 // wall_mesh.h -- closed meshes, and the pass walls on them, for tests.
 #pragma once
 #include "gpu_test.h"
-#include "walls_args.h"
+#include "shaders/walls/walls_args.h"
 
 typedef struct mesh {
     double (*tri)[3][3]; // world

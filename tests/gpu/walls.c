@@ -2,8 +2,8 @@
 #include "gpu_test.h"
 #include "point_pass.h"
 #include "wall_mesh.h"
-#include "passes/walls/walls.h"
-#include "scene_args.h"
+
+#include "shaders/common/scene_args.h"
 #include "walls_eval.comp.h"
 #include <math.h>
 #include <stdio.h>

@@ -2,10 +2,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "lattice.glsl"
-#define WALLS_LINKS 0
-#define WALLS_CELLS 1
-#include "lattice_walls.glsl"
+#include "shaders/lattice/lattice.glsl"
+#define WALLS_AT 0
+#define WALLS_STORAGE
+#include "shaders/walls/lattice_walls.glsl"
 
 layout(local_size_x = 64) in;
 layout(binding = 2) uniform sampler3D field;

@@ -1,8 +1,8 @@
 // homogeneous.h -- a medium that is the same everywhere in its box [0, extent]: beams and radials for it, without the
 // passes that make them. Textures of one texel hold its mean, and depths are that times lengths in the box.
 #pragma once
-#include "beam_args.h"
-#include "radial_args.h"
+#include "shaders/beams/beam_args.h"
+#include "shaders/beams/radial_args.h"
 #include "vector.h"
 #include <string.h>
 

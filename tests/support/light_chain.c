@@ -1,12 +1,17 @@
 // light_chain.c -- medium -> beam -> lattice_cells -> lattice_source -> lattice -> merge, probe,
 // balance.
 #include "light_chain.h"
-#include "counters.h"
+#include "shaders/common/counters.h"
+#include "methods/refs.h"
 #include "passes/beam/beam.h"
 #include "passes/columns/columns.h"
+#include "passes/lattice_cells/lattice_cells.h"
+#include "passes/lattice_source/lattice_source.h"
+#include "passes/lattice_ordinates/lattice_ordinates.h"
 #include "passes/lattice/lattice.h"
 #include "passes/merge/merge.h"
 #include "passes/probe/probe.h"
+#include "passes/balance/balance.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,15 +68,16 @@ void light_chain_run(gpu_test *t, light_chain *c)
     tyn_graph_begin(t->graph);
     tyn_ref medium_ref = gpu_buffer(t, "medium", &medium, sizeof medium);
     tyn_ref lights_ref = gpu_buffer(t, "lights", lights, sizeof lights);
-    tyn_ref density = {0}, sigma_a = {0}, g = {0}, emission = {0};
+    tyn_medium_refs media = {.medium = medium_ref};
     if (c->coefficients) {
-        density = upload_coefficients(t, c, "sigma_s", c->sigma_s, true);
-        sigma_a = upload_coefficients(t, c, "sigma_a", c->sigma_a, true);
-        g = upload_coefficients(t, c, "g", c->g, false);
-        emission = upload_coefficients(t, c, "emission", c->emission, true);
+        media.density = upload_coefficients(t, c, "sigma_s", c->sigma_s, true);
+        media.sigma_a = upload_coefficients(t, c, "sigma_a", c->sigma_a, true);
+        media.g = upload_coefficients(t, c, "g", c->g, false);
+        media.emission = upload_coefficients(t, c, "emission", c->emission, true);
     } else {
         static const float one = 1;
-        density = gpu_image(t, "density", TYN_IMAGE_3D, c->size, 1, c->density ? c->density : &one);
+        media.density =
+            gpu_image(t, "density", TYN_IMAGE_3D, c->size, 1, c->density ? c->density : &one);
     }
 
     tyn_ref beam[TYN_MAX_PORTS] = {{0}};
@@ -80,14 +86,11 @@ void light_chain_run(gpu_test *t, light_chain *c)
         tyn_pass_defaults(&tyn_pass_beam, &p);
         p.mode = mode;
         tyn_beam_plan(&p, &medium, lights, c->num_suns);
-        beam[BEAM_PORT_MEDIUM] = medium_ref;
-        beam[BEAM_PORT_DENSITY] = c->coefficients ? (tyn_ref){0} : density;
-        beam[BEAM_PORT_SIGMA_S] = c->coefficients ? density : (tyn_ref){0};
-        beam[BEAM_PORT_SIGMA_A] = sigma_a;
-        beam[BEAM_PORT_G] = g;
+        tyn_connect(beam, BEAM_PORT_MEDIUM, media);
         add(t, &tyn_pass_beam, &p, beam);
     }
-    tyn_ref column = c->coefficients ? beam[BEAM_PORT_TAU_S] : beam[BEAM_PORT_COLUMN];
+    tyn_beam_refs beams;
+    tyn_take(beam, BEAM_PORT_BEAMS, beams);
 
     tyn_lattice_params solve;
     tyn_pass_defaults(&tyn_pass_lattice, &solve);
@@ -102,23 +105,15 @@ void light_chain_run(gpu_test *t, light_chain *c)
             c->num_suns ? (const float(*)[3])c->sun_color : (const float(*)[3]) & c->environment;
         assert_true(tyn_lattice_tint(colors, 1, solve.shape.tint));
     }
-    tyn_ref cells[TYN_MAX_PORTS] = {
-        [LATTICE_CELLS_PORT_MEDIUM] = medium_ref, [LATTICE_CELLS_PORT_DENSITY] = density,
-        [LATTICE_CELLS_PORT_SIGMA_A] = sigma_a,   [LATTICE_CELLS_PORT_G] = g,
-        [LATTICE_CELLS_PORT_EMISSION] = emission,
-    };
+    tyn_ref cells[TYN_MAX_PORTS] = {{0}};
+    tyn_connect(cells, LATTICE_CELLS_PORT_MEDIUM, media);
     add(t, &tyn_pass_lattice_cells, &(tyn_lattice_cells_params){solve.shape, mode}, cells);
     tyn_ref source[TYN_MAX_PORTS] = {
-        [LATTICE_SOURCE_PORT_MEDIUM] = medium_ref,
         [LATTICE_SOURCE_PORT_LIGHTS] = lights_ref,
         [LATTICE_SOURCE_PORT_CELLS] = cells[LATTICE_CELLS_PORT_CELLS],
-        [LATTICE_SOURCE_PORT_DENSITY] = density,
-        [LATTICE_SOURCE_PORT_G] = g,
-        [LATTICE_SOURCE_PORT_BEAMS] = beam[BEAM_PORT_BEAMS],
-        [LATTICE_SOURCE_PORT_COLUMN] = column,
-        [LATTICE_SOURCE_PORT_TAU_A] = beam[BEAM_PORT_TAU_A],
-        [LATTICE_SOURCE_PORT_TAU_P] = beam[BEAM_PORT_TAU_P],
     };
+    tyn_connect(source, LATTICE_SOURCE_PORT_MEDIUM, media);
+    tyn_connect(source, LATTICE_SOURCE_PORT_BEAMS, beams);
     if (c->num_suns) {
         add(t, &tyn_pass_lattice_source,
             &(tyn_lattice_source_params){solve.shape, mode, c->num_suns}, source);
@@ -130,10 +125,7 @@ void light_chain_run(gpu_test *t, light_chain *c)
     uint32_t count = c->ordinates ? c->ordinates->count : 0;
     if (count) {
         ordinates_ref = gpu_buffer(t, "ordinates", c->ordinates, sizeof *c->ordinates);
-        columns[COLUMNS_PORT_MEDIUM] = medium_ref;
-        columns[COLUMNS_PORT_DENSITY] = density;
-        columns[COLUMNS_PORT_SIGMA_A] = sigma_a;
-        columns[COLUMNS_PORT_G] = g;
+        tyn_connect(columns, COLUMNS_PORT_MEDIUM, media);
         columns[COLUMNS_PORT_ORDINATES] = ordinates_ref;
         tyn_columns_params p = {.extent = {c->extent[0], c->extent[1], c->extent[2]},
                                 .dims = {dims.x, dims.y, dims.z},
@@ -203,16 +195,13 @@ void light_chain_run(gpu_test *t, light_chain *c)
             [PROBE_PORT_MEDIUM] = medium_ref,
             [PROBE_PORT_LIGHTS] = lights_ref,
             [PROBE_PORT_MOMENTS] = lattice[LATTICE_PORT_MOMENTS],
-            [PROBE_PORT_BEAMS] = beam[BEAM_PORT_BEAMS],
-            [PROBE_PORT_COLUMN] = column,
-            [PROBE_PORT_TAU_A] = beam[BEAM_PORT_TAU_A],
-            [PROBE_PORT_TAU_P] = beam[BEAM_PORT_TAU_P],
             [PROBE_PORT_ENVIRONMENT] = env_ref,
             [PROBE_PORT_ORDINATES] = ordinates_ref,
             [PROBE_PORT_COLUMNS] = columns[COLUMNS_PORT_COLUMNS],
             [PROBE_PORT_POINTS] =
                 gpu_buffer(t, "points", c->points, c->num_points * sizeof c->points[0]),
         };
+        tyn_connect(probe, PROBE_PORT_BEAMS, beams);
         add(t, &tyn_pass_probe, &p, probe);
         tyn_graph_output(t->graph, "results", probe[PROBE_PORT_RESULTS], true);
     }

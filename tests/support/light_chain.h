@@ -2,8 +2,8 @@
 // lattice.
 #pragma once
 #include "gpu_test.h"
-#include "scene_args.h"
-#include "ordinate_args.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/light/ordinate_args.h"
 #include <tyndall/context.h>
 
 typedef struct light_chain {

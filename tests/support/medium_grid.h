@@ -1,6 +1,6 @@
 // medium_grid.h -- a medium as voxels in a box, and line integrals of it in double precision.
 #pragma once
-#include "scene_args.h"
+#include "shaders/common/scene_args.h"
 
 typedef struct medium_grid {
     struct medium_block block;

@@ -1,7 +1,7 @@
 // path_scene.c -- small scenes for the path tracer and runs of it.
 #include "path_scene.h"
 #include "base/hash.h"
-#include "methods/env_cdf.h"
+#include "frame/env_cdf.h"
 #include "vector.h"
 #include <math.h>
 #include <stdio.h>

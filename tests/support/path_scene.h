@@ -2,10 +2,14 @@
 // runs of it. Positions are in M: the box's corner is the origin.
 #pragma once
 #include "gpu_test.h"
-#include "counters.h"
+#include "shaders/common/counters.h"
 #include "passes/path/path.h"
-#include "passes/path/path_args.h"
-#include "scene_args.h"
+#include "passes/path_probe/path_probe.h"
+#include "passes/path_balance/path_balance.h"
+#include "passes/path_fluxes/path_fluxes.h"
+#include "passes/path_distance/path_distance.h"
+#include "shaders/path/path_args.h"
+#include "shaders/common/scene_args.h"
 #include <tyndall/context.h>
 
 typedef struct path_scene {

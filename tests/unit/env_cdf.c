@@ -1,6 +1,6 @@
 // env_cdf.c -- the alias table of environment maps gives every cell its probability.
-#include "methods/env_cdf.h"
-#include "env_args.h"
+#include "frame/env_cdf.h"
+#include "shaders/light/env_args.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -109,6 +109,40 @@ typedef struct tyn_kernel {
     // and args; local_size is 0.
     const tyn_raster *raster;
 } tyn_kernel;
+// A compute kernel of the shader that is embedded as `code`_spirv, with an array of tyn_binding.
+#define TYN_KERNEL(code, args, x, y, z, table, specs)                                              \
+    {                                                                                              \
+        .name = #code, .spirv = code##_spirv, .spirv_size = sizeof code##_spirv,                   \
+        .args_size = args, .local_size = {x, y, z}, .bindings = table,                             \
+        .num_bindings = sizeof table / sizeof *table, .num_spec = specs                            \
+    }
+
+// ---- bundles --------------------------------------------------------------------------------
+
+// Ports that go together from the pass that makes them to those that read them are a list in a fixed order,
+//   #define TYN_BEAMS(X, P) X(P, BEAMS, beams, TYN_BUFFER, TYN_USE_UNIFORM, false, "struct beam_block[]"), X(P, ...
+// with X(P, PORT, name, dim, use, optional, meaning). A pass with the prefix P names it once in its enum, its port
+// table and each binding table:
+//   enum { SHADE_PORT_CAMERA, TYN_BEAMS(TYN_BUNDLE_ENUM, SHADE), ... };
+//   static const tyn_port ports[] = { TYN_BEAMS(TYN_BUNDLE_IN, SHADE), ... };
+//   static const tyn_binding bindings[] = { TYN_BEAMS(TYN_BUNDLE_BIND, SHADE), ... };
+#define TYN_BUNDLE_ENUM(P, PORT, ...) P##_PORT_##PORT
+#define TYN_BUNDLE_IN(P, PORT, name, dim, use, optional, meaning)                                  \
+    [P##_PORT_##PORT] = {#name, TYN_IN, dim, VK_FORMAT_UNDEFINED, optional, meaning}
+// The whole bundle may be absent.
+#define TYN_BUNDLE_OPTIONAL(P, PORT, name, dim, use, optional, meaning)                            \
+    [P##_PORT_##PORT] = {#name, TYN_IN, dim, VK_FORMAT_UNDEFINED, true, meaning}
+#define TYN_BUNDLE_BIND(P, PORT, name, dim, use, optional, meaning)                                \
+    {                                                                                              \
+        P##_PORT_##PORT, use, false                                                                \
+    }
+// With its buffers as storage buffers.
+#define TYN_BUNDLE_BIND_STORAGE(P, PORT, name, dim, use, optional, meaning)                        \
+    {                                                                                              \
+        P##_PORT_##PORT, (dim) == TYN_BUFFER ? TYN_USE_STORAGE_READ : (use), false                 \
+    }
+// The fields of a struct: struct { tyn_ref TYN_BEAMS(TYN_BUNDLE_NAME, ); }.
+#define TYN_BUNDLE_NAME(P, PORT, name, ...) name
 
 // ---- parameters -----------------------------------------------------------------------------
 

@@ -64,7 +64,7 @@ typedef struct tyn_light {
 } tyn_light;
 
 // Surfaces: one soup of triangles in world space. Diffuse (Lambertian), opaque, reflecting alike on both
-// sides. The arrays below are what shaders read (`surface_*` of shaders/surface_args.h), so they reach the
+// sides. The arrays below are what shaders read (`surface_*` of shaders/surfaces/surface_args.h), so they reach the
 // GPU as they are.
 typedef struct tyn_surface_vertex {
     float position[3]; // world, m

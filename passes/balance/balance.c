@@ -1,0 +1,118 @@
+// balance.c -- where the energy goes.
+#include "balance.h"
+#include "balance_args.h"
+#include "shaders/beams/radial_args.h"
+#include "balance.comp.h"
+#include "balance_lights.comp.h"
+#include <string.h>
+
+static const tyn_port ports[BALANCE_NUM_PORTS] = {
+    [BALANCE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
+    [BALANCE_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, true, "struct light_block[]"},
+    [BALANCE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
+    [BALANCE_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
+    [BALANCE_PORT_SOURCE] = {"source", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_source"},
+    [BALANCE_PORT_POWER] = {"power", TYN_IN, TYN_BUFFER, 0, true, "of lattice_source"},
+    [BALANCE_PORT_LEAKS] = {"leaks", TYN_IN, TYN_BUFFER, 0, false, "of lattice"},
+    [BALANCE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
+                                  "struct env_block: its mean without suns enters at the box"},
+    [BALANCE_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, true, "struct ordinates_block"},
+    [BALANCE_PORT_WALL_POWER] = {"wall_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice"},
+    [BALANCE_PORT_LAMP_POWER] = {"lamp_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice_lamps"},
+    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, BALANCE),
+    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, BALANCE),
+    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, BALANCE),
+    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, BALANCE),
+    [BALANCE_PORT_EMITTERS] = {"emitters", TYN_IN, TYN_BUFFER, 0, true, "struct surface_table"},
+    [BALANCE_PORT_FOUND] = {"found", TYN_SCRATCH, TYN_BUFFER, 0, false, "struct balance_light[]"},
+    [BALANCE_PORT_BALANCE] = {"balance", TYN_OUT, TYN_BUFFER, 0, false, "tyn_balance, W"},
+};
+
+static const tyn_binding bindings[] = {
+    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},
+    {BALANCE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_CELLS, TYN_USE_SAMPLED},
+    {BALANCE_PORT_MOMENTS, TYN_USE_SAMPLED},
+    {BALANCE_PORT_SOURCE, TYN_USE_SAMPLED},
+    {BALANCE_PORT_POWER, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_LEAKS, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_BALANCE, TYN_USE_STORAGE_WRITE},
+    {BALANCE_PORT_ORDINATES, TYN_USE_UNIFORM},
+    {BALANCE_PORT_WALL_POWER, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_LAMP_POWER, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_FOUND, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_EMITTERS, TYN_USE_STORAGE_READ},
+};
+
+static const tyn_binding light_bindings[] = {
+    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},        TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, BALANCE),
+    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, BALANCE), TYN_GEOMETRY(TYN_BUNDLE_BIND, BALANCE),
+    TYN_MATERIALS(TYN_BUNDLE_BIND, BALANCE),       {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
+    {BALANCE_PORT_FOUND, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_kernel kernels[] = {
+    TYN_KERNEL(balance, sizeof(struct balance_args), BALANCE_GROUP, 1, 1, bindings, 1),
+    TYN_KERNEL(balance_lights, sizeof(struct balance_lights_args), BALANCE_GROUP, 1, 1,
+               light_bindings, 1),
+};
+
+// Parts of suns, and as many lamps and VPLs as there may be.
+static uint32_t num_followed(const tyn_balance_params *p)
+{
+    return p->num_suns * BALANCE_SUN_PARTS + TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX;
+}
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    tyn_build_buffer(b, BALANCE_PORT_FOUND, num_followed(params) * sizeof(struct balance_light));
+    tyn_build_buffer(b, BALANCE_PORT_BALANCE, 7 * 3 * sizeof(double)); // tyn_balance: seven triples
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_balance_params *p = params;
+    struct balance_args args = {
+        .tint = {p->tint[0], p->tint[1], p->tint[2]},
+        .channels = p->channels,
+        .num_suns = p->num_suns,
+        .num_groups = p->num_groups,
+        .num_leaks =
+            tyn_rec_extent(r, BALANCE_PORT_LEAKS).x / (uint32_t)sizeof(float) / p->channels,
+        .emitters = tyn_rec_has(r, BALANCE_PORT_EMITTERS),
+    };
+    if (tyn_rec_has(r, BALANCE_PORT_SURFACES)) {
+        args.num_followed = num_followed(p);
+        struct balance_lights_args lights = {
+            .num_suns = p->num_suns,
+            .locals = tyn_rec_has(r, BALANCE_PORT_RADIALS),
+        };
+        memcpy(&lights.lo, p->box[0], sizeof lights.lo);
+        memcpy(&lights.hi, p->box[1], sizeof lights.hi);
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = 1,
+                                            .cells = {BALANCE_GROUP * args.num_followed, 1, 1},
+                                            .args = &lights,
+                                            .spec = &p->mode});
+    }
+    const uint32_t walls = tyn_rec_has(r, BALANCE_PORT_WALL_POWER);
+    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = {BALANCE_GROUP * p->channels, 1, 1},
+                                        .args = &args,
+                                        .spec = &walls});
+}
+
+const tyn_pass_desc tyn_pass_balance = {
+    .name = "balance",
+    .summary = "power that enters, is emitted, is absorbed and escapes",
+    .serves = "a balance",
+    .ports = ports,
+    .num_ports = BALANCE_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 2,
+    .params_size = sizeof(tyn_balance_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = BALANCE_PORT_BALANCE,
+    .debug_meaning = "tyn_balance, W",
+};

@@ -1,0 +1,200 @@
+// balance_lights.comp -- where the light of suns, lamps and virtual point lights (VPLs) ends its first flight. One
+// workgroup per light, suns first; rays, and the depths of the beams.
+//
+// This knows nothing of shadow maps, of the cells' first collisions and of what VPLs were made from: that
+// the sums agree is a check of these.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/common/scene_args.h"
+#include "balance_args.h"
+#include "shaders/surfaces/surface_args.h"
+#define MEDIUM_BLOCK 0
+#define BEAMS_AT 1
+#define BEAMS_STORAGE
+#define RADIALS_AT 5
+#define RADIALS_STORAGE
+#include "shaders/medium/medium.glsl"
+#include "shaders/beams/beam.glsl"
+#include "shaders/beams/radial.glsl"
+#include "shaders/common/camera.glsl"
+#include "shaders/random/rng.glsl"
+#define GEOMETRY_AT 9
+#define MATERIALS_AT 13
+#include "shaders/surfaces/surfaces.glsl"
+#include "shaders/surfaces/surface_texture.glsl"
+
+layout(local_size_x = BALANCE_GROUP) in;
+layout(push_constant, scalar) uniform push
+{
+    balance_lights_args args;
+};
+layout(binding = 16, scalar) readonly buffer light_buffer
+{
+    light_block lights[];
+};
+layout(binding = 17, scalar) writeonly buffer balance_light_buffer
+{
+    balance_light found[];
+};
+#include "shaders/surfaces/surface_trace.glsl"
+#include "shaders/surfaces/surface_faces.glsl"
+
+const uint SUN_RAYS = 160u, LAMP_RAYS = 96u, VPL_RAYS = 24u; // squared: of a sun for each face
+
+shared vec3 sums[BALANCE_GROUP];
+vec3 kept = vec3(0.0), escaped = vec3(0.0); // W
+
+vec3 albedo_at(surface_hit hit)
+{
+    surface_triangle t = triangles[hit.triangle];
+    surface_material m = materials[t.material];
+    if (m.texture == TYN_SURFACE_NO_TEXTURE) {
+        return m.albedo;
+    }
+    vec2 b = hit.barycentric;
+    vec2 uv = (1.0 - b.x - b.y) * vec2(vertices[t.v0].u, vertices[t.v0].v) +
+              b.x * vec2(vertices[t.v1].u, vertices[t.v1].v) + b.y * vec2(vertices[t.v2].u, vertices[t.v2].v);
+    return m.albedo * surface_texture_level(textures[m.texture], uv, 0u);
+}
+
+// Does light reflected at a point of a surface, to the side of `normal`, leave the scene? Along one way of many.
+bool leaves(surface_point p, vec3 normal, inout rng_state rng)
+{
+    vec2 u = rng_vec2(rng_next(rng).xy);
+    float z = sqrt(1.0 - u.x), r = sqrt(u.x), azimuth = 2.0 * 3.14159265 * u.y;
+    vec3 side = normalize(abs(normal.x) < 0.7 ? cross(normal, vec3(1.0, 0.0, 0.0)) : cross(normal, vec3(0.0, 1.0, 0.0)));
+    vec3 d = z * normal + r * (cos(azimuth) * side + sin(azimuth) * cross(normal, side));
+    vec3 origin = surface_offset(p, normal);
+    surface_hit hit = surface_hit(3e38, SURFACE_NONE, vec2(0.0));
+    surface_ray ray = surface_ray_make(surface_transform(surfaces.to_world, origin),
+                                       surface_turn(surfaces.to_world, d), SURFACE_NONE);
+    vec2 span = ray_box(origin, ray_inverse(d), vec3(0.0), medium.extent);
+    float rounding = 1e-4 * max(max(medium.extent.x, medium.extent.y), medium.extent.z);
+    return !surface_trace_world(ray, true, hit) && span.y <= max(span.x, 0.0) + rounding;
+}
+
+// Follows the power of a ray of light n (a sun; of the others the number in `radials`) from `origin` (M).
+void follow(uint n, bool sun, bool lamp, vec3 origin, vec3 d, vec3 power, inout rng_state rng)
+{
+    surface_hit hit = surface_hit(3e38, SURFACE_NONE, vec2(0.0));
+    surface_ray ray = surface_ray_make(surface_transform(surfaces.to_world, origin),
+                                       surface_turn(surfaces.to_world, d), SURFACE_NONE);
+    bool met = surface_trace_world(ray, false, hit);
+    vec2 span = ray_box(origin, ray_inverse(d), vec3(0.0), medium.extent);
+    float end = min(hit.t, span.y);
+    if (end > max(span.x, 0.0)) { // through the medium's box
+        beam_tau tau;
+        if (sun) {
+            tau = beam_depth(n, origin + end * d);
+        } else {
+            vec3 away = origin + end * d - radials[n].light.position;
+            tau = radial_tau(radial_place_of(n, away, length(away)));
+        }
+        power *= exp(-(tau.a + tau.p));
+    }
+    if (!met) {
+        escaped += power;
+        return;
+    }
+    vec3 albedo = albedo_at(hit);
+    kept += power * (1.0 - albedo);
+    if (sun || lamp) { // what VPLs do not carry: it leaves, or it is missing from the sum
+        surface_point p = surface_point_at(hit.triangle, hit.barycentric);
+        vec3 normal = dot(p.normal, d) > 0.0 ? -p.normal : p.normal;
+        vec3 world = ray.origin + hit.t * ray.direction;
+        if (!surface_faces_something(hit.triangle, p.at, world, normal, medium.extent, rng) && leaves(p, normal, rng)) {
+            escaped += power * albedo;
+        }
+    }
+}
+
+// A place in the k-th of n x n cells of a square.
+vec2 place_in(uint k, uint n, inout rng_state rng)
+{
+    return (vec2(k % n, k / n) + rng_vec2(rng_next(rng).xy)) / float(n);
+}
+
+// The rays of its part: a CPU device ends all loops of a thread after 65535 turns in total, without a word.
+void follow_sun(uint n, uint part)
+{
+    vec3 d = lights[n].direction, size = args.hi - args.lo;
+    for (uint axis = 0u; axis < 3u; axis++) {
+        uint u = (axis + 1u) % 3u, v = (axis + 2u) % 3u;
+        float across = size[u] * size[v] * abs(d[axis]) / float(SUN_RAYS * SUN_RAYS);
+        uint first = part * BALANCE_GROUP + gl_LocalInvocationIndex;
+        for (uint k = first; across > 0.0 && k < SUN_RAYS * SUN_RAYS; k += BALANCE_SUN_PARTS * BALANCE_GROUP) {
+            rng_state rng = rng_start(n, k, axis);
+            vec2 at = place_in(k, SUN_RAYS, rng);
+            vec3 p = args.lo;
+            p[axis] = d[axis] > 0.0 ? args.lo[axis] : args.hi[axis];
+            p[u] += at.x * size[u];
+            p[v] += at.y * size[v];
+            follow(n, true, false, p, d, across * lights[n].color, rng);
+        }
+    }
+}
+
+void follow_local(uint n)
+{
+    radial_light light = radials[n].light;
+    bool lamp = n < radial_num_lamps;
+    uint rays = lamp ? LAMP_RAYS : VPL_RAYS;
+    vec3 axis = light.kind == TYN_RADIAL_ISOTROPIC ? vec3(0.0, 0.0, 1.0) : light.axis;
+    vec3 side = normalize(abs(axis.x) < 0.7 ? cross(axis, vec3(1.0, 0.0, 0.0)) : cross(axis, vec3(0.0, 1.0, 0.0)));
+    float least = light.kind == TYN_RADIAL_ISOTROPIC ? -1.0 : light.kind == TYN_RADIAL_SPOT ? light.cos_outer : 0.0;
+    // A VPL is a little above its surface, as its own map of distances is.
+    vec3 reach = max(abs(light.position), vec3(light.radius));
+    float lift = lamp ? 0.0 : 0.02 * light.radius + 1e-5 * max(max(reach.x, reach.y), reach.z);
+    for (uint k = gl_LocalInvocationIndex; k < rays * rays; k += BALANCE_GROUP) {
+        rng_state rng = rng_start(n, k, 3u);
+        vec2 at = place_in(k, rays, rng);
+        // Uniform in the solid angle; of a cosine lobe in its power.
+        float z = lamp ? 1.0 - at.x * (1.0 - least) : sqrt(1.0 - at.x);
+        float solid_angle = 2.0 * 3.14159265 * (1.0 - least) / float(rays * rays);
+        float r = sqrt(max(1.0 - z * z, 0.0)), azimuth = 2.0 * 3.14159265 * at.y;
+        vec3 d = z * axis + r * (cos(azimuth) * side + sin(azimuth) * cross(axis, side));
+        vec3 power = light.intensity * (lamp ? solid_angle * radial_lobe(light.kind, axis, light.cos_inner, light.cos_outer, d)
+                                             : 3.14159265 / float(rays * rays));
+        follow(n, false, lamp, light.position + lift * axis, d, power, rng);
+    }
+}
+
+vec3 total_of(vec3 v)
+{
+    uint lane = gl_LocalInvocationIndex;
+    barrier();
+    sums[lane] = v;
+    for (uint half_n = BALANCE_GROUP / 2u; half_n > 0u; half_n /= 2u) {
+        barrier();
+        if (lane < half_n) {
+            sums[lane] += sums[lane + half_n];
+        }
+    }
+    barrier();
+    return sums[0];
+}
+
+void main()
+{
+    uint sun_groups = args.num_suns * BALANCE_SUN_PARTS, group = gl_WorkGroupID.x;
+    bool sun = group < sun_groups, shines = sun || (args.locals != 0u && group - sun_groups < radial_count);
+    vec3 given = vec3(0.0);
+    bool lamp = false;
+    if (sun) {
+        uint light = group / BALANCE_SUN_PARTS, part = group % BALANCE_SUN_PARTS;
+        vec3 size = args.hi - args.lo;
+        given = lights[light].color * dot(size.yzx * size.zxy, abs(lights[light].direction)) / float(BALANCE_SUN_PARTS);
+        follow_sun(light, part);
+    } else if (shines) {
+        uint n = group - sun_groups;
+        radial_light l = radials[n].light;
+        lamp = n < radial_num_lamps;
+        given = l.intensity * radial_lobe_integral(l.kind, l.cos_inner, l.cos_outer);
+        follow_local(n);
+    }
+    vec3 all_kept = total_of(kept), all_escaped = total_of(escaped);
+    if (gl_LocalInvocationIndex == 0u) {
+        found[group] = balance_light(sun ? given : vec3(0.0), lamp ? given : vec3(0.0), all_kept, all_escaped);
+    }
+}

@@ -1,0 +1,109 @@
+// columns_average.c -- the medium as coarse as columns between the lattice's cells can tell.
+#include "columns_average.h"
+#include "columns_average_coefficients.comp.h"
+#include "columns_average_density.comp.h"
+#include <math.h>
+#include <string.h>
+
+bool tyn_columns_average_size(const struct medium_block *medium, const uint32_t dims[3],
+                              uint32_t size[3])
+{
+    const float *extent = medium->extent;
+    double dx = fmax(extent[0], fmax(extent[1], extent[2])) / fmax(dims[0], fmax(dims[1], dims[2]));
+    bool coarser = false;
+    for (int a = 0; a < 3; a++) {
+        double most = fmax(ceil(2 * extent[a] / dx - 1e-3), 1);
+        size[a] = medium->size[a] < most ? medium->size[a] : (uint32_t)most;
+        coarser = coarser || medium->size[a] > 1.25 * most;
+    }
+    return coarser;
+}
+
+static const tyn_port ports[COLUMNS_AVERAGE_NUM_PORTS] = {
+    [COLUMNS_AVERAGE_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, false,
+                                      "density, or sigma_s in mode COEFFICIENTS"},
+    [COLUMNS_AVERAGE_PORT_SIGMA_A] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, 0, true, "1/m"},
+    [COLUMNS_AVERAGE_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "mean cosine"},
+    [COLUMNS_AVERAGE_PORT_MEAN_DENSITY] = {"mean_density", TYN_OUT, TYN_IMAGE_3D,
+                                           VK_FORMAT_R32_SFLOAT, false, "its means"},
+    [COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S] = {"mean_sigma_s", TYN_OUT, TYN_IMAGE_3D,
+                                           VK_FORMAT_R32G32B32A32_SFLOAT, false, "its means, 1/m"},
+    [COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A] = {"mean_sigma_a", TYN_OUT, TYN_IMAGE_3D,
+                                           VK_FORMAT_R32G32B32A32_SFLOAT, false, "its means, 1/m"},
+    [COLUMNS_AVERAGE_PORT_MEAN_G] = {"mean_g", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                     false, "root of the part of sigma_s that goes straight on"},
+};
+
+enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS };
+
+static const tyn_binding density_bindings[] = {
+    {COLUMNS_AVERAGE_PORT_DENSITY, TYN_USE_SAMPLED},
+    {COLUMNS_AVERAGE_PORT_MEAN_DENSITY, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding coefficients_bindings[] = {
+    {COLUMNS_AVERAGE_PORT_DENSITY, TYN_USE_SAMPLED},
+    {COLUMNS_AVERAGE_PORT_SIGMA_A, TYN_USE_SAMPLED},
+    {COLUMNS_AVERAGE_PORT_G, TYN_USE_SAMPLED},
+    {COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S, TYN_USE_STORAGE_WRITE},
+    {COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A, TYN_USE_STORAGE_WRITE},
+    {COLUMNS_AVERAGE_PORT_MEAN_G, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_kernel kernels[] = {
+    [KERNEL_DENSITY] = TYN_KERNEL(columns_average_density, sizeof(struct columns_average_args), 8,
+                                  4, 2, density_bindings, 0),
+    [KERNEL_COEFFICIENTS] =
+        TYN_KERNEL(columns_average_coefficients, sizeof(struct columns_average_args), 8, 4, 2,
+                   coefficients_bindings, 0),
+};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_columns_average_params *p = params;
+    tyn_extent size = {p->size[0], p->size[1], p->size[2]};
+    if (p->mode == TYN_MEDIUM_COEFFICIENTS) {
+        tyn_build_image(b, COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S, size, 1);
+        tyn_build_image(b, COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A, size, 1);
+        tyn_build_image(b, COLUMNS_AVERAGE_PORT_MEAN_G, size, 1);
+    } else {
+        tyn_build_image(b, COLUMNS_AVERAGE_PORT_MEAN_DENSITY, size, 1);
+    }
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_columns_average_params *p = params;
+    tyn_extent texels = tyn_rec_extent(r, COLUMNS_AVERAGE_PORT_DENSITY);
+    const uint32_t fine[3] = {texels.x, texels.y, texels.z};
+    struct columns_average_args args = {.size = {p->size[0], p->size[1], p->size[2]}};
+    double fetches = 1;
+    for (int a = 0; a < 3; a++) {
+        // One trilinear sample for two voxels along an axis.
+        double pairs = ceil(0.5 * fine[a] / p->size[a] - 1e-3);
+        args.samples[a] = (uint32_t)fmin(fmax(pairs, 1), 16);
+        fetches *= (double)args.samples[a] * p->size[a];
+    }
+    bool coefficients = p->mode == TYN_MEDIUM_COEFFICIENTS;
+    tyn_rec_dispatch(r,
+                     &(tyn_dispatch){.kernel = coefficients ? KERNEL_COEFFICIENTS : KERNEL_DENSITY,
+                                     .cells = {p->size[0], p->size[1], p->size[2]},
+                                     .args = &args});
+    tyn_rec_work(r, "fetches", fetches * (coefficients ? 3 : 1));
+}
+
+const tyn_pass_desc tyn_pass_columns_average = {
+    .name = "columns_average",
+    .summary = "the medium averaged over half cells of the lattice, for columns",
+    .serves = "principal ordinates in a medium much finer than the lattice",
+    .ports = ports,
+    .num_ports = COLUMNS_AVERAGE_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 2,
+    .media_only = true,
+    .params_size = sizeof(tyn_columns_average_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = COLUMNS_AVERAGE_PORT_MEAN_DENSITY,
+    .debug_meaning = "mean density",
+};

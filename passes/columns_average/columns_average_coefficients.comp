@@ -1,0 +1,46 @@
+// columns_average_coefficients.comp -- coefficients averaged over the texels of a coarser grid of the
+// same box.
+//
+// The means of sigma_s, sigma_a and (1 - f) sigma_s are those of the medium; g is what makes the last of
+// the first.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/beams/columns_args.h"
+#include "shaders/phase/hg.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(push_constant, scalar) uniform push
+{
+    columns_average_args args;
+};
+layout(binding = 0) uniform sampler3D sigma_s_tex;
+layout(binding = 1) uniform sampler3D sigma_a_tex;
+layout(binding = 2) uniform sampler3D g_tex;
+layout(binding = 3, rgba32f) writeonly uniform image3D mean_sigma_s;
+layout(binding = 4, rgba32f) writeonly uniform image3D mean_sigma_a;
+layout(binding = 5, rgba32f) writeonly uniform image3D mean_g;
+#include "columns_average.glsl"
+
+void main()
+{
+    uvec3 texel = gl_GlobalInvocationID;
+    if (any(greaterThanEqual(texel, args.size))) {
+        return;
+    }
+    vec3 sum_s = vec3(0.0), sum_a = vec3(0.0), sum_p = vec3(0.0);
+    for (uint i = 0; i < columns_average_count(); i++) {
+        vec3 uvw = columns_average_uvw(texel, i);
+        vec3 sigma_s = textureLod(sigma_s_tex, uvw, 0.0).rgb, g = textureLod(g_tex, uvw, 0.0).rgb;
+        similarity_clamp(sigma_s, g);
+        sum_s += sigma_s;
+        sum_p += sigma_s * (1.0 - delta_fraction(g));
+        sum_a += textureLod(sigma_a_tex, uvw, 0.0).rgb;
+    }
+    float norm = 1.0 / float(columns_average_count());
+    vec3 f = 1.0 - sum_p / max(sum_s, vec3(1e-30));
+    f = mix(vec3(0.0), clamp(f, 0.0, 1.0), greaterThan(sum_s, vec3(0.0)));
+    imageStore(mean_sigma_s, ivec3(texel), vec4(sum_s * norm, 0.0));
+    imageStore(mean_sigma_a, ivec3(texel), vec4(sum_a * norm, 0.0));
+    imageStore(mean_g, ivec3(texel), vec4(sqrt(f), 0.0));
+}

@@ -1,0 +1,73 @@
+// lattice_cells.c -- the medium on the lattice.
+#include "lattice_cells.h"
+#include "shaders/lattice/lattice_args.h"
+#include "lattice_cells.comp.h"
+#include <math.h>
+
+static const tyn_port ports[LATTICE_CELLS_NUM_PORTS] = {
+    TYN_MEDIUM(TYN_BUNDLE_IN, LATTICE_CELLS),
+    [LATTICE_CELLS_PORT_CELLS] = {"cells", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                  false,
+                                  "cell means of sigma_s', sigma_a (1/m), g', emission "
+                                  "(W/(m^3 sr)); channels stacked along z"},
+};
+
+static const tyn_binding bindings[] = {
+    TYN_MEDIUM(TYN_BUNDLE_BIND, LATTICE_CELLS),
+    {LATTICE_CELLS_PORT_CELLS, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_kernel kernels[] = {
+    TYN_KERNEL(lattice_cells, sizeof(struct lattice_cells_args), 8, 4, 2, bindings, 1),
+};
+
+enum { MAX_SAMPLES = 8 }; // along each axis of a cell
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_lattice_cells_params *p = params;
+    tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
+    dims.z *= p->shape.channels;
+    tyn_build_image(b, LATTICE_CELLS_PORT_CELLS, dims, 1);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_lattice_cells_params *p = params;
+    tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
+    tyn_extent texels = tyn_rec_extent(r, LATTICE_CELLS_PORT_DENSITY);
+    struct lattice_cells_args args = {.dims = {dims.x, dims.y, dims.z},
+                                      .channels = p->shape.channels};
+    const uint32_t size[3] = {texels.x, texels.y, texels.z};
+    const float *extent = p->shape.extent;
+    float dx = fmaxf(extent[0], fmaxf(extent[1], extent[2])) / (float)p->shape.cells;
+    double fetches = (double)dims.x * dims.y * dims.z;
+    for (int a = 0; a < 3; a++) {
+        args.tint[a] = p->shape.tint[a];
+        // One trilinear sample for two voxels along an axis, which misses none; at least two, as
+        // the medium's box may end inside a cell.
+        float pairs = ceilf(0.5f * dx * (float)size[a] / extent[a] - 1e-3f);
+        args.samples[a] = (uint32_t)fminf(fmaxf(pairs, 2), MAX_SAMPLES);
+        fetches *= args.samples[a];
+    }
+    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = dims, .args = &args, .spec = &p->mode});
+    tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z);
+    tyn_rec_work(r, "fetches", fetches * (p->mode == TYN_MEDIUM_COEFFICIENTS ? 4 : 1));
+}
+
+const tyn_pass_desc tyn_pass_lattice_cells = {
+    .name = "lattice_cells",
+    .summary = "the medium averaged over the cells of the lattice",
+    .serves = "media that scatter more than once",
+    .ports = ports,
+    .num_ports = LATTICE_CELLS_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 1,
+    .media_only = true,
+    .params_size = sizeof(tyn_lattice_cells_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = LATTICE_CELLS_PORT_CELLS,
+    .debug_meaning = "sigma_s', sigma_a, g' of a slice through the cells",
+};

@@ -1,0 +1,35 @@
+// lattice_keep.comp -- puts a solution away for the next frame.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/lattice/lattice_args.h"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(push_constant, scalar) uniform push
+{
+    lattice_recall_args args;
+};
+layout(binding = 0) uniform sampler3D solution;
+layout(binding = 1, scalar) readonly buffer power_buffer
+{
+    float power[3];
+};
+layout(binding = 2, scalar) writeonly buffer memory_buffer
+{
+    lattice_memory_block memory;
+    vec4 moments[];
+};
+
+void main()
+{
+    uvec3 texel = gl_GlobalInvocationID; // channels stacked along z
+    if (any(greaterThanEqual(texel, uvec3(args.dims.xy, args.dims.z * args.channels)))) {
+        return;
+    }
+    uint i = (texel.z * args.dims.y + texel.y) * args.dims.x + texel.x;
+    moments[i] = texelFetch(solution, ivec3(texel), 0);
+    if (i == 0) {
+        memory = lattice_memory_block(args.world, args.extent, args.dims, args.channels, args.tint,
+                                      vec3(power[0], power[1], power[2]));
+    }
+}

@@ -1,0 +1,155 @@
+// lattice_lamps_vpls.comp -- unscattered light of virtual point lights (VPLs) in a block of 2 x 2 x 2 cells.
+//
+// What of a VPL changes little across a block is read once: its grid, and the mean of the medium on the way to
+// the block, which is then taken times each cell's own way. Cells that are next to a VPL are left to
+// lattice_lamps_near.comp.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
+#include "shaders/lattice/lattice_args.h"
+#define MEDIUM_BLOCK 0
+#define RADIALS_AT 1
+#define VPL_DISTANCES 8
+#define WALLS_AT 9
+#define LATTICE_ROOMS 11
+#include "shaders/medium/medium.glsl"
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/lattice/lattice_sweep.glsl"
+#include "shaders/light/vpl_visibility.glsl"
+#include "shaders/walls/lattice_walls.glsl"
+#include "shaders/walls/lattice_rooms.glsl"
+#include "shaders/beams/radial.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in; // 4^3 blocks
+layout(push_constant, scalar) uniform push
+{
+    lattice_lamps_args args;
+};
+layout(binding = 5) uniform sampler3D cells;
+layout(binding = 6, rgba32f) uniform writeonly image3D lit; // as in lattice_lamps_cells.comp
+layout(binding = 7, r32f) uniform writeonly image3D unshadowed;
+
+layout(constant_id = 1) const uint num_channels = 3;
+layout(constant_id = 2) const uint shadowed = 0;
+layout(constant_id = 3) const uint walls = 0;
+layout(constant_id = 4) const uint rooms = 0;
+
+#include "lattice_lamps.glsl"
+
+const uint BLOCK = 8u;
+
+// Planes that nothing, or all, is behind.
+const vec4 OPEN = vec4(0.0, 0.0, 0.0, 1.0), HIDING = vec4(0.0, 0.0, 0.0, -1.0);
+
+vec4 plane_or(vec4 plane, vec4 other)
+{
+    return plane == vec4(0.0) ? other : plane;
+}
+
+ivec3 corner_of(uint k)
+{
+    return ivec3(k & 1u, k >> 1 & 1u, k >> 2);
+}
+
+void main()
+{
+    // Threads of a row are corners of a cube: some devices run them together, and what one of them leaves out most of
+    // the others do then, too.
+    uvec3 local = gl_LocalInvocationID;
+    ivec3 block = corner_of(local.x) + 2 * corner_of(local.y | local.z << 2), dims = ivec3(args.dims);
+    ivec3 c = 2 * (4 * ivec3(gl_WorkGroupID) + block);
+    if (any(greaterThanEqual(c, dims))) {
+        return;
+    }
+    uint group = args.num_groups - 1u;
+    lattice_box box = lattice_box_of(medium.extent, dims);
+    float dx = box.dx, thickest = 0.0;
+    vec3 middle = lattice_to_m(box, vec3(c) + 1.0);
+    vec4 sums[BLOCK][3];
+    vec3 all[BLOCK], extinction[BLOCK];
+    uint room[BLOCK];
+    // Of the cells' walls. A wall that cuts a link of a cell, but is not in it, has no plane there: it may hide any VPL.
+    vec4 first_plane[BLOCK], second_plane[BLOCK], third_plane[BLOCK];
+    [[unroll]] for (uint k = 0u; k < BLOCK; k++) {
+        ivec3 at = min(c + corner_of(k), dims - 1);
+        all[k] = vec3(0.0);
+        room[k] = rooms == 1u ? rooms_of_cell(dims, at) : 0u;
+        first_plane[k] = second_plane[k] = third_plane[k] = OPEN;
+        if (walls == 1u) {
+            uint index = uint((at.z * dims.y + at.y) * dims.x + at.x);
+            bool near = (walls_links_of(index) & TYN_WALLS_NEAR) != 0u;
+            first_plane[k] = near ? plane_or(walls_plane(index, 0u), HIDING) : OPEN;
+            second_plane[k] = near ? plane_or(walls_plane(index, 1u), OPEN) : OPEN;
+            third_plane[k] = near ? plane_or(walls_plane(index, 2u), OPEN) : OPEN;
+        }
+        extinction[k] = vec3(0.0);
+        [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {
+            sums[k][ch] = vec4(0.0);
+            if (ch < num_channels) {
+                vec4 cell = texelFetch(cells, at + ivec3(0, 0, int(ch) * dims.z), 0);
+                extinction[k][ch] = cell.x + cell.y;
+                thickest = max(thickest, extinction[k][ch]);
+            }
+        }
+    }
+    // Where there is no medium light does nothing.
+    uint first = args.num_lamps, count = thickest > 0.0 ? min(radial_count - first, TYN_RADIAL_VPLS_MAX) : 0u;
+    for (uint v = 0u; v < count; v++) {
+        radial_light light = radials[first + v].light;
+        vec3 from = middle - light.position;
+        float way = length(from);
+        if (dot(from, light.axis) > -0.87 * dx) {
+            // The mean of the medium on the way to the block, and the share of that way within the box.
+            radial_place place = radial_place_of(first + v, from, way);
+            beam_tau mean = radial_tau(place);
+            vec3 per_way = (mean.a + mean.p) / max(way, 1e-20);
+            vpl_map map = vpl_map_of(v, light.axis);
+            // Of the block: how obliquely the light crosses a cell.
+            vec3 oblique = abs(from) / max(way, 1e-20);
+            float half_way = 0.5 * dx / max(max(oblique.x, max(oblique.y, oblique.z)), 0.57);
+            vec3 intensity = light.intensity;
+            uint shines_in = rooms == 1u ? rooms_of_vpl(dims, v) : 0u;
+            if (num_channels == 1u) {
+                intensity = vec3(lattice_channel(intensity, 1u, 0u, args.tint));
+            }
+            [[unroll]] for (uint k = 0u; k < BLOCK; k++) {
+                vec3 away = from + (vec3(corner_of(k)) - 0.5) * dx;
+                float r2 = dot(away, away), r = sqrt(r2);
+                vec3 unit = away / max(r, 1e-20);
+                float share = lattice_lamps_vpl_pieces(r / dx) == 1u ? max(dot(unit, light.axis), 0.0) : 0.0;
+                float fluence = share * radial_mean_inverse_square(r2, dx * dx);
+                bool closed = false;
+                if (walls == 1u) {
+                    vec4 at = vec4(light.position, 1.0);
+                    closed = min(min(dot(first_plane[k], at), dot(second_plane[k], at)), dot(third_plane[k], at)) < 0.0;
+                }
+                float visible = shadowed == 1 ? vpl_map_visibility(map, away, r, closed) : 1.0;
+                visible = rooms_joined(shines_in, room[k]) ? visible : 0.0;
+                vec4 moments = visible * vec4(1.0, lattice_lamps_cosine(light.radius, r) * unit);
+                [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {
+                    if (ch < num_channels) {
+                        float t = mean_transmittance(r * per_way[ch], half_way * extinction[k][ch]);
+                        float lighted = intensity[ch] * t * fluence;
+                        sums[k][ch] += lighted * moments;
+                        all[k][ch] += lighted;
+                    }
+                }
+            }
+        }
+    }
+    [[unroll]] for (uint k = 0u; k < BLOCK; k++) {
+        ivec3 cell = c + corner_of(k);
+        if (any(greaterThanEqual(cell, dims))) {
+            continue;
+        }
+        bool lights = extinction[k].r + extinction[k].g + extinction[k].b > 0.0;
+        [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {
+            if (ch < num_channels) {
+                ivec3 at = cell + ivec3(0, 0, int(group * num_channels + ch) * dims.z);
+                imageStore(lit, at, lights ? sums[k][ch] : vec4(0.0));
+                imageStore(unshadowed, at, vec4(lights ? all[k][ch] : 0.0));
+            }
+        }
+    }
+}

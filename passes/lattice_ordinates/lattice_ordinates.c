@@ -1,0 +1,75 @@
+// lattice_ordinates.c -- the principal ordinates' unscattered light on the lattice.
+#include "lattice_ordinates.h"
+#include "shaders/lattice/lattice_args.h"
+#include "lattice_ordinates.comp.h"
+
+static const tyn_port ports[LATTICE_ORDINATES_NUM_PORTS] = {
+    [LATTICE_ORDINATES_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false,
+                                       "struct medium_block"},
+    TYN_COLUMNS(TYN_BUNDLE_IN, LATTICE_ORDINATES),
+    [LATTICE_ORDINATES_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
+    [LATTICE_ORDINATES_PORT_SUNLIGHT] = {"sunlight", TYN_IN, TYN_IMAGE_3D, 0, true,
+                                         "source of lattice_source"},
+    [LATTICE_ORDINATES_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D,
+                                       VK_FORMAT_R32G32B32A32_SFLOAT, false,
+                                       "unscattered fluence and flux of suns and ordinates, W/m^2; "
+                                       "channels stacked along z"},
+};
+
+static const tyn_binding bindings[] = {
+    {LATTICE_ORDINATES_PORT_MEDIUM, TYN_USE_UNIFORM},
+    TYN_COLUMNS(TYN_BUNDLE_BIND, LATTICE_ORDINATES),
+    {LATTICE_ORDINATES_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_ORDINATES_PORT_SUNLIGHT, TYN_USE_SAMPLED},
+    {LATTICE_ORDINATES_PORT_SOURCE, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_kernel kernels[] = {
+    TYN_KERNEL(lattice_ordinates, sizeof(struct lattice_ordinates_args), 8, 4, 2, bindings, 2),
+};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_lattice_ordinates_params *p = params;
+    tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
+    dims.z *= p->shape.channels;
+    tyn_build_image(b, LATTICE_ORDINATES_PORT_SOURCE, dims, 1);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_lattice_ordinates_params *p = params;
+    tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
+    struct lattice_ordinates_args args = {
+        .dims = {dims.x, dims.y, dims.z},
+        .channels = p->shape.channels,
+        .tint = {p->shape.tint[0], p->shape.tint[1], p->shape.tint[2]},
+        .count = p->count,
+    };
+    const uint32_t spec[2] = {p->mode, p->grey ? 1 : 3};
+    tyn_rec_dispatch(
+        r,
+        &(tyn_dispatch){.cells = {(dims.x + 1) / 2, dims.y, dims.z}, .args = &args, .spec = spec});
+
+    // As if all ordinates were in use. A transmittance: 30 operations; sums 30.
+    double cells = (double)dims.x * dims.y * dims.z * p->count;
+    tyn_rec_work(r, "cells", cells);
+    tyn_rec_work(r, "flops", cells * (spec[1] * 30 + 30));
+    tyn_rec_work(r, "bytes", cells * (p->mode == TYN_MEDIUM_COEFFICIENTS ? 18 : 2));
+}
+
+const tyn_pass_desc tyn_pass_lattice_ordinates = {
+    .name = "lattice_ordinates",
+    .summary = "unscattered light of the principal ordinates in the cells of the lattice",
+    .serves = "principal ordinates: an environment map, and no walls in the medium",
+    .ports = ports,
+    .num_ports = LATTICE_ORDINATES_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 1,
+    .params_size = sizeof(tyn_lattice_ordinates_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = LATTICE_ORDINATES_PORT_SOURCE,
+    .debug_meaning = "unscattered light of suns and ordinates in a slice, W/m^2",
+};

@@ -1,0 +1,81 @@
+// lattice_recall.c -- see lattice_recall.h.
+#include "lattice_recall.h"
+#include "lattice_recall.comp.h"
+#include "lattice_recall_power.comp.h"
+
+uint64_t tyn_lattice_memory_size(int32_t cells, uint32_t channels)
+{
+    const uint64_t n = (uint64_t)cells;
+    return sizeof(struct lattice_memory_block) + 4 * sizeof(float) * channels * n * n * n;
+}
+
+static const tyn_port ports[LATTICE_RECALL_NUM_PORTS] = {
+    [LATTICE_RECALL_PORT_MEMORY] = {"memory", TYN_IN, TYN_BUFFER, 0, false,
+                                    "struct lattice_memory_block and moments"},
+    [LATTICE_RECALL_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
+    [LATTICE_RECALL_PORT_SOURCE] = {"source", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_source"},
+    [LATTICE_RECALL_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
+                                         "struct env_block"},
+    [LATTICE_RECALL_PORT_GUESS] = {"guess", TYN_OUT, TYN_BUFFER, 0, false, "moments to start from"},
+    [LATTICE_RECALL_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false,
+                                   "what light puts into the cells"},
+};
+
+enum { KERNEL_POWER, KERNEL_RECALL, NUM_KERNELS };
+
+static const tyn_binding power_bindings[] = {
+    {LATTICE_RECALL_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_RECALL_PORT_SOURCE, TYN_USE_SAMPLED},
+    {LATTICE_RECALL_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {LATTICE_RECALL_PORT_POWER, TYN_USE_STORAGE_WRITE},
+};
+static const tyn_binding recall_bindings[] = {
+    {LATTICE_RECALL_PORT_MEMORY, TYN_USE_STORAGE_READ},
+    {LATTICE_RECALL_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
+    {LATTICE_RECALL_PORT_POWER, TYN_USE_STORAGE_READ},
+    {LATTICE_RECALL_PORT_GUESS, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_POWER] = TYN_KERNEL(lattice_recall_power, sizeof(struct lattice_recall_args),
+                                LATTICE_SUN_GROUP, 1, 1, power_bindings, 0),
+    [KERNEL_RECALL] =
+        TYN_KERNEL(lattice_recall, sizeof(struct lattice_recall_args), 8, 4, 2, recall_bindings, 0),
+};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const struct lattice_recall_args args = lattice_memory_args(params);
+    const tyn_extent texels = lattice_memory_texels(&args);
+    tyn_build_buffer(b, LATTICE_RECALL_PORT_GUESS,
+                     4 * sizeof(float) * (uint64_t)texels.x * texels.y * texels.z);
+    tyn_build_buffer(b, LATTICE_RECALL_PORT_POWER, 3 * sizeof(float));
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const struct lattice_recall_args args = lattice_memory_args(params);
+    tyn_rec_fill(r, LATTICE_RECALL_PORT_POWER, 0); // of channels that are not solved
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_POWER,
+                                        .cells = {LATTICE_SUN_GROUP * args.channels, 1, 1},
+                                        .args = &args});
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_RECALL,
+                                        .cells = lattice_memory_texels(&args),
+                                        .args = &args});
+}
+
+const tyn_pass_desc tyn_pass_lattice_recall = {
+    .name = "lattice_recall",
+    .summary = "the last frame's scattered light at the places of this frame's cells",
+    .serves = "sequences that start from the last solution (lattice.warm)",
+    .ports = ports,
+    .num_ports = LATTICE_RECALL_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params_size = sizeof(tyn_lattice_recall_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = LATTICE_RECALL_PORT_GUESS,
+    .debug_meaning = "moments that the solve starts from",
+};

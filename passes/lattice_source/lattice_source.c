@@ -1,0 +1,130 @@
+// lattice_source.c -- the suns' unscattered light on the lattice.
+#include "lattice_source.h"
+#include "shaders/lattice/lattice_args.h"
+#include "lattice_source_beam.comp.h"
+#include "lattice_source_sum.comp.h"
+#include "lattice_source.comp.h"
+#include <math.h>
+
+static const tyn_port ports[LATTICE_SOURCE_NUM_PORTS] = {
+    TYN_MEDIUM(TYN_BUNDLE_IN, LATTICE_SOURCE),
+    [LATTICE_SOURCE_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "struct light_block[]"},
+    [LATTICE_SOURCE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
+    TYN_BEAMS(TYN_BUNDLE_IN, LATTICE_SOURCE),
+    TYN_WALLS(TYN_BUNDLE_OPTIONAL, LATTICE_SOURCE),
+    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, LATTICE_SOURCE),
+    [LATTICE_SOURCE_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                    false,
+                                    "unscattered fluence and flux of the suns, W/m^2; channels "
+                                    "stacked along z"},
+    [LATTICE_SOURCE_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false,
+                                   "struct lattice_power per sun and channel"},
+    [LATTICE_SOURCE_PORT_SUNLIT] = {"sunlit", TYN_SCRATCH, TYN_IMAGE_3D,
+                                    VK_FORMAT_R32G32B32A32_SFLOAT, false,
+                                    "transmittance to each sun; a = how much of the cell sees it; "
+                                    "suns stacked along z"},
+};
+
+enum { KERNEL_BEAM, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
+
+static const tyn_binding beam_bindings[] = {
+    TYN_MEDIUM(TYN_BUNDLE_BIND, LATTICE_SOURCE),
+    TYN_BEAMS(TYN_BUNDLE_BIND, LATTICE_SOURCE),
+    {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_STORAGE_WRITE},
+    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, LATTICE_SOURCE),
+    TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, LATTICE_SOURCE),
+    {LATTICE_SOURCE_PORT_CELLS, TYN_USE_SAMPLED},
+};
+
+static const tyn_binding sum_bindings[] = {
+    {LATTICE_SOURCE_PORT_MEDIUM, TYN_USE_UNIFORM},
+    TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, LATTICE_SOURCE),
+    {LATTICE_SOURCE_PORT_CELLS, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_POWER, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_binding source_bindings[] = {
+    {LATTICE_SOURCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
+    {LATTICE_SOURCE_PORT_POWER, TYN_USE_STORAGE_READ},
+    {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_SAMPLED},
+    {LATTICE_SOURCE_PORT_SOURCE, TYN_USE_STORAGE_WRITE},
+};
+
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_BEAM] = TYN_KERNEL(lattice_source_beam, sizeof(struct lattice_source_args), 8, 4, 2,
+                               beam_bindings, 4),
+    [KERNEL_SUM] = TYN_KERNEL(lattice_source_sum, sizeof(struct lattice_source_args),
+                              LATTICE_SUN_GROUP, 1, 1, sum_bindings, 1),
+    [KERNEL_SOURCE] =
+        TYN_KERNEL(lattice_source, sizeof(struct lattice_source_args), 8, 4, 2, source_bindings, 0),
+};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_lattice_source_params *p = params;
+    tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
+    if (p->num_suns < 1 || p->num_suns > TYN_LATTICE_MAX_SUNS) {
+        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                      "pass 'lattice_source': num_suns is %u; must be 1 to %d", p->num_suns,
+                      TYN_LATTICE_MAX_SUNS);
+        return TYN_ERR_PARAMS;
+    }
+    tyn_build_image(b, LATTICE_SOURCE_PORT_SOURCE,
+                    (tyn_extent){dims.x, dims.y, dims.z * p->shape.channels}, 1);
+    tyn_build_image(b, LATTICE_SOURCE_PORT_SUNLIT,
+                    (tyn_extent){dims.x, dims.y, dims.z * p->num_suns}, 1);
+    tyn_build_buffer(b, LATTICE_SOURCE_PORT_POWER,
+                     sizeof(struct lattice_power) * p->num_suns * p->shape.channels);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_lattice_source_params *p = params;
+    tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
+    tyn_extent texels = tyn_rec_extent(r, LATTICE_SOURCE_PORT_DENSITY);
+    const float *extent = p->shape.extent;
+    const uint32_t size[3] = {texels.x, texels.y, texels.z};
+    float dx = fmaxf(extent[0], fmaxf(extent[1], extent[2])) / (float)p->shape.cells, voxels = 0;
+    struct lattice_source_args args = {
+        .dims = {dims.x, dims.y, dims.z}, .channels = p->shape.channels, .num_suns = p->num_suns};
+    for (int a = 0; a < 3; a++) {
+        args.tint[a] = p->shape.tint[a];
+        voxels = fmaxf(voxels, dx * (float)size[a] / extent[a]);
+    }
+    args.samples = (uint32_t)fminf(fmaxf(ceilf(0.5f * voxels - 1e-3f), 2), 4);
+    double cells = (double)dims.x * dims.y * dims.z;
+    const uint32_t spec[4] = {p->mode, p->shape.channels,
+                              tyn_rec_has(r, LATTICE_SOURCE_PORT_WALL_LINKS),
+                              tyn_rec_has(r, LATTICE_SOURCE_PORT_SHADOW_ATLAS)};
+    for (; args.sun < p->num_suns; args.sun++) { // one by one: then all threads read the same of it
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = KERNEL_BEAM, .cells = dims, .args = &args, .spec = spec});
+    }
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){.kernel = KERNEL_SUM,
+                           .cells = {p->num_suns * LATTICE_SUN_GROUP, p->shape.channels, 1},
+                           .args = &args,
+                           .spec = &p->mode});
+    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SOURCE,
+                                        .cells = {dims.x, dims.y, dims.z * p->shape.channels},
+                                        .args = &args});
+    tyn_rec_work(r, "cells", cells * p->num_suns);
+    tyn_rec_work(r, "fetches", 2 * cells * p->num_suns * pow(args.samples, 3));
+}
+
+const tyn_pass_desc tyn_pass_lattice_source = {
+    .name = "lattice_source",
+    .summary = "unscattered sunlight in the cells of the lattice",
+    .serves = "suns in media that scatter more than once",
+    .ports = ports,
+    .num_ports = LATTICE_SOURCE_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params_size = sizeof(tyn_lattice_source_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = LATTICE_SOURCE_PORT_SOURCE,
+    .debug_meaning = "unscattered sunlight in a slice, W/m^2",
+};

@@ -1,0 +1,121 @@
+// medium_shapes.glsl -- the exact media: shapes with grids in the atlas, averaged over a voxel or bounded
+// over a box.
+//
+// Define MEDIUM_BLOCK (uniform buffer), SHAPES (storage buffer) and ATLAS (sampler3D) before including.
+#ifndef TYN_MEDIUM_SHAPES_GLSL
+#define TYN_MEDIUM_SHAPES_GLSL
+#include "shaders/common/scene_args.h"
+
+layout(set = 0, binding = MEDIUM_BLOCK, scalar) uniform medium_uniform
+{
+    medium_block medium;
+};
+layout(set = 0, binding = SHAPES, scalar) readonly buffer shapes_buffer
+{
+    shape_block shapes[];
+};
+layout(set = 0, binding = ATLAS) uniform sampler3D atlas_tex;
+
+// M -> local unit box.
+vec3 shape_local(shape_block s, vec3 p)
+{
+    return vec3(dot(s.rows[0].xyz, p) + s.rows[0].w, dot(s.rows[1].xyz, p) + s.rows[1].w,
+                dot(s.rows[2].xyz, p) + s.rows[2].w);
+}
+
+// Half edges of the local box around an M box of half edges `half_box`.
+vec3 shape_local_half(shape_block s, vec3 half_box)
+{
+    return vec3(dot(abs(s.rows[0].xyz), half_box), dot(abs(s.rows[1].xyz), half_box),
+                dot(abs(s.rows[2].xyz), half_box));
+}
+
+// Texture value at a local position; outside the shape its edge value.
+float shape_value(shape_block s, vec3 local)
+{
+    vec3 size = vec3(s.size);
+    vec3 texel = clamp((local + 0.5) * size, vec3(0.5), size - 0.5) + vec3(s.offset);
+    float value = textureLod(atlas_tex, texel / vec3(textureSize(atlas_tex, 0)), 0.0).r;
+    return value >= 0.0 && !isinf(value) ? value : 0.0;
+}
+
+// Part of a small M box (local centre and half edges given, M half edges `half_box`) that is in the
+// shape: exact where the faces of both are parallel, for a sphere that of its tangent plane.
+float shape_cover(shape_block s, vec3 local, vec3 local_half, vec3 half_box)
+{
+    if (s.kind == TYN_SHAPE_KIND_BOX) {
+        vec3 overlap = min(local + local_half, vec3(0.5)) - max(local - local_half, vec3(-0.5));
+        vec3 part = clamp(overlap / (2.0 * local_half), vec3(0.0), vec3(1.0));
+        return part.x * part.y * part.z;
+    }
+    float r = length(local);
+    vec3 normal = local / max(r, 1e-20);
+    float reach = dot(abs(normal.x * s.rows[0].xyz + normal.y * s.rows[1].xyz + normal.z * s.rows[2].xyz),
+                      half_box);
+    return clamp((0.5 - r) / (2.0 * reach) + 0.5, 0.0, 1.0);
+}
+
+// Is the box (local centre and half edges) surely outside, surely inside the shape? In between: neither.
+bool shape_misses(shape_block s, vec3 local, vec3 local_half)
+{
+    vec3 nearest = max(abs(local) - local_half, vec3(0.0));
+    return s.kind == TYN_SHAPE_KIND_BOX ? any(greaterThanEqual(nearest, vec3(0.5)))
+                                        : dot(nearest, nearest) >= 0.25;
+}
+
+bool shape_contains(shape_block s, vec3 local, vec3 local_half)
+{
+    vec3 farthest = abs(local) + local_half;
+    return s.kind == TYN_SHAPE_KIND_BOX ? all(lessThanEqual(farthest, vec3(0.5 + 1e-5)))
+                                        : dot(farthest, farthest) <= 0.25;
+}
+
+// Mean over the voxel around p of the texture value, 0 outside the shape. `samples` per axis where the
+// voxel is on the shape's edge; inside, as many as it has texels.
+float shape_mean(shape_block s, vec3 p, int samples)
+{
+    vec3 centre = shape_local(s, p);
+    vec3 local_half = shape_local_half(s, 0.5 * medium.voxel);
+    if (shape_misses(s, centre, local_half)) {
+        return 0.0;
+    }
+    bool inside = shape_contains(s, centre, local_half);
+    int n = samples;
+    if (inside) {
+        vec3 texels = vec3(s.size) * vec3(length(s.rows[0].xyz * medium.voxel),
+                                          length(s.rows[1].xyz * medium.voxel),
+                                          length(s.rows[2].xyz * medium.voxel));
+        n = clamp(int(max(max(texels.x, texels.y), texels.z) + 0.5), 1, samples);
+    }
+    vec3 half_box = 0.5 * medium.voxel / float(n);
+    vec3 sub_half = local_half / float(n);
+    // Steps between samples are linear in local coordinates.
+    mat3 to_local = transpose(mat3(s.rows[0].xyz, s.rows[1].xyz, s.rows[2].xyz));
+    vec3 step_x = to_local[0] * 2.0 * half_box.x;
+    vec3 step_y = to_local[1] * 2.0 * half_box.y;
+    vec3 step_z = to_local[2] * 2.0 * half_box.z;
+    vec3 first = centre - 0.5 * float(n - 1) * (step_x + step_y + step_z);
+    float sum = 0.0;
+    for (int k = 0; k < n; k++) {
+        for (int j = 0; j < n; j++) {
+            for (int i = 0; i < n; i++) {
+                vec3 local = first + float(i) * step_x + float(j) * step_y + float(k) * step_z;
+                float cover = inside ? 1.0 : shape_cover(s, local, sub_half, half_box);
+                if (cover > 0.0) {
+                    sum += cover * shape_value(s, local);
+                }
+            }
+        }
+    }
+    return sum / float(n * n * n);
+}
+
+// Mode DENSITY: how many times the block's coefficients this shape's are at atlas value 1.
+float shape_scale(shape_block s)
+{
+    vec3 sigma_t = s.sigma_s + s.sigma_a;
+    float largest = max(max(sigma_t.x, sigma_t.y), sigma_t.z);
+    return medium.sigma_t_max > 0.0 && largest > 0.0 ? largest / medium.sigma_t_max : 1.0;
+}
+
+#endif

@@ -1,0 +1,106 @@
+// path_balance.c -- tables and dispatches of the path tracer's energy balance.
+#include "shaders/common/counters.h"
+#include "path_balance.h"
+#include "shaders/path/path_args.h"
+#include "path_balance.comp.h"
+#include "path_balance_sum.comp.h"
+
+static const tyn_port ports[PATH_BALANCE_NUM_PORTS] = {
+    PATH_SCENE_PORT_ROWS,
+    {"state", TYN_INOUT, TYN_BUFFER, 0, false, "running statistics"},
+    {"balance", TYN_OUT, TYN_BUFFER, 0, false, "power entering, emitted, absorbed, escaped, W"},
+    {"result", TYN_OUT, TYN_BUFFER, 0, false, "the same in single precision, with standard errors"},
+    {"counters", TYN_OUT, TYN_BUFFER, 0, false, "collisions, cut paths, non-finite samples"},
+    {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "statistics of each thread"},
+    {"areas", TYN_IN, TYN_BUFFER, 0, true, "alias table of the triangles' areas"},
+};
+
+static const tyn_binding trace_bindings[] = {
+    PATH_SCENE_BINDING_ROWS,
+    {PATH_BALANCE_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
+    {PATH_BALANCE_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
+    {PATH_BALANCE_PORT_AREAS, TYN_USE_STORAGE_READ, false},
+};
+
+static const tyn_binding sum_bindings[] = {
+    {PATH_BALANCE_PORT_PARTIALS, TYN_USE_STORAGE_READ, false},
+    {PATH_BALANCE_PORT_STATE, TYN_USE_STORAGE_RW, false},
+    {PATH_BALANCE_PORT_RESULT, TYN_USE_STORAGE_WRITE, false},
+    {PATH_BALANCE_PORT_BALANCE, TYN_USE_STORAGE_WRITE, false},
+};
+
+static const tyn_kernel kernels[] = {
+    TYN_KERNEL(path_balance, sizeof(struct path_args), 64, 1, 1, trace_bindings, TYN_PATH_NUM_SPEC),
+    TYN_KERNEL(path_balance_sum, sizeof(struct path_resolve_args), TYN_PATH_BALANCE_VALUES, 1, 1,
+               sum_bindings, 0),
+};
+
+uint64_t tyn_path_balance_state_size(void)
+{
+    return sizeof(struct path_balance_state);
+}
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_path_params *p = params;
+    tyn_build_buffer(b, PATH_BALANCE_PORT_BALANCE, 7 * 3 * sizeof(double));
+    tyn_build_buffer(b, PATH_BALANCE_PORT_RESULT, sizeof(struct path_balance_result));
+    tyn_build_buffer(b, PATH_BALANCE_PORT_COUNTERS, sizeof(struct counters_block));
+    tyn_build_buffer(b, PATH_BALANCE_PORT_PARTIALS,
+                     (uint64_t)p->threads * sizeof(struct path_balance_partial));
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_path_params *p = params;
+    uint32_t spec[TYN_PATH_NUM_SPEC];
+    path_specialise(spec, p);
+    spec[TYN_PATH_SPEC_FLAGS] &= ~TYN_PATH_THIN;
+    if (p->surfaces && p->num_lights && !p->repeat) {
+        spec[TYN_PATH_SPEC_FLAGS] |= TYN_PATH_FROM_LIGHTS;
+    }
+    // A sample of the balance is one of each kind of points.
+    const uint32_t kinds = !p->surfaces                                       ? 2
+                           : spec[TYN_PATH_SPEC_FLAGS] & TYN_PATH_FROM_LIGHTS ? 4
+                                                                              : 3;
+    const uint32_t groups = p->num_samples > kinds ? p->num_samples / kinds : 1;
+    const uint32_t before = p->first_sample / p->num_samples;
+    const uint32_t threads = groups < p->threads ? groups : p->threads;
+    tyn_rec_fill(r, PATH_BALANCE_PORT_COUNTERS, 0);
+    for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
+        struct path_args args = path_trace_args(p);
+        args.num = 1;
+        args.slots = threads;
+        args.num_samples = groups * kinds;
+        args.first_sample = (before + chunk) * args.num_samples;
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = 0, .cells = {threads, 1, 1}, .args = &args, .spec = spec});
+        struct path_resolve_args sum = {
+            .num = 1,
+            .slots = threads,
+            .samples_before = (before + chunk) * groups,
+            .lamps = {p->lamp_power[0], p->lamp_power[1], p->lamp_power[2]},
+        };
+        tyn_rec_dispatch(
+            r,
+            &(tyn_dispatch){.kernel = 1, .cells = {TYN_PATH_BALANCE_VALUES, 1, 1}, .args = &sum});
+    }
+    tyn_rec_work(r, "paths", (double)p->chunks * groups * kinds);
+}
+
+const tyn_pass_desc tyn_pass_path_balance = {
+    .name = "path_balance",
+    .summary = "where the energy goes, unbiased",
+    .ports = ports,
+    .num_ports = PATH_BALANCE_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 2,
+    .params = path_params_table,
+    .num_params = PATH_NUM_PARAMS,
+    .params_size = sizeof(tyn_path_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = PATH_BALANCE_PORT_RESULT,
+    .debug_meaning = "power entering, emitted, absorbed, escaped",
+};

@@ -1,0 +1,89 @@
+// path_fluxes.c -- tables and dispatches of the path tracer's fluxes: paths from the suns and the surroundings.
+#include "shaders/common/counters.h"
+#include "path_fluxes.h"
+#include "shaders/path/path_args.h"
+#include "path_fluxes.comp.h"
+#include "path_fluxes_sum.comp.h"
+
+static const tyn_port ports[PATH_FLUXES_NUM_PORTS] = {
+    PATH_SCENE_PORT_ROWS,
+    {"state", TYN_INOUT, TYN_BUFFER, 0, false, "running statistics"},
+    {"fluxes", TYN_OUT, TYN_BUFFER, 0, false, "power, and standard errors, W"},
+    {"counters", TYN_OUT, TYN_BUFFER, 0, false, "collisions, cut paths, non-finite paths"},
+    {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "mean of each thread's paths"},
+};
+
+static const tyn_binding trace_bindings[] = {
+    PATH_SCENE_BINDING_ROWS,
+    {PATH_FLUXES_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
+    {PATH_FLUXES_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
+};
+
+static const tyn_binding sum_bindings[] = {
+    {PATH_FLUXES_PORT_PARTIALS, TYN_USE_STORAGE_READ, false},
+    {PATH_FLUXES_PORT_STATE, TYN_USE_STORAGE_RW, false},
+    {PATH_FLUXES_PORT_FLUXES, TYN_USE_STORAGE_WRITE, false},
+};
+
+static const tyn_kernel kernels[] = {
+    TYN_KERNEL(path_fluxes, sizeof(struct path_args), 64, 1, 1, trace_bindings, TYN_PATH_NUM_SPEC),
+    TYN_KERNEL(path_fluxes_sum, sizeof(struct path_fluxes_sum_args), TYN_PATH_FLUX_LANES, 1, 1,
+               sum_bindings, 0),
+};
+
+uint64_t tyn_path_fluxes_state_size(void)
+{
+    return sizeof(struct path_fluxes_state);
+}
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_path_params *p = params;
+    tyn_build_buffer(b, PATH_FLUXES_PORT_FLUXES, sizeof(struct path_fluxes_result));
+    tyn_build_buffer(b, PATH_FLUXES_PORT_COUNTERS, sizeof(struct counters_block));
+    tyn_build_buffer(b, PATH_FLUXES_PORT_PARTIALS,
+                     (uint64_t)p->threads * TYN_PATH_FLUX_VALUES * sizeof(float));
+    return TYN_OK;
+}
+
+// `num_samples` paths of each thread in each of `chunks` dispatches.
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_path_params *p = params;
+    uint32_t spec[TYN_PATH_NUM_SPEC];
+    path_specialise(spec, p);
+    spec[TYN_PATH_SPEC_FLAGS] &= ~(TYN_PATH_THIN | TYN_PATH_EQUIANGULAR | TYN_PATH_MIXTURE);
+    tyn_rec_fill(r, PATH_FLUXES_PORT_COUNTERS, 0);
+    for (uint32_t chunk = 0; chunk < p->chunks; chunk++) {
+        struct path_args args = path_trace_args(p);
+        args.num = 1;
+        args.slots = p->threads;
+        args.first_sample = p->first_sample + chunk * p->num_samples;
+        tyn_rec_dispatch(
+            r,
+            &(tyn_dispatch){.kernel = 0, .cells = {p->threads, 1, 1}, .args = &args, .spec = spec});
+        struct path_fluxes_sum_args sum = {
+            .threads = p->threads, .paths = args.num_samples, .paths_before = args.first_sample};
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = 1,
+                               .cells = {TYN_PATH_FLUX_VALUES * TYN_PATH_FLUX_LANES, 1, 1},
+                               .args = &sum});
+    }
+    tyn_rec_work(r, "paths", (double)p->threads * p->chunks * p->num_samples);
+}
+
+const tyn_pass_desc tyn_pass_path_fluxes = {
+    .name = "path_fluxes",
+    .summary = "where light of suns and surroundings goes, unbiased",
+    .ports = ports,
+    .num_ports = PATH_FLUXES_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 2,
+    .params = path_params_table,
+    .num_params = PATH_NUM_PARAMS,
+    .params_size = sizeof(tyn_path_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = PATH_FLUXES_PORT_FLUXES,
+    .debug_meaning = "incident, leaving and absorbed power",
+};

@@ -1,0 +1,93 @@
+// path_probe.c -- tables and dispatches of the path tracer: the light field at points.
+#include "path_probe.h"
+#include "shaders/common/counters.h"
+#include "path_probe.comp.h"
+#include "path_probe_resolve.comp.h"
+
+enum { PROBE_STATE_BYTES = 3 * TYN_PATH_PROBE_VALUES * 4 };
+
+static const tyn_port ports[PATH_PROBE_NUM_PORTS] = {
+    PATH_SCENE_PORT_ROWS,
+    {"points", TYN_IN, TYN_BUFFER, 0, false, "points in M, m"},
+    {"state", TYN_INOUT, TYN_BUFFER, 0, false, "running statistics of each point"},
+    {"results", TYN_OUT, TYN_BUFFER, 0, false, "fluence and net flux with standard errors, W/m^2"},
+    {"counters", TYN_OUT, TYN_BUFFER, 0, false, "collisions, cut paths, non-finite samples"},
+    {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "statistics of each thread"},
+};
+
+static const tyn_binding bindings[] = {
+    PATH_SCENE_BINDING_ROWS,
+    {PATH_PROBE_PORT_POINTS, TYN_USE_STORAGE_READ, false},
+    {PATH_PROBE_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
+    {PATH_PROBE_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
+};
+
+static const tyn_binding resolve_bindings[] = {
+    {PATH_PROBE_PORT_PARTIALS, TYN_USE_STORAGE_READ, false},
+    {PATH_PROBE_PORT_STATE, TYN_USE_STORAGE_RW, false},
+    {PATH_PROBE_PORT_RESULTS, TYN_USE_STORAGE_WRITE, false},
+};
+
+static const tyn_kernel kernels[] = {
+    TYN_KERNEL(path_probe, sizeof(struct path_args), 64, 1, 1, bindings, TYN_PATH_NUM_SPEC),
+    TYN_KERNEL(path_probe_resolve, sizeof(struct path_resolve_args), 64, 1, 1, resolve_bindings, 0),
+};
+
+uint64_t tyn_path_probe_state_size(uint32_t num_points)
+{
+    return (uint64_t)num_points * PROBE_STATE_BYTES;
+}
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    uint32_t points = tyn_build_extent(b, PATH_PROBE_PORT_STATE).x / PROBE_STATE_BYTES;
+    path_split s = path_split_work(params, points);
+    tyn_build_buffer(b, PATH_PROBE_PORT_RESULTS,
+                     (uint64_t)points * sizeof(struct path_probe_result));
+    tyn_build_buffer(b, PATH_PROBE_PORT_COUNTERS, sizeof(struct counters_block));
+    tyn_build_buffer(b, PATH_PROBE_PORT_PARTIALS,
+                     (uint64_t)s.tile * s.slots * sizeof(struct path_probe_partial));
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_path_params *p = params;
+    uint32_t points = tyn_rec_extent(r, PATH_PROBE_PORT_STATE).x / PROBE_STATE_BYTES;
+    uint32_t spec[TYN_PATH_NUM_SPEC];
+    path_split s = path_split_work(p, points);
+    path_specialise(spec, p);
+    tyn_rec_fill(r, PATH_PROBE_PORT_COUNTERS, 0);
+    for (uint32_t first = 0; first < points; first += s.tile) {
+        uint32_t num = points - first < s.tile ? points - first : s.tile;
+        struct path_args args = path_trace_args(p);
+        args.first = first;
+        args.num = num;
+        args.slots = s.slots;
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){
+                   .kernel = 0, .cells = {num * s.slots, 1, 1}, .args = &args, .spec = spec});
+        struct path_resolve_args resolve = {
+            .first = first, .num = num, .slots = s.slots, .samples_before = p->first_sample};
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = 1,
+                                            .cells = {num * TYN_PATH_PROBE_VALUES, 1, 1},
+                                            .args = &resolve});
+    }
+    tyn_rec_work(r, "paths", (double)points * p->num_samples);
+}
+
+const tyn_pass_desc tyn_pass_path_probe = {
+    .name = "path_probe",
+    .summary = "unbiased fluence and net flux at points, progressive",
+    .ports = ports,
+    .num_ports = PATH_PROBE_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = 2,
+    .params = path_params_table,
+    .num_params = PATH_NUM_PARAMS,
+    .params_size = sizeof(tyn_path_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = PATH_PROBE_PORT_RESULTS,
+    .debug_meaning = "fluence and net flux",
+};

@@ -1,0 +1,92 @@
+// rooms.c -- which cells of the lattice are joined by open links.
+#include "rooms.h"
+#include "rooms_args.h"
+#include "shaders/beams/radial_args.h"
+#include "rooms_cells.comp.h"
+#include "rooms_links.comp.h"
+#include "rooms_vpls.comp.h"
+
+static const tyn_port ports[ROOMS_NUM_PORTS] = {
+    [ROOMS_PORT_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
+    [ROOMS_PORT_VPLS] = {"vpls", TYN_IN, TYN_BUFFER, 0, false, "struct radial_vpls"},
+    [ROOMS_PORT_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, false, "what VPLs see, m"},
+    [ROOMS_PORT_ROOMS] = {"rooms", TYN_OUT, TYN_BUFFER, 0, false,
+                          "rooms.h: of what is outside, of each cell, of each VPL"},
+    [ROOMS_PORT_FOREST] = {"forest", TYN_SCRATCH, TYN_BUFFER, 0, false, "rooms_forest.glsl"},
+};
+
+static const tyn_binding links_bindings[] = {
+    {ROOMS_PORT_FOREST, TYN_USE_STORAGE_RW},
+    {ROOMS_PORT_LINKS, TYN_USE_STORAGE_READ},
+};
+static const tyn_binding cells_bindings[] = {
+    {ROOMS_PORT_FOREST, TYN_USE_STORAGE_RW},
+    {ROOMS_PORT_ROOMS, TYN_USE_STORAGE_WRITE},
+    {ROOMS_PORT_VPLS, TYN_USE_STORAGE_READ},
+};
+static const tyn_binding vpls_bindings[] = {
+    {ROOMS_PORT_FOREST, TYN_USE_STORAGE_RW}, {ROOMS_PORT_LINKS, TYN_USE_TEXELS_UINT},
+    {ROOMS_PORT_VPLS, TYN_USE_STORAGE_READ}, {ROOMS_PORT_DISTANCES, TYN_USE_SAMPLED},
+    {ROOMS_PORT_ROOMS, TYN_USE_TEXELS_UINT},
+};
+
+enum { KERNEL_LINKS, KERNEL_CELLS, KERNEL_VPLS, NUM_KERNELS };
+
+#define KERNEL(step, x, y)                                                                         \
+    TYN_KERNEL(rooms_##step, sizeof(struct rooms_args), x, y, 1, step##_bindings, 0)
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [KERNEL_LINKS] = KERNEL(links, ROOMS_GROUP, 1),
+    [KERNEL_CELLS] = KERNEL(cells, ROOMS_GROUP, 1),
+    [KERNEL_VPLS] = KERNEL(vpls, 8, 8),
+};
+
+static uint32_t num_cells(const tyn_rooms_params *p)
+{
+    return p->dims[0] * p->dims[1] * p->dims[2];
+}
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const uint64_t elements = 1 + (uint64_t)num_cells(params) + TYN_RADIAL_VPLS_MAX;
+    tyn_build_buffer(b, ROOMS_PORT_ROOMS, 4 * (elements + TYN_RADIAL_VPLS_MAX));
+    tyn_build_buffer(b, ROOMS_PORT_FOREST, 4 * elements);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_rooms_params *p = params;
+    const uint32_t cells = num_cells(p);
+    const struct rooms_args args = {
+        .extent = {p->extent[0], p->extent[1], p->extent[2]},
+        .dims = {p->dims[0], p->dims[1], p->dims[2]},
+    };
+    const tyn_dispatch find = {
+        .kernel = KERNEL_CELLS, .cells = {1 + cells + TYN_RADIAL_VPLS_MAX, 1, 1}, .args = &args};
+    tyn_rec_fill(r, ROOMS_PORT_FOREST, 0);
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){.kernel = KERNEL_LINKS, .cells = {cells, 1, 1}, .args = &args});
+    tyn_rec_dispatch(r, &find);
+    const tyn_extent maps = tyn_rec_extent(r, ROOMS_PORT_DISTANCES);
+    if (maps.x > 1) { // else VPLs see all
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_VPLS, .cells = maps, .args = &args});
+        tyn_rec_dispatch(r, &find);
+    }
+    tyn_rec_work(r, "cells", cells);
+}
+
+const tyn_pass_desc tyn_pass_rooms = {
+    .name = "rooms",
+    .summary = "which cells of the lattice are joined by open links, and which virtual point "
+               "lights shine in them",
+    .serves = "surfaces that reflect light in media",
+    .ports = ports,
+    .num_ports = ROOMS_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params_size = sizeof(tyn_rooms_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = ROOMS_PORT_ROOMS,
+    .debug_meaning = "rooms of cells and VPLs",
+};

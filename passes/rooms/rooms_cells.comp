@@ -1,0 +1,65 @@
+// rooms_cells.comp -- the room of each cell and VPL.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "rooms_args.h"
+#include "shaders/beams/radial_args.h"
+#include "shaders/walls/rooms.h"
+#include "shaders/lattice/lattice.glsl"
+#include "rooms_forest.glsl"
+
+layout(local_size_x = ROOMS_GROUP) in;
+layout(push_constant, scalar) uniform push
+{
+    rooms_args args;
+};
+layout(binding = 1, scalar) writeonly buffer room_buffer
+{
+    uint rooms[];
+};
+layout(binding = 2, scalar) readonly buffer vpl_buffer
+{
+    uint vpl_count;
+    uvec3 vpl_pad;
+    radial_light vpls[];
+};
+
+// As the last entries of rooms.h tell it, of a VPL that shines in `room`.
+uint cell_before(uint vpl, uint room)
+{
+    ivec3 dims = ivec3(args.dims);
+    lattice_box box = lattice_box_of(args.extent, dims);
+    vec3 x = lattice_from_m(box, vpls[vpl].position) + 0.75 * vpls[vpl].axis; // as walls_cell_before of lattice_walls.glsl
+    ivec3 before = ivec3(floor(x));
+    uint found = TYN_ROOMS_NONE;
+    float nearest = 1e30;
+    for (int k = 0; k < 27; k++) {
+        ivec3 d = ivec3(k % 3, k / 3 % 3, k / 9) - 1, q = before + d;
+        bool inside = all(equal(q, clamp(q, ivec3(0), dims - 1)));
+        uint cell = inside ? uint((q.z * dims.y + q.y) * dims.x + q.x) : 0u;
+        uint of_cell = rooms_first(inside ? 1u + cell : 0u);
+        if (d == ivec3(0) && of_cell == room) {
+            return TYN_ROOMS_ANY;
+        }
+        float away = distance(vec3(q) + 0.5, x);
+        if (inside && of_cell == room && away < nearest) {
+            nearest = away;
+            found = cell;
+        }
+    }
+    return found;
+}
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x, cells = args.dims.x * args.dims.y * args.dims.z;
+    if (i > cells + uint(TYN_RADIAL_VPLS_MAX)) {
+        return;
+    }
+    uint room = rooms_first(i), vpl = i - cells - 1u;
+    rooms[i] = room > cells ? TYN_ROOMS_ANY : room;
+    if (i > cells) {
+        bool known = vpl < vpl_count && room <= cells;
+        rooms[i + uint(TYN_RADIAL_VPLS_MAX)] = known ? cell_before(vpl, room) : TYN_ROOMS_ANY;
+    }
+}

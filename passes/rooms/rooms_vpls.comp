@@ -1,0 +1,77 @@
+// rooms_vpls.comp -- joins each virtual point light (VPL) with the rooms that it sees: one thread a texel of their maps.
+//
+// A ray of the map goes to the first surface, so every place on it is in the VPL's room. One in a cell without a wall
+// tells which that is, wherever the lattice's links are cut; a ray counts if the one beside it tells the same.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "rooms_args.h"
+#include "shaders/beams/radial_args.h"
+#include "shaders/walls/walls_links.glsl"
+#include "shaders/walls/rooms.h"
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/light/vpl_visibility.glsl"
+#include "rooms_forest.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(push_constant, scalar) uniform push
+{
+    rooms_args args;
+};
+layout(binding = 1) uniform usamplerBuffer link_texels;
+layout(binding = 2, scalar) readonly buffer vpl_buffer
+{
+    uint vpl_count;
+    uvec3 vpl_pad;
+    radial_light vpls[];
+};
+layout(binding = 3) uniform sampler2D distances;
+layout(binding = 4) uniform usamplerBuffer room_texels; // as links join them
+
+// As close as half a cell in boxes of a few cells, where few have no walls; down to a seventh of the way.
+const int TRIES = 12;
+const float NEXT = 0.84; // as far as the place before
+
+// The room that the ray of texel `at` of a VPL's map tells of; TYN_ROOMS_ANY: none.
+uint told_by(lattice_box box, vec3 from, mat3 frame, ivec2 corner, ivec2 at, int side)
+{
+    vec3 d = frame * normalize(vpl_map_direction(vec2(at) / float(side - 1)));
+    float end = min(texelFetch(distances, corner + at, 0).r, 1e4 * box.dx);
+    uint told = TYN_ROOMS_ANY;
+    float place = end - 1.8 * box.dx;
+    for (int k = 0; k < TRIES && told == TYN_ROOMS_ANY && place > 0.0; k++) {
+        ivec3 c = ivec3(floor(lattice_from_m(box, from + place * d)));
+        ivec3 at = clamp(c, ivec3(0), box.dims - 1);
+        int i = (at.z * box.dims.y + at.y) * box.dims.x + at.x;
+        uint links = texelFetch(link_texels, i).x;
+        if (at != c) {
+            told = walls_cut_off(c, at, links) ? told : TYN_ROOMS_OUTSIDE;
+        } else {
+            told = (links & TYN_WALLS_NEAR) == 0u ? texelFetch(room_texels, 1 + i).x : told;
+        }
+        place *= NEXT;
+    }
+    return told;
+}
+
+void main()
+{
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = textureSize(distances, 0);
+    int side = size.x / VPL_MAPS_IN_A_ROW;
+    uint vpl = uint(texel.y / side * VPL_MAPS_IN_A_ROW + texel.x / side);
+    if (any(greaterThanEqual(texel, size)) || vpl >= min(vpl_count, uint(TYN_RADIAL_VPLS_MAX))) {
+        return;
+    }
+    ivec2 corner = vpl_map_corner(vpl, side), at = texel - corner;
+    if ((at.x & 1) != 0 || at.x + 1 >= side) {
+        return;
+    }
+    radial_light light = vpls[vpl];
+    lattice_box box = lattice_box_of(args.extent, ivec3(args.dims));
+    vec3 from = vpl_map_origin(light.position, light.axis, light.radius);
+    mat3 frame = vpl_frame(light.axis);
+    uint a = told_by(box, from, frame, corner, at, side), b = told_by(box, from, frame, corner, at + ivec2(1, 0), side);
+    if (a == b && a != TYN_ROOMS_ANY) {
+        rooms_join(1u + args.dims.x * args.dims.y * args.dims.z + vpl, a);
+    }
+}

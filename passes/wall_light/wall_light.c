@@ -1,0 +1,199 @@
+// wall_light.c -- light of suns and virtual point lights on the walls of the lattice.
+#include "wall_light.h"
+#include "wall_light_args.h"
+#include "shaders/beams/radial_args.h"
+#include "wall_light_cells.comp.h"
+#include "wall_light_expected.comp.h"
+#include "wall_light_reflect.comp.h"
+#include "wall_light_scale.comp.h"
+#include "wall_light_sum.comp.h"
+#include "wall_light_suns.comp.h"
+#include "wall_light_vpls.comp.h"
+
+static const tyn_port ports[WALL_LIGHT_NUM_PORTS] = {
+    [WALL_LIGHT_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
+    [WALL_LIGHT_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "struct light_block[]"},
+    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, WALL_LIGHT),
+    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, WALL_LIGHT),
+    TYN_GEOMETRY(TYN_BUNDLE_IN, WALL_LIGHT),
+    TYN_WALLS(TYN_BUNDLE_IN, WALL_LIGHT),
+    [WALL_LIGHT_PORT_HITS] = {"hits", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
+    [WALL_LIGHT_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true, "of rooms"},
+    [WALL_LIGHT_PORT_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
+    [WALL_LIGHT_PORT_LIGHT] = {"wall_light", TYN_OUT, TYN_BUFFER, 0, false,
+                               "radiance that the walls of a cell send out, W/(m^2 sr)"},
+    [WALL_LIGHT_PORT_LIST] = {"list", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                              "struct wall_light_list, uint[]: cells that have walls"},
+    [WALL_LIGHT_PORT_ARRIVED] = {"arrived", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                                 "irradiance by VPLs, W/m^2, times the area of walls over dx^2"},
+    [WALL_LIGHT_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false, "struct wall_light_power"},
+    [WALL_LIGHT_PORT_FIRST] = {"first", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                               "by room, the first VPL that shines there"},
+    [WALL_LIGHT_PORT_PARTS] = {"parts", TYN_SCRATCH, TYN_BUFFER, 0, false,
+                               "sums of arrived by room and part of the lattice"},
+};
+
+static const tyn_binding vpls_bindings[] = {
+    {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},    TYN_RADIALS(TYN_BUNDLE_BIND, WALL_LIGHT),
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, WALL_LIGHT),    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, WALL_LIGHT),
+    {WALL_LIGHT_PORT_HITS, TYN_USE_STORAGE_READ}, {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_WRITE},
+    {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_READ}, {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
+};
+
+static const tyn_binding cells_bindings[] = {
+    {WALL_LIGHT_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_RW},
+    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},
+    {WALL_LIGHT_PORT_WALL_LINKS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_WRITE},
+    {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
+    {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_READ},
+};
+
+static const tyn_binding expected_bindings[] = {
+    {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},    TYN_RADIALS(TYN_BUNDLE_BIND, WALL_LIGHT),
+    {WALL_LIGHT_PORT_DISTANCES, TYN_USE_SAMPLED}, {WALL_LIGHT_PORT_POWER, TYN_USE_STORAGE_WRITE},
+    {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT}, {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_RW},
+};
+
+static const tyn_binding sum_bindings[] = {
+    {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_PARTS, TYN_USE_STORAGE_WRITE},
+    {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
+    {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_READ},
+};
+
+static const tyn_binding scale_bindings[] = {
+    {WALL_LIGHT_PORT_POWER, TYN_USE_STORAGE_RW},
+    {WALL_LIGHT_PORT_PARTS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_READ},
+};
+
+static const tyn_binding reflect_bindings[] = {
+    {WALL_LIGHT_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_RW},
+    {WALL_LIGHT_PORT_POWER, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
+    {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_READ},
+};
+
+static const tyn_binding suns_bindings[] = {
+    {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},      {WALL_LIGHT_PORT_LIGHTS, TYN_USE_STORAGE_READ},
+    TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, WALL_LIGHT), TYN_GEOMETRY(TYN_BUNDLE_BIND, WALL_LIGHT),
+    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, WALL_LIGHT), {WALL_LIGHT_PORT_HITS, TYN_USE_STORAGE_READ},
+    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},
+};
+
+enum { SUNS = 0, VPLS, WALL_CELLS, EXPECTED, SUM, SCALE, REFLECT, NUM_KERNELS };
+_Static_assert(WALL_LIGHT_VPLS == TYN_RADIAL_VPLS_MAX, "of a workgroup each");
+
+#define KERNEL(step, x, y, z, specs)                                                               \
+    TYN_KERNEL(wall_light_##step, sizeof(struct wall_light_args), x, y, z, step##_bindings, specs)
+static const tyn_kernel kernels[NUM_KERNELS] = {
+    [SUNS] = KERNEL(suns, 8, 4, 2, 1),
+    [VPLS] = KERNEL(vpls, WALL_LIGHT_GROUP, 1, 1, 2),
+    [WALL_CELLS] = KERNEL(cells, WALL_LIGHT_GROUP, 1, 1, 3),
+    [EXPECTED] = KERNEL(expected, WALL_LIGHT_GROUP, 1, 1, 2),
+    [SUM] = KERNEL(sum, WALL_LIGHT_SUM_GROUP, 1, 1, 1),
+    [SCALE] = KERNEL(scale, WALL_LIGHT_VPLS, 1, 1, 0),
+    [REFLECT] = KERNEL(reflect, WALL_LIGHT_GROUP, 1, 1, 3),
+};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_wall_light_params *p = params;
+    if (p->num_suns == 0 && !tyn_build_has(b, WALL_LIGHT_PORT_RADIALS)) {
+        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                      "pass 'wall_light': neither suns nor 'radials': nothing shines");
+        return TYN_ERR_PARAMS;
+    }
+    const uint64_t cells = (uint64_t)p->dims[0] * p->dims[1] * p->dims[2];
+    tyn_build_buffer(b, WALL_LIGHT_PORT_LIGHT, 12 * cells);
+    const bool listed = tyn_build_has(b, WALL_LIGHT_PORT_RADIALS);
+    tyn_build_buffer(b, WALL_LIGHT_PORT_LIST,
+                     sizeof(struct wall_light_list) + (listed ? 8 * cells : 0));
+    tyn_build_buffer(b, WALL_LIGHT_PORT_ARRIVED, 12 * (listed ? cells : 1));
+    tyn_build_buffer(b, WALL_LIGHT_PORT_POWER, sizeof(struct wall_light_power));
+    tyn_build_buffer(b, WALL_LIGHT_PORT_FIRST, 4 * (listed ? 1 + cells : 1));
+    tyn_build_buffer(b, WALL_LIGHT_PORT_PARTS,
+                     12 * (listed ? WALL_LIGHT_VPLS * WALL_LIGHT_PARTS : 1));
+    return TYN_OK;
+}
+
+// Parts of the lattice that are summed by workgroups of their own.
+static uint32_t num_parts(const tyn_wall_light_params *p)
+{
+    const uint32_t cells = p->dims[0] * p->dims[1] * p->dims[2];
+    const uint32_t parts = (cells + WALL_LIGHT_PART - 1) / WALL_LIGHT_PART;
+    return parts < WALL_LIGHT_PARTS ? parts : WALL_LIGHT_PARTS;
+}
+
+static void record_vpls(tyn_recorder *r, const tyn_wall_light_params *p,
+                        const struct wall_light_args *args)
+{
+    // Without maps (vpl.visibility=0) nothing tells what should arrive.
+    const uint32_t scaled = tyn_rec_extent(r, WALL_LIGHT_PORT_DISTANCES).x > 1;
+    const uint32_t added = p->num_suns > 0, rooms = tyn_rec_has(r, WALL_LIGHT_PORT_ROOMS);
+    const uint32_t of_vpls[2] = {p->mode, rooms}, of_cells[3] = {added, scaled, rooms};
+    const tyn_extent all = {p->dims[0] * p->dims[1] * p->dims[2], 1, 1};
+    const tyn_extent vpls = {WALL_LIGHT_VPLS * WALL_LIGHT_GROUP, 1, 1};
+    tyn_rec_fill(r, WALL_LIGHT_PORT_LIST, 0);
+    tyn_rec_fill(r, WALL_LIGHT_PORT_FIRST, WALL_LIGHT_DARK);
+    tyn_rec_fill(r, WALL_LIGHT_PORT_POWER, 0);
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){.kernel = EXPECTED, .cells = vpls, .args = args, .spec = of_vpls});
+    tyn_rec_dispatch(
+        r, &(tyn_dispatch){.kernel = WALL_CELLS, .cells = all, .args = args, .spec = of_cells});
+    tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = VPLS, .args = args, .spec = of_vpls},
+                              WALL_LIGHT_PORT_LIST, 0);
+    if (scaled) {
+        const tyn_extent parts = {args->num_parts * WALL_LIGHT_SUM_GROUP, 1, 1};
+        const tyn_extent one = {WALL_LIGHT_VPLS, 1, 1};
+        tyn_rec_fill(r, WALL_LIGHT_PORT_PARTS, 0);
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = SUM, .cells = parts, .args = args, .spec = &rooms});
+        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SCALE, .cells = one, .args = args});
+    }
+    tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = REFLECT, .args = args, .spec = of_cells},
+                              WALL_LIGHT_PORT_LIST, 0);
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_wall_light_params *p = params;
+    struct wall_light_args args = {
+        .extent = {p->extent[0], p->extent[1], p->extent[2]},
+        .dims = {p->dims[0], p->dims[1], p->dims[2]},
+        .num_suns = p->num_suns,
+        .num_parts = num_parts(p),
+    };
+    const tyn_extent cells = {p->dims[0], p->dims[1], p->dims[2]};
+    if (p->num_suns > 0) {
+        tyn_rec_dispatch(
+            r, &(tyn_dispatch){.kernel = SUNS, .cells = cells, .args = &args, .spec = &p->mode});
+    }
+    if (tyn_rec_has(r, WALL_LIGHT_PORT_RADIALS)) {
+        record_vpls(r, p, &args);
+    } else {
+        tyn_rec_fill(r, WALL_LIGHT_PORT_POWER, 0);
+    }
+    tyn_rec_work(r, "cells", (double)p->dims[0] * p->dims[1] * p->dims[2]);
+}
+
+const tyn_pass_desc tyn_pass_wall_light = {
+    .name = "wall_light",
+    .summary = "light of suns and virtual point lights on the walls of the lattice's cells",
+    .serves = "walls in media that suns shine on periodically, or virtual point lights without "
+              "further reflections",
+    .ports = ports,
+    .num_ports = WALL_LIGHT_NUM_PORTS,
+    .kernels = kernels,
+    .num_kernels = NUM_KERNELS,
+    .params_size = sizeof(tyn_wall_light_params),
+    .declare = declare,
+    .record = record,
+    .debug_port = WALL_LIGHT_PORT_LIGHT,
+    .debug_meaning = "radiance of the walls per cell, W/(m^2 sr)",
+};

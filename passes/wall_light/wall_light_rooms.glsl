@@ -1,0 +1,19 @@
+// wall_light_rooms.glsl -- the room of a cell, as the first virtual point light (VPL) that shines there.
+//
+// Include with the specialization constant `rooms`; define LATTICE_ROOMS, and WALL_LIGHT_FIRST: binding of the buffer.
+#ifndef TYN_WALL_LIGHT_ROOMS_GLSL
+#define TYN_WALL_LIGHT_ROOMS_GLSL
+#include "shaders/walls/lattice_rooms.glsl"
+
+layout(binding = WALL_LIGHT_FIRST, scalar) readonly buffer first_buffer
+{
+    uint first[]; // by room
+};
+
+// WALL_LIGHT_DARK: none does.
+uint first_vpl(uint cell)
+{
+    return first[rooms == 1 ? texelFetch(room_texels, int(1u + cell)).x : TYN_ROOMS_OUTSIDE];
+}
+
+#endif

@@ -1,0 +1,47 @@
+// shadow_frame.glsl -- the maps' list, and places in the frames of their lights.
+//
+// Define SHADOW_LIGHTS as the binding of the list that pass shadow_map makes, and SHADOWS_STORAGE if that is a
+// storage buffer: a uniform one is faster on lavapipe, which has room for seven.
+#ifndef TYN_SHADOW_FRAME_GLSL
+#define TYN_SHADOW_FRAME_GLSL
+#include "shadow_args.h"
+
+#ifdef SHADOWS_STORAGE
+layout(set = 0, binding = SHADOW_LIGHTS, scalar) readonly buffer shadow_lights_buffer
+{
+    shadow_light shadows[];
+};
+#else
+layout(set = 0, binding = SHADOW_LIGHTS, scalar) uniform shadow_lights_buffer
+{
+    shadow_light shadows[TYN_SHADOW_MAX];
+};
+#endif
+
+vec3 shadow_frame(shadow_light l, vec3 p)
+{
+    return vec3(dot(l.rows[0].xyz, p) + l.rows[0].w, dot(l.rows[1].xyz, p) + l.rows[1].w,
+                dot(l.rows[2].xyz, p) + l.rows[2].w);
+}
+
+vec3 shadow_frame_direction(shadow_light l, vec3 n)
+{
+    return vec3(dot(l.rows[0].xyz, n), dot(l.rows[1].xyz, n), dot(l.rows[2].xyz, n));
+}
+
+// The face of the cube that a direction goes through, and the components along its u, v and axis.
+uint shadow_face(vec3 q)
+{
+    vec3 a = abs(q);
+    bool x = a.x >= a.y && a.x >= a.z, y = a.y >= a.z;
+    float major = x ? q.x : y ? q.y : q.z;
+    return (x ? 0u : y ? 2u : 4u) + (major < 0.0 ? 1u : 0u);
+}
+
+vec3 shadow_on_face(uint face, vec3 q)
+{
+    vec3 turned = face < 2u ? q.yzx : face < 4u ? q.zxy : q;
+    return vec3(turned.xy, (face & 1u) != 0u ? -turned.z : turned.z);
+}
+
+#endif

@@ -1,0 +1,71 @@
+// path_resources.glsl -- what every tracing kernel of the path tracer reads (set 0, bindings 0 to 15), and
+// what it is specialised to.
+#ifndef TYN_PATH_RESOURCES_GLSL
+#define TYN_PATH_RESOURCES_GLSL
+#include "shaders/common/counters.h"
+#include "shaders/light/env_args.h"
+#include "shaders/common/scene_args.h"
+#include "shaders/surfaces/surface_args.h"
+#include "shaders/surfaces/surface_table_args.h"
+
+layout(local_size_x = 64) in;
+
+layout(constant_id = 0) const uint SHAPES = 0u;
+layout(constant_id = 1) const bool HOMOGENEOUS = false;
+layout(constant_id = 2) const bool GREY = false;
+layout(constant_id = 3) const uint LIGHTS = 2u;
+layout(constant_id = 4) const uint ENVIRONMENT = 2u;
+layout(constant_id = 5) const uint FLAGS = 0u;
+
+layout(set = 0, binding = 0) uniform sampler3D atlas;
+layout(set = 0, binding = 1, scalar) uniform medium_uniform { medium_block medium_in; };
+layout(set = 0, binding = 2, scalar) readonly buffer shapes_buffer { shape_block shapes[]; };
+layout(set = 0, binding = 3) uniform sampler3D bricks;
+layout(set = 0, binding = 4, scalar) readonly buffer lights_buffer { light_block lights[]; };
+layout(set = 0, binding = 5, scalar) uniform environment_uniform { env_block env_in; };
+layout(set = 0, binding = 6) uniform sampler2D env_map;
+layout(set = 0, binding = 7, scalar) readonly buffer env_buffer {
+    env_table_block env_table;
+    env_cell env_cells[];
+};
+#define GEOMETRY_AT 8
+#define MATERIALS_AT 12
+#include "shaders/surfaces/surfaces.glsl"
+layout(set = 0, binding = 15, scalar) readonly buffer emitters_buffer {
+    surface_table emitters;
+    surface_cell emitter_cells[];
+};
+layout(push_constant, scalar) uniform args_push { path_args args_in; };
+
+// Copies that live in registers: inside a loop whose lanes diverge, software devices read buffers lane by lane.
+medium_block medium;
+env_block env;
+path_args args;
+shape_block path_shapes[TYN_PATH_SHAPES_MAX]; // where there are no more
+light_block path_light0; // the only light
+vec3 path_atlas_texel;   // 1 / texels of the atlas
+vec4 path_emitters;      // centre of the emissive triangles (M) and squared radius
+
+void path_load()
+{
+    medium = medium_in;
+    args = args_in;
+    path_atlas_texel = 1.0 / vec3(textureSize(atlas, 0));
+    if (ENVIRONMENT != TYN_PATH_ENV_NONE) {
+        env = env_in;
+    }
+    for (uint i = 0u; i < SHAPES; i++) {
+        path_shapes[i] = shapes[i];
+    }
+    if (LIGHTS == 1u) {
+        path_light0 = lights[0];
+    }
+    if ((FLAGS & TYN_PATH_EMITTERS) != 0u) {
+        for (uint i = 0u; i < 3u; i++) {
+            path_emitters[i] = dot(surfaces.from_world[i], vec4(emitters.centre, 1.0));
+        }
+        path_emitters.w = emitters.radius * emitters.radius;
+    }
+}
+
+#endif

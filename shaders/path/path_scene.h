@@ -1,0 +1,149 @@
+// path_scene.h -- parameters and ports that all passes of the path tracer have in common.
+#pragma once
+#include <tyndall/pass.h>
+#include "shaders/common/bundles.h"
+#include "shaders/path/path_args.h"
+
+// Of every tracing pass. What is not in the parameter table is set by the method.
+typedef struct tyn_path_params {
+    uint32_t mixture;     // light-lobe mixture sampling; 0 = the phase function alone
+    uint32_t equiangular; // equi-angular distances for lamps; 0 = free flights alone
+    int32_t max_steps;    // safety cap of one path: tentative collisions and brick crossings
+
+    uint32_t seed;
+    uint32_t first_sample, num_samples; // per pixel or point; 0 starts the statistics anew
+    uint32_t max_depth;                 // longest path, scatterings; 0 = no limit
+    uint32_t rr_depth;                  // Russian roulette from here on; 0 = 4
+    uint32_t threads;     // at most, of a dispatch: what keeps one below the time limit
+    uint32_t homogeneous; // one shape and no density grid
+    uint32_t num_shapes;
+    uint32_t sphere;   // the only shape is one
+    uint32_t grey;     // sigma_s, sigma_a and g are equal in all channels
+    uint32_t repeat;   // some axis is periodic
+    uint32_t surfaces; // there are triangles
+    uint32_t emitters; // some of them emit and are in the table
+    uint32_t emissive;
+    uint32_t num_lights;
+    uint32_t num_lamps;   // point and spot lights among them
+    uint32_t near_lamps;  // those in or near the media
+    uint32_t environment; // TYN_PATH_ENV_*
+    float sigma_guess;    // typical extinction, 1/m
+    float stretch;   // > 1: images and probes draw first flights for so many times the extinction
+    uint32_t layers; // images: single, multiple and transmittance as well
+    uint32_t opaque; // images: a background is seen, alpha is 1
+    uint32_t scattered;  // probes: without light that has not scattered
+    float world[3][3];   // probes: the world's axes in M
+    float lamp_power[3]; // balance: of the lamps inside, W
+    float box[2][3];     // balance of surfaces: corners of the box around everything, M
+    uint32_t chunks;     // balance: dispatches of num_samples paths each; fluxes: of each thread
+} tyn_path_params;
+
+// What every tracing pass reads.
+enum {
+    PATH_PORT_ATLAS,       // IN 3D, optional: all density grids
+    PATH_PORT_MEDIUM,      // IN buffer struct medium_block
+    PATH_PORT_SHAPES,      // IN buffer struct shape_block[]
+    PATH_PORT_BRICKS,      // IN 3D, optional: bounds of the density or the extinction, of `medium`
+    PATH_PORT_LIGHTS,      // IN buffer struct light_block[], optional
+    PATH_PORT_ENVIRONMENT, // IN buffer struct env_block, optional
+    PATH_PORT_ENV_MAP,     // IN 2D, optional
+    PATH_PORT_ENV_TABLE, // IN buffer struct env_table_block and cells, optional: methods/env_cdf.h
+    TYN_GEOMETRY(TYN_BUNDLE_ENUM, PATH),  // IN optional; without nodes all triangles are tried
+    TYN_MATERIALS(TYN_BUNDLE_ENUM, PATH), // IN optional
+    PATH_PORT_EMITTERS, // IN buffer struct surface_table and cells: methods/surface_tables.h
+    PATH_NUM_SCENE_PORTS,
+};
+
+// clang-format off
+#define PATH_SCENE_PORT_ROWS                                                                       \
+    {"atlas", TYN_IN, TYN_IMAGE_3D, 0, true, "all density grids"},                                 \
+    {"medium", TYN_IN, TYN_BUFFER, 0, false, "the medium frame's box and bricks"},                 \
+    {"shapes", TYN_IN, TYN_BUFFER, 0, true, "the exact media"},                                    \
+    {"bricks", TYN_IN, TYN_IMAGE_3D, 0, true, "least and largest density or extinction of bricks"}, \
+    {"lights", TYN_IN, TYN_BUFFER, 0, true, "suns and lamps"},                                     \
+    {"environment", TYN_IN, TYN_BUFFER, 0, true, "the surroundings"},                              \
+    {"env_map", TYN_IN, TYN_IMAGE_2D, 0, true, "radiance of the surroundings, W/(m^2 sr)"},        \
+    {"env_table", TYN_IN, TYN_BUFFER, 0, true, "alias table of the map's brightness"},             \
+    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, PATH),                                                       \
+    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, PATH),                                                      \
+    {"emitters", TYN_IN, TYN_BUFFER, 0, true, "alias table of the emissive triangles' power"}
+
+#define PATH_SCENE_BINDING_ROWS                                                                    \
+    {PATH_PORT_ATLAS, TYN_USE_SAMPLED, false},                                                     \
+    {PATH_PORT_MEDIUM, TYN_USE_UNIFORM, false},                                                    \
+    {PATH_PORT_SHAPES, TYN_USE_STORAGE_READ, false},                                               \
+    {PATH_PORT_BRICKS, TYN_USE_SAMPLED, false},                                                    \
+    {PATH_PORT_LIGHTS, TYN_USE_STORAGE_READ, false},                                               \
+    {PATH_PORT_ENVIRONMENT, TYN_USE_UNIFORM, false},                                               \
+    {PATH_PORT_ENV_MAP, TYN_USE_SAMPLED, true},                                                    \
+    {PATH_PORT_ENV_TABLE, TYN_USE_STORAGE_READ, false},                                            \
+    TYN_GEOMETRY(TYN_BUNDLE_BIND, PATH),                                                           \
+    TYN_MATERIALS(TYN_BUNDLE_BIND, PATH),                                                          \
+    {PATH_PORT_EMITTERS, TYN_USE_STORAGE_READ, false}
+// clang-format on
+
+enum { PATH_NUM_PARAMS = 3 };
+static const tyn_param path_params_table[PATH_NUM_PARAMS] = {
+    {"mixture", TYN_PARAM_BOOL, offsetof(tyn_path_params, mixture), 1, 0, 1, "",
+     "draw directions from a mixture with light lobes; 0: the phase function alone", NULL},
+    {"equiangular", TYN_PARAM_BOOL, offsetof(tyn_path_params, equiangular), 1, 0, 1, "",
+     "draw distances by the angle seen from lamps as well; 0: free flights alone", NULL},
+    {"max_steps", TYN_PARAM_INT, offsetof(tyn_path_params, max_steps), 200000, 100, 100000000,
+     "steps", "safety cap of one path; cut paths are counted", NULL},
+};
+
+// Elements (pixels, points) are worked off in tiles of at most `threads`; where there are fewer, several
+// threads share the samples of each. Depends on sizes alone, so that the frame keeps its structure whatever
+// the number of samples.
+typedef struct path_split {
+    uint32_t tile, slots;
+} path_split;
+
+static inline path_split path_split_work(const tyn_path_params *p, uint32_t elements)
+{
+    uint32_t threads = p->threads ? p->threads : 16384;
+    path_split s;
+    s.tile = elements < threads ? elements : threads;
+    s.slots = threads / s.tile;
+    return s;
+}
+
+// Arguments of a tracing kernel but for `first`, `num` and `slots`.
+static inline struct path_args path_trace_args(const tyn_path_params *p)
+{
+    return (struct path_args){
+        .first_sample = p->first_sample,
+        .num_samples = p->num_samples,
+        .seed = p->seed,
+        .num_lights = p->num_lights,
+        .max_depth = p->max_depth ? p->max_depth : UINT32_MAX,
+        .rr_depth = p->rr_depth ? p->rr_depth : 4,
+        .max_steps = (uint32_t)p->max_steps,
+        .sigma_guess = p->sigma_guess,
+        .stretch = p->stretch,
+        .world = {{p->world[0][0], p->world[0][1], p->world[0][2]},
+                  {p->world[1][0], p->world[1][1], p->world[1][2]},
+                  {p->world[2][0], p->world[2][1], p->world[2][2]}},
+        .box_lo = {p->box[0][0], p->box[0][1], p->box[0][2]},
+        .box_hi = {p->box[1][0], p->box[1][1], p->box[1][2]},
+    };
+}
+
+static inline void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_path_params *p)
+{
+    // A lobe needs a light; under a constant sky every direction is as good.
+    bool lights = p->num_lights > 0 || p->environment == TYN_PATH_ENV_MAP || p->emitters;
+    spec[TYN_PATH_SPEC_SHAPES] = p->num_shapes <= TYN_PATH_SHAPES_MAX ? p->num_shapes : 0;
+    spec[TYN_PATH_SPEC_HOMOGENEOUS] = p->homogeneous ? 1 : 0;
+    spec[TYN_PATH_SPEC_GREY] = p->grey ? 1 : 0;
+    spec[TYN_PATH_SPEC_LIGHTS] = p->num_lights < 2 ? p->num_lights : 2;
+    spec[TYN_PATH_SPEC_ENVIRONMENT] = p->environment;
+    spec[TYN_PATH_SPEC_FLAGS] =
+        (p->repeat ? TYN_PATH_REPEAT : 0) | (p->sphere ? TYN_PATH_SPHERE : 0) |
+        (p->emissive ? TYN_PATH_EMISSIVE : 0) | (p->mixture && lights ? TYN_PATH_MIXTURE : 0) |
+        (p->num_lamps ? TYN_PATH_LAMPS : 0) |
+        (p->equiangular && p->near_lamps ? TYN_PATH_EQUIANGULAR : 0) |
+        (p->layers ? TYN_PATH_LAYERS : 0) | (p->scattered ? TYN_PATH_SCATTERED : 0) |
+        (p->stretch > 1 ? TYN_PATH_THIN : 0) | (p->surfaces ? TYN_PATH_SURFACES : 0) |
+        (p->surfaces && p->emitters ? TYN_PATH_EMITTERS : 0);
+}

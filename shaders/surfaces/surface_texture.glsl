@@ -1,0 +1,59 @@
+// surface_texture.glsl -- textures of surfaces, filtered trilinearly from their mip chains in a buffer.
+//
+// Define MATERIALS_AT (surfaces.glsl).
+#ifndef TYN_SURFACE_TEXTURE_GLSL
+#define TYN_SURFACE_TEXTURE_GLSL
+#include "surfaces.glsl"
+
+// Texel coordinate of a whole number, by the rule of its axis.
+int surface_wrap(int i, int size, uint rule)
+{
+    if (rule == 1u) {
+        return clamp(i, 0, size - 1);
+    }
+    int period = rule == 2u ? 2 * size : size;
+    i -= period * int(floor(float(i) / float(period)));
+    i = clamp(i, 0, period - 1);
+    return i < size ? i : 2 * size - 1 - i;
+}
+
+// Linear colour of an sRGB texel (IEC 61966-2-1).
+vec3 surface_texel(uint first, ivec2 size, uvec2 wrap, ivec2 at)
+{
+    int x = surface_wrap(at.x, size.x, wrap.x), y = surface_wrap(at.y, size.y, wrap.y);
+    vec3 c = unpackUnorm4x8(texels[first + uint(y * size.x + x)]).rgb;
+    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+}
+
+vec3 surface_texture_level(surface_texture t, vec2 uv, uint level)
+{
+    uint first = t.first;
+    for (uint l = 0u; l < level; l++) {
+        uvec2 s = max(t.size >> l, uvec2(1));
+        first += s.x * s.y;
+    }
+    ivec2 size = ivec2(max(t.size >> level, uvec2(1)));
+    vec2 p = uv * vec2(size) - 0.5;
+    ivec2 i = ivec2(floor(p));
+    vec2 w = p - vec2(i);
+    vec3 top = mix(surface_texel(first, size, t.wrap, i),
+                   surface_texel(first, size, t.wrap, i + ivec2(1, 0)), w.x);
+    vec3 bottom = mix(surface_texel(first, size, t.wrap, i + ivec2(0, 1)),
+                      surface_texel(first, size, t.wrap, i + ivec2(1, 1)), w.x);
+    return mix(top, bottom, w.y);
+}
+
+// The texture around `uv`; a step of the sample grid moves by `dx` and `dy` on it.
+vec3 surface_texture_around(uint index, vec2 uv, vec2 dx, vec2 dy)
+{
+    surface_texture t = textures[index];
+    vec2 a = dx * vec2(t.size), b = dy * vec2(t.size);
+    float lod = 0.5 * log2(max(max(dot(a, a), dot(b, b)), 1.0));
+    lod = min(lod, float(t.levels - 1u));
+    uint level = uint(lod);
+    vec3 c = surface_texture_level(t, uv, level);
+    float more = lod - float(level);
+    return more > 0.0 ? mix(c, surface_texture_level(t, uv, level + 1u), more) : c;
+}
+
+#endif
