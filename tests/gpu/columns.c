@@ -1,94 +1,27 @@
 // columns.c -- optical depths along principal ordinates against line integrals in double precision.
 #include "gpu_test.h"
 #include "base/half.h"
+#include "medium_grid.h"
 #include "passes/columns/columns.h"
 #include "passes/columns_average/columns_average.h"
+#include "random_unit.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-// ---- a medium and its line integrals --------------------------------------------------------------
-
-typedef struct grid {
-    struct medium_block block;
-    float *texels[3]; // density; or sigma_s, sigma_a, g as RGBA
-} grid;
-
-static grid grid_make(const float extent[3], const uint32_t size[3], uint32_t mode)
-{
-    grid m = {{.mode = mode, .sigma_t_max = 1, .max_density = 1}};
-    for (int i = 0; i < 3; i++) {
-        m.block.extent[i] = extent[i];
-        m.block.size[i] = size[i];
-        m.block.voxel[i] = extent[i] / (float)size[i];
-    }
-    size_t count = (size_t)size[0] * size[1] * size[2];
-    for (int k = 0; k < (mode == TYN_MEDIUM_DENSITY ? 1 : 3); k++) {
-        m.texels[k] = calloc(count * (mode == TYN_MEDIUM_DENSITY ? 1 : 4), sizeof(float));
-    }
-    return m;
-}
-
-static void grid_free(grid *m)
-{
-    for (int k = 0; k < 3; k++) {
-        free(m->texels[k]);
-    }
-}
-
-// Trilinear between voxel centres, constant in the outer half voxels.
-static double grid_value(const grid *m, int texture, int channel, const double p[3])
-{
-    int channels = m->block.mode == TYN_MEDIUM_DENSITY ? 1 : 4, i0[3], i1[3];
-    double w[3];
-    for (int i = 0; i < 3; i++) {
-        double x = p[i] / m->block.extent[i] * m->block.size[i] - 0.5;
-        x = fmin(fmax(x, 0), m->block.size[i] - 1.0);
-        i0[i] = (int)x;
-        i1[i] = i0[i] + 1 < (int)m->block.size[i] ? i0[i] + 1 : i0[i];
-        w[i] = x - i0[i];
-    }
-    double sum = 0;
-    for (int c = 0; c < 8; c++) {
-        int x = c & 1 ? i1[0] : i0[0], y = c & 2 ? i1[1] : i0[1], z = c & 4 ? i1[2] : i0[2];
-        double weight =
-            (c & 1 ? w[0] : 1 - w[0]) * (c & 2 ? w[1] : 1 - w[1]) * (c & 4 ? w[2] : 1 - w[2]);
-        size_t texel = ((size_t)z * m->block.size[1] + (size_t)y) * m->block.size[0] + (size_t)x;
-        sum += weight * m->texels[texture][texel * (size_t)channels + (size_t)channel];
-    }
-    return sum;
-}
-
-static double entry_distance(const grid *m, const double p[3], const float d[3])
-{
-    double length = 1e30;
-    for (int i = 0; i < 3; i++) {
-        if (d[i] != 0) {
-            length = fmin(length, (d[i] > 0 ? p[i] : p[i] - m->block.extent[i]) / d[i]);
-        }
-    }
-    return length;
-}
+// ---- line integrals -------------------------------------------------------------------------------
 
 // Integral to p, and the mean of those to the octants of the cell around it: the pass gives the former
 // where neighbouring rays enter through one face, the latter across the kinks between faces.
-static double column(const grid *m, int texture, int channel, const double p[3], const float d[3])
+static double column(const medium_grid *m, int texture, int channel, const double p[3],
+                     const float d[3])
 {
-    double length = entry_distance(m, p, d), sum = 0, finest = 1e30;
-    for (int i = 0; i < 3; i++) {
-        finest = fmin(finest, m->block.voxel[i]);
-    }
-    int n = (int)(length / finest * 4) + 4;
-    for (int i = 0; i < n; i++) {
-        double s = length * (i + 0.5) / n,
-               q[3] = {p[0] - s * d[0], p[1] - s * d[1], p[2] - s * d[2]};
-        sum += grid_value(m, texture, channel, q) * length / n;
-    }
-    return sum;
+    const double way[3] = {(double)d[0], (double)d[1], (double)d[2]};
+    return medium_grid_column(m, texture, channel, p, way, 4);
 }
 
-static double cell_column(const grid *m, int texture, int channel, const double p[3],
+static double cell_column(const medium_grid *m, int texture, int channel, const double p[3],
                           const float d[3], double dx)
 {
     double sum = 0;
@@ -104,12 +37,6 @@ static double cell_column(const grid *m, int texture, int channel, const double 
 }
 
 // ---- the pass --------------------------------------------------------------------------------------
-
-static double random_unit(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (*seed >> 8) * 0x1p-24;
-}
 
 // Along axes, face and body diagonals, grazing, then anywhere.
 static struct ordinates_block ordinates_make(uint32_t count)
@@ -150,7 +77,7 @@ static double result_at(const result *r, uint32_t n, uint32_t component, const u
 }
 
 // Cells of a lattice as lattice.h plans it: cubes, what they reach beyond the box split evenly.
-static void cells_of(const grid *m, uint32_t cells, uint32_t dims[3], double *dx)
+static void cells_of(const medium_grid *m, uint32_t cells, uint32_t dims[3], double *dx)
 {
     const float *e = m->block.extent;
     *dx = fmax(e[0], fmax(e[1], e[2])) / cells;
@@ -160,7 +87,7 @@ static void cells_of(const grid *m, uint32_t cells, uint32_t dims[3], double *dx
 }
 
 // Puts what columns_average makes of the medium in the place of it, where that is worth while.
-static bool average(gpu_test *t, const grid *m, const uint32_t dims[3], tyn_ref *refs)
+static bool average(gpu_test *t, const medium_grid *m, const uint32_t dims[3], tyn_ref *refs)
 {
     tyn_columns_average_params params = {.mode = m->block.mode};
     if (!tyn_columns_average_size(&m->block, dims, params.size)) {
@@ -180,7 +107,7 @@ static bool average(gpu_test *t, const grid *m, const uint32_t dims[3], tyn_ref 
     return true;
 }
 
-static result run_pass(gpu_test *t, const grid *m, const struct ordinates_block *ordinates,
+static result run_pass(gpu_test *t, const medium_grid *m, const struct ordinates_block *ordinates,
                        uint32_t count, uint32_t cells)
 {
     double dx;
@@ -217,8 +144,8 @@ typedef struct errors {
     double relative;      // largest |column - exact| / exact
 } errors;
 
-static errors compare(const grid *m, const struct ordinates_block *ordinates, const result *r,
-                      uint32_t cells, const char *name)
+static errors compare(const medium_grid *m, const struct ordinates_block *ordinates,
+                      const result *r, uint32_t cells, const char *name)
 {
     errors e = {0, 0, 0};
     uint32_t dims[3], count = 0, seed = 3;
@@ -265,14 +192,14 @@ static void homogeneous(void **state)
     };
     struct ordinates_block ordinates = ordinates_make(64);
     for (size_t b = 0; b < sizeof boxes / sizeof boxes[0]; b++) {
-        grid m = grid_make(boxes[b].extent, boxes[b].size, TYN_MEDIUM_DENSITY);
+        medium_grid m = medium_grid_make(boxes[b].extent, boxes[b].size, TYN_MEDIUM_DENSITY);
         for (uint32_t i = 0; i < boxes[b].size[0] * boxes[b].size[1] * boxes[b].size[2]; i++) {
             m.texels[0][i] = 3;
         }
         result r = run_pass(*state, &m, &ordinates, 64, boxes[b].cells);
         errors e = compare(&m, &ordinates, &r, boxes[b].cells, "homogeneous");
         assert_true(e.relative < 1e-3); // a half has 11 digits, its square 10
-        grid_free(&m);
+        medium_grid_free(&m);
     }
 }
 
@@ -280,7 +207,7 @@ static void blob(void **state)
 {
     static const uint32_t size[3] = {48, 48, 48};
     struct ordinates_block ordinates = ordinates_make(64);
-    grid m = grid_make(cube, size, TYN_MEDIUM_DENSITY);
+    medium_grid m = medium_grid_make(cube, size, TYN_MEDIUM_DENSITY);
     for (uint32_t i = 0; i < 48 * 48 * 48; i++) {
         double x = (i % 48 + .5) / 48 - .5, y = (i / 48 % 48 + .5) / 48 - .5,
                z = (i / 48 / 48 + .5) / 48 - .4;
@@ -289,7 +216,7 @@ static void blob(void **state)
     result r = run_pass(*state, &m, &ordinates, 64, 24);
     errors e = compare(&m, &ordinates, &r, 24, "gaussian, sigma 3.6 cells");
     assert_true(e.mean < 2e-3 && e.largest < 0.02);
-    grid_free(&m);
+    medium_grid_free(&m);
 }
 
 // On cells of two voxels, and of four, where the medium is averaged.
@@ -297,7 +224,7 @@ static void step(void **state)
 {
     static const uint32_t size[3] = {64, 64, 64};
     struct ordinates_block ordinates = ordinates_make(64);
-    grid m = grid_make(cube, size, TYN_MEDIUM_DENSITY);
+    medium_grid m = medium_grid_make(cube, size, TYN_MEDIUM_DENSITY);
     for (uint32_t i = 0; i < 64 * 64 * 64; i++) {
         uint32_t x = i % 64, y = i / 64 % 64, z = i / 64 / 64;
         m.texels[0][i] = x > 20 && x < 50 && y > 30 && z < 40 ? 1 : 0;
@@ -309,7 +236,7 @@ static void step(void **state)
         assert_true(e.mean < (cells == 16 ? 0.006 : 0.002) &&
                     e.largest < (cells == 16 ? 0.25 : 0.1));
     }
-    grid_free(&m);
+    medium_grid_free(&m);
 }
 
 // Coefficients that are textures: three integrals of three channels.
@@ -318,8 +245,8 @@ static void coefficients(void **state)
     static const uint32_t size[3] = {20, 24, 16};
     static const float extent[3] = {1, 1.2f, 0.8f};
     struct ordinates_block ordinates = ordinates_make(20);
-    grid m = grid_make(extent, size, TYN_MEDIUM_COEFFICIENTS);
-    grid scaled = grid_make(extent, size, TYN_MEDIUM_COEFFICIENTS);
+    medium_grid m = medium_grid_make(extent, size, TYN_MEDIUM_COEFFICIENTS);
+    medium_grid scaled = medium_grid_make(extent, size, TYN_MEDIUM_COEFFICIENTS);
     for (uint32_t i = 0; i < 20 * 24 * 16; i++) {
         double x = i % 20 / 20.0, y = i / 20 % 24 / 24.0, z = i / 480 / 16.0;
         for (int c = 0; c < 3; c++) {
@@ -353,8 +280,8 @@ static void coefficients(void **state)
         printf("coefficients: worst %.2e of the largest\n", worst / most);
         assert_true(worst < (cells == 6 ? 0.06 : 0.03) * most);
     }
-    grid_free(&m);
-    grid_free(&scaled);
+    medium_grid_free(&m);
+    medium_grid_free(&scaled);
 }
 
 // Any medium on any lattice gives numbers, and beyond those in use no work is done.
@@ -376,7 +303,7 @@ static void extremes(void **state)
         ordinates.list[boxes[b].count / 2] = (struct ordinate){.direction = {0, 0, 0}};
         ordinates.list[boxes[b].count / 3] = (struct ordinate){.direction = {NAN, 0, 1}};
         for (size_t v = 0; v < sizeof values / sizeof values[0]; v++) {
-            grid m = grid_make(boxes[b].extent, boxes[b].size, TYN_MEDIUM_DENSITY);
+            medium_grid m = medium_grid_make(boxes[b].extent, boxes[b].size, TYN_MEDIUM_DENSITY);
             uint32_t texels = boxes[b].size[0] * boxes[b].size[1] * boxes[b].size[2], seed = 11;
             for (uint32_t i = 0; i < texels; i++) {
                 m.texels[0][i] = i % 3 ? (float)random_unit(&seed) * values[v] : 0;
@@ -396,7 +323,7 @@ static void extremes(void **state)
                 }
             }
             assert_int_equal(bad, 0);
-            grid_free(&m);
+            medium_grid_free(&m);
         }
     }
 }

@@ -4,6 +4,7 @@
 #include "sky_eval.comp.h"
 #include "passes/env_importance/env_importance.h"
 #include "scene/env_suns.h"
+#include "random_unit.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,18 +19,12 @@ static double band(double top, double bottom)
     return cos(top) - cos(bottom);
 }
 
-static double random_01(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (double)(*seed >> 8) / 16777216.0;
-}
-
 static float *make_map(uint32_t w, uint32_t h, bool sun)
 {
     float *map = malloc((size_t)w * h * 3 * sizeof *map);
     uint32_t seed = w * 7919 + h;
     for (size_t i = 0; i < (size_t)w * h * 3; i++) {
-        map[i] = (float)pow(random_01(&seed), 3) * 4;
+        map[i] = (float)pow(random_unit(&seed), 3) * 4;
     }
     if (sun) { // two discs, one of them on the seam
         const double suns[2][3] = {{0.6, 0.64, -0.48}, {0, 0.28, 0.96}};

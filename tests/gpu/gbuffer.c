@@ -98,11 +98,6 @@ static struct camera_block make_camera(const float at[3], const float forward[3]
 
 // ---- the twin ---------------------------------------------------------------------------------
 
-typedef struct hit {
-    int triangle; // -1: none
-    double distance, weights[3];
-} hit;
-
 // A ray of the camera through sample position (x, y) in pixels, in the world.
 static void make_ray(const struct camera_block *c, double x, double y, double o[3], double d[3])
 {
@@ -122,31 +117,6 @@ static void make_ray(const struct camera_block *c, double x, double y, double o[
             d[k] += (double)frame_rows[j][k] * m[1][j] / length;
         }
     }
-}
-
-static hit trace(const tyn_surfaces *s, const double o[3], const double d[3])
-{
-    hit best = {.triangle = -1, .distance = INFINITY};
-    for (uint32_t i = 0; i < s->num_triangles; i++) {
-        double e[2][3], from[3], n[3], q[3];
-        const float *v[3];
-        for (int k = 0; k < 3; k++) {
-            v[k] = s->vertices[s->triangles[i].vertices[k]].position;
-        }
-        for (int c = 0; c < 3; c++) {
-            e[0][c] = (double)v[1][c] - (double)v[0][c];
-            e[1][c] = (double)v[2][c] - (double)v[0][c];
-            from[c] = o[c] - (double)v[0][c];
-        }
-        vector_cross(e[0], e[1], n);
-        vector_cross(from, d, q);
-        double det = -vector_dot(d, n), distance = vector_dot(from, n) / det;
-        double b = vector_dot(e[1], q) / det, c = -vector_dot(e[0], q) / det;
-        if (b >= 0 && c >= 0 && b + c <= 1 && distance > 0 && distance < best.distance) {
-            best = (hit){(int)i, distance, {1 - b - c, b, c}};
-        }
-    }
-    return best;
 }
 
 // ---- the device -------------------------------------------------------------------------------
@@ -253,7 +223,7 @@ typedef struct expected {
     bool textured; // then the albedo is not looked at here
 } expected;
 
-static expected expect(const tyn_surfaces *s, const hit *h, const double d[3])
+static expected expect(const tyn_surfaces *s, const solids_hit *h, const double d[3])
 {
     expected right = {.distance = h->triangle < 0 ? 0 : h->distance,
                       .triangle = (uint32_t)(h->triangle + 1)};
@@ -411,14 +381,14 @@ static void as_rays_find_it(void **state)
         for (uint32_t y = 0; y < HEIGHT * (uint32_t)samples; y++) {
             for (uint32_t x = 0; x < width; x++) {
                 double o[3], d[3];
-                hit h = {0};
+                solids_hit h = {0};
                 int triangles[5];
                 for (int j = 0; j < 5;
                      j++) { // around, then the middle: rounding may decide at edges
                     const double at[2] = {x + 0.5 + (j == 0) * 0.01 - (j == 1) * 0.01,
                                           y + 0.5 + (j == 2) * 0.01 - (j == 3) * 0.01};
                     make_ray(&cameras[k], at[0] / samples, at[1] / samples, o, d);
-                    h = trace(&scene.surfaces, o, d);
+                    h = solids_ray(&scene.surfaces, o, d);
                     triangles[j] = h.triangle;
                 }
                 expected *e = &right[y * width + x];

@@ -3,6 +3,7 @@
 #include "llc_twin.h"
 #include "shaders/common/scene_args.h"
 #include "passes/lattice/lattice.h"
+#include "random_unit.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -107,12 +108,6 @@ static double imbalance(llc_twin *w, const float *moments, float leak)
 
 // ---- media --------------------------------------------------------------------------------------
 
-static double random_01(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (*seed >> 8) / 16777216.0;
-}
-
 // Homogeneous, with a beam along +z.
 static void fill_homogeneous(llc_twin *w, double sigma_s, double sigma_a, double g)
 {
@@ -130,12 +125,12 @@ static void fill_homogeneous(llc_twin *w, double sigma_s, double sigma_a, double
 static void fill_random(llc_twin *w, uint32_t seed)
 {
     for (int i = 0; i < w->n[0] * w->n[1] * w->n[2]; i++) {
-        bool empty = random_01(&seed) < 0.3;
-        w->sigma_s[i] = empty ? 0 : 6 * random_01(&seed);
-        w->sigma_a[i] = empty ? 0 : random_01(&seed);
-        w->g[i] = 0.9 * random_01(&seed) - 0.3;
-        w->emission[i] = empty ? 0 : 0.1 * random_01(&seed);
-        w->beam[i][0] = random_01(&seed);
+        bool empty = random_unit(&seed) < 0.3;
+        w->sigma_s[i] = empty ? 0 : 6 * random_unit(&seed);
+        w->sigma_a[i] = empty ? 0 : random_unit(&seed);
+        w->g[i] = 0.9 * random_unit(&seed) - 0.3;
+        w->emission[i] = empty ? 0 : 0.1 * random_unit(&seed);
+        w->beam[i][0] = random_unit(&seed);
         w->beam[i][1] = 0.6 * w->beam[i][0];
         w->beam[i][3] = -0.8 * w->beam[i][0];
     }

@@ -1,19 +1,13 @@
 // lattice_ordinates.c -- light of principal ordinates on the lattice, in probes and in the balance.
 #include "light_chain.h"
 #include "base/half.h"
-
 #include "shaders/beams/columns_args.h"
 #include "passes/lattice_ordinates/lattice_ordinates.h"
+#include "random_unit.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static double random_unit(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (*seed >> 8) * 0x1p-24;
-}
 
 // Even over the sphere (Fibonacci's spiral), each with its share of it.
 static struct ordinates_block sphere(uint32_t count)

@@ -81,6 +81,7 @@ static void start(uint32_t channels, const frame *then, const frame *now)
             s.cells[i][k] = (float)rand() / (float)RAND_MAX;
             s.source[i][k] = (float)rand() / (float)RAND_MAX - (k ? 0.5f : 0);
         }
+        s.cells[i][0] *= ch ? 50 : 1; // where it is dense, all that enters collides
     }
     for (int c = 0; c < 3; c++) {
         s.environment.sky[c] = 0.2f * s.params.shape.tint[c];

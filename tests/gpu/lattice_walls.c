@@ -3,6 +3,7 @@
 #include "wall_mesh.h"
 #include "shaders/common/scene_args.h"
 #include "passes/lattice/lattice.h"
+#include "random_unit.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -221,12 +222,6 @@ static double twin_sweep(const problem *p, twin *w)
     return change / most;
 }
 
-static double random_01(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (*seed >> 8) / 16777216.0;
-}
-
 static void matches_twin(void **state)
 {
     grid g = grid_of(13, 11, 9, 0.1);
@@ -235,11 +230,11 @@ static void matches_twin(void **state)
     problem p = problem_of(g, &m);
     uint32_t seed = 3;
     for (int i = 0; i < num_cells(&p); i++) {
-        p.cell[i][0] = (float)(6 * random_01(&seed));
-        p.cell[i][1] = (float)random_01(&seed);
-        p.cell[i][2] = (float)(0.8 * random_01(&seed) - 0.3);
-        p.cell[i][3] = (float)(0.1 * random_01(&seed));
-        p.beam[i][0] = (float)random_01(&seed);
+        p.cell[i][0] = (float)(6 * random_unit(&seed));
+        p.cell[i][1] = (float)random_unit(&seed);
+        p.cell[i][2] = (float)(0.8 * random_unit(&seed) - 0.3);
+        p.cell[i][3] = (float)(0.1 * random_unit(&seed));
+        p.beam[i][0] = (float)random_unit(&seed);
         p.beam[i][1] = 0.7f * p.beam[i][0];
     }
     p.boundary = 0.25f;

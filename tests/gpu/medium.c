@@ -3,6 +3,7 @@
 #include "passes/medium/medium.h"
 #include "point_pass.h"
 #include "medium_eval.comp.h"
+#include "random_unit.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,12 +19,6 @@ typedef struct world {
     bool direct, emissive;
     int32_t samples;
 } world;
-
-static double random_unit(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (*seed >> 8) * 0x1p-24;
-}
 
 static world world_make(uint32_t mode, const float extent[3], const uint32_t size[3],
                         tyn_extent atlas)

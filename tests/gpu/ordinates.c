@@ -6,6 +6,7 @@
 #include "scene/env_suns.h"
 #include "shaders/common/scene_args.h"
 #include "vector.h"
+#include "random_unit.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -34,12 +35,6 @@ static void direction(double x, double y, double w, double h, double d[3])
     d[2] = -sin(polar) * cos(azimuth);
 }
 
-static double random_01(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (double)(*seed >> 8) / 16777216.0;
-}
-
 static void fill_map(map_kind kind)
 {
     static const double Z[3] = {0.25, 0.5, 1.0}, Y[3] = {0.9, 0.95, 1.0}, G[3] = {0.15, 0.12, 0.10};
@@ -60,7 +55,7 @@ static void fill_map(map_kind kind)
                     v += vector_dot(d, spots[k]) > 0.97 - 0.02 * k ? 3 + k + c : 0;
                 }
             } else if (kind == NOISE) {
-                v = pow(random_01(&seed), 4);
+                v = pow(random_unit(&seed), 4);
             } else if (kind == BLACK) {
                 v = 0;
             }
@@ -637,7 +632,7 @@ static void moves_little(void **state)
     make_importance(importance, 3);
     uint32_t seed = 3;
     for (int i = 0; i < IMP_W * IMP_H; i++) {
-        changed[i] = importance[i] * (float)(1 + 0.02 * (random_01(&seed) - 0.5));
+        changed[i] = importance[i] * (float)(1 + 0.02 * (random_unit(&seed) - 0.5));
     }
     for (int kind = 0; kind < BLACK; kind++) {
         for (int n = 16; n <= 256; n *= 4) {

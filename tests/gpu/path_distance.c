@@ -21,33 +21,6 @@ static void make_scene(tyn_scene *scene)
     solids_sphere(scene, (float[]){1.5f, 0.6f, 1}, 0.5f, 8, false, m);
 }
 
-// Along the ray o + t d to the nearest triangle; 0: none. `doubtful`: it passes an edge that closely.
-static double trace(const tyn_surfaces *s, const double o[3], const double d[3], bool *doubtful)
-{
-    double best = INFINITY;
-    *doubtful = false;
-    for (uint32_t i = 0; i < s->num_triangles; i++) {
-        double e[2][3], from[3], n[3], q[3];
-        const float *v[3];
-        for (int k = 0; k < 3; k++) {
-            v[k] = s->vertices[s->triangles[i].vertices[k]].position;
-        }
-        for (int c = 0; c < 3; c++) {
-            e[0][c] = (double)v[1][c] - (double)v[0][c];
-            e[1][c] = (double)v[2][c] - (double)v[0][c];
-            from[c] = o[c] - (double)v[0][c];
-        }
-        vector_cross(e[0], e[1], n);
-        vector_cross(from, d, q);
-        const double det = -vector_dot(d, n), t = vector_dot(from, n) / det;
-        const double b = vector_dot(e[1], q) / det, c = -vector_dot(e[0], q) / det;
-        const double least = fmin(fmin(b, c), 1 - b - c);
-        *doubtful = *doubtful || (t > 0 && fabs(least) < 1e-4);
-        best = least >= 0 && t > 0 && t < best ? t : best;
-    }
-    return isinf(best) ? 0 : best;
-}
-
 static void distances(void **state)
 {
     gpu_test *t = *state;
@@ -117,12 +90,12 @@ static void distances(void **state)
                     d[k] += (double)rows[j][k] * m[1][j];
                 }
             }
-            bool doubtful;
-            const double right = trace(s, o, d, &doubtful);
+            const solids_hit hit = solids_ray(s, o, d);
+            const double right = hit.triangle < 0 ? 0 : hit.distance;
             assert_true(radiance[i][0] == 0 && (radiance[i][1] & 0x3fffff) == 0);
-            skipped += doubtful;
+            skipped += hit.doubtful;
             hits += right > 0;
-            if (!doubtful && !(fabs((double)found[i] - right) <= 1e-5 * right + 2e-6)) {
+            if (!hit.doubtful && !(fabs((double)found[i] - right) <= 1e-5 * right + 2e-6)) {
                 fail_msg("pixel %d: %g, not %g", i, (double)found[i], right);
             }
         }

@@ -4,6 +4,7 @@
 #include "shaders/common/counters.h"
 #include "shaders/beams/beam_args.h"
 #include "shaders/phase/scatter_lut_args.h"
+#include "random_unit.h"
 #include "vector.h"
 #include <math.h>
 #include <stdlib.h>
@@ -330,12 +331,6 @@ static twin_result twin(const march_scene *s, const double o[3], const double d[
     return r;
 }
 
-static double noise(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (*seed >> 8) / (double)(1 << 24);
-}
-
 // A lumpy box with a corner that is empty, an oblique sun, everything on.
 static void make_lumps(march_scene *s)
 {
@@ -357,12 +352,12 @@ static void make_lumps(march_scene *s)
     for (uint32_t i = 0; i < 12 * 8 * 16; i++) {
         uint32_t x = i % 12, z = i / 96;
         // Bricks of z >= 8, x >= 8 are empty, with a voxel to spare for the interpolation.
-        s->density.texels[i] = x >= 7 && z >= 7 ? 0 : (float)(0.5 + noise(&seed));
-        s->column.texels[i] = (float)(0.3 + 0.7 * noise(&seed));
+        s->density.texels[i] = x >= 7 && z >= 7 ? 0 : (float)(0.5 + random_unit(&seed));
+        s->column.texels[i] = (float)(0.3 + 0.7 * random_unit(&seed));
     }
     s->distance.texels[3] = 1;
     for (uint32_t i = 0; i < 5 * 4 * 6 * 4; i++) {
-        s->inscatter.texels[i] = (float)(0.1 + 0.2 * noise(&seed));
+        s->inscatter.texels[i] = (float)(0.1 + 0.2 * random_unit(&seed));
     }
     const float color[3] = {1.0f, 0.7f, 0.3f}, emission[3] = {0.02f, 0.05f, 0.01f};
     memcpy(s->light.color, color, sizeof color);

@@ -3,6 +3,7 @@
 #include "passes/raymarch/raymarch.h"
 #include "shaders/light/glow_args.h"
 #include "shaders/common/counters.h"
+#include "random_unit.h"
 #include "vector.h"
 #include <math.h>
 #include <stdio.h>
@@ -24,12 +25,6 @@ typedef struct sky_scene {
     bool with_glow;
 } sky_scene;
 
-static double noise(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (*seed >> 8) / (double)(1 << 24);
-}
-
 // A unit cube and a map turned against it. `tan_half` = half the field of view.
 static void make_scene(sky_scene *s, float x, float y, float z, float tan_half)
 {
@@ -46,11 +41,11 @@ static void make_scene(sky_scene *s, float x, float y, float z, float tan_half)
     vector_crossf(turned[2], turned[0], turned[1]);
     uint32_t seed = 3;
     for (int i = 0; i < MAP_W * MAP_H * 4; i++) {
-        s->map[i] = (float)(0.5 + noise(&seed));
+        s->map[i] = (float)(0.5 + random_unit(&seed));
     }
     s->map[4 * (15 * MAP_W + 20)] = 300; // a lamp
     for (int i = 0; i < GLOW_W * GLOW_H * GLOW_LEVELS * 4; i++) {
-        s->glow[i] = (float)(0.5 + noise(&seed));
+        s->glow[i] = (float)(0.5 + random_unit(&seed));
     }
     for (int i = 0; i < 3; i++) {
         s->camera.forward[i] = forward[i];

@@ -3,6 +3,7 @@
 #include "passes/scatter_lut/scatter_lut.h"
 #include "point_pass.h"
 #include "scatter_lut_eval.comp.h"
+#include "random_unit.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -117,12 +118,6 @@ static const float (*evaluate(gpu_test *t, const tyn_scatter_lut_params *lut_par
     tyn_graph_output(t->graph, "results", refs[3], true);
     gpu_run(t);
     return (const float(*)[2])gpu_map(t, "results");
-}
-
-static double random_unit(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (*seed >> 8) * 0x1p-24;
 }
 
 enum { COUNT = 600 };

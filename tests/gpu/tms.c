@@ -4,6 +4,7 @@
 #include "lobe_series.h"
 #include "point_pass.h"
 #include "tms_eval.comp.h"
+#include "random_unit.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,12 +37,6 @@ static const float *evaluate(gpu_test *t, const tyn_scatter_lut_params *lut_para
     tyn_graph_output(t->graph, "results", refs[3], true);
     gpu_run(t);
     return gpu_map(t, "results");
-}
-
-static double random_unit(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (*seed >> 8) * 0x1p-24;
 }
 
 static double random_depth(double f, uint32_t *seed)

@@ -1,26 +1,7 @@
 // milk.c -- the thick milk is solved in six sweeps, where plain iteration takes more than a hundred.
 // argv[1] is the folder of the sample scenes.
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-#include <tyndall/io.h>
+#include "scenes.h"
 #include <tyndall/offline.h>
-
-static const char *folder;
-
-static void on_log(void *user, tyn_log_level level, const char *message)
-{
-    (void)user;
-    (void)level;
-    print_message("%s\n", message);
-}
-static const tyn_log log_all = {on_log, NULL, TYN_LOG_WARN};
 
 typedef struct solver {
     const char *name;
@@ -41,7 +22,7 @@ static double imbalance(tyn_device *dev, const tyn_scene *scene, const solver *h
     tyn_settings *settings = NULL;
     assert_int_equal(tyn_settings_create(&settings), TYN_OK);
     for (size_t i = 0; i < sizeof(set) / sizeof(set[0]); i++) {
-        assert_int_equal(tyn_settings_set(settings, set[i][0], set[i][1], &log_all), TYN_OK);
+        assert_int_equal(tyn_settings_set(settings, set[i][0], set[i][1], &scenes_log), TYN_OK);
     }
     tyn_offline *off = NULL;
     assert_int_equal(
@@ -69,7 +50,7 @@ static void solve(const tyn_scene *scene, const char *light)
         {"as it is", "2", "1", 6, 0, 0.005}, {"as it is", "2", "1", 8, 0, 0.002},
     };
     tyn_device *dev = NULL;
-    if (tyn_device_open(tyn_device_open_params(.log = log_all), &dev) != TYN_OK) {
+    if (tyn_device_open(tyn_device_open_params(.log = scenes_log), &dev) != TYN_OK) {
         print_message("skipped: no device\n");
         skip();
     }
@@ -85,19 +66,10 @@ static void solve(const tyn_scene *scene, const char *light)
     tyn_device_destroy(&dev);
 }
 
-static tyn_scene load(void)
-{
-    char path[4096];
-    snprintf(path, sizeof(path), "%s/milk.gltf", folder);
-    tyn_scene scene;
-    assert_int_equal(tyn_scene_load(&scene, path, NULL, &log_all), TYN_OK);
-    return scene;
-}
-
 static void under_its_sky(void **state)
 {
     (void)state;
-    tyn_scene scene = load();
+    tyn_scene scene = scenes_load("milk");
     solve(&scene, "its sky");
     tyn_scene_finish(&scene);
 }
@@ -105,7 +77,7 @@ static void under_its_sky(void **state)
 static void under_a_sun(void **state)
 {
     (void)state;
-    tyn_scene scene = load();
+    tyn_scene scene = scenes_load("milk");
     scene.environment.present = false;
     scene.num_lights = 1;
     scene.lights[0] = (tyn_light){.kind = TYN_LIGHT_DIRECTIONAL,
@@ -117,11 +89,9 @@ static void under_a_sun(void **state)
 
 int main(int argc, char **argv)
 {
-    if (argc != 2) {
-        fprintf(stderr, "usage: milk FOLDER\n");
+    if (!scenes_folder(argc, argv)) {
         return 2;
     }
-    folder = argv[1];
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(under_a_sun),
         cmocka_unit_test(under_its_sky),

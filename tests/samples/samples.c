@@ -1,37 +1,7 @@
 // samples.c -- the sample scenes are what they are said to be: they load, the smoke fills its part of
 // the picture, the cloud is thick, the sky has its sun. argv[1] is their folder.
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-#include <tyndall/io.h>
+#include "scenes.h"
 #include <tyndall/offline.h>
-
-static const char *folder;
-
-static void on_log(void *user, tyn_log_level level, const char *message)
-{
-    (void)user;
-    (void)level;
-    print_message("%s\n", message);
-}
-static const tyn_log log_all = {on_log, NULL, TYN_LOG_WARN};
-
-static tyn_scene load(const char *name)
-{
-    char path[4096];
-    snprintf(path, sizeof(path), "%s/%s.gltf", folder, name);
-    tyn_scene scene;
-    tyn_scene_init(&scene);
-    assert_int_equal(tyn_scene_load(&scene, path, NULL, &log_all), TYN_OK);
-    assert_int_equal(scene.num_warnings, 0);
-    return scene;
-}
 
 static void all_load(void **state)
 {
@@ -44,8 +14,7 @@ static void all_load(void **state)
         "many-lights",
     };
     for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
-        tyn_scene scene = load(names[i]);
-        assert_int_equal(tyn_scene_check(&scene, &log_all), TYN_OK);
+        tyn_scene scene = scenes_load(names[i]);
         assert_true(scene.num_cameras >= 1);
         tyn_scene_finish(&scene);
     }
@@ -78,7 +47,7 @@ static float thickest_column(const tyn_scene *scene, int axis)
 static void cloud_is_thick(void **state)
 {
     (void)state;
-    tyn_scene scene = load("cloud");
+    tyn_scene scene = scenes_load("cloud");
     const float depth[3] = {thickest_column(&scene, 0), thickest_column(&scene, 1),
                             thickest_column(&scene, 2)};
     print_message("cloud: optical depth %.1f, %.1f, %.1f along x, y, z\n", (double)depth[0],
@@ -92,7 +61,7 @@ static void cloud_is_thick(void **state)
 static void smoke_is_inside(void **state)
 {
     (void)state;
-    tyn_scene scene = load("smoke");
+    tyn_scene scene = scenes_load("smoke");
     const tyn_volume *v = &scene.volumes[0];
     assert_true(v->size[0] >= 96 && v->size[1] >= 160 && v->size[2] >= 96);
     float edge = 0;
@@ -141,7 +110,7 @@ static double irradiance(const tyn_environment *e, const double towards[3], doub
 static void sky_has_its_sun(void **state)
 {
     (void)state;
-    tyn_scene scene = load("smoke-sky");
+    tyn_scene scene = scenes_load("smoke-sky");
     const double pi = 3.14159265358979, e = 35 * pi / 180, a = 75 * pi / 180;
     const double sun[3] = {cos(e) * sin(a), sin(e), -cos(e) * cos(a)}, up[3] = {0, 1, 0};
     double bright, dark;
@@ -169,7 +138,7 @@ static void sky_has_its_sun(void **state)
 static void courtyard_has_contrast(void **state)
 {
     (void)state;
-    tyn_scene scene = load("plume-contrast");
+    tyn_scene scene = scenes_load("plume-contrast");
     const double up[3] = {0, 1, 0};
     double bright, dark;
     const double down = irradiance(&scene.environment, up, 0, &bright, &dark);
@@ -183,7 +152,7 @@ static void courtyard_has_contrast(void **state)
 static void milk_is_thick(void **state)
 {
     (void)state;
-    tyn_scene scene = load("milk");
+    tyn_scene scene = scenes_load("milk");
     const tyn_medium *m = &scene.media[0];
     for (int k = 0; k < 3; k++) {
         assert_true(m->sigma_a[k] < 1e-3f * m->sigma_s[k]);
@@ -200,13 +169,13 @@ static void smoke_fills_the_picture(void **state)
     (void)state;
     enum { SIZE = 512 };
     tyn_device *dev = NULL;
-    if (tyn_device_open(tyn_device_open_params(.log = log_all), &dev) != TYN_OK) {
+    if (tyn_device_open(tyn_device_open_params(.log = scenes_log), &dev) != TYN_OK) {
         print_message("skipped: no device\n");
         skip();
     }
     tyn_offline *off = NULL;
     assert_int_equal(tyn_offline_create(dev, tyn_offline_params(.method = "single"), &off), TYN_OK);
-    tyn_scene scene = load("smoke");
+    tyn_scene scene = scenes_load("smoke");
     const tyn_view view = {.camera = scene.cameras[0],
                            .width = SIZE,
                            .height = SIZE,
@@ -228,11 +197,9 @@ static void smoke_fills_the_picture(void **state)
 
 int main(int argc, char **argv)
 {
-    if (argc != 2) {
-        fprintf(stderr, "usage: samples FOLDER\n");
+    if (!scenes_folder(argc, argv)) {
         return 2;
     }
-    folder = argv[1];
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_load),
         cmocka_unit_test(cloud_is_thick),

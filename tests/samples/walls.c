@@ -1,37 +1,6 @@
 // walls.c -- the sample scenes with lamps and walls are what they are said to be: solids are closed and turned
 // outwards, so that no light leaks, and the room is that of the reference. argv[1] is their folder.
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-#include <tyndall/io.h>
-
-static const char *folder;
-
-static void on_log(void *user, tyn_log_level level, const char *message)
-{
-    (void)user;
-    (void)level;
-    print_message("%s\n", message);
-}
-static const tyn_log log_all = {on_log, NULL, TYN_LOG_WARN};
-
-static tyn_scene load(const char *name)
-{
-    char path[4096];
-    snprintf(path, sizeof(path), "%s/%s.gltf", folder, name);
-    tyn_scene scene;
-    tyn_scene_init(&scene);
-    assert_int_equal(tyn_scene_load(&scene, path, NULL, &log_all), TYN_OK);
-    assert_int_equal(scene.num_warnings, 0);
-    assert_int_equal(tyn_scene_check(&scene, &log_all), TYN_OK);
-    return scene;
-}
+#include "scenes.h"
 
 // ---- closed surfaces ----------------------------------------------------------------------------
 
@@ -183,7 +152,7 @@ static void surfaces_are_closed(void **state)
         {"many-lights", 11112, 0, 20, 10, 0, 1, true},
     };
     for (size_t i = 0; i < sizeof(scenes) / sizeof(scenes[0]); i++) {
-        tyn_scene scene = load(scenes[i].name);
+        tyn_scene scene = scenes_load(scenes[i].name);
         const tyn_surfaces *s = &scene.surfaces;
         uint32_t kinds[3] = {0, 0, 0};
         for (uint32_t l = 0; l < scene.num_lights; l++) {
@@ -219,7 +188,7 @@ static void room_is_the_reference(void **state)
 {
     (void)state;
     const double pi = 3.14159265358979;
-    tyn_scene scene = load("room");
+    tyn_scene scene = scenes_load("room");
     const tyn_medium *fog = &scene.media[0];
     const tyn_light *lamp = &scene.lights[0];
     const tyn_camera *camera = &scene.cameras[0];
@@ -263,7 +232,7 @@ static void room_is_the_reference(void **state)
 static void cave_is_dusty(void **state)
 {
     (void)state;
-    tyn_scene scene = load("vpl-cave");
+    tyn_scene scene = scenes_load("vpl-cave");
     const tyn_volume *v = &scene.volumes[0];
     const size_t n = (size_t)v->size[0] * v->size[1] * v->size[2];
     double mean = 0;
@@ -282,7 +251,7 @@ static void cave_is_dusty(void **state)
 static void cornell_has_its_lamp(void **state)
 {
     (void)state;
-    tyn_scene scene = load("cornell-smoke");
+    tyn_scene scene = scenes_load("cornell-smoke");
     const tyn_surfaces *s = &scene.surfaces;
     double area = 0;
     for (uint32_t t = 0; t < s->num_triangles; t++) {
@@ -303,11 +272,9 @@ static void cornell_has_its_lamp(void **state)
 
 int main(int argc, char **argv)
 {
-    if (argc != 2) {
-        fprintf(stderr, "usage: walls FOLDER\n");
+    if (!scenes_folder(argc, argv)) {
         return 2;
     }
-    folder = argv[1];
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(surfaces_are_closed),
         cmocka_unit_test(room_is_the_reference),

@@ -1,5 +1,6 @@
 // solids.c -- surfaces made by hand.
 #include "solids.h"
+#include "vector.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -202,4 +203,33 @@ void solids_hierarchy(tyn_scene *scene, uint32_t leaf)
         s->triangles[i] = items[i].triangle;
     }
     free(items);
+}
+
+solids_hit solids_ray(const tyn_surfaces *s, const double origin[3], const double direction[3])
+{
+    solids_hit best = {.triangle = -1, .distance = INFINITY};
+    for (uint32_t i = 0; i < s->num_triangles; i++) {
+        double e[2][3], from[3], n[3], q[3];
+        const float *v[3];
+        for (int k = 0; k < 3; k++) {
+            v[k] = s->vertices[s->triangles[i].vertices[k]].position;
+        }
+        for (int c = 0; c < 3; c++) {
+            e[0][c] = (double)v[1][c] - (double)v[0][c];
+            e[1][c] = (double)v[2][c] - (double)v[0][c];
+            from[c] = origin[c] - (double)v[0][c];
+        }
+        vector_cross(e[0], e[1], n);
+        vector_cross(from, direction, q);
+        const double det = -vector_dot(direction, n), distance = vector_dot(from, n) / det;
+        const double b = vector_dot(e[1], q) / det, c = -vector_dot(e[0], q) / det;
+        const double least = fmin(fmin(b, c), 1 - b - c);
+        best.doubtful = best.doubtful || (distance > 0 && fabs(least) < 1e-4);
+        if (least >= 0 && distance > 0 && distance < best.distance) {
+            best.triangle = (int)i;
+            best.distance = distance;
+            memcpy(best.weights, (double[]){1 - b - c, b, c}, sizeof best.weights);
+        }
+    }
+    return best;
 }

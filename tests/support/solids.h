@@ -21,3 +21,11 @@ void solids_sphere(tyn_scene *scene, const float centre[3], float radius, uint32
 
 // Sorts the triangles into a hierarchy of at most `leaf` triangles a leaf: split at the median.
 void solids_hierarchy(tyn_scene *scene, uint32_t leaf);
+
+// What a ray meets first, by trying all triangles in double precision.
+typedef struct solids_hit {
+    int triangle; // -1: none
+    double distance, weights[3];
+    bool doubtful; // it passes an edge so closely that rounding may decide
+} solids_hit;
+solids_hit solids_ray(const tyn_surfaces *s, const double origin[3], const double direction[3]);

@@ -1,17 +1,12 @@
 // beam_plan.c -- the layout of the suns' grids: sizes that do not follow the sun, and maps that agree.
 #include "passes/beam/beam.h"
+#include "random_unit.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <string.h>
 #include <cmocka.h>
-
-static double random_unit(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return (*seed >> 8) * 0x1p-24;
-}
 
 static struct medium_block box(const uint32_t size[3], uint32_t mode)
 {
