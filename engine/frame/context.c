@@ -404,7 +404,7 @@ static tyn_result make_job(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     if (result != TYN_OK) {
         return result;
     }
-    *job = (tyn_job){.method = ctx->method,
+    *job = (tyn_job){.method = &ctx->method->info,
                      .scene = frame->scene,
                      .view = view,
                      .settings = ctx->settings,

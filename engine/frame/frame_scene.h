@@ -1,6 +1,6 @@
 // frame_scene.h -- turns a scene and a view into the blocks that shaders read.
 #pragma once
-#include "methods/job.h"
+#include "job/job.h"
 #include "frame/surfaces.h"
 
 // Everything in the medium frame M (scene_args.h). `map` is what tyn_map_light_find says of the scene's

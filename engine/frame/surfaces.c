@@ -1,7 +1,7 @@
 // surfaces.c -- mip chains of textures, made when surfaces change.
 #include "frame/surfaces.h"
 #include "frame/surface_tables.h"
-#include "methods/views.h"
+#include "light/shadow_cull.h"
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>

@@ -12,7 +12,7 @@ typedef struct tyn_surface_data {
     uint32_t num_textures;
     uint32_t *texels; // of all levels of all textures; at least one
     size_t num_texels;
-    struct surface_range *below; // of every node (methods/views.h); NULL without a hierarchy
+    struct surface_range *below; // of every node (light/shadow_cull.h); NULL without a hierarchy
     struct tyn_views_seen *seen; // with `below`
     uint32_t num_nodes;
     void *emitters, *areas; // frame/surface_tables.h; NULL if there are none or nobody reads them

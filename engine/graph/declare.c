@@ -194,8 +194,10 @@ void tyn_graph_mark_media(tyn_graph *g, tyn_ref ref)
 
 void tyn_graph_output(tyn_graph *g, const char *name, tyn_ref ref, bool readback)
 {
-    const resource *r = find(g, ref);
-    if (!r) {
+    if (g->status != TYN_OK) {
+        return; // nothing is made any more
+    }
+    if (!find(g, ref)) {
         graph_fail(g, TYN_ERR_PARAMS, "output '%s' is not a resource", name);
     } else if (g->num_outputs == sizeof g->outputs / sizeof g->outputs[0]) {
         graph_fail(g, TYN_ERR_PARAMS, "output '%s' is one too many", name);
@@ -378,8 +380,16 @@ static void publish_outputs(tyn_graph *g, node *n, uint32_t index, tyn_ref *refs
     }
 }
 
+void tyn_graph_refuse(tyn_graph *g, tyn_result why)
+{
+    g->status = g->status == TYN_OK ? why : g->status;
+}
+
 tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *params, tyn_ref *refs)
 {
+    if (g->status != TYN_OK) {
+        return g->status;
+    }
     node *grown = grow(g->nodes, g->num_nodes, &g->cap_nodes, sizeof *g->nodes);
     size_t need = g->params_used + (pass->params_size + 15) / 16 * 16;
     if (grown) {

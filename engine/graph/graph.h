@@ -46,6 +46,12 @@ tyn_ref tyn_graph_upload_image(tyn_graph *g, const char *name, tyn_dim dim, VkFo
 tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *params,
                          tyn_ref *refs);
 
+// What went wrong first since tyn_graph_begin, TYN_OK if nothing did. Nodes that are added after that are left out, so
+// that it is enough to ask once.
+tyn_result tyn_graph_status(const tyn_graph *g);
+// Makes it so, for a fault that the log has said.
+void tyn_graph_refuse(tyn_graph *g, tyn_result why);
+
 // A persistent image or buffer that starts as zeros and lives across frames: the INOUT of
 // accumulating passes. `key` changes = start from zeros again; so does another shape. Compiling
 // anew because other nodes or shapes were declared leaves it as it is.
@@ -77,9 +83,6 @@ VkFormat tyn_graph_format(const tyn_graph *g, tyn_ref ref);
 uint32_t tyn_graph_drawn_side(const tyn_graph *g);
 
 // ---- compile, record ------------------------------------------------------------------------
-
-// The first error of the declaration, or TYN_OK.
-tyn_result tyn_graph_status(const tyn_graph *g);
 
 // True if the current declaration has the nodes and shapes of the compiled one.
 bool tyn_graph_matches(const tyn_graph *g);

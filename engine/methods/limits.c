@@ -1,7 +1,5 @@
 // limits.c -- the rows of methods' tables that count in a regime, and a frame's warnings from them.
 #include "methods/limits.h"
-#include "methods/nodes.h"
-#include "methods/walls.h"
 #include "base/forward_lobe.h"
 #include <math.h>
 #include <stdio.h>
@@ -179,7 +177,7 @@ void tyn_limits_warn(const tyn_job *job, float cell)
         .sky_on_surfaces = lit && !job->frame->empty && tyn_has_walls(job->frame),
     };
     const tyn_limit *row = NULL;
-    while ((row = tyn_limit_next(job->method->info.limits, row, &r)) != NULL) {
+    while ((row = tyn_limit_next(job->method->limits, row, &r)) != NULL) {
         if (row->warning.format && hold(row->warned, TYN_LIMIT_BOUNDS, &r)) {
             char line[256];
             tyn_limit_say(row, &row->warning, &r, line, sizeof line);

@@ -1,6 +1,6 @@
 // limits.h -- what the tables of methods' limits (tyn_limit, docs/stress.md) are written with.
 #pragma once
-#include "methods/job.h"
+#include "job/job.h"
 #include <math.h>
 
 #define TYN_FIGURE(name) offsetof(tyn_regime, name)

@@ -1,14 +1,13 @@
 // path.c -- method "path": unbiased path tracing, the reference that the other methods are judged by.
-#include "methods/nodes.h"
 #include "methods/limits.h"
-#include "passes/medium/medium.h"
+#include "methods/method.h"
 #include "passes/path/path.h"
 #include "passes/path_probe/path_probe.h"
 #include "passes/path_balance/path_balance.h"
 #include "passes/path_fluxes/path_fluxes.h"
 #include "passes/path_distance/path_distance.h"
 #include "shaders/path/path_args.h"
-#include "passes/tonemap/tonemap.h"
+#include "view/view.h"
 #include <tyndall/registry.h>
 #include <math.h>
 #include <string.h>
@@ -225,7 +224,7 @@ static tyn_ref history(tyn_graph *g, const char *name, uint32_t width, uint32_t 
                                    (tyn_extent){width, height, 1}, 1);
 }
 
-static tyn_result add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
+static void add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
 {
     tyn_path_params params;
     set_params(&params, job, &tyn_pass_path);
@@ -241,21 +240,19 @@ static tyn_result add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
         [PATH_PORT_MEAN_TRANSMITTANCE] = history(g, "path_transmittance", lw, lh),
     };
     connect_scene(refs, job, bricks);
-    tyn_result result = tyn_graph_add(g, &tyn_pass_path, &params, refs);
-    if (result != TYN_OK) {
-        return result;
-    }
+    tyn_graph_add(g, &tyn_pass_path, &params, refs);
     tyn_job_output(g, job, TYN_OUTPUT_RADIANCE, refs[PATH_PORT_RADIANCE]);
     tyn_job_output(g, job, TYN_OUTPUT_ERROR, refs[PATH_PORT_ERROR]);
     tyn_job_output(g, job, TYN_OUTPUT_SINGLE, refs[PATH_PORT_SINGLE]);
     tyn_job_output(g, job, TYN_OUTPUT_MULTIPLE, refs[PATH_PORT_MULTIPLE]);
     tyn_job_output(g, job, TYN_OUTPUT_TRANSMITTANCE, refs[PATH_PORT_TRANSMITTANCE]);
     tyn_job_counters(g, job, &tyn_pass_path, refs[PATH_PORT_COUNTERS]);
-    return job->outputs & TYN_OUTPUT_DISPLAY ? tyn_add_display(g, job, refs[PATH_PORT_RADIANCE])
-                                             : TYN_OK;
+    if (job->outputs & TYN_OUTPUT_DISPLAY) {
+        tyn_add_display(g, job, refs[PATH_PORT_RADIANCE]);
+    }
 }
 
-static tyn_result add_probes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
+static void add_probes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
 {
     tyn_path_params params;
     set_params(&params, job, &tyn_pass_path_probe);
@@ -265,12 +262,9 @@ static tyn_result add_probes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
             g, "path_probes", tyn_path_probe_state_size(job->view->num_points), 1),
     };
     connect_scene(refs, job, bricks);
-    tyn_result result = tyn_graph_add(g, &tyn_pass_path_probe, &params, refs);
-    if (result == TYN_OK) {
-        tyn_job_output(g, job, TYN_OUTPUT_PROBE, refs[PATH_PROBE_PORT_RESULTS]);
-        tyn_job_counters(g, job, &tyn_pass_path_probe, refs[PATH_PROBE_PORT_COUNTERS]);
-    }
-    return result;
+    tyn_graph_add(g, &tyn_pass_path_probe, &params, refs);
+    tyn_job_output(g, job, TYN_OUTPUT_PROBE, refs[PATH_PROBE_PORT_RESULTS]);
+    tyn_job_counters(g, job, &tyn_pass_path_probe, refs[PATH_PROBE_PORT_COUNTERS]);
 }
 
 // The box that is balanced.
@@ -303,7 +297,7 @@ static void set_lamp_power(tyn_path_params *p, const tyn_frame_scene *frame)
 }
 
 // One `sample` of a balance is a dispatch of some thousand paths: as many as the time limit allows.
-static tyn_result add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
+static void add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
 {
     enum { BALANCE_CHUNKS = 1, SOLID_CHUNKS = 4, CHUNK_MIN = 4096, CHUNK_MAX = 16384 };
     tyn_path_params params;
@@ -323,12 +317,9 @@ static tyn_result add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
         [PATH_BALANCE_PORT_AREAS] = job->refs.areas,
     };
     connect_scene(refs, job, bricks);
-    tyn_result result = tyn_graph_add(g, &tyn_pass_path_balance, &params, refs);
-    if (result == TYN_OK) {
-        tyn_job_output(g, job, TYN_OUTPUT_BALANCE, refs[PATH_BALANCE_PORT_BALANCE]);
-        tyn_job_counters(g, job, &tyn_pass_path_balance, refs[PATH_BALANCE_PORT_COUNTERS]);
-    }
-    return result;
+    tyn_graph_add(g, &tyn_pass_path_balance, &params, refs);
+    tyn_job_output(g, job, TYN_OUTPUT_BALANCE, refs[PATH_BALANCE_PORT_BALANCE]);
+    tyn_job_counters(g, job, &tyn_pass_path_balance, refs[PATH_BALANCE_PORT_COUNTERS]);
 }
 
 // What paths from suns and surroundings do not carry.
@@ -359,7 +350,7 @@ static tyn_result check_fluxes(const tyn_job *job)
     return wrong ? TYN_ERR_UNSUPPORTED : TYN_OK;
 }
 
-static tyn_result add_fluxes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
+static void add_fluxes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
 {
     tyn_path_params params;
     set_params(&params, job, &tyn_pass_path_fluxes);
@@ -378,15 +369,10 @@ static tyn_result add_fluxes(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
             tyn_graph_history_buffer(g, "path_fluxes", tyn_path_fluxes_state_size(), 1),
     };
     connect_scene(refs, job, bricks);
-    tyn_result result = check_fluxes(job);
-    if (result == TYN_OK) {
-        result = tyn_graph_add(g, &tyn_pass_path_fluxes, &params, refs);
-    }
-    if (result == TYN_OK) {
-        tyn_job_output(g, job, TYN_OUTPUT_FLUXES, refs[PATH_FLUXES_PORT_FLUXES]);
-        tyn_job_counters(g, job, &tyn_pass_path_fluxes, refs[PATH_FLUXES_PORT_COUNTERS]);
-    }
-    return result;
+    tyn_graph_refuse(g, check_fluxes(job));
+    tyn_graph_add(g, &tyn_pass_path_fluxes, &params, refs);
+    tyn_job_output(g, job, TYN_OUTPUT_FLUXES, refs[PATH_FLUXES_PORT_FLUXES]);
+    tyn_job_counters(g, job, &tyn_pass_path_fluxes, refs[PATH_FLUXES_PORT_COUNTERS]);
 }
 
 // A periodic medium's own axes must be those of M; surfaces repeat with it, each copy in a period of its own.
@@ -417,65 +403,69 @@ static tyn_result check_repeat(const tyn_job *job)
     return TYN_OK;
 }
 
-static tyn_result add_distances(tyn_graph *g, const tyn_job *job, tyn_picture_inputs *in)
+static void add_distances(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
 {
     const tyn_path_distance_params params = {job->view->width, job->view->height};
     tyn_ref refs[PATH_DISTANCE_NUM_PORTS] = {
         [PATH_DISTANCE_PORT_CAMERA] = job->refs.camera,
     };
     tyn_connect(refs, PATH_DISTANCE_PORT_SURFACES, job->refs.geometry);
-    tyn_result result = tyn_graph_add(g, &tyn_pass_path_distance, &params, refs);
+    tyn_graph_add(g, &tyn_pass_path_distance, &params, refs);
     in->surface = refs[PATH_DISTANCE_PORT_RADIANCE];
     in->distances = refs[PATH_DISTANCE_PORT_DISTANCES];
-    return result;
 }
 
 // Depths have no noise to take away: the ray march finds them, and does nothing else here.
-static tyn_result add_depth(tyn_graph *g, const tyn_job *job, const tyn_media_refs *media)
+static void add_depth(tyn_graph *g, const tyn_job *job, const tyn_sources *s)
 {
-    const tyn_uint *repeat = job->frame->medium.repeat;
-    if (repeat[0] || repeat[1] || repeat[2]) {
+    if (tyn_is_periodic(job->frame)) {
         tyn_log_print(job->log, TYN_LOG_ERROR,
                       "the layer 'depth' does not know periodic media (\"repeat\"); leave it out");
-        return TYN_ERR_PARAMS;
+        tyn_graph_refuse(g, TYN_ERR_PARAMS);
+        return;
     }
     tyn_job depth = *job;
     depth.outputs = TYN_OUTPUT_DEPTH;
-    tyn_picture_inputs in = {.media = *media};
-    tyn_result result = job->frame->num_triangles ? add_distances(g, &depth, &in) : TYN_OK;
-    bool nothing = job->frame->empty && !job->frame->num_triangles;
-    return result == TYN_OK ? tyn_add_picture(g, &depth, nothing ? NULL : &in) : result;
+    const tyn_field no_field = {0};
+    tyn_view_inputs view = {.sources = s, .field = &no_field};
+    if (job->frame->num_triangles) {
+        add_distances(g, &depth, &view);
+    }
+    tyn_add_picture(g, &depth, &view);
 }
 
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
 {
     const uint32_t not_images =
         TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_FLUXES;
+    tyn_sources s = {0};
     tyn_result result = check_repeat(job);
-    tyn_media_refs media = {{{0}}};
-    if (result == TYN_OK && !job->frame->empty) {
-        result = tyn_add_medium(g, job, &media);
+    if (result != TYN_OK) {
+        return result;
     }
-    if (result == TYN_OK && job->outputs & ~not_images) {
-        result = add_image(g, job, media.bricks);
+    if (!job->frame->empty) {
+        tyn_add_medium(g, job, &s);
     }
-    if (result == TYN_OK && job->outputs & TYN_OUTPUT_PROBE) {
-        result = add_probes(g, job, media.bricks);
+    if (job->outputs & ~not_images) {
+        add_image(g, job, s.bricks);
     }
-    if (result == TYN_OK && job->outputs & TYN_OUTPUT_DEPTH) {
-        result = add_depth(g, job, &media);
+    if (job->outputs & TYN_OUTPUT_PROBE) {
+        add_probes(g, job, s.bricks);
     }
-    if (result == TYN_OK && job->outputs & TYN_OUTPUT_BALANCE) {
-        result = add_balance(g, job, media.bricks);
+    if (job->outputs & TYN_OUTPUT_DEPTH) {
+        add_depth(g, job, &s);
     }
-    if (result == TYN_OK && job->outputs & TYN_OUTPUT_FLUXES) {
-        result = add_fluxes(g, job, media.bricks);
+    if (job->outputs & TYN_OUTPUT_BALANCE) {
+        add_balance(g, job, s.bricks);
     }
-    return result;
+    if (job->outputs & TYN_OUTPUT_FLUXES) {
+        add_fluxes(g, job, s.bricks);
+    }
+    return tyn_graph_status(g);
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,       &tyn_pass_path,        &tyn_pass_path_probe,
+    TYN_MEDIUM_PASSES,      &tyn_pass_path,        &tyn_pass_path_probe,
     &tyn_pass_path_balance, &tyn_pass_path_fluxes, &tyn_pass_path_distance,
     &tyn_pass_raymarch,     &tyn_pass_tonemap,     NULL,
 };

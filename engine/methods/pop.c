@@ -6,47 +6,14 @@
 // medium shows of it is smeared for each pixel (glow). What has left the beams and the ordinates goes
 // into one solve on a lattice of cubic cells for all lights together, seen from the camera by merge
 // and raymarch. A node that a scene does not need is not declared.
-#include "methods/field.h"
+#include "light/sources.h"
 #include "methods/limits.h"
-#include "methods/lamps.h"
-#include "methods/shading.h"
-#include "methods/sky.h"
-#include "methods/walls.h"
+#include "methods/method.h"
+#include "solve/lattice.h"
+#include "view/view.h"
 #include "base/forward_lobe.h"
-#include "passes/medium/medium.h"
-#include "passes/beam/beam.h"
-#include "passes/columns/columns.h"
-#include "passes/columns_average/columns_average.h"
-#include "passes/env_glow/env_glow.h"
-#include "passes/env_importance/env_importance.h"
-#include "passes/importance/importance.h"
-#include "passes/ordinates/ordinates.h"
-#include "passes/scatter_lut/scatter_lut.h"
-#include "passes/gbuffer/gbuffer.h"
-#include "passes/rsm/rsm.h"
-#include "passes/shade/shade.h"
-#include "passes/light_cells/light_cells.h"
-#include "passes/shadow_map/shadow_map.h"
-#include "passes/vpl/vpl.h"
-#include "passes/lattice_cells/lattice_cells.h"
-#include "passes/lattice_source/lattice_source.h"
-#include "passes/lattice_ordinates/lattice_ordinates.h"
-#include "passes/lattice_lamps/lattice_lamps.h"
-#include "passes/lattice/lattice.h"
-#include "passes/lattice_recall/lattice_recall.h"
-#include "passes/lattice_keep/lattice_keep.h"
-#include "passes/merge/merge.h"
-#include "passes/probe/probe.h"
-#include "passes/balance/balance.h"
-#include "passes/radial_beam/radial_beam.h"
-#include "passes/walls/walls.h"
-#include "passes/wall_light/wall_light.h"
-#include "passes/rooms/rooms.h"
-#include "passes/composite/composite.h"
-#include "passes/tonemap/tonemap.h"
 #include <tyndall/registry.h>
 #include <math.h>
-#include <string.h>
 
 static const uint32_t field_outputs = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE;
 
@@ -54,40 +21,13 @@ static const uint32_t field_outputs = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE;
 // this depth along the longest way through the box the lattice is left out.
 static const float thin_depth = 0.05f;
 
-// Least and largest g of what scatters in the scene; 0 and 0 if nothing does.
-static void range_of_g(const tyn_scene *scene, float *least, float *most)
-{
-    *least = 1.0f;
-    *most = -1.0f;
-    for (uint32_t i = 0; i < scene->num_shapes; i++) {
-        const tyn_medium *m = &scene->media[scene->shapes[i].medium];
-        for (int c = 0; c < 3; c++) {
-            if (m->sigma_s[c] * m->density_scale > 0.0f) {
-                *least = fminf(*least, m->g[c]);
-                *most = fmaxf(*most, m->g[c]);
-            }
-        }
-    }
-    if (*least > *most) {
-        *least = *most = 0.0f;
-    }
-}
-
-static float largest_g(const tyn_job *job)
-{
-    float least, most;
-    range_of_g(job->scene, &least, &most);
-    return most;
-}
-
 static void warn_of_mixtures(const tyn_job *job)
 {
     float least, most;
-    range_of_g(job->scene, &least, &most);
+    tyn_range_of_g(job->scene, &least, &most);
     if (job->frame->medium.mode == TYN_MEDIUM_COEFFICIENTS && least < most) {
-        tyn_method_warn(job,
-                        "media of different anisotropy: where they overlap their mean weighted "
-                        "with sigma_s is used");
+        tyn_job_warn(job, "media of different anisotropy: where they overlap their mean weighted "
+                          "with sigma_s is used");
     }
 }
 
@@ -105,76 +45,6 @@ static bool is_thin(const tyn_frame_scene *frame)
         scattering = fmaxf(scattering, (1.0f - f) * m->sigma_s[c]);
     }
     return scattering * m->max_density * longest < thin_depth;
-}
-
-static tyn_result add_lut(tyn_graph *g, const tyn_job *job, tyn_field *f)
-{
-    const struct medium_block *m = &job->frame->medium;
-    tyn_scatter_lut_params params;
-    tyn_settings_params(job->settings, &tyn_pass_scatter_lut, &params);
-    params.mode = m->mode;
-    memcpy(params.g, m->g, sizeof params.g);
-    params.g_max = largest_g(job);
-    params.num_suns = f->picture.num_suns;
-    for (uint32_t n = 0; n < params.num_suns; n++) {
-        params.mean_cosine[n] = job->frame->lights.suns[n].mean_cosine;
-    }
-    params.tms = f->sky.ordinates.resource != 0;
-    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
-    tyn_result result = tyn_graph_add(g, &tyn_pass_scatter_lut, &params, refs);
-    f->tms = refs[SCATTER_LUT_PORT_TMS];
-    f->picture.lut = refs[SCATTER_LUT_PORT_LUT];
-    f->picture.lut_block = refs[SCATTER_LUT_PORT_LUT_BLOCK];
-    return result;
-}
-
-// What the map looks like behind a medium that scatters forward.
-static tyn_result add_glow(tyn_graph *g, const tyn_job *job, tyn_field *f)
-{
-    const struct medium_block *m = &job->frame->medium;
-    float largest = largest_g(job);
-    tyn_env_glow_params params;
-    tyn_settings_params(job->settings, &tyn_pass_env_glow, &params);
-    for (int c = 0; c < 3; c++) {
-        params.g[c] = m->mode == TYN_MEDIUM_DENSITY ? m->g[c] : largest;
-    }
-    tyn_ref refs[TYN_MAX_PORTS] = {[ENV_GLOW_PORT_SKY] = f->sky.sky};
-    tyn_result result = tyn_graph_add(g, &tyn_pass_env_glow, &params, refs);
-    f->picture.glow = refs[ENV_GLOW_PORT_GLOW];
-    return result;
-}
-
-static tyn_result add_lights(tyn_graph *g, const tyn_job *job, tyn_field *f)
-{
-    tyn_result result = tyn_add_beams(g, job, &f->picture.media.medium, &f->picture.beams);
-    const uint32_t *repeat = job->frame->medium.repeat;
-    if (result == TYN_OK && !repeat[0] && !repeat[1] && !repeat[2]) {
-        result = tyn_add_vpls(g, job, &f->picture.media.medium, &f->picture.vpls);
-    }
-    if (result == TYN_OK) {
-        result = tyn_add_radials(g, job, &f->picture.media.medium, f->picture.vpls.vpls,
-                                 &f->picture.lamps);
-        f->picture.num_marched_lamps = f->picture.lamps.num_fine;
-    }
-    if (result == TYN_OK) {
-        result = tyn_add_shadows(g, job, &f->picture.shadows, &f->picture.light_cells);
-    }
-    const bool walls = tyn_has_walls(job->frame);
-    if (job->frame->num_triangles) {
-        tyn_method_warn_suns(job, walls ? "surfaces and the medium among them" : "surfaces");
-    }
-    if (result == TYN_OK && walls) {
-        // Ordinates know of no walls; the mean of the sky comes in along the lattice's lines, which do.
-        if (job->frame->environment.has_map) {
-            tyn_method_warn(job,
-                            "among surfaces the medium is lit by the mean of the environment map "
-                            "and by its suns");
-        }
-        return result;
-    }
-    return result == TYN_OK
-               ? tyn_add_sky(g, job, &f->picture.media.medium, f->picture.num_suns, true, &f->sky)
-               : result;
 }
 
 // Are the axes of the only shape not those of M?
@@ -243,47 +113,81 @@ static tyn_result check_repeat(const tyn_job *job)
         return TYN_ERR_PARAMS;
     }
     if (fit_a_period(job->frame)) {
-        tyn_method_warn(job,
-                        "surfaces do not repeat with the medium: there is one copy of them, and "
-                        "none of what others would hide and reflect; 'path' repeats them");
+        tyn_job_warn(job, "surfaces do not repeat with the medium: there is one copy of them, and "
+                          "none of what others would hide and reflect; 'path' repeats them");
     }
     return TYN_OK;
 }
 
-// The picture of a scene without a medium.
-static tyn_result add_surfaces_alone(tyn_graph *g, const tyn_job *job)
+static bool is_lit(const float radiance[3])
 {
-    const tyn_medium_refs no_medium = {{0}};
-    tyn_picture_inputs in = {.num_suns = 0};
-    if (job->frame->num_triangles) {
-        tyn_method_warn_suns(job, "surfaces");
-    }
-    tyn_result result = tyn_add_shadows(g, job, &in.shadows, &in.light_cells);
-    if (result == TYN_OK) {
-        result = tyn_add_vpls(g, job, &no_medium, &in.vpls);
-    }
-    if (result == TYN_OK) {
-        result = tyn_add_surfaces(g, job, (tyn_ref){0}, &in);
-    }
-    return result == TYN_OK ? tyn_add_picture(g, job, &in) : result;
+    return radiance[0] > 0.0f || radiance[1] > 0.0f || radiance[2] > 0.0f;
 }
 
-static tyn_result add_surfaces(tyn_graph *g, const tyn_job *job, tyn_field *f)
+// The picture of a scene without a medium.
+static void add_surfaces_alone(tyn_graph *g, const tyn_job *job, tyn_sources *s,
+                               tyn_view_inputs *view)
 {
-    return tyn_add_surfaces(g, job, f->moments, &f->picture);
+    if (job->frame->num_triangles) {
+        tyn_job_warn_suns(job, "surfaces");
+    }
+    tyn_add_shadows(g, job, s);
+    tyn_add_vpls(g, job, s);
+    tyn_add_surfaces(g, job, view);
+    tyn_add_picture(g, job, view);
+}
+
+static void add_lights(tyn_graph *g, const tyn_job *job, tyn_sources *s)
+{
+    const tyn_frame_scene *frame = job->frame;
+    const bool walls = tyn_has_walls(frame);
+    tyn_add_beams(g, job, s);
+    if (!tyn_is_periodic(frame)) {
+        tyn_add_vpls(g, job, s);
+    }
+    tyn_add_radials(g, job, s);
+    tyn_add_shadows(g, job, s);
+    if (frame->num_triangles) {
+        tyn_job_warn_suns(job, walls ? "surfaces and the medium among them" : "surfaces");
+    }
+    if (!walls) {
+        tyn_add_sky(g, job, s->num_suns, true, s);
+    } else if (frame->environment.has_map) {
+        // Ordinates know of no walls; the mean of the sky comes in along the lattice's lines, which do.
+        tyn_job_warn(
+            job,
+            "among surfaces the medium is lit by the mean of the environment map and by its suns");
+    }
+    s->mean_from_all_sides =
+        is_lit(frame->environment.sky) && (s->sky.split || !s->sky.ordinates.resource);
+}
+
+// Is there light that the lattice has to carry on?
+static bool wants_solve(const tyn_job *job, const tyn_sources *s)
+{
+    const tyn_frame_scene *frame = job->frame;
+    const bool environment = s->mean_from_all_sides || s->sky.ordinates.resource;
+    const bool lamps = s->lamps.radials.radials.resource != 0;
+    // Walls reflect more than thin media scatter.
+    const bool thick = environment || s->lamps.vpls || tyn_has_walls(frame) || !is_thin(frame);
+    return (s->num_suns || lamps || environment || frame->emissive) && thick;
 }
 
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
 {
     const tyn_frame_scene *frame = job->frame;
+    const bool picture = job->outputs & TYN_PICTURE_OUTPUTS;
+    tyn_sources s = {0};
+    tyn_field field = {0};
+    tyn_view_inputs view = {.sources = &s, .field = &field};
     tyn_result result = check_repeat(job);
     if (result != TYN_OK) {
         return result;
     }
     warn_of_mixtures(job);
-    bool picture = job->outputs & TYN_PICTURE_OUTPUTS;
     if (frame->empty && !(job->outputs & field_outputs)) {
-        return add_surfaces_alone(g, job);
+        add_surfaces_alone(g, job, &s, &view);
+        return tyn_graph_status(g);
     }
     if (job->scene->num_shapes == 0) {
         tyn_log_print(
@@ -291,72 +195,41 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
             "the scene has no medium: 'pop' has nothing to probe or to balance; 'path' can");
         return TYN_ERR_PARAMS;
     }
-
-    tyn_field f = {.picture.num_suns = tyn_num_beams(&frame->lights)};
-    result = tyn_add_medium(g, job, &f.picture.media);
-    if (result == TYN_OK) {
-        result = add_lights(g, job, &f);
+    tyn_add_medium(g, job, &s);
+    add_lights(g, job, &s);
+    const bool solve = wants_solve(job, &s);
+    view.mean_in_field =
+        is_lit(frame->environment.sky); // scattered forward, whoever carries the rest
+    view.num_marched_lamps = solve ? s.lamps.num_fine : s.lamps.num_lamps;
+    if (picture) {
+        tyn_add_forward_tables(g, job, &view);
+        tyn_add_glow(g, job, &view);
     }
-    const float *sky = frame->environment.sky;
-    bool lit = sky[0] > 0.0f || sky[1] > 0.0f || sky[2] > 0.0f;
-    f.from_all_sides = lit && (f.sky.split || !f.sky.ordinates.resource);
-    // What is scattered forward of a constant environment, whoever carries the rest.
-    f.picture.mean_in_field = lit;
-    bool lit_by_environment = f.from_all_sides || f.sky.ordinates.resource;
-    bool lamps = f.picture.lamps.radials.radials.resource != 0;
-    bool scattered_light = f.picture.num_suns || lamps || lit_by_environment || frame->emissive;
-    // Walls reflect more than thin media scatter.
-    bool solve = scattered_light && (lit_by_environment || f.picture.lamps.vpls ||
-                                     tyn_has_walls(frame) || !is_thin(frame));
-    if (!solve) {
-        f.picture.num_marched_lamps = f.picture.lamps.num_lamps;
+    if (solve || job->outputs & field_outputs) {
+        tyn_add_cells(g, job, &s);
+        tyn_limits_warn(job, s.lattice.side);
+        tyn_solve_lattice(g, job, &s, &field);
     }
-    const tyn_field_step steps[] = {
-        {picture && (f.picture.num_suns || lamps || f.sky.ordinates.resource), add_lut},
-        {picture && f.sky.sky.resource, add_glow},
-        {solve || (job->outputs & field_outputs), tyn_add_field},
-        {picture, add_surfaces},
-    };
-    if (result == TYN_OK) {
-        result = tyn_add_steps(g, job, &f, steps, sizeof steps / sizeof steps[0]);
+    if (picture && field.moments.resource) {
+        tyn_add_merge(g, job, &view);
     }
-    return result == TYN_OK && picture ? tyn_add_picture(g, job, &f.picture) : result;
+    if (job->outputs & TYN_OUTPUT_PROBE) {
+        tyn_add_probe(g, job, &view);
+    }
+    if (job->outputs & TYN_OUTPUT_BALANCE) {
+        tyn_add_balance(g, job, &view);
+    }
+    if (picture) {
+        tyn_add_surfaces(g, job, &view);
+        tyn_add_picture(g, job, &view);
+    }
+    return tyn_graph_status(g);
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,
-    &tyn_pass_beam,
-    &tyn_pass_shadow_map,
-    &tyn_pass_light_cells,
-    &tyn_pass_rsm,
-    &tyn_pass_vpl,
-    &tyn_pass_env_importance,
-    &tyn_pass_importance,
-    &tyn_pass_ordinates,
-    &tyn_pass_radial_beam,
-    &tyn_pass_scatter_lut,
-    &tyn_pass_env_glow,
-    &tyn_pass_lattice_cells,
-    &tyn_pass_walls,
-    &tyn_pass_wall_light,
-    &tyn_pass_rooms,
-    &tyn_pass_columns_average,
-    &tyn_pass_columns,
-    &tyn_pass_lattice_source,
-    &tyn_pass_lattice_ordinates,
-    &tyn_pass_lattice_lamps,
-    &tyn_pass_lattice_recall,
-    &tyn_pass_lattice,
-    &tyn_pass_lattice_keep,
-    &tyn_pass_merge,
-    &tyn_pass_gbuffer,
-    &tyn_pass_shade,
-    &tyn_pass_raymarch,
-    &tyn_pass_composite,
-    &tyn_pass_tonemap,
-    &tyn_pass_probe,
-    &tyn_pass_balance,
-    NULL,
+    TYN_MEDIUM_PASSES,  TYN_SUN_PASSES,     TYN_VIRTUAL_LIGHT_PASSES, TYN_SKY_PASSES,
+    TYN_LAMP_PASSES,    TYN_CELL_PASSES,    TYN_LATTICE_PASSES,       TYN_GATHER_PASSES,
+    TYN_SURFACE_PASSES, TYN_PICTURE_PASSES, TYN_FIELD_PASSES,         NULL,
 };
 
 const tyn_method tyn_method_pop = {

@@ -1,13 +1,8 @@
 // single.c -- method "single": light that has scattered exactly once, and emission.
-#include "methods/lamps.h"
+#include "light/sources.h"
 #include "methods/limits.h"
-#include "passes/medium/medium.h"
-#include "passes/beam/beam.h"
-#include "passes/radial_beam/radial_beam.h"
-#include "passes/composite/composite.h"
-#include "passes/light_cells/light_cells.h"
-#include "passes/shadow_map/shadow_map.h"
-#include "passes/tonemap/tonemap.h"
+#include "methods/method.h"
+#include "view/view.h"
 #include <tyndall/registry.h>
 #include <string.h>
 
@@ -29,39 +24,33 @@ static tyn_result declare(tyn_graph *g, const tyn_job *given)
     if (own.frame->lights.num_suns > own.frame->lights.num_directional) {
         leave_out_map_suns(&own, &frame);
     }
-    tyn_result result = tyn_method_refuse_repeat(job);
-    if (result != TYN_OK) {
-        return result;
+    tyn_sources s = {0};
+    const tyn_field no_field = {0};
+    tyn_view_inputs view = {.sources = &s, .field = &no_field};
+    if (!tyn_job_refuse_repeat(job)) {
+        return TYN_ERR_PARAMS;
     }
-    tyn_method_warn_surfaces(job, "cast shadows, but are not seen");
+    tyn_job_warn_surfaces(job, "cast shadows, but are not seen");
     if (job->frame->empty) {
-        return tyn_add_picture(g, job, NULL);
+        tyn_add_picture(g, job, &view);
+        return tyn_graph_status(g);
     }
-    if (job->frame->environment.mean[0] + job->frame->environment.mean[1] +
-            job->frame->environment.mean[2] >
-        0.0f) {
-        tyn_method_warn(job, "the environment is seen, but does not light the medium");
+    const float *mean = job->frame->environment.mean;
+    if (mean[0] + mean[1] + mean[2] > 0.0f) {
+        tyn_job_warn(job, "the environment is seen, but does not light the medium");
     }
-    tyn_picture_inputs in = {.num_suns = tyn_num_beams(&job->frame->lights)};
-    tyn_method_warn_suns(job, "the medium");
-    result = tyn_add_medium(g, job, &in.media);
-    if (result == TYN_OK) {
-        result = tyn_add_beams(g, job, &in.media.medium, &in.beams);
-    }
-    if (result == TYN_OK) {
-        result = tyn_add_shadows(g, job, &in.shadows, &in.light_cells);
-    }
-    if (result == TYN_OK) {
-        result = tyn_add_radials(g, job, &in.media.medium, (tyn_ref){0}, &in.lamps);
-        in.num_marched_lamps = in.lamps.num_lamps;
-    }
-    return result == TYN_OK ? tyn_add_picture(g, job, &in) : result;
+    tyn_job_warn_suns(job, "the medium");
+    tyn_add_medium(g, job, &s);
+    tyn_add_beams(g, job, &s);
+    tyn_add_shadows(g, job, &s);
+    tyn_add_radials(g, job, &s);
+    view.num_marched_lamps = s.lamps.num_lamps;
+    tyn_add_picture(g, job, &view);
+    return tyn_graph_status(g);
 }
 
 static const tyn_pass_desc *const passes[] = {
-    &tyn_pass_medium,      &tyn_pass_beam,        &tyn_pass_shadow_map,
-    &tyn_pass_light_cells, &tyn_pass_radial_beam, &tyn_pass_raymarch,
-    &tyn_pass_composite,   &tyn_pass_tonemap,     NULL,
+    TYN_MEDIUM_PASSES, TYN_SUN_PASSES, TYN_LAMP_PASSES, TYN_PICTURE_PASSES, NULL,
 };
 
 static double again(const tyn_regime *r)

@@ -1,7 +1,7 @@
 // registry.h -- the inside of the registry: methods by name, copies of settings.
 #pragma once
 #include <tyndall/registry.h>
-#include "methods/job.h"
+#include "methods/method.h"
 
 const tyn_method *tyn_method_find(const char *name); // `name` NULL: the default; NULL: not there
 void tyn_method_names(char *text, size_t size);      // "pop, path, ..."

@@ -1,4 +1,4 @@
-// views.h -- which triangles a view of the surfaces may show.
+// shadow_cull.h -- which triangles a view of the surfaces may show.
 #pragma once
 #include <tyndall/scene.h>
 #include "shaders/surfaces/surface_args.h"

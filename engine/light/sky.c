@@ -1,12 +1,9 @@
 // sky.c -- the light of an environment map as principal ordinates.
-#include "methods/sky.h"
-#include "passes/env_importance/env_importance.h"
-#include "passes/importance/importance.h"
-#include "passes/ordinates/ordinates.h"
+#include "light/sources.h"
 #include <tyndall/registry.h>
 #include <string.h>
 
-static tyn_result add_env_importance(tyn_graph *g, const tyn_job *job, tyn_ref *sky, tyn_ref *sums)
+static void add_env_importance(tyn_graph *g, const tyn_job *job, tyn_ref *sky, tyn_ref *sums)
 {
     const tyn_map_light *map = &job->frame->map;
     tyn_env_importance_params params;
@@ -19,15 +16,14 @@ static tyn_result add_env_importance(tyn_graph *g, const tyn_job *job, tyn_ref *
         sun->cos_radius = map->suns[i].cos_radius;
     }
     tyn_ref refs[TYN_MAX_PORTS] = {[ENV_IMPORTANCE_PORT_MAP] = job->refs.env_map};
-    tyn_result result = tyn_graph_add(g, &tyn_pass_env_importance, &params, refs);
+    tyn_graph_add(g, &tyn_pass_env_importance, &params, refs);
     *sky = refs[ENV_IMPORTANCE_PORT_SKY];
     *sums = refs[ENV_IMPORTANCE_PORT_SUMS];
-    return result;
 }
 
 // Where light counts for the picture; nothing without a camera.
-static tyn_result add_importance(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
-                                 bool scaled, tyn_ref *map)
+static void add_importance(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
+                           bool scaled, tyn_ref *map)
 {
     tyn_importance_params params;
     tyn_settings_params(job->settings, &tyn_pass_importance, &params);
@@ -40,9 +36,8 @@ static tyn_result add_importance(tyn_graph *g, const tyn_job *job, const tyn_med
             g, "importance_history", sizeof(struct importance_history), job->view->cut),
     };
     tyn_connect(refs, IMPORTANCE_PORT_MEDIUM, *medium);
-    tyn_result result = tyn_graph_add(g, &tyn_pass_importance, &params, refs);
+    tyn_graph_add(g, &tyn_pass_importance, &params, refs);
     *map = refs[IMPORTANCE_PORT_MAP];
-    return result;
 }
 
 // A sun as an ordinate: a cone with its mean cosine.
@@ -55,8 +50,8 @@ static struct ordinate ordinate_of_sun(const struct light_block *sun)
     return o;
 }
 
-tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
-                       uint32_t first_sun, bool can_split, tyn_sky_refs *sky)
+void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_split,
+                 tyn_sources *s)
 {
     const tyn_frame_scene *frame = job->frame;
     const struct env_block *env = &frame->environment;
@@ -66,34 +61,31 @@ tyn_result tyn_add_sky(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *
     for (uint32_t i = first_sun; i < frame->lights.num_suns; i++) {
         params.fixed[params.num_fixed++] = ordinate_of_sun(&frame->lights.suns[i]);
     }
-    *sky = (tyn_sky_refs){.split = params.split};
+    tyn_sky *sky = &s->sky;
+    sky->split = params.split;
     bool lit = env->sky[0] + env->sky[1] + env->sky[2] > 0.0f;
     bool regions = lit && (env->has_map || !params.split);
     if (!regions && !params.num_fixed) {
-        return TYN_OK;
+        return;
     }
     params.count = regions ? params.count : 0;
     uint32_t count = (uint32_t)params.count + params.num_fixed;
     sky->count = count < TYN_ORDINATES_MAX ? count : TYN_ORDINATES_MAX;
 
     tyn_ref refs[TYN_MAX_PORTS] = {[ORDINATES_PORT_ENVIRONMENT] = job->refs.environment};
-    tyn_result result = TYN_OK;
     if (regions && env->has_map) {
-        result = add_env_importance(g, job, &sky->sky, &refs[ORDINATES_PORT_SUMS]);
-        refs[ORDINATES_PORT_SKY] = sky->sky;
+        add_env_importance(g, job, &sky->map, &refs[ORDINATES_PORT_SUMS]);
+        refs[ORDINATES_PORT_SKY] = sky->map;
     }
     bool picture = job->outputs & TYN_PICTURE_OUTPUTS;
     // Ordinates that follow the camera are solved for anew when it moves: not where the solve could stay.
     bool weighted = params.importance == ORDINATES_IMPORTANCE_ON ||
                     (params.importance == ORDINATES_IMPORTANCE_AUTO && !can_split);
-    if (result == TYN_OK && regions && picture && weighted) {
-        result = add_importance(g, job, medium, can_split, &refs[ORDINATES_PORT_IMPORTANCE]);
+    if (regions && picture && weighted) {
+        add_importance(g, job, &s->medium, can_split, &refs[ORDINATES_PORT_IMPORTANCE]);
     }
-    if (result == TYN_OK) {
-        result = tyn_graph_add(g, &tyn_pass_ordinates, &params, refs);
-    }
+    tyn_graph_add(g, &tyn_pass_ordinates, &params, refs);
     sky->ordinates = refs[ORDINATES_PORT_ORDINATES];
     tyn_job_counters(g, job, &tyn_pass_ordinates,
                      sky->ordinates); // how many, and how many were folded
-    return result;
 }

@@ -1,8 +1,8 @@
-// views.c -- see views.h.
+// shadow_cull.c -- see shadow_cull.h.
 //
 // Branches of the hierarchy outside the frustum are left out, those inside it are taken whole. What is left are
 // ranges of triangles; the smallest gaps between them are closed until they are few.
-#include "methods/views.h"
+#include "light/shadow_cull.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

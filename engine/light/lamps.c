@@ -1,8 +1,9 @@
 // lamps.c -- local lights: their grids.
-#include "methods/lamps.h"
-#include "passes/radial_beam/radial_beam.h"
+#include "light/sources.h"
 #include <tyndall/registry.h>
 #include <math.h>
+
+enum { FINE_LAMPS = 2 }; // so many are always followed everywhere
 
 static float strength(const struct radial_light *lamp)
 {
@@ -18,18 +19,18 @@ static uint32_t num_fine(const struct radial_light *lamps, uint32_t count)
         sum += strength(&lamps[i]);
     }
     uint32_t fine = 0;
-    while (fine < count &&
-           (count <= TYN_METHOD_FINE_LAMPS || strength(&lamps[fine]) > 0.3f * sum)) {
+    while (fine < count && (count <= FINE_LAMPS || strength(&lamps[fine]) > 0.3f * sum)) {
         fine++;
     }
     return fine;
 }
 
-tyn_result tyn_add_radials(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
-                           tyn_ref vpls, tyn_lamps *out)
+void tyn_add_radials(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
     const tyn_frame_scene *frame = job->frame;
-    *out = (tyn_lamps){.vpls = vpls.resource != 0};
+    tyn_lamps *out = &s->lamps;
+    const tyn_ref vpls = s->surface_light.vpls.vpls;
+    out->vpls = vpls.resource != 0;
     tyn_radial_beam_params params;
     tyn_settings_params(job->settings, &tyn_pass_radial_beam, &params);
     const uint32_t first = frame->lights.num_directional;
@@ -38,22 +39,21 @@ tyn_result tyn_add_radials(tyn_graph *g, const tyn_job *job, const tyn_medium_re
                          out->vpls ? TYN_RADIAL_VPLS_MAX : 0);
     params.num_fine = num_fine(params.lamps, params.num_lamps);
     if (params.num_lamps == 0 && !out->vpls) {
-        return TYN_OK;
+        return;
     }
-    const uint32_t *repeat = frame->medium.repeat;
-    if (repeat[0] || repeat[1] || repeat[2]) {
+    if (tyn_is_periodic(frame)) {
         tyn_log_print(job->log, TYN_LOG_ERROR,
                       "point and spot lights cannot light periodic media (\"repeat\") with this "
                       "method; 'path' can");
-        return TYN_ERR_PARAMS;
+        tyn_graph_refuse(g, TYN_ERR_PARAMS);
+        return;
     }
     tyn_ref refs[TYN_MAX_PORTS] = {[RADIAL_BEAM_PORT_VPLS] = vpls};
-    tyn_connect(refs, RADIAL_BEAM_PORT_MEDIUM, *medium);
-    tyn_result result = tyn_graph_add(g, &tyn_pass_radial_beam, &params, refs);
+    tyn_connect(refs, RADIAL_BEAM_PORT_MEDIUM, s->medium);
+    tyn_graph_add(g, &tyn_pass_radial_beam, &params, refs);
     tyn_take(refs, RADIAL_BEAM_PORT_RADIALS, out->radials);
     out->num_lamps = params.num_lamps;
     out->num_fine = params.num_fine;
-    return result;
 }
 
 uint32_t tyn_radial_groups(const tyn_lamps *lamps)

@@ -1,11 +1,11 @@
-// job.h -- what a method is given and the helpers that every method uses.
+// job.h -- what a method is asked for, the scene of the frame, and helpers that every floor above uses.
 //
 // A method turns a job into graph nodes. It is called for every frame and must be
 // cheap and deterministic: no GPU calls, no allocation.
 #pragma once
 #include <tyndall/registry.h>
-#include "methods/lights.h"
-#include "methods/refs.h"
+#include "job/lights.h"
+#include "job/refs.h"
 #include "scene/env_suns.h"
 #include "shaders/common/scene_args.h"
 #include "shaders/surfaces/surface_args.h"
@@ -30,9 +30,10 @@ typedef struct tyn_frame_scene {
     uint32_t num_triangles; // of the surfaces; 0: there are none, nor their refs
     uint32_t num_textures;  // of their materials
     struct surface_block surfaces;
-    const struct surface_range *below; // of every node (methods/views.h); NULL without a hierarchy
-    struct tyn_views_seen *seen;       // with `below`
-    float m_from_world[16];            // rigid
+    const struct surface_range
+        *below;                  // of every node (light/shadow_cull.h); NULL without a hierarchy
+    struct tyn_views_seen *seen; // with `below`
+    float m_from_world[16];      // rigid
 } tyn_frame_scene;
 
 // Resources every method starts from; a {0} ref does not exist in this scene.
@@ -56,7 +57,7 @@ typedef struct tyn_scene_refs {
 } tyn_scene_refs;
 
 typedef struct tyn_job {
-    const struct tyn_method *method;
+    const tyn_method_info *method;
     const tyn_scene *scene;
     const tyn_view *view;
     const tyn_settings *settings;
@@ -77,14 +78,29 @@ void tyn_job_counters(tyn_graph *g, const tyn_job *job, const tyn_pass_desc *pas
 // The names of outputs in the graph: "radiance", ...
 const char *tyn_output_name(tyn_output which);
 
-typedef struct tyn_method {
-    // traces_rays: wants refs.geometry.nodes and refs.emitters where there are surfaces, and refs.areas for a balance.
-    tyn_method_info info;
-    bool reads_env_cdf; // wants refs.env_cdf
-    // Largest work a single record may be given (view.num_samples) to keep a dispatch short; NULL if
-    // not progressive.
-    uint32_t (*batch)(const tyn_job *job);
-    tyn_result (*declare)(tyn_graph *g, const tyn_job *job);
-} tyn_method;
+// Outputs that are gathered along the rays of a camera.
+#define TYN_PICTURE_OUTPUTS                                                                        \
+    (TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_SINGLE |       \
+     TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_DISPLAY | TYN_OUTPUT_COMPOSITE)
 
-extern const tyn_method tyn_method_pop, tyn_method_pop_paper, tyn_method_single, tyn_method_path;
+// A line among the report's warnings.
+void tyn_job_warn(const tyn_job *job, const char *format, ...) TYN_PRINTF(2, 3);
+// Says that the suns without beams do not light `what`, and how much light that is; nothing if there are none.
+void tyn_job_warn_suns(const tyn_job *job, const char *what);
+// Warns of what a method does not do with surfaces, if there are any: "are left out".
+void tyn_job_warn_surfaces(const tyn_job *job, const char *what);
+// False with a log line if a shape of the scene is periodic.
+bool tyn_job_refuse_repeat(const tyn_job *job);
+
+// Least and largest g of what scatters in the scene; 0 and 0 if nothing does.
+void tyn_range_of_g(const tyn_scene *scene, float *least, float *most);
+// Bounds in M of the world box around the surfaces; empty without surfaces.
+void tyn_surfaces_box(const tyn_frame_scene *frame, float lo[3], float hi[3]);
+// Bounds in M of a box a little larger than media, surfaces and lamps together, but for periodic axes.
+void tyn_scene_box(const tyn_frame_scene *frame, float lo[3], float hi[3]);
+// Do surfaces come near the media's box? Else the lattice has no walls.
+bool tyn_has_walls(const tyn_frame_scene *frame);
+// Does the medium repeat along an axis?
+bool tyn_is_periodic(const tyn_frame_scene *frame);
+// Have the surfaces a hierarchy, or are they so few that rays need none?
+bool tyn_can_trace(const tyn_job *job);

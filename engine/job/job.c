@@ -1,0 +1,86 @@
+// job.c -- what methods give the graph of what a job asks for.
+#include "job/job.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+const char *tyn_output_name(tyn_output which)
+{
+    static const char *const names[] = {"radiance", "transmittance", "depth",   "single",
+                                        "multiple", "error",         "display", "probe",
+                                        "balance",  "composite",     "fluxes"};
+    for (uint32_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (which == (tyn_output)(1u << i)) {
+            return names[i];
+        }
+    }
+    return "unknown";
+}
+
+void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref)
+{
+    if (job->outputs & which) {
+        tyn_graph_output(g, tyn_output_name(which), ref,
+                         job->readback && which != TYN_OUTPUT_COMPOSITE);
+    }
+}
+
+void tyn_job_counters(tyn_graph *g, const tyn_job *job, const tyn_pass_desc *pass, tyn_ref ref)
+{
+    // Named as the pass: the report finds them by the node's name. Unasked, they keep nothing alive.
+    if (job->readback && ref.resource) {
+        tyn_graph_output(g, pass->name, ref, true);
+    }
+}
+
+void tyn_job_warn(const tyn_job *job, const char *format, ...)
+{
+    char line[256];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(line, sizeof line, format, args);
+    va_end(args);
+    if (job->warn) {
+        job->warn(job->warn_user, line);
+    }
+}
+
+void tyn_job_warn_surfaces(const tyn_job *job, const char *what)
+{
+    if (job->frame->num_triangles) {
+        tyn_job_warn(job, "surfaces %s: %u triangles", what, job->frame->num_triangles);
+    }
+}
+
+void tyn_job_warn_suns(const tyn_job *job, const char *what)
+{
+    const tyn_lights *lights = &job->frame->lights;
+    const uint32_t suns = lights->num_suns, used = tyn_num_beams(lights);
+    double left_out = 0, all = 0;
+    for (uint32_t i = 0; i < suns; i++) {
+        const float *color = lights->suns[i].color;
+        const double irradiance = (double)color[0] + (double)color[1] + (double)color[2];
+        all += irradiance;
+        left_out += i < used ? 0 : irradiance;
+    }
+    if (left_out > 0) {
+        tyn_job_warn(
+            job, "%u suns: the %u strongest light %s, %.2g %% of the suns' irradiance is left out",
+            suns, used, what, 100 * left_out / all);
+    }
+}
+
+bool tyn_job_refuse_repeat(const tyn_job *job)
+{
+    for (uint32_t i = 0; i < job->scene->num_shapes; i++) {
+        const bool *repeat = job->scene->shapes[i].repeat;
+        if (repeat[0] || repeat[1] || repeat[2]) {
+            tyn_log_print(job->log, TYN_LOG_ERROR,
+                          "shape %u: method '%s' cannot do periodic media (\"repeat\"); "
+                          "'path' can",
+                          i, job->method->name);
+            return false;
+        }
+    }
+    return true;
+}

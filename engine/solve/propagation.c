@@ -1,0 +1,215 @@
+// propagation.c -- see propagation.h.
+#include "solve/propagation.h"
+#include "passes/raymarch/raymarch.h"
+#include <tyndall/registry.h>
+#include <math.h>
+#include <string.h>
+
+// What the nodes of one frame share.
+typedef struct propagated {
+    tyn_propagate_rect_params grids;
+    tyn_propagate_radial_params lamps, vpls;
+    tyn_residuum_params residuum;
+    const tyn_sources *sources;
+    tyn_ref places, seen, light, isotropic, merged;
+    tyn_ref lamp_places, lamp_seen, vpl_places, vpl_seen;
+} propagated;
+
+static float longest_side(const tyn_job *job)
+{
+    const float *extent = job->frame->medium.extent;
+    return fmaxf(extent[0], fmaxf(extent[1], extent[2]));
+}
+
+// Iterations in the aligned grids before what is left in them counts as isotropic (section 5.4). The
+// largest mean cosine at the start is that of a sun or of the smallest region, next to 1. Light has
+// to cross the grid, so there are as many iterations as cells at least; no more are known to be needed
+// where the mean of the medium is not known.
+static int32_t iterations_before_residuum(const propagated *p, const tyn_job *job)
+{
+    const struct medium_block *m = &job->frame->medium;
+    float sigma_s = 0.0f, g = -1.0f;
+    if (p->residuum.after > 0) {
+        return p->residuum.after;
+    }
+    for (int c = 0; c < 3; c++) {
+        sigma_s += m->sigma_s[c] / 3.0f * job->frame->mean_density;
+        g = fmaxf(g, m->g[c]);
+    }
+    float hop = longest_side(job) / (float)p->grids.cells;
+    uint32_t hops =
+        sigma_s > 0.0f ? tyn_residuum_after(1.0f, g, sigma_s, hop, p->residuum.epsilon) : 0;
+    return (int32_t)fminf(fmaxf((float)hops, (float)p->grids.cells), 256.0f);
+}
+
+static void set_radial(tyn_propagate_radial_params *params, const tyn_job *job)
+{
+    const struct medium_block *block = &job->frame->medium;
+    params->channels = job->frame->grey ? 1 : 3;
+    params->mode = block->mode;
+    memcpy(params->extent, block->extent, sizeof params->extent);
+    memcpy(params->size, block->size, sizeof params->size);
+}
+
+// Lamps that shine.
+static void set_lamps(tyn_propagate_radial_params *params, const tyn_job *job)
+{
+    const tyn_frame_scene *frame = job->frame;
+    set_radial(params, job);
+    for (uint32_t i = frame->lights.num_directional;
+         i < frame->lights.num_directional + frame->lights.num_lamps; i++) {
+        const float *color = frame->lights.scene[i].color;
+        if (color[0] + color[1] + color[2] > 0.0f && params->num_lamps < TYN_RADIAL_LAMPS_MAX) {
+            params->lamps[params->num_lamps++] = tyn_radial_of_lamp(&frame->lights.scene[i], i);
+        }
+    }
+}
+
+// VPLs have coarser grids: there are many of them.
+static void set_vpls(tyn_propagate_radial_params *params, const tyn_job *job)
+{
+    set_radial(params, job);
+    params->cells = params->shells = params->vpl_cells;
+    params->max_vpls = TYN_RADIAL_VPLS_MAX;
+}
+
+static void add_radial(tyn_graph *g, const tyn_job *job, const propagated *p,
+                       const tyn_propagate_radial_params *params, tyn_ref *places, tyn_ref *seen)
+{
+    tyn_ref refs[PROPAGATE_RADIAL_NUM_PORTS] = {
+        [PROPAGATE_RADIAL_PORT_CAMERA] = job->refs.camera,
+    };
+    tyn_connect(refs, PROPAGATE_RADIAL_PORT_MEDIUM, p->sources->medium);
+    if (params->max_vpls) {
+        refs[PROPAGATE_RADIAL_PORT_VPLS] = p->sources->surface_light.vpls.vpls;
+    }
+    tyn_graph_add(g, &tyn_pass_propagate_radial, params, refs);
+    *places = refs[PROPAGATE_RADIAL_PORT_PLACES];
+    *seen = refs[PROPAGATE_RADIAL_PORT_SEEN];
+}
+
+static void set_grids(propagated *p, const tyn_job *job)
+{
+    const struct medium_block *block = &job->frame->medium;
+    p->grids.num_ordinates = p->sources->sky.count;
+    p->grids.channels = job->frame->grey ? 1 : 3;
+    p->grids.mode = block->mode;
+    memcpy(p->grids.extent, block->extent, sizeof p->grids.extent);
+    memcpy(p->grids.size, block->size, sizeof p->grids.size);
+}
+
+static void add_propagation(tyn_graph *g, const tyn_job *job, propagated *p)
+{
+    p->grids.keep_light = p->residuum.on;
+    if (p->residuum.on) {
+        p->grids.iterations = iterations_before_residuum(p, job);
+    }
+    tyn_ref refs[PROPAGATE_RECT_NUM_PORTS] = {
+        [PROPAGATE_RECT_PORT_ORDINATES] = p->sources->sky.ordinates,
+        [PROPAGATE_RECT_PORT_CAMERA] = job->refs.camera,
+    };
+    tyn_connect(refs, PROPAGATE_RECT_PORT_MEDIUM, p->sources->medium);
+    tyn_graph_add(g, &tyn_pass_propagate_rect, &p->grids, refs);
+    p->places = refs[PROPAGATE_RECT_PORT_PLACES];
+    p->seen = refs[PROPAGATE_RECT_PORT_SEEN];
+    p->light = refs[PROPAGATE_RECT_PORT_LIGHT];
+}
+
+static void add_residuum(tyn_graph *g, propagated *p)
+{
+    p->residuum.num_grids = p->grids.num_ordinates;
+    p->residuum.grid_cells = (uint32_t)p->grids.cells;
+    p->residuum.channels = p->grids.channels;
+    p->residuum.mode = p->grids.mode;
+    memcpy(p->residuum.extent, p->grids.extent, sizeof p->residuum.extent);
+    tyn_ref refs[RESIDUUM_NUM_PORTS] = {
+        [RESIDUUM_PORT_PLACES] = p->places,
+        [RESIDUUM_PORT_LIGHT] = p->light,
+    };
+    tyn_connect(refs, RESIDUUM_PORT_MEDIUM, p->sources->medium);
+    tyn_graph_add(g, &tyn_pass_residuum, &p->residuum, refs);
+    p->isotropic = refs[RESIDUUM_PORT_RESIDUUM];
+}
+
+// Cells of a map along its side, as propagate_radial makes them.
+static uint32_t even(int32_t cells)
+{
+    return ((uint32_t)cells + 1) & ~1u;
+}
+
+static void add_merge(tyn_graph *g, const tyn_job *job, propagated *p)
+{
+    tyn_merge_grids_params params;
+    tyn_settings_params(job->settings, &tyn_pass_merge_grids, &params);
+    params.num_grids = p->grids.num_ordinates;
+    params.grid_cells = (uint32_t)p->grids.cells;
+    params.channels = p->grids.channels;
+    params.num_lamps = p->lamps.num_lamps;
+    params.lamp_cells = even(p->lamps.cells);
+    params.num_vpls = p->vpls.max_vpls;
+    params.vpl_cells = even(p->vpls.cells);
+    params.mode = p->grids.mode;
+    memcpy(params.extent, p->grids.extent, sizeof params.extent);
+    tyn_ref refs[MERGE_GRIDS_NUM_PORTS] = {
+        [MERGE_GRIDS_PORT_PLACES] = p->places,
+        [MERGE_GRIDS_PORT_SEEN] = p->seen,
+        [MERGE_GRIDS_PORT_LAMP_PLACES] = p->lamp_places,
+        [MERGE_GRIDS_PORT_LAMP_SEEN] = p->lamp_seen,
+        [MERGE_GRIDS_PORT_VPL_PLACES] = p->vpl_places,
+        [MERGE_GRIDS_PORT_VPL_SEEN] = p->vpl_seen,
+        [MERGE_GRIDS_PORT_RESIDUUM] = p->isotropic,
+    };
+    tyn_connect(refs, MERGE_GRIDS_PORT_MEDIUM, p->sources->medium);
+    tyn_graph_add(g, &tyn_pass_merge_grids, &params, refs);
+    p->merged = refs[MERGE_GRIDS_PORT_MERGED];
+}
+
+static void add_upsampling(tyn_graph *g, const tyn_job *job, propagated *p, tyn_field *field)
+{
+    tyn_upsample_params params;
+    tyn_settings_params(job->settings, &tyn_pass_upsample, &params);
+    params.mode = p->grids.mode;
+    memcpy(params.extent, p->grids.extent, sizeof params.extent);
+    memcpy(params.size, p->grids.size, sizeof params.size);
+    tyn_ref refs[UPSAMPLE_NUM_PORTS] = {
+        [UPSAMPLE_PORT_MERGED] = p->merged,
+    };
+    tyn_connect(refs, UPSAMPLE_PORT_MEDIUM, p->sources->medium);
+    tyn_graph_add(g, &tyn_pass_upsample, &params, refs);
+    field->inscatter = refs[UPSAMPLE_PORT_INSCATTER];
+    field->cell = longest_side(job) / (float)p->grids.cells;
+    field->inscatter_is = p->grids.source == TYN_PROPAGATE_SOURCE_ACCUMULATED
+                              ? RAYMARCH_INSCATTER_SOURCE
+                              : RAYMARCH_INSCATTER_PLAIN;
+}
+
+void tyn_solve_propagation(tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_field *field)
+{
+    propagated p = {.sources = s};
+    tyn_settings_params(job->settings, &tyn_pass_propagate_rect, &p.grids);
+    tyn_settings_params(job->settings, &tyn_pass_propagate_radial, &p.lamps);
+    tyn_settings_params(job->settings, &tyn_pass_propagate_radial, &p.vpls);
+    tyn_settings_params(job->settings, &tyn_pass_residuum, &p.residuum);
+    set_lamps(&p.lamps, job);
+    if (s->surface_light.vpls.vpls.resource) {
+        set_vpls(&p.vpls, job);
+    }
+    if (!s->sky.count && !p.lamps.num_lamps && !p.vpls.max_vpls) {
+        return; // nothing shines
+    }
+    set_grids(&p, job);
+    if (s->sky.count) {
+        add_propagation(g, job, &p);
+        if (p.residuum.on) {
+            add_residuum(g, &p);
+        }
+    }
+    if (p.lamps.num_lamps) {
+        add_radial(g, job, &p, &p.lamps, &p.lamp_places, &p.lamp_seen);
+    }
+    if (p.vpls.max_vpls) {
+        add_radial(g, job, &p, &p.vpls, &p.vpl_places, &p.vpl_seen);
+    }
+    add_merge(g, job, &p);
+    add_upsampling(g, job, &p, field);
+}

@@ -1,0 +1,143 @@
+// surfaces.c -- the surfaces before the camera.
+#include "view/view.h"
+#include <tyndall/registry.h>
+#include <math.h>
+#include <string.h>
+
+// Surfaces as the camera sees them: what shaders/surfaces/gbuffer.glsl reads. {0} without surfaces.
+typedef struct gbuffer_refs {
+    tyn_ref distances;         // 2D R32F, gbuffer.samples^2 texels a pixel
+    tyn_ref facing, colours;   // 2D RGBA32UI
+    tyn_ref edge_count, edges; // gbuffer_edge_args.h
+} gbuffer_refs;
+
+// All samples of a picture are in one image, which has no more texels along a side than the device can draw.
+static void fit_samples(tyn_gbuffer_params *params, uint32_t side, const tyn_job *job)
+{
+    const uint32_t longest = params->size[0] > params->size[1] ? params->size[0] : params->size[1];
+    const int32_t most = (int32_t)(side / longest), asked = params->samples;
+    if (asked > most && asked > 1) {
+        params->samples = most > 1 ? most : 1;
+        tyn_job_warn(job,
+                     "%u x %u pixels with %d x %d samples of the surfaces are more than this "
+                     "device draws (%u along a side): %d x %d, edges are less smooth",
+                     params->size[0], params->size[1], asked, asked, side, params->samples,
+                     params->samples);
+    }
+}
+
+static void add_gbuffer(tyn_graph *g, const tyn_job *job, gbuffer_refs *gbuffer)
+{
+    tyn_gbuffer_params params;
+    tyn_settings_params(job->settings, &tyn_pass_gbuffer, &params);
+    params.size[0] = job->view->width;
+    params.size[1] = job->view->height;
+    fit_samples(&params, tyn_graph_drawn_side(g), job);
+    params.num_triangles = job->frame->num_triangles;
+    params.textured = job->frame->num_textures > 0;
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [GBUFFER_PORT_CAMERA] = job->refs.camera,
+    };
+    tyn_connect(refs, GBUFFER_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, GBUFFER_PORT_MATERIALS, job->refs.materials);
+    tyn_graph_add(g, &tyn_pass_gbuffer, &params, refs);
+    *gbuffer = (gbuffer_refs){refs[GBUFFER_PORT_DISTANCES], refs[GBUFFER_PORT_FACING],
+                              refs[GBUFFER_PORT_COLOURS], refs[GBUFFER_PORT_EDGE_COUNT],
+                              refs[GBUFFER_PORT_EDGES]};
+}
+
+// Do surfaces reach farther than the lattice, which has the sky's light with its shadows, by more than rounding?
+static bool reach_beyond_media(const tyn_frame_scene *frame)
+{
+    float lo[3], hi[3];
+    tyn_surfaces_box(frame, lo, hi);
+    bool beyond = false;
+    for (int axis = 0; axis < 3; axis++) {
+        const float side = frame->medium.extent[axis];
+        beyond = beyond || lo[axis] < -0.02f * side || hi[axis] > 1.02f * side;
+    }
+    return beyond;
+}
+
+// Places around the surfaces and the box, where they are not far from it, from where it is asked what hides the box.
+static void place_sight(const tyn_frame_scene *frame, tyn_shade_params *params)
+{
+    const float *extent = frame->medium.extent;
+    const float most = 3 * fmaxf(extent[0], fmaxf(extent[1], extent[2]));
+    float lo[3], hi[3], longest = 0;
+    tyn_surfaces_box(frame, lo, hi);
+    for (int axis = 0; axis < 3; axis++) {
+        lo[axis] = fmaxf(fminf(lo[axis], 0), -most);
+        hi[axis] = fminf(fmaxf(hi[axis], extent[axis]), extent[axis] + most);
+        longest = fmaxf(longest, hi[axis] - lo[axis]);
+    }
+    params->sight_edge = longest / SHADE_SIGHT_PLACES;
+    for (int axis = 0; axis < 3; axis++) {
+        params->sight_lo[axis] = lo[axis];
+        params->sight_places[axis] =
+            (uint32_t)ceilf(0.999f * (hi[axis] - lo[axis]) / params->sight_edge);
+    }
+}
+
+void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
+{
+    if (!job->frame->num_triangles) {
+        return;
+    }
+    gbuffer_refs seen;
+    add_gbuffer(g, job, &seen);
+    const float *sky = job->frame->environment.sky;
+    tyn_shade_params params;
+    tyn_settings_params(job->settings, &tyn_pass_shade, &params);
+    params.mode = job->frame->medium.mode;
+    params.size[0] = job->view->width;
+    params.size[1] = job->view->height;
+    params.num_suns = tyn_num_beams(&job->frame->lights);
+    params.num_directional = job->frame->lights.num_directional;
+    const bool media =
+        in->sources->medium.density.resource != 0; // then lamps are those that have grids
+    params.num_lamps = media ? in->sources->lamps.num_lamps : job->frame->lights.num_lamps;
+    params.one_channel = in->field->one_channel;
+    memcpy(params.tint, in->field->tint, sizeof params.tint);
+    params.sky = sky[0] + sky[1] + sky[2] > 0.0f;
+    const bool beyond = reach_beyond_media(job->frame);
+    params.outside = beyond && !tyn_is_periodic(job->frame);
+    params.hidden = params.outside && tyn_can_trace(job);
+    params.textured = job->frame->num_textures > 0;
+    if (params.outside) {
+        place_sight(job->frame, &params);
+    }
+    if (params.sky && (in->sources->walls.cut.wall_links.resource == 0 || beyond)) {
+        tyn_job_warn(job, "surfaces beyond the media's box are lit by the mean of the "
+                          "environment as if nothing stood around them");
+    }
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [SHADE_PORT_MEDIUM] = job->refs.medium,
+        [SHADE_PORT_CAMERA] = job->refs.camera,
+        [SHADE_PORT_ENVIRONMENT] = job->refs.environment,
+        [SHADE_PORT_SUNS] = job->refs.suns,
+        [SHADE_PORT_LIGHTS] = job->refs.lights,
+        [SHADE_PORT_DISTANCES] = seen.distances,
+        [SHADE_PORT_FACING] = seen.facing,
+        [SHADE_PORT_COLOURS] = seen.colours,
+        [SHADE_PORT_EDGE_COUNT] = seen.edge_count,
+        [SHADE_PORT_EDGES] = seen.edges,
+        // Surfaces far from the medium's box are no walls of the lattice, and outside it.
+        [SHADE_PORT_MOMENTS] = in->sources->walls.cut.wall_links.resource || params.outside
+                                   ? in->field->moments
+                                   : (tyn_ref){0},
+        [SHADE_PORT_ROOMS] = in->sources->surface_light.rooms,
+    };
+    tyn_connect(refs, SHADE_PORT_BEAMS, in->sources->beams);
+    tyn_connect(refs, SHADE_PORT_RADIALS, in->sources->lamps.radials);
+    tyn_connect(refs, SHADE_PORT_SHADOW_ATLAS, in->sources->shadows);
+    if (!media || in->sources->lamps.vpls) {
+        tyn_connect(refs, SHADE_PORT_VPLS, in->sources->surface_light.vpls);
+    }
+    tyn_connect(refs, SHADE_PORT_WALL_LINKS, in->sources->walls.cut);
+    tyn_connect(refs, SHADE_PORT_SURFACES, job->refs.geometry);
+    tyn_connect(refs, SHADE_PORT_MATERIALS, job->refs.materials);
+    tyn_graph_add(g, &tyn_pass_shade, &params, refs);
+    in->surface = refs[SHADE_PORT_RADIANCE];
+    in->distances = seen.distances;
+}

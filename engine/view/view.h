@@ -1,0 +1,35 @@
+// view.h -- what pictures, probes and balances are made of: sources and field in, outputs of the job out.
+#pragma once
+#include "solve/field.h"
+#include "view/passes.h"
+
+// All that a picture is gathered from; {0} refs are left out.
+typedef struct tyn_view_inputs {
+    const tyn_sources *sources;
+    const tyn_field *field;
+    tyn_ref lut, lut_block; // given: all forward orders of the suns, else the first
+    tyn_ref tms;            // the same of ordinates
+    tyn_ref glow;           // the map scattered forward
+    tyn_ref inscatter;      // of the field, towards the eye
+    // Lamps that are marched everywhere, the first of `sources`, and those after them that are marched nearby.
+    uint32_t num_marched_lamps, num_near_lamps;
+    bool mean_in_field;         // the environment's mean came in through the field
+    tyn_ref surface, distances; // radiance and distances of the surfaces before the camera
+} tyn_view_inputs;
+
+// What scatters forward more than once, as tables by depth and angle.
+void tyn_add_forward_tables(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
+// What the map looks like behind a medium that scatters forward.
+void tyn_add_glow(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
+// The lattice's moments and the light of ordinates and distant lamps in its cells, towards the eye.
+void tyn_add_merge(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
+// Surfaces that the camera sees, in direct light, that of `sources.surface_light`, and the field's.
+void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
+// Marches, and makes what the job wants of the result: layers, the host's picture, the display image.
+void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
+// The display image of a radiance.
+void tyn_add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance);
+// The light field at the job's points.
+void tyn_add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
+// Where the energy goes.
+void tyn_add_balance(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
