@@ -97,15 +97,9 @@ static void record(tyn_recorder *r, const void *data)
 const tyn_pass_desc tyn_pass_merge_grids = {
     .name = "merge_grids",
     .summary = "light to the eye of all aligned grids, summed on the medium's axes",
-    .ports = ports,
-    .num_ports = MERGE_GRIDS_NUM_PORTS,
-    .kernels = kernels,
-    .num_kernels = 1,
+    TYN_PASS_TABLES(tyn_merge_grids_params),
     .params = params,
-    .num_params = sizeof params / sizeof *params,
-    .params_size = sizeof(tyn_merge_grids_params),
-    .declare = declare,
-    .record = record,
+    .num_params = TYN_COUNT(params),
     .debug_port = PORT(MERGED),
     .debug_meaning = "light towards the eye, middle slice of the medium's box",
 };

@@ -247,15 +247,9 @@ static void record(tyn_recorder *r, const void *data)
 const tyn_pass_desc tyn_pass_propagate_radial = {
     .name = "propagate_radial",
     .summary = "light of each lamp moved cell by cell in its radial grid (Elek 2014)",
-    .ports = ports,
-    .num_ports = PROPAGATE_RADIAL_NUM_PORTS,
-    .kernels = kernels,
-    .num_kernels = NUM_KERNELS,
+    TYN_PASS_TABLES(tyn_propagate_radial_params),
     .params = params,
-    .num_params = sizeof params / sizeof *params,
-    .params_size = sizeof(tyn_propagate_radial_params),
-    .declare = declare,
-    .record = record,
+    .num_params = TYN_COUNT(params),
     .debug_port = PORT(SEEN),
     .debug_meaning = "radiance sent to the eye times r^2, middle of the radial grids",
 };

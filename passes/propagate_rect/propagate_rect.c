@@ -313,15 +313,9 @@ static void record(tyn_recorder *r, const void *data)
 const tyn_pass_desc tyn_pass_propagate_rect = {
     .name = "propagate_rect",
     .summary = "light of each ordinate moved cell by cell in its aligned grid (Elek 2014)",
-    .ports = ports,
-    .num_ports = PROPAGATE_RECT_NUM_PORTS,
-    .kernels = kernels,
-    .num_kernels = NUM_KERNELS,
+    TYN_PASS_TABLES(tyn_propagate_rect_params),
     .params = params,
-    .num_params = sizeof params / sizeof *params,
-    .params_size = sizeof(tyn_propagate_rect_params),
-    .declare = declare,
-    .record = record,
+    .num_params = TYN_COUNT(params),
     .debug_port = PORT(SEEN),
     .debug_meaning = "radiance sent to the eye, middle of the aligned grids",
 };

@@ -132,15 +132,9 @@ static void record(tyn_recorder *r, const void *data)
 const tyn_pass_desc tyn_pass_residuum = {
     .name = "residuum",
     .summary = "light left in the aligned grids moved on as isotropic light in one grid",
-    .ports = ports,
-    .num_ports = RESIDUUM_NUM_PORTS,
-    .kernels = kernels,
-    .num_kernels = NUM_KERNELS,
+    TYN_PASS_TABLES(tyn_residuum_params),
     .params = params,
-    .num_params = sizeof params / sizeof *params,
-    .params_size = sizeof(tyn_residuum_params),
-    .declare = declare,
-    .record = record,
+    .num_params = TYN_COUNT(params),
     .debug_port = PORT(RESIDUUM),
     .debug_meaning = "light towards the eye, middle slice of the medium's box",
 };

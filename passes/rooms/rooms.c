@@ -80,13 +80,7 @@ const tyn_pass_desc tyn_pass_rooms = {
     .summary = "which cells of the lattice are joined by open links, and which virtual point "
                "lights shine in them",
     .serves = "surfaces that reflect light in media",
-    .ports = ports,
-    .num_ports = ROOMS_NUM_PORTS,
-    .kernels = kernels,
-    .num_kernels = NUM_KERNELS,
-    .params_size = sizeof(tyn_rooms_params),
-    .declare = declare,
-    .record = record,
+    TYN_PASS_TABLES(tyn_rooms_params),
     .debug_port = ROOMS_PORT_ROOMS,
     .debug_meaning = "rooms of cells and VPLs",
 };

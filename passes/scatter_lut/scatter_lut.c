@@ -246,14 +246,8 @@ const tyn_pass_desc tyn_pass_scatter_lut = {
     .name = "scatter_lut",
     .summary = "light scattered forward any number of times around a beam, as a table per g",
     .serves = "suns, lamps and ordinates in media",
-    .ports = ports,
-    .num_ports = SCATTER_LUT_NUM_PORTS,
-    .kernels = kernels,
-    .num_kernels = NUM_KERNELS,
+    TYN_PASS_TABLES(tyn_scatter_lut_params),
     .media_only = true, // and on the sizes of suns, which change as seldom
-    .params_size = sizeof(tyn_scatter_lut_params),
-    .declare = declare,
-    .record = record,
     .debug_port = SCATTER_LUT_PORT_LUT,
     .debug_meaning = "ln of the scattering kernels: depth to the right, angle down",
 };

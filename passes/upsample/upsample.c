@@ -70,15 +70,9 @@ static void record(tyn_recorder *r, const void *data)
 const tyn_pass_desc tyn_pass_upsample = {
     .name = "upsample",
     .summary = "joint bilateral upsampling of the merged grid's light",
-    .ports = ports,
-    .num_ports = UPSAMPLE_NUM_PORTS,
-    .kernels = kernels,
-    .num_kernels = 1,
+    TYN_PASS_TABLES(tyn_upsample_params),
     .params = params,
-    .num_params = sizeof params / sizeof *params,
-    .params_size = sizeof(tyn_upsample_params),
-    .declare = declare,
-    .record = record,
+    .num_params = TYN_COUNT(params),
     .debug_port = PORT(INSCATTER),
     .debug_meaning = "light towards the eye, middle slice of the medium's box",
 };

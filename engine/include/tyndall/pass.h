@@ -212,6 +212,13 @@ typedef struct tyn_pass_desc {
     const tyn_counter *counters; // NULL: it counts nothing
 } tyn_pass_desc;
 
+// Of a pass whose tables and functions are called ports, kernels, declare and record.
+#define TYN_COUNT(table) (sizeof(table) / sizeof((table)[0]))
+#define TYN_PASS_TABLES(params_type)                                                               \
+    .ports = ports, .num_ports = TYN_COUNT(ports), .kernels = kernels,                             \
+    .num_kernels = TYN_COUNT(kernels), .params_size = sizeof(params_type), .declare = declare,     \
+    .record = record
+
 // Fills params with zeros, then the defaults of the table.
 TYN_API void tyn_pass_defaults(const tyn_pass_desc *pass, void *params);
 
