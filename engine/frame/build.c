@@ -1,0 +1,137 @@
+// build.c -- what a frame makes of its scene: tables where something has changed, and the job.
+#include "frame/context.h"
+#include "base/hash.h"
+#include "frame/env_cdf.h"
+#include "gpu/device.h"
+#include "passes/medium/medium.h"
+#include <stdlib.h>
+#include <string.h>
+
+static tyn_result update_environment(tyn_context *ctx, const tyn_environment *env)
+{
+    size_t texels = (size_t)env->size[0] * env->size[1];
+    uint64_t hash = 1;
+    if (env->present && texels) {
+        hash = env->hash ? env->hash
+                         : tyn_hash_bytes(TYN_HASH_SEED, env->data, texels * 3 * sizeof(float));
+        hash = tyn_hash_u64(hash, env->size[0]);
+    }
+    if (hash != ctx->env_hash) {
+        ctx->env_hash = 0; // what is here is of no map until all of it is made
+        free(ctx->env_cdf);
+        ctx->env_cdf = NULL;
+        if (!tyn_map_light_find(env, &ctx->map_light)) {
+            return TYN_ERR_MEMORY;
+        }
+        if (ctx->method->reads_env_cdf && tyn_env_cdf_size(env)) {
+            ctx->env_cdf = malloc(tyn_env_cdf_size(env));
+            if (!ctx->env_cdf || !tyn_env_cdf_build(env, ctx->env_cdf)) {
+                return TYN_ERR_MEMORY;
+            }
+        }
+        ctx->env_hash = hash;
+    }
+    return TYN_OK;
+}
+
+static tyn_result update_points(tyn_context *ctx, const tyn_view *view)
+{
+    if (view->num_points > ctx->num_points || !ctx->points) {
+        void *grown = realloc(ctx->points, view->num_points * sizeof *ctx->points);
+        if (!grown) {
+            return TYN_ERR_MEMORY;
+        }
+        ctx->points = grown;
+    }
+    ctx->num_points = view->num_points;
+    const float *m = ctx->frame.m_from_world;
+    for (uint32_t i = 0; i < view->num_points; i++) {
+        const float *p = view->points[i];
+        for (int a = 0; a < 3; a++) {
+            ctx->points[i][a] = (float)((double)m[a] * p[0] + (double)m[4 + a] * p[1] +
+                                        (double)m[8 + a] * p[2] + m[12 + a]);
+        }
+    }
+    return TYN_OK;
+}
+
+// What the density grid says of the medium, as far as is known; looked up again when the grid changes.
+static void look_at_grid(tyn_context *ctx, const tyn_scene *scene)
+{
+    tyn_frame_scene *out = &ctx->frame;
+    out->open_faces = 63;
+    out->mean_density = out->direct && scene->num_volumes == 0 ? 1.0f : 0.0f;
+    if (!out->direct || scene->num_volumes != 1) {
+        return;
+    }
+    uint64_t hash = tyn_atlas_hash(&ctx->atlas, scene);
+    if (hash != ctx->grid_hash) {
+        ctx->open_faces = tyn_volume_open_faces(&scene->volumes[0]);
+        ctx->mean_density = tyn_volume_mean(&scene->volumes[0]);
+        ctx->typical_density = tyn_volume_typical(&scene->volumes[0]);
+        ctx->grid_hash = hash;
+    }
+    out->open_faces = ctx->open_faces;
+    out->mean_density = ctx->mean_density;
+    out->typical_density = ctx->typical_density;
+}
+
+static void choose_storage(tyn_context *ctx)
+{
+    tyn_medium_params medium = {0};
+    tyn_settings_params(ctx->settings, &tyn_pass_medium, &medium);
+    if (medium.storage == TYN_MEDIUM_STORAGE_AUTO) {
+        // Half floats save bandwidth; a CPU has to unpack them, which takes longer than to filter.
+        ctx->atlas.half &= ctx->dev->properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU;
+    } else {
+        ctx->atlas.half &= medium.storage == TYN_MEDIUM_STORAGE_HALF;
+    }
+}
+
+tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *job)
+{
+    const tyn_view *view = frame->view;
+    const tyn_log *log = &ctx->dev->log;
+    ctx->scene = frame->scene;
+    tyn_result result = update_environment(ctx, &frame->scene->environment);
+    if (result == TYN_OK) {
+        result = tyn_surface_data_update(&ctx->surfaces, &frame->scene->surfaces, log);
+    }
+    if (result == TYN_OK && ctx->method->info.traces_rays) {
+        result = tyn_surface_data_tables(&ctx->surfaces, &frame->scene->surfaces,
+                                         view->outputs & TYN_OUTPUT_BALANCE);
+    }
+    if (result == TYN_OK) {
+        result = tyn_frame_scene_build(&ctx->frame, frame->scene, view, &ctx->map_light,
+                                       &ctx->surfaces, log);
+    }
+    if (result == TYN_OK) {
+        result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);
+        choose_storage(ctx);
+    }
+    if (result == TYN_OK) {
+        look_at_grid(ctx, frame->scene);
+    }
+    if (result == TYN_OK && ctx->atlas.host && !frame->densities) {
+        tyn_log_print(log, TYN_LOG_ERROR, "volume 0 has no data and tyn_frame.densities is NULL");
+        result = TYN_ERR_PARAMS;
+    }
+    if (result == TYN_OK && (view->outputs & TYN_OUTPUT_PROBE)) {
+        result = update_points(ctx, view);
+    }
+    if (result != TYN_OK) {
+        return result;
+    }
+    *job = (tyn_job){.method = &ctx->method->info,
+                     .scene = frame->scene,
+                     .view = view,
+                     .settings = ctx->settings,
+                     .frame = &ctx->frame,
+                     .outputs = view->outputs ? view->outputs : TYN_OUTPUT_RADIANCE,
+                     .readback = ctx->readback,
+                     .log = log,
+                     .warn = tyn_context_warn,
+                     .warn_user = ctx};
+    memcpy(job->view_to_clip, frame->view_to_clip, sizeof job->view_to_clip);
+    return TYN_OK;
+}

@@ -1,0 +1,53 @@
+// context.h -- what a context keeps, and the way of a frame through it: check, build, upload, declare, record.
+#pragma once
+#include <tyndall/context.h>
+#include "frame/frame_scene.h"
+#include "methods/method.h"
+
+enum { MAX_WARNINGS = 32 };
+
+struct tyn_context {
+    tyn_device *dev;
+    const tyn_method *method;
+    tyn_settings *settings;
+    bool readback;
+    const char *inspect; // pass to look at; NULL = none
+    tyn_graph *graph;
+    // What the last declaration was made from; the graph reads it until it has recorded.
+    tyn_frame_scene frame;
+    tyn_atlas atlas;
+    const tyn_scene *scene;
+    float (*points)[3]; // probe points in M
+    uint32_t num_points;
+    uint32_t outputs;
+    // The environment's tables, made again when its texels change.
+    uint64_t env_hash;
+    uint64_t grid_hash; // of the grid that the two below were found for
+    uint32_t open_faces;
+    float mean_density, typical_density;
+    uint64_t checked_data; // hash of the densities and texels that were found fit
+    tyn_map_light map_light;
+    void *env_cdf; // of a method that reads it
+    tyn_surface_data surfaces;
+    char *warnings[MAX_WARNINGS];
+    uint32_t num_warnings;
+    uint64_t logged[MAX_WARNINGS]; // hashes of those that went to the log: once each
+    uint32_t num_logged;
+    tyn_node_report *nodes; // of the last report
+    tyn_balance balance;
+};
+
+// Each step is a file of its name; what is wrong is one log line.
+
+// check.c: are the frame's numbers fit?
+tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame);
+// build.c: the frame's scene in M and tables of it, made anew where they have changed, and the job without its refs.
+tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *job);
+// upload.c: what shaders read of the scene, as resources of the graph.
+void tyn_frame_upload(tyn_context *ctx, const tyn_frame *frame, tyn_scene_refs *refs);
+// declare.c: all of these, and then the method's nodes.
+tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame);
+
+// A line among the report's warnings, once each; `user` is the context.
+void tyn_context_warn(void *user, const char *line);
+void tyn_context_clear_warnings(tyn_context *ctx);

@@ -1,0 +1,28 @@
+// declare.c -- a frame as nodes of the graph.
+#include "frame/context.h"
+#include "methods/limits.h"
+
+tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame)
+{
+    tyn_result result = tyn_frame_check(ctx, frame);
+    tyn_job job;
+    if (result == TYN_OK) {
+        result = tyn_frame_build(ctx, frame, &job);
+    }
+    if (result != TYN_OK) {
+        return result;
+    }
+    ctx->outputs = job.outputs;
+    tyn_graph_begin(ctx->graph);
+    if (frame->recompute) {
+        tyn_graph_recompute(ctx->graph);
+    }
+    if (frame->setup_only) {
+        tyn_graph_setup_only(ctx->graph);
+    }
+    tyn_graph_inspect(ctx->graph, ctx->readback ? ctx->inspect : NULL);
+    tyn_frame_upload(ctx, frame, &job.refs);
+    tyn_limits_warn(&job, 0);
+    result = ctx->method->declare(ctx->graph, &job);
+    return result == TYN_OK ? tyn_graph_status(ctx->graph) : result;
+}

@@ -1,0 +1,51 @@
+// record.c -- prepares a frame, records it into the caller's command buffer, and gives out what it made.
+#include "frame/context.h"
+#include "base/hash.h"
+#include "gpu/device.h"
+#include "scene/check.h"
+
+tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)
+{
+    tyn_context_clear_warnings(ctx);
+    tyn_result result = tyn_frame_declare(ctx, frame);
+    uint64_t data = result == TYN_OK
+                        ? tyn_hash_u64(tyn_atlas_hash(&ctx->atlas, frame->scene), ctx->env_hash)
+                        : 0;
+    if (result == TYN_OK && data != ctx->checked_data) {
+        result = tyn_scene_check_data(frame->scene, &ctx->dev->log);
+        ctx->checked_data = result == TYN_OK ? data : 0;
+    }
+    if (result == TYN_OK && tyn_graph_matches(ctx->graph)) {
+        tyn_graph_trim(ctx->graph);
+    } else if (result == TYN_OK) {
+        result = tyn_graph_compile(ctx->graph);
+    }
+    return result;
+}
+
+tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame)
+{
+    if (!frame || !frame->cmd) {
+        tyn_log_print(&ctx->dev->log, TYN_LOG_ERROR, "tyn_frame: cmd is required");
+        return TYN_ERR_PARAMS;
+    }
+    tyn_result result = tyn_frame_declare(ctx, frame);
+    return result == TYN_OK ? tyn_graph_record(ctx->graph, frame->cmd) : result;
+}
+
+uint32_t tyn_context_batch(tyn_context *ctx, const tyn_frame *frame)
+{
+    tyn_job job;
+    if (!ctx->method->batch || tyn_frame_check(ctx, frame) != TYN_OK ||
+        tyn_frame_build(ctx, frame, &job) != TYN_OK) {
+        return 1;
+    }
+    uint32_t batch = ctx->method->batch(&job);
+    return batch ? batch : 1;
+}
+
+const void *tyn_context_output(tyn_context *ctx, tyn_output output)
+{
+    return ctx->outputs & output ? tyn_graph_map(ctx->graph, tyn_output_name(output), NULL, NULL)
+                                 : NULL;
+}

@@ -1,0 +1,115 @@
+// report.c -- what happened in the last frame: times, work, counters, warnings, the graph.
+#include "frame/context.h"
+#include "registry/registry.h"
+#include "gpu/device.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *state_name(tyn_node_state state)
+{
+    static const char *const names[] = {"ran", "unchanged", "culled", "empty"};
+    return names[state];
+}
+
+static void add_work(tyn_node_report *node, const char *name, double amount)
+{
+    if (node->num_work < sizeof node->work / sizeof node->work[0]) {
+        node->work[node->num_work].name = name;
+        node->work[node->num_work++].amount = amount;
+    }
+}
+
+// In percent to one digit: no more is known, and frames of a film say the same line.
+static double percent_of(double share)
+{
+    const double percent = 100 * fmin(share, 1), unit = pow(10, floor(log10(percent)));
+    return unit * round(percent / unit);
+}
+
+// What the node itself counted, by the table of its pass.
+static void add_counters(tyn_node_report *node, tyn_context *ctx)
+{
+    const tyn_pass_desc *pass = tyn_pass_find(node->name);
+    const uint8_t *data = tyn_graph_map(ctx->graph, node->name, NULL, NULL);
+    for (const tyn_counter *c = pass && data ? pass->counters : NULL; c && c->name; c++) {
+        double most = 0;
+        for (uint32_t i = 0; i < (c->count ? c->count : 1); i++) {
+            const void *at = data + c->offset + 4 * i;
+            most = fmax(most, c->real ? (double)*(const float *)at : *(const uint32_t *)at);
+        }
+        add_work(node, c->name, most);
+        if (c->warning && most > c->limit) {
+            char line[256];
+            snprintf(line, sizeof line, c->warning, percent_of(most));
+            tyn_context_warn(ctx, line);
+        }
+    }
+}
+
+void tyn_context_report(tyn_context *ctx, tyn_report *report)
+{
+    *report = (tyn_report){0};
+    const tyn_node_stats *stats;
+    uint32_t count = tyn_graph_stats(ctx->graph, &stats);
+    tyn_node_report *nodes = realloc(ctx->nodes, (count ? count : 1) * sizeof *nodes);
+    if (!nodes) {
+        return;
+    }
+    ctx->nodes = nodes;
+    for (uint32_t i = 0; i < count; i++) {
+        const tyn_node_stats *s = &stats[i];
+        nodes[i] = (tyn_node_report){.name = s->name,
+                                     .state = state_name(s->state),
+                                     .gpu_ms = s->gpu_ms,
+                                     .cpu_ms = s->cpu_ms,
+                                     .dispatches = s->dispatches,
+                                     .barriers = s->barriers,
+                                     .bytes = s->bytes,
+                                     .media_only = s->media_only};
+        for (uint32_t w = 0; w < s->num_work; w++) {
+            if (!strcmp(s->work[w].name, "flops")) {
+                nodes[i].flops = s->work[w].amount;
+            } else {
+                add_work(&nodes[i], s->work[w].name, s->work[w].amount);
+            }
+        }
+        if (s->state != TYN_NODE_CULLED) {
+            add_counters(&nodes[i], ctx);
+        }
+    }
+    report->nodes = nodes;
+    report->num_nodes = count;
+    report->warnings = (const char *const *)ctx->warnings;
+    report->num_warnings = ctx->num_warnings;
+    tyn_graph_memory(ctx->graph, &report->persistent_bytes, &report->transient_bytes);
+}
+
+void tyn_context_inspect(tyn_context *ctx, const char *pass)
+{
+    ctx->inspect = pass;
+}
+
+bool tyn_context_inspection(tyn_context *ctx, tyn_inspection *inspection)
+{
+    *inspection = (tyn_inspection){0};
+    const tyn_pass_desc *pass = ctx->inspect ? tyn_pass_find(ctx->inspect) : NULL;
+    tyn_extent extent = {0};
+    const void *texels = tyn_graph_map(ctx->graph, "inspect", &extent, &inspection->format);
+    if (!pass || !texels) {
+        return false;
+    }
+    inspection->port = pass->ports[pass->debug_port].name;
+    inspection->meaning = pass->debug_meaning;
+    inspection->size[0] = extent.x;
+    inspection->size[1] = extent.y;
+    inspection->size[2] = extent.z ? extent.z : 1;
+    inspection->texels = texels;
+    return true;
+}
+
+char *tyn_context_graph(tyn_context *ctx, bool dot)
+{
+    return tyn_graph_dump(ctx->graph, dot, ctx->method->info.passes);
+}

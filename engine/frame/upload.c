@@ -1,0 +1,104 @@
+// upload.c -- the scene of a frame as resources of the graph.
+#include "frame/context.h"
+#include "base/hash.h"
+#include "frame/env_cdf.h"
+#include <string.h>
+
+static void fill_atlas(void *user, void *texels)
+{
+    const tyn_context *ctx = user;
+    tyn_atlas_fill(&ctx->atlas, ctx->scene, texels);
+}
+
+static void fill_environment(void *user, void *texels)
+{
+    const tyn_environment *env = &((const tyn_context *)user)->scene->environment;
+    float *out = texels;
+    for (size_t i = 0; i < (size_t)env->size[0] * env->size[1]; i++) {
+        memcpy(out + i * 4, env->data + i * 3, 3 * sizeof(float));
+        out[i * 4 + 3] = 1;
+    }
+}
+
+static void upload_surfaces(tyn_context *ctx, const tyn_surfaces *s, tyn_scene_refs *refs)
+{
+    tyn_graph *g = ctx->graph;
+    const tyn_surface_data *data = &ctx->surfaces;
+    const struct surface_block *block = &ctx->frame.surfaces;
+    if (!ctx->frame.num_triangles) {
+        return;
+    }
+    struct {
+        tyn_ref *ref;
+        const char *name;
+        const void *data;
+        size_t size;
+    } buffers[] = {
+        {&refs->geometry.vertices, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices},
+        {&refs->geometry.triangles, "triangles", s->triangles,
+         s->num_triangles * sizeof *s->triangles},
+        {&refs->materials.materials, "materials", s->materials,
+         s->num_materials * sizeof *s->materials},
+        {&refs->materials.textures, "textures", data->textures,
+         data->num_textures * sizeof *data->textures},
+        {&refs->materials.texels, "texels", data->texels, data->num_texels * sizeof *data->texels},
+        {&refs->geometry.nodes, "nodes", s->nodes, s->num_nodes * sizeof *s->nodes},
+        {&refs->emitters, "emitters", data->emitters, data->emitters_size},
+        {&refs->areas, "areas", data->areas, data->areas_size},
+    };
+    refs->geometry.surfaces = tyn_graph_upload_buffer(g, "surfaces", block, sizeof *block, 0);
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; i++) {
+        if (buffers[i].size) {
+            *buffers[i].ref = tyn_graph_upload_buffer(g, buffers[i].name, buffers[i].data,
+                                                      buffers[i].size, data->hash);
+        }
+    }
+}
+
+void tyn_frame_upload(tyn_context *ctx, const tyn_frame *frame, tyn_scene_refs *refs)
+{
+    tyn_graph *g = ctx->graph;
+    const tyn_frame_scene *f = &ctx->frame;
+    const tyn_scene *scene = frame->scene;
+    if (ctx->atlas.host) {
+        uint64_t version = frame->density_versions ? frame->density_versions[0] : 0;
+        refs->atlas =
+            tyn_graph_import_image(g, "atlas", TYN_IMAGE_3D, &frame->densities[0], version);
+    } else if (ctx->atlas.extent.z) {
+        refs->atlas = tyn_graph_upload_image(
+            g, "atlas", TYN_IMAGE_3D, ctx->atlas.half ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT,
+            ctx->atlas.extent, fill_atlas, ctx, tyn_atlas_hash(&ctx->atlas, scene));
+    }
+    refs->medium = tyn_graph_upload_buffer(g, "medium", &f->medium, sizeof f->medium, 0);
+    refs->shapes = tyn_graph_upload_buffer(g, "shapes", f->shapes, sizeof f->shapes, 0);
+    tyn_graph_mark_media(g, refs->atlas);
+    tyn_graph_mark_media(g, refs->medium);
+    tyn_graph_mark_media(g, refs->shapes);
+
+    refs->lights = tyn_graph_upload_buffer(g, "lights", f->lights.scene, sizeof f->lights.scene, 0);
+    refs->suns = tyn_graph_upload_buffer(g, "suns", f->lights.suns, sizeof f->lights.suns, 0);
+    refs->camera = tyn_graph_upload_buffer(g, "camera", &f->camera, sizeof f->camera, 0);
+    refs->environment =
+        tyn_graph_upload_buffer(g, "environment", &f->environment, sizeof f->environment, 0);
+    const tyn_environment *env = &scene->environment;
+    if (f->environment.has_map) {
+        refs->env_map = tyn_graph_upload_image(
+            g, "env_map", TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
+            (tyn_extent){env->size[0], env->size[1], 1}, fill_environment, ctx, ctx->env_hash);
+        if (ctx->env_cdf) {
+            refs->env_cdf = tyn_graph_upload_buffer(g, "env_cdf", ctx->env_cdf,
+                                                    tyn_env_cdf_size(env), ctx->env_hash);
+        }
+    }
+    upload_surfaces(ctx, &scene->surfaces, refs);
+    if (frame->view->outputs & TYN_OUTPUT_PROBE) {
+        refs->points = tyn_graph_upload_buffer(g, "points", ctx->points,
+                                               ctx->num_points * sizeof *ctx->points, 0);
+    }
+    if (frame->view->outputs & TYN_OUTPUT_COMPOSITE) {
+        refs->color = tyn_graph_import_image(g, "color", TYN_IMAGE_2D, frame->color, 0);
+        if (frame->depth) {
+            refs->depth = tyn_graph_import_image(g, "depth", TYN_IMAGE_2D, frame->depth, 0);
+        }
+    }
+}
