@@ -52,11 +52,25 @@ layout(binding = 17) uniform sampler2D distances_tex; // gbuffer.glsl
 layout(binding = 18, rgba32ui) uniform readonly uimage2D facing_image;
 layout(binding = 19, rgba32ui) uniform readonly uimage2D colour_image;
 #define VPLS_AT 11
+layout(binding = 21) uniform sampler3D moments_tex;
+#define WALLS_AT 22
+#define LATTICE_ROOMS 24
+#define SHADE_AT 25 // the first binding of each kernel's own
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/walls/lattice_walls.glsl"
 #include "shaders/light/vpl_visibility.glsl"
 
 bool shade_has(uint feature)
 {
     return (shade_features & feature) != 0u;
+}
+
+// The lattice whose light there is: call it with SHADE_LATTICE or SHADE_OUTSIDE.
+lattice_box shade_lattice()
+{
+    ivec3 dims = textureSize(moments_tex, 0);
+    dims.z /= shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
+    return lattice_box_of(medium.extent, dims);
 }
 
 struct shade_point {
@@ -373,7 +387,7 @@ vec3 shade_lamps(shade_point p, vec4 part)
 // Of VPLs first, first + stride, ..., on SHADE_MANY points: a light is read once for all of them. Nothing is left out
 // where a light does not shine: lavapipe would go through it anyway, under a mask. `rooms` of the points: shade_rooms.glsl.
 // `nearest` of those that shine there: square of the distance or of the radius, which is more, m^2.
-vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], float rooms[SHADE_MANY], uint first, uint stride,
+vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], uint rooms[SHADE_MANY], uint first, uint stride,
                             out float nearest[SHADE_MANY])
 {
     vec3 sum[SHADE_MANY];
@@ -390,6 +404,7 @@ vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], float rooms[SHADE_MANY], 
         radial_light light =
             radial_light(position.xyz, TYN_RADIAL_COSINE, vec3(1.0), 0.0, axis, 0.0, position.w, 0u);
         vpl_map map = vpl_map_of(k, axis);
+        uint shines_in = shade_has(SHADE_ROOMS) ? rooms_of_vpl(shade_lattice().dims, k) : TYN_ROOMS_ANY;
         radial_grid grid;
         if (shade_has(SHADE_MEDIUM)) {
             grid = shade_grid(row, light.position);
@@ -400,7 +415,7 @@ vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], float rooms[SHADE_MANY], 
             share = dot(p[i].facet, away) < 0.0 ? share : 0.0;
             share *= vpl_map_visibility_surface(map, away, p[i].facet);
             if (shade_has(SHADE_ROOMS)) {
-                share = faces.w == rooms[i] || min(faces.w, rooms[i]) < 0.0 ? share : 0.0;
+                share = rooms[i] == TYN_ROOMS_ANY || rooms_joined(shines_in, rooms[i]) ? share : 0.0;
             }
             float far = max(dot(away, away), light.radius * light.radius);
             nearest[i] = share > 0.0 ? min(nearest[i], far) : nearest[i];

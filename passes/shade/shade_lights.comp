@@ -7,7 +7,6 @@
 #include "shaders/beams/radial_args.h"
 #include "shaders/light/shadow_args.h"
 #include "shade_table.h"
-#include "shaders/walls/rooms.h"
 
 layout(constant_id = 0) const uint mode = 0u; // as all kernels of the pass have it, and num_suns
 layout(constant_id = 1) const uint shade_features = 0u;
@@ -38,10 +37,6 @@ layout(binding = 3, scalar) uniform light_uniform
     light_block lights[TYN_LIGHTS_MAX];
 };
 layout(binding = 4, rgba32f) uniform writeonly image2D table_image;
-layout(binding = 5, scalar) readonly buffer room_buffer
-{
-    uint rooms[]; // rooms.h
-};
 
 bool has(uint feature)
 {
@@ -97,11 +92,6 @@ void main()
         uint k = row - uint(SHADE_ROW_VPLS);
         if (has(SHADE_VPLS) && k < vpl_count) {
             put_light(row, vpls[k]);
-            uint room = TYN_ROOMS_ANY;
-            if (has(SHADE_ROOMS)) {
-                room = rooms[uint(rooms.length()) - uint(2 * TYN_RADIAL_VPLS_MAX) + k];
-            }
-            put(row, SHADE_AXIS, vpls[k].axis, room == TYN_ROOMS_ANY ? -1.0 : float(room));
             if (has(SHADE_MEDIUM)) {
                 put_grid(row, args.num_lamps + k);
             }

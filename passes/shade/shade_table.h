@@ -13,7 +13,7 @@
 
 // Entries of a row: three numbers and a fourth.
 #define SHADE_POSITION 0  // radius
-#define SHADE_AXIS 1      // kind; of a VPL its room, -1: any
+#define SHADE_AXIS 1      // kind
 #define SHADE_INTENSITY 2 // cos_inner
 #define SHADE_CONE 3      // nothing; cos_outer
 #define SHADE_TO_MAP 4    // three of the grid; begin, inverse_near, inside
