@@ -7,14 +7,12 @@
 #include "shade_faces.h"
 #include "shade_forward.comp.h"
 #include "shade_gather.comp.h"
-#include "shade_lights.comp.h"
 #include "shade_places.comp.h"
 #include "shade_rows.comp.h"
 #include "shade_sight.comp.h"
 #include "shade_smooth.comp.h"
 #include "shade_surface.comp.h"
 #include "shade_vpls.comp.h"
-#include "shade_table.h"
 #include "shaders/surfaces/gbuffer_edge_args.h"
 #include <stddef.h>
 #include <string.h>
@@ -48,7 +46,6 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     TYN_MATERIALS(TYN_BUNDLE_IN, SHADE),
     [PORT(RADIANCE)] = {"surface_radiance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT,
                         .meaning = "radiance to the camera, W/(m^2 sr)"},
-    [PORT(TABLE)] = {"lights_table", TYN_SCRATCH, IMAGE2, .meaning = "the lights"},
     [PORT(FORWARD)] = {"forward", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                        .meaning = "from where sunlight comes that was scattered forward"},
     [PORT(FACES)] = {"faces", TYN_SCRATCH, IMAGE2, .meaning = "light that leaves the medium's box"},
@@ -64,24 +61,19 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
                      .meaning = "pixels with pieces that have smooth light of their own"},
 };
 
-// Bindings 0 to 24 of shade.glsl. What is in the table is not read from buffers.
+// Bindings 0 to 23 of shade.glsl.
 #define COMMON_BINDINGS                                                                            \
     {PORT(MEDIUM), TYN_USE_UNIFORM}, TYN_BEAMS(TYN_BUNDLE_BIND, SHADE),                            \
-        TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, SHADE), TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, SHADE),  \
+        TYN_RADIALS(TYN_BUNDLE_BIND_TEXELS, SHADE), TYN_SHADOWS(TYN_BUNDLE_BIND_TEXELS, SHADE),    \
         TYN_VPLS(TYN_BUNDLE_BIND, SHADE), {PORT(SUNS), TYN_USE_UNIFORM},                           \
         {PORT(LIGHTS), TYN_USE_UNIFORM}, {PORT(CAMERA), TYN_USE_UNIFORM},                          \
         {PORT(DISTANCES), TYN_USE_SAMPLED}, {PORT(FACING), TYN_USE_STORAGE_READ},                  \
-        {PORT(COLOURS), TYN_USE_STORAGE_READ}, {PORT(TABLE), TYN_USE_SAMPLED},                     \
-        {PORT(MOMENTS), TYN_USE_SAMPLED}, TYN_WALLS(TYN_BUNDLE_BIND, SHADE),                       \
+        {PORT(COLOURS), TYN_USE_STORAGE_READ}, {PORT(MOMENTS), TYN_USE_SAMPLED},                   \
+        TYN_WALLS(TYN_BUNDLE_BIND, SHADE),                                                         \
     {                                                                                              \
         PORT(ROOMS), TYN_USE_TEXELS_UINT                                                           \
     }
 
-static const tyn_binding lights_bindings[] = {
-    {PORT(RADIALS), TYN_USE_STORAGE_READ}, {PORT(SHADOWS), TYN_USE_STORAGE_READ},
-    {PORT(VPLS), TYN_USE_STORAGE_READ},    {PORT(LIGHTS), TYN_USE_UNIFORM},
-    {PORT(TABLE), TYN_USE_STORAGE_WRITE},
-};
 static const tyn_binding forward_bindings[] = {
     {PORT(MEDIUM), TYN_USE_UNIFORM},
     TYN_BEAMS(TYN_BUNDLE_BIND, SHADE),
@@ -123,7 +115,7 @@ static const tyn_binding places_bindings[] = {
     {PORT(ALONE_COUNT), TYN_USE_STORAGE_READ},
     {PORT(ALONE), TYN_USE_STORAGE_READ},
 };
-// Bindings 0 to 29 of shade_piece.glsl.
+// Bindings 0 to 28 of shade_piece.glsl.
 #define SURFACE_BINDINGS                                                                           \
     COMMON_BINDINGS, {PORT(PART), TYN_USE_STORAGE_READ}, {PORT(ENVIRONMENT), TYN_USE_UNIFORM},     \
         {PORT(FORWARD), TYN_USE_SAMPLED}, {PORT(FACES), TYN_USE_SAMPLED},                          \
@@ -161,8 +153,7 @@ static const tyn_binding alone_bindings[] = {
 };
 
 enum {
-    LIGHTS = 0,
-    FORWARD,
+    FORWARD = 0,
     FACES,
     SIGHT,
     VPLS,
@@ -181,7 +172,6 @@ enum {
 #define ARGS sizeof(struct shade_args)
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [LIGHTS] = KERNEL(lights, 64, 1, 1, ARGS, 2),
     [FORWARD] = KERNEL(forward, 8, 4, 2, 0, 3),
     [FACES] = KERNEL(faces, 32, 1, 1, ARGS, 2),
     [SIGHT] = KERNEL(sight, 8, 4, 1, ARGS, 1),
@@ -238,7 +228,6 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const uint32_t *places = p->sight_places;
     const tyn_extent fields = {places[0], places[1], places[2] * SHADE_SIGHT_FIELDS};
     tyn_build_image(b, PORT(SIGHT), outside && p->hidden ? fields : texel, 1);
-    tyn_build_image(b, PORT(TABLE), (tyn_extent){SHADE_ENTRIES, SHADE_ROWS, 1}, 1);
     tyn_build_image(b, PORT(PART), vpls ? blocks : texel, 1);
     tyn_build_image(b, PORT(ROWS), blocks, 1);
     const bool alone = vpls || step > 1;
@@ -280,8 +269,7 @@ static void record(tyn_recorder *r, const void *data)
     const uint32_t side = p->pattern ? (uint32_t)p->pattern : usual;
     const uint32_t spec[6] = {p->mode, features, p->num_suns, samples, side, step};
     const tyn_extent pixels = {p->size[0], p->size[1], 1};
-    tyn_dispatch d = {.kernel = LIGHTS, .cells = {SHADE_ROWS, 1, 1}, .args = &args, .spec = spec};
-    tyn_rec_dispatch(r, &d);
+    tyn_dispatch d = {.args = &args, .spec = spec};
     if (features & SHADE_SPREAD) {
         tyn_extent cells = {forward.x, forward.y, forward.z / p->num_suns};
         tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = FORWARD, .cells = cells, .spec = spec});

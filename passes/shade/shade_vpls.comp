@@ -27,7 +27,8 @@ void main()
     }
     // Of many each place takes a 25th; of fewer a fifth, so that any row takes all; of few all. Else differences
     // between parts would be larger than what sums even out.
-    uint side = uint(shade_side), parts = vpl_count <= SHADE_MOST ? 1u : vpl_count <= SHADE_MOST * side ? side : side * side;
+    uint side = uint(shade_side), count = vpl_count();
+    uint parts = count <= SHADE_MOST ? 1u : count <= SHADE_MOST * side ? side : side * side;
     part_of = parts < side * side ? uint(cell.x + 2 * cell.y) % parts : part_of;
     float nearest[SHADE_MANY];
     vec3 light[SHADE_MANY] = shade_vpls(p, rooms, part_of, parts, nearest);
