@@ -168,15 +168,12 @@ bool walls_in_room(lattice_box box, ivec3 q, uint room)
 }
 
 #ifdef LATTICE_ROOMS
-// What a place tells of the room that it is in; TYN_ROOMS_ANY: nothing, as a wall is near. `beside`: also then, if it is on
-// the side of its cell's centre of all planes there, so that no wall is between.
+// As rooms_told; `beside`: also of a place near a wall, if it is on the side of its cell's centre of all planes there.
 uint walls_room_told(lattice_box box, vec3 p, bool beside)
 {
     ivec3 c = ivec3(floor(lattice_from_m(box, p))), at = clamp(c, ivec3(0), box.dims - 1);
     uint index = lattice_index(box, at), links = walls_links_of(index);
-    bool behind = !beside || walls_behind(walls_planes_of(index), p) != 0u;
-    bool unknown = walls_cut_off(c, at, links) || at == c && behind && (links & TYN_WALLS_NEAR) != 0u;
-    return unknown ? TYN_ROOMS_ANY : at != c ? TYN_ROOMS_OUTSIDE : rooms_of_cell(box.dims, at);
+    return rooms_told(box.dims, c, at, links, beside && walls_behind(walls_planes_of(index), p) == 0u);
 }
 #endif
 
