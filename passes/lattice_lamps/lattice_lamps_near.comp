@@ -32,14 +32,13 @@ layout(constant_id = 2) const uint shadowed = 0;
 layout(constant_id = 3) const uint walls = 0;
 layout(constant_id = 4) const uint rooms = 0;
 
-walls_sides sides; // of the cell
-bool hidden = false; // a wall beside it may hide any VPL
+walls_planes hiding; // the cell from VPLs
 uint room = 0u;
 
 float visibility(uint n, vec3 away)
 {
     vpl_map map = vpl_map_of(n - args.num_lamps, radials[n].light.axis);
-    bool closed = hidden || walls == 1u && !walls_same_side_of(sides, radials[n].light.position);
+    bool closed = walls == 1u && walls_behind(hiding, radials[n].light.position) != 0u;
     float visible = vpl_map_visibility(map, away, length(away), closed);
     uint shines_in = rooms == 1u ? rooms_of_vpl(ivec3(args.dims), n - args.num_lamps) : 0u;
     return rooms_joined(shines_in, room) ? visible : 0.0;
@@ -64,9 +63,7 @@ void main()
         extinction += cell.x + cell.y;
     }
     if (walls == 1) {
-        sides = walls_sides_of(box, c);
-        uint index = uint((c.z * dims.y + c.y) * dims.x + c.x);
-        hidden = (walls_links_of(index) & TYN_WALLS_NEAR) != 0u && sides.planes[0] == vec4(0.0);
+        hiding = walls_planes_hiding(lattice_index(box, c));
     }
     if (rooms == 1) {
         room = rooms_of_cell(dims, c);

@@ -13,13 +13,13 @@ void lattice_lamps_add_pieces(uint n, uint count, lattice_box box, ivec3 c, inou
     float d = box.dx / float(count);
     vec4 weighted[3] = vec4[3](vec4(0.0), vec4(0.0), vec4(0.0));
     vec3 weight = vec3(0.0), open = vec3(0.0);
-    walls_sides sides;
+    walls_planes planes;
     if (walls == 1) {
-        sides = walls_sides_of(box, c);
+        planes = walls_planes_of(lattice_index(box, c));
     }
     for (uint i = 0u; i < count * count * count; i++) {
         vec3 p = corner + (vec3(quotient_place(i, ivec3(count))) + 0.5) * d;
-        if (walls == 1 && !walls_same_side_of(sides, p)) {
+        if (walls == 1 && walls_behind(planes, p) != 0u) {
             continue;
         }
         medium_point m = medium_sample(p);

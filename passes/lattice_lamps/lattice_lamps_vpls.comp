@@ -39,14 +39,6 @@ layout(constant_id = 4) const uint rooms = 0;
 
 const uint BLOCK = 8u;
 
-// Planes that nothing, or all, is behind.
-const vec4 OPEN = vec4(0.0, 0.0, 0.0, 1.0), HIDING = vec4(0.0, 0.0, 0.0, -1.0);
-
-vec4 plane_or(vec4 plane, vec4 other)
-{
-    return plane == vec4(0.0) ? other : plane;
-}
-
 ivec3 corner_of(uint k)
 {
     return ivec3(k & 1u, k >> 1 & 1u, k >> 2);
@@ -69,19 +61,13 @@ void main()
     vec4 sums[BLOCK][3];
     vec3 all[BLOCK], extinction[BLOCK];
     uint room[BLOCK];
-    // Of the cells' walls. A wall that cuts a link of a cell, but is not in it, has no plane there: it may hide any VPL.
-    vec4 first_plane[BLOCK], second_plane[BLOCK], third_plane[BLOCK];
+    walls_planes hiding[BLOCK]; // the cells from VPLs
     [[unroll]] for (uint k = 0u; k < BLOCK; k++) {
         ivec3 at = min(c + corner_of(k), dims - 1);
         all[k] = vec3(0.0);
         room[k] = rooms == 1u ? rooms_of_cell(dims, at) : 0u;
-        first_plane[k] = second_plane[k] = third_plane[k] = OPEN;
         if (walls == 1u) {
-            uint index = uint((at.z * dims.y + at.y) * dims.x + at.x);
-            bool near = (walls_links_of(index) & TYN_WALLS_NEAR) != 0u;
-            first_plane[k] = near ? plane_or(walls_plane(index, 0u), HIDING) : OPEN;
-            second_plane[k] = near ? plane_or(walls_plane(index, 1u), OPEN) : OPEN;
-            third_plane[k] = near ? plane_or(walls_plane(index, 2u), OPEN) : OPEN;
+            hiding[k] = walls_planes_hiding(lattice_index(box, at));
         }
         extinction[k] = vec3(0.0);
         [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {
@@ -119,11 +105,10 @@ void main()
                 vec3 unit = away / max(r, 1e-20);
                 float share = lattice_lamps_vpl_pieces(r / dx) == 1u ? max(dot(unit, light.axis), 0.0) : 0.0;
                 float fluence = share * radial_mean_inverse_square(r2, dx * dx);
-                bool closed = false;
-                if (walls == 1u) {
-                    vec4 at = vec4(light.position, 1.0);
-                    closed = min(min(dot(first_plane[k], at), dot(second_plane[k], at)), dot(third_plane[k], at)) < 0.0;
-                }
+                // Not walls_behind: it rounds otherwise, and VPLs lie in the planes of walls.
+                vec4 at = vec4(light.position, 1.0);
+                float least = min(dot(hiding[k].plane[0], at), dot(hiding[k].plane[1], at));
+                bool closed = walls == 1u && min(least, dot(hiding[k].plane[2], at)) < 0.0;
                 float visible = shadowed == 1 ? vpl_map_visibility(map, away, r, closed) : 1.0;
                 visible = rooms_joined(shines_in, room[k]) ? visible : 0.0;
                 vec4 moments = visible * vec4(1.0, lattice_lamps_cosine(light.radius, r) * unit);

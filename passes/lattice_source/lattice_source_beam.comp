@@ -93,9 +93,9 @@ void main()
     if (dense) { // threads without it pass by
         across = depth_across(sun, box, c, direction);
     }
-    walls_sides sides;
+    walls_planes planes;
     if (walls == 1) {
-        sides = walls_sides_of(box, c);
+        planes = walls_planes_of(lattice_index(box, c));
     }
     shadow_light shadow;
     if (shadowed == 1) {
@@ -111,7 +111,7 @@ void main()
             beam_ray ray = beam_ray_of(sun, row, vec3(1.0, 0.0, 0.0));
             for (uint i = 0; i < args.samples; i++) {
                 float s = float(i) * step_length;
-                if (walls == 1 && !walls_same_side_of(sides, row + vec3(s, 0.0, 0.0))) {
+                if (walls == 1 && walls_behind(planes, row + vec3(s, 0.0, 0.0)) != 0u) {
                     continue;
                 }
                 medium_point m = medium_sample(row + vec3(s, 0.0, 0.0));

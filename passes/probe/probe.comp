@@ -214,7 +214,8 @@ float vpl_share(lattice_box box, uint n, vec3 p, vec3 away, float r)
     vec3 position = radials[n].light.position, axis = radials[n].light.axis;
     vpl_map map = vpl_map_of(n - radial_num_lamps, axis);
     walls_place place = walls_place_of(box, p);
-    bool parted = walls_near(place) && walls_behind(place.index, position) != walls_behind(place.index, p);
+    walls_planes planes = walls_planes_of(place.index);
+    bool parted = walls_behind(planes, position) != walls_behind(planes, p);
     float share = vpl_map_visibility(map, away, r, parted);
     if (share > 0.0) {
         ivec3 from = walls_cell_before(box, position, axis), cell = cell_for(box, place, p);

@@ -88,9 +88,7 @@ uint march_room(vec3 p, vec3 direction, float s, float start)
     lattice_box box = lattice_box_of(medium.extent, textureSize(inscatter_tex, 0) - 2);
     uint room = TYN_ROOMS_ANY;
     for (int k = 0; k < MARCH_ROOM_STEPS && s > -start && room == TYN_ROOMS_ANY; k++) {
-        ivec3 c = ivec3(floor(lattice_from_m(box, p + s * direction))), at = clamp(c, ivec3(0), box.dims - 1);
-        uint links = walls_links_of(uint((at.z * box.dims.y + at.y) * box.dims.x + at.x));
-        room = walls_cut_off(c, at, links) ? room : at != c ? TYN_ROOMS_OUTSIDE : (links & TYN_WALLS_NEAR) != 0u ? room : rooms_of_cell(box.dims, at);
+        room = walls_room_told(box, p + s * direction, false);
         s -= 0.75 * box.dx;
     }
     return room;

@@ -1,7 +1,7 @@
 // rooms.c -- which cells of the lattice are joined by open links.
 #include "rooms.h"
 #include "rooms_args.h"
-#include "shaders/beams/radial_args.h"
+#include "shaders/walls/rooms.h"
 #include "rooms_cells.comp.h"
 #include "rooms_links.comp.h"
 #include "rooms_vpls.comp.h"
@@ -47,9 +47,9 @@ static uint32_t num_cells(const tyn_rooms_params *p)
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
-    const uint64_t elements = 1 + (uint64_t)num_cells(params) + TYN_RADIAL_VPLS_MAX;
-    tyn_build_buffer(b, ROOMS_PORT_ROOMS, 4 * (elements + TYN_RADIAL_VPLS_MAX));
-    tyn_build_buffer(b, ROOMS_PORT_FOREST, 4 * elements);
+    const uint64_t cells = num_cells(params);
+    tyn_build_buffer(b, ROOMS_PORT_ROOMS, 4 * TYN_ROOMS_SIZE(cells));
+    tyn_build_buffer(b, ROOMS_PORT_FOREST, 4 * TYN_ROOMS_ELEMENTS(cells));
     return TYN_OK;
 }
 
@@ -62,7 +62,7 @@ static void record(tyn_recorder *r, const void *params)
         .dims = {p->dims[0], p->dims[1], p->dims[2]},
     };
     const tyn_dispatch find = {
-        .kernel = KERNEL_CELLS, .cells = {1 + cells + TYN_RADIAL_VPLS_MAX, 1, 1}, .args = &args};
+        .kernel = KERNEL_CELLS, .cells = {TYN_ROOMS_ELEMENTS(cells), 1, 1}, .args = &args};
     tyn_rec_fill(r, ROOMS_PORT_FOREST, 0);
     tyn_rec_dispatch(
         r, &(tyn_dispatch){.kernel = KERNEL_LINKS, .cells = {cells, 1, 1}, .args = &args});

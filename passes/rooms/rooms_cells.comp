@@ -3,7 +3,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "rooms_args.h"
-#include "shaders/beams/radial_args.h"
 #include "shaders/walls/rooms.h"
 #include "shaders/lattice/lattice.glsl"
 #include "rooms_forest.glsl"
@@ -37,7 +36,7 @@ uint cell_before(uint vpl, uint room)
         ivec3 d = ivec3(k % 3, k / 3 % 3, k / 9) - 1, q = before + d;
         bool inside = all(equal(q, clamp(q, ivec3(0), dims - 1)));
         uint cell = inside ? uint((q.z * dims.y + q.y) * dims.x + q.x) : 0u;
-        uint of_cell = rooms_first(inside ? 1u + cell : 0u);
+        uint of_cell = rooms_first(inside ? TYN_ROOMS_OF_CELL(cell) : TYN_ROOMS_OUTSIDE);
         if (d == ivec3(0) && of_cell == room) {
             return TYN_ROOMS_ANY;
         }
@@ -53,13 +52,13 @@ uint cell_before(uint vpl, uint room)
 void main()
 {
     uint i = gl_GlobalInvocationID.x, cells = args.dims.x * args.dims.y * args.dims.z;
-    if (i > cells + uint(TYN_RADIAL_VPLS_MAX)) {
+    if (i >= TYN_ROOMS_ELEMENTS(cells)) {
         return;
     }
-    uint room = rooms_first(i), vpl = i - cells - 1u;
+    uint room = rooms_first(i), vpl = i - TYN_ROOMS_OF_VPL(cells, 0u);
     rooms[i] = room > cells ? TYN_ROOMS_ANY : room;
     if (i > cells) {
         bool known = vpl < vpl_count && room <= cells;
-        rooms[i + uint(TYN_RADIAL_VPLS_MAX)] = known ? cell_before(vpl, room) : TYN_ROOMS_ANY;
+        rooms[TYN_ROOMS_BEFORE_VPL(cells, vpl)] = known ? cell_before(vpl, room) : TYN_ROOMS_ANY;
     }
 }

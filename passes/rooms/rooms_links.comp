@@ -4,6 +4,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "rooms_args.h"
 #include "shaders/walls/walls_links.glsl"
+#include "shaders/walls/rooms.h"
 #include "shaders/common/quotient.glsl"
 #include "rooms_forest.glsl"
 
@@ -50,10 +51,10 @@ void main()
     }
     wanted = deep ? 1u << walls_link(ivec3(-1, 0, 0)) : wanted;
     if (leaves) {
-        rooms_join(1u + i, 0u);
+        rooms_join(TYN_ROOMS_OF_CELL(i), TYN_ROOMS_OUTSIDE);
     }
     for (; wanted != 0u; wanted &= wanted - 1u) {
         ivec3 d = walls_step(uint(findLSB(wanted)));
-        rooms_join(1u + i, uint(int(1u + i) + d.x + row.y * d.y + row.z * d.z));
+        rooms_join(TYN_ROOMS_OF_CELL(i), uint(int(TYN_ROOMS_OF_CELL(i)) + d.x + row.y * d.y + row.z * d.z));
     }
 }

@@ -6,9 +6,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "rooms_args.h"
-#include "shaders/beams/radial_args.h"
-#include "shaders/walls/walls_links.glsl"
-#include "shaders/walls/rooms.h"
+#define LATTICE_ROOMS 4 // as links join them
+#include "shaders/walls/lattice_rooms.glsl"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/light/vpl_visibility.glsl"
 #include "rooms_forest.glsl"
@@ -26,7 +25,6 @@ layout(binding = 2, scalar) readonly buffer vpl_buffer
     radial_light vpls[];
 };
 layout(binding = 3) uniform sampler2D distances;
-layout(binding = 4) uniform usamplerBuffer room_texels; // as links join them
 
 // As close as half a cell in boxes of a few cells, where few have no walls; down to a seventh of the way.
 const int TRIES = 12;
@@ -42,13 +40,7 @@ uint told_by(lattice_box box, vec3 from, mat3 frame, ivec2 corner, ivec2 at, int
     for (int k = 0; k < TRIES && told == TYN_ROOMS_ANY && place > 0.0; k++) {
         ivec3 c = ivec3(floor(lattice_from_m(box, from + place * d)));
         ivec3 at = clamp(c, ivec3(0), box.dims - 1);
-        int i = (at.z * box.dims.y + at.y) * box.dims.x + at.x;
-        uint links = texelFetch(link_texels, i).x;
-        if (at != c) {
-            told = walls_cut_off(c, at, links) ? told : TYN_ROOMS_OUTSIDE;
-        } else {
-            told = (links & TYN_WALLS_NEAR) == 0u ? texelFetch(room_texels, 1 + i).x : told;
-        }
+        told = rooms_told(box.dims, c, at, texelFetch(link_texels, int(lattice_index(box, at))).x, false);
         place *= NEXT;
     }
     return told;
@@ -72,6 +64,6 @@ void main()
     mat3 frame = vpl_frame(light.axis);
     uint a = told_by(box, from, frame, corner, at, side), b = told_by(box, from, frame, corner, at + ivec2(1, 0), side);
     if (a == b && a != TYN_ROOMS_ANY) {
-        rooms_join(1u + args.dims.x * args.dims.y * args.dims.z + vpl, a);
+        rooms_join(TYN_ROOMS_OF_VPL(args.dims.x * args.dims.y * args.dims.z, vpl), a);
     }
 }

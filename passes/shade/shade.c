@@ -7,17 +7,13 @@
 #include "shade_faces.h"
 #include "shade_forward.comp.h"
 #include "shade_gather.comp.h"
-#include "shade_lights.comp.h"
 #include "shade_places.comp.h"
 #include "shade_rows.comp.h"
 #include "shade_sight.comp.h"
 #include "shade_smooth.comp.h"
 #include "shade_surface.comp.h"
 #include "shade_vpls.comp.h"
-#include "shade_walls.comp.h"
-#include "shade_table.h"
 #include "shaders/surfaces/gbuffer_edge_args.h"
-#include "shaders/walls/walls_args.h"
 #include <stddef.h>
 #include <string.h>
 
@@ -50,9 +46,6 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
     TYN_MATERIALS(TYN_BUNDLE_IN, SHADE),
     [PORT(RADIANCE)] = {"surface_radiance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT,
                         .meaning = "radiance to the camera, W/(m^2 sr)"},
-    [PORT(TABLE)] = {"lights_table", TYN_SCRATCH, IMAGE2, .meaning = "the lights"},
-    [PORT(WALL_TABLE)] = {"wall_table", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                          .meaning = "walls of the lattice's cells"},
     [PORT(FORWARD)] = {"forward", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
                        .meaning = "from where sunlight comes that was scattered forward"},
     [PORT(FACES)] = {"faces", TYN_SCRATCH, IMAGE2, .meaning = "light that leaves the medium's box"},
@@ -68,28 +61,19 @@ static const tyn_port ports[SHADE_NUM_PORTS] = {
                      .meaning = "pixels with pieces that have smooth light of their own"},
 };
 
-// Bindings 0 to 20 of shade.glsl. What is in the table is not read from buffers.
+// Bindings 0 to 23 of shade.glsl.
 #define COMMON_BINDINGS                                                                            \
     {PORT(MEDIUM), TYN_USE_UNIFORM}, TYN_BEAMS(TYN_BUNDLE_BIND, SHADE),                            \
-        TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, SHADE), TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, SHADE),  \
+        TYN_RADIALS(TYN_BUNDLE_BIND_TEXELS, SHADE), TYN_SHADOWS(TYN_BUNDLE_BIND_TEXELS, SHADE),    \
         TYN_VPLS(TYN_BUNDLE_BIND, SHADE), {PORT(SUNS), TYN_USE_UNIFORM},                           \
         {PORT(LIGHTS), TYN_USE_UNIFORM}, {PORT(CAMERA), TYN_USE_UNIFORM},                          \
         {PORT(DISTANCES), TYN_USE_SAMPLED}, {PORT(FACING), TYN_USE_STORAGE_READ},                  \
-        {PORT(COLOURS), TYN_USE_STORAGE_READ},                                                     \
+        {PORT(COLOURS), TYN_USE_STORAGE_READ}, {PORT(MOMENTS), TYN_USE_SAMPLED},                   \
+        TYN_WALLS(TYN_BUNDLE_BIND, SHADE),                                                         \
     {                                                                                              \
-        PORT(TABLE), TYN_USE_SAMPLED                                                               \
+        PORT(ROOMS), TYN_USE_TEXELS_UINT                                                           \
     }
 
-static const tyn_binding lights_bindings[] = {
-    {PORT(RADIALS), TYN_USE_STORAGE_READ}, {PORT(SHADOWS), TYN_USE_STORAGE_READ},
-    {PORT(VPLS), TYN_USE_STORAGE_READ},    {PORT(LIGHTS), TYN_USE_UNIFORM},
-    {PORT(TABLE), TYN_USE_STORAGE_WRITE},  {PORT(ROOMS), TYN_USE_STORAGE_READ},
-};
-static const tyn_binding walls_bindings[] = {
-    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, SHADE),
-    {PORT(WALL_TABLE), TYN_USE_STORAGE_WRITE},
-    {PORT(ROOMS), TYN_USE_STORAGE_READ},
-};
 static const tyn_binding forward_bindings[] = {
     {PORT(MEDIUM), TYN_USE_UNIFORM},
     TYN_BEAMS(TYN_BUNDLE_BIND, SHADE),
@@ -100,7 +84,7 @@ static const tyn_binding forward_bindings[] = {
 };
 static const tyn_binding faces_bindings[] = {
     {PORT(MEDIUM), TYN_USE_UNIFORM},      {PORT(ENVIRONMENT), TYN_USE_UNIFORM},
-    {PORT(MOMENTS), TYN_USE_SAMPLED},     {PORT(WALL_TABLE), TYN_USE_SAMPLED},
+    {PORT(MOMENTS), TYN_USE_SAMPLED},     {PORT(WALL_LINKS), TYN_USE_TEXELS_UINT},
     {PORT(FACES), TYN_USE_STORAGE_WRITE},
 };
 static const tyn_binding sight_bindings[] = {
@@ -111,7 +95,6 @@ static const tyn_binding sight_bindings[] = {
 static const tyn_binding vpls_bindings[] = {
     COMMON_BINDINGS,
     {PORT(PART), TYN_USE_STORAGE_WRITE},
-    {PORT(WALL_TABLE), TYN_USE_SAMPLED},
 };
 static const tyn_binding rows_bindings[] = {
     {PORT(CAMERA), TYN_USE_UNIFORM},
@@ -129,14 +112,12 @@ static const tyn_binding gather_bindings[] = {
 static const tyn_binding places_bindings[] = {
     COMMON_BINDINGS,
     {PORT(PART), TYN_USE_STORAGE_WRITE},
-    {PORT(WALL_TABLE), TYN_USE_SAMPLED},
     {PORT(ALONE_COUNT), TYN_USE_STORAGE_READ},
     {PORT(ALONE), TYN_USE_STORAGE_READ},
 };
-// Bindings 0 to 27 of shade_piece.glsl.
+// Bindings 0 to 28 of shade_piece.glsl.
 #define SURFACE_BINDINGS                                                                           \
-    COMMON_BINDINGS, {PORT(PART), TYN_USE_STORAGE_READ}, {PORT(MOMENTS), TYN_USE_SAMPLED},         \
-        {PORT(WALL_TABLE), TYN_USE_SAMPLED}, {PORT(ENVIRONMENT), TYN_USE_UNIFORM},                 \
+    COMMON_BINDINGS, {PORT(PART), TYN_USE_STORAGE_READ}, {PORT(ENVIRONMENT), TYN_USE_UNIFORM},     \
         {PORT(FORWARD), TYN_USE_SAMPLED}, {PORT(FACES), TYN_USE_SAMPLED},                          \
     {                                                                                              \
         PORT(SIGHT), TYN_USE_SAMPLED                                                               \
@@ -172,9 +153,7 @@ static const tyn_binding alone_bindings[] = {
 };
 
 enum {
-    LIGHTS = 0,
-    WALLS,
-    FORWARD,
+    FORWARD = 0,
     FACES,
     SIGHT,
     VPLS,
@@ -193,8 +172,6 @@ enum {
 #define ARGS sizeof(struct shade_args)
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [LIGHTS] = KERNEL(lights, 64, 1, 1, ARGS, 2),
-    [WALLS] = KERNEL(walls, 8, 4, 2, 0, 1),
     [FORWARD] = KERNEL(forward, 8, 4, 2, 0, 3),
     [FACES] = KERNEL(faces, 32, 1, 1, ARGS, 2),
     [SIGHT] = KERNEL(sight, 8, 4, 1, ARGS, 1),
@@ -247,13 +224,10 @@ static tyn_result declare(tyn_builder *b, const void *data)
                         tyn_build_has(b, PORT(SHADOWS)) && p->num_suns;
     cells.z = slices * p->num_suns;
     tyn_build_image(b, PORT(FORWARD), spread ? cells : texel, 1);
-    cells.z = slices * (TYN_WALLS_PLANES + 1);
-    tyn_build_image(b, PORT(WALL_TABLE), tyn_build_has(b, PORT(WALL_LINKS)) ? cells : texel, 1);
     tyn_build_image(b, PORT(FACES), outside ? faces : texel, 1);
     const uint32_t *places = p->sight_places;
     const tyn_extent fields = {places[0], places[1], places[2] * SHADE_SIGHT_FIELDS};
     tyn_build_image(b, PORT(SIGHT), outside && p->hidden ? fields : texel, 1);
-    tyn_build_image(b, PORT(TABLE), (tyn_extent){SHADE_ENTRIES, SHADE_ROWS, 1}, 1);
     tyn_build_image(b, PORT(PART), vpls ? blocks : texel, 1);
     tyn_build_image(b, PORT(ROWS), blocks, 1);
     const bool alone = vpls || step > 1;
@@ -295,13 +269,7 @@ static void record(tyn_recorder *r, const void *data)
     const uint32_t side = p->pattern ? (uint32_t)p->pattern : usual;
     const uint32_t spec[6] = {p->mode, features, p->num_suns, samples, side, step};
     const tyn_extent pixels = {p->size[0], p->size[1], 1};
-    tyn_dispatch d = {.kernel = LIGHTS, .cells = {SHADE_ROWS, 1, 1}, .args = &args, .spec = spec};
-    tyn_rec_dispatch(r, &d);
-    if (tyn_rec_has(r, PORT(WALL_LINKS))) {
-        tyn_extent cells = tyn_rec_extent(r, PORT(WALL_TABLE));
-        cells.z /= TYN_WALLS_PLANES + 1;
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = WALLS, .cells = cells, .spec = &rooms});
-    }
+    tyn_dispatch d = {.args = &args, .spec = spec};
     if (features & SHADE_SPREAD) {
         tyn_extent cells = {forward.x, forward.y, forward.z / p->num_suns};
         tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = FORWARD, .cells = cells, .spec = spec});

@@ -21,9 +21,9 @@ layout(push_constant, scalar) uniform Args
 #define MEDIUM_BLOCK 0
 #define BEAMS_AT 1
 #define RADIALS_AT 5
-#define RADIALS_STORAGE
+#define RADIALS_TEXELS
 #define SHADOWS_AT 9
-#define SHADOWS_STORAGE
+#define SHADOWS_TEXELS
 #include "shaders/common/camera.glsl"
 #include "shaders/medium/medium.glsl"
 #include "shaders/beams/beam.glsl"
@@ -31,15 +31,11 @@ layout(push_constant, scalar) uniform Args
 #include "shaders/light/shadow.glsl"
 #include "shaders/surfaces/gbuffer.glsl"
 #include "vpl.glsl"
-#include "shade_table.h"
 
-layout(binding = 20) uniform sampler2D table_tex; // shade_table.h
 layout(binding = 14, scalar) uniform sun_uniform
 {
     light_block suns[TYN_LIGHTS_MAX];
 };
-// Lights and what else is in the table are not read from their buffers; but without them among the bindings
-// lavapipe crashes in what it does before a dispatch.
 layout(binding = 15, scalar) uniform light_uniform
 {
     light_block lights[TYN_LIGHTS_MAX];
@@ -52,11 +48,25 @@ layout(binding = 17) uniform sampler2D distances_tex; // gbuffer.glsl
 layout(binding = 18, rgba32ui) uniform readonly uimage2D facing_image;
 layout(binding = 19, rgba32ui) uniform readonly uimage2D colour_image;
 #define VPLS_AT 11
+layout(binding = 20) uniform sampler3D moments_tex;
+#define WALLS_AT 21
+#define LATTICE_ROOMS 23
+#define SHADE_AT 24 // the first binding of each kernel's own
+#include "shaders/lattice/lattice.glsl"
+#include "shaders/walls/lattice_walls.glsl"
 #include "shaders/light/vpl_visibility.glsl"
 
 bool shade_has(uint feature)
 {
     return (shade_features & feature) != 0u;
+}
+
+// The lattice whose light there is: call it with SHADE_LATTICE or SHADE_OUTSIDE.
+lattice_box shade_lattice()
+{
+    ivec3 dims = textureSize(moments_tex, 0);
+    dims.z /= shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
+    return lattice_box_of(medium.extent, dims);
 }
 
 struct shade_point {
@@ -99,26 +109,6 @@ vec3 shade_position(ivec2 texel, float distance)
 vec3 shade_left(beam_tau tau)
 {
     return exp(-(tau.a + tau.p));
-}
-
-vec4 shade_entry(uint row, int entry)
-{
-    return texelFetch(table_tex, ivec2(entry, row), 0);
-}
-
-shadow_light shade_shadow(uint row)
-{
-    vec4 place = shade_entry(row, SHADE_SHADOW_PLACE), kind = shade_entry(row, SHADE_SHADOW_KIND);
-    shadow_light l;
-    for (int k = 0; k < 3; k++) {
-        l.rows[k] = shade_entry(row, SHADE_SHADOW_ROWS + k);
-    }
-    l.offset = place.xy;
-    l.texels = place.z;
-    l.scale = place.w;
-    l.near = kind.x;
-    l.kind = uint(kind.y);
-    return l;
 }
 
 // Cosine at which light from `towards` (unit) arrives; none where it comes from behind the facet.
@@ -197,7 +187,7 @@ vec3 shade_suns(shade_point p, vec4 part, vec4 around[TYN_BEAM_MAX_SUNS], bool s
         float wide = soft && spread ? shade_around(around[n], p.normal) : 0.0;
         if (straight + wide > 0.0) {
             if (sharp && shade_has(SHADE_SHADOWS)) {
-                straight *= shadow_visibility_surface_sun_of(shade_shadow(uint(SHADE_ROW_SUNS) + sun), surface);
+                straight *= shadow_visibility_surface_sun_of(shadow_light_of(sun), surface);
             }
             if (straight + wide > 0.0) {
                 vec3 light = vec3(straight);
@@ -219,14 +209,14 @@ vec3 shade_suns(shade_point p, vec4 part, vec4 around[TYN_BEAM_MAX_SUNS], bool s
 
 // ---- local lights ----
 
-// The grid of the light in a row of the table.
-radial_grid shade_grid(uint row, vec3 o)
+// Lamp n, in the order of their grids where there is a medium.
+radial_light shade_lamp_of(uint n)
 {
-    radial_light light = radial_light(o, TYN_RADIAL_COSINE, vec3(1.0), 0.0, vec3(0.0), 0.0, 0.0, 0u);
-    vec4 x = shade_entry(row, SHADE_TO_MAP), y = shade_entry(row, SHADE_TO_MAP + 1);
-    vec4 z = shade_entry(row, SHADE_TO_MAP + 2);
-    return radial_grid(light, vec3[3](x.xyz, y.xyz, z.xyz), shade_entry(row, SHADE_BASE).xyz,
-                       shade_entry(row, SHADE_SCALE).xyz, uvec3(0u), 0u, 0u, x.w, y.w, 0.0, uint(z.w));
+    uint lamp = shade_has(SHADE_MEDIUM) ? radial_grid_of(n).light.light - TYN_SHADOW_LAMP(0u) : n;
+    light_block l = lights[args.num_directional + lamp];
+    uint kind = l.kind == TYN_LIGHT_KIND_SPOT ? TYN_RADIAL_SPOT : TYN_RADIAL_ISOTROPIC;
+    return radial_light(l.position, kind, l.color, l.cos_inner, l.direction, l.cos_outer, 0.0, TYN_SHADOW_LAMP(lamp),
+                        uvec2(0u));
 }
 
 // What is left of a local light at a point that may be outside the medium's box.
@@ -277,10 +267,9 @@ float shade_triangle(vec3 a, vec3 b, vec3 c, float h, out float twice_area)
 // Mean irradiance of a lamp, per intensity, over the footprint of p. What a lamp sends through a part of a plane is its
 // intensity times the solid angle under which it sees that part: exact, however near it is. Of a
 // spot's light no more arrives than it sends.
-float shade_lamp_on(shade_point p, shade_footprint foot, uint row, vec3 position)
+float shade_lamp_on(shade_point p, shade_footprint foot, radial_light lamp)
 {
-    vec4 axis = shade_entry(row, SHADE_AXIS);
-    float cos_inner = shade_entry(row, SHADE_INTENSITY).w, cos_outer = shade_entry(row, SHADE_CONE).w;
+    vec3 position = lamp.position;
     float unit = 1.0 / foot.width, h = dot(position - p.position, p.facet);
     vec3 a = (shade_seen(p, foot.part.xy) - position) * unit, b = (shade_seen(p, foot.part.zy) - position) * unit;
     vec3 c = (shade_seen(p, foot.part.zw) - position) * unit, d = (shade_seen(p, foot.part.xw) - position) * unit;
@@ -298,8 +287,8 @@ float shade_lamp_on(shade_point p, shade_footprint foot, uint row, vec3 position
     density = camera_select(camera, density, mix(density, there, nearness));
     vec3 towards = normalize(position - mix(shade_seen(p, 0.5 * (foot.part.xy + foot.part.zw)), most, nearness));
     float straight = max(dot(towards, p.facet), 1e-6);
-    float lobe = angle * radial_lobe(uint(axis.w), axis.xyz, cos_inner, cos_outer, -towards);
-    lobe = min(lobe, radial_lobe_integral(uint(axis.w), cos_inner, cos_outer));
+    float lobe = angle * radial_lobe(lamp.kind, lamp.axis, lamp.cos_inner, lamp.cos_outer, -towards);
+    lobe = min(lobe, radial_lobe_integral(lamp.kind, lamp.cos_inner, lamp.cos_outer));
     return lobe * density * clamp(dot(p.normal, towards) / straight, 0.0, 2.0);
 }
 
@@ -311,9 +300,10 @@ vec2 shade_border(vec2 t, vec2 middle)
 }
 
 // ... of a spot, whose cone may be narrower than the footprint, over parts of it.
-float shade_lamp_near(shade_point p, shade_footprint foot, uint row, vec3 position)
+float shade_lamp_near(shade_point p, shade_footprint foot, radial_light lamp)
 {
-    bool spot = uint(shade_entry(row, SHADE_AXIS).w) == TYN_RADIAL_SPOT;
+    vec3 position = lamp.position;
+    bool spot = lamp.kind == TYN_RADIAL_SPOT;
     bool close = distance(position, p.position) < 2.0 * foot.width;
     int side = !spot ? 1 : close ? SHADE_SPOT_PARTS : SHADE_SPOT_PARTS / 4;
     vec2 size = foot.part.zw - foot.part.xy;
@@ -325,32 +315,30 @@ float shade_lamp_near(shade_point p, shade_footprint foot, uint row, vec3 positi
         vec2 first = shade_border(t, middle), last = shade_border(t + 1.0 / float(side), middle), share = last - first;
         shade_footprint part = shade_footprint(foot.part.xyxy + vec4(first, last) * size.xyxy,
                                                foot.width * max(max(share.x, share.y), 1e-6), foot.slope);
-        sum += share.x * share.y * shade_lamp_on(p, part, row, position);
+        sum += share.x * share.y * shade_lamp_on(p, part, lamp);
     }
     return sum;
 }
 
-// Lamp `row` of the table.
-vec3 shade_lamp(shade_point p, shade_footprint foot, uint row)
+vec3 shade_lamp(shade_point p, shade_footprint foot, uint n)
 {
-    vec4 position = shade_entry(row, SHADE_POSITION), axis = shade_entry(row, SHADE_AXIS);
-    vec4 intensity = shade_entry(row, SHADE_INTENSITY), cone = shade_entry(row, SHADE_CONE);
-    vec3 way = position.xyz - p.position;
+    radial_light lamp = shade_lamp_of(n);
+    vec3 way = lamp.position - p.position;
     float rr = max(dot(way, way), 1e-13 * dot(medium.extent, medium.extent));
     vec3 towards = way * inversesqrt(rr);
     float share = shade_cosine(p, towards) *
-                  radial_lobe(uint(axis.w), axis.xyz, intensity.w, cone.w, -towards) / rr;
+                  radial_lobe(lamp.kind, lamp.axis, lamp.cos_inner, lamp.cos_outer, -towards) / rr;
     float reach = SHADE_NEAR * foot.width;
     if (rr < reach * reach && dot(way, p.facet) > 0.0) {
-        share = shade_lamp_near(p, foot, row, position.xyz);
+        share = shade_lamp_near(p, foot, lamp);
     }
-    vec3 irradiance = intensity.rgb * share;
+    vec3 irradiance = lamp.intensity * share;
     if (share > 0.0) {
         if (shade_has(SHADE_SHADOWS)) {
-            irradiance *= shadow_visibility_surface_lamp_of(shade_shadow(row), shade_shadowed(p, foot));
+            irradiance *= shadow_visibility_surface_lamp_of(shadow_light_of(lamp.light), shade_shadowed(p, foot));
         }
         if (shade_has(SHADE_MEDIUM)) {
-            irradiance *= shade_through_radial(shade_grid(row, position.xyz), p.position);
+            irradiance *= shade_through_radial(radial_grid_of(n), p.position);
         }
     }
     return irradiance;
@@ -364,8 +352,8 @@ vec3 shade_lamps(shade_point p, vec4 part)
         return sum;
     }
     shade_footprint foot = shade_footprint_of(p, part);
-    for (uint row = 0u; row < args.num_lamps; row++) {
-        sum += shade_lamp(p, foot, row);
+    for (uint n = 0u; n < args.num_lamps; n++) {
+        sum += shade_lamp(p, foot, n);
     }
     return sum;
 }
@@ -373,7 +361,7 @@ vec3 shade_lamps(shade_point p, vec4 part)
 // Of VPLs first, first + stride, ..., on SHADE_MANY points: a light is read once for all of them. Nothing is left out
 // where a light does not shine: lavapipe would go through it anyway, under a mask. `rooms` of the points: shade_rooms.glsl.
 // `nearest` of those that shine there: square of the distance or of the radius, which is more, m^2.
-vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], float rooms[SHADE_MANY], uint first, uint stride,
+vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], uint rooms[SHADE_MANY], uint first, uint stride,
                             out float nearest[SHADE_MANY])
 {
     vec3 sum[SHADE_MANY];
@@ -381,18 +369,14 @@ vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], float rooms[SHADE_MANY], 
         sum[i] = vec3(0.0);
         nearest[i] = 1e30;
     }
-    uint count = min(vpl_count, uint(TYN_RADIAL_VPLS_MAX));
+    uint count = min(vpl_count(), uint(TYN_RADIAL_VPLS_MAX));
     for (uint k = first; k < count; k += stride) {
-        uint row = uint(SHADE_ROW_VPLS) + k;
-        vec4 position = shade_entry(row, SHADE_POSITION);
-        vec4 faces = shade_entry(row, SHADE_AXIS);
-        vec3 axis = faces.xyz, intensity = shade_entry(row, SHADE_INTENSITY).rgb;
-        radial_light light =
-            radial_light(position.xyz, TYN_RADIAL_COSINE, vec3(1.0), 0.0, axis, 0.0, position.w, 0u);
-        vpl_map map = vpl_map_of(k, axis);
+        radial_light light = vpl_light(k);
+        vpl_map map = vpl_map_of(k, light.axis);
+        uint shines_in = shade_has(SHADE_ROOMS) ? rooms_of_vpl(shade_lattice().dims, k) : TYN_ROOMS_ANY;
         radial_grid grid;
         if (shade_has(SHADE_MEDIUM)) {
-            grid = shade_grid(row, light.position);
+            grid = radial_grid_of(args.num_lamps + k);
         }
         [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
             vec3 away = p[i].position - light.position;
@@ -400,11 +384,11 @@ vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], float rooms[SHADE_MANY], 
             share = dot(p[i].facet, away) < 0.0 ? share : 0.0;
             share *= vpl_map_visibility_surface(map, away, p[i].facet);
             if (shade_has(SHADE_ROOMS)) {
-                share = faces.w == rooms[i] || min(faces.w, rooms[i]) < 0.0 ? share : 0.0;
+                share = rooms[i] == TYN_ROOMS_ANY || rooms_joined(shines_in, rooms[i]) ? share : 0.0;
             }
             float far = max(dot(away, away), light.radius * light.radius);
             nearest[i] = share > 0.0 ? min(nearest[i], far) : nearest[i];
-            vec3 irradiance = intensity * share;
+            vec3 irradiance = light.intensity * share;
             if (shade_has(SHADE_MEDIUM)) {
                 irradiance *= shade_through_radial(grid, p[i].position);
             }

@@ -55,8 +55,6 @@ enum {
     // OUT 2D RG32UI, packed_colour.glsl, as large as "distances": radiance to the camera, W/(m^2
     // sr).
     SHADE_PORT_RADIANCE,
-    SHADE_PORT_TABLE,      // SCRATCH 2D RGBA32F, shade_table.h
-    SHADE_PORT_WALL_TABLE, // SCRATCH 3D RGBA32F, walls_table.glsl: exists with wall_links
     // SCRATCH 3D RGBA32F, shade_forward.comp: exists with a lattice, suns and shadows.
     SHADE_PORT_FORWARD,
     SHADE_PORT_FACES, // SCRATCH 2D RGBA32F, shade_faces.h

@@ -6,14 +6,14 @@
 #include "shade_piece.glsl"
 #include "shade_several.glsl"
 #include "shade_whole.glsl"
-#define SHADE_ALONE_COUNT 29
-#define SHADE_ALONE 30
+#define SHADE_ALONE_COUNT (SHADE_PIECE_AT + 1)
+#define SHADE_ALONE (SHADE_PIECE_AT + 2)
 #define SHADE_ALONE_TAKEN
 #include "shade_alone.glsl"
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
-layout(binding = 28, rg32ui) uniform uimage2D radiance_image; // packed_colour.glsl
+layout(binding = SHADE_PIECE_AT, rg32ui) uniform uimage2D radiance_image; // packed_colour.glsl
 
 void main()
 {
@@ -38,9 +38,9 @@ void main()
         vec3 light = shade_step > 1 ? smooth_light_at(p) : vec3(0.0);
         if (shade_has(SHADE_VPLS)) {
             shade_point same[SHADE_MANY] = shade_point[](p, p, p, p); // the compiler sees that they are
-            float room = shade_has(SHADE_ROOMS) ? shade_room_of(p.position) : -1.0;
+            uint room = shade_has(SHADE_ROOMS) ? shade_room_of(p.position) : TYN_ROOMS_ANY;
             float nearest[SHADE_MANY];
-            light += shade_vpls(same, float[SHADE_MANY](room, room, room, room), 0u, 1u, nearest)[0];
+            light += shade_vpls(same, uint[SHADE_MANY](room, room, room, room), 0u, 1u, nearest)[0];
         }
         uvec2 others = imageLoad(radiance_image, shade_texel(corner, findLSB(members))).xy;
         uvec2 radiance = colour_pack(colour_unpack(others) + albedo * light / PI) | uvec2(0u, others.y & 0xc0000000u);

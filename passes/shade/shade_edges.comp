@@ -5,18 +5,18 @@
 #include "shaders/surfaces/gbuffer_edges.glsl"
 #include "shade_piece.glsl"
 #include "shade_several.glsl"
-#define SHADE_ALONE_COUNT 38
-#define SHADE_ALONE 39
+#define SHADE_ALONE_COUNT (SHADE_PIECE_AT + 10)
+#define SHADE_ALONE (SHADE_PIECE_AT + 11)
 #include "shade_alone.glsl"
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
-layout(binding = 28, rg32ui) uniform writeonly uimage2D radiance_image; // packed_colour.glsl, and the piece's number
-layout(binding = 29, scalar) readonly buffer edge_count_buffer
+layout(binding = SHADE_PIECE_AT, rg32ui) uniform writeonly uimage2D radiance_image; // packed_colour.glsl, and the piece's number
+layout(binding = SHADE_PIECE_AT + 1, scalar) readonly buffer edge_count_buffer
 {
     gbuffer_edge_count edge_count;
 };
-layout(binding = 30, scalar) readonly buffer edges_buffer
+layout(binding = SHADE_PIECE_AT + 2, scalar) readonly buffer edges_buffer
 {
     uint edges[];
 };

@@ -12,7 +12,6 @@
 #include "shaders/light/env_args.h"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/walls/walls_links.glsl"
-#include "walls_table.glsl"
 
 layout(local_size_x = 32) in;
 layout(constant_id = 1) const uint shade_features = 0u;
@@ -30,7 +29,7 @@ layout(binding = 1, scalar) uniform env_uniform
     env_block environment;
 };
 layout(binding = 2) uniform sampler3D moments_tex;
-layout(binding = 3) uniform sampler3D walls_table_tex;
+layout(binding = 3) uniform usamplerBuffer link_texels; // wall_links
 layout(binding = 4, rgba32f) uniform writeonly image2D faces_image;
 
 const float PI = 3.14159265358979;
@@ -70,8 +69,8 @@ void main()
             c[u] = i;
             c[v] = j;
             c[axis] = upper ? dims[axis] - 1 : 0;
-            uint links = has(SHADE_LATTICE) ?
-                walls_table_links(texelFetch(walls_table_tex, c + ivec3(0, 0, TYN_WALLS_PLANES * dims.z), 0)) : 0u;
+            int index = (c.z * dims.y + c.y) * dims.x + c.x;
+            uint links = has(SHADE_LATTICE) ? texelFetch(link_texels, index).x : 0u;
             ivec3 behind = c - (dims[axis] > 1 ? outwards : ivec3(0));
             uint back = walls_link(-outwards);
             behind = (links >> back & 1u) != 0u ? c : behind;

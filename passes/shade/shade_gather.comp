@@ -5,14 +5,14 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shade_place.glsl"
-#define SHADE_ALONE_COUNT 23
-#define SHADE_ALONE 24
+#define SHADE_ALONE_COUNT (SHADE_AT + 2)
+#define SHADE_ALONE (SHADE_AT + 3)
 #include "shade_alone.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 21, rgba32ui) uniform readonly uimage2D tent_image;
-layout(binding = 22, rgba32ui) uniform writeonly uimage2D indirect_image;
+layout(binding = SHADE_AT, rgba32ui) uniform readonly uimage2D tent_image;
+layout(binding = SHADE_AT + 1, rgba32ui) uniform writeonly uimage2D indirect_image;
 #include "shade_tent.glsl"
 
 void main()
@@ -22,7 +22,7 @@ void main()
         return;
     }
     shade_part sum = shade_unpack(imageLoad(tent_image, block));
-    if (sum.along > 0.0 && vpl_count > SHADE_MOST * shade_side) {
+    if (sum.along > 0.0 && vpl_count() > SHADE_MOST * shade_side) {
         sum = shade_tent(block, ivec2(0, 1), sum);
     }
     bool alone = !sum.whole || sum.near && sum.aside;

@@ -7,22 +7,19 @@
 #define TYN_SHADE_PIECE_GLSL
 #include "shade.glsl"
 #include "shade_part.glsl"
-#include "shaders/lattice/lattice.glsl"
-#include "shaders/walls/walls_links.glsl"
 
-layout(binding = 21, rgba32ui) uniform readonly uimage2D smooth_image; // shade_part.glsl
-layout(binding = 22) uniform sampler3D moments_tex;
-#define WALLS_TABLE 23
+layout(binding = SHADE_AT, rgba32ui) uniform readonly uimage2D smooth_image; // shade_part.glsl
 #define WALLS_OTHERS TYN_BEAM_MAX_SUNS
 #include "walls_irradiance.glsl"
 #include "shade_rooms.glsl"
-layout(binding = 24, scalar) uniform env_uniform
+layout(binding = SHADE_AT + 1, scalar) uniform env_uniform
 {
     env_block environment;
 };
-layout(binding = 25) uniform sampler3D forward_tex; // shade_forward.comp
-layout(binding = 26) uniform sampler2D faces_tex; // shade_faces.h
-layout(binding = 27) uniform sampler3D sight_tex; // shade_sight.comp
+layout(binding = SHADE_AT + 2) uniform sampler3D forward_tex; // shade_forward.comp
+layout(binding = SHADE_AT + 3) uniform sampler2D faces_tex; // shade_faces.h
+layout(binding = SHADE_AT + 4) uniform sampler3D sight_tex; // shade_sight.comp
+#define SHADE_PIECE_AT (SHADE_AT + 5)
 
 const float PI = 3.14159265358979;
 
@@ -37,11 +34,8 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
     if (!shade_has(SHADE_LATTICE | SHADE_OUTSIDE)) {
         return sky;
     }
-    ivec3 dims = textureSize(moments_tex, 0);
-    if (!shade_has(SHADE_ONE_CHANNEL)) {
-        dims.z /= 3;
-    }
-    lattice_box box = lattice_box_of(medium.extent, dims);
+    lattice_box box = shade_lattice();
+    ivec3 dims = box.dims;
     vec3 x = lattice_from_m(box, p.position + 0.02 * box.dx * p.facet);
     inside = all(greaterThan(x, vec3(-0.02))) && all(lessThan(x, vec3(dims) + 0.02));
     bool has_outside = shade_has(SHADE_OUTSIDE);
@@ -67,7 +61,7 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
     if (shade_has(SHADE_LATTICE) && (inside || near > 0.0)) {
         int channels = shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
         uint num_suns = shade_has(SHADE_SPREAD) ? shade_num_suns : 0u;
-        float room = shade_has(SHADE_ROOMS) ? shade_room_of(p.position) : -1.0;
+        uint room = shade_has(SHADE_ROOMS) ? shade_room_of(p.position) : TYN_ROOMS_ANY;
         within = walls_irradiance_at(moments_tex, box, place, p.normal, channels, forward_tex, num_suns, room, around);
         within = channels == 1 ? within.r * args.tint : within;
         irradiance = inside ? within : irradiance;
@@ -84,11 +78,9 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
 // Is p where the lattice has light?
 bool inside_lattice(shade_point p)
 {
-    ivec3 dims = textureSize(moments_tex, 0);
-    dims.z /= shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
-    lattice_box box = lattice_box_of(medium.extent, dims);
+    lattice_box box = shade_lattice();
     vec3 x = lattice_from_m(box, p.position + 0.02 * box.dx * p.facet);
-    return all(greaterThan(x, vec3(-0.02))) && all(lessThan(x, vec3(dims) + 0.02));
+    return all(greaterThan(x, vec3(-0.02))) && all(lessThan(x, vec3(box.dims) + 0.02));
 }
 
 // Light that changes little from pixel to pixel, but for that of VPLs.

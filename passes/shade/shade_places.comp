@@ -3,16 +3,15 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shade_place.glsl"
-#define WALLS_TABLE 22
 #include "shade_rooms.glsl"
-#define SHADE_ALONE_COUNT 23
-#define SHADE_ALONE 24
+#define SHADE_ALONE_COUNT (SHADE_AT + 1)
+#define SHADE_ALONE (SHADE_AT + 2)
 #define SHADE_ALONE_TAKEN
 #include "shade_alone.glsl"
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
-layout(binding = 21, rgba32ui) uniform writeonly uimage2D indirect_image; // shade_part.glsl
+layout(binding = SHADE_AT, rgba32ui) uniform writeonly uimage2D indirect_image; // shade_part.glsl
 
 void main()
 {
@@ -22,13 +21,14 @@ void main()
     }
     shade_point p[SHADE_MANY];
     shade_part part[SHADE_MANY];
-    float rooms[SHADE_MANY], nearest[SHADE_MANY];
+    uint rooms[SHADE_MANY];
+    float nearest[SHADE_MANY];
     ivec2 block[SHADE_MANY];
     [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
         uint entry = alone_pixels[min(n + uint(i), count - 1u)].x;
         block[i] = ivec2(entry & 0xffffu, entry >> 16);
         p[i] = shade_place(block[i], part[i]);
-        rooms[i] = shade_has(SHADE_ROOMS) ? shade_room_of(p[i].position) : -1.0;
+        rooms[i] = shade_has(SHADE_ROOMS) ? shade_room_of(p[i].position) : TYN_ROOMS_ANY;
     }
     vec3 light[SHADE_MANY] = shade_vpls(p, rooms, 0u, 1u, nearest);
     [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {

@@ -2,8 +2,8 @@
 #ifndef SHADE_SEVERAL_GLSL
 #define SHADE_SEVERAL_GLSL
 #include "shade.glsl"
-#define GEOMETRY_AT 31
-#define MATERIALS_AT 35
+#define GEOMETRY_AT (SHADE_PIECE_AT + 3)
+#define MATERIALS_AT (SHADE_PIECE_AT + 7)
 #define GBUFFER_TEXTURED shade_has(SHADE_TEXTURED)
 #define GBUFFER_SAMPLES shade_samples
 #include "shaders/surfaces/gbuffer_triangle.glsl"

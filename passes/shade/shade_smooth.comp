@@ -8,7 +8,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 28, rgba32ui) uniform writeonly uimage2D sum_image;
+layout(binding = SHADE_PIECE_AT, rgba32ui) uniform writeonly uimage2D sum_image;
 
 void main()
 {

@@ -5,13 +5,13 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "shade_piece.glsl"
 #include "shade_whole.glsl"
-#define SHADE_ALONE_COUNT 29
-#define SHADE_ALONE 30
+#define SHADE_ALONE_COUNT (SHADE_PIECE_AT + 1)
+#define SHADE_ALONE (SHADE_PIECE_AT + 2)
 #include "shade_alone.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 28, rg32ui) uniform writeonly uimage2D radiance_image; // packed_colour.glsl
+layout(binding = SHADE_PIECE_AT, rg32ui) uniform writeonly uimage2D radiance_image; // packed_colour.glsl
 
 void main()
 {

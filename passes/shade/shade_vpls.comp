@@ -7,12 +7,11 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shade_place.glsl"
-#define WALLS_TABLE 22
 #include "shade_rooms.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 21, rgba32ui) uniform writeonly uimage2D part_image; // shade_part.glsl
+layout(binding = SHADE_AT, rgba32ui) uniform writeonly uimage2D part_image; // shade_part.glsl
 
 void main()
 {
@@ -21,14 +20,15 @@ void main()
     ivec2 first = shade_side * ivec2(gl_GlobalInvocationID.xy * uvec2(1, SHADE_MANY)) + cell;
     shade_point p[SHADE_MANY];
     shade_part part[SHADE_MANY];
-    float rooms[SHADE_MANY];
+    uint rooms[SHADE_MANY];
     [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
         p[i] = shade_place(min(first + ivec2(0, i * shade_side), size - 1), part[i]);
-        rooms[i] = shade_has(SHADE_ROOMS) ? shade_room_of(p[i].position) : -1.0;
+        rooms[i] = shade_has(SHADE_ROOMS) ? shade_room_of(p[i].position) : TYN_ROOMS_ANY;
     }
     // Of many each place takes a 25th; of fewer a fifth, so that any row takes all; of few all. Else differences
     // between parts would be larger than what sums even out.
-    uint side = uint(shade_side), parts = vpl_count <= SHADE_MOST ? 1u : vpl_count <= SHADE_MOST * side ? side : side * side;
+    uint side = uint(shade_side), count = vpl_count();
+    uint parts = count <= SHADE_MOST ? 1u : count <= SHADE_MOST * side ? side : side * side;
     part_of = parts < side * side ? uint(cell.x + 2 * cell.y) % parts : part_of;
     float nearest[SHADE_MANY];
     vec3 light[SHADE_MANY] = shade_vpls(p, rooms, part_of, parts, nearest);

@@ -1,8 +1,7 @@
 // walls_irradiance.glsl -- light of the lattice on a surface.
 //
-// Include after lattice.glsl and walls_links.glsl, and define
-//   WALLS_OTHERS  at most so many other fields are asked for
-//   WALLS_TABLE   sampler3D: of each cell, channels of walls_table.glsl behind each other along z.
+// Include after lattice_walls.glsl, with LATTICE_ROOMS, and define WALLS_OTHERS: at most so many other fields are asked
+// for.
 //
 // Irradiance on a side n is phi / 4 - F.n / 2, the flux through a plane in radiance that is linear in direction,
 // of the cells in front of the surface. Of those around a place a little off it, cells count by trilinear
@@ -14,7 +13,6 @@
 // (rooms.h) the surface is in, cells of other rooms do not count.
 #ifndef TYN_WALLS_IRRADIANCE_GLSL
 #define TYN_WALLS_IRRADIANCE_GLSL
-#include "walls_table.glsl"
 
 const float WALLS_BEHIND = 1e-3;   // what cells behind one wall count
 const float WALLS_FEW = 0.02;      // the least share of a place's cells that tells that it is dark
@@ -24,24 +22,10 @@ struct walls_spot {
     vec3 off;      // the place before it
     vec3 x;        // the same in cell edges; centres are at whole numbers
     ivec3 cell;    // that the place is in
-    vec4 planes[TYN_WALLS_PLANES]; // of this cell
+    walls_planes planes; // of this cell
     uint links;
     uint behind;   // bit k: the place is behind plane k as seen from the cell's centre
 };
-
-vec4 walls_entry(lattice_box box, ivec3 cell, int entry)
-{
-    return texelFetch(walls_table_tex, cell + ivec3(0, 0, entry * box.dims.z), 0);
-}
-
-uint walls_side(vec4 planes[TYN_WALLS_PLANES], vec3 p)
-{
-    uint behind = 0u;
-    for (int k = 0; k < TYN_WALLS_PLANES; k++) {
-        behind |= dot(planes[k].xyz, p) + planes[k].w < 0.0 ? 1u << k : 0u;
-    }
-    return behind;
-}
 
 walls_spot walls_spot_of(lattice_box box, vec3 p, vec3 n, float lift)
 {
@@ -51,24 +35,19 @@ walls_spot walls_spot_of(lattice_box box, vec3 p, vec3 n, float lift)
     s.off = p + lift * box.dx * n;
     s.x = lattice_from_m(box, s.off) - 0.5;
     s.cell = clamp(ivec3(floor(s.x + 0.5)), ivec3(0), box.dims - 1);
-    for (int k = 0; k < TYN_WALLS_PLANES; k++) {
-        s.planes[k] = walls_entry(box, s.cell, k);
-    }
-    s.links = walls_table_links(walls_entry(box, s.cell, TYN_WALLS_PLANES));
-    s.behind = walls_side(s.planes, s.off);
+    uint index = lattice_index(box, s.cell);
+    s.planes = walls_planes_of(index);
+    s.links = walls_links_of(index);
+    s.behind = walls_behind(s.planes, s.off);
     return s;
 }
 
 // What cell q counts by itself; negative if it is behind walls.
 float walls_share(lattice_box box, walls_spot s, ivec3 q)
 {
-    vec3 shift = vec3(TYN_WALLS_SHIFT_X, TYN_WALLS_SHIFT_Y, TYN_WALLS_SHIFT_Z);
-    vec3 centre = lattice_to_m(box, vec3(q) + 0.5 + shift);
-    vec4 planes[TYN_WALLS_PLANES];
-    for (int k = 0; k < TYN_WALLS_PLANES; k++) {
-        planes[k] = walls_entry(box, q, k);
-    }
-    int between = bitCount(walls_side(s.planes, centre) ^ s.behind) + bitCount(walls_side(planes, s.off));
+    vec3 centre = walls_centre(box, q);
+    int between = bitCount(walls_behind(s.planes, centre) ^ s.behind) +
+                  bitCount(walls_behind(walls_planes_of(lattice_index(box, q)), s.off));
     ivec3 d = q - s.cell;
     bool next = all(lessThanEqual(abs(d), ivec3(1))); // else there may be walls that neither knows of
     uint link = walls_link(next && d != ivec3(0) ? d : ivec3(1, 0, 0));
@@ -80,9 +59,9 @@ float walls_share(lattice_box box, walls_spot s, ivec3 q)
 
 // Irradiance on the side n of a surface at p (M) of the first `channels` channels of `moments`, W/m^2. `others`: the
 // same cells' mean of `num_others` fields that are behind each other along z; 0 where no cell has light. `room` of the
-// surface; -1: unknown.
+// surface, or TYN_ROOMS_ANY.
 vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int channels, sampler3D fields,
-                         uint num_others, float room, out vec4 others[WALLS_OTHERS])
+                         uint num_others, uint room, out vec4 others[WALLS_OTHERS])
 {
     vec3 irradiance = vec3(0.0);
     bool lit = false;
@@ -114,7 +93,7 @@ vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int
                 light[ch] = 0.25 * m.x - 0.5 * dot(m.yzw, n);
                 fluence += max(m.x, 0.0);
             }
-            bool other = room >= 0.0 && walls_entry(box, q, TYN_WALLS_PLANES).z != room, dark = other || fluence <= 0.0;
+            bool other = !walls_in_room(box, q, room), dark = other || fluence <= 0.0;
             lit = lit || share > 0.0 && !dark;
             // A dark cell that seems to be in front may be within a solid.
             share = share < 0.0 ? dark ? 0.0 : -share : dark ? 0.1 * share : share;

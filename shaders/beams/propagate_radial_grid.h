@@ -28,7 +28,7 @@ struct propagate_radial_grid { // element of storage buffer "grids"
     float mean_cosine; // of the light as it starts, 1 = a beam
     tyn_uint inside;   // 1: the light is in the medium's box
 };
-TYN_ASSERT_SIZE(propagate_radial_grid, 112);
+TYN_ASSERT_SIZE(propagate_radial_grid, 120);
 
 // What the merge needs of a grid: element of storage buffer "places".
 struct propagate_radial_place {

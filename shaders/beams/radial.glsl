@@ -2,7 +2,8 @@
 //
 // Include after medium.glsl and define:
 //   RADIALS_AT        first binding of the bundle TYN_RADIALS (bundles.h)
-//   RADIALS_STORAGE   if its buffer is a storage buffer: a uniform one is faster on lavapipe, which has room for seven
+//   RADIALS_STORAGE, RADIALS_TEXELS   if its buffer is a storage buffer or one of texels: a uniform one is faster on
+//                     lavapipe, which has room for seven
 //
 // The textures hold the mean of the medium between the light, or where the way from it enters the box,
 // and a point. Times the exact length of that way it is the depth: where the medium is the same
@@ -14,6 +15,15 @@
 #include "shaders/light/radial_lobe.glsl"
 #include "beam_tau.glsl"
 
+#ifdef RADIALS_TEXELS
+#include "radial_texels.glsl"
+layout(set = 0, binding = RADIALS_AT) uniform usamplerBuffer radial_texels;
+
+radial_grid radial_grid_of(uint n)
+{
+    return radial_grid_at(radial_texels, 1 + 10 * int(n));
+}
+#else
 #ifndef RADIALS_STORAGE
 layout(set = 0, binding = RADIALS_AT, scalar) uniform radial_buffer
 {
@@ -28,6 +38,12 @@ layout(set = 0, binding = RADIALS_AT, scalar) readonly buffer radial_buffer
     uvec2 radial_pad;
     radial_grid radials[];
 };
+#endif
+
+radial_grid radial_grid_of(uint n)
+{
+    return radials[n];
+}
 #endif
 // Means of the density (mode DENSITY) or of sigma_s, of sigma_a and of (1 - f) sigma_s.
 layout(set = 0, binding = RADIALS_AT + 1) uniform sampler3D radial_column_tex;
@@ -60,7 +76,7 @@ radial_place radial_place_in(radial_grid grid, vec3 away, float r)
 
 radial_place radial_place_of(uint n, vec3 away, float r)
 {
-    return radial_place_in(radials[n], away, r);
+    return radial_place_in(radial_grid_of(n), away, r);
 }
 
 // Share of the light's intensity that goes along `away`, r = its length.
@@ -74,7 +90,7 @@ float radial_share_of(radial_light light, vec3 away, float r)
 
 float radial_share(uint n, vec3 away, float r)
 {
-    return radial_share_of(radials[n].light, away, r);
+    return radial_share_of(radial_grid_of(n).light, away, r);
 }
 
 // Mean of 1 / r^2 over a cube of edge d whose middle is at r, both squared: 1 / r^2 (1 + d^2 / (12 r^2) + ...)
@@ -116,7 +132,7 @@ float radial_near(float all, float h2, float a, float b, float reach)
 // Share of the light of lamp n that surfaces let through to the point p.
 float radial_visibility(uint n, vec3 p)
 {
-    uint light = radials[n].light.light;
+    uint light = radial_grid_of(n).light.light;
     return light != TYN_RADIAL_NO_LIGHT ? shadow_visibility_lamp(light, p) : 1.0;
 }
 #endif

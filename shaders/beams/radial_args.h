@@ -2,7 +2,7 @@
 //
 // A radial light shines from a point: a lamp of the scene, or a virtual point light (VPL) that stands for
 // light reflected or emitted by a piece of a surface. Its grid has an octahedral map of directions times
-// shells around the light.
+// shells around the light. Structs are whole rows of four words, so that they can be read as texels.
 #ifndef TYN_RADIAL_ARGS_H
 #define TYN_RADIAL_ARGS_H
 #include "shaders/common/shared.h"
@@ -25,15 +25,16 @@ struct radial_light {
     float cos_outer;    // spot
     float radius;       // of the disc that it stands for, m; 0: a point. Bounds 1 / r^2
     tyn_uint light;     // its shadow map, TYN_SHADOW_LAMP(n); TYN_RADIAL_NO_LIGHT: none
+    tyn_uvec2 pad;
 };
-TYN_ASSERT_SIZE(radial_light, 56);
+TYN_ASSERT_SIZE(radial_light, 64);
 
 struct radial_vpls { // storage buffer "vpls"; the tail beyond `count` is not read
     tyn_uint count;  // 0 to TYN_RADIAL_VPLS_MAX
     tyn_uvec3 pad;
     TYN_STRUCT(radial_light) list[TYN_RADIAL_VPLS_MAX];
 };
-TYN_ASSERT_SIZE(radial_vpls, 14352);
+TYN_ASSERT_SIZE(radial_vpls, 16400);
 
 // A light and where in the textures its grid is. Nodes are the centres of texels; there is one more row of
 // texels around each map, of what lies beyond the folded edges. Node k of a direction is at the distance
@@ -53,7 +54,7 @@ struct radial_grid {
     float per_shell;    // ln(1 + (r - begin) / near) from node to node
     tyn_uint inside;    // 1: the light is in the medium's box
 };
-TYN_ASSERT_SIZE(radial_grid, 152);
+TYN_ASSERT_SIZE(radial_grid, 160);
 
 struct radial_block { // storage buffer "radials": lamps first, the strongest first of all
     tyn_uint count;
@@ -61,6 +62,6 @@ struct radial_block { // storage buffer "radials": lamps first, the strongest fi
     tyn_uvec2 pad;
     TYN_STRUCT(radial_grid) list[TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX];
 };
-TYN_ASSERT_SIZE(radial_block, 48656);
+TYN_ASSERT_SIZE(radial_block, 51216);
 
 #endif

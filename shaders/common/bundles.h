@@ -53,7 +53,7 @@
 
 // Virtual point lights (vpl_visibility.glsl).
 #define TYN_VPLS(X, P)                                                                             \
-    X(P, VPLS, vpls, TYN_BUFFER, TYN_USE_STORAGE_READ, false, "struct radial_vpls"),               \
+    X(P, VPLS, vpls, TYN_BUFFER, TYN_USE_TEXELS_UVEC4, false, "struct radial_vpls"),               \
         X(P, VPL_DISTANCES, vpl_distances, TYN_IMAGE_2D, TYN_USE_SAMPLED, false,                   \
           "what they see, m"),                                                                     \
         X(P, VPL_PLANES, vpl_planes, TYN_IMAGE_2D, TYN_USE_SAMPLED, false, "and its planes")

@@ -36,6 +36,12 @@ vec3 lattice_to_m(lattice_box box, vec3 cell)
     return box.origin + cell * box.dx;
 }
 
+// Of a cell in buffers: x is fastest.
+uint lattice_index(lattice_box box, ivec3 cell)
+{
+    return uint((cell.z * box.dims.y + cell.y) * box.dims.x + cell.x);
+}
+
 // Texture coordinate in `inscatter`, which has one ghost cell around the lattice: trilinear
 // sampling there extrapolates linearly over the outer half cell. `size` = textureSize(inscatter,
 // 0).

@@ -76,7 +76,7 @@ float shadow_visibility_sun_of(shadow_light l, vec3 p)
 
 float shadow_visibility_sun(uint light, vec3 p)
 {
-    return shadow_visibility_sun_of(shadows[light], p);
+    return shadow_visibility_sun_of(shadow_light_of(light), p);
 }
 
 // `q` in the lamp's frame.
@@ -95,7 +95,7 @@ float shadow_visibility_lamp_at(shadow_light l, vec3 q)
 
 float shadow_visibility_lamp(uint light, vec3 p)
 {
-    shadow_light l = shadows[light];
+    shadow_light l = shadow_light_of(light);
     return shadow_visibility_lamp_at(l, shadow_frame(l, p));
 }
 
@@ -203,7 +203,7 @@ float shadow_visibility_surface_lamp_of(shadow_light l, shadow_surface s)
 
 float shadow_visibility_surface(uint light, shadow_surface s)
 {
-    shadow_light l = shadows[light];
+    shadow_light l = shadow_light_of(light);
     return l.kind == TYN_SHADOW_SUN ? shadow_visibility_surface_sun_of(l, s) : shadow_visibility_surface_lamp_of(l, s);
 }
 

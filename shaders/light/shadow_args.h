@@ -24,8 +24,9 @@ struct shadow_light { // element of storage buffer "shadows", TYN_SHADOW_MAX of 
     float scale;      // CONE, CUBE: u = scale x / z, v = scale y / z
     float near;       // CONE, CUBE: m; what is nearer to the light casts no shadow
     tyn_uint kind;    // TYN_SHADOW_*
+    tyn_uvec2 pad;
 };
-TYN_ASSERT_SIZE(shadow_light, 72);
+TYN_ASSERT_SIZE(shadow_light, 80);
 
 struct shadow_map_args { // of a map
     tyn_vec4 clip[4];    // world -> clip space, row by row

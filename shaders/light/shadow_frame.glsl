@@ -1,11 +1,26 @@
 // shadow_frame.glsl -- the maps' list, and places in the frames of their lights.
 //
-// Define SHADOW_LIGHTS as the binding of the list that pass shadow_map makes, and SHADOWS_STORAGE if that is a
-// storage buffer: a uniform one is faster on lavapipe, which has room for seven.
+// Define SHADOW_LIGHTS as the binding of the list that pass shadow_map makes, and SHADOWS_STORAGE or SHADOWS_TEXELS if
+// that is a storage buffer or one of texels: a uniform one is faster on lavapipe, which has room for seven.
 #ifndef TYN_SHADOW_FRAME_GLSL
 #define TYN_SHADOW_FRAME_GLSL
 #include "shadow_args.h"
 
+#ifdef SHADOWS_TEXELS
+layout(set = 0, binding = SHADOW_LIGHTS) uniform usamplerBuffer shadow_texels;
+
+shadow_light shadow_light_of(uint n)
+{
+    int at = 5 * int(n);
+    vec4 rows[3];
+    for (int k = 0; k < 3; k++) {
+        rows[k] = uintBitsToFloat(texelFetch(shadow_texels, at + k));
+    }
+    vec4 place = uintBitsToFloat(texelFetch(shadow_texels, at + 3));
+    uvec4 kind = texelFetch(shadow_texels, at + 4);
+    return shadow_light(rows, place.xy, place.z, place.w, uintBitsToFloat(kind.x), kind.y, kind.zw);
+}
+#else
 #ifdef SHADOWS_STORAGE
 layout(set = 0, binding = SHADOW_LIGHTS, scalar) readonly buffer shadow_lights_buffer
 {
@@ -16,6 +31,12 @@ layout(set = 0, binding = SHADOW_LIGHTS, scalar) uniform shadow_lights_buffer
 {
     shadow_light shadows[TYN_SHADOW_MAX];
 };
+#endif
+
+shadow_light shadow_light_of(uint n)
+{
+    return shadows[n];
+}
 #endif
 
 vec3 shadow_frame(shadow_light l, vec3 p)

@@ -48,15 +48,20 @@ ivec2 vpl_map_corner(uint vpl, int side)
 }
 
 #ifdef VPLS_AT
-#include "shaders/beams/radial_args.h"
+#include "shaders/beams/radial_texels.glsl"
 #define VPL_DISTANCES (VPLS_AT + 1)
 #define VPL_PLANES (VPLS_AT + 2)
-layout(set = 0, binding = VPLS_AT, scalar) readonly buffer vpl_buffer
+layout(set = 0, binding = VPLS_AT) uniform usamplerBuffer vpl_texels; // struct radial_vpls
+
+uint vpl_count()
 {
-    uint vpl_count;
-    uvec3 vpl_pad;
-    radial_light vpls[];
-};
+    return texelFetch(vpl_texels, 0).x;
+}
+
+radial_light vpl_light(uint n)
+{
+    return radial_light_at(vpl_texels, 1 + 4 * int(n));
+}
 #endif
 #ifdef VPL_DISTANCES
 layout(set = 0, binding = VPL_DISTANCES) uniform sampler2D vpl_distances;

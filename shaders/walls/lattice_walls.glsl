@@ -19,6 +19,21 @@
 #include "lattice_rooms.glsl"
 #endif
 
+// Of the walls in a cell (struct wall_cell): 0 where none is about.
+struct walls_planes {
+    vec4 plane[TYN_WALLS_PLANES];
+};
+
+// Bit k: p, in M, is behind plane k as seen from the cell's centre.
+uint walls_behind(walls_planes walls, vec3 p)
+{
+    uint behind = 0u;
+    for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
+        behind |= dot(walls.plane[k].xyz, p) + walls.plane[k].w < 0.0 ? 1u << k : 0u;
+    }
+    return behind;
+}
+
 #ifdef WALLS_STORAGE
 layout(set = 0, binding = WALLS_AT, scalar) readonly buffer walls_link_buffer
 {
@@ -34,9 +49,9 @@ uint walls_links_of(uint cell)
     return wall_links[cell];
 }
 
-vec4 walls_plane(uint cell, uint k)
+walls_planes walls_planes_of(uint cell)
 {
-    return wall_cells[cell].planes[k];
+    return walls_planes(wall_cells[cell].planes);
 }
 #else
 layout(set = 0, binding = WALLS_AT) uniform usamplerBuffer walls_link_texels;
@@ -47,9 +62,13 @@ uint walls_links_of(uint cell)
     return texelFetch(walls_link_texels, int(cell)).x;
 }
 
-vec4 walls_plane(uint cell, uint k)
+walls_planes walls_planes_of(uint cell)
 {
-    return texelFetch(walls_cell_texels, int(4u * cell + k));
+    walls_planes walls;
+    for (int k = 0; k < TYN_WALLS_PLANES; k++) {
+        walls.plane[k] = texelFetch(walls_cell_texels, 4 * int(cell) + k);
+    }
+    return walls;
 }
 #endif
 
@@ -66,7 +85,7 @@ walls_place walls_place_of(lattice_box box, vec3 p)
     walls_place w;
     w.x = lattice_from_m(box, p) - 0.5;
     w.cell = clamp(ivec3(floor(w.x + 0.5)), ivec3(0), box.dims - 1);
-    w.index = uint((w.cell.z * box.dims.y + w.cell.y) * box.dims.x + w.cell.x);
+    w.index = lattice_index(box, w.cell);
     w.links = walls_links_of(w.index);
     return w;
 }
@@ -77,52 +96,20 @@ bool walls_near(walls_place w)
     return (w.links & TYN_WALLS_NEAR) != 0u;
 }
 
-// Bit k: p, in M, is behind plane k of the cell as seen from its centre.
-uint walls_behind(uint index, vec3 p)
+// The same, for what is not in the cell: a wall that cuts a link of the cell, but is not in it, has no plane there and may
+// hide anything.
+walls_planes walls_planes_hiding(uint cell)
 {
-    uint behind = 0u;
-    for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
-        vec4 plane = walls_plane(index, k);
-        behind |= dot(plane.xyz, p) + plane.w < 0.0 ? 1u << k : 0u;
-    }
-    return behind;
+    walls_planes walls = walls_planes_of(cell);
+    bool unknown = (walls_links_of(cell) & TYN_WALLS_NEAR) != 0u && walls.plane[0] == vec4(0.0);
+    walls.plane[0] = unknown ? vec4(0.0, 0.0, 0.0, -1.0) : walls.plane[0];
+    return walls;
 }
 
 // Is p, a point of the cell, on the side of the cell's centre?
 bool walls_same_side(lattice_box box, ivec3 cell, vec3 p)
 {
-    uint index = uint((cell.z * box.dims.y + cell.y) * box.dims.x + cell.x);
-    return (walls_links_of(index) & TYN_WALLS_NEAR) == 0u || walls_behind(index, p) == 0u;
-}
-
-// The planes of a cell for many points of it; all 0 where there is no wall about.
-struct walls_sides {
-    vec4 planes[TYN_WALLS_PLANES];
-};
-
-walls_sides walls_sides_of(lattice_box box, ivec3 cell)
-{
-    uint index = uint((cell.z * box.dims.y + cell.y) * box.dims.x + cell.x);
-    walls_sides sides;
-    for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
-        sides.planes[k] = vec4(0.0);
-    }
-    if ((walls_links_of(index) & TYN_WALLS_NEAR) != 0u) {
-        for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
-            sides.planes[k] = walls_plane(index, k);
-        }
-    }
-    return sides;
-}
-
-// As walls_same_side.
-bool walls_same_side_of(walls_sides sides, vec3 p)
-{
-    float least = 0.0;
-    for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
-        least = min(least, dot(sides.planes[k].xyz, p) + sides.planes[k].w);
-    }
-    return least >= 0.0;
+    return walls_behind(walls_planes_of(lattice_index(box, cell)), p) == 0u;
 }
 
 vec3 walls_centre(lattice_box box, ivec3 cell)
@@ -148,7 +135,8 @@ ivec3 walls_corner(walls_blend b, uint i)
 bool walls_sees_behind(lattice_box box, walls_place w, vec3 p, uint behind, ivec3 q)
 {
     // Walls between p and q that do not touch the point's cell are in that of q.
-    return q != w.cell && walls_behind(w.index, walls_centre(box, q)) == behind && walls_same_side(box, q, p);
+    uint side = walls_behind(walls_planes_of(w.index), walls_centre(box, q));
+    return q != w.cell && side == behind && walls_same_side(box, q, p);
 }
 
 bool walls_sees(lattice_box box, walls_place w, vec3 p, uint behind, ivec3 q)
@@ -179,16 +167,22 @@ bool walls_in_room(lattice_box box, ivec3 q, uint room)
 #endif
 }
 
+#ifdef LATTICE_ROOMS
+// As rooms_told; `beside`: also of a place near a wall, if it is on the side of its cell's centre of all planes there.
+uint walls_room_told(lattice_box box, vec3 p, bool beside)
+{
+    ivec3 c = ivec3(floor(lattice_from_m(box, p))), at = clamp(c, ivec3(0), box.dims - 1);
+    uint index = lattice_index(box, at), links = walls_links_of(index);
+    return rooms_told(box.dims, c, at, links, beside && walls_behind(walls_planes_of(index), p) == 0u);
+}
+#endif
+
 // `room` of the point, with LATTICE_ROOMS; or TYN_ROOMS_ANY. It tells what planes of two cells do not: walls in a third one
 // between them.
 walls_blend walls_blend_in(lattice_box box, walls_place w, vec3 p, uint room)
 {
-    vec4 planes[TYN_WALLS_PLANES];
-    uint behind = 0u;
-    for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
-        planes[k] = walls_plane(w.index, k);
-        behind |= dot(planes[k].xyz, p) + planes[k].w < 0.0 ? 1u << k : 0u;
-    }
+    walls_planes planes = walls_planes_of(w.index);
+    uint behind = walls_behind(planes, p);
     vec3 away = w.x - vec3(w.cell);
     bvec3 down = lessThan(away, vec3(0.0));
     ivec3 step = mix(ivec3(1), ivec3(-1), down);
@@ -209,11 +203,7 @@ walls_blend walls_blend_in(lattice_box box, walls_place w, vec3 p, uint room)
     vec3 centre = walls_centre(box, w.cell), dx = box.dx * vec3(step);
     for (uint i = 1u; i < 8u; i++) {
         vec3 q = centre + dx * vec3(i & 1u, i >> 1 & 1u, i >> 2);
-        uint side = 0u;
-        for (uint k = 0u; k < TYN_WALLS_PLANES; k++) {
-            side |= dot(planes[k].xyz, q) + planes[k].w < 0.0 ? 1u << k : 0u;
-        }
-        same |= side == behind && q != centre ? 1u << i : 0u;
+        same |= walls_behind(planes, q) == behind && q != centre ? 1u << i : 0u;
     }
     seen = behind == 0u ? seen : same;
     for (uint left = behind == 0u ? 0u : same; left != 0u; left &= left - 1u) {
@@ -260,7 +250,7 @@ bool walls_visible(lattice_box box, ivec3 a, ivec3 b)
     int n = max(way.x, max(way.y, way.z));
     for (int i = 1; i <= n; i++) {
         ivec3 next = a + ivec3(floor(vec3(b - a) * (float(i) / float(n)) + 0.5));
-        uint links = walls_links_of(uint((at.z * box.dims.y + at.y) * box.dims.x + at.x));
+        uint links = walls_links_of(lattice_index(box, at));
         if ((links >> walls_link(next - at) & 1u) != 0u) {
             return false;
         }

@@ -335,7 +335,8 @@ static outcome check(gpu_test *t, const grid *g, const mesh *m, const lights *l)
     for (int i = 0; i < total; i++) {
         found.rooms += expected[i] == 1 + (uint32_t)i;
     }
-    const uint32_t *told = rooms + 1 + total, *before = told + TYN_RADIAL_VPLS_MAX;
+    const uint32_t *told = rooms + TYN_ROOMS_OF_VPL(total, 0);
+    const uint32_t *before = rooms + TYN_ROOMS_BEFORE_VPL(total, 0);
     for (uint32_t k = 0; k < TYN_RADIAL_VPLS_MAX; k++) {
         const bool is = k < l->vpls.count;
         assert_int_equal(told[k], is ? of_vpls[k] : TYN_ROOMS_ANY);
@@ -408,7 +409,7 @@ static void box_in_a_box(void **state)
     const outcome found = check(*state, &g, &m, &some);
     assert_int_equal(found.rooms, 2);
     const uint32_t middle = (12 * 24 + 12) * 24 + 12;
-    const uint32_t inside = ((const uint32_t *)gpu_map(*state, "rooms"))[1 + middle];
+    const uint32_t inside = ((const uint32_t *)gpu_map(*state, "rooms"))[TYN_ROOMS_OF_CELL(middle)];
     int within = 0;
     for (int i = 0; i < 7; i++) {
         assert_true(found.of_vpls[i] == inside || found.of_vpls[i] == 1);

@@ -364,7 +364,7 @@ static void add_lattice(gpu_test *t, tyn_ref *refs)
         set(refs, "wall_cells", gpu_buffer(t, "wall_cells", cells, sizeof cells));
     }
     if (s.rooms) {
-        const size_t words = 1 + CELLS * CELLS * CELLS + 2 * TYN_RADIAL_VPLS_MAX;
+        const size_t words = TYN_ROOMS_SIZE(CELLS * CELLS * CELLS);
         set(refs, "rooms", gpu_buffer(t, "rooms", s.rooms, words * sizeof *s.rooms));
     }
 }
@@ -984,12 +984,12 @@ static void vpls_in_rooms(void **state)
     start();
     s.lattice = true;
     enum { N = CELLS * CELLS * CELLS };
-    static uint32_t rooms[1 + N + 2 * TYN_RADIAL_VPLS_MAX];
+    static uint32_t rooms[TYN_ROOMS_SIZE(N)];
     for (int i = 0; i < N; i++) {
-        rooms[1 + i] = 7;
+        rooms[TYN_ROOMS_OF_CELL(i)] = 7;
     }
     const uint32_t of_lights[] = {7, TYN_ROOMS_ANY, 8};
-    memcpy(rooms + 1 + N, of_lights, sizeof of_lights);
+    memcpy(rooms + TYN_ROOMS_OF_VPL(N, 0), of_lights, sizeof of_lights);
     s.rooms = rooms;
     s.pieces[0].at[2] = 0.5f;
     look((float[]){2, 2, 3}, (float[]){0, 0, -1}, 0.5f, true);

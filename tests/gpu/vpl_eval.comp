@@ -24,7 +24,7 @@ void main()
     if (i < uint(points.length())) {
         point q = points[i];
         radial_light light =
-            radial_light(q.position, TYN_RADIAL_COSINE, vec3(1.0), 0.0, q.axis, 0.0, q.radius, 0u);
+            radial_light(q.position, TYN_RADIAL_COSINE, vec3(1.0), 0.0, q.axis, 0.0, q.radius, 0u, uvec2(0u));
         results[i] = vpl_irradiance(light, q.p, q.n);
     }
 }

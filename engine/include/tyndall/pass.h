@@ -141,6 +141,11 @@ typedef struct tyn_kernel {
     {                                                                                              \
         P##_PORT_##PORT, (dim) == TYN_BUFFER ? TYN_USE_STORAGE_READ : (use), false                 \
     }
+// With its buffers as texels of four words.
+#define TYN_BUNDLE_BIND_TEXELS(P, PORT, name, dim, use, optional, meaning)                         \
+    {                                                                                              \
+        P##_PORT_##PORT, (dim) == TYN_BUFFER ? TYN_USE_TEXELS_UVEC4 : (use), false                 \
+    }
 // The fields of a struct: struct { tyn_ref TYN_BEAMS(TYN_BUNDLE_NAME, ); }.
 #define TYN_BUNDLE_NAME(P, PORT, name, ...) name
 

@@ -1,9 +1,9 @@
-// raymarch_grey.comp -- one thread a pixel; a medium that is the same in all channels.
+// raymarch.comp -- one thread a pixel. Built with RAYMARCH_GREY for a medium that is the same in all channels, and for
+// coefficients that differ between channels or media.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
-#define RAYMARCH_GREY
 #include "raymarch_bindings.glsl"
 #include "shaders/common/camera.glsl"
 #include "background.glsl"

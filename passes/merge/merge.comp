@@ -1,8 +1,28 @@
-// merge_ghosts.glsl -- clamps the field at 0 and continues it around the lattice.
-//
-// Include after merge.glsl, with the buffers field and counters.
-#ifndef TYN_MERGE_GHOSTS_GLSL
-#define TYN_MERGE_GHOSTS_GLSL
+// merge.comp -- radiance that a cell scatters towards the eye, per sigma_s': clamped at 0, and continued around the
+// lattice. Built for one channel and for three (MERGE_CHANNELS, MERGE_FORMAT).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#include "shaders/common/scene_args.h"
+#include "shaders/common/counters.h"
+#include "merge_args.h"
+#include "shaders/lattice/lattice.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(push_constant, scalar) uniform push
+{
+    merge_args args;
+};
+layout(binding = 0, scalar) readonly buffer field_buffer
+{
+    float field[];
+};
+layout(binding = 1, scalar) buffer counters_buffer
+{
+    counters_block counters;
+};
+layout(binding = 2, MERGE_FORMAT) uniform writeonly image3D inscatter;
+#include "merge.glsl"
 
 vec3 merge_cell(ivec3 c)
 {
@@ -58,4 +78,10 @@ vec4 merge_texel(ivec3 texel)
     return vec4(max(j, vec3(0.0)), 1.0);
 }
 
-#endif
+void main()
+{
+    ivec3 texel = ivec3(gl_GlobalInvocationID);
+    if (all(lessThan(texel, ivec3(args.dims) + 2))) {
+        imageStore(inscatter, texel, merge_texel(texel));
+    }
+}

@@ -1,10 +1,72 @@
-// beam_sweep.glsl -- one column of a beam's grid: the medium integrated along a ray.
-//
-// The includer defines BEAM_VALUE (float or a matrix), beam_value(vec3 uvw) = the medium at a texture
-// coordinate, clamped to the edge, beam_any(BEAM_VALUE) = is there anything, and
-// beam_store(ivec3 texel, BEAM_VALUE).
-#ifndef TYN_BEAM_SWEEP_GLSL
-#define TYN_BEAM_SWEEP_GLSL
+// beam.comp -- the medium integrated along each sun; x, y: column, z: sun. Built for both modes (medium_value.glsl).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
+#include "shaders/medium/medium_value.glsl"
+#include "shaders/beams/beam_args.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 0, binding = 5, scalar) buffer beam_buffer
+{
+    beam_block beams[];
+};
+
+#ifdef TYN_DENSITY
+layout(set = 0, binding = 6, r32f) writeonly uniform image3D column_image;
+
+#define BEAM_VALUE float
+
+float beam_value(vec3 uvw)
+{
+    return medium_value(uvw);
+}
+
+bool beam_any(float value)
+{
+    return value > 0.0;
+}
+
+void beam_store(ivec3 texel, float value)
+{
+    imageStore(column_image, texel, vec4(isnan(value) || isinf(value) ? 0.0 : value));
+}
+#else
+layout(set = 0, binding = 6, rgba32f) writeonly uniform image3D tau_s_image;
+layout(set = 0, binding = 7, rgba32f) writeonly uniform image3D tau_a_image;
+layout(set = 0, binding = 8, rgba32f) writeonly uniform image3D tau_p_image;
+
+#define BEAM_VALUE mat3x4 // w is the mean of the channels
+
+vec4 with_mean(vec3 v)
+{
+    return vec4(v, (v.x + v.y + v.z) / 3.0);
+}
+
+mat3x4 beam_value(vec3 uvw)
+{
+    mat3 value = medium_value(uvw);
+    return mat3x4(with_mean(value[0]), with_mean(value[1]), with_mean(value[2]));
+}
+
+vec4 finite(vec4 v)
+{
+    return mix(v, vec4(0.0), bvec4(uvec4(isnan(v)) | uvec4(isinf(v))));
+}
+
+bool beam_any(mat3x4 value)
+{
+    return value[0].w + value[1].w > 0.0;
+}
+
+void beam_store(ivec3 texel, mat3x4 value)
+{
+    imageStore(tau_s_image, texel, finite(value[0]));
+    imageStore(tau_a_image, texel, finite(value[1]));
+    imageStore(tau_p_image, texel, finite(value[2]));
+}
+#endif
 
 // Slices of a column from which points in the box can be interpolated: those between the first entry
 // and the last exit of the rays up to one column away. The others are never read.
@@ -56,4 +118,11 @@ bool beam_sweep(beam_block beam, uvec2 column)
     return edges && beam.even == 0u;
 }
 
-#endif
+void main()
+{
+    uvec2 column = gl_GlobalInvocationID.xy;
+    uint sun = gl_WorkGroupID.z;
+    if (all(lessThan(column, beams[sun].nodes.xy)) && beam_sweep(beams[sun], column)) {
+        atomicOr(beams[sun].edges, 1u);
+    }
+}

@@ -1,4 +1,5 @@
-// medium_coefficients.comp -- summed coefficients of all shapes per voxel.
+// medium.comp -- all shapes resampled to voxels: the mean texture value (built with TYN_DENSITY, for that mode), or
+// summed coefficients.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -9,9 +10,13 @@
 #include "medium_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+#ifdef TYN_DENSITY
+layout(set = 0, binding = 3, r32f) writeonly uniform image3D density_image;
+#else
 layout(set = 0, binding = 3, rgba32f) writeonly uniform image3D sigma_s_image;
 layout(set = 0, binding = 4, rgba32f) writeonly uniform image3D sigma_a_image;
 layout(set = 0, binding = 5, rgba32f) writeonly uniform image3D g_image;
+#endif
 layout(push_constant, scalar) uniform push { resample_args args; };
 
 float mean_of(vec3 v)
@@ -26,6 +31,13 @@ void main()
         return;
     }
     vec3 p = (vec3(voxel) + 0.5) * medium.voxel;
+#ifdef TYN_DENSITY
+    float density = 0.0;
+    for (uint i = 0u; i < medium.num_shapes; i++) {
+        density += shape_scale(shapes[i]) * shape_mean(shapes[i], p, int(args.samples));
+    }
+    imageStore(density_image, ivec3(voxel), vec4(density));
+#else
     vec3 sigma_s = vec3(0.0), sigma_a = vec3(0.0), weighted = vec3(0.0);
     for (uint i = 0u; i < medium.num_shapes; i++) {
         float value = shape_mean(shapes[i], p, int(args.samples));
@@ -39,4 +51,5 @@ void main()
     imageStore(sigma_s_image, ivec3(voxel), vec4(sigma_s, mean_s));
     imageStore(sigma_a_image, ivec3(voxel), vec4(sigma_a, mean_of(sigma_a)));
     imageStore(g_image, ivec3(voxel), vec4(g, mean_g));
+#endif
 }

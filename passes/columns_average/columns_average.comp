@@ -1,5 +1,5 @@
-// columns_average_coefficients.comp -- coefficients averaged over the texels of a coarser grid of the
-// same box.
+// columns_average.comp -- the medium averaged over the texels of a coarser grid of the same box. Built for both modes:
+// TYN_DENSITY is defined for mode DENSITY.
 //
 // The means of sigma_s, sigma_a and (1 - f) sigma_s are those of the medium; g is what makes the last of
 // the first.
@@ -14,13 +14,30 @@ layout(push_constant, scalar) uniform push
 {
     columns_average_args args;
 };
+#ifdef TYN_DENSITY
+layout(binding = 0) uniform sampler3D density;
+layout(binding = 1, r32f) writeonly uniform image3D mean_density;
+#else
 layout(binding = 0) uniform sampler3D sigma_s_tex;
 layout(binding = 1) uniform sampler3D sigma_a_tex;
 layout(binding = 2) uniform sampler3D g_tex;
 layout(binding = 3, rgba32f) writeonly uniform image3D mean_sigma_s;
 layout(binding = 4, rgba32f) writeonly uniform image3D mean_sigma_a;
 layout(binding = 5, rgba32f) writeonly uniform image3D mean_g;
-#include "columns_average.glsl"
+#endif
+
+uint columns_average_count()
+{
+    return args.samples.x * args.samples.y * args.samples.z;
+}
+
+// Texture coordinate of sample i of a texel.
+vec3 columns_average_uvw(uvec3 texel, uint i)
+{
+    uvec3 s = uvec3(i % args.samples.x, i / args.samples.x % args.samples.y,
+                    i / (args.samples.x * args.samples.y));
+    return (vec3(texel) + (vec3(s) + 0.5) / vec3(args.samples)) / vec3(args.size);
+}
 
 void main()
 {
@@ -28,6 +45,13 @@ void main()
     if (any(greaterThanEqual(texel, args.size))) {
         return;
     }
+#ifdef TYN_DENSITY
+    float sum = 0.0;
+    for (uint i = 0; i < columns_average_count(); i++) {
+        sum += textureLod(density, columns_average_uvw(texel, i), 0.0).r;
+    }
+    imageStore(mean_density, ivec3(texel), vec4(sum / float(columns_average_count())));
+#else
     vec3 sum_s = vec3(0.0), sum_a = vec3(0.0), sum_p = vec3(0.0);
     for (uint i = 0; i < columns_average_count(); i++) {
         vec3 uvw = columns_average_uvw(texel, i);
@@ -43,4 +67,5 @@ void main()
     imageStore(mean_sigma_s, ivec3(texel), vec4(sum_s * norm, 0.0));
     imageStore(mean_sigma_a, ivec3(texel), vec4(sum_a * norm, 0.0));
     imageStore(mean_g, ivec3(texel), vec4(sqrt(f), 0.0));
+#endif
 }

@@ -1,13 +1,53 @@
-// radial_sweep.glsl -- one direction of a local light's grid: means of the medium along a ray.
-//
-// The includer defines RADIAL_VALUE (float or a matrix), radial_value(vec3 uvw) = the medium at a texture
-// coordinate, clamped to the edge, and radial_store(ivec3 texel, RADIAL_VALUE), and includes medium.glsl.
-#ifndef TYN_RADIAL_SWEEP_GLSL
-#define TYN_RADIAL_SWEEP_GLSL
+// radial_beam.comp -- the mean of the medium around local lights; a thread per direction. Built for both modes
+// (medium_value.glsl).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
+#include "shaders/medium/medium_value.glsl"
 #include "shaders/common/octahedral.glsl"
 #include "shaders/beams/radial_args.h"
+#include "radial_beam_args.h"
 
-// The includer also has the buffer `radials`.
+layout(local_size_x = RADIAL_GROUP * RADIAL_GROUP) in;
+layout(push_constant, scalar) uniform push
+{
+    radial_beam_args args;
+};
+layout(set = 0, binding = 5, scalar) readonly buffer radial_buffer
+{
+    uint radial_count, radial_num_lamps;
+    uvec2 radial_pad;
+    radial_grid radials[];
+};
+
+#ifdef TYN_DENSITY
+layout(set = 0, binding = 6, r32f) writeonly uniform image3D column_image;
+
+void radial_store(ivec3 texel, float value)
+{
+    imageStore(column_image, texel, vec4(isnan(value) || isinf(value) ? 0.0 : value));
+}
+#else
+layout(set = 0, binding = 6, rgba32f) writeonly uniform image3D tau_s_image;
+layout(set = 0, binding = 7, rgba32f) writeonly uniform image3D tau_a_image;
+layout(set = 0, binding = 8, rgba32f) writeonly uniform image3D tau_p_image;
+
+vec4 finite(vec3 v)
+{
+    return vec4(mix(v, vec3(0.0), bvec3(uvec3(isnan(v)) | uvec3(isinf(v)))), 0.0);
+}
+
+void radial_store(ivec3 texel, mat3 value)
+{
+    imageStore(tau_s_image, texel, finite(value[0]));
+    imageStore(tau_a_image, texel, finite(value[1]));
+    imageStore(tau_p_image, texel, finite(value[2]));
+}
+#endif
+
+// One direction of a light's grid: means of the medium along a ray.
 void radial_sweep(uint n, ivec2 texel)
 {
     int cells = int(radials[n].cells);
@@ -36,7 +76,7 @@ void radial_sweep(uint n, ivec2 texel)
     if (outside && enter >= leave) {
         // Beside the box: what its neighbours mix with their own.
         float closest = clamp(dot(0.5 * medium.extent - origin, d), 0.0, 1e20);
-        RADIAL_VALUE value = radial_value((origin + closest * d) / medium.extent);
+        MEDIUM_VALUE value = medium_value((origin + closest * d) / medium.extent);
         for (uint k = 0u; k <= shells; k++) {
             radial_store(at + ivec3(0, 0, int(k)), value);
         }
@@ -45,7 +85,7 @@ void radial_sweep(uint n, ivec2 texel)
     enter = outside ? enter : 0.0;
     float near = 1.0 / radials[n].inverse_near, begin = radials[n].begin;
     float voxel = min(min(medium.voxel.x, medium.voxel.y), medium.voxel.z);
-    RADIAL_VALUE sum = RADIAL_VALUE(0.0), mean = radial_value((origin + enter * d) / medium.extent);
+    MEDIUM_VALUE sum = MEDIUM_VALUE(0.0), mean = medium_value((origin + enter * d) / medium.extent);
     float done = enter, growth = exp(radials[n].per_shell), power = 1.0;
     for (uint k = 0u; k <= shells; k++) {
         float r = begin + near * (power - 1.0);
@@ -56,9 +96,9 @@ void radial_sweep(uint n, ivec2 texel)
         if (r > done && (done < leave || beside <= spread * done)) {
             uint samples = uint(clamp(ceil((r - done) / voxel - 0.01), 1.0, 4096.0));
             float ds = (r - done) / float(samples);
-            RADIAL_VALUE part = RADIAL_VALUE(0.0);
+            MEDIUM_VALUE part = MEDIUM_VALUE(0.0);
             for (uint i = 0u; i < samples; i++) {
-                part += radial_value((origin + (done + (float(i) + 0.5) * ds) * d) / medium.extent);
+                part += medium_value((origin + (done + (float(i) + 0.5) * ds) * d) / medium.extent);
             }
             sum += ds * part;
             done = r;
@@ -91,4 +131,11 @@ bool radial_thread(out uint n, out ivec2 texel)
     return n < radial_count && all(lessThan(texel, ivec2(own.cells + 2u)));
 }
 
-#endif
+void main()
+{
+    uint n;
+    ivec2 texel;
+    if (radial_thread(n, texel)) {
+        radial_sweep(n, texel);
+    }
+}

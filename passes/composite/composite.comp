@@ -1,10 +1,10 @@
-// composite_half.comp -- the medium over a host image of format rgba16f.
+// composite.comp -- the medium over a host image; built for each of its formats, COLOUR_FORMAT.
 #version 460
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(binding = 0) uniform sampler2D radiance;
 layout(binding = 1) uniform sampler2D transmittance;
-layout(binding = 2, rgba16f) uniform image2D color;
+layout(binding = 2, COLOUR_FORMAT) uniform image2D color;
 
 void main()
 {
