@@ -4,7 +4,6 @@
 #include "passes/lattice/lattice.h"
 #include <tyndall/registry.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 static bool emits(const tyn_surface_material *m)
@@ -165,11 +164,8 @@ static void warn_of_cells(const tyn_job *job, const tyn_sources *s, int32_t aske
 {
     const tyn_extent n = tyn_lattice_dims(s->lattice.shape.extent, asked);
     if ((uint64_t)n.x * n.y * n.z > TYN_LATTICE_MAX_ALL) {
-        char line[160];
-        snprintf(line, sizeof line,
-                 "pop: lattice.cells is %d, which makes more than %d cells; %d are used",
-                 (int)asked, TYN_LATTICE_MAX_ALL, (int)s->lattice.shape.cells);
-        job->warn(job->warn_user, line);
+        tyn_job_warn(job, "lattice.cells is %d, which makes more than %d cells; %d are used",
+                     (int)asked, TYN_LATTICE_MAX_ALL, (int)s->lattice.shape.cells);
     }
 }
 

@@ -134,7 +134,7 @@ const tyn_limit tyn_limits_pop[] = {
     {.key = "surfaces",
      .where = {TYN_ABOVE(surfaces, 0)},
      .level = TYN_LIMIT_STRAINED,
-     .advice = {"surfaces: virtual lights and voxels of walls (sample scenes 4 to 11 %% off, "
+     .advice = {"surfaces: virtual lights and voxels of walls (sample scenes 4 to 10 %% off, "
                 "vpl-cave 21 %%)"},
      .source = "docs/accuracy.md, \"Lamps and walls\""},
     {.key = "the sky among surfaces",

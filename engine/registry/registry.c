@@ -13,6 +13,8 @@
 #include "passes/lattice_ordinates/lattice_ordinates.h"
 #include "passes/lattice_lamps/lattice_lamps.h"
 #include "passes/lattice/lattice.h"
+#include "passes/lattice_keep/lattice_keep.h"
+#include "passes/lattice_recall/lattice_recall.h"
 #include "passes/medium/medium.h"
 #include "passes/ordinates/ordinates.h"
 #include "passes/path/path.h"
@@ -58,7 +60,9 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_lattice_source,
     &tyn_pass_lattice_ordinates,
     &tyn_pass_lattice_lamps,
+    &tyn_pass_lattice_recall,
     &tyn_pass_lattice,
+    &tyn_pass_lattice_keep,
     &tyn_pass_merge,
     &tyn_pass_probe,
     &tyn_pass_balance,

@@ -27,7 +27,7 @@ check()
         return path
     }
     # Where the compiler would find it; "" = not ours (system, third party).
-    function resolve(file, name, quoted,   dir, n, i, roots) {
+    function resolve(file, name, quoted,   dir, n, i, roots, base) {
         dir = file
         sub(/[^\/]*$/, "", dir)
         if (quoted && exists(dir name)) { return plain(dir name) }
@@ -40,6 +40,13 @@ check()
         }
         if (name ~ /\.(comp|vert|frag)\.h$/ && exists(dir substr(name, 1, length(name) - 2))) {
             return dir name # made from the shader beside it
+        }
+        if (name ~ /\.comp\.h$/) { # or from one that is built more than once: x_build.comp.h from x.comp
+            base = substr(name, 1, length(name) - 7)
+            while (match(base, /_[a-z0-9]+$/)) {
+                base = substr(base, 1, RSTART - 1)
+                if (exists(dir base ".comp")) { return dir name }
+            }
         }
         if (quoted && exists(dir name ".in")) { return dir name }
         if (quoted && file ~ /^tools\// && exists("tools/" name ".in")) { return "tools/" name }
@@ -130,7 +137,7 @@ check()
 untested()
 (
     cd "$1"
-    grep -rhoE '^ *&tyn_pass_[a-z0-9_]+,' engine | sed 's/.*&tyn_pass_//; s/,//' | sort -u | {
+    grep -rhoE '&tyn_pass_[a-z0-9_]+,' engine | sed 's/.*&tyn_pass_//; s/,//' | sort -u | {
         passes=0
         faults=0
         while read -r pass; do
