@@ -13,5 +13,3 @@ typedef struct tyn_method {
     uint32_t (*batch)(const tyn_job *job);
     tyn_result (*declare)(tyn_graph *g, const tyn_job *job);
 } tyn_method;
-
-extern const tyn_method tyn_method_pop, tyn_method_pop_paper, tyn_method_single, tyn_method_path;
