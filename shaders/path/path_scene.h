@@ -47,7 +47,7 @@ enum {
     PATH_PORT_LIGHTS,      // IN buffer struct light_block[], optional
     PATH_PORT_ENVIRONMENT, // IN buffer struct env_block, optional
     PATH_PORT_ENV_MAP,     // IN 2D, optional
-    PATH_PORT_ENV_TABLE, // IN buffer struct env_table_block and cells, optional: frame/env_cdf.h
+    PATH_PORT_ENV_TABLE,   // IN buffer struct env_table_block and cells, optional: frame/env_cdf.h
     TYN_GEOMETRY(TYN_BUNDLE_ENUM, PATH),  // IN optional; without nodes all triangles are tried
     TYN_MATERIALS(TYN_BUNDLE_ENUM, PATH), // IN optional
     PATH_PORT_EMITTERS, // IN buffer struct surface_table and cells: frame/surface_tables.h
