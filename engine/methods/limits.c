@@ -167,6 +167,7 @@ void tyn_limits_warn(const tyn_job *job, float cell)
         .mean_free_path = 1 / (d.extinction * longest),
         .mean_depth = d.extinction * longest,
         .scatterings = d.scattering * longest,
+        .all_scatterings = (d.extinction - d.absorption) * longest,
         .thickness = d.scaled * shortest,
         .albedo = d.extinction > 0 ? 1 - d.absorption / d.extinction : 0,
         .least_g = d.least_g,

@@ -84,7 +84,7 @@ static const tyn_limit limits[] = {
      .advice = {"propagation as published: light that is moved without being lost adds up (cubes "
                 "of depth 0.1 to 10: 28 to 79 %% off); it is here to be compared with"},
      .source = "docs/pop-paper.md, \"Measured\"",
-     .warned = {TYN_ABOVE(scatterings, 0.05), TYN_ABOVE(cell_transport, 0)},
+     .warned = {TYN_ABOVE(all_scatterings, 0.05), TYN_ABOVE(cell_transport, 0)},
      .warning = {"accuracy: the published propagation turns light at every hop whether it has "
                  "scattered or not, as if a hop were 2 transport mean free paths; here it is "
                  "%.2g: errors of tens of per cent and more",

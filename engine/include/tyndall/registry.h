@@ -20,6 +20,7 @@ typedef struct tyn_regime {
     double mean_depth;      // ... along a straight way through the medium, on average
     double transport_depth; // transport mean free paths along it
     double scatterings;     // scaled, along the longest side
+    double all_scatterings; // not scaled
     double thickness;       // scaled mean free paths through the shortest side
     double albedo;
     double g, least_g, most_g; // mean cosines
