@@ -28,34 +28,9 @@ static const tyn_port ports[BALANCE_NUM_PORTS] = {
     [BALANCE_PORT_BALANCE] = {"balance", TYN_OUT, TYN_BUFFER, 0, false, "tyn_balance, W"},
 };
 
-static const tyn_binding bindings[] = {
-    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {BALANCE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_CELLS, TYN_USE_SAMPLED},
-    {BALANCE_PORT_MOMENTS, TYN_USE_SAMPLED},
-    {BALANCE_PORT_SOURCE, TYN_USE_SAMPLED},
-    {BALANCE_PORT_POWER, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_LEAKS, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_BALANCE, TYN_USE_STORAGE_WRITE},
-    {BALANCE_PORT_ORDINATES, TYN_USE_UNIFORM},
-    {BALANCE_PORT_WALL_POWER, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_LAMP_POWER, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_FOUND, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_EMITTERS, TYN_USE_STORAGE_READ},
-};
-
-static const tyn_binding light_bindings[] = {
-    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},        TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, BALANCE),
-    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, BALANCE), TYN_GEOMETRY(TYN_BUNDLE_BIND, BALANCE),
-    TYN_MATERIALS(TYN_BUNDLE_BIND, BALANCE),       {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_FOUND, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(balance, sizeof(struct balance_args), BALANCE_GROUP, 1, 1, bindings, 1),
-    TYN_KERNEL(balance_lights, sizeof(struct balance_lights_args), BALANCE_GROUP, 1, 1,
-               light_bindings, 1),
+    TYN_KERNEL(balance),
+    TYN_KERNEL(balance_lights),
 };
 
 // Parts of suns, and as many lamps and VPLs as there may be.

@@ -29,11 +29,11 @@ layout(push_constant, scalar) uniform push
 {
     balance_lights_args args;
 };
-layout(binding = 16, scalar) readonly buffer light_buffer
+layout(binding = 16, scalar) readonly buffer lights_buffer
 {
     light_block lights[];
 };
-layout(binding = 17, scalar) writeonly buffer balance_light_buffer
+layout(binding = 17, scalar) writeonly buffer found_buffer
 {
     balance_light found[];
 };

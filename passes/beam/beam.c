@@ -27,20 +27,9 @@ static const tyn_port ports[BEAM_NUM_PORTS] = {
 
 enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
 
-static const tyn_binding density_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, BEAM),
-    {BEAM_PORT_BEAMS, TYN_USE_STORAGE_RW},
-    {BEAM_PORT_COLUMN, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding coefficients_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, BEAM),         {BEAM_PORT_BEAMS, TYN_USE_STORAGE_RW},
-    {BEAM_PORT_COLUMN, TYN_USE_STORAGE_WRITE}, {BEAM_PORT_TAU_A, TYN_USE_STORAGE_WRITE},
-    {BEAM_PORT_TAU_P, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = TYN_KERNEL(beam_density, 0, 8, 8, 1, density_bindings, 1),
-    [KERNEL_COEFFICIENTS] = TYN_KERNEL(beam_coefficients, 0, 8, 8, 1, coefficients_bindings, 1),
+    [KERNEL_DENSITY] = TYN_KERNEL(beam_density),
+    [KERNEL_COEFFICIENTS] = TYN_KERNEL(beam_coefficients),
 };
 
 static const tyn_param params_table[] = {

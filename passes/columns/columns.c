@@ -21,30 +21,10 @@ static const tyn_port ports[COLUMNS_NUM_PORTS] = {
 
 enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, KERNEL_GATHER, NUM_KERNELS };
 
-static const tyn_binding density_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, COLUMNS),
-    {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM},
-    {COLUMNS_PORT_NODES, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding coefficients_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, COLUMNS),
-    {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM},
-    {COLUMNS_PORT_NODES, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding gather_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, COLUMNS),
-    {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM},
-    {COLUMNS_PORT_NODES, TYN_USE_STORAGE_READ},
-    {COLUMNS_PORT_COLUMNS, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = TYN_KERNEL(columns_density, sizeof(struct columns_args), COLUMNS_GROUP, 1, 1,
-                                  density_bindings, 1),
-    [KERNEL_COEFFICIENTS] = TYN_KERNEL(columns_coefficients, sizeof(struct columns_args),
-                                       COLUMNS_GROUP, 1, 1, coefficients_bindings, 1),
-    [KERNEL_GATHER] = TYN_KERNEL(columns_gather, sizeof(struct columns_args), COLUMNS_GROUP, 1, 1,
-                                 gather_bindings, 1),
+    [KERNEL_DENSITY] = TYN_KERNEL(columns_density),
+    [KERNEL_COEFFICIENTS] = TYN_KERNEL(columns_coefficients),
+    [KERNEL_GATHER] = TYN_KERNEL(columns_gather),
 };
 
 static uint32_t components(const tyn_columns_params *p)

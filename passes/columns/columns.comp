@@ -20,7 +20,7 @@ layout(binding = 5, scalar) uniform ordinates_uniform
 {
     ordinates_block ordinates;
 };
-layout(binding = 6, scalar) writeonly buffer node_buffer
+layout(binding = 6, scalar) writeonly buffer nodes_buffer
 {
     float nodes[]; // [ordinate][component of coefficients][slice][v][u]
 };

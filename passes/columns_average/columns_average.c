@@ -36,25 +36,9 @@ static const tyn_port ports[COLUMNS_AVERAGE_NUM_PORTS] = {
 
 enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS };
 
-static const tyn_binding density_bindings[] = {
-    {COLUMNS_AVERAGE_PORT_DENSITY, TYN_USE_SAMPLED},
-    {COLUMNS_AVERAGE_PORT_MEAN_DENSITY, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding coefficients_bindings[] = {
-    {COLUMNS_AVERAGE_PORT_DENSITY, TYN_USE_SAMPLED},
-    {COLUMNS_AVERAGE_PORT_SIGMA_A, TYN_USE_SAMPLED},
-    {COLUMNS_AVERAGE_PORT_G, TYN_USE_SAMPLED},
-    {COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S, TYN_USE_STORAGE_WRITE},
-    {COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A, TYN_USE_STORAGE_WRITE},
-    {COLUMNS_AVERAGE_PORT_MEAN_G, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[] = {
-    [KERNEL_DENSITY] = TYN_KERNEL(columns_average_density, sizeof(struct columns_average_args), 8,
-                                  4, 2, density_bindings, 0),
-    [KERNEL_COEFFICIENTS] =
-        TYN_KERNEL(columns_average_coefficients, sizeof(struct columns_average_args), 8, 4, 2,
-                   coefficients_bindings, 0),
+    [KERNEL_DENSITY] = TYN_KERNEL(columns_average_density),
+    [KERNEL_COEFFICIENTS] = TYN_KERNEL(columns_average_coefficients),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

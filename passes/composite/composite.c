@@ -12,17 +12,11 @@ static const tyn_port ports[COMPOSITE_NUM_PORTS] = {
                               false, "the host's picture, linear; alpha is kept"},
 };
 
-static const tyn_binding bindings[] = {
-    {COMPOSITE_PORT_RADIANCE, TYN_USE_SAMPLED, false},
-    {COMPOSITE_PORT_TRANSMITTANCE, TYN_USE_SAMPLED, false},
-    {COMPOSITE_PORT_COLOR, TYN_USE_STORAGE_RW, false},
-};
-
 enum { KERNEL_FLOAT = 0, KERNEL_HALF, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_FLOAT] = TYN_KERNEL(composite_float, 0, 8, 8, 1, bindings, 0),
-    [KERNEL_HALF] = TYN_KERNEL(composite_half, 0, 8, 8, 1, bindings, 0),
+    [KERNEL_FLOAT] = TYN_KERNEL(composite_float),
+    [KERNEL_HALF] = TYN_KERNEL(composite_half),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

@@ -33,34 +33,13 @@ static const tyn_port ports[ENV_GLOW_NUM_PORTS] = {
                               "Fourier sums of the smeared map's rows"},
 };
 
-static const tyn_binding rows_bindings[] = {
-    {ENV_GLOW_PORT_SKY, TYN_USE_SAMPLED, true},
-    {ENV_GLOW_PORT_ROWS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding analyse_bindings[] = {
-    {ENV_GLOW_PORT_SERIES, TYN_USE_STORAGE_READ},
-    {ENV_GLOW_PORT_ROWS, TYN_USE_STORAGE_READ},
-    {ENV_GLOW_PORT_COEFFICIENTS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding smear_bindings[] = {
-    {ENV_GLOW_PORT_SERIES, TYN_USE_STORAGE_READ},
-    {ENV_GLOW_PORT_COEFFICIENTS, TYN_USE_STORAGE_READ},
-    {ENV_GLOW_PORT_LEVELS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding texels_bindings[] = {
-    {ENV_GLOW_PORT_SERIES, TYN_USE_STORAGE_READ},
-    {ENV_GLOW_PORT_LEVELS, TYN_USE_STORAGE_READ},
-    {ENV_GLOW_PORT_GLOW, TYN_USE_STORAGE_WRITE},
-};
-
 enum { KERNEL_ROWS, KERNEL_ANALYSE, KERNEL_SMEAR, KERNEL_TEXELS, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_ROWS] = TYN_KERNEL(env_glow_rows, sizeof(struct env_glow_args), TYN_GLOW_HEIGHT / 4, 1,
-                               1, rows_bindings, 0),
-    [KERNEL_ANALYSE] = TYN_KERNEL(env_glow_analyse, 0, TYN_GLOW_HEIGHT, 1, 1, analyse_bindings, 0),
-    [KERNEL_SMEAR] = TYN_KERNEL(env_glow_smear, 0, TYN_GLOW_HEIGHT / 8, 1, 1, smear_bindings, 0),
-    [KERNEL_TEXELS] = TYN_KERNEL(env_glow_texels, 0, TYN_GLOW_WIDTH / 16, 1, 1, texels_bindings, 0),
+    [KERNEL_ROWS] = TYN_KERNEL(env_glow_rows),
+    [KERNEL_ANALYSE] = TYN_KERNEL(env_glow_analyse),
+    [KERNEL_SMEAR] = TYN_KERNEL(env_glow_smear),
+    [KERNEL_TEXELS] = TYN_KERNEL(env_glow_texels),
 };
 
 // ---- the series -----------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ typedef struct tyn_env_importance_params {
 } tyn_env_importance_params;
 
 enum {
-    ENV_IMPORTANCE_PORT_MAP, // IN 2D latitude-longitude map of any size
+    ENV_IMPORTANCE_PORT_ENV_MAP, // IN 2D latitude-longitude map of any size
     ENV_IMPORTANCE_PORT_SKY, // OUT 2D RGBA32F SKY_WIDTH x SKY_HEIGHT, SKY_MIPS levels: mean radiance over
     // the texel, map units; luminance x solid angle, so that the level above
     // has the sum of its four

@@ -30,21 +30,6 @@ static const tyn_port ports[GBUFFER_NUM_PORTS] = {
                             "reversed"},
 };
 
-// The drawing kernel has the camera and the geometry, that of single triangles all but the last two.
-static const tyn_binding bindings[] = {
-    {GBUFFER_PORT_CAMERA, TYN_USE_UNIFORM, false},
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, GBUFFER),
-    TYN_MATERIALS(TYN_BUNDLE_BIND, GBUFFER),
-    {GBUFFER_PORT_SEEN, TYN_USE_STORAGE_READ, false},
-    {GBUFFER_PORT_DISTANCES, TYN_USE_STORAGE_WRITE, false},
-    {GBUFFER_PORT_FACING, TYN_USE_STORAGE_WRITE, false},
-    {GBUFFER_PORT_COLOURS, TYN_USE_STORAGE_WRITE, false},
-    {GBUFFER_PORT_MIXED_COUNT, TYN_USE_STORAGE_RW, false},
-    {GBUFFER_PORT_MIXED, TYN_USE_STORAGE_RW, false},
-    {GBUFFER_PORT_EDGE_COUNT, TYN_USE_STORAGE_RW, false},
-    {GBUFFER_PORT_EDGES, TYN_USE_STORAGE_WRITE, false},
-};
-
 static const tyn_binding attachments[] = {
     {GBUFFER_PORT_SEEN, TYN_USE_COLOR, false},
     {GBUFFER_PORT_DEPTH, TYN_USE_DEPTH, false},
@@ -62,20 +47,9 @@ static const tyn_raster raster = {
 enum { KERNEL_DRAW, KERNEL_RESOLVE, KERNEL_MIXED, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DRAW] = {.name = "gbuffer_draw",
-                     .spirv = gbuffer_vertex_spirv,
-                     .spirv_size = sizeof(gbuffer_vertex_spirv),
-                     .bindings = bindings,
-                     .num_bindings = 5,
-                     .raster = &raster},
-    [KERNEL_RESOLVE] = {.name = "gbuffer_resolve",
-                        .spirv = gbuffer_resolve_spirv,
-                        .spirv_size = sizeof(gbuffer_resolve_spirv),
-                        .num_spec = 3,
-                        .local_size = {8, 8, 1},
-                        .bindings = bindings,
-                        .num_bindings = sizeof(bindings) / sizeof(bindings[0]) - 2},
-    [KERNEL_MIXED] = TYN_KERNEL(gbuffer_mixed, 0, GBUFFER_EDGES, 1, 1, bindings, 3),
+    [KERNEL_DRAW] = TYN_DRAW("gbuffer_draw", gbuffer_vertex, gbuffer_vertex, &raster),
+    [KERNEL_RESOLVE] = TYN_KERNEL(gbuffer_resolve),
+    [KERNEL_MIXED] = TYN_KERNEL(gbuffer_mixed),
 };
 
 static const tyn_param params_table[] = {

@@ -21,7 +21,7 @@ void main()
     }
     if (same && index == 0u) {
         for (int k = 0; k < samples * samples; k++) {
-            imageStore(distance_image, texel_of(corner, k), vec4(0.0));
+            imageStore(distances_image, texel_of(corner, k), vec4(0.0));
         }
         imageStore(facing_image, pixel, uvec4(0u, 0u, GBUFFER_NONE, 0u));
     }
@@ -35,7 +35,7 @@ void main()
             vec2 at = vec2(texel) + 0.5;
             vec4 w = gbuffer_meet(triangle, gbuffer_ray(at), direction);
             albedo += textured != 0u ? gbuffer_albedo_at(triangle, at, w.xyz) : vec3(0.0);
-            imageStore(distance_image, texel, vec4(w.w));
+            imageStore(distances_image, texel, vec4(w.w));
         }
         p.albedo = textured != 0u ? albedo / float(samples * samples) : p.albedo;
         store_whole(pixel, p);

@@ -25,8 +25,8 @@ enum {
     TYN_MEDIUM(TYN_BUNDLE_ENUM, IMPORTANCE), // IN
     IMPORTANCE_PORT_CAMERA,                  // IN buffer struct camera_block
     IMPORTANCE_PORT_HISTORY,                 // INOUT buffer struct importance_history
-    IMPORTANCE_PORT_MAP, // OUT 2D R32F: importance by the direction light comes from, latitude and
-                         // longitude of M (environment_uv); mean over the sphere 1
+    IMPORTANCE_PORT_IMPORTANCE, // OUT 2D R32F: importance by the direction light comes from, latitude and
+                                // longitude of M (environment_uv); mean over the sphere 1
     // OUT 3D RGBA32F, the grid: importance scattered, 1/m^3 per picture; times its mean cosine
     // about the column; sigma_t, 1/m.
     IMPORTANCE_PORT_FIELD,

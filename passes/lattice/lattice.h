@@ -40,6 +40,25 @@ enum {
     LATTICE_PORT_LEAKS,    // OUT buffer: what left the box in the last sweep, for balance
     LATTICE_PORT_WALL_POWER, // OUT buffer vec2[channel][cell], with walls: power that the walls of a cell
     // absorb of the light that is in `moments`, and that `wall_light` brings, W
-    LATTICE_PORT_FIRST_SCRATCH,
+    // Scratch buffers, see lattice.c.
+    LATTICE_PORT_STATE,
+    LATTICE_PORT_EMITTED,
+    LATTICE_PORT_MEAN_PSI,
+    LATTICE_PORT_SWEPT,
+    LATTICE_PORT_STENCIL_LO,
+    LATTICE_PORT_STENCIL_HI,
+    LATTICE_PORT_RHS,
+    LATTICE_PORT_CORRECTION,
+    LATTICE_PORT_RESULT_0, // of the last three sweeps
+    LATTICE_PORT_RESULT_1,
+    LATTICE_PORT_RESULT_2,
+    LATTICE_PORT_CHANGE_0, // of each
+    LATTICE_PORT_CHANGE_1,
+    LATTICE_PORT_CHANGE_2,
+    LATTICE_PORT_PARTIALS,
+    LATTICE_PORT_WEIGHTS,
+    LATTICE_PORT_ARRIVED,
+    LATTICE_PORT_LAUNCHES,
+    LATTICE_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_lattice;

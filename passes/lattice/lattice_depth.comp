@@ -13,7 +13,7 @@ layout(push_constant, scalar) uniform push
     lattice_args args;
 };
 layout(binding = 0) uniform sampler3D cells;
-layout(binding = 1, scalar) buffer launch_buffer
+layout(binding = 1, scalar) buffer launches_buffer
 {
     uint launches[3 * LATTICE_MAX_LAUNCHES]; // workgroups, as indirect dispatches read them
 };

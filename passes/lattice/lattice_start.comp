@@ -30,7 +30,7 @@ layout(binding = 5, scalar) readonly buffer guess_buffer
 {
     vec4 guess[];
 };
-layout(binding = 6, scalar) readonly buffer light_buffer
+layout(binding = 6, scalar) readonly buffer wall_light_buffer
 {
     vec3 wall_light[];
 };

@@ -12,11 +12,11 @@ layout(push_constant, scalar) uniform push
     lattice_level_args args;
 };
 layout(binding = 0) uniform sampler3D cells;
-layout(binding = 1, scalar) writeonly buffer lo_buffer
+layout(binding = 1, scalar) writeonly buffer stencil_lo_buffer
 {
     vec4 stencil_lo[];
 };
-layout(binding = 2, scalar) writeonly buffer hi_buffer
+layout(binding = 2, scalar) writeonly buffer stencil_hi_buffer
 {
     vec4 stencil_hi[];
 };

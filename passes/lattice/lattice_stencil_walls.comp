@@ -13,11 +13,11 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args;
 };
-layout(binding = 0, scalar) buffer lo_buffer
+layout(binding = 0, scalar) buffer stencil_lo_buffer
 {
     vec4 stencil_lo[];
 };
-layout(binding = 1, scalar) readonly buffer hi_buffer
+layout(binding = 1, scalar) readonly buffer stencil_hi_buffer
 {
     vec4 stencil_hi[];
 };

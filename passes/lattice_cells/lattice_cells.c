@@ -12,13 +12,8 @@ static const tyn_port ports[LATTICE_CELLS_NUM_PORTS] = {
                                   "(W/(m^3 sr)); channels stacked along z"},
 };
 
-static const tyn_binding bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, LATTICE_CELLS),
-    {LATTICE_CELLS_PORT_CELLS, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(lattice_cells, sizeof(struct lattice_cells_args), 8, 4, 2, bindings, 1),
+    TYN_KERNEL(lattice_cells),
 };
 
 enum { MAX_SAMPLES = 8 }; // along each axis of a cell

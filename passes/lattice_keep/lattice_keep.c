@@ -9,14 +9,8 @@ static const tyn_port ports[LATTICE_KEEP_NUM_PORTS] = {
                                   "struct lattice_memory_block and moments"},
 };
 
-static const tyn_binding bindings[] = {
-    {LATTICE_KEEP_PORT_MOMENTS, TYN_USE_SAMPLED},
-    {LATTICE_KEEP_PORT_POWER, TYN_USE_STORAGE_READ},
-    {LATTICE_KEEP_PORT_MEMORY, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(lattice_keep, sizeof(struct lattice_recall_args), 8, 4, 2, bindings, 0),
+    TYN_KERNEL(lattice_keep),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

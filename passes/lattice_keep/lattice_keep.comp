@@ -9,7 +9,7 @@ layout(push_constant, scalar) uniform push
 {
     lattice_recall_args args;
 };
-layout(binding = 0) uniform sampler3D solution;
+layout(binding = 0) uniform sampler3D moments_tex;
 layout(binding = 1, scalar) readonly buffer power_buffer
 {
     float power[3];
@@ -27,7 +27,7 @@ void main()
         return;
     }
     uint i = (texel.z * args.dims.y + texel.y) * args.dims.x + texel.x;
-    moments[i] = texelFetch(solution, ivec3(texel), 0);
+    moments[i] = texelFetch(moments_tex, ivec3(texel), 0);
     if (i == 0) {
         memory = lattice_memory_block(args.world, args.extent, args.dims, args.channels, args.tint,
                                       vec3(power[0], power[1], power[2]));

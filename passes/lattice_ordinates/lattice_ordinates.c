@@ -16,16 +16,8 @@ static const tyn_port ports[LATTICE_ORDINATES_NUM_PORTS] = {
                                        "channels stacked along z"},
 };
 
-static const tyn_binding bindings[] = {
-    {LATTICE_ORDINATES_PORT_MEDIUM, TYN_USE_UNIFORM},
-    TYN_COLUMNS(TYN_BUNDLE_BIND, LATTICE_ORDINATES),
-    {LATTICE_ORDINATES_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_ORDINATES_PORT_SUNLIGHT, TYN_USE_SAMPLED},
-    {LATTICE_ORDINATES_PORT_SOURCE, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(lattice_ordinates, sizeof(struct lattice_ordinates_args), 8, 4, 2, bindings, 2),
+    TYN_KERNEL(lattice_ordinates),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

@@ -23,24 +23,9 @@ static const tyn_port ports[LATTICE_RECALL_NUM_PORTS] = {
 
 enum { KERNEL_POWER, KERNEL_RECALL, NUM_KERNELS };
 
-static const tyn_binding power_bindings[] = {
-    {LATTICE_RECALL_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_RECALL_PORT_SOURCE, TYN_USE_SAMPLED},
-    {LATTICE_RECALL_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {LATTICE_RECALL_PORT_POWER, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding recall_bindings[] = {
-    {LATTICE_RECALL_PORT_MEMORY, TYN_USE_STORAGE_READ},
-    {LATTICE_RECALL_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {LATTICE_RECALL_PORT_POWER, TYN_USE_STORAGE_READ},
-    {LATTICE_RECALL_PORT_GUESS, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_POWER] = TYN_KERNEL(lattice_recall_power, sizeof(struct lattice_recall_args),
-                                LATTICE_SUN_GROUP, 1, 1, power_bindings, 0),
-    [KERNEL_RECALL] =
-        TYN_KERNEL(lattice_recall, sizeof(struct lattice_recall_args), 8, 4, 2, recall_bindings, 0),
+    [KERNEL_POWER] = TYN_KERNEL(lattice_recall_power),
+    [KERNEL_RECALL] = TYN_KERNEL(lattice_recall),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

@@ -27,37 +27,10 @@ static const tyn_port ports[LATTICE_SOURCE_NUM_PORTS] = {
 
 enum { KERNEL_BEAM, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
 
-static const tyn_binding beam_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, LATTICE_SOURCE),
-    TYN_BEAMS(TYN_BUNDLE_BIND, LATTICE_SOURCE),
-    {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_STORAGE_WRITE},
-    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, LATTICE_SOURCE),
-    TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, LATTICE_SOURCE),
-    {LATTICE_SOURCE_PORT_CELLS, TYN_USE_SAMPLED},
-};
-
-static const tyn_binding sum_bindings[] = {
-    {LATTICE_SOURCE_PORT_MEDIUM, TYN_USE_UNIFORM},
-    TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, LATTICE_SOURCE),
-    {LATTICE_SOURCE_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_POWER, TYN_USE_STORAGE_WRITE},
-};
-
-static const tyn_binding source_bindings[] = {
-    {LATTICE_SOURCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
-    {LATTICE_SOURCE_PORT_POWER, TYN_USE_STORAGE_READ},
-    {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_SOURCE, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_BEAM] = TYN_KERNEL(lattice_source_beam, sizeof(struct lattice_source_args), 8, 4, 2,
-                               beam_bindings, 4),
-    [KERNEL_SUM] = TYN_KERNEL(lattice_source_sum, sizeof(struct lattice_source_args),
-                              LATTICE_SUN_GROUP, 1, 1, sum_bindings, 1),
-    [KERNEL_SOURCE] =
-        TYN_KERNEL(lattice_source, sizeof(struct lattice_source_args), 8, 4, 2, source_bindings, 0),
+    [KERNEL_BEAM] = TYN_KERNEL(lattice_source_beam),
+    [KERNEL_SUM] = TYN_KERNEL(lattice_source_sum),
+    [KERNEL_SOURCE] = TYN_KERNEL(lattice_source),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

@@ -11,7 +11,7 @@ layout(push_constant, scalar) uniform push
 {
     lattice_source_args args;
 };
-layout(binding = 0, scalar) readonly buffer light_buffer
+layout(binding = 0, scalar) readonly buffer lights_buffer
 {
     light_block lights[];
 };

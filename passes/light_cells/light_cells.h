@@ -16,7 +16,7 @@ enum {
     TYN_SHADOWS(TYN_BUNDLE_ENUM, LIGHT_CELLS), // IN
     // SCRATCH 2D RG32F, with mips: least and greatest depth in blocks of the atlas
     LIGHT_CELLS_PORT_BLOCKS,
-    LIGHT_CELLS_PORT_CELLS, // OUT 3D R32F: light_cells_args.h
+    LIGHT_CELLS_PORT_LIGHT_CELLS, // OUT 3D R32F: light_cells_args.h
     LIGHT_CELLS_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_light_cells;

@@ -11,7 +11,7 @@
 layout(constant_id = 0) const uint num_suns = 1u;
 layout(constant_id = 1) const uint num_lamps = 0u;
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(binding = 2, r32f) uniform writeonly image3D cells;
+layout(binding = 2, r32f) uniform writeonly image3D light_cells_image;
 
 layout(push_constant, scalar) uniform Args
 {
@@ -35,5 +35,5 @@ void main()
         shadow_light l = shadows[n];
         bits |= shadow_region_seen(l, shadow_region_lamp(l, middle, reach)) << (2u * n);
     }
-    imageStore(cells, ivec3(cell), vec4(float(bits)));
+    imageStore(light_cells_image, ivec3(cell), vec4(float(bits)));
 }

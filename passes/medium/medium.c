@@ -36,44 +36,12 @@ enum {
     NUM_KERNELS
 };
 
-static const tyn_binding density_bindings[] = {
-    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
-    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},
-    {MEDIUM_PORT_DENSITY, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding coefficients_bindings[] = {
-    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},        {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
-    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},         {MEDIUM_PORT_DENSITY, TYN_USE_STORAGE_WRITE},
-    {MEDIUM_PORT_SIGMA_A, TYN_USE_STORAGE_WRITE}, {MEDIUM_PORT_G, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding emission_bindings[] = {
-    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
-    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},
-    {MEDIUM_PORT_EMISSION, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding bricks_bindings[] = {
-    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
-    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},
-    {MEDIUM_PORT_BRICKS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding distance_bindings[] = {
-    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {MEDIUM_PORT_BRICKS, TYN_USE_SAMPLED},
-    {MEDIUM_PORT_DISTANCE, TYN_USE_STORAGE_WRITE},
-};
-
-#define KERNEL(step, args)                                                                         \
-    TYN_KERNEL(medium_##step, sizeof(struct args), 4, 4, 4, step##_bindings, 0)
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = KERNEL(density, resample_args),
-    [KERNEL_COEFFICIENTS] = KERNEL(coefficients, resample_args),
-    [KERNEL_EMISSION] = KERNEL(emission, resample_args),
-    [KERNEL_BRICKS] = KERNEL(bricks, bricks_args),
-    [KERNEL_DISTANCE] = KERNEL(distance, distance_args),
+    [KERNEL_DENSITY] = TYN_KERNEL(medium_density),
+    [KERNEL_COEFFICIENTS] = TYN_KERNEL(medium_coefficients),
+    [KERNEL_EMISSION] = TYN_KERNEL(medium_emission),
+    [KERNEL_BRICKS] = TYN_KERNEL(medium_bricks),
+    [KERNEL_DISTANCE] = TYN_KERNEL(medium_distance),
 };
 
 static const char *const storages[] = {"auto", "half", "float"};

@@ -12,7 +12,7 @@ layout(set = 0, binding = 0, scalar) uniform medium_uniform
 {
     medium_block medium;
 };
-layout(set = 0, binding = 1) uniform sampler3D before_tex; // bricks (first axis) or distances
+layout(set = 0, binding = 1) uniform sampler3D bricks_tex; // bricks (first axis) or distances
 layout(set = 0, binding = 2, r32f) writeonly uniform image3D distance_image;
 layout(push_constant, scalar) uniform push { distance_args args; };
 
@@ -20,7 +20,7 @@ const float FARTHEST = 255.0;
 
 float distance_before(ivec3 brick)
 {
-    vec2 value = texelFetch(before_tex, brick, 0).rg;
+    vec2 value = texelFetch(bricks_tex, brick, 0).rg;
     return args.axis == 0u ? (value.g > 0.0 ? 0.0 : FARTHEST) : value.r;
 }
 

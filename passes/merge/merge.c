@@ -31,41 +31,10 @@ static const tyn_port ports[MERGE_NUM_PORTS] = {
 
 enum { KERNEL_CELLS, KERNEL_ORDINATES, KERNEL_RADIALS, KERNEL_ONE, KERNEL_THREE, NUM_KERNELS };
 
-static const tyn_binding cells_bindings[] = {
-    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},      {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
-    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},       {MERGE_PORT_MOMENTS, TYN_USE_SAMPLED},
-    {MERGE_PORT_FIELD, TYN_USE_STORAGE_WRITE}, {MERGE_PORT_VPL_LIGHT, TYN_USE_SAMPLED},
-};
-
-static const tyn_binding ordinates_bindings[] = {
-    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},    {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
-    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},     {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},
-    TYN_COLUMNS(TYN_BUNDLE_BIND, MERGE),     {MERGE_PORT_TMS, TYN_USE_SAMPLED},
-    {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},
-};
-
-static const tyn_binding radials_bindings[] = {
-    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},        {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
-    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},         {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},
-    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, MERGE), {MERGE_PORT_LUT, TYN_USE_SAMPLED},
-    {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},     TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, MERGE),
-};
-
-static const tyn_binding ghosts_bindings[] = {
-    {MERGE_PORT_FIELD, TYN_USE_STORAGE_READ},
-    {MERGE_PORT_COUNTERS, TYN_USE_STORAGE_RW},
-    {MERGE_PORT_INSCATTER, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_CELLS] = TYN_KERNEL(merge_cells, sizeof(struct merge_args), 8, 4, 2, cells_bindings, 0),
-    [KERNEL_ORDINATES] =
-        TYN_KERNEL(merge_ordinates, sizeof(struct merge_args), 8, 4, 2, ordinates_bindings, 3),
-    [KERNEL_RADIALS] =
-        TYN_KERNEL(merge_radials, sizeof(struct merge_args), 8, 4, 2, radials_bindings, 4),
-    [KERNEL_ONE] = TYN_KERNEL(merge_one, sizeof(struct merge_args), 8, 4, 2, ghosts_bindings, 0),
-    [KERNEL_THREE] =
-        TYN_KERNEL(merge_three, sizeof(struct merge_args), 8, 4, 2, ghosts_bindings, 0),
+    [KERNEL_CELLS] = TYN_KERNEL(merge_cells),     [KERNEL_ORDINATES] = TYN_KERNEL(merge_ordinates),
+    [KERNEL_RADIALS] = TYN_KERNEL(merge_radials), [KERNEL_ONE] = TYN_KERNEL(merge_one),
+    [KERNEL_THREE] = TYN_KERNEL(merge_three),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

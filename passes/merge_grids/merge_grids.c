@@ -27,20 +27,8 @@ static const tyn_port ports[MERGE_GRIDS_NUM_PORTS] = {
                       .meaning = "light to the eye per unit of sigma_s, W/(m^2 sr); mean sigma_s"},
 };
 
-static const tyn_binding sum_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, MERGE_GRIDS),
-    {PORT(PLACES), TYN_USE_UNIFORM},
-    {PORT(SEEN), TYN_USE_SAMPLED},
-    {PORT(RESIDUUM), TYN_USE_SAMPLED},
-    {PORT(MERGED), TYN_USE_STORAGE_WRITE},
-    {PORT(LAMP_PLACES), TYN_USE_STORAGE_READ},
-    {PORT(LAMP_SEEN), TYN_USE_SAMPLED},
-    {PORT(VPL_PLACES), TYN_USE_STORAGE_READ},
-    {PORT(VPL_SEEN), TYN_USE_SAMPLED},
-};
-
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(merge_grids_sum, sizeof(struct merge_grids_args), 4, 4, 4, sum_bindings, 1),
+    TYN_KERNEL(merge_grids_sum),
 };
 
 static const tyn_param params[] = {

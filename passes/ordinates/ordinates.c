@@ -27,44 +27,14 @@ static const tyn_port ports[ORDINATES_NUM_PORTS] = {
                                "what comes from them before folding"},
 };
 
-static const tyn_binding rows_bindings[] = {
-    {ORDINATES_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {ORDINATES_PORT_SKY, TYN_USE_SAMPLED},
-    {ORDINATES_PORT_IMPORTANCE, TYN_USE_SAMPLED, true},
-    {ORDINATES_PORT_WEIGHTS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding columns_bindings[] = {
-    {ORDINATES_PORT_WEIGHTS, TYN_USE_STORAGE_RW},
-};
-static const tyn_binding partition_bindings[] = {
-    {ORDINATES_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {ORDINATES_PORT_SUMS, TYN_USE_STORAGE_READ},
-    {ORDINATES_PORT_WEIGHTS, TYN_USE_STORAGE_READ},
-    {ORDINATES_PORT_REGIONS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding gather_bindings[] = {
-    {ORDINATES_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {ORDINATES_PORT_SUMS, TYN_USE_STORAGE_READ},
-    {ORDINATES_PORT_REGIONS, TYN_USE_STORAGE_READ},
-    {ORDINATES_PORT_PIECES, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding fold_bindings[] = {
-    {ORDINATES_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {ORDINATES_PORT_PIECES, TYN_USE_STORAGE_READ},
-    {ORDINATES_PORT_ORDINATES, TYN_USE_STORAGE_WRITE},
-};
-
 enum { KERNEL_ROWS, KERNEL_COLUMNS, KERNEL_PARTITION, KERNEL_GATHER, KERNEL_FOLD, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_ROWS] = TYN_KERNEL(ordinates_rows, 0, SKY_SUMS_WIDTH, 1, 1, rows_bindings, 0),
-    [KERNEL_COLUMNS] = TYN_KERNEL(ordinates_columns, 0, 64, 1, 1, columns_bindings, 0),
-    [KERNEL_PARTITION] = TYN_KERNEL(ordinates_partition, sizeof(struct ordinates_args),
-                                    TYN_ORDINATES_MAX, 1, 1, partition_bindings, 0),
-    [KERNEL_GATHER] =
-        TYN_KERNEL(ordinates_gather, sizeof(struct ordinates_args), 64, 1, 1, gather_bindings, 0),
-    [KERNEL_FOLD] = TYN_KERNEL(ordinates_fold, sizeof(struct ordinates_args), TYN_ORDINATES_MAX, 1,
-                               1, fold_bindings, 0),
+    [KERNEL_ROWS] = TYN_KERNEL(ordinates_rows),
+    [KERNEL_COLUMNS] = TYN_KERNEL(ordinates_columns),
+    [KERNEL_PARTITION] = TYN_KERNEL(ordinates_partition),
+    [KERNEL_GATHER] = TYN_KERNEL(ordinates_gather),
+    [KERNEL_FOLD] = TYN_KERNEL(ordinates_fold),
 };
 
 static const tyn_param params_table[] = {

@@ -7,7 +7,9 @@
 #define RGBA VK_FORMAT_R32G32B32A32_SFLOAT
 
 static const tyn_port ports[PATH_NUM_PORTS] = {
-    PATH_SCENE_PORT_ROWS,
+    TYN_PATH_SCENE(TYN_BUNDLE_IN, PATH),
+    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, PATH),
+    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, PATH),
     {"camera", TYN_IN, TYN_BUFFER, 0, false, "rays of the pixels"},
     {"mean", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "running mean radiance, W/(m^2 sr)"},
     {"low", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "what single precision loses of the mean"},
@@ -25,33 +27,9 @@ static const tyn_port ports[PATH_NUM_PORTS] = {
     {"layers", TYN_SCRATCH, TYN_BUFFER, 0, false, "layers of each thread"},
 };
 
-static const tyn_binding trace_bindings[] = {
-    PATH_SCENE_BINDING_ROWS,
-    {PATH_PORT_CAMERA, TYN_USE_UNIFORM, false},
-    {PATH_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
-    {PATH_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_LAYERS, TYN_USE_STORAGE_WRITE, false},
-};
-
-static const tyn_binding resolve_bindings[] = {
-    {PATH_PORT_PARTIALS, TYN_USE_STORAGE_READ, false},
-    {PATH_PORT_LAYERS, TYN_USE_STORAGE_READ, false},
-    {PATH_PORT_MEAN, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_LOW, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_DEVIATION, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_MEAN_SINGLE, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_MEAN_MULTIPLE, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_MEAN_TRANSMITTANCE, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_RADIANCE, TYN_USE_STORAGE_WRITE, false},
-    {PATH_PORT_ERROR, TYN_USE_STORAGE_WRITE, false},
-    {PATH_PORT_SINGLE, TYN_USE_STORAGE_WRITE, false},
-    {PATH_PORT_MULTIPLE, TYN_USE_STORAGE_WRITE, false},
-    {PATH_PORT_TRANSMITTANCE, TYN_USE_STORAGE_WRITE, false},
-};
-
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(path_trace, sizeof(struct path_args), 64, 1, 1, trace_bindings, TYN_PATH_NUM_SPEC),
-    TYN_KERNEL(path_resolve, sizeof(struct path_resolve_args), 64, 1, 1, resolve_bindings, 0),
+    TYN_KERNEL(path_trace),
+    TYN_KERNEL(path_resolve),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

@@ -8,7 +8,7 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0, scalar) readonly buffer partial_buffer { path_partial partials[]; };
+layout(set = 0, binding = 0, scalar) readonly buffer partials_buffer { path_partial partials[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer layers_buffer { path_partial_layers layers[]; };
 layout(set = 0, binding = 2, rgba32f) uniform image2D mean_image;
 layout(set = 0, binding = 3, rgba32f) uniform image2D low_image;

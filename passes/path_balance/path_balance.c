@@ -6,7 +6,9 @@
 #include "path_balance_sum.comp.h"
 
 static const tyn_port ports[PATH_BALANCE_NUM_PORTS] = {
-    PATH_SCENE_PORT_ROWS,
+    TYN_PATH_SCENE(TYN_BUNDLE_IN, PATH_BALANCE),
+    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, PATH_BALANCE),
+    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, PATH_BALANCE),
     {"state", TYN_INOUT, TYN_BUFFER, 0, false, "running statistics"},
     {"balance", TYN_OUT, TYN_BUFFER, 0, false, "power entering, emitted, absorbed, escaped, W"},
     {"result", TYN_OUT, TYN_BUFFER, 0, false, "the same in single precision, with standard errors"},
@@ -15,24 +17,9 @@ static const tyn_port ports[PATH_BALANCE_NUM_PORTS] = {
     {"areas", TYN_IN, TYN_BUFFER, 0, true, "alias table of the triangles' areas"},
 };
 
-static const tyn_binding trace_bindings[] = {
-    PATH_SCENE_BINDING_ROWS,
-    {PATH_BALANCE_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
-    {PATH_BALANCE_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
-    {PATH_BALANCE_PORT_AREAS, TYN_USE_STORAGE_READ, false},
-};
-
-static const tyn_binding sum_bindings[] = {
-    {PATH_BALANCE_PORT_PARTIALS, TYN_USE_STORAGE_READ, false},
-    {PATH_BALANCE_PORT_STATE, TYN_USE_STORAGE_RW, false},
-    {PATH_BALANCE_PORT_RESULT, TYN_USE_STORAGE_WRITE, false},
-    {PATH_BALANCE_PORT_BALANCE, TYN_USE_STORAGE_WRITE, false},
-};
-
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(path_balance, sizeof(struct path_args), 64, 1, 1, trace_bindings, TYN_PATH_NUM_SPEC),
-    TYN_KERNEL(path_balance_sum, sizeof(struct path_resolve_args), TYN_PATH_BALANCE_VALUES, 1, 1,
-               sum_bindings, 0),
+    TYN_KERNEL(path_balance),
+    TYN_KERNEL(path_balance_sum),
 };
 
 uint64_t tyn_path_balance_state_size(void)

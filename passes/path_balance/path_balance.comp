@@ -14,7 +14,7 @@
 const bool PROBE = true;
 #include "shaders/path/path_resources.glsl"
 
-layout(set = 0, binding = 16, scalar) writeonly buffer partial_buffer { path_balance_partial partials[]; };
+layout(set = 0, binding = 16, scalar) writeonly buffer partials_buffer { path_balance_partial partials[]; };
 layout(set = 0, binding = 17, scalar) buffer counters_buffer { counters_block counters; };
 layout(set = 0, binding = 18, scalar) readonly buffer areas_buffer {
     surface_table areas;

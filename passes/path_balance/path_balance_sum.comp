@@ -9,7 +9,7 @@
 
 layout(local_size_x = TYN_PATH_BALANCE_VALUES) in;
 
-layout(set = 0, binding = 0, scalar) readonly buffer partial_buffer { path_balance_partial partials[]; };
+layout(set = 0, binding = 0, scalar) readonly buffer partials_buffer { path_balance_partial partials[]; };
 layout(set = 0, binding = 1, scalar) buffer state_buffer { path_balance_state states[]; };
 layout(set = 0, binding = 2, scalar) writeonly buffer result_buffer { path_balance_result result; };
 // tyn_balance: seven triples of doubles, each as two words; a device need not know doubles.

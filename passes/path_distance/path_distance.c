@@ -11,14 +11,7 @@ static const tyn_port ports[PATH_DISTANCE_NUM_PORTS] = {
      "along the ray to the first surface, m; 0: none"},
 };
 
-static const tyn_binding bindings[] = {
-    {PATH_DISTANCE_PORT_CAMERA, TYN_USE_UNIFORM, false},
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, PATH_DISTANCE),
-    {PATH_DISTANCE_PORT_RADIANCE, TYN_USE_STORAGE_WRITE, false},
-    {PATH_DISTANCE_PORT_DISTANCES, TYN_USE_STORAGE_WRITE, false},
-};
-
-static const tyn_kernel kernel = TYN_KERNEL(path_distance, 0, 8, 8, 1, bindings, 0);
+static const tyn_kernel kernel = TYN_KERNEL(path_distance);
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {

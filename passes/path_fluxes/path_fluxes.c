@@ -6,29 +6,18 @@
 #include "path_fluxes_sum.comp.h"
 
 static const tyn_port ports[PATH_FLUXES_NUM_PORTS] = {
-    PATH_SCENE_PORT_ROWS,
+    TYN_PATH_SCENE(TYN_BUNDLE_IN, PATH_FLUXES),
+    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, PATH_FLUXES),
+    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, PATH_FLUXES),
     {"state", TYN_INOUT, TYN_BUFFER, 0, false, "running statistics"},
     {"fluxes", TYN_OUT, TYN_BUFFER, 0, false, "power, and standard errors, W"},
     {"counters", TYN_OUT, TYN_BUFFER, 0, false, "collisions, cut paths, non-finite paths"},
     {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "mean of each thread's paths"},
 };
 
-static const tyn_binding trace_bindings[] = {
-    PATH_SCENE_BINDING_ROWS,
-    {PATH_FLUXES_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
-    {PATH_FLUXES_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
-};
-
-static const tyn_binding sum_bindings[] = {
-    {PATH_FLUXES_PORT_PARTIALS, TYN_USE_STORAGE_READ, false},
-    {PATH_FLUXES_PORT_STATE, TYN_USE_STORAGE_RW, false},
-    {PATH_FLUXES_PORT_FLUXES, TYN_USE_STORAGE_WRITE, false},
-};
-
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(path_fluxes, sizeof(struct path_args), 64, 1, 1, trace_bindings, TYN_PATH_NUM_SPEC),
-    TYN_KERNEL(path_fluxes_sum, sizeof(struct path_fluxes_sum_args), TYN_PATH_FLUX_LANES, 1, 1,
-               sum_bindings, 0),
+    TYN_KERNEL(path_fluxes),
+    TYN_KERNEL(path_fluxes_sum),
 };
 
 uint64_t tyn_path_fluxes_state_size(void)

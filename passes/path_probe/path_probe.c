@@ -7,7 +7,9 @@
 enum { PROBE_STATE_BYTES = 3 * TYN_PATH_PROBE_VALUES * 4 };
 
 static const tyn_port ports[PATH_PROBE_NUM_PORTS] = {
-    PATH_SCENE_PORT_ROWS,
+    TYN_PATH_SCENE(TYN_BUNDLE_IN, PATH_PROBE),
+    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, PATH_PROBE),
+    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, PATH_PROBE),
     {"points", TYN_IN, TYN_BUFFER, 0, false, "points in M, m"},
     {"state", TYN_INOUT, TYN_BUFFER, 0, false, "running statistics of each point"},
     {"results", TYN_OUT, TYN_BUFFER, 0, false, "fluence and net flux with standard errors, W/m^2"},
@@ -15,22 +17,9 @@ static const tyn_port ports[PATH_PROBE_NUM_PORTS] = {
     {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "statistics of each thread"},
 };
 
-static const tyn_binding bindings[] = {
-    PATH_SCENE_BINDING_ROWS,
-    {PATH_PROBE_PORT_POINTS, TYN_USE_STORAGE_READ, false},
-    {PATH_PROBE_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
-    {PATH_PROBE_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
-};
-
-static const tyn_binding resolve_bindings[] = {
-    {PATH_PROBE_PORT_PARTIALS, TYN_USE_STORAGE_READ, false},
-    {PATH_PROBE_PORT_STATE, TYN_USE_STORAGE_RW, false},
-    {PATH_PROBE_PORT_RESULTS, TYN_USE_STORAGE_WRITE, false},
-};
-
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(path_probe, sizeof(struct path_args), 64, 1, 1, bindings, TYN_PATH_NUM_SPEC),
-    TYN_KERNEL(path_probe_resolve, sizeof(struct path_resolve_args), 64, 1, 1, resolve_bindings, 0),
+    TYN_KERNEL(path_probe),
+    TYN_KERNEL(path_probe_resolve),
 };
 
 uint64_t tyn_path_probe_state_size(uint32_t num_points)

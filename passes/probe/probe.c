@@ -22,18 +22,8 @@ static const tyn_port ports[PROBE_NUM_PORTS] = {
     [PROBE_PORT_RESULTS] = {"results", TYN_OUT, TYN_BUFFER, 0, false, "tyn_probe_result[], W/m^2"},
 };
 
-static const tyn_binding bindings[] = {
-    {PROBE_PORT_MEDIUM, TYN_USE_UNIFORM},        {PROBE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
-    {PROBE_PORT_MOMENTS, TYN_USE_SAMPLED},       TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, PROBE),
-    {PROBE_PORT_POINTS, TYN_USE_STORAGE_READ},   {PROBE_PORT_RESULTS, TYN_USE_STORAGE_WRITE},
-    {PROBE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},   TYN_COLUMNS(TYN_BUNDLE_BIND, PROBE),
-    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, PROBE),   TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, PROBE),
-    TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, PROBE), {PROBE_PORT_CELLS, TYN_USE_SAMPLED},
-    {PROBE_PORT_VPL_DISTANCES, TYN_USE_SAMPLED}, {PROBE_PORT_ROOMS, TYN_USE_TEXELS_UINT},
-};
-
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(probe, sizeof(struct probe_args), 64, 1, 1, bindings, 5),
+    TYN_KERNEL(probe),
 };
 
 static uint32_t num_points(tyn_extent bytes)

@@ -32,44 +32,11 @@ static const tyn_port ports[PROPAGATE_RADIAL_NUM_PORTS] = {
 
 enum { SETUP, CELLS, START, STEP, COLLECT, NUM_KERNELS };
 
-static const tyn_binding setup_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},       {PORT(LAMPS), TYN_USE_STORAGE_READ},
-    {PORT(VPLS), TYN_USE_STORAGE_READ},    {PORT(GRIDS), TYN_USE_STORAGE_WRITE},
-    {PORT(PLACES), TYN_USE_STORAGE_WRITE}, {PORT(MAP), TYN_USE_STORAGE_RW},
-};
-static const tyn_binding cells_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RADIAL),
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},
-    {PORT(CAMERA), TYN_USE_UNIFORM},
-    {PORT(MAP), TYN_USE_STORAGE_READ},
-    {PORT(CELLS), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding start_bindings[] = {
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},        {PORT(MAP), TYN_USE_STORAGE_READ},
-    {PORT(CELLS), TYN_USE_STORAGE_RW},          {PORT(STATE), TYN_USE_STORAGE_WRITE},
-    {PORT(STATE_OTHER), TYN_USE_STORAGE_WRITE}, {PORT(SUM), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding step_bindings[] = {
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},  {PORT(MAP), TYN_USE_STORAGE_READ},
-    {PORT(CELLS), TYN_USE_STORAGE_READ},  {PORT(STATE_OTHER), TYN_USE_STORAGE_READ},
-    {PORT(STATE), TYN_USE_STORAGE_WRITE}, {PORT(SUM), TYN_USE_STORAGE_RW},
-};
-static const tyn_binding collect_bindings[] = {
-    {PORT(CELLS), TYN_USE_STORAGE_READ},
-    {PORT(SUM), TYN_USE_STORAGE_READ},
-    {PORT(SEEN), TYN_USE_STORAGE_WRITE},
-};
-
 #define EDGE PROPAGATE_RADIAL_GROUP
-#define KERNEL(step, x, y, z, specs)                                                               \
-    TYN_KERNEL(propagate_radial_##step, sizeof(struct propagate_radial_args), x, y, z,             \
-               step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = KERNEL(setup, PROPAGATE_RADIAL_LANES, 1, 1, 0),
-    [CELLS] = KERNEL(cells, EDGE, EDGE, EDGE, 1),
-    [START] = KERNEL(start, 8, 8, 1, 0),
-    [STEP] = KERNEL(step, EDGE, EDGE, EDGE, 0),
-    [COLLECT] = KERNEL(collect, EDGE, EDGE, EDGE, 0),
+    [SETUP] = TYN_KERNEL(propagate_radial_setup),     [CELLS] = TYN_KERNEL(propagate_radial_cells),
+    [START] = TYN_KERNEL(propagate_radial_start),     [STEP] = TYN_KERNEL(propagate_radial_step),
+    [COLLECT] = TYN_KERNEL(propagate_radial_collect),
 };
 
 #define FIELD(name) offsetof(tyn_propagate_radial_params, name)

@@ -53,62 +53,17 @@ enum {
     NUM_KERNELS
 };
 
-static const tyn_binding setup_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},
-    {PORT(ORDINATES), TYN_USE_STORAGE_READ},
-    {PORT(GRIDS), TYN_USE_STORAGE_WRITE},
-    {PORT(PLACES), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding shrink_density_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RECT),
-    {PORT(SMALL), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding shrink_coefficients_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RECT),
-    {PORT(SMALL), TYN_USE_STORAGE_WRITE},
-    {PORT(SMALL_SIGMA_A), TYN_USE_STORAGE_WRITE},
-    {PORT(SMALL_G), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding cells_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RECT),
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},
-    {PORT(CAMERA), TYN_USE_UNIFORM},
-    {PORT(CELLS), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding start_bindings[] = {
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},  {PORT(CELLS), TYN_USE_STORAGE_READ},
-    {PORT(STATE), TYN_USE_STORAGE_WRITE}, {PORT(STATE_OTHER), TYN_USE_STORAGE_WRITE},
-    {PORT(SUM), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding step_bindings[] = {
-    {PORT(CELLS), TYN_USE_STORAGE_READ},
-    {PORT(STATE_OTHER), TYN_USE_STORAGE_READ},
-    {PORT(STATE), TYN_USE_STORAGE_WRITE},
-    {PORT(SUM), TYN_USE_STORAGE_RW},
-};
-static const tyn_binding collect_bindings[] = {
-    {PORT(SUM), TYN_USE_STORAGE_READ},
-    {PORT(SEEN), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding light_bindings[] = {
-    {PORT(CELLS), TYN_USE_STORAGE_READ},
-    {PORT(STATE), TYN_USE_STORAGE_READ},
-    {PORT(LIGHT), TYN_USE_STORAGE_WRITE},
-};
-
 #define EDGE PROPAGATE_RECT_GROUP
-#define KERNEL(step, x, y, z, specs, size)                                                         \
-    TYN_KERNEL(propagate_rect_##step, size, x, y, z, step##_bindings, specs)
 #define ARGS sizeof(struct propagate_rect_args)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = KERNEL(setup, 64, 1, 1, 0, ARGS),
-    [SHRINK_DENSITY] = KERNEL(shrink_density, EDGE, EDGE, EDGE, 1, 0),
-    [SHRINK_COEFFICIENTS] = KERNEL(shrink_coefficients, EDGE, EDGE, EDGE, 1, 0),
-    [CELLS] = KERNEL(cells, EDGE, EDGE, EDGE, 1, ARGS),
-    [START] = KERNEL(start, 8, 8, 1, 1, ARGS),
-    [STEP] = KERNEL(step, EDGE, EDGE, EDGE, 0, ARGS),
-    [COLLECT] = KERNEL(collect, EDGE, EDGE, EDGE, 0, ARGS),
-    [LIGHT] = KERNEL(light, EDGE, EDGE, EDGE, 0, ARGS),
+    [SETUP] = TYN_KERNEL(propagate_rect_setup),
+    [SHRINK_DENSITY] = TYN_KERNEL(propagate_rect_shrink_density),
+    [SHRINK_COEFFICIENTS] = TYN_KERNEL(propagate_rect_shrink_coefficients),
+    [CELLS] = TYN_KERNEL(propagate_rect_cells),
+    [START] = TYN_KERNEL(propagate_rect_start),
+    [STEP] = TYN_KERNEL(propagate_rect_step),
+    [COLLECT] = TYN_KERNEL(propagate_rect_collect),
+    [LIGHT] = TYN_KERNEL(propagate_rect_light),
 };
 
 #define FIELD(name) offsetof(tyn_propagate_rect_params, name)

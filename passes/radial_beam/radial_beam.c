@@ -31,32 +31,10 @@ static const tyn_port ports[RADIAL_BEAM_NUM_PORTS] = {
 
 enum { KERNEL_SETUP, KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
 
-static const tyn_binding setup_bindings[] = {
-    {RADIAL_BEAM_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {RADIAL_BEAM_PORT_LAMPS, TYN_USE_STORAGE_READ},
-    {RADIAL_BEAM_PORT_VPLS, TYN_USE_STORAGE_READ},
-    {RADIAL_BEAM_PORT_RADIALS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding density_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, RADIAL_BEAM),
-    {RADIAL_BEAM_PORT_RADIALS, TYN_USE_STORAGE_READ},
-    {RADIAL_BEAM_PORT_RADIAL_COLUMN, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding coefficients_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, RADIAL_BEAM),
-    {RADIAL_BEAM_PORT_RADIALS, TYN_USE_STORAGE_READ},
-    {RADIAL_BEAM_PORT_RADIAL_COLUMN, TYN_USE_STORAGE_WRITE},
-    {RADIAL_BEAM_PORT_RADIAL_TAU_A, TYN_USE_STORAGE_WRITE},
-    {RADIAL_BEAM_PORT_RADIAL_TAU_P, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SETUP] =
-        TYN_KERNEL(radial_beam_setup, sizeof(struct radial_beam_args), 64, 1, 1, setup_bindings, 0),
-    [KERNEL_DENSITY] = TYN_KERNEL(radial_beam_density, sizeof(struct radial_beam_args),
-                                  RADIAL_GROUP *RADIAL_GROUP, 1, 1, density_bindings, 1),
-    [KERNEL_COEFFICIENTS] = TYN_KERNEL(radial_beam_coefficients, sizeof(struct radial_beam_args),
-                                       RADIAL_GROUP *RADIAL_GROUP, 1, 1, coefficients_bindings, 1),
+    [KERNEL_SETUP] = TYN_KERNEL(radial_beam_setup),
+    [KERNEL_DENSITY] = TYN_KERNEL(radial_beam_density),
+    [KERNEL_COEFFICIENTS] = TYN_KERNEL(radial_beam_coefficients),
 };
 
 static const tyn_param params_table[] = {

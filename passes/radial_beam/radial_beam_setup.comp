@@ -15,15 +15,15 @@ layout(binding = 0, scalar) uniform medium_uniform
 {
     medium_block medium;
 };
-layout(binding = 1, scalar) readonly buffer lamp_buffer
+layout(binding = 1, scalar) readonly buffer lamps_buffer
 {
     radial_light lamps[];
 };
-layout(binding = 2, scalar) readonly buffer vpl_buffer
+layout(binding = 2, scalar) readonly buffer vpls_buffer
 {
     radial_vpls vpls;
 };
-layout(binding = 3, scalar) writeonly buffer radial_buffer
+layout(binding = 3, scalar) writeonly buffer radials_buffer
 {
     uint count, num_lamps;
     uvec2 pad;

@@ -58,57 +58,9 @@ static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
                             "2x2 pixels that have rays of their own"},
 };
 
-// The order of raymarch_bindings.glsl.
-static const tyn_binding bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, RAYMARCH),
-    TYN_BEAMS(TYN_BUNDLE_BIND, RAYMARCH),
-    {RAYMARCH_PORT_LUT, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_LUT_BLOCK, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_DISTANCE, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_INSCATTER, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_SHAPES, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_LIGHTS, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_CAMERA, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_ENVIRONMENT, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_ENV_MAP, TYN_USE_SAMPLED, true},
-    {RAYMARCH_PORT_HOST_DEPTH, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_RADIANCE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_TRANSMITTANCE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_DEPTH, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_SINGLE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_MULTIPLE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
-    {RAYMARCH_PORT_GLOW, TYN_USE_SAMPLED, true},
-    {RAYMARCH_PORT_SURFACE, TYN_USE_STORAGE_READ, false},
-    {RAYMARCH_PORT_DISTANCES, TYN_USE_SAMPLED, false},
-    TYN_WALLS(TYN_BUNDLE_BIND, RAYMARCH),
-    {RAYMARCH_PORT_ROOMS, TYN_USE_TEXELS_UINT, false},
-    // No eighth uniform buffer: where a branch depends on one, the compiler of lavapipe 22.3 writes beyond
-    // its memory (its table of inlinable uniforms).
-    TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, RAYMARCH),
-    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, RAYMARCH),
-    {RAYMARCH_PORT_LIGHT_CELLS, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_SPARSE, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_SPARSE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_REST, TYN_USE_STORAGE_RW, false},
-};
-// The order of raymarch_background.comp.
-static const tyn_binding background_bindings[] = {
-    {RAYMARCH_PORT_CAMERA, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_ENVIRONMENT, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_ENV_MAP, TYN_USE_SAMPLED, true},
-    {RAYMARCH_PORT_HOST_DEPTH, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_RADIANCE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_TRANSMITTANCE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_DEPTH, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_SINGLE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_MULTIPLE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_SURFACE, TYN_USE_STORAGE_READ, false},
-    {RAYMARCH_PORT_DISTANCES, TYN_USE_SAMPLED, false},
-};
 enum {
-    NUM_BACKGROUND_BINDINGS = sizeof(background_bindings) / sizeof(background_bindings[0]),
-    NUM_BINDINGS = sizeof(bindings) / sizeof(bindings[0]),
+    NUM_BACKGROUND_BINDINGS = TYN_COUNT(raymarch_background_bindings),
+    NUM_BINDINGS = TYN_COUNT(raymarch_grey_bindings),
     SPARSE_TEXTURE = NUM_BINDINGS - 3, // of bindings
     SPARSE_IMAGE,
     NUM_SPEC =
@@ -131,12 +83,9 @@ _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNE
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_GREY] =
-        TYN_KERNEL(raymarch_grey, sizeof(struct raymarch_args), 8, 8, 1, bindings, NUM_SPEC),
-    [KERNEL_COLOUR] =
-        TYN_KERNEL(raymarch_colour, sizeof(struct raymarch_args), 8, 8, 1, bindings, NUM_SPEC),
-    [KERNEL_BACKGROUND] = TYN_KERNEL(raymarch_background, sizeof(struct raymarch_args), 8, 8, 1,
-                                     background_bindings, NUM_SPEC - 4),
+    [KERNEL_GREY] = TYN_KERNEL(raymarch_grey),
+    [KERNEL_COLOUR] = TYN_KERNEL(raymarch_colour),
+    [KERNEL_BACKGROUND] = TYN_KERNEL(raymarch_background),
 };
 
 static const tyn_param params_table[] = {
@@ -345,8 +294,8 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_fill(r, RAYMARCH_PORT_COUNTERS, 0);
     // What lies outside the window first, as the window's edges are not on workgroups.
     uint8_t background_ports[NUM_BACKGROUND_BINDINGS], ports_of[NUM_BINDINGS];
-    bind(p, background_bindings, NUM_BACKGROUND_BINDINGS, background_ports);
-    bind(p, bindings, NUM_BINDINGS, ports_of);
+    bind(p, raymarch_background_bindings, NUM_BACKGROUND_BINDINGS, background_ports);
+    bind(p, raymarch_grey_bindings, NUM_BINDINGS, ports_of);
     const uint32_t kernel = p->grey ? KERNEL_GREY : KERNEL_COLOUR;
     tyn_rec_dispatch(r, &(tyn_dispatch){
                             .kernel = KERNEL_BACKGROUND,

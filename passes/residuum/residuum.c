@@ -36,28 +36,10 @@ static const tyn_port ports[RESIDUUM_NUM_PORTS] = {
 
 enum { START, STEP, COLLECT, NUM_KERNELS };
 
-static const tyn_binding start_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, RESIDUUM), {PORT(PLACES), TYN_USE_UNIFORM},
-    {PORT(LIGHT), TYN_USE_SAMPLED},        {PORT(STATE), TYN_USE_STORAGE_WRITE},
-    {PORT(KEPT), TYN_USE_STORAGE_WRITE},   {PORT(SUM), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding step_bindings[] = {
-    {PORT(STATE_OTHER), TYN_USE_STORAGE_READ},
-    {PORT(STATE), TYN_USE_STORAGE_WRITE},
-    {PORT(KEPT), TYN_USE_STORAGE_READ},
-    {PORT(SUM), TYN_USE_STORAGE_RW},
-};
-static const tyn_binding collect_bindings[] = {
-    {PORT(SUM), TYN_USE_STORAGE_READ},
-    {PORT(RESIDUUM), TYN_USE_STORAGE_WRITE},
-};
-
-#define KERNEL(step, specs)                                                                        \
-    TYN_KERNEL(residuum_##step, sizeof(struct residuum_args), 4, 4, 4, step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [START] = KERNEL(start, 1),
-    [STEP] = KERNEL(step, 0),
-    [COLLECT] = KERNEL(collect, 0),
+    [START] = TYN_KERNEL(residuum_start),
+    [STEP] = TYN_KERNEL(residuum_step),
+    [COLLECT] = TYN_KERNEL(residuum_collect),
 };
 
 #define FIELD(name) offsetof(tyn_residuum_params, name)

@@ -10,11 +10,11 @@ typedef struct tyn_rooms_params {
 } tyn_rooms_params;
 
 enum {
-    ROOMS_PORT_LINKS,     // IN buffer, of walls
-    ROOMS_PORT_VPLS,      // IN buffer struct radial_vpls
-    ROOMS_PORT_DISTANCES, // IN 2D, vpl_visibility.glsl
-    ROOMS_PORT_ROOMS,     // OUT buffer, rooms.h
-    ROOMS_PORT_FOREST,    // SCRATCH
+    ROOMS_PORT_WALL_LINKS,    // IN buffer, of walls
+    ROOMS_PORT_VPLS,          // IN buffer struct radial_vpls
+    ROOMS_PORT_VPL_DISTANCES, // IN 2D, vpl_visibility.glsl
+    ROOMS_PORT_ROOMS,         // OUT buffer, rooms.h
+    ROOMS_PORT_FOREST,        // SCRATCH
     ROOMS_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_rooms;

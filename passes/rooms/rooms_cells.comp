@@ -12,11 +12,11 @@ layout(push_constant, scalar) uniform push
 {
     rooms_args args;
 };
-layout(binding = 1, scalar) writeonly buffer room_buffer
+layout(binding = 1, scalar) writeonly buffer rooms_buffer
 {
     uint rooms[];
 };
-layout(binding = 2, scalar) readonly buffer vpl_buffer
+layout(binding = 2, scalar) readonly buffer vpls_buffer
 {
     uint vpl_count;
     uvec3 vpl_pad;

@@ -13,7 +13,7 @@ layout(push_constant, scalar) uniform push
 {
     rooms_args args;
 };
-layout(binding = 1, scalar) readonly buffer link_buffer
+layout(binding = 1, scalar) readonly buffer wall_links_buffer
 {
     uint links[];
 };

@@ -32,22 +32,9 @@ static const tyn_port ports[SCATTER_LUT_NUM_PORTS] = {
 
 enum { KERNEL_SUM, KERNEL_TMS, NUM_KERNELS };
 
-static const tyn_binding sum_bindings[] = {
-    {SCATTER_LUT_PORT_LUT_BLOCK, TYN_USE_STORAGE_READ},
-    {SCATTER_LUT_PORT_MOMENTS, TYN_USE_STORAGE_READ},
-    {SCATTER_LUT_PORT_LUT, TYN_USE_STORAGE_WRITE},
-};
-
-static const tyn_binding tms_bindings[] = {
-    {SCATTER_LUT_PORT_LUT_BLOCK, TYN_USE_STORAGE_READ},
-    {SCATTER_LUT_PORT_MOMENTS, TYN_USE_STORAGE_READ},
-    {SCATTER_LUT_PORT_CONES, TYN_USE_STORAGE_READ},
-    {SCATTER_LUT_PORT_TMS, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SUM] = TYN_KERNEL(scatter_lut_sum, 0, TYN_LUT_ANGLES / 4, 1, 1, sum_bindings, 0),
-    [KERNEL_TMS] = TYN_KERNEL(scatter_lut_tms, 0, TYN_TMS_ANGLES / 4, 1, 1, tms_bindings, 0),
+    [KERNEL_SUM] = TYN_KERNEL(scatter_lut_sum),
+    [KERNEL_TMS] = TYN_KERNEL(scatter_lut_tms),
 };
 
 // ---- rows -----------------------------------------------------------------------------------------

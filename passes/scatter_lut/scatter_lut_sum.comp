@@ -7,7 +7,7 @@
 
 const uint THREADS = TYN_LUT_ANGLES / 4, CHUNK = TYN_LUT_ANGLES;
 layout(local_size_x = TYN_LUT_ANGLES / 4) in; // x: four angles, y: depth of a set, z: row
-layout(set = 0, binding = 0, scalar) readonly buffer lut_buffer
+layout(set = 0, binding = 0, scalar) readonly buffer lut_block_buffer
 {
     lut_block lut;
 };

@@ -7,7 +7,7 @@
 
 const uint THREADS = TYN_TMS_ANGLES / 4, CHUNK = 2u * THREADS;
 layout(local_size_x = TYN_TMS_ANGLES / 4) in; // x: four angles, y: four depths, z: cone of a row
-layout(set = 0, binding = 0, scalar) readonly buffer lut_buffer
+layout(set = 0, binding = 0, scalar) readonly buffer lut_block_buffer
 {
     lut_block lut;
 };

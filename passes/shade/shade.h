@@ -54,13 +54,13 @@ enum {
     TYN_MATERIALS(TYN_BUNDLE_ENUM, SHADE), // IN
     // OUT 2D RG32UI, packed_colour.glsl, as large as "distances": radiance to the camera, W/(m^2
     // sr).
-    SHADE_PORT_RADIANCE,
+    SHADE_PORT_SURFACE_RADIANCE,
     // SCRATCH 3D RGBA32F, shade_forward.comp: exists with a lattice, suns and shadows.
     SHADE_PORT_FORWARD,
     SHADE_PORT_FACES, // SCRATCH 2D RGBA32F, shade_faces.h
     SHADE_PORT_SIGHT, // SCRATCH 3D RGBA32F, the same
     SHADE_PORT_PART,  // SCRATCH 2D RGBA32UI, shade_part.glsl: exist with VPLs
-    SHADE_PORT_ROWS,
+    SHADE_PORT_PART_ROWS,
     SHADE_PORT_ALONE_COUNT, // SCRATCH buffers, shade_alone.glsl
     SHADE_PORT_ALONE,
     SHADE_NUM_PORTS,

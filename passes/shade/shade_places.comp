@@ -11,7 +11,7 @@
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
-layout(binding = SHADE_AT, rgba32ui) uniform writeonly uimage2D indirect_image; // shade_part.glsl
+layout(binding = SHADE_AT, rgba32ui) uniform writeonly uimage2D part_image; // shade_part.glsl
 
 void main()
 {
@@ -35,7 +35,7 @@ void main()
         part[i].irradiance = light[i];
         part[i].near = shade_near(p[i], block[i], nearest[i]);
         if (n + uint(i) < count) {
-            imageStore(indirect_image, block[i], shade_pack(part[i]));
+            imageStore(part_image, block[i], shade_pack(part[i]));
         }
     }
 }

@@ -14,11 +14,6 @@ static const tyn_port ports[SHADOW_MAP_NUM_PORTS] = {
                                  "struct shadow_light[]: where each light's maps are"},
 };
 
-static const tyn_binding bindings[] = {
-    {SHADOW_MAP_PORT_TRIANGLES, TYN_USE_STORAGE_READ, false},
-    {SHADOW_MAP_PORT_VERTICES, TYN_USE_STORAGE_READ, false},
-};
-
 static const tyn_binding attachments[] = {{SHADOW_MAP_PORT_SHADOW_ATLAS, TYN_USE_DEPTH, false}};
 
 static const tyn_raster raster = {
@@ -29,13 +24,7 @@ static const tyn_raster raster = {
 };
 
 static const tyn_kernel kernels[] = {
-    {.name = "shadow_map",
-     .spirv = shadow_map_vertex_spirv,
-     .spirv_size = sizeof(shadow_map_vertex_spirv),
-     .args_size = sizeof(struct shadow_map_args),
-     .bindings = bindings,
-     .num_bindings = 2,
-     .raster = &raster},
+    TYN_DRAW("shadow_map", shadow_map_vertex, shadow_map_vertex, &raster),
 };
 
 static const tyn_param params_table[] = {

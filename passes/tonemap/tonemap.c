@@ -11,13 +11,8 @@ static const tyn_port ports[TONEMAP_NUM_PORTS] = {
                               "sRGB-encoded picture, straight alpha"},
 };
 
-static const tyn_binding bindings[] = {
-    {TONEMAP_PORT_RADIANCE, TYN_USE_SAMPLED, false},
-    {TONEMAP_PORT_DISPLAY, TYN_USE_STORAGE_WRITE, false},
-};
-
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(tonemap_display, sizeof(struct tonemap_args), 8, 8, 1, bindings, 0),
+    TYN_KERNEL(tonemap_display),
 };
 
 static const char *const curve_names[TONEMAP_NUM_CURVES] = {"filmic", "linear"};

@@ -15,14 +15,8 @@ static const tyn_port ports[UPSAMPLE_NUM_PORTS] = {
                          .meaning = "light towards the eye per unit of sigma_s, W/(m^2 sr)"},
 };
 
-static const tyn_binding field_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, UPSAMPLE),
-    {PORT(MERGED), TYN_USE_SAMPLED},
-    {PORT(INSCATTER), TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(upsample_field, sizeof(struct upsample_args), 4, 4, 4, field_bindings, 1),
+    TYN_KERNEL(upsample_field),
 };
 
 static const tyn_param params[] = {

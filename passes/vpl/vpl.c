@@ -41,67 +41,13 @@ static const tyn_port ports[VPL_NUM_PORTS] = {
     [PORT(STRATA)] = {"strata", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_stratum[]"},
 };
 
-#define ELEMENT_BINDINGS                                                                           \
-    {PORT(PLAN), TYN_USE_STORAGE_READ}, TYN_RSM(TYN_BUNDLE_BIND, VPL),                             \
-        TYN_GEOMETRY(TYN_BUNDLE_BIND, VPL), TYN_MATERIALS(TYN_BUNDLE_BIND, VPL)
-
-static const tyn_binding weights_bindings[] = {
-    ELEMENT_BINDINGS,
-    {PORT(WEIGHTS), TYN_USE_STORAGE_WRITE},
-    {PORT(BLOCKS), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding strata_bindings[] = {
-    {PORT(PLAN), TYN_USE_STORAGE_READ},
-    {PORT(BLOCKS), TYN_USE_STORAGE_RW},
-    {PORT(STRATA), TYN_USE_STORAGE_WRITE},
-    {PORT(VPLS), TYN_USE_STORAGE_RW},
-};
-static const tyn_binding lights_bindings[] = {
-    ELEMENT_BINDINGS,
-    TYN_MEDIUM(TYN_BUNDLE_BIND, VPL),
-    {PORT(WEIGHTS), TYN_USE_STORAGE_READ},
-    {PORT(BLOCKS), TYN_USE_STORAGE_READ},
-    {PORT(STRATA), TYN_USE_STORAGE_READ},
-    {PORT(SUNS), TYN_USE_UNIFORM},
-    {PORT(LIGHTS), TYN_USE_UNIFORM},
-    {PORT(VPLS), TYN_USE_STORAGE_RW},
-};
-
-static const tyn_binding distances_bindings[] = {
-    {PORT(SURFACES), TYN_USE_UNIFORM},         {PORT(VERTICES), TYN_USE_TEXELS_VEC4},
-    {PORT(TRIANGLES), TYN_USE_TEXELS_UVEC4},   {PORT(NODES), TYN_USE_TEXELS_UVEC4},
-    {PORT(VPLS), TYN_USE_STORAGE_READ},        {PORT(VPL_DISTANCES), TYN_USE_STORAGE_WRITE},
-    {PORT(VPL_PLANES), TYN_USE_STORAGE_WRITE}, {PORT(BINS), TYN_USE_STORAGE_RW},
-    TYN_MATERIALS(TYN_BUNDLE_BIND, VPL),       TYN_MEDIUM(TYN_BUNDLE_BIND, VPL),
-};
-static const tyn_binding power_bindings[] = {
-    {PORT(VPLS), TYN_USE_STORAGE_READ},
-    {PORT(BINS), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding further_bindings[] = {
-    {PORT(VPLS), TYN_USE_STORAGE_RW},
-    {PORT(BINS), TYN_USE_STORAGE_READ},
-};
-static const tyn_binding bounce_bindings[] = {
-    {PORT(VPLS), TYN_USE_STORAGE_READ},          {PORT(BINS), TYN_USE_STORAGE_READ},
-    {PORT(VPL_DISTANCES), TYN_USE_SAMPLED},      {PORT(VPL_PLANES), TYN_USE_SAMPLED},
-    {PORT(SURFACES), TYN_USE_UNIFORM},           {PORT(BIN_FLUX), TYN_USE_STORAGE_RW},
-    {PORT(BIN_POSITION), TYN_USE_STORAGE_WRITE}, {PORT(BIN_NORMAL), TYN_USE_STORAGE_WRITE},
-};
-
 enum { WEIGHTS = 0, STRATA, LIGHTS, DISTANCES, POWER, BOUNCE, FURTHER, NUM_KERNELS };
 
-#define KERNEL(step, x, y, args, specs)                                                            \
-    TYN_KERNEL(vpl_##step, args, x, y, 1, step##_bindings, specs)
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [WEIGHTS] = KERNEL(weights, VPL_LANES, 1, 0, 0),
-    [STRATA] = KERNEL(strata, VPL_BLOCK, 1, sizeof(struct vpl_args), 0),
-    [LIGHTS] = KERNEL(lights, VPL_LANES, 1, sizeof(struct vpl_args), 1),
-    [DISTANCES] = KERNEL(distances, 8, 8, sizeof(struct vpl_distances_args), 1),
-    [POWER] = KERNEL(power, TYN_RADIAL_VPLS_MAX, 1, 0, 0),
-    [BOUNCE] = KERNEL(bounce, VPL_BLOCK, 1, sizeof(struct vpl_bounce_args), 0),
-    [FURTHER] = KERNEL(further, TYN_RADIAL_VPLS_MAX, 1, 0, 0),
+    [WEIGHTS] = TYN_KERNEL(vpl_weights), [STRATA] = TYN_KERNEL(vpl_strata),
+    [LIGHTS] = TYN_KERNEL(vpl_lights),   [DISTANCES] = TYN_KERNEL(vpl_distances),
+    [POWER] = TYN_KERNEL(vpl_power),     [BOUNCE] = TYN_KERNEL(vpl_bounce),
+    [FURTHER] = TYN_KERNEL(vpl_further),
 };
 
 static const tyn_param params[] = {
@@ -208,16 +154,16 @@ static tyn_result declare(tyn_builder *b, const void *data)
 static void make_lights(tyn_recorder *r, const struct vpl_plan *plan, const struct vpl_args *args,
                         bool of_bins, uint32_t mode)
 {
-    uint8_t weights[sizeof weights_bindings / sizeof *weights_bindings];
-    uint8_t lights[sizeof lights_bindings / sizeof *lights_bindings];
+    uint8_t weights[TYN_COUNT(vpl_weights_bindings)];
+    uint8_t lights[TYN_COUNT(vpl_lights_bindings)];
     for (size_t i = 0; i < sizeof lights; i++) {
-        lights[i] = lights_bindings[i].port;
-        if (of_bins && lights[i] >= PORT(FLUX) && lights[i] <= PORT(NORMAL)) {
-            lights[i] = (uint8_t)(lights[i] - PORT(FLUX) + PORT(BIN_FLUX));
+        lights[i] = vpl_lights_bindings[i].port;
+        if (of_bins && lights[i] >= PORT(RSM_FLUX) && lights[i] <= PORT(RSM_NORMAL)) {
+            lights[i] = (uint8_t)(lights[i] - PORT(RSM_FLUX) + PORT(BIN_FLUX));
         }
     }
     for (size_t i = 0; i < sizeof weights; i++) {
-        weights[i] = i < 4 ? lights[i] : weights_bindings[i].port;
+        weights[i] = i < 4 ? lights[i] : vpl_weights_bindings[i].port;
     }
     tyn_rec_update(r, PORT(PLAN), 0, plan, sizeof *plan);
     tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = WEIGHTS,

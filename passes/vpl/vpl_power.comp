@@ -7,13 +7,13 @@
 
 layout(local_size_x = TYN_RADIAL_VPLS_MAX) in;
 
-layout(binding = 0, scalar) readonly buffer vpl_buffer
+layout(binding = 0, scalar) readonly buffer vpls_buffer
 {
     uint vpl_count;
     uvec3 vpl_pad;
     radial_light vpls[];
 };
-layout(binding = 1, scalar) writeonly buffer bin_buffer
+layout(binding = 1, scalar) writeonly buffer bins_buffer
 {
     vpl_bins bins;
 };

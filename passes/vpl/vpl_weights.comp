@@ -7,11 +7,11 @@
 
 layout(local_size_x = VPL_LANES) in;
 
-layout(binding = 11, scalar) writeonly buffer weight_buffer
+layout(binding = 11, scalar) writeonly buffer weights_buffer
 {
     float weights[]; // of an element and those before it in its block
 };
-layout(binding = 12, scalar) writeonly buffer block_buffer
+layout(binding = 12, scalar) writeonly buffer blocks_buffer
 {
     float blocks[];
 };

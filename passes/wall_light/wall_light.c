@@ -19,9 +19,9 @@ static const tyn_port ports[WALL_LIGHT_NUM_PORTS] = {
     TYN_WALLS(TYN_BUNDLE_IN, WALL_LIGHT),
     [WALL_LIGHT_PORT_HITS] = {"hits", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
     [WALL_LIGHT_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true, "of rooms"},
-    [WALL_LIGHT_PORT_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
-    [WALL_LIGHT_PORT_LIGHT] = {"wall_light", TYN_OUT, TYN_BUFFER, 0, false,
-                               "radiance that the walls of a cell send out, W/(m^2 sr)"},
+    [WALL_LIGHT_PORT_VPL_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
+    [WALL_LIGHT_PORT_WALL_LIGHT] = {"wall_light", TYN_OUT, TYN_BUFFER, 0, false,
+                                    "radiance that the walls of a cell send out, W/(m^2 sr)"},
     [WALL_LIGHT_PORT_LIST] = {"list", TYN_SCRATCH, TYN_BUFFER, 0, false,
                               "struct wall_light_list, uint[]: cells that have walls"},
     [WALL_LIGHT_PORT_ARRIVED] = {"arrived", TYN_SCRATCH, TYN_BUFFER, 0, false,
@@ -33,72 +33,14 @@ static const tyn_port ports[WALL_LIGHT_NUM_PORTS] = {
                                "sums of arrived by room and part of the lattice"},
 };
 
-static const tyn_binding vpls_bindings[] = {
-    {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},    TYN_RADIALS(TYN_BUNDLE_BIND, WALL_LIGHT),
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, WALL_LIGHT),    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, WALL_LIGHT),
-    {WALL_LIGHT_PORT_HITS, TYN_USE_STORAGE_READ}, {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_WRITE},
-    {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_READ}, {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
-};
-
-static const tyn_binding cells_bindings[] = {
-    {WALL_LIGHT_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_RW},
-    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},
-    {WALL_LIGHT_PORT_WALL_LINKS, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_WRITE},
-    {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
-    {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_READ},
-};
-
-static const tyn_binding expected_bindings[] = {
-    {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},    TYN_RADIALS(TYN_BUNDLE_BIND, WALL_LIGHT),
-    {WALL_LIGHT_PORT_DISTANCES, TYN_USE_SAMPLED}, {WALL_LIGHT_PORT_POWER, TYN_USE_STORAGE_WRITE},
-    {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT}, {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_RW},
-};
-
-static const tyn_binding sum_bindings[] = {
-    {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_PARTS, TYN_USE_STORAGE_WRITE},
-    {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
-    {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_READ},
-};
-
-static const tyn_binding scale_bindings[] = {
-    {WALL_LIGHT_PORT_POWER, TYN_USE_STORAGE_RW},
-    {WALL_LIGHT_PORT_PARTS, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_READ},
-};
-
-static const tyn_binding reflect_bindings[] = {
-    {WALL_LIGHT_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_RW},
-    {WALL_LIGHT_PORT_POWER, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
-    {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_READ},
-};
-
-static const tyn_binding suns_bindings[] = {
-    {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},      {WALL_LIGHT_PORT_LIGHTS, TYN_USE_STORAGE_READ},
-    TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, WALL_LIGHT), TYN_GEOMETRY(TYN_BUNDLE_BIND, WALL_LIGHT),
-    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, WALL_LIGHT), {WALL_LIGHT_PORT_HITS, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},
-};
-
 enum { SUNS = 0, VPLS, WALL_CELLS, EXPECTED, SUM, SCALE, REFLECT, NUM_KERNELS };
 _Static_assert(WALL_LIGHT_VPLS == TYN_RADIAL_VPLS_MAX, "of a workgroup each");
 
-#define KERNEL(step, x, y, z, specs)                                                               \
-    TYN_KERNEL(wall_light_##step, sizeof(struct wall_light_args), x, y, z, step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SUNS] = KERNEL(suns, 8, 4, 2, 1),
-    [VPLS] = KERNEL(vpls, WALL_LIGHT_GROUP, 1, 1, 2),
-    [WALL_CELLS] = KERNEL(cells, WALL_LIGHT_GROUP, 1, 1, 3),
-    [EXPECTED] = KERNEL(expected, WALL_LIGHT_GROUP, 1, 1, 2),
-    [SUM] = KERNEL(sum, WALL_LIGHT_SUM_GROUP, 1, 1, 1),
-    [SCALE] = KERNEL(scale, WALL_LIGHT_VPLS, 1, 1, 0),
-    [REFLECT] = KERNEL(reflect, WALL_LIGHT_GROUP, 1, 1, 3),
+    [SUNS] = TYN_KERNEL(wall_light_suns),        [VPLS] = TYN_KERNEL(wall_light_vpls),
+    [WALL_CELLS] = TYN_KERNEL(wall_light_cells), [EXPECTED] = TYN_KERNEL(wall_light_expected),
+    [SUM] = TYN_KERNEL(wall_light_sum),          [SCALE] = TYN_KERNEL(wall_light_scale),
+    [REFLECT] = TYN_KERNEL(wall_light_reflect),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -110,7 +52,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
         return TYN_ERR_PARAMS;
     }
     const uint64_t cells = (uint64_t)p->dims[0] * p->dims[1] * p->dims[2];
-    tyn_build_buffer(b, WALL_LIGHT_PORT_LIGHT, 12 * cells);
+    tyn_build_buffer(b, WALL_LIGHT_PORT_WALL_LIGHT, 12 * cells);
     const bool listed = tyn_build_has(b, WALL_LIGHT_PORT_RADIALS);
     tyn_build_buffer(b, WALL_LIGHT_PORT_LIST,
                      sizeof(struct wall_light_list) + (listed ? 8 * cells : 0));
@@ -134,7 +76,7 @@ static void record_vpls(tyn_recorder *r, const tyn_wall_light_params *p,
                         const struct wall_light_args *args)
 {
     // Without maps (vpl.visibility=0) nothing tells what should arrive.
-    const uint32_t scaled = tyn_rec_extent(r, WALL_LIGHT_PORT_DISTANCES).x > 1;
+    const uint32_t scaled = tyn_rec_extent(r, WALL_LIGHT_PORT_VPL_DISTANCES).x > 1;
     const uint32_t added = p->num_suns > 0, rooms = tyn_rec_has(r, WALL_LIGHT_PORT_ROOMS);
     const uint32_t of_vpls[2] = {p->mode, rooms}, of_cells[3] = {added, scaled, rooms};
     const tyn_extent all = {p->dims[0] * p->dims[1] * p->dims[2], 1, 1};
@@ -205,7 +147,7 @@ const tyn_pass_desc tyn_pass_wall_light = {
     .serves = "walls in media that suns shine on periodically, or virtual point lights without "
               "further reflections",
     TYN_PASS_TABLES(tyn_wall_light_params),
-    .debug_port = WALL_LIGHT_PORT_LIGHT,
+    .debug_port = WALL_LIGHT_PORT_WALL_LIGHT,
     .debug_meaning = "radiance of the walls per cell, W/(m^2 sr)",
     .counters = counters,
 };

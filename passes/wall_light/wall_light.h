@@ -19,14 +19,14 @@ enum {
     TYN_GEOMETRY(TYN_BUNDLE_ENUM, WALL_LIGHT), // IN
     TYN_WALLS(TYN_BUNDLE_ENUM, WALL_LIGHT),    // IN
     WALL_LIGHT_PORT_HITS,
-    WALL_LIGHT_PORT_ROOMS,     // IN optional buffer, of rooms
-    WALL_LIGHT_PORT_DISTANCES, // IN optional 2D, of vpl: power that VPLs send is what walls get
-    WALL_LIGHT_PORT_LIGHT,     // OUT buffer vec3[cell]: LATTICE_PORT_WALL_LIGHT
-    WALL_LIGHT_PORT_LIST,      // SCRATCH buffer, wall_light_args.h: cells that have walls
-    WALL_LIGHT_PORT_ARRIVED,   // SCRATCH buffer vec3[cell]
-    WALL_LIGHT_PORT_POWER,     // OUT buffer struct wall_light_power
-    WALL_LIGHT_PORT_FIRST,     // SCRATCH buffer uint[1 + cells]
-    WALL_LIGHT_PORT_PARTS,     // SCRATCH buffer vec3[]
+    WALL_LIGHT_PORT_ROOMS,         // IN optional buffer, of rooms
+    WALL_LIGHT_PORT_VPL_DISTANCES, // IN optional 2D, of vpl: power that VPLs send is what walls get
+    WALL_LIGHT_PORT_WALL_LIGHT,    // OUT buffer vec3[cell]: LATTICE_PORT_WALL_LIGHT
+    WALL_LIGHT_PORT_LIST,          // SCRATCH buffer, wall_light_args.h: cells that have walls
+    WALL_LIGHT_PORT_ARRIVED,       // SCRATCH buffer vec3[cell]
+    WALL_LIGHT_PORT_POWER,         // OUT buffer struct wall_light_power
+    WALL_LIGHT_PORT_FIRST,         // SCRATCH buffer uint[1 + cells]
+    WALL_LIGHT_PORT_PARTS,         // SCRATCH buffer vec3[]
     WALL_LIGHT_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_wall_light;

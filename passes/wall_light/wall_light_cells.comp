@@ -12,7 +12,7 @@ layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
 };
-layout(binding = 0, scalar) readonly buffer cell_buffer
+layout(binding = 0, scalar) readonly buffer wall_cells_buffer
 {
     wall_cell wall_cells[];
 };
@@ -25,7 +25,7 @@ layout(binding = 2, scalar) writeonly buffer wall_light_buffer
 {
     vec3 wall_light[];
 };
-layout(binding = 3, scalar) readonly buffer link_buffer
+layout(binding = 3, scalar) readonly buffer wall_links_buffer
 {
     uint links[];
 };

@@ -11,7 +11,7 @@ layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
 };
-layout(binding = 0, scalar) readonly buffer cell_buffer
+layout(binding = 0, scalar) readonly buffer wall_cells_buffer
 {
     wall_cell wall_cells[];
 };

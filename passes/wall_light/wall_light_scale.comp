@@ -19,7 +19,7 @@ layout(binding = 0, scalar) buffer power_buffer
 {
     wall_light_power power;
 };
-layout(binding = 1, scalar) readonly buffer part_buffer
+layout(binding = 1, scalar) readonly buffer parts_buffer
 {
     vec3 parts[]; // [room, by its first VPL][part]
 };

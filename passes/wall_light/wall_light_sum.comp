@@ -14,7 +14,7 @@ layout(binding = 0, scalar) readonly buffer arrived_buffer
 {
     vec3 arrived[]; // W/m^2, times the area over dx^2
 };
-layout(binding = 1, scalar) writeonly buffer part_buffer
+layout(binding = 1, scalar) writeonly buffer parts_buffer
 {
     vec3 parts[]; // [room, by its first VPL][part]: 0, but for what is written here
 };

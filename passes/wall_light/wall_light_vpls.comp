@@ -25,7 +25,7 @@ layout(push_constant, scalar) uniform push
 };
 #define GEOMETRY_AT 5
 #include "shaders/surfaces/surfaces.glsl"
-layout(binding = 11, scalar) readonly buffer hit_buffer
+layout(binding = 11, scalar) readonly buffer hits_buffer
 {
     uint hits[];
 };

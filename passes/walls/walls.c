@@ -20,24 +20,9 @@ static const tyn_port ports[WALLS_NUM_PORTS] = {
 
 enum { KERNEL_SCATTER, KERNEL_CELLS, NUM_KERNELS };
 
-static const tyn_binding scatter_bindings[] = {
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, WALLS),
-    {WALLS_PORT_WALL_LINKS, TYN_USE_STORAGE_RW},
-    {WALLS_PORT_HITS, TYN_USE_STORAGE_RW},
-    {WALLS_PORT_NEAREST, TYN_USE_STORAGE_RW},
-};
-
-static const tyn_binding cells_bindings[] = {
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, WALLS),          TYN_MATERIALS(TYN_BUNDLE_BIND, WALLS),
-    {WALLS_PORT_WALL_LINKS, TYN_USE_STORAGE_READ}, {WALLS_PORT_HITS, TYN_USE_STORAGE_READ},
-    {WALLS_PORT_NEAREST, TYN_USE_STORAGE_READ},    {WALLS_PORT_WALL_CELLS, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SCATTER] = TYN_KERNEL(walls_scatter, sizeof(struct walls_pass_args), WALLS_GROUP, 1, 1,
-                                  scatter_bindings, 0),
-    [KERNEL_CELLS] =
-        TYN_KERNEL(walls_cells, sizeof(struct walls_pass_args), 8, 4, 2, cells_bindings, 0),
+    [KERNEL_SCATTER] = TYN_KERNEL(walls_scatter),
+    [KERNEL_CELLS] = TYN_KERNEL(walls_cells),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)

@@ -109,43 +109,38 @@ typedef struct tyn_kernel {
     // and args; local_size is 0.
     const tyn_raster *raster;
 } tyn_kernel;
-// A compute kernel of the shader that is embedded as `code`_spirv, with an array of tyn_binding.
-#define TYN_KERNEL(code, args, x, y, z, table, specs)                                              \
+#define TYN_COUNT(table) (sizeof(table) / sizeof((table)[0]))
+// A compute kernel from the header that the build makes of its shader (tools/kernel.py): words, bindings, size of
+// the push constants, workgroup and number of specialisation constants, all read from its SPIR-V.
+#define TYN_KERNEL(code)                                                                           \
     {                                                                                              \
         .name = #code, .spirv = code##_spirv, .spirv_size = sizeof code##_spirv,                   \
-        .args_size = args, .local_size = {x, y, z}, .bindings = table,                             \
-        .num_bindings = sizeof table / sizeof *table, .num_spec = specs                            \
+        .args_size = code##_args_size, .local_size = {code##_x, code##_y, code##_z},               \
+        .bindings = code##_bindings, .num_bindings = TYN_COUNT(code##_bindings),                   \
+        .num_spec = code##_num_spec                                                                \
+    }
+// One that draws with the vertex shader `code`, which has the tables of the shader `all`: that of its two shaders
+// which declares every binding of both.
+#define TYN_DRAW(title, code, all, state)                                                          \
+    {                                                                                              \
+        .name = title, .spirv = code##_spirv, .spirv_size = sizeof code##_spirv,                   \
+        .args_size = all##_args_size, .bindings = all##_bindings,                                  \
+        .num_bindings = TYN_COUNT(all##_bindings), .num_spec = all##_num_spec, .raster = state     \
     }
 
 // ---- bundles --------------------------------------------------------------------------------
 
 // Ports that go together from the pass that makes them to those that read them are a list in a fixed order,
-//   #define TYN_BEAMS(X, P) X(P, BEAMS, beams, TYN_BUFFER, TYN_USE_UNIFORM, false, "struct beam_block[]"), X(P, ...
-// with X(P, PORT, name, dim, use, optional, meaning). A pass with the prefix P names it once in its enum, its port
-// table and each binding table:
+//   #define TYN_BEAMS(X, P) X(P, BEAMS, beams, TYN_BUFFER, false, "struct beam_block[]"), X(P, ...
+// with X(P, PORT, name, dim, optional, meaning). A pass with the prefix P names it once in its enum and its port table:
 //   enum { SHADE_PORT_CAMERA, TYN_BEAMS(TYN_BUNDLE_ENUM, SHADE), ... };
 //   static const tyn_port ports[] = { TYN_BEAMS(TYN_BUNDLE_IN, SHADE), ... };
-//   static const tyn_binding bindings[] = { TYN_BEAMS(TYN_BUNDLE_BIND, SHADE), ... };
 #define TYN_BUNDLE_ENUM(P, PORT, ...) P##_PORT_##PORT
-#define TYN_BUNDLE_IN(P, PORT, name, dim, use, optional, meaning)                                  \
+#define TYN_BUNDLE_IN(P, PORT, name, dim, optional, meaning)                                       \
     [P##_PORT_##PORT] = {#name, TYN_IN, dim, VK_FORMAT_UNDEFINED, optional, meaning}
 // The whole bundle may be absent.
-#define TYN_BUNDLE_OPTIONAL(P, PORT, name, dim, use, optional, meaning)                            \
+#define TYN_BUNDLE_OPTIONAL(P, PORT, name, dim, optional, meaning)                                 \
     [P##_PORT_##PORT] = {#name, TYN_IN, dim, VK_FORMAT_UNDEFINED, true, meaning}
-#define TYN_BUNDLE_BIND(P, PORT, name, dim, use, optional, meaning)                                \
-    {                                                                                              \
-        P##_PORT_##PORT, use, false                                                                \
-    }
-// With its buffers as storage buffers.
-#define TYN_BUNDLE_BIND_STORAGE(P, PORT, name, dim, use, optional, meaning)                        \
-    {                                                                                              \
-        P##_PORT_##PORT, (dim) == TYN_BUFFER ? TYN_USE_STORAGE_READ : (use), false                 \
-    }
-// With its buffers as texels of four words.
-#define TYN_BUNDLE_BIND_TEXELS(P, PORT, name, dim, use, optional, meaning)                         \
-    {                                                                                              \
-        P##_PORT_##PORT, (dim) == TYN_BUFFER ? TYN_USE_TEXELS_UVEC4 : (use), false                 \
-    }
 // The fields of a struct: struct { tyn_ref TYN_BEAMS(TYN_BUNDLE_NAME, ); }.
 #define TYN_BUNDLE_NAME(P, PORT, name, ...) name
 
@@ -218,7 +213,6 @@ typedef struct tyn_pass_desc {
 } tyn_pass_desc;
 
 // Of a pass whose tables and functions are called ports, kernels, declare and record.
-#define TYN_COUNT(table) (sizeof(table) / sizeof((table)[0]))
 #define TYN_PASS_TABLES(params_type)                                                               \
     .ports = ports, .num_ports = TYN_COUNT(ports), .kernels = kernels,                             \
     .num_kernels = TYN_COUNT(kernels), .params_size = sizeof(params_type), .declare = declare,     \
