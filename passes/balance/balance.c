@@ -6,27 +6,7 @@
 #include "balance_lights.comp.h"
 #include <string.h>
 
-static const tyn_port ports[BALANCE_NUM_PORTS] = {
-    [BALANCE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
-    [BALANCE_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, true, "struct light_block[]"},
-    [BALANCE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    [BALANCE_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
-    [BALANCE_PORT_SOURCE] = {"source", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_source"},
-    [BALANCE_PORT_POWER] = {"power", TYN_IN, TYN_BUFFER, 0, true, "of lattice_source"},
-    [BALANCE_PORT_LEAKS] = {"leaks", TYN_IN, TYN_BUFFER, 0, false, "of lattice"},
-    [BALANCE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
-                                  "struct env_block: its mean without suns enters at the box"},
-    [BALANCE_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, true, "struct ordinates_block"},
-    [BALANCE_PORT_WALL_POWER] = {"wall_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice"},
-    [BALANCE_PORT_LAMP_POWER] = {"lamp_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice_lamps"},
-    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, BALANCE),
-    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, BALANCE),
-    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, BALANCE),
-    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, BALANCE),
-    [BALANCE_PORT_EMITTERS] = {"emitters", TYN_IN, TYN_BUFFER, 0, true, "struct surface_table"},
-    [BALANCE_PORT_FOUND] = {"found", TYN_SCRATCH, TYN_BUFFER, 0, false, "struct balance_light[]"},
-    [BALANCE_PORT_BALANCE] = {"balance", TYN_OUT, TYN_BUFFER, 0, false, "tyn_balance, W"},
-};
+static const tyn_port ports[] = {BALANCE_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
     TYN_KERNEL(balance),

@@ -13,17 +13,7 @@ enum { MAX_CELLS = 160, MAX_COEFFICIENT_CELLS = 96, MAX_SAMPLES = 1024 };
 // times the box.
 static const double unbounded = 1e6;
 
-static const tyn_port ports[BEAM_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, BEAM),
-    [BEAM_PORT_BEAMS] = {"beams", TYN_OUT, TYN_BUFFER, 0, false, "beam_block per sun: its grid"},
-    [BEAM_PORT_COLUMN] =
-        {"column", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-         "density (or sigma_s) integrated along the light, m (homogeneous: its mean)"},
-    [BEAM_PORT_TAU_A] = {"tau_a", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                         "sigma_a integrated along the light, likewise"},
-    [BEAM_PORT_TAU_P] = {"tau_p", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                         "sigma_s outside the forward peak integrated along the light, likewise"},
-};
+static const tyn_port ports[] = {BEAM_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
 

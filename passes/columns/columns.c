@@ -8,16 +8,7 @@
 // Of a storage buffer binding, which every device can do. The scratch of a batch stays below half.
 static const uint64_t max_bytes = 128u << 20, batch_bytes = 64u << 20;
 
-static const tyn_port ports[COLUMNS_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, COLUMNS),
-    [COLUMNS_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, false,
-                                "struct ordinates_block"},
-    [COLUMNS_PORT_COLUMNS] =
-        {"columns", TYN_OUT, TYN_BUFFER, 0, false,
-         "medium integrated along each ordinate to each cell, roots as halves"},
-    [COLUMNS_PORT_NODES] = {"nodes", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                            "medium integrated along the columns of a batch of ordinates"},
-};
+static const tyn_port ports[] = {COLUMNS_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, KERNEL_GATHER, NUM_KERNELS };
 

@@ -19,20 +19,7 @@ bool tyn_columns_average_size(const struct medium_block *medium, const uint32_t 
     return coarser;
 }
 
-static const tyn_port ports[COLUMNS_AVERAGE_NUM_PORTS] = {
-    [COLUMNS_AVERAGE_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, false,
-                                      "density, or sigma_s in mode COEFFICIENTS"},
-    [COLUMNS_AVERAGE_PORT_SIGMA_A] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, 0, true, "1/m"},
-    [COLUMNS_AVERAGE_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "mean cosine"},
-    [COLUMNS_AVERAGE_PORT_MEAN_DENSITY] = {"mean_density", TYN_OUT, TYN_IMAGE_3D,
-                                           VK_FORMAT_R32_SFLOAT, false, "its means"},
-    [COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S] = {"mean_sigma_s", TYN_OUT, TYN_IMAGE_3D,
-                                           VK_FORMAT_R32G32B32A32_SFLOAT, false, "its means, 1/m"},
-    [COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A] = {"mean_sigma_a", TYN_OUT, TYN_IMAGE_3D,
-                                           VK_FORMAT_R32G32B32A32_SFLOAT, false, "its means, 1/m"},
-    [COLUMNS_AVERAGE_PORT_MEAN_G] = {"mean_g", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                     false, "root of the part of sigma_s that goes straight on"},
-};
+static const tyn_port ports[] = {COLUMNS_AVERAGE_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS };
 

@@ -3,14 +3,7 @@
 #include "composite_half.comp.h"
 #include "composite_float.comp.h"
 
-static const tyn_port ports[COMPOSITE_NUM_PORTS] = {
-    [COMPOSITE_PORT_RADIANCE] = {"radiance", TYN_IN, TYN_IMAGE_2D, 0, false,
-                                 "radiance of the medium alone, W/(m^2 sr)"},
-    [COMPOSITE_PORT_TRANSMITTANCE] = {"transmittance", TYN_IN, TYN_IMAGE_2D, 0, false,
-                                      "transmittance to the host's surface"},
-    [COMPOSITE_PORT_COLOR] = {"color", TYN_INOUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                              false, "the host's picture, linear; alpha is kept"},
-};
+static const tyn_port ports[] = {COMPOSITE_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_FLOAT = 0, KERNEL_HALF, NUM_KERNELS };
 

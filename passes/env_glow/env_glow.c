@@ -18,20 +18,7 @@ enum { DEGREES = TYN_GLOW_HEIGHT };
 
 static const double g_max = 0.995; // narrower lobes are replaced by this one (similarity_clamp)
 
-static const tyn_port ports[ENV_GLOW_NUM_PORTS] = {
-    [ENV_GLOW_PORT_SKY] = {"sky", TYN_IN, TYN_IMAGE_2D, 0, false,
-                           "latitude-longitude map without its suns"},
-    [ENV_GLOW_PORT_GLOW] = {"glow", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                            "the map smeared by forward scattering, over direction and depth"},
-    [ENV_GLOW_PORT_SERIES] = {"series", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                              "Legendre moments of the kernels, weights of the rows"},
-    [ENV_GLOW_PORT_ROWS] = {"rows", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                            "Fourier sums of the map's rows"},
-    [ENV_GLOW_PORT_COEFFICIENTS] = {"coefficients", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                    "spherical harmonics of the map"},
-    [ENV_GLOW_PORT_LEVELS] = {"levels", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                              "Fourier sums of the smeared map's rows"},
-};
+static const tyn_port ports[] = {ENV_GLOW_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_ROWS, KERNEL_ANALYSE, KERNEL_SMEAR, KERNEL_TEXELS, NUM_KERNELS };
 

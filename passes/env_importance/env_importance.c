@@ -5,16 +5,7 @@
 #include "env_importance_mips.comp.h"
 #include "env_importance_rows.comp.h"
 
-static const tyn_port ports[ENV_IMPORTANCE_NUM_PORTS] = {
-    [ENV_IMPORTANCE_PORT_ENV_MAP] = {"env_map", TYN_IN, TYN_IMAGE_2D, 0, false,
-                                     "latitude-longitude map"},
-    [ENV_IMPORTANCE_PORT_SKY] =
-        {"sky", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-         "mean radiance of the map without its suns, map units; luminance x "
-         "solid angle"},
-    [ENV_IMPORTANCE_PORT_SUMS] = {"sums", TYN_OUT, TYN_BUFFER, 0, false,
-                                  "sums of the sky over rectangles: struct sky_sum"},
-};
+static const tyn_port ports[] = {ENV_IMPORTANCE_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_BASE, KERNEL_MIPS, KERNEL_ROWS, KERNEL_COLUMNS, NUM_KERNELS };
 

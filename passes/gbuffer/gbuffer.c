@@ -6,29 +6,7 @@
 #include "gbuffer_resolve.comp.h"
 #include "gbuffer_vertex.vert.h"
 
-static const tyn_port ports[GBUFFER_NUM_PORTS] = {
-    [GBUFFER_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "struct camera_block"},
-    TYN_GEOMETRY(TYN_BUNDLE_IN, GBUFFER),
-    TYN_MATERIALS(TYN_BUNDLE_IN, GBUFFER),
-    [GBUFFER_PORT_DISTANCES] = {"distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false,
-                                "along the rays of a pixel's samples, m; 0: no surface"},
-    [GBUFFER_PORT_FACING] = {"facing", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_UINT, false,
-                             "what a pixel shows; normals (M) of facet and for shading, folded"},
-    [GBUFFER_PORT_COLOURS] = {"colours", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_UINT, false,
-                              "albedo and emission in W/(m^2 sr); of edges, triangles of samples"},
-    [GBUFFER_PORT_EDGE_COUNT] = {"edge_count", TYN_OUT, TYN_BUFFER, 0, false,
-                                 "struct gbuffer_edge_count"},
-    [GBUFFER_PORT_EDGES] = {"edges", TYN_OUT, TYN_BUFFER, 0, false,
-                            "uint[]: pixels that show several pieces of surface"},
-    [GBUFFER_PORT_MIXED_COUNT] = {"mixed_count", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                  "struct gbuffer_edge_count"},
-    [GBUFFER_PORT_MIXED] = {"mixed", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                            "uint[]: pixels whose samples see several triangles"},
-    [GBUFFER_PORT_SEEN] = {"seen", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32_UINT, false,
-                           "index of the triangle + 1, 0: none"},
-    [GBUFFER_PORT_DEPTH] = {"depth", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT, false,
-                            "reversed"},
-};
+static const tyn_port ports[] = {GBUFFER_PORTS(TYN_PORT_ROW)};
 
 static const tyn_binding attachments[] = {
     {GBUFFER_PORT_SEEN, TYN_USE_COLOR, false},

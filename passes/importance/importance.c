@@ -10,24 +10,7 @@
 
 #define PORT(name) IMPORTANCE_PORT_##name
 
-static const tyn_port ports[IMPORTANCE_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, IMPORTANCE),
-    [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
-    [PORT(HISTORY)] = {"history", TYN_INOUT, TYN_BUFFER, .meaning = "struct importance_history"},
-    [PORT(IMPORTANCE)] = {"importance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
-                          .meaning = "importance by the direction light comes from, mean 1"},
-    [PORT(FIELD)] = {"field", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                     .meaning = "importance scattered, 1/m^3; times its mean cosine; sigma_t, 1/m"},
-    [PORT(GRID)] = {"grid", TYN_OUT, TYN_BUFFER, .meaning = "struct importance_grid"},
-    [PORT(CELLS)] = {"cells", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct importance_cell[]"},
-    [PORT(LIGHT)] = {"light", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct importance_light[]"},
-    [PORT(LIGHT_OTHER)] = {"light_other", TYN_SCRATCH, TYN_BUFFER,
-                           .meaning = "the same, of every other iteration"},
-    [PORT(TRACKS)] = {"tracks", TYN_SCRATCH, TYN_BUFFER,
-                      .meaning = "sum of power times length, and times 1 - a"},
-    [PORT(SENT)] = {"sent", TYN_SCRATCH, TYN_BUFFER,
-                    .meaning = "what leaves the medium along each direction, 1/sr"},
-};
+static const tyn_port ports[] = {IMPORTANCE_PORTS(TYN_PORT_ROW)};
 
 enum { SETUP, CELLS, STEP, FIELD, SEND, MAP, NUM_KERNELS };
 

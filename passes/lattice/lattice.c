@@ -21,46 +21,7 @@
 
 // The state is in buffers: a software device stores to images several times more slowly. They are read as texels, which
 // it does as fast as with images.
-#define SCRATCH(port, name, meaning) [port] = {name, TYN_SCRATCH, TYN_BUFFER, 0, false, meaning}
-
-static const tyn_port ports[LATTICE_NUM_PORTS] = {
-    [LATTICE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    [LATTICE_PORT_SOURCE] = {"source", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_source"},
-    [LATTICE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
-                                  "struct env_block: its mean without suns enters at the box"},
-    [LATTICE_PORT_GUESS] = {"guess", TYN_IN, TYN_BUFFER, 0, true, "moments to start from"},
-    TYN_WALLS(TYN_BUNDLE_OPTIONAL, LATTICE),
-    [LATTICE_PORT_WALL_LIGHT] = {"wall_light", TYN_IN, TYN_BUFFER, 0, true,
-                                 "radiance that the walls of a cell send out, W/(m^2 sr)"},
-    [LATTICE_PORT_MOMENTS] =
-        {"moments", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-         "fluence and net flux of the scattered light, W/m^2; channels stacked "
-         "along z"},
-    [LATTICE_PORT_COUNTERS] = {"counters", TYN_OUT, TYN_BUFFER, 0, false, "struct counters_block"},
-    [LATTICE_PORT_LEAKS] = {"leaks", TYN_OUT, TYN_BUFFER, 0, false,
-                            "net power through the box of each line of the last sweep, W"},
-    [LATTICE_PORT_WALL_POWER] = {"wall_power", TYN_OUT, TYN_BUFFER, 0, false,
-                                 "power that walls absorbed, and that wall_light brings, W"},
-    SCRATCH(LATTICE_PORT_STATE, "state", "moments at the start of a sweep"),
-    SCRATCH(LATTICE_PORT_EMITTED, "emitted",
-            "scattered radiance per sigma_s', linear in direction"),
-    SCRATCH(LATTICE_PORT_MEAN_PSI, "mean_psi", "mean radiance in a cell by direction"),
-    SCRATCH(LATTICE_PORT_SWEPT, "swept", "moments after the sweep"),
-    SCRATCH(LATTICE_PORT_STENCIL_LO, "stencil_lo", "conductance to -x, -y, -z; absorption"),
-    SCRATCH(LATTICE_PORT_STENCIL_HI, "stencil_hi", "conductance to +x, +y, +z; sum of all"),
-    SCRATCH(LATTICE_PORT_RHS, "rhs", "of the diffusion correction, W"),
-    SCRATCH(LATTICE_PORT_CORRECTION, "correction", "of the fluence, W/m^2"),
-    SCRATCH(LATTICE_PORT_RESULT_0, "result_0", "corrected moments"),
-    SCRATCH(LATTICE_PORT_RESULT_1, "result_1", "corrected moments"),
-    SCRATCH(LATTICE_PORT_RESULT_2, "result_2", "corrected moments"),
-    SCRATCH(LATTICE_PORT_CHANGE_0, "change_0", "what a sweep changed"),
-    SCRATCH(LATTICE_PORT_CHANGE_1, "change_1", "what a sweep changed"),
-    SCRATCH(LATTICE_PORT_CHANGE_2, "change_2", "what a sweep changed"),
-    SCRATCH(LATTICE_PORT_PARTIALS, "partials", "dot products by workgroup"),
-    SCRATCH(LATTICE_PORT_WEIGHTS, "weights", "shares of earlier sweeps"),
-    SCRATCH(LATTICE_PORT_ARRIVED, "arrived", "radiance that arrives at walls by direction"),
-    SCRATCH(LATTICE_PORT_LAUNCHES, "launches", "workgroups of the dispatches of a further cycle"),
-};
+static const tyn_port ports[] = {LATTICE_PORTS(TYN_PORT_ROW)};
 
 // ---- kernels ------------------------------------------------------------------------------------
 

@@ -4,13 +4,7 @@
 #include "lattice_cells.comp.h"
 #include <math.h>
 
-static const tyn_port ports[LATTICE_CELLS_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, LATTICE_CELLS),
-    [LATTICE_CELLS_PORT_CELLS] = {"cells", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                  false,
-                                  "cell means of sigma_s', sigma_a (1/m), g', emission "
-                                  "(W/(m^3 sr)); channels stacked along z"},
-};
+static const tyn_port ports[] = {LATTICE_CELLS_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
     TYN_KERNEL(lattice_cells),

@@ -2,12 +2,7 @@
 #include "lattice_keep.h"
 #include "lattice_keep.comp.h"
 
-static const tyn_port ports[LATTICE_KEEP_NUM_PORTS] = {
-    [LATTICE_KEEP_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
-    [LATTICE_KEEP_PORT_POWER] = {"power", TYN_IN, TYN_BUFFER, 0, false, "of lattice_recall"},
-    [LATTICE_KEEP_PORT_MEMORY] = {"memory", TYN_INOUT, TYN_BUFFER, 0, false,
-                                  "struct lattice_memory_block and moments"},
-};
+static const tyn_port ports[] = {LATTICE_KEEP_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
     TYN_KERNEL(lattice_keep),

@@ -8,32 +8,7 @@
 #include "lattice_lamps.comp.h"
 #include <math.h>
 
-static const tyn_port ports[LATTICE_LAMPS_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, LATTICE_LAMPS),
-    [LATTICE_LAMPS_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    TYN_RADIALS(TYN_BUNDLE_IN, LATTICE_LAMPS),
-    TYN_WALLS(TYN_BUNDLE_OPTIONAL, LATTICE_LAMPS),
-    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, LATTICE_LAMPS),
-    [LATTICE_LAMPS_PORT_VPL_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
-    [LATTICE_LAMPS_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true,
-                                  "of cells and VPLs: rooms.h"},
-    [LATTICE_LAMPS_PORT_OTHERS] = {"others", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                   "source of lattice_source or lattice_ordinates"},
-    [LATTICE_LAMPS_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                   false,
-                                   "unscattered fluence and flux of all lights, W/m^2; channels "
-                                   "stacked along z"},
-    [LATTICE_LAMPS_PORT_VPL_LIGHT] = {"vpl_light", TYN_OUT, TYN_IMAGE_3D,
-                                      VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                                      "unscattered fluence and flux of VPLs, W/m^2"},
-    [LATTICE_LAMPS_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false,
-                                  "struct lattice_lamp_power per group of lights and channel"},
-    [LATTICE_LAMPS_PORT_LIT] = {"lit", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                false, "fluence and flux of each group of lights, before scaling"},
-    [LATTICE_LAMPS_PORT_UNSHADOWED] = {"unshadowed", TYN_SCRATCH, TYN_IMAGE_3D,
-                                       VK_FORMAT_R32_SFLOAT, false,
-                                       "fluence without shadows, before scaling"},
-};
+static const tyn_port ports[] = {LATTICE_LAMPS_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_CELLS, KERNEL_VPLS, KERNEL_NEAR, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
 

@@ -3,18 +3,7 @@
 #include "shaders/lattice/lattice_args.h"
 #include "lattice_ordinates.comp.h"
 
-static const tyn_port ports[LATTICE_ORDINATES_NUM_PORTS] = {
-    [LATTICE_ORDINATES_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false,
-                                       "struct medium_block"},
-    TYN_COLUMNS(TYN_BUNDLE_IN, LATTICE_ORDINATES),
-    [LATTICE_ORDINATES_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    [LATTICE_ORDINATES_PORT_SUNLIGHT] = {"sunlight", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                         "source of lattice_source"},
-    [LATTICE_ORDINATES_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D,
-                                       VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                                       "unscattered fluence and flux of suns and ordinates, W/m^2; "
-                                       "channels stacked along z"},
-};
+static const tyn_port ports[] = {LATTICE_ORDINATES_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
     TYN_KERNEL(lattice_ordinates),

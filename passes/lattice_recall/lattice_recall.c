@@ -9,17 +9,7 @@ uint64_t tyn_lattice_memory_size(int32_t cells, uint32_t channels)
     return sizeof(struct lattice_memory_block) + 4 * sizeof(float) * channels * n * n * n;
 }
 
-static const tyn_port ports[LATTICE_RECALL_NUM_PORTS] = {
-    [LATTICE_RECALL_PORT_MEMORY] = {"memory", TYN_IN, TYN_BUFFER, 0, false,
-                                    "struct lattice_memory_block and moments"},
-    [LATTICE_RECALL_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    [LATTICE_RECALL_PORT_SOURCE] = {"source", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_source"},
-    [LATTICE_RECALL_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
-                                         "struct env_block"},
-    [LATTICE_RECALL_PORT_GUESS] = {"guess", TYN_OUT, TYN_BUFFER, 0, false, "moments to start from"},
-    [LATTICE_RECALL_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false,
-                                   "what light puts into the cells"},
-};
+static const tyn_port ports[] = {LATTICE_RECALL_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_POWER, KERNEL_RECALL, NUM_KERNELS };
 

@@ -6,24 +6,7 @@
 #include "lattice_source.comp.h"
 #include <math.h>
 
-static const tyn_port ports[LATTICE_SOURCE_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, LATTICE_SOURCE),
-    [LATTICE_SOURCE_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "struct light_block[]"},
-    [LATTICE_SOURCE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    TYN_BEAMS(TYN_BUNDLE_IN, LATTICE_SOURCE),
-    TYN_WALLS(TYN_BUNDLE_OPTIONAL, LATTICE_SOURCE),
-    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, LATTICE_SOURCE),
-    [LATTICE_SOURCE_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                    false,
-                                    "unscattered fluence and flux of the suns, W/m^2; channels "
-                                    "stacked along z"},
-    [LATTICE_SOURCE_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false,
-                                   "struct lattice_power per sun and channel"},
-    [LATTICE_SOURCE_PORT_SUNLIT] = {"sunlit", TYN_SCRATCH, TYN_IMAGE_3D,
-                                    VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                                    "transmittance to each sun; a = how much of the cell sees it; "
-                                    "suns stacked along z"},
-};
+static const tyn_port ports[] = {LATTICE_SOURCE_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_BEAM, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
 

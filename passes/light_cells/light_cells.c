@@ -4,14 +4,7 @@
 #include "light_cells_see.comp.h"
 #include <math.h>
 
-static const tyn_port ports[LIGHT_CELLS_NUM_PORTS] = {
-    TYN_SHADOWS(TYN_BUNDLE_IN, LIGHT_CELLS),
-    [LIGHT_CELLS_PORT_BLOCKS] = {"blocks", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32G32_SFLOAT,
-                                 false, "least and greatest depth in blocks of the atlas"},
-    [LIGHT_CELLS_PORT_LIGHT_CELLS] = {"light_cells", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
-                                      false,
-                                      "a whole number: two bits a light, 1 dark, 2 lit, 0 neither"},
-};
+static const tyn_port ports[] = {LIGHT_CELLS_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_BLOCKS, KERNEL_SEE, NUM_KERNELS };
 

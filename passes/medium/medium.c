@@ -7,25 +7,7 @@
 #include "medium_distance.comp.h"
 #include "medium_emission.comp.h"
 
-static const tyn_port ports[MEDIUM_NUM_PORTS] = {
-    [MEDIUM_PORT_ATLAS] = {"atlas", TYN_IN, TYN_IMAGE_3D, 0, false, "density grids of all media"},
-    [MEDIUM_PORT_SHAPES] = {"shapes", TYN_IN, TYN_BUFFER, 0, false, "shape_block per shape"},
-    [MEDIUM_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "the scene's medium_block"},
-    [MEDIUM_PORT_DENSITY] = {"density", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-                             "mean density per voxel; or sigma_s, 1/m, a = mean of the channels"},
-    [MEDIUM_PORT_SIGMA_A] = {"sigma_a", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                             "absorption, 1/m; a = mean of the channels"},
-    [MEDIUM_PORT_G] = {"g", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                       "mean cosine, weighted with sigma_s; a = over the channels"},
-    [MEDIUM_PORT_EMISSION] = {"emission", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                              false, "emission, W/(m^3 sr)"},
-    [MEDIUM_PORT_BRICKS] = {"bricks", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32_SFLOAT, false,
-                            "least and largest density, or sigma_t in 1/m, over 8^3 voxels"},
-    [MEDIUM_PORT_DISTANCE] = {"distance", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-                              "Chebyshev distance in bricks to the nearest one that is not empty"},
-    [MEDIUM_PORT_DISTANCE_SCRATCH] = {"distance_scratch", TYN_SCRATCH, TYN_IMAGE_3D,
-                                      VK_FORMAT_R32_SFLOAT, false, "distance over two axes"},
-};
+static const tyn_port ports[] = {MEDIUM_PORTS(TYN_PORT_ROW)};
 
 enum {
     KERNEL_DENSITY,

@@ -8,26 +8,7 @@
 #include "merge_one.comp.h"
 #include "merge_three.comp.h"
 
-static const tyn_port ports[MERGE_NUM_PORTS] = {
-    [MERGE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
-    [MERGE_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "struct camera_block"},
-    [MERGE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    [MERGE_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
-    TYN_COLUMNS(TYN_BUNDLE_OPTIONAL, MERGE),
-    [MERGE_PORT_TMS] = {"tms", TYN_IN, TYN_IMAGE_3D, 0, true, "kernels, of scatter_lut"},
-    [MERGE_PORT_LUT_BLOCK] = {"lut_block", TYN_IN, TYN_BUFFER, 0, true, "struct lut_block"},
-    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, MERGE),
-    [MERGE_PORT_LUT] = {"lut", TYN_IN, TYN_IMAGE_2D, 0, true, "forward scattering, of scatter_lut"},
-    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, MERGE),
-    [MERGE_PORT_VPL_LIGHT] = {"vpl_light", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_lamps"},
-    [MERGE_PORT_INSCATTER] = {"inscatter", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                              false,
-                              "radiance scattered towards the eye per sigma_s', W/(m^2 sr); one "
-                              "ghost cell around; R32F where one channel is solved"},
-    [MERGE_PORT_COUNTERS] = {"counters", TYN_OUT, TYN_BUFFER, 0, false, "struct counters_block"},
-    [MERGE_PORT_FIELD] = {"field", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                          "what each cell scatters towards the eye, before the clamp at 0"},
-};
+static const tyn_port ports[] = {MERGE_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_CELLS, KERNEL_ORDINATES, KERNEL_RADIALS, KERNEL_ONE, KERNEL_THREE, NUM_KERNELS };
 

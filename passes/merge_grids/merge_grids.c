@@ -7,25 +7,7 @@
 
 #define PORT(name) MERGE_GRIDS_PORT_##name
 
-static const tyn_port ports[MERGE_GRIDS_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, MERGE_GRIDS),
-    [PORT(PLACES)] = {"places", TYN_IN, TYN_BUFFER, .optional = true,
-                      .meaning = "struct propagate_place[]"},
-    [PORT(SEEN)] = {"seen", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                    .meaning = "of propagate_rect: L_acc, 1/sr"},
-    [PORT(LAMP_PLACES)] = {"lamp_places", TYN_IN, TYN_BUFFER, .optional = true,
-                           .meaning = "struct propagate_radial_place[]"},
-    [PORT(LAMP_SEEN)] = {"lamp_seen", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                         .meaning = "of propagate_radial: r^2 L_acc, 1/sr"},
-    [PORT(VPL_PLACES)] = {"vpl_places", TYN_IN, TYN_BUFFER, .optional = true,
-                          .meaning = "struct propagate_radial_place[]"},
-    [PORT(VPL_SEEN)] = {"vpl_seen", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                        .meaning = "of propagate_radial: r^2 L_acc, 1/sr"},
-    [PORT(RESIDUUM)] = {"residuum", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                        .meaning = "of residuum: light to the eye, W/(m^2 sr)"},
-    [PORT(MERGED)] = {"merged", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                      .meaning = "light to the eye per unit of sigma_s, W/(m^2 sr); mean sigma_s"},
-};
+static const tyn_port ports[] = {MERGE_GRIDS_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
     TYN_KERNEL(merge_grids_sum),

@@ -10,22 +10,7 @@
 #include <stddef.h>
 #include <string.h>
 
-static const tyn_port ports[ORDINATES_NUM_PORTS] = {
-    [ORDINATES_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, false,
-                                    "struct env_block"},
-    [ORDINATES_PORT_SKY] = {"sky", TYN_IN, TYN_IMAGE_2D, 0, true, "of env_importance"},
-    [ORDINATES_PORT_SUMS] = {"sums", TYN_IN, TYN_BUFFER, 0, true, "of env_importance"},
-    [ORDINATES_PORT_IMPORTANCE] = {"importance", TYN_IN, TYN_IMAGE_2D, 0, true,
-                                   "by the direction light comes from, frame M, mean 1"},
-    [ORDINATES_PORT_ORDINATES] = {"ordinates", TYN_OUT, TYN_BUFFER, 0, false,
-                                  "struct ordinates_block"},
-    [ORDINATES_PORT_WEIGHTS] = {"weights", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                "sums of luminance x importance over rectangles"},
-    [ORDINATES_PORT_REGIONS] = {"regions", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                "their corners on the map"},
-    [ORDINATES_PORT_PIECES] = {"pieces", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                               "what comes from them before folding"},
-};
+static const tyn_port ports[] = {ORDINATES_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_ROWS, KERNEL_COLUMNS, KERNEL_PARTITION, KERNEL_GATHER, KERNEL_FOLD, NUM_KERNELS };
 

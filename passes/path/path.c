@@ -4,28 +4,7 @@
 #include "path_resolve.comp.h"
 #include "path_trace.comp.h"
 
-#define RGBA VK_FORMAT_R32G32B32A32_SFLOAT
-
-static const tyn_port ports[PATH_NUM_PORTS] = {
-    TYN_PATH_SCENE(TYN_BUNDLE_IN, PATH),
-    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, PATH),
-    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, PATH),
-    {"camera", TYN_IN, TYN_BUFFER, 0, false, "rays of the pixels"},
-    {"mean", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "running mean radiance, W/(m^2 sr)"},
-    {"low", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "what single precision loses of the mean"},
-    {"deviation", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "running sum of squared deviations"},
-    {"mean_single", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "running mean of the first order"},
-    {"mean_multiple", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "running mean of higher orders"},
-    {"mean_transmittance", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "running mean transmittance"},
-    {"radiance", TYN_OUT, TYN_IMAGE_2D, RGBA, false, "radiance W/(m^2 sr), alpha"},
-    {"error", TYN_OUT, TYN_IMAGE_2D, RGBA, false, "standard error of the radiance, W/(m^2 sr)"},
-    {"single", TYN_OUT, TYN_IMAGE_2D, RGBA, false, "first-order scattering, W/(m^2 sr)"},
-    {"multiple", TYN_OUT, TYN_IMAGE_2D, RGBA, false, "higher orders and emission, W/(m^2 sr)"},
-    {"transmittance", TYN_OUT, TYN_IMAGE_2D, RGBA, false, "transmittance of the media"},
-    {"counters", TYN_OUT, TYN_BUFFER, 0, false, "collisions, cut paths, non-finite samples"},
-    {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "statistics of each thread"},
-    {"layers", TYN_SCRATCH, TYN_BUFFER, 0, false, "layers of each thread"},
-};
+static const tyn_port ports[] = {PATH_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
     TYN_KERNEL(path_trace),

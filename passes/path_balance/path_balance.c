@@ -5,17 +5,7 @@
 #include "path_balance.comp.h"
 #include "path_balance_sum.comp.h"
 
-static const tyn_port ports[PATH_BALANCE_NUM_PORTS] = {
-    TYN_PATH_SCENE(TYN_BUNDLE_IN, PATH_BALANCE),
-    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, PATH_BALANCE),
-    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, PATH_BALANCE),
-    {"state", TYN_INOUT, TYN_BUFFER, 0, false, "running statistics"},
-    {"balance", TYN_OUT, TYN_BUFFER, 0, false, "power entering, emitted, absorbed, escaped, W"},
-    {"result", TYN_OUT, TYN_BUFFER, 0, false, "the same in single precision, with standard errors"},
-    {"counters", TYN_OUT, TYN_BUFFER, 0, false, "collisions, cut paths, non-finite samples"},
-    {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "statistics of each thread"},
-    {"areas", TYN_IN, TYN_BUFFER, 0, true, "alias table of the triangles' areas"},
-};
+static const tyn_port ports[] = {PATH_BALANCE_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
     TYN_KERNEL(path_balance),

@@ -2,14 +2,7 @@
 #include "path_distance.h"
 #include "path_distance.comp.h"
 
-static const tyn_port ports[PATH_DISTANCE_NUM_PORTS] = {
-    {"camera", TYN_IN, TYN_BUFFER, 0, false, "rays of the pixels"},
-    TYN_GEOMETRY(TYN_BUNDLE_IN, PATH_DISTANCE),
-    {"radiance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT, false,
-     "none: surfaces as the ray march takes them, in the dark"},
-    {"distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false,
-     "along the ray to the first surface, m; 0: none"},
-};
+static const tyn_port ports[] = {PATH_DISTANCE_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernel = TYN_KERNEL(path_distance);
 

@@ -5,15 +5,7 @@
 #include "path_fluxes.comp.h"
 #include "path_fluxes_sum.comp.h"
 
-static const tyn_port ports[PATH_FLUXES_NUM_PORTS] = {
-    TYN_PATH_SCENE(TYN_BUNDLE_IN, PATH_FLUXES),
-    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, PATH_FLUXES),
-    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, PATH_FLUXES),
-    {"state", TYN_INOUT, TYN_BUFFER, 0, false, "running statistics"},
-    {"fluxes", TYN_OUT, TYN_BUFFER, 0, false, "power, and standard errors, W"},
-    {"counters", TYN_OUT, TYN_BUFFER, 0, false, "collisions, cut paths, non-finite paths"},
-    {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "mean of each thread's paths"},
-};
+static const tyn_port ports[] = {PATH_FLUXES_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
     TYN_KERNEL(path_fluxes),

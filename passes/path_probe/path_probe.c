@@ -6,16 +6,7 @@
 
 enum { PROBE_STATE_BYTES = 3 * TYN_PATH_PROBE_VALUES * 4 };
 
-static const tyn_port ports[PATH_PROBE_NUM_PORTS] = {
-    TYN_PATH_SCENE(TYN_BUNDLE_IN, PATH_PROBE),
-    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, PATH_PROBE),
-    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, PATH_PROBE),
-    {"points", TYN_IN, TYN_BUFFER, 0, false, "points in M, m"},
-    {"state", TYN_INOUT, TYN_BUFFER, 0, false, "running statistics of each point"},
-    {"results", TYN_OUT, TYN_BUFFER, 0, false, "fluence and net flux with standard errors, W/m^2"},
-    {"counters", TYN_OUT, TYN_BUFFER, 0, false, "collisions, cut paths, non-finite samples"},
-    {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "statistics of each thread"},
-};
+static const tyn_port ports[] = {PATH_PROBE_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
     TYN_KERNEL(path_probe),

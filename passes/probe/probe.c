@@ -4,23 +4,7 @@
 #include "probe.comp.h"
 #include <string.h>
 
-static const tyn_port ports[PROBE_NUM_PORTS] = {
-    [PROBE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
-    [PROBE_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, true, "struct light_block[]"},
-    [PROBE_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
-    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, PROBE),
-    [PROBE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
-                                "struct env_block: its mean without suns enters at the box"},
-    TYN_COLUMNS(TYN_BUNDLE_OPTIONAL, PROBE),
-    TYN_WALLS(TYN_BUNDLE_OPTIONAL, PROBE),
-    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, PROBE),
-    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, PROBE),
-    [PROBE_PORT_VPL_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
-    [PROBE_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true, "of cells and VPLs: rooms.h"},
-    [PROBE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_cells"},
-    [PROBE_PORT_POINTS] = {"points", TYN_IN, TYN_BUFFER, 0, false, "vec3[], m"},
-    [PROBE_PORT_RESULTS] = {"results", TYN_OUT, TYN_BUFFER, 0, false, "tyn_probe_result[], W/m^2"},
-};
+static const tyn_port ports[] = {PROBE_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
     TYN_KERNEL(probe),

@@ -11,24 +11,7 @@
 
 #define PORT(name) PROPAGATE_RADIAL_PORT_##name
 
-static const tyn_port ports[PROPAGATE_RADIAL_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, PROPAGATE_RADIAL),
-    [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
-    [PORT(VPLS)] = {"vpls", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "struct radial_vpls"},
-    [PORT(GRIDS)] = {"grids", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_radial_grid[]"},
-    [PORT(PLACES)] = {"places", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_radial_place[]"},
-    [PORT(SEEN)] = {"seen", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
-                    .meaning = "r^2 L_acc: light sent to the eye, per intensity, 1/sr"},
-    [PORT(MAP)] = {"map", TYN_OUT, TYN_BUFFER, .meaning = "power at the start, solid angle"},
-    [PORT(CELLS)] = {"cells", TYN_OUT, TYN_BUFFER,
-                     .meaning = "scattering and absorption depths of a cell, g, cosine to the eye"},
-    [PORT(STATE)] = {"state", TYN_OUT, TYN_BUFFER,
-                     .meaning = "light that leaves outwards, to a side, inwards; its 1 - a"},
-    [PORT(SUM)] = {"sum", TYN_OUT, TYN_BUFFER, .meaning = "r^2 L_acc of the last batch of grids"},
-    [PORT(STATE_OTHER)] = {"state_other", TYN_SCRATCH, TYN_BUFFER,
-                           .meaning = "state of every other iteration"},
-    [PORT(LAMPS)] = {"lamps", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct radial_light[]"},
-};
+static const tyn_port ports[] = {PROPAGATE_RADIAL_PORTS(TYN_PORT_ROW)};
 
 enum { SETUP, CELLS, START, STEP, COLLECT, NUM_KERNELS };
 

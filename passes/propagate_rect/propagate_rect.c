@@ -15,31 +15,7 @@
 
 #define PORT(name) PROPAGATE_RECT_PORT_##name
 
-static const tyn_port ports[PROPAGATE_RECT_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, PROPAGATE_RECT),
-    [PORT(ORDINATES)] = {"ordinates", TYN_IN, TYN_BUFFER, .meaning = "struct ordinates_block"},
-    [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
-    [PORT(GRIDS)] = {"grids", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_grid[]"},
-    [PORT(PLACES)] = {"places", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_place[]"},
-    [PORT(SEEN)] = {"seen", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
-                    .meaning =
-                        "L_acc: light sent to the eye in all iterations, per irradiance, 1/sr"},
-    [PORT(LIGHT)] = {"light", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
-                     .meaning = "L after the last iteration, per irradiance"},
-    [PORT(CELLS)] = {"cells", TYN_OUT, TYN_BUFFER,
-                     .meaning = "scattering and absorption depths of a cell, g, cosine to the eye"},
-    [PORT(STATE)] = {"state", TYN_OUT, TYN_BUFFER,
-                     .meaning = "light that leaves ahead, to a side, behind; its 1 - a"},
-    [PORT(SUM)] = {"sum", TYN_OUT, TYN_BUFFER, .meaning = "L_acc of the last batch of grids"},
-    [PORT(STATE_OTHER)] = {"state_other", TYN_SCRATCH, TYN_BUFFER,
-                           .meaning = "state of every other iteration"},
-    [PORT(SMALL)] = {"small", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
-                     .meaning = "the density, or sigma_s, shrunk"},
-    [PORT(SMALL_SIGMA_A)] = {"small_sigma_a", TYN_SCRATCH, TYN_IMAGE_3D,
-                             VK_FORMAT_R32G32B32A32_SFLOAT, .meaning = "sigma_a, shrunk"},
-    [PORT(SMALL_G)] = {"small_g", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                       .meaning = "g, shrunk"},
-};
+static const tyn_port ports[] = {PROPAGATE_RECT_PORTS(TYN_PORT_ROW)};
 
 enum {
     SETUP,

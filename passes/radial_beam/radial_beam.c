@@ -12,22 +12,7 @@
 enum { MAX_CELLS = 160, MAX_COEFFICIENT_CELLS = 64 };
 enum { LEAST_WIDTH = 128 }; // texels that tiles of many lights are laid side by side in
 
-static const tyn_port ports[RADIAL_BEAM_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, RADIAL_BEAM),
-    [RADIAL_BEAM_PORT_VPLS] = {"vpls", TYN_IN, TYN_BUFFER, 0, true, "struct radial_vpls"},
-    [RADIAL_BEAM_PORT_RADIALS] = {"radials", TYN_OUT, TYN_BUFFER, 0, false,
-                                  "struct radial_block: lamps, VPLs and their grids"},
-    [RADIAL_BEAM_PORT_RADIAL_COLUMN] =
-        {"radial_column", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-         "mean density (or sigma_s) from a light, or from where its ray enters, to a node"},
-    [RADIAL_BEAM_PORT_RADIAL_TAU_A] = {"radial_tau_a", TYN_OUT, TYN_IMAGE_3D,
-                                       VK_FORMAT_R32G32B32A32_SFLOAT, false, "mean sigma_a"},
-    [RADIAL_BEAM_PORT_RADIAL_TAU_P] = {"radial_tau_p", TYN_OUT, TYN_IMAGE_3D,
-                                       VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                                       "mean sigma_s outside the forward peak"},
-    [RADIAL_BEAM_PORT_LAMPS] = {"lamps", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                "struct radial_light[]"},
-};
+static const tyn_port ports[] = {RADIAL_BEAM_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_SETUP, KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
 

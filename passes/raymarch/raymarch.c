@@ -12,51 +12,7 @@
 #define STEPS_AMONG_SURFACES 2.0f
 #define DEPTH_AMONG_SURFACES 0.2f // ... where it is thin
 
-#define IMAGE2 TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT
-
-static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_OPTIONAL, RAYMARCH),
-    [RAYMARCH_PORT_DISTANCE] = {"distance", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                "bricks to the nearest one that is not empty"},
-    [RAYMARCH_PORT_SHAPES] = {"shapes", TYN_IN, TYN_BUFFER, 0, false, "shape_block[]"},
-    [RAYMARCH_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "light_block[]"},
-    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, RAYMARCH),
-    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, RAYMARCH),
-    [RAYMARCH_PORT_LUT] = {"lut", TYN_IN, TYN_IMAGE_2D, 0, true, "forward scattering"},
-    [RAYMARCH_PORT_LUT_BLOCK] = {"lut_block", TYN_IN, TYN_BUFFER, 0, true, "lut_block"},
-    [RAYMARCH_PORT_INSCATTER] = {"inscatter", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                 "radiance scattered towards the eye, W/(m^2 sr)"},
-    TYN_WALLS(TYN_BUNDLE_OPTIONAL, RAYMARCH),
-    [RAYMARCH_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true, "of cells"},
-    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, RAYMARCH),
-    [RAYMARCH_PORT_LIGHT_CELLS] = {"light_cells", TYN_IN, TYN_IMAGE_3D, 0, true, "of light_cells"},
-    [RAYMARCH_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "camera_block"},
-    [RAYMARCH_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, false, "env_block"},
-    [RAYMARCH_PORT_ENV_MAP] = {"env_map", TYN_IN, TYN_IMAGE_2D, 0, true,
-                               "latitude-longitude map, W/(m^2 sr)"},
-    [RAYMARCH_PORT_GLOW] = {"glow", TYN_IN, TYN_IMAGE_3D, 0, true,
-                            "the map as forward scattering smears it, W/(m^2 sr)"},
-    [RAYMARCH_PORT_HOST_DEPTH] = {"host_depth", TYN_IN, TYN_IMAGE_2D, 0, true,
-                                  "hardware depth of the host's surfaces"},
-    [RAYMARCH_PORT_SURFACE] = {"surface", TYN_IN, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT, true,
-                               "radiance of the first surface, W/(m^2 sr)"},
-    [RAYMARCH_PORT_DISTANCES] = {"distances", TYN_IN, TYN_IMAGE_2D, 0, true,
-                                 "to the first surface, m; 0: none"},
-    [RAYMARCH_PORT_RADIANCE] = {"radiance", TYN_OUT, IMAGE2, false,
-                                "radiance, W/(m^2 sr); a = 1 - mean transmittance"},
-    [RAYMARCH_PORT_TRANSMITTANCE] = {"transmittance", TYN_OUT, IMAGE2, false,
-                                     "transmittance to the first surface or out of the scene"},
-    [RAYMARCH_PORT_DEPTH] = {"depth", TYN_OUT, IMAGE2, false,
-                             "distance to the surface and to mean transmittance 1/2, m"},
-    [RAYMARCH_PORT_SINGLE] = {"single", TYN_OUT, IMAGE2, false, "light that has scattered once"},
-    [RAYMARCH_PORT_MULTIPLE] = {"multiple", TYN_OUT, IMAGE2, false,
-                                "light that has scattered more often, or was emitted"},
-    [RAYMARCH_PORT_COUNTERS] = {"counters", TYN_OUT, TYN_BUFFER, 0, false, "counters_block"},
-    [RAYMARCH_PORT_SPARSE] = {"sparse", TYN_SCRATCH, IMAGE2, false,
-                              "radiance, transmittance and e^-tau' of a ray for 2x2 pixels"},
-    [RAYMARCH_PORT_REST] = {"rest", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                            "2x2 pixels that have rays of their own"},
-};
+static const tyn_port ports[] = {RAYMARCH_PORTS(TYN_PORT_ROW)};
 
 enum {
     NUM_BACKGROUND_BINDINGS = TYN_COUNT(raymarch_background_bindings),

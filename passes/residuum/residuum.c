@@ -20,19 +20,7 @@ uint32_t tyn_residuum_after(float a, float g, float sigma_s, float hop, float ep
     return hops < UINT32_MAX ? (uint32_t)hops : UINT32_MAX;
 }
 
-static const tyn_port ports[RESIDUUM_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, RESIDUUM),
-    [PORT(PLACES)] = {"places", TYN_IN, TYN_BUFFER, .meaning = "struct propagate_place[]"},
-    [PORT(LIGHT)] = {"light", TYN_IN, TYN_IMAGE_3D,
-                     .meaning = "of propagate_rect: L per irradiance"},
-    [PORT(RESIDUUM)] = {"residuum", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                        .meaning = "light to the eye per unit of sigma_s, W/(m^2 sr)"},
-    [PORT(STATE)] = {"state", TYN_OUT, TYN_BUFFER, .meaning = "light at the faces, W/m^2"},
-    [PORT(STATE_OTHER)] = {"state_other", TYN_SCRATCH, TYN_BUFFER,
-                           .meaning = "state of every other iteration"},
-    [PORT(KEPT)] = {"kept", TYN_SCRATCH, TYN_BUFFER, .meaning = "transmittance of half a cell"},
-    [PORT(SUM)] = {"sum", TYN_SCRATCH, TYN_BUFFER, .meaning = "light of all iterations, W/m^2"},
-};
+static const tyn_port ports[] = {RESIDUUM_PORTS(TYN_PORT_ROW)};
 
 enum { START, STEP, COLLECT, NUM_KERNELS };
 

@@ -6,15 +6,7 @@
 #include "rooms_links.comp.h"
 #include "rooms_vpls.comp.h"
 
-static const tyn_port ports[ROOMS_NUM_PORTS] = {
-    [ROOMS_PORT_WALL_LINKS] = {"wall_links", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
-    [ROOMS_PORT_VPLS] = {"vpls", TYN_IN, TYN_BUFFER, 0, false, "struct radial_vpls"},
-    [ROOMS_PORT_VPL_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, false,
-                                  "what VPLs see, m"},
-    [ROOMS_PORT_ROOMS] = {"rooms", TYN_OUT, TYN_BUFFER, 0, false,
-                          "rooms.h: of what is outside, of each cell, of each VPL"},
-    [ROOMS_PORT_FOREST] = {"forest", TYN_SCRATCH, TYN_BUFFER, 0, false, "rooms_forest.glsl"},
-};
+static const tyn_port ports[] = {ROOMS_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_LINKS, KERNEL_CELLS, KERNEL_VPLS, NUM_KERNELS };
 

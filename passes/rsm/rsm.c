@@ -4,18 +4,7 @@
 #include "rsm_vertex.vert.h"
 #include <string.h>
 
-#define IMAGE TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, false
-
-static const tyn_port ports[RSM_NUM_PORTS] = {
-    TYN_GEOMETRY(TYN_BUNDLE_IN, RSM),
-    TYN_MATERIALS(TYN_BUNDLE_IN, RSM),
-    [RSM_PORT_RSM_FLUX] = {"rsm_flux", TYN_OUT, IMAGE, "power that a texel reflects, W"},
-    [RSM_PORT_RSM_POSITION] = {"rsm_position", TYN_OUT, IMAGE, "where (M, m); area of it, m^2"},
-    [RSM_PORT_RSM_NORMAL] = {"rsm_normal", TYN_OUT, IMAGE,
-                             "of the surface (M), on the light's side"},
-    [RSM_PORT_DEPTH] = {"depth", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT, false,
-                        "reversed"},
-};
+static const tyn_port ports[] = {RSM_PORTS(TYN_PORT_ROW)};
 
 static const tyn_binding attachments[] = {
     {RSM_PORT_RSM_FLUX, TYN_USE_COLOR, false},

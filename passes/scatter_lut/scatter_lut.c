@@ -12,23 +12,7 @@ static const double g_max = 0.995;     // narrower lobes are replaced by this on
 static const double g_min = 1e-3;      // below it there is no lobe worth splitting off
 static const float least_blur = 1e-4f; // 1 - mean cosine: smaller suns are points (0.8 degrees RMS)
 
-static const tyn_port ports[SCATTER_LUT_NUM_PORTS] = {
-    [SCATTER_LUT_PORT_LUT] =
-        {"lut", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_SFLOAT, false,
-         "ln of the multiple forward scattering of K_tms and K_lobe over depth (x) "
-         "and angle (y), a table for each g above the other"},
-    [SCATTER_LUT_PORT_LUT_BLOCK] = {"lut_block", TYN_OUT, TYN_BUFFER, 0, false,
-                                    "rows of the table: g, half width of the lobe"},
-    [SCATTER_LUT_PORT_TMS] =
-        {"tms", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-         "phase function of what leaves the forward lobes of light from a cone, "
-         "1/sr, over depth (x), angle (y) and the size of the cone (z)"},
-    [SCATTER_LUT_PORT_MOMENTS] =
-        {"moments", TYN_SCRATCH, TYN_BUFFER, 0, false,
-         "Legendre moments of the phase function outside and inside the lobe"},
-    [SCATTER_LUT_PORT_CONES] = {"cones", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                "Legendre moments of the cones"},
-};
+static const tyn_port ports[] = {SCATTER_LUT_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_SUM, KERNEL_TMS, NUM_KERNELS };
 

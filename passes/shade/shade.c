@@ -18,48 +18,9 @@
 #include <string.h>
 
 #define PORT(name) SHADE_PORT_##name
-#define IMAGE2 TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT
 #define TEXELS TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_UINT // shade_part.glsl
 
-static const tyn_port ports[SHADE_NUM_PORTS] = {
-    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
-    [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
-    [PORT(ENVIRONMENT)] = {"environment", TYN_IN, TYN_BUFFER, .meaning = "struct env_block"},
-    [PORT(SUNS)] = {"suns", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
-    [PORT(LIGHTS)] = {"lights", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
-    [PORT(DISTANCES)] = {"distances", TYN_IN, TYN_IMAGE_2D, .meaning = "of samples, m"},
-    [PORT(FACING)] = {"facing", TYN_IN, TEXELS, .meaning = "what pixels show; normals"},
-    [PORT(COLOURS)] = {"colours", TYN_IN, TEXELS,
-                       .meaning = "albedo and emission; of edges, triangles of samples"},
-    [PORT(EDGE_COUNT)] = {"edge_count", TYN_IN, TYN_BUFFER, .meaning = "struct gbuffer_edge_count"},
-    [PORT(EDGES)] = {"edges", TYN_IN, TYN_BUFFER,
-                     .meaning = "uint[]: pixels that show several pieces of surface"},
-    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, SHADE),
-    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, SHADE),
-    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, SHADE),
-    TYN_VPLS(TYN_BUNDLE_OPTIONAL, SHADE),
-    [PORT(MOMENTS)] = {"moments", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                       .meaning = "fluence and flux on the lattice, W/m^2"},
-    TYN_WALLS(TYN_BUNDLE_OPTIONAL, SHADE),
-    [PORT(ROOMS)] = {"rooms", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "of cells and VPLs"},
-    TYN_GEOMETRY(TYN_BUNDLE_IN, SHADE),
-    TYN_MATERIALS(TYN_BUNDLE_IN, SHADE),
-    [PORT(SURFACE_RADIANCE)] = {"surface_radiance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT,
-                                .meaning = "radiance to the camera, W/(m^2 sr)"},
-    [PORT(FORWARD)] = {"forward", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                       .meaning = "from where sunlight comes that was scattered forward"},
-    [PORT(FACES)] = {"faces", TYN_SCRATCH, IMAGE2, .meaning = "light that leaves the medium's box"},
-    [PORT(SIGHT)] = {"sight", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                     .meaning = "from where faces of the medium's box are seen"},
-    [PORT(PART)] = {"part", TYN_SCRATCH, TEXELS,
-                    .meaning = "a block's part of the VPLs' light, then all"},
-    [PORT(PART_ROWS)] = {"part_rows", TYN_SCRATCH, TEXELS,
-                         .meaning = "summed along rows, then all smooth light"},
-    [PORT(ALONE_COUNT)] = {"alone_count", TYN_SCRATCH, TYN_BUFFER,
-                           .meaning = "struct gbuffer_edge_count"},
-    [PORT(ALONE)] = {"alone", TYN_SCRATCH, TYN_BUFFER,
-                     .meaning = "pixels with pieces that have smooth light of their own"},
-};
+static const tyn_port ports[] = {SHADE_PORTS(TYN_PORT_ROW)};
 
 enum {
     FORWARD = 0,

@@ -2,17 +2,7 @@
 #include "shadow_map.h"
 #include "shadow_map_vertex.vert.h"
 
-static const tyn_port ports[SHADOW_MAP_NUM_PORTS] = {
-    [SHADOW_MAP_PORT_TRIANGLES] = {"triangles", TYN_IN, TYN_BUFFER, 0, false,
-                                   "struct surface_triangle[]"},
-    [SHADOW_MAP_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, false,
-                                  "struct surface_vertex[]"},
-    [SHADOW_MAP_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT,
-                                      false,
-                                      "reversed depth of what each light sees first; 0: nothing"},
-    [SHADOW_MAP_PORT_SHADOWS] = {"shadows", TYN_OUT, TYN_BUFFER, 0, false,
-                                 "struct shadow_light[]: where each light's maps are"},
-};
+static const tyn_port ports[] = {SHADOW_MAP_PORTS(TYN_PORT_ROW)};
 
 static const tyn_binding attachments[] = {{SHADOW_MAP_PORT_SHADOW_ATLAS, TYN_USE_DEPTH, false}};
 

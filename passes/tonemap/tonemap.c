@@ -4,12 +4,7 @@
 #include "tonemap_display.comp.h"
 #include <math.h>
 
-static const tyn_port ports[TONEMAP_NUM_PORTS] = {
-    [TONEMAP_PORT_RADIANCE] = {"radiance", TYN_IN, TYN_IMAGE_2D, 0, false,
-                               "scene-linear radiance, premultiplied, W/(m^2 sr)"},
-    [TONEMAP_PORT_DISPLAY] = {"display", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R8G8B8A8_UNORM, false,
-                              "sRGB-encoded picture, straight alpha"},
-};
+static const tyn_port ports[] = {TONEMAP_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
     TYN_KERNEL(tonemap_display),

@@ -7,13 +7,7 @@
 
 #define PORT(name) UPSAMPLE_PORT_##name
 
-static const tyn_port ports[UPSAMPLE_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, UPSAMPLE),
-    [PORT(MERGED)] = {"merged", TYN_IN, TYN_IMAGE_3D,
-                      .meaning = "of merge_grids: light to the eye, W/(m^2 sr); mean sigma_s"},
-    [PORT(INSCATTER)] = {"inscatter", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                         .meaning = "light towards the eye per unit of sigma_s, W/(m^2 sr)"},
-};
+static const tyn_port ports[] = {UPSAMPLE_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
     TYN_KERNEL(upsample_field),

@@ -16,30 +16,7 @@
 #include <string.h>
 
 #define PORT(name) VPL_PORT_##name
-#define IMAGE2 TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT
-
-static const tyn_port ports[VPL_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_OPTIONAL, VPL),
-    [PORT(SUNS)] = {"suns", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
-    [PORT(LIGHTS)] = {"lights", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
-    TYN_RSM(TYN_BUNDLE_OPTIONAL, VPL),
-    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, VPL),
-    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, VPL),
-    [PORT(BINS)] = {"bins", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_bins"},
-    [PORT(BIN_FLUX)] = {"bin_flux", TYN_SCRATCH, IMAGE2, .meaning = "power of bins, W"},
-    [PORT(BIN_POSITION)] = {"bin_position", TYN_SCRATCH, IMAGE2, .meaning = "where (M, m)"},
-    [PORT(BIN_NORMAL)] = {"bin_normal", TYN_SCRATCH, IMAGE2, .meaning = "normal (M)"},
-    [PORT(VPLS)] = {"vpls", TYN_OUT, TYN_BUFFER, .meaning = "struct radial_vpls"},
-    [PORT(VPL_DISTANCES)] = {"vpl_distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
-                             .meaning = "of the first surface in every direction of a VPL, m"},
-    [PORT(VPL_PLANES)] = {"vpl_planes", TYN_OUT, IMAGE2,
-                          .meaning =
-                              "of these surfaces: normal towards the VPL (M), distance of it, m"},
-    [PORT(PLAN)] = {"plan", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_plan"},
-    [PORT(WEIGHTS)] = {"weights", TYN_SCRATCH, TYN_BUFFER, .meaning = "float[], of elements"},
-    [PORT(BLOCKS)] = {"blocks", TYN_SCRATCH, TYN_BUFFER, .meaning = "float[], of their blocks"},
-    [PORT(STRATA)] = {"strata", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_stratum[]"},
-};
+static const tyn_port ports[] = {VPL_PORTS(TYN_PORT_ROW)};
 
 enum { WEIGHTS = 0, STRATA, LIGHTS, DISTANCES, POWER, BOUNCE, FURTHER, NUM_KERNELS };
 

@@ -10,28 +10,7 @@
 #include "wall_light_suns.comp.h"
 #include "wall_light_vpls.comp.h"
 
-static const tyn_port ports[WALL_LIGHT_NUM_PORTS] = {
-    [WALL_LIGHT_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
-    [WALL_LIGHT_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "struct light_block[]"},
-    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, WALL_LIGHT),
-    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, WALL_LIGHT),
-    TYN_GEOMETRY(TYN_BUNDLE_IN, WALL_LIGHT),
-    TYN_WALLS(TYN_BUNDLE_IN, WALL_LIGHT),
-    [WALL_LIGHT_PORT_HITS] = {"hits", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
-    [WALL_LIGHT_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true, "of rooms"},
-    [WALL_LIGHT_PORT_VPL_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
-    [WALL_LIGHT_PORT_WALL_LIGHT] = {"wall_light", TYN_OUT, TYN_BUFFER, 0, false,
-                                    "radiance that the walls of a cell send out, W/(m^2 sr)"},
-    [WALL_LIGHT_PORT_LIST] = {"list", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                              "struct wall_light_list, uint[]: cells that have walls"},
-    [WALL_LIGHT_PORT_ARRIVED] = {"arrived", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                 "irradiance by VPLs, W/m^2, times the area of walls over dx^2"},
-    [WALL_LIGHT_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false, "struct wall_light_power"},
-    [WALL_LIGHT_PORT_FIRST] = {"first", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                               "by room, the first VPL that shines there"},
-    [WALL_LIGHT_PORT_PARTS] = {"parts", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                               "sums of arrived by room and part of the lattice"},
-};
+static const tyn_port ports[] = {WALL_LIGHT_PORTS(TYN_PORT_ROW)};
 
 enum { SUNS = 0, VPLS, WALL_CELLS, EXPECTED, SUM, SCALE, REFLECT, NUM_KERNELS };
 _Static_assert(WALL_LIGHT_VPLS == TYN_RADIAL_VPLS_MAX, "of a workgroup each");

@@ -6,17 +6,7 @@
 #include "walls_scatter.comp.h"
 #include "walls_cells.comp.h"
 
-static const tyn_port ports[WALLS_NUM_PORTS] = {
-    TYN_GEOMETRY(TYN_BUNDLE_IN, WALLS),
-    TYN_MATERIALS(TYN_BUNDLE_IN, WALLS),
-    [WALLS_PORT_WALL_LINKS] = {"wall_links", TYN_OUT, TYN_BUFFER, 0, false,
-                               "which of its 26 links are cut, per cell"},
-    [WALLS_PORT_WALL_CELLS] = {"wall_cells", TYN_OUT, TYN_BUFFER, 0, false,
-                               "struct wall_cell: mean albedo and planes of a cell's walls"},
-    [WALLS_PORT_HITS] = {"hits", TYN_OUT, TYN_BUFFER, 0, false, "nearest triangle per line"},
-    [WALLS_PORT_NEAREST] = {"nearest", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                            "nearest triangle in the cell, per main direction of its normal"},
-};
+static const tyn_port ports[] = {WALLS_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_SCATTER, KERNEL_CELLS, NUM_KERNELS };
 

@@ -128,21 +128,32 @@ typedef struct tyn_kernel {
         .num_bindings = TYN_COUNT(all##_bindings), .num_spec = all##_num_spec, .raster = state     \
     }
 
-// ---- bundles --------------------------------------------------------------------------------
+// ---- lists of ports -------------------------------------------------------------------------
 
-// Ports that go together from the pass that makes them to those that read them are a list in a fixed order,
-//   #define TYN_BEAMS(X, P) X(P, BEAMS, beams, TYN_BUFFER, false, "struct beam_block[]"), X(P, ...
-// with X(P, PORT, name, dim, optional, meaning). A pass with the prefix P names it once in its enum and its port table:
-//   enum { SHADE_PORT_CAMERA, TYN_BEAMS(TYN_BUNDLE_ENUM, SHADE), ... };
-//   static const tyn_port ports[] = { TYN_BEAMS(TYN_BUNDLE_IN, SHADE), ... };
-#define TYN_BUNDLE_ENUM(P, PORT, ...) P##_PORT_##PORT
-#define TYN_BUNDLE_IN(P, PORT, name, dim, optional, meaning)                                       \
-    [P##_PORT_##PORT] = {#name, TYN_IN, dim, VK_FORMAT_UNDEFINED, optional, meaning}
-// The whole bundle may be absent.
-#define TYN_BUNDLE_OPTIONAL(P, PORT, name, dim, optional, meaning)                                 \
-    [P##_PORT_##PORT] = {#name, TYN_IN, dim, VK_FORMAT_UNDEFINED, true, meaning}
-// The fields of a struct: struct { tyn_ref TYN_BEAMS(TYN_BUNDLE_NAME, ); }.
-#define TYN_BUNDLE_NAME(P, PORT, name, ...) name
+// The ports of a pass are a list of X(PREFIX, PORT, name, direction, dim, meaning...), from which come its enum
+// and its table:
+//   #define TONEMAP_PORTS(X) X(TONEMAP, RADIANCE, radiance, IN, IMAGE_2D, "W/(m^2 sr)"), X(...)
+//   enum { TONEMAP_PORTS(TYN_PORT_ENUM), TONEMAP_NUM_PORTS };                TONEMAP_PORT_RADIANCE, ...
+//   static const tyn_port ports[] = {TONEMAP_PORTS(TYN_PORT_ROW)};
+// direction: IN, OPTIONAL (IN that need not be connected), OUT, INOUT, SCRATCH. dim: BUFFER, IMAGE_2D, IMAGE_3D. Behind
+// the meaning further fields of tyn_port may stand: .format = VK_FORMAT_R32_SFLOAT.
+//
+// A bundle is a list of ports that go together from the passes that make them to those that read them, TYN_BEAMS(X, PREFIX);
+// it is an element of lists, with X##_OPTIONAL where all of it may be absent. A struct of refs is
+//   struct { tyn_ref TYN_BEAMS(TYN_PORT_NAME, ); }.
+#define TYN_PORT_ENUM(P, PORT, ...) P##_PORT_##PORT
+#define TYN_PORT_ENUM_OPTIONAL(P, PORT, ...) P##_PORT_##PORT
+#define TYN_PORT_NAME(P, PORT, name, ...) name
+#define TYN_PORT_ROW(P, PORT, port_name, direction, size, ...)                                     \
+    [P##_PORT_##PORT] = {                                                                          \
+        .name = #port_name, TYN_PORT_##direction, .dim = TYN_##size, .meaning = __VA_ARGS__}
+#define TYN_PORT_ROW_OPTIONAL(P, PORT, port_name, direction, size, ...)                            \
+    TYN_PORT_ROW(P, PORT, port_name, OPTIONAL, size, __VA_ARGS__)
+#define TYN_PORT_IN .dir = TYN_IN
+#define TYN_PORT_OPTIONAL .dir = TYN_IN, .optional = true
+#define TYN_PORT_OUT .dir = TYN_OUT
+#define TYN_PORT_INOUT .dir = TYN_INOUT
+#define TYN_PORT_SCRATCH .dir = TYN_SCRATCH
 
 // ---- parameters -----------------------------------------------------------------------------
 
