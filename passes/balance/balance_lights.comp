@@ -5,7 +5,6 @@
 // the sums agree is a check of these.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/scene_args.h"
 #include "balance_args.h"
 #include "shaders/surfaces/surface_args.h"

@@ -2,7 +2,6 @@
 // (medium_value.glsl).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/ordinate_args.h"
 #include "shaders/beams/columns_args.h"
 #define MEDIUM_AT 0

@@ -7,7 +7,6 @@
 // times that distance; without it the edges of a box of medium would show.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/ordinate_args.h"
 #include "shaders/beams/columns_args.h"
 #define MEDIUM_AT 0

@@ -5,7 +5,6 @@
 // the first.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/columns_args.h"
 #include "shaders/phase/hg.glsl"
 

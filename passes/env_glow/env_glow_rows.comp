@@ -1,7 +1,6 @@
 // env_glow_rows.comp -- Fourier sums of the map's rows: a row a group, four orders a thread.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/glow_args.h"
 #include "env_glow_args.h"
 

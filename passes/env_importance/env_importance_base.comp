@@ -4,7 +4,6 @@
 // level's integral is the map's, whatever the map's size.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "env_importance_args.h"
 #include "shaders/light/sky.glsl"
 

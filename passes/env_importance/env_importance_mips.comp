@@ -4,7 +4,6 @@
 // fourth channel is added up.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/sky.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

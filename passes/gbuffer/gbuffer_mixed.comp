@@ -2,7 +2,6 @@
 // of surface; else the pixel is an edge.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "gbuffer_sample.glsl"
 
 layout(local_size_x = GBUFFER_EDGES) in;

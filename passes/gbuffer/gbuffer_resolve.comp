@@ -2,7 +2,6 @@
 // gbuffer_mixed.comp: on a device whose threads run together they would keep their neighbours waiting.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "gbuffer_sample.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -2,7 +2,6 @@
 // correction.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "shaders/lattice/lattice_sweep.glsl"

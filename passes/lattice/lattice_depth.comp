@@ -3,7 +3,6 @@
 // There light goes from wall to wall, which corrections do little about: a second cycle brings nothing.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 

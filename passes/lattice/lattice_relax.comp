@@ -1,7 +1,6 @@
 // lattice_relax.comp -- Gauss-Seidel on the cells of one colour of a checkerboard.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_levels.glsl"

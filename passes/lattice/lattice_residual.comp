@@ -8,7 +8,6 @@
 // threads pairwise.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 
 layout(local_size_x = LATTICE_GROUP) in;

@@ -5,7 +5,6 @@
 // walls it is dark: what no light reaches stays so.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #define LATTICE_ENVIRONMENT 0

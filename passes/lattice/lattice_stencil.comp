@@ -1,7 +1,6 @@
 // lattice_stencil.comp -- stencil of the diffusion correction on the lattice itself.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_stencil.glsl"

@@ -4,7 +4,6 @@
 // faces: half the sum. Absorption adds up.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_levels.glsl"

@@ -6,7 +6,6 @@
 // the light has arrived at the wall, and the line goes on with what the wall sends out on its other side.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #define LATTICE_ENVIRONMENT 0
 #include "shaders/lattice/lattice_unhindered.glsl"

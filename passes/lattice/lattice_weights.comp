@@ -2,7 +2,6 @@
 // g_i d_i|. After the last sweep: what further ones would still change, for the counters.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/counters.h"
 

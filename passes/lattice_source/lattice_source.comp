@@ -1,7 +1,6 @@
 // lattice_source.comp -- the suns' unscattered light in a cell: sum of E T', and of E T' direction.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/scene_args.h"
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/lattice/lattice_sweep.glsl"

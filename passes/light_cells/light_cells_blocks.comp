@@ -3,7 +3,6 @@
 // A thread owns one of the finest blocks, a workgroup one of the largest.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/light_cells_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;

@@ -1,7 +1,6 @@
 // light_cells_see.comp -- what the lights see of each cube.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/light_cells_args.h"
 
 #define SHADOW_BLOCKS 0

@@ -2,7 +2,6 @@
 // summed coefficients.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
 #define SHAPES 1
 #define ATLAS 2

@@ -3,7 +3,6 @@
 // max(|dx|, |dy|, |dz|) is separable: the least over x of |dx|, then over y of max(|dy|, that), then z.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/scene_args.h"
 #include "medium_args.h"
 

@@ -1,7 +1,6 @@
 // merge_grids_sum.comp -- see merge_grids.h; one thread a cell.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/lattice/lattice.glsl"

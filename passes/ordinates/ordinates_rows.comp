@@ -1,7 +1,6 @@
 // ordinates_rows.comp -- luminance times importance, summed along the rows; a workgroup per row.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/environment.glsl"
 #include "shaders/light/sky.glsl"
 

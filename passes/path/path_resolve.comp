@@ -2,7 +2,6 @@
 // writes the image so far. One thread a pixel, in a fixed order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 #include "shaders/common/scene_args.h"
 

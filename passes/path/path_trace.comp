@@ -1,7 +1,6 @@
 // path_trace.comp -- samples of an image: each thread follows some paths of one pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 
 const bool PROBE = false;

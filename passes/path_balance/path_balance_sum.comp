@@ -4,7 +4,6 @@
 // The standard error of the imbalance is that of what is given less what is taken, over what is given.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 
 layout(local_size_x = TYN_PATH_BALANCE_VALUES) in;

@@ -1,7 +1,6 @@
 // path_distance.comp -- where the ray through the middle of each pixel meets the first surface.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/common/camera.glsl"
 #include "shaders/colour/packed_colour.glsl"

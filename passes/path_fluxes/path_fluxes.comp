@@ -11,7 +11,6 @@
 // All paths of a thread are one sample of the statistics (path_fluxes_sum.comp).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 
 const bool PROBE = false;

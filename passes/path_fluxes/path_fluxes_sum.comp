@@ -5,7 +5,6 @@
 // path's variance. Fixed order: every lane its own threads, then pairwise.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 
 layout(local_size_x = TYN_PATH_FLUX_LANES) in;

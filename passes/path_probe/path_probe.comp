@@ -2,7 +2,6 @@
 // all directions.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 
 const bool PROBE = true;

@@ -2,7 +2,6 @@
 // One thread a value, in a fixed order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 
 layout(local_size_x = 64) in;

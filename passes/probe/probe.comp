@@ -1,7 +1,6 @@
 // probe.comp -- fluence and net flux at points: the lattice's moments and what is left of the suns.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "probe_args.h"
 #include "shaders/light/ordinate_args.h"
 #define MEDIUM_BLOCK 0

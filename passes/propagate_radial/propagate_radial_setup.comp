@@ -2,7 +2,6 @@
 // each direction.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/propagate_radial.glsl"
 #include "propagate_radial_args.h"
 

@@ -1,7 +1,6 @@
 // propagate_rect_collect.comp -- what a batch of grids sent to the eye, as tiles of an image.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/propagate.glsl"
 #include "propagate_rect_args.h"
 

@@ -2,7 +2,6 @@
 // voxels. Built for both modes: TYN_DENSITY is defined for mode DENSITY.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 

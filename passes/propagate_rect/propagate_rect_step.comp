@@ -2,7 +2,6 @@
 // adds what it now sends to the eye (Eqs 7-8).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/propagate.glsl"
 #include "propagate_rect_args.h"
 

@@ -1,7 +1,6 @@
 // radial_beam_setup.comp -- one thread per light: lays out its grid.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/scene_args.h"
 #include "shaders/beams/radial_args.h"
 #include "radial_beam_args.h"

@@ -1,7 +1,6 @@
 // raymarch_background.comp -- pixels in which no medium can be seen.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/camera.glsl"
 #include "background.glsl"
 #include "host_depth.glsl"

@@ -1,7 +1,6 @@
 // residuum_collect.comp -- what all iterations sent to the eye.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "residuum_args.h"
 #include "shaders/phase/hg.glsl"
 

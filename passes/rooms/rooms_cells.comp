@@ -1,7 +1,6 @@
 // rooms_cells.comp -- the room of each cell and VPL.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "rooms_args.h"
 #include "shaders/walls/rooms.h"
 #include "shaders/lattice/lattice.glsl"

@@ -1,7 +1,6 @@
 // rooms_links.comp -- joins the cells that open links join, one thread a cell.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "rooms_args.h"
 #include "shaders/walls/walls_links.glsl"
 #include "shaders/walls/rooms.h"

@@ -4,7 +4,6 @@
 // tells which that is, wherever the lattice's links are cut; a ray counts if the one beside it tells the same.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "rooms_args.h"
 #define LATTICE_ROOMS 4 // as links join them
 #include "shaders/walls/lattice_rooms.glsl"

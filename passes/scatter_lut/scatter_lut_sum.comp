@@ -1,7 +1,6 @@
 // scatter_lut_sum.comp -- sums the series of one depth and row for all angles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/phase/hg.glsl"
 #include "shaders/phase/scatter_lut_map.glsl"
 

@@ -1,7 +1,6 @@
 // scatter_lut_tms.comp -- sums the series of four depths of one row and cone for all angles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/phase/hg.glsl"
 #include "shaders/phase/scatter_lut_map.glsl"
 

@@ -2,7 +2,6 @@
 // take all VPLs themselves.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_piece.glsl"
 #include "shade_several.glsl"
 #include "shade_whole.glsl"

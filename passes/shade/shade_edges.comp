@@ -1,7 +1,6 @@
 // shade_edges.comp -- pixels that show several pieces of surface, or one beside nothing: one after another.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/surfaces/gbuffer_edges.glsl"
 #include "shade_piece.glsl"
 #include "shade_several.glsl"

@@ -5,7 +5,6 @@
 // radiance that is linear in direction, (phi + 3 w.F) / 4 pi, scaled to that flux.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_args.h"
 #include "shade_faces.h"
 #include "shaders/common/scene_args.h"

@@ -6,7 +6,6 @@
 // the lattice send nothing: a roof that the cell is under is lit from above.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_args.h"
 #include "shaders/common/scene_args.h"
 #define MEDIUM_BLOCK 0

@@ -3,7 +3,6 @@
 // pixel, the pixel takes all VPLs itself: that is left to shade_places.comp.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_place.glsl"
 #define SHADE_ALONE_COUNT (SHADE_AT + 2)
 #define SHADE_ALONE (SHADE_AT + 3)

@@ -1,7 +1,6 @@
 // shade_places.comp -- blocks of pixels that take all VPLs themselves: those that shade_gather.comp lists.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_place.glsl"
 #include "shade_rooms.glsl"
 #define SHADE_ALONE_COUNT (SHADE_AT + 1)

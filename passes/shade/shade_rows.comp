@@ -1,7 +1,6 @@
 // shade_rows.comp -- VPLs' light summed over the pattern along rows. shade_gather.comp sums these sums along columns.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_args.h"
 #include "shaders/common/camera.glsl"
 #include "shaders/surfaces/gbuffer.glsl"

@@ -2,7 +2,6 @@
 // what the medium scattered forward, added to that of VPLs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_place.glsl"
 #include "shade_piece.glsl"
 

@@ -2,7 +2,6 @@
 // of surface are left to shade_edges.comp.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_piece.glsl"
 #include "shade_whole.glsl"
 #define SHADE_ALONE_COUNT (SHADE_PIECE_AT + 1)

@@ -5,7 +5,6 @@
 // P + R + q R + q^2 R + ... is P + R / (1 - q); the map is (1 - q) times that, whose sum is P, as vpl_further.comp has it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/radial_args.h"
 #include "shaders/surfaces/surface_args.h"
 #include "vpl_bounce_args.h"

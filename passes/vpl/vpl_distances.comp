@@ -2,7 +2,6 @@
 // and what that reflects of its light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/beams/radial_args.h"
 #include "shaders/light/vpl_visibility.glsl"

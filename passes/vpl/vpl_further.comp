@@ -5,7 +5,6 @@
 // light is lost or made.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/radial_args.h"
 #include "vpl_bounce_args.h"
 

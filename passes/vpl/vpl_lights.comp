@@ -6,7 +6,6 @@
 // the power; light scattered forward counts as not scattered, as everywhere outside the march.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 
 #define MEDIUM_AT 11
 #include "vpl_elements.glsl"

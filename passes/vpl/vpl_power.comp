@@ -1,7 +1,6 @@
 // vpl_power.comp -- the power of all VPLs: what bins count in.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/radial_args.h"
 #include "vpl_bounce_args.h"
 

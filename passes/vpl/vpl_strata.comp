@@ -5,7 +5,6 @@
 // than lights the lights are taken together.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "vpl_args.h"
 #include "shaders/beams/radial_args.h"
 

@@ -1,7 +1,6 @@
 // vpl_weights.comp -- weights of elements, cumulated within their blocks, and of blocks.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 
 #include "vpl_elements.glsl"
 

@@ -2,7 +2,6 @@
 // keeps all threads of wall_light_vpls.comp busy on devices that run them in groups.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
 #include "wall_light_args.h"
 #include "shaders/walls/walls_links.glsl"

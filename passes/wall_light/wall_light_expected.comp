@@ -5,7 +5,6 @@
 // meets no wall of a cell.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "wall_light_args.h"
 #define MEDIUM_BLOCK 0
 #define RADIALS_AT 1

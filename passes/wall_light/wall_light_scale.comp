@@ -5,7 +5,6 @@
 // own, and farther or nearer.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "wall_light_args.h"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/walls/rooms.h"

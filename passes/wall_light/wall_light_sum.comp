@@ -2,7 +2,6 @@
 // workgroup per part; sums have a fixed order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "wall_light_args.h"
 
 layout(local_size_x = WALL_LIGHT_SUM_GROUP) in;

@@ -6,7 +6,6 @@
 // medium counts as not scattered (delta scaling), as in the lattice.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "wall_light_args.h"
 #include "shaders/surfaces/surface_args.h"
 #define MEDIUM_BLOCK 0

@@ -5,7 +5,6 @@
 // their order. A link is judged once, from one of its ends.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
 #include "walls_pass_args.h"
 #include "shaders/surfaces/surface_args.h"
