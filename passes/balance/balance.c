@@ -46,15 +46,11 @@ static void record(tyn_recorder *r, const void *params)
         };
         memcpy(&lights.lo, p->box[0], sizeof lights.lo);
         memcpy(&lights.hi, p->box[1], sizeof lights.hi);
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = 1,
-                                            .cells = {BALANCE_GROUP * args.num_followed, 1, 1},
-                                            .args = &lights,
-                                            .spec = &p->mode});
+        TYN_DISPATCH(r, .kernel = 1, .cells = {BALANCE_GROUP * args.num_followed, 1, 1},
+                     .args = &lights, .spec = &p->mode);
     }
     const uint32_t walls = tyn_rec_has(r, BALANCE_PORT_WALL_POWER);
-    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = {BALANCE_GROUP * p->channels, 1, 1},
-                                        .args = &args,
-                                        .spec = &walls});
+    TYN_DISPATCH(r, .cells = {BALANCE_GROUP * p->channels, 1, 1}, .args = &args, .spec = &walls);
 }
 
 const tyn_pass_desc tyn_pass_balance = {

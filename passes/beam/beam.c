@@ -221,11 +221,8 @@ static void record(tyn_recorder *r, const void *params)
             tyn_rec_clear(r, textures[i]);
         }
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = density ? KERNEL_DENSITY : KERNEL_COEFFICIENTS,
-                            .cells = {p->extent[0], p->extent[1], p->num_suns},
-                            .spec = &p->mode,
-                        });
+    TYN_DISPATCH(r, .kernel = density ? KERNEL_DENSITY : KERNEL_COEFFICIENTS,
+                 .cells = {p->extent[0], p->extent[1], p->num_suns}, .spec = &p->mode);
     double nodes = 0, fetches = 0;
     for (uint32_t n = 0; n < p->num_suns; n++) {
         double columns = (double)p->beams[n].nodes[0] * p->beams[n].nodes[1];

@@ -78,17 +78,12 @@ static void record(tyn_recorder *r, const void *params)
                                 .stride = num_components * nodes};
     for (args.first = 0; args.first < p->count; args.first += batch) {
         uint32_t ordinates = p->count - args.first < batch ? p->count - args.first : batch;
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = num_components > 1 ? KERNEL_COEFFICIENTS : KERNEL_DENSITY,
-                               .cells = {columns, 1, ordinates},
-                               .args = &args,
-                               .spec = &p->mode});
+        TYN_DISPATCH(r, .kernel = num_components > 1 ? KERNEL_COEFFICIENTS : KERNEL_DENSITY,
+                     .cells = {columns, 1, ordinates}, .args = &args, .spec = &p->mode);
         uint32_t rows = p->dims[1] > p->dims[2] ? p->dims[1] : p->dims[2];
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_GATHER,
-                                            .cells = {(p->dims[0] + 1) / 2 * rows, 1,
-                                                      num_components * ordinates},
-                                            .args = &args,
-                                            .spec = &p->mode});
+        TYN_DISPATCH(r, .kernel = KERNEL_GATHER,
+                     .cells = {(p->dims[0] + 1) / 2 * rows, 1, num_components * ordinates},
+                     .args = &args, .spec = &p->mode);
     }
 
     tyn_extent texels = tyn_rec_extent(r, COLUMNS_PORT_DENSITY);

@@ -56,10 +56,8 @@ static void record(tyn_recorder *r, const void *params)
         fetches *= (double)args.samples[a] * p->size[a];
     }
     bool coefficients = p->mode == TYN_MEDIUM_COEFFICIENTS;
-    tyn_rec_dispatch(r,
-                     &(tyn_dispatch){.kernel = coefficients ? KERNEL_COEFFICIENTS : KERNEL_DENSITY,
-                                     .cells = {p->size[0], p->size[1], p->size[2]},
-                                     .args = &args});
+    TYN_DISPATCH(r, .kernel = coefficients ? KERNEL_COEFFICIENTS : KERNEL_DENSITY,
+                 .cells = {p->size[0], p->size[1], p->size[2]}, .args = &args);
     tyn_rec_work(r, "fetches", fetches * (coefficients ? 3 : 1));
 }
 

@@ -33,10 +33,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_composite_params *p = params;
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = p->half_color ? KERNEL_HALF : KERNEL_FLOAT,
-                            .cells = tyn_rec_extent(r, COMPOSITE_PORT_COLOR),
-                        });
+    TYN_DISPATCH(r, .kernel = p->half_color ? KERNEL_HALF : KERNEL_FLOAT,
+                 .cells = tyn_rec_extent(r, COMPOSITE_PORT_COLOR));
 }
 
 const tyn_pass_desc tyn_pass_composite = {

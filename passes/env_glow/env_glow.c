@@ -144,23 +144,12 @@ static void record(tyn_recorder *r, const void *params)
         args.mip = (float)++mip;
     }
     uint32_t levels = num_levels(p);
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = KERNEL_ROWS,
-                            .cells = {TYN_GLOW_HEIGHT / 4, TYN_GLOW_HEIGHT, 1},
-                            .args = &args,
-                        });
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = KERNEL_ANALYSE,
-                            .cells = {DEGREES, DEGREES, 1},
-                        });
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = KERNEL_SMEAR,
-                            .cells = {TYN_GLOW_HEIGHT / 8, DEGREES, levels},
-                        });
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = KERNEL_TEXELS,
-                            .cells = {TYN_GLOW_WIDTH / 16, TYN_GLOW_HEIGHT, levels},
-                        });
+    TYN_DISPATCH(r, .kernel = KERNEL_ROWS, .cells = {TYN_GLOW_HEIGHT / 4, TYN_GLOW_HEIGHT, 1},
+                 .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_ANALYSE, .cells = {DEGREES, DEGREES, 1});
+    TYN_DISPATCH(r, .kernel = KERNEL_SMEAR, .cells = {TYN_GLOW_HEIGHT / 8, DEGREES, levels});
+    TYN_DISPATCH(r, .kernel = KERNEL_TEXELS,
+                 .cells = {TYN_GLOW_WIDTH / 16, TYN_GLOW_HEIGHT, levels});
     double smeared = 0;
     for (uint32_t level = 0; level < levels; level++) {
         double terms = series.terms[level];

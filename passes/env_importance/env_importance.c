@@ -28,21 +28,15 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_env_importance_params *p = params;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_BASE,
-                                        .cells = {SKY_WIDTH, SKY_HEIGHT, 1},
-                                        .args = &p->suns});
+    TYN_DISPATCH(r, .kernel = KERNEL_BASE, .cells = {SKY_WIDTH, SKY_HEIGHT, 1}, .args = &p->suns);
     // Three levels at once.
     for (uint8_t mip = 0; mip + 3 < SKY_MIPS; mip += 3) {
         const uint8_t mips[] = {mip, (uint8_t)(mip + 1), (uint8_t)(mip + 2), (uint8_t)(mip + 3)};
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_MIPS,
-                               .cells = {SKY_WIDTH >> (mip + 1), SKY_HEIGHT >> (mip + 1), 1},
-                               .mips = mips});
+        TYN_DISPATCH(r, .kernel = KERNEL_MIPS,
+                     .cells = {SKY_WIDTH >> (mip + 1), SKY_HEIGHT >> (mip + 1), 1}, .mips = mips);
     }
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = KERNEL_ROWS, .cells = {SKY_SUMS_WIDTH, SKY_SUMS_HEIGHT, 1}});
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = KERNEL_COLUMNS, .cells = {8 * (SKY_SUMS_WIDTH + 1), 1, 1}});
+    TYN_DISPATCH(r, .kernel = KERNEL_ROWS, .cells = {SKY_SUMS_WIDTH, SKY_SUMS_HEIGHT, 1});
+    TYN_DISPATCH(r, .kernel = KERNEL_COLUMNS, .cells = {8 * (SKY_SUMS_WIDTH + 1), 1, 1});
     tyn_extent map = tyn_rec_extent(r, ENV_IMPORTANCE_PORT_ENV_MAP);
     tyn_rec_work(r, "fetches", (double)map.x * map.y);
 }

@@ -58,21 +58,16 @@ static void record(tyn_recorder *r, const void *data)
     const tyn_extent grid = {n, n, n};
     static const uint8_t swapped[] = {PORT(CELLS), PORT(LIGHT), PORT(LIGHT_OTHER), PORT(TRACKS)};
 
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SETUP, .cells = {1, 1, 1}, .args = &args});
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = CELLS, .cells = grid, .args = &args, .spec = &p->mode});
+    TYN_DISPATCH(r, .kernel = SETUP, .cells = {1, 1, 1}, .args = &args);
+    TYN_DISPATCH(r, .kernel = CELLS, .cells = grid, .args = &args, .spec = &p->mode);
     for (int32_t i = 0; i < p->iterations; i++) {
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
-                                            .cells = grid,
-                                            .args = &args,
-                                            .ports = i % 2 == 0 ? swapped : NULL});
+        TYN_DISPATCH(r, .kernel = STEP, .cells = grid, .args = &args,
+                     .ports = i % 2 == 0 ? swapped : NULL);
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = FIELD, .cells = grid, .args = &args});
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SEND,
-                                        .cells = {TYN_IMPORTANCE_RAYS, TYN_IMPORTANCE_TEXELS, 1},
-                                        .args = &args});
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = MAP, .cells = {TYN_IMPORTANCE_TEXELS, 1, 1}, .args = &args});
+    TYN_DISPATCH(r, .kernel = FIELD, .cells = grid, .args = &args);
+    TYN_DISPATCH(r, .kernel = SEND, .cells = {TYN_IMPORTANCE_RAYS, TYN_IMPORTANCE_TEXELS, 1},
+                 .args = &args);
+    TYN_DISPATCH(r, .kernel = MAP, .cells = {TYN_IMPORTANCE_TEXELS, 1, 1}, .args = &args);
     double hops = (double)n * n * n * p->iterations;
     double steps = (double)TYN_IMPORTANCE_TEXELS * TYN_IMPORTANCE_RAYS * TYN_IMPORTANCE_RAYS *
                    TYN_IMPORTANCE_STEPS;

@@ -376,11 +376,9 @@ static void record(tyn_recorder *r, const void *params)
         list_further_cycle(&s);
     }
     for (uint32_t i = 0; i < (uint32_t)p->sweeps; i++) {
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_SWEEP,
-                               .cells = {s.args.lines, LATTICE_DIRECTIONS, p->shape.channels},
-                               .args = &s.args,
-                               .spec = sweep_spec});
+        TYN_DISPATCH(r, .kernel = KERNEL_SWEEP,
+                     .cells = {s.args.lines, LATTICE_DIRECTIONS, p->shape.channels},
+                     .args = &s.args, .spec = sweep_spec);
         on_cells(&s, KERNEL_COLLECT);
         for (int32_t c = 0; c < p->cycles; c++) {
             if (c == 0) {

@@ -40,7 +40,7 @@ static void record(tyn_recorder *r, const void *params)
         args.samples[a] = (uint32_t)fminf(fmaxf(pairs, 2), MAX_SAMPLES);
         fetches *= args.samples[a];
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = dims, .args = &args, .spec = &p->mode});
+    TYN_DISPATCH(r, .cells = dims, .args = &args, .spec = &p->mode);
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z);
     tyn_rec_work(r, "fetches", fetches * (p->mode == TYN_MEDIUM_COEFFICIENTS ? 4 : 1));
 }

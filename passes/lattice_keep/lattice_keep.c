@@ -18,8 +18,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const struct lattice_recall_args args = lattice_memory_args(params);
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = 0, .cells = lattice_memory_texels(&args), .args = &args});
+    TYN_DISPATCH(r, .kernel = 0, .cells = lattice_memory_texels(&args), .args = &args);
 }
 
 const tyn_pass_desc tyn_pass_lattice_keep = {

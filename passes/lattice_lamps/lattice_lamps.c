@@ -74,9 +74,7 @@ static void record(tyn_recorder *r, const void *params)
         const uint32_t spec[4] = {p->mode, p->shape.channels, walls,
                                   tyn_rec_has(r, LATTICE_LAMPS_PORT_SHADOW_ATLAS)};
         const tyn_extent cells = {dims.x, dims.y, dims.z * (args.num_groups - p->vpls)};
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = KERNEL_CELLS, .cells = cells, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = cells, .args = &args, .spec = spec);
     }
     if (p->vpls) {
         const uint32_t spec[5] = {p->mode, p->shape.channels,
@@ -85,17 +83,12 @@ static void record(tyn_recorder *r, const void *params)
         // Workgroups are cubes of 4^3 blocks.
         const tyn_extent blocks = {(dims.x + 7) / 8 * 8, (dims.y + 7) / 8 * 4,
                                    (dims.z + 7) / 8 * 2};
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = KERNEL_VPLS, .cells = blocks, .args = &args, .spec = spec});
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_NEAR, .cells = dims, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = KERNEL_VPLS, .cells = blocks, .args = &args, .spec = spec);
+        TYN_DISPATCH(r, .kernel = KERNEL_NEAR, .cells = dims, .args = &args, .spec = spec);
     }
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = KERNEL_SUM,
-                           .cells = {args.num_groups * LATTICE_SUN_GROUP, p->shape.channels, 1},
-                           .args = &args,
-                           .spec = &p->mode});
+    TYN_DISPATCH(r, .kernel = KERNEL_SUM,
+                 .cells = {args.num_groups * LATTICE_SUN_GROUP, p->shape.channels, 1},
+                 .args = &args, .spec = &p->mode);
     // Without VPLs nothing is written to their image, so any will do.
     const uint8_t source_ports[] = {
         LATTICE_LAMPS_PORT_POWER,
@@ -105,11 +98,8 @@ static void record(tyn_recorder *r, const void *params)
         LATTICE_LAMPS_PORT_SOURCE,
         p->vpls ? LATTICE_LAMPS_PORT_VPL_LIGHT : LATTICE_LAMPS_PORT_SOURCE,
     };
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SOURCE,
-                                        .cells = {dims.x, dims.y, dims.z * p->shape.channels},
-                                        .args = &args,
-                                        .ports = source_ports,
-                                        .spec = &p->vpls});
+    TYN_DISPATCH(r, .kernel = KERNEL_SOURCE, .cells = {dims.x, dims.y, dims.z * p->shape.channels},
+                 .args = &args, .ports = source_ports, .spec = &p->vpls);
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * p->num_lamps);
 }
 

@@ -29,9 +29,7 @@ static void record(tyn_recorder *r, const void *params)
         .count = p->count,
     };
     const uint32_t spec[2] = {p->mode, p->grey ? 1 : 3};
-    tyn_rec_dispatch(
-        r,
-        &(tyn_dispatch){.cells = {(dims.x + 1) / 2, dims.y, dims.z}, .args = &args, .spec = spec});
+    TYN_DISPATCH(r, .cells = {(dims.x + 1) / 2, dims.y, dims.z}, .args = &args, .spec = spec);
 
     // As if all ordinates were in use. A transmittance: 30 operations; sums 30.
     double cells = (double)dims.x * dims.y * dims.z * p->count;

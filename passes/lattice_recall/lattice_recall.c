@@ -32,12 +32,9 @@ static void record(tyn_recorder *r, const void *params)
 {
     const struct lattice_recall_args args = lattice_memory_args(params);
     tyn_rec_fill(r, LATTICE_RECALL_PORT_POWER, 0); // of channels that are not solved
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_POWER,
-                                        .cells = {LATTICE_SUN_GROUP * args.channels, 1, 1},
-                                        .args = &args});
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_RECALL,
-                                        .cells = lattice_memory_texels(&args),
-                                        .args = &args});
+    TYN_DISPATCH(r, .kernel = KERNEL_POWER, .cells = {LATTICE_SUN_GROUP * args.channels, 1, 1},
+                 .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_RECALL, .cells = lattice_memory_texels(&args), .args = &args);
 }
 
 const tyn_pass_desc tyn_pass_lattice_recall = {

@@ -55,17 +55,13 @@ static void record(tyn_recorder *r, const void *params)
                               tyn_rec_has(r, LATTICE_SOURCE_PORT_WALL_LINKS),
                               tyn_rec_has(r, LATTICE_SOURCE_PORT_SHADOW_ATLAS)};
     for (; args.sun < p->num_suns; args.sun++) { // one by one: then all threads read the same of it
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_BEAM, .cells = dims, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = KERNEL_BEAM, .cells = dims, .args = &args, .spec = spec);
     }
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = KERNEL_SUM,
-                           .cells = {p->num_suns * LATTICE_SUN_GROUP, p->shape.channels, 1},
-                           .args = &args,
-                           .spec = &p->mode});
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SOURCE,
-                                        .cells = {dims.x, dims.y, dims.z * p->shape.channels},
-                                        .args = &args});
+    TYN_DISPATCH(r, .kernel = KERNEL_SUM,
+                 .cells = {p->num_suns * LATTICE_SUN_GROUP, p->shape.channels, 1}, .args = &args,
+                 .spec = &p->mode);
+    TYN_DISPATCH(r, .kernel = KERNEL_SOURCE, .cells = {dims.x, dims.y, dims.z * p->shape.channels},
+                 .args = &args);
     tyn_rec_work(r, "cells", cells * p->num_suns);
     tyn_rec_work(r, "fetches", 2 * cells * p->num_suns * pow(args.samples, 3));
 }

@@ -57,13 +57,10 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t most_lamps = TYN_LIGHT_CELLS - TYN_SHADOW_SUNS;
     const uint32_t spec[] = {p->num_suns, p->num_lamps < most_lamps ? p->num_lamps : most_lamps};
     const uint8_t mips[1 + LIGHT_CELLS_LEVELS] = {0, 0, 1, 2, 3};
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_BLOCKS,
-                                        .cells = tyn_rec_extent(r, LIGHT_CELLS_PORT_BLOCKS),
-                                        .mips = mips});
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SEE,
-                                        .cells = {args.dims[0], args.dims[1], args.dims[2]},
-                                        .args = &args,
-                                        .spec = spec});
+    TYN_DISPATCH(r, .kernel = KERNEL_BLOCKS, .cells = tyn_rec_extent(r, LIGHT_CELLS_PORT_BLOCKS),
+                 .mips = mips);
+    TYN_DISPATCH(r, .kernel = KERNEL_SEE, .cells = {args.dims[0], args.dims[1], args.dims[2]},
+                 .args = &args, .spec = spec);
     tyn_rec_work(r, "cells", (double)args.dims[0] * args.dims[1] * args.dims[2]);
 }
 

@@ -74,32 +74,24 @@ static void record(tyn_recorder *r, const void *params)
     tyn_extent bricks = {p->bricks[0], p->bricks[1], p->bricks[2]};
     struct resample_args resample = {(uint32_t)p->samples};
     if (coefficients) {
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_COEFFICIENTS, .cells = size, .args = &resample});
+        TYN_DISPATCH(r, .kernel = KERNEL_COEFFICIENTS, .cells = size, .args = &resample);
         if (p->emissive) {
-            tyn_rec_dispatch(
-                r, &(tyn_dispatch){.kernel = KERNEL_EMISSION, .cells = size, .args = &resample});
+            TYN_DISPATCH(r, .kernel = KERNEL_EMISSION, .cells = size, .args = &resample);
         }
     } else if (!p->direct) {
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_DENSITY, .cells = size, .args = &resample});
+        TYN_DISPATCH(r, .kernel = KERNEL_DENSITY, .cells = size, .args = &resample);
     }
 
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_BRICKS,
-                                        .cells = bricks,
-                                        .args = &(struct bricks_args){p->direct ? 0.0f : 1.0f}});
+    TYN_DISPATCH(r, .kernel = KERNEL_BRICKS, .cells = bricks,
+                 .args = &(struct bricks_args){p->direct ? 0.0f : 1.0f});
 
     // x: bricks -> distance, y: distance -> scratch, z: scratch -> distance.
     static const uint8_t chain[] = {MEDIUM_PORT_BRICKS, MEDIUM_PORT_DISTANCE,
                                     MEDIUM_PORT_DISTANCE_SCRATCH, MEDIUM_PORT_DISTANCE};
     for (uint32_t axis = 0; axis < 3; axis++) {
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){
-                   .kernel = KERNEL_DISTANCE,
-                   .cells = bricks,
-                   .args = &(struct distance_args){axis},
-                   .ports = (const uint8_t[]){MEDIUM_PORT_MEDIUM, chain[axis], chain[axis + 1]},
-               });
+        TYN_DISPATCH(r, .kernel = KERNEL_DISTANCE, .cells = bricks,
+                     .args = &(struct distance_args){axis},
+                     .ports = (const uint8_t[]){MEDIUM_PORT_MEDIUM, chain[axis], chain[axis + 1]});
     }
     double voxels = (double)size.x * size.y * size.z;
     double written = coefficients ? (p->emissive ? 64 : 48) : p->direct ? 0 : 4;

@@ -59,23 +59,18 @@ static void record(tyn_recorder *r, const void *params)
                               .repeat = {p->repeat[0], p->repeat[1], p->repeat[2]},
                               .reach = p->reach};
     tyn_rec_fill(r, MERGE_PORT_COUNTERS, 0);
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_CELLS, .cells = dims, .args = &args});
+    TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = dims, .args = &args);
     if (tyn_rec_has(r, MERGE_PORT_ORDINATES)) {
         const uint32_t spec[3] = {p->mode, p->grey, p->channels};
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){
-                   .kernel = KERNEL_ORDINATES, .cells = dims, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = KERNEL_ORDINATES, .cells = dims, .args = &args, .spec = spec);
     }
     if (tyn_rec_has(r, MERGE_PORT_RADIALS)) {
         const uint32_t spec[4] = {p->mode, p->grey, p->channels,
                                   tyn_rec_has(r, MERGE_PORT_SHADOW_ATLAS)};
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = KERNEL_RADIALS, .cells = dims, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = KERNEL_RADIALS, .cells = dims, .args = &args, .spec = spec);
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = p->channels == 1 ? KERNEL_ONE : KERNEL_THREE,
-                                        .cells = size,
-                                        .args = &args});
+    TYN_DISPATCH(r, .kernel = p->channels == 1 ? KERNEL_ONE : KERNEL_THREE, .cells = size,
+                 .args = &args);
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z);
 }
 

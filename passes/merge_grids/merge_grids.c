@@ -59,7 +59,7 @@ static void record(tyn_recorder *r, const void *data)
         .lamps = radial(r, PORT(LAMP_SEEN), p->num_lamps, p->lamp_cells),
         .vpls = radial(r, PORT(VPL_SEEN), p->num_vpls, p->vpl_cells),
     };
-    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = dims, .args = &args, .spec = &p->mode});
+    TYN_DISPATCH(r, .cells = dims, .args = &args, .spec = &p->mode);
     tyn_rec_work(r, "cells",
                  (double)dims.x * dims.y * dims.z * (p->num_grids + p->num_lamps + p->num_vpls));
 }

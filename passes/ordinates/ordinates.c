@@ -71,15 +71,11 @@ static void record(tyn_recorder *r, const void *params)
     memcpy(block.list, p->fixed, p->num_fixed * sizeof block.list[0]);
     tyn_rec_update(r, ORDINATES_PORT_ORDINATES, 0, &block, sizeof block);
     if (args.weighted) {
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_ROWS,
-                                            .cells = {SKY_SUMS_WIDTH, SKY_SUMS_HEIGHT, 1}});
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_COLUMNS, .cells = {SKY_SUMS_WIDTH + 1, 1, 1}});
+        TYN_DISPATCH(r, .kernel = KERNEL_ROWS, .cells = {SKY_SUMS_WIDTH, SKY_SUMS_HEIGHT, 1});
+        TYN_DISPATCH(r, .kernel = KERNEL_COLUMNS, .cells = {SKY_SUMS_WIDTH + 1, 1, 1});
     }
     for (uint32_t kernel = KERNEL_PARTITION; kernel <= KERNEL_FOLD; kernel++) {
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = kernel, .cells = {TYN_ORDINATES_MAX, 1, 1}, .args = &args});
+        TYN_DISPATCH(r, .kernel = kernel, .cells = {TYN_ORDINATES_MAX, 1, 1}, .args = &args);
     }
     tyn_rec_work(r, "regions", args.regions);
 }

@@ -43,9 +43,7 @@ static void record(tyn_recorder *r, const void *params)
         args.first = first;
         args.num = num;
         args.slots = s.slots;
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){
-                   .kernel = 0, .cells = {num * s.slots, 1, 1}, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = 0, .cells = {num * s.slots, 1, 1}, .args = &args, .spec = spec);
         struct path_resolve_args resolve = {
             .first = first,
             .num = num,
@@ -55,7 +53,7 @@ static void record(tyn_recorder *r, const void *params)
             .layers = p->layers,
             .opaque = p->opaque,
         };
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = 1, .cells = {num, 1, 1}, .args = &resolve});
+        TYN_DISPATCH(r, .kernel = 1, .cells = {num, 1, 1}, .args = &resolve);
     }
     tyn_rec_work(r, "paths", (double)pixels * p->num_samples);
 }

@@ -51,17 +51,14 @@ static void record(tyn_recorder *r, const void *params)
         args.slots = threads;
         args.num_samples = groups * kinds;
         args.first_sample = (before + chunk) * args.num_samples;
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = 0, .cells = {threads, 1, 1}, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = 0, .cells = {threads, 1, 1}, .args = &args, .spec = spec);
         struct path_resolve_args sum = {
             .num = 1,
             .slots = threads,
             .samples_before = (before + chunk) * groups,
             .lamps = {p->lamp_power[0], p->lamp_power[1], p->lamp_power[2]},
         };
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = 1, .cells = {TYN_PATH_BALANCE_VALUES, 1, 1}, .args = &sum});
+        TYN_DISPATCH(r, .kernel = 1, .cells = {TYN_PATH_BALANCE_VALUES, 1, 1}, .args = &sum);
     }
     tyn_rec_work(r, "paths", (double)p->chunks * groups * kinds);
 }

@@ -17,7 +17,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_path_distance_params *p = params;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = {p->width, p->height, 1}});
+    TYN_DISPATCH(r, .cells = {p->width, p->height, 1});
 }
 
 const tyn_pass_desc tyn_pass_path_distance = {

@@ -40,15 +40,11 @@ static void record(tyn_recorder *r, const void *params)
         args.num = 1;
         args.slots = p->threads;
         args.first_sample = p->first_sample + chunk * p->num_samples;
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = 0, .cells = {p->threads, 1, 1}, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = 0, .cells = {p->threads, 1, 1}, .args = &args, .spec = spec);
         struct path_fluxes_sum_args sum = {
             .threads = p->threads, .paths = args.num_samples, .paths_before = args.first_sample};
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = 1,
-                               .cells = {TYN_PATH_FLUX_VALUES * TYN_PATH_FLUX_LANES, 1, 1},
-                               .args = &sum});
+        TYN_DISPATCH(r, .kernel = 1, .cells = {TYN_PATH_FLUX_VALUES * TYN_PATH_FLUX_LANES, 1, 1},
+                     .args = &sum);
     }
     tyn_rec_work(r, "paths", (double)p->threads * p->chunks * p->num_samples);
 }

@@ -41,8 +41,7 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t spec[5] = {
         p->mode, tyn_rec_has(r, PROBE_PORT_WALL_LINKS), tyn_rec_has(r, PROBE_PORT_SHADOW_ATLAS),
         tyn_rec_has(r, PROBE_PORT_VPL_DISTANCES), tyn_rec_has(r, PROBE_PORT_ROOMS)};
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.cells = {args.num_points, 1, 1}, .args = &args, .spec = spec});
+    TYN_DISPATCH(r, .cells = {args.num_points, 1, 1}, .args = &args, .spec = spec);
     tyn_rec_work(r, "points", args.num_points);
 }
 

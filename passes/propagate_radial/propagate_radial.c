@@ -130,28 +130,19 @@ static void record_batch(tyn_recorder *r, const tyn_propagate_radial_params *p,
     uint32_t layers =
         (args->layers + EDGE - 1) / EDGE * EDGE; // no workgroup has cells of two grids
     tyn_extent all = {side, side, layers * stacks};
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = CELLS,
-                                        .cells = {side, side, layers * args->count},
-                                        .args = args,
-                                        .spec = &p->mode});
+    TYN_DISPATCH(r, .kernel = CELLS, .cells = {side, side, layers * args->count}, .args = args,
+                 .spec = &p->mode);
     // The states are written alternately, so that the last one lands in the output.
     bool other = p->iterations % 2 != 0;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
-                                        .cells = {side, side, stacks},
-                                        .args = args,
-                                        .ports = tyn_ports_exchanged(&kernels[START], swap,
-                                                                     other ? 2 : 0, table)});
+    TYN_DISPATCH(r, .kernel = START, .cells = {side, side, stacks}, .args = args,
+                 .ports = tyn_ports_exchanged(&kernels[START], swap, other ? 2 : 0, table));
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
-                                            .cells = all,
-                                            .args = args,
-                                            .ports = tyn_ports_exchanged(&kernels[STEP], swap,
-                                                                         other ? 2 : 0, table)});
+        TYN_DISPATCH(r, .kernel = STEP, .cells = all, .args = args,
+                     .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? 2 : 0, table));
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = COLLECT,
-                                        .cells = {side + 2, side + 2, layers * stacks},
-                                        .args = args});
+    TYN_DISPATCH(r, .kernel = COLLECT, .cells = {side + 2, side + 2, layers * stacks},
+                 .args = args);
 }
 
 static void record(tyn_recorder *r, const void *data)
@@ -177,9 +168,8 @@ static void record(tyn_recorder *r, const void *data)
         args.voxel = fminf(args.voxel, p->extent[i] / (float)p->size[i]);
     }
     tyn_rec_update(r, PORT(LAMPS), 0, p->lamps, sizeof p->lamps);
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SETUP,
-                                        .cells = {PROPAGATE_RADIAL_LANES * num_grids(p), 1, 1},
-                                        .args = &args});
+    TYN_DISPATCH(r, .kernel = SETUP, .cells = {PROPAGATE_RADIAL_LANES * num_grids(p), 1, 1},
+                 .args = &args);
     // Tiles without a grid must be numbers: a linear fetch at an edge gives them a weight of 0.
     tyn_rec_clear(r, PORT(SEEN));
     for (args.first = 0; args.first < num_grids(p); args.first += args.count) {

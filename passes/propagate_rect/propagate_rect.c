@@ -157,9 +157,8 @@ static tyn_result declare(tyn_builder *b, const void *data)
 static void record_shrink(tyn_recorder *r, const tyn_propagate_rect_params *p)
 {
     bool density = p->mode == TYN_MEDIUM_DENSITY;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = density ? SHRINK_DENSITY : SHRINK_COEFFICIENTS,
-                                        .cells = small_of(p),
-                                        .spec = &p->mode});
+    TYN_DISPATCH(r, .kernel = density ? SHRINK_DENSITY : SHRINK_COEFFICIENTS, .cells = small_of(p),
+                 .spec = &p->mode);
 }
 
 // All iterations of args->count grids from args->first.
@@ -177,31 +176,22 @@ static void record_batch(tyn_recorder *r, const tyn_propagate_rect_params *p,
     tyn_extent all = {args->cells, args->cells, layers * stacks};
     uint32_t shrunk = !small_of(p).x ? 0 : p->mode == TYN_MEDIUM_COEFFICIENTS ? 3 : 1;
 
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = CELLS,
-                           .cells = {args->cells, args->cells, layers * args->count},
-                           .args = args,
-                           .ports = tyn_ports_exchanged(&kernels[CELLS], small, shrunk, table),
-                           .spec = &p->mode});
+    TYN_DISPATCH(r, .kernel = CELLS, .cells = {args->cells, args->cells, layers * args->count},
+                 .args = args, .ports = tyn_ports_exchanged(&kernels[CELLS], small, shrunk, table),
+                 .spec = &p->mode);
     // The states are written alternately, so that the last one lands in the output.
     bool other = p->iterations % 2 != 0;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
-                                        .cells = {args->cells, args->cells, stacks},
-                                        .args = args,
-                                        .ports = tyn_ports_exchanged(&kernels[START], swap,
-                                                                     other ? 2 : 0, table),
-                                        .spec = &init});
+    TYN_DISPATCH(r, .kernel = START, .cells = {args->cells, args->cells, stacks}, .args = args,
+                 .ports = tyn_ports_exchanged(&kernels[START], swap, other ? 2 : 0, table),
+                 .spec = &init);
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
-                                            .cells = all,
-                                            .args = args,
-                                            .ports = tyn_ports_exchanged(&kernels[STEP], swap,
-                                                                         other ? 2 : 0, table)});
+        TYN_DISPATCH(r, .kernel = STEP, .cells = all, .args = args,
+                     .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? 2 : 0, table));
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = COLLECT, .cells = all, .args = args});
+    TYN_DISPATCH(r, .kernel = COLLECT, .cells = all, .args = args);
     if (p->keep_light) {
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = LIGHT, .cells = all, .args = args});
+        TYN_DISPATCH(r, .kernel = LIGHT, .cells = all, .args = args);
     }
 }
 
@@ -219,8 +209,7 @@ static void record(tyn_recorder *r, const void *data)
         .voxel = voxel_of(p),
         .tiles = tiles_of(p),
     };
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = SETUP, .cells = {p->num_ordinates, 1, 1}, .args = &args});
+    TYN_DISPATCH(r, .kernel = SETUP, .cells = {p->num_ordinates, 1, 1}, .args = &args);
     if (small_of(p).x) {
         record_shrink(r, p);
     }

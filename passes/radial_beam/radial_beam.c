@@ -162,9 +162,8 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_radial_beam_params *p = params;
     struct radial_beam_args args = layout(p);
     tyn_rec_update(r, RADIAL_BEAM_PORT_LAMPS, 0, p->lamps, sizeof p->lamps);
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SETUP,
-                                        .cells = {p->num_lamps + p->max_vpls, 1, 1},
-                                        .args = &args});
+    TYN_DISPATCH(r, .kernel = KERNEL_SETUP, .cells = {p->num_lamps + p->max_vpls, 1, 1},
+                 .args = &args);
     uint32_t groups = 0;
     double nodes = 0;
     for (uint32_t c = 0; c < RADIAL_CLASSES; c++) {
@@ -173,12 +172,9 @@ static void record(tyn_recorder *r, const void *params)
         nodes += (double)class->count * class->cells * class->cells * (class->shells + 1);
     }
     bool density = p->mode == TYN_MEDIUM_DENSITY;
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = density ? KERNEL_DENSITY : KERNEL_COEFFICIENTS,
-                            .cells = {groups * RADIAL_GROUP * RADIAL_GROUP, 1, 1},
-                            .args = &args,
-                            .spec = &p->mode,
-                        });
+    TYN_DISPATCH(r, .kernel = density ? KERNEL_DENSITY : KERNEL_COEFFICIENTS,
+                 .cells = {groups * RADIAL_GROUP * RADIAL_GROUP, 1, 1}, .args = &args,
+                 .spec = &p->mode);
     tyn_rec_work(r, "cells", nodes);
     tyn_rec_work(r, "bytes", nodes * (density ? 4 : 48));
 }

@@ -253,13 +253,8 @@ static void record(tyn_recorder *r, const void *params)
     bind(p, raymarch_background_bindings, NUM_BACKGROUND_BINDINGS, background_ports);
     bind(p, raymarch_grey_bindings, NUM_BINDINGS, ports_of);
     const uint32_t kernel = p->grey ? KERNEL_GREY : KERNEL_COLOUR;
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = KERNEL_BACKGROUND,
-                            .cells = {p->width, p->height, 1},
-                            .args = &args,
-                            .ports = background_ports,
-                            .spec = spec,
-                        });
+    TYN_DISPATCH(r, .kernel = KERNEL_BACKGROUND, .cells = {p->width, p->height, 1}, .args = &args,
+                 .ports = background_ports, .spec = spec);
     ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_RADIANCE; // bound, but not written to or read
     ports_of[SPARSE_TEXTURE] = RAYMARCH_PORT_DISTANCES;
     tyn_dispatch rays = {.kernel = kernel, .args = &args, .ports = ports_of, .spec = spec};

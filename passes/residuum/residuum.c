@@ -81,21 +81,15 @@ static void record(tyn_recorder *r, const void *data)
         .tiles = tyn_rec_extent(r, PORT(LIGHT)).x / p->grid_cells,
     };
     bool other = p->iterations % 2 != 0;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
-                                        .cells = dims,
-                                        .args = &args,
-                                        .ports = tyn_ports_exchanged(&kernels[START], swap,
-                                                                     other ? 2 : 0, table),
-                                        .spec = &p->mode});
+    TYN_DISPATCH(r, .kernel = START, .cells = dims, .args = &args,
+                 .ports = tyn_ports_exchanged(&kernels[START], swap, other ? 2 : 0, table),
+                 .spec = &p->mode);
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
-                                            .cells = dims,
-                                            .args = &args,
-                                            .ports = tyn_ports_exchanged(&kernels[STEP], swap,
-                                                                         other ? 2 : 0, table)});
+        TYN_DISPATCH(r, .kernel = STEP, .cells = dims, .args = &args,
+                     .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? 2 : 0, table));
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = COLLECT, .cells = dims, .args = &args});
+    TYN_DISPATCH(r, .kernel = COLLECT, .cells = dims, .args = &args);
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * p->iterations);
 }
 

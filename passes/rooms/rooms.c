@@ -40,12 +40,11 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_dispatch find = {
         .kernel = KERNEL_CELLS, .cells = {TYN_ROOMS_ELEMENTS(cells), 1, 1}, .args = &args};
     tyn_rec_fill(r, ROOMS_PORT_FOREST, 0);
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = KERNEL_LINKS, .cells = {cells, 1, 1}, .args = &args});
+    TYN_DISPATCH(r, .kernel = KERNEL_LINKS, .cells = {cells, 1, 1}, .args = &args);
     tyn_rec_dispatch(r, &find);
     const tyn_extent maps = tyn_rec_extent(r, ROOMS_PORT_VPL_DISTANCES);
     if (maps.x > 1) { // else VPLs see all
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_VPLS, .cells = maps, .args = &args});
+        TYN_DISPATCH(r, .kernel = KERNEL_VPLS, .cells = maps, .args = &args);
         tyn_rec_dispatch(r, &find);
     }
     tyn_rec_work(r, "cells", cells);

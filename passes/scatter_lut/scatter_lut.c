@@ -183,11 +183,8 @@ static void record(tyn_recorder *r, const void *params)
         }
     }
     tyn_rec_update(r, SCATTER_LUT_PORT_LUT_BLOCK, 0, &block, sizeof(block));
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){
-               .kernel = KERNEL_SUM,
-               .cells = {TYN_LUT_ANGLES / 4, TYN_LUT_DEPTHS * block.num_sets, block.num_rows},
-           });
+    TYN_DISPATCH(r, .kernel = KERNEL_SUM,
+                 .cells = {TYN_LUT_ANGLES / 4, TYN_LUT_DEPTHS * block.num_sets, block.num_rows});
     // Per term and texel: the recurrence (5), the sums (4).
     double texel_terms = terms_of_lut * TYN_LUT_ANGLES * TYN_LUT_DEPTHS;
     double flops = 9 * texel_terms,
@@ -199,10 +196,8 @@ static void record(tyn_recorder *r, const void *params)
         }
         tyn_rec_update(r, SCATTER_LUT_PORT_CONES, 0, cones, CONES_BYTES);
         uint32_t layers = TYN_TMS_CONES * block.num_rows;
-        tyn_rec_dispatch(r, &(tyn_dispatch){
-                                .kernel = KERNEL_TMS,
-                                .cells = {TYN_TMS_ANGLES / 4, TYN_TMS_DEPTHS / 4, layers},
-                            });
+        TYN_DISPATCH(r, .kernel = KERNEL_TMS,
+                     .cells = {TYN_TMS_ANGLES / 4, TYN_TMS_DEPTHS / 4, layers});
         for (uint32_t row = 0; row < block.num_rows; row++) {
             // Four depths share the recurrence.
             flops += 3.25 * block.tms_terms[row] * TYN_TMS_ANGLES * TYN_TMS_DEPTHS * TYN_TMS_CONES;

@@ -135,7 +135,7 @@ static void record(tyn_recorder *r, const void *data)
     tyn_dispatch d = {.args = &args, .spec = spec};
     if (features & SHADE_SPREAD) {
         tyn_extent cells = {forward.x, forward.y, forward.z / p->num_suns};
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = FORWARD, .cells = cells, .spec = spec});
+        TYN_DISPATCH(r, .kernel = FORWARD, .cells = cells, .spec = spec);
     }
     if (features & SHADE_OUTSIDE) {
         d.kernel = FACES;
@@ -157,7 +157,7 @@ static void record(tyn_recorder *r, const void *data)
             (tyn_extent){(blocks.x + side - 1) / side,
                          (blocks.y + side * SHADE_MANY - 1) / (side * SHADE_MANY), side * side};
         tyn_rec_dispatch(r, &d);
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SUM_ROWS, .cells = blocks, .spec = spec + 4});
+        TYN_DISPATCH(r, .kernel = SUM_ROWS, .cells = blocks, .spec = spec + 4);
         tyn_rec_fill(r, PORT(ALONE_COUNT), 0);
         d.kernel = GATHER;
         d.cells = blocks;

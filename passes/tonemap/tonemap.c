@@ -35,11 +35,7 @@ static void record(tyn_recorder *r, const void *params)
         .dither = p->dither,
         .opaque = p->opaque,
     };
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = 0,
-                            .cells = tyn_rec_extent(r, TONEMAP_PORT_DISPLAY),
-                            .args = &args,
-                        });
+    TYN_DISPATCH(r, .kernel = 0, .cells = tyn_rec_extent(r, TONEMAP_PORT_DISPLAY), .args = &args);
 }
 
 const tyn_pass_desc tyn_pass_tonemap = {

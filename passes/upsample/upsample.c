@@ -51,7 +51,7 @@ static void record(tyn_recorder *r, const void *data)
     tyn_extent dims = dims_of(p, tyn_rec_extent(r, PORT(MERGED)));
     tyn_extent texels = tyn_rec_extent(r, PORT(INSCATTER));
     struct upsample_args args = {{dims.x, dims.y, dims.z}, p->range};
-    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = texels, .args = &args, .spec = &p->mode});
+    TYN_DISPATCH(r, .cells = texels, .args = &args, .spec = &p->mode);
     tyn_rec_work(r, "cells", (double)texels.x * texels.y * texels.z);
 }
 

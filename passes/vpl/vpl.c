@@ -143,16 +143,11 @@ static void make_lights(tyn_recorder *r, const struct vpl_plan *plan, const stru
         weights[i] = i < 4 ? lights[i] : vpl_weights_bindings[i].port;
     }
     tyn_rec_update(r, PORT(PLAN), 0, plan, sizeof *plan);
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = WEIGHTS,
-                                        .cells = {plan->num_blocks * VPL_LANES, 1, 1},
-                                        .ports = weights});
-    tyn_rec_dispatch(r,
-                     &(tyn_dispatch){.kernel = STRATA, .cells = {VPL_BLOCK, 1, 1}, .args = args});
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = LIGHTS,
-                                        .cells = {args->count * VPL_LANES, 1, 1},
-                                        .args = args,
-                                        .ports = lights,
-                                        .spec = &mode});
+    TYN_DISPATCH(r, .kernel = WEIGHTS, .cells = {plan->num_blocks * VPL_LANES, 1, 1},
+                 .ports = weights);
+    TYN_DISPATCH(r, .kernel = STRATA, .cells = {VPL_BLOCK, 1, 1}, .args = args);
+    TYN_DISPATCH(r, .kernel = LIGHTS, .cells = {args->count * VPL_LANES, 1, 1}, .args = args,
+                 .ports = lights, .spec = &mode);
     tyn_rec_work(r, "elements", (double)plan->num_blocks * VPL_BLOCK);
 }
 
@@ -160,7 +155,7 @@ static void make_lights(tyn_recorder *r, const struct vpl_plan *plan, const stru
 static void count_reflections(tyn_recorder *r)
 {
     tyn_rec_fill(r, PORT(BINS), 0);
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = POWER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1}});
+    TYN_DISPATCH(r, .kernel = POWER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1});
 }
 
 static void record(tyn_recorder *r, const void *data)
@@ -199,14 +194,12 @@ static void record(tyn_recorder *r, const void *data)
         for (uint32_t i = 0; i < 2; i++) {
             const struct vpl_bounce_args of = {i};
             added.append = 1 + i;
-            tyn_rec_dispatch(
-                r, &(tyn_dispatch){.kernel = BOUNCE, .cells = {VPL_BLOCK, 1, 1}, .args = &of});
+            TYN_DISPATCH(r, .kernel = BOUNCE, .cells = {VPL_BLOCK, 1, 1}, .args = &of);
             make_lights(r, &plan, &added, true, p->mode);
             count_reflections(r);
             tyn_rec_dispatch(r, &see);
         }
-        tyn_rec_dispatch(r,
-                         &(tyn_dispatch){.kernel = FURTHER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1}});
+        TYN_DISPATCH(r, .kernel = FURTHER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1});
     }
     // Those of further reflections stand in two places, one after the other.
     tyn_rec_work(r, "rays", ((double)p->count + later) * side * side);

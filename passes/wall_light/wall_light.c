@@ -63,19 +63,16 @@ static void record_vpls(tyn_recorder *r, const tyn_wall_light_params *p,
     tyn_rec_fill(r, WALL_LIGHT_PORT_LIST, 0);
     tyn_rec_fill(r, WALL_LIGHT_PORT_FIRST, WALL_LIGHT_DARK);
     tyn_rec_fill(r, WALL_LIGHT_PORT_POWER, 0);
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = EXPECTED, .cells = vpls, .args = args, .spec = of_vpls});
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = WALL_CELLS, .cells = all, .args = args, .spec = of_cells});
+    TYN_DISPATCH(r, .kernel = EXPECTED, .cells = vpls, .args = args, .spec = of_vpls);
+    TYN_DISPATCH(r, .kernel = WALL_CELLS, .cells = all, .args = args, .spec = of_cells);
     tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = VPLS, .args = args, .spec = of_vpls},
                               WALL_LIGHT_PORT_LIST, 0);
     if (scaled) {
         const tyn_extent parts = {args->num_parts * WALL_LIGHT_SUM_GROUP, 1, 1};
         const tyn_extent one = {WALL_LIGHT_VPLS, 1, 1};
         tyn_rec_fill(r, WALL_LIGHT_PORT_PARTS, 0);
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = SUM, .cells = parts, .args = args, .spec = &rooms});
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SCALE, .cells = one, .args = args});
+        TYN_DISPATCH(r, .kernel = SUM, .cells = parts, .args = args, .spec = &rooms);
+        TYN_DISPATCH(r, .kernel = SCALE, .cells = one, .args = args);
     }
     tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = REFLECT, .args = args, .spec = of_cells},
                               WALL_LIGHT_PORT_LIST, 0);
@@ -92,8 +89,7 @@ static void record(tyn_recorder *r, const void *params)
     };
     const tyn_extent cells = {p->dims[0], p->dims[1], p->dims[2]};
     if (p->num_suns > 0) {
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = SUNS, .cells = cells, .args = &args, .spec = &p->mode});
+        TYN_DISPATCH(r, .kernel = SUNS, .cells = cells, .args = &args, .spec = &p->mode);
     }
     if (tyn_rec_has(r, WALL_LIGHT_PORT_RADIALS)) {
         record_vpls(r, p, &args);

@@ -49,16 +49,13 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_fill(r, WALLS_PORT_HITS, 0xffffffffu);
     tyn_rec_fill(r, WALLS_PORT_NEAREST, 0xffffffffu);
     if (args.row > 0) {
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = KERNEL_SCATTER,
-                            .cells = {args.row * WALLS_GROUP,
-                                      (args.num_triangles + args.row - 1) / args.row, args.slices},
-                            .args = &args});
+        TYN_DISPATCH(r, .kernel = KERNEL_SCATTER,
+                     .cells = {args.row * WALLS_GROUP,
+                               (args.num_triangles + args.row - 1) / args.row, args.slices},
+                     .args = &args);
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_CELLS,
-                                        .cells = {p->dims[0], p->dims[1], p->dims[2]},
-                                        .args = &args});
+    TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = {p->dims[0], p->dims[1], p->dims[2]},
+                 .args = &args);
     tyn_rec_work(r, "triangles", args.num_triangles);
     tyn_rec_work(r, "cells", (double)p->dims[0] * p->dims[1] * p->dims[2]);
 }

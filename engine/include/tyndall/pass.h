@@ -261,6 +261,8 @@ typedef struct tyn_dispatch {
     const char *label;    // for captures and dumps; NULL = the kernel's name
 } tyn_dispatch;
 TYN_API void tyn_rec_dispatch(tyn_recorder *r, const tyn_dispatch *d);
+// TYN_DISPATCH(r, .kernel = SUM, .cells = {n, 1, 1}, .args = &args)
+#define TYN_DISPATCH(r, ...) tyn_rec_dispatch(r, &(tyn_dispatch){__VA_ARGS__})
 // For tyn_dispatch.ports: into `out` the ports of the kernel's table, pairs[i][0] replaced by pairs[i][1]. `out` is
 // returned.
 TYN_API const uint8_t *tyn_ports_exchanged(const tyn_kernel *kernel, const uint8_t (*pairs)[2],
