@@ -81,15 +81,22 @@ static void print_surfaces(const tyn_scene *scene)
         const tyn_surface_material *m = &s->materials[i];
         const double area = material_area(s, i);
         const int sides = m->flags & TYN_SURFACE_EMITS_BOTH_SIDES ? 2 : 1;
-        printf("material %u: albedo %g %g %g", i, m->albedo[0], m->albedo[1], m->albedo[2]);
+        printf("material %u: %.4g m^2", i, area);
         if (m->texture != TYN_NO_TEXTURE) {
-            printf(" x texture %u", m->texture);
+            printf(", texture %u", m->texture);
         }
-        printf(", %.4g m^2\n", area);
+        for (int k = 0; k < TYN_MATERIAL_NUM_FIELDS; k++) {
+            const tyn_material_field *f = &tyn_material_fields[k];
+            const float *v = (const float *)((const char *)m + f->offset);
+            for (uint32_t c = 0; c < f->count; c++) {
+                printf("%s%s %g", c ? "" : ", ", c ? "" : f->name, v[c]);
+            }
+            printf("%s%s", *f->unit ? " " : "", f->unit);
+        }
+        printf("\n");
         if (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0) {
             const double factor = 3.14159265358979 * area * sides; // of a Lambertian emitter
-            print_color("  emission ", m->emission, " W/(m^2 sr)");
-            printf(" from %s, %.4g %.4g %.4g W\n", sides == 2 ? "both sides" : "the front",
+            printf("  emits from %s, %.4g %.4g %.4g W\n", sides == 2 ? "both sides" : "the front",
                    factor * m->emission[0], factor * m->emission[1], factor * m->emission[2]);
         }
     }

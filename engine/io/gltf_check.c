@@ -7,13 +7,6 @@
 
 #define HALF_PI 1.57079632679489662
 #define MAX_INT 2147483647
-#define TRY(call)                                                                                  \
-    do {                                                                                           \
-        tyn_result r_ = (call);                                                                    \
-        if (r_) {                                                                                  \
-            return r_;                                                                             \
-        }                                                                                          \
-    } while (0)
 
 typedef struct checker {
     const json_doc *doc;
@@ -74,9 +67,7 @@ static tyn_result check_asset(const checker *c)
     cJSON *asset;
     const char *version = NULL;
     TRY(tyn_json_object(c->doc, c->doc->root, "asset", &asset));
-    if (asset) {
-        TRY(tyn_json_string(c->doc, asset, "version", &version));
-    }
+    TRY(tyn_json_string(c->doc, asset, "version", &version));
     if (!version || strncmp(version, "2.", 2) != 0) {
         return tyn_json_fault(c->doc, asset ? asset : c->doc->root,
                               "asset.version must be \"2.0\": only glTF 2 is read");
@@ -250,10 +241,8 @@ static tyn_result check_material(const checker *c, const cJSON *material)
 {
     cJSON *pbr;
     TRY(tyn_json_object(c->doc, material, "pbrMetallicRoughness", &pbr));
-    if (pbr) {
-        TRY(check_texture_info(c, pbr, "baseColorTexture"));
-        TRY(check_texture_info(c, pbr, "metallicRoughnessTexture"));
-    }
+    TRY(check_texture_info(c, pbr, "baseColorTexture"));
+    TRY(check_texture_info(c, pbr, "metallicRoughnessTexture"));
     TRY(check_texture_info(c, material, "normalTexture"));
     TRY(check_texture_info(c, material, "occlusionTexture"));
     return check_texture_info(c, material, "emissiveTexture");
@@ -376,13 +365,8 @@ static tyn_result check_node(const checker *c, const cJSON *node)
                               "a node has either a matrix or translation, rotation and scale");
     }
     TRY(tyn_json_object(c->doc, node, "extensions", &extensions));
-    if (extensions) {
-        TRY(tyn_json_object(c->doc, extensions, "KHR_lights_punctual", &lights));
-        if (lights) {
-            TRY(check_index(c, lights, "light", &c->lights, "lights"));
-        }
-    }
-    return TYN_OK;
+    TRY(tyn_json_object(c->doc, extensions, "KHR_lights_punctual", &lights));
+    return check_index(c, lights, "light", &c->lights, "lights");
 }
 
 // Every node has at most one parent and is its own ancestor nowhere.
@@ -455,7 +439,7 @@ static tyn_result check_nodes(const checker *c)
 static tyn_result check_all(checker *c)
 {
     const json_doc *doc = c->doc;
-    cJSON *extensions, *lights = NULL;
+    cJSON *extensions, *lights;
     TRY(check_asset(c));
     TRY(check_extensions(c));
     TRY(tyn_json_list(doc, doc->root, "buffers", &c->buffers));
@@ -470,12 +454,8 @@ static tyn_result check_all(checker *c)
     TRY(tyn_json_list(doc, doc->root, "nodes", &c->nodes));
     TRY(tyn_json_list(doc, doc->root, "scenes", &c->scenes));
     TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
-    if (extensions) {
-        TRY(tyn_json_object(doc, extensions, "KHR_lights_punctual", &lights));
-    }
-    if (lights) {
-        TRY(tyn_json_list(doc, lights, "lights", &c->lights));
-    }
+    TRY(tyn_json_object(doc, extensions, "KHR_lights_punctual", &lights));
+    TRY(tyn_json_list(doc, lights, "lights", &c->lights));
     for (int64_t i = 0; i < c->buffers.count; i++) {
         TRY(check_buffer(c, i));
     }

@@ -8,14 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TRY(call)                                                                                  \
-    do {                                                                                           \
-        tyn_result r_ = (call);                                                                    \
-        if (r_) {                                                                                  \
-            return r_;                                                                             \
-        }                                                                                          \
-    } while (0)
-
 // ---- open, close ------------------------------------------------------------------------------
 
 tyn_result tyn_gltf_materials_open(gltf_materials *m, const gltf_data *data, tyn_scene *scene)
@@ -84,20 +76,15 @@ static tyn_result read_texture_info(gltf_materials *m, const cJSON *info, gltf_m
     const json_doc *doc = m->textures.data->doc;
     int64_t texcoord = 0;
     double offset[2] = {0, 0}, scale[2] = {1, 1}, angle = 0;
-    cJSON *extensions, *transform = NULL;
+    cJSON *extensions, *transform;
     TRY(tyn_json_integer(doc, info, "texCoord", 0, 15, "a whole number, 0 to 15", &texcoord));
     TRY(tyn_json_object(doc, info, "extensions", &extensions));
-    if (extensions) {
-        TRY(tyn_json_object(doc, extensions, "KHR_texture_transform", &transform));
-    }
-    if (transform) {
-        const char *finite = "a finite number";
-        TRY(tyn_json_integer(doc, transform, "texCoord", 0, 15, "a whole number, 0 to 15",
-                             &texcoord));
-        TRY(tyn_json_numbers(doc, transform, "offset", 2, -1e9, 1e9, finite, offset));
-        TRY(tyn_json_numbers(doc, transform, "scale", 2, -1e9, 1e9, finite, scale));
-        TRY(tyn_json_number(doc, transform, "rotation", -1e9, 1e9, finite, &angle));
-    }
+    TRY(tyn_json_object(doc, extensions, "KHR_texture_transform", &transform));
+    const char *finite = "a finite number";
+    TRY(tyn_json_integer(doc, transform, "texCoord", 0, 15, "a whole number, 0 to 15", &texcoord));
+    TRY(tyn_json_numbers(doc, transform, "offset", 2, -1e9, 1e9, finite, offset));
+    TRY(tyn_json_numbers(doc, transform, "scale", 2, -1e9, 1e9, finite, scale));
+    TRY(tyn_json_number(doc, transform, "rotation", -1e9, 1e9, finite, &angle));
     const double c = cos(angle), s = sin(angle);
     const double uv[2][3] = {{c * scale[0], s * scale[1], offset[0]},
                              {-s * scale[0], c * scale[1], offset[1]}};
@@ -108,57 +95,67 @@ static tyn_result read_texture_info(gltf_materials *m, const cJSON *info, gltf_m
     return tyn_gltf_texture_get(&m->textures, info, texture);
 }
 
+// The factors of all fields, which are those but for textures and extensions.
+static tyn_result read_factors(const json_doc *doc, const cJSON *json, double factors[][4])
+{
+    for (int k = 0; k < TYN_MATERIAL_NUM_FIELDS; k++) {
+        const tyn_material_field *f = &tyn_material_fields[k];
+        cJSON *object = NULL;
+        for (int c = 0; c < 4; c++) {
+            factors[k][c] = f->factor_def;
+        }
+        if (f->object) {
+            TRY(tyn_json_object(doc, json, f->object, &object));
+        }
+        TRY(tyn_json_numbers(doc, f->object ? object : json, f->factor, f->factors, 0, 1,
+                             "between 0 and 1", factors[k]));
+    }
+    return TYN_OK;
+}
+
 static tyn_result read_albedo(gltf_materials *m, int64_t index, const cJSON *json,
-                              gltf_material *out, tyn_surface_material *material)
+                              gltf_material *out, uint32_t *texture, double factor[4])
 {
     const json_doc *doc = m->textures.data->doc;
-    double factor[4] = {1, 1, 1, 1}, metallic = 1, mean[4];
-    cJSON *pbr, *info = NULL, *metal = NULL;
+    double metallic = 1, mean[4];
+    cJSON *pbr, *info, *metal;
     TRY(tyn_json_object(doc, json, "pbrMetallicRoughness", &pbr));
-    if (pbr) {
-        TRY(tyn_json_numbers(doc, pbr, "baseColorFactor", 4, 0, 1, "between 0 and 1", factor));
-        TRY(tyn_json_number(doc, pbr, "metallicFactor", 0, 1, "between 0 and 1", &metallic));
-        TRY(tyn_json_object(doc, pbr, "baseColorTexture", &info));
-        TRY(tyn_json_object(doc, pbr, "metallicRoughnessTexture", &metal));
-    }
+    TRY(tyn_json_number(doc, pbr, "metallicFactor", 0, 1, "between 0 and 1", &metallic));
+    TRY(tyn_json_object(doc, pbr, "baseColorTexture", &info));
+    TRY(tyn_json_object(doc, pbr, "metallicRoughnessTexture", &metal));
     if (metal && metallic > 0) { // metalness is in the blue channel, linear
         TRY(tyn_gltf_texture_mean(&m->textures, metal, false, mean));
         metallic *= mean[2];
         lack(m, index, LACK_METAL_TEXTURE);
     }
     if (info) {
-        TRY(read_texture_info(m, info, out, &material->texture));
-    }
-    for (int c = 0; c < 3; c++) {
-        material->albedo[c] = (float)(factor[c] * (1 - metallic));
+        TRY(read_texture_info(m, info, out, texture));
     }
     if (metallic == 1 && factor[0] + factor[1] + factor[2] > 0) {
         lack(m, index, LACK_METAL);
+    }
+    for (int c = 0; c < 3; c++) {
+        factor[c] *= 1 - metallic;
     }
     return TYN_OK;
 }
 
 static tyn_result read_emission(gltf_materials *m, int64_t index, const cJSON *json,
-                                tyn_surface_material *material)
+                                double factor[3])
 {
     const json_doc *doc = m->textures.data->doc;
-    double factor[3] = {0, 0, 0}, strength = 1, mean[4] = {1, 1, 1, 1};
-    cJSON *extensions, *strong = NULL, *info;
-    TRY(tyn_json_numbers(doc, json, "emissiveFactor", 3, 0, 1, "between 0 and 1", factor));
+    double strength = 1, mean[4] = {1, 1, 1, 1};
+    cJSON *extensions, *strong, *info;
     TRY(tyn_json_object(doc, json, "extensions", &extensions));
-    if (extensions) {
-        TRY(tyn_json_object(doc, extensions, "KHR_materials_emissive_strength", &strong));
-    }
-    if (strong) {
-        TRY(tyn_json_number(doc, strong, "emissiveStrength", 0, 1e30, "a number >= 0", &strength));
-    }
+    TRY(tyn_json_object(doc, extensions, "KHR_materials_emissive_strength", &strong));
+    TRY(tyn_json_number(doc, strong, "emissiveStrength", 0, 1e30, "a number >= 0", &strength));
     TRY(tyn_json_object(doc, json, "emissiveTexture", &info));
     if (info && factor[0] + factor[1] + factor[2] > 0) {
         TRY(tyn_gltf_texture_mean(&m->textures, info, true, mean));
         lack(m, index, LACK_EMISSIVE_TEXTURE);
     }
     for (int c = 0; c < 3; c++) {
-        material->emission[c] = (float)(factor[c] * strength * mean[c]);
+        factor[c] = factor[c] * strength * mean[c];
     }
     return TYN_OK;
 }
@@ -212,8 +209,17 @@ tyn_result tyn_gltf_material_get(gltf_materials *m, int64_t index, const gltf_ma
         lack(m, at, LACK_METAL);
     } else {
         const cJSON *json = m->list.items[at];
-        TRY(read_albedo(m, at, json, loaded, &material));
-        TRY(read_emission(m, at, json, &material));
+        double factors[TYN_MATERIAL_NUM_FIELDS][4];
+        TRY(read_factors(m->textures.data->doc, json, factors));
+        TRY(read_albedo(m, at, json, loaded, &material.texture, factors[TYN_MATERIAL_ALBEDO]));
+        TRY(read_emission(m, at, json, factors[TYN_MATERIAL_EMISSION]));
+        for (int k = 0; k < TYN_MATERIAL_NUM_FIELDS; k++) {
+            const tyn_material_field *f = &tyn_material_fields[k];
+            float *v = (float *)((char *)&material + f->offset);
+            for (uint32_t c = 0; c < f->count; c++) {
+                v[c] = (float)factors[k][c];
+            }
+        }
         look_at_rest(m, at, json);
         material.flags =
             cJSON_IsTrue(tyn_json_member(json, "doubleSided")) ? TYN_SURFACE_EMITS_BOTH_SIDES : 0;

@@ -11,14 +11,6 @@
 #include "io/volume.h"
 #include "scene/matrix.h"
 
-#define TRY(call)                                                                                  \
-    do {                                                                                           \
-        tyn_result r_ = (call);                                                                    \
-        if (r_) {                                                                                  \
-            return r_;                                                                             \
-        }                                                                                          \
-    } while (0)
-
 static const double g_limit = 0.99999994; // the largest float below 1
 
 // ---- media ----------------------------------------------------------------------------------

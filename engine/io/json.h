@@ -3,6 +3,15 @@
 #include <tyndall/io.h>
 #include <cjson/cJSON.h>
 
+// Leaves the function with the fault of a call.
+#define TRY(call)                                                                                  \
+    do {                                                                                           \
+        tyn_result r_ = (call);                                                                    \
+        if (r_) {                                                                                  \
+            return r_;                                                                             \
+        }                                                                                          \
+    } while (0)
+
 typedef struct json_doc {
     const char *file;
     const tyn_log *log;
@@ -23,8 +32,8 @@ tyn_result tyn_json_fault(const json_doc *doc, const cJSON *at, const char *form
 // "path.to[3].value" of a node of the document; cut where there is no room.
 void tyn_json_path(const json_doc *doc, const cJSON *at, char *path, size_t room);
 
-// Members of objects. A member that is not there is no fault (the output keeps its value); one of
-// the wrong type or range is.
+// Members of objects. A member that is not there, as of an object that is not (NULL), is no fault (the output keeps its
+// value; an object or array is NULL); one of the wrong type or range is.
 tyn_result tyn_json_object(const json_doc *doc, const cJSON *parent, const char *name, cJSON **out);
 tyn_result tyn_json_array(const json_doc *doc, const cJSON *parent, const char *name, cJSON **out);
 tyn_result tyn_json_string(const json_doc *doc, const cJSON *parent, const char *name,

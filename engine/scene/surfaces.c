@@ -2,10 +2,19 @@
 #include "scene/surfaces.h"
 #include <float.h>
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
+
+#define FIELD(name) #name, offsetof(tyn_surface_material, name)
+const tyn_material_field tyn_material_fields[TYN_MATERIAL_NUM_FIELDS] = {
+    [TYN_MATERIAL_ALBEDO] = {FIELD(albedo), 3, 1, "between 0 and 1", "", "pbrMetallicRoughness",
+                             "baseColorFactor", 4, 1},
+    [TYN_MATERIAL_EMISSION] = {FIELD(emission), 3, FLT_MAX, ">= 0 and finite", "W/(m^2 sr)", NULL,
+                               "emissiveFactor", 3, 0},
+};
 
 void tyn_surfaces_free(tyn_surfaces *s)
 {
@@ -105,15 +114,14 @@ static tyn_result check_materials(const tyn_surfaces *s, const tyn_log *log)
 {
     for (uint32_t i = 0; i < s->num_materials; i++) {
         const tyn_surface_material *m = &s->materials[i];
-        for (int c = 0; c < 3; c++) {
-            if (!(m->albedo[c] >= 0.0f && m->albedo[c] <= 1.0f)) {
-                FAULT("surfaces.materials[%u].albedo[%d] = %g: must be between 0 and 1", i, c,
-                      m->albedo[c]);
-            }
-            if (!(m->emission[c] >= 0.0f && isfinite(m->emission[c]))) {
-                FAULT("surfaces.materials[%u].emission[%d] = %g: must be >= 0 and finite, "
-                      "W/(m^2 sr)",
-                      i, c, m->emission[c]);
+        for (const tyn_material_field *f = tyn_material_fields;
+             f < tyn_material_fields + TYN_MATERIAL_NUM_FIELDS; f++) {
+            const float *v = (const float *)((const char *)m + f->offset);
+            for (uint32_t c = 0; c < f->count; c++) {
+                if (!(v[c] >= 0.0f && v[c] <= f->max)) {
+                    FAULT("surfaces.materials[%u].%s[%u] = %g: must be %s%s%s", i, f->name, c, v[c],
+                          f->range, *f->unit ? ", " : "", f->unit);
+                }
             }
         }
         if (m->flags > TYN_SURFACE_EMITS_BOTH_SIDES) {

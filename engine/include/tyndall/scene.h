@@ -87,6 +87,21 @@ typedef struct tyn_surface_material {
     uint32_t texture;  // index into textures, or TYN_NO_TEXTURE
 } tyn_surface_material;
 
+// The numbers of a material, for what goes through all of them: checks, files, listings.
+typedef struct tyn_material_field {
+    const char *name;
+    size_t offset;            // of its floats in a tyn_surface_material
+    uint32_t count;           // of them
+    float max;                // they are 0 to that
+    const char *range, *unit; // "between 0 and 1", "W/(m^2 sr)"
+    // In a glTF material: the object in it (NULL: itself) and the name of a factor between 0 and 1, of so many numbers.
+    const char *object, *factor;
+    int32_t factors;
+    double factor_def;
+} tyn_material_field;
+enum { TYN_MATERIAL_ALBEDO = 0, TYN_MATERIAL_EMISSION, TYN_MATERIAL_NUM_FIELDS };
+TYN_API extern const tyn_material_field tyn_material_fields[TYN_MATERIAL_NUM_FIELDS];
+
 typedef enum tyn_wrap { TYN_WRAP_REPEAT = 0, TYN_WRAP_CLAMP, TYN_WRAP_MIRROR } tyn_wrap;
 enum { TYN_MAX_TEXTURE_SIDE = 16384 };
 typedef struct tyn_texture {
