@@ -20,7 +20,7 @@
 #include "shaders/random/rng.glsl"
 #define GEOMETRY_AT 9
 #define MATERIALS_AT 13
-#include "shaders/surfaces/surfaces.glsl"
+#include "shaders/surfaces/reflectance.glsl"
 #include "shaders/surfaces/surface_texture.glsl"
 
 layout(local_size_x = BALANCE_GROUP) in;
@@ -46,15 +46,15 @@ vec3 kept = vec3(0.0), escaped = vec3(0.0); // W
 
 vec3 albedo_at(surface_hit hit)
 {
-    surface_triangle t = triangles[hit.triangle];
-    surface_material m = materials[t.material];
-    if (m.texture == TYN_SURFACE_NO_TEXTURE) {
-        return m.albedo;
+    uvec4 t = triangles[hit.triangle];
+    surface_material m = surface_material_at(t.w);
+    vec3 colour = vec3(1.0);
+    if (m.texture != TYN_SURFACE_NO_TEXTURE) {
+        vec2 b = hit.barycentric;
+        vec2 uv = (1.0 - b.x - b.y) * surface_uv(t.x) + b.x * surface_uv(t.y) + b.y * surface_uv(t.z);
+        colour = surface_texture_level(textures[m.texture], uv, 0u);
     }
-    vec2 b = hit.barycentric;
-    vec2 uv = (1.0 - b.x - b.y) * vec2(vertices[t.v0].u, vertices[t.v0].v) +
-              b.x * vec2(vertices[t.v1].u, vertices[t.v1].v) + b.y * vec2(vertices[t.v2].u, vertices[t.v2].v);
-    return m.albedo * surface_texture_level(textures[m.texture], uv, 0u);
+    return surface_reflected(m, colour);
 }
 
 // Does light reflected at a point of a surface, to the side of `normal`, leave the scene? Along one way of many.

@@ -21,9 +21,7 @@ void main()
 {
     triangle = uint(gl_VertexIndex) / 3u;
     uint corner = uint(gl_VertexIndex) % 3u;
-    surface_triangle t = triangles[triangle];
-    uint v = corner == 0u ? t.v0 : corner == 1u ? t.v1 : t.v2;
-    vec3 p = surface_transform(surfaces.from_world, vertices[v].position) - camera.origin;
+    vec3 p = surface_transform(surfaces.from_world, surface_position(triangles[triangle][corner])) - camera.origin;
     vec2 across = vec2(dot(p, camera.right) / camera.half_width, dot(p, camera.up) / camera.half_height);
     float z = dot(p, camera.forward);
     vec3 size = surfaces.hi - surfaces.lo;

@@ -34,7 +34,7 @@ layout(binding = 7, scalar) buffer bins_buffer
     vpl_bins bins;
 };
 #define MATERIALS_AT 8
-#include "shaders/surfaces/surfaces.glsl"
+#include "shaders/surfaces/reflectance.glsl"
 #define MEDIUM_AT 11
 #include "shaders/surfaces/surface_texture.glsl"
 #include "shaders/surfaces/surface_trace.glsl"
@@ -119,13 +119,12 @@ void main()
     // Texels at the edges of a map are halves.
     vec2 whole = mix(vec2(1.0), vec2(0.5), lessThan(min(at, side - 1 - at), ivec2(1)));
     float solid_angle = args.solid_angle * whole.x * whole.y / (away * away * away);
-    surface_material m = materials[SURFACE_TRIANGLE(hit.triangle).w];
-    vec3 albedo = m.albedo;
+    surface_material m = surface_material_at(SURFACE_TRIANGLE(hit.triangle).w);
+    vec3 colour = vec3(1.0);
     if (m.texture != TYN_SURFACE_NO_TEXTURE) { // its mean
-        albedo *= surface_texture_level(textures[m.texture], vec2(0.5),
-                                        textures[m.texture].levels - 1u);
+        colour = surface_texture_level(textures[m.texture], vec2(0.5), textures[m.texture].levels - 1u);
     }
-    vec3 flux = light.intensity * albedo * (solid_angle * on_map.z / away);
+    vec3 flux = light.intensity * surface_reflected(m, colour) * (solid_angle * on_map.z / away);
     if (args.media != 0u) {
         flux *= through_medium(from, d, hit.t);
     }

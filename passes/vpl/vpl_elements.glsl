@@ -9,7 +9,8 @@
 
 #define GEOMETRY_AT 4
 #define MATERIALS_AT 8
-#include "shaders/surfaces/surfaces.glsl"
+#include "shaders/surfaces/reflectance.glsl"
+#include "shaders/surfaces/surface_frame.glsl"
 layout(binding = 0, scalar) readonly buffer plan_buffer
 {
     vpl_plan plan;
@@ -61,10 +62,7 @@ uint vpl_triangle(uint block, uint element)
 
 vec3 vpl_corner(uint vertex)
 {
-    vec3 p = vertices[vertex].position; // world -> M
-    return vec3(dot(surfaces.from_world[0].xyz, p) + surfaces.from_world[0].w,
-                dot(surfaces.from_world[1].xyz, p) + surfaces.from_world[1].w,
-                dot(surfaces.from_world[2].xyz, p) + surfaces.from_world[2].w);
+    return surface_transform(surfaces.from_world, surface_position(vertex));
 }
 
 // Power that leaves an element, W.
@@ -77,14 +75,13 @@ vec3 vpl_flux(vpl_block block, uint element)
     if (i == VPL_NO_TRIANGLE) {
         return vec3(0.0);
     }
-    surface_material m = materials[triangles[i].material];
-    bool lit = block.index < plan.back || (m.flags & TYN_SURFACE_DOUBLE_SIDED) != 0u;
-    if (!lit || m.emission.r + m.emission.g + m.emission.b <= 0.0) {
+    uvec4 t = triangles[i];
+    vec3 emission = surface_emitted(surface_material_at(t.w), block.index < plan.back);
+    if (emission.r + emission.g + emission.b <= 0.0) {
         return vec3(0.0);
     }
-    vec3 a = vpl_corner(triangles[i].v0), b = vpl_corner(triangles[i].v1);
-    vec3 c = vpl_corner(triangles[i].v2);
-    return m.emission * (VPL_PI * 0.5 * length(cross(b - a, c - a)));
+    vec3 a = vpl_corner(t.x), b = vpl_corner(t.y), c = vpl_corner(t.z);
+    return emission * (VPL_PI * 0.5 * length(cross(b - a, c - a)));
 }
 
 // What elements are chosen by.
@@ -133,8 +130,8 @@ vpl_piece vpl_piece_of(vpl_block block, uint element, vec2 part, uint k, uint pi
         piece.normal = texelFetch(rsm_normal_tex, texel, 0).xyz;
         return piece;
     }
-    surface_triangle tri = triangles[vpl_triangle(block.index, element)];
-    vec3 a = vpl_corner(tri.v0), b = vpl_corner(tri.v1), c = vpl_corner(tri.v2);
+    uvec4 t = triangles[vpl_triangle(block.index, element)];
+    vec3 a = vpl_corner(t.x), b = vpl_corner(t.y), c = vpl_corner(t.z);
     vec3 n = cross(b - a, c - a);
     float twice = length(n), share = (part.y - part.x) / float(pieces);
     piece.position = vpl_on_triangle(a, b, c, part.x + (float(k) + 0.5) * share);

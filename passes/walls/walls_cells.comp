@@ -14,7 +14,7 @@ layout(push_constant, scalar) uniform push
 };
 #define GEOMETRY_AT 0
 #define MATERIALS_AT 4
-#include "shaders/surfaces/surfaces.glsl"
+#include "shaders/surfaces/reflectance.glsl"
 layout(binding = 7, scalar) readonly buffer wall_links_buffer
 {
     uint links[];
@@ -37,28 +37,22 @@ layout(binding = 10, scalar) writeonly buffer wall_cells_buffer
 // Mean over about a cell around the place where the link from p along d meets triangle i.
 vec3 texture_at(uint i, uint index, vec3 p, vec3 d)
 {
-    surface_triangle s = triangles[i];
     walls_triangle t = walls_triangle_at(i);
     float rise = -dot(t.normal, d);
     float where = abs(rise) > 1e-20 ? clamp(dot(t.normal, p - t.a) / rise, 0.0, 1.0) : 0.5;
     vec3 hit = p + where * d - t.a, u = t.b - t.a, v = t.c - t.a;
     float area = dot(t.normal, t.normal);
     vec2 share = vec2(dot(cross(hit, v), t.normal), dot(cross(u, hit), t.normal)) / area;
-    surface_vertex v0 = vertices[s.v0], v1 = vertices[s.v1], v2 = vertices[s.v2];
-    vec2 uv0 = vec2(v0.u, v0.v), uv1 = vec2(v1.u, v1.v) - uv0, uv2 = vec2(v2.u, v2.v) - uv0;
+    mat3x2 uv = surface_uvs(triangles[i]);
     vec2 size = vec2(textures[index].size);
-    float texels_per_cell = abs(uv1.x * uv2.y - uv1.y * uv2.x) * size.x * size.y / sqrt(area);
-    return walls_texture(index, uv0 + share.x * uv1 + share.y * uv2, texels_per_cell);
+    float texels_per_cell = abs(uv[1].x * uv[2].y - uv[1].y * uv[2].x) * size.x * size.y / sqrt(area);
+    return walls_texture(index, uv[0] + share.x * uv[1] + share.y * uv[2], texels_per_cell);
 }
 
 vec3 albedo_at(uint i, vec3 p, vec3 d)
 {
-    uint material = triangles[i].material, index = materials[material].texture;
-    vec3 albedo = materials[material].albedo;
-    if (index != TYN_SURFACE_NO_TEXTURE) {
-        albedo *= texture_at(i, index, p, d);
-    }
-    return albedo;
+    surface_material m = surface_material_at(triangles[i].w);
+    return surface_reflected(m, m.texture != TYN_SURFACE_NO_TEXTURE ? texture_at(i, m.texture, p, d) : vec3(1.0));
 }
 
 // In M, m, with the centre on its positive side.

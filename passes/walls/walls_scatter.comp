@@ -18,7 +18,6 @@ layout(push_constant, scalar) uniform push
     walls_pass_args args;
 };
 #define GEOMETRY_AT 0
-#define SURFACE_ROWS
 #include "shaders/surfaces/surfaces.glsl"
 layout(binding = 4, scalar) buffer wall_links_buffer
 {
@@ -34,7 +33,6 @@ layout(binding = 6, scalar) buffer nearest_buffer
 {
     uint nearest[];
 };
-#define WALLS_ROWS
 #include "shaders/walls/walls_place.glsl"
 
 uint key_of(float share, uint triangle)
@@ -104,10 +102,7 @@ void main()
     if (triangle >= args.num_triangles) {
         return;
     }
-    uvec4 v = triangle_rows[triangle];
-    walls_triangle t = walls_triangle_of(walls_lattice_place(vertex_rows[2u * v.x].xyz),
-                                         walls_lattice_place(vertex_rows[2u * v.y].xyz),
-                                         walls_lattice_place(vertex_rows[2u * v.z].xyz));
+    walls_triangle t = walls_triangle_at(triangle);
     vec3 least = min(t.a, min(t.b, t.c)), most = max(t.a, max(t.b, t.c));
     float size = length(t.normal);
     if (!(all(lessThan(abs(least), vec3(1e9))) && all(lessThan(abs(most), vec3(1e9)))) || size == 0.0) {

@@ -5,6 +5,8 @@
 #ifndef TYN_PATH_SURFACES_GLSL
 #define TYN_PATH_SURFACES_GLSL
 #include "shaders/common/camera.glsl"
+#include "shaders/surfaces/reflectance.glsl"
+#include "shaders/surfaces/surface_texture.glsl"
 #include "shaders/surfaces/surface_trace.glsl"
 
 const bool SURFACES = (FLAGS & TYN_PATH_SURFACES) != 0u;
@@ -70,22 +72,9 @@ bool surface_hides(vec3 origin, vec3 direction, float distance, uint target)
 
 // ---- materials --------------------------------------------------------------------------------
 
-int texel_wrap(int i, int size, uint mode)
-{
-    if (mode == 1u) {
-        return clamp(i, 0, size - 1);
-    }
-    int period = mode == 2u ? 2 * size : size;
-    i -= period * int(floor(float(i) / float(period)));
-    i = clamp(i, 0, period - 1);
-    return i < size ? i : period - 1 - i;
-}
-
 vec3 texel_color(surface_texture map, ivec2 at)
 {
-    ivec2 size = ivec2(map.size);
-    at = ivec2(texel_wrap(at.x, size.x, map.wrap.x), texel_wrap(at.y, size.y, map.wrap.y));
-    vec3 c = unpackUnorm4x8(texels[map.first + uint(at.y * size.x + at.x)]).rgb; // sRGB, IEC 61966-2-1
+    vec3 c = surface_texel_srgb(map.first, ivec2(map.size), map.wrap, at); // IEC 61966-2-1
     return mix(c * (1.0 / 12.92), pow((c + 0.055) * (1.0 / 1.055), vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
@@ -110,22 +99,19 @@ struct surface_finding {
 // Tells whether a surface emits to its front or its back, and the density of drawing its points.
 vec3 surface_emission(surface_material material, bool front, out float density)
 {
-    bool emits = front || (material.flags & TYN_SURFACE_DOUBLE_SIDED) != 0u;
-    density = EMITTERS && emits ? max3(material.emission) / max(emitters.weight, 1e-37) : 0.0;
-    return emits ? material.emission : vec3(0.0);
+    vec3 emission = surface_emitted(material, front);
+    density = EMITTERS ? max3(emission) / max(emitters.weight, 1e-37) : 0.0;
+    return emission;
 }
 
 vec3 surface_albedo(surface_material material, uint index, vec2 barycentric)
 {
-    if (material.texture == TYN_SURFACE_NO_TEXTURE) {
-        return material.albedo;
+    vec3 colour = vec3(1.0);
+    if (material.texture != TYN_SURFACE_NO_TEXTURE) {
+        mat3x2 uv = surface_uvs(triangles[index]);
+        colour = texture_color(material.texture, uv[0] + barycentric.x * uv[1] + barycentric.y * uv[2]);
     }
-    surface_triangle triangle = triangles[index];
-    vec2 uv0 = vec2(vertices[triangle.v0].u, vertices[triangle.v0].v),
-         uv1 = vec2(vertices[triangle.v1].u, vertices[triangle.v1].v),
-         uv2 = vec2(vertices[triangle.v2].u, vertices[triangle.v2].v);
-    vec2 uv = uv0 + barycentric.x * (uv1 - uv0) + barycentric.y * (uv2 - uv0);
-    return material.albedo * texture_color(material.texture, uv);
+    return surface_reflected(material, colour);
 }
 
 surface_finding surface_find(surface_hit hit, vec3 period, vec3 way)
@@ -137,7 +123,7 @@ surface_finding surface_find(surface_hit hit, vec3 period, vec3 way)
         f.point.error += 4.0 * SURFACE_EPSILON * (abs(f.point.at) + abs(period));
     }
     bool front = dot(f.point.normal, way) < 0.0;
-    surface_material material = materials[triangles[hit.triangle].material];
+    surface_material material = surface_material_at(triangles[hit.triangle].w);
     f.emission = surface_emission(material, front, f.density);
     f.albedo = surface_albedo(material, hit.triangle, hit.barycentric);
     f.point.normal = front ? f.point.normal : -f.point.normal;
@@ -187,7 +173,7 @@ emitter_sample emitter_draw(vec3 p, inout rng_state rng)
     float distance = length(to), density;
     vec3 direction = to / max(distance, 1e-37);
     float slope = dot(point.normal, direction);
-    surface_material material = materials[triangles[index].material];
+    surface_material material = surface_material_at(triangles[index].w);
     vec3 radiance = surface_emission(material, slope < 0.0, density);
     float pdf = density * distance * distance / max(abs(slope), 1e-12);
     return emitter_sample(direction, distance, radiance, pdf, index);

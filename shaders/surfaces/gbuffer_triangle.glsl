@@ -8,7 +8,7 @@
 #ifndef TYN_GBUFFER_TRIANGLE_GLSL
 #define TYN_GBUFFER_TRIANGLE_GLSL
 #include "shaders/common/camera.glsl"
-#define SURFACE_ROWS
+#include "reflectance.glsl"
 #include "surface_frame.glsl"
 #include "surface_texture.glsl"
 #include "gbuffer.glsl"
@@ -23,7 +23,7 @@ struct gbuffer_triangle { // world
 
 gbuffer_triangle gbuffer_triangle_of(uint index)
 {
-    uvec4 t = triangle_rows[index]; // corners, material
+    uvec4 t = triangles[index];
     vec4 a = vertex_rows[2u * t.x], b = vertex_rows[2u * t.y], c = vertex_rows[2u * t.z];
     gbuffer_triangle f;
     f.corner = a.xyz;
@@ -34,8 +34,7 @@ gbuffer_triangle gbuffer_triangle_of(uint index)
     vec4 na = vertex_rows[2u * t.x + 1u], nb = vertex_rows[2u * t.y + 1u], nc = vertex_rows[2u * t.z + 1u];
     f.normals = vec3[3](na.xyz, nb.xyz, nc.xyz);
     f.uvs = vec2[3](vec2(a.w, na.w), vec2(b.w, nb.w), vec2(c.w, nc.w));
-    uvec4 reflected = material_rows[2u * t.w], sent = material_rows[2u * t.w + 1u];
-    f.material = surface_material(uintBitsToFloat(reflected.rgb), reflected.a, uintBitsToFloat(sent.rgb), sent.a);
+    f.material = surface_material_at(t.w);
     return f;
 }
 
@@ -59,17 +58,16 @@ vec4 gbuffer_meet(gbuffer_triangle f, camera_ray ray, out vec3 direction)
 // Albedo at the weights w of a ray through image position `at`.
 vec3 gbuffer_albedo_at(gbuffer_triangle f, vec2 at, vec3 w)
 {
-    vec3 albedo = f.material.albedo, other;
+    vec3 colour = vec3(1.0), other;
     // A CPU device runs what is in here for all samples: a third of the time where there are no textures.
     if (GBUFFER_TEXTURED && f.material.texture != TYN_SURFACE_NO_TEXTURE) {
         vec3 dx = gbuffer_meet(f, gbuffer_ray(at + vec2(1.0, 0.0)), other).xyz - w;
         vec3 dy = gbuffer_meet(f, gbuffer_ray(at + vec2(0.0, 1.0)), other).xyz - w;
         vec2 ua = f.uvs[0], ub = f.uvs[1], uc = f.uvs[2];
-        albedo *= surface_texture_around(f.material.texture, w.x * ua + w.y * ub + w.z * uc,
-                                         dx.x * ua + dx.y * ub + dx.z * uc,
-                                         dy.x * ua + dy.y * ub + dy.z * uc);
+        colour = surface_texture_around(f.material.texture, w.x * ua + w.y * ub + w.z * uc,
+                                        dx.x * ua + dx.y * ub + dx.z * uc, dy.x * ua + dy.y * ub + dy.z * uc);
     }
-    return albedo;
+    return surface_reflected(f.material, colour);
 }
 
 // What the ray through image position `at` (samples) sees of the triangle.
@@ -79,10 +77,9 @@ gbuffer_point gbuffer_point_of(gbuffer_triangle f, vec2 at, camera_ray ray)
     vec4 w = gbuffer_meet(f, ray, direction);
     gbuffer_point p;
     p.distance = w.w;
-    p.albedo = gbuffer_albedo_at(f, at, w.xyz);
     bool front = dot(direction, f.normal) < 0.0;
-    p.emission =
-        front || (f.material.flags & TYN_SURFACE_DOUBLE_SIDED) != 0u ? f.material.emission : vec3(0.0);
+    p.albedo = gbuffer_albedo_at(f, at, w.xyz);
+    p.emission = surface_emitted(f.material, front);
     // Normals of vertices are only as good as their weights: outside of the triangle by a rounding.
     w = clamp(w, vec4(0.0), vec4(1.0));
     vec3 normal = w.x * f.normals[0] + w.y * f.normals[1] + w.z * f.normals[2];

@@ -17,22 +17,36 @@ int surface_wrap(int i, int size, uint rule)
     return i < size ? i : 2 * size - 1 - i;
 }
 
-// Linear colour of an sRGB texel (IEC 61966-2-1).
-vec3 surface_texel(uint first, ivec2 size, uvec2 wrap, ivec2 at)
+// A texel of a level that starts with `first`, as it is stored: sRGB.
+vec3 surface_texel_srgb(uint first, ivec2 size, uvec2 wrap, ivec2 at)
 {
     int x = surface_wrap(at.x, size.x, wrap.x), y = surface_wrap(at.y, size.y, wrap.y);
-    vec3 c = unpackUnorm4x8(texels[first + uint(y * size.x + x)]).rgb;
+    return unpackUnorm4x8(texels[first + uint(y * size.x + x)]).rgb;
+}
+
+// Its linear colour (IEC 61966-2-1).
+vec3 surface_texel(uint first, ivec2 size, uvec2 wrap, ivec2 at)
+{
+    vec3 c = surface_texel_srgb(first, size, wrap, at);
     return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
-vec3 surface_texture_level(surface_texture t, vec2 uv, uint level)
+// First texel of a level.
+uint surface_level(surface_texture t, uint level, out ivec2 size)
 {
     uint first = t.first;
     for (uint l = 0u; l < level; l++) {
         uvec2 s = max(t.size >> l, uvec2(1));
         first += s.x * s.y;
     }
-    ivec2 size = ivec2(max(t.size >> level, uvec2(1)));
+    size = ivec2(max(t.size >> level, uvec2(1)));
+    return first;
+}
+
+vec3 surface_texture_level(surface_texture t, vec2 uv, uint level)
+{
+    ivec2 size;
+    uint first = surface_level(t, level, size);
     vec2 p = uv * vec2(size) - 0.5;
     ivec2 i = ivec2(floor(p));
     vec2 w = p - vec2(i);

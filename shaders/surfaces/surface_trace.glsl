@@ -10,18 +10,17 @@
 // surface_offset moves origins to the side they belong to. A ray towards a point of a triangle leaves that triangle
 // out.
 //
-// The includer declares `surfaces` (surface_block), `vertices[]`, `triangles[]` (surface_args.h) and `nodes[]`, which
-// is uvec4[]: a struct surface_node is two of them, as a CPU device reads a vector per lane in little more than the
-// time of a number. Or it defines SURFACE_POSITION(i) of vertex i, SURFACE_TRIANGLE(i) and SURFACE_NODE(i), which are
-// uvec4, to read them by itself.
+// Before including: surfaces.glsl with GEOMETRY_AT. Or the block `surfaces` (surface_block) and SURFACE_POSITION(i) of
+// vertex i, SURFACE_TRIANGLE(i) and SURFACE_NODE(i), which are uvec4 (a struct surface_node is two of them), to read
+// them otherwise.
 #ifndef TYN_SURFACE_TRACE_GLSL
 #define TYN_SURFACE_TRACE_GLSL
 #include "surface_frame.glsl"
 #include "surface_args.h"
 
 #ifndef SURFACE_NODE
-#define SURFACE_POSITION(i) vertices[i].position
-#define SURFACE_TRIANGLE(i) uvec4(triangles[i].v0, triangles[i].v1, triangles[i].v2, triangles[i].material)
+#define SURFACE_POSITION(i) surface_position(i)
+#define SURFACE_TRIANGLE(i) triangles[i]
 #define SURFACE_NODE(i) nodes[i]
 #endif
 

@@ -1,5 +1,5 @@
 // walls_place.glsl -- places in the lattice. Include after lattice.glsl and walls_triangle.glsl, with args
-// (extent, dims), the block surfaces and the buffers vertices and triangles; WALLS_ROWS: these are read otherwise.
+// (extent, dims), and after surfaces.glsl with GEOMETRY_AT.
 #ifndef TYN_WALLS_PLACE_GLSL
 #define TYN_WALLS_PLACE_GLSL
 
@@ -21,13 +21,11 @@ vec3 walls_lattice_place(vec3 world)
     return place;
 }
 
-#ifndef WALLS_ROWS
 walls_triangle walls_triangle_at(uint i)
 {
-    return walls_triangle_of(walls_lattice_place(vertices[triangles[i].v0].position),
-                             walls_lattice_place(vertices[triangles[i].v1].position),
-                             walls_lattice_place(vertices[triangles[i].v2].position));
+    uvec4 t = triangles[i];
+    return walls_triangle_of(walls_lattice_place(surface_position(t.x)), walls_lattice_place(surface_position(t.y)),
+                             walls_lattice_place(surface_position(t.z)));
 }
-#endif
 
 #endif

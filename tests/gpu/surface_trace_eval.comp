@@ -2,7 +2,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "shaders/surfaces/surface_args.h"
+#define GEOMETRY_AT 0
+#include "shaders/surfaces/surfaces.glsl"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint FROM_SURFACE = 0u;
@@ -21,10 +22,6 @@ struct ray_out {
     vec3 origin, direction;
 };
 
-layout(set = 0, binding = 0, scalar) uniform surfaces_uniform { surface_block surfaces; };
-layout(set = 0, binding = 1, scalar) readonly buffer vertices_buffer { surface_vertex vertices[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer triangles_buffer { surface_triangle triangles[]; };
-layout(set = 0, binding = 3, scalar) readonly buffer nodes_buffer { uvec4 nodes[]; };
 layout(set = 0, binding = 4, scalar) readonly buffer rays_buffer { ray_in rays[]; };
 layout(set = 0, binding = 5, scalar) writeonly buffer results_buffer { ray_out results[]; };
 

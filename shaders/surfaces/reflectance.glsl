@@ -1,0 +1,27 @@
+// reflectance.glsl -- what a material says of light: all that a pass asks of it.
+//
+// Define MATERIALS_AT (surfaces.glsl).
+#ifndef TYN_REFLECTANCE_GLSL
+#define TYN_REFLECTANCE_GLSL
+#include "surfaces.glsl"
+
+surface_material surface_material_at(uint index)
+{
+    uvec4 reflected = material_rows[2u * index], sent = material_rows[2u * index + 1u];
+    return surface_material(uintBitsToFloat(reflected.rgb), reflected.a, uintBitsToFloat(sent.rgb), sent.a);
+}
+
+// The share of irradiance that leaves again, evenly in all directions (a Lambertian surface), on both sides.
+// `colour`: of the material's texture, 1 without one.
+vec3 surface_reflected(surface_material m, vec3 colour)
+{
+    return m.albedo * colour;
+}
+
+// Radiance that leaves the front or the back by itself, W/(m^2 sr).
+vec3 surface_emitted(surface_material m, bool front)
+{
+    return front || (m.flags & TYN_SURFACE_DOUBLE_SIDED) != 0u ? m.emission : vec3(0.0);
+}
+
+#endif
