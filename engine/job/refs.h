@@ -47,6 +47,11 @@ typedef struct tyn_rsm_refs {
     tyn_ref TYN_RSM(TYN_PORT_NAME, );
 } tyn_rsm_refs;
 
+// {0} without surfaces.
+typedef struct tyn_gbuffer_refs {
+    tyn_ref TYN_GBUFFER(TYN_PORT_NAME, );
+} tyn_gbuffer_refs;
+
 // {0} without surfaces; `nodes` also where they have no hierarchy.
 typedef struct tyn_geometry_refs {
     tyn_ref TYN_GEOMETRY(TYN_PORT_NAME, );

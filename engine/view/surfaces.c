@@ -4,13 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-// Surfaces as the camera sees them: what shaders/surfaces/gbuffer.glsl reads. {0} without surfaces.
-typedef struct gbuffer_refs {
-    tyn_ref distances;         // 2D R32F, gbuffer.samples^2 texels a pixel
-    tyn_ref facing, colours;   // 2D RGBA32UI
-    tyn_ref edge_count, edges; // gbuffer_edge_args.h
-} gbuffer_refs;
-
 // All samples of a picture are in one image, which has no more texels along a side than the device can draw.
 static void fit_samples(tyn_gbuffer_params *params, uint32_t side, const tyn_job *job)
 {
@@ -26,7 +19,7 @@ static void fit_samples(tyn_gbuffer_params *params, uint32_t side, const tyn_job
     }
 }
 
-static void add_gbuffer(tyn_graph *g, const tyn_job *job, gbuffer_refs *gbuffer)
+static void add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *gbuffer)
 {
     tyn_gbuffer_params params;
     tyn_settings_params(job->settings, &tyn_pass_gbuffer, &params);
@@ -41,9 +34,7 @@ static void add_gbuffer(tyn_graph *g, const tyn_job *job, gbuffer_refs *gbuffer)
     tyn_connect(refs, GBUFFER_PORT_SURFACES, job->refs.geometry);
     tyn_connect(refs, GBUFFER_PORT_MATERIALS, job->refs.materials);
     tyn_graph_add(g, &tyn_pass_gbuffer, &params, refs);
-    *gbuffer = (gbuffer_refs){refs[GBUFFER_PORT_DISTANCES], refs[GBUFFER_PORT_FACING],
-                              refs[GBUFFER_PORT_COLOURS], refs[GBUFFER_PORT_EDGE_COUNT],
-                              refs[GBUFFER_PORT_EDGES]};
+    tyn_take(refs, GBUFFER_PORT_DISTANCES, *gbuffer);
 }
 
 // Do surfaces reach farther than the lattice, which has the sky's light with its shadows, by more than rounding?
@@ -84,7 +75,7 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     if (!job->frame->num_triangles) {
         return;
     }
-    gbuffer_refs seen;
+    tyn_gbuffer_refs seen;
     add_gbuffer(g, job, &seen);
     const float *sky = job->frame->environment.sky;
     tyn_shade_params params;
@@ -117,17 +108,13 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
         [SHADE_PORT_ENVIRONMENT] = job->refs.environment,
         [SHADE_PORT_SUNS] = job->refs.suns,
         [SHADE_PORT_LIGHTS] = job->refs.lights,
-        [SHADE_PORT_DISTANCES] = seen.distances,
-        [SHADE_PORT_FACING] = seen.facing,
-        [SHADE_PORT_COLOURS] = seen.colours,
-        [SHADE_PORT_EDGE_COUNT] = seen.edge_count,
-        [SHADE_PORT_EDGES] = seen.edges,
         // Surfaces far from the medium's box are no walls of the lattice, and outside it.
         [SHADE_PORT_MOMENTS] = in->sources->walls.cut.wall_links.resource || params.outside
                                    ? in->field->moments
                                    : (tyn_ref){0},
         [SHADE_PORT_ROOMS] = in->sources->surface_light.rooms,
     };
+    tyn_connect(refs, SHADE_PORT_DISTANCES, seen);
     tyn_connect(refs, SHADE_PORT_BEAMS, in->sources->beams);
     tyn_connect(refs, SHADE_PORT_RADIALS, in->sources->lamps.radials);
     tyn_connect(refs, SHADE_PORT_SHADOW_ATLAS, in->sources->shadows);

@@ -17,16 +17,7 @@ typedef struct tyn_gbuffer_params {
     X(GBUFFER, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
     TYN_GEOMETRY(X, GBUFFER), \
     TYN_MATERIALS(X, GBUFFER), \
-    X(GBUFFER, DISTANCES, distances, OUT, IMAGE_2D, \
-        "along the rays of a pixel's samples, m; 0: no surface", .format = VK_FORMAT_R32_SFLOAT), \
-    X(GBUFFER, FACING, facing, OUT, IMAGE_2D, \
-        "what a pixel shows; normals (M) of facet and for shading, folded", .format = VK_FORMAT_R32G32B32A32_UINT), \
-    X(GBUFFER, COLOURS, colours, OUT, IMAGE_2D, \
-        "albedo and emission in W/(m^2 sr); of edges, triangles of samples", \
-        .format = VK_FORMAT_R32G32B32A32_UINT), \
-    X(GBUFFER, EDGE_COUNT, edge_count, OUT, BUFFER, \
-        "struct gbuffer_edge_count: gbuffer_edge_args.h: pixels that show several pieces of surface"), \
-    X(GBUFFER, EDGES, edges, OUT, BUFFER, "uint[]: pixels that show several pieces of surface"), \
+    TYN_GBUFFER(X##_OUT, GBUFFER), \
     X(GBUFFER, MIXED_COUNT, mixed_count, SCRATCH, BUFFER, \
         "struct gbuffer_edge_count: the same of pixels whose samples see several triangles"), \
     X(GBUFFER, MIXED, mixed, SCRATCH, BUFFER, "uint[]: pixels whose samples see several triangles"), \

@@ -27,11 +27,11 @@ void main()
     ivec2 pixel = ivec2(mixed[n] & 0xffffu, mixed[n] >> 16), corner = samples * pixel;
     const int count = samples * samples, middle = (samples / 2) * (samples + 1);
     bool whole = true;
-    gbuffer_point first, mean;
+    gbuffer_point first;
+    gbuffer_colours colours = GBUFFER_BLACK;
     gbuffer_facing nearest = gbuffer_facing(GBUFFER_SEVERAL, 0, vec3(0.0), vec3(0.0));
     int nearest_rank = count;
-    mean.normal = mean.albedo = mean.emission = vec3(0.0);
-    vec3 at = vec3(0.0);
+    vec3 at = vec3(0.0), normal = vec3(0.0);
     for (int k = 0; k < count; k++) {
         ivec2 texel = texel_of(corner, k);
         uint index = imageLoad(seen, texel).r;
@@ -55,14 +55,13 @@ void main()
             nearest = gbuffer_facing(GBUFFER_SEVERAL, k, p.normal, p.facet);
         }
         whole = whole && gbuffer_same(first, at, p.facet, there, p.distance);
-        mean.normal += p.normal;
-        mean.albedo += p.albedo;
-        mean.emission += p.emission;
+        normal += p.normal;
+        colours = gbuffer_add(colours, 1.0, p.colours);
     }
     if (whole) {
-        float share = 1.0 / float(count);
-        store_whole(pixel, gbuffer_point(first.distance, normalize(mean.normal), first.facet, share * mean.albedo,
-                                         share * mean.emission));
+        first.normal = normalize(normal);
+        first.colours = gbuffer_add(GBUFFER_BLACK, 1.0 / float(count), colours);
+        store_whole(pixel, first);
     } else {
         imageStore(facing_image, pixel, gbuffer_facing_pack(nearest));
         int texels = gbuffer_texels(samples);

@@ -36,7 +36,7 @@ void main()
             albedo += textured != 0u ? gbuffer_albedo_at(triangle, at, w.xyz) : vec3(0.0);
             imageStore(distances_image, texel, vec4(w.w));
         }
-        p.albedo = textured != 0u ? albedo / float(samples * samples) : p.albedo;
+        p.colours.albedo = textured != 0u ? albedo / float(samples * samples) : p.colours.albedo;
         store_whole(pixel, p);
     }
     if (!same) {

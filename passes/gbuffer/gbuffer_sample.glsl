@@ -38,7 +38,7 @@ ivec2 texel_of(ivec2 corner, int k)
 void store_whole(ivec2 pixel, gbuffer_point p)
 {
     imageStore(facing_image, pixel, gbuffer_facing_pack(gbuffer_facing(GBUFFER_WHOLE, 0, p.normal, p.facet)));
-    imageStore(colours_image, ivec2(pixel.x * gbuffer_texels(samples), pixel.y), gbuffer_colours_pack(p.albedo, p.emission));
+    imageStore(colours_image, ivec2(pixel.x * gbuffer_texels(samples), pixel.y), gbuffer_pack(p.colours));
 }
 
 #endif

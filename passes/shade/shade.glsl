@@ -24,6 +24,7 @@ layout(push_constant, scalar) uniform Args
 #define RADIALS_TEXELS
 #define SHADOWS_AT 9
 #define SHADOWS_TEXELS
+#define GBUFFER_AT 21
 #include "shaders/common/camera.glsl"
 #include "shaders/medium/medium.glsl"
 #include "shaders/beams/beam.glsl"
@@ -44,14 +45,11 @@ layout(binding = 16, scalar) uniform camera_uniform
 {
     camera_block camera;
 };
-layout(binding = 17) uniform sampler2D distances_tex; // gbuffer.glsl
-layout(binding = 18, rgba32ui) uniform readonly uimage2D facing_image;
-layout(binding = 19, rgba32ui) uniform readonly uimage2D colours_image;
 #define VPLS_AT 11
-layout(binding = 20) uniform sampler3D moments_tex;
-#define WALLS_AT 21
-#define LATTICE_ROOMS 23
-#define SHADE_AT 24 // the first binding of each kernel's own
+layout(binding = 17) uniform sampler3D moments_tex;
+#define WALLS_AT 18
+#define LATTICE_ROOMS 20
+#define SHADE_AT GBUFFER_END // the first binding of each kernel's own
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/walls/lattice_walls.glsl"
 #include "shaders/light/vpl_visibility.glsl"

@@ -38,13 +38,7 @@ typedef struct tyn_shade_params {
     X(SHADE, ENVIRONMENT, environment, IN, BUFFER, "struct env_block"), \
     X(SHADE, SUNS, suns, IN, BUFFER, "struct light_block[]"), \
     X(SHADE, LIGHTS, lights, IN, BUFFER, "struct light_block[]: directional lights, then lamps"), \
-    X(SHADE, DISTANCES, distances, IN, IMAGE_2D, "gbuffer.glsl, as the two below"), \
-    X(SHADE, FACING, facing, IN, IMAGE_2D, "what pixels show; normals", .format = VK_FORMAT_R32G32B32A32_UINT), \
-    X(SHADE, COLOURS, colours, IN, IMAGE_2D, \
-        "albedo and emission; of edges, triangles of samples", .format = VK_FORMAT_R32G32B32A32_UINT), \
-    X(SHADE, EDGE_COUNT, edge_count, IN, BUFFER, \
-        "struct gbuffer_edge_count: gbuffer_edge_args.h: pixels that show several pieces of surface"), \
-    X(SHADE, EDGES, edges, IN, BUFFER, "uint[]: pixels that show several pieces of surface"), \
+    TYN_GBUFFER(X, SHADE), \
     TYN_BEAMS(X##_OPTIONAL, SHADE), \
     TYN_RADIALS(X##_OPTIONAL, SHADE), \
     TYN_SHADOWS(X##_OPTIONAL, SHADE), \

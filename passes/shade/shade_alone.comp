@@ -26,13 +26,13 @@ void main()
     uint left = whole ? (1u << shade_samples * shade_samples) - 1u : entry.y;
     while (left != 0u) {
         shade_point p;
-        vec3 albedo, emission;
+        gbuffer_colours colours;
         uint members = left;
         if (whole) {
             p = shade_whole(pixel, shade_facing(pixel));
-            albedo = gbuffer_albedo(shade_colours(pixel, 0));
+            colours = gbuffer_unpack(shade_colours(pixel, 0));
         } else {
-            p = piece_of(pixel, left, albedo, emission, members);
+            p = piece_of(pixel, left, colours, members);
         }
         vec3 light = shade_step > 1 ? smooth_light_at(p) : vec3(0.0);
         if (shade_has(SHADE_VPLS)) {
@@ -42,7 +42,8 @@ void main()
             light += shade_vpls(same, uint[SHADE_MANY](room, room, room, room), 0u, 1u, nearest)[0];
         }
         uvec2 others = imageLoad(surface_radiance_image, shade_texel(corner, findLSB(members))).xy;
-        uvec2 radiance = colour_pack(colour_unpack(others) + albedo * light / PI) | uvec2(0u, others.y & 0xc0000000u);
+        colours.emission = colour_unpack(others); // what it sends already
+        uvec2 radiance = colour_pack(shade_radiance(colours, light)) | uvec2(0u, others.y & 0xc0000000u);
         for (uint some = members; some != 0u; some &= some - 1u) {
             imageStore(surface_radiance_image, shade_texel(corner, findLSB(some)), uvec4(radiance, 0u, 0u));
         }

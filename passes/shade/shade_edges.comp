@@ -4,21 +4,13 @@
 #include "shaders/surfaces/gbuffer_edges.glsl"
 #include "shade_piece.glsl"
 #include "shade_several.glsl"
-#define SHADE_ALONE_COUNT (SHADE_PIECE_AT + 10)
-#define SHADE_ALONE (SHADE_PIECE_AT + 11)
+#define SHADE_ALONE_COUNT (SHADE_PIECE_AT + 1)
+#define SHADE_ALONE (SHADE_PIECE_AT + 2)
 #include "shade_alone.glsl"
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
 layout(binding = SHADE_PIECE_AT, rg32ui) uniform writeonly uimage2D surface_radiance_image; // packed_colour.glsl, and the piece's number
-layout(binding = SHADE_PIECE_AT + 1, scalar) readonly buffer edge_count_buffer
-{
-    gbuffer_edge_count edge_count;
-};
-layout(binding = SHADE_PIECE_AT + 2, scalar) readonly buffer edges_buffer
-{
-    uint edges[];
-};
 
 void main()
 {
@@ -39,9 +31,9 @@ void main()
     }
     uint alone = 0u; // bit k: sample k shows a piece that no place tells of
     for (uint piece = 0u; left != 0u; piece++) {
-        vec3 albedo, emission;
+        gbuffer_colours colours;
         uint members;
-        shade_point p = piece_of(pixel, left, albedo, emission, members);
+        shade_point p = piece_of(pixel, left, colours, members);
         vec4 part = part_of(corner, members);
         vec2 middle = 0.5 * (part.xy + part.zw);
         bool lone = false;
@@ -54,7 +46,7 @@ void main()
         vec3 irradiance = shade_step > 1 ? sharp_light_at(p, part) : irradiance_at(p, part);
         irradiance += lone ? vec3(0.0) : smoothed;
         alone |= lone ? members : 0u;
-        uvec2 radiance = colour_pack(emission + albedo * irradiance / PI) | uvec2(0u, min(piece, 3u) << 30);
+        uvec2 radiance = colour_pack(shade_radiance(colours, irradiance)) | uvec2(0u, min(piece, 3u) << 30);
         for (uint some = members; some != 0u; some &= some - 1u) {
             imageStore(surface_radiance_image, shade_texel(corner, findLSB(some)), uvec4(radiance, 0u, 0u));
         }

@@ -7,6 +7,7 @@
 #ifndef SHADE_PART_GLSL
 #define SHADE_PART_GLSL
 #include "shaders/colour/packed_colour.glsl"
+#include "shaders/common/octahedral.glsl"
 
 struct shade_part {
     vec3 irradiance; // of some VPLs, W/m^2
@@ -21,14 +22,14 @@ uvec4 shade_pack(shade_part p)
 {
     uvec2 colour = colour_pack(p.irradiance);
     return uvec4(colour.x, colour.y | (p.whole ? 1u << 30 : 0u) | (p.near ? 1u << 31 : 0u),
-                 floatBitsToUint(p.along) | (p.aside ? 1u << 31 : 0u), packSnorm2x16(gbuffer_fold(p.facet)));
+                 floatBitsToUint(p.along) | (p.aside ? 1u << 31 : 0u), packSnorm2x16(octahedral_of(p.facet)));
 }
 
 shade_part shade_unpack(uvec4 texel)
 {
     return shade_part(colour_unpack(texel.xy), uintBitsToFloat(texel.z & 0x7fffffffu),
-                      gbuffer_unfold(unpackSnorm2x16(texel.w)), (texel.y & 1u << 30) != 0u, (texel.y & 1u << 31) != 0u,
-                      (texel.z & 1u << 31) != 0u);
+                      normalize(octahedral_point(unpackSnorm2x16(texel.w))), (texel.y & 1u << 30) != 0u,
+                      (texel.y & 1u << 31) != 0u, (texel.z & 1u << 31) != 0u);
 }
 
 ivec2 shade_blocks()

@@ -1,6 +1,5 @@
-// shade_piece.glsl -- radiance of one piece of surface in a pixel.
-//
-//   L = emission + albedo / pi (suns + lamps + VPLs + light of the lattice, or of the sky where that is not)
+// shade_piece.glsl -- radiance of one piece of surface in a pixel. Its irradiance is that of suns, lamps, VPLs, and the
+// light of the lattice, or of the sky where that is not.
 //
 // Samples of a pixel on one piece of surface are shaded together.
 #ifndef TYN_SHADE_PIECE_GLSL
@@ -24,6 +23,12 @@ layout(binding = SHADE_AT + 4) uniform sampler3D sight_tex; // shade_sight.comp
 const float PI = 3.14159265358979;
 
 #include "shade_outside.glsl"
+
+// Towards the camera, W/(m^2 sr).
+vec3 shade_radiance(gbuffer_colours colours, vec3 irradiance)
+{
+    return colours.emission + colours.albedo * irradiance / PI;
+}
 
 // Light of the medium and of far walls, and of the sky where it comes along the lattice's lines.
 // `inside` the lattice: from where sunlight comes that was scattered forward.

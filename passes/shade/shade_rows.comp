@@ -3,7 +3,6 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shade_args.h"
 #include "shaders/common/camera.glsl"
-#include "shaders/surfaces/gbuffer.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 

@@ -2,8 +2,8 @@
 #ifndef SHADE_SEVERAL_GLSL
 #define SHADE_SEVERAL_GLSL
 #include "shade.glsl"
-#define GEOMETRY_AT (SHADE_PIECE_AT + 3)
-#define MATERIALS_AT (SHADE_PIECE_AT + 7)
+#define GEOMETRY_AT (SHADE_PIECE_AT + 3) // after the binding of the picture and those of shade_alone.glsl
+#define MATERIALS_AT (GEOMETRY_AT + 4)
 #define GBUFFER_TEXTURED shade_has(SHADE_TEXTURED)
 #define GBUFFER_SAMPLES shade_samples
 #include "shaders/surfaces/gbuffer_triangle.glsl"
@@ -19,11 +19,11 @@ gbuffer_point sample_of(ivec2 pixel, int k, out vec3 at)
 }
 
 // The piece of surface that the first of the samples `left` of a pixel shows, and those that show it: bits.
-shade_point piece_of(ivec2 pixel, uint left, out vec3 albedo, out vec3 emission, out uint members)
+shade_point piece_of(ivec2 pixel, uint left, out gbuffer_colours colours, out uint members)
 {
     gbuffer_point first;
     vec3 at0 = vec3(0.0), normal = vec3(0.0), off = vec3(0.0);
-    albedo = emission = vec3(0.0);
+    colours = GBUFFER_BLACK;
     members = 0u;
     for (uint some = left; some != 0u; some &= some - 1u) {
         vec3 at;
@@ -35,15 +35,13 @@ shade_point piece_of(ivec2 pixel, uint left, out vec3 albedo, out vec3 emission,
         bool same = members == 0u || gbuffer_same(first, at0, s.facet, at, s.distance);
         float share = same ? 1.0 : 0.0;
         members |= same ? some & -some : 0u;
-        albedo += share * s.albedo;
-        emission += share * s.emission;
+        colours = gbuffer_add(colours, share, s.colours);
         normal += share * s.normal;
         off += share * (at - at0);
     }
     // In their middle, but on the plane of the one whose facet is to be in a shadow or not.
     float share = 1.0 / float(bitCount(members));
-    albedo *= share;
-    emission *= share;
+    colours = gbuffer_add(GBUFFER_BLACK, share, colours);
     off = (off - dot(off, first.facet) * first.facet) * share;
     return shade_point(at0 + off, normalize(normal), first.facet);
 }

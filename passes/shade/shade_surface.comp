@@ -36,8 +36,7 @@ void main()
             irradiance = irradiance_at(p, vec4(pixel, pixel + 1));
             irradiance += shade_has(SHADE_VPLS) ? shade_unpack(imageLoad(part_image, pixel)).irradiance : vec3(0.0);
         }
-        uvec4 colours = shade_colours(pixel, 0);
-        uvec2 radiance = colour_pack(gbuffer_emission(colours) + gbuffer_albedo(colours) * irradiance / PI);
+        uvec2 radiance = colour_pack(shade_radiance(gbuffer_unpack(shade_colours(pixel, 0)), irradiance));
         for (int k = 0; k < shade_samples * shade_samples; k++) {
             imageStore(surface_radiance_image, shade_texel(corner, k), uvec4(radiance, 0u, 0u));
         }

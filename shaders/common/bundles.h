@@ -52,9 +52,23 @@
 
 // What the lights shine on (rsm_args.h).
 #define TYN_RSM(X, P) \
-    X(P, RSM_FLUX, rsm_flux, IN, IMAGE_2D, "power that a texel reflects, W"), \
-    X(P, RSM_POSITION, rsm_position, IN, IMAGE_2D, "where (M, m); area of it, m^2"), \
-    X(P, RSM_NORMAL, rsm_normal, IN, IMAGE_2D, "of the surface (M), on the light's side")
+    X(P, RSM_FLUX, rsm_flux, IN, IMAGE_2D, \
+        "power that a texel reflects, W", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(P, RSM_POSITION, rsm_position, IN, IMAGE_2D, \
+        "where (M, m); area of it, m^2", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(P, RSM_NORMAL, rsm_normal, IN, IMAGE_2D, \
+        "of the surface (M), on the light's side", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+
+// What the camera sees of the surfaces (gbuffer.glsl).
+#define TYN_GBUFFER(X, P) \
+    X(P, DISTANCES, distances, IN, IMAGE_2D, \
+        "along the rays of a pixel's samples, m; 0: no surface", .format = VK_FORMAT_R32_SFLOAT), \
+    X(P, FACING, facing, IN, IMAGE_2D, \
+        "what a pixel shows; normals (M) of facet and for shading, folded", .format = VK_FORMAT_R32G32B32A32_UINT), \
+    X(P, COLOURS, colours, IN, IMAGE_2D, \
+        "albedo and emission in W/(m^2 sr); of edges, triangles of samples", .format = VK_FORMAT_R32G32B32A32_UINT), \
+    X(P, EDGE_COUNT, edge_count, IN, BUFFER, "struct gbuffer_edge_count"), \
+    X(P, EDGES, edges, IN, BUFFER, "uint[]: pixels that show several pieces of surface")
 
 // Surfaces: where they are (surface_trace.glsl), ...
 #define TYN_GEOMETRY(X, P) \

@@ -9,21 +9,50 @@
 // and the first of `colours` their mean albedo and emission. Of a pixel that shows several pieces, or one beside
 // nothing, `facing` is that of the sample nearest its middle, and `colours` hold the triangles that samples see, four a
 // texel: index + 1, 0: none. These pixels are in a list as well.
+//
+// Define GBUFFER_AT as the first binding of the bundle TYN_GBUFFER (bundles.h) to read it.
 #ifndef TYN_GBUFFER_GLSL
 #define TYN_GBUFFER_GLSL
 #include "shaders/colour/packed_colour.glsl"
+#include "shaders/common/octahedral.glsl"
+#include "gbuffer_edge_args.h"
 
 #define GBUFFER_NONE 0u
 #define GBUFFER_WHOLE 1u
 #define GBUFFER_SEVERAL 2u
 
+#ifdef GBUFFER_AT
+layout(binding = GBUFFER_AT) uniform sampler2D distances_tex;
+layout(binding = GBUFFER_AT + 1, rgba32ui) uniform readonly uimage2D facing_image;
+layout(binding = GBUFFER_AT + 2, rgba32ui) uniform readonly uimage2D colours_image;
+layout(binding = GBUFFER_AT + 3, scalar) readonly buffer edge_count_buffer
+{
+    gbuffer_edge_count edge_count;
+};
+layout(binding = GBUFFER_AT + 4, scalar) readonly buffer edges_buffer
+{
+    uint edges[];
+};
+#define GBUFFER_END (GBUFFER_AT + 5)
+#endif
+
+struct gbuffer_colours {
+    vec3 albedo;
+    vec3 emission; // W/(m^2 sr)
+};
+const gbuffer_colours GBUFFER_BLACK = gbuffer_colours(vec3(0.0), vec3(0.0));
+
 struct gbuffer_point {
     float distance; // m along the ray; 0: no surface
     vec3 normal;    // for shading
     vec3 facet;     // of the triangle
-    vec3 albedo;
-    vec3 emission; // W/(m^2 sr)
+    gbuffer_colours colours;
 };
+
+gbuffer_colours gbuffer_add(gbuffer_colours sum, float share, gbuffer_colours c)
+{
+    return gbuffer_colours(sum.albedo + share * c.albedo, sum.emission + share * c.emission);
+}
 
 struct gbuffer_facing {
     uint shown; // GBUFFER_*
@@ -31,34 +60,18 @@ struct gbuffer_facing {
     vec3 normal, facet;
 };
 
-// The octahedral map of unit vectors to [-1, 1]^2 (Cigolle et al., "A survey of efficient representations
-// for independent unit vectors", JCGT 3(2), 2014).
-vec2 gbuffer_fold(vec3 n)
-{
-    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
-    vec2 signs = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(p, vec2(0.0)));
-    return n.z >= 0.0 ? p : (1.0 - abs(p.yx)) * signs;
-}
-
-vec3 gbuffer_unfold(vec2 p)
-{
-    vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-    vec2 signs = mix(vec2(-1.0), vec2(1.0), greaterThanEqual(p, vec2(0.0)));
-    n.xy = n.z >= 0.0 ? n.xy : (1.0 - abs(n.yx)) * signs;
-    return normalize(n);
-}
-
 // Floats, but for the lowest bits of the shading normal: they tell what is shown, and of which sample it is.
 uvec4 gbuffer_facing_pack(gbuffer_facing f)
 {
-    uvec4 texel = floatBitsToUint(vec4(gbuffer_fold(f.facet), gbuffer_fold(f.normal)));
+    uvec4 texel = floatBitsToUint(vec4(octahedral_of(f.facet), octahedral_of(f.normal)));
     return uvec4(texel.xy, (texel.z & ~3u) | f.shown, (texel.w & ~15u) | uint(f.which));
 }
 
 gbuffer_facing gbuffer_facing_unpack(uvec4 texel)
 {
-    return gbuffer_facing(texel.z & 3u, int(texel.w & 15u), gbuffer_unfold(uintBitsToFloat(texel.zw & ~uvec2(3u, 15u))),
-                          gbuffer_unfold(uintBitsToFloat(texel.xy)));
+    vec2 facet = uintBitsToFloat(texel.xy), normal = uintBitsToFloat(texel.zw & ~uvec2(3u, 15u));
+    return gbuffer_facing(texel.z & 3u, int(texel.w & 15u), normalize(octahedral_point(normal)),
+                          normalize(octahedral_point(facet)));
 }
 
 // Texels of `colours` that a pixel has side by side.
@@ -68,20 +81,16 @@ int gbuffer_texels(int samples)
 }
 
 // Albedo, 0 to 1: 20 bits a channel.
-uvec4 gbuffer_colours_pack(vec3 albedo, vec3 emission)
+uvec4 gbuffer_pack(gbuffer_colours colours)
 {
-    uvec3 c = uvec3(clamp(albedo, 0.0, 1.0) * 1048575.0 + 0.5);
-    return uvec4(colour_pack(emission), c.r | c.b << 20, c.g | (c.b >> 12) << 20);
+    uvec3 c = uvec3(clamp(colours.albedo, 0.0, 1.0) * 1048575.0 + 0.5);
+    return uvec4(colour_pack(colours.emission), c.r | c.b << 20, c.g | (c.b >> 12) << 20);
 }
 
-vec3 gbuffer_albedo(uvec4 texel)
+gbuffer_colours gbuffer_unpack(uvec4 texel)
 {
-    return vec3(texel.z & 0xfffffu, texel.w & 0xfffffu, texel.z >> 20 | (texel.w >> 20) << 12) / 1048575.0;
-}
-
-vec3 gbuffer_emission(uvec4 texel)
-{
-    return colour_unpack(texel.xy);
+    uvec3 c = uvec3(texel.z & 0xfffffu, texel.w & 0xfffffu, texel.z >> 20 | (texel.w >> 20) << 12);
+    return gbuffer_colours(vec3(c) / 1048575.0, colour_unpack(texel.xy));
 }
 
 // Do a sample at `other` (M) with the normal `facet`, in the distance `distance` from the camera, and one at `first`

@@ -78,8 +78,7 @@ gbuffer_point gbuffer_point_of(gbuffer_triangle f, vec2 at, camera_ray ray)
     gbuffer_point p;
     p.distance = w.w;
     bool front = dot(direction, f.normal) < 0.0;
-    p.albedo = gbuffer_albedo_at(f, at, w.xyz);
-    p.emission = surface_emitted(f.material, front);
+    p.colours = gbuffer_colours(gbuffer_albedo_at(f, at, w.xyz), surface_emitted(f.material, front));
     // Normals of vertices are only as good as their weights: outside of the triangle by a rounding.
     w = clamp(w, vec4(0.0), vec4(1.0));
     vec3 normal = w.x * f.normals[0] + w.y * f.normals[1] + w.z * f.normals[2];

@@ -139,16 +139,20 @@ typedef struct tyn_kernel {
 // the meaning further fields of tyn_port may stand: .format = VK_FORMAT_R32_SFLOAT.
 //
 // A bundle is a list of ports that go together from the passes that make them to those that read them, TYN_BEAMS(X, PREFIX);
-// it is an element of lists, with X##_OPTIONAL where all of it may be absent. A struct of refs is
+// it is an element of lists, with X##_OPTIONAL where all of it may be absent and X##_OUT where it is made. A struct of
+// refs is
 //   struct { tyn_ref TYN_BEAMS(TYN_PORT_NAME, ); }.
 #define TYN_PORT_ENUM(P, PORT, ...) P##_PORT_##PORT
 #define TYN_PORT_ENUM_OPTIONAL(P, PORT, ...) P##_PORT_##PORT
+#define TYN_PORT_ENUM_OUT(P, PORT, ...) P##_PORT_##PORT
 #define TYN_PORT_NAME(P, PORT, name, ...) name
 #define TYN_PORT_ROW(P, PORT, port_name, direction, size, ...)                                     \
     [P##_PORT_##PORT] = {                                                                          \
         .name = #port_name, TYN_PORT_##direction, .dim = TYN_##size, .meaning = __VA_ARGS__}
 #define TYN_PORT_ROW_OPTIONAL(P, PORT, port_name, direction, size, ...)                            \
     TYN_PORT_ROW(P, PORT, port_name, OPTIONAL, size, __VA_ARGS__)
+#define TYN_PORT_ROW_OUT(P, PORT, port_name, direction, size, ...)                                 \
+    TYN_PORT_ROW(P, PORT, port_name, OUT, size, __VA_ARGS__)
 #define TYN_PORT_IN .dir = TYN_IN
 #define TYN_PORT_OPTIONAL .dir = TYN_IN, .optional = true
 #define TYN_PORT_OUT .dir = TYN_OUT
