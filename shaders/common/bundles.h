@@ -76,7 +76,7 @@
     X(P, VERTICES, vertices, IN, BUFFER, "struct surface_vertex[]"), \
     X(P, TRIANGLES, triangles, IN, BUFFER, "struct surface_triangle[]"), \
     X(P, NODES, nodes, OPTIONAL, BUFFER, "struct surface_node[]: their hierarchy")
-// ... and what they are of (surface_texture.glsl).
+// ... and what they are of (reflectance.glsl, surface_texture.glsl).
 #define TYN_MATERIALS(X, P) \
     X(P, MATERIALS, materials, IN, BUFFER, "struct surface_material[]"), \
     X(P, TEXTURES, textures, OPTIONAL, BUFFER, "struct surface_texture[]"), \
