@@ -8,14 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TRY(call)                                                                                  \
-    do {                                                                                           \
-        tyn_result r_ = (call);                                                                    \
-        if (r_) {                                                                                  \
-            return r_;                                                                             \
-        }                                                                                          \
-    } while (0)
-
 // ---- open, close ------------------------------------------------------------------------------
 
 tyn_result tyn_gltf_materials_open(gltf_materials *m, const gltf_data *data, tyn_scene *scene)
@@ -23,8 +15,8 @@ tyn_result tyn_gltf_materials_open(gltf_materials *m, const gltf_data *data, tyn
     const json_doc *doc = data->doc;
     memset(m, 0, sizeof *m);
     m->scene = scene;
-    TRY(tyn_gltf_textures_open(&m->textures, data, &scene->surfaces));
-    TRY(tyn_json_list(doc, doc->root, "materials", &m->list));
+    TYN_TRY(tyn_gltf_textures_open(&m->textures, data, &scene->surfaces));
+    TYN_TRY(tyn_json_list(doc, doc->root, "materials", &m->list));
     m->loaded = calloc((size_t)m->list.count + 1, sizeof *m->loaded);
     m->is_loaded = calloc((size_t)m->list.count + 1, sizeof *m->is_loaded);
     if (!m->loaded || !m->is_loaded) {
@@ -85,18 +77,18 @@ static tyn_result read_texture_info(gltf_materials *m, const cJSON *info, gltf_m
     int64_t texcoord = 0;
     double offset[2] = {0, 0}, scale[2] = {1, 1}, angle = 0;
     cJSON *extensions, *transform = NULL;
-    TRY(tyn_json_integer(doc, info, "texCoord", 0, 15, "a whole number, 0 to 15", &texcoord));
-    TRY(tyn_json_object(doc, info, "extensions", &extensions));
+    TYN_TRY(tyn_json_integer(doc, info, "texCoord", 0, 15, "a whole number, 0 to 15", &texcoord));
+    TYN_TRY(tyn_json_object(doc, info, "extensions", &extensions));
     if (extensions) {
-        TRY(tyn_json_object(doc, extensions, "KHR_texture_transform", &transform));
+        TYN_TRY(tyn_json_object(doc, extensions, "KHR_texture_transform", &transform));
     }
     if (transform) {
         const char *finite = "a finite number";
-        TRY(tyn_json_integer(doc, transform, "texCoord", 0, 15, "a whole number, 0 to 15",
-                             &texcoord));
-        TRY(tyn_json_numbers(doc, transform, "offset", 2, -1e9, 1e9, finite, offset));
-        TRY(tyn_json_numbers(doc, transform, "scale", 2, -1e9, 1e9, finite, scale));
-        TRY(tyn_json_number(doc, transform, "rotation", -1e9, 1e9, finite, &angle));
+        TYN_TRY(tyn_json_integer(doc, transform, "texCoord", 0, 15, "a whole number, 0 to 15",
+                                 &texcoord));
+        TYN_TRY(tyn_json_numbers(doc, transform, "offset", 2, -1e9, 1e9, finite, offset));
+        TYN_TRY(tyn_json_numbers(doc, transform, "scale", 2, -1e9, 1e9, finite, scale));
+        TYN_TRY(tyn_json_number(doc, transform, "rotation", -1e9, 1e9, finite, &angle));
     }
     const double c = cos(angle), s = sin(angle);
     const double uv[2][3] = {{c * scale[0], s * scale[1], offset[0]},
@@ -114,20 +106,20 @@ static tyn_result read_albedo(gltf_materials *m, int64_t index, const cJSON *jso
     const json_doc *doc = m->textures.data->doc;
     double factor[4] = {1, 1, 1, 1}, metallic = 1, mean[4];
     cJSON *pbr, *info = NULL, *metal = NULL;
-    TRY(tyn_json_object(doc, json, "pbrMetallicRoughness", &pbr));
+    TYN_TRY(tyn_json_object(doc, json, "pbrMetallicRoughness", &pbr));
     if (pbr) {
-        TRY(tyn_json_numbers(doc, pbr, "baseColorFactor", 4, 0, 1, "between 0 and 1", factor));
-        TRY(tyn_json_number(doc, pbr, "metallicFactor", 0, 1, "between 0 and 1", &metallic));
-        TRY(tyn_json_object(doc, pbr, "baseColorTexture", &info));
-        TRY(tyn_json_object(doc, pbr, "metallicRoughnessTexture", &metal));
+        TYN_TRY(tyn_json_numbers(doc, pbr, "baseColorFactor", 4, 0, 1, "between 0 and 1", factor));
+        TYN_TRY(tyn_json_number(doc, pbr, "metallicFactor", 0, 1, "between 0 and 1", &metallic));
+        TYN_TRY(tyn_json_object(doc, pbr, "baseColorTexture", &info));
+        TYN_TRY(tyn_json_object(doc, pbr, "metallicRoughnessTexture", &metal));
     }
     if (metal && metallic > 0) { // metalness is in the blue channel, linear
-        TRY(tyn_gltf_texture_mean(&m->textures, metal, false, mean));
+        TYN_TRY(tyn_gltf_texture_mean(&m->textures, metal, false, mean));
         metallic *= mean[2];
         lack(m, index, LACK_METAL_TEXTURE);
     }
     if (info) {
-        TRY(read_texture_info(m, info, out, &material->texture));
+        TYN_TRY(read_texture_info(m, info, out, &material->texture));
     }
     for (int c = 0; c < 3; c++) {
         material->albedo[c] = (float)(factor[c] * (1 - metallic));
@@ -144,17 +136,18 @@ static tyn_result read_emission(gltf_materials *m, int64_t index, const cJSON *j
     const json_doc *doc = m->textures.data->doc;
     double factor[3] = {0, 0, 0}, strength = 1, mean[4] = {1, 1, 1, 1};
     cJSON *extensions, *strong = NULL, *info;
-    TRY(tyn_json_numbers(doc, json, "emissiveFactor", 3, 0, 1, "between 0 and 1", factor));
-    TRY(tyn_json_object(doc, json, "extensions", &extensions));
+    TYN_TRY(tyn_json_numbers(doc, json, "emissiveFactor", 3, 0, 1, "between 0 and 1", factor));
+    TYN_TRY(tyn_json_object(doc, json, "extensions", &extensions));
     if (extensions) {
-        TRY(tyn_json_object(doc, extensions, "KHR_materials_emissive_strength", &strong));
+        TYN_TRY(tyn_json_object(doc, extensions, "KHR_materials_emissive_strength", &strong));
     }
     if (strong) {
-        TRY(tyn_json_number(doc, strong, "emissiveStrength", 0, 1e30, "a number >= 0", &strength));
+        TYN_TRY(
+            tyn_json_number(doc, strong, "emissiveStrength", 0, 1e30, "a number >= 0", &strength));
     }
-    TRY(tyn_json_object(doc, json, "emissiveTexture", &info));
+    TYN_TRY(tyn_json_object(doc, json, "emissiveTexture", &info));
     if (info && factor[0] + factor[1] + factor[2] > 0) {
-        TRY(tyn_gltf_texture_mean(&m->textures, info, true, mean));
+        TYN_TRY(tyn_gltf_texture_mean(&m->textures, info, true, mean));
         lack(m, index, LACK_EMISSIVE_TEXTURE);
     }
     for (int c = 0; c < 3; c++) {
@@ -212,13 +205,13 @@ tyn_result tyn_gltf_material_get(gltf_materials *m, int64_t index, const gltf_ma
         lack(m, at, LACK_METAL);
     } else {
         const cJSON *json = m->list.items[at];
-        TRY(read_albedo(m, at, json, loaded, &material));
-        TRY(read_emission(m, at, json, &material));
+        TYN_TRY(read_albedo(m, at, json, loaded, &material));
+        TYN_TRY(read_emission(m, at, json, &material));
         look_at_rest(m, at, json);
         material.flags =
             cJSON_IsTrue(tyn_json_member(json, "doubleSided")) ? TYN_SURFACE_EMITS_BOTH_SIDES : 0;
     }
-    TRY(add(m, &material, &loaded->index));
+    TYN_TRY(add(m, &material, &loaded->index));
     m->is_loaded[at] = true;
     return TYN_OK;
 }
