@@ -156,18 +156,18 @@ static void add_media(cJSON *root, const tyn_scene *scene)
 
 static void add_lights(cJSON *root, const tyn_scene *scene)
 {
-    static const char *const kinds[] = {"directional", "point", "spot"};
     cJSON *lights = cJSON_AddArrayToObject(root, "lights");
     for (uint32_t i = 0; i < scene->num_lights; i++) {
         const tyn_light *l = &scene->lights[i];
+        const tyn_light_traits *traits = tyn_light_traits_of(l->kind);
         cJSON *light = cJSON_CreateObject();
         add_text(light, "name", l->name);
-        add_text(light, "kind", kinds[l->kind]);
+        add_text(light, "kind", traits->name);
         add_floats(light, "color", l->color, 3);
-        if (l->kind != TYN_LIGHT_DIRECTIONAL) {
+        if (traits->has_position) {
             add_floats(light, "position", l->position, 3);
         }
-        if (l->kind != TYN_LIGHT_POINT) {
+        if (traits->has_direction) {
             add_floats(light, "direction", l->direction, 3);
         }
         cJSON_AddItemToArray(lights, light);

@@ -109,14 +109,14 @@ static void print_surfaces(const tyn_scene *scene)
 
 static void print_lights(const tyn_scene *scene)
 {
-    static const char *const kinds[] = {"directional", "point", "spot"};
     for (uint32_t i = 0; i < scene->num_lights; i++) {
         const tyn_light *l = &scene->lights[i];
-        bool sun = l->kind == TYN_LIGHT_DIRECTIONAL;
-        printf("light %u '%s': %s,", i, name_or(l->name), kinds[l->kind]);
-        print_color(" ", l->color, sun ? " W/m^2," : " W/sr,");
-        const float *v = sun ? l->direction : l->position;
-        printf(" %s %g %g %g\n", sun ? "travels along" : "at", 0 + v[0], 0 + v[1], 0 + v[2]);
+        const tyn_light_traits *traits = tyn_light_traits_of(l->kind);
+        printf("light %u '%s': %s,", i, name_or(l->name), traits->name);
+        print_color(" ", l->color, " ");
+        const float *v = traits->has_position ? l->position : l->direction;
+        printf("%s, %s %g %g %g\n", traits->unit, traits->has_position ? "at" : "travels along",
+               0 + v[0], 0 + v[1], 0 + v[2]);
     }
     const tyn_environment *env = &scene->environment;
     if (env->present && env->data) {

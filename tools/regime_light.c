@@ -81,12 +81,9 @@ static double lamp_power(const regime_box *b, const tyn_light *light)
         radius2 += 0.25 * b->length[a] * b->length[a];
     }
     const double distance2 = regime_dot(to, to);
-    double angle = 4 * pi;
+    double angle = tyn_light_solid_angle(light);
     if (distance2 > radius2) {
-        angle = 2 * pi * (1 - sqrt(1 - radius2 / distance2));
-    }
-    if (light->kind == TYN_LIGHT_SPOT) {
-        angle = fmin(angle, 2 * pi * (1 - 0.5 * (light->cos_inner + light->cos_outer)));
+        angle = fmin(angle, 2 * pi * (1 - sqrt(1 - radius2 / distance2)));
     }
     return luminance(light->color) * angle;
 }

@@ -1,5 +1,6 @@
 // frame_scene.c -- turns a scene and a view into the blocks that shaders read.
 #include "frame/frame_scene.h"
+#include "shaders/light/shadow_args.h"
 #include <math.h>
 #include <string.h>
 
@@ -294,18 +295,16 @@ static void build_lights(tyn_frame_scene *out, const tyn_scene *scene, const rig
                 continue;
             }
             struct light_block *b = &lights->scene[lights->num_directional + lights->num_lamps];
-            memcpy(b->color, light->color, sizeof b->color);
-            b->kind = (tyn_uint)light->kind;
-            b->cos_inner = light->cos_inner;
-            b->cos_outer = light->cos_outer;
+            *b = tyn_light_block(light);
             to_m_position(m, light->position, b->position);
             to_m_direction(m, light->direction, b->direction);
             float *d = b->direction, n = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+            const bool aims = n > 0 && light->kind != TYN_LIGHT_POINT;
             for (int a = 0; a < 3; a++) {
-                d[a] = n > 0 ? d[a] / n : (float)(a == 2);
+                d[a] = aims ? d[a] / n : (float)(a == 2);
             }
-            if (pass == 0) {
-                b->mean_cosine = 1;
+            if (pass == 1) {
+                b->shadow = TYN_SHADOW_LAMP(lights->num_lamps);
             }
             *(pass ? &lights->num_lamps : &lights->num_directional) += 1;
         }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "io/gltf_check.h"
+#include "io/gltf_light.h"
 #include "io/gltf_media.h"
 #include "io/gltf_mesh.h"
 #include "io/gltf_shim.h"
@@ -164,7 +165,11 @@ static tyn_result add_camera(walk *w, uint32_t n)
 
 static tyn_result add_light(walk *w, uint32_t n)
 {
-    const gltf_light *from = &w->model->lights[w->model->nodes[n].light];
+    const cJSON *extensions = tyn_json_member(w->doc->root, "extensions");
+    const cJSON *lights =
+        tyn_json_member(tyn_json_member(extensions, "KHR_lights_punctual"), "lights");
+    const cJSON *from = cJSON_GetArrayItem(lights, w->model->nodes[n].light);
+    const cJSON *name = tyn_json_member(from, "name");
     const double *m = w->to_world[n];
     double direction[3] = {-m[8], -m[9], -m[10]};
     if (w->scene->num_lights == TYN_MAX_LIGHTS) {
@@ -174,18 +179,13 @@ static tyn_result add_light(walk *w, uint32_t n)
         return tyn_json_fault(w->doc, w->nodes[n], "the light's node is flat: its axis is lost");
     }
     tyn_light *light = &w->scene->lights[w->scene->num_lights++];
-    *light = (tyn_light){
-        .name = name_or_null(w->model->nodes[n].name[0] ? w->model->nodes[n].name : from->name),
-        .kind = (tyn_light_kind)from->kind,
-    };
+    TYN_TRY(tyn_gltf_read_light(light, w->doc, from));
+    light->name = name_or_null(w->model->nodes[n].name[0] ? w->model->nodes[n].name
+                               : cJSON_IsString(name)     ? name->valuestring
+                                                          : "");
     for (int a = 0; a < 3; a++) {
-        light->color[a] = (float)(from->color[a] * from->intensity);
         light->position[a] = (float)m[12 + a];
         light->direction[a] = (float)direction[a];
-    }
-    if (light->kind == TYN_LIGHT_SPOT) {
-        light->cos_inner = (float)cos(from->inner);
-        light->cos_outer = (float)cos(from->outer);
     }
     return TYN_OK;
 }

@@ -1,5 +1,6 @@
 // gltf_check.c -- checks a glTF document, field by field.
 #include "io/gltf_check.h"
+#include "io/gltf_light.h"
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -30,10 +31,10 @@ static tyn_result check_indices(const checker *c, const cJSON *parent, const cha
     cJSON *array;
     const cJSON *element;
     int64_t unused;
-    TRY(tyn_json_array(c->doc, parent, name, &array));
+    TYN_TRY(tyn_json_array(c->doc, parent, name, &array));
     cJSON_ArrayForEach(element, array)
     {
-        TRY(tyn_json_index(c->doc, element, of->count, what, &unused));
+        TYN_TRY(tyn_json_index(c->doc, element, of->count, what, &unused));
     }
     return TYN_OK;
 }
@@ -45,8 +46,8 @@ static tyn_result check_extensions(const checker *c)
         "KHR_mesh_quantization",   "KHR_texture_transform", "KHR_materials_emissive_strength"};
     cJSON *array;
     const cJSON *element;
-    TRY(tyn_json_array(c->doc, c->doc->root, "extensionsUsed", &array));
-    TRY(tyn_json_array(c->doc, c->doc->root, "extensionsRequired", &array));
+    TYN_TRY(tyn_json_array(c->doc, c->doc->root, "extensionsUsed", &array));
+    TYN_TRY(tyn_json_array(c->doc, c->doc->root, "extensionsRequired", &array));
     cJSON_ArrayForEach(element, array)
     {
         bool found = false;
@@ -66,8 +67,8 @@ static tyn_result check_asset(const checker *c)
 {
     cJSON *asset;
     const char *version = NULL;
-    TRY(tyn_json_object(c->doc, c->doc->root, "asset", &asset));
-    TRY(tyn_json_string(c->doc, asset, "version", &version));
+    TYN_TRY(tyn_json_object(c->doc, c->doc->root, "asset", &asset));
+    TYN_TRY(tyn_json_string(c->doc, asset, "version", &version));
     if (!version || strncmp(version, "2.", 2) != 0) {
         return tyn_json_fault(c->doc, asset ? asset : c->doc->root,
                               "asset.version must be \"2.0\": only glTF 2 is read");
@@ -80,9 +81,9 @@ static tyn_result check_buffer(const checker *c, int64_t i)
     const cJSON *buffer = c->buffers.items[i];
     int64_t bytes = 0;
     const char *uri = NULL;
-    TRY(tyn_json_integer(c->doc, buffer, "byteLength", 1, MAX_INT, "1 to 2147483647 bytes",
-                         &bytes));
-    TRY(tyn_json_string(c->doc, buffer, "uri", &uri));
+    TYN_TRY(tyn_json_integer(c->doc, buffer, "byteLength", 1, MAX_INT, "1 to 2147483647 bytes",
+                             &bytes));
+    TYN_TRY(tyn_json_string(c->doc, buffer, "uri", &uri));
     if (!bytes) {
         return tyn_json_fault(c->doc, buffer, "byteLength is missing");
     }
@@ -100,11 +101,13 @@ static tyn_result check_buffer_view(const checker *c, const cJSON *view)
     if (!index) {
         return tyn_json_fault(c->doc, view, "buffer is missing");
     }
-    TRY(tyn_json_index(c->doc, index, c->buffers.count, "buffers", &buffer));
-    TRY(tyn_json_integer(c->doc, view, "byteOffset", 0, MAX_INT, "an offset >= 0", &offset));
-    TRY(tyn_json_integer(c->doc, view, "byteLength", 1, MAX_INT, "1 to 2147483647 bytes", &length));
-    TRY(tyn_json_integer(c->doc, view, "byteStride", 4, 252, "4 to 252 bytes", &stride));
-    TRY(tyn_json_integer(c->doc, c->buffers.items[buffer], "byteLength", 1, MAX_INT, "", &total));
+    TYN_TRY(tyn_json_index(c->doc, index, c->buffers.count, "buffers", &buffer));
+    TYN_TRY(tyn_json_integer(c->doc, view, "byteOffset", 0, MAX_INT, "an offset >= 0", &offset));
+    TYN_TRY(
+        tyn_json_integer(c->doc, view, "byteLength", 1, MAX_INT, "1 to 2147483647 bytes", &length));
+    TYN_TRY(tyn_json_integer(c->doc, view, "byteStride", 4, 252, "4 to 252 bytes", &stride));
+    TYN_TRY(
+        tyn_json_integer(c->doc, c->buffers.items[buffer], "byteLength", 1, MAX_INT, "", &total));
     if (!length) {
         return tyn_json_fault(c->doc, view, "byteLength is missing");
     }
@@ -132,11 +135,11 @@ static tyn_result check_extent(const checker *c, const cJSON *at, int64_t count,
     if (!index) {
         return TYN_OK;
     }
-    TRY(tyn_json_index(c->doc, index, c->buffer_views.count, "bufferViews", &view));
-    TRY(tyn_json_integer(c->doc, at, "byteOffset", 0, MAX_INT, "an offset >= 0", &offset));
+    TYN_TRY(tyn_json_index(c->doc, index, c->buffer_views.count, "bufferViews", &view));
+    TYN_TRY(tyn_json_integer(c->doc, at, "byteOffset", 0, MAX_INT, "an offset >= 0", &offset));
     const cJSON *v = c->buffer_views.items[view];
-    TRY(tyn_json_integer(c->doc, v, "byteLength", 1, MAX_INT, "", &length));
-    TRY(tyn_json_integer(c->doc, v, "byteStride", 4, 252, "4 to 252 bytes", &stride));
+    TYN_TRY(tyn_json_integer(c->doc, v, "byteLength", 1, MAX_INT, "", &length));
+    TYN_TRY(tyn_json_integer(c->doc, v, "byteStride", 4, 252, "4 to 252 bytes", &stride));
     if (offset + stride * (count - 1) + bytes > length) {
         return tyn_json_fault(c->doc, at, "reaches byte %lld, its bufferView ends at %lld",
                               (long long)(offset + stride * (count - 1) + bytes),
@@ -149,23 +152,23 @@ static tyn_result check_sparse(const checker *c, const cJSON *accessor, int64_t 
 {
     cJSON *sparse, *indices, *values;
     int64_t count = 0, type = 0;
-    TRY(tyn_json_object(c->doc, accessor, "sparse", &sparse));
+    TYN_TRY(tyn_json_object(c->doc, accessor, "sparse", &sparse));
     if (!sparse) {
         return TYN_OK;
     }
-    TRY(tyn_json_integer(c->doc, sparse, "count", 1, MAX_INT, "a count >= 1", &count));
-    TRY(tyn_json_object(c->doc, sparse, "indices", &indices));
-    TRY(tyn_json_object(c->doc, sparse, "values", &values));
+    TYN_TRY(tyn_json_integer(c->doc, sparse, "count", 1, MAX_INT, "a count >= 1", &count));
+    TYN_TRY(tyn_json_object(c->doc, sparse, "indices", &indices));
+    TYN_TRY(tyn_json_object(c->doc, sparse, "values", &values));
     if (!count || !indices || !values || !tyn_json_member(indices, "bufferView") ||
         !tyn_json_member(values, "bufferView")) {
         return tyn_json_fault(c->doc, sparse, "needs count, indices and values with bufferViews");
     }
-    TRY(tyn_json_integer(c->doc, indices, "componentType", 5121, 5125, "5121, 5123 or 5125",
-                         &type));
+    TYN_TRY(tyn_json_integer(c->doc, indices, "componentType", 5121, 5125, "5121, 5123 or 5125",
+                             &type));
     if (!component_bytes(type)) {
         return tyn_json_fault(c->doc, indices, "componentType must be 5121, 5123 or 5125");
     }
-    TRY(check_extent(c, indices, count, component_bytes(type)));
+    TYN_TRY(check_extent(c, indices, count, component_bytes(type)));
     return check_extent(c, values, count, bytes);
 }
 
@@ -178,10 +181,10 @@ static tyn_result check_accessor(const checker *c, const cJSON *accessor)
                  {"MAT2", 2, 2},   {"MAT3", 3, 3}, {"MAT4", 4, 4}};
     int64_t count = 0, component = 0, bytes = 0;
     const char *type = "";
-    TRY(tyn_json_integer(c->doc, accessor, "count", 1, MAX_INT, "a count >= 1", &count));
-    TRY(tyn_json_integer(c->doc, accessor, "componentType", 5120, 5126, "5120 to 5126 but 5124",
-                         &component));
-    TRY(tyn_json_string(c->doc, accessor, "type", &type));
+    TYN_TRY(tyn_json_integer(c->doc, accessor, "count", 1, MAX_INT, "a count >= 1", &count));
+    TYN_TRY(tyn_json_integer(c->doc, accessor, "componentType", 5120, 5126, "5120 to 5126 but 5124",
+                             &component));
+    TYN_TRY(tyn_json_string(c->doc, accessor, "type", &type));
     for (size_t i = 0; i < sizeof types / sizeof types[0]; i++) {
         if (strcmp(type, types[i].name) == 0) {
             int64_t column = types[i].rows * component_bytes(component);
@@ -192,15 +195,15 @@ static tyn_result check_accessor(const checker *c, const cJSON *accessor)
     if (!count || !bytes) {
         return tyn_json_fault(c->doc, accessor, "needs count, componentType and type");
     }
-    TRY(check_extent(c, accessor, count, bytes));
+    TYN_TRY(check_extent(c, accessor, count, bytes));
     return check_sparse(c, accessor, bytes);
 }
 
 static tyn_result check_image(const checker *c, const cJSON *image)
 {
     const char *uri = NULL;
-    TRY(tyn_json_string(c->doc, image, "uri", &uri));
-    TRY(check_index(c, image, "bufferView", &c->buffer_views, "bufferViews"));
+    TYN_TRY(tyn_json_string(c->doc, image, "uri", &uri));
+    TYN_TRY(check_index(c, image, "bufferView", &c->buffer_views, "bufferViews"));
     if ((uri && *uri) == (tyn_json_member(image, "bufferView") != NULL)) {
         return tyn_json_fault(c->doc, image, "needs either a uri or a bufferView");
     }
@@ -213,7 +216,7 @@ static tyn_result check_sampler(const checker *c, const cJSON *sampler)
     for (int i = 0; i < 2; i++) {
         int64_t mode = 10497;
         const char *right = "10497 (repeat), 33071 (clamp) or 33648 (mirror)";
-        TRY(tyn_json_integer(c->doc, sampler, names[i], 0, 65535, right, &mode));
+        TYN_TRY(tyn_json_integer(c->doc, sampler, names[i], 0, 65535, right, &mode));
         if (mode != 10497 && mode != 33071 && mode != 33648) {
             return tyn_json_fault(c->doc, tyn_json_member(sampler, names[i]), "must be %s", right);
         }
@@ -223,14 +226,14 @@ static tyn_result check_sampler(const checker *c, const cJSON *sampler)
 
 static tyn_result check_texture(const checker *c, const cJSON *texture)
 {
-    TRY(check_index(c, texture, "sampler", &c->samplers, "samplers"));
+    TYN_TRY(check_index(c, texture, "sampler", &c->samplers, "samplers"));
     return check_index(c, texture, "source", &c->images, "images");
 }
 
 static tyn_result check_texture_info(const checker *c, const cJSON *parent, const char *name)
 {
     cJSON *info;
-    TRY(tyn_json_object(c->doc, parent, name, &info));
+    TYN_TRY(tyn_json_object(c->doc, parent, name, &info));
     if (info && !tyn_json_member(info, "index")) {
         return tyn_json_fault(c->doc, info, "index is missing: an index of textures");
     }
@@ -240,11 +243,11 @@ static tyn_result check_texture_info(const checker *c, const cJSON *parent, cons
 static tyn_result check_material(const checker *c, const cJSON *material)
 {
     cJSON *pbr;
-    TRY(tyn_json_object(c->doc, material, "pbrMetallicRoughness", &pbr));
-    TRY(check_texture_info(c, pbr, "baseColorTexture"));
-    TRY(check_texture_info(c, pbr, "metallicRoughnessTexture"));
-    TRY(check_texture_info(c, material, "normalTexture"));
-    TRY(check_texture_info(c, material, "occlusionTexture"));
+    TYN_TRY(tyn_json_object(c->doc, material, "pbrMetallicRoughness", &pbr));
+    TYN_TRY(check_texture_info(c, pbr, "baseColorTexture"));
+    TYN_TRY(check_texture_info(c, pbr, "metallicRoughnessTexture"));
+    TYN_TRY(check_texture_info(c, material, "normalTexture"));
+    TYN_TRY(check_texture_info(c, material, "occlusionTexture"));
     return check_texture_info(c, material, "emissiveTexture");
 }
 
@@ -288,12 +291,12 @@ static tyn_result check_camera(const checker *c, const cJSON *camera)
     const char *type = "";
     cJSON *lens;
     double unused;
-    TRY(tyn_json_string(c->doc, camera, "type", &type));
+    TYN_TRY(tyn_json_string(c->doc, camera, "type", &type));
     bool perspective = strcmp(type, "perspective") == 0;
     if (!perspective && strcmp(type, "orthographic") != 0) {
         return tyn_json_fault(c->doc, camera, "type must be \"perspective\" or \"orthographic\"");
     }
-    TRY(tyn_json_object(c->doc, camera, type, &lens));
+    TYN_TRY(tyn_json_object(c->doc, camera, type, &lens));
     if (!lens) {
         return tyn_json_fault(c->doc, camera, "%s is missing: an object with its lens", type);
     }
@@ -303,40 +306,12 @@ static tyn_result check_camera(const checker *c, const cJSON *camera)
         }
     }
     if (perspective) {
-        TRY(tyn_json_number(c->doc, lens, "yfov", 1e-4, 3.1415, "between 0 and pi radians",
-                            &unused));
+        TYN_TRY(tyn_json_number(c->doc, lens, "yfov", 1e-4, 3.1415, "between 0 and pi radians",
+                                &unused));
         return tyn_json_number(c->doc, lens, "aspectRatio", 1e-6, 1e6, "> 0", &unused);
     }
-    TRY(tyn_json_number(c->doc, lens, "ymag", 1e-30, 1e30, "> 0, metres", &unused));
+    TYN_TRY(tyn_json_number(c->doc, lens, "ymag", 1e-30, 1e30, "> 0, metres", &unused));
     return tyn_json_number(c->doc, lens, "xmag", 1e-30, 1e30, "> 0, metres", &unused);
-}
-
-static tyn_result check_light(const checker *c, const cJSON *light)
-{
-    const char *type = "";
-    cJSON *spot;
-    double color[3], intensity, inner = 0.0, outer = 0.5 * HALF_PI;
-    TRY(tyn_json_string(c->doc, light, "type", &type));
-    if (strcmp(type, "directional") != 0 && strcmp(type, "point") != 0 &&
-        strcmp(type, "spot") != 0) {
-        return tyn_json_fault(c->doc, light, "type must be \"directional\", \"point\" or \"spot\"");
-    }
-    TRY(tyn_json_numbers(c->doc, light, "color", 3, 0.0, FLT_MAX, "a number >= 0", color));
-    TRY(tyn_json_number(c->doc, light, "intensity", 0.0, FLT_MAX, "a number >= 0", &intensity));
-    TRY(tyn_json_object(c->doc, light, "spot", &spot));
-    if (strcmp(type, "spot") == 0 && !spot) {
-        return tyn_json_fault(c->doc, light, "spot is missing: an object with its cone angles");
-    }
-    if (spot) {
-        TRY(tyn_json_number(c->doc, spot, "innerConeAngle", 0.0, HALF_PI, "0 to pi/2", &inner));
-        TRY(tyn_json_number(c->doc, spot, "outerConeAngle", 0.0, HALF_PI + 1e-6, "0 to pi/2",
-                            &outer));
-        if (inner > outer) {
-            return tyn_json_fault(c->doc, spot, "innerConeAngle %g must be <= outerConeAngle %g",
-                                  inner, outer);
-        }
-    }
-    return TYN_OK;
 }
 
 static tyn_result check_node(const checker *c, const cJSON *node)
@@ -344,15 +319,15 @@ static tyn_result check_node(const checker *c, const cJSON *node)
     double v[16];
     cJSON *extensions, *lights;
     const char *name;
-    TRY(tyn_json_string(c->doc, node, "name", &name));
-    TRY(check_index(c, node, "camera", &c->cameras, "cameras"));
-    TRY(check_index(c, node, "mesh", &c->meshes, "meshes"));
-    TRY(check_indices(c, node, "children", &c->nodes, "nodes"));
-    TRY(tyn_json_numbers(c->doc, node, "matrix", 16, -1e15, 1e15, "a finite number", v));
-    TRY(tyn_json_numbers(c->doc, node, "translation", 3, -1e15, 1e15, "a finite number", v));
-    TRY(tyn_json_numbers(c->doc, node, "scale", 3, -1e15, 1e15, "a finite number", v));
+    TYN_TRY(tyn_json_string(c->doc, node, "name", &name));
+    TYN_TRY(check_index(c, node, "camera", &c->cameras, "cameras"));
+    TYN_TRY(check_index(c, node, "mesh", &c->meshes, "meshes"));
+    TYN_TRY(check_indices(c, node, "children", &c->nodes, "nodes"));
+    TYN_TRY(tyn_json_numbers(c->doc, node, "matrix", 16, -1e15, 1e15, "a finite number", v));
+    TYN_TRY(tyn_json_numbers(c->doc, node, "translation", 3, -1e15, 1e15, "a finite number", v));
+    TYN_TRY(tyn_json_numbers(c->doc, node, "scale", 3, -1e15, 1e15, "a finite number", v));
     if (tyn_json_member(node, "rotation")) {
-        TRY(tyn_json_numbers(c->doc, node, "rotation", 4, -1.001, 1.001, "-1 to 1", v));
+        TYN_TRY(tyn_json_numbers(c->doc, node, "rotation", 4, -1.001, 1.001, "-1 to 1", v));
         if (fabs(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3] - 1.0) > 0.01) {
             return tyn_json_fault(c->doc, tyn_json_member(node, "rotation"),
                                   "must be a unit quaternion x, y, z, w");
@@ -364,8 +339,8 @@ static tyn_result check_node(const checker *c, const cJSON *node)
         return tyn_json_fault(c->doc, matrix,
                               "a node has either a matrix or translation, rotation and scale");
     }
-    TRY(tyn_json_object(c->doc, node, "extensions", &extensions));
-    TRY(tyn_json_object(c->doc, extensions, "KHR_lights_punctual", &lights));
+    TYN_TRY(tyn_json_object(c->doc, node, "extensions", &extensions));
+    TYN_TRY(tyn_json_object(c->doc, extensions, "KHR_lights_punctual", &lights));
     return check_index(c, lights, "light", &c->lights, "lights");
 }
 
@@ -403,7 +378,7 @@ static tyn_result check_trees(const checker *c, int64_t *parent, uint8_t *state)
     }
     for (int64_t s = 0; s < c->scenes.count; s++) {
         const cJSON *root;
-        TRY(check_indices(c, c->scenes.items[s], "nodes", &c->nodes, "nodes"));
+        TYN_TRY(check_indices(c, c->scenes.items[s], "nodes", &c->nodes, "nodes"));
         memset(state, 0, (size_t)c->nodes.count);
         cJSON_ArrayForEach(root, tyn_json_member(c->scenes.items[s], "nodes"))
         {
@@ -420,7 +395,7 @@ static tyn_result check_trees(const checker *c, int64_t *parent, uint8_t *state)
 static tyn_result check_nodes(const checker *c)
 {
     for (int64_t i = 0; i < c->nodes.count; i++) {
-        TRY(check_node(c, c->nodes.items[i]));
+        TYN_TRY(check_node(c, c->nodes.items[i]));
     }
     size_t count = (size_t)c->nodes.count + 1;
     int64_t *parent = calloc(count, sizeof *parent);
@@ -440,53 +415,54 @@ static tyn_result check_all(checker *c)
 {
     const json_doc *doc = c->doc;
     cJSON *extensions, *lights;
-    TRY(check_asset(c));
-    TRY(check_extensions(c));
-    TRY(tyn_json_list(doc, doc->root, "buffers", &c->buffers));
-    TRY(tyn_json_list(doc, doc->root, "bufferViews", &c->buffer_views));
-    TRY(tyn_json_list(doc, doc->root, "accessors", &c->accessors));
-    TRY(tyn_json_list(doc, doc->root, "images", &c->images));
-    TRY(tyn_json_list(doc, doc->root, "samplers", &c->samplers));
-    TRY(tyn_json_list(doc, doc->root, "textures", &c->textures));
-    TRY(tyn_json_list(doc, doc->root, "materials", &c->materials));
-    TRY(tyn_json_list(doc, doc->root, "meshes", &c->meshes));
-    TRY(tyn_json_list(doc, doc->root, "cameras", &c->cameras));
-    TRY(tyn_json_list(doc, doc->root, "nodes", &c->nodes));
-    TRY(tyn_json_list(doc, doc->root, "scenes", &c->scenes));
-    TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
-    TRY(tyn_json_object(doc, extensions, "KHR_lights_punctual", &lights));
-    TRY(tyn_json_list(doc, lights, "lights", &c->lights));
+    TYN_TRY(check_asset(c));
+    TYN_TRY(check_extensions(c));
+    TYN_TRY(tyn_json_list(doc, doc->root, "buffers", &c->buffers));
+    TYN_TRY(tyn_json_list(doc, doc->root, "bufferViews", &c->buffer_views));
+    TYN_TRY(tyn_json_list(doc, doc->root, "accessors", &c->accessors));
+    TYN_TRY(tyn_json_list(doc, doc->root, "images", &c->images));
+    TYN_TRY(tyn_json_list(doc, doc->root, "samplers", &c->samplers));
+    TYN_TRY(tyn_json_list(doc, doc->root, "textures", &c->textures));
+    TYN_TRY(tyn_json_list(doc, doc->root, "materials", &c->materials));
+    TYN_TRY(tyn_json_list(doc, doc->root, "meshes", &c->meshes));
+    TYN_TRY(tyn_json_list(doc, doc->root, "cameras", &c->cameras));
+    TYN_TRY(tyn_json_list(doc, doc->root, "nodes", &c->nodes));
+    TYN_TRY(tyn_json_list(doc, doc->root, "scenes", &c->scenes));
+    TYN_TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
+    TYN_TRY(tyn_json_object(doc, extensions, "KHR_lights_punctual", &lights));
+    TYN_TRY(tyn_json_list(doc, lights, "lights", &c->lights));
     for (int64_t i = 0; i < c->buffers.count; i++) {
-        TRY(check_buffer(c, i));
+        TYN_TRY(check_buffer(c, i));
     }
     for (int64_t i = 0; i < c->buffer_views.count; i++) {
-        TRY(check_buffer_view(c, c->buffer_views.items[i]));
+        TYN_TRY(check_buffer_view(c, c->buffer_views.items[i]));
     }
     for (int64_t i = 0; i < c->accessors.count; i++) {
-        TRY(check_accessor(c, c->accessors.items[i]));
+        TYN_TRY(check_accessor(c, c->accessors.items[i]));
     }
     for (int64_t i = 0; i < c->images.count; i++) {
-        TRY(check_image(c, c->images.items[i]));
+        TYN_TRY(check_image(c, c->images.items[i]));
     }
     for (int64_t i = 0; i < c->samplers.count; i++) {
-        TRY(check_sampler(c, c->samplers.items[i]));
+        TYN_TRY(check_sampler(c, c->samplers.items[i]));
     }
     for (int64_t i = 0; i < c->textures.count; i++) {
-        TRY(check_texture(c, c->textures.items[i]));
+        TYN_TRY(check_texture(c, c->textures.items[i]));
     }
     for (int64_t i = 0; i < c->materials.count; i++) {
-        TRY(check_material(c, c->materials.items[i]));
+        TYN_TRY(check_material(c, c->materials.items[i]));
     }
     for (int64_t i = 0; i < c->meshes.count; i++) {
-        TRY(check_mesh(c, c->meshes.items[i]));
+        TYN_TRY(check_mesh(c, c->meshes.items[i]));
     }
     for (int64_t i = 0; i < c->cameras.count; i++) {
-        TRY(check_camera(c, c->cameras.items[i]));
+        TYN_TRY(check_camera(c, c->cameras.items[i]));
     }
     for (int64_t i = 0; i < c->lights.count; i++) {
-        TRY(check_light(c, c->lights.items[i]));
+        tyn_light unused;
+        TYN_TRY(tyn_gltf_read_light(&unused, c->doc, c->lights.items[i]));
     }
-    TRY(check_index(c, doc->root, "scene", &c->scenes, "scenes"));
+    TYN_TRY(check_index(c, doc->root, "scene", &c->scenes, "scenes"));
     return check_nodes(c);
 }
 

@@ -15,8 +15,8 @@ tyn_result tyn_gltf_materials_open(gltf_materials *m, const gltf_data *data, tyn
     const json_doc *doc = data->doc;
     memset(m, 0, sizeof *m);
     m->scene = scene;
-    TRY(tyn_gltf_textures_open(&m->textures, data, &scene->surfaces));
-    TRY(tyn_json_list(doc, doc->root, "materials", &m->list));
+    TYN_TRY(tyn_gltf_textures_open(&m->textures, data, &scene->surfaces));
+    TYN_TRY(tyn_json_list(doc, doc->root, "materials", &m->list));
     m->loaded = calloc((size_t)m->list.count + 1, sizeof *m->loaded);
     m->is_loaded = calloc((size_t)m->list.count + 1, sizeof *m->is_loaded);
     if (!m->loaded || !m->is_loaded) {
@@ -77,14 +77,15 @@ static tyn_result read_texture_info(gltf_materials *m, const cJSON *info, gltf_m
     int64_t texcoord = 0;
     double offset[2] = {0, 0}, scale[2] = {1, 1}, angle = 0;
     cJSON *extensions, *transform;
-    TRY(tyn_json_integer(doc, info, "texCoord", 0, 15, "a whole number, 0 to 15", &texcoord));
-    TRY(tyn_json_object(doc, info, "extensions", &extensions));
-    TRY(tyn_json_object(doc, extensions, "KHR_texture_transform", &transform));
+    TYN_TRY(tyn_json_integer(doc, info, "texCoord", 0, 15, "a whole number, 0 to 15", &texcoord));
+    TYN_TRY(tyn_json_object(doc, info, "extensions", &extensions));
+    TYN_TRY(tyn_json_object(doc, extensions, "KHR_texture_transform", &transform));
     const char *finite = "a finite number";
-    TRY(tyn_json_integer(doc, transform, "texCoord", 0, 15, "a whole number, 0 to 15", &texcoord));
-    TRY(tyn_json_numbers(doc, transform, "offset", 2, -1e9, 1e9, finite, offset));
-    TRY(tyn_json_numbers(doc, transform, "scale", 2, -1e9, 1e9, finite, scale));
-    TRY(tyn_json_number(doc, transform, "rotation", -1e9, 1e9, finite, &angle));
+    TYN_TRY(
+        tyn_json_integer(doc, transform, "texCoord", 0, 15, "a whole number, 0 to 15", &texcoord));
+    TYN_TRY(tyn_json_numbers(doc, transform, "offset", 2, -1e9, 1e9, finite, offset));
+    TYN_TRY(tyn_json_numbers(doc, transform, "scale", 2, -1e9, 1e9, finite, scale));
+    TYN_TRY(tyn_json_number(doc, transform, "rotation", -1e9, 1e9, finite, &angle));
     const double c = cos(angle), s = sin(angle);
     const double uv[2][3] = {{c * scale[0], s * scale[1], offset[0]},
                              {-s * scale[0], c * scale[1], offset[1]}};
@@ -105,10 +106,10 @@ static tyn_result read_factors(const json_doc *doc, const cJSON *json, double fa
             factors[k][c] = f->factor_def;
         }
         if (f->object) {
-            TRY(tyn_json_object(doc, json, f->object, &object));
+            TYN_TRY(tyn_json_object(doc, json, f->object, &object));
         }
-        TRY(tyn_json_numbers(doc, f->object ? object : json, f->factor, f->factors, 0, 1,
-                             "between 0 and 1", factors[k]));
+        TYN_TRY(tyn_json_numbers(doc, f->object ? object : json, f->factor, f->factors, 0, 1,
+                                 "between 0 and 1", factors[k]));
     }
     return TYN_OK;
 }
@@ -119,17 +120,17 @@ static tyn_result read_albedo(gltf_materials *m, int64_t index, const cJSON *jso
     const json_doc *doc = m->textures.data->doc;
     double metallic = 1, mean[4];
     cJSON *pbr, *info, *metal;
-    TRY(tyn_json_object(doc, json, "pbrMetallicRoughness", &pbr));
-    TRY(tyn_json_number(doc, pbr, "metallicFactor", 0, 1, "between 0 and 1", &metallic));
-    TRY(tyn_json_object(doc, pbr, "baseColorTexture", &info));
-    TRY(tyn_json_object(doc, pbr, "metallicRoughnessTexture", &metal));
+    TYN_TRY(tyn_json_object(doc, json, "pbrMetallicRoughness", &pbr));
+    TYN_TRY(tyn_json_number(doc, pbr, "metallicFactor", 0, 1, "between 0 and 1", &metallic));
+    TYN_TRY(tyn_json_object(doc, pbr, "baseColorTexture", &info));
+    TYN_TRY(tyn_json_object(doc, pbr, "metallicRoughnessTexture", &metal));
     if (metal && metallic > 0) { // metalness is in the blue channel, linear
-        TRY(tyn_gltf_texture_mean(&m->textures, metal, false, mean));
+        TYN_TRY(tyn_gltf_texture_mean(&m->textures, metal, false, mean));
         metallic *= mean[2];
         lack(m, index, LACK_METAL_TEXTURE);
     }
     if (info) {
-        TRY(read_texture_info(m, info, out, texture));
+        TYN_TRY(read_texture_info(m, info, out, texture));
     }
     if (metallic == 1 && factor[0] + factor[1] + factor[2] > 0) {
         lack(m, index, LACK_METAL);
@@ -146,12 +147,12 @@ static tyn_result read_emission(gltf_materials *m, int64_t index, const cJSON *j
     const json_doc *doc = m->textures.data->doc;
     double strength = 1, mean[4] = {1, 1, 1, 1};
     cJSON *extensions, *strong, *info;
-    TRY(tyn_json_object(doc, json, "extensions", &extensions));
-    TRY(tyn_json_object(doc, extensions, "KHR_materials_emissive_strength", &strong));
-    TRY(tyn_json_number(doc, strong, "emissiveStrength", 0, 1e30, "a number >= 0", &strength));
-    TRY(tyn_json_object(doc, json, "emissiveTexture", &info));
+    TYN_TRY(tyn_json_object(doc, json, "extensions", &extensions));
+    TYN_TRY(tyn_json_object(doc, extensions, "KHR_materials_emissive_strength", &strong));
+    TYN_TRY(tyn_json_number(doc, strong, "emissiveStrength", 0, 1e30, "a number >= 0", &strength));
+    TYN_TRY(tyn_json_object(doc, json, "emissiveTexture", &info));
     if (info && factor[0] + factor[1] + factor[2] > 0) {
-        TRY(tyn_gltf_texture_mean(&m->textures, info, true, mean));
+        TYN_TRY(tyn_gltf_texture_mean(&m->textures, info, true, mean));
         lack(m, index, LACK_EMISSIVE_TEXTURE);
     }
     for (int c = 0; c < 3; c++) {
@@ -210,9 +211,9 @@ tyn_result tyn_gltf_material_get(gltf_materials *m, int64_t index, const gltf_ma
     } else {
         const cJSON *json = m->list.items[at];
         double factors[TYN_MATERIAL_NUM_FIELDS][4];
-        TRY(read_factors(m->textures.data->doc, json, factors));
-        TRY(read_albedo(m, at, json, loaded, &material.texture, factors[TYN_MATERIAL_ALBEDO]));
-        TRY(read_emission(m, at, json, factors[TYN_MATERIAL_EMISSION]));
+        TYN_TRY(read_factors(m->textures.data->doc, json, factors));
+        TYN_TRY(read_albedo(m, at, json, loaded, &material.texture, factors[TYN_MATERIAL_ALBEDO]));
+        TYN_TRY(read_emission(m, at, json, factors[TYN_MATERIAL_EMISSION]));
         for (int k = 0; k < TYN_MATERIAL_NUM_FIELDS; k++) {
             const tyn_material_field *f = &tyn_material_fields[k];
             float *v = (float *)((char *)&material + f->offset);
@@ -224,7 +225,7 @@ tyn_result tyn_gltf_material_get(gltf_materials *m, int64_t index, const gltf_ma
         material.flags =
             cJSON_IsTrue(tyn_json_member(json, "doubleSided")) ? TYN_SURFACE_EMITS_BOTH_SIDES : 0;
     }
-    TRY(add(m, &material, &loaded->index));
+    TYN_TRY(add(m, &material, &loaded->index));
     m->is_loaded[at] = true;
     return TYN_OK;
 }

@@ -28,9 +28,9 @@ static tyn_result load_raw(tyn_volume *volume, const char *path, const json_doc 
     double size[3] = {0};
     const char *name = "";
     int type = 0;
-    TRY(tyn_json_numbers(doc, density, "size", 3, 1, 65536, "a number of voxels, 1 to 65536",
-                         size));
-    TRY(tyn_json_string(doc, density, "type", &name));
+    TYN_TRY(tyn_json_numbers(doc, density, "size", 3, 1, 65536, "a number of voxels, 1 to 65536",
+                             size));
+    TYN_TRY(tyn_json_string(doc, density, "type", &name));
     while (type < 3 && strcmp(name, types[type]) != 0) {
         type++;
     }
@@ -41,7 +41,7 @@ static tyn_result load_raw(tyn_volume *volume, const char *path, const json_doc 
     }
     void *bytes;
     size_t num_bytes;
-    TRY(tyn_file_read(path, TYN_MAX_FILE_BYTES, &bytes, &num_bytes, log));
+    TYN_TRY(tyn_file_read(path, TYN_MAX_FILE_BYTES, &bytes, &num_bytes, log));
     tyn_result r = tyn_raw_parse(volume, bytes, num_bytes,
                                  (int64_t[]){(int64_t)size[0], (int64_t)size[1], (int64_t)size[2]},
                                  (tyn_raw_type)type, path, clamped, log);
@@ -88,8 +88,8 @@ static tyn_result read_density(tyn_scene *scene, tyn_medium *medium, bool *own_t
     uint64_t clamped = 0;
     tyn_volume volume = {0};
     const cJSON *uri = tyn_json_member(density, "uri");
-    TRY(tyn_json_number(doc, density, "scale", 0.0, FLT_MAX, "a number >= 0", &scale));
-    TRY(tyn_json_string(doc, density, "grid", &grid));
+    TYN_TRY(tyn_json_number(doc, density, "scale", 0.0, FLT_MAX, "a number >= 0", &scale));
+    TYN_TRY(tyn_json_string(doc, density, "grid", &grid));
     if (!uri) {
         return tyn_json_fault(doc, density, "uri is missing: a .nvdb, .vdb or .raw file");
     }
@@ -125,16 +125,16 @@ static tyn_result read_medium(tyn_scene *scene, gltf_media *media, const json_do
     }
     tyn_medium *medium = &scene->media[scene->num_media];
     *medium = (tyn_medium){.volume = -1, .density_scale = 1.0f};
-    TRY(tyn_json_string(doc, from, "name", &name));
-    TRY(tyn_json_color(doc, from, "scattering", 0.0, FLT_MAX, ">= 0, in 1/m", medium->sigma_s));
-    TRY(tyn_json_color(doc, from, "absorption", 0.0, FLT_MAX, ">= 0, in 1/m", medium->sigma_a));
-    TRY(tyn_json_color(doc, from, "anisotropy", -g_limit, g_limit,
-                       "between -1 and 1, both excluded", medium->g));
-    TRY(tyn_json_color(doc, from, "emission", 0.0, FLT_MAX, ">= 0, in W/(m^3 sr)",
-                       medium->emission));
-    TRY(tyn_json_object(doc, from, "density", &density));
+    TYN_TRY(tyn_json_string(doc, from, "name", &name));
+    TYN_TRY(tyn_json_color(doc, from, "scattering", 0.0, FLT_MAX, ">= 0, in 1/m", medium->sigma_s));
+    TYN_TRY(tyn_json_color(doc, from, "absorption", 0.0, FLT_MAX, ">= 0, in 1/m", medium->sigma_a));
+    TYN_TRY(tyn_json_color(doc, from, "anisotropy", -g_limit, g_limit,
+                           "between -1 and 1, both excluded", medium->g));
+    TYN_TRY(tyn_json_color(doc, from, "emission", 0.0, FLT_MAX, ">= 0, in W/(m^3 sr)",
+                           medium->emission));
+    TYN_TRY(tyn_json_object(doc, from, "density", &density));
     if (density) {
-        TRY(read_density(scene, medium, &media->own_transform[scene->num_media], doc, density));
+        TYN_TRY(read_density(scene, medium, &media->own_transform[scene->num_media], doc, density));
     }
     medium->name = name ? strdup(name) : NULL;
     scene->num_media++;
@@ -146,15 +146,15 @@ tyn_result tyn_gltf_read_media(tyn_scene *scene, gltf_media *media, const json_d
     cJSON *extensions, *extension, *list;
     const cJSON *element;
     memset(media, 0, sizeof *media);
-    TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
-    TRY(tyn_json_object(doc, extensions, "TYN_participating_media", &extension));
-    TRY(tyn_json_array(doc, extension, "media", &list));
+    TYN_TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
+    TYN_TRY(tyn_json_object(doc, extensions, "TYN_participating_media", &extension));
+    TYN_TRY(tyn_json_array(doc, extension, "media", &list));
     cJSON_ArrayForEach(element, list)
     {
         if (!cJSON_IsObject(element)) {
             return tyn_json_fault(doc, element, "must be an object");
         }
-        TRY(read_medium(scene, media, doc, element));
+        TYN_TRY(read_medium(scene, media, doc, element));
     }
     return TYN_OK;
 }
@@ -174,7 +174,7 @@ static void box_to_index(double m[16], const uint32_t size[3])
 static tyn_result read_repeat(tyn_shape *shape, const json_doc *doc, const cJSON *extension)
 {
     cJSON *repeat;
-    TRY(tyn_json_array(doc, extension, "repeat", &repeat));
+    TYN_TRY(tyn_json_array(doc, extension, "repeat", &repeat));
     if (!repeat) {
         return TYN_OK;
     }
@@ -198,8 +198,8 @@ tyn_result tyn_gltf_read_shape(tyn_scene *scene, const gltf_media *media, const 
     const char *kind = "box";
     int64_t medium = 0;
     double m[16], box[16];
-    TRY(tyn_json_object(doc, node, "extensions", &extensions));
-    TRY(tyn_json_object(doc, extensions, "TYN_participating_media", &extension));
+    TYN_TRY(tyn_json_object(doc, node, "extensions", &extensions));
+    TYN_TRY(tyn_json_object(doc, extensions, "TYN_participating_media", &extension));
     if (!extension) {
         return TYN_OK;
     }
@@ -207,8 +207,8 @@ tyn_result tyn_gltf_read_shape(tyn_scene *scene, const gltf_media *media, const 
     if (!index) {
         return tyn_json_fault(doc, extension, "medium is missing: an index of the list of media");
     }
-    TRY(tyn_json_index(doc, index, scene->num_media, "media", &medium));
-    TRY(tyn_json_string(doc, extension, "shape", &kind));
+    TYN_TRY(tyn_json_index(doc, index, scene->num_media, "media", &medium));
+    TYN_TRY(tyn_json_string(doc, extension, "shape", &kind));
     if (scene->num_shapes == TYN_MAX_SHAPES) {
         return tyn_json_fault(doc, extension, "there may be %d nodes with a medium",
                               TYN_MAX_SHAPES);
@@ -240,7 +240,7 @@ tyn_result tyn_gltf_read_shape(tyn_scene *scene, const gltf_media *media, const 
     for (int i = 0; i < 16; i++) {
         shape->to_world[i] = (float)m[i];
     }
-    TRY(read_repeat(shape, doc, extension));
+    TYN_TRY(read_repeat(shape, doc, extension));
     scene->num_shapes++;
     return TYN_OK;
 }
@@ -251,8 +251,9 @@ static tyn_result read_map(tyn_environment *env, const json_doc *doc, const cJSO
 {
     double q[4] = {0, 0, 0, 1};
     const cJSON *uri = tyn_json_member(from, "uri");
-    TRY(tyn_json_color(doc, from, "radiance", 0.0, FLT_MAX, ">= 0, in W/(m^2 sr)", env->radiance));
-    TRY(tyn_json_numbers(doc, from, "rotation", 4, -1.001, 1.001, "-1 to 1", q));
+    TYN_TRY(
+        tyn_json_color(doc, from, "radiance", 0.0, FLT_MAX, ">= 0, in W/(m^2 sr)", env->radiance));
+    TYN_TRY(tyn_json_numbers(doc, from, "rotation", 4, -1.001, 1.001, "-1 to 1", q));
     double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (!(fabs(length - 1.0) < 0.01)) {
         return tyn_json_fault(doc, tyn_json_member(from, "rotation"),
@@ -282,8 +283,8 @@ tyn_result tyn_gltf_read_environment(tyn_scene *scene, const json_doc *doc, cons
 {
     cJSON *extensions, *extension, *list;
     int64_t index = 0;
-    TRY(tyn_json_object(doc, gltf_scene, "extensions", &extensions));
-    TRY(tyn_json_object(doc, extensions, "TYN_environment_map", &extension));
+    TYN_TRY(tyn_json_object(doc, gltf_scene, "extensions", &extensions));
+    TYN_TRY(tyn_json_object(doc, extensions, "TYN_environment_map", &extension));
     const cJSON *at = tyn_json_member(extension, "environment");
     if (!extension || !at) {
         return extension ? tyn_json_fault(doc, extension,
@@ -291,10 +292,10 @@ tyn_result tyn_gltf_read_environment(tyn_scene *scene, const json_doc *doc, cons
                                           "list of environments")
                          : TYN_OK;
     }
-    TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
-    TRY(tyn_json_object(doc, extensions, "TYN_environment_map", &extension));
-    TRY(tyn_json_array(doc, extension, "environments", &list));
-    TRY(tyn_json_index(doc, at, cJSON_GetArraySize(list), "environments", &index));
+    TYN_TRY(tyn_json_object(doc, doc->root, "extensions", &extensions));
+    TYN_TRY(tyn_json_object(doc, extensions, "TYN_environment_map", &extension));
+    TYN_TRY(tyn_json_array(doc, extension, "environments", &list));
+    TYN_TRY(tyn_json_index(doc, at, cJSON_GetArraySize(list), "environments", &index));
     const cJSON *from = cJSON_GetArrayItem(list, (int)index);
     if (!cJSON_IsObject(from)) {
         return tyn_json_fault(doc, from, "must be an object");

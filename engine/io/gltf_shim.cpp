@@ -115,19 +115,6 @@ void copy_camera(gltf_camera *to, const tinygltf::Camera &from)
     to->ymag = from.orthographic.ymag;
 }
 
-void copy_light(gltf_light *to, const tinygltf::Light &from)
-{
-    to->name = copy(from.name);
-    to->kind = from.type == "directional" ? TYN_LIGHT_DIRECTIONAL
-               : from.type == "point"     ? TYN_LIGHT_POINT
-                                          : TYN_LIGHT_SPOT;
-    to->color[0] = to->color[1] = to->color[2] = 1.0;
-    copy(to->color, from.color, 3);
-    to->intensity = from.intensity;
-    to->inner = from.spot.innerConeAngle;
-    to->outer = from.spot.outerConeAngle;
-}
-
 void copy_model(gltf_model *to, const tinygltf::Model &from)
 {
     to->nodes = allocate<gltf_node>(from.nodes.size());
@@ -137,10 +124,6 @@ void copy_model(gltf_model *to, const tinygltf::Model &from)
     to->cameras = allocate<gltf_camera>(from.cameras.size());
     for (const tinygltf::Camera &camera : from.cameras) {
         copy_camera(&to->cameras[to->num_cameras++], camera);
-    }
-    to->lights = allocate<gltf_light>(from.lights.size());
-    for (const tinygltf::Light &light : from.lights) {
-        copy_light(&to->lights[to->num_lights++], light);
     }
     to->buffers = allocate<gltf_bytes>(from.buffers.size());
     for (const tinygltf::Buffer &buffer : from.buffers) {
@@ -254,9 +237,6 @@ void gltf_model_finish(gltf_model *model)
     for (uint32_t i = 0; i < model->num_cameras; i++) {
         std::free(model->cameras[i].name);
     }
-    for (uint32_t i = 0; i < model->num_lights; i++) {
-        std::free(model->lights[i].name);
-    }
     for (uint32_t i = 0; i < model->num_buffers; i++) {
         std::free(model->buffers[i].data);
     }
@@ -265,6 +245,5 @@ void gltf_model_finish(gltf_model *model)
     std::free(model->roots);
     std::free(model->nodes);
     std::free(model->cameras);
-    std::free(model->lights);
     std::memset(model, 0, sizeof *model);
 }

@@ -21,12 +21,6 @@ typedef struct gltf_camera {
     double yfov, aspect, xmag, ymag; // aspect 0: not given
 } gltf_camera;
 
-typedef struct gltf_light {
-    char *name;
-    int32_t kind; // tyn_light_kind
-    double color[3], intensity, inner, outer;
-} gltf_light;
-
 typedef struct gltf_bytes {
     uint8_t *data;
     size_t size;
@@ -38,9 +32,8 @@ typedef struct gltf_model {
     uint32_t *roots, num_roots;
     gltf_node *nodes;
     gltf_camera *cameras;
-    gltf_light *lights;
     gltf_bytes *buffers; // of the file, each at least as long as its byteLength
-    uint32_t num_nodes, num_cameras, num_lights, num_buffers;
+    uint32_t num_nodes, num_cameras, num_buffers;
 } gltf_model;
 
 typedef struct gltf_source {

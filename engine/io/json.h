@@ -3,8 +3,8 @@
 #include <tyndall/io.h>
 #include <cjson/cJSON.h>
 
-// Leaves the function with the fault of a call.
-#define TRY(call)                                                                                  \
+// Returns the fault of a call, if there is one.
+#define TYN_TRY(call)                                                                              \
     do {                                                                                           \
         tyn_result r_ = (call);                                                                    \
         if (r_) {                                                                                  \

@@ -1,5 +1,6 @@
 // lights.h -- the lights of a frame in M: in which order they are, and which suns have beams.
 #pragma once
+#include <tyndall/scene.h>
 #include "shaders/beams/beam_args.h"
 #include "shaders/common/scene_args.h"
 
@@ -16,6 +17,9 @@ static inline uint32_t tyn_num_beams(const tyn_lights *lights)
 {
     return lights->num_suns < TYN_BEAM_MAX_SUNS ? lights->num_suns : TYN_BEAM_MAX_SUNS;
 }
+
+// Kind, colour and lobe of a light: all but where it is in M, and its shadow map.
+struct light_block tyn_light_block(const tyn_light *light);
 
 static inline const struct light_block *tyn_first_lamp(const tyn_lights *lights)
 {

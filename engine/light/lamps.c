@@ -1,25 +1,19 @@
 // lamps.c -- local lights: their grids.
 #include "light/sources.h"
 #include <tyndall/registry.h>
-#include <math.h>
 
 enum { FINE_LAMPS = 2 }; // so many are always followed everywhere
 
-static float strength(const struct radial_light *lamp)
-{
-    return fmaxf(lamp->intensity[0], fmaxf(lamp->intensity[1], lamp->intensity[2]));
-}
-
 // Of many lamps those that are followed everywhere have nearly a third of what all have, so that equal ones are
 // treated alike, whatever their order. `lamps` are sorted.
-static uint32_t num_fine(const struct radial_light *lamps, uint32_t count)
+static uint32_t num_fine(const struct light_block *lamps, uint32_t count)
 {
     float sum = 0.0f;
     for (uint32_t i = 0; i < count; i++) {
-        sum += strength(&lamps[i]);
+        sum += light_strength(lamps[i]);
     }
     uint32_t fine = 0;
-    while (fine < count && (count <= FINE_LAMPS || strength(&lamps[fine]) > 0.3f * sum)) {
+    while (fine < count && (count <= FINE_LAMPS || light_strength(lamps[fine]) > 0.3f * sum)) {
         fine++;
     }
     return fine;
@@ -33,9 +27,8 @@ void tyn_add_radials(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     out->vpls = vpls.resource != 0;
     tyn_radial_beam_params params;
     tyn_settings_params(job->settings, &tyn_pass_radial_beam, &params);
-    const uint32_t first = frame->lights.num_directional;
-    tyn_radial_beam_plan(&params, &frame->medium, frame->lights.scene, first,
-                         first + frame->lights.num_lamps, TYN_RADIAL_LAMPS_MAX,
+    tyn_radial_beam_plan(&params, &frame->medium, tyn_first_lamp(&frame->lights),
+                         frame->lights.num_lamps, TYN_RADIAL_LAMPS_MAX,
                          out->vpls ? TYN_RADIAL_VPLS_MAX : 0);
     params.num_fine = num_fine(params.lamps, params.num_lamps);
     if (params.num_lamps == 0 && !out->vpls) {

@@ -84,15 +84,17 @@ void tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm *rsm)
         const struct shadow_light *l = &views.lights[v->light];
         const struct rsm_tile tile = {{v->place[0], v->place[1]}, v->texels, v->light};
         tyn_rsm_add(&params, &tile, l->kind, v->args.clip,
-                    v->light < TYN_SHADOW_SUNS ? &frame->lights.suns[v->light]
-                                               : &lamps[v->light - TYN_SHADOW_SUNS],
+                    v->light < TYN_SHADOW_SUNS
+                        ? v->light
+                        : frame->lights.num_directional + v->light - TYN_SHADOW_SUNS,
                     texel_of(l));
         tyn_view_cull_seen(frame->seen, TYN_SHADOW_VIEWS + i, surfaces, frame->below, v->args.clip,
                            params.drawn[i]);
     }
     rsm->num_tiles = params.num_tiles;
     memcpy(rsm->tiles, params.tiles, sizeof rsm->tiles);
-    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [RSM_PORT_SUNS] = job->refs.suns, [RSM_PORT_LIGHTS] = job->refs.lights};
     tyn_connect(refs, RSM_PORT_SURFACES, job->refs.geometry);
     tyn_connect(refs, RSM_PORT_MATERIALS, job->refs.materials);
     tyn_graph_add(g, &tyn_pass_rsm, &params, refs);

@@ -286,12 +286,8 @@ static void set_lamp_power(tyn_path_params *p, const tyn_frame_scene *frame)
         for (int a = 0; a < 3; a++) {
             inside = inside && l->position[a] >= p->box[0][a] && l->position[a] <= p->box[1][a];
         }
-        // Integral of the spot's falloff over the sphere: a full cap, then a squared ramp in the cosine.
-        float cap = 1 - l->cos_inner, ramp = (l->cos_inner - l->cos_outer) / 3;
-        float angle =
-            l->kind == TYN_LIGHT_KIND_SPOT ? 2 * (float)M_PI * (cap + ramp) : 4 * (float)M_PI;
         for (int c = 0; inside && c < 3; c++) {
-            p->lamp_power[c] += l->color[c] * angle;
+            p->lamp_power[c] += l->color[c] * light_lobe_integral(*l);
         }
     }
 }

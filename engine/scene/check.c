@@ -111,29 +111,23 @@ static tyn_result check_shape(const tyn_scene *scene, uint32_t i, const tyn_log 
 
 static tyn_result check_light(const tyn_light *l, uint32_t i, const tyn_log *log)
 {
-    if (l->kind != TYN_LIGHT_DIRECTIONAL && l->kind != TYN_LIGHT_POINT &&
-        l->kind != TYN_LIGHT_SPOT) {
+    const tyn_light_traits *traits = tyn_light_traits_of(l->kind);
+    if (!traits) {
         FAULT("lights[%u].kind = %d: must be directional, point or spot", i, (int)l->kind);
     }
     if (!amount3(l->color)) {
         FAULT("lights[%u].color = %g, %g, %g: must be >= 0 and finite", i, l->color[0], l->color[1],
               l->color[2]);
     }
-    if (l->kind != TYN_LIGHT_DIRECTIONAL && !finite3(l->position)) {
+    if (traits->has_position && !finite3(l->position)) {
         FAULT("lights[%u].position = %g, %g, %g: must be finite", i, l->position[0], l->position[1],
               l->position[2]);
     }
-    if (l->kind != TYN_LIGHT_POINT && !unit3(l->direction)) {
+    if (traits->has_direction && !unit3(l->direction)) {
         FAULT("lights[%u].direction = %g, %g, %g: must have length 1", i, l->direction[0],
               l->direction[1], l->direction[2]);
     }
-    if (l->kind == TYN_LIGHT_SPOT &&
-        !(l->cos_outer >= -1.0f && l->cos_outer <= l->cos_inner && l->cos_inner <= 1.0f)) {
-        FAULT("lights[%u]: cosines of its cone are %g (inner), %g (outer): must be -1 <= outer <= "
-              "inner <= 1",
-              i, l->cos_inner, l->cos_outer);
-    }
-    return TYN_OK;
+    return tyn_light_check_lobe(l, i, log);
 }
 
 tyn_result tyn_camera_check(const tyn_camera *c, uint32_t i, const tyn_log *log)

@@ -51,18 +51,12 @@ static void set_radial(tyn_propagate_radial_params *params, const tyn_job *job)
     memcpy(params->size, block->size, sizeof params->size);
 }
 
-// Lamps that shine.
 static void set_lamps(tyn_propagate_radial_params *params, const tyn_job *job)
 {
-    const tyn_frame_scene *frame = job->frame;
+    const tyn_lights *lights = &job->frame->lights;
     set_radial(params, job);
-    for (uint32_t i = frame->lights.num_directional;
-         i < frame->lights.num_directional + frame->lights.num_lamps; i++) {
-        const float *color = frame->lights.scene[i].color;
-        if (color[0] + color[1] + color[2] > 0.0f && params->num_lamps < TYN_RADIAL_LAMPS_MAX) {
-            params->lamps[params->num_lamps++] = tyn_radial_of_lamp(&frame->lights.scene[i], i);
-        }
-    }
+    params->num_lamps = lights->num_lamps;
+    memcpy(params->lamps, tyn_first_lamp(lights), lights->num_lamps * sizeof *params->lamps);
 }
 
 // VPLs have coarser grids: there are many of them.

@@ -17,13 +17,13 @@ static bool sunlight_enters_through_medium(const tyn_frame_scene *frame, uint32_
     return (lit & frame->open_faces) != 0;
 }
 
-static bool has_spots(const tyn_frame_scene *frame)
+static bool has_lobes(const tyn_frame_scene *frame)
 {
-    bool spots = false;
+    bool lobes = false;
     for (uint32_t i = 0; i < frame->lights.num_lamps; i++) {
-        spots = spots || tyn_first_lamp(&frame->lights)[i].kind == TYN_LIGHT_KIND_SPOT;
+        lobes = lobes || tyn_first_lamp(&frame->lights)[i].kind != TYN_LIGHT_KIND_POINT;
     }
-    return spots;
+    return lobes;
 }
 
 // TYN_SHAPE_KIND_* of all of them, or TYN_SHAPE_KIND_ANY.
@@ -49,7 +49,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->num_lamps = in->num_marched_lamps;
     params->num_near_lamps = in->inscatter.resource ? in->num_near_lamps : 0;
     params->reach = TYN_LAMP_REACH * in->field->cell;
-    params->spots = params->num_lamps + params->num_near_lamps > 0 && has_spots(frame);
+    params->spots = params->num_lamps + params->num_near_lamps > 0 && has_lobes(frame);
     params->kernels = in->lut.resource != 0;
     params->mean = in->mean_in_field;
     params->field = in->field->inscatter_is;

@@ -136,12 +136,11 @@ void follow_sun(uint n, uint part)
 
 void follow_local(uint n)
 {
-    radial_light light = radials[n].light;
+    light_block light = radials[n].light;
     bool lamp = n < radial_num_lamps;
     uint rays = lamp ? LAMP_RAYS : VPL_RAYS;
-    vec3 axis = light.kind == TYN_RADIAL_ISOTROPIC ? vec3(0.0, 0.0, 1.0) : light.axis;
+    vec3 axis = light.direction;
     vec3 side = normalize(abs(axis.x) < 0.7 ? cross(axis, vec3(1.0, 0.0, 0.0)) : cross(axis, vec3(0.0, 1.0, 0.0)));
-    float least = light.kind == TYN_RADIAL_ISOTROPIC ? -1.0 : light.kind == TYN_RADIAL_SPOT ? light.cos_outer : 0.0;
     // A VPL is a little above its surface, as its own map of distances is.
     vec3 reach = max(abs(light.position), vec3(light.radius));
     float lift = lamp ? 0.0 : 0.02 * light.radius + 1e-5 * max(max(reach.x, reach.y), reach.z);
@@ -149,11 +148,11 @@ void follow_local(uint n)
         rng_state rng = rng_start(n, k, 3u);
         vec2 at = place_in(k, rays, rng);
         // Uniform in the solid angle; of a cosine lobe in its power.
-        float z = lamp ? 1.0 - at.x * (1.0 - least) : sqrt(1.0 - at.x);
-        float solid_angle = 2.0 * 3.14159265 * (1.0 - least) / float(rays * rays);
+        float z = lamp ? 1.0 - at.x * (1.0 - light.cos_outer) : sqrt(1.0 - at.x);
+        float solid_angle = 2.0 * 3.14159265 * (1.0 - light.cos_outer) / float(rays * rays);
         float r = sqrt(max(1.0 - z * z, 0.0)), azimuth = 2.0 * 3.14159265 * at.y;
         vec3 d = z * axis + r * (cos(azimuth) * side + sin(azimuth) * cross(axis, side));
-        vec3 power = light.intensity * (lamp ? solid_angle * radial_lobe(light.kind, axis, light.cos_inner, light.cos_outer, d)
+        vec3 power = light.color * (lamp ? solid_angle * light_lobe(light, dot(d, axis))
                                              : 3.14159265 / float(rays * rays));
         follow(n, false, lamp, light.position + lift * axis, d, power, rng);
     }
@@ -187,9 +186,9 @@ void main()
         follow_sun(light, part);
     } else if (shines) {
         uint n = group - sun_groups;
-        radial_light l = radials[n].light;
+        light_block l = radials[n].light;
         lamp = n < radial_num_lamps;
-        given = l.intensity * radial_lobe_integral(l.kind, l.cos_inner, l.cos_outer);
+        given = l.color * light_lobe_integral(l);
         follow_local(n);
     }
     vec3 all_kept = total_of(kept), all_escaped = total_of(escaped);

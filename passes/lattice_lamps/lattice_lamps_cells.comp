@@ -61,7 +61,7 @@ void add_far_light(uint n, lattice_box box, vec3 p, vec3 extinction, inout vec4 
     vec4 moments = visible * vec4(1.0, lattice_lamps_cosine(radials[n].light.radius, r) * unit);
     for (uint ch = 0u; ch < num_channels; ch++) {
         float t = mean_transmittance(tau.a[ch] + tau.p[ch], half_way * extinction[ch]);
-        float e = lattice_channel(radials[n].light.intensity, num_channels, ch, args.tint);
+        float e = lattice_channel(radials[n].light.color, num_channels, ch, args.tint);
         sums[ch] += e * t * fluence * moments;
         all[ch] += e * t * fluence;
     }

@@ -36,7 +36,7 @@ uint room = 0u;
 
 float visibility(uint n, vec3 away)
 {
-    vpl_map map = vpl_map_of(n - args.num_lamps, radials[n].light.axis);
+    vpl_map map = vpl_map_of(n - args.num_lamps, radials[n].light.direction);
     bool closed = walls == 1u && walls_behind(hiding, radials[n].light.position) != 0u;
     float visible = vpl_map_visibility(map, away, length(away), closed);
     uint shines_in = rooms == 1u ? rooms_of_vpl(ivec3(args.dims), n - args.num_lamps) : 0u;

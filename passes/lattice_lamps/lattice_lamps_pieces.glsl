@@ -50,7 +50,7 @@ void lattice_lamps_add_pieces(uint n, uint count, lattice_box box, ivec3 c, inou
         }
     }
     for (uint ch = 0u; ch < num_channels; ch++) {
-        float e = lattice_channel(radials[n].light.intensity, num_channels, ch, args.tint);
+        float e = lattice_channel(radials[n].light.color, num_channels, ch, args.tint);
         float scale = weight[ch] > 0.0 ? e / weight[ch] : 0.0;
         sums[ch] += scale * weighted[ch];
         all[ch] += scale * open[ch];

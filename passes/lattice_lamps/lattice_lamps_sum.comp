@@ -113,11 +113,10 @@ void main()
         reduce();
         vec2 total = sums[0].xy;
         if (inside) { // the power is known
-            float exact = radial_lobe_integral(radials[n].light.kind, radials[n].light.cos_inner,
-                                               radials[n].light.cos_outer);
+            float exact = light_lobe_integral(radials[n].light);
             total *= total.x > 0.0 ? exact / total.x : 0.0;
         }
-        float e = lattice_channel(radials[n].light.intensity, args.channels, ch, args.tint);
+        float e = lattice_channel(radials[n].light.color, args.channels, ch, args.tint);
         entering += inside ? 0.0 : e * total.x;
         emitted += inside ? e * total.x : 0.0;
         lost += e * total.y;

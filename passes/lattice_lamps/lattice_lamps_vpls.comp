@@ -81,19 +81,19 @@ void main()
     // Where there is no medium light does nothing.
     uint first = args.num_lamps, count = thickest > 0.0 ? min(radial_count - first, TYN_RADIAL_VPLS_MAX) : 0u;
     for (uint v = 0u; v < count; v++) {
-        radial_light light = radials[first + v].light;
+        light_block light = radials[first + v].light;
         vec3 from = middle - light.position;
         float way = length(from);
-        if (dot(from, light.axis) > -0.87 * dx) {
+        if (dot(from, light.direction) > -0.87 * dx) {
             // The mean of the medium on the way to the block, and the share of that way within the box.
             radial_place place = radial_place_of(first + v, from, way);
             beam_tau mean = radial_tau(place);
             vec3 per_way = (mean.a + mean.p) / max(way, 1e-20);
-            vpl_map map = vpl_map_of(v, light.axis);
+            vpl_map map = vpl_map_of(v, light.direction);
             // Of the block: how obliquely the light crosses a cell.
             vec3 oblique = abs(from) / max(way, 1e-20);
             float half_way = 0.5 * dx / max(max(oblique.x, max(oblique.y, oblique.z)), 0.57);
-            vec3 intensity = light.intensity;
+            vec3 intensity = light.color;
             uint shines_in = rooms == 1u ? rooms_of_vpl(dims, v) : 0u;
             if (num_channels == 1u) {
                 intensity = vec3(lattice_channel(intensity, 1u, 0u, args.tint));
@@ -102,7 +102,7 @@ void main()
                 vec3 away = from + (vec3(corner_of(k)) - 0.5) * dx;
                 float r2 = dot(away, away), r = sqrt(r2);
                 vec3 unit = away / max(r, 1e-20);
-                float share = lattice_lamps_vpl_pieces(r / dx) == 1u ? max(dot(unit, light.axis), 0.0) : 0.0;
+                float share = lattice_lamps_vpl_pieces(r / dx) == 1u ? max(dot(unit, light.direction), 0.0) : 0.0;
                 float fluence = share * radial_mean_inverse_square(r2, dx * dx);
                 // Not walls_behind: it rounds otherwise, and VPLs lie in the planes of walls.
                 vec4 at = vec4(light.position, 1.0);

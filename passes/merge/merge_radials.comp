@@ -110,7 +110,7 @@ void main()
         vec3 away = p - radials[n].light.position;
         float r = length(away), share = radial_share(n, away, r);
         if (share > 0.0 && shadowed == 1u) {
-            share *= shadow_visibility_lamp(radials[n].light.light, p);
+            share *= shadow_visibility_lamp(radials[n].light.shadow, p);
         }
         if (share <= 0.0) {
             continue;
@@ -125,7 +125,7 @@ void main()
         }
         float per_intensity = args.reach > 0.0 ? radial_rest(r * r, radial_reach(radials[n].light, args.reach))
                                                : radial_mean_inverse_square(r * r, box.dx * box.dx);
-        sum += radials[n].light.intensity * (share * per_intensity) * exp(-tau.a) * k;
+        sum += radials[n].light.color * (share * per_intensity) * exp(-tau.a) * k;
     }
     if (channels == 1u) {
         field[merge_index(c, 0u)] += dot(sum, args.tint) / dot(args.tint, args.tint);

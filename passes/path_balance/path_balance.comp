@@ -177,12 +177,12 @@ vec3 volume_point(uvec4 bits)
     return p;
 }
 
-// Solid angle into which a lamp shines, sr, uniform but for a spot's falloff; of a sun the area across its light, m^2.
+// Solid angle into which a lamp shines, sr; of a sun the area across its light, m^2.
 float light_measure(light_block light)
 {
     vec3 size = args.box_hi - args.box_lo;
     return light.kind == TYN_LIGHT_KIND_DIRECTIONAL ? dot(size.yzx * size.zxy, abs(light.direction))
-                                                    : 2.0 * HG_PI * (light.kind == TYN_LIGHT_KIND_SPOT ? 1.0 - light.cos_outer : 2.0);
+                                                    : 2.0 * HG_PI * (1.0 - light.cos_outer);
 }
 
 // Where a sun's light comes into the box.
@@ -200,7 +200,7 @@ vec3 lamp_way(light_block lamp, vec2 random)
 {
     float z = 1.0 - random.x * (light_measure(lamp) * (0.5 / HG_PI));
     float across = sqrt(max(1.0 - z * z, 0.0)), azimuth = 2.0 * HG_PI * random.y;
-    vec3 axis = lamp.kind == TYN_LIGHT_KIND_SPOT ? lamp.direction : vec3(0.0, 0.0, 1.0);
+    vec3 axis = lamp.direction;
     vec3 side = normalize(abs(axis.x) < 0.7 ? cross(axis, vec3(1.0, 0.0, 0.0)) : cross(axis, vec3(0.0, 1.0, 0.0)));
     return z * axis + across * (cos(azimuth) * side + sin(azimuth) * cross(axis, side));
 }
@@ -228,8 +228,8 @@ void follow_light(inout rng_state rng)
     bool sun = lamp.kind == TYN_LIGHT_KIND_DIRECTIONAL;
     vec3 random = vec3(rng_vec2(bits.yz), rng_float(more.x));
     vec3 way = sun ? lamp.direction : lamp_way(lamp, random.xy);
-    float falloff = lamp.kind == TYN_LIGHT_KIND_SPOT ? spot_falloff(lamp, way) : 1.0;
-    vec3 power = lamp.color * (falloff * total / max3(lamp.color));
+    float lobe = sun ? 1.0 : light_lobe(lamp, dot(way, lamp.direction));
+    vec3 power = lamp.color * (lobe * total / max3(lamp.color));
 
     path_state path = path_new(3.0 * rng_float(bits.w));
     path.vertex = sun ? sun_entry(way, random) : lamp.position;

@@ -210,7 +210,7 @@ ivec3 cell_for(lattice_box box, walls_place place, vec3 p)
 // lattice is asked, too, which no light leaks through.
 float vpl_share(lattice_box box, uint n, vec3 p, vec3 away, float r)
 {
-    vec3 position = radials[n].light.position, axis = radials[n].light.axis;
+    vec3 position = radials[n].light.position, axis = radials[n].light.direction;
     vpl_map map = vpl_map_of(n - radial_num_lamps, axis);
     walls_place place = walls_place_of(box, p);
     walls_planes planes = walls_planes_of(place.index);
@@ -282,13 +282,13 @@ void main()
         if (args.scattered_only != 0) {
             e -= exp(-(tau.a + tau.s));
         }
-        if (shadowed == 1 && radials[n].light.light != TYN_RADIAL_NO_LIGHT) {
-            e *= shadow_visibility_lamp(radials[n].light.light, p);
+        if (shadowed == 1 && radials[n].light.shadow != TYN_LIGHT_NO_SHADOW) {
+            e *= shadow_visibility_lamp(radials[n].light.shadow, p);
         }
         if (walls == 1 && mapped == 1 && n >= radial_num_lamps) {
             e *= vpl_share(box, n, p, away, r);
         }
-        e *= share * radials[n].light.intensity;
+        e *= share * radials[n].light.color;
         for (uint ch = 0; ch < 3; ch++) {
             field[ch] += e[ch] * vec4(1.0, away / max(r, 1e-20));
         }

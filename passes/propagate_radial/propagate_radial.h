@@ -39,7 +39,7 @@ typedef struct tyn_propagate_radial_params {
     uint32_t buffer_bytes; // largest storage buffer; 0 = 128 MiB
     float extent[3];       // medium_block.extent, m
     uint32_t size[3];      // medium_block.size
-    struct radial_light lamps[TYN_RADIAL_LAMPS_MAX];
+    struct light_block lamps[TYN_RADIAL_LAMPS_MAX];
 } tyn_propagate_radial_params;
 
 // clang-format off
@@ -62,7 +62,7 @@ typedef struct tyn_propagate_radial_params {
         "1 - a of it"), \
     X(PROPAGATE_RADIAL, SUM, sum, OUT, BUFFER, "r^2 L_acc of the last batch of grids"), \
     X(PROPAGATE_RADIAL, STATE_OTHER, state_other, SCRATCH, BUFFER, "state of every other iteration"), \
-    X(PROPAGATE_RADIAL, LAMPS, lamps, SCRATCH, BUFFER, "struct radial_light[]")
+    X(PROPAGATE_RADIAL, LAMPS, lamps, SCRATCH, BUFFER, "struct light_block[]")
 // clang-format on
 enum { PROPAGATE_RADIAL_PORTS(TYN_PORT_ENUM), PROPAGATE_RADIAL_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_propagate_radial;

@@ -7,7 +7,7 @@
 
 layout(local_size_x = PROPAGATE_RADIAL_LANES) in;
 layout(set = 0, binding = 0, scalar) uniform medium_uniform { medium_block medium; };
-layout(set = 0, binding = 1, scalar) readonly buffer lamps_buffer { radial_light lamps[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer lamps_buffer { light_block lamps[]; };
 layout(set = 0, binding = 2, scalar) readonly buffer vpls_buffer { radial_vpls vpls; };
 layout(set = 0, binding = 3, scalar) writeonly buffer grids_buffer { propagate_radial_grid grids[]; };
 layout(set = 0, binding = 4, scalar) writeonly buffer places_buffer { propagate_radial_place places[]; };
@@ -25,7 +25,7 @@ void aim(inout propagate_radial_grid grid, vec3 axis, float flatness)
     grid.to_map[2] = flatness * axis;
 }
 
-propagate_radial_grid grid_of(radial_light light, bool used)
+propagate_radial_grid grid_of(light_block light, bool used)
 {
     propagate_radial_grid grid;
     grid.light = light;
@@ -38,8 +38,8 @@ propagate_radial_grid grid_of(radial_light light, bool used)
     if (away > reach) { // the box is within a cone; so is all that can be lit
         flatness = clamp(0.5 * reach * inversesqrt((away - reach) * (away + reach)), 1e-4, 1.0);
         aim(grid, middle / away, flatness);
-    } else if (light.kind != TYN_RADIAL_ISOTROPIC) {
-        aim(grid, light.axis, 1.0);
+    } else if (light.kind != TYN_LIGHT_KIND_POINT) {
+        aim(grid, light.direction, 1.0);
     }
     // A cell of the map is sqrt(4 pi) / cells wide in the mean: shells as deep as that, outwards from the
     // box's farthest corner, as many as there are or as it takes to get to the box.
@@ -68,8 +68,7 @@ vec2 integrals(propagate_radial_grid grid, ivec2 texel, int along)
         vec2 part = (vec2(n % along, n / along) + 0.5) / float(along);
         vec3 x = propagate_radial_heading(grid, 2.0 * (vec2(texel) + part) / float(args.cells) - 1.0);
         float area = propagate_radial_solid_angle(grid, x);
-        sum += area * vec2(radial_lobe(grid.light.kind, grid.light.axis, grid.light.cos_inner,
-                                       grid.light.cos_outer, normalize(x)), 1.0);
+        sum += area * vec2(light_lobe(grid.light, dot(normalize(x), grid.light.direction)), 1.0);
     }
     float side = 2.0 / float(args.cells * uint(along));
     return sum * side * side;
@@ -78,14 +77,14 @@ vec2 integrals(propagate_radial_grid grid, ivec2 texel, int along)
 void main()
 {
     uint n = gl_WorkGroupID.x, lane = gl_LocalInvocationIndex;
-    radial_light light;
+    light_block light;
     bool used = true;
     if (n < args.num_lamps) {
         light = lamps[n];
     } else {
         used = n - args.num_lamps < min(vpls.count, args.max_vpls);
         light = vpls.list[n - args.num_lamps];
-        light.kind = used ? light.kind : TYN_RADIAL_ISOTROPIC;
+        light.kind = used ? light.kind : TYN_LIGHT_KIND_POINT;
         light.position = used ? light.position : 0.5 * medium.extent;
         light.radius = used ? light.radius : 0.0;
     }
@@ -111,9 +110,9 @@ void main()
     }
     // The light's power is what it should be whatever the points have met; a lobe that none has met goes
     // where its axis points.
-    float all = radial_lobe_integral(light.kind, light.cos_inner, light.cos_outer), met = sums[0];
-    vec3 axis = vec3(dot(grid.to_map[0], light.axis), dot(grid.to_map[1], light.axis),
-                     dot(grid.to_map[2], light.axis));
+    float all = light_lobe_integral(light), met = sums[0];
+    vec3 axis = vec3(dot(grid.to_map[0], light.direction), dot(grid.to_map[1], light.direction),
+                     dot(grid.to_map[2], light.direction));
     ivec2 on_axis = met > 0.0 ? ivec2(-1)
                               : clamp(ivec2(floor((0.5 * octahedral_of(axis) + 0.5) * float(args.cells))),
                                       ivec2(0), ivec2(args.cells - 1u));
@@ -124,7 +123,7 @@ void main()
     if (lane == 0u) {
         grids[n] = grid;
         places[n] = propagate_radial_place(light.position, 1.0 / grid.inner, grid.to_map,
-                                           1.0 / log(grid.growth), used ? light.intensity : vec3(0.0),
+                                           1.0 / log(grid.growth), used ? light.color : vec3(0.0),
                                            grid.layers);
     }
 }

@@ -1,7 +1,6 @@
 // radial_beam.c -- lays out the grids of local lights and sweeps them in one dispatch.
 #include "radial_beam.h"
 #include "radial_beam_args.h"
-#include "shaders/light/shadow_args.h"
 #include "radial_beam_setup.comp.h"
 #include "radial_beam_density.comp.h"
 #include "radial_beam_coefficients.comp.h"
@@ -35,40 +34,18 @@ static const tyn_param params_table[] = {
 
 // ---- layout ---------------------------------------------------------------------------------------
 
-struct radial_light tyn_radial_of_lamp(const struct light_block *lamp, uint32_t index)
-{
-    struct radial_light light = {
-        .kind = lamp->kind == TYN_LIGHT_KIND_SPOT ? TYN_RADIAL_SPOT : TYN_RADIAL_ISOTROPIC,
-        .cos_inner = lamp->cos_inner,
-        .cos_outer = lamp->cos_outer,
-        .light = TYN_SHADOW_LAMP(index),
-    };
-    memcpy(light.position, lamp->position, sizeof light.position);
-    memcpy(light.intensity, lamp->color, sizeof light.intensity);
-    memcpy(light.axis, lamp->direction, sizeof light.axis);
-    return light;
-}
-
-static float strength(const struct radial_light *light)
-{
-    return fmaxf(light->intensity[0], fmaxf(light->intensity[1], light->intensity[2]));
-}
-
 void tyn_radial_beam_plan(tyn_radial_beam_params *params, const struct medium_block *medium,
-                          const struct light_block *lights, uint32_t first_lamp,
-                          uint32_t num_lights, uint32_t fine, uint32_t max_vpls)
+                          const struct light_block *lamps, uint32_t num_lamps, uint32_t fine,
+                          uint32_t max_vpls)
 {
     uint32_t count = 0;
-    for (uint32_t i = first_lamp; i < num_lights && count < TYN_RADIAL_LAMPS_MAX; i++) {
-        struct radial_light light = tyn_radial_of_lamp(&lights[i], i - first_lamp);
-        if (!(strength(&light) > 0)) {
-            continue;
-        }
-        uint32_t at = count++;
-        for (; at > 0 && strength(&params->lamps[at - 1]) < strength(&light); at--) {
+    for (; count < num_lamps && count < TYN_RADIAL_LAMPS_MAX; count++) {
+        uint32_t at = count;
+        for (; at > 0 && light_strength(params->lamps[at - 1]) < light_strength(lamps[count]);
+             at--) {
             params->lamps[at] = params->lamps[at - 1];
         }
-        params->lamps[at] = light;
+        params->lamps[at] = lamps[count];
     }
     params->mode = medium->mode;
     params->num_lamps = count;

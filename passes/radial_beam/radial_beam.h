@@ -16,7 +16,7 @@ typedef struct tyn_radial_beam_params {
     uint32_t max_vpls; // room for VPLs, 0 to TYN_RADIAL_VPLS_MAX
     // Cells at which a map is as fine as the medium; 2 where that is the same everywhere.
     uint32_t finest;
-    struct radial_light lamps[TYN_RADIAL_LAMPS_MAX];
+    struct light_block lamps[TYN_RADIAL_LAMPS_MAX];
 } tyn_radial_beam_params;
 
 // clang-format off
@@ -31,15 +31,12 @@ typedef struct tyn_radial_beam_params {
         "mean sigma_a", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(RADIAL_BEAM, RADIAL_TAU_P, radial_tau_p, OUT, IMAGE_3D, \
         "mean sigma_s outside the forward peak", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(RADIAL_BEAM, LAMPS, lamps, SCRATCH, BUFFER, "struct radial_light[]")
+    X(RADIAL_BEAM, LAMPS, lamps, SCRATCH, BUFFER, "struct light_block[]")
 // clang-format on
 enum { RADIAL_BEAM_PORTS(TYN_PORT_ENUM), RADIAL_BEAM_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_radial_beam;
 
-// A point or spot light of the scene as a radial light; `index` = its place among all lights that are no suns.
-struct radial_light tyn_radial_of_lamp(const struct light_block *lamp, uint32_t index);
-
 // Fills what the method sets: lamps sorted by their intensity, the first `fine` of them in fine grids.
 void tyn_radial_beam_plan(tyn_radial_beam_params *params, const struct medium_block *medium,
-                          const struct light_block *lights, uint32_t first_lamp,
-                          uint32_t num_lights, uint32_t fine, uint32_t max_vpls);
+                          const struct light_block *lamps, uint32_t num_lamps, uint32_t fine,
+                          uint32_t max_vpls);

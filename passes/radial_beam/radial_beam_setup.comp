@@ -16,7 +16,7 @@ layout(binding = 0, scalar) uniform medium_uniform
 };
 layout(binding = 1, scalar) readonly buffer lamps_buffer
 {
-    radial_light lamps[];
+    light_block lamps[];
 };
 layout(binding = 2, scalar) readonly buffer vpls_buffer
 {
@@ -54,18 +54,16 @@ void point_map(inout radial_grid grid, vec3 axis, float tangent)
 
 void aim(inout radial_grid grid)
 {
-    radial_light light = grid.light;
+    light_block light = grid.light;
     grid.to_map = vec3[3](vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0));
-    float tangent = 1e9;
-    if (light.kind != TYN_RADIAL_ISOTROPIC) {
-        float c = light.cos_outer;
-        tangent = light.kind == TYN_RADIAL_SPOT && c > 0.0 ? sqrt(max(1.0 - c * c, 0.0)) / c : 1e9;
-        point_map(grid, light.axis, tangent);
+    float c = light.cos_outer, tangent = c > 0.0 ? sqrt(max(1.0 - c * c, 0.0)) / c : 1e9;
+    if (light.kind != TYN_LIGHT_KIND_POINT) {
+        point_map(grid, light.direction, tangent);
     }
     if (grid.inside == 0u) {
         vec3 axis = normalize(0.5 * medium.extent - light.position);
         float box = tangent_of_box(light.position, axis);
-        if (box < tangent || light.kind == TYN_RADIAL_ISOTROPIC) {
+        if (box < tangent || light.kind == TYN_LIGHT_KIND_POINT) {
             point_map(grid, axis, box);
         }
     }

@@ -229,7 +229,7 @@ bool march_any_light(march_shadows shadow, march_lamp kept[MARCH_LAMPS_KEPT])
         any = any || march_light_cell(shadow, n) != TYN_LIGHT_CELLS_DARK;
     }
     [[unroll]] for (uint n = 0u; n < march_lamps_kept; n++) {
-        any = any || march_light_cell(shadow, kept[n].grid.light.light) != TYN_LIGHT_CELLS_DARK;
+        any = any || march_light_cell(shadow, kept[n].grid.light.shadow) != TYN_LIGHT_CELLS_DARK;
     }
     return any || raymarch_num_lamps > MARCH_LAMPS_KEPT;
 }

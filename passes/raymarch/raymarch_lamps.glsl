@@ -30,7 +30,7 @@ float march_pixel_mean(float x)
 const float MARCH_LAMP_STEP = 0.15; // steps are no longer than this part of the distance from a lamp
 
 // What a lamp shines on of a view ray. With e the direction from the lamp to the nearest place of the ray's line,
-// points of that line are in the directions cos(t) e + sin(t) d, and a spot's axis is at acos(peak cos(t - middle))
+// points of that line are in the directions cos(t) e + sin(t) d, and a lamp's axis is at acos(peak cos(t - middle))
 // from them: so its cones cut the line at t = middle +- inner and middle +- outer, exactly.
 struct march_cone {
     float middle, peak;
@@ -38,37 +38,35 @@ struct march_cone {
 };
 
 // `across`: from the lamp to the nearest place of the ray's line.
-march_cone march_cone_of(radial_light light, vec3 across, vec3 direction)
+march_cone march_cone_of(light_block light, vec3 across, vec3 direction)
 {
     if (!raymarch_has(RAYMARCH_SPOTS)) {
         return march_cone(0.0, 1.0, 4.0, 4.0);
     }
-    vec2 axis = vec2(dot(light.axis, across) / max(length(across), 1e-20), dot(light.axis, direction));
+    vec2 axis = vec2(dot(light.direction, across) / max(length(across), 1e-20), dot(light.direction, direction));
     float peak = max(length(axis), 1e-20);
-    bool spot = light.kind == TYN_RADIAL_SPOT;
+    bool around = light.kind == TYN_LIGHT_KIND_POINT;
     // acos(c / peak), but an acos is not precise about 1.
     vec2 c = vec2(light.cos_inner, light.cos_outer);
-    vec2 edges = spot ? atan(sqrt(max(peak * peak - c * c, 0.0)), c) : vec2(4.0);
-    return march_cone(spot ? atan(axis.y, axis.x) : 0.0, peak, edges.x, edges.y);
+    vec2 edges = around ? vec2(4.0) : atan(sqrt(max(peak * peak - c * c, 0.0)), c);
+    return march_cone(around ? 0.0 : atan(axis.y, axis.x), peak, edges.x, edges.y);
 }
 
-// Integral of glTF's falloff over what of the angles from a to b is between the cones, on the positive side, and
-// that of the angle times it; by three points of Gauss, as it is a quartic but for the curvature of a cosine.
-vec2 march_falloff(radial_light light, march_cone cone, float a, float b)
+// Integral of a lamp's lobe over what of the angles from a to b is between the cones, on the positive side, and
+// that of the angle times it; by three points of Gauss, as a spot's is a quartic but for the curvature of a cosine.
+vec2 march_falloff(light_block light, march_cone cone, float a, float b)
 {
     float from = max(a, cone.inner), width = max(min(b, cone.outer) - from, 0.0);
     vec2 sum = vec2(0.0);
     for (int i = -1; i <= 1; i++) {
         float u = from + (0.5 + 0.3872983 * float(i)) * width;
-        float x = (cone.peak * cos(u) - light.cos_outer) / max(light.cos_inner - light.cos_outer, 1e-6);
-        x = clamp(x, 0.0, 1.0);
-        sum += (i == 0 ? 4.0 / 9.0 : 2.5 / 9.0) * x * x * vec2(1.0, u);
+        sum += light_lobe_times(light, cone.peak * cos(u), i == 0 ? 4.0 / 9.0 : 2.5 / 9.0) * vec2(1.0, u);
     }
     return sum * width;
 }
 
 // Mean share of a lamp's intensity over the angles from x to y at it; `middle`: the centroid of that light.
-float march_share(radial_light light, march_cone cone, float x, float y, out float middle)
+float march_share(light_block light, march_cone cone, float x, float y, out float middle)
 {
     const float TURN = 6.28318531;
     float shift = cone.middle + TURN * round((0.5 * (x + y) - cone.middle) / TURN);
@@ -93,7 +91,7 @@ march_lamp march_lamp_of(uint n, march_lamps ray)
 {
     march_lamp lamp;
     lamp.grid = radials[n];
-    lamp.map = march_map_of(lamp.grid.light.light, ray.origin, ray.direction);
+    lamp.map = march_map_of(lamp.grid.light.shadow, ray.origin, ray.direction);
     vec3 away = ray.origin - lamp.grid.light.position;
     lamp.cone = march_cone_of(lamp.grid.light, away - dot(away, ray.direction) * ray.direction, ray.direction);
     return lamp;
@@ -119,7 +117,7 @@ float march_lamp_step(march_lamps ray, march_lamp kept[MARCH_LAMPS_KEPT], float 
 vec3 march_lamplight_seen(march_lamp lamp, march_lamps ray, march_medium unit, march_medium m, vec3 away, float r,
                           float per_intensity, spectrum weight, spectrum weight_scaled, inout vec3 first)
 {
-    vec3 irradiance = lamp.grid.light.intensity * per_intensity;
+    vec3 irradiance = lamp.grid.light.color * per_intensity;
     vec3 turn = ray.direction + away / max(r, 1e-20);
     float one_minus_mu = 0.5 * dot(turn, turn);
     radial_place place = radial_place_in(lamp.grid, away, r);
@@ -188,7 +186,7 @@ vec3 march_lamplight(march_lamp lamp, uint bit, march_lamps ray, march_medium un
         share = march_share(lamp.grid.light, lamp.cone, atan(a, h), atan(b, h), angle);
     }
     if (raymarch_has(RAYMARCH_SHADOWS) && share > 0.0) {
-        march_lit lit = march_lit_of(false, lamp.map, lamp.grid.light.light, bit, s, ds, shadow);
+        march_lit lit = march_lit_of(false, lamp.map, lamp.grid.light.shadow, bit, s, ds, shadow);
         if (lit.metres < ds) {
             float middle = along + (lit.middle - at);
             a = middle - 0.5 * lit.metres;

@@ -24,7 +24,7 @@ struct march_near_steps {
 // Where the ray is within reach of near lamp n.
 vec2 march_near_span(uint n, march_lamps ray)
 {
-    radial_light light = radials[raymarch_num_lamps + n].light;
+    light_block light = radials[raymarch_num_lamps + n].light;
     vec3 away = ray.origin - light.position;
     float along = dot(away, ray.direction), reach = radial_reach(light, args.reach);
     vec3 across = away - along * ray.direction;

@@ -19,7 +19,7 @@ layout(binding = 2, scalar) readonly buffer vpls_buffer
 {
     uint vpl_count;
     uvec3 vpl_pad;
-    radial_light vpls[];
+    light_block vpls[];
 };
 
 // As the last entries of rooms.h tell it, of a VPL that shines in `room`.
@@ -27,7 +27,7 @@ uint cell_before(uint vpl, uint room)
 {
     ivec3 dims = ivec3(args.dims);
     lattice_box box = lattice_box_of(args.extent, dims);
-    vec3 x = lattice_from_m(box, vpls[vpl].position) + 0.75 * vpls[vpl].axis; // as walls_cell_before of lattice_walls.glsl
+    vec3 x = lattice_from_m(box, vpls[vpl].position) + 0.75 * vpls[vpl].direction; // as walls_cell_before of lattice_walls.glsl
     ivec3 before = ivec3(floor(x));
     uint found = TYN_ROOMS_NONE;
     float nearest = 1e30;

@@ -21,7 +21,7 @@ layout(binding = 2, scalar) readonly buffer vpls_buffer
 {
     uint vpl_count;
     uvec3 vpl_pad;
-    radial_light vpls[];
+    light_block vpls[];
 };
 layout(binding = 3) uniform sampler2D vpl_distances_tex;
 
@@ -57,10 +57,10 @@ void main()
     if ((at.x & 1) != 0 || at.x + 1 >= side) {
         return;
     }
-    radial_light light = vpls[vpl];
+    light_block light = vpls[vpl];
     lattice_box box = lattice_box_of(args.extent, ivec3(args.dims));
-    vec3 from = vpl_map_origin(light.position, light.axis, light.radius);
-    mat3 frame = vpl_frame(light.axis);
+    vec3 from = vpl_map_origin(light.position, light.direction, light.radius);
+    mat3 frame = vpl_frame(light.direction);
     uint a = told_by(box, from, frame, corner, at, side), b = told_by(box, from, frame, corner, at + ivec2(1, 0), side);
     if (a == b && a != TYN_ROOMS_ANY) {
         rooms_join(TYN_ROOMS_OF_VPL(args.dims.x * args.dims.y * args.dims.z, vpl), a);

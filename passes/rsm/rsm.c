@@ -44,7 +44,7 @@ static const tyn_param params_table[] = {
 };
 
 void tyn_rsm_add(tyn_rsm_params *p, const struct rsm_tile *tile, uint32_t kind,
-                 const tyn_vec4 clip[4], const struct light_block *light, float texel)
+                 const tyn_vec4 clip[4], uint32_t light, float texel)
 {
     if (p->num_tiles == TYN_RSM_MAX_TILES) {
         return;
@@ -53,20 +53,9 @@ void tyn_rsm_add(tyn_rsm_params *p, const struct rsm_tile *tile, uint32_t kind,
     memset(p->drawn[p->num_tiles], 0, sizeof p->drawn[0]);
     p->drawn[p->num_tiles][0].count = p->num_triangles;
     struct rsm_draw_args *d = &p->draws[p->num_tiles++];
-    *d = (struct rsm_draw_args){
-        .kind = kind, .cos_inner = -2.0f, .cos_outer = -2.0f, .texel = texel};
+    *d = (struct rsm_draw_args){.texel = texel, .kind = kind, .light = light};
     memcpy(d->clip, clip, sizeof d->clip);
     memcpy(d->extent, p->extent, sizeof d->extent);
-    for (int c = 0; c < 3; c++) {
-        d->flux[c] = light->color[c] * texel;
-        d->origin[c] =
-            light->kind == TYN_LIGHT_KIND_DIRECTIONAL ? light->direction[c] : light->position[c];
-        d->axis[c] = light->direction[c];
-    }
-    if (light->kind == TYN_LIGHT_KIND_SPOT) {
-        d->cos_inner = light->cos_inner;
-        d->cos_outer = light->cos_outer;
-    }
 }
 
 static tyn_result declare(tyn_builder *b, const void *params)

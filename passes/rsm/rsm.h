@@ -4,7 +4,6 @@
 #include "shaders/common/bundles.h"
 #include "shaders/light/rsm_args.h"
 #include "rsm_draw_args.h"
-#include "shaders/common/scene_args.h"
 #include "shaders/surfaces/surface_args.h"
 
 typedef struct tyn_rsm_params {
@@ -22,15 +21,18 @@ typedef struct tyn_rsm_params {
 
 // Adds the map of a light, or one face of it, with all triangles: `drawn` may leave out what is not
 // in view. `kind`: TYN_SHADOW_*; a face of a CUBE ends where the angle to its axis is 45 degrees,
-// even if the map goes on. `clip`: rows, world -> clip space. `texel`: of a sun its area across the
-// light, m^2; of a lamp the solid angle of a texel in the middle, sr.
+// even if the map goes on. `clip`: rows, world -> clip space. `light`: its place in "suns" or
+// "lights". `texel`: of a sun its area across the light, m^2; of a lamp the solid angle of a texel in
+// the middle, sr.
 void tyn_rsm_add(tyn_rsm_params *params, const struct rsm_tile *tile, uint32_t kind,
-                 const tyn_vec4 clip[4], const struct light_block *light, float texel);
+                 const tyn_vec4 clip[4], uint32_t light, float texel);
 
 // clang-format off
 #define RSM_PORTS(X) \
     TYN_GEOMETRY(X, RSM), \
     TYN_MATERIALS(X, RSM), \
+    X(RSM, SUNS, suns, IN, BUFFER, "struct light_block[]"), \
+    X(RSM, LIGHTS, lights, IN, BUFFER, "struct light_block[]: directional lights, then lamps"), \
     TYN_RSM(X##_OUT, RSM), \
     X(RSM, DEPTH, depth, SCRATCH, IMAGE_2D, "reversed", .format = VK_FORMAT_D32_SFLOAT)
 // clang-format on

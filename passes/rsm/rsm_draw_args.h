@@ -5,15 +5,11 @@
 
 struct rsm_draw_args {
     tyn_vec4 clip[4]; // world -> clip space, row by row
-    tyn_vec3 flux; // W: irradiance x area of a texel; intensity x solid angle of one in the middle
-    tyn_uint kind; // TYN_SHADOW_SUN, CONE or CUBE
-    tyn_vec3 origin; // M, m: of a lamp; of a sun its direction of travel
-    float cos_inner; // of a spot, as the two below; -2 of a point
-    tyn_vec3 axis;   // M
-    float cos_outer;
-    float texel;     // area of a texel across the sun, m^2; solid angle of one in the middle, sr
-    tyn_vec3 extent; // of the box of the media, m
+    tyn_vec3 extent;  // of the box of the media, m
+    float texel;      // area of a texel across the sun, m^2; solid angle of one in the middle, sr
+    tyn_uint kind;    // TYN_SHADOW_SUN, CONE or CUBE
+    tyn_uint light;   // in the buffer "suns" (SUN) or "lights"
 };
-TYN_ASSERT_SIZE(rsm_draw_args, 128);
+TYN_ASSERT_SIZE(rsm_draw_args, 88);
 
 #endif

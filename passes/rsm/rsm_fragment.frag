@@ -8,6 +8,14 @@
 #include "shaders/light/shadow_args.h"
 
 #include "shaders/surfaces/surface_faces.glsl"
+layout(binding = 7, scalar) readonly buffer suns_buffer
+{
+    light_block suns[];
+};
+layout(binding = 8, scalar) readonly buffer lights_buffer
+{
+    light_block lights[];
+};
 layout(location = 0) flat in uint triangle;
 layout(location = 1) in vec3 weights;
 layout(location = 0) out vec4 flux;
@@ -15,17 +23,6 @@ layout(location = 1) out vec4 position;
 layout(location = 2) out vec4 normal;
 
 const float LEAST_COSINE = 1e-3; // of light and surface: what is seen edge-on has no area to speak of
-
-// Share of a spot's intensity at an angle to its axis (KHR_lights_punctual).
-float falloff(float cosine)
-{
-    float width = args.cos_inner - args.cos_outer;
-    if (width < 1e-6) {
-        return cosine >= args.cos_outer ? 1.0 : 0.0;
-    }
-    float a = clamp((cosine - args.cos_outer) / width, 0.0, 1.0);
-    return a * a;
-}
 
 void main()
 {
@@ -36,24 +33,30 @@ void main()
     vec3 p = surface_transform(surfaces.from_world, world);
     vec3 n = normalize(surface_turn(surfaces.from_world, facet));
 
-    vec3 way = args.origin; // direction of the light, unit
-    float share = 1.0, across = 1.0; // of args.flux; of its area or solid angle, m^2 or sr
+    light_block light;
+    if (args.kind == TYN_SHADOW_SUN) { // not by ?:, of which glslang 12 makes invalid code
+        light = suns[args.light];
+    } else {
+        light = lights[args.light];
+    }
+    vec3 way = light.direction; // of the light here, unit
+    float share = 1.0, across = 1.0; // of the texel in the middle: of its flux; of its area or solid angle
     if (args.kind != TYN_SHADOW_SUN) {
-        vec3 d = p - args.origin, axis = surface_turn(surfaces.from_world, args.clip[3].xyz);
+        vec3 d = p - light.position, axis = surface_turn(surfaces.from_world, args.clip[3].xyz);
         float r = max(length(d), 1e-20), z = dot(d, axis);
         way = d / r;
         float cosine = z / r;
         // Of a texel of the plane z = 1 at this angle: its solid angle against that in the middle.
         across = cosine * cosine * cosine;
         bool beside = args.kind == TYN_SHADOW_CUBE && max(max(abs(d.x), abs(d.y)), abs(d.z)) > 1.0001 * z;
-        share = beside ? 0.0 : across * falloff(dot(way, args.axis));
+        share = beside ? 0.0 : across * light_lobe(light, dot(way, light.direction));
         across *= r * r;
     }
     float cosine = dot(n, way);
     // On the side of the light: of a lamp's place by a corner of the triangle, not by a point between, which is
     // rounded.
     vec3 corner = surface_transform(surfaces.from_world, a);
-    float behind = args.kind != TYN_SHADOW_SUN ? dot(n, corner - args.origin) : cosine;
+    float behind = args.kind != TYN_SHADOW_SUN ? dot(n, corner - light.position) : cosine;
     n = behind > 0.0 ? -n : n;
     float area = args.texel * across / max(abs(cosine), LEAST_COSINE);
 
@@ -67,7 +70,7 @@ void main()
                                         vec2(0.0, scale));
     }
     rng_state rng = rng_start(uint(gl_FragCoord.x), uint(gl_FragCoord.y), 0u);
-    flux = vec4(args.flux * share * surface_reflected(m, colour), 0.0);
+    flux = vec4(light.color * args.texel * share * surface_reflected(m, colour), 0.0);
     if (any(greaterThan(flux.rgb, vec3(0.0))) && // no rays for what is black
         !surface_faces_something(triangle, p, world, n, args.extent, rng)) {
         flux = vec4(0.0);

@@ -208,13 +208,10 @@ vec3 shade_suns(shade_point p, vec4 part, vec4 around[TYN_BEAM_MAX_SUNS], bool s
 // ---- local lights ----
 
 // Lamp n, in the order of their grids where there is a medium.
-radial_light shade_lamp_of(uint n)
+light_block shade_lamp_of(uint n)
 {
-    uint lamp = shade_has(SHADE_MEDIUM) ? radial_grid_of(n).light.light - TYN_SHADOW_LAMP(0u) : n;
-    light_block l = lights[args.num_directional + lamp];
-    uint kind = l.kind == TYN_LIGHT_KIND_SPOT ? TYN_RADIAL_SPOT : TYN_RADIAL_ISOTROPIC;
-    return radial_light(l.position, kind, l.color, l.cos_inner, l.direction, l.cos_outer, 0.0, TYN_SHADOW_LAMP(lamp),
-                        uvec2(0u));
+    uint lamp = shade_has(SHADE_MEDIUM) ? radial_grid_of(n).light.shadow - TYN_SHADOW_LAMP(0u) : n;
+    return lights[args.num_directional + lamp];
 }
 
 // What is left of a local light at a point that may be outside the medium's box.
@@ -263,9 +260,9 @@ float shade_triangle(vec3 a, vec3 b, vec3 c, float h, out float twice_area)
 }
 
 // Mean irradiance of a lamp, per intensity, over the footprint of p. What a lamp sends through a part of a plane is its
-// intensity times the solid angle under which it sees that part: exact, however near it is. Of a
-// spot's light no more arrives than it sends.
-float shade_lamp_on(shade_point p, shade_footprint foot, radial_light lamp)
+// intensity times the solid angle under which it sees that part: exact, however near it is. No more
+// light arrives than it sends.
+float shade_lamp_on(shade_point p, shade_footprint foot, light_block lamp)
 {
     vec3 position = lamp.position;
     float unit = 1.0 / foot.width, h = dot(position - p.position, p.facet);
@@ -285,8 +282,8 @@ float shade_lamp_on(shade_point p, shade_footprint foot, radial_light lamp)
     density = camera_select(camera, density, mix(density, there, nearness));
     vec3 towards = normalize(position - mix(shade_seen(p, 0.5 * (foot.part.xy + foot.part.zw)), most, nearness));
     float straight = max(dot(towards, p.facet), 1e-6);
-    float lobe = angle * radial_lobe(lamp.kind, lamp.axis, lamp.cos_inner, lamp.cos_outer, -towards);
-    lobe = min(lobe, radial_lobe_integral(lamp.kind, lamp.cos_inner, lamp.cos_outer));
+    float lobe = angle * light_lobe(lamp, dot(-towards, lamp.direction));
+    lobe = min(lobe, light_lobe_integral(lamp));
     return lobe * density * clamp(dot(p.normal, towards) / straight, 0.0, 2.0);
 }
 
@@ -297,13 +294,12 @@ vec2 shade_border(vec2 t, vec2 middle)
     return middle - before * before / max(middle, 1e-6) + after * after / max(1.0 - middle, 1e-6);
 }
 
-// ... of a spot, whose cone may be narrower than the footprint, over parts of it.
-float shade_lamp_near(shade_point p, shade_footprint foot, radial_light lamp)
+// ... of a lamp whose lobe may be narrower than the footprint, over parts of it.
+float shade_lamp_near(shade_point p, shade_footprint foot, light_block lamp)
 {
     vec3 position = lamp.position;
-    bool spot = lamp.kind == TYN_RADIAL_SPOT;
     bool close = distance(position, p.position) < 2.0 * foot.width;
-    int side = !spot ? 1 : close ? SHADE_SPOT_PARTS : SHADE_SPOT_PARTS / 4;
+    int side = lamp.kind == TYN_LIGHT_KIND_POINT ? 1 : close ? SHADE_SPOT_PARTS : SHADE_SPOT_PARTS / 4;
     vec2 size = foot.part.zw - foot.part.xy;
     vec2 shown = shade_shown(position - dot(position - p.position, p.facet) * p.facet);
     vec2 middle = clamp((shown - foot.part.xy) / size, 0.0, 1.0);
@@ -320,20 +316,19 @@ float shade_lamp_near(shade_point p, shade_footprint foot, radial_light lamp)
 
 vec3 shade_lamp(shade_point p, shade_footprint foot, uint n)
 {
-    radial_light lamp = shade_lamp_of(n);
+    light_block lamp = shade_lamp_of(n);
     vec3 way = lamp.position - p.position;
     float rr = max(dot(way, way), 1e-13 * dot(medium.extent, medium.extent));
     vec3 towards = way * inversesqrt(rr);
-    float share = shade_cosine(p, towards) *
-                  radial_lobe(lamp.kind, lamp.axis, lamp.cos_inner, lamp.cos_outer, -towards) / rr;
+    float share = shade_cosine(p, towards) * light_lobe(lamp, dot(-towards, lamp.direction)) / rr;
     float reach = SHADE_NEAR * foot.width;
     if (rr < reach * reach && dot(way, p.facet) > 0.0) {
         share = shade_lamp_near(p, foot, lamp);
     }
-    vec3 irradiance = lamp.intensity * share;
+    vec3 irradiance = lamp.color * share;
     if (share > 0.0) {
         if (shade_has(SHADE_SHADOWS)) {
-            irradiance *= shadow_visibility_surface_lamp_of(shadow_light_of(lamp.light), shade_shadowed(p, foot));
+            irradiance *= shadow_visibility_surface_lamp_of(shadow_light_of(lamp.shadow), shade_shadowed(p, foot));
         }
         if (shade_has(SHADE_MEDIUM)) {
             irradiance *= shade_through_radial(radial_grid_of(n), p.position);
@@ -369,8 +364,8 @@ vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], uint rooms[SHADE_MANY], u
     }
     uint count = min(vpl_count(), uint(TYN_RADIAL_VPLS_MAX));
     for (uint k = first; k < count; k += stride) {
-        radial_light light = vpl_light(k);
-        vpl_map map = vpl_map_of(k, light.axis);
+        light_block light = vpl_light(k);
+        vpl_map map = vpl_map_of(k, light.direction);
         uint shines_in = shade_has(SHADE_ROOMS) ? rooms_of_vpl(shade_lattice().dims, k) : TYN_ROOMS_ANY;
         radial_grid grid;
         if (shade_has(SHADE_MEDIUM)) {
@@ -386,7 +381,7 @@ vec3[SHADE_MANY] shade_vpls(shade_point p[SHADE_MANY], uint rooms[SHADE_MANY], u
             }
             float far = max(dot(away, away), light.radius * light.radius);
             nearest[i] = share > 0.0 ? min(nearest[i], far) : nearest[i];
-            vec3 irradiance = light.intensity * share;
+            vec3 irradiance = light.color * share;
             if (shade_has(SHADE_MEDIUM)) {
                 irradiance *= shade_through_radial(grid, p[i].position);
             }

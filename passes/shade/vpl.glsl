@@ -21,10 +21,10 @@
 // be right in the mean; closer than 0.9 R that is bounded, as so much light would change faster than pixels do.
 const float VPL_CUT = 12.0 * 0.129, VPL_CUT_NEAR = 1.35;
 
-float vpl_irradiance(radial_light light, vec3 p, vec3 n)
+float vpl_irradiance(light_block light, vec3 p, vec3 n)
 {
     vec3 away = p - light.position;
-    float h = dot(away, light.axis), towards = -dot(away, n), facing = -dot(n, light.axis);
+    float h = dot(away, light.direction), towards = -dot(away, n), facing = -dot(n, light.direction);
     // The other side of the VPL's own surface is in its plane, give or take rounding. No early return: lavapipe would
     // go on anyway, under a mask.
     bool lit = h > 1e-3 * light.radius && towards > 0.0;

@@ -230,11 +230,10 @@ static uint32_t power_of_two(double x)
     return power;
 }
 
-// Wide spots are seen by a cube: one map would be coarse in its middle.
+// What wide lobes light is seen by a cube: one map would be coarse in its middle.
 static tyn_uint kind_of(const struct light_block *lamp)
 {
-    return lamp->kind == TYN_LIGHT_KIND_SPOT && lamp->cos_outer > 0.45f ? TYN_SHADOW_CONE
-                                                                        : TYN_SHADOW_CUBE;
+    return lamp->cos_outer > 0.45f ? TYN_SHADOW_CONE : TYN_SHADOW_CUBE;
 }
 
 void tyn_shadow_map_plan(tyn_shadow_map_params *p, const struct light_block *suns,

@@ -18,7 +18,7 @@ layout(binding = 0, scalar) readonly buffer vpls_buffer
 {
     uint vpl_count;
     uvec3 vpl_pad;
-    radial_light vpls[];
+    light_block vpls[];
 };
 layout(binding = 1, scalar) readonly buffer bins_buffer
 {
@@ -89,12 +89,12 @@ void main()
         if (flux.r + flux.g + flux.b > 0.0) {
             int best = int(bins.list[bin].best & 0xfffffu);
             ivec2 texel = ivec2(best % width, best / width);
-            radial_light light =
+            light_block light =
                 vpls[texel.y / side * VPL_MAPS_IN_A_ROW + texel.x / side];
-            vec3 d = vpl_frame(light.axis) *
+            vec3 d = vpl_frame(light.direction) *
                      normalize(vpl_map_direction(vec2(texel % side) / float(side - 1)));
             float away = texelFetch(vpl_distances_tex, texel, 0).r;
-            vec3 at = vpl_map_origin(light.position, light.axis, light.radius) + away * d;
+            vec3 at = vpl_map_origin(light.position, light.direction, light.radius) + away * d;
             // Where a bin is much larger than what is lit, a VPL lights about as much as it is away.
             position = vec4(at, min(area, 3.14159265 * away * away));
             normal = vec4(texelFetch(vpl_planes_tex, texel, 0).xyz, 0.0);

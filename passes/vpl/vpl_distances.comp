@@ -25,7 +25,7 @@ layout(binding = 4, scalar) readonly buffer vpls_buffer
     uint vpl_count;
     uint vpl_before;
     uvec2 vpl_pad;
-    radial_light vpls[];
+    light_block vpls[];
 };
 layout(binding = 5, r32f) uniform writeonly image2D vpl_distances_image;
 layout(binding = 6, rgba32f) uniform writeonly image2D vpl_planes_image;
@@ -95,12 +95,12 @@ void main()
     if (any(greaterThanEqual(texel, size)) || !wanted) {
         return;
     }
-    radial_light light = vpls[vpl];
+    light_block light = vpls[vpl];
     ivec2 at = texel % side;
     vec3 on_map = vpl_map_direction(vec2(at) / float(side - 1));
     float away = length(on_map);
-    vec3 d = vpl_frame(light.axis) * (on_map / away);
-    vec3 from = vpl_map_origin(light.position, light.axis, light.radius);
+    vec3 d = vpl_frame(light.direction) * (on_map / away);
+    vec3 from = vpl_map_origin(light.position, light.direction, light.radius);
     surface_hit hit = surface_hit(3e38, SURFACE_NONE, vec2(0.0));
     surface_ray ray = surface_ray_make(surface_transform(surfaces.to_world, from),
                                        surface_turn(surfaces.to_world, d), SURFACE_NONE);
@@ -124,7 +124,7 @@ void main()
     if (m.texture != TYN_SURFACE_NO_TEXTURE) { // its mean
         colour = surface_texture_level(textures[m.texture], vec2(0.5), textures[m.texture].levels - 1u);
     }
-    vec3 flux = light.intensity * surface_reflected(m, colour) * (solid_angle * on_map.z / away);
+    vec3 flux = light.color * surface_reflected(m, colour) * (solid_angle * on_map.z / away);
     if (args.media != 0u) {
         flux *= through_medium(from, d, hit.t);
     }

@@ -16,7 +16,7 @@ layout(binding = 0, scalar) buffer vpls_buffer
     uint vpl_count;
     uint vpl_before;
     uvec2 vpl_pad;
-    radial_light vpls[];
+    light_block vpls[];
 };
 layout(binding = 1, scalar) readonly buffer bins_buffer
 {
@@ -44,12 +44,12 @@ void main()
 {
     uint lane = gl_LocalInvocationIndex;
     bool further = lane >= vpl_before && lane < vpl_count;
-    vec3 power = total_of(further ? vpls[lane].intensity * 3.14159265 : vec3(0.0)), sum = vec3(0.0);
+    vec3 power = total_of(further ? vpls[lane].color * 3.14159265 : vec3(0.0)), sum = vec3(0.0);
     for (uint bin = lane; bin < VPL_BINS; bin += TYN_RADIAL_VPLS_MAX) {
         sum += vec3(bins.list[bin].flux[0], bins.list[bin].flux[1], bins.list[bin].flux[2]);
     }
     vec3 reflected = total_of(sum / VPL_BIN_UNIT) * bins.power;
     if (further) {
-        vpls[lane].intensity /= 1.0 - min(reflected / max(power, vec3(1e-30)), vec3(MOST_REFLECTED));
+        vpls[lane].color /= 1.0 - min(reflected / max(power, vec3(1e-30)), vec3(MOST_REFLECTED));
     }
 }

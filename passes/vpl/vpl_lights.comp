@@ -41,7 +41,7 @@ layout(binding = 21, scalar) buffer vpls_buffer
     uint vpl_count;
     uint vpl_before;
     uvec2 vpl_pad;
-    radial_light vpls[];
+    light_block vpls[];
 };
 layout(push_constant, scalar) uniform Args
 {
@@ -214,13 +214,14 @@ void main()
     place = total_of(place);
     normal = total_of(normal);
 
-    radial_light light;
-    light.kind = TYN_RADIAL_COSINE;
-    light.light = TYN_RADIAL_NO_LIGHT;
-    light.cos_inner = light.cos_outer = 0.0;
+    light_block light;
+    light.kind = TYN_LIGHT_KIND_COSINE;
+    light.shadow = TYN_LIGHT_NO_SHADOW;
+    light.cos_inner = 1.0;
+    light.cos_outer = 0.0;
     vec3 offset = place.w > 0.0 ? place.xyz / place.w : vec3(0.0);
     light.position = centre.position + offset;
-    light.axis = dot(normal.xyz, normal.xyz) > 0.0 ? normalize(normal.xyz) : centre.normal;
+    light.direction = dot(normal.xyz, normal.xyz) > 0.0 ? normalize(normal.xyz) : centre.normal;
     // Of a disc with the area, or with the spread if that is less: a disc of radius r has the mean squared
     // distance r^2 / 2 from its centre.
     float spread = place.w > 0.0 ? normal.w / place.w - dot(offset, offset) : 0.0;
@@ -237,17 +238,17 @@ void main()
                     vpl_piece p = vpl_piece_of(b, e, part.xy, k, pieces);
                     vec3 d = p.position - centre.position;
                     float v = same_piece(d, p.normal, centre.normal, flux.a);
-                    above = max(above, min(v, 1.0) * dot(d - offset, light.axis));
+                    above = max(above, min(v, 1.0) * dot(d - offset, light.direction));
                 }
             }
         }
     }
-    light.position += most_of(above) * light.axis;
+    light.position += most_of(above) * light.direction;
     vec3 depth = vec3(0.0);
     if (args.media != 0u && block.index < plan.front) {
         depth = depth_from_light(block.map.light, light.position);
     }
-    light.intensity = flux.rgb * exp(-depth) / VPL_PI;
+    light.color = flux.rgb * exp(-depth) / VPL_PI;
     if (lane == 0u) {
         vpls[vpl_before + index] = light;
     }

@@ -10,7 +10,7 @@ layout(binding = 0, scalar) readonly buffer vpls_buffer
 {
     uint vpl_count;
     uvec3 vpl_pad;
-    radial_light vpls[];
+    light_block vpls[];
 };
 layout(binding = 1, scalar) writeonly buffer bins_buffer
 {
@@ -22,7 +22,7 @@ shared vec3 sums[TYN_RADIAL_VPLS_MAX];
 void main()
 {
     uint lane = gl_LocalInvocationIndex;
-    sums[lane] = lane < vpl_count ? vpls[lane].intensity * 3.14159265 : vec3(0.0);
+    sums[lane] = lane < vpl_count ? vpls[lane].color * 3.14159265 : vec3(0.0);
     for (uint half_size = TYN_RADIAL_VPLS_MAX / 2u; half_size > 0u; half_size /= 2u) {
         barrier();
         if (lane < half_size) {

@@ -36,9 +36,9 @@ shared vec4 sums[WALL_LIGHT_GROUP]; // arrives, per W/sr; of all directions
 const float PI = 3.14159265;
 
 // Of the cell that light goes out from, as wall_light_vpls.comp has it: only cells that open links join with it see the VPL.
-uint room_of(uint vpl, radial_light light, lattice_box box)
+uint room_of(uint vpl, light_block light, lattice_box box)
 {
-    ivec3 from = ivec3(floor(lattice_from_m(box, light.position) + 0.75 * light.axis)); // walls_cell_before
+    ivec3 from = ivec3(floor(lattice_from_m(box, light.position) + 0.75 * light.direction)); // walls_cell_before
     bool shines = rooms == 0 || rooms_cell_before(box.dims, vpl, from);
     bool inside = all(greaterThanEqual(from, ivec3(0))) && all(lessThan(from, box.dims));
     return rooms == 0 || !inside ? TYN_ROOMS_OUTSIDE : shines ? rooms_of_cell(box.dims, from) : rooms_of_vpl(box.dims, vpl);
@@ -51,9 +51,9 @@ void main()
     int side = textureSize(vpl_distances_tex, 0).x / VPL_MAPS_IN_A_ROW;
     uint rays = shines ? uint(side * side) : 0u;
     radial_grid grid = radials[min(n, TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX - 1u)];
-    radial_light light = grid.light;
-    vec3 from = vpl_map_origin(light.position, light.axis, light.radius);
-    mat3 frame = vpl_frame(light.axis);
+    light_block light = grid.light;
+    vec3 from = vpl_map_origin(light.position, light.direction, light.radius);
+    mat3 frame = vpl_frame(light.direction);
     lattice_box box = lattice_box_of(args.extent, ivec3(args.dims));
     ivec2 corner = vpl_map_corner(vpl, side);
     vec4 sum = vec4(0.0);
@@ -79,7 +79,7 @@ void main()
     if (me == 0u) {
         uint room = shines ? room_of(vpl, light, box) : TYN_ROOMS_NONE;
         power.room[vpl] = room;
-        power.expected[vpl] = shines ? light.intensity * (PI * sums[0].rgb / max(sums[0].a, 1e-20)) : vec3(0.0);
+        power.expected[vpl] = shines ? light.color * (PI * sums[0].rgb / max(sums[0].a, 1e-20)) : vec3(0.0);
         if (room <= args.dims.x * args.dims.y * args.dims.z) {
             atomicMin(first[room], vpl);
         }

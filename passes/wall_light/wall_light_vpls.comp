@@ -114,13 +114,13 @@ void main()
     for (uint first = radial_num_lamps; first < radial_count; first += 32u) {
         uint seen = 0u, last = min(radial_count - first, 32u);
         for (uint k = 0u; k < last; k++) {
-            radial_light light = radials[first + k].light;
+            light_block light = radials[first + k].light;
             bool faces = false;
             for (uint side = 0u; side < num_sides; side++) {
                 vec3 away = sides[side].place - light.position;
-                faces = faces || dot(away, sides[side].normal) < 0.0 && dot(away, light.axis) > 0.0;
+                faces = faces || dot(away, sides[side].normal) < 0.0 && dot(away, light.direction) > 0.0;
             }
-            ivec3 from = walls_cell_before(box, light.position, light.axis);
+            ivec3 from = walls_cell_before(box, light.position, light.direction);
             if (rooms == 1) {
                 faces = rooms_cell_before(box.dims, first + k - radial_num_lamps, from) && faces;
             }
@@ -134,7 +134,7 @@ void main()
                 float r2 = dot(away, away), r = sqrt(r2), cosine = -dot(away, sides[k].normal) / max(r, 1e-20);
                 float share = max(cosine, 0.0) * radial_share_of(grid.light, away, r);
                 beam_tau tau = radial_tau(radial_place_in(grid, away, r));
-                vec3 light = grid.light.intensity * (sides[k].area * share / max(r2, least) * exp(-(tau.a + tau.p)));
+                vec3 light = grid.light.color * (sides[k].area * share / max(r2, least) * exp(-(tau.a + tau.p)));
                 sum += share > 0.0 ? light : vec3(0.0);
             }
         }

@@ -9,7 +9,6 @@
 #include "propagate.glsl"
 #include "propagate_radial_grid.h"
 #include "shaders/common/octahedral.glsl"
-#include "shaders/light/radial_lobe.glsl"
 
 // ---- where the cells are ------------------------------------------------------------------------
 

@@ -18,7 +18,7 @@
 #define TYN_PROPAGATE_SCALE_SPACING 2 // radiance falls with the spacing, r^-1, as the paper says
 
 struct propagate_radial_grid { // element of storage buffer "grids"
-    TYN_STRUCT(radial_light) light;
+    TYN_STRUCT(light_block) light;
     // Rows, orthogonal: M direction -> direction of the map. The last one is short where the light is far
     // away: the medium gets most of the map.
     tyn_vec3 to_map[3];

@@ -12,7 +12,6 @@
 #define TYN_RADIAL_GLSL
 #include "radial_args.h"
 #include "shaders/common/octahedral.glsl"
-#include "shaders/light/radial_lobe.glsl"
 #include "beam_tau.glsl"
 
 #ifdef RADIALS_TEXELS
@@ -80,12 +79,9 @@ radial_place radial_place_of(uint n, vec3 away, float r)
 }
 
 // Share of the light's intensity that goes along `away`, r = its length.
-float radial_share_of(radial_light light, vec3 away, float r)
+float radial_share_of(light_block light, vec3 away, float r)
 {
-    if (light.kind == TYN_RADIAL_ISOTROPIC) {
-        return 1.0;
-    }
-    return radial_lobe(light.kind, light.axis, light.cos_inner, light.cos_outer, away / max(r, 1e-20));
+    return light_lobe(light, dot(away / max(r, 1e-20), light.direction));
 }
 
 float radial_share(uint n, vec3 away, float r)
@@ -103,9 +99,9 @@ float radial_mean_inverse_square(float r2, float d2)
 // Of most lamps only the light that is near them is followed exactly, with the weight (1 - (r / reach)^4)^2; the rest,
 // which is smooth even at the lamp, is left to cells. A narrow beam is followed until it is as wide as the reach
 // of lamps that shine all around, m.
-float radial_reach(radial_light light, float around)
+float radial_reach(light_block light, float around)
 {
-    float c = light.kind == TYN_RADIAL_SPOT ? max(light.cos_outer, 0.0) : 0.0;
+    float c = max(light.cos_outer, 0.0);
     return around * inversesqrt(max(1.0 - c * c, 1e-4));
 }
 
@@ -132,8 +128,8 @@ float radial_near(float all, float h2, float a, float b, float reach)
 // Share of the light of lamp n that surfaces let through to the point p.
 float radial_visibility(uint n, vec3 p)
 {
-    uint light = radial_grid_of(n).light.light;
-    return light != TYN_RADIAL_NO_LIGHT ? shadow_visibility_lamp(light, p) : 1.0;
+    uint shadow = radial_grid_of(n).light.shadow;
+    return shadow != TYN_LIGHT_NO_SHADOW ? shadow_visibility_lamp(shadow, p) : 1.0;
 }
 #endif
 

@@ -1,38 +1,19 @@
 // radial_args.h -- local lights and their grids. Included by C and GLSL; scalar layout.
 //
-// A radial light shines from a point: a lamp of the scene, or a virtual point light (VPL) that stands for
-// light reflected or emitted by a piece of a surface. Its grid has an octahedral map of directions times
-// shells around the light. Structs are whole rows of four words, so that they can be read as texels.
+// A local light shines from a point: a lamp of the scene, or a virtual point light (VPL). Its grid has an
+// octahedral map of directions times shells around the light. Structs are whole rows of four words, so that
+// they can be read as texels.
 #ifndef TYN_RADIAL_ARGS_H
 #define TYN_RADIAL_ARGS_H
-#include "shaders/common/shared.h"
-
-#define TYN_RADIAL_ISOTROPIC 0
-#define TYN_RADIAL_SPOT                                                                            \
-    1 // KHR_lights_punctual: ((cos - cos_outer) / (cos_inner - cos_outer))^2 in between
-#define TYN_RADIAL_COSINE 2 // Lambertian: cosine to the axis, nothing behind
+#include "shaders/light/light_args.h"
 
 #define TYN_RADIAL_LAMPS_MAX 64
 #define TYN_RADIAL_VPLS_MAX 256
-#define TYN_RADIAL_NO_LIGHT 0xffffffffu
-
-struct radial_light {
-    tyn_vec3 position;  // M, m
-    tyn_uint kind;      // TYN_RADIAL_*
-    tyn_vec3 intensity; // W/sr; of a cosine lobe along its axis
-    float cos_inner;    // spot
-    tyn_vec3 axis;      // M, unit, direction in which it shines; not of isotropic lights
-    float cos_outer;    // spot
-    float radius;       // of the disc that it stands for, m; 0: a point. Bounds 1 / r^2
-    tyn_uint light;     // its shadow map, TYN_SHADOW_LAMP(n); TYN_RADIAL_NO_LIGHT: none
-    tyn_uvec2 pad;
-};
-TYN_ASSERT_SIZE(radial_light, 64);
 
 struct radial_vpls { // storage buffer "vpls"; the tail beyond `count` is not read
     tyn_uint count;  // 0 to TYN_RADIAL_VPLS_MAX
     tyn_uvec3 pad;
-    TYN_STRUCT(radial_light) list[TYN_RADIAL_VPLS_MAX];
+    TYN_STRUCT(light_block) list[TYN_RADIAL_VPLS_MAX];
 };
 TYN_ASSERT_SIZE(radial_vpls, 16400);
 
@@ -40,7 +21,7 @@ TYN_ASSERT_SIZE(radial_vpls, 16400);
 // texels around each map, of what lies beyond the folded edges. Node k of a direction is at the distance
 // begin + near (e^(k per_shell) - 1): even around the light, exponential farther away than `near`.
 struct radial_grid {
-    TYN_STRUCT(radial_light) light;
+    TYN_STRUCT(light_block) light;
     tyn_vec3 to_map
         [3]; // rows: M direction -> direction of the map, not normalised: narrow light and boxes
              // that are far away get most of the map

@@ -6,6 +6,7 @@
 #ifndef TYN_SCENE_ARGS_H
 #define TYN_SCENE_ARGS_H
 #include "shared.h"
+#include "shaders/light/light_args.h"
 
 // How the solvers (not `path`) read the medium.
 #define TYN_MEDIUM_DENSITY 0 // one texture: density; coefficients are the constants below
@@ -15,10 +16,6 @@
 #define TYN_SHAPE_KIND_BOX 0
 #define TYN_SHAPE_KIND_SPHERE 1
 #define TYN_SHAPE_KIND_ANY 2 // of several shapes: some are boxes, some spheres
-
-#define TYN_LIGHT_KIND_DIRECTIONAL 0
-#define TYN_LIGHT_KIND_POINT 1
-#define TYN_LIGHT_KIND_SPOT 2
 
 // Elements that the buffers "shapes", "lights" and "suns" always have; the counts say how many are used.
 #define TYN_SHAPES_MAX 64
@@ -61,17 +58,6 @@ struct shape_block { // element of storage buffer "shapes": the exact media, as 
     tyn_vec3 emission;
 };
 TYN_ASSERT_SIZE(shape_block, 128);
-
-struct light_block { // element of storage buffers "lights" (directional lights first) and "suns"
-    tyn_vec3 color;  // W/m^2 (directional) or W/sr
-    tyn_uint kind;
-    tyn_vec3 position; // M, m
-    float cos_inner;
-    tyn_vec3 direction; // M, unit, direction of travel
-    float cos_outer;
-    float mean_cosine; // of its disc as seen from the medium: 1 = all light comes along `direction`
-};
-TYN_ASSERT_SIZE(light_block, 52);
 
 struct camera_block { // uniform buffer "camera"
     tyn_vec3 origin;  // M, m

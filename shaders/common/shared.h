@@ -1,4 +1,4 @@
-// shared.h -- lets one header describe a struct to C and to GLSL (scalar block layout on both sides).
+// shared.h -- lets one header describe a struct, or a function, to C and to GLSL (scalar block layout on both sides).
 #ifndef TYN_SHARED_H
 #define TYN_SHARED_H
 
@@ -14,6 +14,7 @@ typedef uint32_t tyn_uvec3[3];
 // Size in bytes that scalar layout gives the struct.
 #define TYN_ASSERT_SIZE(type, bytes) static_assert(sizeof(struct type) == (bytes), #type)
 #define TYN_STRUCT(type) struct type // names a struct within another one
+#define TYN_FUNCTION static inline   // of numbers only, by operators that both languages have
 #else
 #extension GL_EXT_scalar_block_layout : require
 #define tyn_uint uint
@@ -24,6 +25,7 @@ typedef uint32_t tyn_uvec3[3];
 #define tyn_uvec3 uvec3
 #define TYN_ASSERT_SIZE(type, bytes)
 #define TYN_STRUCT(type) type
+#define TYN_FUNCTION
 #endif
 
 #endif

@@ -58,9 +58,9 @@ uint vpl_count()
     return texelFetch(vpls_texels, 0).x;
 }
 
-radial_light vpl_light(uint n)
+light_block vpl_light(uint n)
 {
-    return radial_light_at(vpls_texels, 1 + 4 * int(n));
+    return light_block_at(vpls_texels, 1 + 4 * int(n));
 }
 #endif
 #ifdef VPL_DISTANCES

@@ -384,7 +384,7 @@ vec3 path_lamp(inout path_state path, inout rng_state rng)
     if (!(max3(m.part_s) > 0.0) || !(pdf > 0.0)) {
         return vec3(0.0);
     }
-    light_sample light = light_towards(lamp, at);
+    light_sample light = light_towards(lamp, at, rng);
     if (surface_hides(at, light.direction, light.distance, SURFACE_NONE)) {
         return vec3(0.0);
     }
@@ -438,7 +438,7 @@ float path_meet_lights(inout path_state path, inout rng_state rng)
         light = light_sample(from.direction, from.distance,
                              from.pdf > 0.0 ? from.radiance * choice.probability / pdf : vec3(0.0));
     } else {
-        light = light_towards(choice.index, path.vertex);
+        light = light_towards(choice.index, path.vertex, rng);
     }
     path_direct_light = target == SURFACE_NONE;
     if (max3(light.arriving) > 0.0 && !surface_hides(path.vertex, light.direction, light.distance, target)) {
@@ -602,7 +602,7 @@ void path_run(uint element, uint first, uint end)
             uint target = SURFACE_NONE;
             if (choice.probability > 0.0) {
                 if (LIGHTS > 0u && choice.index < args.num_lights) {
-                    light_sample light = light_towards(choice.index, f.at);
+                    light_sample light = light_towards(choice.index, f.at, rng);
                     direction = light.direction;
                     distance = light.distance;
                     pending = weight * light.arriving / choice.probability;

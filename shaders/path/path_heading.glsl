@@ -47,7 +47,8 @@ vec3 heading_draw(vec3 point, vec3 surface_normal, inout rng_state rng)
     heading_axis = vec3(0.0, 0.0, 1.0);
     if (LIGHTS > 0u) {
         light_choice choice = light_choose(point, rng_float(bits.y), 0u);
-        heading_axis = light_towards(min(choice.index, args.num_lights - 1u), point).direction;
+        light_block light = light_get(min(choice.index, args.num_lights - 1u));
+        heading_axis = light_from(light, light.position, point).direction;
     }
     float u = rng_float(bits.x);
     if (ENVIRONMENT == TYN_PATH_ENV_MAP && u < shares.x) {

@@ -4,6 +4,7 @@
 #ifndef TYN_PATH_LIGHTS_GLSL
 #define TYN_PATH_LIGHTS_GLSL
 #include "shaders/common/scene_args.h"
+#include "shaders/random/rng.glsl"
 
 const uint LIGHT_MAP = 1u, LIGHT_EMITTERS = 2u; // what may be drawn beside suns and lamps
 
@@ -20,18 +21,6 @@ struct light_sample {
     vec3 arriving;  // irradiance on a perpendicular plane in vacuum, W/m^2
 };
 
-// Fraction of a spot's intensity in direction `d` (unit, away from it), as in KHR_lights_punctual.
-float spot_falloff(light_block light, vec3 d)
-{
-    float c = dot(d, light.direction);
-    float width = light.cos_inner - light.cos_outer;
-    if (width < 1e-6) {
-        return c >= light.cos_outer ? 1.0 : 0.0;
-    }
-    float a = clamp((c - light.cos_outer) / width, 0.0, 1.0);
-    return a * a;
-}
-
 light_block light_get(uint index)
 {
     if (LIGHTS == 1u) {
@@ -41,24 +30,33 @@ light_block light_get(uint index)
     return light;
 }
 
-light_sample light_towards(uint index, vec3 p)
+// What a light sends to p from a point of itself.
+light_sample light_from(light_block light, vec3 from, vec3 p)
 {
-    light_block light = light_get(index);
     if ((FLAGS & TYN_PATH_LAMPS) == 0u || light.kind == TYN_LIGHT_KIND_DIRECTIONAL) {
         return light_sample(-light.direction, 1e30, light.color);
     }
-    vec3 to = light.position - p;
+    vec3 to = from - p;
     float distance2 = max(dot(to, to), 1e-34);
     float distance = sqrt(distance2);
     vec3 direction = to / distance;
-    float falloff = light.kind == TYN_LIGHT_KIND_SPOT ? spot_falloff(light, -direction) : 1.0;
-    return light_sample(direction, distance, light.color * (falloff / distance2));
+    float lobe = light_lobe(light, dot(-direction, light.direction));
+    return light_sample(direction, distance, light.color * (lobe / distance2));
+}
+
+// A sample of light `index`. A lamp with an extent draws the point that it shines from by `rng`; points and cones need
+// no draw.
+light_sample light_towards(uint index, vec3 p, inout rng_state rng)
+{
+    light_block light = light_get(index);
+    return light_from(light, light.position, p);
 }
 
 // What light `index` would send to `p` through vacuum: the weight of the draw.
 float light_weight(uint index, vec3 p)
 {
-    vec3 arriving = light_towards(index, p).arriving;
+    light_block light = light_get(index);
+    vec3 arriving = light_from(light, light.position, p).arriving;
     return max(arriving.x, max(arriving.y, arriving.z));
 }
 

@@ -38,13 +38,13 @@ static void start(float thickness)
     }
 }
 
-static struct radial_light *add_light(float x, float y, float z, float r, float g, float b)
+static struct light_block *add_light(float x, float y, float z, float r, float g, float b)
 {
-    struct radial_light light = {.position = {x, y, z},
-                                 .kind = TYN_RADIAL_ISOTROPIC,
-                                 .intensity = {r, g, b},
-                                 .axis = {0, 0, -1},
-                                 .light = TYN_RADIAL_NO_LIGHT};
+    struct light_block light = {.position = {x, y, z},
+                                .kind = TYN_LIGHT_KIND_POINT,
+                                .color = {r, g, b},
+                                .direction = {0, 0, -1},
+                                .shadow = TYN_LIGHT_NO_SHADOW};
     struct radial_grid *grid = &s.radials.list[s.radials.count++];
     homogeneous_radial(grid, s.medium.extent, &light);
     return &grid->light;
@@ -118,17 +118,17 @@ static void run(gpu_test *t)
     of_vpls = s.params.vpls ? (const float(*)[4])gpu_map(t, "vpl_light") : NULL;
 }
 
-static double lobe(const struct radial_light *l, const double d[3])
+static double lobe(const struct light_block *l, const double d[3])
 {
     double cosine = 0;
     for (int i = 0; i < 3; i++) {
-        cosine += d[i] * (double)l->axis[i];
+        cosine += d[i] * (double)l->direction[i];
     }
     const double inner = (double)l->cos_inner, outer = (double)l->cos_outer;
     const double share = fmin(fmax((cosine - outer) / (inner - outer), 0), 1);
-    return l->kind == TYN_RADIAL_ISOTROPIC ? 1
-           : l->kind == TYN_RADIAL_COSINE  ? fmax(cosine, 0)
-                                           : share * share;
+    return l->kind == TYN_LIGHT_KIND_POINT    ? 1
+           : l->kind == TYN_LIGHT_KIND_COSINE ? fmax(cosine, 0)
+                                              : share * share;
 }
 
 // Fluence and flux of lights [from, to), means over a cell.
@@ -138,7 +138,7 @@ static void light_of(uint32_t from, uint32_t to, int channel, const int c[3], do
     const double dx = 2.0 / CELLS;
     memset(sum, 0, 4 * sizeof *sum);
     for (uint32_t n = from; n < to; n++) {
-        const struct radial_light *l = &s.radials.list[n].light;
+        const struct light_block *l = &s.radials.list[n].light;
         const double at[3] = {(double)l->position[0], (double)l->position[1],
                               (double)l->position[2]};
         for (int k = 0; k < SIDE * SIDE * SIDE; k++) {
@@ -150,7 +150,7 @@ static void light_of(uint32_t from, uint32_t to, int channel, const int c[3], do
             }
             const double inside = homogeneous_length(s.medium.extent, at, p);
             const double r = vector_normalise(d);
-            const double light = (double)l->intensity[channel] * lobe(l, d) / (r * r) *
+            const double light = (double)l->color[channel] * lobe(l, d) / (r * r) *
                                  exp(-extinction(channel) * inside) / (SIDE * SIDE * SIDE);
             const bool dark = s.shadows && n == 0 && c[1] >= NY / 2;
             for (int i = 0; i < 4; i++) {
@@ -200,7 +200,7 @@ static void check_power(int group, uint32_t from, uint32_t to)
     for (int ch = 0; ch < 3; ch++) {
         double entering = 0, emitted = 0, lost = 0;
         for (uint32_t n = from; n < to; n++) {
-            const struct radial_light *l = &s.radials.list[n].light;
+            const struct light_block *l = &s.radials.list[n].light;
             const double at[3] = {(double)l->position[0], (double)l->position[1],
                                   (double)l->position[2]};
             double sum[2] = {0, 0};
@@ -210,7 +210,7 @@ static void check_power(int group, uint32_t from, uint32_t to)
                                      across * sin(2.399963229728653 * k), z};
                 const double far[3] = {at[0] + 100 * d[0], at[1] + 100 * d[1], at[2] + 100 * d[2]};
                 const double length = homogeneous_length(s.medium.extent, at, far);
-                const double light = 4 * pi / DIRECTIONS * (double)l->intensity[ch] * lobe(l, d);
+                const double light = 4 * pi / DIRECTIONS * (double)l->color[ch] * lobe(l, d);
                 sum[0] += length > 0 ? light : 0;
                 sum[1] += light * (1 - exp(-extinction(ch) * length));
             }
@@ -259,7 +259,7 @@ static void spots(void **state)
 {
     start(0.4f);
     add_lamp(1, 0.75f, 1.8f, 3, 2, 1);
-    s.radials.list[0].light.kind = TYN_RADIAL_SPOT;
+    s.radials.list[0].light.kind = TYN_LIGHT_KIND_SPOT;
     s.radials.list[0].light.cos_inner = 0.9f;
     s.radials.list[0].light.cos_outer = 0.5f;
     s.params.num_fine = 1;
@@ -275,10 +275,10 @@ static void virtual_lights(void **state)
     s.params.num_fine = 1;
     s.params.vpls = 1;
     for (int k = 0; k < 20; k++) { // on the floor
-        struct radial_light *l =
+        struct light_block *l =
             add_light(0.05f + 0.1f * (float)k, 0.03f * (float)(k * 17 % 50), 0, 0.1f, 0.2f, 0.05f);
-        l->kind = TYN_RADIAL_COSINE;
-        l->axis[2] = 1;
+        l->kind = TYN_LIGHT_KIND_COSINE;
+        l->direction[2] = 1;
         l->radius = 0.01f;
     }
     run(*state);
@@ -290,7 +290,7 @@ static void shadows(void **state)
 {
     start(0.4f);
     add_lamp(-1, 0.75f, 0.5f, 3, 2, 1);
-    s.radials.list[0].light.light = TYN_SHADOW_LAMP(0);
+    s.radials.list[0].light.shadow = TYN_SHADOW_LAMP(0);
     s.params.num_fine = 1;
     s.shadows = true;
     run(*state);

@@ -52,10 +52,11 @@ static setup setup_of(const float extent[3], const uint32_t size[3], const float
     return s;
 }
 
-static struct radial_light *add_lamp(setup *s, float x, float y, float z)
+static struct light_block *add_lamp(setup *s, float x, float y, float z)
 {
-    struct radial_light *light = &s->params.lamps[s->params.num_lamps++];
-    *light = (struct radial_light){.position = {x, y, z}, .intensity = {1, 1, 1}};
+    struct light_block *light = &s->params.lamps[s->params.num_lamps++];
+    *light = (struct light_block){
+        .kind = TYN_LIGHT_KIND_POINT, .position = {x, y, z}, .color = {1, 1, 1}};
     return light;
 }
 
@@ -150,25 +151,25 @@ static void maps(void **state)
     setup s = setup_of((float[]){1, 1, 1}, (uint32_t[]){1, 1, 1}, &one_voxel);
     s.medium.sigma_s[0] = 1;
     add_lamp(&s, 0.5f, 0.5f, 0.5f);
-    struct radial_light *spot = add_lamp(&s, 0.2f, 0.3f, 0.4f);
-    *spot = (struct radial_light){.position = {0.2f, 0.3f, 0.4f},
-                                  .kind = TYN_RADIAL_SPOT,
-                                  .axis = {0.6f, 0, 0.8f},
-                                  .cos_inner = 0.9f,
-                                  .cos_outer = 0.7f};
+    struct light_block *spot = add_lamp(&s, 0.2f, 0.3f, 0.4f);
+    *spot = (struct light_block){.position = {0.2f, 0.3f, 0.4f},
+                                 .kind = TYN_LIGHT_KIND_SPOT,
+                                 .direction = {0.6f, 0, 0.8f},
+                                 .cos_inner = 0.9f,
+                                 .cos_outer = 0.7f};
     spot = add_lamp(&s, 0, 0, 0);
-    *spot = (struct radial_light){.position = {0.5f, 0.5f, 3},
-                                  .kind = TYN_RADIAL_SPOT,
-                                  .axis = {0, 0, -1},
-                                  .cos_inner = 0.999999f,
-                                  .cos_outer = 0.9999989f}; // narrower than all points of a texel
+    *spot = (struct light_block){.position = {0.5f, 0.5f, 3},
+                                 .kind = TYN_LIGHT_KIND_SPOT,
+                                 .direction = {0, 0, -1},
+                                 .cos_inner = 0.999999f,
+                                 .cos_outer = 0.9999989f}; // narrower than all points of a texel
     s.params.max_vpls = 2;
     s.vpls.count = 1;
-    s.vpls.list[0] = (struct radial_light){.position = {0.5f, 0.5f, 0},
-                                           .kind = TYN_RADIAL_COSINE,
-                                           .axis = {0, 0, 1},
-                                           .radius = 0.5f,
-                                           .intensity = {1, 2, 3}};
+    s.vpls.list[0] = (struct light_block){.position = {0.5f, 0.5f, 0},
+                                          .kind = TYN_LIGHT_KIND_COSINE,
+                                          .direction = {0, 0, 1},
+                                          .radius = 0.5f,
+                                          .color = {1, 2, 3}};
     for (int n = 2; n <= 32; n *= 4) {
         s.params.cells = n;
         outcome o = run(*state, &s);
@@ -314,18 +315,18 @@ static setup blobs(float *density)
     s.params.shells = 9;
     s.params.iterations = 13;
     add_lamp(&s, 0.4f, 0.7f, 0.3f);
-    struct radial_light *spot = add_lamp(&s, 0.9f, -0.5f, 1.5f);
-    spot->kind = TYN_RADIAL_SPOT;
-    memcpy(spot->axis, (float[]){-0.48f, 0.6f, -0.64f}, sizeof spot->axis);
+    struct light_block *spot = add_lamp(&s, 0.9f, -0.5f, 1.5f);
+    spot->kind = TYN_LIGHT_KIND_SPOT;
+    memcpy(spot->direction, (float[]){-0.48f, 0.6f, -0.64f}, sizeof spot->direction);
     spot->cos_inner = 0.95f;
     spot->cos_outer = 0.8f;
     s.params.max_vpls = 1;
     s.vpls.count = 1;
-    s.vpls.list[0] = (struct radial_light){.position = {0.2f, 0, 0.6f},
-                                           .kind = TYN_RADIAL_COSINE,
-                                           .axis = {0, 1, 0},
-                                           .radius = 0.2f,
-                                           .intensity = {1, 2, 3}};
+    s.vpls.list[0] = (struct light_block){.position = {0.2f, 0, 0.6f},
+                                          .kind = TYN_LIGHT_KIND_COSINE,
+                                          .direction = {0, 1, 0},
+                                          .radius = 0.2f,
+                                          .color = {1, 2, 3}};
     return s;
 }
 
@@ -403,12 +404,12 @@ static setup soft_ball(float *density, const float axis[3])
     s.medium.g[0] = 0.5f;
     s.params.cells = s.params.shells = 16;
     s.params.iterations = 24;
-    struct radial_light *lamp = add_lamp(&s, 0.5f, 0.5f, 0.5f);
+    struct light_block *lamp = add_lamp(&s, 0.5f, 0.5f, 0.5f);
     if (axis) {
-        lamp->kind = TYN_RADIAL_SPOT;
+        lamp->kind = TYN_LIGHT_KIND_SPOT;
         lamp->cos_outer = -1;
         lamp->cos_inner = -0.999999f;
-        memcpy(lamp->axis, axis, 3 * sizeof(float));
+        memcpy(lamp->direction, axis, 3 * sizeof(float));
     }
     return s;
 }

@@ -68,34 +68,34 @@ static void direction_of(const float axis[3], int i, int j, double d[3])
 }
 
 // Where its rays begin.
-static void origin_of(const struct radial_light *l, double o[3])
+static void origin_of(const struct light_block *l, double o[3])
 {
     double reach = (double)l->radius;
     for (int a = 0; a < 3; a++) {
         reach = fmax(reach, fabs((double)l->position[a]));
     }
     for (int a = 0; a < 3; a++) {
-        o[a] =
-            (double)l->position[a] + (0.02 * (double)l->radius + 1e-5 * reach) * (double)l->axis[a];
+        o[a] = (double)l->position[a] +
+               (0.02 * (double)l->radius + 1e-5 * reach) * (double)l->direction[a];
     }
 }
 
 static void add_light(lights *list, const mesh *m, const double p[3], const double axis[3])
 {
     const uint32_t k = list->vpls.count++;
-    struct radial_light *l = &list->vpls.list[k];
+    struct light_block *l = &list->vpls.list[k];
     double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]), o[3];
     for (int a = 0; a < 3; a++) {
         l->position[a] = (float)p[a];
-        l->axis[a] = (float)(axis[a] / length);
+        l->direction[a] = (float)(axis[a] / length);
     }
-    l->kind = TYN_RADIAL_COSINE;
+    l->kind = TYN_LIGHT_KIND_COSINE;
     l->radius = 0.02f;
     origin_of(l, o);
     for (int j = 0; j < SIDE; j++) {
         for (int i = 0; i < SIDE; i++) {
             double d[3];
-            direction_of(l->axis, i, j, d);
+            direction_of(l->direction, i, j, d);
             list->maps[j][(int)k * SIDE + i] = (float)distance_of(m, o, d);
         }
     }
@@ -204,7 +204,7 @@ static uint32_t told_by(const grid *g, const uint32_t *links, const uint32_t *ro
 {
     double o[3], d[3];
     origin_of(&l->vpls.list[k], o);
-    direction_of(l->vpls.list[k].axis, i, j, d);
+    direction_of(l->vpls.list[k].direction, i, j, d);
     double place = fmin((double)l->maps[j][(int)k * SIDE + i], 1e4 * g->dx) - 1.8 * g->dx;
     for (int step = 0; step < 12 && place > 0; step++, place *= 0.84) {
         int c[3];
@@ -264,14 +264,14 @@ static void see(const grid *g, const uint32_t *links, uint32_t *rooms, const lig
 }
 
 // The cell that VPL k shines from, as rooms.h tells it.
-static uint32_t cell_before(const grid *g, const uint32_t *rooms, const struct radial_light *l,
+static uint32_t cell_before(const grid *g, const uint32_t *rooms, const struct light_block *l,
                             uint32_t room)
 {
     double x[3], nearest = FAR;
     int c[3];
     uint32_t found = TYN_ROOMS_NONE;
     for (int a = 0; a < 3; a++) {
-        x[a] = (double)l->position[a] / g->dx + 0.75 * (double)l->axis[a];
+        x[a] = (double)l->position[a] / g->dx + 0.75 * (double)l->direction[a];
     }
     for (int k = 0; k < 27; k++) {
         const int d[3] = {k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};

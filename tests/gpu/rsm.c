@@ -68,6 +68,8 @@ static sums run(gpu_test *t, const tyn_scene *scene, const struct light_block *l
         .settings = settings,
         .refs =
             {
+                .suns = gpu_buffer(t, "suns", frame.lights.suns, sizeof frame.lights.suns),
+                .lights = gpu_buffer(t, "lights", frame.lights.scene, sizeof frame.lights.scene),
                 .geometry.surfaces =
                     gpu_buffer(t, "surfaces", &frame.surfaces, sizeof frame.surfaces),
                 .geometry.triangles = gpu_buffer(t, "triangles", s->triangles,

@@ -296,7 +296,7 @@ static void add_fog(gpu_test *t, tyn_ref *refs)
     for (uint32_t n = 0; n < radials.count; n++) {
         // The order of the grids is not that of the lamps.
         const uint32_t lamp = s.params.num_lamps - 1 - n;
-        struct radial_light light = {.light = TYN_SHADOW_LAMP(lamp)};
+        struct light_block light = {.shadow = TYN_SHADOW_LAMP(lamp)};
         if (n < s.params.num_lamps) {
             memcpy(light.position, s.lights[s.params.num_directional + lamp].position,
                    sizeof light.position);
@@ -645,9 +645,12 @@ static void shadows_of_suns(void **state)
 
 static struct light_block *add_lamp(float x, float y, float z, float r, float g, float b)
 {
-    struct light_block *l = &s.lights[s.params.num_directional + s.params.num_lamps++];
-    *l = (struct light_block){
-        .kind = TYN_LIGHT_KIND_POINT, .color = {r, g, b}, .position = {x, y, z}};
+    const uint32_t lamp = s.params.num_lamps++;
+    struct light_block *l = &s.lights[s.params.num_directional + lamp];
+    *l = (struct light_block){.kind = TYN_LIGHT_KIND_POINT,
+                              .color = {r, g, b},
+                              .position = {x, y, z},
+                              .shadow = TYN_SHADOW_LAMP(lamp)};
     return l;
 }
 
@@ -777,13 +780,13 @@ static void shadows_of_lamps(void **state)
 // A disc that shines along `axis`, with the intensity I: that of a small one.
 static void add_vpl(float x, float y, float z, const float axis[3], float radius, float intensity)
 {
-    struct radial_light *l = &s.vpls.list[s.vpls.count++];
-    *l = (struct radial_light){.position = {x, y, z},
-                               .kind = TYN_RADIAL_COSINE,
-                               .intensity = {intensity, 0.5f * intensity, 2 * intensity},
-                               .radius = radius,
-                               .light = TYN_RADIAL_NO_LIGHT};
-    memcpy(l->axis, axis, sizeof l->axis);
+    struct light_block *l = &s.vpls.list[s.vpls.count++];
+    *l = (struct light_block){.position = {x, y, z},
+                              .kind = TYN_LIGHT_KIND_COSINE,
+                              .color = {intensity, 0.5f * intensity, 2 * intensity},
+                              .radius = radius,
+                              .shadow = TYN_LIGHT_NO_SHADOW};
+    memcpy(l->direction, axis, sizeof l->direction);
 }
 
 // Of discs parallel to the floor in closed form, of others as points.
@@ -791,12 +794,12 @@ static void of_vpls(const double p[3], const double n[3], double irradiance[3])
 {
     memset(irradiance, 0, 3 * sizeof *irradiance);
     for (uint32_t k = 0; k < s.vpls.count; k++) {
-        const struct radial_light *l = &s.vpls.list[k];
+        const struct light_block *l = &s.vpls.list[k];
         double away[3], axis[3], at[3];
         for (int i = 0; i < 3; i++) {
             at[i] = (double)l->position[i];
             away[i] = p[i] - at[i];
-            axis[i] = (double)l->axis[i];
+            axis[i] = (double)l->direction[i];
         }
         const double rr = vector_dot(away, away), height = vector_dot(away, axis);
         const double towards = -vector_dot(away, n), RR = (double)(l->radius * l->radius);
@@ -806,7 +809,7 @@ static void of_vpls(const double p[3], const double n[3], double irradiance[3])
         const double share = vector_dot(axis, n) < -0.9999 ? disc : height * towards / (rr * rr);
         const bool lit = height > 0 && towards > 0 && (int)k != s.hidden_vpl;
         for (int c = 0; c < 3; c++) {
-            irradiance[c] += lit ? (double)l->intensity[c] * share *
+            irradiance[c] += lit ? (double)l->color[c] * share *
                                        left_of(vpl_density(k) * length_in_box(p, at), c)
                                  : 0;
         }

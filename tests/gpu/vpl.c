@@ -104,7 +104,7 @@ static void check_power(const struct radial_vpls *found, const double emitted[3]
             expected += scene.flux[i / SIDE][i % SIDE][c];
         }
         for (uint32_t k = 0; k < found->count; k++) {
-            power += PI * found->list[k].intensity[c];
+            power += PI * found->list[k].color[c];
         }
         worst = fmax(worst, fabs(power / expected - 1));
     }
@@ -141,9 +141,9 @@ static void power_of_maps(void **state)
         const struct radial_vpls *found = run(*state);
         check_power(found, none);
         for (uint32_t k = 0; k < found->count; k++) {
-            const struct radial_light *l = &found->list[k];
-            assert_int_equal(l->kind, TYN_RADIAL_COSINE);
-            assert_true(fabsf(l->position[1]) < 1e-5f && l->axis[1] > 0.9999f);
+            const struct light_block *l = &found->list[k];
+            assert_int_equal(l->kind, TYN_LIGHT_KIND_COSINE);
+            assert_true(fabsf(l->position[1]) < 1e-5f && l->direction[1] > 0.9999f);
             bool sun = l->position[0]<2.01f, spot = l->position[0]> 3.39f;
             assert_true(counts[i] < 4 || sun || spot); // none between the two
         }
@@ -230,20 +230,20 @@ static void emitters(void **state)
     check_power(found, emitted);
     double up = 0, down = 0, first[3] = {0, 0, 0}, weight = 0, area = 0;
     for (uint32_t k = 0; k < found->count; k++) {
-        const struct radial_light *l = &found->list[k];
+        const struct light_block *l = &found->list[k];
         if (l->position[1] < 1) {
             continue;
         }
         assert_float_equal(l->position[1], 2, 1e-5);
-        assert_true(fabsf(l->axis[1]) > 0.9999f);
+        assert_true(fabsf(l->direction[1]) > 0.9999f);
         if (l->position[0] > 9) {
-            *(l->axis[1] > 0 ? &up : &down) += l->intensity[1];
+            *(l->direction[1] > 0 ? &up : &down) += l->color[1];
         } else {
-            assert_true(l->axis[1] > 0 && l->position[0] > 6 && l->position[0] < 8);
+            assert_true(l->direction[1] > 0 && l->position[0] > 6 && l->position[0] < 8);
             area += PI * l->radius * l->radius;
-            weight += l->intensity[0];
+            weight += l->color[0];
             for (int c = 0; c < 3; c++) {
-                first[c] += l->intensity[0] * l->position[c];
+                first[c] += l->color[0] * l->position[c];
             }
         }
     }
@@ -281,7 +281,7 @@ static void in_fog(void **state)
     for (int c = 0; c < 3; c++) {
         double power = 0, expected = SIDE * SIDE * exp(-0.5 * (0.75 + 0.3 * c));
         for (uint32_t k = 0; k < found->count; k++) {
-            power += PI * found->list[k].intensity[c];
+            power += PI * found->list[k].color[c];
         }
         assert_float_equal(power / expected, 1, 2e-4);
     }
@@ -300,7 +300,7 @@ static void in_fog(void **state)
         const float *p = found->list[k].position;
         double r = sqrt((p[0] - 1) * (p[0] - 1) + 0.25 * 0.25 + (p[2] - 1) * (p[2] - 1));
         double expected = SIDE * SIDE / (PI * found->count) * exp(-r);
-        assert_float_equal(found->list[k].intensity[1] / expected, 1, 2e-3);
+        assert_float_equal(found->list[k].color[1] / expected, 1, 2e-3);
     }
 }
 

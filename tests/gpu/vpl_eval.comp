@@ -23,8 +23,8 @@ void main()
     uint i = gl_GlobalInvocationID.x;
     if (i < uint(points.length())) {
         point q = points[i];
-        radial_light light =
-            radial_light(q.position, TYN_RADIAL_COSINE, vec3(1.0), 0.0, q.axis, 0.0, q.radius, 0u, uvec2(0u));
+        light_block light =
+            light_block(q.position, TYN_LIGHT_KIND_COSINE, vec3(1.0), 1.0, q.axis, 0.0, q.radius, TYN_LIGHT_NO_SHADOW, 1.0, 0u);
         results[i] = vpl_irradiance(light, q.p, q.n);
     }
 }

@@ -175,7 +175,7 @@ static void virtual_lights(void **state)
         mesh m = mesh_box((double[]){0.5, 0.5, 0.5}, (double[]){0.37, 0.31, 0.34}, k * 0.4);
         wall_data d = walls_of(t, &g, &m);
         // In the middle of a wall, facing inwards.
-        struct radial_light light = {.kind = TYN_RADIAL_COSINE, .intensity = {2, 2, 2}};
+        struct light_block light = {.kind = TYN_LIGHT_KIND_COSINE, .color = {2, 2, 2}};
         double p[3], n[3];
         for (int a = 0; a < 3; a++) {
             p[a] = 0.5 * (m.tri[4][0][a] + m.tri[4][2][a]);
@@ -184,7 +184,7 @@ static void virtual_lights(void **state)
         vector_normalise(n);
         for (int a = 0; a < 3; a++) {
             light.position[a] = (float)(p[a] + 1e-4 * n[a]);
-            light.axis[a] = (float)n[a];
+            light.direction[a] = (float)n[a];
         }
         struct radial_block lights = {.count = 1};
         homogeneous_radial(&lights.list[0], (float[]){1, 1, 1}, &light);

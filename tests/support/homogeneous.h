@@ -37,7 +37,7 @@ static inline void homogeneous_beam(struct beam_block *beam, const float extent[
 }
 
 static inline void homogeneous_radial(struct radial_grid *grid, const float extent[3],
-                                      const struct radial_light *light)
+                                      const struct light_block *light)
 {
     *grid = (struct radial_grid){.light = *light, .inside = 1, .inverse_near = 1};
     for (int i = 0; i < 3; i++) {

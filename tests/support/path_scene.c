@@ -95,6 +95,7 @@ void path_scene_lamp(path_scene *s, const float position[3], const float intensi
     copy3(l->color, intensity);
     copy3(l->position, position);
     l->direction[2] = 1;
+    l->cos_inner = l->cos_outer = -1;
     s->params.num_lamps++;
     s->params.near_lamps++;
 }

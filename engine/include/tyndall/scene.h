@@ -63,6 +63,15 @@ typedef struct tyn_light {
     float cos_inner, cos_outer; // spot: cosines of the cone half angles, cos_inner >= cos_outer
 } tyn_light;
 
+typedef struct tyn_light_traits {
+    const char *name; // as in KHR_lights_punctual
+    const char *unit; // of `color`
+    bool has_position, has_direction;
+} tyn_light_traits;
+TYN_API const tyn_light_traits *tyn_light_traits_of(tyn_light_kind kind); // NULL: no such kind
+// Power over `color`, sr; 0 of directional lights.
+TYN_API double tyn_light_solid_angle(const tyn_light *light);
+
 // Surfaces: one soup of triangles in world space. Diffuse (Lambertian), opaque, reflecting alike on both
 // sides. The arrays below are what shaders read (`surface_*` of shaders/surfaces/surface_args.h), so they reach the
 // GPU as they are.
