@@ -6,8 +6,8 @@
 
 typedef struct tyn_scatter_lut_params {
     uint32_t mode;                       // TYN_MEDIUM_*
-    float g[3];                          // DENSITY: of the colour channels, in (-1, 1)
-    float g_max;                         // COEFFICIENTS: largest g of any medium
+    tyn_phase phase[3];                  // DENSITY: of the colour channels
+    float g_max;                         // COEFFICIENTS: largest mean cosine of any medium
     uint32_t tms;                        // 1: also make `tms`
     uint32_t num_suns;                   // 0..4
     float mean_cosine[TYN_LUT_MAX_SUNS]; // of the suns' discs, light_block.mean_cosine, in (0, 1]
@@ -19,8 +19,8 @@ enum {
     SCATTER_LUT_PORT_LUT_BLOCK, // OUT buffer struct lut_block
     SCATTER_LUT_PORT_TMS, // OUT 3D R32F, only if asked for: what is scattered of light from cones, over
                           // depth, angle, and the size of the cone in each row; tms.glsl reads it
-    SCATTER_LUT_PORT_MOMENTS, // SCRATCH buffer: Legendre moments F_l and g^l - F_l of the rows
-    SCATTER_LUT_PORT_CONES,   // SCRATCH buffer: Legendre moments c_l of the cones
+    SCATTER_LUT_PORT_MOMENTS, // SCRATCH buffer: Legendre moments of the rows, outside and inside the lobe
+    SCATTER_LUT_PORT_CONES, // SCRATCH buffer: Legendre moments c_l of the cones
     SCATTER_LUT_NUM_PORTS,
 };
 extern const tyn_pass_desc tyn_pass_scatter_lut;

@@ -6,6 +6,7 @@
 #ifndef TYN_SCENE_ARGS_H
 #define TYN_SCENE_ARGS_H
 #include "shared.h"
+#include "shaders/phase/phase_args.h"
 
 // How the solvers (not `path`) read the medium.
 #define TYN_MEDIUM_DENSITY 0 // one texture: density; coefficients are the constants below
@@ -35,7 +36,7 @@ struct medium_block { // uniform buffer "medium"
     float max_density; // largest texture value (DENSITY), else 1
     tyn_vec3 sigma_s;  // 1/m at texture value 1 (DENSITY), else 0
     tyn_vec3 sigma_a;
-    tyn_vec3 g;
+    tyn_phase phase[3]; // of each channel
     tyn_vec3 emission;   // W/(m^3 sr) at texture value 1
     tyn_uvec3 bricks;    // brick counts, ceil(size / TYN_BRICK)
     tyn_vec3 brick_size; // voxel * TYN_BRICK, m (the last brick may reach beyond the box)
@@ -44,7 +45,7 @@ struct medium_block { // uniform buffer "medium"
     // maximum is multiplied with to give the majorant in 1/m.
     float sigma_t_max;
 };
-TYN_ASSERT_SIZE(medium_block, 136);
+TYN_ASSERT_SIZE(medium_block, 124 + 3 * sizeof(tyn_phase));
 
 struct shape_block { // element of storage buffer "shapes": the exact media, as `path` reads them
     // M -> local unit box [-0.5, 0.5]^3: local_i = dot(rows[i].xyz, p) + rows[i].w.
@@ -57,10 +58,10 @@ struct shape_block { // element of storage buffer "shapes": the exact media, as 
     tyn_uint pad;
     tyn_vec3 sigma_s; // at atlas value 1; density_scale is in
     tyn_vec3 sigma_a;
-    tyn_vec3 g;
+    tyn_phase phase[3]; // of each channel
     tyn_vec3 emission;
 };
-TYN_ASSERT_SIZE(shape_block, 128);
+TYN_ASSERT_SIZE(shape_block, 116 + 3 * sizeof(tyn_phase));
 
 struct light_block { // element of storage buffers "lights" (directional lights first) and "suns"
     tyn_vec3 color;  // W/m^2 (directional) or W/sr
