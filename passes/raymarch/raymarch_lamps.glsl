@@ -128,7 +128,7 @@ vec3 march_lamplight_seen(march_lamp lamp, march_lamps ray, march_medium unit, m
     float column = radial_column(place);
     tau_s = unit.scattering * column;
     tau_a = unit.absorption * column;
-    k_once = phase_near(unit.phase[0], one_minus_mu);
+    k_once = phase_near(unit.phase[0], 1.0, one_minus_mu);
     if (raymarch_has(RAYMARCH_KERNELS)) {
         vec2 k = scatter_kernels(scatter_angle_of_point(0u, one_minus_mu), tau_s);
         k_tms = k.x;
@@ -140,7 +140,7 @@ vec3 march_lamplight_seen(march_lamp lamp, march_lamps ray, march_medium unit, m
     tau_a = tau.a;
     scatter_angle angle;
     for (uint c = 0u; c < 3u; c++) {
-        k_once[c] = phase_near(m.phase[c], one_minus_mu);
+        k_once[c] = phase_near(m.phase[c], 1.0, one_minus_mu);
         if (raymarch_has(RAYMARCH_KERNELS)) {
             vec2 k;
             if (medium_mode == TYN_MEDIUM_DENSITY) {

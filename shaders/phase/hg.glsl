@@ -29,22 +29,7 @@ float hg(float g, float mu)
     return hg_near(g, 1.0 - mu);
 }
 
-// Fraction scattered to cosines below mu: 2 pi int_-1^mu p. Limits: g -> 1 gives 0 for mu < 1, g -> -1
-// gives 1 for mu > -1.
-float hg_below(float g, float mu)
-{
-    float s = hg_s(g, 1.0 - mu);
-    return (1.0 - g) * (1.0 + mu) / (s * (s + 1.0 + g));
-}
-
-// 1 - hg_below without the cancellation at the front.
-float hg_above(float g, float mu)
-{
-    float s = hg_s(g, 1.0 - mu);
-    return (1.0 + g) * (1.0 - mu) / (s * (s + 1.0 - g));
-}
-
-// 1 - mu of a scattering angle with hg_below(g, mu) = u, u in [0, 1]. The usual inverse
+// 1 - mu of a scattering angle below whose cosine the fraction u is scattered, u in [0, 1]. The usual inverse
 // (1 + g^2 - ((1 - g^2) / (1 - g + 2 g u))^2) / (2 g) multiplied out, so that g = 0 is no special case
 // and a narrow lobe keeps its relative precision.
 float hg_sample(float g, float u)

@@ -10,13 +10,8 @@
 // ---- evaluation ---------------------------------------------------------------------------------
 
 // The phase function, 1/sr, from 1 - mu; mu = cosine of the scattering angle. Give 1 - mu = |v - d|^2 / 2, which does
-// not cancel near the peak of a narrow lobe.
-float phase_near(phase p, float one_minus_mu)
-{
-    return hg_near(p.g, one_minus_mu);
-}
-
-// ... averaged over a light that is a soft round spot around its direction, with the mean cosine `spot`.
+// not cancel near the peak of a narrow lobe. Averaged over a light that is a soft round spot around its direction, with
+// the mean cosine `spot`: 1 = a point.
 float phase_near(phase p, float spot, float one_minus_mu)
 {
     return hg_near(p.g * spot, one_minus_mu);
@@ -106,11 +101,9 @@ void similarity_clamp(inout float sigma_s, inout phase p)
 
 void similarity_clamp(inout vec3 sigma_s, inout phase p[3])
 {
-    for (int c = 0; c < 3; c++) {
-        float s = sigma_s[c];
-        similarity_clamp(s, p[c]);
-        sigma_s[c] = s;
-    }
+    similarity_clamp(sigma_s.x, p[0]);
+    similarity_clamp(sigma_s.y, p[1]);
+    similarity_clamp(sigma_s.z, p[2]);
 }
 
 // sigma_s' = (1 - f) sigma_s of what similarity_clamp leaves.

@@ -8,7 +8,8 @@ vec3 phase_between(phase p[3], vec3 before, vec3 after)
 {
     vec3 apart = before - after;
     float one_minus_mu = 0.5 * dot(apart, apart); // does not cancel in the narrow peak
-    return vec3(phase_near(p[0], one_minus_mu), phase_near(p[1], one_minus_mu), phase_near(p[2], one_minus_mu));
+    return vec3(phase_near(p[0], 1.0, one_minus_mu), phase_near(p[1], 1.0, one_minus_mu),
+                phase_near(p[2], 1.0, one_minus_mu));
 }
 
 // Unit vector about `axis`, distributed as the phase function, from two uniform numbers.

@@ -46,7 +46,7 @@ scatter_angle scatter_angle_in_row(uint row, float one_minus_mu)
 {
     phase last = lut.phase[row];
     float theta = 2.0 * asin(sqrt(clamp(0.5 * one_minus_mu, 0.0, 1.0)));
-    float p = phase_near(last, one_minus_mu), f = delta_fraction(last);
+    float p = phase_near(last, 1.0, one_minus_mu), f = delta_fraction(last);
     float h = lut_window(theta, lut.theta_1[row]), sets = float(lut.num_sets);
     scatter_angle a;
     a.first = vec2(p * (1.0 - h), p * h);

@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint unused = 0u;
 layout(set = 0, binding = 0, scalar) readonly buffer points_buffer { vec4 points[]; };
 struct result {
-    float phase, below, above, sample_one_minus_mu;
+    float phase, sample_one_minus_mu;
     vec3 similar_sigma_s, similar_g, fraction, cosine;
 };
 layout(set = 0, binding = 1, scalar) writeonly buffer results_buffer { result results[]; };
@@ -21,9 +21,7 @@ void main()
     }
     float g = points[i].x, one_minus_mu = points[i].y, u = points[i].z;
     result r;
-    r.phase = phase_near(phase_of_mean_cosine(g), one_minus_mu);
-    r.below = hg_below(g, 1.0 - one_minus_mu);
-    r.above = hg_above(g, 1.0 - one_minus_mu);
+    r.phase = phase_near(phase_of_mean_cosine(g), 1.0, one_minus_mu);
     r.sample_one_minus_mu = phase_sample(phase_of_mean_cosine(g), u);
     r.similar_sigma_s = vec3(2.0);
     phase channels[3] = phase_of_mean_cosine(vec3(g, -g, 0.0));
