@@ -19,6 +19,7 @@ void regime_figures(const regime *r, double cells, tyn_regime *out)
         .mean_depth = r->optical_depth,
         .transport_depth = r->optical_depth * (1 - fmax(r->g, 0)),
         .scatterings = r->albedo * depth_of(r, longest),
+        .all_scatterings = r->mean_free_path > 0 ? r->albedo * longest / r->mean_free_path : 0,
         .thickness = depth_of(r, r->thickness),
         .albedo = r->albedo,
         .g = r->g,

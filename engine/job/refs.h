@@ -9,48 +9,48 @@
 #define tyn_take(refs, first, bundle) memcpy(&(bundle), &(refs)[first], sizeof(bundle))
 
 typedef struct tyn_medium_refs {
-    tyn_ref TYN_MEDIUM(TYN_BUNDLE_NAME, );
+    tyn_ref TYN_MEDIUM(TYN_PORT_NAME, );
 } tyn_medium_refs;
 
 // {0} without suns.
 typedef struct tyn_beam_refs {
-    tyn_ref TYN_BEAMS(TYN_BUNDLE_NAME, );
+    tyn_ref TYN_BEAMS(TYN_PORT_NAME, );
 } tyn_beam_refs;
 
 // {0} without lamps and virtual point lights.
 typedef struct tyn_radial_refs {
-    tyn_ref TYN_RADIALS(TYN_BUNDLE_NAME, );
+    tyn_ref TYN_RADIALS(TYN_PORT_NAME, );
 } tyn_radial_refs;
 
 // {0} without ordinates.
 typedef struct tyn_column_refs {
-    tyn_ref TYN_COLUMNS(TYN_BUNDLE_NAME, );
+    tyn_ref TYN_COLUMNS(TYN_PORT_NAME, );
 } tyn_column_refs;
 
 // {0} without surfaces, or without lights.
 typedef struct tyn_shadow_refs {
-    tyn_ref TYN_SHADOWS(TYN_BUNDLE_NAME, );
+    tyn_ref TYN_SHADOWS(TYN_PORT_NAME, );
 } tyn_shadow_refs;
 
 // {0} without surfaces near the media.
 typedef struct tyn_wall_refs {
-    tyn_ref TYN_WALLS(TYN_BUNDLE_NAME, );
+    tyn_ref TYN_WALLS(TYN_PORT_NAME, );
 } tyn_wall_refs;
 
 // {0} without surfaces that light reaches.
 typedef struct tyn_vpl_refs {
-    tyn_ref TYN_VPLS(TYN_BUNDLE_NAME, );
+    tyn_ref TYN_VPLS(TYN_PORT_NAME, );
 } tyn_vpl_refs;
 
 // {0} without surfaces, or without lights.
 typedef struct tyn_rsm_refs {
-    tyn_ref TYN_RSM(TYN_BUNDLE_NAME, );
+    tyn_ref TYN_RSM(TYN_PORT_NAME, );
 } tyn_rsm_refs;
 
 // {0} without surfaces; `nodes` also where they have no hierarchy.
 typedef struct tyn_geometry_refs {
-    tyn_ref TYN_GEOMETRY(TYN_BUNDLE_NAME, );
+    tyn_ref TYN_GEOMETRY(TYN_PORT_NAME, );
 } tyn_geometry_refs;
 typedef struct tyn_material_refs {
-    tyn_ref TYN_MATERIALS(TYN_BUNDLE_NAME, );
+    tyn_ref TYN_MATERIALS(TYN_PORT_NAME, );
 } tyn_material_refs;

@@ -15,7 +15,7 @@ static void add_env_importance(tyn_graph *g, const tyn_job *job, tyn_ref *sky, t
         memcpy(sun->around, map->suns[i].around, sizeof sun->around);
         sun->cos_radius = map->suns[i].cos_radius;
     }
-    tyn_ref refs[TYN_MAX_PORTS] = {[ENV_IMPORTANCE_PORT_MAP] = job->refs.env_map};
+    tyn_ref refs[TYN_MAX_PORTS] = {[ENV_IMPORTANCE_PORT_ENV_MAP] = job->refs.env_map};
     tyn_graph_add(g, &tyn_pass_env_importance, &params, refs);
     *sky = refs[ENV_IMPORTANCE_PORT_SKY];
     *sums = refs[ENV_IMPORTANCE_PORT_SUMS];
@@ -37,7 +37,7 @@ static void add_importance(tyn_graph *g, const tyn_job *job, const tyn_medium_re
     };
     tyn_connect(refs, IMPORTANCE_PORT_MEDIUM, *medium);
     tyn_graph_add(g, &tyn_pass_importance, &params, refs);
-    *map = refs[IMPORTANCE_PORT_MAP];
+    *map = refs[IMPORTANCE_PORT_IMPORTANCE];
 }
 
 // A sun as an ordinate: a cone with its mean cosine.

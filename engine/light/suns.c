@@ -30,7 +30,7 @@ static void add_light_cells(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     tyn_ref refs[TYN_MAX_PORTS] = {{0}};
     tyn_connect(refs, LIGHT_CELLS_PORT_SHADOW_ATLAS, s->shadows);
     tyn_graph_add(g, &tyn_pass_light_cells, &params, refs);
-    s->light_cells = refs[LIGHT_CELLS_PORT_CELLS];
+    s->light_cells = refs[LIGHT_CELLS_PORT_LIGHT_CELLS];
 }
 
 void tyn_add_shadows(tyn_graph *g, const tyn_job *job, tyn_sources *s)

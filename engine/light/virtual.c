@@ -96,7 +96,7 @@ void tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm *rsm)
     tyn_connect(refs, RSM_PORT_SURFACES, job->refs.geometry);
     tyn_connect(refs, RSM_PORT_MATERIALS, job->refs.materials);
     tyn_graph_add(g, &tyn_pass_rsm, &params, refs);
-    tyn_take(refs, RSM_PORT_FLUX, rsm->maps);
+    tyn_take(refs, RSM_PORT_RSM_FLUX, rsm->maps);
 }
 
 void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
@@ -131,7 +131,7 @@ void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
         [VPL_PORT_SUNS] = job->refs.suns,
         [VPL_PORT_LIGHTS] = job->refs.lights,
     };
-    tyn_connect(refs, VPL_PORT_FLUX, rsm.maps);
+    tyn_connect(refs, VPL_PORT_RSM_FLUX, rsm.maps);
     tyn_connect(refs, VPL_PORT_MEDIUM, s->medium);
     refs[VPL_PORT_MEDIUM] = job->refs.medium; // also without media
     tyn_connect(refs, VPL_PORT_SURFACES, job->refs.geometry);

@@ -37,9 +37,9 @@ static void add_rooms(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     tyn_settings_params(job->settings, &tyn_pass_rooms, &params);
     put_lattice(&s->lattice.shape, params.extent, params.dims);
     tyn_ref refs[TYN_MAX_PORTS] = {
-        [ROOMS_PORT_LINKS] = s->walls.cut.wall_links,
+        [ROOMS_PORT_WALL_LINKS] = s->walls.cut.wall_links,
         [ROOMS_PORT_VPLS] = s->surface_light.vpls.vpls,
-        [ROOMS_PORT_DISTANCES] = s->surface_light.vpls.vpl_distances,
+        [ROOMS_PORT_VPL_DISTANCES] = s->surface_light.vpls.vpl_distances,
     };
     tyn_graph_add(g, &tyn_pass_rooms, &params, refs);
     s->surface_light.rooms = refs[ROOMS_PORT_ROOMS];
@@ -68,7 +68,7 @@ static void add_wall_light(tyn_graph *g, const tyn_job *job, uint32_t num_suns, 
         [WALL_LIGHT_PORT_LIGHTS] = job->refs.suns,
         [WALL_LIGHT_PORT_HITS] = s->walls.hits,
         [WALL_LIGHT_PORT_ROOMS] = s->surface_light.rooms,
-        [WALL_LIGHT_PORT_DISTANCES] = s->surface_light.vpls.vpl_distances,
+        [WALL_LIGHT_PORT_VPL_DISTANCES] = s->surface_light.vpls.vpl_distances,
     };
     tyn_connect(refs, WALL_LIGHT_PORT_BEAMS, s->beams);
     tyn_connect(refs, WALL_LIGHT_PORT_RADIALS, s->lamps.radials);
@@ -78,7 +78,7 @@ static void add_wall_light(tyn_graph *g, const tyn_job *job, uint32_t num_suns, 
     tyn_connect(refs, WALL_LIGHT_PORT_WALL_LINKS, s->walls.cut);
     tyn_connect(refs, WALL_LIGHT_PORT_SURFACES, job->refs.geometry);
     tyn_graph_add(g, &tyn_pass_wall_light, &params, refs);
-    s->walls.light = refs[WALL_LIGHT_PORT_LIGHT];
+    s->walls.light = refs[WALL_LIGHT_PORT_WALL_LIGHT];
     tyn_job_counters(g, job, &tyn_pass_wall_light, refs[WALL_LIGHT_PORT_POWER]);
 }
 

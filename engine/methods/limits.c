@@ -172,10 +172,20 @@ void tyn_limits_warn(const tyn_job *job, float cell)
         .albedo = d.extinction > 0 ? 1 - d.absorption / d.extinction : 0,
         .least_g = d.least_g,
         .most_g = d.most_g,
+        .g = NAN, // this, and what else is NAN, takes more than a frame's figures
+        .transport_depth = NAN,
+        .again = NAN,
         .cell_depth = d.scaled * cell,
         .cell_transport = d.transport * cell,
         .cells_through = cell > 0 ? shortest / cell : INFINITY,
+        .cells_needed = NAN,
+        .cells_most = NAN,
+        .cells_spare = NAN,
+        .lamps = NAN,
+        .map = NAN,
         .sky_on_surfaces = lit && !job->frame->empty && tyn_has_walls(job->frame),
+        .surfaces = job->frame->num_triangles > 0,
+        .repeats = tyn_is_periodic(job->frame),
     };
     const tyn_limit *row = NULL;
     while ((row = tyn_limit_next(job->method->limits, row, &r)) != NULL) {

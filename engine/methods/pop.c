@@ -209,8 +209,8 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         tyn_limits_warn(job, s.lattice.side);
         tyn_solve_lattice(g, job, &s, &field);
     }
-    if (picture && field.moments.resource) {
-        tyn_add_merge(g, job, &view);
+    if (picture) {
+        tyn_gather(g, job, &view);
     }
     if (job->outputs & TYN_OUTPUT_PROBE) {
         tyn_add_probe(g, job, &view);

@@ -52,7 +52,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (field.cell > 0) {
         tyn_limits_warn(job, field.cell);
     }
-    view.inscatter = field.inscatter;
+    tyn_gather(g, job, &view);
     if (frame->num_triangles) {
         add_surfaces(g, job, &view);
     }

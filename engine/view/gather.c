@@ -51,9 +51,13 @@ void tyn_add_glow(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     in->glow = refs[ENV_GLOW_PORT_GLOW];
 }
 
-void tyn_add_merge(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
+void tyn_gather(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
 {
     const tyn_sources *s = in->sources;
+    in->inscatter = in->field->inscatter;
+    if (!in->field->moments.resource) {
+        return;
+    }
     tyn_merge_params params;
     tyn_settings_params(job->settings, &tyn_pass_merge, &params);
     params.channels = s->lattice.shape.channels;

@@ -10,7 +10,7 @@ typedef struct tyn_view_inputs {
     tyn_ref lut, lut_block; // given: all forward orders of the suns, else the first
     tyn_ref tms;            // the same of ordinates
     tyn_ref glow;           // the map scattered forward
-    tyn_ref inscatter;      // of the field, towards the eye
+    tyn_ref inscatter;      // the field, towards the eye (tyn_gather)
     // Lamps that are marched everywhere, the first of `sources`, and those after them that are marched nearby.
     uint32_t num_marched_lamps, num_near_lamps;
     bool mean_in_field;         // the environment's mean came in through the field
@@ -21,8 +21,9 @@ typedef struct tyn_view_inputs {
 void tyn_add_forward_tables(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
 // What the map looks like behind a medium that scatters forward.
 void tyn_add_glow(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
-// The lattice's moments and the light of ordinates and distant lamps in its cells, towards the eye.
-void tyn_add_merge(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
+// The field towards the eye: as the solver brings it, or the lattice's moments and the light of ordinates and distant lamps
+// in its cells.
+void tyn_gather(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
 // Surfaces that the camera sees, in direct light, that of `sources.surface_light`, and the field's.
 void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
 // Marches, and makes what the job wants of the result: layers, the host's picture, the display image.

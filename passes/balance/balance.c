@@ -6,56 +6,11 @@
 #include "balance_lights.comp.h"
 #include <string.h>
 
-static const tyn_port ports[BALANCE_NUM_PORTS] = {
-    [BALANCE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
-    [BALANCE_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, true, "struct light_block[]"},
-    [BALANCE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    [BALANCE_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
-    [BALANCE_PORT_SOURCE] = {"source", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_source"},
-    [BALANCE_PORT_POWER] = {"power", TYN_IN, TYN_BUFFER, 0, true, "of lattice_source"},
-    [BALANCE_PORT_LEAKS] = {"leaks", TYN_IN, TYN_BUFFER, 0, false, "of lattice"},
-    [BALANCE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
-                                  "struct env_block: its mean without suns enters at the box"},
-    [BALANCE_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, true, "struct ordinates_block"},
-    [BALANCE_PORT_WALL_POWER] = {"wall_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice"},
-    [BALANCE_PORT_LAMP_POWER] = {"lamp_power", TYN_IN, TYN_BUFFER, 0, true, "of lattice_lamps"},
-    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, BALANCE),
-    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, BALANCE),
-    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, BALANCE),
-    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, BALANCE),
-    [BALANCE_PORT_EMITTERS] = {"emitters", TYN_IN, TYN_BUFFER, 0, true, "struct surface_table"},
-    [BALANCE_PORT_FOUND] = {"found", TYN_SCRATCH, TYN_BUFFER, 0, false, "struct balance_light[]"},
-    [BALANCE_PORT_BALANCE] = {"balance", TYN_OUT, TYN_BUFFER, 0, false, "tyn_balance, W"},
-};
-
-static const tyn_binding bindings[] = {
-    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {BALANCE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_CELLS, TYN_USE_SAMPLED},
-    {BALANCE_PORT_MOMENTS, TYN_USE_SAMPLED},
-    {BALANCE_PORT_SOURCE, TYN_USE_SAMPLED},
-    {BALANCE_PORT_POWER, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_LEAKS, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_BALANCE, TYN_USE_STORAGE_WRITE},
-    {BALANCE_PORT_ORDINATES, TYN_USE_UNIFORM},
-    {BALANCE_PORT_WALL_POWER, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_LAMP_POWER, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_FOUND, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_EMITTERS, TYN_USE_STORAGE_READ},
-};
-
-static const tyn_binding light_bindings[] = {
-    {BALANCE_PORT_MEDIUM, TYN_USE_UNIFORM},        TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, BALANCE),
-    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, BALANCE), TYN_GEOMETRY(TYN_BUNDLE_BIND, BALANCE),
-    TYN_MATERIALS(TYN_BUNDLE_BIND, BALANCE),       {BALANCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
-    {BALANCE_PORT_FOUND, TYN_USE_STORAGE_WRITE},
-};
+static const tyn_port ports[] = {BALANCE_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(balance, sizeof(struct balance_args), BALANCE_GROUP, 1, 1, bindings, 1),
-    TYN_KERNEL(balance_lights, sizeof(struct balance_lights_args), BALANCE_GROUP, 1, 1,
-               light_bindings, 1),
+    TYN_KERNEL(balance),
+    TYN_KERNEL(balance_lights),
 };
 
 // Parts of suns, and as many lamps and VPLs as there may be.
@@ -91,15 +46,11 @@ static void record(tyn_recorder *r, const void *params)
         };
         memcpy(&lights.lo, p->box[0], sizeof lights.lo);
         memcpy(&lights.hi, p->box[1], sizeof lights.hi);
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = 1,
-                                            .cells = {BALANCE_GROUP * args.num_followed, 1, 1},
-                                            .args = &lights,
-                                            .spec = &p->mode});
+        TYN_DISPATCH(r, .kernel = 1, .cells = {BALANCE_GROUP * args.num_followed, 1, 1},
+                     .args = &lights, .spec = &p->mode);
     }
     const uint32_t walls = tyn_rec_has(r, BALANCE_PORT_WALL_POWER);
-    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = {BALANCE_GROUP * p->channels, 1, 1},
-                                        .args = &args,
-                                        .spec = &walls});
+    TYN_DISPATCH(r, .cells = {BALANCE_GROUP * p->channels, 1, 1}, .args = &args, .spec = &walls);
 }
 
 const tyn_pass_desc tyn_pass_balance = {

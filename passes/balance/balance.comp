@@ -6,7 +6,6 @@
 // cells: that of a sun was made to be what its beam loses.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/scene_args.h"
 #include "shaders/light/ordinate_args.h"
 #include "shaders/surfaces/surface_table_args.h"
@@ -28,7 +27,7 @@ layout(binding = 1, scalar) uniform environment_uniform
 {
     env_block environment; // its `sky` enters from all sides
 };
-layout(binding = 2, scalar) readonly buffer light_buffer
+layout(binding = 2, scalar) readonly buffer lights_buffer
 {
     light_block lights[];
 };
@@ -43,7 +42,7 @@ layout(binding = 6, scalar) readonly buffer power_buffer
 {
     lattice_power power[];
 };
-layout(binding = 7, scalar) readonly buffer leak_buffer
+layout(binding = 7, scalar) readonly buffer leaks_buffer
 {
     float leaks[];
 };
@@ -58,7 +57,7 @@ layout(binding = 9, scalar) uniform ordinates_uniform
     ordinates_block ordinates;
 };
 
-layout(binding = 10, scalar) readonly buffer wall_buffer
+layout(binding = 10, scalar) readonly buffer wall_power_buffer
 {
     vec2 wall_power[]; // absorbed by a cell's walls, sent out by them; W
 };
@@ -66,7 +65,7 @@ layout(binding = 12, scalar) readonly buffer found_buffer
 {
     balance_light found[];
 };
-layout(binding = 13, scalar) readonly buffer emitter_buffer
+layout(binding = 13, scalar) readonly buffer emitters_buffer
 {
     surface_table emitters;
 };

@@ -12,26 +12,27 @@ typedef struct tyn_balance_params {
     float box[2][3];     // M: with surfaces, the box around everything
 } tyn_balance_params;
 
-enum {
-    BALANCE_PORT_MEDIUM,      // IN buffer struct medium_block
-    BALANCE_PORT_LIGHTS,      // IN optional buffer struct light_block[]
-    BALANCE_PORT_CELLS,       // IN 3D, of lattice_cells
-    BALANCE_PORT_MOMENTS,     // IN 3D, of lattice
-    BALANCE_PORT_SOURCE,      // IN optional 3D, of the last of lattice_source, _ordinates, _lamps
-    BALANCE_PORT_POWER,       // IN optional buffer, of lattice_source
-    BALANCE_PORT_LEAKS,       // IN buffer, of lattice
-    BALANCE_PORT_ENVIRONMENT, // IN optional buffer struct env_block, what lattice was given
-    BALANCE_PORT_ORDINATES,   // IN optional buffer struct ordinates_block
-    BALANCE_PORT_WALL_POWER,  // IN optional buffer, of lattice
-    BALANCE_PORT_LAMP_POWER,  // IN optional buffer, of lattice_lamps
-    // With surfaces, of which no axis repeats:
-    TYN_BEAMS(TYN_BUNDLE_ENUM, BALANCE),     // IN optional
-    TYN_RADIALS(TYN_BUNDLE_ENUM, BALANCE),   // IN optional
-    TYN_GEOMETRY(TYN_BUNDLE_ENUM, BALANCE),  // IN optional
-    TYN_MATERIALS(TYN_BUNDLE_ENUM, BALANCE), // IN optional
-    BALANCE_PORT_EMITTERS,                   // IN optional buffer struct surface_table
-    BALANCE_PORT_FOUND,                      // SCRATCH buffer struct balance_light[]
-    BALANCE_PORT_BALANCE,                    // OUT buffer tyn_balance
-    BALANCE_NUM_PORTS,
-};
+// clang-format off
+#define BALANCE_PORTS(X) \
+    X(BALANCE, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
+    X(BALANCE, LIGHTS, lights, OPTIONAL, BUFFER, "struct light_block[]"), \
+    X(BALANCE, CELLS, cells, IN, IMAGE_3D, "of lattice_cells"), \
+    X(BALANCE, MOMENTS, moments, IN, IMAGE_3D, "of lattice"), \
+    X(BALANCE, SOURCE, source, OPTIONAL, IMAGE_3D, "of the last of lattice_source, _ordinates, _lamps"), \
+    X(BALANCE, POWER, power, OPTIONAL, BUFFER, "of lattice_source"), \
+    X(BALANCE, LEAKS, leaks, IN, BUFFER, "of lattice"), \
+    X(BALANCE, ENVIRONMENT, environment, OPTIONAL, BUFFER, \
+        "struct env_block: its mean without suns enters at the box"), \
+    X(BALANCE, ORDINATES, ordinates, OPTIONAL, BUFFER, "struct ordinates_block"), \
+    X(BALANCE, WALL_POWER, wall_power, OPTIONAL, BUFFER, "of lattice"), \
+    X(BALANCE, LAMP_POWER, lamp_power, OPTIONAL, BUFFER, "of lattice_lamps"), \
+    TYN_BEAMS(X##_OPTIONAL, BALANCE), \
+    TYN_RADIALS(X##_OPTIONAL, BALANCE), \
+    TYN_GEOMETRY(X##_OPTIONAL, BALANCE), \
+    TYN_MATERIALS(X##_OPTIONAL, BALANCE), \
+    X(BALANCE, EMITTERS, emitters, OPTIONAL, BUFFER, "struct surface_table"), \
+    X(BALANCE, FOUND, found, SCRATCH, BUFFER, "struct balance_light[]"), \
+    X(BALANCE, BALANCE, balance, OUT, BUFFER, "tyn_balance, W")
+// clang-format on
+enum { BALANCE_PORTS(TYN_PORT_ENUM), BALANCE_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_balance;

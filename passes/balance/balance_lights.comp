@@ -5,7 +5,6 @@
 // the sums agree is a check of these.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/scene_args.h"
 #include "balance_args.h"
 #include "shaders/surfaces/surface_args.h"
@@ -29,11 +28,11 @@ layout(push_constant, scalar) uniform push
 {
     balance_lights_args args;
 };
-layout(binding = 16, scalar) readonly buffer light_buffer
+layout(binding = 16, scalar) readonly buffer lights_buffer
 {
     light_block lights[];
 };
-layout(binding = 17, scalar) writeonly buffer balance_light_buffer
+layout(binding = 17, scalar) writeonly buffer found_buffer
 {
     balance_light found[];
 };

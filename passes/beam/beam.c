@@ -13,34 +13,13 @@ enum { MAX_CELLS = 160, MAX_COEFFICIENT_CELLS = 96, MAX_SAMPLES = 1024 };
 // times the box.
 static const double unbounded = 1e6;
 
-static const tyn_port ports[BEAM_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, BEAM),
-    [BEAM_PORT_BEAMS] = {"beams", TYN_OUT, TYN_BUFFER, 0, false, "beam_block per sun: its grid"},
-    [BEAM_PORT_COLUMN] =
-        {"column", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-         "density (or sigma_s) integrated along the light, m (homogeneous: its mean)"},
-    [BEAM_PORT_TAU_A] = {"tau_a", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                         "sigma_a integrated along the light, likewise"},
-    [BEAM_PORT_TAU_P] = {"tau_p", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                         "sigma_s outside the forward peak integrated along the light, likewise"},
-};
+static const tyn_port ports[] = {BEAM_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
 
-static const tyn_binding density_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, BEAM),
-    {BEAM_PORT_BEAMS, TYN_USE_STORAGE_RW},
-    {BEAM_PORT_COLUMN, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding coefficients_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, BEAM),         {BEAM_PORT_BEAMS, TYN_USE_STORAGE_RW},
-    {BEAM_PORT_COLUMN, TYN_USE_STORAGE_WRITE}, {BEAM_PORT_TAU_A, TYN_USE_STORAGE_WRITE},
-    {BEAM_PORT_TAU_P, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = TYN_KERNEL(beam_density, 0, 8, 8, 1, density_bindings, 1),
-    [KERNEL_COEFFICIENTS] = TYN_KERNEL(beam_coefficients, 0, 8, 8, 1, coefficients_bindings, 1),
+    [KERNEL_DENSITY] = TYN_KERNEL(beam_density),
+    [KERNEL_COEFFICIENTS] = TYN_KERNEL(beam_coefficients),
 };
 
 static const tyn_param params_table[] = {
@@ -242,11 +221,8 @@ static void record(tyn_recorder *r, const void *params)
             tyn_rec_clear(r, textures[i]);
         }
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = density ? KERNEL_DENSITY : KERNEL_COEFFICIENTS,
-                            .cells = {p->extent[0], p->extent[1], p->num_suns},
-                            .spec = &p->mode,
-                        });
+    TYN_DISPATCH(r, .kernel = density ? KERNEL_DENSITY : KERNEL_COEFFICIENTS,
+                 .cells = {p->extent[0], p->extent[1], p->num_suns}, .spec = &p->mode);
     double nodes = 0, fetches = 0;
     for (uint32_t n = 0; n < p->num_suns; n++) {
         double columns = (double)p->beams[n].nodes[0] * p->beams[n].nodes[1];

@@ -1,14 +1,13 @@
 // beam.comp -- the medium integrated along each sun; x, y: column, z: sun. Built for both modes (medium_value.glsl).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/medium/medium_value.glsl"
 #include "shaders/beams/beam_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 0, binding = 5, scalar) buffer beam_buffer
+layout(set = 0, binding = 5, scalar) buffer beams_buffer
 {
     beam_block beams[];
 };
@@ -33,7 +32,7 @@ void beam_store(ivec3 texel, float value)
     imageStore(column_image, texel, vec4(isnan(value) || isinf(value) ? 0.0 : value));
 }
 #else
-layout(set = 0, binding = 6, rgba32f) writeonly uniform image3D tau_s_image;
+layout(set = 0, binding = 6, rgba32f) writeonly uniform image3D column_image;
 layout(set = 0, binding = 7, rgba32f) writeonly uniform image3D tau_a_image;
 layout(set = 0, binding = 8, rgba32f) writeonly uniform image3D tau_p_image;
 
@@ -62,7 +61,7 @@ bool beam_any(mat3x4 value)
 
 void beam_store(ivec3 texel, mat3x4 value)
 {
-    imageStore(tau_s_image, texel, finite(value[0]));
+    imageStore(column_image, texel, finite(value[0]));
     imageStore(tau_a_image, texel, finite(value[1]));
     imageStore(tau_p_image, texel, finite(value[2]));
 }

@@ -19,9 +19,18 @@ typedef struct tyn_beam_params {
 void tyn_beam_plan(tyn_beam_params *params, const struct medium_block *medium,
                    const struct light_block *lights, uint32_t num_suns);
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, BEAM), // IN
-    TYN_BEAMS(TYN_BUNDLE_ENUM, BEAM),  // OUT
-    BEAM_NUM_PORTS,
-};
+// clang-format off
+#define BEAM_PORTS(X) \
+    TYN_MEDIUM(X, BEAM), \
+    X(BEAM, BEAMS, beams, OUT, BUFFER, "beam_block per sun: its grid"), \
+    X(BEAM, COLUMN, column, OUT, IMAGE_3D, \
+        "density (or sigma_s) integrated along the light, m (homogeneous: its mean)", \
+        .format = VK_FORMAT_R32_SFLOAT), \
+    X(BEAM, TAU_A, tau_a, OUT, IMAGE_3D, \
+        "sigma_a integrated along the light, likewise", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(BEAM, TAU_P, tau_p, OUT, IMAGE_3D, \
+        "sigma_s outside the forward peak integrated along the light, likewise", \
+        .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+// clang-format on
+enum { BEAM_PORTS(TYN_PORT_ENUM), BEAM_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_beam;

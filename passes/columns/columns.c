@@ -8,43 +8,14 @@
 // Of a storage buffer binding, which every device can do. The scratch of a batch stays below half.
 static const uint64_t max_bytes = 128u << 20, batch_bytes = 64u << 20;
 
-static const tyn_port ports[COLUMNS_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, COLUMNS),
-    [COLUMNS_PORT_ORDINATES] = {"ordinates", TYN_IN, TYN_BUFFER, 0, false,
-                                "struct ordinates_block"},
-    [COLUMNS_PORT_COLUMNS] =
-        {"columns", TYN_OUT, TYN_BUFFER, 0, false,
-         "medium integrated along each ordinate to each cell, roots as halves"},
-    [COLUMNS_PORT_NODES] = {"nodes", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                            "medium integrated along the columns of a batch of ordinates"},
-};
+static const tyn_port ports[] = {COLUMNS_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, KERNEL_GATHER, NUM_KERNELS };
 
-static const tyn_binding density_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, COLUMNS),
-    {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM},
-    {COLUMNS_PORT_NODES, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding coefficients_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, COLUMNS),
-    {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM},
-    {COLUMNS_PORT_NODES, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding gather_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, COLUMNS),
-    {COLUMNS_PORT_ORDINATES, TYN_USE_UNIFORM},
-    {COLUMNS_PORT_NODES, TYN_USE_STORAGE_READ},
-    {COLUMNS_PORT_COLUMNS, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = TYN_KERNEL(columns_density, sizeof(struct columns_args), COLUMNS_GROUP, 1, 1,
-                                  density_bindings, 1),
-    [KERNEL_COEFFICIENTS] = TYN_KERNEL(columns_coefficients, sizeof(struct columns_args),
-                                       COLUMNS_GROUP, 1, 1, coefficients_bindings, 1),
-    [KERNEL_GATHER] = TYN_KERNEL(columns_gather, sizeof(struct columns_args), COLUMNS_GROUP, 1, 1,
-                                 gather_bindings, 1),
+    [KERNEL_DENSITY] = TYN_KERNEL(columns_density),
+    [KERNEL_COEFFICIENTS] = TYN_KERNEL(columns_coefficients),
+    [KERNEL_GATHER] = TYN_KERNEL(columns_gather),
 };
 
 static uint32_t components(const tyn_columns_params *p)
@@ -107,17 +78,12 @@ static void record(tyn_recorder *r, const void *params)
                                 .stride = num_components * nodes};
     for (args.first = 0; args.first < p->count; args.first += batch) {
         uint32_t ordinates = p->count - args.first < batch ? p->count - args.first : batch;
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = num_components > 1 ? KERNEL_COEFFICIENTS : KERNEL_DENSITY,
-                               .cells = {columns, 1, ordinates},
-                               .args = &args,
-                               .spec = &p->mode});
+        TYN_DISPATCH(r, .kernel = num_components > 1 ? KERNEL_COEFFICIENTS : KERNEL_DENSITY,
+                     .cells = {columns, 1, ordinates}, .args = &args, .spec = &p->mode);
         uint32_t rows = p->dims[1] > p->dims[2] ? p->dims[1] : p->dims[2];
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_GATHER,
-                                            .cells = {(p->dims[0] + 1) / 2 * rows, 1,
-                                                      num_components * ordinates},
-                                            .args = &args,
-                                            .spec = &p->mode});
+        TYN_DISPATCH(r, .kernel = KERNEL_GATHER,
+                     .cells = {(p->dims[0] + 1) / 2 * rows, 1, num_components * ordinates},
+                     .args = &args, .spec = &p->mode);
     }
 
     tyn_extent texels = tyn_rec_extent(r, COLUMNS_PORT_DENSITY);

@@ -2,7 +2,6 @@
 // (medium_value.glsl).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/ordinate_args.h"
 #include "shaders/beams/columns_args.h"
 #define MEDIUM_AT 0
@@ -20,7 +19,7 @@ layout(binding = 5, scalar) uniform ordinates_uniform
 {
     ordinates_block ordinates;
 };
-layout(binding = 6, scalar) writeonly buffer node_buffer
+layout(binding = 6, scalar) writeonly buffer nodes_buffer
 {
     float nodes[]; // [ordinate][component of coefficients][slice][v][u]
 };

@@ -14,10 +14,12 @@ typedef struct tyn_columns_params {
     uint32_t count;   // ordinates at most; how many there are is in the block
 } tyn_columns_params;
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, COLUMNS),  // IN
-    TYN_COLUMNS(TYN_BUNDLE_ENUM, COLUMNS), // the ordinates IN, the columns OUT
-    COLUMNS_PORT_NODES,                    // SCRATCH
-    COLUMNS_NUM_PORTS,
-};
+// clang-format off
+#define COLUMNS_PORTS(X) \
+    TYN_MEDIUM(X, COLUMNS), \
+    X(COLUMNS, ORDINATES, ordinates, IN, BUFFER, "struct ordinates_block"), \
+    X(COLUMNS, COLUMNS, columns, OUT, BUFFER, "medium integrated along each ordinate to each cell, roots as halves"), \
+    X(COLUMNS, NODES, nodes, SCRATCH, BUFFER, "medium integrated along the columns of a batch of ordinates")
+// clang-format on
+enum { COLUMNS_PORTS(TYN_PORT_ENUM), COLUMNS_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_columns;

@@ -7,7 +7,6 @@
 // times that distance; without it the edges of a box of medium would show.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/ordinate_args.h"
 #include "shaders/beams/columns_args.h"
 #define MEDIUM_AT 0
@@ -24,7 +23,7 @@ layout(binding = 5, scalar) uniform ordinates_uniform
 {
     ordinates_block ordinates;
 };
-layout(binding = 6, scalar) readonly buffer node_buffer
+layout(binding = 6, scalar) readonly buffer nodes_buffer
 {
     float nodes[]; // [ordinate][component][slice][v][u]
 };
@@ -37,12 +36,12 @@ const uint num_components = medium_mode == TYN_MEDIUM_DENSITY ? 1u : COLUMNS_COM
 
 float component_at(uint component, vec3 uvw)
 {
-    vec3 sigma_s = textureLod(medium_density_tex, uvw, 0.0).rgb;
+    vec3 sigma_s = textureLod(density_tex, uvw, 0.0).rgb;
     if (medium_mode == TYN_MEDIUM_DENSITY) {
         return sigma_s.r;
     }
-    vec3 sigma_a = textureLod(medium_sigma_a_tex, uvw, 0.0).rgb;
-    phase p[3] = phase_of_mean_cosine(textureLod(medium_g_tex, uvw, 0.0).rgb);
+    vec3 sigma_a = textureLod(sigma_a_tex, uvw, 0.0).rgb;
+    phase p[3] = phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb);
     similarity_clamp(sigma_s, p);
     vec3 value = component < 3u ? sigma_s
                                 : component < 6u ? sigma_a : sigma_s * (1.0 - delta_fraction(p));

@@ -73,7 +73,7 @@ vec3 columns_uvw(columns_grid grid, vec2 at, float slice)
 // Trilinear samples from slice to slice: one for two voxels and a half.
 int columns_samples(columns_grid grid)
 {
-    vec3 voxels = abs(grid.per_slice) * vec3(textureSize(medium_density_tex, 0));
+    vec3 voxels = abs(grid.per_slice) * vec3(textureSize(density_tex, 0));
     return int(clamp(ceil(0.4 * max(voxels.x, max(voxels.y, voxels.z)) - 0.01), 1.0, 64.0));
 }
 

@@ -19,42 +19,13 @@ bool tyn_columns_average_size(const struct medium_block *medium, const uint32_t 
     return coarser;
 }
 
-static const tyn_port ports[COLUMNS_AVERAGE_NUM_PORTS] = {
-    [COLUMNS_AVERAGE_PORT_DENSITY] = {"density", TYN_IN, TYN_IMAGE_3D, 0, false,
-                                      "density, or sigma_s in mode COEFFICIENTS"},
-    [COLUMNS_AVERAGE_PORT_SIGMA_A] = {"sigma_a", TYN_IN, TYN_IMAGE_3D, 0, true, "1/m"},
-    [COLUMNS_AVERAGE_PORT_G] = {"g", TYN_IN, TYN_IMAGE_3D, 0, true, "mean cosine"},
-    [COLUMNS_AVERAGE_PORT_MEAN_DENSITY] = {"mean_density", TYN_OUT, TYN_IMAGE_3D,
-                                           VK_FORMAT_R32_SFLOAT, false, "its means"},
-    [COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S] = {"mean_sigma_s", TYN_OUT, TYN_IMAGE_3D,
-                                           VK_FORMAT_R32G32B32A32_SFLOAT, false, "its means, 1/m"},
-    [COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A] = {"mean_sigma_a", TYN_OUT, TYN_IMAGE_3D,
-                                           VK_FORMAT_R32G32B32A32_SFLOAT, false, "its means, 1/m"},
-    [COLUMNS_AVERAGE_PORT_MEAN_G] = {"mean_g", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                     false, "root of the part of sigma_s that goes straight on"},
-};
+static const tyn_port ports[] = {COLUMNS_AVERAGE_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS };
 
-static const tyn_binding density_bindings[] = {
-    {COLUMNS_AVERAGE_PORT_DENSITY, TYN_USE_SAMPLED},
-    {COLUMNS_AVERAGE_PORT_MEAN_DENSITY, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding coefficients_bindings[] = {
-    {COLUMNS_AVERAGE_PORT_DENSITY, TYN_USE_SAMPLED},
-    {COLUMNS_AVERAGE_PORT_SIGMA_A, TYN_USE_SAMPLED},
-    {COLUMNS_AVERAGE_PORT_G, TYN_USE_SAMPLED},
-    {COLUMNS_AVERAGE_PORT_MEAN_SIGMA_S, TYN_USE_STORAGE_WRITE},
-    {COLUMNS_AVERAGE_PORT_MEAN_SIGMA_A, TYN_USE_STORAGE_WRITE},
-    {COLUMNS_AVERAGE_PORT_MEAN_G, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[] = {
-    [KERNEL_DENSITY] = TYN_KERNEL(columns_average_density, sizeof(struct columns_average_args), 8,
-                                  4, 2, density_bindings, 0),
-    [KERNEL_COEFFICIENTS] =
-        TYN_KERNEL(columns_average_coefficients, sizeof(struct columns_average_args), 8, 4, 2,
-                   coefficients_bindings, 0),
+    [KERNEL_DENSITY] = TYN_KERNEL(columns_average_density),
+    [KERNEL_COEFFICIENTS] = TYN_KERNEL(columns_average_coefficients),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -85,10 +56,8 @@ static void record(tyn_recorder *r, const void *params)
         fetches *= (double)args.samples[a] * p->size[a];
     }
     bool coefficients = p->mode == TYN_MEDIUM_COEFFICIENTS;
-    tyn_rec_dispatch(r,
-                     &(tyn_dispatch){.kernel = coefficients ? KERNEL_COEFFICIENTS : KERNEL_DENSITY,
-                                     .cells = {p->size[0], p->size[1], p->size[2]},
-                                     .args = &args});
+    TYN_DISPATCH(r, .kernel = coefficients ? KERNEL_COEFFICIENTS : KERNEL_DENSITY,
+                 .cells = {p->size[0], p->size[1], p->size[2]}, .args = &args);
     tyn_rec_work(r, "fetches", fetches * (coefficients ? 3 : 1));
 }
 

@@ -5,7 +5,6 @@
 // the first.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/columns_args.h"
 #include "shaders/phase/phase.glsl"
 
@@ -18,7 +17,7 @@ layout(push_constant, scalar) uniform push
 layout(binding = 0) uniform sampler3D density;
 layout(binding = 1, r32f) writeonly uniform image3D mean_density;
 #else
-layout(binding = 0) uniform sampler3D sigma_s_tex;
+layout(binding = 0) uniform sampler3D density_tex;
 layout(binding = 1) uniform sampler3D sigma_a_tex;
 layout(binding = 2) uniform sampler3D g_tex;
 layout(binding = 3, rgba32f) writeonly uniform image3D mean_sigma_s;
@@ -55,7 +54,7 @@ void main()
     vec3 sum_s = vec3(0.0), sum_a = vec3(0.0), sum_p = vec3(0.0);
     for (uint i = 0; i < columns_average_count(); i++) {
         vec3 uvw = columns_average_uvw(texel, i);
-        vec3 sigma_s = textureLod(sigma_s_tex, uvw, 0.0).rgb;
+        vec3 sigma_s = textureLod(density_tex, uvw, 0.0).rgb;
         phase p[3] = phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb);
         similarity_clamp(sigma_s, p);
         sum_s += sigma_s;

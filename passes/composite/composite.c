@@ -3,26 +3,13 @@
 #include "composite_half.comp.h"
 #include "composite_float.comp.h"
 
-static const tyn_port ports[COMPOSITE_NUM_PORTS] = {
-    [COMPOSITE_PORT_RADIANCE] = {"radiance", TYN_IN, TYN_IMAGE_2D, 0, false,
-                                 "radiance of the medium alone, W/(m^2 sr)"},
-    [COMPOSITE_PORT_TRANSMITTANCE] = {"transmittance", TYN_IN, TYN_IMAGE_2D, 0, false,
-                                      "transmittance to the host's surface"},
-    [COMPOSITE_PORT_COLOR] = {"color", TYN_INOUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                              false, "the host's picture, linear; alpha is kept"},
-};
-
-static const tyn_binding bindings[] = {
-    {COMPOSITE_PORT_RADIANCE, TYN_USE_SAMPLED, false},
-    {COMPOSITE_PORT_TRANSMITTANCE, TYN_USE_SAMPLED, false},
-    {COMPOSITE_PORT_COLOR, TYN_USE_STORAGE_RW, false},
-};
+static const tyn_port ports[] = {COMPOSITE_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_FLOAT = 0, KERNEL_HALF, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_FLOAT] = TYN_KERNEL(composite_float, 0, 8, 8, 1, bindings, 0),
-    [KERNEL_HALF] = TYN_KERNEL(composite_half, 0, 8, 8, 1, bindings, 0),
+    [KERNEL_FLOAT] = TYN_KERNEL(composite_float),
+    [KERNEL_HALF] = TYN_KERNEL(composite_half),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -46,10 +33,8 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_composite_params *p = params;
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = p->half_color ? KERNEL_HALF : KERNEL_FLOAT,
-                            .cells = tyn_rec_extent(r, COMPOSITE_PORT_COLOR),
-                        });
+    TYN_DISPATCH(r, .kernel = p->half_color ? KERNEL_HALF : KERNEL_FLOAT,
+                 .cells = tyn_rec_extent(r, COMPOSITE_PORT_COLOR));
 }
 
 const tyn_pass_desc tyn_pass_composite = {

@@ -6,11 +6,13 @@ typedef struct tyn_composite_params {
     uint32_t half_color; // 1: the host's image is rgba16f, 0: rgba32f
 } tyn_composite_params;
 
-enum {
-    COMPOSITE_PORT_RADIANCE = 0,
-    COMPOSITE_PORT_TRANSMITTANCE,
-    COMPOSITE_PORT_COLOR,
-    COMPOSITE_NUM_PORTS
-};
+// clang-format off
+#define COMPOSITE_PORTS(X) \
+    X(COMPOSITE, RADIANCE, radiance, IN, IMAGE_2D, "radiance of the medium alone, W/(m^2 sr)"), \
+    X(COMPOSITE, TRANSMITTANCE, transmittance, IN, IMAGE_2D, "transmittance to the host's surface"), \
+    X(COMPOSITE, COLOR, color, INOUT, IMAGE_2D, \
+        "the host's picture, linear; alpha is kept", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+// clang-format on
+enum { COMPOSITE_PORTS(TYN_PORT_ENUM), COMPOSITE_NUM_PORTS };
 
 extern const tyn_pass_desc tyn_pass_composite;

@@ -15,49 +15,15 @@
 
 enum { DEGREES = TYN_GLOW_HEIGHT };
 
-static const tyn_port ports[ENV_GLOW_NUM_PORTS] = {
-    [ENV_GLOW_PORT_SKY] = {"sky", TYN_IN, TYN_IMAGE_2D, 0, false,
-                           "latitude-longitude map without its suns"},
-    [ENV_GLOW_PORT_GLOW] = {"glow", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                            "the map smeared by forward scattering, over direction and depth"},
-    [ENV_GLOW_PORT_SERIES] = {"series", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                              "Legendre moments of the kernels, weights of the rows"},
-    [ENV_GLOW_PORT_ROWS] = {"rows", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                            "Fourier sums of the map's rows"},
-    [ENV_GLOW_PORT_COEFFICIENTS] = {"coefficients", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                    "spherical harmonics of the map"},
-    [ENV_GLOW_PORT_LEVELS] = {"levels", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                              "Fourier sums of the smeared map's rows"},
-};
-
-static const tyn_binding rows_bindings[] = {
-    {ENV_GLOW_PORT_SKY, TYN_USE_SAMPLED, true},
-    {ENV_GLOW_PORT_ROWS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding analyse_bindings[] = {
-    {ENV_GLOW_PORT_SERIES, TYN_USE_STORAGE_READ},
-    {ENV_GLOW_PORT_ROWS, TYN_USE_STORAGE_READ},
-    {ENV_GLOW_PORT_COEFFICIENTS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding smear_bindings[] = {
-    {ENV_GLOW_PORT_SERIES, TYN_USE_STORAGE_READ},
-    {ENV_GLOW_PORT_COEFFICIENTS, TYN_USE_STORAGE_READ},
-    {ENV_GLOW_PORT_LEVELS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding texels_bindings[] = {
-    {ENV_GLOW_PORT_SERIES, TYN_USE_STORAGE_READ},
-    {ENV_GLOW_PORT_LEVELS, TYN_USE_STORAGE_READ},
-    {ENV_GLOW_PORT_GLOW, TYN_USE_STORAGE_WRITE},
-};
+static const tyn_port ports[] = {ENV_GLOW_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_ROWS, KERNEL_ANALYSE, KERNEL_SMEAR, KERNEL_TEXELS, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_ROWS] = TYN_KERNEL(env_glow_rows, sizeof(struct env_glow_args), TYN_GLOW_HEIGHT / 4, 1,
-                               1, rows_bindings, 0),
-    [KERNEL_ANALYSE] = TYN_KERNEL(env_glow_analyse, 0, TYN_GLOW_HEIGHT, 1, 1, analyse_bindings, 0),
-    [KERNEL_SMEAR] = TYN_KERNEL(env_glow_smear, 0, TYN_GLOW_HEIGHT / 8, 1, 1, smear_bindings, 0),
-    [KERNEL_TEXELS] = TYN_KERNEL(env_glow_texels, 0, TYN_GLOW_WIDTH / 16, 1, 1, texels_bindings, 0),
+    [KERNEL_ROWS] = TYN_KERNEL(env_glow_rows),
+    [KERNEL_ANALYSE] = TYN_KERNEL(env_glow_analyse),
+    [KERNEL_SMEAR] = TYN_KERNEL(env_glow_smear),
+    [KERNEL_TEXELS] = TYN_KERNEL(env_glow_texels),
 };
 
 // ---- the series -----------------------------------------------------------------------------------
@@ -168,23 +134,12 @@ static void record(tyn_recorder *r, const void *params)
         args.mip = (float)++mip;
     }
     uint32_t levels = num_levels(p);
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = KERNEL_ROWS,
-                            .cells = {TYN_GLOW_HEIGHT / 4, TYN_GLOW_HEIGHT, 1},
-                            .args = &args,
-                        });
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = KERNEL_ANALYSE,
-                            .cells = {DEGREES, DEGREES, 1},
-                        });
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = KERNEL_SMEAR,
-                            .cells = {TYN_GLOW_HEIGHT / 8, DEGREES, levels},
-                        });
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = KERNEL_TEXELS,
-                            .cells = {TYN_GLOW_WIDTH / 16, TYN_GLOW_HEIGHT, levels},
-                        });
+    TYN_DISPATCH(r, .kernel = KERNEL_ROWS, .cells = {TYN_GLOW_HEIGHT / 4, TYN_GLOW_HEIGHT, 1},
+                 .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_ANALYSE, .cells = {DEGREES, DEGREES, 1});
+    TYN_DISPATCH(r, .kernel = KERNEL_SMEAR, .cells = {TYN_GLOW_HEIGHT / 8, DEGREES, levels});
+    TYN_DISPATCH(r, .kernel = KERNEL_TEXELS,
+                 .cells = {TYN_GLOW_WIDTH / 16, TYN_GLOW_HEIGHT, levels});
     double smeared = 0;
     for (uint32_t level = 0; level < levels; level++) {
         double terms = series.terms[level];

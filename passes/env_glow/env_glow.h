@@ -10,14 +10,18 @@ typedef struct tyn_env_glow_params {
     tyn_phase phase[3];
 } tyn_env_glow_params;
 
-enum {
-    ENV_GLOW_PORT_SKY,  // IN 2D: the map without its suns, latitude-longitude, with or without mips
-    ENV_GLOW_PORT_GLOW, // OUT 3D RGBA32F: that map smeared, in the same units; levels of the forward
-                        // depth along z. Read it with glow.glsl
-    ENV_GLOW_PORT_SERIES,       // SCRATCH buffer struct glow_series
-    ENV_GLOW_PORT_ROWS,         // SCRATCH buffer struct glow_order[m][row]: of the map
-    ENV_GLOW_PORT_COEFFICIENTS, // SCRATCH buffer struct glow_coefficient[m][l]
-    ENV_GLOW_PORT_LEVELS,       // SCRATCH buffer struct glow_order[level][m][row]: smeared
-    ENV_GLOW_NUM_PORTS,
-};
+// clang-format off
+#define ENV_GLOW_PORTS(X) \
+    X(ENV_GLOW, SKY, sky, IN, IMAGE_2D, "the map without its suns, latitude-longitude, with or without mips"), \
+    X(ENV_GLOW, GLOW, glow, OUT, IMAGE_3D, \
+        "that map smeared, in the same units; levels of the forward depth along z. Read it with glow.glsl", \
+        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(ENV_GLOW, SERIES, series, SCRATCH, BUFFER, \
+        "struct glow_series: Legendre moments of the kernels, weights of the rows"), \
+    X(ENV_GLOW, ROWS, rows, SCRATCH, BUFFER, "struct glow_order[m][row]: of the map"), \
+    X(ENV_GLOW, COEFFICIENTS, coefficients, SCRATCH, BUFFER, \
+        "struct glow_coefficient[m][l]: spherical harmonics of the map"), \
+    X(ENV_GLOW, LEVELS, levels, SCRATCH, BUFFER, "Fourier sums of the smeared map's rows")
+// clang-format on
+enum { ENV_GLOW_PORTS(TYN_PORT_ENUM), ENV_GLOW_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_env_glow;

@@ -1,7 +1,6 @@
 // env_glow_analyse.comp -- spherical harmonics of the map: an order a group, a degree a thread.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/glow_args.h"
 #include "legendre.glsl"
 

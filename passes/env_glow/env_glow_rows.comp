@@ -1,13 +1,12 @@
 // env_glow_rows.comp -- Fourier sums of the map's rows: a row a group, four orders a thread.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/glow_args.h"
 #include "env_glow_args.h"
 
 const uint HALF = TYN_GLOW_WIDTH / 2, FOUR = 4, THREADS = TYN_GLOW_HEIGHT / FOUR;
 layout(local_size_x = TYN_GLOW_HEIGHT / 4) in;
-layout(set = 0, binding = 0) uniform sampler2D sky_tex;
+layout(set = 0, binding = 0) uniform sampler2D sky_wrapped;
 layout(set = 0, binding = 1, scalar) writeonly buffer rows_buffer
 {
     glow_order rows[];
@@ -25,7 +24,7 @@ shared vec3 folded[2][HALF];
 vec3 texel(uint i, uint row)
 {
     vec2 uv = (vec2(i, row) + 0.5) / vec2(TYN_GLOW_WIDTH, TYN_GLOW_HEIGHT);
-    vec3 light = textureLod(sky_tex, uv, args.mip).rgb;
+    vec3 light = textureLod(sky_wrapped, uv, args.mip).rgb;
     return any(isnan(light)) || any(isinf(light)) ? vec3(0.0) : light;
 }
 

@@ -3,7 +3,6 @@
 // Several rows a thread, as fetching a coefficient costs some devices more than using it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/glow_args.h"
 
 const uint ROWS = TYN_GLOW_HEIGHT, DEGREES = TYN_GLOW_HEIGHT, PAIRS = 4, THREADS = ROWS / 2 / PAIRS;

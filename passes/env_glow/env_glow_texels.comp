@@ -1,7 +1,6 @@
 // env_glow_texels.comp -- texels of the smeared map from its rows' Fourier sums: 16 texels a thread.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/glow_args.h"
 
 const uint ROWS = TYN_GLOW_HEIGHT, ORDERS = TYN_GLOW_HEIGHT, WIDTH = TYN_GLOW_WIDTH;

@@ -5,43 +5,15 @@
 #include "env_importance_mips.comp.h"
 #include "env_importance_rows.comp.h"
 
-static const tyn_port ports[ENV_IMPORTANCE_NUM_PORTS] = {
-    [ENV_IMPORTANCE_PORT_MAP] = {"env_map", TYN_IN, TYN_IMAGE_2D, 0, false,
-                                 "latitude-longitude map"},
-    [ENV_IMPORTANCE_PORT_SKY] =
-        {"sky", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-         "mean radiance of the map without its suns, map units; luminance x "
-         "solid angle"},
-    [ENV_IMPORTANCE_PORT_SUMS] = {"sums", TYN_OUT, TYN_BUFFER, 0, false,
-                                  "sums of the sky over rectangles: struct sky_sum"},
-};
-
-static const tyn_binding base_bindings[] = {
-    {ENV_IMPORTANCE_PORT_MAP, TYN_USE_SAMPLED},
-    {ENV_IMPORTANCE_PORT_SKY, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding mips_bindings[] = {
-    {ENV_IMPORTANCE_PORT_SKY, TYN_USE_STORAGE_READ},
-    {ENV_IMPORTANCE_PORT_SKY, TYN_USE_STORAGE_WRITE},
-    {ENV_IMPORTANCE_PORT_SKY, TYN_USE_STORAGE_WRITE},
-    {ENV_IMPORTANCE_PORT_SKY, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding rows_bindings[] = {
-    {ENV_IMPORTANCE_PORT_SKY, TYN_USE_STORAGE_READ},
-    {ENV_IMPORTANCE_PORT_SUMS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding columns_bindings[] = {
-    {ENV_IMPORTANCE_PORT_SUMS, TYN_USE_STORAGE_RW},
-};
+static const tyn_port ports[] = {ENV_IMPORTANCE_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_BASE, KERNEL_MIPS, KERNEL_ROWS, KERNEL_COLUMNS, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_BASE] = TYN_KERNEL(env_importance_base, sizeof(struct env_importance_args), 8, 8, 1,
-                               base_bindings, 0),
-    [KERNEL_MIPS] = TYN_KERNEL(env_importance_mips, 0, 8, 8, 1, mips_bindings, 0),
-    [KERNEL_ROWS] = TYN_KERNEL(env_importance_rows, 0, SKY_SUMS_WIDTH, 1, 1, rows_bindings, 0),
-    [KERNEL_COLUMNS] = TYN_KERNEL(env_importance_columns, 0, 64, 1, 1, columns_bindings, 0),
+    [KERNEL_BASE] = TYN_KERNEL(env_importance_base),
+    [KERNEL_MIPS] = TYN_KERNEL(env_importance_mips),
+    [KERNEL_ROWS] = TYN_KERNEL(env_importance_rows),
+    [KERNEL_COLUMNS] = TYN_KERNEL(env_importance_columns),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -56,22 +28,16 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_env_importance_params *p = params;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_BASE,
-                                        .cells = {SKY_WIDTH, SKY_HEIGHT, 1},
-                                        .args = &p->suns});
+    TYN_DISPATCH(r, .kernel = KERNEL_BASE, .cells = {SKY_WIDTH, SKY_HEIGHT, 1}, .args = &p->suns);
     // Three levels at once.
     for (uint8_t mip = 0; mip + 3 < SKY_MIPS; mip += 3) {
         const uint8_t mips[] = {mip, (uint8_t)(mip + 1), (uint8_t)(mip + 2), (uint8_t)(mip + 3)};
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_MIPS,
-                               .cells = {SKY_WIDTH >> (mip + 1), SKY_HEIGHT >> (mip + 1), 1},
-                               .mips = mips});
+        TYN_DISPATCH(r, .kernel = KERNEL_MIPS,
+                     .cells = {SKY_WIDTH >> (mip + 1), SKY_HEIGHT >> (mip + 1), 1}, .mips = mips);
     }
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = KERNEL_ROWS, .cells = {SKY_SUMS_WIDTH, SKY_SUMS_HEIGHT, 1}});
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = KERNEL_COLUMNS, .cells = {8 * (SKY_SUMS_WIDTH + 1), 1, 1}});
-    tyn_extent map = tyn_rec_extent(r, ENV_IMPORTANCE_PORT_MAP);
+    TYN_DISPATCH(r, .kernel = KERNEL_ROWS, .cells = {SKY_SUMS_WIDTH, SKY_SUMS_HEIGHT, 1});
+    TYN_DISPATCH(r, .kernel = KERNEL_COLUMNS, .cells = {8 * (SKY_SUMS_WIDTH + 1), 1, 1});
+    tyn_extent map = tyn_rec_extent(r, ENV_IMPORTANCE_PORT_ENV_MAP);
     tyn_rec_work(r, "fetches", (double)map.x * map.y);
 }
 

@@ -4,7 +4,6 @@
 // level's integral is the map's, whatever the map's size.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "env_importance_args.h"
 #include "shaders/light/sky.glsl"
 
@@ -13,7 +12,7 @@ layout(push_constant, scalar) uniform arguments
 {
     env_importance_args args;
 };
-layout(binding = 0) uniform sampler2D map;
+layout(binding = 0) uniform sampler2D env_map_tex;
 layout(binding = 1, rgba32f) uniform writeonly image2D sky;
 
 vec3 direction(float azimuth, float polar)
@@ -40,7 +39,7 @@ uint suns_nearby(uvec2 at, uvec2 map_size)
 // A texel of the map without its suns. Of the others only `nearby` ones are asked.
 vec3 residual(uvec2 at, uvec2 map_size, uint nearby)
 {
-    vec3 rgb = texelFetch(map, ivec2(at), 0).rgb;
+    vec3 rgb = texelFetch(env_map_tex, ivec2(at), 0).rgb;
     // Negative and non-finite texels count as 0.
     rgb = mix(vec3(0.0), rgb, lessThanEqual(abs(rgb), vec3(3.4e38)));
     rgb = max(rgb, vec3(0.0));
@@ -57,7 +56,7 @@ vec3 residual(uvec2 at, uvec2 map_size, uint nearby)
 void main()
 {
     const uvec2 at = gl_GlobalInvocationID.xy, size = uvec2(SKY_WIDTH, SKY_HEIGHT);
-    const uvec2 map_size = uvec2(textureSize(map, 0));
+    const uvec2 map_size = uvec2(textureSize(env_map_tex, 0));
     // In units of a texel of the map / size.
     const uvec2 from = at * map_size, to = from + map_size;
     const uint nearby = suns_nearby(at, map_size);

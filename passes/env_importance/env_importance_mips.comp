@@ -4,14 +4,13 @@
 // fourth channel is added up.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/sky.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(binding = 0, rgba32f) uniform readonly image2D level;
-layout(binding = 1, rgba32f) uniform writeonly image2D level_1;
-layout(binding = 2, rgba32f) uniform writeonly image2D level_2;
-layout(binding = 3, rgba32f) uniform writeonly image2D level_3;
+layout(binding = 0, rgba32f) uniform readonly image2D sky_image0;
+layout(binding = 1, rgba32f) uniform writeonly image2D sky_image1;
+layout(binding = 2, rgba32f) uniform writeonly image2D sky_image2;
+layout(binding = 3, rgba32f) uniform writeonly image2D sky_image3;
 
 shared vec4 texels[2][8][8]; // of the first and of the second level
 
@@ -32,13 +31,13 @@ vec4 parent_of_row(vec4 a, vec4 b)
 void main()
 {
     const ivec2 at = ivec2(gl_GlobalInvocationID.xy), me = ivec2(gl_LocalInvocationID.xy);
-    ivec2 size = imageSize(level);
+    ivec2 size = imageSize(sky_image0);
     if (all(lessThan(2 * at, size))) {
-        vec4 p = parent(imageLoad(level, 2 * at), imageLoad(level, 2 * at + ivec2(1, 0)),
-                        imageLoad(level, 2 * at + ivec2(0, 1)), imageLoad(level, 2 * at + 1),
+        vec4 p = parent(imageLoad(sky_image0, 2 * at), imageLoad(sky_image0, 2 * at + ivec2(1, 0)),
+                        imageLoad(sky_image0, 2 * at + ivec2(0, 1)), imageLoad(sky_image0, 2 * at + 1),
                         2 * at.y, size);
         texels[0][me.y][me.x] = p;
-        imageStore(level_1, at, p);
+        imageStore(sky_image1, at, p);
     }
     barrier();
     size /= 2;
@@ -48,7 +47,7 @@ void main()
         vec4 p = parent(texels[0][m.y][m.x], texels[0][m.y][m.x + 1], texels[0][m.y + 1][m.x],
                         texels[0][m.y + 1][m.x + 1], 2 * at_2.y, size);
         texels[1][me.y][me.x] = p;
-        imageStore(level_2, at_2, p);
+        imageStore(sky_image2, at_2, p);
     }
     barrier();
     size /= 2;
@@ -59,6 +58,6 @@ void main()
                      ? parent_of_row(texels[1][m.y][m.x], texels[1][m.y][m.x + 1])
                      : parent(texels[1][m.y][m.x], texels[1][m.y][m.x + 1], texels[1][m.y + 1][m.x],
                               texels[1][m.y + 1][m.x + 1], 2 * at_3.y, size);
-        imageStore(level_3, at_3, p);
+        imageStore(sky_image3, at_3, p);
     }
 }

@@ -1,7 +1,6 @@
 // env_importance_rows.comp -- sums along the rows; a workgroup per row.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/sky.glsl"
 
 layout(local_size_x = SKY_SUMS_WIDTH) in;

@@ -6,44 +6,7 @@
 #include "gbuffer_resolve.comp.h"
 #include "gbuffer_vertex.vert.h"
 
-static const tyn_port ports[GBUFFER_NUM_PORTS] = {
-    [GBUFFER_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "struct camera_block"},
-    TYN_GEOMETRY(TYN_BUNDLE_IN, GBUFFER),
-    TYN_MATERIALS(TYN_BUNDLE_IN, GBUFFER),
-    [GBUFFER_PORT_DISTANCES] = {"distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false,
-                                "along the rays of a pixel's samples, m; 0: no surface"},
-    [GBUFFER_PORT_FACING] = {"facing", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_UINT, false,
-                             "what a pixel shows; normals (M) of facet and for shading, folded"},
-    [GBUFFER_PORT_COLOURS] = {"colours", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_UINT, false,
-                              "albedo and emission in W/(m^2 sr); of edges, triangles of samples"},
-    [GBUFFER_PORT_EDGE_COUNT] = {"edge_count", TYN_OUT, TYN_BUFFER, 0, false,
-                                 "struct gbuffer_edge_count"},
-    [GBUFFER_PORT_EDGES] = {"edges", TYN_OUT, TYN_BUFFER, 0, false,
-                            "uint[]: pixels that show several pieces of surface"},
-    [GBUFFER_PORT_MIXED_COUNT] = {"mixed_count", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                  "struct gbuffer_edge_count"},
-    [GBUFFER_PORT_MIXED] = {"mixed", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                            "uint[]: pixels whose samples see several triangles"},
-    [GBUFFER_PORT_SEEN] = {"seen", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32_UINT, false,
-                           "index of the triangle + 1, 0: none"},
-    [GBUFFER_PORT_DEPTH] = {"depth", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT, false,
-                            "reversed"},
-};
-
-// The drawing kernel has the camera and the geometry, that of single triangles all but the last two.
-static const tyn_binding bindings[] = {
-    {GBUFFER_PORT_CAMERA, TYN_USE_UNIFORM, false},
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, GBUFFER),
-    TYN_MATERIALS(TYN_BUNDLE_BIND, GBUFFER),
-    {GBUFFER_PORT_SEEN, TYN_USE_STORAGE_READ, false},
-    {GBUFFER_PORT_DISTANCES, TYN_USE_STORAGE_WRITE, false},
-    {GBUFFER_PORT_FACING, TYN_USE_STORAGE_WRITE, false},
-    {GBUFFER_PORT_COLOURS, TYN_USE_STORAGE_WRITE, false},
-    {GBUFFER_PORT_MIXED_COUNT, TYN_USE_STORAGE_RW, false},
-    {GBUFFER_PORT_MIXED, TYN_USE_STORAGE_RW, false},
-    {GBUFFER_PORT_EDGE_COUNT, TYN_USE_STORAGE_RW, false},
-    {GBUFFER_PORT_EDGES, TYN_USE_STORAGE_WRITE, false},
-};
+static const tyn_port ports[] = {GBUFFER_PORTS(TYN_PORT_ROW)};
 
 static const tyn_binding attachments[] = {
     {GBUFFER_PORT_SEEN, TYN_USE_COLOR, false},
@@ -62,20 +25,9 @@ static const tyn_raster raster = {
 enum { KERNEL_DRAW, KERNEL_RESOLVE, KERNEL_MIXED, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DRAW] = {.name = "gbuffer_draw",
-                     .spirv = gbuffer_vertex_spirv,
-                     .spirv_size = sizeof(gbuffer_vertex_spirv),
-                     .bindings = bindings,
-                     .num_bindings = 5,
-                     .raster = &raster},
-    [KERNEL_RESOLVE] = {.name = "gbuffer_resolve",
-                        .spirv = gbuffer_resolve_spirv,
-                        .spirv_size = sizeof(gbuffer_resolve_spirv),
-                        .num_spec = 3,
-                        .local_size = {8, 8, 1},
-                        .bindings = bindings,
-                        .num_bindings = sizeof(bindings) / sizeof(bindings[0]) - 2},
-    [KERNEL_MIXED] = TYN_KERNEL(gbuffer_mixed, 0, GBUFFER_EDGES, 1, 1, bindings, 3),
+    [KERNEL_DRAW] = TYN_DRAW("gbuffer_draw", gbuffer_vertex, gbuffer_vertex, &raster),
+    [KERNEL_RESOLVE] = TYN_KERNEL(gbuffer_resolve),
+    [KERNEL_MIXED] = TYN_KERNEL(gbuffer_mixed),
 };
 
 static const tyn_param params_table[] = {

@@ -12,21 +12,26 @@ typedef struct tyn_gbuffer_params {
     uint32_t row;
 } tyn_gbuffer_params;
 
-enum {
-    GBUFFER_PORT_CAMERA,                     // IN buffer struct camera_block
-    TYN_GEOMETRY(TYN_BUNDLE_ENUM, GBUFFER),  // IN
-    TYN_MATERIALS(TYN_BUNDLE_ENUM, GBUFFER), // IN
-    GBUFFER_PORT_DISTANCES,                  // OUT 2D R32F: gbuffer.glsl, as the two below
-    GBUFFER_PORT_FACING,                     // OUT 2D RGBA32UI
-    GBUFFER_PORT_COLOURS,                    // OUT 2D RGBA32UI
-    // OUT buffers, gbuffer_edge_args.h: pixels that show several pieces of surface.
-    GBUFFER_PORT_EDGE_COUNT,
-    GBUFFER_PORT_EDGES,
-    // SCRATCH buffers, the same of pixels whose samples see several triangles.
-    GBUFFER_PORT_MIXED_COUNT,
-    GBUFFER_PORT_MIXED,
-    GBUFFER_PORT_SEEN,  // SCRATCH 2D R32UI: triangle + 1
-    GBUFFER_PORT_DEPTH, // SCRATCH 2D D32
-    GBUFFER_NUM_PORTS,
-};
+// clang-format off
+#define GBUFFER_PORTS(X) \
+    X(GBUFFER, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
+    TYN_GEOMETRY(X, GBUFFER), \
+    TYN_MATERIALS(X, GBUFFER), \
+    X(GBUFFER, DISTANCES, distances, OUT, IMAGE_2D, \
+        "along the rays of a pixel's samples, m; 0: no surface", .format = VK_FORMAT_R32_SFLOAT), \
+    X(GBUFFER, FACING, facing, OUT, IMAGE_2D, \
+        "what a pixel shows; normals (M) of facet and for shading, folded", .format = VK_FORMAT_R32G32B32A32_UINT), \
+    X(GBUFFER, COLOURS, colours, OUT, IMAGE_2D, \
+        "albedo and emission in W/(m^2 sr); of edges, triangles of samples", \
+        .format = VK_FORMAT_R32G32B32A32_UINT), \
+    X(GBUFFER, EDGE_COUNT, edge_count, OUT, BUFFER, \
+        "struct gbuffer_edge_count: gbuffer_edge_args.h: pixels that show several pieces of surface"), \
+    X(GBUFFER, EDGES, edges, OUT, BUFFER, "uint[]: pixels that show several pieces of surface"), \
+    X(GBUFFER, MIXED_COUNT, mixed_count, SCRATCH, BUFFER, \
+        "struct gbuffer_edge_count: the same of pixels whose samples see several triangles"), \
+    X(GBUFFER, MIXED, mixed, SCRATCH, BUFFER, "uint[]: pixels whose samples see several triangles"), \
+    X(GBUFFER, SEEN, seen, SCRATCH, IMAGE_2D, "index of the triangle + 1, 0: none", .format = VK_FORMAT_R32_UINT), \
+    X(GBUFFER, DEPTH, depth, SCRATCH, IMAGE_2D, "reversed", .format = VK_FORMAT_D32_SFLOAT)
+// clang-format on
+enum { GBUFFER_PORTS(TYN_PORT_ENUM), GBUFFER_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_gbuffer;

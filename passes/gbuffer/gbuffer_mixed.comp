@@ -2,7 +2,6 @@
 // of surface; else the pixel is an edge.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "gbuffer_sample.glsl"
 
 layout(local_size_x = GBUFFER_EDGES) in;
@@ -38,13 +37,13 @@ void main()
         uint index = imageLoad(seen, texel).r;
         if (index == 0u) {
             whole = false;
-            imageStore(distance_image, texel, vec4(0.0));
+            imageStore(distances_image, texel, vec4(0.0));
             continue;
         }
         vec2 place = vec2(texel) + 0.5;
         camera_ray ray = gbuffer_ray(place);
         gbuffer_point p = gbuffer_point_of(gbuffer_triangle_of(index - 1u), place, ray);
-        imageStore(distance_image, texel, vec4(p.distance));
+        imageStore(distances_image, texel, vec4(p.distance));
         vec3 there = ray.origin + p.distance * ray.direction;
         if (k == 0) {
             first = p;
@@ -72,7 +71,7 @@ void main()
             for (int k = 0; k < min(4, count - 4 * t); k++) {
                 indices[k] = imageLoad(seen, texel_of(corner, 4 * t + k)).r;
             }
-            imageStore(colour_image, ivec2(pixel.x * texels + t, pixel.y), indices);
+            imageStore(colours_image, ivec2(pixel.x * texels + t, pixel.y), indices);
         }
         uint m = atomicAdd(edge_count.count, 1u);
         edges[m] = uint(pixel.y) << 16 | uint(pixel.x);

@@ -2,7 +2,6 @@
 // gbuffer_mixed.comp: on a device whose threads run together they would keep their neighbours waiting.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "gbuffer_sample.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -21,7 +20,7 @@ void main()
     }
     if (same && index == 0u) {
         for (int k = 0; k < samples * samples; k++) {
-            imageStore(distance_image, texel_of(corner, k), vec4(0.0));
+            imageStore(distances_image, texel_of(corner, k), vec4(0.0));
         }
         imageStore(facing_image, pixel, uvec4(0u, 0u, GBUFFER_NONE, 0u));
     }
@@ -35,7 +34,7 @@ void main()
             vec2 at = vec2(texel) + 0.5;
             vec4 w = gbuffer_meet(triangle, gbuffer_ray(at), direction);
             albedo += textured != 0u ? gbuffer_albedo_at(triangle, at, w.xyz) : vec3(0.0);
-            imageStore(distance_image, texel, vec4(w.w));
+            imageStore(distances_image, texel, vec4(w.w));
         }
         p.albedo = textured != 0u ? albedo / float(samples * samples) : p.albedo;
         store_whole(pixel, p);

@@ -17,9 +17,9 @@ layout(set = 0, binding = 0, scalar) uniform camera_buffer
 #define GBUFFER_SAMPLES samples
 #include "shaders/surfaces/gbuffer_triangle.glsl"
 layout(set = 0, binding = 8, r32ui) uniform readonly uimage2D seen;
-layout(set = 0, binding = 9, r32f) uniform writeonly image2D distance_image;
+layout(set = 0, binding = 9, r32f) uniform writeonly image2D distances_image;
 layout(set = 0, binding = 10, rgba32ui) uniform writeonly uimage2D facing_image;
-layout(set = 0, binding = 11, rgba32ui) uniform writeonly uimage2D colour_image;
+layout(set = 0, binding = 11, rgba32ui) uniform writeonly uimage2D colours_image;
 layout(set = 0, binding = 12, scalar) buffer mixed_count_buffer
 {
     gbuffer_edge_count mixed_count;
@@ -38,7 +38,7 @@ ivec2 texel_of(ivec2 corner, int k)
 void store_whole(ivec2 pixel, gbuffer_point p)
 {
     imageStore(facing_image, pixel, gbuffer_facing_pack(gbuffer_facing(GBUFFER_WHOLE, 0, p.normal, p.facet)));
-    imageStore(colour_image, ivec2(pixel.x * gbuffer_texels(samples), pixel.y), gbuffer_colours_pack(p.albedo, p.emission));
+    imageStore(colours_image, ivec2(pixel.x * gbuffer_texels(samples), pixel.y), gbuffer_colours_pack(p.albedo, p.emission));
 }
 
 #endif

@@ -4,7 +4,6 @@
 // scene is cut off; orthographic: 1 in the plane of the camera, 0 behind the scene.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/camera.glsl"
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/surfaces/surface_frame.glsl"

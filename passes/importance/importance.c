@@ -10,69 +10,14 @@
 
 #define PORT(name) IMPORTANCE_PORT_##name
 
-static const tyn_port ports[IMPORTANCE_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, IMPORTANCE),
-    [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
-    [PORT(HISTORY)] = {"history", TYN_INOUT, TYN_BUFFER, .meaning = "struct importance_history"},
-    [PORT(MAP)] = {"importance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
-                   .meaning = "importance by the direction light comes from, mean 1"},
-    [PORT(FIELD)] = {"field", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                     .meaning = "importance scattered, 1/m^3; times its mean cosine; sigma_t, 1/m"},
-    [PORT(GRID)] = {"grid", TYN_OUT, TYN_BUFFER, .meaning = "struct importance_grid"},
-    [PORT(CELLS)] = {"cells", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct importance_cell[]"},
-    [PORT(LIGHT)] = {"light", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct importance_light[]"},
-    [PORT(LIGHT_OTHER)] = {"light_other", TYN_SCRATCH, TYN_BUFFER,
-                           .meaning = "the same, of every other iteration"},
-    [PORT(TRACKS)] = {"tracks", TYN_SCRATCH, TYN_BUFFER,
-                      .meaning = "sum of power times length, and times 1 - a"},
-    [PORT(SENT)] = {"sent", TYN_SCRATCH, TYN_BUFFER,
-                    .meaning = "what leaves the medium along each direction, 1/sr"},
-};
+static const tyn_port ports[] = {IMPORTANCE_PORTS(TYN_PORT_ROW)};
 
 enum { SETUP, CELLS, STEP, FIELD, SEND, MAP, NUM_KERNELS };
 
-static const tyn_binding setup_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},
-    {PORT(CAMERA), TYN_USE_UNIFORM},
-    {PORT(GRID), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding cells_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, IMPORTANCE), {PORT(GRID), TYN_USE_UNIFORM},
-    {PORT(CELLS), TYN_USE_STORAGE_WRITE},    {PORT(LIGHT), TYN_USE_STORAGE_WRITE},
-    {PORT(TRACKS), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding step_bindings[] = {
-    {PORT(CELLS), TYN_USE_STORAGE_READ},
-    {PORT(LIGHT_OTHER), TYN_USE_STORAGE_READ},
-    {PORT(LIGHT), TYN_USE_STORAGE_WRITE},
-    {PORT(TRACKS), TYN_USE_STORAGE_RW},
-};
-static const tyn_binding field_bindings[] = {
-    {PORT(CELLS), TYN_USE_STORAGE_READ},
-    {PORT(TRACKS), TYN_USE_STORAGE_READ},
-    {PORT(FIELD), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding send_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},
-    {PORT(GRID), TYN_USE_UNIFORM},
-    {PORT(FIELD), TYN_USE_SAMPLED},
-    {PORT(SENT), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding map_bindings[] = {
-    {PORT(SENT), TYN_USE_STORAGE_READ},
-    {PORT(HISTORY), TYN_USE_STORAGE_RW},
-    {PORT(MAP), TYN_USE_STORAGE_WRITE},
-};
-
-#define KERNEL(step, x, y, z, specs)                                                               \
-    TYN_KERNEL(importance_##step, sizeof(struct importance_args), x, y, z, step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = KERNEL(setup, 1, 1, 1, 0),
-    [CELLS] = KERNEL(cells, 4, 4, 4, 1),
-    [STEP] = KERNEL(step, 4, 4, 4, 0),
-    [FIELD] = KERNEL(field, 4, 4, 4, 0),
-    [SEND] = KERNEL(send, TYN_IMPORTANCE_RAYS, 8, 1, 0),
-    [MAP] = KERNEL(map, TYN_IMPORTANCE_TEXELS, 1, 1, 0),
+    [SETUP] = TYN_KERNEL(importance_setup), [CELLS] = TYN_KERNEL(importance_cells),
+    [STEP] = TYN_KERNEL(importance_step),   [FIELD] = TYN_KERNEL(importance_field),
+    [SEND] = TYN_KERNEL(importance_send),   [MAP] = TYN_KERNEL(importance_map),
 };
 
 #define FIELD_OF(name) offsetof(tyn_importance_params, name)
@@ -93,7 +38,8 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_importance_params *p = data;
     const uint32_t n = (uint32_t)p->cells;
     const uint64_t cells = (uint64_t)n * n * n;
-    tyn_build_image(b, PORT(MAP), (tyn_extent){TYN_IMPORTANCE_WIDTH, TYN_IMPORTANCE_HEIGHT, 1}, 1);
+    tyn_build_image(b, PORT(IMPORTANCE),
+                    (tyn_extent){TYN_IMPORTANCE_WIDTH, TYN_IMPORTANCE_HEIGHT, 1}, 1);
     tyn_build_image(b, PORT(FIELD), (tyn_extent){n, n, n}, 1);
     tyn_build_buffer(b, PORT(GRID), sizeof(struct importance_grid));
     tyn_build_buffer(b, PORT(CELLS), cells * sizeof(struct importance_cell));
@@ -112,21 +58,16 @@ static void record(tyn_recorder *r, const void *data)
     const tyn_extent grid = {n, n, n};
     static const uint8_t swapped[] = {PORT(CELLS), PORT(LIGHT), PORT(LIGHT_OTHER), PORT(TRACKS)};
 
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SETUP, .cells = {1, 1, 1}, .args = &args});
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = CELLS, .cells = grid, .args = &args, .spec = &p->mode});
+    TYN_DISPATCH(r, .kernel = SETUP, .cells = {1, 1, 1}, .args = &args);
+    TYN_DISPATCH(r, .kernel = CELLS, .cells = grid, .args = &args, .spec = &p->mode);
     for (int32_t i = 0; i < p->iterations; i++) {
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
-                                            .cells = grid,
-                                            .args = &args,
-                                            .ports = i % 2 == 0 ? swapped : NULL});
+        TYN_DISPATCH(r, .kernel = STEP, .cells = grid, .args = &args,
+                     .ports = i % 2 == 0 ? swapped : NULL);
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = FIELD, .cells = grid, .args = &args});
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SEND,
-                                        .cells = {TYN_IMPORTANCE_RAYS, TYN_IMPORTANCE_TEXELS, 1},
-                                        .args = &args});
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = MAP, .cells = {TYN_IMPORTANCE_TEXELS, 1, 1}, .args = &args});
+    TYN_DISPATCH(r, .kernel = FIELD, .cells = grid, .args = &args);
+    TYN_DISPATCH(r, .kernel = SEND, .cells = {TYN_IMPORTANCE_RAYS, TYN_IMPORTANCE_TEXELS, 1},
+                 .args = &args);
+    TYN_DISPATCH(r, .kernel = MAP, .cells = {TYN_IMPORTANCE_TEXELS, 1, 1}, .args = &args);
     double hops = (double)n * n * n * p->iterations;
     double steps = (double)TYN_IMPORTANCE_TEXELS * TYN_IMPORTANCE_RAYS * TYN_IMPORTANCE_RAYS *
                    TYN_IMPORTANCE_STEPS;
@@ -142,6 +83,6 @@ const tyn_pass_desc tyn_pass_importance = {
     TYN_PASS_TABLES(tyn_importance_params),
     .params = params,
     .num_params = TYN_COUNT(params),
-    .debug_port = PORT(MAP),
+    .debug_port = PORT(IMPORTANCE),
     .debug_meaning = "importance by direction, latitude and longitude of the medium's frame",
 };

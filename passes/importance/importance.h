@@ -21,21 +21,23 @@ typedef struct tyn_importance_params {
                    // the filter; without, 0
 } tyn_importance_params;
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, IMPORTANCE), // IN
-    IMPORTANCE_PORT_CAMERA,                  // IN buffer struct camera_block
-    IMPORTANCE_PORT_HISTORY,                 // INOUT buffer struct importance_history
-    IMPORTANCE_PORT_MAP, // OUT 2D R32F: importance by the direction light comes from, latitude and
-                         // longitude of M (environment_uv); mean over the sphere 1
-    // OUT 3D RGBA32F, the grid: importance scattered, 1/m^3 per picture; times its mean cosine
-    // about the column; sigma_t, 1/m.
-    IMPORTANCE_PORT_FIELD,
-    IMPORTANCE_PORT_GRID,  // OUT buffer struct importance_grid
-    IMPORTANCE_PORT_CELLS, // SCRATCH buffer struct importance_cell[]
-    IMPORTANCE_PORT_LIGHT, // SCRATCH buffer struct importance_light[]
-    IMPORTANCE_PORT_LIGHT_OTHER,
-    IMPORTANCE_PORT_TRACKS, // SCRATCH buffer vec2[]: sum of power times length, and times spread
-    IMPORTANCE_PORT_SENT, // SCRATCH buffer float[]: what leaves the medium along a direction, 1/sr
-    IMPORTANCE_NUM_PORTS,
-};
+// clang-format off
+#define IMPORTANCE_PORTS(X) \
+    TYN_MEDIUM(X, IMPORTANCE), \
+    X(IMPORTANCE, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
+    X(IMPORTANCE, HISTORY, history, INOUT, BUFFER, "struct importance_history"), \
+    X(IMPORTANCE, IMPORTANCE, importance, OUT, IMAGE_2D, \
+        "importance by the direction light comes from, latitude and longitude of M (environment_uv); mean " \
+        "over the sphere 1", .format = VK_FORMAT_R32_SFLOAT), \
+    X(IMPORTANCE, FIELD, field, OUT, IMAGE_3D, \
+        "the grid: importance scattered, 1/m^3 per picture; times its mean cosine about the column; sigma_t, " \
+        "1/m", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(IMPORTANCE, GRID, grid, OUT, BUFFER, "struct importance_grid"), \
+    X(IMPORTANCE, CELLS, cells, SCRATCH, BUFFER, "struct importance_cell[]"), \
+    X(IMPORTANCE, LIGHT, light, SCRATCH, BUFFER, "struct importance_light[]"), \
+    X(IMPORTANCE, LIGHT_OTHER, light_other, SCRATCH, BUFFER, "the same, of every other iteration"), \
+    X(IMPORTANCE, TRACKS, tracks, SCRATCH, BUFFER, "vec2[]: sum of power times length, and times spread"), \
+    X(IMPORTANCE, SENT, sent, SCRATCH, BUFFER, "float[]: what leaves the medium along a direction, 1/sr")
+// clang-format on
+enum { IMPORTANCE_PORTS(TYN_PORT_ENUM), IMPORTANCE_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_importance;

@@ -1,13 +1,12 @@
 // importance_map.comp -- the map: filtered over the sphere, of mean 1, filtered in time. One workgroup.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "importance.glsl"
 
 layout(local_size_x = TYN_IMPORTANCE_TEXELS) in;
 layout(set = 0, binding = 0, scalar) readonly buffer sent_buffer { float sent[]; };
 layout(set = 0, binding = 1, scalar) buffer history_buffer { importance_history history; };
-layout(set = 0, binding = 2, r32f) uniform writeonly image2D map;
+layout(set = 0, binding = 2, r32f) uniform writeonly image2D importance_image;
 layout(push_constant, scalar) uniform push { importance_args args; };
 
 // Half-height at a texel's height, 11 degrees: exp(-SHARPNESS (1 - cos)) there is a half.
@@ -64,7 +63,7 @@ void main()
     if (frames > 0u) {
         importance = mix(importance, history.map[texel], args.smoothing);
     }
-    imageStore(map, ivec2(texel % TYN_IMPORTANCE_WIDTH, texel / TYN_IMPORTANCE_WIDTH),
+    imageStore(importance_image, ivec2(texel % TYN_IMPORTANCE_WIDTH, texel / TYN_IMPORTANCE_WIDTH),
                vec4(importance, 0.0, 0.0, 0.0));
     history.map[texel] = importance;
     barrier(); // all have read the count

@@ -2,7 +2,6 @@
 // the box, marched from where the importance leaves.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/camera.glsl"
 #include "importance.glsl"
 

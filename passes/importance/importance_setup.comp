@@ -1,7 +1,6 @@
 // importance_setup.comp -- places the grid.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "importance.glsl"
 
 layout(local_size_x = 1) in;

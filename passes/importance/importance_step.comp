@@ -1,13 +1,12 @@
 // importance_step.comp -- one iteration: every cell gathers from its six neighbours.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "importance.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 0, scalar) readonly buffer cells_buffer { importance_cell cells[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer in_buffer { importance_light light[]; };
-layout(set = 0, binding = 2, scalar) writeonly buffer out_buffer { importance_light out_light[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer light_other_buffer { importance_light light[]; };
+layout(set = 0, binding = 2, scalar) writeonly buffer light_buffer { importance_light out_light[]; };
 layout(set = 0, binding = 3, scalar) buffer tracks_buffer { vec2 tracks[]; };
 layout(push_constant, scalar) uniform push { importance_args args; };
 

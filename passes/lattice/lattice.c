@@ -19,65 +19,9 @@
 #include <math.h>
 #include <string.h>
 
-enum {
-    PORT_STATE = LATTICE_PORT_FIRST_SCRATCH,
-    PORT_EMITTED,
-    PORT_MEAN_PSI,
-    PORT_SWEPT,
-    PORT_STENCIL_LO,
-    PORT_STENCIL_HI,
-    PORT_RHS,
-    PORT_CORRECTION,
-    PORT_RESULT,                   // and two more: of the last three sweeps
-    PORT_CHANGE = PORT_RESULT + 3, // and two more
-    PORT_PARTIALS = PORT_CHANGE + 3,
-    PORT_WEIGHTS,
-    PORT_ARRIVED,
-    PORT_LAUNCHES,
-    NUM_PORTS,
-};
-
 // The state is in buffers: a software device stores to images several times more slowly. They are read as texels, which
 // it does as fast as with images.
-#define SCRATCH(port, name, meaning) [port] = {name, TYN_SCRATCH, TYN_BUFFER, 0, false, meaning}
-
-static const tyn_port ports[NUM_PORTS] = {
-    [LATTICE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    [LATTICE_PORT_SOURCE] = {"source", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_source"},
-    [LATTICE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
-                                  "struct env_block: its mean without suns enters at the box"},
-    [LATTICE_PORT_GUESS] = {"guess", TYN_IN, TYN_BUFFER, 0, true, "moments to start from"},
-    TYN_WALLS(TYN_BUNDLE_OPTIONAL, LATTICE),
-    [LATTICE_PORT_WALL_LIGHT] = {"wall_light", TYN_IN, TYN_BUFFER, 0, true,
-                                 "radiance that the walls of a cell send out, W/(m^2 sr)"},
-    [LATTICE_PORT_MOMENTS] =
-        {"moments", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-         "fluence and net flux of the scattered light, W/m^2; channels stacked "
-         "along z"},
-    [LATTICE_PORT_COUNTERS] = {"counters", TYN_OUT, TYN_BUFFER, 0, false, "struct counters_block"},
-    [LATTICE_PORT_LEAKS] = {"leaks", TYN_OUT, TYN_BUFFER, 0, false,
-                            "net power through the box of each line of the last sweep, W"},
-    [LATTICE_PORT_WALL_POWER] = {"wall_power", TYN_OUT, TYN_BUFFER, 0, false,
-                                 "power that walls absorbed, and that wall_light brings, W"},
-    SCRATCH(PORT_STATE, "state", "moments at the start of a sweep"),
-    SCRATCH(PORT_EMITTED, "emitted", "scattered radiance per sigma_s', linear in direction"),
-    SCRATCH(PORT_MEAN_PSI, "mean_psi", "mean radiance in a cell by direction"),
-    SCRATCH(PORT_SWEPT, "swept", "moments after the sweep"),
-    SCRATCH(PORT_STENCIL_LO, "stencil_lo", "conductance to -x, -y, -z; absorption"),
-    SCRATCH(PORT_STENCIL_HI, "stencil_hi", "conductance to +x, +y, +z; sum of all"),
-    SCRATCH(PORT_RHS, "rhs", "of the diffusion correction, W"),
-    SCRATCH(PORT_CORRECTION, "correction", "of the fluence, W/m^2"),
-    SCRATCH(PORT_RESULT, "result_0", "corrected moments"),
-    SCRATCH(PORT_RESULT + 1, "result_1", "corrected moments"),
-    SCRATCH(PORT_RESULT + 2, "result_2", "corrected moments"),
-    SCRATCH(PORT_CHANGE, "change_0", "what a sweep changed"),
-    SCRATCH(PORT_CHANGE + 1, "change_1", "what a sweep changed"),
-    SCRATCH(PORT_CHANGE + 2, "change_2", "what a sweep changed"),
-    SCRATCH(PORT_PARTIALS, "partials", "dot products by workgroup"),
-    SCRATCH(PORT_WEIGHTS, "weights", "shares of earlier sweeps"),
-    SCRATCH(PORT_ARRIVED, "arrived", "radiance that arrives at walls by direction"),
-    SCRATCH(PORT_LAUNCHES, "launches", "workgroups of the dispatches of a further cycle"),
-};
+static const tyn_port ports[] = {LATTICE_PORTS(TYN_PORT_ROW)};
 
 // ---- kernels ------------------------------------------------------------------------------------
 
@@ -99,123 +43,21 @@ enum {
     NUM_KERNELS
 };
 
-static const tyn_binding start_bindings[] = {
-    {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},     {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},          {PORT_STATE, TYN_USE_STORAGE_WRITE},
-    {PORT_EMITTED, TYN_USE_STORAGE_WRITE},           {LATTICE_PORT_GUESS, TYN_USE_STORAGE_READ},
-    {LATTICE_PORT_WALL_LIGHT, TYN_USE_STORAGE_READ},
-};
-static const tyn_binding stencil_bindings[] = {
-    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
-    {PORT_STENCIL_LO, TYN_USE_STORAGE_WRITE},
-    {PORT_STENCIL_HI, TYN_USE_STORAGE_WRITE},
-    TYN_WALLS(TYN_BUNDLE_BIND, LATTICE),
-};
-static const tyn_binding stencil_coarse_bindings[] = {
-    {PORT_STENCIL_LO, TYN_USE_STORAGE_WRITE},
-    {PORT_STENCIL_HI, TYN_USE_STORAGE_WRITE},
-    {PORT_STENCIL_LO, TYN_USE_TEXELS_VEC4},
-    {PORT_STENCIL_HI, TYN_USE_TEXELS_VEC4},
-};
-static const tyn_binding stencil_walls_bindings[] = {
-    {PORT_STENCIL_LO, TYN_USE_STORAGE_RW},
-    {PORT_STENCIL_HI, TYN_USE_STORAGE_READ},
-};
-static const tyn_binding sweep_bindings[] = {
-    {LATTICE_PORT_ENVIRONMENT, TYN_USE_UNIFORM}, {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
-    {PORT_EMITTED, TYN_USE_TEXELS_VEC4},         {PORT_MEAN_PSI, TYN_USE_STORAGE_WRITE},
-    {LATTICE_PORT_LEAKS, TYN_USE_STORAGE_WRITE}, {PORT_STATE, TYN_USE_TEXELS_FLOAT},
-    {PORT_ARRIVED, TYN_USE_STORAGE_WRITE},       {LATTICE_PORT_WALL_LINKS, TYN_USE_TEXELS_UINT},
-};
-static const tyn_binding collect_bindings[] = {
-    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
-    {PORT_MEAN_PSI, TYN_USE_TEXELS_FLOAT},
-    {PORT_STATE, TYN_USE_TEXELS_FLOAT},
-    {PORT_SWEPT, TYN_USE_STORAGE_WRITE},
-    {PORT_RHS, TYN_USE_STORAGE_WRITE},
-    {PORT_CORRECTION, TYN_USE_STORAGE_WRITE},
-    {PORT_ARRIVED, TYN_USE_TEXELS_FLOAT},
-    {LATTICE_PORT_WALL_LIGHT, TYN_USE_STORAGE_READ},
-    {LATTICE_PORT_WALL_POWER, TYN_USE_STORAGE_WRITE},
-    TYN_WALLS(TYN_BUNDLE_BIND, LATTICE),
-    {PORT_STENCIL_HI, TYN_USE_TEXELS_FLOAT},
-};
-static const tyn_binding relax_bindings[] = {
-    {PORT_STENCIL_LO, TYN_USE_TEXELS_VEC4},   {PORT_STENCIL_HI, TYN_USE_TEXELS_VEC4},
-    {PORT_RHS, TYN_USE_TEXELS_FLOAT},         {PORT_CORRECTION, TYN_USE_TEXELS_FLOAT},
-    {PORT_CORRECTION, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding restrict_bindings[] = {
-    {PORT_STENCIL_LO, TYN_USE_TEXELS_VEC4}, {PORT_STENCIL_HI, TYN_USE_TEXELS_VEC4},
-    {PORT_RHS, TYN_USE_TEXELS_FLOAT},       {PORT_CORRECTION, TYN_USE_TEXELS_FLOAT},
-    {PORT_RHS, TYN_USE_STORAGE_WRITE},      {PORT_CORRECTION, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding interpolate_bindings[] = {
-    {PORT_CORRECTION, TYN_USE_STORAGE_WRITE},
-    {PORT_STENCIL_LO, TYN_USE_TEXELS_VEC4},
-    {PORT_STENCIL_HI, TYN_USE_TEXELS_VEC4},
-    {PORT_CORRECTION, TYN_USE_TEXELS_FLOAT},
-};
-static const tyn_binding coarse_bindings[] = {
-    {PORT_STENCIL_LO, TYN_USE_TEXELS_VEC4},
-    {PORT_STENCIL_HI, TYN_USE_TEXELS_VEC4},
-    {PORT_RHS, TYN_USE_TEXELS_FLOAT},
-    {PORT_CORRECTION, TYN_USE_STORAGE_RW},
-};
-static const tyn_binding depth_bindings[] = {
-    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
-    {PORT_LAUNCHES, TYN_USE_STORAGE_RW},
-};
-static const tyn_binding residual_bindings[] = {
-    {PORT_STATE, TYN_USE_TEXELS_VEC4},
-    {PORT_SWEPT, TYN_USE_TEXELS_VEC4},
-    {PORT_CORRECTION, TYN_USE_TEXELS_FLOAT},
-    {PORT_CHANGE + 1, TYN_USE_TEXELS_VEC4},
-    {PORT_CHANGE + 2, TYN_USE_TEXELS_VEC4},
-    {PORT_RESULT, TYN_USE_STORAGE_WRITE},
-    {PORT_CHANGE, TYN_USE_STORAGE_WRITE},
-    {PORT_PARTIALS, TYN_USE_STORAGE_WRITE},
-    {LATTICE_PORT_WALL_CELLS, TYN_USE_TEXELS_VEC4},
-};
-static const tyn_binding weights_bindings[] = {
-    {PORT_PARTIALS, TYN_USE_STORAGE_READ},
-    {PORT_WEIGHTS, TYN_USE_STORAGE_WRITE},
-    {LATTICE_PORT_COUNTERS, TYN_USE_STORAGE_RW},
-};
-static const tyn_binding mix_bindings[] = {
-    {LATTICE_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_PORT_SOURCE, TYN_USE_SAMPLED},
-    {PORT_RESULT, TYN_USE_TEXELS_VEC4},
-    {PORT_RESULT + 1, TYN_USE_TEXELS_VEC4},
-    {PORT_RESULT + 2, TYN_USE_TEXELS_VEC4},
-    {PORT_WEIGHTS, TYN_USE_STORAGE_READ},
-    {PORT_STATE, TYN_USE_STORAGE_WRITE},
-    {PORT_EMITTED, TYN_USE_STORAGE_WRITE},
-    {LATTICE_PORT_COUNTERS, TYN_USE_STORAGE_RW},
-    {LATTICE_PORT_MOMENTS, TYN_USE_STORAGE_WRITE},
-    {PORT_SWEPT, TYN_USE_TEXELS_VEC4},
-    {LATTICE_PORT_WALL_CELLS, TYN_USE_TEXELS_VEC4},
-    {LATTICE_PORT_WALL_POWER, TYN_USE_STORAGE_RW},
-};
-
-#define KERNEL(step, args, specs, x, y, z)                                                         \
-    TYN_KERNEL(lattice_##step, sizeof(struct args), x, y, z, step##_bindings, specs)
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_START] = KERNEL(start, lattice_args, 2, 8, 4, 2),
-    [KERNEL_STENCIL] = KERNEL(stencil, lattice_level_args, 2, 8, 4, 2),
-    [KERNEL_STENCIL_COARSE] = KERNEL(stencil_coarse, lattice_level_args, 2, 4, 4, 4),
-    [KERNEL_STENCIL_WALLS] = KERNEL(stencil_walls, lattice_level_args, 2, LATTICE_GROUP, 1, 1),
-    [KERNEL_SWEEP] = KERNEL(sweep, lattice_args, 2, LATTICE_SWEEP_GROUP, 1, 1),
-    [KERNEL_COLLECT] = KERNEL(collect, lattice_args, 2, 8, 4, 2),
-    [KERNEL_RELAX] = KERNEL(relax, lattice_level_args, 2, 8, 4, 2),
-    [KERNEL_RESTRICT] = KERNEL(restrict, lattice_level_args, 2, 4, 4, 4),
-    [KERNEL_INTERPOLATE] = KERNEL(interpolate, lattice_level_args, 2, 8, 4, 2),
-    [KERNEL_COARSE] = KERNEL(coarse, lattice_level_args, 2, LATTICE_COARSE_GROUP, 1, 1),
-    [KERNEL_DEPTH] = KERNEL(depth, lattice_args, 0, LATTICE_DEPTH_GROUP, 1, 1),
-    [KERNEL_RESIDUAL] = KERNEL(residual, lattice_args, 2, LATTICE_GROUP, 1, 1),
-    [KERNEL_WEIGHTS] = KERNEL(weights, lattice_args, 1, LATTICE_GROUP, 1, 1),
-    [KERNEL_MIX] = KERNEL(mix, lattice_args, 2, 8, 4, 2),
+    [KERNEL_START] = TYN_KERNEL(lattice_start),
+    [KERNEL_STENCIL] = TYN_KERNEL(lattice_stencil),
+    [KERNEL_STENCIL_COARSE] = TYN_KERNEL(lattice_stencil_coarse),
+    [KERNEL_STENCIL_WALLS] = TYN_KERNEL(lattice_stencil_walls),
+    [KERNEL_SWEEP] = TYN_KERNEL(lattice_sweep),
+    [KERNEL_COLLECT] = TYN_KERNEL(lattice_collect),
+    [KERNEL_RELAX] = TYN_KERNEL(lattice_relax),
+    [KERNEL_RESTRICT] = TYN_KERNEL(lattice_restrict),
+    [KERNEL_INTERPOLATE] = TYN_KERNEL(lattice_interpolate),
+    [KERNEL_COARSE] = TYN_KERNEL(lattice_coarse),
+    [KERNEL_DEPTH] = TYN_KERNEL(lattice_depth),
+    [KERNEL_RESIDUAL] = TYN_KERNEL(lattice_residual),
+    [KERNEL_WEIGHTS] = TYN_KERNEL(lattice_weights),
+    [KERNEL_MIX] = TYN_KERNEL(lattice_mix),
 };
 
 // ---- levels of the diffusion grid ---------------------------------------------------------------
@@ -306,22 +148,22 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const uint64_t all_levels = plan_levels(dims, p->shape.repeat).cells;
     uint64_t groups = (elements + LATTICE_GROUP_CELLS - 1) / LATTICE_GROUP_CELLS;
     tyn_build_image(b, LATTICE_PORT_MOMENTS, texels, 1);
-    tyn_build_buffer(b, PORT_STATE, 4 * scalar * elements);
-    tyn_build_buffer(b, PORT_EMITTED, 4 * scalar * n);
-    tyn_build_buffer(b, PORT_MEAN_PSI, LATTICE_DIRECTIONS * scalar * n);
-    tyn_build_buffer(b, PORT_SWEPT, 4 * scalar * elements);
-    tyn_build_buffer(b, PORT_STENCIL_LO, 4 * scalar * all_levels);
-    tyn_build_buffer(b, PORT_STENCIL_HI, 4 * scalar * all_levels);
-    tyn_build_buffer(b, PORT_RHS, scalar * all_levels);
-    tyn_build_buffer(b, PORT_CORRECTION, scalar * all_levels);
+    tyn_build_buffer(b, LATTICE_PORT_STATE, 4 * scalar * elements);
+    tyn_build_buffer(b, LATTICE_PORT_EMITTED, 4 * scalar * n);
+    tyn_build_buffer(b, LATTICE_PORT_MEAN_PSI, LATTICE_DIRECTIONS * scalar * n);
+    tyn_build_buffer(b, LATTICE_PORT_SWEPT, 4 * scalar * elements);
+    tyn_build_buffer(b, LATTICE_PORT_STENCIL_LO, 4 * scalar * all_levels);
+    tyn_build_buffer(b, LATTICE_PORT_STENCIL_HI, 4 * scalar * all_levels);
+    tyn_build_buffer(b, LATTICE_PORT_RHS, scalar * all_levels);
+    tyn_build_buffer(b, LATTICE_PORT_CORRECTION, scalar * all_levels);
     for (uint8_t i = 0; i < 3; i++) {
-        tyn_build_buffer(b, PORT_RESULT + i, 4 * scalar * elements);
-        tyn_build_buffer(b, PORT_CHANGE + i, 4 * scalar * elements);
+        tyn_build_buffer(b, LATTICE_PORT_RESULT_0 + i, 4 * scalar * elements);
+        tyn_build_buffer(b, LATTICE_PORT_CHANGE_0 + i, 4 * scalar * elements);
     }
-    tyn_build_buffer(b, PORT_PARTIALS, LATTICE_NUM_DOTS * scalar * groups);
-    tyn_build_buffer(b, PORT_WEIGHTS, 2 * scalar);
-    tyn_build_buffer(b, PORT_LAUNCHES, sizeof(uint32_t) * 3 * LATTICE_MAX_LAUNCHES);
-    tyn_build_buffer(b, PORT_ARRIVED, walls ? LATTICE_DIRECTIONS * scalar * n : scalar);
+    tyn_build_buffer(b, LATTICE_PORT_PARTIALS, LATTICE_NUM_DOTS * scalar * groups);
+    tyn_build_buffer(b, LATTICE_PORT_WEIGHTS, 2 * scalar);
+    tyn_build_buffer(b, LATTICE_PORT_LAUNCHES, sizeof(uint32_t) * 3 * LATTICE_MAX_LAUNCHES);
+    tyn_build_buffer(b, LATTICE_PORT_ARRIVED, walls ? LATTICE_DIRECTIONS * scalar * n : scalar);
     tyn_build_buffer(b, LATTICE_PORT_WALL_POWER, walls ? 2 * scalar * n : scalar);
     tyn_build_buffer(b, LATTICE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, LATTICE_PORT_LEAKS,
@@ -382,7 +224,7 @@ static void on_level_as(solve *s, uint32_t kernel, uint32_t level, tyn_extent th
     if (s->launch == LISTED) {
         list_launch(s, kernel, threads);
     } else if (s->launch == INDIRECT) {
-        tyn_rec_dispatch_indirect(s->r, &d, PORT_LAUNCHES,
+        tyn_rec_dispatch_indirect(s->r, &d, LATTICE_PORT_LAUNCHES,
                                   sizeof s->launches[0] * s->num_launches++);
     } else {
         tyn_rec_dispatch(s->r, &d);
@@ -443,7 +285,7 @@ static void list_further_cycle(solve *s)
     s->launch = LISTED;
     v_cycle(s, false);
     s->launch = DIRECT;
-    tyn_rec_update(s->r, PORT_LAUNCHES, 0, s->launches, sizeof s->launches);
+    tyn_rec_update(s->r, LATTICE_PORT_LAUNCHES, 0, s->launches, sizeof s->launches);
     tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = KERNEL_DEPTH,
                                            .cells = {LATTICE_DEPTH_GROUP, 1, 1},
                                            .args = &s->args});
@@ -455,8 +297,8 @@ static void mix(solve *s, uint32_t index)
     const tyn_lattice_params *p = s->params;
     uint8_t result[3], change[3];
     for (uint8_t age = 0; age < 3; age++) {
-        result[age] = (uint8_t)(PORT_RESULT + (index + 3 - age) % 3);
-        change[age] = (uint8_t)(PORT_CHANGE + (index + 3 - age) % 3);
+        result[age] = (uint8_t)(LATTICE_PORT_RESULT_0 + (index + 3 - age) % 3);
+        change[age] = (uint8_t)(LATTICE_PORT_CHANGE_0 + (index + 3 - age) % 3);
     }
     s->args.history = index < 2 ? index : 2;
     s->args.anderson = p->anderson;
@@ -468,23 +310,25 @@ static void mix(solve *s, uint32_t index)
                               .cells = {groups * LATTICE_GROUP, p->shape.channels, 1},
                               .args = &s->args,
                               .spec = residual_spec,
-                              .ports = (const uint8_t[]){PORT_STATE, PORT_SWEPT, PORT_CORRECTION,
-                                                         change[1], change[2], result[0], change[0],
-                                                         PORT_PARTIALS, LATTICE_PORT_WALL_CELLS}});
+                              .ports = (const uint8_t[]){
+                                  LATTICE_PORT_STATE, LATTICE_PORT_SWEPT, LATTICE_PORT_CORRECTION,
+                                  change[1], change[2], result[0], change[0], LATTICE_PORT_PARTIALS,
+                                  LATTICE_PORT_WALL_CELLS}});
     tyn_rec_dispatch(s->r, &(tyn_dispatch){.kernel = KERNEL_WEIGHTS,
                                            .cells = {LATTICE_GROUP * p->shape.channels, 1, 1},
                                            .args = &s->args,
                                            .spec = spec});
     tyn_rec_dispatch(
-        s->r, &(tyn_dispatch){.kernel = KERNEL_MIX,
-                              .cells = s->texels,
-                              .args = &s->args,
-                              .spec = spec,
-                              .ports = (const uint8_t[]){
-                                  LATTICE_PORT_CELLS, LATTICE_PORT_SOURCE, result[0], result[1],
-                                  result[2], PORT_WEIGHTS, PORT_STATE, PORT_EMITTED,
-                                  LATTICE_PORT_COUNTERS, LATTICE_PORT_MOMENTS, PORT_SWEPT,
-                                  LATTICE_PORT_WALL_CELLS, LATTICE_PORT_WALL_POWER}});
+        s->r,
+        &(tyn_dispatch){.kernel = KERNEL_MIX,
+                        .cells = s->texels,
+                        .args = &s->args,
+                        .spec = spec,
+                        .ports = (const uint8_t[]){
+                            LATTICE_PORT_CELLS, LATTICE_PORT_SOURCE, result[0], result[1],
+                            result[2], LATTICE_PORT_WEIGHTS, LATTICE_PORT_STATE,
+                            LATTICE_PORT_EMITTED, LATTICE_PORT_COUNTERS, LATTICE_PORT_MOMENTS,
+                            LATTICE_PORT_SWEPT, LATTICE_PORT_WALL_CELLS, LATTICE_PORT_WALL_POWER}});
 }
 
 static void record(tyn_recorder *r, const void *params)
@@ -532,11 +376,9 @@ static void record(tyn_recorder *r, const void *params)
         list_further_cycle(&s);
     }
     for (uint32_t i = 0; i < (uint32_t)p->sweeps; i++) {
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_SWEEP,
-                               .cells = {s.args.lines, LATTICE_DIRECTIONS, p->shape.channels},
-                               .args = &s.args,
-                               .spec = sweep_spec});
+        TYN_DISPATCH(r, .kernel = KERNEL_SWEEP,
+                     .cells = {s.args.lines, LATTICE_DIRECTIONS, p->shape.channels},
+                     .args = &s.args, .spec = sweep_spec);
         on_cells(&s, KERNEL_COLLECT);
         for (int32_t c = 0; c < p->cycles; c++) {
             if (c == 0) {

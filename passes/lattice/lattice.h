@@ -26,20 +26,43 @@ typedef struct tyn_lattice_params {
     uint32_t warm;           // for the method: 1 = add lattice_recall and lattice_keep
 } tyn_lattice_params;
 
-enum {
-    LATTICE_PORT_CELLS,       // IN 3D, of lattice_cells
-    LATTICE_PORT_SOURCE,      // IN optional 3D, of the last of lattice_source, _ordinates, _lamps
-    LATTICE_PORT_ENVIRONMENT, // IN optional buffer struct env_block: `sky` enters from all sides
-    LATTICE_PORT_GUESS,       // IN optional buffer, of lattice_recall: where the solve starts
-    TYN_WALLS(TYN_BUNDLE_ENUM, LATTICE), // IN optional
-    LATTICE_PORT_WALL_LIGHT, // IN optional buffer vec3[cell]: radiance that a cell's walls send out beside
-                             // what they reflect of the lattice's light, RGB, W/(m^2 sr)
-    LATTICE_PORT_MOMENTS, // OUT 3D RGBA32F, stacked: fluence phi and net flux (x, y, z) of the light that
-                          // has scattered, came from the environment or was emitted, W/m^2
-    LATTICE_PORT_COUNTERS, // OUT buffer struct counters_block
-    LATTICE_PORT_LEAKS,    // OUT buffer: what left the box in the last sweep, for balance
-    LATTICE_PORT_WALL_POWER, // OUT buffer vec2[channel][cell], with walls: power that the walls of a cell
-    // absorb of the light that is in `moments`, and that `wall_light` brings, W
-    LATTICE_PORT_FIRST_SCRATCH,
-};
+// clang-format off
+#define LATTICE_PORTS(X) \
+    X(LATTICE, CELLS, cells, IN, IMAGE_3D, "of lattice_cells"), \
+    X(LATTICE, SOURCE, source, OPTIONAL, IMAGE_3D, "of the last of lattice_source, _ordinates, _lamps"), \
+    X(LATTICE, ENVIRONMENT, environment, OPTIONAL, BUFFER, \
+        "struct env_block: its mean without suns enters at the box"), \
+    X(LATTICE, GUESS, guess, OPTIONAL, BUFFER, "of lattice_recall: where the solve starts"), \
+    TYN_WALLS(X##_OPTIONAL, LATTICE), \
+    X(LATTICE, WALL_LIGHT, wall_light, OPTIONAL, BUFFER, \
+        "vec3[cell]: radiance that a cell's walls send out beside what they reflect of the lattice's light, " \
+        "RGB, W/(m^2 sr)"), \
+    X(LATTICE, MOMENTS, moments, OUT, IMAGE_3D, \
+        "stacked: fluence phi and net flux (x, y, z) of the light that has scattered, came from the " \
+        "environment or was emitted, W/m^2", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(LATTICE, COUNTERS, counters, OUT, BUFFER, "struct counters_block"), \
+    X(LATTICE, LEAKS, leaks, OUT, BUFFER, "net power through the box of each line of the last sweep, W"), \
+    X(LATTICE, WALL_POWER, wall_power, OUT, BUFFER, \
+        "vec2[channel][cell], with walls: power that the walls of a cell absorb of the light that is in " \
+        "`moments`, and that `wall_light` brings, W"), \
+    X(LATTICE, STATE, state, SCRATCH, BUFFER, "moments at the start of a sweep"), \
+    X(LATTICE, EMITTED, emitted, SCRATCH, BUFFER, "scattered radiance per sigma_s', linear in direction"), \
+    X(LATTICE, MEAN_PSI, mean_psi, SCRATCH, BUFFER, "mean radiance in a cell by direction"), \
+    X(LATTICE, SWEPT, swept, SCRATCH, BUFFER, "moments after the sweep"), \
+    X(LATTICE, STENCIL_LO, stencil_lo, SCRATCH, BUFFER, "conductance to -x, -y, -z; absorption"), \
+    X(LATTICE, STENCIL_HI, stencil_hi, SCRATCH, BUFFER, "conductance to +x, +y, +z; sum of all"), \
+    X(LATTICE, RHS, rhs, SCRATCH, BUFFER, "of the diffusion correction, W"), \
+    X(LATTICE, CORRECTION, correction, SCRATCH, BUFFER, "of the fluence, W/m^2"), \
+    X(LATTICE, RESULT_0, result_0, SCRATCH, BUFFER, "corrected moments, of the last three sweeps"), \
+    X(LATTICE, RESULT_1, result_1, SCRATCH, BUFFER, "corrected moments"), \
+    X(LATTICE, RESULT_2, result_2, SCRATCH, BUFFER, "corrected moments"), \
+    X(LATTICE, CHANGE_0, change_0, SCRATCH, BUFFER, "what a sweep changed"), \
+    X(LATTICE, CHANGE_1, change_1, SCRATCH, BUFFER, "what a sweep changed"), \
+    X(LATTICE, CHANGE_2, change_2, SCRATCH, BUFFER, "what a sweep changed"), \
+    X(LATTICE, PARTIALS, partials, SCRATCH, BUFFER, "dot products by workgroup"), \
+    X(LATTICE, WEIGHTS, weights, SCRATCH, BUFFER, "shares of earlier sweeps"), \
+    X(LATTICE, ARRIVED, arrived, SCRATCH, BUFFER, "radiance that arrives at walls by direction"), \
+    X(LATTICE, LAUNCHES, launches, SCRATCH, BUFFER, "workgroups of the dispatches of a further cycle")
+// clang-format on
+enum { LATTICE_PORTS(TYN_PORT_ENUM), LATTICE_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_lattice;

@@ -5,7 +5,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_levels.glsl"
@@ -18,7 +17,7 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the first that is solved here
 };
-layout(binding = 2) uniform samplerBuffer rhs_in;
+layout(binding = 2) uniform samplerBuffer rhs_words;
 layout(binding = 3, scalar) buffer correction_buffer
 {
     float correction_out[];
@@ -65,7 +64,7 @@ float correction_at(uint i)
 float inflow(ivec3 c, lattice_stencil k)
 {
     uint i = index_of(c);
-    float sum = at.first == first.first ? texelFetch(rhs_in, int(channel + lattice_index(at, c))).x
+    float sum = at.first == first.first ? texelFetch(rhs_words, int(channel + lattice_index(at, c))).x
                                         : rhs[i - lattice_num_cells(first.size)];
     return lattice_inflow(sum, at, c, i, k);
 }
@@ -142,7 +141,7 @@ float step_length()
         vec4 k_lo = lattice_stencil_lo_at(id), k_hi = lattice_stencil_hi_at(id);
         lattice_stencil k = lattice_stencil_of(k_lo, k_hi);
         float e = correction[index_of(c)];
-        float r = at.first == first.first ? texelFetch(rhs_in, int(id)).x : rhs[index_of(c) - lattice_num_cells(first.size)];
+        float r = at.first == first.first ? texelFetch(rhs_words, int(id)).x : rhs[index_of(c) - lattice_num_cells(first.size)];
         // Each cell has half of the energy of its faces.
         float steps = walls == 0 || lattice_open(k.lo, k.hi) ? 0.5 : 1.0;
         vec3 lo = vec3(0.0), hi = vec3(0.0);

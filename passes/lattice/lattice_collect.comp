@@ -2,7 +2,6 @@
 // correction.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "shaders/lattice/lattice_sweep.glsl"
@@ -13,8 +12,8 @@ layout(push_constant, scalar) uniform push
     lattice_args args;
 };
 layout(binding = 0) uniform sampler3D cells;
-layout(binding = 1) uniform samplerBuffer mean_psi; // [direction][channel][cell]
-layout(binding = 2) uniform samplerBuffer state;    // floats
+layout(binding = 1) uniform samplerBuffer mean_psi_words; // [direction][channel][cell]
+layout(binding = 2) uniform samplerBuffer state_words;    // floats
 layout(binding = 3, scalar) writeonly buffer swept_buffer
 {
     vec4 swept[];
@@ -29,16 +28,16 @@ layout(binding = 5, scalar) writeonly buffer correction_buffer
     float correction[];
 };
 
-layout(binding = 6) uniform samplerBuffer arrived; // as mean_psi, at the ends of cut links
-layout(binding = 7, scalar) readonly buffer light_buffer
+layout(binding = 6) uniform samplerBuffer arrived_words; // as mean_psi, at the ends of cut links
+layout(binding = 7, scalar) readonly buffer wall_light_buffer
 {
     vec3 wall_light[];
 };
-layout(binding = 8, scalar) writeonly buffer power_buffer
+layout(binding = 8, scalar) writeonly buffer wall_power_buffer
 {
     vec2 wall_power[]; // absorbed, sent out of wall_light; W
 };
-layout(binding = 11) uniform samplerBuffer stencil_hi; // four floats to a cell
+layout(binding = 11) uniform samplerBuffer stencil_hi_words; // four floats to a cell
 #define LATTICE_WALL_LINKS 9
 #define LATTICE_WALL_CELLS 10
 #include "lattice_wall_state.glsl"
@@ -57,7 +56,7 @@ float reflect_light(uint i, uint ch, uint per_direction)
         for (uint d = 0; d < LATTICE_DIRECTIONS; d++) {
             if ((cut >> d & 1u) != 0u) {
                 float share = lattice_weight(d) * (d < 6u ? 1.0 : inversesqrt(3.0));
-                sum += share * texelFetch(arrived, int(d * per_direction + i)).x;
+                sum += share * texelFetch(arrived_words, int(d * per_direction + i)).x;
             }
         }
         vec4 surface = lattice_wall_surface(cell);
@@ -74,7 +73,7 @@ float reflect_light(uint i, uint ch, uint per_direction)
     }
     wall_power[i] = per_radiance * vec2((1.0 - albedo) * sum, sent * area);
     // Marshak's condition for a wall that reflects and shines.
-    float change = radiance - texelFetch(state, int(4u * vector + cell % 4u)).x;
+    float change = radiance - texelFetch(state_words, int(4u * vector + cell % 4u)).x;
     return per_radiance * area * change * 2.0 / (1.0 + albedo);
 }
 
@@ -90,7 +89,7 @@ void main()
     float axes = 0.0, diagonals = 0.0;
     vec3 axis_flux = vec3(0.0), diagonal_flux = vec3(0.0);
     for (uint d = 0; d < LATTICE_DIRECTIONS; d++) {
-        float psi = texelFetch(mean_psi, int(d * per_direction + i)).x;
+        float psi = texelFetch(mean_psi_words, int(d * per_direction + i)).x;
         vec3 o = vec3(lattice_step(d));
         if (d < 6) {
             axes += psi;
@@ -106,7 +105,7 @@ void main()
     swept[i] = m;
     float sigma_s = texelFetch(cells, ivec3(texel), 0).x;
     uint l = ch * args.stride + i - ch * plane * args.dims.z; // on level 0
-    float change = args.dx * args.dx * args.dx * sigma_s * (m.x - texelFetch(state, int(4u * i)).x);
+    float change = args.dx * args.dx * args.dx * sigma_s * (m.x - texelFetch(state_words, int(4u * i)).x);
     if (walls == 1) {
         change += reflect_light(i, ch, per_direction);
     }
@@ -114,7 +113,7 @@ void main()
     // The first half of the first relaxation, from corrections of 0.
     float corrected = 0.0;
     if (args.corrected == 1 && ((texel.x + texel.y + texel.z - ch * args.dims.z) & 1) == 0) {
-        corrected = change / abs(texelFetch(stencil_hi, int(4u * l + 3u)).x);
+        corrected = change / abs(texelFetch(stencil_hi_words, int(4u * l + 3u)).x);
     }
     correction[l] = corrected;
 }

@@ -3,7 +3,6 @@
 // There light goes from wall to wall, which corrections do little about: a second cycle brings nothing.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 
@@ -13,7 +12,7 @@ layout(push_constant, scalar) uniform push
     lattice_args args;
 };
 layout(binding = 0) uniform sampler3D cells;
-layout(binding = 1, scalar) buffer launch_buffer
+layout(binding = 1, scalar) buffer launches_buffer
 {
     uint launches[3 * LATTICE_MAX_LAUNCHES]; // workgroups, as indirect dispatches read them
 };

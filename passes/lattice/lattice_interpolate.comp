@@ -1,7 +1,6 @@
 // lattice_interpolate.comp -- adds the correction of the next coarser level.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_levels.glsl"
@@ -18,7 +17,7 @@ layout(binding = 0, scalar) writeonly buffer correction_buffer
 {
     float correction[];
 };
-layout(binding = 3) uniform samplerBuffer uncorrected; // the same
+layout(binding = 3) uniform samplerBuffer correction_words; // the same
 
 layout(constant_id = 0) const uint walls = 0;
 layout(constant_id = 1) const uint lattice_repeat = 0; // a bit for each axis along which the grid goes on
@@ -46,8 +45,8 @@ void main()
     float sum = 0.0;
     for (uint corner = 0; corner < 8; corner++) {
         uint i = channel + lattice_index(coarse, blended ? lattice_corner(from, corner) : from.near);
-        sum += lattice_corner_weight(corner) * texelFetch(uncorrected, int(i)).x;
+        sum += lattice_corner_weight(corner) * texelFetch(correction_words, int(i)).x;
     }
     uint i = channel + lattice_index(fine, c);
-    correction[i] = texelFetch(uncorrected, int(i)).x + sum;
+    correction[i] = texelFetch(correction_words, int(i)).x + sum;
 }

@@ -1,7 +1,6 @@
 // lattice_mix.comp -- the next state, from the results of the last sweeps, and what it emits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "shaders/lattice/lattice_sweep.glsl"
@@ -14,10 +13,10 @@ layout(push_constant, scalar) uniform push
 };
 layout(binding = 0) uniform sampler3D cells;
 layout(binding = 1) uniform sampler3D source;
-layout(binding = 2) uniform samplerBuffer result;
-layout(binding = 3) uniform samplerBuffer result_1;
-layout(binding = 4) uniform samplerBuffer result_2;
-layout(binding = 5, scalar) readonly buffer weight_buffer
+layout(binding = 2) uniform samplerBuffer result_0_texels;
+layout(binding = 3) uniform samplerBuffer result_1_texels;
+layout(binding = 4) uniform samplerBuffer result_2_texels;
+layout(binding = 5, scalar) readonly buffer weights_buffer
 {
     vec2 weights[];
 };
@@ -29,13 +28,13 @@ layout(binding = 7, scalar) writeonly buffer emitted_buffer
 {
     vec4 emitted[];
 };
-layout(binding = 8, scalar) buffer counter_buffer
+layout(binding = 8, scalar) buffer counters_buffer
 {
     counters_block counters;
 };
 layout(binding = 9, rgba32f) uniform writeonly image3D moments;
-layout(binding = 10) uniform samplerBuffer swept;
-layout(binding = 12, scalar) buffer power_buffer
+layout(binding = 10) uniform samplerBuffer swept_texels;
+layout(binding = 12, scalar) buffer wall_power_buffer
 {
     vec2 wall_power[]; // absorbed, sent out of wall_light; W
 };
@@ -50,7 +49,7 @@ void absorb_change(uint ch, uint cell, int v, float radiance)
 {
     vec4 surface = lattice_wall_surface(cell);
     if (surface.a > 0.0 && surface[ch] > 0.0) {
-        float change = (radiance - texelFetch(swept, v)[cell % 4u]) / surface[ch]; // of what arrives
+        float change = (radiance - texelFetch(swept_texels, v)[cell % 4u]) / surface[ch]; // of what arrives
         uint i = ch * lattice_all_cells() + cell;
         float more = LATTICE_4PI * args.dx * args.dx * surface.a * (1.0 - surface[ch]) * change;
         wall_power[i].x = max(wall_power[i].x + more, 0.0);
@@ -62,12 +61,12 @@ void mix_walls(uint ch, uint cell)
 {
     uint k = cell % 4u;
     int v = int(lattice_wall_vector(ch, cell));
-    float newest = texelFetch(result, v)[k], radiance = newest;
+    float newest = texelFetch(result_0_texels, v)[k], radiance = newest;
     if (args.history >= 1) {
-        radiance += weights[ch].x * (texelFetch(result_1, v)[k] - newest);
+        radiance += weights[ch].x * (texelFetch(result_1_texels, v)[k] - newest);
     }
     if (args.history >= 2) {
-        radiance += weights[ch].y * (texelFetch(result_2, v)[k] - newest);
+        radiance += weights[ch].y * (texelFetch(result_2_texels, v)[k] - newest);
     }
     radiance = isnan(radiance) || isinf(radiance) ? 0.0 : max(radiance, 0.0);
     state[v][k] = radiance;
@@ -84,12 +83,12 @@ void main()
         return;
     }
     uint i = (texel.z * args.dims.y + texel.y) * args.dims.x + texel.x;
-    vec4 newest = texelFetch(result, int(i)), m = newest;
+    vec4 newest = texelFetch(result_0_texels, int(i)), m = newest;
     if (args.history >= 1) {
-        m += weights[ch].x * (texelFetch(result_1, int(i)) - newest);
+        m += weights[ch].x * (texelFetch(result_1_texels, int(i)) - newest);
     }
     if (args.history >= 2) {
-        m += weights[ch].y * (texelFetch(result_2, int(i)) - newest);
+        m += weights[ch].y * (texelFetch(result_2_texels, int(i)) - newest);
     }
     if (any(isnan(m)) || any(isinf(m))) {
         m = vec4(0.0);

@@ -1,7 +1,6 @@
 // lattice_relax.comp -- Gauss-Seidel on the cells of one colour of a checkerboard.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_levels.glsl"
@@ -14,8 +13,8 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args;
 };
-layout(binding = 2) uniform samplerBuffer rhs;
-layout(binding = 3) uniform samplerBuffer neighbours; // the correction: cells of the other colour
+layout(binding = 2) uniform samplerBuffer rhs_words;
+layout(binding = 3) uniform samplerBuffer correction_words; // the correction: cells of the other colour
 layout(binding = 4, scalar) writeonly buffer correction_buffer
 {
     float correction[];
@@ -23,7 +22,7 @@ layout(binding = 4, scalar) writeonly buffer correction_buffer
 
 float correction_at(uint i)
 {
-    return texelFetch(neighbours, int(i)).x;
+    return texelFetch(correction_words, int(i)).x;
 }
 
 #define LATTICE_REPEAT 1
@@ -41,6 +40,6 @@ void main()
     }
     uint i = uint(ch) * args.stride + lattice_index(level, c);
     lattice_stencil k = lattice_stencil_at(i);
-    float sum = lattice_inflow(texelFetch(rhs, int(i)).x, level, c, i, k);
+    float sum = lattice_inflow(texelFetch(rhs_words, int(i)).x, level, c, i, k);
     correction[i] = sum / k.diagonal;
 }

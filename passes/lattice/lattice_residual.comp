@@ -8,7 +8,6 @@
 // threads pairwise.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 
 layout(local_size_x = LATTICE_GROUP) in;
@@ -16,20 +15,20 @@ layout(push_constant, scalar) uniform push
 {
     lattice_args args;
 };
-layout(binding = 0) uniform samplerBuffer state;
-layout(binding = 1) uniform samplerBuffer swept;
-layout(binding = 2) uniform samplerBuffer correction; // floats
-layout(binding = 3) uniform samplerBuffer change_1;
-layout(binding = 4) uniform samplerBuffer change_2;
-layout(binding = 5, scalar) writeonly buffer result_buffer
+layout(binding = 0) uniform samplerBuffer state_texels;
+layout(binding = 1) uniform samplerBuffer swept_texels;
+layout(binding = 2) uniform samplerBuffer correction_words; // floats
+layout(binding = 3) uniform samplerBuffer change_1_texels;
+layout(binding = 4) uniform samplerBuffer change_2_texels;
+layout(binding = 5, scalar) writeonly buffer result_0_buffer
 {
     vec4 result[];
 };
-layout(binding = 6, scalar) writeonly buffer change_buffer
+layout(binding = 6, scalar) writeonly buffer change_0_buffer
 {
     vec4 change[];
 };
-layout(binding = 7, scalar) writeonly buffer partial_buffer
+layout(binding = 7, scalar) writeonly buffer partials_buffer
 {
     float partials[]; // [channel][workgroup][dot]
 };
@@ -62,7 +61,7 @@ vec4 corrected_walls(uint quad, uint ch, vec4 radiance, vec4 change)
         vec4 surface = lattice_wall_surface(min(cell, lattice_all_cells() - 1u));
         if (cell < lattice_all_cells() && surface.a > 0.0) {
             float albedo = surface[ch];
-            float e = texelFetch(correction, int(ch * args.stride + cell)).x;
+            float e = texelFetch(correction_words, int(ch * args.stride + cell)).x;
             radiance[k] += albedo * (e * 0.15915494 - change[k]) / (1.0 + albedo);
         }
     }
@@ -79,11 +78,11 @@ void main()
     for (uint c = begin + me; c < end; c += LATTICE_GROUP) {
         bool wall = walls == 1 && c >= cells;
         uint i = wall ? args.channels * cells + ch * (args.elements - cells) + c - cells : ch * cells + c;
-        const vec4 plain = texelFetch(swept, int(i));
+        const vec4 plain = texelFetch(swept_texels, int(i));
         vec4 m = plain;
-        vec4 old = texelFetch(state, int(i));
+        vec4 old = texelFetch(state_texels, int(i));
         if (!wall) {
-            m.x += texelFetch(correction, int(ch * args.stride + c)).x;
+            m.x += texelFetch(correction_words, int(ch * args.stride + c)).x;
         }
         if (wall && args.corrected == 1) {
             m = corrected_walls(c - cells, ch, m, m - old);
@@ -97,8 +96,8 @@ void main()
             dots[6] += wall ? norm_dot_walls(m, m) : norm_dot(m, m);
         }
         if (args.history >= 1) {
-            vec4 d1 = texelFetch(change_1, int(i)) - r;
-            vec4 d2 = args.history >= 2 ? texelFetch(change_2, int(i)) - r : vec4(0.0);
+            vec4 d1 = texelFetch(change_1_texels, int(i)) - r;
+            vec4 d2 = args.history >= 2 ? texelFetch(change_2_texels, int(i)) - r : vec4(0.0);
             dots[0] += wall ? norm_dot_walls(d1, d1) : norm_dot(d1, d1);
             dots[3] += wall ? norm_dot_walls(d1, r) : norm_dot(d1, r);
             dots[1] += wall ? norm_dot_walls(d2, d2) : norm_dot(d2, d2);

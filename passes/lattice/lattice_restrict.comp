@@ -5,7 +5,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_levels.glsl"
@@ -18,8 +17,8 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the coarse one
 };
-layout(binding = 2) uniform samplerBuffer fine_rhs; // the buffers below, at another level
-layout(binding = 3) uniform samplerBuffer fine_correction;
+layout(binding = 2) uniform samplerBuffer rhs_words; // the buffers below, at another level
+layout(binding = 3) uniform samplerBuffer correction_words;
 layout(binding = 4, scalar) writeonly buffer rhs_buffer
 {
     float rhs[];
@@ -31,7 +30,7 @@ layout(binding = 5, scalar) writeonly buffer correction_buffer
 
 float correction_at(uint i)
 {
-    return texelFetch(fine_correction, int(i)).x;
+    return texelFetch(correction_words, int(i)).x;
 }
 
 #define LATTICE_REPEAT 1
@@ -62,7 +61,7 @@ void main()
         if (lattice_orphan(hi)) {
             continue;
         }
-        sum = lattice_inflow(sum + texelFetch(fine_rhs, int(i)).x - k.diagonal * correction_at(i), fine, f, i, k);
+        sum = lattice_inflow(sum + texelFetch(rhs_words, int(i)).x - k.diagonal * correction_at(i), fine, f, i, k);
     }
     uint i = channel + lattice_index(coarse, c);
     rhs[i] = sum;

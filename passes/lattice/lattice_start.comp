@@ -5,7 +5,6 @@
 // walls it is dark: what no light reaches stays so.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #define LATTICE_ENVIRONMENT 0
@@ -30,7 +29,7 @@ layout(binding = 5, scalar) readonly buffer guess_buffer
 {
     vec4 guess[];
 };
-layout(binding = 6, scalar) readonly buffer light_buffer
+layout(binding = 6, scalar) readonly buffer wall_light_buffer
 {
     vec3 wall_light[];
 };

@@ -1,7 +1,6 @@
 // lattice_stencil.comp -- stencil of the diffusion correction on the lattice itself.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_stencil.glsl"
@@ -12,11 +11,11 @@ layout(push_constant, scalar) uniform push
     lattice_level_args args;
 };
 layout(binding = 0) uniform sampler3D cells;
-layout(binding = 1, scalar) writeonly buffer lo_buffer
+layout(binding = 1, scalar) writeonly buffer stencil_lo_buffer
 {
     vec4 stencil_lo[];
 };
-layout(binding = 2, scalar) writeonly buffer hi_buffer
+layout(binding = 2, scalar) writeonly buffer stencil_hi_buffer
 {
     vec4 stencil_hi[];
 };

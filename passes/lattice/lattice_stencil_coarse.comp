@@ -4,7 +4,6 @@
 // faces: half the sum. Absorption adds up.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_levels.glsl"
@@ -14,11 +13,11 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the coarse one
 };
-layout(binding = 0, scalar) writeonly buffer lo_buffer
+layout(binding = 0, scalar) writeonly buffer stencil_lo_buffer
 {
     vec4 stencil_lo[];
 };
-layout(binding = 1, scalar) writeonly buffer hi_buffer
+layout(binding = 1, scalar) writeonly buffer stencil_hi_buffer
 {
     vec4 stencil_hi[];
 };

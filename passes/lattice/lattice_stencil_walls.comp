@@ -2,7 +2,6 @@
 // are walls about.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #include "lattice_levels.glsl"
@@ -13,11 +12,11 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args;
 };
-layout(binding = 0, scalar) buffer lo_buffer
+layout(binding = 0, scalar) buffer stencil_lo_buffer
 {
     vec4 stencil_lo[];
 };
-layout(binding = 1, scalar) readonly buffer hi_buffer
+layout(binding = 1, scalar) readonly buffer stencil_hi_buffer
 {
     vec4 stencil_hi[];
 };

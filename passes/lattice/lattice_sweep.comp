@@ -6,7 +6,6 @@
 // the light has arrived at the wall, and the line goes on with what the wall sends out on its other side.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #define LATTICE_ENVIRONMENT 0
 #include "shaders/lattice/lattice_unhindered.glsl"
@@ -17,17 +16,17 @@ layout(push_constant, scalar) uniform push
     lattice_args args;
 };
 layout(binding = 1) uniform sampler3D cells;
-layout(binding = 2) uniform samplerBuffer emitted; // vec4 per cell
-layout(binding = 3, scalar) writeonly buffer mean_buffer
+layout(binding = 2) uniform samplerBuffer emitted_texels; // vec4 per cell
+layout(binding = 3, scalar) writeonly buffer mean_psi_buffer
 {
     float mean_psi[]; // mean radiance in a cell: [direction][channel][cell]
 };
-layout(binding = 4, scalar) writeonly buffer leak_buffer
+layout(binding = 4, scalar) writeonly buffer leaks_buffer
 {
     float leaks[]; // per thread: what leaves the box less what enters, W
 };
 
-layout(binding = 5) uniform samplerBuffer state; // floats
+layout(binding = 5) uniform samplerBuffer state_words; // floats
 layout(binding = 6, scalar) writeonly buffer arrived_buffer
 {
     float arrived[]; // radiance at the end of a cut link: [direction][channel][cell]
@@ -80,7 +79,7 @@ void main()
         uint ahead = 1u << direction, back = 1u << walls_reverse(direction);
 
         float psi = boundary, before = 0.0;
-        vec4 e = texelFetch(emitted, at);
+        vec4 e = texelFetch(emitted_texels, at);
         float s = e.x + dot(omega, e.yzw);
         bvec3 open = bvec3(true);
         bool closed = false; // the line comes back to where it began
@@ -92,7 +91,7 @@ void main()
             if (closed) { // the first time round finds out what comes back
                 psi = 0.0;
                 steps *= 2;
-                vec4 end = texelFetch(emitted, at + (dims[axis] - 1) * o[axis] * strides[axis]);
+                vec4 end = texelFetch(emitted_texels, at + (dims[axis] - 1) * o[axis] * strides[axis]);
                 before = end.x + dot(omega, end.yzw);
             }
         }
@@ -115,7 +114,7 @@ void main()
                 uint id = uint(at - int(ch) * per_channel), cut = lattice_wall_links(id);
                 if ((cut & back) != 0u) {
                     leak += enters ? psi : 0.0;
-                    psi = texelFetch(state, int(4u * lattice_wall_vector(ch, id) + id % 4u)).x;
+                    psi = texelFetch(state_words, int(4u * lattice_wall_vector(ch, id) + id % 4u)).x;
                     enters = true;
                     through = 0.0;
                 }
@@ -129,7 +128,7 @@ void main()
                        (at_last.y ? step_back.y : o.y * strides.y) +
                        (at_last.z ? step_back.z : o.z * strides.z);
             c = mix(c + o, first, at_last);
-            e = texelFetch(emitted, next);
+            e = texelFetch(emitted_texels, next);
             float behind = e.x + dot(omega, e.yzw);
             // Central difference, one-sided at the box; limited so that the source keeps its sign.
             float slope = enters ? (leaves ? 0.0 : behind - s)

@@ -8,20 +8,20 @@
 #include "shaders/walls/walls_args.h"
 
 #ifdef LATTICE_WALL_LINKS
-layout(binding = LATTICE_WALL_LINKS) uniform usamplerBuffer wall_link_texels;
+layout(binding = LATTICE_WALL_LINKS) uniform usamplerBuffer wall_links_words;
 
 uint lattice_wall_links(uint cell)
 {
-    return texelFetch(wall_link_texels, int(cell)).x;
+    return texelFetch(wall_links_words, int(cell)).x;
 }
 #endif
 #ifdef LATTICE_WALL_CELLS
-layout(binding = LATTICE_WALL_CELLS) uniform samplerBuffer wall_cell_texels; // four to a struct wall_cell
+layout(binding = LATTICE_WALL_CELLS) uniform samplerBuffer wall_cells_texels; // four to a struct wall_cell
 
 // Albedo; a = area.
 vec4 lattice_wall_surface(uint cell)
 {
-    return texelFetch(wall_cell_texels, int(4u * cell + 3u));
+    return texelFetch(wall_cells_texels, int(4u * cell + 3u));
 }
 #endif
 

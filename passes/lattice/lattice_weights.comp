@@ -2,7 +2,6 @@
 // g_i d_i|. After the last sweep: what further ones would still change, for the counters.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/counters.h"
 
@@ -11,15 +10,15 @@ layout(push_constant, scalar) uniform push
 {
     lattice_args args;
 };
-layout(binding = 0, scalar) readonly buffer partial_buffer
+layout(binding = 0, scalar) readonly buffer partials_buffer
 {
     float partials[]; // [channel][group][dot]
 };
-layout(binding = 1, scalar) writeonly buffer weight_buffer
+layout(binding = 1, scalar) writeonly buffer weights_buffer
 {
     vec2 weights[]; // per channel
 };
-layout(binding = 2, scalar) buffer counter_buffer
+layout(binding = 2, scalar) buffer counters_buffer
 {
     counters_block counters;
 };

@@ -4,21 +4,10 @@
 #include "lattice_cells.comp.h"
 #include <math.h>
 
-static const tyn_port ports[LATTICE_CELLS_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, LATTICE_CELLS),
-    [LATTICE_CELLS_PORT_CELLS] = {"cells", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                  false,
-                                  "cell means of sigma_s', sigma_a (1/m), g', emission "
-                                  "(W/(m^3 sr)); channels stacked along z"},
-};
-
-static const tyn_binding bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, LATTICE_CELLS),
-    {LATTICE_CELLS_PORT_CELLS, TYN_USE_STORAGE_WRITE},
-};
+static const tyn_port ports[] = {LATTICE_CELLS_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(lattice_cells, sizeof(struct lattice_cells_args), 8, 4, 2, bindings, 1),
+    TYN_KERNEL(lattice_cells),
 };
 
 enum { MAX_SAMPLES = 8 }; // along each axis of a cell
@@ -51,7 +40,7 @@ static void record(tyn_recorder *r, const void *params)
         args.samples[a] = (uint32_t)fminf(fmaxf(pairs, 2), MAX_SAMPLES);
         fetches *= args.samples[a];
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = dims, .args = &args, .spec = &p->mode});
+    TYN_DISPATCH(r, .cells = dims, .args = &args, .spec = &p->mode);
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z);
     tyn_rec_work(r, "fetches", fetches * (p->mode == TYN_MEDIUM_COEFFICIENTS ? 4 : 1));
 }

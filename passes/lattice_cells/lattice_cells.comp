@@ -4,7 +4,6 @@
 // every line of sight is kept in the mean, and so is the power that beams lose.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"

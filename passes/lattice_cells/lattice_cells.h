@@ -10,9 +10,12 @@ typedef struct tyn_lattice_cells_params {
     uint32_t mode; // TYN_MEDIUM_*
 } tyn_lattice_cells_params;
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, LATTICE_CELLS), // IN
-    LATTICE_CELLS_PORT_CELLS, // OUT 3D RGBA32F, channels stacked along z: sigma_s', sigma_a, g', emission
-    LATTICE_CELLS_NUM_PORTS,
-};
+// clang-format off
+#define LATTICE_CELLS_PORTS(X) \
+    TYN_MEDIUM(X, LATTICE_CELLS), \
+    X(LATTICE_CELLS, CELLS, cells, OUT, IMAGE_3D, \
+        "cell means of sigma_s', sigma_a (1/m), g', emission (W/(m^3 sr)); channels stacked along z", \
+        .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+// clang-format on
+enum { LATTICE_CELLS_PORTS(TYN_PORT_ENUM), LATTICE_CELLS_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_lattice_cells;

@@ -2,21 +2,10 @@
 #include "lattice_keep.h"
 #include "lattice_keep.comp.h"
 
-static const tyn_port ports[LATTICE_KEEP_NUM_PORTS] = {
-    [LATTICE_KEEP_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
-    [LATTICE_KEEP_PORT_POWER] = {"power", TYN_IN, TYN_BUFFER, 0, false, "of lattice_recall"},
-    [LATTICE_KEEP_PORT_MEMORY] = {"memory", TYN_INOUT, TYN_BUFFER, 0, false,
-                                  "struct lattice_memory_block and moments"},
-};
-
-static const tyn_binding bindings[] = {
-    {LATTICE_KEEP_PORT_MOMENTS, TYN_USE_SAMPLED},
-    {LATTICE_KEEP_PORT_POWER, TYN_USE_STORAGE_READ},
-    {LATTICE_KEEP_PORT_MEMORY, TYN_USE_STORAGE_WRITE},
-};
+static const tyn_port ports[] = {LATTICE_KEEP_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(lattice_keep, sizeof(struct lattice_recall_args), 8, 4, 2, bindings, 0),
+    TYN_KERNEL(lattice_keep),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -29,8 +18,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const struct lattice_recall_args args = lattice_memory_args(params);
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = 0, .cells = lattice_memory_texels(&args), .args = &args});
+    TYN_DISPATCH(r, .kernel = 0, .cells = lattice_memory_texels(&args), .args = &args);
 }
 
 const tyn_pass_desc tyn_pass_lattice_keep = {

@@ -1,7 +1,6 @@
 // lattice_keep.comp -- puts a solution away for the next frame.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
@@ -9,7 +8,7 @@ layout(push_constant, scalar) uniform push
 {
     lattice_recall_args args;
 };
-layout(binding = 0) uniform sampler3D solution;
+layout(binding = 0) uniform sampler3D moments_tex;
 layout(binding = 1, scalar) readonly buffer power_buffer
 {
     float power[3];
@@ -27,7 +26,7 @@ void main()
         return;
     }
     uint i = (texel.z * args.dims.y + texel.y) * args.dims.x + texel.x;
-    moments[i] = texelFetch(solution, ivec3(texel), 0);
+    moments[i] = texelFetch(moments_tex, ivec3(texel), 0);
     if (i == 0) {
         memory = lattice_memory_block(args.world, args.extent, args.dims, args.channels, args.tint,
                                       vec3(power[0], power[1], power[2]));

@@ -8,92 +8,16 @@
 #include "lattice_lamps.comp.h"
 #include <math.h>
 
-static const tyn_port ports[LATTICE_LAMPS_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, LATTICE_LAMPS),
-    [LATTICE_LAMPS_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    TYN_RADIALS(TYN_BUNDLE_IN, LATTICE_LAMPS),
-    TYN_WALLS(TYN_BUNDLE_OPTIONAL, LATTICE_LAMPS),
-    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, LATTICE_LAMPS),
-    [LATTICE_LAMPS_PORT_VPL_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
-    [LATTICE_LAMPS_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true,
-                                  "of cells and VPLs: rooms.h"},
-    [LATTICE_LAMPS_PORT_OTHERS] = {"others", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                   "source of lattice_source or lattice_ordinates"},
-    [LATTICE_LAMPS_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                   false,
-                                   "unscattered fluence and flux of all lights, W/m^2; channels "
-                                   "stacked along z"},
-    [LATTICE_LAMPS_PORT_VPL_LIGHT] = {"vpl_light", TYN_OUT, TYN_IMAGE_3D,
-                                      VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                                      "unscattered fluence and flux of VPLs, W/m^2"},
-    [LATTICE_LAMPS_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false,
-                                  "struct lattice_lamp_power per group of lights and channel"},
-    [LATTICE_LAMPS_PORT_LIT] = {"lit", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                false, "fluence and flux of each group of lights, before scaling"},
-    [LATTICE_LAMPS_PORT_UNSHADOWED] = {"unshadowed", TYN_SCRATCH, TYN_IMAGE_3D,
-                                       VK_FORMAT_R32_SFLOAT, false,
-                                       "fluence without shadows, before scaling"},
-};
+static const tyn_port ports[] = {LATTICE_LAMPS_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_CELLS, KERNEL_VPLS, KERNEL_NEAR, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
 
-static const tyn_binding cells_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, LATTICE_LAMPS),
-    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, LATTICE_LAMPS),
-    {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_LAMPS_PORT_LIT, TYN_USE_STORAGE_WRITE},
-    {LATTICE_LAMPS_PORT_UNSHADOWED, TYN_USE_STORAGE_WRITE},
-    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, LATTICE_LAMPS),
-    TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, LATTICE_LAMPS),
-};
-
-static const tyn_binding vpls_bindings[] = {
-    {LATTICE_LAMPS_PORT_MEDIUM, TYN_USE_UNIFORM},
-    TYN_RADIALS(TYN_BUNDLE_BIND, LATTICE_LAMPS),
-    {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_LAMPS_PORT_LIT, TYN_USE_STORAGE_WRITE},
-    {LATTICE_LAMPS_PORT_UNSHADOWED, TYN_USE_STORAGE_WRITE},
-    {LATTICE_LAMPS_PORT_VPL_DISTANCES, TYN_USE_SAMPLED},
-    TYN_WALLS(TYN_BUNDLE_BIND, LATTICE_LAMPS),
-    {LATTICE_LAMPS_PORT_ROOMS, TYN_USE_TEXELS_UINT},
-};
-
-static const tyn_binding near_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, LATTICE_LAMPS),
-    TYN_RADIALS(TYN_BUNDLE_BIND, LATTICE_LAMPS),
-    {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_LAMPS_PORT_LIT, TYN_USE_STORAGE_RW},
-    {LATTICE_LAMPS_PORT_UNSHADOWED, TYN_USE_STORAGE_RW},
-    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, LATTICE_LAMPS),
-    {LATTICE_LAMPS_PORT_VPL_DISTANCES, TYN_USE_SAMPLED},
-    {LATTICE_LAMPS_PORT_ROOMS, TYN_USE_TEXELS_UINT},
-};
-
-static const tyn_binding sum_bindings[] = {
-    {LATTICE_LAMPS_PORT_MEDIUM, TYN_USE_UNIFORM},
-    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, LATTICE_LAMPS),
-    {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_LAMPS_PORT_UNSHADOWED, TYN_USE_SAMPLED},
-    {LATTICE_LAMPS_PORT_POWER, TYN_USE_STORAGE_WRITE},
-};
-
-static const tyn_binding source_bindings[] = {
-    {LATTICE_LAMPS_PORT_POWER, TYN_USE_STORAGE_READ},
-    {LATTICE_LAMPS_PORT_LIT, TYN_USE_SAMPLED},
-    {LATTICE_LAMPS_PORT_OTHERS, TYN_USE_SAMPLED},
-    {LATTICE_LAMPS_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_LAMPS_PORT_SOURCE, TYN_USE_STORAGE_WRITE},
-    {LATTICE_LAMPS_PORT_VPL_LIGHT, TYN_USE_STORAGE_WRITE},
-};
-
-#define KERNEL(step, code, x, y, z, specs)                                                         \
-    TYN_KERNEL(code, sizeof(struct lattice_lamps_args), x, y, z, step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_CELLS] = KERNEL(cells, lattice_lamps_cells, 8, 4, 2, 4),
-    [KERNEL_VPLS] = KERNEL(vpls, lattice_lamps_vpls, 8, 4, 2, 5),
-    [KERNEL_NEAR] = KERNEL(near, lattice_lamps_near, 8, 4, 2, 5),
-    [KERNEL_SUM] = KERNEL(sum, lattice_lamps_sum, LATTICE_SUN_GROUP, 1, 1, 1),
-    [KERNEL_SOURCE] = KERNEL(source, lattice_lamps, 8, 4, 2, 1),
+    [KERNEL_CELLS] = TYN_KERNEL(lattice_lamps_cells),
+    [KERNEL_VPLS] = TYN_KERNEL(lattice_lamps_vpls),
+    [KERNEL_NEAR] = TYN_KERNEL(lattice_lamps_near),
+    [KERNEL_SUM] = TYN_KERNEL(lattice_lamps_sum),
+    [KERNEL_SOURCE] = TYN_KERNEL(lattice_lamps),
 };
 
 static uint32_t num_groups(const tyn_lattice_lamps_params *p)
@@ -150,9 +74,7 @@ static void record(tyn_recorder *r, const void *params)
         const uint32_t spec[4] = {p->mode, p->shape.channels, walls,
                                   tyn_rec_has(r, LATTICE_LAMPS_PORT_SHADOW_ATLAS)};
         const tyn_extent cells = {dims.x, dims.y, dims.z * (args.num_groups - p->vpls)};
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = KERNEL_CELLS, .cells = cells, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = cells, .args = &args, .spec = spec);
     }
     if (p->vpls) {
         const uint32_t spec[5] = {p->mode, p->shape.channels,
@@ -161,17 +83,12 @@ static void record(tyn_recorder *r, const void *params)
         // Workgroups are cubes of 4^3 blocks.
         const tyn_extent blocks = {(dims.x + 7) / 8 * 8, (dims.y + 7) / 8 * 4,
                                    (dims.z + 7) / 8 * 2};
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = KERNEL_VPLS, .cells = blocks, .args = &args, .spec = spec});
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_NEAR, .cells = dims, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = KERNEL_VPLS, .cells = blocks, .args = &args, .spec = spec);
+        TYN_DISPATCH(r, .kernel = KERNEL_NEAR, .cells = dims, .args = &args, .spec = spec);
     }
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = KERNEL_SUM,
-                           .cells = {args.num_groups * LATTICE_SUN_GROUP, p->shape.channels, 1},
-                           .args = &args,
-                           .spec = &p->mode});
+    TYN_DISPATCH(r, .kernel = KERNEL_SUM,
+                 .cells = {args.num_groups * LATTICE_SUN_GROUP, p->shape.channels, 1},
+                 .args = &args, .spec = &p->mode);
     // Without VPLs nothing is written to their image, so any will do.
     const uint8_t source_ports[] = {
         LATTICE_LAMPS_PORT_POWER,
@@ -181,11 +98,8 @@ static void record(tyn_recorder *r, const void *params)
         LATTICE_LAMPS_PORT_SOURCE,
         p->vpls ? LATTICE_LAMPS_PORT_VPL_LIGHT : LATTICE_LAMPS_PORT_SOURCE,
     };
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SOURCE,
-                                        .cells = {dims.x, dims.y, dims.z * p->shape.channels},
-                                        .args = &args,
-                                        .ports = source_ports,
-                                        .spec = &p->vpls});
+    TYN_DISPATCH(r, .kernel = KERNEL_SOURCE, .cells = {dims.x, dims.y, dims.z * p->shape.channels},
+                 .args = &args, .ports = source_ports, .spec = &p->vpls);
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * p->num_lamps);
 }
 

@@ -13,20 +13,26 @@ typedef struct tyn_lattice_lamps_params {
     uint32_t vpls; // 1: there may be VPLs
 } tyn_lattice_lamps_params;
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, LATTICE_LAMPS),  // IN
-    LATTICE_LAMPS_PORT_CELLS,                    // IN 3D, of lattice_cells
-    TYN_RADIALS(TYN_BUNDLE_ENUM, LATTICE_LAMPS), // IN
-    TYN_WALLS(TYN_BUNDLE_ENUM, LATTICE_LAMPS),   // IN optional
-    TYN_SHADOWS(TYN_BUNDLE_ENUM, LATTICE_LAMPS), // IN optional
-    LATTICE_LAMPS_PORT_VPL_DISTANCES,            // IN optional 2D, of vpl
-    LATTICE_LAMPS_PORT_ROOMS,  // IN optional buffer, rooms.h: with walls and maps of VPLs
-    LATTICE_LAMPS_PORT_OTHERS, // IN optional 3D: `source` of suns and ordinates, which is added to
-    LATTICE_LAMPS_PORT_SOURCE, // OUT 3D RGBA32F, stacked: fluence and flux of unscattered light, W/m^2
-    LATTICE_LAMPS_PORT_VPL_LIGHT, // OUT 3D RGBA32F, only with `vpls`: what of it is theirs
-    LATTICE_LAMPS_PORT_POWER,     // OUT buffer struct lattice_lamp_power per group and channel
-    LATTICE_LAMPS_PORT_LIT,       // SCRATCH, as the next
-    LATTICE_LAMPS_PORT_UNSHADOWED,
-    LATTICE_LAMPS_NUM_PORTS,
-};
+// clang-format off
+#define LATTICE_LAMPS_PORTS(X) \
+    TYN_MEDIUM(X, LATTICE_LAMPS), \
+    X(LATTICE_LAMPS, CELLS, cells, IN, IMAGE_3D, "of lattice_cells"), \
+    TYN_RADIALS(X, LATTICE_LAMPS), \
+    TYN_WALLS(X##_OPTIONAL, LATTICE_LAMPS), \
+    TYN_SHADOWS(X##_OPTIONAL, LATTICE_LAMPS), \
+    X(LATTICE_LAMPS, VPL_DISTANCES, vpl_distances, OPTIONAL, IMAGE_2D, "of vpl"), \
+    X(LATTICE_LAMPS, ROOMS, rooms, OPTIONAL, BUFFER, "rooms.h: with walls and maps of VPLs"), \
+    X(LATTICE_LAMPS, OTHERS, others, OPTIONAL, IMAGE_3D, "`source` of suns and ordinates, which is added to"), \
+    X(LATTICE_LAMPS, SOURCE, source, OUT, IMAGE_3D, \
+        "unscattered fluence and flux of all lights, W/m^2; channels stacked along z", \
+        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(LATTICE_LAMPS, VPL_LIGHT, vpl_light, OUT, IMAGE_3D, \
+        "unscattered fluence and flux of VPLs, W/m^2", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(LATTICE_LAMPS, POWER, power, OUT, BUFFER, "struct lattice_lamp_power per group of lights and channel"), \
+    X(LATTICE_LAMPS, LIT, lit, SCRATCH, IMAGE_3D, \
+        "fluence and flux of each group of lights, before scaling", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(LATTICE_LAMPS, UNSHADOWED, unshadowed, SCRATCH, IMAGE_3D, \
+        "fluence without shadows, before scaling", .format = VK_FORMAT_R32_SFLOAT)
+// clang-format on
+enum { LATTICE_LAMPS_PORTS(TYN_PORT_ENUM), LATTICE_LAMPS_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_lattice_lamps;

@@ -4,7 +4,6 @@
 // 8^3 pieces; of each the mean of 1 / r^2 is taken, which is finite at the light itself.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_AT 0
 #define RADIALS_AT 5

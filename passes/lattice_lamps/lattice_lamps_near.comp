@@ -2,7 +2,6 @@
 // that of all others.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_AT 0
 #define RADIALS_AT 5

@@ -6,7 +6,6 @@
 // scaling. Sums have a fixed order: every thread its own terms, then pairwise.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/common/quotient.glsl"
 #define MEDIUM_BLOCK 0

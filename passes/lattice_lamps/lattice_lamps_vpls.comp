@@ -5,7 +5,6 @@
 // lattice_lamps_near.comp.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_BLOCK 0

@@ -3,29 +3,10 @@
 #include "shaders/lattice/lattice_args.h"
 #include "lattice_ordinates.comp.h"
 
-static const tyn_port ports[LATTICE_ORDINATES_NUM_PORTS] = {
-    [LATTICE_ORDINATES_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false,
-                                       "struct medium_block"},
-    TYN_COLUMNS(TYN_BUNDLE_IN, LATTICE_ORDINATES),
-    [LATTICE_ORDINATES_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    [LATTICE_ORDINATES_PORT_SUNLIGHT] = {"sunlight", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                         "source of lattice_source"},
-    [LATTICE_ORDINATES_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D,
-                                       VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                                       "unscattered fluence and flux of suns and ordinates, W/m^2; "
-                                       "channels stacked along z"},
-};
-
-static const tyn_binding bindings[] = {
-    {LATTICE_ORDINATES_PORT_MEDIUM, TYN_USE_UNIFORM},
-    TYN_COLUMNS(TYN_BUNDLE_BIND, LATTICE_ORDINATES),
-    {LATTICE_ORDINATES_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_ORDINATES_PORT_SUNLIGHT, TYN_USE_SAMPLED},
-    {LATTICE_ORDINATES_PORT_SOURCE, TYN_USE_STORAGE_WRITE},
-};
+static const tyn_port ports[] = {LATTICE_ORDINATES_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(lattice_ordinates, sizeof(struct lattice_ordinates_args), 8, 4, 2, bindings, 2),
+    TYN_KERNEL(lattice_ordinates),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -48,9 +29,7 @@ static void record(tyn_recorder *r, const void *params)
         .count = p->count,
     };
     const uint32_t spec[2] = {p->mode, p->grey ? 1 : 3};
-    tyn_rec_dispatch(
-        r,
-        &(tyn_dispatch){.cells = {(dims.x + 1) / 2, dims.y, dims.z}, .args = &args, .spec = spec});
+    TYN_DISPATCH(r, .cells = {(dims.x + 1) / 2, dims.y, dims.z}, .args = &args, .spec = spec);
 
     // As if all ordinates were in use. A transmittance: 30 operations; sums 30.
     double cells = (double)dims.x * dims.y * dims.z * p->count;

@@ -9,7 +9,6 @@
 // the sky has more or less than its mean.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/ordinate_args.h"
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_BLOCK 0

@@ -12,12 +12,15 @@ typedef struct tyn_lattice_ordinates_params {
     uint32_t count; // tyn_columns_params.count
 } tyn_lattice_ordinates_params;
 
-enum {
-    LATTICE_ORDINATES_PORT_MEDIUM,                   // IN buffer struct medium_block
-    TYN_COLUMNS(TYN_BUNDLE_ENUM, LATTICE_ORDINATES), // IN
-    LATTICE_ORDINATES_PORT_CELLS,                    // IN 3D, of lattice_cells
-    LATTICE_ORDINATES_PORT_SUNLIGHT, // IN optional 3D: `source` of lattice_source, which is added to
-    LATTICE_ORDINATES_PORT_SOURCE, // OUT 3D RGBA32F, stacked: sum E T', sum a E T' direction (W/m^2)
-    LATTICE_ORDINATES_NUM_PORTS,
-};
+// clang-format off
+#define LATTICE_ORDINATES_PORTS(X) \
+    X(LATTICE_ORDINATES, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
+    TYN_COLUMNS(X, LATTICE_ORDINATES), \
+    X(LATTICE_ORDINATES, CELLS, cells, IN, IMAGE_3D, "of lattice_cells"), \
+    X(LATTICE_ORDINATES, SUNLIGHT, sunlight, OPTIONAL, IMAGE_3D, "`source` of lattice_source, which is added to"), \
+    X(LATTICE_ORDINATES, SOURCE, source, OUT, IMAGE_3D, \
+        "unscattered fluence and flux of suns and ordinates, W/m^2; channels stacked along z", \
+        .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+// clang-format on
+enum { LATTICE_ORDINATES_PORTS(TYN_PORT_ENUM), LATTICE_ORDINATES_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_lattice_ordinates;

@@ -9,38 +9,13 @@ uint64_t tyn_lattice_memory_size(int32_t cells, uint32_t channels)
     return sizeof(struct lattice_memory_block) + 4 * sizeof(float) * channels * n * n * n;
 }
 
-static const tyn_port ports[LATTICE_RECALL_NUM_PORTS] = {
-    [LATTICE_RECALL_PORT_MEMORY] = {"memory", TYN_IN, TYN_BUFFER, 0, false,
-                                    "struct lattice_memory_block and moments"},
-    [LATTICE_RECALL_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    [LATTICE_RECALL_PORT_SOURCE] = {"source", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_source"},
-    [LATTICE_RECALL_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
-                                         "struct env_block"},
-    [LATTICE_RECALL_PORT_GUESS] = {"guess", TYN_OUT, TYN_BUFFER, 0, false, "moments to start from"},
-    [LATTICE_RECALL_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false,
-                                   "what light puts into the cells"},
-};
+static const tyn_port ports[] = {LATTICE_RECALL_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_POWER, KERNEL_RECALL, NUM_KERNELS };
 
-static const tyn_binding power_bindings[] = {
-    {LATTICE_RECALL_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_RECALL_PORT_SOURCE, TYN_USE_SAMPLED},
-    {LATTICE_RECALL_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {LATTICE_RECALL_PORT_POWER, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding recall_bindings[] = {
-    {LATTICE_RECALL_PORT_MEMORY, TYN_USE_STORAGE_READ},
-    {LATTICE_RECALL_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {LATTICE_RECALL_PORT_POWER, TYN_USE_STORAGE_READ},
-    {LATTICE_RECALL_PORT_GUESS, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_POWER] = TYN_KERNEL(lattice_recall_power, sizeof(struct lattice_recall_args),
-                                LATTICE_SUN_GROUP, 1, 1, power_bindings, 0),
-    [KERNEL_RECALL] =
-        TYN_KERNEL(lattice_recall, sizeof(struct lattice_recall_args), 8, 4, 2, recall_bindings, 0),
+    [KERNEL_POWER] = TYN_KERNEL(lattice_recall_power),
+    [KERNEL_RECALL] = TYN_KERNEL(lattice_recall),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -57,12 +32,9 @@ static void record(tyn_recorder *r, const void *params)
 {
     const struct lattice_recall_args args = lattice_memory_args(params);
     tyn_rec_fill(r, LATTICE_RECALL_PORT_POWER, 0); // of channels that are not solved
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_POWER,
-                                        .cells = {LATTICE_SUN_GROUP * args.channels, 1, 1},
-                                        .args = &args});
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_RECALL,
-                                        .cells = lattice_memory_texels(&args),
-                                        .args = &args});
+    TYN_DISPATCH(r, .kernel = KERNEL_POWER, .cells = {LATTICE_SUN_GROUP * args.channels, 1, 1},
+                 .args = &args);
+    TYN_DISPATCH(r, .kernel = KERNEL_RECALL, .cells = lattice_memory_texels(&args), .args = &args);
 }
 
 const tyn_pass_desc tyn_pass_lattice_recall = {

@@ -1,7 +1,6 @@
 // lattice_recall.comp -- the last frame's solution at the places of this frame's cells.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/lattice/lattice.glsl"
 #define LATTICE_ENVIRONMENT 1

@@ -5,7 +5,6 @@
 // One workgroup per channel; the sum has a fixed order: every thread its own terms, then pairwise.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/lattice/lattice.glsl"
 #define LATTICE_ENVIRONMENT 2

@@ -6,58 +6,14 @@
 #include "lattice_source.comp.h"
 #include <math.h>
 
-static const tyn_port ports[LATTICE_SOURCE_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, LATTICE_SOURCE),
-    [LATTICE_SOURCE_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "struct light_block[]"},
-    [LATTICE_SOURCE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    TYN_BEAMS(TYN_BUNDLE_IN, LATTICE_SOURCE),
-    TYN_WALLS(TYN_BUNDLE_OPTIONAL, LATTICE_SOURCE),
-    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, LATTICE_SOURCE),
-    [LATTICE_SOURCE_PORT_SOURCE] = {"source", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                                    false,
-                                    "unscattered fluence and flux of the suns, W/m^2; channels "
-                                    "stacked along z"},
-    [LATTICE_SOURCE_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false,
-                                   "struct lattice_power per sun and channel"},
-    [LATTICE_SOURCE_PORT_SUNLIT] = {"sunlit", TYN_SCRATCH, TYN_IMAGE_3D,
-                                    VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                                    "transmittance to each sun; a = how much of the cell sees it; "
-                                    "suns stacked along z"},
-};
+static const tyn_port ports[] = {LATTICE_SOURCE_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_BEAM, KERNEL_SUM, KERNEL_SOURCE, NUM_KERNELS };
 
-static const tyn_binding beam_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, LATTICE_SOURCE),
-    TYN_BEAMS(TYN_BUNDLE_BIND, LATTICE_SOURCE),
-    {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_STORAGE_WRITE},
-    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, LATTICE_SOURCE),
-    TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, LATTICE_SOURCE),
-    {LATTICE_SOURCE_PORT_CELLS, TYN_USE_SAMPLED},
-};
-
-static const tyn_binding sum_bindings[] = {
-    {LATTICE_SOURCE_PORT_MEDIUM, TYN_USE_UNIFORM},
-    TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, LATTICE_SOURCE),
-    {LATTICE_SOURCE_PORT_CELLS, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_POWER, TYN_USE_STORAGE_WRITE},
-};
-
-static const tyn_binding source_bindings[] = {
-    {LATTICE_SOURCE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
-    {LATTICE_SOURCE_PORT_POWER, TYN_USE_STORAGE_READ},
-    {LATTICE_SOURCE_PORT_SUNLIT, TYN_USE_SAMPLED},
-    {LATTICE_SOURCE_PORT_SOURCE, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_BEAM] = TYN_KERNEL(lattice_source_beam, sizeof(struct lattice_source_args), 8, 4, 2,
-                               beam_bindings, 4),
-    [KERNEL_SUM] = TYN_KERNEL(lattice_source_sum, sizeof(struct lattice_source_args),
-                              LATTICE_SUN_GROUP, 1, 1, sum_bindings, 1),
-    [KERNEL_SOURCE] =
-        TYN_KERNEL(lattice_source, sizeof(struct lattice_source_args), 8, 4, 2, source_bindings, 0),
+    [KERNEL_BEAM] = TYN_KERNEL(lattice_source_beam),
+    [KERNEL_SUM] = TYN_KERNEL(lattice_source_sum),
+    [KERNEL_SOURCE] = TYN_KERNEL(lattice_source),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -99,17 +55,13 @@ static void record(tyn_recorder *r, const void *params)
                               tyn_rec_has(r, LATTICE_SOURCE_PORT_WALL_LINKS),
                               tyn_rec_has(r, LATTICE_SOURCE_PORT_SHADOW_ATLAS)};
     for (; args.sun < p->num_suns; args.sun++) { // one by one: then all threads read the same of it
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_BEAM, .cells = dims, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = KERNEL_BEAM, .cells = dims, .args = &args, .spec = spec);
     }
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = KERNEL_SUM,
-                           .cells = {p->num_suns * LATTICE_SUN_GROUP, p->shape.channels, 1},
-                           .args = &args,
-                           .spec = &p->mode});
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SOURCE,
-                                        .cells = {dims.x, dims.y, dims.z * p->shape.channels},
-                                        .args = &args});
+    TYN_DISPATCH(r, .kernel = KERNEL_SUM,
+                 .cells = {p->num_suns * LATTICE_SUN_GROUP, p->shape.channels, 1}, .args = &args,
+                 .spec = &p->mode);
+    TYN_DISPATCH(r, .kernel = KERNEL_SOURCE, .cells = {dims.x, dims.y, dims.z * p->shape.channels},
+                 .args = &args);
     tyn_rec_work(r, "cells", cells * p->num_suns);
     tyn_rec_work(r, "fetches", 2 * cells * p->num_suns * pow(args.samples, 3));
 }

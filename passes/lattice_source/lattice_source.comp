@@ -1,7 +1,6 @@
 // lattice_source.comp -- the suns' unscattered light in a cell: sum of E T', and of E T' direction.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/scene_args.h"
 #include "shaders/lattice/lattice_args.h"
 #include "shaders/lattice/lattice_sweep.glsl"
@@ -11,7 +10,7 @@ layout(push_constant, scalar) uniform push
 {
     lattice_source_args args;
 };
-layout(binding = 0, scalar) readonly buffer light_buffer
+layout(binding = 0, scalar) readonly buffer lights_buffer
 {
     light_block lights[];
 };

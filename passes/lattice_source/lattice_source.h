@@ -11,16 +11,23 @@ typedef struct tyn_lattice_source_params {
     uint32_t num_suns; // 0..4; 0: the pass need not be added
 } tyn_lattice_source_params;
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, LATTICE_SOURCE),  // IN
-    LATTICE_SOURCE_PORT_LIGHTS,                   // IN buffer struct light_block[]
-    LATTICE_SOURCE_PORT_CELLS,                    // IN 3D
-    TYN_BEAMS(TYN_BUNDLE_ENUM, LATTICE_SOURCE),   // IN
-    TYN_WALLS(TYN_BUNDLE_ENUM, LATTICE_SOURCE),   // IN optional
-    TYN_SHADOWS(TYN_BUNDLE_ENUM, LATTICE_SOURCE), // IN optional
-    LATTICE_SOURCE_PORT_SOURCE, // OUT 3D RGBA32F, stacked: sum E T' over the suns, sum E T' direction (W/m^2)
-    LATTICE_SOURCE_PORT_POWER, // OUT buffer: per sun the power that enters and that its beam loses, for balance
-    LATTICE_SOURCE_PORT_SUNLIT, // SCRATCH
-    LATTICE_SOURCE_NUM_PORTS,
-};
+// clang-format off
+#define LATTICE_SOURCE_PORTS(X) \
+    TYN_MEDIUM(X, LATTICE_SOURCE), \
+    X(LATTICE_SOURCE, LIGHTS, lights, IN, BUFFER, "struct light_block[]"), \
+    X(LATTICE_SOURCE, CELLS, cells, IN, IMAGE_3D, "of lattice_cells"), \
+    TYN_BEAMS(X, LATTICE_SOURCE), \
+    TYN_WALLS(X##_OPTIONAL, LATTICE_SOURCE), \
+    TYN_SHADOWS(X##_OPTIONAL, LATTICE_SOURCE), \
+    X(LATTICE_SOURCE, SOURCE, source, OUT, IMAGE_3D, \
+        "unscattered fluence and flux of the suns, W/m^2; channels stacked along z", \
+        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(LATTICE_SOURCE, POWER, power, OUT, BUFFER, \
+        "struct lattice_power per sun and channel: per sun the power that enters and that its beam loses, for" \
+        " balance"), \
+    X(LATTICE_SOURCE, SUNLIT, sunlit, SCRATCH, IMAGE_3D, \
+        "transmittance to each sun; a = how much of the cell sees it; suns stacked along z", \
+        .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+// clang-format on
+enum { LATTICE_SOURCE_PORTS(TYN_PORT_ENUM), LATTICE_SOURCE_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_lattice_source;

@@ -11,7 +11,6 @@
 // the beam's energy is compared without surfaces.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_AT 0
 #define BEAMS_AT 5

@@ -5,7 +5,6 @@
 // pairwise.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/lattice/lattice_args.h"
 #define MEDIUM_BLOCK 0
 #define BEAMS_AT 1

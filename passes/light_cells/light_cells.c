@@ -4,33 +4,13 @@
 #include "light_cells_see.comp.h"
 #include <math.h>
 
-static const tyn_port ports[LIGHT_CELLS_NUM_PORTS] = {
-    TYN_SHADOWS(TYN_BUNDLE_IN, LIGHT_CELLS),
-    [LIGHT_CELLS_PORT_BLOCKS] = {"blocks", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32G32_SFLOAT,
-                                 false, "least and greatest depth in blocks of the atlas"},
-    [LIGHT_CELLS_PORT_CELLS] = {"light_cells", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-                                "a whole number: two bits a light, 1 dark, 2 lit, 0 neither"},
-};
-
-static const tyn_binding blocks_bindings[] = {
-    {LIGHT_CELLS_PORT_SHADOW_ATLAS, TYN_USE_SAMPLED, false},
-    {LIGHT_CELLS_PORT_BLOCKS, TYN_USE_STORAGE_WRITE, false},
-    {LIGHT_CELLS_PORT_BLOCKS, TYN_USE_STORAGE_WRITE, false},
-    {LIGHT_CELLS_PORT_BLOCKS, TYN_USE_STORAGE_WRITE, false},
-    {LIGHT_CELLS_PORT_BLOCKS, TYN_USE_STORAGE_WRITE, false},
-};
-static const tyn_binding see_bindings[] = {
-    {LIGHT_CELLS_PORT_BLOCKS, TYN_USE_SAMPLED, false},
-    {LIGHT_CELLS_PORT_SHADOWS, TYN_USE_UNIFORM, false},
-    {LIGHT_CELLS_PORT_CELLS, TYN_USE_STORAGE_WRITE, false},
-};
+static const tyn_port ports[] = {LIGHT_CELLS_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_BLOCKS, KERNEL_SEE, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_BLOCKS] = TYN_KERNEL(light_cells_blocks, 0, 8, 8, 1, blocks_bindings, 0),
-    [KERNEL_SEE] =
-        TYN_KERNEL(light_cells_see, sizeof(struct light_cells_args), 4, 4, 4, see_bindings, 2),
+    [KERNEL_BLOCKS] = TYN_KERNEL(light_cells_blocks),
+    [KERNEL_SEE] = TYN_KERNEL(light_cells_see),
 };
 
 static const tyn_param params_table[] = {
@@ -65,7 +45,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_build_image(b, LIGHT_CELLS_PORT_BLOCKS,
                     blocks_of(tyn_build_extent(b, LIGHT_CELLS_PORT_SHADOW_ATLAS)),
                     LIGHT_CELLS_LEVELS);
-    tyn_build_image(b, LIGHT_CELLS_PORT_CELLS,
+    tyn_build_image(b, LIGHT_CELLS_PORT_LIGHT_CELLS,
                     (tyn_extent){args.dims[0], args.dims[1], args.dims[2]}, 1);
     return TYN_OK;
 }
@@ -77,13 +57,10 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t most_lamps = TYN_LIGHT_CELLS - TYN_SHADOW_SUNS;
     const uint32_t spec[] = {p->num_suns, p->num_lamps < most_lamps ? p->num_lamps : most_lamps};
     const uint8_t mips[1 + LIGHT_CELLS_LEVELS] = {0, 0, 1, 2, 3};
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_BLOCKS,
-                                        .cells = tyn_rec_extent(r, LIGHT_CELLS_PORT_BLOCKS),
-                                        .mips = mips});
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SEE,
-                                        .cells = {args.dims[0], args.dims[1], args.dims[2]},
-                                        .args = &args,
-                                        .spec = spec});
+    TYN_DISPATCH(r, .kernel = KERNEL_BLOCKS, .cells = tyn_rec_extent(r, LIGHT_CELLS_PORT_BLOCKS),
+                 .mips = mips);
+    TYN_DISPATCH(r, .kernel = KERNEL_SEE, .cells = {args.dims[0], args.dims[1], args.dims[2]},
+                 .args = &args, .spec = spec);
     tyn_rec_work(r, "cells", (double)args.dims[0] * args.dims[1] * args.dims[2]);
 }
 
@@ -94,6 +71,6 @@ const tyn_pass_desc tyn_pass_light_cells = {
     TYN_PASS_TABLES(tyn_light_cells_params),
     .params = params_table,
     .num_params = TYN_COUNT(params_table),
-    .debug_port = LIGHT_CELLS_PORT_CELLS,
+    .debug_port = LIGHT_CELLS_PORT_LIGHT_CELLS,
     .debug_meaning = "two bits a light: 1 dark, 2 lit, 0 neither",
 };

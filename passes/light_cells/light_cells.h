@@ -12,11 +12,14 @@ typedef struct tyn_light_cells_params {
     uint32_t num_suns, num_lamps; // of shadow_map
 } tyn_light_cells_params;
 
-enum {
-    TYN_SHADOWS(TYN_BUNDLE_ENUM, LIGHT_CELLS), // IN
-    // SCRATCH 2D RG32F, with mips: least and greatest depth in blocks of the atlas
-    LIGHT_CELLS_PORT_BLOCKS,
-    LIGHT_CELLS_PORT_CELLS, // OUT 3D R32F: light_cells_args.h
-    LIGHT_CELLS_NUM_PORTS,
-};
+// clang-format off
+#define LIGHT_CELLS_PORTS(X) \
+    TYN_SHADOWS(X, LIGHT_CELLS), \
+    X(LIGHT_CELLS, BLOCKS, blocks, SCRATCH, IMAGE_2D, \
+        "with mips: least and greatest depth in blocks of the atlas", .format = VK_FORMAT_R32G32_SFLOAT), \
+    X(LIGHT_CELLS, LIGHT_CELLS, light_cells, OUT, IMAGE_3D, \
+        "light_cells_args.h: a whole number: two bits a light, 1 dark, 2 lit, 0 neither", \
+        .format = VK_FORMAT_R32_SFLOAT)
+// clang-format on
+enum { LIGHT_CELLS_PORTS(TYN_PORT_ENUM), LIGHT_CELLS_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_light_cells;

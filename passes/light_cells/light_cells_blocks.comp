@@ -3,15 +3,14 @@
 // A thread owns one of the finest blocks, a workgroup one of the largest.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/light_cells_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D shadow_atlas;
-layout(binding = 1, rg32f) uniform writeonly image2D blocks_0;
-layout(binding = 2, rg32f) uniform writeonly image2D blocks_1;
-layout(binding = 3, rg32f) uniform writeonly image2D blocks_2;
-layout(binding = 4, rg32f) uniform writeonly image2D blocks_3;
+layout(binding = 1, rg32f) uniform writeonly image2D blocks_image0;
+layout(binding = 2, rg32f) uniform writeonly image2D blocks_image1;
+layout(binding = 3, rg32f) uniform writeonly image2D blocks_image2;
+layout(binding = 4, rg32f) uniform writeonly image2D blocks_image3;
 
 shared vec2 ranges[2][8][8]; // of the last level and of the next
 
@@ -40,22 +39,22 @@ void main()
     }
     vec2 range = vec2(min(min(least.x, least.y), min(least.z, least.w)),
                       max(max(greatest.x, greatest.y), max(greatest.z, greatest.w)));
-    imageStore(blocks_0, at, vec4(range, 0.0, 0.0));
+    imageStore(blocks_image0, at, vec4(range, 0.0, 0.0));
     ranges[0][me.y][me.x] = range;
     barrier();
     if (all(lessThan(me, ivec2(4)))) {
         range = of_four(0, 2 * me);
-        imageStore(blocks_1, ivec2(gl_WorkGroupID.xy) * 4 + me, vec4(range, 0.0, 0.0));
+        imageStore(blocks_image1, ivec2(gl_WorkGroupID.xy) * 4 + me, vec4(range, 0.0, 0.0));
         ranges[1][me.y][me.x] = range;
     }
     barrier();
     if (all(lessThan(me, ivec2(2)))) {
         range = of_four(1, 2 * me);
-        imageStore(blocks_2, ivec2(gl_WorkGroupID.xy) * 2 + me, vec4(range, 0.0, 0.0));
+        imageStore(blocks_image2, ivec2(gl_WorkGroupID.xy) * 2 + me, vec4(range, 0.0, 0.0));
         ranges[0][me.y][me.x] = range;
     }
     barrier();
     if (me == ivec2(0)) {
-        imageStore(blocks_3, ivec2(gl_WorkGroupID.xy), vec4(of_four(0, ivec2(0)), 0.0, 0.0));
+        imageStore(blocks_image3, ivec2(gl_WorkGroupID.xy), vec4(of_four(0, ivec2(0)), 0.0, 0.0));
     }
 }

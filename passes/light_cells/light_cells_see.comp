@@ -1,7 +1,6 @@
 // light_cells_see.comp -- what the lights see of each cube.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/light_cells_args.h"
 
 #define SHADOW_BLOCKS 0
@@ -11,7 +10,7 @@
 layout(constant_id = 0) const uint num_suns = 1u;
 layout(constant_id = 1) const uint num_lamps = 0u;
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(binding = 2, r32f) uniform writeonly image3D cells;
+layout(binding = 2, r32f) uniform writeonly image3D light_cells_image;
 
 layout(push_constant, scalar) uniform Args
 {
@@ -35,5 +34,5 @@ void main()
         shadow_light l = shadows[n];
         bits |= shadow_region_seen(l, shadow_region_lamp(l, middle, reach)) << (2u * n);
     }
-    imageStore(cells, ivec3(cell), vec4(float(bits)));
+    imageStore(light_cells_image, ivec3(cell), vec4(float(bits)));
 }

@@ -7,7 +7,7 @@
 #include "shaders/light/light_cells_args.h"
 #include "shaders/light/shadow_frame.glsl"
 
-layout(set = 0, binding = SHADOW_BLOCKS) uniform sampler2D shadow_blocks;
+layout(set = 0, binding = SHADOW_BLOCKS) uniform sampler2D blocks_tex;
 
 const float SHADOW_REGION_SLACK = 1e-5; // of depths and of maps: more than rounding
 
@@ -80,7 +80,7 @@ uint shadow_region_seen(shadow_light l, shadow_region region)
     vec2 stored = vec2(1.0, 0.0);
     for (int y = lo.y; y <= hi.y; y++) {
         for (int x = lo.x; x <= hi.x; x++) {
-            vec2 block = texelFetch(shadow_blocks, ivec2(x, y), level).rg;
+            vec2 block = texelFetch(blocks_tex, ivec2(x, y), level).rg;
             stored = vec2(min(stored.x, block.x), max(stored.y, block.y));
         }
     }

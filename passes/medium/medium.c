@@ -7,25 +7,7 @@
 #include "medium_distance.comp.h"
 #include "medium_emission.comp.h"
 
-static const tyn_port ports[MEDIUM_NUM_PORTS] = {
-    [MEDIUM_PORT_ATLAS] = {"atlas", TYN_IN, TYN_IMAGE_3D, 0, false, "density grids of all media"},
-    [MEDIUM_PORT_SHAPES] = {"shapes", TYN_IN, TYN_BUFFER, 0, false, "shape_block per shape"},
-    [MEDIUM_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "the scene's medium_block"},
-    [MEDIUM_PORT_DENSITY] = {"density", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-                             "mean density per voxel; or sigma_s, 1/m, a = mean of the channels"},
-    [MEDIUM_PORT_SIGMA_A] = {"sigma_a", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                             "absorption, 1/m; a = mean of the channels"},
-    [MEDIUM_PORT_G] = {"g", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                       "mean cosine, weighted with sigma_s; a = over the channels"},
-    [MEDIUM_PORT_EMISSION] = {"emission", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                              false, "emission, W/(m^3 sr)"},
-    [MEDIUM_PORT_BRICKS] = {"bricks", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32_SFLOAT, false,
-                            "least and largest density, or sigma_t in 1/m, over 8^3 voxels"},
-    [MEDIUM_PORT_DISTANCE] = {"distance", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-                              "Chebyshev distance in bricks to the nearest one that is not empty"},
-    [MEDIUM_PORT_DISTANCE_SCRATCH] = {"distance_scratch", TYN_SCRATCH, TYN_IMAGE_3D,
-                                      VK_FORMAT_R32_SFLOAT, false, "distance over two axes"},
-};
+static const tyn_port ports[] = {MEDIUM_PORTS(TYN_PORT_ROW)};
 
 enum {
     KERNEL_DENSITY,
@@ -36,44 +18,12 @@ enum {
     NUM_KERNELS
 };
 
-static const tyn_binding density_bindings[] = {
-    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
-    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},
-    {MEDIUM_PORT_DENSITY, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding coefficients_bindings[] = {
-    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},        {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
-    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},         {MEDIUM_PORT_DENSITY, TYN_USE_STORAGE_WRITE},
-    {MEDIUM_PORT_SIGMA_A, TYN_USE_STORAGE_WRITE}, {MEDIUM_PORT_G, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding emission_bindings[] = {
-    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
-    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},
-    {MEDIUM_PORT_EMISSION, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding bricks_bindings[] = {
-    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {MEDIUM_PORT_SHAPES, TYN_USE_STORAGE_READ},
-    {MEDIUM_PORT_ATLAS, TYN_USE_SAMPLED},
-    {MEDIUM_PORT_BRICKS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding distance_bindings[] = {
-    {MEDIUM_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {MEDIUM_PORT_BRICKS, TYN_USE_SAMPLED},
-    {MEDIUM_PORT_DISTANCE, TYN_USE_STORAGE_WRITE},
-};
-
-#define KERNEL(step, args)                                                                         \
-    TYN_KERNEL(medium_##step, sizeof(struct args), 4, 4, 4, step##_bindings, 0)
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DENSITY] = KERNEL(density, resample_args),
-    [KERNEL_COEFFICIENTS] = KERNEL(coefficients, resample_args),
-    [KERNEL_EMISSION] = KERNEL(emission, resample_args),
-    [KERNEL_BRICKS] = KERNEL(bricks, bricks_args),
-    [KERNEL_DISTANCE] = KERNEL(distance, distance_args),
+    [KERNEL_DENSITY] = TYN_KERNEL(medium_density),
+    [KERNEL_COEFFICIENTS] = TYN_KERNEL(medium_coefficients),
+    [KERNEL_EMISSION] = TYN_KERNEL(medium_emission),
+    [KERNEL_BRICKS] = TYN_KERNEL(medium_bricks),
+    [KERNEL_DISTANCE] = TYN_KERNEL(medium_distance),
 };
 
 static const char *const storages[] = {"auto", "half", "float"};
@@ -124,32 +74,24 @@ static void record(tyn_recorder *r, const void *params)
     tyn_extent bricks = {p->bricks[0], p->bricks[1], p->bricks[2]};
     struct resample_args resample = {(uint32_t)p->samples};
     if (coefficients) {
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_COEFFICIENTS, .cells = size, .args = &resample});
+        TYN_DISPATCH(r, .kernel = KERNEL_COEFFICIENTS, .cells = size, .args = &resample);
         if (p->emissive) {
-            tyn_rec_dispatch(
-                r, &(tyn_dispatch){.kernel = KERNEL_EMISSION, .cells = size, .args = &resample});
+            TYN_DISPATCH(r, .kernel = KERNEL_EMISSION, .cells = size, .args = &resample);
         }
     } else if (!p->direct) {
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_DENSITY, .cells = size, .args = &resample});
+        TYN_DISPATCH(r, .kernel = KERNEL_DENSITY, .cells = size, .args = &resample);
     }
 
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_BRICKS,
-                                        .cells = bricks,
-                                        .args = &(struct bricks_args){p->direct ? 0.0f : 1.0f}});
+    TYN_DISPATCH(r, .kernel = KERNEL_BRICKS, .cells = bricks,
+                 .args = &(struct bricks_args){p->direct ? 0.0f : 1.0f});
 
     // x: bricks -> distance, y: distance -> scratch, z: scratch -> distance.
     static const uint8_t chain[] = {MEDIUM_PORT_BRICKS, MEDIUM_PORT_DISTANCE,
                                     MEDIUM_PORT_DISTANCE_SCRATCH, MEDIUM_PORT_DISTANCE};
     for (uint32_t axis = 0; axis < 3; axis++) {
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){
-                   .kernel = KERNEL_DISTANCE,
-                   .cells = bricks,
-                   .args = &(struct distance_args){axis},
-                   .ports = (const uint8_t[]){MEDIUM_PORT_MEDIUM, chain[axis], chain[axis + 1]},
-               });
+        TYN_DISPATCH(r, .kernel = KERNEL_DISTANCE, .cells = bricks,
+                     .args = &(struct distance_args){axis},
+                     .ports = (const uint8_t[]){MEDIUM_PORT_MEDIUM, chain[axis], chain[axis + 1]});
     }
     double voxels = (double)size.x * size.y * size.z;
     double written = coefficients ? (p->emissive ? 64 : 48) : p->direct ? 0 : 4;

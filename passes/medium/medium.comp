@@ -2,7 +2,6 @@
 // summed coefficients.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
 #define SHAPES 1
 #define ATLAS 2
@@ -14,7 +13,7 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #ifdef TYN_DENSITY
 layout(set = 0, binding = 3, r32f) writeonly uniform image3D density_image;
 #else
-layout(set = 0, binding = 3, rgba32f) writeonly uniform image3D sigma_s_image;
+layout(set = 0, binding = 3, rgba32f) writeonly uniform image3D density_image;
 layout(set = 0, binding = 4, rgba32f) writeonly uniform image3D sigma_a_image;
 layout(set = 0, binding = 5, rgba32f) writeonly uniform image3D g_image;
 #endif
@@ -49,7 +48,7 @@ void main()
     vec3 g = mix(vec3(0.0), weighted / max(sigma_s, vec3(1e-30)), greaterThan(sigma_s, vec3(0.0)));
     float mean_s = mean_of(sigma_s);
     float mean_g = mean_s > 0.0 ? mean_of(weighted) / mean_s : 0.0;
-    imageStore(sigma_s_image, ivec3(voxel), vec4(sigma_s, mean_s));
+    imageStore(density_image, ivec3(voxel), vec4(sigma_s, mean_s));
     imageStore(sigma_a_image, ivec3(voxel), vec4(sigma_a, mean_of(sigma_a)));
     imageStore(g_image, ivec3(voxel), vec4(g, mean_g));
 #endif

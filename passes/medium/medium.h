@@ -19,16 +19,27 @@ typedef struct tyn_medium_params {
     int32_t storage;    // TYN_MEDIUM_STORAGE_*, of the atlas: what fills it reads this
 } tyn_medium_params;
 
-enum {
-    MEDIUM_PORT_ATLAS,                   // IN 3D
-    MEDIUM_PORT_SHAPES,                  // IN buffer struct shape_block[]
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, MEDIUM), // the block IN, the rest OUT
-    MEDIUM_PORT_BRICKS, // OUT 3D RG32F: least and largest value over the brick: texture values
-    // (DENSITY), sigma_t of the largest channel in 1/m (COEFFICIENTS). Holds for
-    // the trilinear textures and for the exact shapes
-    MEDIUM_PORT_DISTANCE, // OUT 3D R32F: Chebyshev distance in bricks to the nearest brick that is not
-                          // empty, 0 = is not, at most 255
-    MEDIUM_PORT_DISTANCE_SCRATCH, // SCRATCH
-    MEDIUM_NUM_PORTS,
-};
+// clang-format off
+#define MEDIUM_PORTS(X) \
+    X(MEDIUM, ATLAS, atlas, IN, IMAGE_3D, "density grids of all media"), \
+    X(MEDIUM, SHAPES, shapes, IN, BUFFER, "struct shape_block[]: shape_block per shape"), \
+    X(MEDIUM, MEDIUM, medium, IN, BUFFER, "the scene's medium_block"), \
+    X(MEDIUM, DENSITY, density, OUT, IMAGE_3D, \
+        "mean density per voxel; or sigma_s, 1/m, a = mean of the channels", .format = VK_FORMAT_R32_SFLOAT), \
+    X(MEDIUM, SIGMA_A, sigma_a, OUT, IMAGE_3D, \
+        "absorption, 1/m; a = mean of the channels", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(MEDIUM, G, g, OUT, IMAGE_3D, \
+        "mean cosine, weighted with sigma_s; a = over the channels", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(MEDIUM, EMISSION, emission, OUT, IMAGE_3D, "emission, W/(m^3 sr)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(MEDIUM, BRICKS, bricks, OUT, IMAGE_3D, \
+        "least and largest value over the brick: texture values (DENSITY), sigma_t of the largest channel in " \
+        "1/m (COEFFICIENTS). Holds for the trilinear textures and for the exact shapes", \
+        .format = VK_FORMAT_R32G32_SFLOAT), \
+    X(MEDIUM, DISTANCE, distance, OUT, IMAGE_3D, \
+        "Chebyshev distance in bricks to the nearest brick that is not empty, 0 = is not, at most 255", \
+        .format = VK_FORMAT_R32_SFLOAT), \
+    X(MEDIUM, DISTANCE_SCRATCH, distance_scratch, SCRATCH, IMAGE_3D, \
+        "distance over two axes", .format = VK_FORMAT_R32_SFLOAT)
+// clang-format on
+enum { MEDIUM_PORTS(TYN_PORT_ENUM), MEDIUM_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_medium;

@@ -3,7 +3,6 @@
 // max(|dx|, |dy|, |dz|) is separable: the least over x of |dx|, then over y of max(|dy|, that), then z.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/scene_args.h"
 #include "medium_args.h"
 
@@ -12,7 +11,7 @@ layout(set = 0, binding = 0, scalar) uniform medium_uniform
 {
     medium_block medium;
 };
-layout(set = 0, binding = 1) uniform sampler3D before_tex; // bricks (first axis) or distances
+layout(set = 0, binding = 1) uniform sampler3D bricks_tex; // bricks (first axis) or distances
 layout(set = 0, binding = 2, r32f) writeonly uniform image3D distance_image;
 layout(push_constant, scalar) uniform push { distance_args args; };
 
@@ -20,7 +19,7 @@ const float FARTHEST = 255.0;
 
 float distance_before(ivec3 brick)
 {
-    vec2 value = texelFetch(before_tex, brick, 0).rg;
+    vec2 value = texelFetch(bricks_tex, brick, 0).rg;
     return args.axis == 0u ? (value.g > 0.0 ? 0.0 : FARTHEST) : value.r;
 }
 

@@ -8,64 +8,14 @@
 #include "merge_one.comp.h"
 #include "merge_three.comp.h"
 
-static const tyn_port ports[MERGE_NUM_PORTS] = {
-    [MERGE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
-    [MERGE_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "struct camera_block"},
-    [MERGE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice_cells"},
-    [MERGE_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
-    TYN_COLUMNS(TYN_BUNDLE_OPTIONAL, MERGE),
-    [MERGE_PORT_TMS] = {"tms", TYN_IN, TYN_IMAGE_3D, 0, true, "kernels, of scatter_lut"},
-    [MERGE_PORT_LUT_BLOCK] = {"lut_block", TYN_IN, TYN_BUFFER, 0, true, "struct lut_block"},
-    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, MERGE),
-    [MERGE_PORT_LUT] = {"lut", TYN_IN, TYN_IMAGE_2D, 0, true, "forward scattering, of scatter_lut"},
-    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, MERGE),
-    [MERGE_PORT_VPL_LIGHT] = {"vpl_light", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_lamps"},
-    [MERGE_PORT_INSCATTER] = {"inscatter", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                              false,
-                              "radiance scattered towards the eye per sigma_s', W/(m^2 sr); one "
-                              "ghost cell around; R32F where one channel is solved"},
-    [MERGE_PORT_COUNTERS] = {"counters", TYN_OUT, TYN_BUFFER, 0, false, "struct counters_block"},
-    [MERGE_PORT_FIELD] = {"field", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                          "what each cell scatters towards the eye, before the clamp at 0"},
-};
+static const tyn_port ports[] = {MERGE_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_CELLS, KERNEL_ORDINATES, KERNEL_RADIALS, KERNEL_ONE, KERNEL_THREE, NUM_KERNELS };
 
-static const tyn_binding cells_bindings[] = {
-    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},      {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
-    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},       {MERGE_PORT_MOMENTS, TYN_USE_SAMPLED},
-    {MERGE_PORT_FIELD, TYN_USE_STORAGE_WRITE}, {MERGE_PORT_VPL_LIGHT, TYN_USE_SAMPLED},
-};
-
-static const tyn_binding ordinates_bindings[] = {
-    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},    {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
-    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},     {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},
-    TYN_COLUMNS(TYN_BUNDLE_BIND, MERGE),     {MERGE_PORT_TMS, TYN_USE_SAMPLED},
-    {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},
-};
-
-static const tyn_binding radials_bindings[] = {
-    {MERGE_PORT_MEDIUM, TYN_USE_UNIFORM},        {MERGE_PORT_CAMERA, TYN_USE_UNIFORM},
-    {MERGE_PORT_CELLS, TYN_USE_SAMPLED},         {MERGE_PORT_FIELD, TYN_USE_STORAGE_RW},
-    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, MERGE), {MERGE_PORT_LUT, TYN_USE_SAMPLED},
-    {MERGE_PORT_LUT_BLOCK, TYN_USE_UNIFORM},     TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, MERGE),
-};
-
-static const tyn_binding ghosts_bindings[] = {
-    {MERGE_PORT_FIELD, TYN_USE_STORAGE_READ},
-    {MERGE_PORT_COUNTERS, TYN_USE_STORAGE_RW},
-    {MERGE_PORT_INSCATTER, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_CELLS] = TYN_KERNEL(merge_cells, sizeof(struct merge_args), 8, 4, 2, cells_bindings, 0),
-    [KERNEL_ORDINATES] =
-        TYN_KERNEL(merge_ordinates, sizeof(struct merge_args), 8, 4, 2, ordinates_bindings, 3),
-    [KERNEL_RADIALS] =
-        TYN_KERNEL(merge_radials, sizeof(struct merge_args), 8, 4, 2, radials_bindings, 4),
-    [KERNEL_ONE] = TYN_KERNEL(merge_one, sizeof(struct merge_args), 8, 4, 2, ghosts_bindings, 0),
-    [KERNEL_THREE] =
-        TYN_KERNEL(merge_three, sizeof(struct merge_args), 8, 4, 2, ghosts_bindings, 0),
+    [KERNEL_CELLS] = TYN_KERNEL(merge_cells),     [KERNEL_ORDINATES] = TYN_KERNEL(merge_ordinates),
+    [KERNEL_RADIALS] = TYN_KERNEL(merge_radials), [KERNEL_ONE] = TYN_KERNEL(merge_one),
+    [KERNEL_THREE] = TYN_KERNEL(merge_three),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -109,23 +59,18 @@ static void record(tyn_recorder *r, const void *params)
                               .repeat = {p->repeat[0], p->repeat[1], p->repeat[2]},
                               .reach = p->reach};
     tyn_rec_fill(r, MERGE_PORT_COUNTERS, 0);
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_CELLS, .cells = dims, .args = &args});
+    TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = dims, .args = &args);
     if (tyn_rec_has(r, MERGE_PORT_ORDINATES)) {
         const uint32_t spec[3] = {p->mode, p->grey, p->channels};
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){
-                   .kernel = KERNEL_ORDINATES, .cells = dims, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = KERNEL_ORDINATES, .cells = dims, .args = &args, .spec = spec);
     }
     if (tyn_rec_has(r, MERGE_PORT_RADIALS)) {
         const uint32_t spec[4] = {p->mode, p->grey, p->channels,
                                   tyn_rec_has(r, MERGE_PORT_SHADOW_ATLAS)};
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = KERNEL_RADIALS, .cells = dims, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = KERNEL_RADIALS, .cells = dims, .args = &args, .spec = spec);
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = p->channels == 1 ? KERNEL_ONE : KERNEL_THREE,
-                                        .cells = size,
-                                        .args = &args});
+    TYN_DISPATCH(r, .kernel = p->channels == 1 ? KERNEL_ONE : KERNEL_THREE, .cells = size,
+                 .args = &args);
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z);
 }
 

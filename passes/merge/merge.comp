@@ -2,7 +2,6 @@
 // lattice. Built for one channel and for three (MERGE_CHANNELS, MERGE_FORMAT).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/scene_args.h"
 #include "shaders/common/counters.h"
 #include "merge_args.h"

@@ -14,23 +14,25 @@ typedef struct tyn_merge_params {
     uint32_t grey;          // 1: sigma_s, sigma_a and g are equal in all channels (mode DENSITY)
 } tyn_merge_params;
 
-enum {
-    MERGE_PORT_MEDIUM,                   // IN buffer struct medium_block
-    MERGE_PORT_CAMERA,                   // IN buffer struct camera_block
-    MERGE_PORT_CELLS,                    // IN 3D, of lattice_cells
-    MERGE_PORT_MOMENTS,                  // IN 3D, of lattice
-    TYN_COLUMNS(TYN_BUNDLE_ENUM, MERGE), // IN optional
-    MERGE_PORT_TMS,                      // IN optional 3D, of scatter_lut
-    MERGE_PORT_LUT_BLOCK, // IN optional buffer struct lut_block; with ordinates or radials
-    TYN_RADIALS(TYN_BUNDLE_ENUM, MERGE), // IN optional
-    MERGE_PORT_LUT,                      // IN optional 2D, of scatter_lut
-    TYN_SHADOWS(TYN_BUNDLE_ENUM, MERGE), // IN optional
-    MERGE_PORT_VPL_LIGHT,                // IN optional 3D, of lattice_lamps
-    MERGE_PORT_INSCATTER, // OUT 3D RGBA32F (one channel: R32F), dims + 2: J = max(0, (phi + 3 g' v.F) / (4 pi)
-    // + sum over ordinates of E e^-tau' k + local lights, see merge_radials.comp), W/(m^2 sr), v
-    // the direction from the cell to the eye, k of tms.glsl; sample at lattice_inscatter_uvw
-    MERGE_PORT_COUNTERS, // OUT buffer struct counters_block: cells that were clamped or not finite
-    MERGE_PORT_FIELD,    // SCRATCH buffer: J of the cells
-    MERGE_NUM_PORTS,
-};
+// clang-format off
+#define MERGE_PORTS(X) \
+    X(MERGE, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
+    X(MERGE, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
+    X(MERGE, CELLS, cells, IN, IMAGE_3D, "of lattice_cells"), \
+    X(MERGE, MOMENTS, moments, IN, IMAGE_3D, "of lattice"), \
+    TYN_COLUMNS(X##_OPTIONAL, MERGE), \
+    X(MERGE, TMS, tms, OPTIONAL, IMAGE_3D, "kernels, of scatter_lut"), \
+    X(MERGE, LUT_BLOCK, lut_block, OPTIONAL, BUFFER, "struct lut_block; with ordinates or radials"), \
+    TYN_RADIALS(X##_OPTIONAL, MERGE), \
+    X(MERGE, LUT, lut, OPTIONAL, IMAGE_2D, "forward scattering, of scatter_lut"), \
+    TYN_SHADOWS(X##_OPTIONAL, MERGE), \
+    X(MERGE, VPL_LIGHT, vpl_light, OPTIONAL, IMAGE_3D, "of lattice_lamps"), \
+    X(MERGE, INSCATTER, inscatter, OUT, IMAGE_3D, \
+        "(one channel: R32F), dims + 2: J = max(0, (phi + 3 g' v.F) / (4 pi) + sum over ordinates of E " \
+        "e^-tau' k + local lights, see merge_radials.comp), W/(m^2 sr), v the direction from the cell to the " \
+        "eye, k of tms.glsl; sample at lattice_inscatter_uvw", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(MERGE, COUNTERS, counters, OUT, BUFFER, "struct counters_block: cells that were clamped or not finite"), \
+    X(MERGE, FIELD, field, SCRATCH, BUFFER, "what each cell scatters towards the eye, before the clamp at 0")
+// clang-format on
+enum { MERGE_PORTS(TYN_PORT_ENUM), MERGE_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_merge;

@@ -2,7 +2,6 @@
 // of VPLs, which comes from all around as well.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/scene_args.h"
 #include "merge_args.h"
 #include "shaders/lattice/lattice.glsl"

@@ -1,7 +1,6 @@
 // merge_ordinates.comp -- adds what a cell scatters towards the eye of the ordinates' unscattered light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
 #include "shaders/medium/medium.glsl"
 #define COLUMNS_AT 4

@@ -7,7 +7,6 @@
 // is smooth, or the mean over the cell.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_BLOCK 0
 #include "shaders/medium/medium.glsl"
 #define RADIALS_AT 4

@@ -18,7 +18,7 @@
 #include "shaders/phase/scatter_lut_map.glsl"
 
 layout(set = 0, binding = TMS) uniform sampler3D tms_tex;
-layout(set = 0, binding = SCATTER_LUT_BLOCK, scalar) uniform lut_uniform
+layout(set = 0, binding = SCATTER_LUT_BLOCK, scalar) uniform lut_block_uniform
 {
     lut_block lut;
 };

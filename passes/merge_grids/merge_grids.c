@@ -7,40 +7,10 @@
 
 #define PORT(name) MERGE_GRIDS_PORT_##name
 
-static const tyn_port ports[MERGE_GRIDS_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, MERGE_GRIDS),
-    [PORT(PLACES)] = {"places", TYN_IN, TYN_BUFFER, .optional = true,
-                      .meaning = "struct propagate_place[]"},
-    [PORT(SEEN)] = {"seen", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                    .meaning = "of propagate_rect: L_acc, 1/sr"},
-    [PORT(LAMP_PLACES)] = {"lamp_places", TYN_IN, TYN_BUFFER, .optional = true,
-                           .meaning = "struct propagate_radial_place[]"},
-    [PORT(LAMP_SEEN)] = {"lamp_seen", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                         .meaning = "of propagate_radial: r^2 L_acc, 1/sr"},
-    [PORT(VPL_PLACES)] = {"vpl_places", TYN_IN, TYN_BUFFER, .optional = true,
-                          .meaning = "struct propagate_radial_place[]"},
-    [PORT(VPL_SEEN)] = {"vpl_seen", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                        .meaning = "of propagate_radial: r^2 L_acc, 1/sr"},
-    [PORT(RESIDUUM)] = {"residuum", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                        .meaning = "of residuum: light to the eye, W/(m^2 sr)"},
-    [PORT(MERGED)] = {"merged", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                      .meaning = "light to the eye per unit of sigma_s, W/(m^2 sr); mean sigma_s"},
-};
-
-static const tyn_binding sum_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, MERGE_GRIDS),
-    {PORT(PLACES), TYN_USE_UNIFORM},
-    {PORT(SEEN), TYN_USE_SAMPLED},
-    {PORT(RESIDUUM), TYN_USE_SAMPLED},
-    {PORT(MERGED), TYN_USE_STORAGE_WRITE},
-    {PORT(LAMP_PLACES), TYN_USE_STORAGE_READ},
-    {PORT(LAMP_SEEN), TYN_USE_SAMPLED},
-    {PORT(VPL_PLACES), TYN_USE_STORAGE_READ},
-    {PORT(VPL_SEEN), TYN_USE_SAMPLED},
-};
+static const tyn_port ports[] = {MERGE_GRIDS_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(merge_grids_sum, sizeof(struct merge_grids_args), 4, 4, 4, sum_bindings, 1),
+    TYN_KERNEL(merge_grids_sum),
 };
 
 static const tyn_param params[] = {
@@ -89,7 +59,7 @@ static void record(tyn_recorder *r, const void *data)
         .lamps = radial(r, PORT(LAMP_SEEN), p->num_lamps, p->lamp_cells),
         .vpls = radial(r, PORT(VPL_SEEN), p->num_vpls, p->vpl_cells),
     };
-    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = dims, .args = &args, .spec = &p->mode});
+    TYN_DISPATCH(r, .cells = dims, .args = &args, .spec = &p->mode);
     tyn_rec_work(r, "cells",
                  (double)dims.x * dims.y * dims.z * (p->num_grids + p->num_lamps + p->num_vpls));
 }

@@ -21,18 +21,20 @@ typedef struct tyn_merge_grids_params {
     float extent[3]; // medium_block.extent, m
 } tyn_merge_grids_params;
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, MERGE_GRIDS), // IN
-    MERGE_GRIDS_PORT_PLACES,                  // IN optional buffer, of propagate_rect
-    MERGE_GRIDS_PORT_SEEN,                    // IN optional 3D, of propagate_rect
-    MERGE_GRIDS_PORT_LAMP_PLACES,             // IN optional buffer, of propagate_radial
-    MERGE_GRIDS_PORT_LAMP_SEEN,               // IN optional 3D, of propagate_radial
-    MERGE_GRIDS_PORT_VPL_PLACES,              // so
-    MERGE_GRIDS_PORT_VPL_SEEN,
-    MERGE_GRIDS_PORT_RESIDUUM, // IN optional 3D RGBA32F: of residuum, added
-    MERGE_GRIDS_PORT_MERGED, // OUT 3D RGBA32F, cubic cells that span the medium's box (lattice.glsl):
-    // rgb = light to the eye per unit of sigma_s, W/(m^2 sr); a = mean sigma_s
-    // of the cell and the channels, 1/m
-    MERGE_GRIDS_NUM_PORTS,
-};
+// clang-format off
+#define MERGE_GRIDS_PORTS(X) \
+    TYN_MEDIUM(X, MERGE_GRIDS), \
+    X(MERGE_GRIDS, PLACES, places, OPTIONAL, BUFFER, "struct propagate_place[], of propagate_rect"), \
+    X(MERGE_GRIDS, SEEN, seen, OPTIONAL, IMAGE_3D, "of propagate_rect: L_acc, 1/sr"), \
+    X(MERGE_GRIDS, LAMP_PLACES, lamp_places, OPTIONAL, BUFFER, \
+        "struct propagate_radial_place[], of propagate_radial"), \
+    X(MERGE_GRIDS, LAMP_SEEN, lamp_seen, OPTIONAL, IMAGE_3D, "of propagate_radial: r^2 L_acc, 1/sr"), \
+    X(MERGE_GRIDS, VPL_PLACES, vpl_places, OPTIONAL, BUFFER, "struct propagate_radial_place[]"), \
+    X(MERGE_GRIDS, VPL_SEEN, vpl_seen, OPTIONAL, IMAGE_3D, "of propagate_radial: r^2 L_acc, 1/sr"), \
+    X(MERGE_GRIDS, RESIDUUM, residuum, OPTIONAL, IMAGE_3D, "of residuum: light to the eye, W/(m^2 sr)"), \
+    X(MERGE_GRIDS, MERGED, merged, OUT, IMAGE_3D, \
+        "cubic cells that span the medium's box (lattice.glsl): rgb = light to the eye per unit of sigma_s, " \
+        "W/(m^2 sr); a = mean sigma_s of the cell and the channels, 1/m", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+// clang-format on
+enum { MERGE_GRIDS_PORTS(TYN_PORT_ENUM), MERGE_GRIDS_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_merge_grids;

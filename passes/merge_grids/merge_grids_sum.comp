@@ -1,7 +1,6 @@
 // merge_grids_sum.comp -- see merge_grids.h; one thread a cell.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/lattice/lattice.glsl"
@@ -16,7 +15,7 @@ layout(set = 0, binding = 5, scalar) uniform places_uniform
 };
 layout(set = 0, binding = 6) uniform sampler3D seen;
 layout(set = 0, binding = 7) uniform sampler3D residuum;
-layout(set = 0, binding = 8, rgba32f) uniform writeonly image3D out_merged;
+layout(set = 0, binding = 8, rgba32f) uniform writeonly image3D merged_image;
 layout(set = 0, binding = 9, scalar) readonly buffer lamp_places_buffer
 {
     propagate_radial_place lamp_places[];
@@ -127,5 +126,5 @@ void main()
         lattice_box own = lattice_box_of(medium.extent, textureSize(residuum, 0));
         light += textureLod(residuum, lattice_from_m(own, p) / vec3(own.dims), 0.0).rgb;
     }
-    imageStore(out_merged, cell, vec4(light, guide(box, vec3(cell))));
+    imageStore(merged_image, cell, vec4(light, guide(box, vec3(cell))));
 }

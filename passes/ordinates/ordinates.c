@@ -10,61 +10,16 @@
 #include <stddef.h>
 #include <string.h>
 
-static const tyn_port ports[ORDINATES_NUM_PORTS] = {
-    [ORDINATES_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, false,
-                                    "struct env_block"},
-    [ORDINATES_PORT_SKY] = {"sky", TYN_IN, TYN_IMAGE_2D, 0, true, "of env_importance"},
-    [ORDINATES_PORT_SUMS] = {"sums", TYN_IN, TYN_BUFFER, 0, true, "of env_importance"},
-    [ORDINATES_PORT_IMPORTANCE] = {"importance", TYN_IN, TYN_IMAGE_2D, 0, true,
-                                   "by the direction light comes from, frame M, mean 1"},
-    [ORDINATES_PORT_ORDINATES] = {"ordinates", TYN_OUT, TYN_BUFFER, 0, false,
-                                  "struct ordinates_block"},
-    [ORDINATES_PORT_WEIGHTS] = {"weights", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                "sums of luminance x importance over rectangles"},
-    [ORDINATES_PORT_REGIONS] = {"regions", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                "their corners on the map"},
-    [ORDINATES_PORT_PIECES] = {"pieces", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                               "what comes from them before folding"},
-};
-
-static const tyn_binding rows_bindings[] = {
-    {ORDINATES_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {ORDINATES_PORT_SKY, TYN_USE_SAMPLED},
-    {ORDINATES_PORT_IMPORTANCE, TYN_USE_SAMPLED, true},
-    {ORDINATES_PORT_WEIGHTS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding columns_bindings[] = {
-    {ORDINATES_PORT_WEIGHTS, TYN_USE_STORAGE_RW},
-};
-static const tyn_binding partition_bindings[] = {
-    {ORDINATES_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {ORDINATES_PORT_SUMS, TYN_USE_STORAGE_READ},
-    {ORDINATES_PORT_WEIGHTS, TYN_USE_STORAGE_READ},
-    {ORDINATES_PORT_REGIONS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding gather_bindings[] = {
-    {ORDINATES_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {ORDINATES_PORT_SUMS, TYN_USE_STORAGE_READ},
-    {ORDINATES_PORT_REGIONS, TYN_USE_STORAGE_READ},
-    {ORDINATES_PORT_PIECES, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding fold_bindings[] = {
-    {ORDINATES_PORT_ENVIRONMENT, TYN_USE_UNIFORM},
-    {ORDINATES_PORT_PIECES, TYN_USE_STORAGE_READ},
-    {ORDINATES_PORT_ORDINATES, TYN_USE_STORAGE_WRITE},
-};
+static const tyn_port ports[] = {ORDINATES_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_ROWS, KERNEL_COLUMNS, KERNEL_PARTITION, KERNEL_GATHER, KERNEL_FOLD, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_ROWS] = TYN_KERNEL(ordinates_rows, 0, SKY_SUMS_WIDTH, 1, 1, rows_bindings, 0),
-    [KERNEL_COLUMNS] = TYN_KERNEL(ordinates_columns, 0, 64, 1, 1, columns_bindings, 0),
-    [KERNEL_PARTITION] = TYN_KERNEL(ordinates_partition, sizeof(struct ordinates_args),
-                                    TYN_ORDINATES_MAX, 1, 1, partition_bindings, 0),
-    [KERNEL_GATHER] =
-        TYN_KERNEL(ordinates_gather, sizeof(struct ordinates_args), 64, 1, 1, gather_bindings, 0),
-    [KERNEL_FOLD] = TYN_KERNEL(ordinates_fold, sizeof(struct ordinates_args), TYN_ORDINATES_MAX, 1,
-                               1, fold_bindings, 0),
+    [KERNEL_ROWS] = TYN_KERNEL(ordinates_rows),
+    [KERNEL_COLUMNS] = TYN_KERNEL(ordinates_columns),
+    [KERNEL_PARTITION] = TYN_KERNEL(ordinates_partition),
+    [KERNEL_GATHER] = TYN_KERNEL(ordinates_gather),
+    [KERNEL_FOLD] = TYN_KERNEL(ordinates_fold),
 };
 
 static const tyn_param params_table[] = {
@@ -116,15 +71,11 @@ static void record(tyn_recorder *r, const void *params)
     memcpy(block.list, p->fixed, p->num_fixed * sizeof block.list[0]);
     tyn_rec_update(r, ORDINATES_PORT_ORDINATES, 0, &block, sizeof block);
     if (args.weighted) {
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_ROWS,
-                                            .cells = {SKY_SUMS_WIDTH, SKY_SUMS_HEIGHT, 1}});
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = KERNEL_COLUMNS, .cells = {SKY_SUMS_WIDTH + 1, 1, 1}});
+        TYN_DISPATCH(r, .kernel = KERNEL_ROWS, .cells = {SKY_SUMS_WIDTH, SKY_SUMS_HEIGHT, 1});
+        TYN_DISPATCH(r, .kernel = KERNEL_COLUMNS, .cells = {SKY_SUMS_WIDTH + 1, 1, 1});
     }
     for (uint32_t kernel = KERNEL_PARTITION; kernel <= KERNEL_FOLD; kernel++) {
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = kernel, .cells = {TYN_ORDINATES_MAX, 1, 1}, .args = &args});
+        TYN_DISPATCH(r, .kernel = kernel, .cells = {TYN_ORDINATES_MAX, 1, 1}, .args = &args);
     }
     tyn_rec_work(r, "regions", args.regions);
 }

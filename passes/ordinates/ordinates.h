@@ -23,15 +23,17 @@ typedef struct tyn_ordinates_params {
     struct ordinate fixed[ORDINATES_MAX_FIXED];
 } tyn_ordinates_params;
 
-enum {
-    ORDINATES_PORT_ENVIRONMENT, // IN buffer struct env_block
-    ORDINATES_PORT_SKY,         // IN optional 2D, of env_importance; not for a constant environment
-    ORDINATES_PORT_SUMS,        // IN optional buffer, of env_importance; with `sky`
-    ORDINATES_PORT_IMPORTANCE,  // IN optional 2D, frame M, mean 1
-    ORDINATES_PORT_ORDINATES,   // OUT buffer struct ordinates_block
-    ORDINATES_PORT_WEIGHTS,     // SCRATCH buffer float[]: sums of luminance x importance
-    ORDINATES_PORT_REGIONS,     // SCRATCH buffer vec4[TYN_ORDINATES_MAX]: corners on the map
-    ORDINATES_PORT_PIECES,      // SCRATCH buffer struct ordinates_piece[TYN_ORDINATES_MAX]
-    ORDINATES_NUM_PORTS,
-};
+// clang-format off
+#define ORDINATES_PORTS(X) \
+    X(ORDINATES, ENVIRONMENT, environment, IN, BUFFER, "struct env_block"), \
+    X(ORDINATES, SKY, sky, OPTIONAL, IMAGE_2D, "of env_importance; not for a constant environment"), \
+    X(ORDINATES, SUMS, sums, OPTIONAL, BUFFER, "of env_importance; with `sky`"), \
+    X(ORDINATES, IMPORTANCE, importance, OPTIONAL, IMAGE_2D, "by the direction light comes from, frame M, mean 1"), \
+    X(ORDINATES, ORDINATES, ordinates, OUT, BUFFER, "struct ordinates_block"), \
+    X(ORDINATES, WEIGHTS, weights, SCRATCH, BUFFER, "sums of luminance x importance over rectangles"), \
+    X(ORDINATES, REGIONS, regions, SCRATCH, BUFFER, "vec4[TYN_ORDINATES_MAX]: corners on the map"), \
+    X(ORDINATES, PIECES, pieces, SCRATCH, BUFFER, \
+        "struct ordinates_piece[TYN_ORDINATES_MAX]: what comes from them before folding")
+// clang-format on
+enum { ORDINATES_PORTS(TYN_PORT_ENUM), ORDINATES_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_ordinates;

@@ -4,7 +4,6 @@
 // and size become the means, weighted with light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/scene_args.h"
 #include "shaders/light/ordinate_args.h"
 #include "ordinates_args.h"

@@ -1,7 +1,6 @@
 // ordinates_rows.comp -- luminance times importance, summed along the rows; a workgroup per row.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/light/environment.glsl"
 #include "shaders/light/sky.glsl"
 
@@ -11,7 +10,7 @@ layout(binding = 0, scalar) uniform environment_uniform
     env_block environment;
 };
 layout(binding = 1) uniform sampler2D sky;
-layout(binding = 2) uniform sampler2D importance;
+layout(binding = 2) uniform sampler2D importance_wrapped;
 layout(binding = 3, scalar) writeonly buffer weights_buffer
 {
     float weights[];
@@ -33,7 +32,7 @@ void main()
                environment.rows[2].xyz * d.z;
     float luminance = environment.has_map == 0u ? sky_texel_solid_angle(y, size)
                                                 : texelFetch(sky, ivec2(x, y), LEVEL).a;
-    values[x] = luminance * max(textureLod(importance, environment_uv(d_M), 0.0).r, 0.0);
+    values[x] = luminance * max(textureLod(importance_wrapped, environment_uv(d_M), 0.0).r, 0.0);
     barrier();
     if (x == 0) {
         uint entry = uint(y + 1) * (SKY_SUMS_WIDTH + 1);

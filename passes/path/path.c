@@ -4,54 +4,11 @@
 #include "path_resolve.comp.h"
 #include "path_trace.comp.h"
 
-#define RGBA VK_FORMAT_R32G32B32A32_SFLOAT
-
-static const tyn_port ports[PATH_NUM_PORTS] = {
-    PATH_SCENE_PORT_ROWS,
-    {"camera", TYN_IN, TYN_BUFFER, 0, false, "rays of the pixels"},
-    {"mean", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "running mean radiance, W/(m^2 sr)"},
-    {"low", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "what single precision loses of the mean"},
-    {"deviation", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "running sum of squared deviations"},
-    {"mean_single", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "running mean of the first order"},
-    {"mean_multiple", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "running mean of higher orders"},
-    {"mean_transmittance", TYN_INOUT, TYN_IMAGE_2D, RGBA, false, "running mean transmittance"},
-    {"radiance", TYN_OUT, TYN_IMAGE_2D, RGBA, false, "radiance W/(m^2 sr), alpha"},
-    {"error", TYN_OUT, TYN_IMAGE_2D, RGBA, false, "standard error of the radiance, W/(m^2 sr)"},
-    {"single", TYN_OUT, TYN_IMAGE_2D, RGBA, false, "first-order scattering, W/(m^2 sr)"},
-    {"multiple", TYN_OUT, TYN_IMAGE_2D, RGBA, false, "higher orders and emission, W/(m^2 sr)"},
-    {"transmittance", TYN_OUT, TYN_IMAGE_2D, RGBA, false, "transmittance of the media"},
-    {"counters", TYN_OUT, TYN_BUFFER, 0, false, "collisions, cut paths, non-finite samples"},
-    {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "statistics of each thread"},
-    {"layers", TYN_SCRATCH, TYN_BUFFER, 0, false, "layers of each thread"},
-};
-
-static const tyn_binding trace_bindings[] = {
-    PATH_SCENE_BINDING_ROWS,
-    {PATH_PORT_CAMERA, TYN_USE_UNIFORM, false},
-    {PATH_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
-    {PATH_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_LAYERS, TYN_USE_STORAGE_WRITE, false},
-};
-
-static const tyn_binding resolve_bindings[] = {
-    {PATH_PORT_PARTIALS, TYN_USE_STORAGE_READ, false},
-    {PATH_PORT_LAYERS, TYN_USE_STORAGE_READ, false},
-    {PATH_PORT_MEAN, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_LOW, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_DEVIATION, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_MEAN_SINGLE, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_MEAN_MULTIPLE, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_MEAN_TRANSMITTANCE, TYN_USE_STORAGE_RW, false},
-    {PATH_PORT_RADIANCE, TYN_USE_STORAGE_WRITE, false},
-    {PATH_PORT_ERROR, TYN_USE_STORAGE_WRITE, false},
-    {PATH_PORT_SINGLE, TYN_USE_STORAGE_WRITE, false},
-    {PATH_PORT_MULTIPLE, TYN_USE_STORAGE_WRITE, false},
-    {PATH_PORT_TRANSMITTANCE, TYN_USE_STORAGE_WRITE, false},
-};
+static const tyn_port ports[] = {PATH_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(path_trace, sizeof(struct path_args), 64, 1, 1, trace_bindings, TYN_PATH_NUM_SPEC),
-    TYN_KERNEL(path_resolve, sizeof(struct path_resolve_args), 64, 1, 1, resolve_bindings, 0),
+    TYN_KERNEL(path_trace),
+    TYN_KERNEL(path_resolve),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -86,9 +43,7 @@ static void record(tyn_recorder *r, const void *params)
         args.first = first;
         args.num = num;
         args.slots = s.slots;
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){
-                   .kernel = 0, .cells = {num * s.slots, 1, 1}, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = 0, .cells = {num * s.slots, 1, 1}, .args = &args, .spec = spec);
         struct path_resolve_args resolve = {
             .first = first,
             .num = num,
@@ -98,7 +53,7 @@ static void record(tyn_recorder *r, const void *params)
             .layers = p->layers,
             .opaque = p->opaque,
         };
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = 1, .cells = {num, 1, 1}, .args = &resolve});
+        TYN_DISPATCH(r, .kernel = 1, .cells = {num, 1, 1}, .args = &resolve);
     }
     tyn_rec_work(r, "paths", (double)pixels * p->num_samples);
 }

@@ -1,25 +1,41 @@
 // path.h -- the unbiased path tracer: images.
 #pragma once
 #include <tyndall/pass.h>
+#include "shaders/common/bundles.h"
 #include "shaders/path/path_scene.h"
 
 // Image. The INOUT ports are histories of the image's size (the last three of 1x1 without layers).
-enum {
-    PATH_PORT_CAMERA = PATH_NUM_SCENE_PORTS, // IN buffer struct camera_block
-    PATH_PORT_MEAN,                          // INOUT 2D RGBA32F: radiance; a = 1 - transmittance
-    PATH_PORT_LOW,                           // INOUT: what single precision loses of it
-    PATH_PORT_DEVIATION,                     // INOUT: sums of squared deviations
-    PATH_PORT_MEAN_SINGLE,                   // INOUT
-    PATH_PORT_MEAN_MULTIPLE,                 // INOUT
-    PATH_PORT_MEAN_TRANSMITTANCE,            // INOUT
-    PATH_PORT_RADIANCE,                      // OUT 2D RGBA32F, W/(m^2 sr); alpha
-    PATH_PORT_ERROR,                         // OUT 2D RGBA32F: one standard error of the mean
-    PATH_PORT_SINGLE,                        // OUT 2D RGBA32F: first order (1x1 without layers)
-    PATH_PORT_MULTIPLE,                      // OUT 2D RGBA32F: higher orders and emission
-    PATH_PORT_TRANSMITTANCE,                 // OUT 2D RGBA32F
-    PATH_PORT_COUNTERS,                      // OUT buffer struct counters_block, of this record
-    PATH_PORT_PARTIALS,                      // SCRATCH
-    PATH_PORT_LAYERS,                        // SCRATCH
-    PATH_NUM_PORTS,
-};
+// clang-format off
+#define PATH_PORTS(X) \
+    TYN_PATH_SCENE(X, PATH), \
+    TYN_GEOMETRY(X##_OPTIONAL, PATH), \
+    TYN_MATERIALS(X##_OPTIONAL, PATH), \
+    X(PATH, CAMERA, camera, IN, BUFFER, "struct camera_block: rays of the pixels"), \
+    X(PATH, MEAN, mean, INOUT, IMAGE_2D, \
+        "running mean radiance, W/(m^2 sr)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PATH, LOW, low, INOUT, IMAGE_2D, \
+        "what single precision loses of the mean", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PATH, DEVIATION, deviation, INOUT, IMAGE_2D, \
+        "running sum of squared deviations", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PATH, MEAN_SINGLE, mean_single, INOUT, IMAGE_2D, \
+        "running mean of the first order", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PATH, MEAN_MULTIPLE, mean_multiple, INOUT, IMAGE_2D, \
+        "running mean of higher orders", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PATH, MEAN_TRANSMITTANCE, mean_transmittance, INOUT, IMAGE_2D, \
+        "running mean transmittance", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PATH, RADIANCE, radiance, OUT, IMAGE_2D, \
+        "radiance W/(m^2 sr), alpha", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PATH, ERROR, error, OUT, IMAGE_2D, \
+        "standard error of the radiance, W/(m^2 sr)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PATH, SINGLE, single, OUT, IMAGE_2D, \
+        "first-order scattering, W/(m^2 sr)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PATH, MULTIPLE, multiple, OUT, IMAGE_2D, \
+        "higher orders and emission, W/(m^2 sr)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PATH, TRANSMITTANCE, transmittance, OUT, IMAGE_2D, \
+        "transmittance of the media", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PATH, COUNTERS, counters, OUT, BUFFER, "collisions, cut paths, non-finite samples"), \
+    X(PATH, PARTIALS, partials, SCRATCH, BUFFER, "statistics of each thread"), \
+    X(PATH, LAYERS, layers, SCRATCH, BUFFER, "layers of each thread")
+// clang-format on
+enum { PATH_PORTS(TYN_PORT_ENUM), PATH_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_path;

@@ -2,13 +2,12 @@
 // writes the image so far. One thread a pixel, in a fixed order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 #include "shaders/common/scene_args.h"
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0, scalar) readonly buffer partial_buffer { path_partial partials[]; };
+layout(set = 0, binding = 0, scalar) readonly buffer partials_buffer { path_partial partials[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer layers_buffer { path_partial_layers layers[]; };
 layout(set = 0, binding = 2, rgba32f) uniform image2D mean_image;
 layout(set = 0, binding = 3, rgba32f) uniform image2D low_image;

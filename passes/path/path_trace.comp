@@ -1,14 +1,13 @@
 // path_trace.comp -- samples of an image: each thread follows some paths of one pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 
 const bool PROBE = false;
 #include "shaders/path/path_resources.glsl"
 
 layout(set = 0, binding = 16, scalar) uniform camera_uniform { camera_block camera_in; };
-layout(set = 0, binding = 17, scalar) writeonly buffer partial_buffer { path_partial partials[]; };
+layout(set = 0, binding = 17, scalar) writeonly buffer partials_buffer { path_partial partials[]; };
 layout(set = 0, binding = 18, scalar) buffer counters_buffer { counters_block counters; };
 layout(set = 0, binding = 19, scalar) writeonly buffer layers_buffer { path_partial_layers layers[]; };
 

@@ -5,34 +5,11 @@
 #include "path_balance.comp.h"
 #include "path_balance_sum.comp.h"
 
-static const tyn_port ports[PATH_BALANCE_NUM_PORTS] = {
-    PATH_SCENE_PORT_ROWS,
-    {"state", TYN_INOUT, TYN_BUFFER, 0, false, "running statistics"},
-    {"balance", TYN_OUT, TYN_BUFFER, 0, false, "power entering, emitted, absorbed, escaped, W"},
-    {"result", TYN_OUT, TYN_BUFFER, 0, false, "the same in single precision, with standard errors"},
-    {"counters", TYN_OUT, TYN_BUFFER, 0, false, "collisions, cut paths, non-finite samples"},
-    {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "statistics of each thread"},
-    {"areas", TYN_IN, TYN_BUFFER, 0, true, "alias table of the triangles' areas"},
-};
-
-static const tyn_binding trace_bindings[] = {
-    PATH_SCENE_BINDING_ROWS,
-    {PATH_BALANCE_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
-    {PATH_BALANCE_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
-    {PATH_BALANCE_PORT_AREAS, TYN_USE_STORAGE_READ, false},
-};
-
-static const tyn_binding sum_bindings[] = {
-    {PATH_BALANCE_PORT_PARTIALS, TYN_USE_STORAGE_READ, false},
-    {PATH_BALANCE_PORT_STATE, TYN_USE_STORAGE_RW, false},
-    {PATH_BALANCE_PORT_RESULT, TYN_USE_STORAGE_WRITE, false},
-    {PATH_BALANCE_PORT_BALANCE, TYN_USE_STORAGE_WRITE, false},
-};
+static const tyn_port ports[] = {PATH_BALANCE_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(path_balance, sizeof(struct path_args), 64, 1, 1, trace_bindings, TYN_PATH_NUM_SPEC),
-    TYN_KERNEL(path_balance_sum, sizeof(struct path_resolve_args), TYN_PATH_BALANCE_VALUES, 1, 1,
-               sum_bindings, 0),
+    TYN_KERNEL(path_balance),
+    TYN_KERNEL(path_balance_sum),
 };
 
 uint64_t tyn_path_balance_state_size(void)
@@ -74,17 +51,14 @@ static void record(tyn_recorder *r, const void *params)
         args.slots = threads;
         args.num_samples = groups * kinds;
         args.first_sample = (before + chunk) * args.num_samples;
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = 0, .cells = {threads, 1, 1}, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = 0, .cells = {threads, 1, 1}, .args = &args, .spec = spec);
         struct path_resolve_args sum = {
             .num = 1,
             .slots = threads,
             .samples_before = (before + chunk) * groups,
             .lamps = {p->lamp_power[0], p->lamp_power[1], p->lamp_power[2]},
         };
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = 1, .cells = {TYN_PATH_BALANCE_VALUES, 1, 1}, .args = &sum});
+        TYN_DISPATCH(r, .kernel = 1, .cells = {TYN_PATH_BALANCE_VALUES, 1, 1}, .args = &sum);
     }
     tyn_rec_work(r, "paths", (double)p->chunks * groups * kinds);
 }

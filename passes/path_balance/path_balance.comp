@@ -8,13 +8,12 @@
 // followed from the surfaces.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 
 const bool PROBE = true;
 #include "shaders/path/path_resources.glsl"
 
-layout(set = 0, binding = 16, scalar) writeonly buffer partial_buffer { path_balance_partial partials[]; };
+layout(set = 0, binding = 16, scalar) writeonly buffer partials_buffer { path_balance_partial partials[]; };
 layout(set = 0, binding = 17, scalar) buffer counters_buffer { counters_block counters; };
 layout(set = 0, binding = 18, scalar) readonly buffer areas_buffer {
     surface_table areas;

@@ -1,18 +1,23 @@
 // path_balance.h -- the unbiased path tracer: where the energy goes.
 #pragma once
 #include <tyndall/pass.h>
+#include "shaders/common/bundles.h"
 #include "shaders/path/path_scene.h"
 
-enum {
-    PATH_BALANCE_PORT_STATE =
-        PATH_NUM_SCENE_PORTS,   // INOUT buffer, tyn_path_balance_state_size bytes: a history
-    PATH_BALANCE_PORT_BALANCE,  // OUT buffer tyn_balance
-    PATH_BALANCE_PORT_RESULT,   // OUT buffer struct path_balance_result: values and standard errors
-    PATH_BALANCE_PORT_COUNTERS, // OUT buffer struct counters_block
-    PATH_BALANCE_PORT_PARTIALS, // SCRATCH
-    PATH_BALANCE_PORT_AREAS,    // IN buffer struct surface_table and cells, optional
-    PATH_BALANCE_NUM_PORTS,
-};
+// clang-format off
+#define PATH_BALANCE_PORTS(X) \
+    TYN_PATH_SCENE(X, PATH_BALANCE), \
+    TYN_GEOMETRY(X##_OPTIONAL, PATH_BALANCE), \
+    TYN_MATERIALS(X##_OPTIONAL, PATH_BALANCE), \
+    X(PATH_BALANCE, STATE, state, INOUT, BUFFER, "tyn_path_balance_state_size bytes: a history"), \
+    X(PATH_BALANCE, BALANCE, balance, OUT, BUFFER, "tyn_balance: power entering, emitted, absorbed, escaped, W"), \
+    X(PATH_BALANCE, RESULT, result, OUT, BUFFER, "struct path_balance_result: values and standard errors"), \
+    X(PATH_BALANCE, COUNTERS, counters, OUT, BUFFER, \
+        "struct counters_block: collisions, cut paths, non-finite samples"), \
+    X(PATH_BALANCE, PARTIALS, partials, SCRATCH, BUFFER, "statistics of each thread"), \
+    X(PATH_BALANCE, AREAS, areas, OPTIONAL, BUFFER, "struct surface_table and cells, optional")
+// clang-format on
+enum { PATH_BALANCE_PORTS(TYN_PORT_ENUM), PATH_BALANCE_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_path_balance;
 
 // Bytes of its history.

@@ -4,12 +4,11 @@
 // The standard error of the imbalance is that of what is given less what is taken, over what is given.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 
 layout(local_size_x = TYN_PATH_BALANCE_VALUES) in;
 
-layout(set = 0, binding = 0, scalar) readonly buffer partial_buffer { path_balance_partial partials[]; };
+layout(set = 0, binding = 0, scalar) readonly buffer partials_buffer { path_balance_partial partials[]; };
 layout(set = 0, binding = 1, scalar) buffer state_buffer { path_balance_state states[]; };
 layout(set = 0, binding = 2, scalar) writeonly buffer result_buffer { path_balance_result result; };
 // tyn_balance: seven triples of doubles, each as two words; a device need not know doubles.

@@ -2,23 +2,9 @@
 #include "path_distance.h"
 #include "path_distance.comp.h"
 
-static const tyn_port ports[PATH_DISTANCE_NUM_PORTS] = {
-    {"camera", TYN_IN, TYN_BUFFER, 0, false, "rays of the pixels"},
-    TYN_GEOMETRY(TYN_BUNDLE_IN, PATH_DISTANCE),
-    {"radiance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT, false,
-     "none: surfaces as the ray march takes them, in the dark"},
-    {"distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false,
-     "along the ray to the first surface, m; 0: none"},
-};
+static const tyn_port ports[] = {PATH_DISTANCE_PORTS(TYN_PORT_ROW)};
 
-static const tyn_binding bindings[] = {
-    {PATH_DISTANCE_PORT_CAMERA, TYN_USE_UNIFORM, false},
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, PATH_DISTANCE),
-    {PATH_DISTANCE_PORT_RADIANCE, TYN_USE_STORAGE_WRITE, false},
-    {PATH_DISTANCE_PORT_DISTANCES, TYN_USE_STORAGE_WRITE, false},
-};
-
-static const tyn_kernel kernel = TYN_KERNEL(path_distance, 0, 8, 8, 1, bindings, 0);
+static const tyn_kernel kernel = TYN_KERNEL(path_distance);
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
@@ -31,7 +17,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_path_distance_params *p = params;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = {p->width, p->height, 1}});
+    TYN_DISPATCH(r, .cells = {p->width, p->height, 1});
 }
 
 const tyn_pass_desc tyn_pass_path_distance = {

@@ -1,7 +1,6 @@
 // path_distance.comp -- where the ray through the middle of each pixel meets the first surface.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/common/camera.glsl"
 #include "shaders/colour/packed_colour.glsl"
@@ -12,7 +11,7 @@ layout(set = 0, binding = 0, scalar) uniform camera_uniform { camera_block camer
 #define GEOMETRY_AT 1
 #include "shaders/surfaces/surfaces.glsl"
 layout(set = 0, binding = 5, rg32ui) uniform writeonly uimage2D radiance_image;
-layout(set = 0, binding = 6, r32f) uniform writeonly image2D distance_image;
+layout(set = 0, binding = 6, r32f) uniform writeonly image2D distances_image;
 
 #include "shaders/surfaces/surface_trace.glsl"
 
@@ -28,5 +27,5 @@ void main()
     surface_hit hit = surface_hit(uintBitsToFloat(0x7f800000u), SURFACE_NONE, vec2(0.0)); // infinity: none
     surface_trace_world(ray, false, hit);
     imageStore(radiance_image, ivec2(pixel), uvec4(colour_pack(vec3(0.0)), 0u, 0u));
-    imageStore(distance_image, ivec2(pixel), vec4(isinf(hit.t) ? 0.0 : hit.t));
+    imageStore(distances_image, ivec2(pixel), vec4(isinf(hit.t) ? 0.0 : hit.t));
 }

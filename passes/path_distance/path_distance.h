@@ -6,11 +6,14 @@
 typedef struct tyn_path_distance_params {
     uint32_t width, height; // of the picture
 } tyn_path_distance_params;
-enum {
-    PATH_DISTANCE_PORT_CAMERA,                    // IN buffer struct camera_block
-    TYN_GEOMETRY(TYN_BUNDLE_ENUM, PATH_DISTANCE), // IN
-    PATH_DISTANCE_PORT_RADIANCE,                  // OUT 2D RG32UI: none, packed_colour.glsl
-    PATH_DISTANCE_PORT_DISTANCES,                 // OUT 2D R32F, m; 0: none
-    PATH_DISTANCE_NUM_PORTS,
-};
+// clang-format off
+#define PATH_DISTANCE_PORTS(X) \
+    X(PATH_DISTANCE, CAMERA, camera, IN, BUFFER, "struct camera_block: rays of the pixels"), \
+    TYN_GEOMETRY(X, PATH_DISTANCE), \
+    X(PATH_DISTANCE, RADIANCE, radiance, OUT, IMAGE_2D, \
+        "none: surfaces as the ray march takes them, in the dark", .format = VK_FORMAT_R32G32_UINT), \
+    X(PATH_DISTANCE, DISTANCES, distances, OUT, IMAGE_2D, \
+        "along the ray to the first surface, m; 0: none", .format = VK_FORMAT_R32_SFLOAT)
+// clang-format on
+enum { PATH_DISTANCE_PORTS(TYN_PORT_ENUM), PATH_DISTANCE_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_path_distance;

@@ -5,30 +5,11 @@
 #include "path_fluxes.comp.h"
 #include "path_fluxes_sum.comp.h"
 
-static const tyn_port ports[PATH_FLUXES_NUM_PORTS] = {
-    PATH_SCENE_PORT_ROWS,
-    {"state", TYN_INOUT, TYN_BUFFER, 0, false, "running statistics"},
-    {"fluxes", TYN_OUT, TYN_BUFFER, 0, false, "power, and standard errors, W"},
-    {"counters", TYN_OUT, TYN_BUFFER, 0, false, "collisions, cut paths, non-finite paths"},
-    {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "mean of each thread's paths"},
-};
-
-static const tyn_binding trace_bindings[] = {
-    PATH_SCENE_BINDING_ROWS,
-    {PATH_FLUXES_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
-    {PATH_FLUXES_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
-};
-
-static const tyn_binding sum_bindings[] = {
-    {PATH_FLUXES_PORT_PARTIALS, TYN_USE_STORAGE_READ, false},
-    {PATH_FLUXES_PORT_STATE, TYN_USE_STORAGE_RW, false},
-    {PATH_FLUXES_PORT_FLUXES, TYN_USE_STORAGE_WRITE, false},
-};
+static const tyn_port ports[] = {PATH_FLUXES_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(path_fluxes, sizeof(struct path_args), 64, 1, 1, trace_bindings, TYN_PATH_NUM_SPEC),
-    TYN_KERNEL(path_fluxes_sum, sizeof(struct path_fluxes_sum_args), TYN_PATH_FLUX_LANES, 1, 1,
-               sum_bindings, 0),
+    TYN_KERNEL(path_fluxes),
+    TYN_KERNEL(path_fluxes_sum),
 };
 
 uint64_t tyn_path_fluxes_state_size(void)
@@ -59,15 +40,11 @@ static void record(tyn_recorder *r, const void *params)
         args.num = 1;
         args.slots = p->threads;
         args.first_sample = p->first_sample + chunk * p->num_samples;
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = 0, .cells = {p->threads, 1, 1}, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = 0, .cells = {p->threads, 1, 1}, .args = &args, .spec = spec);
         struct path_fluxes_sum_args sum = {
             .threads = p->threads, .paths = args.num_samples, .paths_before = args.first_sample};
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = 1,
-                               .cells = {TYN_PATH_FLUX_VALUES * TYN_PATH_FLUX_LANES, 1, 1},
-                               .args = &sum});
+        TYN_DISPATCH(r, .kernel = 1, .cells = {TYN_PATH_FLUX_VALUES * TYN_PATH_FLUX_LANES, 1, 1},
+                     .args = &sum);
     }
     tyn_rec_work(r, "paths", (double)p->threads * p->chunks * p->num_samples);
 }

@@ -11,13 +11,12 @@
 // All paths of a thread are one sample of the statistics (path_fluxes_sum.comp).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 
 const bool PROBE = false;
 #include "shaders/path/path_resources.glsl"
 
-layout(set = 0, binding = 16, scalar) writeonly buffer partial_buffer {
+layout(set = 0, binding = 16, scalar) writeonly buffer partials_buffer {
     float partials[]; // [value][thread]: mean over the thread's paths, W
 };
 layout(set = 0, binding = 17, scalar) buffer counters_buffer { counters_block counters; };
@@ -70,7 +69,7 @@ vec3 draw_light(float total, float u, inout rng_state rng, out vec3 power)
     if (ENVIRONMENT == TYN_PATH_ENV_MAP) {
         float pdf;
         way = -env_sample(env, rng_next(rng), pdf);
-        power = environment_radiance(env, env_map, -way) / max(pdf, 1e-37);
+        power = environment_radiance(env, env_map_wrapped, -way) / max(pdf, 1e-37);
     } else if (ENVIRONMENT == TYN_PATH_ENV_CONSTANT) {
         vec2 random = rng_vec2(rng_next(rng).xy);
         float z = 1.0 - 2.0 * random.x, across = sqrt(max(1.0 - z * z, 0.0));

@@ -1,16 +1,21 @@
 // path_fluxes.h -- the unbiased path tracer: where the light of suns and surroundings goes.
 #pragma once
 #include <tyndall/pass.h>
+#include "shaders/common/bundles.h"
 #include "shaders/path/path_scene.h"
 
-enum {
-    PATH_FLUXES_PORT_STATE =
-        PATH_NUM_SCENE_PORTS,  // INOUT buffer, tyn_path_fluxes_state_size bytes: a history
-    PATH_FLUXES_PORT_FLUXES,   // OUT buffer tyn_fluxes
-    PATH_FLUXES_PORT_COUNTERS, // OUT buffer struct counters_block
-    PATH_FLUXES_PORT_PARTIALS, // SCRATCH
-    PATH_FLUXES_NUM_PORTS,
-};
+// clang-format off
+#define PATH_FLUXES_PORTS(X) \
+    TYN_PATH_SCENE(X, PATH_FLUXES), \
+    TYN_GEOMETRY(X##_OPTIONAL, PATH_FLUXES), \
+    TYN_MATERIALS(X##_OPTIONAL, PATH_FLUXES), \
+    X(PATH_FLUXES, STATE, state, INOUT, BUFFER, "tyn_path_fluxes_state_size bytes: a history"), \
+    X(PATH_FLUXES, FLUXES, fluxes, OUT, BUFFER, "tyn_fluxes: power, and standard errors, W"), \
+    X(PATH_FLUXES, COUNTERS, counters, OUT, BUFFER, \
+        "struct counters_block: collisions, cut paths, non-finite paths"), \
+    X(PATH_FLUXES, PARTIALS, partials, SCRATCH, BUFFER, "mean of each thread's paths")
+// clang-format on
+enum { PATH_FLUXES_PORTS(TYN_PORT_ENUM), PATH_FLUXES_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_path_fluxes;
 
 // Bytes of its history.

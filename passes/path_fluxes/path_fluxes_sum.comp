@@ -5,14 +5,13 @@
 // path's variance. Fixed order: every lane its own threads, then pairwise.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 
 layout(local_size_x = TYN_PATH_FLUX_LANES) in;
 
-layout(set = 0, binding = 0, scalar) readonly buffer partial_buffer { float partials[]; };
+layout(set = 0, binding = 0, scalar) readonly buffer partials_buffer { float partials[]; };
 layout(set = 0, binding = 1, scalar) buffer state_buffer { path_fluxes_state state; };
-layout(set = 0, binding = 2, scalar) writeonly buffer result_buffer { path_fluxes_result result; };
+layout(set = 0, binding = 2, scalar) writeonly buffer fluxes_buffer { path_fluxes_result result; };
 layout(push_constant, scalar) uniform args_push { path_fluxes_sum_args args; };
 
 shared vec2 lanes[TYN_PATH_FLUX_LANES]; // mean, sum of squared deviations of means

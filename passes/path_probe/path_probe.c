@@ -6,31 +6,11 @@
 
 enum { PROBE_STATE_BYTES = 3 * TYN_PATH_PROBE_VALUES * 4 };
 
-static const tyn_port ports[PATH_PROBE_NUM_PORTS] = {
-    PATH_SCENE_PORT_ROWS,
-    {"points", TYN_IN, TYN_BUFFER, 0, false, "points in M, m"},
-    {"state", TYN_INOUT, TYN_BUFFER, 0, false, "running statistics of each point"},
-    {"results", TYN_OUT, TYN_BUFFER, 0, false, "fluence and net flux with standard errors, W/m^2"},
-    {"counters", TYN_OUT, TYN_BUFFER, 0, false, "collisions, cut paths, non-finite samples"},
-    {"partials", TYN_SCRATCH, TYN_BUFFER, 0, false, "statistics of each thread"},
-};
-
-static const tyn_binding bindings[] = {
-    PATH_SCENE_BINDING_ROWS,
-    {PATH_PROBE_PORT_POINTS, TYN_USE_STORAGE_READ, false},
-    {PATH_PROBE_PORT_PARTIALS, TYN_USE_STORAGE_WRITE, false},
-    {PATH_PROBE_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
-};
-
-static const tyn_binding resolve_bindings[] = {
-    {PATH_PROBE_PORT_PARTIALS, TYN_USE_STORAGE_READ, false},
-    {PATH_PROBE_PORT_STATE, TYN_USE_STORAGE_RW, false},
-    {PATH_PROBE_PORT_RESULTS, TYN_USE_STORAGE_WRITE, false},
-};
+static const tyn_port ports[] = {PATH_PROBE_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(path_probe, sizeof(struct path_args), 64, 1, 1, bindings, TYN_PATH_NUM_SPEC),
-    TYN_KERNEL(path_probe_resolve, sizeof(struct path_resolve_args), 64, 1, 1, resolve_bindings, 0),
+    TYN_KERNEL(path_probe),
+    TYN_KERNEL(path_probe_resolve),
 };
 
 uint64_t tyn_path_probe_state_size(uint32_t num_points)
@@ -64,14 +44,11 @@ static void record(tyn_recorder *r, const void *params)
         args.first = first;
         args.num = num;
         args.slots = s.slots;
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){
-                   .kernel = 0, .cells = {num * s.slots, 1, 1}, .args = &args, .spec = spec});
+        TYN_DISPATCH(r, .kernel = 0, .cells = {num * s.slots, 1, 1}, .args = &args, .spec = spec);
         struct path_resolve_args resolve = {
             .first = first, .num = num, .slots = s.slots, .samples_before = p->first_sample};
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = 1,
-                                            .cells = {num * TYN_PATH_PROBE_VALUES, 1, 1},
-                                            .args = &resolve});
+        TYN_DISPATCH(r, .kernel = 1, .cells = {num * TYN_PATH_PROBE_VALUES, 1, 1},
+                     .args = &resolve);
     }
     tyn_rec_work(r, "paths", (double)points * p->num_samples);
 }

@@ -2,14 +2,13 @@
 // all directions.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 
 const bool PROBE = true;
 #include "shaders/path/path_resources.glsl"
 
 layout(set = 0, binding = 16, scalar) readonly buffer points_buffer { vec3 points[]; };
-layout(set = 0, binding = 17, scalar) writeonly buffer partial_buffer { path_probe_partial partials[]; };
+layout(set = 0, binding = 17, scalar) writeonly buffer partials_buffer { path_probe_partial partials[]; };
 layout(set = 0, binding = 18, scalar) buffer counters_buffer { counters_block counters; };
 
 #include "shaders/path/path.glsl"

@@ -1,16 +1,23 @@
 // path_probe.h -- the unbiased path tracer: the light field at points.
 #pragma once
 #include <tyndall/pass.h>
+#include "shaders/common/bundles.h"
 #include "shaders/path/path_scene.h"
 
-enum {
-    PATH_PROBE_PORT_POINTS = PATH_NUM_SCENE_PORTS, // IN buffer vec3[], M, m
-    PATH_PROBE_PORT_STATE,    // INOUT buffer, tyn_path_probe_state_size bytes: a history
-    PATH_PROBE_PORT_RESULTS,  // OUT buffer tyn_probe_result[]
-    PATH_PROBE_PORT_COUNTERS, // OUT buffer struct counters_block
-    PATH_PROBE_PORT_PARTIALS, // SCRATCH
-    PATH_PROBE_NUM_PORTS,
-};
+// clang-format off
+#define PATH_PROBE_PORTS(X) \
+    TYN_PATH_SCENE(X, PATH_PROBE), \
+    TYN_GEOMETRY(X##_OPTIONAL, PATH_PROBE), \
+    TYN_MATERIALS(X##_OPTIONAL, PATH_PROBE), \
+    X(PATH_PROBE, POINTS, points, IN, BUFFER, "points in M, m"), \
+    X(PATH_PROBE, STATE, state, INOUT, BUFFER, "tyn_path_probe_state_size bytes: a history"), \
+    X(PATH_PROBE, RESULTS, results, OUT, BUFFER, \
+        "tyn_probe_result[]: fluence and net flux with standard errors, W/m^2"), \
+    X(PATH_PROBE, COUNTERS, counters, OUT, BUFFER, \
+        "struct counters_block: collisions, cut paths, non-finite samples"), \
+    X(PATH_PROBE, PARTIALS, partials, SCRATCH, BUFFER, "statistics of each thread")
+// clang-format on
+enum { PATH_PROBE_PORTS(TYN_PORT_ENUM), PATH_PROBE_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_path_probe;
 
 // Bytes of its history.

@@ -2,14 +2,13 @@
 // One thread a value, in a fixed order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/path/path_args.h"
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0, scalar) readonly buffer partial_buffer { path_probe_partial partials[]; };
+layout(set = 0, binding = 0, scalar) readonly buffer partials_buffer { path_probe_partial partials[]; };
 layout(set = 0, binding = 1, scalar) buffer state_buffer { path_probe_state states[]; };
-layout(set = 0, binding = 2, scalar) writeonly buffer result_buffer { path_probe_result results[]; };
+layout(set = 0, binding = 2, scalar) writeonly buffer results_buffer { path_probe_result results[]; };
 layout(push_constant, scalar) uniform args_push { path_resolve_args args; };
 
 #include "shaders/path/path_probe_merge.glsl"

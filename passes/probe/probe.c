@@ -4,36 +4,10 @@
 #include "probe.comp.h"
 #include <string.h>
 
-static const tyn_port ports[PROBE_NUM_PORTS] = {
-    [PROBE_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
-    [PROBE_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, true, "struct light_block[]"},
-    [PROBE_PORT_MOMENTS] = {"moments", TYN_IN, TYN_IMAGE_3D, 0, false, "of lattice"},
-    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, PROBE),
-    [PROBE_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, true,
-                                "struct env_block: its mean without suns enters at the box"},
-    TYN_COLUMNS(TYN_BUNDLE_OPTIONAL, PROBE),
-    TYN_WALLS(TYN_BUNDLE_OPTIONAL, PROBE),
-    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, PROBE),
-    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, PROBE),
-    [PROBE_PORT_VPL_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
-    [PROBE_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true, "of cells and VPLs: rooms.h"},
-    [PROBE_PORT_CELLS] = {"cells", TYN_IN, TYN_IMAGE_3D, 0, true, "of lattice_cells"},
-    [PROBE_PORT_POINTS] = {"points", TYN_IN, TYN_BUFFER, 0, false, "vec3[], m"},
-    [PROBE_PORT_RESULTS] = {"results", TYN_OUT, TYN_BUFFER, 0, false, "tyn_probe_result[], W/m^2"},
-};
-
-static const tyn_binding bindings[] = {
-    {PROBE_PORT_MEDIUM, TYN_USE_UNIFORM},        {PROBE_PORT_LIGHTS, TYN_USE_STORAGE_READ},
-    {PROBE_PORT_MOMENTS, TYN_USE_SAMPLED},       TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, PROBE),
-    {PROBE_PORT_POINTS, TYN_USE_STORAGE_READ},   {PROBE_PORT_RESULTS, TYN_USE_STORAGE_WRITE},
-    {PROBE_PORT_ENVIRONMENT, TYN_USE_UNIFORM},   TYN_COLUMNS(TYN_BUNDLE_BIND, PROBE),
-    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, PROBE),   TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, PROBE),
-    TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, PROBE), {PROBE_PORT_CELLS, TYN_USE_SAMPLED},
-    {PROBE_PORT_VPL_DISTANCES, TYN_USE_SAMPLED}, {PROBE_PORT_ROOMS, TYN_USE_TEXELS_UINT},
-};
+static const tyn_port ports[] = {PROBE_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(probe, sizeof(struct probe_args), 64, 1, 1, bindings, 5),
+    TYN_KERNEL(probe),
 };
 
 static uint32_t num_points(tyn_extent bytes)
@@ -67,8 +41,7 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t spec[5] = {
         p->mode, tyn_rec_has(r, PROBE_PORT_WALL_LINKS), tyn_rec_has(r, PROBE_PORT_SHADOW_ATLAS),
         tyn_rec_has(r, PROBE_PORT_VPL_DISTANCES), tyn_rec_has(r, PROBE_PORT_ROOMS)};
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.cells = {args.num_points, 1, 1}, .args = &args, .spec = spec});
+    TYN_DISPATCH(r, .cells = {args.num_points, 1, 1}, .args = &args, .spec = spec);
     tyn_rec_work(r, "points", args.num_points);
 }
 

@@ -1,7 +1,6 @@
 // probe.comp -- fluence and net flux at points: the lattice's moments and what is left of the suns.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "probe_args.h"
 #include "shaders/light/ordinate_args.h"
 #define MEDIUM_BLOCK 0
@@ -35,7 +34,7 @@ layout(push_constant, scalar) uniform push
 {
     probe_args args;
 };
-layout(binding = 1, scalar) readonly buffer light_buffer
+layout(binding = 1, scalar) readonly buffer lights_buffer
 {
     light_block lights[];
 };
@@ -45,11 +44,11 @@ layout(binding = 9, scalar) uniform environment_uniform
 {
     env_block environment;
 };
-layout(binding = 7, scalar) readonly buffer point_buffer
+layout(binding = 7, scalar) readonly buffer points_buffer
 {
     vec3 points[];
 };
-layout(binding = 8, scalar) writeonly buffer result_buffer
+layout(binding = 8, scalar) writeonly buffer results_buffer
 {
     probe_result results[];
 };

@@ -16,21 +16,23 @@ typedef struct tyn_probe_params {
     float world[3][3]; // the world's axes in M: what the flux is given along
 } tyn_probe_params;
 
-enum {
-    PROBE_PORT_MEDIUM,                 // IN buffer struct medium_block
-    PROBE_PORT_LIGHTS,                 // IN optional buffer struct light_block[]
-    PROBE_PORT_MOMENTS,                // IN 3D, of lattice
-    TYN_BEAMS(TYN_BUNDLE_ENUM, PROBE), // IN optional
-    PROBE_PORT_ENVIRONMENT, // IN optional buffer struct env_block, what lattice was given
-    TYN_COLUMNS(TYN_BUNDLE_ENUM, PROBE), // IN optional
-    TYN_WALLS(TYN_BUNDLE_ENUM, PROBE),   // IN optional
-    TYN_RADIALS(TYN_BUNDLE_ENUM, PROBE), // IN optional
-    TYN_SHADOWS(TYN_BUNDLE_ENUM, PROBE), // IN optional
-    PROBE_PORT_VPL_DISTANCES,            // IN optional 2D, of vpl: with walls and VPLs
-    PROBE_PORT_ROOMS,                    // IN optional buffer, rooms.h: with these
-    PROBE_PORT_CELLS,   // IN optional 3D, of lattice_cells: flux at the box's faces
-    PROBE_PORT_POINTS,  // IN buffer vec3[], M, m
-    PROBE_PORT_RESULTS, // OUT buffer tyn_probe_result[]
-    PROBE_NUM_PORTS,
-};
+// clang-format off
+#define PROBE_PORTS(X) \
+    X(PROBE, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
+    X(PROBE, LIGHTS, lights, OPTIONAL, BUFFER, "struct light_block[]"), \
+    X(PROBE, MOMENTS, moments, IN, IMAGE_3D, "of lattice"), \
+    TYN_BEAMS(X##_OPTIONAL, PROBE), \
+    X(PROBE, ENVIRONMENT, environment, OPTIONAL, BUFFER, \
+        "struct env_block: its mean without suns enters at the box"), \
+    TYN_COLUMNS(X##_OPTIONAL, PROBE), \
+    TYN_WALLS(X##_OPTIONAL, PROBE), \
+    TYN_RADIALS(X##_OPTIONAL, PROBE), \
+    TYN_SHADOWS(X##_OPTIONAL, PROBE), \
+    X(PROBE, VPL_DISTANCES, vpl_distances, OPTIONAL, IMAGE_2D, "of vpl: with walls and VPLs"), \
+    X(PROBE, ROOMS, rooms, OPTIONAL, BUFFER, "of cells and VPLs: rooms.h"), \
+    X(PROBE, CELLS, cells, OPTIONAL, IMAGE_3D, "of lattice_cells: flux at the box's faces"), \
+    X(PROBE, POINTS, points, IN, BUFFER, "vec3[], m"), \
+    X(PROBE, RESULTS, results, OUT, BUFFER, "tyn_probe_result[], W/m^2")
+// clang-format on
+enum { PROBE_PORTS(TYN_PORT_ENUM), PROBE_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_probe;

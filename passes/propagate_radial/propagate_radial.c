@@ -11,65 +11,15 @@
 
 #define PORT(name) PROPAGATE_RADIAL_PORT_##name
 
-static const tyn_port ports[PROPAGATE_RADIAL_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, PROPAGATE_RADIAL),
-    [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
-    [PORT(VPLS)] = {"vpls", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "struct radial_vpls"},
-    [PORT(GRIDS)] = {"grids", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_radial_grid[]"},
-    [PORT(PLACES)] = {"places", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_radial_place[]"},
-    [PORT(SEEN)] = {"seen", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
-                    .meaning = "r^2 L_acc: light sent to the eye, per intensity, 1/sr"},
-    [PORT(MAP)] = {"map", TYN_OUT, TYN_BUFFER, .meaning = "power at the start, solid angle"},
-    [PORT(CELLS)] = {"cells", TYN_OUT, TYN_BUFFER,
-                     .meaning = "scattering and absorption depths of a cell, g, cosine to the eye"},
-    [PORT(STATE)] = {"state", TYN_OUT, TYN_BUFFER,
-                     .meaning = "light that leaves outwards, to a side, inwards; its 1 - a"},
-    [PORT(SUM)] = {"sum", TYN_OUT, TYN_BUFFER, .meaning = "r^2 L_acc of the last batch of grids"},
-    [PORT(STATE_OTHER)] = {"state_other", TYN_SCRATCH, TYN_BUFFER,
-                           .meaning = "state of every other iteration"},
-    [PORT(LAMPS)] = {"lamps", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct radial_light[]"},
-};
+static const tyn_port ports[] = {PROPAGATE_RADIAL_PORTS(TYN_PORT_ROW)};
 
 enum { SETUP, CELLS, START, STEP, COLLECT, NUM_KERNELS };
 
-static const tyn_binding setup_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},       {PORT(LAMPS), TYN_USE_STORAGE_READ},
-    {PORT(VPLS), TYN_USE_STORAGE_READ},    {PORT(GRIDS), TYN_USE_STORAGE_WRITE},
-    {PORT(PLACES), TYN_USE_STORAGE_WRITE}, {PORT(MAP), TYN_USE_STORAGE_RW},
-};
-static const tyn_binding cells_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RADIAL),
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},
-    {PORT(CAMERA), TYN_USE_UNIFORM},
-    {PORT(MAP), TYN_USE_STORAGE_READ},
-    {PORT(CELLS), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding start_bindings[] = {
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},        {PORT(MAP), TYN_USE_STORAGE_READ},
-    {PORT(CELLS), TYN_USE_STORAGE_RW},          {PORT(STATE), TYN_USE_STORAGE_WRITE},
-    {PORT(STATE_OTHER), TYN_USE_STORAGE_WRITE}, {PORT(SUM), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding step_bindings[] = {
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},  {PORT(MAP), TYN_USE_STORAGE_READ},
-    {PORT(CELLS), TYN_USE_STORAGE_READ},  {PORT(STATE_OTHER), TYN_USE_STORAGE_READ},
-    {PORT(STATE), TYN_USE_STORAGE_WRITE}, {PORT(SUM), TYN_USE_STORAGE_RW},
-};
-static const tyn_binding collect_bindings[] = {
-    {PORT(CELLS), TYN_USE_STORAGE_READ},
-    {PORT(SUM), TYN_USE_STORAGE_READ},
-    {PORT(SEEN), TYN_USE_STORAGE_WRITE},
-};
-
 #define EDGE PROPAGATE_RADIAL_GROUP
-#define KERNEL(step, x, y, z, specs)                                                               \
-    TYN_KERNEL(propagate_radial_##step, sizeof(struct propagate_radial_args), x, y, z,             \
-               step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = KERNEL(setup, PROPAGATE_RADIAL_LANES, 1, 1, 0),
-    [CELLS] = KERNEL(cells, EDGE, EDGE, EDGE, 1),
-    [START] = KERNEL(start, 8, 8, 1, 0),
-    [STEP] = KERNEL(step, EDGE, EDGE, EDGE, 0),
-    [COLLECT] = KERNEL(collect, EDGE, EDGE, EDGE, 0),
+    [SETUP] = TYN_KERNEL(propagate_radial_setup),     [CELLS] = TYN_KERNEL(propagate_radial_cells),
+    [START] = TYN_KERNEL(propagate_radial_start),     [STEP] = TYN_KERNEL(propagate_radial_step),
+    [COLLECT] = TYN_KERNEL(propagate_radial_collect),
 };
 
 #define FIELD(name) offsetof(tyn_propagate_radial_params, name)
@@ -180,28 +130,19 @@ static void record_batch(tyn_recorder *r, const tyn_propagate_radial_params *p,
     uint32_t layers =
         (args->layers + EDGE - 1) / EDGE * EDGE; // no workgroup has cells of two grids
     tyn_extent all = {side, side, layers * stacks};
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = CELLS,
-                                        .cells = {side, side, layers * args->count},
-                                        .args = args,
-                                        .spec = &p->mode});
+    TYN_DISPATCH(r, .kernel = CELLS, .cells = {side, side, layers * args->count}, .args = args,
+                 .spec = &p->mode);
     // The states are written alternately, so that the last one lands in the output.
     bool other = p->iterations % 2 != 0;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
-                                        .cells = {side, side, stacks},
-                                        .args = args,
-                                        .ports = tyn_ports_exchanged(&kernels[START], swap,
-                                                                     other ? 2 : 0, table)});
+    TYN_DISPATCH(r, .kernel = START, .cells = {side, side, stacks}, .args = args,
+                 .ports = tyn_ports_exchanged(&kernels[START], swap, other ? 2 : 0, table));
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
-                                            .cells = all,
-                                            .args = args,
-                                            .ports = tyn_ports_exchanged(&kernels[STEP], swap,
-                                                                         other ? 2 : 0, table)});
+        TYN_DISPATCH(r, .kernel = STEP, .cells = all, .args = args,
+                     .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? 2 : 0, table));
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = COLLECT,
-                                        .cells = {side + 2, side + 2, layers * stacks},
-                                        .args = args});
+    TYN_DISPATCH(r, .kernel = COLLECT, .cells = {side + 2, side + 2, layers * stacks},
+                 .args = args);
 }
 
 static void record(tyn_recorder *r, const void *data)
@@ -227,9 +168,8 @@ static void record(tyn_recorder *r, const void *data)
         args.voxel = fminf(args.voxel, p->extent[i] / (float)p->size[i]);
     }
     tyn_rec_update(r, PORT(LAMPS), 0, p->lamps, sizeof p->lamps);
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SETUP,
-                                        .cells = {PROPAGATE_RADIAL_LANES * num_grids(p), 1, 1},
-                                        .args = &args});
+    TYN_DISPATCH(r, .kernel = SETUP, .cells = {PROPAGATE_RADIAL_LANES * num_grids(p), 1, 1},
+                 .args = &args);
     // Tiles without a grid must be numbers: a linear fetch at an edge gives them a weight of 0.
     tyn_rec_clear(r, PORT(SEEN));
     for (args.first = 0; args.first < num_grids(p); args.first += args.count) {

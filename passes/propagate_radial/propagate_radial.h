@@ -42,23 +42,27 @@ typedef struct tyn_propagate_radial_params {
     struct radial_light lamps[TYN_RADIAL_LAMPS_MAX];
 } tyn_propagate_radial_params;
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, PROPAGATE_RADIAL), // IN
-    PROPAGATE_RADIAL_PORT_CAMERA,                  // IN buffer struct camera_block
-    PROPAGATE_RADIAL_PORT_VPLS,                    // IN optional buffer struct radial_vpls
-    PROPAGATE_RADIAL_PORT_GRIDS,  // OUT buffer struct propagate_radial_grid[]: lamps, then VPLs
-    PROPAGATE_RADIAL_PORT_PLACES, // OUT buffer struct propagate_radial_place[], so
-    PROPAGATE_RADIAL_PORT_SEEN, // OUT 3D R32F, tiles of grids and channels: r^2 L_acc, sum over iterations of
-    // L towards the eye, in units of the intensity, 1/sr
-    PROPAGATE_RADIAL_PORT_MAP, // OUT buffer, vec2[grids][cells^2]: power that starts there, sr; solid angle
-    PROPAGATE_RADIAL_PORT_CELLS, // OUT buffer, vec4[grids][channels][layers][cells^2] of the last batch: optical
-    // depths of scattering and absorption along the radius (of the ball: twice), g, cosine between the
-    // radius and the direction to the eye (-2: not in the grid)
-    PROPAGATE_RADIAL_PORT_STATE, // OUT buffer, vec4, so: after the last iteration what leaves the cell
-    // outwards, to each side and inwards, sr, and 1 - a of it
-    PROPAGATE_RADIAL_PORT_SUM,         // OUT buffer, float, so: r^2 L_acc
-    PROPAGATE_RADIAL_PORT_STATE_OTHER, // SCRATCH, as the state
-    PROPAGATE_RADIAL_PORT_LAMPS,       // SCRATCH buffer struct radial_light[]
-    PROPAGATE_RADIAL_NUM_PORTS,
-};
+// clang-format off
+#define PROPAGATE_RADIAL_PORTS(X) \
+    TYN_MEDIUM(X, PROPAGATE_RADIAL), \
+    X(PROPAGATE_RADIAL, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
+    X(PROPAGATE_RADIAL, VPLS, vpls, OPTIONAL, BUFFER, "struct radial_vpls"), \
+    X(PROPAGATE_RADIAL, GRIDS, grids, OUT, BUFFER, "struct propagate_radial_grid[]: lamps, then VPLs"), \
+    X(PROPAGATE_RADIAL, PLACES, places, OUT, BUFFER, "struct propagate_radial_place[], so"), \
+    X(PROPAGATE_RADIAL, SEEN, seen, OUT, IMAGE_3D, \
+        "tiles of grids and channels: r^2 L_acc, sum over iterations of L towards the eye, in units of the " \
+        "intensity, 1/sr", .format = VK_FORMAT_R32_SFLOAT), \
+    X(PROPAGATE_RADIAL, MAP, map, OUT, BUFFER, "vec2[grids][cells^2]: power that starts there, sr; solid angle"), \
+    X(PROPAGATE_RADIAL, CELLS, cells, OUT, BUFFER, \
+        "vec4[grids][channels][layers][cells^2] of the last batch: optical depths of scattering and " \
+        "absorption along the radius (of the ball: twice), g, cosine between the radius and the direction to " \
+        "the eye (-2: not in the grid)"), \
+    X(PROPAGATE_RADIAL, STATE, state, OUT, BUFFER, \
+        "vec4, so: after the last iteration what leaves the cell outwards, to each side and inwards, sr, and " \
+        "1 - a of it"), \
+    X(PROPAGATE_RADIAL, SUM, sum, OUT, BUFFER, "r^2 L_acc of the last batch of grids"), \
+    X(PROPAGATE_RADIAL, STATE_OTHER, state_other, SCRATCH, BUFFER, "state of every other iteration"), \
+    X(PROPAGATE_RADIAL, LAMPS, lamps, SCRATCH, BUFFER, "struct radial_light[]")
+// clang-format on
+enum { PROPAGATE_RADIAL_PORTS(TYN_PORT_ENUM), PROPAGATE_RADIAL_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_propagate_radial;

@@ -2,14 +2,13 @@
 // and the last cell of a direction theirs goes on, so that none is mixed with nothing.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/propagate_radial.glsl"
 #include "propagate_radial_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 0, scalar) readonly buffer cells_buffer { vec4 cells[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer sum_buffer { float sum[]; };
-layout(set = 0, binding = 2, r32f) uniform writeonly image3D out_seen;
+layout(set = 0, binding = 2, r32f) uniform writeonly image3D seen_image;
 layout(push_constant, scalar) uniform push { propagate_radial_args args; };
 
 // The closest cell along a direction; in .y whether there is one.
@@ -48,5 +47,5 @@ void main()
                 along(texel + ivec2(0, 1), at.z, stack) + along(texel - ivec2(0, 1), at.z, stack);
     }
     ivec3 corner = ivec3(tile % args.tiles, tile / args.tiles, 0) * side;
-    imageStore(out_seen, corner + at, vec4(found.x / max(found.y, 1.0)));
+    imageStore(seen_image, corner + at, vec4(found.x / max(found.y, 1.0)));
 }

@@ -2,14 +2,13 @@
 // each direction.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/propagate_radial.glsl"
 #include "propagate_radial_args.h"
 
 layout(local_size_x = PROPAGATE_RADIAL_LANES) in;
 layout(set = 0, binding = 0, scalar) uniform medium_uniform { medium_block medium; };
-layout(set = 0, binding = 1, scalar) readonly buffer lamp_buffer { radial_light lamps[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer vpl_buffer { radial_vpls vpls; };
+layout(set = 0, binding = 1, scalar) readonly buffer lamps_buffer { radial_light lamps[]; };
+layout(set = 0, binding = 2, scalar) readonly buffer vpls_buffer { radial_vpls vpls; };
 layout(set = 0, binding = 3, scalar) writeonly buffer grids_buffer { propagate_radial_grid grids[]; };
 layout(set = 0, binding = 4, scalar) writeonly buffer places_buffer { propagate_radial_place places[]; };
 layout(set = 0, binding = 5, scalar) buffer map_buffer { vec2 map[]; };

@@ -2,7 +2,6 @@
 // what it now sends to the eye (Eqs 7-8).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/propagate_radial.glsl"
 #include "propagate_radial_args.h"
 
@@ -10,8 +9,8 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 0, scalar) readonly buffer grids_buffer { propagate_radial_grid grids[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer map_buffer { vec2 map[]; };
 layout(set = 0, binding = 2, scalar) readonly buffer cells_buffer { vec4 cells[]; };
-layout(set = 0, binding = 3, scalar) readonly buffer in_buffer { vec4 in_state[]; };
-layout(set = 0, binding = 4, scalar) writeonly buffer out_buffer { vec4 out_state[]; };
+layout(set = 0, binding = 3, scalar) readonly buffer state_other_buffer { vec4 in_state[]; };
+layout(set = 0, binding = 4, scalar) writeonly buffer state_buffer { vec4 out_state[]; };
 layout(set = 0, binding = 5, scalar) buffer sum_buffer { float sum[]; };
 layout(push_constant, scalar) uniform push { propagate_radial_args args; };
 

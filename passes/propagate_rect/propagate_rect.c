@@ -15,31 +15,7 @@
 
 #define PORT(name) PROPAGATE_RECT_PORT_##name
 
-static const tyn_port ports[PROPAGATE_RECT_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, PROPAGATE_RECT),
-    [PORT(ORDINATES)] = {"ordinates", TYN_IN, TYN_BUFFER, .meaning = "struct ordinates_block"},
-    [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
-    [PORT(GRIDS)] = {"grids", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_grid[]"},
-    [PORT(PLACES)] = {"places", TYN_OUT, TYN_BUFFER, .meaning = "struct propagate_place[]"},
-    [PORT(SEEN)] = {"seen", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
-                    .meaning =
-                        "L_acc: light sent to the eye in all iterations, per irradiance, 1/sr"},
-    [PORT(LIGHT)] = {"light", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
-                     .meaning = "L after the last iteration, per irradiance"},
-    [PORT(CELLS)] = {"cells", TYN_OUT, TYN_BUFFER,
-                     .meaning = "scattering and absorption depths of a cell, g, cosine to the eye"},
-    [PORT(STATE)] = {"state", TYN_OUT, TYN_BUFFER,
-                     .meaning = "light that leaves ahead, to a side, behind; its 1 - a"},
-    [PORT(SUM)] = {"sum", TYN_OUT, TYN_BUFFER, .meaning = "L_acc of the last batch of grids"},
-    [PORT(STATE_OTHER)] = {"state_other", TYN_SCRATCH, TYN_BUFFER,
-                           .meaning = "state of every other iteration"},
-    [PORT(SMALL)] = {"small", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT,
-                     .meaning = "the density, or sigma_s, shrunk"},
-    [PORT(SMALL_SIGMA_A)] = {"small_sigma_a", TYN_SCRATCH, TYN_IMAGE_3D,
-                             VK_FORMAT_R32G32B32A32_SFLOAT, .meaning = "sigma_a, shrunk"},
-    [PORT(SMALL_G)] = {"small_g", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                       .meaning = "g, shrunk"},
-};
+static const tyn_port ports[] = {PROPAGATE_RECT_PORTS(TYN_PORT_ROW)};
 
 enum {
     SETUP,
@@ -53,62 +29,17 @@ enum {
     NUM_KERNELS
 };
 
-static const tyn_binding setup_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},
-    {PORT(ORDINATES), TYN_USE_STORAGE_READ},
-    {PORT(GRIDS), TYN_USE_STORAGE_WRITE},
-    {PORT(PLACES), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding shrink_density_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RECT),
-    {PORT(SMALL), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding shrink_coefficients_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RECT),
-    {PORT(SMALL), TYN_USE_STORAGE_WRITE},
-    {PORT(SMALL_SIGMA_A), TYN_USE_STORAGE_WRITE},
-    {PORT(SMALL_G), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding cells_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, PROPAGATE_RECT),
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},
-    {PORT(CAMERA), TYN_USE_UNIFORM},
-    {PORT(CELLS), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding start_bindings[] = {
-    {PORT(GRIDS), TYN_USE_STORAGE_READ},  {PORT(CELLS), TYN_USE_STORAGE_READ},
-    {PORT(STATE), TYN_USE_STORAGE_WRITE}, {PORT(STATE_OTHER), TYN_USE_STORAGE_WRITE},
-    {PORT(SUM), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding step_bindings[] = {
-    {PORT(CELLS), TYN_USE_STORAGE_READ},
-    {PORT(STATE_OTHER), TYN_USE_STORAGE_READ},
-    {PORT(STATE), TYN_USE_STORAGE_WRITE},
-    {PORT(SUM), TYN_USE_STORAGE_RW},
-};
-static const tyn_binding collect_bindings[] = {
-    {PORT(SUM), TYN_USE_STORAGE_READ},
-    {PORT(SEEN), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding light_bindings[] = {
-    {PORT(CELLS), TYN_USE_STORAGE_READ},
-    {PORT(STATE), TYN_USE_STORAGE_READ},
-    {PORT(LIGHT), TYN_USE_STORAGE_WRITE},
-};
-
 #define EDGE PROPAGATE_RECT_GROUP
-#define KERNEL(step, x, y, z, specs, size)                                                         \
-    TYN_KERNEL(propagate_rect_##step, size, x, y, z, step##_bindings, specs)
 #define ARGS sizeof(struct propagate_rect_args)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = KERNEL(setup, 64, 1, 1, 0, ARGS),
-    [SHRINK_DENSITY] = KERNEL(shrink_density, EDGE, EDGE, EDGE, 1, 0),
-    [SHRINK_COEFFICIENTS] = KERNEL(shrink_coefficients, EDGE, EDGE, EDGE, 1, 0),
-    [CELLS] = KERNEL(cells, EDGE, EDGE, EDGE, 1, ARGS),
-    [START] = KERNEL(start, 8, 8, 1, 1, ARGS),
-    [STEP] = KERNEL(step, EDGE, EDGE, EDGE, 0, ARGS),
-    [COLLECT] = KERNEL(collect, EDGE, EDGE, EDGE, 0, ARGS),
-    [LIGHT] = KERNEL(light, EDGE, EDGE, EDGE, 0, ARGS),
+    [SETUP] = TYN_KERNEL(propagate_rect_setup),
+    [SHRINK_DENSITY] = TYN_KERNEL(propagate_rect_shrink_density),
+    [SHRINK_COEFFICIENTS] = TYN_KERNEL(propagate_rect_shrink_coefficients),
+    [CELLS] = TYN_KERNEL(propagate_rect_cells),
+    [START] = TYN_KERNEL(propagate_rect_start),
+    [STEP] = TYN_KERNEL(propagate_rect_step),
+    [COLLECT] = TYN_KERNEL(propagate_rect_collect),
+    [LIGHT] = TYN_KERNEL(propagate_rect_light),
 };
 
 #define FIELD(name) offsetof(tyn_propagate_rect_params, name)
@@ -226,9 +157,8 @@ static tyn_result declare(tyn_builder *b, const void *data)
 static void record_shrink(tyn_recorder *r, const tyn_propagate_rect_params *p)
 {
     bool density = p->mode == TYN_MEDIUM_DENSITY;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = density ? SHRINK_DENSITY : SHRINK_COEFFICIENTS,
-                                        .cells = small_of(p),
-                                        .spec = &p->mode});
+    TYN_DISPATCH(r, .kernel = density ? SHRINK_DENSITY : SHRINK_COEFFICIENTS, .cells = small_of(p),
+                 .spec = &p->mode);
 }
 
 // All iterations of args->count grids from args->first.
@@ -246,31 +176,22 @@ static void record_batch(tyn_recorder *r, const tyn_propagate_rect_params *p,
     tyn_extent all = {args->cells, args->cells, layers * stacks};
     uint32_t shrunk = !small_of(p).x ? 0 : p->mode == TYN_MEDIUM_COEFFICIENTS ? 3 : 1;
 
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = CELLS,
-                           .cells = {args->cells, args->cells, layers * args->count},
-                           .args = args,
-                           .ports = tyn_ports_exchanged(&kernels[CELLS], small, shrunk, table),
-                           .spec = &p->mode});
+    TYN_DISPATCH(r, .kernel = CELLS, .cells = {args->cells, args->cells, layers * args->count},
+                 .args = args, .ports = tyn_ports_exchanged(&kernels[CELLS], small, shrunk, table),
+                 .spec = &p->mode);
     // The states are written alternately, so that the last one lands in the output.
     bool other = p->iterations % 2 != 0;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
-                                        .cells = {args->cells, args->cells, stacks},
-                                        .args = args,
-                                        .ports = tyn_ports_exchanged(&kernels[START], swap,
-                                                                     other ? 2 : 0, table),
-                                        .spec = &init});
+    TYN_DISPATCH(r, .kernel = START, .cells = {args->cells, args->cells, stacks}, .args = args,
+                 .ports = tyn_ports_exchanged(&kernels[START], swap, other ? 2 : 0, table),
+                 .spec = &init);
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
-                                            .cells = all,
-                                            .args = args,
-                                            .ports = tyn_ports_exchanged(&kernels[STEP], swap,
-                                                                         other ? 2 : 0, table)});
+        TYN_DISPATCH(r, .kernel = STEP, .cells = all, .args = args,
+                     .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? 2 : 0, table));
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = COLLECT, .cells = all, .args = args});
+    TYN_DISPATCH(r, .kernel = COLLECT, .cells = all, .args = args);
     if (p->keep_light) {
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = LIGHT, .cells = all, .args = args});
+        TYN_DISPATCH(r, .kernel = LIGHT, .cells = all, .args = args);
     }
 }
 
@@ -288,8 +209,7 @@ static void record(tyn_recorder *r, const void *data)
         .voxel = voxel_of(p),
         .tiles = tiles_of(p),
     };
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = SETUP, .cells = {p->num_ordinates, 1, 1}, .args = &args});
+    TYN_DISPATCH(r, .kernel = SETUP, .cells = {p->num_ordinates, 1, 1}, .args = &args);
     if (small_of(p).x) {
         record_shrink(r, p);
     }

@@ -29,26 +29,31 @@ typedef struct tyn_propagate_rect_params {
     uint32_t size[3];       // medium_block.size
 } tyn_propagate_rect_params;
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, PROPAGATE_RECT), // IN
-    PROPAGATE_RECT_PORT_ORDINATES,               // IN buffer struct ordinates_block
-    PROPAGATE_RECT_PORT_CAMERA,                  // IN buffer struct camera_block
-    PROPAGATE_RECT_PORT_GRIDS,                   // OUT buffer struct propagate_grid[]
-    PROPAGATE_RECT_PORT_PLACES, // OUT buffer struct propagate_place[TYN_ORDINATES_MAX], <= 16 KiB
-    PROPAGATE_RECT_PORT_SEEN, // OUT 3D R32F, tiles of grids and channels (propagate_args.h): L_acc, sum
-    // over iterations of L towards the eye, in units of the irradiance, 1/sr
-    PROPAGATE_RECT_PORT_LIGHT, // OUT 3D R32F, optional, tiles: L after the last iteration, in units of the
-                               // irradiance
-    PROPAGATE_RECT_PORT_CELLS, // OUT buffer, vec4[grids][channels][cells^3] of the last batch: optical
-    // depths of scattering and absorption over the edge of a cell, g, cosine
-    // between the light and the direction to the eye (-2: not in the grid)
-    PROPAGATE_RECT_PORT_STATE, // OUT buffer, vec4, so: after the last iteration what of L leaves the cell
-                               // ahead, to each side and behind, and 1 - a of it
-    PROPAGATE_RECT_PORT_SUM,         // OUT buffer, float, so: L_acc
-    PROPAGATE_RECT_PORT_STATE_OTHER, // SCRATCH, as the state
-    PROPAGATE_RECT_PORT_SMALL, // SCRATCH 3D: density or sigma_s at a resolution that suits the cells,
-    PROPAGATE_RECT_PORT_SMALL_SIGMA_A, // ... if the medium's is more than twice as fine
-    PROPAGATE_RECT_PORT_SMALL_G,
-    PROPAGATE_RECT_NUM_PORTS,
-};
+// clang-format off
+#define PROPAGATE_RECT_PORTS(X) \
+    TYN_MEDIUM(X, PROPAGATE_RECT), \
+    X(PROPAGATE_RECT, ORDINATES, ordinates, IN, BUFFER, "struct ordinates_block"), \
+    X(PROPAGATE_RECT, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
+    X(PROPAGATE_RECT, GRIDS, grids, OUT, BUFFER, "struct propagate_grid[]"), \
+    X(PROPAGATE_RECT, PLACES, places, OUT, BUFFER, "struct propagate_place[TYN_ORDINATES_MAX], <= 16 KiB"), \
+    X(PROPAGATE_RECT, SEEN, seen, OUT, IMAGE_3D, \
+        "tiles of grids and channels (propagate_args.h): L_acc, sum over iterations of L towards the eye, in " \
+        "units of the irradiance, 1/sr", .format = VK_FORMAT_R32_SFLOAT), \
+    X(PROPAGATE_RECT, LIGHT, light, OUT, IMAGE_3D, \
+        "optional, tiles: L after the last iteration, in units of the irradiance", .format = VK_FORMAT_R32_SFLOAT), \
+    X(PROPAGATE_RECT, CELLS, cells, OUT, BUFFER, \
+        "vec4[grids][channels][cells^3] of the last batch: optical depths of scattering and absorption over " \
+        "the edge of a cell, g, cosine between the light and the direction to the eye (-2: not in the grid)"), \
+    X(PROPAGATE_RECT, STATE, state, OUT, BUFFER, \
+        "vec4, so: after the last iteration what of L leaves the cell ahead, to each side and behind, and 1 -" \
+        " a of it"), \
+    X(PROPAGATE_RECT, SUM, sum, OUT, BUFFER, "L_acc of the last batch of grids"), \
+    X(PROPAGATE_RECT, STATE_OTHER, state_other, SCRATCH, BUFFER, "state of every other iteration"), \
+    X(PROPAGATE_RECT, SMALL, small, SCRATCH, IMAGE_3D, \
+        "density or sigma_s at a resolution that suits the cells,", .format = VK_FORMAT_R32_SFLOAT), \
+    X(PROPAGATE_RECT, SMALL_SIGMA_A, small_sigma_a, SCRATCH, IMAGE_3D, \
+        ".. if the medium's is more than twice as fine", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PROPAGATE_RECT, SMALL_G, small_g, SCRATCH, IMAGE_3D, "g, shrunk", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+// clang-format on
+enum { PROPAGATE_RECT_PORTS(TYN_PORT_ENUM), PROPAGATE_RECT_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_propagate_rect;

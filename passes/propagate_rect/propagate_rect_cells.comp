@@ -2,7 +2,6 @@
 // asks for a downscaled medium), and the cosine at which the eye sees it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/beams/propagate.glsl"

@@ -1,13 +1,12 @@
 // propagate_rect_collect.comp -- what a batch of grids sent to the eye, as tiles of an image.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/propagate.glsl"
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 0, scalar) readonly buffer sum_buffer { float sum[]; };
-layout(set = 0, binding = 1, r32f) uniform writeonly image3D out_seen;
+layout(set = 0, binding = 1, r32f) uniform writeonly image3D seen_image;
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 
 void main()
@@ -20,5 +19,5 @@ void main()
         return;
     }
     ivec3 corner = ivec3(tile % args.tiles, tile / args.tiles, 0) * int(args.cells);
-    imageStore(out_seen, corner + cell, vec4(sum[propagate_index(cell, stack, args.cells)]));
+    imageStore(seen_image, corner + cell, vec4(sum[propagate_index(cell, stack, args.cells)]));
 }

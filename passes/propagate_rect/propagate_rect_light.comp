@@ -1,14 +1,13 @@
 // propagate_rect_light.comp -- what is still in a batch of grids, as tiles of an image.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/propagate.glsl"
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 0, scalar) readonly buffer cells_buffer { vec4 cells[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer state_buffer { vec4 state[]; };
-layout(set = 0, binding = 2, r32f) uniform writeonly image3D out_light;
+layout(set = 0, binding = 2, r32f) uniform writeonly image3D light_image;
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 
 void main()
@@ -25,5 +24,5 @@ void main()
     float kept = propagate_kept(here); // 0 where no light comes through: none is left there
     vec4 out_parts = here.mu >= -1.5 && kept > 0.0 ? state[q] / kept : vec4(0.0);
     ivec3 corner = ivec3(tile % args.tiles, tile / args.tiles, 0) * int(args.cells);
-    imageStore(out_light, corner + cell, vec4(out_parts.x + 4.0 * out_parts.y + out_parts.z));
+    imageStore(light_image, corner + cell, vec4(out_parts.x + 4.0 * out_parts.y + out_parts.z));
 }

@@ -2,17 +2,16 @@
 // voxels. Built for both modes: TYN_DENSITY is defined for mode DENSITY.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 #ifdef TYN_DENSITY
-layout(set = 0, binding = 5, r32f) uniform writeonly image3D out_density;
+layout(set = 0, binding = 5, r32f) uniform writeonly image3D small_image;
 #else
-layout(set = 0, binding = 5, rgba32f) uniform writeonly image3D out_sigma_s;
-layout(set = 0, binding = 6, rgba32f) uniform writeonly image3D out_sigma_a;
-layout(set = 0, binding = 7, rgba32f) uniform writeonly image3D out_g;
+layout(set = 0, binding = 5, rgba32f) uniform writeonly image3D small_image;
+layout(set = 0, binding = 6, rgba32f) uniform writeonly image3D small_sigma_a_image;
+layout(set = 0, binding = 7, rgba32f) uniform writeonly image3D small_g_image;
 #endif
 
 // Samples along each edge of a texel of the smaller image: a trilinear fetch is a mean over two voxels.
@@ -31,9 +30,9 @@ vec3 shrink_sample(ivec3 texel, ivec3 size, ivec3 along, int n)
 void main()
 {
 #ifdef TYN_DENSITY
-    ivec3 texel = ivec3(gl_GlobalInvocationID), size = imageSize(out_density);
+    ivec3 texel = ivec3(gl_GlobalInvocationID), size = imageSize(small_image);
 #else
-    ivec3 texel = ivec3(gl_GlobalInvocationID), size = imageSize(out_g);
+    ivec3 texel = ivec3(gl_GlobalInvocationID), size = imageSize(small_g_image);
 #endif
     if (any(greaterThanEqual(texel, size))) {
         return;
@@ -45,7 +44,7 @@ void main()
     for (int n = 0; n < count; n++) {
         density += medium_density(shrink_sample(texel, size, along, n));
     }
-    imageStore(out_density, texel, vec4(density / float(count)));
+    imageStore(small_image, texel, vec4(density / float(count)));
 #else
     vec3 sigma_s = vec3(0.0), sigma_a = vec3(0.0), g = vec3(0.0);
     for (int n = 0; n < count; n++) {
@@ -55,8 +54,8 @@ void main()
         g += m.sigma_s * phase_mean_cosine(m.phase);
     }
     float each = 1.0 / float(count);
-    imageStore(out_sigma_s, texel, vec4(sigma_s * each, 0.0));
-    imageStore(out_sigma_a, texel, vec4(sigma_a * each, 0.0));
-    imageStore(out_g, texel, vec4(g / max(sigma_s, vec3(1e-30)), 0.0));
+    imageStore(small_image, texel, vec4(sigma_s * each, 0.0));
+    imageStore(small_sigma_a_image, texel, vec4(sigma_a * each, 0.0));
+    imageStore(small_g_image, texel, vec4(g / max(sigma_s, vec3(1e-30)), 0.0));
 #endif
 }

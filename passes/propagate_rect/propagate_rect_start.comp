@@ -2,7 +2,6 @@
 // column of cells along the light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/propagate.glsl"
 #include "propagate_rect_args.h"
 
@@ -11,7 +10,7 @@ layout(constant_id = 0) const uint init = TYN_PROPAGATE_INIT_ENTRY;
 layout(set = 0, binding = 0, scalar) readonly buffer grids_buffer { propagate_grid grids[]; };
 layout(set = 0, binding = 1, scalar) readonly buffer cells_buffer { vec4 cells[]; };
 layout(set = 0, binding = 2, scalar) writeonly buffer state_buffer { vec4 out_state[]; };
-layout(set = 0, binding = 3, scalar) writeonly buffer other_buffer { vec4 out_other[]; };
+layout(set = 0, binding = 3, scalar) writeonly buffer state_other_buffer { vec4 out_other[]; };
 layout(set = 0, binding = 4, scalar) writeonly buffer sum_buffer { float out_sum[]; };
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 

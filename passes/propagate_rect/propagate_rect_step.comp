@@ -2,14 +2,13 @@
 // adds what it now sends to the eye (Eqs 7-8).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/propagate.glsl"
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 0, scalar) readonly buffer cells_buffer { vec4 cells[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer in_buffer { vec4 in_state[]; };
-layout(set = 0, binding = 2, scalar) writeonly buffer out_buffer { vec4 out_state[]; };
+layout(set = 0, binding = 1, scalar) readonly buffer state_other_buffer { vec4 in_state[]; };
+layout(set = 0, binding = 2, scalar) writeonly buffer state_buffer { vec4 out_state[]; };
 layout(set = 0, binding = 3, scalar) buffer sum_buffer { float sum[]; };
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 

@@ -12,51 +12,14 @@
 enum { MAX_CELLS = 160, MAX_COEFFICIENT_CELLS = 64 };
 enum { LEAST_WIDTH = 128 }; // texels that tiles of many lights are laid side by side in
 
-static const tyn_port ports[RADIAL_BEAM_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, RADIAL_BEAM),
-    [RADIAL_BEAM_PORT_VPLS] = {"vpls", TYN_IN, TYN_BUFFER, 0, true, "struct radial_vpls"},
-    [RADIAL_BEAM_PORT_RADIALS] = {"radials", TYN_OUT, TYN_BUFFER, 0, false,
-                                  "struct radial_block: lamps, VPLs and their grids"},
-    [RADIAL_BEAM_PORT_RADIAL_COLUMN] =
-        {"radial_column", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-         "mean density (or sigma_s) from a light, or from where its ray enters, to a node"},
-    [RADIAL_BEAM_PORT_RADIAL_TAU_A] = {"radial_tau_a", TYN_OUT, TYN_IMAGE_3D,
-                                       VK_FORMAT_R32G32B32A32_SFLOAT, false, "mean sigma_a"},
-    [RADIAL_BEAM_PORT_RADIAL_TAU_P] = {"radial_tau_p", TYN_OUT, TYN_IMAGE_3D,
-                                       VK_FORMAT_R32G32B32A32_SFLOAT, false,
-                                       "mean sigma_s outside the forward peak"},
-    [RADIAL_BEAM_PORT_LAMPS] = {"lamps", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                "struct radial_light[]"},
-};
+static const tyn_port ports[] = {RADIAL_BEAM_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_SETUP, KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
 
-static const tyn_binding setup_bindings[] = {
-    {RADIAL_BEAM_PORT_MEDIUM, TYN_USE_UNIFORM},
-    {RADIAL_BEAM_PORT_LAMPS, TYN_USE_STORAGE_READ},
-    {RADIAL_BEAM_PORT_VPLS, TYN_USE_STORAGE_READ},
-    {RADIAL_BEAM_PORT_RADIALS, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding density_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, RADIAL_BEAM),
-    {RADIAL_BEAM_PORT_RADIALS, TYN_USE_STORAGE_READ},
-    {RADIAL_BEAM_PORT_RADIAL_COLUMN, TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding coefficients_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, RADIAL_BEAM),
-    {RADIAL_BEAM_PORT_RADIALS, TYN_USE_STORAGE_READ},
-    {RADIAL_BEAM_PORT_RADIAL_COLUMN, TYN_USE_STORAGE_WRITE},
-    {RADIAL_BEAM_PORT_RADIAL_TAU_A, TYN_USE_STORAGE_WRITE},
-    {RADIAL_BEAM_PORT_RADIAL_TAU_P, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SETUP] =
-        TYN_KERNEL(radial_beam_setup, sizeof(struct radial_beam_args), 64, 1, 1, setup_bindings, 0),
-    [KERNEL_DENSITY] = TYN_KERNEL(radial_beam_density, sizeof(struct radial_beam_args),
-                                  RADIAL_GROUP *RADIAL_GROUP, 1, 1, density_bindings, 1),
-    [KERNEL_COEFFICIENTS] = TYN_KERNEL(radial_beam_coefficients, sizeof(struct radial_beam_args),
-                                       RADIAL_GROUP *RADIAL_GROUP, 1, 1, coefficients_bindings, 1),
+    [KERNEL_SETUP] = TYN_KERNEL(radial_beam_setup),
+    [KERNEL_DENSITY] = TYN_KERNEL(radial_beam_density),
+    [KERNEL_COEFFICIENTS] = TYN_KERNEL(radial_beam_coefficients),
 };
 
 static const tyn_param params_table[] = {
@@ -199,9 +162,8 @@ static void record(tyn_recorder *r, const void *params)
     const tyn_radial_beam_params *p = params;
     struct radial_beam_args args = layout(p);
     tyn_rec_update(r, RADIAL_BEAM_PORT_LAMPS, 0, p->lamps, sizeof p->lamps);
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_SETUP,
-                                        .cells = {p->num_lamps + p->max_vpls, 1, 1},
-                                        .args = &args});
+    TYN_DISPATCH(r, .kernel = KERNEL_SETUP, .cells = {p->num_lamps + p->max_vpls, 1, 1},
+                 .args = &args);
     uint32_t groups = 0;
     double nodes = 0;
     for (uint32_t c = 0; c < RADIAL_CLASSES; c++) {
@@ -210,12 +172,9 @@ static void record(tyn_recorder *r, const void *params)
         nodes += (double)class->count * class->cells * class->cells * (class->shells + 1);
     }
     bool density = p->mode == TYN_MEDIUM_DENSITY;
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = density ? KERNEL_DENSITY : KERNEL_COEFFICIENTS,
-                            .cells = {groups * RADIAL_GROUP * RADIAL_GROUP, 1, 1},
-                            .args = &args,
-                            .spec = &p->mode,
-                        });
+    TYN_DISPATCH(r, .kernel = density ? KERNEL_DENSITY : KERNEL_COEFFICIENTS,
+                 .cells = {groups * RADIAL_GROUP * RADIAL_GROUP, 1, 1}, .args = &args,
+                 .spec = &p->mode);
     tyn_rec_work(r, "cells", nodes);
     tyn_rec_work(r, "bytes", nodes * (density ? 4 : 48));
 }

@@ -2,7 +2,6 @@
 // (medium_value.glsl).
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/medium/medium_value.glsl"
@@ -15,7 +14,7 @@ layout(push_constant, scalar) uniform push
 {
     radial_beam_args args;
 };
-layout(set = 0, binding = 5, scalar) readonly buffer radial_buffer
+layout(set = 0, binding = 5, scalar) readonly buffer radials_buffer
 {
     uint radial_count, radial_num_lamps;
     uvec2 radial_pad;
@@ -23,16 +22,16 @@ layout(set = 0, binding = 5, scalar) readonly buffer radial_buffer
 };
 
 #ifdef TYN_DENSITY
-layout(set = 0, binding = 6, r32f) writeonly uniform image3D column_image;
+layout(set = 0, binding = 6, r32f) writeonly uniform image3D radial_column_image;
 
 void radial_store(ivec3 texel, float value)
 {
-    imageStore(column_image, texel, vec4(isnan(value) || isinf(value) ? 0.0 : value));
+    imageStore(radial_column_image, texel, vec4(isnan(value) || isinf(value) ? 0.0 : value));
 }
 #else
-layout(set = 0, binding = 6, rgba32f) writeonly uniform image3D tau_s_image;
-layout(set = 0, binding = 7, rgba32f) writeonly uniform image3D tau_a_image;
-layout(set = 0, binding = 8, rgba32f) writeonly uniform image3D tau_p_image;
+layout(set = 0, binding = 6, rgba32f) writeonly uniform image3D radial_column_image;
+layout(set = 0, binding = 7, rgba32f) writeonly uniform image3D radial_tau_a_image;
+layout(set = 0, binding = 8, rgba32f) writeonly uniform image3D radial_tau_p_image;
 
 vec4 finite(vec3 v)
 {
@@ -41,9 +40,9 @@ vec4 finite(vec3 v)
 
 void radial_store(ivec3 texel, mat3 value)
 {
-    imageStore(tau_s_image, texel, finite(value[0]));
-    imageStore(tau_a_image, texel, finite(value[1]));
-    imageStore(tau_p_image, texel, finite(value[2]));
+    imageStore(radial_column_image, texel, finite(value[0]));
+    imageStore(radial_tau_a_image, texel, finite(value[1]));
+    imageStore(radial_tau_p_image, texel, finite(value[2]));
 }
 #endif
 

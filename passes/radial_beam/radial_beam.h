@@ -19,13 +19,21 @@ typedef struct tyn_radial_beam_params {
     struct radial_light lamps[TYN_RADIAL_LAMPS_MAX];
 } tyn_radial_beam_params;
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, RADIAL_BEAM),  // IN
-    RADIAL_BEAM_PORT_VPLS,                     // IN optional buffer struct radial_vpls
-    TYN_RADIALS(TYN_BUNDLE_ENUM, RADIAL_BEAM), // OUT
-    RADIAL_BEAM_PORT_LAMPS,                    // SCRATCH
-    RADIAL_BEAM_NUM_PORTS,
-};
+// clang-format off
+#define RADIAL_BEAM_PORTS(X) \
+    TYN_MEDIUM(X, RADIAL_BEAM), \
+    X(RADIAL_BEAM, VPLS, vpls, OPTIONAL, BUFFER, "struct radial_vpls"), \
+    X(RADIAL_BEAM, RADIALS, radials, OUT, BUFFER, "struct radial_block: lamps, VPLs and their grids"), \
+    X(RADIAL_BEAM, RADIAL_COLUMN, radial_column, OUT, IMAGE_3D, \
+        "mean density (or sigma_s) from a light, or from where its ray enters, to a node", \
+        .format = VK_FORMAT_R32_SFLOAT), \
+    X(RADIAL_BEAM, RADIAL_TAU_A, radial_tau_a, OUT, IMAGE_3D, \
+        "mean sigma_a", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RADIAL_BEAM, RADIAL_TAU_P, radial_tau_p, OUT, IMAGE_3D, \
+        "mean sigma_s outside the forward peak", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RADIAL_BEAM, LAMPS, lamps, SCRATCH, BUFFER, "struct radial_light[]")
+// clang-format on
+enum { RADIAL_BEAM_PORTS(TYN_PORT_ENUM), RADIAL_BEAM_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_radial_beam;
 
 // A point or spot light of the scene as a radial light; `index` = its place among all lights that are no suns.

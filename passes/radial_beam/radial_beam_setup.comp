@@ -1,7 +1,6 @@
 // radial_beam_setup.comp -- one thread per light: lays out its grid.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/scene_args.h"
 #include "shaders/beams/radial_args.h"
 #include "radial_beam_args.h"
@@ -15,15 +14,15 @@ layout(binding = 0, scalar) uniform medium_uniform
 {
     medium_block medium;
 };
-layout(binding = 1, scalar) readonly buffer lamp_buffer
+layout(binding = 1, scalar) readonly buffer lamps_buffer
 {
     radial_light lamps[];
 };
-layout(binding = 2, scalar) readonly buffer vpl_buffer
+layout(binding = 2, scalar) readonly buffer vpls_buffer
 {
     radial_vpls vpls;
 };
-layout(binding = 3, scalar) writeonly buffer radial_buffer
+layout(binding = 3, scalar) writeonly buffer radials_buffer
 {
     uint count, num_lamps;
     uvec2 pad;

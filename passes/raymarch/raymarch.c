@@ -12,103 +12,11 @@
 #define STEPS_AMONG_SURFACES 2.0f
 #define DEPTH_AMONG_SURFACES 0.2f // ... where it is thin
 
-#define IMAGE2 TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT
+static const tyn_port ports[] = {RAYMARCH_PORTS(TYN_PORT_ROW)};
 
-static const tyn_port ports[RAYMARCH_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_OPTIONAL, RAYMARCH),
-    [RAYMARCH_PORT_DISTANCE] = {"distance", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                "bricks to the nearest one that is not empty"},
-    [RAYMARCH_PORT_SHAPES] = {"shapes", TYN_IN, TYN_BUFFER, 0, false, "shape_block[]"},
-    [RAYMARCH_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "light_block[]"},
-    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, RAYMARCH),
-    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, RAYMARCH),
-    [RAYMARCH_PORT_LUT] = {"lut", TYN_IN, TYN_IMAGE_2D, 0, true, "forward scattering"},
-    [RAYMARCH_PORT_LUT_BLOCK] = {"lut_block", TYN_IN, TYN_BUFFER, 0, true, "lut_block"},
-    [RAYMARCH_PORT_INSCATTER] = {"inscatter", TYN_IN, TYN_IMAGE_3D, 0, true,
-                                 "radiance scattered towards the eye, W/(m^2 sr)"},
-    TYN_WALLS(TYN_BUNDLE_OPTIONAL, RAYMARCH),
-    [RAYMARCH_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true, "of cells"},
-    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, RAYMARCH),
-    [RAYMARCH_PORT_LIGHT_CELLS] = {"light_cells", TYN_IN, TYN_IMAGE_3D, 0, true, "of light_cells"},
-    [RAYMARCH_PORT_CAMERA] = {"camera", TYN_IN, TYN_BUFFER, 0, false, "camera_block"},
-    [RAYMARCH_PORT_ENVIRONMENT] = {"environment", TYN_IN, TYN_BUFFER, 0, false, "env_block"},
-    [RAYMARCH_PORT_ENV_MAP] = {"env_map", TYN_IN, TYN_IMAGE_2D, 0, true,
-                               "latitude-longitude map, W/(m^2 sr)"},
-    [RAYMARCH_PORT_GLOW] = {"glow", TYN_IN, TYN_IMAGE_3D, 0, true,
-                            "the map as forward scattering smears it, W/(m^2 sr)"},
-    [RAYMARCH_PORT_HOST_DEPTH] = {"host_depth", TYN_IN, TYN_IMAGE_2D, 0, true,
-                                  "hardware depth of the host's surfaces"},
-    [RAYMARCH_PORT_SURFACE] = {"surface", TYN_IN, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT, true,
-                               "radiance of the first surface, W/(m^2 sr)"},
-    [RAYMARCH_PORT_DISTANCES] = {"distances", TYN_IN, TYN_IMAGE_2D, 0, true,
-                                 "to the first surface, m; 0: none"},
-    [RAYMARCH_PORT_RADIANCE] = {"radiance", TYN_OUT, IMAGE2, false,
-                                "radiance, W/(m^2 sr); a = 1 - mean transmittance"},
-    [RAYMARCH_PORT_TRANSMITTANCE] = {"transmittance", TYN_OUT, IMAGE2, false,
-                                     "transmittance to the first surface or out of the scene"},
-    [RAYMARCH_PORT_DEPTH] = {"depth", TYN_OUT, IMAGE2, false,
-                             "distance to the surface and to mean transmittance 1/2, m"},
-    [RAYMARCH_PORT_SINGLE] = {"single", TYN_OUT, IMAGE2, false, "light that has scattered once"},
-    [RAYMARCH_PORT_MULTIPLE] = {"multiple", TYN_OUT, IMAGE2, false,
-                                "light that has scattered more often, or was emitted"},
-    [RAYMARCH_PORT_COUNTERS] = {"counters", TYN_OUT, TYN_BUFFER, 0, false, "counters_block"},
-    [RAYMARCH_PORT_SPARSE] = {"sparse", TYN_SCRATCH, IMAGE2, false,
-                              "radiance, transmittance and e^-tau' of a ray for 2x2 pixels"},
-    [RAYMARCH_PORT_REST] = {"rest", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                            "2x2 pixels that have rays of their own"},
-};
-
-// The order of raymarch_bindings.glsl.
-static const tyn_binding bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, RAYMARCH),
-    TYN_BEAMS(TYN_BUNDLE_BIND, RAYMARCH),
-    {RAYMARCH_PORT_LUT, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_LUT_BLOCK, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_DISTANCE, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_INSCATTER, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_SHAPES, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_LIGHTS, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_CAMERA, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_ENVIRONMENT, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_ENV_MAP, TYN_USE_SAMPLED, true},
-    {RAYMARCH_PORT_HOST_DEPTH, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_RADIANCE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_TRANSMITTANCE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_DEPTH, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_SINGLE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_MULTIPLE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_COUNTERS, TYN_USE_STORAGE_RW, false},
-    {RAYMARCH_PORT_GLOW, TYN_USE_SAMPLED, true},
-    {RAYMARCH_PORT_SURFACE, TYN_USE_STORAGE_READ, false},
-    {RAYMARCH_PORT_DISTANCES, TYN_USE_SAMPLED, false},
-    TYN_WALLS(TYN_BUNDLE_BIND, RAYMARCH),
-    {RAYMARCH_PORT_ROOMS, TYN_USE_TEXELS_UINT, false},
-    // No eighth uniform buffer: where a branch depends on one, the compiler of lavapipe 22.3 writes beyond
-    // its memory (its table of inlinable uniforms).
-    TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, RAYMARCH),
-    TYN_RADIALS(TYN_BUNDLE_BIND_STORAGE, RAYMARCH),
-    {RAYMARCH_PORT_LIGHT_CELLS, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_SPARSE, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_SPARSE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_REST, TYN_USE_STORAGE_RW, false},
-};
-// The order of raymarch_background.comp.
-static const tyn_binding background_bindings[] = {
-    {RAYMARCH_PORT_CAMERA, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_ENVIRONMENT, TYN_USE_UNIFORM, false},
-    {RAYMARCH_PORT_ENV_MAP, TYN_USE_SAMPLED, true},
-    {RAYMARCH_PORT_HOST_DEPTH, TYN_USE_SAMPLED, false},
-    {RAYMARCH_PORT_RADIANCE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_TRANSMITTANCE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_DEPTH, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_SINGLE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_MULTIPLE, TYN_USE_STORAGE_WRITE, false},
-    {RAYMARCH_PORT_SURFACE, TYN_USE_STORAGE_READ, false},
-    {RAYMARCH_PORT_DISTANCES, TYN_USE_SAMPLED, false},
-};
 enum {
-    NUM_BACKGROUND_BINDINGS = sizeof(background_bindings) / sizeof(background_bindings[0]),
-    NUM_BINDINGS = sizeof(bindings) / sizeof(bindings[0]),
+    NUM_BACKGROUND_BINDINGS = TYN_COUNT(raymarch_background_bindings),
+    NUM_BINDINGS = TYN_COUNT(raymarch_grey_bindings),
     SPARSE_TEXTURE = NUM_BINDINGS - 3, // of bindings
     SPARSE_IMAGE,
     NUM_SPEC =
@@ -131,12 +39,9 @@ _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNE
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_GREY] =
-        TYN_KERNEL(raymarch_grey, sizeof(struct raymarch_args), 8, 8, 1, bindings, NUM_SPEC),
-    [KERNEL_COLOUR] =
-        TYN_KERNEL(raymarch_colour, sizeof(struct raymarch_args), 8, 8, 1, bindings, NUM_SPEC),
-    [KERNEL_BACKGROUND] = TYN_KERNEL(raymarch_background, sizeof(struct raymarch_args), 8, 8, 1,
-                                     background_bindings, NUM_SPEC - 4),
+    [KERNEL_GREY] = TYN_KERNEL(raymarch_grey),
+    [KERNEL_COLOUR] = TYN_KERNEL(raymarch_colour),
+    [KERNEL_BACKGROUND] = TYN_KERNEL(raymarch_background),
 };
 
 static const tyn_param params_table[] = {
@@ -345,16 +250,11 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_fill(r, RAYMARCH_PORT_COUNTERS, 0);
     // What lies outside the window first, as the window's edges are not on workgroups.
     uint8_t background_ports[NUM_BACKGROUND_BINDINGS], ports_of[NUM_BINDINGS];
-    bind(p, background_bindings, NUM_BACKGROUND_BINDINGS, background_ports);
-    bind(p, bindings, NUM_BINDINGS, ports_of);
+    bind(p, raymarch_background_bindings, NUM_BACKGROUND_BINDINGS, background_ports);
+    bind(p, raymarch_grey_bindings, NUM_BINDINGS, ports_of);
     const uint32_t kernel = p->grey ? KERNEL_GREY : KERNEL_COLOUR;
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = KERNEL_BACKGROUND,
-                            .cells = {p->width, p->height, 1},
-                            .args = &args,
-                            .ports = background_ports,
-                            .spec = spec,
-                        });
+    TYN_DISPATCH(r, .kernel = KERNEL_BACKGROUND, .cells = {p->width, p->height, 1}, .args = &args,
+                 .ports = background_ports, .spec = spec);
     ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_RADIANCE; // bound, but not written to or read
     ports_of[SPARSE_TEXTURE] = RAYMARCH_PORT_DISTANCES;
     tyn_dispatch rays = {.kernel = kernel, .args = &args, .ports = ports_of, .spec = spec};

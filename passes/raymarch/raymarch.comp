@@ -2,7 +2,6 @@
 // coefficients that differ between channels or media.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
 #include "raymarch_bindings.glsl"
 #include "shaders/common/camera.glsl"

@@ -65,39 +65,49 @@ enum {
     RAYMARCH_LAYER_MULTIPLE = 1 << 3,
 };
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, RAYMARCH),  // IN optional
-    RAYMARCH_PORT_DISTANCE,                 // IN 3D: distance of empty bricks
-    RAYMARCH_PORT_SHAPES,                   // IN buffer struct shape_block[]
-    RAYMARCH_PORT_LIGHTS,                   // IN buffer struct light_block[]
-    TYN_BEAMS(TYN_BUNDLE_ENUM, RAYMARCH),   // IN optional
-    TYN_RADIALS(TYN_BUNDLE_ENUM, RAYMARCH), // IN optional
-    RAYMARCH_PORT_LUT,                      // IN optional 2D: with `kernels` and suns, as the next
-    RAYMARCH_PORT_LUT_BLOCK,                // IN optional buffer struct lut_block
-    RAYMARCH_PORT_INSCATTER, // IN optional 3D: of merge; without it suns and emission only
-    TYN_WALLS(TYN_BUNDLE_ENUM, RAYMARCH), // IN optional
-    RAYMARCH_PORT_ROOMS, // IN optional buffer, of rooms: with walls, what light of inscatter rays are among
-    TYN_SHADOWS(TYN_BUNDLE_ENUM, RAYMARCH), // IN optional
-    RAYMARCH_PORT_LIGHT_CELLS, // IN optional 3D, of light_cells: where looks at the maps are needed
-    RAYMARCH_PORT_CAMERA,      // IN buffer struct camera_block
-    RAYMARCH_PORT_ENVIRONMENT, // IN buffer struct env_block
-    RAYMARCH_PORT_ENV_MAP,     // IN optional 2D
-    RAYMARCH_PORT_GLOW, // IN optional 3D: of env_glow, the map scattered forward; without it what
-                        // is scattered forward comes from the mean alone (`mean`)
-    RAYMARCH_PORT_HOST_DEPTH, // IN optional 2D: hardware depth; rays end there
-    RAYMARCH_PORT_SURFACE,    // IN optional 2D: radiance of the first surface, packed
-                              // (packed_colour.glsl); n x n samples a pixel, as the next
-    RAYMARCH_PORT_DISTANCES, // IN optional 2D: its distance along the ray, m, or 0: none; rays end there
-    RAYMARCH_PORT_RADIANCE, // OUT 2D RGBA32F: radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where
-                            // an environment or a surface is seen
-    RAYMARCH_PORT_TRANSMITTANCE, // OUT 2D RGBA32F, asked for by `layers`, as all below
-    RAYMARCH_PORT_DEPTH,    // OUT 2D RGBA32F: distance to the first surface, and to where the mean
-                            // transmittance is 1/2, m; infinity if there is none
-    RAYMARCH_PORT_SINGLE,   // OUT 2D RGBA32F: light that has scattered once
-    RAYMARCH_PORT_MULTIPLE, // OUT 2D RGBA32F: more often, from the environment's mean, or emitted
-    RAYMARCH_PORT_COUNTERS, // OUT buffer struct counters_block
-    RAYMARCH_PORT_SPARSE,   // SCRATCH 2D RGBA32F
-    RAYMARCH_PORT_REST,     // SCRATCH buffer struct raymarch_rest and what follows
-    RAYMARCH_NUM_PORTS,
-};
+// clang-format off
+#define RAYMARCH_PORTS(X) \
+    TYN_MEDIUM(X##_OPTIONAL, RAYMARCH), \
+    X(RAYMARCH, DISTANCE, distance, OPTIONAL, IMAGE_3D, "bricks to the nearest one that is not empty"), \
+    X(RAYMARCH, SHAPES, shapes, IN, BUFFER, "struct shape_block[]: shape_block[]"), \
+    X(RAYMARCH, LIGHTS, lights, IN, BUFFER, "struct light_block[]: light_block[]"), \
+    TYN_BEAMS(X##_OPTIONAL, RAYMARCH), \
+    TYN_RADIALS(X##_OPTIONAL, RAYMARCH), \
+    X(RAYMARCH, LUT, lut, OPTIONAL, IMAGE_2D, "with `kernels` and suns, as the next"), \
+    X(RAYMARCH, LUT_BLOCK, lut_block, OPTIONAL, BUFFER, "struct lut_block: lut_block"), \
+    X(RAYMARCH, INSCATTER, inscatter, OPTIONAL, IMAGE_3D, "of merge; without it suns and emission only"), \
+    TYN_WALLS(X##_OPTIONAL, RAYMARCH), \
+    X(RAYMARCH, ROOMS, rooms, OPTIONAL, BUFFER, "of rooms: with walls, what light of inscatter rays are among"), \
+    TYN_SHADOWS(X##_OPTIONAL, RAYMARCH), \
+    X(RAYMARCH, LIGHT_CELLS, light_cells, OPTIONAL, IMAGE_3D, "of light_cells: where looks at the maps are needed"), \
+    X(RAYMARCH, CAMERA, camera, IN, BUFFER, "struct camera_block: camera_block"), \
+    X(RAYMARCH, ENVIRONMENT, environment, IN, BUFFER, "struct env_block: env_block"), \
+    X(RAYMARCH, ENV_MAP, env_map, OPTIONAL, IMAGE_2D, "latitude-longitude map, W/(m^2 sr)"), \
+    X(RAYMARCH, GLOW, glow, OPTIONAL, IMAGE_3D, \
+        "of env_glow, the map scattered forward; without it what is scattered forward comes from the mean " \
+        "alone (`mean`)"), \
+    X(RAYMARCH, HOST_DEPTH, host_depth, OPTIONAL, IMAGE_2D, "hardware depth of the host's surfaces"), \
+    X(RAYMARCH, SURFACE, surface, OPTIONAL, IMAGE_2D, \
+        "radiance of the first surface, packed (packed_colour.glsl); n x n samples a pixel, as the next", \
+        .format = VK_FORMAT_R32G32_UINT), \
+    X(RAYMARCH, DISTANCES, distances, OPTIONAL, IMAGE_2D, \
+        "its distance along the ray, m, or 0: none; rays end there"), \
+    X(RAYMARCH, RADIANCE, radiance, OUT, IMAGE_2D, \
+        "radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where an environment or a surface is seen", \
+        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RAYMARCH, TRANSMITTANCE, transmittance, OUT, IMAGE_2D, \
+        "transmittance to the first surface or out of the scene", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RAYMARCH, DEPTH, depth, OUT, IMAGE_2D, \
+        "distance to the first surface, and to where the mean transmittance is 1/2, m; infinity if there is " \
+        "none", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RAYMARCH, SINGLE, single, OUT, IMAGE_2D, \
+        "light that has scattered once", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RAYMARCH, MULTIPLE, multiple, OUT, IMAGE_2D, \
+        "light that has scattered more often, or was emitted", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RAYMARCH, COUNTERS, counters, OUT, BUFFER, "struct counters_block: counters_block"), \
+    X(RAYMARCH, SPARSE, sparse, SCRATCH, IMAGE_2D, \
+        "radiance, transmittance and e^-tau' of a ray for 2x2 pixels", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RAYMARCH, REST, rest, SCRATCH, BUFFER, "2x2 pixels that have rays of their own")
+// clang-format on
+enum { RAYMARCH_PORTS(TYN_PORT_ENUM), RAYMARCH_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_raymarch;

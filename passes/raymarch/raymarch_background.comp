@@ -1,7 +1,6 @@
 // raymarch_background.comp -- pixels in which no medium can be seen.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/common/camera.glsl"
 #include "background.glsl"
 #include "host_depth.glsl"
@@ -17,11 +16,11 @@ layout(binding = 0, scalar) uniform camera_uniform
 {
     camera_block camera;
 };
-layout(binding = 1, scalar) uniform env_uniform
+layout(binding = 1, scalar) uniform environment_uniform
 {
     env_block environment;
 };
-layout(binding = 2) uniform sampler2D environment_tex;
+layout(binding = 2) uniform sampler2D env_map_wrapped;
 layout(binding = 3) uniform sampler2D host_depth_tex;
 layout(binding = 4, rgba32f) uniform writeonly image2D radiance_image;
 layout(binding = 5, rgba32f) uniform writeonly image2D transmittance_image;
@@ -63,7 +62,7 @@ void main()
         surface = min(surface, samples.mean.a);
     }
     if (has(RAYMARCH_BACKGROUND) && open > 0.0) {
-        radiance += open * vec4(background_radiance(environment, environment_tex, camera,
+        radiance += open * vec4(background_radiance(environment, env_map_wrapped, camera,
                                                     ray.direction, vec2(pixel) + 0.5, 1.0), 1.0);
     }
     imageStore(radiance_image, pixel, radiance);

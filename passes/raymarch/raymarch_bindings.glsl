@@ -21,11 +21,11 @@ layout(constant_id = 6) const uint raymarch_kind = 0u; // of all shapes, or TYN_
 #define SCATTER_LUT_SOFT ((raymarch_features & RAYMARCH_SOFT_SUNS) != 0u)
 layout(binding = 11) uniform sampler3D distance_tex;
 layout(binding = 12) uniform sampler3D inscatter_tex;
-layout(binding = 13, scalar) uniform shape_uniform
+layout(binding = 13, scalar) uniform shapes_uniform
 {
     shape_block shapes[TYN_SHAPES_MAX];
 };
-layout(binding = 14, scalar) uniform light_uniform
+layout(binding = 14, scalar) uniform lights_uniform
 {
     light_block lights[TYN_LIGHTS_MAX];
 };
@@ -33,22 +33,22 @@ layout(binding = 15, scalar) uniform camera_uniform
 {
     camera_block camera;
 };
-layout(binding = 16, scalar) uniform env_uniform
+layout(binding = 16, scalar) uniform environment_uniform
 {
     env_block environment;
 };
-layout(binding = 17) uniform sampler2D environment_tex;
+layout(binding = 17) uniform sampler2D env_map_wrapped;
 layout(binding = 18) uniform sampler2D host_depth_tex;
 layout(binding = 19, rgba32f) uniform writeonly image2D radiance_image;
 layout(binding = 20, rgba32f) uniform writeonly image2D transmittance_image;
 layout(binding = 21, rgba32f) uniform writeonly image2D depth_image;
 layout(binding = 22, rgba32f) uniform writeonly image2D single_image;
 layout(binding = 23, rgba32f) uniform writeonly image2D multiple_image;
-layout(binding = 24, scalar) buffer counter_buffer
+layout(binding = 24, scalar) buffer counters_buffer
 {
     counters_block counters;
 };
-layout(binding = 25) uniform sampler3D glow_tex;
+layout(binding = 25) uniform sampler3D glow_wrapped;
 #define SURFACE_RADIANCE 26
 #define SURFACE_DISTANCES 27
 #define WALLS_AT 28
@@ -60,7 +60,7 @@ layout(binding = 25) uniform sampler3D glow_tex;
 layout(binding = 37) uniform sampler3D light_cells_tex;
 layout(binding = 38) uniform sampler2D sparse_tex;
 layout(binding = 39, rgba32f) uniform writeonly image2D sparse_image;
-layout(binding = 40, scalar) buffer sparse_rest_buffer
+layout(binding = 40, scalar) buffer rest_buffer
 {
     raymarch_rest head;
     uint blocks[];

@@ -119,14 +119,14 @@ march_medium march_medium_at(march_medium unit, vec3 uvw)
     if (medium_mode == TYN_MEDIUM_COEFFICIENTS) {
         vec3 emission = vec3(0.0);
         if (raymarch_has(RAYMARCH_EMISSION)) {
-            emission = textureLod(medium_emission_tex, uvw, 0.0).rgb;
+            emission = textureLod(emission_tex, uvw, 0.0).rgb;
         }
-        return march_medium_of(medium_point(textureLod(medium_density_tex, uvw, 0.0).rgb,
-                                            textureLod(medium_sigma_a_tex, uvw, 0.0).rgb,
-                                            phase_of_mean_cosine(textureLod(medium_g_tex, uvw, 0.0).rgb), emission));
+        return march_medium_of(medium_point(textureLod(density_tex, uvw, 0.0).rgb,
+                                            textureLod(sigma_a_tex, uvw, 0.0).rgb,
+                                            phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb), emission));
     }
 #endif
-    return march_scale(unit, max(textureLod(medium_density_tex, uvw, 0.0).r, 0.0));
+    return march_scale(unit, max(textureLod(density_tex, uvw, 0.0).r, 0.0));
 }
 
 // Is there anything that absorbs, scatters or emits?

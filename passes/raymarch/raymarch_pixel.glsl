@@ -110,7 +110,7 @@ void add_light(inout pixel_light sum, ivec2 pixel, vec2 where, float footprint, 
             smeared = group.mean.rgb;
         } else if (raymarch_has(RAYMARCH_GLOW) && to.surface == TYN_INFINITY) {
             smeared = environment.radiance *
-                      glow_radiance(glow_tex, environment, to.ray.direction, spectrum_of(march_forward_depth(r)));
+                      glow_radiance(glow_wrapped, environment, to.ray.direction, spectrum_of(march_forward_depth(r)));
         }
         light += smeared * max(r.scaled_transmittance - r.transmittance, 0.0);
     }
@@ -123,7 +123,7 @@ void add_light(inout pixel_light sum, ivec2 pixel, vec2 where, float footprint, 
     } else if (!raymarch_has(RAYMARCH_BACKGROUND)) {
         sum.cover += group.share * (1.0 - dot(r.transmittance, vec3(1.0 / 3.0)));
     } else if (to.surface == TYN_INFINITY) {
-        light += r.transmittance * background_radiance(environment, environment_tex, camera, to.ray.direction,
+        light += r.transmittance * background_radiance(environment, env_map_wrapped, camera, to.ray.direction,
                                                        vec2(pixel) + where, footprint);
     }
     sum.radiance += group.share * light;

@@ -92,7 +92,7 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, fl
     }
     spectrum tau_s, tau_a, k_once = sun.once, k_tms, k_lobe;
 #ifdef RAYMARCH_GREY
-    float column = beam_fetch(beam_column_tex, place).r;
+    float column = beam_fetch(column_tex, place).r;
     tau_s = unit.scattering * column;
     tau_a = unit.absorption * column;
     if (raymarch_has(RAYMARCH_KERNELS)) {
@@ -102,7 +102,7 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, fl
     }
 #else
     if (medium_mode == TYN_MEDIUM_DENSITY) {
-        float column = beam_fetch(beam_column_tex, place).r;
+        float column = beam_fetch(column_tex, place).r;
         tau_s = unit.scattering * column;
         tau_a = unit.absorption * column;
         if (raymarch_has(RAYMARCH_KERNELS)) {
@@ -113,13 +113,13 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, fl
             }
         }
     } else {
-        tau_s = beam_fetch(beam_column_tex, place);
-        tau_a = beam_fetch(beam_tau_a_tex, place);
+        tau_s = beam_fetch(column_tex, place);
+        tau_a = beam_fetch(tau_a_tex, place);
         for (int c = 0; c < 3; c++) {
             k_once[c] = phase_near(m.phase[c], sun.mean_cosine, sun.one_minus_mu);
         }
         if (raymarch_has(RAYMARCH_KERNELS)) {
-            vec3 tau_p = beam_fetch(beam_tau_p_tex, place);
+            vec3 tau_p = beam_fetch(tau_p_tex, place);
             for (int c = 0; c < 3; c++) {
                 vec2 k = scatter_kernels_mixed(lut.sun_set[sun.light], sun.mean_cosine, sun.one_minus_mu, m.phase[c],
                                                tau_s[c], tau_p[c]);

@@ -7,18 +7,18 @@
 #include "shaders/colour/packed_colour.glsl"
 
 layout(binding = SURFACE_RADIANCE, rg32ui) uniform readonly uimage2D surface_image;
-layout(binding = SURFACE_DISTANCES) uniform sampler2D surface_distances_tex;
+layout(binding = SURFACE_DISTANCES) uniform sampler2D distances_tex;
 
 // Samples along each side of a pixel.
 int surface_side(camera_block camera)
 {
-    return textureSize(surface_distances_tex, 0).x / int(camera.size.x);
+    return textureSize(distances_tex, 0).x / int(camera.size.x);
 }
 
 // Of sample i: radiance, and distance or infinity.
 float surface_distance(ivec2 pixel, int side, int i)
 {
-    float away = texelFetch(surface_distances_tex, pixel * side + ivec2(i % side, i / side), 0).r;
+    float away = texelFetch(distances_tex, pixel * side + ivec2(i % side, i / side), 0).r;
     return away > 0.0 ? away : TYN_INFINITY;
 }
 

@@ -20,44 +20,14 @@ uint32_t tyn_residuum_after(float a, float g, float sigma_s, float hop, float ep
     return hops < UINT32_MAX ? (uint32_t)hops : UINT32_MAX;
 }
 
-static const tyn_port ports[RESIDUUM_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, RESIDUUM),
-    [PORT(PLACES)] = {"places", TYN_IN, TYN_BUFFER, .meaning = "struct propagate_place[]"},
-    [PORT(LIGHT)] = {"light", TYN_IN, TYN_IMAGE_3D,
-                     .meaning = "of propagate_rect: L per irradiance"},
-    [PORT(RESIDUUM)] = {"residuum", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                        .meaning = "light to the eye per unit of sigma_s, W/(m^2 sr)"},
-    [PORT(STATE)] = {"state", TYN_OUT, TYN_BUFFER, .meaning = "light at the faces, W/m^2"},
-    [PORT(STATE_OTHER)] = {"state_other", TYN_SCRATCH, TYN_BUFFER,
-                           .meaning = "state of every other iteration"},
-    [PORT(KEPT)] = {"kept", TYN_SCRATCH, TYN_BUFFER, .meaning = "transmittance of half a cell"},
-    [PORT(SUM)] = {"sum", TYN_SCRATCH, TYN_BUFFER, .meaning = "light of all iterations, W/m^2"},
-};
+static const tyn_port ports[] = {RESIDUUM_PORTS(TYN_PORT_ROW)};
 
 enum { START, STEP, COLLECT, NUM_KERNELS };
 
-static const tyn_binding start_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, RESIDUUM), {PORT(PLACES), TYN_USE_UNIFORM},
-    {PORT(LIGHT), TYN_USE_SAMPLED},        {PORT(STATE), TYN_USE_STORAGE_WRITE},
-    {PORT(KEPT), TYN_USE_STORAGE_WRITE},   {PORT(SUM), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding step_bindings[] = {
-    {PORT(STATE_OTHER), TYN_USE_STORAGE_READ},
-    {PORT(STATE), TYN_USE_STORAGE_WRITE},
-    {PORT(KEPT), TYN_USE_STORAGE_READ},
-    {PORT(SUM), TYN_USE_STORAGE_RW},
-};
-static const tyn_binding collect_bindings[] = {
-    {PORT(SUM), TYN_USE_STORAGE_READ},
-    {PORT(RESIDUUM), TYN_USE_STORAGE_WRITE},
-};
-
-#define KERNEL(step, specs)                                                                        \
-    TYN_KERNEL(residuum_##step, sizeof(struct residuum_args), 4, 4, 4, step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [START] = KERNEL(start, 1),
-    [STEP] = KERNEL(step, 0),
-    [COLLECT] = KERNEL(collect, 0),
+    [START] = TYN_KERNEL(residuum_start),
+    [STEP] = TYN_KERNEL(residuum_step),
+    [COLLECT] = TYN_KERNEL(residuum_collect),
 };
 
 #define FIELD(name) offsetof(tyn_residuum_params, name)
@@ -111,21 +81,15 @@ static void record(tyn_recorder *r, const void *data)
         .tiles = tyn_rec_extent(r, PORT(LIGHT)).x / p->grid_cells,
     };
     bool other = p->iterations % 2 != 0;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = START,
-                                        .cells = dims,
-                                        .args = &args,
-                                        .ports = tyn_ports_exchanged(&kernels[START], swap,
-                                                                     other ? 2 : 0, table),
-                                        .spec = &p->mode});
+    TYN_DISPATCH(r, .kernel = START, .cells = dims, .args = &args,
+                 .ports = tyn_ports_exchanged(&kernels[START], swap, other ? 2 : 0, table),
+                 .spec = &p->mode);
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = STEP,
-                                            .cells = dims,
-                                            .args = &args,
-                                            .ports = tyn_ports_exchanged(&kernels[STEP], swap,
-                                                                         other ? 2 : 0, table)});
+        TYN_DISPATCH(r, .kernel = STEP, .cells = dims, .args = &args,
+                     .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? 2 : 0, table));
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = COLLECT, .cells = dims, .args = &args});
+    TYN_DISPATCH(r, .kernel = COLLECT, .cells = dims, .args = &args);
     tyn_rec_work(r, "cells", (double)dims.x * dims.y * dims.z * p->iterations);
 }
 

@@ -26,17 +26,20 @@ typedef struct tyn_residuum_params {
 // scattering is enough (g <= 0), that many hops as are a mean free path.
 uint32_t tyn_residuum_after(float a, float g, float sigma_s, float hop, float epsilon);
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, RESIDUUM), // IN
-    RESIDUUM_PORT_PLACES,                  // IN buffer, of propagate_rect
-    RESIDUUM_PORT_LIGHT,                   // IN 3D, of propagate_rect
-    RESIDUUM_PORT_RESIDUUM, // OUT 3D RGBA32F, cubic cells that span the medium's box (lattice.glsl): light
-                            // to the eye per unit of sigma_s, W/(m^2 sr)
-    RESIDUUM_PORT_STATE, // OUT buffer vec4[], after the last iteration: light at the faces of a cell, its
-                         // power per area of a face, W/m^2; x fastest
-    RESIDUUM_PORT_STATE_OTHER, // SCRATCH, so
-    RESIDUUM_PORT_KEPT,        // SCRATCH buffer vec4[]: transmittance of half a cell
-    RESIDUUM_PORT_SUM,         // SCRATCH buffer vec4[]: light of all iterations, W/m^2
-    RESIDUUM_NUM_PORTS,
-};
+// clang-format off
+#define RESIDUUM_PORTS(X) \
+    TYN_MEDIUM(X, RESIDUUM), \
+    X(RESIDUUM, PLACES, places, IN, BUFFER, "struct propagate_place[], of propagate_rect"), \
+    X(RESIDUUM, LIGHT, light, IN, IMAGE_3D, "of propagate_rect: L per irradiance"), \
+    X(RESIDUUM, RESIDUUM, residuum, OUT, IMAGE_3D, \
+        "cubic cells that span the medium's box (lattice.glsl): light to the eye per unit of sigma_s, W/(m^2 " \
+        "sr)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RESIDUUM, STATE, state, OUT, BUFFER, \
+        "vec4[], after the last iteration: light at the faces of a cell, its power per area of a face, W/m^2;" \
+        " x fastest"), \
+    X(RESIDUUM, STATE_OTHER, state_other, SCRATCH, BUFFER, "state of every other iteration"), \
+    X(RESIDUUM, KEPT, kept, SCRATCH, BUFFER, "vec4[]: transmittance of half a cell"), \
+    X(RESIDUUM, SUM, sum, SCRATCH, BUFFER, "vec4[]: light of all iterations, W/m^2")
+// clang-format on
+enum { RESIDUUM_PORTS(TYN_PORT_ENUM), RESIDUUM_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_residuum;

@@ -1,13 +1,12 @@
 // residuum_collect.comp -- what all iterations sent to the eye.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "residuum_args.h"
 #include "shaders/phase/hg.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 0, scalar) readonly buffer sum_buffer { vec4 sum[]; };
-layout(set = 0, binding = 1, rgba32f) uniform writeonly image3D out_residuum;
+layout(set = 0, binding = 1, rgba32f) uniform writeonly image3D residuum_image;
 layout(push_constant, scalar) uniform push { residuum_args args; };
 
 void main()
@@ -17,5 +16,5 @@ void main()
         return;
     }
     vec3 light = sum[(cell.z * args.dims.y + cell.y) * args.dims.x + cell.x].rgb;
-    imageStore(out_residuum, ivec3(cell), vec4(light / (4.0 * HG_PI), 0.0));
+    imageStore(residuum_image, ivec3(cell), vec4(light / (4.0 * HG_PI), 0.0));
 }

@@ -1,12 +1,11 @@
 // residuum_step.comp -- one iteration: every cell takes a sixth of what each of its neighbours has.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "residuum_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 0, scalar) readonly buffer in_buffer { vec4 in_state[]; };
-layout(set = 0, binding = 1, scalar) writeonly buffer out_buffer { vec4 out_state[]; };
+layout(set = 0, binding = 0, scalar) readonly buffer state_other_buffer { vec4 in_state[]; };
+layout(set = 0, binding = 1, scalar) writeonly buffer state_buffer { vec4 out_state[]; };
 layout(set = 0, binding = 2, scalar) readonly buffer kept_buffer { vec4 kept[]; };
 layout(set = 0, binding = 3, scalar) buffer sum_buffer { vec4 sum[]; };
 layout(push_constant, scalar) uniform push { residuum_args args; };

@@ -9,12 +9,13 @@ typedef struct tyn_rooms_params {
     uint32_t dims[3]; // cells of the lattice
 } tyn_rooms_params;
 
-enum {
-    ROOMS_PORT_LINKS,     // IN buffer, of walls
-    ROOMS_PORT_VPLS,      // IN buffer struct radial_vpls
-    ROOMS_PORT_DISTANCES, // IN 2D, vpl_visibility.glsl
-    ROOMS_PORT_ROOMS,     // OUT buffer, rooms.h
-    ROOMS_PORT_FOREST,    // SCRATCH
-    ROOMS_NUM_PORTS,
-};
+// clang-format off
+#define ROOMS_PORTS(X) \
+    X(ROOMS, WALL_LINKS, wall_links, IN, BUFFER, "of walls"), \
+    X(ROOMS, VPLS, vpls, IN, BUFFER, "struct radial_vpls"), \
+    X(ROOMS, VPL_DISTANCES, vpl_distances, IN, IMAGE_2D, "vpl_visibility.glsl: what VPLs see, m"), \
+    X(ROOMS, ROOMS, rooms, OUT, BUFFER, "rooms.h: of what is outside, of each cell, of each VPL"), \
+    X(ROOMS, FOREST, forest, SCRATCH, BUFFER, "rooms_forest.glsl")
+// clang-format on
+enum { ROOMS_PORTS(TYN_PORT_ENUM), ROOMS_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_rooms;

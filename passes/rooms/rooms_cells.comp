@@ -1,7 +1,6 @@
 // rooms_cells.comp -- the room of each cell and VPL.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "rooms_args.h"
 #include "shaders/walls/rooms.h"
 #include "shaders/lattice/lattice.glsl"
@@ -12,11 +11,11 @@ layout(push_constant, scalar) uniform push
 {
     rooms_args args;
 };
-layout(binding = 1, scalar) writeonly buffer room_buffer
+layout(binding = 1, scalar) writeonly buffer rooms_buffer
 {
     uint rooms[];
 };
-layout(binding = 2, scalar) readonly buffer vpl_buffer
+layout(binding = 2, scalar) readonly buffer vpls_buffer
 {
     uint vpl_count;
     uvec3 vpl_pad;

@@ -1,7 +1,6 @@
 // rooms_links.comp -- joins the cells that open links join, one thread a cell.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "rooms_args.h"
 #include "shaders/walls/walls_links.glsl"
 #include "shaders/walls/rooms.h"
@@ -13,7 +12,7 @@ layout(push_constant, scalar) uniform push
 {
     rooms_args args;
 };
-layout(binding = 1, scalar) readonly buffer link_buffer
+layout(binding = 1, scalar) readonly buffer wall_links_buffer
 {
     uint links[];
 };

@@ -4,7 +4,6 @@
 // tells which that is, wherever the lattice's links are cut; a ray counts if the one beside it tells the same.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "rooms_args.h"
 #define LATTICE_ROOMS 4 // as links join them
 #include "shaders/walls/lattice_rooms.glsl"
@@ -17,14 +16,14 @@ layout(push_constant, scalar) uniform push
 {
     rooms_args args;
 };
-layout(binding = 1) uniform usamplerBuffer link_texels;
-layout(binding = 2, scalar) readonly buffer vpl_buffer
+layout(binding = 1) uniform usamplerBuffer wall_links_words;
+layout(binding = 2, scalar) readonly buffer vpls_buffer
 {
     uint vpl_count;
     uvec3 vpl_pad;
     radial_light vpls[];
 };
-layout(binding = 3) uniform sampler2D distances;
+layout(binding = 3) uniform sampler2D vpl_distances_tex;
 
 // As close as half a cell in boxes of a few cells, where few have no walls; down to a seventh of the way.
 const int TRIES = 12;
@@ -34,13 +33,13 @@ const float NEXT = 0.84; // as far as the place before
 uint told_by(lattice_box box, vec3 from, mat3 frame, ivec2 corner, ivec2 at, int side)
 {
     vec3 d = frame * normalize(vpl_map_direction(vec2(at) / float(side - 1)));
-    float end = min(texelFetch(distances, corner + at, 0).r, 1e4 * box.dx);
+    float end = min(texelFetch(vpl_distances_tex, corner + at, 0).r, 1e4 * box.dx);
     uint told = TYN_ROOMS_ANY;
     float place = end - 1.8 * box.dx;
     for (int k = 0; k < TRIES && told == TYN_ROOMS_ANY && place > 0.0; k++) {
         ivec3 c = ivec3(floor(lattice_from_m(box, from + place * d)));
         ivec3 at = clamp(c, ivec3(0), box.dims - 1);
-        told = rooms_told(box.dims, c, at, texelFetch(link_texels, int(lattice_index(box, at))).x, false);
+        told = rooms_told(box.dims, c, at, texelFetch(wall_links_words, int(lattice_index(box, at))).x, false);
         place *= NEXT;
     }
     return told;
@@ -48,7 +47,7 @@ uint told_by(lattice_box box, vec3 from, mat3 frame, ivec2 corner, ivec2 at, int
 
 void main()
 {
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = textureSize(distances, 0);
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = textureSize(vpl_distances_tex, 0);
     int side = size.x / VPL_MAPS_IN_A_ROW;
     uint vpl = uint(texel.y / side * VPL_MAPS_IN_A_ROW + texel.x / side);
     if (any(greaterThanEqual(texel, size)) || vpl >= min(vpl_count, uint(TYN_RADIAL_VPLS_MAX))) {

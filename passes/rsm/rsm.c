@@ -4,26 +4,12 @@
 #include "rsm_vertex.vert.h"
 #include <string.h>
 
-#define IMAGE TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, false
-
-static const tyn_port ports[RSM_NUM_PORTS] = {
-    TYN_GEOMETRY(TYN_BUNDLE_IN, RSM),
-    TYN_MATERIALS(TYN_BUNDLE_IN, RSM),
-    [RSM_PORT_FLUX] = {"rsm_flux", TYN_OUT, IMAGE, "power that a texel reflects, W"},
-    [RSM_PORT_POSITION] = {"rsm_position", TYN_OUT, IMAGE, "where (M, m); area of it, m^2"},
-    [RSM_PORT_NORMAL] = {"rsm_normal", TYN_OUT, IMAGE, "of the surface (M), on the light's side"},
-    [RSM_PORT_DEPTH] = {"depth", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT, false,
-                        "reversed"},
-};
-
-static const tyn_binding bindings[] = {
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, RSM), TYN_MATERIALS(TYN_BUNDLE_BIND, RSM), // for light only
-};
+static const tyn_port ports[] = {RSM_PORTS(TYN_PORT_ROW)};
 
 static const tyn_binding attachments[] = {
-    {RSM_PORT_FLUX, TYN_USE_COLOR, false},
-    {RSM_PORT_POSITION, TYN_USE_COLOR, false},
-    {RSM_PORT_NORMAL, TYN_USE_COLOR, false},
+    {RSM_PORT_RSM_FLUX, TYN_USE_COLOR, false},
+    {RSM_PORT_RSM_POSITION, TYN_USE_COLOR, false},
+    {RSM_PORT_RSM_NORMAL, TYN_USE_COLOR, false},
     {RSM_PORT_DEPTH, TYN_USE_DEPTH, false},
 };
 
@@ -46,20 +32,8 @@ static const tyn_raster raster = {
 enum { KERNEL_DEPTH, KERNEL_LIGHT, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_DEPTH] = {.name = "rsm_depth",
-                      .spirv = rsm_vertex_spirv,
-                      .spirv_size = sizeof(rsm_vertex_spirv),
-                      .args_size = sizeof(struct rsm_draw_args),
-                      .bindings = bindings,
-                      .num_bindings = 4,
-                      .raster = &raster_depth},
-    [KERNEL_LIGHT] = {.name = "rsm_light",
-                      .spirv = rsm_vertex_spirv,
-                      .spirv_size = sizeof(rsm_vertex_spirv),
-                      .args_size = sizeof(struct rsm_draw_args),
-                      .bindings = bindings,
-                      .num_bindings = 7,
-                      .raster = &raster},
+    [KERNEL_DEPTH] = TYN_DRAW("rsm_depth", rsm_vertex, rsm_vertex, &raster_depth),
+    [KERNEL_LIGHT] = TYN_DRAW("rsm_light", rsm_vertex, rsm_fragment, &raster),
 };
 
 static const tyn_param params_table[] = {
@@ -99,7 +73,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_rsm_params *p = params;
     const tyn_extent size = {p->size[0], p->size[1], 1};
-    for (uint8_t port = RSM_PORT_FLUX; port <= RSM_PORT_DEPTH; port++) {
+    for (uint8_t port = RSM_PORT_RSM_FLUX; port <= RSM_PORT_DEPTH; port++) {
         tyn_build_image(b, port, size, 1);
     }
     return TYN_OK;
@@ -136,6 +110,6 @@ const tyn_pass_desc tyn_pass_rsm = {
     TYN_PASS_TABLES(tyn_rsm_params),
     .params = params_table,
     .num_params = TYN_COUNT(params_table),
-    .debug_port = RSM_PORT_FLUX,
+    .debug_port = RSM_PORT_RSM_FLUX,
     .debug_meaning = "power reflected in the texels of all lights' maps, W",
 };

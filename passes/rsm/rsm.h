@@ -27,11 +27,17 @@ typedef struct tyn_rsm_params {
 void tyn_rsm_add(tyn_rsm_params *params, const struct rsm_tile *tile, uint32_t kind,
                  const tyn_vec4 clip[4], const struct light_block *light, float texel);
 
-enum {
-    TYN_GEOMETRY(TYN_BUNDLE_ENUM, RSM),  // IN
-    TYN_MATERIALS(TYN_BUNDLE_ENUM, RSM), // IN
-    TYN_RSM(TYN_BUNDLE_ENUM, RSM),       // OUT
-    RSM_PORT_DEPTH,                      // SCRATCH 2D D32
-    RSM_NUM_PORTS,
-};
+// clang-format off
+#define RSM_PORTS(X) \
+    TYN_GEOMETRY(X, RSM), \
+    TYN_MATERIALS(X, RSM), \
+    X(RSM, RSM_FLUX, rsm_flux, OUT, IMAGE_2D, \
+        "power that a texel reflects, W", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RSM, RSM_POSITION, rsm_position, OUT, IMAGE_2D, \
+        "where (M, m); area of it, m^2", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RSM, RSM_NORMAL, rsm_normal, OUT, IMAGE_2D, \
+        "of the surface (M), on the light's side", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RSM, DEPTH, depth, SCRATCH, IMAGE_2D, "reversed", .format = VK_FORMAT_D32_SFLOAT)
+// clang-format on
+enum { RSM_PORTS(TYN_PORT_ENUM), RSM_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_rsm;

@@ -1,7 +1,6 @@
 // rsm_vertex.vert -- the corners of the scene's triangles as a light sees them.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "rsm_bindings.glsl"
 
 invariant gl_Position; // two kernels must agree on depths

@@ -10,42 +10,13 @@ enum { CONES_BYTES = 4 * TYN_TMS_CONES * TYN_TMS_MAX_TERMS };
 
 static const float least_blur = 1e-4f; // 1 - mean cosine: smaller suns are points (0.8 degrees RMS)
 
-static const tyn_port ports[SCATTER_LUT_NUM_PORTS] = {
-    [SCATTER_LUT_PORT_LUT] =
-        {"lut", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_SFLOAT, false,
-         "ln of the multiple forward scattering of K_tms and K_lobe over depth (x) "
-         "and angle (y), a table for each phase function above the other"},
-    [SCATTER_LUT_PORT_LUT_BLOCK] = {"lut_block", TYN_OUT, TYN_BUFFER, 0, false,
-                                    "rows of the table: phase function, half width of the lobe"},
-    [SCATTER_LUT_PORT_TMS] =
-        {"tms", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32_SFLOAT, false,
-         "phase function of what leaves the forward lobes of light from a cone, "
-         "1/sr, over depth (x), angle (y) and the size of the cone (z)"},
-    [SCATTER_LUT_PORT_MOMENTS] =
-        {"moments", TYN_SCRATCH, TYN_BUFFER, 0, false,
-         "Legendre moments of the phase function outside and inside the lobe"},
-    [SCATTER_LUT_PORT_CONES] = {"cones", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                "Legendre moments of the cones"},
-};
+static const tyn_port ports[] = {SCATTER_LUT_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_SUM, KERNEL_TMS, NUM_KERNELS };
 
-static const tyn_binding sum_bindings[] = {
-    {SCATTER_LUT_PORT_LUT_BLOCK, TYN_USE_STORAGE_READ},
-    {SCATTER_LUT_PORT_MOMENTS, TYN_USE_STORAGE_READ},
-    {SCATTER_LUT_PORT_LUT, TYN_USE_STORAGE_WRITE},
-};
-
-static const tyn_binding tms_bindings[] = {
-    {SCATTER_LUT_PORT_LUT_BLOCK, TYN_USE_STORAGE_READ},
-    {SCATTER_LUT_PORT_MOMENTS, TYN_USE_STORAGE_READ},
-    {SCATTER_LUT_PORT_CONES, TYN_USE_STORAGE_READ},
-    {SCATTER_LUT_PORT_TMS, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SUM] = TYN_KERNEL(scatter_lut_sum, 0, TYN_LUT_ANGLES / 4, 1, 1, sum_bindings, 0),
-    [KERNEL_TMS] = TYN_KERNEL(scatter_lut_tms, 0, TYN_TMS_ANGLES / 4, 1, 1, tms_bindings, 0),
+    [KERNEL_SUM] = TYN_KERNEL(scatter_lut_sum),
+    [KERNEL_TMS] = TYN_KERNEL(scatter_lut_tms),
 };
 
 // ---- rows -----------------------------------------------------------------------------------------
@@ -216,11 +187,8 @@ static void record(tyn_recorder *r, const void *params)
         }
     }
     tyn_rec_update(r, SCATTER_LUT_PORT_LUT_BLOCK, 0, &block, sizeof(block));
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){
-               .kernel = KERNEL_SUM,
-               .cells = {TYN_LUT_ANGLES / 4, TYN_LUT_DEPTHS * block.num_sets, block.num_rows},
-           });
+    TYN_DISPATCH(r, .kernel = KERNEL_SUM,
+                 .cells = {TYN_LUT_ANGLES / 4, TYN_LUT_DEPTHS * block.num_sets, block.num_rows});
     // Per term and texel: the recurrence (5), the sums (4).
     double texel_terms = terms_of_lut * TYN_LUT_ANGLES * TYN_LUT_DEPTHS;
     double flops = 9 * texel_terms,
@@ -232,10 +200,8 @@ static void record(tyn_recorder *r, const void *params)
         }
         tyn_rec_update(r, SCATTER_LUT_PORT_CONES, 0, cones, CONES_BYTES);
         uint32_t layers = TYN_TMS_CONES * block.num_rows;
-        tyn_rec_dispatch(r, &(tyn_dispatch){
-                                .kernel = KERNEL_TMS,
-                                .cells = {TYN_TMS_ANGLES / 4, TYN_TMS_DEPTHS / 4, layers},
-                            });
+        TYN_DISPATCH(r, .kernel = KERNEL_TMS,
+                     .cells = {TYN_TMS_ANGLES / 4, TYN_TMS_DEPTHS / 4, layers});
         for (uint32_t row = 0; row < block.num_rows; row++) {
             // Four depths share the recurrence.
             flops += 3.25 * block.tms_terms[row] * TYN_TMS_ANGLES * TYN_TMS_DEPTHS * TYN_TMS_CONES;

@@ -13,14 +13,19 @@ typedef struct tyn_scatter_lut_params {
     float mean_cosine[TYN_LUT_MAX_SUNS]; // of the suns' discs, light_block.mean_cosine, in (0, 1]
 } tyn_scatter_lut_params;
 
-enum {
-    SCATTER_LUT_PORT_LUT, // OUT 2D RG32F: K_tms and K_lobe over depth, angle and row, in the form
-                          // that scatter_lut.glsl reads
-    SCATTER_LUT_PORT_LUT_BLOCK, // OUT buffer struct lut_block
-    SCATTER_LUT_PORT_TMS, // OUT 3D R32F, only if asked for: what is scattered of light from cones, over
-                          // depth, angle, and the size of the cone in each row; tms.glsl reads it
-    SCATTER_LUT_PORT_MOMENTS, // SCRATCH buffer: Legendre moments of the rows, outside and inside the lobe
-    SCATTER_LUT_PORT_CONES, // SCRATCH buffer: Legendre moments c_l of the cones
-    SCATTER_LUT_NUM_PORTS,
-};
+// clang-format off
+#define SCATTER_LUT_PORTS(X) \
+    X(SCATTER_LUT, LUT, lut, OUT, IMAGE_2D, \
+        "ln of the multiple forward scattering of K_tms and K_lobe over depth (x) and angle (y), a table for " \
+        "each phase function above the other", .format = VK_FORMAT_R32G32_SFLOAT), \
+    X(SCATTER_LUT, LUT_BLOCK, lut_block, OUT, BUFFER, \
+        "struct lut_block: rows of the table: phase function, half width of the lobe"), \
+    X(SCATTER_LUT, TMS, tms, OUT, IMAGE_3D, \
+        "phase function of what leaves the forward lobes of light from a cone, 1/sr, over depth (x), angle " \
+        "(y) and the size of the cone (z)", .format = VK_FORMAT_R32_SFLOAT), \
+    X(SCATTER_LUT, MOMENTS, moments, SCRATCH, BUFFER, \
+        "Legendre moments of the phase function outside and inside the lobe"), \
+    X(SCATTER_LUT, CONES, cones, SCRATCH, BUFFER, "Legendre moments c_l of the cones")
+// clang-format on
+enum { SCATTER_LUT_PORTS(TYN_PORT_ENUM), SCATTER_LUT_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_scatter_lut;

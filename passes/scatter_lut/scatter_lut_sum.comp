@@ -1,12 +1,11 @@
 // scatter_lut_sum.comp -- sums the series of one depth and row for all angles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/phase/scatter_lut_map.glsl"
 
 const uint THREADS = TYN_LUT_ANGLES / 4, CHUNK = TYN_LUT_ANGLES;
 layout(local_size_x = TYN_LUT_ANGLES / 4) in; // x: four angles, y: depth of a set, z: row
-layout(set = 0, binding = 0, scalar) readonly buffer lut_buffer
+layout(set = 0, binding = 0, scalar) readonly buffer lut_block_buffer
 {
     lut_block lut;
 };

@@ -1,12 +1,11 @@
 // scatter_lut_tms.comp -- sums the series of four depths of one row and cone for all angles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/phase/scatter_lut_map.glsl"
 
 const uint THREADS = TYN_TMS_ANGLES / 4, CHUNK = 2u * THREADS;
 layout(local_size_x = TYN_TMS_ANGLES / 4) in; // x: four angles, y: four depths, z: cone of a row
-layout(set = 0, binding = 0, scalar) readonly buffer lut_buffer
+layout(set = 0, binding = 0, scalar) readonly buffer lut_block_buffer
 {
     lut_block lut;
 };

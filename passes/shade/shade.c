@@ -18,139 +18,9 @@
 #include <string.h>
 
 #define PORT(name) SHADE_PORT_##name
-#define IMAGE2 TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT
 #define TEXELS TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_UINT // shade_part.glsl
 
-static const tyn_port ports[SHADE_NUM_PORTS] = {
-    [PORT(MEDIUM)] = {"medium", TYN_IN, TYN_BUFFER, .meaning = "struct medium_block"},
-    [PORT(CAMERA)] = {"camera", TYN_IN, TYN_BUFFER, .meaning = "struct camera_block"},
-    [PORT(ENVIRONMENT)] = {"environment", TYN_IN, TYN_BUFFER, .meaning = "struct env_block"},
-    [PORT(SUNS)] = {"suns", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
-    [PORT(LIGHTS)] = {"lights", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
-    [PORT(DISTANCES)] = {"distances", TYN_IN, TYN_IMAGE_2D, .meaning = "of samples, m"},
-    [PORT(FACING)] = {"facing", TYN_IN, TEXELS, .meaning = "what pixels show; normals"},
-    [PORT(COLOURS)] = {"colours", TYN_IN, TEXELS,
-                       .meaning = "albedo and emission; of edges, triangles of samples"},
-    [PORT(EDGE_COUNT)] = {"edge_count", TYN_IN, TYN_BUFFER, .meaning = "struct gbuffer_edge_count"},
-    [PORT(EDGES)] = {"edges", TYN_IN, TYN_BUFFER,
-                     .meaning = "uint[]: pixels that show several pieces of surface"},
-    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, SHADE),
-    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, SHADE),
-    TYN_SHADOWS(TYN_BUNDLE_OPTIONAL, SHADE),
-    TYN_VPLS(TYN_BUNDLE_OPTIONAL, SHADE),
-    [PORT(MOMENTS)] = {"moments", TYN_IN, TYN_IMAGE_3D, .optional = true,
-                       .meaning = "fluence and flux on the lattice, W/m^2"},
-    TYN_WALLS(TYN_BUNDLE_OPTIONAL, SHADE),
-    [PORT(ROOMS)] = {"rooms", TYN_IN, TYN_BUFFER, .optional = true, .meaning = "of cells and VPLs"},
-    TYN_GEOMETRY(TYN_BUNDLE_IN, SHADE),
-    TYN_MATERIALS(TYN_BUNDLE_IN, SHADE),
-    [PORT(RADIANCE)] = {"surface_radiance", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32_UINT,
-                        .meaning = "radiance to the camera, W/(m^2 sr)"},
-    [PORT(FORWARD)] = {"forward", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                       .meaning = "from where sunlight comes that was scattered forward"},
-    [PORT(FACES)] = {"faces", TYN_SCRATCH, IMAGE2, .meaning = "light that leaves the medium's box"},
-    [PORT(SIGHT)] = {"sight", TYN_SCRATCH, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                     .meaning = "from where faces of the medium's box are seen"},
-    [PORT(PART)] = {"part", TYN_SCRATCH, TEXELS,
-                    .meaning = "a block's part of the VPLs' light, then all"},
-    [PORT(ROWS)] = {"part_rows", TYN_SCRATCH, TEXELS,
-                    .meaning = "summed along rows, then all smooth light"},
-    [PORT(ALONE_COUNT)] = {"alone_count", TYN_SCRATCH, TYN_BUFFER,
-                           .meaning = "struct gbuffer_edge_count"},
-    [PORT(ALONE)] = {"alone", TYN_SCRATCH, TYN_BUFFER,
-                     .meaning = "pixels with pieces that have smooth light of their own"},
-};
-
-// Bindings 0 to 23 of shade.glsl.
-#define COMMON_BINDINGS                                                                            \
-    {PORT(MEDIUM), TYN_USE_UNIFORM}, TYN_BEAMS(TYN_BUNDLE_BIND, SHADE),                            \
-        TYN_RADIALS(TYN_BUNDLE_BIND_TEXELS, SHADE), TYN_SHADOWS(TYN_BUNDLE_BIND_TEXELS, SHADE),    \
-        TYN_VPLS(TYN_BUNDLE_BIND, SHADE), {PORT(SUNS), TYN_USE_UNIFORM},                           \
-        {PORT(LIGHTS), TYN_USE_UNIFORM}, {PORT(CAMERA), TYN_USE_UNIFORM},                          \
-        {PORT(DISTANCES), TYN_USE_SAMPLED}, {PORT(FACING), TYN_USE_STORAGE_READ},                  \
-        {PORT(COLOURS), TYN_USE_STORAGE_READ}, {PORT(MOMENTS), TYN_USE_SAMPLED},                   \
-        TYN_WALLS(TYN_BUNDLE_BIND, SHADE),                                                         \
-    {                                                                                              \
-        PORT(ROOMS), TYN_USE_TEXELS_UINT                                                           \
-    }
-
-static const tyn_binding forward_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},
-    TYN_BEAMS(TYN_BUNDLE_BIND, SHADE),
-    TYN_SHADOWS(TYN_BUNDLE_BIND_STORAGE, SHADE),
-    {PORT(SUNS), TYN_USE_UNIFORM},
-    {PORT(FORWARD), TYN_USE_STORAGE_WRITE},
-    {PORT(WALL_LINKS), TYN_USE_TEXELS_UINT},
-};
-static const tyn_binding faces_bindings[] = {
-    {PORT(MEDIUM), TYN_USE_UNIFORM},      {PORT(ENVIRONMENT), TYN_USE_UNIFORM},
-    {PORT(MOMENTS), TYN_USE_SAMPLED},     {PORT(WALL_LINKS), TYN_USE_TEXELS_UINT},
-    {PORT(FACES), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding sight_bindings[] = {
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, SHADE), {PORT(MEDIUM), TYN_USE_UNIFORM},
-    {PORT(FACES), TYN_USE_SAMPLED},       {PORT(MOMENTS), TYN_USE_SAMPLED},
-    {PORT(SIGHT), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding vpls_bindings[] = {
-    COMMON_BINDINGS,
-    {PORT(PART), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding rows_bindings[] = {
-    {PORT(CAMERA), TYN_USE_UNIFORM},
-    {PORT(VPLS), TYN_USE_STORAGE_READ},
-    {PORT(PART), TYN_USE_STORAGE_READ},
-    {PORT(ROWS), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding gather_bindings[] = {
-    COMMON_BINDINGS,
-    {PORT(ROWS), TYN_USE_STORAGE_READ},
-    {PORT(PART), TYN_USE_STORAGE_WRITE},
-    {PORT(ALONE_COUNT), TYN_USE_STORAGE_RW},
-    {PORT(ALONE), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding places_bindings[] = {
-    COMMON_BINDINGS,
-    {PORT(PART), TYN_USE_STORAGE_WRITE},
-    {PORT(ALONE_COUNT), TYN_USE_STORAGE_READ},
-    {PORT(ALONE), TYN_USE_STORAGE_READ},
-};
-// Bindings 0 to 28 of shade_piece.glsl.
-#define SURFACE_BINDINGS                                                                           \
-    COMMON_BINDINGS, {PORT(PART), TYN_USE_STORAGE_READ}, {PORT(ENVIRONMENT), TYN_USE_UNIFORM},     \
-        {PORT(FORWARD), TYN_USE_SAMPLED}, {PORT(FACES), TYN_USE_SAMPLED},                          \
-    {                                                                                              \
-        PORT(SIGHT), TYN_USE_SAMPLED                                                               \
-    }
-
-static const tyn_binding surface_bindings[] = {
-    SURFACE_BINDINGS,
-    {PORT(RADIANCE), TYN_USE_STORAGE_WRITE},
-    {PORT(ALONE_COUNT), TYN_USE_STORAGE_RW},
-    {PORT(ALONE), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding smooth_bindings[] = {
-    SURFACE_BINDINGS,
-    {PORT(ROWS), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding edges_bindings[] = {
-    SURFACE_BINDINGS,
-    {PORT(RADIANCE), TYN_USE_STORAGE_WRITE},
-    {PORT(EDGE_COUNT), TYN_USE_STORAGE_READ},
-    {PORT(EDGES), TYN_USE_STORAGE_READ},
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, SHADE),
-    TYN_MATERIALS(TYN_BUNDLE_BIND, SHADE),
-    {PORT(ALONE_COUNT), TYN_USE_STORAGE_RW},
-    {PORT(ALONE), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding alone_bindings[] = {
-    SURFACE_BINDINGS,
-    {PORT(RADIANCE), TYN_USE_STORAGE_RW},
-    {PORT(ALONE_COUNT), TYN_USE_STORAGE_READ},
-    {PORT(ALONE), TYN_USE_STORAGE_READ},
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, SHADE),
-    TYN_MATERIALS(TYN_BUNDLE_BIND, SHADE),
-};
+static const tyn_port ports[] = {SHADE_PORTS(TYN_PORT_ROW)};
 
 enum {
     FORWARD = 0,
@@ -167,22 +37,15 @@ enum {
     NUM_KERNELS
 };
 
-#define KERNEL(step, x, y, z, args, specs)                                                         \
-    TYN_KERNEL(shade_##step, args, x, y, z, step##_bindings, specs)
 #define ARGS sizeof(struct shade_args)
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [FORWARD] = KERNEL(forward, 8, 4, 2, 0, 3),
-    [FACES] = KERNEL(faces, 32, 1, 1, ARGS, 2),
-    [SIGHT] = KERNEL(sight, 8, 4, 1, ARGS, 1),
-    [VPLS] = KERNEL(vpls, 8, 8, 1, ARGS, 6),
-    [SUM_ROWS] = KERNEL(rows, 8, 8, 1, 0, 2),
-    [GATHER] = KERNEL(gather, 8, 8, 1, ARGS, 6),
-    [PLACES] = KERNEL(places, GBUFFER_EDGES, 1, 1, ARGS, 6),
-    [SMOOTH] = KERNEL(smooth, 8, 8, 1, ARGS, 6),
-    [SURFACE] = KERNEL(surface, 8, 8, 1, ARGS, 6),
-    [EDGES] = KERNEL(edges, GBUFFER_EDGES, 1, 1, ARGS, 6),
-    [ALONE] = KERNEL(alone, GBUFFER_EDGES, 1, 1, ARGS, 6),
+    [FORWARD] = TYN_KERNEL(shade_forward), [FACES] = TYN_KERNEL(shade_faces),
+    [SIGHT] = TYN_KERNEL(shade_sight),     [VPLS] = TYN_KERNEL(shade_vpls),
+    [SUM_ROWS] = TYN_KERNEL(shade_rows),   [GATHER] = TYN_KERNEL(shade_gather),
+    [PLACES] = TYN_KERNEL(shade_places),   [SMOOTH] = TYN_KERNEL(shade_smooth),
+    [SURFACE] = TYN_KERNEL(shade_surface), [EDGES] = TYN_KERNEL(shade_edges),
+    [ALONE] = TYN_KERNEL(shade_alone),
 };
 
 static const tyn_param params[] = {
@@ -215,7 +78,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_extent blocks = vpls || step > 1 ? blocks_of(p, step) : (tyn_extent){1, 1, 1};
     const bool outside = p->outside && tyn_build_has(b, PORT(MOMENTS));
     const tyn_extent faces = {SHADE_FACE_WIDTH, 6 + SHADE_FACE_SIDE, 1};
-    tyn_build_image(b, PORT(RADIANCE), tyn_build_extent(b, PORT(DISTANCES)), 1);
+    tyn_build_image(b, PORT(SURFACE_RADIANCE), tyn_build_extent(b, PORT(DISTANCES)), 1);
     // The moments have a cell's channels behind each other along z.
     tyn_extent cells = tyn_build_extent(b, PORT(MOMENTS));
     const uint32_t slices = cells.z / (p->one_channel ? 1 : 3);
@@ -229,7 +92,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
     const tyn_extent fields = {places[0], places[1], places[2] * SHADE_SIGHT_FIELDS};
     tyn_build_image(b, PORT(SIGHT), outside && p->hidden ? fields : texel, 1);
     tyn_build_image(b, PORT(PART), vpls ? blocks : texel, 1);
-    tyn_build_image(b, PORT(ROWS), blocks, 1);
+    tyn_build_image(b, PORT(PART_ROWS), blocks, 1);
     const bool alone = vpls || step > 1;
     tyn_build_buffer(b, PORT(ALONE_COUNT), sizeof(struct gbuffer_edge_count));
     tyn_build_buffer(b, PORT(ALONE), 8 * (alone ? (uint64_t)p->size[0] * p->size[1] : 1));
@@ -272,7 +135,7 @@ static void record(tyn_recorder *r, const void *data)
     tyn_dispatch d = {.args = &args, .spec = spec};
     if (features & SHADE_SPREAD) {
         tyn_extent cells = {forward.x, forward.y, forward.z / p->num_suns};
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = FORWARD, .cells = cells, .spec = spec});
+        TYN_DISPATCH(r, .kernel = FORWARD, .cells = cells, .spec = spec);
     }
     if (features & SHADE_OUTSIDE) {
         d.kernel = FACES;
@@ -294,7 +157,7 @@ static void record(tyn_recorder *r, const void *data)
             (tyn_extent){(blocks.x + side - 1) / side,
                          (blocks.y + side * SHADE_MANY - 1) / (side * SHADE_MANY), side * side};
         tyn_rec_dispatch(r, &d);
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SUM_ROWS, .cells = blocks, .spec = spec + 4});
+        TYN_DISPATCH(r, .kernel = SUM_ROWS, .cells = blocks, .spec = spec + 4);
         tyn_rec_fill(r, PORT(ALONE_COUNT), 0);
         d.kernel = GATHER;
         d.cells = blocks;
@@ -309,7 +172,7 @@ static void record(tyn_recorder *r, const void *data)
     }
     tyn_rec_fill(r, PORT(ALONE_COUNT), 0);
     // Surfaces look up light of VPLs, or all smooth light.
-    const uint8_t looked_up[1][2] = {{PORT(PART), step > 1 ? PORT(ROWS) : PORT(PART)}};
+    const uint8_t looked_up[1][2] = {{PORT(PART), step > 1 ? PORT(PART_ROWS) : PORT(PART)}};
     uint8_t bound[3][TYN_MAX_BINDINGS];
     d.kernel = SURFACE;
     d.cells = pixels;
@@ -335,6 +198,6 @@ const tyn_pass_desc tyn_pass_shade = {
     TYN_PASS_TABLES(tyn_shade_params),
     .params = params,
     .num_params = TYN_COUNT(params),
-    .debug_port = PORT(RADIANCE),
+    .debug_port = PORT(SURFACE_RADIANCE),
     .debug_meaning = "radiance of the surfaces, without the medium in front of them",
 };

@@ -32,11 +32,11 @@ layout(push_constant, scalar) uniform Args
 #include "shaders/surfaces/gbuffer.glsl"
 #include "vpl.glsl"
 
-layout(binding = 14, scalar) uniform sun_uniform
+layout(binding = 14, scalar) uniform suns_uniform
 {
     light_block suns[TYN_LIGHTS_MAX];
 };
-layout(binding = 15, scalar) uniform light_uniform
+layout(binding = 15, scalar) uniform lights_uniform
 {
     light_block lights[TYN_LIGHTS_MAX];
 };
@@ -46,7 +46,7 @@ layout(binding = 16, scalar) uniform camera_uniform
 };
 layout(binding = 17) uniform sampler2D distances_tex; // gbuffer.glsl
 layout(binding = 18, rgba32ui) uniform readonly uimage2D facing_image;
-layout(binding = 19, rgba32ui) uniform readonly uimage2D colour_image;
+layout(binding = 19, rgba32ui) uniform readonly uimage2D colours_image;
 #define VPLS_AT 11
 layout(binding = 20) uniform sampler3D moments_tex;
 #define WALLS_AT 21
@@ -96,7 +96,7 @@ float shade_distance(ivec2 texel)
 // Part k of a pixel's colours.
 uvec4 shade_colours(ivec2 pixel, int k)
 {
-    return imageLoad(colour_image, ivec2(pixel.x * gbuffer_texels(shade_samples) + k, pixel.y));
+    return imageLoad(colours_image, ivec2(pixel.x * gbuffer_texels(shade_samples) + k, pixel.y));
 }
 
 // Where the ray of a sample ends.

@@ -31,38 +31,44 @@ typedef struct tyn_shade_params {
     uint32_t sky;      // 1: the mean of the environment lights what is outside the lattice
 } tyn_shade_params;
 
-enum {
-    SHADE_PORT_MEDIUM,      // IN buffer struct medium_block
-    SHADE_PORT_CAMERA,      // IN buffer struct camera_block
-    SHADE_PORT_ENVIRONMENT, // IN buffer struct env_block
-    SHADE_PORT_SUNS,        // IN buffer struct light_block[]
-    SHADE_PORT_LIGHTS,      // IN buffer struct light_block[]: directional lights, then lamps
-    SHADE_PORT_DISTANCES,   // IN 2D: gbuffer.glsl, as the two below
-    SHADE_PORT_FACING,
-    SHADE_PORT_COLOURS,
-    // IN buffers, gbuffer_edge_args.h: pixels that show several pieces of surface.
-    SHADE_PORT_EDGE_COUNT,
-    SHADE_PORT_EDGES,
-    TYN_BEAMS(TYN_BUNDLE_ENUM, SHADE),     // IN optional: with a medium and suns
-    TYN_RADIALS(TYN_BUNDLE_ENUM, SHADE),   // IN optional: with a medium and lamps or VPLs
-    TYN_SHADOWS(TYN_BUNDLE_ENUM, SHADE),   // IN optional
-    TYN_VPLS(TYN_BUNDLE_ENUM, SHADE),      // IN optional
-    SHADE_PORT_MOMENTS,                    // IN optional 3D: light of the lattice
-    TYN_WALLS(TYN_BUNDLE_ENUM, SHADE),     // IN optional: with surfaces within it
-    SHADE_PORT_ROOMS,                      // IN optional buffer, rooms.h: with walls and VPLs
-    TYN_GEOMETRY(TYN_BUNDLE_ENUM, SHADE),  // IN
-    TYN_MATERIALS(TYN_BUNDLE_ENUM, SHADE), // IN
-    // OUT 2D RG32UI, packed_colour.glsl, as large as "distances": radiance to the camera, W/(m^2
-    // sr).
-    SHADE_PORT_RADIANCE,
-    // SCRATCH 3D RGBA32F, shade_forward.comp: exists with a lattice, suns and shadows.
-    SHADE_PORT_FORWARD,
-    SHADE_PORT_FACES, // SCRATCH 2D RGBA32F, shade_faces.h
-    SHADE_PORT_SIGHT, // SCRATCH 3D RGBA32F, the same
-    SHADE_PORT_PART,  // SCRATCH 2D RGBA32UI, shade_part.glsl: exist with VPLs
-    SHADE_PORT_ROWS,
-    SHADE_PORT_ALONE_COUNT, // SCRATCH buffers, shade_alone.glsl
-    SHADE_PORT_ALONE,
-    SHADE_NUM_PORTS,
-};
+// clang-format off
+#define SHADE_PORTS(X) \
+    X(SHADE, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
+    X(SHADE, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
+    X(SHADE, ENVIRONMENT, environment, IN, BUFFER, "struct env_block"), \
+    X(SHADE, SUNS, suns, IN, BUFFER, "struct light_block[]"), \
+    X(SHADE, LIGHTS, lights, IN, BUFFER, "struct light_block[]: directional lights, then lamps"), \
+    X(SHADE, DISTANCES, distances, IN, IMAGE_2D, "gbuffer.glsl, as the two below"), \
+    X(SHADE, FACING, facing, IN, IMAGE_2D, "what pixels show; normals", .format = VK_FORMAT_R32G32B32A32_UINT), \
+    X(SHADE, COLOURS, colours, IN, IMAGE_2D, \
+        "albedo and emission; of edges, triangles of samples", .format = VK_FORMAT_R32G32B32A32_UINT), \
+    X(SHADE, EDGE_COUNT, edge_count, IN, BUFFER, \
+        "struct gbuffer_edge_count: gbuffer_edge_args.h: pixels that show several pieces of surface"), \
+    X(SHADE, EDGES, edges, IN, BUFFER, "uint[]: pixels that show several pieces of surface"), \
+    TYN_BEAMS(X##_OPTIONAL, SHADE), \
+    TYN_RADIALS(X##_OPTIONAL, SHADE), \
+    TYN_SHADOWS(X##_OPTIONAL, SHADE), \
+    TYN_VPLS(X##_OPTIONAL, SHADE), \
+    X(SHADE, MOMENTS, moments, OPTIONAL, IMAGE_3D, "fluence and flux on the lattice, W/m^2"), \
+    TYN_WALLS(X##_OPTIONAL, SHADE), \
+    X(SHADE, ROOMS, rooms, OPTIONAL, BUFFER, "rooms.h: with walls and VPLs"), \
+    TYN_GEOMETRY(X, SHADE), \
+    TYN_MATERIALS(X, SHADE), \
+    X(SHADE, SURFACE_RADIANCE, surface_radiance, OUT, IMAGE_2D, \
+        "RG32UI, packed_colour.glsl, as large as \"distances\": radiance to the camera, W/(m^2 sr)", \
+        .format = VK_FORMAT_R32G32_UINT), \
+    X(SHADE, FORWARD, forward, SCRATCH, IMAGE_3D, \
+        "shade_forward.comp: exists with a lattice, suns and shadows", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(SHADE, FACES, faces, SCRATCH, IMAGE_2D, \
+        "shade_faces.h: light that leaves the medium's box", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(SHADE, SIGHT, sight, SCRATCH, IMAGE_3D, \
+        "from where faces of the medium's box are seen", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(SHADE, PART, part, SCRATCH, IMAGE_2D, \
+        "a block's part of the VPLs' light, then all", .format = VK_FORMAT_R32G32B32A32_UINT), \
+    X(SHADE, PART_ROWS, part_rows, SCRATCH, IMAGE_2D, \
+        "summed along rows, then all smooth light", .format = VK_FORMAT_R32G32B32A32_UINT), \
+    X(SHADE, ALONE_COUNT, alone_count, SCRATCH, BUFFER, "shade_alone.glsl: struct gbuffer_edge_count"), \
+    X(SHADE, ALONE, alone, SCRATCH, BUFFER, "pixels with pieces that have smooth light of their own")
+// clang-format on
+enum { SHADE_PORTS(TYN_PORT_ENUM), SHADE_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_shade;

@@ -2,7 +2,6 @@
 // take all VPLs themselves.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_piece.glsl"
 #include "shade_several.glsl"
 #include "shade_whole.glsl"
@@ -13,7 +12,7 @@
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
-layout(binding = SHADE_PIECE_AT, rg32ui) uniform uimage2D radiance_image; // packed_colour.glsl
+layout(binding = SHADE_PIECE_AT, rg32ui) uniform uimage2D surface_radiance_image; // packed_colour.glsl
 
 void main()
 {
@@ -42,10 +41,10 @@ void main()
             float nearest[SHADE_MANY];
             light += shade_vpls(same, uint[SHADE_MANY](room, room, room, room), 0u, 1u, nearest)[0];
         }
-        uvec2 others = imageLoad(radiance_image, shade_texel(corner, findLSB(members))).xy;
+        uvec2 others = imageLoad(surface_radiance_image, shade_texel(corner, findLSB(members))).xy;
         uvec2 radiance = colour_pack(colour_unpack(others) + albedo * light / PI) | uvec2(0u, others.y & 0xc0000000u);
         for (uint some = members; some != 0u; some &= some - 1u) {
-            imageStore(radiance_image, shade_texel(corner, findLSB(some)), uvec4(radiance, 0u, 0u));
+            imageStore(surface_radiance_image, shade_texel(corner, findLSB(some)), uvec4(radiance, 0u, 0u));
         }
         left &= ~members;
     }

@@ -1,7 +1,6 @@
 // shade_edges.comp -- pixels that show several pieces of surface, or one beside nothing: one after another.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/surfaces/gbuffer_edges.glsl"
 #include "shade_piece.glsl"
 #include "shade_several.glsl"
@@ -11,7 +10,7 @@
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
-layout(binding = SHADE_PIECE_AT, rg32ui) uniform writeonly uimage2D radiance_image; // packed_colour.glsl, and the piece's number
+layout(binding = SHADE_PIECE_AT, rg32ui) uniform writeonly uimage2D surface_radiance_image; // packed_colour.glsl, and the piece's number
 layout(binding = SHADE_PIECE_AT + 1, scalar) readonly buffer edge_count_buffer
 {
     gbuffer_edge_count edge_count;
@@ -35,7 +34,7 @@ void main()
         bool shown = shade_distance(texel) > 0.0;
         left |= shown ? 1u << k : 0u;
         if (!shown) {
-            imageStore(radiance_image, texel, uvec4(0u));
+            imageStore(surface_radiance_image, texel, uvec4(0u));
         }
     }
     uint alone = 0u; // bit k: sample k shows a piece that no place tells of
@@ -57,7 +56,7 @@ void main()
         alone |= lone ? members : 0u;
         uvec2 radiance = colour_pack(emission + albedo * irradiance / PI) | uvec2(0u, min(piece, 3u) << 30);
         for (uint some = members; some != 0u; some &= some - 1u) {
-            imageStore(radiance_image, shade_texel(corner, findLSB(some)), uvec4(radiance, 0u, 0u));
+            imageStore(surface_radiance_image, shade_texel(corner, findLSB(some)), uvec4(radiance, 0u, 0u));
         }
         left &= ~members;
     }

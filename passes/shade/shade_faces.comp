@@ -5,7 +5,6 @@
 // radiance that is linear in direction, (phi + 3 w.F) / 4 pi, scaled to that flux.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_args.h"
 #include "shade_faces.h"
 #include "shaders/common/scene_args.h"
@@ -24,12 +23,12 @@ layout(binding = 0, scalar) uniform medium_uniform
 {
     medium_block medium;
 };
-layout(binding = 1, scalar) uniform env_uniform
+layout(binding = 1, scalar) uniform environment_uniform
 {
     env_block environment;
 };
 layout(binding = 2) uniform sampler3D moments_tex;
-layout(binding = 3) uniform usamplerBuffer link_texels; // wall_links
+layout(binding = 3) uniform usamplerBuffer wall_links_words; // wall_links
 layout(binding = 4, rgba32f) uniform writeonly image2D faces_image;
 
 const float PI = 3.14159265358979;
@@ -70,7 +69,7 @@ void main()
             c[v] = j;
             c[axis] = upper ? dims[axis] - 1 : 0;
             int index = (c.z * dims.y + c.y) * dims.x + c.x;
-            uint links = has(SHADE_LATTICE) ? texelFetch(link_texels, index).x : 0u;
+            uint links = has(SHADE_LATTICE) ? texelFetch(wall_links_words, index).x : 0u;
             ivec3 behind = c - (dims[axis] > 1 ? outwards : ivec3(0));
             uint back = walls_link(-outwards);
             behind = (links >> back & 1u) != 0u ? c : behind;

@@ -6,7 +6,6 @@
 // the lattice send nothing: a roof that the cell is under is lit from above.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_args.h"
 #include "shaders/common/scene_args.h"
 #define MEDIUM_BLOCK 0
@@ -23,13 +22,13 @@
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(constant_id = 2) const uint shade_num_suns = 0u;
 
-layout(binding = 7, scalar) uniform sun_uniform
+layout(binding = 7, scalar) uniform suns_uniform
 {
     light_block suns[TYN_LIGHTS_MAX];
 };
 // [sun][z][y][x]: mean direction that the light comes from, not of unit length; share of the places that are lit
 layout(binding = 8, rgba32f) uniform writeonly image3D forward_image;
-layout(binding = 9) uniform usamplerBuffer link_texels; // wall_links
+layout(binding = 9) uniform usamplerBuffer wall_links_words; // wall_links
 
 // The cell that light comes to from a place that is `way` from the centre of cell c (cell edges): the first beyond it, of those
 // along the line, if none of the links next to the line is cut. `near`: a wall is about. False: a wall is between.
@@ -47,7 +46,7 @@ bool reaches(ivec3 dims, ivec3 c, vec3 way, out ivec3 at, out bool near)
     int n = int(ceil(most)), index = c.x + dims.x * (c.y + dims.y * c.z);
     ivec3 row = ivec3(1, dims.x, dims.x * dims.y);
     vec3 by = way / max(most, 1e-20);
-    uint links = texelFetch(link_texels, index).x, before = 0u;
+    uint links = texelFetch(wall_links_words, index).x, before = 0u;
     bool open = true, inside = true;
     at = c;
     for (int i = 1; i <= n && open && inside; i++) {
@@ -58,7 +57,7 @@ bool reaches(ivec3 dims, ivec3 c, vec3 way, out ivec3 at, out bool near)
         d *= row;
         index += d.x + d.y + d.z;
         before = links;
-        links = inside ? texelFetch(link_texels, index).x : 0u;
+        links = inside ? texelFetch(wall_links_words, index).x : 0u;
         at = next;
     }
     near = inside && ((links | before) & TYN_WALLS_NEAR) != 0u;

@@ -3,7 +3,6 @@
 // pixel, the pixel takes all VPLs itself: that is left to shade_places.comp.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_place.glsl"
 #define SHADE_ALONE_COUNT (SHADE_AT + 2)
 #define SHADE_ALONE (SHADE_AT + 3)
@@ -11,8 +10,9 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = SHADE_AT, rgba32ui) uniform readonly uimage2D tent_image;
-layout(binding = SHADE_AT + 1, rgba32ui) uniform writeonly uimage2D indirect_image;
+layout(binding = SHADE_AT, rgba32ui) uniform readonly uimage2D part_rows_image;
+layout(binding = SHADE_AT + 1, rgba32ui) uniform writeonly uimage2D part_image;
+#define SHADE_TENT_IMAGE part_rows_image
 #include "shade_tent.glsl"
 
 void main()
@@ -21,7 +21,7 @@ void main()
     if (any(greaterThanEqual(block, shade_blocks()))) {
         return;
     }
-    shade_part sum = shade_unpack(imageLoad(tent_image, block));
+    shade_part sum = shade_unpack(imageLoad(part_rows_image, block));
     if (sum.along > 0.0 && vpl_count() > SHADE_MOST * shade_side) {
         sum = shade_tent(block, ivec2(0, 1), sum);
     }
@@ -31,5 +31,5 @@ void main()
     if (alone) {
         shade_list_alone(block, 0u, uint(SHADE_MANY));
     }
-    imageStore(indirect_image, block, shade_pack(sum));
+    imageStore(part_image, block, shade_pack(sum));
 }

@@ -8,11 +8,11 @@
 #include "shade.glsl"
 #include "shade_part.glsl"
 
-layout(binding = SHADE_AT, rgba32ui) uniform readonly uimage2D smooth_image; // shade_part.glsl
+layout(binding = SHADE_AT, rgba32ui) uniform readonly uimage2D part_image; // shade_part.glsl
 #define WALLS_OTHERS TYN_BEAM_MAX_SUNS
 #include "walls_irradiance.glsl"
 #include "shade_rooms.glsl"
-layout(binding = SHADE_AT + 1, scalar) uniform env_uniform
+layout(binding = SHADE_AT + 1, scalar) uniform environment_uniform
 {
     env_block environment;
 };
@@ -126,7 +126,7 @@ vec3 smooth_light_around(shade_point p, vec2 at, out bool alone)
     vec3 other = vec3(0.0);
     [[unroll]] for (int i = 0; i < 4; i++) {
         ivec2 step = ivec2(i & 1, i >> 1), block = clamp(ivec2(first) + step, ivec2(0), last);
-        shade_part there = shade_unpack(imageLoad(smooth_image, block));
+        shade_part there = shade_unpack(imageLoad(part_image, block));
         vec2 share = mix(1.0 - f, f, vec2(step));
         // The nearer the normal, the more it counts: edges stay sharp, and what is curved is smooth.
         float off = abs(dot(shade_part_position(block, there.along) - p.position, p.facet)) * per;
@@ -154,7 +154,7 @@ vec3 smooth_light_beside(shade_point p, vec2 at, out bool alone)
     vec4 sum = vec4(0.0);
     for (int i = 0; i < 9; i++) {
         ivec2 block = clamp(ivec2(x) + ivec2(i % 3, i / 3) - 1, ivec2(0), last);
-        shade_part there = shade_unpack(imageLoad(smooth_image, block));
+        shade_part there = shade_unpack(imageLoad(part_image, block));
         vec3 d = shade_part_position(block, there.along) - p.position;
         vec2 away = vec2(block) + 0.5 - x;
         // A place nearer than a block tells nothing of planes: it may be p, but for rounding.

@@ -1,7 +1,6 @@
 // shade_places.comp -- blocks of pixels that take all VPLs themselves: those that shade_gather.comp lists.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_place.glsl"
 #include "shade_rooms.glsl"
 #define SHADE_ALONE_COUNT (SHADE_AT + 1)
@@ -11,7 +10,7 @@
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
-layout(binding = SHADE_AT, rgba32ui) uniform writeonly uimage2D indirect_image; // shade_part.glsl
+layout(binding = SHADE_AT, rgba32ui) uniform writeonly uimage2D part_image; // shade_part.glsl
 
 void main()
 {
@@ -35,7 +34,7 @@ void main()
         part[i].irradiance = light[i];
         part[i].near = shade_near(p[i], block[i], nearest[i]);
         if (n + uint(i) < count) {
-            imageStore(indirect_image, block[i], shade_pack(part[i]));
+            imageStore(part_image, block[i], shade_pack(part[i]));
         }
     }
 }

@@ -1,7 +1,6 @@
 // shade_rows.comp -- VPLs' light summed over the pattern along rows. shade_gather.comp sums these sums along columns.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_args.h"
 #include "shaders/common/camera.glsl"
 #include "shaders/surfaces/gbuffer.glsl"
@@ -14,13 +13,14 @@ layout(binding = 0, scalar) uniform camera_uniform
 {
     camera_block camera;
 };
-layout(binding = 1, scalar) readonly buffer vpl_buffer
+layout(binding = 1, scalar) readonly buffer vpls_buffer
 {
     uint vpl_count;
 };
-layout(binding = 2, rgba32ui) uniform readonly uimage2D tent_image;
-layout(binding = 3, rgba32ui) uniform writeonly uimage2D rows_image;
+layout(binding = 2, rgba32ui) uniform readonly uimage2D part_image;
+layout(binding = 3, rgba32ui) uniform writeonly uimage2D part_rows_image;
 #include "shade_part.glsl"
+#define SHADE_TENT_IMAGE part_image
 #include "shade_tent.glsl"
 
 void main()
@@ -29,9 +29,9 @@ void main()
     if (any(greaterThanEqual(block, shade_blocks()))) {
         return;
     }
-    shade_part sum = shade_unpack(imageLoad(tent_image, block));
+    shade_part sum = shade_unpack(imageLoad(part_image, block));
     if (sum.along > 0.0 && vpl_count > SHADE_MOST) {
         sum = shade_tent(block, ivec2(1, 0), sum);
     }
-    imageStore(rows_image, block, shade_pack(sum));
+    imageStore(part_rows_image, block, shade_pack(sum));
 }

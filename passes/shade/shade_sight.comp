@@ -3,7 +3,6 @@
 // Far fewer places than pixels, and between them it is interpolated: light of so large emitters has no sharp shadows.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/common/scene_args.h"
 #include "shaders/lattice/lattice.glsl"

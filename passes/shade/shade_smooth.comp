@@ -2,13 +2,12 @@
 // what the medium scattered forward, added to that of VPLs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_place.glsl"
 #include "shade_piece.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = SHADE_PIECE_AT, rgba32ui) uniform writeonly uimage2D sum_image;
+layout(binding = SHADE_PIECE_AT, rgba32ui) uniform writeonly uimage2D part_rows_image;
 
 void main()
 {
@@ -19,11 +18,11 @@ void main()
     shade_part part;
     shade_point p = shade_place(block, part);
     if (shade_has(SHADE_VPLS)) {
-        part.irradiance = shade_unpack(imageLoad(smooth_image, block)).irradiance;
+        part.irradiance = shade_unpack(imageLoad(part_image, block)).irradiance;
     }
     if (part.along > 0.0) {
         part.irradiance += smooth_light_at(p);
         part.facet = p.normal; // surfaces look for those that face the same way
     }
-    imageStore(sum_image, block, shade_pack(part));
+    imageStore(part_rows_image, block, shade_pack(part));
 }

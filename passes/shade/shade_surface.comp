@@ -2,7 +2,6 @@
 // of surface are left to shade_edges.comp.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_piece.glsl"
 #include "shade_whole.glsl"
 #define SHADE_ALONE_COUNT (SHADE_PIECE_AT + 1)
@@ -11,7 +10,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = SHADE_PIECE_AT, rg32ui) uniform writeonly uimage2D radiance_image; // packed_colour.glsl
+layout(binding = SHADE_PIECE_AT, rg32ui) uniform writeonly uimage2D surface_radiance_image; // packed_colour.glsl
 
 void main()
 {
@@ -23,7 +22,7 @@ void main()
     gbuffer_facing seen = shade_facing(pixel);
     if (seen.shown == GBUFFER_NONE) {
         for (int k = 0; k < shade_samples * shade_samples; k++) {
-            imageStore(radiance_image, shade_texel(corner, k), uvec4(0u));
+            imageStore(surface_radiance_image, shade_texel(corner, k), uvec4(0u));
         }
     }
     if (seen.shown == GBUFFER_WHOLE) {
@@ -35,12 +34,12 @@ void main()
             irradiance = sharp_light_at(p, vec4(pixel, pixel + 1)) + (alone ? vec3(0.0) : smoothed);
         } else {
             irradiance = irradiance_at(p, vec4(pixel, pixel + 1));
-            irradiance += shade_has(SHADE_VPLS) ? shade_unpack(imageLoad(smooth_image, pixel)).irradiance : vec3(0.0);
+            irradiance += shade_has(SHADE_VPLS) ? shade_unpack(imageLoad(part_image, pixel)).irradiance : vec3(0.0);
         }
         uvec4 colours = shade_colours(pixel, 0);
         uvec2 radiance = colour_pack(gbuffer_emission(colours) + gbuffer_albedo(colours) * irradiance / PI);
         for (int k = 0; k < shade_samples * shade_samples; k++) {
-            imageStore(radiance_image, shade_texel(corner, k), uvec4(radiance, 0u, 0u));
+            imageStore(surface_radiance_image, shade_texel(corner, k), uvec4(radiance, 0u, 0u));
         }
         if (alone) {
             shade_list_alone(pixel, SHADE_ALONE_WHOLE, 1u);

@@ -1,4 +1,4 @@
-// shade_tent.glsl -- sums over the pattern of shade_vpls.comp, along a row or a column. Before it: `tent_image`, a
+// shade_tent.glsl -- sums over the pattern of shade_vpls.comp, along a row or a column. Before it: SHADE_TENT_IMAGE, the name of a
 // uimage2D of shade_part.glsl's texels; `camera`; `shade_side`.
 //
 // Every place of the pattern is met once in `shade_side` blocks. Between two blocks of one place the light of
@@ -29,7 +29,7 @@ shade_part shade_tent(ivec2 block, ivec2 step, shade_part here)
         [[unroll]] for (int i = 0; i < 2; i++) {
             int d = i == 0 ? k : k - shade_side;
             ivec2 at = block + d * step, held = clamp(at, ivec2(0), last);
-            shade_part there = shade_unpack(imageLoad(tent_image, held));
+            shade_part there = shade_unpack(imageLoad(SHADE_TENT_IMAGE, held));
             // Neighbours may be as far off the plane as the block is wide. Those that are a bit worse count where there are
             // no others.
             float off = abs(float(d) * (a + c * there.along) + b * (there.along - here.along));

@@ -5,7 +5,6 @@
 // A thread has several blocks of one place in the pattern.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shade_place.glsl"
 #include "shade_rooms.glsl"
 

@@ -2,22 +2,7 @@
 #include "shadow_map.h"
 #include "shadow_map_vertex.vert.h"
 
-static const tyn_port ports[SHADOW_MAP_NUM_PORTS] = {
-    [SHADOW_MAP_PORT_TRIANGLES] = {"triangles", TYN_IN, TYN_BUFFER, 0, false,
-                                   "struct surface_triangle[]"},
-    [SHADOW_MAP_PORT_VERTICES] = {"vertices", TYN_IN, TYN_BUFFER, 0, false,
-                                  "struct surface_vertex[]"},
-    [SHADOW_MAP_PORT_SHADOW_ATLAS] = {"shadow_atlas", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT,
-                                      false,
-                                      "reversed depth of what each light sees first; 0: nothing"},
-    [SHADOW_MAP_PORT_SHADOWS] = {"shadows", TYN_OUT, TYN_BUFFER, 0, false,
-                                 "struct shadow_light[]: where each light's maps are"},
-};
-
-static const tyn_binding bindings[] = {
-    {SHADOW_MAP_PORT_TRIANGLES, TYN_USE_STORAGE_READ, false},
-    {SHADOW_MAP_PORT_VERTICES, TYN_USE_STORAGE_READ, false},
-};
+static const tyn_port ports[] = {SHADOW_MAP_PORTS(TYN_PORT_ROW)};
 
 static const tyn_binding attachments[] = {{SHADOW_MAP_PORT_SHADOW_ATLAS, TYN_USE_DEPTH, false}};
 
@@ -29,13 +14,7 @@ static const tyn_raster raster = {
 };
 
 static const tyn_kernel kernels[] = {
-    {.name = "shadow_map",
-     .spirv = shadow_map_vertex_spirv,
-     .spirv_size = sizeof(shadow_map_vertex_spirv),
-     .args_size = sizeof(struct shadow_map_args),
-     .bindings = bindings,
-     .num_bindings = 2,
-     .raster = &raster},
+    TYN_DRAW("shadow_map", shadow_map_vertex, shadow_map_vertex, &raster),
 };
 
 static const tyn_param params_table[] = {

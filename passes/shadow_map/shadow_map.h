@@ -34,10 +34,13 @@ void tyn_shadow_map_plan(tyn_shadow_map_params *params, const struct light_block
                          uint32_t num_suns, const struct light_block *lamps, uint32_t num_lamps,
                          const struct surface_block *surfaces);
 
-enum {
-    SHADOW_MAP_PORT_TRIANGLES,                // IN buffer struct surface_triangle[]
-    SHADOW_MAP_PORT_VERTICES,                 // IN buffer struct surface_vertex[]
-    TYN_SHADOWS(TYN_BUNDLE_ENUM, SHADOW_MAP), // OUT
-    SHADOW_MAP_NUM_PORTS,
-};
+// clang-format off
+#define SHADOW_MAP_PORTS(X) \
+    X(SHADOW_MAP, TRIANGLES, triangles, IN, BUFFER, "struct surface_triangle[]"), \
+    X(SHADOW_MAP, VERTICES, vertices, IN, BUFFER, "struct surface_vertex[]"), \
+    X(SHADOW_MAP, SHADOW_ATLAS, shadow_atlas, OUT, IMAGE_2D, \
+        "reversed depth of what each light sees first; 0: nothing", .format = VK_FORMAT_D32_SFLOAT), \
+    X(SHADOW_MAP, SHADOWS, shadows, OUT, BUFFER, "struct shadow_light[]: where each light's maps are")
+// clang-format on
+enum { SHADOW_MAP_PORTS(TYN_PORT_ENUM), SHADOW_MAP_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_shadow_map;

@@ -4,20 +4,10 @@
 #include "tonemap_display.comp.h"
 #include <math.h>
 
-static const tyn_port ports[TONEMAP_NUM_PORTS] = {
-    [TONEMAP_PORT_RADIANCE] = {"radiance", TYN_IN, TYN_IMAGE_2D, 0, false,
-                               "scene-linear radiance, premultiplied, W/(m^2 sr)"},
-    [TONEMAP_PORT_DISPLAY] = {"display", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R8G8B8A8_UNORM, false,
-                              "sRGB-encoded picture, straight alpha"},
-};
-
-static const tyn_binding bindings[] = {
-    {TONEMAP_PORT_RADIANCE, TYN_USE_SAMPLED, false},
-    {TONEMAP_PORT_DISPLAY, TYN_USE_STORAGE_WRITE, false},
-};
+static const tyn_port ports[] = {TONEMAP_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(tonemap_display, sizeof(struct tonemap_args), 8, 8, 1, bindings, 0),
+    TYN_KERNEL(tonemap_display),
 };
 
 static const char *const curve_names[TONEMAP_NUM_CURVES] = {"filmic", "linear"};
@@ -45,11 +35,7 @@ static void record(tyn_recorder *r, const void *params)
         .dither = p->dither,
         .opaque = p->opaque,
     };
-    tyn_rec_dispatch(r, &(tyn_dispatch){
-                            .kernel = 0,
-                            .cells = tyn_rec_extent(r, TONEMAP_PORT_DISPLAY),
-                            .args = &args,
-                        });
+    TYN_DISPATCH(r, .kernel = 0, .cells = tyn_rec_extent(r, TONEMAP_PORT_DISPLAY), .args = &args);
 }
 
 const tyn_pass_desc tyn_pass_tonemap = {

@@ -11,6 +11,12 @@ typedef struct tyn_tonemap_params {
 
 enum { TONEMAP_CURVE_FILMIC = 0, TONEMAP_CURVE_LINEAR, TONEMAP_NUM_CURVES };
 
-enum { TONEMAP_PORT_RADIANCE = 0, TONEMAP_PORT_DISPLAY, TONEMAP_NUM_PORTS };
+// clang-format off
+#define TONEMAP_PORTS(X) \
+    X(TONEMAP, RADIANCE, radiance, IN, IMAGE_2D, "scene-linear radiance, premultiplied, W/(m^2 sr)"), \
+    X(TONEMAP, DISPLAY, display, OUT, IMAGE_2D, \
+        "sRGB-encoded picture, straight alpha", .format = VK_FORMAT_R8G8B8A8_UNORM)
+// clang-format on
+enum { TONEMAP_PORTS(TYN_PORT_ENUM), TONEMAP_NUM_PORTS };
 
 extern const tyn_pass_desc tyn_pass_tonemap;

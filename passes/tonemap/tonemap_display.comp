@@ -1,7 +1,6 @@
 // tonemap_display.comp -- one pixel of the display transform.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/colour/display.glsl"
 #include "tonemap_args.h"
 

@@ -7,22 +7,10 @@
 
 #define PORT(name) UPSAMPLE_PORT_##name
 
-static const tyn_port ports[UPSAMPLE_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_IN, UPSAMPLE),
-    [PORT(MERGED)] = {"merged", TYN_IN, TYN_IMAGE_3D,
-                      .meaning = "of merge_grids: light to the eye, W/(m^2 sr); mean sigma_s"},
-    [PORT(INSCATTER)] = {"inscatter", TYN_OUT, TYN_IMAGE_3D, VK_FORMAT_R32G32B32A32_SFLOAT,
-                         .meaning = "light towards the eye per unit of sigma_s, W/(m^2 sr)"},
-};
-
-static const tyn_binding field_bindings[] = {
-    TYN_MEDIUM(TYN_BUNDLE_BIND, UPSAMPLE),
-    {PORT(MERGED), TYN_USE_SAMPLED},
-    {PORT(INSCATTER), TYN_USE_STORAGE_WRITE},
-};
+static const tyn_port ports[] = {UPSAMPLE_PORTS(TYN_PORT_ROW)};
 
 static const tyn_kernel kernels[] = {
-    TYN_KERNEL(upsample_field, sizeof(struct upsample_args), 4, 4, 4, field_bindings, 1),
+    TYN_KERNEL(upsample_field),
 };
 
 static const tyn_param params[] = {
@@ -63,7 +51,7 @@ static void record(tyn_recorder *r, const void *data)
     tyn_extent dims = dims_of(p, tyn_rec_extent(r, PORT(MERGED)));
     tyn_extent texels = tyn_rec_extent(r, PORT(INSCATTER));
     struct upsample_args args = {{dims.x, dims.y, dims.z}, p->range};
-    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = texels, .args = &args, .spec = &p->mode});
+    TYN_DISPATCH(r, .cells = texels, .args = &args, .spec = &p->mode);
     tyn_rec_work(r, "cells", (double)texels.x * texels.y * texels.z);
 }
 

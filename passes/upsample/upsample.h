@@ -15,11 +15,13 @@ typedef struct tyn_upsample_params {
     uint32_t size[3]; // medium_block.size
 } tyn_upsample_params;
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, UPSAMPLE), // IN
-    UPSAMPLE_PORT_MERGED,                  // IN 3D RGBA32F, of merge_grids
-    UPSAMPLE_PORT_INSCATTER, // OUT 3D RGBA32F, dims + 2, W/(m^2 sr): sample at lattice_inscatter_uvw;
-                             // the ghost layer repeats the outer cells
-    UPSAMPLE_NUM_PORTS,
-};
+// clang-format off
+#define UPSAMPLE_PORTS(X) \
+    TYN_MEDIUM(X, UPSAMPLE), \
+    X(UPSAMPLE, MERGED, merged, IN, IMAGE_3D, "of merge_grids: light to the eye, W/(m^2 sr); mean sigma_s"), \
+    X(UPSAMPLE, INSCATTER, inscatter, OUT, IMAGE_3D, \
+        "dims + 2, W/(m^2 sr): sample at lattice_inscatter_uvw; the ghost layer repeats the outer cells", \
+        .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+// clang-format on
+enum { UPSAMPLE_PORTS(TYN_PORT_ENUM), UPSAMPLE_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_upsample;

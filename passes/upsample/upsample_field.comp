@@ -1,7 +1,6 @@
 // upsample_field.comp -- see upsample.h; one thread a texel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/lattice/lattice.glsl"
@@ -9,7 +8,7 @@
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 5) uniform sampler3D merged;
-layout(set = 0, binding = 6, rgba32f) uniform writeonly image3D out_inscatter;
+layout(set = 0, binding = 6, rgba32f) uniform writeonly image3D inscatter_image;
 layout(push_constant, scalar) uniform push { upsample_args args; };
 
 // Likeness of two scattering coefficients, in (0, 1]. The floor keeps a point that is like none of its
@@ -47,5 +46,5 @@ void main()
         sum += weight * found.rgb;
         weights += weight;
     }
-    imageStore(out_inscatter, texel, vec4(sum / weights, 0.0));
+    imageStore(inscatter_image, texel, vec4(sum / weights, 0.0));
 }

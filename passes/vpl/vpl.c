@@ -16,92 +16,15 @@
 #include <string.h>
 
 #define PORT(name) VPL_PORT_##name
-#define IMAGE2 TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT
-
-static const tyn_port ports[VPL_NUM_PORTS] = {
-    TYN_MEDIUM(TYN_BUNDLE_OPTIONAL, VPL),
-    [PORT(SUNS)] = {"suns", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
-    [PORT(LIGHTS)] = {"lights", TYN_IN, TYN_BUFFER, .meaning = "struct light_block[]"},
-    TYN_RSM(TYN_BUNDLE_OPTIONAL, VPL),
-    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, VPL),
-    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, VPL),
-    [PORT(BINS)] = {"bins", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_bins"},
-    [PORT(BIN_FLUX)] = {"bin_flux", TYN_SCRATCH, IMAGE2, .meaning = "power of bins, W"},
-    [PORT(BIN_POSITION)] = {"bin_position", TYN_SCRATCH, IMAGE2, .meaning = "where (M, m)"},
-    [PORT(BIN_NORMAL)] = {"bin_normal", TYN_SCRATCH, IMAGE2, .meaning = "normal (M)"},
-    [PORT(VPLS)] = {"vpls", TYN_OUT, TYN_BUFFER, .meaning = "struct radial_vpls"},
-    [PORT(VPL_DISTANCES)] = {"vpl_distances", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT,
-                             .meaning = "of the first surface in every direction of a VPL, m"},
-    [PORT(VPL_PLANES)] = {"vpl_planes", TYN_OUT, IMAGE2,
-                          .meaning =
-                              "of these surfaces: normal towards the VPL (M), distance of it, m"},
-    [PORT(PLAN)] = {"plan", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_plan"},
-    [PORT(WEIGHTS)] = {"weights", TYN_SCRATCH, TYN_BUFFER, .meaning = "float[], of elements"},
-    [PORT(BLOCKS)] = {"blocks", TYN_SCRATCH, TYN_BUFFER, .meaning = "float[], of their blocks"},
-    [PORT(STRATA)] = {"strata", TYN_SCRATCH, TYN_BUFFER, .meaning = "struct vpl_stratum[]"},
-};
-
-#define ELEMENT_BINDINGS                                                                           \
-    {PORT(PLAN), TYN_USE_STORAGE_READ}, TYN_RSM(TYN_BUNDLE_BIND, VPL),                             \
-        TYN_GEOMETRY(TYN_BUNDLE_BIND, VPL), TYN_MATERIALS(TYN_BUNDLE_BIND, VPL)
-
-static const tyn_binding weights_bindings[] = {
-    ELEMENT_BINDINGS,
-    {PORT(WEIGHTS), TYN_USE_STORAGE_WRITE},
-    {PORT(BLOCKS), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding strata_bindings[] = {
-    {PORT(PLAN), TYN_USE_STORAGE_READ},
-    {PORT(BLOCKS), TYN_USE_STORAGE_RW},
-    {PORT(STRATA), TYN_USE_STORAGE_WRITE},
-    {PORT(VPLS), TYN_USE_STORAGE_RW},
-};
-static const tyn_binding lights_bindings[] = {
-    ELEMENT_BINDINGS,
-    TYN_MEDIUM(TYN_BUNDLE_BIND, VPL),
-    {PORT(WEIGHTS), TYN_USE_STORAGE_READ},
-    {PORT(BLOCKS), TYN_USE_STORAGE_READ},
-    {PORT(STRATA), TYN_USE_STORAGE_READ},
-    {PORT(SUNS), TYN_USE_UNIFORM},
-    {PORT(LIGHTS), TYN_USE_UNIFORM},
-    {PORT(VPLS), TYN_USE_STORAGE_RW},
-};
-
-static const tyn_binding distances_bindings[] = {
-    {PORT(SURFACES), TYN_USE_UNIFORM},         {PORT(VERTICES), TYN_USE_TEXELS_VEC4},
-    {PORT(TRIANGLES), TYN_USE_TEXELS_UVEC4},   {PORT(NODES), TYN_USE_TEXELS_UVEC4},
-    {PORT(VPLS), TYN_USE_STORAGE_READ},        {PORT(VPL_DISTANCES), TYN_USE_STORAGE_WRITE},
-    {PORT(VPL_PLANES), TYN_USE_STORAGE_WRITE}, {PORT(BINS), TYN_USE_STORAGE_RW},
-    TYN_MATERIALS(TYN_BUNDLE_BIND, VPL),       TYN_MEDIUM(TYN_BUNDLE_BIND, VPL),
-};
-static const tyn_binding power_bindings[] = {
-    {PORT(VPLS), TYN_USE_STORAGE_READ},
-    {PORT(BINS), TYN_USE_STORAGE_WRITE},
-};
-static const tyn_binding further_bindings[] = {
-    {PORT(VPLS), TYN_USE_STORAGE_RW},
-    {PORT(BINS), TYN_USE_STORAGE_READ},
-};
-static const tyn_binding bounce_bindings[] = {
-    {PORT(VPLS), TYN_USE_STORAGE_READ},          {PORT(BINS), TYN_USE_STORAGE_READ},
-    {PORT(VPL_DISTANCES), TYN_USE_SAMPLED},      {PORT(VPL_PLANES), TYN_USE_SAMPLED},
-    {PORT(SURFACES), TYN_USE_UNIFORM},           {PORT(BIN_FLUX), TYN_USE_STORAGE_RW},
-    {PORT(BIN_POSITION), TYN_USE_STORAGE_WRITE}, {PORT(BIN_NORMAL), TYN_USE_STORAGE_WRITE},
-};
+static const tyn_port ports[] = {VPL_PORTS(TYN_PORT_ROW)};
 
 enum { WEIGHTS = 0, STRATA, LIGHTS, DISTANCES, POWER, BOUNCE, FURTHER, NUM_KERNELS };
 
-#define KERNEL(step, x, y, args, specs)                                                            \
-    TYN_KERNEL(vpl_##step, args, x, y, 1, step##_bindings, specs)
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [WEIGHTS] = KERNEL(weights, VPL_LANES, 1, 0, 0),
-    [STRATA] = KERNEL(strata, VPL_BLOCK, 1, sizeof(struct vpl_args), 0),
-    [LIGHTS] = KERNEL(lights, VPL_LANES, 1, sizeof(struct vpl_args), 1),
-    [DISTANCES] = KERNEL(distances, 8, 8, sizeof(struct vpl_distances_args), 1),
-    [POWER] = KERNEL(power, TYN_RADIAL_VPLS_MAX, 1, 0, 0),
-    [BOUNCE] = KERNEL(bounce, VPL_BLOCK, 1, sizeof(struct vpl_bounce_args), 0),
-    [FURTHER] = KERNEL(further, TYN_RADIAL_VPLS_MAX, 1, 0, 0),
+    [WEIGHTS] = TYN_KERNEL(vpl_weights), [STRATA] = TYN_KERNEL(vpl_strata),
+    [LIGHTS] = TYN_KERNEL(vpl_lights),   [DISTANCES] = TYN_KERNEL(vpl_distances),
+    [POWER] = TYN_KERNEL(vpl_power),     [BOUNCE] = TYN_KERNEL(vpl_bounce),
+    [FURTHER] = TYN_KERNEL(vpl_further),
 };
 
 static const tyn_param params[] = {
@@ -208,28 +131,23 @@ static tyn_result declare(tyn_builder *b, const void *data)
 static void make_lights(tyn_recorder *r, const struct vpl_plan *plan, const struct vpl_args *args,
                         bool of_bins, uint32_t mode)
 {
-    uint8_t weights[sizeof weights_bindings / sizeof *weights_bindings];
-    uint8_t lights[sizeof lights_bindings / sizeof *lights_bindings];
+    uint8_t weights[TYN_COUNT(vpl_weights_bindings)];
+    uint8_t lights[TYN_COUNT(vpl_lights_bindings)];
     for (size_t i = 0; i < sizeof lights; i++) {
-        lights[i] = lights_bindings[i].port;
-        if (of_bins && lights[i] >= PORT(FLUX) && lights[i] <= PORT(NORMAL)) {
-            lights[i] = (uint8_t)(lights[i] - PORT(FLUX) + PORT(BIN_FLUX));
+        lights[i] = vpl_lights_bindings[i].port;
+        if (of_bins && lights[i] >= PORT(RSM_FLUX) && lights[i] <= PORT(RSM_NORMAL)) {
+            lights[i] = (uint8_t)(lights[i] - PORT(RSM_FLUX) + PORT(BIN_FLUX));
         }
     }
     for (size_t i = 0; i < sizeof weights; i++) {
-        weights[i] = i < 4 ? lights[i] : weights_bindings[i].port;
+        weights[i] = i < 4 ? lights[i] : vpl_weights_bindings[i].port;
     }
     tyn_rec_update(r, PORT(PLAN), 0, plan, sizeof *plan);
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = WEIGHTS,
-                                        .cells = {plan->num_blocks * VPL_LANES, 1, 1},
-                                        .ports = weights});
-    tyn_rec_dispatch(r,
-                     &(tyn_dispatch){.kernel = STRATA, .cells = {VPL_BLOCK, 1, 1}, .args = args});
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = LIGHTS,
-                                        .cells = {args->count * VPL_LANES, 1, 1},
-                                        .args = args,
-                                        .ports = lights,
-                                        .spec = &mode});
+    TYN_DISPATCH(r, .kernel = WEIGHTS, .cells = {plan->num_blocks * VPL_LANES, 1, 1},
+                 .ports = weights);
+    TYN_DISPATCH(r, .kernel = STRATA, .cells = {VPL_BLOCK, 1, 1}, .args = args);
+    TYN_DISPATCH(r, .kernel = LIGHTS, .cells = {args->count * VPL_LANES, 1, 1}, .args = args,
+                 .ports = lights, .spec = &mode);
     tyn_rec_work(r, "elements", (double)plan->num_blocks * VPL_BLOCK);
 }
 
@@ -237,7 +155,7 @@ static void make_lights(tyn_recorder *r, const struct vpl_plan *plan, const stru
 static void count_reflections(tyn_recorder *r)
 {
     tyn_rec_fill(r, PORT(BINS), 0);
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = POWER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1}});
+    TYN_DISPATCH(r, .kernel = POWER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1});
 }
 
 static void record(tyn_recorder *r, const void *data)
@@ -276,14 +194,12 @@ static void record(tyn_recorder *r, const void *data)
         for (uint32_t i = 0; i < 2; i++) {
             const struct vpl_bounce_args of = {i};
             added.append = 1 + i;
-            tyn_rec_dispatch(
-                r, &(tyn_dispatch){.kernel = BOUNCE, .cells = {VPL_BLOCK, 1, 1}, .args = &of});
+            TYN_DISPATCH(r, .kernel = BOUNCE, .cells = {VPL_BLOCK, 1, 1}, .args = &of);
             make_lights(r, &plan, &added, true, p->mode);
             count_reflections(r);
             tyn_rec_dispatch(r, &see);
         }
-        tyn_rec_dispatch(r,
-                         &(tyn_dispatch){.kernel = FURTHER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1}});
+        TYN_DISPATCH(r, .kernel = FURTHER, .cells = {TYN_RADIAL_VPLS_MAX, 1, 1});
     }
     // Those of further reflections stand in two places, one after the other.
     tyn_rec_work(r, "rays", ((double)p->count + later) * side * side);

@@ -19,22 +19,29 @@ typedef struct tyn_vpl_params {
     struct rsm_tile tiles[TYN_RSM_MAX_TILES];
 } tyn_vpl_params;
 
-enum {
-    TYN_MEDIUM(TYN_BUNDLE_ENUM, VPL), // IN optional
-    VPL_PORT_SUNS,                    // IN buffer struct light_block[]
-    VPL_PORT_LIGHTS,               // IN buffer struct light_block[]: directional lights, then lamps
-    TYN_RSM(TYN_BUNDLE_ENUM, VPL), // IN optional
-    TYN_GEOMETRY(TYN_BUNDLE_ENUM, VPL),  // IN optional
-    TYN_MATERIALS(TYN_BUNDLE_ENUM, VPL), // IN optional
-    TYN_VPLS(TYN_BUNDLE_ENUM, VPL),      // OUT
-    VPL_PORT_PLAN,                       // SCRATCH buffer struct vpl_plan
-    VPL_PORT_WEIGHTS,                    // SCRATCH buffer float[]: of the elements
-    VPL_PORT_BLOCKS, // SCRATCH buffer float[]: sums of blocks of elements, then what is before each
-    VPL_PORT_STRATA, // SCRATCH buffer struct vpl_stratum[]
-    VPL_PORT_BINS,   // SCRATCH buffer struct vpl_bins
-    VPL_PORT_BIN_FLUX, // SCRATCH 2D RGBA32F: of bins, as rsm_args.h has it
-    VPL_PORT_BIN_POSITION,
-    VPL_PORT_BIN_NORMAL,
-    VPL_NUM_PORTS,
-};
+// clang-format off
+#define VPL_PORTS(X) \
+    TYN_MEDIUM(X##_OPTIONAL, VPL), \
+    X(VPL, SUNS, suns, IN, BUFFER, "struct light_block[]"), \
+    X(VPL, LIGHTS, lights, IN, BUFFER, "struct light_block[]: directional lights, then lamps"), \
+    TYN_RSM(X##_OPTIONAL, VPL), \
+    TYN_GEOMETRY(X##_OPTIONAL, VPL), \
+    TYN_MATERIALS(X##_OPTIONAL, VPL), \
+    X(VPL, VPLS, vpls, OUT, BUFFER, "struct radial_vpls"), \
+    X(VPL, VPL_DISTANCES, vpl_distances, OUT, IMAGE_2D, \
+        "of the first surface in every direction of a VPL, m", .format = VK_FORMAT_R32_SFLOAT), \
+    X(VPL, VPL_PLANES, vpl_planes, OUT, IMAGE_2D, \
+        "of these surfaces: normal towards the VPL (M), distance of it, m", \
+        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(VPL, PLAN, plan, SCRATCH, BUFFER, "struct vpl_plan"), \
+    X(VPL, WEIGHTS, weights, SCRATCH, BUFFER, "float[]: of the elements"), \
+    X(VPL, BLOCKS, blocks, SCRATCH, BUFFER, "float[]: sums of blocks of elements, then what is before each"), \
+    X(VPL, STRATA, strata, SCRATCH, BUFFER, "struct vpl_stratum[]"), \
+    X(VPL, BINS, bins, SCRATCH, BUFFER, "struct vpl_bins"), \
+    X(VPL, BIN_FLUX, bin_flux, SCRATCH, IMAGE_2D, \
+        "power of bins, W, of bins, as rsm_args.h has it", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(VPL, BIN_POSITION, bin_position, SCRATCH, IMAGE_2D, "where (M, m)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(VPL, BIN_NORMAL, bin_normal, SCRATCH, IMAGE_2D, "normal (M)", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+// clang-format on
+enum { VPL_PORTS(TYN_PORT_ENUM), VPL_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_vpl;

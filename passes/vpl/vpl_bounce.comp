@@ -5,7 +5,6 @@
 // P + R + q R + q^2 R + ... is P + R / (1 - q); the map is (1 - q) times that, whose sum is P, as vpl_further.comp has it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/radial_args.h"
 #include "shaders/surfaces/surface_args.h"
 #include "vpl_bounce_args.h"
@@ -15,25 +14,25 @@
 const uint GROUP = 256u;
 layout(local_size_x = GROUP) in;
 
-layout(binding = 0, scalar) readonly buffer vpl_buffer
+layout(binding = 0, scalar) readonly buffer vpls_buffer
 {
     uint vpl_count;
     uvec3 vpl_pad;
     radial_light vpls[];
 };
-layout(binding = 1, scalar) readonly buffer bin_buffer
+layout(binding = 1, scalar) readonly buffer bins_buffer
 {
     vpl_bins bins;
 };
-layout(binding = 2) uniform sampler2D distance_tex;
-layout(binding = 3) uniform sampler2D plane_tex;
+layout(binding = 2) uniform sampler2D vpl_distances_tex;
+layout(binding = 3) uniform sampler2D vpl_planes_tex;
 layout(binding = 4, scalar) uniform surfaces_uniform
 {
     surface_block surfaces;
 };
-layout(binding = 5, rgba32f) uniform image2D flux_image; // as rsm_args.h has them
-layout(binding = 6, rgba32f) uniform writeonly image2D position_image;
-layout(binding = 7, rgba32f) uniform writeonly image2D normal_image;
+layout(binding = 5, rgba32f) uniform image2D bin_flux_image; // as rsm_args.h has them
+layout(binding = 6, rgba32f) uniform writeonly image2D bin_position_image;
+layout(binding = 7, rgba32f) uniform writeonly image2D bin_normal_image;
 layout(push_constant, scalar) uniform Args
 {
     vpl_bounce_args args;
@@ -67,12 +66,12 @@ void main()
     uint lane = gl_LocalInvocationIndex;
     vec3 cell = (surfaces.hi - surfaces.lo) / float(VPL_BIN_CELLS);
     float area = pow(max(cell.x * cell.y * cell.z, 1e-30), 2.0 / 3.0);
-    int width = textureSize(distance_tex, 0).x, side = width / VPL_MAPS_IN_A_ROW;
+    int width = textureSize(vpl_distances_tex, 0).x, side = width / VPL_MAPS_IN_A_ROW;
     vec3 before_share = vec3(0.0), share = vec3(1.0);
     if (args.later != 0u) {
         vec3 before = vec3(0.0), now = vec3(0.0);
         for (uint bin = lane; bin < VPL_BINS; bin += GROUP) {
-            before += imageLoad(flux_image, ivec2(vpl_hilbert(VPL_BIN_SIDE, bin))).rgb;
+            before += imageLoad(bin_flux_image, ivec2(vpl_hilbert(VPL_BIN_SIDE, bin))).rgb;
             now += flux_of(bin);
         }
         before = total_of(before);
@@ -84,7 +83,7 @@ void main()
         ivec2 to = ivec2(vpl_hilbert(VPL_BIN_SIDE, bin));
         vec3 flux = share * flux_of(bin), before = vec3(0.0);
         if (args.later != 0u) {
-            before = before_share * imageLoad(flux_image, to).rgb;
+            before = before_share * imageLoad(bin_flux_image, to).rgb;
         }
         vec4 position = vec4(0.0), normal = vec4(0.0);
         if (flux.r + flux.g + flux.b > 0.0) {
@@ -94,17 +93,17 @@ void main()
                 vpls[texel.y / side * VPL_MAPS_IN_A_ROW + texel.x / side];
             vec3 d = vpl_frame(light.axis) *
                      normalize(vpl_map_direction(vec2(texel % side) / float(side - 1)));
-            float away = texelFetch(distance_tex, texel, 0).r;
+            float away = texelFetch(vpl_distances_tex, texel, 0).r;
             vec3 at = vpl_map_origin(light.position, light.axis, light.radius) + away * d;
             // Where a bin is much larger than what is lit, a VPL lights about as much as it is away.
             position = vec4(at, min(area, 3.14159265 * away * away));
-            normal = vec4(texelFetch(plane_tex, texel, 0).xyz, 0.0);
+            normal = vec4(texelFetch(vpl_planes_tex, texel, 0).xyz, 0.0);
         }
-        imageStore(flux_image, to, vec4(before + flux, 0.0));
+        imageStore(bin_flux_image, to, vec4(before + flux, 0.0));
         // Where more was before, it was brightest there.
         if (args.later == 0u || dot(flux, vec3(1.0)) > dot(before, vec3(1.0))) {
-            imageStore(position_image, to, position);
-            imageStore(normal_image, to, normal);
+            imageStore(bin_position_image, to, position);
+            imageStore(bin_normal_image, to, normal);
         }
     }
 }

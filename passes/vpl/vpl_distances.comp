@@ -2,7 +2,6 @@
 // and what that reflects of its light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/beams/radial_args.h"
 #include "shaders/light/vpl_visibility.glsl"
@@ -15,22 +14,22 @@ layout(binding = 0, scalar) uniform surfaces_uniform
     surface_block surfaces;
 };
 // Texels, as rays of a CPU device that run together read different ones.
-layout(binding = 1) uniform samplerBuffer vertices_tex;
-layout(binding = 2) uniform usamplerBuffer triangles_tex;
-layout(binding = 3) uniform usamplerBuffer nodes_tex;
-#define SURFACE_POSITION(i) texelFetch(vertices_tex, int(2u * (i))).xyz
-#define SURFACE_TRIANGLE(i) texelFetch(triangles_tex, int(i))
-#define SURFACE_NODE(i) texelFetch(nodes_tex, int(i))
-layout(binding = 4, scalar) readonly buffer vpl_buffer
+layout(binding = 1) uniform samplerBuffer vertices_texels;
+layout(binding = 2) uniform usamplerBuffer triangles_texels;
+layout(binding = 3) uniform usamplerBuffer nodes_texels;
+#define SURFACE_POSITION(i) texelFetch(vertices_texels, int(2u * (i))).xyz
+#define SURFACE_TRIANGLE(i) texelFetch(triangles_texels, int(i))
+#define SURFACE_NODE(i) texelFetch(nodes_texels, int(i))
+layout(binding = 4, scalar) readonly buffer vpls_buffer
 {
     uint vpl_count;
     uint vpl_before;
     uvec2 vpl_pad;
     radial_light vpls[];
 };
-layout(binding = 5, r32f) uniform writeonly image2D distance_image;
-layout(binding = 6, rgba32f) uniform writeonly image2D plane_image;
-layout(binding = 7, scalar) buffer bin_buffer
+layout(binding = 5, r32f) uniform writeonly image2D vpl_distances_image;
+layout(binding = 6, rgba32f) uniform writeonly image2D vpl_planes_image;
+layout(binding = 7, scalar) buffer bins_buffer
 {
     vpl_bins bins;
 };
@@ -87,7 +86,7 @@ void put_into_bin(vec3 world, vec3 normal, vec3 flux, uint texel)
 
 void main()
 {
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(distance_image);
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy), size = imageSize(vpl_distances_image);
     int side = size.x / VPL_MAPS_IN_A_ROW;
     uint vpl = uint(texel.y / side * VPL_MAPS_IN_A_ROW + texel.x / side);
     bool wanted = vpl < vpl_count && (args.later == 0u || vpl >= vpl_before);
@@ -104,14 +103,14 @@ void main()
     surface_ray ray = surface_ray_make(surface_transform(surfaces.to_world, from),
                                        surface_turn(surfaces.to_world, d), SURFACE_NONE);
     bool met = surface_trace_world(ray, false, hit);
-    imageStore(distance_image, texel, vec4(hit.t));
+    imageStore(vpl_distances_image, texel, vec4(hit.t));
     if (!met) {
-        imageStore(plane_image, texel, vec4(0.0)); // all is before it
+        imageStore(vpl_planes_image, texel, vec4(0.0)); // all is before it
         return;
     }
     surface_point p = surface_point_at(hit.triangle, hit.barycentric);
     vec3 normal = dot(p.normal, d) > 0.0 ? -p.normal : p.normal;
-    imageStore(plane_image, texel, vec4(normal, dot(normal, from + hit.t * d - light.position)));
+    imageStore(vpl_planes_image, texel, vec4(normal, dot(normal, from + hit.t * d - light.position)));
     if (args.bounce == 0u) {
         return;
     }

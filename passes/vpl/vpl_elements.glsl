@@ -10,7 +10,7 @@
 #define GEOMETRY_AT 4
 #define MATERIALS_AT 8
 #include "shaders/surfaces/surfaces.glsl"
-layout(binding = 0, scalar) readonly buffer vpl_plan_buffer
+layout(binding = 0, scalar) readonly buffer plan_buffer
 {
     vpl_plan plan;
 };

@@ -5,21 +5,20 @@
 // light is lost or made.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/radial_args.h"
 #include "vpl_bounce_args.h"
 
 const float MOST_REFLECTED = 0.95;
 layout(local_size_x = TYN_RADIAL_VPLS_MAX) in;
 
-layout(binding = 0, scalar) buffer vpl_buffer
+layout(binding = 0, scalar) buffer vpls_buffer
 {
     uint vpl_count;
     uint vpl_before;
     uvec2 vpl_pad;
     radial_light vpls[];
 };
-layout(binding = 1, scalar) readonly buffer bin_buffer
+layout(binding = 1, scalar) readonly buffer bins_buffer
 {
     vpl_bins bins; // what surfaces reflect of these VPLs' light
 };

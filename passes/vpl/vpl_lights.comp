@@ -6,7 +6,6 @@
 // the power; light scattered forward counts as not scattered, as everywhere outside the march.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 
 #define MEDIUM_AT 11
 #include "vpl_elements.glsl"
@@ -17,11 +16,11 @@
 
 layout(local_size_x = VPL_LANES) in;
 
-layout(binding = 16, scalar) readonly buffer weight_buffer
+layout(binding = 16, scalar) readonly buffer weights_buffer
 {
     float weights[]; // of an element and those before it in its block
 };
-layout(binding = 17, scalar) readonly buffer block_buffer
+layout(binding = 17, scalar) readonly buffer blocks_buffer
 {
     float blocks[]; // weights before each, and the whole
 };
@@ -29,15 +28,15 @@ layout(binding = 18, scalar) readonly buffer strata_buffer
 {
     vpl_stratum strata[];
 };
-layout(binding = 19, scalar) uniform sun_uniform
+layout(binding = 19, scalar) uniform suns_uniform
 {
     light_block suns[TYN_LIGHTS_MAX];
 };
-layout(binding = 20, scalar) uniform light_uniform
+layout(binding = 20, scalar) uniform lights_uniform
 {
     light_block lights[TYN_LIGHTS_MAX];
 };
-layout(binding = 21, scalar) buffer vpl_buffer
+layout(binding = 21, scalar) buffer vpls_buffer
 {
     uint vpl_count;
     uint vpl_before;

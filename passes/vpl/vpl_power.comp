@@ -1,19 +1,18 @@
 // vpl_power.comp -- the power of all VPLs: what bins count in.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "shaders/beams/radial_args.h"
 #include "vpl_bounce_args.h"
 
 layout(local_size_x = TYN_RADIAL_VPLS_MAX) in;
 
-layout(binding = 0, scalar) readonly buffer vpl_buffer
+layout(binding = 0, scalar) readonly buffer vpls_buffer
 {
     uint vpl_count;
     uvec3 vpl_pad;
     radial_light vpls[];
 };
-layout(binding = 1, scalar) writeonly buffer bin_buffer
+layout(binding = 1, scalar) writeonly buffer bins_buffer
 {
     vpl_bins bins;
 };

@@ -5,7 +5,6 @@
 // than lights the lights are taken together.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "vpl_args.h"
 #include "shaders/beams/radial_args.h"
 
@@ -15,7 +14,7 @@ layout(binding = 0, scalar) readonly buffer plan_buffer
 {
     vpl_plan plan;
 };
-layout(binding = 1, scalar) buffer block_buffer
+layout(binding = 1, scalar) buffer blocks_buffer
 {
     float blocks[]; // in: weights; out: what is before; one more element, the whole
 };
@@ -23,7 +22,7 @@ layout(binding = 2, scalar) writeonly buffer strata_buffer
 {
     vpl_stratum strata[];
 };
-layout(binding = 3, scalar) buffer vpl_buffer
+layout(binding = 3, scalar) buffer vpls_buffer
 {
     uint vpl_count;
     uint vpl_before; // before those of this time

@@ -1,17 +1,16 @@
 // vpl_weights.comp -- weights of elements, cumulated within their blocks, and of blocks.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 
 #include "vpl_elements.glsl"
 
 layout(local_size_x = VPL_LANES) in;
 
-layout(binding = 11, scalar) writeonly buffer weight_buffer
+layout(binding = 11, scalar) writeonly buffer weights_buffer
 {
     float weights[]; // of an element and those before it in its block
 };
-layout(binding = 12, scalar) writeonly buffer block_buffer
+layout(binding = 12, scalar) writeonly buffer blocks_buffer
 {
     float blocks[];
 };

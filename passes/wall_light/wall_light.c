@@ -10,95 +10,16 @@
 #include "wall_light_suns.comp.h"
 #include "wall_light_vpls.comp.h"
 
-static const tyn_port ports[WALL_LIGHT_NUM_PORTS] = {
-    [WALL_LIGHT_PORT_MEDIUM] = {"medium", TYN_IN, TYN_BUFFER, 0, false, "struct medium_block"},
-    [WALL_LIGHT_PORT_LIGHTS] = {"lights", TYN_IN, TYN_BUFFER, 0, false, "struct light_block[]"},
-    TYN_BEAMS(TYN_BUNDLE_OPTIONAL, WALL_LIGHT),
-    TYN_RADIALS(TYN_BUNDLE_OPTIONAL, WALL_LIGHT),
-    TYN_GEOMETRY(TYN_BUNDLE_IN, WALL_LIGHT),
-    TYN_WALLS(TYN_BUNDLE_IN, WALL_LIGHT),
-    [WALL_LIGHT_PORT_HITS] = {"hits", TYN_IN, TYN_BUFFER, 0, false, "of walls"},
-    [WALL_LIGHT_PORT_ROOMS] = {"rooms", TYN_IN, TYN_BUFFER, 0, true, "of rooms"},
-    [WALL_LIGHT_PORT_DISTANCES] = {"vpl_distances", TYN_IN, TYN_IMAGE_2D, 0, true, "of vpl"},
-    [WALL_LIGHT_PORT_LIGHT] = {"wall_light", TYN_OUT, TYN_BUFFER, 0, false,
-                               "radiance that the walls of a cell send out, W/(m^2 sr)"},
-    [WALL_LIGHT_PORT_LIST] = {"list", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                              "struct wall_light_list, uint[]: cells that have walls"},
-    [WALL_LIGHT_PORT_ARRIVED] = {"arrived", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                                 "irradiance by VPLs, W/m^2, times the area of walls over dx^2"},
-    [WALL_LIGHT_PORT_POWER] = {"power", TYN_OUT, TYN_BUFFER, 0, false, "struct wall_light_power"},
-    [WALL_LIGHT_PORT_FIRST] = {"first", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                               "by room, the first VPL that shines there"},
-    [WALL_LIGHT_PORT_PARTS] = {"parts", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                               "sums of arrived by room and part of the lattice"},
-};
-
-static const tyn_binding vpls_bindings[] = {
-    {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},    TYN_RADIALS(TYN_BUNDLE_BIND, WALL_LIGHT),
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, WALL_LIGHT),    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, WALL_LIGHT),
-    {WALL_LIGHT_PORT_HITS, TYN_USE_STORAGE_READ}, {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_WRITE},
-    {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_READ}, {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
-};
-
-static const tyn_binding cells_bindings[] = {
-    {WALL_LIGHT_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_RW},
-    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},
-    {WALL_LIGHT_PORT_WALL_LINKS, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_WRITE},
-    {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
-    {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_READ},
-};
-
-static const tyn_binding expected_bindings[] = {
-    {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},    TYN_RADIALS(TYN_BUNDLE_BIND, WALL_LIGHT),
-    {WALL_LIGHT_PORT_DISTANCES, TYN_USE_SAMPLED}, {WALL_LIGHT_PORT_POWER, TYN_USE_STORAGE_WRITE},
-    {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT}, {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_RW},
-};
-
-static const tyn_binding sum_bindings[] = {
-    {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_PARTS, TYN_USE_STORAGE_WRITE},
-    {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
-    {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_READ},
-};
-
-static const tyn_binding scale_bindings[] = {
-    {WALL_LIGHT_PORT_POWER, TYN_USE_STORAGE_RW},
-    {WALL_LIGHT_PORT_PARTS, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_READ},
-};
-
-static const tyn_binding reflect_bindings[] = {
-    {WALL_LIGHT_PORT_WALL_CELLS, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_LIST, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_ARRIVED, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_RW},
-    {WALL_LIGHT_PORT_POWER, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_ROOMS, TYN_USE_TEXELS_UINT},
-    {WALL_LIGHT_PORT_FIRST, TYN_USE_STORAGE_READ},
-};
-
-static const tyn_binding suns_bindings[] = {
-    {WALL_LIGHT_PORT_MEDIUM, TYN_USE_UNIFORM},      {WALL_LIGHT_PORT_LIGHTS, TYN_USE_STORAGE_READ},
-    TYN_BEAMS(TYN_BUNDLE_BIND_STORAGE, WALL_LIGHT), TYN_GEOMETRY(TYN_BUNDLE_BIND, WALL_LIGHT),
-    TYN_WALLS(TYN_BUNDLE_BIND_STORAGE, WALL_LIGHT), {WALL_LIGHT_PORT_HITS, TYN_USE_STORAGE_READ},
-    {WALL_LIGHT_PORT_LIGHT, TYN_USE_STORAGE_WRITE},
-};
+static const tyn_port ports[] = {WALL_LIGHT_PORTS(TYN_PORT_ROW)};
 
 enum { SUNS = 0, VPLS, WALL_CELLS, EXPECTED, SUM, SCALE, REFLECT, NUM_KERNELS };
 _Static_assert(WALL_LIGHT_VPLS == TYN_RADIAL_VPLS_MAX, "of a workgroup each");
 
-#define KERNEL(step, x, y, z, specs)                                                               \
-    TYN_KERNEL(wall_light_##step, sizeof(struct wall_light_args), x, y, z, step##_bindings, specs)
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SUNS] = KERNEL(suns, 8, 4, 2, 1),
-    [VPLS] = KERNEL(vpls, WALL_LIGHT_GROUP, 1, 1, 2),
-    [WALL_CELLS] = KERNEL(cells, WALL_LIGHT_GROUP, 1, 1, 3),
-    [EXPECTED] = KERNEL(expected, WALL_LIGHT_GROUP, 1, 1, 2),
-    [SUM] = KERNEL(sum, WALL_LIGHT_SUM_GROUP, 1, 1, 1),
-    [SCALE] = KERNEL(scale, WALL_LIGHT_VPLS, 1, 1, 0),
-    [REFLECT] = KERNEL(reflect, WALL_LIGHT_GROUP, 1, 1, 3),
+    [SUNS] = TYN_KERNEL(wall_light_suns),        [VPLS] = TYN_KERNEL(wall_light_vpls),
+    [WALL_CELLS] = TYN_KERNEL(wall_light_cells), [EXPECTED] = TYN_KERNEL(wall_light_expected),
+    [SUM] = TYN_KERNEL(wall_light_sum),          [SCALE] = TYN_KERNEL(wall_light_scale),
+    [REFLECT] = TYN_KERNEL(wall_light_reflect),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -110,7 +31,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
         return TYN_ERR_PARAMS;
     }
     const uint64_t cells = (uint64_t)p->dims[0] * p->dims[1] * p->dims[2];
-    tyn_build_buffer(b, WALL_LIGHT_PORT_LIGHT, 12 * cells);
+    tyn_build_buffer(b, WALL_LIGHT_PORT_WALL_LIGHT, 12 * cells);
     const bool listed = tyn_build_has(b, WALL_LIGHT_PORT_RADIALS);
     tyn_build_buffer(b, WALL_LIGHT_PORT_LIST,
                      sizeof(struct wall_light_list) + (listed ? 8 * cells : 0));
@@ -134,7 +55,7 @@ static void record_vpls(tyn_recorder *r, const tyn_wall_light_params *p,
                         const struct wall_light_args *args)
 {
     // Without maps (vpl.visibility=0) nothing tells what should arrive.
-    const uint32_t scaled = tyn_rec_extent(r, WALL_LIGHT_PORT_DISTANCES).x > 1;
+    const uint32_t scaled = tyn_rec_extent(r, WALL_LIGHT_PORT_VPL_DISTANCES).x > 1;
     const uint32_t added = p->num_suns > 0, rooms = tyn_rec_has(r, WALL_LIGHT_PORT_ROOMS);
     const uint32_t of_vpls[2] = {p->mode, rooms}, of_cells[3] = {added, scaled, rooms};
     const tyn_extent all = {p->dims[0] * p->dims[1] * p->dims[2], 1, 1};
@@ -142,19 +63,16 @@ static void record_vpls(tyn_recorder *r, const tyn_wall_light_params *p,
     tyn_rec_fill(r, WALL_LIGHT_PORT_LIST, 0);
     tyn_rec_fill(r, WALL_LIGHT_PORT_FIRST, WALL_LIGHT_DARK);
     tyn_rec_fill(r, WALL_LIGHT_PORT_POWER, 0);
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = EXPECTED, .cells = vpls, .args = args, .spec = of_vpls});
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = WALL_CELLS, .cells = all, .args = args, .spec = of_cells});
+    TYN_DISPATCH(r, .kernel = EXPECTED, .cells = vpls, .args = args, .spec = of_vpls);
+    TYN_DISPATCH(r, .kernel = WALL_CELLS, .cells = all, .args = args, .spec = of_cells);
     tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = VPLS, .args = args, .spec = of_vpls},
                               WALL_LIGHT_PORT_LIST, 0);
     if (scaled) {
         const tyn_extent parts = {args->num_parts * WALL_LIGHT_SUM_GROUP, 1, 1};
         const tyn_extent one = {WALL_LIGHT_VPLS, 1, 1};
         tyn_rec_fill(r, WALL_LIGHT_PORT_PARTS, 0);
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = SUM, .cells = parts, .args = args, .spec = &rooms});
-        tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = SCALE, .cells = one, .args = args});
+        TYN_DISPATCH(r, .kernel = SUM, .cells = parts, .args = args, .spec = &rooms);
+        TYN_DISPATCH(r, .kernel = SCALE, .cells = one, .args = args);
     }
     tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = REFLECT, .args = args, .spec = of_cells},
                               WALL_LIGHT_PORT_LIST, 0);
@@ -171,8 +89,7 @@ static void record(tyn_recorder *r, const void *params)
     };
     const tyn_extent cells = {p->dims[0], p->dims[1], p->dims[2]};
     if (p->num_suns > 0) {
-        tyn_rec_dispatch(
-            r, &(tyn_dispatch){.kernel = SUNS, .cells = cells, .args = &args, .spec = &p->mode});
+        TYN_DISPATCH(r, .kernel = SUNS, .cells = cells, .args = &args, .spec = &p->mode);
     }
     if (tyn_rec_has(r, WALL_LIGHT_PORT_RADIALS)) {
         record_vpls(r, p, &args);
@@ -205,7 +122,7 @@ const tyn_pass_desc tyn_pass_wall_light = {
     .serves = "walls in media that suns shine on periodically, or virtual point lights without "
               "further reflections",
     TYN_PASS_TABLES(tyn_wall_light_params),
-    .debug_port = WALL_LIGHT_PORT_LIGHT,
+    .debug_port = WALL_LIGHT_PORT_WALL_LIGHT,
     .debug_meaning = "radiance of the walls per cell, W/(m^2 sr)",
     .counters = counters,
 };

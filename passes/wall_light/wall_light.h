@@ -11,22 +11,25 @@ typedef struct tyn_wall_light_params {
     uint32_t num_suns; // 0..4: those whose light walls reflect here
 } tyn_wall_light_params;
 
-enum {
-    WALL_LIGHT_PORT_MEDIUM,                    // IN buffer struct medium_block
-    WALL_LIGHT_PORT_LIGHTS,                    // IN buffer struct light_block[]
-    TYN_BEAMS(TYN_BUNDLE_ENUM, WALL_LIGHT),    // IN optional
-    TYN_RADIALS(TYN_BUNDLE_ENUM, WALL_LIGHT),  // IN optional: their VPLs shine on walls
-    TYN_GEOMETRY(TYN_BUNDLE_ENUM, WALL_LIGHT), // IN
-    TYN_WALLS(TYN_BUNDLE_ENUM, WALL_LIGHT),    // IN
-    WALL_LIGHT_PORT_HITS,
-    WALL_LIGHT_PORT_ROOMS,     // IN optional buffer, of rooms
-    WALL_LIGHT_PORT_DISTANCES, // IN optional 2D, of vpl: power that VPLs send is what walls get
-    WALL_LIGHT_PORT_LIGHT,     // OUT buffer vec3[cell]: LATTICE_PORT_WALL_LIGHT
-    WALL_LIGHT_PORT_LIST,      // SCRATCH buffer, wall_light_args.h: cells that have walls
-    WALL_LIGHT_PORT_ARRIVED,   // SCRATCH buffer vec3[cell]
-    WALL_LIGHT_PORT_POWER,     // OUT buffer struct wall_light_power
-    WALL_LIGHT_PORT_FIRST,     // SCRATCH buffer uint[1 + cells]
-    WALL_LIGHT_PORT_PARTS,     // SCRATCH buffer vec3[]
-    WALL_LIGHT_NUM_PORTS,
-};
+// clang-format off
+#define WALL_LIGHT_PORTS(X) \
+    X(WALL_LIGHT, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
+    X(WALL_LIGHT, LIGHTS, lights, IN, BUFFER, "struct light_block[]"), \
+    TYN_BEAMS(X##_OPTIONAL, WALL_LIGHT), \
+    TYN_RADIALS(X##_OPTIONAL, WALL_LIGHT), \
+    TYN_GEOMETRY(X, WALL_LIGHT), \
+    TYN_WALLS(X, WALL_LIGHT), \
+    X(WALL_LIGHT, HITS, hits, IN, BUFFER, "of walls"), \
+    X(WALL_LIGHT, ROOMS, rooms, OPTIONAL, BUFFER, "of rooms"), \
+    X(WALL_LIGHT, VPL_DISTANCES, vpl_distances, OPTIONAL, IMAGE_2D, \
+        "of vpl: power that VPLs send is what walls get"), \
+    X(WALL_LIGHT, WALL_LIGHT, wall_light, OUT, BUFFER, "radiance that the walls of a cell send out, W/(m^2 sr)"), \
+    X(WALL_LIGHT, LIST, list, SCRATCH, BUFFER, "struct wall_light_list, uint[]: cells that have walls"), \
+    X(WALL_LIGHT, ARRIVED, arrived, SCRATCH, BUFFER, \
+        "vec3[cell]: irradiance by VPLs, W/m^2, times the area of walls over dx^2"), \
+    X(WALL_LIGHT, POWER, power, OUT, BUFFER, "struct wall_light_power"), \
+    X(WALL_LIGHT, FIRST, first, SCRATCH, BUFFER, "uint[1 + cells]: by room, the first VPL that shines there"), \
+    X(WALL_LIGHT, PARTS, parts, SCRATCH, BUFFER, "vec3[]: sums of arrived by room and part of the lattice")
+// clang-format on
+enum { WALL_LIGHT_PORTS(TYN_PORT_ENUM), WALL_LIGHT_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_wall_light;

@@ -2,7 +2,6 @@
 // keeps all threads of wall_light_vpls.comp busy on devices that run them in groups.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
 #include "wall_light_args.h"
 #include "shaders/walls/walls_links.glsl"
@@ -12,7 +11,7 @@ layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
 };
-layout(binding = 0, scalar) readonly buffer cell_buffer
+layout(binding = 0, scalar) readonly buffer wall_cells_buffer
 {
     wall_cell wall_cells[];
 };
@@ -25,7 +24,7 @@ layout(binding = 2, scalar) writeonly buffer wall_light_buffer
 {
     vec3 wall_light[];
 };
-layout(binding = 3, scalar) readonly buffer link_buffer
+layout(binding = 3, scalar) readonly buffer wall_links_buffer
 {
     uint links[];
 };

@@ -5,7 +5,6 @@
 // meets no wall of a cell.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "wall_light_args.h"
 #define MEDIUM_BLOCK 0
 #define RADIALS_AT 1
@@ -19,7 +18,7 @@ layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
 };
-layout(binding = 5) uniform sampler2D distances;
+layout(binding = 5) uniform sampler2D vpl_distances_tex;
 layout(binding = 6, scalar) writeonly buffer power_buffer
 {
     wall_light_power power;
@@ -49,7 +48,7 @@ void main()
 {
     uint me = gl_LocalInvocationIndex, vpl = gl_WorkGroupID.x, n = radial_num_lamps + vpl;
     bool shines = n < radial_count;
-    int side = textureSize(distances, 0).x / VPL_MAPS_IN_A_ROW;
+    int side = textureSize(vpl_distances_tex, 0).x / VPL_MAPS_IN_A_ROW;
     uint rays = shines ? uint(side * side) : 0u;
     radial_grid grid = radials[min(n, TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX - 1u)];
     radial_light light = grid.light;
@@ -61,7 +60,7 @@ void main()
     for (uint k = me; k < rays; k += WALL_LIGHT_GROUP) {
         ivec2 at = ivec2(k % uint(side), k / uint(side));
         vec3 on_map = vpl_map_direction(vec2(at) / float(side - 1));
-        float size = length(on_map), end = texelFetch(distances, corner + at, 0).r;
+        float size = length(on_map), end = texelFetch(vpl_distances_tex, corner + at, 0).r;
         vec2 whole = mix(vec2(1.0), vec2(0.5), lessThan(min(at, side - 1 - at), ivec2(1)));
         float share = whole.x * whole.y * on_map.z / (size * size * size * size);
         vec3 away = min(end, 1e6 * box.dx) * (frame * (on_map / size));

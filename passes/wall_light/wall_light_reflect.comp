@@ -1,7 +1,6 @@
 // wall_light_reflect.comp -- what the walls of a cell send out of the light that arrives there from virtual point lights.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "wall_light_args.h"
 #include "shaders/walls/walls_args.h"
 #include "shaders/lattice/lattice_sweep.glsl"
@@ -11,7 +10,7 @@ layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
 };
-layout(binding = 0, scalar) readonly buffer cell_buffer
+layout(binding = 0, scalar) readonly buffer wall_cells_buffer
 {
     wall_cell wall_cells[];
 };

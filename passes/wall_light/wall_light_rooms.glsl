@@ -13,7 +13,7 @@ layout(binding = WALL_LIGHT_FIRST, scalar) readonly buffer first_buffer
 // WALL_LIGHT_DARK: none does.
 uint first_vpl(uint cell)
 {
-    return first[rooms == 1 ? texelFetch(room_texels, int(TYN_ROOMS_OF_CELL(cell))).x : TYN_ROOMS_OUTSIDE];
+    return first[rooms == 1 ? texelFetch(rooms_words, int(TYN_ROOMS_OF_CELL(cell))).x : TYN_ROOMS_OUTSIDE];
 }
 
 #endif

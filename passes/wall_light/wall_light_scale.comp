@@ -5,7 +5,6 @@
 // own, and farther or nearer.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "wall_light_args.h"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/walls/rooms.h"
@@ -19,7 +18,7 @@ layout(binding = 0, scalar) buffer power_buffer
 {
     wall_light_power power;
 };
-layout(binding = 1, scalar) readonly buffer part_buffer
+layout(binding = 1, scalar) readonly buffer parts_buffer
 {
     vec3 parts[]; // [room, by its first VPL][part]
 };

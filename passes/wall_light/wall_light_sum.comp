@@ -2,7 +2,6 @@
 // workgroup per part; sums have a fixed order.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "wall_light_args.h"
 
 layout(local_size_x = WALL_LIGHT_SUM_GROUP) in;
@@ -14,7 +13,7 @@ layout(binding = 0, scalar) readonly buffer arrived_buffer
 {
     vec3 arrived[]; // W/m^2, times the area over dx^2
 };
-layout(binding = 1, scalar) writeonly buffer part_buffer
+layout(binding = 1, scalar) writeonly buffer parts_buffer
 {
     vec3 parts[]; // [room, by its first VPL][part]: 0, but for what is written here
 };

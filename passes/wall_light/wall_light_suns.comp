@@ -6,7 +6,6 @@
 // medium counts as not scattered (delta scaling), as in the lattice.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "wall_light_args.h"
 #include "shaders/surfaces/surface_args.h"
 #define MEDIUM_BLOCK 0
@@ -23,21 +22,21 @@ layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
 };
-layout(binding = 1, scalar) readonly buffer light_buffer
+layout(binding = 1, scalar) readonly buffer lights_buffer
 {
     light_block lights[];
 };
 #define GEOMETRY_AT 6
 #include "shaders/surfaces/surfaces.glsl"
-layout(binding = 10, scalar) readonly buffer link_buffer
+layout(binding = 10, scalar) readonly buffer wall_links_buffer
 {
     uint links[];
 };
-layout(binding = 11, scalar) readonly buffer cell_buffer
+layout(binding = 11, scalar) readonly buffer wall_cells_buffer
 {
     wall_cell wall_cells[];
 };
-layout(binding = 12, scalar) readonly buffer hit_buffer
+layout(binding = 12, scalar) readonly buffer hits_buffer
 {
     uint hits[];
 };

@@ -5,7 +5,6 @@
 // asked of the lattice, which no light leaks through.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "wall_light_args.h"
 #include "shaders/surfaces/surface_args.h"
 #define MEDIUM_BLOCK 0
@@ -25,7 +24,7 @@ layout(push_constant, scalar) uniform push
 };
 #define GEOMETRY_AT 5
 #include "shaders/surfaces/surfaces.glsl"
-layout(binding = 11, scalar) readonly buffer hit_buffer
+layout(binding = 11, scalar) readonly buffer hits_buffer
 {
     uint hits[];
 };

@@ -6,38 +6,13 @@
 #include "walls_scatter.comp.h"
 #include "walls_cells.comp.h"
 
-static const tyn_port ports[WALLS_NUM_PORTS] = {
-    TYN_GEOMETRY(TYN_BUNDLE_IN, WALLS),
-    TYN_MATERIALS(TYN_BUNDLE_IN, WALLS),
-    [WALLS_PORT_WALL_LINKS] = {"wall_links", TYN_OUT, TYN_BUFFER, 0, false,
-                               "which of its 26 links are cut, per cell"},
-    [WALLS_PORT_WALL_CELLS] = {"wall_cells", TYN_OUT, TYN_BUFFER, 0, false,
-                               "struct wall_cell: mean albedo and planes of a cell's walls"},
-    [WALLS_PORT_HITS] = {"hits", TYN_OUT, TYN_BUFFER, 0, false, "nearest triangle per line"},
-    [WALLS_PORT_NEAREST] = {"nearest", TYN_SCRATCH, TYN_BUFFER, 0, false,
-                            "nearest triangle in the cell, per main direction of its normal"},
-};
+static const tyn_port ports[] = {WALLS_PORTS(TYN_PORT_ROW)};
 
 enum { KERNEL_SCATTER, KERNEL_CELLS, NUM_KERNELS };
 
-static const tyn_binding scatter_bindings[] = {
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, WALLS),
-    {WALLS_PORT_WALL_LINKS, TYN_USE_STORAGE_RW},
-    {WALLS_PORT_HITS, TYN_USE_STORAGE_RW},
-    {WALLS_PORT_NEAREST, TYN_USE_STORAGE_RW},
-};
-
-static const tyn_binding cells_bindings[] = {
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, WALLS),          TYN_MATERIALS(TYN_BUNDLE_BIND, WALLS),
-    {WALLS_PORT_WALL_LINKS, TYN_USE_STORAGE_READ}, {WALLS_PORT_HITS, TYN_USE_STORAGE_READ},
-    {WALLS_PORT_NEAREST, TYN_USE_STORAGE_READ},    {WALLS_PORT_WALL_CELLS, TYN_USE_STORAGE_WRITE},
-};
-
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_SCATTER] = TYN_KERNEL(walls_scatter, sizeof(struct walls_pass_args), WALLS_GROUP, 1, 1,
-                                  scatter_bindings, 0),
-    [KERNEL_CELLS] =
-        TYN_KERNEL(walls_cells, sizeof(struct walls_pass_args), 8, 4, 2, cells_bindings, 0),
+    [KERNEL_SCATTER] = TYN_KERNEL(walls_scatter),
+    [KERNEL_CELLS] = TYN_KERNEL(walls_cells),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -74,16 +49,13 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_fill(r, WALLS_PORT_HITS, 0xffffffffu);
     tyn_rec_fill(r, WALLS_PORT_NEAREST, 0xffffffffu);
     if (args.row > 0) {
-        tyn_rec_dispatch(
-            r,
-            &(tyn_dispatch){.kernel = KERNEL_SCATTER,
-                            .cells = {args.row * WALLS_GROUP,
-                                      (args.num_triangles + args.row - 1) / args.row, args.slices},
-                            .args = &args});
+        TYN_DISPATCH(r, .kernel = KERNEL_SCATTER,
+                     .cells = {args.row * WALLS_GROUP,
+                               (args.num_triangles + args.row - 1) / args.row, args.slices},
+                     .args = &args);
     }
-    tyn_rec_dispatch(r, &(tyn_dispatch){.kernel = KERNEL_CELLS,
-                                        .cells = {p->dims[0], p->dims[1], p->dims[2]},
-                                        .args = &args});
+    TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = {p->dims[0], p->dims[1], p->dims[2]},
+                 .args = &args);
     tyn_rec_work(r, "triangles", args.num_triangles);
     tyn_rec_work(r, "cells", (double)p->dims[0] * p->dims[1] * p->dims[2]);
 }

@@ -11,16 +11,18 @@ typedef struct tyn_walls_params {
     uint32_t dims[3]; // cells of the lattice: tyn_lattice_dims
 } tyn_walls_params;
 
-enum {
-    TYN_GEOMETRY(TYN_BUNDLE_ENUM, WALLS),  // IN
-    TYN_MATERIALS(TYN_BUNDLE_ENUM, WALLS), // IN
-    TYN_WALLS(TYN_BUNDLE_ENUM, WALLS),     // OUT
-    // OUT buffer uint[link 0..13][cell]: the triangle that a cut link meets, in the low 24 bits,
-    // and 255 times its share of the link in the others.
-    WALLS_PORT_HITS,
-    WALLS_PORT_NEAREST, // SCRATCH
-    WALLS_NUM_PORTS,
-};
+// clang-format off
+#define WALLS_PORTS(X) \
+    TYN_GEOMETRY(X, WALLS), \
+    TYN_MATERIALS(X, WALLS), \
+    X(WALLS, WALL_LINKS, wall_links, OUT, BUFFER, "which of its 26 links are cut, per cell"), \
+    X(WALLS, WALL_CELLS, wall_cells, OUT, BUFFER, "struct wall_cell: mean albedo and planes of a cell's walls"), \
+    X(WALLS, HITS, hits, OUT, BUFFER, \
+        "uint[link 0..13][cell]: the triangle that a cut link meets, in the low 24 bits, and 255 times its " \
+        "share of the link in the others"), \
+    X(WALLS, NEAREST, nearest, SCRATCH, BUFFER, "nearest triangle in the cell, per main direction of its normal")
+// clang-format on
+enum { WALLS_PORTS(TYN_PORT_ENUM), WALLS_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_walls;
 
 // Triangles that the pass can tell apart.

@@ -1,7 +1,6 @@
 // walls_cells.comp -- of each cell: the albedo its cut links meet, and the planes of its walls.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #include "walls_pass_args.h"
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/lattice/lattice.glsl"
@@ -16,11 +15,11 @@ layout(push_constant, scalar) uniform push
 #define GEOMETRY_AT 0
 #define MATERIALS_AT 4
 #include "shaders/surfaces/surfaces.glsl"
-layout(binding = 7, scalar) readonly buffer link_buffer
+layout(binding = 7, scalar) readonly buffer wall_links_buffer
 {
     uint links[];
 };
-layout(binding = 8, scalar) readonly buffer hit_buffer
+layout(binding = 8, scalar) readonly buffer hits_buffer
 {
     uint hits[];
 };
@@ -28,7 +27,7 @@ layout(binding = 9, scalar) readonly buffer nearest_buffer
 {
     uint nearest[];
 };
-layout(binding = 10, scalar) writeonly buffer cell_buffer
+layout(binding = 10, scalar) writeonly buffer wall_cells_buffer
 {
     wall_cell wall_cells[];
 };

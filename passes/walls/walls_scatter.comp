@@ -5,7 +5,6 @@
 // their order. A link is judged once, from one of its ends.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_control_flow_attributes : require
 #include "walls_pass_args.h"
 #include "shaders/surfaces/surface_args.h"
@@ -21,12 +20,12 @@ layout(push_constant, scalar) uniform push
 #define GEOMETRY_AT 0
 #define SURFACE_ROWS
 #include "shaders/surfaces/surfaces.glsl"
-layout(binding = 4, scalar) buffer link_buffer
+layout(binding = 4, scalar) buffer wall_links_buffer
 {
     uint links[];
 };
 // [link 0..13][cell]: of the nearest hit, its share of the way (8 bits), its triangle (24 bits).
-layout(binding = 5, scalar) buffer hit_buffer
+layout(binding = 5, scalar) buffer hits_buffer
 {
     uint hits[];
 };

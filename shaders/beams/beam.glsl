@@ -17,20 +17,20 @@
 #include "beam_tau.glsl"
 
 #ifdef BEAMS_STORAGE
-layout(set = 0, binding = BEAMS_AT, scalar) readonly buffer beam_buffer
+layout(set = 0, binding = BEAMS_AT, scalar) readonly buffer beams_buffer
 {
     beam_block beams[];
 };
 #else
-layout(set = 0, binding = BEAMS_AT, scalar) uniform beam_uniform
+layout(set = 0, binding = BEAMS_AT, scalar) uniform beams_uniform
 {
     beam_block beams[TYN_BEAM_MAX_SUNS];
 };
 #endif
 // Integrals of the density (mode DENSITY) or of sigma_s, of sigma_a and of (1 - f) sigma_s.
-layout(set = 0, binding = BEAMS_AT + 1) uniform sampler3D beam_column_tex;
-layout(set = 0, binding = BEAMS_AT + 2) uniform sampler3D beam_tau_a_tex;
-layout(set = 0, binding = BEAMS_AT + 3) uniform sampler3D beam_tau_p_tex;
+layout(set = 0, binding = BEAMS_AT + 1) uniform sampler3D column_tex;
+layout(set = 0, binding = BEAMS_AT + 2) uniform sampler3D tau_a_tex;
+layout(set = 0, binding = BEAMS_AT + 3) uniform sampler3D tau_p_tex;
 
 // Distance from where the light enters the box, m.
 float beam_length(uint sun, vec3 p)
@@ -122,10 +122,10 @@ vec3 beam_fetch(sampler3D tex, beam_place place)
 beam_tau beam_depth_at(beam_place place)
 {
     if (medium_mode == TYN_MEDIUM_DENSITY) {
-        return beam_of_column(beam_fetch(beam_column_tex, place).r);
+        return beam_of_column(beam_fetch(column_tex, place).r);
     }
-    return beam_tau(beam_fetch(beam_column_tex, place), beam_fetch(beam_tau_a_tex, place),
-                    beam_fetch(beam_tau_p_tex, place));
+    return beam_tau(beam_fetch(column_tex, place), beam_fetch(tau_a_tex, place),
+                    beam_fetch(tau_p_tex, place));
 }
 
 beam_tau beam_depth(uint sun, vec3 p)

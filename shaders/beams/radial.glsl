@@ -17,22 +17,22 @@
 
 #ifdef RADIALS_TEXELS
 #include "radial_texels.glsl"
-layout(set = 0, binding = RADIALS_AT) uniform usamplerBuffer radial_texels;
+layout(set = 0, binding = RADIALS_AT) uniform usamplerBuffer radials_texels;
 
 radial_grid radial_grid_of(uint n)
 {
-    return radial_grid_at(radial_texels, 1 + 10 * int(n));
+    return radial_grid_at(radials_texels, 1 + 10 * int(n));
 }
 #else
 #ifndef RADIALS_STORAGE
-layout(set = 0, binding = RADIALS_AT, scalar) uniform radial_buffer
+layout(set = 0, binding = RADIALS_AT, scalar) uniform radials_buffer
 {
     uint radial_count, radial_num_lamps;
     uvec2 radial_pad;
     radial_grid radials[TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX];
 };
 #else
-layout(set = 0, binding = RADIALS_AT, scalar) readonly buffer radial_buffer
+layout(set = 0, binding = RADIALS_AT, scalar) readonly buffer radials_buffer
 {
     uint radial_count, radial_num_lamps;
     uvec2 radial_pad;

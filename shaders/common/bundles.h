@@ -5,80 +5,80 @@
 // (BEAMS_AT); job/refs.h has a struct of refs of each.
 #pragma once
 
+// clang-format off
+
 // The medium (medium.glsl). sigma_a, g and emission exist in mode COEFFICIENTS only.
-#define TYN_MEDIUM(X, P)                                                                           \
-    X(P, MEDIUM, medium, TYN_BUFFER, TYN_USE_UNIFORM, false, "struct medium_block"),               \
-        X(P, DENSITY, density, TYN_IMAGE_3D, TYN_USE_SAMPLED, false,                               \
-          "density, or sigma_s of unequal media, 1/m"),                                            \
-        X(P, SIGMA_A, sigma_a, TYN_IMAGE_3D, TYN_USE_SAMPLED, true, "of unequal media, 1/m"),      \
-        X(P, G, g, TYN_IMAGE_3D, TYN_USE_SAMPLED, true, "mean cosine of unequal media"),           \
-        X(P, EMISSION, emission, TYN_IMAGE_3D, TYN_USE_SAMPLED, true,                              \
-          "of unequal media, W/(m^3 sr)")
+#define TYN_MEDIUM(X, P) \
+    X(P, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
+    X(P, DENSITY, density, IN, IMAGE_3D, "density, or sigma_s of unequal media, 1/m"), \
+    X(P, SIGMA_A, sigma_a, OPTIONAL, IMAGE_3D, "of unequal media, 1/m"), \
+    X(P, G, g, OPTIONAL, IMAGE_3D, "mean cosine of unequal media"), \
+    X(P, EMISSION, emission, OPTIONAL, IMAGE_3D, "of unequal media, W/(m^3 sr)")
 
 // Optical depths along the suns (beam.glsl). tau_a and tau_p exist in mode COEFFICIENTS only.
-#define TYN_BEAMS(X, P)                                                                            \
-    X(P, BEAMS, beams, TYN_BUFFER, TYN_USE_UNIFORM, false, "struct beam_block[]"),                 \
-        X(P, COLUMN, column, TYN_IMAGE_3D, TYN_USE_SAMPLED, false,                                 \
-          "density (or sigma_s) integrated along the suns"),                                       \
-        X(P, TAU_A, tau_a, TYN_IMAGE_3D, TYN_USE_SAMPLED, true, "sigma_a, so"),                    \
-        X(P, TAU_P, tau_p, TYN_IMAGE_3D, TYN_USE_SAMPLED, true, "(1 - f) sigma_s, so")
+#define TYN_BEAMS(X, P) \
+    X(P, BEAMS, beams, IN, BUFFER, "struct beam_block[]"), \
+    X(P, COLUMN, column, IN, IMAGE_3D, "density (or sigma_s) integrated along the suns"), \
+    X(P, TAU_A, tau_a, OPTIONAL, IMAGE_3D, "sigma_a, so"), \
+    X(P, TAU_P, tau_p, OPTIONAL, IMAGE_3D, "(1 - f) sigma_s, so")
 
 // The same from lamps and virtual point lights (radial.glsl).
-#define TYN_RADIALS(X, P)                                                                          \
-    X(P, RADIALS, radials, TYN_BUFFER, TYN_USE_UNIFORM, false, "struct radial_block"),             \
-        X(P, RADIAL_COLUMN, radial_column, TYN_IMAGE_3D, TYN_USE_SAMPLED, false,                   \
-          "mean density (or sigma_s) on the way from lamps"),                                      \
-        X(P, RADIAL_TAU_A, radial_tau_a, TYN_IMAGE_3D, TYN_USE_SAMPLED, true, "mean sigma_a"),     \
-        X(P, RADIAL_TAU_P, radial_tau_p, TYN_IMAGE_3D, TYN_USE_SAMPLED, true,                      \
-          "mean (1 - f) sigma_s")
+#define TYN_RADIALS(X, P) \
+    X(P, RADIALS, radials, IN, BUFFER, "struct radial_block"), \
+    X(P, RADIAL_COLUMN, radial_column, IN, IMAGE_3D, "mean density (or sigma_s) on the way from lamps"), \
+    X(P, RADIAL_TAU_A, radial_tau_a, OPTIONAL, IMAGE_3D, "mean sigma_a"), \
+    X(P, RADIAL_TAU_P, radial_tau_p, OPTIONAL, IMAGE_3D, "mean (1 - f) sigma_s")
 
 // Optical depths along the ordinates (columns.glsl).
-#define TYN_COLUMNS(X, P)                                                                          \
-    X(P, ORDINATES, ordinates, TYN_BUFFER, TYN_USE_UNIFORM, false, "struct ordinates_block"),      \
-        X(P, COLUMNS, columns, TYN_BUFFER, TYN_USE_STORAGE_READ, false,                            \
-          "optical depths along the ordinates")
+#define TYN_COLUMNS(X, P) \
+    X(P, ORDINATES, ordinates, IN, BUFFER, "struct ordinates_block"), \
+    X(P, COLUMNS, columns, IN, BUFFER, "optical depths along the ordinates")
 
 // Shadow maps of suns and lamps (shadow.glsl).
-#define TYN_SHADOWS(X, P)                                                                          \
-    X(P, SHADOW_ATLAS, shadow_atlas, TYN_IMAGE_2D, TYN_USE_SAMPLED, false,                         \
-      "depth maps of the lights"),                                                                 \
-        X(P, SHADOWS, shadows, TYN_BUFFER, TYN_USE_UNIFORM, false, "struct shadow_light[]")
+#define TYN_SHADOWS(X, P) \
+    X(P, SHADOW_ATLAS, shadow_atlas, IN, IMAGE_2D, "depth maps of the lights"), \
+    X(P, SHADOWS, shadows, IN, BUFFER, "struct shadow_light[]")
 
 // Surfaces as the lattice sees them (lattice_walls.glsl).
-#define TYN_WALLS(X, P)                                                                            \
-    X(P, WALL_LINKS, wall_links, TYN_BUFFER, TYN_USE_TEXELS_UINT, false,                           \
-      "uint[cell]: where walls pass"),                                                             \
-        X(P, WALL_CELLS, wall_cells, TYN_BUFFER, TYN_USE_TEXELS_VEC4, false,                       \
-          "struct wall_cell[cell]")
+#define TYN_WALLS(X, P) \
+    X(P, WALL_LINKS, wall_links, IN, BUFFER, "uint[cell]: where walls pass"), \
+    X(P, WALL_CELLS, wall_cells, IN, BUFFER, "struct wall_cell[cell]")
 
 // Virtual point lights (vpl_visibility.glsl).
-#define TYN_VPLS(X, P)                                                                             \
-    X(P, VPLS, vpls, TYN_BUFFER, TYN_USE_TEXELS_UVEC4, false, "struct radial_vpls"),               \
-        X(P, VPL_DISTANCES, vpl_distances, TYN_IMAGE_2D, TYN_USE_SAMPLED, false,                   \
-          "what they see, m"),                                                                     \
-        X(P, VPL_PLANES, vpl_planes, TYN_IMAGE_2D, TYN_USE_SAMPLED, false, "and its planes")
+#define TYN_VPLS(X, P) \
+    X(P, VPLS, vpls, IN, BUFFER, "struct radial_vpls"), \
+    X(P, VPL_DISTANCES, vpl_distances, IN, IMAGE_2D, "what they see, m"), \
+    X(P, VPL_PLANES, vpl_planes, IN, IMAGE_2D, "and its planes")
 
 // What the lights shine on (rsm_args.h).
-#define TYN_RSM(X, P)                                                                              \
-    X(P, FLUX, rsm_flux, TYN_IMAGE_2D, TYN_USE_SAMPLED, false, "power that a texel reflects, W"),  \
-        X(P, POSITION, rsm_position, TYN_IMAGE_2D, TYN_USE_SAMPLED, false,                         \
-          "where (M, m); area of it, m^2"),                                                        \
-        X(P, NORMAL, rsm_normal, TYN_IMAGE_2D, TYN_USE_SAMPLED, false,                             \
-          "of the surface (M), on the light's side")
+#define TYN_RSM(X, P) \
+    X(P, RSM_FLUX, rsm_flux, IN, IMAGE_2D, "power that a texel reflects, W"), \
+    X(P, RSM_POSITION, rsm_position, IN, IMAGE_2D, "where (M, m); area of it, m^2"), \
+    X(P, RSM_NORMAL, rsm_normal, IN, IMAGE_2D, "of the surface (M), on the light's side")
 
 // Surfaces: where they are (surface_trace.glsl), ...
-#define TYN_GEOMETRY(X, P)                                                                         \
-    X(P, SURFACES, surfaces, TYN_BUFFER, TYN_USE_UNIFORM, false, "struct surface_block"),          \
-        X(P, VERTICES, vertices, TYN_BUFFER, TYN_USE_STORAGE_READ, false,                          \
-          "struct surface_vertex[]"),                                                              \
-        X(P, TRIANGLES, triangles, TYN_BUFFER, TYN_USE_STORAGE_READ, false,                        \
-          "struct surface_triangle[]"),                                                            \
-        X(P, NODES, nodes, TYN_BUFFER, TYN_USE_STORAGE_READ, true,                                 \
-          "struct surface_node[]: their hierarchy")
+#define TYN_GEOMETRY(X, P) \
+    X(P, SURFACES, surfaces, IN, BUFFER, "struct surface_block"), \
+    X(P, VERTICES, vertices, IN, BUFFER, "struct surface_vertex[]"), \
+    X(P, TRIANGLES, triangles, IN, BUFFER, "struct surface_triangle[]"), \
+    X(P, NODES, nodes, OPTIONAL, BUFFER, "struct surface_node[]: their hierarchy")
 // ... and what they are of (surface_texture.glsl).
-#define TYN_MATERIALS(X, P)                                                                        \
-    X(P, MATERIALS, materials, TYN_BUFFER, TYN_USE_STORAGE_READ, false,                            \
-      "struct surface_material[]"),                                                                \
-        X(P, TEXTURES, textures, TYN_BUFFER, TYN_USE_STORAGE_READ, true,                           \
-          "struct surface_texture[]"),                                                             \
-        X(P, TEXELS, texels, TYN_BUFFER, TYN_USE_STORAGE_READ, true, "uint[]: R8 G8 B8 A8, sRGB")
+#define TYN_MATERIALS(X, P) \
+    X(P, MATERIALS, materials, IN, BUFFER, "struct surface_material[]"), \
+    X(P, TEXTURES, textures, OPTIONAL, BUFFER, "struct surface_texture[]"), \
+    X(P, TEXELS, texels, OPTIONAL, BUFFER, "uint[]: R8 G8 B8 A8, sRGB")
+
+// What the path tracer reads beside surfaces.
+#define TYN_PATH_SCENE(X, P) \
+    X(P, ATLAS, atlas, OPTIONAL, IMAGE_3D, "all density grids"), \
+    X(P, MEDIUM, medium, IN, BUFFER, "struct medium_block: box and bricks"), \
+    X(P, SHAPES, shapes, OPTIONAL, BUFFER, "struct shape_block[]: the exact media"), \
+    X(P, BRICKS, bricks, OPTIONAL, IMAGE_3D, "least and largest density or extinction of bricks"), \
+    X(P, LIGHTS, lights, OPTIONAL, BUFFER, "struct light_block[]: suns and lamps"), \
+    X(P, ENVIRONMENT, environment, OPTIONAL, BUFFER, "struct env_block"), \
+    X(P, ENV_MAP, env_map, OPTIONAL, IMAGE_2D, "radiance, W/(m^2 sr)"), \
+    X(P, ENV_TABLE, env_table, OPTIONAL, BUFFER, \
+        "struct env_table_block and cells: alias table of the map's brightness"), \
+    X(P, EMITTERS, emitters, OPTIONAL, BUFFER, \
+        "struct surface_table and cells: alias table of the emissive triangles' power")
+// clang-format on

@@ -15,6 +15,7 @@ typedef uint32_t tyn_uvec3[3];
 #define TYN_ASSERT_SIZE(type, bytes) static_assert(sizeof(struct type) == (bytes), #type)
 #define TYN_STRUCT(type) struct type // names a struct within another one
 #else
+#extension GL_EXT_scalar_block_layout : require
 #define tyn_uint uint
 #define tyn_vec2 vec2
 #define tyn_vec3 vec3

@@ -7,27 +7,27 @@
 #include "shadow_args.h"
 
 #ifdef SHADOWS_TEXELS
-layout(set = 0, binding = SHADOW_LIGHTS) uniform usamplerBuffer shadow_texels;
+layout(set = 0, binding = SHADOW_LIGHTS) uniform usamplerBuffer shadows_texels;
 
 shadow_light shadow_light_of(uint n)
 {
     int at = 5 * int(n);
     vec4 rows[3];
     for (int k = 0; k < 3; k++) {
-        rows[k] = uintBitsToFloat(texelFetch(shadow_texels, at + k));
+        rows[k] = uintBitsToFloat(texelFetch(shadows_texels, at + k));
     }
-    vec4 place = uintBitsToFloat(texelFetch(shadow_texels, at + 3));
-    uvec4 kind = texelFetch(shadow_texels, at + 4);
+    vec4 place = uintBitsToFloat(texelFetch(shadows_texels, at + 3));
+    uvec4 kind = texelFetch(shadows_texels, at + 4);
     return shadow_light(rows, place.xy, place.z, place.w, uintBitsToFloat(kind.x), kind.y, kind.zw);
 }
 #else
 #ifdef SHADOWS_STORAGE
-layout(set = 0, binding = SHADOW_LIGHTS, scalar) readonly buffer shadow_lights_buffer
+layout(set = 0, binding = SHADOW_LIGHTS, scalar) readonly buffer shadows_buffer
 {
     shadow_light shadows[];
 };
 #else
-layout(set = 0, binding = SHADOW_LIGHTS, scalar) uniform shadow_lights_buffer
+layout(set = 0, binding = SHADOW_LIGHTS, scalar) uniform shadows_buffer
 {
     shadow_light shadows[TYN_SHADOW_MAX];
 };

@@ -51,16 +51,16 @@ ivec2 vpl_map_corner(uint vpl, int side)
 #include "shaders/beams/radial_texels.glsl"
 #define VPL_DISTANCES (VPLS_AT + 1)
 #define VPL_PLANES (VPLS_AT + 2)
-layout(set = 0, binding = VPLS_AT) uniform usamplerBuffer vpl_texels; // struct radial_vpls
+layout(set = 0, binding = VPLS_AT) uniform usamplerBuffer vpls_texels; // struct radial_vpls
 
 uint vpl_count()
 {
-    return texelFetch(vpl_texels, 0).x;
+    return texelFetch(vpls_texels, 0).x;
 }
 
 radial_light vpl_light(uint n)
 {
-    return radial_light_at(vpl_texels, 1 + 4 * int(n));
+    return radial_light_at(vpls_texels, 1 + 4 * int(n));
 }
 #endif
 #ifdef VPL_DISTANCES

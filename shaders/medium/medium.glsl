@@ -19,10 +19,10 @@
 layout(constant_id = MEDIUM_SPEC) const uint medium_mode = TYN_MEDIUM_DENSITY;
 #ifdef MEDIUM_AT
 #define MEDIUM_BLOCK MEDIUM_AT
-layout(set = 0, binding = MEDIUM_AT + 1) uniform sampler3D medium_density_tex; // or sigma_s in mode COEFFICIENTS
-layout(set = 0, binding = MEDIUM_AT + 2) uniform sampler3D medium_sigma_a_tex; // this and the next: only there
-layout(set = 0, binding = MEDIUM_AT + 3) uniform sampler3D medium_g_tex;
-layout(set = 0, binding = MEDIUM_AT + 4) uniform sampler3D medium_emission_tex;
+layout(set = 0, binding = MEDIUM_AT + 1) uniform sampler3D density_tex; // or sigma_s in mode COEFFICIENTS
+layout(set = 0, binding = MEDIUM_AT + 2) uniform sampler3D sigma_a_tex; // this and the next: only there
+layout(set = 0, binding = MEDIUM_AT + 3) uniform sampler3D g_tex;
+layout(set = 0, binding = MEDIUM_AT + 4) uniform sampler3D emission_tex;
 #endif
 layout(set = 0, binding = MEDIUM_BLOCK, scalar) uniform medium_uniform
 {
@@ -66,7 +66,7 @@ medium_point medium_of_density(float density)
 float medium_density(vec3 p)
 {
     vec3 uvw = medium_uvw(p);
-    return medium_inside(uvw) ? textureLod(medium_density_tex, uvw, 0.0).r : 0.0;
+    return medium_inside(uvw) ? textureLod(density_tex, uvw, 0.0).r : 0.0;
 }
 
 // Coefficients of either mode; 0 outside. One fetch (DENSITY) or one per coefficient that is used.
@@ -78,10 +78,10 @@ medium_point medium_sample(vec3 p)
     medium_point m = medium_point(vec3(0.0), vec3(0.0), phase_of_mean_cosine(vec3(0.0)), vec3(0.0));
     vec3 uvw = medium_uvw(p);
     if (medium_inside(uvw)) {
-        m.sigma_s = textureLod(medium_density_tex, uvw, 0.0).rgb;
-        m.sigma_a = textureLod(medium_sigma_a_tex, uvw, 0.0).rgb;
-        m.phase = phase_of_mean_cosine(textureLod(medium_g_tex, uvw, 0.0).rgb);
-        m.emission = textureLod(medium_emission_tex, uvw, 0.0).rgb;
+        m.sigma_s = textureLod(density_tex, uvw, 0.0).rgb;
+        m.sigma_a = textureLod(sigma_a_tex, uvw, 0.0).rgb;
+        m.phase = phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb);
+        m.emission = textureLod(emission_tex, uvw, 0.0).rgb;
     }
     return m;
 }

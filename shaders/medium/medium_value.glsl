@@ -11,16 +11,16 @@
 // At a texture coordinate, clamped to the edge.
 float medium_value(vec3 uvw)
 {
-    return textureLod(medium_density_tex, uvw, 0.0).r;
+    return textureLod(density_tex, uvw, 0.0).r;
 }
 #else
 #define MEDIUM_VALUE mat3 // sigma_s, sigma_a, (1 - f) sigma_s
 
 mat3 medium_value(vec3 uvw)
 {
-    vec3 sigma_s = textureLod(medium_density_tex, uvw, 0.0).rgb;
-    vec3 sigma_a = textureLod(medium_sigma_a_tex, uvw, 0.0).rgb;
-    phase p[3] = phase_of_mean_cosine(textureLod(medium_g_tex, uvw, 0.0).rgb);
+    vec3 sigma_s = textureLod(density_tex, uvw, 0.0).rgb;
+    vec3 sigma_a = textureLod(sigma_a_tex, uvw, 0.0).rgb;
+    phase p[3] = phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb);
     similarity_clamp(sigma_s, p);
     return mat3(sigma_s, sigma_a, sigma_s * (1.0 - delta_fraction(p)));
 }

@@ -464,7 +464,7 @@ void path_leave(inout path_result result, path_state path, vec3 weight, float dr
         result.transmittance = weight;
     }
     if (ENVIRONMENT != TYN_PATH_ENV_NONE) {
-        vec3 sky = weight * (ENVIRONMENT == TYN_PATH_ENV_MAP ? environment_radiance(env, env_map, path.way)
+        vec3 sky = weight * (ENVIRONMENT == TYN_PATH_ENV_MAP ? environment_radiance(env, env_map_wrapped, path.way)
                                                              : env.radiance);
         if (ENVIRONMENT == TYN_PATH_ENV_MAP && draw_map > 0.0) {
             sky *= pdf_way / (pdf_way + draw_map * env_pdf(env, path.way));
@@ -631,7 +631,7 @@ void path_run(uint element, uint first, uint end)
                     float pdf;
                     direction = env_sample(env, rng_next(rng), pdf);
                     drawn = pdf * choice.probability;
-                    pending = weight * environment_radiance(env, env_map, direction);
+                    pending = weight * environment_radiance(env, env_map_wrapped, direction);
                 }
                 if (at_surface) {
                     float lambert = max(dot(direction, found.point.normal), 0.0) * (1.0 / HG_PI);

@@ -23,8 +23,8 @@ layout(set = 0, binding = 2, scalar) readonly buffer shapes_buffer { shape_block
 layout(set = 0, binding = 3) uniform sampler3D bricks;
 layout(set = 0, binding = 4, scalar) readonly buffer lights_buffer { light_block lights[]; };
 layout(set = 0, binding = 5, scalar) uniform environment_uniform { env_block env_in; };
-layout(set = 0, binding = 6) uniform sampler2D env_map;
-layout(set = 0, binding = 7, scalar) readonly buffer env_buffer {
+layout(set = 0, binding = 6) uniform sampler2D env_map_wrapped;
+layout(set = 0, binding = 7, scalar) readonly buffer env_table_buffer {
     env_table_block env_table;
     env_cell env_cells[];
 };

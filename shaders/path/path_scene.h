@@ -1,7 +1,6 @@
-// path_scene.h -- parameters and ports that all passes of the path tracer have in common.
+// path_scene.h -- parameters that all passes of the path tracer have in common.
 #pragma once
 #include <tyndall/pass.h>
-#include "shaders/common/bundles.h"
 #include "shaders/path/path_args.h"
 
 // Of every tracing pass. What is not in the parameter table is set by the method.
@@ -37,50 +36,6 @@ typedef struct tyn_path_params {
     float box[2][3];     // balance of surfaces: corners of the box around everything, M
     uint32_t chunks;     // balance: dispatches of num_samples paths each; fluxes: of each thread
 } tyn_path_params;
-
-// What every tracing pass reads.
-enum {
-    PATH_PORT_ATLAS,       // IN 3D, optional: all density grids
-    PATH_PORT_MEDIUM,      // IN buffer struct medium_block
-    PATH_PORT_SHAPES,      // IN buffer struct shape_block[]
-    PATH_PORT_BRICKS,      // IN 3D, optional: bounds of the density or the extinction, of `medium`
-    PATH_PORT_LIGHTS,      // IN buffer struct light_block[], optional
-    PATH_PORT_ENVIRONMENT, // IN buffer struct env_block, optional
-    PATH_PORT_ENV_MAP,     // IN 2D, optional
-    PATH_PORT_ENV_TABLE,   // IN buffer struct env_table_block and cells, optional: frame/env_cdf.h
-    TYN_GEOMETRY(TYN_BUNDLE_ENUM, PATH),  // IN optional; without nodes all triangles are tried
-    TYN_MATERIALS(TYN_BUNDLE_ENUM, PATH), // IN optional
-    PATH_PORT_EMITTERS, // IN buffer struct surface_table and cells: frame/surface_tables.h
-    PATH_NUM_SCENE_PORTS,
-};
-
-// clang-format off
-#define PATH_SCENE_PORT_ROWS                                                                       \
-    {"atlas", TYN_IN, TYN_IMAGE_3D, 0, true, "all density grids"},                                 \
-    {"medium", TYN_IN, TYN_BUFFER, 0, false, "the medium frame's box and bricks"},                 \
-    {"shapes", TYN_IN, TYN_BUFFER, 0, true, "the exact media"},                                    \
-    {"bricks", TYN_IN, TYN_IMAGE_3D, 0, true, "least and largest density or extinction of bricks"}, \
-    {"lights", TYN_IN, TYN_BUFFER, 0, true, "suns and lamps"},                                     \
-    {"environment", TYN_IN, TYN_BUFFER, 0, true, "the surroundings"},                              \
-    {"env_map", TYN_IN, TYN_IMAGE_2D, 0, true, "radiance of the surroundings, W/(m^2 sr)"},        \
-    {"env_table", TYN_IN, TYN_BUFFER, 0, true, "alias table of the map's brightness"},             \
-    TYN_GEOMETRY(TYN_BUNDLE_OPTIONAL, PATH),                                                       \
-    TYN_MATERIALS(TYN_BUNDLE_OPTIONAL, PATH),                                                      \
-    {"emitters", TYN_IN, TYN_BUFFER, 0, true, "alias table of the emissive triangles' power"}
-
-#define PATH_SCENE_BINDING_ROWS                                                                    \
-    {PATH_PORT_ATLAS, TYN_USE_SAMPLED, false},                                                     \
-    {PATH_PORT_MEDIUM, TYN_USE_UNIFORM, false},                                                    \
-    {PATH_PORT_SHAPES, TYN_USE_STORAGE_READ, false},                                               \
-    {PATH_PORT_BRICKS, TYN_USE_SAMPLED, false},                                                    \
-    {PATH_PORT_LIGHTS, TYN_USE_STORAGE_READ, false},                                               \
-    {PATH_PORT_ENVIRONMENT, TYN_USE_UNIFORM, false},                                               \
-    {PATH_PORT_ENV_MAP, TYN_USE_SAMPLED, true},                                                    \
-    {PATH_PORT_ENV_TABLE, TYN_USE_STORAGE_READ, false},                                            \
-    TYN_GEOMETRY(TYN_BUNDLE_BIND, PATH),                                                           \
-    TYN_MATERIALS(TYN_BUNDLE_BIND, PATH),                                                          \
-    {PATH_PORT_EMITTERS, TYN_USE_STORAGE_READ, false}
-// clang-format on
 
 enum { PATH_NUM_PARAMS = 3 };
 static const tyn_param path_params_table[PATH_NUM_PARAMS] = {

@@ -27,7 +27,7 @@
 #include "scatter_lut_map.glsl"
 
 layout(set = 0, binding = SCATTER_LUT) uniform sampler2D lut_tex;
-layout(set = 0, binding = SCATTER_LUT_BLOCK, scalar) uniform lut_uniform
+layout(set = 0, binding = SCATTER_LUT_BLOCK, scalar) uniform lut_block_uniform
 {
     lut_block lut;
 };

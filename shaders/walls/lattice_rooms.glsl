@@ -5,16 +5,16 @@
 #include "walls_links.glsl"
 #include "shaders/common/quotient.glsl"
 
-layout(set = 0, binding = LATTICE_ROOMS) uniform usamplerBuffer room_texels;
+layout(set = 0, binding = LATTICE_ROOMS) uniform usamplerBuffer rooms_words;
 
 uint rooms_of_cell(ivec3 dims, ivec3 c)
 {
-    return texelFetch(room_texels, int(TYN_ROOMS_OF_CELL((c.z * dims.y + c.y) * dims.x + c.x))).x;
+    return texelFetch(rooms_words, int(TYN_ROOMS_OF_CELL((c.z * dims.y + c.y) * dims.x + c.x))).x;
 }
 
 uint rooms_of_vpl(ivec3 dims, uint vpl)
 {
-    return texelFetch(room_texels, int(TYN_ROOMS_OF_VPL(dims.x * dims.y * dims.z, vpl))).x;
+    return texelFetch(rooms_words, int(TYN_ROOMS_OF_VPL(dims.x * dims.y * dims.z, vpl))).x;
 }
 
 // What a place in cell c, `at` being the nearest one of the lattice and `links` its, tells of the room that it is in;
@@ -30,7 +30,7 @@ uint rooms_told(ivec3 dims, ivec3 c, ivec3 at, uint links, bool free)
 bool rooms_cell_before(ivec3 dims, uint vpl, inout ivec3 before)
 {
     int cells = dims.x * dims.y * dims.z;
-    uint instead = texelFetch(room_texels, int(TYN_ROOMS_BEFORE_VPL(cells, vpl))).x;
+    uint instead = texelFetch(rooms_words, int(TYN_ROOMS_BEFORE_VPL(cells, vpl))).x;
     before = instead < uint(cells) ? quotient_place(instead, dims) : before;
     return instead != TYN_ROOMS_NONE;
 }

@@ -35,11 +35,11 @@ uint walls_behind(walls_planes walls, vec3 p)
 }
 
 #ifdef WALLS_STORAGE
-layout(set = 0, binding = WALLS_AT, scalar) readonly buffer walls_link_buffer
+layout(set = 0, binding = WALLS_AT, scalar) readonly buffer wall_links_buffer
 {
     uint wall_links[];
 };
-layout(set = 0, binding = WALLS_AT + 1, scalar) readonly buffer walls_cell_buffer
+layout(set = 0, binding = WALLS_AT + 1, scalar) readonly buffer wall_cells_buffer
 {
     wall_cell wall_cells[];
 };
@@ -54,19 +54,19 @@ walls_planes walls_planes_of(uint cell)
     return walls_planes(wall_cells[cell].planes);
 }
 #else
-layout(set = 0, binding = WALLS_AT) uniform usamplerBuffer walls_link_texels;
-layout(set = 0, binding = WALLS_AT + 1) uniform samplerBuffer walls_cell_texels; // four to a struct wall_cell
+layout(set = 0, binding = WALLS_AT) uniform usamplerBuffer wall_links_words;
+layout(set = 0, binding = WALLS_AT + 1) uniform samplerBuffer wall_cells_texels; // four to a struct wall_cell
 
 uint walls_links_of(uint cell)
 {
-    return texelFetch(walls_link_texels, int(cell)).x;
+    return texelFetch(wall_links_words, int(cell)).x;
 }
 
 walls_planes walls_planes_of(uint cell)
 {
     walls_planes walls;
     for (int k = 0; k < TYN_WALLS_PLANES; k++) {
-        walls.plane[k] = texelFetch(walls_cell_texels, 4 * int(cell) + k);
+        walls.plane[k] = texelFetch(wall_cells_texels, 4 * int(cell) + k);
     }
     return walls;
 }

@@ -195,7 +195,7 @@ static void check(gpu_test *t, uint32_t w, uint32_t h, bool sun)
     point_pass_init(&pass, sky_eval_spirv, sizeof sky_eval_spirv, &input, 1);
     tyn_graph_begin(t->graph);
     tyn_ref refs[ENV_IMPORTANCE_NUM_PORTS] = {{0}}, eval[3] = {{0}};
-    upload_rgb(t, map, w, h, &refs[ENV_IMPORTANCE_PORT_MAP]);
+    upload_rgb(t, map, w, h, &refs[ENV_IMPORTANCE_PORT_ENV_MAP]);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_env_importance, &params, refs), TYN_OK);
     eval[0] = refs[ENV_IMPORTANCE_PORT_SKY];
     eval[1] = gpu_buffer(t, "points", points, count * sizeof points[0]);

@@ -105,7 +105,7 @@ static const float *run(gpu_test *t, const setup *s, const float **field)
     refs[PORT(HISTORY)] = tyn_graph_history_buffer(t->graph, "importance_history",
                                                    sizeof(struct importance_history), s->scene);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_importance, &s->params, refs), TYN_OK);
-    tyn_graph_output(t->graph, "map", refs[PORT(MAP)], true);
+    tyn_graph_output(t->graph, "map", refs[PORT(IMPORTANCE)], true);
     tyn_graph_output(t->graph, "field", refs[PORT(FIELD)], true);
     gpu_run(t);
     if (field) {

@@ -121,7 +121,7 @@ static struct ordinates_block run(gpu_test *t, const scene *s, const tyn_ordinat
         for (int i = 0; i < W * H; i++) {
             memcpy(rgba + 4 * i, map + 3 * i, 12);
         }
-        env[ENV_IMPORTANCE_PORT_MAP] =
+        env[ENV_IMPORTANCE_PORT_ENV_MAP] =
             gpu_image(t, "map", TYN_IMAGE_2D, (tyn_extent){W, H, 1}, 4, rgba);
         const tyn_env_importance_params none = {0};
         assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_env_importance, &none, env), TYN_OK);

@@ -316,10 +316,10 @@ static outcome check(gpu_test *t, const grid *g, const mesh *m, const lights *l)
         params.dims[a] = (uint32_t)g->n[a];
     }
     tyn_ref refs[ROOMS_NUM_PORTS] = {
-        [ROOMS_PORT_LINKS] = w.links,
+        [ROOMS_PORT_WALL_LINKS] = w.links,
         [ROOMS_PORT_VPLS] = gpu_buffer(t, "vpls", &l->vpls, sizeof l->vpls),
-        [ROOMS_PORT_DISTANCES] = gpu_image(t, "distances", TYN_IMAGE_2D,
-                                           (tyn_extent){MAPS * SIDE, SIDE, 1}, 1, l->maps[0]),
+        [ROOMS_PORT_VPL_DISTANCES] = gpu_image(t, "distances", TYN_IMAGE_2D,
+                                               (tyn_extent){MAPS * SIDE, SIDE, 1}, 1, l->maps[0]),
     };
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_rooms, &params, refs), TYN_OK);
     tyn_graph_output(t->graph, "rooms", refs[ROOMS_PORT_ROOMS], true);

@@ -629,7 +629,7 @@ static void cells_of_the_medium(void **state)
         [LIGHT_CELLS_PORT_SHADOWS] = maps[SHADOW_MAP_PORT_SHADOWS],
     };
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_light_cells, &cells, refs), TYN_OK);
-    tyn_graph_output(t->graph, "cells", refs[LIGHT_CELLS_PORT_CELLS], true);
+    tyn_graph_output(t->graph, "cells", refs[LIGHT_CELLS_PORT_LIGHT_CELLS], true);
     gpu_run(t);
     const float *texels = gpu_map(t, "cells");
     int dark[SUNS + LAMPS] = {0}, lit[SUNS + LAMPS] = {0}, wrong = 0;

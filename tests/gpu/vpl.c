@@ -76,10 +76,10 @@ static const struct radial_vpls *run(gpu_test *t)
     }
     if (scene.params.num_tiles) {
         const tyn_extent size = {SIDE, HEIGHT, 1};
-        refs[PORT(FLUX)] = gpu_image(t, "flux", TYN_IMAGE_2D, size, 4, scene.flux[0][0]);
-        refs[PORT(POSITION)] =
+        refs[PORT(RSM_FLUX)] = gpu_image(t, "flux", TYN_IMAGE_2D, size, 4, scene.flux[0][0]);
+        refs[PORT(RSM_POSITION)] =
             gpu_image(t, "position", TYN_IMAGE_2D, size, 4, scene.position[0][0]);
-        refs[PORT(NORMAL)] = gpu_image(t, "normal", TYN_IMAGE_2D, size, 4, scene.normal[0][0]);
+        refs[PORT(RSM_NORMAL)] = gpu_image(t, "normal", TYN_IMAGE_2D, size, 4, scene.normal[0][0]);
     }
     if (scene.params.num_triangles) {
         refs[PORT(SURFACES)] = gpu_buffer(t, "surfaces", &scene.surfaces, sizeof scene.surfaces);

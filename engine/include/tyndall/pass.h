@@ -109,45 +109,51 @@ typedef struct tyn_kernel {
     // and args; local_size is 0.
     const tyn_raster *raster;
 } tyn_kernel;
-// A compute kernel of the shader that is embedded as `code`_spirv, with an array of tyn_binding.
-#define TYN_KERNEL(code, args, x, y, z, table, specs)                                              \
+#define TYN_COUNT(table) (sizeof(table) / sizeof((table)[0]))
+// A compute kernel from the header that the build makes of its shader (tools/kernel.py): words, bindings, size of
+// the push constants, workgroup and number of specialisation constants, all read from its SPIR-V.
+#define TYN_KERNEL(code)                                                                           \
     {                                                                                              \
         .name = #code, .spirv = code##_spirv, .spirv_size = sizeof code##_spirv,                   \
-        .args_size = args, .local_size = {x, y, z}, .bindings = table,                             \
-        .num_bindings = sizeof table / sizeof *table, .num_spec = specs                            \
+        .args_size = code##_args_size, .local_size = {code##_x, code##_y, code##_z},               \
+        .bindings = code##_bindings, .num_bindings = TYN_COUNT(code##_bindings),                   \
+        .num_spec = code##_num_spec                                                                \
+    }
+// One that draws with the vertex shader `code`, which has the tables of the shader `all`: that of its two shaders
+// which declares every binding of both.
+#define TYN_DRAW(title, code, all, state)                                                          \
+    {                                                                                              \
+        .name = title, .spirv = code##_spirv, .spirv_size = sizeof code##_spirv,                   \
+        .args_size = all##_args_size, .bindings = all##_bindings,                                  \
+        .num_bindings = TYN_COUNT(all##_bindings), .num_spec = all##_num_spec, .raster = state     \
     }
 
-// ---- bundles --------------------------------------------------------------------------------
+// ---- lists of ports -------------------------------------------------------------------------
 
-// Ports that go together from the pass that makes them to those that read them are a list in a fixed order,
-//   #define TYN_BEAMS(X, P) X(P, BEAMS, beams, TYN_BUFFER, TYN_USE_UNIFORM, false, "struct beam_block[]"), X(P, ...
-// with X(P, PORT, name, dim, use, optional, meaning). A pass with the prefix P names it once in its enum, its port
-// table and each binding table:
-//   enum { SHADE_PORT_CAMERA, TYN_BEAMS(TYN_BUNDLE_ENUM, SHADE), ... };
-//   static const tyn_port ports[] = { TYN_BEAMS(TYN_BUNDLE_IN, SHADE), ... };
-//   static const tyn_binding bindings[] = { TYN_BEAMS(TYN_BUNDLE_BIND, SHADE), ... };
-#define TYN_BUNDLE_ENUM(P, PORT, ...) P##_PORT_##PORT
-#define TYN_BUNDLE_IN(P, PORT, name, dim, use, optional, meaning)                                  \
-    [P##_PORT_##PORT] = {#name, TYN_IN, dim, VK_FORMAT_UNDEFINED, optional, meaning}
-// The whole bundle may be absent.
-#define TYN_BUNDLE_OPTIONAL(P, PORT, name, dim, use, optional, meaning)                            \
-    [P##_PORT_##PORT] = {#name, TYN_IN, dim, VK_FORMAT_UNDEFINED, true, meaning}
-#define TYN_BUNDLE_BIND(P, PORT, name, dim, use, optional, meaning)                                \
-    {                                                                                              \
-        P##_PORT_##PORT, use, false                                                                \
-    }
-// With its buffers as storage buffers.
-#define TYN_BUNDLE_BIND_STORAGE(P, PORT, name, dim, use, optional, meaning)                        \
-    {                                                                                              \
-        P##_PORT_##PORT, (dim) == TYN_BUFFER ? TYN_USE_STORAGE_READ : (use), false                 \
-    }
-// With its buffers as texels of four words.
-#define TYN_BUNDLE_BIND_TEXELS(P, PORT, name, dim, use, optional, meaning)                         \
-    {                                                                                              \
-        P##_PORT_##PORT, (dim) == TYN_BUFFER ? TYN_USE_TEXELS_UVEC4 : (use), false                 \
-    }
-// The fields of a struct: struct { tyn_ref TYN_BEAMS(TYN_BUNDLE_NAME, ); }.
-#define TYN_BUNDLE_NAME(P, PORT, name, ...) name
+// The ports of a pass are a list of X(PREFIX, PORT, name, direction, dim, meaning...), from which come its enum
+// and its table:
+//   #define TONEMAP_PORTS(X) X(TONEMAP, RADIANCE, radiance, IN, IMAGE_2D, "W/(m^2 sr)"), X(...)
+//   enum { TONEMAP_PORTS(TYN_PORT_ENUM), TONEMAP_NUM_PORTS };                TONEMAP_PORT_RADIANCE, ...
+//   static const tyn_port ports[] = {TONEMAP_PORTS(TYN_PORT_ROW)};
+// direction: IN, OPTIONAL (IN that need not be connected), OUT, INOUT, SCRATCH. dim: BUFFER, IMAGE_2D, IMAGE_3D. Behind
+// the meaning further fields of tyn_port may stand: .format = VK_FORMAT_R32_SFLOAT.
+//
+// A bundle is a list of ports that go together from the passes that make them to those that read them, TYN_BEAMS(X, PREFIX);
+// it is an element of lists, with X##_OPTIONAL where all of it may be absent. A struct of refs is
+//   struct { tyn_ref TYN_BEAMS(TYN_PORT_NAME, ); }.
+#define TYN_PORT_ENUM(P, PORT, ...) P##_PORT_##PORT
+#define TYN_PORT_ENUM_OPTIONAL(P, PORT, ...) P##_PORT_##PORT
+#define TYN_PORT_NAME(P, PORT, name, ...) name
+#define TYN_PORT_ROW(P, PORT, port_name, direction, size, ...)                                     \
+    [P##_PORT_##PORT] = {                                                                          \
+        .name = #port_name, TYN_PORT_##direction, .dim = TYN_##size, .meaning = __VA_ARGS__}
+#define TYN_PORT_ROW_OPTIONAL(P, PORT, port_name, direction, size, ...)                            \
+    TYN_PORT_ROW(P, PORT, port_name, OPTIONAL, size, __VA_ARGS__)
+#define TYN_PORT_IN .dir = TYN_IN
+#define TYN_PORT_OPTIONAL .dir = TYN_IN, .optional = true
+#define TYN_PORT_OUT .dir = TYN_OUT
+#define TYN_PORT_INOUT .dir = TYN_INOUT
+#define TYN_PORT_SCRATCH .dir = TYN_SCRATCH
 
 // ---- parameters -----------------------------------------------------------------------------
 
@@ -218,7 +224,6 @@ typedef struct tyn_pass_desc {
 } tyn_pass_desc;
 
 // Of a pass whose tables and functions are called ports, kernels, declare and record.
-#define TYN_COUNT(table) (sizeof(table) / sizeof((table)[0]))
 #define TYN_PASS_TABLES(params_type)                                                               \
     .ports = ports, .num_ports = TYN_COUNT(ports), .kernels = kernels,                             \
     .num_kernels = TYN_COUNT(kernels), .params_size = sizeof(params_type), .declare = declare,     \
@@ -256,6 +261,8 @@ typedef struct tyn_dispatch {
     const char *label;    // for captures and dumps; NULL = the kernel's name
 } tyn_dispatch;
 TYN_API void tyn_rec_dispatch(tyn_recorder *r, const tyn_dispatch *d);
+// TYN_DISPATCH(r, .kernel = SUM, .cells = {n, 1, 1}, .args = &args)
+#define TYN_DISPATCH(r, ...) tyn_rec_dispatch(r, &(tyn_dispatch){__VA_ARGS__})
 // For tyn_dispatch.ports: into `out` the ports of the kernel's table, pairs[i][0] replaced by pairs[i][1]. `out` is
 // returned.
 TYN_API const uint8_t *tyn_ports_exchanged(const tyn_kernel *kernel, const uint8_t (*pairs)[2],

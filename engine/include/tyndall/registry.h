@@ -14,7 +14,7 @@ TYN_API const tyn_pass_desc *tyn_pass_at(uint32_t index);
 
 // What decides how right a method is in a scene. Of what differs between channels and places: where the medium is dense,
 // the channel in which it is most. "Scaled": what is scattered forward counts as not scattered.
-typedef struct tyn_regime {
+typedef struct tyn_regime { // NAN: not known, and beyond no bound
     double depth;           // mean free paths along the longest side of the medium's box
     double mean_free_path;  // of that side
     double mean_depth;      // ... along a straight way through the medium, on average
