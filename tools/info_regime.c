@@ -135,7 +135,11 @@ static void add_media(cJSON *root, const tyn_scene *scene)
         json_add_float(medium, "density_scale", m->density_scale);
         add_floats(medium, "sigma_s", m->sigma_s, 3);
         add_floats(medium, "sigma_a", m->sigma_a, 3);
-        add_floats(medium, "g", m->g, 3);
+        for (const tyn_phase_parameter *p = tyn_phase_parameters(); p->name; p++) {
+            float values[3];
+            tyn_phase_get(m->phase, p, values);
+            add_floats(medium, p->name, values, 3);
+        }
         add_floats(medium, "emission", m->emission, 3);
         cJSON_AddItemToArray(media, medium);
     }

@@ -30,7 +30,12 @@ static void print_media(const tyn_scene *scene)
         }
         print_color("\n  scattering  ", m->sigma_s, " 1/m\n");
         print_color("  absorption  ", m->sigma_a, " 1/m\n");
-        print_color("  mean cosine ", m->g, "\n");
+        for (const tyn_phase_parameter *p = tyn_phase_parameters(); p->name; p++) {
+            float values[3];
+            tyn_phase_get(m->phase, p, values);
+            printf("  %s", p->title);
+            print_color(" ", values, "\n");
+        }
         if (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0) {
             print_color("  emission    ", m->emission, " W/(m^3 sr)\n");
         }

@@ -36,7 +36,7 @@ typedef struct regime {
     // Weighted by extinction: at the places where light meets the medium.
     double mean_free_path;           // 1 / sigma_t, m
     double transport_mean_free_path; // 1 / (sigma_a + (1 - g) sigma_s), m
-    // 1 / (sigma_a + (1 - g^2) sigma_s), m (delta scaling; g > 0), of the densest channel
+    // 1 / (sigma_a + (1 - f) sigma_s), m (delta scaling), of the densest channel
     double scaled_mean_free_path;
 
     double sides[3];  // of the box, m

@@ -13,7 +13,7 @@ static bool all_grey(const tyn_scene *scene)
         const tyn_medium *m = &scene->media[i];
         for (int c = 1; c < 3; c++) {
             grey &= m->sigma_s[c] == m->sigma_s[0] && m->sigma_a[c] == m->sigma_a[0] &&
-                    m->g[c] == m->g[0];
+                    tyn_phase_equal(m->phase[c], m->phase[0]);
         }
     }
     return grey;

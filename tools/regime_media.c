@@ -75,15 +75,16 @@ bool regime_media_at(const regime_media *media, const double world[3], regime_co
         const double density = shape_density(media, i, world);
         const tyn_medium *m = &media->scene->media[media->scene->shapes[i].medium];
         for (int c = 0; c < 3 && density > 0; c++) {
-            const double forward = fmax(m->g[c], 0);
+            const double g = tyn_phase_mean_cosine(m->phase[c]);
+            const double forward = tyn_phase_delta_fraction(m->phase[c]);
             out->sigma_s[c] += density * m->sigma_s[c];
             out->sigma_a[c] += density * m->sigma_a[c];
-            out->g_sigma_s[c] += density * m->sigma_s[c] * m->g[c];
-            out->scaled[c] += density * (m->sigma_a[c] + (1 - forward * forward) * m->sigma_s[c]);
+            out->g_sigma_s[c] += density * m->sigma_s[c] * g;
+            out->scaled[c] += density * (m->sigma_a[c] + (1 - forward) * m->sigma_s[c]);
             out->emission[c] += density * m->emission[c];
             if (m->sigma_s[c] > 0) {
-                out->least_g = fmin(out->least_g, m->g[c]);
-                out->most_g = fmax(out->most_g, m->g[c]);
+                out->least_g = fmin(out->least_g, g);
+                out->most_g = fmax(out->most_g, g);
             }
             found |= m->sigma_s[c] + m->sigma_a[c] > 0 || m->emission[c] > 0;
         }

@@ -55,7 +55,7 @@ typedef struct regime_media {
 
 typedef struct regime_coefficients {
     double sigma_s[3], sigma_a[3], g_sigma_s[3], emission[3];
-    double scaled[3]; // extinction without what is scattered straight on: sigma_t - g^2 sigma_s
+    double scaled[3];       // extinction without what is scattered straight on: sigma_t - f sigma_s
     double least_g, most_g; // of what scatters; 1 and -1: nothing does
 } regime_coefficients;
 

@@ -13,7 +13,7 @@ static void unit_box(tyn_scene *scene, float sigma_s, float sigma_a, float g)
     for (int c = 0; c < 3; c++) {
         medium->sigma_s[c] = sigma_s;
         medium->sigma_a[c] = sigma_a;
-        medium->g[c] = g;
+        medium->phase[c].g = g;
     }
     scene->num_shapes = 1;
     scene->shapes[0] =

@@ -140,7 +140,7 @@ static int check_airlight(selftest *t)
         tyn_scene scene;
         selftest_lamp(&scene, 0.25f / 0.3f, 0.3f, 2 * (1 + 12 / 0.3f));
         for (int c = 0; c < 3; c++) {
-            scene.media[0].g[c] = rows[i / 2].g;
+            scene.media[0].phase[c].g = rows[i / 2].g;
         }
         scene.lights[0].position[0] = (float)sin(pi / 3);
         scene.lights[0].position[2] = -0.5f;

@@ -125,7 +125,7 @@ static bool equal_coefficients(const tyn_medium *a, const tyn_medium *b)
     for (int c = 0; c < 3; c++) {
         equal &= a->sigma_s[c] * a->density_scale == b->sigma_s[c] * b->density_scale &&
                  a->sigma_a[c] * a->density_scale == b->sigma_a[c] * b->density_scale &&
-                 a->g[c] == b->g[c] &&
+                 tyn_phase_equal(a->phase[c], b->phase[c]) &&
                  a->emission[c] * a->density_scale == b->emission[c] * b->density_scale;
     }
     return equal;
@@ -173,11 +173,12 @@ static void build_medium(tyn_frame_scene *out, const tyn_scene *scene, const dou
     for (int c = 0; equal && c < 3; c++) {
         b->sigma_s[c] = first->sigma_s[c] * first->density_scale;
         b->sigma_a[c] = first->sigma_a[c] * first->density_scale;
-        b->g[c] = first->g[c];
+        b->phase[c] = first->phase[c];
         b->emission[c] = first->emission[c] * first->density_scale;
         b->sigma_t_max = fmaxf(b->sigma_t_max, b->sigma_s[c] + b->sigma_a[c]);
     }
-    out->grey = equal && one_value(b->sigma_s) && one_value(b->sigma_a) && one_value(b->g);
+    out->grey =
+        equal && one_value(b->sigma_s) && one_value(b->sigma_a) && tyn_phase_is_grey(b->phase);
     if (out->direct && first->volume >= 0) {
         memcpy(b->size, scene->volumes[first->volume].size, sizeof b->size);
     } else if (out->direct) {
@@ -250,7 +251,7 @@ static void build_shapes(tyn_frame_scene *out, const tyn_scene *scene, const rig
             float scale = volume && volume->max_density <= 0 ? 0 : medium->density_scale;
             b->sigma_s[a] = medium->sigma_s[a] * scale;
             b->sigma_a[a] = medium->sigma_a[a] * scale;
-            b->g[a] = medium->g[a];
+            b->phase[a] = medium->phase[a];
             b->emission[a] = medium->emission[a] * scale;
             bool dark = b->sigma_s[a] + b->sigma_a[a] + b->emission[a] <= 0;
             out->empty &= dark || (volume && volume->max_density <= 0);

@@ -39,7 +39,7 @@ static void choose_medium(tyn_medium *medium, const tyn_volume *volume)
     *medium = (tyn_medium){.density_scale = 1.0f};
     for (int c = 0; c < 3; c++) {
         medium->sigma_s[c] = column > 0.0 ? (float)fmin(32.0 / column, 1e30) : 0.0f;
-        medium->g[c] = 0.75f;
+        medium->phase[c].g = 0.75f;
     }
 }
 

@@ -11,8 +11,6 @@
 #include "io/volume.h"
 #include "scene/matrix.h"
 
-static const double g_limit = 0.99999994; // the largest float below 1
-
 // ---- media ----------------------------------------------------------------------------------
 
 static bool has_extension(const char *path, const char *extension)
@@ -128,8 +126,12 @@ static tyn_result read_medium(tyn_scene *scene, gltf_media *media, const json_do
     TYN_TRY(tyn_json_string(doc, from, "name", &name));
     TYN_TRY(tyn_json_color(doc, from, "scattering", 0.0, FLT_MAX, ">= 0, in 1/m", medium->sigma_s));
     TYN_TRY(tyn_json_color(doc, from, "absorption", 0.0, FLT_MAX, ">= 0, in 1/m", medium->sigma_a));
-    TYN_TRY(tyn_json_color(doc, from, "anisotropy", -g_limit, g_limit,
-                           "between -1 and 1, both excluded", medium->g));
+    for (const tyn_phase_parameter *p = tyn_phase_parameters(); p->name; p++) {
+        float values[3];
+        tyn_phase_get(medium->phase, p, values);
+        TYN_TRY(tyn_json_color(doc, from, p->key, p->lo, p->hi, p->right, values));
+        tyn_phase_set(medium->phase, p, values);
+    }
     TYN_TRY(tyn_json_color(doc, from, "emission", 0.0, FLT_MAX, ">= 0, in W/(m^3 sr)",
                            medium->emission));
     TYN_TRY(tyn_json_object(doc, from, "density", &density));
@@ -348,9 +350,14 @@ void tyn_gltf_warn_unknown(tyn_scene *scene, const json_doc *doc)
 {
     static const char media[] = "TYN_participating_media", maps[] = "TYN_environment_map";
     unknown u = {0};
+    char coefficients[256] = " scattering absorption";
+    for (const tyn_phase_parameter *p = tyn_phase_parameters(); p->name; p++) {
+        strcat(strcat(coefficients, " "), p->key);
+    }
+    strcat(coefficients, " emission density ");
     const cJSON *at = extension_of(doc->root, media), *list = tyn_json_member(at, "media"), *medium;
     look(&u, at, " media ");
-    look_at_all(&u, list, NULL, " scattering absorption anisotropy emission density ");
+    look_at_all(&u, list, NULL, coefficients);
     cJSON_ArrayForEach(medium, list)
     {
         look(&u, tyn_json_member(medium, "density"), " uri grid scale size type ");

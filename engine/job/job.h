@@ -92,7 +92,7 @@ void tyn_job_warn_surfaces(const tyn_job *job, const char *what);
 // False with a log line if a shape of the scene is periodic.
 bool tyn_job_refuse_repeat(const tyn_job *job);
 
-// Least and largest g of what scatters in the scene; 0 and 0 if nothing does.
+// Least and largest mean cosine of what scatters in the scene; 0 and 0 if nothing does.
 void tyn_range_of_g(const tyn_scene *scene, float *least, float *most);
 // Bounds in M of the world box around the surfaces; empty without surfaces.
 void tyn_surfaces_box(const tyn_frame_scene *frame, float lo[3], float hi[3]);

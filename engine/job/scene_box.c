@@ -18,8 +18,9 @@ void tyn_range_of_g(const tyn_scene *scene, float *least, float *most)
         const tyn_medium *m = &scene->media[scene->shapes[i].medium];
         for (int c = 0; c < 3; c++) {
             if (m->sigma_s[c] * m->density_scale > 0.0f) {
-                *least = fminf(*least, m->g[c]);
-                *most = fmaxf(*most, m->g[c]);
+                const float g = (float)tyn_phase_mean_cosine(m->phase[c]);
+                *least = fminf(*least, g);
+                *most = fmaxf(*most, g);
             }
         }
     }

@@ -1,6 +1,5 @@
 // limits.c -- the rows of methods' tables that count in a regime, and a frame's warnings from them.
 #include "methods/limits.h"
-#include "base/forward_lobe.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -92,9 +91,10 @@ typedef struct dense {
     float least_g, most_g; // of what scatters
 } dense;
 
-static void add_channel(dense *d, float s, float a, float g, float density)
+static void add_channel(dense *d, float s, float a, tyn_phase phase, float density)
 {
-    const float f = (float)tyn_delta_fraction(g);
+    const float f = (float)tyn_phase_delta_fraction(phase);
+    const float g = (float)tyn_phase_mean_cosine(phase);
     s *= density;
     a *= density;
     d->extinction = fmaxf(d->extinction, s + a);
@@ -116,7 +116,7 @@ static dense dense_of(const tyn_job *job)
     if (m->mode == TYN_MEDIUM_DENSITY) {
         float density = frame->typical_density > 0 ? frame->typical_density : m->max_density;
         for (int c = 0; c < 3; c++) {
-            add_channel(&sum, m->sigma_s[c], m->sigma_a[c], m->g[c], density);
+            add_channel(&sum, m->sigma_s[c], m->sigma_a[c], m->phase[c], density);
         }
         return sum;
     }
@@ -127,7 +127,7 @@ static dense dense_of(const tyn_job *job)
         const struct shape_block *s = &frame->shapes[i];
         dense one = {.least_g = sum.least_g, .most_g = sum.most_g};
         for (int c = 0; c < 3; c++) {
-            add_channel(&one, s->sigma_s[c], s->sigma_a[c], s->g[c], density);
+            add_channel(&one, s->sigma_s[c], s->sigma_a[c], s->phase[c], density);
         }
         sum.extinction += one.extinction;
         sum.scaled += one.scaled;

@@ -145,7 +145,8 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
     float sigma_t = 0;
     for (uint32_t i = 0; i < m->num_shapes; i++) {
         const struct shape_block *s = &frame->shapes[i];
-        p->grey = p->grey && equal3(s->sigma_s) && equal3(s->sigma_a) && equal3(s->g);
+        p->grey =
+            p->grey && equal3(s->sigma_s) && equal3(s->sigma_a) && tyn_phase_is_grey(s->phase);
         sigma_t = fmaxf(sigma_t, s->sigma_s[1] + s->sigma_a[1]);
     }
     p->repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];

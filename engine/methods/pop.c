@@ -11,7 +11,6 @@
 #include "methods/method.h"
 #include "solve/lattice.h"
 #include "view/view.h"
-#include "base/forward_lobe.h"
 #include <tyndall/registry.h>
 #include <math.h>
 
@@ -41,7 +40,7 @@ static bool is_thin(const tyn_frame_scene *frame)
                           m->extent[2] * m->extent[2]);
     float scattering = 0.0f;
     for (int c = 0; c < 3; c++) {
-        const float f = (float)tyn_delta_fraction(m->g[c]);
+        const float f = (float)tyn_phase_delta_fraction(m->phase[c]);
         scattering = fmaxf(scattering, (1.0f - f) * m->sigma_s[c]);
     }
     return scattering * m->max_density * longest < thin_depth;

@@ -1,7 +1,9 @@
 // check.c -- is every number of a scene one that the solvers can take?
 #include "scene/check.h"
 #include <math.h>
+#include <stdio.h>
 #include "scene/matrix.h"
+#include "scene/phase.h"
 #include "scene/surfaces.h"
 
 #define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
@@ -71,10 +73,10 @@ static tyn_result check_medium(const tyn_scene *scene, uint32_t i, const tyn_log
                   v[1], v[2]);
         }
     }
-    for (int c = 0; c < 3; c++) {
-        if (!(m->g[c] > -1.0f && m->g[c] < 1.0f)) {
-            FAULT("media[%u].g[%d] = %g: must be between -1 and 1, both excluded", i, c, m->g[c]);
-        }
+    char of[24];
+    snprintf(of, sizeof of, "media[%u]", i);
+    if (tyn_phase_check(m->phase, of, log)) {
+        return TYN_ERR_PARAMS;
     }
     if (!(m->density_scale >= 0.0f && isfinite(m->density_scale))) {
         FAULT("media[%u].density_scale = %g: must be >= 0 and finite", i, m->density_scale);

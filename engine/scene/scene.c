@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "scene/phase.h"
 #include "scene/surfaces.h"
 
 void tyn_scene_init(tyn_scene *scene)
@@ -98,6 +99,7 @@ static bool all_in(const float *v, float lo, float hi)
 
 tyn_result tyn_scene_override(tyn_scene *scene, const tyn_medium_override *o, const tyn_log *log)
 {
+    const tyn_phase_parameter *g = tyn_phase_parameters();
     const struct {
         const char *name, *right;
         const float *value;
@@ -105,7 +107,7 @@ tyn_result tyn_scene_override(tyn_scene *scene, const tyn_medium_override *o, co
     } checks[] = {
         {"sigma_s", ">= 0 and finite, 1/m", o->sigma_s, 0.0f, FLT_MAX},
         {"sigma_a", ">= 0 and finite, 1/m", o->sigma_a, 0.0f, FLT_MAX},
-        {"g", "between -1 and 1, both excluded", o->g, -0.99999994f, 0.99999994f},
+        {g->name, g->right, o->g, g->lo, g->hi},
         {"albedo", "between 0 and 1", o->albedo, 0.0f, 1.0f},
     };
     for (size_t i = 0; i < sizeof checks / sizeof checks[0]; i++) {
@@ -126,7 +128,7 @@ tyn_result tyn_scene_override(tyn_scene *scene, const tyn_medium_override *o, co
         for (int c = 0; c < 3; c++) {
             medium->sigma_s[c] = o->sigma_s ? o->sigma_s[c] : medium->sigma_s[c];
             medium->sigma_a[c] = o->sigma_a ? o->sigma_a[c] : medium->sigma_a[c];
-            medium->g[c] = o->g ? o->g[c] : medium->g[c];
+            medium->phase[c] = o->g ? tyn_phase_of_mean_cosine(o->g[c]) : medium->phase[c];
             if (o->albedo) {
                 float sigma_t = medium->sigma_s[c] + medium->sigma_a[c];
                 medium->sigma_s[c] = sigma_t * o->albedo[c];

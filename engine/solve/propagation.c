@@ -34,7 +34,7 @@ static int32_t iterations_before_residuum(const propagated *p, const tyn_job *jo
     }
     for (int c = 0; c < 3; c++) {
         sigma_s += m->sigma_s[c] / 3.0f * job->frame->mean_density;
-        g = fmaxf(g, m->g[c]);
+        g = fmaxf(g, (float)tyn_phase_mean_cosine(m->phase[c]));
     }
     float hop = longest_side(job) / (float)p->grids.cells;
     uint32_t hops =

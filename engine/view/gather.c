@@ -20,7 +20,7 @@ void tyn_add_forward_tables(tyn_graph *g, const tyn_job *job, tyn_view_inputs *i
     tyn_scatter_lut_params params;
     tyn_settings_params(job->settings, &tyn_pass_scatter_lut, &params);
     params.mode = m->mode;
-    memcpy(params.g, m->g, sizeof params.g);
+    memcpy(params.phase, m->phase, sizeof params.phase);
     params.g_max = largest_g(job);
     params.num_suns = s->num_suns;
     for (uint32_t n = 0; n < params.num_suns; n++) {
@@ -40,11 +40,11 @@ void tyn_add_glow(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
         return;
     }
     const struct medium_block *m = &job->frame->medium;
-    float largest = largest_g(job);
+    const tyn_phase narrowest = tyn_phase_of_mean_cosine(largest_g(job));
     tyn_env_glow_params params;
     tyn_settings_params(job->settings, &tyn_pass_env_glow, &params);
     for (int c = 0; c < 3; c++) {
-        params.g[c] = m->mode == TYN_MEDIUM_DENSITY ? m->g[c] : largest;
+        params.phase[c] = m->mode == TYN_MEDIUM_DENSITY ? m->phase[c] : narrowest;
     }
     tyn_ref refs[TYN_MAX_PORTS] = {[ENV_GLOW_PORT_SKY] = in->sources->sky.map};
     tyn_graph_add(g, &tyn_pass_env_glow, &params, refs);

@@ -6,7 +6,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/beams/columns_args.h"
-#include "shaders/phase/hg.glsl"
+#include "shaders/phase/phase.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(push_constant, scalar) uniform push
@@ -54,10 +54,11 @@ void main()
     vec3 sum_s = vec3(0.0), sum_a = vec3(0.0), sum_p = vec3(0.0);
     for (uint i = 0; i < columns_average_count(); i++) {
         vec3 uvw = columns_average_uvw(texel, i);
-        vec3 sigma_s = textureLod(density_tex, uvw, 0.0).rgb, g = textureLod(g_tex, uvw, 0.0).rgb;
-        similarity_clamp(sigma_s, g);
+        vec3 sigma_s = textureLod(density_tex, uvw, 0.0).rgb;
+        phase p[3] = phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb);
+        similarity_clamp(sigma_s, p);
         sum_s += sigma_s;
-        sum_p += sigma_s * (1.0 - delta_fraction(g));
+        sum_p += sigma_s * (1.0 - delta_fraction(p));
         sum_a += textureLod(sigma_a_tex, uvw, 0.0).rgb;
     }
     float norm = 1.0 / float(columns_average_count());
@@ -65,6 +66,6 @@ void main()
     f = mix(vec3(0.0), clamp(f, 0.0, 1.0), greaterThan(sum_s, vec3(0.0)));
     imageStore(mean_sigma_s, ivec3(texel), vec4(sum_s * norm, 0.0));
     imageStore(mean_sigma_a, ivec3(texel), vec4(sum_a * norm, 0.0));
-    imageStore(mean_g, ivec3(texel), vec4(sqrt(f), 0.0));
+    imageStore(mean_g, ivec3(texel), vec4(delta_lobe(f), 0.0));
 #endif
 }

@@ -9,14 +9,11 @@
 #include "env_glow_analyse.comp.h"
 #include "env_glow_smear.comp.h"
 #include "env_glow_texels.comp.h"
-#include "base/forward_lobe.h"
 #include <math.h>
 
 #define PI 3.14159265358979323846
 
 enum { DEGREES = TYN_GLOW_HEIGHT };
-
-static const double g_max = 0.995; // narrower lobes are replaced by this one (similarity_clamp)
 
 static const tyn_port ports[] = {ENV_GLOW_PORTS(TYN_PORT_ROW)};
 
@@ -31,16 +28,14 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
 
 // ---- the series -----------------------------------------------------------------------------------
 
-static double clamped_g(const tyn_env_glow_params *p, int c)
-{
-    return fmin(fmax(p->g[c], 0), g_max);
-}
-
 // Levels up to the depth at which e^-tau' = e^-20 in a medium that does not absorb.
 static uint32_t num_levels(const tyn_env_glow_params *p)
 {
-    double g = fmax(clamped_g(p, 0), fmax(clamped_g(p, 1), clamped_g(p, 2)));
-    double deepest = 20 * tyn_delta_fraction(g) / (1 - tyn_delta_fraction(g));
+    double f = 0;
+    for (int c = 0; c < 3; c++) {
+        f = fmax(f, tyn_phase_delta_fraction(tyn_phase_resolved(p->phase[c])));
+    }
+    double deepest = 20 * f / (1 - f);
     double last = ceil(log1p(deepest / TYN_GLOW_DEPTH) / TYN_GLOW_STEP);
     return (uint32_t)fmin(fmax(last + 1, 2), TYN_GLOW_LEVELS);
 }
@@ -83,9 +78,8 @@ static void make_series(const tyn_env_glow_params *p, struct glow_series *s)
     double phi[3][DEGREES] = {
         {1}, {1}, {1}}; // no lobe: the mean alone, which nothing is weighted with
     for (int c = 0; c < 3; c++) {
-        double g = clamped_g(p, c);
-        if (tyn_delta_fraction(g) > 1e-6) {
-            tyn_lobe_moments(g, phi[c], DEGREES);
+        if (tyn_phase_has_lobe(p->phase[c])) {
+            tyn_phase_lobe_moments(p->phase[c], TYN_PHASE_NARROWEST, phi[c], DEGREES);
             for (int l = DEGREES - 1; l >= 0; l--) {
                 phi[c][l] /= phi[c][0];
             }
@@ -110,12 +104,8 @@ static void make_series(const tyn_env_glow_params *p, struct glow_series *s)
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_env_glow_params *p = params;
-    for (int c = 0; c < 3; c++) {
-        if (!(p->g[c] > -1 && p->g[c] < 1)) {
-            tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                          "env_glow: g is %g, must be above -1 and below 1", p->g[c]);
-            return TYN_ERR_PARAMS;
-        }
+    if (tyn_phase_check(p->phase, "env_glow", tyn_build_log(b))) {
+        return TYN_ERR_PARAMS;
     }
     uint32_t levels = num_levels(p);
     uint64_t orders = (uint64_t)DEGREES * TYN_GLOW_HEIGHT * sizeof(struct glow_order);

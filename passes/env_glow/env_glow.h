@@ -1,11 +1,13 @@
 // env_glow.h -- the environment as it looks through a medium that scatters forward.
 #pragma once
 #include <tyndall/pass.h>
+#include "scene/phase.h"
 #include "shaders/light/glow_args.h"
 
 typedef struct tyn_env_glow_params {
-    float g[3]; // of the colour channels, in (-1, 1). Where g varies in space, the largest one that
-                // matters: a narrower lobe than there is shows the map too sharp, never too bright
+    // Of the colour channels. Where it varies in space, that of the largest mean cosine that matters: a narrower lobe
+    // than there is shows the map too sharp, never too bright.
+    tyn_phase phase[3];
 } tyn_env_glow_params;
 
 // clang-format off

@@ -65,14 +65,14 @@ void main()
                     medium_point m = medium_sample(p);
                     scattered += m.sigma_s;
                     absorbed += m.sigma_a;
-                    turned += m.sigma_s * m.g;
+                    turned += m.sigma_s * phase_mean_cosine(m.phase);
                 }
             }
         }
         if (medium_mode == TYN_MEDIUM_DENSITY) {
             scattered = density * medium.sigma_s;
             absorbed = density * medium.sigma_a;
-            turned = scattered * medium.g;
+            turned = scattered * phase_mean_cosine(medium.phase);
         }
         const float each = 1.0 / float(SAMPLES * SAMPLES * SAMPLES);
         float sigma_s = mean(scattered) * each, g = mean(turned) * each / max(sigma_s, 1e-30);

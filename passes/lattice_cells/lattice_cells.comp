@@ -34,11 +34,11 @@ void main()
             for (uint i = 0; i < args.samples.x; i++) {
                 vec3 at = (vec3(i, j, k) + 0.5) / vec3(args.samples);
                 medium_point m = medium_sample(lattice_to_m(box, vec3(c) + at));
-                similarity_clamp(m.sigma_s, m.g);
-                vec3 scaled = (1.0 - delta_fraction(m.g)) * m.sigma_s;
+                similarity_clamp(m.sigma_s, m.phase);
+                vec3 scaled = (1.0 - delta_fraction(m.phase)) * m.sigma_s;
                 sigma_s += scaled;
                 sigma_a += m.sigma_a;
-                first += delta_cosine(m.g) * scaled;
+                first += delta_cosine(m.phase) * scaled;
                 emission += m.emission;
             }
         }

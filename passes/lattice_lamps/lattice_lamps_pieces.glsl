@@ -24,8 +24,7 @@ void lattice_lamps_add_pieces(uint n, uint count, lattice_box box, ivec3 c, inou
         }
         medium_point m = medium_sample(p);
         m.sigma_a = medium_mode == TYN_MEDIUM_DENSITY ? m.sigma_a : vec3(0.0); // left out of unequal media
-        similarity_clamp(m.sigma_s, m.g);
-        vec3 scaled = (1.0 - delta_fraction(m.g)) * m.sigma_s;
+        vec3 scaled = delta_scaled(m.sigma_s, m.phase);
         vec3 w = scaled + 1e-6 * m.sigma_a;
         weight += w;
         if (w.r + w.g + w.b <= 0.0) {

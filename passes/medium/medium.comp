@@ -5,6 +5,7 @@
 #define MEDIUM_BLOCK 0
 #define SHAPES 1
 #define ATLAS 2
+#include "shaders/phase/phase.glsl"
 #include "medium_shapes.glsl"
 #include "medium_args.h"
 
@@ -42,7 +43,7 @@ void main()
         float value = shape_mean(shapes[i], p, int(args.samples));
         sigma_s += value * shapes[i].sigma_s;
         sigma_a += value * shapes[i].sigma_a;
-        weighted += value * shapes[i].sigma_s * shapes[i].g;
+        weighted += value * shapes[i].sigma_s * phase_mean_cosine(shapes[i].phase);
     }
     vec3 g = mix(vec3(0.0), weighted / max(sigma_s, vec3(1e-30)), greaterThan(sigma_s, vec3(0.0)));
     float mean_s = mean_of(sigma_s);

@@ -75,7 +75,7 @@ void main()
     if (medium_mode == TYN_MEDIUM_COEFFICIENTS) {
         for (int ch = 0; ch < 3; ch++) {
             float scaled = texelFetch(cells, c + ivec3(0, 0, min(ch, int(channels) - 1) * dims.z), 0).z;
-            last[ch] = tms_last_of(scaled > 0.0 ? scaled / (1.0 - scaled) : scaled);
+            last[ch] = tms_last_of(phase_of_delta_cosine(scaled));
         }
     }
     vec3 sum = vec3(0.0);

@@ -49,12 +49,6 @@ vec4 cell_of(ivec3 c, uint ch)
     return texelFetch(cells, c + ivec3(0, 0, int(min(ch, channels - 1u) * args.dims.z)), 0);
 }
 
-// g of a cell from its g' = g / (1 + g).
-float plain_g(float scaled)
-{
-    return scaled > 0.0 ? min(scaled / (1.0 - scaled), HG_MAX) : scaled;
-}
-
 // e^-(tau - tau') between the middle of a cell and the eye.
 vec3 forward_part(lattice_box box, ivec3 c, vec3 v)
 {
@@ -70,7 +64,7 @@ vec3 forward_part(lattice_box box, ivec3 c, vec3 v)
         ivec3 q = clamp(ivec3(at), ivec3(0), box.dims - 1);
         for (uint ch = 0u; ch < 3u; ch++) {
             vec4 cell = cell_of(q, ch);
-            float f = delta_fraction(plain_g(cell.z));
+            float f = delta_fraction(phase_of_delta_cosine(cell.z));
             depth[ch] += ds * cell.x * f / (1.0 - f);
         }
     }
@@ -78,15 +72,15 @@ vec3 forward_part(lattice_box box, ivec3 c, vec3 v)
 }
 
 // (K_tms + K_lobe `forward`) / (1 - f) of a channel.
-float kernel(uint ch, float g, float one_minus_mu, float tau_s, float tau_p, float forward)
+float kernel(uint ch, phase last, float one_minus_mu, float tau_s, float tau_p, float forward)
 {
     if (medium_mode == TYN_MEDIUM_DENSITY) {
         scatter_angle angle = scatter_angle_of_point(ch, one_minus_mu);
         vec2 k = scatter_kernels(angle, tau_s);
         return (k.x + forward * k.y) / angle.loss;
     }
-    vec2 k = scatter_kernels_mixed(0u, 1.0, one_minus_mu, g, tau_s, tau_p);
-    return (k.x + forward * k.y) / (1.0 - delta_fraction(g));
+    vec2 k = scatter_kernels_mixed(0u, 1.0, one_minus_mu, last, tau_s, tau_p);
+    return (k.x + forward * k.y) / (1.0 - delta_fraction(last));
 }
 
 void main()
@@ -101,9 +95,10 @@ void main()
     }
     lattice_box box = lattice_box_of(medium.extent, dims);
     vec3 v = merge_towards_eye(camera, box, c), p = clamp(lattice_to_m(box, vec3(c) + 0.5), vec3(0.0), medium.extent);
-    vec3 forward = forward_part(box, c, v), g, sum = vec3(0.0);
+    vec3 forward = forward_part(box, c, v), sum = vec3(0.0);
+    phase last[3];
     for (uint ch = 0u; ch < 3u; ch++) {
-        g[ch] = plain_g(cell_of(c, ch).z);
+        last[ch] = phase_of_delta_cosine(cell_of(c, ch).z);
     }
     bool same = grey || (medium_mode == TYN_MEDIUM_DENSITY && channels == 1u);
     for (uint n = args.first_radial; n < count; n++) {
@@ -118,10 +113,10 @@ void main()
         vec3 turn = away / max(r, 1e-20) - v;
         float one_minus_mu = 0.5 * dot(turn, turn);
         beam_tau tau = radial_tau(radial_place_of(n, away, r));
-        vec3 k = vec3(kernel(0u, g.r, one_minus_mu, tau.s.r, tau.p.r, forward.r));
+        vec3 k = vec3(kernel(0u, last[0], one_minus_mu, tau.s.r, tau.p.r, forward.r));
         if (!same) {
-            k.g = kernel(1u, g.g, one_minus_mu, tau.s.g, tau.p.g, forward.g);
-            k.b = kernel(2u, g.b, one_minus_mu, tau.s.b, tau.p.b, forward.b);
+            k.g = kernel(1u, last[1], one_minus_mu, tau.s.g, tau.p.g, forward.g);
+            k.b = kernel(2u, last[2], one_minus_mu, tau.s.b, tau.p.b, forward.b);
         }
         float per_intensity = args.reach > 0.0 ? radial_rest(r * r, radial_reach(radials[n].light, args.reach))
                                                : radial_mean_inverse_square(r * r, box.dx * box.dx);

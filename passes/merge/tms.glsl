@@ -2,7 +2,7 @@
 //
 // An ordinate stands for a cone of directions. Of irradiance that has come through the scattering depth
 // tau_s the medium scatters, per sigma_s' and with all light that is still going forward,
-//   e^-tau' k,  k(mu) = sum_l (2l+1)/(4 pi) P_l(mu) c_l (g^l - F_l) / (1 - f) e^{-tau_s (f - F_l)},
+//   e^-tau' k,  k(mu) = sum_l (2l+1)/(4 pi) P_l(mu) c_l (p_l - F_l) / (1 - f) e^{-tau_s (f - F_l)},
 // which is K_tms of scatter_lut.glsl averaged over the cone; e^-tau' is the delta-scaled transmittance.
 // c_l are the Legendre moments of a uniform cone with half angle gamma, c = cos gamma:
 //   c_l = (P_{l-1}(c) - P_{l+1}(c)) / ((2l+1) (1 - c)),  c_1 = 1 - solid angle / (4 pi).
@@ -15,7 +15,6 @@
 // buffer), before including.
 #ifndef TYN_TMS_GLSL
 #define TYN_TMS_GLSL
-#include "shaders/phase/hg.glsl"
 #include "shaders/phase/scatter_lut_map.glsl"
 
 layout(set = 0, binding = TMS) uniform sampler3D tms_tex;
@@ -28,14 +27,14 @@ layout(set = 0, binding = SCATTER_LUT_BLOCK, scalar) uniform lut_block_uniform
 struct tms_row {
     float w;     // texture coordinate of the smallest cone
     float scale; // texture u per ln(1 + tau / 4)
-    float side;  // -1 where g < 0: angles are counted from behind
+    float side;  // -1 of backward scattering: angles are counted from behind
 };
 
 tms_row tms_row_of(uint row)
 {
-    float g = lut.g[row];
+    phase p = lut.phase[row];
     return tms_row((float(row * TYN_TMS_CONES) + 0.5) / float(lut.num_rows * TYN_TMS_CONES),
-                   tms_depth_scale(delta_fraction(g)), g < 0.0 ? -1.0 : 1.0);
+                   tms_depth_scale(delta_fraction(p)), phase_mean_cosine(p) < 0.0 ? -1.0 : 1.0);
 }
 
 // Mode DENSITY.
@@ -53,7 +52,7 @@ float tms_kernel(tms_row row, float mu, float tau_s, float level)
     return textureLod(tms_tex, at, 0.0).r;
 }
 
-// ---- mode COEFFICIENTS, where g varies ------------------------------------------------------------
+// ---- mode COEFFICIENTS, where the mean cosine g varies ------------------------------------------------
 
 // f - F_1: how fast the mean cosine of light that is still going forward falls with tau_s. A fit to the
 // moments of the lobe, within 1.5 %.
@@ -68,15 +67,16 @@ struct tms_last {
     tms_row below, above; // around its g
     float between;
     float depth; // of a beam of its g that has a spread of 1
-    float g;
+    phase phase;
 };
 
-tms_last tms_last_of(float g)
+tms_last tms_last_of(phase last)
 {
+    float g = phase_mean_cosine(last);
     float row = lut_row(lut.log_first, lut.log_step, lut.num_rows, min(g, HG_MAX));
     uint below = uint(row), above = min(below + 1u, lut.num_rows - 1u);
     return tms_last(tms_row_of(below), tms_row_of(above), fract(row),
-                    1.0 / tms_spread(clamp(g, lut.g[0], HG_MAX)), g);
+                    1.0 / tms_spread(clamp(g, phase_mean_cosine(lut.phase[0]), HG_MAX)), last);
 }
 
 // The mean of (1 - f) on the way was tau_p / tau_s. A beam of the last scattering's g that is as wide as
@@ -89,7 +89,7 @@ float tms_kernel_mixed(tms_last last, float mu, float tau_s, float tau_p, float 
     float forward = mix(tms_kernel(last.below, mu, depth, level),
                         tms_kernel(last.above, mu, depth, level), last.between);
     // Without a lobe the light is as narrow as it came.
-    return last.g > 0.0 ? forward : hg(last.g * mean_cosine, mu);
+    return phase_forward_cosine(last.phase) > 0.0 ? forward : phase_near(last.phase, mean_cosine, 1.0 - mu);
 }
 
 #endif

@@ -196,9 +196,9 @@ void follow(uint first, uint end)
                 if (!GREY) {
                     path.rho *= f.m.sigma_t * chosen * (part / sigma_t);
                 }
-                d = phase_sample(GREY ? f.m.g.x : dot(f.m.g, path.hero), path.way, rng_vec2(bits.xy));
+                d = phase_direction(path_phase(path, f.m), path.way, rng_vec2(bits.xy));
                 if (!GREY) {
-                    vec3 forward = phase(f.m.g, path.way, d);
+                    vec3 forward = phase_between(f.m.phase, path.way, d);
                     float divide = 1.0 / max(dot(forward, path.hero), 1e-30);
                     path.beta *= forward * divide;
                     path.rho *= forward * divide;

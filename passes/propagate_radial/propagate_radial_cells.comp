@@ -51,7 +51,7 @@ void main()
                     medium_point m = medium_sample(p);
                     sigma_s += part * m.sigma_s;
                     sigma_a += part * m.sigma_a;
-                    g += part * m.sigma_s * m.g;
+                    g += part * m.sigma_s * phase_mean_cosine(m.phase);
                 }
             }
         }

@@ -49,7 +49,7 @@ void main()
                     medium_point m = medium_sample(clamp(p, vec3(0.0), medium.extent));
                     sigma_s += covered * m.sigma_s;
                     sigma_a += covered * m.sigma_a;
-                    g += covered * m.sigma_s * m.g;
+                    g += covered * m.sigma_s * phase_mean_cosine(m.phase);
                 }
             }
         }

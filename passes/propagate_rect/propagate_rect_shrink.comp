@@ -51,7 +51,7 @@ void main()
         medium_point m = medium_sample(shrink_sample(texel, size, along, n));
         sigma_s += m.sigma_s;
         sigma_a += m.sigma_a;
-        g += m.sigma_s * m.g;
+        g += m.sigma_s * phase_mean_cosine(m.phase);
     }
     float each = 1.0 / float(count);
     imageStore(small_image, texel, vec4(sigma_s * each, 0.0));

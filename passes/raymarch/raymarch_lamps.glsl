@@ -121,12 +121,12 @@ vec3 march_lamplight_seen(march_lamp lamp, march_lamps ray, march_medium unit, m
     vec3 turn = ray.direction + away / max(r, 1e-20);
     float one_minus_mu = 0.5 * dot(turn, turn);
     radial_place place = radial_place_in(lamp.grid, away, r);
-    spectrum tau_s, tau_a, phase, k_tms, k_lobe;
+    spectrum tau_s, tau_a, k_once, k_tms, k_lobe;
 #ifdef RAYMARCH_GREY
     float column = radial_column(place);
     tau_s = unit.scattering * column;
     tau_a = unit.absorption * column;
-    phase = hg_near(unit.g, one_minus_mu);
+    k_once = phase_near(unit.phase[0], 1.0, one_minus_mu);
     if (raymarch_has(RAYMARCH_KERNELS)) {
         vec2 k = scatter_kernels(scatter_angle_of_point(0u, one_minus_mu), tau_s);
         k_tms = k.x;
@@ -138,7 +138,7 @@ vec3 march_lamplight_seen(march_lamp lamp, march_lamps ray, march_medium unit, m
     tau_a = tau.a;
     scatter_angle angle;
     for (uint c = 0u; c < 3u; c++) {
-        phase[c] = hg_near(m.g[c], one_minus_mu);
+        k_once[c] = phase_near(m.phase[c], 1.0, one_minus_mu);
         if (raymarch_has(RAYMARCH_KERNELS)) {
             vec2 k;
             if (medium_mode == TYN_MEDIUM_DENSITY) {
@@ -147,7 +147,7 @@ vec3 march_lamplight_seen(march_lamp lamp, march_lamps ray, march_medium unit, m
                 }
                 k = scatter_kernels(angle, tau_s[c]);
             } else {
-                k = scatter_kernels_mixed(0u, 1.0, one_minus_mu, m.g[c], tau.s[c], tau.p[c]);
+                k = scatter_kernels_mixed(0u, 1.0, one_minus_mu, m.phase[c], tau.s[c], tau.p[c]);
             }
             k_tms[c] = k.x;
             k_lobe[c] = k.y;
@@ -155,7 +155,7 @@ vec3 march_lamplight_seen(march_lamp lamp, march_lamps ray, march_medium unit, m
     }
 #endif
     vec3 light = m.scattering * exp(-tau_a) * irradiance;
-    vec3 once = light * (phase * exp(-tau_s) * weight);
+    vec3 once = light * (k_once * exp(-tau_s) * weight);
     if (raymarch_has(RAYMARCH_SINGLE | RAYMARCH_MULTIPLE)) {
         first += once;
     }

@@ -75,26 +75,26 @@ struct march_medium {
     spectrum scaled_extinction; // sigma_t' = sigma_t - f sigma_s
     spectrum absorption;
     spectrum hidden; // scattering into lobes too narrow to resolve: only what is behind loses it
-    spectrum g;
+    phase phase[3]; // of each channel; grey: the first
     vec3 emission;
 };
 
 march_medium march_medium_of(medium_point point)
 {
-    vec3 sigma_s = point.sigma_s, g = point.g;
+    march_medium m;
+    vec3 sigma_s = point.sigma_s;
+    m.phase = point.phase;
     bool scaled = !raymarch_has(RAYMARCH_UNSCALED);
     if (scaled) {
-        similarity_clamp(sigma_s, g);
+        similarity_clamp(sigma_s, m.phase);
     }
-    march_medium m;
-    m.g = spectrum_of(g);
     m.scattering = spectrum_of(sigma_s);
     m.absorption = spectrum_of(point.sigma_a);
     m.hidden = spectrum_of(point.sigma_s) - m.scattering;
     m.extinction = m.scattering + m.absorption;
     m.scaled_scattering = m.scattering;
     if (scaled) {
-        m.scaled_scattering *= 1.0 - delta_fraction(m.g);
+        m.scaled_scattering *= 1.0 - spectrum_of(delta_fraction(m.phase));
     }
     m.scaled_extinction = m.scaled_scattering + m.absorption;
     m.emission = point.emission;
@@ -105,7 +105,7 @@ march_medium march_scale(march_medium unit, float density)
 {
     return march_medium(unit.scattering * density, unit.extinction * density,
                         unit.scaled_scattering * density, unit.scaled_extinction * density,
-                        unit.absorption * density, unit.hidden * density, unit.g,
+                        unit.absorption * density, unit.hidden * density, unit.phase,
                         unit.emission * density);
 }
 
@@ -123,7 +123,7 @@ march_medium march_medium_at(march_medium unit, vec3 uvw)
         }
         return march_medium_of(medium_point(textureLod(density_tex, uvw, 0.0).rgb,
                                             textureLod(sigma_a_tex, uvw, 0.0).rgb,
-                                            textureLod(g_tex, uvw, 0.0).rgb, emission));
+                                            phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb), emission));
     }
 #endif
     return march_scale(unit, max(textureLod(density_tex, uvw, 0.0).r, 0.0));

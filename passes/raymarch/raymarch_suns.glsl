@@ -34,10 +34,10 @@ struct march_sun {
     float mean_cosine;
 #ifdef RAYMARCH_GREY
     scatter_angle angle;
-    float phase; // of one scattering; mode DENSITY, as `angle`
+    float once; // phase function of one scattering; mode DENSITY, as `angle`
 #else
     scatter_angle angle[3];
-    vec3 phase;
+    vec3 once;
     uint light;
     float one_minus_mu;
 #endif
@@ -57,21 +57,21 @@ march_sun march_sun_of(uint n, march_medium unit, vec3 origin, vec3 direction)
     sun.irradiance = light.color;
     sun.mean_cosine = light.mean_cosine;
 #ifdef RAYMARCH_GREY
-    sun.phase = hg_near(unit.g * light.mean_cosine, one_minus_mu);
+    sun.once = phase_near(unit.phase[0], light.mean_cosine, one_minus_mu);
     if (raymarch_has(RAYMARCH_KERNELS)) {
         sun.angle = scatter_angle_of(beams[n].light, 0u, one_minus_mu);
         vec2 once = scatter_kernels(sun.angle, 0.0);
-        sun.phase = once.x + once.y;
+        sun.once = once.x + once.y;
     }
 #else
     sun.light = beams[n].light;
     sun.one_minus_mu = one_minus_mu;
     for (uint c = 0u; c < 3u && medium_mode == TYN_MEDIUM_DENSITY; c++) {
-        sun.phase[c] = hg_near(unit.g[c] * light.mean_cosine, one_minus_mu);
+        sun.once[c] = phase_near(unit.phase[c], light.mean_cosine, one_minus_mu);
         if (raymarch_has(RAYMARCH_KERNELS)) {
             sun.angle[c] = scatter_angle_of(beams[n].light, c, one_minus_mu);
             vec2 once = scatter_kernels(sun.angle[c], 0.0);
-            sun.phase[c] = once.x + once.y;
+            sun.once[c] = once.x + once.y;
         }
     }
 #endif
@@ -90,7 +90,7 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, fl
     } else {
         place = beam_ray_at(sun.beam, s);
     }
-    spectrum tau_s, tau_a, phase = sun.phase, k_tms, k_lobe;
+    spectrum tau_s, tau_a, k_once = sun.once, k_tms, k_lobe;
 #ifdef RAYMARCH_GREY
     float column = beam_fetch(column_tex, place).r;
     tau_s = unit.scattering * column;
@@ -116,12 +116,12 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, fl
         tau_s = beam_fetch(column_tex, place);
         tau_a = beam_fetch(tau_a_tex, place);
         for (int c = 0; c < 3; c++) {
-            phase[c] = hg_near(m.g[c] * sun.mean_cosine, sun.one_minus_mu);
+            k_once[c] = phase_near(m.phase[c], sun.mean_cosine, sun.one_minus_mu);
         }
         if (raymarch_has(RAYMARCH_KERNELS)) {
             vec3 tau_p = beam_fetch(tau_p_tex, place);
             for (int c = 0; c < 3; c++) {
-                vec2 k = scatter_kernels_mixed(lut.sun_set[sun.light], sun.mean_cosine, sun.one_minus_mu, m.g[c],
+                vec2 k = scatter_kernels_mixed(lut.sun_set[sun.light], sun.mean_cosine, sun.one_minus_mu, m.phase[c],
                                                tau_s[c], tau_p[c]);
                 k_tms[c] = k.x;
                 k_lobe[c] = k.y;
@@ -130,7 +130,7 @@ vec3 march_sunlight(march_sun sun, march_medium unit, march_medium m, vec3 p, fl
     }
 #endif
     vec3 light = m.scattering * exp(-tau_a) * sun.irradiance;
-    vec3 once = light * (phase * exp(-tau_s) * weight);
+    vec3 once = light * (k_once * exp(-tau_s) * weight);
     if (raymarch_has(RAYMARCH_SINGLE | RAYMARCH_MULTIPLE)) {
         first += once;
     }

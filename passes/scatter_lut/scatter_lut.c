@@ -2,14 +2,12 @@
 #include "scatter_lut.h"
 #include "scatter_lut_sum.comp.h"
 #include "scatter_lut_tms.comp.h"
-#include "base/forward_lobe.h"
+#include "scene/phase.h"
 #include <math.h>
 
 enum { MAX_TERMS = 2464 };
 enum { CONES_BYTES = 4 * TYN_TMS_CONES * TYN_TMS_MAX_TERMS };
 
-static const double g_max = 0.995;     // narrower lobes are replaced by this one (similarity_clamp)
-static const double g_min = 1e-3;      // below it there is no lobe worth splitting off
 static const float least_blur = 1e-4f; // 1 - mean cosine: smaller suns are points (0.8 degrees RMS)
 
 static const tyn_port ports[] = {SCATTER_LUT_PORTS(TYN_PORT_ROW)};
@@ -23,18 +21,19 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
 
 // ---- rows -----------------------------------------------------------------------------------------
 
-static uint32_t num_terms(double g)
+static uint32_t num_terms(tyn_phase phase)
 {
-    // g^l and the moments of the lobe are below 1e-5 of the first beyond this.
-    double terms = 12 / (1 - fabs(g)) + 64;
+    // The moments and those of the lobe are below 1e-5 of the first beyond this.
+    double terms = 12 / (1 - tyn_phase_narrowness(phase)) + 64;
     return terms < MAX_TERMS ? (uint32_t)terms : MAX_TERMS;
 }
 
-// The phase function beside the lobe has no peak, only the window's bends, whatever g is: its moments
-// fall as l^-3. Without a lobe, g < 0, it is the peak itself.
-static uint32_t num_tms_terms(double g)
+// The phase function beside the lobe has no peak, only the window's bends, however narrow the lobe is: its moments
+// fall as l^-3. Without a lobe it is the peak itself.
+static uint32_t num_tms_terms(tyn_phase phase)
 {
-    uint32_t terms = num_terms(g), most = g > 0 ? 192 : TYN_TMS_MAX_TERMS;
+    uint32_t terms = num_terms(phase);
+    uint32_t most = tyn_phase_mean_cosine(phase) > 0 ? 192 : TYN_TMS_MAX_TERMS;
     return terms < most ? terms : most;
 }
 
@@ -44,49 +43,59 @@ static uint32_t row_terms(const struct lut_block *block, uint32_t r)
     return block->terms[r] > block->tms_terms[r] ? block->terms[r] : block->tms_terms[r];
 }
 
-// Index of a value in a list, put at its end if it is not there.
-static uint32_t find(float *list, uint32_t *count, float value)
+// Index of a phase function in the rows or of a size of suns in the sets, put at the end if it is not there.
+static uint32_t row_of(struct lut_block *block, tyn_phase phase)
 {
-    uint32_t i = 0;
-    while (i < *count && list[i] != value) {
-        i++;
+    uint32_t r = 0;
+    while (r < block->num_rows && !tyn_phase_equal(block->phase[r], phase)) {
+        r++;
     }
-    if (i == *count) {
-        list[(*count)++] = value;
-    }
-    return i;
+    block->phase[r] = phase;
+    block->num_rows += r == block->num_rows;
+    return r;
 }
 
-// Which g the rows and which suns the sets have; the rest of the block is zero. Returns the number of
+static uint32_t set_of(struct lut_block *block, float blur)
+{
+    uint32_t s = 0;
+    while (s < block->num_sets && block->blur[s] != blur) {
+        s++;
+    }
+    block->blur[s] = blur;
+    block->num_sets += s == block->num_sets;
+    return s;
+}
+
+// Which phase functions the rows and which suns the sets have; the rest of the block is zero. Returns the number of
 // moments.
 static uint32_t make_rows(const tyn_scatter_lut_params *p, struct lut_block *block)
 {
     *block = (struct lut_block){.num_sets = 1};
     if (p->mode == TYN_MEDIUM_COEFFICIENTS) {
-        double top = fmin(fmax(p->g_max, 0.1), g_max), first = log(0.02 / 0.98);
+        double top = fmin(fmax(p->g_max, 0.1), TYN_PHASE_NARROWEST), first = log(0.02 / 0.98);
         double step = (log(top / (1 - top)) - first) / (TYN_LUT_MAX_ROWS - 1);
         block->num_rows = TYN_LUT_MAX_ROWS;
         block->spread = 1;
         block->log_first = (float)first;
         block->log_step = (float)step;
         for (uint32_t r = 0; r < TYN_LUT_MAX_ROWS; r++) {
-            block->g[r] = (float)fmin(1 / (1 + exp(-(first + r * step))), g_max);
+            double g = fmin(1 / (1 + exp(-(first + r * step))), TYN_PHASE_NARROWEST);
+            block->phase[r] = tyn_phase_of_mean_cosine((float)g);
         }
     } else {
         for (uint32_t c = 0; c < 3; c++) {
-            float g = fminf(p->g[c], (float)g_max);
-            block->channel_row[c] = find(block->g, &block->num_rows, g);
+            block->channel_row[c] = row_of(block, tyn_phase_resolved(p->phase[c]));
         }
     }
     for (uint32_t i = 0; i < p->num_suns; i++) {
         float blur = 1 - p->mean_cosine[i];
-        block->sun_set[i] = find(block->blur, &block->num_sets, blur > least_blur ? blur : 0);
+        block->sun_set[i] = set_of(block, blur > least_blur ? blur : 0);
     }
     uint32_t moments = 0;
     for (uint32_t r = 0; r < block->num_rows; r++) {
-        bool summed = block->g[r] > g_min || block->num_sets > 1;
-        block->terms[r] = summed ? num_terms(block->g[r]) : 0;
-        block->tms_terms[r] = p->tms ? num_tms_terms(block->g[r]) : 0;
+        bool summed = tyn_phase_has_lobe(block->phase[r]) || block->num_sets > 1;
+        block->terms[r] = summed ? num_terms(block->phase[r]) : 0;
+        block->tms_terms[r] = p->tms ? num_tms_terms(block->phase[r]) : 0;
         block->first_term[r] = moments;
         moments += row_terms(block, r);
     }
@@ -95,17 +104,17 @@ static uint32_t make_rows(const tyn_scatter_lut_params *p, struct lut_block *blo
 
 // ---- moments --------------------------------------------------------------------------------------
 
-// Completes a row and writes its moments (g^l - F_l, F_l). Where g < 0 they are those of -g, which are
-// the same seen from behind.
+// Completes a row and writes its moments outside and inside the lobe.
 static void make_moments(struct lut_block *block, uint32_t r, float (*out)[2])
 {
-    double lobe[MAX_TERMS] = {0}, g = block->g[r], power = 1;
+    double all[MAX_TERMS], lobe[MAX_TERMS] = {0};
     uint32_t terms = row_terms(block, r);
-    if (g > g_min) {
-        block->theta_1[r] = (float)tyn_lobe_moments(g, lobe, terms);
+    if (tyn_phase_has_lobe(block->phase[r])) {
+        block->theta_1[r] = (float)tyn_phase_lobe_moments(block->phase[r], 1, lobe, terms);
     }
-    for (uint32_t l = 0; l < terms; l++, power *= fabs(g)) {
-        out[l][0] = (float)(power - lobe[l]);
+    tyn_phase_moments(block->phase[r], all, terms);
+    for (uint32_t l = 0; l < terms; l++) {
+        out[l][0] = (float)(all[l] - lobe[l]);
         out[l][1] = (float)lobe[l];
     }
 }
@@ -132,13 +141,8 @@ static void make_cones(float (*out)[TYN_TMS_MAX_TERMS])
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_scatter_lut_params *p = params;
-    for (uint32_t c = 0; c < 4; c++) {
-        float g = c < 3 ? p->g[c] : p->g_max;
-        if (!(g > -1 && g < 1)) {
-            tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                          "scatter_lut: g is %g, must be above -1 and below 1", g);
-            return TYN_ERR_PARAMS;
-        }
+    if (tyn_phase_check(p->phase, "scatter_lut", tyn_build_log(b))) {
+        return TYN_ERR_PARAMS;
     }
     for (uint32_t i = 0; i < p->num_suns; i++) {
         if (i >= TYN_LUT_MAX_SUNS || !(p->mean_cosine[i] > 0 && p->mean_cosine[i] <= 1)) {
@@ -210,7 +214,8 @@ static void record(tyn_recorder *r, const void *params)
 
 const tyn_pass_desc tyn_pass_scatter_lut = {
     .name = "scatter_lut",
-    .summary = "light scattered forward any number of times around a beam, as a table per g",
+    .summary =
+        "light scattered forward any number of times around a beam, as a table per phase function",
     .serves = "suns, lamps and ordinates in media",
     TYN_PASS_TABLES(tyn_scatter_lut_params),
     .media_only = true, // and on the sizes of suns, which change as seldom

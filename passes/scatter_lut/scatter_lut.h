@@ -6,8 +6,8 @@
 
 typedef struct tyn_scatter_lut_params {
     uint32_t mode;                       // TYN_MEDIUM_*
-    float g[3];                          // DENSITY: of the colour channels, in (-1, 1)
-    float g_max;                         // COEFFICIENTS: largest g of any medium
+    tyn_phase phase[3];                  // DENSITY: of the colour channels
+    float g_max;                         // COEFFICIENTS: largest mean cosine of any medium
     uint32_t tms;                        // 1: also make `tms`
     uint32_t num_suns;                   // 0..4
     float mean_cosine[TYN_LUT_MAX_SUNS]; // of the suns' discs, light_block.mean_cosine, in (0, 1]
@@ -17,9 +17,9 @@ typedef struct tyn_scatter_lut_params {
 #define SCATTER_LUT_PORTS(X) \
     X(SCATTER_LUT, LUT, lut, OUT, IMAGE_2D, \
         "ln of the multiple forward scattering of K_tms and K_lobe over depth (x) and angle (y), a table for " \
-        "each g above the other", .format = VK_FORMAT_R32G32_SFLOAT), \
+        "each phase function above the other", .format = VK_FORMAT_R32G32_SFLOAT), \
     X(SCATTER_LUT, LUT_BLOCK, lut_block, OUT, BUFFER, \
-        "struct lut_block: rows of the table: g, half width of the lobe"), \
+        "struct lut_block: rows of the table: phase function, half width of the lobe"), \
     X(SCATTER_LUT, TMS, tms, OUT, IMAGE_3D, \
         "phase function of what leaves the forward lobes of light from a cone, 1/sr, over depth (x), angle " \
         "(y) and the size of the cone (z)", .format = VK_FORMAT_R32_SFLOAT), \

@@ -1,7 +1,6 @@
 // scatter_lut_sum.comp -- sums the series of one depth and row for all angles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/phase/hg.glsl"
 #include "shaders/phase/scatter_lut_map.glsl"
 
 const uint THREADS = TYN_LUT_ANGLES / 4, CHUNK = TYN_LUT_ANGLES;
@@ -12,7 +11,7 @@ layout(set = 0, binding = 0, scalar) readonly buffer lut_block_buffer
 };
 layout(set = 0, binding = 1, scalar) readonly buffer moments_buffer
 {
-    vec2 moments[]; // g^l - F_l, F_l
+    vec2 moments[]; // outside and inside the lobe
 };
 layout(set = 0, binding = 2, rg32f) writeonly uniform image2D lut_image;
 
@@ -48,8 +47,8 @@ float blurred_coefficient(float l, float moment, float f, float tau, float blur)
 void main()
 {
     uint thread = gl_LocalInvocationID.x, row = gl_WorkGroupID.z;
-    float g = lut.g[row];
-    float f = lut.theta_1[row] > 0.0 ? delta_fraction(g) : 0.0;
+    phase scattering = lut.phase[row];
+    float f = lut.theta_1[row] > 0.0 ? delta_fraction(scattering) : 0.0;
     float tau = lut_depth(gl_WorkGroupID.y % TYN_LUT_DEPTHS, f);
     float blur = lut.blur[gl_WorkGroupID.y / TYN_LUT_DEPTHS];
     uint terms = f > 0.0 || blur > 0.0 ? lut.terms[row] : 0u;
@@ -61,7 +60,7 @@ void main()
     vec4 y;
     bvec4 behind;
     for (uint a = 0u; a < 4u; a++) {
-        float theta = lut_theta(thread + a * THREADS, g);
+        float theta = lut_theta(thread + a * THREADS, scattering);
         behind[a] = theta > 0.5 * PI;
         float half_sine = behind[a] ? cos(0.5 * theta) : sin(0.5 * theta);
         y[a] = 2.0 * half_sine * half_sine;
@@ -77,7 +76,7 @@ void main()
                 vec2 moment = moments[lut.first_term[row] + l];
                 float factor = blur > 0.0 ? blurred_coefficient(float(l), moment.y, f, tau, blur)
                                           : coefficient(float(l), moment.y, f, tau);
-                factor *= g < 0.0 && (l & 1u) != 0u ? -1.0 : 1.0; // moments of -g
+                factor *= phase_mean_cosine(scattering) < 0.0 && (l & 1u) != 0u ? -1.0 : 1.0; // seen from behind
                 chunk[i] = vec4(moment * factor,
                                 vec2(float(l), float(2u * l + 1u)) / float(l + 1u));
             }

@@ -1,7 +1,6 @@
 // scatter_lut_tms.comp -- sums the series of four depths of one row and cone for all angles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/phase/hg.glsl"
 #include "shaders/phase/scatter_lut_map.glsl"
 
 const uint THREADS = TYN_TMS_ANGLES / 4, CHUNK = 2u * THREADS;
@@ -12,7 +11,7 @@ layout(set = 0, binding = 0, scalar) readonly buffer lut_block_buffer
 };
 layout(set = 0, binding = 1, scalar) readonly buffer moments_buffer
 {
-    vec2 moments[]; // g^l - F_l, F_l
+    vec2 moments[]; // outside and inside the lobe
 };
 layout(set = 0, binding = 2, scalar) readonly buffer cones_buffer
 {
@@ -28,7 +27,7 @@ void main()
 {
     uint thread = gl_LocalInvocationID.x, depth = 4u * gl_WorkGroupID.y;
     uint row = gl_WorkGroupID.z / TYN_TMS_CONES, cone = gl_WorkGroupID.z % TYN_TMS_CONES;
-    float f = lut.theta_1[row] > 0.0 ? delta_fraction(lut.g[row]) : 0.0;
+    float f = lut.theta_1[row] > 0.0 ? delta_fraction(lut.phase[row]) : 0.0;
     vec4 tau;
     for (uint i = 0u; i < 4u; i++) {
         tau[i] = tms_depth(depth + i, f);

@@ -56,9 +56,7 @@ vec3 through_medium(vec3 from, vec3 d, float distance)
     vec3 depth = vec3(0.0);
     for (int i = 0; i < MEDIUM_STEPS && ds > 0.0; i++) {
         medium_point m = medium_sample(from + (span.x + (float(i) + 0.5) * ds) * d);
-        vec3 sigma_s = m.sigma_s, g = m.g;
-        similarity_clamp(sigma_s, g);
-        depth += ds * (m.sigma_a + sigma_s * (1.0 - delta_fraction(g)));
+        depth += ds * (m.sigma_a + delta_scaled(m.sigma_s, m.phase));
     }
     return exp(-depth);
 }

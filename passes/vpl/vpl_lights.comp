@@ -130,9 +130,7 @@ vec3 depth_from_light(uint light, vec3 p)
     vec3 sigma_t = vec3(0.0);
     for (uint i = gl_LocalInvocationIndex; i < DEPTH_SAMPLES; i += VPL_LANES) {
         medium_point m = medium_sample(p + (span.x + (float(i) + 0.5) * ds) * towards);
-        vec3 sigma_s = m.sigma_s, g = m.g;
-        similarity_clamp(sigma_s, g);
-        sigma_t += m.sigma_a + sigma_s * (1.0 - delta_fraction(g));
+        sigma_t += m.sigma_a + delta_scaled(m.sigma_s, m.phase);
     }
     return total_of(vec4(sigma_t * ds, 0.0)).rgb;
 }

@@ -6,17 +6,18 @@
 struct beam_tau {
     vec3 s; // int sigma_s
     vec3 a; // int sigma_a
-    vec3 p; // int (1 - f) sigma_s, f = g^2 for g > 0, else 0
+    vec3 p; // int (1 - f) sigma_s, f = delta_fraction
 };
 // What is left of the light: exp(-(a + s)); with what was scattered into the forward peak: exp(-(a + p)).
 
 // Mode DENSITY: optical depths of a column density.
 beam_tau beam_of_column(float column)
 {
-    vec3 sigma_s = medium.sigma_s, g = medium.g;
-    similarity_clamp(sigma_s, g);
+    vec3 sigma_s = medium.sigma_s;
+    phase p[3] = medium.phase;
+    similarity_clamp(sigma_s, p);
     vec3 s = sigma_s * column;
-    return beam_tau(s, medium.sigma_a * column, s * (1.0 - delta_fraction(g)));
+    return beam_tau(s, medium.sigma_a * column, s * (1.0 - delta_fraction(p)));
 }
 
 // Mean transmittance of a stretch along the light, from the depth to its centre and half its own depth:

@@ -7,6 +7,7 @@
 #define TYN_SCENE_ARGS_H
 #include "shared.h"
 #include "shaders/light/light_args.h"
+#include "shaders/phase/phase_args.h"
 
 // How the solvers (not `path`) read the medium.
 #define TYN_MEDIUM_DENSITY 0 // one texture: density; coefficients are the constants below
@@ -32,7 +33,7 @@ struct medium_block { // uniform buffer "medium"
     float max_density; // largest texture value (DENSITY), else 1
     tyn_vec3 sigma_s;  // 1/m at texture value 1 (DENSITY), else 0
     tyn_vec3 sigma_a;
-    tyn_vec3 g;
+    tyn_phase phase[3]; // of each channel
     tyn_vec3 emission;   // W/(m^3 sr) at texture value 1
     tyn_uvec3 bricks;    // brick counts, ceil(size / TYN_BRICK)
     tyn_vec3 brick_size; // voxel * TYN_BRICK, m (the last brick may reach beyond the box)
@@ -41,7 +42,7 @@ struct medium_block { // uniform buffer "medium"
     // maximum is multiplied with to give the majorant in 1/m.
     float sigma_t_max;
 };
-TYN_ASSERT_SIZE(medium_block, 136);
+TYN_ASSERT_SIZE(medium_block, 124 + 3 * sizeof(tyn_phase));
 
 struct shape_block { // element of storage buffer "shapes": the exact media, as `path` reads them
     // M -> local unit box [-0.5, 0.5]^3: local_i = dot(rows[i].xyz, p) + rows[i].w.
@@ -54,10 +55,10 @@ struct shape_block { // element of storage buffer "shapes": the exact media, as 
     tyn_uint pad;
     tyn_vec3 sigma_s; // at atlas value 1; density_scale is in
     tyn_vec3 sigma_a;
-    tyn_vec3 g;
+    tyn_phase phase[3]; // of each channel
     tyn_vec3 emission;
 };
-TYN_ASSERT_SIZE(shape_block, 128);
+TYN_ASSERT_SIZE(shape_block, 116 + 3 * sizeof(tyn_phase));
 
 struct camera_block { // uniform buffer "camera"
     tyn_vec3 origin;  // M, m

@@ -10,7 +10,7 @@
 #ifndef TYN_MEDIUM_GLSL
 #define TYN_MEDIUM_GLSL
 #include "shaders/common/scene_args.h"
-#include "shaders/phase/hg.glsl"
+#include "shaders/phase/phase.glsl"
 
 #ifndef MEDIUM_SPEC
 #define MEDIUM_SPEC 0
@@ -32,7 +32,7 @@ layout(set = 0, binding = MEDIUM_BLOCK, scalar) uniform medium_uniform
 struct medium_point {
     vec3 sigma_s; // 1/m
     vec3 sigma_a; // 1/m
-    vec3 g;
+    phase phase[3]; // of each channel
     vec3 emission; // W/(m^3 sr)
 };
 
@@ -57,7 +57,7 @@ bool medium_inside(vec3 uvw)
 // Coefficients of mode DENSITY at a texture value.
 medium_point medium_of_density(float density)
 {
-    return medium_point(medium.sigma_s * density, medium.sigma_a * density, medium.g,
+    return medium_point(medium.sigma_s * density, medium.sigma_a * density, medium.phase,
                         medium.emission * density);
 }
 
@@ -75,12 +75,12 @@ medium_point medium_sample(vec3 p)
     if (medium_mode == TYN_MEDIUM_DENSITY) {
         return medium_of_density(medium_density(p));
     }
-    medium_point m = medium_point(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    medium_point m = medium_point(vec3(0.0), vec3(0.0), phase_of_mean_cosine(vec3(0.0)), vec3(0.0));
     vec3 uvw = medium_uvw(p);
     if (medium_inside(uvw)) {
         m.sigma_s = textureLod(density_tex, uvw, 0.0).rgb;
         m.sigma_a = textureLod(sigma_a_tex, uvw, 0.0).rgb;
-        m.g = textureLod(g_tex, uvw, 0.0).rgb;
+        m.phase = phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb);
         m.emission = textureLod(emission_tex, uvw, 0.0).rgb;
     }
     return m;

@@ -20,9 +20,9 @@ mat3 medium_value(vec3 uvw)
 {
     vec3 sigma_s = textureLod(density_tex, uvw, 0.0).rgb;
     vec3 sigma_a = textureLod(sigma_a_tex, uvw, 0.0).rgb;
-    vec3 g = textureLod(g_tex, uvw, 0.0).rgb;
-    similarity_clamp(sigma_s, g);
-    return mat3(sigma_s, sigma_a, sigma_s * (1.0 - delta_fraction(g)));
+    phase p[3] = phase_of_mean_cosine(textureLod(g_tex, uvw, 0.0).rgb);
+    similarity_clamp(sigma_s, p);
+    return mat3(sigma_s, sigma_a, sigma_s * (1.0 - delta_fraction(p)));
 }
 #endif
 

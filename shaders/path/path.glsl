@@ -38,7 +38,7 @@
 #include "shaders/light/env_sampling.glsl"
 #include "path_lights.glsl"
 #include "path_media.glsl"
-#include "path_phase.glsl"
+#include "shaders/phase/phase_directions.glsl"
 #include "shaders/random/rng.glsl"
 #include "path_surfaces.glsl"
 
@@ -170,6 +170,15 @@ void path_add(inout path_result result, vec3 light, uint depth)
 vec3 path_weight(path_state path)
 {
     return GREY ? path.beta : path.beta / channel_mean(path.rho);
+}
+
+// The phase function of the channel that directions are drawn for.
+phase path_phase(path_state path, media_point m)
+{
+    if (GREY) {
+        return m.phase[0];
+    }
+    return phase_select(m.phase, path.hero);
 }
 
 // Extinction of each channel over the largest, where coefficients are one constant times density.
@@ -388,7 +397,7 @@ vec3 path_lamp(inout path_state path, inout rng_state rng)
     if (surface_hides(at, light.direction, light.distance, SURFACE_NONE)) {
         return vec3(0.0);
     }
-    vec3 sent = path_weight(path) * m.part_s * phase(m.g, path.way, light.direction) * light.arriving;
+    vec3 sent = path_weight(path) * m.part_s * phase_between(m.phase, path.way, light.direction) * light.arriving;
     sent *= channel_mean(m.sigma_s) / channel_mean(m.part_s) * (1.0 - flight_weight(pdf, distance)) /
             (pdf * probability);
     sent *= path_transmittance(path.vertex, path.way, distance, rng, path.steps);
@@ -629,10 +638,10 @@ void path_run(uint element, uint first, uint end)
                     pending *= lambert;
                     drawn += drawn > 0.0 ? lambert : 0.0;
                 } else {
-                    vec3 forward = phase(f.m.g, path.way, direction);
+                    vec3 forward = phase_between(f.m.phase, path.way, direction);
                     pending *= forward;
                     if (drawn > 0.0) {
-                        drawn += channel_mean(mixture_pdf(f.m.g, forward, toward, direction, c));
+                        drawn += channel_mean(mixture_pdf(f.m.phase, forward, toward, direction, c));
                     }
                 }
                 pending *= drawn > 0.0 ? 1.0 / drawn : 1.0;
@@ -648,11 +657,11 @@ void path_run(uint element, uint first, uint end)
                 d = cosine_sample(found.point.normal, rng_vec2(bits.zw));
                 pdf_way = max(dot(d, found.point.normal), 0.0) * (1.0 / HG_PI);
             } else {
-                d = mixture_sample(GREY ? f.m.g.x : dot(f.m.g, path.hero), path.way, toward, c,
+                d = mixture_sample(path_phase(path, f.m), path.way, toward, c,
                                    rng_float(bits.y), rng_vec2(bits.zw));
                 if ((FLAGS & TYN_PATH_MIXTURE) != 0u || !GREY || ENVIRONMENT == TYN_PATH_ENV_MAP || EMITTERS) {
-                    vec3 forward = phase(f.m.g, path.way, d);
-                    vec3 pdf = mixture_pdf(f.m.g, forward, toward, d, c);
+                    vec3 forward = phase_between(f.m.phase, path.way, d);
+                    vec3 pdf = mixture_pdf(f.m.phase, forward, toward, d, c);
                     float divide = 1.0 / max(GREY ? pdf.x : dot(pdf, path.hero), 1e-30);
                     path.beta *= forward * divide;
                     path.rho *= GREY ? vec3(1.0) : pdf * divide;

@@ -16,20 +16,15 @@ vec2 heading_shares()
     return vec2(map ? (LIGHTS > 0u ? 0.33 : 0.5) : 0.0, LIGHTS > 0u ? (map ? 0.33 : 0.5) : 0.0);
 }
 
-float heading_g()
-{
-    return max(shape_get(0u).g.x, 0.0);
-}
-
 // pdf of direction `d`, 1/sr.
 float heading_density(vec3 d)
 {
     vec2 shares = heading_shares();
     bool free = heading_normal == vec3(0.0);
     float rest = free ? 0.25 / HG_PI : max(dot(d, heading_normal), 0.0) * (1.0 / HG_PI);
-    float g = heading_g(), pdf = (1.0 - shares.x - shares.y) * rest;
+    float pdf = (1.0 - shares.x - shares.y) * rest;
     if (LIGHTS > 0u) {
-        pdf += shares.y * 0.5 * (phase(vec3(g), heading_axis, d) + phase(vec3(g * g), heading_axis, d)).x;
+        pdf += shares.y * light_lobes_pdf(shape_get(0u).phase, heading_axis, d).x;
     }
     if (ENVIRONMENT == TYN_PATH_ENV_MAP) {
         pdf += shares.x * env_pdf(env, d);
@@ -43,7 +38,6 @@ vec3 heading_draw(vec3 point, vec3 surface_normal, inout rng_state rng)
     heading_normal = surface_normal;
     uvec4 bits = rng_next(rng);
     vec2 shares = heading_shares();
-    float g = heading_g();
     heading_axis = vec3(0.0, 0.0, 1.0);
     if (LIGHTS > 0u) {
         light_choice choice = light_choose(point, rng_float(bits.y), 0u);
@@ -60,7 +54,8 @@ vec3 heading_draw(vec3 point, vec3 surface_normal, inout rng_state rng)
         if (u >= c && heading_normal != vec3(0.0)) {
             heading = cosine_sample(heading_normal, rng_vec2(bits.zw));
         } else {
-            heading = phase_sample(u < c ? (u < 0.5 * c ? g : g * g) : 0.0, heading_axis, rng_vec2(bits.zw));
+            phase p = u < c ? light_lobe(shape_get(0u).phase[0], u < 0.5 * c) : phase_of_mean_cosine(0.0);
+            heading = phase_direction(p, heading_axis, rng_vec2(bits.zw));
         }
     }
     heading_pdf = max(heading_density(heading), 1e-30);

@@ -6,10 +6,12 @@
 #ifndef TYN_PATH_MEDIA_GLSL
 #define TYN_PATH_MEDIA_GLSL
 #include "shaders/medium/majorant.glsl"
+#include "shaders/phase/phase.glsl"
 
 struct media_point {
     vec3 sigma_s, sigma_t, emission; // of all media together
-    vec3 part_s, g; // of one medium, drawn in proportion to its scattering
+    vec3 part_s; // of one medium, drawn in proportion to its scattering
+    phase phase[3];
 };
 
 float max3(vec3 v)
@@ -21,6 +23,15 @@ float max3(vec3 v)
 vec3 grey(vec3 v)
 {
     return GREY ? v.xxx : v;
+}
+
+phase[3] grey(phase p[3])
+{
+    if (GREY) {
+        p[1] = p[0];
+        p[2] = p[0];
+    }
+    return p;
 }
 
 shape_block shape_get(uint i)
@@ -81,7 +92,7 @@ media_point media_at(vec3 p, float pick, vec3 hero)
         m.sigma_t = grey(path_shapes[0].sigma_s + path_shapes[0].sigma_a);
         m.emission = path_shapes[0].emission;
         m.part_s = m.sigma_s;
-        m.g = grey(path_shapes[0].g);
+        m.phase = grey(path_shapes[0].phase);
         return m;
     }
     p = wrap(p);
@@ -89,7 +100,7 @@ media_point media_at(vec3 p, float pick, vec3 hero)
     m.sigma_t = vec3(0.0);
     m.emission = vec3(0.0);
     m.part_s = vec3(0.0);
-    m.g = vec3(0.0);
+    m.phase = phase_of_mean_cosine(vec3(0.0));
     float total = 0.0;
     uint count = SHAPES != 0u ? SHAPES : medium.num_shapes;
     for (uint i = 0u; i < count; i++) {
@@ -102,7 +113,7 @@ media_point media_at(vec3 p, float pick, vec3 hero)
         m.emission += density * shape.emission;
         if (SHAPES == 1u) {
             m.part_s = s;
-            m.g = grey(shape.g);
+            m.phase = grey(shape.phase);
             break;
         }
         // Weighted reservoir of one, with one random number that is stretched again after each use.
@@ -111,7 +122,7 @@ media_point media_at(vec3 p, float pick, vec3 hero)
         float share = total > 0.0 ? weight / total : 0.0;
         if (pick < share) {
             m.part_s = s;
-            m.g = grey(shape.g);
+            m.phase = grey(shape.phase);
             pick = pick / max(share, 1e-12);
         } else {
             pick = (pick - share) / max(1.0 - share, 1e-12);

@@ -1,4 +1,4 @@
-// hg.glsl -- the Henyey-Greenstein phase function and its delta scaling. No bindings.
+// hg.glsl -- the Henyey-Greenstein lobe and its delta scaling. No bindings.
 //
 // p(mu) = (1 - g^2) / (4 pi s^3),  s^2 = 1 + g^2 - 2 g mu,  -1 < g < 1,  mu = cosine of the scattering
 // angle. Every form below is free of the cancellations of the textbook forms at g -> 0 and |g| -> 1:
@@ -29,22 +29,7 @@ float hg(float g, float mu)
     return hg_near(g, 1.0 - mu);
 }
 
-// Fraction scattered to cosines below mu: 2 pi int_-1^mu p. Limits: g -> 1 gives 0 for mu < 1, g -> -1
-// gives 1 for mu > -1.
-float hg_below(float g, float mu)
-{
-    float s = hg_s(g, 1.0 - mu);
-    return (1.0 - g) * (1.0 + mu) / (s * (s + 1.0 + g));
-}
-
-// 1 - hg_below without the cancellation at the front.
-float hg_above(float g, float mu)
-{
-    float s = hg_s(g, 1.0 - mu);
-    return (1.0 + g) * (1.0 - mu) / (s * (s + 1.0 - g));
-}
-
-// 1 - mu of a scattering angle with hg_below(g, mu) = u, u in [0, 1]. The usual inverse
+// 1 - mu of a scattering angle below whose cosine the fraction u is scattered, u in [0, 1]. The usual inverse
 // (1 + g^2 - ((1 - g^2) / (1 - g + 2 g u))^2) / (2 g) multiplied out, so that g = 0 is no special case
 // and a narrow lobe keeps its relative precision.
 float hg_sample(float g, float u)
@@ -61,12 +46,6 @@ float hg_sample(float g, float u)
 // Part of the scattering that counts as going straight on: f = g^2, so that the remaining
 // p = f delta + (1 - f) p' has the right first two moments (Joseph, Wiscombe and Weinman 1976); none
 // for backward scattering.
-vec3 delta_fraction(vec3 g)
-{
-    vec3 forward = max(g, vec3(0.0));
-    return forward * forward;
-}
-
 float delta_fraction(float g)
 {
     float forward = max(g, 0.0);
@@ -79,26 +58,16 @@ float delta_lobe(float f)
     return sqrt(f);
 }
 
+vec3 delta_lobe(vec3 f)
+{
+    return sqrt(f);
+}
+
 // The cosine below which the most forward part of a lobe, f of it, has the share u; g >= 0.
 float delta_lobe_cosine(float g, float u)
 {
     float f = g * g, h = (1.0 - f) / (1.0 + g - 2.0 * g * f * u);
     return g > 1e-3 ? clamp((1.0 + f - h * h) / (2.0 * g), -1.0, 1.0) : 1.0;
-}
-
-// Mean cosine of what is left, (g - f) / (1 - f): g / (1 + g) for g > 0, else g.
-vec3 delta_cosine(vec3 g)
-{
-    return g / (1.0 + max(g, vec3(0.0)));
-}
-
-// A lobe narrower than HG_MAX is replaced by that one with as much less scattering that the transport
-// coefficient sigma_s (1 - g) stays: the widths differ by a third of a degree. What is seen *through*
-// the medium (transmittance, background) keeps the true sigma_s.
-void similarity_clamp(inout vec3 sigma_s, inout vec3 g)
-{
-    sigma_s *= min(vec3(1.0), (1.0 - g) / (1.0 - HG_MAX));
-    g = min(g, vec3(HG_MAX));
 }
 
 #endif

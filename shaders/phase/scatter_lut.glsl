@@ -24,7 +24,6 @@
 // as an expression that is false if there are no tables of suns (some devices run both sides of a branch).
 #ifndef TYN_SCATTER_LUT_GLSL
 #define TYN_SCATTER_LUT_GLSL
-#include "hg.glsl"
 #include "scatter_lut_map.glsl"
 
 layout(set = 0, binding = SCATTER_LUT) uniform sampler2D lut_tex;
@@ -43,14 +42,15 @@ struct scatter_angle {
     vec2 weight;  // of the table: x - y e^-tau
 };
 
-scatter_angle scatter_angle_in_row(uint row, float g, float theta_1, float one_minus_mu)
+scatter_angle scatter_angle_in_row(uint row, float one_minus_mu)
 {
+    phase last = lut.phase[row];
     float theta = 2.0 * asin(sqrt(clamp(0.5 * one_minus_mu, 0.0, 1.0)));
-    float p = hg_near(g, one_minus_mu), f = delta_fraction(g);
-    float h = lut_window(theta, theta_1), sets = float(lut.num_sets);
+    float p = phase_near(last, 1.0, one_minus_mu), f = delta_fraction(last);
+    float h = lut_window(theta, lut.theta_1[row]), sets = float(lut.num_sets);
     scatter_angle a;
     a.first = vec2(p * (1.0 - h), p * h);
-    a.uv = vec2(lut_u(0.0, 0.0) / sets, (float(row) + lut_v(theta, g)) / float(lut.num_rows));
+    a.uv = vec2(lut_u(0.0, 0.0) / sets, (float(row) + lut_v(theta, last)) / float(lut.num_rows));
     a.scale = lut_depth_scale(f) / sets;
     a.last = LUT_DEPTH_RANGE / sets;
     a.loss = 1.0 - f;
@@ -63,7 +63,7 @@ scatter_angle scatter_angle_in_row(uint row, float g, float theta_1, float one_m
 scatter_angle scatter_angle_of(uint sun, uint channel, float one_minus_mu)
 {
     uint row = lut.channel_row[channel], set = lut.sun_set[sun];
-    scatter_angle a = scatter_angle_in_row(row, lut.g[row], lut.theta_1[row], one_minus_mu);
+    scatter_angle a = scatter_angle_in_row(row, one_minus_mu);
     if (set > 0u) {
         a.first = vec2(0.0);
         a.uv.x += float(set) / float(lut.num_sets);
@@ -75,8 +75,7 @@ scatter_angle scatter_angle_of(uint sun, uint channel, float one_minus_mu)
 // A light that is a point, as seen from anywhere.
 scatter_angle scatter_angle_of_point(uint channel, float one_minus_mu)
 {
-    uint row = lut.channel_row[channel];
-    return scatter_angle_in_row(row, lut.g[row], lut.theta_1[row], one_minus_mu);
+    return scatter_angle_in_row(lut.channel_row[channel], one_minus_mu);
 }
 
 // K_tms and K_lobe, 1/sr, behind the scattering depth tau_s. One fetch.
@@ -87,7 +86,7 @@ vec2 scatter_kernels(scatter_angle a, float tau_s)
     return a.first * direct + (a.weight.x - a.weight.y * direct) * exp(table - tau_s * a.loss);
 }
 
-// ---- mode COEFFICIENTS, where g varies ------------------------------------------------------------
+// ---- mode COEFFICIENTS, where the mean cosine g varies ------------------------------------------------
 
 // The rows around a g, as texture v and how far it is between them. Lobes between rows are as wide as those
 // of their own g: the angle is taken by its width.
@@ -97,7 +96,8 @@ struct scatter_rows {
 
 scatter_rows scatter_rows_of(float g, float theta)
 {
-    float row = lut_row(lut.log_first, lut.log_step, lut.num_rows, g), at = lut_v(theta, g);
+    float row = lut_row(lut.log_first, lut.log_step, lut.num_rows, g);
+    float at = lut_v(theta, phase_of_mean_cosine(g));
     float above = min(floor(row) + 1.0, float(lut.num_rows - 1u));
     return scatter_rows((floor(row) + at) / float(lut.num_rows), (above + at) / float(lut.num_rows),
                         fract(row));
@@ -109,13 +109,13 @@ vec2 scatter_table(scatter_rows rows, float u)
                textureLod(lut_tex, vec2(u, rows.next_v), 0.0).rg, rows.between);
 }
 
-// `g` is that of the last scattering; the earlier ones on the way had the mean 1 - f = tau_p / tau_s, which
+// `last` is the last scattering; the earlier ones on the way had the mean 1 - f = tau_p / tau_s, which
 // keeps the light that is still in the beam exact. `set` of tables: lut.sun_set of a sun, 0 of a point; `a`:
 // mean cosine of the sun.
-vec2 scatter_kernels_mixed(uint set_index, float a, float one_minus_mu, float g, float tau_s, float tau_p)
+vec2 scatter_kernels_mixed(uint set_index, float a, float one_minus_mu, phase last, float tau_s, float tau_p)
 {
     float theta = 2.0 * asin(sqrt(clamp(0.5 * one_minus_mu, 0.0, 1.0)));
-    g = min(g, HG_MAX);
+    float g = min(phase_mean_cosine(last), HG_MAX);
     float f = tau_s > 0.0 ? clamp(1.0 - tau_p / tau_s, 0.0, HG_MAX * HG_MAX) : 0.0;
     float g_beam = sqrt(f), direct = exp(-tau_s), forward = exp(-tau_s * (1.0 - f)) - direct;
     scatter_rows beam = scatter_rows_of(g_beam, theta);
@@ -126,20 +126,20 @@ vec2 scatter_kernels_mixed(uint set_index, float a, float one_minus_mu, float g,
     uint below = uint(row), above = min(below + 1u, lut.num_rows - 1u);
     float theta_1 = g <= 0.0 ? 0.0 : mix(lut.theta_1[below], lut.theta_1[above], fract(row));
     float h = lut_window(theta, theta_1);
-    vec2 last = hg_near(g * a, one_minus_mu) * vec2(1.0 - h, h);
+    vec2 once = hg_near(g * a, one_minus_mu) * vec2(1.0 - h, h);
     vec2 more = f * (1.0 - direct) * exp(scatter_table(beam, u / sets) - tau_s * (1.0 - f));
     if (SCATTER_LUT_SOFT) {
         float set = float(set_index), u0 = lut_u(0.0, 0.0);
         vec2 all = exp(scatter_table(beam, (set + u) / sets) - tau_s * (1.0 - f));
-        vec2 once = exp(scatter_table(beam, (set + u0) / sets));
+        vec2 beam_once = exp(scatter_table(beam, (set + u0) / sets));
         vec2 once_here = exp(scatter_table(scatter_rows_of(g, theta), (set + u0) / sets));
-        more = set > 0.0 ? max(all - once * direct, vec2(0.0)) : more;
-        last = set > 0.0 && g > 0.0 ? once_here : last;
+        more = set > 0.0 ? max(all - beam_once * direct, vec2(0.0)) : more;
+        once = set > 0.0 && g > 0.0 ? once_here : once;
     }
     // A last scattering that is broader than the earlier ones decides the angles: the beam's own spread
     // is narrow beside it.
     float spread = g_beam > 0.0 ? clamp(g / g_beam, 0.0, 1.0) : 0.0;
-    return last * direct + mix(last * forward, more, spread);
+    return once * direct + mix(once * forward, more, spread);
 }
 
 #endif

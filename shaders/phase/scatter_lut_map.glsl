@@ -1,6 +1,7 @@
 // scatter_lut_map.glsl -- where in the table a depth, an angle and a g are. No bindings.
 #ifndef TYN_SCATTER_LUT_MAP_GLSL
 #define TYN_SCATTER_LUT_MAP_GLSL
+#include "phase.glsl"
 #include "scatter_lut_args.h"
 
 // Largest depth in the table: the beam is e^-20 of itself there. Beyond it the sums go as
@@ -40,21 +41,21 @@ float lut_depth(uint texel, float f)
 
 // Angle around which the texels go from even to geometric spacing, radians: a few times the width of
 // the twice scattered light, p * p = Henyey-Greenstein of g^2.
-float lut_width(float g)
+float lut_width(phase p)
 {
-    return 8.0 * (1.0 - max(g, 0.0));
+    return 8.0 * (1.0 - phase_forward_cosine(p));
 }
 
-float lut_v(float theta, float g)
+float lut_v(float theta, phase p)
 {
-    float width = lut_width(g);
+    float width = lut_width(p);
     float t = log(1.0 + theta / width) / log(1.0 + 3.14159265358979 / width);
     return (0.5 + t * float(TYN_LUT_ANGLES - 1)) / float(TYN_LUT_ANGLES);
 }
 
-float lut_theta(uint texel, float g)
+float lut_theta(uint texel, phase p)
 {
-    float width = lut_width(g);
+    float width = lut_width(p);
     float t = float(texel) / float(TYN_LUT_ANGLES - 1);
     return width * (exp(t * log(1.0 + 3.14159265358979 / width)) - 1.0);
 }
@@ -80,7 +81,7 @@ float tms_depth(uint texel, float f)
 }
 
 // Over the square root of sin(theta / 2): no arc cosine, and texels are closer where lobes are.
-// `away` = 1 - mu, or 1 + mu where g < 0.
+// `away` = 1 - mu, or 1 + mu of backward scattering.
 float tms_v(float away)
 {
     const float n = float(TYN_TMS_ANGLES);

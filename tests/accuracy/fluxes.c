@@ -230,11 +230,11 @@ static void reciprocity(void **state)
     tyn_medium medium = grey_medium(1, 0.5f, 0.6f);
     medium.sigma_s[0] = 0.5f;
     medium.sigma_s[2] = 2;
-    medium.g[2] = 0.2f;
+    medium.phase[2].g = 0.2f;
     const uint32_t size[3] = {1, 1, 1};
     scene_add_box(&scene, &medium, (float[]){0, 0, 0}, (float[]){2, 2, 2}, size, NULL);
     medium.sigma_a[0] = 1.5f;
-    medium.g[0] = -0.3f;
+    medium.phase[0].g = -0.3f;
     scene_add_box(&scene, &medium, (float[]){1, 1, 1}, (float[]){3, 3, 3}, size, NULL);
     scene_add_sun(&scene, 0.36f, -0.8f, 0.48f, 4, 3, 2);
     scene_set_sky(&scene, 0.3f);

@@ -133,7 +133,9 @@ static void made_scenes(void **state)
         tyn_medium medium = grey_medium(0, 0, 0);
         memcpy(medium.sigma_s, m->sigma_s, sizeof m->sigma_s);
         memcpy(medium.sigma_a, m->sigma_a, sizeof m->sigma_a);
-        memcpy(medium.g, m->g, sizeof m->g);
+        for (int c = 0; c < 3; c++) {
+            medium.phase[c].g = m->g[c];
+        }
         scene_add_box(scene, &medium, (float[]){0, 0, 0}, (float[]){1, 1, 1}, (uint32_t[]){N, N, N},
                       m->blobs ? grid : NULL);
         scene_add_sun(scene, m->sun[0], m->sun[1], m->sun[2], 3, 2.5f, 2);
@@ -210,7 +212,7 @@ static void reference_blobs(void **state)
     tyn_scene_init(scene);
     tyn_medium medium = {.sigma_s = {2.9f, 3.6f, 4.2f},
                          .sigma_a = {3.4f, 3.35f, 3.4f},
-                         .g = GREY(0.9f),
+                         .phase = {{.g = 0.9f}, {.g = 0.9f}, {.g = 0.9f}},
                          .density_scale = 1};
     scene_add_box(scene, &medium, (float[]){-5, -5, -5}, (float[]){5, 5, 5}, size, grid);
     scene_add_sun(scene, -0.5f, -0.6f, 0.4f, 1, 1, 1);

@@ -37,11 +37,12 @@ static bool make_blobs(tyn_scene *scene, tyn_view *view, bool thin)
     assert_non_null(file);
     assert_int_equal(fread(grid, sizeof *grid, 64 * 64 * 64, file), 64 * 64 * 64);
     fclose(file);
-    tyn_medium dense = {
-        .sigma_s = {2.9f, 3.6f, 4.2f}, .sigma_a = {3.4f, 3.35f, 3.4f}, .g = {0.9f, 0.9f, 0.9f}};
+    tyn_medium dense = {.sigma_s = {2.9f, 3.6f, 4.2f},
+                        .sigma_a = {3.4f, 3.35f, 3.4f},
+                        .phase = {{.g = 0.9f}, {.g = 0.9f}, {.g = 0.9f}}};
     tyn_medium light = {.sigma_s = {0.29f, 0.36f, 0.42f},
                         .sigma_a = {0.034f, 0.0335f, 0.034f},
-                        .g = {0.5f, 0.5f, 0.5f}};
+                        .phase = {{.g = 0.5f}, {.g = 0.5f}, {.g = 0.5f}}};
     tyn_medium medium = thin ? light : dense;
     medium.density_scale = 1;
     scene_add_box(scene, &medium, (float[]){-5, -5, -5}, (float[]){5, 5, 5},
@@ -88,7 +89,7 @@ static float largest_g(const tyn_scene *scene)
     float g = -1;
     for (uint32_t m = 0; m < scene->num_media; m++) {
         for (int c = 0; c < 3; c++) {
-            g = fmaxf(g, scene->media[m].g[c]);
+            g = fmaxf(g, scene->media[m].phase[c].g);
         }
     }
     return g;

@@ -337,7 +337,7 @@ static regime regime_of_box(size_t i)
     scene.num_media = scene.num_shapes = scene.num_lights = 1;
     scene.media[0] = (tyn_medium){.sigma_s = {s, s, s},
                                   .sigma_a = {k, k, k},
-                                  .g = {g, g, g},
+                                  .phase = {{.g = g}, {.g = g}, {.g = g}},
                                   .density_scale = 1,
                                   .volume = -1};
     scene.shapes[0] =

@@ -19,7 +19,7 @@ static void one_shape(tyn_scene *scene, tyn_shape_kind kind, float x, float y, f
     scene->num_media = 1;
     scene->media[0] = (tyn_medium){.sigma_s = {1, 2, 3},
                                    .sigma_a = {0.5f, 0.5f, 0.5f},
-                                   .g = {0.5f, 0.5f, 0.8f},
+                                   .phase = {{.g = 0.5f}, {.g = 0.5f}, {.g = 0.8f}},
                                    .density_scale = 2,
                                    .volume = -1};
     scene->num_shapes = 1;
@@ -147,8 +147,10 @@ static void limits(void **state)
         tyn_scene scene;
         const float s = cases[i].sigma, g = cases[i].g, *x = cases[i].sides;
         one_shape(&scene, TYN_SHAPE_BOX, x[0], x[1], x[2]);
-        scene.media[0] =
-            (tyn_medium){.sigma_s = {s, s, s}, .g = {g, g, g}, .density_scale = 1, .volume = -1};
+        scene.media[0] = (tyn_medium){.sigma_s = {s, s, s},
+                                      .phase = {{.g = g}, {.g = g}, {.g = g}},
+                                      .density_scale = 1,
+                                      .volume = -1};
         const regime r = read(&scene);
         const regime_limit limit = regime_limit_of(&r, cases[i].method, 32);
         const bool same = limit.key && cases[i].key ? strcmp(limit.key, cases[i].key) == 0

@@ -164,7 +164,7 @@ static void make_smoke(tyn_scene *scene)
     scene->num_media = 1;
     scene->media[0] = (tyn_medium){.sigma_s = {3, 3.5f, 4},
                                    .sigma_a = {0.3f, 0.2f, 0.1f},
-                                   .g = {0.6f, 0.6f, 0.6f},
+                                   .phase = {{.g = 0.6f}, {.g = 0.6f}, {.g = 0.6f}},
                                    .density_scale = 1,
                                    .volume = 0};
     scene->num_shapes = 1;

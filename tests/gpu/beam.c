@@ -16,7 +16,7 @@ static medium_grid grid_make(const float extent[3], const uint32_t size[3], uint
     for (int i = 0; i < 3 && mode == TYN_MEDIUM_DENSITY; i++) {
         m.block.sigma_s[i] = 1 + (float)i;
         m.block.sigma_a[i] = 0.5f;
-        m.block.g[i] = (float[]){0.5f, -0.5f, 0.999f}[i];
+        m.block.phase[i].g = (float[]){0.5f, -0.5f, 0.999f}[i];
     }
     return m;
 }
@@ -309,9 +309,9 @@ static void coefficients(void **state)
         }
         double length = 2 * medium_grid_entry(&m, p, d);
         for (int c = 0; c < 3; c++) {
-            double g = fmin(m.block.g[c], 0.995), f = g > 0 ? g * g : 0;
+            double g = fmin(m.block.phase[c].g, 0.995), f = g > 0 ? g * g : 0;
             double s =
-                length * m.block.sigma_s[c] * (c == 2 ? (1 - m.block.g[2]) / (1 - 0.995) : 1);
+                length * m.block.sigma_s[c] * (c == 2 ? (1 - m.block.phase[2].g) / (1 - 0.995) : 1);
             assert_true(fabs(got[n].s[c] - s) < 1e-4 * s + 1e-6);
             assert_true(fabs(got[n].p[c] - (1 - f) * s) < 1e-4 * s + 1e-6);
             assert_true(fabs(got[n].a[c] - 0.5 * length) < 1e-5 * length + 1e-6);

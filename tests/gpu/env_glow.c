@@ -74,7 +74,7 @@ static const float *smear(gpu_test *t, uint32_t w, uint32_t h, const float *map,
                           float g2, uint32_t *levels)
 {
     tyn_graph_begin(t->graph);
-    tyn_env_glow_params params = {{g0, g1, g2}};
+    tyn_env_glow_params params = {{{.g = g0}, {.g = g1}, {.g = g2}}};
     tyn_ref refs[TYN_MAX_PORTS] = {
         [ENV_GLOW_PORT_SKY] = gpu_image(t, "sky", TYN_IMAGE_2D, (tyn_extent){w, h, 1}, 4, map),
     };
@@ -351,7 +351,7 @@ static void bad_texels(void **state)
     }
     t->quiet = true;
     tyn_graph_begin(t->graph);
-    tyn_env_glow_params params = {{0.5f, 1.0f, 0.5f}};
+    tyn_env_glow_params params = {{{.g = 0.5f}, {.g = 1.0f}, {.g = 0.5f}}};
     tyn_ref refs[TYN_MAX_PORTS] = {
         [ENV_GLOW_PORT_SKY] =
             gpu_image(t, "sky", TYN_IMAGE_2D, (tyn_extent){WIDTH, HEIGHT, 1}, 4, map),

@@ -1,14 +1,14 @@
-// hg_eval.comp -- the pieces of hg.glsl at given (g, 1 - mu, u).
+// hg_eval.comp -- the pieces of hg.glsl and phase.glsl at given (g, 1 - mu, u).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
-#include "shaders/phase/hg.glsl"
+#include "shaders/phase/phase.glsl"
 
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint unused = 0u;
 layout(set = 0, binding = 0, scalar) readonly buffer points_buffer { vec4 points[]; };
 struct result {
-    float phase, below, above, sample_one_minus_mu;
+    float phase, sample_one_minus_mu;
     vec3 similar_sigma_s, similar_g, fraction, cosine;
 };
 layout(set = 0, binding = 1, scalar) writeonly buffer results_buffer { result results[]; };
@@ -21,14 +21,13 @@ void main()
     }
     float g = points[i].x, one_minus_mu = points[i].y, u = points[i].z;
     result r;
-    r.phase = hg_near(g, one_minus_mu);
-    r.below = hg_below(g, 1.0 - one_minus_mu);
-    r.above = hg_above(g, 1.0 - one_minus_mu);
-    r.sample_one_minus_mu = hg_sample(g, u);
+    r.phase = phase_near(phase_of_mean_cosine(g), 1.0, one_minus_mu);
+    r.sample_one_minus_mu = phase_sample(phase_of_mean_cosine(g), u);
     r.similar_sigma_s = vec3(2.0);
-    r.similar_g = vec3(g, -g, 0.0);
-    similarity_clamp(r.similar_sigma_s, r.similar_g);
-    r.fraction = delta_fraction(vec3(g, -g, 0.0));
-    r.cosine = delta_cosine(vec3(g, -g, 0.0));
+    phase channels[3] = phase_of_mean_cosine(vec3(g, -g, 0.0));
+    r.fraction = delta_fraction(channels);
+    r.cosine = delta_cosine(channels);
+    similarity_clamp(r.similar_sigma_s, channels);
+    r.similar_g = phase_mean_cosine(channels);
     results[i] = r;
 }

@@ -48,7 +48,7 @@ static setup *homogeneous(float sigma_s, float sigma_a, float g)
         s.medium.size[i] = 1;
         s.medium.sigma_s[i] = sigma_s;
         s.medium.sigma_a[i] = sigma_a;
-        s.medium.g[i] = g;
+        s.medium.phase[i].g = g;
     }
     s.density[0] = 1;
     look(&s.camera, (float[]){0.5f, 0.5f, 3.5f}, (float[]){0, 0, -1}, 0.3f, 0.3f);
@@ -66,7 +66,7 @@ static setup *noisy(void)
                                         .voxel = {0.1f, 0.08f, 1.6f / 14},
                                         .sigma_s = {3, 5, 9},
                                         .sigma_a = {0.5f, 0.1f, 0},
-                                        .g = {0.8f, 0.5f, -0.1f}};
+                                        .phase = {{.g = 0.8f}, {.g = 0.5f}, {.g = -0.1f}}};
     s->medium = medium;
     srand(5);
     for (int i = 0; i < 12 * 10 * 14; i++) {
@@ -94,7 +94,7 @@ static const float *run(gpu_test *t, const setup *s, const float **field)
             for (int c = 0; c < 3; c++) {
                 texels[0][4 * q + c] = s->medium.sigma_s[c] * s->density[q];
                 texels[1][4 * q + c] = s->medium.sigma_a[c] * s->density[q];
-                texels[2][4 * q + c] = s->medium.g[c];
+                texels[2][4 * q + c] = s->medium.phase[c].g;
             }
         }
         for (int i = 0; i < 3; i++) {
@@ -159,7 +159,7 @@ static void twin_scene_of(const setup *s, twin_scene *out)
         out->forward[i] = s->camera.forward[i];
         out->sigma_s += s->medium.sigma_s[i] / 3.0;
         out->sigma_a += s->medium.sigma_a[i] / 3.0;
-        weight += s->medium.sigma_s[i] * s->medium.g[i] / 3.0;
+        weight += s->medium.sigma_s[i] * s->medium.phase[i].g / 3.0;
     }
     out->g = out->sigma_s > 0 ? weight / out->sigma_s : 0;
 }

@@ -94,7 +94,7 @@ static void means_of_voxels(void **state)
         for (int c = 0; c < 3; c++) {
             s.medium.sigma_s[c] = 2 + (float)c;
             s.medium.sigma_a[c] = 0.5f * (float)c;
-            s.medium.g[c] = 0.8f * (float)(c - 1);
+            s.medium.phase[c].g = 0.8f * (float)(c - 1);
             s.medium.emission[c] = 3 - (float)c;
         }
         const float *found = run(*state, &s);
@@ -106,8 +106,8 @@ static void means_of_voxels(void **state)
                                    2 * (n / CELLS / CELLS) + k / 4};
                 double v[4], scaled, cosine;
                 for (int q = 0; q < 4; q++) {
-                    const float *constant[] = {s.medium.sigma_s, s.medium.sigma_a, s.medium.g,
-                                               s.medium.emission};
+                    const float *constant[] = {s.medium.sigma_s, s.medium.sigma_a,
+                                               &s.medium.phase[0].g, s.medium.emission};
                     v[q] = variant  ? voxels_mean(texels[q][0], FINE, 4, c, at)
                            : q == 2 ? (double)constant[q][c]
                                     : (double)constant[q][c] * voxels_mean(density, FINE, 1, 0, at);
@@ -140,7 +140,7 @@ static void one_channel_in_a_flat_box(void **state)
     for (int c = 0; c < 3; c++) {
         s.medium.sigma_s[c] = 3;
         s.medium.sigma_a[c] = 1;
-        s.medium.g[c] = 0.5f;
+        s.medium.phase[c].g = 0.5f;
         s.medium.emission[c] = 4 * tint[c];
     }
     const float *found = run(*state, &s);

@@ -33,7 +33,7 @@ static void start(float thickness)
         s.medium.size[i] = 1;
         s.medium.sigma_s[i] = thickness * (1 + (float)i);
         s.medium.sigma_a[i] = thickness * 0.5f;
-        s.medium.g[i] = 0.6f;
+        s.medium.phase[i].g = 0.6f;
         s.scaled[i] = 0.64f * s.medium.sigma_s[i];
     }
 }

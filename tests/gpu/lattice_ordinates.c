@@ -137,7 +137,7 @@ static void upload(gpu_test *t, const twin *w, bool sunlight, tyn_ref *refs)
         medium.size[c] = 1;
         medium.sigma_s[c] = w->sigma_s[c];
         medium.sigma_a[c] = w->sigma_a[c];
-        medium.g[c] = w->g[c];
+        medium.phase[c].g = w->g[c];
     }
     size_t planes = (size_t)w->count * w->num_components * NY * NZ;
     uint16_t *halves = calloc(planes * ROW, sizeof *halves);

@@ -29,7 +29,7 @@ static setup start(float thickness)
         s.medium.size[i] = 1;
         s.medium.sigma_s[i] = thickness * (1 + (float)i);
         s.medium.sigma_a[i] = thickness * 0.5f;
-        s.medium.g[i] = 0.6f;
+        s.medium.phase[i].g = 0.6f;
         s.scaled[i] = 0.64f * s.medium.sigma_s[i];
     }
     s.lights[0] = (struct light_block){.color = {3, 2, 1}, .direction = {0.48f, 0.36f, -0.8f}};
@@ -55,7 +55,7 @@ static void run(gpu_test *t, const setup *s)
     for (int i = 0; i < channels * N; i++) {
         cells[i][0] = s->scaled[i / N];
         cells[i][1] = s->medium.sigma_a[i / N];
-        cells[i][2] = s->medium.g[i / N] / (1 + s->medium.g[i / N]);
+        cells[i][2] = s->medium.phase[i / N].g / (1 + s->medium.phase[i / N].g);
     }
     struct beam_block beams[TYN_BEAM_MAX_SUNS] = {{.light = 0}};
     for (uint32_t n = 0; n < SUNS; n++) {

@@ -341,14 +341,16 @@ static world two_media(void)
                                       (double[3]){0.9, 0.9, 0.9}, 0, 0);
     memcpy(s->sigma_s, (float[3]){1, 2, 3}, 12);
     memcpy(s->sigma_a, (float[3]){0.5f, 0, 1}, 12);
-    memcpy(s->g, (float[3]){0.8f, 0.8f, -0.2f}, 12);
+    s->phase[0].g = s->phase[1].g = 0.8f;
+    s->phase[2].g = -0.2f;
     memcpy(s->emission, (float[3]){0, 0.5f, 1}, 12);
     s = add_shape(&w, TYN_SHAPE_KIND_BOX, (double[3]){1.2, 0.5, 0.5}, (double[3]){1.1, 0.7, 0.5},
                   0.5, 0.4);
     memcpy(s->size, (uint32_t[3]){16, 12, 10}, 12);
     memcpy(s->offset, (uint32_t[3]){5, 6, 3}, 12);
     memcpy(s->sigma_s, (float[3]){20, 10, 5}, 12);
-    memcpy(s->g, (float[3]){0.2f, 0.5f, 0.5f}, 12);
+    s->phase[0].g = 0.2f;
+    s->phase[1].g = s->phase[2].g = 0.5f;
     w.emissive = true;
     return w;
 }
@@ -396,7 +398,7 @@ static void coefficients(void **state)
             for (int n = 0; n < 2; n++) {
                 sigma_s += value[n] * w.shapes[n].sigma_s[c];
                 sigma_a += value[n] * w.shapes[n].sigma_a[c];
-                weighted += value[n] * w.shapes[n].sigma_s[c] * w.shapes[n].g[c];
+                weighted += value[n] * w.shapes[n].sigma_s[c] * w.shapes[n].phase[c].g;
                 emission += value[n] * w.shapes[n].emission[c];
             }
             different += !(fabs(s[c] - sigma_s) < 1e-4 * sigma_s + 1e-4 &&
@@ -437,7 +439,7 @@ static void lookup(void **state)
             for (int c = 0; c < 3; c++) {
                 w.medium.sigma_s[c] = 1 + (float)c;
                 w.medium.sigma_a[c] = 0.5f * (float)c;
-                w.medium.g[c] = 0.1f * (float)c;
+                w.medium.phase[c].g = 0.1f * (float)c;
                 w.medium.emission[c] = 2;
             }
             w.medium.repeat[0] = w.medium.repeat[2] = k == 1;
@@ -492,7 +494,7 @@ static void lookup(void **state)
                                                 : 0;
                         want = q == 0   ? density * w.medium.sigma_s[c]
                                : q == 1 ? density * w.medium.sigma_a[c]
-                               : q == 2 ? w.medium.g[c]
+                               : q == 2 ? w.medium.phase[c].g
                                         : density * w.medium.emission[c];
                     }
                     assert_true(fabs(got[i][q][c] - want) <

@@ -281,11 +281,16 @@ static void with_ordinates(void **state)
         struct medium_block medium = {.extent = {extent[0], extent[1], extent[2]}};
         memcpy(medium.sigma_s, k->sigma_s, sizeof medium.sigma_s);
         memcpy(medium.sigma_a, k->sigma_a, sizeof medium.sigma_a);
-        memcpy(medium.g, k->g, sizeof medium.g);
+        for (int c = 0; c < 3; c++) {
+            medium.phase[c].g = k->g[c];
+        }
         const struct camera_block camera = {
             .origin = {0.7f, 3, -1}, .orthographic = i == 1, .forward = {0.6f, 0, 0.8f}};
         const tyn_scatter_lut_params lut_params = {
-            .mode = k->mode, .g = {k->g[0], k->g[1], k->g[2]}, .g_max = 0.8f, .tms = 1};
+            .mode = k->mode,
+            .phase = {{.g = k->g[0]}, {.g = k->g[1]}, {.g = k->g[2]}},
+            .g_max = 0.8f,
+            .tms = 1};
         const tyn_merge_params params = {.channels = k->channels,
                                          .tint = {k->tint[0], k->tint[1], k->tint[2]},
                                          .mode = k->mode,

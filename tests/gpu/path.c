@@ -171,7 +171,7 @@ static void overlap(void **state)
         for (int k = 0; k < 2; k++) {
             s.shapes[k].sigma_s[c] = ss[k][c];
             s.shapes[k].sigma_a[c] = sa[k];
-            s.shapes[k].g[c] = g[k];
+            s.shapes[k].phase[c].g = g[k];
         }
         most = fmaxf(most, ss[0][c] + ss[1][c] + sa[0] + sa[1]);
     }

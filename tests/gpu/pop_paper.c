@@ -38,7 +38,7 @@ static const struct medium_block medium = {
     .voxel = {1, 1, 1},
     .max_density = 1,
     .sigma_s = {4, 4, 4},
-    .g = {0.6f, 0.6f, 0.6f},
+    .phase = {{.g = 0.6f}, {.g = 0.6f}, {.g = 0.6f}},
     .bricks = {1, 1, 1},
     .brick_size = {TYN_BRICK, TYN_BRICK, TYN_BRICK},
     .sigma_t_max = 4,

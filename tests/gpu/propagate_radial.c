@@ -308,7 +308,8 @@ static setup blobs(float *density)
     setup s = setup_of((float[]){1.0f, 1.3f, 0.8f}, size, density);
     memcpy(s.medium.sigma_s, (float[]){2, 5, 9}, sizeof s.medium.sigma_s);
     memcpy(s.medium.sigma_a, (float[]){0.5f, 0.1f, 0}, sizeof s.medium.sigma_a);
-    memcpy(s.medium.g, (float[]){0.8f, 0.3f, 0.5f}, sizeof s.medium.g);
+    memcpy(s.medium.phase, (tyn_phase[]){{.g = 0.8f}, {.g = 0.3f}, {.g = 0.5f}},
+           sizeof s.medium.phase);
     s.camera = (struct camera_block){.origin = {0.3f, 0.9f, 3}, .forward = {0, 0, -1}};
     s.params.channels = 3;
     s.params.cells = 11; // made even
@@ -366,7 +367,7 @@ static void keeps_power(void **state)
 {
     setup s = setup_of((float[]){1, 1, 1}, (uint32_t[]){1, 1, 1}, &one_voxel);
     s.medium.sigma_s[0] = 5;
-    s.medium.g[0] = 0.4f;
+    s.medium.phase[0].g = 0.4f;
     s.params.cells = 10;
     s.params.shells = 12;
     s.params.iterations = 8;
@@ -401,7 +402,7 @@ static setup soft_ball(float *density, const float axis[3])
     setup s = setup_of((float[]){1, 1, 1}, (uint32_t[]){BALL, BALL, BALL}, density);
     s.medium.sigma_s[0] = 12;
     s.medium.sigma_a[0] = 1;
-    s.medium.g[0] = 0.5f;
+    s.medium.phase[0].g = 0.5f;
     s.params.cells = s.params.shells = 16;
     s.params.iterations = 24;
     struct light_block *lamp = add_lamp(&s, 0.5f, 0.5f, 0.5f);
@@ -486,7 +487,7 @@ static void stress(void **state)
         setup s = setup_of((float[]){1, 1, 1}, (uint32_t[]){1, 1, 1}, &one_voxel);
         s.medium.sigma_s[0] = media[m][0];
         s.medium.sigma_a[0] = media[m][1];
-        s.medium.g[0] = media[m][2];
+        s.medium.phase[0].g = media[m][2];
         for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
             add_lamp(&s, places[i][0], places[i][1], places[i][2]);
         }

@@ -84,7 +84,7 @@ static setup unit_cube(const float *density, float sigma_s, float g, const float
     s.camera.orthographic = 1;
     for (int i = 0; i < 3; i++) {
         s.medium.sigma_s[i] = sigma_s;
-        s.medium.g[i] = g;
+        s.medium.phase[i].g = g;
         s.camera.forward[i] = -to_eye[i];
     }
     return s;
@@ -218,7 +218,9 @@ static setup oblique(float *density)
         .suns = {{.color = {1, 2, 3}, .direction = {0.48f, 0.6f, 0.64f}},
                  {.color = {4, 0.5f, 1}, .direction = {0, -1, 0}}},
         .camera = {.origin = {0.3f, 0.9f, 3}, .forward = {0, 0, -1}},
-        .medium = {.sigma_s = {2, 5, 9}, .sigma_a = {0.5f, 0.1f, 0}, .g = {0.8f, 0, -0.3f}},
+        .medium = {.sigma_s = {2, 5, 9},
+                   .sigma_a = {0.5f, 0.1f, 0},
+                   .phase = {{.g = 0.8f}, {.g = 0}, {.g = -0.3f}}},
     };
     srand(7);
     for (uint32_t q = 0; q < size[0] * size[1] * size[2]; q++) {
@@ -484,7 +486,9 @@ static void shrunk_medium(void **state)
     setup s = {.suns = {{.color = {1, 1, 1}, .direction = {0.48f, 0.6f, 0.64f}}},
                .num_suns = 1,
                .camera = {.orthographic = 1, .forward = {0, 0, -1}},
-               .medium = {.sigma_s = {2, 5, 9}, .sigma_a = {3, 2, 1}, .g = {0.8f, 0, -0.3f}}};
+               .medium = {.sigma_s = {2, 5, 9},
+                          .sigma_a = {3, 2, 1},
+                          .phase = {{.g = 0.8f}, {.g = 0}, {.g = -0.3f}}}};
     double sums[3][3] = {{0}}; // sigma_s, sigma_a, sigma_s g of the voxels
     srand(5);
     for (int q = 0; q < VOXELS; q++) {
@@ -514,7 +518,7 @@ static void shrunk_medium(void **state)
                 sums[0][c] += voxel * scattering;
                 sums[1][c] +=
                     voxel * (mode ? sigma_a[4 * q + c] : density[q] * s.medium.sigma_a[c]);
-                sums[2][c] += voxel * scattering * (mode ? g[4 * q + c] : s.medium.g[c]);
+                sums[2][c] += voxel * scattering * (mode ? g[4 * q + c] : s.medium.phase[c].g);
             }
         }
         outcome o = run(*state, &s);

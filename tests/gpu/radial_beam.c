@@ -26,7 +26,7 @@ static struct medium_block medium_of(bool homogeneous)
         m.bricks[i] = (m.size[i] + TYN_BRICK - 1) / TYN_BRICK;
         m.sigma_s[i] = 1;
         m.sigma_a[i] = 0.5f;
-        m.g[i] = 0.5f;
+        m.phase[i].g = 0.5f;
     }
     return m;
 }

@@ -46,7 +46,7 @@ static void make_cube(march_scene *s, float sigma_s, float sigma_a, float g)
         m->size[i] = m->bricks[i] = 1;
         m->sigma_s[i] = sigma_s;
         m->sigma_a[i] = sigma_a;
-        m->g[i] = g;
+        m->phase[i].g = g;
         s->density.size[i] = s->distance.size[i] = s->column.size[i] = 1;
         s->inscatter.size[i] = 3;
         s->light.color[i] = 1.0f;
@@ -61,7 +61,7 @@ static void make_cube(march_scene *s, float sigma_s, float sigma_a, float g)
     s->inscatter.channels = 4;
     s->density.texels[0] = s->column.texels[0] = 1.0f;
     s->lut.num_rows = s->lut.num_sets = 1;
-    s->lut.g[0] = g;
+    s->lut.phase[0].g = g;
     s->lut.theta_1[0] = 0.4f;
     s->sums[0] = -1.5f;
     s->sums[1] = -2.0f;
@@ -273,7 +273,7 @@ static twin_result twin(const march_scene *s, const double o[3], const double d[
         begin = fmax(begin, fmin(t0, t1));
         end = fmin(end, fmax(t0, t1));
     }
-    double g = s->medium.g[c], f = g > 0 ? g * g : 0, turn = 0;
+    double g = s->medium.phase[c].g, f = g > 0 ? g * g : 0, turn = 0;
     for (int a = 0; a < 3; a++) {
         turn += pow(-d[a] - s->light.direction[a], 2);
     }

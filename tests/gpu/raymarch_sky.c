@@ -263,7 +263,9 @@ static void through_the_medium(void **state)
         make_scene(s, 0.3f, 0.4f, -0.8f, 0.25f);
         memcpy(s->medium.sigma_s, media[k / 2].sigma_s, sizeof(tyn_vec3));
         memcpy(s->medium.sigma_a, media[k / 2].sigma_a, sizeof(tyn_vec3));
-        memcpy(s->medium.g, media[k / 2].g, sizeof(tyn_vec3));
+        for (int c = 0; c < 3; c++) {
+            s->medium.phase[c].g = media[k / 2].g[c];
+        }
         s->params.grey = k / 2 == 0;
         s->params.background = k % 2;
         s->with_glow = true;
@@ -278,7 +280,7 @@ static void through_the_medium(void **state)
                 double length = chord(s, d);
                 hits += length > 0;
                 for (int c = 0; c < 3; c++) {
-                    double g = s->medium.g[c], sigma_s = s->medium.sigma_s[c];
+                    double g = s->medium.phase[c].g, sigma_s = s->medium.sigma_s[c];
                     double wide = sigma_s * fmin(1, (1 - g) / 0.005); // what g = 0.995 replaces
                     double f = g > 0 ? fmin(g * g, 0.995 * 0.995) : 0;
                     double forward = (sigma_s - (1 - f) * wide) * length;

@@ -19,7 +19,7 @@ static const struct medium_block medium = {
     .max_density = 1,
     .sigma_s = {3, 5, 8},
     .sigma_a = {0, 0.2f, 1},
-    .g = {0.5f, 0.5f, 0.5f},
+    .phase = {{.g = 0.5f}, {.g = 0.5f}, {.g = 0.5f}},
 };
 static float density[16 * 12 * 8];
 

@@ -168,8 +168,9 @@ static void rows_of_channels(void **state)
     static series s;
     uint32_t seed = 7;
     for (size_t n = 0; n < sizeof sets / sizeof *sets; n++) {
-        tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY,
-                                         .g = {sets[n][0], sets[n][1], sets[n][2]}};
+        tyn_scatter_lut_params params = {
+            .mode = TYN_MEDIUM_DENSITY,
+            .phase = {{.g = sets[n][0]}, {.g = sets[n][1]}, {.g = sets[n][2]}}};
         for (uint32_t c = 0; c < 3; c++) {
             scatter_points(points + c * COUNT, c, sets[n][c], 20, &seed);
         }
@@ -192,7 +193,8 @@ static void single_scattering(void **state)
     for (int i = 0; i < 200; i++) {
         points[i] = (point){0, (float)(PI * pow(i / 199.0, 3)), 0, (uint32_t)i % 3, 0, 0, 1};
     }
-    tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY, .g = {g[0], g[1], g[2]}};
+    tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY,
+                                     .phase = {{.g = g[0]}, {.g = g[1]}, {.g = g[2]}}};
     const float(*got)[2] = evaluate(t, &params, points, 200, 0);
     for (int i = 0; i < 200; i++) {
         double p = phase(fmin(g[i % 3], 0.995), points[i].theta);
@@ -212,7 +214,8 @@ static void sums_over_directions(void **state)
         points[i] = (point){
             (float)taus[i / ANGLES], (float)(PI * (i % ANGLES + 0.5) / ANGLES), 0, 0, 0, 0, 1};
     }
-    tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY, .g = {0.8f, 0.8f, 0.8f}};
+    tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY,
+                                     .phase = {{.g = 0.8f}, {.g = 0.8f}, {.g = 0.8f}}};
     const float(*got)[2] = evaluate(t, &params, points, DEPTHS * ANGLES, 0);
     for (int d = 0; d < DEPTHS; d++) {
         double sum[2] = {0, 0};
@@ -324,7 +327,7 @@ static void suns_of_finite_size(void **state)
     static series s[3];
     static double fine[FINE + 1];
     tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY,
-                                     .g = {g[0], g[1], g[2]},
+                                     .phase = {{.g = g[0]}, {.g = g[1]}, {.g = g[2]}},
                                      .num_suns = SUNS,
                                      .mean_cosine = {(float)a[0], (float)a[1], (float)a[2]}};
     for (int i = 0; i < SUNS * 3 * PER_ROW; i++) {
@@ -372,7 +375,7 @@ static void sums_with_a_sun(void **state)
                             .sun = 1};
     }
     tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY,
-                                     .g = {0.8f, 0.8f, 0.8f},
+                                     .phase = {{.g = 0.8f}, {.g = 0.8f}, {.g = 0.8f}},
                                      .num_suns = 2,
                                      .mean_cosine = {1, 0.95f}};
     const float(*got)[2] = evaluate(t, &params, points, DEPTHS * ANGLES, 0);
@@ -429,7 +432,8 @@ static void refuses_bad_g(void **state)
     gpu_test *t = *state;
     static const float bad[] = {1, -1, 2, NAN, INFINITY};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY, .g = {0.5f, bad[i], 0.5f}};
+        tyn_scatter_lut_params params = {.mode = TYN_MEDIUM_DENSITY,
+                                         .phase = {{.g = 0.5f}, {.g = bad[i]}, {.g = 0.5f}}};
         tyn_ref refs[SCATTER_LUT_NUM_PORTS] = {{0}};
         t->quiet = true;
         tyn_graph_begin(t->graph);

@@ -32,5 +32,5 @@ void main()
     results[i] =
         mixed == 0u
             ? scatter_kernels(scatter_angle_of(p.sun, p.channel, one_minus_mu), p.tau)
-            : scatter_kernels_mixed(lut.sun_set[p.sun], p.cosine, one_minus_mu, p.g, p.tau, p.tau_p);
+            : scatter_kernels_mixed(lut.sun_set[p.sun], p.cosine, one_minus_mu, phase_of_mean_cosine(p.g), p.tau, p.tau_p);
 }

@@ -513,7 +513,7 @@ static double length_in_box(const double a[3], const double b[3])
 // What is left after a way in the medium, of which scattering forward counts as none.
 static double left_of(double length, int channel)
 {
-    const double g = (double)s.medium.g[channel];
+    const double g = (double)s.medium.phase[channel].g;
     const double scattering = s.params.mode == TYN_MEDIUM_DENSITY
                                   ? (1 - g * g) * (double)s.medium.sigma_s[channel]
                                   : (double)s.scaled[channel];
@@ -585,7 +585,7 @@ static void suns_through_the_medium(void **state)
         for (int c = 0; c < 3; c++) {
             s.medium.sigma_s[c] = 0.1f + 0.3f * (float)c;
             s.medium.sigma_a[c] = 0.2f / (1 + (float)c);
-            s.medium.g[c] = 0.5f;
+            s.medium.phase[c].g = 0.5f;
             s.scaled[c] = 0.6f * s.medium.sigma_s[c];
             s.mean[c] = i / 2 ? s.medium.sigma_s[c] : 1;
         }
@@ -703,7 +703,7 @@ static void far_lamps(void **state)
         for (int c = 0; c < 3; c++) {
             s.medium.sigma_s[c] = 0.1f + 0.1f * (float)c;
             s.medium.sigma_a[c] = 0.2f;
-            s.medium.g[c] = 0.7f;
+            s.medium.phase[c].g = 0.7f;
         }
         s.pieces[0].at[2] = 0.5f;
         look((float[]){2, 2, 3}, (float[]){0.1f, 0, -1}, 0.3f, false);
@@ -828,7 +828,7 @@ static void vpls(void **state)
         for (int c = 0; c < 3; c++) {
             s.medium.sigma_s[c] = 0.1f + 0.1f * (float)c;
             s.medium.sigma_a[c] = 0.2f;
-            s.medium.g[c] = 0.7f;
+            s.medium.phase[c].g = 0.7f;
         }
         s.pieces[0].at[2] = 0.5f;
         look((float[]){2, 2, 3}, (float[]){0.1f, 0, -1}, 0.5f, false);
@@ -1090,7 +1090,7 @@ static double mean_cosine_forward(double g)
 // It comes from around the sun: as from a beam, and as much less directed as its mean direction is shorter than 1.
 static void of_forward_light(const double p[3], const double n[3], double irradiance[3])
 {
-    const double g = (double)s.medium.g[0], directed = mean_cosine_forward(g);
+    const double g = (double)s.medium.phase[0].g, directed = mean_cosine_forward(g);
     of_moments(p, n, irradiance);
     double towards[3], far[3];
     for (int i = 0; i < 3; i++) {
@@ -1118,7 +1118,7 @@ static void forward_light(void **state)
         for (int c = 0; c < 3; c++) {
             s.medium.sigma_s[c] = 0.4f + 0.2f * (float)c;
             s.medium.sigma_a[c] = 0.1f;
-            s.medium.g[c] = 0.8f;
+            s.medium.phase[c].g = 0.8f;
             s.moments[c][0] = 1e-3f;
         }
         s.pieces[0].at[2] = 0.5f;

@@ -93,7 +93,9 @@ static void cones(void **state)
     uint32_t seed = 5;
     for (int set = 0; set < SETS; set++) {
         tyn_scatter_lut_params params = {
-            .mode = TYN_MEDIUM_DENSITY, .g = {gs[set][0], gs[set][1], gs[set][2]}, .tms = 1};
+            .mode = TYN_MEDIUM_DENSITY,
+            .phase = {{.g = gs[set][0]}, {.g = gs[set][1]}, {.g = gs[set][2]}},
+            .tms = 1};
         for (uint32_t ch = 0; ch < 3; ch++) {
             for (int i = 0; i < CONES; i++) {
                 double sine = i / (CONES - 1.0);
@@ -135,7 +137,9 @@ static void sums_over_directions(void **state)
     uint32_t seed = 11;
     for (int set = 0; set < SETS; set++) {
         tyn_scatter_lut_params params = {
-            .mode = TYN_MEDIUM_DENSITY, .g = {gs[set][0], gs[set][1], gs[set][2]}, .tms = 1};
+            .mode = TYN_MEDIUM_DENSITY,
+            .phase = {{.g = gs[set][0]}, {.g = gs[set][1]}, {.g = gs[set][2]}},
+            .tms = 1};
         for (uint32_t ch = 0; ch < 3; ch++) {
             double f = gs[set][ch] > 0 ? gs[set][ch] * gs[set][ch] : 0;
             for (int i = 0; i < CASES; i++) {

@@ -25,5 +25,5 @@ void main()
     point p = points[i];
     float level = tms_level(p.part);
     results[i] = mixed == 0u ? tms_kernel(tms_row_of_channel(p.channel), p.mu, p.tau, level)
-                             : tms_kernel_mixed(tms_last_of(p.g), p.mu, p.tau, p.tau_p, level, 1.0 - p.part);
+                             : tms_kernel_mixed(tms_last_of(phase_of_mean_cosine(p.g)), p.mu, p.tau, p.tau_p, level, 1.0 - p.part);
 }

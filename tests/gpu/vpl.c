@@ -273,7 +273,7 @@ static void in_fog(void **state)
     for (int c = 0; c < 3; c++) {
         scene.medium.sigma_s[c] = 1;
         scene.medium.sigma_a[c] = 0.3f * (float)c;
-        scene.medium.g[c] = 0.5f;
+        scene.medium.phase[c].g = 0.5f;
     }
     add_tile(0);
     fill_floor(0, one);

@@ -21,7 +21,7 @@ static void add_medium(tyn_scene *s, float sigma_s, float g, float x, int32_t vo
 {
     uint32_t m = s->num_media++;
     s->media[m] = (tyn_medium){.sigma_s = {sigma_s, sigma_s, sigma_s},
-                               .g = {g, g, g},
+                               .phase = {{.g = g}, {.g = g}, {.g = g}},
                                .density_scale = 1,
                                .volume = volume};
     tyn_shape *shape = &s->shapes[s->num_shapes++];

@@ -53,7 +53,7 @@ static void cloud_is_thick(void **state)
     print_message("cloud: optical depth %.1f, %.1f, %.1f along x, y, z\n", (double)depth[0],
                   (double)depth[1], (double)depth[2]);
     assert_true(depth[0] > 50 && depth[1] > 50 && depth[2] > 50);
-    assert_true(scene.media[0].g[0] == 0.85f);
+    assert_true(scene.media[0].phase[0].g == 0.85f);
     tyn_scene_finish(&scene);
 }
 

@@ -198,7 +198,7 @@ static void room_is_the_reference(void **state)
     for (int k = 0; k < 3; k++) {
         near(fog->sigma_s[k], 0.3);
         near(fog->sigma_a[k], 0.02);
-        near(fog->g[k], 0.6);
+        near(fog->phase[k].g, 0.6);
         near(lamp->color[k], 40);
         near(lamp->position[k], (const double[]){1.2, 4.5, 2}[k]);
         near(lamp->direction[k], (const double[]){0.55 / down, -1.5 / down, 0}[k]);

@@ -52,7 +52,7 @@ void light_chain_run(gpu_test *t, light_chain *c)
         medium.voxel[a] = c->extent[a] / (float)size[a];
         medium.bricks[a] = (size[a] + TYN_BRICK - 1) / TYN_BRICK;
         medium.brick_size[a] = medium.voxel[a] * TYN_BRICK;
-        medium.g[a] = c->g[a];
+        medium.phase[a].g = c->g[a];
         medium.sigma_s[a] = c->coefficients ? 0 : c->sigma_s[a];
         medium.sigma_a[a] = c->coefficients ? 0 : c->sigma_a[a];
         medium.emission[a] = c->coefficients ? 0 : c->emission[a];

@@ -48,10 +48,11 @@ void path_scene_box(path_scene *s, const float extent[3], const float sigma_s[3]
     m->sigma_t_max = largest(sigma_t);
     copy3(m->sigma_s, sigma_s);
     copy3(m->sigma_a, sigma_a);
-    copy3(m->g, g);
     copy3(shape->sigma_s, sigma_s);
     copy3(shape->sigma_a, sigma_a);
-    copy3(shape->g, g);
+    for (int c = 0; c < 3; c++) {
+        m->phase[c].g = shape->phase[c].g = g[c];
+    }
 
     tyn_pass_defaults(&tyn_pass_path, &s->params);
     s->params.num_shapes = 1;

@@ -26,7 +26,7 @@ tyn_medium grey_medium(float sigma_s, float sigma_a, float g)
     for (int c = 0; c < 3; c++) {
         m.sigma_s[c] = sigma_s;
         m.sigma_a[c] = sigma_a;
-        m.g[c] = g;
+        m.phase[c].g = g;
     }
     return m;
 }

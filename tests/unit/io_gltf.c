@@ -86,7 +86,9 @@ static void nodes(void **state)
     assert_string_equal(s.media[0].name, "fog");
     NEAR(s.media[0].sigma_s, 2, 2, 2);
     NEAR(s.media[0].sigma_a, 1, 2, 3);
-    NEAR(s.media[0].g, -0.5f, 0, 0.5f);
+    float g[3];
+    tyn_phase_get(s.media[0].phase, tyn_phase_parameters(), g);
+    NEAR(g, -0.5f, 0, 0.5f);
     NEAR(s.media[0].emission, 0.25f, 0.25f, 0.25f);
     assert_true(s.media[0].volume == -1 && s.media[0].density_scale == 1);
 

@@ -97,7 +97,9 @@ static void override(void **state)
     o = (tyn_medium_override){.sigma_s = (float[]){5, 5, 5}, .g = (float[]){0.1f, 0.2f, 0.3f}};
     assert_int_equal(tyn_scene_override(&scene, &o, &log.log), TYN_OK);
     near3(scene.media[0].sigma_s, 5, 5, 5);
-    near3(scene.media[0].g, 0.1f, 0.2f, 0.3f);
+    float g[3];
+    tyn_phase_get(scene.media[0].phase, tyn_phase_parameters(), g);
+    near3(g, 0.1f, 0.2f, 0.3f);
     assert_true(scene.media[0].density_scale == 3);
     const tyn_medium_override bad[] = {{.sigma_s = (float[]){-1, 0, 0}},
                                        {.sigma_a = (float[]){NAN, 0, 0}},
@@ -136,7 +138,7 @@ static void check(void **state)
             s.media[0].sigma_s[1] = -1;
             break;
         case 1:
-            s.media[0].g[2] = 1;
+            s.media[0].phase[2].g = 1;
             break;
         case 2:
             s.media[0].volume = 1;

@@ -19,7 +19,7 @@ static uint64_t hash_media(const tyn_scene *scene, uint64_t key)
     }
     for (uint32_t i = 0; i < scene->num_media; i++) {
         const tyn_medium *m = &scene->media[i];
-        key = HASH(m->sigma_s, HASH(m->sigma_a, HASH(m->g, HASH(m->emission, key))));
+        key = HASH(m->sigma_s, HASH(m->sigma_a, HASH(m->phase, HASH(m->emission, key))));
         key = HASH(m->density_scale, HASH(m->volume, key));
     }
     for (uint32_t i = 0; i < scene->num_shapes; i++) {

@@ -110,7 +110,7 @@ static void set_medium(const stress_case *c, tyn_medium *medium)
         float sigma = c->sigma * (c->coloured ? powf(1000, (float)k - 1) : 1);
         medium->sigma_s[k] = sigma * c->albedo;
         medium->sigma_a[k] = c->albedo < 1 ? sigma * (1 - c->albedo) : 0;
-        medium->g[k] = c->g;
+        medium->phase[k].g = c->g;
     }
 }
 
@@ -149,7 +149,7 @@ bool stress_scene(const stress_case *c, tyn_scene *scene)
         for (int k = 0; k < 3; k++) {
             scene->media[1].sigma_s[k] *= c->contrast;
             scene->media[1].sigma_a[k] *= c->contrast;
-            scene->media[1].g[k] *= 0.5f;
+            scene->media[1].phase[k].g *= 0.5f;
         }
         add_box(c, scene);
         scene->shapes[1].medium = 1;

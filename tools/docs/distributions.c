@@ -31,8 +31,10 @@ static void make_cube(tyn_scene *scene, float g)
 {
     tyn_scene_init(scene);
     scene->num_media = scene->num_shapes = scene->num_lights = 1;
-    scene->media[0] =
-        (tyn_medium){.sigma_s = {4, 4, 4}, .g = {g, g, g}, .density_scale = 1, .volume = -1};
+    scene->media[0] = (tyn_medium){.sigma_s = {4, 4, 4},
+                                   .phase = {{.g = g}, {.g = g}, {.g = g}},
+                                   .density_scale = 1,
+                                   .volume = -1};
     scene->shapes[0] =
         (tyn_shape){.to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0.5f, 0.5f, 0.5f, 1}};
     scene->lights[0] = (tyn_light){.color = {1, 1, 1}, .direction = {1, 0, 0}};

@@ -25,13 +25,18 @@ typedef struct tyn_volume {
     uint64_t hash; // content hash of data, for change tracking
 } tyn_volume;
 
+// The phase function of one colour channel: how scattered light is spread over angles. {0} is isotropic.
+typedef struct tyn_phase {
+    float g; // mean cosine of the Henyey-Greenstein phase function, (-1, 1)
+} tyn_phase;
+
 // Coefficients at density 1, linear RGB.
 typedef struct tyn_medium {
     char *name;
-    float sigma_s[3];  // scattering, 1/m, >= 0
-    float sigma_a[3];  // absorption, 1/m, >= 0
-    float g[3];        // Henyey-Greenstein mean cosine, (-1, 1)
-    float emission[3]; // W/(m^3 sr), >= 0
+    float sigma_s[3];   // scattering, 1/m, >= 0
+    float sigma_a[3];   // absorption, 1/m, >= 0
+    tyn_phase phase[3]; // of each channel
+    float emission[3];  // W/(m^3 sr), >= 0
     // Multiplies the density, >= 0; after load the file's density.scale, else 1.
     float density_scale;
     int32_t volume; // index into scene.volumes; -1: homogeneous, density 1
@@ -204,6 +209,24 @@ TYN_API void tyn_scene_init(tyn_scene *scene);   // an empty scene; call before 
 TYN_API void tyn_scene_finish(tyn_scene *scene); // frees everything it owns, leaves an empty scene
 TYN_API void tyn_scene_warn(tyn_scene *scene, const char *format, ...) TYN_PRINTF(2, 3);
 
+TYN_API double tyn_phase_mean_cosine(tyn_phase phase);
+// f, the part of the scattering that delta scaling counts as going straight on.
+TYN_API double tyn_phase_delta_fraction(tyn_phase phase);
+TYN_API bool tyn_phase_equal(tyn_phase a, tyn_phase b);
+
+// A parameter of phase functions; inclusive range.
+typedef struct tyn_phase_parameter {
+    const char *name;  // of the member of tyn_phase
+    const char *key;   // in a glTF file
+    const char *title; // in words
+    const char *right; // its range in words
+    float lo, hi;
+    size_t offset; // in tyn_phase
+} tyn_phase_parameter;
+TYN_API const tyn_phase_parameter *tyn_phase_parameters(void); // the last has no name
+TYN_API void tyn_phase_get(const tyn_phase phase[3], const tyn_phase_parameter *p, float values[3]);
+TYN_API void tyn_phase_set(tyn_phase phase[3], const tyn_phase_parameter *p, const float values[3]);
+
 // Checks every number of the scene; the first fault is one log line.
 TYN_API tyn_result tyn_scene_check(const tyn_scene *scene, const tyn_log *log);
 
@@ -218,8 +241,8 @@ TYN_API void tyn_camera_frame_scene(tyn_camera *camera, const tyn_scene *scene);
 // Looks from `from` at `at`; up is +Y, -Z where the view is parallel to it.
 TYN_API tyn_result tyn_camera_look_at(tyn_camera *camera, const float from[3], const float at[3]);
 
-// Overrides of every medium (`--sigma-s`, ...). NULL fields are left. albedo is applied last, keeping
-// sigma_t. density_scale <= 0 means "not given".
+// Overrides of every medium (`--sigma-s`, ...). NULL fields are left. g makes phase functions Henyey-Greenstein ones;
+// albedo is applied last, keeping sigma_t. density_scale <= 0 means "not given".
 typedef struct tyn_medium_override {
     const float *sigma_s, *sigma_a, *g, *albedo; // 3 floats each
     float density_scale;

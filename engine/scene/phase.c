@@ -1,8 +1,102 @@
-// forward_lobe.c -- Legendre moments of the forward part of the phase function.
-#include "base/forward_lobe.h"
+// phase.c -- the parameters of the phase function, its mean cosine, its forward part and its Legendre moments.
+#include "scene/phase.h"
 #include <math.h>
+#include <string.h>
 
 #define PI 3.14159265358979323846
+
+static const double g_min = 1e-3; // below it there is no lobe worth splitting off
+
+// ---- parameters -----------------------------------------------------------------------------------
+
+const tyn_phase_parameter *tyn_phase_parameters(void)
+{
+    static const float limit = 0.99999994f; // the largest float below 1
+    static const tyn_phase_parameter list[] = {
+        {"g", "anisotropy", "mean cosine", "between -1 and 1, both excluded", -limit, limit,
+         offsetof(tyn_phase, g)},
+        {NULL},
+    };
+    return list;
+}
+
+void tyn_phase_get(const tyn_phase phase[3], const tyn_phase_parameter *p, float values[3])
+{
+    for (int c = 0; c < 3; c++) {
+        memcpy(&values[c], (const char *)&phase[c] + p->offset, sizeof values[c]);
+    }
+}
+
+void tyn_phase_set(tyn_phase phase[3], const tyn_phase_parameter *p, const float values[3])
+{
+    for (int c = 0; c < 3; c++) {
+        memcpy((char *)&phase[c] + p->offset, &values[c], sizeof values[c]);
+    }
+}
+
+tyn_result tyn_phase_check(const tyn_phase phase[3], const char *of, const tyn_log *log)
+{
+    for (const tyn_phase_parameter *p = tyn_phase_parameters(); p->name; p++) {
+        float values[3];
+        tyn_phase_get(phase, p, values);
+        for (int c = 0; c < 3; c++) {
+            if (!(values[c] >= p->lo && values[c] <= p->hi)) {
+                tyn_log_print(log, TYN_LOG_ERROR, "%s.%s[%d] = %g: must be %s", of, p->name, c,
+                              values[c], p->right);
+                return TYN_ERR_PARAMS;
+            }
+        }
+    }
+    return TYN_OK;
+}
+
+bool tyn_phase_equal(tyn_phase a, tyn_phase b)
+{
+    return a.g == b.g;
+}
+
+bool tyn_phase_is_grey(const tyn_phase phase[3])
+{
+    return tyn_phase_equal(phase[0], phase[1]) && tyn_phase_equal(phase[1], phase[2]);
+}
+
+// ---- mean cosine and delta scaling ----------------------------------------------------------------
+
+tyn_phase tyn_phase_of_mean_cosine(float g)
+{
+    return (tyn_phase){.g = g};
+}
+
+double tyn_phase_mean_cosine(tyn_phase phase)
+{
+    return phase.g;
+}
+
+double tyn_phase_delta_fraction(tyn_phase phase)
+{
+    const double g = phase.g;
+    return g > 0 ? g * g : 0;
+}
+
+double tyn_phase_narrowness(tyn_phase phase)
+{
+    return fabs(phase.g);
+}
+
+bool tyn_phase_has_lobe(tyn_phase phase)
+{
+    return phase.g > g_min;
+}
+
+tyn_phase tyn_phase_resolved(tyn_phase phase)
+{
+    return (tyn_phase){.g = fminf(phase.g, (float)TYN_PHASE_NARROWEST)};
+}
+
+// ---- the forward lobe -----------------------------------------------------------------------------
+//
+// The lobe is p h with the window h(theta) = 1 inside theta_1 / 2, 0 outside 3 theta_1 / 2, smoothstep between; theta_1
+// is such that it holds the part f of the scattering.
 
 enum { POINTS = 8 };
 
@@ -47,7 +141,7 @@ static double find_theta_1(double g, const double x[POINTS], const double w[POIN
                 sum += w[q] / 8 * 6 * t * (1 - t) * fraction_within(g, (t + 0.5) * theta_1);
             }
         }
-        if (sum < tyn_delta_fraction(g)) {
+        if (sum < g * g) {
             lo = theta_1;
         } else {
             hi = theta_1;
@@ -84,9 +178,9 @@ static void add_moments(double g, double theta_1, double from, double to, const 
     }
 }
 
-double tyn_lobe_moments(double g, double *moments, uint32_t terms)
+double tyn_phase_lobe_moments(tyn_phase phase, double narrowest, double *moments, uint32_t terms)
 {
-    double x[POINTS], w[POINTS];
+    double x[POINTS], w[POINTS], g = fmin(phase.g, narrowest);
     gauss_legendre(x, w);
     double theta_1 = find_theta_1(g, x, w);
     for (uint32_t l = 0; l < terms; l++) {
@@ -95,4 +189,12 @@ double tyn_lobe_moments(double g, double *moments, uint32_t terms)
     add_moments(g, theta_1, 0, 0.5 * theta_1, x, w, moments, terms);
     add_moments(g, theta_1, 0.5 * theta_1, 1.5 * theta_1, x, w, moments, terms);
     return theta_1;
+}
+
+void tyn_phase_moments(tyn_phase phase, double *moments, uint32_t terms)
+{
+    double power = 1;
+    for (uint32_t l = 0; l < terms; l++, power *= fabs(phase.g)) {
+        moments[l] = power;
+    }
 }

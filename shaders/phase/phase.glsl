@@ -1,0 +1,116 @@
+// phase.glsl -- the phase function of a medium: evaluation, sampling, delta scaling. No bindings.
+//
+// All that shaders know of the parameters of a phase function is in this folder; its twin in C is engine/scene/phase.c.
+// It is a Henyey-Greenstein lobe. Arrays of three are of the colour channels.
+#ifndef TYN_PHASE_GLSL
+#define TYN_PHASE_GLSL
+#include "hg.glsl"
+#include "phase_args.h"
+
+// ---- evaluation ---------------------------------------------------------------------------------
+
+// The phase function, 1/sr, from 1 - mu; mu = cosine of the scattering angle. Give 1 - mu = |v - d|^2 / 2, which does
+// not cancel near the peak of a narrow lobe. Averaged over a light that is a soft round spot around its direction, with
+// the mean cosine `spot`: 1 = a point.
+float phase_near(phase p, float spot, float one_minus_mu)
+{
+    return hg_near(p.g * spot, one_minus_mu);
+}
+
+// 1 - mu of a scattering angle that is distributed as the phase function, from a uniform number.
+float phase_sample(phase p, float u)
+{
+    return hg_sample(p.g, u);
+}
+
+// ---- mean cosine --------------------------------------------------------------------------------
+
+float phase_mean_cosine(phase p)
+{
+    return p.g;
+}
+
+vec3 phase_mean_cosine(phase p[3])
+{
+    return vec3(phase_mean_cosine(p[0]), phase_mean_cosine(p[1]), phase_mean_cosine(p[2]));
+}
+
+// The Henyey-Greenstein phase function of a mean cosine: where media are unequal their image "g" holds mean cosines.
+phase phase_of_mean_cosine(float g)
+{
+    return phase(g);
+}
+
+phase[3] phase_of_mean_cosine(vec3 g)
+{
+    return phase[3](phase_of_mean_cosine(g.x), phase_of_mean_cosine(g.y), phase_of_mean_cosine(g.z));
+}
+
+// ---- channels -----------------------------------------------------------------------------------
+
+// Of the channel whose component of `channel` is 1, the others 0.
+phase phase_select(phase p[3], vec3 channel)
+{
+    return phase(dot(vec3(p[0].g, p[1].g, p[2].g), channel));
+}
+
+// ---- delta scaling ------------------------------------------------------------------------------
+
+// Part of the scattering that counts as going straight on.
+float delta_fraction(phase p)
+{
+    return delta_fraction(p.g);
+}
+
+vec3 delta_fraction(phase p[3])
+{
+    return vec3(delta_fraction(p[0]), delta_fraction(p[1]), delta_fraction(p[2]));
+}
+
+// Mean cosine of what is left, (g - f) / (1 - f): g / (1 + g) for g > 0, else g.
+float delta_cosine(phase p)
+{
+    return p.g / (1.0 + max(p.g, 0.0));
+}
+
+vec3 delta_cosine(phase p[3])
+{
+    return vec3(delta_cosine(p[0]), delta_cosine(p[1]), delta_cosine(p[2]));
+}
+
+// The Henyey-Greenstein phase function of which that mean cosine is left.
+phase phase_of_delta_cosine(float scaled)
+{
+    return phase(scaled > 0.0 ? min(scaled / (1.0 - scaled), HG_MAX) : scaled);
+}
+
+// Mean cosine of the narrowest forward lobe, >= 0.
+float phase_forward_cosine(phase p)
+{
+    return max(p.g, 0.0);
+}
+
+// A lobe narrower than HG_MAX is replaced by that one with as much less scattering that the transport
+// coefficient sigma_s (1 - g) stays: the widths differ by a third of a degree. What is seen *through*
+// the medium (transmittance, background) keeps the true sigma_s.
+void similarity_clamp(inout float sigma_s, inout phase p)
+{
+    sigma_s *= min(1.0, (1.0 - p.g) / (1.0 - HG_MAX));
+    p.g = min(p.g, HG_MAX);
+}
+
+void similarity_clamp(inout vec3 sigma_s, inout phase p[3])
+{
+    similarity_clamp(sigma_s.x, p[0]);
+    similarity_clamp(sigma_s.y, p[1]);
+    similarity_clamp(sigma_s.z, p[2]);
+}
+
+// sigma_s' = (1 - f) sigma_s of what similarity_clamp leaves.
+vec3 delta_scaled(vec3 sigma_s, phase p[3])
+{
+    similarity_clamp(sigma_s, p);
+    return sigma_s * (1.0 - delta_fraction(p));
+}
+
+#endif

@@ -1,0 +1,14 @@
+// phase_args.h -- the phase function of one colour channel. Included by C and GLSL; scalar layout.
+#ifndef TYN_PHASE_ARGS_H
+#define TYN_PHASE_ARGS_H
+
+#ifdef __STDC__
+#include "scene/phase.h" // tyn_phase
+#else
+struct phase { // as tyn_phase of <tyndall/scene.h>
+    float g;
+};
+#define tyn_phase phase
+#endif
+
+#endif
