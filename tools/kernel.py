@@ -11,7 +11,8 @@ has, for TYN_KERNEL (tyndall/pass.h):
 
 A descriptor belongs to the port that its name says: the name of the block, or of the image, without
 
-    _uniform, _buffer, _tex, _image    how it is bound, which the shader's types say again
+    _uniform, _buffer                  of blocks: TYN_UNIFORM, TYN_READ, TYN_WRITE, TYN_UPDATE (shaders/common/shared.h)
+    _tex, _image                       sampled, stored to
     _wrapped                           sampled, and repeated along x (latitude and longitude)
     _texels, _words                    a buffer read by texelFetch, four words at a time, or one
 

@@ -19,56 +19,23 @@ layout(push_constant, scalar) uniform push
 {
     balance_args args;
 };
-layout(binding = 0, scalar) uniform medium_uniform
-{
-    medium_block medium;
-};
-layout(binding = 1, scalar) uniform environment_uniform
-{
-    env_block environment; // its `sky` enters from all sides
-};
-layout(binding = 2, scalar) readonly buffer lights_buffer
-{
-    light_block lights[];
-};
+TYN_UNIFORM(0, medium, medium_block medium);
+TYN_UNIFORM(1, environment, env_block environment); // its `sky` enters from all sides
+TYN_READ(2, lights, light_block lights[]);
 layout(binding = 3) uniform sampler3D cells;
 layout(binding = 4) uniform sampler3D moments;
 layout(binding = 5) uniform sampler3D source;
-layout(binding = 11, scalar) readonly buffer lamp_power_buffer
-{
-    lattice_lamp_power lamp_power[];
-};
-layout(binding = 6, scalar) readonly buffer power_buffer
-{
-    lattice_power power[];
-};
-layout(binding = 7, scalar) readonly buffer leaks_buffer
-{
-    float leaks[];
-};
+TYN_READ(11, lamp_power, lattice_lamp_power lamp_power[]);
+TYN_READ(6, power, lattice_power power[]);
+TYN_READ(7, leaks, float leaks[]);
 // tyn_balance: seven triples of doubles, each as two words; a device need not know doubles.
-layout(binding = 8, scalar) writeonly buffer balance_buffer
-{
-    uvec2 balance[7][3];
-};
+TYN_WRITE(8, balance, uvec2 balance[7][3]);
 
-layout(binding = 9, scalar) uniform ordinates_uniform
-{
-    ordinates_block ordinates;
-};
+TYN_UNIFORM(9, ordinates, ordinates_block ordinates);
 
-layout(binding = 10, scalar) readonly buffer wall_power_buffer
-{
-    vec2 wall_power[]; // absorbed by a cell's walls, sent out by them; W
-};
-layout(binding = 12, scalar) readonly buffer found_buffer
-{
-    balance_light found[];
-};
-layout(binding = 13, scalar) readonly buffer emitters_buffer
-{
-    surface_table emitters;
-};
+TYN_READ(10, wall_power, vec2 wall_power[]); // absorbed by a cell's walls, sent out by them; W
+TYN_READ(12, found, balance_light found[]);
+TYN_READ(13, emitters, surface_table emitters);
 layout(constant_id = 0) const uint walls = 0;
 
 shared vec2 wall_sums[BALANCE_GROUP];

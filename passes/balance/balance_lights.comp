@@ -28,14 +28,8 @@ layout(push_constant, scalar) uniform push
 {
     balance_lights_args args;
 };
-layout(binding = 16, scalar) readonly buffer lights_buffer
-{
-    light_block lights[];
-};
-layout(binding = 17, scalar) writeonly buffer found_buffer
-{
-    balance_light found[];
-};
+TYN_READ(16, lights, light_block lights[]);
+TYN_WRITE(17, found, balance_light found[]);
 #include "shaders/surfaces/surface_trace.glsl"
 #include "shaders/surfaces/surface_faces.glsl"
 

@@ -7,10 +7,7 @@
 #include "shaders/beams/beam_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 0, binding = 5, scalar) buffer beams_buffer
-{
-    beam_block beams[];
-};
+TYN_UPDATE(5, beams, beam_block beams[]);
 
 #ifdef TYN_DENSITY
 layout(set = 0, binding = 6, r32f) writeonly uniform image3D column_image;

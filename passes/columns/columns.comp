@@ -15,14 +15,8 @@ layout(push_constant, scalar) uniform push
 {
     columns_args args;
 };
-layout(binding = 5, scalar) uniform ordinates_uniform
-{
-    ordinates_block ordinates;
-};
-layout(binding = 6, scalar) writeonly buffer nodes_buffer
-{
-    float nodes[]; // [ordinate][component of coefficients][slice][v][u]
-};
+TYN_UNIFORM(5, ordinates, ordinates_block ordinates);
+TYN_WRITE(6, nodes, float nodes[]); // [ordinate][component of coefficients][slice][v][u]
 
 #ifdef TYN_DENSITY
 void columns_store(uint node, float value)

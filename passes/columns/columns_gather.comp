@@ -19,18 +19,9 @@ layout(push_constant, scalar) uniform push
 {
     columns_args args;
 };
-layout(binding = 5, scalar) uniform ordinates_uniform
-{
-    ordinates_block ordinates;
-};
-layout(binding = 6, scalar) readonly buffer nodes_buffer
-{
-    float nodes[]; // [ordinate][component][slice][v][u]
-};
-layout(binding = 7, scalar) writeonly buffer columns_buffer
-{
-    uint columns_words[]; // columns.glsl
-};
+TYN_UNIFORM(5, ordinates, ordinates_block ordinates);
+TYN_READ(6, nodes, float nodes[]); // [ordinate][component][slice][v][u]
+TYN_WRITE(7, columns, uint columns_words[]); // columns.glsl
 
 const uint num_components = medium_mode == TYN_MEDIUM_DENSITY ? 1u : COLUMNS_COMPONENTS;
 

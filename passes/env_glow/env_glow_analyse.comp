@@ -6,18 +6,9 @@
 
 const uint ROWS = TYN_GLOW_HEIGHT, HALF = TYN_GLOW_HEIGHT / 2, DEGREES = TYN_GLOW_HEIGHT;
 layout(local_size_x = TYN_GLOW_HEIGHT) in;
-layout(set = 0, binding = 0, scalar) readonly buffer series_buffer
-{
-    glow_series series;
-};
-layout(set = 0, binding = 1, scalar) readonly buffer rows_buffer
-{
-    glow_order rows[];
-};
-layout(set = 0, binding = 2, scalar) writeonly buffer coefficients_buffer
-{
-    glow_coefficient coefficients[];
-};
+TYN_READ(0, series, glow_series series);
+TYN_READ(1, rows, glow_order rows[]);
+TYN_WRITE(2, coefficients, glow_coefficient coefficients[]);
 
 const float PI = 3.14159265358979;
 

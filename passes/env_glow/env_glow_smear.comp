@@ -7,18 +7,9 @@
 
 const uint ROWS = TYN_GLOW_HEIGHT, DEGREES = TYN_GLOW_HEIGHT, PAIRS = 4, THREADS = ROWS / 2 / PAIRS;
 layout(local_size_x = TYN_GLOW_HEIGHT / 8) in;
-layout(set = 0, binding = 0, scalar) readonly buffer series_buffer
-{
-    glow_series series;
-};
-layout(set = 0, binding = 1, scalar) readonly buffer coefficients_buffer
-{
-    glow_coefficient coefficients[];
-};
-layout(set = 0, binding = 2, scalar) writeonly buffer levels_buffer
-{
-    glow_order levels[];
-};
+TYN_READ(0, series, glow_series series);
+TYN_READ(1, coefficients, glow_coefficient coefficients[]);
+TYN_WRITE(2, levels, glow_order levels[]);
 
 const float PI = 3.14159265358979;
 

@@ -6,14 +6,8 @@
 const uint ROWS = TYN_GLOW_HEIGHT, ORDERS = TYN_GLOW_HEIGHT, WIDTH = TYN_GLOW_WIDTH;
 const uint FOURS = 4, THREADS = WIDTH / 4 / FOURS;
 layout(local_size_x = TYN_GLOW_WIDTH / 16) in;
-layout(set = 0, binding = 0, scalar) readonly buffer series_buffer
-{
-    glow_series series;
-};
-layout(set = 0, binding = 1, scalar) readonly buffer levels_buffer
-{
-    glow_order levels[];
-};
+TYN_READ(0, series, glow_series series);
+TYN_READ(1, levels, glow_order levels[]);
 layout(set = 0, binding = 2, rgba32f) writeonly uniform image3D glow_image;
 
 const float PI = 3.14159265358979;

@@ -4,10 +4,7 @@
 #include "shaders/light/sky.glsl"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, scalar) buffer sums_buffer
-{
-    float sums[]; // 8 of each sky_sum
-};
+TYN_UPDATE(0, sums, float sums[]); // 8 of each sky_sum
 
 void main()
 {

@@ -5,10 +5,7 @@
 
 layout(local_size_x = SKY_SUMS_WIDTH) in;
 layout(binding = 0, rgba32f) uniform readonly image2D sky;
-layout(binding = 1, scalar) writeonly buffer sums_buffer
-{
-    float sums[]; // 8 of each sky_sum
-};
+TYN_WRITE(1, sums, float sums[]); // 8 of each sky_sum
 
 shared float values[8][SKY_SUMS_WIDTH];
 

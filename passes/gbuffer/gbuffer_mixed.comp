@@ -6,14 +6,8 @@
 
 layout(local_size_x = GBUFFER_EDGES) in;
 
-layout(set = 0, binding = 14, scalar) buffer edge_count_buffer
-{
-    gbuffer_edge_count edge_count;
-};
-layout(set = 0, binding = 15, scalar) writeonly buffer edges_buffer
-{
-    uint edges[];
-};
+TYN_UPDATE(14, edge_count, gbuffer_edge_count edge_count);
+TYN_WRITE(15, edges, uint edges[]);
 
 void main()
 {

@@ -7,10 +7,7 @@
 layout(constant_id = 0) const uint textured = 1u;
 layout(constant_id = 1) const int samples = 2; // along each side of a pixel
 layout(constant_id = 2) const uint row = GBUFFER_ROW;
-layout(set = 0, binding = 0, scalar) uniform camera_buffer
-{
-    camera_block camera;
-};
+TYN_UNIFORM(0, camera, camera_block camera);
 #define GEOMETRY_AT 1
 #define MATERIALS_AT 5
 #define GBUFFER_TEXTURED (textured != 0u)
@@ -20,10 +17,7 @@ layout(set = 0, binding = 8, r32ui) uniform readonly uimage2D seen;
 layout(set = 0, binding = 9, r32f) uniform writeonly image2D distances_image;
 layout(set = 0, binding = 10, rgba32ui) uniform writeonly uimage2D facing_image;
 layout(set = 0, binding = 11, rgba32ui) uniform writeonly uimage2D colours_image;
-layout(set = 0, binding = 12, scalar) buffer mixed_count_buffer
-{
-    gbuffer_edge_count mixed_count;
-};
+TYN_UPDATE(12, mixed_count, gbuffer_edge_count mixed_count);
 layout(set = 0, binding = 13, scalar) buffer mixed_buffer // as edges, of pixels whose samples see several triangles
 {
     uint mixed[];

@@ -8,10 +8,7 @@
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/surfaces/surface_frame.glsl"
 
-layout(set = 0, binding = 0, scalar) uniform camera_buffer
-{
-    camera_block camera;
-};
+TYN_UNIFORM(0, camera, camera_block camera);
 #define GEOMETRY_AT 1
 #include "shaders/surfaces/surfaces.glsl"
 

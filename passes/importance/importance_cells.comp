@@ -7,10 +7,10 @@
 #include "importance.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 5, scalar) uniform grid_uniform { importance_grid grid; };
-layout(set = 0, binding = 6, scalar) writeonly buffer cells_buffer { importance_cell cells[]; };
-layout(set = 0, binding = 7, scalar) writeonly buffer light_buffer { importance_light light[]; };
-layout(set = 0, binding = 8, scalar) writeonly buffer tracks_buffer { vec2 tracks[]; };
+TYN_UNIFORM(5, grid, importance_grid grid);
+TYN_WRITE(6, cells, importance_cell cells[]);
+TYN_WRITE(7, light, importance_light light[]);
+TYN_WRITE(8, tracks, vec2 tracks[]);
 layout(push_constant, scalar) uniform push { importance_args args; };
 
 const int SAMPLES = 3; // along each edge of a cell

@@ -4,8 +4,8 @@
 #include "importance_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 0, scalar) readonly buffer cells_buffer { importance_cell cells[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer tracks_buffer { vec2 tracks[]; };
+TYN_READ(0, cells, importance_cell cells[]);
+TYN_READ(1, tracks, vec2 tracks[]);
 layout(set = 0, binding = 2, rgba32f) uniform writeonly image3D field;
 layout(push_constant, scalar) uniform push { importance_args args; };
 

@@ -4,8 +4,8 @@
 #include "importance.glsl"
 
 layout(local_size_x = TYN_IMPORTANCE_TEXELS) in;
-layout(set = 0, binding = 0, scalar) readonly buffer sent_buffer { float sent[]; };
-layout(set = 0, binding = 1, scalar) buffer history_buffer { importance_history history; };
+TYN_READ(0, sent, float sent[]);
+TYN_UPDATE(1, history, importance_history history);
 layout(set = 0, binding = 2, r32f) uniform writeonly image2D importance_image;
 layout(push_constant, scalar) uniform push { importance_args args; };
 

@@ -6,10 +6,10 @@
 #include "importance.glsl"
 
 layout(local_size_x = TYN_IMPORTANCE_RAYS, local_size_y = 8) in;
-layout(set = 0, binding = 0, scalar) uniform medium_uniform { medium_block medium; };
-layout(set = 0, binding = 1, scalar) uniform grid_uniform { importance_grid grid; };
+TYN_UNIFORM(0, medium, medium_block medium);
+TYN_UNIFORM(1, grid, importance_grid grid);
 layout(set = 0, binding = 2) uniform sampler3D field;
-layout(set = 0, binding = 3, scalar) writeonly buffer sent_buffer { float sent[]; };
+TYN_WRITE(3, sent, float sent[]);
 layout(push_constant, scalar) uniform push { importance_args args; };
 
 // The map cannot show narrower lobes than its texels: they are widened to those with half their height

@@ -4,9 +4,9 @@
 #include "importance.glsl"
 
 layout(local_size_x = 1) in;
-layout(set = 0, binding = 0, scalar) uniform medium_uniform { medium_block medium; };
-layout(set = 0, binding = 1, scalar) uniform camera_uniform { camera_block camera; };
-layout(set = 0, binding = 2, scalar) writeonly buffer grid_buffer { importance_grid grid; };
+TYN_UNIFORM(0, medium, medium_block medium);
+TYN_UNIFORM(1, camera, camera_block camera);
+TYN_WRITE(2, grid, importance_grid grid);
 layout(push_constant, scalar) uniform push { importance_args args; };
 
 void main()

@@ -4,10 +4,10 @@
 #include "importance.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 0, scalar) readonly buffer cells_buffer { importance_cell cells[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer light_other_buffer { importance_light light[]; };
-layout(set = 0, binding = 2, scalar) writeonly buffer light_buffer { importance_light out_light[]; };
-layout(set = 0, binding = 3, scalar) buffer tracks_buffer { vec2 tracks[]; };
+TYN_READ(0, cells, importance_cell cells[]);
+TYN_READ(1, light_other, importance_light light[]);
+TYN_WRITE(2, light, importance_light out_light[]);
+TYN_UPDATE(3, tracks, vec2 tracks[]);
 layout(push_constant, scalar) uniform push { importance_args args; };
 
 const ivec3 beside[4] = ivec3[](ivec3(-1, 0, 0), ivec3(1, 0, 0), ivec3(0, -1, 0), ivec3(0, 1, 0));

@@ -18,10 +18,7 @@ layout(push_constant, scalar) uniform push
     lattice_level_args args; // level: the first that is solved here
 };
 layout(binding = 2) uniform samplerBuffer rhs_words;
-layout(binding = 3, scalar) buffer correction_buffer
-{
-    float correction_out[];
-};
+TYN_UPDATE(3, correction, float correction_out[]);
 
 layout(constant_id = 0) const uint walls = 0;
 

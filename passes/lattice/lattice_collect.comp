@@ -14,29 +14,14 @@ layout(push_constant, scalar) uniform push
 layout(binding = 0) uniform sampler3D cells;
 layout(binding = 1) uniform samplerBuffer mean_psi_words; // [direction][channel][cell]
 layout(binding = 2) uniform samplerBuffer state_words;    // floats
-layout(binding = 3, scalar) writeonly buffer swept_buffer
-{
-    vec4 swept[];
-};
+TYN_WRITE(3, swept, vec4 swept[]);
 // The correction solves for what the sweep's change of phi would still set off: its scattering, W.
-layout(binding = 4, scalar) writeonly buffer rhs_buffer
-{
-    float rhs[];
-};
-layout(binding = 5, scalar) writeonly buffer correction_buffer
-{
-    float correction[];
-};
+TYN_WRITE(4, rhs, float rhs[]);
+TYN_WRITE(5, correction, float correction[]);
 
 layout(binding = 6) uniform samplerBuffer arrived_words; // as mean_psi, at the ends of cut links
-layout(binding = 7, scalar) readonly buffer wall_light_buffer
-{
-    vec3 wall_light[];
-};
-layout(binding = 8, scalar) writeonly buffer wall_power_buffer
-{
-    vec2 wall_power[]; // absorbed, sent out of wall_light; W
-};
+TYN_READ(7, wall_light, vec3 wall_light[]);
+TYN_WRITE(8, wall_power, vec2 wall_power[]); // absorbed, sent out of wall_light; W
 layout(binding = 11) uniform samplerBuffer stencil_hi_words; // four floats to a cell
 #define LATTICE_WALL_LINKS 9
 #define LATTICE_WALL_CELLS 10

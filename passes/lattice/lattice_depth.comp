@@ -12,10 +12,7 @@ layout(push_constant, scalar) uniform push
     lattice_args args;
 };
 layout(binding = 0) uniform sampler3D cells;
-layout(binding = 1, scalar) buffer launches_buffer
-{
-    uint launches[3 * LATTICE_MAX_LAUNCHES]; // workgroups, as indirect dispatches read them
-};
+TYN_UPDATE(1, launches, uint launches[3 * LATTICE_MAX_LAUNCHES]); // workgroups, as indirect dispatches read them
 
 shared float sums[LATTICE_DEPTH_GROUP];
 

@@ -13,10 +13,7 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the fine one
 };
-layout(binding = 0, scalar) writeonly buffer correction_buffer
-{
-    float correction[];
-};
+TYN_WRITE(0, correction, float correction[]);
 layout(binding = 3) uniform samplerBuffer correction_words; // the same
 
 layout(constant_id = 0) const uint walls = 0;

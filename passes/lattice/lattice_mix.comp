@@ -16,28 +16,13 @@ layout(binding = 1) uniform sampler3D source;
 layout(binding = 2) uniform samplerBuffer result_0_texels;
 layout(binding = 3) uniform samplerBuffer result_1_texels;
 layout(binding = 4) uniform samplerBuffer result_2_texels;
-layout(binding = 5, scalar) readonly buffer weights_buffer
-{
-    vec2 weights[];
-};
-layout(binding = 6, scalar) writeonly buffer state_buffer
-{
-    vec4 state[];
-};
-layout(binding = 7, scalar) writeonly buffer emitted_buffer
-{
-    vec4 emitted[];
-};
-layout(binding = 8, scalar) buffer counters_buffer
-{
-    counters_block counters;
-};
+TYN_READ(5, weights, vec2 weights[]);
+TYN_WRITE(6, state, vec4 state[]);
+TYN_WRITE(7, emitted, vec4 emitted[]);
+TYN_UPDATE(8, counters, counters_block counters);
 layout(binding = 9, rgba32f) uniform writeonly image3D moments;
 layout(binding = 10) uniform samplerBuffer swept_texels;
-layout(binding = 12, scalar) buffer wall_power_buffer
-{
-    vec2 wall_power[]; // absorbed, sent out of wall_light; W
-};
+TYN_UPDATE(12, wall_power, vec2 wall_power[]); // absorbed, sent out of wall_light; W
 
 layout(constant_id = 0) const uint last = 0; // 1: of the last sweep
 layout(constant_id = 1) const uint walls = 0;

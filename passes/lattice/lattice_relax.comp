@@ -15,10 +15,7 @@ layout(push_constant, scalar) uniform push
 };
 layout(binding = 2) uniform samplerBuffer rhs_words;
 layout(binding = 3) uniform samplerBuffer correction_words; // the correction: cells of the other colour
-layout(binding = 4, scalar) writeonly buffer correction_buffer
-{
-    float correction[];
-};
+TYN_WRITE(4, correction, float correction[]);
 
 float correction_at(uint i)
 {

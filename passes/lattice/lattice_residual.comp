@@ -20,18 +20,9 @@ layout(binding = 1) uniform samplerBuffer swept_texels;
 layout(binding = 2) uniform samplerBuffer correction_words; // floats
 layout(binding = 3) uniform samplerBuffer change_1_texels;
 layout(binding = 4) uniform samplerBuffer change_2_texels;
-layout(binding = 5, scalar) writeonly buffer result_0_buffer
-{
-    vec4 result[];
-};
-layout(binding = 6, scalar) writeonly buffer change_0_buffer
-{
-    vec4 change[];
-};
-layout(binding = 7, scalar) writeonly buffer partials_buffer
-{
-    float partials[]; // [channel][workgroup][dot]
-};
+TYN_WRITE(5, result_0, vec4 result[]);
+TYN_WRITE(6, change_0, vec4 change[]);
+TYN_WRITE(7, partials, float partials[]); // [channel][workgroup][dot]
 
 #define LATTICE_WALL_CELLS 8
 #include "lattice_wall_state.glsl"

@@ -19,14 +19,8 @@ layout(push_constant, scalar) uniform push
 };
 layout(binding = 2) uniform samplerBuffer rhs_words; // the buffers below, at another level
 layout(binding = 3) uniform samplerBuffer correction_words;
-layout(binding = 4, scalar) writeonly buffer rhs_buffer
-{
-    float rhs[];
-};
-layout(binding = 5, scalar) writeonly buffer correction_buffer
-{
-    float correction[];
-};
+TYN_WRITE(4, rhs, float rhs[]);
+TYN_WRITE(5, correction, float correction[]);
 
 float correction_at(uint i)
 {

@@ -17,22 +17,10 @@ layout(push_constant, scalar) uniform push
 };
 layout(binding = 1) uniform sampler3D cells;
 layout(binding = 2) uniform sampler3D source;
-layout(binding = 3, scalar) writeonly buffer state_buffer
-{
-    vec4 state[];
-};
-layout(binding = 4, scalar) writeonly buffer emitted_buffer
-{
-    vec4 emitted[];
-};
-layout(binding = 5, scalar) readonly buffer guess_buffer
-{
-    vec4 guess[];
-};
-layout(binding = 6, scalar) readonly buffer wall_light_buffer
-{
-    vec3 wall_light[];
-};
+TYN_WRITE(3, state, vec4 state[]);
+TYN_WRITE(4, emitted, vec4 emitted[]);
+TYN_READ(5, guess, vec4 guess[]);
+TYN_READ(6, wall_light, vec3 wall_light[]);
 layout(constant_id = 0) const uint walls = 0;
 layout(constant_id = 1) const uint lit_walls = 0; // there is wall_light
 #include "lattice_wall_state.glsl"

@@ -11,14 +11,8 @@ layout(push_constant, scalar) uniform push
     lattice_level_args args;
 };
 layout(binding = 0) uniform sampler3D cells;
-layout(binding = 1, scalar) writeonly buffer stencil_lo_buffer
-{
-    vec4 stencil_lo[];
-};
-layout(binding = 2, scalar) writeonly buffer stencil_hi_buffer
-{
-    vec4 stencil_hi[];
-};
+TYN_WRITE(1, stencil_lo, vec4 stencil_lo[]);
+TYN_WRITE(2, stencil_hi, vec4 stencil_hi[]);
 
 layout(constant_id = 0) const uint walls = 0;
 layout(constant_id = 1) const uint lattice_repeat = 0; // a bit for each axis along which the grid goes on

@@ -13,14 +13,8 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args; // level: the coarse one
 };
-layout(binding = 0, scalar) writeonly buffer stencil_lo_buffer
-{
-    vec4 stencil_lo[];
-};
-layout(binding = 1, scalar) writeonly buffer stencil_hi_buffer
-{
-    vec4 stencil_hi[];
-};
+TYN_WRITE(0, stencil_lo, vec4 stencil_lo[]);
+TYN_WRITE(1, stencil_hi, vec4 stencil_hi[]);
 
 #define LATTICE_STENCIL_LO 2
 #define LATTICE_STENCIL_HI 3

@@ -12,14 +12,8 @@ layout(push_constant, scalar) uniform push
 {
     lattice_level_args args;
 };
-layout(binding = 0, scalar) buffer stencil_lo_buffer
-{
-    vec4 stencil_lo[];
-};
-layout(binding = 1, scalar) readonly buffer stencil_hi_buffer
-{
-    vec4 stencil_hi[];
-};
+TYN_UPDATE(0, stencil_lo, vec4 stencil_lo[]);
+TYN_READ(1, stencil_hi, vec4 stencil_hi[]);
 
 layout(constant_id = 1) const uint lattice_repeat = 0; // a bit for each axis along which the grid goes on
 

@@ -17,20 +17,11 @@ layout(push_constant, scalar) uniform push
 };
 layout(binding = 1) uniform sampler3D cells;
 layout(binding = 2) uniform samplerBuffer emitted_texels; // vec4 per cell
-layout(binding = 3, scalar) writeonly buffer mean_psi_buffer
-{
-    float mean_psi[]; // mean radiance in a cell: [direction][channel][cell]
-};
-layout(binding = 4, scalar) writeonly buffer leaks_buffer
-{
-    float leaks[]; // per thread: what leaves the box less what enters, W
-};
+TYN_WRITE(3, mean_psi, float mean_psi[]); // mean radiance in a cell: [direction][channel][cell]
+TYN_WRITE(4, leaks, float leaks[]); // per thread: what leaves the box less what enters, W
 
 layout(binding = 5) uniform samplerBuffer state_words; // floats
-layout(binding = 6, scalar) writeonly buffer arrived_buffer
-{
-    float arrived[]; // radiance at the end of a cut link: [direction][channel][cell]
-};
+TYN_WRITE(6, arrived, float arrived[]); // radiance at the end of a cut link: [direction][channel][cell]
 #define LATTICE_WALL_LINKS 7
 #include "lattice_wall_state.glsl"
 #include "shaders/walls/walls_links.glsl"

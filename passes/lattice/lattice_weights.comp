@@ -10,18 +10,9 @@ layout(push_constant, scalar) uniform push
 {
     lattice_args args;
 };
-layout(binding = 0, scalar) readonly buffer partials_buffer
-{
-    float partials[]; // [channel][group][dot]
-};
-layout(binding = 1, scalar) writeonly buffer weights_buffer
-{
-    vec2 weights[]; // per channel
-};
-layout(binding = 2, scalar) buffer counters_buffer
-{
-    counters_block counters;
-};
+TYN_READ(0, partials, float partials[]); // [channel][group][dot]
+TYN_WRITE(1, weights, vec2 weights[]); // per channel
+TYN_UPDATE(2, counters, counters_block counters);
 layout(constant_id = 0) const uint last = 0; // 1: of the last sweep
 const uint num_dots = last == 1 ? LATTICE_NUM_DOTS : LATTICE_MIX_DOTS;
 

@@ -9,15 +9,8 @@ layout(push_constant, scalar) uniform push
     lattice_recall_args args;
 };
 layout(binding = 0) uniform sampler3D moments_tex;
-layout(binding = 1, scalar) readonly buffer power_buffer
-{
-    float power[3];
-};
-layout(binding = 2, scalar) writeonly buffer memory_buffer
-{
-    lattice_memory_block memory;
-    vec4 moments[];
-};
+TYN_READ(1, power, float power[3]);
+TYN_WRITE(2, memory, lattice_memory_block memory; vec4 moments[]);
 
 void main()
 {

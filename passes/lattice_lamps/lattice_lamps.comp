@@ -10,10 +10,7 @@ layout(push_constant, scalar) uniform push
 {
     lattice_lamps_args args;
 };
-layout(binding = 0, scalar) readonly buffer power_buffer
-{
-    lattice_lamp_power power[];
-};
+TYN_READ(0, power, lattice_lamp_power power[]);
 layout(binding = 1) uniform sampler3D lit;
 layout(binding = 2) uniform sampler3D others;
 layout(binding = 3) uniform sampler3D cells;

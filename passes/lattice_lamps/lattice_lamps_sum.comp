@@ -23,10 +23,7 @@ layout(push_constant, scalar) uniform push
 };
 layout(binding = 5) uniform sampler3D cells;
 layout(binding = 6) uniform sampler3D unshadowed;
-layout(binding = 7, scalar) writeonly buffer power_buffer
-{
-    lattice_lamp_power power[];
-};
+TYN_WRITE(7, power, lattice_lamp_power power[]);
 #include "lattice_lamps.glsl"
 
 shared vec4 sums[LATTICE_SUN_GROUP];

@@ -11,19 +11,9 @@ layout(push_constant, scalar) uniform push
 {
     lattice_recall_args args;
 };
-layout(binding = 0, scalar) readonly buffer memory_buffer
-{
-    lattice_memory_block memory;
-    vec4 moments[];
-};
-layout(binding = 2, scalar) readonly buffer power_buffer
-{
-    float power[3];
-};
-layout(binding = 3, scalar) writeonly buffer guess_buffer
-{
-    vec4 guess[];
-};
+TYN_READ(0, memory, lattice_memory_block memory; vec4 moments[]);
+TYN_READ(2, power, float power[3]);
+TYN_WRITE(3, guess, vec4 guess[]);
 
 const float OTHER_LIGHT = 16.0; // a greater change of power is another light: the solve starts anew
 

@@ -17,10 +17,7 @@ layout(push_constant, scalar) uniform push
 };
 layout(binding = 0) uniform sampler3D cells;
 layout(binding = 1) uniform sampler3D source;
-layout(binding = 3, scalar) writeonly buffer power_buffer
-{
-    float power[3];
-};
+TYN_WRITE(3, power, float power[3]);
 
 shared vec2 sums[LATTICE_SUN_GROUP]; // of the suns' light and emission; sigma_s' for the environment
 

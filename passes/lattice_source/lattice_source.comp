@@ -10,14 +10,8 @@ layout(push_constant, scalar) uniform push
 {
     lattice_source_args args;
 };
-layout(binding = 0, scalar) readonly buffer lights_buffer
-{
-    light_block lights[];
-};
-layout(binding = 1, scalar) readonly buffer power_buffer
-{
-    lattice_power power[];
-};
+TYN_READ(0, lights, light_block lights[]);
+TYN_READ(1, power, lattice_power power[]);
 layout(binding = 2) uniform sampler3D sunlit;
 layout(binding = 3, rgba32f) uniform writeonly image3D source;
 

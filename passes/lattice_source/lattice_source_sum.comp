@@ -20,10 +20,7 @@ layout(push_constant, scalar) uniform push
 };
 layout(binding = 5) uniform sampler3D cells;
 layout(binding = 6) uniform sampler3D sunlit;
-layout(binding = 7, scalar) writeonly buffer power_buffer
-{
-    lattice_power power[];
-};
+TYN_WRITE(7, power, lattice_power power[]);
 
 shared vec2 sums[LATTICE_SUN_GROUP]; // lost, collided
 

@@ -7,10 +7,7 @@
 #include "medium_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 0, scalar) uniform medium_uniform
-{
-    medium_block medium;
-};
+TYN_UNIFORM(0, medium, medium_block medium);
 layout(set = 0, binding = 1) uniform sampler3D bricks_tex; // bricks (first axis) or distances
 layout(set = 0, binding = 2, r32f) writeonly uniform image3D distance_image;
 layout(push_constant, scalar) uniform push { distance_args args; };

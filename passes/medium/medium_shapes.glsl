@@ -6,14 +6,8 @@
 #define TYN_MEDIUM_SHAPES_GLSL
 #include "shaders/common/scene_args.h"
 
-layout(set = 0, binding = MEDIUM_BLOCK, scalar) uniform medium_uniform
-{
-    medium_block medium;
-};
-layout(set = 0, binding = SHAPES, scalar) readonly buffer shapes_buffer
-{
-    shape_block shapes[];
-};
+TYN_UNIFORM(MEDIUM_BLOCK, medium, medium_block medium);
+TYN_READ(SHAPES, shapes, shape_block shapes[]);
 layout(set = 0, binding = ATLAS) uniform sampler3D atlas_tex;
 
 // M -> local unit box.

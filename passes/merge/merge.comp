@@ -12,14 +12,8 @@ layout(push_constant, scalar) uniform push
 {
     merge_args args;
 };
-layout(binding = 0, scalar) readonly buffer field_buffer
-{
-    float field[];
-};
-layout(binding = 1, scalar) buffer counters_buffer
-{
-    counters_block counters;
-};
+TYN_READ(0, field, float field[]);
+TYN_UPDATE(1, counters, counters_block counters);
 layout(binding = 2, MERGE_FORMAT) uniform writeonly image3D inscatter;
 #include "merge.glsl"
 

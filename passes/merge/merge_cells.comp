@@ -12,21 +12,12 @@ layout(push_constant, scalar) uniform push
 {
     merge_args args;
 };
-layout(binding = 0, scalar) uniform medium_uniform
-{
-    medium_block medium;
-};
-layout(binding = 1, scalar) uniform camera_uniform
-{
-    camera_block camera;
-};
+TYN_UNIFORM(0, medium, medium_block medium);
+TYN_UNIFORM(1, camera, camera_block camera);
 layout(binding = 2) uniform sampler3D cells;
 layout(binding = 3) uniform sampler3D moments;
 layout(binding = 5) uniform sampler3D vpl_light; // of lattice_lamps; one texel if there is none
-layout(binding = 4, scalar) writeonly buffer field_buffer
-{
-    float field[];
-};
+TYN_WRITE(4, field, float field[]);
 #include "merge.glsl"
 
 void main()

@@ -19,15 +19,9 @@ layout(push_constant, scalar) uniform push
 {
     merge_args args;
 };
-layout(binding = 1, scalar) uniform camera_uniform
-{
-    camera_block camera;
-};
+TYN_UNIFORM(1, camera, camera_block camera);
 layout(binding = 2) uniform sampler3D cells;
-layout(binding = 3, scalar) buffer field_buffer
-{
-    float field[];
-};
+TYN_UPDATE(3, field, float field[]);
 #include "merge.glsl"
 #include "merge_read.glsl"
 

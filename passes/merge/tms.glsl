@@ -18,10 +18,7 @@
 #include "shaders/phase/scatter_lut_map.glsl"
 
 layout(set = 0, binding = TMS) uniform sampler3D tms_tex;
-layout(set = 0, binding = SCATTER_LUT_BLOCK, scalar) uniform lut_block_uniform
-{
-    lut_block lut;
-};
+TYN_UNIFORM(SCATTER_LUT_BLOCK, lut_block, lut_block lut);
 
 // A row of the table.
 struct tms_row {

@@ -9,22 +9,13 @@
 #include "merge_grids_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 5, scalar) uniform places_uniform
-{
-    propagate_place places[TYN_ORDINATES_MAX];
-};
+TYN_UNIFORM(5, places, propagate_place places[TYN_ORDINATES_MAX]);
 layout(set = 0, binding = 6) uniform sampler3D seen;
 layout(set = 0, binding = 7) uniform sampler3D residuum;
 layout(set = 0, binding = 8, rgba32f) uniform writeonly image3D merged_image;
-layout(set = 0, binding = 9, scalar) readonly buffer lamp_places_buffer
-{
-    propagate_radial_place lamp_places[];
-};
+TYN_READ(9, lamp_places, propagate_radial_place lamp_places[]);
 layout(set = 0, binding = 10) uniform sampler3D lamp_seen;
-layout(set = 0, binding = 11, scalar) readonly buffer vpl_places_buffer
-{
-    propagate_radial_place vpl_places[];
-};
+TYN_READ(11, vpl_places, propagate_radial_place vpl_places[]);
 layout(set = 0, binding = 12) uniform sampler3D vpl_seen;
 layout(push_constant, scalar) uniform push { merge_grids_args args; };
 

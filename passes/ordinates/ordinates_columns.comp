@@ -4,10 +4,7 @@
 #include "shaders/light/sky.glsl"
 
 layout(local_size_x = 64) in;
-layout(binding = 0, scalar) buffer weights_buffer
-{
-    float weights[];
-};
+TYN_UPDATE(0, weights, float weights[]);
 
 void main()
 {

@@ -14,19 +14,9 @@ layout(push_constant, scalar) uniform arguments
 {
     ordinates_args args;
 };
-layout(binding = 0, scalar) uniform environment_uniform
-{
-    env_block environment;
-};
-layout(binding = 1, scalar) readonly buffer pieces_buffer
-{
-    ordinates_piece pieces[];
-};
-layout(binding = 2, scalar) writeonly buffer ordinates_buffer
-{
-    uint count, folded, num_fixed, pad;
-    ordinate list[];
-};
+TYN_UNIFORM(0, environment, env_block environment);
+TYN_READ(1, pieces, ordinates_piece pieces[]);
+TYN_WRITE(2, ordinates, uint count; uint folded; uint num_fixed; uint pad; ordinate list[]);
 
 shared float sizes[TYN_ORDINATES_MAX]; // of their light
 shared vec3 directions[TYN_ORDINATES_MAX];

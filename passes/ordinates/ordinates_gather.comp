@@ -11,22 +11,10 @@ layout(push_constant, scalar) uniform arguments
 {
     ordinates_args args;
 };
-layout(binding = 0, scalar) uniform environment_uniform
-{
-    env_block environment;
-};
-layout(binding = 1, scalar) readonly buffer sums_buffer
-{
-    sky_sum sums[];
-};
-layout(binding = 2, scalar) readonly buffer regions_buffer
-{
-    vec4 regions[]; // from, to
-};
-layout(binding = 3, scalar) writeonly buffer pieces_buffer
-{
-    ordinates_piece pieces[];
-};
+TYN_UNIFORM(0, environment, env_block environment);
+TYN_READ(1, sums, sky_sum sums[]);
+TYN_READ(2, regions, vec4 regions[]); // from, to
+TYN_WRITE(3, pieces, ordinates_piece pieces[]);
 
 // All of it: xyz power, w luminance; and the moment.
 void add_corner(vec2 p, float sign, inout vec4 power, inout vec3 moment)

@@ -16,22 +16,10 @@ layout(push_constant, scalar) uniform arguments
 {
     ordinates_args args;
 };
-layout(binding = 0, scalar) uniform environment_uniform
-{
-    env_block environment;
-};
-layout(binding = 1, scalar) readonly buffer sums_buffer
-{
-    sky_sum sums[];
-};
-layout(binding = 2, scalar) readonly buffer weights_buffer
-{
-    float weights[];
-};
-layout(binding = 3, scalar) writeonly buffer regions_buffer
-{
-    vec4 list[]; // from, to
-};
+TYN_UNIFORM(0, environment, env_block environment);
+TYN_READ(1, sums, sky_sum sums[]);
+TYN_READ(2, weights, float weights[]);
+TYN_WRITE(3, regions, vec4 list[]); // from, to
 
 #include "ordinates_cuts.glsl"
 

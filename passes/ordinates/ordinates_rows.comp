@@ -5,16 +5,10 @@
 #include "shaders/light/sky.glsl"
 
 layout(local_size_x = SKY_SUMS_WIDTH) in;
-layout(binding = 0, scalar) uniform environment_uniform
-{
-    env_block environment;
-};
+TYN_UNIFORM(0, environment, env_block environment);
 layout(binding = 1) uniform sampler2D sky;
 layout(binding = 2) uniform sampler2D importance_wrapped;
-layout(binding = 3, scalar) writeonly buffer weights_buffer
-{
-    float weights[];
-};
+TYN_WRITE(3, weights, float weights[]);
 
 const int LEVEL = 2; // of the sky: SKY_SUMS_WIDTH x SKY_SUMS_HEIGHT
 

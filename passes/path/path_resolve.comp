@@ -7,8 +7,8 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0, scalar) readonly buffer partials_buffer { path_partial partials[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer layers_buffer { path_partial_layers layers[]; };
+TYN_READ(0, partials, path_partial partials[]);
+TYN_READ(1, layers, path_partial_layers layers[]);
 layout(set = 0, binding = 2, rgba32f) uniform image2D mean_image;
 layout(set = 0, binding = 3, rgba32f) uniform image2D low_image;
 layout(set = 0, binding = 4, rgba32f) uniform image2D deviation_image;

@@ -6,10 +6,10 @@
 const bool PROBE = false;
 #include "shaders/path/path_resources.glsl"
 
-layout(set = 0, binding = 16, scalar) uniform camera_uniform { camera_block camera_in; };
-layout(set = 0, binding = 17, scalar) writeonly buffer partials_buffer { path_partial partials[]; };
-layout(set = 0, binding = 18, scalar) buffer counters_buffer { counters_block counters; };
-layout(set = 0, binding = 19, scalar) writeonly buffer layers_buffer { path_partial_layers layers[]; };
+TYN_UNIFORM(16, camera, camera_block camera_in);
+TYN_WRITE(17, partials, path_partial partials[]);
+TYN_UPDATE(18, counters, counters_block counters);
+TYN_WRITE(19, layers, path_partial_layers layers[]);
 
 #include "shaders/path/path.glsl"
 

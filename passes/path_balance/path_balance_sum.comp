@@ -8,11 +8,11 @@
 
 layout(local_size_x = TYN_PATH_BALANCE_VALUES) in;
 
-layout(set = 0, binding = 0, scalar) readonly buffer partials_buffer { path_balance_partial partials[]; };
-layout(set = 0, binding = 1, scalar) buffer state_buffer { path_balance_state states[]; };
-layout(set = 0, binding = 2, scalar) writeonly buffer result_buffer { path_balance_result result; };
+TYN_READ(0, partials, path_balance_partial partials[]);
+TYN_UPDATE(1, state, path_balance_state states[]);
+TYN_WRITE(2, result, path_balance_result result);
 // tyn_balance: seven triples of doubles, each as two words; a device need not know doubles.
-layout(set = 0, binding = 3, scalar) writeonly buffer balance_buffer { uvec2 balance[7][3]; };
+TYN_WRITE(3, balance, uvec2 balance[7][3]);
 layout(push_constant, scalar) uniform args_push { path_resolve_args args; };
 
 #include "shaders/path/path_probe_merge.glsl"

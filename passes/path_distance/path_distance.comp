@@ -7,7 +7,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(set = 0, binding = 0, scalar) uniform camera_uniform { camera_block camera; };
+TYN_UNIFORM(0, camera, camera_block camera);
 #define GEOMETRY_AT 1
 #include "shaders/surfaces/surfaces.glsl"
 layout(set = 0, binding = 5, rg32ui) uniform writeonly uimage2D radiance_image;

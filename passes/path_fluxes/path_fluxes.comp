@@ -16,10 +16,8 @@
 const bool PROBE = false;
 #include "shaders/path/path_resources.glsl"
 
-layout(set = 0, binding = 16, scalar) writeonly buffer partials_buffer {
-    float partials[]; // [value][thread]: mean over the thread's paths, W
-};
-layout(set = 0, binding = 17, scalar) buffer counters_buffer { counters_block counters; };
+TYN_WRITE(16, partials, float partials[]); // [value][thread]: mean over the thread's paths, W
+TYN_UPDATE(17, counters, counters_block counters);
 
 #include "shaders/path/path.glsl"
 

@@ -7,9 +7,9 @@
 const bool PROBE = true;
 #include "shaders/path/path_resources.glsl"
 
-layout(set = 0, binding = 16, scalar) readonly buffer points_buffer { vec3 points[]; };
-layout(set = 0, binding = 17, scalar) writeonly buffer partials_buffer { path_probe_partial partials[]; };
-layout(set = 0, binding = 18, scalar) buffer counters_buffer { counters_block counters; };
+TYN_READ(16, points, vec3 points[]);
+TYN_WRITE(17, partials, path_probe_partial partials[]);
+TYN_UPDATE(18, counters, counters_block counters);
 
 #include "shaders/path/path.glsl"
 #include "shaders/path/path_heading.glsl"

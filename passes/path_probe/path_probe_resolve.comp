@@ -6,9 +6,9 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 0, scalar) readonly buffer partials_buffer { path_probe_partial partials[]; };
-layout(set = 0, binding = 1, scalar) buffer state_buffer { path_probe_state states[]; };
-layout(set = 0, binding = 2, scalar) writeonly buffer results_buffer { path_probe_result results[]; };
+TYN_READ(0, partials, path_probe_partial partials[]);
+TYN_UPDATE(1, state, path_probe_state states[]);
+TYN_WRITE(2, results, path_probe_result results[]);
 layout(push_constant, scalar) uniform args_push { path_resolve_args args; };
 
 #include "shaders/path/path_probe_merge.glsl"

@@ -34,24 +34,12 @@ layout(push_constant, scalar) uniform push
 {
     probe_args args;
 };
-layout(binding = 1, scalar) readonly buffer lights_buffer
-{
-    light_block lights[];
-};
+TYN_READ(1, lights, light_block lights[]);
 layout(binding = 2) uniform sampler3D moments;
 layout(binding = 20) uniform sampler3D cells;
-layout(binding = 9, scalar) uniform environment_uniform
-{
-    env_block environment;
-};
-layout(binding = 7, scalar) readonly buffer points_buffer
-{
-    vec3 points[];
-};
-layout(binding = 8, scalar) writeonly buffer results_buffer
-{
-    probe_result results[];
-};
+TYN_UNIFORM(9, environment, env_block environment);
+TYN_READ(7, points, vec3 points[]);
+TYN_WRITE(8, results, probe_result results[]);
 
 // A point between the centres of eight cells; beyond the outermost ones the same line goes on.
 struct cell_corners {

@@ -8,10 +8,10 @@
 #include "propagate_radial_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 5, scalar) readonly buffer grids_buffer { propagate_radial_grid grids[]; };
-layout(set = 0, binding = 6, scalar) uniform camera_uniform { camera_block camera; };
-layout(set = 0, binding = 7, scalar) readonly buffer map_buffer { vec2 map[]; };
-layout(set = 0, binding = 8, scalar) writeonly buffer cells_buffer { vec4 cells[]; };
+TYN_READ(5, grids, propagate_radial_grid grids[]);
+TYN_UNIFORM(6, camera, camera_block camera);
+TYN_READ(7, map, vec2 map[]);
+TYN_WRITE(8, cells, vec4 cells[]);
 layout(push_constant, scalar) uniform push { propagate_radial_args args; };
 
 // Samples along an edge: one to two voxels (a trilinear fetch is a mean over as many), and some to tell how

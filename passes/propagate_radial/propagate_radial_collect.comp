@@ -6,8 +6,8 @@
 #include "propagate_radial_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 0, scalar) readonly buffer cells_buffer { vec4 cells[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer sum_buffer { float sum[]; };
+TYN_READ(0, cells, vec4 cells[]);
+TYN_READ(1, sum, float sum[]);
 layout(set = 0, binding = 2, r32f) uniform writeonly image3D seen_image;
 layout(push_constant, scalar) uniform push { propagate_radial_args args; };
 

@@ -6,12 +6,12 @@
 #include "propagate_radial_args.h"
 
 layout(local_size_x = PROPAGATE_RADIAL_LANES) in;
-layout(set = 0, binding = 0, scalar) uniform medium_uniform { medium_block medium; };
-layout(set = 0, binding = 1, scalar) readonly buffer lamps_buffer { light_block lamps[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer vpls_buffer { radial_vpls vpls; };
-layout(set = 0, binding = 3, scalar) writeonly buffer grids_buffer { propagate_radial_grid grids[]; };
-layout(set = 0, binding = 4, scalar) writeonly buffer places_buffer { propagate_radial_place places[]; };
-layout(set = 0, binding = 5, scalar) buffer map_buffer { vec2 map[]; };
+TYN_UNIFORM(0, medium, medium_block medium);
+TYN_READ(1, lamps, light_block lamps[]);
+TYN_READ(2, vpls, radial_vpls vpls);
+TYN_WRITE(3, grids, propagate_radial_grid grids[]);
+TYN_WRITE(4, places, propagate_radial_place places[]);
+TYN_UPDATE(5, map, vec2 map[]);
 layout(push_constant, scalar) uniform push { propagate_radial_args args; };
 
 shared float sums[PROPAGATE_RADIAL_LANES];

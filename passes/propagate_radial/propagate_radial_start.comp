@@ -6,12 +6,12 @@
 #include "propagate_radial_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 0, binding = 0, scalar) readonly buffer grids_buffer { propagate_radial_grid grids[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer map_buffer { vec2 map[]; };
-layout(set = 0, binding = 2, scalar) buffer cells_buffer { vec4 cells[]; };
-layout(set = 0, binding = 3, scalar) writeonly buffer state_buffer { vec4 out_state[]; };
-layout(set = 0, binding = 4, scalar) writeonly buffer state_other_buffer { vec4 out_other[]; };
-layout(set = 0, binding = 5, scalar) writeonly buffer sum_buffer { float out_sum[]; };
+TYN_READ(0, grids, propagate_radial_grid grids[]);
+TYN_READ(1, map, vec2 map[]);
+TYN_UPDATE(2, cells, vec4 cells[]);
+TYN_WRITE(3, state, vec4 out_state[]);
+TYN_WRITE(4, state_other, vec4 out_other[]);
+TYN_WRITE(5, sum, float out_sum[]);
 layout(push_constant, scalar) uniform push { propagate_radial_args args; };
 
 // Mean of exp(-tau) over a depth, (1 - e^-tau) / tau.

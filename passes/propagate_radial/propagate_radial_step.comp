@@ -6,12 +6,12 @@
 #include "propagate_radial_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 0, scalar) readonly buffer grids_buffer { propagate_radial_grid grids[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer map_buffer { vec2 map[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer cells_buffer { vec4 cells[]; };
-layout(set = 0, binding = 3, scalar) readonly buffer state_other_buffer { vec4 in_state[]; };
-layout(set = 0, binding = 4, scalar) writeonly buffer state_buffer { vec4 out_state[]; };
-layout(set = 0, binding = 5, scalar) buffer sum_buffer { float sum[]; };
+TYN_READ(0, grids, propagate_radial_grid grids[]);
+TYN_READ(1, map, vec2 map[]);
+TYN_READ(2, cells, vec4 cells[]);
+TYN_READ(3, state_other, vec4 in_state[]);
+TYN_WRITE(4, state, vec4 out_state[]);
+TYN_UPDATE(5, sum, float sum[]);
 layout(push_constant, scalar) uniform push { propagate_radial_args args; };
 
 // Cells side by side are of unequal size. If each sent the same share of its light to the other, the larger

@@ -8,9 +8,9 @@
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 5, scalar) readonly buffer grids_buffer { propagate_grid grids[]; };
-layout(set = 0, binding = 6, scalar) uniform camera_uniform { camera_block camera; };
-layout(set = 0, binding = 7, scalar) writeonly buffer cells_buffer { vec4 cells[]; };
+TYN_READ(5, grids, propagate_grid grids[]);
+TYN_UNIFORM(6, camera, camera_block camera);
+TYN_WRITE(7, cells, vec4 cells[]);
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 
 // Samples along each edge of a cell. A trilinear fetch is a mean over two voxels, so one per two voxels

@@ -5,7 +5,7 @@
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 0, scalar) readonly buffer sum_buffer { float sum[]; };
+TYN_READ(0, sum, float sum[]);
 layout(set = 0, binding = 1, r32f) uniform writeonly image3D seen_image;
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 

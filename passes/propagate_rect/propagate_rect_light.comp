@@ -5,8 +5,8 @@
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 0, scalar) readonly buffer cells_buffer { vec4 cells[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer state_buffer { vec4 state[]; };
+TYN_READ(0, cells, vec4 cells[]);
+TYN_READ(1, state, vec4 state[]);
 layout(set = 0, binding = 2, r32f) uniform writeonly image3D light_image;
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 

@@ -6,10 +6,10 @@
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 64) in;
-layout(set = 0, binding = 0, scalar) uniform medium_uniform { medium_block medium; };
-layout(set = 0, binding = 1, scalar) readonly buffer ordinates_buffer { ordinates_block ordinates; };
-layout(set = 0, binding = 2, scalar) writeonly buffer grids_buffer { propagate_grid grids[]; };
-layout(set = 0, binding = 3, scalar) writeonly buffer places_buffer { propagate_place places[]; };
+TYN_UNIFORM(0, medium, medium_block medium);
+TYN_READ(1, ordinates, ordinates_block ordinates);
+TYN_WRITE(2, grids, propagate_grid grids[]);
+TYN_WRITE(3, places, propagate_place places[]);
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 
 // Mean cosine of an ordinate's light as it enters (section 5.1). The heuristic's w, the importance in

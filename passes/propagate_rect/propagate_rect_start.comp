@@ -7,11 +7,11 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint init = TYN_PROPAGATE_INIT_ENTRY;
-layout(set = 0, binding = 0, scalar) readonly buffer grids_buffer { propagate_grid grids[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer cells_buffer { vec4 cells[]; };
-layout(set = 0, binding = 2, scalar) writeonly buffer state_buffer { vec4 out_state[]; };
-layout(set = 0, binding = 3, scalar) writeonly buffer state_other_buffer { vec4 out_other[]; };
-layout(set = 0, binding = 4, scalar) writeonly buffer sum_buffer { float out_sum[]; };
+TYN_READ(0, grids, propagate_grid grids[]);
+TYN_READ(1, cells, vec4 cells[]);
+TYN_WRITE(2, state, vec4 out_state[]);
+TYN_WRITE(3, state_other, vec4 out_other[]);
+TYN_WRITE(4, sum, float out_sum[]);
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 
 // Mean of exp(-tau) over a depth, (1 - e^-tau) / tau.

@@ -6,10 +6,10 @@
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 0, scalar) readonly buffer cells_buffer { vec4 cells[]; };
-layout(set = 0, binding = 1, scalar) readonly buffer state_other_buffer { vec4 in_state[]; };
-layout(set = 0, binding = 2, scalar) writeonly buffer state_buffer { vec4 out_state[]; };
-layout(set = 0, binding = 3, scalar) buffer sum_buffer { float sum[]; };
+TYN_READ(0, cells, vec4 cells[]);
+TYN_READ(1, state_other, vec4 in_state[]);
+TYN_WRITE(2, state, vec4 out_state[]);
+TYN_UPDATE(3, sum, float sum[]);
 layout(push_constant, scalar) uniform push { propagate_rect_args args; };
 
 // Light that a neighbour sends and its share of the spread. `part`: of propagate_outgoing, which way.

@@ -14,12 +14,7 @@ layout(push_constant, scalar) uniform push
 {
     radial_beam_args args;
 };
-layout(set = 0, binding = 5, scalar) readonly buffer radials_buffer
-{
-    uint radial_count, radial_num_lamps;
-    uvec2 radial_pad;
-    radial_grid radials[];
-};
+TYN_READ(5, radials, uint radial_count; uint radial_num_lamps; uvec2 radial_pad; radial_grid radials[]);
 
 #ifdef TYN_DENSITY
 layout(set = 0, binding = 6, r32f) writeonly uniform image3D radial_column_image;

@@ -10,24 +10,10 @@ layout(push_constant, scalar) uniform push
 {
     radial_beam_args args;
 };
-layout(binding = 0, scalar) uniform medium_uniform
-{
-    medium_block medium;
-};
-layout(binding = 1, scalar) readonly buffer lamps_buffer
-{
-    light_block lamps[];
-};
-layout(binding = 2, scalar) readonly buffer vpls_buffer
-{
-    radial_vpls vpls;
-};
-layout(binding = 3, scalar) writeonly buffer radials_buffer
-{
-    uint count, num_lamps;
-    uvec2 pad;
-    radial_grid list[];
-};
+TYN_UNIFORM(0, medium, medium_block medium);
+TYN_READ(1, lamps, light_block lamps[]);
+TYN_READ(2, vpls, radial_vpls vpls);
+TYN_WRITE(3, radials, uint count; uint num_lamps; uvec2 pad; radial_grid list[]);
 
 // Tangent of the half angle of the cone around `axis` that holds the box; 1e9 where it is no cone.
 float tangent_of_box(vec3 from, vec3 axis)

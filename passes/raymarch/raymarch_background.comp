@@ -12,14 +12,8 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 2) const uint raymarch_features = 0u;
-layout(binding = 0, scalar) uniform camera_uniform
-{
-    camera_block camera;
-};
-layout(binding = 1, scalar) uniform environment_uniform
-{
-    env_block environment;
-};
+TYN_UNIFORM(0, camera, camera_block camera);
+TYN_UNIFORM(1, environment, env_block environment);
 layout(binding = 2) uniform sampler2D env_map_wrapped;
 layout(binding = 3) uniform sampler2D host_depth_tex;
 layout(binding = 4, rgba32f) uniform writeonly image2D radiance_image;

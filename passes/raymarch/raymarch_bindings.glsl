@@ -20,22 +20,10 @@ layout(constant_id = 6) const uint raymarch_kind = 0u; // of all shapes, or TYN_
 #define SCATTER_LUT_SOFT ((raymarch_features & RAYMARCH_SOFT_SUNS) != 0u)
 layout(binding = 11) uniform sampler3D distance_tex;
 layout(binding = 12) uniform sampler3D inscatter_tex;
-layout(binding = 13, scalar) uniform shapes_uniform
-{
-    shape_block shapes[TYN_SHAPES_MAX];
-};
-layout(binding = 14, scalar) uniform lights_uniform
-{
-    light_block lights[TYN_LIGHTS_MAX];
-};
-layout(binding = 15, scalar) uniform camera_uniform
-{
-    camera_block camera;
-};
-layout(binding = 16, scalar) uniform environment_uniform
-{
-    env_block environment;
-};
+TYN_UNIFORM(13, shapes, shape_block shapes[TYN_SHAPES_MAX]);
+TYN_UNIFORM(14, lights, light_block lights[TYN_LIGHTS_MAX]);
+TYN_UNIFORM(15, camera, camera_block camera);
+TYN_UNIFORM(16, environment, env_block environment);
 layout(binding = 17) uniform sampler2D env_map_wrapped;
 layout(binding = 18) uniform sampler2D host_depth_tex;
 layout(binding = 19, rgba32f) uniform writeonly image2D radiance_image;
@@ -43,10 +31,7 @@ layout(binding = 20, rgba32f) uniform writeonly image2D transmittance_image;
 layout(binding = 21, rgba32f) uniform writeonly image2D depth_image;
 layout(binding = 22, rgba32f) uniform writeonly image2D single_image;
 layout(binding = 23, rgba32f) uniform writeonly image2D multiple_image;
-layout(binding = 24, scalar) buffer counters_buffer
-{
-    counters_block counters;
-};
+TYN_UPDATE(24, counters, counters_block counters);
 layout(binding = 25) uniform sampler3D glow_wrapped;
 #define SURFACE_RADIANCE 26
 #define SURFACE_DISTANCES 27

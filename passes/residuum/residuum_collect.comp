@@ -5,7 +5,7 @@
 #include "shaders/phase/hg.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 0, scalar) readonly buffer sum_buffer { vec4 sum[]; };
+TYN_READ(0, sum, vec4 sum[]);
 layout(set = 0, binding = 1, rgba32f) uniform writeonly image3D residuum_image;
 layout(push_constant, scalar) uniform push { residuum_args args; };
 

@@ -8,14 +8,11 @@
 #include "residuum_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 5, scalar) uniform places_uniform
-{
-    propagate_place places[TYN_ORDINATES_MAX];
-};
+TYN_UNIFORM(5, places, propagate_place places[TYN_ORDINATES_MAX]);
 layout(set = 0, binding = 6) uniform sampler3D light;
-layout(set = 0, binding = 7, scalar) writeonly buffer state_buffer { vec4 out_state[]; };
-layout(set = 0, binding = 8, scalar) writeonly buffer kept_buffer { vec4 out_kept[]; };
-layout(set = 0, binding = 9, scalar) writeonly buffer sum_buffer { vec4 out_sum[]; };
+TYN_WRITE(7, state, vec4 out_state[]);
+TYN_WRITE(8, kept, vec4 out_kept[]);
+TYN_WRITE(9, sum, vec4 out_sum[]);
 layout(push_constant, scalar) uniform push { residuum_args args; };
 
 // Power per volume of all grids at a point, W/m^3: a cell of edge c holds L c^2 in its volume c^3.

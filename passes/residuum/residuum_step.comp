@@ -4,10 +4,10 @@
 #include "residuum_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(set = 0, binding = 0, scalar) readonly buffer state_other_buffer { vec4 in_state[]; };
-layout(set = 0, binding = 1, scalar) writeonly buffer state_buffer { vec4 out_state[]; };
-layout(set = 0, binding = 2, scalar) readonly buffer kept_buffer { vec4 kept[]; };
-layout(set = 0, binding = 3, scalar) buffer sum_buffer { vec4 sum[]; };
+TYN_READ(0, state_other, vec4 in_state[]);
+TYN_WRITE(1, state, vec4 out_state[]);
+TYN_READ(2, kept, vec4 kept[]);
+TYN_UPDATE(3, sum, vec4 sum[]);
 layout(push_constant, scalar) uniform push { residuum_args args; };
 
 // Beyond the grid is vacuum: nothing comes in.

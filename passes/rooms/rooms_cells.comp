@@ -11,16 +11,8 @@ layout(push_constant, scalar) uniform push
 {
     rooms_args args;
 };
-layout(binding = 1, scalar) writeonly buffer rooms_buffer
-{
-    uint rooms[];
-};
-layout(binding = 2, scalar) readonly buffer vpls_buffer
-{
-    uint vpl_count;
-    uvec3 vpl_pad;
-    light_block vpls[];
-};
+TYN_WRITE(1, rooms, uint rooms[]);
+TYN_READ(2, vpls, uint vpl_count; uvec3 vpl_pad; light_block vpls[]);
 
 // As the last entries of rooms.h tell it, of a VPL that shines in `room`.
 uint cell_before(uint vpl, uint room)

@@ -12,10 +12,7 @@ layout(push_constant, scalar) uniform push
 {
     rooms_args args;
 };
-layout(binding = 1, scalar) readonly buffer wall_links_buffer
-{
-    uint links[];
-};
+TYN_READ(1, wall_links, uint links[]);
 
 bool in_lattice(ivec3 c)
 {

@@ -17,12 +17,7 @@ layout(push_constant, scalar) uniform push
     rooms_args args;
 };
 layout(binding = 1) uniform usamplerBuffer wall_links_words;
-layout(binding = 2, scalar) readonly buffer vpls_buffer
-{
-    uint vpl_count;
-    uvec3 vpl_pad;
-    light_block vpls[];
-};
+TYN_READ(2, vpls, uint vpl_count; uvec3 vpl_pad; light_block vpls[]);
 layout(binding = 3) uniform sampler2D vpl_distances_tex;
 
 // As close as half a cell in boxes of a few cells, where few have no walls; down to a seventh of the way.

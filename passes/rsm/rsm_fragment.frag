@@ -8,14 +8,8 @@
 #include "shaders/light/shadow_args.h"
 
 #include "shaders/surfaces/surface_faces.glsl"
-layout(binding = 7, scalar) readonly buffer suns_buffer
-{
-    light_block suns[];
-};
-layout(binding = 8, scalar) readonly buffer lights_buffer
-{
-    light_block lights[];
-};
+TYN_READ(7, suns, light_block suns[]);
+TYN_READ(8, lights, light_block lights[]);
 layout(location = 0) flat in uint triangle;
 layout(location = 1) in vec3 weights;
 layout(location = 0) out vec4 flux;

@@ -5,14 +5,8 @@
 
 const uint THREADS = TYN_LUT_ANGLES / 4, CHUNK = TYN_LUT_ANGLES;
 layout(local_size_x = TYN_LUT_ANGLES / 4) in; // x: four angles, y: depth of a set, z: row
-layout(set = 0, binding = 0, scalar) readonly buffer lut_block_buffer
-{
-    lut_block lut;
-};
-layout(set = 0, binding = 1, scalar) readonly buffer moments_buffer
-{
-    vec2 moments[]; // outside and inside the lobe
-};
+TYN_READ(0, lut_block, lut_block lut);
+TYN_READ(1, moments, vec2 moments[]); // outside and inside the lobe
 layout(set = 0, binding = 2, rg32f) writeonly uniform image2D lut_image;
 
 const float PI = 3.14159265358979;

@@ -5,18 +5,9 @@
 
 const uint THREADS = TYN_TMS_ANGLES / 4, CHUNK = 2u * THREADS;
 layout(local_size_x = TYN_TMS_ANGLES / 4) in; // x: four angles, y: four depths, z: cone of a row
-layout(set = 0, binding = 0, scalar) readonly buffer lut_block_buffer
-{
-    lut_block lut;
-};
-layout(set = 0, binding = 1, scalar) readonly buffer moments_buffer
-{
-    vec2 moments[]; // outside and inside the lobe
-};
-layout(set = 0, binding = 2, scalar) readonly buffer cones_buffer
-{
-    float cones[]; // c_l, TYN_TMS_MAX_TERMS per cone
-};
+TYN_READ(0, lut_block, lut_block lut);
+TYN_READ(1, moments, vec2 moments[]); // outside and inside the lobe
+TYN_READ(2, cones, float cones[]); // c_l, TYN_TMS_MAX_TERMS per cone
 layout(set = 0, binding = 3, r32f) writeonly uniform image3D tms_image;
 
 const float PI = 3.14159265358979;

@@ -33,18 +33,9 @@ layout(push_constant, scalar) uniform Args
 #include "shaders/surfaces/gbuffer.glsl"
 #include "vpl.glsl"
 
-layout(binding = 14, scalar) uniform suns_uniform
-{
-    light_block suns[TYN_LIGHTS_MAX];
-};
-layout(binding = 15, scalar) uniform lights_uniform
-{
-    light_block lights[TYN_LIGHTS_MAX];
-};
-layout(binding = 16, scalar) uniform camera_uniform
-{
-    camera_block camera;
-};
+TYN_UNIFORM(14, suns, light_block suns[TYN_LIGHTS_MAX]);
+TYN_UNIFORM(15, lights, light_block lights[TYN_LIGHTS_MAX]);
+TYN_UNIFORM(16, camera, camera_block camera);
 #define VPLS_AT 11
 layout(binding = 17) uniform sampler3D moments_tex;
 #define WALLS_AT 18

@@ -19,14 +19,8 @@ layout(push_constant, scalar) uniform Args
     shade_args args;
 };
 
-layout(binding = 0, scalar) uniform medium_uniform
-{
-    medium_block medium;
-};
-layout(binding = 1, scalar) uniform environment_uniform
-{
-    env_block environment;
-};
+TYN_UNIFORM(0, medium, medium_block medium);
+TYN_UNIFORM(1, environment, env_block environment);
 layout(binding = 2) uniform sampler3D moments_tex;
 layout(binding = 3) uniform usamplerBuffer wall_links_words; // wall_links
 layout(binding = 4, rgba32f) uniform writeonly image2D faces_image;

@@ -22,10 +22,7 @@
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(constant_id = 2) const uint shade_num_suns = 0u;
 
-layout(binding = 7, scalar) uniform suns_uniform
-{
-    light_block suns[TYN_LIGHTS_MAX];
-};
+TYN_UNIFORM(7, suns, light_block suns[TYN_LIGHTS_MAX]);
 // [sun][z][y][x]: mean direction that the light comes from, not of unit length; share of the places that are lit
 layout(binding = 8, rgba32f) uniform writeonly image3D forward_image;
 layout(binding = 9) uniform usamplerBuffer wall_links_words; // wall_links

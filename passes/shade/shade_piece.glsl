@@ -11,10 +11,7 @@ layout(binding = SHADE_AT, rgba32ui) uniform readonly uimage2D part_image; // sh
 #define WALLS_OTHERS TYN_BEAM_MAX_SUNS
 #include "walls_irradiance.glsl"
 #include "shade_rooms.glsl"
-layout(binding = SHADE_AT + 1, scalar) uniform environment_uniform
-{
-    env_block environment;
-};
+TYN_UNIFORM(SHADE_AT + 1, environment, env_block environment);
 layout(binding = SHADE_AT + 2) uniform sampler3D forward_tex; // shade_forward.comp
 layout(binding = SHADE_AT + 3) uniform sampler2D faces_tex; // shade_faces.h
 layout(binding = SHADE_AT + 4) uniform sampler3D sight_tex; // shade_sight.comp

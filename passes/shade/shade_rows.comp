@@ -8,14 +8,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(constant_id = 0) const int shade_side = SHADE_SIDE; // of the pattern
 layout(constant_id = 1) const int shade_step = 1;          // pixels along each side of a block
-layout(binding = 0, scalar) uniform camera_uniform
-{
-    camera_block camera;
-};
-layout(binding = 1, scalar) readonly buffer vpls_buffer
-{
-    uint vpl_count;
-};
+TYN_UNIFORM(0, camera, camera_block camera);
+TYN_READ(1, vpls, uint vpl_count);
 layout(binding = 2, rgba32ui) uniform readonly uimage2D part_image;
 layout(binding = 3, rgba32ui) uniform writeonly uimage2D part_rows_image;
 #include "shade_part.glsl"

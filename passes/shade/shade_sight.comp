@@ -17,10 +17,7 @@ layout(push_constant, scalar) uniform Args
 
 #define GEOMETRY_AT 0
 #include "shaders/surfaces/surfaces.glsl"
-layout(binding = 4, scalar) uniform medium_uniform
-{
-    medium_block medium;
-};
+TYN_UNIFORM(4, medium, medium_block medium);
 layout(binding = 5) uniform sampler2D faces_tex;
 layout(binding = 6) uniform sampler3D moments_tex;
 layout(binding = 7, rgba32f) uniform writeonly image3D sight_image;

@@ -4,14 +4,8 @@
 #include "shaders/surfaces/surface_args.h"
 #include "shaders/light/shadow_args.h"
 
-layout(set = 0, binding = 0, scalar) readonly buffer triangles_buffer
-{
-    surface_triangle triangles[];
-};
-layout(set = 0, binding = 1, scalar) readonly buffer vertices_buffer
-{
-    surface_vertex vertices[];
-};
+TYN_READ(0, triangles, surface_triangle triangles[]);
+TYN_READ(1, vertices, surface_vertex vertices[]);
 layout(push_constant, scalar) uniform args_block
 {
     shadow_map_args args;

@@ -14,22 +14,11 @@
 const uint GROUP = 256u;
 layout(local_size_x = GROUP) in;
 
-layout(binding = 0, scalar) readonly buffer vpls_buffer
-{
-    uint vpl_count;
-    uvec3 vpl_pad;
-    light_block vpls[];
-};
-layout(binding = 1, scalar) readonly buffer bins_buffer
-{
-    vpl_bins bins;
-};
+TYN_READ(0, vpls, uint vpl_count; uvec3 vpl_pad; light_block vpls[]);
+TYN_READ(1, bins, vpl_bins bins);
 layout(binding = 2) uniform sampler2D vpl_distances_tex;
 layout(binding = 3) uniform sampler2D vpl_planes_tex;
-layout(binding = 4, scalar) uniform surfaces_uniform
-{
-    surface_block surfaces;
-};
+TYN_UNIFORM(4, surfaces, surface_block surfaces);
 layout(binding = 5, rgba32f) uniform image2D bin_flux_image; // as rsm_args.h has them
 layout(binding = 6, rgba32f) uniform writeonly image2D bin_position_image;
 layout(binding = 7, rgba32f) uniform writeonly image2D bin_normal_image;

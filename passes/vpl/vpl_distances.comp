@@ -9,10 +9,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-layout(binding = 0, scalar) uniform surfaces_uniform
-{
-    surface_block surfaces;
-};
+TYN_UNIFORM(0, surfaces, surface_block surfaces);
 // Texels, as rays of a CPU device that run together read different ones.
 layout(binding = 1) uniform samplerBuffer vertices_texels;
 layout(binding = 2) uniform usamplerBuffer triangles_texels;
@@ -20,19 +17,10 @@ layout(binding = 3) uniform usamplerBuffer nodes_texels;
 #define SURFACE_POSITION(i) texelFetch(vertices_texels, int(2u * (i))).xyz
 #define SURFACE_TRIANGLE(i) texelFetch(triangles_texels, int(i))
 #define SURFACE_NODE(i) texelFetch(nodes_texels, int(i))
-layout(binding = 4, scalar) readonly buffer vpls_buffer
-{
-    uint vpl_count;
-    uint vpl_before;
-    uvec2 vpl_pad;
-    light_block vpls[];
-};
+TYN_READ(4, vpls, uint vpl_count; uint vpl_before; uvec2 vpl_pad; light_block vpls[]);
 layout(binding = 5, r32f) uniform writeonly image2D vpl_distances_image;
 layout(binding = 6, rgba32f) uniform writeonly image2D vpl_planes_image;
-layout(binding = 7, scalar) buffer bins_buffer
-{
-    vpl_bins bins;
-};
+TYN_UPDATE(7, bins, vpl_bins bins);
 #define MATERIALS_AT 8
 #include "shaders/surfaces/reflectance.glsl"
 #define MEDIUM_AT 11

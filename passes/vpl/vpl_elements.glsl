@@ -11,10 +11,7 @@
 #define MATERIALS_AT 8
 #include "shaders/surfaces/reflectance.glsl"
 #include "shaders/surfaces/surface_frame.glsl"
-layout(binding = 0, scalar) readonly buffer plan_buffer
-{
-    vpl_plan plan;
-};
+TYN_READ(0, plan, vpl_plan plan);
 layout(binding = 1) uniform sampler2D rsm_flux_tex;
 layout(binding = 2) uniform sampler2D rsm_position_tex;
 layout(binding = 3) uniform sampler2D rsm_normal_tex;

@@ -11,17 +11,8 @@
 const float MOST_REFLECTED = 0.95;
 layout(local_size_x = TYN_RADIAL_VPLS_MAX) in;
 
-layout(binding = 0, scalar) buffer vpls_buffer
-{
-    uint vpl_count;
-    uint vpl_before;
-    uvec2 vpl_pad;
-    light_block vpls[];
-};
-layout(binding = 1, scalar) readonly buffer bins_buffer
-{
-    vpl_bins bins; // what surfaces reflect of these VPLs' light
-};
+TYN_UPDATE(0, vpls, uint vpl_count; uint vpl_before; uvec2 vpl_pad; light_block vpls[]);
+TYN_READ(1, bins, vpl_bins bins); // what surfaces reflect of these VPLs' light
 
 shared vec3 sums[TYN_RADIAL_VPLS_MAX];
 

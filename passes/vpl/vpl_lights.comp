@@ -16,33 +16,12 @@
 
 layout(local_size_x = VPL_LANES) in;
 
-layout(binding = 16, scalar) readonly buffer weights_buffer
-{
-    float weights[]; // of an element and those before it in its block
-};
-layout(binding = 17, scalar) readonly buffer blocks_buffer
-{
-    float blocks[]; // weights before each, and the whole
-};
-layout(binding = 18, scalar) readonly buffer strata_buffer
-{
-    vpl_stratum strata[];
-};
-layout(binding = 19, scalar) uniform suns_uniform
-{
-    light_block suns[TYN_LIGHTS_MAX];
-};
-layout(binding = 20, scalar) uniform lights_uniform
-{
-    light_block lights[TYN_LIGHTS_MAX];
-};
-layout(binding = 21, scalar) buffer vpls_buffer
-{
-    uint vpl_count;
-    uint vpl_before;
-    uvec2 vpl_pad;
-    light_block vpls[];
-};
+TYN_READ(16, weights, float weights[]); // of an element and those before it in its block
+TYN_READ(17, blocks, float blocks[]); // weights before each, and the whole
+TYN_READ(18, strata, vpl_stratum strata[]);
+TYN_UNIFORM(19, suns, light_block suns[TYN_LIGHTS_MAX]);
+TYN_UNIFORM(20, lights, light_block lights[TYN_LIGHTS_MAX]);
+TYN_UPDATE(21, vpls, uint vpl_count; uint vpl_before; uvec2 vpl_pad; light_block vpls[]);
 layout(push_constant, scalar) uniform Args
 {
     vpl_args args;

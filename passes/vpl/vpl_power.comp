@@ -6,16 +6,8 @@
 
 layout(local_size_x = TYN_RADIAL_VPLS_MAX) in;
 
-layout(binding = 0, scalar) readonly buffer vpls_buffer
-{
-    uint vpl_count;
-    uvec3 vpl_pad;
-    light_block vpls[];
-};
-layout(binding = 1, scalar) writeonly buffer bins_buffer
-{
-    vpl_bins bins;
-};
+TYN_READ(0, vpls, uint vpl_count; uvec3 vpl_pad; light_block vpls[]);
+TYN_WRITE(1, bins, vpl_bins bins);
 
 shared vec3 sums[TYN_RADIAL_VPLS_MAX];
 

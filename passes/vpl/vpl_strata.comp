@@ -10,24 +10,10 @@
 
 layout(local_size_x = VPL_BLOCK) in;
 
-layout(binding = 0, scalar) readonly buffer plan_buffer
-{
-    vpl_plan plan;
-};
-layout(binding = 1, scalar) buffer blocks_buffer
-{
-    float blocks[]; // in: weights; out: what is before; one more element, the whole
-};
-layout(binding = 2, scalar) writeonly buffer strata_buffer
-{
-    vpl_stratum strata[];
-};
-layout(binding = 3, scalar) buffer vpls_buffer
-{
-    uint vpl_count;
-    uint vpl_before; // before those of this time
-    uvec2 vpl_pad;
-};
+TYN_READ(0, plan, vpl_plan plan);
+TYN_UPDATE(1, blocks, float blocks[]); // in: weights; out: what is before; one more element, the whole
+TYN_WRITE(2, strata, vpl_stratum strata[]);
+TYN_UPDATE(3, vpls, uint vpl_count; uint vpl_before; uvec2 vpl_pad); // before those of this time
 layout(push_constant, scalar) uniform Args
 {
     vpl_args args;

@@ -6,14 +6,8 @@
 
 layout(local_size_x = VPL_LANES) in;
 
-layout(binding = 11, scalar) writeonly buffer weights_buffer
-{
-    float weights[]; // of an element and those before it in its block
-};
-layout(binding = 12, scalar) writeonly buffer blocks_buffer
-{
-    float blocks[];
-};
+TYN_WRITE(11, weights, float weights[]); // of an element and those before it in its block
+TYN_WRITE(12, blocks, float blocks[]);
 
 const uint EACH = VPL_BLOCK / VPL_LANES; // elements of a thread, one after the other
 shared float sums[VPL_LANES];

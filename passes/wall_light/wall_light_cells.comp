@@ -11,27 +11,11 @@ layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
 };
-layout(binding = 0, scalar) readonly buffer wall_cells_buffer
-{
-    wall_cell wall_cells[];
-};
-layout(binding = 1, scalar) buffer list_buffer
-{
-    wall_light_list list;
-    uint list_entries[];
-};
-layout(binding = 2, scalar) writeonly buffer wall_light_buffer
-{
-    vec3 wall_light[];
-};
-layout(binding = 3, scalar) readonly buffer wall_links_buffer
-{
-    uint links[];
-};
-layout(binding = 4, scalar) writeonly buffer arrived_buffer
-{
-    vec3 arrived[];
-};
+TYN_READ(0, wall_cells, wall_cell wall_cells[]);
+TYN_UPDATE(1, list, wall_light_list list; uint list_entries[]);
+TYN_WRITE(2, wall_light, vec3 wall_light[]);
+TYN_READ(3, wall_links, uint links[]);
+TYN_WRITE(4, arrived, vec3 arrived[]);
 layout(constant_id = 0) const uint added = 0;  // 1: to the suns' light
 layout(constant_id = 1) const uint scaled = 0; // 1: light that black walls get counts, too
 layout(constant_id = 2) const uint rooms = 0;

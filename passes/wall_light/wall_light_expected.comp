@@ -19,17 +19,11 @@ layout(push_constant, scalar) uniform push
     wall_light_args args;
 };
 layout(binding = 5) uniform sampler2D vpl_distances_tex;
-layout(binding = 6, scalar) writeonly buffer power_buffer
-{
-    wall_light_power power;
-};
+TYN_WRITE(6, power, wall_light_power power);
 layout(constant_id = 1) const uint rooms = 0;
 #define LATTICE_ROOMS 7
 #include "shaders/walls/lattice_rooms.glsl"
-layout(binding = 8, scalar) buffer first_buffer
-{
-    uint first[]; // by room: the first VPL that shines there
-};
+TYN_UPDATE(8, first, uint first[]); // by room: the first VPL that shines there
 
 shared vec4 sums[WALL_LIGHT_GROUP]; // arrives, per W/sr; of all directions
 

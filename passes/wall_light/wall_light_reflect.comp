@@ -10,27 +10,11 @@ layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
 };
-layout(binding = 0, scalar) readonly buffer wall_cells_buffer
-{
-    wall_cell wall_cells[];
-};
-layout(binding = 1, scalar) readonly buffer list_buffer
-{
-    wall_light_list list;
-    uint list_entries[];
-};
-layout(binding = 2, scalar) readonly buffer arrived_buffer
-{
-    vec3 arrived[];
-};
-layout(binding = 3, scalar) buffer wall_light_buffer
-{
-    vec3 wall_light[];
-};
-layout(binding = 4, scalar) readonly buffer power_buffer
-{
-    wall_light_power power;
-};
+TYN_READ(0, wall_cells, wall_cell wall_cells[]);
+TYN_READ(1, list, wall_light_list list; uint list_entries[]);
+TYN_READ(2, arrived, vec3 arrived[]);
+TYN_UPDATE(3, wall_light, vec3 wall_light[]);
+TYN_READ(4, power, wall_light_power power);
 layout(constant_id = 0) const uint added = 0; // 1: to the suns' light
 layout(constant_id = 1) const uint scaled = 0;
 layout(constant_id = 2) const uint rooms = 0;

@@ -5,10 +5,7 @@
 #define TYN_WALL_LIGHT_ROOMS_GLSL
 #include "shaders/walls/lattice_rooms.glsl"
 
-layout(binding = WALL_LIGHT_FIRST, scalar) readonly buffer first_buffer
-{
-    uint first[]; // by room
-};
+TYN_READ(WALL_LIGHT_FIRST, first, uint first[]); // by room
 
 // WALL_LIGHT_DARK: none does.
 uint first_vpl(uint cell)

@@ -14,18 +14,9 @@ layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
 };
-layout(binding = 0, scalar) buffer power_buffer
-{
-    wall_light_power power;
-};
-layout(binding = 1, scalar) readonly buffer parts_buffer
-{
-    vec3 parts[]; // [room, by its first VPL][part]
-};
-layout(binding = 2, scalar) readonly buffer first_buffer
-{
-    uint first[]; // by room
-};
+TYN_UPDATE(0, power, wall_light_power power);
+TYN_READ(1, parts, vec3 parts[]); // [room, by its first VPL][part]
+TYN_READ(2, first, uint first[]); // by room
 
 // Of rooms: W that are sent, W that walls get too much or too little of; least and most factor, 0: of no light.
 shared vec4 found[WALL_LIGHT_VPLS];

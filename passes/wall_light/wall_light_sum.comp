@@ -9,14 +9,8 @@ layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
 };
-layout(binding = 0, scalar) readonly buffer arrived_buffer
-{
-    vec3 arrived[]; // W/m^2, times the area over dx^2
-};
-layout(binding = 1, scalar) writeonly buffer parts_buffer
-{
-    vec3 parts[]; // [room, by its first VPL][part]: 0, but for what is written here
-};
+TYN_READ(0, arrived, vec3 arrived[]); // W/m^2, times the area over dx^2
+TYN_WRITE(1, parts, vec3 parts[]); // [room, by its first VPL][part]: 0, but for what is written here
 layout(constant_id = 0) const uint rooms = 0;
 #define LATTICE_ROOMS 2
 #define WALL_LIGHT_FIRST 3

@@ -22,28 +22,13 @@ layout(push_constant, scalar) uniform push
 {
     wall_light_args args;
 };
-layout(binding = 1, scalar) readonly buffer lights_buffer
-{
-    light_block lights[];
-};
+TYN_READ(1, lights, light_block lights[]);
 #define GEOMETRY_AT 6
 #include "shaders/surfaces/surfaces.glsl"
-layout(binding = 10, scalar) readonly buffer wall_links_buffer
-{
-    uint links[];
-};
-layout(binding = 11, scalar) readonly buffer wall_cells_buffer
-{
-    wall_cell wall_cells[];
-};
-layout(binding = 12, scalar) readonly buffer hits_buffer
-{
-    uint hits[];
-};
-layout(binding = 13, scalar) writeonly buffer wall_light_buffer
-{
-    vec3 wall_light[];
-};
+TYN_READ(10, wall_links, uint links[]);
+TYN_READ(11, wall_cells, wall_cell wall_cells[]);
+TYN_READ(12, hits, uint hits[]);
+TYN_WRITE(13, wall_light, vec3 wall_light[]);
 #include "shaders/walls/walls_place.glsl"
 
 // Irradiance of the suns at p (M) on the side n (M, unit).

@@ -24,19 +24,9 @@ layout(push_constant, scalar) uniform push
 };
 #define GEOMETRY_AT 5
 #include "shaders/surfaces/surfaces.glsl"
-layout(binding = 11, scalar) readonly buffer hits_buffer
-{
-    uint hits[];
-};
-layout(binding = 12, scalar) writeonly buffer arrived_buffer
-{
-    vec3 arrived[]; // irradiance, W/m^2, times the area over dx^2
-};
-layout(binding = 13, scalar) readonly buffer list_buffer
-{
-    wall_light_list list;
-    uint list_entries[];
-};
+TYN_READ(11, hits, uint hits[]);
+TYN_WRITE(12, arrived, vec3 arrived[]); // irradiance, W/m^2, times the area over dx^2
+TYN_READ(13, list, wall_light_list list; uint list_entries[]);
 layout(constant_id = 1) const uint rooms = 0;
 #define LATTICE_ROOMS 14
 #include "shaders/walls/lattice_rooms.glsl"

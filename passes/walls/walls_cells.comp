@@ -15,22 +15,10 @@ layout(push_constant, scalar) uniform push
 #define GEOMETRY_AT 0
 #define MATERIALS_AT 4
 #include "shaders/surfaces/reflectance.glsl"
-layout(binding = 7, scalar) readonly buffer wall_links_buffer
-{
-    uint links[];
-};
-layout(binding = 8, scalar) readonly buffer hits_buffer
-{
-    uint hits[];
-};
-layout(binding = 9, scalar) readonly buffer nearest_buffer
-{
-    uint nearest[];
-};
-layout(binding = 10, scalar) writeonly buffer wall_cells_buffer
-{
-    wall_cell wall_cells[];
-};
+TYN_READ(7, wall_links, uint links[]);
+TYN_READ(8, hits, uint hits[]);
+TYN_READ(9, nearest, uint nearest[]);
+TYN_WRITE(10, wall_cells, wall_cell wall_cells[]);
 #include "shaders/walls/walls_place.glsl"
 #include "walls_texture.glsl"
 

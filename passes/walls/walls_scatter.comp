@@ -19,20 +19,11 @@ layout(push_constant, scalar) uniform push
 };
 #define GEOMETRY_AT 0
 #include "shaders/surfaces/surfaces.glsl"
-layout(binding = 4, scalar) buffer wall_links_buffer
-{
-    uint links[];
-};
+TYN_UPDATE(4, wall_links, uint links[]);
 // [link 0..13][cell]: of the nearest hit, its share of the way (8 bits), its triangle (24 bits).
-layout(binding = 5, scalar) buffer hits_buffer
-{
-    uint hits[];
-};
+TYN_UPDATE(5, hits, uint hits[]);
 // [slot][cell]: of the nearest plane that passes through the cell, the same.
-layout(binding = 6, scalar) buffer nearest_buffer
-{
-    uint nearest[];
-};
+TYN_UPDATE(6, nearest, uint nearest[]);
 #include "shaders/walls/walls_place.glsl"
 
 uint key_of(float share, uint triangle)

@@ -17,15 +17,9 @@
 #include "beam_tau.glsl"
 
 #ifdef BEAMS_STORAGE
-layout(set = 0, binding = BEAMS_AT, scalar) readonly buffer beams_buffer
-{
-    beam_block beams[];
-};
+TYN_READ(BEAMS_AT, beams, beam_block beams[]);
 #else
-layout(set = 0, binding = BEAMS_AT, scalar) uniform beams_uniform
-{
-    beam_block beams[TYN_BEAM_MAX_SUNS];
-};
+TYN_UNIFORM(BEAMS_AT, beams, beam_block beams[TYN_BEAM_MAX_SUNS]);
 #endif
 // Integrals of the density (mode DENSITY) or of sigma_s, of sigma_a and of (1 - f) sigma_s.
 layout(set = 0, binding = BEAMS_AT + 1) uniform sampler3D column_tex;

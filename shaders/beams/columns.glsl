@@ -13,14 +13,8 @@
 #include "columns_args.h"
 #include "shaders/light/ordinate_args.h"
 
-layout(set = 0, binding = COLUMNS_AT, scalar) uniform ordinates_uniform
-{
-    ordinates_block ordinates;
-};
-layout(set = 0, binding = COLUMNS_AT + 1, scalar) readonly buffer columns_buffer
-{
-    uint columns_words[];
-};
+TYN_UNIFORM(COLUMNS_AT, ordinates, ordinates_block ordinates);
+TYN_READ(COLUMNS_AT + 1, columns, uint columns_words[]);
 
 // Of component 0 at a cell; the next component and the next ordinate are columns_stride words on.
 uint columns_word(uint n, uvec3 cell, uvec3 dims)

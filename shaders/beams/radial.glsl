@@ -24,19 +24,10 @@ radial_grid radial_grid_of(uint n)
 }
 #else
 #ifndef RADIALS_STORAGE
-layout(set = 0, binding = RADIALS_AT, scalar) uniform radials_buffer
-{
-    uint radial_count, radial_num_lamps;
-    uvec2 radial_pad;
-    radial_grid radials[TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX];
-};
+TYN_UNIFORM(RADIALS_AT, radials, uint radial_count; uint radial_num_lamps; uvec2 radial_pad;
+            radial_grid radials[TYN_RADIAL_LAMPS_MAX + TYN_RADIAL_VPLS_MAX]);
 #else
-layout(set = 0, binding = RADIALS_AT, scalar) readonly buffer radials_buffer
-{
-    uint radial_count, radial_num_lamps;
-    uvec2 radial_pad;
-    radial_grid radials[];
-};
+TYN_READ(RADIALS_AT, radials, uint radial_count; uint radial_num_lamps; uvec2 radial_pad; radial_grid radials[]);
 #endif
 
 radial_grid radial_grid_of(uint n)

@@ -26,6 +26,13 @@ typedef uint32_t tyn_uvec3[3];
 #define TYN_ASSERT_SIZE(type, bytes)
 #define TYN_STRUCT(type) type
 #define TYN_FUNCTION
+
+// Buffers of a kernel: binding, name of the port (tyndall/pass.h), members.
+//   TYN_READ(3, lights, light_block lights[]);
+#define TYN_UNIFORM(at, port, members) layout(set = 0, binding = at, scalar) uniform port##_uniform { members; }
+#define TYN_READ(at, port, members) layout(set = 0, binding = at, scalar) readonly buffer port##_buffer { members; }
+#define TYN_WRITE(at, port, members) layout(set = 0, binding = at, scalar) writeonly buffer port##_buffer { members; }
+#define TYN_UPDATE(at, port, members) layout(set = 0, binding = at, scalar) buffer port##_buffer { members; }
 #endif
 
 #endif

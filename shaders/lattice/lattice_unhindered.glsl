@@ -5,10 +5,7 @@
 #include "shaders/common/scene_args.h"
 #include "lattice_sweep.glsl"
 
-layout(binding = LATTICE_ENVIRONMENT, scalar) uniform environment_uniform
-{
-    env_block environment;
-};
+TYN_UNIFORM(LATTICE_ENVIRONMENT, environment, env_block environment);
 
 // Radiance, W/(m^2 sr).
 float lattice_boundary(uint channels, uint ch, vec3 tint)

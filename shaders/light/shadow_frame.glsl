@@ -22,15 +22,9 @@ shadow_light shadow_light_of(uint n)
 }
 #else
 #ifdef SHADOWS_STORAGE
-layout(set = 0, binding = SHADOW_LIGHTS, scalar) readonly buffer shadows_buffer
-{
-    shadow_light shadows[];
-};
+TYN_READ(SHADOW_LIGHTS, shadows, shadow_light shadows[]);
 #else
-layout(set = 0, binding = SHADOW_LIGHTS, scalar) uniform shadows_buffer
-{
-    shadow_light shadows[TYN_SHADOW_MAX];
-};
+TYN_UNIFORM(SHADOW_LIGHTS, shadows, shadow_light shadows[TYN_SHADOW_MAX]);
 #endif
 
 shadow_light shadow_light_of(uint n)

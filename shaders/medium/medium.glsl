@@ -24,10 +24,7 @@ layout(set = 0, binding = MEDIUM_AT + 2) uniform sampler3D sigma_a_tex; // this 
 layout(set = 0, binding = MEDIUM_AT + 3) uniform sampler3D g_tex;
 layout(set = 0, binding = MEDIUM_AT + 4) uniform sampler3D emission_tex;
 #endif
-layout(set = 0, binding = MEDIUM_BLOCK, scalar) uniform medium_uniform
-{
-    medium_block medium;
-};
+TYN_UNIFORM(MEDIUM_BLOCK, medium, medium_block medium);
 
 struct medium_point {
     vec3 sigma_s; // 1/m

@@ -18,23 +18,17 @@ layout(constant_id = 4) const uint ENVIRONMENT = 2u;
 layout(constant_id = 5) const uint FLAGS = 0u;
 
 layout(set = 0, binding = 0) uniform sampler3D atlas;
-layout(set = 0, binding = 1, scalar) uniform medium_uniform { medium_block medium_in; };
-layout(set = 0, binding = 2, scalar) readonly buffer shapes_buffer { shape_block shapes[]; };
+TYN_UNIFORM(1, medium, medium_block medium_in);
+TYN_READ(2, shapes, shape_block shapes[]);
 layout(set = 0, binding = 3) uniform sampler3D bricks;
-layout(set = 0, binding = 4, scalar) readonly buffer lights_buffer { light_block lights[]; };
-layout(set = 0, binding = 5, scalar) uniform environment_uniform { env_block env_in; };
+TYN_READ(4, lights, light_block lights[]);
+TYN_UNIFORM(5, environment, env_block env_in);
 layout(set = 0, binding = 6) uniform sampler2D env_map_wrapped;
-layout(set = 0, binding = 7, scalar) readonly buffer env_table_buffer {
-    env_table_block env_table;
-    env_cell env_cells[];
-};
+TYN_READ(7, env_table, env_table_block env_table; env_cell env_cells[]);
 #define GEOMETRY_AT 8
 #define MATERIALS_AT 12
 #include "shaders/surfaces/surfaces.glsl"
-layout(set = 0, binding = 15, scalar) readonly buffer emitters_buffer {
-    surface_table emitters;
-    surface_cell emitter_cells[];
-};
+TYN_READ(15, emitters, surface_table emitters; surface_cell emitter_cells[]);
 layout(push_constant, scalar) uniform args_push { path_args args_in; };
 
 // Copies that live in registers: inside a loop whose lanes diverge, software devices read buffers lane by lane.

@@ -27,10 +27,7 @@
 #include "scatter_lut_map.glsl"
 
 layout(set = 0, binding = SCATTER_LUT) uniform sampler2D lut_tex;
-layout(set = 0, binding = SCATTER_LUT_BLOCK, scalar) uniform lut_block_uniform
-{
-    lut_block lut;
-};
+TYN_UNIFORM(SCATTER_LUT_BLOCK, lut_block, lut_block lut);
 
 // What the kernels need to know about the scattering angle; constant along a ray and a sun.
 struct scatter_angle {

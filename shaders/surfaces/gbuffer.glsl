@@ -25,14 +25,8 @@
 layout(binding = GBUFFER_AT) uniform sampler2D distances_tex;
 layout(binding = GBUFFER_AT + 1, rgba32ui) uniform readonly uimage2D facing_image;
 layout(binding = GBUFFER_AT + 2, rgba32ui) uniform readonly uimage2D colours_image;
-layout(binding = GBUFFER_AT + 3, scalar) readonly buffer edge_count_buffer
-{
-    gbuffer_edge_count edge_count;
-};
-layout(binding = GBUFFER_AT + 4, scalar) readonly buffer edges_buffer
-{
-    uint edges[];
-};
+TYN_READ(GBUFFER_AT + 3, edge_count, gbuffer_edge_count edge_count);
+TYN_READ(GBUFFER_AT + 4, edges, uint edges[]);
 #define GBUFFER_END (GBUFFER_AT + 5)
 #endif
 

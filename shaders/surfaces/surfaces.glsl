@@ -8,22 +8,10 @@
 #include "surface_args.h"
 
 #ifdef GEOMETRY_AT
-layout(set = 0, binding = GEOMETRY_AT, scalar) uniform surfaces_uniform
-{
-    surface_block surfaces;
-};
-layout(set = 0, binding = GEOMETRY_AT + 1, scalar) readonly buffer vertices_buffer
-{
-    vec4 vertex_rows[]; // position, u; normal, v
-};
-layout(set = 0, binding = GEOMETRY_AT + 2, scalar) readonly buffer triangles_buffer
-{
-    uvec4 triangles[]; // corners, material
-};
-layout(set = 0, binding = GEOMETRY_AT + 3, scalar) readonly buffer nodes_buffer
-{
-    uvec4 nodes[];
-};
+TYN_UNIFORM(GEOMETRY_AT, surfaces, surface_block surfaces);
+TYN_READ(GEOMETRY_AT + 1, vertices, vec4 vertex_rows[]); // position, u; normal, v
+TYN_READ(GEOMETRY_AT + 2, triangles, uvec4 triangles[]); // corners, material
+TYN_READ(GEOMETRY_AT + 3, nodes, uvec4 nodes[]);
 
 vec3 surface_position(uint vertex)
 {
@@ -43,18 +31,9 @@ mat3x2 surface_uvs(uvec4 triangle)
 }
 #endif
 #ifdef MATERIALS_AT
-layout(set = 0, binding = MATERIALS_AT, scalar) readonly buffer materials_buffer
-{
-    uvec4 material_rows[]; // albedo, flags; emission, texture
-};
-layout(set = 0, binding = MATERIALS_AT + 1, scalar) readonly buffer textures_buffer
-{
-    surface_texture textures[];
-};
-layout(set = 0, binding = MATERIALS_AT + 2, scalar) readonly buffer texels_buffer
-{
-    uint texels[];
-};
+TYN_READ(MATERIALS_AT, materials, uvec4 material_rows[]); // albedo, flags; emission, texture
+TYN_READ(MATERIALS_AT + 1, textures, surface_texture textures[]);
+TYN_READ(MATERIALS_AT + 2, texels, uint texels[]);
 #endif
 
 #endif

@@ -35,14 +35,8 @@ uint walls_behind(walls_planes walls, vec3 p)
 }
 
 #ifdef WALLS_STORAGE
-layout(set = 0, binding = WALLS_AT, scalar) readonly buffer wall_links_buffer
-{
-    uint wall_links[];
-};
-layout(set = 0, binding = WALLS_AT + 1, scalar) readonly buffer wall_cells_buffer
-{
-    wall_cell wall_cells[];
-};
+TYN_READ(WALLS_AT, wall_links, uint wall_links[]);
+TYN_READ(WALLS_AT + 1, wall_cells, wall_cell wall_cells[]);
 
 uint walls_links_of(uint cell)
 {
