@@ -1,12 +1,10 @@
 // gltf_check.c -- checks a glTF document, field by field.
 #include "io/gltf_check.h"
 #include "io/gltf_light.h"
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define HALF_PI 1.57079632679489662
 #define MAX_INT 2147483647
 
 typedef struct checker {
