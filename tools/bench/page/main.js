@@ -21,12 +21,13 @@ function referenceWords(scene) {
         r.cached ? "from the cache" : null].filter(Boolean).join("; ");
 }
 
-// The run that is shown first: the best of `pop` on the front, else the best of any method.
+// The run that is shown first: the best of the promised method on the front, else the best of any method.
 function firstRun(scene, block) {
     const runs = list(scene.runs), front = frontOf(scene, block);
     const good = runs.map((run, i) => [run, i]).filter(([run]) => !run.failed && isNumber(errorsOf(run, block).error));
     const best = (entries) => entries.sort((a, b) => errorValue(errorsOf(a[0], block)) - errorValue(errorsOf(b[0], block)))[0];
-    const found = best(good.filter(([r]) => r.method === "pop" && front.has(r.key))) || best(good.filter(([r]) => r.method === "pop")) || best(good);
+    const promised = good.filter(([r]) => r.method === scene.promise?.method);
+    const found = best(promised.filter(([r]) => front.has(r.key))) || best(promised) || best(good);
     return found ? found[1] : runs.length > 0 ? 0 : -1;
 }
 
