@@ -3,6 +3,7 @@
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
 #include "passes/shadow_map/shadow_map.h"
+#include "passes/light_cells/light_cells.h"
 #include "passes/radial_beam/radial_beam.h"
 #include "passes/rsm/rsm.h"
 #include "passes/vpl/vpl.h"
@@ -20,7 +21,7 @@
 #include "passes/lattice_lamps/lattice_lamps.h"
 
 #define TYN_MEDIUM_PASSES &tyn_pass_medium
-#define TYN_SUN_PASSES &tyn_pass_beam, &tyn_pass_shadow_map
+#define TYN_SUN_PASSES &tyn_pass_beam, &tyn_pass_shadow_map, &tyn_pass_light_cells
 #define TYN_LAMP_PASSES &tyn_pass_radial_beam
 #define TYN_VIRTUAL_LIGHT_PASSES &tyn_pass_rsm, &tyn_pass_vpl
 #define TYN_SKY_PASSES &tyn_pass_env_importance, &tyn_pass_importance, &tyn_pass_ordinates

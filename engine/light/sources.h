@@ -50,6 +50,7 @@ typedef struct tyn_sources {
     uint32_t num_suns;        // that have beams
     tyn_beam_refs beams;
     tyn_shadow_refs shadows;
+    tyn_ref light_cells; // where looks at the shadow maps are needed (light_cells_args.h)
     tyn_lamps lamps;
     tyn_sky sky;
     bool mean_from_all_sides; // the mean of the environment enters the lattice

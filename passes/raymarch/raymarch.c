@@ -23,7 +23,7 @@ enum {
         7, // mode, number of suns, features, numbers of lamps, number of shapes and their kind
 };
 
-// 28 powers of two with this sum are all different.
+// 29 powers of two with this sum are all different.
 _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNEL +
                        RAYMARCH_UNSCALED + RAYMARCH_SOURCE + RAYMARCH_EMISSION + RAYMARCH_MEAN +
                        RAYMARCH_HOST_DEPTH + RAYMARCH_BACKGROUND + RAYMARCH_BEHIND +
@@ -32,8 +32,8 @@ _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNE
                        RAYMARCH_SOFT_SUNS + RAYMARCH_SURFACE + RAYMARCH_SURFACE_SEEN +
                        RAYMARCH_WALLS + RAYMARCH_SHADOWS + RAYMARCH_REPEAT + RAYMARCH_SPARSE_FIRST +
                        RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_REST + RAYMARCH_SPOTS +
-                       RAYMARCH_ROOMS ==
-                   (1u << 28) - 1,
+                       RAYMARCH_LIGHT_CELLS + RAYMARCH_ROOMS ==
+                   (1u << 29) - 1,
                "features have bits of their own");
 
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
@@ -200,6 +200,7 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
                     ? RAYMARCH_ROOMS
                     : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_SHADOW_ATLAS) ? RAYMARCH_SHADOWS : 0;
+    features |= tyn_rec_has(r, RAYMARCH_PORT_LIGHT_CELLS) ? RAYMARCH_LIGHT_CELLS : 0;
     return features;
 }
 

@@ -32,6 +32,7 @@
 #define RAYMARCH_SPARSE_FILL (1u << 25)  // pixels where that image is smooth; the others are listed
 #define RAYMARCH_SPARSE_REST (1u << 26)  // rays of those that are listed
 #define RAYMARCH_SPOTS (1u << 27)        // there are lamps that shine in a cone
+#define RAYMARCH_LIGHT_CELLS (1u << 28)  // it is known where lights see all, or nothing
 
 struct raymarch_args {
     float step;       // longest step, m

@@ -4,6 +4,7 @@
 #include "shaders/common/scene_args.h"
 #include "shaders/common/counters.h"
 #include "raymarch_args.h"
+#include "shaders/light/light_cells_args.h"
 
 // Specialisation constant 0 is the medium's mode (medium.glsl).
 layout(constant_id = 1) const uint raymarch_num_suns = 1u;
@@ -41,9 +42,10 @@ layout(binding = 25) uniform sampler3D glow_wrapped;
 #define SHADOWS_STORAGE
 #define RADIALS_AT 33
 #define RADIALS_STORAGE
-layout(binding = 37) uniform sampler2D sparse_tex;
-layout(binding = 38, rgba32f) uniform writeonly image2D sparse_image;
-layout(binding = 39, scalar) buffer rest_buffer
+layout(binding = 37) uniform sampler3D light_cells_tex;
+layout(binding = 38) uniform sampler2D sparse_tex;
+layout(binding = 39, rgba32f) uniform writeonly image2D sparse_image;
+layout(binding = 40, scalar) buffer rest_buffer
 {
     raymarch_rest head;
     uint blocks[];
