@@ -15,10 +15,7 @@
 #include "shaders/lattice/lattice_sweep.glsl"
 
 layout(local_size_x = BALANCE_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    balance_args args;
-};
+TYN_ARGS(balance_args args);
 TYN_UNIFORM(0, medium, medium_block medium);
 TYN_UNIFORM(1, environment, env_block environment); // its `sky` enters from all sides
 TYN_READ(2, lights, light_block lights[]);

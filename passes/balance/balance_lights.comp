@@ -24,10 +24,7 @@
 #include "shaders/surfaces/surface_texture.glsl"
 
 layout(local_size_x = BALANCE_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    balance_lights_args args;
-};
+TYN_ARGS(balance_lights_args args);
 TYN_READ(16, lights, light_block lights[]);
 TYN_WRITE(17, found, balance_light found[]);
 #include "shaders/surfaces/surface_trace.glsl"

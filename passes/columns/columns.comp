@@ -11,10 +11,7 @@
 #include "columns_grid.glsl"
 
 layout(local_size_x = COLUMNS_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    columns_args args;
-};
+TYN_ARGS(columns_args args);
 TYN_UNIFORM(5, ordinates, ordinates_block ordinates);
 TYN_WRITE(6, nodes, float nodes[]); // [ordinate][component of coefficients][slice][v][u]
 

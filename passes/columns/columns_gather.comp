@@ -15,10 +15,7 @@
 #include "columns_grid.glsl"
 
 layout(local_size_x = COLUMNS_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    columns_args args;
-};
+TYN_ARGS(columns_args args);
 TYN_UNIFORM(5, ordinates, ordinates_block ordinates);
 TYN_READ(6, nodes, float nodes[]); // [ordinate][component][slice][v][u]
 TYN_WRITE(7, columns, uint columns_words[]); // columns.glsl

@@ -9,10 +9,7 @@
 #include "shaders/phase/phase.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    columns_average_args args;
-};
+TYN_ARGS(columns_average_args args);
 #ifdef TYN_DENSITY
 layout(binding = 0) uniform sampler3D density;
 layout(binding = 1, r32f) writeonly uniform image3D mean_density;

@@ -8,10 +8,7 @@ const uint HALF = TYN_GLOW_WIDTH / 2, FOUR = 4, THREADS = TYN_GLOW_HEIGHT / FOUR
 layout(local_size_x = TYN_GLOW_HEIGHT / 4) in;
 layout(set = 0, binding = 0) uniform sampler2D sky_wrapped;
 TYN_WRITE(1, rows, glow_order rows[]);
-layout(push_constant, scalar) uniform Args
-{
-    env_glow_args args;
-};
+TYN_ARGS(env_glow_args args);
 
 const float PI = 3.14159265358979;
 

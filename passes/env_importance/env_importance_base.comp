@@ -8,10 +8,7 @@
 #include "shaders/light/sky.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(push_constant, scalar) uniform arguments
-{
-    env_importance_args args;
-};
+TYN_ARGS(env_importance_args args);
 layout(binding = 0) uniform sampler2D env_map_tex;
 layout(binding = 1, rgba32f) uniform writeonly image2D sky;
 

@@ -11,7 +11,7 @@ TYN_UNIFORM(5, grid, importance_grid grid);
 TYN_WRITE(6, cells, importance_cell cells[]);
 TYN_WRITE(7, light, importance_light light[]);
 TYN_WRITE(8, tracks, vec2 tracks[]);
-layout(push_constant, scalar) uniform push { importance_args args; };
+TYN_ARGS(importance_args args);
 
 const int SAMPLES = 3; // along each edge of a cell
 

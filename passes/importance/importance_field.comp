@@ -7,7 +7,7 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 TYN_READ(0, cells, importance_cell cells[]);
 TYN_READ(1, tracks, vec2 tracks[]);
 layout(set = 0, binding = 2, rgba32f) uniform writeonly image3D field;
-layout(push_constant, scalar) uniform push { importance_args args; };
+TYN_ARGS(importance_args args);
 
 void main()
 {

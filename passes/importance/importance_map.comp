@@ -7,7 +7,7 @@ layout(local_size_x = TYN_IMPORTANCE_TEXELS) in;
 TYN_READ(0, sent, float sent[]);
 TYN_UPDATE(1, history, importance_history history);
 layout(set = 0, binding = 2, r32f) uniform writeonly image2D importance_image;
-layout(push_constant, scalar) uniform push { importance_args args; };
+TYN_ARGS(importance_args args);
 
 // Half-height at a texel's height, 11 degrees: exp(-SHARPNESS (1 - cos)) there is a half.
 const float SHARPNESS = 36.0;

@@ -10,7 +10,7 @@ TYN_UNIFORM(0, medium, medium_block medium);
 TYN_UNIFORM(1, grid, importance_grid grid);
 layout(set = 0, binding = 2) uniform sampler3D field;
 TYN_WRITE(3, sent, float sent[]);
-layout(push_constant, scalar) uniform push { importance_args args; };
+TYN_ARGS(importance_args args);
 
 // The map cannot show narrower lobes than its texels: they are widened to those with half their height
 // at 3 degrees.

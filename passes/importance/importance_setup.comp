@@ -7,7 +7,7 @@ layout(local_size_x = 1) in;
 TYN_UNIFORM(0, medium, medium_block medium);
 TYN_UNIFORM(1, camera, camera_block camera);
 TYN_WRITE(2, grid, importance_grid grid);
-layout(push_constant, scalar) uniform push { importance_args args; };
+TYN_ARGS(importance_args args);
 
 void main()
 {

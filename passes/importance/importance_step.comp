@@ -8,7 +8,7 @@ TYN_READ(0, cells, importance_cell cells[]);
 TYN_READ(1, light_other, importance_light light[]);
 TYN_WRITE(2, light, importance_light out_light[]);
 TYN_UPDATE(3, tracks, vec2 tracks[]);
-layout(push_constant, scalar) uniform push { importance_args args; };
+TYN_ARGS(importance_args args);
 
 const ivec3 beside[4] = ivec3[](ivec3(-1, 0, 0), ivec3(1, 0, 0), ivec3(0, -1, 0), ivec3(0, 1, 0));
 

@@ -13,10 +13,7 @@
 #include "lattice_stencil_texels.glsl"
 
 layout(local_size_x = LATTICE_COARSE_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_level_args args; // level: the first that is solved here
-};
+TYN_ARGS(lattice_level_args args); // level: the first that is solved here
 layout(binding = 2) uniform samplerBuffer rhs_words;
 TYN_UPDATE(3, correction, float correction_out[]);
 

@@ -7,10 +7,7 @@
 #include "shaders/lattice/lattice_sweep.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_args args;
-};
+TYN_ARGS(lattice_args args);
 layout(binding = 0) uniform sampler3D cells;
 layout(binding = 1) uniform samplerBuffer mean_psi_words; // [direction][channel][cell]
 layout(binding = 2) uniform samplerBuffer state_words;    // floats

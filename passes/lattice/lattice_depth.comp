@@ -7,10 +7,7 @@
 #include "shaders/common/quotient.glsl"
 
 layout(local_size_x = LATTICE_DEPTH_GROUP) in; // one workgroup
-layout(push_constant, scalar) uniform push
-{
-    lattice_args args;
-};
+TYN_ARGS(lattice_args args);
 layout(binding = 0) uniform sampler3D cells;
 TYN_UPDATE(1, launches, uint launches[3 * LATTICE_MAX_LAUNCHES]); // workgroups, as indirect dispatches read them
 

@@ -7,10 +7,7 @@
 #include "shaders/common/counters.h"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_args args;
-};
+TYN_ARGS(lattice_args args);
 layout(binding = 0) uniform sampler3D cells;
 layout(binding = 1) uniform sampler3D source;
 layout(binding = 2) uniform samplerBuffer result_0_texels;

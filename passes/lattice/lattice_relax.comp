@@ -9,10 +9,7 @@
 #include "lattice_stencil_texels.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_level_args args;
-};
+TYN_ARGS(lattice_level_args args);
 layout(binding = 2) uniform samplerBuffer rhs_words;
 layout(binding = 3) uniform samplerBuffer correction_words; // the correction: cells of the other colour
 TYN_WRITE(4, correction, float correction[]);

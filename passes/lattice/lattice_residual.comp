@@ -11,10 +11,7 @@
 #include "shaders/lattice/lattice_args.h"
 
 layout(local_size_x = LATTICE_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_args args;
-};
+TYN_ARGS(lattice_args args);
 layout(binding = 0) uniform samplerBuffer state_texels;
 layout(binding = 1) uniform samplerBuffer swept_texels;
 layout(binding = 2) uniform samplerBuffer correction_words; // floats

@@ -13,10 +13,7 @@
 #include "lattice_stencil_texels.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_level_args args; // level: the coarse one
-};
+TYN_ARGS(lattice_level_args args); // level: the coarse one
 layout(binding = 2) uniform samplerBuffer rhs_words; // the buffers below, at another level
 layout(binding = 3) uniform samplerBuffer correction_words;
 TYN_WRITE(4, rhs, float rhs[]);

@@ -11,10 +11,7 @@
 #include "shaders/lattice/lattice_unhindered.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_args args;
-};
+TYN_ARGS(lattice_args args);
 layout(binding = 1) uniform sampler3D cells;
 layout(binding = 2) uniform sampler3D source;
 TYN_WRITE(3, state, vec4 state[]);

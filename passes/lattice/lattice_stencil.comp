@@ -6,10 +6,7 @@
 #include "lattice_stencil.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_level_args args;
-};
+TYN_ARGS(lattice_level_args args);
 layout(binding = 0) uniform sampler3D cells;
 TYN_WRITE(1, stencil_lo, vec4 stencil_lo[]);
 TYN_WRITE(2, stencil_hi, vec4 stencil_hi[]);

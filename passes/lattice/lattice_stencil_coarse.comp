@@ -9,10 +9,7 @@
 #include "lattice_levels.glsl"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_level_args args; // level: the coarse one
-};
+TYN_ARGS(lattice_level_args args); // level: the coarse one
 TYN_WRITE(0, stencil_lo, vec4 stencil_lo[]);
 TYN_WRITE(1, stencil_hi, vec4 stencil_hi[]);
 

@@ -8,10 +8,7 @@
 #include "lattice_stencil.glsl"
 
 layout(local_size_x = LATTICE_GROUP) in; // along all levels of a channel
-layout(push_constant, scalar) uniform push
-{
-    lattice_level_args args;
-};
+TYN_ARGS(lattice_level_args args);
 TYN_UPDATE(0, stencil_lo, vec4 stencil_lo[]);
 TYN_READ(1, stencil_hi, vec4 stencil_hi[]);
 

@@ -11,10 +11,7 @@
 #include "shaders/lattice/lattice_unhindered.glsl"
 
 layout(local_size_x = LATTICE_SWEEP_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_args args;
-};
+TYN_ARGS(lattice_args args);
 layout(binding = 1) uniform sampler3D cells;
 layout(binding = 2) uniform samplerBuffer emitted_texels; // vec4 per cell
 TYN_WRITE(3, mean_psi, float mean_psi[]); // mean radiance in a cell: [direction][channel][cell]

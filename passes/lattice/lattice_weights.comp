@@ -6,10 +6,7 @@
 #include "shaders/common/counters.h"
 
 layout(local_size_x = LATTICE_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_args args;
-};
+TYN_ARGS(lattice_args args);
 TYN_READ(0, partials, float partials[]); // [channel][group][dot]
 TYN_WRITE(1, weights, vec2 weights[]); // per channel
 TYN_UPDATE(2, counters, counters_block counters);

@@ -10,10 +10,7 @@
 #include "shaders/lattice/lattice.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_cells_args args;
-};
+TYN_ARGS(lattice_cells_args args);
 layout(binding = 5, rgba32f) uniform writeonly image3D cells;
 
 // Optical depth of a cell's edge beyond which nothing changes any more, but sigma' times a

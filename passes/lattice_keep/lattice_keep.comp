@@ -4,10 +4,7 @@
 #include "shaders/lattice/lattice_args.h"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_recall_args args;
-};
+TYN_ARGS(lattice_recall_args args);
 layout(binding = 0) uniform sampler3D moments_tex;
 TYN_READ(1, power, float power[3]);
 TYN_WRITE(2, memory, lattice_memory_block memory; vec4 moments[]);

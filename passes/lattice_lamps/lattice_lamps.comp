@@ -6,10 +6,7 @@
 #include "shaders/lattice/lattice_sweep.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_lamps_args args;
-};
+TYN_ARGS(lattice_lamps_args args);
 TYN_READ(0, power, lattice_lamp_power power[]);
 layout(binding = 1) uniform sampler3D lit;
 layout(binding = 2) uniform sampler3D others;

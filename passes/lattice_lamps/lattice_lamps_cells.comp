@@ -21,10 +21,7 @@
 #include "shaders/beams/radial.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_lamps_args args;
-};
+TYN_ARGS(lattice_lamps_args args);
 layout(binding = 9) uniform sampler3D cells;
 // [group][channel][z][y][x]
 layout(binding = 10, rgba32f) uniform writeonly image3D lit;

@@ -18,10 +18,7 @@
 #include "shaders/beams/radial.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_lamps_args args;
-};
+TYN_ARGS(lattice_lamps_args args);
 layout(binding = 9) uniform sampler3D cells;
 layout(binding = 10, rgba32f) uniform image3D lit; // as in lattice_lamps_cells.comp
 layout(binding = 11, r32f) uniform image3D unshadowed;

@@ -17,10 +17,7 @@
 #include "shaders/lattice/lattice_sweep.glsl"
 
 layout(local_size_x = LATTICE_SUN_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_lamps_args args;
-};
+TYN_ARGS(lattice_lamps_args args);
 layout(binding = 5) uniform sampler3D cells;
 layout(binding = 6) uniform sampler3D unshadowed;
 TYN_WRITE(7, power, lattice_lamp_power power[]);

@@ -21,10 +21,7 @@
 #include "shaders/beams/radial.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in; // 4^3 blocks
-layout(push_constant, scalar) uniform push
-{
-    lattice_lamps_args args;
-};
+TYN_ARGS(lattice_lamps_args args);
 layout(binding = 5) uniform sampler3D cells;
 layout(binding = 6, rgba32f) uniform writeonly image3D lit; // as in lattice_lamps_cells.comp
 layout(binding = 7, r32f) uniform writeonly image3D unshadowed;

@@ -19,10 +19,7 @@
 #include "shaders/lattice/lattice_sweep.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_ordinates_args args;
-};
+TYN_ARGS(lattice_ordinates_args args);
 layout(binding = 3) uniform sampler3D cells;
 layout(binding = 4) uniform sampler3D sunlight;
 layout(binding = 5, rgba32f) uniform writeonly image3D source;

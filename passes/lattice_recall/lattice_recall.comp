@@ -7,10 +7,7 @@
 #include "shaders/lattice/lattice_unhindered.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_recall_args args;
-};
+TYN_ARGS(lattice_recall_args args);
 TYN_READ(0, memory, lattice_memory_block memory; vec4 moments[]);
 TYN_READ(2, power, float power[3]);
 TYN_WRITE(3, guess, vec4 guess[]);

@@ -11,10 +11,7 @@
 #include "shaders/lattice/lattice_unhindered.glsl"
 
 layout(local_size_x = LATTICE_SUN_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_recall_args args;
-};
+TYN_ARGS(lattice_recall_args args);
 layout(binding = 0) uniform sampler3D cells;
 layout(binding = 1) uniform sampler3D source;
 TYN_WRITE(3, power, float power[3]);

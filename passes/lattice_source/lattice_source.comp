@@ -6,10 +6,7 @@
 #include "shaders/lattice/lattice_sweep.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_source_args args;
-};
+TYN_ARGS(lattice_source_args args);
 TYN_READ(0, lights, light_block lights[]);
 TYN_READ(1, power, lattice_power power[]);
 layout(binding = 2) uniform sampler3D sunlit;

@@ -25,10 +25,7 @@
 #include "shaders/light/shadow.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_source_args args;
-};
+TYN_ARGS(lattice_source_args args);
 // Suns stacked along z: T' per colour channel; a = the part of that light which no surface stops.
 layout(binding = 9, rgba32f) uniform writeonly image3D sunlit;
 

@@ -14,10 +14,7 @@
 #include "shaders/lattice/lattice.glsl"
 
 layout(local_size_x = LATTICE_SUN_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    lattice_source_args args;
-};
+TYN_ARGS(lattice_source_args args);
 layout(binding = 5) uniform sampler3D cells;
 layout(binding = 6) uniform sampler3D sunlit;
 TYN_WRITE(7, power, lattice_power power[]);

@@ -12,10 +12,7 @@ layout(constant_id = 1) const uint num_lamps = 0u;
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(binding = 2, r32f) uniform writeonly image3D light_cells_image;
 
-layout(push_constant, scalar) uniform Args
-{
-    light_cells_args args;
-};
+TYN_ARGS(light_cells_args args);
 
 void main()
 {

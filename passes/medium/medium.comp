@@ -17,7 +17,7 @@ layout(set = 0, binding = 3, rgba32f) writeonly uniform image3D density_image;
 layout(set = 0, binding = 4, rgba32f) writeonly uniform image3D sigma_a_image;
 layout(set = 0, binding = 5, rgba32f) writeonly uniform image3D g_image;
 #endif
-layout(push_constant, scalar) uniform push { resample_args args; };
+TYN_ARGS(resample_args args);
 
 float mean_of(vec3 v)
 {

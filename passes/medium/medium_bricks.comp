@@ -10,7 +10,7 @@
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 3, rg32f) writeonly uniform image3D bricks_image;
-layout(push_constant, scalar) uniform push { bricks_args args; };
+TYN_ARGS(bricks_args args);
 
 void main()
 {

@@ -10,7 +10,7 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 TYN_UNIFORM(0, medium, medium_block medium);
 layout(set = 0, binding = 1) uniform sampler3D bricks_tex; // bricks (first axis) or distances
 layout(set = 0, binding = 2, r32f) writeonly uniform image3D distance_image;
-layout(push_constant, scalar) uniform push { distance_args args; };
+TYN_ARGS(distance_args args);
 
 const float FARTHEST = 255.0;
 

@@ -9,7 +9,7 @@
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 3, rgba32f) writeonly uniform image3D emission_image;
-layout(push_constant, scalar) uniform push { resample_args args; };
+TYN_ARGS(resample_args args);
 
 void main()
 {

@@ -8,10 +8,7 @@
 #include "shaders/lattice/lattice.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    merge_args args;
-};
+TYN_ARGS(merge_args args);
 TYN_READ(0, field, float field[]);
 TYN_UPDATE(1, counters, counters_block counters);
 layout(binding = 2, MERGE_FORMAT) uniform writeonly image3D inscatter;

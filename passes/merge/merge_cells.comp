@@ -8,10 +8,7 @@
 #include "shaders/lattice/lattice_sweep.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    merge_args args;
-};
+TYN_ARGS(merge_args args);
 TYN_UNIFORM(0, medium, medium_block medium);
 TYN_UNIFORM(1, camera, camera_block camera);
 layout(binding = 2) uniform sampler3D cells;

@@ -26,10 +26,7 @@ layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(constant_id = 1) const bool grey = false; // all channels of the medium are equal
 layout(constant_id = 2) const uint channels = 3;
 layout(constant_id = 3) const uint shadowed = 0;
-layout(push_constant, scalar) uniform push
-{
-    merge_args args;
-};
+TYN_ARGS(merge_args args);
 TYN_UNIFORM(1, camera, camera_block camera);
 layout(binding = 2) uniform sampler3D cells;
 TYN_UPDATE(3, field, float field[]);

@@ -17,7 +17,7 @@ TYN_READ(9, lamp_places, propagate_radial_place lamp_places[]);
 layout(set = 0, binding = 10) uniform sampler3D lamp_seen;
 TYN_READ(11, vpl_places, propagate_radial_place vpl_places[]);
 layout(set = 0, binding = 12) uniform sampler3D vpl_seen;
-layout(push_constant, scalar) uniform push { merge_grids_args args; };
+TYN_ARGS(merge_grids_args args);
 
 // Mean of sigma_s over a cell and the channels: a trilinear fetch is a mean over two voxels.
 float guide(lattice_box box, vec3 cell)

@@ -10,10 +10,7 @@
 #include "shaders/light/sky.glsl"
 
 layout(local_size_x = TYN_ORDINATES_MAX) in;
-layout(push_constant, scalar) uniform arguments
-{
-    ordinates_args args;
-};
+TYN_ARGS(ordinates_args args);
 TYN_UNIFORM(0, environment, env_block environment);
 TYN_READ(1, pieces, ordinates_piece pieces[]);
 TYN_WRITE(2, ordinates, uint count; uint folded; uint num_fixed; uint pad; ordinate list[]);

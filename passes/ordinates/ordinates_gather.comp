@@ -7,10 +7,7 @@
 #include "ordinates_region.glsl"
 
 layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform arguments
-{
-    ordinates_args args;
-};
+TYN_ARGS(ordinates_args args);
 TYN_UNIFORM(0, environment, env_block environment);
 TYN_READ(1, sums, sky_sum sums[]);
 TYN_READ(2, regions, vec4 regions[]); // from, to

@@ -12,10 +12,7 @@
 #include "shaders/light/sky_args.h"
 
 layout(local_size_x = TYN_ORDINATES_MAX) in;
-layout(push_constant, scalar) uniform arguments
-{
-    ordinates_args args;
-};
+TYN_ARGS(ordinates_args args);
 TYN_UNIFORM(0, environment, env_block environment);
 TYN_READ(1, sums, sky_sum sums[]);
 TYN_READ(2, weights, float weights[]);

@@ -20,7 +20,7 @@ layout(set = 0, binding = 9, rgba32f) uniform writeonly image2D error_image;
 layout(set = 0, binding = 10, rgba32f) uniform writeonly image2D single_image;
 layout(set = 0, binding = 11, rgba32f) uniform writeonly image2D multiple_image;
 layout(set = 0, binding = 12, rgba32f) uniform writeonly image2D transmittance_image;
-layout(push_constant, scalar) uniform args_push { path_resolve_args args; };
+TYN_ARGS(path_resolve_args args);
 
 // Means of one pixel's layers.
 struct layer_means {

@@ -13,7 +13,7 @@ TYN_UPDATE(1, state, path_balance_state states[]);
 TYN_WRITE(2, result, path_balance_result result);
 // tyn_balance: seven triples of doubles, each as two words; a device need not know doubles.
 TYN_WRITE(3, balance, uvec2 balance[7][3]);
-layout(push_constant, scalar) uniform args_push { path_resolve_args args; };
+TYN_ARGS(path_resolve_args args);
 
 #include "shaders/path/path_probe_merge.glsl"
 

@@ -12,7 +12,7 @@ layout(local_size_x = TYN_PATH_FLUX_LANES) in;
 TYN_READ(0, partials, float partials[]);
 TYN_UPDATE(1, state, path_fluxes_state state);
 TYN_WRITE(2, fluxes, path_fluxes_result result);
-layout(push_constant, scalar) uniform args_push { path_fluxes_sum_args args; };
+TYN_ARGS(path_fluxes_sum_args args);
 
 shared vec2 lanes[TYN_PATH_FLUX_LANES]; // mean, sum of squared deviations of means
 

@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 TYN_READ(0, partials, path_probe_partial partials[]);
 TYN_UPDATE(1, state, path_probe_state states[]);
 TYN_WRITE(2, results, path_probe_result results[]);
-layout(push_constant, scalar) uniform args_push { path_resolve_args args; };
+TYN_ARGS(path_resolve_args args);
 
 #include "shaders/path/path_probe_merge.glsl"
 

@@ -30,10 +30,7 @@ layout(constant_id = 2) const uint shadowed = 0;
 layout(constant_id = 3) const uint mapped = 0; // what virtual point lights (VPLs) see
 layout(constant_id = 4) const uint rooms = 0;  // and where they shine
 layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform push
-{
-    probe_args args;
-};
+TYN_ARGS(probe_args args);
 TYN_READ(1, lights, light_block lights[]);
 layout(binding = 2) uniform sampler3D moments;
 layout(binding = 20) uniform sampler3D cells;

@@ -12,7 +12,7 @@ TYN_READ(5, grids, propagate_radial_grid grids[]);
 TYN_UNIFORM(6, camera, camera_block camera);
 TYN_READ(7, map, vec2 map[]);
 TYN_WRITE(8, cells, vec4 cells[]);
-layout(push_constant, scalar) uniform push { propagate_radial_args args; };
+TYN_ARGS(propagate_radial_args args);
 
 // Samples along an edge: one to two voxels (a trilinear fetch is a mean over as many), and some to tell how
 // much of the cell is in the box.

@@ -9,7 +9,7 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 TYN_READ(0, cells, vec4 cells[]);
 TYN_READ(1, sum, float sum[]);
 layout(set = 0, binding = 2, r32f) uniform writeonly image3D seen_image;
-layout(push_constant, scalar) uniform push { propagate_radial_args args; };
+TYN_ARGS(propagate_radial_args args);
 
 // The closest cell along a direction; in .y whether there is one.
 vec2 along(ivec2 texel, int layer, uint stack)

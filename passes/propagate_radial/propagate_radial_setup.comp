@@ -12,7 +12,7 @@ TYN_READ(2, vpls, radial_vpls vpls);
 TYN_WRITE(3, grids, propagate_radial_grid grids[]);
 TYN_WRITE(4, places, propagate_radial_place places[]);
 TYN_UPDATE(5, map, vec2 map[]);
-layout(push_constant, scalar) uniform push { propagate_radial_args args; };
+TYN_ARGS(propagate_radial_args args);
 
 shared float sums[PROPAGATE_RADIAL_LANES];
 

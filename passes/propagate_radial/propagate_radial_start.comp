@@ -12,7 +12,7 @@ TYN_UPDATE(2, cells, vec4 cells[]);
 TYN_WRITE(3, state, vec4 out_state[]);
 TYN_WRITE(4, state_other, vec4 out_other[]);
 TYN_WRITE(5, sum, float out_sum[]);
-layout(push_constant, scalar) uniform push { propagate_radial_args args; };
+TYN_ARGS(propagate_radial_args args);
 
 // Mean of exp(-tau) over a depth, (1 - e^-tau) / tau.
 float mean_transmittance(float tau)

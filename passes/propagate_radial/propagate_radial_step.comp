@@ -12,7 +12,7 @@ TYN_READ(2, cells, vec4 cells[]);
 TYN_READ(3, state_other, vec4 in_state[]);
 TYN_WRITE(4, state, vec4 out_state[]);
 TYN_UPDATE(5, sum, float sum[]);
-layout(push_constant, scalar) uniform push { propagate_radial_args args; };
+TYN_ARGS(propagate_radial_args args);
 
 // Cells side by side are of unequal size. If each sent the same share of its light to the other, the larger
 // would lose light that is the same everywhere. So they exchange as much as the smaller one sends, and what

@@ -11,7 +11,7 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 TYN_READ(5, grids, propagate_grid grids[]);
 TYN_UNIFORM(6, camera, camera_block camera);
 TYN_WRITE(7, cells, vec4 cells[]);
-layout(push_constant, scalar) uniform push { propagate_rect_args args; };
+TYN_ARGS(propagate_rect_args args);
 
 // Samples along each edge of a cell. A trilinear fetch is a mean over two voxels, so one per two voxels
 // misses nothing. A cell no larger than a voxel takes one: a grid that coincides with the voxels reads

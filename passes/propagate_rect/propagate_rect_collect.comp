@@ -7,7 +7,7 @@
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 TYN_READ(0, sum, float sum[]);
 layout(set = 0, binding = 1, r32f) uniform writeonly image3D seen_image;
-layout(push_constant, scalar) uniform push { propagate_rect_args args; };
+TYN_ARGS(propagate_rect_args args);
 
 void main()
 {

@@ -8,7 +8,7 @@ layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 TYN_READ(0, cells, vec4 cells[]);
 TYN_READ(1, state, vec4 state[]);
 layout(set = 0, binding = 2, r32f) uniform writeonly image3D light_image;
-layout(push_constant, scalar) uniform push { propagate_rect_args args; };
+TYN_ARGS(propagate_rect_args args);
 
 void main()
 {

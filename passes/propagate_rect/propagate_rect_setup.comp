@@ -10,7 +10,7 @@ TYN_UNIFORM(0, medium, medium_block medium);
 TYN_READ(1, ordinates, ordinates_block ordinates);
 TYN_WRITE(2, grids, propagate_grid grids[]);
 TYN_WRITE(3, places, propagate_place places[]);
-layout(push_constant, scalar) uniform push { propagate_rect_args args; };
+TYN_ARGS(propagate_rect_args args);
 
 // Mean cosine of an ordinate's light as it enters (section 5.1). The heuristic's w, the importance in
 // (0, 1) that the text calls proportional and very similar to the solid angle of the ordinate's region,

@@ -12,7 +12,7 @@ TYN_READ(1, cells, vec4 cells[]);
 TYN_WRITE(2, state, vec4 out_state[]);
 TYN_WRITE(3, state_other, vec4 out_other[]);
 TYN_WRITE(4, sum, float out_sum[]);
-layout(push_constant, scalar) uniform push { propagate_rect_args args; };
+TYN_ARGS(propagate_rect_args args);
 
 // Mean of exp(-tau) over a depth, (1 - e^-tau) / tau.
 float mean_transmittance(float tau)

@@ -10,7 +10,7 @@ TYN_READ(0, cells, vec4 cells[]);
 TYN_READ(1, state_other, vec4 in_state[]);
 TYN_WRITE(2, state, vec4 out_state[]);
 TYN_UPDATE(3, sum, float sum[]);
-layout(push_constant, scalar) uniform push { propagate_rect_args args; };
+TYN_ARGS(propagate_rect_args args);
 
 // Light that a neighbour sends and its share of the spread. `part`: of propagate_outgoing, which way.
 vec2 from(uint q, int step, bool there, int part)

@@ -10,10 +10,7 @@
 #include "radial_beam_args.h"
 
 layout(local_size_x = RADIAL_GROUP * RADIAL_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    radial_beam_args args;
-};
+TYN_ARGS(radial_beam_args args);
 TYN_READ(5, radials, uint radial_count; uint radial_num_lamps; uvec2 radial_pad; radial_grid radials[]);
 
 #ifdef TYN_DENSITY

@@ -6,10 +6,7 @@
 #include "radial_beam_args.h"
 
 layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform push
-{
-    radial_beam_args args;
-};
+TYN_ARGS(radial_beam_args args);
 TYN_UNIFORM(0, medium, medium_block medium);
 TYN_READ(1, lamps, light_block lamps[]);
 TYN_READ(2, vpls, radial_vpls vpls);

@@ -22,10 +22,7 @@ layout(binding = 6, rgba32f) uniform writeonly image2D depth_image;
 layout(binding = 7, rgba32f) uniform writeonly image2D single_image;
 layout(binding = 8, rgba32f) uniform writeonly image2D multiple_image;
 
-layout(push_constant, scalar) uniform Args
-{
-    raymarch_args args;
-};
+TYN_ARGS(raymarch_args args);
 
 bool has(uint feature)
 {

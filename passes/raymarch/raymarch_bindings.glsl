@@ -51,9 +51,6 @@ layout(binding = 40, scalar) buffer rest_buffer
     uint blocks[];
 } sparse_rest;
 
-layout(push_constant, scalar) uniform Args
-{
-    raymarch_args args;
-};
+TYN_ARGS(raymarch_args args);
 
 #endif

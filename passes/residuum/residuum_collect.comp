@@ -7,7 +7,7 @@
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 TYN_READ(0, sum, vec4 sum[]);
 layout(set = 0, binding = 1, rgba32f) uniform writeonly image3D residuum_image;
-layout(push_constant, scalar) uniform push { residuum_args args; };
+TYN_ARGS(residuum_args args);
 
 void main()
 {

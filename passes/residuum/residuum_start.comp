@@ -13,7 +13,7 @@ layout(set = 0, binding = 6) uniform sampler3D light;
 TYN_WRITE(7, state, vec4 out_state[]);
 TYN_WRITE(8, kept, vec4 out_kept[]);
 TYN_WRITE(9, sum, vec4 out_sum[]);
-layout(push_constant, scalar) uniform push { residuum_args args; };
+TYN_ARGS(residuum_args args);
 
 // Power per volume of all grids at a point, W/m^3: a cell of edge c holds L c^2 in its volume c^3.
 vec3 power_at(vec3 p)

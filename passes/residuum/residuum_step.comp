@@ -8,7 +8,7 @@ TYN_READ(0, state_other, vec4 in_state[]);
 TYN_WRITE(1, state, vec4 out_state[]);
 TYN_READ(2, kept, vec4 kept[]);
 TYN_UPDATE(3, sum, vec4 sum[]);
-layout(push_constant, scalar) uniform push { residuum_args args; };
+TYN_ARGS(residuum_args args);
 
 // Beyond the grid is vacuum: nothing comes in.
 vec3 from(uint q, int step, bool there)

@@ -7,10 +7,7 @@
 #include "rooms_forest.glsl"
 
 layout(local_size_x = ROOMS_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    rooms_args args;
-};
+TYN_ARGS(rooms_args args);
 TYN_WRITE(1, rooms, uint rooms[]);
 TYN_READ(2, vpls, uint vpl_count; uvec3 vpl_pad; light_block vpls[]);
 

@@ -8,10 +8,7 @@
 #include "rooms_forest.glsl"
 
 layout(local_size_x = ROOMS_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    rooms_args args;
-};
+TYN_ARGS(rooms_args args);
 TYN_READ(1, wall_links, uint links[]);
 
 bool in_lattice(ivec3 c)

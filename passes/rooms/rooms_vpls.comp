@@ -12,10 +12,7 @@
 #include "rooms_forest.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(push_constant, scalar) uniform push
-{
-    rooms_args args;
-};
+TYN_ARGS(rooms_args args);
 layout(binding = 1) uniform usamplerBuffer wall_links_words;
 TYN_READ(2, vpls, uint vpl_count; uvec3 vpl_pad; light_block vpls[]);
 layout(binding = 3) uniform sampler2D vpl_distances_tex;

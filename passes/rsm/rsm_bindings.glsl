@@ -4,7 +4,4 @@
 
 #define GEOMETRY_AT 0
 #include "shaders/surfaces/surfaces.glsl"
-layout(push_constant, scalar) uniform args_block
-{
-    rsm_draw_args args;
-};
+TYN_ARGS(rsm_draw_args args);

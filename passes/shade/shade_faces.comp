@@ -14,10 +14,7 @@
 
 layout(local_size_x = 32) in;
 layout(constant_id = 1) const uint shade_features = 0u;
-layout(push_constant, scalar) uniform Args
-{
-    shade_args args;
-};
+TYN_ARGS(shade_args args);
 
 TYN_UNIFORM(0, medium, medium_block medium);
 TYN_UNIFORM(1, environment, env_block environment);

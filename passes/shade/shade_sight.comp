@@ -10,10 +10,7 @@
 #include "shade_args.h"
 
 layout(local_size_x = 8, local_size_y = 4) in;
-layout(push_constant, scalar) uniform Args
-{
-    shade_args args;
-};
+TYN_ARGS(shade_args args);
 
 #define GEOMETRY_AT 0
 #include "shaders/surfaces/surfaces.glsl"

@@ -6,10 +6,7 @@
 
 TYN_READ(0, triangles, surface_triangle triangles[]);
 TYN_READ(1, vertices, surface_vertex vertices[]);
-layout(push_constant, scalar) uniform args_block
-{
-    shadow_map_args args;
-};
+TYN_ARGS(shadow_map_args args);
 
 void main()
 {

@@ -9,10 +9,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = 0) uniform sampler2D radiance;
 layout(binding = 1, rgba8) uniform writeonly image2D display;
 
-layout(push_constant, scalar) uniform Args
-{
-    tonemap_args args;
-};
+TYN_ARGS(tonemap_args args);
 
 void main()
 {

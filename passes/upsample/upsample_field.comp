@@ -9,7 +9,7 @@
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
 layout(set = 0, binding = 5) uniform sampler3D merged;
 layout(set = 0, binding = 6, rgba32f) uniform writeonly image3D inscatter_image;
-layout(push_constant, scalar) uniform push { upsample_args args; };
+TYN_ARGS(upsample_args args);
 
 // Likeness of two scattering coefficients, in (0, 1]. The floor keeps a point that is like none of its
 // neighbours at their trilinear mean.

@@ -22,10 +22,7 @@ TYN_UNIFORM(4, surfaces, surface_block surfaces);
 layout(binding = 5, rgba32f) uniform image2D bin_flux_image; // as rsm_args.h has them
 layout(binding = 6, rgba32f) uniform writeonly image2D bin_position_image;
 layout(binding = 7, rgba32f) uniform writeonly image2D bin_normal_image;
-layout(push_constant, scalar) uniform Args
-{
-    vpl_bounce_args args;
-};
+TYN_ARGS(vpl_bounce_args args);
 
 shared vec3 sums[GROUP];
 

@@ -28,10 +28,7 @@ TYN_UPDATE(7, bins, vpl_bins bins);
 #include "shaders/surfaces/surface_trace.glsl"
 #include "shaders/medium/medium.glsl"
 #include "shaders/common/camera.glsl"
-layout(push_constant, scalar) uniform Args
-{
-    vpl_distances_args args;
-};
+TYN_ARGS(vpl_distances_args args);
 
 const int MEDIUM_STEPS = 16;
 

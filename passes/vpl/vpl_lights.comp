@@ -22,10 +22,7 @@ TYN_READ(18, strata, vpl_stratum strata[]);
 TYN_UNIFORM(19, suns, light_block suns[TYN_LIGHTS_MAX]);
 TYN_UNIFORM(20, lights, light_block lights[TYN_LIGHTS_MAX]);
 TYN_UPDATE(21, vpls, uint vpl_count; uint vpl_before; uvec2 vpl_pad; light_block vpls[]);
-layout(push_constant, scalar) uniform Args
-{
-    vpl_args args;
-};
+TYN_ARGS(vpl_args args);
 
 const uint DEPTH_SAMPLES = 256u; // on the way from a light
 shared vec4 sums[VPL_LANES];

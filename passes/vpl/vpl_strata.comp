@@ -14,10 +14,7 @@ TYN_READ(0, plan, vpl_plan plan);
 TYN_UPDATE(1, blocks, float blocks[]); // in: weights; out: what is before; one more element, the whole
 TYN_WRITE(2, strata, vpl_stratum strata[]);
 TYN_UPDATE(3, vpls, uint vpl_count; uint vpl_before; uvec2 vpl_pad); // before those of this time
-layout(push_constant, scalar) uniform Args
-{
-    vpl_args args;
-};
+TYN_ARGS(vpl_args args);
 
 shared float sums[VPL_BLOCK];
 shared float starts[VPL_MAX_SOURCES + 1];

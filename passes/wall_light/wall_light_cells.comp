@@ -7,10 +7,7 @@
 #include "shaders/walls/walls_links.glsl"
 
 layout(local_size_x = WALL_LIGHT_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    wall_light_args args;
-};
+TYN_ARGS(wall_light_args args);
 TYN_READ(0, wall_cells, wall_cell wall_cells[]);
 TYN_UPDATE(1, list, wall_light_list list; uint list_entries[]);
 TYN_WRITE(2, wall_light, vec3 wall_light[]);

@@ -14,10 +14,7 @@
 #include "shaders/light/vpl_visibility.glsl"
 
 layout(local_size_x = WALL_LIGHT_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    wall_light_args args;
-};
+TYN_ARGS(wall_light_args args);
 layout(binding = 5) uniform sampler2D vpl_distances_tex;
 TYN_WRITE(6, power, wall_light_power power);
 layout(constant_id = 1) const uint rooms = 0;

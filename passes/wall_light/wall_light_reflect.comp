@@ -6,10 +6,7 @@
 #include "shaders/lattice/lattice_sweep.glsl"
 
 layout(local_size_x = WALL_LIGHT_GROUP) in; // through the list
-layout(push_constant, scalar) uniform push
-{
-    wall_light_args args;
-};
+TYN_ARGS(wall_light_args args);
 TYN_READ(0, wall_cells, wall_cell wall_cells[]);
 TYN_READ(1, list, wall_light_list list; uint list_entries[]);
 TYN_READ(2, arrived, vec3 arrived[]);

@@ -10,10 +10,7 @@
 #include "shaders/walls/rooms.h"
 
 layout(local_size_x = WALL_LIGHT_VPLS) in;
-layout(push_constant, scalar) uniform push
-{
-    wall_light_args args;
-};
+TYN_ARGS(wall_light_args args);
 TYN_UPDATE(0, power, wall_light_power power);
 TYN_READ(1, parts, vec3 parts[]); // [room, by its first VPL][part]
 TYN_READ(2, first, uint first[]); // by room

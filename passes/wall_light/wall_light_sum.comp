@@ -5,10 +5,7 @@
 #include "wall_light_args.h"
 
 layout(local_size_x = WALL_LIGHT_SUM_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    wall_light_args args;
-};
+TYN_ARGS(wall_light_args args);
 TYN_READ(0, arrived, vec3 arrived[]); // W/m^2, times the area over dx^2
 TYN_WRITE(1, parts, vec3 parts[]); // [room, by its first VPL][part]: 0, but for what is written here
 layout(constant_id = 0) const uint rooms = 0;

@@ -18,10 +18,7 @@
 #include "shaders/walls/walls_triangle.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    wall_light_args args;
-};
+TYN_ARGS(wall_light_args args);
 TYN_READ(1, lights, light_block lights[]);
 #define GEOMETRY_AT 6
 #include "shaders/surfaces/surfaces.glsl"

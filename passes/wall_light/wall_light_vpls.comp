@@ -18,10 +18,7 @@
 #include "shaders/walls/walls_triangle.glsl"
 
 layout(local_size_x = WALL_LIGHT_GROUP) in; // through the list
-layout(push_constant, scalar) uniform push
-{
-    wall_light_args args;
-};
+TYN_ARGS(wall_light_args args);
 #define GEOMETRY_AT 5
 #include "shaders/surfaces/surfaces.glsl"
 TYN_READ(11, hits, uint hits[]);

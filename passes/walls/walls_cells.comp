@@ -8,10 +8,7 @@
 #include "shaders/walls/walls_triangle.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
-layout(push_constant, scalar) uniform push
-{
-    walls_pass_args args;
-};
+TYN_ARGS(walls_pass_args args);
 #define GEOMETRY_AT 0
 #define MATERIALS_AT 4
 #include "shaders/surfaces/reflectance.glsl"

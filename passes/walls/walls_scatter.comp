@@ -13,10 +13,7 @@
 #include "shaders/walls/walls_triangle.glsl"
 
 layout(local_size_x = WALLS_GROUP) in;
-layout(push_constant, scalar) uniform push
-{
-    walls_pass_args args;
-};
+TYN_ARGS(walls_pass_args args);
 #define GEOMETRY_AT 0
 #include "shaders/surfaces/surfaces.glsl"
 TYN_UPDATE(4, wall_links, uint links[]);

@@ -33,6 +33,8 @@ typedef uint32_t tyn_uvec3[3];
 #define TYN_READ(at, port, members) layout(set = 0, binding = at, scalar) readonly buffer port##_buffer { members; }
 #define TYN_WRITE(at, port, members) layout(set = 0, binding = at, scalar) writeonly buffer port##_buffer { members; }
 #define TYN_UPDATE(at, port, members) layout(set = 0, binding = at, scalar) buffer port##_buffer { members; }
+// Its push constants: TYN_ARGS(merge_args args);
+#define TYN_ARGS(members) layout(push_constant, scalar) uniform args_block { members; }
 #endif
 
 #endif

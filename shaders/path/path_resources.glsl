@@ -29,7 +29,7 @@ TYN_READ(7, env_table, env_table_block env_table; env_cell env_cells[]);
 #define MATERIALS_AT 12
 #include "shaders/surfaces/surfaces.glsl"
 TYN_READ(15, emitters, surface_table emitters; surface_cell emitter_cells[]);
-layout(push_constant, scalar) uniform args_push { path_args args_in; };
+TYN_ARGS(path_args args_in);
 
 // Copies that live in registers: inside a loop whose lanes diverge, software devices read buffers lane by lane.
 medium_block medium;
