@@ -28,7 +28,7 @@ SUFFIX = re.compile(r'_(uniform|buffer|tex|image|wrapped|texels|words)\d*$')
 NAME, DECORATE, MEMBER_DECORATE, EXECUTION_MODE_ID = 5, 71, 72, 331
 TYPE_INT, TYPE_FLOAT, TYPE_VECTOR, TYPE_MATRIX, TYPE_IMAGE, TYPE_SAMPLED_IMAGE = 21, 22, 23, 24, 25, 27
 TYPE_ARRAY, TYPE_STRUCT, TYPE_POINTER, CONSTANT, VARIABLE = 28, 30, 32, 43, 59
-SPEC_ID, ARRAY_STRIDE, NON_WRITABLE, NON_READABLE, BINDING, OFFSET = 1, 6, 24, 25, 33, 35
+SPEC_ID, ARRAY_STRIDE, NON_WRITABLE, NON_READABLE, BINDING, DESCRIPTOR_SET, OFFSET = 1, 6, 24, 25, 33, 34, 35
 UNIFORM, PUSH_CONSTANT, STORAGE_BUFFER, LOCAL_SIZE_ID, DIM_BUFFER = 2, 9, 12, 38, 5
 
 
@@ -84,6 +84,8 @@ class Module:
         if op == TYPE_SAMPLED_IMAGE:
             return 'TYN_USE_SAMPLED'
         if op == TYPE_IMAGE and w[1] == DIM_BUFFER:
+            if w[5] != 1:
+                fail(f'{name}: image buffers are not bound by any use')
             scalar = re.search(r'_words\d*$', name)
             if self.types[w[0]][0] == TYPE_FLOAT:
                 return 'TYN_USE_TEXELS_FLOAT' if scalar else 'TYN_USE_TEXELS_VEC4'
@@ -102,6 +104,8 @@ class Module:
             at = self.decorations.get((variable, BINDING))
             if at is None:
                 continue
+            if self.decorations.get((variable, DESCRIPTOR_SET), 0) != 0:
+                fail(f'binding {at} is in another set than 0')
             name = self.names[type if self.types[type][0] == TYPE_STRUCT else variable]
             if at in rows:
                 fail(f'binding {at} is given twice')

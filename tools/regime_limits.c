@@ -22,6 +22,9 @@ void regime_figures(const regime *r, double cells, tyn_regime *out)
         .all_scatterings = r->mean_free_path > 0 ? r->albedo * longest / r->mean_free_path : 0,
         .thickness = depth_of(r, r->thickness),
         .albedo = r->albedo,
+        .scaled_albedo = r->mean_free_path > 0
+                             ? 1 - (1 - r->albedo) * r->scaled_mean_free_path / r->mean_free_path
+                             : 0,
         .g = r->g,
         .least_g = r->least_g,
         .most_g = r->most_g,

@@ -14,8 +14,9 @@ static double figure_of(const tyn_regime *r, size_t offset)
 static bool hold(const tyn_bound *bounds, size_t count, const tyn_regime *r)
 {
     for (size_t i = 0; i < count && bounds[i].above < bounds[i].below; i++) {
-        const double x = figure_of(r, bounds[i].figure);
-        if (!(x > bounds[i].above && x < bounds[i].below)) {
+        // As floats: what a scene gives as 0.995 is not above 0.995.
+        const float x = (float)figure_of(r, bounds[i].figure);
+        if (!(x > (float)bounds[i].above && x < (float)bounds[i].below)) {
             return false;
         }
     }
@@ -170,6 +171,7 @@ void tyn_limits_warn(const tyn_job *job, float cell)
         .all_scatterings = (d.extinction - d.absorption) * longest,
         .thickness = d.scaled * shortest,
         .albedo = d.extinction > 0 ? 1 - d.absorption / d.extinction : 0,
+        .scaled_albedo = d.scaled > 0 ? 1 - d.absorption / d.scaled : 0,
         .least_g = d.least_g,
         .most_g = d.most_g,
         .g = NAN, // this, and what else is NAN, takes more than a frame's figures

@@ -485,10 +485,10 @@ static const tyn_limit limits[] = {
      .advice = {"unbiased: only the number of samples decides"},
      .source = "docs/choosing.md, \"Samples\""},
     {.key = "paths that are ended",
-     .where = {TYN_ABOVE(depth, 1e5), TYN_ABOVE(albedo, 0.9999)},
+     .where = {TYN_ABOVE(depth, 1e5), TYN_ABOVE(scaled_albedo, 0.9999)},
      .error = ended,
      .warning = {"accuracy: the medium is %.2g mean free paths deep and absorbs next to nothing; "
-                 "paths end after path.max_steps steps (-D), what is left of them is lost",
+                 "paths end after so many steps (-D path.max_steps), what is left of them is lost",
                  {TYN_FIGURE(depth)}}},
     TYN_LIMIT_FLOATS,
     {NULL},

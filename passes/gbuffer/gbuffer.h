@@ -19,7 +19,7 @@ typedef struct tyn_gbuffer_params {
     TYN_MATERIALS(X, GBUFFER), \
     TYN_GBUFFER(X##_OUT, GBUFFER), \
     X(GBUFFER, MIXED_COUNT, mixed_count, SCRATCH, BUFFER, \
-        "struct gbuffer_edge_count: the same of pixels whose samples see several triangles"), \
+        "struct gbuffer_edge_count: number of pixels whose samples see several triangles"), \
     X(GBUFFER, MIXED, mixed, SCRATCH, BUFFER, "uint[]: pixels whose samples see several triangles"), \
     X(GBUFFER, SEEN, seen, SCRATCH, IMAGE_2D, "index of the triangle + 1, 0: none", .format = VK_FORMAT_R32_UINT), \
     X(GBUFFER, DEPTH, depth, SCRATCH, IMAGE_2D, "reversed", .format = VK_FORMAT_D32_SFLOAT)

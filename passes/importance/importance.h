@@ -35,7 +35,7 @@ typedef struct tyn_importance_params {
     X(IMPORTANCE, GRID, grid, OUT, BUFFER, "struct importance_grid"), \
     X(IMPORTANCE, CELLS, cells, SCRATCH, BUFFER, "struct importance_cell[]"), \
     X(IMPORTANCE, LIGHT, light, SCRATCH, BUFFER, "struct importance_light[]"), \
-    X(IMPORTANCE, LIGHT_OTHER, light_other, SCRATCH, BUFFER, "the same, of every other iteration"), \
+    X(IMPORTANCE, LIGHT_OTHER, light_other, SCRATCH, BUFFER, "struct importance_light[]: of every other iteration"), \
     X(IMPORTANCE, TRACKS, tracks, SCRATCH, BUFFER, "vec2[]: sum of power times length, and times spread"), \
     X(IMPORTANCE, SENT, sent, SCRATCH, BUFFER, "float[]: what leaves the medium along a direction, 1/sr")
 // clang-format on

@@ -6,9 +6,9 @@
 // clang-format off
 #define LATTICE_RECALL_PORTS(X) \
     X(LATTICE_RECALL, MEMORY, memory, IN, BUFFER, "struct lattice_memory_block and moments"), \
-    X(LATTICE_RECALL, CELLS, cells, IN, IMAGE_3D, "as lattice has it, and the two below"), \
-    X(LATTICE_RECALL, SOURCE, source, OPTIONAL, IMAGE_3D, "of lattice_source"), \
-    X(LATTICE_RECALL, ENVIRONMENT, environment, OPTIONAL, BUFFER, "struct env_block"), \
+    X(LATTICE_RECALL, CELLS, cells, IN, IMAGE_3D, "as lattice has it"), \
+    X(LATTICE_RECALL, SOURCE, source, OPTIONAL, IMAGE_3D, "as lattice has it"), \
+    X(LATTICE_RECALL, ENVIRONMENT, environment, OPTIONAL, BUFFER, "struct env_block: as lattice has it"), \
     X(LATTICE_RECALL, GUESS, guess, OUT, BUFFER, \
         "vec4[]: moments by cell. The last frame's where it had any, by the place in the world, scaled by " \
         "what light puts in now over what it did then; elsewhere the environment as if unhindered"), \

@@ -22,8 +22,8 @@ typedef struct tyn_medium_params {
 // clang-format off
 #define MEDIUM_PORTS(X) \
     X(MEDIUM, ATLAS, atlas, IN, IMAGE_3D, "density grids of all media"), \
-    X(MEDIUM, SHAPES, shapes, IN, BUFFER, "struct shape_block[]: shape_block per shape"), \
-    X(MEDIUM, MEDIUM, medium, IN, BUFFER, "the scene's medium_block"), \
+    X(MEDIUM, SHAPES, shapes, IN, BUFFER, "struct shape_block[]"), \
+    X(MEDIUM, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
     X(MEDIUM, DENSITY, density, OUT, IMAGE_3D, \
         "mean density per voxel; or sigma_s, 1/m, a = mean of the channels", .format = VK_FORMAT_R32_SFLOAT), \
     X(MEDIUM, SIGMA_A, sigma_a, OUT, IMAGE_3D, \

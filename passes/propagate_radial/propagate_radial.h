@@ -48,7 +48,7 @@ typedef struct tyn_propagate_radial_params {
     X(PROPAGATE_RADIAL, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
     X(PROPAGATE_RADIAL, VPLS, vpls, OPTIONAL, BUFFER, "struct radial_vpls"), \
     X(PROPAGATE_RADIAL, GRIDS, grids, OUT, BUFFER, "struct propagate_radial_grid[]: lamps, then VPLs"), \
-    X(PROPAGATE_RADIAL, PLACES, places, OUT, BUFFER, "struct propagate_radial_place[], so"), \
+    X(PROPAGATE_RADIAL, PLACES, places, OUT, BUFFER, "struct propagate_radial_place[]"), \
     X(PROPAGATE_RADIAL, SEEN, seen, OUT, IMAGE_3D, \
         "tiles of grids and channels: r^2 L_acc, sum over iterations of L towards the eye, in units of the " \
         "intensity, 1/sr", .format = VK_FORMAT_R32_SFLOAT), \
@@ -58,7 +58,7 @@ typedef struct tyn_propagate_radial_params {
         "absorption along the radius (of the ball: twice), g, cosine between the radius and the direction to " \
         "the eye (-2: not in the grid)"), \
     X(PROPAGATE_RADIAL, STATE, state, OUT, BUFFER, \
-        "vec4, so: after the last iteration what leaves the cell outwards, to each side and inwards, sr, and " \
+        "vec4[]: after the last iteration what leaves the cell outwards, to each side and inwards, sr, and " \
         "1 - a of it"), \
     X(PROPAGATE_RADIAL, SUM, sum, OUT, BUFFER, "r^2 L_acc of the last batch of grids"), \
     X(PROPAGATE_RADIAL, STATE_OTHER, state_other, SCRATCH, BUFFER, "state of every other iteration"), \

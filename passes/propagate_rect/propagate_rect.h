@@ -45,7 +45,7 @@ typedef struct tyn_propagate_rect_params {
         "vec4[grids][channels][cells^3] of the last batch: optical depths of scattering and absorption over " \
         "the edge of a cell, g, cosine between the light and the direction to the eye (-2: not in the grid)"), \
     X(PROPAGATE_RECT, STATE, state, OUT, BUFFER, \
-        "vec4, so: after the last iteration what of L leaves the cell ahead, to each side and behind, and 1 -" \
+        "vec4[]: after the last iteration what of L leaves the cell ahead, to each side and behind, and 1 -" \
         " a of it"), \
     X(PROPAGATE_RECT, SUM, sum, OUT, BUFFER, "L_acc of the last batch of grids"), \
     X(PROPAGATE_RECT, STATE_OTHER, state_other, SCRATCH, BUFFER, "state of every other iteration"), \

@@ -69,29 +69,29 @@ enum {
 #define RAYMARCH_PORTS(X) \
     TYN_MEDIUM(X##_OPTIONAL, RAYMARCH), \
     X(RAYMARCH, DISTANCE, distance, OPTIONAL, IMAGE_3D, "bricks to the nearest one that is not empty"), \
-    X(RAYMARCH, SHAPES, shapes, IN, BUFFER, "struct shape_block[]: shape_block[]"), \
-    X(RAYMARCH, LIGHTS, lights, IN, BUFFER, "struct light_block[]: light_block[]"), \
+    X(RAYMARCH, SHAPES, shapes, IN, BUFFER, "struct shape_block[]"), \
+    X(RAYMARCH, LIGHTS, lights, IN, BUFFER, "struct light_block[]: directional lights first"), \
     TYN_BEAMS(X##_OPTIONAL, RAYMARCH), \
     TYN_RADIALS(X##_OPTIONAL, RAYMARCH), \
-    X(RAYMARCH, LUT, lut, OPTIONAL, IMAGE_2D, "with `kernels` and suns, as the next"), \
-    X(RAYMARCH, LUT_BLOCK, lut_block, OPTIONAL, BUFFER, "struct lut_block: lut_block"), \
+    X(RAYMARCH, LUT, lut, OPTIONAL, IMAGE_2D, "of scatter_lut: with `kernels` and suns"), \
+    X(RAYMARCH, LUT_BLOCK, lut_block, OPTIONAL, BUFFER, "struct lut_block: with `kernels` and suns"), \
     X(RAYMARCH, INSCATTER, inscatter, OPTIONAL, IMAGE_3D, "of merge; without it suns and emission only"), \
     TYN_WALLS(X##_OPTIONAL, RAYMARCH), \
     X(RAYMARCH, ROOMS, rooms, OPTIONAL, BUFFER, "of rooms: with walls, what light of inscatter rays are among"), \
     TYN_SHADOWS(X##_OPTIONAL, RAYMARCH), \
     X(RAYMARCH, LIGHT_CELLS, light_cells, OPTIONAL, IMAGE_3D, "of light_cells: where looks at the maps are needed"), \
-    X(RAYMARCH, CAMERA, camera, IN, BUFFER, "struct camera_block: camera_block"), \
-    X(RAYMARCH, ENVIRONMENT, environment, IN, BUFFER, "struct env_block: env_block"), \
+    X(RAYMARCH, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
+    X(RAYMARCH, ENVIRONMENT, environment, IN, BUFFER, "struct env_block"), \
     X(RAYMARCH, ENV_MAP, env_map, OPTIONAL, IMAGE_2D, "latitude-longitude map, W/(m^2 sr)"), \
     X(RAYMARCH, GLOW, glow, OPTIONAL, IMAGE_3D, \
         "of env_glow, the map scattered forward; without it what is scattered forward comes from the mean " \
         "alone (`mean`)"), \
     X(RAYMARCH, HOST_DEPTH, host_depth, OPTIONAL, IMAGE_2D, "hardware depth of the host's surfaces"), \
     X(RAYMARCH, SURFACE, surface, OPTIONAL, IMAGE_2D, \
-        "radiance of the first surface, packed (packed_colour.glsl); n x n samples a pixel, as the next", \
+        "radiance of the first surface, packed (packed_colour.glsl); n x n samples a pixel", \
         .format = VK_FORMAT_R32G32_UINT), \
     X(RAYMARCH, DISTANCES, distances, OPTIONAL, IMAGE_2D, \
-        "its distance along the ray, m, or 0: none; rays end there"), \
+        "distance of the first surface along the ray, m, or 0: none; rays end there; n x n samples a pixel"), \
     X(RAYMARCH, RADIANCE, radiance, OUT, IMAGE_2D, \
         "radiance W/(m^2 sr); a = 1 - mean transmittance, or 1 where an environment or a surface is seen", \
         .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
@@ -104,7 +104,7 @@ enum {
         "light that has scattered once", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(RAYMARCH, MULTIPLE, multiple, OUT, IMAGE_2D, \
         "light that has scattered more often, or was emitted", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(RAYMARCH, COUNTERS, counters, OUT, BUFFER, "struct counters_block: counters_block"), \
+    X(RAYMARCH, COUNTERS, counters, OUT, BUFFER, "struct counters_block"), \
     X(RAYMARCH, SPARSE, sparse, SCRATCH, IMAGE_2D, \
         "radiance, transmittance and e^-tau' of a ray for 2x2 pixels", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(RAYMARCH, REST, rest, SCRATCH, BUFFER, "2x2 pixels that have rays of their own")

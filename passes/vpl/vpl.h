@@ -39,7 +39,7 @@ typedef struct tyn_vpl_params {
     X(VPL, STRATA, strata, SCRATCH, BUFFER, "struct vpl_stratum[]"), \
     X(VPL, BINS, bins, SCRATCH, BUFFER, "struct vpl_bins"), \
     X(VPL, BIN_FLUX, bin_flux, SCRATCH, IMAGE_2D, \
-        "power of bins, W, of bins, as rsm_args.h has it", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+        "power of bins, W (rsm_args.h)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(VPL, BIN_POSITION, bin_position, SCRATCH, IMAGE_2D, "where (M, m)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(VPL, BIN_NORMAL, bin_normal, SCRATCH, IMAGE_2D, "normal (M)", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
 // clang-format on

@@ -19,8 +19,8 @@
 #define TYN_BEAMS(X, P) \
     X(P, BEAMS, beams, IN, BUFFER, "struct beam_block[]"), \
     X(P, COLUMN, column, IN, IMAGE_3D, "density (or sigma_s) integrated along the suns"), \
-    X(P, TAU_A, tau_a, OPTIONAL, IMAGE_3D, "sigma_a, so"), \
-    X(P, TAU_P, tau_p, OPTIONAL, IMAGE_3D, "(1 - f) sigma_s, so")
+    X(P, TAU_A, tau_a, OPTIONAL, IMAGE_3D, "sigma_a integrated along the suns"), \
+    X(P, TAU_P, tau_p, OPTIONAL, IMAGE_3D, "(1 - f) sigma_s integrated along the suns")
 
 // The same from lamps and virtual point lights (radial.glsl).
 #define TYN_RADIALS(X, P) \
@@ -48,7 +48,7 @@
 #define TYN_VPLS(X, P) \
     X(P, VPLS, vpls, IN, BUFFER, "struct radial_vpls"), \
     X(P, VPL_DISTANCES, vpl_distances, IN, IMAGE_2D, "what they see, m"), \
-    X(P, VPL_PLANES, vpl_planes, IN, IMAGE_2D, "and its planes")
+    X(P, VPL_PLANES, vpl_planes, IN, IMAGE_2D, "planes of the surfaces that they see")
 
 // What the lights shine on (rsm_args.h).
 #define TYN_RSM(X, P) \

@@ -54,7 +54,7 @@ vec3 heading_draw(vec3 point, vec3 surface_normal, inout rng_state rng)
         if (u >= c && heading_normal != vec3(0.0)) {
             heading = cosine_sample(heading_normal, rng_vec2(bits.zw));
         } else {
-            phase p = u < c ? light_lobe(shape_get(0u).phase[0], u < 0.5 * c) : phase_of_mean_cosine(0.0);
+            phase p = u < c ? phase_about_light(shape_get(0u).phase[0], u < 0.5 * c) : phase_of_mean_cosine(0.0);
             heading = phase_direction(p, heading_axis, rng_vec2(bits.zw));
         }
     }

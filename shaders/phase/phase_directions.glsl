@@ -30,7 +30,7 @@ vec3 phase_direction(phase p, vec3 axis, vec2 u)
 
 // Where light that has scattered once (of the forward lobe) and twice comes from, half and half. For backward
 // scattering the lobes are uniform.
-phase light_lobe(phase p, bool once)
+phase phase_about_light(phase p, bool once)
 {
     float g = phase_forward_cosine(p);
     return phase_of_mean_cosine(once ? g : g * g);
@@ -41,8 +41,8 @@ vec3 light_lobes_pdf(phase p[3], vec3 light, vec3 d)
 {
     phase once[3], twice[3];
     for (int c = 0; c < 3; c++) {
-        once[c] = light_lobe(p[c], true);
-        twice[c] = light_lobe(p[c], false);
+        once[c] = phase_about_light(p[c], true);
+        twice[c] = phase_about_light(p[c], false);
     }
     return 0.5 * (phase_between(once, light, d) + phase_between(twice, light, d));
 }
@@ -58,7 +58,7 @@ vec3 mixture_sample(phase p, vec3 way, vec3 light, float c, float u, vec2 v)
 {
     bool aside = u < c;
     if (aside) {
-        p = light_lobe(p, u < 0.5 * c);
+        p = phase_about_light(p, u < 0.5 * c);
     }
     return phase_direction(p, aside ? light : way, v);
 }

@@ -113,7 +113,7 @@ vec2 scatter_kernels_mixed(uint set_index, float a, float one_minus_mu, phase la
 {
     float theta = 2.0 * asin(sqrt(clamp(0.5 * one_minus_mu, 0.0, 1.0)));
     float g = min(phase_mean_cosine(last), HG_MAX);
-    float f = tau_s > 0.0 ? clamp(1.0 - tau_p / tau_s, 0.0, HG_MAX * HG_MAX) : 0.0;
+    float f = tau_s > 0.0 ? clamp(1.0 - tau_p / tau_s, 0.0, delta_fraction(HG_MAX)) : 0.0;
     float g_beam = sqrt(f), direct = exp(-tau_s), forward = exp(-tau_s * (1.0 - f)) - direct;
     scatter_rows beam = scatter_rows_of(g_beam, theta);
     float sets = float(lut.num_sets), u = lut_u(tau_s, lut_depth_scale(f));

@@ -130,7 +130,7 @@ typedef struct tyn_kernel {
 
 // ---- lists of ports -------------------------------------------------------------------------
 
-// The ports of a pass are a list of X(PREFIX, PORT, name, direction, dim, meaning...), from which come its enum
+// In C, not C++: the ports of a pass are a list of X(PREFIX, PORT, name, direction, dim, meaning...), from which come its enum
 // and its table:
 //   #define TONEMAP_PORTS(X) X(TONEMAP, RADIANCE, radiance, IN, IMAGE_2D, "W/(m^2 sr)"), X(...)
 //   enum { TONEMAP_PORTS(TYN_PORT_ENUM), TONEMAP_NUM_PORTS };                TONEMAP_PORT_RADIANCE, ...

@@ -22,7 +22,7 @@ typedef struct tyn_regime { // NAN: not known, and beyond no bound
     double scatterings;     // scaled, along the longest side
     double all_scatterings; // not scaled
     double thickness;       // scaled mean free paths through the shortest side
-    double albedo;
+    double albedo, scaled_albedo;
     double g, least_g, most_g; // mean cosines
     double again;              // share of the scattered light that has scattered more than once
     // Of the lattice of the method; 0: it has none.
