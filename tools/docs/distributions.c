@@ -17,7 +17,7 @@ enum {
     POINTS = 5,      // along each side of the slice
     DIRECTIONS = 48, // directions of travel in the slice's plane; the first is the sun's
     PIXELS = 8,      // along each side of a camera's picture, whose mean is taken
-    PATH_SAMPLES = 256,
+    SAMPLES = 256,
 };
 
 // radiance[row][column][direction], W/(m^2 sr) for a sun of 1 W/m^2.
@@ -41,7 +41,7 @@ static void make_cube(tyn_scene *scene, float g)
 }
 
 // Sees what travels along (cos angle, sin angle, 0) through `position`.
-static tyn_view view_against(double angle, const float position[3], uint32_t samples)
+static tyn_view view_against(double angle, const float position[3])
 {
     const float c = (float)cos(angle), s = (float)sin(angle);
     tyn_view view = {.camera = {.projection = TYN_ORTHOGRAPHIC,
@@ -52,7 +52,7 @@ static tyn_view view_against(double angle, const float position[3], uint32_t sam
                                 .ymag = 0.02f},
                      .width = PIXELS,
                      .height = PIXELS,
-                     .num_samples = samples};
+                     .num_samples = SAMPLES}; // of methods that sample
     const float *r = view.camera.right, *b = view.camera.back;
     for (int i = 0; i < 3; i++) { // up = back x right
         int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -94,13 +94,12 @@ static slice *render(tyn_device *dev, const char *method, float g, const char *n
         exit(1);
     }
     make_cube(scene, g);
-    const uint32_t samples = strcmp(method, "path") == 0 ? PATH_SAMPLES : 0;
     for (int row = 0; row <= POINTS / 2; row++) {
         for (int column = 0; column < POINTS; column++) {
             for (int d = 0; d < DIRECTIONS; d++) {
                 const float position[3] = {((float)column + 0.5f) / POINTS,
                                            ((float)row + 0.5f) / POINTS, 0.5f};
-                tyn_view view = view_against(2 * PI * d / DIRECTIONS, position, samples);
+                tyn_view view = view_against(2 * PI * d / DIRECTIONS, position);
                 double value_here = mean_radiance(off, scene, &view);
                 out->radiance[row][column][d] = value_here;
                 out->radiance[POINTS - 1 - row][column][(DIRECTIONS - d) % DIRECTIONS] = value_here;
