@@ -350,11 +350,11 @@ void tyn_gltf_warn_unknown(tyn_scene *scene, const json_doc *doc)
 {
     static const char media[] = "TYN_participating_media", maps[] = "TYN_environment_map";
     unknown u = {0};
-    char coefficients[256] = " scattering absorption";
+    char coefficients[256] = " scattering absorption emission density ";
     for (const tyn_phase_parameter *p = tyn_phase_parameters(); p->name; p++) {
-        strcat(strcat(coefficients, " "), p->key);
+        const size_t used = strlen(coefficients);
+        snprintf(coefficients + used, sizeof coefficients - used, "%s ", p->key);
     }
-    strcat(coefficients, " emission density ");
     const cJSON *at = extension_of(doc->root, media), *list = tyn_json_member(at, "media"), *medium;
     look(&u, at, " media ");
     look_at_all(&u, list, NULL, coefficients);

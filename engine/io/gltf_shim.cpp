@@ -215,8 +215,8 @@ bool gltf_data_uri(const char *uri, gltf_bytes *out)
     try {
         std::vector<unsigned char> bytes;
         std::string type;
-        if (!tinygltf::IsDataURI(uri) ||
-            !tinygltf::DecodeDataURI(&bytes, type, uri, 0, false) || bytes.empty()) {
+        if (!tinygltf::IsDataURI(uri) || !tinygltf::DecodeDataURI(&bytes, type, uri, 0, false) ||
+            bytes.empty()) {
             return false;
         }
         out->data = allocate<uint8_t>(bytes.size());

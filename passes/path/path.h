@@ -8,8 +8,6 @@
 // clang-format off
 #define PATH_PORTS(X) \
     TYN_PATH_SCENE(X, PATH), \
-    TYN_GEOMETRY(X##_OPTIONAL, PATH), \
-    TYN_MATERIALS(X##_OPTIONAL, PATH), \
     X(PATH, CAMERA, camera, IN, BUFFER, "struct camera_block: rays of the pixels"), \
     X(PATH, MEAN, mean, INOUT, IMAGE_2D, \
         "running mean radiance, W/(m^2 sr)", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \

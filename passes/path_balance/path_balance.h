@@ -7,8 +7,6 @@
 // clang-format off
 #define PATH_BALANCE_PORTS(X) \
     TYN_PATH_SCENE(X, PATH_BALANCE), \
-    TYN_GEOMETRY(X##_OPTIONAL, PATH_BALANCE), \
-    TYN_MATERIALS(X##_OPTIONAL, PATH_BALANCE), \
     X(PATH_BALANCE, STATE, state, INOUT, BUFFER, "tyn_path_balance_state_size bytes: a history"), \
     X(PATH_BALANCE, BALANCE, balance, OUT, BUFFER, "tyn_balance: power entering, emitted, absorbed, escaped, W"), \
     X(PATH_BALANCE, RESULT, result, OUT, BUFFER, "struct path_balance_result: values and standard errors"), \

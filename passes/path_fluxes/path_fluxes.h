@@ -7,8 +7,6 @@
 // clang-format off
 #define PATH_FLUXES_PORTS(X) \
     TYN_PATH_SCENE(X, PATH_FLUXES), \
-    TYN_GEOMETRY(X##_OPTIONAL, PATH_FLUXES), \
-    TYN_MATERIALS(X##_OPTIONAL, PATH_FLUXES), \
     X(PATH_FLUXES, STATE, state, INOUT, BUFFER, "tyn_path_fluxes_state_size bytes: a history"), \
     X(PATH_FLUXES, FLUXES, fluxes, OUT, BUFFER, "tyn_fluxes: power, and standard errors, W"), \
     X(PATH_FLUXES, COUNTERS, counters, OUT, BUFFER, \

@@ -7,8 +7,6 @@
 // clang-format off
 #define PATH_PROBE_PORTS(X) \
     TYN_PATH_SCENE(X, PATH_PROBE), \
-    TYN_GEOMETRY(X##_OPTIONAL, PATH_PROBE), \
-    TYN_MATERIALS(X##_OPTIONAL, PATH_PROBE), \
     X(PATH_PROBE, POINTS, points, IN, BUFFER, "points in M, m"), \
     X(PATH_PROBE, STATE, state, INOUT, BUFFER, "tyn_path_probe_state_size bytes: a history"), \
     X(PATH_PROBE, RESULTS, results, OUT, BUFFER, \

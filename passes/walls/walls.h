@@ -15,8 +15,7 @@ typedef struct tyn_walls_params {
 #define WALLS_PORTS(X) \
     TYN_GEOMETRY(X, WALLS), \
     TYN_MATERIALS(X, WALLS), \
-    X(WALLS, WALL_LINKS, wall_links, OUT, BUFFER, "which of its 26 links are cut, per cell"), \
-    X(WALLS, WALL_CELLS, wall_cells, OUT, BUFFER, "struct wall_cell: mean albedo and planes of a cell's walls"), \
+    TYN_WALLS(X##_OUT, WALLS), \
     X(WALLS, HITS, hits, OUT, BUFFER, \
         "uint[link 0..13][cell]: the triangle that a cut link meets, in the low 24 bits, and 255 times its " \
         "share of the link in the others"), \

@@ -41,8 +41,8 @@
 
 // Surfaces as the lattice sees them (lattice_walls.glsl).
 #define TYN_WALLS(X, P) \
-    X(P, WALL_LINKS, wall_links, IN, BUFFER, "uint[cell]: where walls pass"), \
-    X(P, WALL_CELLS, wall_cells, IN, BUFFER, "struct wall_cell[cell]")
+    X(P, WALL_LINKS, wall_links, IN, BUFFER, "uint[cell]: which of its 26 links are cut"), \
+    X(P, WALL_CELLS, wall_cells, IN, BUFFER, "struct wall_cell[cell]: mean albedo and planes of a cell's walls")
 
 // Virtual point lights (vpl_visibility.glsl).
 #define TYN_VPLS(X, P) \
@@ -82,7 +82,7 @@
     X(P, TEXTURES, textures, OPTIONAL, BUFFER, "struct surface_texture[]"), \
     X(P, TEXELS, texels, OPTIONAL, BUFFER, "uint[]: R8 G8 B8 A8, sRGB")
 
-// What the path tracer reads beside surfaces.
+// What the path tracer reads. Without nodes all triangles are tried.
 #define TYN_PATH_SCENE(X, P) \
     X(P, ATLAS, atlas, OPTIONAL, IMAGE_3D, "all density grids"), \
     X(P, MEDIUM, medium, IN, BUFFER, "struct medium_block: box and bricks"), \
@@ -94,5 +94,7 @@
     X(P, ENV_TABLE, env_table, OPTIONAL, BUFFER, \
         "struct env_table_block and cells: alias table of the map's brightness"), \
     X(P, EMITTERS, emitters, OPTIONAL, BUFFER, \
-        "struct surface_table and cells: alias table of the emissive triangles' power")
+        "struct surface_table and cells: alias table of the emissive triangles' power"), \
+    TYN_GEOMETRY(X##_OPTIONAL, P), \
+    TYN_MATERIALS(X##_OPTIONAL, P)
 // clang-format on

@@ -33,7 +33,7 @@ struct medium_block { // uniform buffer "medium"
     float max_density; // largest texture value (DENSITY), else 1
     tyn_vec3 sigma_s;  // 1/m at texture value 1 (DENSITY), else 0
     tyn_vec3 sigma_a;
-    tyn_phase phase[3]; // of each channel
+    tyn_phase phase[3];  // of each channel
     tyn_vec3 emission;   // W/(m^3 sr) at texture value 1
     tyn_uvec3 bricks;    // brick counts, ceil(size / TYN_BRICK)
     tyn_vec3 brick_size; // voxel * TYN_BRICK, m (the last brick may reach beyond the box)

@@ -27,6 +27,7 @@ typedef uint32_t tyn_uvec3[3];
 #define TYN_STRUCT(type) type
 #define TYN_FUNCTION
 
+// clang-format off
 // Buffers of a kernel: binding, name of the port (tyndall/pass.h), members.
 //   TYN_READ(3, lights, light_block lights[]);
 #define TYN_UNIFORM(at, port, members) layout(set = 0, binding = at, scalar) uniform port##_uniform { members; }
@@ -35,6 +36,7 @@ typedef uint32_t tyn_uvec3[3];
 #define TYN_UPDATE(at, port, members) layout(set = 0, binding = at, scalar) buffer port##_buffer { members; }
 // Its push constants: TYN_ARGS(merge_args args);
 #define TYN_ARGS(members) layout(push_constant, scalar) uniform args_block { members; }
+// clang-format on
 #endif
 
 #endif

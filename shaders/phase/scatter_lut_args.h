@@ -18,9 +18,9 @@
 
 struct lut_block { // storage buffer "lut_block"
     tyn_uint num_rows;
-    tyn_uint spread;       // 0: a row per distinct phase function; 1: rows evenly spread in ln(g / (1 - g))
-    float log_first;       // spread: ln(g / (1 - g)) of the first row; g: mean cosine
-    float log_step;        // spread: ... from row to row
+    tyn_uint spread; // 0: a row per distinct phase function; 1: rows evenly in ln(g / (1 - g))
+    float log_first; // spread: ln(g / (1 - g)) of the first row; g: mean cosine
+    float log_step;  // spread: ... from row to row
     tyn_uvec3 channel_row; // not spread: row of each colour channel
     tyn_uint num_sets;
     tyn_uint sun_set[TYN_LUT_MAX_SUNS];

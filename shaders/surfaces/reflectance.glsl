@@ -1,4 +1,4 @@
-// reflectance.glsl -- what a material says of light: all that a pass asks of it.
+// reflectance.glsl -- what a material does to light: what it reflects, given its texture's colour, and what it emits.
 //
 // Define MATERIALS_AT (surfaces.glsl).
 #ifndef TYN_REFLECTANCE_GLSL

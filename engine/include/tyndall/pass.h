@@ -130,17 +130,17 @@ typedef struct tyn_kernel {
 
 // ---- lists of ports -------------------------------------------------------------------------
 
-// In C, not C++: the ports of a pass are a list of X(PREFIX, PORT, name, direction, dim, meaning...), from which come its enum
-// and its table:
+// In C, not C++: the ports of a pass are a list of X(PREFIX, PORT, name, direction, dim, meaning...), from which come its
+// enum and its table:
 //   #define TONEMAP_PORTS(X) X(TONEMAP, RADIANCE, radiance, IN, IMAGE_2D, "W/(m^2 sr)"), X(...)
 //   enum { TONEMAP_PORTS(TYN_PORT_ENUM), TONEMAP_NUM_PORTS };                TONEMAP_PORT_RADIANCE, ...
 //   static const tyn_port ports[] = {TONEMAP_PORTS(TYN_PORT_ROW)};
 // direction: IN, OPTIONAL (IN that need not be connected), OUT, INOUT, SCRATCH. dim: BUFFER, IMAGE_2D, IMAGE_3D. Behind
 // the meaning further fields of tyn_port may stand: .format = VK_FORMAT_R32_SFLOAT.
 //
-// A bundle is a list of ports that go together from the passes that make them to those that read them, TYN_BEAMS(X, PREFIX);
-// it is an element of lists, with X##_OPTIONAL where all of it may be absent and X##_OUT where it is made. A struct of
-// refs is
+// A bundle is a list of ports that go together from the passes that make them to those that read them,
+// TYN_BEAMS(X, PREFIX); it is an element of lists, with X##_OPTIONAL where all of it may be absent and X##_OUT where it is
+// made. A struct of refs is
 //   struct { tyn_ref TYN_BEAMS(TYN_PORT_NAME, ); }.
 #define TYN_PORT_ENUM(P, PORT, ...) P##_PORT_##PORT
 #define TYN_PORT_ENUM_OPTIONAL(P, PORT, ...) P##_PORT_##PORT
