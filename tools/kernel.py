@@ -3,8 +3,8 @@
 
     kernel.py GLSLANG OUTPUT INPUT arguments of glslang...
 
-INPUT is passes/<pass>/<kernel>.comp, .vert or .frag; `--vn` among the arguments names the array of words. Beside the words the header
-has, for TYN_KERNEL (tyndall/pass.h):
+INPUT is passes/<pass>/<kernel>.comp, .vert or .frag; `--vn` among the arguments names the array of words. Beside the
+words the header has, for TYN_KERNEL and TYN_DRAW (tyndall/pass.h):
 
     <kernel>_bindings[]   a tyn_binding of each descriptor, in the order of their binding numbers
     <kernel>_args_size, _num_spec, _x, _y, _z    bytes of push constants, specialisation constants, workgroup

@@ -15,9 +15,7 @@
 static const tyn_port ports[] = {RAYMARCH_PORTS(TYN_PORT_ROW)};
 
 enum {
-    NUM_BACKGROUND_BINDINGS = TYN_COUNT(raymarch_background_bindings),
-    NUM_BINDINGS = TYN_COUNT(raymarch_grey_bindings),
-    SPARSE_TEXTURE = NUM_BINDINGS - 3, // of bindings
+    SPARSE_TEXTURE = TYN_COUNT(raymarch_grey_bindings) - 3, // of bindings
     SPARSE_IMAGE,
     NUM_SPEC =
         7, // mode, number of suns, features, numbers of lamps, number of shapes and their kind
@@ -204,20 +202,6 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     return features;
 }
 
-// A layer that is not made: its binding is not written to, so any image will do.
-static void bind(const tyn_raymarch_params *p, const tyn_binding *table, uint32_t count,
-                 uint8_t *ports_of)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        ports_of[i] = table[i].port;
-        for (uint32_t k = 0; k < NUM_LAYERS; k++) {
-            if (table[i].port == layers[k].port && !(p->layers & layers[k].layer)) {
-                ports_of[i] = RAYMARCH_PORT_RADIANCE;
-            }
-        }
-    }
-}
-
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_raymarch_params *p = params;
@@ -249,10 +233,18 @@ static void record(tyn_recorder *r, const void *params)
     }
     tyn_rec_fill(r, RAYMARCH_PORT_COUNTERS, 0);
     // What lies outside the window first, as the window's edges are not on workgroups.
-    uint8_t background_ports[NUM_BACKGROUND_BINDINGS], ports_of[NUM_BINDINGS];
-    bind(p, raymarch_background_bindings, NUM_BACKGROUND_BINDINGS, background_ports);
-    bind(p, raymarch_grey_bindings, NUM_BINDINGS, ports_of);
+    // The binding of a layer that is not made is not written to, so any image will do.
+    uint8_t absent[NUM_LAYERS][2], background_ports[TYN_MAX_BINDINGS], ports_of[TYN_MAX_BINDINGS];
+    uint32_t num_absent = 0;
+    for (uint32_t k = 0; k < NUM_LAYERS; k++) {
+        absent[num_absent][0] = layers[k].port;
+        absent[num_absent][1] = RAYMARCH_PORT_RADIANCE;
+        num_absent += p->layers & layers[k].layer ? 0 : 1;
+    }
     const uint32_t kernel = p->grey ? KERNEL_GREY : KERNEL_COLOUR;
+    const uint8_t(*pairs)[2] = (const uint8_t(*)[2])absent;
+    tyn_ports_exchanged(&kernels[KERNEL_BACKGROUND], pairs, num_absent, background_ports);
+    tyn_ports_exchanged(&kernels[kernel], pairs, num_absent, ports_of);
     TYN_DISPATCH(r, .kernel = KERNEL_BACKGROUND, .cells = {p->width, p->height, 1}, .args = &args,
                  .ports = background_ports, .spec = spec);
     ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_RADIANCE; // bound, but not written to or read

@@ -131,23 +131,18 @@ static tyn_result declare(tyn_builder *b, const void *data)
 static void make_lights(tyn_recorder *r, const struct vpl_plan *plan, const struct vpl_args *args,
                         bool of_bins, uint32_t mode)
 {
-    uint8_t weights[TYN_COUNT(vpl_weights_bindings)];
-    uint8_t lights[TYN_COUNT(vpl_lights_bindings)];
-    for (size_t i = 0; i < sizeof lights; i++) {
-        lights[i] = vpl_lights_bindings[i].port;
-        if (of_bins && lights[i] >= PORT(RSM_FLUX) && lights[i] <= PORT(RSM_NORMAL)) {
-            lights[i] = (uint8_t)(lights[i] - PORT(RSM_FLUX) + PORT(BIN_FLUX));
-        }
-    }
-    for (size_t i = 0; i < sizeof weights; i++) {
-        weights[i] = i < 4 ? lights[i] : vpl_weights_bindings[i].port;
-    }
+    static const uint8_t bins[][2] = {{PORT(RSM_FLUX), PORT(BIN_FLUX)},
+                                      {PORT(RSM_POSITION), PORT(BIN_POSITION)},
+                                      {PORT(RSM_NORMAL), PORT(BIN_NORMAL)}};
+    const uint32_t exchanged = of_bins ? TYN_COUNT(bins) : 0;
+    uint8_t weights[TYN_MAX_BINDINGS], lights[TYN_MAX_BINDINGS];
     tyn_rec_update(r, PORT(PLAN), 0, plan, sizeof *plan);
     TYN_DISPATCH(r, .kernel = WEIGHTS, .cells = {plan->num_blocks * VPL_LANES, 1, 1},
-                 .ports = weights);
+                 .ports = tyn_ports_exchanged(&kernels[WEIGHTS], bins, exchanged, weights));
     TYN_DISPATCH(r, .kernel = STRATA, .cells = {VPL_BLOCK, 1, 1}, .args = args);
     TYN_DISPATCH(r, .kernel = LIGHTS, .cells = {args->count * VPL_LANES, 1, 1}, .args = args,
-                 .ports = lights, .spec = &mode);
+                 .ports = tyn_ports_exchanged(&kernels[LIGHTS], bins, exchanged, lights),
+                 .spec = &mode);
     tyn_rec_work(r, "elements", (double)plan->num_blocks * VPL_BLOCK);
 }
 
