@@ -203,16 +203,16 @@ static void unknown_members(void **state)
          NULL},
         {"'scatering': 1", "", "",
          "extensions.TYN_participating_media.media[0].scatering: not known and left out; known "
-         "here: scattering absorption anisotropy emission density"},
+         "here: scattering absorption emission density anisotropy"},
         {"'absorption': 1", "'Shape': 'sphere'", "'turn': 3",
          "nodes[0].extensions.TYN_participating_media.Shape and 1 more: not known and left out; "
          "known here: medium shape repeat"},
         {"'density scattering': 1", "", "",
          "extensions.TYN_participating_media.media[0].density scattering: not known and left out; "
-         "known here: scattering absorption anisotropy emission density"},
+         "known here: scattering absorption emission density anisotropy"},
         {"'scatt\\nering': 1", "", "",
          "extensions.TYN_participating_media.media[0].scatt?ering: not known and left out; known "
-         "here: scattering absorption anisotropy emission density"},
+         "here: scattering absorption emission density anisotropy"},
         {"", "", "'Radiance': [1, 1, 1]",
          "extensions.TYN_environment_map.environments[0].Radiance: not known and left out; known "
          "here: uri radiance rotation"},
