@@ -21,7 +21,7 @@
 typedef struct bench_args {
     machine_options machine;
     const char *suite, *report, *scenes, *bands, *fronts, *axis;
-    bool json, fresh, stress, quick;
+    bool json, fresh, references, stress, quick;
 } bench_args;
 
 // The sample scenes of a build tree, as seen from the program: ../samples/scenes.
@@ -44,7 +44,7 @@ static int measure_scene(app *a, const bench_machine *on, const bench_suite *sui
                          const bench_scene *spec, const bench_args *args, bench_report *report)
 {
     bench_case c;
-    int code = bench_case_open(a, on, suite, spec, args->report, &c);
+    int code = bench_case_open(a, on, suite, spec, args->report, false, &c);
     cJSON *runs = cJSON_CreateArray(), *left_out = cJSON_CreateArray();
     if (code == EXIT_DONE) {
         code = bench_runs(&c, args->fresh, runs, left_out);
@@ -97,6 +97,53 @@ static int open_machine(app *a, const bench_args *args, const bench_suite *suite
         on->library = library_hash();
         code = suite->ceilings ? ceilings_measure(a, m->device, &on->ceilings) : EXIT_DONE;
     }
+    return code;
+}
+
+// ---- references -------------------------------------------------------------------------------
+
+// Makes the reference of a scene that is stored with the suite, and says what it is worth.
+static int make_reference(app *a, const bench_machine *on, const bench_suite *suite,
+                          const bench_scene *spec)
+{
+    bench_case c;
+    const int code = bench_case_open(a, on, suite, spec, NULL, true, &c);
+    const bench_reference *r = &c.reference;
+    if (code == EXIT_DONE || code == EXIT_INTERRUPTED) {
+        printf(
+            "%s, %ux%u: %u samples in %.0f s, noise %.2f %% per pixel, %.2f %% per %ux%u block\n",
+            spec->name, c.view.width, c.view.height, r->spp, r->seconds, 100 * r->noise[1],
+            100 * r->noise[0], suite->block, suite->block);
+        fflush(stdout);
+    }
+    bench_case_close(&c);
+    return code;
+}
+
+static int make_references(app *a, const bench_args *args, const bench_suite *suite)
+{
+    machine mach = {0};
+    bench_machine on;
+    if (!suite->references) {
+        app_error(a, "--references needs a suite that names their folder, \"references\"");
+        return EXIT_WRONG;
+    }
+    int code = bench_check(a, suite);
+    if (code == EXIT_DONE) {
+        code = folder_make(a, "--references", suite->references);
+    }
+    if (code == EXIT_DONE) {
+        code = open_machine(a, args, suite, &mach, &on);
+    }
+    for (uint32_t i = 0; i < suite->num_scenes && code == EXIT_DONE; i++) {
+        if (!suite->scenes[i].reference) {
+            code = make_reference(a, &on, suite, &suite->scenes[i]);
+        }
+    }
+    if (code == EXIT_INTERRUPTED) {
+        app_note(a, "interrupted; what is rendered is kept: the same command goes on");
+    }
+    machine_close(&mach);
     return code;
 }
 
@@ -195,6 +242,9 @@ static bool check_options(app *a, const bench_args *args)
         {args->fronts, "write-fronts", !args->stress, "goes with no --stress, which has no fronts"},
         {args->fresh, "fresh", !args->stress, "goes with no --stress, which keeps no records"},
         {args->fresh, "fresh", args->report, "needs --report, whose records it leaves alone"},
+        {args->references, "references",
+         !args->stress && !args->report && !args->bands && !args->json,
+         "goes with --suite and --scenes alone: nothing is measured"},
         {args->quick, "quick", args->stress, "needs --stress"},
         {args->axis, "axis", args->stress, "needs --stress"},
     };
@@ -246,7 +296,8 @@ static int run_bench(app *a, const void *arguments)
             code = bands_load(a, args->bands, &bands);
         }
         if (code == EXIT_DONE) {
-            code = run_suite(a, args, suite, bands);
+            code = args->references ? make_references(a, args, suite)
+                                    : run_suite(a, args, suite, bands);
         }
         bench_suite_finish(suite);
     } else {
@@ -270,6 +321,8 @@ static const option bench_table[] = {
      "figures and their bounds: exit 1 and a line for each that is outside"},
     {0, "write-fronts", OPT_TEXT, AT(fronts), "FILE",
      "what render --max-error and --budget-ms choose from (--fronts)"},
+    {0, "references", OPT_FLAG, AT(references), NULL,
+     "make the references that are stored with the suite, or go on with them, and measure nothing"},
     {0, "scenes", OPT_TEXT, AT(scenes), "DIR",
      "folder of the sample scenes; else ../samples/scenes beside the program"},
     {0, "stress", OPT_FLAG, AT(stress), NULL,

@@ -45,6 +45,7 @@ void tyn_image_file_finish(tyn_image_file *image)
         free(image->channels[i].data);
     }
     free(image->channels);
+    free(image->comments);
     memset(image, 0, sizeof *image);
 }
 
@@ -191,6 +192,21 @@ static tyn_result add_channels(picture *p, const char *file, const tyn_log *log)
     return TYN_OK;
 }
 
+// A file without it has none, as has one where it is of another type.
+static void read_comments(picture *p, stream *s)
+{
+    const char *text = NULL;
+    int32_t length = 0;
+    if (exr_attr_get_string(p->context, 0, "comments", &length, &text) == EXR_ERR_SUCCESS &&
+        length > 0) {
+        p->image->comments = calloc((size_t)length + 1, 1);
+        if (p->image->comments) {
+            memcpy(p->image->comments, text, (size_t)length);
+        }
+    }
+    s->message[0] = '\0'; // that it is not there is no fault
+}
+
 static tyn_result read_picture(picture *p, stream *s, const char *file, const tyn_log *log)
 {
     exr_attr_box2i_t window;
@@ -225,6 +241,7 @@ static tyn_result read_picture(picture *p, stream *s, const char *file, const ty
     p->image->height = (uint32_t)height;
     p->x0 = window.min.x;
     p->y0 = window.min.y;
+    read_comments(p, s);
     tyn_result r = add_channels(p, file, log);
     if (r) {
         return r;
@@ -390,6 +407,9 @@ static exr_result_t write_picture(exr_context_t *context, const tyn_image_file *
         e = exr_add_channel(*context, 0, image->channels[i].name,
                             full_float ? EXR_PIXEL_FLOAT : EXR_PIXEL_HALF,
                             EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    }
+    if (!e && image->comments) {
+        e = exr_attr_set_string(*context, 0, "comments", image->comments);
     }
     e = e ? e : exr_write_header(*context);
     return e ? e : write_chunks(*context, image, data, full_float ? 4 : 2);

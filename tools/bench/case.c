@@ -91,7 +91,7 @@ int bench_case_check(app *a, const bench_suite *suite, const bench_scene *spec)
     a->quiet = true; // what is not wrong is said when it is measured
     int code = open_scene(a, suite, spec, &c);
     if (code == EXIT_DONE && spec->reference) {
-        code = bench_reference_get(a, NULL, spec, &c.scene, &c.view, c.blocks, &c.reference);
+        code = bench_reference_get(a, NULL, suite, spec, &c.scene, &c.view, false, &c.reference);
     }
     a->quiet = quiet;
     bench_case_close(&c);
@@ -99,7 +99,7 @@ int bench_case_check(app *a, const bench_suite *suite, const bench_scene *spec)
 }
 
 int bench_case_open(app *a, const bench_machine *on, const bench_suite *suite,
-                    const bench_scene *spec, const char *folder, bench_case *c)
+                    const bench_scene *spec, const char *folder, bool make, bench_case *c)
 {
     int code = open_scene(a, suite, spec, c);
     c->machine = on;
@@ -109,8 +109,7 @@ int bench_case_open(app *a, const bench_machine *on, const bench_suite *suite,
     }
     if (code == EXIT_DONE) {
         c->hash = bench_scene_hash(&c->scene, &c->view);
-        code =
-            bench_reference_get(a, on->device, spec, &c->scene, &c->view, c->blocks, &c->reference);
+        code = bench_reference_get(a, on, suite, spec, &c->scene, &c->view, make, &c->reference);
     }
     return code == EXIT_DONE && folder ? write_reference(c) : code;
 }

@@ -1,16 +1,7 @@
 // measure.h -- one run on one scene: errors, times, nodes, memory, imbalance, flicker, as a record.
 #pragma once
-#include "ceilings.h"
 #include "reference.h"
 #include "suite.h"
-
-// What is measured on.
-typedef struct bench_machine {
-    tyn_device *device;
-    const char *name, *driver, *type; // as in <tyndall/device.h>
-    uint64_t library;                 // library_hash
-    ceilings ceilings;
-} bench_machine;
 
 // A scene that is being measured.
 typedef struct bench_case {
@@ -30,9 +21,9 @@ typedef struct bench_case {
 // code.
 int bench_case_check(app *a, const bench_suite *suite, const bench_scene *spec);
 
-// Loads the scene, and gets its reference. Gives the exit code; bench_case_close is due in any case.
+// Loads the scene, and gets its reference; `make`: makes the one that is stored with the suite. Gives the exit code; bench_case_close is due in any case.
 int bench_case_open(app *a, const bench_machine *on, const bench_suite *suite,
-                    const bench_scene *spec, const char *folder, bench_case *c);
+                    const bench_scene *spec, const char *folder, bool make, bench_case *c);
 void bench_case_close(bench_case *c);
 
 // The key of a run's record: of everything that its figures depend on.

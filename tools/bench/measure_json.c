@@ -194,7 +194,7 @@ static cJSON *make_record(const bench_case *c, const char *key, cJSON *run)
                             c->spec->reference ? "file" : tyn_method_reference());
     cJSON_AddStringToObject(reference, "key", c->reference.key);
     if (!c->spec->reference) {
-        cJSON_AddNumberToObject(reference, "spp", c->spec->reference_spp);
+        cJSON_AddNumberToObject(reference, "spp", c->reference.spp);
         cJSON_AddNumberToObject(reference, "seed", BENCH_REFERENCE_SEED);
     }
     cJSON_AddItemToObject(record, "run", run);

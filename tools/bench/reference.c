@@ -1,101 +1,18 @@
-// reference.c -- converged pictures with their standard errors: by `path`, cached by what they depend on, or a
-// file of the user's.
+// reference.c -- where a reference comes from: a file of the user's, the suite's stored ones, the cache, `path`.
 #include "reference.h"
 #include "cache.h"
-#include "renderer.h"
+#include "converge.h"
+#include "folder.h"
+#include "json.h"
+#include "stats.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-// ---- what it depends on -----------------------------------------------------------------------
-
-#define HASH(value, seed) text_hash(&(value), sizeof(value), seed)
-
-static uint64_t hash_media(const tyn_scene *scene, uint64_t key)
-{
-    for (uint32_t i = 0; i < scene->num_volumes; i++) {
-        key = HASH(scene->volumes[i].hash, HASH(scene->volumes[i].size, key));
-    }
-    for (uint32_t i = 0; i < scene->num_media; i++) {
-        const tyn_medium *m = &scene->media[i];
-        key = HASH(m->sigma_s, HASH(m->sigma_a, HASH(m->phase, HASH(m->emission, key))));
-        key = HASH(m->density_scale, HASH(m->volume, key));
-    }
-    for (uint32_t i = 0; i < scene->num_shapes; i++) {
-        const tyn_shape *s = &scene->shapes[i];
-        key = HASH(s->kind, HASH(s->medium, HASH(s->to_world, HASH(s->repeat, key))));
-    }
-    return key;
-}
-
-static uint64_t hash_lights(const tyn_scene *scene, uint64_t key)
-{
-    for (uint32_t i = 0; i < scene->num_lights; i++) {
-        const tyn_light *l = &scene->lights[i];
-        key = HASH(l->kind, HASH(l->color, HASH(l->position, HASH(l->direction, key))));
-        key = HASH(l->cos_inner, HASH(l->cos_outer, key));
-    }
-    const tyn_environment *e = &scene->environment;
-    if (e->present) {
-        key = HASH(e->hash, HASH(e->size, HASH(e->radiance, HASH(e->rotation, key))));
-        key = HASH(e->strength, key);
-    }
-    return key;
-}
-
-static uint64_t hash_surfaces(const tyn_surfaces *s, uint64_t key)
-{
-    if (s->num_triangles == 0) {
-        return key;
-    }
-    key = text_hash(s->vertices, s->num_vertices * sizeof *s->vertices, key);
-    key = text_hash(s->triangles, s->num_triangles * sizeof *s->triangles, key);
-    key = text_hash(s->materials, s->num_materials * sizeof *s->materials, key);
-    for (uint32_t i = 0; i < s->num_textures; i++) {
-        const tyn_texture *t = &s->textures[i];
-        key = text_hash(t->texels, (size_t)4 * t->size[0] * t->size[1], HASH(t->wrap, key));
-        // The number of texels tells the size of a square; others may share it.
-        key = t->size[0] == t->size[1] ? key : HASH(t->size, key);
-    }
-    return key;
-}
-
-uint64_t bench_scene_hash(const tyn_scene *scene, const tyn_view *view)
-{
-    uint64_t key = hash_media(scene, 1);
-    key = hash_lights(scene, key);
-    key = hash_surfaces(&scene->surfaces, key);
-    const tyn_camera *c = &view->camera;
-    key = HASH(c->projection, HASH(c->position, HASH(c->right, HASH(c->up, HASH(c->back, key)))));
-    key = HASH(c->yfov, HASH(c->ymag, key));
-    return HASH(view->width, HASH(view->height, HASH(view->no_background, key)));
-}
-
-// The scene, the samples and the code that renders it.
-static uint64_t reference_key(const bench_scene *spec, const tyn_scene *scene, const tyn_view *view,
-                              const tyn_method_info *path)
-{
-    uint64_t key = HASH(spec->reference_spp, bench_scene_hash(scene, view));
-    for (const tyn_pass_desc *const *pass = path->passes; *pass; pass++) {
-        for (uint32_t k = 0; k < (*pass)->num_kernels; k++) {
-            const tyn_kernel *kernel = &(*pass)->kernels[k];
-            key = text_hash(kernel->spirv, kernel->spirv_size, key);
-        }
-    }
-    return key;
-}
-
-static char *cached_path(const char *key)
-{
-    char name[48];
-    snprintf(name, sizeof name, "references/%s.exr", key);
-    return cache_path(name);
-}
+const char *const bench_reference_channels[6] = {"R", "G", "B", "error.R", "error.G", "error.B"};
 
 // ---- pictures ---------------------------------------------------------------------------------
-
-static const char *const names[6] = {"R", "G", "B", "error.R", "error.G", "error.B"};
 
 // False: not of that size, or a channel is missing; errors may be.
 static bool take_channels(bench_reference *r, const tyn_view *view)
@@ -104,8 +21,8 @@ static bool take_channels(bench_reference *r, const tyn_view *view)
     r->known_noise = true;
     bool whole = r->file.width == view->width && r->file.height == view->height;
     for (int i = 0; i < 3; i++) {
-        r->image.rgb[i] = tyn_image_file_channel(&r->file, names[i]);
-        r->image.se[i] = tyn_image_file_channel(&r->file, names[3 + i]);
+        r->image.rgb[i] = tyn_image_file_channel(&r->file, bench_reference_channels[i]);
+        r->image.se[i] = tyn_image_file_channel(&r->file, bench_reference_channels[3 + i]);
         whole = whole && r->image.rgb[i];
         r->known_noise = r->known_noise && r->image.se[i];
     }
@@ -136,7 +53,7 @@ int bench_picture_write(app *a, const metrics_image *image, bool errors, const c
         const float *data = i < 3 ? image->rgb[i] : errors ? image->se[i - 3] : NULL;
         tyn_channel *channel = &channels[file.num_channels];
         if (data) {
-            snprintf(channel->name, sizeof channel->name, "%s", names[i]);
+            snprintf(channel->name, sizeof channel->name, "%s", bench_reference_channels[i]);
             channel->data = (float *)(uintptr_t)data; // only read
             file.num_channels++;
         }
@@ -144,90 +61,182 @@ int bench_picture_write(app *a, const metrics_image *image, bool errors, const c
     return app_exit_code(a, tyn_exr_write(&file, path, errors, &a->log), false);
 }
 
-// ---- rendering --------------------------------------------------------------------------------
+// ---- what it is worth -------------------------------------------------------------------------
 
-static int allocate(app *a, const tyn_view *view, tyn_image_file *file)
+void bench_reference_measure(bench_reference *r)
 {
-    *file = (tyn_image_file){.width = view->width, .height = view->height};
-    file->channels = calloc(6, sizeof *file->channels);
-    for (int i = 0; file->channels && i < 6; i++) {
-        tyn_channel *channel = &file->channels[file->num_channels];
-        snprintf(channel->name, sizeof channel->name, "%s", names[i]);
-        channel->data = malloc((size_t)view->width * view->height * sizeof(float));
-        file->num_channels += channel->data != NULL;
+    if (!r->known_noise) {
+        return;
     }
-    return file->num_channels == 6 ? EXIT_DONE : app_exit_code(a, TYN_ERR_MEMORY, false);
-}
-
-static int render(app *a, tyn_device *device, const method *m, const bench_scene *spec,
-                  const tyn_scene *scene, const tyn_view *asked, bench_reference *r)
-{
-    const size_t num = (size_t)asked->width * asked->height;
-    tyn_view view = *asked;
-    view.outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_ERROR;
-    view.num_samples = spec->reference_spp;
-    view.seed = BENCH_REFERENCE_SEED; // of its own: a run's samples must not be the reference's
-    int code = allocate(a, &view, &r->file);
-    float *planes = malloc(6 * num * sizeof *planes);
-    if (code != EXIT_DONE || !planes) {
-        free(planes);
-        return app_exit_code(a, TYN_ERR_MEMORY, false);
+    metrics_image exact = r->image; // against an exact copy: n is then the noise of one of the two
+    exact.se[0] = exact.se[1] = exact.se[2] = NULL;
+    for (int i = 0; i < BENCH_BLOCKS; i++) {
+        metrics m = {0};
+        metrics_compare(&exact, &r->image, r->blocks[i], &m);
+        r->noise[i] = m.n;
     }
-    renderer renders = {0};
-    char label[128];
-    snprintf(label, sizeof label, "%.80s: reference, %u samples", spec->name, view.num_samples);
-    const double start = app_seconds();
-    code = renderer_open(a, device, m, &renders);
-    if (code == EXIT_DONE) {
-        code = renderer_frame(a, &renders, scene, &view, false, label);
-    }
-    if (code == EXIT_DONE) {
-        metrics_image image;
-        bench_planes(renders.offline, &view, planes, &image);
-        for (int i = 0; i < 6; i++) {
-            memcpy(r->file.channels[i].data, planes + i * num, num * sizeof *planes);
+    double sum = 0, variance = 0;
+    const size_t num = (size_t)r->image.width * r->image.height;
+    for (int c = 0; c < 3; c++) {
+        for (size_t i = 0; i < num; i++) {
+            const double x = r->image.rgb[c][i], se = r->image.se[c][i];
+            sum += isfinite(x) ? x : 0;
+            variance += isfinite(se) ? se * se : 0;
         }
-        r->seconds = app_seconds() - start;
-        take_channels(r, &view);
     }
-    renderer_close(&renders);
-    free(planes);
-    return code;
+    r->bias_se = sum != 0 ? sqrt(variance) / fabs(sum) : 0;
 }
 
-// What cannot be kept is rendered again by every call, which somebody who waits for it should know.
-static void keep(app *a, const bench_reference *r, const char *cached)
+// ---- files that hold what `path` gave ---------------------------------------------------------
+
+// What such a file says of itself, as JSON in the attribute "comments".
+static char *comments_of(const bench_reference *r, uint64_t scene)
 {
-    if (!cached) {
-        app_warn(a, "the reference is not kept: XDG_CACHE_HOME or HOME must be an absolute path");
-    } else if (tyn_exr_write(&r->file, cached, true, NULL) != TYN_OK) {
-        app_warn(a, "%s: cannot be written; the reference is rendered again next time", cached);
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "schema", "tyndall-reference");
+    cJSON_AddNumberToObject(json, "version", 1);
+    json_add_hash(json, "scene", scene);
+    cJSON_AddStringToObject(json, "method", tyn_method_reference());
+    cJSON_AddNumberToObject(json, "spp", r->spp);
+    json_add_float(json, "seconds", r->seconds);
+    char *text = cJSON_PrintUnformatted(json);
+    cJSON_Delete(json);
+    return text;
+}
+
+static void content_key(bench_reference *r)
+{
+    const size_t bytes = (size_t)r->file.width * r->file.height * sizeof(float);
+    uint64_t key = r->spp;
+    for (int i = 0; i < 6; i++) {
+        key = text_hash(tyn_image_file_channel(&r->file, bench_reference_channels[i]), bytes, key);
+    }
+    snprintf(r->key, sizeof r->key, "%016llx", (unsigned long long)key);
+}
+
+typedef enum found { FOUND_NOT, FOUND_OTHER, FOUND } found;
+
+// Reads such a file, if it is of this scene.
+static found read_own(const char *path, const tyn_view *view, uint64_t scene, bench_reference *r)
+{
+    char hash[17];
+    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)scene);
+    if (!path || tyn_exr_read(&r->file, path, NULL) != TYN_OK) {
+        return FOUND_NOT;
+    }
+    cJSON *json = r->file.comments ? cJSON_Parse(r->file.comments) : NULL;
+    const double spp = json_figure(json, "spp"), seconds = json_figure(json, "seconds");
+    const bool ours = take_channels(r, view) && r->known_noise && spp >= 2 && seconds >= 0 &&
+                      strcmp(json_text(json, "scene"), hash) == 0;
+    cJSON_Delete(json);
+    if (!ours) {
+        tyn_image_file_finish(&r->file);
+        return FOUND_OTHER;
+    }
+    r->spp = (uint32_t)spp;
+    r->seconds = seconds;
+    r->cached = true;
+    bench_reference_measure(r);
+    return FOUND;
+}
+
+// Where a reference is kept, and of what.
+typedef struct keeper {
+    app *a;
+    uint64_t scene;
+    char *cached, *stored; // NULL: not there
+} keeper;
+
+static int write_own(const keeper *k, const bench_reference *r, const char *path, bool whole)
+{
+    tyn_image_file file = r->file;
+    file.comments = comments_of(r, k->scene);
+    const tyn_result result = tyn_exr_write(&file, path, whole, whole ? NULL : &k->a->log);
+    free(file.comments);
+    return app_exit_code(k->a, result, false);
+}
+
+// What the cache does not take is rendered again by every call, which somebody who waits for it should know.
+static int keep(void *user, const bench_reference *r)
+{
+    const keeper *k = user;
+    if (!k->cached) {
+        app_warn(k->a,
+                 "the reference is not kept: XDG_CACHE_HOME or HOME must be an absolute path");
+    } else if (write_own(k, r, k->cached, true) != EXIT_DONE) {
+        app_warn(k->a, "%s: cannot be written; the reference is rendered again next time",
+                 k->cached);
+    }
+    return k->stored ? write_own(k, r, k->stored, false) : EXIT_DONE;
+}
+
+// In the cache: by the scene and the code that renders it.
+static char *cached_path(uint64_t scene, const tyn_method_info *path)
+{
+    char name[48];
+    uint64_t key = scene;
+    for (const tyn_pass_desc *const *pass = path->passes; *pass; pass++) {
+        for (uint32_t k = 0; k < (*pass)->num_kernels; k++) {
+            const tyn_kernel *kernel = &(*pass)->kernels[k];
+            key = text_hash(kernel->spirv, kernel->spirv_size, key);
+        }
+    }
+    snprintf(name, sizeof name, "references/%016llx.exr", (unsigned long long)key);
+    return cache_path(name);
+}
+
+// The better of what is stored and what is in the cache; a stored one of another scene is of no use, and is named.
+static void look(const keeper *k, const char *stored, const tyn_view *view, bench_reference *r)
+{
+    bench_reference other = {.blocks = {r->blocks[0], r->blocks[1]}};
+    const found there = read_own(stored, view, k->scene, r);
+    if (there == FOUND_OTHER) {
+        app_warn(k->a, "%s: is of another scene, view or size: rendered anew", stored);
+    }
+    if (read_own(k->cached, view, k->scene, &other) == FOUND && other.spp > r->spp) {
+        tyn_image_file_finish(&r->file);
+        *r = other;
+    } else {
+        tyn_image_file_finish(&other.file);
     }
 }
 
-static int from_path(app *a, tyn_device *device, const bench_scene *spec, const tyn_scene *scene,
-                     const tyn_view *view, bench_reference *r)
+static int from_path(app *a, const bench_machine *on, const bench_suite *suite,
+                     const bench_scene *spec, const tyn_scene *scene, const tyn_view *view,
+                     bool make, bench_reference *r)
 {
     method m = {0};
+    char *stored = suite->references ? text_format("%s/%s-%ux%u.exr", suite->references, spec->slug,
+                                                   view->width, view->height)
+                                     : NULL;
     int code = method_open(a, &(method_options){.method = tyn_method_reference()}, &m);
     if (code == EXIT_DONE) {
-        snprintf(r->key, sizeof r->key, "%016llx",
-                 (unsigned long long)reference_key(spec, scene, view, &m.info));
-        char *cached = cached_path(r->key);
-        r->cached = cached && tyn_exr_read(&r->file, cached, NULL) == TYN_OK &&
-                    take_channels(r, view) && r->known_noise;
-        if (!r->cached) {
-            tyn_image_file_finish(&r->file);
-            code = render(a, device, &m, spec, scene, view, r);
-            if (code == EXIT_DONE) {
-                keep(a, r, cached);
+        keeper k = {.a = a, .scene = bench_scene_hash(scene, view), .stored = make ? stored : NULL};
+        if (!make && read_own(stored, view, k.scene, r) == FOUND) {
+            r->stored = true;
+        } else {
+            k.cached = cached_path(k.scene, &m.info);
+            look(&k, stored, view, r);
+            const double before = r->seconds;
+            if (!converge_is_done(r, &spec->goal)) {
+                code = converge(a, on, &m, scene, view, &spec->goal, spec->name, keep, &k, r);
+            } else if (make) {
+                code = keep(&k, r);
             }
+            r->spent = r->seconds - before;
+            free(k.cached);
         }
-        free(cached);
+        if (code == EXIT_DONE) {
+            take_channels(r, view);
+            content_key(r);
+        }
     }
+    free(stored);
     method_finish(&m);
     return code;
 }
+
+// ---- a file -----------------------------------------------------------------------------------
 
 // Is one value what it must be? `channel`: of `names`.
 static bool is_sound(app *a, const bench_reference *r, const char *file, int channel, size_t i)
@@ -238,7 +247,7 @@ static bool is_sound(app *a, const bench_reference *r, const char *file, int cha
         return true;
     }
     app_error(a, "%s: %s is %g at pixel (%u, %u); values of a reference must be finite%s", file,
-              names[channel], (double)values[i], x, y,
+              bench_reference_channels[channel], (double)values[i], x, y,
               channel < 3 ? "" : ", and standard errors not negative");
     return false;
 }
@@ -288,41 +297,17 @@ static int from_file(app *a, const bench_scene *spec, const tyn_view *view, benc
     return app_exit_code(a, result, true);
 }
 
-// ---- what it is worth -------------------------------------------------------------------------
-
-static void measure_noise(const uint32_t blocks[BENCH_BLOCKS], bench_reference *r)
+int bench_reference_get(app *a, const bench_machine *on, const bench_suite *suite,
+                        const bench_scene *spec, const tyn_scene *scene, const tyn_view *view,
+                        bool make, bench_reference *r)
 {
-    if (!r->known_noise) {
-        return;
+    *r = (bench_reference){.blocks = {suite->block, 1}};
+    if (!spec->reference) {
+        return from_path(a, on, suite, spec, scene, view, make, r);
     }
-    metrics_image exact = r->image; // against an exact copy: n is then the noise of one of the two
-    exact.se[0] = exact.se[1] = exact.se[2] = NULL;
-    for (int i = 0; i < BENCH_BLOCKS; i++) {
-        metrics m = {0};
-        metrics_compare(&exact, &r->image, blocks[i], &m);
-        r->noise[i] = m.n;
-    }
-    double sum = 0, variance = 0;
-    const size_t num = (size_t)r->image.width * r->image.height;
-    for (int c = 0; c < 3; c++) {
-        for (size_t i = 0; i < num; i++) {
-            const double x = r->image.rgb[c][i], se = r->image.se[c][i];
-            sum += isfinite(x) ? x : 0;
-            variance += isfinite(se) ? se * se : 0;
-        }
-    }
-    r->bias_se = sum != 0 ? sqrt(variance) / fabs(sum) : 0;
-}
-
-int bench_reference_get(app *a, tyn_device *device, const bench_scene *spec, const tyn_scene *scene,
-                        const tyn_view *view, const uint32_t blocks[BENCH_BLOCKS],
-                        bench_reference *r)
-{
-    *r = (bench_reference){0};
-    const int code =
-        spec->reference ? from_file(a, spec, view, r) : from_path(a, device, spec, scene, view, r);
+    const int code = from_file(a, spec, view, r);
     if (code == EXIT_DONE) {
-        measure_noise(blocks, r);
+        bench_reference_measure(r);
     }
     return code;
 }

@@ -1,6 +1,7 @@
-// reference.h -- converged pictures with their standard errors: by `path`, cached by what they depend on, or a
-// file of the user's.
+// reference.h -- converged pictures with their standard errors: by `path`, stored with the suite or kept in the cache,
+// or a file of the user's.
 #pragma once
+#include "ceilings.h"
 #include "machine.h"
 #include "metrics.h"
 #include "suite.h"
@@ -10,12 +11,24 @@
 // Errors over blocks of suite->block, and per pixel.
 enum { BENCH_BLOCKS = 2, BENCH_REFERENCE_SEED = 1000003 };
 
+// What is measured on.
+typedef struct bench_machine {
+    tyn_device *device;
+    const char *name, *driver, *type; // as in <tyndall/device.h>
+    uint64_t library;                 // library_hash
+    ceilings ceilings;
+} bench_machine;
+
+extern const char *const bench_reference_channels[6];
+
 typedef struct bench_reference {
     tyn_image_file file;
     metrics_image image; // borrows from file
-    char key[17];        // of what it depends on; of a file its content's hash
-    double seconds;      // what rendering it took; 0: it was there
-    bool cached;
+    char key[17];        // hash of its content
+    uint32_t blocks[BENCH_BLOCKS];
+    uint32_t spp;               // of `path`; 0: it is a file
+    double seconds, spent;      // what rendering it took in all, and in this call
+    bool stored, cached;        // it was there, with the suite or in the cache
     bool known_noise;           // it carries standard errors
     double noise[BENCH_BLOCKS]; // metrics.n of the reference alone; 0 where it is not known
     double bias_se;             // standard error of its sum, relative to the sum
@@ -25,11 +38,16 @@ typedef struct bench_reference {
 // environment, camera, size.
 uint64_t bench_scene_hash(const tyn_scene *scene, const tyn_view *view);
 
-// Gives the exit code; bench_reference_finish is due in any case. `label` names the scene in messages.
-int bench_reference_get(app *a, tyn_device *device, const bench_scene *spec, const tyn_scene *scene,
-                        const tyn_view *view, const uint32_t blocks[BENCH_BLOCKS],
-                        bench_reference *r);
+// A stored reference is taken as it is, unless `make`: then its rendering goes on until the scene's goal, and it is
+// stored anew. `on` may be NULL where the reference is a file. Gives the exit code; bench_reference_finish is due in any
+// case.
+int bench_reference_get(app *a, const bench_machine *on, const bench_suite *suite,
+                        const bench_scene *spec, const tyn_scene *scene, const tyn_view *view,
+                        bool make, bench_reference *r);
 void bench_reference_finish(bench_reference *r);
+
+// Noise and bias_se, from the standard errors.
+void bench_reference_measure(bench_reference *r);
 
 // Planar R, G, B (and errors, or NULL) of the last frame, in `planes` of 6 w h floats.
 void bench_planes(tyn_offline *offline, const tyn_view *view, float *planes, metrics_image *image);

@@ -19,10 +19,11 @@ static cJSON *json_reference(const bench_case *c)
     const bench_reference *r = &c->reference;
     cJSON *json = cJSON_CreateObject();
     cJSON_AddStringToObject(json, "method", c->spec->reference ? "file" : tyn_method_reference());
-    json_add_float(json, "spp", c->spec->reference ? NAN : c->spec->reference_spp);
-    json_add_float(json, "seed", c->spec->reference ? NAN : BENCH_REFERENCE_SEED);
+    json_add_float(json, "spp", r->spp > 0 ? r->spp : NAN);
+    json_add_float(json, "seed", r->spp > 0 ? BENCH_REFERENCE_SEED : NAN);
     json_add_float(json, "seconds", r->seconds > 0 ? r->seconds : NAN);
     cJSON_AddBoolToObject(json, "cached", r->cached);
+    cJSON_AddBoolToObject(json, "stored", r->stored);
     cJSON_AddStringToObject(json, "key", r->key);
     char *picture = c->folder ? bench_picture(c->spec, BENCH_REFERENCE_SLUG) : NULL;
     cJSON_AddItemToObject(json, "picture",
@@ -100,7 +101,7 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
         scene = seen;
     }
     cJSON_AddItemToArray(cJSON_GetObjectItemCaseSensitive(r->root, "scenes"), scene);
-    r->reference_seconds += c->reference.seconds;
+    r->reference_seconds += c->reference.spent;
 }
 
 // ---- the whole --------------------------------------------------------------------------------

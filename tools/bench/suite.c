@@ -12,19 +12,48 @@
 
 // ---- scenes -----------------------------------------------------------------------------------
 
+enum { DEFAULT_SPP = 1024, MAX_SPP = 1 << 24 };
+
 // What a scene has of the suite where it says nothing itself.
 typedef struct scene_defaults {
     opt_size size;
-    uint32_t reference_spp;
+    bench_goal goal;
 } scene_defaults;
+
+// Without a limit of samples those of noise and time end a reference, and the other way round.
+static bench_goal read_goal(suite_reader *r, const cJSON *json, const bench_goal *defaults)
+{
+    bench_goal goal = {.noise = suite_number(r, json, "reference_noise", defaults->noise, 0, 1),
+                       .seconds =
+                           suite_number(r, json, "reference_seconds", defaults->seconds, 0, 1e9)};
+    const double spp = goal.noise > 0 && defaults->spp == DEFAULT_SPP ? MAX_SPP : defaults->spp;
+    goal.spp = suite_whole(r, json, "reference_spp", spp, 2, MAX_SPP);
+    return goal;
+}
 
 static void read_scene(suite_reader *r, const cJSON *json, const scene_defaults *defaults,
                        const char *folder, bench_scene *s)
 {
-    static const char *const keys[] = {
-        "name",          "scene",      "environment",   "camera",  "size",      "fov",
-        "look_from",     "look_at",    "sigma_s",       "sigma_a", "g",         "albedo",
-        "density_scale", "env_rotate", "reference_spp", "lights",  "reference", NULL};
+    static const char *const keys[] = {"name",
+                                       "scene",
+                                       "environment",
+                                       "camera",
+                                       "size",
+                                       "fov",
+                                       "look_from",
+                                       "look_at",
+                                       "sigma_s",
+                                       "sigma_a",
+                                       "g",
+                                       "albedo",
+                                       "density_scale",
+                                       "env_rotate",
+                                       "reference_spp",
+                                       "reference_noise",
+                                       "reference_seconds",
+                                       "lights",
+                                       "reference",
+                                       NULL};
     *s = (bench_scene){
         .json = json, .scene.env_strength = 1, .scene.frame = NAN, .view.size = defaults->size};
     suite_check_keys(r, json, keys);
@@ -50,7 +79,7 @@ static void read_scene(suite_reader *r, const cJSON *json, const scene_defaults 
     suite_vector(r, json, "look_from", false, &s->view.look_from);
     suite_vector(r, json, "look_at", false, &s->view.look_at);
     suite_size(r, json, &s->view.size);
-    s->reference_spp = suite_whole(r, json, "reference_spp", defaults->reference_spp, 2, 1 << 24);
+    s->goal = read_goal(r, json, &defaults->goal);
     s->reference = suite_file(r, json, "reference", folder);
 }
 
@@ -375,9 +404,23 @@ static void name_scenes_and_runs(suite_reader *r, bench_suite *s)
 
 static void read_suite(suite_reader *r, const char *folder, bench_suite *s)
 {
-    static const char *const keys[] = {
-        "name",   "about",       "scenes",         "runs", "baselines", "block",    "reference_spp",
-        "frames", "max_seconds", "timing_seconds", "size", "ratios",    "ceilings", NULL};
+    static const char *const keys[] = {"name",
+                                       "about",
+                                       "scenes",
+                                       "runs",
+                                       "baselines",
+                                       "block",
+                                       "reference_spp",
+                                       "frames",
+                                       "max_seconds",
+                                       "timing_seconds",
+                                       "size",
+                                       "ratios",
+                                       "ceilings",
+                                       "references",
+                                       "reference_noise",
+                                       "reference_seconds",
+                                       NULL};
     const cJSON *root = s->root;
     suite_check_keys(r, root, keys);
     s->name = suite_text(r, root, "name", true);
@@ -391,8 +434,9 @@ static void read_suite(suite_reader *r, const char *folder, bench_suite *s)
     if (ceilings && !cJSON_IsBool(ceilings)) {
         suite_fault(r, "ceilings", "must be true or false");
     }
-    scene_defaults defaults = {.reference_spp =
-                                   suite_whole(r, root, "reference_spp", 1024, 2, 1 << 24)};
+    s->references = suite_folder(r, root, "references");
+    const bench_goal usual = {.spp = DEFAULT_SPP, .seconds = INFINITY};
+    scene_defaults defaults = {.goal = read_goal(r, root, &usual)};
     suite_size(r, root, &defaults.size);
     s->num_scenes = suite_list(r, root, "scenes", 1, BENCH_MAX_SCENES);
     for (uint32_t i = 0; i < s->num_scenes; i++) {
@@ -458,6 +502,7 @@ void bench_suite_finish(bench_suite *suite)
         free(suite->runs[i].defines);
         cJSON_Delete(suite->runs[i].spec);
     }
+    free(suite->references);
     cJSON_Delete(suite->root);
     *suite = (bench_suite){0};
 }

@@ -9,6 +9,13 @@ enum { BENCH_MAX_SCENES = 64, BENCH_MAX_RUNS = 256, BENCH_MAX_RATIOS = 8, BENCH_
 // The reference's picture, beside those of the runs.
 #define BENCH_REFERENCE_SLUG "reference"
 
+// When a reference is good enough: samples are added until there are `spp`, or a pixel's noise (metrics.n) is at most
+// `noise`, or rendering has taken `seconds`.
+typedef struct bench_goal {
+    uint32_t spp;
+    double noise, seconds;
+} bench_goal;
+
 typedef struct bench_scene {
     const char *name;
     char *slug;               // the name as part of a file's name, unique in the suite
@@ -16,7 +23,7 @@ typedef struct bench_scene {
     scene_options scene;
     view_options view;
     uint32_t lights; // so many of the scene's alone, the first; 0: all
-    uint32_t reference_spp;
+    bench_goal goal;
     char *reference; // a file instead; NULL: `path` renders it
     const cJSON *json;
 } bench_scene;
@@ -42,7 +49,8 @@ typedef struct bench_suite {
     cJSON *root;
     const char *file; // for messages; the caller's
     const char *name, *about;
-    uint64_t hash; // of the file
+    uint64_t hash;    // of the file
+    char *references; // folder of stored references; NULL: none
     bench_scene scenes[BENCH_MAX_SCENES];
     bench_run runs[BENCH_MAX_RUNS];
     bench_ratio ratios[BENCH_MAX_RATIOS];

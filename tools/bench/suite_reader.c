@@ -225,15 +225,27 @@ const cJSON *suite_element(suite_reader *r, const cJSON *root, const char *key, 
 
 // ---- files ------------------------------------------------------------------------------------
 
+// What a name means in a suite's file: the name as seen from that file. A new string.
+static char *beside_suite(const suite_reader *r, const char *name)
+{
+    const char *slash = strrchr(r->file, '/');
+    return slash && name[0] != '/' ? text_format("%.*s/%s", (int)(slash - r->file), r->file, name)
+                                   : text_format("%s", name);
+}
+
+char *suite_folder(suite_reader *r, const cJSON *object, const char *key)
+{
+    const char *name = suite_text(r, object, key, false);
+    return name ? beside_suite(r, name) : NULL;
+}
+
 char *suite_file(suite_reader *r, const cJSON *object, const char *key, const char *folder)
 {
-    const char *name = suite_text(r, object, key, false), *slash = strrchr(r->file, '/');
+    const char *name = suite_text(r, object, key, false);
     if (!name) {
         return NULL;
     }
-    char *beside = name[0] == '/' ? text_format("%s", name)
-                   : slash        ? text_format("%.*s/%s", (int)(slash - r->file), r->file, name)
-                                  : text_format("%s", name);
+    char *beside = beside_suite(r, name);
     if (beside && access(beside, R_OK) == 0) {
         return beside;
     }

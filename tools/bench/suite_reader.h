@@ -35,3 +35,6 @@ const cJSON *suite_element(suite_reader *r, const cJSON *root, const char *key, 
 
 // The file that a key names, beside the suite or in `folder`: a new string; NULL: the key is not there, or a fault.
 char *suite_file(suite_reader *r, const cJSON *object, const char *key, const char *folder);
+
+// The folder that a key names, as seen from the suite; it need not be there. A new string; NULL: the key is not there.
+char *suite_folder(suite_reader *r, const cJSON *object, const char *key);

@@ -50,6 +50,7 @@ typedef struct tyn_image_file {
     uint32_t width, height;
     uint32_t num_channels;
     tyn_channel *channels;
+    char *comments; // of an EXR file, UTF-8: its attribute "comments"; NULL: none
 } tyn_image_file;
 // One part, scanlines or tiles, any compression; half and float channels of full resolution.
 TYN_API tyn_result tyn_exr_read(tyn_image_file *image, const char *path, const tyn_log *log);
