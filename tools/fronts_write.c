@@ -52,7 +52,7 @@ static double error_of(const cJSON *run, int block)
 
 static double cold_of(const cJSON *run)
 {
-    return json_number_at(json_at(run, "frame_ms"), "cold", NAN);
+    return json_number_at(json_at(run, "frame_ms"), "animated_light", NAN);
 }
 
 static double samples_of(const cJSON *run)

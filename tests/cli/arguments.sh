@@ -130,7 +130,7 @@ bad_runs "runs[0] 'single': seed: method 'single' does not sample" '{"method": "
 bad_runs "suite.json: group 'pop': 'path' samples and 'pop' does not" '{}, {"method": "path", "group": "pop"}'
 bad_runs "runs[0].spp: must be a number from 1" '{"sweep": {"spp": [1, 0]}, "method": "path"}'
 bad_runs "runs[0].spp: must be a whole number" '{"method": "path", "spp": 1.5}'
-bad_runs "'path': seed 1000003 is that of references" '{"method": "path", "seed": 1000003}'
+bad_runs "'path': seed 1000003: those from 1000003 on are of references" '{"method": "path", "seed": 1000003}'
 bad_runs "lattice.cells" '{"sweep": {"lattice.cells": [8, 1e9]}}'
 bad_runs "only: must be a list of names of scenes" '{"only": ["fog"]}'
 bad_runs "only: must be a list of names of scenes of this suite, one at least" '{"only": []}'

@@ -13,11 +13,12 @@ static void add_run(cJSON *runs, const char *group, bool sampling, double ms, do
                     double n)
 {
     char text[512];
-    snprintf(
-        text, sizeof text,
-        "{\"key\": \"%d\", \"group\": \"%s\", \"sampling\": %s, \"swept\": true, \"frame_ms\": "
-        "{\"cold\": %g}, \"errors\": [{\"block\": 8, \"error\": %g, \"n\": %g}]}",
-        cJSON_GetArraySize(runs), group, sampling ? "true" : "false", ms, error, n);
+    snprintf(text, sizeof text,
+             "{\"key\": \"%d\", \"group\": \"%s\", \"sampling\": %s, \"baseline\": %s, \"swept\": "
+             "true, \"frame_ms\": "
+             "{\"animated_light\": %g}, \"errors\": [{\"block\": 8, \"error\": %g, \"n\": %g}]}",
+             cJSON_GetArraySize(runs), group, sampling ? "true" : "false",
+             sampling ? "true" : "false", ms, error, n);
     cJSON_AddItemToArray(runs, cJSON_Parse(text));
 }
 
@@ -48,7 +49,7 @@ static void noisy(void **state)
     add_run(runs, "path", true, 40, 0.05, 0.034);
     add_run(runs, "path", true, 640, 0, 0.034);
     plane p;
-    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
+    assert_true(plane_make(&p, runs, 0, 8, TIME_LIGHT));
     cJSON *verdicts = plane_verdicts(&p), *ranges = written(plane_ranges(&p));
     cJSON *floors = written(plane_floors(&p));
     has_text(verdicts, cJSON_GetArraySize(verdicts) - 1,
@@ -74,7 +75,8 @@ static void noisy(void **state)
     assert_false(json_true(cJSON_GetArrayItem(runs, 1), "shown"));
     plane_finish(&p);
     runs = written(runs);
-    assert_true(isnan(json_figure(runs, "0.equal_error.0.ms"))); // of an error that nobody knows
+    assert_true(
+        isnan(json_figure(runs, "0.equal_error.0.baseline_ms"))); // of an error that nobody knows
     cJSON_Delete(floors);
     cJSON_Delete(ranges);
     cJSON_Delete(verdicts);
@@ -93,7 +95,7 @@ static void many_groups(void **state)
         add_run(runs, name, i == 0, 10 + i, 0.2 / (1 + i), 0);
     }
     plane p;
-    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
+    assert_true(plane_make(&p, runs, 0, 8, TIME_LIGHT));
     assert_int_equal(p.num_lines, 100);
     plane_add_equal_errors(&p, equal);
     assert_int_equal(cJSON_GetArraySize(equal), 3 * 99);
@@ -109,7 +111,7 @@ static void large_errors(void **state)
     add_run(runs, "pop", false, 1, 2.0, 0);
     add_run(runs, "path", true, 10, 0.6, 0);
     plane p;
-    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
+    assert_true(plane_make(&p, runs, 0, 8, TIME_LIGHT));
     cJSON *verdicts = plane_verdicts(&p);
     has_text(verdicts, 0, "pop is on the front above 200 %");
     has_text(verdicts, 1, "path wins below 200 %");
@@ -128,7 +130,7 @@ static void promise(void **state)
     add_run(runs, "path", true, 25, 0.06, 0); // 0.05 after 36 ms, 0.03 after 100
     add_run(runs, "path", true, 625, 0.012, 0);
     plane p;
-    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
+    assert_true(plane_make(&p, runs, 0, 8, TIME_LIGHT));
     cJSON *kept = written(plane_promise(&p));
     assert_true(json_true(kept, "holds"));
     assert_true(fabs(json_figure(kept, "above") - 0.048) < 1e-9);
@@ -138,7 +140,7 @@ static void promise(void **state)
 
     add_run(runs, "path", true, 5, 0.1,
             0); // the fastest of all from 10 % on; no longer 0.06 after 25 ms
-    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
+    assert_true(plane_make(&p, runs, 0, 8, TIME_LIGHT));
     kept = written(plane_promise(&p));
     assert_false(json_true(kept, "holds"));
     const char *text = json_text(kept, "text");
@@ -152,7 +154,7 @@ static void promise(void **state)
 
     runs = cJSON_CreateArray();
     add_run(runs, "path", true, 5, 0.1, 0);
-    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
+    assert_true(plane_make(&p, runs, 0, 8, TIME_LIGHT));
     kept = plane_promise(&p);
     assert_true(cJSON_IsNull(kept));
     plane_finish(&p);
@@ -168,15 +170,18 @@ static void moved_camera(void **state)
     add_run(runs, "pop", false, 30, 0.01, 0);
     add_run(runs, "path", true, 10, 0.2, 0);
     add_run(runs, "path", true, 40, 0.1, 0);
-    cJSON_AddNumberToObject(cJSON_GetObjectItem(cJSON_GetArrayItem(runs, 0), "frame_ms"),
-                            "camera_moved", 8);
+    static const double moved_ms[] = {8, 10, 40};
+    for (int i = 0; i < 3; i++) {
+        cJSON_AddNumberToObject(cJSON_GetObjectItem(cJSON_GetArrayItem(runs, i), "frame_ms"),
+                                "camera_moved", moved_ms[i]);
+    }
     plane p;
-    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
+    assert_true(plane_make(&p, runs, 0, 8, TIME_LIGHT));
     cJSON *kept = written(plane_promise(&p));
     assert_false(json_true(kept, "holds"));
     plane_finish(&p);
     cJSON_Delete(kept);
-    assert_true(plane_make(&p, runs, 0, 8, PLANE_MOVED));
+    assert_true(plane_make(&p, runs, 0, 8, TIME_CAMERA));
     kept = written(plane_promise(&p));
     assert_true(json_true(kept, "holds"));
     cJSON *equal = cJSON_CreateArray();
@@ -199,7 +204,7 @@ static void not_finite(void **state)
     cJSON *pop = cJSON_GetArrayItem(runs, 0);
     cJSON_AddNumberToObject(cJSON_GetArrayItem(cJSON_GetObjectItem(pop, "errors"), 0), "nan", 3);
     plane p;
-    assert_true(plane_make(&p, runs, 0, 8, PLANE_COLD));
+    assert_true(plane_make(&p, runs, 0, 8, TIME_LIGHT));
     cJSON *front = plane_front(&p), *list = cJSON_GetObjectItem(front, "runs");
     cJSON *equal = cJSON_CreateArray(), *floors = plane_floors(&p);
     assert_int_equal(cJSON_GetArraySize(list), 1);

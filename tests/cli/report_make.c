@@ -125,6 +125,9 @@ static cJSON *make_run(app *a, const char *dir, int scene, int index)
     cJSON_AddStringToObject(run, "method", m->method);
     cJSON_AddStringToObject(run, "group", m->group);
     cJSON_AddBoolToObject(run, "sampling", m->noise > 0);
+    cJSON_AddBoolToObject(run, "baseline", m->noise > 0);
+    cJSON_AddItemToObject(run, "preset",
+                          index == 0 ? cJSON_CreateString("normal") : cJSON_CreateNull());
     settings = cJSON_AddObjectToObject(run, "settings");
     if (m->setting) {
         cJSON_AddNumberToObject(settings, m->setting, m->amount);
@@ -143,11 +146,11 @@ static cJSON *make_run(app *a, const char *dir, int scene, int index)
         errors, error_entry(1, m->noise > 0 ? 7 * error : 1.15 * error, 0.05 * harder, m->noise));
     cJSON_AddNumberToObject(run, "setup_ms", 180);
     frame = cJSON_AddObjectToObject(run, "frame_ms");
-    cJSON_AddNumberToObject(frame, "cold", m->ms * slower);
-    cJSON_AddNumberToObject(frame, "camera_moved", 0.7 * m->ms * slower);
+    cJSON_AddNumberToObject(frame, "animated_light", m->ms * slower);
+    cJSON_AddNumberToObject(frame, "camera_moved", (m->noise > 0 ? 1 : 0.7) * m->ms * slower);
     cJSON_AddNumberToObject(frame, "unchanged", 0.07);
     frame = cJSON_AddObjectToObject(run, "frames");
-    cJSON_AddNumberToObject(frame, "cold", 5);
+    cJSON_AddNumberToObject(frame, "animated_light", 5);
     cJSON_AddNumberToObject(frame, "camera_moved", 8);
     cJSON_AddNumberToObject(frame, "unchanged", 5);
     memory = cJSON_AddObjectToObject(run, "memory");
@@ -271,15 +274,10 @@ static cJSON *make_scene(app *a, const char *dir, int index)
     }
     cJSON *equal = cJSON_AddArrayToObject(scene, "equal_error");
     const double ratios[NUM_SCENES] = {1, 2.6, 0.05};
-    for (int k = 0; k < 2; k++) {
-        const char *baseline = k ? "path, plain" : "path";
-        cJSON_AddItemToArray(equal,
-                             equal_entry(0.10, baseline, 31, 31 * 12.4 * ratios[index] * (1 + k)));
-        cJSON_AddItemToArray(equal,
-                             equal_entry(0.05, baseline, 51, 51 * 29.3 * ratios[index] * (1 + k)));
-        cJSON_AddItemToArray(equal, equal_entry(0.03, baseline, index == 2 ? 0 : 130,
-                                                130 * 31.3 * ratios[index] * (1 + k)));
-    }
+    cJSON_AddItemToArray(equal, equal_entry(0.10, "path", 31, 31 * 12.4 * ratios[index]));
+    cJSON_AddItemToArray(equal, equal_entry(0.05, "path, plain", 51, 51 * 29.3 * ratios[index]));
+    cJSON_AddItemToArray(
+        equal, equal_entry(0.03, "path", index == 2 ? 0 : 130, 130 * 31.3 * ratios[index]));
     cJSON *verdicts = cJSON_AddArrayToObject(scene, "verdicts");
     cJSON_AddItemToArray(verdicts, cJSON_CreateString("pop is on the front above 2.7 %"));
     cJSON_AddItemToArray(verdicts, cJSON_CreateString("path wins below 2.7 %"));
@@ -291,32 +289,54 @@ static cJSON *make_scene(app *a, const char *dir, int index)
                             index != 2 ? "pop is on the front at all errors above 3.0 %"
                                        : "pop is not on the front at all errors above 3.0 %: path "
                                          "wins above 12 %");
-    cJSON_AddItemToObject(scene, "moved", make_moved(scene));
+    cJSON *moved = make_moved(scene), *times = cJSON_AddObjectToObject(scene, "times");
+    cJSON_AddItemToObject(times, "camera_moved", moved);
     return scene;
 }
 
-static cJSON *make_headline(double faster)
+static void add_headline(cJSON *all, const char *frame, double faster)
 {
-    cJSON *all = cJSON_CreateArray();
-    for (int k = 0; k < 6; k++) {
-        const double error = k % 3 == 0 ? 0.10 : k % 3 == 1 ? 0.05 : 0.03;
+    for (int k = 0; k < 3; k++) {
+        const double error = k == 0 ? 0.10 : k == 1 ? 0.05 : 0.03;
         cJSON *h = cJSON_CreateObject();
+        cJSON_AddStringToObject(h, "frame", frame);
         cJSON_AddNumberToObject(h, "block", 8);
         cJSON_AddNumberToObject(h, "error", error);
         cJSON_AddStringToObject(h, "method", "pop");
-        cJSON_AddStringToObject(h, "baseline", k < 3 ? "path" : "path, plain");
         cJSON_AddNumberToObject(h, "geometric_mean",
-                                (k % 3 == 0   ? 6.3
-                                 : k % 3 == 1 ? 14.9
-                                              : 50.5) *
-                                    (k < 3 ? 1 : 2) * faster);
-        cJSON_AddNumberToObject(h, "scenes", k % 3 == 2 ? 2 : 3);
-        cJSON_AddNumberToObject(h, "extrapolated", k % 3);
+                                (k == 0   ? 6.3
+                                 : k == 1 ? 14.9
+                                          : 50.5) *
+                                    faster);
+        cJSON_AddNumberToObject(h, "scenes", k == 2 ? 2 : 3);
+        cJSON_AddNumberToObject(h, "of", 3);
+        cJSON_AddNumberToObject(h, "extrapolated", k);
         cJSON *missing = cJSON_AddArrayToObject(h, "missing");
-        if (k % 3 == 2) {
+        if (k == 2) {
             cJSON_AddItemToArray(missing, cJSON_CreateString("milk: pop does not reach it"));
         }
         cJSON_AddItemToArray(all, h);
+    }
+}
+
+static cJSON *make_presets(void)
+{
+    cJSON *all = cJSON_CreateArray();
+    for (int k = 0; k < 2; k++) {
+        cJSON *p = cJSON_CreateObject();
+        cJSON_AddStringToObject(p, "frame", "animated_light");
+        cJSON_AddNumberToObject(p, "block", k ? 1 : 8);
+        cJSON_AddStringToObject(p, "method", "pop");
+        cJSON_AddStringToObject(p, "preset", "normal");
+        cJSON_AddNumberToObject(p, "error", 0.041);
+        cJSON_AddNumberToObject(p, "ms", 52);
+        cJSON_AddNumberToObject(p, "geometric_mean", k ? 41 : 7.7);
+        cJSON_AddNumberToObject(p, "scenes", 2);
+        cJSON_AddNumberToObject(p, "of", 3);
+        cJSON_AddNumberToObject(p, "extrapolated", k);
+        cJSON *missing = cJSON_AddArrayToObject(p, "missing");
+        cJSON_AddItemToArray(missing, cJSON_CreateString("milk: the noise hides it"));
+        cJSON_AddItemToArray(all, p);
     }
     return all;
 }
@@ -385,7 +405,7 @@ int main(int argc, char **argv)
     mkdir(path, 0777);
     cJSON *report = cJSON_CreateObject();
     cJSON_AddStringToObject(report, "schema", "tyndall-report");
-    cJSON_AddNumberToObject(report, "version", 1);
+    cJSON_AddNumberToObject(report, "version", 2);
     cJSON_AddStringToObject(report, "tyndall", "0.1.0");
     cJSON_AddStringToObject(report, "date", "2026-11-21T12:00:00Z");
     cJSON *suite = cJSON_AddObjectToObject(report, "suite");
@@ -409,8 +429,10 @@ int main(int argc, char **argv)
     for (int i = 0; i < NUM_SCENES; i++) {
         cJSON_AddItemToArray(scenes, make_scene(&a, argv[1], i));
     }
-    cJSON_AddItemToObject(report, "headline", make_headline(1));
-    cJSON_AddItemToObject(report, "headline_moved", make_headline(1 / 0.7));
+    cJSON *headline = cJSON_AddArrayToObject(report, "headline");
+    add_headline(headline, "animated_light", 1);
+    add_headline(headline, "camera_moved", 1 / 0.7);
+    cJSON_AddItemToObject(report, "presets", make_presets());
     cJSON_AddItemToObject(report, "stress", make_stress(argc < 3));
     char *text = cJSON_Print(report);
     snprintf(path, sizeof path, "%s/report.json", argv[1]);

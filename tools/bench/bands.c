@@ -88,7 +88,7 @@ static bool is_for(const char *pattern, const char *name)
     return strcmp(pattern, "*") == 0 || strcmp(pattern, name) == 0;
 }
 
-// "errors.0.bias", or the quotient of two: "frame_ms.unchanged / frame_ms.cold".
+// "errors.0.bias", or the quotient of two: "frame_ms.unchanged / frame_ms.animated_light".
 static double figure_of(const cJSON *run, const char *figure)
 {
     const char *slash = strstr(figure, " / ");

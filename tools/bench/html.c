@@ -44,7 +44,7 @@ static double error_of(const cJSON *run)
 
 static double time_of(const cJSON *run)
 {
-    return number_of(cJSON_GetObjectItemCaseSensitive(run, "frame_ms"), "cold");
+    return number_of(cJSON_GetObjectItemCaseSensitive(run, "frame_ms"), "animated_light");
 }
 
 static bool on_front(const cJSON *scene, const char *key)

@@ -18,6 +18,11 @@ double json_figure(const cJSON *tree, const char *path)
                    : cJSON_GetObjectItemCaseSensitive(tree, key);
         path += length + (path[length] == '.');
     }
+    if (cJSON_IsRaw(tree)) { // as stats.h writes floats
+        char *end = NULL;
+        const double value = strtod(tree->valuestring, &end);
+        return end != tree->valuestring ? value : NAN;
+    }
     return cJSON_IsNumber(tree) ? tree->valuedouble : NAN;
 }
 

@@ -132,53 +132,83 @@ static void take_states(measuring *m)
 
 // ---- times ------------------------------------------------------------------------------------
 
-static bool go_on(double start, uint32_t done, uint32_t least, uint32_t most, double seconds)
-{
-    return done < most && (done < least || app_seconds() - start < seconds);
-}
+// Renders the next frame of a kind; what it does beside its time is its own.
+typedef int (*frame_of)(measuring *m, void *state);
 
-// Cold frames: medians of the whole and of every node.
-static int time_cold(measuring *m, uint32_t least)
+// Times frames of a kind for `seconds`, `least` and `most` of them, into their median. Gives the exit code.
+static int time_frames(measuring *m, bench_time kind, frame_of frame, void *state, uint32_t least,
+                       uint32_t most, double seconds)
 {
-    const bench_suite *suite = m->c->suite;
-    const uint32_t most = suite->frames;
-    double *whole = calloc(most, sizeof *whole);
-    double *nodes = calloc((size_t)most * MAX_NODES, sizeof *nodes);
-    int code = whole && nodes ? EXIT_DONE : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
+    double *times = calloc(most, sizeof *times);
+    int code = times ? EXIT_DONE : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
     uint32_t done = 0;
     const double start = app_seconds();
-    while (code == EXIT_DONE && go_on(start, done, least, most, suite->timing_seconds)) {
-        code = renderer_frame(m->c->a, &m->renderer, &m->c->scene, &m->view, true, NULL);
-        if (code == EXIT_DONE) {
-            double times[MAX_NODES] = {0};
-            take_report(m, times);
-            for (uint32_t k = 0; k < m->num_nodes; k++) {
-                nodes[k * most + done] = times[k];
-            }
-            whole[done++] = m->renderer.frame_ms;
-        }
+    while (code == EXIT_DONE && done < most && (done < least || app_seconds() - start < seconds)) {
+        code = frame(m, state);
+        times[done] = m->renderer.frame_ms;
+        done += code == EXIT_DONE;
     }
     if (code == EXIT_DONE) {
-        m->cold_ms = timing_median(whole, done);
-        m->cold_frames = done;
+        m->ms[kind] = timing_median(times, done);
+        m->frames[kind] = done;
+    }
+    free(times);
+    return code;
+}
+
+// ... of every node.
+typedef struct node_times {
+    uint32_t most, done;
+    double *ms; // `most` for each node
+} node_times;
+
+static int light_frame(measuring *m, void *state)
+{
+    node_times *nodes = state;
+    const int code = renderer_frame(m->c->a, &m->renderer, &m->c->scene, &m->view, true, NULL);
+    if (code == EXIT_DONE) {
+        double times[MAX_NODES] = {0};
+        take_report(m, times);
         for (uint32_t k = 0; k < m->num_nodes; k++) {
-            m->node_ms[k] = timing_median(nodes + k * most, done);
+            nodes->ms[k * nodes->most + nodes->done] = times[k];
+        }
+        nodes->done++;
+    }
+    return code;
+}
+
+static int time_light(measuring *m, uint32_t least)
+{
+    const bench_suite *suite = m->c->suite;
+    node_times nodes = {.most = suite->frames,
+                        .ms = calloc((size_t)suite->frames * MAX_NODES, sizeof *nodes.ms)};
+    int code = nodes.ms ? time_frames(m, TIME_LIGHT, light_frame, &nodes, least, suite->frames,
+                                      suite->timing_seconds)
+                        : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
+    if (code == EXIT_DONE) {
+        for (uint32_t k = 0; k < m->num_nodes; k++) {
+            m->node_ms[k] = timing_median(nodes.ms + k * nodes.most, nodes.done);
         }
         finish_nodes(m);
     }
-    free(whole);
-    free(nodes);
+    free(nodes.ms);
     return code;
 }
 
 // The camera turns by a little, and a frame is rendered, with samples of its own where a method samples: as in a film.
-static int film_frame(measuring *m, tyn_view *view, flicker *f)
+typedef struct film {
+    tyn_view view;
+    flicker flicker;
+} film;
+
+static int film_frame(measuring *m, void *state)
 {
-    timing_turn_camera(&m->c->scene, &view->camera, flicker_step);
-    view->seed += m->method.info.progressive;
-    const int code = renderer_frame(m->c->a, &m->renderer, &m->c->scene, view, false, NULL);
-    if (code == EXIT_DONE && f->frames < FLICKER_FRAMES) {
-        flicker_add(f, tyn_offline_output(m->renderer.offline, TYN_OUTPUT_RADIANCE));
+    film *f = state;
+    timing_turn_camera(&m->c->scene, &f->view.camera, flicker_step);
+    f->view.seed += m->method.info.progressive;
+    const int code = renderer_frame(m->c->a, &m->renderer, &m->c->scene, &f->view, false, NULL);
+    if (code == EXIT_DONE && f->flicker.frames < FLICKER_FRAMES) {
+        flicker_add(&f->flicker, tyn_offline_output(m->renderer.offline, TYN_OUTPUT_RADIANCE));
     }
     return code;
 }
@@ -187,51 +217,98 @@ static int film_frame(measuring *m, tyn_view *view, flicker *f)
 // such frames need.
 static int time_camera(measuring *m, uint32_t least, uint32_t most, double seconds)
 {
-    double *times = calloc(most, sizeof *times);
-    flicker f;
-    int code = flicker_open(&f, m->view.width, m->view.height) && times
-                   ? EXIT_DONE
+    film f = {.view = m->view};
+    int code = flicker_open(&f.flicker, m->view.width, m->view.height)
+                   ? film_frame(m, &f)
                    : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
-    tyn_view view = m->view;
-    uint32_t done = 0;
-    code = code == EXIT_DONE ? film_frame(m, &view, &f) : code;
-    const double start = app_seconds();
-    while (code == EXIT_DONE && go_on(start, done, least, most, seconds)) {
-        code = film_frame(m, &view, &f);
-        times[done] = m->renderer.frame_ms;
-        done += code == EXIT_DONE;
+    if (code == EXIT_DONE) {
+        code = time_frames(m, TIME_CAMERA, film_frame, &f, least, most, seconds);
     }
     if (code == EXIT_DONE) {
-        m->camera_ms = timing_median(times, done);
-        m->camera_frames = done;
-        m->flicker = flicker_value(&f);
+        m->flicker = flicker_value(&f.flicker);
     }
-    flicker_close(&f);
-    free(times);
+    flicker_close(&f.flicker);
     return code;
+}
+
+static int same_frame(measuring *m, void *state)
+{
+    (void)state;
+    return renderer_frame(m->c->a, &m->renderer, &m->c->scene, &m->view, false, NULL);
 }
 
 static int time_unchanged(measuring *m)
 {
     const bench_suite *suite = m->c->suite;
-    double *times = calloc(suite->frames, sizeof *times);
-    int code = times ? EXIT_DONE : app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
-    // what the camera left is put right first
-    code = code == EXIT_DONE
-               ? renderer_frame(m->c->a, &m->renderer, &m->c->scene, &m->view, false, NULL)
-               : code;
-    uint32_t done = 0;
+    const int code = same_frame(m, NULL); // what the camera left is put right first
+    return code == EXIT_DONE ? time_frames(m, TIME_UNCHANGED, same_frame, NULL, 1, suite->frames,
+                                           suite->timing_seconds)
+                             : code;
+}
+
+// The media of the frame before, as if they were new: grids are uploaded again, and a millionth is added to or taken
+// from the densities, so that what is homogeneous changes as well.
+typedef struct other_media {
+    uint64_t hashes[TYN_MAX_MEDIA];
+    float scales[TYN_MAX_MEDIA];
+    uint32_t frames;
+} other_media;
+
+static int medium_frame(measuring *m, void *state)
+{
+    other_media *before = state;
+    tyn_scene *scene = &m->c->scene;
+    before->frames++;
+    for (uint32_t i = 0; i < scene->num_volumes && i < TYN_MAX_MEDIA; i++) {
+        scene->volumes[i].hash =
+            before->hashes[i] ^ (UINT64_C(0x9E3779B97F4A7C15) * before->frames);
+    }
+    for (uint32_t i = 0; i < scene->num_media && i < TYN_MAX_MEDIA; i++) {
+        scene->media[i].density_scale = before->scales[i] * (before->frames % 2 ? 1.000001f : 1);
+    }
+    return renderer_frame(m->c->a, &m->renderer, scene, &m->view, false, NULL);
+}
+
+// Frames in which the media have changed, the first of them not timed.
+static int time_medium(measuring *m, uint32_t least)
+{
+    tyn_scene *scene = &m->c->scene;
+    other_media before = {0};
+    for (uint32_t i = 0; i < scene->num_volumes && i < TYN_MAX_MEDIA; i++) {
+        before.hashes[i] = scene->volumes[i].hash;
+    }
+    for (uint32_t i = 0; i < scene->num_media && i < TYN_MAX_MEDIA; i++) {
+        before.scales[i] = scene->media[i].density_scale;
+    }
+    int code = medium_frame(m, &before);
+    if (code == EXIT_DONE) {
+        code = time_frames(m, TIME_MEDIUM, medium_frame, &before, least, m->c->suite->frames,
+                           m->c->suite->timing_seconds);
+    }
+    for (uint32_t i = 0; i < scene->num_volumes && i < TYN_MAX_MEDIA; i++) {
+        scene->volumes[i].hash = before.hashes[i];
+    }
+    for (uint32_t i = 0; i < scene->num_media && i < TYN_MAX_MEDIA; i++) {
+        scene->media[i].density_scale = before.scales[i];
+    }
+    return code;
+}
+
+// The first picture of a program that has just opened the device: pipelines, uploads, memory, all nodes. The driver
+// has compiled these kernels before.
+static int time_first(measuring *m)
+{
+    renderer fresh = {0};
     const double start = app_seconds();
-    while (code == EXIT_DONE && go_on(start, done, 1, suite->frames, suite->timing_seconds)) {
-        code = renderer_frame(m->c->a, &m->renderer, &m->c->scene, &m->view, false, NULL);
-        times[done] = m->renderer.frame_ms;
-        done += code == EXIT_DONE;
+    int code = renderer_open(m->c->a, m->c->machine->device, &m->method, &fresh);
+    if (code == EXIT_DONE) {
+        code = renderer_frame(m->c->a, &fresh, &m->c->scene, &m->view, false, NULL);
     }
     if (code == EXIT_DONE) {
-        m->unchanged_ms = timing_median(times, done);
-        m->unchanged_frames = done;
+        m->ms[TIME_FIRST] = 1e3 * (app_seconds() - start);
+        m->frames[TIME_FIRST] = 1;
     }
-    free(times);
+    renderer_close(&fresh);
     return code;
 }
 
@@ -249,7 +326,7 @@ static int measure_balance(measuring *m)
     method_view(&m->run->method, &view);
     if (m->method.info.progressive) {
         const double paths = (double)m->view.width * m->view.height * m->view.num_samples;
-        const double sample_ms = 2e4 * m->cold_ms / paths;
+        const double sample_ms = 2e4 * m->ms[TIME_LIGHT] / paths;
         const double affordable = 1e3 * m->c->suite->timing_seconds / sample_ms;
         view.num_samples = (uint32_t)fmin(fmin(view.num_samples, BALANCE_SAMPLES), affordable);
         if (view.num_samples < 1) {
@@ -320,7 +397,7 @@ static int measure_frames(measuring *m, const char *label)
     }
     const uint32_t least = m->renderer.frame_ms > 1e3 * seconds ? 1 : 2;
     if (code == EXIT_DONE) {
-        code = time_cold(m, least);
+        code = time_light(m, least);
     }
     if (code == EXIT_DONE) {
         const uint32_t frames = m->c->suite->frames;
@@ -331,6 +408,36 @@ static int measure_frames(measuring *m, const char *label)
         take_states(m);
         code = time_unchanged(m);
     }
+    // Of a sweep nobody asks for these.
+    if (code == EXIT_DONE && bench_preset(m->run)) {
+        code = time_medium(m, least);
+        code = code == EXIT_DONE ? time_first(m) : code;
+    }
+    return code;
+}
+
+static int again_frame(measuring *m, void *state)
+{
+    (void)state;
+    return renderer_frame(m->c->a, &m->renderer, &m->c->scene, &m->view, true, NULL);
+}
+
+// A method that samples begins anew wherever anything changes: what its frame takes beside the samples is measured
+// with one of them. Of unchanged frames it gives the picture that it has.
+static int time_samples(measuring *m)
+{
+    const double samples_ms = m->ms[TIME_LIGHT];
+    const uint32_t spp = m->view.num_samples, frames = m->frames[TIME_LIGHT];
+    m->view.num_samples = 1;
+    int code = time_frames(m, TIME_LIGHT, again_frame, NULL, 2, 2, 0);
+    const double one_ms = m->ms[TIME_LIGHT];
+    code = code == EXIT_DONE ? time_medium(m, 2) : code;
+    code = code == EXIT_DONE ? time_first(m) : code;
+    m->view.num_samples = spp;
+    m->ms[TIME_LIGHT] = m->ms[TIME_CAMERA] = samples_ms;
+    m->frames[TIME_LIGHT] = frames;
+    m->ms[TIME_MEDIUM] = fmax(samples_ms, samples_ms + m->ms[TIME_MEDIUM] - one_ms);
+    m->ms[TIME_FIRST] = fmax(samples_ms, samples_ms + m->ms[TIME_FIRST] - one_ms);
     return code;
 }
 
@@ -349,21 +456,22 @@ static int measure_samples(measuring *m, const char *label)
         code = renderer_frame(a, &m->renderer, &m->c->scene, &m->view, true, label);
     }
     if (code == EXIT_DONE) {
-        m->cold_ms = m->renderer.frame_ms;
-        m->cold_frames = 1;
+        m->ms[TIME_LIGHT] = m->renderer.frame_ms;
+        m->frames[TIME_LIGHT] = 1;
         take_report(m, m->node_ms);
         code = take_picture(m);
     }
     // Short ones again: a first millisecond is noise.
-    if (code == EXIT_DONE && m->cold_ms < fmin(0.2e3 * seconds, 300)) {
-        code = time_cold(m, 1);
+    if (code == EXIT_DONE && m->ms[TIME_LIGHT] < fmin(0.2e3 * seconds, 300)) {
+        code = time_light(m, 1);
     } else if (code == EXIT_DONE) {
         finish_nodes(m);
     }
-    if (code == EXIT_DONE && 3e-3 * m->cold_ms < seconds) {
+    if (code == EXIT_DONE && 3e-3 * m->ms[TIME_LIGHT] < seconds) {
         code = time_camera(m, 2, 2, seconds); // three pictures
-        m->camera_ms = NAN;                   // that of the whole rendering
-        m->camera_frames = 0;
+    }
+    if (code == EXIT_DONE) {
+        code = time_samples(m);
     }
     return code;
 }
@@ -374,9 +482,7 @@ int bench_measure(bench_case *c, const bench_run *run, const char *key, cJSON **
                    .run = run,
                    .fill = NAN,
                    .setup_ms = NAN,
-                   .cold_ms = NAN,
-                   .camera_ms = NAN,
-                   .unchanged_ms = NAN,
+                   .ms = {NAN, NAN, NAN, NAN, NAN},
                    .flicker = NAN};
     char label[192];
     snprintf(label, sizeof label, "%.80s: %.80s", c->spec->name, run->name);

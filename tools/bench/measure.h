@@ -10,7 +10,7 @@ typedef struct bench_case {
     const bench_suite *suite;
     const bench_scene *spec;
     const char *folder; // of --report; NULL: nothing is kept
-    uint32_t blocks[BENCH_BLOCKS];
+    uint32_t blocks[3]; // that errors are of: suite->block, 1, and 0 for FLIP
     tyn_scene scene;
     tyn_view view;
     uint64_t hash; // bench_scene_hash

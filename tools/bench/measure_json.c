@@ -110,6 +110,8 @@ static cJSON *json_run(const measuring *m, const char *key, const char *reason)
     cJSON_AddStringToObject(json, "method", m->run->method.method);
     cJSON_AddBoolToObject(json, "sampling", m->method.info.progressive);
     record_name_run(json, m->run);
+    const char *preset = m->method.info.progressive ? NULL : bench_preset(m->run);
+    cJSON_AddItemToObject(json, "preset", preset ? cJSON_CreateString(preset) : cJSON_CreateNull());
     cJSON_AddItemToObject(json, "settings", json_settings(m));
     cJSON_AddItemToObject(json, "all_settings",
                           m->method.settings ? stats_settings(&m->method, &m->view)
@@ -138,13 +140,11 @@ static int add_figures(measuring *m, cJSON *json)
     cJSON_AddItemToObject(json, "errors", json_errors(m));
     json_add_float(json, "setup_ms", m->setup_ms);
     cJSON *frame = cJSON_AddObjectToObject(json, "frame_ms");
-    json_add_float(frame, "cold", m->cold_ms);
-    json_add_float(frame, "camera_moved", m->camera_ms);
-    json_add_float(frame, "unchanged", m->unchanged_ms);
     cJSON *frames = cJSON_AddObjectToObject(json, "frames");
-    cJSON_AddNumberToObject(frames, "cold", m->cold_frames);
-    cJSON_AddNumberToObject(frames, "camera_moved", m->camera_frames);
-    cJSON_AddNumberToObject(frames, "unchanged", m->unchanged_frames);
+    for (int i = 0; i < NUM_TIMES; i++) {
+        json_add_float(frame, bench_time_names[i], m->ms[i]);
+        cJSON_AddNumberToObject(frames, bench_time_names[i], m->frames[i]);
+    }
     cJSON *memory = cJSON_AddObjectToObject(json, "memory");
     cJSON_AddNumberToObject(memory, "persistent", (double)m->persistent);
     cJSON_AddNumberToObject(memory, "transient", (double)m->transient);

@@ -2,6 +2,7 @@
 #pragma once
 #include "measure.h"
 #include "renderer.h"
+#include "times.h"
 
 enum { MAX_NODES = 64 };
 
@@ -15,8 +16,9 @@ typedef struct measuring {
     float *planes; // 6 w h: the picture
     metrics_image image;
     metrics errors[BENCH_BLOCKS];
-    double fill, setup_ms, cold_ms, camera_ms, unchanged_ms;
-    uint32_t cold_frames, camera_frames, unchanged_frames; // that these are medians of
+    double fill, setup_ms;
+    double ms[NUM_TIMES];
+    uint32_t frames[NUM_TIMES]; // that these are medians of
     uint64_t persistent, transient;
     cJSON *nodes, *warnings; // NULL until they are known
     uint32_t num_nodes;

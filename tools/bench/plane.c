@@ -12,7 +12,9 @@
 enum { NUM_ASKED = 3, MAX_RANGES = 64 };
 // What is promised of `pop`: the front at errors above both of these.
 static const double promised_error = 0.03, promised_floors = 1.2;
-static const double asked[NUM_ASKED] = {0.10, 0.05, 0.03}; // errors at which methods are compared
+// Errors at which methods are compared, and values of FLIP.
+static const double asked_errors[NUM_ASKED] = {0.10, 0.05, 0.03};
+static const double asked_flips[NUM_ASKED] = {0.05, 0.02, 0.01};
 
 // ---- runs as points ---------------------------------------------------------------------------
 
@@ -24,15 +26,16 @@ static uint32_t line_of(plane *p, const cJSON *run)
             return i;
         }
     }
-    p->lines[p->num_lines] = (plane_line){name, json_true(run, "sampling")};
+    p->lines[p->num_lines] =
+        (plane_line){name, json_true(run, "sampling"), json_true(run, "baseline")};
     return p->num_lines++;
 }
 
-// A method that samples begins anew wherever the camera goes.
-static double time_of(const cJSON *run, bool sampling, plane_frame frame)
+static double time_of(const cJSON *run, bench_time time)
 {
-    return json_figure(run,
-                       frame == PLANE_COLD || sampling ? "frame_ms.cold" : "frame_ms.camera_moved");
+    char path[48];
+    snprintf(path, sizeof path, "frame_ms.%s", bench_time_names[time]);
+    return json_figure(run, path);
 }
 
 // NAN: not known, as that of a picture of which some values are not finite.
@@ -44,7 +47,7 @@ static double error_of(const cJSON *run, int index)
     return json_figure(run, nan) > 0 ? NAN : json_figure(run, error);
 }
 
-bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block, plane_frame frame)
+bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block, bench_time time)
 {
     const uint32_t count = (uint32_t)cJSON_GetArraySize(runs);
     char noise_path[32];
@@ -52,7 +55,8 @@ bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block, plane_fr
     *p = (plane){.points = calloc(count + 1, sizeof *p->points),
                  .runs = calloc(count + 1, sizeof *p->runs),
                  .lines = calloc(count + 1, sizeof *p->lines),
-                 .block = block};
+                 .block = block,
+                 .time = time};
     if (!p->points || !p->runs || !p->lines) {
         return false;
     }
@@ -63,7 +67,7 @@ bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block, plane_fr
         const uint32_t of = line_of(p, run);
         p->noise = noise > 0 ? noise : p->noise;
         p->runs[p->count] = run;
-        p->points[p->count++] = (front_point){.ms = time_of(run, p->lines[of].sampling, frame),
+        p->points[p->count++] = (front_point){.ms = time_of(run, time),
                                               .error = error < noise ? noise : error,
                                               .line = of,
                                               .sampling = p->lines[of].sampling,
@@ -151,26 +155,63 @@ void plane_choose_pictures(const plane *p, cJSON *runs)
 
 // ---- times at equal error ---------------------------------------------------------------------
 
+// The baseline that is the fastest at an error. *line: which; undefined where none gets there.
+static front_time best_baseline(const plane *p, double error, uint32_t *line)
+{
+    front_time best = {NAN, -1, false};
+    for (uint32_t b = 0; b < p->num_lines; b++) {
+        if (!p->lines[b].baseline) {
+            continue;
+        }
+        const front_time time = front_time_at(p->points, p->count, b, error);
+        // What was measured is not beaten by what is extrapolated.
+        const bool better =
+            isnan(best.ms) || (time.measured == best.measured ? time.ms < best.ms : time.measured);
+        if (!isnan(time.ms) && better) {
+            best = time;
+            *line = b;
+        }
+    }
+    return best;
+}
+
+static bool has_baseline(const plane *p)
+{
+    bool has = false;
+    for (uint32_t b = 0; b < p->num_lines; b++) {
+        has = has || p->lines[b].baseline;
+    }
+    return has;
+}
+
+static cJSON *json_comparison(const plane *p, double own_ms, double error, bool known)
+{
+    uint32_t line = 0;
+    const front_time base = known ? best_baseline(p, error, &line) : (front_time){NAN, -1, false};
+    cJSON *entry = cJSON_CreateObject();
+    cJSON_AddStringToObject(entry, "frame", bench_time_names[p->time]);
+    cJSON_AddNumberToObject(entry, "block", p->block);
+    cJSON_AddItemToObject(entry, "baseline",
+                          isnan(base.ms) ? cJSON_CreateNull()
+                                         : cJSON_CreateString(p->lines[line].name));
+    json_add_float(entry, "baseline_ms", base.ms);
+    json_add_float(entry, "speedup", base.ms / own_ms);
+    cJSON_AddBoolToObject(entry, "measured", base.measured);
+    return entry;
+}
+
 // Below twice the noise of the reference an error is not known well enough to be asked for: "why", and no times.
-static cJSON *json_equal_error(const plane *p, double error, uint32_t own_line, uint32_t base_line)
+static cJSON *json_equal_error(const plane *p, double error, uint32_t own_line)
 {
     char noise[16];
     const bool vague = error < 2 * p->noise;
-    front_time own = {NAN, -1, false}, base = own;
-    if (!vague) {
-        own = front_time_at(p->points, p->count, own_line, error);
-        base = front_time_at(p->points, p->count, base_line, error);
-    }
-    cJSON *entry = cJSON_CreateObject();
-    cJSON_AddNumberToObject(entry, "block", p->block);
+    const front_time own =
+        vague ? (front_time){NAN, -1, false} : front_time_at(p->points, p->count, own_line, error);
+    cJSON *entry = json_comparison(p, own.ms, error, !vague);
     cJSON_AddNumberToObject(entry, "error", error);
     cJSON_AddStringToObject(entry, "method", p->lines[own_line].name);
     json_add_float(entry, "ms", own.ms);
     cJSON_AddItemToObject(entry, "run", json_key(p, own.point));
-    cJSON_AddStringToObject(entry, "baseline", p->lines[base_line].name);
-    json_add_float(entry, "baseline_ms", base.ms);
-    json_add_float(entry, "speedup", base.ms / own.ms);
-    cJSON_AddBoolToObject(entry, "measured", base.measured);
     char *why = vague ? text_format("the noise of its reference, %s, is more than half of this",
                                     percent(p->noise, noise))
                       : NULL;
@@ -181,32 +222,13 @@ static cJSON *json_equal_error(const plane *p, double error, uint32_t own_line, 
 
 void plane_add_equal_errors(const plane *p, cJSON *list)
 {
-    for (int e = 0; e < NUM_ASKED; e++) {
+    const double *asked = p->block ? asked_errors : asked_flips;
+    for (int e = 0; e < NUM_ASKED && has_baseline(p); e++) {
         for (uint32_t m = 0; m < p->num_lines; m++) {
-            for (uint32_t b = 0; b < p->num_lines; b++) {
-                if (!p->lines[m].sampling && p->lines[b].sampling) {
-                    cJSON_AddItemToArray(list, json_equal_error(p, asked[e], m, b));
-                }
+            if (!p->lines[m].sampling) {
+                cJSON_AddItemToArray(list, json_equal_error(p, asked[e], m));
             }
         }
-    }
-}
-
-static void add_own(const plane *p, const front_point *point, cJSON *list)
-{
-    for (uint32_t b = 0; b < p->num_lines; b++) {
-        if (!p->lines[b].sampling) {
-            continue;
-        }
-        const front_time base = point->bound ? (front_time){NAN, -1, false}
-                                             : front_time_at(p->points, p->count, b, point->error);
-        cJSON *entry = cJSON_CreateObject();
-        cJSON_AddNumberToObject(entry, "block", p->block);
-        cJSON_AddStringToObject(entry, "baseline", p->lines[b].name);
-        json_add_float(entry, "ms", base.ms);
-        json_add_float(entry, "speedup", base.ms / point->ms);
-        cJSON_AddBoolToObject(entry, "measured", base.measured);
-        cJSON_AddItemToArray(list, entry);
     }
 }
 
@@ -217,13 +239,16 @@ void plane_add_own_equal_errors(const plane *p, cJSON *runs)
         cJSON *run = cJSON_GetArrayItem(runs, (int)i), *error;
         cJSON_ArrayForEach(error, cJSON_GetObjectItemCaseSensitive(run, "errors"))
         {
-            if (json_figure(error, "block") == p->block) {
+            if (json_figure(error, "block") == p->block && p->time == TIME_LIGHT) {
                 cJSON_AddBoolToObject(error, "vague", point->error < 2 * p->noise);
             }
         }
-        if (!point->sampling && isfinite(point->error)) {
+        const bool asked = p->time == TIME_LIGHT || json_text(run, "preset")[0];
+        if (!point->sampling && isfinite(point->error) && isfinite(point->ms) && asked &&
+            has_baseline(p)) {
             cJSON *list = cJSON_GetObjectItemCaseSensitive(run, "equal_error");
-            add_own(p, point, list ? list : cJSON_AddArrayToObject(run, "equal_error"));
+            list = list ? list : cJSON_AddArrayToObject(run, "equal_error");
+            cJSON_AddItemToArray(list, json_comparison(p, point->ms, point->error, !point->bound));
         }
     }
 }

@@ -1,11 +1,12 @@
 // plane.h -- the runs of a scene as points of error against time, over blocks of one size: what follows from them.
 #pragma once
 #include "front.h"
+#include "times.h"
 #include <cjson/cJSON.h>
 
 typedef struct plane_line { // the runs of one group
     const char *name;
-    bool sampling;
+    bool sampling, baseline;
 } plane_line;
 
 typedef struct plane {
@@ -16,14 +17,12 @@ typedef struct plane {
     uint32_t num_lines;
     // Of the reference; 0: not known. An error below it is one of it or less, below twice it vague.
     double noise;
+    bench_time time; // which of a run's
 } plane;
 
-// Whose time: that of a frame in which every node runs, or of one after the camera has moved, the rest being as it was.
-typedef enum plane_frame { PLANE_COLD, PLANE_MOVED } plane_frame;
-
-// `index`: which of the errors; `block`: what they are of. Borrows from `runs`. False: out of memory; plane_finish is
-// due in any case.
-bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block, plane_frame frame);
+// `index`: which of the errors; `block`: what they are of, 0: FLIP. Borrows from `runs`. False: out of memory;
+// plane_finish is due in any case.
+bool plane_make(plane *p, const cJSON *runs, int index, uint32_t block, bench_time time);
 void plane_finish(plane *p);
 
 // As report.json has them (docs/report-schema.md).
@@ -34,10 +33,10 @@ cJSON *plane_ranges(const plane *p);   // of errors in which one method is faste
 cJSON *plane_verdicts(const plane *p); // the same as sentences
 // What is promised of `pop`: that it is on the front at errors above max(3 %, 1.2 times its floor). Null without `pop`.
 cJSON *plane_promise(const plane *p);
-// Every method against every one that samples, at the errors asked for.
+// Every method against the baselines, at the errors asked for: at each against the one that is the fastest there.
 void plane_add_equal_errors(const plane *p, cJSON *list);
-// What the methods that sample need for the error of each other run; which errors are vague; `runs` are those of
-// plane_make.
+// What the fastest of the baselines needs for the error of each run that does not sample (of a sweep only for
+// TIME_LIGHT), and which errors are vague; `runs` are those of plane_make.
 void plane_add_own_equal_errors(const plane *p, cJSON *runs);
 // Pages hold pictures: of a sweep only those on a front, the best and what no sweep made are worth it.
 void plane_choose_pictures(const plane *p, cJSON *runs);

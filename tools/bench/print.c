@@ -1,6 +1,7 @@
 // print.c -- the report for people, as a table on stdout.
 #include "print.h"
 #include "json.h"
+#include "times.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -68,39 +69,34 @@ static void print_scene_head(const cJSON *scene)
     if (seconds > 0) {
         printf(", %.0f s", seconds);
     }
-    printf("\n%-24s %9s %9s %8s %8s %8s %8s %8s\n", "", "error", "error", "cold", "camera", "same",
-           "set-up", "memory");
-    printf("%-24s %6d px %9s %8s %8s %8s %8s %8s\n", "", block, "1 px", "ms", "ms", "ms", "ms",
-           "MiB");
+    printf("\n%-24s %9s %9s %8s %8s %8s %8s %8s %8s %8s %8s\n", "", "error", "error", "", "first",
+           "medium", "light", "camera", "same", "set-up", "memory");
+    printf("%-24s %6d px %9s %8s %8s %8s %8s %8s %8s %8s %8s\n", "", block, "1 px", "FLIP", "ms",
+           "ms", "ms", "ms", "ms", "ms", "MiB");
 }
 
-// "plain path needs for the same error 812 ms on 8 px (15.2 times)": one line per baseline; none where noise hides the
-// errors.
+// "path needs for the same error 812 ms on 8 px (15.2 times)": of cold frames; nothing where noise hides the errors.
 static void print_equal(const cJSON *run)
 {
-    const cJSON *first, *e, *list = list_of(run, "equal_error");
-    cJSON_ArrayForEach(first, list)
+    const cJSON *e;
+    bool any = false;
+    cJSON_ArrayForEach(e, list_of(run, "equal_error"))
     {
-        const char *baseline = json_text(first, "baseline");
-        if (json_figure(first, "block") != json_figure(list, "0.block")) {
+        const double ms = json_figure(e, "baseline_ms"), block = json_figure(e, "block");
+        if (strcmp(json_text(e, "frame"), bench_time_names[TIME_LIGHT]) != 0 || isnan(ms)) {
             continue;
         }
-        bool any = false;
-        cJSON_ArrayForEach(e, list)
-        {
-            const double ms = json_figure(e, "ms");
-            if (strcmp(json_text(e, "baseline"), baseline) == 0 && !isnan(ms)) {
-                if (!any) {
-                    printf("    %-24s needs for the same error", baseline);
-                }
-                printf("%s %s%.*f ms on %.0f px (%.1f times)", any ? "," : "",
-                       json_true(e, "measured") ? "" : "about ", ms < 10, ms,
-                       json_figure(e, "block"), json_figure(e, "speedup"));
-                any = true;
-            }
+        printf(any ? ", " : "    for the same error ");
+        printf("%s needs %s%.*f ms ", json_text(e, "baseline"),
+               json_true(e, "measured") ? "" : "about ", ms < 10, ms);
+        if (block > 0) {
+            printf("on %.0f px (%.1f times)", block, json_figure(e, "speedup"));
+        } else {
+            printf("by FLIP (%.1f times)", json_figure(e, "speedup"));
         }
-        printf("%s", any ? "\n" : "");
+        any = true;
     }
+    printf("%s", any ? "\n" : "");
 }
 
 static void print_nodes(const cJSON *run, bool setup, const char *title)
@@ -133,6 +129,10 @@ static void print_error(const cJSON *error)
         printf(" %9s", "-");
         return;
     }
+    if (json_figure(error, "block") == 0) {
+        printf(" %s%6.4f", hidden ? "<=" : "  ", hidden ? noise : value);
+        return;
+    }
     printf(" %s%5.2f %%",
            hidden                      ? "<="
            : json_true(error, "vague") ? " ~"
@@ -153,9 +153,11 @@ static void print_run(const cJSON *run)
     {
         print_error(error);
     }
-    print_ms(json_figure(run, "frame_ms.cold"));
-    print_ms(json_figure(run, "frame_ms.camera_moved"));
-    print_ms(json_figure(run, "frame_ms.unchanged"));
+    for (int i = 0; i < NUM_TIMES; i++) {
+        char path[48];
+        snprintf(path, sizeof path, "frame_ms.%s", bench_time_names[i]);
+        print_ms(json_figure(run, path));
+    }
     print_ms(json_figure(run, "setup_ms"));
     printf(" %8.1f\n",
            (json_figure(run, "memory.persistent") + json_figure(run, "memory.transient")) /
@@ -209,34 +211,78 @@ void bench_print_scene(const cJSON *scene)
     if (promise[0]) {
         printf("  %s\n", promise);
     }
-    const char *moved = json_text(list_of(list_of(scene, "moved"), "promise"), "text");
+    const cJSON *times = list_of(scene, "times");
+    const cJSON *camera = list_of(times, bench_time_names[TIME_CAMERA]);
+    const char *moved = json_text(list_of(camera, "promise"), "text");
     if (moved[0]) {
         printf("  in frames after the camera has moved: %s\n", moved);
     }
     fflush(stdout);
 }
 
-// One line for each comparison that any scene has.
-static void print_headlines(const cJSON *report, const char *name, const char *title)
+static void print_measure(double block)
+{
+    if (block > 0) {
+        printf("on %2.0f px", block);
+    } else {
+        printf("by FLIP ");
+    }
+}
+
+// "about 12 times as fast as the baselines in 9 of 12 scenes"
+static void print_mean(const cJSON *entry)
+{
+    const double times = json_figure(entry, "geometric_mean");
+    const double extrapolated = json_figure(entry, "extrapolated");
+    printf("%s%.*f times as fast as the baselines in %.0f of %.0f scenes",
+           extrapolated > 0 ? "about " : "",
+           times < 0.1 ? 3
+           : times < 1 ? 2
+                       : 1,
+           times, json_figure(entry, "scenes"), json_figure(entry, "of"));
+    printf(extrapolated > 0 ? " (%.0f of them extrapolated)\n" : "\n", extrapolated);
+}
+
+// What a user gets who sets nothing but the quality, at the error that this has.
+static void print_presets(const cJSON *report)
 {
     const cJSON *item;
-    cJSON_ArrayForEach(item, list_of(report, name))
+    const char *title = "\nat the errors of the presets, geometric means over scenes:\n";
+    cJSON_ArrayForEach(item, list_of(report, "presets"))
     {
-        const double scenes = json_figure(item, "scenes");
-        const double extrapolated = json_figure(item, "extrapolated");
-        const cJSON *mean = list_of(item, "geometric_mean");
-        if (!(scenes > 0) || !cJSON_IsRaw(mean)) {
+        if (!(json_figure(item, "scenes") > 0)) {
             continue;
         }
-        const double times = strtod(mean->valuestring, NULL);
-        printf("%s%-16s %3.0f %% of %2.0f px: %s%.*f times as fast as %s (%.0f scenes", title,
-               json_text(item, "method"), 100 * json_figure(item, "error"),
-               json_figure(item, "block"), extrapolated > 0 ? "about " : "",
-               times < 0.1 ? 3
-               : times < 1 ? 2
-                           : 1,
-               times, json_text(item, "baseline"), scenes);
-        printf(extrapolated > 0 ? ", %.0f of them extrapolated)\n" : ")\n", extrapolated);
+        printf("%s%s, %-7s %-15s ", title, json_text(item, "method"), json_text(item, "preset"),
+               json_text(item, "frame"));
+        print_measure(json_figure(item, "block"));
+        printf(": ");
+        print_mean(item);
+        title = "";
+    }
+}
+
+// One line for each comparison that any scene has: the best of all runs at an error.
+static void print_headlines(const cJSON *report)
+{
+    const cJSON *item;
+    const char *title =
+        "\nat equal error by the best of all settings, geometric means over scenes:\n";
+    cJSON_ArrayForEach(item, list_of(report, "headline"))
+    {
+        const double block = json_figure(item, "block"), error = json_figure(item, "error");
+        if (!(json_figure(item, "scenes") > 0)) {
+            continue;
+        }
+        printf("%s%-10s %-15s ", title, json_text(item, "method"), json_text(item, "frame"));
+        if (block > 0) {
+            printf("%5.0f %% ", 100 * error);
+        } else {
+            printf("%7.2g ", error);
+        }
+        print_measure(block);
+        printf(": ");
+        print_mean(item);
         title = "";
     }
 }
@@ -246,10 +292,9 @@ void bench_print_end(const cJSON *report)
     const cJSON *item;
     cJSON_ArrayForEach(item, list_of(report, "ratios"))
     {
-        printf("\n%s, %s: %.2f times the cold frame\n", json_text(item, "name"),
-               json_text(item, "run"), json_figure(item, "times"));
+        printf("\n%s, %s: %.2f times the frame in which the light changes\n",
+               json_text(item, "name"), json_text(item, "run"), json_figure(item, "times"));
     }
-    print_headlines(report, "headline", "\nat equal error, geometric means over scenes:\n");
-    print_headlines(report, "headline_moved",
-                    "\nthe same, with the times of frames after the camera has moved:\n");
+    print_presets(report);
+    print_headlines(report);
 }

@@ -1,5 +1,6 @@
 // record.c -- a run's record as JSON, kept as a file.
 #include "record.h"
+#include "measuring.h"
 #include "reference.h"
 #include "stats.h"
 #include <math.h>
@@ -109,14 +110,18 @@ static bool has_nodes(const cJSON *run)
 static bool has_figures(const cJSON *run)
 {
     static const char *const keys[] = {"fill", "imbalance", "imbalance_se", "flicker", NULL};
-    static const char *const numbers[] = {"setup_ms",          "frame_ms.cold",
-                                          "frames.cold",       "frames.camera_moved",
-                                          "frames.unchanged",  "memory.transient",
-                                          "non_finite",        "negative",
-                                          "memory.persistent", NULL};
-    static const char *const times[] = {"camera_moved", "unchanged", NULL};
+    static const char *const numbers[] = {"setup_ms",
+                                          "frame_ms.animated_light",
+                                          "memory.transient",
+                                          "memory.persistent",
+                                          "non_finite",
+                                          "negative",
+                                          NULL};
+    const char *times[NUM_TIMES + 1] = {NULL};
+    memcpy(times, bench_time_names, sizeof bench_time_names);
     return has_keys(run, keys) && has_numbers(run, numbers) &&
-           has_keys(cJSON_GetObjectItemCaseSensitive(run, "frame_ms"), times) && has_errors(run) &&
+           has_keys(cJSON_GetObjectItemCaseSensitive(run, "frame_ms"), times) &&
+           has_numbers(cJSON_GetObjectItemCaseSensitive(run, "frames"), times) && has_errors(run) &&
            has_nodes(run) && cJSON_IsArray(cJSON_GetObjectItemCaseSensitive(run, "warnings")) &&
            cJSON_IsObject(cJSON_GetObjectItemCaseSensitive(run, "inputs"));
 }

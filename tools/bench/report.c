@@ -6,11 +6,12 @@
 #include "regime.h"
 #include "stats.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tyndall/registry.h>
 
-enum { REPORT_VERSION = 1 };
+enum { REPORT_VERSION = 2 };
 
 // ---- a scene ----------------------------------------------------------------------------------
 
@@ -39,15 +40,15 @@ static cJSON *json_reference(const bench_case *c)
     return json;
 }
 
-// Fronts, comparisons at equal error, and who wins over blocks.
-static void add_planes(cJSON *to, const bench_case *c, cJSON *runs, plane_frame frame)
+// Fronts, comparisons at equal error, and who wins over blocks, with one of a run's times.
+static void add_planes(cJSON *to, const bench_case *c, cJSON *runs, bench_time time)
 {
     cJSON *fronts = cJSON_AddArrayToObject(to, "fronts");
     cJSON *equal = cJSON_AddArrayToObject(to, "equal_error");
-    for (int i = 0; i < BENCH_BLOCKS; i++) {
+    for (int i = 0; i < BENCH_MEASURES; i++) {
         plane p;
-        if (plane_make(&p, runs, i, c->blocks[i], frame)) {
-            if (i == 0 && frame == PLANE_COLD) {
+        if (plane_make(&p, runs, i, c->blocks[i], time)) {
+            if (i == 0 && time == TIME_LIGHT) {
                 plane_choose_pictures(&p, runs);
                 cJSON_AddItemToObject(to, "floors", plane_floors(&p));
             }
@@ -58,11 +59,20 @@ static void add_planes(cJSON *to, const bench_case *c, cJSON *runs, plane_frame 
             }
             cJSON_AddItemToArray(fronts, plane_front(&p));
             plane_add_equal_errors(&p, equal);
-            if (frame == PLANE_COLD) {
-                plane_add_own_equal_errors(&p, runs);
-            }
+            plane_add_own_equal_errors(&p, runs);
         }
         plane_finish(&p);
+    }
+}
+
+// All that compares times: those of frames in which the light changes are the scene's own, the others beside them.
+static void add_times(cJSON *scene, const bench_case *c, cJSON *runs)
+{
+    static const bench_time others[] = {TIME_FIRST, TIME_MEDIUM, TIME_CAMERA};
+    add_planes(scene, c, runs, TIME_LIGHT);
+    cJSON *times = cJSON_AddObjectToObject(scene, "times");
+    for (size_t i = 0; i < ARRAY_SIZE(others); i++) {
+        add_planes(cJSON_AddObjectToObject(times, bench_time_names[others[i]]), c, runs, others[i]);
     }
 }
 
@@ -86,10 +96,7 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
     bool known = regime_of(&c->scene, &c->view.camera, &found);
     cJSON_AddItemToObject(scene, "regime", known ? regime_json(&found) : cJSON_CreateNull());
     cJSON_AddItemToObject(scene, "reference", json_reference(c));
-    cJSON *moved = cJSON_CreateObject();
-    add_planes(scene, c, runs, PLANE_COLD);
-    add_planes(moved, c, runs, PLANE_MOVED);
-    cJSON_AddItemToObject(scene, "moved", moved);
+    add_times(scene, c, runs);
     cJSON_AddItemToObject(scene, "runs", runs);
     cJSON_AddItemToObject(scene, "left_out", left_out);
     // What is used from here on is what a reader of the file sees.
@@ -133,95 +140,214 @@ void bench_report_finish(bench_report *r)
     *r = (bench_report){0};
 }
 
+// ---- over all scenes --------------------------------------------------------------------------
+
+// What a scene says with one of the times.
+static const cJSON *said_of(const cJSON *scene, bench_time time)
+{
+    const cJSON *times = cJSON_GetObjectItemCaseSensitive(scene, "times");
+    return time == TIME_LIGHT ? scene
+                              : cJSON_GetObjectItemCaseSensitive(times, bench_time_names[time]);
+}
+
+// A mean over scenes that grows by one scene after the other.
+typedef struct mean {
+    double values[BENCH_MAX_SCENES];
+    uint32_t num, extrapolated;
+    cJSON *missing; // "scene: why"
+} mean;
+
+static void add_missing(mean *m, const cJSON *scene, const char *why)
+{
+    char *text = text_format("%s: %s", json_text(scene, "name"), why);
+    cJSON_AddItemToArray(m->missing, cJSON_CreateString(text ? text : ""));
+    free(text);
+}
+
+static void add_value(mean *m, double value, bool measured)
+{
+    if (m->num < BENCH_MAX_SCENES) {
+        m->values[m->num++] = value;
+        m->extrapolated += !measured;
+    }
+}
+
+// The mean, over how many of the scenes, and of how many what a baseline takes is extrapolated.
+static void finish_mean(mean *m, cJSON *to, const cJSON *scenes)
+{
+    json_add_float(to, "geometric_mean", front_geometric_mean(m->values, m->num));
+    cJSON_AddNumberToObject(to, "scenes", m->num);
+    cJSON_AddNumberToObject(to, "of", cJSON_GetArraySize(scenes));
+    cJSON_AddNumberToObject(to, "extrapolated", m->extrapolated);
+    cJSON_AddItemToObject(to, "missing", m->missing);
+}
+
 static bool same_comparison(const cJSON *a, const cJSON *b)
 {
     return json_figure(a, "block") == json_figure(b, "block") &&
            json_figure(a, "error") == json_figure(b, "error") &&
-           strcmp(json_text(a, "method"), json_text(b, "method")) == 0 &&
-           strcmp(json_text(a, "baseline"), json_text(b, "baseline")) == 0;
+           strcmp(json_text(a, "method"), json_text(b, "method")) == 0;
 }
 
 // Why a scene has no speed-up at this error.
 static char *why_missing(const cJSON *scene, const cJSON *entry)
 {
-    const char *name = json_text(scene, "name"), *why = json_text(entry, "why");
-    if (why[0]) {
-        return text_format("%s: %s", name, why);
+    if (json_text(entry, "why")[0]) {
+        return text_format("%s", json_text(entry, "why"));
     }
     if (!isnan(json_figure(entry, "ms"))) {
-        return text_format("%s: %s was not measured", name, json_text(entry, "baseline"));
+        return text_format("no baseline was measured");
     }
     const cJSON *floor;
     cJSON_ArrayForEach(floor, cJSON_GetObjectItemCaseSensitive(scene, "floors"))
     {
         if (strcmp(json_text(floor, "method"), json_text(entry, "method")) == 0 &&
             json_figure(floor, "block") == json_figure(entry, "block")) {
-            return text_format("%s: its least error is %.1f %%", name,
-                               100 * json_figure(floor, "error"));
+            return text_format("its least error is %.1f %%", 100 * json_figure(floor, "error"));
         }
     }
-    return text_format("%s: the error is not reached", name);
-}
-
-// What a scene says of times of cold frames, or of those after the camera has moved.
-static const cJSON *said_of(const cJSON *scene, plane_frame frame)
-{
-    return frame == PLANE_COLD ? scene : cJSON_GetObjectItemCaseSensitive(scene, "moved");
+    return text_format("the error is not reached");
 }
 
 // One comparison over all scenes, as the first scene that has it lists it.
-static cJSON *json_headline(const cJSON *scenes, const cJSON *first, plane_frame frame)
+static cJSON *json_headline(const cJSON *scenes, const cJSON *first, bench_time time)
 {
-    cJSON *headline = cJSON_CreateObject(), *missing = cJSON_CreateArray();
-    double values[BENCH_MAX_SCENES];
-    uint32_t num = 0, extrapolated = 0;
+    cJSON *headline = cJSON_CreateObject();
+    mean m = {.missing = cJSON_CreateArray()};
     const cJSON *scene, *entry;
     cJSON_ArrayForEach(scene, scenes)
     {
         cJSON_ArrayForEach(entry,
-                           cJSON_GetObjectItemCaseSensitive(said_of(scene, frame), "equal_error"))
+                           cJSON_GetObjectItemCaseSensitive(said_of(scene, time), "equal_error"))
         {
             if (!same_comparison(entry, first)) {
                 continue;
             }
             const double speedup = json_figure(entry, "speedup");
-            if (isfinite(speedup) && num < BENCH_MAX_SCENES) {
-                values[num++] = speedup;
-                extrapolated += !json_true(entry, "measured");
+            if (isfinite(speedup)) {
+                add_value(&m, speedup, json_true(entry, "measured"));
             } else {
                 char *why = why_missing(scene, entry);
-                cJSON_AddItemToArray(missing, cJSON_CreateString(why ? why : ""));
+                add_missing(&m, scene, why ? why : "");
                 free(why);
             }
         }
     }
+    cJSON_AddStringToObject(headline, "frame", bench_time_names[time]);
     cJSON_AddNumberToObject(headline, "block", json_figure(first, "block"));
     cJSON_AddNumberToObject(headline, "error", json_figure(first, "error"));
     cJSON_AddStringToObject(headline, "method", json_text(first, "method"));
-    cJSON_AddStringToObject(headline, "baseline", json_text(first, "baseline"));
-    json_add_float(headline, "geometric_mean", front_geometric_mean(values, num));
-    cJSON_AddNumberToObject(headline, "scenes", num);
-    cJSON_AddNumberToObject(headline, "extrapolated", extrapolated);
-    cJSON_AddItemToObject(headline, "missing", missing);
+    finish_mean(&m, headline, scenes);
     return headline;
 }
 
-static cJSON *json_headlines(const cJSON *scenes, plane_frame frame)
+static void add_headlines(cJSON *list, const cJSON *scenes, bench_time time)
 {
-    cJSON *list = cJSON_CreateArray();
-    const cJSON *scene, *entry, *known;
+    const int before = cJSON_GetArraySize(list);
+    const cJSON *scene, *entry;
     cJSON_ArrayForEach(scene, scenes)
     {
         cJSON_ArrayForEach(entry,
-                           cJSON_GetObjectItemCaseSensitive(said_of(scene, frame), "equal_error"))
+                           cJSON_GetObjectItemCaseSensitive(said_of(scene, time), "equal_error"))
         {
             bool seen = false;
-            cJSON_ArrayForEach(known, list)
-            {
-                seen = seen || same_comparison(known, entry);
+            for (int i = before; i < cJSON_GetArraySize(list); i++) {
+                seen = seen || same_comparison(cJSON_GetArrayItem(list, i), entry);
             }
             if (!seen) {
-                cJSON_AddItemToArray(list, json_headline(scenes, entry, frame));
+                cJSON_AddItemToArray(list, json_headline(scenes, entry, time));
+            }
+        }
+    }
+}
+
+// The run of a scene that is a preset of a method; NULL: none.
+static const cJSON *preset_of(const cJSON *scene, const char *how, const char *preset)
+{
+    const cJSON *run;
+    cJSON_ArrayForEach(run, cJSON_GetObjectItemCaseSensitive(scene, "runs"))
+    {
+        if (strcmp(json_text(run, "method"), how) == 0 &&
+            strcmp(json_text(run, "preset"), preset) == 0) {
+            return run;
+        }
+    }
+    return NULL;
+}
+
+static const cJSON *comparison_of(const cJSON *run, bench_time time, double block)
+{
+    const cJSON *entry;
+    cJSON_ArrayForEach(entry, cJSON_GetObjectItemCaseSensitive(run, "equal_error"))
+    {
+        if (strcmp(json_text(entry, "frame"), bench_time_names[time]) == 0 &&
+            json_figure(entry, "block") == block) {
+            return entry;
+        }
+    }
+    return NULL;
+}
+
+// How many times as long a baseline takes to the error of a preset, over all scenes.
+static cJSON *json_preset(const cJSON *scenes, const char *how, const char *preset, bench_time time,
+                          double block, int measure)
+{
+    char path[48];
+    double errors[BENCH_MAX_SCENES], ms[BENCH_MAX_SCENES];
+    uint32_t num = 0;
+    mean m = {.missing = cJSON_CreateArray()};
+    const cJSON *scene;
+    cJSON_ArrayForEach(scene, scenes)
+    {
+        const cJSON *run = preset_of(scene, how, preset);
+        const cJSON *entry = comparison_of(run, time, block);
+        const double speedup = json_figure(entry, "speedup");
+        if (run && num < BENCH_MAX_SCENES) {
+            snprintf(path, sizeof path, "errors.%d.error", measure);
+            errors[num] = json_figure(run, path);
+            snprintf(path, sizeof path, "errors.%d.n", measure); // what it hides stands at it
+            errors[num] =
+                errors[num] < json_figure(run, path) ? json_figure(run, path) : errors[num];
+            snprintf(path, sizeof path, "frame_ms.%s", bench_time_names[time]);
+            ms[num++] = json_figure(run, path);
+        }
+        if (isfinite(speedup)) {
+            add_value(&m, speedup, json_true(entry, "measured"));
+        } else {
+            add_missing(&m, scene,
+                        !run || json_text(run, "failed")[0] ? "it cannot do this scene"
+                        : entry
+                            ? "the noise of its reference hides the error, or no baseline has it"
+                            : "not measured");
+        }
+    }
+    cJSON *json = cJSON_CreateObject();
+    cJSON_AddStringToObject(json, "frame", bench_time_names[time]);
+    cJSON_AddNumberToObject(json, "block", block);
+    cJSON_AddStringToObject(json, "method", how);
+    cJSON_AddStringToObject(json, "preset", preset);
+    json_add_float(json, "error", front_geometric_mean(errors, num));
+    json_add_float(json, "ms", front_geometric_mean(ms, num));
+    finish_mean(&m, json, scenes);
+    return json;
+}
+
+static cJSON *json_presets(const bench_suite *suite, const cJSON *scenes)
+{
+    cJSON *list = cJSON_CreateArray();
+    const uint32_t blocks[] = {suite->block, 1, 0};
+    for (uint32_t i = 0; i < suite->num_runs; i++) {
+        const char *how = suite->runs[i].method.method, *preset = bench_preset(&suite->runs[i]);
+        bool any = false;
+        const cJSON *scene;
+        cJSON_ArrayForEach(scene, scenes)
+        {
+            any = any || (preset && preset_of(scene, how, preset));
+        }
+        for (int time = 0; any && time < TIME_UNCHANGED; time++) {
+            for (int k = 0; k < BENCH_MEASURES; k++) {
+                cJSON_AddItemToArray(
+                    list, json_preset(scenes, how, preset, (bench_time)time, blocks[k], k));
             }
         }
     }
@@ -251,8 +377,10 @@ static cJSON *json_ratios(const bench_suite *suite, const cJSON *scenes)
         const bench_ratio *ratio = &suite->ratios[k];
         for (uint32_t i = 0; i < suite->num_runs; i++) {
             const char *run = suite->runs[i].name;
-            const double of = json_figure(find_run(scenes, ratio->of, run), "frame_ms.cold");
-            const double to = json_figure(find_run(scenes, ratio->to, run), "frame_ms.cold");
+            const double of =
+                json_figure(find_run(scenes, ratio->of, run), "frame_ms.animated_light");
+            const double to =
+                json_figure(find_run(scenes, ratio->to, run), "frame_ms.animated_light");
             if (suite->runs[i].baseline || isnan(of / to)) {
                 continue;
             }
@@ -272,8 +400,11 @@ void bench_report_end(bench_report *r, const bench_suite *suite)
     cJSON *seconds = cJSON_GetObjectItemCaseSensitive(r->root, "seconds");
     json_add_float(seconds, "references", r->reference_seconds);
     json_add_float(seconds, "measuring", r->measuring_seconds);
-    cJSON_AddItemToObject(r->root, "headline", json_headlines(scenes, PLANE_COLD));
-    cJSON_AddItemToObject(r->root, "headline_moved", json_headlines(scenes, PLANE_MOVED));
+    cJSON *headline = cJSON_AddArrayToObject(r->root, "headline");
+    for (int time = 0; time < TIME_UNCHANGED; time++) {
+        add_headlines(headline, scenes, (bench_time)time);
+    }
+    cJSON_AddItemToObject(r->root, "presets", json_presets(suite, scenes));
     cJSON_AddItemToObject(r->root, "ratios", json_ratios(suite, scenes));
     cJSON_AddNullToObject(r->root, "bands");
     cJSON_AddNullToObject(r->root, "stress");

@@ -21,10 +21,11 @@ static bool check_samples(app *a, const bench_run *run, const tyn_method_info *i
             return false;
         }
     }
-    if (info->progressive && run->method.seed == BENCH_REFERENCE_SEED) {
+    if (info->progressive && run->method.seed >= BENCH_REFERENCE_SEED) {
         app_error(a,
-                  "seed %d is that of references: samples compared with themselves have no error",
-                  BENCH_REFERENCE_SEED);
+                  "seed %u: those from %d on are of references: samples compared with themselves "
+                  "have no error",
+                  run->method.seed, BENCH_REFERENCE_SEED);
         return false;
     }
     return true;
@@ -136,7 +137,8 @@ static double expected_seconds(const bench_run *run, cJSON *const *done, uint32_
     double seconds = 0, most = 0;
     for (uint32_t i = 0; i < count; i++) {
         const double spp = json_figure(done[i], "settings.spp");
-        const double own = 1e-3 * json_figure(done[i], "frame_ms.cold") * run->method.spp / spp;
+        const double own =
+            1e-3 * json_figure(done[i], "frame_ms.animated_light") * run->method.spp / spp;
         if (done[i] && strcmp(json_text(done[i], "group"), run->group) == 0 &&
             spp < run->method.spp && (spp > most || (spp == most && own > seconds))) {
             most = spp;

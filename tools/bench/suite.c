@@ -526,6 +526,14 @@ char *bench_picture(const bench_scene *scene, const char *slug)
     return text_format("pictures/%s/%s.exr", scene->slug, slug);
 }
 
+const char *bench_preset(const bench_run *run)
+{
+    const bool sets =
+        cJSON_GetArraySize(cJSON_GetObjectItemCaseSensitive(run->spec, "settings")) > 0;
+    const char *quality = run->method.quality ? run->method.quality : "normal";
+    return sets || run->baseline ? NULL : quality;
+}
+
 bool bench_run_is_for(const bench_run *run, const bench_scene *scene)
 {
     const cJSON *name;

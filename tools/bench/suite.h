@@ -74,5 +74,8 @@ char *bench_run_place(const bench_suite *suite, const bench_run *run);
 // "pictures/SCENE/SLUG.exr": a new string, below the report's folder.
 char *bench_picture(const bench_scene *scene, const char *slug);
 
+// What a user gets who sets nothing, or the quality alone: that quality. NULL: the run sets more, or it samples.
+const char *bench_preset(const bench_run *run);
+
 // Whether a run is meant for a scene.
 bool bench_run_is_for(const bench_run *run, const bench_scene *scene);

@@ -54,11 +54,17 @@ function bandsAlert(bands) {
 
 const SPEED_MARKS = [SHAPES[0], SHAPES[3], SHAPES[1], SHAPES[2]]; // by error level: filled, then hollow
 
-function speedRows(report, method, baseline, block) {
+// The methods that sample, at each error the fastest of them: "path".
+function baselineName(report) {
+    const names = new Set(list(report.scenes).flatMap((s) => list(s.runs)).filter((r) => r.baseline).map((r) => r.method));
+    return [...names].join(" or ") || "path";
+}
+
+function speedRows(report, method, block) {
     return list(report.scenes).map((scene) => ({
         scene: String(scene.name ?? ""),
         entries: list(scene.equal_error)
-            .filter((e) => e.method === method && e.baseline === baseline && e.block === block)
+            .filter((e) => e.method === method && e.block === block)
             .sort((a, b) => b.error - a.error),
     })).filter((row) => row.entries.length > 0);
 }
@@ -69,7 +75,7 @@ function speedReason(entry, method, baseline) {
 }
 
 // Rows of marks on a common log axis of ratios; 1 is where both take the same time.
-function speedChart(width, rows, errors, means, method, baseline) {
+function speedChart(width, rows, errors, means, method, baseline, block) {
     const narrow = width < 620;
     const label = narrow ? 0 : Math.min(190, width * 0.24), right = 14;
     const rowHeight = narrow ? 42 : 30, top = 26;
@@ -108,7 +114,7 @@ function speedChart(width, rows, errors, means, method, baseline) {
                 const k = errors.indexOf(e.error);
                 svg.append(draw("path", {class: (k === 0 ? "mark" : "mark hollow") + (e.speedup < 1 ? " slower" : "") + (e.measured === false ? " guessed" : ""), d: SPEED_MARKS[k % 4],
                     transform: `translate(${x(e.speedup)} ${y}) scale(1.15)`},
-                    draw("title", {}, `${name}, ${level(e.error)}: ${times(e.speedup)}${e.measured === false ? " (extrapolated)" : ""}`)));
+                    draw("title", {}, `${name}, ${errorLevel(e.error, block)}: ${times(e.speedup)}${e.measured === false ? " (extrapolated)" : ""}`)));
             }
         }
     };
@@ -121,8 +127,8 @@ function speedChart(width, rows, errors, means, method, baseline) {
     return svg;
 }
 
-function speedTable(rows, errors, method, baseline) {
-    const head = errors.flatMap((e) => [`${level(e)}: ${method}`, baseline, TIMES]);
+function speedTable(rows, errors, method, baseline, block) {
+    const head = errors.flatMap((e) => [`${errorLevel(e, block)}: ${method}`, baseline, TIMES]);
     return make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "times at equal error"}, make("table", {},
         make("thead", {}, make("tr", {}, make("th", {scope: "col"}, "scene"), head.map((h) => make("th", {scope: "col", class: "number"}, h)))),
         make("tbody", {}, rows.map((row) => make("tr", {}, make("th", {scope: "row"}, row.scene), errors.map((error) => {
@@ -131,45 +137,66 @@ function speedTable(rows, errors, method, baseline) {
                 return [make("td"), make("td"), make("td")];
             }
             return [make("td", {class: "number"}, duration(e.ms)),
-                make("td", {class: "number"}, e.measured === false && isNumber(e.baseline_ms) ? "about " : "", duration(e.baseline_ms)),
+                make("td", {class: "number", title: e.baseline}, e.measured === false && isNumber(e.baseline_ms) ? "about " : "", duration(e.baseline_ms)),
                 make("td", {class: "number"}, isNumber(e.speedup) ? (e.measured === false ? "about " : "") + times(e.speedup) : speedReason(e, method, baseline))];
         }))))));
 }
 
+// A row for each preset: its error and time, and what a baseline takes to that error, by each of the measures.
+function presets(report) {
+    const all = list(report.presets), baseline = baselineName(report);
+    const names = [...new Set(all.map((p) => `${p.method}, ${p.preset}`))], blocks = [...new Set(all.map((p) => p.block))].sort((a, b) => b - a);
+    if (all.length === 0) {
+        return null;
+    }
+    const found = (name, block) => all.find((p) => `${p.method}, ${p.preset}` === name && p.block === block) || {};
+    const mean = (p) => (isNumber(p.geometric_mean) ? [(p.extrapolated > 0 ? "about " : "") + times(p.geometric_mean), make("small", {}, ` ${p.scenes} of ${p.of}`)] : NONE);
+    const missing = all.filter((p) => list(p.missing).length > 0);
+    return make("section", {id: "presets"}, make("h2", {}, "What a user gets who sets nothing but the quality"),
+        make("p", {}, `Error and time are geometric means over the scenes; ${TIMES}: how many times as long ${baseline} takes to the error that the preset has in a scene, over as many scenes as that is known in.`),
+        make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "presets"}, make("table", {},
+            make("thead", {}, make("tr", {}, make("th", {scope: "col"}, "preset"), make("th", {scope: "col", class: "number"}, "time"),
+                blocks.flatMap((b) => [errorOver(b), TIMES]).map((h) => make("th", {scope: "col", class: "number"}, h)))),
+            make("tbody", {}, names.map((name) => make("tr", {}, make("th", {scope: "row"}, name), make("td", {class: "number"}, duration(found(name, blocks[0]).ms)),
+                blocks.map((b) => [make("td", {class: "number"}, amount(found(name, b).error, b)), make("td", {class: "number"}, mean(found(name, b)))])))))),
+        missing.length > 0 && make("details", {}, make("summary", {}, "Left out of the means"),
+            make("ul", {}, missing.map((p) => make("li", {}, `${p.method}, ${p.preset}, ${errorOver(p.block)}: ${list(p.missing).join("; ")}`)))));
+}
+
 function headline(report) {
     const all = list(report.headline), methods = [...new Set(all.map((h) => h.method))];
-    const baselines = [...new Set(all.map((h) => h.baseline))], blocks = [...new Set(all.map((h) => h.block))].sort((a, b) => b - a);
+    const baseline = baselineName(report), blocks = [...new Set(all.map((h) => h.block))].sort((a, b) => b - a);
     if (all.length === 0) {
         return null;
     }
     const choice = {
         method: methods.includes("pop") ? "pop" : methods[0],
-        baseline: baselines.includes("path") ? "path" : baselines[0], block: blocks[0],
+        block: blocks[0],
     };
     const body = make("div");
     const show = () => {
-        const {method, baseline, block} = choice;
-        const entries = all.filter((h) => h.method === method && h.baseline === baseline && h.block === block)
+        const {method, block} = choice;
+        const entries = all.filter((h) => h.method === method && h.block === block)
             .sort((a, b) => b.error - a.error);
-        const rows = speedRows(report, method, baseline, block);
+        const rows = speedRows(report, method, block);
         const errors = [...new Set([...entries, ...rows.flatMap((r) => r.entries)].map((e) => e.error))].sort((a, b) => b - a).slice(0, 4);
         const means = errors.map((error) => (entries.find((e) => e.error === error) || {}).geometric_mean);
         const chart = make("figure", {class: "chart"});
         onWidth(chart, (width) => {
-            chart.replaceChildren(speedChart(width, rows, errors, means, method, baseline),
+            chart.replaceChildren(speedChart(width, rows, errors, means, method, baseline, block),
                 make("figcaption", {}, errors.map((e, k) => make("span", {class: "key"},
                     draw("svg", {class: "marker", width: 13, height: 13, viewBox: "-6.5 -6.5 13 13", "aria-hidden": "true"},
-                        draw("path", {class: k === 0 ? "mark" : "mark hollow", d: SPEED_MARKS[k % 4]})), `at ${level(e)} error`)),
+                        draw("path", {class: k === 0 ? "mark" : "mark hollow", d: SPEED_MARKS[k % 4]})), block > 0 ? `at ${level(e)} error` : `at FLIP ${axisValue(e)}`)),
                     rows.some((r) => r.entries.some((e) => e.measured === false && isNumber(e.speedup))) && make("span", {}, "pale: extrapolated"),
                     make("span", {}, `right of 1${TIMES}: ${method} is faster; left: ${baseline} is`)));
         });
-        const missing = entries.flatMap((e) => list(e.missing).map((m) => `${level(e.error)}: ${m}`));
+        const missing = entries.flatMap((e) => list(e.missing).map((m) => `${errorLevel(e.error, block)}: ${m}`));
         body.replaceChildren(
             make("div", {class: "figures"}, entries.map((e) => make("p", {class: "figure"},
                 make("strong", {}, (e.extrapolated > 0 ? "about " : "") + times(e.geometric_mean)),
-                make("span", {}, `the time of ${baseline} over that of ${method} at ${level(e.error)} error, geometric mean of ${e.scenes} scene${e.scenes === 1 ? "" : "s"}${e.extrapolated > 0 ? `, ${e.extrapolated} of ${e.scenes} extrapolated` : ""}`)))),
+                make("span", {}, `the time of ${baseline} over that of ${method} at ${block > 0 ? `${level(e.error)} error` : `FLIP ${axisValue(e.error)}`}, geometric mean of ${e.scenes}${isNumber(e.of) ? ` of ${e.of}` : ""} scene${e.scenes === 1 && !(e.of > 1) ? "" : "s"}${e.extrapolated > 0 ? `, ${e.extrapolated} of ${e.scenes} extrapolated` : ""}`)))),
             chart,
-            make("details", {}, make("summary", {}, "The times behind it"), speedTable(rows, errors, method, baseline)),
+            make("details", {}, make("summary", {}, "The times behind it"), speedTable(rows, errors, method, baseline, block)),
             missing.length > 0 ? make("details", {}, make("summary", {}, `Left out of the means: ${missing.length}`),
                 make("ul", {}, missing.map((m) => make("li", {}, m)))) : "");
     };
@@ -177,10 +204,9 @@ function headline(report) {
         segmented(label, values.map((v) => [v, text(v)]), choice[key], (v) => { choice[key] = v; show(); });
     show();
     return make("section", {id: "equal-error"},
-        make("h2", {}, "At equal error"),
+        make("h2", {}, "At equal error, by the best of all settings"),
         make("div", {class: "controls"},
             control("method", methods, "method", (v) => v),
-            control("against", baselines, "baseline", (v) => `against ${v}`),
             control("error over", blocks, "block", blockName)),
         body);
 }

@@ -1,7 +1,7 @@
 // main.js -- the page, from the report it holds.
 
 const blocksOf = (scene) => {
-    const blocks = new Set(list(scene.runs).flatMap((run) => list(run.errors).map((e) => e.block)));
+    const blocks = new Set(list(scene.runs).flatMap((run) => list(run.errors).map((e) => e.block)).filter(isNumber));
     return [...(blocks.size ? blocks : [8])].sort((a, b) => b - a);
 };
 
@@ -15,10 +15,10 @@ function regimeWords(regime) {
 
 function referenceWords(scene) {
     const r = scene.reference || {};
-    const noise = list(r.noise).map((n) => `${percent(n.n)} over ${blockName(n.block)}`).join(", ");
+    const noise = list(r.noise).map((n) => (n.block > 0 ? `${percent(n.n)} over ${blockName(n.block)}` : `${digits(n.n)} by FLIP`)).join(", ");
     return [r.method === "file" ? "from a file" : `${r.method ?? "path"}${isNumber(r.spp) ? `, ${r.spp} samples a pixel` : ""}`,
         noise && `noise ${noise}`, isNumber(r.seconds) && r.seconds > 0 ? `made in ${duration(1e3 * r.seconds)}` : null,
-        r.cached ? "from the cache" : null].filter(Boolean).join("; ");
+        r.stored ? "stored with the suite" : r.cached ? "from the cache" : null].filter(Boolean).join("; ");
 }
 
 // The run that is shown first: the best of the promised method on the front, else the best of any method.
@@ -57,7 +57,7 @@ function sceneSection(report, styles, scene, index) {
                 make("div", {class: "controls"}, blocks.length > 1 && segmented("error over", blocks.map((b) => [b, blockName(b)]), blocks[0], plot.show)),
                 plot.element),
             viewer.element && make("div", {class: "column"}, viewer.element)),
-        make("h3", {}, `Runs`, make("small", {}, ` ${list(scene.runs).length}${failed ? `, ${failed} of which could not be done` : ""}; \u2605 on a front`)),
+        make("h3", {}, "Runs", make("small", {}, ` ${list(scene.runs).length}${failed ? `, ${failed} of which could not be done` : ""}; \u2605 on a front`)),
         table.element,
         list(scene.left_out).length > 0 && make("details", {}, make("summary", {}, `Not run: ${list(scene.left_out).length}`),
             make("ul", {}, list(scene.left_out).map((r) => make("li", {}, `${r.run}: ${r.why}`)))),
@@ -65,7 +65,7 @@ function sceneSection(report, styles, scene, index) {
 }
 
 function ratioList(ratios) {
-    return list(ratios).length > 0 && make("section", {id: "ratios"}, make("h2", {}, "Ratios of cold frames"),
+    return list(ratios).length > 0 && make("section", {id: "ratios"}, make("h2", {}, "Ratios of frames after the light has changed"),
         make("ul", {}, list(ratios).map((r) => make("li", {}, `${r.name}${r.run ? `, ${r.run}` : ""}: ${times(r.times)}`))));
 }
 
@@ -73,7 +73,7 @@ function notes() {
     const entry = (name, text) => [make("dt", {}, name), make("dd", {}, text)];
     return make("section", {id: "notes", class: "notes"}, make("h2", {}, "How to read it"), make("dl", {},
         entry("error", "rel_l1, sum of |x - r| over sum of |r| of linear radiance, without what the noise of the reference explains: sqrt(rel_l1\u00b2 - n\u00b2). Over blocks, the pixels of a block are averaged first. \u201c\u2264\u201d: the noise hides it, and it is this or less; \u201c~\u201d: below twice the noise, where it comes out too small. A sampling method's own noise is an error of it."),
-        entry("time", "Median of cold frames, in which every node runs, wall clock from submission to the end; of path the whole rendering. Or, as chosen at the top, of frames after the camera has moved, in which what does not depend on it is as it was; path begins anew."),
+        entry("time", "Medians, wall clock from submission to the end; of path the whole rendering, which begins anew whatever changes. As chosen at the top: the first picture (the driver is warm, everything else is made from nothing); the medium has changed (grids are uploaded, every node runs); the light has changed (every node runs but those of the media); the camera has moved (what does not depend on it is as it was)."),
         entry("equal error", "The time of the cheapest run of a method that has this error, interpolated along its line in the plot; \u201cabout\u201d where it had to be extrapolated."),
         entry("ceilings", "What the device reached in kernels that do one thing only, in the same run; a node's share is the time that its work would take at that ceiling over the time it took."),
         entry("difference", "Left minus right, mean of the channels, as a share of the reference's mean radiance. Pictures are in the page as linear half floats (steps of 0.05\u00a0%), tone-mapped here. Magenta is not a number."),
@@ -82,43 +82,45 @@ function notes() {
 
 function contents(report) {
     const link = (id, text) => make("a", {href: `#${id}`}, text);
-    return make("nav", {class: "contents", "aria-label": "contents"}, link("equal-error", "equal error"),
+    return make("nav", {class: "contents", "aria-label": "contents"}, list(report.presets).length > 0 && link("presets", "presets"), link("equal-error", "equal error"),
         list(report.scenes).some((scene) => list(scene.verdicts).length > 0) && link("verdicts", "who wins"),
         list(report.scenes).map((scene, i) => link(`scene-${i}`, scene.name)),
         list((report.stress || {}).cells).length > 0 && link("stress", "stress"), link("notes", "how to read it"));
 }
 
-// The report with what it says of frames after the camera has moved in the place of what it says of cold ones.
-function movedReport(report) {
-    return {...report, headline: report.headline_moved, scenes: list(report.scenes).map((scene) => ({...scene, ...scene.moved}))};
+// The report with what it says with one of the times in the place of what it says of frames after the light has changed.
+function reportWith(report, frame) {
+    return {...report, headline: list(report.headline).filter((h) => h.frame === frame), presets: list(report.presets).filter((p) => p.frame === frame),
+        scenes: list(report.scenes).map((scene) => ({...scene, ...(scene.times || {})[frame]}))};
 }
 
 // All that compares times.
 function comparisons(report, styles) {
-    return [headline(report), verdicts(report, styles),
+    return [presets(report), headline(report), verdicts(report, styles),
         ...list(report.scenes).map((scene, i) => sceneSection(report, styles, scene, i))].filter(Boolean);
 }
 
-// The same of cold frames or of those after the camera has moved, as chosen.
+// The same with each of the times, as chosen.
 function chosenComparisons(report, styles) {
     const holder = make("div", {class: "comparisons"});
     const show = (frame) => {
         frameShown = frame;
         onScreen.abort();
         onScreen = new AbortController();
-        holder.replaceChildren(...comparisons(frame === "cold" ? report : movedReport(report), styles));
+        holder.replaceChildren(...comparisons(reportWith(report, frame), styles));
     };
-    show("cold");
-    const choice = list(report.headline_moved).length > 0
-        && make("div", {id: "frame", class: "controls"}, make("span", {}, "Times of"), segmented("times of", Object.entries(FRAMES), "cold", show));
+    show("animated_light");
+    const frames = Object.entries(FRAMES).filter(([frame]) => list(report.headline).some((h) => h.frame === frame));
+    const choice = frames.length > 1
+        && make("div", {id: "frame", class: "controls"}, make("span", {}, "Times of"), segmented("times of", frames, "animated_light", show));
     return [choice, holder];
 }
 
 function startPage() {
     const page = document.getElementById("page");
     const report = JSON.parse(document.getElementById("report").textContent);
-    if (report.schema !== "tyndall-report" || report.version !== 1) {
-        page.append(make("p", {class: "alert"}, `This page shows reports of schema tyndall-report, version 1, not ${report.schema} ${report.version}.`));
+    if (report.schema !== "tyndall-report" || report.version !== 2) {
+        page.append(make("p", {class: "alert"}, `This page shows reports of schema tyndall-report, version 2, not ${report.schema} ${report.version}.`));
         return;
     }
     const styles = groupStyles(report);

@@ -37,14 +37,14 @@ function errorPlot(scene, styles, select) {
     })).filter((p) => !p.run.failed && isNumber(p.ms) && p.ms > 0 && isNumber(p.error));
 
     function describe(p) {
-        return `${p.run.name}: error ${errorText(errorsOf(p.run, block))}, ${duration(p.ms)}`;
+        return `${p.run.name}: ${block > 0 ? "error" : "FLIP"} ${errorText(errorsOf(p.run, block))}, ${duration(p.ms)}`;
     }
 
     function showTip(p, target) {
         const box = target.getBoundingClientRect(), frame = holder.getBoundingClientRect();
         const noise = errorsOf(p.run, block).n;
         tip.replaceChildren(make("strong", {}, marker(p.style), p.run.name),
-            make("span", {}, `error ${errorText(errorsOf(p.run, block))}, noise of the reference ${percent(noise)}, ${duration(p.ms)}`),
+            make("span", {}, `${block > 0 ? "error" : "FLIP"} ${errorText(errorsOf(p.run, block))}, noise of the reference ${amount(noise, block)}, ${duration(p.ms)}`),
             make("span", {}, settingsText(p.run.settings)),
             ...list(p.run.warnings).slice(0, 2).map((w) => make("span", {class: "warning"}, w)));
         tip.hidden = false;
@@ -100,7 +100,7 @@ function errorPlot(scene, styles, select) {
         const Y = (error) => (error > 0 ? top + (base - top) * (y1 - Math.log10(error)) / (y1 - y0) : base - 12);
         const hatch = `hatch-${scene.name}`.replace(/[^\w-]/g, "_");
         const svg = draw("svg", {class: "error-plot", width, height, viewBox: `0 0 ${width} ${height}`, role: "group",
-            "aria-label": `${scene.name}: error over ${blockName(block)} against time, ${points.length} runs; arrow keys go from point to point`},
+            "aria-label": `${scene.name}: ${errorOver(block)} against time, ${points.length} runs; arrow keys go from point to point`},
             draw("defs", {}, draw("pattern", {id: hatch, width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)"},
                 draw("line", {class: "hatch", x1: 0, x2: 0, y1: 0, y2: 6}))));
 
@@ -113,7 +113,7 @@ function errorPlot(scene, styles, select) {
         for (const [value, labelled] of plotTicks(y0, y1, (base - top) / (y1 - y0) * 1.4)) {
             svg.append(draw("line", {class: labelled ? "grid" : "grid faint", x1: left, x2: width - right, y1: Y(value), y2: Y(value)}));
             if (labelled) {
-                svg.append(draw("text", {class: "tick", x: left - 6, y: Y(value) + 4, "text-anchor": "end"}, level(value)));
+                svg.append(draw("text", {class: "tick", x: left - 6, y: Y(value) + 4, "text-anchor": "end"}, errorLevel(value, block)));
             }
         }
         if (noise > 0) {
@@ -121,10 +121,10 @@ function errorPlot(scene, styles, select) {
             svg.append(draw("rect", {x: left, y, width: width - left - right, height: Math.max(0, base - y), fill: `url(#${hatch})`}),
                 draw("line", {class: "noise", x1: left, x2: width - right, y1: y, y2: y}),
                 draw("text", {class: "noise-word", x: left + 5, y: above ? y - 5 : y + 14},
-                    `noise of the reference, ${percent(noise)}`));
+                    `noise of the reference, ${amount(noise, block)}`));
         }
         svg.append(draw("text", {class: "axis", x: (left + width - right) / 2, y: height - 6, "text-anchor": "middle"}, `time of ${FRAMES[frameShown]}`),
-            draw("text", {class: "axis", x: 0, y: 12}, `error over ${blockName(block)}`));
+            draw("text", {class: "axis", x: 0, y: 12}, errorOver(block)));
 
         const keysOnFront = frontOf(scene, block);
         const front = points.filter((p) => keysOnFront.has(p.run.key)).sort((a, b) => a.ms - b.ms);

@@ -7,15 +7,16 @@ const spoiled = (run) => (run.non_finite || 0) + (run.negative || 0);
 
 // Columns: [heading, what it is, value to sort by, text]. Blocks: those of the scene's errors.
 function runColumns(blocks) {
-    const error = (block) => [blockName(block).replace(" pixels", " px").replace("single px", "1 px"), `error over ${blockName(block)}`,
+    const error = (block) => [blockName(block).replace(" pixels", " px").replace("single px", "1 px"), errorOver(block),
         (run) => errorValue(errorsOf(run, block)), (run) => errorText(errorsOf(run, block))];
     return [
         ...blocks.map(error),
         ["bias", "mean of the picture over that of the reference, less 1", (run) => errorsOf(run, blocks[0]).bias,
             (run) => signedPercent(errorsOf(run, blocks[0]).bias)],
-        ["cold", "a frame in which everything is computed", coldOf, (run) => duration(coldOf(run))],
-        ["camera", "a frame after the camera has moved", (run) => (run.frame_ms || {}).camera_moved, (run) => duration((run.frame_ms || {}).camera_moved)],
-        ["same", "a frame in which nothing has changed", (run) => (run.frame_ms || {}).unchanged, (run) => duration((run.frame_ms || {}).unchanged)],
+        ...[["first", "a first picture: the driver is warm, everything else is made from nothing", "first_picture"],
+            ["medium", "a frame after the medium has changed", "animated_medium"], ["light", "a frame after the light has changed", "animated_light"],
+            ["camera", "a frame after the camera has moved", "camera_moved"], ["same", "a frame in which nothing has changed", "unchanged"]]
+            .map(([heading, about, key]) => [heading, about, (run) => (run.frame_ms || {})[key], (run) => duration((run.frame_ms || {})[key])]),
         ["set-up", "pipelines, uploads, what depends on the media alone", (run) => run.setup_ms, (run) => duration(run.setup_ms)],
         ["MiB", "all images and buffers", memoryOf, (run) => mebibytes(memoryOf(run))],
         ["flicker", "what of the picture changes from frame to frame as the camera moves and should not", (run) => run.flicker, (run) => percent(run.flicker)],
@@ -98,14 +99,14 @@ function nodeBars(run) {
 function citation(report, scene, run) {
     const device = report.device || {}, reference = scene.reference || {};
     const errors = list(run.errors).map((e) =>
-        `${errorText(e, 3)} over ${blockName(e.block)} (noise of the reference ${percent(e.n)})`).join("; ");
+        `${errorText(e, 3)} ${e.block > 0 ? `over ${blockName(e.block)}` : "by FLIP"} (noise of the reference ${amount(e.n, e.block)})`).join("; ");
     const inputs = Object.entries(run.inputs || {}).map(([k, v]) => `${k} ${v}`).join(", ");
     return [
         `Tyndall ${report.tyndall}, suite ${(report.suite || {}).name} (${(report.suite || {}).hash})`,
         `scene ${scene.name}, ${list(scene.size).join(TIMES)} pixels (${scene.hash})`,
         `run ${run.name}: method ${run.method}; ${settingsText(run.settings) || "default settings"}; seed ${run.seed ?? NONE}`,
         `error ${errors || NONE}`,
-        `time ${duration(coldOf(run))} a cold frame${run.frames ? `, median of ${run.frames.cold}` : ""}`,
+        `time ${duration(lightOf(run))} after the light has changed${run.frames ? `, median of ${run.frames.animated_light}` : ""}`,
         `reference ${reference.method}${isNumber(reference.spp) ? `, ${reference.spp} samples a pixel, seed ${reference.seed}` : ""} (${reference.key})`,
         `device ${device.name}; driver ${device.driver}`,
         inputs && `inputs ${inputs}`,
@@ -123,8 +124,9 @@ function runDetails(report, scene, styles, index) {
     const copy = make("button", {type: "button", onclick() { copyText(text, record, copy); }}, "copy");
     const imbalance = list(run.imbalance).some(isNumber)
         ? list(run.imbalance).map((v, c) => signedPercent(v) + (list(run.imbalance_se)[c] > 0 ? ` \u00b1${NARROW}${percent(run.imbalance_se[c])}` : "")).join(" / ") : null;
-    const errorLine = (e) => [`error over ${blockName(e.block)}`,
-        `${errorText(e)} (measured ${percent(e.rel_l1)}, noise ${percent(e.n)}); rms ${percent(e.rel_rmse)}, bias ${signedPercent(e.bias)}, 95th percentile ${percent(e.p95)}`];
+    const errorLine = (e) => [errorOver(e.block), e.block > 0
+        ? `${errorText(e)} (measured ${percent(e.rel_l1)}, noise ${percent(e.n)}); rms ${percent(e.rel_rmse)}, bias ${signedPercent(e.bias)}, 95th percentile ${percent(e.p95)}`
+        : `${errorText(e)}, what noise of the reference gives alone: ${digits(e.n)}`];
     const frame = run.frame_ms || {};
     return make("div", {class: "details"},
         make("h3", {}, marker(style, 15), run.name),
@@ -133,8 +135,8 @@ function runDetails(report, scene, styles, index) {
         facts([
             ["method", run.method], ["settings", settingsText(run.settings) || "defaults"],
             ...list(run.errors).map(errorLine),
-            ["frame: cold, camera moved, unchanged", [frame.cold, frame.camera_moved, frame.unchanged].map(duration).join(", ")
-                + (run.frames ? ` (medians of ${[run.frames.cold, run.frames.camera_moved, run.frames.unchanged].join(", ")})` : "")],
+            ["frame: first, medium, light, camera, unchanged", [...Object.keys(FRAMES), "unchanged"].map((k) => duration(frame[k])).join(", ")
+                + (run.frames ? ` (medians of ${[...Object.keys(FRAMES), "unchanged"].map((k) => run.frames[k] ?? 0).join(", ")})` : "")],
             ["set-up", duration(run.setup_ms)],
             ["memory", run.memory ? `${mebibytes(run.memory.persistent)} MiB kept, ${mebibytes(run.memory.transient)} MiB a frame` : null],
             ["flicker", isNumber(run.flicker) ? percent(run.flicker) : null],

@@ -66,7 +66,10 @@ function axisValue(x) {
     return (mantissa === "1" ? "" : mantissa === "-1" ? MINUS : mantissa.replace("-", MINUS) + TIMES) + "10" + raised;
 }
 
-const blockName = (b) => (b > 1 ? `${b}${TIMES}${b} pixels` : "single pixels");
+// What an error is of: blocks of so many pixels, single ones, or 0: FLIP.
+const blockName = (b) => (b > 1 ? `${b}${TIMES}${b} pixels` : b === 1 ? "single pixels" : "FLIP");
+const errorOver = (b) => (b > 0 ? `error over ${blockName(b)}` : "FLIP");
+const errorLevel = (x, b) => (b > 0 ? level(x) : axisValue(x));
 
 // {"lattice.cells": 32} -> "lattice.cells 32"
 function settingsText(settings) {
@@ -79,13 +82,18 @@ const errorsOf = (run, block) => list(run.errors).find((e) => e.block === block)
 // An error below the noise of the reference is known to be that noise or less; below twice the noise it is vague.
 const isHidden = (e) => isNumber(e.error) && isNumber(e.n) && e.error < e.n;
 const errorValue = (e) => (isHidden(e) ? e.n : e.error);
-const errorText = (e, count = 2) => (isHidden(e) ? `\u2264${NARROW}` : isNumber(e.error) && e.error < 2 * e.n ? "~" : "") + percent(errorValue(e), count);
-const coldOf = (run) => (run.frame_ms || {}).cold;
-// Whose times the page compares. A method that samples begins anew wherever the camera goes.
-const FRAMES = {cold: "a cold frame", moved: "a frame after the camera has moved"};
-let frameShown = "cold";
+const amount = (x, b, count = 2) => (b > 0 ? percent(x, count) : digits(x, count));
+const errorText = (e, count = 2) => (isHidden(e) ? `\u2264${NARROW}` : isNumber(e.error) && e.error < 2 * e.n ? "~" : "") + amount(errorValue(e), e.block, count);
+// Whose times the page compares. A method that samples begins anew whatever changes.
+const FRAMES = {
+    first_picture: "a first picture", animated_medium: "a frame after the medium has changed",
+    animated_light: "a frame after the light has changed", camera_moved: "a frame after the camera has moved",
+};
+const FRAME_NAMES = {first_picture: "first picture", animated_medium: "animated medium", animated_light: "animated light", camera_moved: "camera moved"};
+let frameShown = "animated_light";
 let onScreen = new AbortController(); // aborted when another choice takes the place of what is shown
-const timeOf = (run) => (frameShown === "cold" || run.sampling ? coldOf(run) : (run.frame_ms || {}).camera_moved);
+const lightOf = (run) => (run.frame_ms || {}).animated_light;
+const timeOf = (run) => (run.frame_ms || {})[frameShown];
 const frontOf = (scene, block) => new Set(list((list(scene.fronts).find((f) => f.block === block) || {}).runs));
 
 // A choice of one among few, as buttons: options are [value, label].
