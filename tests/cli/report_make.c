@@ -141,6 +141,7 @@ static cJSON *make_run(app *a, const char *dir, int scene, int index)
     cJSON_AddItemToArray(errors, error_entry(block_of(scene), error, 0.006 * harder, m->noise));
     cJSON_AddItemToArray(
         errors, error_entry(1, m->noise > 0 ? 7 * error : 1.15 * error, 0.05 * harder, m->noise));
+    cJSON_AddNumberToObject(run, "flip", 0.4 * error);
     cJSON_AddNumberToObject(run, "setup_ms", 180);
     frame = cJSON_AddObjectToObject(run, "frame_ms");
     cJSON_AddNumberToObject(frame, "cold", m->ms * slower);

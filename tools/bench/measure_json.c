@@ -136,6 +136,7 @@ static int add_figures(measuring *m, cJSON *json)
     count_values(m, &non_finite, &negative);
     json_add_float(json, "fill", m->fill);
     cJSON_AddItemToObject(json, "errors", json_errors(m));
+    json_add_float(json, "flip", m->flip);
     json_add_float(json, "setup_ms", m->setup_ms);
     cJSON *frame = cJSON_AddObjectToObject(json, "frame_ms");
     json_add_float(frame, "cold", m->cold_ms);

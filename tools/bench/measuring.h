@@ -15,7 +15,7 @@ typedef struct measuring {
     float *planes; // 6 w h: the picture
     metrics_image image;
     metrics errors[BENCH_BLOCKS];
-    double fill, setup_ms, cold_ms, camera_ms, unchanged_ms;
+    double flip, fill, setup_ms, cold_ms, camera_ms, unchanged_ms;
     uint32_t cold_frames, camera_frames, unchanged_frames; // that these are medians of
     uint64_t persistent, transient;
     cJSON *nodes, *warnings; // NULL until they are known

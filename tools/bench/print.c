@@ -175,6 +175,9 @@ static void print_run(const cJSON *run)
         }
     }
     printf("\n    bias %+.2f %%", 100 * json_figure(run, "errors.0.bias"));
+    if (!isnan(json_figure(run, "flip"))) {
+        printf(", flip %.4f", json_figure(run, "flip"));
+    }
     if (!isnan(json_figure(run, "imbalance.0"))) {
         printf(", imbalance %+.2f %+.2f %+.2f %%", 100 * json_figure(run, "imbalance.0"),
                100 * json_figure(run, "imbalance.1"), 100 * json_figure(run, "imbalance.2"));

@@ -108,7 +108,8 @@ static bool has_nodes(const cJSON *run)
 // lacks some of it.
 static bool has_figures(const cJSON *run)
 {
-    static const char *const keys[] = {"fill", "imbalance", "imbalance_se", "flicker", NULL};
+    static const char *const keys[] = {"flip",         "fill",    "imbalance",
+                                       "imbalance_se", "flicker", NULL};
     static const char *const numbers[] = {"setup_ms",          "frame_ms.cold",
                                           "frames.cold",       "frames.camera_moved",
                                           "frames.unchanged",  "memory.transient",

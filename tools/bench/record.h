@@ -4,7 +4,7 @@
 #include "json.h"
 #include "suite.h"
 
-enum { BENCH_RECORD_VERSION = 1 };
+enum { BENCH_RECORD_VERSION = 2 };
 
 // What the suite says of a run, into the "run" of a record: its name, group, list and entry.
 void record_name_run(cJSON *json, const bench_run *run);

@@ -3,6 +3,7 @@
 const worst = (values) => (list(values).some(isNumber)
     ? list(values).filter(isNumber).reduce((a, b) => (Math.abs(b) > Math.abs(a) ? b : a)) : null);
 const memoryOf = (run) => (run.memory ? (run.memory.persistent || 0) + (run.memory.transient || 0) : null);
+const flipText = (run) => (isNumber(run.flip) ? run.flip.toFixed(4) : NONE);
 const spoiled = (run) => (run.non_finite || 0) + (run.negative || 0);
 
 // Columns: [heading, what it is, value to sort by, text]. Blocks: those of the scene's errors.
@@ -13,6 +14,7 @@ function runColumns(blocks) {
         ...blocks.map(error),
         ["bias", "mean of the picture over that of the reference, less 1", (run) => errorsOf(run, blocks[0]).bias,
             (run) => signedPercent(errorsOf(run, blocks[0]).bias)],
+        ["FLIP", "how different the picture looks from the reference, 0 to 1", (run) => run.flip, (run) => flipText(run)],
         ["cold", "a frame in which everything is computed", coldOf, (run) => duration(coldOf(run))],
         ["camera", "a frame after the camera has moved", (run) => (run.frame_ms || {}).camera_moved, (run) => duration((run.frame_ms || {}).camera_moved)],
         ["same", "a frame in which nothing has changed", (run) => (run.frame_ms || {}).unchanged, (run) => duration((run.frame_ms || {}).unchanged)],
@@ -133,6 +135,7 @@ function runDetails(report, scene, styles, index) {
         facts([
             ["method", run.method], ["settings", settingsText(run.settings) || "defaults"],
             ...list(run.errors).map(errorLine),
+            ["FLIP", isNumber(run.flip) ? flipText(run) : null],
             ["frame: cold, camera moved, unchanged", [frame.cold, frame.camera_moved, frame.unchanged].map(duration).join(", ")
                 + (run.frames ? ` (medians of ${[run.frames.cold, run.frames.camera_moved, run.frames.unchanged].join(", ")})` : "")],
             ["set-up", duration(run.setup_ms)],
