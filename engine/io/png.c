@@ -1,8 +1,11 @@
-// png.c -- 8-bit PNG images through zlib.
+// png.c -- 8-bit PNG images: written through zlib, read through stb_image.
 #include <tyndall/io.h>
 #include <stdlib.h>
 #include <string.h>
+#include "io/picture.h"
 #include <zlib.h>
+
+static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 
 static void store_u32(uint8_t *p, uint32_t v)
 {
@@ -69,7 +72,6 @@ static void filter_image(uint8_t *out, const uint8_t *pixels, uint32_t height, s
 tyn_result tyn_png_write(const char *path, uint32_t width, uint32_t height, uint32_t channels,
                          const uint8_t *pixels, const tyn_log *log)
 {
-    static const uint8_t signature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     if (width == 0 || height == 0 || width > 65536 || height > 65536 ||
         (channels != 3 && channels != 4)) {
         tyn_log_print(log, TYN_LOG_ERROR,
@@ -100,4 +102,29 @@ tyn_result tyn_png_write(const char *path, uint32_t width, uint32_t height, uint
     free(raw);
     free(file);
     return r;
+}
+
+tyn_result tyn_png_read(const char *path, uint32_t *width, uint32_t *height, uint8_t **rgba,
+                        const tyn_log *log)
+{
+    void *bytes;
+    size_t size;
+    uint32_t decoded[2] = {0, 0};
+    const char *reason = "it does not begin as one";
+    *rgba = NULL;
+    tyn_result r = tyn_file_read(path, UINT64_C(1) << 31, &bytes, &size, log);
+    if (r) {
+        return r;
+    }
+    if (size >= sizeof signature && memcmp(bytes, signature, sizeof signature) == 0) {
+        *rgba = tyn_picture_decode(bytes, size, decoded, &reason);
+    }
+    free(bytes);
+    *width = decoded[0];
+    *height = decoded[1];
+    if (!*rgba) {
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: must be a PNG picture: %s", path, reason);
+        return TYN_ERR_PARAMS;
+    }
+    return TYN_OK;
 }

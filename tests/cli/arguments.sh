@@ -232,8 +232,39 @@ refuses 2 "b.csv" compare a.exr b.csv
 refuses 2 "not a .png" compare a.exr b.exr --heat heat.jpg
 refuses 2 "--block: '0' is not" compare a.exr b.exr --block 0
 refuses 1 "nowhere" compare a.exr b.exr --heat nowhere/heat.png
-run compare nan.exr b.exr
+run compare nan.exr b.exr --hdr-flip
 [ "$code" = 1 ] || fail "compare with a NaN: exit $code"
 near "$(value nan)" 1 0 "nan"
+[ "$(value flip) $(value hdr_flip)" = "nan nan" ] || fail "FLIP with a NaN: $(value flip) $(value hdr_flip)"
+works compare a.exr a.exr --hdr-flip --flip-map map.png
+[ "$(value flip) $(value hdr_flip)" = "0 0" ] || fail "FLIP of equal pictures: $(value flip) $(value hdr_flip)"
+[ "$(head -c 4 map.png | od -An -tx1 | tr -d ' \n')" = 89504e47 ] || fail "--flip-map wrote no PNG"
+make green.exr 2 1 R=0 G=1 B=0
+make blue.exr 2 1 R=0 G=0 B=1
+works compare green.exr blue.exr --json --hdr-flip --exposures 0,1,2
+cp out compare.json
+near "$("$helpers/json_get" compare.json flip)" 1 1e-5 "flip of green and blue as JSON"
+"$helpers/json_get" compare.json hdr_flip >/dev/null || fail "no hdr_flip as JSON"
+# .png files have flip alone
+works compare heat.png map.png --flip-map map2.png
+[ "$(cut -d' ' -f1 out)" = flip ] || fail "compare of .png files: $(cat out)"
+awk -v f="$(value flip)" 'BEGIN { exit !(f > 0.1 && f <= 1) }' || fail "flip of two .png files: $(value flip)"
+works compare map.png map.png
+near "$(value flip)" 0 0 "flip of equal .png files"
+make c3.exr 3 1 R=1 G=1 B=1
+works compare c3.exr c3.exr --flip-map map3.png
+cp b.exr false.png
+refuses 2 "not one of each" compare a.exr map.png
+refuses 2 "not one of each" compare map.png a.exr
+refuses 2 "both need the same size" compare map3.png map.png
+refuses 2 "must be a PNG picture" compare map.png false.png
+refuses 2 "nothere.png" compare map.png nothere.png
+refuses 2 "--block: is for .exr" compare map.png heat.png --block 8
+refuses 2 "--heat: is for .exr" compare map.png heat.png --heat heat2.png
+refuses 2 "--hdr-flip: is for .exr" compare map.png heat.png --hdr-flip
+refuses 2 "--exposures: is for --hdr-flip" compare a.exr b.exr --exposures -3,3,4
+refuses 2 "must be START,STOP,COUNT" compare a.exr b.exr --hdr-flip --exposures 3,-3,4
+refuses 2 "must be START,STOP,COUNT" compare a.exr b.exr --hdr-flip --exposures -3,3,2.5
+refuses 2 "--flip-map: 'map.jpg' is not a .png" compare a.exr b.exr --flip-map map.jpg
 
 finish

@@ -15,7 +15,7 @@ works bench --suite suite.json --scenes "$scenes" --report report --quiet
 grep -q "^cube, 24x24" out && grep -q "for the same error plain needs" out || fail "bench: $(cat out)"
 ls cache/tyndall/references/*.exr >/dev/null 2>&1 || fail "bench kept no reference"
 for key in key name method group seed failed errors.1.rel_l1 \
-    errors.0.smape errors.0.bias_se setup_ms frame_ms.animated_light frame_ms.camera_moved frame_ms.unchanged frame_ms.first_picture frame_ms.animated_medium preset \
+    errors.0.smape errors.0.bias_se errors.2.error setup_ms frame_ms.animated_light frame_ms.camera_moved frame_ms.unchanged frame_ms.first_picture frame_ms.animated_medium preset \
     memory.persistent nodes.0.gpu_ms nodes.0.ceiling imbalance.2 flicker non_finite negative warnings \
     inputs.scene date equal_error.0.baseline_ms picture shown; do
     get report/report.json "scenes.0.runs.1.$key" >/dev/null
@@ -29,6 +29,12 @@ for key in schema version tyndall date suite.hash device.type ceilings.fma_gflop
 done
 near "$(get report/report.json scenes.0.runs.1.errors.0.error)" 0.05 0.05 "bench: error of pop"
 near "$(get report/report.json scenes.0.runs.2.errors.0.bias)" -0.5 0.4 "bench: bias of single"
+# flip is that of compare, up to the half floats of the picture
+for i in 1 2; do
+    works compare "report/$(get report/report.json scenes.0.runs.$i.picture)" report/pictures/cube/reference.exr
+    near "$(get report/report.json scenes.0.runs.$i.errors.2.error)" "$(value flip)" 1e-4 "bench: flip of run $i"
+    awk -v f="$(value flip)" 'BEGIN { exit !(f > 0.001 && f < 1) }' || fail "bench: flip of run $i is $(value flip)"
+done
 near "$(get report/report.json scenes.0.runs.1.imbalance.0)" 0 0.01 "bench: imbalance of pop"
 near "$(get report/report.json ceilings.fma_gflops)" 5000 4999.9 "bench: ceiling of multiplications"
 [ "$(get report/report.json scenes.0.runs)" = "list 6" ] || fail "bench: not six runs"
@@ -85,6 +91,7 @@ TYN_PLANT=nan "$helpers/tyndall_planted" bench --suite suite.json --scenes "$sce
     fail "bench: a picture with a NaN: $(cat err)"
 grep -q "pop, cells 8: 1 values of the picture are not finite" err || fail "bench: nothing is said of a NaN: $(cat err)"
 [ "$(get spoiled/report.json scenes.0.runs.1.errors.0.error)" = null ] || fail "bench: an error of a picture with a NaN"
+[ "$(get spoiled/report.json scenes.0.runs.1.errors.2.error)" = null ] || fail "bench: flip of a picture with a NaN"
 for front in 0 1; do
     for i in 0 1 2 3; do
         case "$("$helpers/json_get" spoiled/report.json "scenes.0.fronts.$front.runs.$i" 2>/dev/null)" in

@@ -182,11 +182,14 @@ def check_plots(b, report):
           and promises[0][1].startswith("yes pop is on") and promises[2][1].startswith("no pop is not on"), str(promises))
 
     # Sorted by a column: what has no value last.
-    b.run(scene(1, "scene.querySelectorAll('.runs thead button')[6].click()"))
+    heads = b.run(scene(1, "[...scene.querySelectorAll('.runs thead button')].map(b => b.textContent)"))
+    b.run(scene(1, f"scene.querySelectorAll('.runs thead button')[{heads.index('light')}].click()"))
     cold = b.run(scene(1, "[...scene.querySelectorAll('.runs tbody tr')].map(r => +r.dataset.run)"))
     of = report["scenes"][1]["runs"]
     times = [of[k]["frame_ms"]["animated_light"] for k in cold if of[k]["failed"] is None]
     check("sorted by time", times == sorted(times) and of[cold[-1]]["failed"] is not None)
+    first = b.run(scene(1, "[...scene.querySelectorAll('.runs tbody tr')[0].children].map(c => c.textContent)"))
+    check("flip has a column", first[heads.index("FLIP")].lstrip("~\u2264\u202f") == f"{of[cold[0]]['errors'][2]['error']:.4f}", str(first))
 
 
 def check_frames(b, report):

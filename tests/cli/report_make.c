@@ -144,6 +144,11 @@ static cJSON *make_run(app *a, const char *dir, int scene, int index)
     cJSON_AddItemToArray(errors, error_entry(block_of(scene), error, 0.006 * harder, m->noise));
     cJSON_AddItemToArray(
         errors, error_entry(1, m->noise > 0 ? 7 * error : 1.15 * error, 0.05 * harder, m->noise));
+    cJSON *flip = cJSON_CreateObject();
+    cJSON_AddNumberToObject(flip, "block", 0);
+    cJSON_AddNumberToObject(flip, "error", 0.4 * error);
+    cJSON_AddNumberToObject(flip, "n", 0.01);
+    cJSON_AddItemToArray(errors, flip);
     cJSON_AddNumberToObject(run, "setup_ms", 180);
     frame = cJSON_AddObjectToObject(run, "frame_ms");
     cJSON_AddNumberToObject(frame, "animated_light", m->ms * slower);

@@ -308,10 +308,40 @@ static void png(void **state)
         assert_true(w == 31 && h == 17 && n == (int)channels);
         assert_memory_equal(read, pixels, 31 * 17 * channels);
         stbi_image_free(read);
+        uint32_t width, height;
+        uint8_t *rgba;
+        assert_int_equal(tyn_png_read(path, &width, &height, &rgba, &log.log), TYN_OK);
+        assert_true(width == 31 && height == 17);
+        for (uint32_t i = 0; i < 31 * 17; i++) {
+            assert_memory_equal(&rgba[4 * i], &pixels[channels * i], channels);
+            assert_true(channels == 4 || rgba[4 * i + 3] == 255);
+        }
+        free(rgba);
         assert_int_equal(tyn_png_write(path, 0, 17, 3, pixels, &log.log), TYN_ERR_PARAMS);
         assert_int_equal(tyn_png_write(path, 3, 17, 2, pixels, &log.log), TYN_ERR_PARAMS);
         assert_int_equal(tyn_png_write(io_path("no/a.png"), 3, 3, 3, pixels, &log.log), TYN_ERR_IO);
         assert_int_equal(log.errors, 3);
+    }
+}
+
+static void png_refusals(void **state)
+{
+    // Pictures that are no PNG, a PNG that is cut, and none at all.
+    static const uint8_t cut[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0};
+    static const uint8_t jpeg[] = {0xff, 0xd8, 0xff, 0xe0, 0, 16, 'J', 'F', 'I', 'F', 0};
+    const char *const paths[] = {io_put("cut.png", cut, sizeof cut),
+                                 io_put("jpeg.png", jpeg, sizeof jpeg), io_path("nothere.png")};
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        io_log log;
+        io_log_init(&log);
+        uint32_t width, height;
+        uint8_t *rgba;
+        assert_int_equal(tyn_png_read(paths[i], &width, &height, &rgba, &log.log),
+                         i < 2 ? TYN_ERR_PARAMS : TYN_ERR_IO);
+        assert_null(rgba);
+        assert_int_equal(log.errors, 1);
+        assert_non_null(strstr(log.last, paths[i]));
     }
 }
 
@@ -344,6 +374,7 @@ int main(void)
         cmocka_unit_test(round_trip), cmocka_unit_test(incompressible),
         cmocka_unit_test(saturation), cmocka_unit_test(environments),
         cmocka_unit_test(kinds),      cmocka_unit_test(broken),
-        cmocka_unit_test(png),        cmocka_unit_test(real_file)};
+        cmocka_unit_test(png),        cmocka_unit_test(png_refusals),
+        cmocka_unit_test(real_file)};
     return cmocka_run_group_tests(tests, NULL, io_test_clean);
 }

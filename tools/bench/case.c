@@ -75,7 +75,7 @@ static int open_scene(app *a, const bench_suite *suite, const bench_scene *spec,
     *c = (bench_case){.a = a,
                       .suite = suite,
                       .spec = spec,
-                      .blocks = {suite->block, 1},
+                      .blocks = {suite->block, 1, 0},
                       .view = {.outputs = TYN_OUTPUT_RADIANCE, .no_background = true}};
     int code = scene_open(a, &spec->scene, &c->scene);
     if (code == EXIT_DONE && spec->lights > 0 && spec->lights < c->scene.num_lights) {

@@ -1,6 +1,7 @@
 // measure.c -- one run on one scene: errors, times, nodes, memory, imbalance, flicker, as a record.
 #include "measuring.h"
 #include "flicker.h"
+#include "flip.h"
 #include "json.h"
 #include "stats.h"
 #include "timing.h"
@@ -27,6 +28,11 @@ static int take_picture(measuring *m)
                       m->c->spec->name);
             return EXIT_WRONG;
         }
+    }
+    float scale;
+    if (!flip_scale(&m->c->reference.image, &scale) ||
+        !flip_ldr(&m->image, &m->c->reference.image, scale, NULL, &m->flip)) {
+        return app_exit_code(m->c->a, TYN_ERR_MEMORY, false);
     }
     // Transmittance below 0.99 is medium.
     const float *t = tyn_offline_output(m->renderer.offline, TYN_OUTPUT_TRANSMITTANCE);
@@ -480,6 +486,7 @@ int bench_measure(bench_case *c, const bench_run *run, const char *key, cJSON **
 {
     measuring m = {.c = c,
                    .run = run,
+                   .flip = NAN,
                    .fill = NAN,
                    .setup_ms = NAN,
                    .ms = {NAN, NAN, NAN, NAN, NAN},

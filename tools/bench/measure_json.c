@@ -30,6 +30,12 @@ static cJSON *json_errors(const measuring *m)
         cJSON_AddNumberToObject(error, "nan", (double)e->nan);
         cJSON_AddItemToArray(list, error);
     }
+    // FLIP has no parts that could be taken away: what the noise of the reference gives alone stands beside it.
+    cJSON *flip = cJSON_CreateObject();
+    cJSON_AddNumberToObject(flip, "block", 0);
+    json_add_float(flip, "error", m->flip);
+    json_add_float(flip, "n", m->c->reference.known_noise ? m->c->reference.flip_noise : NAN);
+    cJSON_AddItemToArray(list, flip);
     return list;
 }
 

@@ -16,7 +16,7 @@ typedef struct measuring {
     float *planes; // 6 w h: the picture
     metrics_image image;
     metrics errors[BENCH_BLOCKS];
-    double fill, setup_ms;
+    double flip, fill, setup_ms;
     double ms[NUM_TIMES];
     uint32_t frames[NUM_TIMES]; // that these are medians of
     uint64_t persistent, transient;

@@ -2,7 +2,7 @@
 #include "reference.h"
 #include "cache.h"
 #include "converge.h"
-#include "folder.h"
+#include "flip.h"
 #include "json.h"
 #include "stats.h"
 #include <math.h>
@@ -85,6 +85,38 @@ void bench_reference_measure(bench_reference *r)
         }
     }
     r->bias_se = sum != 0 ? sqrt(variance) / fabs(sum) : 0;
+}
+
+// A number with the distribution N(0, 1), the same ones in every call: by Box and Muller, of splitmix64's bits.
+static double normal(uint64_t *state)
+{
+    double u[2];
+    for (int i = 0; i < 2; i++) {
+        uint64_t z = *state += UINT64_C(0x9E3779B97F4A7C15);
+        z = (z ^ (z >> 30)) * UINT64_C(0xBF58476D1CE4E5B9);
+        z = (z ^ (z >> 27)) * UINT64_C(0x94D049BB133111EB);
+        u[i] = ((double)((z ^ (z >> 31)) >> 11) + 0.5) * 0x1p-53;
+    }
+    return sqrt(-2 * log(u[0])) * cos(2 * 3.14159265358979323846 * u[1]);
+}
+
+// What FLIP says of noise alone: the reference against itself with noise of its standard errors added.
+static bool measure_flip(bench_reference *r)
+{
+    const size_t num = (size_t)r->image.width * r->image.height;
+    float *noisy = malloc(3 * num * sizeof *noisy), scale;
+    metrics_image image = {.width = r->image.width, .height = r->image.height};
+    uint64_t state = 0;
+    for (int c = 0; noisy && c < 3; c++) {
+        image.rgb[c] = noisy + c * num;
+        for (size_t i = 0; i < num; i++) {
+            noisy[c * num + i] = r->image.rgb[c][i] + (float)(r->image.se[c][i] * normal(&state));
+        }
+    }
+    const bool done = noisy && flip_scale(&r->image, &scale) &&
+                      flip_ldr(&image, &r->image, scale, NULL, &r->flip_noise);
+    free(noisy);
+    return done;
 }
 
 // ---- files that hold what `path` gave ---------------------------------------------------------
@@ -302,14 +334,13 @@ int bench_reference_get(app *a, const bench_machine *on, const bench_suite *suit
                         bool make, bench_reference *r)
 {
     *r = (bench_reference){.blocks = {suite->block, 1}};
-    if (!spec->reference) {
-        return from_path(a, on, suite, spec, scene, view, make, r);
-    }
-    const int code = from_file(a, spec, view, r);
+    const int code = spec->reference ? from_file(a, spec, view, r)
+                                     : from_path(a, on, suite, spec, scene, view, make, r);
     if (code == EXIT_DONE) {
         bench_reference_measure(r);
     }
-    return code;
+    const bool flip = code != EXIT_DONE || !r->known_noise || measure_flip(r);
+    return flip ? code : app_exit_code(a, TYN_ERR_MEMORY, false);
 }
 
 void bench_reference_finish(bench_reference *r)

@@ -9,7 +9,7 @@
 #include <tyndall/offline.h>
 
 // Errors over blocks of suite->block and per pixel; a third measure is FLIP. Seeds of references begin at the last.
-enum { BENCH_BLOCKS = 2, BENCH_MEASURES = 2, BENCH_REFERENCE_SEED = 1000003 };
+enum { BENCH_BLOCKS = 2, BENCH_MEASURES = 3, BENCH_REFERENCE_SEED = 1000003 };
 
 // What is measured on.
 typedef struct bench_machine {
@@ -31,6 +31,7 @@ typedef struct bench_reference {
     bool stored, cached;        // it was there, with the suite or in the cache
     bool known_noise;           // it carries standard errors
     double noise[BENCH_BLOCKS]; // metrics.n of the reference alone; 0 where it is not known
+    double flip_noise;          // FLIP of the reference with noise of its size added
     double bias_se;             // standard error of its sum, relative to the sum
 } bench_reference;
 

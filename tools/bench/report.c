@@ -37,6 +37,10 @@ static cJSON *json_reference(const bench_case *c)
         json_add_float(entry, "n", r->known_noise ? r->noise[i] : NAN);
         cJSON_AddItemToArray(noise, entry);
     }
+    cJSON *flip = cJSON_CreateObject();
+    cJSON_AddNumberToObject(flip, "block", 0);
+    json_add_float(flip, "n", r->known_noise ? r->flip_noise : NAN);
+    cJSON_AddItemToArray(noise, flip);
     return json;
 }
 

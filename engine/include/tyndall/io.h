@@ -64,6 +64,9 @@ TYN_API float *tyn_image_file_channel(const tyn_image_file *image, const char *n
 // 8-bit RGB(A), row 0 at the top.
 TYN_API tyn_result tyn_png_write(const char *path, uint32_t width, uint32_t height,
                                  uint32_t channels, const uint8_t *pixels, const tyn_log *log);
+// Any PNG as 8-bit RGBA with at most 16384 pixels a side; `rgba` is freed with free().
+TYN_API tyn_result tyn_png_read(const char *path, uint32_t *width, uint32_t *height, uint8_t **rgba,
+                                const tyn_log *log);
 
 // Whole files; `size` in bytes; freed with free(). Refuses files above `limit` bytes.
 TYN_API tyn_result tyn_file_read(const char *path, uint64_t limit, void **data, size_t *size,

@@ -82,7 +82,7 @@ const errorsOf = (run, block) => list(run.errors).find((e) => e.block === block)
 // An error below the noise of the reference is known to be that noise or less; below twice the noise it is vague.
 const isHidden = (e) => isNumber(e.error) && isNumber(e.n) && e.error < e.n;
 const errorValue = (e) => (isHidden(e) ? e.n : e.error);
-const amount = (x, b, count = 2) => (b > 0 ? percent(x, count) : digits(x, count));
+const amount = (x, b, count = 2) => (b > 0 ? percent(x, count) : isNumber(x) ? x.toFixed(4) : NONE);
 const errorText = (e, count = 2) => (isHidden(e) ? `\u2264${NARROW}` : isNumber(e.error) && e.error < 2 * e.n ? "~" : "") + amount(errorValue(e), e.block, count);
 // Whose times the page compares. A method that samples begins anew whatever changes.
 const FRAMES = {
