@@ -127,6 +127,32 @@ done
 cmp -s names/pictures/scene/reference.exr names/pictures/scene/reference-2.exr && fail "bench: a run is the reference"
 [ "$(get names/report.json scenes.0.left_out)" = "list 1" ] || fail "bench: max_seconds depends on the order"
 [ "$(get names/report.json scenes.0.runs.3.name)" = "path, 1 spp" ] || fail "bench: runs are not in the order of the suite"
+# references that are stored with the suite: made once, to a noise, gone on with, taken as they are, told from others
+cat >stored.json <<'END'
+{ "name": "stored", "size": [16, 16], "references": "refs", "reference_noise": 0.2, "block": 4, "frames": 1, "timing_seconds": 0,
+  "ceilings": false, "scenes": [ { "name": "cube", "scene": "cube.gltf" } ], "runs": [ { "method": "single" } ] }
+END
+samples() {
+    sed -n 's/^cube, 16x16: \([0-9]*\) samples .*/\1/p' out
+}
+works bench --suite stored.json --scenes "$scenes" --references --quiet
+coarse=$(samples)
+works bench --suite stored.json --scenes "$scenes" --references --quiet
+[ "$(samples)" = "$coarse" ] || fail "bench: a reference that is good enough was gone on with"
+sed 's/0.2/0.05/' stored.json >finer.json
+rm -r cache/tyndall/references
+works bench --suite finer.json --scenes "$scenes" --references --quiet
+[ "$(samples)" -gt $((8 * coarse)) ] || fail "bench: $(samples) samples for a fourth of the noise of $coarse"
+awk '{ for (i = 1; i < NF; i++) if ($i == "noise") exit !($(i + 1) > 3 && $(i + 1) <= 5) }' out || fail "bench: noise: $(cat out)"
+rm -rf cache/tyndall/references
+works bench --suite stored.json --scenes "$scenes" --report stored --quiet
+[ "$(get stored/report.json scenes.0.reference.stored)" = true ] && ! ls cache/tyndall/references/*.exr >/dev/null 2>&1 ||
+    fail "bench: a stored reference was not taken"
+sed 's/"cube.gltf"/"cube.gltf", "g": 0.3/' stored.json >other.json
+run bench --suite other.json --scenes "$scenes" --report of-another
+grep -q "refs/cube-16x16.exr: is of another scene, view or size: rendered anew" err || fail "bench: a reference of another scene: $(cat err)"
+[ "$(get of-another/report.json scenes.0.reference.stored)" = false ] || fail "bench: a reference of another scene was taken"
+refuses 2 "needs a suite that names their folder" bench --suite suite.json --scenes "$scenes" --references
 # a reference of the user's own, and bands
 cat >file.json <<'END'
 { "name": "file", "size": [24, 24], "block": 4, "frames": 1, "timing_seconds": 0, "ceilings": false,
