@@ -341,8 +341,9 @@ const command cmd_bench = {
     .summary = "Error against time: every method of a suite on every scene.",
     .details =
         "For every scene and run: the error against a converged `path` (kept in\n"
-        "$XDG_CACHE_HOME/tyndall/references) or a file, the times of cold, camera-moved and\n"
-        "unchanged frames, memory, imbalance, flicker, each node against the device's\n"
+        "$XDG_CACHE_HOME/tyndall/references) or a file, times of first pictures, of frames after\n"
+        "medium, light or camera have changed, and of unchanged ones, memory, imbalance,\n"
+        "flicker, each node against the device's\n"
         "ceilings; per scene the front of error against time, and what path tracing needs\n"
         "for the same error.",
     .groups = groups,

@@ -248,7 +248,8 @@ void plane_add_own_equal_errors(const plane *p, cJSON *runs)
             has_baseline(p)) {
             cJSON *list = cJSON_GetObjectItemCaseSensitive(run, "equal_error");
             list = list ? list : cJSON_AddArrayToObject(run, "equal_error");
-            cJSON_AddItemToArray(list, json_comparison(p, point->ms, point->error, !point->bound));
+            cJSON_AddItemToArray(
+                list, json_comparison(p, point->ms, point->error, point->error >= 2 * p->noise));
         }
     }
 }

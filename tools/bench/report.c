@@ -320,9 +320,8 @@ static cJSON *json_preset(const cJSON *scenes, const char *how, const char *pres
         } else {
             add_missing(&m, scene,
                         !run || json_text(run, "failed")[0] ? "it cannot do this scene"
-                        : entry
-                            ? "the noise of its reference hides the error, or no baseline has it"
-                            : "not measured");
+                        : entry ? "the error is below twice the noise of its reference"
+                                : "not measured");
         }
     }
     cJSON *json = cJSON_CreateObject();
