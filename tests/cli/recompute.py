@@ -84,6 +84,27 @@ def best_baseline(points, error):
     return best
 
 
+def error_by_samples(curve, ms):
+    """(error, measured) after a time."""
+    before = [i for i, p in enumerate(curve) if p.ms <= ms]
+    if not before:
+        return None, False
+    a = curve[before[-1]]
+    if before[-1] + 1 < len(curve):
+        b = curve[before[-1] + 1]
+        return a.error * (b.error / a.error) ** (math.log(ms / a.ms) / math.log(b.ms / a.ms)), True
+    return (a.error, True) if a.ms == ms else (None, False) if a.bound else (a.error * math.sqrt(a.ms / ms), False)
+
+
+def best_error(points, ms):
+    best = (None, False)
+    for group in dict.fromkeys(p.run["group"] for p in points if p.run["baseline"]):
+        error, measured = error_by_samples(envelope([p for p in points if p.run["group"] == group]), ms)
+        if error is not None and (best[0] is None or (error < best[0] if measured == best[1] else measured)):
+            best = (error, measured)
+    return best
+
+
 def own_time(points, group, error):
     there = [p.ms for p in points if p.run["group"] == group and p.error <= error]
     return min(there) if there else None
@@ -113,6 +134,8 @@ def own_equal_errors(runs, measure, block, frame):
         base, measured, name = (None, False, None) if p.vague else best_baseline(points, p.error)
         found[p.run["key"], block] = {"baseline_ms": base, "baseline": name, "measured": measured,
                                       "speedup": None if base is None else base / p.ms}
+        error, measured = best_error(points, p.ms)
+        found[p.run["key"], block].update({"baseline_error": error, "error_measured": measured})
     return found
 
 

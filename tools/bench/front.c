@@ -114,6 +114,25 @@ front_time front_time_at(const front_point *points, uint32_t count, uint32_t lin
     return time;
 }
 
+front_error front_error_at(const front_point *points, uint32_t count, uint32_t line, double ms)
+{
+    uint32_t num = 0;
+    ranked *curve = envelope(points, count, line, &num);
+    front_error found = {NAN, false};
+    for (uint32_t i = 0; i < num && curve[i].ms <= ms; i++) {
+        const ranked *a = &curve[i], *b = i + 1 < num ? a + 1 : NULL;
+        if (b && b->ms > ms && a->error > 0 && b->error > 0) {
+            const double share = log(ms / a->ms) / log(b->ms / a->ms);
+            found = (front_error){a->error * pow(b->error / a->error, share), true};
+        } else if (!b) {
+            const double error = a->bound ? NAN : a->error * sqrt(a->ms / ms);
+            found = a->ms == ms ? (front_error){a->error, true} : (front_error){error, false};
+        }
+    }
+    free(curve);
+    return found;
+}
+
 // ---- who is fastest ---------------------------------------------------------------------------
 
 // Extrapolation would make a sampling line faster than a single sample of every pixel, or let it reach what

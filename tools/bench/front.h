@@ -32,6 +32,15 @@ typedef struct front_time {
 front_time front_time_at(const front_point *points, uint32_t count, uint32_t line, double error);
 
 // A range of errors in which one line is the fastest of all.
+typedef struct front_error {
+    double error;  // NAN: nothing of the line is that fast
+    bool measured; // false: beyond the points, by 1/sqrt(samples)
+} front_error;
+
+// The error of a line of samples after a time: log-log between the neighbours on the lower envelope of the curve. What
+// the noise of the reference hides stands at it; beyond such a point the error is not known.
+front_error front_error_at(const front_point *points, uint32_t count, uint32_t line, double ms);
+
 typedef struct front_range {
     uint32_t line;
     double low, high;

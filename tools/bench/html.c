@@ -127,7 +127,8 @@ static void add_scene_pictures(app *a, text *page, const char *dir, const cJSON 
     {
         if (string_of(run, "picture")) {
             const bool front = on_front(scene, string_of(run, "key"));
-            list[count++] = (candidate){run, position, front ? -1 : rank_in_group(runs, run)};
+            list[count++] = (candidate){
+                run, position, front || string_of(run, "preset") ? -1 : rank_in_group(runs, run)};
         }
         position++;
     }

@@ -175,6 +175,22 @@ static front_time best_baseline(const plane *p, double error, uint32_t *line)
     return best;
 }
 
+// The least error of a baseline after a time: what was measured, or where nothing was, what is extrapolated.
+static front_error best_error(const plane *p, double ms)
+{
+    front_error best = {NAN, false};
+    for (uint32_t b = 0; b < p->num_lines; b++) {
+        const front_error own =
+            p->lines[b].baseline ? front_error_at(p->points, p->count, b, ms) : best;
+        const bool better = isnan(best.error) ||
+                            (own.measured == best.measured ? own.error < best.error : own.measured);
+        if (!isnan(own.error) && better) {
+            best = own;
+        }
+    }
+    return best;
+}
+
 static bool has_baseline(const plane *p)
 {
     bool has = false;
@@ -248,8 +264,12 @@ void plane_add_own_equal_errors(const plane *p, cJSON *runs)
             has_baseline(p)) {
             cJSON *list = cJSON_GetObjectItemCaseSensitive(run, "equal_error");
             list = list ? list : cJSON_AddArrayToObject(run, "equal_error");
-            cJSON_AddItemToArray(
-                list, json_comparison(p, point->ms, point->error, point->error >= 2 * p->noise));
+            cJSON *entry =
+                json_comparison(p, point->ms, point->error, point->error >= 2 * p->noise);
+            const front_error there = best_error(p, point->ms); // at equal time
+            json_add_float(entry, "baseline_error", there.error);
+            cJSON_AddBoolToObject(entry, "error_measured", there.measured);
+            cJSON_AddItemToArray(list, entry);
         }
     }
 }

@@ -35,7 +35,8 @@ cJSON *plane_verdicts(const plane *p); // the same as sentences
 cJSON *plane_promise(const plane *p);
 // Every method against the baselines, at the errors asked for: at each against the one that is the fastest there.
 void plane_add_equal_errors(const plane *p, cJSON *list);
-// What the fastest of the baselines needs for the error of each run that does not sample, unless that is vague (of a
+// What the fastest of the baselines needs for the error of each run that does not sample, unless that is vague, and
+// what error the best of them has after its time (of a
 // sweep only for TIME_LIGHT), and which errors are vague; `runs` are those of plane_make.
 void plane_add_own_equal_errors(const plane *p, cJSON *runs);
 // Pages hold pictures: of a sweep only those on a front, the best and what no sweep made are worth it.

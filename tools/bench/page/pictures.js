@@ -168,6 +168,17 @@ function pictureViewer(scene, sceneIndex, first) {
         onclick() { state[name] = !state[name]; update(); }}, label);
     const differenceButton = toggle("difference", "d", "difference"), blockButton = toggle(`${largest}\u00d7${largest} means`, "m", "blocks");
     const swapButton = make("button", {type: "button", "aria-keyshortcuts": "s", onclick() { swap(); }}, "swap");
+    // On the right the picture of a baseline that took about as long as the one on the left.
+    function equalTime() {
+        const of = (s) => (typeof s.id === "number" ? scene.runs[s.id] : {}), ms = timeOf(of(sources[state.left]));
+        const near = sources.map((s, i) => [i, of(s)]).filter(([, run]) => run.baseline && timeOf(run) > 0)
+            .sort((a, b) => Math.abs(Math.log(timeOf(a[1]) / ms)) - Math.abs(Math.log(timeOf(b[1]) / ms)))[0];
+        if (near && ms > 0) {
+            state.right = near[0];
+            update();
+        }
+    }
+    const timeButton = make("button", {type: "button", "aria-keyshortcuts": "t", onclick: equalTime, title: "on the right what a baseline shows after about this time"}, "equal time");
     const scale = make("div", {class: "scale"}, make("span"), make("canvas", {width: 128, height: 1, "aria-hidden": "true"}), make("span"));
     const dark = matchMedia("(prefers-color-scheme: dark)");
     let shown = null, printing = false;
@@ -282,12 +293,12 @@ function pictureViewer(scene, sceneIndex, first) {
         PageDown: () => moveSplit(state.split - 10), PageUp: () => moveSplit(state.split + 10),
         Home: () => moveSplit(0), End: () => moveSplit(100),
         a: turn("left", 1), A: turn("left", -1), b: turn("right", 1), B: turn("right", -1),
-        s: swap, d: () => differenceButton.click(), m: () => blockButton.click(),
+        s: swap, t: equalTime, d: () => differenceButton.click(), m: () => blockButton.click(),
         "+": change("gain", 1, 0, 10), "=": change("gain", 1, 0, 10), "-": change("gain", -1, 0, 10),
         e: change("exposure", 0.5, -24, 24), E: change("exposure", -0.5, -24, 24),
     };
     const key = (k) => make("kbd", {}, k);
-    const hint = make("p", {class: "note keys"}, key("\u2190"), key("\u2192"), " split  ", key("a"), key("b"), " next left, right  ", key("s"), " swap  ",
+    const hint = make("p", {class: "note keys"}, key("\u2190"), key("\u2192"), " split  ", key("a"), key("b"), " next left, right  ", key("s"), " swap  ", key("t"), " equal time  ",
         key("d"), " difference  ", key("+"), key("-"), " gain  ", key("e"), key("E"), " exposure  ", key("m"), " means");
     const element = make("figure", {class: "viewer", onkeydown(event) {
         const typing = event.target.matches("select, input");
@@ -296,7 +307,7 @@ function pictureViewer(scene, sceneIndex, first) {
             KEYS[event.key]();
         }
     }},
-        make("div", {class: "sides"}, make("label", {}, make("span", {}, "left"), selects[0]), swapButton, make("label", {}, make("span", {}, "right"), selects[1])),
+        make("div", {class: "sides"}, make("label", {}, make("span", {}, "left"), selects[0]), swapButton, make("label", {}, make("span", {}, "right"), selects[1]), timeButton),
         stage, scale,
         make("div", {class: "controls"}, differenceButton, blockButton, exposure.element, gain.element),
         hint, readout);
