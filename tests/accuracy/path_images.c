@@ -4,6 +4,7 @@
 // sqrt(se_ref^2 + se_path^2) of 8x8 blocks has an RMS below 1.5. TYN_LONG=N takes N times the samples.
 #include "npy.h"
 #include "path_scene.h"
+#include "skip.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,8 +31,7 @@ static void compare(gpu_test *t, path_scene *s, const char *name, uint32_t sampl
     snprintf(file, sizeof file, "reference/images/%s.npy", name);
     npy_array ref;
     if (!shared_path(path, sizeof path, file)) {
-        printf("%s: skipped\n", name);
-        return;
+        skip_without(file);
     }
     assert_true(npy_read(&ref, path));
     uint32_t n = ref.shape[0], k = ref.shape[2] / 2;
@@ -175,7 +175,7 @@ static void blobs(void **state)
         {"blobsthin_sky_front", true, true, {0, 0, 1}, 5, 512},
     };
     if (!read_blobs(grid)) {
-        skip();
+        skip_without("reference/images/blobs64.f32");
     }
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
         bool thin = images[i].thin;
@@ -269,5 +269,5 @@ int main(void)
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+    return run_cases(tests, gpu_setup, gpu_teardown);
 }

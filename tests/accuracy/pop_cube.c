@@ -2,6 +2,7 @@
 // energy, and its refinement.
 #include "gpu_test.h"
 #include "picture.h"
+#include "skip.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,8 +27,7 @@ static picture_error cube_error(gpu_test *t, float g, int view, int cells)
     snprintf(settings, sizeof settings, "lattice.cells=%d", cells);
     picture reference, ours;
     if (!picture_reference(&reference, name)) {
-        print_message("skipped: no reference %s\n", name);
-        skip();
+        skip_without(name);
     }
     tyn_scene *scene = malloc(sizeof *scene);
     make_cube(scene, g);
@@ -102,5 +102,5 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(references), cmocka_unit_test(refinement),
                                        cmocka_unit_test(energy)};
-    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+    return run_cases(tests, gpu_setup, gpu_teardown);
 }

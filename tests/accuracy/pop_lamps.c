@@ -3,6 +3,7 @@
 #include "gpu_test.h"
 #include "npy.h"
 #include "picture.h"
+#include "skip.h"
 #include "todo.h"
 #include <math.h>
 #include <stdio.h>
@@ -77,8 +78,7 @@ static void airlight_rows(void **state)
     static double rows[MAX_ROWS][MAX_COLUMNS];
     uint32_t count = read_table("reference/airlight_single.csv", rows, 6);
     if (count == 0) {
-        print_message("skipped: no airlight_single.csv\n");
-        skip();
+        skip_without("reference/airlight_single.csv");
     }
     double worst = 0, sum = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -146,8 +146,7 @@ static void sphere_rings(void **state)
     static double rows[MAX_ROWS][MAX_COLUMNS];
     uint32_t count = read_table("reference/sphere_profile.csv", rows, 6);
     if (count == 0) {
-        print_message("skipped: no sphere_profile.csv\n");
-        skip();
+        skip_without("reference/sphere_profile.csv");
     }
     for (uint32_t i = 0; i + RINGS <= count; i += RINGS) {
         if (rows[i][2] > 0) {
@@ -221,8 +220,7 @@ static void infinite_medium(void **state)
     static double rows[MAX_ROWS][MAX_COLUMNS];
     uint32_t count = read_table("reference/pointsource_infinite_exact.csv", rows, 5);
     if (count == 0) {
-        print_message("skipped: no pointsource_infinite_exact.csv\n");
-        skip();
+        skip_without("reference/pointsource_infinite_exact.csv");
     }
     enum { CELLS = 48, DIRECTIONS = 128 };
     static const char rays[] = "light travels along the lattice's 14 lines";
@@ -364,5 +362,5 @@ int main(void)
         cmocka_unit_test(stress),
     };
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+    return run_cases(tests, gpu_setup, gpu_teardown);
 }

@@ -7,6 +7,7 @@
 #include "npy.h"
 #include "picture.h"
 #include "sample_scene.h"
+#include "skip.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -199,8 +200,7 @@ static void reference_blobs(void **state)
     char path[512];
     if (!shared_path(path, sizeof path, "reference/images/blobs64.f32") ||
         !picture_reference(&reference, "blobs_dir_toward")) {
-        print_message("skipped: no reference blobs_dir_toward\n");
-        skip();
+        skip_without("reference/images/blobs64.f32, blobs_dir_toward.npy");
     }
     const uint32_t size[3] = {64, 64, 64};
     float *grid = malloc(64 * 64 * 64 * sizeof *grid);
@@ -232,5 +232,5 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(reference_blobs),
                                        cmocka_unit_test(made_scenes),
                                        cmocka_unit_test(sample_scenes), cmocka_unit_test(median)};
-    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+    return run_cases(tests, gpu_setup, gpu_teardown);
 }

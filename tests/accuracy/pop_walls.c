@@ -4,6 +4,7 @@
 #include "npy.h"
 #include "path_run.h"
 #include "picture.h"
+#include "skip.h"
 #include "solids.h"
 #include "todo.h"
 #include <math.h>
@@ -448,8 +449,7 @@ static void slab_table(gpu_test *t, const char *name, double bound)
 {
     char path[512];
     if (!shared_path(path, sizeof path, name)) {
-        printf("skipped: no %s\n", name);
-        return;
+        skip_without(name);
     }
     FILE *f = fopen(path, "r");
     assert_non_null(f);
@@ -826,5 +826,5 @@ int main(void)
         cmocka_unit_test(deep_slab),
     };
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+    return run_cases(tests, gpu_setup, gpu_teardown);
 }

@@ -1,6 +1,7 @@
 // milk.c -- the thick milk is solved in six sweeps, where plain iteration takes more than a hundred.
 // argv[1] is the folder of the sample scenes.
 #include "scenes.h"
+#include "skip.h"
 #include <tyndall/offline.h>
 
 typedef struct solver {
@@ -51,8 +52,7 @@ static void solve(const tyn_scene *scene, const char *light)
     };
     tyn_device *dev = NULL;
     if (tyn_device_open(tyn_device_open_params(.log = scenes_log), &dev) != TYN_OK) {
-        print_message("skipped: no device\n");
-        skip();
+        skip_case("no device");
     }
     const bool sun = scene->num_lights > 0;
     for (size_t i = 0; i < sizeof(solvers) / sizeof(solvers[0]); i++) {
@@ -96,5 +96,5 @@ int main(int argc, char **argv)
         cmocka_unit_test(under_a_sun),
         cmocka_unit_test(under_its_sky),
     };
-    return cmocka_run_group_tests_name("milk", tests, NULL, NULL);
+    return run_cases(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 // samples.c -- the sample scenes are what they are said to be: they load, the smoke fills its part of
 // the picture, the cloud is thick, the sky has its sun. argv[1] is their folder.
 #include "scenes.h"
+#include "skip.h"
 #include <tyndall/offline.h>
 
 static void all_load(void **state)
@@ -170,8 +171,7 @@ static void smoke_fills_the_picture(void **state)
     enum { SIZE = 512 };
     tyn_device *dev = NULL;
     if (tyn_device_open(tyn_device_open_params(.log = scenes_log), &dev) != TYN_OK) {
-        print_message("skipped: no device\n");
-        skip();
+        skip_case("no device");
     }
     tyn_offline *off = NULL;
     assert_int_equal(tyn_offline_create(dev, tyn_offline_params(.method = "single"), &off), TYN_OK);
@@ -209,5 +209,5 @@ int main(int argc, char **argv)
         cmocka_unit_test(milk_is_thick),
         cmocka_unit_test(smoke_fills_the_picture),
     };
-    return cmocka_run_group_tests_name("samples", tests, NULL, NULL);
+    return run_cases(tests, NULL, NULL);
 }
