@@ -9,6 +9,7 @@
 //
 // Cells are constant in these clouds and trilinear here: each is SPLIT voxels wide (FINER in case 2, whose depths are
 // the most uneven), so that what is blended is 1 / SPLIT of it.
+#include "offline_frame.h"
 #include "path_run.h"
 #include "gpu_test.h"
 #include "npy.h"
@@ -186,7 +187,7 @@ static void measure_path(tyn_offline *off, const tyn_scene *scene, const experim
 {
     tyn_view view = {.width = 1, .height = 1, .outputs = TYN_OUTPUT_FLUXES, .num_samples = samples};
     tyn_camera_frame_scene(&view.camera, scene);
-    assert_int_equal(tyn_offline_frame(off, scene, &view, false), TYN_OK);
+    offline_frame(off, scene, &view);
     const tyn_fluxes *f = tyn_offline_output(off, TYN_OUTPUT_FLUXES);
     const tyn_flux_values *all[2] = {&f->mean, &f->se};
     double *to[2] = {m->value, m->se};
@@ -227,7 +228,7 @@ static void measure_pop(tyn_offline *off, const tyn_scene *scene, const cloud *c
     view.num_points = spread(c, NX, NZ, 1e-5f * c->sides[1], points);
     view.points = (const float(*)[3])points;
     tyn_camera_frame_scene(&view.camera, scene);
-    assert_int_equal(tyn_offline_frame(off, scene, &view, false), TYN_OK);
+    offline_frame(off, scene, &view);
     const tyn_probe_result *p = tyn_offline_output(off, TYN_OUTPUT_PROBE);
     double net = 0;
     for (uint32_t i = 0; i < view.num_points; i++) {
@@ -235,7 +236,7 @@ static void measure_pop(tyn_offline *off, const tyn_scene *scene, const cloud *c
     }
     view.outputs = TYN_OUTPUT_BALANCE;
     view.num_points = 0;
-    assert_int_equal(tyn_offline_frame(off, scene, &view, false), TYN_OK);
+    offline_frame(off, scene, &view);
     const tyn_balance *b = tyn_offline_output(off, TYN_OUTPUT_BALANCE);
     const double absorbed = b->absorbed_media[0] / b->entering[0];
     // The ground takes a part of what comes down.

@@ -4,6 +4,7 @@
 // Asserted: the mean difference of each layer of cells along the light, of all cells, and of each face, within 3
 // combined standard errors (4096 cells and 6 faces a g; points are drawn at random in every cell and face).
 #include "npy.h"
+#include "numbers.h"
 #include "path_scene.h"
 #include "skip.h"
 #include <math.h>
@@ -50,7 +51,7 @@ static double mean(const tally *t)
 
 static double error(const tally *t)
 {
-    return sqrt(fmax(t->squares / t->n - mean(t) * mean(t), 0) / (t->n - 1));
+    return sqrt(maximum(t->squares / t->n - mean(t) * mean(t), 0) / (t->n - 1));
 }
 
 static void fluence_of_cells(void **state)
@@ -91,7 +92,7 @@ static void fluence_of_cells(void **state)
         assert_true(fabs(mean(&all)) <= 3 * se);
         double worst = 0;
         for (int i = 0; i < CELLS; i++) {
-            worst = fmax(worst, fabs(mean(&layers[i]) / error(&layers[i])));
+            worst = maximum(worst, fabs(mean(&layers[i]) / error(&layers[i])));
         }
         printf("    layers: largest z %.2f\n", worst);
         assert_true(worst <= 3.5); // the largest of 16

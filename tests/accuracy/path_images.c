@@ -3,6 +3,7 @@
 // Asserted for every image: the mean is without bias beyond 3 combined standard errors, and z = difference /
 // sqrt(se_ref^2 + se_path^2) of 8x8 blocks has an RMS below 1.5. TYN_LONG=N takes N times the samples.
 #include "npy.h"
+#include "numbers.h"
 #include "path_scene.h"
 #include "skip.h"
 #include <math.h>
@@ -216,7 +217,7 @@ static void check_furnace(gpu_test *t, path_scene *s, const char *name, uint32_t
         for (int i = 0; i < 32 * 32; i++) {
             sum += radiance[4 * i + c];
             var += (double)error[4 * i + c] * error[4 * i + c];
-            worst = fmax(worst, fabs((double)radiance[4 * i + c] - 1));
+            worst = maximum(worst, fabs((double)radiance[4 * i + c] - 1));
         }
         double mean = sum / 1024, se = sqrt(var) / 1024;
         printf("furnace %-28s %d  mean %.6f +- %.6f  worst pixel %.6f off\n", name, c, mean, se,

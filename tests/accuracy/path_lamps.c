@@ -3,6 +3,7 @@
 // medium (closed forms).
 //
 // Asserted: every figure within 4 standard errors, RMS of z below 1.3. TYN_LONG=N: all rows, 8 N times the samples.
+#include "numbers.h"
 #include "path_run.h"
 #include "npy.h"
 #include "skip.h"
@@ -20,7 +21,7 @@ static void check(const char *what, double value, double se, double expected)
     double z = (value - expected) / se;
     printf("%-44s %.6g +- %.2g  expected %.6g  z %+.2f\n", what, value, se, expected, z);
     assert_true(isfinite(z));
-    largest = fmax(largest, fabs(z));
+    largest = maximum(largest, fabs(z));
     sum_z2 += z * z;
     num_z++;
 }

@@ -1,6 +1,7 @@
 // pop_cube.c -- `pop` on the unit cube of sigma_s 4 against the reference images (pbrt-v3 in 64-bit), its
 // energy, and its refinement.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "picture.h"
 #include "skip.h"
 #include <math.h>
@@ -56,7 +57,7 @@ static void references(void **state)
         double worst[3] = {0};
         for (int v = 0; v < 3; v++) {
             for (int k = 0; k < 3; k++) {
-                worst[v] = fmax(worst[v], cube_error(*state, gs[i], v, cells[k]).reported);
+                worst[v] = maximum(worst[v], cube_error(*state, gs[i], v, cells[k]).reported);
             }
             assert_true(worst[v] <= limits[i]);
         }

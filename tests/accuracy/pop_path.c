@@ -5,6 +5,7 @@
 // worst of three lattices. TYN_LONG=N takes N times the samples.
 #include "gpu_test.h"
 #include "npy.h"
+#include "numbers.h"
 #include "picture.h"
 #include "sample_scene.h"
 #include "skip.h"
@@ -34,7 +35,7 @@ static double worst_error(gpu_test *t, const char *name, const tyn_scene *scene,
         print_message("%-30s %2d cells: error %5.2f %% (rel_l1 %5.2f, noise %4.2f, bias %+5.2f)\n",
                       name, cells[k], 100 * e.reported, 100 * e.rel_l1, 100 * e.noise,
                       100 * e.bias);
-        worst = fmax(worst, e.reported);
+        worst = maximum(worst, e.reported);
         picture_free(&ours);
     }
     return worst;
@@ -143,7 +144,7 @@ static void made_scenes(void **state)
         tyn_view view = {0};
         view_orthographic(&view, (float[]){0.5f, 0.5f, 0.5f}, m->look[0], m->look[1], m->look[2],
                           (float[]){0, 1, 0}, 0.8f, 64);
-        worst = fmax(worst, against_path(*state, m->name, scene, &view, 256));
+        worst = maximum(worst, against_path(*state, m->name, scene, &view, 256));
         tyn_scene_finish(scene);
         free(scene);
     }
@@ -170,7 +171,7 @@ static void sample_scenes(void **state)
         } else {
             tyn_camera_frame_scene(&view.camera, scene);
         }
-        worst = fmax(worst, against_path(t, samples[i].name, scene, &view, samples[i].spp));
+        worst = maximum(worst, against_path(t, samples[i].name, scene, &view, samples[i].spp));
         tyn_scene_finish(scene);
         free(scene);
     }

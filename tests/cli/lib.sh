@@ -51,9 +51,9 @@ needs_device() {
     fi
 }
 
-# near VALUE EXPECTED TOLERANCE WHAT
+# near VALUE EXPECTED TOLERANCE WHAT; what is no number (nan, null) is near nothing, though awk takes it for 0
 near() {
-    awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { d = a - b; exit !(a != "" && d <= t && -d <= t) }' ||
+    awk -v a="$1" -v b="$2" -v t="$3" 'BEGIN { d = a - b; exit !(a ~ /^-?[0-9.]/ && d <= t && -d <= t) }' ||
         fail "$4: $1, expected $2 +- $3"
 }
 
