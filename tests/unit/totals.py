@@ -40,6 +40,7 @@ check("everything is counted", LOG, [], 0, ["2 known failures", "3 passed, 0 fai
       ["skipped: pop_walls: slabs (no shared data: slabs.csv)", "known failure: pop_walls: a door: light leaks",
        "known failure: hg: b: c", "skipped: beam: all cases (no reason given)"])
 MAY = ["--may-be-skipped", "allowed"]
+check("known failures of two builds are one", LOG[4:] * 2, [], 0, ["1 known failures", "2 passed, 0 failed, 0 skipped"])
 check("data may not be missing", LOG, MAY, 1, ["2 known failures", "3 passed, 0 failed, 3 skipped"],
       ["may not be skipped (allowed): pop_walls: slabs (no shared data: slabs.csv)"])
 check("where there are none they may", LOG, MAY + ["--without-data"], 0, ["2 known failures", "3 passed, 0 failed, 3 skipped"])
