@@ -49,7 +49,7 @@ static double exr_difference(const char *path, bool full_float)
         const float *read = tyn_image_file_channel(&back, channels[c].name);
         for (uint32_t i = 0; i < WIDTH * HEIGHT; i++) {
             const double off = read ? fabs(read[i] / data[c][i] - 1.0) : NAN;
-            worst = off <= worst ? worst : off; // keeps NaN
+            worst = isnan(worst) || off <= worst ? worst : off;
         }
     }
     tyn_image_file_finish(&back);
@@ -66,7 +66,8 @@ static double volume_difference(const char *path)
         v.size[1] == 8 && v.size[2] == 8;
     for (uint32_t i = 0; i < 512 && done; i++) {
         const uint32_t x = i % 8, y = i / 8 % 8, z = i / 64;
-        worst = fmax(worst, fabs(v.data[i] - (double)((7 * x + 3 * y + z) % 11) / 8));
+        const double off = fabs(v.data[i] - (double)((7 * x + 3 * y + z) % 11) / 8);
+        worst = isnan(worst) || off <= worst ? worst : off;
     }
     tyn_volume_finish(&v);
     return done ? worst : NAN;

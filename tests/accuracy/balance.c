@@ -5,6 +5,8 @@
 // imbalance is noise: it is averaged until its standard error is below 1 %, and may be 3 of these.
 // TYN_LONG=1 does so for the scenes that take minutes. Where that is known not to do, one run shows it.
 #include "gpu_test.h"
+#include "numbers.h"
+#include "offline_frame.h"
 #include "path_run.h"
 #include "sample_scene.h"
 #include "solids.h"
@@ -48,7 +50,7 @@ enum { NUM_SCENES = sizeof scenes / sizeof scenes[0], MOST_BATCHES = 6 };
 
 static double worst_of(const double v[3])
 {
-    return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    return maximum(fabs(v[0]), maximum(fabs(v[1]), fabs(v[2])));
 }
 
 static tyn_balance pop_balance(tyn_device *dev, const tyn_scene *scene)
@@ -57,7 +59,7 @@ static tyn_balance pop_balance(tyn_device *dev, const tyn_scene *scene)
     assert_int_equal(tyn_offline_create(dev, tyn_offline_params(.method = "pop"), &off), TYN_OK);
     tyn_view view = {.width = 1, .height = 1, .outputs = TYN_OUTPUT_BALANCE};
     tyn_camera_frame_scene(&view.camera, scene);
-    assert_int_equal(tyn_offline_frame(off, scene, &view, false), TYN_OK);
+    offline_frame(off, scene, &view);
     assert_int_equal(tyn_device_validation_messages(dev), 0);
     const tyn_balance balance = *(const tyn_balance *)tyn_offline_output(off, TYN_OUTPUT_BALANCE);
     tyn_offline_destroy(&off);
@@ -229,7 +231,7 @@ static double sealed_imbalance(tyn_device *dev, const float sizes[2], bool clear
     tyn_offline *off = scene_open(dev, "pop", settings);
     tyn_view view = {.width = 1, .height = 1, .outputs = TYN_OUTPUT_BALANCE};
     tyn_camera_frame_scene(&view.camera, &scene);
-    assert_int_equal(tyn_offline_frame(off, &scene, &view, false), TYN_OK);
+    offline_frame(off, &scene, &view);
     assert_int_equal(tyn_device_validation_messages(dev), 0);
     const tyn_balance *balance = tyn_offline_output(off, TYN_OUTPUT_BALANCE);
     const double imbalance = worst_of(balance->imbalance);

@@ -8,6 +8,7 @@
 #include "path_run.h"
 #include "gpu_test.h"
 #include "npy.h"
+#include "skip.h"
 #include "solids.h"
 #include <math.h>
 #include <stdio.h>
@@ -104,8 +105,7 @@ static FILE *open_reference(const char *name)
     char path[512];
     FILE *f = shared_path(path, sizeof path, name) ? fopen(path, "r") : NULL;
     if (!f) {
-        printf("skipped: no %s\n", path);
-        skip();
+        skip_without(name);
     }
     return f;
 }
@@ -284,5 +284,5 @@ int main(void)
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return cmocka_run_group_tests(tests, path_run_setup, path_run_teardown);
+    return run_cases(tests, path_run_setup, path_run_teardown);
 }

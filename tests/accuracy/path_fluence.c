@@ -4,7 +4,9 @@
 // Asserted: the mean difference of each layer of cells along the light, of all cells, and of each face, within 3
 // combined standard errors (4096 cells and 6 faces a g; points are drawn at random in every cell and face).
 #include "npy.h"
+#include "numbers.h"
 #include "path_scene.h"
+#include "skip.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,7 +51,7 @@ static double mean(const tally *t)
 
 static double error(const tally *t)
 {
-    return sqrt(fmax(t->squares / t->n - mean(t) * mean(t), 0) / (t->n - 1));
+    return sqrt(maximum(t->squares / t->n - mean(t) * mean(t), 0) / (t->n - 1));
 }
 
 static void fluence_of_cells(void **state)
@@ -61,7 +63,7 @@ static void fluence_of_cells(void **state)
         npy_array ref;
         snprintf(name, sizeof name, "reference/cube_fluence_g%.2f.npy", (double)g);
         if (!shared_path(path, sizeof path, name)) {
-            skip();
+            skip_without(name);
         }
         assert_true(npy_read(&ref, path));
         for (int i = 0; i < NUM_CELLS; i++) {
@@ -90,7 +92,7 @@ static void fluence_of_cells(void **state)
         assert_true(fabs(mean(&all)) <= 3 * se);
         double worst = 0;
         for (int i = 0; i < CELLS; i++) {
-            worst = fmax(worst, fabs(mean(&layers[i]) / error(&layers[i])));
+            worst = maximum(worst, fabs(mean(&layers[i]) / error(&layers[i])));
         }
         printf("    layers: largest z %.2f\n", worst);
         assert_true(worst <= 3.5); // the largest of 16
@@ -145,7 +147,7 @@ static void power_through_faces(void **state)
         for (int face = 0; face < 6; face++) {
             double se_ref = 0, ref = face_reference(g, faces[face], &se_ref);
             if (ref < 0) {
-                skip();
+                skip_without("reference/cube_face_flux.csv");
             }
             tally t = {0};
             for (int i = 0; i < FACE_POINTS; i++) {
@@ -167,10 +169,5 @@ int main(void)
         cmocka_unit_test(power_through_faces),
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
-    char path[512];
-    if (!shared_path(path, sizeof path, "reference/cube_face_flux.csv")) {
-        printf("skipped\n");
-        return 77;
-    }
-    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+    return run_cases(tests, gpu_setup, gpu_teardown);
 }

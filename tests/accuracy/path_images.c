@@ -3,7 +3,9 @@
 // Asserted for every image: the mean is without bias beyond 3 combined standard errors, and z = difference /
 // sqrt(se_ref^2 + se_path^2) of 8x8 blocks has an RMS below 1.5. TYN_LONG=N takes N times the samples.
 #include "npy.h"
+#include "numbers.h"
 #include "path_scene.h"
+#include "skip.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,8 +32,7 @@ static void compare(gpu_test *t, path_scene *s, const char *name, uint32_t sampl
     snprintf(file, sizeof file, "reference/images/%s.npy", name);
     npy_array ref;
     if (!shared_path(path, sizeof path, file)) {
-        printf("%s: skipped\n", name);
-        return;
+        skip_without(file);
     }
     assert_true(npy_read(&ref, path));
     uint32_t n = ref.shape[0], k = ref.shape[2] / 2;
@@ -175,7 +176,7 @@ static void blobs(void **state)
         {"blobsthin_sky_front", true, true, {0, 0, 1}, 5, 512},
     };
     if (!read_blobs(grid)) {
-        skip();
+        skip_without("reference/images/blobs64.f32");
     }
     for (size_t i = 0; i < sizeof images / sizeof images[0]; i++) {
         bool thin = images[i].thin;
@@ -216,7 +217,7 @@ static void check_furnace(gpu_test *t, path_scene *s, const char *name, uint32_t
         for (int i = 0; i < 32 * 32; i++) {
             sum += radiance[4 * i + c];
             var += (double)error[4 * i + c] * error[4 * i + c];
-            worst = fmax(worst, fabs((double)radiance[4 * i + c] - 1));
+            worst = maximum(worst, fabs((double)radiance[4 * i + c] - 1));
         }
         double mean = sum / 1024, se = sqrt(var) / 1024;
         printf("furnace %-28s %d  mean %.6f +- %.6f  worst pixel %.6f off\n", name, c, mean, se,
@@ -269,5 +270,5 @@ int main(void)
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+    return run_cases(tests, gpu_setup, gpu_teardown);
 }

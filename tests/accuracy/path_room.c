@@ -5,6 +5,7 @@
 // takes N times the samples.
 #include "path_run.h"
 #include "reference_scenes.h"
+#include "skip.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -25,7 +26,7 @@ static void room(void **state)
     path_run *runs = *state;
     picture reference = {0}, p = {0};
     if (!picture_reference(&reference, "room")) {
-        skip();
+        skip_without("room");
     }
     tyn_scene scene;
     tyn_view view;
@@ -90,7 +91,7 @@ static void spheres(void **state)
         snprintf(name, sizeof name, "sphere_em_g%.2f", (double)g);
         picture reference = {0}, p = {0};
         if (!picture_reference(&reference, name)) {
-            skip();
+            skip_without(name);
         }
         tyn_scene scene;
         tyn_view view;
@@ -121,5 +122,5 @@ int main(void)
     };
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return cmocka_run_group_tests(tests, path_run_setup, path_run_teardown);
+    return run_cases(tests, path_run_setup, path_run_teardown);
 }

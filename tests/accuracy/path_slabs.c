@@ -3,6 +3,7 @@
 //
 // Asserted: net flux and fluence just inside the faces within 3 standard errors, which are at most 0.5 % of the
 // flux; leaving radiance, through a camera of one pixel, within 3 standard errors.
+#include "numbers.h"
 #include "path_scene.h"
 #include <math.h>
 #include <stdio.h>
@@ -79,7 +80,7 @@ static void check(const row *r, const char *what, double value, double error, do
     printf("tau %-4g g %-4g albedo %-4g mu0 %-3g %-6s %-8s %.6f +- %.6f  expected %.6f  z %+.2f\n",
            (double)r->tau, (double)r->g, (double)r->albedo, (double)r->mu0,
            r->bottom ? "bottom" : "top", what, value, error, expected, z);
-    worst = fmax(worst, fabs(z));
+    worst = maximum(worst, fabs(z));
     sum_z2 += z * z;
     num_z++;
     assert_true(fabs(z) <= 3);

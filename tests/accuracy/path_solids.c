@@ -1,4 +1,5 @@
 // path_solids.c -- `path` with surfaces against closed forms: furnaces, closed boxes, form factors, shadows.
+#include "numbers.h"
 #include "path_run.h"
 #include "solids.h"
 #include <math.h>
@@ -10,7 +11,7 @@ static const float BLACK[3] = {0, 0, 0}, WHITE[3] = {1, 1, 1};
 
 static void check(const char *what, double value, double se, double expected)
 {
-    double z = (value - expected) / fmax(se, 1e-6 * fabs(expected));
+    double z = (value - expected) / maximum(se, 1e-6 * fabs(expected));
     printf("%-44s %.6f +- %.6f  expected %.6f  z %+.2f\n", what, value, se, expected, z);
     assert_true(isfinite(z) && fabs(z) <= 3);
 }

@@ -1,7 +1,9 @@
 // pop_cube.c -- `pop` on the unit cube of sigma_s 4 against the reference images (pbrt-v3 in 64-bit), its
 // energy, and its refinement.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "picture.h"
+#include "skip.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,8 +28,7 @@ static picture_error cube_error(gpu_test *t, float g, int view, int cells)
     snprintf(settings, sizeof settings, "lattice.cells=%d", cells);
     picture reference, ours;
     if (!picture_reference(&reference, name)) {
-        print_message("skipped: no reference %s\n", name);
-        skip();
+        skip_without(name);
     }
     tyn_scene *scene = malloc(sizeof *scene);
     make_cube(scene, g);
@@ -56,7 +57,7 @@ static void references(void **state)
         double worst[3] = {0};
         for (int v = 0; v < 3; v++) {
             for (int k = 0; k < 3; k++) {
-                worst[v] = fmax(worst[v], cube_error(*state, gs[i], v, cells[k]).reported);
+                worst[v] = maximum(worst[v], cube_error(*state, gs[i], v, cells[k]).reported);
             }
             assert_true(worst[v] <= limits[i]);
         }
@@ -102,5 +103,5 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(references), cmocka_unit_test(refinement),
                                        cmocka_unit_test(energy)};
-    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+    return run_cases(tests, gpu_setup, gpu_teardown);
 }

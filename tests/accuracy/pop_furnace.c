@@ -1,6 +1,7 @@
 // pop_furnace.c -- surroundings of radiance 1 and no absorption: every pixel of `pop` is 1, for any density
 // and anisotropy. The mean of the environment enters at the lattice's boundary.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "picture.h"
 #include "sky.h"
 #include <math.h>
@@ -48,7 +49,7 @@ static void furnace(void **state)
         picture_render(&p, t->dev, "pop", scene, &view, NULL, 0);
         double worst = 0;
         for (int i = 0; i < 48 * 48 * 3; i++) {
-            worst = fmax(worst, fabs(p.rgb[i] - 1.0));
+            worst = maximum(worst, fabs(p.rgb[i] - 1.0));
         }
         print_message("%s, sigma_s %4.1f, g %.1f: worst pixel %.3f %% from 1\n",
                       lumpy ? "lumps" : "cube ", (double)sigma, (double)g, 100 * worst);
@@ -92,7 +93,7 @@ static void checkerboard(void **state)
         picture_render(&p, t->dev, "pop", scene, &view, NULL, 0);
         double worst = 0;
         for (int i = 0; i < 48 * 48 * 3; i++) {
-            worst = fmax(worst, fabs(p.rgb[i] - 1.0));
+            worst = maximum(worst, fabs(p.rgb[i] - 1.0));
         }
         print_message("checkerboard of 0 and 10^4 per metre, g %.1f, from %s: worst pixel %.3f %% "
                       "from 1\n",
@@ -133,7 +134,7 @@ static void maps(void **state)
         picture_render(&p, t->dev, "pop", scene, &view, NULL, 0);
         double worst = 0;
         for (int i = 0; i < 48 * 48 * 3; i++) {
-            worst = fmax(worst, fabs(p.rgb[i] - 1.0));
+            worst = maximum(worst, fabs(p.rgb[i] - 1.0));
         }
         print_message("%s, sigma_s %4.1f, g %.2f, map of %ux%u: worst pixel %.3f %% from 1\n",
                       lumpy ? "lumps" : "cube ", (double)sigma, (double)g, size[0], size[1],
@@ -176,7 +177,7 @@ static void unsplit(void **state)
         picture_render(&p, t->dev, "pop", scene, &view, "ordinates.split=0", 0);
         double worst = 0, mean = 0;
         for (int i = 0; i < 48 * 48 * 3; i++) {
-            worst = fmax(worst, fabs(p.rgb[i] - 1.0));
+            worst = maximum(worst, fabs(p.rgb[i] - 1.0));
             mean += p.rgb[i] / (48 * 48 * 3);
         }
         print_message("%s, sigma_s %4.1f, g %.2f, %s, without the split: mean %+.2f %%, worst "

@@ -2,7 +2,10 @@
 // source in its middle and against the exact fluence in an infinite medium.
 #include "gpu_test.h"
 #include "npy.h"
+#include "numbers.h"
+#include "offline_frame.h"
 #include "picture.h"
+#include "skip.h"
 #include "todo.h"
 #include <math.h>
 #include <stdio.h>
@@ -77,8 +80,7 @@ static void airlight_rows(void **state)
     static double rows[MAX_ROWS][MAX_COLUMNS];
     uint32_t count = read_table("reference/airlight_single.csv", rows, 6);
     if (count == 0) {
-        print_message("skipped: no airlight_single.csv\n");
-        skip();
+        skip_without("reference/airlight_single.csv");
     }
     double worst = 0, sum = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -87,7 +89,7 @@ static void airlight_rows(void **state)
             print_message("st %g g %g D %g gamma %g: %g, exact %g (%+.2f %%)\n", rows[i][0],
                           rows[i][2], rows[i][3], rows[i][4], got, rows[i][5], 100 * error);
         }
-        worst = fmax(worst, fabs(error));
+        worst = maximum(worst, fabs(error));
         sum += fabs(error);
     }
     print_message("airlight: %u rows, worst %.2f %%, mean %.2f %%\n", count, 100 * worst,
@@ -146,8 +148,7 @@ static void sphere_rings(void **state)
     static double rows[MAX_ROWS][MAX_COLUMNS];
     uint32_t count = read_table("reference/sphere_profile.csv", rows, 6);
     if (count == 0) {
-        print_message("skipped: no sphere_profile.csv\n");
-        skip();
+        skip_without("reference/sphere_profile.csv");
     }
     for (uint32_t i = 0; i + RINGS <= count; i += RINGS) {
         if (rows[i][2] > 0) {
@@ -191,7 +192,7 @@ static void fluence_of(gpu_test *t, float albedo, float half, int cells, const f
                      .points = points,
                      .num_points = count};
     tyn_camera_frame_scene(&view.camera, scene);
-    assert_int_equal(tyn_offline_frame(off, scene, &view, false), TYN_OK);
+    offline_frame(off, scene, &view);
     const tyn_probe_result *results = tyn_offline_output(off, TYN_OUTPUT_PROBE);
     for (uint32_t i = 0; i < count; i++) {
         fluence[i] = results[i].fluence[0];
@@ -221,8 +222,7 @@ static void infinite_medium(void **state)
     static double rows[MAX_ROWS][MAX_COLUMNS];
     uint32_t count = read_table("reference/pointsource_infinite_exact.csv", rows, 5);
     if (count == 0) {
-        print_message("skipped: no pointsource_infinite_exact.csv\n");
-        skip();
+        skip_without("reference/pointsource_infinite_exact.csv");
     }
     enum { CELLS = 48, DIRECTIONS = 128 };
     static const char rays[] = "light travels along the lattice's 14 lines";
@@ -254,12 +254,12 @@ static void infinite_medium(void **state)
         for (int k = 0; k < DIRECTIONS; k++) {
             mean += got[k] / DIRECTIONS;
             squares += pow(got[k] / rows[i][2] - 1, 2) / DIRECTIONS;
-            least = fmin(least, got[k]);
-            most = fmax(most, got[k]);
+            least = minimum(least, got[k]);
+            most = maximum(most, got[k]);
         }
         double exact = rows[i][2], error = mean / exact - 1;
         const double low = least / exact - 1, high = most / exact - 1;
-        const bool everywhere = fmax(-low, high) <= 0.05;
+        const bool everywhere = maximum(-low, high) <= 0.05;
         print_message(
             "albedo %g, r %g (%.1f cells): mean of all directions %+.1f %%, least %+.1f %%, "
             "most %+.1f %%, RMS %.1f %%\n",
@@ -269,7 +269,7 @@ static void infinite_medium(void **state)
                    expected;
         assert_true(albedo < 0.9 || (low >= -0.15 && high <= 0.35));
         single += everywhere;
-        worst = fmax(worst, fabs(error));
+        worst = maximum(worst, fabs(error));
         done++;
     }
     print_message("%u rows, worst mean %.1f %%; %u of them within 5 %% in every direction\n", done,
@@ -364,5 +364,5 @@ int main(void)
         cmocka_unit_test(stress),
     };
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+    return run_cases(tests, gpu_setup, gpu_teardown);
 }

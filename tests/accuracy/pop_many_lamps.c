@@ -1,5 +1,6 @@
 // pop_many_lamps.c -- many lamps in `pop`: each looks as it does alone, whatever the others are and in whatever order.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "picture.h"
 #include "solids.h"
 #include <math.h>
@@ -82,8 +83,8 @@ static void alone_or_not(void **state)
         for (int k = 0; k < 3 * SIZE * SIZE; k++) {
             const double a = all.rgb[k], b = sum.rgb[k];
             off += fabs(a - b) / (3 * SIZE * SIZE * mean);
-            worst = fmax(worst, fabs(a - b) / (b + 0.3 * mean));
-            by_order = fmax(by_order, fabs(a - (double)turned.rgb[k]) / (b + 0.01 * mean));
+            worst = maximum(worst, fabs(a - b) / (b + 0.3 * mean));
+            by_order = maximum(by_order, fabs(a - (double)turned.rgb[k]) / (b + 0.01 * mean));
         }
         print_message(
             "%s: %.2f %% off the sum of all alone, worst pixel %.1f %%; by order %.4f %%\n",

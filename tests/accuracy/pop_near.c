@@ -1,6 +1,7 @@
 // pop_near.c -- lamps nearer to a floor than a pixel is wide: a picture holds as much of their light as its part of
 // the floor gets, however large its pixels are.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "picture.h"
 #include "solids.h"
 #include <math.h>
@@ -122,7 +123,7 @@ static void means(void **state)
                 print_message("%s, %u^2, lamp at %g m: %+.2f %%\n", shots[i].name, sizes[k],
                               heights[h], 100 * off);
                 double *most = shots[i].spot ? &worst_spot : &worst;
-                *most = fmax(*most, fabs(off));
+                *most = maximum(*most, fabs(off));
             }
         }
     }

@@ -4,6 +4,7 @@
 #include "gpu_test.h"
 #include "npy.h"
 #include "picture.h"
+#include "skip.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -118,8 +119,7 @@ static void rings(void **state)
     static double rows[MAX_ROWS][COLUMNS];
     uint32_t count = read_table(rows), first = getenv("TYN_READINGS") ? NUM : ASSERTED;
     if (count == 0) {
-        print_message("skipped: no sphere_profile.csv\n");
-        skip();
+        skip_without("reference/sphere_profile.csv");
     }
     for (uint32_t n = 0; n < first; n++) {
         for (uint32_t i = 0; i + RINGS <= count; i += RINGS) {
@@ -157,5 +157,5 @@ static void rings(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(rings)};
-    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+    return run_cases(tests, gpu_setup, gpu_teardown);
 }

@@ -5,8 +5,10 @@
 // worst of three lattices. TYN_LONG=N takes N times the samples.
 #include "gpu_test.h"
 #include "npy.h"
+#include "numbers.h"
 #include "picture.h"
 #include "sample_scene.h"
+#include "skip.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,7 +35,7 @@ static double worst_error(gpu_test *t, const char *name, const tyn_scene *scene,
         print_message("%-30s %2d cells: error %5.2f %% (rel_l1 %5.2f, noise %4.2f, bias %+5.2f)\n",
                       name, cells[k], 100 * e.reported, 100 * e.rel_l1, 100 * e.noise,
                       100 * e.bias);
-        worst = fmax(worst, e.reported);
+        worst = maximum(worst, e.reported);
         picture_free(&ours);
     }
     return worst;
@@ -142,7 +144,7 @@ static void made_scenes(void **state)
         tyn_view view = {0};
         view_orthographic(&view, (float[]){0.5f, 0.5f, 0.5f}, m->look[0], m->look[1], m->look[2],
                           (float[]){0, 1, 0}, 0.8f, 64);
-        worst = fmax(worst, against_path(*state, m->name, scene, &view, 256));
+        worst = maximum(worst, against_path(*state, m->name, scene, &view, 256));
         tyn_scene_finish(scene);
         free(scene);
     }
@@ -169,7 +171,7 @@ static void sample_scenes(void **state)
         } else {
             tyn_camera_frame_scene(&view.camera, scene);
         }
-        worst = fmax(worst, against_path(t, samples[i].name, scene, &view, samples[i].spp));
+        worst = maximum(worst, against_path(t, samples[i].name, scene, &view, samples[i].spp));
         tyn_scene_finish(scene);
         free(scene);
     }
@@ -199,8 +201,7 @@ static void reference_blobs(void **state)
     char path[512];
     if (!shared_path(path, sizeof path, "reference/images/blobs64.f32") ||
         !picture_reference(&reference, "blobs_dir_toward")) {
-        print_message("skipped: no reference blobs_dir_toward\n");
-        skip();
+        skip_without("reference/images/blobs64.f32, blobs_dir_toward.npy");
     }
     const uint32_t size[3] = {64, 64, 64};
     float *grid = malloc(64 * 64 * 64 * sizeof *grid);
@@ -232,5 +233,5 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(reference_blobs),
                                        cmocka_unit_test(made_scenes),
                                        cmocka_unit_test(sample_scenes), cmocka_unit_test(median)};
-    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+    return run_cases(tests, gpu_setup, gpu_teardown);
 }

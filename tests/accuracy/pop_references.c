@@ -2,6 +2,7 @@
 // lit through a hole in its ceiling, and the sphere of fog with an emitting sphere in its middle.
 #include "gpu_test.h"
 #include "reference_scenes.h"
+#include "skip.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +12,7 @@ static void room(void **state)
     gpu_test *t = *state;
     picture reference = {0}, p;
     if (!picture_reference(&reference, "room")) {
-        skip();
+        skip_without("room");
     }
     tyn_scene scene;
     tyn_view view;
@@ -45,7 +46,7 @@ static void spheres(void **state)
         snprintf(name, sizeof name, "sphere_em_g%.2f", (double)g);
         picture reference = {0}, p;
         if (!picture_reference(&reference, name)) {
-            skip();
+            skip_without(name);
         }
         tyn_scene scene;
         tyn_view view;
@@ -84,5 +85,5 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(room), cmocka_unit_test(spheres)};
     setvbuf(stdout, NULL, _IOLBF, 0);
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+    return run_cases(tests, gpu_setup, gpu_teardown);
 }

@@ -1,6 +1,7 @@
 // pop_shading.c -- how `pop` shares virtual lights among neighbouring pixels: no squares where few of them are most of
 // what arrives, and as much light as if every pixel took all; how blocks of pixels share one place; and what takes all.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "picture.h"
 #include "sample_scene.h"
 #include "solids.h"
@@ -74,7 +75,7 @@ static void no_squares(void **state)
         for (int y = 0; y < SIZE; y++) {
             for (int x = 0; x < SIZE; x++) {
                 double v = value(&truth, x, y), d = value(&p, x, y) - v;
-                worst = fmax(worst, fabs(d));
+                worst = maximum(worst, fabs(d));
                 sum += v;
                 off += d;
                 squares += d * d;
@@ -217,7 +218,7 @@ static void small_things(void **state)
                 sum += itself ? 0 : v;
                 off += itself ? 0 : fabs(d);
                 all += itself ? 0 : d;
-                far += fabs(d) > 0.3 * v;
+                far += !(fabs(d) <= 0.3 * v);
             }
         }
         print_message("%s, %s: %.2f %% off, mean %+.3f %%, %d pixels more than 30 %% off\n",

@@ -5,6 +5,8 @@
 // are seen edge-on: columns of the picture run along them, and the distance from the edge is that
 // across the light, in which texels of the shadow map are measured.
 #include "gpu_test.h"
+#include "numbers.h"
+#include "offline_frame.h"
 #include "path_run.h"
 #include "sample_scene.h"
 #include "passes/shadow_map/shadow_map.h"
@@ -94,7 +96,7 @@ static void edges(void **state)
         assert_int_equal(tyn_offline_create(t->dev, tyn_offline_params(.method = "pop"), &off),
                          TYN_OK);
         view.outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_SINGLE;
-        assert_int_equal(tyn_offline_frame(off, scene, &view, false), TYN_OK);
+        offline_frame(off, scene, &view);
         const float *single = tyn_offline_output(off, TYN_OUTPUT_SINGLE);
         double profile[2][SIZE] = {{0}}, least = INFINITY, most = -INFINITY;
         for (int j = 0; j < SIZE; j++) {
@@ -105,8 +107,8 @@ static void edges(void **state)
                 profile[1][i] += (double)reference.rgb[3 * (j * SIZE + i) + 1] / SIZE;
             }
             const double at = step_of(row);
-            least = fmin(least, at);
-            most = fmax(most, at);
+            least = minimum(least, at);
+            most = maximum(most, at);
         }
         const double texels = 2 * HALF / SIZE / texel;
         const double expected = step_of(profile[1]), mean = step_of(profile[0]);

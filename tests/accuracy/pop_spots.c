@@ -1,6 +1,7 @@
 // pop_spots.c -- the cone of a spot in a medium: its light along a ray against fine quadrature. Cones narrower than
 // a step must not be hit or missed by chance, and what a shadow leaves of a step is taken where it is.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "picture.h"
 #include "solids.h"
 #include "vector.h"
@@ -78,7 +79,7 @@ static void compare(gpu_test *t, const char *method, spot s)
         for (uint32_t i = 0; i < PIXELS; i++) {
             double got = p.rgb[3 * (row * PIXELS + i)];
             // Relative, but where a pixel's middle only touches the cone.
-            worst = fmax(worst, fabs(got - want[i]) / (want[i] + 0.01 * most));
+            worst = maximum(worst, relative(fabs(got - want[i]), want[i] + 0.01 * most));
             seen += want[i] > 0.01 * most;
         }
     }

@@ -2,8 +2,11 @@
 // Lambertian ground against DISORT, pictures of slabs against `path`.
 #include "gpu_test.h"
 #include "npy.h"
+#include "numbers.h"
+#include "offline_frame.h"
 #include "path_run.h"
 #include "picture.h"
+#include "skip.h"
 #include "solids.h"
 #include "todo.h"
 #include <math.h>
@@ -31,7 +34,7 @@ static const tyn_probe_result *probe(gpu_test *t, tyn_offline *off, const tyn_sc
     tyn_view v = {
         .width = 1, .height = 1, .outputs = TYN_OUTPUT_PROBE, .points = points, .num_points = n};
     tyn_camera_frame_scene(&v.camera, scene);
-    assert_int_equal(tyn_offline_frame(off, scene, &v, false), TYN_OK);
+    offline_frame(off, scene, &v);
     assert_int_equal(tyn_device_validation_messages(t->dev), 0);
     return tyn_offline_output(off, TYN_OUTPUT_PROBE);
 }
@@ -84,7 +87,7 @@ static void sealed(void **state)
                 depth = way < 0 ? d : fmin(depth, d);
             }
             if (depth > 1e-4) {
-                inside = fmax(inside, p[i].fluence[1]);
+                inside = maximum(inside, p[i].fluence[1]);
                 in++;
             } else if (fabs(points[i][0]) > 0.7 || fabs(points[i][2]) > 0.7) {
                 outside += p[i].fluence[1] / (4 * M_PI);
@@ -106,14 +109,14 @@ static void sealed(void **state)
             view_perspective(&view, eyes[eye], (float[]){-0.2f, -0.05f, -0.2f}, 1, 40);
             picture_render(&p_inside, t->dev, "pop", &scene, &view, NULL, 0);
             for (int i = 0; i < 40 * 40 * 3; i++) {
-                brightest = fmax(brightest, p_inside.rgb[i]);
+                brightest = maximum(brightest, p_inside.rgb[i]);
             }
             picture_free(&p_inside);
         }
         view_perspective(&view, (float[]){0.2f, 0.8f, 2.5f}, (float[]){0, 0, 0}, 0.5f, 24);
         picture_render(&white, t->dev, "pop", &scene, &view, "lattice.sweeps=12", 0);
         for (int i = 0; i < 24 * 24 * 3; i++) {
-            wrong = fmax(wrong, fabs(white.rgb[i] - 1.0));
+            wrong = maximum(wrong, fabs(white.rgb[i] - 1.0));
             mean_wrong += (white.rgb[i] - 1.0) / (24 * 24 * 3);
         }
         printf("    brightest of %d pixels inside %.1e; outside off by %.1e, mean %.1e\n",
@@ -147,7 +150,7 @@ static double brightest_of_lamp(gpu_test *t, float floor, float box)
     picture_render(&p, t->dev, "pop", &scene, &view, NULL, 0);
     double brightest = 0;
     for (int i = 0; i < 32 * 32 * 3; i++) {
-        brightest = fmax(brightest, p.rgb[i]);
+        brightest = maximum(brightest, p.rgb[i]);
     }
     picture_free(&p);
     tyn_scene_finish(&scene);
@@ -221,7 +224,7 @@ static void sealed_from_virtual_lights(void **state)
             const bool in = fmin(a, b) > 1e-4;
             if (in || fmax(a, b) < -1e-4) {
                 sums[in] += p[i].fluence[1];
-                most[in] = fmax(most[in], p[i].fluence[1]);
+                most[in] = maximum(most[in], p[i].fluence[1]);
                 counts[in]++;
             }
         }
@@ -248,7 +251,7 @@ static void sealed_from_virtual_lights(void **state)
             picture_render(&dark_side, t->dev, "pop", &scene, &view, NULL, 0);
             for (int i = 0; i < SIDE * SIDE; i++) {
                 const double light = dark_side.rgb[3 * i + 1];
-                brightest = fmax(brightest, light);
+                brightest = maximum(brightest, light);
                 mean += light / (3 * SIDE * SIDE);
                 shining += light >= 1e-4 * lit / (4 * M_PI);
             }
@@ -408,7 +411,7 @@ static void sealed_boxes_at_random(void **state)
                 int here = 0;
                 for (int i = 0; i < count; i++) {
                     const double light = p.rgb[3 * i + 1];
-                    most = fmax(most, light);
+                    most = maximum(most, light);
                     sum += light;
                     here += light != 0;
                 }
@@ -429,7 +432,7 @@ static void sealed_boxes_at_random(void **state)
                 pixels += count;
                 shining += here;
                 mean += sum / lit;
-                brightest = fmax(brightest, most / lit);
+                brightest = maximum(brightest, most / lit);
             }
             tyn_scene_finish(&scene);
         }
@@ -448,8 +451,7 @@ static void slab_table(gpu_test *t, const char *name, double bound)
 {
     char path[512];
     if (!shared_path(path, sizeof path, name)) {
-        printf("skipped: no %s\n", name);
-        return;
+        skip_without(name);
     }
     FILE *f = fopen(path, "r");
     assert_non_null(f);
@@ -495,12 +497,12 @@ static void slab_table(gpu_test *t, const char *name, double bound)
         const tyn_probe_result *p = probe(t, off, &scene, (const float(*)[3])points, 5);
         double off_by = 0;
         for (int i = 0; i < 5; i++) {
-            off_by = fmax(off_by, fabs(-p[i].flux[7] - net[i]));
+            off_by = maximum(off_by, fabs(-p[i].flux[7] - net[i]));
         }
         printf("tau %-4g g %-4g albedo %-4g mu0 %-3g ground %-3g: net flux off by %.2f %% of what "
                "enters\n",
                (double)k[0], (double)k[1], (double)k[2], (double)k[3], (double)k[4], 100 * off_by);
-        worst = fmax(worst, off_by);
+        worst = maximum(worst, off_by);
         rows++;
         tyn_offline_destroy(&off);
         tyn_scene_finish(&scene);
@@ -619,7 +621,7 @@ static void sun_on_a_sealed_box(void **state)
         }
         double most = 0, lamp = 0;
         for (int i = 0; i < PIXELS; i++) {
-            most = fmax(most, (double)p[1].rgb[3 * i + 1] - (double)p[0].rgb[3 * i + 1]);
+            most = maximum(most, (double)p[1].rgb[3 * i + 1] - (double)p[0].rgb[3 * i + 1]);
             lamp += p[0].rgb[3 * i + 1] / (double)PIXELS;
         }
         printf("sealed box in a medium of %g m: lamp's mean %.1e; a sun of 100 W/m^2 adds %.1e at "
@@ -826,5 +828,5 @@ int main(void)
         cmocka_unit_test(deep_slab),
     };
     cmocka_set_test_filter(getenv("TYN_TEST_FILTER"));
-    return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
+    return run_cases(tests, gpu_setup, gpu_teardown);
 }

@@ -3,6 +3,7 @@
 // Lengths times s, coefficients by s, intensities of lamps times s^2 leave every radiance as it is. All differences
 // are a bound in metres, or places that rounding has lost. Powers of ten: those of two would round alike.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "picture.h"
 #include "solids.h"
 #include <math.h>
@@ -76,7 +77,7 @@ static void compare(gpu_test *t, const char *method, light kind, double bound)
         picture_error e = picture_compare(&p, &plain, 1);
         print_message("%s, %s, x %g: rel_l1 %.4f %%, bias %+.4f %%\n", method, light_names[kind],
                       (double)scales[i], 100 * e.rel_l1, 100 * e.bias);
-        worst = fmax(worst, e.rel_l1);
+        worst = maximum(worst, e.rel_l1);
         picture_free(&p);
     }
     picture_free(&plain);

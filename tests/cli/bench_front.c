@@ -1,5 +1,6 @@
 // bench_front.c -- fronts, times at equal error and ranges of who is fastest, against figures done by hand.
 #include "bench/front.h"
+#include "numbers.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -39,11 +40,11 @@ static void settings(void **state)
     (void)state;
     front_time t = front_time_at(points, COUNT, POP, 0.045);
     assert_true(t.measured && t.point == 1); // the fastest that is good enough, not between two
-    assert_float_equal(t.ms, 300, 1e-9);
+    assert_near(t.ms, 300, 1e-9);
     t = front_time_at(points, COUNT, POP, 0.05);
     assert_true(t.measured && t.point == 0);
     t = front_time_at(points, COUNT, POP, 0.5);
-    assert_float_equal(t.ms, 100, 1e-9);
+    assert_near(t.ms, 100, 1e-9);
     t = front_time_at(points, COUNT, POP, 0.0299);
     assert_true(isnan(t.ms) && t.point < 0);
     t = front_time_at(points, COUNT, 77, 0.1);
@@ -56,26 +57,26 @@ static void samples(void **state)
     // on a point, between two (log-log: exactly 1/sqrt(n) here), beyond both ends
     front_time t = front_time_at(points, COUNT, PATH, 0.08);
     assert_true(t.measured && t.point == 4);
-    assert_float_equal(t.ms, 40, 1e-9);
+    assert_near(t.ms, 40, 1e-9);
     t = front_time_at(points, COUNT, PATH, 0.05);
     assert_true(t.measured && t.point < 0);
-    assert_float_equal(t.ms, 10 * (0.16 / 0.05) * (0.16 / 0.05), 1e-6);
+    assert_near(t.ms, 10 * (0.16 / 0.05) * (0.16 / 0.05), 1e-6);
     t = front_time_at(points, COUNT, PATH, 0.32);
     assert_false(t.measured);
-    assert_float_equal(t.ms, 2.5, 1e-9);
+    assert_near(t.ms, 2.5, 1e-9);
     t = front_time_at(points, COUNT, PATH, 0.005);
     assert_false(t.measured);
-    assert_float_equal(t.ms, 10240, 1e-6);
+    assert_near(t.ms, 10240, 1e-6);
     t = front_time_at(points, COUNT, PATH, 0);
     assert_true(isnan(t.ms));
     // another slope than 1/2: a biased end of the curve
     const front_point bent[] = {{1, 0.1, 0, true}, {10, 0.01, 0, true}, {100, 0.009, 0, true}};
     t = front_time_at(bent, 3, 0, 0.0316227766);
-    assert_float_equal(t.ms, 3.16227766, 1e-6);
+    assert_near(t.ms, 3.16227766, 1e-6);
     // a point that noise has lifted is not followed upwards
     const front_point noisy[] = {{1, 0.1, 0, true}, {4, 0.11, 0, true}, {16, 0.025, 0, true}};
     t = front_time_at(noisy, 3, 0, 0.05);
-    assert_float_equal(t.ms, 4, 1e-9);
+    assert_near(t.ms, 4, 1e-9);
     assert_true(t.measured);
 }
 
@@ -95,10 +96,10 @@ static void ranges(void **state)
     assert_int_equal(front_ranges(faster, COUNT, r, 8), 3);
     assert_int_equal(r[0].line, PATH);
     assert_true(r[0].lowest && !r[0].highest);
-    assert_float_equal(r[0].low, 0.01, 1e-4);
+    assert_near(r[0].low, 0.01, 1e-4);
     assert_int_equal(r[1].line, POP);
-    assert_float_equal(r[1].low, 0.05, 6e-4);
-    assert_float_equal(r[1].high, 0.0566, 6e-4);
+    assert_near(r[1].low, 0.05, 6e-4);
+    assert_near(r[1].high, 0.0566, 6e-4);
     assert_int_equal(r[2].line, PATH); // its first sample, 10 ms, is faster than single
     assert_true(r[2].highest && !r[2].lowest);
     // what is extrapolated wins nothing: 20 ms is the least that path takes
@@ -106,7 +107,7 @@ static void ranges(void **state)
     assert_int_equal(front_ranges(few, 2, r, 8), 2);
     assert_int_equal(r[0].line, 0);
     assert_int_equal(r[1].line, 1);
-    assert_float_equal(r[1].low, 0.5, 6e-3);
+    assert_near(r[1].low, 0.5, 6e-3);
     assert_int_equal(front_ranges(few, 0, r, 8), 0);
     assert_int_equal(front_ranges(few, 2, r, 1), 1);
 }
@@ -119,7 +120,7 @@ static void large_errors(void **state)
     front_range r[2];
     assert_int_equal(front_ranges(far, 2, r, 2), 2);
     assert_int_equal(r[1].line, POP);
-    assert_float_equal(r[1].low, 2, 0.02);
+    assert_near(r[1].low, 2, 0.02);
     assert_true(r[0].lowest && !r[0].highest && r[1].highest);
 }
 
@@ -135,15 +136,15 @@ static void below_the_noise(void **state)
     assert_int_equal(front[1], 0);
     // between a point and a bound one by the rule of samples, then at the bound; below it nothing is known
     front_time t = front_time_at(noisy, 6, PATH, 0.04);
-    assert_float_equal(t.ms, 40 * (0.05 / 0.04) * (0.05 / 0.04), 1e-9);
-    assert_float_equal(front_time_at(noisy, 6, PATH, 0.03).ms, 160, 1e-9);
+    assert_near(t.ms, 40 * (0.05 / 0.04) * (0.05 / 0.04), 1e-9);
+    assert_near(front_time_at(noisy, 6, PATH, 0.03).ms, 160, 1e-9);
     assert_true(isnan(front_time_at(noisy, 6, PATH, 0.02).ms));
     assert_true(isnan(front_time_at(noisy, 6, POP, 0.02).ms));
     front_range r[4];
     assert_int_equal(front_ranges(noisy, 6, r, 4), 2);
     assert_true(r[0].line == POP && !r[0].lowest);
-    assert_float_equal(r[0].low, 0.03, 1e-6);
-    assert_float_equal(r[0].high, 0.1 / sqrt(3), 6e-4);
+    assert_near(r[0].low, 0.03, 1e-6);
+    assert_near(r[0].high, 0.1 / sqrt(3), 6e-4);
     assert_true(r[1].line == PATH && r[1].highest);
 }
 
@@ -158,7 +159,7 @@ static void first_sliver(void **state)
     assert_int_equal(front_ranges(narrow, 3, r, 4), 2);
     assert_int_equal(r[0].line, POP);
     assert_true(!r[0].lowest && !r[0].highest);
-    assert_float_equal(r[0].low, 0.002, 1e-6);
+    assert_near(r[0].low, 0.002, 1e-6);
     assert_int_equal(r[1].line, SINGLE);
     assert_true(r[1].highest);
     // one that has no lower end is not narrow
@@ -175,7 +176,7 @@ static void means(void **state)
 {
     (void)state;
     const double values[] = {2, NAN, 8, 0, -1, INFINITY};
-    assert_float_equal(front_geometric_mean(values, 6), 4, 1e-12);
+    assert_near(front_geometric_mean(values, 6), 4, 1e-12);
     assert_true(isnan(front_geometric_mean(values + 3, 2)));
 }
 

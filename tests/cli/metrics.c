@@ -7,8 +7,9 @@
 #include <stdlib.h>
 #include <cmocka.h>
 #include "metrics.h"
+#include "numbers.h"
 
-#define NEAR(value, expected) assert_float_equal(value, expected, 1e-6)
+#define NEAR(value, expected) assert_near(value, expected, 1e-6)
 
 // Two pixels, a row of them: R, G and B differ so that pooling shows.
 static const float xr[2] = {1, 2}, xg[2] = {0, 0}, xb[2] = {3, 1};

@@ -372,7 +372,7 @@ def main():
         check_tables(folder, tables)
         program = browser.find()
         if not program:
-            print("skipped: no Chromium here (Debian: chromium), so the page was not opened")
+            print("skipped: the page in a browser (no Chromium; Debian's package is chromium)")
             sys.exit(1 if failures else 77)
         b = browser.Browser(program)
         try:

@@ -20,6 +20,9 @@
 
 #include "base/half.h"
 #include "host.h"
+#include "numbers.h"
+#include "offline_frame.h"
+#include "skip.h"
 #include "states.h"
 
 enum { WIDTH = 80, HEIGHT = 56, VOXELS = 24 };
@@ -91,8 +94,7 @@ static int set_up(void **state)
     fixture *f = calloc(1, sizeof(*f));
     *state = f;
     if (host_open(&f->host, true) != HOST_OK) {
-        printf("skipped: the host has no device\n");
-        exit(77);
+        skip_all("the host has no device");
     }
     check_that_layers_listen(&f->host);
     f->guest = new_guest(f);
@@ -385,7 +387,7 @@ static picture reference(fixture *f, const char *method, const tyn_scene *scene,
                            &off),
         TYN_OK);
     view.outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE;
-    assert_int_equal(tyn_offline_frame(off, scene, &view, false), TYN_OK);
+    offline_frame(off, scene, &view);
     const size_t size = (size_t)view.width * view.height * 4 * sizeof(float);
     picture p = {malloc(size), malloc(size)};
     memcpy(p.radiance, tyn_offline_output(off, TYN_OUTPUT_RADIANCE), size);
@@ -419,7 +421,7 @@ static void check_composite(const target *t, const picture *p)
                 const size_t i = ((size_t)y * width + x) * 4 + (size_t)c;
                 const float right = painted(x, c) * p->transmittance[i] + p->radiance[i];
                 const float found = color_at(t, x, y, c);
-                brightest = fmaxf(brightest, p->radiance[i]);
+                brightest = maximum(brightest, p->radiance[i]);
                 if (!(fabsf(found - right) <= tolerance * (1 + right))) {
                     fail_msg("pixel (%u, %u) channel %d is %g, not %g", x, y, c, (double)found,
                              (double)right);

@@ -13,6 +13,7 @@
 #include <tyndall/registry.h>
 
 #include "host.h"
+#include "skip.h"
 #include "solids.h"
 #include "states.h"
 
@@ -65,8 +66,7 @@ static void shadows_in_a_host(void **state)
     (void)state;
     host h = {0};
     if (host_open(&h, true) != HOST_OK) {
-        printf("skipped: the host has no device\n");
-        exit(77);
+        skip_all("the host has no device");
     }
     tyn_device_params params = {.struct_size = sizeof params, .log = {on_log, NULL, TYN_LOG_WARN}};
     host_describe(&h, &params);
@@ -155,5 +155,5 @@ static void shadows_in_a_host(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(shadows_in_a_host)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests, NULL, NULL);
 }

@@ -9,6 +9,7 @@
 #include "base/half.h"
 #include "base/hash.h"
 #include "gpu_test.h"
+#include "offline_frame.h"
 #include "picture.h"
 #include "point_pass.h"
 #include <tyndall/io.h>
@@ -291,6 +292,7 @@ static void render_cameras(golden *g, const tyn_scene *scene, const tyn_settings
         }
         take(g, row, quality * NUM_CAMERAS + k, qualities[quality],
              tyn_offline_output(off, TYN_OUTPUT_RADIANCE));
+        offline_frame_check(off, &view);
     }
     tyn_offline_destroy(&off);
 }

@@ -2,6 +2,7 @@
 #include "gpu_test.h"
 #include "passes/beam/beam.h"
 #include "medium_grid.h"
+#include "numbers.h"
 #include "point_pass.h"
 #include "beam_eval.comp.h"
 #include "random_unit.h"
@@ -122,10 +123,10 @@ static errors compare(const medium_grid *m, const struct light_block *suns, cons
     for (int n = 0; n < COUNT; n++) {
         double error = fabs(got[n].s[0] - want[n]);
         assert_true(error == error);
-        e.largest = fmax(e.largest, error / most);
+        e.largest = maximum(e.largest, error / most);
         e.mean += error / most / COUNT;
         if (want[n] > 1e-3 * most) {
-            e.relative = fmax(e.relative, error / want[n]);
+            e.relative = maximum(e.relative, error / want[n]);
         }
     }
     printf("%-28s largest %.2e, mean %.2e of the largest depth; relative %.2e\n", name, e.largest,

@@ -4,6 +4,7 @@
 #include "medium_grid.h"
 #include "passes/columns/columns.h"
 #include "passes/columns_average/columns_average.h"
+#include "numbers.h"
 #include "random_unit.h"
 #include <math.h>
 #include <stdio.h>
@@ -162,8 +163,8 @@ static errors compare(const medium_grid *m, const struct ordinates_block *ordina
             double want = cell_column(m, 0, 0, p, ordinates->list[n].direction, dx);
             double got = result_at(r, n, 0, c), wrong = fabs(got - want);
             most = fmax(most, want);
-            e.largest = wrong <= e.largest ? e.largest : wrong; // a NaN stays
-            e.relative = want > 0 ? fmax(e.relative, wrong / want) : e.relative;
+            e.largest = maximum(e.largest, wrong);
+            e.relative = want > 0 ? maximum(e.relative, wrong / want) : e.relative;
             e.mean += wrong;
             count++;
         }
@@ -274,7 +275,7 @@ static void coefficients(void **state)
                 double want = cell_column(which < 6 ? &m : &scaled, which / 3 == 1 ? 1 : 0,
                                           (int)(which % 3), p, ordinates.list[n].direction, dx);
                 most = fmax(most, want);
-                worst = fmax(worst, fabs(result_at(&r, n, which, c) - want));
+                worst = maximum(worst, fabs(result_at(&r, n, which, c) - want));
             }
         }
         printf("coefficients: worst %.2e of the largest\n", worst / most);

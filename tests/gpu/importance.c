@@ -4,6 +4,7 @@
 #include "importance_twin.h"
 #include "passes/importance/importance.h"
 #include "shaders/common/scene_args.h"
+#include "numbers.h"
 #include "vector.h"
 #include <math.h>
 #include <stdio.h>
@@ -128,7 +129,7 @@ static void check_mean(const float *map)
         assert_true(isfinite(map[i]) && map[i] >= 0);
         mean += share(i) * map[i];
     }
-    assert_float_equal(mean, 1, 1e-4);
+    assert_near(mean, 1, 1e-4);
 }
 
 static double l1(const float *map, const double *expected)
@@ -182,9 +183,9 @@ static void compare(gpu_test *t, const setup *s, const char *name)
     }
     for (int i = 0; i < n * n * n; i++) {
         for (int c = 0; c < 2; c++) {
-            worst = fmax(worst, fabs(texels[4 * i + c] - field[i][c]) / top);
+            worst = maximum(worst, fabs(texels[4 * i + c] - field[i][c]) / top);
         }
-        assert_float_equal(texels[4 * i + 2], field[i][2], 2e-3 * (1 + field[i][2]));
+        assert_near(texels[4 * i + 2], field[i][2], 2e-3 * (1 + field[i][2]));
     }
     double difference = l1(map, expected);
     print_message("%-28s largest difference of the field %.1e of its maximum, of the map L1 %.1e\n",
@@ -298,7 +299,7 @@ static void nothing_to_see(void **state)
         }
         const float *map = run(*state, s, NULL);
         for (int q = 0; q < TEXELS; q++) {
-            assert_float_equal(map[q], 1, 0);
+            assert_near(map[q], 1, 0);
         }
     }
 }
@@ -338,7 +339,7 @@ static void smoothing(void **state)
         }
     }
     for (int q = 0; q < TEXELS; q++) {
-        assert_float_equal(first[q], mixed[q], 0);
+        assert_near(first[q], mixed[q], 0);
         mixed[q] = 0.75 * first[q] + 0.25 * second[q];
     }
     look(&s->camera, (float[]){0.5f, 0.5f, 3.5f}, (float[]){0.2f, 0, -1}, 0.3f, 0.3f);
@@ -359,7 +360,7 @@ static void steady(void **state)
              (float[]){(float)(0.6 + 2.6 * sin(angle)), 0.4f, (float)(0.8 + 2.6 * cos(angle))},
              (float[]){(float)-sin(angle), 0, (float)-cos(angle)}, 0.4f, 0.3f);
         const float *map = run(*state, s, NULL);
-        worst = frame > 0 ? fmax(worst, l1(map, before)) : 0;
+        worst = frame > 0 ? maximum(worst, l1(map, before)) : 0;
         for (int q = 0; q < TEXELS; q++) {
             before[q] = map[q];
         }

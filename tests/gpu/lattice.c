@@ -3,6 +3,7 @@
 #include "llc_twin.h"
 #include "shaders/common/scene_args.h"
 #include "passes/lattice/lattice.h"
+#include "numbers.h"
 #include "random_unit.h"
 #include <math.h>
 #include <stdio.h>
@@ -89,7 +90,7 @@ static double difference(const llc_twin *w, const float *moments)
         scale = fmax(scale, fabs(w->m[i][0]));
         for (int k = 0; k < 4; k++) {
             double d = fabs(moments[i * 4 + k] - w->m[i][k]);
-            most = d <= most ? most : d; // a NaN stays
+            most = maximum(most, d);
         }
     }
     return most / scale;

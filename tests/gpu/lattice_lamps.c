@@ -6,6 +6,7 @@
 #include "passes/lattice_lamps/lattice_lamps.h"
 #include "shaders/common/scene_args.h"
 #include "shaders/light/shadow_args.h"
+#include "numbers.h"
 #include <stdlib.h>
 
 enum { CELLS = 8, NX = 8, NY = 6, NZ = 4, N = NX * NY * NZ };
@@ -182,9 +183,10 @@ static double compare(double near, double *mean)
         all += (double)(found[i][0] - others[i][0]);
         right_all += right[0];
         for (int k = 0; k < 4 && closest >= near; k++) {
-            worst = fmax(worst, fabs((double)(found[i][k] - others[i][k]) - right[k]) / right[0]);
+            const double off = fabs((double)(found[i][k] - others[i][k]) - right[k]);
+            worst = maximum(worst, relative(off, right[0])); // a shadow has no light
             if (of_vpls && only[0] > 0) {
-                worst = fmax(worst, fabs((double)of_vpls[i][k] - only[k]) / right[0]);
+                worst = maximum(worst, fabs((double)of_vpls[i][k] - only[k]) / right[0]);
             }
         }
     }

@@ -1,5 +1,6 @@
 // lattice_walls.c -- the lattice among walls: against a twin, furnace, closed rooms, darkness, balance.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "wall_mesh.h"
 #include "shaders/common/scene_args.h"
 #include "passes/lattice/lattice.h"
@@ -208,8 +209,8 @@ static double twin_sweep(const problem *p, twin *w)
     }
     double change = 0, most = 1e-30;
     for (int i = 0; i < cells; i++) {
-        change = fmax(change, fabs(m[i][0] - w->m[i][0]));
-        most = fmax(most, fabs(m[i][0]));
+        change = maximum(change, fabs(m[i][0] - w->m[i][0]));
+        most = maximum(most, fabs(m[i][0]));
         const struct wall_cell *wall = &p->cells[i];
         if (wall->area > 0) {
             w->wall[i] = wall->albedo[0] * arriving[i] / wall->area + p->wall_light;
@@ -250,7 +251,7 @@ static void matches_twin(void **state)
     for (int i = 0; i < num_cells(&p); i++) {
         scale = fmax(scale, w.m[i][0]);
         for (int k = 0; k < 4; k++) {
-            worst = fmax(worst, fabs(p.moments[i][k] - w.m[i][k]));
+            worst = maximum(worst, fabs(p.moments[i][k] - w.m[i][k]));
         }
     }
     printf("twin converged in %d sweeps; largest difference %.1e\n", sweeps, worst / scale);
@@ -294,10 +295,10 @@ static void furnace_and_darkness(void **state)
             double inside = 0, wrong = 0, least = 1e9;
             for (int i = 0; i < num_cells(&p); i++) {
                 if (in_box(&p, i, centre, 0.38)) {
-                    inside = fmax(inside, fabs(p.moments[i][0]));
+                    inside = maximum(inside, fabs(p.moments[i][0]));
                 } else if (!in_box(&p, i, centre, 0.75)) {
-                    wrong = fmax(wrong, fabs(p.moments[i][0] / (4 * pi) - 1));
-                    least = fmin(least, p.moments[i][0]);
+                    wrong = maximum(wrong, fabs(p.moments[i][0] / (4 * pi) - 1));
+                    least = minimum(least, p.moments[i][0]);
                 }
             }
             printf("sigma_s %g, albedo %g: %d sweeps, furnace off by %.1e, inside %.1e\n",
@@ -332,7 +333,7 @@ static void closed_rooms(void **state)
             double wrong = 0;
             for (int i = 0; i < num_cells(&p); i++) {
                 if (in_box(&p, i, c, 1.3)) {
-                    wrong = fmax(wrong, fabs(p.moments[i][0] / (4 * pi) * (1 - albedo) - 1));
+                    wrong = maximum(wrong, fabs(p.moments[i][0] / (4 * pi) * (1 - albedo) - 1));
                 }
             }
             printf("albedo %g, sigma_s %g: %d sweeps, off by %.1e; walls absorb %.6g of %.6g W\n",
@@ -364,7 +365,7 @@ static void conserves(void **state)
             for (int i = 0; i < num_cells(&p); i++) {
                 made += volume * p.cell[i][0] * p.beam[i][0];
                 absorbed += volume * p.cell[i][1] * p.moments[i][0];
-                least = fmin(least, p.moments[i][0]);
+                least = minimum(least, p.moments[i][0]);
             }
             double missing = 1 - (p.leak + absorbed + p.absorbed_by_walls) / made;
             printf("albedo %g, sigma_s %g: %d sweeps, %.1e missing; walls %.2f, medium %.2f, "

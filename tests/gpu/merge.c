@@ -8,6 +8,7 @@
 #include "base/half.h"
 #include "passes/merge/merge.h"
 #include "passes/scatter_lut/scatter_lut.h"
+#include "numbers.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -326,7 +327,7 @@ static void with_ordinates(void **state)
             for (int ch = 0; ch < (int)k->channels; ch++) {
                 int texel = (z * (NY + 2) + y) * (NX + 2) + x;
                 double value = got[(k->channels == 1 ? 1 : 4) * texel + ch];
-                worst = fmax(worst, fabs(value - fmax(w.j[ch][c], 0)) / w.largest);
+                worst = maximum(worst, fabs(value - fmax(w.j[ch][c], 0)) / w.largest);
                 clamped = clamped || (w.j[ch][c] < 0 && x <= 2);
                 assert_true(value == value);
             }

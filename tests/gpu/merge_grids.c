@@ -3,6 +3,7 @@
 #include "passes/merge_grids/merge_grids.h"
 #include "shaders/beams/propagate_radial_grid.h"
 #include "shaders/common/scene_args.h"
+#include "numbers.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -123,9 +124,9 @@ static void equals_twin(void **state)
                                 seen_at(&grids[n], n * channels + (channels == 1 ? 0 : c), p);
                 }
                 assert_true(isfinite(found[4 * q + c]));
-                worst = fmax(worst, fabs((double)found[4 * q + c] - expected) / expected);
+                worst = maximum(worst, fabs((double)found[4 * q + c] - expected) / expected);
             }
-            assert_float_equal(found[4 * q + 3], 0.25 * (2 + 4 + 9) / 3, 1e-5);
+            assert_near(found[4 * q + 3], 0.25 * (2 + 4 + 9) / 3, 1e-5);
         }
         print_message("%u channels: largest relative difference %.1e\n", channels, worst);
         assert_true(worst < 1e-4);
@@ -237,10 +238,10 @@ static void radial_power(void **state)
     double sum = 0, expected = 0, worst = 0;
     for (uint32_t q = 0; q < size.x * size.y * size.z; q++) {
         double of_cell = (double)found[4 * q], mean = 2 * mean_of_cell(q, 1.2 / 24, lamp);
-        assert_float_equal(found[4 * q + 2], 4 * of_cell, 1e-5 * of_cell);
+        assert_near(found[4 * q + 2], 4 * of_cell, 1e-5 * of_cell);
         sum += of_cell;
         expected += mean;
-        worst = fmax(worst, fabs(of_cell - mean) / mean);
+        worst = maximum(worst, fabs(of_cell - mean) / mean);
     }
     print_message("light of a lamp: sum %+.2f %%, worst cell %.1f %%\n", 100 * (sum / expected - 1),
                   100 * worst);

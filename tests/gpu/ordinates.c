@@ -5,6 +5,7 @@
 #include "passes/ordinates/ordinates.h"
 #include "scene/env_suns.h"
 #include "shaders/common/scene_args.h"
+#include "numbers.h"
 #include "vector.h"
 #include "random_unit.h"
 #include <math.h>
@@ -209,7 +210,7 @@ static void partitions(void **state)
             assert_true(fabs(solid_angle / (4 * M_PI) - 1) < 1e-5);
             for (int c = 0; c < 3; c++) {
                 double error = fabs(got[c] - sum[c]) / size[c];
-                worst = fmax(worst, error);
+                worst = maximum(worst, error);
                 if (!(error < 1e-4)) {
                     fail_msg("%s, %d, split %d: %g, should be %g", map_names[kind], n, split,
                              got[c], sum[c]);
@@ -451,15 +452,17 @@ static void against_twin(void **state)
                     double constant = s.env.sky[c] * solid_angle;
                     double whole = power[c] * s.env.radiance[c];
                     double error = b.list[i].irradiance[c] - (whole - (split ? constant : 0));
-                    worst_light = fmax(worst_light, fabs(error) / (whole + (split ? constant : 0)));
+                    worst_light =
+                        maximum(worst_light, fabs(error) / (whole + (split ? constant : 0)));
                     for (int r = 0; r < 3; r++) { // M -> map, against the travel
                         got[r] -= s.env.rows[r][c] * b.list[i].direction[c];
                     }
                 }
                 double middle[3];
                 middle_of(&base, regions[i], split, luminance_of(s.light.sky), middle);
-                worst_angle = fmax(worst_angle, fabs(b.list[i].solid_angle / solid_angle - 1));
-                worst_turn = fmax(worst_turn, acos(fmin(1, vector_dot(middle, got))) * 180 / M_PI);
+                worst_angle = maximum(worst_angle, fabs(b.list[i].solid_angle / solid_angle - 1));
+                worst_turn =
+                    maximum(worst_turn, acos(minimum(1, vector_dot(middle, got))) * 180 / M_PI);
             }
             printf("%s, %d%s%s: light off by %.1e, solid angle by %.1e, direction by %.2g degrees; "
                    "%.2f ms\n",
@@ -613,11 +616,11 @@ static moves compare(const struct ordinates_block *a, const struct ordinates_blo
     double total = 0;
     for (uint32_t i = 0; i < a->count; i++) {
         double move = degrees_between(&a->list[i], &b->list[i]), nearest = 180;
-        m.most = fmax(m.most, move);
+        m.most = maximum(m.most, move);
         m.mean += move * size_of(&a->list[i]);
         total += size_of(&a->list[i]);
         for (uint32_t k = 0; k < a->count; k++) {
-            nearest = fmin(nearest, k == i ? 180 : degrees_between(&a->list[i], &b->list[k]));
+            nearest = minimum(nearest, k == i ? 180 : degrees_between(&a->list[i], &b->list[k]));
         }
         assert_true(move < nearest);
     }

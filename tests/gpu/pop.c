@@ -1,5 +1,7 @@
 // pop.c -- method `pop` as a whole: what it refuses, warns of and leaves out; its layers add up.
 #include "gpu_test.h"
+#include "numbers.h"
+#include "offline_frame.h"
 #include "picture.h"
 #include "solids.h"
 #include <math.h>
@@ -55,7 +57,7 @@ static void strike(stage *s)
 
 static void show(stage *s)
 {
-    assert_int_equal(tyn_offline_frame(s->off, &s->scene, &s->view, false), TYN_OK);
+    offline_frame(s->off, &s->scene, &s->view);
     assert_int_equal(tyn_device_validation_messages(s->dev), 0);
 }
 
@@ -232,7 +234,7 @@ static void suns_add_up(void **state)
             if (k < 3) {
                 sum[i] += p.rgb[i];
             } else {
-                most = fmax(most, fabs(p.rgb[i] - sum[i]) / (sum[i] + 1e-3));
+                most = maximum(most, fabs(p.rgb[i] - sum[i]) / (sum[i] + 1e-3));
             }
         }
         print_message(k == 3 ? "three suns at once: %.2e off their sum\n" : "", most);

@@ -1,6 +1,7 @@
 // propagate_radial.c -- the six-neighbour propagation around local lights against a CPU twin in double
 // precision, and what must hold for any light: solid angles, power, symmetry, finite numbers.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "propagate_radial_twin.h"
 #include "passes/propagate_radial/propagate_radial.h"
 #include "passes/propagate_radial/propagate_radial_args.h"
@@ -183,7 +184,7 @@ static void maps(void **state)
                 angles += c[1];
                 start += c[0];
                 if (k == 0) {
-                    worst = fmax(worst, fabs(c[1] / solid_angle(n, q % n, q / n) - 1));
+                    worst = maximum(worst, fabs(c[1] / solid_angle(n, q % n, q / n) - 1));
                 }
             }
             // The outer half of a flattened map is seen from its few points only.
@@ -193,7 +194,7 @@ static void maps(void **state)
         print_message("%d x %d: solid angles within %.1e\n", n, n, worst);
         assert_true(worst < 5e-3);              // of texels that the fold cuts
         double r = 0.5 * sqrt(0.25 + 0.25 + 1); // half the way to the farthest corner
-        assert_float_equal(o.grids[3].mean_cosine, 0.5 + 0.5 * r / sqrt(r * r + 0.25), 1e-5);
+        assert_near(o.grids[3].mean_cosine, 0.5 + 0.5 * r / sqrt(r * r + 0.25), 1e-5);
         assert_int_equal(o.grids[3].layers, o.layers);
         assert_int_equal(o.grids[4].layers, 0); // there is none
         assert_true(held(&o, 4, 0) == 0);
@@ -212,7 +213,7 @@ static void folds(void **state)
             double a[3], b[3];
             direction((2 * i + 1.0) / n - 1, (2 * j + 1.0) / n - 1, a);
             direction((2 * at[0] + 1.0) / n - 1, (2 * at[1] + 1.0) / n - 1, b);
-            assert_true(acos(fmin(vector_dot(a, b), 1)) < 6.0 / n);
+            assert_true(acos(minimum(vector_dot(a, b), 1)) < 6.0 / n);
             for (int k = 0; k < 4; k++) {
                 radial_twin_beside(n, at[0], at[1], step[k][0], step[k][1], back);
                 returns += back[0] == i && back[1] == j;
@@ -234,7 +235,7 @@ static double worst_of(const double *found, const double *expected, int n)
     }
     for (int i = 0; i < n; i++) {
         double scale = fmax(fabs(expected[i]), 1e-4 * top);
-        result = fmax(result, fabs(found[i] - expected[i]) / scale);
+        result = maximum(result, fabs(found[i] - expected[i]) / scale);
     }
     return result;
 }
@@ -294,8 +295,8 @@ static double compare(const setup *s, const outcome *o, uint32_t grid, uint32_t 
         found[2][q] = o->sum[stack * (uint32_t)total + (uint32_t)q];
         cosine[q] *= light[q];
     }
-    return fmax(fmax(worst_of(found[0], light, total), worst_of(found[1], cosine, total)),
-                worst_of(found[2], seen, total));
+    return maximum(maximum(worst_of(found[0], light, total), worst_of(found[1], cosine, total)),
+                   worst_of(found[2], seen, total));
 }
 
 static setup blobs(float *density)
@@ -345,10 +346,10 @@ static void equals_twin(void **state)
         for (uint32_t grid = 0; grid < 3; grid++) {
             for (uint32_t c = 0; c < 3; c++) {
                 radial_twin_sums sums;
-                difference = fmax(difference, compare(&s, &o, grid, c, &sums));
+                difference = maximum(difference, compare(&s, &o, grid, c, &sums));
                 double rest = sums.injected - sums.absorbed - sums.escaped - sums.held;
                 if (s.params.scale != TYN_PROPAGATE_SCALE_SPACING) {
-                    balance = fmax(balance, fabs(rest / sums.injected));
+                    balance = maximum(balance, fabs(rest / sums.injected));
                     assert_true(fabs(held(&o, grid, c) - sums.held) < 1e-4 * sums.injected);
                 }
             }
@@ -386,7 +387,7 @@ static void keeps_power(void **state)
     double width = sqrt(4 * PI) / 10, outer = sqrt(0.75) * exp(-width * 4);
     double r = 0.5 * (outer * exp(-width) + outer);
     print_message("beam: %.6f of %.6f\n", held(&o, 0, 0) / (4 * PI), exp(-2 * r));
-    assert_float_equal(held(&o, 0, 0) / (4 * PI), exp(-2 * r), 1e-5);
+    assert_near(held(&o, 0, 0) / (4 * PI), exp(-2 * r), 1e-5);
 }
 
 enum { BALL = 32 };
@@ -430,8 +431,8 @@ static void stays_symmetric(void **state)
             for (int q = 0; q < layer; q++) {
                 double light = light_of(&o, 0, (uint32_t)(k * layer + q));
                 double per_angle = light / (double)o.map[q].c[1];
-                low = fmin(low, per_angle);
-                high = fmax(high, per_angle);
+                low = minimum(low, per_angle);
+                high = maximum(high, per_angle);
                 power += light;
                 angle += o.map[q].c[1];
                 if (!turned) { // the map's own symmetries
@@ -439,13 +440,13 @@ static void stays_symmetric(void **state)
                     int other[3] = {i * n + j, j * n + n - 1 - i, (n - 1 - i) * n + n - 1 - j};
                     for (int x = 0; x < 3; x++) {
                         double its = light_of(&o, 0, (uint32_t)(k * layer + other[x]));
-                        mirrored = fmax(mirrored, fabs(its - light) / fmax(light, 1e-6));
+                        mirrored = maximum(mirrored, fabs(its - light) / fmax(light, 1e-6));
                     }
                 }
             }
             mean[turned][k] = power / angle;
             if (k < 15) { // the outermost are where the ball is thin
-                spread = fmax(spread, (high - low) / (power / angle));
+                spread = maximum(spread, (high - low) / (power / angle));
             }
         }
         print_message("turned %d: spread over a shell %.3f, of mirrored texels %.1e\n", turned,
@@ -454,7 +455,7 @@ static void stays_symmetric(void **state)
     }
     double worst = 0;
     for (int k = 0; k < 15; k++) {
-        worst = fmax(worst, fabs(mean[1][k] / mean[0][k] - 1));
+        worst = maximum(worst, fabs(mean[1][k] / mean[0][k] - 1));
     }
     print_message("shells of the turned grid differ by %.1e\n", worst);
     assert_true(worst < 1e-3);

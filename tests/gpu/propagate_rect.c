@@ -1,6 +1,7 @@
 // propagate_rect.c -- the six-neighbour propagation against reference states, a CPU twin in double
 // precision, and what must hold for any reading of the paper.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "propagate_twin.h"
 #include "passes/propagate_rect/propagate_rect.h"
 #include "shaders/light/ordinate_args.h"
@@ -153,7 +154,7 @@ static double worst(const double *found, const double *expected, int n, const do
     for (int i = 0; i < n; i++) {
         if (weight[i] > 1e-6 * top) {
             double scale = fmax(fabs(expected[i]), 1e-6);
-            result = fmax(result, fabs(found[i] - expected[i]) / scale);
+            result = maximum(result, fabs(found[i] - expected[i]) / scale);
         }
     }
     return result;
@@ -288,8 +289,9 @@ static double compare_channel(const setup *s, const outcome *o, int index, int c
         found[2][q] = o->seen[texels[q]];
         spread[q] = 1 - cosine[q] * kept_cosine(o, texels[q], twin.exact_rate);
     }
-    return fmax(fmax(worst(found[0], light, total, light), worst(found[1], spread, total, light)),
-                worst(found[2], seen, total, seen));
+    return maximum(
+        maximum(worst(found[0], light, total, light), worst(found[1], spread, total, light)),
+        worst(found[2], seen, total, seen));
 }
 
 static void every_reading(void **state)
@@ -304,7 +306,7 @@ static void every_reading(void **state)
         double difference = 0;
         for (int sun = 0; sun < MAX_SUNS; sun++) {
             for (int c = 0; c < 3; c++) {
-                difference = fmax(difference, compare_channel(&s, &o, sun, c));
+                difference = maximum(difference, compare_channel(&s, &o, sun, c));
             }
         }
         print_message("init %d, rate %d, last event %u: largest difference %.1e\n", s.params.init,
@@ -367,10 +369,10 @@ static void ordinates(void **state)
             double expected = filter == 0   ? 1
                               : filter == 1 ? pow(1 - share / 11, 3)
                                             : (double)s.ordinates.list[n].mean_cosine;
-            assert_float_equal(grid->mean_cosine, expected, 1e-6);
+            assert_near(grid->mean_cosine, expected, 1e-6);
             assert_memory_equal(grid->irradiance, s.ordinates.list[n].irradiance,
                                 sizeof grid->irradiance);
-            difference = fmax(difference, compare_channel(&s, &o, MAX_SUNS + n, n % 3));
+            difference = maximum(difference, compare_channel(&s, &o, MAX_SUNS + n, n % 3));
         }
         print_message("prefilter %d: largest difference %.1e\n", filter, difference);
         assert_true(difference < 1e-4);
@@ -459,9 +461,9 @@ static void grids_span_the_medium(void **state)
             longest = fmax(longest, side[a]);
             assert_true((grid->size[a] - 1) * grid->cell < side[a]); // no layer too many
         }
-        assert_float_equal(grid->cell * N, longest, 1e-5);
+        assert_near(grid->cell * N, longest, 1e-5);
         for (int x = 0; x < 3; x++) {
-            assert_float_equal(grid->direction[x], s.suns[sun].direction[x], 1e-6);
+            assert_near(grid->direction[x], s.suns[sun].direction[x], 1e-6);
         }
         // The cells hold all of the medium. White noise is the hardest case for the samples in a cell.
         double cells = 0, voxels = 0;
@@ -473,7 +475,7 @@ static void grids_span_the_medium(void **state)
                       s.medium.voxel[2];
         }
         print_message("sun %d: medium in the cells / in the voxels = %.4f\n", sun, cells / voxels);
-        assert_float_equal(cells / voxels, 1, 0.05);
+        assert_near(cells / voxels, 1, 0.05);
     }
 }
 
@@ -533,7 +535,7 @@ static void shrunk_medium(void **state)
             }
             for (int i = 0; i < 3; i++) {
                 double difference = fabs(found[i] - sums[i][c]);
-                worst = fmax(worst, difference / fmax(fabs(sums[i][c]), 1e-3));
+                worst = maximum(worst, difference / fmax(fabs(sums[i][c]), 1e-3));
                 assert_true(isfinite(found[i]));
             }
         }
@@ -559,7 +561,7 @@ static void fractions_sum_to_one(void **state)
         double injected = -expm1(-0.5 / STATE_CELLS);
         double sum = total(&o, 0, STATE_TOTAL) / injected;
         print_message("a = %g: sum of fractions - 1 = %.1e\n", cosines[i], sum - 1);
-        assert_float_equal(sum, 1, 1e-6);
+        assert_near(sum, 1, 1e-6);
     }
 }
 
@@ -571,7 +573,7 @@ static void injected_power_is_one(void **state)
     setup s = unit_cube(density, 1, 0.6f, (float[]){1, 0, 0});
     for (s.params.iterations = 1; s.params.iterations < STATE_CELLS; s.params.iterations += 7) {
         outcome o = run(*state, &s);
-        assert_float_equal(total(&o, 0, STATE_TOTAL) / (STATE_CELLS * STATE_CELLS), 1, 1e-6);
+        assert_near(total(&o, 0, STATE_TOTAL) / (STATE_CELLS * STATE_CELLS), 1, 1e-6);
     }
 }
 
@@ -614,8 +616,8 @@ static void colour_of_the_light(void **state)
     s.suns[0].color[1] = 0;
     s.suns[0].color[2] = 7;
     outcome o = run(*state, &s);
-    assert_float_equal(o.grids[0].irradiance[1], 0, 0);
-    assert_float_equal(o.grids[0].irradiance[2], 7, 0);
+    assert_near(o.grids[0].irradiance[1], 0, 0);
+    assert_near(o.grids[0].irradiance[2], 7, 0);
     assert_int_equal(o.grids[0].channels, 1);
     assert_true(total(&o, 0, STATE_TOTAL) > 1);
 }

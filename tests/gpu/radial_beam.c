@@ -2,6 +2,7 @@
 // octahedral map of their directions.
 #include "gpu_test.h"
 #include "passes/radial_beam/radial_beam.h"
+#include "numbers.h"
 #include "point_pass.h"
 #include "octahedral_eval.comp.h"
 #include "radial_eval.comp.h"
@@ -176,7 +177,7 @@ static double compare(gpu_test *t, const struct medium_block *m, uint32_t fine, 
         assert_true(error == error);
         assert_true(fabs(got[n].a[1] - 0.5 * got[n].s[1]) <= 1e-5 * most);
         assert_true(fabs(got[n].p[2] - 0.75 * got[n].s[2]) <= 1e-5 * most);
-        worst = fmax(worst, error);
+        worst = maximum(worst, error);
         sum += error / COUNT;
     }
     print_message("%-24s largest %.2e, mean %.2e of the largest depth\n", name, worst, sum);
@@ -254,7 +255,7 @@ static void octahedron(void **state)
                 const float *q = got[(y + k) * SIDE + x + 1 - k].direction;
                 double lq = sqrt((double)q[0] * q[0] + (double)q[1] * q[1] + (double)q[2] * q[2]);
                 double dot = ((double)d[0] * q[0] + (double)d[1] * q[1] + (double)d[2] * q[2]);
-                widest = fmax(widest, acos(fmin(dot / (l * lq), 1)));
+                widest = maximum(widest, acos(minimum(dot / (l * lq), 1)));
             }
         }
     }

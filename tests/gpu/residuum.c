@@ -5,6 +5,7 @@
 #include "passes/residuum/residuum.h"
 #include "shaders/light/ordinate_args.h"
 #include "shaders/common/scene_args.h"
+#include "numbers.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -213,7 +214,7 @@ static void equals_twin(void **state)
         for (int c = 0; c < 3; c++) {
             double expected = sum[q][c] / 12.566370614;
             assert_true(isfinite(o.residuum[4 * q + c]));
-            worst = fmax(worst, fabs(o.residuum[4 * q + c] - expected) / expected);
+            worst = maximum(worst, fabs(o.residuum[4 * q + c] - expected) / expected);
         }
     }
     print_message("largest relative difference to the twin %.1e\n", worst);

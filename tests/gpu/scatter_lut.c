@@ -1,6 +1,7 @@
 // scatter_lut.c -- the table of forward scattering against the double precision series.
 #include "gpu_test.h"
 #include "passes/scatter_lut/scatter_lut.h"
+#include "numbers.h"
 #include "point_pass.h"
 #include "scatter_lut_eval.comp.h"
 #include "random_unit.h"
@@ -350,8 +351,8 @@ static void suns_of_finite_size(void **state)
                     double sum = got[i][0] + got[i][1];
                     double expected = over_sun(fine, points[i].theta, a[sun], false);
                     double disc = over_sun(fine, points[i].theta, a[sun], true);
-                    worst = fmax(worst, fabs(sum - expected) / expected);
-                    worst_disc = fmax(worst_disc, fabs(sum - disc) / disc);
+                    worst = maximum(worst, fabs(sum - expected) / expected);
+                    worst_disc = maximum(worst_disc, fabs(sum - disc) / disc);
                     assert_true(got[i][0] >= 0 && got[i][1] >= 0);
                 }
             }
@@ -420,7 +421,7 @@ static void spread_rows_with_a_sun(void **state)
                 fine_kernel(&s, taus[i / SUN_ANGLES], fine);
             }
             double expected = over_sun(fine, points[i].theta, a, false);
-            worst = fmax(worst, fabs(got[i][0] + got[i][1] - expected) / expected);
+            worst = maximum(worst, fabs(got[i][0] + got[i][1] - expected) / expected);
         }
         printf("spread, sun of mean cosine %.3f, g %4.1f: within %.2f %%\n", a, gs[n], 100 * worst);
         assert_true(worst < 0.03);

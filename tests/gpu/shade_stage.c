@@ -4,6 +4,7 @@
 #include "shaders/surfaces/gbuffer_edge_args.h"
 #include "shaders/walls/rooms.h"
 #include "shaders/walls/walls_args.h"
+#include "numbers.h"
 #include <string.h>
 
 static const double pi = 3.14159265358979;
@@ -447,7 +448,7 @@ double shade_compare(shade_light_at light, bool (*sure)(const double p[3]), doub
             sums[0] += found[c];
             sums[1] += right[i][c];
             const double error = fabs(found[c] - right[i][c]);
-            worst = fmax(worst, error / fmax(unit, 1e-30));
+            worst = maximum(worst, error / fmax(unit, 1e-30));
             if (!(error <= tolerance * unit)) {
                 fail_msg("sample %d %d, channel %d: %g, not %g", i % width, i / width, c, found[c],
                          right[i][c]);

@@ -375,8 +375,9 @@ static void points_of_the_surfaces(void **state)
         if (right >= 0 && in_cone(&l, probes[i].light, probes[i].world)) {
             sure++;
             lit += right;
-            wrong += fabsf(found[i] - (float)right) > 1e-5f;
-            if (fabsf(found[i] - (float)right) > 1e-5f && wrong < 8) {
+            const bool close = fabsf(found[i] - (float)right) <= 1e-5f;
+            wrong += !close;
+            if (!close && wrong < 8) {
                 const probe *q = &probes[i];
                 print_message("light %d at %g %g %g, normal %g %g %g: %g, not %d\n", q->light,
                               q->world[0], q->world[1], q->world[2], q->normal[0], q->normal[1],

@@ -1,6 +1,8 @@
 // shafts.c -- sunlight through a slit above fog: `single` against the integral along each ray, `pop` against
 // `path`, and a closed box that stays dark.
 #include "gpu_test.h"
+#include "numbers.h"
+#include "offline_frame.h"
 #include "picture.h"
 #include "solids.h"
 #include <math.h>
@@ -96,7 +98,7 @@ static void once_through_a_slit(void **state)
             }
             lit += right > 0;
             dark += right == 0;
-            if (fabs(found - right) > 0.02 * right) {
+            if (!(fabs(found - right) <= 0.02 * right)) {
                 fail_msg("(%g, %g): %g, not %g, %g m from the edge", x, y, found, right, beyond);
             }
         }
@@ -131,7 +133,7 @@ static void sparse_rays(void **state)
     for (uint32_t i = 0; i < VALUES; i++) {
         const double off = fabs((double)sparse.rgb[i] - (double)all.rgb[i]);
         apart += off;
-        worst = fmax(worst, off / ((double)all.rgb[i] + 0.1 * sum / VALUES));
+        worst = maximum(worst, off / ((double)all.rgb[i] + 0.1 * sum / VALUES));
         differ += off > 0;
     }
     print_message(
@@ -184,7 +186,7 @@ static void probes(void **state)
     tyn_camera_frame_scene(&view.camera, &scene);
     tyn_offline *off = NULL;
     assert_int_equal(tyn_offline_create(t->dev, tyn_offline_params(.method = "pop"), &off), TYN_OK);
-    assert_int_equal(tyn_offline_frame(off, &scene, &view, false), TYN_OK);
+    offline_frame(off, &scene, &view);
     const tyn_probe_result *r = tyn_offline_output(off, TYN_OUTPUT_PROBE);
     const double way =
         (1 - 0.4) * sqrt((double)(sun[0] * sun[0] + sun[1] * sun[1] + sun[2] * sun[2]));
@@ -197,7 +199,7 @@ static void probes(void **state)
         (tyn_light){.kind = TYN_LIGHT_POINT, .color = {2, 2, 2}, .position = {0.5f, 1.5f, 0.5f}};
     const float below[2][3] = {{0.55f, 0.5f, 0.5f}, {0.9f, 0.5f, 0.5f}};
     view.points = below;
-    assert_int_equal(tyn_offline_frame(off, &scene, &view, false), TYN_OK);
+    offline_frame(off, &scene, &view);
     r = tyn_offline_output(off, TYN_OUTPUT_PROBE);
     const double r2 = 0.05 * 0.05 + 1,
                  depth = (double)sigma_a * sqrt(r2) / 2; // half the way in the fog
@@ -240,7 +242,7 @@ static void sealed(void **state)
     tyn_camera_frame_scene(&view.camera, &scene);
     tyn_offline *off = NULL;
     assert_int_equal(tyn_offline_create(t->dev, tyn_offline_params(.method = "pop"), &off), TYN_OK);
-    assert_int_equal(tyn_offline_frame(off, &scene, &view, false), TYN_OK);
+    offline_frame(off, &scene, &view);
     const tyn_probe_result *r = tyn_offline_output(off, TYN_OUTPUT_PROBE);
     double inside = 0, most = 0, outside = 0;
     uint32_t count[2] = {0};
@@ -253,7 +255,7 @@ static void sealed(void **state)
         const double fluence = (double)r[i].fluence[0];
         if (far < -1e-4) {
             inside += fluence;
-            most = fmax(most, fluence);
+            most = maximum(most, fluence);
             count[0]++;
         } else if (far > 1e-4) {
             outside += fluence;

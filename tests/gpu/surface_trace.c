@@ -1,5 +1,6 @@
 // surface_trace.c -- rays and triangles: closed meshes do not leak, surfaces are not left behind, at any scale.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "point_pass.h"
 #include "solids.h"
 #include "shaders/surfaces/surface_args.h"
@@ -295,7 +296,7 @@ static void only_boxes_met(void **state)
     const ray_out *out = trace(*state, &scene, &block, false, true);
     for (int k = 0; k < COUNT; k++) {
         if (k % 2) {
-            assert_float_equal(out[k].t, 5, 1e-5);
+            assert_near(out[k].t, 5, 1e-5);
         } else {
             assert_true(out[k].t > 1e37f); // nothing is met
         }

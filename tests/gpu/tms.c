@@ -2,6 +2,7 @@
 #include "gpu_test.h"
 #include "passes/scatter_lut/scatter_lut.h"
 #include "lobe_series.h"
+#include "numbers.h"
 #include "point_pass.h"
 #include "tms_eval.comp.h"
 #include "random_unit.h"
@@ -74,7 +75,7 @@ static double worst_error(const lobe_series *s, const double *c, const point *po
         for (int a = 0; a < ANGLES; a++) {
             double value = got[d * ANGLES + a];
             double error = fabs(value - expected[a]) / peak;
-            worst = fmax(worst, value >= 0 && error == error ? error : 1e30);
+            worst = maximum(worst, value >= 0 && error == error ? error : 1e30);
         }
     }
     return worst;
@@ -114,9 +115,9 @@ static void cones(void **state)
                 float part = points[ch][i][0].part;
                 bool sharp = part == 0 || part > 0.8f;
                 if (i % 2 == 0) {
-                    at = fmax(at, sharp ? error / 4 : error);
+                    at = maximum(at, sharp ? error / 4 : error);
                 } else if (!sharp) {
-                    between = fmax(between, error);
+                    between = maximum(between, error);
                 }
             }
             printf("g %5.2f: largest error %.3f %% of the peak; between cones %.2f %%\n", s.g,
@@ -166,8 +167,8 @@ static void sums_over_directions(void **state)
                 }
                 double expected =
                     s.rest[1] / (1 - s.f) * (1 - p[0].part) * exp(-p[0].tau * (s.f - s.lobe[1]));
-                worst[0] = fmax(worst[0], fabs(sum - 1));
-                worst[1] = fmax(worst[1], fabs(first - expected));
+                worst[0] = maximum(worst[0], fabs(sum - 1));
+                worst[1] = maximum(worst[1], fabs(first - expected));
             }
             printf("g %5.2f: sum off by %.2g, mean cosine by %.2g\n", s.g, worst[0], worst[1]);
             assert_true(worst[0] < 0.003);

@@ -4,6 +4,7 @@
 #include "shaders/beams/radial_args.h"
 #include "shaders/common/scene_args.h"
 #include "shaders/surfaces/surface_args.h"
+#include "numbers.h"
 #include <math.h>
 #include <string.h>
 
@@ -106,7 +107,7 @@ static void check_power(const struct radial_vpls *found, const double emitted[3]
         for (uint32_t k = 0; k < found->count; k++) {
             power += PI * found->list[k].color[c];
         }
-        worst = fmax(worst, fabs(power / expected - 1));
+        worst = maximum(worst, fabs(power / expected - 1));
     }
     print_message("%u lights: power off by %.1e at most\n", found->count, worst);
     assert_true(worst < 1e-4);
@@ -182,7 +183,7 @@ static void steady(void **state)
             const float *a = found->list[k].position, *b = last.list[k].position;
             double moved = sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[2] - b[2]) * (a[2] - b[2]));
             mean += moved / (steps * found->count);
-            most = fmax(most, moved);
+            most = maximum(most, moved);
         }
         last = *found;
     }
@@ -234,7 +235,7 @@ static void emitters(void **state)
         if (l->position[1] < 1) {
             continue;
         }
-        assert_float_equal(l->position[1], 2, 1e-5);
+        assert_near(l->position[1], 2, 1e-5);
         assert_true(fabsf(l->direction[1]) > 0.9999f);
         if (l->position[0] > 9) {
             *(l->direction[1] > 0 ? &up : &down) += l->color[1];
@@ -247,11 +248,11 @@ static void emitters(void **state)
             }
         }
     }
-    assert_float_equal(up, 3, 0.2); // one stratum may straddle both emitters
-    assert_float_equal(down, 3, 3e-3);
+    assert_near(up, 3, 0.2); // one stratum may straddle both emitters
+    assert_near(down, 3, 3e-3);
     // Evenly spread: the mean is the middle.
-    assert_float_equal(first[0] / weight, 7, 0.02);
-    assert_float_equal(first[2] / weight, 1, 0.02);
+    assert_near(first[0] / weight, 7, 0.02);
+    assert_near(first[2] / weight, 1, 0.02);
     print_message("discs cover %.2f of the emitter\n", area / 4);
     assert_true(area > 3.4 && area < 4.2);
 }
@@ -283,7 +284,7 @@ static void in_fog(void **state)
         for (uint32_t k = 0; k < found->count; k++) {
             power += PI * found->list[k].color[c];
         }
-        assert_float_equal(power / expected, 1, 2e-4);
+        assert_near(power / expected, 1, 2e-4);
     }
     // A lamp 0.25 m above the floor's middle.
     start();
@@ -300,7 +301,7 @@ static void in_fog(void **state)
         const float *p = found->list[k].position;
         double r = sqrt((p[0] - 1) * (p[0] - 1) + 0.25 * 0.25 + (p[2] - 1) * (p[2] - 1));
         double expected = SIDE * SIDE / (PI * found->count) * exp(-r);
-        assert_float_equal(found->list[k].color[1] / expected, 1, 2e-3);
+        assert_near(found->list[k].color[1] / expected, 1, 2e-3);
     }
 }
 

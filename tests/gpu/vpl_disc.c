@@ -1,6 +1,7 @@
 // vpl_disc.c -- light of virtual point lights (VPLs), which stand for discs, on planes: against Lambert's integral around
 // the disc's contour, cut off at the plane's horizon.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "point_pass.h"
 #include "vpl_eval.comp.h"
 #include "vector.h"
@@ -163,10 +164,11 @@ static void before_planes(void **state)
             assert_true(got[i] == 0.0f);
             dark++;
         } else if (!cut) {
-            worst = fmax(worst, fabs((double)got[i] / expected - 1));
+            worst = maximum(worst, fabs((double)got[i] / expected - 1));
             whole++;
         } else {
-            most = fmax(most, (double)got[i] * (double)points[i].radius * (double)points[i].radius);
+            most =
+                maximum(most, (double)got[i] * (double)points[i].radius * (double)points[i].radius);
         }
     }
     print_message("%d discs before planes: off by %.1e at most; %d are behind\n", whole, worst,

@@ -309,8 +309,8 @@ static void blends_on_one_side(void **state)
         within += both[0] == 0 && both[1] == 0;
         seen += both[0] == 0 && both[1] == 0 && results[i][3] >= 0;
         in += depth > 0;
-        wrong_in += depth > 0 && results[i][0] > 1e-6;
-        wrong_out += depth < 0 && results[i][0] < 1 - 1e-6;
+        wrong_in += depth > 0 && !(results[i][0] <= 1e-6);
+        wrong_out += depth < 0 && !(results[i][0] >= 1 - 1e-6);
     }
     printf(
         "%d points inside, %d in cells with walls: %d see light from outside; %d outside see the "

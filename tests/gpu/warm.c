@@ -1,6 +1,7 @@
 // warm.c -- a solve that starts from the last frame's solution: nothing changes where there is none; it is
 // nearer to the solution where something moved a little; what is gone leaves no light behind.
 #include "gpu_test.h"
+#include "offline_frame.h"
 #include "picture.h"
 #include <math.h>
 #include <stdio.h>
@@ -90,7 +91,7 @@ static tyn_offline *renderer(const stage *s, bool warm, int sweeps)
 
 static const float *show(const stage *s, tyn_offline *off)
 {
-    assert_int_equal(tyn_offline_frame(off, &s->scene, &s->view, false), TYN_OK);
+    offline_frame(off, &s->scene, &s->view);
     assert_int_equal(tyn_device_validation_messages(s->dev), 0);
     return tyn_offline_output(off, TYN_OUTPUT_RADIANCE);
 }

@@ -1,6 +1,9 @@
 // milk.c -- the thick milk is solved in six sweeps, where plain iteration takes more than a hundred.
 // argv[1] is the folder of the sample scenes.
+#include "numbers.h"
+#include "offline_frame.h"
 #include "scenes.h"
+#include "skip.h"
 #include <tyndall/offline.h>
 
 typedef struct solver {
@@ -30,12 +33,12 @@ static double imbalance(tyn_device *dev, const tyn_scene *scene, const solver *h
         TYN_OK);
     tyn_view view = {.width = 1, .height = 1, .outputs = TYN_OUTPUT_BALANCE};
     tyn_camera_frame_scene(&view.camera, scene);
-    assert_int_equal(tyn_offline_frame(off, scene, &view, false), TYN_OK);
+    offline_frame(off, scene, &view);
     const tyn_balance *balance = tyn_offline_output(off, TYN_OUTPUT_BALANCE);
     assert_non_null(balance);
     double most = 0;
     for (int k = 0; k < 3; k++) {
-        most = fmax(most, fabs(balance->imbalance[k]));
+        most = maximum(most, fabs(balance->imbalance[k]));
     }
     tyn_offline_destroy(&off);
     tyn_settings_destroy(&settings);
@@ -51,8 +54,7 @@ static void solve(const tyn_scene *scene, const char *light)
     };
     tyn_device *dev = NULL;
     if (tyn_device_open(tyn_device_open_params(.log = scenes_log), &dev) != TYN_OK) {
-        print_message("skipped: no device\n");
-        skip();
+        skip_case("no device");
     }
     const bool sun = scene->num_lights > 0;
     for (size_t i = 0; i < sizeof(solvers) / sizeof(solvers[0]); i++) {
@@ -96,5 +98,5 @@ int main(int argc, char **argv)
         cmocka_unit_test(under_a_sun),
         cmocka_unit_test(under_its_sky),
     };
-    return cmocka_run_group_tests_name("milk", tests, NULL, NULL);
+    return run_cases(tests, NULL, NULL);
 }

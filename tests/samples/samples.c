@@ -1,6 +1,8 @@
 // samples.c -- the sample scenes are what they are said to be: they load, the smoke fills its part of
 // the picture, the cloud is thick, the sky has its sun. argv[1] is their folder.
+#include "offline_frame.h"
 #include "scenes.h"
+#include "skip.h"
 #include <tyndall/offline.h>
 
 static void all_load(void **state)
@@ -170,8 +172,7 @@ static void smoke_fills_the_picture(void **state)
     enum { SIZE = 512 };
     tyn_device *dev = NULL;
     if (tyn_device_open(tyn_device_open_params(.log = scenes_log), &dev) != TYN_OK) {
-        print_message("skipped: no device\n");
-        skip();
+        skip_case("no device");
     }
     tyn_offline *off = NULL;
     assert_int_equal(tyn_offline_create(dev, tyn_offline_params(.method = "single"), &off), TYN_OK);
@@ -181,7 +182,7 @@ static void smoke_fills_the_picture(void **state)
                            .height = SIZE,
                            .outputs = TYN_OUTPUT_RADIANCE,
                            .no_background = true};
-    assert_int_equal(tyn_offline_frame(off, &scene, &view, false), TYN_OK);
+    offline_frame(off, &scene, &view);
     const float *rgba = tyn_offline_output(off, TYN_OUTPUT_RADIANCE);
     uint32_t covered = 0;
     for (size_t i = 0; i < (size_t)SIZE * SIZE; i++) {
@@ -209,5 +210,5 @@ int main(int argc, char **argv)
         cmocka_unit_test(milk_is_thick),
         cmocka_unit_test(smoke_fills_the_picture),
     };
-    return cmocka_run_group_tests_name("samples", tests, NULL, NULL);
+    return run_cases(tests, NULL, NULL);
 }

@@ -130,7 +130,7 @@ static uint32_t wrong_normals(const tyn_surfaces *s)
         }
         for (int c = 0; c < 3; c++) {
             const float *m = s->vertices[v[c]].normal;
-            wrong += n[0] * m[0] + n[1] * m[1] + n[2] * m[2] <= 0;
+            wrong += !(n[0] * m[0] + n[1] * m[1] + n[2] * m[2] > 0);
         }
     }
     return wrong;

@@ -1,6 +1,7 @@
 // sky.c -- `pop` under maps that break things, around media that break things: no NaN, nothing negative, no
 // validation message, and where the answer is known, that answer.
 #include "gpu_test.h"
+#include "numbers.h"
 #include "picture.h"
 #include "sky.h"
 #include <math.h>
@@ -73,8 +74,8 @@ static void check(const picture *p, const char *name, double most)
             print_message("%s: pixel %u is %g\n", name, i / 3, (double)p->rgb[i]);
         }
         assert_true(isfinite(p->rgb[i]));
-        least = fmin(least, p->rgb[i]);
-        greatest = fmax(greatest, p->rgb[i]);
+        least = minimum(least, p->rgb[i]);
+        greatest = maximum(greatest, p->rgb[i]);
     }
     print_message("%-60s %.4g to %.4g\n", name, least, greatest);
     assert_true(least >= 0);

@@ -70,6 +70,6 @@ const char *io_shared(const char *name)
 {
     static char path[512];
     const char *root = getenv("TYN_SHARED");
-    snprintf(path, sizeof path, "%s/%s", root ? root : TYN_SHARED_DIR, name);
+    snprintf(path, sizeof path, "%s/%s", root && *root ? root : TYN_SHARED_DIR, name);
     return access(path, R_OK) == 0 ? path : NULL;
 }

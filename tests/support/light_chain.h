@@ -30,7 +30,6 @@ typedef struct light_chain {
     float *inscatter; // (dims + 2) RGBA texels, malloc'ed; seen
                       // from +x far away
     tyn_extent inscatter_size;
-    uint32_t non_finite; // cells that the solve counted as not finite
     float *source;       // RGBA per cell, channels stacked, malloc'ed; with suns or ordinates
     double ms_cells, ms_source, ms_solve;
 } light_chain;

@@ -16,5 +16,5 @@ bool npy_read(npy_array *array, const char *path);
 void npy_free(npy_array *array);
 
 // Path of a file below the shared data ($TYN_SHARED, else what meson says). False if it is absent: the
-// test then prints "skipped" and returns 77.
+// case then is skipped (skip.h).
 bool shared_path(char *path, size_t size, const char *name);

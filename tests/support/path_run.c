@@ -1,5 +1,7 @@
 // path_run.c -- whole scenes through method `path`.
 #include "path_run.h"
+#include "numbers.h"
+#include "offline_frame.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,7 +50,7 @@ static void run(path_run *r, const tyn_scene *scene, tyn_view *view, uint32_t sa
 {
     view->num_samples = samples;
     view->seed = r->seed++;
-    assert_int_equal(tyn_offline_frame(r->off, scene, view, false), TYN_OK);
+    offline_frame(r->off, scene, view);
     assert_int_equal(tyn_device_validation_messages(r->dev), 0);
 }
 
@@ -151,9 +153,9 @@ picture_score picture_z(const picture *a, const picture *reference, uint32_t blo
                 sum_ref += reference->rgb[at];
             }
             var += v;
-            if (v > 0) {
+            if (!(v <= 0)) {
                 z2 += off * off / v;
-                largest = fmax(largest, fabs(off) / sqrt(v));
+                largest = maximum(largest, fabs(off) / sqrt(v));
                 blocks++;
             }
         }

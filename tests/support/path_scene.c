@@ -305,7 +305,9 @@ const struct path_balance_result *path_scene_balance(gpu_test *t, path_scene *s,
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_path_balance, &s->params, refs), TYN_OK);
     tyn_graph_output(t->graph, "balance", refs[PATH_BALANCE_PORT_BALANCE], true);
     tyn_graph_output(t->graph, "result", refs[PATH_BALANCE_PORT_RESULT], true);
+    tyn_graph_output(t->graph, "counters", refs[PATH_BALANCE_PORT_COUNTERS], true);
     gpu_run(t);
+    assert_int_equal(((const struct counters_block *)gpu_map(t, "counters"))->non_finite, 0);
     *balance = gpu_map(t, "balance");
     return gpu_map(t, "result");
 }

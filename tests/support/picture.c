@@ -1,6 +1,8 @@
 // picture.c -- scenes made in code, pictures of them, and how far apart two pictures are.
 #include "picture.h"
 #include "npy.h"
+#include "numbers.h"
+#include "offline_frame.h"
 #include "vector.h"
 #include <math.h>
 #include <setjmp.h>
@@ -129,7 +131,7 @@ void picture_render(picture *p, tyn_device *dev, const char *method, const tyn_s
     bool sampled = !strcmp(method, "path");
     v.outputs = TYN_OUTPUT_RADIANCE | (sampled ? TYN_OUTPUT_ERROR : 0);
     v.num_samples = spp;
-    assert_int_equal(tyn_offline_frame(off, scene, &v, false), TYN_OK);
+    offline_frame(off, scene, &v);
     *p = (picture){.width = v.width, .height = v.height};
     size_t pixels = (size_t)p->width * p->height;
     p->rgb = copy_rgb(tyn_offline_output(off, TYN_OUTPUT_RADIANCE), pixels);
@@ -145,9 +147,10 @@ bool picture_reference(picture *p, const char *name)
     char file[128], path[512];
     snprintf(file, sizeof file, "reference/images/%s.npy", name);
     npy_array a;
-    if (!shared_path(path, sizeof path, file) || !npy_read(&a, path)) {
+    if (!shared_path(path, sizeof path, file)) {
         return false;
     }
+    assert_true(npy_read(&a, path));
     uint32_t h = a.shape[0], w = a.shape[1], k = a.shape[2] / 2;
     *p = (picture){.width = w, .height = h};
     p->rgb = malloc((size_t)w * h * 3 * sizeof *p->rgb);
@@ -188,7 +191,7 @@ picture_error picture_compare(const picture *a, const picture *reference, uint32
                     double va = block_mean(a, a->rgb, x, y, block, c, false);
                     double vr = block_mean(a, reference->rgb, x, y, block, c, false);
                     if (pass) {
-                        worst = fmax(worst, fabs(va - vr) / (fabs(vr) + 0.01 * mean));
+                        worst = maximum(worst, fabs(va - vr) / (fabs(vr) + 0.01 * mean));
                         continue;
                     }
                     double ea = a->se ? block_mean(a, a->se, x, y, block, c, true) : 0;
@@ -205,7 +208,7 @@ picture_error picture_compare(const picture *a, const picture *reference, uint32
     }
     picture_error e = {.rel_l1 = off / sum_abs, .bias = sum_a / sum - 1, .worst = worst};
     e.noise = sqrt(2 / 3.14159265358979) * se / sum_abs;
-    e.reported = sqrt(fmax(0, e.rel_l1 * e.rel_l1 - e.noise * e.noise));
+    e.reported = sqrt(maximum(0, e.rel_l1 * e.rel_l1 - e.noise * e.noise));
     return e;
 }
 
@@ -215,12 +218,12 @@ double scene_imbalance(tyn_device *dev, const char *method, const tyn_scene *sce
     tyn_offline *off = scene_open(dev, method, settings);
     tyn_view view = {.width = 1, .height = 1, .outputs = TYN_OUTPUT_BALANCE};
     tyn_camera_frame_scene(&view.camera, scene);
-    assert_int_equal(tyn_offline_frame(off, scene, &view, false), TYN_OK);
+    offline_frame(off, scene, &view);
     const tyn_balance *balance = tyn_offline_output(off, TYN_OUTPUT_BALANCE);
     assert_non_null(balance);
     double worst = 0;
     for (int c = 0; c < 3; c++) {
-        worst = fmax(worst, fabs(balance->imbalance[c]));
+        worst = maximum(worst, fabs(balance->imbalance[c]));
     }
     tyn_offline_destroy(&off);
     return worst;

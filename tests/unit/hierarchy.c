@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "io_test.h"
+#include "skip.h"
 #include "solids.h"
 
 static const float grey[3] = {0.5f, 0.5f, 0.5f}, dark[3] = {0, 0, 0};
@@ -231,10 +232,9 @@ int main(void)
     tyn_result result = tyn_surfaces_build_nodes(&scene.surfaces, &log.log);
     tyn_scene_finish(&scene);
     if (result == TYN_ERR_UNSUPPORTED) {
-        printf("skipped: built without Embree\n");
-        return 77;
+        skip_all("built without Embree");
     }
     const struct CMUnitTest tests[] = {cmocka_unit_test(rays), cmocka_unit_test(sizes),
                                        cmocka_unit_test(repeats)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests, NULL, NULL);
 }

@@ -6,6 +6,7 @@
 #include "io/nvdb.h"
 #include "io_test.h"
 #include "nvdb_write.h"
+#include "skip.h"
 
 static float ramp(int32_t i, int32_t j, int32_t k)
 {
@@ -353,8 +354,7 @@ static void real_file(void **state)
     io_log_init(&log);
     const char *path = io_shared("data/teapot_cloud.nvdb");
     if (!path) {
-        print_message("no shared data\n");
-        skip();
+        skip_without("data/teapot_cloud.nvdb");
     }
     assert_int_equal(tyn_volume_load(&v, path, NULL, NULL, &log.log), TYN_OK);
     uint64_t dense = 0;
@@ -384,5 +384,5 @@ int main(void)
                                        cmocka_unit_test(overlap),
                                        cmocka_unit_test(alone),
                                        cmocka_unit_test(real_file)};
-    return cmocka_run_group_tests(tests, NULL, io_test_clean);
+    return run_cases(tests, NULL, io_test_clean);
 }

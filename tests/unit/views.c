@@ -2,6 +2,7 @@
 // Embree.
 #include "io_test.h"
 #include "light/shadow_cull.h"
+#include "skip.h"
 #include "solids.h"
 #include <math.h>
 #include <stdio.h>
@@ -186,11 +187,10 @@ int main(void)
     const tyn_result result = tyn_surfaces_build_nodes(&scene.surfaces, &log.log);
     tyn_scene_finish(&scene);
     if (result == TYN_ERR_UNSUPPORTED) {
-        printf("skipped: built without Embree\n");
-        return 77;
+        skip_all("built without Embree");
     }
     const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_is_lost),
                                        cmocka_unit_test(remembered),
                                        cmocka_unit_test(ranges_in_any_order)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return run_cases(tests, NULL, NULL);
 }

@@ -31,10 +31,8 @@ void flicker_add(flicker *f, const float *color)
     const float *a = f->last[f->frames % 3], *b = f->last[(f->frames + 1) % 3];
     for (size_t i = 0; i < f->values; i++) {
         const double x = b[i], d = (double)a[i] - 2 * x + (double)now[i];
-        if (isfinite(d)) {
-            f->second += fabs(d);
-            f->mean += fabs(x);
-        }
+        f->second += fabs(d);
+        f->mean += fabs(x);
     }
 }
 

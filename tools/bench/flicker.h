@@ -19,5 +19,6 @@ void flicker_close(flicker *f);
 void flicker_add(flicker *f, const float *rgba);
 
 // Sum over pixels, channels and all but the first and last picture of |x[k-1] - 2 x[k] + x[k+1]|, relative to
-// that of |x[k]|. Independent noise of relative standard deviation s gives 1.95 s. NAN below three pictures.
+// that of |x[k]|. Independent noise of relative standard deviation s gives 1.95 s. NAN below three pictures, and where a value
+// is not finite: what is left out would flicker least.
 double flicker_value(const flicker *f);
