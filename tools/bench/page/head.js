@@ -142,6 +142,14 @@ function speedTable(rows, errors, method, baseline, block) {
         }))))));
 }
 
+// A mean in large figures; bold where at least two thirds of the scenes have it.
+function meanFigure(m, words) {
+    const text = (m.extrapolated > 0 ? "about " : "") + times(m.geometric_mean);
+    const scenes = `geometric mean of ${m.scenes}${isNumber(m.of) ? ` of ${m.of}` : ""} scene${m.scenes === 1 && !(m.of > 1) ? "" : "s"}${m.extrapolated > 0 ? `, ${m.extrapolated} of ${m.scenes} extrapolated` : ""}`;
+    return make("p", {class: "figure"}, 3 * m.scenes >= 2 * (m.of ?? m.scenes) ? make("strong", {}, text) : make("span", {class: "few"}, text),
+        make("span", {}, `${words}, ${scenes}`));
+}
+
 // A row for each preset: its error and time, and what a baseline takes to that error, by each of the measures.
 function presets(report) {
     const all = list(report.presets), baseline = baselineName(report);
@@ -151,9 +159,11 @@ function presets(report) {
     }
     const found = (name, block) => all.find((p) => `${p.method}, ${p.preset}` === name && p.block === block) || {};
     const mean = (p) => (isNumber(p.geometric_mean) ? [(p.extrapolated > 0 ? "about " : "") + times(p.geometric_mean), make("small", {}, ` ${p.scenes} of ${p.of}`)] : NONE);
-    const missing = all.filter((p) => list(p.missing).length > 0);
+    const missing = all.filter((p) => list(p.missing).length > 0), usual = names.find((n) => n.endsWith("normal")) ?? names[0];
     return make("section", {id: "presets"}, make("h2", {}, "What a user gets who sets nothing but the quality"),
         make("p", {}, `Error and time are geometric means over the scenes; ${TIMES}: how many times as long ${baseline} takes to the error that the preset has in a scene, over as many scenes as that is known in.`),
+        make("div", {class: "figures"}, blocks.map((b) => [found(usual, b), b]).filter(([p]) => isNumber(p.geometric_mean)).map(([p, b]) =>
+            meanFigure(p, `the time of ${baseline} over that of ${usual}, at its ${b > 0 ? `${percent(p.error)} error over ${blockName(b)}` : `FLIP of ${amount(p.error, b)}`}`))),
         make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "presets"}, make("table", {},
             make("thead", {}, make("tr", {}, make("th", {scope: "col"}, "preset"), make("th", {scope: "col", class: "number"}, "time"),
                 blocks.flatMap((b) => [errorOver(b), TIMES]).map((h) => make("th", {scope: "col", class: "number"}, h)))),
@@ -192,9 +202,8 @@ function headline(report) {
         });
         const missing = entries.flatMap((e) => list(e.missing).map((m) => `${errorLevel(e.error, block)}: ${m}`));
         body.replaceChildren(
-            make("div", {class: "figures"}, entries.map((e) => make("p", {class: "figure"},
-                make("strong", {}, (e.extrapolated > 0 ? "about " : "") + times(e.geometric_mean)),
-                make("span", {}, `the time of ${baseline} over that of ${method} at ${block > 0 ? `${level(e.error)} error` : `FLIP ${axisValue(e.error)}`}, geometric mean of ${e.scenes}${isNumber(e.of) ? ` of ${e.of}` : ""} scene${e.scenes === 1 && !(e.of > 1) ? "" : "s"}${e.extrapolated > 0 ? `, ${e.extrapolated} of ${e.scenes} extrapolated` : ""}`)))),
+            make("div", {class: "figures"}, entries.map((e) => meanFigure(e,
+                `the time of ${baseline} over that of ${method} at ${block > 0 ? `${level(e.error)} error` : `FLIP ${axisValue(e.error)}`}`))),
             chart,
             make("details", {}, make("summary", {}, "The times behind it"), speedTable(rows, errors, method, baseline, block)),
             missing.length > 0 ? make("details", {}, make("summary", {}, `Left out of the means: ${missing.length}`),
