@@ -252,7 +252,7 @@ static void emitters(void **state)
     assert_within(fabs(up - 3), 0.2, NULL); // one stratum may straddle both emitters
     assert_true(fabs(down - 3) < 1e-4);
     // Evenly spread: the mean is the middle.
-    assert_within(fabs(first[0] / weight - 7), 3.5e-4, NULL);
+    assert_within(fabs(first[0] / weight - 7), 3e-4, NULL);
     assert_within(fabs(first[2] / weight - 1), 2e-3, NULL);
     print_message("discs cover %.2f of the emitter\n", area / 4);
     assert_true(area > 3.4 && area < 4.2);
