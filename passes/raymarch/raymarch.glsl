@@ -27,8 +27,13 @@ const int RAYMARCH_CHUNK = 32; // steps between two looks at the distance map: e
 const int RAYMARCH_LATER = 8; // steps near walls that are dealt with together
 // Optical depth of a step (scaled, where that counts) above which it is shortened, and to what: light from outside
 // fades within it as much as the view does.
+// A step of depth x makes light that falls off as e^-x too dark by x^2 / 24: 4 % and 1 %.
 const float RAYMARCH_DENSE = 1.0, RAYMARCH_SHORT = 0.5;
-const float RAYMARCH_GONE = 9.0; // scaled depth behind args.stop, in every channel, of what hides all
+// Scaled depth behind args.stop, in every channel, of what hides all: 1e-3 e^-9 is half the last digit of 1.
+const float RAYMARCH_GONE = 9.0;
+// A last step that takes less than a hundredth of the light behind it, 1 / (1 + 99), tells no more of what is behind than
+// one that takes as much. What is left out so is args.stop of it at most.
+const float RAYMARCH_REST = 99.0;
 
 struct march_result {
     vec3 radiance; // of the medium alone
@@ -450,7 +455,7 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
             through_end = through_scaled * exp(-tau_scaled);
         }
         vec3 last = vec3(state.through_before - through_scaled), rest = vec3(through_scaled - through_end);
-        result.radiance += (result.radiance - state.before) * min(rest / max(last, 1e-9), 99.0);
+        result.radiance += (result.radiance - state.before) * min(rest / max(last, 1e-9), RAYMARCH_REST);
         through_scaled = through_end;
     }
     result.transmittance = vec3(through * exp(-hidden));

@@ -28,7 +28,8 @@
 #define SHADE_STEP 2
 // Pixels along the picture's shorter side; of smaller ones two pixels are much.
 #define SHADE_STEP_FROM 384
-// Widths of a pixel: VPLs nearer than that, and smaller, are near.
+// Widths w of a pixel: VPLs nearer than that, and smaller, are near. What a VPL at the height h sends to a plane,
+// h^2 / (h^2 + x^2)^2, is linear between pixels of the pattern that are 5 w apart but for 5^2 / 8 x 4 w^2 / h^2 of it: 3 %.
 #define SHADE_VPL_NEAR 20.0
 #define SHADE_MOST 8 // VPLs that a pixel takes in any case
 #define SHADE_MANY 4 // pixels that a thread takes VPLs at

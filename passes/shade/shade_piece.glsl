@@ -27,6 +27,9 @@ vec3 shade_radiance(gbuffer_colours colours, vec3 irradiance)
     return colours.emission + colours.albedo * irradiance / PI;
 }
 
+// What the lattice's light counts on a face of its box, beside that of the faces (docs/measurements.md, "Constants").
+const float SHADE_WITHIN = 0.25;
+
 // Light of the medium and of far walls, and of the sky where it comes along the lattice's lines.
 // `inside` the lattice: from where sunlight comes that was scattered forward.
 vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out bool inside)
@@ -68,11 +71,11 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
         within = channels == 1 ? within.r * args.tint : within;
         irradiance = inside ? within : irradiance;
     }
-    // Four moments a cell are up to 1.4 times too bright at the box's face, patches .7 times: they meet in between.
+    // Four moments a cell are too bright at the box's face, patches too dark: they meet in between.
     if (near > 0.0) {
         vec3 seen = max(sky + shade_outside(before + 0.03 * box.dx * push, p.normal, p.facet, lo, hi), vec3(0.0));
         vec3 change = near * (within - seen) * vec3(notEqual(seen, sky)) * vec3(greaterThan(min(seen, within), vec3(0.0)));
-        irradiance = max(irradiance + (inside ? -0.6 : 0.4) * change, vec3(0.0));
+        irradiance = max(irradiance + (inside ? SHADE_WITHIN - 1.0 : SHADE_WITHIN) * change, vec3(0.0));
     }
     return irradiance;
 }

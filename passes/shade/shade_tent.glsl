@@ -30,8 +30,8 @@ shade_part shade_tent(ivec2 block, ivec2 step, shade_part here)
             int d = i == 0 ? k : k - shade_side;
             ivec2 at = block + d * step, held = clamp(at, ivec2(0), last);
             shade_part there = shade_unpack(imageLoad(SHADE_TENT_IMAGE, held));
-            // Neighbours may be as far off the plane as the block is wide. Those that are a bit worse count where there are
-            // no others.
+            // Neighbours may be as far off the plane as the block is wide, and turned by 26 degrees (docs/measurements.md,
+            // "Constants"). Those that are a bit worse count where there are no others.
             float off = abs(float(d) * (a + c * there.along) + b * (there.along - here.along));
             float turned = dot(here.facet, there.facet), like = clamp(2.0 - off, 0.0, 1.0) * smoothstep(0.7, 0.9, turned);
             like = max(like, off < 6.0 && turned > 0.5 ? 0.01 : 0.0);

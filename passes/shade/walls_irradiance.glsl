@@ -14,8 +14,10 @@
 #ifndef TYN_WALLS_IRRADIANCE_GLSL
 #define TYN_WALLS_IRRADIANCE_GLSL
 
+// Measured: docs/measurements.md, "Constants".
 const float WALLS_BEHIND = 1e-3;   // what cells behind one wall count
 const float WALLS_FEW = 0.02;      // the least share of a place's cells that tells that it is dark
+const float WALLS_RISE = 0.2;      // cell edges in front of the surface's plane over which a cell comes to count
 
 struct walls_spot {
     vec3 p, n;     // on the surface, and its side (M)
@@ -53,7 +55,7 @@ float walls_share(lattice_box box, walls_spot s, ivec3 q)
     uint link = walls_link(next && d != ivec3(0) ? d : ivec3(1, 0, 0));
     bool cut = s.behind == 0u && d != ivec3(0) && (s.links >> link & 1u) != 0u;
     between = max(between, int(cut));
-    float share = next ? smoothstep(0.0, 0.2, dot(centre - s.p, s.n) / box.dx) : 0.0;
+    float share = next ? smoothstep(0.0, WALLS_RISE, dot(centre - s.p, s.n) / box.dx) : 0.0;
     return between == 0 ? share : -share * pow(WALLS_BEHIND, float(between));
 }
 
@@ -95,8 +97,7 @@ vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int
             }
             bool other = !walls_in_room(box, q, room), dark = other || fluence <= 0.0;
             lit = lit || share > 0.0 && !dark;
-            // A dark cell that seems to be in front may be within a solid.
-            share = share < 0.0 ? dark ? 0.0 : -share : dark ? 0.1 * share : share;
+            share = share < 0.0 ? dark ? 0.0 : -share : share;
             share = other ? 0.0 : share;
             sum += dark ? vec3(0.0) : share * light;
             [[unroll]] for (uint k = 0u; k < num_others; k++) {

@@ -123,7 +123,9 @@ vec3 part_of(uint block, uint element, vpl_stratum stratum)
 }
 
 // Does a piece go on from the centre's? Within some 20 degrees of its plane, facing the same way, and not
-// farther than connected pieces of that area reach. In between, partly, so that nothing jumps.
+// farther than connected pieces of that area reach: places on a Hilbert curve that an area A is between are sqrt(6 A) apart at
+// most (Bauman 2006), or farther where texels of a map are of unequal areas. In between, partly, so that nothing jumps
+// (docs/measurements.md, "Constants").
 float same_piece(vec3 offset, vec3 normal, vec3 centre_normal, float area)
 {
     float dd = dot(offset, offset);

@@ -104,15 +104,13 @@ static const tyn_counter counters[] = {
     {"rooms", COUNTS(rooms)},
     {"least", COUNTS(least), true},
     {"most", COUNTS(most), true},
-    {"clamped", COUNTS(clamped)},
     {.name = "astray",
      .offset = COUNTS(astray),
      .real = true,
      .unit = "of what virtual lights send to walls",
      .limit = 0.05,
-     .warning = "accuracy: the lattice's walls get too much or too little of the light that "
-                "virtual lights send to surfaces, about %g %% of it: rooms or walls of few cells "
-                "(-D lattice.cells)"},
+     .warning = "accuracy: of the light that virtual lights send to surfaces about %g %% goes to "
+                "rooms of too few cells to have lattice walls that it meets (-D lattice.cells)"},
     {NULL},
 };
 

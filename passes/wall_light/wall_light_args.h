@@ -32,13 +32,12 @@ TYN_ASSERT_SIZE(wall_light_list, 16);
 // the first VPL that shines there; without rooms all are in one.
 struct wall_light_power {
     tyn_uint rooms;    // that VPLs shine in, and whose walls get light
-    tyn_uint clamped;  // of these: a factor would be less than 1/2 or more than 2
     float least, most; // factor
-    float astray; // of all that is sent, what walls get too much or too little of for these bounds
+    float astray; // of all that is sent, what goes to rooms where no wall of the lattice gets any
     tyn_uint room[WALL_LIGHT_VPLS];     // rooms.h
     tyn_vec3 expected[WALL_LIGHT_VPLS]; // W
     tyn_vec3 scale[WALL_LIGHT_VPLS];    // of rooms
 };
-TYN_ASSERT_SIZE(wall_light_power, 7188);
+TYN_ASSERT_SIZE(wall_light_power, 7184);
 
 #endif

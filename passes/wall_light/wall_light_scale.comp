@@ -15,9 +15,8 @@ TYN_UPDATE(0, power, wall_light_power power);
 TYN_READ(1, parts, vec3 parts[]); // [room, by its first VPL][part]
 TYN_READ(2, first, uint first[]); // by room
 
-// Of rooms: W that are sent, W that walls get too much or too little of; least and most factor, 0: of no light.
+// Of rooms: W that are sent, W of these that no wall of the lattice gets; least and most factor, 0: of no light.
 shared vec4 found[WALL_LIGHT_VPLS];
-shared bool clamped[WALL_LIGHT_VPLS];
 
 float sum_of(vec3 v)
 {
@@ -28,7 +27,6 @@ void main()
 {
     uint me = gl_LocalInvocationIndex, room = power.room[me];
     found[me] = vec4(0.0);
-    clamped[me] = false;
     if (room <= args.dims.x * args.dims.y * args.dims.z && first[room] == me) {
         float dx = lattice_box_of(args.extent, ivec3(args.dims)).dx;
         vec3 sent = vec3(0.0), got = vec3(0.0);
@@ -39,32 +37,28 @@ void main()
             got += parts[me * WALL_LIGHT_PARTS + part];
         }
         got *= dx * dx;
-        // Surfaces that the lattice has few links for do not give all their light to others.
         bvec3 lit = greaterThan(got, vec3(0.0));
-        vec3 wanted = mix(vec3(1.0), sent / max(got, vec3(1e-30)), lit), scale = clamp(wanted, 0.5, 2.0);
+        vec3 scale = mix(vec3(1.0), sent / max(got, vec3(1e-30)), lit);
         power.scale[me] = scale;
         found[me].xy = vec2(sum_of(sent), sum_of(abs(sent - scale * got)));
         if (any(lit)) {
-            vec3 low = mix(vec3(2.0), scale, lit), high = mix(vec3(0.0), scale, lit);
+            vec3 low = mix(vec3(1e30), scale, lit), high = mix(vec3(0.0), scale, lit);
             found[me].zw = vec2(min(low.x, min(low.y, low.z)), max(high.x, max(high.y, high.z)));
-            clamped[me] = scale != wanted;
         }
     }
     barrier();
     if (me == 0u) {
-        vec4 all = vec4(0.0, 0.0, 2.0, 0.0);
-        uint rooms = 0u, beyond = 0u;
+        vec4 all = vec4(0.0, 0.0, 1e30, 0.0);
+        uint rooms = 0u;
         for (uint vpl = 0u; vpl < WALL_LIGHT_VPLS; vpl++) {
             vec4 one = found[vpl];
             all.xy += one.xy;
             if (one.w > 0.0) {
                 all.zw = vec2(min(all.z, one.z), max(all.w, one.w));
                 rooms++;
-                beyond += clamped[vpl] ? 1u : 0u;
             }
         }
         power.rooms = rooms;
-        power.clamped = beyond;
         power.least = rooms > 0u ? all.z : 1.0;
         power.most = rooms > 0u ? all.w : 1.0;
         power.astray = all.y / max(all.x, 1e-30);

@@ -125,7 +125,7 @@ float vpl_map_visibility_surface(vpl_map map, vec3 away, vec3 normal)
         vec4 met = texelFetch(vpl_planes, place + ivec2(i & 1, i >> 1), 0);
         hiding[i] = dot(met.xyz, away) < met.w || !near[i] ? 1.0 : 0.0;
     }
-    // A surface is not in its own shadow.
+    // A surface is not in its own shadow (docs/measurements.md, "Constants").
     vec4 lit = vec4(greaterThanEqual(stored, 0.95 * reach));
     float through = dot(shares, lit), stopped = dot(shares, hiding * (1.0 - lit));
     return map.last > 0.0 && stopped > 0.0 ? through / (through + stopped) : 1.0;

@@ -4,6 +4,7 @@
 // `path` draws what comes in, what is absorbed and what leaves by points of their own, so that its
 // imbalance is noise: it is averaged until its standard error is below 1 %, and may be 3 of these.
 // TYN_LONG=1 does so for the scenes that take minutes. Where that is known not to do, one run shows it.
+#include "bound.h"
 #include "gpu_test.h"
 #include "numbers.h"
 #include "offline_frame.h"
@@ -29,7 +30,7 @@ static const struct sample_scene {
     {"fog-hall", 4, false, 0.06},
     {"lantern", 4, false, 0.01},
     {"cornell-smoke", 8, false, 0.1},
-    {"vpl-cave", 2, false, 0.01},
+    {"vpl-cave", 2, false, 0.005},
     {"many-lights", 6, false, 0.01},
     {"cube", 16, false, 0},
     {"cube-oblique", 24, false, 0},
@@ -75,7 +76,7 @@ static void pop(void **state)
         sample_scene_load(scene, scenes[i].name, t);
         const tyn_balance b = pop_balance(t->dev, scene);
         print_message("%-15s imbalance %.2f %%\n", scenes[i].name, 100 * worst_of(b.imbalance));
-        good = good && worst_of(b.imbalance) <= 0.02;
+        good = within(worst_of(b.imbalance), 0.02, NULL, "pop, imbalance") && good;
         tyn_scene_finish(scene);
         free(scene);
     }
@@ -123,7 +124,7 @@ static void path(void **state)
         print_message("%-15s %4u samples, imbalance", scenes[i].name, samples);
         for (int c = 0; c < 3; c++) {
             print_message(" %+.2f +- %.2f %%", 100 * mean[c], 100 * se[c]);
-            good = good && fabs(mean[c]) <= fmax(0.02, 3 * se[c]);
+            good = good && fabs(mean[c]) <= 3 * se[c] + 1e-4;
         }
         print_message("\n");
         good = todo_if(scenes[i].noisy, worst_of(se) <= 0.01, scenes[i].noisy,
@@ -139,7 +140,10 @@ static void path(void **state)
                           "%+.2f\n",
                           100 * ends[0], 100 * ends[1], 100 * ends[2], 100 * off[0], 100 * off[1],
                           100 * off[2]);
-            good = good && worst_of(off) <= scenes[i].apart + 2 * worst_of(se);
+            good = within(worst_of(off), scenes[i].apart + 2 * worst_of(se),
+                          scenes[i].apart < 4 * worst_of(se) ? BOUND_NOISE : NULL,
+                          "%s, shares of pop and path", scenes[i].name) &&
+                   good;
         }
         tyn_scene_finish(scene);
         free(scene);
@@ -170,9 +174,9 @@ static void white_walls(void **state)
             "%.3f\n",
             i ? 1 : 0.95, 100 * p.imbalance[0], 100 * b->imbalance[0], 100 * b->imbalance_se[0],
             p.absorbed_media[0], b->absorbed_media[0]);
-        assert_true(fabs(p.imbalance[0]) <= 0.01);
+        assert_within(fabs(p.imbalance[0]), 0.01, NULL);
         assert_true(b->imbalance_se[0] <= 0.01 && fabs(b->imbalance[0]) <= 3 * b->imbalance_se[0]);
-        assert_true(fabs(p.absorbed_media[0] / b->absorbed_media[0] - 1) <= 0.04);
+        assert_within(fabs(p.absorbed_media[0] / b->absorbed_media[0] - 1), 0.04, NULL);
         tyn_scene_finish(scene);
         free(scene);
     }
@@ -181,24 +185,24 @@ static void white_walls(void **state)
 
 // What the pass wall_light says of the light that virtual lights send to walls.
 typedef struct wall_factors {
-    double rooms, least, most, clamped;
+    double rooms, least, most;
 } wall_factors;
 
 static wall_factors factors_of(tyn_offline *off)
 {
-    static const char *const names[] = {"rooms", "least", "most", "clamped"};
-    double values[4] = {0};
+    static const char *const names[] = {"rooms", "least", "most"};
+    double values[3] = {0};
     tyn_report report;
     tyn_offline_report(off, &report);
     for (uint32_t i = 0; i < report.num_nodes; i++) {
         const tyn_node_report *node = &report.nodes[i];
         for (uint32_t w = 0; w < node->num_work && !strcmp(node->name, "wall_light"); w++) {
-            for (int k = 0; k < 4; k++) {
+            for (int k = 0; k < 3; k++) {
                 values[k] = strcmp(node->work[w].name, names[k]) ? values[k] : node->work[w].amount;
             }
         }
     }
-    return (wall_factors){values[0], values[1], values[2], values[3]};
+    return (wall_factors){values[0], values[1], values[2]};
 }
 
 // A box with a lamp inside, turned off the lattice's planes, around (x, 0, 0).
@@ -262,17 +266,21 @@ static void sealed_lamp(void **state)
         const bool clear = k & 1;
         const int cells = lattices[k / 2].cells, sweeps = lattices[k / 2].sweeps;
         const char *todo = clear ? NULL : lattices[k / 2].todo;
-        const double bound = !clear ? 0.02 : sweeps < 12 ? 0.005 : 0.0002;
+        const double bound = !clear ? 0.02 : sweeps < 12 ? 0.0035 : 7e-5;
         wall_factors f;
         const double off = sealed_imbalance(t->dev, (float[]){1, 0}, clear, cells, sweeps, &f);
         print_message("sealed lamp, %s, %d cells, %d sweeps: imbalance %.3f %%, factors %.3f to "
                       "%.3f\n",
                       clear ? "no fog" : "fog", cells, sweeps, 100 * off, f.least, f.most);
-        good = todo_if(todo, off <= bound, todo, "sealed lamp, %d cells, %d sweeps: within %g %%",
-                       cells, sweeps, 100 * bound) &&
+        good = todo_if(todo,
+                       within(off, bound, NULL, "sealed lamp, %s, %d cells, %d sweeps",
+                              clear ? "no fog" : "fog", cells, sweeps),
+                       todo, "sealed lamp, %d cells, %d sweeps: within %g %%", cells, sweeps,
+                       100 * bound) &&
                good;
         // Stairs some cells wide are a few percent larger or smaller than their box, and nearer or farther.
-        good = good && f.rooms == 1 && f.clamped == 0 && f.least >= 0.9 && f.most <= 1.1;
+        good = within(fmax(1 - f.least, f.most - 1), 0.1, NULL, "sealed lamp, factors") && good;
+        good = good && f.rooms == 1;
     }
     assert_true(good);
 }
@@ -287,7 +295,7 @@ static void sealed_lamps(void **state)
         sealed_imbalance(t->dev, sizes[k], true, 32, 4, &f[k]);
         print_message("sealed lamps, boxes of %g and %g: %g rooms, factors %.3f to %.3f\n",
                       (double)sizes[k][0], (double)sizes[k][1], f[k].rooms, f[k].least, f[k].most);
-        assert_true(f[k].rooms == (k == 2 ? 2 : 1) && f[k].clamped == 0);
+        assert_true(f[k].rooms == (k == 2 ? 2 : 1));
     }
     // Half as many virtual lights each, at other places: that changes factors by a percent or two.
     assert_true(fabs(f[0].most - f[1].least) > 0.08);

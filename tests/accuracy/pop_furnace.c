@@ -1,9 +1,11 @@
 // pop_furnace.c -- surroundings of radiance 1 and no absorption: every pixel of `pop` is 1, for any density
 // and anisotropy. The mean of the environment enters at the lattice's boundary.
+#include "bound.h"
 #include "gpu_test.h"
 #include "numbers.h"
 #include "picture.h"
 #include "sky.h"
+#include "todo.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -53,7 +55,7 @@ static void furnace(void **state)
         }
         print_message("%s, sigma_s %4.1f, g %.1f: worst pixel %.3f %% from 1\n",
                       lumpy ? "lumps" : "cube ", (double)sigma, (double)g, 100 * worst);
-        assert_true(worst <= 0.005);
+        assert_true(worst <= 5e-5);
         picture_free(&p);
         tyn_scene_finish(scene);
         free(scene);
@@ -98,7 +100,7 @@ static void checkerboard(void **state)
         print_message("checkerboard of 0 and 10^4 per metre, g %.1f, from %s: worst pixel %.3f %% "
                       "from 1\n",
                       (double)g, inside ? "inside" : "outside", 100 * worst);
-        assert_true(worst <= 0.005);
+        assert_within(worst, 0.005, NULL);
         picture_free(&p);
         tyn_scene_finish(scene);
         free(scene);
@@ -139,7 +141,7 @@ static void maps(void **state)
         print_message("%s, sigma_s %4.1f, g %.2f, map of %ux%u: worst pixel %.3f %% from 1\n",
                       lumpy ? "lumps" : "cube ", (double)sigma, (double)g, size[0], size[1],
                       100 * worst);
-        assert_true(worst <= 0.005);
+        assert_true(worst <= 5e-5);
         picture_free(&p);
         tyn_scene_finish(scene);
         free(scene);
@@ -153,13 +155,16 @@ static void maps(void **state)
 static void unsplit(void **state)
 {
     gpu_test *t = *state;
-    // Depth of a cell of 1/32 m at most 0.7; lumps are up to 2.5 dense.
-    static const float media[][2] = {{0.1f, 0}, {4, 0},     {4, 0.5f},
-                                     {20, 0},   {20, 0.9f}, {20, 0.95f}};
+    // Cells of 1/32 m are up to 1.9 mean free paths (delta scaled) thick; lumps are up to 2.5 dense.
+    static const float media[][2] = {{0.1f, 0},  {4, 0},      {4, 0.5f}, {20, 0},
+                                     {20, 0.9f}, {20, 0.95f}, {60, 0},   {60, 0.9f}};
+    enum { MEDIA = sizeof media / sizeof media[0] };
+    bool good = true;
     float *grid = lumps();
-    for (int k = 0; k < 24; k++) {
-        const float *m = media[k % 6];
-        const bool lumpy = k / 6 % 2, map = k < 12;
+    for (int k = 0; k < 4 * MEDIA; k++) {
+        const float *m = media[k % MEDIA];
+        const bool lumpy = k / MEDIA % 2, map = k / MEDIA < 2;
+        const bool thick = m[0] == 60 && m[1] == 0;
         tyn_scene *scene = malloc(sizeof *scene);
         tyn_scene_init(scene);
         tyn_medium medium = grey_medium(m[0] / (lumpy ? 2.5f : 1), 0, m[1]);
@@ -184,12 +189,21 @@ static void unsplit(void **state)
                       "pixel %.2f %%\n",
                       lumpy ? "lumps" : "cube ", (double)medium.sigma_s[0], (double)m[1],
                       map ? "map" : "constant", 100 * (mean - 1), 100 * worst);
-        assert_true(worst <= 0.07 && fabs(mean - 1) <= 0.01);
+        const char *name = thick ? "unsplit, thick cells" : "unsplit";
+        const bool near = within(worst, 0.07, NULL, "%s, worst", name);
+        const bool even = within(fabs(mean - 1), 0.01, NULL, "%s, mean", name);
+        good = todo_if(thick, near && even,
+                       "light of ordinates is followed from cell to cell: thick cells blur it",
+                       "%s, sigma_s %g, %s, within 7 %%, and 1 %% in the mean",
+                       lumpy ? "lumps" : "cube", (double)medium.sigma_s[0],
+                       map ? "map" : "constant") &&
+               good;
         picture_free(&p);
         tyn_scene_finish(scene);
         free(scene);
     }
     free(grid);
+    assert_true(good);
 }
 
 int main(void)

@@ -1,5 +1,6 @@
 // pop_near.c -- lamps nearer to a floor than a pixel is wide: a picture holds as much of their light as its part of
 // the floor gets, however large its pixels are.
+#include "bound.h"
 #include "gpu_test.h"
 #include "numbers.h"
 #include "picture.h"
@@ -127,8 +128,8 @@ static void means(void **state)
             }
         }
     }
-    assert_true(worst < 0.02);
-    assert_true(worst_spot < 0.04); // cones a sixth of a pixel wide
+    assert_within(worst, 0.02, NULL);
+    assert_within(worst_spot, 0.04, NULL); // cones a sixth of a pixel wide
 }
 
 int main(void)

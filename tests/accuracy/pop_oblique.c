@@ -1,9 +1,10 @@
 // pop_oblique.c -- a dense cube under an oblique sun, in lattice cells of six mean free paths: the light that is
 // scattered at the lit faces, against `path` through the same probes.
 //
-// Asserted: the fluence one and a half mean free paths behind the middle of each lit face within 25 %, of the
-// three together within 10 %. First collisions by rays through the middle of what is sampled had 65 % too little at
+// Asserted: the fluence one and a half mean free paths behind the middle of each lit face within 25, 15 and 10 %, of the
+// three together within 3 %. First collisions by rays through the middle of what is sampled had 65 % too little at
 // one.
+#include "bound.h"
 #include "offline_frame.h"
 #include "path_run.h"
 #include "gpu_test.h"
@@ -51,18 +52,19 @@ static void lit_faces(void **state)
     tyn_camera_frame_scene(&view.camera, &scene);
     offline_frame(pop, &scene, &view);
     const tyn_probe_result *found = tyn_offline_output(pop, TYN_OUTPUT_PROBE);
+    static const double bounds[FACES] = {0.25, 0.15, 0.1};
     double sum = 0, of_path = 0;
     for (int i = 0; i < FACES; i++) {
         const double a = found[i].fluence[0], b = exact[i].fluence[0];
         printf("face %d: pop %.4f, path %.4f +- %.4f: %+.1f %%\n", i, a, b,
                (double)exact[i].fluence_se[0], 100 * (a / b - 1));
         assert_true((double)exact[i].fluence_se[0] < 0.03 * b);
-        assert_true(fabs(a / b - 1) < 0.25);
+        assert_true(within(fabs(a / b - 1), bounds[i], NULL, "face %d", i));
         sum += a;
         of_path += b;
     }
     printf("together %+.1f %%\n", 100 * (sum / of_path - 1));
-    assert_true(fabs(sum / of_path - 1) < 0.1);
+    assert_within(fabs(sum / of_path - 1), 0.03, NULL);
     tyn_offline_destroy(&pop);
     tyn_settings_destroy(&settings);
     tyn_scene_finish(&scene);

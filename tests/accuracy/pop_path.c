@@ -3,12 +3,14 @@
 //
 // Absolute radiance, relative L1 on blocks of 8x8 pixels less what the references' noise explains, the
 // worst of three lattices. TYN_LONG=N takes N times the samples.
+#include "bound.h"
 #include "gpu_test.h"
 #include "npy.h"
 #include "numbers.h"
 #include "picture.h"
 #include "sample_scene.h"
 #include "skip.h"
+#include "todo.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,15 +19,18 @@
 static const int cells[] = {16, 24, 32};
 enum { NUM_CELLS = 3, MAX_SCENES = 32 };
 
+static const char *const angles =
+    "the error is of what fourteen directions and one lobe hold, not of cells";
+
 // Worst error of every scene against `path`.
 static double errors[MAX_SCENES];
 static int num_errors;
 
-// Worst error over the lattices.
+// Worst error over the lattices; `flat`: why finer ones are no better.
 static double worst_error(gpu_test *t, const char *name, const tyn_scene *scene,
-                          const tyn_view *view, const picture *reference)
+                          const tyn_view *view, const picture *reference, const char *flat)
 {
-    double worst = 0;
+    double worst = 0, coarse = 0;
     for (int k = 0; k < NUM_CELLS; k++) {
         char settings[64];
         snprintf(settings, sizeof settings, "lattice.cells=%d", cells[k]);
@@ -36,19 +41,25 @@ static double worst_error(gpu_test *t, const char *name, const tyn_scene *scene,
                       name, cells[k], 100 * e.reported, 100 * e.rel_l1, 100 * e.noise,
                       100 * e.bias);
         worst = maximum(worst, e.reported);
+        coarse = k == 0 ? e.reported : coarse;
+        if (k + 1 == NUM_CELLS) {
+            const bool falls = e.reported < 0.95 * coarse;
+            assert_true(todo_if(flat, falls, flat, "%s: less error in %d cells than in %d", name,
+                                cells[k], cells[0]));
+        }
         picture_free(&ours);
     }
     return worst;
 }
 
 static double against_path(gpu_test *t, const char *name, const tyn_scene *scene,
-                           const tyn_view *view, uint32_t spp)
+                           const tyn_view *view, uint32_t spp, const char *flat)
 {
     const char *effort = getenv("TYN_LONG");
     picture reference;
     picture_render(&reference, t->dev, "path", scene, view, NULL,
                    effort ? spp * (uint32_t)atoi(effort) : spp);
-    double e = worst_error(t, name, scene, view, &reference);
+    double e = worst_error(t, name, scene, view, &reference, flat);
     picture_free(&reference);
     errors[num_errors++] = e;
     return e;
@@ -61,6 +72,7 @@ typedef struct made {
     float sigma_s[3], sigma_a[3], g[3];
     float sun[3], look[3];
     bool blobs;
+    bool flat; // finer lattices are no better
 } made;
 
 enum { N = 48 };
@@ -98,24 +110,40 @@ static void made_scenes(void **state)
 {
     static const made scenes[] = {
         {"oblique light, g 0", GREY(4), GREY(0), GREY(0), {5, -3, 8}, {-6, -5, 3}, false},
-        {"oblique light, g 0.5", GREY(4), GREY(0), GREY(0.5f), {5, -3, 8}, {-6, -5, 3}, false},
+        {"oblique light, g 0.5",
+         GREY(4),
+         GREY(0),
+         GREY(0.5f),
+         {5, -3, 8},
+         {-6, -5, 3},
+         false,
+         true},
         {"oblique light and view, g 0.9",
          GREY(4),
          GREY(0),
          GREY(0.9f),
          {5, -3, 8},
          {2, -5, -7},
-         false},
-        {"towards the light, g 0.9", GREY(4), GREY(0), GREY(0.9f), {5, -3, 8}, {-4, 4, -8}, false},
+         false,
+         true},
+        {"towards the light, g 0.9",
+         GREY(4),
+         GREY(0),
+         GREY(0.9f),
+         {5, -3, 8},
+         {-4, 4, -8},
+         false,
+         true},
         {"coloured, g by channel",
          {2, 4, 8},
          {0.5f, 0.1f, 0},
          {0.1f, 0.4f, 0.7f},
          {3, -6, 2},
          {-5, -3, -4},
-         false},
-        {"g 0.7", GREY(8), GREY(0.2f), GREY(0.7f), {-2, -5, 3}, {4, -2, -5}, false},
-        {"g 0.8", GREY(8), GREY(0.2f), GREY(0.8f), {-2, -5, 3}, {4, -2, -5}, false},
+         false,
+         true},
+        {"g 0.7", GREY(8), GREY(0.2f), GREY(0.7f), {-2, -5, 3}, {4, -2, -5}, false, true},
+        {"g 0.8", GREY(8), GREY(0.2f), GREY(0.8f), {-2, -5, 3}, {4, -2, -5}, false, true},
         {"blobs, g 0.75", GREY(20), GREY(0.2f), GREY(0.75f), {1, -4, 2}, {-3, -1, -4}, true},
         {"coloured blobs, g 0.6",
          {10, 14, 20},
@@ -144,12 +172,13 @@ static void made_scenes(void **state)
         tyn_view view = {0};
         view_orthographic(&view, (float[]){0.5f, 0.5f, 0.5f}, m->look[0], m->look[1], m->look[2],
                           (float[]){0, 1, 0}, 0.8f, 64);
-        worst = maximum(worst, against_path(*state, m->name, scene, &view, 256));
+        worst = maximum(worst,
+                        against_path(*state, m->name, scene, &view, 256, m->flat ? angles : NULL));
         tyn_scene_finish(scene);
         free(scene);
     }
     free(grid);
-    assert_true(worst <= 0.12);
+    assert_within(worst, 0.12, NULL);
 }
 
 // ---- scenes of the samples --------------------------------------------------------------------
@@ -171,11 +200,12 @@ static void sample_scenes(void **state)
         } else {
             tyn_camera_frame_scene(&view.camera, scene);
         }
-        worst = maximum(worst, against_path(t, samples[i].name, scene, &view, samples[i].spp));
+        worst = maximum(worst, against_path(t, samples[i].name, scene, &view, samples[i].spp,
+                                            i == 0 ? angles : NULL));
         tyn_scene_finish(scene);
         free(scene);
     }
-    assert_true(worst <= 0.12);
+    assert_within(worst, 0.12, NULL);
 }
 
 static int by_size(const void *a, const void *b)
@@ -191,7 +221,7 @@ static void median(void **state)
     double middle = 0.5 * (errors[(num_errors - 1) / 2] + errors[num_errors / 2]);
     print_message("%d scenes against path: median %.2f %%, worst %.2f %%\n", num_errors,
                   100 * middle, 100 * errors[num_errors - 1]);
-    assert_true(middle <= 0.07);
+    assert_within(middle, 0.05, NULL);
 }
 
 // The blobs of the shared references, 10 m wide, three colours, g 0.9.
@@ -220,8 +250,8 @@ static void reference_blobs(void **state)
     tyn_view view = {0};
     view_orthographic(&view, (float[]){0, 0, 0}, 0.5f, 0.3f, -0.5f, (float[]){0, 1, 0}, 7,
                       reference.width);
-    double e = worst_error(*state, "blobs_dir_toward", scene, &view, &reference);
-    assert_true(e <= 0.10);
+    double e = worst_error(*state, "blobs_dir_toward", scene, &view, &reference, angles);
+    assert_within(e, 0.05, NULL);
     picture_free(&reference);
     tyn_scene_finish(scene);
     free(scene);

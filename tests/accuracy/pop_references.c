@@ -1,8 +1,10 @@
 // pop_references.c -- `pop` against the reference images with surfaces (pbrt-v3 in 64-bit): the room with fog that is
 // lit through a hole in its ceiling, and the sphere of fog with an emitting sphere in its middle.
+#include "bound.h"
 #include "gpu_test.h"
 #include "reference_scenes.h"
 #include "skip.h"
+#include "todo.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,7 +31,8 @@ static void room(void **state)
         }
         print_message("    channel %u: mean %+.2f %%\n", c, 100 * (sum[0] / sum[1] - 1));
     }
-    assert_true(e.rel_l1 <= 0.12 && fabs(e.bias) <= 0.05);
+    assert_within(e.rel_l1, 0.12, NULL);
+    assert_within(fabs(e.bias), 0.012, NULL);
     picture_free(&p);
     picture_free(&reference);
     tyn_scene_finish(&scene);
@@ -70,9 +73,14 @@ static void spheres(void **state)
                 print_message(" %+.0f", 100 * (sum[0][i] / fmax(sum[1][i], 1e-9) - 1));
             }
             print_message(" %%, rel_l1 %.1f %%\n", 100 * off);
-            // Emitters light the medium as virtual point lights, which are seen without the forward lobe of
-            // their own: at g 0.8 the profile is far too even, but nothing is missing.
-            assert_true(fabs(mean[0] / mean[1] - 1) <= 0.05 && off <= (k ? 0.6 : 0.08));
+            // Nothing is missing, but at g 0.8 the profile is far too even.
+            assert_true(
+                within(fabs(mean[0] / mean[1] - 1), k ? 0.04 : 0.03, NULL, "%s, mean", name));
+            assert_true(todo_if(
+                k == 1, within(off, 0.08, NULL, "%s, rings", name),
+                "emitters light the medium as virtual point lights, which are seen without the "
+                "forward lobe of their own",
+                "%s, rings of channel %u within 8 %%", name, c));
         }
         picture_free(&p);
         picture_free(&reference);

@@ -9,12 +9,14 @@
 // program with TYN_SKY_MAKE=<folder of the tables> (TYN_SKY_ONLY=<case>: one of them); without that
 // a short run of `path` is held against them. TYN_LONG=1: all numbers of ordinates and all lattices,
 // and the tables are checked with more samples.
+#include "bound.h"
 #include "gpu_test.h"
 #include "npy.h"
 #include "picture.h"
 #include "sample_scene.h"
 #include "skip.h"
 #include "sky.h"
+#include "todo.h"
 #include <tyndall/io.h>
 #include <math.h>
 #include <stdio.h>
@@ -63,38 +65,73 @@ typedef struct sky_case {
     uint32_t spp, check;    // samples of the stored table (or of the picture), and of the check
     uint32_t runs;          // of so many samples, with seeds of their own, make the table; 0: one
     uint32_t size;          // of the picture, 0: 96
+    double with, without;   // bounds of the error with the background, and without
+    const char *flat;       // why 64 ordinates are no better than 16
 } sky_case;
 
+// More ordinates bring light of the map from directions nearer to its own; where they bring no less error it is of something else.
+static const char *const lobe =
+    "the error is of forward lobes that do not spread sideways, not of the ordinates";
+static const char *const cells_thick = "the error is of cells that are thick, not of the ordinates";
+
 static const sky_case cases[] = {
-    {.name = "blobs_sky_front", .from = BLOBS, .check = 512},
-    {.name = "blobsthin_sky_front", .from = THIN_BLOBS, .check = 512},
-    {.name = "smoke-sky", .from = SAMPLE, .spp = 1024, .check = 16},
-    {.name = "cloud-sunset", .from = SAMPLE, .spp = 2048, .check = 16},
-    {.name = "milk", .from = SAMPLE, .spp = 3200, .check = 16, .runs = 2, .size = 48},
-    {.name = "plume-contrast", .from = SAMPLE, .spp = 2048, .check = 16},
+    {.name = "blobs_sky_front",
+     .from = BLOBS,
+     .check = 512,
+     .with = 0.006,
+     .without = 0.065,
+     .flat = lobe},
+    {.name = "blobsthin_sky_front",
+     .from = THIN_BLOBS,
+     .check = 512,
+     .with = 8e-4,
+     .without = 0.012},
+    {.name = "smoke-sky",
+     .from = SAMPLE,
+     .spp = 1024,
+     .check = 16,
+     .with = 0.025,
+     .without = 0.055,
+     .flat = lobe},
+    {.name = "cloud-sunset",
+     .from = SAMPLE,
+     .spp = 2048,
+     .check = 16,
+     .with = 0.02,
+     .without = 0.06},
+    {.name = "milk",
+     .from = SAMPLE,
+     .spp = 3200,
+     .check = 16,
+     .runs = 2,
+     .size = 48,
+     .with = 0.035,
+     .without = 0.07,
+     .flat = cells_thick},
+    {.name = "plume-contrast",
+     .from = SAMPLE,
+     .spp = 2048,
+     .check = 16,
+     .with = 0.01,
+     .without = 0.12,
+     .flat = lobe},
     {.name = "teapot-museum",
      .from = VOLUME,
      .file = "data/teapot_cloud.nvdb",
      .map = "data/museum.exr",
-     .spp = 64},
+     .spp = 64,
+     .with = 0.02,
+     .without = 0.05},
     {.name = "smoke-museum",
      .from = VOLUME,
      .file = "data/smoke.vdb",
      .map = "data/museum.exr",
-     .spp = 64},
+     .spp = 64,
+     .with = 0.013,
+     .without = 0.05,
+     .flat = lobe},
 };
 enum { NUM_CASES = sizeof cases / sizeof cases[0] };
-
-static float largest_g(const tyn_scene *scene)
-{
-    float g = -1;
-    for (uint32_t m = 0; m < scene->num_media; m++) {
-        for (int c = 0; c < 3; c++) {
-            g = fmaxf(g, scene->media[m].phase[c].g);
-        }
-    }
-    return g;
-}
 
 // False: what it needs is not there.
 static bool load(gpu_test *t, const sky_case *k, tyn_scene *scene, tyn_view *view)
@@ -317,12 +354,13 @@ static void run_case(gpu_test *t, const sky_case *k)
                           100 * e.without.bias);
             if (i == 0 && j == 0) {
                 usual = e.without.reported;
-                assert_true(e.with.reported <= 0.04);
-                assert_true(e.without.reported <= (largest_g(scene) >= 0.85f ? 0.12 : 0.08));
-            } else if (j == 0) { // fewer are worse and more are better, but for the floor
-                double gain =
-                    counts[i] < counts[0] ? e.without.reported - usual : usual - e.without.reported;
-                assert_true(gain > -0.01);
+                assert_true(within(e.with.reported, k->with, NULL, "%s, with background", k->name));
+                assert_true(within(e.without.reported, k->without, NULL, "%s, without", k->name));
+            } else if (j == 0) { // the more the better
+                const bool fewer = counts[i] < counts[0];
+                const double gain = fewer ? e.without.reported - usual : usual - e.without.reported;
+                assert_true(todo_if(fewer && k->flat, gain >= 0, k->flat,
+                                    "%s, %d ordinates beside %d", k->name, counts[i], counts[0]));
             }
         }
     }

@@ -1,5 +1,6 @@
 // pop_vpls.c -- `pop` with none, one, few and all virtual point lights, on the sample scenes with surfaces: it runs
 // clean, and what surfaces reflect is as much light however many lights carry it.
+#include "bound.h"
 #include "gpu_test.h"
 #include "picture.h"
 #include "sample_scene.h"
@@ -40,7 +41,7 @@ static void any_number(void **state)
         double off;
     } settings[] = {
         {"vpl.count=0", 0.6}, {"vpl.count=1", 0.3},    {"vpl.count=2", 0.3},
-        {"vpl.count=7", 0.1}, {"vpl.count=256", 0.04}, {"vpl.visibility=0", 0.25},
+        {"vpl.count=7", 0.1}, {"vpl.count=256", 0.03}, {"vpl.visibility=0", 0.25},
     };
     enum { NUM = sizeof settings / sizeof settings[0] };
     gpu_test *t = *state;
@@ -58,7 +59,12 @@ static void any_number(void **state)
             // Nothing in a room hides it from its lights: without their maps .4 % more, and 5.5 % less if the lattice's
             // walls get half of what is theirs.
             const bool open = !strcmp(names[i], "room") && k == NUM - 1;
-            good = todo_if(known, fabs(off) <= (open ? 0.01 : settings[k].off),
+            good = todo_if(known,
+                           within(fabs(off), open ? 0.008 : settings[k].off, NULL, "%s%s",
+                                  settings[k].set,
+                                  open    ? ", room"
+                                  : known ? ", fog-hall"
+                                          : ""),
                            "one or two lights are close to what they light: 16 x 16 pixels sample "
                            "a spot (of fog-hall 64 x 64 do, too)",
                            "%s %s", names[i], settings[k].set) &&

@@ -1,4 +1,5 @@
 // shade.c -- what surfaces send to the camera, against closed forms and integrals on the CPU.
+#include "bound.h"
 #include "homogeneous.h"
 #include "shade_stage.h"
 #include "shaders/walls/rooms.h"
@@ -243,8 +244,9 @@ static void near_lamps(void **state)
             l->cos_outer = 0.6f;
         }
         shade_draw(*state);
-        const double worst = !parallel ? 0.04 : spot ? 0.15 : 4e-3;
-        assert_true(shade_compare(of_lamps_in_pixel, NULL, worst) < 5e-3);
+        const double near = i % 3 == 1 ? 3e-4 : 4e-3;
+        const double worst = !parallel ? 0.04 : spot ? 0.15 : near;
+        assert_within(shade_compare(of_lamps_in_pixel, NULL, worst), 5e-3, NULL);
     }
 }
 
@@ -366,7 +368,7 @@ static void many_vpls(void **state)
     } cases[] = {{1, 1, 200, 2e-5},
                  {3, 1, 20, 3e-3},
                  {3, 1, 200, 3e-3},
-                 {1, 2, 200, 3e-3},
+                 {1, 2, 200, 2e-3},
                  {3, 2, 200, 6e-3}};
     for (int i = 0; i < 5; i++) {
         shade_start();
@@ -422,7 +424,7 @@ static void edges_of_surfaces(void **state)
             add_vpl(40 + (float)k, (float)k - 3, 60, down, 1e-3f, 3000 + 500 * (float)k);
         }
         shade_draw(*state);
-        shade_compare(of_suns_and_vpls, NULL, i ? 2e-3 : 1e-5);
+        shade_compare(of_suns_and_vpls, NULL, i == 2 ? 2e-3 : i == 1 ? 8e-4 : 1e-5);
         // The number of its piece is beside a sample's radiance, for what makes pixels of samples.
         for (int y = 0; y < 2 * HEIGHT; y++) {
             const uint32_t *floor = shade_radiance[y * 2 * WIDTH + 30], *bar = floor + 2;
@@ -636,7 +638,7 @@ static void forward_light(void **state)
         shade_look((float[]){2, 2, 3}, (float[]){0, 0, -1}, 0.5f, true);
         add_sun(0, 0, -1, 3, 2, 1);
         shade_draw(*state);
-        shade_compare(i == LIT ? of_forward_light : of_moments, NULL, i == LIT ? 2e-3 : 2e-5);
+        shade_compare(i == LIT ? of_forward_light : of_moments, NULL, i == LIT ? 1e-3 : 2e-5);
     }
 }
 

@@ -1,4 +1,5 @@
 // shade_stage.c -- see shade_stage.h.
+#include "bound.h"
 #include "shade_stage.h"
 #include "homogeneous.h"
 #include "shaders/surfaces/gbuffer_edge_args.h"
@@ -427,6 +428,8 @@ static bool right_at(shade_light_at light, bool (*sure)(const double p[3]), int 
     return true;
 }
 
+static int stage_checks; // told apart by their order
+
 double shade_compare(shade_light_at light, bool (*sure)(const double p[3]), double tolerance)
 {
     static double right[HEIGHT * MOST_SAMPLES * WIDTH * MOST_SAMPLES][3];
@@ -456,6 +459,7 @@ double shade_compare(shade_light_at light, bool (*sure)(const double p[3]), doub
         }
     }
     assert_true(num_looked > count / 10);
+    assert_true(tolerance <= 1e-4 || within(worst, tolerance, NULL, "shading %d", stage_checks++));
     const double all = sums[1] > 0 ? sums[0] / sums[1] - 1 : 0;
     print_message("within %.1e of the light, of all by %.1e, at %d samples\n", worst, all,
                   num_looked);

@@ -1,4 +1,5 @@
 // shadow_map.c -- shadow maps against rays through all triangles, in double precision.
+#include "bound.h"
 #include "gpu_test.h"
 #include "passes/light_cells/light_cells.h"
 #include "passes/shadow_map/shadow_map.h"
@@ -509,7 +510,7 @@ static void edges_of_shadows(void **state)
         const double off = sum / STEPS - REACH;
         print_message("light %d: edges %+.3f texels\n", light, off);
         assert_true(dark == 0 && lit == 4 * LINES);
-        assert_true(fabs(off) < 0.1);
+        assert_within(fabs(off), 0.1, NULL);
     }
     free(probes);
     free(found);

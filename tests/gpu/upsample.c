@@ -1,4 +1,5 @@
 // upsample.c -- the bilateral upsampling against a CPU twin in double precision, and its limits.
+#include "bound.h"
 #include "gpu_test.h"
 #include "passes/upsample/upsample.h"
 #include "shaders/common/scene_args.h"
@@ -133,7 +134,7 @@ static void equals_twin(void **state)
         }
         print_message("range %.2f: largest relative difference %.1e\n", range, worst);
         // The guide is filtered by the texture unit, and its errors grow with 1 / range^2.
-        assert_true(worst < (range > 0 ? 1e-2 : 1e-5));
+        assert_true(range > 0 ? within(worst, 9e-3, NULL, "range %g", range) : worst < 1e-5);
     }
 }
 

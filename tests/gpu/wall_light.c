@@ -1,4 +1,5 @@
 // wall_light.c -- light of suns and of virtual lights on the walls of the lattice's cells: as much as they send.
+#include "bound.h"
 #include "gpu_test.h"
 #include "homogeneous.h"
 #include "passes/wall_light/wall_light.h"
@@ -154,7 +155,8 @@ static void suns(void **state)
             const double found = arriving(&d, light, c);
             print_message("slope %.1f: %.4f W arrive, should be %.4f\n", slopes[k], found,
                           right[c]);
-            assert_true(fabs(found / right[c] - 1) < (k ? 0.01 : 2e-3));
+            assert_true(within(fabs(found / right[c] - 1), k ? 0.01 : 1.5e-3, NULL,
+                               "suns, slope %g", slopes[k]));
         }
         // Below the floor it is dark.
         for (int i = 0; i < N; i++) {
@@ -210,7 +212,7 @@ static void virtual_lights(void **state)
         const double share = arriving(&d, found, 1) / (2 * pi);
         printf("turned by %.1f: %.3f of the light arrives, at %d cells; %.2f ms\n", k * 0.4, share,
                lit, gpu_ms(t, "wall_light"));
-        assert_true(fabs(share - 1) < (k ? 0.15 : 0.05));
+        assert_true(within(fabs(share - 1), k ? 0.025 : 0.04, NULL, "VPLs, turn %d", k));
         wall_data_free(&d);
         mesh_free(&m);
     }

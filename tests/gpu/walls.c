@@ -1,4 +1,5 @@
 // walls.c -- which links of the lattice surfaces cut: against brute force, closed, the same from both ends.
+#include "bound.h"
 #include "gpu_test.h"
 #include "point_pass.h"
 #include "wall_mesh.h"
@@ -337,7 +338,7 @@ static void many_triangles(void **state)
     double sphere = 4. / 3 * M_PI * pow(0.4 * 32, 3);
     printf("%d triangles: %.1f ms; %d cells inside, the sphere's volume is %.0f\n", m.n,
            gpu_ms(*state, "walls"), inside, sphere);
-    assert_true(fabs(inside / sphere - 1) < 0.01);
+    assert_within(fabs(inside / sphere - 1), 0.01, NULL);
     result again = run(*state, &g, &m);
     assert_memory_equal(r.cells, again.cells, 32768 * sizeof *r.cells);
     result_free(&r);

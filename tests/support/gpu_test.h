@@ -24,7 +24,7 @@ typedef struct gpu_test {
 } gpu_test;
 
 // cmocka group setup and teardown: *state is a gpu_test. Exits with 77 where there is no device, unless
-// the environment variable CI is set.
+// the environment variable CI is set. The teardown prints all bounds (bound.h), and fails where one is wide.
 int gpu_setup(void **state);
 int gpu_teardown(void **state);
 
