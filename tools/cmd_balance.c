@@ -10,6 +10,46 @@ typedef struct balance_args {
     bool json;
 } balance_args;
 
+// What a method makes agree with what lights send: least and most factor, 0 where it makes nothing agree.
+typedef struct scale_row {
+    const char *name;
+    const double *range;
+} scale_row;
+
+static void print_json(cJSON *object, const char *const names[3], double shares[3][3],
+                       const scale_row *scales, size_t num_scales)
+{
+    cJSON *of_shares = cJSON_AddObjectToObject(object, "shares");
+    for (int i = 0; i < 3; i++) {
+        cJSON_AddItemToObject(of_shares, names[i], cJSON_CreateDoubleArray(shares[i], 3));
+    }
+    cJSON *of_scales = cJSON_AddObjectToObject(object, "scales");
+    for (size_t i = 0; i < num_scales; i++) {
+        cJSON_AddItemToObject(of_scales, scales[i].name,
+                              scales[i].range[1] > 0 ? cJSON_CreateDoubleArray(scales[i].range, 2)
+                                                     : cJSON_CreateNull());
+    }
+}
+
+static void print_text(const char *const names[3], double shares[3][3], const scale_row *scales,
+                       size_t num_scales)
+{
+    printf("of what enters and is emitted:\n");
+    for (int i = 0; i < 3; i++) {
+        printf("%-18s %14.2f %14.2f %14.2f %%\n", names[i], 100 * shares[i][0], 100 * shares[i][1],
+               100 * shares[i][2]);
+    }
+    bool any = false;
+    for (size_t i = 0; i < num_scales; i++) {
+        if (scales[i].range[1] > 0) {
+            printf("%s", any ? "" : "factors that make cells and walls get what lights send:\n");
+            printf("%-18s %14.6f to %11.6f\n", scales[i].name, scales[i].range[0],
+                   scales[i].range[1]);
+            any = true;
+        }
+    }
+}
+
 static int print_balance(app *a, const tyn_balance *balance, bool json)
 {
     const struct {
@@ -24,6 +64,22 @@ static int print_balance(app *a, const tyn_balance *balance, bool json)
         {"imbalance", balance->imbalance},
         {"imbalance_se", balance->imbalance_se},
     };
+    const scale_row scales[] = {
+        {"suns", balance->scale_suns},
+        {"lamps", balance->scale_lamps},
+        {"vpls", balance->scale_vpls},
+        {"walls", balance->scale_walls},
+    };
+    enum { FIRST_END = 2 }; // of the rows that say where light ends, three
+    const char *names[3];
+    double shares[3][3];
+    for (int i = 0; i < 3; i++) {
+        names[i] = rows[FIRST_END + i].name;
+        for (int c = 0; c < 3; c++) {
+            const double given = balance->entering[c] + balance->emitted[c];
+            shares[i][c] = given > 0 ? rows[FIRST_END + i].values[c] / given : 0;
+        }
+    }
     cJSON *object = json ? cJSON_CreateObject() : NULL;
     for (size_t i = 0; i < ARRAY_SIZE(rows); i++) {
         const double *v = rows[i].values;
@@ -34,7 +90,12 @@ static int print_balance(app *a, const tyn_balance *balance, bool json)
                    i < 5 ? " W" : "");
         }
     }
-    return json ? json_write(a, object, NULL) : EXIT_DONE;
+    if (json) {
+        print_json(object, names, shares, scales, ARRAY_SIZE(scales));
+        return json_write(a, object, NULL);
+    }
+    print_text(names, shares, scales, ARRAY_SIZE(scales));
+    return EXIT_DONE;
 }
 
 static int balance_scene(app *a, const balance_args *args, session *s)
@@ -91,7 +152,9 @@ const command cmd_balance = {
         "lamps inside; imbalance = 1 - (absorbed + escaped) / (entering + emitted). With\n"
         "--method path a sample (--spp) is some ten thousand paths, and imbalance_se is the\n"
         "standard error of the imbalance. Where there are surfaces the boundary is a box around\n"
-        "media, surfaces and lamps (docs/balance.md).",
+        "media, surfaces and lamps. `pop` scales what its cells and walls get of each light to "
+        "what\n"
+        "that sends: the last lines are these factors, least and most (docs/balance.md).",
     .positionals = positionals,
     .num_positionals = ARRAY_SIZE(positionals),
     .groups = groups,

@@ -2,6 +2,7 @@
 #include "frame/context.h"
 #include "registry/registry.h"
 #include "gpu/device.h"
+#include "shaders/common/light_sum.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,6 +29,22 @@ static double percent_of(double share)
     return unit * round(percent / unit);
 }
 
+static double sum_of(const struct light_clamp *clamp, uint32_t first)
+{
+    double all = 0;
+    for (int k = 0; k < TYN_LIGHT_SUM_BINS; k++) {
+        all += ldexp(clamp->bins[first + (uint32_t)k], k - 135);
+    }
+    return all;
+}
+
+// Light that a clamp at 0 hid, of what it let through.
+static double hidden_share(const struct light_clamp *clamp)
+{
+    const double hidden = sum_of(clamp, TYN_LIGHT_HIDDEN), shown = sum_of(clamp, TYN_LIGHT_SHOWN);
+    return shown > 0 ? hidden / shown : hidden > 0 ? 1 : 0;
+}
+
 // What the node itself counted, by the table of its pass.
 static void add_counters(tyn_node_report *node, tyn_context *ctx)
 {
@@ -37,7 +54,9 @@ static void add_counters(tyn_node_report *node, tyn_context *ctx)
         double most = 0;
         for (uint32_t i = 0; i < (c->count ? c->count : 1); i++) {
             const void *at = data + c->offset + 4 * i;
-            most = fmax(most, c->real ? (double)*(const float *)at : *(const uint32_t *)at);
+            most = fmax(most, c->clamp  ? hidden_share(at)
+                              : c->real ? (double)*(const float *)at
+                                        : *(const uint32_t *)at);
         }
         add_work(node, c->name, most);
         if (c->warning && most > c->limit) {

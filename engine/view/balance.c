@@ -34,6 +34,7 @@ void tyn_add_balance(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in
     memcpy(params.tint, in->sources->lattice.shape.tint, sizeof params.tint);
     params.num_suns = in->sources->num_suns;
     params.num_groups = tyn_radial_groups(&in->sources->lamps);
+    params.vpls = in->sources->lamps.vpls;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [BALANCE_PORT_MEDIUM] = job->refs.medium,
         [BALANCE_PORT_ENVIRONMENT] = tyn_mean_environment(job, in->sources),
@@ -46,6 +47,7 @@ void tyn_add_balance(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in
         [BALANCE_PORT_LEAKS] = in->field->leaks,
         [BALANCE_PORT_WALL_POWER] = in->field->wall_power,
         [BALANCE_PORT_LAMP_POWER] = in->sources->lattice.lamp_power,
+        [BALANCE_PORT_WALL_LIGHT_POWER] = in->sources->walls.light_power,
     };
     follow_lights(job, in, &params, refs);
     tyn_graph_add(g, &tyn_pass_balance, &params, refs);

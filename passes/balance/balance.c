@@ -2,6 +2,7 @@
 #include "balance.h"
 #include "balance_args.h"
 #include "shaders/beams/radial_args.h"
+#include "shaders/common/balance_result.h"
 #include "balance.comp.h"
 #include "balance_lights.comp.h"
 #include <string.h>
@@ -22,7 +23,7 @@ static uint32_t num_followed(const tyn_balance_params *p)
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     tyn_build_buffer(b, BALANCE_PORT_FOUND, num_followed(params) * sizeof(struct balance_light));
-    tyn_build_buffer(b, BALANCE_PORT_BALANCE, 7 * 3 * sizeof(double)); // tyn_balance: seven triples
+    tyn_build_buffer(b, BALANCE_PORT_BALANCE, TYN_BALANCE_BYTES);
     return TYN_OK;
 }
 
@@ -34,6 +35,8 @@ static void record(tyn_recorder *r, const void *params)
         .channels = p->channels,
         .num_suns = p->num_suns,
         .num_groups = p->num_groups,
+        .vpls = p->vpls,
+        .wall_light = tyn_rec_has(r, BALANCE_PORT_WALL_LIGHT_POWER),
         .num_leaks =
             tyn_rec_extent(r, BALANCE_PORT_LEAKS).x / (uint32_t)sizeof(float) / p->channels,
         .emitters = tyn_rec_has(r, BALANCE_PORT_EMITTERS),

@@ -10,6 +10,8 @@
 #include "shaders/light/ordinate_args.h"
 #include "shaders/surfaces/surface_table_args.h"
 #include "balance_args.h"
+#include "shaders/common/balance_result.h"
+#include "shaders/walls/wall_light_power.h"
 #include "shaders/lattice/lattice_power.h"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/lattice/lattice_sweep.glsl"
@@ -25,28 +27,18 @@ layout(binding = 5) uniform sampler3D source;
 TYN_READ(11, lamp_power, lattice_lamp_power lamp_power[]);
 TYN_READ(6, power, lattice_power power[]);
 TYN_READ(7, leaks, float leaks[]);
-// tyn_balance: seven triples of doubles, each as two words; a device need not know doubles.
-TYN_WRITE(8, balance, uvec2 balance[7][3]);
+TYN_WRITE(8, balance, TYN_BALANCE_MEMBERS);
 
 TYN_UNIFORM(9, ordinates, ordinates_block ordinates);
 
 TYN_READ(10, wall_power, vec2 wall_power[]); // absorbed by a cell's walls, sent out by them; W
 TYN_READ(12, found, balance_light found[]);
 TYN_READ(13, emitters, surface_table emitters);
+TYN_READ(14, wall_light_power, wall_light_power wall_light);
 layout(constant_id = 0) const uint walls = 0;
 
 shared vec2 wall_sums[BALANCE_GROUP];
 shared vec4 sums[BALANCE_GROUP]; // absorbed, emitted, leak, lost by suns and ordinates
-
-uvec2 double_bits(float x)
-{
-    uint bits = floatBitsToUint(x), exponent = bits >> 23 & 0xFFu;
-    if (exponent == 0u) {
-        return uvec2(0u, bits & 0x80000000u);
-    }
-    uint wide = exponent == 0xFFu ? 0x7FFu : exponent + 896u; // 1023 - 127
-    return uvec2(bits << 29, (bits & 0x80000000u) | wide << 20 | (bits & 0x7FFFFFu) >> 3);
-}
 
 void write(uint row, uint ch, float value)
 {
@@ -69,6 +61,33 @@ void write_all(uint ch, float entering, float emitted, float absorbed, float on_
     write(4, ch, escaped);
     write(5, ch, given > 0.0 ? 1.0 - (absorbed + on_surfaces + escaped) / given : 0.0);
     write(6, ch, 0.0); // nothing is drawn at random
+}
+
+// Of factors that are in use: 0 where there is no light.
+vec2 least_and_most(vec2 range, float scale)
+{
+    vec2 with = range.y > 0.0 ? vec2(min(range.x, scale), max(range.y, scale)) : vec2(scale);
+    return scale > 0.0 ? with : range;
+}
+
+// The factors that make the cells lose what beams lose, and the walls get what VPLs send them.
+void write_scales()
+{
+    vec2 ranges[TYN_BALANCE_SCALES] = vec2[TYN_BALANCE_SCALES](vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0));
+    for (uint n = 0; n < args.num_suns * args.channels; n++) {
+        ranges[0] = least_and_most(ranges[0], power[n].scale);
+    }
+    uint num_lamps = (args.num_groups - args.vpls) * args.channels; // groups of them, of each channel
+    for (uint n = 0; n < args.num_groups * args.channels; n++) {
+        uint kind = n < num_lamps ? 1u : 2u;
+        ranges[kind] = least_and_most(ranges[kind], lamp_power[n].scale);
+    }
+    if (args.wall_light == 1u && wall_light.rooms > 0u) {
+        ranges[3] = vec2(wall_light.least, wall_light.most);
+    }
+    for (uint k = 0; k < TYN_BALANCE_SCALES; k++) {
+        scales[k] = uvec2[2](double_bits(ranges[k].x), double_bits(ranges[k].y));
+    }
 }
 
 // With surfaces: what lights send out, and where it ends that was not scattered, was found by following it. `cells`:
@@ -124,6 +143,9 @@ void main()
     barrier();
     if (me != 0) {
         return;
+    }
+    if (ch == 0) {
+        write_scales();
     }
     vec3 extent = medium.extent;
     vec3 faces = vec3(extent.y * extent.z, extent.z * extent.x, extent.x * extent.y) *

@@ -8,6 +8,7 @@ typedef struct tyn_balance_params {
     float tint[3];
     uint32_t num_suns;
     uint32_t num_groups; // of local lights
+    uint32_t vpls;       // 1: the last of them are virtual point lights
     uint32_t mode;       // TYN_MEDIUM_*
     float box[2][3];     // M: with surfaces, the box around everything
 } tyn_balance_params;
@@ -26,6 +27,7 @@ typedef struct tyn_balance_params {
     X(BALANCE, ORDINATES, ordinates, OPTIONAL, BUFFER, "struct ordinates_block"), \
     X(BALANCE, WALL_POWER, wall_power, OPTIONAL, BUFFER, "of lattice"), \
     X(BALANCE, LAMP_POWER, lamp_power, OPTIONAL, BUFFER, "of lattice_lamps"), \
+    X(BALANCE, WALL_LIGHT_POWER, wall_light_power, OPTIONAL, BUFFER, "of wall_light"), \
     TYN_BEAMS(X##_OPTIONAL, BALANCE), \
     TYN_RADIALS(X##_OPTIONAL, BALANCE), \
     TYN_GEOMETRY(X##_OPTIONAL, BALANCE), \

@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/light/glow_args.h"
+#include "shaders/common/counters.h"
 
 const uint ROWS = TYN_GLOW_HEIGHT, ORDERS = TYN_GLOW_HEIGHT, WIDTH = TYN_GLOW_WIDTH;
 const uint FOURS = 4, THREADS = WIDTH / 4 / FOURS;
@@ -9,12 +10,19 @@ layout(local_size_x = TYN_GLOW_WIDTH / 16) in;
 TYN_READ(0, series, glow_series series);
 TYN_READ(1, levels, glow_order levels[]);
 layout(set = 0, binding = 2, rgba32f) writeonly uniform image3D glow_image;
+TYN_UPDATE(3, counters, counters_block counters);
 
 const float PI = 3.14159265358979;
+
+float below = 0.0, above = 0.0; // light of the thread's texels
+uint clamped = 0u;
 
 // What the truncated series leaves below 0 in dark places beside bright ones is not resolved.
 void store(uint i, uint row, uint level, vec3 light)
 {
+    below += light_below(light);
+    above += light_above(light);
+    clamped += any(lessThan(light, vec3(0.0))) ? 1u : 0u;
     imageStore(glow_image, ivec3(i, row, level), vec4(max(light, 0.0), 1.0));
 }
 
@@ -51,5 +59,13 @@ void main()
         store(WIDTH / 2u - 1u - i, row, level, c_pi - s_pi);
         store(WIDTH / 2u + i, row, level, c_pi + s_pi);
         store(WIDTH - 1u - i, row, level, c - s);
+    }
+    if (level == 0u) { // the narrowest lobes, which ring most
+        below *= series.solid_angles[row];
+        above *= series.solid_angles[row];
+        TYN_LIGHT_CLAMP_ADD(counters.clamp_0, below, above)
+        if (clamped > 0u) {
+            atomicAdd(counters.clamped, clamped);
+        }
     }
 }

@@ -423,6 +423,10 @@ static const tyn_counter counters[] = {
      .warning =
          "accuracy: the lattice is not solved to the end: about %g %% of the scattered light "
          "would still change; more sweeps are needed (-D lattice.sweeps)"},
+    TYN_COUNTER_HIDDEN("of what walls send out",
+                       "accuracy: walls of the lattice would send out negative light, which is set "
+                       "to 0: %g %% of what they send out; the lattice is not solved to the end "
+                       "(-D lattice.sweeps)"),
     {NULL},
 };
 

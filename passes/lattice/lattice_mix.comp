@@ -38,6 +38,17 @@ void absorb_change(uint ch, uint cell, int v, float radiance)
     }
 }
 
+// Counts what the clamp of the walls' radiance at 0 hides of what they send out.
+void count_walls(uint cell, float radiance)
+{
+    float area = lattice_wall_surface(cell).a;
+    float below = area * max(-radiance, 0.0), above = area * max(radiance, 0.0);
+    TYN_LIGHT_CLAMP_ADD(counters.clamp_0, below, above)
+    if (below > 0.0) {
+        atomicAdd(counters.clamped, 1u);
+    }
+}
+
 // The next radiance of the walls of a cell.
 void mix_walls(uint ch, uint cell)
 {
@@ -50,7 +61,11 @@ void mix_walls(uint ch, uint cell)
     if (args.history >= 2) {
         radiance += weights[ch].y * (texelFetch(result_2_texels, v)[k] - newest);
     }
-    radiance = isnan(radiance) || isinf(radiance) ? 0.0 : max(radiance, 0.0);
+    radiance = isnan(radiance) || isinf(radiance) ? 0.0 : radiance;
+    if (last == 1) {
+        count_walls(cell, radiance);
+    }
+    radiance = max(radiance, 0.0);
     state[v][k] = radiance;
     if (last == 1) {
         absorb_change(ch, cell, v, radiance);

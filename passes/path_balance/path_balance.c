@@ -1,4 +1,5 @@
 // path_balance.c -- tables and dispatches of the path tracer's energy balance.
+#include "shaders/common/balance_result.h"
 #include "shaders/common/counters.h"
 #include "path_balance.h"
 #include "shaders/path/path_args.h"
@@ -20,7 +21,7 @@ uint64_t tyn_path_balance_state_size(void)
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_path_params *p = params;
-    tyn_build_buffer(b, PATH_BALANCE_PORT_BALANCE, 7 * 3 * sizeof(double));
+    tyn_build_buffer(b, PATH_BALANCE_PORT_BALANCE, TYN_BALANCE_BYTES);
     tyn_build_buffer(b, PATH_BALANCE_PORT_RESULT, sizeof(struct path_balance_result));
     tyn_build_buffer(b, PATH_BALANCE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, PATH_BALANCE_PORT_PARTIALS,

@@ -4,6 +4,7 @@
 // The standard error of the imbalance is that of what is given less what is taken, over what is given.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "shaders/common/balance_result.h"
 #include "shaders/path/path_args.h"
 
 layout(local_size_x = TYN_PATH_BALANCE_VALUES) in;
@@ -11,22 +12,12 @@ layout(local_size_x = TYN_PATH_BALANCE_VALUES) in;
 TYN_READ(0, partials, path_balance_partial partials[]);
 TYN_UPDATE(1, state, path_balance_state states[]);
 TYN_WRITE(2, result, path_balance_result result);
-// tyn_balance: seven triples of doubles, each as two words; a device need not know doubles.
-TYN_WRITE(3, balance, uvec2 balance[7][3]);
+TYN_WRITE(3, balance, TYN_BALANCE_MEMBERS);
 TYN_ARGS(path_resolve_args args);
 
 #include "shaders/path/path_probe_merge.glsl"
 
 shared float values[TYN_PATH_BALANCE_VALUES], errors[TYN_PATH_BALANCE_VALUES];
-
-uvec2 double_bits(float x)
-{
-    uint bits = floatBitsToUint(x), exponent = (bits >> 23) & 0xffu;
-    if (exponent == 0u) {
-        return uvec2(0u); // zero; single denormals are as good as zero
-    }
-    return uvec2(bits << 29, (bits & 0x80000000u) | ((exponent + 896u) << 20) | ((bits & 0x7fffffu) >> 3));
-}
 
 void main()
 {
@@ -50,4 +41,9 @@ void main()
     balance[4][value] = double_bits(escaped);
     balance[5][value] = double_bits(given > 0.0 ? 1.0 - taken / given : 0.0);
     balance[6][value] = double_bits(given > 0.0 ? errors[15u + value] / given : 0.0);
+    if (value == 0u) { // nothing is made to agree
+        for (uint k = 0u; k < TYN_BALANCE_SCALES; k++) {
+            scales[k] = uvec2[2](uvec2(0u), uvec2(0u));
+        }
+    }
 }

@@ -273,6 +273,14 @@ static void record(tyn_recorder *r, const void *params)
     }
 }
 
+static const tyn_counter counters[] = {
+    TYN_COUNTERS,
+    TYN_COUNTER_HIDDEN("of the picture's light",
+                       "accuracy: pixels would be negative and are set to 0: %g %% of the "
+                       "picture's light"),
+    {NULL},
+};
+
 const tyn_pass_desc tyn_pass_raymarch = {
     .name = "raymarch",
     .summary = "light of the medium gathered along the rays of a camera",
@@ -281,5 +289,5 @@ const tyn_pass_desc tyn_pass_raymarch = {
     .num_params = TYN_COUNT(params_table),
     .debug_port = RAYMARCH_PORT_RADIANCE,
     .debug_meaning = "radiance, exposed by its own mean",
-    .counters = (const tyn_counter[]){TYN_COUNTERS, {NULL}},
+    .counters = counters,
 };

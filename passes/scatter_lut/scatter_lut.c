@@ -3,6 +3,7 @@
 #include "scatter_lut_sum.comp.h"
 #include "scatter_lut_tms.comp.h"
 #include "scene/phase.h"
+#include "shaders/common/counters.h"
 #include <math.h>
 
 enum { MAX_TERMS = 2464 };
@@ -160,6 +161,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_build_buffer(b, SCATTER_LUT_PORT_LUT_BLOCK, sizeof(block));
     tyn_build_buffer(b, SCATTER_LUT_PORT_MOMENTS, bytes > 0 ? bytes : 8);
     if (p->tms) {
+        tyn_build_buffer(b, SCATTER_LUT_PORT_COUNTERS, sizeof(struct counters_block));
         tyn_build_image(
             b, SCATTER_LUT_PORT_TMS,
             (tyn_extent){TYN_TMS_DEPTHS, TYN_TMS_ANGLES, TYN_TMS_CONES * block.num_rows}, 1);
@@ -199,6 +201,7 @@ static void record(tyn_recorder *r, const void *params)
             make_cones(cones);
         }
         tyn_rec_update(r, SCATTER_LUT_PORT_CONES, 0, cones, CONES_BYTES);
+        tyn_rec_fill(r, SCATTER_LUT_PORT_COUNTERS, 0);
         uint32_t layers = TYN_TMS_CONES * block.num_rows;
         TYN_DISPATCH(r, .kernel = KERNEL_TMS,
                      .cells = {TYN_TMS_ANGLES / 4, TYN_TMS_DEPTHS / 4, layers});
@@ -212,6 +215,14 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_work(r, "bytes", bytes);
 }
 
+static const tyn_counter counters[] = {
+    {"clamped", offsetof(struct counters_block, clamped)},
+    TYN_COUNTER_HIDDEN("of what the table scatters",
+                       "accuracy: kernels of the ordinates' light would be negative and are set to "
+                       "0: %g %% of what they scatter"),
+    {NULL},
+};
+
 const tyn_pass_desc tyn_pass_scatter_lut = {
     .name = "scatter_lut",
     .summary =
@@ -221,4 +232,5 @@ const tyn_pass_desc tyn_pass_scatter_lut = {
     .media_only = true, // and on the sizes of suns, which change as seldom
     .debug_port = SCATTER_LUT_PORT_LUT,
     .debug_meaning = "ln of the scattering kernels: depth to the right, angle down",
+    .counters = counters,
 };

@@ -23,6 +23,7 @@ typedef struct tyn_scatter_lut_params {
     X(SCATTER_LUT, TMS, tms, OUT, IMAGE_3D, \
         "phase function of what leaves the forward lobes of light from a cone, 1/sr, over depth (x), angle " \
         "(y) and the size of the cone (z)", .format = VK_FORMAT_R32_SFLOAT), \
+    X(SCATTER_LUT, COUNTERS, counters, OUT, BUFFER, "struct counters_block: texels of `tms` that were clamped"), \
     X(SCATTER_LUT, MOMENTS, moments, SCRATCH, BUFFER, \
         "Legendre moments of the phase function outside and inside the lobe"), \
     X(SCATTER_LUT, CONES, cones, SCRATCH, BUFFER, "Legendre moments c_l of the cones")

@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/phase/scatter_lut_map.glsl"
+#include "shaders/common/counters.h"
 
 const uint THREADS = TYN_TMS_ANGLES / 4, CHUNK = 2u * THREADS;
 layout(local_size_x = TYN_TMS_ANGLES / 4) in; // x: four angles, y: four depths, z: cone of a row
@@ -9,6 +10,7 @@ TYN_READ(0, lut_block, lut_block lut);
 TYN_READ(1, moments, vec2 moments[]); // outside and inside the lobe
 TYN_READ(2, cones, float cones[]); // c_l, TYN_TMS_MAX_TERMS per cone
 layout(set = 0, binding = 3, r32f) writeonly uniform image3D tms_image;
+TYN_UPDATE(4, counters, counters_block counters);
 
 const float PI = 3.14159265358979;
 
@@ -53,11 +55,21 @@ void main()
             p += d;
         }
     }
+    float below = 0.0, above = 0.0;
+    uint clamped = 0u;
     for (uint k = 0u; k < 4u; k++) {
         for (uint a = 0u; a < 4u; a++) {
+            float solid_angle = tms_away(thread + a * THREADS + 1u) - tms_away(thread + a * THREADS);
+            below += solid_angle * max(-sums[k][a], 0.0);
+            above += solid_angle * max(sums[k][a], 0.0);
+            clamped += sums[k][a] < 0.0 ? 1u : 0u;
             // An average of a phase function: below 0 only by rounding.
             imageStore(tms_image, ivec3(depth + k, thread + a * THREADS, gl_WorkGroupID.z),
                        vec4(max(sums[k][a], 0.0)));
         }
+    }
+    TYN_LIGHT_CLAMP_ADD(counters.clamp_0, below, above)
+    if (clamped > 0u) {
+        atomicAdd(counters.clamped, clamped);
     }
 }

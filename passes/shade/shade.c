@@ -13,6 +13,7 @@
 #include "shade_smooth.comp.h"
 #include "shade_surface.comp.h"
 #include "shade_vpls.comp.h"
+#include "shaders/common/counters.h"
 #include "shaders/surfaces/gbuffer_edge_args.h"
 #include <stddef.h>
 #include <string.h>
@@ -94,6 +95,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
     tyn_build_image(b, PORT(PART), vpls ? blocks : texel, 1);
     tyn_build_image(b, PORT(PART_ROWS), blocks, 1);
     const bool alone = vpls || step > 1;
+    tyn_build_buffer(b, PORT(COUNTERS), sizeof(struct counters_block));
     tyn_build_buffer(b, PORT(ALONE_COUNT), sizeof(struct gbuffer_edge_count));
     tyn_build_buffer(b, PORT(ALONE), 8 * (alone ? (uint64_t)p->size[0] * p->size[1] : 1));
     return TYN_OK;
@@ -133,6 +135,7 @@ static void record(tyn_recorder *r, const void *data)
     const uint32_t spec[6] = {p->mode, features, p->num_suns, samples, side, step};
     const tyn_extent pixels = {p->size[0], p->size[1], 1};
     tyn_dispatch d = {.args = &args, .spec = spec};
+    tyn_rec_fill(r, PORT(COUNTERS), 0);
     if (features & SHADE_SPREAD) {
         tyn_extent cells = {forward.x, forward.y, forward.z / p->num_suns};
         TYN_DISPATCH(r, .kernel = FORWARD, .cells = cells, .spec = spec);
@@ -191,6 +194,14 @@ static void record(tyn_recorder *r, const void *data)
     tyn_rec_work(r, "pixels", (double)pixels.x * pixels.y);
 }
 
+static const tyn_counter counters[] = {
+    {"clamped", offsetof(struct counters_block, clamped)},
+    TYN_COUNTER_HIDDEN("of the lattice's light on surfaces",
+                       "accuracy: light of the lattice on surfaces would be negative and is set to "
+                       "0: %g %% of that light"),
+    {NULL},
+};
+
 const tyn_pass_desc tyn_pass_shade = {
     .name = "shade",
     .summary = "radiance of the surfaces that the camera sees",
@@ -200,4 +211,5 @@ const tyn_pass_desc tyn_pass_shade = {
     .num_params = TYN_COUNT(params),
     .debug_port = PORT(SURFACE_RADIANCE),
     .debug_meaning = "radiance of the surfaces, without the medium in front of them",
+    .counters = counters,
 };

@@ -51,6 +51,8 @@ typedef struct tyn_shade_params {
     X(SHADE, SURFACE_RADIANCE, surface_radiance, OUT, IMAGE_2D, \
         "RG32UI, packed_colour.glsl, as large as \"distances\": radiance to the camera, W/(m^2 sr)", \
         .format = VK_FORMAT_R32G32_UINT), \
+    X(SHADE, COUNTERS, counters, OUT, BUFFER, \
+        "struct counters_block: places where the lattice's light on a surface was clamped"), \
     X(SHADE, FORWARD, forward, SCRATCH, IMAGE_3D, \
         "shade_forward.comp: exists with a lattice, suns and shadows", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(SHADE, FACES, faces, SCRATCH, IMAGE_2D, \

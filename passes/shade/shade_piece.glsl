@@ -6,6 +6,7 @@
 #define TYN_SHADE_PIECE_GLSL
 #include "shade.glsl"
 #include "shade_part.glsl"
+#include "shaders/common/counters.h"
 
 layout(binding = SHADE_AT, rgba32ui) uniform readonly uimage2D part_image; // shade_part.glsl
 #define WALLS_OTHERS TYN_BEAM_MAX_SUNS
@@ -15,7 +16,8 @@ TYN_UNIFORM(SHADE_AT + 1, environment, env_block environment);
 layout(binding = SHADE_AT + 2) uniform sampler3D forward_tex; // shade_forward.comp
 layout(binding = SHADE_AT + 3) uniform sampler2D faces_tex; // shade_faces.h
 layout(binding = SHADE_AT + 4) uniform sampler3D sight_tex; // shade_sight.comp
-#define SHADE_PIECE_AT (SHADE_AT + 5)
+TYN_UPDATE(SHADE_AT + 5, counters, counters_block counters);
+#define SHADE_PIECE_AT (SHADE_AT + 6)
 
 const float PI = 3.14159265358979;
 
@@ -29,6 +31,21 @@ vec3 shade_radiance(gbuffer_colours colours, vec3 irradiance)
 
 // What the lattice's light counts on a face of its box, beside that of the faces (docs/measurements.md, "Constants").
 const float SHADE_WITHIN = 0.25;
+
+// Eight threads of so many times as many tell of the light that clamps let through: atomics of all would take time.
+const uint COUNTED = 16u;
+
+// The irradiance set to 0 where it is below, which is counted.
+vec3 clamped_light(vec3 irradiance)
+{
+    bool told = (gl_GlobalInvocationID.x / 8u + 3u * gl_GlobalInvocationID.y) % COUNTED == 0u;
+    float below = light_below(irradiance), above = told ? float(COUNTED) * light_above(irradiance) : 0.0;
+    TYN_LIGHT_CLAMP_ADD(counters.clamp_0, below, above)
+    if (below > 0.0) {
+        atomicAdd(counters.clamped, 1u);
+    }
+    return max(irradiance, vec3(0.0));
+}
 
 // Light of the medium and of far walls, and of the sky where it comes along the lattice's lines.
 // `inside` the lattice: from where sunlight comes that was scattered forward.
@@ -61,21 +78,22 @@ vec3 light_of_lattice(shade_point p, out vec4 around[TYN_BEAM_MAX_SUNS], out boo
 
     vec3 irradiance = vec3(0.0), within = vec3(0.0);
     if (!inside) {
-        irradiance = has_outside ? max(sky + shade_outside(p.position, p.normal, p.facet, lo, hi), vec3(0.0)) : sky;
+        irradiance = has_outside ? clamped_light(sky + shade_outside(p.position, p.normal, p.facet, lo, hi)) : sky;
     }
     if (shade_has(SHADE_LATTICE) && (inside || near > 0.0)) {
         int channels = shade_has(SHADE_ONE_CHANNEL) ? 1 : 3;
         uint num_suns = shade_has(SHADE_SPREAD) ? shade_num_suns : 0u;
         uint room = shade_has(SHADE_ROOMS) ? shade_room_of(p.position) : TYN_ROOMS_ANY;
         within = walls_irradiance_at(moments_tex, box, place, p.normal, channels, forward_tex, num_suns, room, around);
+        within = clamped_light(within);
         within = channels == 1 ? within.r * args.tint : within;
         irradiance = inside ? within : irradiance;
     }
     // Four moments a cell are too bright at the box's face, patches too dark: they meet in between.
     if (near > 0.0) {
-        vec3 seen = max(sky + shade_outside(before + 0.03 * box.dx * push, p.normal, p.facet, lo, hi), vec3(0.0));
+        vec3 seen = clamped_light(sky + shade_outside(before + 0.03 * box.dx * push, p.normal, p.facet, lo, hi));
         vec3 change = near * (within - seen) * vec3(notEqual(seen, sky)) * vec3(greaterThan(min(seen, within), vec3(0.0)));
-        irradiance = max(irradiance + (inside ? SHADE_WITHIN - 1.0 : SHADE_WITHIN) * change, vec3(0.0));
+        irradiance = clamped_light(irradiance + (inside ? SHADE_WITHIN - 1.0 : SHADE_WITHIN) * change);
     }
     return irradiance;
 }

@@ -59,7 +59,8 @@ float walls_share(lattice_box box, walls_spot s, ivec3 q)
     return between == 0 ? share : -share * pow(WALLS_BEHIND, float(between));
 }
 
-// Irradiance on the side n of a surface at p (M) of the first `channels` channels of `moments`, W/m^2. `others`: the
+// Irradiance on the side n of a surface at p (M) of the first `channels` channels of `moments`, W/m^2: below 0 where more
+// light goes away from the surface than four moments can tell. `others`: the
 // same cells' mean of `num_others` fields that are behind each other along z; 0 where no cell has light. `room` of the
 // surface, or TYN_ROOMS_ANY.
 vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int channels, sampler3D fields,
@@ -107,7 +108,7 @@ vec3 walls_irradiance_at(sampler3D moments, lattice_box box, vec3 p, vec3 n, int
         }
         lit = lit || attempt == 2 && seen < WALLS_FEW && whole > 1e-12;
         float scale = lit ? 1.0 / whole : 0.0;
-        irradiance = max(scale * sum, vec3(0.0));
+        irradiance = scale * sum;
         [[unroll]] for (uint k = 0u; k < num_others; k++) {
             others[k] *= scale;
         }

@@ -1,7 +1,7 @@
 // wall_light_args.h -- push constants and buffers of the kernels of the pass wall_light. Included by C and GLSL.
 #ifndef TYN_WALL_LIGHT_ARGS_H
 #define TYN_WALL_LIGHT_ARGS_H
-#include "shaders/common/shared.h"
+#include "shaders/walls/wall_light_power.h"
 
 struct wall_light_args {
     tyn_vec3 extent; // of the medium, m
@@ -21,23 +21,10 @@ struct wall_light_list {
 };
 TYN_ASSERT_SIZE(wall_light_list, 16);
 
-#define WALL_LIGHT_VPLS 256      // as many as there may be (TYN_RADIAL_VPLS_MAX)
 #define WALL_LIGHT_SUM_GROUP 256 // threads
 #define WALL_LIGHT_PART 1024     // cells that a part of the lattice has at least
 #define WALL_LIGHT_PARTS 64      // of the lattice, at most; of a workgroup each
 
 #define WALL_LIGHT_DARK 0xffffffffu // element of the buffer "first": no VPL shines there
-
-// What virtual point lights (VPLs) send to walls, and the factors that make the walls of each room get it. A room goes by
-// the first VPL that shines there; without rooms all are in one.
-struct wall_light_power {
-    tyn_uint rooms;    // that VPLs shine in, and whose walls get light
-    float least, most; // factor
-    float astray; // of all that is sent, what goes to rooms where no wall of the lattice gets any
-    tyn_uint room[WALL_LIGHT_VPLS];     // rooms.h
-    tyn_vec3 expected[WALL_LIGHT_VPLS]; // W
-    tyn_vec3 scale[WALL_LIGHT_VPLS];    // of rooms
-};
-TYN_ASSERT_SIZE(wall_light_power, 7184);
 
 #endif

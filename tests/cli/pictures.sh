@@ -130,6 +130,12 @@ cp out balance.json
 for key in entering emitted absorbed_media absorbed_surfaces escaped imbalance imbalance_se; do
     [ "$("$helpers/json_get" balance.json $key)" = "list 3" ] || fail "balance: $key"
 done
+for key in absorbed_media absorbed_surfaces escaped; do
+    [ "$("$helpers/json_get" balance.json shares.$key)" = "list 3" ] || fail "balance: shares.$key"
+done
+near "$(get balance.json shares.escaped.0)" 1 0.01 "share that leaves the cube"
+near "$(get balance.json scales.suns.0)" 1 0.01 "least factor of the cube's sun"
+near "$(get balance.json scales.suns.1)" 1 0.01 "most factor of the cube's sun"
 near "$(get balance.json entering.0)" 1 1e-3 "power that enters the cube, W"
 near "$(get balance.json imbalance.0)" 0 0.01 "imbalance of the cube"
 works fluxes "$scenes/slab.gltf" --json --quiet

@@ -230,6 +230,80 @@ static void make_twin(twin *w, const ordinates_case *k, const struct ordinates_b
     }
 }
 
+static double clamped_at(const twin *w, const int c[3], int ch)
+{
+    return fmax(w->j[ch][(c[2] * NY + c[1]) * NX + c[0]], 0);
+}
+
+// What is blended towards c from the cells before it: 2 J_0 - J_1 along each axis outside.
+static double continued(const twin *w, const int c[3], int ch)
+{
+    const int n[3] = {NX, NY, NZ};
+    for (int a = 0; a < 3; a++) {
+        const int inward = c[a] < 0 ? 1 : c[a] >= n[a] ? -1 : 0;
+        if (inward) {
+            int near[3] = {c[0], c[1], c[2]}, far[3] = {c[0], c[1], c[2]};
+            near[a] += inward;
+            far[a] += 2 * inward;
+            return 2 * continued(w, near, ch) - continued(w, far, ch);
+        }
+    }
+    return clamped_at(w, c, ch);
+}
+
+static double sum_of(const struct light_clamp *clamp, uint32_t first)
+{
+    double all = 0;
+    for (int k = 0; k < TYN_LIGHT_SUM_BINS; k++) {
+        all += ldexp(clamp->bins[first + (uint32_t)k], k - 135);
+    }
+    return all;
+}
+
+// Light that was set to 0, and of some rows that which was not: sigma_s' J over the square of the distance in cells, of a
+// ghost an eighth along each axis. All cells are in the picture.
+static void check_hidden(const twin *w, const ordinates_case *k, const struct camera_block *camera,
+                         const float *cells, const struct counters_block *counters)
+{
+    const int n[3] = {NX, NY, NZ};
+    double hidden = 0, shown = 0;
+    uint32_t ghosts = 0;
+    for (int i = 0; i < (NX + 2) * (NY + 2) * (NZ + 2); i++) {
+        const int c[3] = {i % (NX + 2) - 1, i / (NX + 2) % (NY + 2) - 1,
+                          i / (NX + 2) / (NY + 2) - 1};
+        int near[3];
+        double away = 0, part = 1, below = 0, above = 0;
+        for (int a = 0; a < 3; a++) {
+            near[a] = c[a] < 0 ? 0 : c[a] >= n[a] ? n[a] - 1 : c[a];
+            part *= near[a] == c[a] ? 1 : 0.125;
+            const double d =
+                0.5 * (extent[a] - 0.5 * n[a]) + 0.5 * (near[a] + 0.5) - camera->origin[a];
+            away += 4 * d * d;
+        }
+        const int cell = (near[2] * NY + near[1]) * NX + near[0];
+        bool clamped = false, scatters = false;
+        for (int ch = 0; ch < (int)k->channels; ch++) {
+            const double sigma = cells[4 * (ch * CELLS + cell)];
+            const double j = part < 1 ? continued(w, c, ch) : w->j[ch][cell];
+            clamped = clamped || j < 0;
+            scatters = scatters || sigma > 0;
+            below += sigma * fmax(-j, 0);
+            above += sigma * fmax(j, 0);
+        }
+        const double weight = camera->orthographic ? 1 : 1 / fmax(away, 1);
+        hidden += part * weight * below;
+        shown += part == 1 && (c[1] + 3 * c[2]) % 8 == 0 ? 8 * weight * above : 0;
+        ghosts += part < 1 && clamped && scatters;
+    }
+    printf("    hidden %.4g, right %.4g; shown %.4g, right %.4g; %u ghosts, right %u\n",
+           sum_of(&counters->clamp_0, TYN_LIGHT_HIDDEN), hidden,
+           sum_of(&counters->clamp_0, TYN_LIGHT_SHOWN), shown, counters->ghosts, ghosts);
+    assert_true(hidden > 0 &&
+                fabs(sum_of(&counters->clamp_0, TYN_LIGHT_HIDDEN) / hidden - 1) < 0.02);
+    assert_true(fabs(sum_of(&counters->clamp_0, TYN_LIGHT_SHOWN) / shown - 1) < 0.02);
+    assert_true(ghosts > 0 && abs((int)ghosts - (int)counters->ghosts) <= 2);
+}
+
 static void with_ordinates(void **state)
 {
     gpu_test *t = *state;
@@ -339,6 +413,7 @@ static void with_ordinates(void **state)
                100 * worst, counters->clamped);
         assert_true(within(worst, k->tolerance, BOUND_FILTER, "%s", k->name));
         assert_true(abs((int)negative - (int)counters->clamped) <= 1);
+        check_hidden(&w, k, &camera, cells, counters);
         assert_int_equal(counters->non_finite, 0);
     }
 }

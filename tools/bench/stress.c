@@ -117,6 +117,8 @@ static void add_cell(suite *s, const cell *k)
     cJSON_AddStringToObject(o, "against", k->against);
     cJSON_AddNumberToObject(o, "non_finite", k->counts.non_finite);
     cJSON_AddNumberToObject(o, "negative", k->counts.negative);
+    cJSON_AddNumberToObject(o, "clamped", k->counts.clamped);
+    json_add_float(o, "hidden", k->counts.hidden);
     cJSON_AddItemToObject(o, "warnings", k->counts.warnings);
     json_add_float(o, "ms", round(100 * k->counts.ms) / 100);
     if (k->counts.failure) {
@@ -125,14 +127,17 @@ static void add_cell(suite *s, const cell *k)
     cJSON_AddItemToArray(s->cells, o);
     if (s->table) {
         const cJSON *warning = cJSON_GetArrayItem(k->counts.warnings, 0);
-        char label[64], error[32] = "       -";
+        char label[64], error[32] = "       -", hidden[32] = "";
         snprintf(label, sizeof label, "%s%s%g", k->c->name ? k->c->name : "",
                  k->c->name ? ", " : "", k->c->x);
         if (isfinite(k->error)) {
             snprintf(error, sizeof error, "%7.2f%%", 100 * k->error);
         }
-        printf("%-20s %-26s %-10s %s +- %.2f%% %s\n", k->c->axis, label, k->method, error,
-               100 * (isfinite(k->se) ? k->se : 0),
+        if (k->counts.hidden > 0) {
+            snprintf(hidden, sizeof hidden, "hidden %.2g%%", 100 * k->counts.hidden);
+        }
+        printf("%-20s %-26s %-10s %s +- %.2f%% %-14s %s\n", k->c->axis, label, k->method, error,
+               100 * (isfinite(k->se) ? k->se : 0), hidden,
                k->counts.failure ? k->counts.failure
                : warning         ? warning->valuestring
                                  : "");

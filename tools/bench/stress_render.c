@@ -29,6 +29,18 @@ static double counted(const tyn_report *report, const char *name)
     return sum;
 }
 
+static double largest(const tyn_report *report, const char *name)
+{
+    double most = 0;
+    for (uint32_t i = 0; i < report->num_nodes; i++) {
+        for (uint32_t k = 0; k < report->nodes[i].num_work; k++) {
+            bool is = strcmp(report->nodes[i].work[k].name, name) == 0;
+            most = is ? fmax(most, report->nodes[i].work[k].amount) : most;
+        }
+    }
+    return most;
+}
+
 static void add_warning(cJSON *warnings, const char *text)
 {
     const cJSON *w;
@@ -49,6 +61,8 @@ static void take_report(tyn_offline *offline, stress_counts *counts)
     for (uint32_t i = 0; i < report.num_warnings; i++) {
         add_warning(counts->warnings, report.warnings[i]);
     }
+    counts->clamped += counted(&report, "clamped") + counted(&report, "ghosts");
+    counts->hidden = fmax(counts->hidden, largest(&report, "hidden"));
     counts->cut += counted(&report, "cut");
     if (counts->cut > 0) { // as the stats of a rendering say it
         add_warning(counts->warnings, "paths were ended by the safety cap: the result is too dark");

@@ -18,6 +18,8 @@ typedef struct stress_picture {
 typedef struct stress_counts {
     double non_finite, negative; // values
     double cut;                  // paths ended by the safety cap
+    double clamped;              // cells, pixels and so on whose light was negative and set to 0
+    double hidden;               // that light, as a share: of the node where it is largest
     double paths;                // how many there were
     double ms;
     cJSON *warnings; // array, the caller's

@@ -187,6 +187,8 @@ typedef struct tyn_counter {
     const char *name; // "steps", "unsettled"
     size_t offset;    // bytes into the buffer
     bool real;        // a float; else a uint32
+    // A struct light_clamp (shaders/common/light_sum.h): what it hid, as a share of what it let through.
+    bool clamp;
     uint32_t count;   // numbers that follow each other, of which the largest is told; 0 counts as 1
     const char *unit; // "of the scattered light"; NULL: a number of them
     double limit;     // a share beyond which the report warns

@@ -29,7 +29,7 @@ function stressWords(cell) {
     return {
         title: `${cell.method}, ${cell.axis}: ${caseName(cell)}`,
         figure: isNumber(cell.error)
-            ? `error ${percent(cell.error)}${isNumber(cell.se) ? ` \u00b1${NARROW}${percent(cell.se)}` : ""} against ${cell.against ?? "an exact answer"}${isNumber(cell.ms) ? `, ${duration(cell.ms)}` : ""}`
+            ? `error ${percent(cell.error)}${isNumber(cell.se) ? ` \u00b1${NARROW}${percent(cell.se)}` : ""} against ${cell.against ?? "an exact answer"}${isNumber(cell.ms) ? `, ${duration(cell.ms)}` : ""}${cell.hidden > 0 ? `, negative light hidden ${percent(cell.hidden)}` : ""}`
             : cell.failure ?? "no figure: see the reason, or the case is not this method's", bad, warnings: list(cell.warnings),
     };
 }
