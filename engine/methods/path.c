@@ -150,7 +150,8 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
         sigma_t = fmaxf(sigma_t, s->sigma_s[1] + s->sigma_a[1]);
     }
     p->repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];
-    p->surfaces = frame->num_triangles > 0;
+    p->triangles = frame->num_triangles;
+    p->textures = frame->num_textures;
     p->emitters = job->refs.emitters.resource != 0 && !p->repeat; // else there is no end of them
     p->emissive = frame->emissive;
     p->num_lights = frame->lights.num_directional + frame->lights.num_lamps;
@@ -302,7 +303,7 @@ static void add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     set_box(&params, job->frame);
     set_lamp_power(&params, job->frame);
     double paths = DISPATCH_NS / path_cost_ns(job, params.homogeneous);
-    params.chunks = params.surfaces ? SOLID_CHUNKS : BALANCE_CHUNKS; // walls make more noise
+    params.chunks = params.triangles ? SOLID_CHUNKS : BALANCE_CHUNKS; // walls make more noise
     params.threads = 4096;
     params.num_samples = paths < CHUNK_MIN   ? CHUNK_MIN
                          : paths > CHUNK_MAX ? CHUNK_MAX

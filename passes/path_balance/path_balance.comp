@@ -97,7 +97,7 @@ vec3 solid_point(uvec4 bits, inout rng_state rng)
     uint index = surface_cell_pick(area_cells[high], bits.y);
     vec2 barycentric = triangle_sample(rng_vec2(bits.zw));
     surface_point point = surface_point_at(index, barycentric);
-    surface_material material = surface_material_at(triangles[index].w);
+    surface_material material = surface_material_at(surface_triangle_at(index).w);
     uvec4 more = rng_next(rng);
     normal = rng_float(more.x) < 0.5 ? point.normal : -point.normal;
     measure = vec3(2.0 * areas.weight);
