@@ -102,6 +102,7 @@ static inline void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_p
         (p->num_lamps ? TYN_PATH_LAMPS : 0) |
         (p->equiangular && p->near_lamps ? TYN_PATH_EQUIANGULAR : 0) |
         (p->layers ? TYN_PATH_LAYERS : 0) | (p->scattered ? TYN_PATH_SCATTERED : 0) |
+        (p->triangles || !p->homogeneous ? TYN_PATH_QUEUE : 0) | // cheap paths are not worth one
         (p->stretch > 1 ? TYN_PATH_THIN : 0) | (p->triangles ? TYN_PATH_SURFACES : 0) |
         (p->textures ? TYN_PATH_TEXTURES : 0) |
         (p->triangles && p->emitters ? TYN_PATH_EMITTERS : 0);
