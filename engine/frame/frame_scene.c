@@ -388,6 +388,30 @@ static void build_environment(tyn_frame_scene *out, const tyn_environment *env,
 
 // ---- surfaces ---------------------------------------------------------------------------------
 
+// In the arithmetic of surface_cross (surface_trace.glsl), whose bounds of rounding are these.
+static void build_few(struct surface_corners *few, const tyn_surfaces *surfaces)
+{
+    const float rounding = 4 * 5.9604645e-8f;
+    for (uint32_t i = 0; i < surfaces->num_triangles; i++) {
+        struct surface_corners *c = &few[i];
+        float *corners[3] = {c->v0, c->v1, c->v2}, e1[3], e2[3];
+        for (int k = 0; k < 3; k++) {
+            const uint32_t v = surfaces->triangles[i].vertices[k];
+            memcpy(corners[k], surfaces->vertices[v].position, sizeof c->v0);
+        }
+        for (int a = 0; a < 3; a++) {
+            e1[a] = c->v1[a] - c->v0[a];
+            e2[a] = c->v2[a] - c->v0[a];
+        }
+        for (int a = 0; a < 3; a++) {
+            const float p = e1[(a + 1) % 3] * e2[(a + 2) % 3],
+                        q = e1[(a + 2) % 3] * e2[(a + 1) % 3];
+            c->normal[a] = p - q;
+            c->rounding[a] = rounding * (fabsf(p) + fabsf(q));
+        }
+    }
+}
+
 static void build_surfaces(tyn_frame_scene *out, const tyn_surfaces *surfaces,
                            const tyn_surface_data *data, const rigid *m)
 {
@@ -397,6 +421,9 @@ static void build_surfaces(tyn_frame_scene *out, const tyn_surfaces *surfaces,
     }
     out->num_triangles = b->num_triangles = surfaces->num_triangles;
     out->num_textures = surfaces->num_textures;
+    if (surfaces->num_triangles <= TYN_SURFACE_FEW) {
+        build_few(b->few, surfaces);
+    }
     b->num_nodes = surfaces->num_nodes;
     out->below = data->below;
     out->seen = data->seen;

@@ -14,12 +14,11 @@
 
 // ---- what a path costs ------------------------------------------------------------------------
 
-// Threads of a dispatch, and of one whose paths are long.
+// Threads of a dispatch: most, and of one whose paths are long.
 enum { THREADS = 16384, THREADS_LONG = 1024 };
 
 static const double DISPATCH_NS = 20e6; // aimed at; 50 ms is the limit on a software device
 static const double RECORD_NS = 1e9;    // of all dispatches of a record
-static const double LONG_PATH_NS = 1500;
 
 // Reflections of a path between surfaces: until roulette begins, and what is then left. In the open there are
 // fewer.
@@ -34,11 +33,13 @@ static double count_reflections(const tyn_surfaces *surfaces)
     return albedo > 0 ? fmin(log(0.1) / log(fmin(albedo, 0.999)) + 1 / (1.001 - albedo), 50) : 0;
 }
 
-// Nanoseconds of a ray through the triangles, measured likewise: 200 for twelve, 600 for a quarter of a million.
+// Nanoseconds of a ray through the triangles and of what happens at its end, measured likewise.
 static double ray_cost_ns(const tyn_frame_scene *frame)
 {
     double triangles = frame->num_triangles;
-    return 150 + (frame->surfaces.num_nodes ? 40 * log2(1 + triangles) : 15 * triangles);
+    bool tree = frame->surfaces.num_nodes && triangles > TYN_SURFACE_FEW;
+    return tree ? 90 + 25 * log2(1 + triangles)
+                : 20 + (triangles > TYN_SURFACE_FEW ? 8 : 2) * triangles;
 }
 
 // Nanoseconds of a path on two cores of a software device: measured 90 for the unit cube at sigma_s 4, 700 for a
@@ -140,7 +141,11 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
     bool sphere = frame->shapes[0].kind == TYN_SHAPE_KIND_SPHERE;
     p->num_shapes = frame->empty ? 1 : m->num_shapes;
     p->sphere = sphere && p->num_shapes == 1;
-    p->threads = path_cost_ns(job, p->homogeneous) > LONG_PATH_NS ? THREADS_LONG : THREADS;
+    p->threads = THREADS; // by halves: they are part of the frame's structure
+    while (p->threads > THREADS_LONG &&
+           p->threads * path_cost_ns(job, p->homogeneous) > DISPATCH_NS) {
+        p->threads /= 2;
+    }
     p->grey = 1;
     float sigma_t = 0;
     for (uint32_t i = 0; i < m->num_shapes; i++) {
@@ -150,7 +155,8 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
         sigma_t = fmaxf(sigma_t, s->sigma_s[1] + s->sigma_a[1]);
     }
     p->repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];
-    p->surfaces = frame->num_triangles > 0;
+    p->triangles = frame->num_triangles;
+    p->textures = frame->num_textures;
     p->emitters = job->refs.emitters.resource != 0 && !p->repeat; // else there is no end of them
     p->emissive = frame->emissive;
     p->num_lights = frame->lights.num_directional + frame->lights.num_lamps;
@@ -302,7 +308,7 @@ static void add_balance(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
     set_box(&params, job->frame);
     set_lamp_power(&params, job->frame);
     double paths = DISPATCH_NS / path_cost_ns(job, params.homogeneous);
-    params.chunks = params.surfaces ? SOLID_CHUNKS : BALANCE_CHUNKS; // walls make more noise
+    params.chunks = params.triangles ? SOLID_CHUNKS : BALANCE_CHUNKS; // walls make more noise
     params.threads = 4096;
     params.num_samples = paths < CHUNK_MIN   ? CHUNK_MIN
                          : paths > CHUNK_MAX ? CHUNK_MAX

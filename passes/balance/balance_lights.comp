@@ -37,13 +37,13 @@ vec3 kept = vec3(0.0), escaped = vec3(0.0); // W
 
 vec3 albedo_at(surface_hit hit)
 {
-    uvec4 t = triangles[hit.triangle];
+    uvec4 t = surface_triangle_at(hit.triangle);
     surface_material m = surface_material_at(t.w);
     vec3 colour = vec3(1.0);
     if (m.texture != TYN_SURFACE_NO_TEXTURE) {
         vec2 b = hit.barycentric;
         vec2 uv = (1.0 - b.x - b.y) * surface_uv(t.x) + b.x * surface_uv(t.y) + b.y * surface_uv(t.z);
-        colour = surface_texture_level(textures[m.texture], uv, 0u);
+        colour = surface_texture_level(surface_texture_at(m.texture), uv, 0u);
     }
     return surface_reflected(m, colour);
 }

@@ -18,7 +18,7 @@ void main()
 {
     triangle = uint(gl_VertexIndex) / 3u;
     uint corner = uint(gl_VertexIndex) % 3u;
-    vec3 p = surface_transform(surfaces.from_world, surface_position(triangles[triangle][corner])) - camera.origin;
+    vec3 p = surface_transform(surfaces.from_world, surface_position(surface_triangle_at(triangle)[corner])) - camera.origin;
     vec2 across = vec2(dot(p, camera.right) / camera.half_width, dot(p, camera.up) / camera.half_height);
     float z = dot(p, camera.forward);
     vec3 size = surfaces.hi - surfaces.lo;

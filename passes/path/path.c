@@ -23,6 +23,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_build_image(b, PATH_PORT_MULTIPLE, p->layers ? size : none, 1);
     tyn_build_image(b, PATH_PORT_TRANSMITTANCE, p->layers ? size : none, 1);
     tyn_build_buffer(b, PATH_PORT_COUNTERS, sizeof(struct counters_block));
+    tyn_build_buffer(b, PATH_PORT_QUEUE, sizeof(uint32_t));
     tyn_build_buffer(b, PATH_PORT_PARTIALS, threads * sizeof(struct path_partial));
     tyn_build_buffer(b, PATH_PORT_LAYERS,
                      (p->layers ? threads : 1) * sizeof(struct path_partial_layers));
@@ -35,19 +36,21 @@ static void record(tyn_recorder *r, const void *params)
     tyn_extent size = tyn_rec_extent(r, PATH_PORT_MEAN);
     uint32_t pixels = size.x * size.y, spec[TYN_PATH_NUM_SPEC];
     path_split s = path_split_work(p, pixels);
+    uint32_t slots = s.slots < p->num_samples ? s.slots : p->num_samples; // none is empty
     path_specialise(spec, p);
     tyn_rec_fill(r, PATH_PORT_COUNTERS, 0);
+    tyn_rec_fill(r, PATH_PORT_QUEUE, 0);
     for (uint32_t first = 0; first < pixels; first += s.tile) {
         uint32_t num = pixels - first < s.tile ? pixels - first : s.tile;
         struct path_args args = path_trace_args(p);
         args.first = first;
         args.num = num;
-        args.slots = s.slots;
-        TYN_DISPATCH(r, .kernel = 0, .cells = {num * s.slots, 1, 1}, .args = &args, .spec = spec);
+        args.slots = slots;
+        TYN_DISPATCH(r, .kernel = 0, .cells = {num * slots, 1, 1}, .args = &args, .spec = spec);
         struct path_resolve_args resolve = {
             .first = first,
             .num = num,
-            .slots = s.slots,
+            .slots = slots,
             .width = size.x,
             .samples_before = p->first_sample,
             .layers = p->layers,

@@ -33,7 +33,8 @@
         "transmittance of the media", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(PATH, COUNTERS, counters, OUT, BUFFER, "collisions, cut paths, non-finite samples"), \
     X(PATH, PARTIALS, partials, SCRATCH, BUFFER, "statistics of each thread"), \
-    X(PATH, LAYERS, layers, SCRATCH, BUFFER, "layers of each thread")
+    X(PATH, LAYERS, layers, SCRATCH, BUFFER, "layers of each thread"), \
+    X(PATH, QUEUE, queue, SCRATCH, BUFFER, "uint: how many slots threads have taken")
 // clang-format on
 enum { PATH_PORTS(TYN_PORT_ENUM), PATH_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_path;

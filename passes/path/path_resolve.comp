@@ -20,6 +20,7 @@ layout(set = 0, binding = 9, rgba32f) uniform writeonly image2D error_image;
 layout(set = 0, binding = 10, rgba32f) uniform writeonly image2D single_image;
 layout(set = 0, binding = 11, rgba32f) uniform writeonly image2D multiple_image;
 layout(set = 0, binding = 12, rgba32f) uniform writeonly image2D transmittance_image;
+TYN_UPDATE(13, queue, uint taken);
 TYN_ARGS(path_resolve_args args);
 
 // Means of one pixel's layers.
@@ -32,6 +33,9 @@ void main()
     uint thread = gl_GlobalInvocationID.x;
     if (thread >= args.num) {
         return;
+    }
+    if (thread == 0u) {
+        taken = 0u; // for the next dispatch
     }
     uint element = args.first + thread;
     ivec2 pixel = ivec2(element % args.width, element / args.width);

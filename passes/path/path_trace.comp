@@ -10,6 +10,7 @@ TYN_UNIFORM(16, camera, camera_block camera_in);
 TYN_WRITE(17, partials, path_partial partials[]);
 TYN_UPDATE(18, counters, counters_block counters);
 TYN_WRITE(19, layers, path_partial_layers layers[]);
+TYN_UPDATE(20, queue, uint taken);
 
 #include "shaders/path/path.glsl"
 
@@ -18,6 +19,56 @@ path_partial partial = path_partial(vec3(0.0), vec3(0.0), 0.0, 0u);
 path_partial_layers partial_layers = path_partial_layers(vec3(0.0), vec3(0.0), vec3(0.0));
 camera_block camera; // in registers, as path_load has it
 uvec2 pixel;
+
+const bool QUEUE = (FLAGS & TYN_PATH_QUEUE) != 0u;
+const uint NO_SLOT = 0xffffffffu;
+uint slot = NO_SLOT; // that this thread works on, of all pixels
+uint of_slots, slots_with_more; // samples of a slot at least; how many of a pixel's slots have one more
+uint pixels = 0u;    // whose first slot has met media
+
+// Samples of a pixel are dealt out evenly to its slots; the earlier ones get one more where they do not divide.
+void take_slot(uint next, inout uint element, inout uint first, inout uint end)
+{
+    slot = next;
+    partial = path_partial(vec3(0.0), vec3(0.0), 0.0, 0u);
+    partial_layers = path_partial_layers(vec3(0.0), vec3(0.0), vec3(0.0));
+    uint from = slot / args.slots, part = slot - from * args.slots;
+    element = args.first + from;
+    uint row = element / camera.size.x;
+    pixel = uvec2(element - row * camera.size.x, row);
+    first = args.first_sample + part * of_slots + min(part, slots_with_more);
+    end = first + of_slots + (part < slots_with_more ? 1u : 0u);
+}
+
+void put_slot()
+{
+    pixels += path_count.hits > 0u && slot % args.slots == 0u ? 1u : 0u;
+    path_count.hits = 0u;
+    partials[slot] = partial;
+    if ((FLAGS & TYN_PATH_LAYERS) != 0u) {
+        layers[slot] = partial_layers;
+    }
+}
+
+// Threads take slots one after another, so that those that run together stay busy until the last is taken. Every
+// thread asks for one at least, so none is left.
+bool path_next(inout uint element, inout uint first, inout uint end)
+{
+    if (!QUEUE) {
+        return false;
+    }
+    put_slot();
+    slot = NO_SLOT;
+    if (path_turns + surface_turns > PATH_TURNS) {
+        return false;
+    }
+    uint next = atomicAdd(taken, 1u);
+    if (next >= args.num * args.slots) {
+        return false;
+    }
+    take_slot(next, element, first, end);
+    return true;
+}
 
 void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction)
 {
@@ -55,22 +106,25 @@ void path_end(path_result result)
 
 void main()
 {
-    uint thread = gl_GlobalInvocationID.x;
     path_load();
     camera = camera_in;
-    if (thread >= args.num * args.slots) {
+    of_slots = args.num_samples / args.slots;
+    slots_with_more = args.num_samples % args.slots;
+    if (gl_GlobalInvocationID.x >= args.num * args.slots) {
         return;
     }
-    uint element = args.first + thread / args.slots, slot = thread % args.slots;
-    pixel = uvec2(element % camera.size.x, element / camera.size.x);
-    // Samples are dealt out evenly; the earlier slots get one more where they do not divide.
-    uint each = args.num_samples / args.slots, more = args.num_samples % args.slots;
-    uint first = args.first_sample + slot * each + min(slot, more);
-    path_run(element, first, first + each + (slot < more ? 1u : 0u));
-
-    partials[thread] = partial;
-    if ((FLAGS & TYN_PATH_LAYERS) != 0u) {
-        layers[thread] = partial_layers;
+    uint next = gl_GlobalInvocationID.x;
+    if (QUEUE) {
+        next = atomicAdd(taken, 1u);
+        if (next >= args.num * args.slots) {
+            return;
+        }
     }
-    path_tally(slot);
+    uint element, first, end;
+    take_slot(next, element, first, end);
+    path_run(element, first, end);
+    if (slot != NO_SLOT) { // without a queue, or a device has ended the loop
+        put_slot();
+    }
+    path_tally(pixels);
 }

@@ -35,11 +35,11 @@ static void record(tyn_recorder *r, const void *params)
     uint32_t spec[TYN_PATH_NUM_SPEC];
     path_specialise(spec, p);
     spec[TYN_PATH_SPEC_FLAGS] &= ~TYN_PATH_THIN;
-    if (p->surfaces && p->num_lights && !p->repeat) {
+    if (p->triangles && p->num_lights && !p->repeat) {
         spec[TYN_PATH_SPEC_FLAGS] |= TYN_PATH_FROM_LIGHTS;
     }
     // A sample of the balance is one of each kind of points.
-    const uint32_t kinds = !p->surfaces                                       ? 2
+    const uint32_t kinds = !p->triangles                                      ? 2
                            : spec[TYN_PATH_SPEC_FLAGS] & TYN_PATH_FROM_LIGHTS ? 4
                                                                               : 3;
     const uint32_t groups = p->num_samples > kinds ? p->num_samples / kinds : 1;

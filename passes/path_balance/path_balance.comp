@@ -97,7 +97,7 @@ vec3 solid_point(uvec4 bits, inout rng_state rng)
     uint index = surface_cell_pick(area_cells[high], bits.y);
     vec2 barycentric = triangle_sample(rng_vec2(bits.zw));
     surface_point point = surface_point_at(index, barycentric);
-    surface_material material = surface_material_at(triangles[index].w);
+    surface_material material = surface_material_at(surface_triangle_at(index).w);
     uvec4 more = rng_next(rng);
     normal = rng_float(more.x) < 0.5 ? point.normal : -point.normal;
     measure = vec3(2.0 * areas.weight);
@@ -252,6 +252,11 @@ void follow_light(inout rng_state rng)
     }
 }
 
+bool path_next(inout uint element, inout uint first, inout uint end)
+{
+    return false;
+}
+
 void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction)
 {
     emitted = vec3(0.0);
@@ -372,5 +377,5 @@ void main()
     uint first = args.first_sample + num_places() * (thread * each + min(thread, more));
     path_run(0u, first, first + num_places() * (each + (thread < more ? 1u : 0u)));
     partials[thread] = partial;
-    path_tally(thread);
+    path_tally(thread == 0u && path_count.hits > 0u ? 1u : 0u);
 }

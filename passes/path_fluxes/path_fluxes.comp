@@ -258,5 +258,5 @@ void main()
     keep(TYN_PATH_FLUX_ABSORBED_SURFACES, absorbed_surfaces, share);
     keep(TYN_PATH_FLUX_ARRIVING_SURFACES, arriving_surfaces, share);
     keep(TYN_PATH_FLUX_MISSING, incident - reflected - transmitted - absorbed_media - absorbed_surfaces, share);
-    path_tally(thread);
+    path_tally(thread == 0u && path_count.hits > 0u ? 1u : 0u);
 }

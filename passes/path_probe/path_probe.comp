@@ -18,6 +18,11 @@ path_probe_partial partial;
 vec3 point;
 vec3 direct, direct_heading; // irradiance from lamps and suns, and where it comes from
 
+bool path_next(inout uint element, inout uint first, inout uint end)
+{
+    return false;
+}
+
 void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction)
 {
     origin = point;
@@ -78,5 +83,5 @@ void main()
     uint first = args.first_sample + slot * each + min(slot, more);
     path_run(element, first, first + each + (slot < more ? 1u : 0u));
     partials[thread] = partial;
-    path_tally(slot);
+    path_tally(slot == 0u && path_count.hits > 0u ? 1u : 0u);
 }

@@ -20,7 +20,7 @@ const float LEAST_COSINE = 1e-3; // of light and surface: what is seen edge-on h
 
 void main()
 {
-    uvec4 t = triangles[triangle];
+    uvec4 t = surface_triangle_at(triangle);
     vec3 a = surface_position(t.x), b = surface_position(t.y), c = surface_position(t.z);
     vec3 world = weights.x * a + weights.y * b + weights.z * c;
     vec3 facet = cross(b - a, c - a);

@@ -9,14 +9,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
-TYN_UNIFORM(0, surfaces, surface_block surfaces);
-// Texels, as rays of a CPU device that run together read different ones.
-layout(binding = 1) uniform samplerBuffer vertices_texels;
-layout(binding = 2) uniform usamplerBuffer triangles_texels;
-layout(binding = 3) uniform usamplerBuffer nodes_texels;
-#define SURFACE_POSITION(i) texelFetch(vertices_texels, int(2u * (i))).xyz
-#define SURFACE_TRIANGLE(i) texelFetch(triangles_texels, int(i))
-#define SURFACE_NODE(i) texelFetch(nodes_texels, int(i))
+#define GEOMETRY_AT 0
 TYN_READ(4, vpls, uint vpl_count; uint vpl_before; uvec2 vpl_pad; light_block vpls[]);
 layout(binding = 5, r32f) uniform writeonly image2D vpl_distances_image;
 layout(binding = 6, rgba32f) uniform writeonly image2D vpl_planes_image;
@@ -102,10 +95,11 @@ void main()
     // Texels at the edges of a map are halves.
     vec2 whole = mix(vec2(1.0), vec2(0.5), lessThan(min(at, side - 1 - at), ivec2(1)));
     float solid_angle = args.solid_angle * whole.x * whole.y / (away * away * away);
-    surface_material m = surface_material_at(SURFACE_TRIANGLE(hit.triangle).w);
+    surface_material m = surface_material_at(surface_triangle_at(hit.triangle).w);
     vec3 colour = vec3(1.0);
     if (m.texture != TYN_SURFACE_NO_TEXTURE) { // its mean
-        colour = surface_texture_level(textures[m.texture], vec2(0.5), textures[m.texture].levels - 1u);
+        surface_texture map = surface_texture_at(m.texture);
+        colour = surface_texture_level(map, vec2(0.5), map.levels - 1u);
     }
     vec3 flux = light.color * surface_reflected(m, colour) * (solid_angle * on_map.z / away);
     if (args.media != 0u) {

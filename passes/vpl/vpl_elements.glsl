@@ -72,7 +72,7 @@ vec3 vpl_flux(vpl_block block, uint element)
     if (i == VPL_NO_TRIANGLE) {
         return vec3(0.0);
     }
-    uvec4 t = triangles[i];
+    uvec4 t = surface_triangle_at(i);
     vec3 emission = surface_emitted(surface_material_at(t.w), block.index < plan.back);
     if (emission.r + emission.g + emission.b <= 0.0) {
         return vec3(0.0);
@@ -127,7 +127,7 @@ vpl_piece vpl_piece_of(vpl_block block, uint element, vec2 part, uint k, uint pi
         piece.normal = texelFetch(rsm_normal_tex, texel, 0).xyz;
         return piece;
     }
-    uvec4 t = triangles[vpl_triangle(block.index, element)];
+    uvec4 t = surface_triangle_at(vpl_triangle(block.index, element));
     vec3 a = vpl_corner(t.x), b = vpl_corner(t.y), c = vpl_corner(t.z);
     vec3 n = cross(b - a, c - a);
     float twice = length(n), share = (part.y - part.x) / float(pieces);

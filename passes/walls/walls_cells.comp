@@ -28,15 +28,15 @@ vec3 texture_at(uint i, uint index, vec3 p, vec3 d)
     vec3 hit = p + where * d - t.a, u = t.b - t.a, v = t.c - t.a;
     float area = dot(t.normal, t.normal);
     vec2 share = vec2(dot(cross(hit, v), t.normal), dot(cross(u, hit), t.normal)) / area;
-    mat3x2 uv = surface_uvs(triangles[i]);
-    vec2 size = vec2(textures[index].size);
+    mat3x2 uv = surface_uvs(surface_triangle_at(i));
+    vec2 size = vec2(surface_texture_at(index).size);
     float texels_per_cell = abs(uv[1].x * uv[2].y - uv[1].y * uv[2].x) * size.x * size.y / sqrt(area);
     return walls_texture(index, uv[0] + share.x * uv[1] + share.y * uv[2], texels_per_cell);
 }
 
 vec3 albedo_at(uint i, vec3 p, vec3 d)
 {
-    surface_material m = surface_material_at(triangles[i].w);
+    surface_material m = surface_material_at(surface_triangle_at(i).w);
     return surface_reflected(m, m.texture != TYN_SURFACE_NO_TEXTURE ? texture_at(i, m.texture, p, d) : vec3(1.0));
 }
 

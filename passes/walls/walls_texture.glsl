@@ -6,7 +6,7 @@
 // `texels_per_area`: of level 0 within the area to be averaged over.
 vec3 walls_texture(uint index, vec2 uv, float texels_per_area)
 {
-    surface_texture t = textures[index];
+    surface_texture t = surface_texture_at(index);
     int level = clamp(int(0.5 * log2(max(texels_per_area, 1.0)) + 0.5), 0, int(t.levels) - 1);
     ivec2 size;
     uint first = surface_level(t, uint(level), size);

@@ -17,6 +17,7 @@ typedef uint32_t tyn_uvec3[3];
 #define TYN_FUNCTION static inline   // of numbers only, by operators that both languages have
 #else
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
 #define tyn_uint uint
 #define tyn_vec2 vec2
 #define tyn_vec3 vec3

@@ -26,6 +26,7 @@
 // together and scatter together, and one whose path has ended starts the next at once.
 //
 // The includer declares the resources of path_resources.glsl, and defines
+//   bool path_next(inout uint element, inout uint first, inout uint end)  -- the next samples; false: there are no more
 //   void path_begin(inout rng_state, vec2 random, out vec3 origin, out vec3 direction)  -- the next path
 //   float path_begin_pdf(vec3 direction)  -- probes: 1/sr of the first directions of the path just begun
 //   void path_direct(vec3 direction, vec3 irradiance)  -- probes: uncollided lamps and emitters at the point itself
@@ -58,7 +59,13 @@ struct path_counts { // of this thread
     uint collisions, non_finite, cut, hits;
 };
 path_counts path_count = path_counts(0u, 0u, 0u, 0u);
+// Turns of this thread's loops, at most: one that no thread enters counts as well. A thread that has made PATH_TURNS
+// leaves the rest to others: eight that run together share a limit of 65535 (docs/writing-a-pass.md, "Shaders"), and
+// their turns add up where they differ.
+uint path_turns = 0u;
+const uint PATH_TURNS = 6000u;
 
+bool path_next(inout uint element, inout uint first, inout uint end);
 void path_begin(inout rng_state rng, vec2 random, out vec3 origin, out vec3 direction);
 float path_begin_pdf(vec3 direction);
 void path_direct(vec3 direction, vec3 irradiance);
@@ -473,15 +480,15 @@ void path_leave(inout path_result result, path_state path, vec3 weight, float dr
     }
 }
 
-// Follows samples [first, end) of one pixel or point.
-void path_run(uint element, uint first, uint end)
+// Follows samples [index, end) of one pixel or point, and what path_next gives after them.
+void path_run(uint element, uint index, uint end)
 {
     path_tint = GREY ? vec3(1.0) : (medium.sigma_s + medium.sigma_a) / max(medium.sigma_t_max, 1e-30);
 
-    uint index = first;
     bool ended = true;
     rng_state rng;
     path_state path;
+    path.steps = 0u;
     path_result result;
     vec4 lobe;                // direction towards a light (w 0) or a lamp's position (w 1); none: w -1
     float pdf_way;            // of the path's way, 1/sr
@@ -489,7 +496,9 @@ void path_run(uint element, uint first, uint end)
 
     for (;;) {
         if (ended) {
-            if (index >= end) {
+            path_turns += path.steps * (SHAPES != 0u ? 2u : 2u + medium.num_shapes);
+            path.steps = 0u;
+            if (index >= end && !path_next(element, index, end)) {
                 break;
             }
             ended = false;
@@ -500,7 +509,6 @@ void path_run(uint element, uint first, uint end)
             path.hero = vec3(1.0, 0.0, 0.0);
             path.kept = 1.0;
             path.depth = 0u;
-            path.steps = 0u;
             path.end = PATH_FAR;
             pdf_way = 1.0;
             draw_map = 0.0;
@@ -518,6 +526,7 @@ void path_run(uint element, uint first, uint end)
             }
         }
 
+        path_turns += LIGHTS < 2u ? 8u : 8u + 3u * args.num_lights; // all are asked, for a lamp and, twice, for a light
         surface_hit ahead = surface_hit(PATH_FAR, SURFACE_NONE, vec2(0.0));
         vec3 period = vec3(0.0);
         if (SURFACES) {
@@ -701,8 +710,8 @@ void path_run(uint element, uint first, uint end)
     }
 }
 
-// Adds this thread's counts to `counters`, which the includer declares.
-void path_tally(uint slot)
+// Adds this thread's counts to `counters`, which the includer declares; and how many pixels or points met media.
+void path_tally(uint pixels)
 {
     atomicAdd(counters.steps, (path_count.collisions + 15u) / 16u);
     if (path_count.non_finite > 0u) {
@@ -711,8 +720,8 @@ void path_tally(uint slot)
     if (path_count.cut > 0u) {
         atomicAdd(counters.cut, path_count.cut);
     }
-    if (path_count.hits > 0u && slot == 0u) {
-        atomicAdd(counters.pixels, 1u);
+    if (pixels > 0u) {
+        atomicAdd(counters.pixels, pixels);
     }
 }
 

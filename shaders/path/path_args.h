@@ -10,7 +10,8 @@
 #define TYN_PATH_SPEC_LIGHTS 3      // 0, 1, or 2 = several
 #define TYN_PATH_SPEC_ENVIRONMENT 4 // TYN_PATH_ENV_*
 #define TYN_PATH_SPEC_FLAGS 5       // TYN_PATH_* bits
-#define TYN_PATH_NUM_SPEC 6
+#define TYN_PATH_SPEC_FEW 6         // triangles, if they are at most TYN_SURFACE_FEW; else 0
+#define TYN_PATH_NUM_SPEC 7
 
 #define TYN_PATH_SHAPES_MAX 4 // shapes that are kept in registers
 
@@ -28,6 +29,8 @@
 #define TYN_PATH_SCATTERED 32u  // probes leave out light that comes straight from its source
 #define TYN_PATH_SURFACES 256u  // there are triangles
 #define TYN_PATH_EMITTERS 512u  // ... and a table by which emissive ones are drawn
+#define TYN_PATH_TEXTURES 4096u // some materials have textures
+#define TYN_PATH_QUEUE 8192u    // images: threads take pieces of work one after another
 #define TYN_PATH_THIN 2048u     // first flights are stretched: args.stretch
 // Balance: the first flights of light are followed from suns and lamps.
 #define TYN_PATH_FROM_LIGHTS 1024u

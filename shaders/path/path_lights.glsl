@@ -26,8 +26,7 @@ light_block light_get(uint index)
     if (LIGHTS == 1u) {
         return path_light0;
     }
-    light_block light = lights[index];
-    return light;
+    return path_light(index);
 }
 
 // What a light sends to p from a point of itself.

@@ -16,12 +16,14 @@ layout(constant_id = 2) const bool GREY = false;
 layout(constant_id = 3) const uint LIGHTS = 2u;
 layout(constant_id = 4) const uint ENVIRONMENT = 2u;
 layout(constant_id = 5) const uint FLAGS = 0u;
+layout(constant_id = 6) const uint FEW = 0u;
+#define SURFACE_FEW FEW
 
 layout(set = 0, binding = 0) uniform sampler3D atlas;
 TYN_UNIFORM(1, medium, medium_block medium_in);
 TYN_READ(2, shapes, shape_block shapes[]);
 layout(set = 0, binding = 3) uniform sampler3D bricks;
-TYN_READ(4, lights, light_block lights[]);
+layout(set = 0, binding = 4) uniform usamplerBuffer lights_texels; // light_block: four rows
 TYN_UNIFORM(5, environment, env_block env_in);
 layout(set = 0, binding = 6) uniform sampler2D env_map_wrapped;
 TYN_READ(7, env_table, env_table_block env_table; env_cell env_cells[]);
@@ -40,8 +42,20 @@ light_block path_light0; // the only light
 vec3 path_atlas_texel;   // 1 / texels of the atlas
 vec4 path_emitters;      // centre of the emissive triangles (M) and squared radius
 
+light_block path_light(uint index)
+{
+    uvec4 rows[4];
+    for (uint i = 0u; i < 4u; i++) {
+        rows[i] = texelFetch(lights_texels, int(4u * index + i));
+    }
+    vec4 color = uintBitsToFloat(rows[1]), direction = uintBitsToFloat(rows[2]), disc = uintBitsToFloat(rows[3]);
+    return light_block(uintBitsToFloat(rows[0].xyz), rows[0].w, color.rgb, color.a, direction.xyz, direction.w, disc.x,
+                       rows[3].y, disc.z, rows[3].w);
+}
+
 void path_load()
 {
+    surface_load_few();
     medium = medium_in;
     args = args_in;
     path_atlas_texel = 1.0 / vec3(textureSize(atlas, 0));
@@ -52,7 +66,7 @@ void path_load()
         path_shapes[i] = shapes[i];
     }
     if (LIGHTS == 1u) {
-        path_light0 = lights[0];
+        path_light0 = path_light(0u);
     }
     if ((FLAGS & TYN_PATH_EMITTERS) != 0u) {
         for (uint i = 0u; i < 3u; i++) {

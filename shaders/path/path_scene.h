@@ -2,6 +2,7 @@
 #pragma once
 #include <tyndall/pass.h>
 #include "shaders/path/path_args.h"
+#include "shaders/surfaces/surface_args.h"
 
 // Of every tracing pass. What is not in the parameter table is set by the method.
 typedef struct tyn_path_params {
@@ -16,10 +17,11 @@ typedef struct tyn_path_params {
     uint32_t threads;     // at most, of a dispatch: what keeps one below the time limit
     uint32_t homogeneous; // one shape and no density grid
     uint32_t num_shapes;
-    uint32_t sphere;   // the only shape is one
-    uint32_t grey;     // sigma_s, sigma_a and g are equal in all channels
-    uint32_t repeat;   // some axis is periodic
-    uint32_t surfaces; // there are triangles
+    uint32_t sphere; // the only shape is one
+    uint32_t grey;   // sigma_s, sigma_a and g are equal in all channels
+    uint32_t repeat; // some axis is periodic
+    uint32_t triangles;
+    uint32_t textures; // of their materials
     uint32_t emitters; // some of them emit and are in the table
     uint32_t emissive;
     uint32_t num_lights;
@@ -93,12 +95,15 @@ static inline void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_p
     spec[TYN_PATH_SPEC_GREY] = p->grey ? 1 : 0;
     spec[TYN_PATH_SPEC_LIGHTS] = p->num_lights < 2 ? p->num_lights : 2;
     spec[TYN_PATH_SPEC_ENVIRONMENT] = p->environment;
+    spec[TYN_PATH_SPEC_FEW] = p->triangles <= TYN_SURFACE_FEW ? p->triangles : 0;
     spec[TYN_PATH_SPEC_FLAGS] =
         (p->repeat ? TYN_PATH_REPEAT : 0) | (p->sphere ? TYN_PATH_SPHERE : 0) |
         (p->emissive ? TYN_PATH_EMISSIVE : 0) | (p->mixture && lights ? TYN_PATH_MIXTURE : 0) |
         (p->num_lamps ? TYN_PATH_LAMPS : 0) |
         (p->equiangular && p->near_lamps ? TYN_PATH_EQUIANGULAR : 0) |
         (p->layers ? TYN_PATH_LAYERS : 0) | (p->scattered ? TYN_PATH_SCATTERED : 0) |
-        (p->stretch > 1 ? TYN_PATH_THIN : 0) | (p->surfaces ? TYN_PATH_SURFACES : 0) |
-        (p->surfaces && p->emitters ? TYN_PATH_EMITTERS : 0);
+        (p->triangles || !p->homogeneous ? TYN_PATH_QUEUE : 0) | // cheap paths are not worth one
+        (p->stretch > 1 ? TYN_PATH_THIN : 0) | (p->triangles ? TYN_PATH_SURFACES : 0) |
+        (p->textures ? TYN_PATH_TEXTURES : 0) |
+        (p->triangles && p->emitters ? TYN_PATH_EMITTERS : 0);
 }

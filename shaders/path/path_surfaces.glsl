@@ -45,6 +45,7 @@ bool surface_trace(vec3 origin, vec3 direction, bool any, inout surface_hit hit,
     vec3 cell = floor((origin + span.x * direction - lo) / medium.extent) * repeats;
     bool found = false;
     for (uint i = 0u; i < SURFACE_PERIODS; i++) {
+        surface_turns++;
         vec3 at = surface_transform(surfaces.to_world, origin - cell * medium.extent);
         if (surface_trace_world(surface_ray_make(at, way, skip), any, hit)) {
             found = true;
@@ -81,7 +82,7 @@ vec3 texel_color(surface_texture map, ivec2 at)
 // Level 0, bilinear: a path is one of many through its pixel, which average what it covers.
 vec3 texture_color(uint index, vec2 uv)
 {
-    surface_texture map = textures[index];
+    surface_texture map = surface_texture_at(index);
     vec2 at = clamp(uv * vec2(map.size) - 0.5, vec2(-1e9), vec2(1e9));
     vec2 texel = floor(at), part = at - texel;
     ivec2 t = ivec2(texel);
@@ -107,8 +108,8 @@ vec3 surface_emission(surface_material material, bool front, out float density)
 vec3 surface_albedo(surface_material material, uint index, vec2 barycentric)
 {
     vec3 colour = vec3(1.0);
-    if (material.texture != TYN_SURFACE_NO_TEXTURE) {
-        mat3x2 uv = surface_uvs(triangles[index]);
+    if ((FLAGS & TYN_PATH_TEXTURES) != 0u && material.texture != TYN_SURFACE_NO_TEXTURE) {
+        mat3x2 uv = surface_uvs(surface_triangle_at(index));
         colour = texture_color(material.texture, uv[0] + barycentric.x * uv[1] + barycentric.y * uv[2]);
     }
     return surface_reflected(material, colour);
@@ -123,7 +124,7 @@ surface_finding surface_find(surface_hit hit, vec3 period, vec3 way)
         f.point.error += 4.0 * SURFACE_EPSILON * (abs(f.point.at) + abs(period));
     }
     bool front = dot(f.point.normal, way) < 0.0;
-    surface_material material = surface_material_at(triangles[hit.triangle].w);
+    surface_material material = surface_material_at(surface_triangle_at(hit.triangle).w);
     f.emission = surface_emission(material, front, f.density);
     f.albedo = surface_albedo(material, hit.triangle, hit.barycentric);
     f.point.normal = front ? f.point.normal : -f.point.normal;
@@ -173,7 +174,7 @@ emitter_sample emitter_draw(vec3 p, inout rng_state rng)
     float distance = length(to), density;
     vec3 direction = to / max(distance, 1e-37);
     float slope = dot(point.normal, direction);
-    surface_material material = surface_material_at(triangles[index].w);
+    surface_material material = surface_material_at(surface_triangle_at(index).w);
     vec3 radiance = surface_emission(material, slope < 0.0, density);
     float pdf = density * distance * distance / max(abs(slope), 1e-12);
     return emitter_sample(direction, distance, radiance, pdf, index);

@@ -23,15 +23,15 @@ struct gbuffer_triangle { // world
 
 gbuffer_triangle gbuffer_triangle_of(uint index)
 {
-    uvec4 t = triangles[index];
-    vec4 a = vertex_rows[2u * t.x], b = vertex_rows[2u * t.y], c = vertex_rows[2u * t.z];
+    uvec4 t = surface_triangle_at(index);
+    vec4 a = surface_vertex_place(t.x), b = surface_vertex_place(t.y), c = surface_vertex_place(t.z);
     gbuffer_triangle f;
     f.corner = a.xyz;
     f.e1 = b.xyz - a.xyz;
     f.e2 = c.xyz - a.xyz;
     f.normal = cross(f.e1, f.e2);
     f.facet = normalize(surface_turn(surfaces.from_world, f.normal));
-    vec4 na = vertex_rows[2u * t.x + 1u], nb = vertex_rows[2u * t.y + 1u], nc = vertex_rows[2u * t.z + 1u];
+    vec4 na = surface_vertex_facing(t.x), nb = surface_vertex_facing(t.y), nc = surface_vertex_facing(t.z);
     f.normals = vec3[3](na.xyz, nb.xyz, nc.xyz);
     f.uvs = vec2[3](vec2(a.w, na.w), vec2(b.w, nb.w), vec2(c.w, nc.w));
     f.material = surface_material_at(t.w);

@@ -5,12 +5,6 @@
 #define TYN_REFLECTANCE_GLSL
 #include "surfaces.glsl"
 
-surface_material surface_material_at(uint index)
-{
-    uvec4 reflected = material_rows[2u * index], sent = material_rows[2u * index + 1u];
-    return surface_material(uintBitsToFloat(reflected.rgb), reflected.a, uintBitsToFloat(sent.rgb), sent.a);
-}
-
 // The share of irradiance that leaves again, evenly in all directions (a Lambertian surface), on both sides.
 // `colour`: of the material's texture, 1 without one.
 vec3 surface_reflected(surface_material m, vec3 colour)

@@ -10,15 +10,25 @@
 #define TYN_SURFACE_NO_TEXTURE 0xffffffffu
 #define TYN_SURFACE_STACK 64 // levels of the hierarchy at most, so nodes that wait in a traversal
 
+#define TYN_SURFACE_FEW 32 // triangles of a scene that rays try one after another, at most
+
+struct surface_corners {
+    tyn_vec3 v0, v1, v2; // world, m
+    tyn_vec3 normal;     // (v1 - v0) x (v2 - v0)
+    tyn_vec3 rounding;   // bounds what rounding has done to its components
+};
+TYN_ASSERT_SIZE(surface_corners, 60);
+
 struct surface_block {    // uniform buffer "surfaces"
     tyn_vec4 to_world[3]; // M -> world: world_i = dot(rows[i].xyz, p) + rows[i].w
     tyn_vec4 from_world[3];
     tyn_vec3 lo; // world box of all triangles, m
     tyn_uint num_triangles;
     tyn_vec3 hi;
-    tyn_uint num_nodes; // of the hierarchy; 0: none
+    tyn_uint num_nodes;                               // of the hierarchy; 0: none
+    TYN_STRUCT(surface_corners) few[TYN_SURFACE_FEW]; // the triangles, if there are no more
 };
-TYN_ASSERT_SIZE(surface_block, 128);
+TYN_ASSERT_SIZE(surface_block, 2048);
 
 struct surface_vertex { // element of storage buffer "vertices"
     tyn_vec3 position;  // world, m

@@ -21,7 +21,7 @@ int surface_wrap(int i, int size, uint rule)
 vec3 surface_texel_srgb(uint first, ivec2 size, uvec2 wrap, ivec2 at)
 {
     int x = surface_wrap(at.x, size.x, wrap.x), y = surface_wrap(at.y, size.y, wrap.y);
-    return unpackUnorm4x8(texels[first + uint(y * size.x + x)]).rgb;
+    return unpackUnorm4x8(texelFetch(texels_words, int(first + uint(y * size.x + x))).r).rgb;
 }
 
 // Its linear colour (IEC 61966-2-1).
@@ -60,7 +60,7 @@ vec3 surface_texture_level(surface_texture t, vec2 uv, uint level)
 // The texture around `uv`; a step of the sample grid moves by `dx` and `dy` on it.
 vec3 surface_texture_around(uint index, vec2 uv, vec2 dx, vec2 dy)
 {
-    surface_texture t = textures[index];
+    surface_texture t = surface_texture_at(index);
     vec2 a = dx * vec2(t.size), b = dy * vec2(t.size);
     float lod = 0.5 * log2(max(max(dot(a, a), dot(b, b)), 1.0));
     lod = min(lod, float(t.levels - 1u));

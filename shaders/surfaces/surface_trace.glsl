@@ -10,19 +10,13 @@
 // surface_offset moves origins to the side they belong to. A ray towards a point of a triangle leaves that triangle
 // out.
 //
-// Before including: surfaces.glsl with GEOMETRY_AT. Or the block `surfaces` (surface_block) and SURFACE_POSITION(i) of
-// vertex i, SURFACE_TRIANGLE(i) and SURFACE_NODE(i), which are uvec4 (a struct surface_node is two of them), to read
-// them otherwise.
+// Define GEOMETRY_AT (surfaces.glsl).
 #ifndef TYN_SURFACE_TRACE_GLSL
 #define TYN_SURFACE_TRACE_GLSL
 #include "surface_frame.glsl"
-#include "surface_args.h"
+#include "surfaces.glsl"
 
-#ifndef SURFACE_NODE
-#define SURFACE_POSITION(i) surface_position(i)
-#define SURFACE_TRIANGLE(i) triangles[i]
-#define SURFACE_NODE(i) nodes[i]
-#endif
+uint surface_turns = 0u; // of the loops below, of this thread so far, at most: one that it does not enter counts
 
 const uint SURFACE_NONE = 0xffffffffu;
 const float SURFACE_EPSILON = 5.9604645e-8; // half an ulp of 1
@@ -70,12 +64,13 @@ vec3 surface_cross(vec3 a, vec3 b, out vec3 sizes)
     return p - q;
 }
 
-// Takes the triangle as the new hit if the ray meets it before `hit.t`.
-bool surface_meet(surface_ray ray, uint index, inout surface_hit hit)
+// Does the ray meet a triangle before `far`, and where? `edges`: barycentric weights of v1 and v2, not yet divided by
+// their sum, edges.z. `normal` of any length; `rounding` bounds what rounding did to it (surface_cross).
+bool surface_meets(surface_ray ray, vec3 v0, vec3 v1, vec3 v2, vec3 normal, vec3 rounding, float far, out float t,
+                   out vec3 edges)
 {
-    uvec4 corners = SURFACE_TRIANGLE(index);
-    vec3 v0 = SURFACE_POSITION(corners.x), v1 = SURFACE_POSITION(corners.y), v2 = SURFACE_POSITION(corners.z);
-    vec3 a = surface_permute(v0 - ray.origin, ray.axis), b = surface_permute(v1 - ray.origin, ray.axis),
+    vec3 from = v0 - ray.origin;
+    vec3 a = surface_permute(from, ray.axis), b = surface_permute(v1 - ray.origin, ray.axis),
          c = surface_permute(v2 - ray.origin, ray.axis);
     // `precise`: neighbours must see the same numbers at their common edge, but for the sign.
     precise vec2 pa = a.xy - ray.shear.xy * a.z;
@@ -84,28 +79,48 @@ bool surface_meet(surface_ray ray, uint index, inout surface_hit hit)
     precise float u = pc.x * pb.y - pc.y * pb.x;
     precise float v = pa.x * pc.y - pa.y * pc.x;
     precise float w = pb.x * pa.y - pb.y * pa.x;
-    if (min(min(u, v), w) < 0.0 && max(max(u, v), w) > 0.0) {
-        return false;
-    }
-    float sum = u + v + w;
-    if (sum == 0.0) {
-        return false;
-    }
-    float t = max(ray.shear.z * (u * a.z + v * b.z + w * c.z) / sum, 0.0);
-    if (!(t < hit.t) || index == ray.skip) {
-        return false;
-    }
+    bool inside = (u >= 0.0 && v >= 0.0 && w >= 0.0) || (u <= 0.0 && v <= 0.0 && w <= 0.0);
+    edges = vec3(v, w, u + v + w);
+    t = max(ray.shear.z * (u * a.z + v * b.z + w * c.z) / edges.z, 0.0);
     // Not from an origin in the triangle's plane, and not if the ray leads away from it.
-    vec3 sizes, from = v0 - ray.origin;
-    vec3 normal = surface_cross(v1 - v0, v2 - v0, sizes);
     float height = dot(normal, from), facing = dot(normal, ray.direction);
-    sizes *= 4.0 * SURFACE_EPSILON;
-    if (abs(height) <= dot(sizes, abs(from)) ||
-        (height * facing < 0.0 && abs(facing) > dot(sizes, abs(ray.direction)))) {
+    bool before = abs(height) > dot(rounding, abs(from)) &&
+                  (height * facing >= 0.0 || abs(facing) <= dot(rounding, abs(ray.direction)));
+    return inside && edges.z != 0.0 && t < far && before;
+}
+
+// Takes the triangle as the new hit if the ray meets it before `hit.t`.
+bool surface_meet(surface_ray ray, uint index, inout surface_hit hit)
+{
+    uvec4 corners = surface_triangle_at(index);
+    vec3 v0 = surface_position(corners.x), v1 = surface_position(corners.y), v2 = surface_position(corners.z);
+    vec3 sizes, normal = surface_cross(v1 - v0, v2 - v0, sizes), edges;
+    float t;
+    if (!surface_meets(ray, v0, v1, v2, normal, 4.0 * SURFACE_EPSILON * sizes, hit.t, t, edges) || index == ray.skip) {
         return false;
     }
-    hit = surface_hit(t, index, vec2(v, w) / sum);
+    hit = surface_hit(t, index, edges.xy / edges.z);
     return true;
+}
+
+// All triangles, which are SURFACE_FEW: all threads that run together try the same one, and read nothing.
+bool surface_meet_few(surface_ray ray, inout surface_hit hit)
+{
+    bool found = false;
+    vec3 edges = vec3(1.0);
+    [[unroll]] for (uint i = 0u; i < SURFACE_FEW; i++) {
+        surface_corners c = surface_few[i];
+        float t;
+        vec3 e;
+        if (surface_meets(ray, c.v0, c.v1, c.v2, c.normal, c.rounding, hit.t, t, e) && i != ray.skip) {
+            hit.t = t;
+            hit.triangle = i;
+            edges = e;
+            found = true;
+        }
+    }
+    hit.barycentric = found ? edges.xy / edges.z : hit.barycentric;
+    return found;
 }
 
 // Where the ray enters a box; SURFACE_MISSED if it does not before `far`. Never misses a box for rounding: Ize,
@@ -126,17 +141,21 @@ struct surface_entry {
 
 surface_entry surface_enter_node(surface_ray ray, uint node, float far)
 {
-    uvec4 lo = SURFACE_NODE(2u * node), hi = SURFACE_NODE(2u * node + 1u);
+    uvec4 lo = surface_node_row(node, 0u), hi = surface_node_row(node, 1u);
     return surface_entry(surface_enter(ray, uintBitsToFloat(lo.xyz), uintBitsToFloat(hi.xyz), far), lo.w, hi.w);
 }
 
 // The nearest hit before `hit.t`, or with `any` the first that is found. False if there is none.
 bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
 {
+    if (SURFACE_FEW > 0u) {
+        return surface_meet_few(ray, hit);
+    }
     bool found = false;
     if (surfaces.num_nodes == 0u) {
         for (uint i = 0u; i < surfaces.num_triangles && !(any && found); i++) {
             found = surface_meet(ray, i, hit) || found;
+            surface_turns++;
         }
         return found;
     }
@@ -149,7 +168,9 @@ bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
     uint first = root.first, count = root.count;
     // Lanes that run together look for leaves together, then try their triangles together.
     for (bool more = true; more;) {
+        surface_turns += 3u;
         while (count == 0u && more) {
+            surface_turns++;
             surface_entry left = surface_enter_node(ray, first, hit.t);
             surface_entry right = surface_enter_node(ray, first + 1u, hit.t);
             bool turned = right.at < left.at;
@@ -162,18 +183,19 @@ bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
             more = goes_on || depth > 0;
             if (!goes_on && more) { // no loop of one turn: turns are counted (docs/writing-a-pass.md, "Shaders")
                 uint at = stack[--depth];
-                first = SURFACE_NODE(2u * at).w;
-                count = SURFACE_NODE(2u * at + 1u).w;
+                first = surface_node_row(at, 0u).w;
+                count = surface_node_row(at, 1u).w;
             }
         }
         for (uint i = first; more && i < first + count; i++) {
+            surface_turns++;
             found = surface_meet(ray, i, hit) || found;
         }
         more = more && depth > 0 && !(any && found);
         if (more) {
             uint at = stack[--depth];
-            first = SURFACE_NODE(2u * at).w;
-            count = SURFACE_NODE(2u * at + 1u).w;
+            first = surface_node_row(at, 0u).w;
+            count = surface_node_row(at, 1u).w;
         }
     }
     return found;
@@ -203,8 +225,8 @@ struct surface_point {
 
 surface_point surface_point_at(uint index, vec2 barycentric)
 {
-    uvec4 corners = SURFACE_TRIANGLE(index);
-    vec3 v0 = SURFACE_POSITION(corners.x), v1 = SURFACE_POSITION(corners.y), v2 = SURFACE_POSITION(corners.z);
+    uvec4 corners = surface_triangle_at(index);
+    vec3 v0 = surface_position(corners.x), v1 = surface_position(corners.y), v2 = surface_position(corners.z);
     vec3 e1 = v1 - v0, e2 = v2 - v0;
     vec3 longest = max(abs(e1), abs(e2));
     float scale = 1.0 / max(max(longest.x, max(longest.y, longest.z)), 1e-37); // squares stay in range

@@ -2,25 +2,65 @@
 //
 // Define GEOMETRY_AT as the first binding of the bundle TYN_GEOMETRY (bundles.h), or MATERIALS_AT as that of
 // TYN_MATERIALS (reflectance.glsl has what reads materials), or both. The structs of surface_args.h are read as rows of
-// four: a CPU device reads a vector per lane in little more than the time of a number.
+// four: a CPU device reads a vector per lane in little more than the time of a number. All are texels, as threads
+// that run together read places of their own. A kernel that defines SURFACE_FEW, a specialisation constant (0, or the
+// number of triangles if they are at most TYN_SURFACE_FEW), keeps their corners (surface_load_few).
 #ifndef TYN_SURFACES_GLSL
 #define TYN_SURFACES_GLSL
 #include "surface_args.h"
 
 #ifdef GEOMETRY_AT
 TYN_UNIFORM(GEOMETRY_AT, surfaces, surface_block surfaces);
-TYN_READ(GEOMETRY_AT + 1, vertices, vec4 vertex_rows[]); // position, u; normal, v
-TYN_READ(GEOMETRY_AT + 2, triangles, uvec4 triangles[]); // corners, material
-TYN_READ(GEOMETRY_AT + 3, nodes, uvec4 nodes[]);
+layout(set = 0, binding = GEOMETRY_AT + 1) uniform samplerBuffer vertices_texels;
+layout(set = 0, binding = GEOMETRY_AT + 2) uniform usamplerBuffer triangles_texels;
+layout(set = 0, binding = GEOMETRY_AT + 3) uniform usamplerBuffer nodes_texels;
+
+// Position, u.
+vec4 surface_vertex_place(uint vertex)
+{
+    return texelFetch(vertices_texels, int(2u * vertex));
+}
+
+// Normal, v.
+vec4 surface_vertex_facing(uint vertex)
+{
+    return texelFetch(vertices_texels, int(2u * vertex + 1u));
+}
 
 vec3 surface_position(uint vertex)
 {
-    return vertex_rows[2u * vertex].xyz;
+    return surface_vertex_place(vertex).xyz;
+}
+
+// Corners, material.
+uvec4 surface_triangle_at(uint index)
+{
+    return texelFetch(triangles_texels, int(index));
+}
+
+// Row 0 of a node: lo, first; row 1: hi, count.
+uvec4 surface_node_row(uint node, uint row)
+{
+    return texelFetch(nodes_texels, int(2u * node + row));
+}
+
+#ifndef SURFACE_FEW
+#define SURFACE_FEW 0u
+#endif
+surface_corners surface_few[TYN_SURFACE_FEW];
+
+// Where SURFACE_FEW is not 0, before rays are traced. Copies, as some devices read a uniform array thread by thread
+// wherever threads have diverged.
+void surface_load_few()
+{
+    [[unroll]] for (uint i = 0u; i < SURFACE_FEW; i++) {
+        surface_few[i] = surfaces.few[i];
+    }
 }
 
 vec2 surface_uv(uint vertex)
 {
-    return vec2(vertex_rows[2u * vertex].w, vertex_rows[2u * vertex + 1u].w);
+    return vec2(surface_vertex_place(vertex).w, surface_vertex_facing(vertex).w);
 }
 
 // Texture coordinates of a triangle's first corner, and of the others from there.
@@ -31,9 +71,30 @@ mat3x2 surface_uvs(uvec4 triangle)
 }
 #endif
 #ifdef MATERIALS_AT
-TYN_READ(MATERIALS_AT, materials, uvec4 material_rows[]); // albedo, flags; emission, texture
-TYN_READ(MATERIALS_AT + 1, textures, surface_texture textures[]);
-TYN_READ(MATERIALS_AT + 2, texels, uint texels[]);
+layout(set = 0, binding = MATERIALS_AT) uniform usamplerBuffer materials_texels;
+layout(set = 0, binding = MATERIALS_AT + 1) uniform usamplerBuffer textures_words;
+layout(set = 0, binding = MATERIALS_AT + 2) uniform usamplerBuffer texels_words;
+
+surface_material surface_material_at(uint index)
+{
+    uvec4 reflected = texelFetch(materials_texels, int(2u * index));
+    uvec4 sent = texelFetch(materials_texels, int(2u * index + 1u));
+    return surface_material(uintBitsToFloat(reflected.rgb), reflected.a, uintBitsToFloat(sent.rgb), sent.a);
+}
+
+uint surface_texture_word(uint index, uint word)
+{
+    return texelFetch(textures_words, int(6u * index + word)).r;
+}
+
+surface_texture surface_texture_at(uint index)
+{
+    uint w[6];
+    for (uint i = 0u; i < 6u; i++) {
+        w[i] = surface_texture_word(index, i);
+    }
+    return surface_texture(w[0], w[1], uvec2(w[2], w[3]), uvec2(w[4], w[5]));
+}
 #endif
 
 #endif

@@ -23,7 +23,7 @@ vec3 walls_lattice_place(vec3 world)
 
 walls_triangle walls_triangle_at(uint i)
 {
-    uvec4 t = triangles[i];
+    uvec4 t = surface_triangle_at(i);
     return walls_triangle_of(walls_lattice_place(surface_position(t.x)), walls_lattice_place(surface_position(t.y)),
                              walls_lattice_place(surface_position(t.z)));
 }

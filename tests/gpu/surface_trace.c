@@ -79,20 +79,46 @@ static void to_m(const struct surface_block *b, const double world[3], float m[3
     }
 }
 
+// How rays find triangles: all of them are tried, by the hierarchy, or as constants of the kernel.
+typedef enum tracing { ALL, TREE, FEW } tracing;
+
+static void set_few(struct surface_block *block, const tyn_surfaces *s)
+{
+    for (uint32_t i = 0; i < s->num_triangles; i++) {
+        struct surface_corners *c = &block->few[i];
+        float *corners[3] = {c->v0, c->v1, c->v2};
+        for (int k = 0; k < 3; k++) {
+            memcpy(corners[k], s->vertices[s->triangles[i].vertices[k]].position, sizeof c->v0);
+        }
+        for (int a = 0; a < 3; a++) {
+            const int b = (a + 1) % 3, d = (a + 2) % 3;
+            const float p = (c->v1[b] - c->v0[b]) * (c->v2[d] - c->v0[d]),
+                        q = (c->v1[d] - c->v0[d]) * (c->v2[b] - c->v0[b]);
+            c->normal[a] = p - q;
+            c->rounding[a] = 2.3841858e-7f * (fabsf(p) + fabsf(q));
+        }
+    }
+}
+
 static const ray_out *trace(gpu_test *t, const tyn_scene *scene, struct surface_block *block,
-                            bool from_surface, bool hierarchy)
+                            bool from_surface, tracing how)
 {
     static const point_input inputs[] = {
         {"surfaces", TYN_BUFFER, TYN_USE_UNIFORM},
-        {"vertices", TYN_BUFFER, TYN_USE_STORAGE_READ},
-        {"triangles", TYN_BUFFER, TYN_USE_STORAGE_READ},
-        {"nodes", TYN_BUFFER, TYN_USE_STORAGE_READ},
+        {"vertices", TYN_BUFFER, TYN_USE_TEXELS_VEC4},
+        {"triangles", TYN_BUFFER, TYN_USE_TEXELS_UVEC4},
+        {"nodes", TYN_BUFFER, TYN_USE_TEXELS_UVEC4},
     };
     static point_pass pass;
     const tyn_surfaces *s = &scene->surfaces;
     point_pass_init(&pass, surface_trace_eval_spirv, sizeof surface_trace_eval_spirv, inputs, 4);
     block->num_triangles = s->num_triangles;
-    block->num_nodes = hierarchy ? s->num_nodes : 0;
+    block->num_nodes = how == TREE ? s->num_nodes : 0;
+    uint32_t few = how == FEW ? s->num_triangles : 0;
+    assert_in_range(few, 0, TYN_SURFACE_FEW);
+    if (few) {
+        set_few(block, s);
+    }
     tyn_graph_begin(t->graph);
     tyn_ref refs[6] = {
         gpu_buffer(t, "surfaces", block, sizeof *block),
@@ -101,7 +127,7 @@ static const ray_out *trace(gpu_test *t, const tyn_scene *scene, struct surface_
         gpu_buffer(t, "nodes", s->nodes, s->num_nodes * sizeof *s->nodes),
         gpu_buffer(t, "points", rays, sizeof rays),
     };
-    point_pass_params params = {COUNT, sizeof(ray_out), from_surface, pass.results};
+    point_pass_params params = {COUNT, sizeof(ray_out), from_surface + 2 * few, pass.results};
     assert_int_equal(tyn_graph_add(t->graph, &pass.desc, &params, refs), TYN_OK);
     tyn_graph_output(t->graph, "results", refs[pass.results], true);
     gpu_run(t);
@@ -158,7 +184,7 @@ static void closed_meshes(void **state)
                 rays[k].direction[a] = (float)(d[a] / sqrt(length));
             }
         }
-        const ray_out *out = trace(*state, &scene, &block, false, true);
+        const ray_out *out = trace(*state, &scene, &block, false, rings == 3 && i % 2 ? FEW : TREE);
         int leaks = 0, wrong = 0;
         for (int k = 0; k < COUNT; k++) {
             leaks += !(out[k].t < 4 * scale);
@@ -196,13 +222,13 @@ static void same_as_all(void **state)
             rays[k].direction[a] = a == k / 8 % 3 ? (k / 24 % 2 ? 1 : -1) : 0;
         }
     }
-    const ray_out *out = trace(*state, &scene, &block, false, false);
+    const ray_out *out = trace(*state, &scene, &block, false, ALL);
     int hits = 0;
     for (int k = 0; k < COUNT; k++) {
         all[k] = out[k].t;
         hits += out[k].t < 1e30f;
     }
-    out = trace(*state, &scene, &block, false, true);
+    out = trace(*state, &scene, &block, false, TREE);
     for (int k = 0; k < COUNT; k++) {
         if (!(fabsf(all[k] - out[k].t) <= 1e-6f * all[k])) {
             fail_msg("ray %d: %.9g of all, %.9g by the hierarchy", k, (double)all[k],
@@ -254,7 +280,7 @@ static void from_surfaces(void **state)
                 rays[k].direction[a] = (float)(d[a] / length);
             }
         }
-        const ray_out *out = trace(*state, &scene, &block, true, true);
+        const ray_out *out = trace(*state, &scene, &block, true, box && i % 2 ? FEW : TREE);
         int wrong = 0, none = 0;
         for (int k = 0; k < COUNT; k++) {
             bool hit = out[k].t < 1e30f;
@@ -293,7 +319,7 @@ static void only_boxes_met(void **state)
         memcpy(rays[k].origin, origin, sizeof origin);
         memcpy(rays[k].direction, (float[]){0, 0, k % 2 ? 1 : -1}, sizeof origin);
     }
-    const ray_out *out = trace(*state, &scene, &block, false, true);
+    const ray_out *out = trace(*state, &scene, &block, false, TREE);
     for (int k = 0; k < COUNT; k++) {
         if (k % 2) {
             assert_near(out[k].t, 5, 1e-5);

@@ -2,11 +2,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+layout(local_size_x = 64) in;
+// 1: from a point of a triangle; and twice the number of triangles, if they are few.
+layout(constant_id = 0) const uint SPEC = 0u;
+const bool FROM_SURFACE = (SPEC & 1u) != 0u;
+const uint FEW = SPEC >> 1u;
+#define SURFACE_FEW FEW
 #define GEOMETRY_AT 0
 #include "shaders/surfaces/surfaces.glsl"
-
-layout(local_size_x = 64) in;
-layout(constant_id = 0) const uint FROM_SURFACE = 0u;
 
 struct ray_in {
     vec3 origin; // M
@@ -33,8 +36,9 @@ void main()
     if (i >= rays.length()) {
         return;
     }
+    surface_load_few();
     ray_in r = rays[i];
-    if (FROM_SURFACE != 0u) {
+    if (FROM_SURFACE) {
         surface_point p = surface_point_at(r.triangle, r.barycentric);
         vec3 normal = r.side * p.normal;
         r.origin = surface_offset(p, normal);
