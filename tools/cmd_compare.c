@@ -275,19 +275,19 @@ static int read_png(app *a, const char *path, float **planes, metrics_image *ima
 // What radiance is needed for.
 static bool check_png(app *a, const compare_args *args)
 {
-    const char *option = args->block > 1  ? "--block"
-                         : args->heat     ? "--heat"
-                         : args->hdr_flip ? "--hdr-flip"
-                                          : NULL;
+    const char *given = args->block > 1  ? "--block"
+                        : args->heat     ? "--heat"
+                        : args->hdr_flip ? "--hdr-flip"
+                                         : NULL;
     if (!is_png(args->image) || !is_png(args->reference)) {
         app_error(a, "%s, %s: compare two .exr files or two .png files, not one of each",
                   args->image, args->reference);
         return false;
     }
-    if (option) {
-        app_error(a, "%s: is for .exr files; a .png holds no radiance", option);
+    if (given) {
+        app_error(a, "%s: is for .exr files; a .png holds no radiance", given);
     }
-    return !option;
+    return !given;
 }
 
 static int compare_png(app *a, const compare_args *args)

@@ -123,6 +123,7 @@ tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
         return result;
     }
     *job = (tyn_job){.method = &ctx->method->info,
+                     .cpu_device = ctx->dev->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU,
                      .scene = frame->scene,
                      .view = view,
                      .settings = ctx->settings,

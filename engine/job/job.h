@@ -65,6 +65,7 @@ typedef struct tyn_job {
     tyn_scene_refs refs;
     uint32_t outputs;       // set of tyn_output that is wanted
     bool readback;          // copy the outputs to host memory
+    bool cpu_device;        // the device is a processor: it reads uniform arrays thread by thread
     float view_to_clip[16]; // of the host's depth
     const tyn_log *log;
     void (*warn)(void *user, const char *line); // goes to the report's warnings, once per text

@@ -157,6 +157,7 @@ static void set_params(tyn_path_params *p, const tyn_job *job, const tyn_pass_de
     p->repeat = m->repeat[0] || m->repeat[1] || m->repeat[2];
     p->triangles = frame->num_triangles;
     p->textures = frame->num_textures;
+    p->keep_few = job->cpu_device;
     p->emitters = job->refs.emitters.resource != 0 && !p->repeat; // else there is no end of them
     p->emissive = frame->emissive;
     p->num_lights = frame->lights.num_directional + frame->lights.num_lamps;

@@ -30,6 +30,7 @@
 #define TYN_PATH_SURFACES 256u  // there are triangles
 #define TYN_PATH_EMITTERS 512u  // ... and a table by which emissive ones are drawn
 #define TYN_PATH_TEXTURES 4096u // some materials have textures
+#define TYN_PATH_KEEP_FEW 16384u // few triangles are kept in registers: the device reads uniform arrays slowly
 #define TYN_PATH_QUEUE 8192u    // images: threads take pieces of work one after another
 #define TYN_PATH_THIN 2048u     // first flights are stretched: args.stretch
 // Balance: the first flights of light are followed from suns and lamps.

@@ -22,6 +22,7 @@ typedef struct tyn_path_params {
     uint32_t repeat; // some axis is periodic
     uint32_t triangles;
     uint32_t textures; // of their materials
+    uint32_t keep_few; // the device is a processor
     uint32_t emitters; // some of them emit and are in the table
     uint32_t emissive;
     uint32_t num_lights;
@@ -104,6 +105,6 @@ static inline void path_specialise(uint32_t spec[TYN_PATH_NUM_SPEC], const tyn_p
         (p->layers ? TYN_PATH_LAYERS : 0) | (p->scattered ? TYN_PATH_SCATTERED : 0) |
         (p->triangles || !p->homogeneous ? TYN_PATH_QUEUE : 0) | // cheap paths are not worth one
         (p->stretch > 1 ? TYN_PATH_THIN : 0) | (p->triangles ? TYN_PATH_SURFACES : 0) |
-        (p->textures ? TYN_PATH_TEXTURES : 0) |
+        (p->textures ? TYN_PATH_TEXTURES : 0) | (p->keep_few ? TYN_PATH_KEEP_FEW : 0) |
         (p->triangles && p->emitters ? TYN_PATH_EMITTERS : 0);
 }

@@ -109,7 +109,7 @@ bool surface_meet_few(surface_ray ray, inout surface_hit hit)
     bool found = false;
     vec3 edges = vec3(1.0);
     [[unroll]] for (uint i = 0u; i < SURFACE_FEW; i++) {
-        surface_corners c = surface_few[i];
+        surface_corners c = surface_corners_of(i);
         float t;
         vec3 e;
         if (surface_meets(ray, c.v0, c.v1, c.v2, c.normal, c.rounding, hit.t, t, e) && i != ray.skip) {

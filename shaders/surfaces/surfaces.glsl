@@ -4,7 +4,8 @@
 // TYN_MATERIALS (reflectance.glsl has what reads materials), or both. The structs of surface_args.h are read as rows of
 // four: a CPU device reads a vector per lane in little more than the time of a number. All are texels, as threads
 // that run together read places of their own. A kernel that defines SURFACE_FEW, a specialisation constant (0, or the
-// number of triangles if they are at most TYN_SURFACE_FEW), keeps their corners (surface_load_few).
+// number of triangles if they are at most TYN_SURFACE_FEW), tries them one after another; with SURFACE_KEPT it keeps their
+// corners (surface_load_few).
 #ifndef TYN_SURFACES_GLSL
 #define TYN_SURFACES_GLSL
 #include "surface_args.h"
@@ -47,15 +48,27 @@ uvec4 surface_node_row(uint node, uint row)
 #ifndef SURFACE_FEW
 #define SURFACE_FEW 0u
 #endif
+#ifndef SURFACE_KEPT
+#define SURFACE_KEPT false
+#endif
 surface_corners surface_few[TYN_SURFACE_FEW];
 
-// Where SURFACE_FEW is not 0, before rays are traced. Copies, as some devices read a uniform array thread by thread
-// wherever threads have diverged.
+// Where SURFACE_FEW is not 0, before rays are traced. A processor reads a uniform array thread by thread wherever threads
+// have diverged, and has room for copies; a graphics card reads it for all at once, and has not.
 void surface_load_few()
 {
-    [[unroll]] for (uint i = 0u; i < SURFACE_FEW; i++) {
+    [[unroll]] for (uint i = 0u; i < (SURFACE_KEPT ? SURFACE_FEW : 0u); i++) {
         surface_few[i] = surfaces.few[i];
     }
+}
+
+surface_corners surface_corners_of(uint i)
+{
+    if (SURFACE_KEPT) {
+        return surface_few[i];
+    }
+    surface_corners c = surfaces.few[i];
+    return c;
 }
 
 vec2 surface_uv(uint vertex)
