@@ -187,6 +187,58 @@ cp out file-report.json
 [ "$(get file-report.json bands.outside)" = "list 0" ] || fail "bench: bands in the report"
 near "$(get file-report.json scenes.0.runs.0.errors.0.error)" \
     "$(get report/report.json scenes.0.runs.1.errors.0.error)" 0.0001 "bench: error against the same picture"
+# peers: in the runs of a scene and beside the baselines, on no front though nothing is as fast and as good
+peers() { # HASH
+    cat >peers.json <<END
+{ "schema": "tyndall-peer", "version": 1, "name": "Other 1.0", "group": "other", "date": "2026-11-22T00:00:00Z",
+  "scenes": [ { "name": "cube", "reference": { "hash": "$1" }, "mean": { "bias": 0.01, "se": 0.02 }, "runs": [
+    { "spp": 1, "ms": 0.002, "renderings": 3, "errors": [ { "block": 4, "rel_l1": 0.2 }, { "block": 1, "rel_l1": 0.8 }, { "block": 0, "error": 0 } ] },
+    { "spp": 4, "ms": 0.008, "errors": [ { "block": 4, "rel_l1": 0.1 }, { "block": 1, "rel_l1": 0.4 }, { "block": 0, "error": 0 } ] } ] } ] }
+END
+}
+sed 's/"block": 4/"peers": ["peers.json"], "block": 4/; s/ } } \] }$/ } } ], "baselines": [ { "sweep": { "spp": [1, 4] } } ] }/' file.json >peer-suite.json
+peers "$(get file-report.json scenes.0.reference.key)"
+works bench --suite peer-suite.json --scenes "$scenes" --report peer --quiet
+grep -q "^  to 10 % on 4 px, Other 1.0 0.0[0-9]* ms, path .* ms, pop " out || fail "bench: no times of a peer: $(cat out)"
+[ "$(get peer/report.json scenes.0.runs)" = "list 5" ] && [ "$(get peer/report.json scenes.0.runs.4.name)" = "Other 1.0, 4 spp" ] ||
+    fail "bench: the runs of a peer are not in a scene"
+for is in "runs.4.peer true" "runs.4.baseline false" "runs.4.sampling true" "runs.4.key null" "runs.4.frame_ms.animated_light 0.008" \
+    "runs.3.frames.animated_light 3" "runs.4.frame_ms.camera_moved null" "runs.4.errors.2.block 0" "peers.0.name Other" "peers.0.mean.se 0.02" \
+    "peers.0.equal_error.0.error 0.1" "peers.0.equal_error.0.measured true" "peers.0.equal_error.0.baseline path" "peers.0.equal_error.0.method pop"; do
+    [ "$(get peer/report.json "scenes.0.${is% *}" | cut -d ' ' -f 1)" = "${is#* }" ] || fail "bench: a peer: $is: $(get peer/report.json "scenes.0.${is% *}")"
+done
+near "$(get peer/report.json scenes.0.peers.0.equal_error.0.ms)" 0.007 0.001 "bench: a peer's time to 10 %"
+python3 "$(dirname "$0")/recompute.py" peer/report.json >computed || fail "bench: beside a peer: $(cat computed)"
+grep -q '"other"' peer/report.json || fail "bench: no group of a peer"
+for list in fronts.0.runs fronts.1.runs fronts.2.runs floors ranges equal_error; do
+    count=$(get peer/report.json "scenes.0.$list") i=0
+    while [ $i -lt "${count#list }" ]; do
+        case $(get peer/report.json "scenes.0.$list.$i")$("$helpers/json_get" peer/report.json "scenes.0.$list.$i.method" 2>/dev/null) in
+        "" | null | *other) fail "bench: a peer is in $list" ;;
+        esac
+        i=$((i + 1))
+    done
+done
+# ... of another reference they are left out, and what is none is refused
+peers 0123456789abcdef
+run bench --suite peer-suite.json --scenes "$scenes" --report peer
+grep -q "peers.json: 'cube' is measured against another reference, and left out" err || fail "bench: a peer of another reference: $(cat err)"
+[ "$(get peer/report.json scenes.0.runs) $(get peer/report.json scenes.0.peers)" = "list 3 list 0" ] || fail "bench: a peer of another reference was taken"
+refuses_peers() { # WORDS SED
+    peers 0
+    sed "$2" peers.json >wrong && mv wrong peers.json
+    refuses 2 "peers.json: $1" bench --suite peer-suite.json --scenes "$scenes" --quiet
+}
+refuses_peers "is not a tyndall-peer of version 1" 's/"version": 1/"version": 2/'
+refuses_peers "is not a tyndall-peer of version 1" 's/tyndall-peer/tyndall-report/'
+refuses_peers "group: is that of a run or of another peer" 's/"other"/"pop"/'
+refuses_peers "scenes[0].runs[1]: needs" 's/"ms": 0.008/"ms": 0/'
+refuses_peers "scenes[0].runs[0].errors: must be over the blocks" 's/"block": 4/"block": 8/'
+refuses_peers "scenes[0].runs[0].errors: the first two need" 's/"rel_l1": 0.8/"rel_l1": null/'
+rm peers.json
+refuses 2 "peers: 'peers.json' is neither beside the suite nor in" bench --suite peer-suite.json --scenes "$scenes" --quiet
+sed 's/\["peers.json"\]/"peers.json"/' peer-suite.json >wrong.json
+refuses 2 "peers: must be a list of up to 8 names of files" bench --suite wrong.json --scenes "$scenes" --quiet
 bands 0.5 0.6
 run bench --suite file.json --scenes "$scenes" --bands bands.json --quiet
 [ "$code" = 1 ] && [ "$(grep -c 'cube: pop: errors.0.bias is .*, outside of 0.5 to 0.6 (a test)' err)" = 1 ] ||

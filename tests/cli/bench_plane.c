@@ -162,6 +162,42 @@ static void promise(void **state)
     cJSON_Delete(runs);
 }
 
+// A peer is beside the baselines and pop at 10, 5 and 2 %, and no baseline itself.
+static void peer(void **state)
+{
+    (void)state;
+    cJSON *runs = cJSON_CreateArray(), *list = cJSON_CreateArray();
+    add_run(runs, "pop", false, 30, 0.04, 0.015);
+    add_run(runs, "path", true, 10, 0.2, 0.015);
+    add_run(runs, "path", true, 160, 0.05, 0.015);
+    add_run(runs, "cycles", true, 4, 0.1, 0.015);
+    add_run(runs, "cycles", true, 64, 0.025, 0.015);
+    for (int i = 3; i < 5; i++) {
+        cJSON_ReplaceItemInObject(cJSON_GetArrayItem(runs, i), "baseline", cJSON_CreateFalse());
+    }
+    plane p;
+    assert_true(plane_make(&p, runs, 0, 8, TIME_LIGHT));
+    plane_add_peer(&p, "nobody", list);
+    assert_int_equal(cJSON_GetArraySize(list), 0);
+    plane_add_peer(&p, "cycles", list);
+    plane_finish(&p);
+    list = written(list);
+    assert_int_equal(cJSON_GetArraySize(list), 3);
+    assert_true(fabs(json_figure(list, "0.error") - 0.1) < 1e-9);
+    assert_true(fabs(json_figure(list, "0.ms") - 4) < 1e-3);
+    assert_true(fabs(json_figure(list, "0.baseline_ms") - 40) < 1e-3);
+    assert_true(fabs(json_figure(list, "1.ms") - 16) <
+                1e-3); // half the error in four times the time
+    assert_true(fabs(json_figure(list, "1.baseline_ms") - 160) < 1e-3);
+    assert_true(fabs(json_figure(list, "1.method_ms") - 30) < 1e-3);
+    assert_string_equal(json_text(cJSON_GetArrayItem(list, 1), "baseline"), "path");
+    assert_true(isnan(json_figure(list, "2.ms")) && isnan(json_figure(list, "2.method_ms")));
+    assert_string_equal(json_text(cJSON_GetArrayItem(list, 2), "why"),
+                        "the noise of its reference, 1.5 %, is more than half of this");
+    cJSON_Delete(list);
+    cJSON_Delete(runs);
+}
+
 // In frames after the camera has moved what is kept is free, and what samples begins anew.
 static void moved_camera(void **state)
 {
@@ -225,8 +261,9 @@ static void not_finite(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(noisy),   cmocka_unit_test(many_groups),  cmocka_unit_test(large_errors),
-        cmocka_unit_test(promise), cmocka_unit_test(moved_camera), cmocka_unit_test(not_finite),
+        cmocka_unit_test(noisy),      cmocka_unit_test(many_groups), cmocka_unit_test(large_errors),
+        cmocka_unit_test(promise),    cmocka_unit_test(peer),        cmocka_unit_test(moved_camera),
+        cmocka_unit_test(not_finite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

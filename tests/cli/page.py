@@ -97,6 +97,8 @@ def check_tables(folder, tables):
     check("whether what is promised holds", "so it is in 2 of 3 scenes, and in 3 where only the camera has moved" in text and "| smoke | 3.0 % | yes | yes | pop is on the front above 2.7 %" in text
           and re.search(r"\| 3\.0 % \| no \| yes \|", text), text)
     check("what the noise hides", "to <= 1.3 % in" in text, text)
+    check("a peer beside path", "## Cycles 0.0 beside `path`" in text and "| smoke | not reached | about 9.30 s | 19.0 ms |" in text
+          and "| smoke | 21 | -0.40 % | 0.30 % | 0.40 % | -0.8 |" in text, text)
     check("markup in names is none", "<script" not in text.replace("\\<", ""), text)
     names = [s["name"] for s in json.load(open(f"{folder}/report.json", encoding="utf-8"))["scenes"]]
     said = subprocess.run([tables, "--summary", f"{names[2]},{names[0]}", f"{folder}/report.json"], check=True, capture_output=True, text=True).stdout
@@ -180,6 +182,16 @@ def check_plots(b, report):
     promises = b.run("[...document.querySelectorAll('#verdicts .promise')].map((p) => [p.classList.contains('kept'), p.textContent])")
     check("a line says whether what is promised holds", [p[0] for p in promises] == [True, True, False]
           and promises[0][1].startswith("yes pop is on") and promises[2][1].startswith("no pop is not on"), str(promises))
+
+    # A renderer of others has a line of its own, a row, and no record.
+    peer = next(k for k, run in enumerate(report["scenes"][0]["runs"]) if run.get("peer"))
+    keys = b.run(scene(0, "[...scene.querySelectorAll('.legend button')].map((k) => k.textContent)"))
+    check("a peer has a line of its own", "cycles" in keys, str(keys))
+    b.run(scene(0, f"scene.querySelector('.runs tr[data-run=\"{peer}\"] button').click()"))
+    record = b.run(scene(0, "scene.querySelector('.cite pre').textContent"))
+    check("and is cited as what it is", "Cycles 0.0, 4 spp" in record and "a processor of others" in record and "not of this library" in record
+          and report["device"]["driver"] not in record and "null" not in record, record)
+    check("the page says what peers are", b.run("document.getElementById('notes').textContent.includes('Cycles 0.0: rendered by others')"))
 
     # Sorted by a column: what has no value last.
     heads = b.run(scene(1, "[...scene.querySelectorAll('.runs thead button')].map(b => b.textContent)"))

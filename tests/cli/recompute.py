@@ -159,8 +159,24 @@ def noise_of(scene, measure):
     return max((r["errors"][measure].get("n") or 0 for r in scene["runs"] if not r["failed"]), default=0)
 
 
+def check_peers(scene):
+    """Renderers of others: their times beside those of the baselines and of the runs."""
+    for peer in scene.get("peers") or []:
+        for e in peer["equal_error"]:
+            measure = next(i for i, b in measures_of(scene) if b == e["block"])
+            points, error = points_of(scene["runs"], measure, "animated_light"), e["error"]
+            own = envelope([p for p in points if p.run["group"] == peer["peer"]])
+            vague = error < 2 * noise_of(scene, measure)
+            ms, measured = (None, False) if vague else time_by_samples(own, error)
+            base, base_measured, name = (None, False, None) if vague else best_baseline(points, error)
+            compare(f"{scene['name']}, {peer['peer']}, block {e['block']}, {error}", e,
+                    {"ms": ms, "measured": measured, "baseline_ms": base, "baseline_measured": base_measured, "baseline": name,
+                     "method_ms": None if vague else own_time(points, e["method"], error)})
+
+
 def check_scene(scene):
-    runs = scene["runs"]
+    check_peers(scene)
+    runs = [r for r in scene["runs"] if not r.get("peer")]
     for frame in FRAMES:
         said = scene if frame == "animated_light" else scene["times"][frame]
         where = f"{scene['name']}, {frame}"

@@ -228,6 +228,41 @@ static cJSON *make_moved(const cJSON *scene)
     return moved;
 }
 
+// A renderer of others: a run that is on no front though nothing is as fast and as good, and its times beside `path`.
+static void add_peer(cJSON *scene, cJSON *runs)
+{
+    static const char *const unknown[] = {"key",    "preset",  "failed",    "setup_ms",
+                                          "memory", "flicker", "imbalance", "picture"};
+    cJSON *run = cJSON_CreateObject(), *errors;
+    cJSON_AddStringToObject(run, "name", "Cycles 0.0, 4 spp");
+    cJSON_AddStringToObject(run, "method", "cycles");
+    cJSON_AddStringToObject(run, "group", "cycles");
+    cJSON_AddStringToObject(run, "device", "a processor of others");
+    cJSON_AddBoolToObject(run, "peer", true);
+    cJSON_AddBoolToObject(run, "sampling", true);
+    cJSON_AddBoolToObject(run, "baseline", false);
+    cJSON_AddNumberToObject(cJSON_AddObjectToObject(run, "settings"), "spp", 4);
+    errors = cJSON_AddArrayToObject(run, "errors");
+    cJSON_AddItemToArray(errors, error_entry(8, 0.02, 0.006, 0.02));
+    cJSON_AddItemToArray(errors, error_entry(1, 0.15, 0.05, 0.15));
+    cJSON_AddNumberToObject(cJSON_AddObjectToObject(run, "frame_ms"), "animated_light", 19);
+    for (size_t i = 0; i < ARRAY_SIZE(unknown); i++) {
+        cJSON_AddNullToObject(run, unknown[i]);
+    }
+    cJSON_AddArrayToObject(run, "nodes");
+    cJSON_AddArrayToObject(run, "warnings");
+    cJSON_AddItemToArray(runs, run);
+    cJSON *peer = cJSON_Parse("[{\"peer\": \"cycles\", \"name\": \"Cycles 0.0\", \"mean\": "
+                              "{\"bias\": -0.004, \"se\": 0.003, "
+                              "\"reference_se\": 0.004, \"renderings\": 4, \"samples\": 21}, "
+                              "\"equal_error\": [{\"block\": 8, "
+                              "\"error\": 0.02, \"ms\": 19, \"measured\": true, \"baseline\": "
+                              "\"path\", \"baseline_ms\": 9300, "
+                              "\"baseline_measured\": false, \"method\": \"pop\", \"method_ms\": "
+                              "null, \"why\": null}]}]");
+    cJSON_AddItemToObject(scene, "peers", peer);
+}
+
 static cJSON *make_scene(app *a, const char *dir, int index)
 {
     static const char *const names[NUM_SCENES] = {"smoke", HOSTILE, "milk"};
@@ -276,6 +311,9 @@ static cJSON *make_scene(app *a, const char *dir, int index)
             cJSON_AddItemToArray(
                 keys, cJSON_CreateString(cJSON_GetStringValue(cJSON_GetObjectItem(run, "key"))));
         }
+    }
+    if (index == 0) {
+        add_peer(scene, runs);
     }
     cJSON *equal = cJSON_AddArrayToObject(scene, "equal_error");
     const double ratios[NUM_SCENES] = {1, 2.6, 0.05};

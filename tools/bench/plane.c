@@ -12,8 +12,9 @@
 enum { NUM_ASKED = 3, MAX_RANGES = 64 };
 // What is promised of `pop`: the front at errors above both of these.
 static const double promised_error = 0.03, promised_floors = 1.2;
-// Errors at which methods are compared, and values of FLIP.
+// Errors at which methods are compared, and values of FLIP; those at which a peer is, which samples as `path` does.
 static const double asked_errors[NUM_ASKED] = {0.10, 0.05, 0.03};
+static const double peer_errors[NUM_ASKED] = {0.10, 0.05, 0.02};
 static const double asked_flips[NUM_ASKED] = {0.05, 0.02, 0.01};
 
 // ---- runs as points ---------------------------------------------------------------------------
@@ -29,6 +30,16 @@ static uint32_t line_of(plane *p, const cJSON *run)
     p->lines[p->num_lines] =
         (plane_line){name, json_true(run, "sampling"), json_true(run, "baseline")};
     return p->num_lines++;
+}
+
+static int64_t find_line(const plane *p, const char *name)
+{
+    for (uint32_t i = 0; i < p->num_lines; i++) {
+        if (strcmp(p->lines[i].name, name) == 0) {
+            return i;
+        }
+    }
+    return -1;
 }
 
 static double time_of(const cJSON *run, bench_time time)
@@ -216,10 +227,19 @@ static cJSON *json_comparison(const plane *p, double own_ms, double error, bool 
     return entry;
 }
 
+static void add_why(const plane *p, cJSON *entry, bool vague)
+{
+    char noise[16];
+    char *why = vague ? text_format("the noise of its reference, %s, is more than half of this",
+                                    percent(p->noise, noise))
+                      : NULL;
+    cJSON_AddItemToObject(entry, "why", why ? cJSON_CreateString(why) : cJSON_CreateNull());
+    free(why);
+}
+
 // Below twice the noise of the reference an error is not known well enough to be asked for: "why", and no times.
 static cJSON *json_equal_error(const plane *p, double error, uint32_t own_line)
 {
-    char noise[16];
     const bool vague = error < 2 * p->noise;
     const front_time own =
         vague ? (front_time){NAN, -1, false} : front_time_at(p->points, p->count, own_line, error);
@@ -228,11 +248,7 @@ static cJSON *json_equal_error(const plane *p, double error, uint32_t own_line)
     cJSON_AddStringToObject(entry, "method", p->lines[own_line].name);
     json_add_float(entry, "ms", own.ms);
     cJSON_AddItemToObject(entry, "run", json_key(p, own.point));
-    char *why = vague ? text_format("the noise of its reference, %s, is more than half of this",
-                                    percent(p->noise, noise))
-                      : NULL;
-    cJSON_AddItemToObject(entry, "why", why ? cJSON_CreateString(why) : cJSON_CreateNull());
-    free(why);
+    add_why(p, entry, vague);
     return entry;
 }
 
@@ -274,6 +290,47 @@ void plane_add_own_equal_errors(const plane *p, cJSON *runs)
     }
 }
 
+// ---- peers ------------------------------------------------------------------------------------
+
+static void add_time(cJSON *entry, const char *ms, const char *measured, front_time time)
+{
+    json_add_float(entry, ms, time.ms);
+    cJSON_AddBoolToObject(entry, measured, time.measured);
+}
+
+static cJSON *json_peer(const plane *p, uint32_t line, double error)
+{
+    const front_time none = {NAN, -1, false};
+    const bool vague = error < 2 * p->noise;
+    const int64_t own_line = find_line(p, tyn_method_default());
+    uint32_t base_line = 0;
+    const front_time base = vague ? none : best_baseline(p, error, &base_line);
+    cJSON *entry = cJSON_CreateObject();
+    cJSON_AddNumberToObject(entry, "block", p->block);
+    cJSON_AddNumberToObject(entry, "error", error);
+    add_time(entry, "ms", "measured",
+             vague ? none : front_time_at(p->points, p->count, line, error));
+    cJSON_AddItemToObject(entry, "baseline",
+                          isnan(base.ms) ? cJSON_CreateNull()
+                                         : cJSON_CreateString(p->lines[base_line].name));
+    add_time(entry, "baseline_ms", "baseline_measured", base);
+    cJSON_AddStringToObject(entry, "method", tyn_method_default());
+    json_add_float(entry, "method_ms",
+                   vague || own_line < 0
+                       ? NAN
+                       : front_time_at(p->points, p->count, (uint32_t)own_line, error).ms);
+    add_why(p, entry, vague);
+    return entry;
+}
+
+void plane_add_peer(const plane *p, const char *peer, cJSON *list)
+{
+    const int64_t line = find_line(p, peer);
+    for (int e = 0; e < NUM_ASKED && line >= 0 && p->block > 0; e++) {
+        cJSON_AddItemToArray(list, json_peer(p, (uint32_t)line, peer_errors[e]));
+    }
+}
+
 // ---- who is fastest ---------------------------------------------------------------------------
 
 cJSON *plane_ranges(const plane *p)
@@ -306,16 +363,6 @@ static char *where(double low, double high)
     percent(low, from);
     return isfinite(high) ? text_format("from %s to %s", from, percent(high, to))
                           : text_format("above %s", from);
-}
-
-static int64_t find_line(const plane *p, const char *name)
-{
-    for (uint32_t i = 0; i < p->num_lines; i++) {
-        if (strcmp(p->lines[i].name, name) == 0) {
-            return i;
-        }
-    }
-    return -1;
 }
 
 // "at errors above 5.0 % pop is not on the front everywhere: path wins above 12 %"

@@ -35,6 +35,8 @@ cJSON *plane_verdicts(const plane *p); // the same as sentences
 cJSON *plane_promise(const plane *p);
 // Every method against the baselines, at the errors asked for: at each against the one that is the fastest there.
 void plane_add_equal_errors(const plane *p, cJSON *list);
+// A peer, a group of the runs of plane_make, beside the baselines and `pop`: the times to 10, 5 and 2 %. FLIP: nothing.
+void plane_add_peer(const plane *p, const char *peer, cJSON *list);
 // What the fastest of the baselines needs for the error of each run that does not sample, unless that is vague, and
 // what error the best of them has after its time (of a
 // sweep only for TIME_LIGHT), and which errors are vague; `runs` are those of plane_make.

@@ -159,9 +159,13 @@ static void print_run(const cJSON *run)
         print_ms(json_figure(run, path));
     }
     print_ms(json_figure(run, "setup_ms"));
-    printf(" %8.1f\n",
-           (json_figure(run, "memory.persistent") + json_figure(run, "memory.transient")) /
-               (1 << 20));
+    const double bytes =
+        json_figure(run, "memory.persistent") + json_figure(run, "memory.transient");
+    if (isnan(bytes)) {
+        printf(" %8s\n", "-");
+    } else {
+        printf(" %8.1f\n", bytes / (1 << 20));
+    }
     if (json_true(run, "sampling")) {
         return;
     }
@@ -186,6 +190,28 @@ static void print_run(const cJSON *run)
     }
     printf("\n");
     print_equal(run);
+}
+
+static void print_time(const char *name, double ms, bool measured)
+{
+    if (isnan(ms)) {
+        printf(", %s -", name);
+    } else {
+        printf(", %s %s%.*f ms", name, measured ? "" : "about ", ms < 10, ms);
+    }
+}
+
+// "  to 5 % on 8 px, cycles 812 ms, path 640 ms, pop 31 ms"
+static void print_peer(const char *name, const cJSON *entry)
+{
+    const char *baseline = json_text(entry, "baseline");
+    printf("  to %.0f %% on %.0f px", 100 * json_figure(entry, "error"),
+           json_figure(entry, "block"));
+    print_time(name, json_figure(entry, "ms"), json_true(entry, "measured"));
+    print_time(baseline[0] ? baseline : "baselines", json_figure(entry, "baseline_ms"),
+               json_true(entry, "baseline_measured"));
+    print_time(json_text(entry, "method"), json_figure(entry, "method_ms"), true);
+    printf("\n");
 }
 
 void bench_print_scene(const cJSON *scene)
@@ -216,6 +242,14 @@ void bench_print_scene(const cJSON *scene)
     const char *moved = json_text(list_of(camera, "promise"), "text");
     if (moved[0]) {
         printf("  in frames after the camera has moved: %s\n", moved);
+    }
+    cJSON_ArrayForEach(item, list_of(scene, "peers"))
+    {
+        const cJSON *entry;
+        cJSON_ArrayForEach(entry, list_of(item, "equal_error"))
+        {
+            print_peer(json_text(item, "name"), entry);
+        }
     }
     fflush(stdout);
 }

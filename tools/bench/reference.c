@@ -146,6 +146,18 @@ static void content_key(bench_reference *r)
     snprintf(r->key, sizeof r->key, "%016llx", (unsigned long long)key);
 }
 
+// Gives the hash of a file's bytes, or "".
+static void hash_file(const char *path, char key[17])
+{
+    void *data = NULL;
+    size_t size = 0;
+    key[0] = '\0';
+    if (tyn_file_read(path, UINT64_C(1) << 32, &data, &size, NULL) == TYN_OK) {
+        snprintf(key, 17, "%016llx", (unsigned long long)text_hash(data, size, 0));
+    }
+    free(data);
+}
+
 typedef enum found { FOUND_NOT, FOUND_OTHER, FOUND } found;
 
 // Reads such a file, if it is of this scene.
@@ -246,6 +258,7 @@ static int from_path(app *a, const bench_machine *on, const bench_suite *suite,
         keeper k = {.a = a, .scene = bench_scene_hash(scene, view), .stored = make ? stored : NULL};
         if (!make && read_own(stored, view, k.scene, r) == FOUND) {
             r->stored = true;
+            hash_file(stored, r->file_key);
         } else {
             k.cached = cached_path(k.scene, &m.info);
             look(&k, stored, view, r);
@@ -308,14 +321,9 @@ static bool check_values(app *a, const bench_reference *r, const char *file)
 
 static int from_file(app *a, const bench_scene *spec, const tyn_view *view, bench_reference *r)
 {
-    void *data = NULL;
-    size_t size = 0;
-    tyn_result result = tyn_file_read(spec->reference, UINT64_C(1) << 32, &data, &size, &a->log);
-    if (result == TYN_OK) {
-        snprintf(r->key, sizeof r->key, "%016llx", (unsigned long long)text_hash(data, size, 0));
-        result = tyn_exr_read(&r->file, spec->reference, &a->log);
-    }
-    free(data);
+    const tyn_result result = tyn_exr_read(&r->file, spec->reference, &a->log);
+    hash_file(spec->reference, r->file_key);
+    snprintf(r->key, sizeof r->key, "%s", r->file_key);
     if (result == TYN_OK && !take_channels(r, view)) {
         app_error(a, "%s: must have the channels R, G, B and the size of '%s', %ux%u, not %ux%u",
                   spec->reference, spec->name, view->width, view->height, r->file.width,

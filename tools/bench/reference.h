@@ -25,6 +25,8 @@ typedef struct bench_reference {
     tyn_image_file file;
     metrics_image image; // borrows from file
     char key[17];        // hash of its content
+    char file_key
+        [17]; // hash of the file that it was taken from, the suite's or the user's; "": from none
     uint32_t blocks[BENCH_BLOCKS];
     uint32_t spp;               // of `path`; 0: it is a file
     double seconds, spent;      // what rendering it took in all, and in this call

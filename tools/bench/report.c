@@ -2,6 +2,7 @@
 #include "report.h"
 #include "front.h"
 #include "json.h"
+#include "peers.h"
 #include "plane.h"
 #include "regime.h"
 #include "stats.h"
@@ -100,7 +101,9 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
     bool known = regime_of(&c->scene, &c->view.camera, &found);
     cJSON_AddItemToObject(scene, "regime", known ? regime_json(&found) : cJSON_CreateNull());
     cJSON_AddItemToObject(scene, "reference", json_reference(c));
+    // Before the peers join: fronts and comparisons are of this library's runs.
     add_times(scene, c, runs);
+    cJSON_AddItemToObject(scene, "peers", peers_add(c, runs));
     cJSON_AddItemToObject(scene, "runs", runs);
     cJSON_AddItemToObject(scene, "left_out", left_out);
     // What is used from here on is what a reader of the file sees.

@@ -1,5 +1,6 @@
 // suite.c -- what to measure: reads and checks a suite file (docs/bench.md).
 #include "suite.h"
+#include "peers.h"
 #include "suite_reader.h"
 #include "bench/suite_default.h"
 #include <ctype.h>
@@ -402,6 +403,25 @@ static void name_scenes_and_runs(suite_reader *r, bench_suite *s)
 
 // ---- the suite --------------------------------------------------------------------------------
 
+static void read_peers(suite_reader *r, const char *folder, bench_suite *s)
+{
+    const cJSON *files = cJSON_GetObjectItemCaseSensitive(s->root, "peers"), *file;
+    const int count = cJSON_GetArraySize(files);
+    if (files && (!cJSON_IsArray(files) || count > BENCH_MAX_PEERS)) {
+        suite_fault(r, "peers", "must be a list of up to 8 names of files");
+    }
+    cJSON_ArrayForEach(file, files)
+    {
+        if (r->ok && !cJSON_IsString(file)) {
+            suite_fault(r, "peers", "must be a list of up to 8 names of files");
+        }
+        char *path = r->ok ? suite_find(r, "peers", file->valuestring, folder) : NULL;
+        if (path) {
+            r->ok = peers_load(r->a, path, s, &s->peers[s->num_peers++]);
+        }
+    }
+}
+
 static void read_suite(suite_reader *r, const char *folder, bench_suite *s)
 {
     static const char *const keys[] = {"name",
@@ -420,6 +440,7 @@ static void read_suite(suite_reader *r, const char *folder, bench_suite *s)
                                        "references",
                                        "reference_noise",
                                        "reference_seconds",
+                                       "peers",
                                        NULL};
     const cJSON *root = s->root;
     suite_check_keys(r, root, keys);
@@ -462,6 +483,7 @@ static void read_suite(suite_reader *r, const char *folder, bench_suite *s)
         name_scenes_and_runs(r, s);
         check_only(r, s);
     }
+    read_peers(r, folder, s);
 }
 
 int bench_suite_load(app *a, const char *path, const char *scenes, bench_suite *suite)
@@ -501,6 +523,10 @@ void bench_suite_finish(bench_suite *suite)
         free(suite->runs[i].slug);
         free(suite->runs[i].defines);
         cJSON_Delete(suite->runs[i].spec);
+    }
+    for (uint32_t i = 0; i < suite->num_peers; i++) {
+        free(suite->peers[i].file);
+        cJSON_Delete(suite->peers[i].root);
     }
     free(suite->references);
     cJSON_Delete(suite->root);

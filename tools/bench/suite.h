@@ -4,7 +4,13 @@
 #include "scene_setup.h"
 #include <cjson/cJSON.h>
 
-enum { BENCH_MAX_SCENES = 64, BENCH_MAX_RUNS = 256, BENCH_MAX_RATIOS = 8, BENCH_MAX_SWEEP = 4 };
+enum {
+    BENCH_MAX_SCENES = 64,
+    BENCH_MAX_RUNS = 256,
+    BENCH_MAX_RATIOS = 8,
+    BENCH_MAX_PEERS = 8,
+    BENCH_MAX_SWEEP = 4
+};
 
 // The reference's picture, beside those of the runs.
 #define BENCH_REFERENCE_SLUG "reference"
@@ -45,6 +51,13 @@ typedef struct bench_ratio { // of the cold frames of two scenes
     const char *name, *of, *to;
 } bench_ratio;
 
+// A renderer that is not of this library: what a file says of its errors and times (peers.h).
+typedef struct bench_peer {
+    char *file;
+    const char *name, *group;
+    cJSON *root;
+} bench_peer;
+
 typedef struct bench_suite {
     cJSON *root;
     const char *file; // for messages; the caller's
@@ -54,7 +67,8 @@ typedef struct bench_suite {
     bench_scene scenes[BENCH_MAX_SCENES];
     bench_run runs[BENCH_MAX_RUNS];
     bench_ratio ratios[BENCH_MAX_RATIOS];
-    uint32_t num_scenes, num_runs, num_ratios;
+    bench_peer peers[BENCH_MAX_PEERS];
+    uint32_t num_scenes, num_runs, num_ratios, num_peers;
     uint32_t block;       // beside 1; 2 or more
     uint32_t frames;      // timing frames of each kind
     float timing_seconds; // no further frame of a kind is begun after this long

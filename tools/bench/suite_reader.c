@@ -239,12 +239,8 @@ char *suite_folder(suite_reader *r, const cJSON *object, const char *key)
     return name ? beside_suite(r, name) : NULL;
 }
 
-char *suite_file(suite_reader *r, const cJSON *object, const char *key, const char *folder)
+char *suite_find(suite_reader *r, const char *key, const char *name, const char *folder)
 {
-    const char *name = suite_text(r, object, key, false);
-    if (!name) {
-        return NULL;
-    }
     char *beside = beside_suite(r, name);
     if (beside && access(beside, R_OK) == 0) {
         return beside;
@@ -260,4 +256,10 @@ char *suite_file(suite_reader *r, const cJSON *object, const char *key, const ch
              folder ? folder : "");
     suite_fault(r, key, right);
     return NULL;
+}
+
+char *suite_file(suite_reader *r, const cJSON *object, const char *key, const char *folder)
+{
+    const char *name = suite_text(r, object, key, false);
+    return name ? suite_find(r, key, name, folder) : NULL;
 }

@@ -33,6 +33,9 @@ uint32_t suite_list(suite_reader *r, const cJSON *root, const char *key, uint32_
                     uint32_t max);
 const cJSON *suite_element(suite_reader *r, const cJSON *root, const char *key, uint32_t index);
 
+// The file of this name, beside the suite or in `folder`: a new string; NULL after a fault, which is at `key`.
+char *suite_find(suite_reader *r, const char *key, const char *name, const char *folder);
+
 // The file that a key names, beside the suite or in `folder`: a new string; NULL: the key is not there, or a fault.
 char *suite_file(suite_reader *r, const cJSON *object, const char *key, const char *folder);
 

@@ -69,11 +69,12 @@ function ratioList(ratios) {
         make("ul", {}, list(ratios).map((r) => make("li", {}, `${r.name}${r.run ? `, ${r.run}` : ""}: ${times(r.times)}`))));
 }
 
-function notes() {
+function notes(report) {
     const entry = (name, text) => [make("dt", {}, name), make("dd", {}, text)];
     return make("section", {id: "notes", class: "notes"}, make("h2", {}, "How to read it"), make("dl", {},
         entry("error", "rel_l1, sum of |x - r| over sum of |r| of linear radiance, without what the noise of the reference explains: sqrt(rel_l1\u00b2 - n\u00b2). Over blocks, the pixels of a block are averaged first. \u201c\u2264\u201d: the noise hides it, and it is this or less; \u201c~\u201d: below twice the noise, where it comes out too small. A sampling method's own noise is an error of it."),
         entry("time", "Medians, wall clock from submission to the end; of path the whole rendering, which begins anew whatever changes. As chosen at the top: the first picture (the driver is warm, everything else is made from nothing); the medium has changed (grids are uploaded, every node runs); the light has changed (every node runs but those of the media); the camera has moved (what does not depend on it is as it was)."),
+        report.scenes.some((scene) => list(scene.peers).length > 0) && entry("peers", `${[...new Set(report.scenes.flatMap((scene) => list(scene.peers).map((p) => p.name)))].join(", ")}: rendered by others than this library and measured apart, by the time of rendering alone. They are drawn, and listed among the runs; fronts, verdicts and means leave them out.`),
         entry("equal error", "The time of the cheapest run of a method that has this error, interpolated along its line in the plot; \u201cabout\u201d where it had to be extrapolated."),
         entry("ceilings", "What the device reached in kernels that do one thing only, in the same run; a node's share is the time that its work would take at that ceiling over the time it took."),
         entry("difference", "Left minus right, mean of the channels, as a share of the reference's mean radiance. Pictures are in the page as linear half floats (steps of 0.05\u00a0%), tone-mapped here. Magenta is not a number."),
@@ -125,7 +126,7 @@ function startPage() {
     }
     const styles = groupStyles(report);
     page.append(...[pageHead(report), contents(report), bandsAlert(report.bands),
-        chosenComparisons(report, styles), ratioList(report.ratios), stressSection(report.stress, styles), notes(),
+        chosenComparisons(report, styles), ratioList(report.ratios), stressSection(report.stress, styles), notes(report),
         make("footer", {}, `Tyndall ${report.tyndall ?? ""}. Made by tyndall bench; the figures are those of report.json.`)]
         .flat().filter(Boolean));
     // On paper everything that can be opened is open.

@@ -104,13 +104,13 @@ function citation(report, scene, run) {
     return [
         `Tyndall ${report.tyndall}, suite ${(report.suite || {}).name} (${(report.suite || {}).hash})`,
         `scene ${scene.name}, ${list(scene.size).join(TIMES)} pixels (${scene.hash})`,
-        `run ${run.name}: method ${run.method}; ${settingsText(run.settings) || "default settings"}; seed ${run.seed ?? NONE}`,
+        `run ${run.name}: ${run.peer ? "" : `method ${run.method}; `}${settingsText(run.settings) || "default settings"}; seed ${run.seed ?? NONE}`,
         `error ${errors || NONE}`,
-        `time ${duration(lightOf(run))} after the light has changed${run.frames ? `, median of ${run.frames.animated_light}` : ""}`,
+        `time ${duration(lightOf(run))}${run.peer ? " of rendering alone" : " after the light has changed"}${run.frames ? `, median of ${run.frames.animated_light}` : ""}`,
         `reference ${reference.method}${isNumber(reference.spp) ? `, ${reference.spp} samples a pixel, seed ${reference.seed}` : ""} (${reference.key})`,
-        `device ${device.name}; driver ${device.driver}`,
+        run.peer ? `device ${run.device ?? NONE}` : `device ${device.name}; driver ${device.driver}`,
         inputs && `inputs ${inputs}`,
-        `date ${run.date ?? report.date}; record ${run.key}`,
+        `date ${run.date ?? report.date}; ${run.peer ? "not of this library: from a file of the suite's peers" : `record ${run.key}`}`,
     ].filter(Boolean).join("\n").replaceAll(NARROW, " ");
 }
 

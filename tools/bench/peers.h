@@ -1,0 +1,13 @@
+// peers.h -- renderers that are not of this library, in a report: their errors and times come from a file that
+// something else has measured (docs/bench.md, "Peers").
+#pragma once
+#include "suite.h"
+
+typedef struct bench_case bench_case; // measure.h
+
+// Reads and checks such a file. Takes `path` over. False: said.
+bool peers_load(app *a, char *path, const bench_suite *suite, bench_peer *peer);
+
+// Adds what the suite's peers have measured in this scene to its runs, after all that is compared among these. Gives
+// the scene's list "peers" (docs/report-schema.md). Pictures measured against another reference are left out, and said.
+cJSON *peers_add(const bench_case *c, cJSON *runs);
