@@ -38,7 +38,7 @@ void main()
         }
         got *= dx * dx;
         bvec3 lit = greaterThan(got, vec3(0.0));
-        vec3 scale = mix(vec3(1.0), sent / max(got, vec3(1e-30)), lit);
+        vec3 scale = mix(vec3(1.0), min(sent / max(got, vec3(1e-30)), vec3(1e6)), lit); // finite, as those of beams
         power.scale[me] = scale;
         found[me].xy = vec2(sum_of(sent), sum_of(abs(sent - scale * got)));
         if (any(lit)) {
