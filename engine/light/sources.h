@@ -31,8 +31,8 @@ typedef struct tyn_surface_light {
 // Surfaces as the lattice sees them; {0} without.
 typedef struct tyn_walls {
     tyn_wall_refs cut;
-    tyn_ref hits;  // the triangles that cut links meet
-    tyn_ref light; // what they reflect of light that is not the lattice's
+    tyn_ref hits;        // the triangles that cut links meet
+    tyn_ref light;       // what they reflect of light that is not the lattice's
     tyn_ref light_power; // of virtual point lights, for the balance
 } tyn_walls;
 

@@ -30,7 +30,7 @@ typedef struct light_chain {
     float *inscatter; // (dims + 2) RGBA texels, malloc'ed; seen
                       // from +x far away
     tyn_extent inscatter_size;
-    float *source;       // RGBA per cell, channels stacked, malloc'ed; with suns or ordinates
+    float *source; // RGBA per cell, channels stacked, malloc'ed; with suns or ordinates
     double ms_cells, ms_source, ms_solve;
 } light_chain;
 
