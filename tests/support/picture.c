@@ -212,6 +212,17 @@ picture_error picture_compare(const picture *a, const picture *reference, uint32
     return e;
 }
 
+const tyn_probe_result *scene_probes(tyn_device *dev, tyn_offline *off, const tyn_scene *scene,
+                                     const float (*points)[3], uint32_t n)
+{
+    tyn_view view = {
+        .width = 1, .height = 1, .outputs = TYN_OUTPUT_PROBE, .points = points, .num_points = n};
+    tyn_camera_frame_scene(&view.camera, scene);
+    offline_frame(off, scene, &view);
+    assert_int_equal(tyn_device_validation_messages(dev), 0);
+    return tyn_offline_output(off, TYN_OUTPUT_PROBE);
+}
+
 double scene_imbalance(tyn_device *dev, const char *method, const tyn_scene *scene,
                        const char *settings)
 {

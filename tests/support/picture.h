@@ -47,6 +47,10 @@ picture_error picture_compare(const picture *a, const picture *reference, uint32
 // A method with settings: "pass.option=value ...", or NULL.
 tyn_offline *scene_open(tyn_device *dev, const char *method, const char *settings);
 
+// A frame of n points (num_points of tyn_view), and what it finds there.
+const tyn_probe_result *scene_probes(tyn_device *dev, tyn_offline *off, const tyn_scene *scene,
+                                     const float (*points)[3], uint32_t n);
+
 // The balance of a method: imbalance of the worst channel.
 double scene_imbalance(tyn_device *dev, const char *method, const tyn_scene *scene,
                        const char *settings);
