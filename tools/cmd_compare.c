@@ -19,6 +19,23 @@ typedef struct compare_args {
     bool json, quiet;
 } compare_args;
 
+// Are the standard errors of channel c, of the layer `name`, what they must be?
+static bool check_errors(app *a, const metrics_image *image, int c, const char *path,
+                         const char *name)
+{
+    const size_t num = (size_t)image->width * image->height;
+    for (size_t i = 0; image->se[c] && i < num; i++) {
+        if (!(image->se[c][i] >= 0 && isfinite(image->se[c][i]))) {
+            app_error(a,
+                      "%s: %s is %g at pixel (%zu, %zu); standard errors must be finite and not "
+                      "negative",
+                      path, name, (double)image->se[c][i], i % image->width, i / image->width);
+            return false;
+        }
+    }
+    return true;
+}
+
 // The channels by their names; `image` borrows from `file`. A grey image has one channel Y.
 static bool find_channels(app *a, const tyn_image_file *file, const char *path,
                           metrics_image *image)
@@ -37,6 +54,9 @@ static bool find_channels(app *a, const tyn_image_file *file, const char *path,
             return false;
         }
         image->se[c] = tyn_image_file_channel(file, errors[c]);
+        if (!check_errors(a, image, c, path, errors[c])) {
+            return false;
+        }
     }
     return true;
 }
@@ -392,9 +412,9 @@ const command cmd_compare = {
                "    flip      mean of LDR-FLIP (2020), 67 pixels per degree: how different the two "
                "look\n"
                "    hdr_flip  mean of HDR-FLIP (2021), with --hdr-flip\n"
-               "    nan       values that are not finite in either image; they are left out, and "
-               "the exit\n"
-               "              code is 1\n"
+               "    nan       values that are not finite in either image; where there are any, the "
+               "others are\n"
+               "              nan (--json: null), and the exit code is 1\n"
                "\n"
                "Where the size is not a multiple of the block, the blocks at the right and bottom "
                "edge hold\n"

@@ -21,7 +21,7 @@ typedef struct blocks {
 
 static double square_or_0(const float *channel, size_t i)
 {
-    return channel && isfinite(channel[i]) ? (double)channel[i] * channel[i] : 0;
+    return channel ? (double)channel[i] * channel[i] : 0;
 }
 
 static sample average(const metrics_image *image, const metrics_image *reference, int channel,
@@ -118,12 +118,31 @@ static bool percentile_95(const blocks *b, double total, double *result)
     return true;
 }
 
+// Of all values of an image that are finite.
+static double sum_of(const metrics_image *image)
+{
+    double sum = 0;
+    for (int c = 0; c < 3; c++) {
+        for (size_t i = 0; i < (size_t)image->width * image->height; i++) {
+            sum += isfinite(image->rgb[c][i]) ? image->rgb[c][i] : 0;
+        }
+    }
+    return sum;
+}
+
 metrics_status metrics_compare(const metrics_image *image, const metrics_image *reference,
                                uint32_t block, metrics *out)
 {
     blocks b;
     if (!make_blocks(&b, image, reference, block)) {
         return METRICS_MEMORY;
+    }
+    if (b.nan) { // none of the measures is a number
+        free(b.samples);
+        *out = (metrics){.rel_l1 = NAN, .rmse = NAN, .rel_rmse = NAN, .rel_mse = NAN};
+        out->smape = out->bias = out->n = out->error = out->p95 = out->mean = NAN;
+        out->nan = b.nan;
+        return sum_of(reference) != 0 ? METRICS_OK : METRICS_ZERO_REFERENCE;
     }
     double weight = 0, sum_x = 0, sum_r = 0, abs_r = 0, square_r = 0;
     double abs_d = 0, square_d = 0, relative = 0, symmetric = 0, sum_se = 0;
@@ -159,7 +178,8 @@ metrics_status metrics_compare(const metrics_image *image, const metrics_image *
             out->has_n = out->has_n || image->se[c] || reference->se[c];
         }
         out->n = mean_abs_normal * sum_se / abs_r;
-        out->error = sqrt(fmax(0, out->rel_l1 * out->rel_l1 - out->n * out->n));
+        const double left = out->rel_l1 * out->rel_l1 - out->n * out->n;
+        out->error = sqrt(left < 0 ? 0 : left); // of a NaN a NaN
         status = percentile_95(&b, weight, &out->p95) ? METRICS_OK : METRICS_MEMORY;
     }
     free(b.samples);

@@ -11,8 +11,8 @@ typedef struct metrics_image {
 
 // x = image, r = reference, averaged over blocks; sums run over all blocks and R, G, B. Where the size
 // is not a multiple of the block, the blocks at the right and bottom edge hold fewer pixels, and every
-// block weighs in all sums as many pixels as it holds. Values that are not finite in either image are
-// counted and left out of both.
+// block weighs in all sums as many pixels as it holds. If a value is not finite in either image such ones are counted,
+// and all measures are NaN; standard errors that are not finite make `n` and `error` NaN.
 typedef struct metrics {
     double rel_l1;   // sum |x - r| / sum |r|
     double rmse;     // sqrt(mean (x - r)^2)
@@ -30,7 +30,7 @@ typedef struct metrics {
 
 typedef enum metrics_status {
     METRICS_OK = 0,
-    METRICS_ZERO_REFERENCE, // the reference sums to 0: nothing is relative to it
+    METRICS_ZERO_REFERENCE, // the reference's finite values sum to 0: nothing is relative to it
     METRICS_MEMORY,
 } metrics_status;
 

@@ -195,7 +195,7 @@ static void path(void **state)
     path_run_open(&runs, t->dev);
     for (int i = 0; i < NUM_SCENES; i++) {
         if (scenes[i].slow && !getenv("TYN_LONG")) {
-            print_message("%-15s skipped (TYN_LONG)\n", scenes[i].name);
+            print_message("skipped: path, %s (minutes: only with TYN_LONG)\n", scenes[i].name);
             continue;
         }
         tyn_scene *scene = load(t, &scenes[i]);

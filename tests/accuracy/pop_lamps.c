@@ -235,12 +235,12 @@ static void infinite_medium(void **state)
         double albedo = rows[i][0], r = rows[i][1];
         if (albedo >= 1) {
             // No box is large enough: its vacuum takes 3 / (4 pi (half + 0.71)) from every fluence.
-            print_message("albedo 1, r %g: skipped, needs a box without end\n", r);
+            print_message("albedo 1, r %g: left out, is of a box without end\n", r);
             continue;
         }
         double half = r + 8 * decay_length(albedo), cell = 2 * half / CELLS;
         if (r < cell) {
-            print_message("albedo %g, r %g: skipped, needs more than %d cells\n", albedo, r, CELLS);
+            print_message("albedo %g, r %g: left out, is within a cell of %d\n", albedo, r, CELLS);
             continue;
         }
         static float points[DIRECTIONS][3];

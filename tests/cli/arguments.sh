@@ -235,7 +235,14 @@ refuses 1 "nowhere" compare a.exr b.exr --heat nowhere/heat.png
 run compare nan.exr b.exr --hdr-flip
 [ "$code" = 1 ] || fail "compare with a NaN: exit $code"
 near "$(value nan)" 1 0 "nan"
-[ "$(value flip) $(value hdr_flip)" = "nan nan" ] || fail "FLIP with a NaN: $(value flip) $(value hdr_flip)"
+for measure in rel_l1 rmse rel_rmse rel_mse smape bias p95 flip hdr_flip; do
+    [ "$(value $measure)" = nan ] || fail "$measure with a NaN: $(value $measure)"
+done
+make black.exr 2 1 R=nan,nan G=nan,nan B=nan,nan
+run compare black.exr b.exr
+[ "$code $(value rel_l1) $(value nan)" = "1 nan 6" ] || fail "compare of NaN alone: exit $code, $(cat out err)"
+make noisy.exr 2 1 R=1,2 G=0,0 B=3,1 error.R=0.1,-0.5 error.G=0,0 error.B=0,0
+refuses 2 "error.R is -0.5 at pixel (1, 0)" compare noisy.exr b.exr
 works compare a.exr a.exr --hdr-flip --flip-map map.png
 [ "$(value flip) $(value hdr_flip)" = "0 0" ] || fail "FLIP of equal pictures: $(value flip) $(value hdr_flip)"
 [ "$(head -c 4 map.png | od -An -tx1 | tr -d ' \n')" = 89504e47 ] || fail "--flip-map wrote no PNG"

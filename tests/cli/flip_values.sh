@@ -5,7 +5,7 @@
 
 data=${TYN_SHARED:-$source/../shared}/data/flip
 if [ ! -r "$data/values.csv" ]; then
-    echo "skipped: no shared data"
+    echo "skipped: all cases (no shared data: data/flip)"
     exit 77
 fi
 

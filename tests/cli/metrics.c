@@ -88,18 +88,45 @@ static void explains_noise(void **state)
     NEAR(m.error, 0); // less than the noise explains: not negative, not NaN
 }
 
-static void leaves_out_not_finite(void **state)
+static void assert_no_measure(const metrics *m)
+{
+    const double all[] = {m->rel_l1, m->rmse, m->rel_rmse, m->rel_mse, m->smape,
+                          m->bias,   m->n,    m->error,    m->p95};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        assert_true(isnan(all[i]));
+    }
+}
+
+static void has_no_measure_of_nan(void **state)
 {
     (void)state;
-    const float x[3] = {NAN, 2, 3}, r[3] = {1, INFINITY, 2};
+    const float x[3] = {NAN, 2, 3}, r[3] = {1, INFINITY, 2}, even[3] = {1, 2, 2};
     const metrics_image a = {3, 1, {x, x, x}, {0}}, b = {3, 1, {r, r, r}, {0}};
+    const metrics_image c = {3, 1, {even, even, even}, {0}};
     metrics m;
     assert_int_equal(metrics_compare(&a, &b, 1, &m), METRICS_OK);
     assert_int_equal(m.nan, 6);
-    NEAR(m.rel_l1, 0.5);
-    assert_int_equal(metrics_compare(&a, &b, 3, &m), METRICS_OK);
-    assert_int_equal(m.nan, 6);
-    NEAR(m.rel_l1, 0.5);
+    assert_no_measure(&m);
+    assert_int_equal(metrics_compare(&a, &c, 3, &m), METRICS_OK);
+    assert_int_equal(m.nan, 3);
+    assert_no_measure(&m);
+    assert_int_equal(metrics_compare(&c, &b, 3, &m), METRICS_OK);
+    assert_int_equal(m.nan, 3);
+    assert_no_measure(&m);
+}
+
+// A standard error that is not known is not 0.
+static void has_no_error_within_unknown_noise(void **state)
+{
+    (void)state;
+    const float se[2] = {0.1f, NAN};
+    metrics_image a = image;
+    a.se[0] = a.se[1] = a.se[2] = se;
+    metrics m;
+    assert_int_equal(metrics_compare(&a, &reference, 1, &m), METRICS_OK);
+    assert_int_equal(m.nan, 0);
+    NEAR(m.rel_l1, 4.0 / 7);
+    assert_true(isnan(m.n) && isnan(m.error));
 }
 
 static void refuses_zero_reference(void **state)
@@ -132,7 +159,8 @@ int main(void)
         cmocka_unit_test(averages_blocks),
         cmocka_unit_test(weighs_edge_blocks),
         cmocka_unit_test(explains_noise),
-        cmocka_unit_test(leaves_out_not_finite),
+        cmocka_unit_test(has_no_measure_of_nan),
+        cmocka_unit_test(has_no_error_within_unknown_noise),
         cmocka_unit_test(refuses_zero_reference),
         cmocka_unit_test(draws_heat),
     };

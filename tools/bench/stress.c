@@ -160,7 +160,7 @@ static double compare(const stress_picture *p, const stress_picture *reference, 
         for (int i = 0; i < 3 * STRESS_PIXELS; i++) {
             sum += fabs(p->rgb[i % 3][i / 3]);
         }
-        return sum > 0 ? 1 : 0;
+        return isfinite(sum) ? sum > 0 : NAN;
     }
     return status == METRICS_OK ? m.error : NAN;
 }
