@@ -240,6 +240,8 @@ static bool check_options(app *a, const bench_args *args)
          "goes with no --stress, which has scenes of its own"},
         {args->bands, "bands", !args->stress, "goes with no --stress, whose bounds are fixed"},
         {args->fronts, "write-fronts", !args->stress, "goes with no --stress, which has no fronts"},
+        {args->fronts, "write-fronts", !args->references,
+         "goes with no --references, which measures nothing"},
         {args->fresh, "fresh", !args->stress, "goes with no --stress, which keeps no records"},
         {args->fresh, "fresh", args->report, "needs --report, whose records it leaves alone"},
         {args->references, "references",
