@@ -198,7 +198,7 @@ static int run_suite(app *a, const bench_args *args, const bench_suite *suite, c
     }
     if (code == EXIT_DONE) {
         const double start = app_seconds();
-        bench_report_begin(&report, &on, suite);
+        bench_report_begin(a, &report, &on, suite);
         if (!args->json) {
             bench_print_head(report.root);
         }
