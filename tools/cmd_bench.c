@@ -198,7 +198,7 @@ static int run_suite(app *a, const bench_args *args, const bench_suite *suite, c
     }
     if (code == EXIT_DONE) {
         const double start = app_seconds();
-        bench_report_begin(&report, &on, suite);
+        bench_report_begin(a, &report, &on, suite);
         if (!args->json) {
             bench_print_head(report.root);
         }
@@ -240,6 +240,8 @@ static bool check_options(app *a, const bench_args *args)
          "goes with no --stress, which has scenes of its own"},
         {args->bands, "bands", !args->stress, "goes with no --stress, whose bounds are fixed"},
         {args->fronts, "write-fronts", !args->stress, "goes with no --stress, which has no fronts"},
+        {args->fronts, "write-fronts", !args->references,
+         "goes with no --references, which measures nothing"},
         {args->fresh, "fresh", !args->stress, "goes with no --stress, which keeps no records"},
         {args->fresh, "fresh", args->report, "needs --report, whose records it leaves alone"},
         {args->references, "references",

@@ -164,6 +164,7 @@ refuses 2 "--axis needs --stress" bench --axis sigma --suite block.json
 refuses 2 "--fresh needs --report" bench --fresh --suite block.json
 refuses 2 "--write-fronts needs a suite whose \"block\" is 8, not 4" \
     bench --suite block.json --scenes "$scenes" --write-fronts f.json
+refuses 2 "--write-fronts goes with no --references" bench --references --suite block.json --write-fronts f.json
 for bands in '{}' '{"bands": [{}]}' '{"bands": [{"scene": "*", "run": "*", "figure": "f", "reason": "r", "low": 1, "high": 0}]}' \
     '{"bands": [{"scene": "*", "run": "*", "figure": "f", "reason": "r", "low": 0, "high": 1, "hi": 2}]}'; do
     echo "$bands" >bands.json

@@ -224,6 +224,23 @@ peers 0123456789abcdef
 run bench --suite peer-suite.json --scenes "$scenes" --report peer
 grep -q "peers.json: 'cube' is measured against another reference, and left out" err || fail "bench: a peer of another reference: $(cat err)"
 [ "$(get peer/report.json scenes.0.runs) $(get peer/report.json scenes.0.peers)" = "list 3 list 0" ] || fail "bench: a peer of another reference was taken"
+absent() { # INDEX SCENE WHY
+    [ "$(get peer/report.json "peers_left_out.$1.name"), $(get peer/report.json "peers_left_out.$1.scene"): $(get peer/report.json "peers_left_out.$1.why")" = "Other 1.0, $2: $3" ] ||
+        fail "bench: $2 of a peer is not said to be left out"
+    grep -q "^Other 1.0, $2: left out: $3" out || fail "bench: $2 of a peer is left out without a word: $(cat out)"
+}
+absent 0 cube "measured against another reference"
+# ... as is a scene that the suite lacks; the error of a picture that is not finite nobody knows
+peers "$(get file-report.json scenes.0.reference.key)"
+sed 's/"rel_l1": 0.1 }/"rel_l1": 0.1, "nan": 2 }/; s/"scenes": \[/"scenes": [ { "name": "no cube", "reference": { "hash": "0" }, "runs": [ { "spp": 1, "ms": 1, "errors": [ { "block": 4, "rel_l1": 1 }, { "block": 1, "rel_l1": 1 }, { "block": 0, "error": 1 } ] } ] },/' peers.json >wrong && mv wrong peers.json
+run bench --suite peer-suite.json --scenes "$scenes" --report peer
+grep -q "peers.json: the suite has no scene 'no cube', which is left out" err || fail "bench: a peer's scene that is none: $(cat err)"
+absent 0 "no cube" "no scene of the suite"
+for i in 0 1 2; do
+    [ "$(get peer/report.json scenes.0.runs.4.errors.$i.error)" = null ] || fail "bench: a peer's picture that is not finite has an error"
+done
+[ "$(get peer/report.json scenes.0.runs.3.errors.0.error)" != null ] || fail "bench: and so has none of its others"
+python3 "$(dirname "$0")/recompute.py" peer/report.json >computed || fail "bench: beside a peer that is not finite: $(cat computed)"
 refuses_peers() { # WORDS SED
     peers 0
     sed "$2" peers.json >wrong && mv wrong peers.json

@@ -175,9 +175,13 @@ static void first_sliver(void **state)
 static void means(void **state)
 {
     (void)state;
-    const double values[] = {2, NAN, 8, 0, -1, INFINITY};
-    assert_near(front_geometric_mean(values, 6), 4, 1e-12);
-    assert_true(isnan(front_geometric_mean(values + 3, 2)));
+    // What is left out of a mean is taken out by who knows why: no value makes the mean of the others.
+    const double values[] = {2, 8, NAN, 2, 0, 2, -1, 2, INFINITY};
+    assert_near(front_geometric_mean(values, 2), 4, 1e-12);
+    for (int i = 1; i < 9; i += 2) {
+        assert_true(isnan(front_geometric_mean(values + i, 2)));
+    }
+    assert_true(isnan(front_geometric_mean(values, 0)));
 }
 
 int main(void)

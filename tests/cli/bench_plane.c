@@ -51,7 +51,9 @@ static void noisy(void **state)
     plane p;
     assert_true(plane_make(&p, runs, 0, 8, TIME_LIGHT));
     cJSON *verdicts = plane_verdicts(&p), *ranges = written(plane_ranges(&p));
-    cJSON *floors = written(plane_floors(&p));
+    cJSON *floors = cJSON_CreateArray();
+    plane_add_floors(&p, floors);
+    floors = written(floors);
     has_text(verdicts, cJSON_GetArraySize(verdicts) - 1,
              "pop is on the front from 3.4 %, the noise of the reference, to 6.7 %");
     assert_true(fabs(json_figure(ranges, "0.low") - 0.034) < 1e-6);
@@ -242,7 +244,8 @@ static void not_finite(void **state)
     plane p;
     assert_true(plane_make(&p, runs, 0, 8, TIME_LIGHT));
     cJSON *front = plane_front(&p), *list = cJSON_GetObjectItem(front, "runs");
-    cJSON *equal = cJSON_CreateArray(), *floors = plane_floors(&p);
+    cJSON *equal = cJSON_CreateArray(), *floors = cJSON_CreateArray();
+    plane_add_floors(&p, floors);
     assert_int_equal(cJSON_GetArraySize(list), 1);
     has_text(list, 0, "1");
     assert_int_equal(cJSON_GetArraySize(floors), 0);
@@ -258,12 +261,87 @@ static void not_finite(void **state)
     cJSON_Delete(runs);
 }
 
+// A baseline whose time to an error is extrapolated is as good as one that was measured there, if it takes less.
+static void extrapolated(void **state)
+{
+    (void)state;
+    cJSON *runs = cJSON_CreateArray(), *equal = cJSON_CreateArray();
+    add_run(runs, "pop", false, 20, 0.05, 0);
+    add_run(runs, "path", true, 400, 0.1, 0); // 1600 ms to 5 %
+    add_run(runs, "path, plain", true, 500, 0.2, 0);
+    add_run(runs, "path, plain", true, 6000, 0.04, 0);
+    plane p;
+    assert_true(plane_make(&p, runs, 0, 8, TIME_LIGHT));
+    plane_add_equal_errors(&p, equal); // at 10, 5 and 3 %
+    plane_add_own_equal_errors(&p, runs);
+    plane_finish(&p);
+    equal = written(equal);
+    const cJSON *at_five = cJSON_GetArrayItem(equal, 1);
+    assert_string_equal(json_text(at_five, "baseline"), "path");
+    assert_true(fabs(json_figure(at_five, "baseline_ms") - 1600) < 1e-3);
+    assert_false(json_true(at_five, "measured"));
+    runs = written(runs);
+    assert_true(fabs(json_figure(runs, "0.equal_error.0.speedup") - 80) < 1e-3);
+    cJSON_Delete(equal);
+    cJSON_Delete(runs);
+
+    runs =
+        cJSON_CreateArray(); // at equal time: 7.1 % of the one whose points end before, 9.3 % of the other
+    add_run(runs, "pop", false, 800, 0.05, 0);
+    add_run(runs, "path", true, 400, 0.1, 0);
+    add_run(runs, "path, plain", true, 600, 0.1, 0);
+    add_run(runs, "path, plain", true, 900, 0.09, 0);
+    assert_true(plane_make(&p, runs, 0, 8, TIME_LIGHT));
+    plane_add_own_equal_errors(&p, runs);
+    plane_finish(&p);
+    runs = written(runs);
+    assert_true(fabs(json_figure(runs, "0.equal_error.0.baseline_error") - 0.1 / sqrt(2)) < 1e-6);
+    assert_false(json_true(
+        cJSON_GetArrayItem(cJSON_GetObjectItem(cJSON_GetArrayItem(runs, 0), "equal_error"), 0),
+        "error_measured"));
+    cJSON_Delete(runs);
+}
+
+// The least error in frames of one kind is that of what was measured in such frames.
+static void floors_of_a_time(void **state)
+{
+    (void)state;
+    cJSON *runs = cJSON_CreateArray();
+    add_run(runs, "pop", false, 30, 0.01, 0);
+    add_run(runs, "pop", false, 10, 0.04, 0);
+    add_run(runs, "single", false, 5, 0.5, 0);
+    cJSON_AddNumberToObject(cJSON_GetObjectItem(cJSON_GetArrayItem(runs, 1), "frame_ms"),
+                            "first_picture", 900);
+    static const bench_time times[] = {TIME_LIGHT, TIME_FIRST};
+    static const double least[] = {0.01, 0.04};
+    for (int i = 0; i < 2; i++) {
+        plane p;
+        assert_true(plane_make(&p, runs, 0, 8, times[i]));
+        cJSON *floors = cJSON_CreateArray(), *kept = written(plane_promise(&p));
+        plane_add_floors(&p, floors);
+        floors = written(floors);
+        assert_int_equal(cJSON_GetArraySize(floors), 2 - i);
+        assert_true(fabs(json_figure(floors, "0.error") - least[i]) < 1e-9);
+        assert_true(fabs(json_figure(kept, "floor") - least[i]) < 1e-9);
+        plane_finish(&p);
+        cJSON_Delete(floors);
+        cJSON_Delete(kept);
+    }
+    cJSON_Delete(runs);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(noisy),      cmocka_unit_test(many_groups), cmocka_unit_test(large_errors),
-        cmocka_unit_test(promise),    cmocka_unit_test(peer),        cmocka_unit_test(moved_camera),
+        cmocka_unit_test(noisy),
+        cmocka_unit_test(many_groups),
+        cmocka_unit_test(large_errors),
+        cmocka_unit_test(promise),
+        cmocka_unit_test(peer),
+        cmocka_unit_test(moved_camera),
         cmocka_unit_test(not_finite),
+        cmocka_unit_test(extrapolated),
+        cmocka_unit_test(floors_of_a_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

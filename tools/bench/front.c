@@ -234,12 +234,8 @@ uint32_t front_ranges(const front_point *points, uint32_t count, front_range *ra
 double front_geometric_mean(const double *values, uint32_t count)
 {
     double sum = 0;
-    uint32_t num = 0;
     for (uint32_t i = 0; i < count; i++) {
-        if (isfinite(values[i]) && values[i] > 0) {
-            sum += log(values[i]);
-            num++;
-        }
+        sum += isfinite(values[i]) && values[i] > 0 ? log(values[i]) : NAN;
     }
-    return num ? exp(sum / num) : NAN;
+    return exp(sum / count);
 }

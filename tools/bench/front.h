@@ -52,5 +52,5 @@ typedef struct front_range {
 // what does not fit is left out at the upper end.
 uint32_t front_ranges(const front_point *points, uint32_t count, front_range *ranges, uint32_t max);
 
-// Of those that are > 0 and finite; NAN if there are none.
+// NAN where any is not finite or not > 0, and of none: a mean that leaves values out is one of other things.
 double front_geometric_mean(const double *values, uint32_t count);

@@ -27,6 +27,18 @@ static bool is_block(const bench_suite *suite, double block, int measure)
     return block == blocks[measure];
 }
 
+// Whether values of the picture are not finite: then nobody knows its errors, by any measure.
+static bool has_nan(const cJSON *errors)
+{
+    bool has = false;
+    const cJSON *error;
+    cJSON_ArrayForEach(error, errors)
+    {
+        has = has || json_figure(error, "nan") > 0;
+    }
+    return has;
+}
+
 // In the order of a report: over blocks, per pixel, FLIP.
 static void check_errors(suite_reader *r, const cJSON *errors, const bench_suite *suite)
 {
@@ -38,7 +50,8 @@ static void check_errors(suite_reader *r, const cJSON *errors, const bench_suite
         if (!is_block(suite, json_figure(e, "block"), i)) {
             suite_fault(r, "errors",
                         "must be over the blocks of the suite, per pixel (1) and FLIP (0)");
-        } else if (!(json_figure(e, i == BENCH_BLOCKS ? "error" : "rel_l1") >= 0)) {
+        } else if (!has_nan(errors) &&
+                   !(json_figure(e, i == BENCH_BLOCKS ? "error" : "rel_l1") >= 0)) {
             suite_fault(r, "errors",
                         i == BENCH_BLOCKS ? "the last needs \"error\", from 0 on"
                                           : "the first two need \"rel_l1\", from 0 on");
@@ -112,7 +125,7 @@ bool peers_load(app *a, char *path, const bench_suite *suite, bench_peer *peer)
 // ---- a scene ----------------------------------------------------------------------------------
 
 // As those of a run of this library: the noise and the standard error of the bias are the reference's, which is the same.
-static cJSON *json_error(const bench_case *c, const cJSON *measured, int i)
+static cJSON *json_error(const bench_case *c, const cJSON *measured, int i, bool known)
 {
     static const char *const same[] = {"rel_l1", "rmse", "rel_rmse", "rel_mse",
                                        "smape",  "bias", "p95",      "nan"};
@@ -120,12 +133,12 @@ static cJSON *json_error(const bench_case *c, const cJSON *measured, int i)
     cJSON *error = cJSON_CreateObject();
     cJSON_AddNumberToObject(error, "block", c->blocks[i]);
     if (i == BENCH_BLOCKS) {
-        json_add_float(error, "error", json_figure(measured, "error"));
+        json_add_float(error, "error", known ? json_figure(measured, "error") : NAN);
         json_add_float(error, "n", r->known_noise ? r->flip_noise : NAN);
         return error;
     }
     const double n = r->noise[i], rel_l1 = json_figure(measured, "rel_l1");
-    const double value = sqrt(fmax(0, rel_l1 * rel_l1 - n * n));
+    const double value = known ? sqrt(fmax(0, rel_l1 * rel_l1 - n * n)) : NAN;
     json_add_float(error, "error", value);
     json_add_float(error, "n", r->known_noise ? n : NAN);
     json_add_float(error, "bias_se", r->known_noise ? r->bias_se : NAN);
@@ -157,7 +170,8 @@ static cJSON *json_run(const bench_case *c, const bench_peer *peer, const cJSON 
     cJSON *errors = cJSON_AddArrayToObject(run, "errors");
     for (int i = 0; i < BENCH_MEASURES; i++) {
         const cJSON *error = cJSON_GetArrayItem(list_of(measured, "errors"), i);
-        cJSON_AddItemToArray(errors, json_error(c, error, i));
+        cJSON_AddItemToArray(errors,
+                             json_error(c, error, i, !has_nan(list_of(measured, "errors"))));
     }
     cJSON *frame = cJSON_AddObjectToObject(run, "frame_ms");
     cJSON *frames = cJSON_AddObjectToObject(run, "frames");
@@ -177,8 +191,19 @@ static cJSON *json_run(const bench_case *c, const bench_peer *peer, const cJSON 
     return run;
 }
 
+// A scene of a peer that is in no figure of the report, and why.
+static void leave_out(const bench_peer *peer, const char *scene, const char *why, cJSON *left_out)
+{
+    cJSON *entry = cJSON_CreateObject();
+    cJSON_AddStringToObject(entry, "peer", peer->group);
+    cJSON_AddStringToObject(entry, "name", peer->name);
+    cJSON_AddStringToObject(entry, "scene", scene);
+    cJSON_AddStringToObject(entry, "why", why);
+    cJSON_AddItemToArray(left_out, entry);
+}
+
 // What a peer has measured in a scene; NULL: nothing, or not against this reference.
-static const cJSON *find_scene(const bench_case *c, const bench_peer *peer)
+static const cJSON *find_scene(const bench_case *c, const bench_peer *peer, cJSON *left_out)
 {
     const cJSON *scene;
     cJSON_ArrayForEach(scene, list_of(peer->root, "scenes"))
@@ -191,6 +216,7 @@ static const cJSON *find_scene(const bench_case *c, const bench_peer *peer)
         if (!same) {
             app_warn(c->a, "%s: '%s' is measured against another reference, and left out",
                      peer->file, c->spec->name);
+            leave_out(peer, c->spec->name, "measured against another reference", left_out);
         }
         return same ? scene : NULL;
     }
@@ -220,12 +246,12 @@ static cJSON *json_peer(const bench_case *c, const cJSON *runs, const bench_peer
     return json;
 }
 
-cJSON *peers_add(const bench_case *c, cJSON *runs)
+cJSON *peers_add(const bench_case *c, cJSON *runs, cJSON *left_out)
 {
     cJSON *list = cJSON_CreateArray();
     for (uint32_t i = 0; i < c->suite->num_peers; i++) {
         const bench_peer *peer = &c->suite->peers[i];
-        const cJSON *scene = find_scene(c, peer), *run;
+        const cJSON *scene = find_scene(c, peer, left_out), *run;
         cJSON_ArrayForEach(run, list_of(scene, "runs"))
         {
             cJSON_AddItemToArray(runs, json_run(c, peer, run));
@@ -235,4 +261,24 @@ cJSON *peers_add(const bench_case *c, cJSON *runs)
         }
     }
     return list;
+}
+
+void peers_unknown(app *a, const bench_suite *suite, cJSON *left_out)
+{
+    for (uint32_t i = 0; i < suite->num_peers; i++) {
+        const bench_peer *peer = &suite->peers[i];
+        const cJSON *scene;
+        cJSON_ArrayForEach(scene, list_of(peer->root, "scenes"))
+        {
+            const char *name = json_text(scene, "name");
+            bool known = false;
+            for (uint32_t k = 0; k < suite->num_scenes; k++) {
+                known = known || strcmp(suite->scenes[k].name, name) == 0;
+            }
+            if (!known) {
+                app_warn(a, "%s: the suite has no scene '%s', which is left out", peer->file, name);
+                leave_out(peer, name, "no scene of the suite", left_out);
+            }
+        }
+    }
 }

@@ -122,14 +122,21 @@ cJSON *plane_front(const plane *p)
     return front;
 }
 
-cJSON *plane_floors(const plane *p)
+// Of the points that have the plane's time: what was not measured with it gets nowhere.
+static double least_error(const plane *p, int64_t line)
 {
-    cJSON *floors = cJSON_CreateArray();
+    double least = NAN;
+    for (uint32_t i = 0; i < p->count; i++) {
+        const front_point *point = &p->points[i];
+        least = point->line == line && point->ms > 0 ? fmin(least, point->error) : least;
+    }
+    return least;
+}
+
+void plane_add_floors(const plane *p, cJSON *floors)
+{
     for (uint32_t m = 0; m < p->num_lines; m++) {
-        double least = NAN;
-        for (uint32_t i = 0; i < p->count; i++) {
-            least = p->points[i].line == m ? fmin(least, p->points[i].error) : least;
-        }
+        const double least = least_error(p, m);
         if (!p->lines[m].sampling && isfinite(least)) {
             cJSON *floor = cJSON_CreateObject();
             cJSON_AddNumberToObject(floor, "block", p->block);
@@ -139,7 +146,6 @@ cJSON *plane_floors(const plane *p)
             cJSON_AddItemToArray(floors, floor);
         }
     }
-    return floors;
 }
 
 void plane_choose_pictures(const plane *p, cJSON *runs)
@@ -166,7 +172,8 @@ void plane_choose_pictures(const plane *p, cJSON *runs)
 
 // ---- times at equal error ---------------------------------------------------------------------
 
-// The baseline that is the fastest at an error. *line: which; undefined where none gets there.
+// The baseline that takes the least time to an error, whether that is measured or extrapolated: a baseline that was given
+// fewer samples is no slower for it. *line: which; undefined where none gets there.
 static front_time best_baseline(const plane *p, double error, uint32_t *line)
 {
     front_time best = {NAN, -1, false};
@@ -175,10 +182,7 @@ static front_time best_baseline(const plane *p, double error, uint32_t *line)
             continue;
         }
         const front_time time = front_time_at(p->points, p->count, b, error);
-        // What was measured is not beaten by what is extrapolated.
-        const bool better =
-            isnan(best.ms) || (time.measured == best.measured ? time.ms < best.ms : time.measured);
-        if (!isnan(time.ms) && better) {
+        if (time.ms < best.ms || (isnan(best.ms) && !isnan(time.ms))) {
             best = time;
             *line = b;
         }
@@ -186,16 +190,14 @@ static front_time best_baseline(const plane *p, double error, uint32_t *line)
     return best;
 }
 
-// The least error of a baseline after a time: what was measured, or where nothing was, what is extrapolated.
+// The least error of a baseline after a time, whether that is measured or extrapolated.
 static front_error best_error(const plane *p, double ms)
 {
     front_error best = {NAN, false};
     for (uint32_t b = 0; b < p->num_lines; b++) {
         const front_error own =
             p->lines[b].baseline ? front_error_at(p->points, p->count, b, ms) : best;
-        const bool better = isnan(best.error) ||
-                            (own.measured == best.measured ? own.error < best.error : own.measured);
-        if (!isnan(own.error) && better) {
+        if (own.error < best.error || (isnan(best.error) && !isnan(own.error))) {
             best = own;
         }
     }
@@ -392,10 +394,7 @@ static char *promise_text(double above, const cJSON *beaten)
 cJSON *plane_promise(const plane *p)
 {
     const int64_t own = find_line(p, tyn_method_default());
-    double floor = NAN;
-    for (uint32_t i = 0; i < p->count; i++) {
-        floor = p->points[i].line == own ? fmin(floor, p->points[i].error) : floor;
-    }
+    const double floor = own < 0 ? NAN : least_error(p, own);
     if (isnan(floor)) {
         return cJSON_CreateNull();
     }

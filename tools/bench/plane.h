@@ -27,13 +27,14 @@ void plane_finish(plane *p);
 
 // As report.json has them (docs/report-schema.md).
 cJSON *plane_front(const plane *p);
-// The least error of each method: what no setting of this suite gets below.
-cJSON *plane_floors(const plane *p);
+// The least error of each method that does not sample: what no setting of this suite gets below in this time's frames.
+void plane_add_floors(const plane *p, cJSON *floors);
 cJSON *plane_ranges(const plane *p);   // of errors in which one method is fastest
 cJSON *plane_verdicts(const plane *p); // the same as sentences
 // What is promised of `pop`: that it is on the front at errors above max(3 %, 1.2 times its floor). Null without `pop`.
 cJSON *plane_promise(const plane *p);
-// Every method against the baselines, at the errors asked for: at each against the one that is the fastest there.
+// Every method against the baselines, at the errors asked for: at each against the one that is the fastest there,
+// measured or extrapolated.
 void plane_add_equal_errors(const plane *p, cJSON *list);
 // A peer, a group of the runs of plane_make, beside the baselines and `pop`: the times to 10, 5 and 2 %. FLIP: nothing.
 void plane_add_peer(const plane *p, const char *peer, cJSON *list);

@@ -324,6 +324,11 @@ static void print_headlines(const cJSON *report)
 void bench_print_end(const cJSON *report)
 {
     const cJSON *item;
+    cJSON_ArrayForEach(item, list_of(report, "peers_left_out"))
+    {
+        printf("%s, %s: left out: %s\n", json_text(item, "name"), json_text(item, "scene"),
+               json_text(item, "why"));
+    }
     cJSON_ArrayForEach(item, list_of(report, "ratios"))
     {
         printf("\n%s, %s: %.2f times the frame in which the light changes\n",

@@ -49,13 +49,13 @@ static cJSON *json_reference(const bench_case *c)
 static void add_planes(cJSON *to, const bench_case *c, cJSON *runs, bench_time time)
 {
     cJSON *fronts = cJSON_AddArrayToObject(to, "fronts");
+    cJSON *floors = cJSON_AddArrayToObject(to, "floors");
     cJSON *equal = cJSON_AddArrayToObject(to, "equal_error");
     for (int i = 0; i < BENCH_MEASURES; i++) {
         plane p;
         if (plane_make(&p, runs, i, c->blocks[i], time)) {
             if (i == 0 && time == TIME_LIGHT) {
                 plane_choose_pictures(&p, runs);
-                cJSON_AddItemToObject(to, "floors", plane_floors(&p));
             }
             if (i == 0) {
                 cJSON_AddItemToObject(to, "ranges", plane_ranges(&p));
@@ -63,6 +63,7 @@ static void add_planes(cJSON *to, const bench_case *c, cJSON *runs, bench_time t
                 cJSON_AddItemToObject(to, "promise", plane_promise(&p));
             }
             cJSON_AddItemToArray(fronts, plane_front(&p));
+            plane_add_floors(&p, floors);
             plane_add_equal_errors(&p, equal);
             plane_add_own_equal_errors(&p, runs);
         }
@@ -103,7 +104,9 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
     cJSON_AddItemToObject(scene, "reference", json_reference(c));
     // Before the peers join: fronts and comparisons are of this library's runs.
     add_times(scene, c, runs);
-    cJSON_AddItemToObject(scene, "peers", peers_add(c, runs));
+    cJSON_AddItemToObject(
+        scene, "peers",
+        peers_add(c, runs, cJSON_GetObjectItemCaseSensitive(r->root, "peers_left_out")));
     cJSON_AddItemToObject(scene, "runs", runs);
     cJSON_AddItemToObject(scene, "left_out", left_out);
     // What is used from here on is what a reader of the file sees.
@@ -120,7 +123,7 @@ void bench_report_scene(bench_report *r, const bench_case *c, cJSON *runs, cJSON
 
 // ---- the whole --------------------------------------------------------------------------------
 
-void bench_report_begin(bench_report *r, const bench_machine *on, const bench_suite *suite)
+void bench_report_begin(app *a, bench_report *r, const bench_machine *on, const bench_suite *suite)
 {
     *r = (bench_report){.root = cJSON_CreateObject()};
     cJSON_AddStringToObject(r->root, "schema", "tyndall-report");
@@ -139,6 +142,7 @@ void bench_report_begin(bench_report *r, const bench_machine *on, const bench_su
     cJSON_AddItemToObject(r->root, "ceilings", ceilings_json(&on->ceilings));
     cJSON_AddItemToObject(r->root, "seconds", cJSON_CreateObject());
     cJSON_AddItemToObject(r->root, "scenes", cJSON_CreateArray());
+    peers_unknown(a, suite, cJSON_AddArrayToObject(r->root, "peers_left_out"));
 }
 
 void bench_report_finish(bench_report *r)
@@ -157,9 +161,9 @@ static const cJSON *said_of(const cJSON *scene, bench_time time)
                               : cJSON_GetObjectItemCaseSensitive(times, bench_time_names[time]);
 }
 
-// A mean over scenes that grows by one scene after the other.
+// Means over the same scenes, which grow by one scene after the other.
 typedef struct mean {
-    double values[BENCH_MAX_SCENES];
+    double speedups[BENCH_MAX_SCENES], errors[BENCH_MAX_SCENES], ms[BENCH_MAX_SCENES];
     uint32_t num, extrapolated;
     cJSON *missing; // "scene: why"
 } mean;
@@ -171,18 +175,20 @@ static void add_missing(mean *m, const cJSON *scene, const char *why)
     free(text);
 }
 
-static void add_value(mean *m, double value, bool measured)
+static void add_values(mean *m, const cJSON *comparison, double error, double ms)
 {
     if (m->num < BENCH_MAX_SCENES) {
-        m->values[m->num++] = value;
-        m->extrapolated += !measured;
+        m->speedups[m->num] = json_figure(comparison, "speedup");
+        m->errors[m->num] = error;
+        m->ms[m->num++] = ms;
+        m->extrapolated += !json_true(comparison, "measured");
     }
 }
 
 // The mean, over how many of the scenes, and of how many what a baseline takes is extrapolated.
 static void finish_mean(mean *m, cJSON *to, const cJSON *scenes)
 {
-    json_add_float(to, "geometric_mean", front_geometric_mean(m->values, m->num));
+    json_add_float(to, "geometric_mean", front_geometric_mean(m->speedups, m->num));
     cJSON_AddNumberToObject(to, "scenes", m->num);
     cJSON_AddNumberToObject(to, "of", cJSON_GetArraySize(scenes));
     cJSON_AddNumberToObject(to, "extrapolated", m->extrapolated);
@@ -196,24 +202,106 @@ static bool same_comparison(const cJSON *a, const cJSON *b)
            strcmp(json_text(a, "method"), json_text(b, "method")) == 0;
 }
 
-// Why a scene has no speed-up at this error.
-static char *why_missing(const cJSON *scene, const cJSON *entry)
+static const cJSON *errors_of(const cJSON *run, double block)
 {
+    const cJSON *error;
+    cJSON_ArrayForEach(error, cJSON_GetObjectItemCaseSensitive(run, "errors"))
+    {
+        if (json_figure(error, "block") == block) {
+            return error;
+        }
+    }
+    return NULL;
+}
+
+// A picture of which some values are not finite has no error that is known, by any measure.
+static bool is_finite(const cJSON *run)
+{
+    bool finite = true;
+    const cJSON *error;
+    cJSON_ArrayForEach(error, cJSON_GetObjectItemCaseSensitive(run, "errors"))
+    {
+        finite = finite && !(json_figure(error, "nan") > 0);
+    }
+    return finite;
+}
+
+// Why a run has no part in a comparison with this time; NULL: it has one.
+static const char *why_unknown(const cJSON *run, bench_time time, double block)
+{
+    char path[48];
+    snprintf(path, sizeof path, "frame_ms.%s", bench_time_names[time]);
+    return json_text(run, "failed")[0] ? "it cannot do this scene"
+           : !is_finite(run)           ? "not finite"
+           : isnan(json_figure(errors_of(run, block), "error")) || !(json_figure(run, path) > 0)
+               ? "not measured"
+               : NULL;
+}
+
+// Why none of the runs of a method has one: the reason that all of them share.
+static const char *why_no_run(const cJSON *scene, const char *group, bench_time time, double block)
+{
+    const char *shared = NULL;
+    const cJSON *run;
+    cJSON_ArrayForEach(run, cJSON_GetObjectItemCaseSensitive(scene, "runs"))
+    {
+        if (strcmp(json_text(run, "group"), group) == 0) {
+            const char *why = why_unknown(run, time, block);
+            shared = why && (!shared || strcmp(shared, why) == 0) ? why : "not measured";
+        }
+    }
+    return shared ? shared : "not measured";
+}
+
+static bool has_baseline(const cJSON *scene)
+{
+    bool has = false;
+    const cJSON *run;
+    cJSON_ArrayForEach(run, cJSON_GetObjectItemCaseSensitive(scene, "runs"))
+    {
+        has = has || json_true(run, "baseline");
+    }
+    return has;
+}
+
+// Why a scene has no speed-up at this error. `entry` NULL: the scene has no such comparison.
+static char *why_missing(const cJSON *scene, const cJSON *entry, const cJSON *asked,
+                         bench_time time)
+{
+    const char *group = json_text(asked, "method");
+    const double block = json_figure(asked, "block");
     if (json_text(entry, "why")[0]) {
         return text_format("%s", json_text(entry, "why"));
     }
-    if (!isnan(json_figure(entry, "ms"))) {
+    if (!has_baseline(scene)) {
         return text_format("no baseline was measured");
     }
+    if (!isnan(json_figure(entry, "ms"))) {
+        return text_format("no baseline is known to get there");
+    }
     const cJSON *floor;
-    cJSON_ArrayForEach(floor, cJSON_GetObjectItemCaseSensitive(scene, "floors"))
+    cJSON_ArrayForEach(floor, cJSON_GetObjectItemCaseSensitive(said_of(scene, time), "floors"))
     {
-        if (strcmp(json_text(floor, "method"), json_text(entry, "method")) == 0 &&
-            json_figure(floor, "block") == json_figure(entry, "block")) {
-            return text_format("its least error is %.1f %%", 100 * json_figure(floor, "error"));
+        const double least = json_figure(floor, "error");
+        if (strcmp(json_text(floor, "method"), group) == 0 &&
+            json_figure(floor, "block") == block) {
+            return block > 0 ? text_format("its least error is %.1f %%", 100 * least)
+                             : text_format("its least error is %.4f", least);
         }
     }
-    return text_format("the error is not reached");
+    return text_format("%s", why_no_run(scene, group, time, block));
+}
+
+static const cJSON *same_in(const cJSON *said, const cJSON *asked)
+{
+    const cJSON *entry;
+    cJSON_ArrayForEach(entry, cJSON_GetObjectItemCaseSensitive(said, "equal_error"))
+    {
+        if (same_comparison(entry, asked)) {
+            return entry;
+        }
+    }
+    return NULL;
 }
 
 // One comparison over all scenes, as the first scene that has it lists it.
@@ -221,23 +309,16 @@ static cJSON *json_headline(const cJSON *scenes, const cJSON *first, bench_time 
 {
     cJSON *headline = cJSON_CreateObject();
     mean m = {.missing = cJSON_CreateArray()};
-    const cJSON *scene, *entry;
+    const cJSON *scene;
     cJSON_ArrayForEach(scene, scenes)
     {
-        cJSON_ArrayForEach(entry,
-                           cJSON_GetObjectItemCaseSensitive(said_of(scene, time), "equal_error"))
-        {
-            if (!same_comparison(entry, first)) {
-                continue;
-            }
-            const double speedup = json_figure(entry, "speedup");
-            if (isfinite(speedup)) {
-                add_value(&m, speedup, json_true(entry, "measured"));
-            } else {
-                char *why = why_missing(scene, entry);
-                add_missing(&m, scene, why ? why : "");
-                free(why);
-            }
+        const cJSON *entry = same_in(said_of(scene, time), first);
+        if (isfinite(json_figure(entry, "speedup"))) {
+            add_values(&m, entry, json_figure(entry, "error"), json_figure(entry, "ms"));
+        } else {
+            char *why = why_missing(scene, entry, first, time);
+            add_missing(&m, scene, why ? why : "");
+            free(why);
         }
     }
     cJSON_AddStringToObject(headline, "frame", bench_time_names[time]);
@@ -295,36 +376,38 @@ static const cJSON *comparison_of(const cJSON *run, bench_time time, double bloc
     return NULL;
 }
 
-// How many times as long a baseline takes to the error of a preset, over all scenes.
+// Why a scene is not in the means of a preset; NULL: it is.
+static const char *why_left_out(const cJSON *run, const cJSON *entry, bench_time time, double block)
+{
+    const cJSON *error = errors_of(run, block);
+    const char *why = run ? why_unknown(run, time, block) : "not measured";
+    return why                                       ? why
+           : isfinite(json_figure(entry, "speedup")) ? NULL
+           : !entry                                  ? "no baseline was measured"
+           : json_figure(error, "error") < 2 * json_figure(error, "n")
+               ? "the error is below twice the noise of its reference"
+               : "no baseline is known to get there";
+}
+
+// The error and the time of a preset, and how many times as long a baseline takes to that error: all three over the
+// same scenes, those in which all three are known.
 static cJSON *json_preset(const cJSON *scenes, const char *how, const char *preset, bench_time time,
-                          double block, int measure)
+                          double block)
 {
     char path[48];
-    double errors[BENCH_MAX_SCENES], ms[BENCH_MAX_SCENES];
-    uint32_t num = 0;
+    snprintf(path, sizeof path, "frame_ms.%s", bench_time_names[time]);
     mean m = {.missing = cJSON_CreateArray()};
     const cJSON *scene;
     cJSON_ArrayForEach(scene, scenes)
     {
         const cJSON *run = preset_of(scene, how, preset);
         const cJSON *entry = comparison_of(run, time, block);
-        const double speedup = json_figure(entry, "speedup");
-        if (run && num < BENCH_MAX_SCENES) {
-            snprintf(path, sizeof path, "errors.%d.error", measure);
-            errors[num] = json_figure(run, path);
-            snprintf(path, sizeof path, "errors.%d.n", measure); // what it hides stands at it
-            errors[num] =
-                errors[num] < json_figure(run, path) ? json_figure(run, path) : errors[num];
-            snprintf(path, sizeof path, "frame_ms.%s", bench_time_names[time]);
-            ms[num++] = json_figure(run, path);
-        }
-        if (isfinite(speedup)) {
-            add_value(&m, speedup, json_true(entry, "measured"));
+        const char *why = why_left_out(run, entry, time, block);
+        if (why) {
+            add_missing(&m, scene, why);
         } else {
-            add_missing(&m, scene,
-                        !run || json_text(run, "failed")[0] ? "it cannot do this scene"
-                        : entry ? "the error is below twice the noise of its reference"
-                                : "not measured");
+            add_values(&m, entry, json_figure(errors_of(run, block), "error"),
+                       json_figure(run, path));
         }
     }
     cJSON *json = cJSON_CreateObject();
@@ -332,8 +415,8 @@ static cJSON *json_preset(const cJSON *scenes, const char *how, const char *pres
     cJSON_AddNumberToObject(json, "block", block);
     cJSON_AddStringToObject(json, "method", how);
     cJSON_AddStringToObject(json, "preset", preset);
-    json_add_float(json, "error", front_geometric_mean(errors, num));
-    json_add_float(json, "ms", front_geometric_mean(ms, num));
+    json_add_float(json, "error", front_geometric_mean(m.errors, m.num));
+    json_add_float(json, "ms", front_geometric_mean(m.ms, m.num));
     finish_mean(&m, json, scenes);
     return json;
 }
@@ -352,8 +435,8 @@ static cJSON *json_presets(const bench_suite *suite, const cJSON *scenes)
         }
         for (int time = 0; any && time < TIME_UNCHANGED; time++) {
             for (int k = 0; k < BENCH_MEASURES; k++) {
-                cJSON_AddItemToArray(
-                    list, json_preset(scenes, how, preset, (bench_time)time, blocks[k], k));
+                cJSON_AddItemToArray(list,
+                                     json_preset(scenes, how, preset, (bench_time)time, blocks[k]));
             }
         }
     }

@@ -8,7 +8,7 @@ typedef struct bench_report {
 } bench_report;
 
 // Head of the report. bench_report_finish is due in any case.
-void bench_report_begin(bench_report *r, const bench_machine *on, const bench_suite *suite);
+void bench_report_begin(app *a, bench_report *r, const bench_machine *on, const bench_suite *suite);
 void bench_report_finish(bench_report *r);
 
 // Adds a scene with its runs (objects "run" of records, taken over) and what follows from them: fronts, times at

@@ -65,12 +65,13 @@ function speedRows(report, method, block) {
         scene: String(scene.name ?? ""),
         entries: list(scene.equal_error)
             .filter((e) => e.method === method && e.block === block)
+            .map((e) => ({...e, floor: list(scene.floors).some((f) => f.method === method && f.block === block)}))
             .sort((a, b) => b.error - a.error),
     })).filter((row) => row.entries.length > 0);
 }
 
 function speedReason(entry, method, baseline) {
-    return entry.why ? entry.why : !isNumber(entry.ms) ? `${method} does not reach it`
+    return entry.why ? entry.why : !isNumber(entry.ms) ? (entry.floor ? `${method} does not reach it` : "not measured")
          : !isNumber(entry.baseline_ms) ? `${baseline} does not reach it` : "";
 }
 
@@ -161,14 +162,15 @@ function presets(report) {
     const mean = (p) => (isNumber(p.geometric_mean) ? [(p.extrapolated > 0 ? "about " : "") + times(p.geometric_mean), make("small", {}, ` ${p.scenes} of ${p.of}`)] : NONE);
     const missing = all.filter((p) => list(p.missing).length > 0), usual = names.find((n) => n.endsWith("normal")) ?? names[0];
     return make("section", {id: "presets"}, make("h2", {}, "What a user gets who sets nothing but the quality"),
-        make("p", {}, `Error and time are geometric means over the scenes; ${TIMES}: how many times as long ${baseline} takes to the error that the preset has in a scene, over as many scenes as that is known in.`),
+        make("p", {}, `Geometric means of error and time and, ${TIMES}, of how many times as long ${baseline} takes to the error that the preset has in a scene: all three over the same scenes, those in which all three are known.`),
         make("div", {class: "figures"}, blocks.map((b) => [found(usual, b), b]).filter(([p]) => isNumber(p.geometric_mean)).map(([p, b]) =>
             meanFigure(p, `the time of ${baseline} over that of ${usual}, at its ${b > 0 ? `${percent(p.error)} error over ${blockName(b)}` : `FLIP of ${amount(p.error, b)}`}`))),
         make("div", {class: "scroll", tabindex: 0, role: "region", "aria-label": "presets"}, make("table", {},
-            make("thead", {}, make("tr", {}, make("th", {scope: "col"}, "preset"), make("th", {scope: "col", class: "number"}, "time"),
-                blocks.flatMap((b) => [errorOver(b), TIMES]).map((h) => make("th", {scope: "col", class: "number"}, h)))),
-            make("tbody", {}, names.map((name) => make("tr", {}, make("th", {scope: "row"}, name), make("td", {class: "number"}, duration(found(name, blocks[0]).ms)),
-                blocks.map((b) => [make("td", {class: "number"}, amount(found(name, b).error, b)), make("td", {class: "number"}, mean(found(name, b)))])))))),
+            make("thead", {}, make("tr", {}, make("th", {scope: "col"}, "preset"),
+                blocks.flatMap((b) => [errorOver(b), "time", TIMES]).map((h) => make("th", {scope: "col", class: "number"}, h)))),
+            make("tbody", {}, names.map((name) => make("tr", {}, make("th", {scope: "row"}, name),
+                blocks.map((b) => [make("td", {class: "number"}, amount(found(name, b).error, b)), make("td", {class: "number"}, duration(found(name, b).ms)),
+                    make("td", {class: "number"}, mean(found(name, b)))])))))),
         missing.length > 0 && make("details", {}, make("summary", {}, "Left out of the means"),
             make("ul", {}, missing.map((p) => make("li", {}, `${p.method}, ${p.preset}, ${errorOver(p.block)}: ${list(p.missing).join("; ")}`)))));
 }
@@ -218,6 +220,13 @@ function headline(report) {
             control("method", methods, "method", (v) => v),
             control("error over", blocks, "block", blockName)),
         body);
+}
+
+// Scenes of renderers of others that are in no figure of the report.
+function peersLeftOut(report) {
+    const absent = list(report.peers_left_out);
+    return absent.length > 0 && make("section", {id: "peers-left-out"}, make("h2", {}, "Renderers of others: left out"),
+        make("ul", {}, absent.map((p) => make("li", {}, `${p.name}, ${p.scene}: ${p.why}`))));
 }
 
 function verdictList(styles, verdicts) {

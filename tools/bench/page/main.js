@@ -126,7 +126,7 @@ function startPage() {
     }
     const styles = groupStyles(report);
     page.append(...[pageHead(report), contents(report), bandsAlert(report.bands),
-        chosenComparisons(report, styles), ratioList(report.ratios), stressSection(report.stress, styles), notes(report),
+        chosenComparisons(report, styles), peersLeftOut(report), ratioList(report.ratios), stressSection(report.stress, styles), notes(report),
         make("footer", {}, `Tyndall ${report.tyndall ?? ""}. Made by tyndall bench; the figures are those of report.json.`)]
         .flat().filter(Boolean));
     // On paper everything that can be opened is open.
