@@ -135,7 +135,7 @@ static errors compare(const medium_grid *m, const struct light_block *suns, cons
             d[i] = suns[points[n].sun].direction[i];
         }
         want[n] = medium_grid_column(m, 0, 0, p, d, 16);
-        most = fmax(most, want[n]);
+        most = maximum(most, want[n]);
     }
     for (int n = 0; n < COUNT; n++) {
         double error = fabs(got[n].s[0] - want[n]);

@@ -165,7 +165,7 @@ static errors compare(const medium_grid *m, const struct ordinates_block *ordina
             }
             double want = cell_column(m, 0, 0, p, ordinates->list[n].direction, dx);
             double got = result_at(r, n, 0, c), wrong = fabs(got - want);
-            most = fmax(most, want);
+            most = maximum(most, want);
             e.largest = maximum(e.largest, wrong);
             e.relative = want > 0 ? maximum(e.relative, wrong / want) : e.relative;
             e.mean += wrong;
@@ -278,7 +278,7 @@ static void coefficients(void **state)
                 }
                 double want = cell_column(which < 6 ? &m : &scaled, which / 3 == 1 ? 1 : 0,
                                           (int)(which % 3), p, ordinates.list[n].direction, dx);
-                most = fmax(most, want);
+                most = maximum(most, want);
                 worst = maximum(worst, fabs(result_at(&r, n, which, c) - want));
             }
         }

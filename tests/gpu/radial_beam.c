@@ -173,7 +173,7 @@ static double compare(gpu_test *t, const struct medium_block *m, uint32_t fine, 
     static double want[COUNT];
     for (int n = 0; n < COUNT; n++) {
         want[n] = column(m, lamps[points[n].light].position, points[n].p);
-        most = fmax(most, want[n]);
+        most = maximum(most, want[n]);
     }
     for (int n = 0; n < COUNT; n++) {
         double error = fabs(got[n].s[0] - want[n]) / most;
