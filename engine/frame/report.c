@@ -45,6 +45,12 @@ static double hidden_share(const struct light_clamp *clamp)
     return shown > 0 ? hidden / shown : hidden > 0 ? 1 : 0;
 }
 
+// NaN if one of them is, which fmax would drop.
+static double larger(double a, double b)
+{
+    return isnan(a) || a > b ? a : b;
+}
+
 // What the node itself counted, by the table of its pass.
 static void add_counters(tyn_node_report *node, tyn_context *ctx)
 {
@@ -54,12 +60,16 @@ static void add_counters(tyn_node_report *node, tyn_context *ctx)
         double most = 0;
         for (uint32_t i = 0; i < (c->count ? c->count : 1); i++) {
             const void *at = data + c->offset + 4 * i;
-            most = fmax(most, c->clamp  ? hidden_share(at)
-                              : c->real ? (double)*(const float *)at
-                                        : *(const uint32_t *)at);
+            most = larger(most, c->clamp  ? hidden_share(at)
+                                : c->real ? (double)*(const float *)at
+                                          : *(const uint32_t *)at);
         }
         add_work(node, c->name, most);
-        if (c->warning && most > c->limit) {
+        if (c->warning && isnan(most)) {
+            char line[256];
+            snprintf(line, sizeof line, "%s: '%s' is not a number", node->name, c->name);
+            tyn_context_warn(ctx, line);
+        } else if (c->warning && most > c->limit) {
             char line[256];
             snprintf(line, sizeof line, c->warning, percent_of(most));
             tyn_context_warn(ctx, line);

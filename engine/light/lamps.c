@@ -44,6 +44,7 @@ void tyn_add_radials(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     tyn_ref refs[TYN_MAX_PORTS] = {[RADIAL_BEAM_PORT_VPLS] = vpls};
     tyn_connect(refs, RADIAL_BEAM_PORT_MEDIUM, s->medium);
     tyn_graph_add(g, &tyn_pass_radial_beam, &params, refs);
+    tyn_job_counters(g, job, &tyn_pass_radial_beam, refs[RADIAL_BEAM_PORT_COUNTERS]);
     tyn_take(refs, RADIAL_BEAM_PORT_RADIALS, out->radials);
     out->num_lamps = params.num_lamps;
     out->num_fine = params.num_fine;

@@ -57,5 +57,6 @@ void tyn_add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in)
     tyn_connect(refs, PROBE_PORT_WALL_LINKS, in->sources->walls.cut);
     tyn_connect(refs, PROBE_PORT_SHADOW_ATLAS, in->sources->shadows);
     tyn_graph_add(g, &tyn_pass_probe, &params, refs);
+    tyn_job_counters(g, job, &tyn_pass_probe, refs[PROBE_PORT_COUNTERS]);
     tyn_job_output(g, job, TYN_OUTPUT_PROBE, refs[PROBE_PORT_RESULTS]);
 }

@@ -63,11 +63,14 @@ void write_all(uint ch, float entering, float emitted, float absorbed, float on_
     write(6, ch, 0.0); // nothing is drawn at random
 }
 
-// Of factors that are in use: 0 where there is no light.
+// Of factors that are in use: 0 where there is no light. A factor that is no number makes both that.
 vec2 least_and_most(vec2 range, float scale)
 {
-    vec2 with = range.y > 0.0 ? vec2(min(range.x, scale), max(range.y, scale)) : vec2(scale);
-    return scale > 0.0 ? with : range;
+    if (isnan(scale) || isnan(range.y)) {
+        return vec2(isnan(scale) ? scale : range.y);
+    }
+    vec2 with = range.y != 0.0 ? vec2(min(range.x, scale), max(range.y, scale)) : vec2(scale);
+    return scale != 0.0 ? with : range;
 }
 
 // The factors that make the cells lose what beams lose, and the walls get what VPLs send them.

@@ -2,6 +2,7 @@
 #include "beam.h"
 #include "beam_density.comp.h"
 #include "beam_coefficients.comp.h"
+#include "shaders/common/counters.h"
 #include <math.h>
 #include <string.h>
 
@@ -196,6 +197,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
         return TYN_ERR_PARAMS;
     }
     tyn_extent extent = {p->extent[0], p->extent[1], p->extent[2]};
+    tyn_build_buffer(b, BEAM_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, BEAM_PORT_BEAMS, sizeof(p->beams));
     if (p->mode == TYN_MEDIUM_DENSITY) {
         tyn_build_image(b, BEAM_PORT_COLUMN, extent, 1);
@@ -212,6 +214,7 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_beam_params *p = params;
     bool density = p->mode == TYN_MEDIUM_DENSITY;
+    tyn_rec_fill(r, BEAM_PORT_COUNTERS, 0);
     tyn_rec_update(r, BEAM_PORT_BEAMS, 0, p->beams, sizeof(p->beams));
     // Slices and columns that no point reads are not computed, but rounding lets a fetch beside them give
     // them a weight of 1e-7: they must be finite.
@@ -244,4 +247,5 @@ const tyn_pass_desc tyn_pass_beam = {
     .num_params = TYN_COUNT(params_table),
     .debug_port = BEAM_PORT_COLUMN,
     .debug_meaning = "column density in the slices of the suns' grids",
+    .counters = (const tyn_counter[]){TYN_COUNTER_NON_FINITE, {NULL}},
 };

@@ -5,12 +5,16 @@
 #include "shaders/medium/medium.glsl"
 #include "shaders/medium/medium_value.glsl"
 #include "shaders/beams/beam_args.h"
+#include "shaders/common/counters.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 TYN_UPDATE(5, beams, beam_block beams[]);
+TYN_UPDATE(6, counters, counters_block counters);
+
+uint non_finite = 0u; // of the thread
 
 #ifdef TYN_DENSITY
-layout(set = 0, binding = 6, r32f) writeonly uniform image3D column_image;
+layout(set = 0, binding = 7, r32f) writeonly uniform image3D column_image;
 
 #define BEAM_VALUE float
 
@@ -26,12 +30,14 @@ bool beam_any(float value)
 
 void beam_store(ivec3 texel, float value)
 {
-    imageStore(column_image, texel, vec4(isnan(value) || isinf(value) ? 0.0 : value));
+    const bool broken = isnan(value) || isinf(value);
+    non_finite += uint(broken);
+    imageStore(column_image, texel, vec4(broken ? 0.0 : value));
 }
 #else
-layout(set = 0, binding = 6, rgba32f) writeonly uniform image3D column_image;
-layout(set = 0, binding = 7, rgba32f) writeonly uniform image3D tau_a_image;
-layout(set = 0, binding = 8, rgba32f) writeonly uniform image3D tau_p_image;
+layout(set = 0, binding = 7, rgba32f) writeonly uniform image3D column_image;
+layout(set = 0, binding = 8, rgba32f) writeonly uniform image3D tau_a_image;
+layout(set = 0, binding = 9, rgba32f) writeonly uniform image3D tau_p_image;
 
 #define BEAM_VALUE mat3x4 // w is the mean of the channels
 
@@ -48,7 +54,9 @@ mat3x4 beam_value(vec3 uvw)
 
 vec4 finite(vec4 v)
 {
-    return mix(v, vec4(0.0), bvec4(uvec4(isnan(v)) | uvec4(isinf(v))));
+    const bvec4 broken = bvec4(uvec4(isnan(v)) | uvec4(isinf(v)));
+    non_finite += uint(any(broken));
+    return mix(v, vec4(0.0), broken);
 }
 
 bool beam_any(mat3x4 value)
@@ -120,5 +128,8 @@ void main()
     uint sun = gl_WorkGroupID.z;
     if (all(lessThan(column, beams[sun].nodes.xy)) && beam_sweep(beams[sun], column)) {
         atomicOr(beams[sun].edges, 1u);
+    }
+    if (non_finite > 0u) {
+        atomicAdd(counters.non_finite, non_finite);
     }
 }

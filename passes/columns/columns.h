@@ -19,6 +19,7 @@ typedef struct tyn_columns_params {
     TYN_MEDIUM(X, COLUMNS), \
     X(COLUMNS, ORDINATES, ordinates, IN, BUFFER, "struct ordinates_block"), \
     X(COLUMNS, COLUMNS, columns, OUT, BUFFER, "medium integrated along each ordinate to each cell, roots as halves"), \
+    X(COLUMNS, COUNTERS, counters, OUT, BUFFER, "struct counters_block: pairs of cells that were not finite"), \
     X(COLUMNS, NODES, nodes, SCRATCH, BUFFER, "medium integrated along the columns of a batch of ordinates")
 // clang-format on
 enum { COLUMNS_PORTS(TYN_PORT_ENUM), COLUMNS_NUM_PORTS };

@@ -9,6 +9,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/light/ordinate_args.h"
 #include "shaders/beams/columns_args.h"
+#include "shaders/common/counters.h"
 #define MEDIUM_AT 0
 #include "shaders/medium/medium.glsl"
 #include "shaders/lattice/lattice.glsl"
@@ -19,6 +20,9 @@ TYN_ARGS(columns_args args);
 TYN_UNIFORM(5, ordinates, ordinates_block ordinates);
 TYN_READ(6, nodes, float nodes[]); // [ordinate][component][slice][v][u]
 TYN_WRITE(7, columns, uint columns_words[]); // columns.glsl
+TYN_UPDATE(8, counters, counters_block counters);
+
+uint non_finite = 0u; // of the thread
 
 const uint num_components = medium_mode == TYN_MEDIUM_DENSITY ? 1u : COLUMNS_COMPONENTS;
 
@@ -53,7 +57,9 @@ void part_of_cell(vec2 cell, float low, int size, out vec2 middle, out vec2 quar
 // Square roots, for the range of halves; rounded here to what a half holds, as packing may truncate.
 vec2 encoded(vec2 x)
 {
-    vec2 root = mix(sqrt(clamp(x, 0.0, 4.29e9)), vec2(0.0), isnan(x));
+    const bvec2 broken = isnan(x);
+    non_finite += uint(any(broken) || any(isinf(x)));
+    vec2 root = mix(sqrt(clamp(x, 0.0, 4.29e9)), vec2(0.0), broken);
     return uintBitsToFloat((floatBitsToUint(root) + 0x1000u) & 0xFFFFE000u);
 }
 
@@ -141,5 +147,8 @@ void main()
         }
         before = here;
         before_inside = here_inside;
+    }
+    if (non_finite > 0u) {
+        atomicAdd(counters.non_finite, non_finite);
     }
 }

@@ -155,6 +155,7 @@ static void record(tyn_recorder *r, const void *params)
 }
 
 static const tyn_counter counters[] = {
+    TYN_COUNTER_NON_FINITE,
     {"clamped", offsetof(struct counters_block, clamped)},
     TYN_COUNTER_HIDDEN("of the smeared map's light",
                        "accuracy: the environment that shows through forward scattering would be "

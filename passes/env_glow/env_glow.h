@@ -17,7 +17,7 @@ typedef struct tyn_env_glow_params {
         "that map smeared, in the same units; levels of the forward depth along z. Read it with glow.glsl", \
         .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(ENV_GLOW, COUNTERS, counters, OUT, BUFFER, \
-        "struct counters_block: texels of the first level that were clamped"), \
+        "struct counters_block: texels of the map that were not finite, of the first level that were clamped"), \
     X(ENV_GLOW, SERIES, series, SCRATCH, BUFFER, \
         "struct glow_series: Legendre moments of the kernels, weights of the rows"), \
     X(ENV_GLOW, ROWS, rows, SCRATCH, BUFFER, "struct glow_order[m][row]: of the map"), \

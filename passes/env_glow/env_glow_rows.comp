@@ -2,12 +2,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/light/glow_args.h"
+#include "shaders/common/counters.h"
 #include "env_glow_args.h"
 
 const uint HALF = TYN_GLOW_WIDTH / 2, FOUR = 4, THREADS = TYN_GLOW_HEIGHT / FOUR;
 layout(local_size_x = TYN_GLOW_HEIGHT / 4) in;
 layout(set = 0, binding = 0) uniform sampler2D sky_wrapped;
 TYN_WRITE(1, rows, glow_order rows[]);
+TYN_UPDATE(2, counters, counters_block counters);
 TYN_ARGS(env_glow_args args);
 
 const float PI = 3.14159265358979;
@@ -15,11 +17,15 @@ const float PI = 3.14159265358979;
 // Sum and difference of two texels opposite each other: those of even and of odd order add up.
 shared vec3 folded[2][HALF];
 
+uint non_finite = 0u; // of the thread
+
 vec3 texel(uint i, uint row)
 {
     vec2 uv = (vec2(i, row) + 0.5) / vec2(TYN_GLOW_WIDTH, TYN_GLOW_HEIGHT);
     vec3 light = textureLod(sky_wrapped, uv, args.mip).rgb;
-    return any(isnan(light)) || any(isinf(light)) ? vec3(0.0) : light;
+    const bool broken = any(isnan(light)) || any(isinf(light));
+    non_finite += uint(broken);
+    return broken ? vec3(0.0) : light;
 }
 
 void main()
@@ -29,6 +35,9 @@ void main()
         vec3 here = texel(i, row), opposite = texel(i + HALF, row);
         folded[0][i] = here + opposite;
         folded[1][i] = here - opposite;
+    }
+    if (non_finite > 0u) {
+        atomicAdd(counters.non_finite, non_finite);
     }
     barrier();
     vec3 cosine[FOUR], sine[FOUR];

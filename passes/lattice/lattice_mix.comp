@@ -61,7 +61,10 @@ void mix_walls(uint ch, uint cell)
     if (args.history >= 2) {
         radiance += weights[ch].y * (texelFetch(result_2_texels, v)[k] - newest);
     }
-    radiance = isnan(radiance) || isinf(radiance) ? 0.0 : radiance;
+    if (isnan(radiance) || isinf(radiance)) {
+        radiance = 0.0;
+        atomicAdd(counters.non_finite, 1u);
+    }
     if (last == 1) {
         count_walls(cell, radiance);
     }

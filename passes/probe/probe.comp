@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "probe_args.h"
 #include "shaders/light/ordinate_args.h"
+#include "shaders/common/counters.h"
 #define MEDIUM_BLOCK 0
 #define BEAMS_AT 3
 #define BEAMS_STORAGE
@@ -37,6 +38,7 @@ layout(binding = 20) uniform sampler3D cells;
 TYN_UNIFORM(9, environment, env_block environment);
 TYN_READ(7, points, vec3 points[]);
 TYN_WRITE(8, results, probe_result results[]);
+TYN_UPDATE(23, counters, counters_block counters);
 
 // A point between the centres of eight cells; beyond the outermost ones the same line goes on.
 struct cell_corners {
@@ -300,6 +302,10 @@ void main()
         }
     }
     for (uint ch = 0; ch < 3; ch++) {
+        if (any(isnan(field[ch])) || any(isinf(field[ch]))) {
+            field[ch] = vec4(0.0);
+            atomicAdd(counters.non_finite, 1u);
+        }
         results[i].fluence[ch] = max(field[ch].x, 0.0);
         results[i].fluence_se[ch] = 0.0;
         for (uint axis = 0; axis < 3; axis++) {

@@ -32,7 +32,8 @@ typedef struct tyn_probe_params {
     X(PROBE, ROOMS, rooms, OPTIONAL, BUFFER, "of cells and VPLs: rooms.h"), \
     X(PROBE, CELLS, cells, OPTIONAL, IMAGE_3D, "of lattice_cells: flux at the box's faces"), \
     X(PROBE, POINTS, points, IN, BUFFER, "vec3[], m"), \
-    X(PROBE, RESULTS, results, OUT, BUFFER, "tyn_probe_result[], W/m^2")
+    X(PROBE, RESULTS, results, OUT, BUFFER, "tyn_probe_result[], W/m^2"), \
+    X(PROBE, COUNTERS, counters, OUT, BUFFER, "struct counters_block: channels of points that were not finite")
 // clang-format on
 enum { PROBE_PORTS(TYN_PORT_ENUM), PROBE_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_probe;

@@ -7,27 +7,35 @@
 #include "shaders/medium/medium_value.glsl"
 #include "shaders/common/octahedral.glsl"
 #include "shaders/beams/radial_args.h"
+#include "shaders/common/counters.h"
 #include "radial_beam_args.h"
 
 layout(local_size_x = RADIAL_GROUP * RADIAL_GROUP) in;
 TYN_ARGS(radial_beam_args args);
 TYN_READ(5, radials, uint radial_count; uint radial_num_lamps; uvec2 radial_pad; radial_grid radials[]);
+TYN_UPDATE(6, counters, counters_block counters);
+
+uint non_finite = 0u; // of the thread
 
 #ifdef TYN_DENSITY
-layout(set = 0, binding = 6, r32f) writeonly uniform image3D radial_column_image;
+layout(set = 0, binding = 7, r32f) writeonly uniform image3D radial_column_image;
 
 void radial_store(ivec3 texel, float value)
 {
-    imageStore(radial_column_image, texel, vec4(isnan(value) || isinf(value) ? 0.0 : value));
+    const bool broken = isnan(value) || isinf(value);
+    non_finite += uint(broken);
+    imageStore(radial_column_image, texel, vec4(broken ? 0.0 : value));
 }
 #else
-layout(set = 0, binding = 6, rgba32f) writeonly uniform image3D radial_column_image;
-layout(set = 0, binding = 7, rgba32f) writeonly uniform image3D radial_tau_a_image;
-layout(set = 0, binding = 8, rgba32f) writeonly uniform image3D radial_tau_p_image;
+layout(set = 0, binding = 7, rgba32f) writeonly uniform image3D radial_column_image;
+layout(set = 0, binding = 8, rgba32f) writeonly uniform image3D radial_tau_a_image;
+layout(set = 0, binding = 9, rgba32f) writeonly uniform image3D radial_tau_p_image;
 
 vec4 finite(vec3 v)
 {
-    return vec4(mix(v, vec3(0.0), bvec3(uvec3(isnan(v)) | uvec3(isinf(v)))), 0.0);
+    const bvec3 broken = bvec3(uvec3(isnan(v)) | uvec3(isinf(v)));
+    non_finite += uint(any(broken));
+    return vec4(mix(v, vec3(0.0), broken), 0.0);
 }
 
 void radial_store(ivec3 texel, mat3 value)
@@ -128,5 +136,8 @@ void main()
     ivec2 texel;
     if (radial_thread(n, texel)) {
         radial_sweep(n, texel);
+    }
+    if (non_finite > 0u) {
+        atomicAdd(counters.non_finite, non_finite);
     }
 }

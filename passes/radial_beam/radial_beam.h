@@ -31,6 +31,7 @@ typedef struct tyn_radial_beam_params {
         "mean sigma_a", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(RADIAL_BEAM, RADIAL_TAU_P, radial_tau_p, OUT, IMAGE_3D, \
         "mean sigma_s outside the forward peak", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RADIAL_BEAM, COUNTERS, counters, OUT, BUFFER, "struct counters_block: nodes that were not finite"), \
     X(RADIAL_BEAM, LAMPS, lamps, SCRATCH, BUFFER, "struct light_block[]")
 // clang-format on
 enum { RADIAL_BEAM_PORTS(TYN_PORT_ENUM), RADIAL_BEAM_NUM_PORTS };

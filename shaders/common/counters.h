@@ -22,9 +22,11 @@ TYN_ASSERT_SIZE(counters_block, 36 + 2048);
 #define TYN_COUNTERS                                                                               \
     {"steps", offsetof(struct counters_block, steps)},                                             \
     {"pixels", offsetof(struct counters_block, pixels)},                                           \
-    {"non_finite", offsetof(struct counters_block, non_finite)},                                   \
+    TYN_COUNTER_NON_FINITE,                                                                        \
     {"clamped", offsetof(struct counters_block, clamped)},                                         \
     {"cut", offsetof(struct counters_block, cut)}
+// ... of those that count nothing else.
+#define TYN_COUNTER_NON_FINITE {"non_finite", offsetof(struct counters_block, non_finite)}
 // The light that `clamped` took away, as a share of what is left; %g of the warning's text is that in percent.
 #define TYN_COUNTER_HIDDEN(of, text)                                                               \
     {.name = "hidden", .offset = offsetof(struct counters_block, clamp_0), .clamp = true,          \

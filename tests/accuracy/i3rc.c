@@ -10,6 +10,7 @@
 // Cells are constant in these clouds and trilinear here: each is SPLIT voxels wide (FINER in case 2, whose depths are
 // the most uneven), so that what is blended is 1 / SPLIT of it.
 #include "bound.h"
+#include "numbers.h"
 #include "offline_frame.h"
 #include "path_run.h"
 #include "gpu_test.h"
@@ -140,7 +141,7 @@ static void satellite_cloud(cloud *c)
     const float layer = 20;
     float most = 0;
     for (int i = 0; i < SAT * SAT; i++) {
-        most = fmaxf(most, 1000 * high[i]);
+        most = (float)maximum(most, 1000 * high[i]);
     }
     const uint32_t layers = (uint32_t)ceilf(most / layer);
     *c = (cloud){.sides = {30.0f * SAT, layer * (float)layers, 30.0f * SAT}};

@@ -48,7 +48,7 @@ static double texel_of(const tyn_scene *scene, uint32_t texels)
     for (int r = 0; r < 2; r++) {
         const float *row = l->rows[r];
         const double length = sqrt((double)(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]));
-        most = fmax(most, 2 / (length * (double)l->texels));
+        most = maximum(most, 2 / (length * (double)l->texels));
     }
     return most;
 }
@@ -125,7 +125,7 @@ static void edges(void **state)
                k, expected, mean, (mean - expected) * texels, (least - expected) * texels,
                (most - expected) * texels, 100 * (sums[0] / sums[1] - 1));
         assert_within(fabs(mean - expected) * texels, 0.5, NULL);
-        assert_within(fmax(most - expected, expected - least) * texels, 1, NULL);
+        assert_within(maximum(most - expected, expected - least) * texels, 1, NULL);
         tyn_offline_destroy(&off);
         picture_free(&reference);
     }

@@ -75,7 +75,7 @@ static void compare(gpu_test *t, const char *method, spot s)
         double y = view_half * (1 - (2 * row + 1.0) / PIXELS);
         for (uint32_t i = 0; i < PIXELS; i++) {
             want[i] = exact(&s, view_half * ((2 * i + 1.0) / PIXELS - 1), y);
-            most = fmax(most, want[i]);
+            most = maximum(most, want[i]);
         }
         for (uint32_t i = 0; i < PIXELS; i++) {
             double got = p.rgb[3 * (row * PIXELS + i)];

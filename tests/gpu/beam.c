@@ -33,6 +33,20 @@ typedef struct depth {
     float s[3], a[3], p[3];
 } depth;
 
+static bool broken(const medium_grid *m)
+{
+    const size_t channels = m->block.mode == TYN_MEDIUM_DENSITY ? 1 : 4;
+    const size_t count = channels * m->block.size[0] * m->block.size[1] * m->block.size[2];
+    bool all = true;
+    for (int k = 0; k < (channels == 1 ? 1 : 3); k++) {
+        for (size_t i = 0; i < count; i++) {
+            all = all && isfinite(m->texels[k][i]);
+        }
+    }
+    return !all;
+}
+
+// Values of the medium that are not finite have to be counted, and no others.
 static const depth *evaluate(gpu_test *t, const medium_grid *m, const struct light_block *suns,
                              uint32_t num_suns, int32_t cells, const point *points, uint32_t count)
 {
@@ -74,7 +88,9 @@ static const depth *evaluate(gpu_test *t, const medium_grid *m, const struct lig
     point_pass_params eval = {count, sizeof(depth), m->block.mode, pass.results};
     assert_int_equal(tyn_graph_add(t->graph, &pass.desc, &eval, refs), TYN_OK);
     tyn_graph_output(t->graph, "results", refs[6], true);
+    tyn_graph_output(t->graph, "counters", beam[BEAM_PORT_COUNTERS], true);
     gpu_run(t);
+    assert_true((gpu_non_finite(t) > 0) == broken(m));
     return gpu_map(t, "results");
 }
 
@@ -119,7 +135,7 @@ static errors compare(const medium_grid *m, const struct light_block *suns, cons
             d[i] = suns[points[n].sun].direction[i];
         }
         want[n] = medium_grid_column(m, 0, 0, p, d, 16);
-        most = fmax(most, want[n]);
+        most = maximum(most, want[n]);
     }
     for (int n = 0; n < COUNT; n++) {
         double error = fabs(got[n].s[0] - want[n]);
@@ -326,20 +342,24 @@ static void coefficients(void **state)
     medium_grid_free(&m);
 }
 
-// NaN and infinity in a host's density do not spread beyond the columns they are in, nor as such.
+// NaN and infinity in a host's medium do not spread beyond the columns they are in, nor as such, and are counted.
 static void not_finite(void **state)
 {
     gpu_test *t = *state;
-    uint32_t seed = 17;
-    medium_grid m = grid_make((float[3]){1, 1, 1}, (uint32_t[3]){8, 8, 8}, TYN_MEDIUM_DENSITY);
-    m.texels[0][100] = NAN;
-    m.texels[0][300] = INFINITY;
-    random_points(&m, 4, &seed);
-    const depth *got = evaluate(t, &m, oblique_suns(), 4, 160, points, COUNT);
-    for (int n = 0; n < COUNT; n++) {
-        assert_true(isfinite(got[n].s[0]) && got[n].s[0] >= 0);
+    static const float values[] = {NAN, INFINITY};
+    for (int k = 0; k < 4; k++) {
+        const uint32_t mode = k < 2 ? TYN_MEDIUM_DENSITY : TYN_MEDIUM_COEFFICIENTS;
+        uint32_t seed = 17;
+        medium_grid m = grid_make((float[3]){1, 1, 1}, (uint32_t[3]){8, 8, 8}, mode);
+        m.texels[k / 2][100] = values[k % 2]; // density, or sigma_a
+        random_points(&m, 4, &seed);
+        const depth *got = evaluate(t, &m, oblique_suns(), 4, 160, points, COUNT);
+        for (int n = 0; n < COUNT; n++) {
+            assert_true(isfinite(got[n].s[0]) && got[n].s[0] >= 0);
+            assert_true(isfinite(got[n].a[0]) && got[n].a[0] >= 0);
+        }
+        medium_grid_free(&m);
     }
-    medium_grid_free(&m);
 }
 
 static void refuses_no_sun(void **state)

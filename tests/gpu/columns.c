@@ -66,7 +66,7 @@ static struct ordinates_block ordinates_make(uint32_t count)
 
 typedef struct result {
     const uint16_t *halves;
-    uint32_t dims[3], components;
+    uint32_t dims[3], components, non_finite;
     bool averaged;
 } result;
 
@@ -136,8 +136,10 @@ static result run_pass(gpu_test *t, const medium_grid *m, const struct ordinates
     r.averaged = average(t, m, r.dims, refs);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_columns, &params, refs), TYN_OK);
     tyn_graph_output(t->graph, "columns", refs[COLUMNS_PORT_COLUMNS], true);
+    tyn_graph_output(t->graph, "counters", refs[COLUMNS_PORT_COUNTERS], true);
     gpu_run(t);
     r.halves = gpu_map(t, "columns");
+    r.non_finite = gpu_non_finite(t);
     return r;
 }
 
@@ -163,7 +165,7 @@ static errors compare(const medium_grid *m, const struct ordinates_block *ordina
             }
             double want = cell_column(m, 0, 0, p, ordinates->list[n].direction, dx);
             double got = result_at(r, n, 0, c), wrong = fabs(got - want);
-            most = fmax(most, want);
+            most = maximum(most, want);
             e.largest = maximum(e.largest, wrong);
             e.relative = want > 0 ? maximum(e.relative, wrong / want) : e.relative;
             e.mean += wrong;
@@ -276,7 +278,7 @@ static void coefficients(void **state)
                 }
                 double want = cell_column(which < 6 ? &m : &scaled, which / 3 == 1 ? 1 : 0,
                                           (int)(which % 3), p, ordinates.list[n].direction, dx);
-                most = fmax(most, want);
+                most = maximum(most, want);
                 worst = maximum(worst, fabs(result_at(&r, n, which, c) - want));
             }
         }
@@ -331,6 +333,24 @@ static void extremes(void **state)
     }
 }
 
+// NaN and infinity in a host's medium are not passed on, and are counted.
+static void not_finite(void **state)
+{
+    static const float values[] = {1, NAN, INFINITY};
+    for (int k = 0; k < 6; k++) {
+        const uint32_t mode = k < 3 ? TYN_MEDIUM_DENSITY : TYN_MEDIUM_COEFFICIENTS;
+        medium_grid m = medium_grid_make((float[]){1, 1, 1}, (uint32_t[]){8, 8, 8}, mode);
+        m.texels[k / 3][4 * 36] = values[k % 3]; // density, or sigma_a
+        const struct ordinates_block ordinates = ordinates_make(4);
+        const result r = run_pass(*state, &m, &ordinates, 4, 8);
+        assert_true((r.non_finite > 0) == (k % 3 > 0));
+        for (uint32_t i = 0; i < 4 * r.components * 8 * 8 * 8; i++) {
+            assert_true(isfinite(tyn_half_to_float(r.halves[i])));
+        }
+        medium_grid_free(&m);
+    }
+}
+
 // More than fits is refused with a line that says what to do.
 static void too_much(void **state)
 {
@@ -358,6 +378,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(homogeneous),  cmocka_unit_test(blob),     cmocka_unit_test(step),
         cmocka_unit_test(coefficients), cmocka_unit_test(extremes), cmocka_unit_test(too_much),
+        cmocka_unit_test(not_finite),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

@@ -75,7 +75,7 @@ static void expected(const twin *w, uint32_t ch, int cell, double sum[4])
             int layer = d[a] < 0 ? size[a] - 1 - at[a] : at[a];
             double way = (layer + 0.5) / fabs(d[a]);
             enters = way < least ? layer == 0 : enters;
-            least = fmin(least, way);
+            least = minimum(least, way);
         }
         double own = dx * (w->cells[ch][cell][0] + w->cells[ch][cell][1]);
         tau = fmax(tau, 0.5 * own);

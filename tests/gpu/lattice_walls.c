@@ -26,6 +26,7 @@ typedef struct problem {
     struct wall_cell *cells;
     double leak, absorbed_by_walls, sent_by_walls; // W
     double ms;
+    uint32_t non_finite;
 } problem;
 
 static int num_cells(const problem *p)
@@ -101,6 +102,7 @@ static void run(gpu_test *t, problem *p)
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_lattice, &params, refs), TYN_OK);
     tyn_graph_output(t->graph, "moments", refs[LATTICE_PORT_MOMENTS], true);
     tyn_graph_output(t->graph, "leaks", refs[LATTICE_PORT_LEAKS], true);
+    tyn_graph_output(t->graph, "counters", refs[LATTICE_PORT_COUNTERS], true);
     if (p->walls) {
         tyn_graph_output(t->graph, "links", refs[LATTICE_PORT_WALL_LINKS], true);
         tyn_graph_output(t->graph, "wall_cells", refs[LATTICE_PORT_WALL_CELLS], true);
@@ -124,6 +126,7 @@ static void run(gpu_test *t, problem *p)
         }
     }
     p->ms = gpu_ms(t, "lattice");
+    p->non_finite = gpu_non_finite(t);
     free(light);
 }
 
@@ -388,6 +391,30 @@ static void conserves(void **state)
     }
 }
 
+// What walls send out that is not finite is counted, beside the cells where it arrives.
+static void not_finite(void **state)
+{
+    mesh m = mesh_box((double[]){0.5, 0.5, 0.5}, (double[]){0.4, 0.4, 0.4}, 0);
+    problem p = problem_of(grid_of(16, 16, 16, 1.0 / 16), &m);
+    fill(&p, 4, 0, 0);
+    p.sweeps = 1;
+    p.cycles = 0;
+    p.wall_light = 1;
+    run(*state, &p);
+    assert_int_equal(p.non_finite, 0);
+    p.wall_light = NAN;
+    run(*state, &p);
+    uint32_t walls = 0;
+    for (int i = 0; i < num_cells(&p); i++) {
+        walls += p.cells[i].area > 0;
+        assert_true(isfinite(p.moments[i][0]));
+    }
+    assert_true(walls > 0);
+    assert_int_equal(p.non_finite, walls + (uint32_t)num_cells(&p));
+    problem_free(&p);
+    mesh_free(&m);
+}
+
 static void costs(void **state)
 {
     mesh m = mesh_box((double[]){0.5, 0.5, 0.5}, (double[]){0.4, 0.4, 0.4}, 0.5);
@@ -411,7 +438,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(matches_twin), cmocka_unit_test(furnace_and_darkness),
         cmocka_unit_test(closed_rooms), cmocka_unit_test(conserves),
-        cmocka_unit_test(costs),
+        cmocka_unit_test(not_finite),   cmocka_unit_test(costs),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

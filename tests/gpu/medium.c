@@ -2,6 +2,7 @@
 #include "bound.h"
 #include "gpu_test.h"
 #include "passes/medium/medium.h"
+#include "numbers.h"
 #include "point_pass.h"
 #include "medium_eval.comp.h"
 #include "random_unit.h"
@@ -113,7 +114,7 @@ static double largest_sigma_t(const world *w, const double p[3])
         double value = exact_value(w, &w->shapes[i], p);
         for (int c = 0; c < 3; c++) {
             sum[c] += value * (w->shapes[i].sigma_s[c] + w->shapes[i].sigma_a[c]);
-            most = fmax(most, sum[c]);
+            most = maximum(most, sum[c]);
         }
     }
     return most;
@@ -231,7 +232,7 @@ static void check_bricks(const world *w, const textures *out, uint32_t *seed)
             double low = fmin(exact, texture), high = fmax(exact, texture);
             assert_true(out->bricks[q][0] <= low * (1 + 1e-5) + 1e-6);
             assert_true(out->bricks[q][1] >= high * (1 - 1e-5) - 1e-6);
-            most = fmax(most, high);
+            most = maximum(most, high);
         }
         slack += out->bricks[q][1] - most;
     }
@@ -280,8 +281,8 @@ static void direct(void **state)
                     for (int x = b[0] * 8 - 1; x <= b[0] * 8 + 8; x++) {
                         if (x >= 0 && y >= 0 && z >= 0 && x < 40 && y < 27 && z < 18) {
                             float v = w.atlas[index3(w.medium.size, x, y, z)];
-                            least = fminf(least, v);
-                            most = fmaxf(most, v);
+                            least = (float)minimum(least, v);
+                            most = (float)maximum(most, v);
                         }
                     }
                 }

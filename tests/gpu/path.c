@@ -1,6 +1,7 @@
 // path.c -- the path tracer against closed forms: first-order light of suns and lamps, emission, overlapping
 // media, layers; and that it gives the same bytes again.
 #include "path_scene.h"
+#include "numbers.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -173,7 +174,7 @@ static void overlap(void **state)
             s.shapes[k].sigma_a[c] = sa[k];
             s.shapes[k].phase[c].g = g[k];
         }
-        most = fmaxf(most, ss[0][c] + ss[1][c] + sa[0] + sa[1]);
+        most = (float)maximum(most, ss[0][c] + ss[1][c] + sa[0] + sa[1]);
     }
     s.medium.mode = TYN_MEDIUM_COEFFICIENTS;
     s.medium.num_shapes = 2;

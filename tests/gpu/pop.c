@@ -165,6 +165,43 @@ static void periodic_surfaces(void **state)
     }
 }
 
+static bool counts_non_finite(stage *s, const char *node)
+{
+    tyn_report report;
+    tyn_offline_report(s->off, &report);
+    bool counts = false;
+    for (uint32_t i = 0; i < report.num_nodes; i++) {
+        const tyn_node_report *n = &report.nodes[i];
+        for (uint32_t k = 0; k < n->num_work && !strcmp(n->name, node); k++) {
+            counts = counts || !strcmp(n->work[k].name, "non_finite");
+        }
+    }
+    return counts;
+}
+
+// Where values that are not finite are set to 0 the report says how many, so that offline_frame sees them.
+static void reports_what_is_not_finite(void **state)
+{
+    static const char *const nodes[] = {"beam",  "radial_beam", "columns", "lattice",
+                                        "merge", "probe",       "raymarch"};
+    static const float point[3] = {0.4f, 0.5f, 0.6f};
+    stage *s = set_stage(*state, 4);
+    for (int i = 0; i < 4; i++) { // five suns: the last one is an ordinate
+        scene_add_sun(&s->scene, 1, -2, 0.2f * (float)i, 0.1f, 0.1f, 0.1f);
+    }
+    s->scene.lights[s->scene.num_lights++] =
+        (tyn_light){.kind = TYN_LIGHT_POINT, .color = {1, 1, 1}, .position = {2, 2, 2}};
+    s->view.outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_PROBE;
+    s->view.points = &point;
+    s->view.num_points = 1;
+    show(s);
+    for (size_t i = 0; i < sizeof nodes / sizeof *nodes; i++) {
+        print_message("%s\n", nodes[i]);
+        assert_true(counts_non_finite(s, nodes[i]));
+    }
+    strike(s);
+}
+
 static void warns(void **state)
 {
     stage *s = set_stage(*state, 4);
@@ -288,10 +325,15 @@ static void unsettled_channel(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(layers_add_up),     cmocka_unit_test(refuses_what_repeats_everywhere),
-        cmocka_unit_test(periodic_surfaces), cmocka_unit_test(warns),
-        cmocka_unit_test(leaves_out),        cmocka_unit_test(suns_add_up),
-        cmocka_unit_test(unsettled),         cmocka_unit_test(unsettled_channel),
+        cmocka_unit_test(layers_add_up),
+        cmocka_unit_test(refuses_what_repeats_everywhere),
+        cmocka_unit_test(periodic_surfaces),
+        cmocka_unit_test(warns),
+        cmocka_unit_test(reports_what_is_not_finite),
+        cmocka_unit_test(leaves_out),
+        cmocka_unit_test(suns_add_up),
+        cmocka_unit_test(unsettled),
+        cmocka_unit_test(unsettled_channel),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

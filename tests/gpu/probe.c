@@ -2,6 +2,8 @@
 #include "bound.h"
 #include "light_chain.h"
 #include "npy.h"
+#include "numbers.h"
+#include "passes/probe/probe.h"
 #include "skip.h"
 #include <math.h>
 #include <stdio.h>
@@ -219,12 +221,53 @@ static void furnace(void **state)
     }
 }
 
+// Moments that are not finite are not passed on, and are counted: one channel of one point here.
+static void not_finite(void **state)
+{
+    gpu_test *t = *state;
+    enum { CELLS = 4, N = CELLS * CELLS * CELLS };
+    static const float values[] = {1, NAN, INFINITY},
+                       points[2][3] = {{0.4f, 0.4f, 0.4f}, {0.9f, 0.9f, 0.9f}};
+    for (int k = 0; k < 6; k++) {
+        static float moments[3 * N][4];
+        for (int i = 0; i < 3 * N * 4; i++) {
+            moments[i / 4][i % 4] = 1;
+        }
+        moments[N + (1 * CELLS + 1) * CELLS + 1][k / 3] =
+            values[k % 3]; // green: fluence, then flux
+        const struct medium_block medium = {
+            .extent = {1, 1, 1}, .size = {1, 1, 1}, .voxel = {1, 1, 1}};
+        tyn_graph_begin(t->graph);
+        tyn_probe_params params = {
+            .channels = 3, .tint = {1, 1, 1}, .world = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+        tyn_ref refs[TYN_MAX_PORTS] = {
+            [PROBE_PORT_MEDIUM] = gpu_buffer(t, "medium", &medium, sizeof medium),
+            [PROBE_PORT_MOMENTS] = gpu_image(t, "moments", TYN_IMAGE_3D,
+                                             (tyn_extent){CELLS, CELLS, 3 * CELLS}, 4, moments[0]),
+            [PROBE_PORT_POINTS] = gpu_buffer(t, "points", points, sizeof points),
+        };
+        assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_probe, &params, refs), TYN_OK);
+        tyn_graph_output(t->graph, "results", refs[PROBE_PORT_RESULTS], true);
+        tyn_graph_output(t->graph, "counters", refs[PROBE_PORT_COUNTERS], true);
+        gpu_run(t);
+        assert_int_equal(gpu_non_finite(t), k % 3 > 0);
+        const tyn_probe_result *r = gpu_map(t, "results");
+        for (int n = 0; n < 2; n++) {
+            for (int c = 0; c < 3; c++) {
+                const float expected = k % 3 > 0 && n == 0 && c == 1 ? 0 : 1;
+                assert_near(r[n].fluence[c], expected, 1e-6);
+                assert_near(r[n].flux[c], expected, 1e-6);
+            }
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(absorption_only),   cmocka_unit_test(sun_of_finite_size),
         cmocka_unit_test(fluence_in_a_cube), cmocka_unit_test(balances),
-        cmocka_unit_test(furnace),
+        cmocka_unit_test(furnace),           cmocka_unit_test(not_finite),
     };
     return run_cases(tests, gpu_setup, gpu_teardown);
 }

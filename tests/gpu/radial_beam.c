@@ -139,6 +139,7 @@ static const depth *evaluate(gpu_test *t, const struct medium_block *m, uint32_t
     point_pass_params eval = {COUNT, sizeof(depth), m->mode, pass.results};
     assert_int_equal(tyn_graph_add(t->graph, &pass.desc, &eval, refs), TYN_OK);
     tyn_graph_output(t->graph, "results", refs[6], true);
+    tyn_graph_output(t->graph, "counters", beam[RADIAL_BEAM_PORT_COUNTERS], true);
     gpu_run(t);
     return gpu_map(t, "results");
 }
@@ -167,11 +168,12 @@ static double compare(gpu_test *t, const struct medium_block *m, uint32_t fine, 
         }
     }
     const depth *got = evaluate(t, m, fine);
+    assert_int_equal(gpu_non_finite(t), 0);
     double most = 0, worst = 0, sum = 0;
     static double want[COUNT];
     for (int n = 0; n < COUNT; n++) {
         want[n] = column(m, lamps[points[n].light].position, points[n].p);
-        most = fmax(most, want[n]);
+        most = maximum(most, want[n]);
     }
     for (int n = 0; n < COUNT; n++) {
         double error = fabs(got[n].s[0] - want[n]) / most;
@@ -211,6 +213,23 @@ static void smooth(void **state)
     fill(1);
     assert_within(compare(*state, &m, LIGHTS, "dense at faces", &mean), 0.015, NULL);
     assert_within(mean, 1e-3, NULL);
+}
+
+// NaN and infinity in a host's density are not passed on, and are counted.
+static void not_finite(void **state)
+{
+    gpu_test *t = *state;
+    static const float values[] = {NAN, INFINITY};
+    const struct medium_block m = medium_of(false);
+    for (int k = 0; k < 2; k++) {
+        fill(0);
+        texels[(SIZE / 2 * SIZE + SIZE / 2) * SIZE + SIZE / 2] = values[k];
+        const depth *got = evaluate(t, &m, LIGHTS);
+        assert_true(gpu_non_finite(t) > 0);
+        for (int n = 0; n < COUNT; n++) {
+            assert_true(isfinite(got[n].s[0]) && got[n].s[0] >= 0);
+        }
+    }
 }
 
 // ---- the map --------------------------------------------------------------------------------------
@@ -272,6 +291,6 @@ static void octahedron(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(homogeneous), cmocka_unit_test(smooth),
-                                       cmocka_unit_test(octahedron)};
+                                       cmocka_unit_test(not_finite), cmocka_unit_test(octahedron)};
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

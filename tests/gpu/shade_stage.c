@@ -440,7 +440,7 @@ double shade_compare(shade_light_at light, bool (*sure)(const double p[3]), doub
     for (int i = 0; i < count; i++) {
         looked[i] = right_at(light, sure, i % width, i / width, right[i]);
         num_looked += looked[i];
-        brightest = fmax(brightest, fmax(right[i][0], fmax(right[i][1], right[i][2])));
+        brightest = maximum(brightest, maximum(right[i][0], maximum(right[i][1], right[i][2])));
     }
     for (int i = 0; i < count; i++) {
         double found[3];

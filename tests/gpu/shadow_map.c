@@ -3,6 +3,7 @@
 #include "gpu_test.h"
 #include "passes/light_cells/light_cells.h"
 #include "passes/shadow_map/shadow_map.h"
+#include "numbers.h"
 #include "point_pass.h"
 #include "shadow_eval.comp.h"
 #include "solids.h"
@@ -170,7 +171,7 @@ static double texel_size(const tyn_shadow_map_params *p, const lights *l, const 
         for (int r = 0; r < 2; r++) {
             double n = sqrt((double)(s->rows[r][0] * s->rows[r][0] + s->rows[r][1] * s->rows[r][1] +
                                      s->rows[r][2] * s->rows[r][2]));
-            largest = fmax(largest, 2 / n / (double)s->texels);
+            largest = maximum(largest, 2 / n / (double)s->texels);
         }
         return largest;
     }

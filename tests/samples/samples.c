@@ -1,6 +1,7 @@
 // samples.c -- the sample scenes are what they are said to be: they load, the smoke fills its part of
 // the picture, the cloud is thick, the sky has its sun. argv[1] is their folder.
 #include "offline_frame.h"
+#include "numbers.h"
 #include "scenes.h"
 #include "skip.h"
 #include <tyndall/offline.h>
@@ -40,7 +41,7 @@ static float thickest_column(const tyn_scene *scene, int axis)
                 p[c] = k;
                 sum += v->data[((size_t)p[2] * v->size[1] + p[1]) * v->size[0] + p[0]];
             }
-            most = fmaxf(most, sum * voxel * (m->sigma_s[0] + m->sigma_a[0]));
+            most = (float)maximum(most, sum * voxel * (m->sigma_s[0] + m->sigma_a[0]));
         }
     }
     return most;

@@ -4,6 +4,7 @@
 #include "graph/internal.h"
 #include "base/half.h"
 #include "base/hash.h"
+#include "shaders/common/counters.h"
 #include "skip.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -114,6 +115,11 @@ const void *gpu_map(gpu_test *t, const char *name)
     const void *data = tyn_graph_map(t->graph, name, NULL, NULL);
     assert_non_null(data);
     return data;
+}
+
+uint32_t gpu_non_finite(gpu_test *t)
+{
+    return ((const struct counters_block *)gpu_map(t, "counters"))->non_finite;
 }
 
 // What gpu_image hands to the graph; kept until the process ends.

@@ -33,6 +33,8 @@ void gpu_run(gpu_test *t);
 // The same, but gives the result back (validation messages still fail).
 tyn_result gpu_try(gpu_test *t);
 const void *gpu_map(gpu_test *t, const char *name);
+// Values that were not finite, of the output "counters" (struct counters_block).
+uint32_t gpu_non_finite(gpu_test *t);
 
 // Uploads float data as an image (format R32F, RG32F, RGBA32F by channels 1, 2, 4; R16F: channels = -1;
 // RG32UI, RGBA32UI: -2, -4, words a texel).

@@ -25,6 +25,9 @@ static void check_counters(tyn_offline *off)
     for (uint32_t i = 0; i < report.num_nodes; i++) {
         const tyn_node_report *n = &report.nodes[i];
         for (uint32_t k = 0; k < n->num_work; k++) {
+            if (!isfinite(n->work[k].amount)) {
+                fail_msg("%s: %s is %g", n->name, n->work[k].name, n->work[k].amount);
+            }
             if (!strcmp(n->work[k].name, "non_finite") && n->work[k].amount != 0) {
                 fail_msg("%s met %g values that are not finite", n->name, n->work[k].amount);
             }
@@ -60,6 +63,14 @@ void offline_frame_check(tyn_offline *off, const tyn_view *view)
         for (int c = 0; c < 3; c++) {
             assert_true(isfinite(b->absorbed_media[c] + b->absorbed_surfaces[c] + b->escaped[c]));
             assert_true(isfinite(b->imbalance[c] + b->imbalance_se[c]));
+            assert_true(isfinite(b->entering[c] + b->emitted[c]));
+        }
+        const double *const factors[] = {b->scale_suns, b->scale_lamps, b->scale_vpls,
+                                         b->scale_walls};
+        for (int k = 0; k < 4; k++) { // least and most, or none
+            const double least = factors[k][0], most = factors[k][1];
+            assert_true((least == 0 && most == 0) ||
+                        (least > 0 && least <= most && isfinite(most)));
         }
     }
 }
