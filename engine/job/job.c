@@ -7,7 +7,7 @@
 const char *tyn_output_name(tyn_output which)
 {
     static const char *const names[] = {"radiance", "transmittance", "depth",   "single",
-                                        "multiple", "error",         "display", "probe",
+                                        "multiple", "error",         "display", "points",
                                         "balance",  "composite",     "fluxes"};
     for (uint32_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (which == (tyn_output)(1u << i)) {

@@ -306,7 +306,10 @@ static void balances(void **state)
                 "%.1e\n",
                 medium[0], m % 2 ? "grid" : "even", ch, b->entering[ch], b->absorbed_media[ch],
                 b->escaped[ch], b->imbalance[ch]);
-            assert_within(fabs(b->imbalance[ch]), 3e-4, NULL);
+            // One channel of the densest medium is solved less well; the others are to rounding.
+            const double left = fabs(b->imbalance[ch]);
+            assert_true(m == 6 && ch == 0 ? within(left, 3e-4, NULL, "imbalance, sigma_s 30")
+                                          : left <= 4e-5);
             double entering = 6 * M_PI; // from all sides; the sun's is its colour
             entering += c.num_suns ? c.sun_color[0][ch] : 0;
             for (uint32_t n = 0; n < ordinates.count; n++) {

@@ -343,8 +343,13 @@ static void closed_rooms(void **state)
             }
             printf("albedo %g, sigma_s %g: %d sweeps, off by %.1e; walls absorb %.6g of %.6g W\n",
                    albedo, sigma, p.sweeps, wrong, p.absorbed_by_walls, p.sent_by_walls);
-            assert_true(p.sweeps != 8 || within(wrong, 5e-3, NULL, "closed room, 8 sweeps"));
-            assert_true(p.sweeps != 16 || within(wrong, 3e-4, NULL, "closed room, 16 sweeps"));
+            // White walls among which nothing scatters take the longest.
+            const double after_8[6] = {5e-3, 4e-4, 6e-4, 3e-4, 1.5e-4, 2.5e-4};
+            assert_true(p.sweeps != 8 ||
+                        within(wrong, after_8[k], NULL, "closed room %d, 8 sweeps", k));
+            assert_true(p.sweeps != 16 || k > 0 ||
+                        within(wrong, 3e-4, NULL, "closed room, 16 sweeps"));
+            assert_true(p.sweeps != 16 || k == 0 || wrong <= 1.5e-5);
         }
         problem_free(&p);
         mesh_free(&m);
@@ -378,12 +383,17 @@ static void conserves(void **state)
                    (double)m.albedo[0][0], media[k % 4][0], p.sweeps, missing,
                    p.absorbed_by_walls / made, absorbed / made, p.leak / made);
             // Black walls: next to nothing is left to be reflected after four sweeps.
-            const double white = p.sweeps == 4 ? 0.02 : p.sweeps == 8 ? 3e-4 : 2e-6;
-            const double black = p.sweeps == 4 ? 1e-3 : p.sweeps == 8 ? 5e-5 : 2e-6;
+            const double white_8[4] = {2e-4, 6e-5, 3e-4, 5e-6};
+            const double black_4[4] = {1e-4, 1e-3, 2e-6, 1e-3};
+            const double white = p.sweeps == 4   ? k % 4 == 3 ? 6e-4 : 0.02
+                                 : p.sweeps == 8 ? white_8[k % 4]
+                                                 : 2e-6;
+            const double black = p.sweeps == 4 ? black_4[k % 4] : p.sweeps == 8 ? 5e-5 : 2e-6;
             const double bound = k < 4 ? white : black;
-            assert_true(bound > 1e-4 ? within(fabs(missing), bound, NULL, "%s walls, %d sweeps",
-                                              k < 4 ? "white" : "black", p.sweeps)
-                                     : fabs(missing) < bound);
+            assert_true(bound > 1e-4
+                            ? within(fabs(missing), bound, NULL, "%s walls, medium %d, %d sweeps",
+                                     k < 4 ? "white" : "black", k % 4, p.sweeps)
+                            : fabs(missing) < bound);
             assert_true(least > -1e-4);
         }
         problem_free(&p);

@@ -170,8 +170,10 @@ static void equals_prototype(void **state)
         }
         print_message("%s: relative difference %.2e, of a pixel at most %.2e\n", v->name,
                       difference / sum, worst);
-        assert_within(difference / sum, 3e-4, NULL);
-        assert_within(worst, 0.01, NULL);
+        // In the second view one pixel is off by more.
+        const double sums[] = {3e-4, 1.5e-4, 1e-4, 3e-4}, pixels[] = {3e-4, 0.01, 1.2e-4, 3e-4};
+        assert_true(within(difference / sum, sums[i], NULL, "%s, sum", v->name));
+        assert_true(within(worst, pixels[i], NULL, "%s, pixel", v->name));
     }
     free(records);
 }

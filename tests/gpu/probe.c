@@ -179,10 +179,20 @@ static void balances(void **state)
                     "imbalance %.1e\n",
                     media[m][0], grid, variant, b->entering[1], b->absorbed_media[1], b->escaped[1],
                     b->imbalance[1]);
-                assert_within(fabs(b->imbalance[1]), 2e-3, NULL);
+                // Dense media take more than six sweeps; bounds of 1e-4 and less are of rounding.
+                const double solved[4][2] = {
+                    {5e-6, 5e-6}, {5e-6, 5e-6}, {2e-3, 4e-5}, {1e-4, 6e-4}};
+                const double left = fabs(b->imbalance[1]), bound = solved[m][grid];
+                assert_true(bound <= 1e-4 ? left <= bound
+                                          : within(left, bound, NULL, "imbalance, sigma_s %g",
+                                                   (double)media[m][0]));
                 assert_true(fabs(b->escaped[1] / b->escaped[0] - 0.5) < 1e-5);
                 first = variant == 0 ? b->escaped[1] : first;
-                assert_within(fabs(b->escaped[1] / first - 1), 1.5e-4, NULL);
+                // As textures coefficients differ by more where g > 0, most in the medium that absorbs most.
+                const double apart = fabs(b->escaped[1] / first - 1);
+                const bool rounded = variant == 2 && media[m][2] > 0;
+                assert_true(rounded && m == 1 && !grid ? within(apart, 1.5e-4, NULL, "coefficients")
+                                                       : apart <= (rounded ? 4e-5 : 1e-6));
                 light_chain_finish(&c);
             }
         }

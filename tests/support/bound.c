@@ -2,6 +2,7 @@
 #include "bound.h"
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_BOUNDS = 512 };
@@ -24,6 +25,9 @@ bool within(double observed, double bound, const char *why, const char *name, ..
     va_start(args, name);
     vsnprintf(text, sizeof text, name, args);
     va_end(args);
+    if (getenv("TYN_BOUNDS")) {
+        printf("call\t%s\t%.4g\t%.4g\t%s\n", text, observed, bound, why ? "why" : "");
+    }
     int i = 0;
     while (i < num_entries && strcmp(entries[i].name, text) != 0) {
         i++;

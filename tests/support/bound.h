@@ -14,7 +14,9 @@
 #define BOUND_PROMISE "what is promised for all scenes, of which these are some"
 
 // Is `observed` at most `bound`? No NaN is. `why` (a literal, or NULL): the reason if the bound is wide. The name may be that
-// of many checks, as in a loop: of these the one nearest to its bound is held.
+// of many checks, as in a loop: of these the one nearest to its bound is held. So a name is of one quantity, whose largest
+// value over points or texels counts; scenes and settings that differ go by names and bounds of their own. With TYN_BOUNDS
+// in the environment every check is printed.
 bool within(double observed, double bound, const char *why, const char *name, ...)
     __attribute__((format(printf, 4, 5)));
 
