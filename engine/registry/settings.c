@@ -173,11 +173,16 @@ typedef struct preset {
     } settings[8];
 } preset;
 
-// Normal is every pass's default.
+// Normal is every pass's default. On the front of error and time over twelve scenes (tools/bench/suites/presets.json), normal
+// and high of those settings that solve the lattice to 1.5 % of its light.
 static const preset presets[] = {
-    {"draft", {{"lattice.cells", "16"}, {"lattice.sweeps", "2"}, {"beam.cells", "48"}}},
+    {"draft",
+     {{"lattice.cells", "20"},
+      {"lattice.sweeps", "3"},
+      {"beam.cells", "48"},
+      {"raymarch.step", "2"}}},
     {"normal", {{NULL, NULL}}},
-    {"high", {{"lattice.cells", "48"}, {"lattice.sweeps", "6"}, {"beam.cells", "160"}}},
+    {"high", {{"lattice.cells", "40"}}},
 };
 
 tyn_result tyn_settings_quality(tyn_settings *settings, const char *name, const tyn_log *log)
