@@ -430,6 +430,12 @@ static void against_twin(void **state)
     static float importance[IMP_W * IMP_H];
     make_importance(importance, 3);
     const int counts[] = {1, 3, 64, 100};
+    // Relative, relative, degrees; largest over the maps.
+    static const double most[16][3] = {
+        {8e-7, 6e-8, 2e-3}, {8e-7, 6e-8, 2e-3},  {4e-7, 6e-8, 2e-3}, {4e-7, 6e-8, 2e-3},
+        {3e-6, 2e-6, 2e-4}, {10e-5, 7e-5, 3e-3}, {2e-6, 9e-7, 2e-2}, {9e-6, 3e-5, 2e-2},
+        {6e-4, 5e-5, 3e-2}, {3e-3, 3e-3, 3e-2},  {3e-5, 2e-5, 8e-2}, {6e-4, 8e-4, 8e-2},
+        {2e-3, 6e-5, 4e-2}, {3e-3, 5e-3, 7e-2},  {6e-5, 2e-5, 9e-2}, {7e-4, 2e-3, 9e-2}};
     for (int kind = 0; kind < BLACK; kind++) {
         for (int k = 0; k < 16; k++) {
             scene s = make_scene(kind, 0.7);
@@ -462,16 +468,22 @@ static void against_twin(void **state)
                 double middle[3];
                 middle_of(&base, regions[i], split, luminance_of(s.light.sky), middle);
                 worst_angle = maximum(worst_angle, fabs(b.list[i].solid_angle / solid_angle - 1));
-                worst_turn =
-                    maximum(worst_turn, acos(minimum(1, vector_dot(middle, got))) * 180 / M_PI);
+                for (int a = 0; a < 3; a++) {
+                    got[a] -= middle[a];
+                }
+                worst_turn = maximum(worst_turn, sqrt(vector_dot(got, got)) * 180 / M_PI);
             }
             printf("%s, %d%s%s: light off by %.1e, solid angle by %.1e, direction by %.2g degrees; "
                    "%.2f ms\n",
                    map_names[kind], n, split ? ", split" : "", s.importance ? ", importance" : "",
                    worst_light, worst_angle, worst_turn, gpu_ms(t, "ordinates"));
-            assert_within(worst_light, 3e-3, NULL);
-            assert_within(worst_angle, 3e-3, NULL);
-            assert_within(worst_turn, 0.12, NULL);
+            const char *name = s.importance ? "with importance" : "without importance";
+            assert_true(within(worst_light, most[k][0], BOUND_ROUNDING, "light of %d%s, %s", n,
+                               split ? ", split" : "", name));
+            assert_true(within(worst_angle, most[k][1], BOUND_ROUNDING, "solid angle of %d%s, %s",
+                               n, split ? ", split" : "", name));
+            assert_true(within(worst_turn, most[k][2], BOUND_ROUNDING, "direction of %d%s, %s", n,
+                               split ? ", split" : "", name));
         }
     }
 }
@@ -656,7 +668,11 @@ static void moves_little(void **state)
                    map_names[kind], n, rigid.most, turn.most, turn.mean, noise.most, noise.mean);
             assert_within(rigid.most, 0.51, NULL);
             assert_true(turn.most < 1);
-            assert_within(noise.most, 0.3, NULL);
+            assert_true(within(noise.most,
+                               n < 64    ? 0.06
+                               : n < 256 ? 0.072
+                                         : 0.11,
+                               NULL, "%s, %d, importance changed", map_names[kind], n));
             for (int i = 0; i < n; i++) { // rigid: their light is the same
                 assert_true(fabs(plain.list[i].irradiance[0] - plain_turned.list[i].irradiance[0]) <
                             1e-6);

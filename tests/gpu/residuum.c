@@ -158,6 +158,7 @@ static void keeps_the_power(void **state)
     for (int q = 0; q < 16 * 12 * 8; q++) {
         density[q] = 0.7f;
     }
+    static const double most[3][3] = {{5e-3, 6e-3, 6e-3}, {6e-3, 6e-3, 4e-3}, {6e-3, 5e-3, 3e-3}};
     for (int32_t before = 8; before <= 32; before *= 2) {
         outcome o = run(*state, before, 0);
         for (uint32_t c = 0; c < 3; c++) {
@@ -166,7 +167,8 @@ static void keeps_the_power(void **state)
                 "after %2d iterations, channel %u: %.4f W in the aligned grids inside the "
                 "box, merged %.4f of it\n",
                 before, c, aligned, merged / aligned);
-            assert_within(fabs(merged / aligned - 1), 0.01, NULL); // false for a NaN
+            assert_true(within(fabs(merged / aligned - 1), most[before / 16][c], NULL,
+                               "power after %d, channel %u", before, c));
         }
     }
 }

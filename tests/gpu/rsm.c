@@ -182,7 +182,7 @@ static void a_lamp_in_a_room(void **state)
     expect("red", s.flux[0], 4 * pi * 3 * 0.5, 2e-4);
     expect("green", s.flux[1], 4 * pi * 2 * 0.6, 2e-4);
     expect("blue", s.flux[2], 4 * pi * 1 * 0.7, 2e-4);
-    expect("area", s.area, 2 * (4 * 2 + 2 * 3 + 3 * 4), 0.02);
+    expect("area", s.area, 2 * (4 * 2 + 2 * 3 + 3 * 4), 3e-3);
     tyn_scene_finish(&scene);
 }
 
@@ -192,6 +192,7 @@ static void spots_in_a_room(void **state)
     make_room(&scene);
     // One in a map of its own, one so wide that it needs a cube.
     const float inner[2] = {0.95f, 0.5f}, outer[2] = {0.8f, 0.1f};
+    static const double most[2] = {2.5e-5, 1.9e-4};
     for (int k = 0; k < 2; k++) {
         struct light_block spot = {.kind = TYN_LIGHT_KIND_SPOT,
                                    .color = {3, 2, 1},
@@ -201,8 +202,8 @@ static void spots_in_a_room(void **state)
         turn((float[]){0.36f, -0.8f, 0.48f}, false, spot.direction);
         sums s = run(*state, &scene, &spot, (float[]){-1, 0, -2}, (float[]){3, 2, 1});
         const double angle = 2 * pi * (1 - (2 * (double)inner[k] + (double)outer[k]) / 3);
-        expect("red", s.flux[0], angle * 3 * 0.5, 2e-4);
-        expect("blue", s.flux[2], angle * 1 * 0.7, 2e-4);
+        expect("red", s.flux[0], angle * 3 * 0.5, most[k]);
+        expect("blue", s.flux[2], angle * 1 * 0.7, most[k]);
     }
     tyn_scene_finish(&scene);
 }
@@ -223,7 +224,7 @@ static void a_house_from_outside(void **state)
     s = run(*state, &scene, &sun, (float[]){-5, 0, -5}, (float[]){5, 2, 5});
     const double yard = 10 * 10 * 0.8,
                  roof = 4 * 3 * 0.8; // what goes through: the roof's light is lost
-    expect("red", s.flux[0], 0.5 * (yard - roof), 2e-4);
+    expect("red", s.flux[0], 0.5 * (yard - roof), 1.7e-4);
     tyn_scene_finish(&scene);
 }
 
