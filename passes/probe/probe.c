@@ -55,5 +55,7 @@ const tyn_pass_desc tyn_pass_probe = {
     TYN_PASS_TABLES(tyn_probe_params),
     .debug_port = PROBE_PORT_RESULTS,
     .debug_meaning = "fluence and flux per point, W/m^2",
-    .counters = (const tyn_counter[]){TYN_COUNTER_NON_FINITE, {NULL}},
+    .counters = (const tyn_counter[]){TYN_COUNTER_NON_FINITE,
+                                      {"clamped", offsetof(struct counters_block, clamped)},
+                                      {NULL}},
 };

@@ -306,7 +306,11 @@ void main()
             field[ch] = vec4(0.0);
             atomicAdd(counters.non_finite, 1u);
         }
-        results[i].fluence[ch] = max(field[ch].x, 0.0);
+        if (field[ch].x < 0.0) {
+            field[ch].x = 0.0;
+            atomicAdd(counters.clamped, 1u);
+        }
+        results[i].fluence[ch] = field[ch].x;
         results[i].fluence_se[ch] = 0.0;
         for (uint axis = 0; axis < 3; axis++) {
             results[i].flux[3 * axis + ch] = dot(args.world[axis], field[ch].yzw);

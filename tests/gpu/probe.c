@@ -1,6 +1,7 @@
 // probe.c -- probes and the balance of the whole chain: against Monte Carlo and closed forms.
 #include "bound.h"
 #include "light_chain.h"
+#include "shaders/common/counters.h"
 #include "npy.h"
 #include "numbers.h"
 #include "passes/probe/probe.h"
@@ -231,20 +232,21 @@ static void furnace(void **state)
     }
 }
 
-// Moments that are not finite are not passed on, and are counted: one channel of one point here.
-static void not_finite(void **state)
+// Moments that are not finite are not passed on, nor is a fluence below 0, and both are counted: one channel of one
+// point here.
+static void not_light(void **state)
 {
     gpu_test *t = *state;
     enum { CELLS = 4, N = CELLS * CELLS * CELLS };
-    static const float values[] = {1, NAN, INFINITY},
+    static const float values[] = {1, NAN, INFINITY, 1, NAN, INFINITY, -50},
                        points[2][3] = {{0.4f, 0.4f, 0.4f}, {0.9f, 0.9f, 0.9f}};
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 7; k++) {
         static float moments[3 * N][4];
         for (int i = 0; i < 3 * N * 4; i++) {
             moments[i / 4][i % 4] = 1;
         }
-        moments[N + (1 * CELLS + 1) * CELLS + 1][k / 3] =
-            values[k % 3]; // green: fluence, then flux
+        const bool below = k == 6, flux = k >= 3 && !below;
+        moments[N + (1 * CELLS + 1) * CELLS + 1][flux] = values[k]; // green
         const struct medium_block medium = {
             .extent = {1, 1, 1}, .size = {1, 1, 1}, .voxel = {1, 1, 1}};
         tyn_graph_begin(t->graph);
@@ -260,13 +262,14 @@ static void not_finite(void **state)
         tyn_graph_output(t->graph, "results", refs[PROBE_PORT_RESULTS], true);
         tyn_graph_output(t->graph, "counters", refs[PROBE_PORT_COUNTERS], true);
         gpu_run(t);
-        assert_int_equal(gpu_non_finite(t), k % 3 > 0);
+        assert_int_equal(gpu_non_finite(t), !isfinite(values[k]));
+        assert_int_equal(((const struct counters_block *)gpu_map(t, "counters"))->clamped, below);
         const tyn_probe_result *r = gpu_map(t, "results");
         for (int n = 0; n < 2; n++) {
             for (int c = 0; c < 3; c++) {
-                const float expected = k % 3 > 0 && n == 0 && c == 1 ? 0 : 1;
-                assert_near(r[n].fluence[c], expected, 1e-6);
-                assert_near(r[n].flux[c], expected, 1e-6);
+                const bool here = n == 0 && c == 1;
+                assert_near(r[n].fluence[c], here && values[k] != 1 ? 0 : 1, 1e-6);
+                assert_near(r[n].flux[c], here && !isfinite(values[k]) ? 0 : 1, 1e-6);
             }
         }
     }
@@ -277,7 +280,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(absorption_only),   cmocka_unit_test(sun_of_finite_size),
         cmocka_unit_test(fluence_in_a_cube), cmocka_unit_test(balances),
-        cmocka_unit_test(furnace),           cmocka_unit_test(not_finite),
+        cmocka_unit_test(furnace),           cmocka_unit_test(not_light),
     };
     return run_cases(tests, gpu_setup, gpu_teardown);
 }
