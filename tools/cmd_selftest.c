@@ -68,8 +68,8 @@ static int report_devices(selftest *t, cJSON *list)
 static int run_checks(selftest *t, const char *device)
 {
     int (*const checks[])(selftest *) = {
-        selftest_files,      selftest_graphs, selftest_furnace, selftest_cubes,   selftest_slabs,
-        selftest_half_space, selftest_lamps,  selftest_energy,  selftest_repeats,
+        selftest_rows,  selftest_files,      selftest_graphs, selftest_furnace, selftest_cubes,
+        selftest_slabs, selftest_half_space, selftest_lamps,  selftest_energy,  selftest_repeats,
     };
     int code = EXIT_DONE;
     for (size_t i = 0; i < ARRAY_SIZE(checks) && code == EXIT_DONE; i++) {

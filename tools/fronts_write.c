@@ -6,15 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 #include <tyndall/io.h>
+#include <tyndall/registry.h>
 
-// Nodes whose work is that of the picture's pixels.
+// Is the node's work that of the picture's pixels?
 static bool is_of_pixels(const char *node)
 {
-    static const char *const names[] = {"raymarch", "gbuffer",   "shade",  "upsample",
-                                        "path",     "composite", "tonemap"};
-    for (size_t i = 0; i < ARRAY_SIZE(names); i++) {
-        if (strcmp(node, names[i]) == 0) {
-            return true;
+    for (uint32_t i = 0; i < tyn_num_passes(); i++) {
+        const tyn_pass_desc *pass = tyn_pass_at(i);
+        if (strcmp(node, pass->name) == 0) {
+            return pass->of_pixels;
         }
     }
     return false;

@@ -46,6 +46,15 @@ void selftest_skip(selftest *t, const char *name, const char *why)
     add_json(t, name, "skipped", why, &check);
 }
 
+bool selftest_next(uint32_t *index, tyn_method_info *info, const selftest_promise **promise)
+{
+    for (*promise = NULL; *index < tyn_num_methods() && !*promise; ++*index) {
+        tyn_method_at(*index, info);
+        *promise = selftest_promise_of(info->name);
+    }
+    return *promise != NULL;
+}
+
 int selftest_render(selftest *t, const char *name, tyn_scene *scene, const tyn_view *view,
                     renderer *r)
 {

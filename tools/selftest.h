@@ -1,6 +1,7 @@
 // selftest.h -- what the checks of `tyndall selftest` share.
 #pragma once
 #include "renderer.h"
+#include "selftest_promises.h"
 #include "selftest_scenes.h"
 #include <cjson/cJSON.h>
 
@@ -16,6 +17,10 @@ typedef struct selftest {
 void selftest_check(selftest *t, const char *name, double value, double expected, double tolerance,
                     const char *source);
 void selftest_skip(selftest *t, const char *name, const char *why); // neither passed nor failed
+
+// Goes through the methods in turn: the next one and what it promises, from *index on (0 at first). False: there are no
+// more.
+bool selftest_next(uint32_t *index, tyn_method_info *info, const selftest_promise **promise);
 
 // Renders with a method ("pop", NULL settings = defaults); `r` is open afterwards if the exit code is
 // EXIT_DONE, and closed if it is not.
@@ -35,6 +40,7 @@ double selftest_mean(const float *pixels, const float *errors, double *se);
 int selftest_furnace(selftest *t); // selftest_pictures.c
 int selftest_cubes(selftest *t);
 int selftest_energy(selftest *t);
+int selftest_rows(selftest *t);
 int selftest_repeats(selftest *t);
 int selftest_slabs(selftest *t); // selftest_tables.c
 int selftest_half_space(selftest *t);

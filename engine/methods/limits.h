@@ -20,7 +20,7 @@ double tyn_limit_floats(const tyn_regime *r);
 #define TYN_LIMIT_FLOATS                                                                           \
     {                                                                                              \
         .key = "depths beyond single precision", .where = {TYN_ABOVE(depth, 3e6)},                 \
-        .error = tyn_limit_floats, .warning = {                                                    \
+        .error = tyn_limit_floats, .source = "docs/stress.md, \"What is found\"", .warning = {     \
             "accuracy: a mean free path is %.2g of the medium's box; places are single precision " \
             "numbers, of which 1e-7 of the box is the finest",                                     \
             {TYN_FIGURE(mean_free_path)}                                                           \

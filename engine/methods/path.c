@@ -496,7 +496,8 @@ static const tyn_limit limits[] = {
      .error = ended,
      .warning = {"accuracy: the medium is %.2g mean free paths deep and absorbs next to nothing; "
                  "paths end after so many steps (-D path.max_steps), what is left of them is lost",
-                 {TYN_FIGURE(depth)}}},
+                 {TYN_FIGURE(depth)}},
+     .source = "docs/stress.md, \"What is found\""},
     TYN_LIMIT_FLOATS,
     {NULL},
 };

@@ -79,7 +79,8 @@ static const tyn_limit limits[] = {
      .where = {TYN_ABOVE(most_g, 0.995)},
      .warning = {"accuracy: g is %.6g; beyond 0.995 the medium counts as one of 0.995 that "
                  "scatters less, so that what is scattered by hardly any angle is not lost",
-                 {TYN_FIGURE(most_g)}}},
+                 {TYN_FIGURE(most_g)}},
+     .source = "docs/stress.md, \"What is found\""},
     {.key = "surfaces",
      .where = {TYN_ABOVE(surfaces, 0)},
      .level = TYN_LIMIT_BREAKS,

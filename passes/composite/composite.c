@@ -42,6 +42,7 @@ const tyn_pass_desc tyn_pass_composite = {
     .summary = "lays the medium over the host's picture",
     .serves = "a host's picture",
     TYN_PASS_TABLES(tyn_composite_params),
+    .of_pixels = true,
     .debug_port = COMPOSITE_PORT_COLOR,
     .debug_meaning = "the composited picture",
 };

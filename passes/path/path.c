@@ -65,6 +65,7 @@ const tyn_pass_desc tyn_pass_path = {
     .name = "path",
     .summary = "unbiased path tracing, progressive",
     TYN_PASS_TABLES(tyn_path_params),
+    .of_pixels = true,
     .params = path_params_table,
     .num_params = TYN_COUNT(path_params_table),
     .debug_port = PATH_PORT_ERROR,

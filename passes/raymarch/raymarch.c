@@ -285,6 +285,7 @@ const tyn_pass_desc tyn_pass_raymarch = {
     .name = "raymarch",
     .summary = "light of the medium gathered along the rays of a camera",
     TYN_PASS_TABLES(tyn_raymarch_params),
+    .of_pixels = true,
     .params = params_table,
     .num_params = TYN_COUNT(params_table),
     .debug_port = RAYMARCH_PORT_RADIANCE,

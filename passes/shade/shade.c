@@ -207,6 +207,7 @@ const tyn_pass_desc tyn_pass_shade = {
     .summary = "radiance of the surfaces that the camera sees",
     .serves = "pictures of surfaces",
     TYN_PASS_TABLES(tyn_shade_params),
+    .of_pixels = true,
     .params = params,
     .num_params = TYN_COUNT(params),
     .debug_port = PORT(SURFACE_RADIANCE),
