@@ -132,7 +132,7 @@ static void add_media(cJSON *root, const tyn_scene *scene)
         add_text(medium, "name", m->name);
         cJSON_AddItemToObject(medium, "volume",
                               m->volume < 0 ? cJSON_CreateNull() : cJSON_CreateNumber(m->volume));
-        json_add_float(medium, "density_scale", m->density_scale);
+        json_add_float(medium, "density_scale", tyn_medium_scale(m));
         add_floats(medium, "sigma_s", m->sigma_s, 3);
         add_floats(medium, "sigma_a", m->sigma_a, 3);
         for (const tyn_phase_parameter *p = tyn_phase_parameters(); p->name; p++) {
@@ -182,7 +182,7 @@ static void add_lights(cJSON *root, const tyn_scene *scene)
         const int size[2] = {(int)env->size[0], (int)env->size[1]};
         cJSON_AddItemToObject(environment, "texels", cJSON_CreateIntArray(size, 2));
         add_floats(environment, "radiance", env->radiance, 3);
-        json_add_float(environment, "strength", env->strength);
+        json_add_float(environment, "strength", tyn_environment_strength(env));
     }
     cJSON_AddItemToObject(root, "environment", environment);
 }

@@ -26,7 +26,7 @@ static void print_media(const tyn_scene *scene)
         if (m->volume < 0) {
             printf("homogeneous");
         } else {
-            printf("density of volume %d x %g", m->volume, m->density_scale);
+            printf("density of volume %d x %g", m->volume, tyn_medium_scale(m));
         }
         print_color("\n  scattering  ", m->sigma_s, " 1/m\n");
         print_color("  absorption  ", m->sigma_a, " 1/m\n");

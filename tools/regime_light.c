@@ -106,7 +106,7 @@ static double mean_of_map(const tyn_environment *env)
         }
         weights += weight * env->size[0];
     }
-    return weights > 0 ? regime_luminance(sum) / weights * env->strength : 0;
+    return weights > 0 ? regime_luminance(sum) / weights * tyn_environment_strength(env) : 0;
 }
 
 static void environment_power(const regime_box *b, const tyn_environment *env, regime *r)
@@ -116,7 +116,7 @@ static void environment_power(const regime_box *b, const tyn_environment *env, r
     }
     if (!env->data) {
         r->share[REGIME_SKY] =
-            pi * regime_box_surface(b) * luminance(env->radiance) * env->strength;
+            pi * regime_box_surface(b) * luminance(env->radiance) * tyn_environment_strength(env);
         return;
     }
     tyn_environment_sun suns[TYN_MAX_MAP_SUNS];

@@ -64,7 +64,7 @@ static double shape_density(const regime_media *media, uint32_t i, const double 
     }
     const double density =
         medium->volume < 0 ? 1 : density_at(&media->scene->volumes[medium->volume], p);
-    return density * medium->density_scale;
+    return density * tyn_medium_scale(medium);
 }
 
 bool regime_media_at(const regime_media *media, const double world[3], regime_coefficients *out)

@@ -63,7 +63,10 @@ static void change_environment(app *a, const scene_options *options, tyn_environ
     if (options->env_rotate != 0) {
         rotate_about_y(env->rotation, options->env_rotate);
     }
-    env->strength *= options->env_strength;
+    env->strength = tyn_environment_strength(env) * options->env_strength;
+    for (int c = 0; c < 3 && options->env_strength == 0; c++) {
+        env->radiance[c] = 0; // a strength of 0 is one that is not given
+    }
 }
 
 static const float *given(const opt_vector *v)
@@ -119,7 +122,7 @@ int scene_open(app *a, const scene_options *options, tyn_scene *scene)
     };
     result = tyn_scene_override(scene, &override, &a->log);
     for (uint32_t i = 0; i < scene->num_media && options->density_scale == 0; i++) {
-        scene->media[i].density_scale = 0; // the override takes 0 for "not given"
+        tyn_medium_clear(&scene->media[i]); // the override takes 0 for "not given"
     }
     if (result == TYN_OK) {
         result = tyn_scene_check(scene, &a->log);

@@ -112,10 +112,6 @@ tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     if (result == TYN_OK) {
         look_at_grid(ctx, frame->scene);
     }
-    if (result == TYN_OK && ctx->atlas.host && !frame->densities) {
-        tyn_log_print(log, TYN_LOG_ERROR, "volume 0 has no data and tyn_frame.densities is NULL");
-        result = TYN_ERR_PARAMS;
-    }
     if (result == TYN_OK && (view->outputs & TYN_OUTPUT_PROBE)) {
         result = update_points(ctx, view);
     }

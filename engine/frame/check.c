@@ -2,6 +2,102 @@
 #include "frame/context.h"
 #include "gpu/device.h"
 #include "scene/check.h"
+#include <math.h>
+
+#define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
+
+// An image that the host lends: `what` it is, and what it must be able to do.
+static tyn_result check_image(const tyn_image *image, const char *what, VkImageUsageFlags usage,
+                              const char *usage_name, const tyn_log *log)
+{
+    if (!image->image || !image->view) {
+        FAULT("%s: image and view are required, %s is NULL", what, image->image ? "view" : "image");
+    }
+    if (!(image->usage & usage)) {
+        FAULT("%s: its usage is 0x%x; it needs %s", what, image->usage, usage_name);
+    }
+    if (image->after.layout == VK_IMAGE_LAYOUT_UNDEFINED ||
+        image->after.layout == VK_IMAGE_LAYOUT_PREINITIALIZED) {
+        FAULT("%s: after.layout is %d; no image can be left in that layout", what,
+              (int)image->after.layout);
+    }
+    return TYN_OK;
+}
+
+static tyn_result check_color(const tyn_image *color, const tyn_view *view, const tyn_log *log)
+{
+    if (!color || (color->format != VK_FORMAT_R16G16B16A16_SFLOAT &&
+                   color->format != VK_FORMAT_R32G32B32A32_SFLOAT)) {
+        FAULT(
+            "COMPOSITE needs tyn_frame.color: rgba16f or rgba32f with VK_IMAGE_USAGE_STORAGE_BIT");
+    }
+    if (color->extent.width != view->width || color->extent.height != view->height) {
+        FAULT("color is %u x %u, the view is %u x %u; make them equal", color->extent.width,
+              color->extent.height, view->width, view->height);
+    }
+    return check_image(color, "color", VK_IMAGE_USAGE_STORAGE_BIT, "VK_IMAGE_USAGE_STORAGE_BIT",
+                       log);
+}
+
+static tyn_result check_depth(const tyn_frame *frame, const tyn_log *log)
+{
+    static const VkFormat formats[] = {VK_FORMAT_D16_UNORM,         VK_FORMAT_X8_D24_UNORM_PACK32,
+                                       VK_FORMAT_D32_SFLOAT,        VK_FORMAT_D16_UNORM_S8_UINT,
+                                       VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT};
+    const tyn_image *depth = frame->depth;
+    const float *m = frame->view_to_clip;
+    bool known = false;
+    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
+        known = known || depth->format == formats[i];
+    }
+    if (!known) {
+        FAULT("depth: format %d is no depth format", (int)depth->format);
+    }
+    if (depth->extent.width != frame->view->width || depth->extent.height != frame->view->height) {
+        FAULT("depth is %u x %u, the view is %u x %u; make them equal", depth->extent.width,
+              depth->extent.height, frame->view->width, frame->view->height);
+    }
+    bool finite = true;
+    for (int i = 0; i < 16; i++) {
+        finite = finite && isfinite(m[i]);
+    }
+    // Depth is (m[10] z + m[14]) / (m[11] z + m[15]): from it z can be told if that is no constant.
+    if (!finite || m[10] * m[15] == m[14] * m[11]) {
+        FAULT("view_to_clip: its third and fourth row must tell view z from depth (they are %g %g "
+              "and %g %g in z and 1)",
+              m[10], m[14], m[11], m[15]);
+    }
+    return check_image(depth, "depth", VK_IMAGE_USAGE_SAMPLED_BIT, "VK_IMAGE_USAGE_SAMPLED_BIT",
+                       log);
+}
+
+// The images of volumes without data; that there are some is known when the scene is fit.
+static tyn_result check_densities(const tyn_frame *frame, const tyn_log *log)
+{
+    const tyn_scene *scene = frame->scene;
+    for (uint32_t i = 0, n = 0; i < scene->num_volumes; i++) {
+        const tyn_volume *v = &scene->volumes[i];
+        if (v->data) {
+            continue;
+        }
+        if (!frame->densities) {
+            FAULT("volume %u has no data and tyn_frame.densities is NULL", i);
+        }
+        const tyn_image *image = &frame->densities[n++];
+        if (image->extent.width != v->size[0] || image->extent.height != v->size[1] ||
+            image->extent.depth != v->size[2]) {
+            FAULT("densities[%u] is %u x %u x %u, volume %u is %u x %u x %u; make them equal",
+                  n - 1, image->extent.width, image->extent.height, image->extent.depth, i,
+                  v->size[0], v->size[1], v->size[2]);
+        }
+        const tyn_result result = check_image(image, "densities", VK_IMAGE_USAGE_SAMPLED_BIT,
+                                              "VK_IMAGE_USAGE_SAMPLED_BIT", log);
+        if (result != TYN_OK) {
+            return result;
+        }
+    }
+    return TYN_OK;
+}
 
 tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)
 {
@@ -28,23 +124,15 @@ tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)
         tyn_log_print(log, TYN_LOG_ERROR, "a probe needs at least one point");
         return TYN_ERR_PARAMS;
     }
-    if (outputs & TYN_OUTPUT_COMPOSITE) {
-        const tyn_image *color = frame->color;
-        if (!color || !(color->usage & VK_IMAGE_USAGE_STORAGE_BIT) ||
-            (color->format != VK_FORMAT_R16G16B16A16_SFLOAT &&
-             color->format != VK_FORMAT_R32G32B32A32_SFLOAT)) {
-            tyn_log_print(log, TYN_LOG_ERROR,
-                          "COMPOSITE needs tyn_frame.color: rgba16f or rgba32f with "
-                          "VK_IMAGE_USAGE_STORAGE_BIT");
-            return TYN_ERR_PARAMS;
-        }
-        if (color->extent.width != view->width || color->extent.height != view->height) {
-            tyn_log_print(log, TYN_LOG_ERROR,
-                          "color is %u x %u, the view is %u x %u; make them equal",
-                          color->extent.width, color->extent.height, view->width, view->height);
-            return TYN_ERR_PARAMS;
+    tyn_result result = tyn_camera_check(&view->camera, 0, log);
+    if (result == TYN_OK && (outputs & TYN_OUTPUT_COMPOSITE)) {
+        result = check_color(frame->color, view, log);
+        if (result == TYN_OK && frame->depth) {
+            result = check_depth(frame, log);
         }
     }
-    tyn_result result = tyn_camera_check(&view->camera, 0, log);
-    return result == TYN_OK ? tyn_scene_check_values(frame->scene, log) : result;
+    if (result == TYN_OK) {
+        result = tyn_scene_check_values(frame->scene, log);
+    }
+    return result == TYN_OK ? check_densities(frame, log) : result;
 }

@@ -3,16 +3,23 @@
 #include "gpu/device.h"
 #include "registry/registry.h"
 #include "base/hash.h"
+#include "base/given.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params, tyn_context **out)
 {
-    *out = NULL;
-    if (!dev || !params || params->struct_size < sizeof *params) {
-        tyn_log_print(dev ? &dev->log : NULL, TYN_LOG_ERROR,
-                      "tyn_context_create: use the tyn_context_params() macro");
+    if (out) {
+        *out = NULL;
+    }
+    if (!TYN_GIVEN(dev ? &dev->log : NULL, dev, params, out)) {
+        return TYN_ERR_PARAMS;
+    }
+    if (params->struct_size < sizeof *params) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR,
+                      "tyn_context_create: struct_size is %zu; use the tyn_context_params() macro",
+                      params->struct_size);
         return TYN_ERR_PARAMS;
     }
     const tyn_method *method = tyn_method_find(params->method);

@@ -123,10 +123,10 @@ static bool equal_coefficients(const tyn_medium *a, const tyn_medium *b)
 {
     bool equal = true;
     for (int c = 0; c < 3; c++) {
-        equal &= a->sigma_s[c] * a->density_scale == b->sigma_s[c] * b->density_scale &&
-                 a->sigma_a[c] * a->density_scale == b->sigma_a[c] * b->density_scale &&
+        equal &= a->sigma_s[c] * tyn_medium_scale(a) == b->sigma_s[c] * tyn_medium_scale(b) &&
+                 a->sigma_a[c] * tyn_medium_scale(a) == b->sigma_a[c] * tyn_medium_scale(b) &&
                  tyn_phase_equal(a->phase[c], b->phase[c]) &&
-                 a->emission[c] * a->density_scale == b->emission[c] * b->density_scale;
+                 a->emission[c] * tyn_medium_scale(a) == b->emission[c] * tyn_medium_scale(b);
     }
     return equal;
 }
@@ -171,10 +171,10 @@ static void build_medium(tyn_frame_scene *out, const tyn_scene *scene, const dou
     b->max_density = equal ? max_sum : 1.0f;
     b->sigma_t_max = equal ? 0.0f : 1.0f;
     for (int c = 0; equal && c < 3; c++) {
-        b->sigma_s[c] = first->sigma_s[c] * first->density_scale;
-        b->sigma_a[c] = first->sigma_a[c] * first->density_scale;
+        b->sigma_s[c] = first->sigma_s[c] * tyn_medium_scale(first);
+        b->sigma_a[c] = first->sigma_a[c] * tyn_medium_scale(first);
         b->phase[c] = first->phase[c];
-        b->emission[c] = first->emission[c] * first->density_scale;
+        b->emission[c] = first->emission[c] * tyn_medium_scale(first);
         b->sigma_t_max = fmaxf(b->sigma_t_max, b->sigma_s[c] + b->sigma_a[c]);
     }
     out->grey =
@@ -248,7 +248,7 @@ static void build_shapes(tyn_frame_scene *out, const tyn_scene *scene, const rig
         for (int a = 0; a < 3; a++) {
             b->size[a] = volume ? volume->size[a] : 1;
             // A grid that is 0 everywhere holds nothing, whatever its coefficients.
-            float scale = volume && volume->max_density <= 0 ? 0 : medium->density_scale;
+            float scale = volume && volume->max_density <= 0 ? 0 : tyn_medium_scale(medium);
             b->sigma_s[a] = medium->sigma_s[a] * scale;
             b->sigma_a[a] = medium->sigma_a[a] * scale;
             b->phase[a] = medium->phase[a];
@@ -379,7 +379,7 @@ static void build_environment(tyn_frame_scene *out, const tyn_environment *env,
         for (int a = 0; a < 3; a++) {
             b->rows[r][a] = (float)dot3(map_to_world[r], m->axes[a]);
         }
-        b->radiance[r] = env->radiance[r] * env->strength;
+        b->radiance[r] = env->radiance[r] * tyn_environment_strength(env);
         b->mean[r] = b->radiance[r] * (b->has_map ? (float)map->mean[r] : 1.0f);
         b->sky[r] = b->radiance[r] * (b->has_map ? (float)map->sky[r] : 1.0f);
     }

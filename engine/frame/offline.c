@@ -1,6 +1,7 @@
 // offline.c -- rendering to host memory with a device of our own: submit and wait.
 #include <tyndall/offline.h>
 #include "frame/submission.h"
+#include "base/given.h"
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -26,9 +27,20 @@ static double now_ms(void)
 
 tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params *params, tyn_offline **out)
 {
-    *out = NULL;
-    if (!dev || !dev->queue || !params || params->struct_size < sizeof *params) {
-        tyn_log_print(dev ? &dev->log : NULL, TYN_LOG_ERROR,
+    if (out) {
+        *out = NULL;
+    }
+    if (!TYN_GIVEN(dev ? &dev->log : NULL, dev, params, out)) {
+        return TYN_ERR_PARAMS;
+    }
+    if (params->struct_size < sizeof *params) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR,
+                      "tyn_offline_create: struct_size is %zu; use the tyn_offline_params() macro",
+                      params->struct_size);
+        return TYN_ERR_PARAMS;
+    }
+    if (!dev->queue) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR,
                       "tyn_offline_create needs a device from tyn_device_open");
         return TYN_ERR_PARAMS;
     }
@@ -68,8 +80,10 @@ void tyn_offline_destroy(tyn_offline **offline)
 
 void tyn_offline_on_progress(tyn_offline *off, tyn_progress_fn fn, void *user)
 {
-    off->progress = fn;
-    off->progress_user = user;
+    if (off) {
+        off->progress = fn;
+        off->progress_user = user;
+    }
 }
 
 // Records, submits and waits.
@@ -118,6 +132,9 @@ static void add_record(tyn_offline *off)
 tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn_view *view,
                              bool recompute)
 {
+    if (!off || !TYN_GIVEN(&off->dev->log, scene, view)) {
+        return TYN_ERR_PARAMS;
+    }
     tyn_view part = *view;
     tyn_frame frame = *tyn_frame(.scene = scene, .view = &part, .recompute = recompute);
     uint32_t batch = tyn_context_batch(off->context, &frame);
@@ -152,13 +169,13 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
 
 const void *tyn_offline_output(tyn_offline *off, tyn_output output)
 {
-    return tyn_context_output(off->context, output);
+    return off ? tyn_context_output(off->context, output) : NULL;
 }
 
 void tyn_offline_report(tyn_offline *off, tyn_report *report)
 {
-    tyn_context_report(off->context, report);
-    if (off->num_nodes) {
+    tyn_context_report(off ? off->context : NULL, report);
+    if (off && report && off->num_nodes) {
         report->nodes = off->nodes;
         report->num_nodes = off->num_nodes;
     }
@@ -166,15 +183,15 @@ void tyn_offline_report(tyn_offline *off, tyn_report *report)
 
 tyn_context *tyn_offline_context(tyn_offline *off)
 {
-    return off->context;
+    return off ? off->context : NULL;
 }
 
 double tyn_offline_setup_ms(const tyn_offline *off)
 {
-    return off->setup_ms;
+    return off ? off->setup_ms : 0;
 }
 
 double tyn_offline_frame_ms(const tyn_offline *off)
 {
-    return off->frame_ms;
+    return off ? off->frame_ms : 0;
 }

@@ -6,6 +6,9 @@
 
 tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)
 {
+    if (!ctx) {
+        return TYN_ERR_PARAMS;
+    }
     tyn_context_clear_warnings(ctx);
     tyn_result result = tyn_frame_declare(ctx, frame);
     uint64_t data = result == TYN_OK
@@ -25,6 +28,9 @@ tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)
 
 tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame)
 {
+    if (!ctx) {
+        return TYN_ERR_PARAMS;
+    }
     if (!frame || !frame->cmd) {
         tyn_log_print(&ctx->dev->log, TYN_LOG_ERROR, "tyn_frame: cmd is required");
         return TYN_ERR_PARAMS;
@@ -36,7 +42,7 @@ tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame)
 uint32_t tyn_context_batch(tyn_context *ctx, const tyn_frame *frame)
 {
     tyn_job job;
-    if (!ctx->method->batch || tyn_frame_check(ctx, frame) != TYN_OK ||
+    if (!ctx || !ctx->method->batch || tyn_frame_check(ctx, frame) != TYN_OK ||
         tyn_frame_build(ctx, frame, &job) != TYN_OK) {
         return 1;
     }
@@ -46,6 +52,7 @@ uint32_t tyn_context_batch(tyn_context *ctx, const tyn_frame *frame)
 
 const void *tyn_context_output(tyn_context *ctx, tyn_output output)
 {
-    return ctx->outputs & output ? tyn_graph_map(ctx->graph, tyn_output_name(output), NULL, NULL)
-                                 : NULL;
+    return ctx && ctx->outputs & output
+               ? tyn_graph_map(ctx->graph, tyn_output_name(output), NULL, NULL)
+               : NULL;
 }

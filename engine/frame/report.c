@@ -79,7 +79,12 @@ static void add_counters(tyn_node_report *node, tyn_context *ctx)
 
 void tyn_context_report(tyn_context *ctx, tyn_report *report)
 {
-    *report = (tyn_report){0};
+    if (report) {
+        *report = (tyn_report){0};
+    }
+    if (!ctx || !report) {
+        return;
+    }
     const tyn_node_stats *stats;
     uint32_t count = tyn_graph_stats(ctx->graph, &stats);
     tyn_node_report *nodes = realloc(ctx->nodes, (count ? count : 1) * sizeof *nodes);
@@ -117,12 +122,19 @@ void tyn_context_report(tyn_context *ctx, tyn_report *report)
 
 void tyn_context_inspect(tyn_context *ctx, const char *pass)
 {
-    ctx->inspect = pass;
+    if (ctx) {
+        ctx->inspect = pass;
+    }
 }
 
 bool tyn_context_inspection(tyn_context *ctx, tyn_inspection *inspection)
 {
-    *inspection = (tyn_inspection){0};
+    if (inspection) {
+        *inspection = (tyn_inspection){0};
+    }
+    if (!ctx || !inspection) {
+        return false;
+    }
     const tyn_pass_desc *pass = ctx->inspect ? tyn_pass_find(ctx->inspect) : NULL;
     tyn_extent extent = {0};
     const void *texels = tyn_graph_map(ctx->graph, "inspect", &extent, &inspection->format);
@@ -140,5 +152,5 @@ bool tyn_context_inspection(tyn_context *ctx, tyn_inspection *inspection)
 
 char *tyn_context_graph(tyn_context *ctx, bool dot)
 {
-    return tyn_graph_dump(ctx->graph, dot, ctx->method->info.passes);
+    return ctx ? tyn_graph_dump(ctx->graph, dot, ctx->method->info.passes) : NULL;
 }

@@ -1,5 +1,6 @@
 // device.c -- tyn_device on a host's VkDevice: requirements, function tables, samplers.
 #include "gpu/device.h"
+#include "base/given.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -104,17 +105,17 @@ void tyn_device_name_object(tyn_device *dev, VkObjectType type, uint64_t handle,
 
 const char *tyn_device_name(const tyn_device *dev)
 {
-    return dev->properties.deviceName;
+    return dev ? dev->properties.deviceName : "";
 }
 
 const char *tyn_device_driver(const tyn_device *dev)
 {
-    return dev->driver;
+    return dev ? dev->driver : "";
 }
 
 uint32_t tyn_device_validation_messages(const tyn_device *dev)
 {
-    return dev->validation_messages;
+    return dev ? dev->validation_messages : 0;
 }
 
 // ---- create, destroy --------------------------------------------------------------------------
@@ -264,10 +265,15 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa, cons
 
 tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out)
 {
-    *out = NULL;
     const tyn_log *log = params ? &params->log : NULL;
-    if (!params || params->struct_size < sizeof *params || !params->instance ||
-        !params->physical_device || !params->device || !params->get_instance_proc_addr) {
+    if (out) {
+        *out = NULL;
+    }
+    if (!TYN_GIVEN(log, params, out)) {
+        return TYN_ERR_PARAMS;
+    }
+    if (params->struct_size < sizeof *params || !params->instance || !params->physical_device ||
+        !params->device || !params->get_instance_proc_addr) {
         tyn_log_print(log, TYN_LOG_ERROR,
                       "tyn_device_create: instance, physical_device, device and "
                       "get_instance_proc_addr are required (use the tyn_device_params() macro)");
@@ -309,7 +315,12 @@ tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out)
 
 void *tyn_device_pipeline_cache(tyn_device *dev, size_t *size)
 {
-    *size = 0;
+    if (size) {
+        *size = 0;
+    }
+    if (!dev || !TYN_GIVEN(&dev->log, size)) {
+        return NULL;
+    }
     if (dev->vk.GetPipelineCacheData(dev->device, dev->cache, size, NULL) != VK_SUCCESS || !*size) {
         return NULL;
     }

@@ -1,5 +1,6 @@
 // open.c -- a device of our own: the loader at run time, instance, validation, choice of device.
 #include "gpu/device.h"
+#include "base/given.h"
 #include <ctype.h>
 #include <dlfcn.h>
 #include <stdio.h>
@@ -303,8 +304,17 @@ static tyn_result open_device(tyn_device *dev, const tyn_device_open_params *par
 
 tyn_result tyn_device_open(const tyn_device_open_params *params, tyn_device **out)
 {
-    *out = NULL;
-    if (!params || params->struct_size < sizeof *params) {
+    const tyn_log *log = params ? &params->log : NULL;
+    if (out) {
+        *out = NULL;
+    }
+    if (!TYN_GIVEN(log, params, out)) {
+        return TYN_ERR_PARAMS;
+    }
+    if (params->struct_size < sizeof *params) {
+        tyn_log_print(log, TYN_LOG_ERROR,
+                      "tyn_device_open: struct_size is %zu; use the tyn_device_open_params() macro",
+                      params->struct_size);
         return TYN_ERR_PARAMS;
     }
     tyn_device *dev = calloc(1, sizeof *dev);
@@ -369,6 +379,9 @@ static const char *type_name(VkPhysicalDeviceType type)
 int tyn_devices_list(tyn_device_info *infos, uint32_t max, const tyn_log *log)
 {
     tyn_device dev = {0};
+    if (max && !TYN_GIVEN(log, infos)) {
+        return TYN_ERR_PARAMS;
+    }
     if (log) {
         dev.log = *log;
     }

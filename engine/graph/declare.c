@@ -436,6 +436,9 @@ tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *pa
 
 void tyn_pass_defaults(const tyn_pass_desc *pass, void *params)
 {
+    if (!pass || !params) {
+        return;
+    }
     memset(params, 0, pass->params_size);
     for (uint32_t i = 0; i < pass->num_params; i++) {
         const tyn_param *p = &pass->params[i];

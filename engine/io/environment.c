@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include "base/given.h"
 #include "base/hash.h"
 #include "io/hdr.h"
 
@@ -100,6 +101,9 @@ static tyn_result refine_small(uint32_t size[2], float **pixels, const tyn_log *
 
 tyn_result tyn_environment_load(tyn_environment *env, const char *path, const tyn_log *log)
 {
+    if (!TYN_GIVEN(log, env, path)) {
+        return TYN_ERR_PARAMS;
+    }
     const char *dot = strrchr(path, '.');
     uint32_t size[2];
     float *pixels = NULL;

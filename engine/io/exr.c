@@ -1,4 +1,5 @@
 // exr.c -- OpenEXR images through OpenEXRCore: named float channels in and out.
+#include "base/given.h"
 #include "io/exr.h"
 #include <math.h>
 #include <openexr.h>
@@ -41,6 +42,9 @@ static tyn_result report(stream *s, exr_result_t code, const char *file, const t
 
 void tyn_image_file_finish(tyn_image_file *image)
 {
+    if (!image) {
+        return;
+    }
     for (uint32_t i = 0; i < image->num_channels; i++) {
         free(image->channels[i].data);
     }
@@ -51,7 +55,7 @@ void tyn_image_file_finish(tyn_image_file *image)
 
 float *tyn_image_file_channel(const tyn_image_file *image, const char *name)
 {
-    for (uint32_t i = 0; i < image->num_channels; i++) {
+    for (uint32_t i = 0; image && name && i < image->num_channels; i++) {
         if (strcmp(image->channels[i].name, name) == 0) {
             return image->channels[i].data;
         }
@@ -285,6 +289,9 @@ tyn_result tyn_exr_read(tyn_image_file *image, const char *path, const tyn_log *
 {
     void *bytes;
     size_t size;
+    if (!TYN_GIVEN(log, image, path)) {
+        return TYN_ERR_PARAMS;
+    }
     memset(image, 0, sizeof *image);
     tyn_result r = tyn_file_read(path, 1ull << 34, &bytes, &size, log);
     if (!r) {
@@ -418,10 +425,24 @@ static exr_result_t write_picture(exr_context_t *context, const tyn_image_file *
 tyn_result tyn_exr_write(const tyn_image_file *image, const char *path, bool full_float,
                          const tyn_log *log)
 {
+    if (!TYN_GIVEN(log, image, path)) {
+        return TYN_ERR_PARAMS;
+    }
     size_t pixels = (size_t)image->width * image->height;
     uint64_t saturated = 0;
     stream s = {0};
     exr_context_t context = NULL;
+    const void *channels = image->channels;
+    if (image->num_channels && !TYN_GIVEN(log, channels)) {
+        return TYN_ERR_PARAMS;
+    }
+    for (uint32_t i = 0; i < image->num_channels; i++) {
+        if (!image->channels[i].data) {
+            tyn_log_print(log, TYN_LOG_ERROR, "%s: channel '%s' has no data", path,
+                          image->channels[i].name);
+            return TYN_ERR_PARAMS;
+        }
+    }
     if (image->num_channels == 0 || pixels == 0) {
         tyn_log_print(log, TYN_LOG_ERROR,
                       "%s: an image of %u x %u pixels, %u channels: must be > 0", path,

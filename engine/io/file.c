@@ -1,5 +1,6 @@
 // file.c -- whole files in and out; a written file appears under its name only when it is complete.
 #include <tyndall/io.h>
+#include "base/given.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +12,9 @@ tyn_result tyn_file_read(const char *path, uint64_t limit, void **data, size_t *
                          const tyn_log *log)
 {
     struct stat info;
+    if (!TYN_GIVEN(log, path, data, size)) {
+        return TYN_ERR_PARAMS;
+    }
     *data = NULL;
     *size = 0;
     FILE *file = fopen(path, "rb");
@@ -56,6 +60,9 @@ tyn_result tyn_file_read(const char *path, uint64_t limit, void **data, size_t *
 
 tyn_result tyn_file_write(const char *path, const void *data, size_t size, const tyn_log *log)
 {
+    if (!TYN_GIVEN(log, path) || (size && !TYN_GIVEN(log, data))) {
+        return TYN_ERR_PARAMS;
+    }
     size_t length = strlen(path);
     char *temporary = malloc(length + 8);
     if (!temporary) {

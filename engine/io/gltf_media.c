@@ -137,6 +137,9 @@ static tyn_result read_medium(tyn_scene *scene, gltf_media *media, const json_do
     TYN_TRY(tyn_json_object(doc, from, "density", &density));
     if (density) {
         TYN_TRY(read_density(scene, medium, &media->own_transform[scene->num_media], doc, density));
+        if (medium->density_scale == 0.0f) {
+            tyn_medium_clear(medium);
+        }
     }
     medium->name = name ? strdup(name) : NULL;
     scene->num_media++;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/given.h"
 #include "base/hash.h"
 
 enum { LEAF_TRIANGLES = 4 };
@@ -134,8 +135,18 @@ static const tree_node *build_tree(RTCBVH bvh, struct RTCBuildPrimitive *boxes, 
     return rtcBuildBVH(&arguments);
 }
 
-tyn_result tyn_surfaces_build_nodes(tyn_surfaces *s, const tyn_log *log)
+tyn_result tyn_surfaces_build_nodes(tyn_surfaces *surfaces, const tyn_log *log)
 {
+    if (!TYN_GIVEN(log, surfaces)) {
+        return TYN_ERR_PARAMS;
+    }
+    if (surfaces->num_triangles) {
+        const void *triangles = surfaces->triangles, *vertices = surfaces->vertices;
+        if (!TYN_GIVEN(log, triangles, vertices)) {
+            return TYN_ERR_PARAMS;
+        }
+    }
+    tyn_surfaces *s = surfaces;
     const uint32_t count = s->num_triangles;
     if (!count) {
         return TYN_OK;

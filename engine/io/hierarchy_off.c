@@ -1,8 +1,12 @@
 // hierarchy_off.c -- stands in for hierarchy.c in builds without Embree.
 #include <tyndall/io.h>
+#include "base/given.h"
 
 tyn_result tyn_surfaces_build_nodes(tyn_surfaces *surfaces, const tyn_log *log)
 {
+    if (!TYN_GIVEN(log, surfaces)) {
+        return TYN_ERR_PARAMS;
+    }
     if (!surfaces->num_triangles) {
         return TYN_OK;
     }

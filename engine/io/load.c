@@ -5,6 +5,7 @@
 #include <strings.h>
 #include "io/bare.h"
 #include "io/gltf.h"
+#include "base/given.h"
 
 static bool is_one_of(const char *path, const char *const *extensions)
 {
@@ -52,6 +53,9 @@ static tyn_result load(tyn_scene *scene, const char *path, const char *environme
                        const uint32_t *frame, const tyn_log *log)
 {
     tyn_scene_init(scene);
+    if (!TYN_GIVEN(log, scene, path)) {
+        return TYN_ERR_PARAMS;
+    }
     if (is_one_of(path, (const char *const[]){".gltf", ".glb", NULL})) {
         return load_gltf(scene, path, environment, frame, log);
     }

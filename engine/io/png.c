@@ -2,6 +2,7 @@
 #include <tyndall/io.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/given.h"
 #include "io/picture.h"
 #include <zlib.h>
 
@@ -72,6 +73,9 @@ static void filter_image(uint8_t *out, const uint8_t *pixels, uint32_t height, s
 tyn_result tyn_png_write(const char *path, uint32_t width, uint32_t height, uint32_t channels,
                          const uint8_t *pixels, const tyn_log *log)
 {
+    if (!TYN_GIVEN(log, path, pixels)) {
+        return TYN_ERR_PARAMS;
+    }
     if (width == 0 || height == 0 || width > 65536 || height > 65536 ||
         (channels != 3 && channels != 4)) {
         tyn_log_print(log, TYN_LOG_ERROR,
@@ -107,6 +111,9 @@ tyn_result tyn_png_write(const char *path, uint32_t width, uint32_t height, uint
 tyn_result tyn_png_read(const char *path, uint32_t *width, uint32_t *height, uint8_t **rgba,
                         const tyn_log *log)
 {
+    if (!TYN_GIVEN(log, path, width, height, rgba)) {
+        return TYN_ERR_PARAMS;
+    }
     void *bytes;
     size_t size;
     uint32_t decoded[2] = {0, 0};

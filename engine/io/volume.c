@@ -1,5 +1,6 @@
 // volume.c -- density grids: what all readers share, and the choice of reader by file extension.
 #include "io/volume.h"
+#include "base/given.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -133,6 +134,9 @@ int tyn_volume_choose(const char *const *names, const char *const *types, const 
 tyn_result tyn_volume_load(tyn_volume *volume, const char *path, const char *grid,
                            uint64_t *clamped_negative, const tyn_log *log)
 {
+    if (!TYN_GIVEN(log, volume, path)) {
+        return TYN_ERR_PARAMS;
+    }
     const char *dot = strrchr(path, '.');
     uint64_t ignored = 0;
     uint64_t *clamped = clamped_negative ? clamped_negative : &ignored;

@@ -28,7 +28,7 @@ struct light_block tyn_light_block(const tyn_light *light)
 
 double tyn_light_solid_angle(const tyn_light *light)
 {
-    return light->kind == TYN_LIGHT_DIRECTIONAL
+    return !light || light->kind == TYN_LIGHT_DIRECTIONAL
                ? 0
                : (double)light_lobe_integral(tyn_light_block(light));
 }

@@ -17,7 +17,7 @@ void tyn_range_of_g(const tyn_scene *scene, float *least, float *most)
     for (uint32_t i = 0; i < scene->num_shapes; i++) {
         const tyn_medium *m = &scene->media[scene->shapes[i].medium];
         for (int c = 0; c < 3; c++) {
-            if (m->sigma_s[c] * m->density_scale > 0.0f) {
+            if (m->sigma_s[c] * tyn_medium_scale(m) > 0.0f) {
                 const float g = (float)tyn_phase_mean_cosine(m->phase[c]);
                 *least = fminf(*least, g);
                 *most = fmaxf(*most, g);

@@ -25,7 +25,7 @@ static bool hold(const tyn_bound *bounds, size_t count, const tyn_regime *r)
 
 const tyn_limit *tyn_limit_next(const tyn_limit *table, const tyn_limit *last, const tyn_regime *r)
 {
-    if (last && last->level == TYN_LIMIT_REFUSED) {
+    if (!r || (last && last->level == TYN_LIMIT_REFUSED)) {
         return NULL;
     }
     for (const tyn_limit *row = last ? last + 1 : table; row && row->key; row++) {
@@ -39,13 +39,19 @@ const tyn_limit *tyn_limit_next(const tyn_limit *table, const tyn_limit *last, c
 
 double tyn_limit_error(const tyn_limit *limit, const tyn_regime *r)
 {
-    return limit->error ? limit->error(r) : 0;
+    return limit && r && limit->error ? limit->error(r) : 0;
 }
 
 void tyn_limit_say(const tyn_limit *limit, const tyn_limit_text *text, const tyn_regime *r,
                    char *line, size_t size)
 {
     double x[3];
+    if (line && size) {
+        line[0] = 0;
+    }
+    if (!limit || !text || !text->format || !r || !line || !size) {
+        return;
+    }
     for (int i = 0; i < 3; i++) {
         if (text->figures[i] == TYN_LIMIT_ERROR) {
             const double percent = 100 * tyn_limit_error(limit, r);

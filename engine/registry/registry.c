@@ -47,6 +47,9 @@ uint32_t tyn_num_methods(void)
 
 void tyn_method_at(uint32_t index, tyn_method_info *info)
 {
+    if (!info) {
+        return;
+    }
     *info = index < NUM_METHODS ? methods[index]->info : (tyn_method_info){0};
 }
 
@@ -63,7 +66,9 @@ const tyn_method *tyn_method_find(const char *name)
 bool tyn_method_named(const char *name, tyn_method_info *info)
 {
     const tyn_method *method = tyn_method_find(name);
-    *info = method ? method->info : (tyn_method_info){0};
+    if (info) {
+        *info = method ? method->info : (tyn_method_info){0};
+    }
     return method != NULL;
 }
 

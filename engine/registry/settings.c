@@ -1,5 +1,6 @@
 // settings.c -- values of pass parameters, by "pass.param".
 #include "registry/registry.h"
+#include "base/given.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -19,6 +20,9 @@ struct tyn_settings {
 
 tyn_result tyn_settings_create(tyn_settings **out)
 {
+    if (!out) {
+        return TYN_ERR_PARAMS;
+    }
     *out = calloc(1, sizeof **out);
     return *out ? TYN_OK : TYN_ERR_MEMORY;
 }
@@ -129,6 +133,9 @@ tyn_result tyn_settings_set(tyn_settings *settings, const char *name, const char
                             const tyn_log *log)
 {
     char list[512], pass_name[64];
+    if (!TYN_GIVEN(log, settings, name, value)) {
+        return TYN_ERR_PARAMS;
+    }
     const char *dot = strchr(name, '.');
     if (!dot || (size_t)(dot - name) >= sizeof pass_name) {
         tyn_log_print(log, TYN_LOG_ERROR,
@@ -166,16 +173,16 @@ tyn_result tyn_settings_set(tyn_settings *settings, const char *name, const char
 
 // ---- presets ----------------------------------------------------------------------------------
 
-typedef struct preset {
+typedef struct quality {
     const char *name;
     struct {
         const char *setting, *value;
     } settings[8];
-} preset;
+} quality;
 
 // Normal is every pass's default. On the front of error and time over twelve scenes (tools/bench/suites/presets.json), normal
 // and high of those settings that solve the lattice to 1.5 % of its light.
-static const preset presets[] = {
+static const quality presets[] = {
     {"draft",
      {{"lattice.cells", "20"},
       {"lattice.sweeps", "3"},
@@ -185,10 +192,13 @@ static const preset presets[] = {
     {"high", {{"lattice.cells", "40"}}},
 };
 
-tyn_result tyn_settings_quality(tyn_settings *settings, const char *name, const tyn_log *log)
+tyn_result tyn_settings_quality(tyn_settings *settings, const char *preset, const tyn_log *log)
 {
+    if (!TYN_GIVEN(log, settings, preset)) {
+        return TYN_ERR_PARAMS;
+    }
     for (size_t i = 0; i < sizeof presets / sizeof presets[0]; i++) {
-        if (strcmp(presets[i].name, name)) {
+        if (strcmp(presets[i].name, preset)) {
             continue;
         }
         tyn_result result = TYN_OK;
@@ -199,7 +209,7 @@ tyn_result tyn_settings_quality(tyn_settings *settings, const char *name, const 
         return result;
     }
     tyn_log_print(log, TYN_LOG_ERROR, "quality '%s' is not known; it is draft, normal or high",
-                  name);
+                  preset);
     return TYN_ERR_PARAMS;
 }
 
@@ -208,7 +218,7 @@ tyn_result tyn_settings_quality(tyn_settings *settings, const char *name, const 
 void tyn_settings_params(const tyn_settings *settings, const tyn_pass_desc *pass, void *params)
 {
     tyn_pass_defaults(pass, params);
-    for (uint32_t i = 0; settings && i < settings->count; i++) {
+    for (uint32_t i = 0; params && settings && i < settings->count; i++) {
         const entry *e = &settings->entries[i];
         if (e->pass != pass) {
             continue;

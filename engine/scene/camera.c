@@ -16,6 +16,9 @@ static void set_frame(tyn_camera *camera, const double right[3], const double up
 
 tyn_result tyn_camera_look_at(tyn_camera *camera, const float from[3], const float at[3])
 {
+    if (!camera || !from || !at) {
+        return TYN_ERR_PARAMS;
+    }
     double back[3] = {(double)from[0] - at[0], (double)from[1] - at[1], (double)from[2] - at[2]};
     double right[3], up[3] = {0.0, 1.0, 0.0};
     if (!vec_normalize(back)) {
@@ -35,6 +38,9 @@ tyn_result tyn_camera_look_at(tyn_camera *camera, const float from[3], const flo
 
 void tyn_camera_frame_scene(tyn_camera *camera, const tyn_scene *scene)
 {
+    if (!camera || !scene) {
+        return;
+    }
     const double yfov = 40.0 * PI / 180.0, elevation = 15.0 * PI / 180.0;
     float lo[3], hi[3], at[3], from[3];
     double radius2 = 0.0;

@@ -1,5 +1,6 @@
 // check.c -- is every number of a scene one that the solvers can take?
 #include "scene/check.h"
+#include "base/given.h"
 #include <math.h>
 #include <stdio.h>
 #include "scene/matrix.h"
@@ -79,7 +80,7 @@ static tyn_result check_medium(const tyn_scene *scene, uint32_t i, const tyn_log
         return TYN_ERR_PARAMS;
     }
     if (!(m->density_scale >= 0.0f && isfinite(m->density_scale))) {
-        FAULT("media[%u].density_scale = %g: must be >= 0 and finite", i, m->density_scale);
+        FAULT("media[%u].density_scale = %g: must be > 0 and finite (0 = 1)", i, m->density_scale);
     }
     if (m->volume < -1 || (m->volume >= 0 && (uint32_t)m->volume >= scene->num_volumes)) {
         FAULT("media[%u].volume = %d: there are %u volumes (-1 = homogeneous)", i, m->volume,
@@ -134,6 +135,10 @@ static tyn_result check_light(const tyn_light *l, uint32_t i, const tyn_log *log
 
 tyn_result tyn_camera_check(const tyn_camera *c, uint32_t i, const tyn_log *log)
 {
+    if (c->projection != TYN_PERSPECTIVE && c->projection != TYN_ORTHOGRAPHIC) {
+        FAULT("cameras[%u].projection = %d: must be perspective or orthographic", i,
+              (int)c->projection);
+    }
     if (!finite3(c->position)) {
         FAULT("cameras[%u].position = %g, %g, %g: must be finite", i, c->position[0],
               c->position[1], c->position[2]);
@@ -162,7 +167,7 @@ static tyn_result check_environment(const tyn_environment *e, const tyn_log *log
               e->radiance[1], e->radiance[2]);
     }
     if (!(e->strength >= 0.0f && isfinite(e->strength))) {
-        FAULT("environment.strength = %g: must be >= 0 and finite", e->strength);
+        FAULT("environment.strength = %g: must be > 0 and finite (0 = 1)", e->strength);
     }
     float n = e->rotation[0] * e->rotation[0] + e->rotation[1] * e->rotation[1] +
               e->rotation[2] * e->rotation[2] + e->rotation[3] * e->rotation[3];
@@ -186,9 +191,24 @@ static tyn_result check_texels(const tyn_environment *e, const tyn_log *log)
     return TYN_OK;
 }
 
+// Arrays that are to hold something are there.
+static tyn_result check_arrays(const tyn_scene *scene, const tyn_log *log)
+{
+    if (scene->num_volumes && !scene->volumes) {
+        FAULT("volumes = NULL, but there are to be %u", scene->num_volumes);
+    }
+    if (scene->num_cameras && !scene->cameras) {
+        FAULT("cameras = NULL, but there are to be %u", scene->num_cameras);
+    }
+    return tyn_surfaces_check_arrays(&scene->surfaces, log);
+}
+
 tyn_result tyn_scene_check_values(const tyn_scene *scene, const tyn_log *log)
 {
-    tyn_result r = TYN_OK;
+    tyn_result r = TYN_GIVEN(log, scene) ? check_arrays(scene, log) : TYN_ERR_PARAMS;
+    if (r) {
+        return r;
+    }
     if (scene->num_media > TYN_MAX_MEDIA || scene->num_shapes > TYN_MAX_SHAPES ||
         scene->num_lights > TYN_MAX_LIGHTS) {
         FAULT("scene: %u media, %u shapes, %u lights: at most %d, %d, %d", scene->num_media,

@@ -23,7 +23,7 @@ uint32_t tyn_environment_suns(const tyn_environment *env,
                               tyn_environment_sun suns[TYN_MAX_MAP_SUNS])
 {
     tyn_map_light map;
-    if (!tyn_map_light_find(env, &map)) {
+    if (!env || !suns || !tyn_map_light_find(env, &map)) {
         return 0;
     }
     for (uint32_t i = 0; i < map.num_suns; i++) {
@@ -31,8 +31,8 @@ uint32_t tyn_environment_suns(const tyn_environment *env,
         double towards[3];
         rotate(env->rotation, from->direction, towards);
         for (int a = 0; a < 3; a++) {
-            suns[i].irradiance[a] =
-                (float)(from->irradiance[a] * (double)env->radiance[a] * (double)env->strength);
+            suns[i].irradiance[a] = (float)(from->irradiance[a] * (double)env->radiance[a] *
+                                            (double)tyn_environment_strength(env));
             suns[i].direction[a] = (float)-towards[a];
         }
         // The mean cosine of an even disc is that of half its height.

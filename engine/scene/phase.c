@@ -22,14 +22,14 @@ const tyn_phase_parameter *tyn_phase_parameters(void)
 
 void tyn_phase_get(const tyn_phase phase[3], const tyn_phase_parameter *p, float values[3])
 {
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; phase && p && values && c < 3; c++) {
         memcpy(&values[c], (const char *)&phase[c] + p->offset, sizeof values[c]);
     }
 }
 
 void tyn_phase_set(tyn_phase phase[3], const tyn_phase_parameter *p, const float values[3])
 {
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; phase && p && values && c < 3; c++) {
         memcpy((char *)&phase[c] + p->offset, &values[c], sizeof values[c]);
     }
 }

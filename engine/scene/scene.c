@@ -8,9 +8,13 @@
 #include <string.h>
 #include "scene/phase.h"
 #include "scene/surfaces.h"
+#include "base/given.h"
 
 void tyn_scene_init(tyn_scene *scene)
 {
+    if (!scene) {
+        return;
+    }
     memset(scene, 0, sizeof *scene);
     scene->environment.strength = 1.0f;
     for (int c = 0; c < 3; c++) {
@@ -50,9 +54,19 @@ void tyn_scene_finish(tyn_scene *scene)
     tyn_scene_init(scene);
 }
 
+void tyn_medium_clear(tyn_medium *medium)
+{
+    for (int c = 0; medium && c < 3; c++) {
+        medium->sigma_s[c] = medium->sigma_a[c] = medium->emission[c] = 0.0f;
+    }
+}
+
 void tyn_scene_warn(tyn_scene *scene, const char *format, ...)
 {
     char line[1024];
+    if (!scene || !format) {
+        return;
+    }
     va_list args;
     va_start(args, format);
     vsnprintf(line, sizeof line, format, args);
@@ -69,6 +83,12 @@ void tyn_scene_warn(tyn_scene *scene, const char *format, ...)
 
 bool tyn_scene_bounds(const tyn_scene *scene, float lo[3], float hi[3])
 {
+    if (!scene || !lo || !hi) {
+        for (int a = 0; a < 3; a++) {
+            *(lo ? &lo[a] : &(float){0}) = *(hi ? &hi[a] : &(float){0}) = 0.0f;
+        }
+        return false;
+    }
     if (!scene->num_shapes) {
         return tyn_surfaces_bounds(&scene->surfaces, lo, hi);
     }
@@ -97,9 +117,14 @@ static bool all_in(const float *v, float lo, float hi)
     return !v || (v[0] >= lo && v[0] <= hi && v[1] >= lo && v[1] <= hi && v[2] >= lo && v[2] <= hi);
 }
 
-tyn_result tyn_scene_override(tyn_scene *scene, const tyn_medium_override *o, const tyn_log *log)
+tyn_result tyn_scene_override(tyn_scene *scene, const tyn_medium_override *override,
+                              const tyn_log *log)
 {
+    const tyn_medium_override *o = override;
     const tyn_phase_parameter *g = tyn_phase_parameters();
+    if (!TYN_GIVEN(log, scene, override)) {
+        return TYN_ERR_PARAMS;
+    }
     const struct {
         const char *name, *right;
         const float *value;

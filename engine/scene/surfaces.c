@@ -51,7 +51,7 @@ static bool finite3(const float v[3])
     return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
 }
 
-static tyn_result check_arrays(const tyn_surfaces *s, const tyn_log *log)
+tyn_result tyn_surfaces_check_arrays(const tyn_surfaces *s, const tyn_log *log)
 {
     const struct {
         const char *name;
@@ -201,7 +201,7 @@ static tyn_result check_nodes(const tyn_surfaces *s, const tyn_log *log)
 
 tyn_result tyn_surfaces_check(const tyn_surfaces *s, const tyn_log *log)
 {
-    tyn_result r = check_arrays(s, log);
+    tyn_result r = tyn_surfaces_check_arrays(s, log);
     r = r ? r : check_vertices(s, log);
     r = r ? r : check_triangles(s, log);
     r = r ? r : check_materials(s, log);

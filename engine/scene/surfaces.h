@@ -28,5 +28,7 @@ static inline uint64_t tyn_surfaces_hash(const tyn_surfaces *s)
     return h ? h : 1;
 }
 
+// Are the arrays that are to hold something there?
+tyn_result tyn_surfaces_check_arrays(const tyn_surfaces *surfaces, const tyn_log *log);
 // Everything; the first fault is one log line.
 tyn_result tyn_surfaces_check(const tyn_surfaces *surfaces, const tyn_log *log);

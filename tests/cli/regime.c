@@ -345,7 +345,7 @@ static void degenerate(void **state)
     regime r = read(&scene);
     assert_true(r.optical_depth == 0 && r.mean_free_path == 0);
     one_shape(&scene, TYN_SHAPE_BOX, 1, 1, 1);
-    scene.media[0].density_scale = 0;
+    tyn_medium_clear(&scene.media[0]);
     r = read(&scene);
     assert_true(r.optical_depth == 0 && r.albedo == 0 && r.cell_depth == 0 && r.contrast == 0);
     one_shape(&scene, TYN_SHAPE_BOX, 1e5f, 1e-4f, 1);

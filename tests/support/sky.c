@@ -251,7 +251,7 @@ static void transmittance(const tyn_scene *scene, const double o[3], const doubl
     double tau[3] = {0};
     for (uint32_t i = 0; i < scene->num_shapes; i++) {
         const tyn_medium *m = &scene->media[scene->shapes[i].medium];
-        double amount = m->density_scale * column(scene, &scene->shapes[i], o, d);
+        double amount = tyn_medium_scale(m) * column(scene, &scene->shapes[i], o, d);
         for (int c = 0; c < 3; c++) {
             tau[c] += amount * ((double)m->sigma_s[c] + m->sigma_a[c]);
         }

@@ -180,7 +180,8 @@ static void volumes(void **state)
     assert_int_equal(s.media[0].volume, 0);
     assert_int_equal(s.media[1].volume, 1);
     assert_int_equal(s.media[2].volume, 1);
-    assert_true(s.media[0].density_scale == 3 && s.media[2].density_scale == 0);
+    assert_true(s.media[0].density_scale == 3);
+    assert_true(s.media[2].sigma_s[0] == 0 && s.media[2].sigma_a[0] == 0); // scale 0
     assert_true(s.volumes[0].data[0] == 2 && s.volumes[0].max_density == 15);
     assert_true(s.volumes[1].data[0] == 0 && s.volumes[1].data[1] == 3);
     assert_int_equal(s.clamped_negative, 1);

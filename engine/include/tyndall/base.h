@@ -19,6 +19,23 @@
 extern "C" {
 #endif
 
+// Params structs hold their size. The macro of the same name makes one where a call wants it: what is not named is 0. In C++
+// it takes designators (C++20), members in their order; or declare one, `tyn_frame frame{};`, which has its size, set
+// members, and give it as it is: calls take references as well.
+#ifdef __cplusplus
+} // extern "C"
+template <class T> const T *tyn_address_of(const T &params)
+{
+    return &params;
+}
+extern "C" {
+#define TYN_PARAMS(type, ...) (tyn_address_of(type{.struct_size = sizeof(type), __VA_ARGS__}))
+#define TYN_PARAMS_SIZE(type) = sizeof(type)
+#else
+#define TYN_PARAMS(type, ...) (&(type){.struct_size = sizeof(type), __VA_ARGS__})
+#define TYN_PARAMS_SIZE(type)
+#endif
+
 #if defined(_WIN32)
 #define TYN_API
 #else

@@ -24,14 +24,13 @@ typedef struct tyn_context tyn_context;
 typedef struct tyn_settings tyn_settings; // values of pass parameters; see registry.h
 
 typedef struct tyn_context_params {
-    size_t struct_size;
+    size_t struct_size TYN_PARAMS_SIZE(tyn_context_params);
     const char *method;           // "pop" (NULL), "pop-paper", "single", "path"
     const tyn_settings *settings; // NULL = defaults; copied
     uint32_t frames_in_flight;    // 1..8; 0 = 2
     bool readback;                // copy outputs to host memory (tyn_context_output)
 } tyn_context_params;
-#define tyn_context_params(...)                                                                    \
-    (&(tyn_context_params){.struct_size = sizeof(tyn_context_params), __VA_ARGS__})
+#define tyn_context_params(...) TYN_PARAMS(tyn_context_params, __VA_ARGS__)
 TYN_API tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params,
                                       tyn_context **out);
 TYN_API void tyn_context_destroy(tyn_context **ctx); // the GPU must be done with our work
@@ -107,7 +106,7 @@ typedef struct tyn_view {
 } tyn_view;
 
 typedef struct tyn_frame {
-    size_t struct_size;
+    size_t struct_size TYN_PARAMS_SIZE(tyn_frame);
     VkCommandBuffer cmd;        // Required: recording, outside a render pass
     const tyn_scene *scene;     // Required: same counts and sizes as prepared; values may
                                 // differ, but some choose other kernels or grids: record refuses
@@ -115,13 +114,17 @@ typedef struct tyn_frame {
     const tyn_view *view;       // Required: same size, outputs and point count as prepared
     const tyn_image *densities; // one per volume whose data is NULL, in order
     const uint64_t *density_versions; // NULL = they may have changed every frame
-    const tyn_image *depth; // COMPOSITE: may be NULL; hardware depth of the host's surfaces
-    float view_to_clip[16]; // Required with depth: how depth was made (Vulkan clip z in [0, 1])
-    const tyn_image *color; // COMPOSITE: Required; rgba16f or rgba32f with STORAGE usage
+    // COMPOSITE: hardware depth of the host's surfaces, or NULL. D16, D24 or D32 with or without stencil, SAMPLED, one sample
+    // a pixel (resolve before), as large as the view.
+    const tyn_image *depth;
+    // Required with depth: the projection that made it, view space (x right, y up, looking along -z) to Vulkan's clip space,
+    // z / w in [0, 1]. Only how z and w follow from z is read, so it makes no difference whether it turns y over.
+    float view_to_clip[16];
+    const tyn_image *color; // COMPOSITE: Required; rgba16f or rgba32f, STORAGE, one sample a pixel
     bool recompute;  // run every node but those that depend on the media alone, changed or not
     bool setup_only; // record only uploads and nodes that depend on the media alone
 } tyn_frame;
-#define tyn_frame(...) (&(tyn_frame){.struct_size = sizeof(tyn_frame), __VA_ARGS__})
+#define tyn_frame(...) TYN_PARAMS(tyn_frame, __VA_ARGS__)
 
 // Allocates for this scene and view. Cheap if nothing structural changed. The GPU must be done with
 // earlier records. `frame.cmd` is not used; images must have their formats and extents.
@@ -181,5 +184,24 @@ TYN_API bool tyn_context_inspection(tyn_context *ctx, tyn_inspection *inspection
 TYN_API char *tyn_context_graph(tyn_context *ctx, bool dot);
 
 #ifdef __cplusplus
+} // extern "C"
+
+// The same, of a reference.
+inline tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params &params,
+                                     tyn_context **out)
+{
+    return tyn_context_create(dev, &params, out);
+}
+inline tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame &frame)
+{
+    return tyn_context_prepare(ctx, &frame);
+}
+inline tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame &frame)
+{
+    return tyn_context_record(ctx, &frame);
+}
+inline uint32_t tyn_context_batch(tyn_context *ctx, const tyn_frame &frame)
+{
+    return tyn_context_batch(ctx, &frame);
 }
 #endif

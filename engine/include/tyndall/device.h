@@ -21,13 +21,13 @@ typedef struct tyn_requirements {
 TYN_API const tyn_requirements *tyn_requirements_get(void);
 
 typedef struct tyn_device_params {
-    size_t struct_size;                               // sizeof; set by the macro
-    VkInstance instance;                              // Required, borrowed
-    VkPhysicalDevice physical_device;                 // Required
-    VkDevice device;                                  // Required, borrowed
-    PFN_vkGetInstanceProcAddr get_instance_proc_addr; // Required
-    uint32_t api_version;                             // Required: as given in VkApplicationInfo
-    const VkPhysicalDeviceFeatures2 *features;        // Required: as enabled on `device`
+    size_t struct_size TYN_PARAMS_SIZE(tyn_device_params); // sizeof; set by the macro
+    VkInstance instance;                                   // Required, borrowed
+    VkPhysicalDevice physical_device;                      // Required
+    VkDevice device;                                       // Required, borrowed
+    PFN_vkGetInstanceProcAddr get_instance_proc_addr;      // Required
+    uint32_t api_version;                      // Required: as given in VkApplicationInfo
+    const VkPhysicalDeviceFeatures2 *features; // Required: as enabled on `device`
     uint32_t queue_family;      // of the command buffers we will be given: one with compute, and
                                 // with graphics if scenes are to have surfaces
     bool debug_names;           // VK_EXT_debug_utils is enabled: name objects, label nodes
@@ -35,14 +35,13 @@ typedef struct tyn_device_params {
     size_t pipeline_cache_size;
     tyn_log log;
 } tyn_device_params;
-#define tyn_device_params(...)                                                                     \
-    (&(tyn_device_params){.struct_size = sizeof(tyn_device_params), __VA_ARGS__})
+#define tyn_device_params(...) TYN_PARAMS(tyn_device_params, __VA_ARGS__)
 TYN_API tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out);
 TYN_API void tyn_device_destroy(tyn_device **dev); // the GPU must be done with our work
 
 // A device of our own: loads the Vulkan loader at run time, makes instance, device and queue.
 typedef struct tyn_device_open_params {
-    size_t struct_size;
+    size_t struct_size TYN_PARAMS_SIZE(tyn_device_open_params);
     // Index or part of the name; NULL = the first discrete, integrated, then any.
     const char *select;
     bool validation; // validation and synchronization validation; messages go to the log as errors
@@ -50,8 +49,7 @@ typedef struct tyn_device_open_params {
     size_t pipeline_cache_size;
     tyn_log log;
 } tyn_device_open_params;
-#define tyn_device_open_params(...)                                                                \
-    (&(tyn_device_open_params){.struct_size = sizeof(tyn_device_open_params), __VA_ARGS__})
+#define tyn_device_open_params(...) TYN_PARAMS(tyn_device_open_params, __VA_ARGS__)
 TYN_API tyn_result tyn_device_open(const tyn_device_open_params *params, tyn_device **out);
 
 // Validation messages since the device was opened (0 without validation).
@@ -93,5 +91,15 @@ typedef struct tyn_image {
 } tyn_image;
 
 #ifdef __cplusplus
+} // extern "C"
+
+// The same, of a reference.
+inline tyn_result tyn_device_create(const tyn_device_params &params, tyn_device **out)
+{
+    return tyn_device_create(&params, out);
+}
+inline tyn_result tyn_device_open(const tyn_device_open_params &params, tyn_device **out)
+{
+    return tyn_device_open(&params, out);
 }
 #endif

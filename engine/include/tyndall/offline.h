@@ -11,12 +11,11 @@ extern "C" {
 typedef struct tyn_offline tyn_offline;
 
 typedef struct tyn_offline_params {
-    size_t struct_size;
+    size_t struct_size TYN_PARAMS_SIZE(tyn_offline_params);
     const char *method;
     const tyn_settings *settings;
 } tyn_offline_params;
-#define tyn_offline_params(...)                                                                    \
-    (&(tyn_offline_params){.struct_size = sizeof(tyn_offline_params), __VA_ARGS__})
+#define tyn_offline_params(...) TYN_PARAMS(tyn_offline_params, __VA_ARGS__)
 
 // `dev` must come from tyn_device_open; borrowed.
 TYN_API tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params *params,
@@ -50,5 +49,12 @@ TYN_API tyn_result tyn_offline_time_pass(tyn_device *dev, const tyn_pass_desc *p
                                          const void *params, uint32_t runs, double *best_ms);
 
 #ifdef __cplusplus
+} // extern "C"
+
+// The same, of a reference.
+inline tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params &params,
+                                     tyn_offline **out)
+{
+    return tyn_offline_create(dev, &params, out);
 }
 #endif

@@ -22,7 +22,8 @@ typedef struct tyn_volume {
     // Of the file: voxel index in data (centres at whole numbers) -> its own world, column-major;
     // used by shape "grid" at load.
     double index_to_world[16];
-    uint64_t hash; // content hash of data, for change tracking
+    // Of data, for change tracking: another number whenever data changes. 0: found anew for every frame from all of it.
+    uint64_t hash;
 } tyn_volume;
 
 // The phase function of one colour channel: how scattered light is spread over angles. {0} is isotropic.
@@ -37,10 +38,15 @@ typedef struct tyn_medium {
     float sigma_a[3];   // absorption, 1/m, >= 0
     tyn_phase phase[3]; // of each channel
     float emission[3];  // W/(m^3 sr), >= 0
-    // Multiplies the density, >= 0; after load the file's density.scale, else 1.
+    // Multiplies the density, > 0; 0 = 1. (A medium that is not to be there has coefficients 0, or no shape.)
     float density_scale;
     int32_t volume; // index into scene.volumes; -1: homogeneous, density 1
 } tyn_medium;
+static inline float tyn_medium_scale(const tyn_medium *medium)
+{
+    return medium->density_scale == 0.0f ? 1.0f : medium->density_scale;
+}
+TYN_API void tyn_medium_clear(tyn_medium *medium); // coefficients 0: it is as if it were not there
 
 typedef enum tyn_shape_kind { TYN_SHAPE_BOX = 0, TYN_SHAPE_SPHERE = 1 } tyn_shape_kind;
 
@@ -98,7 +104,7 @@ typedef struct tyn_surface_material {
     float albedo[3];   // linear, 0 to 1; the texture multiplies it
     uint32_t flags;    // TYN_SURFACE_EMITS_BOTH_SIDES, else only the front emits
     float emission[3]; // radiance, W/(m^2 sr), >= 0
-    uint32_t texture;  // index into textures, or TYN_NO_TEXTURE
+    uint32_t texture;  // Required: index into textures, or TYN_NO_TEXTURE
 } tyn_surface_material;
 
 // The numbers of a material, for what goes through all of them: checks, files, listings.
@@ -156,9 +162,13 @@ typedef struct tyn_environment {
     float *data;       // RGB float triples, row 0 is up (+Y); owned by the scene
     float radiance[3]; // scales the map, or is the constant radiance, W/(m^2 sr)
     float rotation[4]; // quaternion x, y, z, w: turns the map in the world; {0,0,0,0} = identity
-    float strength;    // multiplies everything; 1 after load
-    uint64_t hash;     // content hash of data
+    float strength;    // multiplies everything, > 0; 0 = 1
+    uint64_t hash;     // of data, as tyn_volume.hash
 } tyn_environment;
+static inline float tyn_environment_strength(const tyn_environment *env)
+{
+    return env->strength == 0.0f ? 1.0f : env->strength;
+}
 
 // A compact spot of a map with much of its light: methods treat it as a directional light.
 enum { TYN_MAX_MAP_SUNS = 4 };
