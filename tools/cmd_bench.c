@@ -7,6 +7,7 @@
 #include "bench/report.h"
 #include "bench/runs.h"
 #include "bench/stress.h"
+#include "data_folder.h"
 #include "devices.h"
 #include "folder.h"
 #include "fronts.h"
@@ -16,27 +17,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 typedef struct bench_args {
     machine_options machine;
     const char *suite, *report, *scenes, *bands, *fronts, *axis;
     bool json, fresh, references, stress, quick;
 } bench_args;
-
-// The sample scenes of a build tree, as seen from the program: ../samples/scenes.
-static char *default_scenes(void)
-{
-    char program[4096];
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    char *slash = NULL;
-    if (length > 0) {
-        program[length] = '\0';
-        slash = strrchr(program, '/');
-    }
-    return slash ? text_format("%.*s/../samples/scenes", (int)(slash - program), program)
-                 : text_format("samples/scenes");
-}
 
 // ---- a scene ----------------------------------------------------------------------------------
 
@@ -285,7 +271,7 @@ static int run_bench(app *a, const void *arguments)
         const stress_options options = {.quick = args->quick, .axis = args->axis};
         return stress_command(a, &args->machine, &options, args->report, args->json);
     }
-    char *samples = args->scenes ? text_format("%s", args->scenes) : default_scenes();
+    char *samples = args->scenes ? text_format("%s", args->scenes) : data_folder_scenes();
     bench_suite *suite = calloc(1, sizeof *suite);
     cJSON *bands = NULL;
     int code = EXIT_FAILED;
@@ -326,7 +312,7 @@ static const option bench_table[] = {
     {0, "references", OPT_FLAG, AT(references), NULL,
      "make the references that are stored with the suite, or go on with them, and measure nothing"},
     {0, "scenes", OPT_TEXT, AT(scenes), "DIR",
-     "folder of the sample scenes; else ../samples/scenes beside the program"},
+     "folder of the sample scenes; else those built or installed with the program"},
     {0, "stress", OPT_FLAG, AT(stress), NULL,
      "instead of a suite: where numbers get extreme (docs/stress.md)"},
     {0, "quick", OPT_FLAG, AT(quick), NULL, "with --stress: a minute instead of ten"},

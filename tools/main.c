@@ -16,7 +16,9 @@ static void print_help(FILE *to)
     for (size_t i = 0; i < ARRAY_SIZE(commands); i++) {
         fprintf(to, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
     }
-    fprintf(to, "\n'tyndall COMMAND --help' lists the arguments; 'tyndall --version' the version.\n"
+    fprintf(to, "\n'tyndall COMMAND --help' lists the arguments; 'tyndall --version' the version;\n"
+                "'tyndall --completion SHELL' completes them in bash, zsh or fish; 'tyndall --man\n"
+                "[COMMAND]' is a manual page.\n"
                 "Exit codes: 0 done; 2 the arguments or the input are wrong; 1 anything else;\n"
                 "130 interrupted.\n");
 }
@@ -34,6 +36,45 @@ static void print_markdown(void)
     for (size_t i = 0; i < ARRAY_SIZE(commands); i++) {
         options_markdown(commands[i]);
     }
+}
+
+// Of one command, or of the program. False: there is no such command.
+static bool print_man(const char *name)
+{
+    for (size_t i = 0; name && i < ARRAY_SIZE(commands); i++) {
+        if (strcmp(name, commands[i]->name) == 0) {
+            options_man(commands[i]);
+            return true;
+        }
+    }
+    if (name) {
+        return false;
+    }
+    options_man_title("tyndall",
+                      "light in participating media (smoke, cloud, fog, milk) with Vulkan compute");
+    printf(".SH SYNOPSIS\n.B tyndall COMMAND [arguments]\n.SH COMMANDS\n");
+    for (size_t i = 0; i < ARRAY_SIZE(commands); i++) {
+        printf(".TP\n.BR tyndall\\-%s (1)\n%s\n", commands[i]->name, commands[i]->summary);
+    }
+    printf(
+        ".SH EXIT STATUS\n0 done; 2 the arguments or the input are wrong (one line: what, where, "
+        "what would be right); 1 anything else; 130 interrupted, and then nothing is written.\n");
+    return true;
+}
+
+static bool print_completion(const char *shell)
+{
+    static const struct {
+        const char *shell;
+        void (*print)(const command *const *commands, size_t count);
+    } shells[] = {{"bash", options_bash}, {"zsh", options_zsh}, {"fish", options_fish}};
+    for (size_t i = 0; shell && i < ARRAY_SIZE(shells); i++) {
+        if (strcmp(shell, shells[i].shell) == 0) {
+            shells[i].print(commands, ARRAY_SIZE(commands));
+            return true;
+        }
+    }
+    return false;
 }
 
 static int run_command(app *a, const command *cmd, int argc, char **argv)
@@ -86,6 +127,16 @@ int main(int argc, char **argv)
     if (strcmp(name, "--help-markdown") == 0) {
         print_markdown();
         return EXIT_DONE;
+    }
+    if (strcmp(name, "--man") == 0 && print_man(argc > 2 ? argv[2] : NULL)) {
+        return EXIT_DONE;
+    }
+    if (strcmp(name, "--completion") == 0) {
+        if (print_completion(argc > 2 ? argv[2] : NULL)) {
+            return EXIT_DONE;
+        }
+        app_error(&a, "--completion: must be bash, zsh or fish");
+        return EXIT_WRONG;
     }
     if (argc < 2) {
         print_help(stderr);

@@ -80,3 +80,12 @@ bool options_vector(const char *text, bool spread, float v[3]);
 
 void options_help(const command *cmd);     // to stdout
 void options_markdown(const command *cmd); // to stdout, one section of docs/cli.md
+void options_man(const command *cmd);      // to stdout, a manual page
+void options_man_title(const char *name, const char *summary);
+void options_bash(const command *const *commands, size_t count); // to stdout, completions
+void options_zsh(const command *const *commands, size_t count);
+void options_fish(const command *const *commands, size_t count);
+
+// "-o, --output FILE", and "default 64, 1 to 1000" as far as there are any.
+void options_left_side(const option *o, char *text, size_t size);
+void options_right_side(const option *o, char *text, size_t size);

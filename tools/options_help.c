@@ -16,8 +16,7 @@ static void usage_line(const command *cmd, const char *before, const char *after
     printf("%s%s", cmd->num_groups ? " [options]" : "", after);
 }
 
-// "-o, --output FILE"
-static void left_side(const option *o, char *text, size_t size)
+void options_left_side(const option *o, char *text, size_t size)
 {
     size_t used = 0;
     text[0] = '\0';
@@ -32,8 +31,7 @@ static void left_side(const option *o, char *text, size_t size)
     }
 }
 
-// "[64; 1..1000]": default and range, as far as there are any.
-static void right_side(const option *o, char *text, size_t size)
+void options_right_side(const option *o, char *text, size_t size)
 {
     bool number = o->kind == OPT_UINT || o->kind == OPT_NUMBER;
     size_t used = 0;
@@ -80,8 +78,8 @@ void options_help(const command *cmd)
         printf("\n%s:\n", cmd->groups[i].title);
         for (uint32_t k = 0; k < cmd->groups[i].num_options; k++) {
             char left[128], range[128];
-            left_side(&cmd->groups[i].options[k], left, sizeof left);
-            right_side(&cmd->groups[i].options[k], range, sizeof range);
+            options_left_side(&cmd->groups[i].options[k], left, sizeof left);
+            options_right_side(&cmd->groups[i].options[k], range, sizeof range);
             help_row(left, cmd->groups[i].options[k].doc, range);
         }
     }
@@ -116,8 +114,8 @@ void options_markdown(const command *cmd)
         printf("| %s | | default, range |\n|---|---|---|\n", group->title);
         for (uint32_t k = 0; k < group->num_options; k++) {
             char left[128], range[128];
-            left_side(&group->options[k], left, sizeof left);
-            right_side(&group->options[k], range, sizeof range);
+            options_left_side(&group->options[k], left, sizeof left);
+            options_right_side(&group->options[k], range, sizeof range);
             printf("| `");
             markdown_text(left);
             printf("` | ");

@@ -18,6 +18,8 @@ done
 works --help-markdown
 cmp -s out "$source/docs/cli.md" ||
     fail "docs/cli.md is not what 'tyndall --help-markdown' prints: make it again"
+refuses 2 "--completion: must be bash, zsh or fish" --completion tcsh
+refuses 2 "unknown command '--man'" --man paint
 
 # ---- options ----
 refuses 2 "SCENE is missing" render
