@@ -42,7 +42,8 @@ tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params,
     ctx->dev = dev;
     ctx->method = method;
     ctx->readback = params->readback;
-    tyn_result result = tyn_settings_copy(params->settings, &ctx->settings);
+    tyn_result result =
+        tyn_settings_copy(params->settings, params->quality, &dev->log, &ctx->settings);
     if (result == TYN_OK) {
         result = tyn_graph_create(dev, slots, &ctx->graph);
     }
@@ -50,6 +51,33 @@ tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params,
         tyn_context_destroy(&ctx);
     }
     *out = ctx;
+    return result;
+}
+
+tyn_result tyn_context_set(tyn_context *ctx, const char *name, const char *value)
+{
+    return ctx ? tyn_settings_set(ctx->settings, name, value, &ctx->dev->log) : TYN_ERR_PARAMS;
+}
+
+tyn_result tyn_context_set_quality(tyn_context *ctx, tyn_quality quality)
+{
+    const char *preset = tyn_quality_name(quality);
+    if (ctx && !preset) {
+        tyn_log_print(&ctx->dev->log, TYN_LOG_ERROR, "quality is %d; it is one of tyn_quality",
+                      (int)quality);
+    }
+    return ctx && preset ? tyn_settings_quality(ctx->settings, preset, &ctx->dev->log)
+                         : TYN_ERR_PARAMS;
+}
+
+tyn_result tyn_context_get(tyn_context *ctx, const char *name, double *value)
+{
+    if (!ctx || !TYN_GIVEN(&ctx->dev->log, name, value)) {
+        return TYN_ERR_PARAMS;
+    }
+    tyn_setting setting;
+    const tyn_result result = tyn_settings_get(ctx->settings, name, &setting, &ctx->dev->log);
+    *value = setting.value;
     return result;
 }
 

@@ -6,4 +6,7 @@
 const tyn_method *tyn_method_find(const char *name); // `name` NULL: the default; NULL: not there
 void tyn_method_names(char *text, size_t size);      // "pop, path, ..."
 const tyn_pass_desc *tyn_pass_find(const char *name);
-tyn_result tyn_settings_copy(const tyn_settings *from, tyn_settings **out); // NULL: empty
+// A preset, and before that what `from` has set (NULL: nothing).
+tyn_result tyn_settings_copy(const tyn_settings *from, tyn_quality quality, const tyn_log *log,
+                             tyn_settings **out);
+const char *tyn_quality_name(tyn_quality quality); // NULL: there is none

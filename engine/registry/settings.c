@@ -36,21 +36,6 @@ void tyn_settings_destroy(tyn_settings **settings)
     }
 }
 
-tyn_result tyn_settings_copy(const tyn_settings *from, tyn_settings **out)
-{
-    tyn_result result = tyn_settings_create(out);
-    if (result == TYN_OK && from && from->count) {
-        (*out)->entries = malloc(from->count * sizeof *from->entries);
-        if (!(*out)->entries) {
-            tyn_settings_destroy(out);
-            return TYN_ERR_MEMORY;
-        }
-        memcpy((*out)->entries, from->entries, from->count * sizeof *from->entries);
-        (*out)->count = from->count;
-    }
-    return result;
-}
-
 static tyn_result put(tyn_settings *settings, const tyn_pass_desc *pass, const tyn_param *param,
                       double value)
 {
@@ -129,78 +114,131 @@ static void describe_range(char *text, size_t size, const tyn_param *param)
     }
 }
 
-tyn_result tyn_settings_set(tyn_settings *settings, const char *name, const char *value,
-                            const tyn_log *log)
+// The parameter "pass.param"; NULL: there is none, which the log has been told.
+static const tyn_param *find_param(const char *name, const tyn_pass_desc **pass, const tyn_log *log)
 {
     char list[512], pass_name[64];
-    if (!TYN_GIVEN(log, settings, name, value)) {
-        return TYN_ERR_PARAMS;
-    }
     const char *dot = strchr(name, '.');
     if (!dot || (size_t)(dot - name) >= sizeof pass_name) {
         tyn_log_print(log, TYN_LOG_ERROR,
                       "setting '%s': write pass.param=value, as lattice.cells=32", name);
-        return TYN_ERR_PARAMS;
+        return NULL;
     }
     memcpy(pass_name, name, (size_t)(dot - name));
     pass_name[dot - name] = 0;
-    const tyn_pass_desc *pass = tyn_pass_find(pass_name);
-    if (!pass) {
+    *pass = tyn_pass_find(pass_name);
+    if (!*pass) {
         list_names(list, sizeof list, NULL);
         tyn_log_print(log, TYN_LOG_ERROR, "setting '%s': there is no pass '%s'; there are: %s",
                       name, pass_name, list);
-        return TYN_ERR_PARAMS;
+        return NULL;
     }
-    for (uint32_t i = 0; i < pass->num_params; i++) {
-        const tyn_param *param = &pass->params[i];
-        if (strcmp(param->name, dot + 1)) {
-            continue;
+    for (uint32_t i = 0; i < (*pass)->num_params; i++) {
+        if (!strcmp((*pass)->params[i].name, dot + 1)) {
+            return &(*pass)->params[i];
         }
-        double number;
-        if (!parse_value(param, value, &number)) {
-            describe_range(list, sizeof list, param);
-            tyn_log_print(log, TYN_LOG_ERROR, "setting '%s' is '%s'; it must be %s", name, value,
-                          list);
-            return TYN_ERR_PARAMS;
-        }
-        return put(settings, pass, param, number);
     }
-    list_names(list, sizeof list, pass);
+    list_names(list, sizeof list, *pass);
     tyn_log_print(log, TYN_LOG_ERROR, "setting '%s': pass '%s' has no such parameter; it has: %s",
                   name, pass_name, *list ? list : "none");
-    return TYN_ERR_PARAMS;
+    return NULL;
+}
+
+tyn_result tyn_settings_set(tyn_settings *settings, const char *name, const char *value,
+                            const tyn_log *log)
+{
+    if (!TYN_GIVEN(log, settings, name, value)) {
+        return TYN_ERR_PARAMS;
+    }
+    double number;
+    const tyn_pass_desc *pass;
+    const tyn_param *param = find_param(name, &pass, log);
+    if (param && !parse_value(param, value, &number)) {
+        char range[512];
+        describe_range(range, sizeof range, param);
+        tyn_log_print(log, TYN_LOG_ERROR, "setting '%s' is '%s'; it must be %s", name, value,
+                      range);
+        return TYN_ERR_PARAMS;
+    }
+    return param ? put(settings, pass, param, number) : TYN_ERR_PARAMS;
+}
+
+tyn_result tyn_settings_get(const tyn_settings *settings, const char *name, tyn_setting *setting,
+                            const tyn_log *log)
+{
+    if (!TYN_GIVEN(log, name, setting)) {
+        return TYN_ERR_PARAMS;
+    }
+    const tyn_pass_desc *pass;
+    const tyn_param *param = find_param(name, &pass, log);
+    *setting = (tyn_setting){.param = param, .value = param ? param->def : 0};
+    for (uint32_t i = 0; settings && i < settings->count; i++) {
+        if (param && settings->entries[i].param == param) {
+            setting->value = settings->entries[i].value;
+            setting->given = true;
+        }
+    }
+    if (param && param->type == TYN_PARAM_ENUM) {
+        setting->word = param->names[(int)setting->value];
+    }
+    return param ? TYN_OK : TYN_ERR_PARAMS;
 }
 
 // ---- presets ----------------------------------------------------------------------------------
 
-typedef struct quality {
+typedef struct preset_row {
     const char *name;
     struct {
         const char *setting, *value;
     } settings[8];
-} quality;
+} preset_row;
 
 // Normal is every pass's default. On the front of error and time over twelve scenes (tools/bench/suites/presets.json), normal
 // and high of those settings that solve the lattice to 1.5 % of its light.
-static const quality presets[] = {
-    {"draft",
-     {{"lattice.cells", "20"},
-      {"lattice.sweeps", "3"},
-      {"beam.cells", "48"},
-      {"raymarch.step", "2"}}},
-    {"normal", {{NULL, NULL}}},
-    {"high", {{"lattice.cells", "40"}}},
+static const preset_row presets[] = {
+    [TYN_QUALITY_DRAFT] = {"draft",
+                           {{"lattice.cells", "20"},
+                            {"lattice.sweeps", "3"},
+                            {"beam.cells", "48"},
+                            {"raymarch.step", "2"}}},
+    [TYN_QUALITY_NORMAL] = {"normal", {{NULL, NULL}}},
+    [TYN_QUALITY_HIGH] = {"high", {{"lattice.cells", "40"}}},
 };
+
+enum { NUM_PRESETS = sizeof presets / sizeof presets[0] };
+
+const char *tyn_quality_name(tyn_quality quality)
+{
+    return (size_t)quality < NUM_PRESETS ? presets[quality].name : NULL;
+}
+
+// What any of the presets sets is as if it had never been set.
+static void forget_presets(tyn_settings *settings)
+{
+    for (size_t i = 0; i < NUM_PRESETS; i++) {
+        for (int s = 0; presets[i].settings[s].setting; s++) {
+            const tyn_pass_desc *pass;
+            const tyn_param *param = find_param(presets[i].settings[s].setting, &pass, NULL);
+            for (uint32_t e = 0; e < settings->count; e++) {
+                if (settings->entries[e].param == param) {
+                    settings->entries[e] = settings->entries[--settings->count];
+                    break;
+                }
+            }
+        }
+    }
+}
 
 tyn_result tyn_settings_quality(tyn_settings *settings, const char *preset, const tyn_log *log)
 {
     if (!TYN_GIVEN(log, settings, preset)) {
         return TYN_ERR_PARAMS;
     }
-    for (size_t i = 0; i < sizeof presets / sizeof presets[0]; i++) {
+    for (size_t i = 0; i < NUM_PRESETS; i++) {
         if (strcmp(presets[i].name, preset)) {
             continue;
         }
+        forget_presets(settings);
         tyn_result result = TYN_OK;
         for (int s = 0; result == TYN_OK && presets[i].settings[s].setting; s++) {
             result = tyn_settings_set(settings, presets[i].settings[s].setting,
@@ -211,6 +249,28 @@ tyn_result tyn_settings_quality(tyn_settings *settings, const char *preset, cons
     tyn_log_print(log, TYN_LOG_ERROR, "quality '%s' is not known; it is draft, normal or high",
                   preset);
     return TYN_ERR_PARAMS;
+}
+
+tyn_result tyn_settings_copy(const tyn_settings *from, tyn_quality quality, const tyn_log *log,
+                             tyn_settings **out)
+{
+    const char *preset = tyn_quality_name(quality);
+    tyn_result result = tyn_settings_create(out);
+    if (result == TYN_OK && !preset) {
+        tyn_log_print(log, TYN_LOG_ERROR, "quality is %d; it is one of tyn_quality", (int)quality);
+        result = TYN_ERR_PARAMS;
+    }
+    if (result == TYN_OK) {
+        result = tyn_settings_quality(*out, preset, log);
+    }
+    for (uint32_t i = 0; result == TYN_OK && from && i < from->count; i++) {
+        const entry *e = &from->entries[i];
+        result = put(*out, e->pass, e->param, e->value);
+    }
+    if (result != TYN_OK) {
+        tyn_settings_destroy(out);
+    }
+    return result;
 }
 
 // ---- use --------------------------------------------------------------------------------------

@@ -636,6 +636,51 @@ static void contexts_share_a_device(void **state)
     tyn_scene_finish(&ink);
 }
 
+// Settings that change between frames give the pictures of contexts that were made with them.
+static void settings_change(void **state)
+{
+    fixture *f = *state;
+    tyn_scene scene;
+    make_smoke(&scene);
+    const tyn_view view = make_view(0.2f, WIDTH, HEIGHT, TYN_OUTPUT_COMPOSITE);
+    const frame_states s = usual_states();
+    float m[16];
+    projection(&view, true, m);
+    tyn_context *ctx = new_context(f, f->guest, "pop");
+    target t = new_target(&f->host, WIDTH, HEIGHT, s.color_format);
+    paint_backdrop(&t, 0.0f);
+    t.color.state = s.color_before;
+    t.depth.state = s.depth_before;
+    static const char *const changes[][2] = {
+        {"lattice.cells", "9"}, {"raymarch.step", "0.75"}, {"lattice.cells", "12"}};
+    for (int k = 0; k < 3; k++) {
+        double value;
+        const tyn_log log = log_of(f);
+        assert_int_equal(tyn_context_set(ctx, changes[k][0], changes[k][1]), TYN_OK);
+        assert_int_equal(tyn_context_get(ctx, changes[k][0], &value), TYN_OK);
+        assert_true(value == strtod(changes[k][1], NULL));
+        assert_int_equal(tyn_settings_set(f->settings, changes[k][0], changes[k][1], &log), TYN_OK);
+        picture p = reference(f, "pop", &scene, view);
+        assert_int_equal(prepare_frame(ctx, &scene, &view, &t, &s, m, NULL), TYN_OK);
+        const VkCommandBuffer cmd = host_begin(&f->host, 0);
+        begin_frame(f, cmd, &t, &s);
+        assert_int_equal(record_frame(ctx, cmd, &scene, &view, &t, &s, m, NULL), TYN_OK);
+        end_frame(f, cmd, &t);
+        host_submit(&f->host, 0);
+        host_wait(&f->host, 0);
+        check_composite(&t, &p);
+        free_picture(&p);
+    }
+    tyn_settings_destroy(&f->settings);
+    assert_int_equal(tyn_settings_create(&f->settings), TYN_OK);
+    const tyn_log log = log_of(f);
+    assert_int_equal(tyn_settings_set(f->settings, "lattice.cells", "12", &log), TYN_OK);
+    tyn_context_destroy(&ctx);
+    free_target(&f->host, &t);
+    expect_silence(f);
+    tyn_scene_finish(&scene);
+}
+
 // The density is an image of the host's, in a layout of its choice, and changes without notice.
 static void density_of_the_host(void **state)
 {
@@ -765,9 +810,9 @@ static void failing_record_changes_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(images_in_any_layout),           cmocka_unit_test(surfaces_stop_the_light),
-        cmocka_unit_test(contexts_share_a_device),        cmocka_unit_test(density_of_the_host),
-        cmocka_unit_test(failing_record_changes_nothing),
+        cmocka_unit_test(images_in_any_layout),    cmocka_unit_test(surfaces_stop_the_light),
+        cmocka_unit_test(contexts_share_a_device), cmocka_unit_test(density_of_the_host),
+        cmocka_unit_test(settings_change),         cmocka_unit_test(failing_record_changes_nothing),
     };
     return cmocka_run_group_tests_name("embed", tests, set_up, tear_down);
 }

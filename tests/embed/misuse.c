@@ -303,17 +303,29 @@ static void contexts(void **state)
     assert_true(tyn_context_create(f->dev, tyn_context_params(.method = "none"), &ctx) < 0);
     assert_true(tyn_context_create(f->dev, tyn_context_params(.method = ""), &ctx) < 0);
     assert_true(tyn_context_create(f->dev, tyn_context_params(.frames_in_flight = 9), &ctx) < 0);
+    assert_true(tyn_context_create(f->dev, tyn_context_params(.quality = (tyn_quality)9), &ctx) <
+                0);
     assert_null(ctx);
     // A host's device has no queue of ours.
     assert_true(tyn_offline_create(f->dev, tyn_offline_params(), &off) < 0);
     assert_true(tyn_offline_create(f->dev, NULL, &off) < 0);
     assert_null(off);
-    assert_int_equal(f->lines, 8);
+    assert_int_equal(f->lines, 9);
     // Before there is a frame.
     assert_int_equal(tyn_context_create(f->dev, tyn_context_params(.readback = true), &ctx),
                      TYN_OK);
     tyn_report report;
     tyn_inspection inspection;
+    double value;
+    f->lines = 0;
+    assert_true(tyn_context_set(ctx, "lattice.cells", "many") < 0);
+    assert_true(tyn_context_set(ctx, "lattice", "8") < 0);
+    assert_true(tyn_context_set(ctx, NULL, "8") < 0);
+    assert_true(tyn_context_set(ctx, "lattice.cells", NULL) < 0);
+    assert_true(tyn_context_set_quality(ctx, (tyn_quality)-1) < 0);
+    assert_true(tyn_context_get(ctx, "lattice.size", &value) < 0);
+    assert_true(tyn_context_get(ctx, "lattice.cells", NULL) < 0);
+    assert_int_equal(f->lines, 7);
     assert_null(tyn_context_output(ctx, TYN_OUTPUT_RADIANCE));
     assert_null(tyn_context_output(ctx, (tyn_output)0));
     tyn_context_report(ctx, &report);

@@ -88,6 +88,9 @@ static void null_handles(void **state)
     REFUSED_SILENTLY(tyn_context_record(NULL, &frame));
     REFUSED_SILENTLY(tyn_context_prepare(NULL, NULL));
     REFUSED_SILENTLY(tyn_context_record(NULL, NULL));
+    REFUSED_SILENTLY(tyn_context_set(NULL, "lattice.cells", "8"));
+    REFUSED_SILENTLY(tyn_context_set_quality(NULL, TYN_QUALITY_HIGH));
+    REFUSED_SILENTLY(tyn_context_get(NULL, "lattice.cells", &(double){0}));
     GIVES(1, tyn_context_batch(NULL, &frame));
     GIVES(NULL, tyn_context_output(NULL, TYN_OUTPUT_RADIANCE));
     DOES_NOTHING(tyn_context_report(NULL, &report));
@@ -142,6 +145,11 @@ static void registry(void **state)
     REFUSED(tyn_settings_quality(s, NULL, log));
     REFUSED(tyn_settings_quality(NULL, "high", log));
     REFUSED(tyn_settings_quality(s, "best", log));
+    tyn_setting setting;
+    REFUSED(tyn_settings_get(s, NULL, &setting, log));
+    REFUSED(tyn_settings_get(s, "lattice.cells", NULL, log));
+    REFUSED(tyn_settings_get(s, "lattice.cell", &setting, log));
+    REFUSED(tyn_settings_get(NULL, "cells", &setting, log));
     DOES_NOTHING(tyn_settings_params(s, NULL, params));
     DOES_NOTHING(tyn_settings_params(s, tyn_pass_at(0), NULL));
     DOES_NOTHING(tyn_settings_params(NULL, NULL, NULL));
@@ -158,6 +166,44 @@ static void registry(void **state)
     DOES_NOTHING(tyn_limit_say(NULL, NULL, NULL, line, sizeof line));
     assert_int_equal(line[0], 0);
     DOES_NOTHING(tyn_limit_say(info.limits, &info.limits->advice, &regime, NULL, 0));
+}
+
+// What was set is what is got; a preset takes the place of another and leaves other settings.
+static void settings_and_presets(void **state)
+{
+    (void)state;
+    tyn_settings *s;
+    tyn_setting got;
+    assert_int_equal(tyn_settings_create(&s), TYN_OK);
+    assert_int_equal(tyn_settings_get(NULL, "lattice.cells", &got, &listener), TYN_OK);
+    const double normal = got.value;
+    assert_true(!got.given && got.param->type == TYN_PARAM_INT && !got.word);
+    assert_int_equal(tyn_settings_set(s, "lattice.sweeps", "7", &listener), TYN_OK);
+    assert_int_equal(tyn_settings_set(s, "raymarch.antialias", "off", &listener), TYN_OK);
+    assert_int_equal(tyn_settings_quality(s, "draft", &listener), TYN_OK);
+    assert_int_equal(tyn_settings_get(s, "lattice.cells", &got, &listener), TYN_OK);
+    assert_true(got.given && got.value < normal);
+    assert_int_equal(tyn_settings_quality(s, "high", &listener), TYN_OK);
+    assert_int_equal(tyn_settings_get(s, "lattice.cells", &got, &listener), TYN_OK);
+    assert_true(got.given && got.value > normal);
+    assert_int_equal(tyn_settings_get(s, "lattice.sweeps", &got, &listener), TYN_OK);
+    assert_false(got.given); // a preset's
+    assert_int_equal(tyn_settings_get(s, "raymarch.antialias", &got, &listener), TYN_OK);
+    assert_true(got.given && got.value == 0);
+    assert_int_equal(tyn_settings_quality(s, "normal", &listener), TYN_OK);
+    assert_int_equal(tyn_settings_get(s, "lattice.cells", &got, &listener), TYN_OK);
+    assert_true(!got.given && got.value == normal);
+    for (uint32_t i = 0; i < tyn_num_passes(); i++) { // words have their names
+        const tyn_pass_desc *pass = tyn_pass_at(i);
+        for (uint32_t k = 0; k < pass->num_params; k++) {
+            char name[128];
+            snprintf(name, sizeof name, "%s.%s", pass->name, pass->params[k].name);
+            assert_int_equal(tyn_settings_get(NULL, name, &got, &listener), TYN_OK);
+            assert_true(got.value == pass->params[k].def);
+            assert_true((got.word != NULL) == (pass->params[k].type == TYN_PARAM_ENUM));
+        }
+    }
+    tyn_settings_destroy(&s);
 }
 
 static void scenes(void **state)
@@ -464,8 +510,13 @@ static int all_counted(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(null_handles),     cmocka_unit_test(registry), cmocka_unit_test(scenes),
-        cmocka_unit_test(faults_of_scenes), cmocka_unit_test(defaults), cmocka_unit_test(files),
+        cmocka_unit_test(null_handles),
+        cmocka_unit_test(registry),
+        cmocka_unit_test(settings_and_presets),
+        cmocka_unit_test(scenes),
+        cmocka_unit_test(faults_of_scenes),
+        cmocka_unit_test(defaults),
+        cmocka_unit_test(files),
     };
     return cmocka_run_group_tests(tests, NULL, all_counted);
 }

@@ -23,17 +23,33 @@ extern "C" {
 typedef struct tyn_context tyn_context;
 typedef struct tyn_settings tyn_settings; // values of pass parameters; see registry.h
 
+// Presets of those settings that trade error for time.
+typedef enum tyn_quality {
+    TYN_QUALITY_NORMAL = 0, // the defaults
+    TYN_QUALITY_DRAFT,
+    TYN_QUALITY_HIGH,
+} tyn_quality;
+
 typedef struct tyn_context_params {
     size_t struct_size TYN_PARAMS_SIZE(tyn_context_params);
     const char *method;           // "pop" (NULL), "pop-paper", "single", "path"
-    const tyn_settings *settings; // NULL = defaults; copied
+    const tyn_settings *settings; // NULL = defaults; copied; before the preset's
     uint32_t frames_in_flight;    // 1..8; 0 = 2
     bool readback;                // copy outputs to host memory (tyn_context_output)
+    tyn_quality quality;
 } tyn_context_params;
 #define tyn_context_params(...) TYN_PARAMS(tyn_context_params, __VA_ARGS__)
 TYN_API tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params,
                                       tyn_context **out);
 TYN_API void tyn_context_destroy(tyn_context **ctx); // the GPU must be done with our work
+
+// Changes a setting ("lattice.cells", "48"; `tyndall info --passes` lists them), or those of a preset, for the frames that
+// come. Unknown names, bad numbers and values out of range are one log line and TYN_ERR_PARAMS, and change nothing. Some
+// settings choose other kernels or grids: record refuses then, and prepare mends it.
+TYN_API tyn_result tyn_context_set(tyn_context *ctx, const char *name, const char *value);
+TYN_API tyn_result tyn_context_set_quality(tyn_context *ctx, tyn_quality quality);
+// What is in effect: a number; of switches 0 or 1, of words their place in the list.
+TYN_API tyn_result tyn_context_get(tyn_context *ctx, const char *name, double *value);
 
 // What a frame can give back, as a set.
 typedef enum tyn_output {

@@ -215,7 +215,8 @@ typedef struct tyn_pass_desc {
     // light there are; no light's strength or direction, no camera): with media-only inputs the
     // node is part of the set-up and not of a frame's cost.
     bool media_only;
-    bool of_pixels; // its work grows with the picture's pixels and with nothing else: stored times scale it with them
+    bool
+        of_pixels; // its work grows with the picture's pixels and with nothing else: stored times scale it with them
     // Gives every OUT and SCRATCH port its extent (tyn_build_*). Depends only on params and on the
     // extents of the inputs. An OUT port that is given none does not exist in this configuration.
     tyn_result (*declare)(tyn_builder *b, const void *params);

@@ -105,9 +105,18 @@ TYN_API void tyn_settings_destroy(tyn_settings **settings);
 // TYN_ERR_PARAMS.
 TYN_API tyn_result tyn_settings_set(tyn_settings *settings, const char *name, const char *value,
                                     const tyn_log *log);
-// "draft", "normal", "high".
+// "draft", "normal", "high": sets what presets set, and leaves the rest.
 TYN_API tyn_result tyn_settings_quality(tyn_settings *settings, const char *preset,
                                         const tyn_log *log);
+// What is in effect of one parameter; NULL settings have the defaults.
+typedef struct tyn_setting {
+    const tyn_param *param; // its type, range, unit, words
+    double value;           // of switches 0 or 1, of words their place in param->names
+    const char *word;       // of words; else NULL
+    bool given;             // it was set, to whatever
+} tyn_setting;
+TYN_API tyn_result tyn_settings_get(const tyn_settings *settings, const char *name,
+                                    tyn_setting *setting, const tyn_log *log);
 // Defaults of the pass, then what was set.
 TYN_API void tyn_settings_params(const tyn_settings *settings, const tyn_pass_desc *pass,
                                  void *params);
