@@ -51,11 +51,12 @@ static void set_radial(tyn_propagate_radial_params *params, const tyn_job *job)
     memcpy(params->size, block->size, sizeof params->size);
 }
 
-static void set_lamps(tyn_propagate_radial_params *params, const tyn_job *job)
+static void set_lamps(tyn_propagate_radial_params *params, const tyn_job *job, const tyn_sources *s)
 {
     const tyn_lights *lights = &job->frame->lights;
     set_radial(params, job);
     params->num_lamps = lights->num_lamps;
+    params->shadowed = s->shadows.shadow_atlas.resource != 0;
     memcpy(params->lamps, tyn_first_lamp(lights), lights->num_lamps * sizeof *params->lamps);
 }
 
@@ -65,6 +66,7 @@ static void set_vpls(tyn_propagate_radial_params *params, const tyn_job *job)
     set_radial(params, job);
     params->cells = params->shells = params->vpl_cells;
     params->max_vpls = TYN_RADIAL_VPLS_MAX;
+    params->shadowed = 1; // what VPLs see is known, or that nothing stops their light
 }
 
 static void add_radial(tyn_graph *g, const tyn_job *job, const propagated *p,
@@ -75,7 +77,10 @@ static void add_radial(tyn_graph *g, const tyn_job *job, const propagated *p,
     };
     tyn_connect(refs, PROPAGATE_RADIAL_PORT_MEDIUM, p->sources->medium);
     if (params->max_vpls) {
-        refs[PROPAGATE_RADIAL_PORT_VPLS] = p->sources->surface_light.vpls.vpls;
+        tyn_connect(refs, PROPAGATE_RADIAL_PORT_VPLS, p->sources->surface_light.vpls);
+    }
+    if (params->num_lamps && params->shadowed) {
+        tyn_connect(refs, PROPAGATE_RADIAL_PORT_SHADOW_ATLAS, p->sources->shadows);
     }
     tyn_graph_add(g, &tyn_pass_propagate_radial, params, refs);
     *places = refs[PROPAGATE_RADIAL_PORT_PLACES];
@@ -88,6 +93,12 @@ static void set_grids(propagated *p, const tyn_job *job)
     p->grids.num_ordinates = p->sources->sky.count;
     p->grids.channels = job->frame->grey ? 1 : 3;
     p->grids.mode = block->mode;
+    // Suns come first among the ordinates. Where surfaces have no hierarchy light without a map is not stopped.
+    p->grids.num_mapped =
+        p->sources->shadows.shadow_atlas.resource ? tyn_num_beams(&job->frame->lights) : 0;
+    if (p->grids.num_ordinates > p->grids.num_mapped && tyn_can_trace(job)) {
+        p->grids.num_triangles = job->frame->num_triangles;
+    }
     memcpy(p->grids.extent, block->extent, sizeof p->grids.extent);
     memcpy(p->grids.size, block->size, sizeof p->grids.size);
 }
@@ -103,6 +114,12 @@ static void add_propagation(tyn_graph *g, const tyn_job *job, propagated *p)
         [PROPAGATE_RECT_PORT_CAMERA] = job->refs.camera,
     };
     tyn_connect(refs, PROPAGATE_RECT_PORT_MEDIUM, p->sources->medium);
+    if (p->grids.num_mapped) {
+        tyn_connect(refs, PROPAGATE_RECT_PORT_SHADOW_ATLAS, p->sources->shadows);
+    }
+    if (p->grids.num_triangles) {
+        tyn_connect(refs, PROPAGATE_RECT_PORT_SURFACES, job->refs.geometry);
+    }
     tyn_graph_add(g, &tyn_pass_propagate_rect, &p->grids, refs);
     p->places = refs[PROPAGATE_RECT_PORT_PLACES];
     p->seen = refs[PROPAGATE_RECT_PORT_SEEN];
@@ -184,7 +201,7 @@ void tyn_solve_propagation(tyn_graph *g, const tyn_job *job, const tyn_sources *
     tyn_settings_params(job->settings, &tyn_pass_propagate_radial, &p.lamps);
     tyn_settings_params(job->settings, &tyn_pass_propagate_radial, &p.vpls);
     tyn_settings_params(job->settings, &tyn_pass_residuum, &p.residuum);
-    set_lamps(&p.lamps, job);
+    set_lamps(&p.lamps, job, s);
     if (s->surface_light.vpls.vpls.resource) {
         set_vpls(&p.vpls, job);
     }

@@ -90,7 +90,7 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     params.num_lamps = media ? in->sources->lamps.num_lamps : job->frame->lights.num_lamps;
     params.one_channel = in->field->one_channel;
     memcpy(params.tint, in->field->tint, sizeof params.tint);
-    params.sky = sky[0] + sky[1] + sky[2] > 0.0f;
+    params.sky = sky[0] + sky[1] + sky[2] > 0.0f && !in->no_sky_on_surfaces;
     const bool beyond = reach_beyond_media(job->frame);
     params.outside = beyond && !tyn_is_periodic(job->frame);
     params.hidden = params.outside && tyn_can_trace(job);

@@ -3,6 +3,8 @@
 #include "propagate_radial_args.h"
 #include "propagate_radial_cells.comp.h"
 #include "propagate_radial_collect.comp.h"
+#include "propagate_radial_lit_lamps.comp.h"
+#include "propagate_radial_lit_vpls.comp.h"
 #include "propagate_radial_setup.comp.h"
 #include "propagate_radial_start.comp.h"
 #include "propagate_radial_step.comp.h"
@@ -13,12 +15,16 @@
 
 static const tyn_port ports[] = {PROPAGATE_RADIAL_PORTS(TYN_PORT_ROW)};
 
-enum { SETUP, CELLS, START, STEP, COLLECT, NUM_KERNELS };
+enum { SETUP, CELLS, LIT_LAMPS, LIT_VPLS, START, STEP, COLLECT, NUM_KERNELS };
 
 #define EDGE PROPAGATE_RADIAL_GROUP
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SETUP] = TYN_KERNEL(propagate_radial_setup),     [CELLS] = TYN_KERNEL(propagate_radial_cells),
-    [START] = TYN_KERNEL(propagate_radial_start),     [STEP] = TYN_KERNEL(propagate_radial_step),
+    [SETUP] = TYN_KERNEL(propagate_radial_setup),
+    [CELLS] = TYN_KERNEL(propagate_radial_cells),
+    [LIT_LAMPS] = TYN_KERNEL(propagate_radial_lit_lamps),
+    [LIT_VPLS] = TYN_KERNEL(propagate_radial_lit_vpls),
+    [START] = TYN_KERNEL(propagate_radial_start),
+    [STEP] = TYN_KERNEL(propagate_radial_step),
     [COLLECT] = TYN_KERNEL(propagate_radial_collect),
 };
 
@@ -109,6 +115,8 @@ static tyn_result declare(tyn_builder *b, const void *data)
     tyn_build_buffer(b, PORT(PLACES), num_grids(p) * sizeof(struct propagate_radial_place));
     tyn_build_buffer(b, PORT(MAP), (uint64_t)num_grids(p) * side * side * 2 * sizeof(float));
     tyn_build_buffer(b, PORT(CELLS), numbers * 4 * sizeof(float));
+    tyn_build_buffer(b, PORT(LIT),
+                     p->shadowed ? numbers / p->channels * sizeof(float) : sizeof(float));
     tyn_build_buffer(b, PORT(STATE), numbers * 4 * sizeof(float));
     tyn_build_buffer(b, PORT(STATE_OTHER), numbers * 4 * sizeof(float));
     tyn_build_buffer(b, PORT(SUM), numbers * sizeof(float));
@@ -132,14 +140,23 @@ static void record_batch(tyn_recorder *r, const tyn_propagate_radial_params *p,
     tyn_extent all = {side, side, layers * stacks};
     TYN_DISPATCH(r, .kernel = CELLS, .cells = {side, side, layers * args->count}, .args = args,
                  .spec = &p->mode);
+    tyn_extent columns = {side, side, args->count};
+    if (p->shadowed && args->first < p->num_lamps) {
+        TYN_DISPATCH(r, .kernel = LIT_LAMPS, .cells = columns, .args = args);
+    }
+    if (p->shadowed && args->first + args->count > p->num_lamps) {
+        TYN_DISPATCH(r, .kernel = LIT_VPLS, .cells = columns, .args = args);
+    }
     // The states are written alternately, so that the last one lands in the output.
     bool other = p->iterations % 2 != 0;
     TYN_DISPATCH(r, .kernel = START, .cells = {side, side, stacks}, .args = args,
-                 .ports = tyn_ports_exchanged(&kernels[START], swap, other ? 2 : 0, table));
+                 .ports = tyn_ports_exchanged(&kernels[START], swap, other ? 2 : 0, table),
+                 .spec = &p->shadowed);
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
         TYN_DISPATCH(r, .kernel = STEP, .cells = all, .args = args,
-                     .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? 2 : 0, table));
+                     .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? 2 : 0, table),
+                     .spec = &p->shadowed);
     }
     TYN_DISPATCH(r, .kernel = COLLECT, .cells = {side + 2, side + 2, layers * stacks},
                  .args = args);

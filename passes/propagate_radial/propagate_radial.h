@@ -37,6 +37,7 @@ typedef struct tyn_propagate_radial_params {
     uint32_t channels;     // 1 if the medium is the same in all channels, else 3
     uint32_t mode;         // TYN_MEDIUM_*
     uint32_t buffer_bytes; // largest storage buffer; 0 = 128 MiB
+    uint32_t shadowed;     // 1: lamps have shadow maps, VPLs maps of what they see
     float extent[3];       // medium_block.extent, m
     uint32_t size[3];      // medium_block.size
     struct light_block lamps[TYN_RADIAL_LAMPS_MAX];
@@ -46,7 +47,8 @@ typedef struct tyn_propagate_radial_params {
 #define PROPAGATE_RADIAL_PORTS(X) \
     TYN_MEDIUM(X, PROPAGATE_RADIAL), \
     X(PROPAGATE_RADIAL, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
-    X(PROPAGATE_RADIAL, VPLS, vpls, OPTIONAL, BUFFER, "struct radial_vpls"), \
+    TYN_VPLS(X##_OPTIONAL, PROPAGATE_RADIAL), \
+    TYN_SHADOWS(X##_OPTIONAL, PROPAGATE_RADIAL), \
     X(PROPAGATE_RADIAL, GRIDS, grids, OUT, BUFFER, "struct propagate_radial_grid[]: lamps, then VPLs"), \
     X(PROPAGATE_RADIAL, PLACES, places, OUT, BUFFER, "struct propagate_radial_place[]"), \
     X(PROPAGATE_RADIAL, SEEN, seen, OUT, IMAGE_3D, \
@@ -57,6 +59,9 @@ typedef struct tyn_propagate_radial_params {
         "vec4[grids][channels][layers][cells^2] of the last batch: optical depths of scattering and " \
         "absorption along the radius (of the ball: twice), g, cosine between the radius and the direction to " \
         "the eye (-2: not in the grid)"), \
+    X(PROPAGATE_RADIAL, LIT, lit, OUT, BUFFER, \
+        "float[grids][layers][cells^2] of the last batch: of light that goes straight on, the share that surfaces let " \
+        "into a cell from the one before it; a number where nothing casts shadows"), \
     X(PROPAGATE_RADIAL, STATE, state, OUT, BUFFER, \
         "vec4[]: after the last iteration what leaves the cell outwards, to each side and inwards, sr, and " \
         "1 - a of it"), \

@@ -5,6 +5,7 @@
 
 // Edge of the workgroups of kernels with one thread a cell.
 #define PROPAGATE_RADIAL_GROUP 4
+#define PROPAGATE_RADIAL_LOOKS 4  // at surfaces, along each side of a texel of the map
 #define PROPAGATE_RADIAL_LANES 64 // threads that lay out one grid
 
 #define PROPAGATE_RADIAL_INIT_ENTRY 0

@@ -6,12 +6,14 @@
 #include "propagate_radial_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = 0) const uint shadowed = 0u; // 1: surfaces stop light
 TYN_READ(0, grids, propagate_radial_grid grids[]);
 TYN_READ(1, map, vec2 map[]);
 TYN_UPDATE(2, cells, vec4 cells[]);
 TYN_WRITE(3, state, vec4 out_state[]);
 TYN_WRITE(4, state_other, vec4 out_other[]);
 TYN_WRITE(5, sum, float out_sum[]);
+TYN_READ(6, lit, float lit[]);
 TYN_ARGS(propagate_radial_args args);
 
 // Mean of exp(-tau) over a depth, (1 - e^-tau) / tau.
@@ -38,19 +40,23 @@ void main()
         }
     }
     first = grids[n].inside != 0u ? 0 : first;
+    float arrives = 1.0; // past surfaces
     float depth = 0.0; // optical, from the light to the inner face of the cell
     for (int k = 0; k < int(args.layers); k++) {
         uint q = propagate_radial_index(ivec3(texel, k), stack, args.cells, args.layers);
         bool inside = k >= first && k <= last;
+        if (shadowed != 0u) {
+            arrives *= lit[propagate_radial_index(ivec3(texel, k), stack / args.channels, args.cells, args.layers)];
+        }
         vec4 state = vec4(0.0);
         float seen = 0.0;
         if (inside) {
             propagate_cell here = propagate_cell_of(cells[q]);
-            float light = k == first ? start : 0.0, spread = 1.0 - mean_cosine;
+            float light = k == first ? arrives * start : 0.0, spread = 1.0 - mean_cosine;
             if (args.init == PROPAGATE_RADIAL_INIT_FIRST_COLLISION) {
                 // The beam is not in the grid: what it scatters is.
                 float part = k == 0 ? 0.5 : 1.0, tau = part * (here.sigma_s + here.sigma_a);
-                float beam = start * exp(-depth) * mean_transmittance(tau);
+                float beam = arrives * start * exp(-depth) * mean_transmittance(tau);
                 light = beam * part * here.sigma_s;
                 spread = 1.0 - here.g * mean_cosine;
                 seen = beam * propagate_towards_eye(here.mu, mean_cosine, here.g, true) +

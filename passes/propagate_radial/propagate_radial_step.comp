@@ -6,12 +6,14 @@
 #include "propagate_radial_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+layout(constant_id = 0) const uint shadowed = 0u; // 1: surfaces stop light
 TYN_READ(0, grids, propagate_radial_grid grids[]);
 TYN_READ(1, map, vec2 map[]);
 TYN_READ(2, cells, vec4 cells[]);
 TYN_READ(3, state_other, vec4 in_state[]);
 TYN_WRITE(4, state, vec4 out_state[]);
 TYN_UPDATE(5, sum, float sum[]);
+TYN_READ(6, lit, float lit[]);
 TYN_ARGS(propagate_radial_args args);
 
 // Cells side by side are of unequal size. If each sent the same share of its light to the other, the larger
@@ -60,6 +62,9 @@ void main()
             // in those of radiance the paper's factor is that of the spacing instead.
             float stays = 0.0;
             vec4 mine = in_state[q], inner = in_state[q - layer];
+            if (shadowed != 0u) {
+                inner.x *= lit[propagate_radial_index(cell, stack / args.channels, args.cells, args.layers)];
+            }
             add(light, inner.x * (spacing && cell.z > 1 ? growth : 1.0),
                 cell.z > 1 ? inner.w / flatter : inner.w);
             if (cell.z + 1 < int(args.layers)) {

@@ -4,6 +4,8 @@
 #include "propagate_rect_cells.comp.h"
 #include "propagate_rect_collect.comp.h"
 #include "propagate_rect_light.comp.h"
+#include "propagate_rect_lit_maps.comp.h"
+#include "propagate_rect_lit_traced.comp.h"
 #include "propagate_rect_setup.comp.h"
 #include "propagate_rect_shrink_coefficients.comp.h"
 #include "propagate_rect_shrink_density.comp.h"
@@ -22,6 +24,8 @@ enum {
     SHRINK_DENSITY,
     SHRINK_COEFFICIENTS,
     CELLS,
+    LIT_MAPS,
+    LIT_TRACED,
     START,
     STEP,
     COLLECT,
@@ -36,6 +40,8 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [SHRINK_DENSITY] = TYN_KERNEL(propagate_rect_shrink_density),
     [SHRINK_COEFFICIENTS] = TYN_KERNEL(propagate_rect_shrink_coefficients),
     [CELLS] = TYN_KERNEL(propagate_rect_cells),
+    [LIT_MAPS] = TYN_KERNEL(propagate_rect_lit_maps),
+    [LIT_TRACED] = TYN_KERNEL(propagate_rect_lit_traced),
     [START] = TYN_KERNEL(propagate_rect_start),
     [STEP] = TYN_KERNEL(propagate_rect_step),
     [COLLECT] = TYN_KERNEL(propagate_rect_collect),
@@ -83,6 +89,12 @@ static uint32_t batch(const tyn_propagate_rect_params *p)
     uint32_t fit = bytes / (cells_of_grid(p) * (uint32_t)(4 * sizeof(float)));
     fit = fit > 0 ? fit : 1;
     return fit < p->num_ordinates ? fit : p->num_ordinates;
+}
+
+// Do surfaces stop any of the light?
+static bool shadowed(const tyn_propagate_rect_params *p)
+{
+    return p->num_mapped || p->num_triangles;
 }
 
 static uint32_t tiles_of(const tyn_propagate_rect_params *p)
@@ -136,6 +148,8 @@ static tyn_result declare(tyn_builder *b, const void *data)
     tyn_build_buffer(b, PORT(GRIDS), p->num_ordinates * sizeof(struct propagate_grid));
     tyn_build_buffer(b, PORT(PLACES), TYN_ORDINATES_MAX * sizeof(struct propagate_place));
     tyn_build_buffer(b, PORT(CELLS), numbers * 4 * sizeof(float));
+    tyn_build_buffer(b, PORT(LIT),
+                     shadowed(p) ? numbers / p->channels * sizeof(float) : sizeof(float));
     tyn_build_buffer(b, PORT(STATE), numbers * 4 * sizeof(float));
     tyn_build_buffer(b, PORT(STATE_OTHER), numbers * 4 * sizeof(float));
     tyn_build_buffer(b, PORT(SUM), numbers * sizeof(float));
@@ -172,22 +186,31 @@ static void record_batch(tyn_recorder *r, const tyn_propagate_rect_params *p,
                                       {PORT(STATE_OTHER), PORT(STATE)}};
     uint8_t table[TYN_MAX_BINDINGS];
     uint32_t layers = (args->cells + EDGE - 1) / EDGE * EDGE; // no workgroup has cells of two grids
-    uint32_t stacks = args->count * args->channels, init = (uint32_t)p->init;
+    uint32_t stacks = args->count * args->channels;
+    const uint32_t start[] = {(uint32_t)p->init, shadowed(p)};
     tyn_extent all = {args->cells, args->cells, layers * stacks};
     uint32_t shrunk = !small_of(p).x ? 0 : p->mode == TYN_MEDIUM_COEFFICIENTS ? 3 : 1;
 
     TYN_DISPATCH(r, .kernel = CELLS, .cells = {args->cells, args->cells, layers * args->count},
                  .args = args, .ports = tyn_ports_exchanged(&kernels[CELLS], small, shrunk, table),
                  .spec = &p->mode);
+    tyn_extent columns = {args->cells, args->cells, args->count};
+    if (args->first < p->num_mapped) {
+        TYN_DISPATCH(r, .kernel = LIT_MAPS, .cells = columns, .args = args);
+    }
+    if (p->num_triangles && args->first + args->count > p->num_mapped) {
+        TYN_DISPATCH(r, .kernel = LIT_TRACED, .cells = columns, .args = args);
+    }
     // The states are written alternately, so that the last one lands in the output.
     bool other = p->iterations % 2 != 0;
     TYN_DISPATCH(r, .kernel = START, .cells = {args->cells, args->cells, stacks}, .args = args,
                  .ports = tyn_ports_exchanged(&kernels[START], swap, other ? 2 : 0, table),
-                 .spec = &init);
+                 .spec = start);
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
         TYN_DISPATCH(r, .kernel = STEP, .cells = all, .args = args,
-                     .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? 2 : 0, table));
+                     .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? 2 : 0, table),
+                     .spec = &start[1]);
     }
     TYN_DISPATCH(r, .kernel = COLLECT, .cells = all, .args = args);
     if (p->keep_light) {
@@ -208,6 +231,7 @@ static void record(tyn_recorder *r, const void *data)
         .beta = p->beta,
         .voxel = voxel_of(p),
         .tiles = tiles_of(p),
+        .num_mapped = p->num_mapped,
     };
     TYN_DISPATCH(r, .kernel = SETUP, .cells = {p->num_ordinates, 1, 1}, .args = &args);
     if (small_of(p).x) {

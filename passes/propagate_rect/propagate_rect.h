@@ -25,6 +25,8 @@ typedef struct tyn_propagate_rect_params {
     uint32_t mode;          // TYN_MEDIUM_*
     uint32_t buffer_bytes;  // largest storage buffer; 0 = 128 MiB
     uint32_t keep_light;    // 1: the port "light" exists
+    uint32_t num_mapped;    // ordinates from the first on that are suns with shadow maps
+    uint32_t num_triangles; // of the surfaces; 0: rays are not followed
     float extent[3];        // medium_block.extent, m
     uint32_t size[3];       // medium_block.size
 } tyn_propagate_rect_params;
@@ -34,6 +36,8 @@ typedef struct tyn_propagate_rect_params {
     TYN_MEDIUM(X, PROPAGATE_RECT), \
     X(PROPAGATE_RECT, ORDINATES, ordinates, IN, BUFFER, "struct ordinates_block"), \
     X(PROPAGATE_RECT, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
+    TYN_SHADOWS(X##_OPTIONAL, PROPAGATE_RECT), \
+    TYN_GEOMETRY(X##_OPTIONAL, PROPAGATE_RECT), \
     X(PROPAGATE_RECT, GRIDS, grids, OUT, BUFFER, "struct propagate_grid[]"), \
     X(PROPAGATE_RECT, PLACES, places, OUT, BUFFER, "struct propagate_place[TYN_ORDINATES_MAX], <= 16 KiB"), \
     X(PROPAGATE_RECT, SEEN, seen, OUT, IMAGE_3D, \
@@ -44,6 +48,9 @@ typedef struct tyn_propagate_rect_params {
     X(PROPAGATE_RECT, CELLS, cells, OUT, BUFFER, \
         "vec4[grids][channels][cells^3] of the last batch: optical depths of scattering and absorption over " \
         "the edge of a cell, g, cosine between the light and the direction to the eye (-2: not in the grid)"), \
+    X(PROPAGATE_RECT, LIT, lit, OUT, BUFFER, \
+        "float[grids][cells^3] of the last batch: of light that goes straight on, the share that surfaces let into " \
+        "a cell from the one before it; a number where nothing casts shadows"), \
     X(PROPAGATE_RECT, STATE, state, OUT, BUFFER, \
         "vec4[]: after the last iteration what of L leaves the cell ahead, to each side and behind, and 1 -" \
         " a of it"), \

@@ -5,6 +5,7 @@
 
 // Edge of the workgroups of kernels with one thread a cell.
 #define PROPAGATE_RECT_GROUP 4
+#define PROPAGATE_RECT_LOOKS 4 // at surfaces, along each side of a column of cells
 
 struct propagate_rect_args {
     tyn_uint cells;
@@ -16,9 +17,10 @@ struct propagate_rect_args {
     tyn_uint rate;
     tyn_uint prefilter;
     float beta;
-    float voxel;    // of what the coefficients are read from, shortest edge, m
-    tyn_uint tiles; // a row, in images
+    float voxel;         // of what the coefficients are read from, shortest edge, m
+    tyn_uint tiles;      // a row, in images
+    tyn_uint num_mapped; // grids whose lights have shadow maps, from the first on
 };
-TYN_ASSERT_SIZE(propagate_rect_args, 44);
+TYN_ASSERT_SIZE(propagate_rect_args, 48);
 
 #endif

@@ -7,11 +7,13 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = 0) const uint init = TYN_PROPAGATE_INIT_ENTRY;
+layout(constant_id = 1) const uint shadowed = 0u; // 1: surfaces stop light
 TYN_READ(0, grids, propagate_grid grids[]);
 TYN_READ(1, cells, vec4 cells[]);
 TYN_WRITE(2, state, vec4 out_state[]);
 TYN_WRITE(3, state_other, vec4 out_other[]);
 TYN_WRITE(4, sum, float out_sum[]);
+TYN_READ(5, lit, float lit[]);
 TYN_ARGS(propagate_rect_args args);
 
 // Mean of exp(-tau) over a depth, (1 - e^-tau) / tau.
@@ -28,16 +30,20 @@ void main()
         return;
     }
     float mean_cosine = grids[args.first + stack / args.channels].mean_cosine;
+    float arrives = 1.0; // past surfaces
     float depth = 0.0; // optical, from where the light enters to the face of the cell
     for (int z = 0; z < int(args.cells); z++) {
         uint q = propagate_index(ivec3(column, z), stack, args.cells);
         propagate_cell here = propagate_cell_of(cells[q]);
         float light = 0.0, spread = 1.0 - mean_cosine, seen = 0.0;
+        if (shadowed != 0u) {
+            arrives *= lit[propagate_index(ivec3(column, z), stack / args.channels, args.cells)];
+        }
         if (here.mu >= -1.5) {
             float tau = (init == TYN_PROPAGATE_INIT_ABSORPTION ? 0.0 : here.sigma_s) + here.sigma_a;
-            float beam = exp(-depth) * mean_transmittance(tau);
+            float beam = arrives * exp(-depth) * mean_transmittance(tau);
             if (init == TYN_PROPAGATE_INIT_ENTRY) {
-                light = z == 0 ? 1.0 : 0.0;
+                light = z == 0 ? arrives : 0.0;
             } else if (init == TYN_PROPAGATE_INIT_FIRST_COLLISION) {
                 // The beam is not in the grid: what it scatters is. Its own scattering towards the eye,
                 // and that of half of what scattered in this very cell, is seen from here.

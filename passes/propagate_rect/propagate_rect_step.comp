@@ -6,10 +6,12 @@
 #include "propagate_rect_args.h"
 
 layout(local_size_x = 4, local_size_y = 4, local_size_z = 4) in;
+layout(constant_id = 0) const uint shadowed = 0u; // 1: surfaces stop light
 TYN_READ(0, cells, vec4 cells[]);
 TYN_READ(1, state_other, vec4 in_state[]);
 TYN_WRITE(2, state, vec4 out_state[]);
 TYN_UPDATE(3, sum, float sum[]);
+TYN_READ(4, lit, float lit[]);
 TYN_ARGS(propagate_rect_args args);
 
 // Light that a neighbour sends and its share of the spread. `part`: of propagate_outgoing, which way.
@@ -33,7 +35,11 @@ void main()
     propagate_cell here = propagate_cell_of(cells[q]);
     if (here.mu >= -1.5) {
         // Beyond the grid is vacuum: nothing comes in.
-        vec2 light = from(q, -layer, cell.z > 0, 0) + from(q, layer, cell.z < last, 2) +
+        vec2 ahead = from(q, -layer, cell.z > 0, 0);
+        if (shadowed != 0u) {
+            ahead *= lit[propagate_index(cell, stack / args.channels, args.cells)];
+        }
+        vec2 light = ahead + from(q, layer, cell.z < last, 2) +
                      from(q, -1, cell.x > 0, 1) + from(q, 1, cell.x < last, 1) +
                      from(q, -row, cell.y > 0, 1) + from(q, row, cell.y < last, 1);
         float spread = light.x > 0.0 ? light.y / light.x : 1.0;

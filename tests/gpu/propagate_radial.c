@@ -7,6 +7,7 @@
 #include "passes/propagate_radial/propagate_radial.h"
 #include "passes/propagate_radial/propagate_radial_args.h"
 #include "shaders/common/scene_args.h"
+#include "shaders/light/shadow_args.h"
 #include "vector.h"
 #include <math.h>
 #include <stdlib.h>
@@ -15,11 +16,16 @@
 #define PORT(name) PROPAGATE_RADIAL_PORT_##name
 #define PI 3.14159265358979323846
 
+enum { FACE = 16 }; // texels along a side of a face of the lamp's map, and of the VPL's
+
 typedef struct setup {
     struct medium_block medium;
     const float *density;
     struct camera_block camera;
     struct radial_vpls vpls;
+    const float *atlas,
+        *distances; // of a cube map of the first lamp, of the first VPL's map; or NULL
+    struct shadow_light map;
     tyn_propagate_radial_params params;
 } setup;
 
@@ -34,7 +40,7 @@ typedef struct entry { // of the map: what starts, solid angle
 typedef struct outcome {
     const entry *map;
     const texel *cells, *state;
-    const float *sum;
+    const float *sum, *lit;
     const struct propagate_radial_grid *grids;
     uint32_t n, layers, channels;
 } outcome;
@@ -74,10 +80,19 @@ static outcome run(gpu_test *t, const setup *s)
     if (s->params.max_vpls) {
         refs[PORT(VPLS)] = gpu_buffer(t, "vpls", &s->vpls, sizeof s->vpls);
     }
+    static struct shadow_light maps[TYN_SHADOW_MAX];
+    maps[TYN_SHADOW_LAMP(0)] = s->map;
+    if (s->atlas) {
+        refs[PORT(SHADOW_ATLAS)] = gpu_image(t, "shadow_atlas", TYN_IMAGE_2D,
+                                             (tyn_extent){3 * FACE, 2 * FACE, 1}, 1, s->atlas);
+        refs[PORT(SHADOWS)] = gpu_buffer(t, "shadows", maps, sizeof maps);
+        refs[PORT(VPL_DISTANCES)] = gpu_image(t, "vpl_distances", TYN_IMAGE_2D,
+                                              (tyn_extent){16 * FACE, FACE, 1}, 1, s->distances);
+    }
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_propagate_radial, &s->params, refs), TYN_OK);
-    static const int shown[] = {PORT(GRIDS), PORT(MAP), PORT(CELLS),
-                                PORT(STATE), PORT(SUM), PORT(SEEN)};
-    for (int i = 0; i < 6; i++) {
+    static const int shown[] = {PORT(GRIDS), PORT(MAP),  PORT(CELLS), PORT(STATE),
+                                PORT(SUM),   PORT(SEEN), PORT(LIT)};
+    for (int i = 0; i < 7; i++) {
         tyn_graph_output(t->graph, tyn_pass_propagate_radial.ports[shown[i]].name, refs[shown[i]],
                          true);
     }
@@ -86,6 +101,7 @@ static outcome run(gpu_test *t, const setup *s)
                      gpu_map(t, "cells"),
                      gpu_map(t, "state"),
                      gpu_map(t, "sum"),
+                     gpu_map(t, "lit"),
                      gpu_map(t, "grids"),
                      ((uint32_t)s->params.cells + 1) & ~1u,
                      (uint32_t)s->params.shells + 1,
@@ -247,7 +263,8 @@ static double compare(const setup *s, const outcome *o, uint32_t grid, uint32_t 
                       radial_twin_sums *sums)
 {
     static double start[144], angle[144], tau_s[MAX_CELLS], tau_a[MAX_CELLS], g[MAX_CELLS],
-        mu[MAX_CELLS], light[MAX_CELLS], cosine[MAX_CELLS], seen[MAX_CELLS], found[3][MAX_CELLS];
+        lit[MAX_CELLS], mu[MAX_CELLS], light[MAX_CELLS], cosine[MAX_CELLS], seen[MAX_CELLS],
+        found[3][MAX_CELLS];
     static bool cell[MAX_CELLS];
     static int first[144];
     int layer = (int)(o->n * o->n), total = layer * (int)o->layers;
@@ -266,6 +283,7 @@ static double compare(const setup *s, const outcome *o, uint32_t grid, uint32_t 
         tau_a[q] = c[1];
         g[q] = c[2];
         mu[q] = c[3];
+        lit[q] = s->params.shadowed ? o->lit[grid * (uint32_t)total + (uint32_t)q] : 1;
         first[q % layer] = cell[q] && first[q % layer] < 0 ? q / layer : first[q % layer];
     }
     const struct propagate_radial_grid *own = &o->grids[grid];
@@ -283,6 +301,7 @@ static double compare(const setup *s, const outcome *o, uint32_t grid, uint32_t 
                         cell,
                         first,
                         own->mean_cosine,
+                        lit,
                         scales[s->params.scale],
                         s->params.narrowing != 0,
                         s->params.last_event != 0,
@@ -364,6 +383,67 @@ static void equals_twin(void **state)
                                        : difference < 4e-5);
         assert_true(balance < 1e-12);
     }
+}
+
+// A plate 0.2 m from the first lamp in the direction +x, which one face of its map shows; the second lamp has no map; all
+// around the VPL there are surfaces at 0.3 m.
+static void surfaces_stop_light(void **state)
+{
+    static float density[9 * 12 * 7], atlas[6 * FACE * FACE], distances[16 * FACE * FACE];
+    setup s = blobs(density);
+    for (int q = 0; q < 6 * FACE * FACE; q++) {
+        atlas[q] = q % (3 * FACE) < FACE && q / (3 * FACE) < FACE ? 0.01f / 0.2f : 0;
+    }
+    for (int q = 0; q < 16 * FACE * FACE; q++) {
+        distances[q] = 0.3f;
+    }
+    const float *at = s.params.lamps[0].position;
+    s.map = (struct shadow_light){.rows = {{1, 0, 0, -at[0]}, {0, 1, 0, -at[1]}, {0, 0, 1, -at[2]}},
+                                  .texels = FACE,
+                                  .scale = 0.9f,
+                                  .near = 0.01f,
+                                  .kind = TYN_SHADOW_CUBE};
+    s.atlas = atlas;
+    s.distances = distances;
+    s.params.shadowed = 1;
+    outcome o = run(*state, &s);
+    double off = 0, difference = 0;
+    int dark = 0, partly = 0;
+    enum { LOOKS = PROPAGATE_RADIAL_LOOKS };
+    for (uint32_t grid = 0; grid < 3; grid++) {
+        const struct propagate_radial_grid *own = &o.grids[grid];
+        for (uint32_t place = 0; place < o.n * o.n; place++) {
+            double found = 1;
+            for (uint32_t k = 0; k < o.layers; k++) {
+                double r = k ? 0.5 * (1 + own->growth) * own->inner * pow(own->growth, k - 1.0) : 0;
+                double expected = 0;
+                bool on_edge = false;
+                for (uint32_t look = 0; look < LOOKS * LOOKS; look++) {
+                    double d[3];
+                    direction(2 * (place % o.n + (look % LOOKS + 0.5) / LOOKS) / o.n - 1,
+                              2 * (place / o.n + (look / LOOKS + 0.5) / LOOKS) / o.n - 1, d);
+                    const double beyond = d[0] - fmax(fabs(d[1]), fabs(d[2]));
+                    on_edge = on_edge || fabs(beyond) < 1e-6; // of two faces of the map
+                    bool plate = beyond >= 0;
+                    double reach = grid == 2 ? 0.3 : grid == 0 && plate ? 0.2 / d[0] : INFINITY;
+                    expected += r < reach ? 1.0 / (LOOKS * LOOKS) : 0;
+                }
+                found *= o.lit[(grid * o.layers + k) * o.n * o.n + place];
+                off = on_edge ? off : maximum(off, fabs(found - expected));
+                dark += expected < 0.01;
+                partly += expected > 0.01 && expected < 0.99;
+            }
+        }
+        for (uint32_t c = 0; c < 3; c++) {
+            radial_twin_sums sums;
+            difference = maximum(difference, compare(&s, &o, grid, c, &sums));
+        }
+    }
+    print_message("%d cells dark, %d in part; lit off by %.1e, states by %.1e\n", dark, partly, off,
+                  difference);
+    assert_true(dark > 100 && partly > 10);
+    assert_true(off < 1e-5);
+    assert_true(difference < 4e-5);
 }
 
 // ---- what holds for any light -------------------------------------------------------------------
@@ -532,13 +612,10 @@ static void stress(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(maps),
-        cmocka_unit_test(folds),
-        cmocka_unit_test(equals_twin),
-        cmocka_unit_test(keeps_power),
-        cmocka_unit_test(stays_symmetric),
-        cmocka_unit_test(batches),
-        cmocka_unit_test(stress),
+        cmocka_unit_test(maps),        cmocka_unit_test(folds),
+        cmocka_unit_test(equals_twin), cmocka_unit_test(surfaces_stop_light),
+        cmocka_unit_test(keeps_power), cmocka_unit_test(stays_symmetric),
+        cmocka_unit_test(batches),     cmocka_unit_test(stress),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

@@ -78,12 +78,13 @@ static void scatter(arrival *to, int q, double power, double a)
     double rho2 = t->growth * t->growth,
            inwards = t->scale == RADIAL_TWIN_RECIPROCAL ? 1 / rho2 : 1;
     if (k == 0) {
-        move(to, q, t->layers > 1 ? q + layer : -1, power, a, 1, 1);
+        move(to, q, t->layers > 1 ? q + layer : -1, power, a, 1,
+             t->lit && t->layers > 1 ? t->lit[q + layer] : 1);
         return;
     }
     double wider = t->narrowing ? rho2 : 1;
     move(to, q, k + 1 < t->layers ? q + layer : -1, power * (1 - front), a, 1 / wider,
-         spacing ? t->growth : 1);
+         (spacing ? t->growth : 1) * (t->lit && k + 1 < t->layers ? t->lit[q + layer] : 1));
     if (k == 1) {
         // Through the ball: its near half, then up to its middle is all that a hop does.
         int near = q - layer, far = opposite(n, texel);
@@ -122,6 +123,9 @@ radial_twin_sums radial_twin_run(const radial_twin *t, int iterations, double *l
     for (int q = 0; q < total; q++) {
         bool starts = t->cell[q] && t->first[q % layer] == q / layer;
         light[q] = starts ? t->start[q % layer] : 0;
+        for (int p = q % layer; t->lit && p <= q; p += layer) {
+            light[q] *= t->lit[p];
+        }
         cosine[q] = t->mean_cosine;
         sums.injected += light[q];
         double lobe = fmin(fmax(t->last_event ? t->g[q] * cosine[q] : cosine[q], -0.995), 0.995);

@@ -19,6 +19,8 @@ typedef struct radial_twin {
     const bool *cell;   // in the grid?
     const int *first;   // [n^2] layer in which the light starts
     double mean_cosine; // at the start
+    // [layers][n^2] share of the light from further in that surfaces let into each, or NULL.
+    const double *lit;
     radial_twin_scale scale;
     bool narrowing, last_event, exact_rate;
 } radial_twin;

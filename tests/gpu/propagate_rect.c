@@ -6,6 +6,9 @@
 #include "propagate_twin.h"
 #include "passes/propagate_rect/propagate_rect.h"
 #include "shaders/light/ordinate_args.h"
+#include "shaders/light/shadow_args.h"
+#include "shaders/surfaces/surface_args.h"
+#include "passes/propagate_rect/propagate_rect_args.h"
 #include "shaders/common/scene_args.h"
 #include <math.h>
 #include <stdio.h>
@@ -14,7 +17,7 @@
 
 #define PORT(name) PROPAGATE_RECT_PORT_##name
 
-enum { MAX_SUNS = 2 };
+enum { MAX_SUNS = 2, ATLAS = 64 };
 
 typedef struct setup {
     struct medium_block medium;
@@ -23,6 +26,8 @@ typedef struct setup {
     struct light_block suns[MAX_SUNS];
     struct camera_block camera;
     struct ordinates_block ordinates; // behind the suns
+    const float *atlas;               // of a map of the first sun, ATLAS^2 depths, or NULL
+    struct shadow_light map;
     uint32_t num_suns;
     tyn_propagate_rect_params params;
 } setup;
@@ -37,6 +42,7 @@ typedef struct outcome {
     const texel *state, *cells;
     const float *seen;
     const struct propagate_grid *grids;
+    const float *lit; // per grid, not per stack
 } outcome;
 
 static double sent(const outcome *o, int q)
@@ -92,6 +98,22 @@ static setup unit_cube(const float *density, float sigma_s, float g, const float
     return s;
 }
 
+// A plate at y = 0.7 that ends at x = 0.5 and is wide otherwise; M is the world.
+static const struct surface_block plate = {
+    .to_world = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
+    .from_world = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
+    .lo = {-5, 0.7f, -5},
+    .num_triangles = 2,
+    .hi = {0.5f, 0.7f, 5},
+};
+static const struct surface_vertex plate_corners[] = {
+    {.position = {-5, 0.7f, -5}},
+    {.position = {0.5f, 0.7f, -5}},
+    {.position = {0.5f, 0.7f, 5}},
+    {.position = {-5, 0.7f, 5}},
+};
+static const struct surface_triangle plate_triangles[] = {{0, 1, 2, 0}, {0, 2, 3, 0}};
+
 static outcome run(gpu_test *t, const setup *s)
 {
     const uint32_t *size = s->medium.size;
@@ -120,9 +142,21 @@ static outcome run(gpu_test *t, const setup *s)
         refs[PORT(SIGMA_A)] = gpu_image(t, "sigma_a", TYN_IMAGE_3D, texels, 4, s->sigma_a);
         refs[PORT(G)] = gpu_image(t, "g", TYN_IMAGE_3D, texels, 4, s->g);
     }
+    static struct shadow_light maps[TYN_SHADOW_MAX];
+    maps[0] = s->map;
+    if (s->atlas) {
+        refs[PORT(SHADOW_ATLAS)] =
+            gpu_image(t, "shadow_atlas", TYN_IMAGE_2D, (tyn_extent){ATLAS, ATLAS, 1}, 1, s->atlas);
+        refs[PORT(SHADOWS)] = gpu_buffer(t, "shadows", maps, sizeof maps);
+    }
+    if (params.num_triangles) {
+        refs[PORT(SURFACES)] = gpu_buffer(t, "surfaces", &plate, sizeof plate);
+        refs[PORT(VERTICES)] = gpu_buffer(t, "vertices", plate_corners, sizeof plate_corners);
+        refs[PORT(TRIANGLES)] = gpu_buffer(t, "triangles", plate_triangles, sizeof plate_triangles);
+    }
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_propagate_rect, &params, refs), TYN_OK);
-    static const int ports[] = {PORT(GRIDS), PORT(CELLS), PORT(STATE), PORT(SUM)};
-    for (int i = 0; i < 4; i++) {
+    static const int ports[] = {PORT(GRIDS), PORT(CELLS), PORT(STATE), PORT(SUM), PORT(LIT)};
+    for (int i = 0; i < 5; i++) {
         tyn_graph_output(t->graph, tyn_pass_propagate_rect.ports[ports[i]].name, refs[ports[i]],
                          true);
     }
@@ -132,7 +166,7 @@ static outcome run(gpu_test *t, const setup *s)
     }
     gpu_run(t);
     return (outcome){gpu_map(t, "state"), gpu_map(t, "cells"), gpu_map(t, "sum"),
-                     gpu_map(t, "grids")};
+                     gpu_map(t, "grids"), gpu_map(t, "lit")};
 }
 
 static double total(const outcome *o, int first, int n)
@@ -253,7 +287,7 @@ static void to_m(const struct propagate_grid *grid, const double cell[3], double
 static double compare_channel(const setup *s, const outcome *o, int index, int c)
 {
     static double sigma_s[CELLS], sigma_a[CELLS], g[CELLS], mu[CELLS], light[CELLS], cosine[CELLS],
-        seen[CELLS], found[3][CELLS], spread[CELLS];
+        seen[CELLS], found[3][CELLS], spread[CELLS], lit[CELLS];
     const struct propagate_grid *grid = &o->grids[index];
     const int n[3] = {(int)grid->size[0], (int)grid->size[1], (int)grid->size[2]};
     int total = n[0] * n[1] * n[2], texels[CELLS];
@@ -272,6 +306,7 @@ static double compare_channel(const setup *s, const outcome *o, int index, int c
         sigma_s[q] = o->cells[at].c[0] / grid->cell;
         sigma_a[q] = o->cells[at].c[1] / grid->cell;
         g[q] = o->cells[at].c[2];
+        lit[q] = s->params.num_triangles ? o->lit[((index * N + k) * N + j) * N + i] : 1;
     }
     twin_grid twin = {{n[0], n[1], n[2]},
                       grid->cell,
@@ -282,7 +317,8 @@ static double compare_channel(const setup *s, const outcome *o, int index, int c
                       s->params.rate == TYN_PROPAGATE_RATE_EXACT,
                       s->params.last_event != 0,
                       mu,
-                      grid->mean_cosine};
+                      grid->mean_cosine,
+                      lit};
     twin_propagate(&twin, s->params.iterations, light, cosine, seen);
     for (int q = 0; q < total; q++) {
         found[0][q] = light_of(o, texels[q]);
@@ -312,6 +348,87 @@ static void every_reading(void **state)
         }
         print_message("init %d, rate %d, last event %u: largest difference %.1e\n", s.params.init,
                       s.params.rate, s.params.last_event, difference);
+        assert_true(difference < 1e-4);
+    }
+}
+
+// ---- surfaces -----------------------------------------------------------------------------------
+
+// x of the middle of a texel of the first sun's map.
+static double texel_x(int i)
+{
+    return -1.5 + (i + 0.5) * 4 / ATLAS;
+}
+
+// Does the plate stop light of a sun on its way to a point? In the map, as far as a texel shows it beside the point.
+static bool in_shadow(const struct propagate_grid *grid, const double p[3], bool mapped)
+{
+    double t = (p[1] - 0.7) / grid->direction[1]; // since the plate's plane
+    double x = p[0] - t * grid->direction[0];
+    if (mapped) {
+        x = texel_x((int)floor((p[0] + 1.5) / 4 * ATLAS - 0.5));
+    }
+    return t > 0 && x < 0.5;
+}
+
+// What a plate leaves of the light, by looks at a shadow map for the first sun and by rays for the second; and the
+// propagation with that.
+static void surfaces_stop_light(void **state)
+{
+    static float density[12 * 16 * 10], atlas[ATLAS * ATLAS];
+    setup s = oblique(density);
+    struct light_block down = s.suns[1];
+    s.suns[1] = s.suns[0];
+    s.suns[0] = down;
+    for (int q = 0; q < ATLAS * ATLAS; q++) { // depth (y + 1) / 3
+        atlas[q] = texel_x(q % ATLAS) < 0.5 ? 1.7f / 3 : 0;
+    }
+    s.atlas = atlas;
+    s.map = (struct shadow_light){
+        .rows = {{0.5f, 0, 0, -0.25f}, {0, 0, 0.5f, -0.25f}, {0, 1 / 3.0f, 0, 1 / 3.0f}},
+        .texels = ATLAS,
+        .kind = TYN_SHADOW_SUN};
+    s.params.num_mapped = 1;
+    s.params.num_triangles = 2;
+    for (s.params.init = 0; s.params.init < 4; s.params.init++) {
+        outcome o = run(*state, &s);
+        int partly = 0, dark = 0;
+        double off = 0, difference = 0;
+        for (int sun = 0; sun < MAX_SUNS; sun++) {
+            const struct propagate_grid *grid = &o.grids[sun];
+            for (int column = 0; column < N * N; column++) {
+                const int i = column % N, j = column / N;
+                double found = 1;
+                for (int k = 0; k < N; k++) {
+                    double expected = 1;
+                    for (int look = 0; look < PROPAGATE_RECT_LOOKS * PROPAGATE_RECT_LOOKS; look++) {
+                        double p[3];
+                        to_m(grid,
+                             (double[]){
+                                 i + (look % PROPAGATE_RECT_LOOKS + 0.5) / PROPAGATE_RECT_LOOKS,
+                                 j + (look / PROPAGATE_RECT_LOOKS + 0.5) / PROPAGATE_RECT_LOOKS,
+                                 k + 0.5},
+                             p);
+                        expected -= in_shadow(grid, p, sun == 0)
+                                        ? 1.0 / (PROPAGATE_RECT_LOOKS * PROPAGATE_RECT_LOOKS)
+                                        : 0;
+                    }
+                    found *= o.lit[((sun * N + k) * N + j) * N + i];
+                    if (i < (int)grid->size[0] && j < (int)grid->size[1]) {
+                        off = maximum(off, fabs(found - expected));
+                        partly += expected > 0.01 && expected < 0.99;
+                        dark += expected < 0.01;
+                    }
+                }
+            }
+            for (int c = 0; c < 3; c++) {
+                difference = maximum(difference, compare_channel(&s, &o, sun, c));
+            }
+        }
+        print_message("init %d: %d cells dark, %d in part; lit off by %.1e, states by %.1e\n",
+                      s.params.init, dark, partly, off, difference);
+        assert_true(dark > 100 && partly > 20);
+        assert_true(off < 1e-5);
         assert_true(difference < 1e-4);
     }
 }
@@ -633,6 +750,7 @@ int main(void)
         cmocka_unit_test(injected_power_is_one),
         cmocka_unit_test(extremes),
         cmocka_unit_test(colour_of_the_light),
+        cmocka_unit_test(surfaces_stop_light),
         cmocka_unit_test(ordinates),
         cmocka_unit_test(batches),
         cmocka_unit_test(shrunk_medium),

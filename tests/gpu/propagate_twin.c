@@ -34,17 +34,18 @@ static void start(const twin_grid *t, double *light, double *cosine, double *see
 {
     int layer = t->n[0] * t->n[1];
     for (int column = 0; column < layer; column++) {
-        double depth = 0;
+        double depth = 0, arrives = 1;
         for (int z = 0; z < t->n[2]; z++) {
             int q = z * layer + column;
             double sigma = t->sigma_a[q] + (t->init == TWIN_ABSORPTION ? 0 : t->sigma_s[q]);
-            double beam = exp(-depth) * mean_exp(sigma * t->dx), g = t->g[q];
+            arrives *= t->lit ? t->lit[q] : 1;
+            double beam = arrives * exp(-depth) * mean_exp(sigma * t->dx), g = t->g[q];
             depth += sigma * t->dx;
             cosine[q] = t->mean_cosine;
             seen[q] = 0;
             switch (t->init) {
             case TWIN_ENTRY:
-                light[q] = z == 0;
+                light[q] = z == 0 ? arrives : 0;
                 break;
             case TWIN_FIRST_COLLISION:
                 light[q] = beam * t->sigma_s[q] * t->dx;
@@ -95,6 +96,7 @@ static void gather(const twin_grid *t, int i, int j, int k, const double *light,
             scattering > 0 ? (t->sigma_s[p] * t->g[p] + t->sigma_s[q] * t->g[q]) / scattering : 0;
         double moved = light[p] * exp(-0.5 * (t->sigma_a[p] + t->sigma_a[q]) * t->dx) *
                        fraction(cosine[p], -step[s][2]);
+        moved *= t->lit && step[s][2] < 0 ? t->lit[q] : 1;
         *sum += moved;
         *weighted += moved * cosine[p] * decay(t, g, 0.5 * scattering * t->dx);
     }

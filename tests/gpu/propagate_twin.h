@@ -19,6 +19,8 @@ typedef struct twin_grid {
     bool exact_rate, last_event;
     const double *mu;   // cosine between the light and the direction to the eye
     double mean_cosine; // of the light as it enters; 1 = a beam
+    // Share of the light from the cell before that surfaces let into each, or NULL.
+    const double *lit;
 } twin_grid;
 
 // L, a and the sum of what went to the eye (Eq 8) after some iterations.
