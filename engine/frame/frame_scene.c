@@ -464,12 +464,13 @@ uint32_t tyn_volume_open_faces(const tyn_volume *volume)
 
 float tyn_volume_mean(const tyn_volume *volume)
 {
-    size_t count = (size_t)volume->size[0] * volume->size[1] * volume->size[2];
+    size_t count = (size_t)volume->size[0] * volume->size[1] * volume->size[2], filled = 0;
     double sum = 0;
     for (size_t i = 0; volume->data && i < count; i++) {
         sum += volume->data[i];
+        filled += volume->data[i] > 0;
     }
-    return (float)(sum / (double)count);
+    return filled ? (float)(sum / (double)filled) : 0;
 }
 
 float tyn_volume_typical(const tyn_volume *volume)

@@ -24,6 +24,6 @@ uint32_t tyn_atlas_offset(const tyn_scene *scene, int32_t volume); // first z
 // At which faces of its box a grid is not 0: bit 2 a for the low face of axis a, 2 a + 1 for the high one.
 uint32_t tyn_volume_open_faces(const tyn_volume *volume);
 
-// Mean of a grid's values; 0 if the host brings them.
+// Mean of a grid's values that are above 0; 0 if the host brings them.
 float tyn_volume_mean(const tyn_volume *volume);
 float tyn_volume_typical(const tyn_volume *volume); // its mean weighted with itself

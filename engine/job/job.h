@@ -24,7 +24,7 @@ typedef struct tyn_frame_scene {
     // Of the box, where the density may not be 0: bit 2 a + (1: high face of axis a).
     uint32_t open_faces;
     float typical_density; // mean over the medium's mass, likewise; 0 = not known
-    // Over the box, mode DENSITY: in units of the texture's values; 0 = not known.
+    // Over what is not empty, mode DENSITY: in units of the texture's values; 0 = not known.
     float mean_density;
     bool empty;             // no medium at all, or no coefficient above 0
     uint32_t num_triangles; // of the surfaces; 0: there are none, nor their refs

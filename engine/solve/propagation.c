@@ -21,8 +21,25 @@ static float longest_side(const tyn_job *job)
     return fmaxf(extent[0], fmaxf(extent[1], extent[2]));
 }
 
-// Iterations in the aligned grids before what is left in them counts as isotropic (section 5.4). The
-// largest mean cosine at the start is that of a sun or of the smallest region, next to 1. Light has
+// The largest mean cosine of light as it enters (section 5.4): that of suns and of the sky's regions as the prefilter leaves
+// them. Regions are made on the device: the mean one's counts, 1 - 1 / N of N.
+static float largest_mean_cosine(const propagated *p, const tyn_job *job)
+{
+    const tyn_lights *lights = &job->frame->lights;
+    const float count = (float)p->sources->sky.count;
+    float most = p->sources->sky.count > lights->num_suns ? 1.0f - 1.0f / count : 0.0f;
+    for (uint32_t i = 0; i < lights->num_suns; i++) {
+        most = fmaxf(most, lights->suns[i].mean_cosine);
+    }
+    // The heuristic has the region's share of the sphere, which of a cap is 1 - mean cosine, at most 1 / N.
+    const float share = fminf(1.0f - most, 1.0f / count);
+    return p->grids.prefilter == TYN_PROPAGATE_PREFILTER_OFF ? 1.0f
+           : p->grids.prefilter == TYN_PROPAGATE_PREFILTER_HEURISTIC
+               ? powf(1.0f - share, p->grids.beta)
+               : most;
+}
+
+// Iterations in the aligned grids before what is left in them counts as isotropic (section 5.4, Eq 10). Light has
 // to cross the grid, so there are as many iterations as cells at least; no more are known to be needed
 // where the mean of the medium is not known.
 static int32_t iterations_before_residuum(const propagated *p, const tyn_job *job)
@@ -37,8 +54,9 @@ static int32_t iterations_before_residuum(const propagated *p, const tyn_job *jo
         g = fmaxf(g, (float)tyn_phase_mean_cosine(m->phase[c]));
     }
     float hop = longest_side(job) / (float)p->grids.cells;
-    uint32_t hops =
-        sigma_s > 0.0f ? tyn_residuum_after(1.0f, g, sigma_s, hop, p->residuum.epsilon) : 0;
+    uint32_t hops = sigma_s > 0.0f ? tyn_residuum_after(largest_mean_cosine(p, job), g, sigma_s,
+                                                        hop, p->residuum.epsilon)
+                                   : 0;
     return (int32_t)fminf(fmaxf((float)hops, (float)p->grids.cells), 256.0f);
 }
 
