@@ -1,7 +1,6 @@
 // cells.c -- the lattice: its cells, and the light of all sources that arrives there unscattered.
 #include "light/sources.h"
 #include "light/walls.h"
-#include "passes/lattice/lattice.h"
 #include <tyndall/registry.h>
 #include <math.h>
 #include <string.h>
@@ -161,25 +160,25 @@ static void add_lamps(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 }
 
 // A lattice may be as long as a row of clouds, but not have more cells than a cube of 64.
-static void warn_of_cells(const tyn_job *job, const tyn_sources *s, int32_t asked)
+static void warn_of_cells(const tyn_job *job, const tyn_sources *s, int32_t asked,
+                          const char *setting)
 {
     const tyn_extent n = tyn_lattice_dims(s->lattice.shape.extent, asked);
     if ((uint64_t)n.x * n.y * n.z > TYN_LATTICE_MAX_ALL) {
-        tyn_job_warn(job, "lattice.cells is %d, which makes more than %d cells; %d are used",
+        tyn_job_warn(job, "%s is %d, which makes more than %d cells; %d are used", setting,
                      (int)asked, TYN_LATTICE_MAX_ALL, (int)s->lattice.shape.cells);
     }
 }
 
-void tyn_add_cells(tyn_graph *g, const tyn_job *job, tyn_sources *s)
+void tyn_add_cells(tyn_graph *g, const tyn_job *job, int32_t cells, const char *setting,
+                   tyn_sources *s)
 {
     const tyn_frame_scene *frame = job->frame;
     tyn_lattice_shape *shape = &s->lattice.shape;
-    tyn_lattice_params lattice;
-    tyn_settings_params(job->settings, &tyn_pass_lattice, &lattice);
     memcpy(shape->extent, frame->medium.extent, sizeof shape->extent);
     memcpy(shape->repeat, frame->medium.repeat, sizeof shape->repeat);
-    shape->cells = tyn_lattice_fit(shape->extent, shape->repeat, lattice.shape.cells);
-    warn_of_cells(job, s, lattice.shape.cells);
+    shape->cells = tyn_lattice_fit(shape->extent, shape->repeat, cells);
+    warn_of_cells(job, s, cells, setting);
     choose_channels(s, job->scene, frame);
     float longest = fmaxf(shape->extent[0], fmaxf(shape->extent[1], shape->extent[2]));
     s->lattice.side = longest / (float)shape->cells;

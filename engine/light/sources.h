@@ -72,8 +72,10 @@ void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s);
 // has a way for light that is equal from all sides.
 void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_split,
                  tyn_sources *s);
-// The medium on the lattice, walls, and the unscattered light of all sources above.
-void tyn_add_cells(tyn_graph *g, const tyn_job *job, tyn_sources *s);
+// The medium on the lattice, walls, and the unscattered light of all sources above. `cells` along the longest side, as
+// the user's `setting` says.
+void tyn_add_cells(tyn_graph *g, const tyn_job *job, int32_t cells, const char *setting,
+                   tyn_sources *s);
 
 // Cells of the lattice within which all lamps are followed by the march: beams of spots farther, until they are as
 // wide.

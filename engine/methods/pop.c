@@ -205,7 +205,9 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         tyn_add_glow(g, job, &view);
     }
     if (solve || job->outputs & field_outputs) {
-        tyn_add_cells(g, job, &s);
+        tyn_lattice_params lattice;
+        tyn_settings_params(job->settings, &tyn_pass_lattice, &lattice);
+        tyn_add_cells(g, job, lattice.shape.cells, "lattice.cells", &s);
         tyn_limits_warn(job, s.lattice.side);
         tyn_solve_lattice(g, job, &s, &field);
     }

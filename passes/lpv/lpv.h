@@ -1,0 +1,44 @@
+// lpv.h -- light that has scattered: light propagation volumes (Billeter et al. 2012).
+//
+// A lattice of cubic cells holds the power that travels in each of them, in two bands of spherical harmonics. In each
+// iteration it goes on to the 26 neighbours; what passes through a cell in all of them is its fluence. Coefficients are
+// those of delta scaling, as everywhere on the lattice (docs/lpv.md).
+#pragma once
+#include <tyndall/pass.h>
+#include "scene/lattice_shape.h"
+#include "shaders/common/bundles.h"
+
+typedef enum tyn_lpv_inject { TYN_LPV_INJECT_SHADOW_MAP, TYN_LPV_INJECT_CELLS } tyn_lpv_inject;
+
+typedef struct tyn_lpv_params {
+    tyn_lattice_shape shape; // shape.cells is the user's "lpv.cells"
+    int32_t iterations;      // 1..512
+    int32_t extinction;      // LPV_EXTINCTION_*
+    int32_t blockers;        // LPV_BLOCKERS_*
+    float own;               // "lpv.own", 0..1
+    uint32_t reflect;        // for the method: 1 = add lpv_reflect
+    uint32_t balance;        // 1: leaks and wall_power are summed
+} tyn_lpv_params;
+
+// clang-format off
+#define LPV_PORTS(X) \
+    X(LPV, CELLS, cells, IN, IMAGE_3D, "of lattice_cells"), \
+    X(LPV, SOURCE, source, OPTIONAL, IMAGE_3D, "of the last of lattice_source, _ordinates, _lamps"), \
+    X(LPV, REFLECTED, reflected, OPTIONAL, BUFFER, "of lpv_reflect"), \
+    X(LPV, WALL_LINKS, wall_links, OPTIONAL, BUFFER, "uint[cell]: which of its 26 links are cut"), \
+    X(LPV, BLOCKING, blocking, OPTIONAL, BUFFER, "of lpv_blockers"), \
+    X(LPV, ENVIRONMENT, environment, OPTIONAL, BUFFER, \
+        "struct env_block: its mean without suns enters at the box"), \
+    X(LPV, MOMENTS, moments, OUT, IMAGE_3D, \
+        "stacked: fluence phi and net flux (x, y, z) of the light that has scattered, was reflected or emitted, or came " \
+        "from the environment, W/m^2", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(LPV, COUNTERS, counters, OUT, BUFFER, "struct counters_block"), \
+    X(LPV, LEAKS, leaks, OUT, BUFFER, "float[channel][cell], for a balance: net power from a cell out of the box, W"), \
+    X(LPV, WALL_POWER, wall_power, OUT, BUFFER, \
+        "vec2[channel][cell], for a balance: power that surfaces absorb of what goes to a cell, and 0, W"), \
+    X(LPV, SENT_0, sent_0, SCRATCH, BUFFER, "vec4[shell][channel][cell]: what a cell sends, W"), \
+    X(LPV, SENT_1, sent_1, SCRATCH, BUFFER, "the same, of the next iteration"), \
+    X(LPV, SUM, sum, SCRATCH, BUFFER, "vec4[channel][cell]: power and its first moment in all iterations, W")
+// clang-format on
+enum { LPV_PORTS(TYN_PORT_ENUM), LPV_NUM_PORTS };
+extern const tyn_pass_desc tyn_pass_lpv;
