@@ -54,7 +54,8 @@ static void record(tyn_recorder *r, const void *params)
         .own = p->own,
     };
     const uint32_t extinction = (uint32_t)p->extinction;
-    const uint32_t start[2] = {extinction, tyn_rec_has(r, LPV_PORT_REFLECTED)};
+    const uint32_t start[3] = {extinction, tyn_rec_has(r, LPV_PORT_REFLECTED),
+                               tyn_rec_has(r, LPV_PORT_SCATTERED)};
     const uint32_t blockers = tyn_rec_has(r, LPV_PORT_WALL_LINKS) ? LPV_BLOCKERS_EXACT
                               : tyn_rec_has(r, LPV_PORT_BLOCKING) ? LPV_BLOCKERS_FUZZY
                                                                   : LPV_BLOCKERS_NONE;
@@ -66,9 +67,12 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_fill(r, LPV_PORT_WALL_POWER, 0);
     TYN_DISPATCH(r, .kernel = KERNEL_START, .cells = texels, .args = &args, .spec = start);
     for (int32_t i = 0; i < p->iterations; i++) {
-        const uint32_t spec[5] = {
-            extinction, blockers, p->balance ? 1 + (blockers != LPV_BLOCKERS_NONE) : 0,
-            i == 0 && tyn_rec_has(r, LPV_PORT_ENVIRONMENT), i + 1 == p->iterations};
+        const uint32_t spec[6] = {extinction,
+                                  blockers,
+                                  p->balance ? 1 + (blockers != LPV_BLOCKERS_NONE) : 0,
+                                  i == 0 && tyn_rec_has(r, LPV_PORT_ENVIRONMENT),
+                                  i + 1 == p->iterations,
+                                  p->bounces == TYN_LPV_BOUNCES_ALL};
         TYN_DISPATCH(r, .kernel = KERNEL_STEP, .cells = texels, .args = &args, .spec = spec,
                      .ports =
                          i % 2 ? tyn_ports_exchanged(&kernels[KERNEL_STEP], other_way, 2, exchanged)
@@ -84,6 +88,9 @@ static void record(tyn_recorder *r, const void *params)
 static const char *const extinctions[] = {"paper", "exact"};
 static const char *const blocker_names[] = {"none", "exact", "fuzzy"};
 
+static const char *const bounce_names[] = {"one", "all"};
+static const char *const injections[] = {"cells", "shadow_map"};
+
 static const tyn_param param_table[] = {
     {"cells", TYN_PARAM_INT, offsetof(tyn_lpv_params, shape.cells), 32, 4, TYN_LATTICE_MAX_CELLS,
      "cells", "lattice cells along the longest side of the medium; 262144 in all", NULL},
@@ -98,6 +105,14 @@ static const tyn_param param_table[] = {
      "what stops light at surfaces: none; exact = links that triangles cut; fuzzy = six depth maps "
      "in spherical harmonics, as published",
      blocker_names},
+    {"bounces", TYN_PARAM_ENUM, offsetof(tyn_lpv_params, bounces), TYN_LPV_BOUNCES_ONE, 0, 1, "",
+     "reflections at surfaces: one, as published; all = what exact blockers stop is reflected too",
+     bounce_names},
+    {"inject", TYN_PARAM_ENUM, offsetof(tyn_lpv_params, inject), TYN_LPV_INJECT_CELLS, 0, 1, "",
+     "light that scatters first: cells = integrated over each cell; shadow_map = samples along "
+     "rays "
+     "of suns and lamps, as published",
+     injections},
     {"own", TYN_PARAM_FLOAT, offsetof(tyn_lpv_params, own), 0, 0, 1, "",
      "share of what scatters or is emitted in a cell that counts there before it moves on; 0 as "
      "published, 0.5 the trapezoidal rule",

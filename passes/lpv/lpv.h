@@ -8,13 +8,17 @@
 #include "scene/lattice_shape.h"
 #include "shaders/common/bundles.h"
 
-typedef enum tyn_lpv_inject { TYN_LPV_INJECT_SHADOW_MAP, TYN_LPV_INJECT_CELLS } tyn_lpv_inject;
+typedef enum tyn_lpv_inject { TYN_LPV_INJECT_CELLS, TYN_LPV_INJECT_SHADOW_MAP } tyn_lpv_inject;
+
+typedef enum tyn_lpv_bounces { TYN_LPV_BOUNCES_ONE, TYN_LPV_BOUNCES_ALL } tyn_lpv_bounces;
 
 typedef struct tyn_lpv_params {
     tyn_lattice_shape shape; // shape.cells is the user's "lpv.cells"
     int32_t iterations;      // 1..512
     int32_t extinction;      // LPV_EXTINCTION_*
     int32_t blockers;        // LPV_BLOCKERS_*
+    int32_t inject;          // TYN_LPV_INJECT_*, for the method
+    int32_t bounces;         // TYN_LPV_BOUNCES_*
     float own;               // "lpv.own", 0..1
     uint32_t reflect;        // for the method: 1 = add lpv_reflect
     uint32_t balance;        // 1: leaks and wall_power are summed
@@ -25,7 +29,8 @@ typedef struct tyn_lpv_params {
     X(LPV, CELLS, cells, IN, IMAGE_3D, "of lattice_cells"), \
     X(LPV, SOURCE, source, OPTIONAL, IMAGE_3D, "of the last of lattice_source, _ordinates, _lamps"), \
     X(LPV, REFLECTED, reflected, OPTIONAL, BUFFER, "of lpv_reflect"), \
-    X(LPV, WALL_LINKS, wall_links, OPTIONAL, BUFFER, "uint[cell]: which of its 26 links are cut"), \
+    X(LPV, SCATTERED, scattered, OPTIONAL, BUFFER, "of lpv_scatter, in place of `source`"), \
+    TYN_WALLS(X##_OPTIONAL, LPV), \
     X(LPV, BLOCKING, blocking, OPTIONAL, BUFFER, "of lpv_blockers"), \
     X(LPV, ENVIRONMENT, environment, OPTIONAL, BUFFER, \
         "struct env_block: its mean without suns enters at the box"), \

@@ -13,11 +13,13 @@ TYN_ARGS(lpv_args args);
 layout(binding = 0) uniform sampler3D cells;
 layout(binding = 1) uniform sampler3D source;
 TYN_READ(2, reflected, float reflected_unit; uint reflected_pad[3]; ivec4 reflected[]);
-TYN_WRITE(3, sent_0, vec4 sent[]);
-TYN_WRITE(4, sum, vec4 sum[]);
-TYN_UPDATE(5, counters, counters_block counters);
+TYN_READ(3, scattered, float scattered_unit; uint scattered_pad[3]; ivec4 scattered[]);
+TYN_WRITE(4, sent_0, vec4 sent[]);
+TYN_WRITE(5, sum, vec4 sum[]);
+TYN_UPDATE(6, counters, counters_block counters);
 layout(constant_id = 0) const uint extinction = 0;
 layout(constant_id = 1) const uint reflects = 0;
+layout(constant_id = 2) const uint scatters = 0; // in place of `source`
 
 void main()
 {
@@ -31,6 +33,7 @@ void main()
     float volume = args.dx * args.dx * args.dx;
     vec4 cell = texelFetch(cells, ivec3(texel), 0), light = lattice_fetch_source(source, cells, ivec3(texel));
     vec4 once = volume * (cell.x * vec4(light.x, cell.z * light.yzw) + vec4(LATTICE_4PI * cell.w, 0.0, 0.0, 0.0));
+    once += scatters == 1u ? scattered_unit * vec4(scattered[i]) : vec4(0.0);
     vec4 mirrored = reflects == 1u ? reflected_unit * vec4(reflected[i]) : vec4(0.0);
     if (any(isnan(once)) || any(isinf(once))) {
         once = vec4(0.0);

@@ -26,6 +26,8 @@ layout(constant_id = 1) const uint blockers = 0;
 layout(constant_id = 2) const uint ledger = 0;      // 1: leaks are summed; 2: and what walls absorb
 layout(constant_id = 3) const uint surroundings = 0; // 1: light of the environment enters in this iteration
 layout(constant_id = 4) const uint last = 0;
+layout(constant_id = 5) const uint reflects = 0; // 1: walls that cut links send light back
+layout(binding = 11) uniform samplerBuffer wall_cells_texels; // four to a struct wall_cell; the last is the albedo
 
 void main()
 {
@@ -44,6 +46,8 @@ void main()
         float radiance = lattice_channel(environment.sky, args.channels, ch, args.tint);
         outside = LATTICE_4PI * args.dx * args.dx * radiance / LPV_DISTANCE;
     }
+    bool mirrors = reflects == 1u && blockers == LPV_BLOCKERS_EXACT;
+    float albedo = mirrors && links != 0u ? texelFetch(wall_cells_texels, 4 * here + 3)[ch] : 0.0;
     vec4 arrived = vec4(0.0);
     float left = 0.0, absorbed = 0.0;
     [[unroll]] for (uint link = 0u; link < LPV_LINKS; link++) {
@@ -63,6 +67,12 @@ void main()
             open = 1.0 - float(word >> 8u * (link % 4u) & 255u) / 255.0;
         }
         arrived += lpv_deposit(open * power, link, vec3(step));
+        if (mirrors && open == 0.0) { // what goes that way comes back, with a cosine lobe
+            vec4 own = texelFetch(sent_0_texels, shell + first + here);
+            float back = albedo * lpv_along(own, towards, -vec3(step));
+            arrived += back * vec4(1.0, 2.0 / 3.0 * normalize(vec3(step)));
+            absorbed -= back;
+        }
         if (ledger > 0u) {
             absorbed += (1.0 - open) * power;
             if (!within) { // the same link the other way

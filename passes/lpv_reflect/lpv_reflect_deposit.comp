@@ -12,6 +12,8 @@
 #include "shaders/medium/medium.glsl"
 #include "shaders/beams/beam.glsl"
 #include "shaders/beams/radial.glsl"
+#include "shaders/beams/lamp_depth.glsl"
+#include "shaders/light/deposit.glsl"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/lattice/lattice_sweep.glsl"
 
@@ -26,9 +28,6 @@ TYN_UPDATE(18, reflected, float reflected_unit; uint reflected_pad[3]; int refle
 TYN_UPDATE(19, counters, counters_block counters);
 
 shared float sums[LPV_REFLECT_LANES];
-shared uint grid_index;
-
-const float WHOLE = 1073741824.0; // 2^30: roundings of a million texels on top do not fill 31 bits
 
 // Of all texels, W: the same in every workgroup.
 float bound_of_all()
@@ -49,32 +48,6 @@ float bound_of_all()
     return sums[0];
 }
 
-// The grid of a lamp: they are in another order than its map. The same in all threads.
-uint grid_of(uint light)
-{
-    uint lane = gl_LocalInvocationIndex; // as many as lamps
-    uint num_lamps = texelFetch(radials_texels, 0).y;
-    if (lane < num_lamps && radial_grid_of(lane).light.shadow == light) {
-        grid_index = lane;
-    }
-    barrier();
-    return grid_index;
-}
-
-// What the medium leaves of the light on its way to p; light scattered forward counts as not scattered.
-vec3 transmittance(uint light, uint grid_at, vec3 p)
-{
-    beam_tau tau;
-    if (light < TYN_SHADOW_SUNS) {
-        tau = beam_depth(light, p);
-    } else {
-        radial_grid grid = radial_grid_of(grid_at);
-        vec3 away = clamp(p, vec3(0.0), medium.extent) - grid.light.position;
-        tau = radial_tau(radial_place_in(grid, away, length(away)));
-    }
-    return exp(-(tau.a + tau.p));
-}
-
 // The cell in front of a surface: half an edge off it, or more, until its centre is on that side.
 ivec3 cell_before(lattice_box box, vec3 p, vec3 n)
 {
@@ -89,12 +62,12 @@ ivec3 cell_before(lattice_box box, vec3 p, vec3 n)
 
 void main()
 {
-    float all = bound_of_all(), unit = all > 0.0 ? all / WHOLE : 1.0;
+    float all = bound_of_all(), unit = all > 0.0 ? all / DEPOSIT_WHOLE : 1.0;
     if (gl_LocalInvocationIndex == 0u && gl_WorkGroupID == uvec3(0)) {
         reflected_unit = unit; // of the same number each time
     }
     rsm_tile tile = tiles[args.first + gl_WorkGroupID.z];
-    uint grid = tile.light < TYN_SHADOW_SUNS ? 0u : grid_of(tile.light);
+    uint grid = lamp_grid_of(tile.light);
     uvec2 place = gl_GlobalInvocationID.xy;
     if (any(greaterThanEqual(place, uvec2(tile.texels)))) {
         return;
@@ -110,7 +83,7 @@ void main()
     if (any(lessThan(c, ivec3(0))) || any(greaterThanEqual(c, box.dims))) {
         return;
     }
-    flux *= transmittance(tile.light, grid, p);
+    flux *= lamp_transmittance(tile.light, grid, p);
     if (any(isnan(flux)) || any(isinf(flux))) {
         atomicAdd(counters.non_finite, 1u);
         return;
@@ -118,12 +91,8 @@ void main()
     // A cosine lobe's first moment is 2/3 of its power along the normal.
     vec4 lobe = vec4(1.0, 2.0 / 3.0 * n) / unit;
     for (uint ch = 0u; ch < args.channels; ch++) {
-        ivec4 q = ivec4(round(lattice_channel(flux, args.channels, ch, args.tint) * lobe));
         uint at = 4u * (ch * args.dims.x * args.dims.y * args.dims.z + lattice_index(box, c));
-        for (uint k = 0u; k < 4u; k++) {
-            if (q[k] != 0) {
-                atomicAdd(reflected[at + k], q[k]);
-            }
-        }
+        vec4 power = lattice_channel(flux, args.channels, ch, args.tint) * lobe;
+        DEPOSIT_ADD(reflected, at, power)
     }
 }
