@@ -12,12 +12,12 @@
 
 #define LPV_LINKS 26 // numbered as walls_step does
 #define LPV_SHELLS 3 // across faces, corners, edges
-#define LPV_GAMMA_FACE 0.045798717
-#define LPV_GAMMA_CORNER 0.035193769
-#define LPV_GAMMA_EDGE 0.036971462
-#define LPV_COSINE_FACE 0.953198459 // length of m_j
-#define LPV_COSINE_CORNER 0.960971334
-#define LPV_COSINE_EDGE 0.960542804
+#define LPV_GAMMA_FACE 0.0457778912
+#define LPV_GAMMA_CORNER 0.0351956398
+#define LPV_GAMMA_EDGE 0.0369806279
+#define LPV_COSINE_FACE 0.9532187324 // length of m_j
+#define LPV_COSINE_CORNER 0.9609674044
+#define LPV_COSINE_EDGE 0.9605306704
 // From centre to centre on average, edges of a cell: (6 + 12 sqrt 2 + 8 sqrt 3) / 26.
 #define LPV_DISTANCE 1.416422
 

@@ -9,7 +9,8 @@ TYN_ARGS(lpv_blockers_args args);
 TYN_READ(0, potential, ivec4 potential[]);
 TYN_WRITE(1, blocking, uint blocking[]);
 
-// The shifted cells around the middle of the link from c along `way`: at its ends in the axes it steps in, else both.
+// The shifted cells around the middle of the link from c along `way`, where light comes from: at its end in the axes it steps
+// along, on both sides in the others.
 float blocked(ivec3 c, ivec3 way)
 {
     ivec3 dims = ivec3(args.dims) + 1, lo = c + max(way, ivec3(0)), more = 1 - abs(way);
@@ -23,8 +24,9 @@ float blocked(ivec3 c, ivec3 way)
         }
     }
     sum /= float((1 + more.x) * (1 + more.y) * (1 + more.z)) * LPV_BLOCKERS_UNIT;
-    // Light comes against `way`, to surfaces that face it: a link's own direction stands for its transfer function.
-    return clamp(sum.x + dot(sum.yzw, normalize(-vec3(way))), 0.0, 1.0);
+    // Light comes from where `way` points to, and meets surfaces that face there. A link's own direction stands for its
+    // transfer function.
+    return clamp(sum.x + dot(sum.yzw, normalize(vec3(way))), 0.0, 1.0);
 }
 
 void main()
@@ -37,7 +39,6 @@ void main()
     for (uint word = 0u; word < 7u; word++) {
         uint bytes = 0u;
         for (uint k = 0u; k < 4u && 4u * word + k < 26u; k++) {
-            // Light of link 4 word + k goes along its step; it comes from the other side, and meets surfaces facing there.
             bytes |= uint(round(255.0 * blocked(c, -walls_step(4u * word + k)))) << 8u * k;
         }
         blocking[at + word] = bytes;
