@@ -114,7 +114,9 @@ void tyn_solve_lpv(tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_f
     } else if (params.blockers == LPV_BLOCKERS_FUZZY && s->walls.cut.wall_links.resource) {
         refs[LPV_PORT_BLOCKING] = add_blockers(g, job, s);
     }
-    if (params.inject == TYN_LPV_INJECT_SHADOW_MAP && s->sky.ordinates.resource) {
+    if (params.inject == TYN_LPV_INJECT_NONE) {
+        refs[LPV_PORT_SOURCE] = (tyn_ref){0};
+    } else if (params.inject == TYN_LPV_INJECT_SHADOW_MAP && s->sky.ordinates.resource) {
         tyn_job_warn(job, "lpv.inject is shadow_map, which knows suns and lamps only: the "
                           "environment's light is integrated over cells");
     } else if (params.inject == TYN_LPV_INJECT_SHADOW_MAP) {

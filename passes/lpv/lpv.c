@@ -89,7 +89,7 @@ static const char *const extinctions[] = {"paper", "exact"};
 static const char *const blocker_names[] = {"none", "exact", "fuzzy"};
 
 static const char *const bounce_names[] = {"one", "all"};
-static const char *const injections[] = {"cells", "shadow_map"};
+static const char *const injections[] = {"cells", "shadow_map", "none"};
 
 static const tyn_param param_table[] = {
     {"cells", TYN_PARAM_INT, offsetof(tyn_lpv_params, shape.cells), 32, 4, TYN_LATTICE_MAX_CELLS,
@@ -108,7 +108,7 @@ static const tyn_param param_table[] = {
     {"bounces", TYN_PARAM_ENUM, offsetof(tyn_lpv_params, bounces), TYN_LPV_BOUNCES_ONE, 0, 1, "",
      "reflections at surfaces: one, as published; all = what exact blockers stop is reflected too",
      bounce_names},
-    {"inject", TYN_PARAM_ENUM, offsetof(tyn_lpv_params, inject), TYN_LPV_INJECT_CELLS, 0, 1, "",
+    {"inject", TYN_PARAM_ENUM, offsetof(tyn_lpv_params, inject), TYN_LPV_INJECT_CELLS, 0, 2, "",
      "light that scatters first: cells = integrated over each cell; shadow_map = samples along "
      "rays "
      "of suns and lamps, as published",

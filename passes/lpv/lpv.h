@@ -8,7 +8,11 @@
 #include "scene/lattice_shape.h"
 #include "shaders/common/bundles.h"
 
-typedef enum tyn_lpv_inject { TYN_LPV_INJECT_CELLS, TYN_LPV_INJECT_SHADOW_MAP } tyn_lpv_inject;
+typedef enum tyn_lpv_inject {
+    TYN_LPV_INJECT_CELLS,
+    TYN_LPV_INJECT_SHADOW_MAP,
+    TYN_LPV_INJECT_NONE
+} tyn_lpv_inject;
 
 typedef enum tyn_lpv_bounces { TYN_LPV_BOUNCES_ONE, TYN_LPV_BOUNCES_ALL } tyn_lpv_bounces;
 

@@ -24,9 +24,9 @@ float blocked(ivec3 c, ivec3 way)
         }
     }
     sum /= float((1 + more.x) * (1 + more.y) * (1 + more.z)) * LPV_BLOCKERS_UNIT;
-    // Light comes from where `way` points to, and meets surfaces that face there. A link's own direction stands for its
-    // transfer function.
-    return clamp(sum.x + dot(sum.yzw, normalize(vec3(way))), 0.0, 1.0);
+    // Surfaces are seen from the middle of the lattice alone, and block light to either side of them. A link's own direction
+    // stands for its transfer function.
+    return clamp(sum.x + abs(dot(sum.yzw, normalize(vec3(way)))), 0.0, 1.0);
 }
 
 void main()
