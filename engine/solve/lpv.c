@@ -95,11 +95,25 @@ static tyn_ref add_blockers(tyn_graph *g, const tyn_job *job, const tyn_sources 
     return own[LPV_BLOCKERS_PORT_BLOCKING];
 }
 
+// Light that has not got anywhere after the last iteration is not in the field.
+static void warn_of_iterations(const tyn_job *job, const tyn_lpv_params *params)
+{
+    const tyn_extent n = tyn_lattice_dims(params->shape.extent, params->shape.cells);
+    const uint32_t most = n.x > n.y ? n.x : n.y, longest = most > n.z ? most : n.z;
+    if ((uint32_t)params->iterations < 2 * longest) {
+        tyn_job_warn(job,
+                     "accuracy: light moves on by a cell an iteration: it gets %d of %u cells far "
+                     "(-D lpv.iterations)",
+                     (int)params->iterations, longest);
+    }
+}
+
 void tyn_solve_lpv(tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_field *field)
 {
     tyn_lpv_params params;
     tyn_settings_params(job->settings, &tyn_pass_lpv, &params);
     params.shape = s->lattice.shape;
+    warn_of_iterations(job, &params);
     params.balance = (job->outputs & TYN_OUTPUT_BALANCE) != 0;
     tyn_ref refs[TYN_MAX_PORTS] = {
         [LPV_PORT_CELLS] = s->lattice.cells,
