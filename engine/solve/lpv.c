@@ -1,6 +1,5 @@
 // lpv.c -- see lpv.h.
 #include "solve/lpv.h"
-#include "passes/lpv/lpv_args.h"
 #include <tyndall/registry.h>
 #include <string.h>
 
@@ -123,9 +122,9 @@ void tyn_solve_lpv(tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_f
     if (params.reflect) {
         refs[LPV_PORT_REFLECTED] = add_reflected(g, job, s);
     }
-    if (params.blockers == LPV_BLOCKERS_EXACT) {
+    if (params.blockers == TYN_LPV_BLOCKERS_EXACT) {
         tyn_connect(refs, LPV_PORT_WALL_LINKS, s->walls.cut);
-    } else if (params.blockers == LPV_BLOCKERS_FUZZY && s->walls.cut.wall_links.resource) {
+    } else if (params.blockers == TYN_LPV_BLOCKERS_FUZZY && s->walls.cut.wall_links.resource) {
         refs[LPV_PORT_BLOCKING] = add_blockers(g, job, s);
     }
     if (params.inject == TYN_LPV_INJECT_NONE) {

@@ -15,6 +15,10 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_STEP] = TYN_KERNEL(lpv_step),
 };
 
+_Static_assert((int)TYN_LPV_BLOCKERS_EXACT == LPV_BLOCKERS_EXACT &&
+                   (int)TYN_LPV_BLOCKERS_FUZZY == LPV_BLOCKERS_FUZZY,
+               "the method and the kernels have the same numbers");
+
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_lpv_params *p = params;

@@ -14,13 +14,19 @@ typedef enum tyn_lpv_inject {
     TYN_LPV_INJECT_NONE
 } tyn_lpv_inject;
 
+typedef enum tyn_lpv_blockers {
+    TYN_LPV_BLOCKERS_NONE,
+    TYN_LPV_BLOCKERS_EXACT,
+    TYN_LPV_BLOCKERS_FUZZY
+} tyn_lpv_blockers;
+
 typedef enum tyn_lpv_bounces { TYN_LPV_BOUNCES_ONE, TYN_LPV_BOUNCES_ALL } tyn_lpv_bounces;
 
 typedef struct tyn_lpv_params {
     tyn_lattice_shape shape; // shape.cells is the user's "lpv.cells"
     int32_t iterations;      // 1..512
     int32_t extinction;      // LPV_EXTINCTION_*
-    int32_t blockers;        // LPV_BLOCKERS_*
+    int32_t blockers;        // TYN_LPV_BLOCKERS_*
     int32_t inject;          // TYN_LPV_INJECT_*, for the method
     int32_t bounces;         // TYN_LPV_BOUNCES_*
     float own;               // "lpv.own", 0..1

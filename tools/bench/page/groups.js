@@ -12,7 +12,7 @@ const SHAPES = [
     "M-5,-4.6H5L0,0L5,4.6H-5L0,0Z",                                    // hourglass
 ];
 const DASHES = ["", "8 3", "2 3", "10 3 2 3", "5 3", "1 4", "12 4", "6 2 2 2 2 2"];
-const USUAL = ["pop", "path", "path, plain", "pop-paper", "single", "cycles"];
+const USUAL = ["pop", "path", "path, plain", "pop-paper", "lpv", "single", "cycles"];
 
 // Every group of a report -> {name, index, shape, dash, color}; the usual ones look the same in every report.
 function groupStyles(report) {
