@@ -122,6 +122,18 @@ static void add_composite(tyn_graph *g, const tyn_job *job, tyn_ref radiance, ty
     tyn_job_output(g, job, TYN_OUTPUT_COMPOSITE, refs[COMPOSITE_PORT_COLOR]);
 }
 
+void tyn_add_results(tyn_graph *g, const tyn_job *job, tyn_ref radiance, tyn_ref transmittance)
+{
+    tyn_job_output(g, job, TYN_OUTPUT_RADIANCE, radiance);
+    tyn_job_output(g, job, TYN_OUTPUT_TRANSMITTANCE, transmittance);
+    if (job->outputs & TYN_OUTPUT_DISPLAY) {
+        tyn_add_display(g, job, radiance);
+    }
+    if (job->outputs & TYN_OUTPUT_COMPOSITE) {
+        add_composite(g, job, radiance, transmittance);
+    }
+}
+
 void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in)
 {
     tyn_raymarch_params params;
@@ -159,8 +171,6 @@ void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in
         tyn_output output;
         uint8_t port;
     } images[] = {
-        {TYN_OUTPUT_RADIANCE, RAYMARCH_PORT_RADIANCE},
-        {TYN_OUTPUT_TRANSMITTANCE, RAYMARCH_PORT_TRANSMITTANCE},
         {TYN_OUTPUT_DEPTH, RAYMARCH_PORT_DEPTH},
         {TYN_OUTPUT_SINGLE, RAYMARCH_PORT_SINGLE},
         {TYN_OUTPUT_MULTIPLE, RAYMARCH_PORT_MULTIPLE},
@@ -169,10 +179,5 @@ void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in
         tyn_job_output(g, job, images[i].output, refs[images[i].port]);
     }
     tyn_job_counters(g, job, &tyn_pass_raymarch, refs[RAYMARCH_PORT_COUNTERS]);
-    if (job->outputs & TYN_OUTPUT_DISPLAY) {
-        tyn_add_display(g, job, refs[RAYMARCH_PORT_RADIANCE]);
-    }
-    if (job->outputs & TYN_OUTPUT_COMPOSITE) {
-        add_composite(g, job, refs[RAYMARCH_PORT_RADIANCE], refs[RAYMARCH_PORT_TRANSMITTANCE]);
-    }
+    tyn_add_results(g, job, refs[RAYMARCH_PORT_RADIANCE], refs[RAYMARCH_PORT_TRANSMITTANCE]);
 }

@@ -29,6 +29,8 @@ void tyn_gather(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
 void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
 // Marches, and makes what the job wants of the result: layers, the host's picture, the display image.
 void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
+// What the job wants of a picture's radiance and transmittance: both, the host's picture, the display image.
+void tyn_add_results(tyn_graph *g, const tyn_job *job, tyn_ref radiance, tyn_ref transmittance);
 // The display image of a radiance.
 void tyn_add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance);
 // The light field at the job's points.

@@ -2,11 +2,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/common/camera.glsl"
-#include "background.glsl"
-#include "host_depth.glsl"
+#include "shaders/march/background.glsl"
+#include "shaders/march/host_depth.glsl"
 #define SURFACE_RADIANCE 9
 #define SURFACE_DISTANCES 10
-#include "surface_samples.glsl"
+#include "shaders/march/surface_samples.glsl"
 #include "raymarch_args.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
