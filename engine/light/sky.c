@@ -21,6 +21,14 @@ static void add_env_importance(tyn_graph *g, const tyn_job *job, tyn_ref *sky, t
     *sums = refs[ENV_IMPORTANCE_PORT_SUMS];
 }
 
+tyn_ref tyn_add_map_sums(tyn_graph *g, const tyn_job *job)
+{
+    const tyn_env_importance_params params = {{0}};
+    tyn_ref refs[TYN_MAX_PORTS] = {[ENV_IMPORTANCE_PORT_ENV_MAP] = job->refs.env_map};
+    tyn_graph_add(g, &tyn_pass_env_importance, &params, refs);
+    return refs[ENV_IMPORTANCE_PORT_SUMS];
+}
+
 // Where light counts for the picture; nothing without a camera.
 static void add_importance(tyn_graph *g, const tyn_job *job, const tyn_medium_refs *medium,
                            bool scaled, tyn_ref *map)

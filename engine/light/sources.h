@@ -72,6 +72,8 @@ void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s);
 // has a way for light that is equal from all sides.
 void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_split,
                  tyn_sources *s);
+// Sums of the environment's map over rectangles (sky_args.h: struct sky_sum), its suns among them.
+tyn_ref tyn_add_map_sums(tyn_graph *g, const tyn_job *job);
 // The medium on the lattice, walls, and the unscattered light of all sources above. `cells` along the longest side, as
 // the user's `setting` says.
 void tyn_add_cells(tyn_graph *g, const tyn_job *job, int32_t cells, const char *setting,

@@ -1,0 +1,253 @@
+// constellation.c -- method "constellation": an environment as a constellation of distant lights, ray marching back to front
+// with a shadow ray per light and slice, as published in 2008.
+//
+// Navarro, Gutierrez and Seron, "Interactive HDR lighting of dynamic participating media" (The Visual Computer 24, 2008).
+// Light scatters once. docs/constellation.md says what is as published and what is beyond it.
+#include "light/sources.h"
+#include "methods/limits.h"
+#include "methods/method.h"
+#include "passes/constellation/constellation.h"
+#include "passes/median_cut/median_cut.h"
+#include "passes/validity_mask/validity_mask.h"
+#include "passes/voxel_distance/voxel_distance.h"
+#include "view/view.h"
+#include <tyndall/registry.h>
+#include <string.h>
+
+// The medium with its distance map.
+static tyn_ref add_voxel_distance(tyn_graph *g, const tyn_job *job, const tyn_sources *s)
+{
+    tyn_voxel_distance_params params = {
+        .mode = job->frame->medium.mode, .emissive = s->medium.emission.resource != 0, .reach = 1};
+    memcpy(params.voxel, job->frame->medium.voxel, sizeof params.voxel);
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [VOXEL_DISTANCE_PORT_DENSITY] = s->medium.density,
+        [VOXEL_DISTANCE_PORT_SIGMA_A] = s->medium.sigma_a,
+        [VOXEL_DISTANCE_PORT_EMISSION] = s->medium.emission,
+    };
+    tyn_graph_add(g, &tyn_pass_voxel_distance, &params, refs);
+    return refs[VOXEL_DISTANCE_PORT_VOXELS];
+}
+
+static tyn_ref add_mask(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
+                        const tyn_constellation_params *march, tyn_ref voxels)
+{
+    const tyn_validity_mask_params params = {
+        .mode = march->mode,
+        .distance = march->distance,
+        .width = march->width,
+        .height = march->height,
+        .slices = march->slices,
+    };
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [VALIDITY_MASK_PORT_MEDIUM] = job->refs.medium,
+        [VALIDITY_MASK_PORT_VOXELS] = voxels,
+        [VALIDITY_MASK_PORT_EMISSION] = s->medium.emission,
+        [VALIDITY_MASK_PORT_CAMERA] = job->refs.camera,
+    };
+    tyn_graph_add(g, &tyn_pass_validity_mask, &params, refs);
+    return refs[VALIDITY_MASK_PORT_MASK];
+}
+
+// The constellation of the environment, its suns among its lights; {0} if nothing shines from there.
+static tyn_ref add_constellation(tyn_graph *g, const tyn_job *job, uint32_t lights)
+{
+    const struct env_block *env = &job->frame->environment;
+    if (env->mean[0] + env->mean[1] + env->mean[2] <= 0) {
+        return (tyn_ref){0};
+    }
+    const tyn_median_cut_params params = {.lights = lights, .map = env->has_map};
+    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
+    if (env->has_map) {
+        refs[MEDIAN_CUT_PORT_SUMS] = tyn_add_map_sums(g, job);
+    }
+    tyn_graph_add(g, &tyn_pass_median_cut, &params, refs);
+    tyn_job_counters(g, job, &tyn_pass_median_cut, refs[MEDIAN_CUT_PORT_CONSTELLATION]);
+    return refs[MEDIAN_CUT_PORT_CONSTELLATION];
+}
+
+static bool is_same(const struct light_block *a, const struct light_block *b)
+{
+    return memcmp(a->direction, b->direction, sizeof a->direction) == 0 &&
+           memcmp(a->color, b->color, sizeof a->color) == 0;
+}
+
+// Suns and lamps of the scene; those of the map are in the constellation. The strongest suns of scene and map have
+// shadow maps, in their order.
+static struct constellation_lights_args lights_of(const tyn_job *job, const tyn_sources *s)
+{
+    const tyn_lights *lights = &job->frame->lights;
+    struct constellation_lights_args args = {
+        .num_suns = lights->num_directional,
+        .num_lamps = lights->num_lamps,
+        .shadows = s->shadows.shadows.resource != 0,
+    };
+    const uint32_t mapped = args.shadows ? tyn_num_beams(lights) : 0;
+    for (uint32_t i = 0, sun = 0; i < mapped; i++) {
+        if (sun < lights->num_directional && is_same(&lights->suns[i], &lights->scene[sun])) {
+            args.sun_shadow[sun++] = i;
+            args.suns_with_shadow = sun;
+        }
+    }
+    return args;
+}
+
+static void set_view(tyn_constellation_params *p, const tyn_job *job)
+{
+    const struct env_block *env = &job->frame->environment;
+    const bool surroundings =
+        env->has_map || env->radiance[0] + env->radiance[1] + env->radiance[2] > 0.0f;
+    // Over a host's picture only the medium is laid.
+    const bool whole = !job->view->no_background && !(job->outputs & TYN_OUTPUT_COMPOSITE);
+    p->background = surroundings && whole;
+    p->surfaces = whole;
+    p->width = job->view->width;
+    p->height = job->view->height;
+    p->layers |= job->outputs & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_COMPOSITE)
+                     ? CONSTELLATION_LAYER_TRANSMITTANCE
+                     : 0;
+    p->layers |= job->outputs & TYN_OUTPUT_DEPTH ? CONSTELLATION_LAYER_DEPTH : 0;
+    if (job->refs.depth.resource) {
+        const float *m = job->view_to_clip;
+        const float depth[4] = {m[10], m[14], m[11], m[15]};
+        memcpy(p->depth, depth, sizeof depth);
+    }
+}
+
+static void set_medium(tyn_constellation_params *p, const tyn_job *job)
+{
+    const struct medium_block *block = &job->frame->medium;
+    p->mode = block->mode;
+    p->emissive = job->frame->emissive;
+    memcpy(p->extent, block->extent, sizeof p->extent);
+    const float majorant = block->sigma_t_max * block->max_density;
+    p->slices =
+        tyn_constellation_slices(block, p->slice, tyn_raymarch_longest_step(majorant, 0, block));
+}
+
+// The surfaces that the camera sees, in the light of suns, lamps and the VPLs that these make, which the medium dims.
+static void add_surfaces(tyn_graph *g, const tyn_job *job, tyn_sources *s, tyn_view_inputs *view)
+{
+    const tyn_field no_field = {0};
+    tyn_sources own = *s;
+    tyn_view_inputs surfaces = {.sources = &own, .field = &no_field};
+    tyn_job_warn_suns(job, "surfaces");
+    tyn_add_vpls(g, job, &own);
+    tyn_add_beams(g, job, &own);
+    tyn_add_radials(g, job, &own);
+    tyn_add_surfaces(g, job, &surfaces);
+    view->surface = surfaces.surface;
+    view->distances = surfaces.distances;
+}
+
+static void add_march(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
+                      const tyn_view_inputs *view)
+{
+    tyn_constellation_params params;
+    tyn_settings_params(job->settings, &tyn_pass_constellation, &params);
+    set_view(&params, job);
+    set_medium(&params, job);
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [CONSTELLATION_PORT_VOXELS] = add_voxel_distance(g, job, s),
+        [CONSTELLATION_PORT_LIGHTS] = job->refs.lights,
+        [CONSTELLATION_PORT_CAMERA] = job->refs.camera,
+        [CONSTELLATION_PORT_ENVIRONMENT] = job->refs.environment,
+        [CONSTELLATION_PORT_ENV_MAP] = job->refs.env_map,
+        [CONSTELLATION_PORT_HOST_DEPTH] = job->refs.depth,
+        [CONSTELLATION_PORT_SURFACE] = view->surface,
+        [CONSTELLATION_PORT_DISTANCES] = view->distances,
+    };
+    if (params.mask) {
+        refs[CONSTELLATION_PORT_MASK] =
+            add_mask(g, job, s, &params, refs[CONSTELLATION_PORT_VOXELS]);
+    }
+    refs[CONSTELLATION_PORT_CONSTELLATION] = add_constellation(g, job, (uint32_t)params.lights);
+    params.listed = lights_of(job, s);
+    params.listed.constellation = refs[CONSTELLATION_PORT_CONSTELLATION].resource != 0;
+    tyn_connect(refs, CONSTELLATION_PORT_MEDIUM, s->medium);
+    refs[CONSTELLATION_PORT_MEDIUM] = job->refs.medium;
+    tyn_connect(refs, CONSTELLATION_PORT_SHADOW_ATLAS, s->shadows);
+    tyn_graph_add(g, &tyn_pass_constellation, &params, refs);
+    tyn_job_counters(g, job, &tyn_pass_constellation, refs[CONSTELLATION_PORT_COUNTERS]);
+    tyn_job_output(g, job, TYN_OUTPUT_DEPTH, refs[CONSTELLATION_PORT_DEPTH]);
+    tyn_add_results(g, job, refs[CONSTELLATION_PORT_RADIANCE],
+                    refs[CONSTELLATION_PORT_TRANSMITTANCE]);
+}
+
+static tyn_result declare(tyn_graph *g, const tyn_job *job)
+{
+    tyn_sources s = {0};
+    const tyn_field no_field = {0};
+    tyn_view_inputs view = {.sources = &s, .field = &no_field};
+    if (!tyn_job_refuse_repeat(job)) {
+        return TYN_ERR_PARAMS;
+    }
+    if (job->frame->empty) { // nothing to march through
+        tyn_job_warn_surfaces(job, "are left out");
+        tyn_add_picture(g, job, &view);
+        return tyn_graph_status(g);
+    }
+    if (job->frame->num_triangles) {
+        tyn_job_warn_surfaces(job,
+                              "cast no shadows of the environment into the medium, which their "
+                              "light does not reach");
+    }
+    tyn_limits_warn(job, 0);
+    tyn_add_medium(g, job, &s);
+    tyn_add_shadows(g, job, &s);
+    if (job->frame->num_triangles) {
+        add_surfaces(g, job, &s, &view);
+    }
+    add_march(g, job, &s, &view);
+    return tyn_graph_status(g);
+}
+
+static const tyn_pass_desc *const passes[] = {
+    TYN_MEDIUM_PASSES,       TYN_SUN_PASSES,           TYN_VIRTUAL_LIGHT_PASSES,
+    TYN_LAMP_PASSES,         TYN_SURFACE_PASSES,       &tyn_pass_env_importance,
+    &tyn_pass_median_cut,    &tyn_pass_voxel_distance, &tyn_pass_validity_mask,
+    &tyn_pass_constellation, TYN_PICTURE_PASSES,       NULL,
+};
+
+static double again(const tyn_regime *r)
+{
+    return r->again;
+}
+
+static const tyn_limit limits[] = {
+    {.key = "periodic media",
+     .where = {TYN_ABOVE(repeats, 0)},
+     .level = TYN_LIMIT_REFUSED,
+     .advice = {"media that repeat: refused"},
+     .source = "docs/constellation.md"},
+    {.key = "one scattering alone",
+     .where = {TYN_ABOVE(mean_depth, 0)},
+     .error = again,
+     .advice = {"one scattering: about %g %% of the scattered light has scattered again (albedo "
+                "%.3g, depth %.4g) and is missing",
+                {TYN_LIMIT_ERROR, TYN_FIGURE(albedo), TYN_FIGURE(mean_depth)}},
+     .source = "docs/constellation.md, \"Measured\"",
+     .warned = {TYN_ABOVE(scatterings, 0.3)},
+     .warning = {"accuracy: light that has scattered more than once is left out; the medium is up "
+                 "to %.3g scattering mean free paths (delta scaled) deep",
+                 {TYN_FIGURE(scatterings)}}},
+    {.key = "surfaces",
+     .where = {TYN_ABOVE(surfaces, 0)},
+     .level = TYN_LIMIT_BREAKS,
+     .advice = {"surfaces: they stop the light of suns and lamps, but not that of an environment, "
+                "and send none into the medium"},
+     .source = "docs/constellation.md"},
+    TYN_LIMIT_FLOATS,
+    {NULL},
+};
+
+const tyn_method tyn_method_constellation = {
+    .info = {.name = "constellation",
+             .summary = "one scattering under distant lights that stand for the environment, as "
+                        "published in 2008",
+             .passes = passes,
+             .outputs = TYN_PICTURE_OUTPUTS & ~(uint32_t)(TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE),
+             .single_only = true,
+             .limits = limits},
+    .declare = declare,
+};

@@ -1,0 +1,58 @@
+// constellation_args.h -- push constants, features and lists of the method constellation. Included by C and GLSL.
+#ifndef TYN_CONSTELLATION_PASS_ARGS_H
+#define TYN_CONSTELLATION_PASS_ARGS_H
+#include "shaders/light/constellation_args.h"
+#include "shaders/light/light_args.h"
+#include "shaders/light/shadow_args.h"
+#include "shaders/march/slices_args.h"
+
+// Bits of the specialisation constant "features".
+#define CONSTELLATION_MASK (1u << 0)          // the image "mask" says where rays begin
+#define CONSTELLATION_DISTANCE (1u << 1)      // empty space is skipped
+#define CONSTELLATION_PRINTED (1u << 2)       // slices are summed as Eqs 4 and 5 are printed
+#define CONSTELLATION_EMISSION (1u << 3)      // media emit
+#define CONSTELLATION_HOST_DEPTH (1u << 4)    // rays end at the host's surfaces
+#define CONSTELLATION_BACKGROUND (1u << 5)    // the environment behind the medium is seen
+#define CONSTELLATION_SURFACE (1u << 6)       // rays end at the scene's surfaces ...
+#define CONSTELLATION_SURFACE_SEEN (1u << 7)  // ... which are seen
+#define CONSTELLATION_SHADOWS (1u << 8)       // surfaces stand before suns and lamps
+#define CONSTELLATION_TRANSMITTANCE (1u << 9) // layers
+#define CONSTELLATION_DEPTH (1u << 10)
+#define CONSTELLATION_LAMPS (1u << 11) // some lights are points
+
+// Specialisation constant "lighting".
+#define CONSTELLATION_ALPHA 0u
+#define CONSTELLATION_PRIMARY 1u
+#define CONSTELLATION_SHADOWED 2u
+
+struct constellation_args {
+    tyn_vec4 depth; // p10, p14, p11, p15 of the host's view_to_clip
+    TYN_STRUCT(slices_args) slices;
+    float scale;     // of light that is scattered: 4 pi over the norm
+    tyn_uint rounds; // slices that one dispatch lights
+    tyn_uint first;  // 1: the dispatch begins the rays
+    tyn_uint last;   // 1: it ends them and stores the picture
+};
+TYN_ASSERT_SIZE(constellation_args, 40);
+
+struct constellation_lights_args {
+    tyn_uint constellation; // 1: there is one
+    tyn_uint num_suns;      // of the scene
+    tyn_uint num_lamps;     // that follow them
+    tyn_uint shadows;       // 1: suns and lamps have shadow maps
+    // Which of the suns that have a shadow map each of the first is, or TYN_LIGHT_NO_SHADOW.
+    tyn_uint sun_shadow[4];
+    tyn_uint suns_with_shadow; // so many of `sun_shadow` count
+};
+TYN_ASSERT_SIZE(constellation_lights_args, 36);
+
+#define CONSTELLATION_LIGHTS_MAX (TYN_CONSTELLATION_MAX + 68) // + TYN_LIGHTS_MAX
+
+struct constellation_list { // scratch buffer "light_list", read as words of four
+    tyn_uint count;         // of lights
+    tyn_vec3 mean; // of the light of all suns and the constellation: their sum / 4 pi, W/(m^2 sr)
+    TYN_STRUCT(light_block) lights[CONSTELLATION_LIGHTS_MAX]; // in M; no `pad`
+};
+TYN_ASSERT_SIZE(constellation_list, 16 + 64 * CONSTELLATION_LIGHTS_MAX);
+
+#endif
