@@ -189,8 +189,8 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     }
     if (job->frame->num_triangles) {
         tyn_job_warn_surfaces(job,
-                              "cast no shadows of the environment into the medium, which their "
-                              "light does not reach");
+                              "do not stop an environment's light on its way through the medium, "
+                              "and send none into it");
     }
     tyn_limits_warn(job, 0);
     tyn_add_medium(g, job, &s);

@@ -5,8 +5,7 @@
 
 struct slices_args {
     float distance; // between two slices, m
-    float
-        margin; // half the diagonal of a voxel, m (slices_skipped)
+    float margin;   // half the diagonal of a voxel, m (slices_skipped)
 };
 TYN_ASSERT_SIZE(slices_args, 8);
 
