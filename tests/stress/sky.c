@@ -87,7 +87,7 @@ typedef struct stress {
     float sigma, albedo, g;
     bool grid, sphere, inside, parallel, two;
     int ordinates;  // 0: as many as usual
-    float strength; // 0 counts
+    float strength; // of the map
     double most;
 } stress;
 
@@ -106,7 +106,10 @@ static void render(gpu_test *t, const stress *s)
         scene_add_box(scene, &other, (float[]){-0.5f, 0, -2}, (float[]){1.5f, 2, 0.5f}, NULL, NULL);
     }
     make_map(&scene->environment, s->map);
-    scene->environment.strength = s->strength;
+    for (int c = 0; c < 3; c++) {
+        scene->environment.radiance[c] *=
+            s->strength; // a strength of 0 would be one that is not given
+    }
     sky_turn(&scene->environment, 1, 2, 3, 0.7f);
     tyn_view view = {0};
     view_orthographic(&view, (float[]){0, 0, 0}, -1, -0.4f, -0.7f, (float[]){0, 1, 0}, 1.6f,
@@ -123,7 +126,7 @@ static void render(gpu_test *t, const stress *s)
              (double)s->sigma, (double)s->albedo, (double)s->g, s->grid ? ", grid" : "",
              s->sphere ? ", sphere" : "", s->inside ? ", inside" : "",
              s->parallel ? ", parallel" : "", s->two ? ", two media" : "",
-             s->strength > 0 ? "" : ", strength 0");
+             s->strength > 0 ? "" : ", dark");
     if (s->ordinates) {
         snprintf(settings, sizeof settings, "lattice.cells=12 ordinates.count=%d", s->ordinates);
     }
