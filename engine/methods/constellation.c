@@ -214,6 +214,12 @@ static double again(const tyn_regime *r)
     return r->again;
 }
 
+static double thick_slices(const tyn_regime *r)
+{
+    static const tyn_limit_point curve[] = {{300, 0.024}, {1000, 0.15}, {1e4, 1}};
+    return tyn_limit_along(curve, sizeof curve / sizeof *curve, r->depth);
+}
+
 static const tyn_limit limits[] = {
     {.key = "periodic media",
      .where = {TYN_ABOVE(repeats, 0)},
@@ -231,6 +237,29 @@ static const tyn_limit limits[] = {
      .warning = {"accuracy: light that has scattered more than once is left out; the medium is up "
                  "to %.3g scattering mean free paths (delta scaled) deep",
                  {TYN_FIGURE(scatterings)}}},
+    {.key = "thick slices",
+     .where = {TYN_ABOVE(depth, 300)},
+     .error = thick_slices,
+     .advice = {"slices: the medium is %.3g mean free paths deep, and a ray has 8192 slices at "
+                "most (about %g %% of what has scattered once)",
+                {TYN_FIGURE(depth), TYN_LIMIT_ERROR}},
+     .source = "docs/stress.md, \"What is found\"",
+     .warned = {TYN_ABOVE(depth, 700)},
+     .warning = {"accuracy: the medium is %.3g mean free paths deep; shadow rays go from slice to "
+                 "slice, of which a ray has 8192 at most: 15 %% of "
+                 "the light that has scattered once are off at 1000, a factor of 2 at 10 000",
+                 {TYN_FIGURE(depth)}}},
+    {.key = "lamps near the medium",
+     .where = {TYN_ABOVE(lamps, 0.05), TYN_ABOVE(mean_depth, 0)},
+     .level = TYN_LIMIT_BREAKS,
+     .advice =
+         {"lamps: what is near one is summed at the slices alone (a lamp in a medium: 130 %% off)"},
+     .source = "docs/stress.md, \"What is found\"",
+     .warned = {TYN_ABOVE(lamps, 0.05)},
+     .warning =
+         {"accuracy: lamps give %.2g of the light; in a medium what is near them is summed at the "
+          "slices alone: 130 %% off with a lamp in the middle of a cube",
+          {TYN_FIGURE(lamps)}}},
     {.key = "surfaces",
      .where = {TYN_ABOVE(surfaces, 0)},
      .level = TYN_LIMIT_BREAKS,

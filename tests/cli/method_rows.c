@@ -47,27 +47,6 @@ static int rows_of(const cJSON *list, const char *method)
     return rows;
 }
 
-// Methods that the stored results do not have yet: the next run of the suites adds them, and takes them off here.
-static const char *const not_stored[] = {"constellation"};
-
-static bool is_stored(const char *method)
-{
-    bool stored = true;
-    for (size_t i = 0; i < sizeof not_stored / sizeof *not_stored; i++) {
-        stored = stored && strcmp(not_stored[i], method) != 0;
-    }
-    return stored;
-}
-
-static int report_stored(int rows, const char *method, const char *lacks)
-{
-    const bool right = (rows > 0) == is_stored(method);
-    if (!right) {
-        print_error("%s: %s\n", method, rows ? "take it off the list `not_stored`" : lacks);
-    }
-    return !right;
-}
-
 static int report(int rows, const char *method, const char *lacks)
 {
     if (rows == 0) {
@@ -120,7 +99,7 @@ static void fronts(void **state)
         {
             rows += rows_of(cJSON_GetObjectItem(scene, "runs"), info.name);
         }
-        missing += report_stored(rows, info.name, "no run in results/fronts.json");
+        missing += report(rows, info.name, "no run in results/fronts.json");
     }
     cJSON_Delete(suite);
     cJSON_Delete(stored);
@@ -135,8 +114,8 @@ static void stress(void **state)
     for (uint32_t i = 0; i < tyn_num_methods(); i++) {
         tyn_method_info info;
         tyn_method_at(i, &info);
-        missing += report_stored(rows_of(cJSON_GetObjectItem(stored, "cells"), info.name),
-                                 info.name, "no cell in results/stress.json");
+        missing += report(rows_of(cJSON_GetObjectItem(stored, "cells"), info.name), info.name,
+                          "no cell in results/stress.json");
     }
     cJSON_Delete(stored);
     assert_int_equal(missing, 0);
