@@ -71,8 +71,7 @@ void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_
     }
     tyn_sky *sky = &s->sky;
     sky->split = params.split;
-    bool lit = env->sky[0] + env->sky[1] + env->sky[2] > 0.0f;
-    bool regions = lit && (env->has_map || !params.split);
+    bool regions = tyn_is_lit(env->sky) && (env->has_map || !params.split);
     if (!regions && !params.num_fixed) {
         return;
     }
@@ -96,4 +95,19 @@ void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_
     sky->ordinates = refs[ORDINATES_PORT_ORDINATES];
     tyn_job_counters(g, job, &tyn_pass_ordinates,
                      sky->ordinates); // how many, and how many were folded
+}
+
+void tyn_add_surroundings(tyn_graph *g, const tyn_job *job, bool can_split, tyn_sources *s)
+{
+    const tyn_frame_scene *frame = job->frame;
+    if (!tyn_has_walls(frame)) {
+        tyn_add_sky(g, job, s->num_suns, can_split, s);
+    } else if (frame->environment.has_map) {
+        // Ordinates know of no walls; the mean of the sky comes in along the lattice's lines, which do.
+        tyn_job_warn(
+            job,
+            "among surfaces the medium is lit by the mean of the environment map and by its suns");
+    }
+    s->mean_from_all_sides =
+        tyn_is_lit(frame->environment.sky) && (s->sky.split || !s->sky.ordinates.resource);
 }

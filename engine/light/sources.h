@@ -72,6 +72,13 @@ void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s);
 // has a way for light that is equal from all sides.
 void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_split,
                  tyn_sources *s);
+// The environment where a lattice carries on what it scatters: ordinates for all but the suns that have beams; among surfaces
+// its mean alone, from all sides, with a warning. After suns, their beams and shadows.
+void tyn_add_surroundings(tyn_graph *g, const tyn_job *job, bool can_split, tyn_sources *s);
+static inline bool tyn_is_lit(const float radiance[3])
+{
+    return radiance[0] > 0.0f || radiance[1] > 0.0f || radiance[2] > 0.0f;
+}
 // Sums of the environment's map over rectangles (sky_args.h: struct sky_sum), its suns among them.
 tyn_ref tyn_add_map_sums(tyn_graph *g, const tyn_job *job);
 // The medium on the lattice, walls, and the unscattered light of all sources above. `cells` along the longest side, as

@@ -209,11 +209,6 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_constellation, TYN_PICTURE_PASSES,       NULL,
 };
 
-static double again(const tyn_regime *r)
-{
-    return r->again;
-}
-
 static double thick_slices(const tyn_regime *r)
 {
     static const tyn_limit_point curve[] = {{300, 0.024}, {1000, 0.15}, {1e4, 1}};
@@ -221,22 +216,8 @@ static double thick_slices(const tyn_regime *r)
 }
 
 static const tyn_limit limits[] = {
-    {.key = "periodic media",
-     .where = {TYN_ABOVE(repeats, 0)},
-     .level = TYN_LIMIT_REFUSED,
-     .advice = {"media that repeat: refused"},
-     .source = "docs/constellation.md"},
-    {.key = "one scattering alone",
-     .where = {TYN_ABOVE(mean_depth, 0)},
-     .error = again,
-     .advice = {"one scattering: about %g %% of the scattered light has scattered again (albedo "
-                "%.3g, depth %.4g) and is missing",
-                {TYN_LIMIT_ERROR, TYN_FIGURE(albedo), TYN_FIGURE(mean_depth)}},
-     .source = "docs/constellation.md, \"Measured\"",
-     .warned = {TYN_ABOVE(scatterings, 0.3)},
-     .warning = {"accuracy: light that has scattered more than once is left out; the medium is up "
-                 "to %.3g scattering mean free paths (delta scaled) deep",
-                 {TYN_FIGURE(scatterings)}}},
+    TYN_LIMIT_NOT_PERIODIC("docs/constellation.md"),
+    TYN_LIMIT_ONE_SCATTERING("docs/constellation.md, \"Measured\""),
     {.key = "thick slices",
      .where = {TYN_ABOVE(depth, 300)},
      .error = thick_slices,

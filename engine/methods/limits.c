@@ -79,6 +79,11 @@ double tyn_limit_along(const tyn_limit_point *curve, size_t count, double x)
 }
 
 // Places are single precision.
+double tyn_limit_again(const tyn_regime *r)
+{
+    return r->again;
+}
+
 double tyn_limit_floats(const tyn_regime *r)
 {
     static const tyn_limit_point curve[] = {{3e6, 0.1}, {1e8, 0.4}}; // depth of the box

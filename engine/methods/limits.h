@@ -27,6 +27,27 @@ double tyn_limit_floats(const tyn_regime *r);
         }                                                                                          \
     }
 
+// Of methods that know no periodic media, and of those whose light scatters once; `page`: with the measurement.
+#define TYN_LIMIT_NOT_PERIODIC(page)                                                               \
+    {                                                                                              \
+        .key = "periodic media", .where = {TYN_ABOVE(repeats, 0)}, .level = TYN_LIMIT_REFUSED,     \
+        .advice = {"media that repeat: refused"}, .source = page                                   \
+    }
+double tyn_limit_again(const tyn_regime *r);
+#define TYN_LIMIT_ONE_SCATTERING(page)                                                             \
+    {                                                                                              \
+        .key = "one scattering alone", .where = {TYN_ABOVE(mean_depth, 0)},                        \
+        .error = tyn_limit_again,                                                                  \
+        .advice = {"one scattering: about %g %% of the scattered light has scattered again "       \
+                   "(albedo %.3g, depth %.4g) and is missing",                                     \
+                   {TYN_LIMIT_ERROR, TYN_FIGURE(albedo), TYN_FIGURE(mean_depth)}},                 \
+        .source = page, .warned = {TYN_ABOVE(scatterings, 0.3)}, .warning = {                      \
+            "accuracy: light that has scattered more than once is left out; the medium is up to "  \
+            "%.3g scattering mean free paths (delta scaled) deep",                                 \
+            {TYN_FIGURE(scatterings)}                                                              \
+        }                                                                                          \
+    }
+
 extern const tyn_limit tyn_limits_pop[];
 
 // Warns of what the job's method is known to lose in its scene (each line begins with "accuracy:"): from the scene's

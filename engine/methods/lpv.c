@@ -7,50 +7,28 @@
 #include "methods/limits.h"
 #include "methods/method.h"
 #include "solve/lpv.h"
+#include "scene/surfaces.h"
 #include "view/view.h"
 #include <tyndall/registry.h>
 
 static const uint32_t field_outputs = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE;
-
-static bool is_lit(const float radiance[3])
-{
-    return radiance[0] > 0.0f || radiance[1] > 0.0f || radiance[2] > 0.0f;
-}
-
-static bool any_emits(const tyn_surfaces *s)
-{
-    bool emits = false;
-    for (uint32_t i = 0; i < s->num_triangles; i++) {
-        emits = emits || is_lit(s->materials[s->triangles[i].material].emission);
-    }
-    return emits;
-}
 
 static void warn_of_surfaces(const tyn_job *job)
 {
     if (job->frame->num_triangles) {
         tyn_job_warn_suns(job, "surfaces");
     }
-    if (any_emits(&job->scene->surfaces)) {
+    if (tyn_surfaces_emit(&job->scene->surfaces)) {
         tyn_job_warn(job, "surfaces that emit are seen, but light nothing ('lpv')");
     }
 }
 
 static void add_lights(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
-    const tyn_frame_scene *frame = job->frame;
     tyn_add_beams(g, job, s);
     tyn_add_radials(g, job, s);
     tyn_add_shadows(g, job, s);
-    if (!tyn_has_walls(frame)) {
-        tyn_add_sky(g, job, s->num_suns, false, s);
-    } else if (frame->environment.has_map) {
-        tyn_job_warn(
-            job,
-            "among surfaces the medium is lit by the mean of the environment map and by its suns");
-    }
-    s->mean_from_all_sides =
-        is_lit(frame->environment.sky) && (s->sky.split || !s->sky.ordinates.resource);
+    tyn_add_surroundings(g, job, false, s);
 }
 
 static bool has_light(const tyn_job *job, const tyn_sources *s)
@@ -85,7 +63,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     tyn_add_medium(g, job, &s);
     add_lights(g, job, &s);
     const bool solve = has_light(job, &s);
-    view.mean_in_field = is_lit(frame->environment.sky);
+    view.mean_in_field = tyn_is_lit(frame->environment.sky);
     view.num_marched_lamps = solve ? s.lamps.num_fine : s.lamps.num_lamps;
     if (picture) {
         tyn_add_forward_tables(g, job, &view);
@@ -98,19 +76,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         tyn_limits_warn(job, s.lattice.side);
         tyn_solve_lpv(g, job, &s, &field);
     }
-    if (picture) {
-        tyn_gather(g, job, &view);
-    }
-    if (job->outputs & TYN_OUTPUT_PROBE) {
-        tyn_add_probe(g, job, &view);
-    }
-    if (job->outputs & TYN_OUTPUT_BALANCE) {
-        tyn_add_balance(g, job, &view);
-    }
-    if (picture) {
-        tyn_add_surfaces(g, job, &view);
-        tyn_add_picture(g, job, &view);
-    }
+    tyn_add_views(g, job, &view);
     return tyn_graph_status(g);
 }
 
@@ -146,11 +112,7 @@ static double lobe(const tyn_regime *r)
 #define CUBES "docs/lpv.md, \"Cubes\""
 
 static const tyn_limit limits[] = {
-    {.key = "periodic media",
-     .where = {TYN_ABOVE(repeats, 0)},
-     .level = TYN_LIMIT_REFUSED,
-     .advice = {"media that repeat: refused"},
-     .source = "docs/lpv.md, \"Limits\""},
+    TYN_LIMIT_NOT_PERIODIC("docs/lpv.md, \"Limits\""),
     {.key = "few iterations",
      .where = {TYN_ABOVE(mean_depth, 0.1), TYN_ABOVE(all_scatterings, 0.05)},
      .error = few_iterations,

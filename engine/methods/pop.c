@@ -10,6 +10,7 @@
 #include "methods/limits.h"
 #include "methods/method.h"
 #include "solve/lattice.h"
+#include "scene/surfaces.h"
 #include "view/view.h"
 #include <tyndall/registry.h>
 #include <math.h>
@@ -57,16 +58,6 @@ static bool is_sheared(const tyn_frame_scene *frame)
     return sheared;
 }
 
-static bool any_emits(const tyn_surfaces *s)
-{
-    bool emits = false;
-    for (uint32_t i = 0; i < s->num_triangles; i++) {
-        const float *e = s->materials[s->triangles[i].material].emission;
-        emits = emits || e[0] > 0 || e[1] > 0 || e[2] > 0;
-    }
-    return emits;
-}
-
 // Do all surfaces stand in one period, as those do that repeat with the medium?
 static bool fit_a_period(const tyn_frame_scene *frame)
 {
@@ -104,7 +95,7 @@ static tyn_result check_repeat(const tyn_job *job)
         tyn_log_print(job->log, TYN_LOG_ERROR, "shape 0 %s ('pop')", problem);
         return TYN_ERR_PARAMS;
     }
-    if (any_emits(&job->scene->surfaces)) {
+    if (tyn_surfaces_emit(&job->scene->surfaces)) {
         tyn_log_print(
             job->log, TYN_LOG_ERROR,
             "surfaces that emit cannot light periodic media (\"repeat\") with this method; "
@@ -116,11 +107,6 @@ static tyn_result check_repeat(const tyn_job *job)
                           "none of what others would hide and reflect; 'path' repeats them");
     }
     return TYN_OK;
-}
-
-static bool is_lit(const float radiance[3])
-{
-    return radiance[0] > 0.0f || radiance[1] > 0.0f || radiance[2] > 0.0f;
 }
 
 // The picture of a scene without a medium.
@@ -149,16 +135,7 @@ static void add_lights(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     if (frame->num_triangles) {
         tyn_job_warn_suns(job, walls ? "surfaces and the medium among them" : "surfaces");
     }
-    if (!walls) {
-        tyn_add_sky(g, job, s->num_suns, true, s);
-    } else if (frame->environment.has_map) {
-        // Ordinates know of no walls; the mean of the sky comes in along the lattice's lines, which do.
-        tyn_job_warn(
-            job,
-            "among surfaces the medium is lit by the mean of the environment map and by its suns");
-    }
-    s->mean_from_all_sides =
-        is_lit(frame->environment.sky) && (s->sky.split || !s->sky.ordinates.resource);
+    tyn_add_surroundings(g, job, true, s);
 }
 
 // Is there light that the lattice has to carry on?
@@ -198,7 +175,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     add_lights(g, job, &s);
     const bool solve = wants_solve(job, &s);
     view.mean_in_field =
-        is_lit(frame->environment.sky); // scattered forward, whoever carries the rest
+        tyn_is_lit(frame->environment.sky); // scattered forward, whoever carries the rest
     view.num_marched_lamps = solve ? s.lamps.num_fine : s.lamps.num_lamps;
     if (picture) {
         tyn_add_forward_tables(g, job, &view);
@@ -211,19 +188,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         tyn_limits_warn(job, s.lattice.side);
         tyn_solve_lattice(g, job, &s, &field);
     }
-    if (picture) {
-        tyn_gather(g, job, &view);
-    }
-    if (job->outputs & TYN_OUTPUT_PROBE) {
-        tyn_add_probe(g, job, &view);
-    }
-    if (job->outputs & TYN_OUTPUT_BALANCE) {
-        tyn_add_balance(g, job, &view);
-    }
-    if (picture) {
-        tyn_add_surfaces(g, job, &view);
-        tyn_add_picture(g, job, &view);
-    }
+    tyn_add_views(g, job, &view);
     return tyn_graph_status(g);
 }
 

@@ -77,11 +77,7 @@ static double hops(const tyn_regime *r)
 }
 
 static const tyn_limit limits[] = {
-    {.key = "periodic media",
-     .where = {TYN_ABOVE(repeats, 0)},
-     .level = TYN_LIMIT_REFUSED,
-     .advice = {"media that repeat: refused"},
-     .source = "docs/pop-paper.md, \"Measured\""},
+    TYN_LIMIT_NOT_PERIODIC("docs/pop-paper.md, \"Measured\""),
     {.key = "propagation as published",
      .where = {TYN_ABOVE(mean_depth, 0)},
      .error = hops,

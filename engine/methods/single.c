@@ -53,28 +53,9 @@ static const tyn_pass_desc *const passes[] = {
     TYN_MEDIUM_PASSES, TYN_SUN_PASSES, TYN_LAMP_PASSES, TYN_PICTURE_PASSES, NULL,
 };
 
-static double again(const tyn_regime *r)
-{
-    return r->again;
-}
-
 static const tyn_limit limits[] = {
-    {.key = "periodic media",
-     .where = {TYN_ABOVE(repeats, 0)},
-     .level = TYN_LIMIT_REFUSED,
-     .advice = {"media that repeat: refused"},
-     .source = "docs/method.md"},
-    {.key = "one scattering alone",
-     .where = {TYN_ABOVE(mean_depth, 0)},
-     .error = again,
-     .advice = {"one scattering: about %g %% of the scattered light has scattered again (albedo "
-                "%.3g, depth %.4g) and is missing",
-                {TYN_LIMIT_ERROR, TYN_FIGURE(albedo), TYN_FIGURE(mean_depth)}},
-     .source = "docs/choosing.md, \"Single scattering\"",
-     .warned = {TYN_ABOVE(scatterings, 0.3)},
-     .warning = {"accuracy: light that has scattered more than once is left out; the medium is up "
-                 "to %.3g scattering mean free paths (delta scaled) deep",
-                 {TYN_FIGURE(scatterings)}}},
+    TYN_LIMIT_NOT_PERIODIC("docs/method.md"),
+    TYN_LIMIT_ONE_SCATTERING("docs/choosing.md, \"Single scattering\""),
     {.key = "a narrow forward lobe", // HG_MAX of shaders/phase/hg.glsl
      .where = {TYN_ABOVE(most_g, 0.995)},
      .warning = {"accuracy: g is %.6g; beyond 0.995 the medium counts as one of 0.995 that "

@@ -181,3 +181,21 @@ void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in
     tyn_job_counters(g, job, &tyn_pass_raymarch, refs[RAYMARCH_PORT_COUNTERS]);
     tyn_add_results(g, job, refs[RAYMARCH_PORT_RADIANCE], refs[RAYMARCH_PORT_TRANSMITTANCE]);
 }
+
+void tyn_add_views(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
+{
+    const bool picture = job->outputs & TYN_PICTURE_OUTPUTS;
+    if (picture) {
+        tyn_gather(g, job, in);
+    }
+    if (job->outputs & TYN_OUTPUT_PROBE) {
+        tyn_add_probe(g, job, in);
+    }
+    if (job->outputs & TYN_OUTPUT_BALANCE) {
+        tyn_add_balance(g, job, in);
+    }
+    if (picture) {
+        tyn_add_surfaces(g, job, in);
+        tyn_add_picture(g, job, in);
+    }
+}

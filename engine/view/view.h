@@ -37,3 +37,5 @@ void tyn_add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance);
 void tyn_add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
 // Where the energy goes.
 void tyn_add_balance(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
+// All of these that the job wants.
+void tyn_add_views(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
