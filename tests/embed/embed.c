@@ -453,6 +453,31 @@ static frame_states usual_states(void)
                           VK_FORMAT_R32G32B32A32_SFLOAT};
 }
 
+// The usual images, with the backdrop at this depth, as the host has them before a frame.
+static target painted_target(fixture *f, float depth)
+{
+    const frame_states s = usual_states();
+    target t = new_target(&f->host, WIDTH, HEIGHT, s.color_format);
+    paint_backdrop(&t, depth);
+    t.color.state = s.color_before;
+    t.depth.state = s.depth_before;
+    return t;
+}
+
+// Prepares and records a frame over usual images, and waits for it.
+static void run_frame(fixture *f, tyn_context *ctx, const tyn_scene *scene, const tyn_view *view,
+                      target *t, const float m[16])
+{
+    const frame_states s = usual_states();
+    assert_int_equal(prepare_frame(ctx, scene, view, t, &s, m, NULL), TYN_OK);
+    const VkCommandBuffer cmd = host_begin(&f->host, 0);
+    begin_frame(f, cmd, t, &s);
+    assert_int_equal(record_frame(ctx, cmd, scene, view, t, &s, m, NULL), TYN_OK);
+    end_frame(f, cmd, t);
+    host_submit(&f->host, 0);
+    host_wait(&f->host, 0);
+}
+
 static void images_in_any_layout(void **state)
 {
     fixture *f = *state;
@@ -510,7 +535,6 @@ static void surfaces_stop_the_light(void **state)
     tyn_scene scene;
     make_ink(&scene);
     const tyn_view view = make_view(0, WIDTH, HEIGHT, TYN_OUTPUT_COMPOSITE);
-    const frame_states s = usual_states();
     for (int reverse = 0; reverse < 2; reverse++) {
         float m[16];
         projection(&view, reverse, m);
@@ -521,18 +545,9 @@ static void surfaces_stop_the_light(void **state)
             {46, 22, 10, 12, {0.5f, 0.5f, 0.5f, 1}, depth_of(m, planes[2])},
         };
         tyn_context *ctx = new_context(f, f->guest, "single");
-        target t = new_target(&f->host, WIDTH, HEIGHT, s.color_format);
-        paint_backdrop(&t, reverse ? 0.0f : 1.0f);
+        target t = painted_target(f, reverse ? 0.0f : 1.0f);
         host_paint(&t.color_up, &t.depth_up, WIDTH, HEIGHT, cards, 3);
-        t.color.state = s.color_before;
-        t.depth.state = s.depth_before;
-        assert_int_equal(prepare_frame(ctx, &scene, &view, &t, &s, m, NULL), TYN_OK);
-        const VkCommandBuffer cmd = host_begin(&f->host, 0);
-        begin_frame(f, cmd, &t, &s);
-        assert_int_equal(record_frame(ctx, cmd, &scene, &view, &t, &s, m, NULL), TYN_OK);
-        end_frame(f, cmd, &t);
-        host_submit(&f->host, 0);
-        host_wait(&f->host, 0);
+        run_frame(f, ctx, &scene, &view, &t, m);
 
         for (int i = 0; i < 3; i++) {
             for (uint32_t y = cards[i].y + 1; y < cards[i].y + 11; y++) {
@@ -643,17 +658,16 @@ static void settings_change(void **state)
     tyn_scene scene;
     make_smoke(&scene);
     const tyn_view view = make_view(0.2f, WIDTH, HEIGHT, TYN_OUTPUT_COMPOSITE);
-    const frame_states s = usual_states();
     float m[16];
     projection(&view, true, m);
     tyn_context *ctx = new_context(f, f->guest, "pop");
-    target t = new_target(&f->host, WIDTH, HEIGHT, s.color_format);
-    paint_backdrop(&t, 0.0f);
-    t.color.state = s.color_before;
-    t.depth.state = s.depth_before;
-    static const char *const changes[][2] = {
-        {"lattice.cells", "9"}, {"raymarch.step", "0.75"}, {"lattice.cells", "12"}};
-    for (int k = 0; k < 3; k++) {
+    target t = painted_target(f, 0.0f);
+    // The last two are what it began with, which other tests want.
+    static const char *const changes[][2] = {{"lattice.cells", "9"},
+                                             {"raymarch.step", "0.75"},
+                                             {"raymarch.step", "1"},
+                                             {"lattice.cells", "12"}};
+    for (size_t k = 0; k < sizeof changes / sizeof changes[0]; k++) {
         double value;
         const tyn_log log = log_of(f);
         assert_int_equal(tyn_context_set(ctx, changes[k][0], changes[k][1]), TYN_OK);
@@ -661,20 +675,10 @@ static void settings_change(void **state)
         assert_true(value == strtod(changes[k][1], NULL));
         assert_int_equal(tyn_settings_set(f->settings, changes[k][0], changes[k][1], &log), TYN_OK);
         picture p = reference(f, "pop", &scene, view);
-        assert_int_equal(prepare_frame(ctx, &scene, &view, &t, &s, m, NULL), TYN_OK);
-        const VkCommandBuffer cmd = host_begin(&f->host, 0);
-        begin_frame(f, cmd, &t, &s);
-        assert_int_equal(record_frame(ctx, cmd, &scene, &view, &t, &s, m, NULL), TYN_OK);
-        end_frame(f, cmd, &t);
-        host_submit(&f->host, 0);
-        host_wait(&f->host, 0);
+        run_frame(f, ctx, &scene, &view, &t, m);
         check_composite(&t, &p);
         free_picture(&p);
     }
-    tyn_settings_destroy(&f->settings);
-    assert_int_equal(tyn_settings_create(&f->settings), TYN_OK);
-    const tyn_log log = log_of(f);
-    assert_int_equal(tyn_settings_set(f->settings, "lattice.cells", "12", &log), TYN_OK);
     tyn_context_destroy(&ctx);
     free_target(&f->host, &t);
     expect_silence(f);
@@ -707,10 +711,7 @@ static void density_of_the_host(void **state)
     projection(&view, true, m);
     const frame_states s = usual_states();
     tyn_context *ctx = new_context(f, f->guest, "pop");
-    target t = new_target(h, WIDTH, HEIGHT, s.color_format);
-    paint_backdrop(&t, 0.0f);
-    t.color.state = s.color_before;
-    t.depth.state = s.depth_before;
+    target t = painted_target(f, 0.0f);
     density.state = general;
     tyn_image lent = host_lend(&density, general);
     assert_int_equal(prepare_frame(ctx, &scene, &view, &t, &s, m, &lent), TYN_OK);
@@ -750,10 +751,7 @@ static void failing_record_changes_nothing(void **state)
     projection(&view, true, m);
     const frame_states s = usual_states();
     tyn_context *ctx = new_context(f, f->guest, "pop");
-    target t = new_target(&f->host, WIDTH, HEIGHT, s.color_format);
-    paint_backdrop(&t, 0.0f);
-    t.color.state = s.color_before;
-    t.depth.state = s.depth_before;
+    target t = painted_target(f, 0.0f);
     target small = new_target(&f->host, WIDTH / 2, HEIGHT, s.color_format);
 
     f->quiet = true;
