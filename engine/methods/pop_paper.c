@@ -94,7 +94,7 @@ static const tyn_limit limits[] = {
      .where = {TYN_ABOVE(surfaces, 0)},
      .level = TYN_LIMIT_BREAKS,
      .advice = {"surfaces stop what goes straight alone: light that has turned goes through walls "
-                "(fog-hall 57 %% off, vpl-cave 59 %%, room 22 %%, lantern 102 %%)"},
+                "(fog-hall 39 %% off, vpl-cave 42 %%, room 19 %%, lantern 12 %%)"},
      .source = "docs/pop-paper.md, \"Surfaces\""},
     TYN_LIMIT_FLOATS,
     {NULL},
