@@ -40,7 +40,7 @@ static float largest_mean_cosine(const propagated *p, const tyn_job *job)
 }
 
 // Iterations in the aligned grids before what is left in them counts as isotropic (section 5.4, Eq 10). Light has
-// to cross the grid, so there are as many iterations as cells at least; no more are known to be needed
+// to cross the grid, so there are as many iterations as cells along it at least; no more are known to be needed
 // where the mean of the medium is not known.
 static int32_t iterations_before_residuum(const propagated *p, const tyn_job *job)
 {
@@ -53,11 +53,12 @@ static int32_t iterations_before_residuum(const propagated *p, const tyn_job *jo
         sigma_s += m->sigma_s[c] / 3.0f * job->frame->mean_density;
         g = fmaxf(g, (float)tyn_phase_mean_cosine(m->phase[c]));
     }
-    float hop = longest_side(job) / (float)p->grids.cells;
+    float along = (float)(p->grids.cells_along ? p->grids.cells_along : p->grids.cells);
+    float hop = longest_side(job) / along;
     uint32_t hops = sigma_s > 0.0f ? tyn_residuum_after(largest_mean_cosine(p, job), g, sigma_s,
                                                         hop, p->residuum.epsilon)
                                    : 0;
-    return (int32_t)fminf(fmaxf((float)hops, (float)p->grids.cells), 256.0f);
+    return (int32_t)fminf(fmaxf((float)hops, along), 256.0f);
 }
 
 static void set_radial(tyn_propagate_radial_params *params, const tyn_job *job)
@@ -142,12 +143,16 @@ static void add_propagation(tyn_graph *g, const tyn_job *job, propagated *p)
     p->places = refs[PROPAGATE_RECT_PORT_PLACES];
     p->seen = refs[PROPAGATE_RECT_PORT_SEEN];
     p->light = refs[PROPAGATE_RECT_PORT_LIGHT];
+    if (p->grids.threshold > 0) {
+        tyn_job_counters(g, job, &tyn_pass_propagate_rect, refs[PROPAGATE_RECT_PORT_FLIGHT]);
+    }
 }
 
 static void add_residuum(tyn_graph *g, propagated *p)
 {
     p->residuum.num_grids = p->grids.num_ordinates;
     p->residuum.grid_cells = (uint32_t)p->grids.cells;
+    p->residuum.grid_along = (uint32_t)p->grids.cells_along;
     p->residuum.channels = p->grids.channels;
     p->residuum.mode = p->grids.mode;
     memcpy(p->residuum.extent, p->grids.extent, sizeof p->residuum.extent);
@@ -172,6 +177,7 @@ static void add_merge(tyn_graph *g, const tyn_job *job, propagated *p)
     tyn_settings_params(job->settings, &tyn_pass_merge_grids, &params);
     params.num_grids = p->grids.num_ordinates;
     params.grid_cells = (uint32_t)p->grids.cells;
+    params.grid_along = (uint32_t)p->grids.cells_along;
     params.channels = p->grids.channels;
     params.num_lamps = p->lamps.num_lamps;
     params.lamp_cells = even(p->lamps.cells);
@@ -206,7 +212,9 @@ static void add_upsampling(tyn_graph *g, const tyn_job *job, propagated *p, tyn_
     tyn_connect(refs, UPSAMPLE_PORT_MEDIUM, p->sources->medium);
     tyn_graph_add(g, &tyn_pass_upsample, &params, refs);
     field->inscatter = refs[UPSAMPLE_PORT_INSCATTER];
-    field->cell = longest_side(job) / (float)p->grids.cells;
+    field->cell =
+        longest_side(job) /
+        (float)(p->grids.cells > p->grids.cells_along ? p->grids.cells : p->grids.cells_along);
     field->inscatter_is = p->grids.source == TYN_PROPAGATE_SOURCE_ACCUMULATED
                               ? RAYMARCH_INSCATTER_SOURCE
                               : RAYMARCH_INSCATTER_PLAIN;

@@ -110,7 +110,7 @@ vec3 importance_from_camera(importance_grid grid, vec3 p)
 // hop in, half a hop out.
 importance_light importance_leave(importance_cell cell, float power, float spread, inout vec2 track)
 {
-    vec4 state = propagate_state(power, spread);
+    vec4 state = propagate_state(power, spread, PROPAGATE_CONE);
     float way = power * mix(cell.along, cell.across, 4.0 * state.z);
     track += vec2(way, way * spread);
     vec2 along = cell.hop_along, across = cell.hop_across;

@@ -21,7 +21,7 @@ static const tyn_param params[] = {
 static tyn_extent dims_of(const tyn_merge_grids_params *p)
 {
     float longest = fmaxf(p->extent[0], fmaxf(p->extent[1], p->extent[2]));
-    uint32_t finest = p->grid_cells;
+    uint32_t finest = p->grid_along > p->grid_cells ? p->grid_along : p->grid_cells;
     finest = p->num_lamps && p->lamp_cells > finest ? p->lamp_cells : finest;
     finest = p->num_vpls && p->vpl_cells > finest ? p->vpl_cells : finest;
     float dx = longest / (float)(finest * (uint32_t)p->finer);

@@ -11,7 +11,8 @@
 typedef struct tyn_merge_grids_params {
     int32_t finer;       // cells of the result per cell of the aligned grids, along an axis; 1..8
     uint32_t num_grids;  // of propagate_rect; set by the method, as all below
-    uint32_t grid_cells; // of propagate_rect, along the longest side
+    uint32_t grid_cells; // of propagate_rect, along the longest side or across the light
+    uint32_t grid_along; // of propagate_rect, along the light; 0 = cubes
     uint32_t channels;   // of propagate_rect and propagate_radial
     uint32_t num_lamps;  // grids of propagate_radial
     uint32_t lamp_cells; // of its maps, along a side

@@ -3,9 +3,11 @@
 #include "propagate_rect_args.h"
 #include "propagate_rect_cells.comp.h"
 #include "propagate_rect_collect.comp.h"
+#include "propagate_rect_copy.comp.h"
 #include "propagate_rect_light.comp.h"
 #include "propagate_rect_lit_maps.comp.h"
 #include "propagate_rect_lit_traced.comp.h"
+#include "propagate_rect_next.comp.h"
 #include "propagate_rect_setup.comp.h"
 #include "propagate_rect_shrink_coefficients.comp.h"
 #include "propagate_rect_shrink_density.comp.h"
@@ -27,7 +29,9 @@ enum {
     LIT_MAPS,
     LIT_TRACED,
     START,
+    NEXT,
     STEP,
+    COPY,
     COLLECT,
     LIGHT,
     NUM_KERNELS
@@ -43,17 +47,27 @@ static const tyn_kernel kernels[NUM_KERNELS] = {
     [LIT_MAPS] = TYN_KERNEL(propagate_rect_lit_maps),
     [LIT_TRACED] = TYN_KERNEL(propagate_rect_lit_traced),
     [START] = TYN_KERNEL(propagate_rect_start),
+    [NEXT] = TYN_KERNEL(propagate_rect_next),
     [STEP] = TYN_KERNEL(propagate_rect_step),
+    [COPY] = TYN_KERNEL(propagate_rect_copy),
     [COLLECT] = TYN_KERNEL(propagate_rect_collect),
     [LIGHT] = TYN_KERNEL(propagate_rect_light),
 };
 
 #define FIELD(name) offsetof(tyn_propagate_rect_params, name)
 static const tyn_param params[] = {
-    {"cells", TYN_PARAM_INT, FIELD(cells), 20, 2, 64, "cells",
-     "cubic cells along the longest side of the box aligned with the light"},
+    {"cells", TYN_PARAM_INT, FIELD(cells), 20, 2, 128, "cells",
+     "cubic cells along the longest side of the box aligned with the light, or cells across it"},
+    {"cells_along", TYN_PARAM_INT, FIELD(cells_along), 0, 0, 128, "cells",
+     "cells along the light; 0 = cubes"},
+    {"cones", TYN_PARAM_ENUM, FIELD(cones), TYN_PROPAGATE_CONES_PAPER, 0, 1, "",
+     "of cells that are not cubes: what goes ahead is within 45 degrees, or what meets the cell's "
+     "end",
+     (const char *const[]){"paper", "cell"}},
     {"iterations", TYN_PARAM_INT, FIELD(iterations), 20, 1, 256, "",
      "hops from cell to cell; the paper takes about as many as cells"},
+    {"threshold", TYN_PARAM_FLOAT, FIELD(threshold), 0, 0, 1, "of the largest irradiance",
+     "hops end where no cell has more light than that (the paper's epsilon_L); 0 = never"},
     {"init", TYN_PARAM_ENUM, FIELD(init), TYN_PROPAGATE_INIT_ENTRY, 0, 3, "",
      "light before the first hop: entry is the only one that has the right power without "
      "scattering",
@@ -77,9 +91,15 @@ static const tyn_param params[] = {
 
 // ---- sizes ------------------------------------------------------------------------------------
 
+// Cells of a grid along the light.
+static uint32_t along(const tyn_propagate_rect_params *p)
+{
+    return (uint32_t)(p->cells_along ? p->cells_along : p->cells);
+}
+
 static uint32_t cells_of_grid(const tyn_propagate_rect_params *p)
 {
-    return (uint32_t)(p->cells * p->cells * p->cells) * p->channels;
+    return (uint32_t)(p->cells * p->cells) * along(p) * p->channels;
 }
 
 // Grids of a batch: as many as storage buffers hold.
@@ -89,6 +109,11 @@ static uint32_t batch(const tyn_propagate_rect_params *p)
     uint32_t fit = bytes / (cells_of_grid(p) * (uint32_t)(4 * sizeof(float)));
     fit = fit > 0 ? fit : 1;
     return fit < p->num_ordinates ? fit : p->num_ordinates;
+}
+
+static uint32_t batches(const tyn_propagate_rect_params *p)
+{
+    return (p->num_ordinates + batch(p) - 1) / batch(p);
 }
 
 // Do surfaces stop any of the light?
@@ -102,15 +127,25 @@ static uint32_t tiles_of(const tyn_propagate_rect_params *p)
     return (uint32_t)ceil(sqrt((double)(p->num_ordinates * p->channels)));
 }
 
+// The smallest edge that a cell of any grid may have, m. Cubes are the smallest if the grid's box is no longer than that of
+// the medium. Others: a box is no shorter along the light than the medium's shortest side, and across no narrower than
+// the middle one (of oblique boxes 0.7 of it).
+static double smallest_edge(const tyn_propagate_rect_params *p)
+{
+    const float *e = p->extent;
+    double longest = fmax(e[0], fmax(e[1], e[2])), shortest = fmin(e[0], fmin(e[1], e[2]));
+    double middle = fmax(fmin(e[0], e[1]), fmin(fmax(e[0], e[1]), e[2]));
+    return p->cells_along ? fmin(middle / p->cells, shortest / p->cells_along) : longest / p->cells;
+}
+
 // Texels of the shrunk medium, no larger than half a cell of any grid; {0} if the medium's own will do.
-// A grid's cells are the smallest if its box is no longer than that of the medium.
 static tyn_extent small_of(const tyn_propagate_rect_params *p)
 {
-    double longest = fmax(p->extent[0], fmax(p->extent[1], p->extent[2]));
+    const double edge = smallest_edge(p);
     uint32_t size[3];
     bool shrinks = false;
     for (int i = 0; i < 3; i++) {
-        double voxels = p->size[i] * (longest / p->cells) / p->extent[i]; // along a cell
+        double voxels = p->size[i] * edge / p->extent[i]; // along a cell
         uint32_t step = (uint32_t)fmax(floor(0.5 * voxels), 1);
         size[i] = (p->size[i] + step - 1) / step;
         shrinks = shrinks || step > 1;
@@ -143,7 +178,9 @@ static tyn_result declare(tyn_builder *b, const void *data)
     uint32_t cells = (uint32_t)p->cells, tiles = tiles_of(p),
              stacks = p->num_ordinates * p->channels;
     uint64_t numbers = (uint64_t)batch(p) * cells_of_grid(p);
-    tyn_extent tiled = {cells * tiles, cells * ((stacks + tiles - 1) / tiles), cells};
+    tyn_extent tiled = {cells * tiles, cells * ((stacks + tiles - 1) / tiles), along(p)};
+    uint64_t words =
+        PROPAGATE_FLIGHT_FIRST + (uint64_t)(p->threshold > 0 ? batches(p) * p->iterations : 0);
     tyn_extent small = small_of(p);
     tyn_build_buffer(b, PORT(GRIDS), p->num_ordinates * sizeof(struct propagate_grid));
     tyn_build_buffer(b, PORT(PLACES), TYN_ORDINATES_MAX * sizeof(struct propagate_place));
@@ -153,6 +190,10 @@ static tyn_result declare(tyn_builder *b, const void *data)
     tyn_build_buffer(b, PORT(STATE), numbers * 4 * sizeof(float));
     tyn_build_buffer(b, PORT(STATE_OTHER), numbers * 4 * sizeof(float));
     tyn_build_buffer(b, PORT(SUM), numbers * sizeof(float));
+    tyn_build_buffer(b, PORT(FLIGHT), words * sizeof(uint32_t));
+    tyn_build_buffer(b, PORT(LAUNCHES), sizeof(struct propagate_launches));
+    tyn_build_buffer(b, PORT(BESIDE), (p->cells_along ? numbers : 1) * sizeof(float));
+    tyn_build_buffer(b, PORT(BESIDE_OTHER), (p->cells_along ? numbers : 1) * sizeof(float));
     tyn_build_image(b, PORT(SEEN), tiled, 1);
     if (p->keep_light) {
         tyn_build_image(b, PORT(LIGHT), tiled, 1);
@@ -177,17 +218,21 @@ static void record_shrink(tyn_recorder *r, const tyn_propagate_rect_params *p)
 
 // All iterations of args->count grids from args->first.
 static void record_batch(tyn_recorder *r, const tyn_propagate_rect_params *p,
-                         const struct propagate_rect_args *args)
+                         struct propagate_rect_args *args)
 {
     static const uint8_t small[][2] = {{PORT(DENSITY), PORT(SMALL)},
                                        {PORT(SIGMA_A), PORT(SMALL_SIGMA_A)},
                                        {PORT(G), PORT(SMALL_G)}};
     static const uint8_t swap[][2] = {{PORT(STATE), PORT(STATE_OTHER)},
-                                      {PORT(STATE_OTHER), PORT(STATE)}};
+                                      {PORT(STATE_OTHER), PORT(STATE)},
+                                      {PORT(BESIDE), PORT(BESIDE_OTHER)},
+                                      {PORT(BESIDE_OTHER), PORT(BESIDE)}};
     uint8_t table[TYN_MAX_BINDINGS];
-    uint32_t layers = (args->cells + EDGE - 1) / EDGE * EDGE; // no workgroup has cells of two grids
+    uint32_t layers = (args->along + EDGE - 1) / EDGE * EDGE; // no workgroup has cells of two grids
     uint32_t stacks = args->count * args->channels;
-    const uint32_t start[] = {(uint32_t)p->init, shadowed(p)};
+    const uint32_t stretched = p->cells_along != 0;
+    const uint32_t start[] = {(uint32_t)p->init, shadowed(p), stretched};
+    const uint32_t step[] = {shadowed(p), stretched, p->threshold > 0};
     tyn_extent all = {args->cells, args->cells, layers * stacks};
     uint32_t shrunk = !small_of(p).x ? 0 : p->mode == TYN_MEDIUM_COEFFICIENTS ? 3 : 1;
 
@@ -204,17 +249,34 @@ static void record_batch(tyn_recorder *r, const tyn_propagate_rect_params *p,
     // The states are written alternately, so that the last one lands in the output.
     bool other = p->iterations % 2 != 0;
     TYN_DISPATCH(r, .kernel = START, .cells = {args->cells, args->cells, stacks}, .args = args,
-                 .ports = tyn_ports_exchanged(&kernels[START], swap, other ? 2 : 0, table),
+                 .ports =
+                     tyn_ports_exchanged(&kernels[START], swap, other ? TYN_COUNT(swap) : 0, table),
                  .spec = start);
     for (int32_t m = 0; m < p->iterations; m++) {
         other = !other;
-        TYN_DISPATCH(r, .kernel = STEP, .cells = all, .args = args,
-                     .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? 2 : 0, table),
-                     .spec = &start[1]);
+        args->iteration = (uint32_t)m + 1;
+        const tyn_dispatch d = {
+            .kernel = STEP,
+            .cells = all,
+            .args = args,
+            .ports = tyn_ports_exchanged(&kernels[STEP], swap, other ? TYN_COUNT(swap) : 0, table),
+            .spec = step,
+        };
+        if (p->threshold > 0) {
+            TYN_DISPATCH(r, .kernel = NEXT, .cells = {1, 1, 1}, .args = args);
+            tyn_rec_dispatch_indirect(r, &d, PORT(LAUNCHES),
+                                      offsetof(struct propagate_launches, step));
+        } else {
+            tyn_rec_dispatch(r, &d);
+        }
+    }
+    if (p->threshold > 0) {
+        tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = COPY, .args = args}, PORT(LAUNCHES),
+                                  offsetof(struct propagate_launches, copy));
     }
     TYN_DISPATCH(r, .kernel = COLLECT, .cells = all, .args = args);
     if (p->keep_light) {
-        TYN_DISPATCH(r, .kernel = LIGHT, .cells = all, .args = args);
+        TYN_DISPATCH(r, .kernel = LIGHT, .cells = all, .args = args, .spec = &stretched);
     }
 }
 
@@ -223,6 +285,8 @@ static void record(tyn_recorder *r, const void *data)
     const tyn_propagate_rect_params *p = data;
     struct propagate_rect_args args = {
         .cells = (uint32_t)p->cells,
+        .along = along(p),
+        .cells_along = (uint32_t)p->cells_along,
         .channels = p->channels,
         .num_ordinates = p->num_ordinates,
         .last_event = p->last_event,
@@ -232,7 +296,13 @@ static void record(tyn_recorder *r, const void *data)
         .voxel = voxel_of(p),
         .tiles = tiles_of(p),
         .num_mapped = p->num_mapped,
+        .cones = (uint32_t)p->cones,
+        .iterations = (uint32_t)p->iterations,
+        .threshold = p->threshold,
     };
+    if (p->threshold > 0) {
+        tyn_rec_fill(r, PORT(FLIGHT), 0);
+    }
     TYN_DISPATCH(r, .kernel = SETUP, .cells = {p->num_ordinates, 1, 1}, .args = &args);
     if (small_of(p).x) {
         record_shrink(r, p);
@@ -246,13 +316,22 @@ static void record(tyn_recorder *r, const void *data)
         uint32_t left = p->num_ordinates - args.first, fit = batch(p);
         args.count = left < fit ? left : fit;
         record_batch(r, p, &args);
+        args.flight += args.iterations;
     }
     double hops = (double)cells_of_grid(p) * p->num_ordinates * p->iterations;
     tyn_rec_work(r, "cells", hops);
-    tyn_rec_work(r, "flops", hops * 150); // counted by hand
-    tyn_rec_work(r, "bytes", hops * 56);
-    tyn_rec_work(r, "iterations", p->iterations);
+    // Else the device knows how many iterations there were, and counts them.
+    if (p->threshold <= 0) {
+        tyn_rec_work(r, "flops", hops * 150); // counted by hand
+        tyn_rec_work(r, "bytes", hops * 56);
+        tyn_rec_work(r, "iterations", p->iterations);
+    }
 }
+
+static const tyn_counter counters[] = {
+    {"iterations", PROPAGATE_FLIGHT_RUN * sizeof(uint32_t)},
+    {NULL},
+};
 
 const tyn_pass_desc tyn_pass_propagate_rect = {
     .name = "propagate_rect",
@@ -262,4 +341,5 @@ const tyn_pass_desc tyn_pass_propagate_rect = {
     .num_params = TYN_COUNT(params),
     .debug_port = PORT(SEEN),
     .debug_meaning = "radiance sent to the eye, middle of the aligned grids",
+    .counters = counters,
 };

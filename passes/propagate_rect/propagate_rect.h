@@ -4,6 +4,10 @@
 // all iterations again, as in the paper. Defaults are the reading with the right energy: the first
 // layer starts with the light's irradiance, and what reaches the eye has scattered a last time.
 //
+// Cells are cubes, or as long and as wide as the numbers of cells along and across the light make them (its Fig 17).
+// Iterations may end where little light is left (section 5.4: epsilon_L): what is left is looked at on the device, and
+// iterations behind that are skipped there.
+//
 // All grids take one dispatch an iteration. What does not fit a storage buffer of 128 MiB, which every
 // device has, is done in several batches of grids, one after the other.
 #pragma once
@@ -12,9 +16,13 @@
 #include "shaders/beams/propagate_args.h"
 
 typedef struct tyn_propagate_rect_params {
-    int32_t cells;       // along the longest side of the aligned box, 2..64
+    int32_t
+        cells; // along the longest side of the aligned box, or of those across the light, 2..128
+    int32_t cells_along; // along the light, 0..128; 0 = as many as fit, of cubes
+    int32_t cones;       // TYN_PROPAGATE_CONES_*
     int32_t iterations;  // 1..256
-    int32_t init;        // TYN_PROPAGATE_INIT_*
+    float threshold; // of the largest irradiance: iterations end where no cell has more; 0 = never
+    int32_t init;    // TYN_PROPAGATE_INIT_*
     uint32_t last_event; // 1: the light is scattered once more towards the eye: hg(mu, g a)
     int32_t rate;        // TYN_PROPAGATE_RATE_*
     int32_t source;    // TYN_PROPAGATE_SOURCE_*: for the ray march, no kernel of this pass reads it
@@ -46,16 +54,22 @@ typedef struct tyn_propagate_rect_params {
     X(PROPAGATE_RECT, LIGHT, light, OUT, IMAGE_3D, \
         "optional, tiles: L after the last iteration, in units of the irradiance", .format = VK_FORMAT_R32_SFLOAT), \
     X(PROPAGATE_RECT, CELLS, cells, OUT, BUFFER, \
-        "vec4[grids][channels][cells^3] of the last batch: optical depths of scattering and absorption over " \
-        "the edge of a cell, g, cosine between the light and the direction to the eye (-2: not in the grid)"), \
+        "vec4[grids][channels][cells] of the last batch: optical depths of scattering and absorption over " \
+        "the edge of a cell along the light, g, cosine between the light and the direction to the eye (-2: not in the grid)"), \
     X(PROPAGATE_RECT, LIT, lit, OUT, BUFFER, \
-        "float[grids][cells^3] of the last batch: of light that goes straight on, the share that surfaces let into " \
+        "float[grids][cells] of the last batch: of light that goes straight on, the share that surfaces let into " \
         "a cell from the one before it; a number where nothing casts shadows"), \
     X(PROPAGATE_RECT, STATE, state, OUT, BUFFER, \
         "vec4[]: after the last iteration what of L leaves the cell ahead, to each side and behind, and 1 -" \
         " a of it"), \
     X(PROPAGATE_RECT, SUM, sum, OUT, BUFFER, "L_acc of the last batch of grids"), \
+    X(PROPAGATE_RECT, FLIGHT, flight, OUT, BUFFER, \
+        "iterations that were run, and the brightest cells (propagate_rect_args.h); a number where none is skipped"), \
+    X(PROPAGATE_RECT, LAUNCHES, launches, SCRATCH, BUFFER, "struct propagate_launches"), \
     X(PROPAGATE_RECT, STATE_OTHER, state_other, SCRATCH, BUFFER, "state of every other iteration"), \
+    X(PROPAGATE_RECT, BESIDE, beside, SCRATCH, BUFFER, \
+        "1 - a of what leaves a cell sideways; a number where cells are cubes"), \
+    X(PROPAGATE_RECT, BESIDE_OTHER, beside_other, SCRATCH, BUFFER, "of every other iteration"), \
     X(PROPAGATE_RECT, SMALL, small, SCRATCH, IMAGE_3D, \
         "density or sigma_s at a resolution that suits the cells,", .format = VK_FORMAT_R32_SFLOAT), \
     X(PROPAGATE_RECT, SMALL_SIGMA_A, small_sigma_a, SCRATCH, IMAGE_3D, \

@@ -24,24 +24,26 @@ int samples_along(float cell)
 
 void main()
 {
-    uint groups = propagate_groups(args.cells, PROPAGATE_RECT_GROUP);
+    uint groups = propagate_groups(args.along, PROPAGATE_RECT_GROUP);
     uint n = gl_WorkGroupID.z / groups; // grid of this batch
     ivec3 cell = ivec3(gl_GlobalInvocationID.xy,
                        gl_GlobalInvocationID.z - n * groups * PROPAGATE_RECT_GROUP);
-    if (any(greaterThanEqual(uvec3(cell), uvec3(args.cells)))) {
+    if (any(greaterThanEqual(uvec3(cell), uvec3(args.cells, args.cells, args.along)))) {
         return;
     }
     propagate_grid grid = grids[args.first + n];
     vec3 sigma_s = vec3(0.0), sigma_a = vec3(0.0), g = vec3(0.0);
     bool inside = propagate_inside(grid, cell);
-    int along = inside ? samples_along(grid.cell) : 0;
-    // Half the extent along M's axes of the cube that a sample stands for.
-    vec3 reach = 0.5 * grid.cell / float(max(along, 1)) *
-                 (abs(grid.across_u) + abs(grid.across_v) + abs(grid.direction));
+    int across = inside ? samples_along(grid.cell) : 0, along = inside ? samples_along(grid.along) : 0;
+    vec3 samples = vec3(max(ivec3(across, across, along), 1));
+    // Half the extent along M's axes of the box that a sample stands for.
+    float ahead = grid.along / grid.cell * (samples.x / samples.z);
+    vec3 reach = 0.5 * grid.cell / samples.x *
+                 (abs(grid.across_u) + abs(grid.across_v) + ahead * abs(grid.direction));
     for (int k = 0; k < along; k++) {
-        for (int j = 0; j < along; j++) {
-            for (int i = 0; i < along; i++) {
-                vec3 p = propagate_to_m(grid, vec3(cell) + (vec3(i, j, k) + 0.5) / float(along));
+        for (int j = 0; j < across; j++) {
+            for (int i = 0; i < across; i++) {
+                vec3 p = propagate_to_m(grid, vec3(cell) + (vec3(i, j, k) + 0.5) / samples);
                 vec3 part = clamp((min(p + reach, medium.extent) - max(p - reach, 0.0)) /
                                   (2.0 * reach), 0.0, 1.0);
                 float covered = part.x * part.y * part.z;
@@ -55,10 +57,10 @@ void main()
         }
     }
     g /= max(sigma_s, vec3(1e-30));
-    float each = grid.cell / float(max(along * along * along, 1));
+    float each = grid.along / float(max(across * across * along, 1));
     float mu = dot(grid.direction, propagate_to_eye(camera, propagate_to_m(grid, vec3(cell) + 0.5)));
     for (uint c = 0u; c < args.channels; c++) {
-        cells[propagate_index(cell, n * args.channels + c, args.cells)] =
+        cells[propagate_index(cell, n * args.channels + c, args.cells, args.along)] =
             inside ? vec4(sigma_s[c] * each, sigma_a[c] * each, g[c], mu) : propagate_no_cell;
     }
 }

@@ -68,12 +68,12 @@ void main()
     }
     // Of the light that goes straight on, what comes from the middle of a cell to that of the next.
     float before = 1.0;
-    for (int z = 0; z < int(args.cells); z++) {
-        float h = (float(z) + 0.5) * grid.cell, share = 0.0;
+    for (int z = 0; z < int(args.along); z++) {
+        float h = (float(z) + 0.5) * grid.along, share = 0.0;
         for (int i = 0; i < LOOKS * LOOKS; i++) {
             share += found[i] > h ? 1.0 / float(LOOKS * LOOKS) : 0.0;
         }
-        lit[propagate_index(ivec3(column, z), n, args.cells)] = before > 0.0 ? share / before : 1.0;
+        lit[propagate_index(ivec3(column, z), n, args.cells, args.along)] = before > 0.0 ? share / before : 1.0;
         before = share;
     }
 }

@@ -10,6 +10,7 @@ TYN_UNIFORM(0, medium, medium_block medium);
 TYN_READ(1, ordinates, ordinates_block ordinates);
 TYN_WRITE(2, grids, propagate_grid grids[]);
 TYN_WRITE(3, places, propagate_place places[]);
+TYN_UPDATE(4, flight, uint flight[]);
 TYN_ARGS(propagate_rect_args args);
 
 // Mean cosine of an ordinate's light as it enters (section 5.1). The heuristic's w, the importance in
@@ -35,11 +36,20 @@ void main()
     bool used = i < count;
     ordinate o = ordinates.list[i];
     propagate_grid grid =
-        propagate_grid_of(medium.extent, used ? o.direction : vec3(0.0, 0.0, 1.0), args.cells);
+        propagate_grid_of(medium.extent, used ? o.direction : vec3(0.0, 0.0, 1.0), args.cells,
+                          args.cells_along);
     grid.size *= used ? 1u : 0u;
     grid.irradiance = used ? o.irradiance : vec3(0.0);
     grid.mean_cosine = used ? clamp(prefiltered(o, count), 0.0, 1.0) : 1.0;
     grid.channels = args.channels;
+    float stretch = propagate_stretch(grid);
+    if (args.cones == TYN_PROPAGATE_CONES_CELL && stretch != 1.0) {
+        grid.cone = inversesqrt(1.0 + stretch * stretch);
+    }
+    if (args.threshold > 0.0) {
+        float brightest = max(grid.irradiance.r, max(grid.irradiance.g, grid.irradiance.b));
+        atomicMax(flight[PROPAGATE_FLIGHT_BRIGHTEST], floatBitsToUint(max(brightest, 0.0)));
+    }
     grids[i] = grid;
     places[i] = propagate_place_of(grid);
 }

@@ -77,6 +77,7 @@ static void record(tyn_recorder *r, const void *data)
         .dims = {dims.x, dims.y, dims.z},
         .num_grids = p->num_grids,
         .grid_cells = p->grid_cells,
+        .grid_along = p->grid_along,
         .channels = p->channels,
         .tiles = tyn_rec_extent(r, PORT(LIGHT)).x / p->grid_cells,
     };

@@ -15,7 +15,8 @@ typedef struct tyn_residuum_params {
     int32_t cells;       // along the longest side, 4..64
     int32_t iterations;  // 0..256
     uint32_t num_grids;  // set by the method, as all below
-    uint32_t grid_cells; // of propagate_rect, along the longest side
+    uint32_t grid_cells; // of propagate_rect, along the longest side or across the light
+    uint32_t grid_along; // of propagate_rect, along the light; 0 = cubes
     uint32_t channels;   // of propagate_rect
     uint32_t mode;       // TYN_MEDIUM_*
     float extent[3];     // medium_block.extent, m

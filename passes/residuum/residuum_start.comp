@@ -15,7 +15,7 @@ TYN_WRITE(8, kept, vec4 out_kept[]);
 TYN_WRITE(9, sum, vec4 out_sum[]);
 TYN_ARGS(residuum_args args);
 
-// Power per volume of all grids at a point, W/m^3: a cell of edge c holds L c^2 in its volume c^3.
+// Power per volume of all grids at a point, W/m^3: a cell of length c along the light holds L A in its volume A c.
 vec3 power_at(vec3 p)
 {
     vec3 texel = 1.0 / vec3(textureSize(light, 0)), sum = vec3(0.0);
@@ -28,7 +28,8 @@ vec3 power_at(vec3 p)
             tile.x++;
             tile = tile.x == args.tiles ? uvec2(0u, tile.y + 1u) : tile;
         }
-        sum += length(places[n].rows[0].xyz) * places[n].irradiance * // 1 / c
+        vec4 row = args.grid_along == 0u ? places[n].rows[0] : places[n].rows[2]; // of cubes, any
+        sum += length(row.xyz) * places[n].irradiance *                           // 1 / c
                (args.channels == 1u ? found.rrr : found);
     }
     return sum;
@@ -45,7 +46,7 @@ void main()
     // two voxels of the medium.
     float longest = max(medium.extent.x, max(medium.extent.y, medium.extent.z));
     float voxel = min(medium.voxel.x, min(medium.voxel.y, medium.voxel.z));
-    int fine = clamp(int(ceil(box.dx * float(args.grid_cells) / longest - 1e-3)), 1, 4);
+    int fine = clamp(int(ceil(box.dx * float(max(args.grid_cells, args.grid_along)) / longest - 1e-3)), 1, 4);
     int along = clamp(int(ceil(0.5 * box.dx / voxel - 1e-3)), 1, 16);
     vec3 power = vec3(0.0), sigma_a = vec3(0.0);
     for (int n = 0; n < fine * fine * fine; n++) {

@@ -11,11 +11,14 @@
 #include "propagate_args.h"
 #include "shaders/phase/hg.glsl"
 
+const float PROPAGATE_CONE = 0.70710678; // cosine of 45 degrees, the half angle of Eq 3's cones
+
 // ---- the grid -----------------------------------------------------------------------------------
 
-// The box around the medium's box with one axis along the light, in cubes of its longest side / cells.
-// Across the light what the last cells reach beyond the medium is split evenly.
-propagate_grid propagate_grid_of(vec3 extent, vec3 direction, uint cells)
+// The box around the medium's box with one axis along the light, in cubes of its longest side / cells. Where the number
+// of cells along the light is given (not 0), they are as long as fills the box with them and as wide across, in squares, as
+// the longer of the two sides there / cells. Across the light what the last cells reach beyond the medium is split evenly.
+propagate_grid propagate_grid_of(vec3 extent, vec3 direction, uint cells, uint cells_along)
 {
     propagate_grid grid;
     vec3 d = normalize(direction);
@@ -27,22 +30,33 @@ propagate_grid propagate_grid_of(vec3 extent, vec3 direction, uint cells)
     vec3 v = cross(d, u);
     vec3 side = vec3(dot(abs(u), extent), dot(abs(v), extent), dot(abs(d), extent));
     vec3 low = vec3(dot(min(u, 0.0), extent), dot(min(v, 0.0), extent), dot(min(d, 0.0), extent));
-    grid.cell = max(side.x, max(side.y, side.z)) / float(cells);
-    grid.size = uvec3(clamp(ceil(side / grid.cell - 1e-3), vec3(1.0), vec3(cells)));
+    bool cubes = cells_along == 0u;
+    float across = max(side.x, side.y);
+    grid.cell = (cubes ? max(across, side.z) : across) / float(cells);
+    grid.along = cubes ? grid.cell : side.z / float(cells_along);
+    vec3 edges = vec3(grid.cell, grid.cell, grid.along);
+    vec3 most = vec3(vec2(cells), cubes ? cells : cells_along);
+    grid.size = uvec3(clamp(ceil(side / edges - 1e-3), vec3(1.0), most));
     vec2 surplus = vec2(grid.size.xy) * grid.cell - side.xy;
     low.xy -= 0.5 * surplus;
     grid.origin = u * low.x + v * low.y + d * low.z;
     grid.across_u = u;
     grid.across_v = v;
     grid.direction = d;
-    grid.pad = 0u;
+    grid.cone = PROPAGATE_CONE;
     return grid;
+}
+
+// Edge of a cell across the light over that along it; 1: a cube.
+float propagate_stretch(propagate_grid grid)
+{
+    return grid.cell / grid.along;
 }
 
 // Cell units <-> M. Cell i spans [i, i + 1].
 vec3 propagate_to_m(propagate_grid grid, vec3 cell)
 {
-    cell *= grid.cell;
+    cell *= vec3(grid.cell, grid.cell, grid.along);
     return grid.origin + grid.across_u * cell.x + grid.across_v * cell.y + grid.direction * cell.z;
 }
 
@@ -50,6 +64,7 @@ propagate_place propagate_place_of(propagate_grid grid)
 {
     propagate_place place;
     mat3 axes = mat3(grid.across_u, grid.across_v, grid.direction) / grid.cell;
+    axes[2] *= propagate_stretch(grid);
     for (int i = 0; i < 3; i++) {
         place.rows[i] = vec4(axes[i], -dot(axes[i], grid.origin));
     }
@@ -79,10 +94,10 @@ uint propagate_groups(uint cells, uint depth)
     return (cells + depth - 1u) / depth;
 }
 
-// Number of a cell in a buffer; `stack` = grid and channel.
-uint propagate_index(ivec3 cell, uint stack, uint cells)
+// Number of a cell in a buffer; `stack` = grid and channel, `cells` across the light and `along` it.
+uint propagate_index(ivec3 cell, uint stack, uint cells, uint along)
 {
-    return ((stack * cells + uint(cell.z)) * cells + uint(cell.y)) * cells + uint(cell.x);
+    return ((stack * along + uint(cell.z)) * cells + uint(cell.y)) * cells + uint(cell.x);
 }
 
 // ---- one hop (Eqs 1-4) ----------------------------------------------------------------------------
@@ -92,12 +107,11 @@ uint propagate_index(ivec3 cell, uint stack, uint cells)
 
 // A cell: L in units of the irradiance, 1 - a, and the fractions of L that go to each of the four
 // neighbours beside and to the one behind; the rest goes to the one in front. The fractions are the
-// distribution integrated over the cones of Eq 3 (45 and 135 degrees). With s^2 = 1 + a^2 - 2 a mu the
-// integral of Eq 1 below mu is (1 - a) (1 + mu) / (s (s + 1 + a)), which has no division by a. A lobe
-// that points backward is the mirror image.
-vec4 propagate_state(float light, float spread)
+// distribution integrated over the cones of Eq 3, whose half angle has the cosine `edge` (45 and 135 degrees:
+// PROPAGATE_CONE). With s^2 = 1 + a^2 - 2 a mu the integral of Eq 1 below mu is (1 - a) (1 + mu) / (s (s + 1 + a)), which
+// has no division by a. A lobe that points backward is the mirror image.
+vec4 propagate_state(float light, float spread, float edge)
 {
-    const float edge = 0.70710678;            // cos 45 degrees
     float narrow = min(spread, 2.0 - spread); // 1 - |a|
     float s_ahead = sqrt(narrow * narrow + 2.0 * (1.0 - narrow) * (1.0 - edge));
     float s_behind = sqrt(narrow * narrow + 2.0 * (1.0 - narrow) * (1.0 + edge));
@@ -143,7 +157,7 @@ float propagate_loss(float x)
 
 // A cell as buffer "cells" has it.
 struct propagate_cell {
-    float sigma_s; // optical depths over the edge of a cell
+    float sigma_s; // optical depths over the edge of a cell along the light
     float sigma_a;
     float g;
     float mu; // cosine between the grid's direction and that to the eye; below -1: not part of the grid
@@ -172,10 +186,45 @@ float propagate_more_spread(propagate_cell cell, float spread, uint rate)
 // its own half for all of its neighbours.
 vec4 propagate_outgoing(propagate_cell cell, float light, float spread, uint rate)
 {
-    vec4 state = propagate_state(light, spread);
+    vec4 state = propagate_state(light, spread, PROPAGATE_CONE);
     float kept = propagate_kept(cell);
     return vec4(vec3(propagate_part(state, 1), propagate_part(state, 0), propagate_part(state, -1)) * kept,
                 propagate_more_spread(cell, spread, rate));
+}
+
+// ---- cells that are not cubes ---------------------------------------------------------------------
+//
+// A hop to the side is shorter or longer than one along the light, by `stretch`: that fraction of the scattering and of the
+// absorption happens on it. What is handed on is power either way, whose fractions sum to 1.
+
+// The cell as light crosses it sideways.
+propagate_cell propagate_sideways(propagate_cell cell, float stretch)
+{
+    return propagate_cell(cell.sigma_s * stretch, cell.sigma_a * stretch, cell.g, cell.mu);
+}
+
+// Mean length of the hops by which a cell hands on its light, in edges along the light.
+float propagate_way(vec4 state, float stretch)
+{
+    return mix(1.0, stretch, 4.0 * state.z);
+}
+
+// Light that comes to the faces of a cell and its product with its spread: the same in the middle.
+vec2 propagate_arrived(propagate_cell cell, vec2 light, uint rate)
+{
+    float arrived = light.x * propagate_kept(cell);
+    float spread = light.x > 0.0 ? light.y / light.x : 1.0;
+    return vec2(arrived, arrived * propagate_more_spread(cell, spread, rate));
+}
+
+// As propagate_outgoing, of a cell in the state `state`; `beside` is the spread of what goes to the sides.
+vec4 propagate_outgoing_stretched(propagate_cell cell, float stretch, vec4 state, uint rate, out float beside)
+{
+    propagate_cell across = propagate_sideways(cell, stretch);
+    vec2 kept = vec2(propagate_kept(cell), propagate_kept(across));
+    beside = propagate_more_spread(across, state.y, rate);
+    return vec4(vec3(propagate_part(state, 1), propagate_part(state, 0), propagate_part(state, -1)) * kept.xyx,
+                propagate_more_spread(cell, state.y, rate));
 }
 
 // ---- what the eye gets (Eq 8) -----------------------------------------------------------------------

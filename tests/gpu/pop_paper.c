@@ -200,27 +200,32 @@ static void thin_furnace(void **state)
     tyn_view view;
     picture p;
     set_furnace(&scene, &view, 0.08f);
-    for (int filter = 0; filter < 2; filter++) {
-        picture_render(&p, t->dev, "pop-paper", &scene, &view,
-                       filter ? "propagate_rect.cells=12 propagate_rect.prefilter=exact"
-                              : "propagate_rect.cells=12 propagate_rect.prefilter=off",
-                       0);
+    static const char *const settings[] = {
+        "propagate_rect.cells=12 propagate_rect.prefilter=off",
+        "propagate_rect.cells=12 propagate_rect.prefilter=exact",
+        "propagate_rect.cells=8 propagate_rect.cells_along=24 propagate_rect.prefilter=off "
+        "propagate_rect.iterations=24",
+        "propagate_rect.cells=32 propagate_rect.cells_along=16 propagate_rect.prefilter=off",
+    };
+    for (int i = 0; i < 4; i++) {
+        picture_render(&p, t->dev, "pop-paper", &scene, &view, settings[i], 0);
         double sum = 0;
-        for (uint32_t i = 0; i < 3 * p.width * p.height; i++) {
-            assert_true(isfinite(p.rgb[i]));
-            sum += p.rgb[i];
+        for (uint32_t k = 0; k < 3 * p.width * p.height; k++) {
+            assert_true(isfinite(p.rgb[k]));
+            sum += p.rgb[k];
         }
         double expected = -expm1(-0.08) * 3 * p.width * p.height;
-        print_message("prefilter %s: %.4f of what a furnace shows\n", filter ? "exact" : "off",
-                      sum / expected);
+        print_message("%s: %.4f of what a furnace shows\n", settings[i], sum / expected);
         assert_within(fabs(sum / expected - 1), 0.04, NULL);
         picture_free(&p);
     }
     tyn_scene_finish(&scene);
 }
 
+// `more`: another setting and its value, or NULL.
 static tyn_report frame_report(gpu_test *t, tyn_offline **off, const tyn_scene *scene,
-                               const tyn_view *view, const char *name, const char *value)
+                               const tyn_view *view, const char *name, const char *value,
+                               const char *more, const char *more_value)
 {
     tyn_settings *settings;
     tyn_report report;
@@ -228,6 +233,9 @@ static tyn_report frame_report(gpu_test *t, tyn_offline **off, const tyn_scene *
     assert_int_equal(tyn_settings_set(settings, "propagate_rect.cells", "8", NULL), TYN_OK);
     assert_int_equal(tyn_settings_set(settings, "ordinates.count", "8", NULL), TYN_OK);
     assert_int_equal(tyn_settings_set(settings, name, value, NULL), TYN_OK);
+    if (more) {
+        assert_int_equal(tyn_settings_set(settings, more, more_value, NULL), TYN_OK);
+    }
     assert_int_equal(
         tyn_offline_create(t->dev, tyn_offline_params(.method = "pop-paper", .settings = settings),
                            off),
@@ -246,6 +254,19 @@ static const tyn_node_report *node_of(const tyn_report *report, const char *name
         }
     }
     return NULL;
+}
+
+// Of propagate_rect, those that were run.
+static double iterations(const tyn_report *report)
+{
+    const tyn_node_report *n = node_of(report, "propagate_rect");
+    assert_non_null(n);
+    for (uint32_t k = 0; k < n->num_work; k++) {
+        if (!strcmp(n->work[k].name, "iterations")) {
+            return n->work[k].amount;
+        }
+    }
+    return -1;
 }
 
 static uint32_t dispatches(const tyn_report *report)
@@ -268,7 +289,7 @@ static void dispatches_do_not_depend_on_ordinates(void **state)
     scene_add_sun(&scene, 1, -2, 0.5f, 2, 1.5f, 1);
     for (int i = 0; i < 3; i++) {
         tyn_report report = frame_report(t, &off, &scene, &view, "ordinates.count",
-                                         ((const char *[]){"1", "64", "256"})[i]);
+                                         ((const char *[]){"1", "64", "256"})[i], NULL, NULL);
         for (uint32_t k = 0; k < report.num_warnings; k++) { // only of what the method cannot
             assert_true(!strncmp(report.warnings[k], "accuracy:", 9));
         }
@@ -286,9 +307,10 @@ static void residuum_after(void **state)
     gpu_test *t = *state;
     static const struct {
         float sigma_s;
-        double iterations;
+        double iterations, coarse; // the latter with 4 cells along the light
         bool half_empty;
-    } cases[] = {{100, 8, false}, {2, 13, false}, {0.001f, 256, false}, {2, 13, true}};
+    } cases[] = {
+        {100, 8, 4, false}, {2, 13, 7, false}, {0.001f, 256, 256, false}, {2, 13, 7, true}};
     for (int i = 0; i < 4; i++) {
         tyn_scene scene;
         tyn_view view;
@@ -304,15 +326,26 @@ static void residuum_after(void **state)
             }
             scene.media[0].volume = 0;
         }
-        tyn_report report = frame_report(t, &off, &scene, &view, "residuum.on", "1");
-        const tyn_node_report *n = node_of(&report, "propagate_rect");
-        assert_non_null(n);
+        tyn_report report = frame_report(t, &off, &scene, &view, "residuum.on", "1", NULL, NULL);
         assert_non_null(node_of(&report, "residuum"));
-        for (uint32_t k = 0; k < n->num_work; k++) {
-            if (!strcmp(n->work[k].name, "iterations")) {
-                assert_near(n->work[k].amount, cases[i].iterations, 0);
-            }
-        }
+        assert_near(iterations(&report), cases[i].iterations, 0);
+        tyn_offline_destroy(&off);
+        // Light that is only looked at ends nothing while there is some; where little is left, there are fewer.
+        report = frame_report(t, &off, &scene, &view, "residuum.on", "1",
+                              "propagate_rect.threshold", "1e-30");
+        const double some = iterations(&report);
+        assert_true(i == 2 ? some > 8 && some <= cases[i].iterations : some == cases[i].iterations);
+        tyn_offline_destroy(&off);
+        report = frame_report(t, &off, &scene, &view, "residuum.on", "1",
+                              "propagate_rect.threshold", "0.3");
+        print_message("sigma_s %g: %g iterations, %g while there is light, %g with the stop\n",
+                      cases[i].sigma_s, cases[i].iterations, some, iterations(&report));
+        assert_true(iterations(&report) > 0 && iterations(&report) < some);
+        tyn_offline_destroy(&off);
+        // The grids are crossed in as many hops as they have cells along the light.
+        report = frame_report(t, &off, &scene, &view, "residuum.on", "1",
+                              "propagate_rect.cells_along", "4");
+        assert_near(iterations(&report), cases[i].coarse, 0);
         tyn_offline_destroy(&off);
         tyn_scene_finish(&scene);
     }

@@ -1,199 +1,12 @@
 // propagate_rect.c -- the six-neighbour propagation against reference states, a CPU twin in double
 // precision, and what must hold for any reading of the paper.
 #include "bound.h"
-#include "gpu_test.h"
 #include "numbers.h"
-#include "propagate_twin.h"
-#include "passes/propagate_rect/propagate_rect.h"
-#include "shaders/light/ordinate_args.h"
-#include "shaders/light/shadow_args.h"
-#include "shaders/surfaces/surface_args.h"
-#include "passes/propagate_rect/propagate_rect_args.h"
-#include "shaders/common/scene_args.h"
+#include "propagate_run.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PORT(name) PROPAGATE_RECT_PORT_##name
-
-enum { MAX_SUNS = 2, ATLAS = 64 };
-
-typedef struct setup {
-    struct medium_block medium;
-    const float *density;     // or sigma_s, RGBA, with the two below
-    const float *sigma_a, *g; // or NULL
-    struct light_block suns[MAX_SUNS];
-    struct camera_block camera;
-    struct ordinates_block ordinates; // behind the suns
-    const float *atlas;               // of a map of the first sun, ATLAS^2 depths, or NULL
-    struct shadow_light map;
-    uint32_t num_suns;
-    tyn_propagate_rect_params params;
-} setup;
-
-typedef struct texel {
-    float c[4];
-} texel;
-
-// Stacks of grids and channels: what of L leaves a cell ahead, to a side and behind, and its 1 - a; L_acc;
-// scattering and absorption depths of a cell, g, cosine to the eye.
-typedef struct outcome {
-    const texel *state, *cells;
-    const float *seen;
-    const struct propagate_grid *grids;
-    const float *lit; // per grid, not per stack
-} outcome;
-
-static double sent(const outcome *o, int q)
-{
-    const float *c = o->state[q].c;
-    return (double)c[0] + 4.0 * (double)c[1] + (double)c[2];
-}
-
-// L in the middle of the cell; the state is what has come to its faces.
-static double light_of(const outcome *o, int q)
-{
-    return sent(o, q) * exp(0.5 * o->cells[q].c[1]);
-}
-
-// What half a cell leaves of the mean cosine.
-static double kept_cosine(const outcome *o, int q, bool exact)
-{
-    double depth = o->cells[q].c[0], g = o->cells[q].c[2];
-    return depth <= 0 ? 1 : exact || g < 0 ? exp(-0.5 * (1 - g) * depth) : pow(g, 0.5 * depth);
-}
-
-static void set_medium(setup *s, const float extent[3], const uint32_t size[3],
-                       const float *density)
-{
-    s->density = density;
-    for (int i = 0; i < 3; i++) {
-        s->medium.extent[i] = extent[i];
-        s->medium.size[i] = size[i];
-        s->medium.voxel[i] = extent[i] / (float)size[i];
-    }
-}
-
-// The unit cube of 16^3 voxels under a sun of unit irradiance along +z, seen from `to_eye`.
-static setup unit_cube(const float *density, float sigma_s, float g, const float to_eye[3])
-{
-    setup s = {.suns[0] = {.color = {1, 1, 1}, .direction = {0, 0, 1}}};
-    set_medium(&s, (float[]){1, 1, 1}, (uint32_t[]){STATE_CELLS, STATE_CELLS, STATE_CELLS},
-               density);
-    tyn_pass_defaults(&tyn_pass_propagate_rect, &s.params);
-    s.params.cells = STATE_CELLS;
-    s.params.iterations = STATE_CELLS;
-    s.num_suns = s.params.channels = 1;
-    for (int i = 0; i < 3; i++) {
-        s.params.extent[i] = s.medium.extent[i];
-        s.params.size[i] = s.medium.size[i];
-    }
-    s.camera.orthographic = 1;
-    for (int i = 0; i < 3; i++) {
-        s.medium.sigma_s[i] = sigma_s;
-        s.medium.phase[i].g = g;
-        s.camera.forward[i] = -to_eye[i];
-    }
-    return s;
-}
-
-// A plate at y = 0.7 that ends at x = 0.5 and is wide otherwise; M is the world.
-static const struct surface_block plate = {
-    .to_world = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
-    .from_world = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
-    .lo = {-5, 0.7f, -5},
-    .num_triangles = 2,
-    .hi = {0.5f, 0.7f, 5},
-};
-static const struct surface_vertex plate_corners[] = {
-    {.position = {-5, 0.7f, -5}},
-    {.position = {0.5f, 0.7f, -5}},
-    {.position = {0.5f, 0.7f, 5}},
-    {.position = {-5, 0.7f, 5}},
-};
-static const struct surface_triangle plate_triangles[] = {{0, 1, 2, 0}, {0, 2, 3, 0}};
-
-static outcome run(gpu_test *t, const setup *s)
-{
-    const uint32_t *size = s->medium.size;
-    struct ordinates_block list = {.count = s->num_suns + s->ordinates.count};
-    for (uint32_t i = 0; i < list.count; i++) {
-        struct ordinate *o = &list.list[i];
-        if (i < s->num_suns) {
-            memcpy(o->irradiance, s->suns[i].color, sizeof o->irradiance);
-            memcpy(o->direction, s->suns[i].direction, sizeof o->direction);
-            o->mean_cosine = 1;
-        } else {
-            *o = s->ordinates.list[i - s->num_suns];
-        }
-    }
-    tyn_propagate_rect_params params = s->params;
-    params.num_ordinates += s->num_suns;
-    tyn_ref refs[PROPAGATE_RECT_NUM_PORTS] = {0};
-    tyn_graph_begin(t->graph);
-    refs[PORT(MEDIUM)] = gpu_buffer(t, "medium", &s->medium, sizeof s->medium);
-    refs[PORT(ORDINATES)] = gpu_buffer(t, "ordinates", &list, sizeof list);
-    refs[PORT(CAMERA)] = gpu_buffer(t, "camera", &s->camera, sizeof s->camera);
-    tyn_extent texels = {size[0], size[1], size[2]};
-    int channels = s->params.mode == TYN_MEDIUM_COEFFICIENTS ? 4 : 1;
-    refs[PORT(DENSITY)] = gpu_image(t, "density", TYN_IMAGE_3D, texels, channels, s->density);
-    if (s->sigma_a) {
-        refs[PORT(SIGMA_A)] = gpu_image(t, "sigma_a", TYN_IMAGE_3D, texels, 4, s->sigma_a);
-        refs[PORT(G)] = gpu_image(t, "g", TYN_IMAGE_3D, texels, 4, s->g);
-    }
-    static struct shadow_light maps[TYN_SHADOW_MAX];
-    maps[0] = s->map;
-    if (s->atlas) {
-        refs[PORT(SHADOW_ATLAS)] =
-            gpu_image(t, "shadow_atlas", TYN_IMAGE_2D, (tyn_extent){ATLAS, ATLAS, 1}, 1, s->atlas);
-        refs[PORT(SHADOWS)] = gpu_buffer(t, "shadows", maps, sizeof maps);
-    }
-    if (params.num_triangles) {
-        refs[PORT(SURFACES)] = gpu_buffer(t, "surfaces", &plate, sizeof plate);
-        refs[PORT(VERTICES)] = gpu_buffer(t, "vertices", plate_corners, sizeof plate_corners);
-        refs[PORT(TRIANGLES)] = gpu_buffer(t, "triangles", plate_triangles, sizeof plate_triangles);
-    }
-    assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_propagate_rect, &params, refs), TYN_OK);
-    static const int ports[] = {PORT(GRIDS), PORT(CELLS), PORT(STATE), PORT(SUM), PORT(LIT)};
-    for (int i = 0; i < 5; i++) {
-        tyn_graph_output(t->graph, tyn_pass_propagate_rect.ports[ports[i]].name, refs[ports[i]],
-                         true);
-    }
-    tyn_graph_output(t->graph, "seen", refs[PORT(SEEN)], true);
-    if (params.keep_light) {
-        tyn_graph_output(t->graph, "light", refs[PORT(LIGHT)], true);
-    }
-    gpu_run(t);
-    return (outcome){gpu_map(t, "state"), gpu_map(t, "cells"), gpu_map(t, "sum"),
-                     gpu_map(t, "grids"), gpu_map(t, "lit")};
-}
-
-static double total(const outcome *o, int first, int n)
-{
-    double sum = 0;
-    for (int q = first; q < first + n; q++) {
-        sum += sent(o, q);
-    }
-    return sum;
-}
-
-// Largest relative difference (of values below 1e-6: absolute, in 1e-6) where `weight` > 1e-6 of its
-// maximum.
-static double worst(const double *found, const double *expected, int n, const double *weight)
-{
-    double top = 0, result = 0;
-    for (int i = 0; i < n; i++) {
-        top = fmax(top, weight[i]);
-    }
-    for (int i = 0; i < n; i++) {
-        if (weight[i] > 1e-6 * top) {
-            double scale = fmax(fabs(expected[i]), 1e-6);
-            result = maximum(result, fabs(found[i] - expected[i]) / scale);
-        }
-    }
-    return result;
-}
 
 // ---- reference states -------------------------------------------------------------------------
 
@@ -223,10 +36,10 @@ static void reference_states(void **state)
         state_density(records, num, r, density);
         setup s = unit_cube(density, 1, (float)r->g, to_eye);
         s.params.iterations = r->iteration;
-        outcome o = run(*state, &s);
+        outcome o = propagate_run(*state, &s);
         for (int q = 0; q < STATE_TOTAL; q++) {
             double kept = kept_cosine(&o, q, false);
-            values[0][q] = inscatter ? o.seen[q] : light_of(&o, q);
+            values[0][q] = inscatter ? o.seen[q] : light_of(&o, q, 1);
             values[1][q] = kept > 0 ? (1.0 - (double)o.state[q].c[3]) / kept : 0;
             values[2][q] = r->values[0][q];
             values[3][q] = r->values[1][q];
@@ -244,93 +57,6 @@ static void reference_states(void **state)
 
 // ---- all readings, oblique coloured light, perspective -----------------------------------------
 
-enum { N = 12, CELLS = N * N * N };
-
-static setup oblique(float *density)
-{
-    static const uint32_t size[3] = {12, 16, 10};
-    static const float extent[3] = {1.0f, 1.4f, 0.8f};
-    setup s = {
-        .suns = {{.color = {1, 2, 3}, .direction = {0.48f, 0.6f, 0.64f}},
-                 {.color = {4, 0.5f, 1}, .direction = {0, -1, 0}}},
-        .camera = {.origin = {0.3f, 0.9f, 3}, .forward = {0, 0, -1}},
-        .medium = {.sigma_s = {2, 5, 9},
-                   .sigma_a = {0.5f, 0.1f, 0},
-                   .phase = {{.g = 0.8f}, {.g = 0}, {.g = -0.3f}}},
-    };
-    srand(7);
-    for (uint32_t q = 0; q < size[0] * size[1] * size[2]; q++) {
-        density[q] = rand() % 4 ? (float)(rand() % 1000) * 1e-3f : 0;
-    }
-    set_medium(&s, extent, size, density);
-    tyn_pass_defaults(&tyn_pass_propagate_rect, &s.params);
-    s.params.cells = N;
-    s.params.iterations = 7;
-    s.num_suns = MAX_SUNS;
-    s.params.channels = 3;
-    memcpy(s.params.extent, extent, sizeof extent);
-    memcpy(s.params.size, size, sizeof size);
-    return s;
-}
-
-static void to_m(const struct propagate_grid *grid, const double cell[3], double p[3])
-{
-    for (int i = 0; i < 3; i++) {
-        p[i] = grid->origin[i] +
-               grid->cell * (grid->across_u[i] * cell[0] + grid->across_v[i] * cell[1] +
-                             grid->direction[i] * cell[2]);
-    }
-}
-
-// One channel of one grid against the twin. The aligned grid is that of the device, whose cells the
-// test `grids_span_the_medium` checks.
-static double compare_channel(const setup *s, const outcome *o, int index, int c)
-{
-    static double sigma_s[CELLS], sigma_a[CELLS], g[CELLS], mu[CELLS], light[CELLS], cosine[CELLS],
-        seen[CELLS], found[3][CELLS], spread[CELLS], lit[CELLS];
-    const struct propagate_grid *grid = &o->grids[index];
-    const int n[3] = {(int)grid->size[0], (int)grid->size[1], (int)grid->size[2]};
-    int total = n[0] * n[1] * n[2], texels[CELLS];
-    for (int q = 0; q < total; q++) {
-        int i = q % n[0], j = q / n[0] % n[1], k = q / (n[0] * n[1]);
-        int at = texels[q] = (((3 * index + c) * N + k) * N + j) * N + i;
-        double p[3], to_eye[3], r = 0;
-        to_m(grid, (double[]){i + 0.5, j + 0.5, k + 0.5}, p);
-        mu[q] = 0;
-        for (int x = 0; x < 3; x++) {
-            to_eye[x] = s->camera.origin[x] - p[x];
-            r += to_eye[x] * to_eye[x];
-            mu[q] += to_eye[x] * grid->direction[x];
-        }
-        mu[q] /= sqrt(r);
-        sigma_s[q] = o->cells[at].c[0] / grid->cell;
-        sigma_a[q] = o->cells[at].c[1] / grid->cell;
-        g[q] = o->cells[at].c[2];
-        lit[q] = s->params.num_triangles ? o->lit[((index * N + k) * N + j) * N + i] : 1;
-    }
-    twin_grid twin = {{n[0], n[1], n[2]},
-                      grid->cell,
-                      sigma_s,
-                      sigma_a,
-                      g,
-                      (twin_init)s->params.init,
-                      s->params.rate == TYN_PROPAGATE_RATE_EXACT,
-                      s->params.last_event != 0,
-                      mu,
-                      grid->mean_cosine,
-                      lit};
-    twin_propagate(&twin, s->params.iterations, light, cosine, seen);
-    for (int q = 0; q < total; q++) {
-        found[0][q] = light_of(o, texels[q]);
-        found[1][q] = o->state[texels[q]].c[3];
-        found[2][q] = o->seen[texels[q]];
-        spread[q] = 1 - cosine[q] * kept_cosine(o, texels[q], twin.exact_rate);
-    }
-    return maximum(
-        maximum(worst(found[0], light, total, light), worst(found[1], spread, total, light)),
-        worst(found[2], seen, total, seen));
-}
-
 static void every_reading(void **state)
 {
     static float density[12 * 16 * 10];
@@ -339,7 +65,7 @@ static void every_reading(void **state)
         s.params.init = reading & 3;
         s.params.rate = reading >> 2 & 1;
         s.params.last_event = (uint32_t)(reading >> 3);
-        outcome o = run(*state, &s);
+        outcome o = propagate_run(*state, &s);
         double difference = 0;
         for (int sun = 0; sun < MAX_SUNS; sun++) {
             for (int c = 0; c < 3; c++) {
@@ -391,7 +117,7 @@ static void surfaces_stop_light(void **state)
     s.params.num_mapped = 1;
     s.params.num_triangles = 2;
     for (s.params.init = 0; s.params.init < 4; s.params.init++) {
-        outcome o = run(*state, &s);
+        outcome o = propagate_run(*state, &s);
         int partly = 0, dark = 0;
         double off = 0, difference = 0;
         for (int sun = 0; sun < MAX_SUNS; sun++) {
@@ -435,25 +161,6 @@ static void surfaces_stop_light(void **state)
 
 // ---- ordinates --------------------------------------------------------------------------------
 
-// Directions spread evenly over the sphere, on a spiral; regions of unequal size.
-static void set_ordinates(setup *s, uint32_t count)
-{
-    s->ordinates.count = count;
-    s->params.num_ordinates = count;
-    for (uint32_t n = 0; n < count; n++) {
-        struct ordinate *o = &s->ordinates.list[n];
-        double z = 1 - (2 * n + 1.0) / count, r = sqrt(1 - z * z), phi = 2.399963 * n;
-        o->direction[0] = (float)(r * cos(phi));
-        o->direction[1] = (float)(r * sin(phi));
-        o->direction[2] = (float)z;
-        o->solid_angle = (float)(12.566371 / count * (n % 2 ? 0.5 : 1.5));
-        o->mean_cosine = (float)(1 - o->solid_angle / 12.566371);
-        for (int c = 0; c < 3; c++) {
-            o->irradiance[c] = (float)(1 + (n + (uint32_t)c) % 3);
-        }
-    }
-}
-
 static uint32_t dispatches_of(gpu_test *t)
 {
     const tyn_node_stats *stats;
@@ -471,14 +178,14 @@ static void ordinates(void **state)
 {
     static float density[12 * 16 * 10];
     setup s = oblique(density);
-    outcome o = run(*state, &s);
+    outcome o = propagate_run(*state, &s);
     uint32_t dispatches = dispatches_of(*state);
     for (int32_t filter = 0; filter < 3; filter++) {
         s.params.prefilter = filter;
         s.params.beta = 3;
         s.params.init = filter == 1 ? TYN_PROPAGATE_INIT_FIRST_COLLISION : TYN_PROPAGATE_INIT_ENTRY;
         set_ordinates(&s, 9);
-        o = run(*state, &s);
+        o = propagate_run(*state, &s);
         assert_int_equal(dispatches_of(*state), dispatches);
         double difference = 0;
         for (int n = 0; n < 9; n++) {
@@ -497,7 +204,7 @@ static void ordinates(void **state)
     }
     // Fewer than there is room for: the rest is dark.
     s.ordinates.count = 4;
-    o = run(*state, &s);
+    o = propagate_run(*state, &s);
     for (int q = (MAX_SUNS + 4) * 3 * CELLS; q < (MAX_SUNS + 9) * 3 * CELLS; q++) {
         assert_true(sent(&o, q) == 0 && o.seen[q] == 0);
     }
@@ -514,7 +221,7 @@ static void batches(void **state)
     set_ordinates(&s, 9);
     for (int32_t batch = 9; batch > 0; batch -= 4) { // 9, 5 + 4, nine times 1
         s.params.buffer_bytes = (uint32_t)batch * 3 * CELLS * 16;
-        run(*state, &s);
+        propagate_run(*state, &s);
         for (int i = 0; i < 2; i++) {
             tyn_extent size;
             const char *name = i ? "light" : "seen";
@@ -543,7 +250,7 @@ static void many_ordinates(void **state)
     s.params.iterations = 10;
     s.num_suns = 0;
     set_ordinates(&s, 64);
-    outcome o = run(*state, &s);
+    outcome o = propagate_run(*state, &s);
     for (int n = 0; n < 64; n++) {
         double power = total(&o, n * 8000, 8000) / o.grids[n].size[0] / o.grids[n].size[1];
         assert_true(power > 0.5 && power < 1.00001);
@@ -558,7 +265,7 @@ static void grids_span_the_medium(void **state)
 {
     static float density[12 * 16 * 10];
     setup s = oblique(density);
-    outcome o = run(*state, &s);
+    outcome o = propagate_run(*state, &s);
     for (int sun = 0; sun < MAX_SUNS; sun++) {
         const struct propagate_grid *grid = &o.grids[sun];
         const float *axes[3] = {grid->across_u, grid->across_v, grid->direction};
@@ -641,7 +348,7 @@ static void shrunk_medium(void **state)
                 sums[2][c] += voxel * scattering * (mode ? g[4 * q + c] : s.medium.phase[c].g);
             }
         }
-        outcome o = run(*state, &s);
+        outcome o = propagate_run(*state, &s);
         double area = o.grids[0].cell * o.grids[0].cell, worst = 0;
         for (int c = 0; c < 3; c++) {
             double found[3] = {0};
@@ -675,7 +382,7 @@ static void fractions_sum_to_one(void **state)
         setup s = unit_cube(density, 0.5f, cosines[i], (float[]){1, 0, 0});
         s.params.iterations = 1;
         s.params.init = TYN_PROPAGATE_INIT_FIRST_COLLISION;
-        outcome o = run(*state, &s);
+        outcome o = propagate_run(*state, &s);
         double injected = -expm1(-0.5 / STATE_CELLS);
         double sum = total(&o, 0, STATE_TOTAL) / injected;
         print_message("a = %g: sum of fractions - 1 = %.1e\n", cosines[i], sum - 1);
@@ -690,7 +397,7 @@ static void injected_power_is_one(void **state)
     memset(density, 0, sizeof density);
     setup s = unit_cube(density, 1, 0.6f, (float[]){1, 0, 0});
     for (s.params.iterations = 1; s.params.iterations < STATE_CELLS; s.params.iterations += 7) {
-        outcome o = run(*state, &s);
+        outcome o = propagate_run(*state, &s);
         assert_near(total(&o, 0, STATE_TOTAL) / (STATE_CELLS * STATE_CELLS), 1, 1e-6);
     }
 }
@@ -709,7 +416,7 @@ static void extremes(void **state)
         s.medium.sigma_a[1] = sigmas[i % 5]; // the second channel absorbs as well
         s.params.channels = 3;
         s.params.rate = i & 1;
-        outcome o = run(*state, &s);
+        outcome o = propagate_run(*state, &s);
         for (int q = 0; q < 3 * STATE_TOTAL; q++) {
             const float *c = o.state[q].c;
             assert_true(c[0] >= 0 && c[1] >= 0 && c[2] >= 0 && isfinite(c[0] + c[1] + c[2]));
@@ -733,7 +440,7 @@ static void colour_of_the_light(void **state)
     setup s = unit_cube(density, 3, 0.5f, (float[]){1, 0, 0});
     s.suns[0].color[1] = 0;
     s.suns[0].color[2] = 7;
-    outcome o = run(*state, &s);
+    outcome o = propagate_run(*state, &s);
     assert_near(o.grids[0].irradiance[1], 0, 0);
     assert_near(o.grids[0].irradiance[2], 7, 0);
     assert_int_equal(o.grids[0].channels, 1);

@@ -30,6 +30,27 @@ static double mean_exp(double tau)
     return tau < 1e-8 ? 1 : -expm1(-tau) / tau;
 }
 
+static double across(const twin_grid *t)
+{
+    return t->across > 0 ? t->across : t->dx;
+}
+
+// Fraction of a cell's light that goes `layers` steps along the light (Eqs 2 and 3).
+static double fraction(const twin_grid *t, double a, int layers)
+{
+    double angle = t->cell_cones ? atan(across(t) / t->dx) : PI / 4;
+    double front = a >= 1 ? 0 : twin_hg_below(cos(angle), a);
+    double back = a >= 1 ? 0 : twin_hg_below(cos(PI - angle), a);
+    return layers > 0 ? 1 - front : layers < 0 ? back : (front - back) / 4;
+}
+
+// Mean length of the half hops by which a cell hands on its light, in edges along the light.
+static double way_out(const twin_grid *t, double a)
+{
+    double sideways = 4 * fraction(t, a, 0);
+    return 0.5 * (1 - sideways + sideways * across(t) / t->dx);
+}
+
 static void start(const twin_grid *t, double *light, double *cosine, double *seen)
 {
     int layer = t->n[0] * t->n[1];
@@ -51,7 +72,7 @@ static void start(const twin_grid *t, double *light, double *cosine, double *see
                 light[q] = beam * t->sigma_s[q] * t->dx;
                 cosine[q] = g * t->mean_cosine;
                 seen[q] = beam * twin_hg(t->mu[q], clamp_lobe(cosine[q])) +
-                          0.5 * light[q] *
+                          way_out(t, cosine[q]) * light[q] *
                               twin_hg(t->mu[q], clamp_lobe(cosine[q] * (t->last_event ? g : 1)));
                 break;
             default:
@@ -62,14 +83,6 @@ static void start(const twin_grid *t, double *light, double *cosine, double *see
     }
 }
 
-// Fraction of a cell's light that goes `layers` steps along the light (Eqs 2 and 3).
-static double fraction(double a, int layers)
-{
-    double front = a >= 1 ? 0 : twin_hg_below(cos(PI / 4), a);
-    double back = a >= 1 ? 0 : twin_hg_below(cos(3 * PI / 4), a);
-    return layers > 0 ? 1 - front : layers < 0 ? back : (front - back) / 4;
-}
-
 static double decay(const twin_grid *t, double g, double tau)
 {
     if (tau <= 0) {
@@ -78,13 +91,14 @@ static double decay(const twin_grid *t, double g, double tau)
     return t->exact_rate || g < 0 ? exp(-(1 - g) * tau) : pow(g, tau);
 }
 
+// `way`: the light times the length of its half hops into the cell, in edges along the light.
 static void gather(const twin_grid *t, int i, int j, int k, const double *light,
-                   const double *cosine, double *sum, double *weighted)
+                   const double *cosine, double *sum, double *weighted, double *way)
 {
     static const int step[6][3] = {{0, 0, -1}, {0, 0, 1},  {-1, 0, 0},
                                    {1, 0, 0},  {0, -1, 0}, {0, 1, 0}};
     int q = (k * t->n[1] + j) * t->n[0] + i;
-    *sum = *weighted = 0;
+    *sum = *weighted = *way = 0;
     for (int s = 0; s < 6; s++) {
         int x = i + step[s][0], y = j + step[s][1], z = k + step[s][2];
         if (x < 0 || y < 0 || z < 0 || x >= t->n[0] || y >= t->n[1] || z >= t->n[2]) {
@@ -94,11 +108,13 @@ static void gather(const twin_grid *t, int i, int j, int k, const double *light,
         double scattering = t->sigma_s[p] + t->sigma_s[q];
         double g =
             scattering > 0 ? (t->sigma_s[p] * t->g[p] + t->sigma_s[q] * t->g[q]) / scattering : 0;
-        double moved = light[p] * exp(-0.5 * (t->sigma_a[p] + t->sigma_a[q]) * t->dx) *
-                       fraction(cosine[p], -step[s][2]);
+        double hop = step[s][2] ? t->dx : across(t);
+        double moved = light[p] * exp(-0.5 * (t->sigma_a[p] + t->sigma_a[q]) * hop) *
+                       fraction(t, cosine[p], -step[s][2]);
         moved *= t->lit && step[s][2] < 0 ? t->lit[q] : 1;
         *sum += moved;
-        *weighted += moved * cosine[p] * decay(t, g, 0.5 * scattering * t->dx);
+        *weighted += moved * cosine[p] * decay(t, g, 0.5 * scattering * hop);
+        *way += 0.5 * moved * hop / t->dx;
     }
 }
 
@@ -114,12 +130,13 @@ void twin_propagate(const twin_grid *t, int iterations, double *light, double *c
         for (int k = 0, q = 0; k < t->n[2]; k++) {
             for (int j = 0; j < t->n[1]; j++) {
                 for (int i = 0; i < t->n[0]; i++, q++) {
-                    double sum, weighted;
-                    gather(t, i, j, k, old_light, old_cosine, &sum, &weighted);
+                    double sum, weighted, way;
+                    gather(t, i, j, k, old_light, old_cosine, &sum, &weighted, &way);
                     light[q] = sum;
                     cosine[q] = sum > 0 ? weighted / sum : 0;
                     double lobe = t->last_event ? t->g[q] * cosine[q] : cosine[q];
-                    seen[q] += sum * twin_hg(t->mu[q], clamp_lobe(lobe));
+                    way += sum * way_out(t, cosine[q]);
+                    seen[q] += way * twin_hg(t->mu[q], clamp_lobe(lobe));
                 }
             }
         }

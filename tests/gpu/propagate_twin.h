@@ -13,7 +13,7 @@ typedef enum twin_init {
 // A grid with light of unit irradiance along +z. Arrays of n[0] n[1] n[2], x fastest.
 typedef struct twin_grid {
     int n[3];
-    double dx; // m
+    double dx; // edge of the cells along the light, m
     const double *sigma_s, *sigma_a, *g;
     twin_init init;
     bool exact_rate, last_event;
@@ -21,6 +21,8 @@ typedef struct twin_grid {
     double mean_cosine; // of the light as it enters; 1 = a beam
     // Share of the light from the cell before that surfaces let into each, or NULL.
     const double *lit;
+    double across;   // edge of the cells across the light, m; 0 = dx
+    bool cell_cones; // the cone of what goes ahead is that of the cell's end, else of 45 degrees
 } twin_grid;
 
 // L, a and the sum of what went to the eye (Eq 8) after some iterations.
