@@ -2,6 +2,7 @@
 #include "app.h"
 #include "devices.h"
 #include "info_scene.h"
+#include "machine.h"
 #include "scene_setup.h"
 #include "stats.h"
 #include <stdio.h>
@@ -12,6 +13,7 @@
 typedef struct info_args {
     scene_options scene;
     view_options view;
+    opt_list plugins;
     bool devices, passes, methods, json, quiet;
 } info_args;
 
@@ -99,7 +101,8 @@ static void print_methods(void)
     for (uint32_t i = 0; i < tyn_num_methods(); i++) {
         tyn_method_info m;
         tyn_method_at(i, &m);
-        printf("%-10s %s\n%-10s passes:", m.name, m.summary, "");
+        printf("%-10s %s%s%s%s\n%-10s passes:", m.name, m.summary, m.plugin ? " (plugin " : "",
+               m.plugin ? m.plugin : "", m.plugin ? ")" : "", "");
         for (const tyn_pass_desc *const *pass = m.passes; *pass; pass++) {
             printf(" %s", (*pass)->name);
         }
@@ -183,6 +186,7 @@ static const option info_table[] = {
     {0, "passes", OPT_FLAG, AT(passes), NULL, "every pass with its parameters"},
     {0, "methods", OPT_FLAG, AT(methods), NULL, "every method with its passes"},
     {0, "json", OPT_FLAG, AT(json), NULL, "of SCENE: print JSON"},
+    PLUGIN_OPTION(AT(plugins)),
     {'q', "quiet", OPT_FLAG, AT(quiet), NULL, "no warnings"},
 };
 static const opt_group groups[] = {

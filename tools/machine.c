@@ -11,6 +11,7 @@
 const option machine_table[MACHINE_TABLE_SIZE] = {
     {0, "device", OPT_TEXT, offsetof(machine_options, device), "INDEX|NAME",
      "which device ('tyndall info --devices'); else a discrete, an integrated, any other"},
+    PLUGIN_OPTION(offsetof(machine_options, plugins)),
     {'q', "quiet", OPT_FLAG, offsetof(machine_options, quiet), NULL,
      "errors only: no progress, notes or warnings"},
 };

@@ -1,14 +1,23 @@
 // machine.h -- the device that --device names, with its pipelines cached on disk.
 #pragma once
 #include "app.h"
-#include <tyndall/device.h>
+#include <tyndall/registry.h>
+
+// --plugin FILE.so: loaded when it is read, so that methods and passes of the rest of the line may be its own.
+#define PLUGIN_OPTION(at)                                                                          \
+    {                                                                                              \
+        0, "plugin", OPT_LIST, at, "FILE.so",                                                      \
+            "load passes and methods of others (docs/writing-a-plugin.md); repeatable",            \
+            .given = tyn_plugin_load                                                               \
+    }
 
 typedef struct machine_options {
     const char *device;
+    opt_list plugins;
     bool quiet;
 } machine_options;
 extern const option machine_table[];
-enum { MACHINE_TABLE_SIZE = 2 };
+enum { MACHINE_TABLE_SIZE = 3 };
 
 typedef struct machine {
     tyn_device *device;

@@ -240,7 +240,7 @@ static opt_outcome take_option(const command *cmd, int argc, char **argv, int *i
         }
         return OPT_WRONG;
     }
-    return OPT_RUN;
+    return o->given && o->given(text, log) != TYN_OK ? OPT_WRONG : OPT_RUN;
 }
 
 opt_outcome options_parse(const command *cmd, int argc, char **argv, void *args, const tyn_log *log)

@@ -41,6 +41,8 @@ typedef struct option {
     const char *doc;          // one line
     double def, min, max;     // UINT, NUMBER: default and inclusive range (max 0 = no limit)
     const char *const *names; // TEXT: the words allowed, NULL-terminated; NULL = any
+    // LIST: what is done with a value as soon as it is read, NULL = nothing. Not TYN_OK: wrong, and a line was logged.
+    tyn_result (*given)(const char *value, const tyn_log *log);
 } option;
 
 typedef struct opt_group {

@@ -3,6 +3,7 @@
 #include "base/hash.h"
 #include "frame/env_cdf.h"
 #include "gpu/device.h"
+#include "registry/registry.h"
 #include "passes/medium/medium.h"
 #include <stdlib.h>
 #include <string.h>
@@ -129,6 +130,7 @@ tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
                      .log = log,
                      .warn = tyn_context_warn,
                      .warn_user = ctx};
+    job->hooks = tyn_picture_hooks(&job->num_hooks);
     memcpy(job->view_to_clip, frame->view_to_clip, sizeof job->view_to_clip);
     return TYN_OK;
 }

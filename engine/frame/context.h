@@ -1,8 +1,10 @@
 // context.h -- what a context keeps, and the way of a frame through it: check, build, upload, declare, record.
 #pragma once
 #include <tyndall/context.h>
+#include <tyndall/extend/method.h>
 #include "frame/frame_scene.h"
-#include "methods/method.h"
+#include "graph/graph.h"
+#include "scene/env_suns.h"
 
 enum { MAX_WARNINGS = 32 };
 

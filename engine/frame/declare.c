@@ -1,6 +1,6 @@
 // declare.c -- a frame as nodes of the graph.
 #include "frame/context.h"
-#include "methods/limits.h"
+#include <tyndall/extend/limits.h>
 
 tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame)
 {

@@ -1,5 +1,6 @@
 // frame_scene.c -- turns a scene and a view into the blocks that shaders read.
 #include "frame/frame_scene.h"
+#include "scene/phase.h"
 #include "shaders/light/shadow_args.h"
 #include <math.h>
 #include <string.h>
@@ -339,7 +340,7 @@ static void build_camera(tyn_frame_scene *out, const tyn_view *view, const rigid
 static void build_map_suns(tyn_frame_scene *out, const tyn_map_light *map)
 {
     const struct env_block *env = &out->environment;
-    out->map = *map;
+    out->map = map;
     for (uint32_t i = 0; i < map->num_suns; i++) {
         const tyn_map_sun *sun = &map->suns[i];
         struct light_block *b = &out->lights.suns[out->lights.num_suns++];

@@ -1,7 +1,8 @@
 // frame_scene.h -- turns a scene and a view into the blocks that shaders read.
 #pragma once
-#include "job/job.h"
+#include <tyndall/extend/job.h>
 #include "frame/surfaces.h"
+#include "scene/env_suns.h"
 
 // Everything in the medium frame M (scene_args.h). `map` is what tyn_map_light_find says of the scene's
 // environment, `surfaces` what was made of its surfaces. Errors are one log line.

@@ -1,5 +1,5 @@
 // job.c -- what methods give the graph of what a job asks for.
-#include "job/job.h"
+#include <tyndall/extend/job.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -31,6 +31,15 @@ void tyn_job_counters(tyn_graph *g, const tyn_job *job, const tyn_pass_desc *pas
     if (job->readback && ref.resource) {
         tyn_graph_output(g, pass->name, ref, true);
     }
+}
+
+uint32_t tyn_job_hooks_read(const tyn_job *job)
+{
+    uint32_t all = 0;
+    for (uint32_t i = 0; i < job->num_hooks; i++) {
+        all |= job->hooks[i]->reads(job);
+    }
+    return all;
 }
 
 void tyn_job_warn(const tyn_job *job, const char *format, ...)

@@ -1,5 +1,5 @@
 // lights.c -- lights of a scene as shaders see them.
-#include "job/lights.h"
+#include <tyndall/extend/frame_scene.h>
 #include <string.h>
 
 _Static_assert((int)TYN_LIGHT_DIRECTIONAL == TYN_LIGHT_KIND_DIRECTIONAL &&

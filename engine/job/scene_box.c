@@ -1,5 +1,5 @@
 // scene_box.c -- figures of a frame's scene: boxes, periods, range of g.
-#include "job/job.h"
+#include <tyndall/extend/job.h>
 #include <math.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-// passes.h -- the passes of each kind of source, for methods' tables.
+// passes.h -- the passes of each kind of source, by their params and ports.
 #pragma once
 #include "passes/medium/medium.h"
 #include "passes/beam/beam.h"
@@ -20,12 +20,5 @@
 #include "passes/lattice_ordinates/lattice_ordinates.h"
 #include "passes/lattice_lamps/lattice_lamps.h"
 
-#define TYN_MEDIUM_PASSES &tyn_pass_medium
-#define TYN_SUN_PASSES &tyn_pass_beam, &tyn_pass_shadow_map, &tyn_pass_light_cells
-#define TYN_LAMP_PASSES &tyn_pass_radial_beam
-#define TYN_VIRTUAL_LIGHT_PASSES &tyn_pass_rsm, &tyn_pass_vpl
-#define TYN_SKY_PASSES &tyn_pass_env_importance, &tyn_pass_importance, &tyn_pass_ordinates
-#define TYN_CELL_PASSES                                                                            \
-    &tyn_pass_lattice_cells, &tyn_pass_walls, &tyn_pass_wall_light, &tyn_pass_rooms,               \
-        &tyn_pass_columns_average, &tyn_pass_columns, &tyn_pass_lattice_source,                    \
-        &tyn_pass_lattice_ordinates, &tyn_pass_lattice_lamps
+// For the tables of methods: TYN_SUN_PASSES(TYN_PASS_ADDRESS).
+#define TYN_PASS_ADDRESS(name) &tyn_pass_##name

@@ -1,11 +1,12 @@
 // sky.c -- the light of an environment map as principal ordinates.
 #include "light/sources.h"
+#include "scene/env_suns.h"
 #include <tyndall/registry.h>
 #include <string.h>
 
 static void add_env_importance(tyn_graph *g, const tyn_job *job, tyn_ref *sky, tyn_ref *sums)
 {
-    const tyn_map_light *map = &job->frame->map;
+    const tyn_map_light *map = job->frame->map;
     tyn_env_importance_params params;
     tyn_settings_params(job->settings, &tyn_pass_env_importance, &params);
     params.suns.num_suns = map->num_suns;

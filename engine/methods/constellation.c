@@ -4,8 +4,8 @@
 // Navarro, Gutierrez and Seron, "Interactive HDR lighting of dynamic participating media" (The Visual Computer 24, 2008).
 // Light scatters once. docs/constellation.md says what is as published and what is beyond it.
 #include "light/sources.h"
-#include "methods/limits.h"
-#include "methods/method.h"
+#include <tyndall/extend/limits.h>
+#include <tyndall/extend/method.h>
 #include "passes/constellation/constellation.h"
 #include "passes/median_cut/median_cut.h"
 #include "passes/validity_mask/validity_mask.h"
@@ -103,10 +103,11 @@ static void set_view(tyn_constellation_params *p, const tyn_job *job)
     p->surfaces = whole;
     p->width = job->view->width;
     p->height = job->view->height;
-    p->layers |= job->outputs & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_COMPOSITE)
+    const uint32_t read = job->outputs | tyn_job_hooks_read(job);
+    p->layers |= read & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_COMPOSITE)
                      ? CONSTELLATION_LAYER_TRANSMITTANCE
                      : 0;
-    p->layers |= job->outputs & TYN_OUTPUT_DEPTH ? CONSTELLATION_LAYER_DEPTH : 0;
+    p->layers |= read & TYN_OUTPUT_DEPTH ? CONSTELLATION_LAYER_DEPTH : 0;
     if (job->refs.depth.resource) {
         const float *m = job->view_to_clip;
         const float depth[4] = {m[10], m[14], m[11], m[15]};
@@ -169,9 +170,10 @@ static void add_march(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
     tyn_connect(refs, CONSTELLATION_PORT_SHADOW_ATLAS, s->shadows);
     tyn_graph_add(g, &tyn_pass_constellation, &params, refs);
     tyn_job_counters(g, job, &tyn_pass_constellation, refs[CONSTELLATION_PORT_COUNTERS]);
-    tyn_job_output(g, job, TYN_OUTPUT_DEPTH, refs[CONSTELLATION_PORT_DEPTH]);
-    tyn_add_results(g, job, refs[CONSTELLATION_PORT_RADIANCE],
-                    refs[CONSTELLATION_PORT_TRANSMITTANCE]);
+    tyn_add_results(g, job,
+                    (tyn_picture){refs[CONSTELLATION_PORT_RADIANCE],
+                                  refs[CONSTELLATION_PORT_TRANSMITTANCE],
+                                  refs[CONSTELLATION_PORT_DEPTH]});
 }
 
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
@@ -203,10 +205,18 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES,       TYN_SUN_PASSES,           TYN_VIRTUAL_LIGHT_PASSES,
-    TYN_LAMP_PASSES,         TYN_SURFACE_PASSES,       &tyn_pass_env_importance,
-    &tyn_pass_median_cut,    &tyn_pass_voxel_distance, &tyn_pass_validity_mask,
-    &tyn_pass_constellation, TYN_PICTURE_PASSES,       NULL,
+    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
+    TYN_SUN_PASSES(TYN_PASS_ADDRESS),
+    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_ADDRESS),
+    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
+    TYN_SURFACE_PASSES(TYN_PASS_ADDRESS),
+    &tyn_pass_env_importance,
+    &tyn_pass_median_cut,
+    &tyn_pass_voxel_distance,
+    &tyn_pass_validity_mask,
+    &tyn_pass_constellation,
+    TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
+    NULL,
 };
 
 static double thick_slices(const tyn_regime *r)

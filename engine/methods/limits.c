@@ -1,5 +1,5 @@
 // limits.c -- the rows of methods' tables that count in a regime, and a frame's warnings from them.
-#include "methods/limits.h"
+#include <tyndall/extend/limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

@@ -4,8 +4,8 @@
 // in the cells of a lattice and moves on from cell to cell, in a fixed number of iterations (docs/lpv.md). An environment shines along
 // principal ordinates; among surfaces its mean enters the lattice from all sides.
 #include "light/sources.h"
-#include "methods/limits.h"
-#include "methods/method.h"
+#include <tyndall/extend/limits.h>
+#include <tyndall/extend/method.h>
 #include "solve/lpv.h"
 #include "scene/surfaces.h"
 #include "view/view.h"
@@ -81,9 +81,18 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES,  TYN_SUN_PASSES,     TYN_SKY_PASSES,   TYN_LAMP_PASSES,
-    TYN_CELL_PASSES,    &tyn_pass_rsm,      TYN_LPV_PASSES,   TYN_GATHER_PASSES,
-    TYN_SURFACE_PASSES, TYN_PICTURE_PASSES, TYN_FIELD_PASSES, NULL,
+    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
+    TYN_SUN_PASSES(TYN_PASS_ADDRESS),
+    TYN_SKY_PASSES(TYN_PASS_ADDRESS),
+    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
+    TYN_CELL_PASSES(TYN_PASS_ADDRESS),
+    &tyn_pass_rsm,
+    TYN_LPV_PASSES,
+    TYN_GATHER_PASSES(TYN_PASS_ADDRESS),
+    TYN_SURFACE_PASSES(TYN_PASS_ADDRESS),
+    TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
+    TYN_FIELD_PASSES(TYN_PASS_ADDRESS),
+    NULL,
 };
 
 // As published, with 8 iterations at 32 cells, of the cube in one sun at g 0.

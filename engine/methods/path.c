@@ -1,6 +1,6 @@
 // path.c -- method "path": unbiased path tracing, the reference that the other methods are judged by.
-#include "methods/limits.h"
-#include "methods/method.h"
+#include <tyndall/extend/limits.h>
+#include <tyndall/extend/method.h>
 #include "passes/path/path.h"
 #include "passes/path_probe/path_probe.h"
 #include "passes/path_balance/path_balance.h"
@@ -430,6 +430,7 @@ static void add_depth(tyn_graph *g, const tyn_job *job, const tyn_sources *s)
     }
     tyn_job depth = *job;
     depth.outputs = TYN_OUTPUT_DEPTH;
+    depth.num_hooks = 0;
     const tyn_field no_field = {0};
     tyn_view_inputs view = {.sources = s, .field = &no_field};
     if (job->frame->num_triangles) {
@@ -446,6 +447,10 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     tyn_result result = check_repeat(job);
     if (result != TYN_OK) {
         return result;
+    }
+    if (tyn_job_hooks_read(job)) {
+        tyn_job_warn(job, "what stands between march and composite is left out: 'path' does not "
+                          "march");
     }
     if (!job->frame->empty) {
         tyn_add_medium(g, job, &s);
@@ -469,9 +474,15 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES,      &tyn_pass_path,        &tyn_pass_path_probe,
-    &tyn_pass_path_balance, &tyn_pass_path_fluxes, &tyn_pass_path_distance,
-    &tyn_pass_raymarch,     &tyn_pass_tonemap,     NULL,
+    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
+    &tyn_pass_path,
+    &tyn_pass_path_probe,
+    &tyn_pass_path_balance,
+    &tyn_pass_path_fluxes,
+    &tyn_pass_path_distance,
+    &tyn_pass_raymarch,
+    &tyn_pass_tonemap,
+    NULL,
 };
 
 static double ended(const tyn_regime *r)

@@ -7,8 +7,9 @@
 // into one solve on a lattice of cubic cells for all lights together, seen from the camera by merge
 // and raymarch. A node that a scene does not need is not declared.
 #include "light/sources.h"
-#include "methods/limits.h"
-#include "methods/method.h"
+#include <tyndall/extend/limits.h>
+#include "methods/pop_limits.h"
+#include <tyndall/extend/method.h>
 #include "solve/lattice.h"
 #include "scene/surfaces.h"
 #include "view/view.h"
@@ -193,9 +194,12 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES,  TYN_SUN_PASSES,     TYN_VIRTUAL_LIGHT_PASSES, TYN_SKY_PASSES,
-    TYN_LAMP_PASSES,    TYN_CELL_PASSES,    TYN_LATTICE_PASSES,       TYN_GATHER_PASSES,
-    TYN_SURFACE_PASSES, TYN_PICTURE_PASSES, TYN_FIELD_PASSES,         NULL,
+    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),        TYN_SUN_PASSES(TYN_PASS_ADDRESS),
+    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_ADDRESS), TYN_SKY_PASSES(TYN_PASS_ADDRESS),
+    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),          TYN_CELL_PASSES(TYN_PASS_ADDRESS),
+    TYN_LATTICE_PASSES(TYN_PASS_ADDRESS),       TYN_GATHER_PASSES(TYN_PASS_ADDRESS),
+    TYN_SURFACE_PASSES(TYN_PASS_ADDRESS),       TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
+    TYN_FIELD_PASSES(TYN_PASS_ADDRESS),         NULL,
 };
 
 const tyn_method tyn_method_pop = {

@@ -1,7 +1,8 @@
 // pop_limits.c -- what method "pop" is good and bad at.
 //
 // Errors are those of boxes in one sun against `path` (docs/choosing.md, docs/stress.md).
-#include "methods/limits.h"
+#include <tyndall/extend/limits.h>
+#include "methods/pop_limits.h"
 
 #define COUNT(curve) (sizeof(curve) / sizeof(curve)[0])
 

@@ -5,8 +5,8 @@
 // marched. Kept as it was published (the readings are settings of propagate_rect): the baseline of
 // method "pop".
 #include "light/sources.h"
-#include "methods/limits.h"
-#include "methods/method.h"
+#include <tyndall/extend/limits.h>
+#include <tyndall/extend/method.h>
 #include "solve/propagation.h"
 #include "view/view.h"
 #include <tyndall/registry.h>
@@ -34,7 +34,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 {
     const tyn_frame_scene *frame = job->frame;
     tyn_sources s = {0};
-    tyn_field field = {.inscatter_is = RAYMARCH_INSCATTER_PLAIN};
+    tyn_field field = {.inscatter_is = TYN_INSCATTER_PLAIN};
     tyn_view_inputs view = {.sources = &s, .field = &field};
     if (!tyn_job_refuse_repeat(job)) {
         return TYN_ERR_PARAMS;
@@ -66,9 +66,15 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES,  TYN_SUN_PASSES,         TYN_VIRTUAL_LIGHT_PASSES,
-    TYN_SKY_PASSES,     TYN_PROPAGATION_PASSES, TYN_LAMP_PASSES,
-    TYN_SURFACE_PASSES, TYN_PICTURE_PASSES,     NULL,
+    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
+    TYN_SUN_PASSES(TYN_PASS_ADDRESS),
+    TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_ADDRESS),
+    TYN_SKY_PASSES(TYN_PASS_ADDRESS),
+    TYN_PROPAGATION_PASSES,
+    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
+    TYN_SURFACE_PASSES(TYN_PASS_ADDRESS),
+    TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
+    NULL,
 };
 
 static double hops(const tyn_regime *r)

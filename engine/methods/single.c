@@ -1,7 +1,7 @@
 // single.c -- method "single": light that has scattered exactly once, and emission.
 #include "light/sources.h"
-#include "methods/limits.h"
-#include "methods/method.h"
+#include <tyndall/extend/limits.h>
+#include <tyndall/extend/method.h>
 #include "view/view.h"
 #include <tyndall/registry.h>
 #include <string.h>
@@ -50,7 +50,11 @@ static tyn_result declare(tyn_graph *g, const tyn_job *given)
 }
 
 static const tyn_pass_desc *const passes[] = {
-    TYN_MEDIUM_PASSES, TYN_SUN_PASSES, TYN_LAMP_PASSES, TYN_PICTURE_PASSES, NULL,
+    TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
+    TYN_SUN_PASSES(TYN_PASS_ADDRESS),
+    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
+    TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
+    NULL,
 };
 
 static const tyn_limit limits[] = {

@@ -1,11 +1,12 @@
 // registry.h -- the inside of the registry: methods by name, copies of settings.
 #pragma once
 #include <tyndall/registry.h>
-#include "methods/method.h"
+#include <tyndall/extend/method.h>
 
 const tyn_method *tyn_method_find(const char *name); // `name` NULL: the default; NULL: not there
 void tyn_method_names(char *text, size_t size);      // "pop, path, ..."
 const tyn_pass_desc *tyn_pass_find(const char *name);
+const tyn_picture_hook *const *tyn_picture_hooks(uint32_t *count);
 // A preset, and before that what `from` has set (NULL: nothing).
 tyn_result tyn_settings_copy(const tyn_settings *from, tyn_quality quality, const tyn_log *log,
                              tyn_settings **out);

@@ -1,5 +1,5 @@
 // lattice_shape.c -- size of the lattice, and whether one channel is enough.
-#include "scene/lattice_shape.h"
+#include <tyndall/extend/lattice_shape.h>
 #include <math.h>
 
 tyn_extent tyn_lattice_dims(const float extent[3], int32_t cells)

@@ -1,6 +1,7 @@
 // propagation.h -- the solver of method "pop-paper": light moves from cell to cell of its own aligned grid.
 #pragma once
-#include "solve/field.h"
+#include <tyndall/extend/field.h>
+#include "light/sources.h"
 #include "passes/merge_grids/merge_grids.h"
 #include "passes/propagate_radial/propagate_radial.h"
 #include "passes/propagate_rect/propagate_rect.h"

@@ -1,4 +1,4 @@
-// passes.h -- the passes of views, for methods' tables.
+// passes.h -- the passes of views, by their params and ports.
 #pragma once
 #include "passes/scatter_lut/scatter_lut.h"
 #include "passes/env_glow/env_glow.h"
@@ -10,8 +10,3 @@
 #include "passes/tonemap/tonemap.h"
 #include "passes/probe/probe.h"
 #include "passes/balance/balance.h"
-
-#define TYN_GATHER_PASSES &tyn_pass_scatter_lut, &tyn_pass_env_glow, &tyn_pass_merge
-#define TYN_SURFACE_PASSES &tyn_pass_gbuffer, &tyn_pass_shade
-#define TYN_PICTURE_PASSES &tyn_pass_raymarch, &tyn_pass_composite, &tyn_pass_tonemap
-#define TYN_FIELD_PASSES &tyn_pass_probe, &tyn_pass_balance

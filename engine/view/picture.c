@@ -84,10 +84,11 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->background =
         surroundings && !job->view->no_background && !(job->outputs & TYN_OUTPUT_COMPOSITE);
     params->surfaces = !job->view->no_background && !(job->outputs & TYN_OUTPUT_COMPOSITE);
-    if (job->outputs & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_COMPOSITE)) {
+    const uint32_t read = job->outputs | tyn_job_hooks_read(job);
+    if (read & (TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_COMPOSITE)) {
         params->layers |= RAYMARCH_LAYER_TRANSMITTANCE;
     }
-    params->layers |= job->outputs & TYN_OUTPUT_DEPTH ? RAYMARCH_LAYER_DEPTH : 0;
+    params->layers |= read & TYN_OUTPUT_DEPTH ? RAYMARCH_LAYER_DEPTH : 0;
     params->layers |= job->outputs & TYN_OUTPUT_SINGLE ? RAYMARCH_LAYER_SINGLE : 0;
     params->layers |= job->outputs & TYN_OUTPUT_MULTIPLE ? RAYMARCH_LAYER_MULTIPLE : 0;
     if (job->refs.depth.resource) {
@@ -122,19 +123,25 @@ static void add_composite(tyn_graph *g, const tyn_job *job, tyn_ref radiance, ty
     tyn_job_output(g, job, TYN_OUTPUT_COMPOSITE, refs[COMPOSITE_PORT_COLOR]);
 }
 
-void tyn_add_results(tyn_graph *g, const tyn_job *job, tyn_ref radiance, tyn_ref transmittance)
+void tyn_add_results(tyn_graph *g, const tyn_job *job, tyn_picture picture)
 {
-    tyn_job_output(g, job, TYN_OUTPUT_RADIANCE, radiance);
-    tyn_job_output(g, job, TYN_OUTPUT_TRANSMITTANCE, transmittance);
+    for (uint32_t i = 0; i < job->num_hooks; i++) {
+        if (job->hooks[i]->reads(job)) {
+            job->hooks[i]->declare(g, job, &picture);
+        }
+    }
+    tyn_job_output(g, job, TYN_OUTPUT_RADIANCE, picture.radiance);
+    tyn_job_output(g, job, TYN_OUTPUT_TRANSMITTANCE, picture.transmittance);
+    tyn_job_output(g, job, TYN_OUTPUT_DEPTH, picture.depth);
     if (job->outputs & TYN_OUTPUT_DISPLAY) {
-        tyn_add_display(g, job, radiance);
+        tyn_add_display(g, job, picture.radiance);
     }
     if (job->outputs & TYN_OUTPUT_COMPOSITE) {
-        add_composite(g, job, radiance, transmittance);
+        add_composite(g, job, picture.radiance, picture.transmittance);
     }
 }
 
-void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in)
+tyn_picture tyn_add_march(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in)
 {
     tyn_raymarch_params params;
     set_march_params(&params, job, in);
@@ -171,7 +178,6 @@ void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in
         tyn_output output;
         uint8_t port;
     } images[] = {
-        {TYN_OUTPUT_DEPTH, RAYMARCH_PORT_DEPTH},
         {TYN_OUTPUT_SINGLE, RAYMARCH_PORT_SINGLE},
         {TYN_OUTPUT_MULTIPLE, RAYMARCH_PORT_MULTIPLE},
     };
@@ -179,7 +185,13 @@ void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in
         tyn_job_output(g, job, images[i].output, refs[images[i].port]);
     }
     tyn_job_counters(g, job, &tyn_pass_raymarch, refs[RAYMARCH_PORT_COUNTERS]);
-    tyn_add_results(g, job, refs[RAYMARCH_PORT_RADIANCE], refs[RAYMARCH_PORT_TRANSMITTANCE]);
+    return (tyn_picture){refs[RAYMARCH_PORT_RADIANCE], refs[RAYMARCH_PORT_TRANSMITTANCE],
+                         refs[RAYMARCH_PORT_DEPTH]};
+}
+
+void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in)
+{
+    tyn_add_results(g, job, tyn_add_march(g, job, in));
 }
 
 void tyn_add_views(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)

@@ -1,41 +1,5 @@
-// view.h -- what pictures, probes and balances are made of: sources and field in, outputs of the job out.
+// view.h -- pictures, probes and balances (tyndall/extend/view.h), with the passes of the library that make them.
 #pragma once
-#include "solve/field.h"
+#include <tyndall/extend/view.h>
+#include "light/sources.h"
 #include "view/passes.h"
-
-// All that a picture is gathered from; {0} refs are left out.
-typedef struct tyn_view_inputs {
-    const tyn_sources *sources;
-    const tyn_field *field;
-    tyn_ref lut, lut_block; // given: all forward orders of the suns, else the first
-    tyn_ref tms;            // the same of ordinates
-    tyn_ref glow;           // the map scattered forward
-    tyn_ref inscatter;      // the field, towards the eye (tyn_gather)
-    // Lamps that are marched everywhere, the first of `sources`, and those after them that are marched nearby.
-    uint32_t num_marched_lamps, num_near_lamps;
-    bool no_sky_on_surfaces;    // it is not known what hides of it
-    bool mean_in_field;         // the environment's mean came in through the field
-    tyn_ref surface, distances; // radiance and distances of the surfaces before the camera
-} tyn_view_inputs;
-
-// What scatters forward more than once, as tables by depth and angle.
-void tyn_add_forward_tables(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
-// What the map looks like behind a medium that scatters forward.
-void tyn_add_glow(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
-// The field towards the eye: as the solver brings it, or the lattice's moments and the light of ordinates and distant lamps
-// in its cells.
-void tyn_gather(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
-// Surfaces that the camera sees, in direct light, that of `sources.surface_light`, and the field's.
-void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);
-// Marches, and makes what the job wants of the result: layers, the host's picture, the display image.
-void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
-// What the job wants of a picture's radiance and transmittance: both, the host's picture, the display image.
-void tyn_add_results(tyn_graph *g, const tyn_job *job, tyn_ref radiance, tyn_ref transmittance);
-// The display image of a radiance.
-void tyn_add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance);
-// The light field at the job's points.
-void tyn_add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
-// Where the energy goes.
-void tyn_add_balance(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
-// All of these that the job wants.
-void tyn_add_views(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in);

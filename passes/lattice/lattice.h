@@ -15,7 +15,7 @@
 // f counts as not scattered (Joseph, Wiscombe and Weinman 1976).
 #pragma once
 #include <tyndall/pass.h>
-#include "scene/lattice_shape.h"
+#include <tyndall/extend/lattice_shape.h>
 #include "shaders/common/bundles.h"
 
 typedef struct tyn_lattice_params {

@@ -1,7 +1,7 @@
 // lattice_source.h -- unscattered sunlight in the cells of the lattice.
 #pragma once
 #include <tyndall/pass.h>
-#include "scene/lattice_shape.h"
+#include <tyndall/extend/lattice_shape.h>
 #include "shaders/common/bundles.h"
 #include "shaders/common/scene_args.h"
 

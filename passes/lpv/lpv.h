@@ -5,7 +5,7 @@
 // those of delta scaling, as everywhere on the lattice (docs/lpv.md).
 #pragma once
 #include <tyndall/pass.h>
-#include "scene/lattice_shape.h"
+#include <tyndall/extend/lattice_shape.h>
 #include "shaders/common/bundles.h"
 
 typedef enum tyn_lpv_inject {

@@ -5,7 +5,7 @@
 // middle of a link the mean blocks what goes along it (Kaplanyan and Dachsbacher 2010, Sec 4.4).
 #pragma once
 #include <tyndall/pass.h>
-#include "scene/lattice_shape.h"
+#include <tyndall/extend/lattice_shape.h>
 #include "shaders/common/bundles.h"
 
 typedef struct tyn_lpv_blockers_params {

@@ -5,7 +5,7 @@
 // all: they do not depend on the order and cannot overflow.
 #pragma once
 #include <tyndall/pass.h>
-#include "scene/lattice_shape.h"
+#include <tyndall/extend/lattice_shape.h>
 #include "shaders/common/bundles.h"
 #include "shaders/light/rsm_args.h"
 

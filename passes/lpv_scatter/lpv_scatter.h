@@ -5,7 +5,7 @@
 // numbers, in units of a bound of all.
 #pragma once
 #include <tyndall/pass.h>
-#include "scene/lattice_shape.h"
+#include <tyndall/extend/lattice_shape.h>
 #include "shaders/common/bundles.h"
 #include "lpv_scatter_args.h"
 

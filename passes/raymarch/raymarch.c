@@ -178,8 +178,8 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= p->kernels ? RAYMARCH_KERNELS : 0;
     features |= tyn_rec_extent(r, RAYMARCH_PORT_LUT).x > TYN_LUT_DEPTHS ? RAYMARCH_SOFT_SUNS : 0;
     features |= field ? RAYMARCH_FIELD : 0;
-    features |= p->field != RAYMARCH_INSCATTER_SCALED ? RAYMARCH_UNSCALED : 0;
-    features |= p->field == RAYMARCH_INSCATTER_SOURCE ? RAYMARCH_SOURCE : 0;
+    features |= p->field != TYN_INSCATTER_SCALED ? RAYMARCH_UNSCALED : 0;
+    features |= p->field == TYN_INSCATTER_SOURCE ? RAYMARCH_SOURCE : 0;
     features |= glow ? RAYMARCH_GLOW : 0;
     features |= p->emissive ? RAYMARCH_EMISSION : 0;
     features |= p->mean ? RAYMARCH_MEAN : 0;

@@ -3,6 +3,7 @@
 #include <tyndall/pass.h>
 #include "shaders/common/bundles.h"
 #include "shaders/common/scene_args.h"
+#include "shaders/march/inscatter.h"
 
 typedef struct tyn_raymarch_params {
     // "raymarch.step": longest step, in voxels (homogeneous: in steps that resolve the light).
@@ -25,7 +26,7 @@ typedef struct tyn_raymarch_params {
     uint32_t background;  // 1: the environment behind the medium is seen
     uint32_t surfaces;    // 1: so are surfaces; else rays end there, but show the medium alone
     uint32_t layers;      // set of RAYMARCH_LAYER_*
-    uint32_t field;       // RAYMARCH_INSCATTER_*: what `inscatter` is
+    uint32_t field;       // TYN_INSCATTER_*: what `inscatter` is
     uint32_t one_channel; // 1: inscatter has one channel, to be multiplied with `tint`
     float tint[3];
     uint32_t width, height;
@@ -50,13 +51,6 @@ float tyn_raymarch_longest_step(float sigma_t, float dx, const struct medium_blo
 
 // Sets first and end to a window that holds every pixel from which a ray may meet the media's box.
 void tyn_raymarch_window(tyn_raymarch_params *params, const struct camera_block *camera);
-
-enum {
-    RAYMARCH_INSCATTER_SCALED =
-        0,                     // light per sigma_s' (merge): depths of the picture are delta scaled
-    RAYMARCH_INSCATTER_PLAIN,  // light per sigma_s; nothing is scaled
-    RAYMARCH_INSCATTER_SOURCE, // light per metre of any medium; nothing is scaled
-};
 
 enum {
     RAYMARCH_LAYER_TRANSMITTANCE = 1 << 0,

@@ -2,7 +2,7 @@
 // read it.
 //
 // A bundle's GLSL include declares its bindings in the order of its table, from the one on that the kernel defines
-// (BEAMS_AT); job/refs.h has a struct of refs of each.
+// (BEAMS_AT); tyndall/extend/refs.h has a struct of refs of each.
 #pragma once
 
 // clang-format off

@@ -1,6 +1,6 @@
 // lattice_memory.h -- what lattice_recall and lattice_keep have in common: parameters, and what their kernels are told.
 #pragma once
-#include "scene/lattice_shape.h"
+#include <tyndall/extend/lattice_shape.h>
 #include "shaders/lattice/lattice_args.h"
 #include <string.h>
 

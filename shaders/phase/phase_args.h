@@ -3,7 +3,7 @@
 #define TYN_PHASE_ARGS_H
 
 #ifdef __STDC__
-#include "scene/phase.h" // tyn_phase
+#include <tyndall/scene.h> // tyn_phase
 #else
 struct phase { // as tyn_phase of <tyndall/scene.h>
     float g;

@@ -2,7 +2,7 @@
 // balance.
 #include "light_chain.h"
 #include "shaders/common/counters.h"
-#include "job/refs.h"
+#include <tyndall/extend/refs.h>
 #include "passes/beam/beam.h"
 #include "passes/columns/columns.h"
 #include "passes/lattice_cells/lattice_cells.h"

@@ -3,8 +3,9 @@
 #
 # Floors, bottom to top: base < gpu, scene < io < graph < passes < job < light < solve < view < methods
 # < registry < frame < tools, samples, tests. A file includes its own folder and lower floors only; passes do not
-# include each other; what they share is in shaders/, which sees engine/scene and <tyndall/pass.h> at most; tools and
-# samples see nothing but <tyndall/...>; public headers include lower tiers only.
+# include each other; what they share is in shaders/, which sees engine/scene, <tyndall/pass.h> and what else is plain data at
+# most; tools and samples see nothing but <tyndall/...>, a plugin the shaders as well; public headers include lower tiers
+# only, those of <tyndall/extend/...> also what C and shaders share.
 set -eu
 
 # check ROOT: prints one line a fault; status 1 if there is any.
@@ -61,7 +62,7 @@ check()
     # The folder that is one unit of the layering.
     function unit(path,   p, n) {
         n = split(path, p, "/")
-        if (p[1] == "engine" && p[2] == "include") { return "public/" p[n] }
+        if (p[1] == "engine" && p[2] == "include") { return "public/" (p[4] == "extend" ? "extend/" : "") p[n] }
         if (p[1] == "engine" || p[1] == "passes" || p[1] == "samples") { return p[1] "/" p[2] }
         return p[1]
     }
@@ -92,12 +93,30 @@ check()
         lowest["device.h"] = lowest["scene.h"] = lowest["io.h"] = 1
         lowest["pass.h"] = 1 # pipelines are made from its tables
         lowest["context.h"] = lowest["registry.h"] = lowest["offline.h"] = 4
+        lowest["extend/lattice_shape.h"] = 1
+        lowest["extend/graph.h"] = 2
+        lowest["extend/refs.h"] = lowest["extend/frame_scene.h"] = lowest["extend/job.h"] = 4
+        lowest["extend/sources.h"] = lowest["extend/limits.h"] = 5
+        lowest["extend/field.h"] = 6
+        lowest["extend/view.h"] = 7
+        lowest["extend/method.h"] = 8
+        lowest["extend/calls.h"] = lowest["extend/plugin.h"] = 9
         tier["base.h"] = 0
         tier["device.h"] = tier["scene.h"] = 1
         tier["io.h"] = tier["pass.h"] = 2
         tier["context.h"] = 3
         tier["registry.h"] = 4
         tier["offline.h"] = 5
+        tier["extend/lattice_shape.h"] = 3
+        tier["extend/graph.h"] = 4
+        tier["extend/refs.h"] = tier["extend/frame_scene.h"] = 5
+        tier["extend/job.h"] = 6
+        tier["extend/sources.h"] = tier["extend/limits.h"] = 7
+        tier["extend/field.h"] = 8
+        tier["extend/view.h"] = 9
+        tier["extend/method.h"] = 10
+        tier["extend/calls.h"] = 11
+        tier["extend/plugin.h"] = 12
     }
     /^[ \t]*#[ \t]*include[ \t]*["<]/ {
         quoted = /include[ \t]*"/
@@ -115,12 +134,12 @@ check()
         if (from == to) { next }
         if (from ~ /^public\//) {
             a = tier[substr(from, 8)]
-            b = to ~ /^public\// ? tier[substr(to, 8)] : 99
+            b = to ~ /^public\// ? tier[substr(to, 8)] : from ~ /^public\/extend/ && to == "shaders" ? 0 : 99
             if (b >= a) { fault("a public header includes " name ", which is not of a lower tier") }
         } else if (from == "tools" || from ~ /^samples\//) {
-            if (to !~ /^public\//) { fault(from " sees public headers only, not " name) }
+            if (to !~ /^public\// && !(from == "samples/plugin" && to == "shaders")) { fault(from " sees public headers only, not " name) }
         } else if (from == "shaders") {
-            if (to != "engine/scene" && to != "public/pass.h") { fault("shaders do not see " name) }
+            if (to != "engine/scene" && to !~ /^public\/(pass|scene|extend\/lattice_shape)\.h$/) { fault("shaders do not see " name) }
         } else if (floor_of(from) < 0) {
             fault("no floor is known for " from)
         } else if (to ~ /^public\//) {
@@ -174,6 +193,12 @@ printf '%s\n' '#include "scene/s.h"' '#include "graph/graph.h"' '#include "shade
 printf '%s\n' '#include "passes/b/b.h"' '#include "../b/b.h"' '#include <tyndall/context.h>' \
     '#include "none.h"' '#include "b_go.comp.h"' > passes/a/bad.c
 printf '%s\n' '#include "context.h"' > engine/include/tyndall/scene.h
+mkdir -p engine/include/tyndall/extend samples/plugin samples/embed
+: > engine/include/tyndall/extend/job.h
+printf '%s\n' '#include "job.h"' > engine/include/tyndall/extend/graph.h
+printf '%s\n' '#include "../pass.h"' '#include "shaders/x/args.h"' > engine/include/tyndall/extend/refs.h
+printf '%s\n' '#include "shaders/x/args.h"' '#include <tyndall/extend/job.h>' > samples/plugin/good.c
+printf '%s\n' '#include "shaders/x/args.h"' > samples/embed/bad.c
 printf '%s\n' '#include "base/hash.h"' '#include <passes/a/a.h>' > tools/bad.c
 printf '%s\n' '#include "passes/a/a.h"' > shaders/x/bad.glsl
 printf '%s\n' '#include "scene/s.h"' '#include <tyndall/pass.h>' '#include "shaders/x/args.h"' > shaders/x/good.h
@@ -185,8 +210,8 @@ cd - > /dev/null
 status=0
 found=$(check "$self") || status=$?
 lines=$(printf '%s\n' "$found" | wc -l)
-if [ "$status" = 0 ] || [ "$lines" != 14 ] || printf '%s\n' "$found" | grep -q 'good\.'; then
-    printf 'the check itself is broken: 14 faults expected, found %s:\n%s\n' "$lines" "$found"
+if [ "$status" = 0 ] || [ "$lines" != 16 ] || printf '%s\n' "$found" | grep -q 'good\.\|refs\.h'; then
+    printf 'the check itself is broken: 16 faults expected, found %s:\n%s\n' "$lines" "$found"
     exit 1
 fi
 status=0
@@ -202,9 +227,10 @@ check "$1"
 untested "$1"
 
 # Every public header is compiled alone by the test beside this one.
-for header in "$1"/engine/include/tyndall/*.h; do
-    grep -q "'$(basename "$header" .h)'" "$1/tests/unit/meson.build" || {
-        echo "tests/unit/meson.build: $(basename "$header") is missing from public_headers"
+for header in "$1"/engine/include/tyndall/*.h "$1"/engine/include/tyndall/extend/*.h; do
+    name=${header#"$1"/engine/include/tyndall/}
+    grep -q "'${name%.h}'" "$1/tests/unit/meson.build" || {
+        echo "tests/unit/meson.build: $name is missing from public_headers"
         exit 1
     }
 done

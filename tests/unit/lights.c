@@ -4,7 +4,7 @@
 #include <stddef.h>
 #include <cmocka.h>
 #include <math.h>
-#include "job/lights.h"
+#include <tyndall/extend/frame_scene.h>
 
 static const double pi = 3.14159265358979;
 

@@ -9,7 +9,7 @@
 //  * A create function gives back TYN_OK and an object or a negative result and NULL; a destroy
 //    function takes the address of the variable, accepts NULL inside it, and clears it.
 //  * Thread-safety: an object is used by one thread at a time; different objects are independent.
-//    There are no globals.
+//    The only globals are the lists of what plugins have added (registry.h), which may be asked on any thread.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -38,6 +38,8 @@ extern "C" {
 
 #if defined(_WIN32)
 #define TYN_API
+#elif defined(TYN_PLUGIN_BUILD) // a plugin has the calls of its own (extend/plugin.h)
+#define TYN_API __attribute__((visibility("hidden")))
 #else
 #define TYN_API __attribute__((visibility("default")))
 #endif

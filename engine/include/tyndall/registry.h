@@ -1,4 +1,7 @@
 // registry.h -- which passes and methods there are, and values for their parameters. Tier 3.
+//
+// They are of the process: those of the library, and those that plugins and hosts add, which stay. Adding is safe at any time
+// and on any thread; what a call below has given stays as it is.
 #pragma once
 #include "context.h"
 #include "pass.h"
@@ -9,6 +12,23 @@ extern "C" {
 
 TYN_API uint32_t tyn_num_passes(void);
 TYN_API const tyn_pass_desc *tyn_pass_at(uint32_t index);
+// Adds a pass, for good: its tables must live as long as the process. A name that is there, or a table that is wrong, is one
+// log line and TYN_ERR_PARAMS. (Methods: tyn_method_register of <tyndall/extend/method.h>.)
+TYN_API tyn_result tyn_pass_register(const tyn_pass_desc *pass, const tyn_log *log);
+
+// ---- plugins ---------------------------------------------------------------------------------
+
+// Loads a shared object that brings passes, methods and hooks (<tyndall/extend/plugin.h>, docs/writing-a-plugin.md): all of
+// them, or none with one log line and TYN_ERR_IO (no file that can be loaded) or TYN_ERR_PARAMS (no plugin, one for another
+// ABI, a name that is there, a table that is wrong). One that is loaded already is TYN_OK. Never unloaded.
+TYN_API tyn_result tyn_plugin_load(const char *path, const tyn_log *log);
+TYN_API uint32_t tyn_num_plugins(void);
+typedef struct tyn_plugin_info {
+    const char *name, *summary; // as it calls itself
+    const char *path;
+    uint32_t num_passes, num_methods, num_hooks;
+} tyn_plugin_info;
+TYN_API void tyn_plugin_at(uint32_t index, tyn_plugin_info *info); // beyond the last: all 0
 
 // ---- what methods are good and bad at --------------------------------------------------------
 
@@ -89,6 +109,8 @@ typedef struct tyn_method_info {
     bool reference;   // right but for noise: the others are judged by it
     bool single_only; // its answer is the light that has scattered once
     const tyn_limit *limits;
+    const char *
+        plugin; // which one has brought it; "" = it was registered by the host; NULL: it is the library's
 } tyn_method_info;
 TYN_API uint32_t tyn_num_methods(void);
 TYN_API void tyn_method_at(uint32_t index, tyn_method_info *info);

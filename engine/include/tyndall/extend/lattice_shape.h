@@ -1,6 +1,10 @@
-// lattice_shape.h -- the lattice of cubic cells on which all light that has scattered is solved for.
+// lattice_shape.h -- the lattice of cubic cells on which all light that has scattered is solved for. Tier 3.
 #pragma once
-#include <tyndall/pass.h>
+#include "../pass.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 // Cells along the longest side, and of all: long and flat media may have more along it than others.
 enum { TYN_LATTICE_MAX_CELLS = 256, TYN_LATTICE_MAX_ALL = 64 * 64 * 64, TYN_LATTICE_MAX_SUNS = 4 };
@@ -15,14 +19,18 @@ typedef struct tyn_lattice_shape {
 } tyn_lattice_shape;
 
 // Cells along each axis: cubes of longest side / cells; the box they fill holds the medium's.
-tyn_extent tyn_lattice_dims(const float extent[3], int32_t cells);
+TYN_API tyn_extent tyn_lattice_dims(const float extent[3], int32_t cells);
 
 // The most cells along the longest side, up to `cells`, with which the sides that repeat are whole numbers of
 // cells and there are not more than TYN_LATTICE_MAX_ALL; 0: none.
-int32_t tyn_lattice_fit(const float extent[3], const uint32_t repeat[3], int32_t cells);
+TYN_API int32_t tyn_lattice_fit(const float extent[3], const uint32_t repeat[3], int32_t cells);
 
 // True if `n` colours (lights, emission, mean of the environment) are multiples of one colour, its
 // `tint` with a largest component of 1. With a grey medium one channel is then enough: shaders
 // solve for dot(color, tint) / dot(tint, tint), and merge and probe multiply by the tint. Else (1,
 // 1, 1).
-bool tyn_lattice_tint(const float (*colors)[3], uint32_t n, float tint[3]);
+TYN_API bool tyn_lattice_tint(const float (*colors)[3], uint32_t n, float tint[3]);
+
+#ifdef __cplusplus
+}
+#endif

@@ -1,7 +1,11 @@
-// limits.h -- what the tables of methods' limits (tyn_limit, docs/stress.md) are written with.
+// limits.h -- what the tables of methods' limits (tyn_limit, docs/stress.md) are written with. Tier 7.
 #pragma once
-#include "job/job.h"
+#include "job.h"
 #include <math.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #define TYN_FIGURE(name) offsetof(tyn_regime, name)
 // clang-format off
@@ -13,10 +17,10 @@
 typedef struct tyn_limit_point {
     double x, error;
 } tyn_limit_point;
-double tyn_limit_along(const tyn_limit_point *curve, size_t count, double x);
+TYN_API double tyn_limit_along(const tyn_limit_point *curve, size_t count, double x);
 
 // Of every method that follows rays.
-double tyn_limit_floats(const tyn_regime *r);
+TYN_API double tyn_limit_floats(const tyn_regime *r);
 #define TYN_LIMIT_FLOATS                                                                           \
     {                                                                                              \
         .key = "depths beyond single precision", .where = {TYN_ABOVE(depth, 3e6)},                 \
@@ -33,7 +37,7 @@ double tyn_limit_floats(const tyn_regime *r);
         .key = "periodic media", .where = {TYN_ABOVE(repeats, 0)}, .level = TYN_LIMIT_REFUSED,     \
         .advice = {"media that repeat: refused"}, .source = page                                   \
     }
-double tyn_limit_again(const tyn_regime *r);
+TYN_API double tyn_limit_again(const tyn_regime *r);
 #define TYN_LIMIT_ONE_SCATTERING(page)                                                             \
     {                                                                                              \
         .key = "one scattering alone", .where = {TYN_ABOVE(mean_depth, 0)},                        \
@@ -48,8 +52,10 @@ double tyn_limit_again(const tyn_regime *r);
         }                                                                                          \
     }
 
-extern const tyn_limit tyn_limits_pop[];
-
 // Warns of what the job's method is known to lose in its scene (each line begins with "accuracy:"): from the scene's
 // figures alone, so that it costs nothing. `cell`: of the lattice, m; 0: there is none, or none yet.
-void tyn_limits_warn(const tyn_job *job, float cell);
+TYN_API void tyn_limits_warn(const tyn_job *job, float cell);
+
+#ifdef __cplusplus
+}
+#endif

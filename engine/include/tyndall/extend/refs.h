@@ -1,8 +1,14 @@
-// refs.h -- the bundles of ports (shaders/common/bundles.h) as structs of refs.
+// refs.h -- the bundles of ports (shaders/common/bundles.h) as structs of refs. Tier 5.
+//
+// A bundle goes from whoever fills it to the node that reads it in one call: tyn_connect(refs, MERGE_PORT_BEAMS, s->beams).
 #pragma once
-#include "graph/graph.h"
+#include "graph.h"
 #include "shaders/common/bundles.h"
 #include <string.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 // Of a bundle, into the refs of a node, from its first port on; and what a node made, out of them.
 #define tyn_connect(refs, first, bundle) memcpy(&(refs)[first], &(bundle), sizeof(bundle))
@@ -59,3 +65,7 @@ typedef struct tyn_geometry_refs {
 typedef struct tyn_material_refs {
     tyn_ref TYN_MATERIALS(TYN_PORT_NAME, );
 } tyn_material_refs;
+
+#ifdef __cplusplus
+}
+#endif

@@ -1,0 +1,141 @@
+// sources.h -- what shines, and where its light first collides: what solvers and views read. Tier 7.
+//
+// Each tyn_add_ function adds the passes of one kind of source, if the scene has it, and fills its part.
+//
+// Delta scaling: of a forward lobe the part f = g^2 (0 for g <= 0) counts as light that went straight on. Primes mark what is
+// left: sigma_s' = (1 - f) sigma_s, g' = (g - f) / (1 - f), sigma_t' = sigma_a + sigma_s'. Sources, the lattice and the march
+// are scaled alike, so that what one leaves out the other has.
+#pragma once
+#include "job.h"
+#include "lattice_shape.h"
+#include "shaders/light/rsm_args.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// Lamps and virtual point lights: the first num_fine lamps have grids as fine as the medium.
+typedef struct tyn_lamps {
+    tyn_radial_refs radials;
+    uint32_t num_lamps, num_fine;
+    bool vpls; // virtual point lights follow the lamps
+} tyn_lamps;
+
+// An environment: what of it shines along ordinates, the directions that stand for the rest of a map or for suns without beam.
+typedef struct tyn_sky {
+    tyn_ref map;       // the environment's without its suns; {0} if the environment is constant
+    tyn_ref ordinates; // struct ordinates_block; {0} if nothing shines from ordinates
+    uint32_t count;    // ordinates at most
+    bool split; // they carry the map less its mean, env_block.sky, which comes in from all sides
+    tyn_column_refs columns; // optical depths along them
+} tyn_sky;
+
+// What surfaces receive beyond direct light.
+typedef struct tyn_surface_light {
+    tyn_vpl_refs vpls; // {0} if surfaces send nothing on
+    tyn_ref
+        rooms; // cells of the lattice that are joined, and the VPLs in them; {0} without walls or VPLs
+} tyn_surface_light;
+
+// Surfaces as the lattice sees them; {0} without.
+typedef struct tyn_walls {
+    tyn_wall_refs cut;
+    tyn_ref hits;        // the triangles that cut links meet
+    tyn_ref light;       // what they reflect of light that is not the lattice's
+    tyn_ref light_power; // of virtual point lights, for the balance
+} tyn_walls;
+
+// The cells of the lattice with their unscattered light: cubes that fill a box around the medium's (lattice_box_of of
+// shaders/lattice/lattice.glsl), tyn_lattice_dims(shape.extent, shape.cells) of them. Images have a texel for each, the channels
+// that are solved stacked along z: texel (i, j, channel * dims.z + k).
+typedef struct tyn_cells {
+    tyn_lattice_shape shape;
+    float side; // of a cell, m; 0: there is no lattice
+    // The medium, 3D, RGBA32F: means over the cell of sigma_s' and sigma_a in 1/m, of g', and of the emission in
+    // W/(m^3 sr).
+    tyn_ref cells;
+    // Light that arrives unscattered, 3D, RGBA32F: mean fluence (x) and net flux (y, z, w), W/m^2. {0}: there is none.
+    tyn_ref source;
+    tyn_ref sun_power, lamp_power; // for the balance
+    tyn_ref vpl_light;             // what of `source` virtual point lights bring
+} tyn_cells;
+
+// All of it. A method starts from {0} and calls what it wants below, in the order of the calls; what was not called, and what
+// the scene has not, stays {0}, and everybody who reads sources leaves it out.
+typedef struct tyn_sources {
+    tyn_medium_refs medium; // struct medium_block, and the textures that it tells of
+    tyn_ref bricks,
+        distance; // least and largest values of bricks of it; bricks to the nearest that is not empty
+    uint32_t num_suns;       // that have beams: the first of tyn_lights.suns
+    tyn_beam_refs beams;     // optical depths along them
+    tyn_shadow_refs shadows; // what surfaces hide of suns and lamps
+    tyn_ref light_cells;     // where looks at the shadow maps are needed (light_cells_args.h)
+    tyn_lamps lamps;
+    tyn_sky sky;
+    bool mean_from_all_sides; // the mean of the environment enters the lattice
+    tyn_surface_light surface_light;
+    tyn_walls walls;
+    tyn_cells lattice;
+} tyn_sources;
+
+// The medium's textures, bricks and distances. First of all, and not in a scene that is empty.
+TYN_API void tyn_add_medium(tyn_graph *g, const tyn_job *job, tyn_sources *s);
+// Optical depths along the strongest suns.
+TYN_API void tyn_add_beams(tyn_graph *g, const tyn_job *job, tyn_sources *s);
+// Virtual point lights of what surfaces reflect first and emit.
+TYN_API void tyn_add_vpls(tyn_graph *g, const tyn_job *job, tyn_sources *s);
+// Optical depths around lamps and, if they are there, around virtual point lights.
+TYN_API void tyn_add_radials(tyn_graph *g, const tyn_job *job, tyn_sources *s);
+// Shadow maps of the suns that have beams and of the lamps.
+TYN_API void tyn_add_shadows(tyn_graph *g, const tyn_job *job, tyn_sources *s);
+// Principal ordinates of the environment and of suns from `first_sun` on, which have no beam. `can_split`: the method
+// has a way for light that is equal from all sides.
+TYN_API void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_split,
+                         tyn_sources *s);
+// The environment where a lattice carries on what it scatters: ordinates for all but the suns that have beams; among surfaces
+// its mean alone, from all sides, with a warning. After suns, their beams and shadows.
+TYN_API void tyn_add_surroundings(tyn_graph *g, const tyn_job *job, bool can_split, tyn_sources *s);
+static inline bool tyn_is_lit(const float radiance[3])
+{
+    return radiance[0] > 0.0f || radiance[1] > 0.0f || radiance[2] > 0.0f;
+}
+// Sums of the environment's map over rectangles (sky_args.h: struct sky_sum), its suns among them.
+TYN_API tyn_ref tyn_add_map_sums(tyn_graph *g, const tyn_job *job);
+// The medium on the lattice, walls, and the unscattered light of all sources above. `cells` along the longest side, as
+// the user's `setting` says, which is named in a warning. After all of them.
+TYN_API void tyn_add_cells(tyn_graph *g, const tyn_job *job, int32_t cells, const char *setting,
+                           tyn_sources *s);
+
+// Cells of the lattice within which all lamps are followed by the march: beams of spots farther, until they are as
+// wide.
+#define TYN_LAMP_REACH 3.0f
+// The environment, if its mean enters the lattice from all sides.
+TYN_API tyn_ref tyn_mean_environment(const tyn_job *job, const tyn_sources *s);
+// Groups of local lights that the lattice keeps apart (lattice_lamps).
+TYN_API uint32_t tyn_radial_groups(const tyn_lamps *lamps);
+// Do VPLs carry all reflections between surfaces? So they do where surfaces reach far beyond the medium's box, which
+// the lattice fills; else they carry the first, and the lattice's walls the others.
+TYN_API bool tyn_vpls_bounce(const tyn_job *job);
+
+// What the lights shine on: reflective shadow maps of the same lights as tyn_add_shadows.
+typedef struct tyn_rsm {
+    tyn_rsm_refs maps;
+    uint32_t num_tiles;
+    struct rsm_tile tiles[TYN_RSM_MAX_TILES];
+} tyn_rsm;
+TYN_API void tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm *rsm);
+
+// The passes of these calls, for a method's table: TYN_SUN_PASSES(TYN_PASS_NAME) is "beam", "shadow_map", "light_cells"
+// (method.h).
+#define TYN_MEDIUM_PASSES(X) X(medium)
+#define TYN_SUN_PASSES(X) X(beam), X(shadow_map), X(light_cells)
+#define TYN_LAMP_PASSES(X) X(radial_beam)
+#define TYN_VIRTUAL_LIGHT_PASSES(X) X(rsm), X(vpl)
+#define TYN_SKY_PASSES(X) X(env_importance), X(importance), X(ordinates)
+#define TYN_CELL_PASSES(X)                                                                         \
+    X(lattice_cells), X(walls), X(wall_light), X(rooms), X(columns_average), X(columns),           \
+        X(lattice_source), X(lattice_ordinates), X(lattice_lamps)
+
+#ifdef __cplusplus
+}
+#endif
