@@ -16,7 +16,7 @@
 #include <cmocka.h>
 #include <tyndall/context.h>
 #include <tyndall/offline.h>
-#include <tyndall/registry.h>
+#include <tyndall/extend/method.h>
 
 #include "base/half.h"
 #include "host.h"
@@ -685,6 +685,51 @@ static void settings_change(void **state)
     tyn_scene_finish(&scene);
 }
 
+static bool hook_is_on;
+
+static uint32_t hook_reads(const tyn_job *job)
+{
+    (void)job;
+    return hook_is_on ? TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE : 0;
+}
+
+static void hook_declare(tyn_graph *g, const tyn_job *job, tyn_picture *made)
+{
+    (void)g;
+    (void)job;
+    made->radiance = made->transmittance;
+}
+
+// What a hook hands on is laid over the host's picture.
+static void hooks_come_before_the_composite(void **state)
+{
+    static const tyn_picture_hook hook = {"embed", hook_reads, hook_declare};
+    fixture *f = *state;
+    tyn_scene scene;
+    make_smoke(&scene);
+    const tyn_view view = make_view(0.2f, WIDTH, HEIGHT, TYN_OUTPUT_COMPOSITE);
+    float m[16];
+    projection(&view, true, m);
+    tyn_context *ctx = new_context(f, f->guest, "pop");
+    target t = painted_target(f, 0.0f);
+    picture p = reference(f, "pop", &scene, view);
+    assert_int_equal(tyn_picture_hook_register(&hook, NULL), TYN_OK);
+    for (int on = 0; on < 2; on++) {
+        hook_is_on = on;
+        if (on) {
+            memcpy(p.radiance, p.transmittance, sizeof(float[4]) * WIDTH * HEIGHT);
+        }
+        run_frame(f, ctx, &scene, &view, &t, m);
+        check_composite(&t, &p);
+    }
+    hook_is_on = false;
+    free_picture(&p);
+    tyn_context_destroy(&ctx);
+    free_target(&f->host, &t);
+    expect_silence(f);
+    tyn_scene_finish(&scene);
+}
+
 // The density is an image of the host's, in a layout of its choice, and changes without notice.
 static void density_of_the_host(void **state)
 {
@@ -808,9 +853,13 @@ static void failing_record_changes_nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(images_in_any_layout),    cmocka_unit_test(surfaces_stop_the_light),
-        cmocka_unit_test(contexts_share_a_device), cmocka_unit_test(density_of_the_host),
-        cmocka_unit_test(settings_change),         cmocka_unit_test(failing_record_changes_nothing),
+        cmocka_unit_test(images_in_any_layout),
+        cmocka_unit_test(surfaces_stop_the_light),
+        cmocka_unit_test(contexts_share_a_device),
+        cmocka_unit_test(density_of_the_host),
+        cmocka_unit_test(settings_change),
+        cmocka_unit_test(failing_record_changes_nothing),
+        cmocka_unit_test(hooks_come_before_the_composite),
     };
     return cmocka_run_group_tests_name("embed", tests, set_up, tear_down);
 }
