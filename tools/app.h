@@ -51,4 +51,4 @@ uint64_t text_hash(const void *data, size_t size, uint64_t seed); // FNV-1a
 
 // The subcommands.
 extern const command cmd_render, cmd_compare, cmd_probe, cmd_balance, cmd_fluxes, cmd_bench,
-    cmd_graph, cmd_info, cmd_selftest;
+    cmd_graph, cmd_info, cmd_selftest, cmd_view;

@@ -1,12 +1,10 @@
 // machine.c -- the device that --device names, with its pipelines cached on disk.
 #include "machine.h"
-#include "cache.h"
 #include "devices.h"
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <tyndall/io.h>
 
 const option machine_table[MACHINE_TABLE_SIZE] = {
     {0, "device", OPT_TEXT, offsetof(machine_options, device), "INDEX|NAME",
@@ -71,110 +69,54 @@ static void say_what_there_is(app *a, const devices *d, const char *select)
               d->count == 1 ? "is" : "are", line);
 }
 
-// ---- the pipeline cache on disk ---------------------------------------------------------------
-
-// In front of the driver's bytes. Vulkan lets a driver trust them, so a damaged file must not get there.
-typedef struct cache_header {
-    char magic[8];
-    uint64_t size, hash;
-} cache_header;
-static const char cache_magic[8] = "TYNPIPE1";
-
-enum { CACHE_LIMIT = 256 << 20 };
-
-static char *pipelines_path(const tyn_device_info *info)
-{
-    uint64_t key = text_hash(info->name, strlen(info->name), info->api_version);
-    key = text_hash(info->driver, strlen(info->driver), key);
-    key = text_hash(tyn_version_string(), strlen(tyn_version_string()), key);
-    char name[40];
-    snprintf(name, sizeof name, "pipelines-%016llx", (unsigned long long)key);
-    return cache_path(name);
-}
-
-// The driver's bytes in `file`, or NULL if the file is not whole.
-static const void *cache_bytes(const void *file, size_t file_size, size_t *size, uint64_t *hash)
-{
-    cache_header header;
-    if (!file || file_size < sizeof header) {
-        return NULL;
-    }
-    memcpy(&header, file, sizeof header);
-    const void *bytes = (const char *)file + sizeof header;
-    if (memcmp(header.magic, cache_magic, sizeof cache_magic) != 0 ||
-        header.size != file_size - sizeof header ||
-        header.hash != text_hash(bytes, header.size, 0)) {
-        return NULL;
-    }
-    *size = (size_t)header.size;
-    *hash = header.hash;
-    return bytes;
-}
-
-static void cache_write(machine *m)
-{
-    size_t size = 0;
-    void *bytes = m->cache_path ? tyn_device_pipeline_cache(m->device, &size) : NULL;
-    char *file = bytes && size ? malloc(sizeof(cache_header) + size) : NULL;
-    if (file) {
-        cache_header header = {.size = size, .hash = text_hash(bytes, size, 0)};
-        memcpy(header.magic, cache_magic, sizeof cache_magic);
-        memcpy(file, &header, sizeof header);
-        memcpy(file + sizeof header, bytes, size);
-        if (header.hash != m->cache_hash) {
-            tyn_file_write(m->cache_path, file, sizeof header + size, NULL);
-        }
-    }
-    free(file);
-    free(bytes);
-}
-
 // ---- open and close ---------------------------------------------------------------------------
 
 static int open_chosen(app *a, const tyn_device_info *info, int index, bool validation, machine *m)
 {
     char select[16];
     snprintf(select, sizeof select, "%d", index);
-    void *file = NULL;
-    size_t file_size = 0, size = 0;
-    m->cache_path = pipelines_path(info);
-    if (m->cache_path) {
-        tyn_file_read(m->cache_path, CACHE_LIMIT, &file, &file_size, NULL);
-    }
-    const void *bytes = cache_bytes(file, file_size, &size, &m->cache_hash);
-    tyn_result result = tyn_device_open(
-        tyn_device_open_params(.select = select, .validation = validation, .pipeline_cache = bytes,
-                               .pipeline_cache_size = size, .log = a->log),
-        &m->device);
-    free(file);
+    pipeline_cache_read(&m->cache, info);
+    tyn_result result =
+        tyn_device_open(tyn_device_open_params(.select = select, .validation = validation,
+                                               .pipeline_cache = m->cache.bytes,
+                                               .pipeline_cache_size = m->cache.size, .log = a->log),
+                        &m->device);
     return app_exit_code(a, result, false);
 }
 
-int machine_open(app *a, const machine_options *options, bool validation, machine *m)
+int machine_choose(app *a, const machine_options *options, int *index, tyn_device_info *info)
 {
-    *m = (machine){0};
     a->quiet = options->quiet;
     devices d;
     int code = devices_list(a, &d);
     if (code == EXIT_DONE) {
-        int index = choose(&d, options->device);
-        if (index < 0) {
+        *index = choose(&d, options->device);
+        if (*index < 0) {
             say_what_there_is(a, &d, options->device);
             code = EXIT_WRONG;
         } else {
-            code = open_chosen(a, &d.infos[index], index, validation, m);
+            *info = d.infos[*index];
         }
     }
     devices_finish(&d);
     return code;
 }
 
+int machine_open(app *a, const machine_options *options, bool validation, machine *m)
+{
+    *m = (machine){0};
+    int index;
+    tyn_device_info info;
+    int code = machine_choose(a, options, &index, &info);
+    return code == EXIT_DONE ? open_chosen(a, &info, index, validation, m) : code;
+}
+
 void machine_close(machine *m)
 {
     if (m->device) {
-        cache_write(m);
+        pipeline_cache_write(&m->cache, m->device);
     }
     tyn_device_destroy(&m->device);
-    free(m->cache_path);
+    pipeline_cache_finish(&m->cache);
     *m = (machine){0};
 }

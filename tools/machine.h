@@ -1,6 +1,7 @@
 // machine.h -- the device that --device names, with its pipelines cached on disk.
 #pragma once
 #include "app.h"
+#include "pipeline_cache.h"
 #include <tyndall/registry.h>
 
 // --plugin FILE.so: loaded when it is read, so that methods and passes of the rest of the line may be its own.
@@ -21,9 +22,11 @@ enum { MACHINE_TABLE_SIZE = 3 };
 
 typedef struct machine {
     tyn_device *device;
-    char *cache_path; // NULL: no place for a cache
-    uint64_t cache_hash;
+    pipeline_cache cache;
 } machine;
+
+// Which device the options mean: its place in Vulkan's list. Applies --quiet. Gives the exit code.
+int machine_choose(app *a, const machine_options *options, int *index, tyn_device_info *info);
 
 // Opens the device and applies --quiet. Gives the exit code; `m` may be closed after a failure as well.
 int machine_open(app *a, const machine_options *options, bool validation, machine *m);

@@ -6,7 +6,7 @@
 
 static const command *const commands[] = {
     &cmd_render, &cmd_compare, &cmd_probe, &cmd_balance,  &cmd_fluxes,
-    &cmd_bench,  &cmd_graph,   &cmd_info,  &cmd_selftest,
+    &cmd_bench,  &cmd_graph,   &cmd_info,  &cmd_selftest, &cmd_view,
 };
 
 static void print_help(FILE *to)

@@ -4,7 +4,7 @@
 # Floors, bottom to top: base < gpu, scene < io < graph < passes < job < light < solve < view < methods
 # < registry < frame < tools, samples, tests. A file includes its own folder and lower floors only; passes do not
 # include each other; what they share is in shaders/, which sees engine/scene, <tyndall/pass.h> and what else is plain data at
-# most; tools and samples see nothing but <tyndall/...>, a plugin the shaders as well; public headers include lower tiers
+# most; tools and samples see nothing but <tyndall/...>, a plugin and their shaders what is in shaders/ as well; public headers include lower tiers
 # only, those of <tyndall/extend/...> also what C and shaders share.
 set -eu
 
@@ -137,6 +137,7 @@ check()
             b = to ~ /^public\// ? tier[substr(to, 8)] : from ~ /^public\/extend/ && to == "shaders" ? 0 : 99
             if (b >= a) { fault("a public header includes " name ", which is not of a lower tier") }
         } else if (from == "tools" || from ~ /^samples\//) {
+            if (to == "shaders" && FILENAME ~ /\.(comp|vert|frag)$/) { next }
             if (to !~ /^public\// && !(from == "samples/plugin" && to == "shaders")) { fault(from " sees public headers only, not " name) }
         } else if (from == "shaders") {
             if (to != "engine/scene" && to !~ /^public\/(pass|scene|extend\/lattice_shape)\.h$/) { fault("shaders do not see " name) }

@@ -1,0 +1,255 @@
+// controls.c -- what the panel holds: method, picture, lights, media, times, memory, warnings.
+#include "view/panel.h"
+#include "view/viewer.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <tyndall/registry.h>
+
+static const char *const curves[] = {"filmic", "linear", "Reinhard"};
+enum { MAX_METHODS = 32 };
+
+// ---- method and picture -----------------------------------------------------------------------
+
+static void method_controls(viewer *v)
+{
+    const char *names[MAX_METHODS];
+    const uint32_t count = tyn_num_methods() < MAX_METHODS ? tyn_num_methods() : MAX_METHODS;
+    for (uint32_t i = 0; i < count; i++) {
+        tyn_method_info info;
+        tyn_method_at(i, &info);
+        names[i] = info.name;
+    }
+    int chosen = (int)v->method_index, quality = (int)v->quality;
+    if (panel_choice("method", &chosen, names, (int)count)) {
+        viewer_set_method(v, (uint32_t)chosen);
+    }
+    if (panel_choice("quality", &quality, viewer_qualities, 3)) {
+        viewer_set_quality(v, (uint32_t)quality);
+    }
+}
+
+static void picture_controls(viewer *v)
+{
+    const char *names[VIEW_NUM_LAYERS];
+    uint32_t layers[VIEW_NUM_LAYERS];
+    int count = 0, chosen = 0;
+    for (uint32_t i = 0; i < VIEW_NUM_LAYERS; i++) {
+        if (view_layers[i].output & v->method.info.outputs) {
+            chosen = i == v->layer ? count : chosen;
+            names[count] = view_layers[i].name;
+            layers[count++] = i;
+        }
+    }
+    if (panel_choice("layer", &chosen, names, count)) {
+        viewer_set_layer(v, layers[chosen]);
+    }
+    panel_slider("exposure, EV", &v->exposure, -10, 10, false);
+    panel_choice("tone curve", &v->curve, curves, (int)ARRAY_SIZE(curves));
+}
+
+// ---- lights -----------------------------------------------------------------------------------
+
+static bool sun_controls(tyn_light *light)
+{
+    const float degrees = 57.29578f;
+    float height = degrees * asinf(fminf(fmaxf(-light->direction[1], -1), 1));
+    float azimuth = degrees * atan2f(-light->direction[0], -light->direction[2]);
+    const bool changed = panel_slider("elevation", &height, -89.9f, 89.9f, false) |
+                         panel_slider("azimuth", &azimuth, -180, 180, false);
+    if (changed) {
+        const float up = height / degrees, around = azimuth / degrees;
+        light->direction[0] = -cosf(up) * sinf(around);
+        light->direction[1] = -sinf(up);
+        light->direction[2] = -cosf(up) * cosf(around);
+    }
+    return changed;
+}
+
+static bool light_controls(viewer *v, uint32_t i)
+{
+    tyn_light *light = &v->scene.lights[i];
+    char title[128];
+    snprintf(title, sizeof title, "%s %s", tyn_light_traits_of(light->kind)->name,
+             light->name ? light->name : "");
+    panel_text(title);
+    bool changed = panel_slider("strength", &v->light_strength[i], 0, 100, true);
+    for (int c = 0; changed && c < 3; c++) {
+        light->color[c] = v->light_strength[i] * v->loaded.lights[i].color[c];
+    }
+    if (light->kind == TYN_LIGHT_DIRECTIONAL) {
+        changed |= sun_controls(light);
+    }
+    return changed;
+}
+
+// The rotation by v->environment_turn about +Y after that of the file.
+static void turn_environment(viewer *v)
+{
+    const float half = v->environment_turn * 0.00872665f, s = sinf(half), c = cosf(half);
+    const float *q = v->loaded.environment.rotation;
+    const float w = q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0 ? 1 : q[3];
+    const float turned[4] = {c * q[0] + s * q[2], c * q[1] + s * w, c * q[2] - s * q[0],
+                             c * w - s * q[1]};
+    memcpy(v->scene.environment.rotation, turned, sizeof turned);
+}
+
+static bool environment_controls(viewer *v)
+{
+    tyn_environment *env = &v->scene.environment;
+    panel_text("environment");
+    const bool stronger = panel_slider("strength", &v->environment_strength, 0.001f, 100, true);
+    const bool turned = panel_slider("turned", &v->environment_turn, -180, 180, false);
+    if (stronger) {
+        env->strength = v->environment_strength * tyn_environment_strength(&v->loaded.environment);
+    }
+    if (turned) {
+        turn_environment(v);
+    }
+    return stronger || turned;
+}
+
+// ---- media ------------------------------------------------------------------------------------
+
+static bool medium_controls(viewer *v, uint32_t i)
+{
+    tyn_medium *medium = &v->scene.media[i];
+    const tyn_medium *loaded = &v->loaded.media[i];
+    panel_text(medium->name ? medium->name : "medium");
+    bool changed = false;
+    if (panel_slider("density", &v->density[i], 0.01f, 100, true)) {
+        medium->density_scale = v->density[i] * tyn_medium_scale(loaded);
+        changed = true;
+    }
+    if (panel_color("albedo", v->albedo[i])) {
+        for (int c = 0; c < 3; c++) {
+            const float sigma_t = loaded->sigma_s[c] + loaded->sigma_a[c];
+            v->albedo[i][c] = fminf(v->albedo[i][c], 1);
+            medium->sigma_s[c] = v->albedo[i][c] * sigma_t;
+            medium->sigma_a[c] = sigma_t - medium->sigma_s[c];
+        }
+        changed = true;
+    }
+    for (const tyn_phase_parameter *p = tyn_phase_parameters(); p->name; p++) {
+        float values[3];
+        tyn_phase_get(medium->phase, p, values);
+        const float margin = 1e-3f * (p->hi - p->lo);
+        if (panel_slider(p->name, &values[0], p->lo + margin, p->hi - margin, false)) {
+            values[1] = values[2] = values[0];
+            tyn_phase_set(medium->phase, p, values);
+            changed = true;
+        }
+    }
+    return changed;
+}
+
+void controls_reset(viewer *v)
+{
+    v->environment_strength = 1;
+    v->environment_turn = 0;
+    for (uint32_t i = 0; i < v->scene.num_lights; i++) {
+        v->light_strength[i] = 1;
+    }
+    for (uint32_t i = 0; i < v->scene.num_media; i++) {
+        const tyn_medium *m = &v->scene.media[i];
+        v->density[i] = 1;
+        for (int c = 0; c < 3; c++) {
+            const float sigma_t = m->sigma_s[c] + m->sigma_a[c];
+            v->albedo[i][c] = sigma_t > 0 ? m->sigma_s[c] / sigma_t : 0;
+        }
+    }
+}
+
+static void scene_controls(viewer *v)
+{
+    bool changed = false;
+    const bool lit = v->scene.num_lights || v->scene.environment.present;
+    if (lit && panel_section("lights", false)) {
+        for (uint32_t i = 0; i < v->scene.num_lights; i++) {
+            panel_push((int)i);
+            changed |= light_controls(v, i);
+            panel_pop();
+        }
+        if (v->scene.environment.present) {
+            changed |= environment_controls(v);
+        }
+    }
+    if (v->scene.num_media && panel_section("media", false)) {
+        for (uint32_t i = 0; i < v->scene.num_media; i++) {
+            panel_push(1000 + (int)i);
+            changed |= medium_controls(v, i);
+            panel_pop();
+        }
+    }
+    if (changed) {
+        viewer_touch(v);
+    }
+}
+
+// ---- what happened ----------------------------------------------------------------------------
+
+static const rendering *shown_rendering(const viewer *v)
+{
+    return v->sharp || v->divisor == 1 || !v->moving.context ? &v->rest : &v->moving;
+}
+
+static void report_rows(const viewer *v)
+{
+    const rendering *r = shown_rendering(v);
+    char text[64];
+    if (!r->context) {
+        return;
+    }
+    tyn_report report = {0};
+    tyn_context_report(r->context, &report);
+    if (panel_section("nodes, ms", false)) {
+        for (uint32_t i = 0; i < report.num_nodes; i++) {
+            const tyn_node_report *n = &report.nodes[i];
+            const bool ran = strcmp(n->state, "ran") == 0;
+            snprintf(text, sizeof text, "%.2f", n->gpu_ms);
+            panel_row(n->name, ran ? text : n->state);
+        }
+    }
+    snprintf(text, sizeof text, "%.1f + %.1f MB", 1e-6 * (double)report.persistent_bytes,
+             1e-6 * (double)report.transient_bytes);
+    panel_row("memory", text);
+    const uint32_t warnings = report.num_warnings + v->scene.num_warnings;
+    snprintf(text, sizeof text, "warnings: %u###warnings", warnings);
+    if (warnings && panel_section(text, false)) {
+        for (uint32_t i = 0; i < v->scene.num_warnings; i++) {
+            panel_text(v->scene.warnings[i]);
+        }
+        for (uint32_t i = 0; i < report.num_warnings; i++) {
+            panel_text(report.warnings[i]);
+        }
+    }
+}
+
+static void state_rows(const viewer *v)
+{
+    const rendering *r = shown_rendering(v);
+    char text[64];
+    if (r->context && r->width) {
+        snprintf(text, sizeof text, "%ux%u, %.1f ms", r->width, r->height, r->ms);
+        panel_row(v->sharp ? "at rest" : "moving", text);
+    }
+    if (r->context && r->method.progressive) {
+        snprintf(text, sizeof text, "%u", r->samples);
+        panel_row("samples a pixel", text);
+    }
+}
+
+void controls_draw(viewer *v)
+{
+    const float height = (float)v->surface.extent.height;
+    panel_window("tyndall view", 300, height > 40 ? height - 16 : height);
+    method_controls(v);
+    picture_controls(v);
+    state_rows(v);
+    scene_controls(v);
+    report_rows(v);
+    if (v->note[0]) {
+        panel_text(v->note);
+    }
+    panel_window_end();
+}

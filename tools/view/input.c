@@ -1,0 +1,164 @@
+// input.c -- keys and mouse.
+#include "view/panel.h"
+#include "view/viewer.h"
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <math.h>
+#include <tyndall/registry.h>
+
+static viewer *viewer_of(GLFWwindow *window)
+{
+    return glfwGetWindowUserPointer(window);
+}
+
+// ---- mouse ------------------------------------------------------------------------------------
+
+static bool held(GLFWwindow *window, int button)
+{
+    return glfwGetMouseButton(window, button) == GLFW_PRESS;
+}
+
+static bool key_held(GLFWwindow *window, int key)
+{
+    return glfwGetKey(window, key) == GLFW_PRESS;
+}
+
+static void on_move(GLFWwindow *window, double x, double y)
+{
+    viewer *v = viewer_of(window);
+    const float right = (float)(x - v->mouse[0]), down = (float)(y - v->mouse[1]);
+    v->mouse[0] = x;
+    v->mouse[1] = y;
+    const bool left_button = held(window, GLFW_MOUSE_BUTTON_LEFT);
+    const bool shift =
+        key_held(window, GLFW_KEY_LEFT_SHIFT) || key_held(window, GLFW_KEY_RIGHT_SHIFT);
+    const bool control =
+        key_held(window, GLFW_KEY_LEFT_CONTROL) || key_held(window, GLFW_KEY_RIGHT_CONTROL);
+    if (!v->dragging || (right == 0 && down == 0)) {
+        return;
+    }
+    const float height = (float)v->view.height;
+    if (held(window, GLFW_MOUSE_BUTTON_MIDDLE) || (left_button && shift)) {
+        camera_control_pan(&v->camera, -right / height, down / height);
+    } else if (left_button && control) {
+        camera_control_dolly(&v->camera, expf(2 * down / height));
+    } else if (left_button) {
+        camera_control_orbit(&v->camera, 3 * right / height, -3 * down / height);
+    } else if (held(window, GLFW_MOUSE_BUTTON_RIGHT)) {
+        camera_control_look(&v->camera, 1.5f * right / height, -1.5f * down / height);
+    } else {
+        return;
+    }
+    viewer_touch(v);
+}
+
+static void on_button(GLFWwindow *window, int button, int action, int mods)
+{
+    (void)button;
+    (void)mods;
+    viewer *v = viewer_of(window);
+    if (action == GLFW_PRESS) {
+        v->dragging = !panel_has_mouse();
+    }
+    v->woken = true;
+}
+
+static void on_scroll(GLFWwindow *window, double x, double y)
+{
+    (void)x;
+    viewer *v = viewer_of(window);
+    if (!panel_has_mouse()) {
+        camera_control_dolly(&v->camera, expf(-0.12f * (float)y));
+        viewer_touch(v);
+    }
+}
+
+// ---- keys -------------------------------------------------------------------------------------
+
+static void turn_by_key(viewer *v, int key)
+{
+    const float step = 0.0872665f; // 5 degrees
+    camera_control_orbit(&v->camera,
+                         key == GLFW_KEY_LEFT    ? -step
+                         : key == GLFW_KEY_RIGHT ? step
+                                                 : 0,
+                         key == GLFW_KEY_UP     ? step
+                         : key == GLFW_KEY_DOWN ? -step
+                                                : 0);
+    viewer_touch(v);
+}
+
+static void on_key(GLFWwindow *window, int key, int scancode, int action, int mods)
+{
+    (void)scancode;
+    (void)mods;
+    viewer *v = viewer_of(window);
+    v->woken = true;
+    if (action == GLFW_RELEASE || panel_has_keyboard()) {
+        return;
+    }
+    if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9) {
+        viewer_set_method(v, (uint32_t)(key - GLFW_KEY_1));
+        return;
+    }
+    switch (key) {
+    case GLFW_KEY_LEFT:
+    case GLFW_KEY_RIGHT:
+    case GLFW_KEY_UP:
+    case GLFW_KEY_DOWN:
+        turn_by_key(v, key);
+        break;
+    case GLFW_KEY_PAGE_UP:
+    case GLFW_KEY_PAGE_DOWN:
+        camera_control_dolly(&v->camera, key == GLFW_KEY_PAGE_UP ? 0.9f : 1 / 0.9f);
+        viewer_touch(v);
+        break;
+    case GLFW_KEY_TAB:
+        viewer_set_layer(v, view_layer_next(v->layer, v->method.info.outputs));
+        break;
+    case GLFW_KEY_H:
+        v->show_panel = !v->show_panel;
+        break;
+    case GLFW_KEY_O:
+        v->turntable = !v->turntable;
+        viewer_touch(v);
+        break;
+    case GLFW_KEY_R:
+        v->camera = v->first_camera;
+        viewer_touch(v);
+        break;
+    case GLFW_KEY_ESCAPE:
+    case GLFW_KEY_Q:
+        glfwSetWindowShouldClose(window, GLFW_TRUE);
+        break;
+    default:
+        break;
+    }
+}
+
+void input_step(viewer *v, double seconds)
+{
+    GLFWwindow *w = v->window;
+    const float step = 0.35f * (float)seconds;
+    if (held(w, GLFW_MOUSE_BUTTON_RIGHT) && v->dragging) {
+        const float right = key_held(w, GLFW_KEY_D) - key_held(w, GLFW_KEY_A);
+        const float ahead = key_held(w, GLFW_KEY_W) - key_held(w, GLFW_KEY_S);
+        if (right != 0 || ahead != 0) {
+            camera_control_fly(&v->camera, right * step, 0, ahead * step);
+            viewer_touch(v);
+        }
+    }
+    if (v->turntable) {
+        camera_control_orbit(&v->camera, 0.4f * (float)seconds, 0);
+        viewer_touch(v);
+    }
+}
+
+void input_open(viewer *v)
+{
+    glfwSetWindowUserPointer(v->window, v);
+    glfwSetCursorPosCallback(v->window, on_move);
+    glfwSetMouseButtonCallback(v->window, on_button);
+    glfwSetScrollCallback(v->window, on_scroll);
+    glfwSetKeyCallback(v->window, on_key);
+}

@@ -1,0 +1,80 @@
+// rendering.c -- a context of the library, frame by frame, on the viewer's device.
+#include "view/rendering.h"
+#include <string.h>
+
+bool rendering_open(rendering *r, gpu *g, const method *m)
+{
+    *r = (rendering){.gpu = g, .method = m->info, .batch = 1};
+    return gpu_commands_make(g, &r->commands) &&
+           tyn_context_create(g->tyn,
+                              tyn_context_params(.method = m->info.name, .settings = m->settings,
+                                                 .frames_in_flight = 1, .readback = true),
+                              &r->context) == TYN_OK;
+}
+
+void rendering_close(rendering *r)
+{
+    if (r->gpu) {
+        gpu_wait_idle(r->gpu);
+        tyn_context_destroy(&r->context);
+        gpu_commands_free(r->gpu, &r->commands);
+    }
+    *r = (rendering){0};
+}
+
+static void adapt_batch(rendering *r, double budget_ms, uint32_t most)
+{
+    if (r->ms > 1.3 * budget_ms) {
+        r->batch = r->batch > 1 ? r->batch / 2 : 1;
+    } else if (r->ms < 0.5 * budget_ms) {
+        r->batch *= 2;
+    }
+    r->batch = r->batch > most ? most : r->batch;
+}
+
+bool rendering_frame(rendering *r, const tyn_scene *scene, const tyn_view *view, double budget_ms,
+                     bool more)
+{
+    gpu *g = r->gpu;
+    const double start = app_seconds();
+    tyn_view asked = *view;
+    more = more && r->width == view->width && r->height == view->height;
+    asked.first_sample = r->method.progressive && more ? r->samples : 0;
+    asked.num_samples = r->method.progressive ? r->batch : 0;
+    tyn_frame frame = *tyn_frame(.scene = scene, .view = &asked, .cmd = r->commands.cmd);
+    if (!gpu_wait(g, &r->commands) || tyn_context_prepare(r->context, &frame) != TYN_OK) {
+        return false;
+    }
+    const uint32_t most = tyn_context_batch(r->context, &frame);
+    if (!gpu_begin(g, &r->commands) || tyn_context_record(r->context, &frame) != TYN_OK ||
+        !gpu_submit(g, &r->commands, VK_NULL_HANDLE, VK_NULL_HANDLE) ||
+        !gpu_wait(g, &r->commands)) {
+        return false;
+    }
+    r->ms = 1e3 * (app_seconds() - start);
+    r->width = view->width;
+    r->height = view->height;
+    r->samples = asked.first_sample + asked.num_samples;
+    adapt_batch(r, budget_ms, most);
+    return true;
+}
+
+const void *rendering_output(const rendering *r, tyn_output output)
+{
+    return tyn_context_output(r->context, output);
+}
+
+double rendering_pixels_ms(const rendering *r)
+{
+    tyn_report report = {0};
+    tyn_context_report(r->context, &report);
+    double sum = 0;
+    for (uint32_t i = 0; i < report.num_nodes; i++) {
+        const tyn_node_report *n = &report.nodes[i];
+        for (const tyn_pass_desc *const *pass = r->method.passes; *pass; pass++) {
+            const bool counts = (*pass)->of_pixels && strcmp((*pass)->name, n->name) == 0;
+            sum += counts ? n->gpu_ms : 0;
+        }
+    }
+    return sum;
+}
