@@ -33,7 +33,7 @@ static void normalize(float v[3])
     }
 }
 
-static float distance(const camera_control *c)
+float camera_control_distance(const camera_control *c)
 {
     float away[3];
     for (int i = 0; i < 3; i++) {
@@ -86,7 +86,7 @@ static void turn(tyn_camera *camera, float right, float up)
 
 void camera_control_orbit(camera_control *c, float right, float up)
 {
-    const float far = distance(c);
+    const float far = camera_control_distance(c);
     turn(&c->camera, right, up);
     memcpy(c->camera.position, c->target, sizeof c->target);
     move(c->camera.position, c->camera.back, far);
@@ -94,7 +94,7 @@ void camera_control_orbit(camera_control *c, float right, float up)
 
 void camera_control_look(camera_control *c, float right, float up)
 {
-    const float far = distance(c);
+    const float far = camera_control_distance(c);
     turn(&c->camera, right, up);
     aim_at_distance(c, far);
 }
@@ -102,8 +102,9 @@ void camera_control_look(camera_control *c, float right, float up)
 // Half the height of what is seen at the target, m.
 static float half_height(const camera_control *c)
 {
-    return c->camera.projection == TYN_ORTHOGRAPHIC ? c->camera.ymag
-                                                    : distance(c) * tanf(0.5f * c->camera.yfov);
+    return c->camera.projection == TYN_ORTHOGRAPHIC
+               ? c->camera.ymag
+               : camera_control_distance(c) * tanf(0.5f * c->camera.yfov);
 }
 
 void camera_control_pan(camera_control *c, float right, float up)
@@ -122,7 +123,8 @@ void camera_control_dolly(camera_control *c, float factor)
         c->camera.ymag = fminf(fmaxf(c->camera.ymag * factor, 1e-4f * c->size), 100 * c->size);
         return;
     }
-    const float far = fminf(fmaxf(distance(c) * factor, 1e-3f * c->size), 100 * c->size);
+    const float far =
+        fminf(fmaxf(camera_control_distance(c) * factor, 1e-3f * c->size), 100 * c->size);
     memcpy(c->camera.position, c->target, sizeof c->target);
     move(c->camera.position, c->camera.back, far);
 }

@@ -8,6 +8,7 @@ typedef struct camera_control {
     float size;      // of the scene, m: the measure of speeds
 } camera_control;
 
+float camera_control_distance(const camera_control *c); // to the target, m
 // Turns about the point of the axis of view that is nearest to the middle of the scene.
 void camera_control_start(camera_control *c, const tyn_camera *camera, const tyn_scene *scene);
 // Angles in radians: to the right about +Y, up about the camera's right. It does not turn over.

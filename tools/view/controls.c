@@ -182,7 +182,96 @@ static void scene_controls(viewer *v)
         }
     }
     if (changed) {
+        v->edited = true;
         viewer_touch(v);
+    }
+}
+
+// ---- comparison, probe, sequence ----------------------------------------------------------------
+
+static void comparison_rows(const viewer *v)
+{
+    const comparison *c = &v->comparison;
+    char left[64], right[64];
+    if (!c->on) {
+        return;
+    }
+    snprintf(left, sizeof left, "%s, samples", tyn_method_reference());
+    snprintf(right, sizeof right, "%u", c->started ? c->rendering.samples : 0);
+    panel_row(left, right);
+    if (c->measured) {
+        snprintf(left, sizeof left, "off over %dx%d", COMPARISON_BLOCK, COMPARISON_BLOCK);
+        snprintf(right, sizeof right, "%.2f %% (noise %.2f %%)", 100 * c->error.rel_l1,
+                 100 * c->error.n);
+        panel_row(left, right);
+    }
+}
+
+static void probe_rows(viewer *v)
+{
+    const probe_point *p = &v->probe;
+    char text[96];
+    if (p->state == PROBE_OFF || !panel_section("probe", true)) {
+        return;
+    }
+    snprintf(text, sizeof text, "%.3g %.3g %.3g m", p->position[0], p->position[1], p->position[2]);
+    panel_row("at", text);
+    if (p->state == PROBE_KNOWN) {
+        const float *f = p->result.fluence, *e = p->result.fluence_se;
+        snprintf(text, sizeof text, "%.4g %.4g %.4g", f[0], f[1], f[2]);
+        panel_row("fluence, W/m^2", text);
+        if (e[0] > 0) {
+            snprintf(text, sizeof text, "%.2g %.2g %.2g", e[0], e[1], e[2]);
+            panel_row("standard error", text);
+        }
+        static const char *const axes[] = {"net flux along x", "along y", "along z"};
+        for (int i = 0; i < 3; i++) {
+            const float *flux = p->result.flux + 3 * i;
+            snprintf(text, sizeof text, "%.3g %.3g %.3g", flux[0], flux[1], flux[2]);
+            panel_row(axes[i], text);
+        }
+    }
+    if (panel_button("remove the probe")) {
+        probe_remove(v);
+    }
+}
+
+static void sequence_controls(viewer *v)
+{
+    if (!v->sequence.numbered) {
+        return;
+    }
+    float number = (float)v->number;
+    panel_checkbox("play", &v->playing);
+    if (panel_slider("picture", &number, (float)v->sequence.first, (float)v->sequence.last,
+                     false)) {
+        v->playing = false;
+        source_turn_to(v, (uint32_t)lroundf(number));
+    }
+}
+
+void controls_draw_marks(const viewer *v)
+{
+    const float width = (float)v->surface.extent.width, height = (float)v->surface.extent.height;
+    float x, y;
+    if (comparison_seen(v)) {
+        char text[64] = "";
+        x = v->comparison.split * width;
+        panel_line(x, 0, x, height, 0xc0ffffff);
+        if (v->comparison.measured) {
+            snprintf(text, sizeof text, ", %.2f %% off", 100 * v->comparison.error.rel_l1);
+        }
+        char line[128];
+        snprintf(line, sizeof line, "%s%s", v->method.info.name, text);
+        panel_label(x - 9 - 7 * (float)strlen(line), height - 20, line);
+        panel_label(x + 8, height - 20, v->comparison.method.info.name);
+    }
+    if (v->probe.state != PROBE_OFF &&
+        camera_control_project(&v->camera, v->probe.position, viewer_aspect(v), &x, &y)) {
+        x *= width;
+        y *= height;
+        panel_line(x - 8, y, x + 8, y, 0xff20e0ff);
+        panel_line(x, y - 8, x, y + 8, 0xff20e0ff);
     }
 }
 
@@ -245,7 +334,10 @@ void controls_draw(viewer *v)
     panel_window("tyndall view", 300, height > 40 ? height - 16 : height);
     method_controls(v);
     picture_controls(v);
+    sequence_controls(v);
     state_rows(v);
+    comparison_rows(v);
+    probe_rows(v);
     scene_controls(v);
     report_rows(v);
     if (v->note[0]) {

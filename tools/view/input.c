@@ -37,6 +37,11 @@ static void on_move(GLFWwindow *window, double x, double y)
     if (!v->dragging || (right == 0 && down == 0)) {
         return;
     }
+    if (v->splitting) {
+        v->comparison.split = fminf(fmaxf((float)x / (float)v->view.width, 0.02f), 0.98f);
+        v->woken = true;
+        return;
+    }
     const float height = (float)v->view.height;
     if (held(window, GLFW_MOUSE_BUTTON_MIDDLE) || (left_button && shift)) {
         camera_control_pan(&v->camera, -right / height, down / height);
@@ -58,7 +63,9 @@ static void on_button(GLFWwindow *window, int button, int action, int mods)
     (void)mods;
     viewer *v = viewer_of(window);
     if (action == GLFW_PRESS) {
+        const double split = v->comparison.split * v->view.width;
         v->dragging = !panel_has_mouse();
+        v->splitting = comparison_seen(v) && fabs(v->mouse[0] - split) < 6;
     }
     v->woken = true;
 }
@@ -116,6 +123,23 @@ static void on_key(GLFWwindow *window, int key, int scancode, int action, int mo
     case GLFW_KEY_TAB:
         viewer_set_layer(v, view_layer_next(v->layer, v->method.info.outputs));
         break;
+    case GLFW_KEY_E:
+        comparison_toggle(v);
+        break;
+    case GLFW_KEY_P:
+        probe_place(v);
+        break;
+    case GLFW_KEY_S:
+        v->save_wanted = !held(window, GLFW_MOUSE_BUTTON_RIGHT);
+        break;
+    case GLFW_KEY_SPACE:
+        v->playing = !v->playing;
+        break;
+    case GLFW_KEY_COMMA:
+    case GLFW_KEY_PERIOD:
+        v->playing = false;
+        source_turn_to(v, key == GLFW_KEY_COMMA ? v->number - 1 : v->number + 1);
+        break;
     case GLFW_KEY_H:
         v->show_panel = !v->show_panel;
         break;
@@ -154,6 +178,13 @@ void input_step(viewer *v, double seconds)
     }
 }
 
+static void on_drop(GLFWwindow *window, int count, const char **paths)
+{
+    for (int i = 0; i < count; i++) {
+        source_drop(viewer_of(window), paths[i]);
+    }
+}
+
 void input_open(viewer *v)
 {
     glfwSetWindowUserPointer(v->window, v);
@@ -161,4 +192,5 @@ void input_open(viewer *v)
     glfwSetMouseButtonCallback(v->window, on_button);
     glfwSetScrollCallback(v->window, on_scroll);
     glfwSetKeyCallback(v->window, on_key);
+    glfwSetDropCallback(v->window, on_drop);
 }

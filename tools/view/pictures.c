@@ -11,11 +11,12 @@ static const double sharp_budget_ms = 200; // of more samples at rest, so that t
 // ---- showing ----------------------------------------------------------------------------------
 
 // The layer's values as they are uploaded: the first channel is what is shown of depths.
-static const float *layer_values(viewer *v, const rendering *r, float **copy)
+static const float *layer_values(viewer *v, const rendering *r, bool scale, float **copy)
 {
     const view_layer *layer = &view_layers[v->layer];
-    const float *values = rendering_output(r, layer->output);
-    if (!values || layer->shows != PICTURE_SHOWS_FIRST) {
+    const bool made = r->method.outputs & layer->output;
+    const float *values = rendering_output(r, made ? layer->output : TYN_OUTPUT_RADIANCE);
+    if (!made || !values || layer->shows != PICTURE_SHOWS_FIRST) {
         return values;
     }
     const size_t count = (size_t)r->width * r->height;
@@ -29,19 +30,23 @@ static const float *layer_values(viewer *v, const rendering *r, float **copy)
             high = fmaxf(high, x);
         }
     }
-    v->low = low < high ? low : 0;
-    v->high = low < high ? high : fmaxf(high, 1);
+    if (scale) {
+        v->low = low < high ? low : 0;
+        v->high = low < high ? high : fmaxf(high, 1);
+    }
     return *copy;
 }
 
-static bool show(viewer *v, const rendering *r)
+bool pictures_show(viewer *v, const rendering *r, picture_slot slot)
 {
-    v->low = 0;
-    v->high = 1;
+    if (slot == PICTURE_METHOD) {
+        v->low = 0;
+        v->high = 1;
+    }
     float *copy = NULL;
-    const float *values = layer_values(v, r, &copy);
+    const float *values = layer_values(v, r, slot == PICTURE_METHOD, &copy);
     const bool shown = values && gpu_wait(&v->gpu, &v->surface.commands) &&
-                       picture_set(&v->picture, PICTURE_METHOD, r->width, r->height, values);
+                       picture_set(&v->picture, slot, r->width, r->height, values);
     free(copy);
     v->has_picture = v->has_picture || shown;
     return shown;
@@ -104,7 +109,8 @@ static void choose_divisor(viewer *v)
 
 static void step_sharp(viewer *v, bool more)
 {
-    const tyn_view view = view_of(v, 1);
+    tyn_view view = view_of(v, 1);
+    probe_ask(v, &view);
     if (!open_if_closed(v, &v->rest) ||
         !rendering_frame(&v->rest, &v->scene, &view, sharp_budget_ms, more)) {
         v->outdated = false;
@@ -112,7 +118,7 @@ static void step_sharp(viewer *v, bool more)
         viewer_note(v, "%s", v->app->last_error);
         return;
     }
-    if (show(v, &v->rest)) {
+    if (pictures_show(v, &v->rest, PICTURE_METHOD)) {
         keep(v, &v->rest);
         if (!more) {
             v->stats.sharp_ms = 1e3 * (app_seconds() - v->last_change);
@@ -120,6 +126,7 @@ static void step_sharp(viewer *v, bool more)
         count(v, false);
         v->sharp = true;
         v->outdated = false;
+        probe_take(v, &v->rest);
         if (!v->method.info.progressive && v->divisor == 0) {
             choose_divisor(v);
         }
@@ -147,13 +154,13 @@ static void step_moving(viewer *v)
     }
     v->outdated = false;
     v->sharp = false;
-    if (show(v, r)) {
+    if (pictures_show(v, r, PICTURE_METHOD)) {
         count(v, true);
     }
     correct_divisor(v, r);
 }
 
-static uint32_t samples_wanted(const viewer *v)
+uint32_t pictures_samples_wanted(const viewer *v)
 {
     return v->how.spp ? v->how.spp : 4096;
 }
@@ -166,7 +173,23 @@ static bool moving(const viewer *v)
 bool pictures_working(const viewer *v)
 {
     return v->outdated || !v->sharp || moving(v) ||
-           (v->method.info.progressive && v->rest.samples < samples_wanted(v));
+           (v->method.info.progressive && v->rest.samples < pictures_samples_wanted(v)) ||
+           comparison_working(v);
+}
+
+// What is left to do at rest: more samples of the method, and of the reference.
+static void step_rest(viewer *v)
+{
+    const bool busy = v->args->busy;
+    if (v->method.info.progressive && v->rest.samples < pictures_samples_wanted(v)) {
+        step_sharp(v, true);
+    } else if (busy) {
+        count(v, false);
+    }
+    if (comparison_working(v)) {
+        const tyn_view view = view_of(v, 1);
+        comparison_step(v, &view, sharp_budget_ms);
+    }
 }
 
 void pictures_step(viewer *v)
@@ -177,10 +200,12 @@ void pictures_step(viewer *v)
         }
     } else if (v->outdated || !v->sharp) {
         step_sharp(v, false);
-    } else if (v->method.info.progressive && v->rest.samples < samples_wanted(v)) {
-        step_sharp(v, true);
-    } else if (v->args->busy) {
-        count(v, false);
+    } else {
+        step_rest(v);
+    }
+    if (v->sharp && v->save_wanted) {
+        v->save_wanted = false;
+        save_picture(v);
     }
 }
 
@@ -190,7 +215,8 @@ void pictures_args(const viewer *v, struct picture_args *args)
     *args = (struct picture_args){
         .width = (float)v->surface.extent.width,
         .height = (float)v->surface.extent.height,
-        .split = (float)v->surface.extent.width,
+        .split = comparison_seen(v) ? v->comparison.split * (float)v->surface.extent.width
+                                    : (float)v->surface.extent.width,
         .scale = exp2f(v->exposure),
         .low = v->low,
         .high = v->high,
@@ -203,6 +229,7 @@ void pictures_close(viewer *v)
 {
     rendering_close(&v->rest);
     rendering_close(&v->moving);
+    comparison_close(v);
     v->outdated = true;
     v->sharp = false;
     v->divisor = 0;

@@ -240,8 +240,10 @@ static bool renew_surface(surface *s)
 
 static surface_state renew_swapchain(surface *s, VkExtent2D size)
 {
+    if (!gpu_wait(s->gpu, &s->commands)) {
+        return SURFACE_FAILED;
+    }
     gpu_wait_idle(s->gpu);
-    s->commands.pending = s->commands.pending && gpu_wait(s->gpu, &s->commands);
     VkResult result = make_swapchain(s, size);
     if (result == VK_ERROR_SURFACE_LOST_KHR) {
         return renew_surface(s) ? SURFACE_SKIP : SURFACE_FAILED;

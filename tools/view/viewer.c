@@ -26,6 +26,8 @@ void viewer_touch(viewer *v)
     v->outdated = true;
     v->woken = true;
     v->last_change = app_seconds();
+    v->comparison.started = v->comparison.measured = false;
+    v->probe.state = v->probe.state == PROBE_KNOWN ? PROBE_ASKED : v->probe.state;
 }
 
 float viewer_aspect(const viewer *v)
@@ -89,6 +91,7 @@ void viewer_set_layer(viewer *v, uint32_t layer)
 {
     v->layer = layer;
     v->outdated = true;
+    v->comparison.started = false;
     v->woken = true;
 }
 
@@ -223,6 +226,7 @@ static void record(viewer *v)
 static void draw_panel(viewer *v)
 {
     panel_begin();
+    controls_draw_marks(v);
     if (v->show_panel) {
         controls_draw(v);
     }
@@ -281,13 +285,14 @@ static int loop(viewer *v)
 {
     const double end = v->args->seconds > 0 ? app_seconds() + v->args->seconds : INFINITY;
     int code = EXIT_DONE;
-    v->last_frame = app_seconds();
+    v->last_frame = v->last_change = app_seconds();
     while (code == EXIT_DONE && !glfwWindowShouldClose(v->window) && !app_interrupted() &&
            app_seconds() < end) {
         take_input(v);
         if (hidden(v)) {
             continue;
         }
+        source_step(v);
         pictures_step(v);
         const bool failed = v->gpu.lost || step_frame(v) == SURFACE_FAILED;
         if (v->gpu.lost) {
@@ -303,8 +308,7 @@ static int loop(viewer *v)
 
 static int load(viewer *v)
 {
-    int code = scene_open(v->app, &v->source, &v->scene);
-    v->loaded = v->scene;
+    int code = source_open(v);
     if (code == EXIT_DONE) {
         code = use_method(v, &v->how) ? EXIT_DONE : EXIT_WRONG;
     }
@@ -317,6 +321,19 @@ static int load(viewer *v)
         controls_reset(v);
     }
     return code;
+}
+
+void viewer_frame_scene(viewer *v)
+{
+    tyn_camera camera;
+    if (v->scene.num_cameras) {
+        camera = v->scene.cameras[0];
+    } else {
+        tyn_camera_frame_scene(&camera, &v->scene);
+    }
+    camera_control_start(&v->camera, &camera, &v->scene);
+    v->first_camera = v->camera;
+    viewer_touch(v);
 }
 
 static double per_second(uint32_t frames, double seconds)
@@ -341,6 +358,20 @@ static int write_stats(const viewer *v)
     cJSON_AddNumberToObject(root, "swapchains", v->surface.num_recreated);
     cJSON_AddNumberToObject(root, "devices_lost", v->stats.num_lost);
     cJSON_AddNumberToObject(root, "validation_messages", v->gpu.messages);
+    const comparison *c = &v->comparison;
+    if (c->measured) {
+        cJSON *compared = cJSON_AddObjectToObject(root, "comparison");
+        cJSON_AddNumberToObject(compared, "samples", c->rendering.samples);
+        cJSON_AddNumberToObject(compared, "block", COMPARISON_BLOCK);
+        json_add_float(compared, "rel_l1", c->error.rel_l1);
+        json_add_float(compared, "n", c->error.n);
+    }
+    if (v->probe.state == PROBE_KNOWN) {
+        cJSON *probe = cJSON_AddObjectToObject(root, "probe");
+        cJSON_AddItemToObject(probe, "point", json_floats(v->probe.position, 3));
+        cJSON_AddItemToObject(probe, "fluence", json_floats(v->probe.result.fluence, 3));
+        cJSON_AddItemToObject(probe, "flux", json_floats(v->probe.result.flux, 9));
+    }
     return json_write(v->app, root, v->args->stats);
 }
 
@@ -389,7 +420,7 @@ int viewer_run(app *a, const view_args *args)
     }
     glfwTerminate();
     method_finish(&v->method);
-    tyn_scene_finish(&v->scene);
+    source_close(v);
     free(v->pixels);
     free(v);
     return code;

@@ -3,12 +3,16 @@
 #include "scene_setup.h"
 #include "sequence.h"
 #include "view/camera_control.h"
+#include "view/comparison.h"
 #include "view/layers.h"
 #include "view/picture.h"
+#include "view/probe_point.h"
 #include "view/rendering.h"
 #include "view/run.h"
+#include "view/source.h"
 #include "view/surface.h"
 #include "view/view_args.h"
+#include "view/watch.h"
 
 typedef struct viewer_stats {
     double moving_seconds, rest_seconds; // between pictures shown
@@ -17,7 +21,7 @@ typedef struct viewer_stats {
     uint32_t num_lost; // devices
 } viewer_stats;
 
-typedef struct viewer {
+struct viewer {
     app *app;
     const view_args *args;
 
@@ -31,6 +35,13 @@ typedef struct viewer {
     scene_options source;
     char *scene_path, *environment_path; // of what was dropped; NULL: as the arguments say
     tyn_scene scene, loaded; // as edited; `loaded` has the numbers of the file and owns nothing
+    bool edited;             // in the panel
+    watch watch;
+    double last_look; // at the files, seconds
+    sequence sequence;
+    uint32_t number; // of the picture of the sequence
+    bool playing;
+    double next_picture; // seconds
     camera_control camera, first_camera;
     method_options how;
     method method;
@@ -44,7 +55,10 @@ typedef struct viewer {
     bool sharp;         // the picture is at the window's size and of what is asked for
     bool outdated;      // something changed since the last picture
     double last_change; // seconds
-    float *pixels;      // of the sharp picture, radiance, four floats a pixel
+    comparison comparison;
+    probe_point probe;
+    bool save_wanted; // when the picture is sharp
+    float *pixels;    // of the sharp picture, radiance, four floats a pixel
     uint32_t pixels_width, pixels_height;
     float low, high; // of the layer's values
 
@@ -56,13 +70,14 @@ typedef struct viewer {
         albedo[TYN_MAX_MEDIA][3]; // times that of the file; of each medium
     bool show_panel, turntable;
     double mouse[2];      // pixels
+    bool splitting;       // the line between method and reference is dragged
     bool dragging, woken; // the buttons are for the picture, not the panel; something came in
     double last_frame;    // seconds
     double last_shown;    // a picture
     bool last_was_moving;
     viewer_stats stats;
     char note[512]; // the newest of what happened, for the panel
-} viewer;
+};
 
 extern const char *const viewer_qualities[]; // NULL-terminated
 enum { VIEWER_NORMAL = 1 };                  // its place there
@@ -76,16 +91,38 @@ void viewer_set_quality(viewer *v, uint32_t index);
 void viewer_set_layer(viewer *v, uint32_t layer);
 float viewer_aspect(const viewer *v);
 
+void viewer_frame_scene(viewer *v); // the camera to the scene's own, or so that all is seen
+
 // input.c
 void input_open(viewer *v);                 // before the panel
 void input_step(viewer *v, double seconds); // keys that are held
 
 // controls.c: the widgets of the panel.
 void controls_draw(viewer *v);
-void controls_reset(viewer *v); // the scene is another
+void controls_draw_marks(const viewer *v); // over the picture
+void controls_reset(viewer *v);            // the scene is another
 
 // pictures.c: what the method is asked for, and when.
 void pictures_step(viewer *v);
 bool pictures_working(const viewer *v); // something is to be computed now, or soon
+bool pictures_show(viewer *v, const rendering *r, picture_slot slot); // the layer of its last frame
+uint32_t pictures_samples_wanted(const viewer *v);
 void pictures_args(const viewer *v, struct picture_args *args);
 void pictures_close(viewer *v);
+
+// comparison.c
+void comparison_toggle(viewer *v);
+void comparison_close(viewer *v);
+bool comparison_working(const viewer *v);
+bool comparison_seen(const viewer *v); // there is something of it to show
+void comparison_step(viewer *v, const tyn_view *view,
+                     double budget_ms); // more samples of the reference
+
+// probe_point.c
+void probe_place(viewer *v); // under the pointer
+void probe_remove(viewer *v);
+void probe_ask(const viewer *v, tyn_view *view); // for what it needs of a sharp picture
+void probe_take(viewer *v, const rendering *r);  // what that gave
+
+// save.c
+void save_picture(viewer *v); // the sharp picture

@@ -1,0 +1,435 @@
+#!/usr/bin/env python3
+"""view.py TYNDALL SCENES LOSE [PICTURES] -- `tyndall view` under Xvfb, used by keys and mouse through xdotool.
+
+TYNDALL is the tool, SCENES the folder of sample scenes, LOSE a library that loses surface or device (lose.c). Screens
+are read from Xvfb's frame buffer and compared with what `tyndall render` writes. With PICTURES the screens are written
+there as PNG. Exit 77: skipped, as something is missing.
+"""
+import json
+import math
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import zlib
+
+TYNDALL, SCENES, LOSE = map(os.path.abspath, sys.argv[1:4])
+PICTURES = sys.argv[4] if len(sys.argv) > 4 else None
+WIDTH, HEIGHT = 320, 240
+failures = []
+
+
+def check(good, what):
+    if not good:
+        print("FAILED:", what)
+        failures.append(what)
+
+
+# ---- pictures -----------------------------------------------------------------------------------
+
+def read_png(path):
+    """Width, height and RGB bytes of an 8-bit RGB PNG."""
+    with open(path, "rb") as file:
+        data = file.read()
+    at, packed = 8, b""
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IHDR":
+            width, height = struct.unpack(">II", data[at + 8:at + 16])
+        elif kind == b"IDAT":
+            packed += data[at + 8:at + 8 + size]
+        at += 12 + size
+    raw, stride = zlib.decompress(packed), 3 * width
+    rows, above = [], bytearray(stride)
+    for y in range(height):
+        kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride):
+            left = row[i - 3] if i >= 3 else 0
+            corner = above[i - 3] if i >= 3 else 0
+            up = above[i]
+            if kind == 1:
+                row[i] = (row[i] + left) & 255
+            elif kind == 2:
+                row[i] = (row[i] + up) & 255
+            elif kind == 3:
+                row[i] = (row[i] + (left + up) // 2) & 255
+            elif kind == 4:
+                guess = left + up - corner
+                best = min((abs(guess - left), 0, left), (abs(guess - up), 1, up), (abs(guess - corner), 2, corner))
+                row[i] = (row[i] + best[2]) & 255
+        rows.append(bytes(row))
+        above = row
+    return width, height, b"".join(rows)
+
+
+def write_png(path, width, height, rgb):
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+    rows = b"".join(b"\0" + rgb[3 * width * y:3 * width * (y + 1)] for y in range(height))
+    with open(path, "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)) +
+                   chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+def difference(a, b):
+    """Mean absolute difference of the bytes, of 255."""
+    return sum(abs(x - y) for x, y in zip(a, b)) / max(len(a), 1) if len(a) == len(b) else 255
+
+
+# ---- the screen and the viewer --------------------------------------------------------------------
+
+class Screen:
+    def __init__(self, work):
+        read, write = os.pipe()
+        self.folder = work
+        self.server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", "800x600x24", "-fbdir", work, "-nolisten", "tcp"],
+            pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as number:
+            self.display = ":" + number.readline().strip()
+        self.environment = dict(os.environ, DISPLAY=self.display)
+
+    def close(self):
+        self.server.terminate()
+        self.server.wait()
+
+    def shot(self, width=WIDTH, height=HEIGHT):
+        """The upper left corner, RGB bytes."""
+        with open(os.path.join(self.folder, "Xvfb_screen0"), "rb") as file:
+            data = file.read()
+        head = struct.unpack(">25I", data[:100]) # an X window dump
+        start, stride = head[0] + 12 * head[19], head[12]
+        rows = []
+        for y in range(height):
+            row = data[start + y * stride:start + y * stride + 4 * width]
+            rgb = bytearray(3 * width)
+            rgb[0::3], rgb[1::3], rgb[2::3] = row[2::4], row[1::4], row[0::4]
+            rows.append(bytes(rgb))
+        return b"".join(rows)
+
+    def do(self, *arguments):
+        subprocess.run(["xdotool", *map(str, arguments)], env=self.environment, check=True,
+                       stdout=subprocess.DEVNULL)
+
+
+class Viewer:
+    def __init__(self, screen, work, scene, *options, environment=None, stats=True):
+        self.screen, self.work = screen, work
+        self.stats_path = os.path.join(work, "stats.json")
+        self.log = open(os.path.join(work, "log"), "w+b")
+        command = [TYNDALL, "view", scene, "--size", f"{WIDTH}x{HEIGHT}", "--stats", self.stats_path, *options]
+        if "--panel" in command:
+            command.remove("--panel")
+        else:
+            command.append("--no-panel")
+        self.process = subprocess.Popen(command, env=dict(screen.environment, **(environment or {})), cwd=work,
+                                        stdout=self.log, stderr=subprocess.STDOUT)
+        screen.do("mousemove", WIDTH // 2, HEIGHT // 2)
+
+    def alive(self):
+        return self.process.poll() is None
+
+    def settled(self, width=WIDTH, height=HEIGHT, seconds=60, other_than=None):
+        """The screen when it has stopped changing and shows something (else than what is given)."""
+        end, last, since = time.time() + seconds, None, time.time()
+        while time.time() < end and self.alive():
+            now = self.screen.shot(width, height)
+            if now != last:
+                last, since = now, time.time()
+            elif time.time() - since > 0.8 and any(now) and (other_than is None or difference(now, other_than) > 0.3):
+                break
+            time.sleep(0.1)
+        return last
+
+    def key(self, *keys):
+        for key in keys:
+            self.screen.do("key", key)
+            time.sleep(0.15)
+
+    def drag(self, button, right, down, held=None):
+        if held:
+            self.screen.do("keydown", held)
+        self.screen.do("mousemove", WIDTH // 2, HEIGHT // 2, "mousedown", button)
+        for i in range(1, 6):
+            self.screen.do("mousemove", WIDTH // 2 + right * i // 5, HEIGHT // 2 + down * i // 5)
+            time.sleep(0.05)
+        self.screen.do("mouseup", button)
+        if held:
+            self.screen.do("keyup", held)
+
+    def text(self):
+        self.log.seek(0)
+        return self.log.read().decode()
+
+    def close(self, code=0, what="viewer"):
+        if self.alive():
+            self.screen.do("mousemove", WIDTH // 2, HEIGHT // 2)
+            self.key("q")
+        try:
+            self.process.wait(30)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        check(self.process.returncode == code, f"{what}: exit {self.process.returncode}: {self.text()[-600:]}")
+        if os.path.exists(self.stats_path):
+            with open(self.stats_path) as file:
+                return json.load(file)
+        return {}
+
+
+def keep(name, rgb, width=WIDTH, height=HEIGHT):
+    if PICTURES and rgb:
+        os.makedirs(PICTURES, exist_ok=True)
+        write_png(os.path.join(PICTURES, name + ".png"), width, height, rgb)
+
+
+def render(work, scene, *options, width=WIDTH, height=HEIGHT):
+    path = os.path.join(work, "render.png")
+    subprocess.run([TYNDALL, "render", "-q", scene, "--size", f"{width}x{height}", "-o", path, *options], check=True,
+                   stdout=subprocess.DEVNULL)
+    return read_png(path)[2]
+
+
+def methods():
+    text = subprocess.run([TYNDALL, "info", "--methods"], check=True, capture_output=True, text=True).stdout
+    return [line.split()[0].rstrip(":") for line in text.splitlines() if line and not line[0].isspace()]
+
+
+# ---- the tests ------------------------------------------------------------------------------------
+
+def test_no_display():
+    for display in [{}, {"DISPLAY": ":12345"}]:
+        environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        done = subprocess.run([TYNDALL, "view", os.path.join(SCENES, "cube.gltf")], capture_output=True, text=True,
+                              env=dict(environment, **display))
+        check(done.returncode == 2 and done.stderr.count("\n") == 1 and "no display" in done.stderr,
+              f"without a display: exit {done.returncode}, {done.stderr}")
+
+
+def test_camera_and_methods(screen, work):
+    scene = os.path.join(SCENES, "smoke-sky.gltf")
+    viewer = Viewer(screen, work, scene, "--validate")
+    first = viewer.settled()
+    keep("first", first)
+    expected = render(work, scene)
+    check(difference(first, expected) < 1, f"the first picture is {difference(first, expected):.2f} off render's")
+    for name, move in [("orbit", (1, 60, 20)), ("pan", (2, 40, 0)), ("dolly", (1, 0, 40, "ctrl")),
+                       ("look", (3, 40, 0)), ("pan with shift", (1, 0, 40, "shift"))]:
+        viewer.drag(*move)
+        moved = viewer.settled(other_than=first)
+        keep(name.replace(" ", "-"), moved)
+        check(difference(moved, first) > 1, f"{name}: the picture is {difference(moved, first):.2f} from the first")
+        viewer.key("r")
+        back = viewer.settled(other_than=moved)
+        check(difference(back, first) < 0.5, f"{name}, then r: {difference(back, first):.2f} from the first")
+    viewer.screen.do("click", 4)
+    closer = viewer.settled(other_than=first)
+    check(difference(closer, first) > 1, "the wheel changes nothing")
+    viewer.key("r")
+    viewer.settled(other_than=closer)
+    viewer.screen.do("mousedown", 3, "keydown", "w")
+    time.sleep(1)
+    viewer.screen.do("keyup", "w", "mouseup", 3)
+    flown = viewer.settled(other_than=first)
+    check(difference(flown, first) > 1, "w with the right button does not fly")
+    viewer.key("r")
+    viewer.settled(other_than=flown)
+    index = methods().index("single")
+    viewer.key(str(index + 1))
+    single = viewer.settled(other_than=first)
+    keep("single", single)
+    expected = render(work, scene, "--method", "single")
+    check(difference(single, expected) < 1, f"key {index + 1}: {difference(single, expected):.2f} off single's render")
+    viewer.key("Tab")
+    layer = viewer.settled(other_than=single)
+    keep("transmittance", layer)
+    check(difference(layer, single) > 5, "Tab shows no other layer")
+    stats = viewer.close()
+    check(stats.get("validation_messages") == 0, f"validation: {viewer.text()[:800]}")
+    check(stats.get("moving_frames", 0) > 3, f"moving frames: {stats.get('moving_frames')}")
+
+
+def test_window(screen, work):
+    scene = os.path.join(SCENES, "cube.gltf")
+    viewer = Viewer(screen, work, scene, "--validate")
+    first = viewer.settled()
+    window = subprocess.run(["xdotool", "search", "--name", "tyndall"], env=screen.environment, capture_output=True,
+                            text=True).stdout.split()[-1]
+    for width, height in [(400, 200), (200, 300), (WIDTH, HEIGHT)]:
+        screen.do("windowsize", window, width, height)
+        time.sleep(0.3)
+        shown = viewer.settled(width, height)
+        expected = render(work, scene, width=width, height=height)
+        check(difference(shown, expected) < 1, f"{width}x{height}: {difference(shown, expected):.2f} off render's")
+    for width in range(100, 300, 20):
+        screen.do("windowsize", window, width, 300 - width // 2)
+    screen.do("windowsize", window, WIDTH, HEIGHT)
+    screen.do("windowunmap", window)
+    time.sleep(0.7)
+    check(viewer.alive(), "the viewer ends when its window is hidden")
+    screen.do("windowmap", window)
+    time.sleep(0.3)
+    shown = viewer.settled()
+    check(difference(shown, first) < 0.5, f"after hiding: {difference(shown, first):.2f} from the first")
+    stats = viewer.close()
+    check(stats.get("swapchains", 0) > 3, f"swapchains: {stats.get('swapchains')}")
+    check(stats.get("validation_messages") == 0, f"validation: {viewer.text()[:800]}")
+
+
+def test_save(screen, work):
+    scene = os.path.join(SCENES, "smoke.gltf")
+    viewer = Viewer(screen, work, scene, "--validate", "-o", "shot")
+    first = viewer.settled()
+    viewer.key("Right", "Right", "Up")
+    viewer.settled(other_than=first)
+    viewer.key("s")
+    time.sleep(0.8)
+    viewer.close()
+    line = [line.split() for line in viewer.text().splitlines() if line.startswith("shot-1.exr")]
+    check(len(line) == 1, f"S: {viewer.text()}")
+    if line:
+        subprocess.run([TYNDALL, "render", "-q", scene, "-o", "again.exr", *line[0][2:]], cwd=work, check=True)
+        done = subprocess.run([TYNDALL, "compare", "shot-1.exr", "again.exr"], cwd=work, check=True,
+                              capture_output=True, text=True)
+        error = float([l.split()[1] for l in done.stdout.splitlines() if l.startswith("rel_l1 ")][0])
+        check(error < 1e-3, f"the saved picture is {error} off what its options render")
+        with open(os.path.join(work, "shot-1.gltf")) as file:
+            saved = json.load(file)
+        camera, node = saved["cameras"][0]["perspective"], saved["nodes"][0]
+        fov = float(line[0][line[0].index("--fov") + 1])
+        check(abs(math.degrees(camera["yfov"]) - fov) < 1e-3, f"saved camera: {camera}")
+        position = [float(x) for x in line[0][3 + 1].split("=")[1].split(",")]
+        check(all(abs(a - b) < 1e-4 for a, b in zip(position, node["matrix"][12:15])), f"saved node: {node}")
+
+
+def test_split_and_probe(screen, work):
+    scene = os.path.join(SCENES, "cube.gltf")
+    viewer = Viewer(screen, work, scene, "--validate", "--panel", "--spp", "64")
+    first = viewer.settled()
+    keep("panel", first)
+    viewer.key("p")
+    probed = viewer.settled(other_than=first)
+    keep("probe", probed)
+    viewer.key("e")
+    time.sleep(2)
+    split = viewer.settled(other_than=probed)
+    keep("split", split)
+    stats = viewer.close()
+    check(stats.get("validation_messages") == 0, f"validation: {viewer.text()[:800]}")
+    compared = stats.get("comparison") or {}
+    check(compared.get("samples", 0) >= 64, f"split: {compared}")
+    check(0 < compared.get("rel_l1", 0) < 0.03, f"split: {compared}")
+    light = (stats.get("probe") or {}).get("fluence", [0])
+    check(light[0] > 0, f"probe: {stats.get('probe')}")
+    point = (stats.get("probe") or {}).get("point", [0, 0, 0])
+    with open(os.path.join(work, "points.csv"), "w") as file:
+        file.write(",".join(map(str, point)) + "\n")
+    done = subprocess.run([TYNDALL, "probe", scene, "-q", "--points", "points.csv"], cwd=work, check=True,
+                          capture_output=True, text=True)
+    expected = [float(x) for x in done.stdout.splitlines()[1].split(",")[3:6]]
+    check(all(abs(a - b) <= 1e-3 * b for a, b in zip(light, expected)), f"probe: {light}, tyndall probe: {expected}")
+
+
+def test_reload(screen, work):
+    for name in ["cube.gltf"]:
+        shutil.copy(os.path.join(SCENES, name), work)
+    scene = os.path.join(work, "cube.gltf")
+    viewer = Viewer(screen, work, scene, "--validate")
+    first = viewer.settled()
+    with open(scene) as file:
+        text = json.load(file)
+    media = text["extensions"]["TYN_participating_media"]["media"]
+    media[0]["scattering"] = [0.2 * s for s in media[0]["scattering"]]
+    with open(scene, "w") as file:
+        json.dump(text, file)
+    thinner = viewer.settled(other_than=first)
+    keep("reloaded", thinner)
+    expected = render(work, scene)
+    check(difference(thinner, first) > 1, "a scene that was written is not read again")
+    check(difference(thinner, expected) < 1, f"read again: {difference(thinner, expected):.2f} off render's")
+    with open(scene, "w") as file:
+        file.write("{ broken")
+    time.sleep(2)
+    check(viewer.alive(), "a broken scene ends the viewer")
+    check(difference(viewer.settled(), thinner) < 0.5, "a broken scene changes the picture")
+    stats = viewer.close()
+    check(stats.get("validation_messages") == 0, f"validation: {viewer.text()[:800]}")
+
+
+def test_sequence(screen, work):
+    with open(os.path.join(SCENES, "cube.gltf")) as file:
+        text = json.load(file)
+    scattering = text["extensions"]["TYN_participating_media"]["media"][0]["scattering"]
+    for number, factor in [(1, 1), (2, 0.3), (3, 0.1)]:
+        text["extensions"]["TYN_participating_media"]["media"][0]["scattering"] = [factor * s for s in scattering]
+        with open(os.path.join(work, f"cube-{number:04d}.gltf"), "w") as file:
+            json.dump(text, file)
+    scene = os.path.join(work, "cube-%04d.gltf")
+    viewer = Viewer(screen, work, scene, "--frames", "1-3", "--fps", "0.7", "--validate")
+    seen, end = set(), time.time() + 25
+    while time.time() < end and len(seen) < 12 and viewer.alive():
+        seen.add(viewer.screen.shot())
+        time.sleep(0.2)
+    check(len(seen) >= 3, f"a sequence shows {len(seen)} pictures")
+    viewer.key("space")
+    viewer.settled()
+    viewer.key("comma", "comma", "comma")
+    first = viewer.settled()
+    expected = render(work, os.path.join(work, "cube-0001.gltf"), "-D", "lattice.warm=1")
+    check(difference(first, expected) < 1, f"its first picture is {difference(first, expected):.2f} off render's")
+    stats = viewer.close()
+    check(stats.get("validation_messages") == 0, f"validation: {viewer.text()[:800]}")
+
+
+def test_lost(screen, work):
+    scene = os.path.join(SCENES, "cube.gltf")
+    for what in ["surface-acquire", "surface-present", "date-acquire", "date-present", "device-submit", "device-fence"]:
+        viewer = Viewer(screen, work, scene, environment={"LD_PRELOAD": LOSE, "LOSE": what})
+        first = viewer.settled()
+        viewer.key("Right", "Left")
+        viewer.key("r")
+        time.sleep(0.5)
+        again = viewer.settled()
+        expected = render(work, scene)
+        check(difference(again, expected) < 1, f"{what}: {difference(again, expected):.2f} off render's")
+        check(first is not None, f"{what}: no picture")
+        stats = viewer.close(what=what)
+        check("lost once" in viewer.text(), f"{what}: it was not injected: {viewer.text()}")
+        check(stats.get("devices_lost") == what.startswith("device"), f"{what}: {stats.get('devices_lost')} devices lost")
+
+
+def main():
+    if not shutil.which("Xvfb") or not shutil.which("xdotool"):
+        print("skipped: all cases (Xvfb or xdotool is missing)")
+        return 77
+    devices = subprocess.run([TYNDALL, "info", "--devices"], capture_output=True, text=True).stdout
+    if "usable" not in devices:
+        print("skipped: all cases (no Vulkan device)")
+        return 77
+    test_no_display()
+    tests = [test_camera_and_methods, test_window, test_save, test_split_and_probe, test_reload, test_sequence,
+             test_lost]
+    only = os.environ.get("VIEW_TESTS", "").split()
+    for test in tests:
+        if only and test.__name__ not in only:
+            continue
+        before = len(failures)
+        with tempfile.TemporaryDirectory() as work:
+            os.environ["XDG_CACHE_HOME"] = os.environ.get("VIEW_CACHE", os.path.join(work, "cache"))
+            screen = Screen(work)
+            start = time.time()
+            try:
+                test(screen, work)
+            finally:
+                screen.close()
+            print(f"{test.__name__}: {'failed' if len(failures) > before else 'passed'}, {time.time() - start:.0f} s",
+                  flush=True)
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,85 @@
+// watch.c -- notices that one of a list of files was written.
+#include "view/watch.h"
+#include "app.h"
+#include <cjson/cJSON.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <tyndall/io.h>
+
+void watch_finish(watch *w)
+{
+    for (uint32_t i = 0; i < w->count; i++) {
+        free(w->files[i].path);
+    }
+    *w = (watch){0};
+}
+
+static bool look_at(watch *w, uint32_t i)
+{
+    struct stat status;
+    const bool there = stat(w->files[i].path, &status) == 0;
+    const int64_t seconds = there ? (int64_t)status.st_mtim.tv_sec : -1;
+    const int64_t nanoseconds = there ? (int64_t)status.st_mtim.tv_nsec : -1;
+    const int64_t size = there ? (int64_t)status.st_size : -1;
+    const bool same = seconds == w->files[i].seconds && nanoseconds == w->files[i].nanoseconds &&
+                      size == w->files[i].size;
+    w->files[i].seconds = seconds;
+    w->files[i].nanoseconds = nanoseconds;
+    w->files[i].size = size;
+    return !same;
+}
+
+void watch_add(watch *w, const char *path)
+{
+    char *copy = path && w->count < WATCH_MAX_FILES ? text_format("%s", path) : NULL;
+    if (copy) {
+        w->files[w->count].path = copy;
+        look_at(w, w->count++);
+    }
+}
+
+static void add_uris(watch *w, const cJSON *json, const char *folder)
+{
+    for (const cJSON *item = json ? json->child : NULL; item; item = item->next) {
+        const bool names_file = item->string && strcmp(item->string, "uri") == 0 &&
+                                cJSON_IsString(item) && strncmp(item->valuestring, "data:", 5) != 0;
+        if (names_file) {
+            char *path = text_format("%s%s", folder, item->valuestring);
+            watch_add(w, path);
+            free(path);
+        }
+        add_uris(w, item, folder);
+    }
+}
+
+void watch_add_scene(watch *w, const char *path)
+{
+    watch_add(w, path);
+    void *text = NULL;
+    size_t size = 0;
+    if (!text_ends_with(path, ".gltf") ||
+        tyn_file_read(path, UINT64_C(64) << 20, &text, &size, NULL) != TYN_OK) {
+        return;
+    }
+    const char *slash = strrchr(path, '/');
+    char *folder = text_format("%.*s", slash ? (int)(slash + 1 - path) : 0, path);
+    cJSON *json = cJSON_ParseWithLength(text, size);
+    if (folder) {
+        add_uris(w, json, folder);
+    }
+    cJSON_Delete(json);
+    free(folder);
+    free(text);
+}
+
+bool watch_look(watch *w)
+{
+    bool changing = false;
+    for (uint32_t i = 0; i < w->count; i++) {
+        changing = look_at(w, i) || changing;
+    }
+    const bool done = w->changed && !changing;
+    w->changed = changing || (w->changed && !done);
+    return done;
+}
