@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""view.py TYNDALL SCENES LOSE [PICTURES] -- `tyndall view` under Xvfb, used by keys and mouse through xdotool.
+"""view.py TYNDALL SCENES HELPERS [PICTURES] -- `tyndall view` under Xvfb, used by keys and mouse through xdotool.
 
-TYNDALL is the tool, SCENES the folder of sample scenes, LOSE a library that loses surface or device (lose.c). Screens
+TYNDALL is the tool, SCENES the folder of sample scenes, HELPERS that of drop and lose.so (drop.c, lose.c). Screens
 are read from Xvfb's frame buffer and compared with what `tyndall render` writes. With PICTURES the screens are written
 there as PNG. Exit 77: skipped, as something is missing.
 """
@@ -16,7 +16,7 @@ import tempfile
 import time
 import zlib
 
-TYNDALL, SCENES, LOSE = map(os.path.abspath, sys.argv[1:4])
+TYNDALL, SCENES, HELPERS = map(os.path.abspath, sys.argv[1:4])
 PICTURES = sys.argv[4] if len(sys.argv) > 4 else None
 WIDTH, HEIGHT = 320, 240
 failures = []
@@ -132,6 +132,11 @@ class Viewer:
 
     def alive(self):
         return self.process.poll() is None
+
+    def window(self):
+        found = subprocess.run(["xdotool", "search", "--name", "tyndall"], env=self.screen.environment,
+                               capture_output=True, text=True).stdout.split()
+        return found[-1] if found else "0"
 
     def settled(self, width=WIDTH, height=HEIGHT, seconds=60, other_than=None):
         """The screen when it has stopped changing and shows something (else than what is given)."""
@@ -257,8 +262,7 @@ def test_window(screen, work):
     scene = os.path.join(SCENES, "cube.gltf")
     viewer = Viewer(screen, work, scene, "--validate")
     first = viewer.settled()
-    window = subprocess.run(["xdotool", "search", "--name", "tyndall"], env=screen.environment, capture_output=True,
-                            text=True).stdout.split()[-1]
+    window = viewer.window()
     for width, height in [(400, 200), (200, 300), (WIDTH, HEIGHT)]:
         screen.do("windowsize", window, width, height)
         time.sleep(0.3)
@@ -385,10 +389,71 @@ def test_sequence(screen, work):
     check(stats.get("validation_messages") == 0, f"validation: {viewer.text()[:800]}")
 
 
+def test_drop(screen, work):
+    viewer = Viewer(screen, work, os.path.join(SCENES, "cube.gltf"), "--validate")
+    last = viewer.settled()
+    scene, sky = os.path.join(SCENES, "smoke.gltf"), os.path.join(SCENES, "sky.hdr")
+    for name, path, arguments in [("scene", scene, [scene]), ("map", sky, [scene, sky])]:
+        done = subprocess.run([os.path.join(HELPERS, "drop"), viewer.window(), "file://" + path],
+                              env=screen.environment)
+        check(done.returncode == 0, f"the window does not take a {name}")
+        shown = viewer.settled(other_than=last)
+        keep("dropped-" + name, shown)
+        expected = render(work, *arguments)
+        check(difference(shown, expected) < 1, f"dropped {name}: {difference(shown, expected):.2f} off render's")
+        last = shown
+    broken = os.path.join(work, "broken.nvdb")
+    with open(broken, "w") as file:
+        file.write("no volume")
+    subprocess.run([os.path.join(HELPERS, "drop"), viewer.window(), "file://" + broken], env=screen.environment)
+    check(difference(viewer.settled(), last) < 0.5, "a broken volume changes the picture")
+    stats = viewer.close()
+    check(stats.get("validation_messages") == 0, f"validation: {viewer.text()[:800]}")
+
+
+def test_rebuild(screen, work):
+    """A build folder that only says what was asked of it, and whose tool is the real one."""
+    build = os.path.join(work, "build")
+    for folder in ["passes/a", "shaders", "build/meson-info", "build/tools"]:
+        os.makedirs(os.path.join(work, folder))
+    os.symlink(TYNDALL, os.path.join(build, "tools/tyndall-real"))
+    shader = os.path.join(work, "passes/a/a.comp")
+    with open(shader, "w") as file:
+        file.write("good")
+    with open(os.path.join(build, "meson-info/meson-info.json"), "w") as file:
+        json.dump({"directories": {"source": work}}, file)
+    with open(os.path.join(build, "build.ninja"), "w") as file:
+        file.write(f"rule make\n  command = grep -q good {shader} && ln -sf tyndall-real tools/tyndall && echo made >> made\n"
+                   f"build tools/tyndall: make {shader}\n")
+    scene = os.path.join(SCENES, "cube.gltf")
+    viewer = Viewer(screen, work, scene, "--validate", "--rebuild", build)
+    first = viewer.settled()
+    viewer.key("Right", "Right", "Right", "Up")
+    turned = viewer.settled(other_than=first)
+    with open(shader, "w") as file:
+        file.write("bad")
+    time.sleep(2.5)
+    check(not os.path.exists(os.path.join(build, "made")) and viewer.alive(), "a shader that cannot be built")
+    check(difference(viewer.settled(), turned) < 0.5, "a shader that cannot be built changes the picture")
+    old = viewer.window()
+    with open(shader, "w") as file:
+        file.write("good again")
+    end = time.time() + 20
+    while viewer.window() in (old, "0") and viewer.alive() and time.time() < end:
+        time.sleep(0.2)
+    check(os.path.exists(os.path.join(build, "made")), "a shader that was written is not built")
+    again = viewer.settled()
+    check(difference(again, turned) < 0.5, f"started again: {difference(again, turned):.2f} from before")
+    with open(f"/proc/{viewer.process.pid}/cmdline") as file:
+        check("--look-from=" in file.read(), "the viewer did not start again")
+    stats = viewer.close()
+    check(stats.get("validation_messages") == 0, f"validation: {viewer.text()[:800]}")
+
+
 def test_lost(screen, work):
     scene = os.path.join(SCENES, "cube.gltf")
     for what in ["surface-acquire", "surface-present", "date-acquire", "date-present", "device-submit", "device-fence"]:
-        viewer = Viewer(screen, work, scene, environment={"LD_PRELOAD": LOSE, "LOSE": what})
+        viewer = Viewer(screen, work, scene, environment={"LD_PRELOAD": os.path.join(HELPERS, "lose.so"), "LOSE": what})
         first = viewer.settled()
         viewer.key("Right", "Left")
         viewer.key("r")
@@ -412,7 +477,7 @@ def main():
         return 77
     test_no_display()
     tests = [test_camera_and_methods, test_window, test_save, test_split_and_probe, test_reload, test_sequence,
-             test_lost]
+             test_drop, test_rebuild, test_lost]
     only = os.environ.get("VIEW_TESTS", "").split()
     for test in tests:
         if only and test.__name__ not in only:

@@ -24,6 +24,8 @@ static const option window_table[] = {
     {0, "fps", OPT_NUMBER, AT(fps), "N", "pictures of the sequence a second", 24, 0.01, 1000},
     {'o', "output", OPT_TEXT, AT(output), "STEM",
      "where key S saves: STEM-1.exr, STEM-1.gltf, and so on; else the scene's name"},
+    {0, "rebuild", OPT_TEXT, AT(rebuild), "BUILD",
+     "when a shader of this build folder is written, run ninja there and start again in place"},
     {0, "seconds", OPT_NUMBER, AT(seconds), "S", "close the window after that time; 0 = stay", 0, 0,
      1e6},
     {0, "stats", OPT_TEXT, AT(stats), "FILE.json",

@@ -9,7 +9,7 @@ typedef struct view_args {
     view_options view;
     method_options method;
     machine_options machine;
-    const char *output, *stats, *frames;
+    const char *output, *stats, *frames, *rebuild;
     float exposure, fps, seconds, target_ms;
     bool validate, busy, orbit, no_panel;
 } view_args;

@@ -286,13 +286,14 @@ static int loop(viewer *v)
     const double end = v->args->seconds > 0 ? app_seconds() + v->args->seconds : INFINITY;
     int code = EXIT_DONE;
     v->last_frame = v->last_change = app_seconds();
-    while (code == EXIT_DONE && !glfwWindowShouldClose(v->window) && !app_interrupted() &&
-           app_seconds() < end) {
+    while (code == EXIT_DONE && !v->rebuild.restart && !glfwWindowShouldClose(v->window) &&
+           !app_interrupted() && app_seconds() < end) {
         take_input(v);
         if (hidden(v)) {
             continue;
         }
         source_step(v);
+        rebuild_step(v);
         pictures_step(v);
         const bool failed = v->gpu.lost || step_frame(v) == SURFACE_FAILED;
         if (v->gpu.lost) {
@@ -396,7 +397,10 @@ int viewer_run(app *a, const view_args *args)
     v->show_panel = !args->no_panel;
     v->turntable = args->orbit;
     tyn_scene_init(&v->scene);
-    int code = load(v);
+    int code = rebuild_open(v);
+    if (code == EXIT_DONE) {
+        code = load(v);
+    }
     if (code == EXIT_DONE) {
         code = open_window(v);
     }
@@ -410,6 +414,7 @@ int viewer_run(app *a, const view_args *args)
             code = code == EXIT_DONE ? written : code;
         }
     }
+    char **again = code == EXIT_DONE && v->rebuild.restart ? rebuild_arguments(v) : NULL;
     close_device(v);
     if (code == EXIT_DONE && v->gpu.messages) {
         code = EXIT_FAILED;
@@ -419,6 +424,12 @@ int viewer_run(app *a, const view_args *args)
         glfwDestroyWindow(v->window);
     }
     glfwTerminate();
+    if (again) {
+        rebuild_restart(again);
+        app_error(a, "'%s' cannot be started", again[0]);
+        code = EXIT_FAILED;
+    }
+    rebuild_close(v);
     method_finish(&v->method);
     source_close(v);
     free(v->pixels);

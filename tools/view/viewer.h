@@ -7,6 +7,7 @@
 #include "view/layers.h"
 #include "view/picture.h"
 #include "view/probe_point.h"
+#include "view/rebuild.h"
 #include "view/rendering.h"
 #include "view/run.h"
 #include "view/source.h"
@@ -37,6 +38,7 @@ struct viewer {
     tyn_scene scene, loaded; // as edited; `loaded` has the numbers of the file and owns nothing
     bool edited;             // in the panel
     watch watch;
+    rebuild rebuild;
     double last_look; // at the files, seconds
     sequence sequence;
     uint32_t number; // of the picture of the sequence
