@@ -117,11 +117,11 @@ class Screen:
 
 
 class Viewer:
-    def __init__(self, screen, work, scene, *options, environment=None, stats=True):
+    def __init__(self, screen, work, scene, *options, environment=None, size=(WIDTH, HEIGHT)):
         self.screen, self.work = screen, work
         self.stats_path = os.path.join(work, "stats.json")
         self.log = open(os.path.join(work, "log"), "w+b")
-        command = [TYNDALL, "view", scene, "--size", f"{WIDTH}x{HEIGHT}", "--stats", self.stats_path, *options]
+        command = [TYNDALL, "view", scene, "--size", f"{size[0]}x{size[1]}", "--stats", self.stats_path, *options]
         if "--panel" in command:
             command.remove("--panel")
         else:
@@ -338,6 +338,50 @@ def test_split_and_probe(screen, work):
     check(all(abs(a - b) <= 1e-3 * b for a, b in zip(light, expected)), f"probe: {light}, tyndall probe: {expected}")
 
 
+def test_panel(screen, work):
+    """The places of the widgets are those of the panel's first lines."""
+    size = (640, 480)
+    viewer = Viewer(screen, work, os.path.join(SCENES, "smoke.gltf"), "--validate", "--panel", size=size)
+
+    def right():
+        """What the panel does not cover, and its mean."""
+        rgb = viewer.settled(*size)
+        part = b"".join(rgb[3 * size[0] * y + 3 * 320:3 * size[0] * (y + 1)] for y in range(size[1]))
+        return part, sum(part) / len(part)
+
+    def slide(y, x0, x1):
+        # The panel sees where the pointer is once a frame, and the first frame after a change takes long.
+        screen.do("mousemove", x0, y)
+        time.sleep(0.5)
+        screen.do("mousedown", 1)
+        for x in (x0, (x0 + x1) // 2, x1):
+            screen.do("mousemove", x, y)
+            time.sleep(1.5)
+        screen.do("mouseup", 1)
+        time.sleep(1)
+        screen.do("mousemove", 600, 440)
+
+    first, mean = right()
+    slide(114, 103, 135)
+    brighter, more = right()
+    check(more > mean + 5, f"exposure: mean {mean:.1f}, then {more:.1f}")
+    screen.do("mousemove", 30, 177, "click", 1, "mousemove", 600, 440)
+    slide(240, 100, 180)
+    turned, _ = right()
+    check(difference(turned, brighter) > 1, "a sun that is turned changes nothing")
+    keep("sun", viewer.settled(*size), *size)
+    slide(217, 118, 17)
+    dark, none = right()
+    check(none < 0.5 * more, f"a sun of strength 0: mean {more:.1f}, then {none:.1f}")
+    viewer.key("h")
+    hidden = viewer.settled(*size)
+    viewer.key("h")
+    shown = viewer.settled(*size, other_than=hidden)
+    check(difference(hidden, shown) > 3, "h does not hide the panel")
+    stats = viewer.close()
+    check(stats.get("validation_messages") == 0, f"validation: {viewer.text()[:800]}")
+
+
 def test_reload(screen, work):
     for name in ["cube.gltf"]:
         shutil.copy(os.path.join(SCENES, name), work)
@@ -476,7 +520,7 @@ def main():
         print("skipped: all cases (no Vulkan device)")
         return 77
     test_no_display()
-    tests = [test_camera_and_methods, test_window, test_save, test_split_and_probe, test_reload, test_sequence,
+    tests = [test_camera_and_methods, test_window, test_save, test_split_and_probe, test_panel, test_reload, test_sequence,
              test_drop, test_rebuild, test_lost]
     only = os.environ.get("VIEW_TESTS", "").split()
     for test in tests:
