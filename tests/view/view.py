@@ -86,7 +86,8 @@ class Screen:
         read, write = os.pipe()
         self.folder = work
         self.server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-screen", "0", "800x600x24", "-fbdir", work, "-nolisten", "tcp"],
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", "800x600x24", "-fbdir", work, "-nolisten", "tcp",
+             "-noreset"],
             pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as number:
@@ -285,7 +286,7 @@ def test_window(screen, work):
 
 
 def test_save(screen, work):
-    scene = os.path.join(SCENES, "smoke.gltf")
+    scene = os.path.join(SCENES, "smoke-sky.gltf")
     viewer = Viewer(screen, work, scene, "--validate", "-o", "shot")
     first = viewer.settled()
     viewer.key("Right", "Right", "Up")
@@ -330,6 +331,11 @@ def test_split_and_probe(screen, work):
     light = (stats.get("probe") or {}).get("fluence", [0])
     check(light[0] > 0, f"probe: {stats.get('probe')}")
     point = (stats.get("probe") or {}).get("point", [0, 0, 0])
+    told = subprocess.run([TYNDALL, "info", scene], check=True, capture_output=True, text=True).stdout
+    words = told[told.index("shape 0: box"):].split("at ")[1].split()
+    middle, edges = words[:3], words[4:7]
+    check(all(abs(p - float(m)) <= 0.501 * float(e.strip(",")) for p, m, e in zip(point, (w.strip(",") for w in middle), edges)),
+          f"the probe is at {point}, not in the cube: {middle}, {edges}")
     with open(os.path.join(work, "points.csv"), "w") as file:
         file.write(",".join(map(str, point)) + "\n")
     done = subprocess.run([TYNDALL, "probe", scene, "-q", "--points", "points.csv"], cwd=work, check=True,

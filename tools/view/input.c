@@ -63,6 +63,7 @@ static void on_button(GLFWwindow *window, int button, int action, int mods)
     (void)mods;
     viewer *v = viewer_of(window);
     if (action == GLFW_PRESS) {
+        glfwGetCursorPos(window, &v->mouse[0], &v->mouse[1]); // it may not have moved yet
         const double split = v->comparison.split * v->view.width;
         v->dragging = !panel_has_mouse();
         v->splitting = comparison_seen(v) && fabs(v->mouse[0] - split) < 6;
@@ -127,6 +128,7 @@ static void on_key(GLFWwindow *window, int key, int scancode, int action, int mo
         comparison_toggle(v);
         break;
     case GLFW_KEY_P:
+        glfwGetCursorPos(window, &v->mouse[0], &v->mouse[1]);
         probe_place(v);
         break;
     case GLFW_KEY_S:

@@ -10,6 +10,11 @@ void probe_place(viewer *v)
         viewer_note(v, "method '%s' cannot be probed", v->method.info.name);
         return;
     }
+    if (v->mouse[0] < 0 || v->mouse[1] < 0 || v->mouse[0] >= v->view.width ||
+        v->mouse[1] >= v->view.height) {
+        viewer_note(v, "the pointer is not on the picture");
+        return;
+    }
     v->probe.state = PROBE_PLACED;
     v->probe.x = (float)(v->mouse[0] / v->view.width);
     v->probe.y = (float)(v->mouse[1] / v->view.height);
