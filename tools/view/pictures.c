@@ -96,10 +96,14 @@ static void keep(viewer *v, const rendering *r)
     }
 }
 
-// The size at which the pixels' work fits into the time that a picture may take while something moves.
+// The size at which the pixels' work fits into the time that a picture may take while something moves. Another size costs
+// a set-up, so a larger one must fit easily; a smaller one is found while something moves.
 static void choose_divisor(viewer *v)
 {
-    const double all = rendering_pixels_ms(&v->rest);
+    const double all = rendering_pixels_ms(&v->rest), larger = v->divisor - 1.0;
+    if (v->divisor && (larger < 1 || all / (larger * larger) > 0.4 * v->args->target_ms)) {
+        return;
+    }
     uint32_t divisor = 1;
     while (divisor < MAX_DIVISOR && all / (divisor * divisor) > 0.7 * v->args->target_ms) {
         divisor++;
@@ -127,7 +131,7 @@ static void step_sharp(viewer *v, bool more)
         v->sharp = true;
         v->outdated = false;
         probe_take(v, &v->rest);
-        if (!v->method.info.progressive && v->divisor == 0) {
+        if (!v->method.info.progressive && !more) {
             choose_divisor(v);
         }
     }
