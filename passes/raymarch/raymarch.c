@@ -15,23 +15,21 @@
 static const tyn_port ports[] = {RAYMARCH_PORTS(TYN_PORT_ROW)};
 
 enum {
-    SPARSE_TEXTURE = TYN_COUNT(raymarch_grey_bindings) - 3, // of bindings
-    SPARSE_IMAGE,
     NUM_SPEC =
         7, // mode, number of suns, features, numbers of lamps, number of shapes and their kind
 };
 
-// 29 powers of two with this sum are all different.
+// 30 powers of two with this sum are all different.
 _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNEL +
                        RAYMARCH_UNSCALED + RAYMARCH_SOURCE + RAYMARCH_EMISSION + RAYMARCH_MEAN +
                        RAYMARCH_HOST_DEPTH + RAYMARCH_BACKGROUND + RAYMARCH_BEHIND +
                        RAYMARCH_CLOSED + RAYMARCH_SUPERSAMPLE + RAYMARCH_TRANSMITTANCE +
                        RAYMARCH_DEPTH + RAYMARCH_SINGLE + RAYMARCH_MULTIPLE + RAYMARCH_GLOW +
                        RAYMARCH_SOFT_SUNS + RAYMARCH_SURFACE + RAYMARCH_SURFACE_SEEN +
-                       RAYMARCH_WALLS + RAYMARCH_SHADOWS + RAYMARCH_REPEAT + RAYMARCH_SPARSE_FIRST +
+                       RAYMARCH_WALLS + RAYMARCH_SHADOWS + RAYMARCH_REPEAT + RAYMARCH_SPARSE_NODES +
                        RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_REST + RAYMARCH_SPOTS +
-                       RAYMARCH_LIGHT_CELLS + RAYMARCH_ROOMS ==
-                   (1u << 29) - 1,
+                       RAYMARCH_LIGHT_CELLS + RAYMARCH_ROOMS + RAYMARCH_SPARSE_COARSE ==
+                   (1u << 30) - 1,
                "features have bits of their own");
 
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
@@ -50,7 +48,7 @@ static const tyn_param params_table[] = {
     {"antialias", TYN_PARAM_BOOL, offsetof(tyn_raymarch_params, antialias), 1, 0, 1, "",
      "four rays a pixel where they disagree on which shapes they hit", NULL},
     {"sparse", TYN_PARAM_BOOL, offsetof(tyn_raymarch_params, sparse), 1, 0, 1, "",
-     "among surfaces and lamps one ray for 2x2 pixels where the light is smooth", NULL},
+     "one ray for 2x2 or 4x4 pixels where the light is smooth", NULL},
 };
 
 // Layers by their bit in `layers`.
@@ -78,12 +76,12 @@ float tyn_raymarch_longest_step(float sigma_t, float dx, const struct medium_blo
     return fminf(fminf(by_depth, side / 8.0f), dx > 0.0f ? dx : side);
 }
 
-// Where steps are costly rays are saved; layers that need one in every pixel have one.
-static bool is_sparse(const tyn_raymarch_params *p, bool surfaces, bool host_depth)
+// Layers that need a ray in every pixel have one.
+static bool is_sparse(const tyn_raymarch_params *p)
 {
     const uint32_t dense = RAYMARCH_LAYER_DEPTH | RAYMARCH_LAYER_SINGLE | RAYMARCH_LAYER_MULTIPLE;
-    return p->sparse && (surfaces || p->num_lamps || p->num_near_lamps) && !host_depth &&
-           !(p->layers & dense);
+    return p->sparse && !(p->layers & dense) &&
+           (uint64_t)p->width * p->height <= RAYMARCH_REST_MAX;
 }
 
 static tyn_extent window_of(const tyn_raymarch_params *p)
@@ -92,10 +90,10 @@ static tyn_extent window_of(const tyn_raymarch_params *p)
                           : (tyn_extent){p->end[0] - p->first[0], p->end[1] - p->first[1], 1};
 }
 
-static tyn_extent blocks_of(const tyn_raymarch_params *p)
+static tyn_extent grid_of(const tyn_raymarch_params *p, uint32_t spacing)
 {
     tyn_extent window = window_of(p);
-    return (tyn_extent){(window.x + 1) / 2, (window.y + 1) / 2, 1};
+    return (tyn_extent){(window.x + spacing - 1) / spacing, (window.y + spacing - 1) / spacing, 1};
 }
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -108,17 +106,17 @@ static tyn_result declare(tyn_builder *b, const void *params)
             tyn_build_image(b, layers[i].port, size, 1);
         }
     }
-    tyn_extent blocks = {0, 0, 1};
-    if (is_sparse(p,
-                  tyn_build_has(b, RAYMARCH_PORT_SHADOW_ATLAS) ||
-                      tyn_build_has(b, RAYMARCH_PORT_WALL_LINKS),
-                  tyn_build_has(b, RAYMARCH_PORT_HOST_DEPTH))) {
+    tyn_extent nodes = {0, 0, 1};
+    uint64_t pixels = 0;
+    if (is_sparse(p)) {
         // As large as for all pixels: the window follows the camera, and frames must keep their sizes.
-        blocks = (tyn_extent){(p->width + 1) / 2, (p->height + 1) / 2, 1};
-        tyn_build_image(b, RAYMARCH_PORT_SPARSE, (tyn_extent){2 * blocks.x, 2 * blocks.y, 1}, 1);
+        nodes = (tyn_extent){(p->width + 1) / 2, (p->height + 1) / 2, 1};
+        pixels = (uint64_t)p->width * p->height;
     }
+    tyn_build_image(b, RAYMARCH_PORT_SPARSE,
+                    (tyn_extent){nodes.x ? 2 * nodes.x : 1, nodes.y ? 2 * nodes.y : 1, 1}, 1);
     tyn_build_buffer(b, RAYMARCH_PORT_REST,
-                     sizeof(struct raymarch_rest) + 4ull * blocks.x * blocks.y);
+                     2 * sizeof(struct raymarch_rest) + 4 * ((uint64_t)nodes.x * nodes.y + pixels));
     tyn_build_buffer(b, RAYMARCH_PORT_COUNTERS, sizeof(struct counters_block));
     return TYN_OK;
 }
@@ -127,6 +125,14 @@ static float shortest_voxel(tyn_extent size, const float extent[3])
 {
     return fminf(fminf(extent[0] / fmaxf((float)size.x, 1), extent[1] / fmaxf((float)size.y, 1)),
                  extent[2] / fmaxf((float)size.z, 1));
+}
+
+// Voxels smaller than pixels have details between the nodes of a grid that its second differences do not tell of.
+static bool voxels_are_seen(const tyn_raymarch_params *p, tyn_extent voxels)
+{
+    const tyn_extent window = window_of(p);
+    const uint32_t across = window.x > window.y ? window.x : window.y;
+    return across >= voxels.x && across >= voxels.y && across >= voxels.z;
 }
 
 void tyn_raymarch_window(tyn_raymarch_params *params, const struct camera_block *camera)
@@ -202,6 +208,40 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     return features;
 }
 
+// Rays of the nodes of a grid, of those of a finer one where that is needed, and of the pixels where that is.
+static void record_sparse(tyn_recorder *r, const tyn_raymarch_params *p, tyn_dispatch rays,
+                          uint32_t *spec, struct raymarch_args *args)
+{
+    const uint32_t features = spec[2];
+    const struct raymarch_rest none = {.groups = {RAYMARCH_REST_GROUPS, 0, 1}};
+    const struct raymarch_rest empty[2] = {none, none};
+    tyn_rec_update(r, RAYMARCH_PORT_REST, 0, empty, sizeof empty);
+    args->spacing = features & (RAYMARCH_SHADOWS | RAYMARCH_WALLS) ? 2 : 4;
+    args->lists[0] = 0;
+    args->lists[1] = ((p->width + 1) / 2) * ((p->height + 1) / 2);
+    args->listed = 0;
+    rays.cells = grid_of(p, args->spacing);
+    rays.label = "sparse rays";
+    spec[2] = features | RAYMARCH_SPARSE_NODES;
+    tyn_rec_dispatch(r, &rays);
+    if (args->spacing > 2) {
+        rays.label = "nodes that lie between";
+        spec[2] = features | RAYMARCH_SPARSE_FILL | RAYMARCH_SPARSE_COARSE;
+        tyn_rec_dispatch(r, &rays);
+        rays.label = "rays of the other nodes";
+        args->listed = 1;
+        spec[2] = features | RAYMARCH_SPARSE_NODES;
+        tyn_rec_dispatch_indirect(r, &rays, RAYMARCH_PORT_REST, 0);
+    }
+    rays.label = "pixels that lie between";
+    rays.cells = grid_of(p, 2);
+    spec[2] = features | RAYMARCH_SPARSE_FILL;
+    tyn_rec_dispatch(r, &rays);
+    rays.label = "rays of the other pixels";
+    spec[2] = features | RAYMARCH_SPARSE_REST;
+    tyn_rec_dispatch_indirect(r, &rays, RAYMARCH_PORT_REST, sizeof(struct raymarch_rest));
+}
+
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_raymarch_params *p = params;
@@ -247,26 +287,9 @@ static void record(tyn_recorder *r, const void *params)
     tyn_ports_exchanged(&kernels[kernel], pairs, num_absent, ports_of);
     TYN_DISPATCH(r, .kernel = KERNEL_BACKGROUND, .cells = {p->width, p->height, 1}, .args = &args,
                  .ports = background_ports, .spec = spec);
-    ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_RADIANCE; // bound, but not written to or read
-    ports_of[SPARSE_TEXTURE] = RAYMARCH_PORT_DISTANCES;
     tyn_dispatch rays = {.kernel = kernel, .args = &args, .ports = ports_of, .spec = spec};
-    if (is_sparse(p, features & (RAYMARCH_WALLS | RAYMARCH_SHADOWS),
-                  features & RAYMARCH_HOST_DEPTH)) {
-        const struct raymarch_rest none = {.groups = {RAYMARCH_REST_GROUPS, 0, 1}};
-        tyn_rec_update(r, RAYMARCH_PORT_REST, 0, &none, sizeof none);
-        rays.cells = blocks_of(p);
-        rays.label = "sparse rays";
-        ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_SPARSE;
-        spec[2] = features | RAYMARCH_SPARSE_FIRST;
-        tyn_rec_dispatch(r, &rays);
-        rays.label = "what lies between";
-        ports_of[SPARSE_IMAGE] = RAYMARCH_PORT_RADIANCE;
-        ports_of[SPARSE_TEXTURE] = RAYMARCH_PORT_SPARSE;
-        spec[2] = features | RAYMARCH_SPARSE_FILL;
-        tyn_rec_dispatch(r, &rays);
-        rays.label = "rays of the rest";
-        spec[2] = features | RAYMARCH_SPARSE_REST;
-        tyn_rec_dispatch_indirect(r, &rays, RAYMARCH_PORT_REST, 0);
+    if (is_sparse(p) && voxels_are_seen(p, tyn_rec_extent(r, RAYMARCH_PORT_DENSITY))) {
+        record_sparse(r, p, rays, spec, &args);
     } else {
         rays.cells = window_of(p);
         tyn_rec_dispatch(r, &rays);

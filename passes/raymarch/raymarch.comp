@@ -26,17 +26,9 @@ layout(local_size_x = 8, local_size_y = 8) in;
 void main()
 {
     uvec2 at = pixel_of_thread(gl_WorkGroupID.xy, gl_LocalInvocationIndex);
-    if (raymarch_has(RAYMARCH_SPARSE_FIRST | RAYMARCH_SPARSE_FILL)) {
-        if (all(lessThan(args.first + 2u * at, args.end))) {
-            if (raymarch_has(RAYMARCH_SPARSE_FIRST)) {
-                march_block(ivec2(at));
-            } else {
-                fill_block(ivec2(at));
-            }
-        }
-    } else if (raymarch_has(RAYMARCH_SPARSE_REST)) {
+    if (raymarch_has(RAYMARCH_SPARSE_NODES | RAYMARCH_SPARSE_FILL | RAYMARCH_SPARSE_REST)) {
         uint group = gl_WorkGroupID.y * RAYMARCH_REST_GROUPS + gl_WorkGroupID.x;
-        shade_rest(64u * group + gl_LocalInvocationIndex);
+        sparse_main(64u * group + gl_LocalInvocationIndex, ivec2(at));
     } else if (all(lessThan(args.first + at, args.end))) {
         shade_pixel(ivec2(args.first + at));
     }

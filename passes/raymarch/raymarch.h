@@ -10,7 +10,7 @@ typedef struct tyn_raymarch_params {
     float step;
     float stop;         // "raymarch.stop": transmittance at which a ray ends
     uint32_t antialias; // "raymarch.antialias": four rays a pixel where they disagree
-    uint32_t sparse;    // "raymarch.sparse": among surfaces and lamps one ray for 2x2 pixels
+    uint32_t sparse;    // "raymarch.sparse": fewer rays than pixels where the light is smooth
     // Set by the method.
     uint32_t grey;      // 1: one medium (mode DENSITY), equal in all channels
     uint32_t mode;      // TYN_MEDIUM_*
@@ -100,8 +100,8 @@ enum {
         "light that has scattered more often, or was emitted", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(RAYMARCH, COUNTERS, counters, OUT, BUFFER, "struct counters_block"), \
     X(RAYMARCH, SPARSE, sparse, SCRATCH, IMAGE_2D, \
-        "radiance, transmittance and e^-tau' of a ray for 2x2 pixels", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(RAYMARCH, REST, rest, SCRATCH, BUFFER, "2x2 pixels that have rays of their own")
+        "of one pixel in 2x2: radiance, transmittance and e^-tau'", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(RAYMARCH, REST, rest, SCRATCH, BUFFER, "pixels that have rays of their own")
 // clang-format on
 enum { RAYMARCH_PORTS(TYN_PORT_ENUM), RAYMARCH_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_raymarch;

@@ -28,11 +28,12 @@
 #define RAYMARCH_WALLS (1u << 21)        // surfaces part the cells of inscatter
 #define RAYMARCH_SHADOWS (1u << 22)      // surfaces stand before suns and lamps
 #define RAYMARCH_REPEAT (1u << 23)       // the medium is periodic
-#define RAYMARCH_SPARSE_FIRST (1u << 24) // one ray for 2x2 pixels, into the image "sparse"
+#define RAYMARCH_SPARSE_NODES (1u << 24) // rays of nodes, into the image "sparse": of all, or of those that are listed
 #define RAYMARCH_SPARSE_FILL (1u << 25)  // pixels where that image is smooth; the others are listed
 #define RAYMARCH_SPARSE_REST (1u << 26)  // rays of those that are listed
 #define RAYMARCH_SPOTS (1u << 27)        // there are lamps that shine in a cone
 #define RAYMARCH_LIGHT_CELLS (1u << 28)  // it is known where lights see all, or nothing
+#define RAYMARCH_SPARSE_COARSE (1u << 29) // with SPARSE_FILL: nodes of the finer grid instead of pixels
 
 struct raymarch_args {
     float step;       // longest step, m
@@ -44,16 +45,20 @@ struct raymarch_args {
     tyn_uvec2 end;    // ... to before `end`
     tyn_vec3 tint;    // of the one channel of inscatter
     float reach;      // of lamps that are marched nearby only, m (radial_reach)
+    tyn_uvec2 lists;  // where the lists in the buffer "rest" begin: of nodes, and of pixels
+    tyn_uint spacing; // of the nodes of the first grid, pixels: 2 or 4
+    tyn_uint listed;  // SPARSE_NODES: 1: only those that are listed
 };
-TYN_ASSERT_SIZE(raymarch_args, 64);
+TYN_ASSERT_SIZE(raymarch_args, 80);
 
-// Start of the buffer "rest": 2x2 pixels that need rays of their own. uints x | y << 16 follow, one a block.
+// Start of the buffer "rest", twice: of nodes, and of pixels that need rays of their own. The lists follow: x | y << 16.
 struct raymarch_rest {
     tyn_uvec3 groups; // of threads, for an indirect dispatch
-    tyn_uint count;   // of blocks
+    tyn_uint count;
 };
 TYN_ASSERT_SIZE(raymarch_rest, 16);
-#define RAYMARCH_REST_BLOCKS 16u // of a group of threads
-#define RAYMARCH_REST_GROUPS 64u // groups.x
+// groups.x: few, so that the last row of groups is neither long nor empty. So many places may be listed.
+#define RAYMARCH_REST_GROUPS 16u
+#define RAYMARCH_REST_MAX (64u * 65535u * RAYMARCH_REST_GROUPS)
 
 #endif

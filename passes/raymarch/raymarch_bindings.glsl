@@ -43,12 +43,11 @@ layout(binding = 25) uniform sampler3D glow_wrapped;
 #define RADIALS_AT 33
 #define RADIALS_STORAGE
 layout(binding = 37) uniform sampler3D light_cells_tex;
-layout(binding = 38) uniform sampler2D sparse_tex;
-layout(binding = 39, rgba32f) uniform writeonly image2D sparse_image;
-layout(binding = 40, scalar) buffer rest_buffer
+layout(binding = 38, rgba32f) uniform image2D sparse_image;
+layout(binding = 39, scalar) buffer rest_buffer
 {
-    raymarch_rest head;
-    uint blocks[];
+    raymarch_rest head[2];
+    uint pixels[];
 } sparse_rest;
 
 TYN_ARGS(raymarch_args args);

@@ -16,9 +16,11 @@ vec2 quarter_pixel(uint i)
     return vec2(0.25 + 0.5 * float(i & 1u), 0.25 + 0.5 * float(i >> 1));
 }
 
-// 4 if the rays through the pixel's quarters disagree on which shapes they meet, else 1.
-uint rays_of_pixel(ivec2 pixel)
+// 4 if the rays through the pixel's quarters disagree on which shapes they meet, else 1. `shapes_met`: which ones all of them meet, by
+// 24 bits.
+uint rays_of_pixel(ivec2 pixel, out uint shapes_met)
 {
+    shapes_met = 0u;
     if (!raymarch_has(RAYMARCH_SUPERSAMPLE)) {
         return 1u;
     }
@@ -41,6 +43,7 @@ uint rays_of_pixel(ivec2 pixel)
             met += span.x < span.y && span.y > 0.0 ? 1u : 0u;
         }
         agree = agree && (met == 0u || met == 4u);
+        shapes_met ^= met == 4u ? 1u << i % 24u : 0u;
     }
     return agree ? 1u : 4u;
 }
@@ -220,7 +223,7 @@ void shade_pixel(ivec2 pixel)
 {
     pixel_light sum = pixel_light_none();
     surface_group group = first_surface(pixel, true);
-    uint num_rays = group.share < 1.0 ? 1u : rays_of_pixel(pixel);
+    uint shapes_met, num_rays = group.share < 1.0 ? 1u : rays_of_pixel(pixel, shapes_met);
     for (uint i = 0u; i < num_rays; i++) {
         vec2 where = num_rays == 1u ? vec2(0.5) : quarter_pixel(i);
         add_ray(sum, pixel, where, num_rays == 1u ? 1.0 : 0.5, group);

@@ -484,7 +484,7 @@ static void room_open_on_one_side(void **state)
     gpu_test *t = *state;
     enum { SIDE = 48 };
     static const float kinds[3][2] = {{0.5f, 0.7f}, {1, 0.85f}, {0.15f, 0}}; // sigma_s, g
-    static const double biases[3] = {0.015, 0.05, 0.06};
+    static const double biases[3] = {0.012, 0.05, 0.06};
     path_run runs;
     path_run_open(&runs, t->dev);
     for (int k = 0; k < 3; k++) {

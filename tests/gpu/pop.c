@@ -266,7 +266,8 @@ static void suns_add_up(void **state)
             }
         }
         picture p;
-        picture_render(&p, t->dev, "pop", &s->scene, &s->view, "lattice.sweeps=12", 0);
+        picture_render(&p, t->dev, "pop", &s->scene, &s->view,
+                       "lattice.sweeps=12 raymarch.sparse=0", 0);
         double most = 0;
         for (int i = 0; i < PIXELS * 3; i++) {
             if (k < 3) {

@@ -117,6 +117,7 @@ static const float *radiance_of(gpu_test *t, const struct camera_block *camera)
     tyn_raymarch_params march;
     tyn_pass_defaults(&tyn_pass_raymarch, &march);
     march.grey = 1;
+    march.sparse = 0; // so does the prototype
     march.field = TYN_INSCATTER_PLAIN;
     march.width = march.height = RAYS;
     march.longest_step = 1.0f / 128;

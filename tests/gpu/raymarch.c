@@ -71,6 +71,7 @@ static void make_cube(march_scene *s, float sigma_s, float sigma_a, float g)
     s->camera.orthographic = 1;
     tyn_pass_defaults(&tyn_pass_raymarch, &s->params);
     s->params.grey = 1;
+    s->params.sparse = 0; // its twin marches every pixel
     s->params.num_suns = 1;
     s->params.width = s->params.height = 16;
     s->params.num_shapes = 1;
