@@ -103,7 +103,7 @@ static void same_suns(void **state)
                       "voxels apart %.2f %%\n",
                       v->name, 100 * e.reported, 100 * e.noise, 100 * e.bias,
                       100 * printed.reported, 100 * coarse.reported);
-        assert_true(e.reported < 0.02); // what issue and paper ask for, whatever the bound
+        assert_true(e.reported < 0.02); // 2 %, whatever the bound
         assert_true(within(e.rel_l1, v->bound, BOUND_NOISE, "same suns, %s", v->name));
         picture_free(&path);
         tyn_scene_finish(scene);
