@@ -7,7 +7,8 @@ needs_device
 # ---- render ----
 refuses 2 "no device 'abacus'" render "$scenes/cube.gltf" --device abacus
 refuses 2 "no device '99'" render "$scenes/cube.gltf" --device 99
-works render "$scenes/cube.gltf" --size 64x48 --quiet
+# With layers of light all pixels are marched, so the march of the bare picture is told to do the same.
+works render "$scenes/cube.gltf" --size 64x48 --quiet -D raymarch.sparse=0
 [ -s cube.png ] || fail "render wrote no cube.png"
 [ -s err ] && fail "--quiet printed: $(cat err)"
 works render "$scenes/cube.gltf" --size 64x48 --quiet -o a.exr -o a.png --aov transmittance,depth,depth_t50,single,multiple --stats a.json
