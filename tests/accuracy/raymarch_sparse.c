@@ -1,7 +1,6 @@
 // raymarch_sparse.c -- the march at a lower resolution (raymarch.sparse) against the march of every pixel: all sample scenes.
 //
-// Much of the difference is noise of the march of every pixel, whose steps are dithered: in fog-hall one is 3.1 % off a march of a
-// tenth of the step, the other 3.0 %.
+// In fog-hall most of the difference is the dither of the march of every pixel (docs/measurements.md, "March").
 #include "bound.h"
 #include "gpu_test.h"
 #include "picture.h"
