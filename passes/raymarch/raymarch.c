@@ -80,8 +80,7 @@ float tyn_raymarch_longest_step(float sigma_t, float dx, const struct medium_blo
 static bool is_sparse(const tyn_raymarch_params *p)
 {
     const uint32_t dense = RAYMARCH_LAYER_DEPTH | RAYMARCH_LAYER_SINGLE | RAYMARCH_LAYER_MULTIPLE;
-    return p->sparse && !(p->layers & dense) &&
-           (uint64_t)p->width * p->height <= RAYMARCH_REST_MAX;
+    return p->sparse && !(p->layers & dense) && (uint64_t)p->width * p->height <= RAYMARCH_REST_MAX;
 }
 
 static tyn_extent window_of(const tyn_raymarch_params *p)

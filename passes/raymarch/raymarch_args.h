@@ -25,15 +25,15 @@
 #define RAYMARCH_SOFT_SUNS (1u << 18) // there are suns that are seen under an angle
 #define RAYMARCH_SURFACE (1u << 19)   // rays end at the scene's surfaces
 #define RAYMARCH_SURFACE_SEEN (1u << 20)
-#define RAYMARCH_WALLS (1u << 21)        // surfaces part the cells of inscatter
-#define RAYMARCH_SHADOWS (1u << 22)      // surfaces stand before suns and lamps
-#define RAYMARCH_REPEAT (1u << 23)       // the medium is periodic
-#define RAYMARCH_SPARSE_NODES (1u << 24) // rays of nodes, into the image "sparse": of all, or of those that are listed
-#define RAYMARCH_SPARSE_FILL (1u << 25)  // pixels where that image is smooth; the others are listed
-#define RAYMARCH_SPARSE_REST (1u << 26)  // rays of those that are listed
-#define RAYMARCH_SPOTS (1u << 27)        // there are lamps that shine in a cone
-#define RAYMARCH_LIGHT_CELLS (1u << 28)  // it is known where lights see all, or nothing
-#define RAYMARCH_SPARSE_COARSE (1u << 29) // with SPARSE_FILL: nodes of the finer grid instead of pixels
+#define RAYMARCH_WALLS (1u << 21)         // surfaces part the cells of inscatter
+#define RAYMARCH_SHADOWS (1u << 22)       // surfaces stand before suns and lamps
+#define RAYMARCH_REPEAT (1u << 23)        // the medium is periodic
+#define RAYMARCH_SPARSE_NODES (1u << 24)  // rays of nodes, into "sparse": of all, or of the listed
+#define RAYMARCH_SPARSE_FILL (1u << 25)   // pixels where that is smooth; the others are listed
+#define RAYMARCH_SPARSE_REST (1u << 26)   // rays of those that are listed
+#define RAYMARCH_SPOTS (1u << 27)         // there are lamps that shine in a cone
+#define RAYMARCH_LIGHT_CELLS (1u << 28)   // it is known where lights see all, or nothing
+#define RAYMARCH_SPARSE_COARSE (1u << 29) // with SPARSE_FILL: nodes of the finer grid
 
 struct raymarch_args {
     float step;       // longest step, m
@@ -57,8 +57,9 @@ struct raymarch_rest {
     tyn_uint count;
 };
 TYN_ASSERT_SIZE(raymarch_rest, 16);
-// groups.x: few, so that the last row of groups is neither long nor empty. So many places may be listed.
+// groups.x: few, so that the last row of groups is neither long nor empty.
 #define RAYMARCH_REST_GROUPS 16u
+// So many places may be listed.
 #define RAYMARCH_REST_MAX (64u * 65535u * RAYMARCH_REST_GROUPS)
 
 #endif

@@ -226,7 +226,7 @@ bool sees_sun(sparse_cell cell)
 bool is_between(sparse_cell cell, ivec2 pixel, surface_group group)
 {
     if (!raymarch_has(RAYMARCH_SURFACE | RAYMARCH_HOST_DEPTH | RAYMARCH_SUPERSAMPLE)) {
-        return true;
+        return true; // nothing ends or splits a ray
     }
     float nearness = sparse_nearness(ray_to(pixel, vec2(0.5), group));
     vec2 t = vec2(pixel - sparse_pixel(cell.node)) / float(2 * cell.stride);
