@@ -42,8 +42,11 @@ static const tyn_param params_table[] = {
      quadratures},
 };
 
-// Turns of a thread's loops in one dispatch, all together: software devices end them at 65535.
-static const float MOST_TURNS = 55000;
+// Turns of a thread's loops in one dispatch, all together: software devices end them at 65535. Some are left for loops over
+// samples of surfaces and of the background.
+static const float MOST_TURNS = 60000;
+// Rays that such devices march in a vector: all of it turns as long as one of them does.
+static const float RAYS_AT_ONCE = 8;
 static const float MOST_SLICES = 8192;
 
 static float diagonal_of(const float v[3])
@@ -76,22 +79,37 @@ static float most_slices(const tyn_constellation_params *p)
     return floorf(diagonal_of(p->extent) / p->slices.distance) + 2;
 }
 
-// Slices that a dispatch may light so that no thread's loops turn too often.
-static uint32_t rounds_of(const tyn_constellation_params *p)
+// What a dispatch does to each ray so that no thread's loops turn too often: it lights `slices` slices by all lights, or one
+// slice by `lights` of them.
+typedef struct portion {
+    uint32_t slices, lights;
+    uint32_t per_slice; // dispatches that light a slice; > 1: slices = 1
+} portion;
+
+static portion portion_of(const tyn_constellation_params *p)
 {
     const float slices = most_slices(p);
-    const float of_shadow_ray =
-        p->lighting == CONSTELLATION_SHADOWED ? 2 + ceilf(slices / 2) : 0; // two steps a turn
-    const float of_round =
-        3 + (p->lighting == CONSTELLATION_ALPHA ? 0 : (1 + of_shadow_ray) * most_lights(p));
-    const float left = MOST_TURNS - 3 * slices;
-    const float rounds = floorf(left / of_round);
-    return rounds < 1 ? 1 : rounds < slices ? (uint32_t)rounds : (uint32_t)slices;
+    const float lights = p->lighting == CONSTELLATION_ALPHA ? 0 : (float)most_lights(p);
+    const float of_light =
+        1 + (p->lighting == CONSTELLATION_SHADOWED ? 2 + ceilf(slices / 2) : 0); // two steps a turn
+    const float of_slice = 3 + of_light * lights;
+    // The last dispatch goes along all of a ray for the layer "depth". To find its next slices takes a ray as many turns as it
+    // has slices in all; those of a vector wait for each other, for each slice that is lit no longer than a ray is.
+    const float left = MOST_TURNS - slices;
+    const float searches = p->distance ? RAYS_AT_ONCE * slices : slices;
+    const float rounds = floorf(fmaxf((left - searches) / of_slice, left / (of_slice + slices)));
+    if (rounds >= 1) {
+        return (portion){(uint32_t)fminf(rounds, slices), (uint32_t)lights, 1};
+    }
+    const float most = floorf((left - slices - 3) / of_light); // >= 1: MOST_SLICES
+    const float per_slice = ceilf(lights / most);
+    return (portion){1, (uint32_t)ceilf(lights / per_slice), (uint32_t)per_slice};
 }
 
 static uint32_t dispatches_of(const tyn_constellation_params *p)
 {
-    return (uint32_t)ceilf(most_slices(p) / (float)rounds_of(p));
+    const portion of = portion_of(p);
+    return (uint32_t)ceilf(most_slices(p) / (float)of.slices) * of.per_slice;
 }
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -105,9 +123,10 @@ static tyn_result declare(tyn_builder *b, const void *params)
     if (p->layers & CONSTELLATION_LAYER_DEPTH) {
         tyn_build_image(b, CONSTELLATION_PORT_DEPTH, size, 1);
     }
-    tyn_build_image(
-        b, CONSTELLATION_PORT_STATE,
-        dispatches_of(p) > 1 ? (tyn_extent){3 * p->width, p->height, 1} : (tyn_extent){1, 1, 1}, 1);
+    const tyn_extent kept = dispatches_of(p) > 1 ? size : (tyn_extent){1, 1, 1};
+    tyn_build_image(b, CONSTELLATION_PORT_STATE_LIGHT, kept, 1);
+    tyn_build_image(b, CONSTELLATION_PORT_STATE_THROUGH, kept, 1);
+    tyn_build_image(b, CONSTELLATION_PORT_STATE_UNCOVERED, kept, 1);
     tyn_build_buffer(b, CONSTELLATION_PORT_LIGHT_LIST, sizeof(struct constellation_list));
     tyn_build_buffer(b, CONSTELLATION_PORT_COUNTERS, sizeof(struct counters_block));
     return TYN_OK;
@@ -136,11 +155,12 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_constellation_params *p = params;
     const float pi = 3.14159265f;
+    const portion of = portion_of(p);
     struct constellation_args args = {
         .depth = {p->depth[0], p->depth[1], p->depth[2], p->depth[3]},
         .slices = p->slices,
         .scale = p->norm == CONSTELLATION_NORM_4_PI ? 1 : 1 / (4 * pi),
-        .rounds = rounds_of(p),
+        .rounds = of.slices,
     };
     tyn_rec_fill(r, CONSTELLATION_PORT_COUNTERS, 0);
     TYN_DISPATCH(r, .kernel = KERNEL_LIGHTS, .cells = {64, 1, 1}, .args = &p->listed);
@@ -165,8 +185,11 @@ static void record(tyn_recorder *r, const void *params)
     const uint32_t spec[] = {p->mode, features_of(r, p), (uint32_t)p->lighting};
     const uint32_t count = dispatches_of(p);
     for (uint32_t i = 0; i < count; i++) {
+        const uint32_t part = i % of.per_slice;
         args.first = i == 0;
         args.last = i + 1 == count;
+        args.light_begin = part * of.lights;
+        args.light_end = part + 1 < of.per_slice ? args.light_begin + of.lights : UINT32_MAX;
         TYN_DISPATCH(r, .kernel = kernel, .cells = {p->width, p->height, 1}, .args = &args,
                      .ports = ports_of, .spec = spec);
     }

@@ -69,9 +69,12 @@ struct slices_args tyn_constellation_slices(const struct medium_block *medium, f
         "none", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(CONSTELLATION, COUNTERS, counters, OUT, BUFFER, "struct counters_block"), \
     X(CONSTELLATION, LIGHT_LIST, light_list, SCRATCH, BUFFER, "struct constellation_list: all lights, as they shine on the medium"), \
-    X(CONSTELLATION, STATE, state, SCRATCH, IMAGE_2D, \
-        "between dispatches, three texels a pixel: radiance and next slice; transmittance, where the ray is; the " \
-        "share of the background", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+    X(CONSTELLATION, STATE_LIGHT, state_light, SCRATCH, IMAGE_2D, \
+        "between dispatches: radiance, next slice", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(CONSTELLATION, STATE_THROUGH, state_through, SCRATCH, IMAGE_2D, \
+        "between dispatches: transmittance, where the ray is, m", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(CONSTELLATION, STATE_UNCOVERED, state_uncovered, SCRATCH, IMAGE_2D, \
+        "between dispatches: the share of the background", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
 // clang-format on
 enum { CONSTELLATION_PORTS(TYN_PORT_ENUM), CONSTELLATION_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_constellation;

@@ -32,8 +32,11 @@ struct constellation_args {
     tyn_uint rounds; // slices that one dispatch lights
     tyn_uint first;  // 1: the dispatch begins the rays
     tyn_uint last;   // 1: it ends them and stores the picture
+    // Lights of the list that shine in the dispatch. What is not light is done with light 0, and what has been lit by the
+    // last one (light_end: ~0) is left.
+    tyn_uint light_begin, light_end;
 };
-TYN_ASSERT_SIZE(constellation_args, 40);
+TYN_ASSERT_SIZE(constellation_args, 48);
 
 struct constellation_lights_args {
     tyn_uint constellation; // 1: there is one

@@ -90,7 +90,7 @@ vec3 scattered_of_light(listed_light l, vec3 p, vec3 view, sample_point s)
     return color * scattered;
 }
 
-// Of all lights.
+// Of the dispatch's lights.
 vec3 scattered_light(vec3 p, vec3 view, sample_point s)
 {
     const uvec4 head = texelFetch(light_list_texels, 0);
@@ -98,7 +98,8 @@ vec3 scattered_light(vec3 p, vec3 view, sample_point s)
     if (constellation_lighting == CONSTELLATION_ALPHA) {
         sum = uintBitsToFloat(head.yzw); // the mean radiance from all around
     } else {
-        for (uint n = 0u; n < head.x; n++) {
+        const uint end = min(head.x, args.light_end);
+        for (uint n = args.light_begin; n < end; n++) {
             sum += scattered_of_light(listed_light_of(n), p, view, s);
         }
     }

@@ -3,8 +3,9 @@
 //   L <- e^-x L + W sigma_s (sum over lights of E T p) (1 - e^-x) / sigma_t,  x = sigma_t times the slice's thickness
 //
 // (Eqs 4 and 5 with the slice's own integral; CONSTELLATION_PRINTED: e^-x times the thickness, as printed). W is the share
-// of the pixel that no surface before the slice hides. A dispatch lights `rounds` slices of each ray and hands
-// the rays on in the image `state`; neighbouring rays look for their next slice together and light it together.
+// of the pixel that no surface before the slice hides. A dispatch lights `rounds` slices of each ray, or one by some of the
+// lights, and hands the rays on in the images `state_*`; neighbouring rays look for their next slice together and light it
+// together.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "constellation_args.h"
@@ -37,11 +38,13 @@ layout(binding = 13) uniform sampler2D mask_tex;
 #include "shaders/march/background.glsl"
 #include "shaders/march/host_depth.glsl"
 #include "shaders/march/surface_samples.glsl"
-layout(binding = 16, rgba32f) uniform image2D state;
-layout(binding = 17, rgba32f) uniform writeonly image2D radiance_image;
-layout(binding = 18, rgba32f) uniform writeonly image2D transmittance_image;
-layout(binding = 19, rgba32f) uniform writeonly image2D depth_image;
-TYN_UPDATE(20, counters, counters_block counters);
+layout(binding = 16, rgba32f) uniform image2D state_light;
+layout(binding = 17, rgba32f) uniform image2D state_through;
+layout(binding = 18, rgba32f) uniform image2D state_uncovered;
+layout(binding = 19, rgba32f) uniform writeonly image2D radiance_image;
+layout(binding = 20, rgba32f) uniform writeonly image2D transmittance_image;
+layout(binding = 21, rgba32f) uniform writeonly image2D depth_image;
+TYN_UPDATE(22, counters, counters_block counters);
 #include "shaders/march/slices.glsl"
 #include "constellation_medium.glsl"
 #include "constellation_lighting.glsl"
@@ -58,17 +61,15 @@ struct ray_state {
 
 ray_state ray_state_load(ivec2 pixel)
 {
-    const vec4 a = imageLoad(state, ivec2(3 * pixel.x, pixel.y));
-    const vec4 b = imageLoad(state, ivec2(3 * pixel.x + 1, pixel.y));
-    const vec4 c = imageLoad(state, ivec2(3 * pixel.x + 2, pixel.y));
-    return ray_state(a.rgb, b.rgb, c.rgb, b.a, int(a.a));
+    const vec4 a = imageLoad(state_light, pixel), b = imageLoad(state_through, pixel);
+    return ray_state(a.rgb, b.rgb, imageLoad(state_uncovered, pixel).rgb, b.a, int(a.a));
 }
 
 void ray_state_store(ivec2 pixel, ray_state r)
 {
-    imageStore(state, ivec2(3 * pixel.x, pixel.y), vec4(r.light, float(r.next)));
-    imageStore(state, ivec2(3 * pixel.x + 1, pixel.y), vec4(r.through, r.at));
-    imageStore(state, ivec2(3 * pixel.x + 2, pixel.y), vec4(r.uncovered, 0.0));
+    imageStore(state_light, pixel, vec4(r.light, float(r.next)));
+    imageStore(state_through, pixel, vec4(r.through, r.at));
+    imageStore(state_uncovered, pixel, vec4(r.uncovered, 0.0));
 }
 
 // Adds `share` of the surface, attenuated by `left`.
@@ -123,21 +124,24 @@ void add_slice(inout ray_state r, behind b, slices cut, int i, vec3 p, vec3 view
         weight = ds * mix(series, (1.0 - e) / max(x, 1e-30), greaterThan(x, vec3(0.03)));
     }
     vec3 source = s.scattering * scattered_light(p, view, s);
-    if (constellation_has(CONSTELLATION_EMISSION)) {
-        source += s.emission;
-    }
     const vec2 away = cut.start + span;
-    add_surfaces_behind(r, b, away.y);
+    const bool first = args.light_begin == 0u;
+    if (first) {
+        if (constellation_has(CONSTELLATION_EMISSION)) {
+            source += s.emission;
+        }
+        add_surfaces_behind(r, b, away.y);
+        r.light *= e;
+        r.through *= e;
+        r.uncovered *= e;
+    }
     float share = b.open;
-    r.light *= e;
-    r.through *= e;
-    r.uncovered *= e;
     if (constellation_has(CONSTELLATION_SURFACE)) {
         [[unroll]] for (uint k = 0u; k < BEHIND_MAX; k++) {
             const bool is = b.away[k] < TYN_INFINITY;
             const float part = is ? clamp((b.away[k] - away.x) / max(ds, 1e-30), 0.0, 1.0) : 0.0;
             share += part * b.share[k];
-            if (is && b.away[k] > away.x && b.away[k] <= away.y) {
+            if (first && is && b.away[k] > away.x && b.away[k] <= away.y) {
                 add_surface(r, b.radiance[k], b.share[k], exp(-part * x));
             }
         }
@@ -221,8 +225,8 @@ void main()
         } while (!found && r.next >= 0);
         if (found) {
             add_slice(r, b, cut, r.next, at * medium.extent, ray.direction, sample_point_of(m, at));
-            r.next--;
-            lit++;
+            r.next -= args.light_end == ~0u ? 1 : 0;
+            lit += args.light_begin == 0u ? 1u : 0u;
         }
     }
     if (lit > 0u) {

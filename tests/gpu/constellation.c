@@ -93,7 +93,7 @@ static picture render(gpu_test *t, const stage *s, const char *settings)
 static double sum_of(const picture *p)
 {
     double sum = 0;
-    for (int i = 0; i < PIXELS * 3; i++) {
+    for (uint32_t i = 0; i < 3 * p->width * p->height; i++) {
         sum += p->rgb[i];
     }
     return sum;
@@ -103,7 +103,7 @@ static double sum_of(const picture *p)
 static double apart(const picture *a, const picture *b)
 {
     double most = 0, brightest = 0;
-    for (int i = 0; i < PIXELS * 3; i++) {
+    for (uint32_t i = 0; i < 3 * a->width * a->height; i++) {
         most = maximum(most, fabs((double)a->rgb[i] - b->rgb[i]));
         brightest = maximum(brightest, b->rgb[i]);
     }
@@ -365,13 +365,114 @@ static void many_lights(void **state)
     strike(s);
 }
 
+// A rod of 2562 slices under 64 suns, of which most shine along it: a slice's shadow rays turn more often than a dispatch may.
+// `wall`: one that glows stands in it, and suns shine along the wall, so that it has no shadow.
+static stage *rod(bool wall)
+{
+    enum { N = 128 };
+    stage *s = calloc(1, sizeof *s);
+    tyn_scene_init(&s->scene);
+    float grid[N * 4];
+    uint32_t seed = 5;
+    for (int q = 0; q < N * 4; q++) {
+        grid[q] = q % N / 3 % 4 == 1 ? 0 : (float)(0.4 + random_unit(&seed));
+    }
+    tyn_medium medium = grey_medium(4, 1, 0.3f);
+    medium.emission[1] = 0.4f;
+    const float thick = 1.f / 128;
+    scene_add_box(&s->scene, &medium, (float[]){0, -thick, -thick}, (float[]){1, thick, thick},
+                  (const uint32_t[]){N, 2, 2}, grid);
+    for (int i = 0; i < 64; i++) {
+        float x[5];
+        for (int k = 0; k < 5; k++) {
+            x[k] = (float)random_unit(&seed);
+        }
+        if (wall) {
+            scene_add_sun(&s->scene, 0, i % 2 ? -1 : 1, 0, x[2], x[3], x[4]);
+        } else if (i % 16 == 3) {
+            scene_add_sun(&s->scene, x[0] - 0.5f, x[1] - 0.5f, -1, x[2], x[3], x[4]);
+        } else {
+            scene_add_sun(&s->scene, -1, 0.01f * (x[0] - 0.5f), 0.01f * (x[1] - 0.5f), x[2], x[3],
+                          x[4]);
+        }
+    }
+    if (wall) {
+        const float black[3] = {0, 0, 0}, glow[3] = {0.3f, 0.2f, 0.1f};
+        solids_quad(&s->scene, (float[]){0, -1, 0}, (float[]){0.1f, 0, 0.004f}, (float[]){0, 2, 0},
+                    solids_material(&s->scene, black, glow));
+    }
+    view_orthographic(&s->view, (float[]){0.05f, 0, 0}, 0.2f, 0.1f, -1, (float[]){0, 1, 0},
+                      0.5f * thick, 2);
+    s->view.width = 6;
+    s->view.no_background = true;
+    return s;
+}
+
+// Lights that a dispatch cannot shine by for even one slice are the sum of those that it can.
+static void lights_in_parts(void **state)
+{
+    enum { RUNS = 4, EACH = 64 / RUNS };
+    for (int wall = 0; wall < 2; wall++) {
+        stage *s = rod(wall);
+        const char *const settings =
+            wall ? "constellation.slice=0.077" : "constellation.slice=0.05";
+        picture all = render(*state, s, settings);
+        tyn_light suns[64];
+        memcpy(suns, s->scene.lights, sizeof suns);
+        s->scene.num_lights = 0;
+        picture glow = render(*state, s, settings), sum = render(*state, s, settings);
+        assert_true(sum_of(&glow) > 0);
+        for (int k = 0; k < RUNS; k++) {
+            s->scene.num_lights = EACH;
+            memcpy(s->scene.lights, suns + k * EACH, EACH * sizeof *suns);
+            picture some = render(*state, s, settings);
+            for (uint32_t i = 0; i < 3 * all.width * all.height; i++) {
+                sum.rgb[i] += some.rgb[i] - glow.rgb[i];
+            }
+            picture_free(&some);
+        }
+        const double off = apart(&all, &sum);
+        print_message("64 lights in a rod%s: %.1e off their sum, of which %.0f %% glows\n",
+                      wall ? " with a wall" : "", off, 100 * sum_of(&glow) / sum_of(&sum));
+        assert_true(off < 1e-5);
+        picture_free(&sum);
+        picture_free(&glow);
+        picture_free(&all);
+        strike(s);
+    }
+}
+
+// Rays of a picture that is as wide as this are handed on as well.
+static void wide_picture(void **state)
+{
+    stage *s = clumps();
+    s->view.no_background = true;
+    s->view.width = 6000;
+    s->view.height = 1;
+    s->view.camera.yfov = 0.001f;
+    scene_add_sun(&s->scene, -1, -2, 0.3f, 1, 1, 1);
+    picture one = render(*state, s, "constellation.slice=0.3");
+    s->scene.num_lights = 0;
+    for (int i = 0; i < 20; i++) {
+        scene_add_sun(&s->scene, -1, -2, 0.3f, 0.05f, 0.05f, 0.05f);
+    }
+    picture twenty = render(*state, s, "constellation.slice=0.3");
+    const double off = apart(&twenty, &one);
+    print_message("twenty lights of a twentieth, 6000 pixels wide: %.1e off one\n", off);
+    assert_true(off < 1e-5);
+    picture_free(&one);
+    picture_free(&twenty);
+    strike(s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cubes),         cmocka_unit_test(readings),
         cmocka_unit_test(uniform_sky),   cmocka_unit_test(turned_map),
         cmocka_unit_test(same_pictures), cmocka_unit_test(surfaces),
-        cmocka_unit_test(many_lights),
+        cmocka_unit_test(many_lights),   cmocka_unit_test(lights_in_parts),
+        cmocka_unit_test(wide_picture),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

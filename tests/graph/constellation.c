@@ -1,9 +1,11 @@
 // constellation.c -- which nodes of method `constellation` run when something changes, on a device that only writes down what it is told.
 #include "fake_vulkan.h"
 #include <tyndall/context.h>
+#include <tyndall/registry.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
@@ -176,8 +178,49 @@ static void what_runs(void **state)
     assert_true(all);
 }
 
+// The widest picture there may be, in so many dispatches that rays are handed on, and lights in parts.
+static void widest(void **state)
+{
+    (void)state;
+    fake_vulkan *fake = fake_create();
+    tyn_settings *settings;
+    assert_int_equal(tyn_settings_create(&settings), TYN_OK);
+    assert_int_equal(tyn_settings_set(settings, "constellation.slice", "0.05", NULL), TYN_OK);
+    assert_int_equal(tyn_settings_set(settings, "constellation.lights", "64", NULL), TYN_OK);
+    tyn_context *ctx;
+    assert_int_equal(
+        tyn_context_create(
+            &fake->dev, tyn_context_params(.method = "constellation", .settings = settings), &ctx),
+        TYN_OK);
+    stage s;
+    make_stage(&s);
+    s.view.width = 16384;
+    s.view.height = 3;
+    s.scene.shapes[0].to_world[0] = 40; // 8193 slices at most
+    assert_int_equal(tyn_context_prepare(ctx, tyn_frame(.scene = &s.scene, .view = &s.view)),
+                     TYN_OK);
+    char *graph = tyn_context_graph(ctx, false);
+    static const char *const states[] = {"state_light", "state_through", "state_uncovered"};
+    for (int i = 0; i < 3; i++) {
+        char line[64];
+        snprintf(line, sizeof line, "scratch %s (RGBA32F 16384 x 3,", states[i]);
+        assert_non_null(strstr(graph, line));
+    }
+    int dispatches = 0;
+    for (const char *at = graph; (at = strstr(at, "dispatch constellation_march")) != NULL; at++) {
+        dispatches++;
+    }
+    print_message("%d dispatches\n", dispatches);
+    assert_true(dispatches > 2 * 8192);
+    free(graph);
+    tyn_context_destroy(&ctx);
+    tyn_settings_destroy(&settings);
+    tyn_scene_finish(&s.scene);
+    fake_destroy(&fake);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(what_runs)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(what_runs), cmocka_unit_test(widest)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
