@@ -415,7 +415,7 @@ static void lights_in_parts(void **state)
     for (int wall = 0; wall < 2; wall++) {
         stage *s = rod(wall);
         const char *const settings =
-            wall ? "constellation.slice=0.077" : "constellation.slice=0.05";
+            wall ? "constellation.slice=0.06" : "constellation.slice=0.05";
         picture all = render(*state, s, settings);
         tyn_light suns[64];
         memcpy(suns, s->scene.lights, sizeof suns);
