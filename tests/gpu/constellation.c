@@ -398,8 +398,8 @@ static stage *rod(bool wall)
     }
     if (wall) {
         const float black[3] = {0, 0, 0}, glow[3] = {0.3f, 0.2f, 0.1f};
-        solids_quad(&s->scene, (float[]){0, -1, 0}, (float[]){0.1f, 0, 0.004f}, (float[]){0, 2, 0},
-                    solids_material(&s->scene, black, glow));
+        solids_quad(&s->scene, (float[]){0.0485f, -1, 0}, (float[]){0.1f, 0, 0.004f},
+                    (float[]){0, 2, 0}, solids_material(&s->scene, black, glow));
     }
     view_orthographic(&s->view, (float[]){0.05f, 0, 0}, 0.2f, 0.1f, -1, (float[]){0, 1, 0},
                       0.5f * thick, 2);
@@ -414,8 +414,7 @@ static void lights_in_parts(void **state)
     enum { RUNS = 4, EACH = 64 / RUNS };
     for (int wall = 0; wall < 2; wall++) {
         stage *s = rod(wall);
-        const char *const settings =
-            wall ? "constellation.slice=0.06" : "constellation.slice=0.05";
+        const char *const settings = wall ? "constellation.slice=0.06" : "constellation.slice=0.05";
         picture all = render(*state, s, settings);
         tyn_light suns[64];
         memcpy(suns, s->scene.lights, sizeof suns);
