@@ -212,17 +212,14 @@ void main()
         bool found = false;
         MATTER m = MATTER(0.0);
         vec3 at = uvw;
-        do { // a turn must change nothing for a ray that has found its slice
-            const vec3 there = uvw + slice_at(args.slices, cut, max(r.next, 0)) * along;
-            const vec4 v = textureLod(voxels_tex, there, 0.0);
+        while (!found && r.next >= 0) {
+            at = uvw + slice_at(args.slices, cut, r.next) * along;
+            const vec4 v = textureLod(voxels_tex, at, 0.0);
+            m = matter_of(v);
             // Without the distance map every slice is lit, as in Program 1.
-            const bool here = !constellation_has(CONSTELLATION_DISTANCE) || !is_empty(matter_of(v), there);
-            const bool now = here && !found && r.next >= 0;
-            m = now ? matter_of(v) : m;
-            at = now ? there : at;
-            r.next -= found || here ? 0 : 1 + slices_skipped(args.slices, away_of(v));
-            found = found || now;
-        } while (!found && r.next >= 0);
+            found = !constellation_has(CONSTELLATION_DISTANCE) || !is_empty(m, at);
+            r.next -= found ? 0 : 1 + slices_skipped(args.slices, away_of(v));
+        }
         if (found) {
             add_slice(r, b, cut, r.next, at * medium.extent, ray.direction, sample_point_of(m, at));
             r.next -= args.light_end == ~0u ? 1 : 0;
