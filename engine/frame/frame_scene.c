@@ -261,6 +261,24 @@ static void build_shapes(tyn_frame_scene *out, const tyn_scene *scene, const rig
     }
 }
 
+// Where media overlap their extinctions add.
+static float majorant_of(const tyn_frame_scene *f, const tyn_scene *scene)
+{
+    if (f->medium.mode == TYN_MEDIUM_DENSITY) {
+        return f->medium.sigma_t_max * f->medium.max_density;
+    }
+    float sum = 0;
+    for (uint32_t i = 0; i < scene->num_shapes; i++) {
+        const int32_t volume = scene->media[scene->shapes[i].medium].volume;
+        float most = 0;
+        for (int c = 0; c < 3; c++) {
+            most = fmaxf(most, f->shapes[i].sigma_s[c] + f->shapes[i].sigma_a[c]);
+        }
+        sum += most * (volume < 0 ? 1 : scene->volumes[volume].max_density);
+    }
+    return sum;
+}
+
 // ---- lights, camera, environment --------------------------------------------------------------
 
 static float strength(const struct light_block *light)
@@ -525,6 +543,7 @@ tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, c
         build_void(out, extent);
     }
     build_shapes(out, scene, &m);
+    out->majorant = majorant_of(out, scene);
     build_lights(out, scene, &m);
     build_camera(out, view, &m);
     build_environment(out, &scene->environment, map, &m);

@@ -121,9 +121,8 @@ static void set_medium(tyn_constellation_params *p, const tyn_job *job)
     p->mode = block->mode;
     p->emissive = job->frame->emissive;
     memcpy(p->extent, block->extent, sizeof p->extent);
-    const float majorant = block->sigma_t_max * block->max_density;
-    p->slices =
-        tyn_constellation_slices(block, p->slice, tyn_raymarch_longest_step(majorant, 0, block));
+    p->slices = tyn_constellation_slices(block, p->slice,
+                                         tyn_raymarch_longest_step(job->frame->majorant, 0, block));
 }
 
 // The surfaces that the camera sees, in the light of suns, lamps and the VPLs that these make, which the medium dims.

@@ -35,8 +35,8 @@ static tyn_ref add_scattered(tyn_graph *g, const tyn_job *job, const tyn_sources
     tyn_settings_params(job->settings, &tyn_pass_lpv_scatter, &params);
     params.shape = s->lattice.shape;
     params.mode = job->frame->medium.mode;
-    tyn_lpv_scatter_plan(&params, s->lattice.shape.extent, lights->suns, s->num_suns,
-                         tyn_first_lamp(lights), s->lamps.num_lamps);
+    tyn_lpv_scatter_plan(&params, s->lattice.shape.extent, job->frame->majorant, lights->suns,
+                         s->num_suns, tyn_first_lamp(lights), s->lamps.num_lamps);
     tyn_ref refs[TYN_MAX_PORTS] = {[LPV_SCATTER_PORT_LIGHTS] = job->refs.suns};
     tyn_connect(refs, LPV_SCATTER_PORT_MEDIUM, s->medium);
     tyn_connect(refs, LPV_SCATTER_PORT_BEAMS, s->beams);

@@ -59,7 +59,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->width = job->view->width;
     params->height = job->view->height;
     memcpy(params->extent, block->extent, sizeof params->extent);
-    params->majorant = block->sigma_t_max * block->max_density;
+    params->majorant = frame->majorant;
     params->longest_step = tyn_raymarch_longest_step(params->majorant, in->field->cell, block);
     params->num_shapes = block->num_shapes;
     params->kind = kind_of_shapes(frame, block->num_shapes);

@@ -44,7 +44,9 @@ void main()
     float outside = 0.0;
     if (surroundings == 1u) {
         float radiance = lattice_channel(environment.sky, args.channels, ch, args.tint);
-        outside = LATTICE_4PI * args.dx * args.dx * radiance / LPV_DISTANCE;
+        // The mean length of links, as their light counts each.
+        float way = extinction == LPV_EXTINCTION_PAPER ? LPV_DISTANCE : dot(LPV_COUNT * LPV_GAMMA, LPV_LENGTH);
+        outside = LATTICE_4PI * args.dx * args.dx * radiance / way;
     }
     bool mirrors = reflects == 1u && blockers == LPV_BLOCKERS_EXACT;
     float albedo = mirrors && links != 0u ? texelFetch(wall_cells_texels, 4 * here + 3)[ch] : 0.0;

@@ -6,6 +6,7 @@
 #include "lpv_blockers_args.h"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/light/deposit.glsl"
+#include "shaders/random/rng.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 TYN_ARGS(lpv_blockers_args args);
@@ -36,5 +37,5 @@ void main()
     n = (n[main] > 0.0) == up ? -n : n;
     vec4 lobe = args.area[main] / (a[main] * box.dx * box.dx) * vec4(0.25, 0.5 * n) * LPV_BLOCKERS_UNIT;
     uint at = 4u * uint((c.z * dims.y + c.y) * dims.x + c.x);
-    DEPOSIT_ADD(potential, at, lobe)
+    DEPOSIT_ADD(potential, at, lobe, rng_float(rng_pcg4d(uvec4(texel, 0u, 0u)).x))
 }

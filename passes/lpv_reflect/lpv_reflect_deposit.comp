@@ -14,6 +14,7 @@
 #include "shaders/beams/radial.glsl"
 #include "shaders/beams/lamp_depth.glsl"
 #include "shaders/light/deposit.glsl"
+#include "shaders/random/rng.glsl"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/lattice/lattice_sweep.glsl"
 
@@ -90,9 +91,10 @@ void main()
     }
     // A cosine lobe's first moment is 2/3 of its power along the normal.
     vec4 lobe = vec4(1.0, 2.0 / 3.0 * n) / unit;
+    vec3 dither = vec3(rng_pcg4d(uvec4(place, args.first + gl_WorkGroupID.z, 0u)).xyz >> 8) * (1.0 / 16777216.0);
     for (uint ch = 0u; ch < args.channels; ch++) {
         uint at = 4u * (ch * args.dims.x * args.dims.y * args.dims.z + lattice_index(box, c));
         vec4 power = lattice_channel(flux, args.channels, ch, args.tint) * lobe;
-        DEPOSIT_ADD(reflected, at, power)
+        DEPOSIT_ADD(reflected, at, power, dither[ch])
     }
 }

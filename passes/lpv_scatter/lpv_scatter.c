@@ -84,13 +84,14 @@ static float strength(const struct light_block *light)
     return fmaxf(light->color[0], fmaxf(light->color[1], light->color[2]));
 }
 
-void tyn_lpv_scatter_plan(tyn_lpv_scatter_params *p, const float extent[3],
+void tyn_lpv_scatter_plan(tyn_lpv_scatter_params *p, const float extent[3], float majorant,
                           const struct light_block *suns, uint32_t num_suns,
                           const struct light_block *lamps, uint32_t num_lamps)
 {
     p->num_suns = num_suns;
     p->num_bundles = 0;
     p->power = 0;
+    p->majorant = majorant;
     for (uint32_t i = 0; i < num_suns; i++) {
         struct lpv_scatter_bundle *b = &p->bundles[p->num_bundles++];
         *b = (struct lpv_scatter_bundle){.light = i, .texels = (uint32_t)p->sun_texels};
@@ -134,14 +135,18 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_lpv_scatter_params *p = params;
     const tyn_extent dims = tyn_lattice_dims(p->shape.extent, p->shape.cells);
-    // No sample brings more than its ray has; rays at the rims of square maps are 1.1 times the lobe's integral.
-    const float bound = 1.5f * p->power * (float)p->samples;
+    // No sample brings more than its ray has, or than the majorant lets it on its part of the ray; rays at the rims of square
+    // maps are 1.1 times the lobe's integral.
+    const float *e = p->shape.extent;
+    const float deepest = p->majorant * sqrtf(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
+    const float bound = 1.5f * p->power * fminf((float)p->samples, deepest);
     struct lpv_scatter_args args = {
         .dims = {dims.x, dims.y, dims.z},
         .channels = p->shape.channels,
         .tint = {p->shape.tint[0], p->shape.tint[1], p->shape.tint[2]},
         .unit = bound > 0 ? bound / 1073741824.0f : 1,
         .samples = (uint32_t)p->samples,
+        .majorant = p->majorant,
     };
     const uint32_t spec[3] = {p->mode, tyn_rec_has(r, LPV_SCATTER_PORT_SHADOW_ATLAS),
                               tyn_rec_has(r, LPV_SCATTER_PORT_WALL_LINKS)};

@@ -92,10 +92,12 @@ void main()
         return;
     }
     float ds = (span.y - span.x) / float(args.samples);
-    uvec4 bits = uvec4(0u);
+    float most = min(args.majorant * ds, 1.0);
+    uvec4 bits = uvec4(0u), dither = uvec4(0u);
     for (uint k = 0u; k < args.samples; k++) {
         if (k % 4u == 0u) {
             bits = rng_pcg4d(uvec4(ray, args.first + gl_WorkGroupID.z, k));
+            dither = rng_pcg4d(bits);
         }
         vec3 p = o + (span.x + (float(k) + rng_float(bits[k % 4u])) * ds) * d;
         ivec3 c = clamp(ivec3(floor(lattice_from_m(box, p))), ivec3(0), box.dims - 1);
@@ -114,11 +116,11 @@ void main()
         if (any(greaterThan(share, vec3(1.0)))) {
             atomicAdd(counters.clamped, 1u);
         }
-        vec3 light = power * min(share, vec3(1.0)) / args.unit;
+        vec3 light = power * min(share, vec3(most)) / args.unit;
         for (uint ch = 0u; ch < args.channels; ch++) {
             uint at_cell = 4u * (ch * args.dims.x * args.dims.y * args.dims.z + cell);
             vec4 lobe = lattice_channel(light, args.channels, ch, args.tint) * vec4(1.0, g[ch] * d);
-            DEPOSIT_ADD(scattered, at_cell, lobe)
+            DEPOSIT_ADD(scattered, at_cell, lobe, rng_float(dither[k % 4u]))
         }
     }
 }

@@ -17,12 +17,13 @@ typedef struct tyn_lpv_scatter_params {
     // For the method, by tyn_lpv_scatter_plan:
     uint32_t mode; // TYN_MEDIUM_*
     uint32_t num_suns, num_bundles;
-    float power; // of all lights that may scatter, at most, W
+    float power;    // of all lights that may scatter, at most, W
+    float majorant; // no place scatters more, 1/m
     struct lpv_scatter_bundle bundles[LPV_SCATTER_BUNDLES];
 } tyn_lpv_scatter_params;
 
-// Lays out the rays of suns (all with beams) and lamps through the medium's box.
-void tyn_lpv_scatter_plan(tyn_lpv_scatter_params *params, const float extent[3],
+// Lays out the rays of suns (all with beams) and lamps through the medium's box. No place scatters more than `majorant`, 1/m.
+void tyn_lpv_scatter_plan(tyn_lpv_scatter_params *params, const float extent[3], float majorant,
                           const struct light_block *suns, uint32_t num_suns,
                           const struct light_block *lamps, uint32_t num_lamps);
 

@@ -33,7 +33,8 @@ struct lpv_scatter_args {
     float unit;     // W
     tyn_uint first; // bundle of the first layer of threads
     tyn_uint samples;
+    float majorant; // of what scatters, 1/m
 };
-TYN_ASSERT_SIZE(lpv_scatter_args, 40);
+TYN_ASSERT_SIZE(lpv_scatter_args, 44);
 
 #endif

@@ -278,6 +278,10 @@ static exits twin(uint32_t ch, double (*moments)[4])
     static double light[MOST][4], next[MOST][4], sum[MOST][4];
     const double volume = pow((double)s.dx, 3);
     exits out = {0, 0};
+    double mean = 0; // of lengths, by solid angle
+    for (int j = 0; j < LINKS; j++) {
+        mean += gamma_of[j] * length[j];
+    }
     for (uint32_t i = 0; i < s.cells; i++) {
         const float *m = s.medium[ch * s.cells + i], *u = s.source[ch * s.cells + i];
         for (int k = 0; k < 4; k++) {
@@ -293,10 +297,11 @@ static exits twin(uint32_t ch, double (*moments)[4])
         }
     }
     for (int iteration = 0; iteration < s.params.iterations; iteration++) {
-        const double outside = s.lit_from_outside && iteration == 0
-                                   ? 4 * PI * (double)(s.dx * s.dx) *
-                                         (double)s.environment.sky[ch] / 1.4164218926549295
-                                   : 0;
+        const double outside =
+            s.lit_from_outside && iteration == 0
+                ? 4 * PI * (double)(s.dx * s.dx) * (double)s.environment.sky[ch] /
+                      (s.params.extinction == LPV_EXTINCTION_PAPER ? 1.4164218926549295 : mean)
+                : 0;
         memset(next, 0, sizeof next);
         for (int z = 0; z < (int)s.n[2]; z++) {
             for (int y = 0; y < (int)s.n[1]; y++) {
@@ -353,14 +358,12 @@ static exits twin(uint32_t ch, double (*moments)[4])
             }
         }
     }
-    double mean = 0,
-           forward = 0; // of lengths, by solid angle, and of their mean cosines with the links
+    double forward = 0; // of lengths, by solid angle and mean cosine with the link
     for (int j = 0; j < LINKS; j++) {
         double along = 0;
         for (int a = 0; a < 3; a++) {
             along += unit_deposit[j][1 + a] * steps[j][a] / length[j] * band_1 * 4 * PI / 3;
         }
-        mean += gamma_of[j] * length[j];
         forward += gamma_of[j] * length[j] * along;
     }
     for (uint32_t i = 0; i < s.cells; i++) {
@@ -527,6 +530,35 @@ static void conserves(void **state)
     assert_true(worst < 1e-4);
 }
 
+// A sky that is the same all around, in a medium that is hardly there: as bright everywhere inside, by both extinctions.
+static void sky_in_nothing(void **state)
+{
+    for (int extinction = 0; extinction < 2; extinction++) {
+        start(9, 7, 8, 1);
+        for (uint32_t c = 0; c < s.cells; c++) {
+            s.medium[c][1] = 1e-7f;
+        }
+        s.environment.sky[0] = s.environment.sky[1] = s.environment.sky[2] = 1;
+        s.lit_from_outside = true;
+        s.params.extinction = extinction;
+        s.params.blockers = LPV_BLOCKERS_NONE;
+        s.params.iterations = 64; // until hardly any is left inside
+        const solved found = run(*state);
+        double worst = 0, mean = 0, flux = 0;
+        for (uint32_t c = 0; c < s.cells; c++) {
+            const double fluence = (double)found.moments[c][0] / (4 * PI);
+            worst = maximum(worst, fabs(fluence - 1));
+            mean += fluence / s.cells;
+            for (int k = 1; k < 4; k++) {
+                flux = maximum(flux, fabs((double)found.moments[c][k]) / (4 * PI));
+            }
+        }
+        print_message("%s: mean fluence %.5f of the sky's, off by %.1e at most; net flux %.1e\n",
+                      extinction ? "exact" : "paper", mean, worst, flux);
+        assert_within(worst, 2e-6, NULL);
+    }
+}
+
 // Where sigma_t d is above 1 light is bounded, counted, and no more comes out than went in.
 static void bounds_thick_cells(void **state)
 {
@@ -548,9 +580,8 @@ static void bounds_thick_cells(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(constants),
-        cmocka_unit_test(equals_twin),
-        cmocka_unit_test(conserves),
+        cmocka_unit_test(constants),          cmocka_unit_test(equals_twin),
+        cmocka_unit_test(conserves),          cmocka_unit_test(sky_in_nothing),
         cmocka_unit_test(bounds_thick_cells),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);

@@ -42,7 +42,7 @@ static void layout(void **state)
         SIZE(tyn_ref, 8),
         SIZE(tyn_lattice_shape, 44),
         SIZE(tyn_lights, 8716),
-        SIZE(tyn_frame_scene, 19400),
+        SIZE(tyn_frame_scene, 19408),
         SIZE(tyn_scene_refs, 168),
         SIZE(tyn_job, 320),
         SIZE(tyn_picture, 24),

@@ -50,6 +50,7 @@ typedef struct tyn_frame_scene {
     float typical_density; // mean over the medium's mass, likewise; 0 = not known
     // Over what is not empty, mode DENSITY: in units of the texture's values; 0 = not known.
     float mean_density;
+    float majorant;         // no place has a larger extinction in any channel, 1/m
     bool empty;             // no medium at all, or no coefficient above 0
     uint32_t num_triangles; // of the surfaces; 0: there are none, nor their refs
     uint32_t num_textures;  // of their materials
