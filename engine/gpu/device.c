@@ -285,6 +285,12 @@ tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out)
                       VK_API_VERSION_MINOR(params->api_version));
         return TYN_ERR_UNSUPPORTED;
     }
+    if (!params->allocator.allocate != !params->allocator.free) {
+        tyn_log_print(log, TYN_LOG_ERROR,
+                      "tyn_device_create: allocator.%s is NULL; give both or none",
+                      params->allocator.allocate ? "free" : "allocate");
+        return TYN_ERR_PARAMS;
+    }
     const char *missing = tyn_missing_feature(params->features);
     if (missing) {
         tyn_log_print(log, TYN_LOG_ERROR,
@@ -303,6 +309,7 @@ tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out)
     dev->device = params->device;
     dev->queue_family = params->queue_family;
     dev->debug_names = params->debug_names;
+    dev->allocator = params->allocator;
     tyn_result result = tyn_device_init(dev, params->get_instance_proc_addr, params->pipeline_cache,
                                         params->pipeline_cache_size);
     if (result != TYN_OK) {

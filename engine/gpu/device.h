@@ -27,6 +27,7 @@ struct tyn_device {
     VkPhysicalDeviceProperties properties;
     char driver[256];
     VkPhysicalDeviceMemoryProperties memory;
+    tyn_allocator allocator; // of the host, or none
     uint32_t timestamp_bits; // 0: no timestamps
     bool graphics;           // the queue family draws
     bool debug_names;

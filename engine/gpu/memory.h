@@ -3,10 +3,9 @@
 #include "gpu/device.h"
 
 typedef struct tyn_block {
-    VkDeviceMemory memory;
+    tyn_allocation allocation; // mapped: host-visible blocks
     uint32_t type;
     VkDeviceSize size, used;
-    void *mapped; // host-visible blocks
 } tyn_block;
 
 typedef struct tyn_heap {
@@ -26,9 +25,10 @@ tyn_result tyn_heap_bind_buffer(tyn_device *dev, tyn_heap *heap, VkBuffer buffer
                                 tyn_memory_kind kind, VkDeviceSize expected, void **mapped);
 tyn_result tyn_heap_bind_image(tyn_device *dev, tyn_heap *heap, VkImage image,
                                VkDeviceSize expected);
-// A block that the caller binds things to, of a memory type from tyn_memory_type.
+// A block that the caller binds things to, of a memory type from tyn_memory_type. It begins at a multiple of `align`, at
+// `out->offset` of `out->memory`.
 tyn_result tyn_heap_add(tyn_device *dev, tyn_heap *heap, uint32_t type, VkDeviceSize size,
-                        VkDeviceMemory *memory);
+                        VkDeviceSize align, tyn_allocation *out);
 // The best of the `allowed` types (bits), or -1.
 int tyn_memory_type(const tyn_device *dev, uint32_t allowed, tyn_memory_kind kind);
 void tyn_heap_finish(tyn_device *dev, tyn_heap *heap);

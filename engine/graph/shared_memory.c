@@ -58,7 +58,7 @@ static void describe(const tyn_graph *g, uint32_t index, uint32_t maker, tyn_sha
 }
 
 static tyn_result bind(tyn_graph *g, uint32_t index, const tyn_share_item *item,
-                       VkDeviceMemory memory)
+                       const tyn_allocation *block)
 {
     const tyn_device *dev = g->dev;
     phys *p = &g->phys[index];
@@ -66,10 +66,10 @@ static tyn_result bind(tyn_graph *g, uint32_t index, const tyn_share_item *item,
     p->offset = item->offset;
     p->size = item->size;
     const bool buffer = g->resources[index].dim == TYN_BUFFER;
+    const VkDeviceSize at = block->offset + item->offset;
     return tyn_vk_check(dev,
-                        buffer
-                            ? dev->vk.BindBufferMemory(dev->device, p->buffer, memory, item->offset)
-                            : dev->vk.BindImageMemory(dev->device, p->image, memory, item->offset),
+                        buffer ? dev->vk.BindBufferMemory(dev->device, p->buffer, block->memory, at)
+                               : dev->vk.BindImageMemory(dev->device, p->image, block->memory, at),
                         g->resources[index].name);
 }
 
@@ -77,7 +77,7 @@ typedef struct sharing {
     bool *follows;
     tyn_share_item *items;
     tyn_share_block *blocks;
-    VkDeviceMemory *memory;    // of blocks
+    tyn_allocation *memory;    // of blocks
     uint32_t *order, *indices; // of items: scratch; resources
     uint32_t count;
 } sharing;
@@ -104,13 +104,18 @@ static tyn_result place(tyn_graph *g, sharing *s, VkDeviceSize *passing)
     tyn_result result = TYN_OK;
     VkDeviceSize all = 0, kept = 0;
     for (uint32_t b = 0; result == TYN_OK && b < num_blocks; b++) {
+        VkDeviceSize align = 1; // powers of two
+        for (uint32_t i = 0; i < s->count; i++) {
+            const tyn_share_item *item = &s->items[i];
+            align = item->block == b && item->align > align ? item->align : align;
+        }
         all += s->blocks[b].size;
-        result =
-            tyn_heap_add(g->dev, &g->heap, s->blocks[b].type, s->blocks[b].size, &s->memory[b]);
+        result = tyn_heap_add(g->dev, &g->heap, s->blocks[b].type, s->blocks[b].size, align,
+                              &s->memory[b]);
     }
     for (uint32_t i = 0; result == TYN_OK && i < s->count; i++) {
         kept += s->items[i].kept && !s->items[i].unused ? s->items[i].size : 0;
-        result = bind(g, s->indices[i], &s->items[i], s->memory[s->items[i].block]);
+        result = bind(g, s->indices[i], &s->items[i], &s->memory[s->items[i].block]);
     }
     *passing = all - kept;
     return result;

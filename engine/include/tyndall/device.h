@@ -20,6 +20,33 @@ typedef struct tyn_requirements {
 } tyn_requirements;
 TYN_API const tyn_requirements *tyn_requirements_get(void);
 
+// ---- memory of the host's ---------------------------------------------------------------------
+
+// A block of device memory that is asked for. Buffers and images both are put into it.
+typedef struct tyn_memory_request {
+    VkMemoryRequirements requirements; // size, alignment: bytes; memoryTypeBits: one type
+    bool mapped;                       // `mapped` has to be filled
+} tyn_memory_request;
+
+typedef struct tyn_allocation {
+    VkDeviceMemory memory;
+    VkDeviceSize offset; // of the block, bytes; a multiple of the alignment
+    void *mapped;        // address of the block's first byte, until it is freed
+    void *handle;        // the host's own
+} tyn_allocation;
+
+// Where device memory comes from, if not from vkAllocateMemory: vmaAllocateMemory and vmaFreeMemory in a few lines
+// (docs/embedding.md). Few blocks are asked for, of 1 to 256 MiB or of one resource that is larger. Only tyn_context_prepare
+// asks, tyn_context_prepare and tyn_context_destroy free.
+typedef struct tyn_allocator {
+    // Out of memory ends the call under way with TYN_ERR_MEMORY, other errors with TYN_ERR_DEVICE.
+    VkResult (*allocate)(void *user, const tyn_memory_request *request, tyn_allocation *out);
+    void (*free)(void *user, const tyn_allocation *allocation);
+    void *user;
+} tyn_allocator;
+
+// ---- the device -------------------------------------------------------------------------------
+
 typedef struct tyn_device_params {
     size_t struct_size TYN_PARAMS_SIZE(tyn_device_params); // sizeof; set by the macro
     VkInstance instance;                                   // Required, borrowed
@@ -33,6 +60,7 @@ typedef struct tyn_device_params {
     bool debug_names;           // VK_EXT_debug_utils is enabled: name objects, label nodes
     const void *pipeline_cache; // from an earlier tyn_device_pipeline_cache; may be NULL
     size_t pipeline_cache_size;
+    tyn_allocator allocator; // both functions, or none: vkAllocateMemory
     tyn_log log;
 } tyn_device_params;
 #define tyn_device_params(...) TYN_PARAMS(tyn_device_params, __VA_ARGS__)
