@@ -535,6 +535,19 @@ static tyn_result create_slots(tyn_graph *g, const survey *s)
     return result;
 }
 
+static tyn_result reserve_sets(tyn_graph *g, uint32_t count)
+{
+    if (count > g->sets.cap) {
+        void *grown = realloc(g->sets.items, count * sizeof *g->sets.items);
+        if (!grown) {
+            return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
+        }
+        g->sets.items = grown;
+        g->sets.cap = count;
+    }
+    return TYN_OK;
+}
+
 static tyn_result create_pipelines(tyn_graph *g)
 {
     for (uint32_t i = 0; i < g->num_nodes; i++) {
@@ -681,6 +694,7 @@ tyn_result tyn_graph_compile(tyn_graph *g)
     drop_histories(g, &old);
     result = result == TYN_OK ? create_dummies(g) : result;
     result = result == TYN_OK ? create_slots(g, &s) : result;
+    result = result == TYN_OK ? reserve_sets(g, s.sets) : result;
     result = result == TYN_OK ? create_pipelines(g) : result;
     result = result == TYN_OK ? stage_uploads(g) : result;
     if (result != TYN_OK) {

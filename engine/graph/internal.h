@@ -108,6 +108,13 @@ typedef struct set_key {
     VkDescriptorSet set;
 } set_key;
 
+// Descriptor sets of a record: one per launch in their order, equal ones made once.
+typedef struct launch_sets {
+    VkDescriptorSet *items;
+    uint32_t count, cap, next; // next: of the launch that is recorded next
+    set_key made[256];
+} launch_sets;
+
 struct tyn_graph {
     tyn_device *dev;
     uint32_t num_slots;
@@ -139,13 +146,14 @@ struct tyn_graph {
     VkDeviceSize persistent_bytes, transient_bytes;
     frame_slot slots[MAX_SLOTS];
     uint64_t frame;
-    set_key sets[256]; // of the current record
+    launch_sets sets; // of the current record
     tyn_node_stats *stats;
 };
 
 typedef enum recorder_mode {
     RECORD_SURVEY = 0,
     RECORD_PIPELINES,
+    RECORD_SETS, // descriptor sets of what RECORD_LIVE will launch: all that can fail, before anything is appended
     RECORD_PLAN,
     RECORD_LIVE
 } recorder_mode;

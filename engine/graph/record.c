@@ -29,6 +29,7 @@ void tyn_graph_destroy(tyn_graph **graph)
     free(g->nodes);
     free(g->params);
     free(g->stats);
+    free(g->sets.items);
     free(g);
     *graph = NULL;
 }
@@ -296,6 +297,27 @@ static void choose_nodes(const tyn_graph *g, bool *run_node)
     }
 }
 
+// Descriptor sets of all that will be launched. What follows cannot fail, so that a frame that fails appends nothing.
+static tyn_result make_sets(tyn_graph *g, const bool *run_node)
+{
+    const tyn_result reset = tyn_vk_check(
+        g->dev,
+        g->dev->vk.ResetDescriptorPool(g->dev->device, g->slots[g->frame % g->num_slots].pool, 0),
+        "vkResetDescriptorPool");
+    g->sets.count = g->sets.next = 0;
+    memset(g->sets.made, 0, sizeof g->sets.made);
+    for (uint32_t i = 0; reset == TYN_OK && i < g->num_nodes; i++) {
+        tyn_recorder r = {.g = g, .node = i, .mode = RECORD_SETS};
+        if (run_node[i]) {
+            g->nodes[i].pass->record(&r, g->nodes[i].params);
+        }
+        if (r.result != TYN_OK) {
+            return r.result;
+        }
+    }
+    return reset;
+}
+
 static void timestamp(tyn_graph *g, VkCommandBuffer cmd, uint32_t query)
 {
     const frame_slot *slot = &g->slots[g->frame % g->num_slots];
@@ -455,9 +477,12 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
     }
     bool *run_node = g->run_node;
     frame_slot *slot = &g->slots[g->frame % g->num_slots];
+    choose_nodes(g, run_node);
+    tyn_result result = make_sets(g, run_node);
+    if (result != TYN_OK) {
+        return result;
+    }
     collect_timestamps(g, slot);
-    g->dev->vk.ResetDescriptorPool(g->dev->device, slot->pool, 0);
-    memset(g->sets, 0, sizeof g->sets);
     if (slot->queries) {
         g->dev->vk.CmdResetQueryPool(cmd, slot->queries, 0, g->num_nodes * 2);
     }
@@ -465,8 +490,6 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
     tyn_recorder rec = {.g = g, .mode = RECORD_LIVE, .cmd = cmd};
     record_dummies(g, cmd);
     record_sources(&rec);
-    choose_nodes(g, run_node);
-    tyn_result result = TYN_OK;
     for (uint32_t i = 0; i < g->num_nodes; i++) {
         slot->timed[i] = run_node[i];
         if (run_node[i]) {

@@ -259,6 +259,8 @@ static tyn_access access_of(const tyn_port *port, tyn_use use, VkPipelineStageFl
     }
 }
 
+static const uint32_t no_spec[TYN_MAX_SPEC]; // zeros
+
 // ---- descriptors ------------------------------------------------------------------------------
 
 static const phys *physical(const tyn_recorder *r, uint8_t port)
@@ -291,6 +293,7 @@ static VkSampler sampler_of(tyn_recorder *r, uint8_t port, const tyn_binding *bi
     return binding->repeat ? r->g->dev->repeat_x : r->g->dev->clamp;
 }
 
+// VK_NULL_HANDLE: the recorder has failed.
 static VkDescriptorSet find_or_make_set(tyn_recorder *r, const launch *l, const tyn_pipeline *pl)
 {
     const uint8_t *ports = l->ports;
@@ -337,8 +340,8 @@ static VkDescriptorSet find_or_make_set(tyn_recorder *r, const launch *l, const 
             h = tyn_hash_u64(h, layout);
         }
     }
-    const uint32_t mask = sizeof g->sets / sizeof g->sets[0] - 1;
-    set_key *entry = &g->sets[h & mask];
+    const uint32_t mask = sizeof g->sets.made / sizeof g->sets.made[0] - 1;
+    set_key *entry = &g->sets.made[h & mask];
     if (entry->set && entry->hash == h) {
         return entry->set;
     }
@@ -351,7 +354,8 @@ static VkDescriptorSet find_or_make_set(tyn_recorder *r, const launch *l, const 
                                        .pSetLayouts = &pl->set_layout},
         &set);
     if (made != VK_SUCCESS) {
-        recorder_fail(r, TYN_ERR_DEVICE, "no descriptor set left for kernel", k->name);
+        recorder_fail(r, tyn_vk_check(g->dev, made, "vkAllocateDescriptorSets"),
+                      "no descriptor set for kernel", k->name);
         return VK_NULL_HANDLE;
     }
     for (uint32_t i = 0; i < k->num_bindings; i++) {
@@ -360,6 +364,36 @@ static VkDescriptorSet find_or_make_set(tyn_recorder *r, const launch *l, const 
     g->dev->vk.UpdateDescriptorSets(g->dev->device, k->num_bindings, writes, 0, NULL);
     *entry = (set_key){h, set};
     return set;
+}
+
+// The kernel's layouts, and its pipeline if it was prepared; else the recorder fails.
+static VkPipeline find_pipeline(tyn_recorder *r, const launch *l, tyn_pipeline **pl)
+{
+    const tyn_result result = tyn_pipeline_get(r->g->dev, node_of(r)->pass, l->kernel, pl);
+    const VkPipeline pipeline =
+        result == TYN_OK ? tyn_pipeline_find(*pl, l->spec ? l->spec : no_spec) : VK_NULL_HANDLE;
+    if (!pipeline) {
+        recorder_fail(r, TYN_ERR_PARAMS, "a pipeline was not prepared for kernel",
+                      node_of(r)->pass->kernels[l->kernel].name);
+    }
+    return pipeline;
+}
+
+// The set of a launch, kept for when it is recorded.
+static void make_set(tyn_recorder *r, const launch *l)
+{
+    launch_sets *sets = &r->g->sets;
+    tyn_pipeline *pl;
+    VkDescriptorSet set = find_pipeline(r, l, &pl) ? find_or_make_set(r, l, pl) : VK_NULL_HANDLE;
+    if (!set) {
+        return;
+    }
+    if (sets->count == sets->cap) {
+        recorder_fail(r, TYN_ERR_PARAMS, "more launches than were prepared, at kernel",
+                      pl->kernel->name);
+        return;
+    }
+    sets->items[sets->count++] = set;
 }
 
 // ---- surveying --------------------------------------------------------------------------------
@@ -409,8 +443,6 @@ static void survey_transfer(tyn_recorder *r, uint8_t port, bool source)
     }
 }
 
-static const uint32_t no_spec[TYN_MAX_SPEC]; // zeros
-
 static void make_pipeline(tyn_recorder *r, const launch *l)
 {
     tyn_pipeline *pl;
@@ -456,6 +488,10 @@ bool launch_prepare(tyn_recorder *r, const launch *l)
         make_pipeline(r, l);
         return false;
     }
+    if (r->mode == RECORD_SETS) {
+        make_set(r, l);
+        return false;
+    }
     synchronise(r, l->touches, l->num_touches);
     return true;
 }
@@ -467,17 +503,12 @@ const tyn_pipeline *launch_bind(tyn_recorder *r, const launch *l)
     const VkPipelineBindPoint point =
         k->raster ? VK_PIPELINE_BIND_POINT_GRAPHICS : VK_PIPELINE_BIND_POINT_COMPUTE;
     tyn_pipeline *pl;
-    tyn_result result = tyn_pipeline_get(r->g->dev, node_of(r)->pass, l->kernel, &pl);
-    VkPipeline pipeline =
-        result == TYN_OK ? tyn_pipeline_find(pl, l->spec ? l->spec : no_spec) : VK_NULL_HANDLE;
-    if (!pipeline) {
-        recorder_fail(r, TYN_ERR_PARAMS, "a pipeline was not prepared for kernel", k->name);
+    launch_sets *sets = &r->g->sets;
+    VkPipeline pipeline = find_pipeline(r, l, &pl);
+    if (!pipeline || sets->next == sets->count) {
         return NULL;
     }
-    VkDescriptorSet set = find_or_make_set(r, l, pl);
-    if (!set) {
-        return NULL;
-    }
+    const VkDescriptorSet set = sets->items[sets->next++];
     vk->CmdBindPipeline(r->cmd, point, pipeline);
     vk->CmdBindDescriptorSets(r->cmd, point, pl->layout, 0, 1, &set, 0, NULL);
     return pl;
@@ -568,7 +599,7 @@ static bool begin_transfer(tyn_recorder *r, uint8_t port, bool source, const cha
         survey_transfer(r, port, source);
         return false;
     }
-    if (r->mode == RECORD_PIPELINES) {
+    if (r->mode == RECORD_PIPELINES || r->mode == RECORD_SETS) {
         return false;
     }
     tyn_access access = source ? transfer_read : transfer_write;
