@@ -361,12 +361,14 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
         while (i < RAYMARCH_CHUNK && state.s < end && spectrum_max(state.through_scaled) > args.stop &&
                march_has_room()) {
             // Neighbouring rays look for their next step that is not empty together; where it is known what lights see,
-            // for their next one that is not in the dark, and go through the others on the way. A turn must change
-            // nothing for a ray that has found its step: some devices use what the last turn gives for all.
-            march_medium m;
+            // for their next one that is not in the dark, and go through the others on the way. The loop is tested at its
+            // top, and what is used after it has a value before it: of rays that have left a loop tested at its end some
+            // devices go on computing what is used behind it.
+            march_medium m = march_medium_of(medium_of_density(0.0));
             march_step step = march_step(0.0, 0.0, 0.0, spectrum(0.0), spectrum(0.0));
             bool found = false;
-            do {
+            while (!found && i < RAYMARCH_CHUNK && state.s < end && spectrum_max(state.through_scaled) > args.stop &&
+                   march_has_room()) {
                 float ds = min(state.next, end - state.s);
                 if (raymarch_num_lamps > 0u) {
                     ds = min(ds, march_lamp_step(lamps, kept, state.s));
@@ -377,36 +379,31 @@ march_result march_ray(inout march_state state, vec3 origin, vec3 direction, flo
                 spectrum left = spectrum_above(state.through_scaled, args.stop);
                 float most =
                     spectrum_max(left * (raymarch_has(RAYMARCH_KERNELS) ? m.scaled_extinction : m.extinction));
-                bool dense = any && most * ds > RAYMARCH_DENSE, full = any && !dense && !found;
-                i += found ? 0 : 1;
-                state.steps += found ? 0u : 1u;
-                state.shadow.known = any || found ? state.shadow.known : 0u;
-                state.s += any || found ? 0.0 : ds;
-                state.next = full || found ? state.next : dense ? RAYMARCH_SHORT / most : args.step;
+                bool dense = any && most * ds > RAYMARCH_DENSE, full = any && !dense;
+                i++;
+                state.steps++;
+                state.shadow.known = any ? state.shadow.known : 0u;
+                state.s += any ? 0.0 : ds;
+                state.next = full ? state.next : dense ? RAYMARCH_SHORT / most : args.step;
                 if (raymarch_has(RAYMARCH_LIGHT_CELLS)) {
                     state.shadow.cells = full ? march_light_cells(origin, direction, state.s, ds) : state.shadow.cells;
-                    bool lit = full && march_any_light(state.shadow, kept);
+                    found = full && march_any_light(state.shadow, kept);
                     // Where all is dark nothing need be looked for at the next step's beginning.
-                    state.shadow.lit = full && !lit ? 0u : state.shadow.lit;
-                    state.shadow.known = full && !lit ? ~0u : state.shadow.known;
-                    march_step here =
-                        march_through(m, full ? ds : 0.0, full, line, near.span, state);
-                    if (lit) {
+                    state.shadow.lit = full && !found ? 0u : state.shadow.lit;
+                    state.shadow.known = full && !found ? ~0u : state.shadow.known;
+                    march_step here = march_through(m, full ? ds : 0.0, full, line, near.span, state);
+                    if (found) {
                         step = here;
                     }
-                    found = found || lit;
                 } else {
-                    step.ds = full ? ds : step.ds;
-                    found = found || full;
+                    step.ds = full ? ds : 0.0;
+                    found = full;
                 }
-            } while (!found && i < RAYMARCH_CHUNK && state.s < end &&
-                     spectrum_max(state.through_scaled) > args.stop && march_has_room());
-            if (raymarch_has(RAYMARCH_LIGHT_CELLS)) {
-                m = march_medium_at(unit, line.medium0 + (step.s + 0.5 * step.ds) * line.medium1);
-            } else if (found) {
+            }
+            if (!raymarch_has(RAYMARCH_LIGHT_CELLS) && found) {
                 step = march_through(m, step.ds, true, line, near.span, state);
             }
-            if (raymarch_num_suns + raymarch_num_lamps > 0u) {
+            if (found && raymarch_num_suns + raymarch_num_lamps > 0u) {
                 vec3 light =
                     march_beams(suns, kept, lamps, unit, m, origin, direction, step, state.shadow, state.single);
                 state.radiance += light;
