@@ -272,7 +272,8 @@ static float majorant_of(const tyn_frame_scene *f, const tyn_scene *scene)
         const int32_t volume = scene->media[scene->shapes[i].medium].volume;
         float most = 0;
         for (int c = 0; c < 3; c++) {
-            most = fmaxf(most, f->shapes[i].sigma_s[c] + f->shapes[i].sigma_a[c]);
+            const float sigma_t = f->shapes[i].sigma_s[c] + f->shapes[i].sigma_a[c];
+            most = sigma_t > most ? sigma_t : most; // checked to be numbers
         }
         sum += most * (volume < 0 ? 1 : scene->volumes[volume].max_density);
     }
