@@ -253,6 +253,7 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
         tyn_report report = {0};
         tyn_offline_report(job->renderer.offline, &report);
         s.report = &report;
+        tyn_device_pipelines(job->machine.device, &s.pipelines);
         s.warnings[0] = job->renderer.warnings[0];
         s.warnings[1] = job->renderer.warnings[1];
         s.warnings[2] = job->chosen.warning;

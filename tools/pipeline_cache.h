@@ -3,11 +3,9 @@
 #include <tyndall/device.h>
 
 typedef struct pipeline_cache {
-    char *path; // NULL: no place for a cache
-    void *file;
-    const void *bytes; // for tyn_device_params.pipeline_cache; NULL: there is none yet
+    char *path;  // NULL: no place for a cache
+    void *bytes; // for tyn_device_params.pipeline_cache; NULL: there is none yet
     size_t size;
-    uint64_t hash;
 } pipeline_cache;
 
 void pipeline_cache_read(pipeline_cache *c, const tyn_device_info *info);

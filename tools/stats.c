@@ -177,6 +177,10 @@ cJSON *stats_make(const stats *s)
     json_add_float(frame, "camera_moved", s->camera_moved_ms);
     json_add_float(frame, "light_moved", s->light_moved_ms);
     json_add_float(frame, "unchanged", s->unchanged_ms);
+    cJSON *pipelines = cJSON_AddObjectToObject(root, "pipelines");
+    cJSON_AddNumberToObject(pipelines, "compiled", s->pipelines.compiled);
+    cJSON_AddNumberToObject(pipelines, "from_cache", s->pipelines.from_cache);
+    json_add_float(pipelines, "seconds", s->pipelines.seconds);
     cJSON_AddItemToObject(root, "nodes", stats_report_nodes(s->report));
     cJSON *memory = cJSON_AddObjectToObject(root, "memory");
     cJSON_AddNumberToObject(memory, "persistent", (double)s->report->persistent_bytes);

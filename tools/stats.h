@@ -13,6 +13,7 @@ typedef struct stats {
     double setup_ms;
     double cold_ms, camera_moved_ms, light_moved_ms, unchanged_ms; // medians; NaN = not run
     const tyn_report *report;
+    tyn_pipeline_stats pipelines; // of the device
     const char *warnings[3]; // beside those of the scene and the report; NULL = none
     const cJSON *choice;     // what --max-error and --budget-ms chose; NULL = nothing was asked
     const char *inputs[4];   // paths; NULL = none

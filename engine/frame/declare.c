@@ -17,6 +17,9 @@ tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame)
     if (frame->recompute) {
         tyn_graph_recompute(ctx->graph);
     }
+    if (frame->background) {
+        tyn_graph_background(ctx->graph);
+    }
     if (frame->setup_only) {
         tyn_graph_setup_only(ctx->graph);
     }

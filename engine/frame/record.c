@@ -39,6 +39,11 @@ tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame)
     return result == TYN_OK ? tyn_graph_record(ctx->graph, frame->cmd) : result;
 }
 
+uint32_t tyn_context_pending(tyn_context *ctx)
+{
+    return ctx ? tyn_graph_pending(ctx->graph) : 0;
+}
+
 uint32_t tyn_context_batch(tyn_context *ctx, const tyn_frame *frame)
 {
     tyn_job job;

@@ -1,5 +1,5 @@
 // device.c -- tyn_device on a host's VkDevice: requirements, function tables, samplers.
-#include "gpu/device.h"
+#include "gpu/compiler.h"
 #include "base/given.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -89,7 +89,8 @@ tyn_result tyn_vk_check(const tyn_device *dev, VkResult result, const char *what
     return memory ? TYN_ERR_MEMORY : TYN_ERR_DEVICE;
 }
 
-void tyn_device_name_object(tyn_device *dev, VkObjectType type, uint64_t handle, const char *name)
+void tyn_device_name_object(const tyn_device *dev, VkObjectType type, uint64_t handle,
+                            const char *name)
 {
     if (!dev->debug_names || !dev->vk.SetDebugUtilsObjectNameEXT || !name) {
         return;
@@ -195,10 +196,19 @@ static tyn_result check_formats(const tyn_device *dev)
     return TYN_OK;
 }
 
-tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa, const void *cache,
-                           size_t cache_size)
+tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
+                           const tyn_pipeline_params *pipelines)
 {
     dev->get_instance_proc_addr = gipa;
+    if (pipelines->threads > TYN_MAX_COMPILE_THREADS) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR, "compile_threads is %u; it must be 0 to %d",
+                      pipelines->threads, TYN_MAX_COMPILE_THREADS);
+        return TYN_ERR_PARAMS;
+    }
+    dev->compiler = tyn_compiler_create(dev, pipelines->threads, pipelines->jobs);
+    if (!dev->compiler) {
+        return TYN_ERR_MEMORY;
+    }
     tyn_result result = load_procs(dev, gipa);
     if (result != TYN_OK) {
         return result;
@@ -254,13 +264,7 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa, cons
             return TYN_ERR_DEVICE;
         }
     }
-    VkResult made = dev->vk.CreatePipelineCache(
-        dev->device,
-        &(VkPipelineCacheCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
-                                     .initialDataSize = cache_size,
-                                     .pInitialData = cache},
-        NULL, &dev->cache);
-    return tyn_vk_check(dev, made, "vkCreatePipelineCache");
+    return tyn_pipeline_cache_create(dev, pipelines->cache, pipelines->cache_size);
 }
 
 tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out)
@@ -310,31 +314,14 @@ tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out)
     dev->queue_family = params->queue_family;
     dev->debug_names = params->debug_names;
     dev->allocator = params->allocator;
-    tyn_result result = tyn_device_init(dev, params->get_instance_proc_addr, params->pipeline_cache,
-                                        params->pipeline_cache_size);
+    tyn_result result =
+        tyn_device_init(dev, params->get_instance_proc_addr,
+                        &(tyn_pipeline_params){params->pipeline_cache, params->pipeline_cache_size,
+                                               params->compile_threads, params->jobs});
     if (result != TYN_OK) {
         tyn_device_destroy(&dev);
         return result;
     }
     *out = dev;
     return TYN_OK;
-}
-
-void *tyn_device_pipeline_cache(tyn_device *dev, size_t *size)
-{
-    if (size) {
-        *size = 0;
-    }
-    if (!dev || !TYN_GIVEN(&dev->log, size)) {
-        return NULL;
-    }
-    if (dev->vk.GetPipelineCacheData(dev->device, dev->cache, size, NULL) != VK_SUCCESS || !*size) {
-        return NULL;
-    }
-    void *data = malloc(*size);
-    if (data && dev->vk.GetPipelineCacheData(dev->device, dev->cache, size, data) != VK_SUCCESS) {
-        free(data);
-        data = NULL;
-    }
-    return data;
 }

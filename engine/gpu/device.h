@@ -1,20 +1,21 @@
 // device.h -- the inside of tyn_device: functions, limits, samplers, pipelines.
 #pragma once
+#include <stdatomic.h>
 #include <tyndall/device.h>
 #include <tyndall/pass.h>
 #include "gpu/procs.h"
 
+typedef struct tyn_compiler tyn_compiler;
+typedef struct tyn_variant tyn_variant;
+
 // A kernel's layouts, and one pipeline per set of specialisation constants.
 typedef struct tyn_pipeline {
+    tyn_compiler *compiler; // the device's
     const tyn_pass_desc *pass;
     const tyn_kernel *kernel;
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
-    struct {
-        uint32_t spec[TYN_MAX_SPEC];
-        VkPipeline pipeline;
-    } * variants;
-    uint32_t num_variants;
+    tyn_variant *variants; // a list, which grows only; under the compiler's lock
 } tyn_pipeline;
 
 struct tyn_device {
@@ -34,37 +35,53 @@ struct tyn_device {
     VkSampler clamp, repeat_x; // linear
     VkSampler nearest;         // for depth formats, which need not be filterable
     VkPipelineCache cache;
-    tyn_pipeline **pipelines;
+    tyn_compiler *compiler;
+    tyn_pipeline **pipelines; // under the compiler's lock, as all that contexts change of a device
     uint32_t num_pipelines;
     // Only of a device opened by ourselves:
     void *loader;
     PFN_vkGetInstanceProcAddr get_instance_proc_addr;
     VkDebugUtilsMessengerEXT messenger;
     VkQueue queue;
-    uint32_t validation_messages;
+    atomic_uint validation_messages; // of any thread
 };
 
 // Logs "what: VkResult" and gives the matching tyn_result. TYN_OK for VK_SUCCESS.
 tyn_result tyn_vk_check(const tyn_device *dev, VkResult result, const char *what);
-void tyn_device_name_object(tyn_device *dev, VkObjectType type, uint64_t handle, const char *name);
+void tyn_device_name_object(const tyn_device *dev, VkObjectType type, uint64_t handle,
+                            const char *name);
 
 // The first required feature that `enabled` lacks, or NULL.
 const char *tyn_missing_feature(const VkPhysicalDeviceFeatures2 *enabled);
 
-// Shared by tyn_device_create and tyn_device_open: loads functions, makes samplers and cache.
-tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa, const void *cache,
-                           size_t cache_size);
+// Of both ways to a device: the cache that was given, and who compiles.
+typedef struct tyn_pipeline_params {
+    const void *cache;
+    size_t cache_size;
+    uint32_t threads;
+    tyn_jobs jobs;
+} tyn_pipeline_params;
 
-// Finds or makes the layouts of a kernel, then its pipeline for `spec` (kernel->num_spec values).
+// Shared by tyn_device_create and tyn_device_open: loads functions, makes samplers, cache and compiler.
+tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
+                           const tyn_pipeline_params *pipelines);
+
+// Without what is wrong with the blob, which is said.
+tyn_result tyn_pipeline_cache_create(tyn_device *dev, const void *blob, size_t size);
+
+// Finds or makes the layouts of a kernel; then the place of its pipeline for `spec` (kernel->num_spec values), which is
+// made by compiler.h. Any thread.
 tyn_result tyn_pipeline_get(tyn_device *dev, const tyn_pass_desc *pass, uint32_t kernel,
                             tyn_pipeline **out);
-tyn_result tyn_pipeline_variant(tyn_device *dev, tyn_pipeline *pipeline, const uint32_t *spec,
-                                VkPipeline *out);
+tyn_result tyn_variant_get(tyn_pipeline *pipeline, const uint32_t *spec, tyn_variant **out);
+// Makes a pipeline, whatever is in the table, and tells if the cache had it. Logs nothing. Any thread.
+VkResult tyn_pipeline_compile(const tyn_device *dev, const tyn_pipeline *pipeline,
+                              const uint32_t *spec, VkPipeline *out, bool *cached);
 // The descriptor type of a binding.
 VkDescriptorType tyn_descriptor_type(const tyn_pass_desc *pass, const tyn_binding *binding);
 // The stages that see a kernel's bindings and push constants.
 VkShaderStageFlags tyn_kernel_stages(const tyn_kernel *kernel);
 
-// Finds only; VK_NULL_HANDLE if it was never made.
+// Finds only; VK_NULL_HANDLE if it was never made. Any thread.
 VkPipeline tyn_pipeline_find(const tyn_pipeline *pipeline, const uint32_t *spec);
-void tyn_pipelines_destroy(tyn_device *dev);
+void tyn_pipelines_destroy(tyn_device *dev); // none may be queued or under way

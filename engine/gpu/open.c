@@ -1,5 +1,5 @@
 // open.c -- a device of our own: the loader at run time, instance, validation, choice of device.
-#include "gpu/device.h"
+#include "gpu/compiler.h"
 #include "base/given.h"
 #include <ctype.h>
 #include <dlfcn.h>
@@ -293,8 +293,10 @@ static tyn_result open_device(tyn_device *dev, const tyn_device_open_params *par
         NULL, &dev->device);
     result = tyn_vk_check(dev, made, "vkCreateDevice");
     if (result == TYN_OK) {
-        result =
-            tyn_device_init(dev, procs.gipa, params->pipeline_cache, params->pipeline_cache_size);
+        result = tyn_device_init(dev, procs.gipa,
+                                 &(tyn_pipeline_params){params->pipeline_cache,
+                                                        params->pipeline_cache_size,
+                                                        params->compile_threads, params->jobs});
     }
     if (result == TYN_OK) {
         dev->vk.GetDeviceQueue(dev->device, dev->queue_family, 0, &dev->queue);
@@ -338,6 +340,7 @@ void tyn_device_destroy(tyn_device **device)
     }
     *device = NULL;
     bool own = dev->loader != NULL;
+    tyn_compiler_destroy(&dev->compiler);
     if (dev->device && dev->vk.DestroyDevice) {
         if (own && dev->vk.DeviceWaitIdle) {
             dev->vk.DeviceWaitIdle(dev->device);

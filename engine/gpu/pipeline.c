@@ -1,5 +1,5 @@
-// pipeline.c -- layouts and pipelines, derived from kernel tables.
-#include "gpu/device.h"
+// pipeline.c -- layouts and pipelines, derived from kernel tables. Who makes them when: compiler.c.
+#include "gpu/compiler.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -116,57 +116,140 @@ static tyn_result check_limits(const tyn_device *dev, const tyn_pass_desc *pass,
     return TYN_OK;
 }
 
+// ---- the table ----------------------------------------------------------------------------------
+
+static void free_pipeline(tyn_device *dev, tyn_pipeline *p)
+{
+    for (tyn_variant *v = p->variants; v; v = p->variants) {
+        p->variants = v->next;
+        dev->vk.DestroyPipeline(dev->device, v->handle, NULL);
+        free(v);
+    }
+    dev->vk.DestroyPipelineLayout(dev->device, p->layout, NULL);
+    dev->vk.DestroyDescriptorSetLayout(dev->device, p->set_layout, NULL);
+    free(p);
+}
+
+// Under the lock.
+static tyn_pipeline *find_pipeline(const tyn_device *dev, const tyn_kernel *k)
+{
+    for (uint32_t i = 0; i < dev->num_pipelines; i++) {
+        if (dev->pipelines[i]->kernel == k) {
+            return dev->pipelines[i];
+        }
+    }
+    return NULL;
+}
+
+// Puts `p` into the table, unless another thread has put one there meanwhile; the one that is there, or NULL.
+static tyn_pipeline *keep_pipeline(tyn_device *dev, tyn_pipeline *p)
+{
+    pthread_mutex_lock(&dev->compiler->lock);
+    tyn_pipeline *kept = find_pipeline(dev, p->kernel);
+    void *grown =
+        kept ? NULL : realloc(dev->pipelines, (dev->num_pipelines + 1) * sizeof *dev->pipelines);
+    if (grown) {
+        dev->pipelines = grown;
+        dev->pipelines[dev->num_pipelines++] = kept = p;
+    }
+    pthread_mutex_unlock(&dev->compiler->lock);
+    return kept;
+}
+
 tyn_result tyn_pipeline_get(tyn_device *dev, const tyn_pass_desc *pass, uint32_t kernel,
                             tyn_pipeline **out)
 {
-    *out = NULL;
     const tyn_kernel *k = &pass->kernels[kernel];
-    for (uint32_t i = 0; i < dev->num_pipelines; i++) {
-        if (dev->pipelines[i]->kernel == k) {
-            *out = dev->pipelines[i];
-            return TYN_OK;
-        }
+    pthread_mutex_lock(&dev->compiler->lock);
+    *out = find_pipeline(dev, k);
+    pthread_mutex_unlock(&dev->compiler->lock);
+    if (*out) {
+        return TYN_OK;
     }
-    tyn_result fits = check_limits(dev, pass, k);
-    if (fits != TYN_OK) {
-        return fits;
+    tyn_result result = check_limits(dev, pass, k);
+    if (result != TYN_OK) {
+        return result;
     }
     tyn_pipeline *p = calloc(1, sizeof *p);
-    tyn_pipeline **grown =
-        realloc(dev->pipelines, (dev->num_pipelines + 1) * sizeof *dev->pipelines);
-    if (grown) {
-        dev->pipelines = grown;
-    }
-    if (!p || !grown) {
-        free(p);
+    if (!p) {
         return TYN_ERR_MEMORY;
     }
-    p->pass = pass;
-    p->kernel = k;
-    dev->pipelines[dev->num_pipelines++] = p;
-    *out = p;
-    return create_layouts(dev, pass, p);
+    *p = (tyn_pipeline){.compiler = dev->compiler, .pass = pass, .kernel = k};
+    result = create_layouts(dev, pass, p);
+    if (result == TYN_OK) {
+        *out = keep_pipeline(dev, p);
+        result = *out ? TYN_OK : TYN_ERR_MEMORY;
+    }
+    if (*out != p) {
+        free_pipeline(dev, p);
+    }
+    return result;
+}
+
+// Under the lock.
+static tyn_variant *find_variant(const tyn_pipeline *p, const uint32_t *spec)
+{
+    tyn_variant *v = p->variants;
+    while (v && memcmp(v->spec, spec, p->kernel->num_spec * sizeof *spec) != 0) {
+        v = v->next;
+    }
+    return v;
+}
+
+tyn_result tyn_variant_get(tyn_pipeline *p, const uint32_t *spec, tyn_variant **out)
+{
+    const tyn_device *dev = p->compiler->dev;
+    const tyn_kernel *k = p->kernel;
+    *out = NULL;
+    if (k->raster && !dev->graphics) {
+        tyn_log_print(&dev->log, TYN_LOG_ERROR,
+                      "kernel '%s' draws surfaces: it needs a queue family with graphics, which "
+                      "family %u is not",
+                      k->name, dev->queue_family);
+        return TYN_ERR_UNSUPPORTED;
+    }
+    pthread_mutex_lock(&p->compiler->lock);
+    tyn_variant *v = find_variant(p, spec);
+    if (!v && (v = calloc(1, sizeof *v))) {
+        v->pipeline = p;
+        memcpy(v->spec, spec, k->num_spec * sizeof *spec);
+        v->next = p->variants;
+        p->variants = v;
+    }
+    pthread_mutex_unlock(&p->compiler->lock);
+    *out = v;
+    return v ? TYN_OK : TYN_ERR_MEMORY;
 }
 
 VkPipeline tyn_pipeline_find(const tyn_pipeline *p, const uint32_t *spec)
 {
-    for (uint32_t i = 0; i < p->num_variants; i++) {
-        if (!memcmp(p->variants[i].spec, spec, p->kernel->num_spec * sizeof *spec)) {
-            return p->variants[i].pipeline;
-        }
-    }
-    return VK_NULL_HANDLE;
+    pthread_mutex_lock(&p->compiler->lock);
+    const tyn_variant *v = find_variant(p, spec);
+    const VkPipeline made = v && v->state == TYN_VARIANT_READY ? v->handle : VK_NULL_HANDLE;
+    pthread_mutex_unlock(&p->compiler->lock);
+    return made;
 }
 
-static tyn_result create_module(tyn_device *dev, const tyn_kernel *k, const uint32_t *spirv,
-                                size_t size, VkShaderModule *out)
+void tyn_pipelines_destroy(tyn_device *dev)
 {
-    VkResult made = dev->vk.CreateShaderModule(
+    for (uint32_t i = 0; i < dev->num_pipelines; i++) {
+        free_pipeline(dev, dev->pipelines[i]);
+    }
+    free(dev->pipelines);
+    dev->pipelines = NULL;
+    dev->num_pipelines = 0;
+}
+
+// ---- compiling ----------------------------------------------------------------------------------
+
+static VkResult create_module(const tyn_device *dev, const uint32_t *spirv, size_t size,
+                              VkShaderModule *out)
+{
+    return dev->vk.CreateShaderModule(
         dev->device,
         &(VkShaderModuleCreateInfo){
             .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = spirv},
         NULL, out);
-    return tyn_vk_check(dev, made, k->name);
 }
 
 static VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which, VkShaderModule module,
@@ -181,13 +264,15 @@ static VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which, VkShad
     };
 }
 
-static VkResult create_compute(tyn_device *dev, const tyn_pipeline *p, VkShaderModule module,
-                               const VkSpecializationInfo *spec, VkPipeline *out)
+static VkResult create_compute(const tyn_device *dev, const tyn_pipeline *p, VkShaderModule module,
+                               const VkSpecializationInfo *spec, const void *feedback,
+                               VkPipeline *out)
 {
     return dev->vk.CreateComputePipelines(
         dev->device, dev->cache, 1,
         &(VkComputePipelineCreateInfo){
             .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+            .pNext = feedback,
             .stage = stage(VK_SHADER_STAGE_COMPUTE_BIT, module, spec),
             .layout = p->layout,
         },
@@ -195,9 +280,9 @@ static VkResult create_compute(tyn_device *dev, const tyn_pipeline *p, VkShaderM
 }
 
 // Triangles without vertex input, viewport and scissor left to the draw, no blending.
-static VkResult create_raster(tyn_device *dev, const tyn_pipeline *p, VkShaderModule vertex,
+static VkResult create_raster(const tyn_device *dev, const tyn_pipeline *p, VkShaderModule vertex,
                               VkShaderModule fragment, const VkSpecializationInfo *spec,
-                              VkPipeline *out)
+                              const void *feedback, VkPipeline *out)
 {
     const tyn_raster *raster = p->kernel->raster;
     VkFormat colors[TYN_MAX_ATTACHMENTS], depth = VK_FORMAT_UNDEFINED;
@@ -226,6 +311,7 @@ static VkResult create_raster(tyn_device *dev, const tyn_pipeline *p, VkShaderMo
             .pNext =
                 &(VkPipelineRenderingCreateInfo){
                     .sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+                    .pNext = feedback,
                     .colorAttachmentCount = num_colors,
                     .pColorAttachmentFormats = colors,
                     .depthAttachmentFormat = depth,
@@ -276,66 +362,39 @@ static VkResult create_raster(tyn_device *dev, const tyn_pipeline *p, VkShaderMo
         NULL, out);
 }
 
-tyn_result tyn_pipeline_variant(tyn_device *dev, tyn_pipeline *p, const uint32_t *spec,
-                                VkPipeline *out)
+VkResult tyn_pipeline_compile(const tyn_device *dev, const tyn_pipeline *p, const uint32_t *spec,
+                              VkPipeline *out, bool *cached)
 {
-    *out = tyn_pipeline_find(p, spec);
-    if (*out) {
-        return TYN_OK;
-    }
     const tyn_kernel *k = p->kernel;
-    if (k->raster && !dev->graphics) {
-        tyn_log_print(&dev->log, TYN_LOG_ERROR,
-                      "kernel '%s' draws surfaces: it needs a queue family with graphics, which "
-                      "family %u is not",
-                      k->name, dev->queue_family);
-        return TYN_ERR_UNSUPPORTED;
-    }
-    void *grown = realloc(p->variants, (p->num_variants + 1) * sizeof *p->variants);
-    if (!grown) {
-        return TYN_ERR_MEMORY;
-    }
-    p->variants = grown;
-
+    const bool fragments = k->raster && k->raster->fragment;
     VkShaderModule module = VK_NULL_HANDLE, fragment = VK_NULL_HANDLE;
-    tyn_result result = create_module(dev, k, k->spirv, k->spirv_size, &module);
-    if (result == TYN_OK && k->raster && k->raster->fragment) {
-        result = create_module(dev, k, k->raster->fragment, k->raster->fragment_size, &fragment);
+    VkResult made = create_module(dev, k->spirv, k->spirv_size, &module);
+    if (made == VK_SUCCESS && fragments) {
+        made = create_module(dev, k->raster->fragment, k->raster->fragment_size, &fragment);
     }
-    if (result == TYN_OK) {
+    VkPipelineCreationFeedback whole = {0}, stages[2] = {{0}};
+    const VkPipelineCreationFeedbackCreateInfo feedback = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_CREATION_FEEDBACK_CREATE_INFO,
+        .pPipelineCreationFeedback = &whole,
+        .pipelineStageCreationFeedbackCount = fragments ? 2 : 1,
+        .pPipelineStageCreationFeedbacks = stages};
+    if (made == VK_SUCCESS) {
         VkSpecializationMapEntry entries[TYN_MAX_SPEC];
         for (uint32_t i = 0; i < k->num_spec; i++) {
             entries[i] = (VkSpecializationMapEntry){i, i * 4, 4};
         }
         const VkSpecializationInfo info = {k->num_spec, entries, k->num_spec * 4, spec};
-        VkResult made = k->raster ? create_raster(dev, p, module, fragment, &info, out)
-                                  : create_compute(dev, p, module, &info, out);
-        result = tyn_vk_check(dev, made, k->name);
+        made = k->raster ? create_raster(dev, p, module, fragment, &info, &feedback, out)
+                         : create_compute(dev, p, module, &info, &feedback, out);
     }
     dev->vk.DestroyShaderModule(dev->device, module, NULL);
     dev->vk.DestroyShaderModule(dev->device, fragment, NULL);
-    if (result == TYN_OK) {
+    if (made == VK_SUCCESS) {
         tyn_device_name_object(dev, VK_OBJECT_TYPE_PIPELINE, (uint64_t)*out, k->name);
-        memset(p->variants[p->num_variants].spec, 0, sizeof p->variants[0].spec);
-        memcpy(p->variants[p->num_variants].spec, spec, k->num_spec * 4);
-        p->variants[p->num_variants++].pipeline = *out;
     }
-    return result;
-}
-
-void tyn_pipelines_destroy(tyn_device *dev)
-{
-    for (uint32_t i = 0; i < dev->num_pipelines; i++) {
-        tyn_pipeline *p = dev->pipelines[i];
-        for (uint32_t v = 0; v < p->num_variants; v++) {
-            dev->vk.DestroyPipeline(dev->device, p->variants[v].pipeline, NULL);
-        }
-        dev->vk.DestroyPipelineLayout(dev->device, p->layout, NULL);
-        dev->vk.DestroyDescriptorSetLayout(dev->device, p->set_layout, NULL);
-        free(p->variants);
-        free(p);
-    }
-    free(dev->pipelines);
-    dev->pipelines = NULL;
-    dev->num_pipelines = 0;
+    const VkPipelineCreationFeedbackFlags hit =
+        VK_PIPELINE_CREATION_FEEDBACK_VALID_BIT |
+        VK_PIPELINE_CREATION_FEEDBACK_APPLICATION_PIPELINE_CACHE_HIT_BIT;
+    *cached = (whole.flags & hit) == hit;
+    return made;
 }

@@ -1,4 +1,4 @@
-// compile.c -- cull, survey, allocate, make pipelines.
+// compile.c -- cull, survey, allocate.
 #include "graph/internal.h"
 #include "base/hash.h"
 #include <stdlib.h>
@@ -548,20 +548,6 @@ static tyn_result reserve_sets(tyn_graph *g, uint32_t count)
     return TYN_OK;
 }
 
-static tyn_result create_pipelines(tyn_graph *g)
-{
-    for (uint32_t i = 0; i < g->num_nodes; i++) {
-        if (g->nodes[i].needed) {
-            tyn_recorder r = {.g = g, .node = i, .mode = RECORD_PIPELINES};
-            g->nodes[i].pass->record(&r, g->nodes[i].params);
-            if (r.result != TYN_OK) {
-                return r.result;
-            }
-        }
-    }
-    return TYN_OK;
-}
-
 // ---- release ----------------------------------------------------------------------------------
 
 static void destroy_phys(tyn_graph *g, phys *p)
@@ -670,6 +656,11 @@ tyn_result tyn_graph_compile(tyn_graph *g)
         g->current = staged == TYN_OK;
         return staged;
     }
+    g->current = false;
+    const tyn_result made = graph_make_pipelines(g);
+    if (made != TYN_OK) {
+        return made;
+    }
     heritage old = take_histories(g);
     graph_release(g);
     g->num_phys = g->num_resources;
@@ -695,7 +686,6 @@ tyn_result tyn_graph_compile(tyn_graph *g)
     result = result == TYN_OK ? create_dummies(g) : result;
     result = result == TYN_OK ? create_slots(g, &s) : result;
     result = result == TYN_OK ? reserve_sets(g, s.sets) : result;
-    result = result == TYN_OK ? create_pipelines(g) : result;
     result = result == TYN_OK ? stage_uploads(g) : result;
     if (result != TYN_OK) {
         graph_release(g);

@@ -39,7 +39,7 @@ void tyn_graph_begin(tyn_graph *g)
     g->num_outputs = 0;
     g->inspect = NULL;
     g->params_used = 0;
-    g->recompute = g->setup_only = false;
+    g->recompute = g->setup_only = g->background = false;
     g->current = false;
 }
 
@@ -51,6 +51,11 @@ void tyn_graph_recompute(tyn_graph *g)
 void tyn_graph_setup_only(tyn_graph *g)
 {
     g->setup_only = true;
+}
+
+void tyn_graph_background(tyn_graph *g)
+{
+    g->background = true;
 }
 
 static void *grow(void *array, uint32_t count, uint32_t *cap, size_t element)

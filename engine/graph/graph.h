@@ -28,6 +28,10 @@ void tyn_graph_recompute(tyn_graph *g);
 // This frame records only uploads and nodes that depend on the media alone.
 void tyn_graph_setup_only(tyn_graph *g);
 
+// Pipelines of this declaration are compiled beside tyn_graph_compile and tyn_graph_record, which return TYN_PENDING
+// until they are there: compile keeps what was compiled before, and record only takes host images to their `after`.
+void tyn_graph_background(tyn_graph *g);
+
 // Has what a node of this pass makes, the image at its debug port, read back as the output "inspect";
 // of several such nodes the last. Counts until the next tyn_graph_begin.
 void tyn_graph_inspect(tyn_graph *g, const char *pass);
@@ -39,6 +43,9 @@ bool tyn_graph_matches(const tyn_graph *g);
 
 // Culls, allocates, makes pipelines. The GPU must be done with earlier records. May block.
 tyn_result tyn_graph_compile(tyn_graph *g);
+
+// Pipelines that are still to be compiled before tyn_graph_compile can return something else than TYN_PENDING.
+uint32_t tyn_graph_pending(const tyn_graph *g);
 
 // Frees host memory of uploads that are done. The GPU must be done with earlier records.
 void tyn_graph_trim(tyn_graph *g);

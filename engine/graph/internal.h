@@ -1,5 +1,5 @@
-// internal.h -- the inside of the render graph, shared by declare.c, compile.c, shared_memory.c, recorder.c, draw.c,
-// record.c and dump.c.
+// internal.h -- the inside of the render graph, shared by declare.c, compile.c, pipelines.c, shared_memory.c, recorder.c,
+// draw.c, record.c and dump.c.
 //
 // A declaration is two lists, resources and nodes, rebuilt for every frame. What was compiled is kept
 // beside it, index by index: `phys` belongs to `resources`, `runs` to `nodes`. Both agree as long as
@@ -7,6 +7,7 @@
 #pragma once
 #include "graph/graph.h"
 #include "graph/plan.h"
+#include "gpu/compiler.h"
 #include "gpu/memory.h"
 
 enum { MAX_VERSIONS = 8, MAX_MIPS = 14, MAX_SLOTS = 8, INLINE_UPLOAD = 65536 };
@@ -97,6 +98,12 @@ typedef struct frame_slot { // one per frame in flight
     uint8_t *timed; // per node: it ran in this slot's last record
 } frame_slot;
 
+// Pipelines that a declaration needs, each once.
+typedef struct pipeline_list {
+    tyn_variant **items;
+    uint32_t count, cap;
+} pipeline_list;
+
 // What a dry run of the recorder learns.
 typedef struct survey {
     uint64_t hash; // of all kernels, bindings and specialisations: the structure of the dispatches
@@ -130,7 +137,7 @@ struct tyn_graph {
     uint32_t num_outputs;
     const char *inspect; // pass whose debug port is wanted; NULL = none
     uint64_t unique;     // ever-changing content
-    bool recompute, setup_only;
+    bool recompute, setup_only, background;
     bool poison; // tests: what a node has not written is NaN
     // compiled
     uint64_t structure; // 0 = nothing compiled
@@ -148,6 +155,7 @@ struct tyn_graph {
     uint64_t frame;
     launch_sets sets; // of the current record
     tyn_node_stats *stats;
+    pipeline_list wanted; // that are being compiled in the background
 };
 
 typedef enum recorder_mode {
@@ -197,6 +205,12 @@ void graph_cull(tyn_graph *g);
 tyn_result graph_survey(tyn_graph *g, survey *s, phys *usage);
 uint64_t graph_structure(const tyn_graph *g, const survey *s);
 void graph_release(tyn_graph *g); // everything compiled
+// All pipelines of the declaration, whatever was compiled before; in the background: TYN_PENDING until they are there.
+tyn_result graph_make_pipelines(tyn_graph *g);
+tyn_result graph_want_pipeline(tyn_graph *g, tyn_variant *v); // by RECORD_PIPELINES
+void graph_forget_pipelines(tyn_graph *g); // those that are being compiled for it
+// In place of a record: asks for pipelines, and takes the host's images to their `after`.
+tyn_result graph_postpone(tyn_graph *g, VkCommandBuffer cmd);
 // Memory for the resources that are `shared`, and how many bytes of it none has for good.
 tyn_result graph_bind_shared(tyn_graph *g, VkDeviceSize *passing);
 bool graph_overlap(const phys *a, const phys *b);

@@ -24,6 +24,7 @@ void tyn_graph_destroy(tyn_graph **graph)
     if (!g) {
         return;
     }
+    graph_forget_pipelines(g);
     graph_release(g);
     free(g->resources);
     free(g->nodes);
@@ -471,6 +472,9 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
         return g->status;
     }
     if (!tyn_graph_matches(g)) {
+        if (g->background) {
+            return graph_postpone(g, cmd);
+        }
         tyn_log_print(&g->dev->log, TYN_LOG_ERROR,
                       "the frame differs in structure from what was prepared; prepare it first");
         return TYN_ERR_PARAMS;

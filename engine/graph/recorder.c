@@ -446,10 +446,13 @@ static void survey_transfer(tyn_recorder *r, uint8_t port, bool source)
 static void make_pipeline(tyn_recorder *r, const launch *l)
 {
     tyn_pipeline *pl;
-    VkPipeline pipeline;
+    tyn_variant *v;
     tyn_result result = tyn_pipeline_get(r->g->dev, node_of(r)->pass, l->kernel, &pl);
     if (result == TYN_OK) {
-        result = tyn_pipeline_variant(r->g->dev, pl, l->spec ? l->spec : no_spec, &pipeline);
+        result = tyn_variant_get(pl, l->spec ? l->spec : no_spec, &v);
+    }
+    if (result == TYN_OK) {
+        result = graph_want_pipeline(r->g, v);
     }
     if (result != TYN_OK) {
         recorder_fail(r, result, "no pipeline for kernel",

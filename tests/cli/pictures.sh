@@ -40,7 +40,7 @@ rm -f wide.exr high.exr
 # ---- stats ----
 [ "$(get a.json method)" = pop ] || fail "stats: method"
 [ "$(get a.json size.0)" = 64 ] && [ "$(get a.json size.1)" = 48 ] || fail "stats: size"
-for key in tyndall device setup_ms frame_ms.cold memory.persistent memory.transient nodes.0.name \
+for key in tyndall device setup_ms pipelines.compiled pipelines.from_cache pipelines.seconds frame_ms.cold memory.persistent memory.transient nodes.0.name \
     nodes.0.state nodes.0.gpu_ms nodes.0.cpu_ms nodes.0.dispatches nodes.0.bytes nodes.0.flops \
     nodes.0.work warnings settings/lattice.cells inputs; do
     get a.json "$key" >/dev/null

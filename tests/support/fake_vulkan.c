@@ -484,6 +484,7 @@ fake_vulkan *fake_create(void)
         .CmdBeginDebugUtilsLabelEXT = begin_label,
         .CmdEndDebugUtilsLabelEXT = end_label,
     };
+    fake->dev.compiler = tyn_compiler_create(&fake->dev, 0, (tyn_jobs){0});
     fake_clear(fake);
     return fake;
 }
@@ -513,6 +514,7 @@ void fake_free_image(fake_vulkan *f, tyn_image *image)
 
 void fake_destroy(fake_vulkan **f)
 {
+    tyn_compiler_destroy(&(*f)->dev.compiler);
     tyn_pipelines_destroy(&(*f)->dev);
     for (int i = 1; i < MAX_OBJECTS; i++) {
         if (objects[i].live) {

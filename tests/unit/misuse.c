@@ -60,6 +60,7 @@ static void null_handles(void **state)
     tyn_offline *off = NULL;
     tyn_report report;
     tyn_inspection inspection;
+    tyn_pipeline_stats kernels = {.compiled = 1};
     size_t size = 1;
     REFUSED_SILENTLY(tyn_device_create(NULL, &dev));
     assert_null(dev);
@@ -76,9 +77,12 @@ static void null_handles(void **state)
     GIVES(0, strcmp(tyn_device_name(NULL), ""));
     GIVES(0, strcmp(tyn_device_driver(NULL), ""));
     GIVES(0, tyn_device_validation_messages(NULL));
-    GIVES(NULL, tyn_device_pipeline_cache(NULL, &size));
-    GIVES(NULL, tyn_device_pipeline_cache(NULL, NULL));
-    assert_int_equal(size, 0);
+    REFUSED_SILENTLY(tyn_device_pipeline_cache(NULL, NULL, &size));
+    REFUSED_SILENTLY(tyn_device_pipeline_cache(NULL, &frame, &size));
+    REFUSED_SILENTLY(tyn_device_pipeline_cache(NULL, NULL, NULL));
+    DOES_NOTHING(tyn_device_pipelines(NULL, &kernels));
+    assert_int_equal(kernels.compiled, 0);
+    DOES_NOTHING(tyn_device_pipelines(NULL, NULL));
     REFUSED(tyn_devices_list(NULL, 4, log));
     REFUSED_SILENTLY(tyn_context_create(NULL, tyn_context_params(), &ctx));
     REFUSED_SILENTLY(tyn_context_create(NULL, NULL, NULL));
@@ -91,6 +95,7 @@ static void null_handles(void **state)
     REFUSED_SILENTLY(tyn_context_set(NULL, "lattice.cells", "8"));
     REFUSED_SILENTLY(tyn_context_set_quality(NULL, TYN_QUALITY_HIGH));
     REFUSED_SILENTLY(tyn_context_get(NULL, "lattice.cells", &(double){0}));
+    GIVES(0, tyn_context_pending(NULL));
     GIVES(1, tyn_context_batch(NULL, &frame));
     GIVES(NULL, tyn_context_output(NULL, TYN_OUTPUT_RADIANCE));
     DOES_NOTHING(tyn_context_report(NULL, &report));

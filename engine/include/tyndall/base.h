@@ -61,6 +61,8 @@ TYN_API const char *tyn_version_string(void);
 
 typedef enum tyn_result {
     TYN_OK = 0,
+    TYN_PENDING =
+        1, // no error: kernels are still compiled (tyn_frame.background); try a later frame
     TYN_ERR_PARAMS = -1,      // an argument or an input is wrong (the tool exits 2)
     TYN_ERR_UNSUPPORTED = -2, // valid, but this device or this build cannot do it
     TYN_ERR_MEMORY = -3,      // out of host or device memory

@@ -12,6 +12,9 @@
 //  (c) If record fails, nothing was appended and host images are in their `before` state.
 //  (d) The call i + frames_in_flight is made after the GPU finished call i.
 //  (e) record never submits, waits, or allocates memory; prepare does the last two.
+//  (f) With `background`, a frame whose kernels are still being compiled gives TYN_PENDING: record then takes host
+//      images from `before` to `after` with their content as it was, and appends nothing else. To ask for kernels it
+//      allocates host memory.
 #pragma once
 #include "device.h"
 #include "scene.h"
@@ -137,6 +140,10 @@ typedef struct tyn_frame {
     // z / w in [0, 1]. Only how z and w follow from z is read, so it makes no difference whether it turns y over.
     float view_to_clip[16];
     const tyn_image *color; // COMPOSITE: Required; rgba16f or rgba32f, STORAGE, one sample a pixel
+    // Kernels that are missing are compiled beside the call (tyn_device_params.jobs, compile_threads), not in it: prepare
+    // and record give TYN_PENDING meanwhile and change nothing that was prepared before, so that frames like those may go
+    // on. The call is cheap: prepare in each frame until it gives TYN_OK, or when tyn_context_pending gives 0.
+    bool background;
     bool recompute;  // run every node but those that depend on the media alone, changed or not
     bool setup_only; // record only uploads and nodes that depend on the media alone
 } tyn_frame;
@@ -146,6 +153,9 @@ typedef struct tyn_frame {
 // earlier records. `frame.cmd` is not used; images must have their formats and extents.
 TYN_API tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame);
 TYN_API tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame);
+
+// How many kernels are still to be compiled of the last frame that gave TYN_PENDING. 0: prepare it again.
+TYN_API uint32_t tyn_context_pending(tyn_context *ctx);
 
 // With `readback`: host memory of an output of the last record, once the GPU has finished it: 4
 // floats a pixel (DISPLAY: 4 bytes), or the probe and balance structs. NULL if it was not asked

@@ -7,9 +7,18 @@
 extern "C" {
 #endif
 
-// Pipelines and memory on a VkDevice. Thread-safety: Unsafe; one device object per thread, several
-// device objects on one VkDevice are fine.
+// Pipelines and memory on a VkDevice. Contexts of one device may be used by several threads at once, a context by one; they
+// share its pipelines. The log may then be called by all of these. Several device objects on one VkDevice are fine.
 typedef struct tyn_device tyn_device;
+
+// A host's job system, which compiles kernels in place of threads of ours (tyn_frame.background).
+typedef struct tyn_jobs {
+    // Has run(job) called once for each call of submit: on any thread, now or later, several at once. A job compiles one
+    // kernel, which takes milliseconds to seconds. Called by prepare and record, on their thread. After tyn_device_destroy
+    // a job that has not run yet does nothing, but has to be run to free what it holds.
+    void (*submit)(void *user, void (*run)(void *job), void *job); // NULL: there is none
+    void *user;
+} tyn_jobs;
 
 // What to enable before vkCreateDevice. Static data; tyn_device_create checks it again and names
 // what is missing.
@@ -59,13 +68,18 @@ typedef struct tyn_device_params {
                                 // with graphics if scenes are to have surfaces
     bool debug_names;           // VK_EXT_debug_utils is enabled: name objects, label nodes
     const void *pipeline_cache; // from an earlier tyn_device_pipeline_cache; may be NULL
-    size_t pipeline_cache_size;
+    size_t
+        pipeline_cache_size; // what is damaged, or another driver's, is ignored with a line in the log
+    uint32_t compile_threads; // 0..16 that compile kernels in the background; 0 = by the machine, 4
+                              // at most. Started when something is to be compiled there
+    tyn_jobs jobs;            // in their place
     tyn_allocator allocator; // both functions, or none: vkAllocateMemory
     tyn_log log;
 } tyn_device_params;
 #define tyn_device_params(...) TYN_PARAMS(tyn_device_params, __VA_ARGS__)
 TYN_API tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out);
-TYN_API void tyn_device_destroy(tyn_device **dev); // the GPU must be done with our work
+// The GPU must be done with our work. What is being compiled is waited for, what waits to be compiled is not.
+TYN_API void tyn_device_destroy(tyn_device **dev);
 
 // A device of our own: loads the Vulkan loader at run time, makes instance, device and queue.
 typedef struct tyn_device_open_params {
@@ -73,8 +87,10 @@ typedef struct tyn_device_open_params {
     // Index or part of the name; NULL = the first discrete, integrated, then any.
     const char *select;
     bool validation; // validation and synchronization validation; messages go to the log as errors
-    const void *pipeline_cache;
+    const void *pipeline_cache; // this and what follows as in tyn_device_params
     size_t pipeline_cache_size;
+    uint32_t compile_threads;
+    tyn_jobs jobs;
     tyn_log log;
 } tyn_device_open_params;
 #define tyn_device_open_params(...) TYN_PARAMS(tyn_device_open_params, __VA_ARGS__)
@@ -95,8 +111,18 @@ typedef struct tyn_device_info {
 } tyn_device_info;
 TYN_API int tyn_devices_list(tyn_device_info *infos, uint32_t max, const tyn_log *log);
 
-// The pipeline cache's bytes, for a file. Freed with free(). NULL if there is none.
-TYN_API void *tyn_device_pipeline_cache(tyn_device *dev, size_t *size);
+// The compiled kernels as bytes to keep, for the next device's `pipeline_cache`. With `blob` NULL *size becomes how many
+// there are; else *size says how many `blob` has room for and becomes how many were written: if kernels have been compiled
+// since, those that have room. Any thread.
+TYN_API tyn_result tyn_device_pipeline_cache(tyn_device *dev, void *blob, size_t *size);
+
+// Since the device was made. Any thread.
+typedef struct tyn_pipeline_stats {
+    uint32_t compiled;   // kernels, one for each choice of its constants
+    uint32_t from_cache; // of these: the driver had them from `pipeline_cache`, as far as it tells
+    double seconds;      // in the driver's calls, of all threads together
+} tyn_pipeline_stats;
+TYN_API void tyn_device_pipelines(tyn_device *dev, tyn_pipeline_stats *stats);
 
 // ---- host images ----------------------------------------------------------------------------
 
