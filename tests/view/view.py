@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """view.py TYNDALL SCENES HELPERS [PICTURES] -- `tyndall view` under Xvfb, used by keys and mouse through xdotool.
 
-TYNDALL is the tool, SCENES the folder of sample scenes, HELPERS that of drop and lose.so (drop.c, lose.c). Screens
+TYNDALL is the tool, SCENES the folder of sample scenes, HELPERS that of drop, lose.so and hold.so (drop.c, ...). Screens
 are read from Xvfb's frame buffer and compared with what `tyndall render` writes. With PICTURES the screens are written
 there as PNG. Exit 77: skipped, as something is missing.
 """
@@ -139,16 +139,21 @@ class Viewer:
                                capture_output=True, text=True).stdout.split()
         return found[-1] if found else "0"
 
+    def compiling(self):
+        return subprocess.run(["xdotool", "search", "--name", "^compiling [0-9]+ - .*tyndall$"], env=self.screen.environment,
+                              capture_output=True, text=True).stdout.split() != []
+
     def settled(self, width=WIDTH, height=HEIGHT, seconds=60, other_than=None, like=None):
-        """The screen when it has stopped changing and shows something (else than what is given). Kernels may take longer
-        to compile than a screen is watched: where it is known what will be shown, it is waited for."""
+        """The screen when it has stopped changing and shows something (else than what is given), and no kernels are being
+        compiled. To run for the first time may take longer than a screen is watched as well: where it is known what will
+        be shown, it is waited for."""
         end, last, since = time.time() + seconds, None, time.time()
         while time.time() < end and self.alive():
             now = self.screen.shot(width, height)
             if now != last:
                 last, since = now, time.time()
             elif (time.time() - since > 0.8 and any(now) and (other_than is None or difference(now, other_than) > 1)
-                  and (like is None or difference(now, like) < 1)):
+                  and (like is None or difference(now, like) < 1) and not self.compiling()):
                 break
             time.sleep(0.1)
         return last
@@ -259,6 +264,36 @@ def test_camera_and_methods(screen, work):
     stats = viewer.close()
     check(stats.get("validation_messages") == 0, f"validation: {viewer.text()[:800]}")
     check(stats.get("moving_frames", 0) > 3, f"moving frames: {stats.get('moving_frames')}")
+
+
+def test_old_picture_stays(screen, work):
+    """While kernels are compiled (which hold.c delays) the picture stays, the window answers, its title says how many."""
+    scene, hold = os.path.join(SCENES, "cube.gltf"), os.path.join(work, "hold")
+    viewer = Viewer(screen, work, scene, "--validate",
+                    environment={"LD_PRELOAD": os.path.join(HELPERS, "hold.so"), "HOLD": hold})
+    first = viewer.settled(like=render(work, scene))
+    with open(hold, "w"):
+        pass
+    viewer.key(str(methods().index("single") + 1))
+    end, seen = time.time() + 5, False
+    while time.time() < end and not seen:
+        seen = viewer.compiling()
+    check(seen, "no kernels are compiled for another method")
+    time.sleep(0.5)
+    check(difference(screen.shot(), first) == 0, "the old picture does not stay while kernels are compiled")
+    viewer.key("h") # the panel comes
+    time.sleep(0.5)
+    check(difference(screen.shot(), first) > 1, "the window does not answer while kernels are compiled")
+    keep("compiling", screen.shot())
+    viewer.key("h")
+    os.remove(hold)
+    expected = render(work, scene, "--method", "single")
+    shown = viewer.settled(like=expected)
+    check(difference(shown, expected) < 1, f"after compiling: {difference(shown, expected):.2f} off single's render")
+    check(not viewer.compiling(), "the title says that kernels are compiled when none are")
+    stats = viewer.close()
+    check(stats.get("most_pending", 0) >= 2, f"most kernels pending: {stats.get('most_pending')}")
+    check(stats.get("validation_messages") == 0, f"validation: {viewer.text()[:800]}")
 
 
 def test_window(screen, work):
@@ -528,8 +563,8 @@ def main():
         print("skipped: all cases (no Vulkan device)")
         return 77
     test_no_display()
-    tests = [test_camera_and_methods, test_window, test_save, test_split_and_probe, test_panel, test_reload, test_sequence,
-             test_drop, test_rebuild, test_lost]
+    tests = [test_camera_and_methods, test_old_picture_stays, test_window, test_save, test_split_and_probe, test_panel,
+             test_reload, test_sequence, test_drop, test_rebuild, test_lost]
     only = os.environ.get("VIEW_TESTS", "").split()
     for test in tests:
         if only and test.__name__ not in only:

@@ -100,7 +100,12 @@ void comparison_step(viewer *v, const tyn_view *view, double budget_ms)
     }
     asked.outputs =
         (TYN_OUTPUT_RADIANCE | TYN_OUTPUT_ERROR | (uint32_t)layer) & c->rendering.method.outputs;
-    if (!rendering_frame(&c->rendering, &v->scene, &asked, budget_ms, c->started)) {
+    const rendering_state state =
+        rendering_frame(&c->rendering, &v->scene, &asked, budget_ms, c->started);
+    if (state == RENDERING_PENDING) {
+        return;
+    }
+    if (state == RENDERING_FAILED) {
         viewer_note(v, "%s", v->app->last_error);
         comparison_toggle(v);
         return;

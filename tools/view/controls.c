@@ -317,7 +317,12 @@ static void report_rows(const viewer *v)
 static void state_rows(const viewer *v)
 {
     const rendering *r = shown_rendering(v);
+    const uint32_t pending = pictures_pending(v);
     char text[64];
+    if (pending) {
+        snprintf(text, sizeof text, "%u left", pending);
+        panel_row("compiling kernels", text);
+    }
     if (r->context && r->width) {
         snprintf(text, sizeof text, "%ux%u, %.1f ms", r->width, r->height, r->ms);
         panel_row(v->sharp ? "at rest" : "moving", text);

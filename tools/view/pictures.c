@@ -75,9 +75,14 @@ static tyn_view view_of(const viewer *v, uint32_t divisor)
     return view;
 }
 
-static bool open_if_closed(viewer *v, rendering *r)
+// A frame of a rendering that may have to be opened first.
+static rendering_state compute(viewer *v, rendering *r, const tyn_view *view, double budget_ms,
+                               bool more)
 {
-    return r->context || rendering_open(r, &v->gpu, &v->method);
+    if (!r->context && !rendering_open(r, &v->gpu, &v->method)) {
+        return RENDERING_FAILED;
+    }
+    return rendering_frame(r, &v->scene, view, budget_ms, more);
 }
 
 // Keeps the radiance of a sharp picture: outputs are gone with the next frame.
@@ -115,8 +120,11 @@ static void step_sharp(viewer *v, bool more)
 {
     tyn_view view = view_of(v, 1);
     probe_ask(v, &view);
-    if (!open_if_closed(v, &v->rest) ||
-        !rendering_frame(&v->rest, &v->scene, &view, sharp_budget_ms, more)) {
+    const rendering_state state = compute(v, &v->rest, &view, sharp_budget_ms, more);
+    if (state == RENDERING_PENDING) {
+        return; // what is shown stays
+    }
+    if (state == RENDERING_FAILED) {
         v->outdated = false;
         v->sharp = true; // nothing better comes of trying again
         viewer_note(v, "%s", v->app->last_error);
@@ -151,7 +159,11 @@ static void step_moving(viewer *v)
     v->divisor = v->divisor ? v->divisor : v->method.info.progressive ? 2 : 3;
     rendering *r = v->divisor > 1 ? &v->moving : &v->rest;
     const tyn_view view = view_of(v, v->divisor);
-    if (!open_if_closed(v, r) || !rendering_frame(r, &v->scene, &view, v->args->target_ms, false)) {
+    const rendering_state state = compute(v, r, &view, v->args->target_ms, false);
+    if (state == RENDERING_PENDING) {
+        return;
+    }
+    if (state == RENDERING_FAILED) {
         v->outdated = false;
         viewer_note(v, "%s", v->app->last_error);
         return;
@@ -172,6 +184,12 @@ uint32_t pictures_samples_wanted(const viewer *v)
 static bool moving(const viewer *v)
 {
     return v->turntable || app_seconds() - v->last_change < rest_after;
+}
+
+uint32_t pictures_pending(const viewer *v)
+{
+    return rendering_pending(&v->rest) + rendering_pending(&v->moving) +
+           rendering_pending(&v->comparison.rendering);
 }
 
 bool pictures_working(const viewer *v)
@@ -207,6 +225,8 @@ void pictures_step(viewer *v)
     } else {
         step_rest(v);
     }
+    const uint32_t pending = pictures_pending(v);
+    v->stats.most_pending = pending > v->stats.most_pending ? pending : v->stats.most_pending;
     if (v->sharp && v->save_wanted) {
         v->save_wanted = false;
         save_picture(v);

@@ -32,8 +32,13 @@ static void adapt_batch(rendering *r, double budget_ms, uint32_t most)
     r->batch = r->batch > most ? most : r->batch;
 }
 
-bool rendering_frame(rendering *r, const tyn_scene *scene, const tyn_view *view, double budget_ms,
-                     bool more)
+uint32_t rendering_pending(const rendering *r)
+{
+    return tyn_context_pending(r->context);
+}
+
+rendering_state rendering_frame(rendering *r, const tyn_scene *scene, const tyn_view *view,
+                                double budget_ms, bool more)
 {
     gpu *g = r->gpu;
     const double start = app_seconds();
@@ -41,22 +46,27 @@ bool rendering_frame(rendering *r, const tyn_scene *scene, const tyn_view *view,
     more = more && r->width == view->width && r->height == view->height;
     asked.first_sample = r->method.progressive && more ? r->samples : 0;
     asked.num_samples = r->method.progressive ? r->batch : 0;
-    tyn_frame frame = *tyn_frame(.scene = scene, .view = &asked, .cmd = r->commands.cmd);
-    if (!gpu_wait(g, &r->commands) || tyn_context_prepare(r->context, &frame) != TYN_OK) {
-        return false;
+    tyn_frame frame =
+        *tyn_frame(.scene = scene, .view = &asked, .cmd = r->commands.cmd, .background = true);
+    if (!gpu_wait(g, &r->commands)) {
+        return RENDERING_FAILED;
+    }
+    const tyn_result prepared = tyn_context_prepare(r->context, &frame);
+    if (prepared != TYN_OK) {
+        return prepared == TYN_PENDING ? RENDERING_PENDING : RENDERING_FAILED;
     }
     const uint32_t most = tyn_context_batch(r->context, &frame);
     if (!gpu_begin(g, &r->commands) || tyn_context_record(r->context, &frame) != TYN_OK ||
         !gpu_submit(g, &r->commands, VK_NULL_HANDLE, VK_NULL_HANDLE) ||
         !gpu_wait(g, &r->commands)) {
-        return false;
+        return RENDERING_FAILED;
     }
     r->ms = 1e3 * (app_seconds() - start);
     r->width = view->width;
     r->height = view->height;
     r->samples = asked.first_sample + asked.num_samples;
     adapt_batch(r, budget_ms, most);
-    return true;
+    return RENDERING_DONE;
 }
 
 const void *rendering_output(const rendering *r, tyn_output output)

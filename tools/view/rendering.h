@@ -4,6 +4,12 @@
 #include "view/gpu.h"
 #include <tyndall/context.h>
 
+typedef enum rendering_state {
+    RENDERING_DONE = 0,
+    RENDERING_PENDING, // kernels are being compiled: nothing was computed, try again
+    RENDERING_FAILED,  // said
+} rendering_state;
+
 typedef struct rendering {
     gpu *gpu;
     tyn_method_info method;
@@ -19,9 +25,10 @@ bool rendering_open(rendering *r, gpu *g, const method *m);
 void rendering_close(rendering *r);
 
 // Computes a frame and waits for it. Progressive methods choose view->num_samples so that a frame takes about `budget_ms`,
-// and with `more` add to the last frames of the same scene and view. False: said.
-bool rendering_frame(rendering *r, const tyn_scene *scene, const tyn_view *view, double budget_ms,
-                     bool more);
+// and with `more` add to the last frames of the same scene and view.
+rendering_state rendering_frame(rendering *r, const tyn_scene *scene, const tyn_view *view,
+                                double budget_ms, bool more);
+uint32_t rendering_pending(const rendering *r); // kernels that are still to be compiled
 // Valid until the next call.
 const void *rendering_output(const rendering *r, tyn_output output);
 // Time of the nodes that work on pixels in the last frame, ms: what a smaller picture makes shorter.

@@ -116,12 +116,11 @@ static int open_window(viewer *v)
         return EXIT_FAILED;
     }
     char *stem = text_stem(v->source.scene);
-    char *title = text_format("%s - tyndall", stem ? stem : "");
+    v->title = text_format("%s - tyndall", stem ? stem : "");
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-    v->window = glfwCreateWindow((int)v->view.width, (int)v->view.height, title ? title : "tyndall",
-                                 NULL, NULL);
+    v->window = glfwCreateWindow((int)v->view.width, (int)v->view.height,
+                                 v->title ? v->title : "tyndall", NULL, NULL);
     free(stem);
-    free(title);
     if (!v->window) {
         app_error(v->app, "no window can be opened: %s", window_error);
         return EXIT_WRONG;
@@ -270,6 +269,8 @@ static void take_input(viewer *v)
     const double now = app_seconds();
     if (hidden(v)) {
         glfwWaitEventsTimeout(0.25);
+    } else if (pictures_pending(v)) {
+        glfwWaitEventsTimeout(0.02);
     } else if (v->woken || v->args->busy || pictures_working(v)) {
         glfwPollEvents();
     } else {
@@ -279,6 +280,18 @@ static void take_input(viewer *v)
     input_step(v, fmin(now - v->last_frame, 0.25));
     v->last_frame = now;
     follow_size(v);
+}
+
+// The window's title says how many kernels are still to be compiled: the panel may be hidden.
+static void say_pending(viewer *v)
+{
+    const uint32_t pending = pictures_pending(v);
+    if (pending != v->title_pending && v->title) {
+        char *title = text_format("compiling %u - %s", pending, v->title);
+        glfwSetWindowTitle(v->window, pending && title ? title : v->title);
+        free(title);
+        v->title_pending = pending;
+    }
 }
 
 static int loop(viewer *v)
@@ -295,6 +308,7 @@ static int loop(viewer *v)
         source_step(v);
         rebuild_step(v);
         pictures_step(v);
+        say_pending(v);
         const bool failed = v->gpu.lost || step_frame(v) == SURFACE_FAILED;
         if (v->gpu.lost) {
             code = recover(v);
@@ -356,6 +370,7 @@ static int write_stats(const viewer *v)
     cJSON_AddNumberToObject(root, "rest_frames", v->stats.rest_frames);
     cJSON_AddNumberToObject(root, "divisor", v->divisor);
     json_add_float(root, "sharp_ms", v->stats.sharp_ms);
+    cJSON_AddNumberToObject(root, "most_pending", v->stats.most_pending);
     cJSON_AddNumberToObject(root, "swapchains", v->surface.num_recreated);
     cJSON_AddNumberToObject(root, "devices_lost", v->stats.num_lost);
     cJSON_AddNumberToObject(root, "validation_messages", v->gpu.messages);
@@ -433,6 +448,7 @@ int viewer_run(app *a, const view_args *args)
     method_finish(&v->method);
     source_close(v);
     free(v->pixels);
+    free(v->title);
     free(v);
     return code;
 }

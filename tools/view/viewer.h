@@ -18,6 +18,7 @@
 typedef struct viewer_stats {
     double moving_seconds, rest_seconds; // between pictures shown
     uint32_t moving_frames, rest_frames; // pictures shown
+    uint32_t most_pending;               // kernels
     double sharp_ms;   // the last picture at rest: from the end of the movement until it was shown
     uint32_t num_lost; // devices
 } viewer_stats;
@@ -27,6 +28,8 @@ struct viewer {
     const view_args *args;
 
     GLFWwindow *window;
+    char *title;            // of the window
+    uint32_t title_pending; // kernels, as it says
     gpu gpu;
     surface surface;
     picture picture;
@@ -106,7 +109,8 @@ void controls_reset(viewer *v);            // the scene is another
 
 // pictures.c: what the method is asked for, and when.
 void pictures_step(viewer *v);
-bool pictures_working(const viewer *v); // something is to be computed now, or soon
+bool pictures_working(const viewer *v);     // something is to be computed now, or soon
+uint32_t pictures_pending(const viewer *v); // kernels that pictures wait for
 bool pictures_show(viewer *v, const rendering *r, picture_slot slot); // the layer of its last frame
 uint32_t pictures_samples_wanted(const viewer *v);
 void pictures_args(const viewer *v, struct picture_args *args);
