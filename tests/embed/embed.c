@@ -116,7 +116,9 @@ static int tear_down(void **state)
     host_close(&f->host);
     const uint32_t messages = f->host.messages;
     free(f);
-    assert_int_equal(messages, 0);
+    if (messages) { // cmocka does not count what a teardown of a group finds
+        exit(EXIT_FAILURE);
+    }
     return 0;
 }
 
