@@ -233,7 +233,7 @@ static void faint(void **state)
             print_message(
                 "faint %d, channel %u: %.6e W, off by %.1e, noise %.1e; the lamp's %.1e\n", k, ch,
                 expected, off, noise, of_lamp);
-            assert_true(off <= 5 * noise + 4e-4 * expected);
+            assert_true(off <= 5 * noise + (k == 3 ? 1e-5 : 5e-5) * expected);
         }
     }
 }
@@ -247,7 +247,10 @@ static void bounded(void **state)
     tyn_lpv_scatter_plan(&s.params, s.medium.extent, majorant_of(), s.suns, 1, NULL, 0);
     const sums *found = run(*state);
     const double power = sum_of(found, 0);
-    assert_true(power > 0 && power <= 12.001);
+    // 12 W, of which a ray brings the mean of min(2000 e^(-1000 x), 1) over its 2 m.
+    const double expected = 12 * (log(2000) + 1) / 2000;
+    print_message("of thick cells: %.4f W, expected %.4f\n", power, expected);
+    assert_within(fabs(power / expected - 1), 0.15, NULL);
 }
 
 int main(void)
