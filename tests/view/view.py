@@ -144,7 +144,7 @@ class Viewer:
                               capture_output=True, text=True).stdout.split() != []
 
     def settled(self, width=WIDTH, height=HEIGHT, seconds=60, other_than=None, like=None):
-        """The screen when it has stopped changing and shows something (else than what is given), and no kernels are being
+        """The screen when it has stopped changing and shows more than a pointer (else than what is given), and no kernels are
         compiled. To run for the first time may take longer than a screen is watched as well: where it is known what will
         be shown, it is waited for."""
         end, last, since = time.time() + seconds, None, time.time()
@@ -152,7 +152,7 @@ class Viewer:
             now = self.screen.shot(width, height)
             if now != last:
                 last, since = now, time.time()
-            elif (time.time() - since > 0.8 and any(now) and (other_than is None or difference(now, other_than) > 1)
+            elif (time.time() - since > 0.8 and sum(now) > 0.5 * len(now) and (other_than is None or difference(now, other_than) > 1)
                   and (like is None or difference(now, like) < 1) and not self.compiling()):
                 break
             time.sleep(0.1)
