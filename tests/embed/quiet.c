@@ -29,7 +29,7 @@ static void record_is_quiet(void **state)
     }
     tyn_device *dev = NULL;
     assert_int_equal(rig_device(&r, true, NULL, &dev), TYN_OK);
-    static const char *const methods[] = {"pop", "lpv", "single"};
+    static const char *const methods[] = {"pop", "single"};
     for (size_t m = 0; m < sizeof methods / sizeof methods[0]; m++) {
         tyn_context *ctx = NULL;
         assert_int_equal(rig_context(&r, dev, methods[m], &ctx), TYN_OK);
