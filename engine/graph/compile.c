@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SHARED_LEAST = 64 << 10 }; // bytes
+enum { SHARED_LEAST = 64 << 10, HEAP_SLACK = 4 << 20 }; // bytes
 
 uint32_t graph_texel_size(VkFormat format)
 {
@@ -315,27 +315,35 @@ static tyn_result create_texel_views(tyn_graph *g, phys *p, const char *name)
     return result;
 }
 
-// Histories of the last compilation, which this one may take over.
+// What the last compilation leaves to this one: histories, uploads and what nodes made.
 typedef struct heritage {
     phys *items;
     uint32_t count;
 } heritage;
 
-static uint64_t history_identity(const resource *r)
+static uint64_t identity_of(const tyn_graph *g, const resource *r)
 {
+    const bool kept = r->kind == RESOURCE_HISTORY ||
+                      (!g->poison && (r->kind == RESOURCE_OUT || r->kind == RESOURCE_UPLOAD));
+    if (!kept) {
+        return 0;
+    }
     uint64_t h = tyn_hash_string(TYN_HASH_SEED, r->name);
-    h = tyn_hash_u64(h, (uint64_t)r->dim << 32 | (uint64_t)r->format);
+    h = tyn_hash_string(h, r->owner);
+    h = tyn_hash_u64(h, (uint64_t)r->kind << 32 | (uint64_t)r->dim << 16 | r->mips);
+    h = tyn_hash_u64(h, r->format);
     h = tyn_hash_bytes(h, &r->extent, sizeof r->extent);
     return h ? h : 1;
 }
 
-// True if `p` has become the history of the same name and shape that there was before.
-static bool inherit(heritage *from, const resource *r, phys *p)
+// True if `p`, of which only the uses are known, has become what had the same name, shape and use before. `content`: only
+// if that is in it; 0 = whatever is in it.
+static bool inherit(heritage *from, uint64_t identity, uint64_t content, phys *p)
 {
-    const uint64_t identity = history_identity(r);
-    for (uint32_t i = 0; i < from->count; i++) {
+    for (uint32_t i = 0; identity && i < from->count; i++) {
         phys *old = &from->items[i];
-        if (old->history == identity && (p->image_usage & ~old->image_usage) == 0 &&
+        if (old->identity == identity && (!content || old->content == content) &&
+            (p->image_usage & ~old->image_usage) == 0 &&
             (p->buffer_usage & ~old->buffer_usage) == 0 &&
             (p->texel_uses & ~old->texel_uses) == 0) {
             *p = *old;
@@ -343,8 +351,22 @@ static bool inherit(heritage *from, const resource *r, phys *p)
             return true;
         }
     }
-    p->history = identity;
     return false;
+}
+
+// First those whose content is wanted again, so that no other takes their place.
+static void inherit_all(tyn_graph *g, heritage *old)
+{
+    for (int any = 0; any < 2; any++) {
+        for (uint32_t i = 0; i < g->num_resources; i++) {
+            const resource *r = &g->resources[i];
+            phys *p = &g->phys[i];
+            const uint64_t identity = identity_of(g, r);
+            if (!p->identity && (any || r->kind != RESOURCE_HISTORY)) {
+                inherit(old, identity, any ? 0 : r->content, p);
+            }
+        }
+    }
 }
 
 // What nodes make, unless it is too small to be worth the barriers. Tests that fill it with NaN want it apart.
@@ -402,9 +424,20 @@ static tyn_result create_resources(tyn_graph *g, heritage *old)
     VkDeviceSize expected = 0;
     for (uint32_t i = 0; i < g->num_resources; i++) {
         const resource *r = &g->resources[i];
-        g->phys[i].shared = may_share(g, r);
-        expected +=
-            r->kind == RESOURCE_IMPORT || g->phys[i].shared ? 0 : resource_bytes(r) + (64u << 10);
+        phys *p = &g->phys[i];
+        if (r->kind == RESOURCE_UPLOAD || r->kind == RESOURCE_HISTORY || g->poison) {
+            p->buffer_usage |= VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+            p->image_usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        }
+    }
+    inherit_all(g, old);
+    for (uint32_t i = 0; i < g->num_resources; i++) {
+        const resource *r = &g->resources[i];
+        const bool kept = g->phys[i].identity;
+        g->phys[i].shared = !kept && may_share(g, r);
+        expected += r->kind == RESOURCE_IMPORT || g->phys[i].shared || kept
+                        ? 0
+                        : resource_bytes(r) + (64u << 10);
     }
     g->persistent_bytes = g->transient_bytes = 0;
     tyn_result result = TYN_OK;
@@ -422,13 +455,11 @@ static tyn_result create_resources(tyn_graph *g, heritage *old)
         } else if (!p->shared) {
             g->transient_bytes += p->bytes;
         }
-        if (r->kind == RESOURCE_UPLOAD || r->kind == RESOURCE_HISTORY || g->poison) {
-            p->buffer_usage |= VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-            p->image_usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        if (p->identity) {
+            continue; // inherited
         }
-        if (r->kind == RESOURCE_HISTORY && inherit(old, r, p)) {
-            continue;
-        }
+        p->identity = identity_of(g, r);
+        p->age = r->kind == RESOURCE_HISTORY ? 0 : g->age;
         result = create_resource(g, r, p, expected);
         if (!p->shared) {
             expected -= expected > p->bytes ? p->bytes : expected;
@@ -569,31 +600,87 @@ static void destroy_phys(tyn_graph *g, phys *p)
     *p = (phys){0};
 }
 
-// Takes the histories out, without what belongs to this compilation alone. Without memory for the list
-// there are none: they start anew.
-static heritage take_histories(tyn_graph *g)
+// Takes out what this compilation may use again, without what belongs to the last one alone; the heaps stay. Without
+// memory for the list there is nothing: all starts anew.
+static heritage take_heritage(tyn_graph *g, bool only_histories)
 {
     heritage h = {.items = calloc(g->num_phys ? g->num_phys : 1, sizeof *h.items)};
+    aged_heap *grown = only_histories ? NULL : realloc(g->aged, (g->num_aged + 1) * sizeof *grown);
+    if (grown) {
+        g->aged = grown;
+    }
     for (uint32_t i = 0; h.items && i < g->num_phys; i++) {
         phys *p = &g->phys[i];
-        if (p->history) {
+        const bool made = p->age && p->content && grown; // what is in it is not lost to scratch
+        if (p->identity && (!p->age || made)) {
             g->dev->vk.DestroyBuffer(g->dev->device, p->readback, NULL);
             p->readback = VK_NULL_HANDLE;
             p->readback_ptr = NULL;
             p->read = 0;
+            p->shared = false; // what was in the same place goes
             h.items[h.count++] = *p;
             *p = (phys){0};
         }
     }
+    if (grown && h.count) {
+        g->aged[g->num_aged++] = (aged_heap){g->heap, g->age};
+        g->heap = (tyn_heap){0};
+    }
     return h;
 }
 
-static void drop_histories(tyn_graph *g, heritage *h)
+static void drop_heritage(tyn_graph *g, heritage *h)
 {
     for (uint32_t i = 0; i < h->count; i++) {
         destroy_phys(g, &h->items[i]);
     }
     free(h->items);
+}
+
+// Frees the heaps of earlier compilations that hold nothing any more; how many bytes of heaps are left.
+static VkDeviceSize free_aged(tyn_graph *g)
+{
+    VkDeviceSize total = g->heap.total;
+    uint32_t left = 0;
+    for (uint32_t a = 0; a < g->num_aged; a++) {
+        bool used = false;
+        for (uint32_t i = 0; i < g->num_phys; i++) {
+            used |= g->phys[i].age == g->aged[a].age;
+        }
+        if (used) {
+            total += g->aged[a].heap.total;
+            g->aged[left++] = g->aged[a];
+        } else {
+            tyn_heap_finish(g->dev, &g->aged[a].heap);
+        }
+    }
+    g->num_aged = left;
+    return total;
+}
+
+// A node all of whose results were kept has nothing to do. One that changes something in place, or reads what it left
+// in an earlier frame, runs.
+static bool is_done(const tyn_graph *g, uint32_t index)
+{
+    const node *n = &g->nodes[index];
+    bool done = false;
+    for (uint32_t p = 0; p < n->pass->num_ports; p++) {
+        const tyn_port_dir dir = n->pass->ports[p].dir;
+        const resource *r = n->res[p] ? &g->resources[n->res[p] - 1] : NULL;
+        if (!r) {
+            continue;
+        }
+        if (dir == TYN_INOUT || r->kind == RESOURCE_HISTORY) {
+            return false;
+        }
+        if (dir == TYN_OUT) {
+            if (r->version || g->phys[n->res[p] - 1].content != r->content) {
+                return false;
+            }
+            done = true;
+        }
+    }
+    return done;
 }
 
 void graph_free_staging(tyn_graph *g)
@@ -633,17 +720,86 @@ void graph_release(tyn_graph *g)
     }
     tyn_heap_finish(g->dev, &g->heap);
     free(g->phys);
+    g->phys = NULL;
+    g->num_phys = 0;
     free(g->runs);
     free(g->run_node);
     g->run_node = NULL;
     g->current = false;
-    g->phys = NULL;
     g->runs = NULL;
-    g->num_phys = g->num_runs = 0;
+    g->num_runs = 0;
     g->structure = 0;
 }
 
 // ---- compile ----------------------------------------------------------------------------------
+
+static void free_all_aged(tyn_graph *g)
+{
+    for (uint32_t a = 0; a < g->num_aged; a++) {
+        tyn_heap_finish(g->dev, &g->aged[a].heap);
+    }
+    free(g->aged);
+    g->aged = NULL;
+    g->num_aged = 0;
+}
+
+void graph_finish(tyn_graph *g)
+{
+    graph_release(g);
+    free_all_aged(g);
+}
+
+static tyn_result compile_new(tyn_graph *g, bool only_histories)
+{
+    graph_free_staging(g);
+    heritage old = take_heritage(g, only_histories);
+    graph_release(g);
+    if (only_histories) {
+        free_all_aged(g);
+    }
+    g->age++;
+    g->num_phys = g->num_resources;
+    g->num_runs = g->num_nodes;
+    g->phys = calloc(g->num_phys ? g->num_phys : 1, sizeof *g->phys);
+    g->runs = calloc(g->num_runs ? g->num_runs : 1, sizeof *g->runs);
+    g->run_node = calloc(g->num_runs ? g->num_runs : 1, sizeof *g->run_node);
+    if (!g->phys || !g->runs || !g->run_node) {
+        drop_heritage(g, &old);
+        return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
+    }
+    for (uint32_t i = 0; i < g->num_outputs; i++) {
+        if (g->outputs[i].readback) {
+            phys *p = &g->phys[g->outputs[i].ref.resource - 1];
+            p->image_usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+            p->buffer_usage |= VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+        }
+    }
+    survey s;
+    tyn_result result = graph_survey(g, &s, g->phys);
+    result = result == TYN_OK ? create_resources(g, &old) : result;
+    drop_heritage(g, &old);
+    result = result == TYN_OK ? create_dummies(g) : result;
+    result = result == TYN_OK ? create_slots(g, &s) : result;
+    result = result == TYN_OK ? reserve_sets(g, s.sets) : result;
+    result = result == TYN_OK ? stage_uploads(g) : result;
+    if (result != TYN_OK) {
+        graph_finish(g);
+        return result;
+    }
+    for (uint32_t i = 0; i < g->num_nodes; i++) {
+        g->runs[i].hash = is_done(g, i) ? g->nodes[i].hash : 0;
+    }
+    g->structure = graph_structure(g, &s);
+    g->current = true;
+    return TYN_OK;
+}
+
+// More memory than a fresh compilation would need by half, and not for the size of blocks alone.
+static bool is_wasteful(tyn_graph *g)
+{
+    const VkDeviceSize need = g->persistent_bytes + g->transient_bytes;
+    return free_aged(g) > need + need / 2 + HEAP_SLACK;
+}
 
 tyn_result tyn_graph_compile(tyn_graph *g)
 {
@@ -661,37 +817,9 @@ tyn_result tyn_graph_compile(tyn_graph *g)
     if (made != TYN_OK) {
         return made;
     }
-    heritage old = take_histories(g);
-    graph_release(g);
-    g->num_phys = g->num_resources;
-    g->num_runs = g->num_nodes;
-    g->phys = calloc(g->num_phys ? g->num_phys : 1, sizeof *g->phys);
-    g->runs = calloc(g->num_runs ? g->num_runs : 1, sizeof *g->runs);
-    g->run_node = calloc(g->num_runs ? g->num_runs : 1, sizeof *g->run_node);
-    if (!g->phys || !g->runs || !g->run_node) {
-        drop_histories(g, &old);
-        return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
-    }
-    for (uint32_t i = 0; i < g->num_outputs; i++) {
-        if (g->outputs[i].readback) {
-            phys *p = &g->phys[g->outputs[i].ref.resource - 1];
-            p->image_usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
-            p->buffer_usage |= VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-        }
-    }
-    survey s;
-    tyn_result result = graph_survey(g, &s, g->phys);
-    result = result == TYN_OK ? create_resources(g, &old) : result;
-    drop_histories(g, &old);
-    result = result == TYN_OK ? create_dummies(g) : result;
-    result = result == TYN_OK ? create_slots(g, &s) : result;
-    result = result == TYN_OK ? reserve_sets(g, s.sets) : result;
-    result = result == TYN_OK ? stage_uploads(g) : result;
-    if (result != TYN_OK) {
-        graph_release(g);
-        return result;
-    }
-    g->structure = graph_structure(g, &s);
-    g->current = true;
-    return TYN_OK;
+    const bool first = !g->num_phys;
+    const tyn_result result = compile_new(g, false);
+    const bool again = result == TYN_OK ? is_wasteful(g) && g->num_aged
+                                        : result == TYN_ERR_MEMORY && g->status == TYN_OK && !first;
+    return again ? compile_new(g, true) : result;
 }

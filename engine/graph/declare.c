@@ -353,10 +353,10 @@ static void hash_node(const tyn_graph *g, node *n)
             h = tyn_hash_u64(h,
                              r->kind == RESOURCE_HISTORY && r->version == 0 ? r->key : r->content);
             n->media_only = n->media_only && r->media_only;
-        } else {
-            h = tyn_hash_bytes(h, &r->extent, sizeof r->extent);
-            h = tyn_hash_u64(h, r->format);
         }
+        // Of inputs too: an upload's hash need not tell in which shape it is stored.
+        h = tyn_hash_bytes(h, &r->extent, sizeof r->extent);
+        h = tyn_hash_u64(h, (uint64_t)r->dim << 40 | (uint64_t)r->mips << 32 | (uint32_t)r->format);
     }
     n->hash = h ? h : 1;
 }

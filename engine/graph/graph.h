@@ -41,7 +41,9 @@ void tyn_graph_inspect(tyn_graph *g, const char *pass);
 // True if the current declaration has the nodes and shapes of the compiled one.
 bool tyn_graph_matches(const tyn_graph *g);
 
-// Culls, allocates, makes pipelines. The GPU must be done with earlier records. May block.
+// Culls, allocates, makes pipelines. The GPU must be done with earlier records. May block. What has the name, shape and
+// uses that something had in the compilation before keeps its Vulkan object and what is in it, so that unchanged uploads
+// and nodes are not repeated; all is made anew when that would take more than 1.5 times the memory.
 tyn_result tyn_graph_compile(tyn_graph *g);
 
 // Pipelines that are still to be compiled before tyn_graph_compile can return something else than TYN_PENDING.

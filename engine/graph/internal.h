@@ -74,17 +74,23 @@ typedef struct phys {
     uint32_t texel_uses; // bit i: it is read as texels in graph_texel_formats[i]
     VkBufferView texels[NUM_TEXEL_FORMATS];
     tyn_track track;
-    uint64_t content; // what is in it; 0 = nothing
-    uint64_t key;     // HISTORY
-    uint64_t history; // HISTORY: what it is, its name and shape; else 0
-    tyn_heap heap;    // HISTORY: its own, so that it outlives the others
-    VkBuffer staging; // UPLOAD, big: host memory waiting to be copied
+    uint64_t content;  // what is in it; 0 = nothing
+    uint64_t key;      // HISTORY
+    uint64_t identity; // its name, kind and shape, if a later compilation may take it over; else 0
+    uint64_t age;      // which heap it lies in: graph.age when it was made; 0 = its own
+    tyn_heap heap;     // HISTORY: its own, so that it outlives the others
+    VkBuffer staging;  // UPLOAD, big: host memory waiting to be copied
     void *staging_ptr;
     uint64_t staged; // content hash in staging; 0 = none
     VkBuffer readback;
     void *readback_ptr;
     uint64_t read; // content in readback
 } phys;
+
+typedef struct aged_heap { // of an earlier compilation, with something in it that is still used
+    tyn_heap heap;
+    uint64_t age;
+} aged_heap;
 
 typedef struct node_run { // of a node
     uint64_t hash;        // when it last ran; 0 = never
@@ -150,6 +156,9 @@ struct tyn_graph {
     phys dummy[NUM_DUMMIES]; // by tyn_dim: bound where an optional input is absent
     bool dummy_ready;
     tyn_heap heap, staging_heap;
+    uint64_t age; // of `heap`: compilations so far
+    aged_heap *aged;
+    uint32_t num_aged;
     VkDeviceSize persistent_bytes, transient_bytes;
     frame_slot slots[MAX_SLOTS];
     uint64_t frame;
@@ -204,7 +213,8 @@ tyn_result graph_fail(tyn_graph *g, tyn_result result, const char *format, ...) 
 void graph_cull(tyn_graph *g);
 tyn_result graph_survey(tyn_graph *g, survey *s, phys *usage);
 uint64_t graph_structure(const tyn_graph *g, const survey *s);
-void graph_release(tyn_graph *g); // everything compiled
+void graph_release(tyn_graph *g); // everything compiled, but not the heaps that outlive it
+void graph_finish(tyn_graph *g);  // these too
 // All pipelines of the declaration, whatever was compiled before; in the background: TYN_PENDING until they are there.
 tyn_result graph_make_pipelines(tyn_graph *g);
 tyn_result graph_want_pipeline(tyn_graph *g, tyn_variant *v); // by RECORD_PIPELINES

@@ -25,7 +25,7 @@ void tyn_graph_destroy(tyn_graph **graph)
         return;
     }
     graph_forget_pipelines(g);
-    graph_release(g);
+    graph_finish(g);
     free(g->resources);
     free(g->nodes);
     free(g->params);

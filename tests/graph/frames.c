@@ -597,12 +597,45 @@ static void histories(void **state)
         assert_int_equal(tyn_graph_add(f->g, &add, &(node_params){0}, refs), TYN_OK);
         tyn_graph_output(f->g, "sum", refs[ADD_SUM], false);
         assert_int_equal(frame(f), TYN_OK);
-        assert_states(f, i == 1 ? "u" : i < 4 ? "r" : "rr");
+        assert_states(f, i == 1 ? "u" : i < 4 ? "r" : i == 4 ? "rr" : "ur");
         // Zeros at the start and when the key changes, never in between, also not when the graph is compiled
         // anew because there is something else in it; then because the history has another size.
         assert_int_equal(strstr(f->fake->text, "fill history\n") != NULL,
                          i == 0 || i == 3 || i == 5);
     }
+}
+
+// One output more is another structure: what is in both compilations keeps its object and its content, nothing is
+// uploaded again, and the new node waits for what the old one wrote in the frame before.
+static void new_compilation_keeps(void **state)
+{
+    fixture *f = *state;
+    uint32_t made[2];
+    for (int i = 0; i < 5; i++) {
+        const bool more = i == 1 || i == 2 || i == 4;
+        tyn_graph_begin(f->g);
+        const tyn_ref first =
+            add_blur(f->g, upload(f->g, "x", 1), (tyn_ref){0}, (node_params){1, 0, 0});
+        const tyn_ref second = add_blur(f->g, first, (tyn_ref){0}, (node_params){2, 0, 0});
+        tyn_graph_output(f->g, "second", second, false);
+        if (more) {
+            const tyn_ref third =
+                add_blur(f->g, i == 4 ? second : first, (tyn_ref){0}, (node_params){i, 0, 0});
+            tyn_graph_output(f->g, "third", third, false);
+        }
+        const uint32_t before = f->fake->created;
+        assert_int_equal(frame(f), TYN_OK);
+        // In the last the second is sampled, which its image was not made for: a new one.
+        assert_states(f, i == 0 ? "rr" : i == 4 ? "urr" : more ? "uur" : "uu");
+        assert_int_equal(strstr(f->fake->text, "copy") != NULL, i == 0);
+        if (i < 2) {
+            made[i] = f->fake->created - before;
+        }
+        if (i == 1) {
+            assert_non_null(strstr(f->fake->text, "barrier"));
+        }
+    }
+    assert_true(made[1] < made[0]);
 }
 
 // ---- faults -----------------------------------------------------------------------------------
@@ -737,6 +770,7 @@ int main(void)
         TEST(structure_is_noticed),
         TEST(media_are_set_up_apart),
         TEST(histories),
+        TEST(new_compilation_keeps),
         TEST(faults),
         TEST(huge_image),
         TEST(small_device),
