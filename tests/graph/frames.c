@@ -632,7 +632,12 @@ static void new_compilation_keeps(void **state)
             made[i] = f->fake->created - before;
         }
         if (i == 1) {
-            assert_non_null(strstr(f->fake->text, "barrier"));
+            // Only the three stand-ins and the new image begin without a layout: that of what was kept is known.
+            uint32_t undefined = 0;
+            for (const char *at = f->fake->text; (at = strstr(at, "UNDEFINED ->")); at++) {
+                undefined++;
+            }
+            assert_int_equal(undefined, 3 + 1);
         }
     }
     assert_true(made[1] < made[0]);
