@@ -94,7 +94,11 @@ tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
     const tyn_view *view = frame->view;
     const tyn_log *log = &ctx->dev->log;
     ctx->scene = frame->scene;
-    tyn_result result = update_environment(ctx, &frame->scene->environment);
+    tyn_frame_projection projection;
+    tyn_result result = tyn_frame_projection_find(&projection, frame, log);
+    if (result == TYN_OK) {
+        result = update_environment(ctx, &frame->scene->environment);
+    }
     if (result == TYN_OK) {
         result = tyn_surface_data_update(&ctx->surfaces, &frame->scene->surfaces, log);
     }
@@ -103,8 +107,8 @@ tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
                                          view->outputs & TYN_OUTPUT_BALANCE);
     }
     if (result == TYN_OK) {
-        result = tyn_frame_scene_build(&ctx->frame, frame->scene, view, &ctx->map_light,
-                                       &ctx->surfaces, log);
+        result = tyn_frame_scene_build(&ctx->frame, frame->scene, view, &projection,
+                                       &ctx->map_light, &ctx->surfaces, log);
     }
     if (result == TYN_OK) {
         result = tyn_atlas_plan(&ctx->atlas, frame->scene, log);
@@ -131,6 +135,6 @@ tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
                      .warn = tyn_context_warn,
                      .warn_user = ctx};
     job->hooks = tyn_picture_hooks(&job->num_hooks);
-    memcpy(job->view_to_clip, frame->view_to_clip, sizeof job->view_to_clip);
+    memcpy(job->host_depth, projection.depth, sizeof job->host_depth);
     return TYN_OK;
 }

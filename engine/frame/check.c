@@ -2,7 +2,6 @@
 #include "frame/context.h"
 #include "gpu/device.h"
 #include "scene/check.h"
-#include <math.h>
 
 #define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
 
@@ -45,7 +44,6 @@ static tyn_result check_depth(const tyn_frame *frame, const tyn_log *log)
                                        VK_FORMAT_D32_SFLOAT,        VK_FORMAT_D16_UNORM_S8_UINT,
                                        VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT};
     const tyn_image *depth = frame->depth;
-    const float *m = frame->view_to_clip;
     bool known = false;
     for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
         known = known || depth->format == formats[i];
@@ -56,16 +54,6 @@ static tyn_result check_depth(const tyn_frame *frame, const tyn_log *log)
     if (depth->extent.width != frame->view->width || depth->extent.height != frame->view->height) {
         FAULT("depth is %u x %u, the view is %u x %u; make them equal", depth->extent.width,
               depth->extent.height, frame->view->width, frame->view->height);
-    }
-    bool finite = true;
-    for (int i = 0; i < 16; i++) {
-        finite = finite && isfinite(m[i]);
-    }
-    // Depth is (m[10] z + m[14]) / (m[11] z + m[15]): from it z can be told if that is no constant.
-    if (!finite || m[10] * m[15] == m[14] * m[11]) {
-        FAULT("view_to_clip: its third and fourth row must tell view z from depth (they are %g %g "
-              "and %g %g in z and 1)",
-              m[10], m[14], m[11], m[15]);
     }
     return check_image(depth, "depth", VK_IMAGE_USAGE_SAMPLED_BIT, "VK_IMAGE_USAGE_SAMPLED_BIT",
                        log);
@@ -124,7 +112,8 @@ tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)
         tyn_log_print(log, TYN_LOG_ERROR, "a probe needs at least one point");
         return TYN_ERR_PARAMS;
     }
-    tyn_result result = tyn_camera_check(&view->camera, 0, log);
+    tyn_frame_projection projection;
+    tyn_result result = tyn_frame_projection_find(&projection, frame, log);
     if (result == TYN_OK && (outputs & TYN_OUTPUT_COMPOSITE)) {
         result = check_color(frame->color, view, log);
         if (result == TYN_OK && frame->depth) {

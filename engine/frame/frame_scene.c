@@ -335,24 +335,28 @@ static void build_lights(tyn_frame_scene *out, const tyn_scene *scene, const rig
     lights->num_suns = lights->num_directional;
 }
 
-static void build_camera(tyn_frame_scene *out, const tyn_view *view, const rigid *m)
+static void build_camera(tyn_frame_scene *out, const tyn_view *view, const tyn_frame_projection *p,
+                         const rigid *m)
 {
-    const tyn_camera *camera = &view->camera;
     struct camera_block *b = &out->camera;
-    float aspect = view->height ? (float)view->width / (float)view->height : 1.0f;
-    to_m_position(m, camera->position, b->origin);
-    to_m_direction(m, camera->right, b->right);
-    to_m_direction(m, camera->up, b->up);
-    to_m_direction(m, camera->back, b->forward);
-    for (int a = 0; a < 3; a++) {
-        b->forward[a] = -b->forward[a];
+    double from[3];
+    for (int i = 0; i < 3; i++) {
+        from[i] = p->origin[i] - m->origin[i];
     }
-    b->orthographic = camera->projection == TYN_ORTHOGRAPHIC;
-    b->half_height = b->orthographic ? camera->ymag : tanf(camera->yfov * 0.5f);
-    b->half_width = b->half_height * aspect;
+    for (int a = 0; a < 3; a++) {
+        b->origin[a] = (float)dot3(m->axes[a], from);
+        b->right[a] = (float)dot3(m->axes[a], p->right);
+        b->up[a] = (float)dot3(m->axes[a], p->up);
+        b->forward[a] = (float)dot3(m->axes[a], p->forward);
+    }
+    b->orthographic = p->orthographic;
+    b->half_width = (float)p->half[0];
+    b->half_height = (float)p->half[1];
     b->background = !view->no_background;
     b->size[0] = view->width;
     b->size[1] = view->height;
+    b->shift[0] = (float)p->shift[0];
+    b->shift[1] = (float)p->shift[1];
 }
 
 // The map's suns as directional lights among those of the scene.
@@ -505,8 +509,8 @@ float tyn_volume_typical(const tyn_volume *volume)
 }
 
 tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, const tyn_view *view,
-                                 const tyn_map_light *map, const tyn_surface_data *surfaces,
-                                 const tyn_log *log)
+                                 const tyn_frame_projection *projection, const tyn_map_light *map,
+                                 const tyn_surface_data *surfaces, const tyn_log *log)
 {
     memset(out, 0, sizeof *out);
     for (uint32_t i = 0; i < scene->num_shapes; i++) {
@@ -546,7 +550,7 @@ tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, c
     build_shapes(out, scene, &m);
     out->majorant = majorant_of(out, scene);
     build_lights(out, scene, &m);
-    build_camera(out, view, &m);
+    build_camera(out, view, projection, &m);
     build_environment(out, &scene->environment, map, &m);
     build_surfaces(out, &scene->surfaces, surfaces, &m);
     for (int a = 0; a < 3; a++) {

@@ -1,14 +1,15 @@
 // frame_scene.h -- turns a scene and a view into the blocks that shaders read.
 #pragma once
 #include <tyndall/extend/job.h>
+#include "frame/projection.h"
 #include "frame/surfaces.h"
 #include "scene/env_suns.h"
 
 // Everything in the medium frame M (scene_args.h). `map` is what tyn_map_light_find says of the scene's
 // environment, `surfaces` what was made of its surfaces. Errors are one log line.
 tyn_result tyn_frame_scene_build(tyn_frame_scene *out, const tyn_scene *scene, const tyn_view *view,
-                                 const tyn_map_light *map, const tyn_surface_data *surfaces,
-                                 const tyn_log *log);
+                                 const tyn_frame_projection *projection, const tyn_map_light *map,
+                                 const tyn_surface_data *surfaces, const tyn_log *log);
 
 // The atlas: every density grid, stacked along z in the order of scene.volumes, then one texel of 1 for
 // homogeneous media. {0,0,0} extent if the only grid is the host's image.

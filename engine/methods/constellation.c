@@ -109,9 +109,7 @@ static void set_view(tyn_constellation_params *p, const tyn_job *job)
                      : 0;
     p->layers |= read & TYN_OUTPUT_DEPTH ? CONSTELLATION_LAYER_DEPTH : 0;
     if (job->refs.depth.resource) {
-        const float *m = job->view_to_clip;
-        const float depth[4] = {m[10], m[14], m[11], m[15]};
-        memcpy(p->depth, depth, sizeof depth);
+        memcpy(p->depth, job->host_depth, sizeof p->depth);
     }
 }
 

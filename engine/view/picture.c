@@ -92,9 +92,7 @@ static void set_march_params(tyn_raymarch_params *params, const tyn_job *job,
     params->layers |= job->outputs & TYN_OUTPUT_SINGLE ? RAYMARCH_LAYER_SINGLE : 0;
     params->layers |= job->outputs & TYN_OUTPUT_MULTIPLE ? RAYMARCH_LAYER_MULTIPLE : 0;
     if (job->refs.depth.resource) {
-        const float *m = job->view_to_clip;
-        const float depth[4] = {m[10], m[14], m[11], m[15]};
-        memcpy(params->depth, depth, sizeof depth);
+        memcpy(params->depth, job->host_depth, sizeof params->depth);
     }
 }
 

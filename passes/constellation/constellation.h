@@ -34,7 +34,7 @@ typedef struct tyn_constellation_params {
     struct slices_args slices;
     float extent[3];                         // medium_block.extent, m
     struct constellation_lights_args listed; // the lights beside the constellation
-    float depth[4];                          // p10, p14, p11, p15 of the host's view_to_clip
+    float depth[4];                          // of the host's depth: tyn_job.host_depth
 } tyn_constellation_params;
 
 // How rays are cut: slices `slice` voxels apart. A medium counts as one of 64 voxels at least along its longest side, and of

@@ -26,7 +26,7 @@
 #define CONSTELLATION_SHADOWED 2u
 
 struct constellation_args {
-    tyn_vec4 depth; // p10, p14, p11, p15 of the host's view_to_clip
+    tyn_vec4 depth; // of the host's depth: tyn_job.host_depth
     TYN_STRUCT(slices_args) slices;
     float scale;     // of light that is scattered: 4 pi over the norm
     tyn_uint rounds; // slices that one dispatch lights

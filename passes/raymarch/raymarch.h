@@ -41,7 +41,7 @@ typedef struct tyn_raymarch_params {
     uint32_t repeat; // 1: the medium is periodic along an axis
     uint32_t first[2],
         end[2];     // pixels that may see the media (tyn_raymarch_window); all 0: every pixel
-    float depth[4]; // p10, p14, p11, p15 of the host's view_to_clip
+    float depth[4]; // of the host's depth: tyn_job.host_depth
 } tyn_raymarch_params;
 
 // The longest step in metres for a medium whose majorant is `sigma_t` (1/m), marched through a lattice

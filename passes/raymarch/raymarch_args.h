@@ -40,7 +40,7 @@ struct raymarch_args {
     float longest;    // ... where the medium is so thin that it
     float step_depth; // ... is no deeper than this
     float stop;       // a ray ends where the transmittance is below this
-    tyn_vec4 depth;   // p10, p14, p11, p15 of the host's view_to_clip
+    tyn_vec4 depth;   // of the host's depth: tyn_job.host_depth
     tyn_uvec2 first;  // pixels in which the box of the media may be seen: from `first` ...
     tyn_uvec2 end;    // ... to before `end`
     tyn_vec3 tint;    // of the one channel of inscatter

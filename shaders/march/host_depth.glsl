@@ -5,8 +5,7 @@
 
 #define TYN_INFINITY uintBitsToFloat(0x7f800000u)
 
-// Distance along a ray of the camera to the host's surface, m. `clip`: p10, p14, p11, p15 of the host's
-// view_to_clip.
+// Distance along a ray of the camera to the host's surface, m. `clip`: tyn_job.host_depth.
 float host_distance(sampler2D depths, camera_block camera, vec4 clip, ivec2 pixel, vec3 direction)
 {
     ivec2 size = textureSize(depths, 0);

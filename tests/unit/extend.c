@@ -44,7 +44,7 @@ static void layout(void **state)
         SIZE(tyn_lights, 8716),
         SIZE(tyn_frame_scene, 19408),
         SIZE(tyn_scene_refs, 168),
-        SIZE(tyn_job, 320),
+        SIZE(tyn_job, 272),
         SIZE(tyn_picture, 24),
         SIZE(tyn_picture_hook, 24),
         SIZE(tyn_sources, 364),

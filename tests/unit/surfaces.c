@@ -246,8 +246,10 @@ static tyn_frame_scene frame_of(const tyn_scene *scene)
     io_log_init(&log);
     const tyn_view view = {.width = 8, .height = 8, .camera = {.yfov = 1}};
     const tyn_map_light map = {{0}};
+    const tyn_frame_projection projection = {.half = {0.5, 0.5}};
     assert_int_equal(tyn_surface_data_update(&data, &scene->surfaces, &log.log), TYN_OK);
-    assert_int_equal(tyn_frame_scene_build(&frame, scene, &view, &map, &data, &log.log), TYN_OK);
+    assert_int_equal(
+        tyn_frame_scene_build(&frame, scene, &view, &projection, &map, &data, &log.log), TYN_OK);
     tyn_surface_data_finish(&data);
     return frame;
 }

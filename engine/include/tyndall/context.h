@@ -136,9 +136,18 @@ typedef struct tyn_frame {
     // COMPOSITE: hardware depth of the host's surfaces, or NULL. D16, D24 or D32 with or without stencil, SAMPLED, one sample
     // a pixel (resolve before), as large as the view.
     const tyn_image *depth;
-    // Required with depth: the projection that made it, view space (x right, y up, looking along -z) to Vulkan's clip space,
-    // z / w in [0, 1]. Only how z and w follow from z is read, so it makes no difference whether it turns y over.
+    // Required with depth and with world_to_view: the projection, view space (x right, y up, looking along -z) to Vulkan's
+    // clip space, z / w in [0, 1], by columns. Without world_to_view only how z and w follow from z is read, so it makes no
+    // difference whether it turns y over.
     float view_to_clip[16];
+    // Not all 0: the picture is taken by view_to_clip x world_to_view, and view.camera is not read. Affine, in metres in the
+    // world, by columns. Any perspective (off-axis, reversed or infinite z) or parallel projection whose picture has right
+    // angles; row 0 of pixels is at clip y = -w, as under a viewport of positive height. Rays begin in the eye; parallel ones
+    // where view z is 0.
+    float world_to_view[16];
+    // Pixels: the ray of pixel (x, y) goes through (x + 0.5 + jitter[0], y + 0.5 + jitter[1]), y down. For temporal
+    // anti-aliasing, where the matrix does not hold it already. `depth` is of the moved picture.
+    float jitter[2];
     const tyn_image *color; // COMPOSITE: Required; rgba16f or rgba32f, STORAGE, one sample a pixel
     // Kernels that are missing are compiled beside the call (tyn_device_params.jobs, compile_threads), not in it: prepare
     // and record give TYN_PENDING meanwhile and change nothing that was prepared before, so that frames like those may go

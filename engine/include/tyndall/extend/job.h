@@ -41,10 +41,12 @@ typedef struct tyn_job {
     const tyn_settings *settings;  // for tyn_settings_params
     const tyn_frame_scene *frame;  // the scene in M
     tyn_scene_refs refs;
-    uint32_t outputs;       // set of tyn_output that is wanted, all of them in method->outputs
-    bool readback;          // copy the outputs to host memory
-    bool cpu_device;        // the device is a processor: it reads uniform arrays thread by thread
-    float view_to_clip[16]; // of the host's depth
+    uint32_t outputs; // set of tyn_output that is wanted, all of them in method->outputs
+    bool readback;    // copy the outputs to host memory
+    bool cpu_device;  // the device is a processor: it reads uniform arrays thread by thread
+    // Of the host's depth: (host_depth[0] z + host_depth[1]) / (host_depth[2] z + host_depth[3]) at z = -distance along
+    // the camera's `forward`, m.
+    float host_depth[4];
     // Between march and composite: all that are registered. tyn_add_results calls them.
     const tyn_picture_hook *const *hooks;
     uint32_t num_hooks;
