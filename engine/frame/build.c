@@ -135,6 +135,9 @@ tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *jo
                      .warn = tyn_context_warn,
                      .warn_user = ctx};
     job->hooks = tyn_picture_hooks(&job->num_hooks);
+    job->light = &frame->light;
+    job->half_view =
+        job->outputs & TYN_OUTPUT_COMPOSITE && frame->color->extent.width != view->width;
     memcpy(job->host_depth, projection.depth, sizeof job->host_depth);
     return TYN_OK;
 }

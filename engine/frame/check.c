@@ -30,9 +30,12 @@ static tyn_result check_color(const tyn_image *color, const tyn_view *view, cons
         FAULT(
             "COMPOSITE needs tyn_frame.color: rgba16f or rgba32f with VK_IMAGE_USAGE_STORAGE_BIT");
     }
-    if (color->extent.width != view->width || color->extent.height != view->height) {
-        FAULT("color is %u x %u, the view is %u x %u; make them equal", color->extent.width,
-              color->extent.height, view->width, view->height);
+    const uint32_t times = color->extent.width == 2 * view->width ? 2 : 1;
+    if (color->extent.width != times * view->width ||
+        color->extent.height != times * view->height) {
+        FAULT("color is %u x %u, the view is %u x %u; make them equal, or color exactly twice the "
+              "view",
+              color->extent.width, color->extent.height, view->width, view->height);
     }
     return check_image(color, "color", VK_IMAGE_USAGE_STORAGE_BIT, "VK_IMAGE_USAGE_STORAGE_BIT",
                        log);
@@ -51,12 +54,91 @@ static tyn_result check_depth(const tyn_frame *frame, const tyn_log *log)
     if (!known) {
         FAULT("depth: format %d is no depth format", (int)depth->format);
     }
-    if (depth->extent.width != frame->view->width || depth->extent.height != frame->view->height) {
-        FAULT("depth is %u x %u, the view is %u x %u; make them equal", depth->extent.width,
-              depth->extent.height, frame->view->width, frame->view->height);
+    const VkExtent3D size = frame->color->extent;
+    if (depth->extent.width != size.width || depth->extent.height != size.height) {
+        FAULT("depth is %u x %u, color is %u x %u; make them equal", depth->extent.width,
+              depth->extent.height, size.width, size.height);
     }
     return check_image(depth, "depth", VK_IMAGE_USAGE_SAMPLED_BIT, "VK_IMAGE_USAGE_SAMPLED_BIT",
                        log);
+}
+
+// Images that take results.
+static tyn_result check_results(const tyn_frame *frame, uint32_t outputs, const tyn_log *log)
+{
+    const tyn_frame_images *to = &frame->images;
+    const struct {
+        const tyn_image *image;
+        const char *what, *output, *formats;
+        tyn_output needs;
+        VkFormat other;
+    } results[] = {
+        {to->radiance, "images.radiance", "RADIANCE", "rgba16f or rgba32f", TYN_OUTPUT_RADIANCE,
+         VK_FORMAT_R16G16B16A16_SFLOAT},
+        {to->transmittance, "images.transmittance", "TRANSMITTANCE", "rgba16f or rgba32f",
+         TYN_OUTPUT_TRANSMITTANCE, VK_FORMAT_R16G16B16A16_SFLOAT},
+        {to->depth, "images.depth", "DEPTH", "r32f or rgba32f", TYN_OUTPUT_DEPTH,
+         VK_FORMAT_R32_SFLOAT},
+    };
+    for (size_t i = 0; i < sizeof results / sizeof results[0]; i++) {
+        const tyn_image *image = results[i].image;
+        if (!image) {
+            continue;
+        }
+        if (!(outputs & results[i].needs)) {
+            FAULT("%s is given, but tyn_view.outputs has no TYN_OUTPUT_%s", results[i].what,
+                  results[i].output);
+        }
+        if (image->format != VK_FORMAT_R32G32B32A32_SFLOAT && image->format != results[i].other) {
+            FAULT("%s: its format is %d; it must be %s", results[i].what, (int)image->format,
+                  results[i].formats);
+        }
+        if (image->extent.width != frame->view->width ||
+            image->extent.height != frame->view->height) {
+            FAULT("%s is %u x %u, the view is %u x %u; make them equal", results[i].what,
+                  image->extent.width, image->extent.height, frame->view->width,
+                  frame->view->height);
+        }
+        const tyn_result result = check_image(image, results[i].what, VK_IMAGE_USAGE_STORAGE_BIT,
+                                              "VK_IMAGE_USAGE_STORAGE_BIT", log);
+        if (result != TYN_OK) {
+            return result;
+        }
+    }
+    return TYN_OK;
+}
+
+static tyn_result check_light(const tyn_frame_lights *light, const tyn_log *log)
+{
+    const tyn_image *images[3] = {light->red, light->green, light->blue};
+    static const char *const names[3] = {"light.red", "light.green", "light.blue"};
+    for (int i = 0; i < 3; i++) {
+        const tyn_image *image = images[i];
+        if (!image) {
+            FAULT("LIGHT needs tyn_frame.light: %s is NULL", names[i]);
+        }
+        const VkExtent3D e = image->extent, first = images[0]->extent;
+        if (image->format != VK_FORMAT_R16G16B16A16_SFLOAT &&
+            image->format != VK_FORMAT_R32G32B32A32_SFLOAT) {
+            FAULT("%s: its format is %d; it must be rgba16f or rgba32f", names[i],
+                  (int)image->format);
+        }
+        if (image->format != images[0]->format || e.width != first.width ||
+            e.height != first.height || e.depth != first.depth) {
+            FAULT("%s: its format and its size must be those of light.red", names[i]);
+        }
+        if (!e.width || !e.height || !e.depth ||
+            (uint64_t)e.width * e.height > (1u << 20) / e.depth) {
+            FAULT("%s is %u x %u x %u; it must have 1 to 1048576 texels", names[i], e.width,
+                  e.height, e.depth);
+        }
+        const tyn_result result = check_image(image, names[i], VK_IMAGE_USAGE_STORAGE_BIT,
+                                              "VK_IMAGE_USAGE_STORAGE_BIT", log);
+        if (result != TYN_OK) {
+            return result;
+        }
+    }
+    return TYN_OK;
 }
 
 // The images of volumes without data; that there are some is known when the scene is fit.
@@ -119,6 +201,12 @@ tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)
         if (result == TYN_OK && frame->depth) {
             result = check_depth(frame, log);
         }
+    }
+    if (result == TYN_OK) {
+        result = check_results(frame, outputs, log);
+    }
+    if (result == TYN_OK && (outputs & TYN_OUTPUT_LIGHT)) {
+        result = check_light(&frame->light, log);
     }
     if (result == TYN_OK) {
         result = tyn_scene_check_values(frame->scene, log);

@@ -1,5 +1,6 @@
 // record.c -- prepares a frame, records it into the caller's command buffer, and gives out what it made.
 #include "frame/context.h"
+#include "base/given.h"
 #include "base/hash.h"
 #include "gpu/device.h"
 #include "scene/check.h"
@@ -53,6 +54,23 @@ uint32_t tyn_context_batch(tyn_context *ctx, const tyn_frame *frame)
     }
     uint32_t batch = ctx->method->batch(&job);
     return batch ? batch : 1;
+}
+
+tyn_result tyn_context_light(const tyn_context *ctx, float world_to_texture[16])
+{
+    if (!ctx || !TYN_GIVEN(&ctx->dev->log, world_to_texture)) {
+        return TYN_ERR_PARAMS;
+    }
+    if (!(ctx->outputs & TYN_OUTPUT_LIGHT)) {
+        tyn_log_print(&ctx->dev->log, TYN_LOG_ERROR,
+                      "tyn_context_light: no frame with TYN_OUTPUT_LIGHT has been prepared");
+        return TYN_ERR_PARAMS;
+    }
+    for (int i = 0; i < 16; i++) {
+        const float size = i % 4 < 3 ? ctx->frame.medium.extent[i % 4] : 1;
+        world_to_texture[i] = ctx->frame.m_from_world[i] / size;
+    }
+    return TYN_OK;
 }
 
 const void *tyn_context_output(tyn_context *ctx, tyn_output output)

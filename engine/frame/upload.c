@@ -101,4 +101,19 @@ void tyn_frame_upload(tyn_context *ctx, const tyn_frame *frame, tyn_scene_refs *
             refs->depth = tyn_graph_import_image(g, "depth", TYN_IMAGE_2D, frame->depth, 0);
         }
     }
+    const tyn_frame_images *to = &frame->images;
+    const tyn_image *images[3] = {to->radiance, to->transmittance, to->depth};
+    static const char *const names[3] = {"host_radiance", "host_transmittance", "host_depth"};
+    for (int i = 0; i < 3; i++) {
+        if (images[i]) {
+            refs->images[i] = tyn_graph_import_image(g, names[i], TYN_IMAGE_2D, images[i], 0);
+        }
+    }
+    if (frame->view->outputs & TYN_OUTPUT_LIGHT) {
+        const tyn_image *light[3] = {frame->light.red, frame->light.green, frame->light.blue};
+        static const char *const colours[3] = {"light_red", "light_green", "light_blue"};
+        for (int i = 0; i < 3; i++) {
+            refs->light[i] = tyn_graph_import_image(g, colours[i], TYN_IMAGE_3D, light[i], 0);
+        }
+    }
 }

@@ -1,5 +1,6 @@
 // job.c -- what methods give the graph of what a job asks for.
 #include <tyndall/extend/job.h>
+#include "passes/export/export.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -8,7 +9,7 @@ const char *tyn_output_name(tyn_output which)
 {
     static const char *const names[] = {"radiance", "transmittance", "depth",   "single",
                                         "multiple", "error",         "display", "points",
-                                        "balance",  "composite",     "fluxes"};
+                                        "balance",  "composite",     "fluxes",  "light"};
     for (uint32_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (which == (tyn_output)(1u << i)) {
             return names[i];
@@ -17,11 +18,39 @@ const char *tyn_output_name(tyn_output which)
     return "unknown";
 }
 
+// Into the host's image, if it lent one for this.
+static void export_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref)
+{
+    static const struct {
+        tyn_output output;
+        const char *name;
+    } images[] = {
+        {TYN_OUTPUT_RADIANCE, "radiance_image"},
+        {TYN_OUTPUT_TRANSMITTANCE, "transmittance_image"},
+        {TYN_OUTPUT_DEPTH, "depth_image"},
+    };
+    for (int i = 0; i < 3; i++) {
+        if (which != images[i].output || !job->refs.images[i].resource) {
+            continue;
+        }
+        const VkFormat format = tyn_graph_format(g, job->refs.images[i]);
+        const tyn_export_params params = {format == VK_FORMAT_R16G16B16A16_SFLOAT ? TYN_EXPORT_HALF
+                                          : format == VK_FORMAT_R32_SFLOAT        ? TYN_EXPORT_ONE
+                                                                           : TYN_EXPORT_FLOAT};
+        tyn_ref refs[EXPORT_NUM_PORTS] = {
+            [EXPORT_PORT_RESULT] = ref, [EXPORT_PORT_HOST] = job->refs.images[i]};
+        tyn_graph_add(g, &tyn_pass_export, &params, refs);
+        tyn_graph_output(g, images[i].name, refs[EXPORT_PORT_HOST], false);
+    }
+}
+
 void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref)
 {
     if (job->outputs & which) {
         tyn_graph_output(g, tyn_output_name(which), ref,
-                         job->readback && which != TYN_OUTPUT_COMPOSITE);
+                         job->readback && which != TYN_OUTPUT_COMPOSITE &&
+                             which != TYN_OUTPUT_LIGHT);
+        export_output(g, job, which, ref);
     }
 }
 

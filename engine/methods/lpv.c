@@ -11,7 +11,7 @@
 #include "view/view.h"
 #include <tyndall/registry.h>
 
-static const uint32_t field_outputs = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE;
+static const uint32_t field_outputs = TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT | TYN_OUTPUT_BALANCE;
 
 static void warn_of_surfaces(const tyn_job *job)
 {
@@ -182,7 +182,8 @@ const tyn_method tyn_method_lpv = {
     .info = {.name = "lpv",
              .summary = "light propagation volumes: scattered light moves on from cell to cell",
              .passes = passes,
-             .outputs = TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE,
+             .outputs =
+                 TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT | TYN_OUTPUT_BALANCE,
              .limits = limits},
     .declare = declare,
 };

@@ -482,6 +482,7 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_path_distance,
     &tyn_pass_raymarch,
     &tyn_pass_tonemap,
+    &tyn_pass_export,
     NULL,
 };
 

@@ -16,7 +16,7 @@
 #include <tyndall/registry.h>
 #include <math.h>
 
-static const uint32_t field_outputs = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE;
+static const uint32_t field_outputs = TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT | TYN_OUTPUT_BALANCE;
 
 // Twice scattered light is about half the scaled scattering depth of that which scattered once: below
 // this depth along the longest way through the box the lattice is left out.
@@ -206,7 +206,8 @@ const tyn_method tyn_method_pop = {
     .info = {.name = "pop",
              .summary = "principal ordinates: exact beams, one lattice for scattered light",
              .passes = passes,
-             .outputs = TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE,
+             .outputs =
+                 TYN_PICTURE_OUTPUTS | TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT | TYN_OUTPUT_BALANCE,
              .traces_rays = true, // virtual lights see what stands around them
              .limits = tyn_limits_pop},
     .declare = declare,

@@ -110,6 +110,7 @@ void tyn_add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance)
 static void add_composite(tyn_graph *g, const tyn_job *job, tyn_ref radiance, tyn_ref transmittance)
 {
     tyn_composite_params params = {
+        .joint = job->half_view,
         .half_color = tyn_graph_format(g, job->refs.color) == VK_FORMAT_R16G16B16A16_SFLOAT,
     };
     tyn_ref refs[TYN_MAX_PORTS] = {
@@ -117,6 +118,11 @@ static void add_composite(tyn_graph *g, const tyn_job *job, tyn_ref radiance, ty
         [COMPOSITE_PORT_TRANSMITTANCE] = transmittance,
         [COMPOSITE_PORT_COLOR] = job->refs.color,
     };
+    if (job->refs.full_depth.resource) {
+        refs[COMPOSITE_PORT_HALF_DEPTH] = job->refs.depth;
+        refs[COMPOSITE_PORT_FULL_DEPTH] = job->refs.full_depth;
+        memcpy(params.depth, job->host_depth, sizeof params.depth);
+    }
     tyn_graph_add(g, &tyn_pass_composite, &params, refs);
     tyn_job_output(g, job, TYN_OUTPUT_COMPOSITE, refs[COMPOSITE_PORT_COLOR]);
 }
@@ -200,6 +206,9 @@ void tyn_add_views(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     }
     if (job->outputs & TYN_OUTPUT_PROBE) {
         tyn_add_probe(g, job, in);
+    }
+    if (job->outputs & TYN_OUTPUT_LIGHT) {
+        tyn_add_light_field(g, job, in);
     }
     if (job->outputs & TYN_OUTPUT_BALANCE) {
         tyn_add_balance(g, job, in);

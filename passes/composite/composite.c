@@ -1,15 +1,21 @@
 // composite.c -- lays the medium over the host's picture: color = color x transmittance + radiance.
 #include "composite.h"
+#include "composite_args.h"
 #include "composite_half.comp.h"
 #include "composite_float.comp.h"
+#include "composite_joint_half.comp.h"
+#include "composite_joint_float.comp.h"
+#include <string.h>
 
 static const tyn_port ports[] = {COMPOSITE_PORTS(TYN_PORT_ROW)};
 
-enum { KERNEL_FLOAT = 0, KERNEL_HALF, NUM_KERNELS };
+enum { KERNEL_FLOAT = 0, KERNEL_HALF, KERNEL_JOINT_FLOAT, KERNEL_JOINT_HALF, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_FLOAT] = TYN_KERNEL(composite_float),
     [KERNEL_HALF] = TYN_KERNEL(composite_half),
+    [KERNEL_JOINT_FLOAT] = TYN_KERNEL(composite_joint_float),
+    [KERNEL_JOINT_HALF] = TYN_KERNEL(composite_joint_half),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
@@ -17,11 +23,12 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_composite_params *p = params;
     tyn_extent radiance = tyn_build_extent(b, COMPOSITE_PORT_RADIANCE);
     tyn_extent color = tyn_build_extent(b, COMPOSITE_PORT_COLOR);
-    if (radiance.x != color.x || radiance.y != color.y) {
-        tyn_log_print(
-            tyn_build_log(b), TYN_LOG_ERROR,
-            "composite: the host's colour image is %ux%u, the view %ux%u: make them equal", color.x,
-            color.y, radiance.x, radiance.y);
+    const uint32_t times = p->joint ? 2 : 1;
+    if (times * radiance.x != color.x || times * radiance.y != color.y) {
+        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                      "composite: the host's colour image is %ux%u, the view %ux%u: make it %u "
+                      "times the view",
+                      color.x, color.y, radiance.x, radiance.y, times);
         return TYN_ERR_PARAMS;
     }
     if (p->half_color) {
@@ -33,8 +40,17 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_composite_params *p = params;
-    TYN_DISPATCH(r, .kernel = p->half_color ? KERNEL_HALF : KERNEL_FLOAT,
-                 .cells = tyn_rec_extent(r, COMPOSITE_PORT_COLOR));
+    const tyn_extent size = tyn_rec_extent(r, COMPOSITE_PORT_COLOR);
+    if (!p->joint) {
+        TYN_DISPATCH(r, .kernel = p->half_color ? KERNEL_HALF : KERNEL_FLOAT, .cells = size);
+        return;
+    }
+    struct composite_args args = {.depth = {0}};
+    if (tyn_rec_has(r, COMPOSITE_PORT_FULL_DEPTH)) {
+        memcpy(args.depth, p->depth, sizeof args.depth);
+    }
+    TYN_DISPATCH(r, .kernel = p->half_color ? KERNEL_JOINT_HALF : KERNEL_JOINT_FLOAT, .cells = size,
+                 .args = &args);
 }
 
 const tyn_pass_desc tyn_pass_composite = {

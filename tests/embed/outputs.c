@@ -12,6 +12,7 @@
 #include <tyndall/context.h>
 #include <tyndall/registry.h>
 
+#include "base/half.h"
 #include "bound.h"
 #include "host.h"
 #include "numbers.h"
@@ -343,12 +344,409 @@ static void bad_views(void **state)
     tyn_scene_finish(&scene);
 }
 
+// ---- results in images of the host --------------------------------------------------------------
+
+static host_image result_image(fixture *f, VkFormat format, VkExtent3D size)
+{
+    return host_image_new(&f->host, format, size,
+                          VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                              VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
+}
+
+static const struct {
+    tyn_output output;
+    VkFormat formats[2];
+} results[3] = {
+    {TYN_OUTPUT_RADIANCE, {VK_FORMAT_R32G32B32A32_SFLOAT, VK_FORMAT_R16G16B16A16_SFLOAT}},
+    {TYN_OUTPUT_TRANSMITTANCE, {VK_FORMAT_R16G16B16A16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT}},
+    {TYN_OUTPUT_DEPTH, {VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT}},
+};
+
+static const char *const result_names[3] = {"radiance", "transmittance", "depth"};
+
+static uint32_t texel_bytes(VkFormat format)
+{
+    return format == VK_FORMAT_R32G32B32A32_SFLOAT   ? 16
+           : format == VK_FORMAT_R16G16B16A16_SFLOAT ? 8
+                                                     : 4;
+}
+
+static float value_at(const host_buffer *buffer, VkFormat format, size_t i)
+{
+    return format == VK_FORMAT_R16G16B16A16_SFLOAT
+               ? tyn_half_to_float(((const uint16_t *)buffer->data)[i])
+               : ((const float *)buffer->data)[i];
+}
+
+// The host goes on from the states that it was promised: it copies them out.
+static void images_of(fixture *f, const char *method, int round)
+{
+    tyn_scene scene;
+    make_scene(&scene);
+    tyn_context *ctx = new_context(f, method);
+    const tyn_view view =
+        make_view(TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH);
+    host_image image[3];
+    host_buffer down[3];
+    tyn_image lent[3];
+    for (int i = 0; i < 3; i++) {
+        const VkFormat format = results[i].formats[round];
+        image[i] = result_image(f, format, (VkExtent3D){WIDTH, HEIGHT, 1});
+        down[i] = host_buffer_new(&f->host, (VkDeviceSize)PIXELS * texel_bytes(format));
+        image[i].state = nothing_yet;
+    }
+    tyn_frame frame = {.struct_size = sizeof frame,
+                       .scene = &scene,
+                       .view = &view,
+                       .images = {&lent[0], &lent[1], &lent[2]}};
+    // Twice: nothing has changed the second time, and the images may be others.
+    for (int again = 0; again < 2; again++) {
+        const VkCommandBuffer cmd = host_begin(&f->host, 0);
+        for (int i = 0; i < 3; i++) {
+            image[i].state = again ? image[i].state : nothing_yet;
+            lent[i] = host_lend(&image[i], round ? general : copy_source);
+        }
+        if (!again) {
+            assert_int_equal(tyn_context_prepare(ctx, &frame), TYN_OK);
+        }
+        frame.cmd = cmd;
+        assert_int_equal(tyn_context_record(ctx, &frame), TYN_OK);
+        for (int i = 0; i < 3; i++) {
+            memset(down[i].data, 0xff, down[i].size);
+            host_transition(&f->host, cmd, &image[i], copy_source);
+            host_download(&f->host, cmd, &image[i], &down[i]);
+        }
+        host_submit(&f->host, 0);
+        host_wait(&f->host, 0);
+        for (int i = 0; i < 3; i++) {
+            const VkFormat format = results[i].formats[round];
+            const size_t channels = format == VK_FORMAT_R32_SFLOAT ? 1 : 4;
+            const double rounding =
+                format == VK_FORMAT_R16G16B16A16_SFLOAT ? 1e-3 : 0; // either way
+            const float *right = tyn_context_output(ctx, results[i].output);
+            double largest = 0;
+            for (size_t k = 0; k < PIXELS * channels; k++) {
+                const double expected = (double)right[k / channels * 4 + k % channels];
+                const double found = (double)value_at(&down[i], format, k);
+                largest = maximum(largest, expected);
+                // Smaller than 6e-5 half floats have fewer bits.
+                if (found != expected && // infinities
+                    !(fabs(found - expected) <=
+                      rounding * fabs(expected) + (rounding > 0 ? 6e-8 : 0))) {
+                    fail_msg("%s, texel %zu channel %zu is %g, not %g", result_names[i],
+                             k / channels, k % channels, found, expected);
+                }
+            }
+            assert_true(largest > 0.05);
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        host_image_free(&f->host, &image[i]);
+        host_buffer_free(&f->host, &down[i]);
+    }
+    tyn_context_destroy(&ctx);
+    tyn_scene_finish(&scene);
+    assert_int_equal(f->lines, 0);
+}
+
+static void images(void **state)
+{
+    images_of(*state, "pop", 0);
+    images_of(*state, "pop", 1);
+    images_of(*state, "single", 0);
+}
+
+// ---- the light field ----------------------------------------------------------------------------
+
+enum { FIELD_X = 9, FIELD_Y = 7, FIELD_Z = 5, FIELD = FIELD_X * FIELD_Y * FIELD_Z };
+
+// World position of a texture coordinate: the matrix is a similarity along each axis times a turn.
+static void from_texture(const float m[16], const double at[3], float world[3])
+{
+    for (int k = 0; k < 3; k++) {
+        double sum = 0;
+        for (int i = 0; i < 3; i++) {
+            const double length2 =
+                (double)m[i] * m[i] + (double)m[4 + i] * m[4 + i] + (double)m[8 + i] * m[8 + i];
+            sum += (double)m[4 * k + i] * (at[i] - (double)m[12 + i]) / length2;
+        }
+        world[k] = (float)sum;
+    }
+}
+
+// Against probes at the middles of texels, of the mean fluence; `format` of the images.
+static double light_error(fixture *f, const char *method, VkFormat format, bool unscattered)
+{
+    static const VkExtent3D size = {FIELD_X, FIELD_Y, FIELD_Z};
+    tyn_scene scene;
+    make_scene(&scene);
+    tyn_context *ctx = new_context(f, method);
+    tyn_view view = make_view(TYN_OUTPUT_LIGHT);
+    host_image image[3];
+    host_buffer down[3];
+    tyn_image lent[3];
+    const VkCommandBuffer cmd = host_begin(&f->host, 0);
+    for (int i = 0; i < 3; i++) {
+        image[i] = result_image(f, format, size);
+        image[i].state = nothing_yet;
+        down[i] = host_buffer_new(&f->host, (VkDeviceSize)FIELD * texel_bytes(format));
+        lent[i] = host_lend(&image[i], copy_source);
+    }
+    tyn_frame frame = {.struct_size = sizeof frame,
+                       .cmd = cmd,
+                       .scene = &scene,
+                       .view = &view,
+                       .light = {&lent[0], &lent[1], &lent[2], unscattered}};
+    float to_texture[16];
+    assert_int_equal(tyn_context_prepare(ctx, &frame), TYN_OK);
+    assert_int_equal(tyn_context_record(ctx, &frame), TYN_OK);
+    assert_int_equal(tyn_context_light(ctx, to_texture), TYN_OK);
+    for (int i = 0; i < 3; i++) {
+        host_download(&f->host, cmd, &image[i], &down[i]);
+    }
+    host_submit(&f->host, 0);
+    host_wait(&f->host, 0);
+
+    static float points[FIELD][3];
+    for (int i = 0; i < FIELD; i++) {
+        const double at[3] = {(i % FIELD_X + 0.5) / FIELD_X,
+                              (i / FIELD_X % FIELD_Y + 0.5) / FIELD_Y,
+                              (i / (FIELD_X * FIELD_Y) + 0.5) / FIELD_Z};
+        from_texture(to_texture, at, points[i]);
+    }
+    view.outputs = TYN_OUTPUT_PROBE;
+    view.points = (const float(*)[3])points, view.num_points = FIELD;
+    view.scattered_only = !unscattered;
+    frame.light = (tyn_frame_lights){0};
+    assert_int_equal(tyn_context_prepare(ctx, &frame), TYN_OK);
+    frame.cmd = host_begin(&f->host, 0);
+    assert_int_equal(tyn_context_record(ctx, &frame), TYN_OK);
+    host_submit(&f->host, 0);
+    host_wait(&f->host, 0);
+    const tyn_probe_result *probes = tyn_context_output(ctx, TYN_OUTPUT_PROBE);
+    double worst = 0, mean = 0;
+    for (int i = 0; i < FIELD; i++) {
+        for (int c = 0; c < 3; c++) {
+            mean += (double)probes[i].fluence[c] / (3 * FIELD);
+            for (int k = 0; k < 4; k++) {
+                const float right = k == 0 ? probes[i].fluence[c] : probes[i].flux[3 * (k - 1) + c];
+                const float found = value_at(&down[c], format, 4 * (size_t)i + (size_t)k);
+                worst = maximum(worst, fabs((double)found - (double)right));
+            }
+        }
+    }
+    assert_true(mean > 0.01);
+    for (int i = 0; i < 3; i++) {
+        host_image_free(&f->host, &image[i]);
+        host_buffer_free(&f->host, &down[i]);
+    }
+    tyn_context_destroy(&ctx);
+    tyn_scene_finish(&scene);
+    assert_int_equal(f->lines, 0);
+    print_message("%s: %.2g of the mean fluence, %g\n", method, worst / mean, mean);
+    return worst / mean;
+}
+
+static void light(void **state)
+{
+    fixture *f = *state;
+    assert_true(light_error(f, "pop", VK_FORMAT_R32G32B32A32_SFLOAT, false) <= 2e-5);
+    assert_true(light_error(f, "pop", VK_FORMAT_R32G32B32A32_SFLOAT, true) <= 2e-5);
+    assert_true(light_error(f, "lpv", VK_FORMAT_R32G32B32A32_SFLOAT, false) <= 2e-5);
+    const double in_halves = light_error(f, "pop", VK_FORMAT_R16G16B16A16_SFLOAT, false);
+    assert_within(in_halves, 3e-3, NULL);
+}
+
+// ---- half resolution ----------------------------------------------------------------------------
+
+// Black, with a card in front of a part of the fog: what is laid over it with a view of half the size, against one of the
+// whole size.
+static float *composite(fixture *f, tyn_context *ctx, const tyn_scene *scene, uint32_t divisor)
+{
+    const VkExtent3D size = {WIDTH, HEIGHT, 1};
+    tyn_view view = make_view(TYN_OUTPUT_COMPOSITE);
+    view.width /= divisor, view.height /= divisor;
+    tyn_frame frame = {.struct_size = sizeof frame, .scene = scene, .view = &view};
+    set_view_to_clip(&frame, &view.camera, (float)WIDTH / HEIGHT, REVERSED_INFINITE);
+    host_image color = host_image_new(&f->host, VK_FORMAT_R32G32B32A32_SFLOAT, size,
+                                      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                                          VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+    host_image depth = host_image_new(&f->host, VK_FORMAT_D32_SFLOAT, size,
+                                      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
+    host_buffer up = host_buffer_new(&f->host, PIXELS * 16),
+                deep = host_buffer_new(&f->host, PIXELS * 4),
+                down = host_buffer_new(&f->host, PIXELS * 16);
+    const host_card cards[2] = {{0, 0, WIDTH, HEIGHT, {0, 0, 0, 1}, 0},
+                                {21, 13, 19, 23, {0, 0, 0, 1}, 0.5f / 4.6f}};
+    host_paint(&up, &deep, WIDTH, HEIGHT, cards, 2);
+    frame.cmd = host_begin(&f->host, 0);
+    color.state = depth.state = nothing_yet;
+    host_transition(&f->host, frame.cmd, &color, copy_target);
+    host_transition(&f->host, frame.cmd, &depth, copy_target);
+    host_upload(&f->host, frame.cmd, &up, &color);
+    host_upload(&f->host, frame.cmd, &deep, &depth);
+    const tyn_image lent_color = host_lend(&color, copy_source),
+                    lent_depth = host_lend(&depth, sampled);
+    frame.color = &lent_color, frame.depth = &lent_depth;
+    assert_int_equal(tyn_context_prepare(ctx, &frame), TYN_OK);
+    assert_int_equal(tyn_context_record(ctx, &frame), TYN_OK);
+    host_download(&f->host, frame.cmd, &color, &down);
+    host_submit(&f->host, 0);
+    host_wait(&f->host, 0);
+    float *copy = malloc(PIXELS * 16);
+    memcpy(copy, down.data, PIXELS * 16);
+    host_image_free(&f->host, &color);
+    host_image_free(&f->host, &depth);
+    host_buffer_free(&f->host, &up);
+    host_buffer_free(&f->host, &deep);
+    host_buffer_free(&f->host, &down);
+    return copy;
+}
+
+static void half_resolution(void **state)
+{
+    fixture *f = *state;
+    tyn_scene scene;
+    make_scene(&scene);
+    tyn_context *ctx = new_context(f, "pop");
+    float *whole = composite(f, ctx, &scene, 1), *half = composite(f, ctx, &scene, 2);
+    double sum = 0, edges = 0, mean = 0;
+    uint32_t pixels = 0, near_edge = 0;
+    for (uint32_t y = 8; y < HEIGHT - 8; y++) { // within the fog
+        for (uint32_t x = 16; x < WIDTH - 16; x++) {
+            const size_t i = 4 * ((size_t)y * WIDTH + x);
+            const double off = fabs((double)half[i] - (double)whole[i]);
+            const bool beside = (x >= 20 && x <= 21) || (x >= 39 && x <= 40);
+            if (beside && y > 14 && y < 34) {
+                edges += off;
+                near_edge++;
+            }
+            sum += off;
+            mean += (double)whole[i];
+            pixels++;
+        }
+    }
+    mean /= pixels;
+    const double all = sum / pixels / mean, at_edges = edges / near_edge / mean;
+    print_message("half resolution: %.2g of the mean off, %.2g at edges of depth\n", all, at_edges);
+    assert_true(mean > 0.01);
+    assert_within(all, 5e-2, NULL); // most of it at the outline of the fog
+    assert_within(at_edges, 6e-2, NULL);
+    free(whole);
+    free(half);
+    tyn_context_destroy(&ctx);
+    tyn_scene_finish(&scene);
+    assert_int_equal(f->lines, 0);
+}
+
+// ---- misuse -------------------------------------------------------------------------------------
+
+static bool spoil_images(tyn_frame *frame, tyn_view *view, tyn_image image[6], int fault)
+{
+    switch (fault) {
+    case 0:
+        view->outputs &= ~(uint32_t)TYN_OUTPUT_DEPTH; // its image is there
+        break;
+    case 1:
+        image[0].format = VK_FORMAT_R8G8B8A8_UNORM;
+        break;
+    case 2:
+        image[2].format = VK_FORMAT_R16G16B16A16_SFLOAT; // holds no distances
+        break;
+    case 3:
+        image[1].extent.width++;
+        break;
+    case 4:
+        image[1].usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+        break;
+    case 5:
+        image[0].view = VK_NULL_HANDLE;
+        break;
+    case 6:
+        image[0].after.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+        break;
+    case 7:
+        frame->light.green = NULL;
+        break;
+    case 8:
+        image[3].format = VK_FORMAT_R32_SFLOAT;
+        break;
+    case 9:
+        image[4].format = VK_FORMAT_R16G16B16A16_SFLOAT;
+        break;
+    case 10:
+        image[5].extent.depth++;
+        break;
+    case 11:
+        for (int i = 3; i < 6; i++) {
+            image[i].extent = (VkExtent3D){1024, 1024, 2};
+        }
+        break;
+    case 12:
+        image[5].usage = VK_IMAGE_USAGE_SAMPLED_BIT;
+        break;
+    default:
+        return false;
+    }
+    return true;
+}
+
+static void bad_images(void **state)
+{
+    fixture *f = *state;
+    tyn_scene scene;
+    make_scene(&scene);
+    tyn_context *ctx = new_context(f, "pop");
+    host_image own[6];
+    for (int i = 0; i < 6; i++) {
+        own[i] = result_image(f, VK_FORMAT_R32G32B32A32_SFLOAT,
+                              i < 3 ? (VkExtent3D){WIDTH, HEIGHT, 1} : (VkExtent3D){4, 4, 4});
+        own[i].state = nothing_yet;
+    }
+    float matrix[16];
+    assert_int_equal(tyn_context_light(ctx, matrix), TYN_ERR_PARAMS); // nothing is prepared
+    assert_int_equal(f->lines, 1);
+    for (int fault = 0;; fault++) {
+        tyn_view view = make_view(TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE |
+                                  TYN_OUTPUT_DEPTH | TYN_OUTPUT_LIGHT);
+        tyn_image image[6];
+        for (int i = 0; i < 6; i++) {
+            host_image lent = own[i];
+            image[i] = host_lend(&lent, general);
+        }
+        tyn_frame frame = {.struct_size = sizeof frame,
+                           .scene = &scene,
+                           .view = &view,
+                           .images = {&image[0], &image[1], &image[2]},
+                           .light = {&image[3], &image[4], &image[5], false}};
+        const bool spoiled = spoil_images(&frame, &view, image, fault);
+        f->lines = 0;
+        assert_int_equal(tyn_context_prepare(ctx, &frame), spoiled ? TYN_ERR_PARAMS : TYN_OK);
+        assert_int_equal(f->lines, spoiled);
+        if (!spoiled) {
+            break;
+        }
+    }
+    tyn_context_destroy(&ctx);
+    // A method without a field of light from all sides.
+    ctx = new_context(f, "pop-paper");
+    const tyn_view view = make_view(TYN_OUTPUT_LIGHT);
+    const tyn_frame frame = {.struct_size = sizeof frame, .scene = &scene, .view = &view};
+    assert_int_equal(tyn_context_prepare(ctx, &frame), TYN_ERR_PARAMS);
+    assert_int_equal(f->lines, 1);
+    tyn_context_destroy(&ctx);
+    for (int i = 0; i < 6; i++) {
+        host_image_free(&f->host, &own[i]);
+    }
+    tyn_scene_finish(&scene);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(matrices),
-        cmocka_unit_test(jitter),
-        cmocka_unit_test(bad_views),
+        cmocka_unit_test(matrices),   cmocka_unit_test(jitter), cmocka_unit_test(bad_views),
+        cmocka_unit_test(images),     cmocka_unit_test(light),  cmocka_unit_test(half_resolution),
+        cmocka_unit_test(bad_images),
     };
     return run_cases(tests, set_up, tear_down);
 }

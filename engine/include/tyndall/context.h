@@ -67,6 +67,7 @@ typedef enum tyn_output {
     TYN_OUTPUT_BALANCE = 1 << 8,       // buffer: tyn_balance
     TYN_OUTPUT_COMPOSITE = 1 << 9,     // into tyn_frame.color
     TYN_OUTPUT_FLUXES = 1 << 10,       // buffer: tyn_fluxes (path)
+    TYN_OUTPUT_LIGHT = 1 << 11,        // into tyn_frame.light (pop, lpv)
 } tyn_output;
 
 typedef struct tyn_probe_result {
@@ -124,6 +125,22 @@ typedef struct tyn_view {
                   // lattice.warm): for another scene, or a camera that jumps
 } tyn_view;
 
+// Images of the host that take results: as large as the view, one sample a pixel, STORAGE. What was in them is lost, so
+// `before` may be UNDEFINED. Each needs its output in tyn_view.outputs; NULL: not there.
+typedef struct tyn_frame_images {
+    const tyn_image *radiance, *transmittance; // rgba16f or rgba32f
+    const tyn_image *depth; // r32f (depth) or rgba32f (depth, depth_t50, 0, 0), m
+} tyn_frame_images;
+
+// LIGHT: the light field over the media's box in 3D images, one a colour: fluence (x) and net flux along the world's axes
+// (y, z, w), W/m^2. All three of one size, of the host's choice, and one format, rgba16f or rgba32f, with STORAGE; at most
+// 1048576 texels. tyndall/light.glsl reads them, with the matrix of tyn_context_light.
+typedef struct tyn_frame_lights {
+    const tyn_image *red, *green, *blue; // Required
+    bool
+        unscattered; // with light that comes straight from lights; else what has scattered, was emitted or reflected
+} tyn_frame_lights;
+
 typedef struct tyn_frame {
     size_t struct_size TYN_PARAMS_SIZE(tyn_frame);
     VkCommandBuffer cmd;        // Required: recording, outside a render pass
@@ -134,7 +151,7 @@ typedef struct tyn_frame {
     const tyn_image *densities; // one per volume whose data is NULL, in order
     const uint64_t *density_versions; // NULL = they may have changed every frame
     // COMPOSITE: hardware depth of the host's surfaces, or NULL. D16, D24 or D32 with or without stencil, SAMPLED, one sample
-    // a pixel (resolve before), as large as the view.
+    // a pixel (resolve before), as large as `color`.
     const tyn_image *depth;
     // Required with depth and with world_to_view: the projection, view space (x right, y up, looking along -z) to Vulkan's
     // clip space, z / w in [0, 1], by columns. Without world_to_view only how z and w follow from z is read, so it makes no
@@ -148,7 +165,11 @@ typedef struct tyn_frame {
     // Pixels: the ray of pixel (x, y) goes through (x + 0.5 + jitter[0], y + 0.5 + jitter[1]), y down. For temporal
     // anti-aliasing, where the matrix does not hold it already. `depth` is of the moved picture.
     float jitter[2];
-    const tyn_image *color; // COMPOSITE: Required; rgba16f or rgba32f, STORAGE, one sample a pixel
+    // COMPOSITE: Required; rgba16f or rgba32f, STORAGE, one sample a pixel. As large as the view; or exactly twice that, and
+    // `depth` as well: then the medium is laid over it by bilinear upsampling that keeps to the edges in `depth`.
+    const tyn_image *color;
+    tyn_frame_images images;
+    tyn_frame_lights light;
     // Kernels that are missing are compiled beside the call (tyn_device_params.jobs, compile_threads), not in it: prepare
     // and record give TYN_PENDING meanwhile and change nothing that was prepared before, so that frames like those may go
     // on. The call is cheap: prepare in each frame until it gives TYN_OK, or when tyn_context_pending gives 0.
@@ -165,6 +186,10 @@ TYN_API tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame);
 
 // How many kernels are still to be compiled of the last frame that gave TYN_PENDING. 0: prepare it again.
 TYN_API uint32_t tyn_context_pending(tyn_context *ctx);
+
+// LIGHT, after prepare or record: the way from world positions to texture coordinates of tyn_frame.light, by columns. It
+// changes with the media's boxes alone.
+TYN_API tyn_result tyn_context_light(const tyn_context *ctx, float world_to_texture[16]);
 
 // With `readback`: host memory of an output of the last record, once the GPU has finished it: 4
 // floats a pixel (DISPLAY: 4 bytes), or the probe and balance structs. NULL if it was not asked

@@ -27,8 +27,12 @@ typedef struct tyn_scene_refs {
     tyn_ref emitters; // struct surface_table and cells; {0} if nothing emits, or if it is not read
     tyn_ref areas;    // the same; {0} but for BALANCE
     tyn_ref points;   // PROBE: vec3 in M, scalar
-    tyn_ref depth;    // COMPOSITE: host depth
-    tyn_ref color;    // COMPOSITE: host colour
+    tyn_ref depth;    // COMPOSITE: host depth, as large as the view
+    tyn_ref color;    // COMPOSITE: host colour, as large as the view or twice that
+    tyn_ref
+        full_depth; // COMPOSITE: host depth as large as a colour image of twice the view; else {0}
+    tyn_ref images[3]; // host images for RADIANCE, TRANSMITTANCE, DEPTH: tyn_job_output fills them
+    tyn_ref light[3];  // LIGHT: host images of red, green and blue
 } tyn_scene_refs;
 
 typedef struct tyn_picture_hook tyn_picture_hook;
@@ -44,9 +48,11 @@ typedef struct tyn_job {
     uint32_t outputs; // set of tyn_output that is wanted, all of them in method->outputs
     bool readback;    // copy the outputs to host memory
     bool cpu_device;  // the device is a processor: it reads uniform arrays thread by thread
+    bool half_view;   // COMPOSITE: the host's colour image is twice as large as the view
     // Of the host's depth: (host_depth[0] z + host_depth[1]) / (host_depth[2] z + host_depth[3]) at z = -distance along
     // the camera's `forward`, m.
     float host_depth[4];
+    const tyn_frame_lights *light; // LIGHT: what goes into refs.light
     // Between march and composite: all that are registered. tyn_add_results calls them.
     const tyn_picture_hook *const *hooks;
     uint32_t num_hooks;

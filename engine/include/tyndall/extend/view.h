@@ -41,6 +41,8 @@ TYN_API void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_in
 TYN_API void tyn_add_display(tyn_graph *g, const tyn_job *job, tyn_ref radiance);
 // The light field at the job's points.
 TYN_API void tyn_add_probe(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
+// The light field in the host's images.
+TYN_API void tyn_add_light_field(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
 // Where the energy goes.
 TYN_API void tyn_add_balance(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
 // All of these that the job wants.
@@ -49,8 +51,8 @@ TYN_API void tyn_add_views(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in
 // The passes of these calls, for a method's table (method.h).
 #define TYN_GATHER_PASSES(X) X(scatter_lut), X(env_glow), X(merge)
 #define TYN_SURFACE_PASSES(X) X(gbuffer), X(shade)
-#define TYN_PICTURE_PASSES(X) X(raymarch), X(composite), X(tonemap)
-#define TYN_FIELD_PASSES(X) X(probe), X(balance)
+#define TYN_PICTURE_PASSES(X) X(halve_depth), X(raymarch), X(composite), X(tonemap), X(export)
+#define TYN_FIELD_PASSES(X) X(light_points), X(probe), X(light_field), X(balance)
 
 #ifdef __cplusplus
 }

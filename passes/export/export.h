@@ -1,0 +1,19 @@
+// export.h -- a result in an image of the host.
+#pragma once
+#include <tyndall/pass.h>
+
+enum { TYN_EXPORT_FLOAT, TYN_EXPORT_HALF, TYN_EXPORT_ONE };
+
+typedef struct tyn_export_params {
+    uint32_t
+        kind; // TYN_EXPORT_*: the host's image is rgba32f, rgba16f, or r32f, which takes the first channel
+} tyn_export_params;
+
+// clang-format off
+#define EXPORT_PORTS(X) \
+    X(EXPORT, RESULT, result, IN, IMAGE_2D, "an output, as large as the view"), \
+    X(EXPORT, HOST, host, INOUT, IMAGE_2D, "the host's image, overwritten", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+// clang-format on
+enum { EXPORT_PORTS(TYN_PORT_ENUM), EXPORT_NUM_PORTS };
+
+extern const tyn_pass_desc tyn_pass_export;

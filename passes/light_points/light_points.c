@@ -1,0 +1,33 @@
+// light_points.c -- see light_points.h.
+#include "light_points.h"
+#include "light_points_args.h"
+#include "light_points.comp.h"
+
+static const tyn_port ports[] = {LIGHT_POINTS_PORTS(TYN_PORT_ROW)};
+
+static const tyn_kernel kernels[] = {TYN_KERNEL(light_points)};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    const tyn_light_points_params *p = params;
+    tyn_build_buffer(b, LIGHT_POINTS_PORT_POINTS,
+                     3 * sizeof(float) * (uint64_t)p->size[0] * p->size[1] * p->size[2]);
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_light_points_params *p = params;
+    const struct light_points_args args = {.size = {p->size[0], p->size[1], p->size[2]}};
+    TYN_DISPATCH(r, .cells = {p->size[0], p->size[1], p->size[2]}, .args = &args);
+}
+
+const tyn_pass_desc tyn_pass_light_points = {
+    .name = "light_points",
+    .summary = "where the texels of a host's light field are",
+    .serves = "a host's images of the light field",
+    TYN_PASS_TABLES(tyn_light_points_params),
+    .media_only = true,
+    .debug_port = LIGHT_POINTS_PORT_POINTS,
+    .debug_meaning = "positions, m",
+};

@@ -1,0 +1,11 @@
+// light_points_args.h -- push constants of the kernel. Included by C and GLSL.
+#ifndef TYN_LIGHT_POINTS_ARGS_H
+#define TYN_LIGHT_POINTS_ARGS_H
+#include "shaders/common/shared.h"
+
+struct light_points_args {
+    tyn_uvec3 size;
+};
+TYN_ASSERT_SIZE(light_points_args, 12);
+
+#endif
