@@ -145,6 +145,14 @@ near "$(value rel_l1)" 0 0.001 "the page's plugin"
 works compare false.exr last.exr --block 8
 near "$(value rel_l1)" 0 0.01 "colours of an optical depth of 4 of 4"
 
+# ---- on the screen ----
+if "$tool" view --help >/dev/null 2>&1; then
+    VIEW_PLUGIN=$work/diffusion.so VIEW_TESTS=test_plugin "$source/tests/view/view.py" "$tool" "$scenes" "$helpers" >view.log 2>&1
+    code=$?
+    [ "$code" = 77 ] && grep skipped view.log
+    [ "$code" = 0 ] || [ "$code" = 77 ] || fail "the viewer with a plugin: $(cat view.log)"
+fi
+
 # ---- a host with the library inside it ----
 cc -std=c11 -Wall -Werror -o host "$source/tests/cli/plugin_host.c" -I"$prefix/include" "$build/libtyndall-core.a" -lm -ldl -lpthread ||
     fail "a static host does not build"

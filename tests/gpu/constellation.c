@@ -404,7 +404,7 @@ static stage *rod(bool wall)
     view_orthographic(&s->view, (float[]){0.05f, 0, 0}, 0.2f, 0.1f, -1, (float[]){0, 1, 0},
                       0.5f * thick, 2);
     s->view.width = 6;
-    s->view.no_background = true;
+    s->view.no_background = !wall; // else surfaces are not seen
     return s;
 }
 
@@ -414,7 +414,7 @@ static void lights_in_parts(void **state)
     enum { RUNS = 4, EACH = 64 / RUNS };
     for (int wall = 0; wall < 2; wall++) {
         stage *s = rod(wall);
-        const char *const settings = wall ? "constellation.slice=0.06" : "constellation.slice=0.05";
+        const char *const settings = "constellation.slice=0.05";
         picture all = render(*state, s, settings);
         tyn_light suns[64];
         memcpy(suns, s->scene.lights, sizeof suns);

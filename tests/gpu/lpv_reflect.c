@@ -177,6 +177,38 @@ static void into_one_cell(void **state)
     assert_true(fabs((double)found->unit * found->power[cell][0] / all - 1) < 1e-4);
 }
 
+// Texels of a third of a unit each, beside a bright one that makes the unit: right on average.
+static void faint(void **state)
+{
+    start();
+    add_plane(0, 1, 0, (float[]){0, 1, 0});
+    add_plane(TYN_SHADOW_LAMP(0), 0, 2, (float[]){-1, 0, 0});
+    double expected = 0;
+    for (uint32_t i = 0; i < TILES * SIDE * SIDE; i++) {
+        float *flux = s.flux[i / SIDE][i % SIDE];
+        const bool wall = i / SIDE >= SIDE;
+        flux[0] = wall ? i == SIDE * SIDE : 5e-10f;
+        flux[1] = flux[2] = 0;
+        expected += wall ? 0 : (double)flux[0] * exp(-extinction(0) * 2);
+    }
+    static sums first;
+    memcpy(&first, run(*state), sizeof first);
+    assert_memory_equal(&first, run(*state), sizeof first);
+    double found = 0;
+    for (uint32_t i = 0; i < N; i++) {
+        // The wall's bright texel is in a cell along x = 2, which the floor's are counted without.
+        if (i / CELLS % CELLS == 0 && i % CELLS < CELLS - 1) {
+            found += (double)first.unit * first.power[i][0];
+        }
+    }
+    expected *= (CELLS - 1.0) / CELLS;
+    const double noise = 0.5 * SIDE * (double)first.unit;
+    print_message("faint: %.3e W, expected %.3e, noise %.1e; a texel is %.1e of a unit\n", found,
+                  expected, noise, 5e-10 * exp(-extinction(0) * 2) / (double)first.unit);
+    assert_true(fabs(found - expected) < 4 * noise);
+    assert_true(expected > 20 * noise);
+}
+
 // Surfaces farther from the lattice than half a cell, and texels of nothing, bring nothing.
 static void beyond(void **state)
 {
@@ -193,6 +225,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(where_it_belongs),
         cmocka_unit_test(into_one_cell),
+        cmocka_unit_test(faint),
         cmocka_unit_test(beyond),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);

@@ -1,6 +1,7 @@
 // raymarch.c -- the ray march against closed forms and a CPU twin.
 #include "bound.h"
 #include "gpu_test.h"
+#include "numbers.h"
 #include "passes/raymarch/raymarch.h"
 #include "shaders/common/counters.h"
 #include "shaders/beams/beam_args.h"
@@ -587,6 +588,55 @@ static void host_depth(void **state)
     free(s);
 }
 
+// A host's depth image with a slanting floor, holes and a comb of single pixels, of which one ray for four pixels sees little: the
+// march at a lower resolution ends at the same depths, and shows what is behind where nothing is.
+static void host_depth_sparse(void **state)
+{
+    enum { SIZE = 64, N = SIZE * SIZE };
+    gpu_test *t = *state;
+    march_scene *s = malloc(sizeof *s);
+    static float depth[N], all[N][4];
+    for (int i = 0; i < N; i++) {
+        const int x = i % SIZE, y = i / SIZE;
+        const float away = 1.6f + 0.8f * (float)y / SIZE; // from the front of the box to its back
+        const bool hole = x / 16 % 2 && y / 16 % 2, comb = y > 48 && x % 5 == 0;
+        depth[i] = hole || comb ? 0 : 0.1f / away;
+    }
+    for (int sparse = 0; sparse < 2; sparse++) {
+        make_cube(s, 2, 0.5f, 0.4f);
+        set_sun(s, 0.3f, 0.5f, -1);
+        set_camera(s, 0, 1, 0, 2); // the box is from 1.5 to 2.5
+        s->camera.orthographic = 0;
+        s->camera.size[0] = s->camera.size[1] = s->params.width = s->params.height = SIZE;
+        s->params.background = 1;
+        s->params.sparse = sparse;
+        s->env.radiance[0] = 3;
+        s->host_depth = depth;
+        memcpy(s->params.depth, (float[]){0, 0.1f, -1, 0}, sizeof s->params.depth);
+        run(t, s);
+        if (sparse == 0) {
+            memcpy(all, pixel(t, s, "radiance", 0, 0), sizeof all);
+        }
+    }
+    const float(*found)[4] = (const float(*)[4])pixel(t, s, "radiance", 0, 0);
+    double sum = 0, apart = 0, worst = 0;
+    int differ = 0;
+    for (int i = 0; i < N; i++) {
+        const double off = fabs((double)found[i][0] - (double)all[i][0]);
+        sum += (double)all[i][0];
+        apart += off;
+        worst = maximum(worst, off / ((double)all[i][0] + 0.01));
+        differ += off > 0;
+    }
+    print_message("under a host's depth %.3f %% off, a pixel at most %.2f %%; %d of %d differ\n",
+                  100 * apart / sum, 100 * worst, differ, N);
+    assert_within(apart / sum, 0.0009, NULL);
+    // Most where rays through a hole leave by the box's rim.
+    assert_within(worst, 0.2, NULL);
+    assert_true(differ > N / 30); // else nothing was saved
+    free(s);
+}
+
 // The left half of the image has a surface in the middle of the box: what it sends is seen through the
 // medium in front of it, and with what that scatters forward; no light comes from behind it.
 static void surfaces(void **state)
@@ -707,12 +757,19 @@ static void nothing(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(single_scattering), cmocka_unit_test(lumps_grey),
-        cmocka_unit_test(lumps_colour),      cmocka_unit_test(skipping),
-        cmocka_unit_test(furnace),           cmocka_unit_test(opaque),
-        cmocka_unit_test(surfaces),          cmocka_unit_test(host_depth),
-        cmocka_unit_test(bad_density),       cmocka_unit_test(opaque_in_one_colour),
-        cmocka_unit_test(antialias),         cmocka_unit_test(nothing),
+        cmocka_unit_test(single_scattering),
+        cmocka_unit_test(lumps_grey),
+        cmocka_unit_test(lumps_colour),
+        cmocka_unit_test(skipping),
+        cmocka_unit_test(furnace),
+        cmocka_unit_test(opaque),
+        cmocka_unit_test(surfaces),
+        cmocka_unit_test(host_depth),
+        cmocka_unit_test(host_depth_sparse),
+        cmocka_unit_test(bad_density),
+        cmocka_unit_test(opaque_in_one_colour),
+        cmocka_unit_test(antialias),
+        cmocka_unit_test(nothing),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

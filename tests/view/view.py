@@ -3,7 +3,8 @@
 
 TYNDALL is the tool, SCENES the folder of sample scenes, HELPERS that of drop, lose.so and hold.so (drop.c, ...). Screens
 are read from Xvfb's frame buffer and compared with what `tyndall render` writes. With PICTURES the screens are written
-there as PNG. Exit 77: skipped, as something is missing.
+there as PNG. VIEW_TESTS names the tests to run, else all; VIEW_PLUGIN is a plugin with method "diffusion", for test_plugin
+(tests/cli/plugin.sh builds it). Exit 77: skipped, as something is missing.
 """
 import json
 import math
@@ -18,6 +19,7 @@ import zlib
 
 TYNDALL, SCENES, HELPERS = map(os.path.abspath, sys.argv[1:4])
 PICTURES = sys.argv[4] if len(sys.argv) > 4 else None
+PLUGIN = os.environ.get("VIEW_PLUGIN")
 WIDTH, HEIGHT = 320, 240
 failures = []
 
@@ -537,6 +539,23 @@ def test_rebuild(screen, work):
     check(stats.get("validation_messages") == 0, f"validation: {viewer.text()[:800]}")
 
 
+def test_plugin(screen, work):
+    """A method that a plugin brings is shown, and left for one of Tyndall's own."""
+    scene, mine = os.path.join(SCENES, "cube.gltf"), ["--plugin", PLUGIN, "--method", "diffusion"]
+    viewer = Viewer(screen, work, scene, "--validate", *mine)
+    expected = render(work, scene, *mine)
+    shown = viewer.settled(like=expected)
+    keep("plugin", shown)
+    check(difference(shown, expected) < 1, f"diffusion: {difference(shown, expected):.2f} off render's")
+    viewer.key(str(methods().index("single") + 1))
+    expected = render(work, scene, "--method", "single")
+    single = viewer.settled(like=expected)
+    check(difference(single, expected) < 1, f"then single: {difference(single, expected):.2f} off render's")
+    check(difference(single, shown) > 1, f"single is {difference(single, shown):.2f} from diffusion")
+    stats = viewer.close()
+    check(stats.get("validation_messages") == 0, f"validation: {viewer.text()[:800]}")
+
+
 def test_lost(screen, work):
     scene = os.path.join(SCENES, "cube.gltf")
     for what in ["surface-acquire", "surface-present", "date-acquire", "date-present", "device-submit", "device-fence"]:
@@ -564,7 +583,7 @@ def main():
         return 77
     test_no_display()
     tests = [test_camera_and_methods, test_old_picture_stays, test_window, test_save, test_split_and_probe, test_panel,
-             test_reload, test_sequence, test_drop, test_rebuild, test_lost]
+             test_reload, test_sequence, test_drop, test_rebuild, test_lost] + ([test_plugin] if PLUGIN else [])
     only = os.environ.get("VIEW_TESTS", "").split()
     for test in tests:
         if only and test.__name__ not in only:
