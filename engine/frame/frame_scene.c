@@ -448,7 +448,7 @@ static void build_surfaces(tyn_frame_scene *out, const tyn_surfaces *surfaces,
     if (surfaces->num_triangles <= TYN_SURFACE_FEW) {
         build_few(b->few, surfaces);
     }
-    b->num_nodes = surfaces->num_nodes;
+    b->num_nodes = surfaces->num_nodes ? surfaces->num_nodes : 1;
     out->below = data->below;
     out->seen = data->seen;
     for (int r = 0; r < 3; r++) {

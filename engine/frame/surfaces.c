@@ -189,6 +189,9 @@ tyn_result tyn_surface_data_update(tyn_surface_data *data, const tyn_surfaces *s
         return result;
     }
     tyn_surfaces_bounds(surfaces, data->lo, data->hi);
+    data->leaf.count = surfaces->num_triangles;
+    memcpy(data->leaf.lo, data->lo, sizeof data->leaf.lo);
+    memcpy(data->leaf.hi, data->hi, sizeof data->leaf.hi);
     data->hash = hash;
     return TYN_OK;
 }

@@ -15,6 +15,7 @@ typedef struct tyn_surface_data {
     struct surface_range *below; // of every node (light/shadow_cull.h); NULL without a hierarchy
     struct tyn_views_seen *seen; // with `below`
     uint32_t num_nodes;
+    tyn_surface_node leaf;  // of all triangles, for surfaces without a hierarchy
     void *emitters, *areas; // frame/surface_tables.h; NULL if there are none or nobody reads them
     size_t emitters_size, areas_size;
     bool has_emitters, has_areas; // were asked for and made

@@ -28,6 +28,8 @@ static void upload_surfaces(tyn_context *ctx, const tyn_surfaces *s, tyn_scene_r
     if (!ctx->frame.num_triangles) {
         return;
     }
+    const tyn_surface_node *nodes = s->num_nodes ? s->nodes : &data->leaf;
+    const uint32_t num_nodes = ctx->frame.surfaces.num_nodes;
     struct {
         tyn_ref *ref;
         const char *name;
@@ -42,7 +44,7 @@ static void upload_surfaces(tyn_context *ctx, const tyn_surfaces *s, tyn_scene_r
         {&refs->materials.textures, "textures", data->textures,
          data->num_textures * sizeof *data->textures},
         {&refs->materials.texels, "texels", data->texels, data->num_texels * sizeof *data->texels},
-        {&refs->geometry.nodes, "nodes", s->nodes, s->num_nodes * sizeof *s->nodes},
+        {&refs->geometry.nodes, "nodes", nodes, num_nodes * sizeof *nodes},
         {&refs->emitters, "emitters", data->emitters, data->emitters_size},
         {&refs->areas, "areas", data->areas, data->areas_size},
     };

@@ -37,7 +37,7 @@ static double count_reflections(const tyn_surfaces *surfaces)
 static double ray_cost_ns(const tyn_frame_scene *frame)
 {
     double triangles = frame->num_triangles;
-    bool tree = frame->surfaces.num_nodes && triangles > TYN_SURFACE_FEW;
+    bool tree = frame->surfaces.num_nodes > 1 && triangles > TYN_SURFACE_FEW;
     return tree ? 90 + 25 * log2(1 + triangles)
                 : 20 + (triangles > TYN_SURFACE_FEW ? 8 : 2) * triangles;
 }

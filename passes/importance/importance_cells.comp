@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define MEDIUM_AT 0
+#include "shaders/common/uniform_branch.glsl"
 #include "shaders/medium/medium.glsl"
 #include "importance.glsl"
 
@@ -49,7 +50,7 @@ void main()
     uint index = (cell.z * args.cells + cell.y) * args.cells + cell.x;
     importance_cell here = importance_cell(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, vec2(0.0), vec2(0.0));
     float power = 0.0;
-    if (grid.empty == 0u) {
+    if (uniform_branch(grid.empty == 0u)) {
         vec3 scattered = vec3(0.0), absorbed = vec3(0.0), turned = vec3(0.0);
         float density = 0.0;
         for (int k = 0; k < SAMPLES; k++) {

@@ -2,6 +2,7 @@
 // the box, marched from where the importance leaves.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "shaders/common/uniform_branch.glsl"
 #include "shaders/common/camera.glsl"
 #include "importance.glsl"
 
@@ -53,7 +54,7 @@ void main()
     vec3 v = cross(w, u);
     vec2 side = vec2(dot(abs(u), medium.extent), dot(abs(v), medium.extent)); // of the box seen from w
     float sum = 0.0;
-    if (grid.empty == 0u) {
+    if (uniform_branch(grid.empty == 0u)) {
         for (int i = 0; i < TYN_IMPORTANCE_RAYS; i++) {
             vec2 at = (vec2(local.x, i) + 0.5) / float(TYN_IMPORTANCE_RAYS) - 0.5;
             sum += march(0.5 * medium.extent + u * (at.x * side.x) + v * (at.y * side.y), w);

@@ -1,6 +1,7 @@
 // light_cells_see.comp -- what the lights see of each cube.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "shaders/light/light_cells_args.h"
 
 #define SHADOW_BLOCKS 0
@@ -23,11 +24,12 @@ void main()
     vec3 middle = (vec3(cell) + 0.5) * args.edge;
     float reach = (0.5 + TYN_LIGHT_CELLS_REACH) * args.edge;
     uint bits = 0u;
-    for (uint n = 0u; n < num_suns; n++) {
+    // Not unrolled: uniform_branch.glsl.
+    [[dont_unroll]] for (uint n = 0u; n < num_suns; n++) {
         shadow_light l = shadows[n];
         bits |= shadow_region_seen(l, shadow_region_sun(l, middle, reach)) << (2u * n);
     }
-    for (uint n = TYN_SHADOW_SUNS; n < TYN_SHADOW_SUNS + num_lamps; n++) {
+    [[dont_unroll]] for (uint n = TYN_SHADOW_SUNS; n < TYN_SHADOW_SUNS + num_lamps; n++) {
         shadow_light l = shadows[n];
         bits |= shadow_region_seen(l, shadow_region_lamp(l, middle, reach)) << (2u * n);
     }

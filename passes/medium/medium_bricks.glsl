@@ -3,6 +3,7 @@
 // Include after medium_shapes.glsl.
 #ifndef TYN_MEDIUM_BRICKS_GLSL
 #define TYN_MEDIUM_BRICKS_GLSL
+#include "shaders/common/uniform_branch.glsl"
 
 const vec2 BRICK_NOTHING = vec2(3.4e38, 0.0);
 
@@ -42,9 +43,9 @@ vec2 brick_of_shape(shape_block s, vec3 lo, vec3 hi)
 vec2 brick_of_shapes(vec3 lo, vec3 hi)
 {
     vec3 least = vec3(0.0), largest = vec3(0.0);
-    for (uint i = 0u; i < medium.num_shapes; i++) {
-        vec3 weight = medium.mode == TYN_MEDIUM_DENSITY ? vec3(shape_scale(shapes[i]))
-                                                        : shapes[i].sigma_s + shapes[i].sigma_a;
+    for (uint i = 0u; uniform_branch(i < medium.num_shapes); i++) {
+        vec3 weight = uniform_branch(medium.mode == TYN_MEDIUM_DENSITY) ? vec3(shape_scale(shapes[i]))
+                                                                        : shapes[i].sigma_s + shapes[i].sigma_a;
         vec2 range = brick_of_shape(shapes[i], lo, hi);
         least += range.x * weight;
         // A medium that only emits must not look empty; the majorant stays one.

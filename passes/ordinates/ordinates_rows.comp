@@ -1,6 +1,7 @@
 // ordinates_rows.comp -- luminance times importance, summed along the rows; a workgroup per row.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "shaders/common/uniform_branch.glsl"
 #include "shaders/light/environment.glsl"
 #include "shaders/light/sky.glsl"
 
@@ -24,7 +25,7 @@ void main()
     // The rows are an orthonormal frame: their transpose leads back to M.
     vec3 d_M = environment.rows[0].xyz * d.x + environment.rows[1].xyz * d.y +
                environment.rows[2].xyz * d.z;
-    float luminance = environment.has_map == 0u ? sky_texel_solid_angle(y, size)
+    float luminance = uniform_branch(environment.has_map == 0u) ? sky_texel_solid_angle(y, size)
                                                 : texelFetch(sky, ivec2(x, y), LEVEL).a;
     values[x] = luminance * max(textureLod(importance_wrapped, environment_uv(d_M), 0.0).r, 0.0);
     barrier();

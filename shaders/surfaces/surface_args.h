@@ -25,7 +25,7 @@ struct surface_block {    // uniform buffer "surfaces"
     tyn_vec3 lo; // world box of all triangles, m
     tyn_uint num_triangles;
     tyn_vec3 hi;
-    tyn_uint num_nodes;                               // of the hierarchy; 0: none
+    tyn_uint num_nodes; // of the hierarchy: at least a leaf of all triangles
     TYN_STRUCT(surface_corners) few[TYN_SURFACE_FEW]; // the triangles, if there are no more
 };
 TYN_ASSERT_SIZE(surface_block, 2048);

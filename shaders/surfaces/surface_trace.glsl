@@ -152,17 +152,10 @@ bool surface_trace_world(surface_ray ray, bool any, inout surface_hit hit)
         return surface_meet_few(ray, hit);
     }
     bool found = false;
-    if (surfaces.num_nodes == 0u) {
-        for (uint i = 0u; i < surfaces.num_triangles && !(any && found); i++) {
-            found = surface_meet(ray, i, hit) || found;
-            surface_turns++;
-        }
-        return found;
-    }
     uint stack[TYN_SURFACE_STACK];
     int depth = 0;
     surface_entry root = surface_enter_node(ray, 0u, hit.t);
-    if (root.at == SURFACE_MISSED) {
+    if (root.at == SURFACE_MISSED || root.first + root.count == 0u) { // without surfaces all is 0
         return false;
     }
     uint first = root.first, count = root.count;

@@ -113,7 +113,10 @@ static const ray_out *trace(gpu_test *t, const tyn_scene *scene, struct surface_
     const tyn_surfaces *s = &scene->surfaces;
     point_pass_init(&pass, surface_trace_eval_spirv, sizeof surface_trace_eval_spirv, inputs, 4);
     block->num_triangles = s->num_triangles;
-    block->num_nodes = how == TREE ? s->num_nodes : 0;
+    tyn_surface_node leaf = {
+        .lo = {-1e3f, -1e3f, -1e3f}, .hi = {1e3f, 1e3f, 1e3f}, .count = s->num_triangles};
+    const tyn_surface_node *nodes = how == TREE ? s->nodes : &leaf;
+    block->num_nodes = how == TREE ? s->num_nodes : 1;
     uint32_t few = how == FEW ? s->num_triangles : 0;
     assert_in_range(few, 0, TYN_SURFACE_FEW);
     if (few) {
@@ -124,7 +127,7 @@ static const ray_out *trace(gpu_test *t, const tyn_scene *scene, struct surface_
         gpu_buffer(t, "surfaces", block, sizeof *block),
         gpu_buffer(t, "vertices", s->vertices, s->num_vertices * sizeof *s->vertices),
         gpu_buffer(t, "triangles", s->triangles, s->num_triangles * sizeof *s->triangles),
-        gpu_buffer(t, "nodes", s->nodes, s->num_nodes * sizeof *s->nodes),
+        gpu_buffer(t, "nodes", nodes, block->num_nodes * sizeof *nodes),
         gpu_buffer(t, "points", rays, sizeof rays),
     };
     point_pass_params params = {COUNT, sizeof(ray_out), from_surface + 2 * few, pass.results};
