@@ -187,9 +187,12 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         return tyn_graph_status(g);
     }
     if (job->frame->num_triangles) {
-        tyn_job_warn_surfaces(job,
-                              "do not stop an environment's light on its way through the medium, "
-                              "and send none into it");
+        const struct env_block *sky = &job->frame->environment;
+        tyn_job_warn_surfaces(
+            job, sky->has_map || sky->radiance[0] + sky->radiance[1] + sky->radiance[2] > 0
+                     ? "do not stop an environment's light on its way through "
+                       "the medium, and send none into it"
+                     : "send no light into the medium");
     }
     tyn_limits_warn(job, 0);
     tyn_add_medium(g, job, &s);

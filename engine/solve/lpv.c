@@ -22,6 +22,7 @@ static tyn_ref add_reflected(tyn_graph *g, const tyn_job *job, const tyn_sources
     tyn_connect(refs, LPV_REFLECT_PORT_BEAMS, s->beams);
     tyn_connect(refs, LPV_REFLECT_PORT_RADIALS, s->lamps.radials);
     tyn_connect(refs, LPV_REFLECT_PORT_RSM_FLUX, rsm.maps);
+    tyn_connect(refs, LPV_REFLECT_PORT_WALL_LINKS, s->walls.cut);
     tyn_graph_add(g, &tyn_pass_lpv_reflect, &params, refs);
     tyn_job_counters(g, job, &tyn_pass_lpv_reflect, refs[LPV_REFLECT_PORT_COUNTERS]);
     return refs[LPV_REFLECT_PORT_REFLECTED];

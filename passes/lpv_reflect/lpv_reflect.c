@@ -62,8 +62,9 @@ static void record(tyn_recorder *r, const void *params)
         while (end < p->num_tiles && p->tiles[end].texels == texels) {
             end++;
         }
-        TYN_DISPATCH(r, .kernel = KERNEL_DEPOSIT, .cells = {texels, texels, end - args.first},
-                     .args = &args, .spec = &p->mode);
+        TYN_DISPATCH(
+            r, .kernel = KERNEL_DEPOSIT, .cells = {texels, texels, end - args.first}, .args = &args,
+            .spec = ((const uint32_t[]){p->mode, tyn_rec_has(r, LPV_REFLECT_PORT_WALL_LINKS)}));
         tyn_rec_work(r, "texels", (double)texels * texels * (end - args.first));
     }
 }

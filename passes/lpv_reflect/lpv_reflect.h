@@ -1,6 +1,7 @@
 // lpv_reflect.h -- what surfaces reflect of suns and lamps, into the cells of a light propagation volume.
 //
-// Every texel of the reflective shadow maps is added to the cell in front of it, with a cosine lobe about its normal and
+// Every texel of the reflective shadow maps is added to the cell in front of it, on its side of all walls that are known
+// ("wall_links"), with a cosine lobe about its normal and
 // less what the medium takes on the way from the light. Sums are whole numbers, in units of a bound of the sum of
 // all: they do not depend on the order and cannot overflow.
 #pragma once
@@ -22,6 +23,7 @@ typedef struct tyn_lpv_reflect_params {
     TYN_BEAMS(X##_OPTIONAL, LPV_REFLECT), \
     TYN_RADIALS(X##_OPTIONAL, LPV_REFLECT), \
     TYN_RSM(X, LPV_REFLECT), \
+    TYN_WALLS(X##_OPTIONAL, LPV_REFLECT), \
     X(LPV_REFLECT, REFLECTED, reflected, OUT, BUFFER, \
         "float unit, W; uint pad[3]; ivec4[channel][cell]: power and its first moment in that unit"), \
     X(LPV_REFLECT, COUNTERS, counters, OUT, BUFFER, "struct counters_block"), \

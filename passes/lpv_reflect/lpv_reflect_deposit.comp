@@ -17,6 +17,8 @@
 #include "shaders/random/rng.glsl"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/lattice/lattice_sweep.glsl"
+#define WALLS_AT 20
+#include "shaders/walls/lattice_walls.glsl"
 
 layout(local_size_x = LPV_REFLECT_SIDE, local_size_y = LPV_REFLECT_SIDE) in;
 TYN_ARGS(lpv_reflect_args args);
@@ -27,6 +29,8 @@ TYN_READ(16, partials, float partials[]);
 TYN_READ(17, tiles, rsm_tile tiles[]);
 TYN_UPDATE(18, reflected, float reflected_unit; uint reflected_pad[3]; int reflected[]);
 TYN_UPDATE(19, counters, counters_block counters);
+
+layout(constant_id = 1) const uint walls = 0;
 
 shared float sums[LPV_REFLECT_LANES];
 
@@ -61,9 +65,38 @@ ivec3 cell_before(lattice_box box, vec3 p, vec3 n)
     return c;
 }
 
+// Is no wall between q and the centre of a cell, as far as the walls in either cell tell?
+bool same_side(lattice_box box, vec3 q, walls_planes around, ivec3 c)
+{
+    vec3 centre = lattice_to_m(box, vec3(c) + 0.5);
+    return walls_behind(walls_planes_of(lattice_index(box, c)), q) == 0u && walls_behind(around, q) == walls_behind(around, centre);
+}
+
+// The cell for light that starts at q, off a surface: `c`, or if a wall is between (beside an edge the cell in front of one
+// wall may have its centre behind the other) the nearest around that is not cut off. Light is never dropped.
+ivec3 cell_open(lattice_box box, vec3 q, vec3 n, ivec3 c)
+{
+    ivec3 own = clamp(ivec3(floor(lattice_from_m(box, q))), ivec3(0), box.dims - 1), found = c;
+    walls_planes around = walls_planes_of(lattice_index(box, own));
+    if (same_side(box, q, around, c)) {
+        return c;
+    }
+    vec3 x = lattice_from_m(box, q) + 0.5 * n;
+    float nearest = 1e30;
+    for (int k = 0; k < 27; k++) {
+        ivec3 other = own + ivec3(k % 3, k / 3 % 3, k / 9) - 1;
+        vec3 way = vec3(other) + 0.5 - x;
+        if (all(equal(other, clamp(other, ivec3(0), box.dims - 1))) && dot(way, way) < nearest && same_side(box, q, around, other)) {
+            nearest = dot(way, way);
+            found = other;
+        }
+    }
+    return found;
+}
+
 void main()
 {
-    float all = bound_of_all(), unit = all > 0.0 ? all / DEPOSIT_WHOLE : 1.0;
+    float all = bound_of_all(), unit = all > 0.0 ? max(all / DEPOSIT_WHOLE, 1.2e-38) : 1.0; // denormals may be 0
     if (gl_LocalInvocationIndex == 0u && gl_WorkGroupID == uvec3(0)) {
         reflected_unit = unit; // of the same number each time
     }
@@ -83,6 +116,9 @@ void main()
     ivec3 c = cell_before(box, p, n);
     if (any(lessThan(c, ivec3(0))) || any(greaterThanEqual(c, box.dims))) {
         return;
+    }
+    if (walls == 1u) { // off its own surface, whose plane may be in the cell
+        c = cell_open(box, p + 0.02 * box.dx * n, n, c);
     }
     flux *= lamp_transmittance(tile.light, grid, p);
     if (any(isnan(flux)) || any(isinf(flux))) {

@@ -162,6 +162,56 @@ static void sealed(void **state)
     assert_true(right);
 }
 
+// A lamp in a closed box whose walls are anywhere in their cells, upright and turned: fluence outside, over that inside. Beside
+// an edge the cell in front of one wall may have its centre behind the other.
+static void lamp_in_sealed(void **state)
+{
+    enum { POINTS = 3000 };
+    static float points[POINTS][3];
+    gpu_test *t = *state;
+    srand(5);
+    for (int i = 0; i < 3 * POINTS; i++) {
+        points[i / 3][i % 3] = (float)(1.9 * rand() / RAND_MAX - 0.95);
+    }
+    double worst = 0;
+    for (int k = 0; k < 10; k++) {
+        const float dx = 2.0f / 32, at = 0.4f + dx * (0.1f + 0.2f * (float)(k % 5));
+        const float lo[3] = {-at, -at - 0.3f * dx, -at}, hi[3] = {at, at, at + 0.2f * dx};
+        tyn_scene scene;
+        tyn_scene_init(&scene);
+        const uint32_t wall =
+            solids_material(&scene, (float[]){0.75f, 0.75f, 0.75f}, (float[]){0, 0, 0});
+        solids_box(&scene, lo, hi, k < 5 ? 0 : (float)(M_PI / 6), true, wall);
+        solids_hierarchy(&scene, 2);
+        tyn_medium m = grey_medium(1, 0, 0.5f);
+        scene_add_box(&scene, &m, (float[]){-1, -1, -1}, (float[]){1, 1, 1}, NULL, NULL);
+        scene_add_lamp(&scene, (float[]){0.05f, 0.02f, -0.03f}, 1);
+        tyn_offline *off = scene_open(t->dev, "lpv", published);
+        const tyn_probe_result *p =
+            scene_probes(t->dev, off, &scene, (const float(*)[3])points, POINTS);
+        double inside = 0, outside = 0;
+        int in = 0;
+        for (int i = 0; i < POINTS; i++) {
+            const float *q = points[i];
+            const double radius = sqrt((double)(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]));
+            if (radius < 0.35) {
+                inside += (double)p[i].fluence[1];
+                in++;
+            } else if (radius > 0.85) {
+                outside = maximum(outside, (double)p[i].fluence[1]);
+            }
+        }
+        tyn_offline_destroy(&off);
+        tyn_scene_finish(&scene);
+        assert_true(in > 10 && inside > 0);
+        print_message("walls at %.3f cells%s: outside over inside %.1e\n", (double)(at / dx),
+                      k < 5 ? "" : ", turned", outside / (inside / in));
+        worst = maximum(worst, outside / (inside / in));
+    }
+    print_message("a lamp in a sealed box: outside over inside at most %.1e\n", worst);
+    assert_true(worst < 1e-4);
+}
+
 // A room with a floor in the sun and a lamp: both injections bring the same light.
 static void make_room(tyn_scene *scene, bool roof)
 {
@@ -345,8 +395,10 @@ static void skips_of_maps(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cubes),    cmocka_unit_test(sealed), cmocka_unit_test(injections),
-        cmocka_unit_test(balances), cmocka_unit_test(skips),  cmocka_unit_test(skips_of_maps),
+        cmocka_unit_test(cubes),          cmocka_unit_test(sealed),
+        cmocka_unit_test(lamp_in_sealed), cmocka_unit_test(injections),
+        cmocka_unit_test(balances),       cmocka_unit_test(skips),
+        cmocka_unit_test(skips_of_maps),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
