@@ -22,6 +22,7 @@ struct tyn_context {
     float (*points)[3]; // probe points in M
     uint32_t num_points;
     uint32_t outputs;
+    uint64_t sizes; // tyn_frame_sizes of what was prepared last; 0 = nothing
     // The environment's tables, made again when its texels change.
     uint64_t env_hash;
     uint64_t grid_hash; // of the grid that the two below were found for
@@ -41,6 +42,8 @@ struct tyn_context {
 
 // Each step is a file of its name; what is wrong is one log line.
 
+// sizes.c: identifies what of a declared frame must be as it was prepared; what differs beside it is a value.
+uint64_t tyn_frame_sizes(const tyn_context *ctx, const tyn_frame *frame);
 // check.c: are the frame's numbers fit?
 tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame);
 // build.c: the frame's scene in M and tables of it, made anew where they have changed, and the job without its refs.

@@ -31,6 +31,9 @@ tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame)
     if (frame->background) {
         tyn_graph_background(ctx->graph);
     }
+    if (frame->idle) {
+        tyn_graph_idle(ctx->graph);
+    }
     if (frame->setup_only) {
         tyn_graph_setup_only(ctx->graph);
     }

@@ -300,19 +300,19 @@ static void sort_suns(struct light_block *suns, uint32_t count)
     }
 }
 
-static bool is_dark(const tyn_light *light)
+static bool is_dark(const float color[3])
 {
-    return !(light->color[0] > 0 || light->color[1] > 0 || light->color[2] > 0);
+    return !(color[0] > 0 || color[1] > 0 || color[2] > 0);
 }
 
-// Lamps that do not shine are left out: nobody lays out grids or shadow maps for them.
+// Lights that do not shine are left out: nobody lays out grids or shadow maps for them.
 static void build_lights(tyn_frame_scene *out, const tyn_scene *scene, const rigid *m)
 {
     tyn_lights *lights = &out->lights;
     for (int pass = 0; pass < 2; pass++) { // directional lights first
         for (uint32_t i = 0; i < scene->num_lights; i++) {
             const tyn_light *light = &scene->lights[i];
-            if ((light->kind == TYN_LIGHT_DIRECTIONAL) != (pass == 0) || (pass && is_dark(light))) {
+            if ((light->kind == TYN_LIGHT_DIRECTIONAL) != (pass == 0) || is_dark(light->color)) {
                 continue;
             }
             struct light_block *b = &lights->scene[lights->num_directional + lights->num_lamps];
@@ -366,7 +366,7 @@ static void build_map_suns(tyn_frame_scene *out, const tyn_map_light *map)
     out->map = map;
     for (uint32_t i = 0; i < map->num_suns; i++) {
         const tyn_map_sun *sun = &map->suns[i];
-        struct light_block *b = &out->lights.suns[out->lights.num_suns++];
+        struct light_block *b = &out->lights.suns[out->lights.num_suns];
         *b = (struct light_block){.kind = TYN_LIGHT_KIND_DIRECTIONAL,
                                   .mean_cosine = sun->mean_cosine};
         for (int a = 0; a < 3; a++) {
@@ -375,6 +375,7 @@ static void build_map_suns(tyn_frame_scene *out, const tyn_map_light *map)
                 b->direction[a] -= env->rows[r][a] * sun->direction[r];
             }
         }
+        out->lights.num_suns += !is_dark(b->color);
     }
     sort_suns(out->lights.suns, out->lights.num_suns);
 }
@@ -383,10 +384,12 @@ static void build_environment(tyn_frame_scene *out, const tyn_environment *env,
                               const tyn_map_light *map, const rigid *m)
 {
     struct env_block *b = &out->environment;
-    if (!env->present) {
-        return;
+    const bool has_map = env->size[0] && env->size[1];
+    const float mean[3] = {(float)map->mean[0], (float)map->mean[1], (float)map->mean[2]};
+    if (!env->present || is_dark(env->radiance) || (has_map && is_dark(mean))) {
+        return; // it is black
     }
-    b->has_map = env->size[0] && env->size[1];
+    b->has_map = has_map;
     b->size[0] = env->size[0];
     b->size[1] = env->size[1];
     const float *q = env->rotation;

@@ -24,6 +24,9 @@ tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)
     } else if (result == TYN_OK) {
         result = tyn_graph_compile(ctx->graph);
     }
+    if (result == TYN_OK) {
+        ctx->sizes = tyn_frame_sizes(ctx, frame);
+    }
     return result;
 }
 
@@ -37,6 +40,9 @@ tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame)
         return TYN_ERR_PARAMS;
     }
     tyn_result result = tyn_frame_declare(ctx, frame);
+    if (result == TYN_OK && ctx->sizes == tyn_frame_sizes(ctx, frame)) {
+        tyn_graph_yield(ctx->graph);
+    }
     return result == TYN_OK ? tyn_graph_record(ctx->graph, frame->cmd) : result;
 }
 

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SHARED_LEAST = 64 << 10, HEAP_SLACK = 4 << 20 }; // bytes
+enum { SHARED_LEAST = 64 << 10, HEAP_SLACK = 32 << 20 }; // bytes
 
 uint32_t graph_texel_size(VkFormat format)
 {
@@ -315,7 +315,7 @@ static tyn_result create_texel_views(tyn_graph *g, phys *p, const char *name)
     return result;
 }
 
-// What the last compilation leaves to this one: histories, uploads and what nodes made.
+// What the last compilation leaves to this one: histories, uploads, what nodes made and where they worked.
 typedef struct heritage {
     phys *items;
     uint32_t count;
@@ -323,8 +323,7 @@ typedef struct heritage {
 
 static uint64_t identity_of(const tyn_graph *g, const resource *r)
 {
-    const bool kept = r->kind == RESOURCE_HISTORY ||
-                      (!g->poison && (r->kind == RESOURCE_OUT || r->kind == RESOURCE_UPLOAD));
+    const bool kept = r->kind == RESOURCE_HISTORY || (!g->poison && r->kind != RESOURCE_IMPORT);
     if (!kept) {
         return 0;
     }
@@ -398,7 +397,7 @@ static tyn_result complete_shared(tyn_graph *g)
     tyn_result result = graph_bind_shared(g, &passing);
     g->transient_bytes += passing;
     for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
-        if (g->phys[i].shared && g->resources[i].dim != TYN_BUFFER) {
+        if (g->phys[i].shared && g->resources[i].dim != TYN_BUFFER && !g->phys[i].view) {
             result = make_views(g, &g->resources[i], &g->phys[i]);
         }
     }
@@ -431,10 +430,13 @@ static tyn_result create_resources(tyn_graph *g, heritage *old)
         }
     }
     inherit_all(g, old);
+    if (graph_keep_places(g) != TYN_OK) {
+        return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
+    }
     for (uint32_t i = 0; i < g->num_resources; i++) {
         const resource *r = &g->resources[i];
         const bool kept = g->phys[i].identity;
-        g->phys[i].shared = !kept && may_share(g, r);
+        g->phys[i].shared = kept ? g->phys[i].shared : may_share(g, r);
         expected += r->kind == RESOURCE_IMPORT || g->phys[i].shared || kept
                         ? 0
                         : resource_bytes(r) + (64u << 10);
@@ -458,6 +460,7 @@ static tyn_result create_resources(tyn_graph *g, heritage *old)
         if (p->identity) {
             continue; // inherited
         }
+        p->made = g->frame;
         p->identity = identity_of(g, r);
         p->age = r->kind == RESOURCE_HISTORY ? 0 : g->age;
         result = create_resource(g, r, p, expected);
@@ -472,11 +475,17 @@ static tyn_result create_resources(tyn_graph *g, heritage *old)
     return result == TYN_OK ? create_readbacks(g) : result;
 }
 
-// Zero-filled stand-ins for optional inputs that nothing is connected to.
+// Zero-filled stand-ins for optional inputs that nothing is connected to: made once.
 static tyn_result create_dummies(tyn_graph *g)
 {
+    if (g->dummy_heap.num_blocks) {
+        return TYN_OK;
+    }
+    for (int d = 0; d < NUM_DUMMIES; d++) {
+        g->dummy[d].made = g->frame;
+    }
     tyn_result result = create_buffer(
-        g, &g->heap, 256,
+        g, &g->dummy_heap, 256,
         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
             VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
         TYN_MEMORY_DEVICE, 0, "none", &g->dummy[TYN_BUFFER].buffer, NULL);
@@ -489,7 +498,7 @@ static tyn_result create_dummies(tyn_graph *g)
             (words ? VK_IMAGE_USAGE_STORAGE_BIT : VK_IMAGE_USAGE_SAMPLED_BIT) |
             VK_IMAGE_USAGE_TRANSFER_DST_BIT;
         result = create_image(
-            g, &g->heap,
+            g, &g->dummy_heap,
             &(resource){.name = "none",
                         .dim = words ? TYN_IMAGE_2D : (tyn_dim)d,
                         .format = words ? VK_FORMAT_R32G32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT,
@@ -504,6 +513,7 @@ static tyn_result create_dummies(tyn_graph *g)
 static tyn_result stage_uploads(tyn_graph *g)
 {
     tyn_result result = TYN_OK;
+    g->staging_made = g->frame;
     for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
         const resource *r = &g->resources[i];
         phys *p = &g->phys[i];
@@ -526,42 +536,90 @@ static tyn_result stage_uploads(tyn_graph *g)
     return result;
 }
 
-static tyn_result create_slots(tyn_graph *g, const survey *s)
+static void destroy_slot(tyn_graph *g, frame_slot *slot)
 {
+    graph_retire(g, VK_OBJECT_TYPE_DESCRIPTOR_POOL, (uint64_t)slot->pool, slot->made);
+    graph_retire(g, VK_OBJECT_TYPE_QUERY_POOL, (uint64_t)slot->queries, slot->made);
+    free(slot->timed);
+    *slot = (frame_slot){0};
+}
+
+static tyn_result create_pools(tyn_graph *g, frame_slot *slot)
+{
+    const survey *room = &g->room;
     const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, s->uniform_buffers + 1},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, s->storage_buffers + 1},
-        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, s->texel_buffers + 1},
-        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, s->storage_images + 1},
-        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, s->sampled_images + 1},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, room->uniform_buffers},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, room->storage_buffers},
+        {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, room->texel_buffers},
+        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, room->storage_images},
+        {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, room->sampled_images},
     };
     tyn_device *dev = g->dev;
+    slot->made = g->frame;
+    tyn_result result = tyn_vk_check(
+        dev,
+        dev->vk.CreateDescriptorPool(
+            dev->device,
+            &(VkDescriptorPoolCreateInfo){.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                          .maxSets = room->sets,
+                                          .poolSizeCount = sizeof sizes / sizeof sizes[0],
+                                          .pPoolSizes = sizes},
+            NULL, &slot->pool),
+        "vkCreateDescriptorPool");
+    if (result == TYN_OK && dev->timestamp_bits) {
+        result = tyn_vk_check(
+            dev,
+            dev->vk.CreateQueryPool(
+                dev->device,
+                &(VkQueryPoolCreateInfo){.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                         .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                         .queryCount = g->num_timed * 2},
+                NULL, &slot->queries),
+            "vkCreateQueryPool");
+    }
+    return result;
+}
+
+static bool have_room(const tyn_graph *g, const survey *s)
+{
+    const survey *room = &g->room;
+    return g->slots[0].pool && s->sets <= room->sets &&
+           s->uniform_buffers <= room->uniform_buffers &&
+           s->storage_buffers <= room->storage_buffers && s->texel_buffers <= room->texel_buffers &&
+           s->storage_images <= room->storage_images && s->sampled_images <= room->sampled_images &&
+           g->num_nodes <= g->num_timed;
+}
+
+// A fourth more than is wanted, so that a compilation that wants a little more finds it.
+static uint32_t roomy(uint32_t count)
+{
+    return count + count / 4 + 1;
+}
+
+// Pools of a compilation before serve again where they have room.
+static tyn_result create_slots(tyn_graph *g, const survey *s)
+{
+    const bool keep = have_room(g, s);
+    if (!keep) {
+        g->room = (survey){.sets = roomy(s->sets),
+                           .uniform_buffers = roomy(s->uniform_buffers),
+                           .storage_buffers = roomy(s->storage_buffers),
+                           .texel_buffers = roomy(s->texel_buffers),
+                           .storage_images = roomy(s->storage_images),
+                           .sampled_images = roomy(s->sampled_images)};
+        g->num_timed = roomy(g->num_nodes);
+    }
     tyn_result result = TYN_OK;
     for (uint32_t i = 0; result == TYN_OK && i < g->num_slots; i++) {
         frame_slot *slot = &g->slots[i];
-        result = tyn_vk_check(
-            dev,
-            dev->vk.CreateDescriptorPool(dev->device,
-                                         &(VkDescriptorPoolCreateInfo){
-                                             .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                             .maxSets = s->sets + 1,
-                                             .poolSizeCount = sizeof sizes / sizeof sizes[0],
-                                             .pPoolSizes = sizes},
-                                         NULL, &slot->pool),
-            "vkCreateDescriptorPool");
-        if (result == TYN_OK && dev->timestamp_bits && g->num_nodes) {
-            result = tyn_vk_check(
-                dev,
-                dev->vk.CreateQueryPool(
-                    dev->device,
-                    &(VkQueryPoolCreateInfo){.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-                                             .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                             .queryCount = g->num_nodes * 2},
-                    NULL, &slot->queries),
-                "vkCreateQueryPool");
+        if (!keep) {
+            destroy_slot(g, slot);
+            result = create_pools(g, slot);
         }
-        slot->timed = calloc(g->num_nodes ? g->num_nodes : 1, 1);
-        result = slot->timed ? result : TYN_ERR_MEMORY;
+        free(slot->timed);
+        slot->timed = calloc(g->num_timed, 1);
+        slot->pending = false;
+        result = result == TYN_OK && !slot->timed ? TYN_ERR_MEMORY : result;
     }
     return result;
 }
@@ -581,22 +639,30 @@ static tyn_result reserve_sets(tyn_graph *g, uint32_t count)
 
 // ---- release ----------------------------------------------------------------------------------
 
-static void destroy_phys(tyn_graph *g, phys *p)
+// At most so many things of a resource are retired.
+enum { PHYS_PARTS = MAX_MIPS + NUM_TEXEL_FORMATS + 6 };
+
+static bool reserve_all(tyn_graph *g)
 {
-    const tyn_device *dev = g->dev;
+    return graph_retire_reserve(g, (g->num_phys + g->num_resources + NUM_DUMMIES) * PHYS_PARTS +
+                                       2 * MAX_SLOTS + g->num_aged + g->num_blocks + 4);
+}
+
+void graph_destroy_phys(tyn_graph *g, phys *p)
+{
     for (uint32_t m = 0; m < MAX_MIPS; m++) {
-        dev->vk.DestroyImageView(dev->device, p->mip_views[m], NULL);
+        graph_retire(g, VK_OBJECT_TYPE_IMAGE_VIEW, (uint64_t)p->mip_views[m], p->made);
     }
-    dev->vk.DestroyImageView(dev->device, p->view, NULL);
+    graph_retire(g, VK_OBJECT_TYPE_IMAGE_VIEW, (uint64_t)p->view, p->made);
     if (!p->borrowed) {
-        dev->vk.DestroyImage(dev->device, p->image, NULL);
+        graph_retire(g, VK_OBJECT_TYPE_IMAGE, (uint64_t)p->image, p->made);
     }
     for (int i = 0; i < NUM_TEXEL_FORMATS; i++) {
-        dev->vk.DestroyBufferView(dev->device, p->texels[i], NULL);
+        graph_retire(g, VK_OBJECT_TYPE_BUFFER_VIEW, (uint64_t)p->texels[i], p->made);
     }
-    dev->vk.DestroyBuffer(dev->device, p->buffer, NULL);
-    dev->vk.DestroyBuffer(dev->device, p->readback, NULL);
-    tyn_heap_finish(g->dev, &p->heap);
+    graph_retire(g, VK_OBJECT_TYPE_BUFFER, (uint64_t)p->buffer, p->made);
+    graph_retire(g, VK_OBJECT_TYPE_BUFFER, (uint64_t)p->readback, p->made);
+    graph_retire_heap(g, &p->heap, p->made);
     *p = (phys){0};
 }
 
@@ -611,19 +677,17 @@ static heritage take_heritage(tyn_graph *g, bool only_histories)
     }
     for (uint32_t i = 0; h.items && i < g->num_phys; i++) {
         phys *p = &g->phys[i];
-        const bool made = p->age && p->content && grown; // what is in it is not lost to scratch
-        if (p->identity && (!p->age || made)) {
-            g->dev->vk.DestroyBuffer(g->dev->device, p->readback, NULL);
+        if (p->identity && (!p->age || grown)) {
+            graph_retire(g, VK_OBJECT_TYPE_BUFFER, (uint64_t)p->readback, p->made);
             p->readback = VK_NULL_HANDLE;
             p->readback_ptr = NULL;
             p->read = 0;
-            p->shared = false; // what was in the same place goes
             h.items[h.count++] = *p;
             *p = (phys){0};
         }
     }
     if (grown && h.count) {
-        g->aged[g->num_aged++] = (aged_heap){g->heap, g->age};
+        g->aged[g->num_aged++] = (aged_heap){g->heap, g->age, g->heap_made};
         g->heap = (tyn_heap){0};
     }
     return h;
@@ -632,7 +696,7 @@ static heritage take_heritage(tyn_graph *g, bool only_histories)
 static void drop_heritage(tyn_graph *g, heritage *h)
 {
     for (uint32_t i = 0; i < h->count; i++) {
-        destroy_phys(g, &h->items[i]);
+        graph_destroy_phys(g, &h->items[i]);
     }
     free(h->items);
 }
@@ -641,17 +705,20 @@ static void drop_heritage(tyn_graph *g, heritage *h)
 static VkDeviceSize free_aged(tyn_graph *g)
 {
     VkDeviceSize total = g->heap.total;
+    for (uint32_t b = 0; b < g->num_blocks; b++) {
+        total += g->blocks[b].size;
+    }
     uint32_t left = 0;
     for (uint32_t a = 0; a < g->num_aged; a++) {
         bool used = false;
         for (uint32_t i = 0; i < g->num_phys; i++) {
-            used |= g->phys[i].age == g->aged[a].age;
+            used |= !g->phys[i].shared && g->phys[i].age == g->aged[a].age;
         }
         if (used) {
             total += g->aged[a].heap.total;
             g->aged[left++] = g->aged[a];
         } else {
-            tyn_heap_finish(g->dev, &g->aged[a].heap);
+            graph_retire_heap(g, &g->aged[a].heap, g->aged[a].made);
         }
     }
     g->num_aged = left;
@@ -686,11 +753,11 @@ static bool is_done(const tyn_graph *g, uint32_t index)
 void graph_free_staging(tyn_graph *g)
 {
     for (uint32_t i = 0; i < g->num_phys; i++) {
-        g->dev->vk.DestroyBuffer(g->dev->device, g->phys[i].staging, NULL);
+        graph_retire(g, VK_OBJECT_TYPE_BUFFER, (uint64_t)g->phys[i].staging, g->staging_made);
         g->phys[i].staging = VK_NULL_HANDLE;
         g->phys[i].staged = 0;
     }
-    tyn_heap_finish(g->dev, &g->staging_heap);
+    graph_retire_heap(g, &g->staging_heap, g->staging_made);
 }
 
 void tyn_graph_trim(tyn_graph *g)
@@ -700,25 +767,19 @@ void tyn_graph_trim(tyn_graph *g)
             return; // still to be copied
         }
     }
-    graph_free_staging(g);
+    if (g->staging_heap.num_blocks && reserve_all(g)) {
+        graph_free_staging(g);
+    }
+    graph_retire_over(g);
 }
 
 void graph_release(tyn_graph *g)
 {
     graph_free_staging(g);
     for (uint32_t i = 0; i < g->num_phys; i++) {
-        destroy_phys(g, &g->phys[i]);
+        graph_destroy_phys(g, &g->phys[i]);
     }
-    for (int d = 0; d < NUM_DUMMIES; d++) {
-        destroy_phys(g, &g->dummy[d]);
-    }
-    for (uint32_t i = 0; i < g->num_slots; i++) {
-        g->dev->vk.DestroyDescriptorPool(g->dev->device, g->slots[i].pool, NULL);
-        g->dev->vk.DestroyQueryPool(g->dev->device, g->slots[i].queries, NULL);
-        free(g->slots[i].timed);
-        g->slots[i] = (frame_slot){0};
-    }
-    tyn_heap_finish(g->dev, &g->heap);
+    graph_retire_heap(g, &g->heap, g->heap_made);
     free(g->phys);
     g->phys = NULL;
     g->num_phys = 0;
@@ -736,7 +797,7 @@ void graph_release(tyn_graph *g)
 static void free_all_aged(tyn_graph *g)
 {
     for (uint32_t a = 0; a < g->num_aged; a++) {
-        tyn_heap_finish(g->dev, &g->aged[a].heap);
+        graph_retire_heap(g, &g->aged[a].heap, g->aged[a].made);
     }
     free(g->aged);
     g->aged = NULL;
@@ -747,17 +808,31 @@ void graph_finish(tyn_graph *g)
 {
     graph_release(g);
     free_all_aged(g);
+    graph_retire_blocks(g, true);
+    const uint64_t made = g->dummy[TYN_BUFFER].made;
+    for (int d = 0; d < NUM_DUMMIES; d++) {
+        graph_destroy_phys(g, &g->dummy[d]);
+    }
+    graph_retire_heap(g, &g->dummy_heap, made);
+    for (uint32_t i = 0; i < g->num_slots; i++) {
+        destroy_slot(g, &g->slots[i]);
+    }
 }
 
 static tyn_result compile_new(tyn_graph *g, bool only_histories)
 {
+    if (!reserve_all(g)) {
+        return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
+    }
     graph_free_staging(g);
     heritage old = take_heritage(g, only_histories);
     graph_release(g);
     if (only_histories) {
         free_all_aged(g);
+        graph_retire_blocks(g, true);
     }
     g->age++;
+    g->heap_made = g->frame;
     g->num_phys = g->num_resources;
     g->num_runs = g->num_nodes;
     g->phys = calloc(g->num_phys ? g->num_phys : 1, sizeof *g->phys);
@@ -778,6 +853,7 @@ static tyn_result compile_new(tyn_graph *g, bool only_histories)
     tyn_result result = graph_survey(g, &s, g->phys);
     result = result == TYN_OK ? create_resources(g, &old) : result;
     drop_heritage(g, &old);
+    graph_retire_blocks(g, false);
     result = result == TYN_OK ? create_dummies(g) : result;
     result = result == TYN_OK ? create_slots(g, &s) : result;
     result = result == TYN_OK ? reserve_sets(g, s.sets) : result;
@@ -801,12 +877,28 @@ static bool is_wasteful(tyn_graph *g)
     return free_aged(g) > need + need / 2 + HEAP_SLACK;
 }
 
+static tyn_result say_what_waits(const tyn_graph *g, tyn_result result)
+{
+    const VkDeviceSize bytes = result == TYN_ERR_MEMORY ? graph_retired_bytes(g) : 0;
+    if (bytes) {
+        tyn_log_print(
+            &g->dev->log, TYN_LOG_ERROR,
+            "%.1f MiB of what is replaced wait for frames that may be under way: prepare with "
+            "tyn_frame.idle when the GPU is done with them",
+            (double)bytes / (1 << 20));
+    }
+    return result;
+}
+
 tyn_result tyn_graph_compile(tyn_graph *g)
 {
     if (g->status != TYN_OK) {
         return g->status;
     }
     if (same_structure(g)) { // only new data
+        if (!reserve_all(g)) {
+            return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
+        }
         graph_free_staging(g);
         tyn_result staged = stage_uploads(g);
         g->current = staged == TYN_OK;
@@ -817,9 +909,10 @@ tyn_result tyn_graph_compile(tyn_graph *g)
     if (made != TYN_OK) {
         return made;
     }
+    graph_retire_over(g);
     const bool first = !g->num_phys;
     const tyn_result result = compile_new(g, false);
     const bool again = result == TYN_OK ? is_wasteful(g) && g->num_aged
                                         : result == TYN_ERR_MEMORY && g->status == TYN_OK && !first;
-    return again ? compile_new(g, true) : result;
+    return say_what_waits(g, again ? compile_new(g, true) : result);
 }

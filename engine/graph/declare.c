@@ -39,7 +39,7 @@ void tyn_graph_begin(tyn_graph *g)
     g->num_outputs = 0;
     g->inspect = NULL;
     g->params_used = 0;
-    g->recompute = g->setup_only = g->background = false;
+    g->recompute = g->setup_only = g->background = g->yields = g->idle = false;
     g->current = false;
 }
 
@@ -51,6 +51,16 @@ void tyn_graph_recompute(tyn_graph *g)
 void tyn_graph_setup_only(tyn_graph *g)
 {
     g->setup_only = true;
+}
+
+void tyn_graph_yield(tyn_graph *g)
+{
+    g->yields = true;
+}
+
+void tyn_graph_idle(tyn_graph *g)
+{
+    g->idle = true;
 }
 
 void tyn_graph_background(tyn_graph *g)

@@ -3,7 +3,7 @@
 // A method declares nodes anew for every frame; that is cheap. `tyn_graph_compile` allocates what the
 // declared nodes need; `tyn_graph_record` records the dispatches of the nodes that an output needs
 // and whose inputs or params changed. If a later frame declares other nodes or shapes than were
-// compiled, recording refuses and compile must be called again.
+// compiled, recording refuses (or yields) and compile must be called again.
 //
 // Thread-safety: Unsafe.
 #pragma once
@@ -32,6 +32,12 @@ void tyn_graph_setup_only(tyn_graph *g);
 // until they are there: compile keeps what was compiled before, and record only takes host images to their `after`.
 void tyn_graph_background(tyn_graph *g);
 
+// A record of this declaration that was not compiled takes host images to their `after` and gives TYN_PENDING, instead of refusing.
+void tyn_graph_yield(tyn_graph *g);
+
+// The GPU is done with all earlier records: what tyn_graph_compile replaces is destroyed before it allocates.
+void tyn_graph_idle(tyn_graph *g);
+
 // Has what a node of this pass makes, the image at its debug port, read back as the output "inspect";
 // of several such nodes the last. Counts until the next tyn_graph_begin.
 void tyn_graph_inspect(tyn_graph *g, const char *pass);
@@ -41,15 +47,16 @@ void tyn_graph_inspect(tyn_graph *g, const char *pass);
 // True if the current declaration has the nodes and shapes of the compiled one.
 bool tyn_graph_matches(const tyn_graph *g);
 
-// Culls, allocates, makes pipelines. The GPU must be done with earlier records. May block. What has the name, shape and
-// uses that something had in the compilation before keeps its Vulkan object and what is in it, so that unchanged uploads
-// and nodes are not repeated; all is made anew when that would take more than 1.5 times the memory.
+// Culls, allocates, makes pipelines. May block. Records before may still be under way: what they use and what is replaced goes once
+// the record i + frames_in_flight says that record i is over. What has the name, shape and uses that something had in the
+// compilation before keeps its Vulkan object and what is in it, so that unchanged uploads and nodes are not repeated; all
+// is made anew when that would take more than 1.5 times the memory and 32 MiB.
 tyn_result tyn_graph_compile(tyn_graph *g);
 
 // Pipelines that are still to be compiled before tyn_graph_compile can return something else than TYN_PENDING.
 uint32_t tyn_graph_pending(const tyn_graph *g);
 
-// Frees host memory of uploads that are done. The GPU must be done with earlier records.
+// Frees host memory of uploads that are done, and what was replaced and is over.
 void tyn_graph_trim(tyn_graph *g);
 
 // Appends this frame's work. Never submits, waits or allocates memory.

@@ -1,5 +1,5 @@
-// internal.h -- the inside of the render graph, shared by declare.c, compile.c, pipelines.c, shared_memory.c, recorder.c,
-// draw.c, record.c and dump.c.
+// internal.h -- the inside of the render graph, shared by declare.c, compile.c, retire.c, pipelines.c, shared_memory.c,
+// recorder.c, draw.c, record.c and dump.c.
 //
 // A declaration is two lists, resources and nodes, rebuilt for every frame. What was compiled is kept
 // beside it, index by index: `phys` belongs to `resources`, `runs` to `nodes`. Both agree as long as
@@ -66,8 +66,8 @@ typedef struct phys {
     VkImageView mip_views[MAX_MIPS];
     VkBuffer buffer;
     VkDeviceSize bytes;
-    bool shared; // lies in a block with others, some of them in the same place (share.h)
-    uint32_t block;
+    bool shared;    // lies in a block with others, some of them in the same place (share.h)
+    uint32_t block; // its id
     VkDeviceSize offset, size;
     VkImageUsageFlags image_usage;
     VkBufferUsageFlags buffer_usage;
@@ -79,6 +79,7 @@ typedef struct phys {
     uint64_t identity; // its name, kind and shape, if a later compilation may take it over; else 0
     uint64_t age;      // which heap it lies in: graph.age when it was made; 0 = its own
     tyn_heap heap;     // HISTORY: its own, so that it outlives the others
+    uint64_t made;     // graph.frame when it was made
     VkBuffer staging;  // UPLOAD, big: host memory waiting to be copied
     void *staging_ptr;
     uint64_t staged; // content hash in staging; 0 = none
@@ -87,9 +88,17 @@ typedef struct phys {
     uint64_t read; // content in readback
 } phys;
 
+typedef struct shared_block { // one block of memory that lasts as long as something lies in it
+    tyn_heap heap;
+    tyn_allocation memory;
+    VkDeviceSize size, align;
+    uint32_t id, type;
+    uint64_t made; // graph.frame then
+} shared_block;
+
 typedef struct aged_heap { // of an earlier compilation, with something in it that is still used
     tyn_heap heap;
-    uint64_t age;
+    uint64_t age, made; // graph.frame then
 } aged_heap;
 
 typedef struct node_run { // of a node
@@ -102,7 +111,13 @@ typedef struct frame_slot { // one per frame in flight
     VkQueryPool queries;
     bool pending;   // timestamps were written
     uint8_t *timed; // per node: it ran in this slot's last record
+    uint64_t made;  // graph.frame when the pools were made
 } frame_slot;
+
+typedef struct retire_list {
+    struct retired *items;
+    uint32_t count, cap;
+} retire_list;
 
 // Pipelines that a declaration needs, each once.
 typedef struct pipeline_list {
@@ -143,7 +158,7 @@ struct tyn_graph {
     uint32_t num_outputs;
     const char *inspect; // pass whose debug port is wanted; NULL = none
     uint64_t unique;     // ever-changing content
-    bool recompute, setup_only, background;
+    bool recompute, setup_only, background, yields;
     bool poison; // tests: what a node has not written is NaN
     // compiled
     uint64_t structure; // 0 = nothing compiled
@@ -155,14 +170,22 @@ struct tyn_graph {
     uint32_t num_runs;
     phys dummy[NUM_DUMMIES]; // by tyn_dim: bound where an optional input is absent
     bool dummy_ready;
-    tyn_heap heap, staging_heap;
-    uint64_t age; // of `heap`: compilations so far
+    tyn_heap heap, staging_heap, dummy_heap;
+    uint64_t age;                     // of `heap`: compilations so far
+    uint64_t heap_made, staging_made; // graph.frame when things were put there
     aged_heap *aged;
     uint32_t num_aged;
+    bool reused; // memory of what is gone: the next record waits for all before it
+    shared_block *blocks;
+    uint32_t num_blocks, block_ids; // ids are never given twice
     VkDeviceSize persistent_bytes, transient_bytes;
     frame_slot slots[MAX_SLOTS];
-    uint64_t frame;
-    launch_sets sets; // of the current record
+    survey room;         // of their pools
+    uint32_t num_timed;  // nodes that they have timestamps for
+    uint64_t frame;      // records so far
+    retire_list retired; // what they may still use
+    bool idle;           // they are over: the host says so
+    launch_sets sets;    // of the current record
     tyn_node_stats *stats;
     pipeline_list wanted; // that are being compiled in the background
 };
@@ -221,8 +244,20 @@ tyn_result graph_want_pipeline(tyn_graph *g, tyn_variant *v); // by RECORD_PIPEL
 void graph_forget_pipelines(tyn_graph *g); // those that are being compiled for it
 // In place of a record: asks for pipelines, and takes the host's images to their `after`.
 tyn_result graph_postpone(tyn_graph *g, VkCommandBuffer cmd);
-// Memory for the resources that are `shared`, and how many bytes of it none has for good.
+// Makes room for `count` calls of graph_retire and graph_retire_heap. False: out of memory.
+bool graph_retire_reserve(tyn_graph *g, uint32_t count);
+// Destroys it when the frames recorded so far are over. `made`: g->frame when it was made. `handle` may be NULL, `heap` empty.
+void graph_retire(tyn_graph *g, VkObjectType type, uint64_t handle, uint64_t made);
+void graph_retire_heap(tyn_graph *g, tyn_heap *heap, uint64_t made);
+void graph_retire_over(tyn_graph *g);   // those whose frames are over
+void graph_retire_finish(tyn_graph *g); // all: the GPU is done
+VkDeviceSize graph_retired_bytes(const tyn_graph *g);
+// Of what is kept from the compilation before, whatever lies in one place and may not do so any more. TYN_OK, or out of memory.
+tyn_result graph_keep_places(tyn_graph *g);
+// Memory for the resources that are `shared`, and how many bytes of it none would have for good if all were placed anew.
 tyn_result graph_bind_shared(tyn_graph *g, VkDeviceSize *passing);
+void graph_retire_blocks(tyn_graph *g, bool all); // those in which nothing lies, or all
+void graph_destroy_phys(tyn_graph *g, phys *p);
 bool graph_overlap(const phys *a, const phys *b);
 void graph_free_staging(tyn_graph *g);
 bool graph_uploads_staged(const tyn_graph *g);

@@ -77,7 +77,7 @@ uint32_t tyn_graph_pending(const tyn_graph *g)
 
 tyn_result graph_postpone(tyn_graph *g, VkCommandBuffer cmd)
 {
-    tyn_result result = graph_make_pipelines(g);
+    tyn_result result = g->background ? graph_make_pipelines(g) : TYN_OK;
     if (result < 0) {
         return result;
     }

@@ -25,7 +25,9 @@ void tyn_graph_destroy(tyn_graph **graph)
         return;
     }
     graph_forget_pipelines(g);
+    g->idle = true;
     graph_finish(g);
+    graph_retire_finish(g);
     free(g->resources);
     free(g->nodes);
     free(g->params);
@@ -161,6 +163,24 @@ static void record_dummies(tyn_graph *g, VkCommandBuffer cmd)
         .size = VK_WHOLE_SIZE};
     g->dev->vk.CmdPipelineBarrier2(cmd, &barrier);
     g->dummy_ready = true;
+}
+
+// After a compilation that gave memory of what is gone to others, of which no track is left.
+static void wait_for_all(tyn_graph *g, VkCommandBuffer cmd)
+{
+    if (g->reused) {
+        g->dev->vk.CmdPipelineBarrier2(
+            cmd, &(VkDependencyInfo){.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                     .memoryBarrierCount = 1,
+                                     .pMemoryBarriers = &(VkMemoryBarrier2){
+                                         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                                         .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                         .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
+                                         .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                         .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT |
+                                                          VK_ACCESS_2_MEMORY_WRITE_BIT}});
+        g->reused = false;
+    }
 }
 
 static void record_sources(tyn_recorder *rec)
@@ -472,13 +492,14 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
         return g->status;
     }
     if (!tyn_graph_matches(g)) {
-        if (g->background) {
+        if (g->background || g->yields) {
             return graph_postpone(g, cmd);
         }
         tyn_log_print(&g->dev->log, TYN_LOG_ERROR,
                       "the frame differs in structure from what was prepared; prepare it first");
         return TYN_ERR_PARAMS;
     }
+    graph_retire_over(g);
     bool *run_node = g->run_node;
     frame_slot *slot = &g->slots[g->frame % g->num_slots];
     choose_nodes(g, run_node);
@@ -492,6 +513,7 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
     }
 
     tyn_recorder rec = {.g = g, .mode = RECORD_LIVE, .cmd = cmd};
+    wait_for_all(g, cmd);
     record_dummies(g, cmd);
     record_sources(&rec);
     for (uint32_t i = 0; i < g->num_nodes; i++) {

@@ -36,35 +36,40 @@ static uint64_t lowest(const tyn_share_item *items, const uint32_t *order, uint3
     return at;
 }
 
-static void sort_by_size(const tyn_share_item *items, uint32_t *order, uint32_t count)
+// Those that are there, then the others by their size.
+static void sort_by_size(const tyn_share_list *list)
 {
-    for (uint32_t i = 0; i < count; i++) {
+    uint32_t *order = list->order;
+    for (uint32_t i = 0; i < list->count; i++) {
         uint32_t at = i;
-        for (; at > 0 && items[order[at - 1]].size < items[i].size; at--) {
+        for (; at > list->placed && list->items[order[at - 1]].size < list->items[i].size; at--) {
             order[at] = order[at - 1];
         }
         order[at] = i;
     }
 }
 
-uint32_t tyn_share_plan(tyn_share_item *items, uint32_t count, const bool *follows,
-                        uint32_t num_nodes, uint64_t most, tyn_share_block *blocks, uint32_t *order)
+void tyn_share_plan(tyn_share_list *list, const bool *follows, uint32_t num_nodes, uint64_t most)
 {
-    sort_by_size(items, order, count);
-    uint32_t num_blocks = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        tyn_share_item *item = &items[order[i]];
+    tyn_share_block *blocks = list->blocks;
+    const uint32_t there = list->num_blocks;
+    sort_by_size(list);
+    for (uint32_t i = list->placed; i < list->count; i++) {
+        tyn_share_item *item = &list->items[list->order[i]];
         uint32_t b = 0;
         uint64_t at = 0;
-        for (; b < num_blocks; b++) {
-            const uint64_t room = blocks[b].size > most ? blocks[b].size : most;
-            at = lowest(items, order, i, item, b, follows, num_nodes);
-            if (blocks[b].type == item->type && at + item->size <= room) {
+        for (; b < list->num_blocks; b++) {
+            const uint64_t room = b < there || blocks[b].size > most ? blocks[b].size : most;
+            if (blocks[b].type != item->type || (b < there && blocks[b].align < item->align)) {
+                continue;
+            }
+            at = lowest(list->items, list->order, i, item, b, follows, num_nodes);
+            if (at + item->size <= room) {
                 break;
             }
         }
-        if (b == num_blocks) {
-            blocks[num_blocks++] = (tyn_share_block){.type = item->type};
+        if (b == list->num_blocks) {
+            blocks[list->num_blocks++] = (tyn_share_block){.type = item->type};
             at = 0;
         }
         item->block = b;
@@ -73,5 +78,4 @@ uint32_t tyn_share_plan(tyn_share_item *items, uint32_t count, const bool *follo
             blocks[b].size = at + item->size;
         }
     }
-    return num_blocks;
 }

@@ -19,7 +19,8 @@ typedef struct tyn_share_item {
 } tyn_share_item;
 
 typedef struct tyn_share_block {
-    uint64_t size; // what the items need
+    uint64_t size;  // what the items need; of a block that is there, what it has
+    uint64_t align; // that one that is there begins at
     uint32_t type;
 } tyn_share_block;
 
@@ -27,8 +28,15 @@ typedef struct tyn_share_block {
 bool tyn_share_apart(const tyn_share_item *a, const tyn_share_item *b, const bool *follows,
                      uint32_t num_nodes);
 
-// Places the items into as few bytes as it finds, in blocks of at most `most` bytes unless one item is larger. `blocks`
-// has room for one per item; their number is returned. `order` is scratch: one per item.
-uint32_t tyn_share_plan(tyn_share_item *items, uint32_t count, const bool *follows,
-                        uint32_t num_nodes, uint64_t most, tyn_share_block *blocks,
-                        uint32_t *order);
+// Items and blocks of which the first are there already, and stay as they are.
+typedef struct tyn_share_list {
+    tyn_share_item *items;
+    uint32_t count, placed;
+    tyn_share_block *blocks; // room for one more per item that is to be placed
+    uint32_t num_blocks;
+    uint32_t *order; // scratch: one per item
+} tyn_share_list;
+
+// Places the items into as few bytes as it finds: where there is room in blocks that are there, else in new ones of at most
+// `most` bytes unless one item is larger.
+void tyn_share_plan(tyn_share_list *list, const bool *follows, uint32_t num_nodes, uint64_t most);

@@ -7,8 +7,8 @@ static const VkDeviceSize MAX_BLOCK = 256u << 20;
 
 bool graph_overlap(const phys *a, const phys *b)
 {
-    return a->shared && b->shared && a->block == b->block && a->offset < b->offset + b->size &&
-           b->offset < a->offset + a->size;
+    return a->shared && b->shared && a->block && a->block == b->block &&
+           a->offset < b->offset + b->size && b->offset < a->offset + a->size;
 }
 
 // Which nodes read something of which, at first or second hand: [reader * num_nodes + read]. NULL: out of memory.
@@ -34,16 +34,32 @@ static bool *find_followers(const tyn_graph *g)
     return follows;
 }
 
+static shared_block *find_block(const tyn_graph *g, uint32_t id)
+{
+    for (uint32_t b = 0; b < g->num_blocks; b++) {
+        if (g->blocks[b].id == id) {
+            return &g->blocks[b];
+        }
+    }
+    return NULL;
+}
+
+static bool is_placed(const phys *p)
+{
+    return p->shared && p->block;
+}
+
 static void describe(const tyn_graph *g, uint32_t index, uint32_t maker, tyn_share_item *item)
 {
     const tyn_device *dev = g->dev;
     const resource *r = &g->resources[index];
+    const phys *p = &g->phys[index];
     const VkDeviceSize page = dev->properties.limits.bufferImageGranularity;
     VkMemoryRequirements need;
     if (r->dim == TYN_BUFFER) {
-        dev->vk.GetBufferMemoryRequirements(dev->device, g->phys[index].buffer, &need);
+        dev->vk.GetBufferMemoryRequirements(dev->device, p->buffer, &need);
     } else {
-        dev->vk.GetImageMemoryRequirements(dev->device, g->phys[index].image, &need);
+        dev->vk.GetImageMemoryRequirements(dev->device, p->image, &need);
     }
     // Buffers and images are neighbours: keep them a granularity page apart.
     const VkDeviceSize align = need.alignment > page ? need.alignment : page;
@@ -55,88 +71,219 @@ static void describe(const tyn_graph *g, uint32_t index, uint32_t maker, tyn_sha
         .kept = r->kind == RESOURCE_OUT,
         .unused = !g->nodes[maker].needed,
     };
+    if (is_placed(p)) {
+        item->block = (uint32_t)(find_block(g, p->block) - g->blocks);
+        item->offset = p->offset;
+    }
 }
 
-static tyn_result bind(tyn_graph *g, uint32_t index, const tyn_share_item *item,
-                       const tyn_allocation *block)
+static tyn_result bind(tyn_graph *g, uint32_t index, const tyn_share_item *item)
 {
     const tyn_device *dev = g->dev;
+    const shared_block *block = &g->blocks[item->block];
     phys *p = &g->phys[index];
-    p->block = item->block;
+    p->block = block->id;
     p->offset = item->offset;
     p->size = item->size;
+    if (block->made !=
+        g->frame) { // used before: its first layout is not to come before others are done with the place
+        p->track = (tyn_track){.write_stages = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                               .write_access = VK_ACCESS_2_MEMORY_WRITE_BIT};
+    }
     const bool buffer = g->resources[index].dim == TYN_BUFFER;
-    const VkDeviceSize at = block->offset + item->offset;
+    const VkDeviceMemory memory = block->memory.memory;
+    const VkDeviceSize at = block->memory.offset + item->offset;
     return tyn_vk_check(dev,
-                        buffer ? dev->vk.BindBufferMemory(dev->device, p->buffer, block->memory, at)
-                               : dev->vk.BindImageMemory(dev->device, p->image, block->memory, at),
+                        buffer ? dev->vk.BindBufferMemory(dev->device, p->buffer, memory, at)
+                               : dev->vk.BindImageMemory(dev->device, p->image, memory, at),
                         g->resources[index].name);
 }
 
 typedef struct sharing {
     bool *follows;
-    tyn_share_item *items;
-    tyn_share_block *blocks;
-    tyn_allocation *memory;    // of blocks
-    uint32_t *order, *indices; // of items: scratch; resources
-    uint32_t count;
+    tyn_share_list list;
+    uint32_t *indices; // resources of its items
+    tyn_share_item *anew;
+    tyn_share_block *anew_blocks;
 } sharing;
 
-static void list_items(const tyn_graph *g, sharing *s)
+// `placed`: those that have a place, else those that have none.
+static void list_items(const tyn_graph *g, bool placed, sharing *s)
 {
     for (uint32_t i = 0; i < g->num_nodes; i++) {
         for (uint32_t p = 0; p < g->nodes[i].pass->num_ports; p++) {
             const tyn_port_dir dir = g->nodes[i].pass->ports[p].dir;
             const uint32_t id = g->nodes[i].res[p];
-            if (id && g->phys[id - 1].shared && (dir == TYN_OUT || dir == TYN_SCRATCH)) {
-                s->indices[s->count] = id - 1;
-                describe(g, id - 1, i, &s->items[s->count++]);
+            if (id && g->phys[id - 1].shared && is_placed(&g->phys[id - 1]) == placed &&
+                (dir == TYN_OUT || dir == TYN_SCRATCH)) {
+                s->indices[s->list.count] = id - 1;
+                describe(g, id - 1, i, &s->list.items[s->list.count++]);
             }
         }
     }
 }
 
+static bool open_sharing(const tyn_graph *g, sharing *s)
+{
+    const size_t n = g->num_resources + 1, b = n + g->num_blocks;
+    *s = (sharing){.follows = find_followers(g),
+                   .list = {.items = calloc(n, sizeof *s->list.items),
+                            .blocks = calloc(b, sizeof *s->list.blocks),
+                            .order = calloc(n, sizeof *s->list.order)},
+                   .indices = calloc(n, sizeof *s->indices),
+                   .anew = calloc(n, sizeof *s->anew),
+                   .anew_blocks = calloc(n, sizeof *s->anew_blocks)};
+    return s->follows && s->list.items && s->list.blocks && s->list.order && s->indices &&
+           s->anew && s->anew_blocks;
+}
+
+static void close_sharing(sharing *s)
+{
+    free(s->follows);
+    free(s->list.items);
+    free(s->list.blocks);
+    free(s->list.order);
+    free(s->indices);
+    free(s->anew);
+    free(s->anew_blocks);
+}
+
+// Bytes of all blocks if all items were placed anew.
+static VkDeviceSize bytes_anew(const tyn_graph *g, const sharing *s)
+{
+    tyn_share_list list = {
+        .items = s->anew, .count = s->list.count, .blocks = s->anew_blocks, .order = s->list.order};
+    for (uint32_t i = 0; i < list.count; i++) {
+        list.items[i] = s->list.items[i];
+    }
+    tyn_share_plan(&list, s->follows, g->num_nodes, MAX_BLOCK);
+    VkDeviceSize all = 0;
+    for (uint32_t b = 0; b < list.num_blocks; b++) {
+        all += list.blocks[b].size;
+    }
+    return all;
+}
+
+static tyn_result add_block(tyn_graph *g, const sharing *s, uint32_t index)
+{
+    shared_block *grown = realloc(g->blocks, (g->num_blocks + 1) * sizeof *grown);
+    if (!grown) {
+        return TYN_ERR_MEMORY;
+    }
+    g->blocks = grown;
+    shared_block *block = &grown[g->num_blocks];
+    const tyn_share_block *plan = &s->list.blocks[index];
+    *block = (shared_block){.size = plan->size,
+                            .align = 1, // powers of two
+                            .id = ++g->block_ids,
+                            .type = plan->type,
+                            .made = g->frame};
+    for (uint32_t i = 0; i < s->list.count; i++) {
+        const tyn_share_item *item = &s->list.items[i];
+        if (item->block == index && item->align > block->align) {
+            block->align = item->align;
+        }
+    }
+    const tyn_result result =
+        tyn_heap_add(g->dev, &block->heap, block->type, block->size, block->align, &block->memory);
+    if (result == TYN_OK) {
+        g->num_blocks++;
+    } else {
+        tyn_heap_finish(g->dev, &block->heap);
+    }
+    return result;
+}
+
 static tyn_result place(tyn_graph *g, sharing *s, VkDeviceSize *passing)
 {
-    list_items(g, s);
-    const uint32_t num_blocks = tyn_share_plan(s->items, s->count, s->follows, g->num_nodes,
-                                               MAX_BLOCK, s->blocks, s->order);
+    list_items(g, true, s);
+    s->list.placed = s->list.count;
+    list_items(g, false, s);
+    for (uint32_t b = 0; b < g->num_blocks; b++) {
+        const shared_block *block = &g->blocks[b];
+        s->list.blocks[s->list.num_blocks++] =
+            (tyn_share_block){.size = block->size, .align = block->align, .type = block->type};
+    }
+    tyn_share_plan(&s->list, s->follows, g->num_nodes, MAX_BLOCK);
+    g->reused = g->num_blocks > 0; // whoever used that memory last may be gone
     tyn_result result = TYN_OK;
-    VkDeviceSize all = 0, kept = 0;
-    for (uint32_t b = 0; result == TYN_OK && b < num_blocks; b++) {
-        VkDeviceSize align = 1; // powers of two
-        for (uint32_t i = 0; i < s->count; i++) {
-            const tyn_share_item *item = &s->items[i];
-            align = item->block == b && item->align > align ? item->align : align;
+    for (uint32_t b = g->num_blocks; result == TYN_OK && b < s->list.num_blocks; b++) {
+        result = add_block(g, s, b);
+    }
+    VkDeviceSize kept = 0;
+    for (uint32_t i = 0; result == TYN_OK && i < s->list.count; i++) {
+        const tyn_share_item *item = &s->list.items[i];
+        kept += item->kept && !item->unused ? item->size : 0;
+        if (i >= s->list.placed) {
+            result = bind(g, s->indices[i], item);
         }
-        all += s->blocks[b].size;
-        result = tyn_heap_add(g->dev, &g->heap, s->blocks[b].type, s->blocks[b].size, align,
-                              &s->memory[b]);
     }
-    for (uint32_t i = 0; result == TYN_OK && i < s->count; i++) {
-        kept += s->items[i].kept && !s->items[i].unused ? s->items[i].size : 0;
-        result = bind(g, s->indices[i], &s->items[i], &s->memory[s->items[i].block]);
-    }
-    *passing = all - kept;
+    *passing = bytes_anew(g, s) - kept;
     return result;
 }
 
 tyn_result graph_bind_shared(tyn_graph *g, VkDeviceSize *passing)
 {
-    const size_t n = g->num_resources + 1;
-    sharing s = {.follows = find_followers(g),
-                 .items = calloc(n, sizeof *s.items),
-                 .blocks = calloc(n, sizeof *s.blocks),
-                 .memory = calloc(n, sizeof *s.memory),
-                 .order = calloc(n, sizeof *s.order),
-                 .indices = calloc(n, sizeof *s.indices)};
-    const bool room = s.follows && s.items && s.blocks && s.memory && s.order && s.indices;
-    const tyn_result result = room ? place(g, &s, passing) : TYN_ERR_MEMORY;
-    free(s.follows);
-    free(s.items);
-    free(s.blocks);
-    free(s.memory);
-    free(s.order);
-    free(s.indices);
+    sharing s;
+    const tyn_result result = open_sharing(g, &s) ? place(g, &s, passing) : TYN_ERR_MEMORY;
+    close_sharing(&s);
     return result;
+}
+
+// Which of two that may not lie in one place goes: scratch, or what holds nothing that is wanted.
+static uint32_t worse(const tyn_graph *g, uint32_t a, uint32_t b)
+{
+    const bool scratch = g->resources[a].kind == RESOURCE_SCRATCH;
+    return scratch || g->phys[a].content != g->resources[a].content ? a : b;
+}
+
+static void give_up(tyn_graph *g, uint32_t index)
+{
+    phys *p = &g->phys[index];
+    const phys uses = {.image_usage = p->image_usage,
+                       .buffer_usage = p->buffer_usage,
+                       .texel_uses = p->texel_uses};
+    graph_destroy_phys(g, p);
+    *p = uses;
+}
+
+tyn_result graph_keep_places(tyn_graph *g)
+{
+    sharing s;
+    const tyn_result result = open_sharing(g, &s) ? TYN_OK : TYN_ERR_MEMORY;
+    if (result == TYN_OK) {
+        list_items(g, true, &s);
+    }
+    for (uint32_t i = 0; i < s.list.count; i++) {
+        for (uint32_t k = 0; k < i; k++) {
+            const uint32_t a = s.indices[i], b = s.indices[k];
+            if (graph_overlap(&g->phys[a], &g->phys[b]) &&
+                !tyn_share_apart(&s.list.items[i], &s.list.items[k], s.follows, g->num_nodes)) {
+                give_up(g, worse(g, a, b));
+            }
+        }
+    }
+    close_sharing(&s);
+    return result;
+}
+
+void graph_retire_blocks(tyn_graph *g, bool all)
+{
+    uint32_t left = 0;
+    for (uint32_t b = 0; b < g->num_blocks; b++) {
+        bool used = false;
+        for (uint32_t i = 0; !all && i < g->num_phys; i++) {
+            used = used || (is_placed(&g->phys[i]) && g->phys[i].block == g->blocks[b].id);
+        }
+        if (used) {
+            g->blocks[left++] = g->blocks[b];
+        } else {
+            graph_retire_heap(g, &g->blocks[b].heap, g->blocks[b].made);
+        }
+    }
+    g->num_blocks = left;
+    if (!left) {
+        free(g->blocks);
+        g->blocks = NULL;
+    }
 }

@@ -11,3 +11,5 @@ const tyn_picture_hook *const *tyn_picture_hooks(uint32_t *count);
 tyn_result tyn_settings_copy(const tyn_settings *from, tyn_quality quality, const tyn_log *log,
                              tyn_settings **out);
 const char *tyn_quality_name(tyn_quality quality); // NULL: there is none
+// Of the values that differ from defaults, in the order in which they were set.
+uint64_t tyn_settings_hash(const tyn_settings *settings);

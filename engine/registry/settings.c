@@ -1,6 +1,7 @@
 // settings.c -- values of pass parameters, by "pass.param".
 #include "registry/registry.h"
 #include "base/given.h"
+#include "base/hash.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -52,6 +53,17 @@ static tyn_result put(tyn_settings *settings, const tyn_pass_desc *pass, const t
     settings->entries = grown;
     settings->entries[settings->count++] = (entry){pass, param, value};
     return TYN_OK;
+}
+
+uint64_t tyn_settings_hash(const tyn_settings *settings)
+{
+    uint64_t h = TYN_HASH_SEED;
+    for (uint32_t i = 0; i < settings->count; i++) {
+        const entry *e = &settings->entries[i];
+        h = tyn_hash_string(tyn_hash_string(h, e->pass->name), e->param->name);
+        h = tyn_hash_bytes(h, &e->value, sizeof e->value);
+    }
+    return h;
 }
 
 // ---- parsing ----------------------------------------------------------------------------------

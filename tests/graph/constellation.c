@@ -124,7 +124,7 @@ static const struct {
     {"map turned", turn_map, "uuuur"},        {"map dimmed", dim_map, "uuuur"},
     {"sun dimmed", dim_sun, "uuuur"},         {"camera moved", move_camera, "uuurr"},
     {"another map", change_map, "urrur"},     {"coefficients", thin_medium, "uuurr"},
-    {"grid", change_grid, "ruurr"},           {"unlit", lights_out, "r--rr"},
+    {"grid", change_grid, "ruurr"},           {"unlit", lights_out, "u--ur"},
     {"empty", take_medium, "-----"},
 };
 

@@ -44,6 +44,9 @@ static void put(const char *format, ...)
 static VkResult create(const char *kind, uint64_t *handle)
 {
     fake->created++;
+    fake->memory += !strcmp(kind, "DeviceMemory");
+    fake->kernels += !strcmp(kind, "Pipeline") || !strcmp(kind, "PipelineLayout") ||
+                     !strcmp(kind, "ShaderModule") || !strcmp(kind, "DescriptorSetLayout");
     fake->created_while_recording += fake->recording;
     *handle = 0;
     if (fake->created == fake->fail_at) {

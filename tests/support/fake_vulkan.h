@@ -9,6 +9,8 @@ typedef struct fake_vulkan {
     size_t used, cap;
     uint32_t live;    // objects and allocations that exist
     uint32_t created; // ever
+    uint32_t memory,
+        kernels;      // of these: allocations of memory, and pipelines with what belongs to them
     uint32_t fail_at; // the create or allocate call with this number fails; 0 = none
     bool recording;   // nothing may be created now
     uint32_t created_while_recording;

@@ -10,11 +10,14 @@
 //  (b) `before` of a host image is trusted, `after` is guaranteed; any layout, any stage. There is no
 //      queue family transfer.
 //  (c) If record fails, nothing was appended and host images are in their `before` state.
-//  (d) The call i + frames_in_flight is made after the GPU finished call i.
+//  (d) Record i + frames_in_flight, and the prepare before it, are called after the GPU finished what record i appended.
 //  (e) record never submits, waits, or allocates memory; prepare does the last two.
 //  (f) With `background`, a frame whose kernels are still being compiled gives TYN_PENDING: record then takes host
 //      images from `before` to `after` with their content as it was, and appends nothing else. To ask for kernels it
 //      allocates host memory.
+//  (g) So does, with or without `background`, a record whose values ask for other grids or kernels than those that were
+//      prepared, where sizes, formats, counts and settings are the same: prepare mends it. To call prepare in every frame is
+//      cheap and never waits for the GPU.
 #pragma once
 #include "device.h"
 #include "scene.h"
@@ -145,8 +148,8 @@ typedef struct tyn_frame {
     size_t struct_size TYN_PARAMS_SIZE(tyn_frame);
     VkCommandBuffer cmd;        // Required: recording, outside a render pass
     const tyn_scene *scene;     // Required: same counts and sizes as prepared; values may
-                                // differ, but some choose other kernels or grids: record refuses
-                                // then, and prepare mends it (docs/embedding.md)
+                                // differ, but some choose other kernels or grids: record gives
+                                // TYN_PENDING then, and prepare mends it (docs/events.md)
     const tyn_view *view;       // Required: same size, outputs and point count as prepared
     const tyn_image *densities; // one per volume whose data is NULL, in order
     const uint64_t *density_versions; // NULL = they may have changed every frame
@@ -176,11 +179,14 @@ typedef struct tyn_frame {
     bool background;
     bool recompute;  // run every node but those that depend on the media alone, changed or not
     bool setup_only; // record only uploads and nodes that depend on the media alone
+    // For prepare: the GPU is done with all earlier records. What it replaces goes before it allocates, so that both never
+    // take memory at once; else what was replaced stays until the frames that were recorded with it are over.
+    bool idle;
 } tyn_frame;
 #define tyn_frame(...) TYN_PARAMS(tyn_frame, __VA_ARGS__)
 
-// Allocates for this scene and view. Cheap if nothing structural changed. The GPU must be done with
-// earlier records. `frame.cmd` is not used; images must have their formats and extents.
+// Allocates for this scene and view. Cheap if nothing structural changed. Earlier records may still be under way (d).
+// `frame.cmd` is not used; images must have their formats and extents.
 TYN_API tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame);
 TYN_API tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame);
 
