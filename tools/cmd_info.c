@@ -96,6 +96,19 @@ static void print_passes(void)
     }
 }
 
+// Named as in tyn_output, the bits in order.
+static void print_outputs(uint32_t outputs)
+{
+    static const char *const names[] = {"radiance", "transmittance", "depth",   "single",
+                                        "multiple", "error",         "display", "probe",
+                                        "balance",  "composite",     "fluxes",  "light"};
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (outputs >> i & 1) {
+            printf(" %s", names[i]);
+        }
+    }
+}
+
 static void print_methods(void)
 {
     for (uint32_t i = 0; i < tyn_num_methods(); i++) {
@@ -106,6 +119,8 @@ static void print_methods(void)
         for (const tyn_pass_desc *const *pass = m.passes; *pass; pass++) {
             printf(" %s", (*pass)->name);
         }
+        printf("\n%-10s outputs:", "");
+        print_outputs(m.outputs);
         printf("\n%-10s limits:", "");
         const char *last = "", *separator = "";
         for (const tyn_limit *row = m.limits; row->key; row++) {
