@@ -1,7 +1,7 @@
 // shdom.c -- method "shdom": spherical harmonics and discrete ordinates (Evans 1998), to be compared with.
 //
-// Suns and principal ordinates of an environment light the cells of a lattice; what scatters is solved for there in a few
-// bands of spherical harmonics. The march adds what scatters once of suns, sharply (docs/shdom.md).
+// Suns, lamps and principal ordinates of an environment light the cells of a lattice; what scatters is solved for there in a
+// few bands of spherical harmonics. The march adds what scatters once of suns and lamps, sharply (docs/shdom.md).
 #include "light/sources.h"
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
@@ -9,32 +9,25 @@
 #include "view/view.h"
 #include <tyndall/registry.h>
 
-static bool refuses(const tyn_job *job)
+static tyn_result declare(tyn_graph *g, const tyn_job *given)
 {
-    const tyn_frame_scene *frame = job->frame;
+    tyn_job own = *given;
+    const tyn_job *job = &own;
+    tyn_frame_scene without; // surfaces
     if (!tyn_job_refuse_repeat(job)) {
-        return true;
+        return TYN_ERR_PARAMS;
     }
-    if (frame->num_triangles || frame->lights.num_lamps) {
-        tyn_log_print(job->log, TYN_LOG_ERROR,
-                      "'shdom' knows suns and environments alone: the scene has %s; 'pop' and "
-                      "'lpv' can do those",
-                      frame->num_triangles ? "surfaces" : "lamps");
-        return true;
+    if (own.frame->num_triangles) {
+        tyn_job_warn_surfaces(job, "are left out: they stop no light, and are not seen");
+        without = *own.frame;
+        without.num_triangles = 0;
+        own.frame = &without;
     }
-    return false;
-}
-
-static tyn_result declare(tyn_graph *g, const tyn_job *job)
-{
     const tyn_frame_scene *frame = job->frame;
     const bool picture = job->outputs & TYN_PICTURE_OUTPUTS;
     tyn_sources s = {0};
     tyn_field probes = {0}, field = {.inscatter_is = TYN_INSCATTER_PLAIN};
     tyn_view_inputs view = {.sources = &s, .field = &field};
-    if (refuses(job)) {
-        return TYN_ERR_PARAMS;
-    }
     if (frame->empty && picture) {
         tyn_add_picture(g, job, &view);
         return tyn_graph_status(g);
@@ -46,11 +39,13 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     }
     tyn_add_medium(g, job, &s);
     tyn_add_sky(g, job, 0, false, &s);
+    tyn_add_radials(g, job, &s);
     tyn_sources marched = s;
     if (picture) {
         tyn_add_beams(g, job, &marched);
     }
-    if (s.sky.ordinates.resource || frame->emissive || (job->outputs & TYN_OUTPUT_PROBE)) {
+    if (s.sky.ordinates.resource || s.lamps.num_lamps || frame->emissive ||
+        (job->outputs & TYN_OUTPUT_PROBE)) {
         tyn_shdom_params params;
         tyn_settings_params(job->settings, &tyn_pass_shdom, &params);
         tyn_add_cells(g, job, params.shape.cells, "shdom.cells", &s);
@@ -63,6 +58,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     }
     if (picture) {
         view.sources = &marched;
+        view.num_marched_lamps = marched.lamps.num_lamps;
         tyn_gather(g, job, &view);
         tyn_add_picture(g, job, &view);
     }
@@ -73,6 +69,7 @@ static const tyn_pass_desc *const passes[] = {
     TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
     TYN_SUN_PASSES(TYN_PASS_ADDRESS),
     TYN_SKY_PASSES(TYN_PASS_ADDRESS),
+    TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
     TYN_CELL_PASSES(TYN_PASS_ADDRESS),
     TYN_SHDOM_PASSES,
     TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
@@ -82,6 +79,11 @@ static const tyn_pass_desc *const passes[] = {
 
 static const tyn_limit limits[] = {
     TYN_LIMIT_NOT_PERIODIC("docs/shdom.md, \"Limits\""),
+    {.key = "surfaces",
+     .where = {TYN_ABOVE(surfaces, 0)},
+     .level = TYN_LIMIT_BREAKS,
+     .advice = {"surfaces are left out: they stop no light, reflect none and are not seen"},
+     .source = "docs/shdom.md, \"Limits\""},
     TYN_LIMIT_FLOATS,
     {NULL},
 };

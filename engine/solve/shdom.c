@@ -22,7 +22,9 @@ static void add_view(tyn_graph *g, const tyn_job *job, const tyn_sources *s, uin
     for (uint32_t ch = 0; ch < params.channels; ch++) {
         refs[SHDOM_VIEW_PORT_SENT_0 + ch] = solved[SHDOM_PORT_SENT_0 + ch];
     }
+    params.lamps = s->lamps.num_lamps;
     tyn_connect(refs, SHDOM_VIEW_PORT_ORDINATES, s->sky.columns);
+    tyn_connect(refs, SHDOM_VIEW_PORT_RADIALS, s->lamps.radials);
     tyn_graph_add(g, &tyn_pass_shdom_view, &params, refs);
     tyn_job_counters(g, job, &tyn_pass_shdom_view, refs[SHDOM_VIEW_PORT_COUNTERS]);
     picture->inscatter = refs[SHDOM_VIEW_PORT_INSCATTER];
@@ -43,7 +45,9 @@ void tyn_solve_shdom(tyn_graph *g, const tyn_job *job, const tyn_sources *s, uin
         [SHDOM_PORT_CELLS] = s->lattice.cells,
         [SHDOM_PORT_SOURCE] = s->lattice.source,
     };
+    params.lamps = s->lamps.num_lamps;
     tyn_connect(refs, SHDOM_PORT_ORDINATES, s->sky.columns);
+    tyn_connect(refs, SHDOM_PORT_RADIALS, s->lamps.radials);
     tyn_graph_add(g, &tyn_pass_shdom, &params, refs);
     tyn_job_counters(g, job, &tyn_pass_shdom, refs[SHDOM_PORT_COUNTERS]);
     probes->moments = refs[SHDOM_PORT_MOMENTS];

@@ -7,6 +7,7 @@
 #include "shdom_direct.comp.h"
 #include "shdom_emit.comp.h"
 #include "shdom_gather.comp.h"
+#include "shdom_lamps.comp.h"
 #include "shdom_lines.comp.h"
 #include "shdom_moments.comp.h"
 #include "shdom_next.comp.h"
@@ -23,6 +24,7 @@ static const tyn_port ports[] = {SHDOM_PORTS(TYN_PORT_ROW)};
 enum {
     KERNEL_BASIS,
     KERNEL_DIRECT,
+    KERNEL_LAMPS,
     KERNEL_PROJECT,
     KERNEL_NEXT,
     KERNEL_EMIT,
@@ -34,9 +36,10 @@ enum {
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
     [KERNEL_BASIS] = TYN_KERNEL(shdom_basis),     [KERNEL_DIRECT] = TYN_KERNEL(shdom_direct),
-    [KERNEL_PROJECT] = TYN_KERNEL(shdom_project), [KERNEL_NEXT] = TYN_KERNEL(shdom_next),
-    [KERNEL_EMIT] = TYN_KERNEL(shdom_emit),       [KERNEL_LINES] = TYN_KERNEL(shdom_lines),
-    [KERNEL_GATHER] = TYN_KERNEL(shdom_gather),   [KERNEL_MOMENTS] = TYN_KERNEL(shdom_moments),
+    [KERNEL_LAMPS] = TYN_KERNEL(shdom_lamps),     [KERNEL_PROJECT] = TYN_KERNEL(shdom_project),
+    [KERNEL_NEXT] = TYN_KERNEL(shdom_next),       [KERNEL_EMIT] = TYN_KERNEL(shdom_emit),
+    [KERNEL_LINES] = TYN_KERNEL(shdom_lines),     [KERNEL_GATHER] = TYN_KERNEL(shdom_gather),
+    [KERNEL_MOMENTS] = TYN_KERNEL(shdom_moments),
 };
 
 // ---- the quadrature ---------------------------------------------------------------------------
@@ -135,7 +138,7 @@ static tyn_result declare(tyn_builder *b, const void *data)
     tyn_build_buffer(b, PORT(BASIS), sizeof(float) * coefficients * whole_groups(ordinates));
     tyn_build_buffer(b, PORT(WEIGHTED), sizeof(float) * coefficients * ordinates);
     tyn_build_buffer(b, PORT(SKY), sizeof(float) * coefficients * (p->count ? p->count : 1));
-    tyn_build_buffer(b, PORT(UNSCATTERED), p->count ? 4 * n * coefficients : 4);
+    tyn_build_buffer(b, PORT(UNSCATTERED), p->count || p->lamps ? 4 * n * coefficients : 4);
     tyn_build_buffer(b, PORT(RADIANCE), 4 * n * coefficients);
     tyn_build_buffer(b, PORT(EXTINCTION), 4 * n);
     tyn_build_buffer(b, PORT(EMITTED), 4 * n * batch);
@@ -173,6 +176,18 @@ static void add_unscattered(tyn_recorder *r, solve *s)
                      .spec = &s->mode);
         project(r, s, true);
     }
+    if (a->lamps) {
+        if (!a->sky) {
+            tyn_rec_fill(r, PORT(UNSCATTERED), 0);
+        }
+        TYN_DISPATCH(r, .kernel = KERNEL_LAMPS, .cells = {s->cells, 1, 1}, .args = a,
+                     .spec = &s->mode);
+    }
+}
+
+static bool is_lit(const struct shdom_args *a)
+{
+    return a->sky || a->lamps;
 }
 
 // The source function of the channel, of all light that there is so far.
@@ -180,7 +195,7 @@ static void next(tyn_recorder *r, const solve *s, bool scattered)
 {
     const uint8_t to[][2] = {{PORT(SENT_0), (uint8_t)(PORT(SENT_0) + s->args.ch)}};
     uint8_t exchanged[TYN_MAX_BINDINGS];
-    const uint32_t spec[2] = {s->args.sky > 0, scattered};
+    const uint32_t spec[2] = {is_lit(&s->args), scattered};
     TYN_DISPATCH(r, .kernel = KERNEL_NEXT, .cells = {s->cells, s->args.coefficients, 1},
                  .args = &s->args, .spec = spec,
                  .ports = tyn_ports_exchanged(&kernels[KERNEL_NEXT], to, 1, exchanged));
@@ -226,7 +241,8 @@ static void record(tyn_recorder *r, const void *data)
                  .coefficients = whole_groups(bands * bands),
                  .ordinates = whole_groups(ordinates),
                  .num_ordinates = ordinates,
-                 .sky = tyn_rec_has(r, PORT(ORDINATES)) ? p->count : 0},
+                 .sky = tyn_rec_has(r, PORT(ORDINATES)) ? p->count : 0,
+                 .lamps = tyn_rec_has(r, PORT(RADIALS)) ? p->lamps : 0},
         .cells = dims.x * dims.y * dims.z,
         .lines = most_lines(dims),
         .mode = p->mode,
@@ -248,7 +264,7 @@ static void record(tyn_recorder *r, const void *data)
             iterate(r, &s);
         }
         TYN_DISPATCH(r, .kernel = KERNEL_MOMENTS, .cells = {s.cells, 1, 1}, .args = &s.args,
-                     .spec = &(uint32_t){s.args.sky > 0});
+                     .spec = &(uint32_t){is_lit(&s.args)});
     }
     const double steps = (double)s.cells * p->shape.channels * p->iterations * ordinates;
     tyn_rec_work(r, "cells", (double)s.cells * p->shape.channels * p->iterations);
@@ -258,13 +274,13 @@ static void record(tyn_recorder *r, const void *data)
 }
 
 static const tyn_param param_table[] = {
-    {"cells", TYN_PARAM_INT, offsetof(tyn_shdom_params, shape.cells), 32, 4, TYN_LATTICE_MAX_CELLS,
+    {"cells", TYN_PARAM_INT, offsetof(tyn_shdom_params, shape.cells), 24, 4, TYN_LATTICE_MAX_CELLS,
      "cells", "lattice cells along the longest side of the medium; 262144 in all", NULL},
     {"bands", TYN_PARAM_INT, offsetof(tyn_shdom_params, bands), 5, 1, SHDOM_MAX_BANDS, "",
      "bands of spherical harmonics: so many squared are the coefficients of a cell, and twice as "
      "many the discrete ordinates (32 at least)",
      NULL},
-    {"iterations", TYN_PARAM_INT, offsetof(tyn_shdom_params, iterations), 30, 1, 512, "",
+    {"iterations", TYN_PARAM_INT, offsetof(tyn_shdom_params, iterations), 24, 1, 512, "",
      "of the source function: scatterings beyond the first that are counted", NULL},
 };
 

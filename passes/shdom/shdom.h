@@ -15,14 +15,16 @@ typedef struct tyn_shdom_params {
     int32_t iterations;      // 1..512
     uint32_t mode;           // TYN_MEDIUM_*; set by the method, as the next
     uint32_t count;          // principal ordinates; 0: none are connected
+    uint32_t lamps;
 } tyn_shdom_params;
 
 // clang-format off
 #define SHDOM_PORTS(X) \
     X(SHDOM, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
     TYN_COLUMNS(X##_OPTIONAL, SHDOM), \
+    TYN_RADIALS(X##_OPTIONAL, SHDOM), \
     X(SHDOM, CELLS, cells, IN, IMAGE_3D, "of lattice_cells"), \
-    X(SHDOM, SOURCE, source, OPTIONAL, IMAGE_3D, "of lattice_ordinates"), \
+    X(SHDOM, SOURCE, source, OPTIONAL, IMAGE_3D, "of the last of lattice_ordinates and lattice_lamps"), \
     X(SHDOM, SENT_0, sent_0, OUT, BUFFER, \
         "float[coefficient][cell]: source function of the first channel in spherical harmonics, W/(m^3 sr)"), \
     X(SHDOM, SENT_1, sent_1, OUT, BUFFER, "of the second"), \

@@ -24,7 +24,8 @@ struct shdom_args {
     tyn_uint first, count;  // ordinates of this batch
     tyn_uint num_ordinates; // of the quadrature
     tyn_uint sky;           // principal ordinates at most
+    tyn_uint lamps;
 };
-TYN_ASSERT_SIZE(shdom_args, 64);
+TYN_ASSERT_SIZE(shdom_args, 68);
 
 #endif

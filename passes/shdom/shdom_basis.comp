@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shdom_args.h"
 #include "shaders/light/ordinate_args.h"
+#include "shaders/lattice/delta_bands.glsl"
 
 layout(local_size_x = 64) in;
 TYN_ARGS(shdom_args args);
@@ -18,8 +19,7 @@ float weight;
 void visit(int l, int k, float y)
 {
     if (of_sky) {
-        // To first order in its solid angle that of a uniform cone, and right for l = 1.
-        sky[at * args.coefficients + uint(k)] = y * pow(max(weight, 1e-6), 0.5 * float(l * (l + 1)));
+        sky[at * args.coefficients + uint(k)] = y * bands_cone(weight, l);
     } else {
         basis[uint(k) * args.ordinates + at] = y;
         weighted[at * args.coefficients + uint(k)] = y * weight;

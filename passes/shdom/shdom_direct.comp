@@ -23,12 +23,10 @@ void main()
     uvec3 cell = uvec3(i % args.dims.x, i / args.dims.x % args.dims.y, i / (args.dims.x * args.dims.y));
     float light = 0.0;
     if (args.first + n < ordinates.count) {
-        float half_cell = 0.5 * args.dx *
-                          bands_medium_of(texelFetch(cells, ivec3(cell.xy, cell.z + args.ch * args.dims.z), 0), args.bands).extinction;
-        beam_tau tau = columns_tau(args.first + n, cell, args.dims);
-        float depth = max(bands_depth(tau.a[args.ch], tau.s[args.ch], tau.p[args.ch], args.bands), half_cell);
+        ivec3 texel = ivec3(cell.xy, cell.z + args.ch * args.dims.z);
+        bands_medium m = bands_medium_of(texelFetch(cells, texel, 0), args.bands);
         light = lattice_channel(ordinates.list[args.first + n].irradiance, args.channels, args.ch, args.tint) *
-                mean_transmittance(depth, half_cell);
+                bands_transmittance(columns_tau(args.first + n, cell, args.dims), int(args.ch), m, args.bands, args.dx);
     }
     emitted[n * all + i] = light;
 }

@@ -32,6 +32,21 @@ float share_within(float to, float size, float slope)
     return slope > 0.0 ? clamp(to / slope, 0.0, 1.0) : slope < 0.0 ? clamp((to - size) / slope, 0.0, 1.0) : 1.0;
 }
 
+// Of thin steps the source per metre is linear along them, of others the source per extinction along the depth: so no
+// light is made where the extinction changes by much from cell to cell.
+float step_along(float light, vec2 from, vec2 to, float way)
+{
+    float tau = 0.5 * (from.y + to.y) * way, e = exp(-tau);
+    if (tau < 0.03) {
+        return light * e + way * (to.x * (0.5 - tau / 6.0) + from.x * (0.5 - tau / 3.0));
+    }
+    float mean = (1.0 - e) / tau, least = 1e-4 * max(from.y, to.y);
+    vec2 source = vec2(from.x, to.x) / max(vec2(from.y, to.y), vec2(least));
+    source.x = from.y > least ? source.x : source.y;
+    source.y = to.y > least ? source.y : source.x;
+    return light * e + source.y * (1.0 - mean) + source.x * (mean - e);
+}
+
 void main()
 {
     int line = int(gl_GlobalInvocationID.x), n = int(gl_GlobalInvocationID.y);
@@ -62,11 +77,7 @@ void main()
         light = enters ? 0.0 : light;
         before = enters ? here : before;
         way *= lines.step;
-        // The source is linear along the step.
-        float tau = 0.5 * (before.y + here.y) * way, e = exp(-tau);
-        float mean = tau > 0.03 ? (1.0 - e) / tau : 1.0 - tau * (0.5 - tau * (1.0 / 6.0 - tau / 24.0));
-        float from = tau > 0.03 ? (mean - e) / tau : 0.5 - tau * (1.0 / 3.0 - tau * (0.125 - tau / 30.0));
-        light = light * e + way * (here.x * (mean - from) + before.x * from);
+        light = step_along(light, before, here, way);
         radiance[n * all + slice * across + line] = light;
         before = here;
         turn = turns;

@@ -52,7 +52,8 @@ static void record(tyn_recorder *r, const void *data)
                                          .channels = p->channels,
                                          .tint = {p->tint[0], p->tint[1], p->tint[2]},
                                          .bands = (uint32_t)p->bands,
-                                         .num_suns = p->num_suns};
+                                         .num_suns = p->num_suns,
+                                         .lamps = p->lamps};
     const uint32_t spec[4] = {p->mode, p->channels, p->grey, tyn_rec_has(r, PORT(ORDINATES))};
     tyn_rec_fill(r, PORT(COUNTERS), 0);
     TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = dims, .args = &args, .spec = spec);

@@ -14,6 +14,7 @@ typedef struct tyn_shdom_view_params {
     uint32_t mode;     // TYN_MEDIUM_*
     uint32_t grey;     // 1: sigma_s, sigma_a and g are equal in all channels
     uint32_t num_suns; // the first ordinates, whose light that scatters once the march draws
+    uint32_t lamps;    // likewise
 } tyn_shdom_view_params;
 
 // clang-format off
@@ -25,6 +26,7 @@ typedef struct tyn_shdom_view_params {
     X(SHDOM_VIEW, SENT_1, sent_1, OPTIONAL, BUFFER, "of the second channel"), \
     X(SHDOM_VIEW, SENT_2, sent_2, OPTIONAL, BUFFER, "of the third"), \
     TYN_COLUMNS(X##_OPTIONAL, SHDOM_VIEW), \
+    TYN_RADIALS(X##_OPTIONAL, SHDOM_VIEW), \
     X(SHDOM_VIEW, INSCATTER, inscatter, OUT, IMAGE_3D, \
         "dims + 2: light towards the eye per sigma_s, W/(m^2 sr); sample at lattice_inscatter_uvw", \
         .format = VK_FORMAT_R32G32B32A32_SFLOAT), \

@@ -8,8 +8,10 @@ struct shdom_view_args {
     tyn_uint channels;
     tyn_vec3 tint;
     tyn_uint bands;
-    tyn_uint num_suns;
+    tyn_uint
+        num_suns; // the first ordinates, whose light that scatters once the march draws; and that of all lamps
+    tyn_uint lamps;
 };
-TYN_ASSERT_SIZE(shdom_view_args, 36);
+TYN_ASSERT_SIZE(shdom_view_args, 40);
 
 #endif

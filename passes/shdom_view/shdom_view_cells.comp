@@ -8,10 +8,14 @@
 #define COLUMNS_AT 6
 #include "shaders/medium/medium.glsl"
 #include "shaders/beams/columns.glsl"
+#define RADIALS_AT 11
+#define RADIALS_STORAGE
+#include "shaders/beams/radial.glsl"
 #include "shaders/common/camera.glsl"
 #include "shaders/lattice/lattice.glsl"
 #include "shaders/lattice/lattice_sweep.glsl"
 #include "shaders/lattice/delta_bands.glsl"
+#include "shaders/lattice/bands_lamp.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 TYN_ARGS(shdom_view_args args);
@@ -25,7 +29,7 @@ layout(binding = 9, rgba32f) uniform writeonly image3D extinction;
 layout(binding = 10, rgba32f) uniform writeonly image3D scattered;
 layout(constant_id = 1) const uint channels = 3;
 layout(constant_id = 2) const uint grey = 0; // 1: the medium is the same in all channels
-layout(constant_id = 3) const uint lit = 1;  // is there unscattered light?
+layout(constant_id = 3) const uint lit = 1;  // are there ordinates?
 
 int here, all; // the cell, and how many there are
 vec3 source;   // its source function towards the eye
@@ -42,37 +46,58 @@ void visit(int l, int k, float y)
 #define HARMONICS_VISIT visit
 #include "shaders/lattice/harmonics.glsl"
 
-// The phase function over the cone of an ordinate: its middle and six places around (a rule of degree 5 for discs).
-float cone_phase(phase p, ordinate o, vec3 v)
+// The phase function over a cone of light: its middle and six places around (a rule of degree 5 for discs).
+float cone_phase(phase p, vec3 direction, float mean_cosine, vec3 v)
 {
-    vec3 gap = v - o.direction;
-    if (o.mean_cosine > 0.9999) {
-        return phase_near(p, o.mean_cosine, 0.5 * dot(gap, gap));
+    vec3 gap = v - direction;
+    if (mean_cosine > 0.9999) {
+        return phase_near(p, mean_cosine, 0.5 * dot(gap, gap));
     }
-    vec3 a = normalize(cross(o.direction, abs(o.direction.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
-    vec3 b = cross(o.direction, a);
+    vec3 a = normalize(cross(direction, abs(direction.x) < 0.6 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
+    vec3 b = cross(direction, a);
     float sum = 0.25 * phase_near(p, 1.0, 0.5 * dot(gap, gap));
-    float cosine = 1.0 - (2.0 / 3.0) * 2.0 * (1.0 - o.mean_cosine), sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    float cosine = 1.0 - (2.0 / 3.0) * 2.0 * (1.0 - mean_cosine), sine = sqrt(max(1.0 - cosine * cosine, 0.0));
     for (int i = 0; i < 6; i++) {
         float turn = 1.04719755 * float(i);
-        vec3 d = cosine * o.direction + sine * (cos(turn) * a + sin(turn) * b) - v;
+        vec3 d = cosine * direction + sine * (cos(turn) * a + sin(turn) * b) - v;
         sum += 0.125 * phase_near(p, 1.0, 0.5 * dot(d, d));
     }
     return sum;
 }
 
 // What the solver has for it: (1 - f) times the phase function that is left, in its bands.
-float bands_phase(bands_medium m, ordinate o, float mu)
+float bands_phase(bands_medium m, float mean_cosine, float mu)
 {
     float before = 0.0, p = 1.0, sum = 0.0;
     for (int l = 0; l < int(args.bands); l++) {
-        float cone = pow(max(o.mean_cosine, 1e-6), 0.5 * float(l * (l + 1)));
-        sum += float(2 * l + 1) / LATTICE_4PI * (bands_power(m.g, l) - m.f) * cone * p;
+        sum += float(2 * l + 1) / LATTICE_4PI * (bands_power(m.g, l) - m.f) * bands_cone(mean_cosine, l) * p;
         float next = (float(2 * l + 1) * mu * p - float(l) * before) / float(l + 1);
         before = p;
         p = next;
     }
     return sum;
+}
+
+// What is to be added to the source function of the bands for light of irradiance 1, 1/m: `once`: less what the march draws.
+vec3 beyond_bands(bands_medium m[3], vec3 direction, float mean_cosine, vec3 v, beam_tau tau, bool once, float dx)
+{
+    float mu = dot(direction, v), whole = 0.0, banded = 0.0;
+    vec3 sum = vec3(0.0);
+    for (uint ch = 0u; ch < channels; ch++) {
+        if (ch == 0u || grey == 0u) {
+            whole = cone_phase(phase_of_mean_cosine(m[ch].g), direction, mean_cosine, v);
+            banded = bands_phase(m[ch], mean_cosine, mu);
+        }
+        float share = (whole - banded) * bands_transmittance(tau, int(ch), m[ch], args.bands, dx);
+        share -= once ? whole * exp(-(tau.a[ch] + tau.s[ch])) : 0.0;
+        sum[ch] = m[ch].sigma_s * share;
+    }
+    return sum;
+}
+
+vec3 colour_of(vec3 light)
+{
+    return channels == 1u ? vec3(lattice_channel(light, 1u, 0u, args.tint)) : light;
 }
 
 void main()
@@ -97,22 +122,17 @@ void main()
         seen[ch] -= cell.w;
     }
     vec3 most = vec3(m[0].sigma_s, channels == 3u ? vec2(m[1].sigma_s, m[2].sigma_s) : vec2(0.0));
-    uint count = lit != 0u && most.x + most.y + most.z > 0.0 ? min(ordinates.count, uint(TYN_ORDINATES_MAX)) : 0u;
+    bool any_medium = most.x + most.y + most.z > 0.0;
+    uint count = lit != 0u && any_medium ? min(ordinates.count, uint(TYN_ORDINATES_MAX)) : 0u;
     for (uint n = 0u; n < count; n++) {
         ordinate o = ordinates.list[n];
-        float mu = dot(o.direction, v), whole = 0.0, banded = 0.0;
         beam_tau tau = columns_tau(n, uvec3(c), args.dims);
-        for (uint ch = 0u; ch < channels; ch++) {
-            if (ch == 0u || grey == 0u) {
-                whole = cone_phase(phase_of_mean_cosine(m[ch].g), o, v);
-                banded = bands_phase(m[ch], o, mu);
-            }
-            float half_cell = 0.5 * box.dx * m[ch].extinction;
-            float depth = max(bands_depth(tau.a[ch], tau.s[ch], tau.p[ch], args.bands), half_cell);
-            float share = (whole - banded) * mean_transmittance(depth, half_cell);
-            share -= n < args.num_suns ? whole * exp(-(tau.a[ch] + tau.s[ch])) : 0.0;
-            seen[ch] += lattice_channel(o.irradiance, channels, ch, args.tint) * m[ch].sigma_s * share;
-        }
+        seen += colour_of(o.irradiance) * beyond_bands(m, o.direction, o.mean_cosine, v, tau, n < args.num_suns, box.dx);
+    }
+    for (uint n = 0u; n < (any_medium ? args.lamps : 0u); n++) {
+        bands_lamp lamp = bands_lamp_at(n, box, c);
+        seen += colour_of(radials[n].light.color) * lamp.share *
+                beyond_bands(m, lamp.direction, lamp.mean_cosine, v, lamp.tau, true, box.dx);
     }
     imageStore(towards, c, vec4(source, 0.0));
     imageStore(extinction, c, vec4(scaled, 0.0));

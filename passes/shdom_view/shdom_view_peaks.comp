@@ -27,8 +27,9 @@ vec3 arriving(lattice_box box, vec3 p, vec3 v)
     vec3 light = vec3(0.0), through = vec3(1.0);
     for (int i = 0; i < steps; i++) {
         vec3 uvw = (p - (float(i) + 0.5) * step * v) / size;
-        vec3 e = exp(-(step * box.dx) * textureLod(extinction, uvw, 0.0).rgb);
-        light += through * textureLod(towards, uvw, 0.0).rgb * (step * box.dx * sqrt(e));
+        vec3 tau = step * box.dx * textureLod(extinction, uvw, 0.0).rgb, e = exp(-tau);
+        vec3 mean = mix((1.0 - e) / max(tau, vec3(1e-3)), 1.0 - 0.5 * tau, lessThan(tau, vec3(1e-3)));
+        light += through * mean * (step * box.dx) * textureLod(towards, uvw, 0.0).rgb;
         through *= e;
     }
     return light;

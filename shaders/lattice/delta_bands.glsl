@@ -1,4 +1,5 @@
-// delta_bands.glsl -- delta scaling for so many bands of spherical harmonics: f = g^bands goes straight on. No bindings.
+// delta_bands.glsl -- delta scaling for so many bands of spherical harmonics: f = g^bands goes straight on. No bindings. Include after beam_tau.glsl
+// where light is followed.
 //
 // The cells of the lattice are scaled with f = g^2 (sources.h); of a Henyey-Greenstein lobe both follow from g. What is left has
 // the Legendre moments (g^l - f) / (1 - f), none of the first that is left out (Wiscombe 1977).
@@ -36,11 +37,22 @@ float bands_scattering(bands_medium m, int l)
     return m.sigma_s * (bands_power(m.g, l) - m.f);
 }
 
-// Scaled depth along a light: of its scattering depth tau_s is tau_p left at f = g^2.
-float bands_depth(float tau_a, float tau_s, float tau_p, uint bands)
+// Moment l of light that comes from a uniform cone with that mean cosine: to first order in its solid angle, and right for
+// l = 1.
+float bands_cone(float mean_cosine, int l)
 {
-    float f = tau_s > 0.0 ? clamp(1.0 - tau_p / tau_s, 0.0, 1.0) : 0.0;
-    return tau_a + (f > 0.0 ? 1.0 - pow(f, 0.5 * float(bands)) : 1.0) * tau_s;
+    return pow(max(mean_cosine, 1e-6), 0.5 * float(l * (l + 1)));
 }
+
+#ifdef TYN_BEAM_TAU_GLSL
+// Mean of what is left of a light in a cell of the edge dx.
+float bands_transmittance(beam_tau tau, int ch, bands_medium m, uint bands, float dx)
+{
+    float f = tau.s[ch] > 0.0 ? clamp(1.0 - tau.p[ch] / tau.s[ch], 0.0, 1.0) : 0.0; // at two bands
+    float scaled = f > 0.0 ? 1.0 - pow(f, 0.5 * float(bands)) : 1.0;
+    float own = 0.5 * dx * m.extinction;
+    return mean_transmittance(max(tau.a[ch] + scaled * tau.s[ch], own), own);
+}
+#endif
 
 #endif
