@@ -77,8 +77,79 @@ static const tyn_pass_desc *const passes[] = {
     NULL,
 };
 
+// Half-spaces and cubes of the stress suite, 5 bands.
+static double thick(const tyn_regime *r)
+{
+    static const tyn_limit_point curve[] = {{0.15, 0.02}, {1, 0.15}, {3, 0.5}, {100, 0.85}};
+    return r->scatterings > 0.05
+               ? tyn_limit_along(curve, sizeof curve / sizeof *curve, r->cell_depth)
+               : 0;
+}
+
+static double forward(const tyn_regime *r)
+{
+    static const tyn_limit_point curve[] = {{10, 0.04}, {100, 0.18}, {10000, 1}};
+    return tyn_limit_along(curve, 3, 1 / fmax(1 - r->most_g, 1e-4)) * fmin(1, r->mean_depth);
+}
+
+static double backward(const tyn_regime *r)
+{
+    static const tyn_limit_point curve[] = {{2, 0.02}, {100, 0.67}};
+    return tyn_limit_along(curve, 2, 1 / fmax(1 + r->least_g, 1e-4)) * fmin(1, r->mean_depth);
+}
+
+static double flat(const tyn_regime *r)
+{
+    return r->scatterings > 0.05 ? 0.2 : 0;
+}
+
+#define STRESS "docs/shdom.md, \"Limits\""
+
 static const tyn_limit limits[] = {
-    TYN_LIMIT_NOT_PERIODIC("docs/shdom.md, \"Limits\""),
+    TYN_LIMIT_NOT_PERIODIC(STRESS),
+    {.key = "thick cells",
+     .where = {TYN_ABOVE(cell_depth, 0.15), TYN_ABOVE(scatterings, 0.05)},
+     .error = thick,
+     .advice = {"cells: %.2g mean free paths (delta scaled) across a dense one (about %g %% off): "
+                "-D shdom.cells",
+                {TYN_FIGURE(cell_depth), TYN_LIMIT_ERROR}},
+     .source = STRESS,
+     .warned = {TYN_ABOVE(cell_depth, 0.5)},
+     .warning = {"accuracy: where the medium is dense a cell is %.3g mean free paths (delta "
+                 "scaled) wide; ordinates are followed from cell to cell (-D shdom.cells)",
+                 {TYN_FIGURE(cell_depth)}}},
+    {.key = "flat media",
+     .where = {TYN_BELOW(cells_through, 4), TYN_ABOVE(mean_depth, 0)},
+     .error = flat,
+     .level = TYN_LIMIT_STRAINED,
+     .advice = {"cells: %.2g through the shortest side (about %g %% off): -D shdom.cells",
+                {TYN_FIGURE(cells_through), TYN_LIMIT_ERROR}},
+     .source = STRESS,
+     .warned = {TYN_ABOVE(cells_through, 0)},
+     .warning = {"accuracy: there are %.2g cells through the medium's shortest side "
+                 "(-D shdom.cells)",
+                 {TYN_FIGURE(cells_through)}}},
+    {.key = "a narrow lobe",
+     .where = {TYN_ABOVE(most_g, 0.8), TYN_ABOVE(mean_depth, 0)},
+     .error = forward,
+     .advice = {"forward lobe: bands of spherical harmonics do not hold it (about %g %% off with "
+                "five): -D shdom.bands",
+                {TYN_LIMIT_ERROR}},
+     .source = STRESS,
+     .warned = {TYN_ABOVE(most_g, 0.95)},
+     .warning = {"accuracy: g is %.6g; bands of spherical harmonics do not hold such a lobe "
+                 "(-D shdom.bands)",
+                 {TYN_FIGURE(most_g)}}},
+    {.key = "a narrow lobe",
+     .where = {TYN_BELOW(least_g, -0.5), TYN_ABOVE(mean_depth, 0)},
+     .error = backward,
+     .advice = {"backward peak: bands of spherical harmonics do not hold it (about %g %% off with "
+                "five at depth 4): -D shdom.bands",
+                {TYN_LIMIT_ERROR}},
+     .source = STRESS,
+     .warned = {TYN_BELOW(least_g, -0.7)},
+     .warning = {"accuracy: g is %.3g; bands of spherical harmonics do not hold a backward peak",
+                 {TYN_FIGURE(least_g)}}},
     {.key = "surfaces",
      .where = {TYN_ABOVE(surfaces, 0)},
      .level = TYN_LIMIT_BREAKS,

@@ -1,6 +1,7 @@
 // shdom.c -- see shdom.h.
 #include "solve/shdom.h"
 #include <tyndall/registry.h>
+#include <math.h>
 #include <string.h>
 
 static void add_view(tyn_graph *g, const tyn_job *job, const tyn_sources *s, uint32_t num_suns,
@@ -32,11 +33,25 @@ static void add_view(tyn_graph *g, const tyn_job *job, const tyn_sources *s, uin
     picture->cell = s->lattice.side;
 }
 
+// Depths along ordinates are kept as squares of halves (columns.glsl).
+static void warn_of_densities(const tyn_job *job)
+{
+    const struct medium_block *m = &job->frame->medium;
+    const float longest = fmaxf(m->extent[0], fmaxf(m->extent[1], m->extent[2]));
+    if (m->mode == TYN_MEDIUM_DENSITY && m->max_density * longest > 1e9f) {
+        tyn_job_warn(job,
+                     "accuracy: densities of up to %.2g over %.2g m: more than 1e9 in a column is "
+                     "not kept; smaller densities and larger coefficients are the same medium",
+                     (double)m->max_density, (double)longest);
+    }
+}
+
 void tyn_solve_shdom(tyn_graph *g, const tyn_job *job, const tyn_sources *s, uint32_t num_suns,
                      tyn_field *probes, tyn_field *picture)
 {
     tyn_shdom_params params;
     tyn_settings_params(job->settings, &tyn_pass_shdom, &params);
+    warn_of_densities(job);
     params.shape = s->lattice.shape;
     params.mode = job->frame->medium.mode;
     params.count = s->sky.columns.columns.resource ? s->sky.count : 0;

@@ -274,13 +274,13 @@ static void record(tyn_recorder *r, const void *data)
 }
 
 static const tyn_param param_table[] = {
-    {"cells", TYN_PARAM_INT, offsetof(tyn_shdom_params, shape.cells), 24, 4, TYN_LATTICE_MAX_CELLS,
+    {"cells", TYN_PARAM_INT, offsetof(tyn_shdom_params, shape.cells), 20, 4, TYN_LATTICE_MAX_CELLS,
      "cells", "lattice cells along the longest side of the medium; 262144 in all", NULL},
     {"bands", TYN_PARAM_INT, offsetof(tyn_shdom_params, bands), 5, 1, SHDOM_MAX_BANDS, "",
      "bands of spherical harmonics: so many squared are the coefficients of a cell, and twice as "
      "many the discrete ordinates (32 at least)",
      NULL},
-    {"iterations", TYN_PARAM_INT, offsetof(tyn_shdom_params, iterations), 24, 1, 512, "",
+    {"iterations", TYN_PARAM_INT, offsetof(tyn_shdom_params, iterations), 20, 1, 512, "",
      "of the source function: scatterings beyond the first that are counted", NULL},
 };
 

@@ -78,18 +78,22 @@ float bands_phase(bands_medium m, float mean_cosine, float mu)
     return sum;
 }
 
-// What is to be added to the source function of the bands for light of irradiance 1, 1/m: `once`: less what the march draws.
-vec3 beyond_bands(bands_medium m[3], vec3 direction, float mean_cosine, vec3 v, beam_tau tau, bool once, float dx)
+// What is to be added to the source function of the bands for light of irradiance 1, 1/m: of `marched` lights less what the march draws. `once`: what scatters
+// once.
+vec3 beyond_bands(bands_medium m[3], vec3 direction, float mean_cosine, vec3 v, beam_tau tau, bool marched, float dx, out vec3 once)
 {
     float mu = dot(direction, v), whole = 0.0, banded = 0.0;
     vec3 sum = vec3(0.0);
+    once = vec3(0.0);
     for (uint ch = 0u; ch < channels; ch++) {
         if (ch == 0u || grey == 0u) {
             whole = cone_phase(phase_of_mean_cosine(m[ch].g), direction, mean_cosine, v);
             banded = bands_phase(m[ch], mean_cosine, mu);
         }
         float share = (whole - banded) * bands_transmittance(tau, int(ch), m[ch], args.bands, dx);
-        share -= once ? whole * exp(-(tau.a[ch] + tau.s[ch])) : 0.0;
+        float unscaled = whole * exp(-(tau.a[ch] + tau.s[ch]));
+        share -= marched ? unscaled : 0.0;
+        once[ch] = m[ch].sigma_s * unscaled;
         sum[ch] = m[ch].sigma_s * share;
     }
     return sum;
@@ -114,7 +118,7 @@ void main()
     source = vec3(0.0);
     harmonics_visit(v, int(args.bands));
     bands_medium m[3];
-    vec3 scaled = vec3(0.0), seen = source;
+    vec3 scaled = vec3(0.0), seen = source, largest = abs(source); // largest: sum of what is added and subtracted
     for (uint ch = 0u; ch < channels; ch++) {
         vec4 cell = texelFetch(cells, c + ivec3(0, 0, int(ch) * dims.z), 0);
         m[ch] = bands_medium_of(cell, args.bands);
@@ -122,18 +126,25 @@ void main()
         seen[ch] -= cell.w;
     }
     vec3 most = vec3(m[0].sigma_s, channels == 3u ? vec2(m[1].sigma_s, m[2].sigma_s) : vec2(0.0));
+    vec3 once;
     bool any_medium = most.x + most.y + most.z > 0.0;
     uint count = lit != 0u && any_medium ? min(ordinates.count, uint(TYN_ORDINATES_MAX)) : 0u;
     for (uint n = 0u; n < count; n++) {
         ordinate o = ordinates.list[n];
         beam_tau tau = columns_tau(n, uvec3(c), args.dims);
-        seen += colour_of(o.irradiance) * beyond_bands(m, o.direction, o.mean_cosine, v, tau, n < args.num_suns, box.dx);
+        vec3 more = colour_of(o.irradiance) * beyond_bands(m, o.direction, o.mean_cosine, v, tau, n < args.num_suns, box.dx, once);
+        seen += more;
+        largest += abs(more) + colour_of(o.irradiance) * once;
     }
     for (uint n = 0u; n < (any_medium ? args.lamps : 0u); n++) {
         bands_lamp lamp = bands_lamp_at(n, box, c);
-        seen += colour_of(radials[n].light.color) * lamp.share *
-                beyond_bands(m, lamp.direction, lamp.mean_cosine, v, lamp.tau, true, box.dx);
+        vec3 light = colour_of(radials[n].light.color) * lamp.share;
+        vec3 more = light * beyond_bands(m, lamp.direction, lamp.mean_cosine, v, lamp.tau, true, box.dx, once);
+        seen += more;
+        largest += abs(more) + light * once;
     }
+    // Differences of what is equal are rounding: in thin media nothing has scattered twice.
+    seen = mix(seen, vec3(0.0), lessThan(abs(seen), 4e-6 * largest));
     imageStore(towards, c, vec4(source, 0.0));
     imageStore(extinction, c, vec4(scaled, 0.0));
     imageStore(scattered, c, vec4(seen, 0.0));
