@@ -51,7 +51,8 @@ float bands_transmittance(beam_tau tau, int ch, bands_medium m, uint bands, floa
     float f = tau.s[ch] > 0.0 ? clamp(1.0 - tau.p[ch] / tau.s[ch], 0.0, 1.0) : 0.0; // at two bands
     float scaled = f > 0.0 ? 1.0 - pow(f, 0.5 * float(bands)) : 1.0;
     float own = 0.5 * dx * m.extinction;
-    return mean_transmittance(max(tau.a[ch] + scaled * tau.s[ch], own), own);
+    float depth = max(tau.a[ch] + scaled * tau.s[ch], own);
+    return own < 0.01 ? exp(-depth) : mean_transmittance(depth, own); // which takes no less, even at a depth of 0
 }
 #endif
 
