@@ -139,6 +139,7 @@ static void skips(void **state)
     tyn_scene scene;
     make_cube(&scene, 2, 0.5f);
     scene_add_sun(&scene, 1, -0.5f, 0.2f, 1, 1, 1);
+    scene_add_lamp(&scene, (float[]){0.2f, 1.5f, 0.5f}, 1);
     tyn_view view = {.outputs = TYN_OUTPUT_RADIANCE};
     cube_view(&view);
     tyn_offline *off = scene_open(t->dev, "shdom", "shdom.cells=8 shdom.bands=2");
