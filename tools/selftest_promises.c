@@ -22,7 +22,7 @@ static const selftest_promise promises[] = {
      .energy = 0.01},
     {.method = "single", .cube_once = 0.01, .airlight = 0.01},
     {.method = "lpv", .cube_as_recorded = 0.01, .cube_recorded = 0.0372323},
-    {.method = "photon", .cube_as_recorded = 0.01, .cube_recorded = 0.05},
+    {.method = "photon", .cube_as_recorded = 0.01, .cube_recorded = 0.0560017},
     {.method = "constellation", .cube_once = 0.01},
     {.method = "pop-paper", .cube_as_recorded = 0.01, .cube_recorded = 0.0576494},
 };

@@ -64,6 +64,15 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (!tyn_job_refuse_repeat(job)) {
         return TYN_ERR_PARAMS;
     }
+    if (job->outputs & TYN_OUTPUT_PROBE && job->view->scattered_only) {
+        tyn_log_print(job->log, TYN_LOG_ERROR,
+                      "'photon' keeps light that has not scattered with all other: probes cannot "
+                      "leave it out; 'pop' and 'path' can");
+        return TYN_ERR_PARAMS;
+    }
+    if (job->outputs & TYN_OUTPUT_LIGHT && !job->light->unscattered) {
+        tyn_job_warn(job, "the light field holds light that has not scattered, too ('photon')");
+    }
     warn_of_light(job);
     if (job->scene->num_shapes == 0 && job->outputs & field_outputs) {
         tyn_log_print(job->log, TYN_LOG_ERROR,
