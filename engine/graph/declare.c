@@ -371,6 +371,23 @@ static void hash_node(const tyn_graph *g, node *n)
     n->hash = h ? h : 1;
 }
 
+// A node that settles has another hash in each of the frames in which it still has to run, then that of the last.
+static void settle_node(const tyn_graph *g, node *n, uint32_t index)
+{
+    if (!n->pass->settles) {
+        return;
+    }
+    uint32_t frames;
+    memcpy(&frames, (const uint8_t *)n->params + n->pass->settles, sizeof frames);
+    const node_run *last = index < g->num_runs ? &g->runs[index] : NULL;
+    n->asked = n->hash;
+    if (last && last->hash && last->asked == n->asked) {
+        const bool done = last->settled >= frames;
+        n->settled = done ? last->settled : last->settled + 1;
+        n->hash = done ? last->hash : tyn_hash_u64(n->asked, n->settled);
+    }
+}
+
 static void publish_outputs(tyn_graph *g, node *n, uint32_t index, tyn_ref *refs)
 {
     for (uint32_t p = 0; p < n->pass->num_ports; p++) {
@@ -443,6 +460,7 @@ tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *pa
     }
     if (g->status == TYN_OK) {
         hash_node(g, n);
+        settle_node(g, n, index);
         publish_outputs(g, n, index, refs);
         inspect_node(g, pass, refs);
     }

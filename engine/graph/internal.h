@@ -49,6 +49,8 @@ typedef struct node {
     uint32_t res[TYN_MAX_PORTS];      // resource index + 1; 0 = none
     uint32_t versions[TYN_MAX_PORTS]; // IN, INOUT: version read
     uint64_t hash;
+    uint64_t asked;   // of pass, params and inputs; `hash` is the same but for passes that settle
+    uint32_t settled; // of these: frames with nothing new, at most as many as it takes
     bool media_only, needed;
 } node;
 
@@ -76,6 +78,7 @@ typedef struct phys {
     tyn_track track;
     uint64_t content;  // what is in it; 0 = nothing
     uint64_t key;      // HISTORY
+    bool started;      // HISTORY: from zeros, and no node has run on it since
     uint64_t identity; // its name, kind and shape, if a later compilation may take it over; else 0
     uint64_t age;      // which heap it lies in: graph.age when it was made; 0 = its own
     tyn_heap heap;     // HISTORY: its own, so that it outlives the others
@@ -103,6 +106,8 @@ typedef struct aged_heap { // of an earlier compilation, with something in it th
 
 typedef struct node_run { // of a node
     uint64_t hash;        // when it last ran; 0 = never
+    uint64_t asked;       // likewise, of a pass that settles
+    uint32_t settled;     // ... UINT32_MAX: it has settled
     tyn_node_stats stats;
 } node_run;
 

@@ -109,6 +109,7 @@ static void record_zeros(tyn_recorder *rec, uint32_t index)
     record_fill(rec, index, 0);
     p->key = r->key;
     p->content = 1; // zeros
+    p->started = true;
 }
 
 static void record_dummies(tyn_graph *g, VkCommandBuffer cmd)
@@ -362,6 +363,19 @@ static void forget_overwritten(tyn_graph *g, const node *n)
     }
 }
 
+// Has one of its histories been started and not been run on yet?
+static bool starts_history(tyn_graph *g, const node *n)
+{
+    bool starts = false;
+    for (uint32_t p = 0; p < n->pass->num_ports; p++) {
+        if (n->res[p] && n->pass->ports[p].dir == TYN_INOUT) {
+            starts = starts || g->phys[n->res[p] - 1].started;
+            g->phys[n->res[p] - 1].started = false;
+        }
+    }
+    return starts;
+}
+
 static tyn_result run_one(tyn_graph *g, VkCommandBuffer cmd, uint32_t index)
 {
     const node *n = &g->nodes[index];
@@ -396,6 +410,8 @@ static tyn_result run_one(tyn_graph *g, VkCommandBuffer cmd, uint32_t index)
         }
     }
     run->hash = r.result == TYN_OK ? n->hash : 0;
+    run->asked = n->asked;
+    run->settled = starts_history(g, n) ? UINT32_MAX : n->settled;
     run->stats.state = r.dispatches ? TYN_NODE_RAN : TYN_NODE_EMPTY;
     run->stats.cpu_ms = now_ms() - start;
     run->stats.dispatches = r.dispatches;

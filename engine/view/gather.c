@@ -59,7 +59,7 @@ void tyn_gather(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
 {
     const tyn_sources *s = in->sources;
     in->inscatter = in->field->inscatter;
-    if (!in->field->moments.resource) {
+    if (!in->field->moments.resource || in->field->inscatter.resource) {
         return;
     }
     tyn_merge_params params;

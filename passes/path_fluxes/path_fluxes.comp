@@ -20,21 +20,10 @@ TYN_WRITE(16, partials, float partials[]); // [value][thread]: mean over the thr
 TYN_UPDATE(17, counters, counters_block counters);
 
 #include "shaders/path/path.glsl"
+#include "shaders/path/path_entry.glsl"
 
 // Sums over this thread's paths, W.
 vec3 incident, leaving[6], direct, reflected, transmitted, absorbed_media, absorbed_surfaces, arriving_surfaces;
-
-// Area of the box across light along `way`, by axis of the faces, m^2.
-vec3 faces_across(vec3 way)
-{
-    vec3 size = args.box_hi - args.box_lo;
-    return size.yzx * size.zxy * abs(way) * (1.0 - vec3(medium.repeat));
-}
-
-float sum3(vec3 v)
-{
-    return v.x + v.y + v.z;
-}
 
 // What suns and surroundings are drawn by.
 float sun_power(light_block sun)
@@ -76,17 +65,6 @@ vec3 draw_light(float total, float u, inout rng_state rng, out vec3 power)
     }
     power *= sum3(faces_across(way)) * total / max(sky_power(), 1e-37);
     return way;
-}
-
-// Where it enters.
-vec3 draw_entry(vec3 way, vec3 random)
-{
-    vec3 across = faces_across(way);
-    float at = random.z * sum3(across);
-    vec3 along = at < across.x ? vec3(1.0, 0.0, 0.0) : at < across.x + across.y ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
-    vec3 share = along.x > 0.0 ? vec3(0.0, random.xy) : along.y > 0.0 ? vec3(random.x, 0.0, random.y) : vec3(random.xy, 0.0);
-    vec3 side = step(way, vec3(0.0)); // 1: comes down this axis
-    return args.box_lo + mix(share, side, along) * (args.box_hi - args.box_lo);
 }
 
 // Through which face, 2 axis + (1: the far one), light leaves the box.

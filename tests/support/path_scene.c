@@ -171,7 +171,7 @@ static void map_fill(void *user, void *staging)
     }
 }
 
-static void declare_scene(gpu_test *t, path_scene *s, tyn_ref *refs)
+void path_scene_declare(gpu_test *t, path_scene *s, tyn_ref *refs)
 {
     refs[PATH_PORT_MEDIUM] = gpu_buffer(t, "medium", &s->medium, sizeof s->medium);
     refs[PATH_PORT_SHAPES] =
@@ -216,7 +216,7 @@ static void render_some(gpu_test *t, path_scene *s)
     tyn_ref refs[PATH_NUM_PORTS] = {{0}};
     uint32_t w = s->camera.size[0], h = s->camera.size[1], layers = s->params.layers;
     tyn_graph_begin(t->graph);
-    declare_scene(t, s, refs);
+    path_scene_declare(t, s, refs);
     refs[PATH_PORT_CAMERA] = gpu_buffer(t, "camera", &s->camera, sizeof s->camera);
     refs[PATH_PORT_MEAN] = history(t, "mean", w, h);
     refs[PATH_PORT_LOW] = history(t, "low", w, h);
@@ -258,7 +258,7 @@ static void probe_some(gpu_test *t, path_scene *s, const float (*points)[3], uin
 {
     tyn_ref refs[PATH_PROBE_NUM_PORTS] = {{0}};
     tyn_graph_begin(t->graph);
-    declare_scene(t, s, refs);
+    path_scene_declare(t, s, refs);
     refs[PATH_PROBE_PORT_POINTS] = gpu_buffer(t, "points", points, num_points * sizeof *points);
     refs[PATH_PROBE_PORT_STATE] =
         tyn_graph_history_buffer(t->graph, "state", tyn_path_probe_state_size(num_points), 1);
@@ -295,7 +295,7 @@ const struct path_balance_result *path_scene_balance(gpu_test *t, path_scene *s,
 {
     tyn_ref refs[PATH_BALANCE_NUM_PORTS] = {{0}};
     tyn_graph_begin(t->graph);
-    declare_scene(t, s, refs);
+    path_scene_declare(t, s, refs);
     refs[PATH_BALANCE_PORT_STATE] =
         tyn_graph_history_buffer(t->graph, "state", tyn_path_balance_state_size(), 1);
     s->params.first_sample = 0;
@@ -316,7 +316,7 @@ const tyn_fluxes *path_scene_fluxes(gpu_test *t, path_scene *s, uint32_t samples
 {
     tyn_ref refs[PATH_FLUXES_NUM_PORTS] = {{0}};
     tyn_graph_begin(t->graph);
-    declare_scene(t, s, refs);
+    path_scene_declare(t, s, refs);
     refs[PATH_FLUXES_PORT_STATE] =
         tyn_graph_history_buffer(t->graph, "state", tyn_path_fluxes_state_size(), 1);
     memcpy(s->params.box[1], s->medium.extent, sizeof s->params.box[1]);

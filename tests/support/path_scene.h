@@ -39,6 +39,9 @@ void path_scene_sky(path_scene *s, float radiance); // constant
 void path_scene_orthographic(path_scene *s, const float centre[3], const float direction[3],
                              const float up[3], float half, uint32_t n);
 
+// Uploads the scene into the bundle TYN_PATH_SCENE, which `refs` begin with.
+void path_scene_declare(gpu_test *t, path_scene *s, tyn_ref *refs);
+
 // Four floats a pixel, valid until the next run. error may be NULL.
 void path_scene_render(gpu_test *t, path_scene *s, uint32_t samples, const float **radiance,
                        const float **error);

@@ -29,7 +29,7 @@ static void layout(void **state)
         SIZE(tyn_kernel, 64),
         SIZE(tyn_param, 72),
         SIZE(tyn_counter, 48),
-        SIZE(tyn_pass_desc, 128),
+        SIZE(tyn_pass_desc, 136),
         SIZE(tyn_dispatch, 56),
         SIZE(tyn_tile, 32),
         SIZE(tyn_draw, 64),

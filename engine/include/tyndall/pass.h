@@ -229,6 +229,10 @@ typedef struct tyn_pass_desc {
     // What there must be for a method to declare the node, as `tyndall graph` says of those it left out.
     const char *serves;
     const tyn_counter *counters; // NULL: it counts nothing
+    // Of a pass that renews a history piece by piece: offset into params of a uint32_t, in how many more frames the node
+    // runs after the last change of its params or inputs. It does not where the history has just been started from zeros,
+    // of which the pass makes all pieces at once. 0: it is not such a pass.
+    size_t settles;
 } tyn_pass_desc;
 
 // Of a pass whose tables and functions are called ports, kernels, declare and record.

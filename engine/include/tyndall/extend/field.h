@@ -1,8 +1,8 @@
 // field.h -- light that has scattered: what a solver fills and views read. Tier 8.
 //
-// A solver is what a method calls between its sources and its views. It reads tyn_sources, adds its passes, and brings either
+// A solver is what a method calls between its sources and its views. It reads tyn_sources, adds its passes, and brings
 // moments of the lattice's cells, which views gather for a camera, answer probes with and balance; or straight the radiance
-// that each place sends towards the eye.
+// that each place sends towards the eye, which pictures then take; or both.
 #pragma once
 #include "sources.h"
 #include "shaders/march/inscatter.h"
@@ -20,7 +20,7 @@ typedef struct tyn_field {
     // For a balance: float[] of net power that leaves the box, W, all of it to be summed; and of power that walls take,
     // vec2[channel][cell]: absorbed, and 0. {0}: tyn_add_balance must not be called.
     tyn_ref leaks, wall_power;
-    // Without moments: 3D, RGBA32F (one_channel: R32F), light that is scattered towards the eye, W/(m^2 sr) (per metre:
+    // What the picture takes in place of moments, if it is there: 3D, RGBA32F (one_channel: R32F), light that is scattered towards the eye, W/(m^2 sr) (per metre:
     // W/(m^3 sr)), over the medium's box with one cell more at each face (lattice_inscatter_uvw of
     // shaders/lattice/lattice.glsl); and what it is, TYN_INSCATTER_*.
     tyn_ref inscatter;

@@ -1,0 +1,24 @@
+// photon_cache.h -- the sum of the generations of photons that count, cell by cell.
+#pragma once
+#include <tyndall/pass.h>
+#include <tyndall/extend/lattice_shape.h>
+
+typedef struct tyn_photon_cache_params {
+    tyn_lattice_shape shape;
+    uint32_t generations, slots; // that count, and of the ring
+    float sun[3];                // reference direction (M)
+    float unit;                  // W m of a unit
+} tyn_photon_cache_params;
+
+// clang-format off
+#define PHOTON_CACHE_PORTS(X) \
+    X(PHOTON_CACHE, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
+    X(PHOTON_CACHE, RING, ring, IN, BUFFER, "of photon_trace"), \
+    X(PHOTON_CACHE, SUM, sum, INOUT, BUFFER, "tyn_photon_sum_size bytes: a history"), \
+    X(PHOTON_CACHE, LIGHT, light, OUT, BUFFER, "struct photon_light[cell]"), \
+    X(PHOTON_CACHE, MOMENTS, moments, OUT, IMAGE_3D, \
+        "fluence and net flux, W/m^2, channels stacked along z", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PHOTON_CACHE, COUNTERS, counters, OUT, BUFFER, "struct counters_block: cells that were bounded")
+// clang-format on
+enum { PHOTON_CACHE_PORTS(TYN_PORT_ENUM), PHOTON_CACHE_NUM_PORTS };
+extern const tyn_pass_desc tyn_pass_photon_cache;

@@ -1,0 +1,20 @@
+// photon_trace_clear.comp -- empties the slots that this frame's generations go to.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "photon_trace_args.h"
+#include "shaders/photon/photon_args.h"
+
+layout(local_size_x = PHOTON_TRACE_GROUP) in;
+TYN_ARGS(photon_turn_args args);
+TYN_UPDATE(0, ring, photon_ring ring; int words[]);
+
+void main()
+{
+    // A ring that was just started is empty.
+    if (ring.first == 0u || gl_GlobalInvocationID.x >= args.words) {
+        return;
+    }
+    for (uint i = 0u; i < args.each; i++) {
+        words[(ring.first + i) % args.slots * args.words + gl_GlobalInvocationID.x] = 0;
+    }
+}

@@ -1,0 +1,55 @@
+// photon_view.c -- tables of what the cache sends to the eye.
+#include "photon_view.h"
+#include "photon_view_args.h"
+#include "shaders/common/counters.h"
+#include "photon_view.comp.h"
+#include <string.h>
+
+static const tyn_port ports[] = {PHOTON_VIEW_PORTS(TYN_PORT_ROW)};
+
+static const tyn_kernel kernels[] = {TYN_KERNEL(photon_view)};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    (void)params;
+    const tyn_extent n = tyn_build_extent(b, PHOTON_VIEW_PORT_SUN_LIGHT);
+    tyn_build_image(b, PHOTON_VIEW_PORT_INSCATTER, (tyn_extent){n.x + 2, n.y + 2, n.z + 2}, 1);
+    tyn_build_buffer(b, PHOTON_VIEW_PORT_COUNTERS, sizeof(struct counters_block));
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_photon_view_params *p = params;
+    const tyn_extent n = tyn_rec_extent(r, PHOTON_VIEW_PORT_SUN_LIGHT);
+    const struct photon_view_args args = {
+        .dims = {n.x, n.y, n.z},
+        .sun = {p->sun[0], p->sun[1], p->sun[2]},
+        .lobes = p->sky == 1,
+    };
+    tyn_rec_fill(r, PHOTON_VIEW_PORT_COUNTERS, 0);
+    TYN_DISPATCH(r, .cells = {n.x + 2, n.y + 2, n.z + 2}, .args = &args, .spec = &p->mode);
+    tyn_rec_work(r, "cells", (double)n.x * n.y * n.z);
+}
+
+static const char *const skies[] = {"even", "lobe"};
+
+static const tyn_param param_table[] = {
+    {"sky", TYN_PARAM_ENUM, offsetof(tyn_photon_view_params, sky), 1, 0, 1, "",
+     "directions of light that is not the strongest sun's: even = from all alike, as published; "
+     "lobe = about its net flux in each cell",
+     skies},
+};
+
+static const tyn_counter counters[] = {TYN_COUNTER_NON_FINITE, {NULL}};
+
+const tyn_pass_desc tyn_pass_photon_view = {
+    .name = "photon_view",
+    .summary = "what photons' light scatters towards the eye",
+    TYN_PASS_TABLES(tyn_photon_view_params),
+    .params = param_table,
+    .num_params = TYN_COUNT(param_table),
+    .debug_port = PHOTON_VIEW_PORT_INSCATTER,
+    .debug_meaning = "light scattered towards the eye, per sigma_s",
+    .counters = counters,
+};

@@ -1,0 +1,25 @@
+// photon_view.h -- what a view reads of the photons' light: radiance that scatters towards the eye.
+#pragma once
+#include <tyndall/pass.h>
+#include "shaders/common/bundles.h"
+
+typedef struct tyn_photon_view_params {
+    int32_t sky;   // "photon_view.sky"
+    uint32_t mode; // TYN_MEDIUM_*
+    float sun[3];  // reference direction (M), of travel
+} tyn_photon_view_params;
+
+// clang-format off
+#define PHOTON_VIEW_PORTS(X) \
+    TYN_MEDIUM(X, PHOTON_VIEW), \
+    X(PHOTON_VIEW, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
+    X(PHOTON_VIEW, SUN_LIGHT, sun_light, IN, IMAGE_3D, "of photon_upsample"), \
+    X(PHOTON_VIEW, SKY_LIGHT, sky_light, IN, IMAGE_3D, "of photon_upsample"), \
+    X(PHOTON_VIEW, SKY_WAY, sky_way, IN, IMAGE_3D, "of photon_upsample"), \
+    X(PHOTON_VIEW, INSCATTER, inscatter, OUT, IMAGE_3D, \
+        "dims + 2: light that is scattered towards the eye, per sigma_s, W/(m^2 sr)", \
+        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PHOTON_VIEW, COUNTERS, counters, OUT, BUFFER, "struct counters_block: cells that were not finite")
+// clang-format on
+enum { PHOTON_VIEW_PORTS(TYN_PORT_ENUM), PHOTON_VIEW_NUM_PORTS };
+extern const tyn_pass_desc tyn_pass_photon_view;
