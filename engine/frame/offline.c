@@ -94,7 +94,13 @@ static tyn_result submit(tyn_offline *off, tyn_frame *frame)
     if (result == TYN_OK) {
         result = tyn_context_record(off->context, frame);
     }
-    return result == TYN_OK ? tyn_submission_run(&off->submission, "rendering a frame") : result;
+    if (result == TYN_OK) {
+        result = tyn_submission_run(&off->submission, "rendering a frame");
+        if (result != TYN_OK) {
+            tyn_context_forget(off->context);
+        }
+    }
+    return result;
 }
 
 // Adds what the last record did. A node that did not run in it still reports its last run.

@@ -46,6 +46,13 @@ tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame)
     return result == TYN_OK ? tyn_graph_record(ctx->graph, frame->cmd) : result;
 }
 
+void tyn_context_forget(tyn_context *ctx)
+{
+    if (ctx) {
+        tyn_graph_forget(ctx->graph);
+    }
+}
+
 uint32_t tyn_context_pending(tyn_context *ctx)
 {
     return ctx ? tyn_graph_pending(ctx->graph) : 0;

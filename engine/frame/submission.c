@@ -5,11 +5,12 @@ tyn_result tyn_submission_create(tyn_device *dev, tyn_submission *s)
 {
     *s = (tyn_submission){.dev = dev};
     const tyn_procs *vk = &dev->vk;
-    VkResult r = vk->CreateCommandPool(
-        dev->device,
-        &(VkCommandPoolCreateInfo){.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                   .queueFamilyIndex = dev->queue_family},
-        NULL, &s->pool);
+    VkResult r = TYN_VK_MADE(
+        &s->pool, vk->CreateCommandPool(dev->device,
+                                        &(VkCommandPoolCreateInfo){
+                                            .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                            .queueFamilyIndex = dev->queue_family},
+                                        NULL, &s->pool));
     tyn_result result = tyn_vk_check(dev, r, "vkCreateCommandPool");
     if (result == TYN_OK) {
         r = vk->AllocateCommandBuffers(
@@ -21,9 +22,11 @@ tyn_result tyn_submission_create(tyn_device *dev, tyn_submission *s)
         result = tyn_vk_check(dev, r, "vkAllocateCommandBuffers");
     }
     if (result == TYN_OK) {
-        r = vk->CreateFence(dev->device,
+        r = TYN_VK_MADE(
+            &s->fence,
+            vk->CreateFence(dev->device,
                             &(VkFenceCreateInfo){.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO},
-                            NULL, &s->fence);
+                            NULL, &s->fence));
         result = tyn_vk_check(dev, r, "vkCreateFence");
     }
     return result;
@@ -55,6 +58,9 @@ tyn_result tyn_submission_run(tyn_submission *s, const char *what)
     const tyn_procs *vk = &s->dev->vk;
     VkResult r = vk->EndCommandBuffer(s->cmd);
     if (r == VK_SUCCESS) {
+        r = vk->ResetFences(s->dev->device, 1, &s->fence);
+    }
+    if (r == VK_SUCCESS) {
         r = vk->QueueSubmit2(
             s->dev->queue, 1,
             &(VkSubmitInfo2){.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
@@ -67,9 +73,9 @@ tyn_result tyn_submission_run(tyn_submission *s, const char *what)
     }
     if (r == VK_SUCCESS) {
         r = vk->WaitForFences(s->dev->device, 1, &s->fence, VK_TRUE, UINT64_MAX);
-    }
-    if (r == VK_SUCCESS) {
-        r = vk->ResetFences(s->dev->device, 1, &s->fence);
+        if (r != VK_SUCCESS) {
+            vk->QueueWaitIdle(s->dev->queue); // what it runs is used again, or destroyed
+        }
     }
     return tyn_vk_check(s->dev, r, what);
 }

@@ -89,10 +89,18 @@ tyn_result tyn_vk_check(const tyn_device *dev, VkResult result, const char *what
     return memory ? TYN_ERR_MEMORY : TYN_ERR_DEVICE;
 }
 
+VkResult tyn_vk_made(VkResult result, void *handle, size_t size)
+{
+    if (result != VK_SUCCESS) {
+        memset(handle, 0, size);
+    }
+    return result;
+}
+
 void tyn_device_name_object(const tyn_device *dev, VkObjectType type, uint64_t handle,
                             const char *name)
 {
-    if (!dev->debug_names || !dev->vk.SetDebugUtilsObjectNameEXT || !name) {
+    if (!handle || !dev->debug_names || !dev->vk.SetDebugUtilsObjectNameEXT || !name) {
         return;
     }
     dev->vk.SetDebugUtilsObjectNameEXT(
@@ -153,18 +161,19 @@ static tyn_result load_procs(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa)
 static VkResult create_sampler(tyn_device *dev, VkSamplerAddressMode u, VkFilter filter,
                                VkSampler *out)
 {
-    return dev->vk.CreateSampler(dev->device,
-                                 &(VkSamplerCreateInfo){
-                                     .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
-                                     .magFilter = filter,
-                                     .minFilter = filter,
-                                     .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
-                                     .addressModeU = u,
-                                     .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                     .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
-                                     .maxLod = VK_LOD_CLAMP_NONE,
-                                 },
-                                 NULL, out);
+    return TYN_VK_MADE(
+        out, dev->vk.CreateSampler(dev->device,
+                                   &(VkSamplerCreateInfo){
+                                       .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                       .magFilter = filter,
+                                       .minFilter = filter,
+                                       .mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
+                                       .addressModeU = u,
+                                       .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                       .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                       .maxLod = VK_LOD_CLAMP_NONE,
+                                   },
+                                   NULL, out));
 }
 
 // Formats that passes sample with linear filtering or store to, beyond what Vulkan promises.
@@ -200,6 +209,10 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
                            const tyn_pipeline_params *pipelines)
 {
     dev->get_instance_proc_addr = gipa;
+    tyn_result result = load_procs(dev, gipa);
+    if (result != TYN_OK) {
+        return result;
+    }
     if (pipelines->threads > TYN_MAX_COMPILE_THREADS) {
         tyn_log_print(&dev->log, TYN_LOG_ERROR, "compile_threads is %u; it must be 0 to %d",
                       pipelines->threads, TYN_MAX_COMPILE_THREADS);
@@ -208,10 +221,6 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
     dev->compiler = tyn_compiler_create(dev, pipelines->threads, pipelines->jobs);
     if (!dev->compiler) {
         return TYN_ERR_MEMORY;
-    }
-    tyn_result result = load_procs(dev, gipa);
-    if (result != TYN_OK) {
-        return result;
     }
     VkPhysicalDeviceDriverProperties driver = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
@@ -260,8 +269,9 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
     };
     for (size_t i = 0; i < sizeof samplers / sizeof samplers[0]; i++) {
         VkResult made = create_sampler(dev, samplers[i].u, samplers[i].filter, samplers[i].out);
-        if (tyn_vk_check(dev, made, "vkCreateSampler") != TYN_OK) {
-            return TYN_ERR_DEVICE;
+        result = tyn_vk_check(dev, made, "vkCreateSampler");
+        if (result != TYN_OK) {
+            return result;
         }
     }
     return tyn_pipeline_cache_create(dev, pipelines->cache, pipelines->cache_size);

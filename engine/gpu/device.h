@@ -38,9 +38,10 @@ struct tyn_device {
     tyn_compiler *compiler;
     tyn_pipeline **pipelines; // under the compiler's lock, as all that contexts change of a device
     uint32_t num_pipelines;
-    // Only of a device opened by ourselves:
-    void *loader;
     PFN_vkGetInstanceProcAddr get_instance_proc_addr;
+    // Only of a device opened by ourselves:
+    bool own;
+    void *loader; // NULL: get_instance_proc_addr was given
     VkDebugUtilsMessengerEXT messenger;
     VkQueue queue;
     atomic_uint validation_messages; // of any thread
@@ -48,6 +49,11 @@ struct tyn_device {
 
 // Logs "what: VkResult" and gives the matching tyn_result. TYN_OK for VK_SUCCESS.
 tyn_result tyn_vk_check(const tyn_device *dev, VkResult result, const char *what);
+// The result of a call of Vulkan that makes what `handle` points to. If it failed, nothing is there: Vulkan lets it leave
+// anything.
+#define TYN_VK_MADE(handle, ...) tyn_vk_made((__VA_ARGS__), handle, sizeof *(handle))
+VkResult tyn_vk_made(VkResult result, void *handle, size_t size);
+// Nothing happens to a handle that is 0.
 void tyn_device_name_object(const tyn_device *dev, VkObjectType type, uint64_t handle,
                             const char *name);
 

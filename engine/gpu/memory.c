@@ -28,12 +28,13 @@ int tyn_memory_type(const tyn_device *dev, uint32_t allowed, tyn_memory_kind kin
 static VkResult allocate_from_device(const tyn_device *dev, const tyn_memory_request *request,
                                      uint32_t type, tyn_allocation *out)
 {
-    const VkResult made = dev->vk.AllocateMemory(
-        dev->device,
-        &(VkMemoryAllocateInfo){.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                .allocationSize = request->requirements.size,
-                                .memoryTypeIndex = type},
-        NULL, &out->memory);
+    const VkResult made = TYN_VK_MADE(
+        &out->memory, dev->vk.AllocateMemory(
+                          dev->device,
+                          &(VkMemoryAllocateInfo){.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                                  .allocationSize = request->requirements.size,
+                                                  .memoryTypeIndex = type},
+                          NULL, &out->memory));
     if (made != VK_SUCCESS || !request->mapped) {
         return made;
     }

@@ -15,14 +15,17 @@ typedef struct instance_procs {
     PFN_vkEnumerateInstanceVersion EnumerateInstanceVersion;
 } instance_procs;
 
+// procs->gipa: the one that was given, or NULL: the loader's.
 static tyn_result load_loader(void **loader, instance_procs *procs, const tyn_log *log)
 {
-    *loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
-    if (!*loader) {
-        tyn_log_print(log, TYN_LOG_ERROR, "no Vulkan loader: %s", dlerror());
-        return TYN_ERR_DEVICE;
+    if (!procs->gipa) {
+        *loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
+        if (!*loader) {
+            tyn_log_print(log, TYN_LOG_ERROR, "no Vulkan loader: %s", dlerror());
+            return TYN_ERR_DEVICE;
+        }
+        *(void **)&procs->gipa = dlsym(*loader, "vkGetInstanceProcAddr");
     }
-    *(void **)&procs->gipa = dlsym(*loader, "vkGetInstanceProcAddr");
     if (procs->gipa) {
 #define X(name) procs->name = (PFN_vk##name)procs->gipa(NULL, "vk" #name);
         X(CreateInstance)
@@ -94,25 +97,24 @@ static tyn_result create_instance(const instance_procs *procs, bool validation, 
             (const VkValidationFeatureEnableEXT[]){
                 VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT},
     };
-    const VkResult made = procs->CreateInstance(
-        &(VkInstanceCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-            .pNext = validation ? &features : NULL,
-            .pApplicationInfo = &(VkApplicationInfo){.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-                                                     .pApplicationName = "tyndall",
-                                                     .applicationVersion = TYN_VERSION,
-                                                     .apiVersion = VK_API_VERSION_1_3},
-            .enabledLayerCount = validation ? 1 : 0,
-            .ppEnabledLayerNames = (const char *const[]){layer},
-            .enabledExtensionCount = validation ? 1 : 0,
-            .ppEnabledExtensionNames = (const char *const[]){VK_EXT_DEBUG_UTILS_EXTENSION_NAME},
-        },
-        NULL, out);
-    if (made != VK_SUCCESS) {
-        tyn_log_print(log, TYN_LOG_ERROR, "vkCreateInstance failed with VkResult %d", (int)made);
-        return TYN_ERR_DEVICE;
-    }
-    return TYN_OK;
+    const VkResult made = TYN_VK_MADE(
+        out,
+        procs->CreateInstance(
+            &(VkInstanceCreateInfo){
+                .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                .pNext = validation ? &features : NULL,
+                .pApplicationInfo =
+                    &(VkApplicationInfo){.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                         .pApplicationName = "tyndall",
+                                         .applicationVersion = TYN_VERSION,
+                                         .apiVersion = VK_API_VERSION_1_3},
+                .enabledLayerCount = validation ? 1 : 0,
+                .ppEnabledLayerNames = (const char *const[]){layer},
+                .enabledExtensionCount = validation ? 1 : 0,
+                .ppEnabledExtensionNames = (const char *const[]){VK_EXT_DEBUG_UTILS_EXTENSION_NAME},
+            },
+            NULL, out));
+    return tyn_vk_check(&(tyn_device){.log = log ? *log : (tyn_log){0}}, made, "vkCreateInstance");
 }
 
 // ---- choosing ---------------------------------------------------------------------------------
@@ -198,7 +200,10 @@ static tyn_result choose(tyn_device *dev, const char *select, candidate *out)
     VkPhysicalDevice devices[MAX_DEVICES];
     uint32_t count = MAX_DEVICES;
     VkResult listed = dev->vk.EnumeratePhysicalDevices(dev->instance, &count, devices);
-    if (listed < 0 || !count) {
+    if (listed < 0) {
+        return tyn_vk_check(dev, listed, "vkEnumeratePhysicalDevices");
+    }
+    if (!count) {
         tyn_log_print(&dev->log, TYN_LOG_ERROR,
                       "no Vulkan device; a software one comes with Debian's mesa-vulkan-drivers");
         return TYN_ERR_DEVICE;
@@ -242,8 +247,10 @@ static void load_instance_procs(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa)
 
 static tyn_result open_device(tyn_device *dev, const tyn_device_open_params *params)
 {
-    instance_procs procs = {0};
+    instance_procs procs = {.gipa = params->get_instance_proc_addr};
+    dev->own = true;
     tyn_result result = load_loader(&dev->loader, &procs, &dev->log);
+    dev->get_instance_proc_addr = procs.gipa;
     if (result == TYN_OK) {
         result = create_instance(&procs, params->validation, dev, &dev->instance, &dev->log);
     }
@@ -255,7 +262,8 @@ static tyn_result open_device(tyn_device *dev, const tyn_device_open_params *par
         dev->debug_names = true;
         PFN_vkCreateDebugUtilsMessengerEXT create = (PFN_vkCreateDebugUtilsMessengerEXT)procs.gipa(
             dev->instance, "vkCreateDebugUtilsMessengerEXT");
-        VkResult made =
+        VkResult made = TYN_VK_MADE(
+            &dev->messenger,
             create(dev->instance,
                    &(VkDebugUtilsMessengerCreateInfoEXT){
                        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
@@ -266,7 +274,7 @@ static tyn_result open_device(tyn_device *dev, const tyn_device_open_params *par
                        .pfnUserCallback = on_message,
                        .pUserData = dev,
                    },
-                   NULL, &dev->messenger);
+                   NULL, &dev->messenger));
         if (made != VK_SUCCESS) {
             return tyn_vk_check(dev, made, "vkCreateDebugUtilsMessengerEXT");
         }
@@ -278,19 +286,21 @@ static tyn_result open_device(tyn_device *dev, const tyn_device_open_params *par
     }
     dev->physical_device = c.device;
     dev->queue_family = c.queue_family;
-    VkResult made = dev->vk.CreateDevice(
-        dev->physical_device,
-        &(VkDeviceCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-            .pNext = tyn_requirements_get()->features,
-            .queueCreateInfoCount = 1,
-            .pQueueCreateInfos =
-                &(VkDeviceQueueCreateInfo){.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                           .queueFamilyIndex = dev->queue_family,
-                                           .queueCount = 1,
-                                           .pQueuePriorities = (const float[]){1.0f}},
-        },
-        NULL, &dev->device);
+    VkResult made = TYN_VK_MADE(
+        &dev->device,
+        dev->vk.CreateDevice(
+            dev->physical_device,
+            &(VkDeviceCreateInfo){
+                .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                .pNext = tyn_requirements_get()->features,
+                .queueCreateInfoCount = 1,
+                .pQueueCreateInfos =
+                    &(VkDeviceQueueCreateInfo){.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                               .queueFamilyIndex = dev->queue_family,
+                                               .queueCount = 1,
+                                               .pQueuePriorities = (const float[]){1.0f}},
+            },
+            NULL, &dev->device));
     result = tyn_vk_check(dev, made, "vkCreateDevice");
     if (result == TYN_OK) {
         result = tyn_device_init(dev, procs.gipa,
@@ -339,7 +349,7 @@ void tyn_device_destroy(tyn_device **device)
         return;
     }
     *device = NULL;
-    bool own = dev->loader != NULL;
+    const bool own = dev->own;
     tyn_compiler_destroy(&dev->compiler);
     if (dev->device && dev->vk.DestroyDevice) {
         if (own && dev->vk.DeviceWaitIdle) {
@@ -365,7 +375,7 @@ void tyn_device_destroy(tyn_device **device)
         }
         dev->vk.DestroyInstance(dev->instance, NULL);
     }
-    if (own) {
+    if (dev->loader) {
         dlclose(dev->loader);
     }
     free(dev);

@@ -38,26 +38,29 @@ static tyn_result create_layouts(tyn_device *dev, const tyn_pass_desc *pass, tyn
             .stageFlags = tyn_kernel_stages(p->kernel),
         };
     }
-    VkResult made = dev->vk.CreateDescriptorSetLayout(
-        dev->device,
-        &(VkDescriptorSetLayoutCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-            .bindingCount = p->kernel->num_bindings,
-            .pBindings = bindings,
-        },
-        NULL, &p->set_layout);
+    VkResult made = TYN_VK_MADE(
+        &p->set_layout, dev->vk.CreateDescriptorSetLayout(
+                            dev->device,
+                            &(VkDescriptorSetLayoutCreateInfo){
+                                .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                .bindingCount = p->kernel->num_bindings,
+                                .pBindings = bindings,
+                            },
+                            NULL, &p->set_layout));
     if (made == VK_SUCCESS) {
-        made = dev->vk.CreatePipelineLayout(
-            dev->device,
-            &(VkPipelineLayoutCreateInfo){
-                .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                .setLayoutCount = 1,
-                .pSetLayouts = &p->set_layout,
-                .pushConstantRangeCount = p->kernel->args_size ? 1 : 0,
-                .pPushConstantRanges =
-                    &(VkPushConstantRange){tyn_kernel_stages(p->kernel), 0, p->kernel->args_size},
-            },
-            NULL, &p->layout);
+        made = TYN_VK_MADE(
+            &p->layout,
+            dev->vk.CreatePipelineLayout(
+                dev->device,
+                &(VkPipelineLayoutCreateInfo){
+                    .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                    .setLayoutCount = 1,
+                    .pSetLayouts = &p->set_layout,
+                    .pushConstantRangeCount = p->kernel->args_size ? 1 : 0,
+                    .pPushConstantRanges = &(VkPushConstantRange){tyn_kernel_stages(p->kernel), 0,
+                                                                  p->kernel->args_size},
+                },
+                NULL, &p->layout));
     }
     return tyn_vk_check(dev, made, p->kernel->name);
 }
@@ -245,11 +248,13 @@ void tyn_pipelines_destroy(tyn_device *dev)
 static VkResult create_module(const tyn_device *dev, const uint32_t *spirv, size_t size,
                               VkShaderModule *out)
 {
-    return dev->vk.CreateShaderModule(
-        dev->device,
-        &(VkShaderModuleCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, .codeSize = size, .pCode = spirv},
-        NULL, out);
+    return TYN_VK_MADE(
+        out, dev->vk.CreateShaderModule(
+                 dev->device,
+                 &(VkShaderModuleCreateInfo){.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                             .codeSize = size,
+                                             .pCode = spirv},
+                 NULL, out));
 }
 
 static VkPipelineShaderStageCreateInfo stage(VkShaderStageFlagBits which, VkShaderModule module,
@@ -386,6 +391,7 @@ VkResult tyn_pipeline_compile(const tyn_device *dev, const tyn_pipeline *p, cons
         const VkSpecializationInfo info = {k->num_spec, entries, k->num_spec * 4, spec};
         made = k->raster ? create_raster(dev, p, module, fragment, &info, &feedback, out)
                          : create_compute(dev, p, module, &info, &feedback, out);
+        made = TYN_VK_MADE(out, made);
     }
     dev->vk.DestroyShaderModule(dev->device, module, NULL);
     dev->vk.DestroyShaderModule(dev->device, fragment, NULL);

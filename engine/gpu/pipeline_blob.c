@@ -59,12 +59,13 @@ static const char *fault_of(const tyn_device *dev, const void *blob, size_t size
 
 static VkResult create_cache(tyn_device *dev, const void *bytes, size_t size)
 {
-    return dev->vk.CreatePipelineCache(
-        dev->device,
-        &(VkPipelineCacheCreateInfo){.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
-                                     .initialDataSize = size,
-                                     .pInitialData = bytes},
-        NULL, &dev->cache);
+    return TYN_VK_MADE(&dev->cache, dev->vk.CreatePipelineCache(
+                                        dev->device,
+                                        &(VkPipelineCacheCreateInfo){
+                                            .sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
+                                            .initialDataSize = size,
+                                            .pInitialData = bytes},
+                                        NULL, &dev->cache));
 }
 
 tyn_result tyn_pipeline_cache_create(tyn_device *dev, const void *blob, size_t size)

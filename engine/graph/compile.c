@@ -205,21 +205,23 @@ static tyn_result make_image(tyn_graph *g, const resource *r, phys *p)
     VkImageType type = r->dim == TYN_IMAGE_3D ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
     // An image that no needed node reads still gets a view, which wants one of these.
     const VkImageUsageFlags shader_uses = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
-    VkResult made = dev->vk.CreateImage(
-        dev->device,
-        &(VkImageCreateInfo){.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-                             .imageType = type,
-                             .format = r->format,
-                             .extent = {r->extent.x, r->extent.y, r->extent.z},
-                             .mipLevels = r->mips,
-                             .arrayLayers = 1,
-                             .samples = VK_SAMPLE_COUNT_1_BIT,
-                             .tiling = VK_IMAGE_TILING_OPTIMAL,
-                             .usage = p->image_usage & shader_uses
-                                          ? p->image_usage
-                                          : p->image_usage | VK_IMAGE_USAGE_SAMPLED_BIT,
-                             .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED},
-        NULL, &p->image);
+    VkResult made = TYN_VK_MADE(
+        &p->image,
+        dev->vk.CreateImage(
+            dev->device,
+            &(VkImageCreateInfo){.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                                 .imageType = type,
+                                 .format = r->format,
+                                 .extent = {r->extent.x, r->extent.y, r->extent.z},
+                                 .mipLevels = r->mips,
+                                 .arrayLayers = 1,
+                                 .samples = VK_SAMPLE_COUNT_1_BIT,
+                                 .tiling = VK_IMAGE_TILING_OPTIMAL,
+                                 .usage = p->image_usage & shader_uses
+                                              ? p->image_usage
+                                              : p->image_usage | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                 .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED},
+            NULL, &p->image));
     tyn_device_name_object(dev, VK_OBJECT_TYPE_IMAGE, (uint64_t)p->image, r->name);
     return tyn_vk_check(dev, made, r->name);
 }
@@ -236,15 +238,18 @@ static tyn_result make_views(tyn_graph *g, const resource *r, phys *p)
             range.baseMipLevel = v - 1;
             range.levelCount = 1;
         }
-        const VkResult made = dev->vk.CreateImageView(
-            dev->device,
-            &(VkImageViewCreateInfo){.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                     .image = p->image,
-                                     .viewType = r->dim == TYN_IMAGE_3D ? VK_IMAGE_VIEW_TYPE_3D
-                                                                        : VK_IMAGE_VIEW_TYPE_2D,
-                                     .format = r->format,
-                                     .subresourceRange = range},
-            NULL, v ? &p->mip_views[v - 1] : &p->view);
+        VkImageView *view = v ? &p->mip_views[v - 1] : &p->view;
+        const VkResult made = TYN_VK_MADE(
+            view,
+            dev->vk.CreateImageView(
+                dev->device,
+                &(VkImageViewCreateInfo){.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                         .image = p->image,
+                                         .viewType = r->dim == TYN_IMAGE_3D ? VK_IMAGE_VIEW_TYPE_3D
+                                                                            : VK_IMAGE_VIEW_TYPE_2D,
+                                         .format = r->format,
+                                         .subresourceRange = range},
+                NULL, view));
         result = tyn_vk_check(dev, made, r->name);
     }
     return result;
@@ -263,12 +268,13 @@ static tyn_result create_image(tyn_graph *g, tyn_heap *heap, const resource *r, 
 static tyn_result make_buffer(tyn_graph *g, VkDeviceSize size, VkBufferUsageFlags usage,
                               const char *name, VkBuffer *out)
 {
-    VkResult made = g->dev->vk.CreateBuffer(
-        g->dev->device,
-        &(VkBufferCreateInfo){.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                              .size = size,
-                              .usage = usage ? usage : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT},
-        NULL, out);
+    VkResult made = TYN_VK_MADE(
+        out, g->dev->vk.CreateBuffer(
+                 g->dev->device,
+                 &(VkBufferCreateInfo){.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                       .size = size,
+                                       .usage = usage ? usage : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT},
+                 NULL, out));
     tyn_device_name_object(g->dev, VK_OBJECT_TYPE_BUFFER, (uint64_t)*out, name);
     return tyn_vk_check(g->dev, made, name);
 }
@@ -303,13 +309,15 @@ static tyn_result create_texel_views(tyn_graph *g, phys *p, const char *name)
         }
         result = tyn_vk_check(
             dev,
-            dev->vk.CreateBufferView(
-                dev->device,
-                &(VkBufferViewCreateInfo){.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
-                                          .buffer = p->buffer,
-                                          .format = graph_texel_formats[i],
-                                          .range = p->bytes < size ? size : p->bytes / size * size},
-                NULL, &p->texels[i]),
+            TYN_VK_MADE(&p->texels[i],
+                        dev->vk.CreateBufferView(
+                            dev->device,
+                            &(VkBufferViewCreateInfo){
+                                .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                .buffer = p->buffer,
+                                .format = graph_texel_formats[i],
+                                .range = p->bytes < size ? size : p->bytes / size * size},
+                            NULL, &p->texels[i])),
             name);
     }
     return result;
@@ -558,23 +566,25 @@ static tyn_result create_pools(tyn_graph *g, frame_slot *slot)
     slot->made = g->frame;
     tyn_result result = tyn_vk_check(
         dev,
-        dev->vk.CreateDescriptorPool(
-            dev->device,
-            &(VkDescriptorPoolCreateInfo){.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                          .maxSets = room->sets,
-                                          .poolSizeCount = sizeof sizes / sizeof sizes[0],
-                                          .pPoolSizes = sizes},
-            NULL, &slot->pool),
+        TYN_VK_MADE(&slot->pool, dev->vk.CreateDescriptorPool(
+                                     dev->device,
+                                     &(VkDescriptorPoolCreateInfo){
+                                         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                         .maxSets = room->sets,
+                                         .poolSizeCount = sizeof sizes / sizeof sizes[0],
+                                         .pPoolSizes = sizes},
+                                     NULL, &slot->pool)),
         "vkCreateDescriptorPool");
     if (result == TYN_OK && dev->timestamp_bits) {
         result = tyn_vk_check(
             dev,
-            dev->vk.CreateQueryPool(
-                dev->device,
-                &(VkQueryPoolCreateInfo){.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-                                         .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                         .queryCount = g->num_timed * 2},
-                NULL, &slot->queries),
+            TYN_VK_MADE(&slot->queries, dev->vk.CreateQueryPool(
+                                            dev->device,
+                                            &(VkQueryPoolCreateInfo){
+                                                .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                                .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                                .queryCount = g->num_timed * 2},
+                                            NULL, &slot->queries)),
             "vkCreateQueryPool");
     }
     return result;
@@ -583,8 +593,13 @@ static tyn_result create_pools(tyn_graph *g, frame_slot *slot)
 static bool have_room(const tyn_graph *g, const survey *s)
 {
     const survey *room = &g->room;
-    return g->slots[0].pool && s->sets <= room->sets &&
-           s->uniform_buffers <= room->uniform_buffers &&
+    for (uint32_t i = 0; i < g->num_slots;
+         i++) { // a former compilation may have failed between them
+        if (!g->slots[i].pool || (g->dev->timestamp_bits && !g->slots[i].queries)) {
+            return false;
+        }
+    }
+    return s->sets <= room->sets && s->uniform_buffers <= room->uniform_buffers &&
            s->storage_buffers <= room->storage_buffers && s->texel_buffers <= room->texel_buffers &&
            s->storage_images <= room->storage_images && s->sampled_images <= room->sampled_images &&
            g->num_nodes <= g->num_timed;
@@ -888,6 +903,11 @@ static tyn_result say_what_waits(const tyn_graph *g, tyn_result result)
             (double)bytes / (1 << 20));
     }
     return result;
+}
+
+void tyn_graph_forget(tyn_graph *g)
+{
+    graph_finish(g);
 }
 
 tyn_result tyn_graph_compile(tyn_graph *g)

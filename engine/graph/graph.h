@@ -35,6 +35,9 @@ void tyn_graph_background(tyn_graph *g);
 // A record of this declaration that was not compiled takes host images to their `after` and gives TYN_PENDING, instead of refusing.
 void tyn_graph_yield(tyn_graph *g);
 
+// What was recorded was not executed: all is made anew. The GPU must be done with earlier records.
+void tyn_graph_forget(tyn_graph *g);
+
 // The GPU is done with all earlier records: what tyn_graph_compile replaces is destroyed before it allocates.
 void tyn_graph_idle(tyn_graph *g);
 

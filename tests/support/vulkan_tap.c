@@ -1,6 +1,8 @@
 // vulkan_tap.c -- see vulkan_tap.h.
 #include "vulkan_tap.h"
+#include <pthread.h>
 #include <stdatomic.h>
+#include <stdlib.h>
 #include <string.h>
 
 static PFN_vkGetInstanceProcAddr real_get;
@@ -8,6 +10,36 @@ static PFN_vkGetDeviceProcAddr real_get_device;
 
 enum { CALLS, CREATES, MEMORY, SUBMITS, WAITS, COMMANDS, FREES, NUM_COUNTS };
 static atomic_uint counts[NUM_COUNTS];
+static atomic_int live;
+
+// Memory that is allocated.
+static struct {
+    pthread_mutex_t lock;
+    struct {
+        VkDeviceMemory memory;
+        VkDeviceSize bytes;
+    } items[256];
+    VkDeviceSize bytes, most;
+} memory = {.lock = PTHREAD_MUTEX_INITIALIZER};
+
+static void note_memory(VkDeviceMemory from, VkDeviceMemory to, VkDeviceSize bytes)
+{
+    const size_t num = sizeof memory.items / sizeof *memory.items;
+    pthread_mutex_lock(&memory.lock);
+    size_t i = 0;
+    while (i < num && memory.items[i].memory != from) {
+        i++;
+    }
+    if (i < num) {
+        memory.bytes = memory.bytes - memory.items[i].bytes + bytes;
+        memory.most = memory.bytes > memory.most ? memory.bytes : memory.most;
+        memory.items[i].memory = to;
+        memory.items[i].bytes = bytes;
+    } else { // more blocks than a test makes
+        abort();
+    }
+    pthread_mutex_unlock(&memory.lock);
+}
 
 static struct {
     uint32_t call;
@@ -51,6 +83,43 @@ static void leave_rubbish(void *out)
         counted;                                                                                   \
         return real_##name args;                                                                   \
     }
+// One that makes an object at `out`.
+#define TAP_MAKES(name, params, args, what)                                                        \
+    static PFN_vk##name real_##name;                                                               \
+    static VKAPI_ATTR VkResult VKAPI_CALL tap_##name params                                        \
+    {                                                                                              \
+        if (count_call("vk" #name)) {                                                              \
+            leave_rubbish(out);                                                                    \
+            return plan.error;                                                                     \
+        }                                                                                          \
+        count(what);                                                                               \
+        const VkResult result = real_##name args;                                                  \
+        live += result == VK_SUCCESS;                                                              \
+        return result;                                                                             \
+    }
+// One that waits. What the device was doing is over by the time it is lost.
+#define TAP_WAITS(name, params, args)                                                              \
+    static PFN_vk##name real_##name;                                                               \
+    static VKAPI_ATTR VkResult VKAPI_CALL tap_##name params                                        \
+    {                                                                                              \
+        const bool fails = count_call("vk" #name);                                                 \
+        if (fails && plan.error != VK_ERROR_DEVICE_LOST) {                                         \
+            return plan.error;                                                                     \
+        }                                                                                          \
+        count(WAITS);                                                                              \
+        const VkResult result = real_##name args;                                                  \
+        return fails ? plan.error : result;                                                        \
+    }
+// A function that ends an object.
+#define TAP_ENDS(name, type)                                                                       \
+    static PFN_vk##name real_##name;                                                               \
+    static VKAPI_ATTR void VKAPI_CALL tap_##name(VkDevice d, type h,                               \
+                                                 const VkAllocationCallbacks *a)                   \
+    {                                                                                              \
+        count(FREES);                                                                              \
+        live -= h != VK_NULL_HANDLE;                                                               \
+        real_##name(d, h, a);                                                                      \
+    }
 // A function that cannot fail.
 #define TAP_VOID(name, params, args, what)                                                         \
     static PFN_vk##name real_##name;                                                               \
@@ -60,50 +129,65 @@ static void leave_rubbish(void *out)
         real_##name args;                                                                          \
     }
 
-TAP(CreateSampler,
-    (VkDevice d, const VkSamplerCreateInfo *i, const VkAllocationCallbacks *a, VkSampler *out),
-    (d, i, a, out), leave_rubbish(out), count(CREATES))
-TAP(CreatePipelineCache,
-    (VkDevice d, const VkPipelineCacheCreateInfo *i, const VkAllocationCallbacks *a,
-     VkPipelineCache *out),
-    (d, i, a, out), leave_rubbish(out), count(CREATES))
-TAP(CreateDescriptorSetLayout,
-    (VkDevice d, const VkDescriptorSetLayoutCreateInfo *i, const VkAllocationCallbacks *a,
-     VkDescriptorSetLayout *out),
-    (d, i, a, out), leave_rubbish(out), count(CREATES))
-TAP(CreatePipelineLayout,
-    (VkDevice d, const VkPipelineLayoutCreateInfo *i, const VkAllocationCallbacks *a,
-     VkPipelineLayout *out),
-    (d, i, a, out), leave_rubbish(out), count(CREATES))
-TAP(CreateShaderModule,
-    (VkDevice d, const VkShaderModuleCreateInfo *i, const VkAllocationCallbacks *a,
-     VkShaderModule *out),
-    (d, i, a, out), leave_rubbish(out), count(CREATES))
-TAP(CreateComputePipelines,
-    (VkDevice d, VkPipelineCache c, uint32_t n, const VkComputePipelineCreateInfo *i,
-     const VkAllocationCallbacks *a, VkPipeline *out),
-    (d, c, n, i, a, out), *out = VK_NULL_HANDLE, count(CREATES))
-TAP(CreateGraphicsPipelines,
-    (VkDevice d, VkPipelineCache c, uint32_t n, const VkGraphicsPipelineCreateInfo *i,
-     const VkAllocationCallbacks *a, VkPipeline *out),
-    (d, c, n, i, a, out), *out = VK_NULL_HANDLE, count(CREATES))
-TAP(CreateBuffer,
-    (VkDevice d, const VkBufferCreateInfo *i, const VkAllocationCallbacks *a, VkBuffer *out),
-    (d, i, a, out), leave_rubbish(out), count(CREATES))
-TAP(CreateBufferView,
-    (VkDevice d, const VkBufferViewCreateInfo *i, const VkAllocationCallbacks *a,
-     VkBufferView *out),
-    (d, i, a, out), leave_rubbish(out), count(CREATES))
-TAP(CreateImage,
-    (VkDevice d, const VkImageCreateInfo *i, const VkAllocationCallbacks *a, VkImage *out),
-    (d, i, a, out), leave_rubbish(out), count(CREATES))
-TAP(CreateImageView,
-    (VkDevice d, const VkImageViewCreateInfo *i, const VkAllocationCallbacks *a, VkImageView *out),
-    (d, i, a, out), leave_rubbish(out), count(CREATES))
-TAP(AllocateMemory,
-    (VkDevice d, const VkMemoryAllocateInfo *i, const VkAllocationCallbacks *a,
-     VkDeviceMemory *out),
-    (d, i, a, out), leave_rubbish(out), count(MEMORY))
+TAP_MAKES(CreateSampler,
+          (VkDevice d, const VkSamplerCreateInfo *i, const VkAllocationCallbacks *a,
+           VkSampler *out),
+          (d, i, a, out), CREATES)
+TAP_MAKES(CreatePipelineCache,
+          (VkDevice d, const VkPipelineCacheCreateInfo *i, const VkAllocationCallbacks *a,
+           VkPipelineCache *out),
+          (d, i, a, out), CREATES)
+TAP_MAKES(CreateDescriptorSetLayout,
+          (VkDevice d, const VkDescriptorSetLayoutCreateInfo *i, const VkAllocationCallbacks *a,
+           VkDescriptorSetLayout *out),
+          (d, i, a, out), CREATES)
+TAP_MAKES(CreatePipelineLayout,
+          (VkDevice d, const VkPipelineLayoutCreateInfo *i, const VkAllocationCallbacks *a,
+           VkPipelineLayout *out),
+          (d, i, a, out), CREATES)
+TAP_MAKES(CreateShaderModule,
+          (VkDevice d, const VkShaderModuleCreateInfo *i, const VkAllocationCallbacks *a,
+           VkShaderModule *out),
+          (d, i, a, out), CREATES)
+TAP_MAKES(CreateComputePipelines,
+          (VkDevice d, VkPipelineCache c, uint32_t n, const VkComputePipelineCreateInfo *i,
+           const VkAllocationCallbacks *a, VkPipeline *out),
+          (d, c, n, i, a, out), CREATES)
+TAP_MAKES(CreateGraphicsPipelines,
+          (VkDevice d, VkPipelineCache c, uint32_t n, const VkGraphicsPipelineCreateInfo *i,
+           const VkAllocationCallbacks *a, VkPipeline *out),
+          (d, c, n, i, a, out), CREATES)
+TAP_MAKES(CreateBuffer,
+          (VkDevice d, const VkBufferCreateInfo *i, const VkAllocationCallbacks *a, VkBuffer *out),
+          (d, i, a, out), CREATES)
+TAP_MAKES(CreateBufferView,
+          (VkDevice d, const VkBufferViewCreateInfo *i, const VkAllocationCallbacks *a,
+           VkBufferView *out),
+          (d, i, a, out), CREATES)
+TAP_MAKES(CreateImage,
+          (VkDevice d, const VkImageCreateInfo *i, const VkAllocationCallbacks *a, VkImage *out),
+          (d, i, a, out), CREATES)
+TAP_MAKES(CreateImageView,
+          (VkDevice d, const VkImageViewCreateInfo *i, const VkAllocationCallbacks *a,
+           VkImageView *out),
+          (d, i, a, out), CREATES)
+static PFN_vkAllocateMemory real_AllocateMemory;
+static VKAPI_ATTR VkResult VKAPI_CALL tap_AllocateMemory(VkDevice d, const VkMemoryAllocateInfo *i,
+                                                         const VkAllocationCallbacks *a,
+                                                         VkDeviceMemory *out)
+{
+    if (count_call("vkAllocateMemory")) {
+        leave_rubbish(out);
+        return plan.error;
+    }
+    count(MEMORY);
+    const VkResult result = real_AllocateMemory(d, i, a, out);
+    if (result == VK_SUCCESS) {
+        live++;
+        note_memory(VK_NULL_HANDLE, *out, i->allocationSize);
+    }
+    return result;
+}
 TAP(MapMemory,
     (VkDevice d, VkDeviceMemory m, VkDeviceSize o, VkDeviceSize s, VkMemoryMapFlags f, void **out),
     (d, m, o, s, f, out), leave_rubbish(out), count(MEMORY))
@@ -113,28 +197,29 @@ TAP(BindImageMemory, (VkDevice d, VkImage b, VkDeviceMemory m, VkDeviceSize o), 
     (void)0, (void)0)
 TAP(InvalidateMappedMemoryRanges, (VkDevice d, uint32_t n, const VkMappedMemoryRange *r), (d, n, r),
     (void)0, (void)0)
-TAP(CreateDescriptorPool,
-    (VkDevice d, const VkDescriptorPoolCreateInfo *i, const VkAllocationCallbacks *a,
-     VkDescriptorPool *out),
-    (d, i, a, out), leave_rubbish(out), count(CREATES))
+TAP_MAKES(CreateDescriptorPool,
+          (VkDevice d, const VkDescriptorPoolCreateInfo *i, const VkAllocationCallbacks *a,
+           VkDescriptorPool *out),
+          (d, i, a, out), CREATES)
 TAP(ResetDescriptorPool, (VkDevice d, VkDescriptorPool p, VkDescriptorPoolResetFlags f), (d, p, f),
     (void)0, (void)0)
 TAP(AllocateDescriptorSets,
     (VkDevice d, const VkDescriptorSetAllocateInfo *i, VkDescriptorSet *out), (d, i, out),
     leave_rubbish(out), (void)0)
-TAP(CreateQueryPool,
-    (VkDevice d, const VkQueryPoolCreateInfo *i, const VkAllocationCallbacks *a, VkQueryPool *out),
-    (d, i, a, out), leave_rubbish(out), count(CREATES))
+TAP_MAKES(CreateQueryPool,
+          (VkDevice d, const VkQueryPoolCreateInfo *i, const VkAllocationCallbacks *a,
+           VkQueryPool *out),
+          (d, i, a, out), CREATES)
 TAP(GetQueryPoolResults,
     (VkDevice d, VkQueryPool p, uint32_t f, uint32_t n, size_t s, void *out, VkDeviceSize t,
      VkQueryResultFlags w),
     (d, p, f, n, s, out, t, w), (void)0, w &VK_QUERY_RESULT_WAIT_BIT ? count(WAITS) : (void)0)
 TAP(GetPipelineCacheData, (VkDevice d, VkPipelineCache c, size_t *s, void *out), (d, c, s, out),
     (void)0, (void)0)
-TAP(CreateCommandPool,
-    (VkDevice d, const VkCommandPoolCreateInfo *i, const VkAllocationCallbacks *a,
-     VkCommandPool *out),
-    (d, i, a, out), leave_rubbish(out), count(CREATES))
+TAP_MAKES(CreateCommandPool,
+          (VkDevice d, const VkCommandPoolCreateInfo *i, const VkAllocationCallbacks *a,
+           VkCommandPool *out),
+          (d, i, a, out), CREATES)
 TAP(AllocateCommandBuffers,
     (VkDevice d, const VkCommandBufferAllocateInfo *i, VkCommandBuffer *out), (d, i, out),
     leave_rubbish(out), count(CREATES))
@@ -143,44 +228,76 @@ TAP(ResetCommandPool, (VkDevice d, VkCommandPool p, VkCommandPoolResetFlags f), 
 TAP(BeginCommandBuffer, (VkCommandBuffer c, const VkCommandBufferBeginInfo *i), (c, i), (void)0,
     (void)0)
 TAP(EndCommandBuffer, (VkCommandBuffer c), (c), (void)0, (void)0)
-TAP(CreateFence,
-    (VkDevice d, const VkFenceCreateInfo *i, const VkAllocationCallbacks *a, VkFence *out),
-    (d, i, a, out), leave_rubbish(out), count(CREATES))
+TAP_MAKES(CreateFence,
+          (VkDevice d, const VkFenceCreateInfo *i, const VkAllocationCallbacks *a, VkFence *out),
+          (d, i, a, out), CREATES)
 TAP(ResetFences, (VkDevice d, uint32_t n, const VkFence *f), (d, n, f), (void)0, (void)0)
-TAP(WaitForFences, (VkDevice d, uint32_t n, const VkFence *f, VkBool32 a, uint64_t t),
-    (d, n, f, a, t), (void)0, count(WAITS))
-TAP(QueueWaitIdle, (VkQueue q), (q), (void)0, count(WAITS))
-TAP(DeviceWaitIdle, (VkDevice d), (d), (void)0, count(WAITS))
+TAP_WAITS(WaitForFences, (VkDevice d, uint32_t n, const VkFence *f, VkBool32 a, uint64_t t),
+          (d, n, f, a, t))
+TAP_WAITS(QueueWaitIdle, (VkQueue q), (q))
+TAP_WAITS(DeviceWaitIdle, (VkDevice d), (d))
 TAP(QueueSubmit2, (VkQueue q, uint32_t n, const VkSubmitInfo2 *s, VkFence f), (q, n, s, f), (void)0,
     count(SUBMITS))
 
-TAP_VOID(DestroySampler, (VkDevice d, VkSampler h, const VkAllocationCallbacks *a), (d, h, a),
-         FREES)
-TAP_VOID(DestroyPipelineCache, (VkDevice d, VkPipelineCache h, const VkAllocationCallbacks *a),
-         (d, h, a), FREES)
-TAP_VOID(DestroyDescriptorSetLayout,
-         (VkDevice d, VkDescriptorSetLayout h, const VkAllocationCallbacks *a), (d, h, a), FREES)
-TAP_VOID(DestroyPipelineLayout, (VkDevice d, VkPipelineLayout h, const VkAllocationCallbacks *a),
-         (d, h, a), FREES)
-TAP_VOID(DestroyShaderModule, (VkDevice d, VkShaderModule h, const VkAllocationCallbacks *a),
-         (d, h, a), FREES)
-TAP_VOID(DestroyPipeline, (VkDevice d, VkPipeline h, const VkAllocationCallbacks *a), (d, h, a),
-         FREES)
-TAP_VOID(DestroyBuffer, (VkDevice d, VkBuffer h, const VkAllocationCallbacks *a), (d, h, a), FREES)
-TAP_VOID(DestroyBufferView, (VkDevice d, VkBufferView h, const VkAllocationCallbacks *a), (d, h, a),
-         FREES)
-TAP_VOID(DestroyImage, (VkDevice d, VkImage h, const VkAllocationCallbacks *a), (d, h, a), FREES)
-TAP_VOID(DestroyImageView, (VkDevice d, VkImageView h, const VkAllocationCallbacks *a), (d, h, a),
-         FREES)
-TAP_VOID(DestroyDescriptorPool, (VkDevice d, VkDescriptorPool h, const VkAllocationCallbacks *a),
-         (d, h, a), FREES)
-TAP_VOID(DestroyQueryPool, (VkDevice d, VkQueryPool h, const VkAllocationCallbacks *a), (d, h, a),
-         FREES)
-TAP_VOID(DestroyCommandPool, (VkDevice d, VkCommandPool h, const VkAllocationCallbacks *a),
-         (d, h, a), FREES)
-TAP_VOID(DestroyFence, (VkDevice d, VkFence h, const VkAllocationCallbacks *a), (d, h, a), FREES)
-TAP_VOID(FreeMemory, (VkDevice d, VkDeviceMemory h, const VkAllocationCallbacks *a), (d, h, a),
-         FREES)
+TAP(EnumeratePhysicalDevices, (VkInstance i, uint32_t *n, VkPhysicalDevice *out), (i, n, out),
+    (void)0, (void)0)
+TAP_MAKES(CreateInstance,
+          (const VkInstanceCreateInfo *i, const VkAllocationCallbacks *a, VkInstance *out),
+          (i, a, out), CREATES)
+TAP_MAKES(CreateDebugUtilsMessengerEXT,
+          (VkInstance s, const VkDebugUtilsMessengerCreateInfoEXT *i,
+           const VkAllocationCallbacks *a, VkDebugUtilsMessengerEXT *out),
+          (s, i, a, out), CREATES)
+TAP_MAKES(CreateDevice,
+          (VkPhysicalDevice p, const VkDeviceCreateInfo *i, const VkAllocationCallbacks *a,
+           VkDevice *out),
+          (p, i, a, out), CREATES)
+
+// Of instances and devices: they themselves.
+#define TAP_ENDS_OWNER(name, type)                                                                 \
+    static PFN_vk##name real_##name;                                                               \
+    static VKAPI_ATTR void VKAPI_CALL tap_##name(type h, const VkAllocationCallbacks *a)           \
+    {                                                                                              \
+        count(FREES);                                                                              \
+        live -= h != VK_NULL_HANDLE;                                                               \
+        real_##name(h, a);                                                                         \
+    }
+TAP_ENDS_OWNER(DestroyInstance, VkInstance)
+TAP_ENDS_OWNER(DestroyDevice, VkDevice)
+static PFN_vkDestroyDebugUtilsMessengerEXT real_DestroyDebugUtilsMessengerEXT;
+static VKAPI_ATTR void VKAPI_CALL tap_DestroyDebugUtilsMessengerEXT(VkInstance s,
+                                                                    VkDebugUtilsMessengerEXT h,
+                                                                    const VkAllocationCallbacks *a)
+{
+    count(FREES);
+    live -= h != VK_NULL_HANDLE;
+    real_DestroyDebugUtilsMessengerEXT(s, h, a);
+}
+TAP_ENDS(DestroySampler, VkSampler)
+TAP_ENDS(DestroyPipelineCache, VkPipelineCache)
+TAP_ENDS(DestroyDescriptorSetLayout, VkDescriptorSetLayout)
+TAP_ENDS(DestroyPipelineLayout, VkPipelineLayout)
+TAP_ENDS(DestroyShaderModule, VkShaderModule)
+TAP_ENDS(DestroyPipeline, VkPipeline)
+TAP_ENDS(DestroyBuffer, VkBuffer)
+TAP_ENDS(DestroyBufferView, VkBufferView)
+TAP_ENDS(DestroyImage, VkImage)
+TAP_ENDS(DestroyImageView, VkImageView)
+TAP_ENDS(DestroyDescriptorPool, VkDescriptorPool)
+TAP_ENDS(DestroyQueryPool, VkQueryPool)
+TAP_ENDS(DestroyCommandPool, VkCommandPool)
+TAP_ENDS(DestroyFence, VkFence)
+static PFN_vkFreeMemory real_FreeMemory;
+static VKAPI_ATTR void VKAPI_CALL tap_FreeMemory(VkDevice d, VkDeviceMemory h,
+                                                 const VkAllocationCallbacks *a)
+{
+    count(FREES);
+    if (h) {
+        live--;
+        note_memory(h, VK_NULL_HANDLE, 0);
+    }
+    real_FreeMemory(d, h, a);
+}
 
 TAP_VOID(CmdResetQueryPool, (VkCommandBuffer c, VkQueryPool p, uint32_t f, uint32_t n),
          (c, p, f, n), COMMANDS)
@@ -233,6 +350,13 @@ TAP_VOID(CmdClearColorImage,
 // ---- looking functions up ---------------------------------------------------------------------
 
 #define TAPPED(X)                                                                                  \
+    X(EnumeratePhysicalDevices)                                                                    \
+    X(CreateInstance)                                                                              \
+    X(CreateDebugUtilsMessengerEXT)                                                                \
+    X(CreateDevice)                                                                                \
+    X(DestroyInstance)                                                                             \
+    X(DestroyDevice)                                                                               \
+    X(DestroyDebugUtilsMessengerEXT)                                                               \
     X(CreateSampler)                                                                               \
     X(CreatePipelineCache)                                                                         \
     X(CreateDescriptorSetLayout)                                                                   \
@@ -339,6 +463,20 @@ tap_counts tap_since(void)
 {
     return (tap_counts){counts[CALLS], counts[CREATES],  counts[MEMORY], counts[SUBMITS],
                         counts[WAITS], counts[COMMANDS], counts[FREES]};
+}
+
+int tap_live(void)
+{
+    return live;
+}
+
+uint64_t tap_most_memory(void)
+{
+    pthread_mutex_lock(&memory.lock);
+    const VkDeviceSize most = memory.most;
+    memory.most = memory.bytes;
+    pthread_mutex_unlock(&memory.lock);
+    return most;
 }
 
 void tap_clear(void)

@@ -11,6 +11,7 @@
 //      queue family transfer.
 //  (c) If record fails, nothing was appended and host images are in their `before` state.
 //  (d) Record i + frames_in_flight, and the prepare before it, are called after the GPU finished what record i appended.
+//      What it appended is executed, in the order of the calls; else tyn_context_forget.
 //  (e) record never submits, waits, or allocates memory; prepare does the last two.
 //  (f) With `background`, a frame whose kernels are still being compiled gives TYN_PENDING: record then takes host
 //      images from `before` to `after` with their content as it was, and appends nothing else. To ask for kernels it
@@ -189,6 +190,10 @@ typedef struct tyn_frame {
 // `frame.cmd` is not used; images must have their formats and extents.
 TYN_API tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame);
 TYN_API tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame);
+
+// What was recorded last was not executed: its submission failed, or its command buffer was thrown away. All is made anew by
+// the next prepare, and what progressive methods accumulated is lost. The GPU must be done with earlier records.
+TYN_API void tyn_context_forget(tyn_context *ctx);
 
 // How many kernels are still to be compiled of the last frame that gave TYN_PENDING. 0: prepare it again.
 TYN_API uint32_t tyn_context_pending(tyn_context *ctx);

@@ -73,7 +73,7 @@ typedef struct tyn_device_params {
     uint32_t compile_threads; // 0..16 that compile kernels in the background; 0 = by the machine, 4
                               // at most. Started when something is to be compiled there
     tyn_jobs jobs;            // in their place
-    tyn_allocator allocator; // both functions, or none: vkAllocateMemory
+    tyn_allocator allocator;  // both functions, or none: vkAllocateMemory
     tyn_log log;
 } tyn_device_params;
 #define tyn_device_params(...) TYN_PARAMS(tyn_device_params, __VA_ARGS__)
@@ -91,6 +91,8 @@ typedef struct tyn_device_open_params {
     size_t pipeline_cache_size;
     uint32_t compile_threads;
     tyn_jobs jobs;
+    // Where all functions of Vulkan come from; NULL = the loader's, libvulkan.so.1.
+    PFN_vkGetInstanceProcAddr get_instance_proc_addr;
     tyn_log log;
 } tyn_device_open_params;
 #define tyn_device_open_params(...) TYN_PARAMS(tyn_device_open_params, __VA_ARGS__)

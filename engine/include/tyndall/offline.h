@@ -23,7 +23,8 @@ TYN_API tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params 
 TYN_API void tyn_offline_destroy(tyn_offline **off);
 
 // Prepares if needed, records one frame, submits and waits. Progressive methods: one call adds
-// view->num_samples samples, split into dispatches that respect the time limit of the device.
+// view->num_samples samples, split into dispatches that respect the time limit of the device. After an error what was
+// accumulated is lost: begin again with view->first_sample 0.
 TYN_API tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn_view *view,
                                      bool recompute);
 // A foreign density image, depth or composite target cannot be given here.
