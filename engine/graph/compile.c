@@ -834,6 +834,19 @@ void graph_finish(tyn_graph *g)
     }
 }
 
+// A node whose results are kept reports its last run, and goes on settling where it was.
+static void inherit_run(tyn_graph *g, uint32_t index, const node_run *before, uint32_t num_before)
+{
+    node_run *run = &g->runs[index];
+    run->hash = g->nodes[index].hash;
+    for (uint32_t i = 0; i < num_before; i++) {
+        if (before[i].hash == run->hash) {
+            *run = before[i];
+            return;
+        }
+    }
+}
+
 static tyn_result compile_new(tyn_graph *g, bool only_histories)
 {
     if (!reserve_all(g)) {
@@ -841,6 +854,9 @@ static tyn_result compile_new(tyn_graph *g, bool only_histories)
     }
     graph_free_staging(g);
     heritage old = take_heritage(g, only_histories);
+    node_run *before = g->runs;
+    const uint32_t num_before = g->num_runs;
+    g->runs = NULL;
     graph_release(g);
     if (only_histories) {
         free_all_aged(g);
@@ -855,6 +871,7 @@ static tyn_result compile_new(tyn_graph *g, bool only_histories)
     g->run_node = calloc(g->num_runs ? g->num_runs : 1, sizeof *g->run_node);
     if (!g->phys || !g->runs || !g->run_node) {
         drop_heritage(g, &old);
+        free(before);
         return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
     }
     for (uint32_t i = 0; i < g->num_outputs; i++) {
@@ -873,12 +890,15 @@ static tyn_result compile_new(tyn_graph *g, bool only_histories)
     result = result == TYN_OK ? create_slots(g, &s) : result;
     result = result == TYN_OK ? reserve_sets(g, s.sets) : result;
     result = result == TYN_OK ? stage_uploads(g) : result;
+    for (uint32_t i = 0; result == TYN_OK && i < g->num_nodes; i++) {
+        if (is_done(g, i)) {
+            inherit_run(g, i, before, num_before);
+        }
+    }
+    free(before);
     if (result != TYN_OK) {
         graph_finish(g);
         return result;
-    }
-    for (uint32_t i = 0; i < g->num_nodes; i++) {
-        g->runs[i].hash = is_done(g, i) ? g->nodes[i].hash : 0;
     }
     g->structure = graph_structure(g, &s);
     g->current = true;
