@@ -65,7 +65,10 @@ static const struct surface_block plate = {
     .lo = {-5, 0.7f, -5},
     .num_triangles = 2,
     .hi = {0.5f, 0.7f, 5},
+    .num_nodes = 1,
 };
+static const tyn_surface_node plate_leaf = {
+    .lo = {-5, 0.7f, -5}, .hi = {0.5f, 0.7f, 5}, .count = 2};
 static const struct surface_vertex plate_corners[] = {
     {.position = {-5, 0.7f, -5}},
     {.position = {0.5f, 0.7f, -5}},
@@ -113,6 +116,7 @@ outcome propagate_run(gpu_test *t, const setup *s)
         refs[PORT(SURFACES)] = gpu_buffer(t, "surfaces", &plate, sizeof plate);
         refs[PORT(VERTICES)] = gpu_buffer(t, "vertices", plate_corners, sizeof plate_corners);
         refs[PORT(TRIANGLES)] = gpu_buffer(t, "triangles", plate_triangles, sizeof plate_triangles);
+        refs[PORT(NODES)] = gpu_buffer(t, "nodes", &plate_leaf, sizeof plate_leaf);
     }
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_propagate_rect, &params, refs), TYN_OK);
     static const int ports[] = {PORT(GRIDS), PORT(CELLS),  PORT(STATE), PORT(SUM),

@@ -81,7 +81,7 @@ static sums run(gpu_test *t, const tyn_scene *scene, const struct light_block *l
                                                   s->num_materials * sizeof *s->materials),
                 .materials.textures = gpu_buffer(t, "textures", nothing, sizeof nothing),
                 .materials.texels = gpu_buffer(t, "texels", nothing, sizeof nothing),
-                .geometry.nodes = gpu_buffer(t, "nodes", nothing, sizeof nothing), // all are tried
+                .geometry.nodes = gpu_buffer(t, "nodes", nothing, sizeof nothing), // no rays
             },
     };
     tyn_rsm rsm;
