@@ -197,10 +197,10 @@ works info "$scenes/cube.gltf" --sigma-s 1,2,3 --albedo 0.5
 grep -q "absorption *0.5 1 1.5 1/m" out || fail "info with overrides: $(grep absorption out)"
 works info --methods
 grep -q "^pop " out || fail "info --methods lists no pop: $(cat out)"
-for method in "pop light" "lpv light" "path fluxes" "single composite" "pop-paper composite"; do
+for method in "pop light" "lpv light" "photon light" "path fluxes" "single composite" "pop-paper composite"; do
     sed -n "/^${method% *} /,/ limits:/p" out | grep -q " outputs:.* ${method#* }\( \|\$\)" || fail "info --methods: not '$method': $(cat out)"
 done
-[ "$(grep -c " outputs:.* light" out)" = 2 ] || fail "info --methods: light of others than pop and lpv: $(cat out)"
+[ "$(grep -c " outputs:.* light" out)" = 3 ] || fail "info --methods: light of others than pop, lpv and photon: $(cat out)"
 works info --passes
 grep -q -- "-D lattice.cells=.*default" out || fail "info --passes: no lattice.cells"
 

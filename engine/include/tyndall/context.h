@@ -71,7 +71,7 @@ typedef enum tyn_output {
     TYN_OUTPUT_BALANCE = 1 << 8,       // buffer: tyn_balance
     TYN_OUTPUT_COMPOSITE = 1 << 9,     // into tyn_frame.color
     TYN_OUTPUT_FLUXES = 1 << 10,       // buffer: tyn_fluxes (path)
-    TYN_OUTPUT_LIGHT = 1 << 11,        // into tyn_frame.light (pop, lpv)
+    TYN_OUTPUT_LIGHT = 1 << 11,        // into tyn_frame.light (pop, lpv, photon)
 } tyn_output;
 
 typedef struct tyn_probe_result {
