@@ -8,12 +8,12 @@
 #include "shaders/common/shared.h"
 
 // Words of a cell. "Sun": light that came from the reference direction; "sky": all other. "Mean": over the channels.
-#define PHOTON_SUN 0     // by channel
-#define PHOTON_COSINE 3  // mean times the cosine to the reference direction
-#define PHOTON_SKY 4     // by channel
-#define PHOTON_ORDER 7   // mean, of sun and sky, times scatterings / PHOTON_ORDER_UNIT
-#define PHOTON_FLUX 8    // mean of the sky's times direction of travel, along the axes of M
-#define PHOTON_COUNT 11  // deposits
+#define PHOTON_SUN 0    // by channel
+#define PHOTON_COSINE 3 // mean times the cosine to the reference direction
+#define PHOTON_SKY 4    // by channel
+#define PHOTON_ORDER 7  // mean, of sun and sky, times scatterings / PHOTON_ORDER_UNIT
+#define PHOTON_FLUX 8   // mean of the sky's times direction of travel, along the axes of M
+#define PHOTON_COUNT 11 // deposits
 #define PHOTON_WORDS 12
 
 #define PHOTON_ORDER_UNIT 16.0

@@ -21,8 +21,10 @@ typedef struct tap_counts {
 PFN_vkGetInstanceProcAddr tap_open(PFN_vkGetInstanceProcAddr real);
 tap_counts tap_since(void); // the last tap_clear
 void tap_clear(void);
-int tap_live(void); // objects and memory, made less ended: 0 = nothing is left of what was made through it
-uint64_t tap_most_memory(void); // bytes from vkAllocateMemory at one time, since this was asked last
+int tap_live(
+    void); // objects and memory, made less ended: 0 = nothing is left of what was made through it
+uint64_t
+tap_most_memory(void); // bytes from vkAllocateMemory at one time, since this was asked last
 // The call with this number since tap_clear (1 = the next) fails with `error`; 0 = none. With `from_then_on` all later ones as well,
 // as those of a lost device do.
 void tap_fail(uint32_t call, VkResult error, bool from_then_on);
