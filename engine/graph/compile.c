@@ -593,8 +593,8 @@ static tyn_result create_pools(tyn_graph *g, frame_slot *slot)
 static bool have_room(const tyn_graph *g, const survey *s)
 {
     const survey *room = &g->room;
-    for (uint32_t i = 0; i < g->num_slots;
-         i++) { // a former compilation may have failed between them
+    // A former compilation may have failed between slots.
+    for (uint32_t i = 0; i < g->num_slots; i++) {
         if (!g->slots[i].pool || (g->dev->timestamp_bits && !g->slots[i].queries)) {
             return false;
         }
@@ -927,7 +927,9 @@ static tyn_result say_what_waits(const tyn_graph *g, tyn_result result)
 
 void tyn_graph_forget(tyn_graph *g)
 {
+    g->idle = true; // nothing of what goes waits for frames
     graph_finish(g);
+    graph_retire_over(g);
 }
 
 tyn_result tyn_graph_compile(tyn_graph *g)

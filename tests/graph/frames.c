@@ -788,6 +788,26 @@ static void out_of_memory(void **state)
     assert_true(failures > 20);
 }
 
+// What was recorded is thrown away, with two frames in flight: all goes at once, and the next frame is made in full.
+static void forgotten(void **state)
+{
+    fixture *f = *state;
+    for (int i = 0; i < 2; i++) {
+        declare_chain(f->g, &default_chain);
+        assert_int_equal(frame(f), TYN_OK);
+    }
+    tyn_graph_forget(f->g);
+    const uint32_t live = f->fake->live;
+    declare_chain(f->g, &default_chain);
+    assert_int_equal(frame(f), TYN_OK);
+    assert_states(f, "rrc");
+    assert_true(f->fake->live > live);
+    tyn_graph_forget(f->g);
+    tyn_graph_destroy(&f->g);
+    assert_int_equal(f->fake->live, live); // but kernels
+    assert_int_equal(tyn_graph_create(&f->fake->dev, 2, &f->g), TYN_OK);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
 
 int main(void)
@@ -806,6 +826,7 @@ int main(void)
         TEST(histories),
         TEST(new_compilation_keeps),
         TEST(replaced_outlives_its_frames),
+        TEST(forgotten),
         TEST(faults),
         TEST(huge_image),
         TEST(small_device),
