@@ -14,27 +14,6 @@
 
 static const uint32_t field_outputs = TYN_OUTPUT_PROBE | TYN_OUTPUT_LIGHT;
 
-// The surfaces that the camera sees, in the light of suns and lamps that the medium leaves.
-static void add_surfaces(tyn_graph *g, const tyn_job *job, tyn_sources s, tyn_view_inputs *view)
-{
-    const tyn_field no_field = {0};
-    tyn_view_inputs surfaces = {
-        .sources = &s, .field = &no_field, .no_sky_on_surfaces = s.medium.density.resource != 0};
-    const float *sky = job->frame->environment.sky;
-    if (surfaces.no_sky_on_surfaces && sky[0] + sky[1] + sky[2] > 0.0f) {
-        tyn_job_warn(job, "the environment does not light the surfaces");
-    }
-    tyn_job_warn_suns(job, "surfaces");
-    if (s.medium.density.resource) {
-        tyn_add_beams(g, job, &s);
-        tyn_add_radials(g, job, &s);
-    }
-    tyn_add_shadows(g, job, &s);
-    tyn_add_surfaces(g, job, &surfaces);
-    view->surface = surfaces.surface;
-    view->distances = surfaces.distances;
-}
-
 static void warn_of_light(const tyn_job *job)
 {
     if (job->frame->emissive) {
@@ -98,9 +77,8 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     }
     if (picture) {
         tyn_gather(g, job, &view);
-        if (frame->num_triangles) {
-            add_surfaces(g, job, s, &view);
-        }
+        tyn_add_shadows(g, job, &s);
+        tyn_add_surfaces_apart(g, job, s, &view);
         tyn_add_picture(g, job, &view);
     }
     return tyn_graph_status(g);

@@ -11,25 +11,6 @@
 #include "view/view.h"
 #include <tyndall/registry.h>
 
-// The surfaces that the camera sees, in the light of suns, lamps and VPLs that the medium leaves; the march through the
-// medium knows none of these.
-static void add_surfaces(tyn_graph *g, const tyn_job *job, tyn_sources s, tyn_view_inputs *view)
-{
-    const tyn_field no_field = {0};
-    tyn_view_inputs surfaces = {
-        .sources = &s, .field = &no_field, .no_sky_on_surfaces = s.medium.density.resource != 0};
-    const float *sky = job->frame->environment.sky;
-    if (surfaces.no_sky_on_surfaces && sky[0] + sky[1] + sky[2] > 0.0f) {
-        tyn_job_warn(job, "the environment does not light the surfaces");
-    }
-    tyn_job_warn_suns(job, "surfaces");
-    tyn_add_beams(g, job, &s);
-    tyn_add_radials(g, job, &s);
-    tyn_add_surfaces(g, job, &surfaces);
-    view->surface = surfaces.surface;
-    view->distances = surfaces.distances;
-}
-
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
 {
     const tyn_frame_scene *frame = job->frame;
@@ -58,9 +39,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
         tyn_limits_warn(job, field.cell);
     }
     tyn_gather(g, job, &view);
-    if (frame->num_triangles) {
-        add_surfaces(g, job, shadowed, &view);
-    }
+    tyn_add_surfaces_apart(g, job, shadowed, &view);
     tyn_add_picture(g, job, &view);
     return tyn_graph_status(g);
 }

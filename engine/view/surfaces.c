@@ -129,3 +129,24 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     in->surface = refs[SHADE_PORT_SURFACE_RADIANCE];
     in->distances = seen.distances;
 }
+
+void tyn_add_surfaces_apart(tyn_graph *g, const tyn_job *job, tyn_sources s, tyn_view_inputs *view)
+{
+    if (!job->frame->num_triangles) {
+        return;
+    }
+    const tyn_field no_field = {0};
+    const bool media = s.medium.density.resource != 0;
+    tyn_view_inputs surfaces = {.sources = &s, .field = &no_field, .no_sky_on_surfaces = media};
+    if (media && tyn_is_lit(job->frame->environment.sky)) {
+        tyn_job_warn(job, "the environment does not light the surfaces");
+    }
+    tyn_job_warn_suns(job, "surfaces");
+    if (media) {
+        tyn_add_beams(g, job, &s);
+        tyn_add_radials(g, job, &s);
+    }
+    tyn_add_surfaces(g, job, &surfaces);
+    view->surface = surfaces.surface;
+    view->distances = surfaces.distances;
+}
