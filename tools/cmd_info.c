@@ -96,16 +96,10 @@ static void print_passes(void)
     }
 }
 
-// Named as in tyn_output, the bits in order.
 static void print_outputs(uint32_t outputs)
 {
-    static const char *const names[] = {"radiance", "transmittance", "depth",   "single",
-                                        "multiple", "error",         "display", "probe",
-                                        "balance",  "composite",     "fluxes",  "light"};
-    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
-        if (outputs >> i & 1) {
-            printf(" %s", names[i]);
-        }
+    for (uint32_t left = outputs; left; left &= left - 1) {
+        printf(" %s", tyn_output_name((tyn_output)(left & -left)));
     }
 }
 

@@ -1,6 +1,7 @@
 // check.c -- are the numbers of a frame fit?
 #include "frame/context.h"
 #include "gpu/device.h"
+#include "registry/registry.h"
 #include "scene/check.h"
 
 #define FAULT(...) return (tyn_log_print(log, TYN_LOG_ERROR, __VA_ARGS__), TYN_ERR_PARAMS)
@@ -169,6 +170,21 @@ static tyn_result check_densities(const tyn_frame *frame, const tyn_log *log)
     return TYN_OK;
 }
 
+// Of outputs that the method does not make, the first.
+static tyn_result refuse_outputs(const tyn_context *ctx, uint32_t missing)
+{
+    const tyn_method_info *method = &ctx->method->info;
+    const uint32_t first = missing & -missing;
+    const bool no_probes = first == TYN_OUTPUT_LIGHT && !(method->outputs & TYN_OUTPUT_PROBE);
+    char makers[256] = "";
+    tyn_method_names(first, makers, sizeof makers);
+    tyn_log_print(&ctx->dev->log, TYN_LOG_ERROR, "method '%s' cannot make the output '%s'%s%s%s",
+                  method->name, tyn_output_name((tyn_output)first),
+                  no_probes ? ": it has no probes, of which the light field is made" : "",
+                  *makers ? "; these can: " : "", makers);
+    return TYN_ERR_PARAMS;
+}
+
 tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)
 {
     const tyn_log *log = &ctx->dev->log;
@@ -180,10 +196,7 @@ tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)
     const tyn_view *view = frame->view;
     uint32_t outputs = view->outputs ? view->outputs : TYN_OUTPUT_RADIANCE;
     if (outputs & ~ctx->method->info.outputs) {
-        uint32_t missing = outputs & ~ctx->method->info.outputs;
-        tyn_log_print(log, TYN_LOG_ERROR, "method '%s' cannot make the output '%s'",
-                      ctx->method->info.name, tyn_output_name((tyn_output)(missing & -missing)));
-        return TYN_ERR_PARAMS;
+        return refuse_outputs(ctx, outputs & ~ctx->method->info.outputs);
     }
     if (!view->width || !view->height || view->width > 16384 || view->height > 16384) {
         tyn_log_print(log, TYN_LOG_ERROR, "size is %u x %u; each side must be 1 to 16384 pixels",

@@ -25,7 +25,7 @@ tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params,
     const tyn_method *method = tyn_method_find(params->method);
     if (!method) {
         char names[128];
-        tyn_method_names(names, sizeof names);
+        tyn_method_names(0, names, sizeof names);
         tyn_log_print(&dev->log, TYN_LOG_ERROR, "method '%s' is not known; there are: %s",
                       params->method, names);
         return TYN_ERR_PARAMS;

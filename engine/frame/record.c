@@ -3,6 +3,7 @@
 #include "base/given.h"
 #include "base/hash.h"
 #include "gpu/device.h"
+#include "job/output.h"
 #include "scene/check.h"
 
 tyn_result tyn_context_prepare(tyn_context *ctx, const tyn_frame *frame)
@@ -89,6 +90,6 @@ tyn_result tyn_context_light(const tyn_context *ctx, float world_to_texture[16])
 const void *tyn_context_output(tyn_context *ctx, tyn_output output)
 {
     return ctx && ctx->outputs & output
-               ? tyn_graph_map(ctx->graph, tyn_output_name(output), NULL, NULL)
+               ? tyn_graph_map(ctx->graph, tyn_job_output_name(output), NULL, NULL)
                : NULL;
 }

@@ -1,5 +1,6 @@
 // job.c -- what methods give the graph of what a job asks for.
 #include <tyndall/extend/job.h>
+#include "job/output.h"
 #include "passes/export/export.h"
 #include <math.h>
 #include <stdarg.h>
@@ -8,7 +9,7 @@
 const char *tyn_output_name(tyn_output which)
 {
     static const char *const names[] = {"radiance", "transmittance", "depth",   "single",
-                                        "multiple", "error",         "display", "points",
+                                        "multiple", "error",         "display", "probe",
                                         "balance",  "composite",     "fluxes",  "light"};
     for (uint32_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (which == (tyn_output)(1u << i)) {
@@ -44,10 +45,15 @@ static void export_output(tyn_graph *g, const tyn_job *job, tyn_output which, ty
     }
 }
 
+const char *tyn_job_output_name(tyn_output which)
+{
+    return which == TYN_OUTPUT_PROBE ? "points" : tyn_output_name(which);
+}
+
 void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, tyn_ref ref)
 {
     if (job->outputs & which) {
-        tyn_graph_output(g, tyn_output_name(which), ref,
+        tyn_graph_output(g, tyn_job_output_name(which), ref,
                          job->readback && which != TYN_OUTPUT_COMPOSITE &&
                              which != TYN_OUTPUT_LIGHT);
         export_output(g, job, which, ref);

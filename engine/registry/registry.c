@@ -110,11 +110,14 @@ const char *tyn_method_reference(void)
     return methods[i]->info.name;
 }
 
-void tyn_method_names(char *text, size_t size)
+void tyn_method_names(uint32_t outputs, char *text, size_t size)
 {
     size_t at = 0;
     for (uint32_t i = 0; i < tyn_num_methods() && at < size; i++) {
-        at += (size_t)snprintf(text + at, size - at, "%s%s", i ? ", " : "", methods[i]->info.name);
+        const tyn_method_info *info = &methods[i]->info;
+        if ((info->outputs & outputs) == outputs) {
+            at += (size_t)snprintf(text + at, size - at, "%s%s", at ? ", " : "", info->name);
+        }
     }
 }
 

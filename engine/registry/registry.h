@@ -4,7 +4,8 @@
 #include <tyndall/extend/method.h>
 
 const tyn_method *tyn_method_find(const char *name); // `name` NULL: the default; NULL: not there
-void tyn_method_names(char *text, size_t size);      // "pop, path, ..."
+// "pop, path, ...": those that make all of `outputs`, a set of tyn_output; 0: all.
+void tyn_method_names(uint32_t outputs, char *text, size_t size);
 const tyn_pass_desc *tyn_pass_find(const char *name);
 const tyn_picture_hook *const *tyn_picture_hooks(uint32_t *count);
 // A preset, and before that what `from` has set (NULL: nothing).

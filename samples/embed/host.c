@@ -410,14 +410,15 @@ tyn_image host_lend(host_image *image, tyn_sync after)
 host_buffer host_buffer_new(host *h, VkDeviceSize size)
 {
     host_buffer buffer = {.size = size};
-    require(h->vk.CreateBuffer(
-                h->device,
-                &(VkBufferCreateInfo){
-                    .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                    .size = size,
-                    .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                },
-                NULL, &buffer.buffer),
+    require(h->vk.CreateBuffer(h->device,
+                               &(VkBufferCreateInfo){
+                                   .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                   .size = size,
+                                   .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
+                               },
+                               NULL, &buffer.buffer),
             "vkCreateBuffer");
     VkMemoryRequirements needs;
     h->vk.GetBufferMemoryRequirements(h->device, buffer.buffer, &needs);

@@ -118,6 +118,42 @@ static void frames_like_before_go_on(void **state)
     tyn_device_destroy(&dev);
 }
 
+// Of a frame whose kernels are missing nothing is seen, not the picture before either; a host that does not want the medium to
+// blink hands the change to prepare alone until that is done, and records what was.
+static void a_change_is_held_back(void **state)
+{
+    static const float colors[2][3] = {{0, 0, 0}, {2, 1, 1}};
+    fixture *f = *state;
+    tyn_light *lamp = &f->scene.lights[1];
+    *lamp = (tyn_light){.kind = TYN_LIGHT_POINT, .position = {0.2f, 0.3f, 0.1f}};
+    f->scene.num_lights = 2; // dark: it is left out
+    tyn_device *dev = new_device(f, (device_choice){.jobs = true});
+    tyn_context *ctx = new_context(dev);
+    assert_int_equal(prepare(f, ctx, false), TYN_OK);
+    assert_int_equal(record(f, ctx, false), TYN_OK);
+    expect_picture(f, 0);
+    memcpy(lamp->color, colors[1], sizeof colors[1]);
+    assert_int_equal(prepare(f, ctx, true), TYN_PENDING);
+    assert_int_equal(record(f, ctx, true), TYN_PENDING);
+    expect_untouched(f);
+    uint32_t frames = 0;
+    while (prepare(f, ctx, true) == TYN_PENDING) {
+        memcpy(lamp->color, colors[0], sizeof colors[0]);
+        assert_int_equal(record(f, ctx, true), TYN_OK);
+        expect_picture(f, 0);
+        memcpy(lamp->color, colors[1], sizeof colors[1]);
+        run_jobs(f, 1);
+        assert_true(++frames < 50);
+    }
+    print_message("%u frames as before\n", frames);
+    assert_true(frames > 0);
+    assert_int_equal(record(f, ctx, true), TYN_OK);
+    assert_memory_not_equal(f->down[0].data, f->expected, f->up.size);
+    f->scene.num_lights = 1;
+    tyn_context_destroy(&ctx);
+    tyn_device_destroy(&dev);
+}
+
 static void a_call_takes_what_is_queued(void **state)
 {
     fixture *f = *state;
@@ -295,6 +331,7 @@ int main(void)
         TEST(threads_compile_and_frames_leave_the_picture_alone),
         TEST(jobs_of_the_host_compile),
         TEST(frames_like_before_go_on),
+        TEST(a_change_is_held_back),
         TEST(a_call_takes_what_is_queued),
         TEST(destroyed_while_pending),
         TEST(contexts_of_two_threads_share_pipelines),

@@ -1,7 +1,8 @@
 // failures.c -- every call of Vulkan that can fail does, one at a time: an error and a line of the log; then the same call
 // succeeds and the picture is the same bit by bit, or all is destroyed; nothing is left behind, and the layers are silent.
 //
-// A trial costs a frame or more, so each step tries calls evenly spaced; TYN_FAIL_ALL=1 tries them all.
+// A trial costs a frame or more, so each step tries calls evenly spaced; TYN_FAIL_ALL=1 tries them all, TYN_FAIL_STEP=NAME of
+// that step, TYN_FAIL_SHARE=2/5 the second fifth of them.
 #include "rig.h"
 #include "skip.h"
 #include "states.h"
@@ -9,8 +10,10 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <tyndall/offline.h>
 #include <cmocka.h>
 
@@ -198,9 +201,9 @@ static tyn_result open_own(trial *t)
         &t->dev);
 }
 
-static void with_own(trial *t)
+static void with_warm(trial *t)
 {
-    assert_int_equal(open_own(t), TYN_OK);
+    t->dev = t->warm;
 }
 
 static tyn_result create_offline(trial *t)
@@ -211,7 +214,7 @@ static tyn_result create_offline(trial *t)
 
 static void with_offline(trial *t)
 {
-    with_own(t);
+    with_warm(t);
     assert_int_equal(create_offline(t), TYN_OK);
 }
 
@@ -271,8 +274,8 @@ static const step steps[] = {
 // Of devices that Tyndall opens.
 static const step own_steps[] = {
     {"open", "single", nothing, open_own, NULL, false, 6},
-    {"offline", "single", with_own, create_offline, NULL, false, 3},
-    {"rendering", "pop", with_offline, render_offline, offline_picture, false, 20, UINT32_MAX},
+    {"offline", "single", with_warm, create_offline, NULL, false, 3},
+    {"rendering", "pop", with_offline, render_offline, offline_picture, false, 20},
 };
 
 static void clear_away(trial *t)
@@ -331,6 +334,41 @@ static void fail_once(trial *t, const step *s, uint32_t number, VkResult error)
     }
 }
 
+// Numbers first, first + stride, ... of the calls to try.
+typedef struct choice {
+    bool all;
+    uint32_t part, parts; // of `all`
+} choice;
+
+static choice read_choice(void)
+{
+    choice c = {.all = getenv("TYN_FAIL_ALL"), .part = 1, .parts = 1};
+    const char *share = getenv("TYN_FAIL_SHARE");
+    if (share && (sscanf(share, "%u/%u", &c.part, &c.parts) != 2 || !c.part || c.part > c.parts)) {
+        fail_msg("TYN_FAIL_SHARE is '%s'; it must be like 2/5", share);
+    }
+    return c;
+}
+
+// Lets the chosen ones of `calls` calls fail in turn; how many those were.
+static uint32_t fail_chosen(trial *t, const step *s, const choice *c, uint32_t calls)
+{
+    static const VkResult errors[] = {VK_ERROR_OUT_OF_DEVICE_MEMORY, VK_ERROR_OUT_OF_HOST_MEMORY,
+                                      VK_ERROR_DEVICE_LOST};
+    if (s->costly && !c->all) {
+        fail_once(t, s, s->costly, errors[0]);
+        return 1;
+    }
+    const uint32_t stride = c->all ? c->parts : calls > TRIALS ? (calls + TRIALS - 1) / TRIALS : 1;
+    uint32_t tried = 0;
+    for (uint32_t e = 0; e < 3; e++) {
+        for (uint32_t n = c->all ? c->part : 1 + e % stride; n <= calls; n += stride, tried++) {
+            fail_once(t, s, n, errors[e]);
+        }
+    }
+    return tried;
+}
+
 static void fail_every_call(const step *list, size_t num, bool of_host)
 {
     trial t = {0};
@@ -339,22 +377,20 @@ static void fail_every_call(const step *list, size_t num, bool of_host)
     }
     rig *r = &t.r;
     r->quiet = true;
-    const bool all = getenv("TYN_FAIL_ALL");
+    const choice chosen = read_choice();
     const char *only = getenv("TYN_FAIL_STEP");
     uint32_t total = 0, tried = 0;
     t.bytes = r->picture.size;
     t.expected = malloc(t.bytes);
     t.tapped = tap_open(r->host.get_instance_proc_addr);
-    if (of_host) {
-        assert_int_equal(make_device(&t), TYN_OK);
-    }
+    assert_int_equal(of_host ? make_device(&t) : open_own(&t), TYN_OK);
     t.warm = t.dev;
     for (size_t i = 0; i < num; i++) {
         const step *s = &list[i];
-        if ((only && strcmp(only, s->name)) || (s->costly == UINT32_MAX && !all)) {
+        if ((only && strcmp(only, s->name)) || (s->costly == UINT32_MAX && !chosen.all)) {
             continue;
         }
-        t.method = all ? s->method : "single";
+        t.method = chosen.all ? s->method : "single";
         uint32_t calls = 0;
         for (int run = 0; run < (s->costly ? 1 : 2);
              run++) { // the first makes kernels for all that use `warm`
@@ -375,18 +411,12 @@ static void fail_every_call(const step *list, size_t num, bool of_host)
         }
         rig_expect_silence(r);
         assert_true(calls >= s->least);
-        static const VkResult errors[] = {VK_ERROR_OUT_OF_DEVICE_MEMORY,
-                                          VK_ERROR_OUT_OF_HOST_MEMORY, VK_ERROR_DEVICE_LOST};
-        const uint32_t stride = all || calls <= TRIALS ? 1 : (calls + TRIALS - 1) / TRIALS;
-        const bool single = s->costly && !all;
-        for (int e = 0; e < (single ? 1 : 3); e++) {
-            for (uint32_t n = single ? s->costly : 1 + (uint32_t)e % stride; n <= calls;
-                 n += single ? calls : stride, tried++) {
-                fail_once(&t, s, n, errors[e]);
-            }
-        }
-        print_message("%-10s %3u calls that may fail\n", s->name, calls);
+        const time_t start = time(NULL);
+        const uint32_t trials = fail_chosen(&t, s, &chosen, calls);
+        print_message("%-10s %4u calls that may fail, %4u trials, %ld s\n", s->name, calls, trials,
+                      (long)(time(NULL) - start));
         total += calls;
+        tried += trials;
         r->errors = 0;
     }
     print_message("%u calls, %u trials\n", total, tried);

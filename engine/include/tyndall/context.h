@@ -73,6 +73,8 @@ typedef enum tyn_output {
     TYN_OUTPUT_FLUXES = 1 << 10,       // buffer: tyn_fluxes (path)
     TYN_OUTPUT_LIGHT = 1 << 11,        // into tyn_frame.light (pop, lpv, photon)
 } tyn_output;
+// "radiance", ... in lower case; of what is none of them "unknown".
+TYN_API const char *tyn_output_name(tyn_output which);
 
 typedef struct tyn_probe_result {
     float fluence[3];                // W/m^2

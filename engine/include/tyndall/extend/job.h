@@ -85,8 +85,6 @@ TYN_API void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, 
 // Has the buffer read back in which a pass counts (tyn_pass_desc.counters), for the report.
 TYN_API void tyn_job_counters(tyn_graph *g, const tyn_job *job, const tyn_pass_desc *pass,
                               tyn_ref ref);
-// The names of outputs in the graph: "radiance", ...
-TYN_API const char *tyn_output_name(tyn_output which);
 
 // Outputs that are gathered along the rays of a camera.
 #define TYN_PICTURE_OUTPUTS                                                                        \
