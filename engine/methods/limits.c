@@ -168,6 +168,11 @@ static float shortest_side(const tyn_job *job)
     return shortest;
 }
 
+float tyn_limit_scatterings(const tyn_job *job)
+{
+    return dense_of(job).scattering * longest_side(job);
+}
+
 void tyn_limits_warn(const tyn_job *job, float cell)
 {
     const dense d = dense_of(job);

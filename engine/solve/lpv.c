@@ -1,5 +1,6 @@
 // lpv.c -- see lpv.h.
 #include "solve/lpv.h"
+#include <tyndall/extend/limits.h>
 #include <tyndall/registry.h>
 #include <string.h>
 
@@ -95,12 +96,12 @@ static tyn_ref add_blockers(tyn_graph *g, const tyn_job *job, const tyn_sources 
     return own[LPV_BLOCKERS_PORT_BLOCKING];
 }
 
-// Light that has not got anywhere after the last iteration is not in the field.
+// Light that has not got anywhere after the last iteration is not in the field. Where hardly any scatters there is none to miss.
 static void warn_of_iterations(const tyn_job *job, const tyn_lpv_params *params)
 {
     const tyn_extent n = tyn_lattice_dims(params->shape.extent, params->shape.cells);
     const uint32_t most = n.x > n.y ? n.x : n.y, longest = most > n.z ? most : n.z;
-    if ((uint32_t)params->iterations < 2 * longest) {
+    if ((uint32_t)params->iterations < 2 * longest && tyn_limit_scatterings(job) > 0.05f) {
         tyn_job_warn(job,
                      "accuracy: light moves on by a cell an iteration: it gets %d of %u cells far "
                      "(-D lpv.iterations)",

@@ -32,6 +32,38 @@ static void cube_view(tyn_view *view)
     view_orthographic(view, (float[]){0.5f, 0.5f, 0.5f}, 0, -1, 0, (float[]){0, 0, 1}, 0.5f, 32);
 }
 
+// Few iterations are warned of where light scatters again, and not where there is hardly any to miss.
+static void warns_of_iterations(void **state)
+{
+    static const struct {
+        float depth;
+        const char *settings;
+        bool warned;
+    } runs[] = {{1, published, true},
+                {0.06f, published, true},
+                {0.04f, published, false},
+                {1, converged, false}};
+    gpu_test *t = *state;
+    for (size_t i = 0; i < sizeof runs / sizeof runs[0]; i++) {
+        tyn_scene scene;
+        tyn_view view = {0};
+        make_cube(&scene, runs[i].depth);
+        cube_view(&view);
+        view.outputs = TYN_OUTPUT_RADIANCE;
+        tyn_offline *off = scene_open(t->dev, "lpv", runs[i].settings);
+        offline_frame(off, &scene, &view);
+        tyn_report report;
+        tyn_offline_report(off, &report);
+        bool warned = false;
+        for (uint32_t k = 0; k < report.num_warnings; k++) {
+            warned = warned || strstr(report.warnings[k], "moves on by a cell an iteration");
+        }
+        assert_int_equal(warned, runs[i].warned);
+        tyn_offline_destroy(&off);
+        tyn_scene_finish(&scene);
+    }
+}
+
 // Pictures of cubes of g 0 in the sun, from the side: by the depth, with what Fig 5 compares (light scattered once
 // injected or not), 8 iterations and more, both extinctions.
 static void cubes(void **state)
@@ -440,10 +472,15 @@ static void skips_of_maps(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cubes),      cmocka_unit_test(furnace),
-        cmocka_unit_test(sealed),     cmocka_unit_test(lamp_in_sealed),
-        cmocka_unit_test(injections), cmocka_unit_test(balances),
-        cmocka_unit_test(skips),      cmocka_unit_test(skips_of_maps),
+        cmocka_unit_test(warns_of_iterations),
+        cmocka_unit_test(cubes),
+        cmocka_unit_test(furnace),
+        cmocka_unit_test(sealed),
+        cmocka_unit_test(lamp_in_sealed),
+        cmocka_unit_test(injections),
+        cmocka_unit_test(balances),
+        cmocka_unit_test(skips),
+        cmocka_unit_test(skips_of_maps),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

@@ -52,6 +52,10 @@ TYN_API double tyn_limit_again(const tyn_regime *r);
         }                                                                                          \
     }
 
+// How many scattering mean free paths (delta scaled) the longest side of the media's box is where they are dense; of the
+// largest channel.
+TYN_API float tyn_limit_scatterings(const tyn_job *job);
+
 // Warns of what the job's method is known to lose in its scene (each line begins with "accuracy:"): from the scene's
 // figures alone, so that it costs nothing. `cell`: of the lattice, m; 0: there is none, or none yet.
 TYN_API void tyn_limits_warn(const tyn_job *job, float cell);
