@@ -303,30 +303,42 @@ bool graph_uploads_staged(const tyn_graph *g)
     return true;
 }
 
-tyn_result graph_stage_uploads(tyn_graph *g)
+static bool wants_staging(const resource *r, const phys *p)
+{
+    const bool big = r->kind == RESOURCE_UPLOAD && (r->fill || r->extent.x > INLINE_UPLOAD);
+    return big && p->content != r->content;
+}
+
+tyn_result graph_create_staging(tyn_graph *g)
 {
     tyn_result result = TYN_OK;
     g->staging_made = g->frame;
     for (uint32_t i = 0; result == TYN_OK && i < g->num_resources; i++) {
-        const resource *r = &g->resources[i];
         phys *p = &g->phys[i];
-        bool big = r->kind == RESOURCE_UPLOAD && (r->fill || r->extent.x > INLINE_UPLOAD);
-        if (!big || p->content == r->content) {
-            continue;
-        }
-        result =
-            create_buffer(g, &g->staging_heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                          TYN_MEMORY_UPLOAD, p->bytes, "staging", &p->staging, &p->staging_ptr);
-        if (result == TYN_OK) {
-            if (r->fill) {
-                r->fill(r->user, p->staging_ptr);
-            } else {
-                memcpy(p->staging_ptr, r->data, r->key);
-            }
-            p->staged = r->content;
+        if (wants_staging(&g->resources[i], p)) {
+            result =
+                create_buffer(g, &g->staging_heap, p->bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                              TYN_MEMORY_UPLOAD, p->bytes, "staging", &p->staging, &p->staging_ptr);
         }
     }
     return result;
+}
+
+void graph_fill_staging(tyn_graph *g)
+{
+    for (uint32_t i = 0; i < g->num_resources; i++) {
+        const resource *r = &g->resources[i];
+        phys *p = &g->phys[i];
+        if (!wants_staging(r, p)) {
+            continue;
+        }
+        if (r->fill) {
+            r->fill(r->user, p->staging_ptr);
+        } else {
+            memcpy(p->staging_ptr, r->data, r->key);
+        }
+        p->staged = r->content;
+    }
 }
 
 void graph_free_staging(tyn_graph *g)

@@ -65,16 +65,10 @@ void graph_finish(tyn_graph *g)
     }
 }
 
-static tyn_result compile_new(tyn_graph *g, bool only_histories)
+// Gives up what the new arrangement has no use for, before it allocates.
+static tyn_result give_up(tyn_graph *g, bool only_histories, heritage *old)
 {
-    if (!reserve_all(g)) {
-        return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
-    }
-    graph_free_staging(g);
-    heritage old = graph_take_heritage(g, only_histories);
-    node_run *before = g->runs;
-    const uint32_t num_before = g->num_runs;
-    g->runs = NULL;
+    *old = graph_take_heritage(g, only_histories);
     graph_release(g);
     if (only_histories) {
         graph_free_all_aged(g);
@@ -88,10 +82,14 @@ static tyn_result compile_new(tyn_graph *g, bool only_histories)
     g->runs = calloc(g->num_runs ? g->num_runs : 1, sizeof *g->runs);
     g->run_node = calloc(g->num_runs ? g->num_runs : 1, sizeof *g->run_node);
     if (!g->phys || !g->runs || !g->run_node) {
-        graph_drop_heritage(g, &old);
-        free(before);
+        g->num_phys = g->phys ? g->num_phys : 0;
         return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
     }
+    return TYN_OK;
+}
+
+static tyn_result make_anew(tyn_graph *g, heritage *old, survey *s)
+{
     for (uint32_t i = 0; i < g->num_outputs; i++) {
         if (g->outputs[i].readback) {
             phys *p = &g->phys[g->outputs[i].ref.resource - 1];
@@ -99,15 +97,37 @@ static tyn_result compile_new(tyn_graph *g, bool only_histories)
             p->buffer_usage |= VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
         }
     }
-    survey s;
-    tyn_result result = graph_survey(g, &s, g->phys);
-    result = result == TYN_OK ? graph_create_resources(g, &old) : result;
+    const tyn_result result = graph_survey(g, s, g->phys);
+    return result == TYN_OK ? graph_create_resources(g, old) : result;
+}
+
+tyn_result graph_arrange(tyn_graph *g, arrangement how, survey *s)
+{
+    if (!reserve_all(g)) {
+        return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
+    }
+    graph_free_staging(g);
+    if (how == ARRANGE_UPLOADS) {
+        return graph_create_staging(g);
+    }
+    heritage old;
+    tyn_result result = give_up(g, how == ARRANGE_ANEW, &old);
+    result = result == TYN_OK ? make_anew(g, &old, s) : result;
     graph_drop_heritage(g, &old);
     graph_retire_blocks(g, false);
     result = result == TYN_OK ? graph_create_dummies(g) : result;
+    return result == TYN_OK ? graph_create_staging(g) : result;
+}
+
+static tyn_result compile_new(tyn_graph *g, arrangement how)
+{
+    survey s;
+    node_run *before = g->runs;
+    const uint32_t num_before = g->num_runs;
+    g->runs = NULL;
+    tyn_result result = graph_arrange(g, how, &s);
     result = result == TYN_OK ? graph_create_slots(g, &s) : result;
     result = result == TYN_OK ? graph_reserve_sets(g, s.sets) : result;
-    result = result == TYN_OK ? graph_stage_uploads(g) : result;
     for (uint32_t i = 0; result == TYN_OK && i < g->num_nodes; i++) {
         if (graph_is_done(g, i)) {
             graph_inherit_run(g, i, before, num_before);
@@ -118,9 +138,24 @@ static tyn_result compile_new(tyn_graph *g, bool only_histories)
         graph_finish(g);
         return result;
     }
+    graph_fill_staging(g);
     g->structure = graph_structure(g, &s);
     g->current = true;
     return TYN_OK;
+}
+
+// Nothing but the content of uploads has changed.
+static tyn_result stage_uploads(tyn_graph *g)
+{
+    survey s;
+    arrangement how = ARRANGE_UPLOADS;
+    tyn_result result = graph_keep_to_budget(g, &how);
+    result = result == TYN_OK ? graph_arrange(g, how, &s) : result;
+    if (result == TYN_OK) {
+        graph_fill_staging(g);
+    }
+    g->current = result == TYN_OK;
+    return result;
 }
 
 static tyn_result say_what_waits(const tyn_graph *g, tyn_result result)
@@ -148,24 +183,26 @@ tyn_result tyn_graph_compile(tyn_graph *g)
     if (g->status != TYN_OK) {
         return g->status;
     }
-    if (graph_same_structure(g)) { // only new data
-        if (!reserve_all(g)) {
-            return graph_fail(g, TYN_ERR_MEMORY, "out of memory");
-        }
-        graph_free_staging(g);
-        tyn_result staged = graph_stage_uploads(g);
-        g->current = staged == TYN_OK;
-        return staged;
+    graph_retire_over(g);
+    if (graph_same_structure(g)) {
+        return stage_uploads(g);
     }
     g->current = false;
-    const tyn_result made = graph_make_pipelines(g);
-    if (made != TYN_OK) {
-        return made;
+    tyn_result result = graph_make_pipelines(g);
+    if (result != TYN_OK) {
+        return result;
     }
-    graph_retire_over(g);
+    arrangement how = ARRANGE_KEEPING;
+    result = graph_keep_to_budget(g, &how);
+    if (result != TYN_OK) {
+        return result;
+    }
     const bool first = !g->num_phys;
-    const tyn_result result = compile_new(g, false);
+    result = compile_new(g, how);
     const bool again = result == TYN_OK ? graph_is_wasteful(g) && g->num_aged
                                         : result == TYN_ERR_MEMORY && g->status == TYN_OK && !first;
-    return say_what_waits(g, again ? compile_new(g, true) : result);
+    if (again && graph_fits_budget(g, ARRANGE_ANEW)) {
+        result = compile_new(g, ARRANGE_ANEW);
+    }
+    return say_what_waits(g, result);
 }

@@ -141,6 +141,12 @@ typedef struct heritage {
     uint32_t count;
 } heritage;
 
+typedef enum arrangement {
+    ARRANGE_KEEPING = 0, // what is there already and fits
+    ARRANGE_ANEW,        // but histories
+    ARRANGE_UPLOADS,     // all is there: staging alone
+} arrangement;
+
 typedef struct set_key {
     uint64_t hash;
     VkDescriptorSet set;
@@ -189,6 +195,7 @@ struct tyn_graph {
     shared_block *blocks;
     uint32_t num_blocks, block_ids; // ids are never given twice
     VkDeviceSize persistent_bytes, transient_bytes;
+    VkDeviceSize budget; // of all device memory; 0 = no limit
     frame_slot slots[MAX_SLOTS];
     survey room;         // of their pools
     uint32_t num_timed;  // nodes that they have timestamps for
@@ -251,7 +258,15 @@ bool graph_same_structure(tyn_graph *g);
 // Resources, with what is inherited of `old`, and their memory; stand-ins for optional inputs; uploads in host memory.
 tyn_result graph_create_resources(tyn_graph *g, heritage *old);
 tyn_result graph_create_dummies(tyn_graph *g);
-tyn_result graph_stage_uploads(tyn_graph *g);
+tyn_result graph_create_staging(tyn_graph *g);
+void graph_fill_staging(tyn_graph *g);
+// Objects and memory for the declaration, and staging. `s`: not set by ARRANGE_UPLOADS.
+tyn_result graph_arrange(tyn_graph *g, arrangement how, survey *s);
+// budget.c: the most device memory that there would be while the graph is so arranged; it stays as it is.
+tyn_result graph_try(tyn_graph *g, arrangement how, VkDeviceSize *most);
+// How it can be arranged within the budget, at best as asked; else it is refused with a line.
+tyn_result graph_keep_to_budget(tyn_graph *g, arrangement *how);
+bool graph_fits_budget(tyn_graph *g, arrangement how);
 // What a later compilation may take a resource over by; 0: nothing.
 uint64_t graph_identity(const tyn_graph *g, const resource *r);
 // Takes out what this compilation may use again, without what belongs to the last one alone; the heaps stay. Without
