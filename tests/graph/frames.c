@@ -528,6 +528,19 @@ static void faults(void **state)
     assert_string_equal(f->fake->log, "output 'result' is not a resource\n");
     assert_int_equal(tyn_graph_status(f->g), TYN_ERR_PARAMS);
 
+    // Counters of a pass that is named as an output, for instance.
+    tyn_graph_begin(f->g);
+    fake_clear(f->fake);
+    const tyn_ref one = upload(f->g, "one", 1), other = upload(f->g, "other", 2);
+    tyn_graph_output(f->g, "result", one, true);
+    tyn_graph_output(f->g, "result", one, true);
+    tyn_graph_output(f->g, "result", other, false);
+    assert_int_equal(tyn_graph_status(f->g), TYN_OK);
+    tyn_graph_output(f->g, "result", other, true);
+    assert_string_equal(f->fake->log, "output 'result' is there already, of another resource: a "
+                                      "pass with counters needs a name that no output has\n");
+    assert_int_equal(tyn_graph_status(f->g), TYN_ERR_PARAMS);
+
     // A new declaration starts afresh.
     declare_chain(f->g, &default_chain);
     assert_int_equal(frame(f), TYN_OK);
@@ -571,6 +584,21 @@ static void small_device(void **state)
     }
     declare_chain(f->g, &default_chain);
     assert_int_equal(frame(f), TYN_OK);
+}
+
+// One line, however many launches want one; then all is as before.
+static void no_descriptor_sets(void **state)
+{
+    fixture *f = *state;
+    declare_chain(f->g, &default_chain);
+    f->fake->no_sets = true;
+    assert_int_equal(frame(f), TYN_ERR_DEVICE);
+    assert_string_equal(f->fake->log, "node 'blur': vkAllocateDescriptorSets for kernel 'blur' "
+                                      "failed with VkResult -1000069000\n");
+    f->fake->no_sets = false;
+    declare_chain(f->g, &default_chain);
+    assert_int_equal(frame(f), TYN_OK);
+    assert_states(f, "rrc");
 }
 
 // Whichever allocation fails: an error, nothing leaks, and the next frame is made in full.
@@ -646,6 +674,7 @@ int main(void)
         TEST(faults),
         TEST(huge_image),
         TEST(small_device),
+        TEST(no_descriptor_sets),
         TEST(out_of_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

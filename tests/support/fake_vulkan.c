@@ -208,7 +208,7 @@ static VkResult allocate_sets(VkDevice dev, const VkDescriptorSetAllocateInfo *i
 {
     (void)dev, (void)info;
     *sets = (VkDescriptorSet)(uint64_t)1;
-    return VK_SUCCESS;
+    return fake->no_sets ? VK_ERROR_OUT_OF_POOL_MEMORY : VK_SUCCESS;
 }
 
 static void update_sets(VkDevice dev, uint32_t count, const VkWriteDescriptorSet *writes,

@@ -13,6 +13,7 @@ typedef struct fake_vulkan {
         kernels; // of these: allocations of memory, and pipelines with what belongs to them
     VkDeviceSize bytes, most_bytes; // of device memory: now, and at most; a test may set it back
     uint32_t fail_at;               // the create or allocate call with this number fails; 0 = none
+    bool no_sets;                   // descriptor sets cannot be allocated
     bool recording;                 // nothing may be created now
     uint32_t created_while_recording;
     uint32_t dispatches, copies; // since fake_clear
