@@ -90,8 +90,9 @@ typedef struct tyn_node_stats {
     double gpu_ms; // of the last finished record that ran it; 0 where timestamps are missing
     double cpu_ms; // recording
     uint32_t dispatches, barriers;
-    bool media_only; // depends on the media alone
-    uint64_t bytes;  // memory of the node's OUT and SCRATCH resources
+    bool media_only;       // depends on the media alone
+    uint64_t bytes;        // memory of the node's OUT and SCRATCH resources
+    uint64_t shared_bytes; // of these: where those of other nodes that are needed lie, too
     struct {
         const char *name;
         double amount;

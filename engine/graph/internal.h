@@ -305,6 +305,10 @@ VkDeviceSize graph_retired_bytes(const tyn_graph *g);
 tyn_result graph_keep_places(tyn_graph *g);
 // Memory for the resources that are `shared`, and how many bytes of it none would have for good if all were placed anew.
 tyn_result graph_bind_shared(tyn_graph *g, VkDeviceSize *passing);
+// How much of what a resource takes lies where others that needed nodes make lie, too.
+VkDeviceSize graph_shared_bytes(const tyn_graph *g, uint32_t index);
+// Of what a node makes and works in: in all, and how much of it lies where what other nodes make or work in does.
+void graph_node_bytes(const tyn_graph *g, uint32_t index, uint64_t *bytes, uint64_t *shared);
 void graph_retire_blocks(tyn_graph *g, bool all); // those in which nothing lies, or all
 void graph_destroy_phys(tyn_graph *g, phys *p);
 bool graph_overlap(const phys *a, const phys *b);

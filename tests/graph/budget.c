@@ -208,13 +208,34 @@ static void trials_fail(void **state)
     assert_true(failures > 4);
 }
 
+// Two blurs work in the same scratch, one after the other; what they make they have for themselves.
+static void memory_of_nodes(void **state)
+{
+    fixture *f = *state;
+    const uint32_t size = 512;
+    restart(f, 0);
+    assert_int_equal(frame(f, &size, 1), TYN_OK);
+    const tyn_node_stats *stats;
+    assert_int_equal(tyn_graph_stats(f->g, &stats), 3);
+    const uint64_t image = 4 * size * size;
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(stats[i].bytes, 2 * image);
+        assert_int_equal(stats[i].shared_bytes, image);
+    }
+    assert_int_equal(stats[2].bytes, 0);
+    assert_int_equal(stats[2].shared_bytes, 0);
+    char *dump = tyn_graph_dump(f->g, false, NULL);
+    assert_non_null(strstr(dump, "memory  2.00 MiB, 1.00 MiB of it shared with other nodes"));
+    free(dump);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, setup, teardown)
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(exactly_what_is_needed), TEST(budget_is_kept), TEST(refusal_leaves_all),
-        TEST(uploads_count),          TEST(trials_fail),
+        TEST(uploads_count),          TEST(trials_fail),    TEST(memory_of_nodes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

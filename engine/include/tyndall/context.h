@@ -220,7 +220,9 @@ typedef struct tyn_node_report {
     const char *state; // "ran", "unchanged", "culled", "empty"
     double gpu_ms, cpu_ms;
     uint32_t dispatches, barriers;
-    uint64_t bytes;
+    // Device memory of what the node makes and works in; of it, what lies where that of other nodes does, so that sums over nodes
+    // count it more than once.
+    uint64_t bytes, shared_bytes;
     double flops;
     struct {
         const char *name;
