@@ -162,7 +162,7 @@ static tyn_result open_with(rig *r, tyn_device *dev, double mib, tyn_context **c
     tyn_context_destroy(ctx);
     assert_int_equal(
         tyn_context_create(dev,
-                           tyn_context_params(.method = "pop", .settings = r->settings,
+                           tyn_context_params(.method = "single", .settings = r->settings,
                                               .frames_in_flight = HOST_SLOTS,
                                               .memory_budget = (uint64_t)(mib * (1 << 20))),
                            ctx),
@@ -181,7 +181,7 @@ static void budget(void **state)
     tyn_device *dev = NULL;
     tyn_context *ctx = NULL;
     assert_int_equal(rig_device(&r, false, NULL, &dev), TYN_OK);
-    assert_int_equal(rig_context(&r, dev, "pop", &ctx), TYN_OK);
+    assert_int_equal(rig_context(&r, dev, "single", &ctx), TYN_OK);
     rig_frame(&r, ctx);
     const size_t bytes = r.picture.size;
     void *expected = malloc(bytes);
