@@ -20,6 +20,8 @@ const option method_table[METHOD_TABLE_SIZE] = {
     {0, "max-depth", OPT_UINT, AT(max_depth), "N", "longest path in scatterings; 0 = no limit", 0},
     {0, "rr-depth", OPT_UINT, AT(rr_depth), "N",
      "Russian roulette from this many scatterings on; 0 = the method's choice", 0},
+    {0, "memory-budget", OPT_UINT, AT(memory_budget), "MiB",
+     "refuse what takes more device memory; 0 = no limit", 0},
 };
 
 bool method_find(app *a, const char *name, tyn_method_info *info)
@@ -55,7 +57,7 @@ bool method_define(app *a, tyn_settings *settings, const char *define)
 
 int method_open(app *a, const method_options *options, method *m)
 {
-    *m = (method){0};
+    *m = (method){.memory_budget = (uint64_t)options->memory_budget << 20};
     if (!method_find(a, options->method, &m->info)) {
         return EXIT_WRONG;
     }

@@ -8,14 +8,16 @@ typedef struct method_options {
     opt_list defines; // pass.param=value
     uint32_t spp;     // 0: not given
     uint32_t seed, max_depth, rr_depth;
+    uint32_t memory_budget; // MiB; 0 = no limit
     bool sequence; // the pictures are one after another: a solve starts from the last one's
 } method_options;
 extern const option method_table[];
-enum { METHOD_TABLE_SIZE = 7 };
+enum { METHOD_TABLE_SIZE = 8 };
 
 typedef struct method {
     tyn_method_info info;
     tyn_settings *settings;
+    uint64_t memory_budget; // bytes; 0 = no limit
 } method;
 
 // Finds a method by its name, NULL = the default. False: one line that lists those there are.

@@ -6,8 +6,11 @@
 int renderer_open(app *a, tyn_device *device, const method *m, renderer *r)
 {
     *r = (renderer){.progressive = m->info.progressive};
-    tyn_result result = tyn_offline_create(
-        device, tyn_offline_params(.method = m->info.name, .settings = m->settings), &r->offline);
+    tyn_result result =
+        tyn_offline_create(device,
+                           tyn_offline_params(.method = m->info.name, .settings = m->settings,
+                                              .memory_budget = m->memory_budget),
+                           &r->offline);
     return app_exit_code(a, result, true);
 }
 

@@ -76,6 +76,7 @@ cJSON *stats_report_nodes(const tyn_report *report)
         cJSON_AddNumberToObject(node, "dispatches", n->dispatches);
         cJSON_AddNumberToObject(node, "barriers", n->barriers);
         cJSON_AddNumberToObject(node, "bytes", (double)n->bytes);
+        cJSON_AddNumberToObject(node, "shared_bytes", (double)n->shared_bytes);
         cJSON_AddNumberToObject(node, "flops", n->flops);
         for (uint32_t k = 0; k < n->num_work; k++) {
             cJSON_AddNumberToObject(work, n->work[k].name, n->work[k].amount);

@@ -47,6 +47,9 @@ tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params,
     if (result == TYN_OK) {
         result = tyn_graph_create(dev, slots, &ctx->graph);
     }
+    if (result == TYN_OK) {
+        tyn_graph_budget(ctx->graph, params->memory_budget);
+    }
     if (result != TYN_OK) {
         tyn_context_destroy(&ctx);
     }

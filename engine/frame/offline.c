@@ -53,7 +53,8 @@ tyn_result tyn_offline_create(tyn_device *dev, const tyn_offline_params *params,
     tyn_result result = tyn_context_create(
         dev,
         tyn_context_params(.method = params->method, .settings = params->settings,
-                           .frames_in_flight = 1, .readback = true),
+                           .frames_in_flight = 1, .readback = true,
+                           .memory_budget = params->memory_budget),
         &off->context);
     if (result == TYN_OK) {
         result = tyn_submission_create(dev, &off->submission);

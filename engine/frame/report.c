@@ -101,6 +101,7 @@ void tyn_context_report(tyn_context *ctx, tyn_report *report)
                                      .dispatches = s->dispatches,
                                      .barriers = s->barriers,
                                      .bytes = s->bytes,
+                                     .shared_bytes = s->shared_bytes,
                                      .media_only = s->media_only};
         for (uint32_t w = 0; w < s->num_work; w++) {
             if (!strcmp(s->work[w].name, "flops")) {

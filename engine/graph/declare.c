@@ -207,6 +207,18 @@ void tyn_graph_mark_media(tyn_graph *g, tyn_ref ref)
     }
 }
 
+// Is there another thing that is read back by this name? It would be taken for it.
+static bool clashes(const tyn_graph *g, const char *name, tyn_ref ref, bool readback)
+{
+    for (uint32_t i = 0; readback && i < g->num_outputs; i++) {
+        const output *o = &g->outputs[i];
+        if (o->readback && o->ref.resource != ref.resource && !strcmp(o->name, name)) {
+            return true;
+        }
+    }
+    return false;
+}
+
 void tyn_graph_output(tyn_graph *g, const char *name, tyn_ref ref, bool readback)
 {
     if (g->status != TYN_OK) {
@@ -214,6 +226,11 @@ void tyn_graph_output(tyn_graph *g, const char *name, tyn_ref ref, bool readback
     }
     if (!find(g, ref)) {
         graph_fail(g, TYN_ERR_PARAMS, "output '%s' is not a resource", name);
+    } else if (clashes(g, name, ref, readback)) {
+        graph_fail(g, TYN_ERR_PARAMS,
+                   "output '%s' is there already, of another resource: a pass with counters needs "
+                   "a name that no output has",
+                   name);
     } else if (g->num_outputs == sizeof g->outputs / sizeof g->outputs[0]) {
         graph_fail(g, TYN_ERR_PARAMS, "output '%s' is one too many", name);
     } else {

@@ -167,6 +167,12 @@ static char *dump_text(tyn_graph *g, const tyn_pass_desc *const *passes)
         const node *n = &g->nodes[i];
         put(&t, "node %u %s: %s%s\n", i, n->pass->name, n->pass->summary,
             n->needed ? "" : " [culled: no output needs it]");
+        if (g->current && n->needed) {
+            uint64_t bytes, shared;
+            graph_node_bytes(g, i, &bytes, &shared);
+            put(&t, "    memory  %.2f MiB, %.2f MiB of it shared with other nodes\n",
+                (double)bytes / (1 << 20), (double)shared / (1 << 20));
+        }
         put_ports(&t, g, n);
         if (n->needed) {
             put_plan(&t, g, i, tracks);

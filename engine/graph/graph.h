@@ -12,6 +12,11 @@
 tyn_result tyn_graph_create(tyn_device *dev, uint32_t frames_in_flight, tyn_graph **out);
 void tyn_graph_destroy(tyn_graph **graph);
 
+// Bytes of device memory that the graph may have at any time, with staging, what is read back, and what is replaced but may be
+// in use by frames under way; 0 = no limit. tyn_graph_compile gives TYN_ERR_MEMORY, with one line, where it would have more, and
+// leaves what was compiled before as it is.
+void tyn_graph_budget(tyn_graph *g, uint64_t bytes);
+
 // ---- declare (beside what methods call: tyndall/extend/graph.h) -------------------------------
 
 // Starts a new declaration; the compiled state is kept until the next compile.
@@ -85,8 +90,9 @@ typedef struct tyn_node_stats {
     double gpu_ms; // of the last finished record that ran it; 0 where timestamps are missing
     double cpu_ms; // recording
     uint32_t dispatches, barriers;
-    bool media_only; // depends on the media alone
-    uint64_t bytes;  // memory of the node's OUT and SCRATCH resources
+    bool media_only;       // depends on the media alone
+    uint64_t bytes;        // memory of the node's OUT and SCRATCH resources
+    uint64_t shared_bytes; // of these: where those of other nodes that are needed lie, too
     struct {
         const char *name;
         double amount;

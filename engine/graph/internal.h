@@ -1,5 +1,4 @@
-// internal.h -- the inside of the render graph, shared by declare.c, compile.c, retire.c, pipelines.c, shared_memory.c,
-// recorder.c, draw.c, record.c and dump.c.
+// internal.h -- the inside of the render graph, shared by the files of this folder.
 //
 // A declaration is two lists, resources and nodes, rebuilt for every frame. What was compiled is kept
 // beside it, index by index: `phys` belongs to `resources`, `runs` to `nodes`. Both agree as long as
@@ -136,6 +135,18 @@ typedef struct survey {
     uint32_t sets, uniform_buffers, storage_buffers, texel_buffers, storage_images, sampled_images;
 } survey;
 
+// What the last compilation leaves to this one: histories, uploads, what nodes made and where they worked.
+typedef struct heritage {
+    phys *items;
+    uint32_t count;
+} heritage;
+
+typedef enum arrangement {
+    ARRANGE_KEEPING = 0, // what is there already and fits
+    ARRANGE_ANEW,        // but histories
+    ARRANGE_UPLOADS,     // all is there: staging alone
+} arrangement;
+
 typedef struct set_key {
     uint64_t hash;
     VkDescriptorSet set;
@@ -184,6 +195,7 @@ struct tyn_graph {
     shared_block *blocks;
     uint32_t num_blocks, block_ids; // ids are never given twice
     VkDeviceSize persistent_bytes, transient_bytes;
+    VkDeviceSize budget; // of all device memory; 0 = no limit
     frame_slot slots[MAX_SLOTS];
     survey room;         // of their pools
     uint32_t num_timed;  // nodes that they have timestamps for
@@ -241,6 +253,38 @@ tyn_result graph_fail(tyn_graph *g, tyn_result result, const char *format, ...) 
 void graph_cull(tyn_graph *g);
 tyn_result graph_survey(tyn_graph *g, survey *s, phys *usage);
 uint64_t graph_structure(const tyn_graph *g, const survey *s);
+// Is the declaration what was compiled?
+bool graph_same_structure(tyn_graph *g);
+// Resources, with what is inherited of `old`, and their memory; stand-ins for optional inputs; uploads in host memory.
+tyn_result graph_create_resources(tyn_graph *g, heritage *old);
+tyn_result graph_create_dummies(tyn_graph *g);
+tyn_result graph_create_staging(tyn_graph *g);
+void graph_fill_staging(tyn_graph *g);
+// Objects and memory for the declaration, and staging. `s`: not set by ARRANGE_UPLOADS.
+tyn_result graph_arrange(tyn_graph *g, arrangement how, survey *s);
+// budget.c: the most device memory that there would be while the graph is so arranged; it stays as it is.
+tyn_result graph_try(tyn_graph *g, arrangement how, VkDeviceSize *most);
+// How it can be arranged within the budget, at best as asked; else it is refused with a line.
+tyn_result graph_keep_to_budget(tyn_graph *g, arrangement *how);
+bool graph_fits_budget(tyn_graph *g, arrangement how);
+// What a later compilation may take a resource over by; 0: nothing.
+uint64_t graph_identity(const tyn_graph *g, const resource *r);
+// Takes out what this compilation may use again, without what belongs to the last one alone; the heaps stay. Without
+// memory for the list there is nothing: all starts anew.
+heritage graph_take_heritage(tyn_graph *g, bool only_histories);
+void graph_inherit(tyn_graph *g, heritage *old);     // into g->phys
+void graph_drop_heritage(tyn_graph *g, heritage *h); // what nothing has become
+void graph_free_all_aged(tyn_graph *g);
+// More memory than a fresh compilation would need by half, and not for the size of blocks alone.
+bool graph_is_wasteful(tyn_graph *g);
+// A node all of whose results were kept has nothing to do.
+bool graph_is_done(const tyn_graph *g, uint32_t index);
+// A node whose results are kept reports its last run, and goes on settling where it was.
+void graph_inherit_run(tyn_graph *g, uint32_t index, const node_run *before, uint32_t num_before);
+// Pools; those of a compilation before serve again where they have room.
+tyn_result graph_create_slots(tyn_graph *g, const survey *s);
+tyn_result graph_reserve_sets(tyn_graph *g, uint32_t count);
+void graph_destroy_slot(tyn_graph *g, frame_slot *slot);
 void graph_release(tyn_graph *g); // everything compiled, but not the heaps that outlive it
 void graph_finish(tyn_graph *g);  // these too
 // All pipelines of the declaration, whatever was compiled before; in the background: TYN_PENDING until they are there.
@@ -261,12 +305,17 @@ VkDeviceSize graph_retired_bytes(const tyn_graph *g);
 tyn_result graph_keep_places(tyn_graph *g);
 // Memory for the resources that are `shared`, and how many bytes of it none would have for good if all were placed anew.
 tyn_result graph_bind_shared(tyn_graph *g, VkDeviceSize *passing);
+// How much of what a resource takes lies where others that needed nodes make lie, too.
+VkDeviceSize graph_shared_bytes(const tyn_graph *g, uint32_t index);
+// Of what a node makes and works in: in all, and how much of it lies where what other nodes make or work in does.
+void graph_node_bytes(const tyn_graph *g, uint32_t index, uint64_t *bytes, uint64_t *shared);
 void graph_retire_blocks(tyn_graph *g, bool all); // those in which nothing lies, or all
 void graph_destroy_phys(tyn_graph *g, phys *p);
 bool graph_overlap(const phys *a, const phys *b);
 void graph_free_staging(tyn_graph *g);
 bool graph_uploads_staged(const tyn_graph *g);
 uint32_t graph_texel_size(VkFormat format);
+uint64_t graph_resource_bytes(const resource *r); // of its texels, without padding
 VkImageAspectFlags graph_aspect(VkFormat format);
 extern const VkFormat graph_texel_formats[NUM_TEXEL_FORMATS];
 int graph_texel_index(tyn_use use); // into them; < 0: not a use as texels

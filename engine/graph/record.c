@@ -589,13 +589,7 @@ uint32_t tyn_graph_stats(tyn_graph *g, const tyn_node_stats **stats)
         g->stats[i] = g->runs[i].stats;
         g->stats[i].name = n->pass->name;
         g->stats[i].media_only = n->media_only;
-        g->stats[i].bytes = 0;
-        for (uint32_t p = 0; p < n->pass->num_ports; p++) {
-            tyn_port_dir dir = n->pass->ports[p].dir;
-            if (n->res[p] && (dir == TYN_OUT || dir == TYN_SCRATCH)) {
-                g->stats[i].bytes += g->phys[n->res[p] - 1].bytes;
-            }
-        }
+        graph_node_bytes(g, i, &g->stats[i].bytes, &g->stats[i].shared_bytes);
     }
     *stats = g->stats;
     return g->num_nodes;

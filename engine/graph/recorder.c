@@ -354,8 +354,10 @@ static VkDescriptorSet find_or_make_set(tyn_recorder *r, const launch *l, const 
                                        .pSetLayouts = &pl->set_layout},
         &set);
     if (made != VK_SUCCESS) {
-        recorder_fail(r, tyn_vk_check(g->dev, made, "vkAllocateDescriptorSets"),
-                      "no descriptor set for kernel", k->name);
+        char what[192];
+        snprintf(what, sizeof what, "node '%s': vkAllocateDescriptorSets for kernel '%s'",
+                 node_of(r)->pass->name, k->name);
+        r->result = tyn_vk_check(g->dev, made, what);
         return VK_NULL_HANDLE;
     }
     for (uint32_t i = 0; i < k->num_bindings; i++) {
@@ -382,6 +384,9 @@ static VkPipeline find_pipeline(tyn_recorder *r, const launch *l, tyn_pipeline *
 // The set of a launch, kept for when it is recorded.
 static void make_set(tyn_recorder *r, const launch *l)
 {
+    if (r->result != TYN_OK) {
+        return; // said
+    }
     launch_sets *sets = &r->g->sets;
     tyn_pipeline *pl;
     VkDescriptorSet set = find_pipeline(r, l, &pl) ? find_or_make_set(r, l, pl) : VK_NULL_HANDLE;

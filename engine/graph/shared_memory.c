@@ -99,6 +99,60 @@ static tyn_result bind(tyn_graph *g, uint32_t index, const tyn_share_item *item)
                         g->resources[index].name);
 }
 
+// Does a needed node make it?
+static bool is_needed(const tyn_graph *g, uint32_t index)
+{
+    for (uint32_t i = 0; i < g->num_nodes; i++) {
+        const node *n = &g->nodes[i];
+        for (uint32_t p = 0; n->needed && p < n->pass->num_ports; p++) {
+            const tyn_port_dir dir = n->pass->ports[p].dir;
+            if (n->res[p] == index + 1 && (dir == TYN_OUT || dir == TYN_SCRATCH)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+VkDeviceSize graph_shared_bytes(const tyn_graph *g, uint32_t index)
+{
+    const phys *p = &g->phys[index];
+    const VkDeviceSize end = p->offset + p->size;
+    VkDeviceSize at = p->offset, shared = 0;
+    while (at < end) { // from `at` on: to where those that lie there reach, or on to the next
+        VkDeviceSize reach = at, next = end;
+        for (uint32_t i = 0; i < g->num_phys; i++) {
+            const phys *q = &g->phys[i];
+            if (i == index || !graph_overlap(p, q) || q->offset + q->size <= at ||
+                !is_needed(g, i)) {
+                continue;
+            }
+            if (q->offset > at) {
+                next = q->offset < next ? q->offset : next;
+            } else {
+                reach = q->offset + q->size > reach ? q->offset + q->size : reach;
+            }
+        }
+        reach = reach < end ? reach : end;
+        shared += reach - at;
+        at = reach > at ? reach : next;
+    }
+    return shared < p->bytes ? shared : p->bytes; // the place is rounded up
+}
+
+void graph_node_bytes(const tyn_graph *g, uint32_t index, uint64_t *bytes, uint64_t *shared)
+{
+    const node *n = &g->nodes[index];
+    *bytes = *shared = 0;
+    for (uint32_t p = 0; p < n->pass->num_ports; p++) {
+        const tyn_port_dir dir = n->pass->ports[p].dir;
+        if (n->res[p] && (dir == TYN_OUT || dir == TYN_SCRATCH)) {
+            *bytes += g->phys[n->res[p] - 1].bytes;
+            *shared += graph_shared_bytes(g, n->res[p] - 1);
+        }
+    }
+}
+
 typedef struct sharing {
     bool *follows;
     tyn_share_list list;

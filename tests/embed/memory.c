@@ -4,6 +4,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
@@ -156,8 +157,69 @@ static void memory_of_the_host(void **state)
     rig_close(&r);
 }
 
+static tyn_result open_with(rig *r, tyn_device *dev, double mib, tyn_context **ctx)
+{
+    tyn_context_destroy(ctx);
+    assert_int_equal(
+        tyn_context_create(dev,
+                           tyn_context_params(.method = "single", .settings = r->settings,
+                                              .frames_in_flight = HOST_SLOTS,
+                                              .memory_budget = (uint64_t)(mib * (1 << 20))),
+                           ctx),
+        TYN_OK);
+    return rig_prepare(r, *ctx);
+}
+
+// What is needed is accepted, and 1 MiB less refused with a line; the context then draws as before.
+static void budget(void **state)
+{
+    (void)state;
+    rig r;
+    if (!rig_open(&r, true)) {
+        skip_all("the host has no device");
+    }
+    tyn_device *dev = NULL;
+    tyn_context *ctx = NULL;
+    assert_int_equal(rig_device(&r, false, NULL, &dev), TYN_OK);
+    assert_int_equal(rig_context(&r, dev, "single", &ctx), TYN_OK);
+    rig_frame(&r, ctx);
+    const size_t bytes = r.picture.size;
+    void *expected = malloc(bytes);
+    memcpy(expected, r.picture.data, bytes);
+
+    r.quiet = true;
+    double needed = 0;
+    assert_int_equal(open_with(&r, dev, 1e-4, &ctx), TYN_ERR_MEMORY);
+    assert_int_equal(
+        sscanf(r.last_error,
+               "memory_budget is 0.00 MiB, and %lf MiB are needed; the largest: ", &needed),
+        1);
+    print_message("%s\n", r.last_error);
+    assert_int_equal(open_with(&r, dev, needed - 1, &ctx), TYN_ERR_MEMORY);
+    assert_int_equal(r.errors, 2);                                     // one line each
+    assert_int_equal(open_with(&r, dev, needed + 0.01, &ctx), TYN_OK); // the line says hundredths
+    rig_frame(&r, ctx);
+    assert_memory_equal(expected, r.picture.data, bytes);
+
+    // A larger picture is refused; with the former all is as it was.
+    rig_resize(&r, 32 * RIG_WIDTH, 32 * RIG_HEIGHT);
+    assert_int_equal(rig_prepare(&r, ctx), TYN_ERR_MEMORY);
+    assert_int_equal(r.errors, 3);
+    rig_resize(&r, RIG_WIDTH, RIG_HEIGHT);
+    r.errors = 0;
+    r.quiet = false;
+    rig_frame(&r, ctx);
+    assert_memory_equal(expected, r.picture.data, bytes);
+    free(expected);
+    tyn_context_destroy(&ctx);
+    tyn_device_destroy(&dev);
+    rig_expect_silence(&r);
+    rig_close(&r);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(memory_of_the_host)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(memory_of_the_host),
+                                       cmocka_unit_test(budget)};
     return cmocka_run_group_tests_name("embed_memory", tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 // barriers of the first and of later frames, culling, change tracking, histories, host images, faults.
 #include "fake_vulkan.h"
 #include "graph/graph.h"
+#include "toy_passes.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -9,139 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
-
-// ---- passes -----------------------------------------------------------------------------------
-
-static const uint32_t no_spirv[5];
-#define KERNEL(text, args, table)                                                                  \
-    {                                                                                              \
-        .name = text, .spirv = no_spirv, .spirv_size = sizeof no_spirv, .args_size = args,         \
-        .local_size = {8, 8, 1}, .bindings = table, .num_bindings = sizeof table / sizeof *table,  \
-        .num_spec = 1                                                                              \
-    }
-
-typedef struct node_params {
-    int32_t times; // dispatches
-    int32_t value;
-    uint32_t spec;
-} node_params;
-
-// blur: reads an image and perhaps a buffer, writes an image through a ping-pong.
-enum { BLUR_IN, BLUR_BIAS, BLUR_OUT, BLUR_TMP, BLUR_NUM };
-static const tyn_port blur_ports[BLUR_NUM] = {
-    {"in", TYN_IN, TYN_IMAGE_2D, 0, false, "what is blurred"},
-    {"bias", TYN_IN, TYN_BUFFER, 0, true, "added each time"},
-    {"out", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false, "blurred"},
-    {"tmp", TYN_SCRATCH, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false, "every other step"},
-};
-static const tyn_binding blur_bindings[] = {
-    {BLUR_IN, TYN_USE_SAMPLED}, {BLUR_OUT, TYN_USE_STORAGE_WRITE}, {BLUR_BIAS, TYN_USE_UNIFORM}};
-static const tyn_kernel blur_kernels[] = {KERNEL("blur", 4, blur_bindings)};
-
-static tyn_result blur_declare(tyn_builder *b, const void *params)
-{
-    (void)params;
-    tyn_build_image(b, BLUR_OUT, tyn_build_extent(b, BLUR_IN), 1);
-    tyn_build_image(b, BLUR_TMP, tyn_build_extent(b, BLUR_IN), 1);
-    return TYN_OK;
-}
-
-static void blur_record(tyn_recorder *r, const void *params)
-{
-    const node_params *p = params;
-    for (int i = 0; i < p->times; i++) {
-        uint8_t to = (p->times - 1 - i) % 2 ? BLUR_TMP : BLUR_OUT;
-        uint8_t from = i == 0 ? BLUR_IN : to == BLUR_OUT ? BLUR_TMP : BLUR_OUT;
-        tyn_rec_dispatch(r, &(tyn_dispatch){.cells = tyn_rec_extent(r, BLUR_OUT),
-                                            .args = &p->value,
-                                            .ports = (const uint8_t[]){from, to, BLUR_BIAS},
-                                            .spec = &p->spec});
-    }
-}
-
-static const tyn_pass_desc blur = {.name = "blur",
-                                   .summary = "a moving average",
-                                   .ports = blur_ports,
-                                   .num_ports = BLUR_NUM,
-                                   .kernels = blur_kernels,
-                                   .num_kernels = 1,
-                                   .params_size = sizeof(node_params),
-                                   .declare = blur_declare,
-                                   .record = blur_record,
-                                   .debug_port = BLUR_OUT};
-
-// add: changes a buffer in place.
-enum { ADD_SUM, ADD_X, ADD_NUM };
-static const tyn_port add_ports[ADD_NUM] = {
-    {"sum", TYN_INOUT, TYN_BUFFER, 0, false, "grows"},
-    {"x", TYN_IN, TYN_IMAGE_2D, 0, false, "what is added"},
-};
-static const tyn_binding add_bindings[] = {{ADD_SUM, TYN_USE_STORAGE_RW}, {ADD_X, TYN_USE_SAMPLED}};
-static const tyn_kernel add_kernels[] = {KERNEL("add", 0, add_bindings)};
-
-static tyn_result nothing_to_declare(tyn_builder *b, const void *params)
-{
-    (void)b, (void)params;
-    return TYN_OK;
-}
-
-static void add_record(tyn_recorder *r, const void *params)
-{
-    const node_params *p = params;
-    tyn_rec_dispatch(r, &(tyn_dispatch){.cells = {64, 1, 1}, .spec = &p->spec});
-}
-
-static const tyn_pass_desc add = {.name = "add",
-                                  .summary = "adds up",
-                                  .ports = add_ports,
-                                  .num_ports = ADD_NUM,
-                                  .kernels = add_kernels,
-                                  .num_kernels = 1,
-                                  .params_size = sizeof(node_params),
-                                  .declare = nothing_to_declare,
-                                  .record = add_record};
-
-// count: counts into a buffer and dispatches as many workgroups.
-enum { COUNT_IN, COUNT_GROUPS, COUNT_OUT, COUNT_NUM };
-static const tyn_port count_ports[COUNT_NUM] = {
-    {"in", TYN_IN, TYN_IMAGE_2D, 0, false, "what is counted"},
-    {"groups", TYN_OUT, TYN_BUFFER, 0, false, "workgroups"},
-    {"out", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32_SFLOAT, false, "result"},
-};
-static const tyn_binding count_bindings[] = {{COUNT_IN, TYN_USE_SAMPLED},
-                                             {COUNT_GROUPS, TYN_USE_STORAGE_RW}};
-static const tyn_binding draw_bindings[] = {{COUNT_IN, TYN_USE_SAMPLED},
-                                            {COUNT_OUT, TYN_USE_STORAGE_WRITE}};
-static const tyn_kernel count_kernels[] = {KERNEL("count", 0, count_bindings),
-                                           KERNEL("draw", 0, draw_bindings)};
-
-static tyn_result count_declare(tyn_builder *b, const void *params)
-{
-    (void)params;
-    tyn_build_buffer(b, COUNT_GROUPS, 12);
-    tyn_build_image(b, COUNT_OUT, tyn_build_extent(b, COUNT_IN), 1);
-    return TYN_OK;
-}
-
-static void count_record(tyn_recorder *r, const void *params)
-{
-    const node_params *p = params;
-    tyn_rec_fill(r, COUNT_GROUPS, 1);
-    tyn_rec_dispatch(
-        r, &(tyn_dispatch){.kernel = 0, .cells = tyn_rec_extent(r, COUNT_IN), .spec = &p->spec});
-    tyn_rec_dispatch_indirect(r, &(tyn_dispatch){.kernel = 1, .spec = &p->spec}, COUNT_GROUPS, 0);
-}
-
-static const tyn_pass_desc count = {.name = "count",
-                                    .summary = "draws as much as it counts",
-                                    .ports = count_ports,
-                                    .num_ports = COUNT_NUM,
-                                    .kernels = count_kernels,
-                                    .num_kernels = 2,
-                                    .params_size = sizeof(node_params),
-                                    .declare = count_declare,
-                                    .record = count_record,
-                                    .debug_port = COUNT_OUT};
 
 // ---- harness ----------------------------------------------------------------------------------
 
@@ -185,7 +53,7 @@ static tyn_ref upload(tyn_graph *g, const char *name, uint64_t hash)
 static tyn_ref add_blur(tyn_graph *g, tyn_ref in, tyn_ref bias, node_params p)
 {
     tyn_ref refs[BLUR_NUM] = {in, bias};
-    tyn_graph_add(g, &blur, &p, refs);
+    tyn_graph_add(g, &toy_blur, &p, refs);
     return refs[BLUR_OUT];
 }
 
@@ -257,67 +125,15 @@ static void declare_chain(tyn_graph *g, const chain *c)
 
 // ---- barriers ---------------------------------------------------------------------------------
 
-// draw: triangles into two tiles, then over them, and a depth image that is sampled afterwards.
-enum { DRAW_CORNERS, DRAW_TEXTURE, DRAW_COLOR, DRAW_DEPTH, DRAW_NUM };
-static const tyn_port draw_ports[DRAW_NUM] = {
-    {"corners", TYN_IN, TYN_BUFFER, 0, false, "corners of triangles"},
-    {"texture", TYN_IN, TYN_IMAGE_2D, 0, true, "what is on them"},
-    {"color", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT, false, "picture"},
-    {"depth", TYN_OUT, TYN_IMAGE_2D, VK_FORMAT_D32_SFLOAT, false, "depth"},
-};
-static const tyn_binding pull_bindings[] = {{DRAW_CORNERS, TYN_USE_STORAGE_READ},
-                                            {DRAW_TEXTURE, TYN_USE_SAMPLED}};
-static const tyn_binding draw_attachments[] = {{DRAW_COLOR, TYN_USE_COLOR},
-                                               {DRAW_DEPTH, TYN_USE_DEPTH}};
-static const tyn_raster draw_raster = {.fragment = no_spirv,
-                                       .fragment_size = sizeof no_spirv,
-                                       .attachments = draw_attachments,
-                                       .num_attachments = 2,
-                                       .depth = VK_COMPARE_OP_GREATER};
-static const tyn_kernel draw_kernels[] = {{.name = "corners",
-                                           .spirv = no_spirv,
-                                           .spirv_size = sizeof no_spirv,
-                                           .args_size = 4,
-                                           .bindings = pull_bindings,
-                                           .num_bindings = 2,
-                                           .raster = &draw_raster}};
-
-static tyn_result draw_declare(tyn_builder *b, const void *params)
-{
-    const node_params *p = params;
-    tyn_build_image(b, DRAW_COLOR, (tyn_extent){64, 32, 1}, 1);
-    tyn_build_image(b, DRAW_DEPTH, (tyn_extent){64, p->value ? 16 : 32, 1}, 1);
-    return TYN_OK;
-}
-
-static void draw_record(tyn_recorder *r, const void *params)
-{
-    const node_params *p = params;
-    const tyn_tile tiles[2] = {{0, 0, 32, 32, &p->times}, {32, 0, 32, 32, &p->times}};
-    tyn_rec_draw(r, &(tyn_draw){.vertices = 6, .tiles = tiles, .num_tiles = 2});
-    tyn_rec_draw(r, &(tyn_draw){.vertices = 3, .args = &p->times, .keep = true, .label = "again"});
-}
-
-static const tyn_pass_desc draw = {.name = "draw",
-                                   .summary = "draws triangles",
-                                   .ports = draw_ports,
-                                   .num_ports = DRAW_NUM,
-                                   .kernels = draw_kernels,
-                                   .num_kernels = 1,
-                                   .params_size = sizeof(node_params),
-                                   .declare = draw_declare,
-                                   .record = draw_record,
-                                   .debug_port = DRAW_COLOR};
-
 static void declare_drawing(tyn_graph *g, node_params p)
 {
     static const float corners[9] = {1};
     tyn_graph_begin(g);
     tyn_ref refs[DRAW_NUM] = {tyn_graph_upload_buffer(g, "corners", corners, sizeof corners, 1)};
     tyn_ref blurred[BLUR_NUM] = {{0}};
-    if (tyn_graph_add(g, &draw, &p, refs) == TYN_OK) {
+    if (tyn_graph_add(g, &toy_draw, &p, refs) == TYN_OK) {
         blurred[BLUR_IN] = refs[DRAW_DEPTH];
-        tyn_graph_add(g, &blur, &(node_params){1, 0, 0}, blurred);
+        tyn_graph_add(g, &toy_blur, &(node_params){1, 0, 0}, blurred);
         tyn_graph_output(g, "color", refs[DRAW_COLOR], true);
         tyn_graph_output(g, "blurred", blurred[BLUR_OUT], false);
     }
@@ -444,7 +260,7 @@ static void indirect_dispatch(void **state)
     tyn_graph_begin(f->g);
     tyn_ref refs[COUNT_NUM] = {upload(f->g, "input", 1)};
     node_params p = {0};
-    assert_int_equal(tyn_graph_add(f->g, &count, &p, refs), TYN_OK);
+    assert_int_equal(tyn_graph_add(f->g, &toy_count, &p, refs), TYN_OK);
     tyn_graph_output(f->g, "out", refs[COUNT_OUT], false);
     assert_int_equal(frame(f), TYN_OK);
     compare_golden("indirect.txt", f->fake->text);
@@ -557,7 +373,7 @@ static void structure_is_noticed(void **state)
 static void media_are_set_up_apart(void **state)
 {
     fixture *f = *state;
-    tyn_pass_desc medium = blur;
+    tyn_pass_desc medium = toy_blur;
     medium.media_only = true;
     for (int i = 0; i < 3; i++) {
         tyn_graph_begin(f->g);
@@ -594,7 +410,7 @@ static void histories(void **state)
         tyn_ref x = upload(f->g, "x", i < 2 ? 1 : 2);
         tyn_ref refs[ADD_NUM] = {tyn_graph_history_buffer(f->g, "history", i < 5 ? 64 : 128, key),
                                  x};
-        assert_int_equal(tyn_graph_add(f->g, &add, &(node_params){0}, refs), TYN_OK);
+        assert_int_equal(tyn_graph_add(f->g, &toy_add, &(node_params){0}, refs), TYN_OK);
         tyn_graph_output(f->g, "sum", refs[ADD_SUM], false);
         assert_int_equal(frame(f), TYN_OK);
         assert_states(f, i == 1 ? "u" : i < 4 ? "r" : i == 4 ? "rr" : "ur");
@@ -691,25 +507,38 @@ static void faults(void **state)
     fixture *f = *state;
     tyn_graph_begin(f->g);
     tyn_ref refs[BLUR_NUM] = {{0}};
-    expect_fault(f, &blur, refs, "node 'blur': input 'in' (what is blurred) is not connected");
+    expect_fault(f, &toy_blur, refs, "node 'blur': input 'in' (what is blurred) is not connected");
 
     // The version of a buffer that a later node has changed.
     tyn_graph_begin(f->g);
     tyn_ref x = upload(f->g, "x", 1), history = tyn_graph_history_buffer(f->g, "sum", 64, 1);
     tyn_ref first[ADD_NUM] = {history, x}, stale[ADD_NUM] = {history, x};
-    assert_int_equal(tyn_graph_add(f->g, &add, &(node_params){0}, first), TYN_OK);
-    expect_fault(f, &add, stale,
+    assert_int_equal(tyn_graph_add(f->g, &toy_add, &(node_params){0}, first), TYN_OK);
+    expect_fault(f, &toy_add, stale,
                  "node 'add': input 'sum' is version 0 of 'sum', which was overwritten; the newest "
                  "is 1");
 
     tyn_graph_begin(f->g);
     tyn_ref kind[BLUR_NUM] = {tyn_graph_history_buffer(f->g, "numbers", 64, 1)};
-    expect_fault(f, &blur, kind, "input 'in' and 'numbers' differ in kind");
+    expect_fault(f, &toy_blur, kind, "input 'in' and 'numbers' differ in kind");
 
     tyn_graph_begin(f->g);
     fake_clear(f->fake);
     tyn_graph_output(f->g, "result", (tyn_ref){9, 0}, true);
     assert_string_equal(f->fake->log, "output 'result' is not a resource\n");
+    assert_int_equal(tyn_graph_status(f->g), TYN_ERR_PARAMS);
+
+    // Counters of a pass that is named as an output, for instance.
+    tyn_graph_begin(f->g);
+    fake_clear(f->fake);
+    const tyn_ref one = upload(f->g, "one", 1), other = upload(f->g, "other", 2);
+    tyn_graph_output(f->g, "result", one, true);
+    tyn_graph_output(f->g, "result", one, true);
+    tyn_graph_output(f->g, "result", other, false);
+    assert_int_equal(tyn_graph_status(f->g), TYN_OK);
+    tyn_graph_output(f->g, "result", other, true);
+    assert_string_equal(f->fake->log, "output 'result' is there already, of another resource: a "
+                                      "pass with counters needs a name that no output has\n");
     assert_int_equal(tyn_graph_status(f->g), TYN_ERR_PARAMS);
 
     // A new declaration starts afresh.
@@ -755,6 +584,21 @@ static void small_device(void **state)
     }
     declare_chain(f->g, &default_chain);
     assert_int_equal(frame(f), TYN_OK);
+}
+
+// One line, however many launches want one; then all is as before.
+static void no_descriptor_sets(void **state)
+{
+    fixture *f = *state;
+    declare_chain(f->g, &default_chain);
+    f->fake->no_sets = true;
+    assert_int_equal(frame(f), TYN_ERR_DEVICE);
+    assert_string_equal(f->fake->log, "node 'blur': vkAllocateDescriptorSets for kernel 'blur' "
+                                      "failed with VkResult -1000069000\n");
+    f->fake->no_sets = false;
+    declare_chain(f->g, &default_chain);
+    assert_int_equal(frame(f), TYN_OK);
+    assert_states(f, "rrc");
 }
 
 // Whichever allocation fails: an error, nothing leaks, and the next frame is made in full.
@@ -830,6 +674,7 @@ int main(void)
         TEST(faults),
         TEST(huge_image),
         TEST(small_device),
+        TEST(no_descriptor_sets),
         TEST(out_of_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -68,6 +68,7 @@ static void destroy(const char *kind, uint64_t handle)
     if (handle) {
         assert_true(handle < MAX_OBJECTS && objects[handle].live);
         assert_string_equal(objects[handle].kind, kind);
+        fake->bytes -= !strcmp(kind, "DeviceMemory") ? objects[handle].size : 0;
         free(objects[handle].memory);
         objects[handle].memory = NULL;
         objects[handle].live = false;
@@ -81,6 +82,15 @@ static const char *name_of(uint64_t handle)
     return objects[handle].name[0] ? objects[handle].name : objects[handle].kind;
 }
 
+static void set_size(const char *kind, uint64_t handle, VkDeviceSize size)
+{
+    objects[handle].size = size;
+    if (handle && !strcmp(kind, "DeviceMemory")) {
+        fake->bytes += size;
+        fake->most_bytes = fake->bytes > fake->most_bytes ? fake->bytes : fake->most_bytes;
+    }
+}
+
 // `bytes` is an expression of `info`, which tests may leave out.
 #define FAKE_OBJECT(Type, Info, bytes)                                                             \
     static VkResult create_##Type(VkDevice dev, const Info *info,                                  \
@@ -89,7 +99,7 @@ static const char *name_of(uint64_t handle)
         (void)dev, (void)callbacks;                                                                \
         uint64_t handle;                                                                           \
         VkResult result = create(#Type, &handle);                                                  \
-        objects[handle].size = info ? (bytes) : 0;                                                 \
+        set_size(#Type, handle, info ? (bytes) : 0);                                               \
         *out = (Vk##Type)handle;                                                                   \
         return result;                                                                             \
     }                                                                                              \
@@ -198,7 +208,7 @@ static VkResult allocate_sets(VkDevice dev, const VkDescriptorSetAllocateInfo *i
 {
     (void)dev, (void)info;
     *sets = (VkDescriptorSet)(uint64_t)1;
-    return VK_SUCCESS;
+    return fake->no_sets ? VK_ERROR_OUT_OF_POOL_MEMORY : VK_SUCCESS;
 }
 
 static void update_sets(VkDevice dev, uint32_t count, const VkWriteDescriptorSet *writes,

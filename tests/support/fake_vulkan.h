@@ -10,9 +10,11 @@ typedef struct fake_vulkan {
     uint32_t live;    // objects and allocations that exist
     uint32_t created; // ever
     uint32_t memory,
-        kernels;      // of these: allocations of memory, and pipelines with what belongs to them
-    uint32_t fail_at; // the create or allocate call with this number fails; 0 = none
-    bool recording;   // nothing may be created now
+        kernels; // of these: allocations of memory, and pipelines with what belongs to them
+    VkDeviceSize bytes, most_bytes; // of device memory: now, and at most; a test may set it back
+    uint32_t fail_at;               // the create or allocate call with this number fails; 0 = none
+    bool no_sets;                   // descriptor sets cannot be allocated
+    bool recording;                 // nothing may be created now
     uint32_t created_while_recording;
     uint32_t dispatches, copies; // since fake_clear
     char log[4096];              // error lines, each ended by '\n'

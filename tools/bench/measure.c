@@ -55,6 +55,7 @@ static cJSON *json_node(const tyn_node_report *n)
     cJSON_AddBoolToObject(node, "setup", n->media_only);
     cJSON_AddNumberToObject(node, "dispatches", n->dispatches);
     cJSON_AddNumberToObject(node, "memory", (double)n->bytes);
+    cJSON_AddNumberToObject(node, "shared_memory", (double)n->shared_bytes);
     json_add_float(node, "bytes", w.bytes > 0 ? w.bytes : NAN);
     json_add_float(node, "flops", w.flops > 0 ? w.flops : NAN);
     for (uint32_t k = 0; k < n->num_work; k++) {

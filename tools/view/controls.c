@@ -291,12 +291,15 @@ static void report_rows(const viewer *v)
     }
     tyn_report report = {0};
     tyn_context_report(r->context, &report);
-    if (panel_section("nodes, ms", false)) {
+    if (panel_section("nodes: ms, MB (of it shared)", false)) {
         for (uint32_t i = 0; i < report.num_nodes; i++) {
             const tyn_node_report *n = &report.nodes[i];
             const bool ran = strcmp(n->state, "ran") == 0;
-            snprintf(text, sizeof text, "%.2f", n->gpu_ms);
-            panel_row(n->name, ran ? text : n->state);
+            char ms[32];
+            snprintf(ms, sizeof ms, "%.2f", n->gpu_ms);
+            snprintf(text, sizeof text, "%s, %.1f (%.1f)", ran ? ms : n->state,
+                     1e-6 * (double)n->bytes, 1e-6 * (double)n->shared_bytes);
+            panel_row(n->name, text);
         }
     }
     snprintf(text, sizeof text, "%.1f + %.1f MB", 1e-6 * (double)report.persistent_bytes,

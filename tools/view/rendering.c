@@ -8,7 +8,8 @@ bool rendering_open(rendering *r, gpu *g, const method *m)
     return gpu_commands_make(g, &r->commands) &&
            tyn_context_create(g->tyn,
                               tyn_context_params(.method = m->info.name, .settings = m->settings,
-                                                 .frames_in_flight = 1, .readback = true),
+                                                 .frames_in_flight = 1, .readback = true,
+                                                 .memory_budget = m->memory_budget),
                               &r->context) == TYN_OK;
 }
 

@@ -44,6 +44,10 @@ typedef struct tyn_context_params {
     uint32_t frames_in_flight;    // 1..8; 0 = 2
     bool readback;                // copy outputs to host memory (tyn_context_output)
     tyn_quality quality;
+    // Bytes of device memory that the context may have at any time, uploads under way and what is replaced but may be in use by
+    // frames in flight among them; 0 = no limit. Pipelines and descriptors are not counted. A prepare that would take more
+    // gives TYN_ERR_MEMORY with one log line: what is needed, and the three largest resources. What was prepared before stays.
+    uint64_t memory_budget;
 } tyn_context_params;
 #define tyn_context_params(...) TYN_PARAMS(tyn_context_params, __VA_ARGS__)
 TYN_API tyn_result tyn_context_create(tyn_device *dev, const tyn_context_params *params,
@@ -216,7 +220,9 @@ typedef struct tyn_node_report {
     const char *state; // "ran", "unchanged", "culled", "empty"
     double gpu_ms, cpu_ms;
     uint32_t dispatches, barriers;
-    uint64_t bytes;
+    // Device memory of what the node makes and works in; of it, what lies where that of other nodes does, so that sums over nodes
+    // count it more than once.
+    uint64_t bytes, shared_bytes;
     double flops;
     struct {
         const char *name;

@@ -14,6 +14,7 @@ typedef struct tyn_offline_params {
     size_t struct_size TYN_PARAMS_SIZE(tyn_offline_params);
     const char *method;
     const tyn_settings *settings;
+    uint64_t memory_budget; // bytes, as in tyn_context_params; 0 = no limit
 } tyn_offline_params;
 #define tyn_offline_params(...) TYN_PARAMS(tyn_offline_params, __VA_ARGS__)
 
