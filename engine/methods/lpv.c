@@ -165,8 +165,8 @@ static const tyn_limit limits[] = {
     {.key = "surfaces",
      .where = {TYN_ABOVE(surfaces, 0)},
      .level = TYN_LIMIT_STRAINED,
-     .advice = {"surfaces: one reflection, as published (fog-hall 19 %% off, room 56 %%); with "
-                "-D lpv.bounces=all and 128 iterations 7 and 6 %%; those beyond the medium's box "
+     .advice = {"surfaces: one reflection, as published (fog-hall 22 %% off, room 56 %%); with "
+                "-D lpv.bounces=all and 128 iterations 9 and 6 %%; those beyond the medium's box "
                 "reflect nothing"},
      .source = "docs/lpv.md, \"Scenes\""},
     {.key = "the sky among surfaces",
