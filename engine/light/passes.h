@@ -5,6 +5,7 @@
 #include "passes/shadow_map/shadow_map.h"
 #include "passes/light_cells/light_cells.h"
 #include "passes/radial_beam/radial_beam.h"
+#include "passes/radial_lights/radial_lights.h"
 #include "passes/rsm/rsm.h"
 #include "passes/vpl/vpl.h"
 #include "passes/env_importance/env_importance.h"

@@ -35,9 +35,9 @@ static const tyn_param params_table[] = {
 
 // ---- layout ---------------------------------------------------------------------------------------
 
-void tyn_radial_beam_plan(tyn_radial_beam_params *params, const struct medium_block *medium,
-                          const struct light_block *lamps, uint32_t num_lamps, uint32_t fine,
-                          uint32_t max_vpls)
+void tyn_radial_beam_plan(tyn_radial_beam_params *params, float (*colors)[4],
+                          const struct medium_block *medium, const struct light_block *lamps,
+                          uint32_t num_lamps, uint32_t fine, uint32_t max_vpls)
 {
     uint32_t count = 0;
     for (; count < num_lamps && count < TYN_RADIAL_LAMPS_MAX; count++) {
@@ -47,6 +47,10 @@ void tyn_radial_beam_plan(tyn_radial_beam_params *params, const struct medium_bl
             params->lamps[at] = params->lamps[at - 1];
         }
         params->lamps[at] = lamps[count];
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        memcpy(colors[i], params->lamps[i].color, sizeof params->lamps[i].color);
+        memset(params->lamps[i].color, 0, sizeof params->lamps[i].color);
     }
     params->mode = medium->mode;
     params->num_lamps = count;
@@ -121,7 +125,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
     }
     struct radial_beam_args args = layout(p);
     tyn_extent extent = {args.size[0], args.size[1], args.size[2]};
-    tyn_build_buffer(b, RADIAL_BEAM_PORT_RADIALS,
+    tyn_build_buffer(b, RADIAL_BEAM_PORT_GRIDS,
                      offsetof(struct radial_block, list) + lights * sizeof(struct radial_grid));
     tyn_build_buffer(b, RADIAL_BEAM_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, RADIAL_BEAM_PORT_LAMPS, sizeof p->lamps);

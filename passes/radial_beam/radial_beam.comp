@@ -12,7 +12,7 @@
 
 layout(local_size_x = RADIAL_GROUP * RADIAL_GROUP) in;
 TYN_ARGS(radial_beam_args args);
-TYN_READ(5, radials, uint radial_count; uint radial_num_lamps; uvec2 radial_pad; radial_grid radials[]);
+TYN_READ(5, grids, uint radial_count; uint radial_num_lamps; uvec2 radial_pad; radial_grid radials[]);
 TYN_UPDATE(6, counters, counters_block counters);
 
 uint non_finite = 0u; // of the thread

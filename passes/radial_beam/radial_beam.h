@@ -16,14 +16,14 @@ typedef struct tyn_radial_beam_params {
     uint32_t max_vpls; // room for VPLs, 0 to TYN_RADIAL_VPLS_MAX
     // Cells at which a map is as fine as the medium; 2 where that is the same everywhere.
     uint32_t finest;
-    struct light_block lamps[TYN_RADIAL_LAMPS_MAX];
+    struct light_block lamps[TYN_RADIAL_LAMPS_MAX]; // without colours, which change nothing here
 } tyn_radial_beam_params;
 
 // clang-format off
 #define RADIAL_BEAM_PORTS(X) \
     TYN_MEDIUM(X, RADIAL_BEAM), \
     X(RADIAL_BEAM, VPLS, vpls, OPTIONAL, BUFFER, "struct radial_vpls"), \
-    X(RADIAL_BEAM, RADIALS, radials, OUT, BUFFER, "struct radial_block: lamps, VPLs and their grids"), \
+    X(RADIAL_BEAM, GRIDS, grids, OUT, BUFFER, "struct radial_block: VPLs, lamps without colours, their grids"), \
     X(RADIAL_BEAM, RADIAL_COLUMN, radial_column, OUT, IMAGE_3D, \
         "mean density (or sigma_s) from a light, or from where its ray enters, to a node", \
         .format = VK_FORMAT_R32_SFLOAT), \
@@ -37,7 +37,8 @@ typedef struct tyn_radial_beam_params {
 enum { RADIAL_BEAM_PORTS(TYN_PORT_ENUM), RADIAL_BEAM_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_radial_beam;
 
-// Fills what the method sets: lamps sorted by their intensity, the first `fine` of them in fine grids.
-void tyn_radial_beam_plan(tyn_radial_beam_params *params, const struct medium_block *medium,
-                          const struct light_block *lamps, uint32_t num_lamps, uint32_t fine,
-                          uint32_t max_vpls);
+// Fills what the method sets: lamps sorted by their intensity, the first `fine` of them in fine grids. Their colours (W/sr), in
+// the same order, go into `colors`, which has room for TYN_RADIAL_LAMPS_MAX.
+void tyn_radial_beam_plan(tyn_radial_beam_params *params, float (*colors)[4],
+                          const struct medium_block *medium, const struct light_block *lamps,
+                          uint32_t num_lamps, uint32_t fine, uint32_t max_vpls);

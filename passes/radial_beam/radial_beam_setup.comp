@@ -10,7 +10,7 @@ TYN_ARGS(radial_beam_args args);
 TYN_UNIFORM(0, medium, medium_block medium);
 TYN_READ(1, lamps, light_block lamps[]);
 TYN_READ(2, vpls, radial_vpls vpls);
-TYN_WRITE(3, radials, uint count; uint num_lamps; uvec2 pad; radial_grid list[]);
+TYN_WRITE(3, grids, uint count; uint num_lamps; uvec2 pad; radial_grid list[]);
 
 // Tangent of the half angle of the cone around `axis` that holds the box; 1e9 where it is no cone.
 float tangent_of_box(vec3 from, vec3 axis)

@@ -194,7 +194,7 @@ drawn() {
     works graph "$scene" --size 32x32 --quiet "$@"
 }
 raster="shadow_map rsm gbuffer"
-local="vpl radial_beam lattice_lamps"
+local="vpl radial_beam radial_lights lattice_lamps"
 field="medium beam scatter_lut lattice_cells walls lattice_source lattice merge"
 drawn smoke-sky -D lattice.cells=12
 has_nodes "no surfaces" k.json medium beam lattice merge raymarch

@@ -129,11 +129,12 @@ static const depth *evaluate(gpu_test *t, const struct medium_block *m, uint32_t
         t, "density", TYN_IMAGE_3D, (tyn_extent){m->size[0], m->size[1], m->size[2]}, 1, texels);
     tyn_radial_beam_params params;
     tyn_pass_defaults(&tyn_pass_radial_beam, &params);
-    tyn_radial_beam_plan(&params, m, lamps, LIGHTS, fine, 0);
+    float colors[TYN_RADIAL_LAMPS_MAX][4];
+    tyn_radial_beam_plan(&params, colors, m, lamps, LIGHTS, fine, 0);
     assert_int_equal(params.num_lamps, LIGHTS);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_radial_beam, &params, beam), TYN_OK);
     refs[0] = beam[RADIAL_BEAM_PORT_MEDIUM];
-    refs[1] = beam[RADIAL_BEAM_PORT_RADIALS];
+    refs[1] = beam[RADIAL_BEAM_PORT_GRIDS];
     refs[2] = beam[RADIAL_BEAM_PORT_RADIAL_COLUMN];
     refs[5] = gpu_buffer(t, "points", points, sizeof points);
     point_pass_params eval = {COUNT, sizeof(depth), m->mode, pass.results};

@@ -482,6 +482,12 @@ static void strengths_are_values(void **state)
         assert_null(strstr(c.ran, "lattice_cells"));
         assert_true(strncmp(c.ran, "beam", 4) != 0);
     }
+    // Without surfaces that reflect it, light of a lamp that flickers goes through the grid that is there.
+    const struct event flicker = {"", nothing, scale_lamp, true, false};
+    const cost c = cost_of("pop", &flicker);
+    assert_int_equal(c.record, 'y');
+    assert_non_null(strstr(c.ran, "radial_lights"));
+    assert_null(strstr(c.ran, "radial_beam"));
 }
 
 // A light that is off and stays off costs what one costs that is not there.

@@ -129,7 +129,7 @@ TYN_API void tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm *rsm);
 // (method.h).
 #define TYN_MEDIUM_PASSES(X) X(medium)
 #define TYN_SUN_PASSES(X) X(beam), X(shadow_map), X(light_cells)
-#define TYN_LAMP_PASSES(X) X(radial_beam)
+#define TYN_LAMP_PASSES(X) X(radial_beam), X(radial_lights)
 #define TYN_VIRTUAL_LIGHT_PASSES(X) X(rsm), X(vpl)
 #define TYN_SKY_PASSES(X) X(env_importance), X(importance), X(ordinates)
 #define TYN_CELL_PASSES(X)                                                                         \
