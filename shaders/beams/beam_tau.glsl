@@ -22,11 +22,12 @@ beam_tau beam_of_column(float column)
 
 // Mean transmittance of a stretch along the light, from the depth to its centre and half its own depth:
 // e^-centre sinh(x) / x without its overflow; x <= centre up to interpolation. Below x = 0.01 it is
-// e^-centre within 2e-5.
+// e^-centre within 2e-5, and the quotient loses digits.
 float mean_transmittance(float centre, float x)
 {
-    x = max(x, 0.01);
-    return (exp(-max(centre - x, 0.0)) - exp(-(centre + x))) / (2.0 * x);
+    float wide = max(x, 0.01);
+    float mean = (exp(-max(centre - wide, 0.0)) - exp(-(centre + wide))) / (2.0 * wide);
+    return x < 0.01 ? exp(-centre) : mean;
 }
 
 #endif

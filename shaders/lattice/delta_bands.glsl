@@ -52,7 +52,7 @@ float bands_transmittance(beam_tau tau, int ch, bands_medium m, uint bands, floa
     float scaled = f > 0.0 ? 1.0 - pow(f, 0.5 * float(bands)) : 1.0;
     float own = 0.5 * dx * m.extinction;
     float depth = max(tau.a[ch] + scaled * tau.s[ch], own);
-    return own < 0.01 ? exp(-depth) : mean_transmittance(depth, own); // which takes no less, even at a depth of 0
+    return mean_transmittance(depth, own);
 }
 #endif
 
