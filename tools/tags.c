@@ -26,7 +26,7 @@ static void world_to_camera(const tyn_camera *c, double m[16])
     for (int column = 0; column < 3; column++) {
         const double sign = column == 2 ? -1 : 1;
         for (int row = 0; row < 3; row++) {
-            const double axis = sign * (double)axes[column][row];
+            const double axis = sign * (double)axes[column][row] + 0.0; // no -0
             m[4 * row + column] = axis;
             m[12 + column] -= axis * (double)c->position[row];
         }

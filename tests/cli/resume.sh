@@ -60,6 +60,23 @@ near "$("$helpers/exr_tell" other.exr albedo.R 24 12)" 0.5 1e-3 "albedo of the w
 near "$("$helpers/exr_tell" other.exr albedo.R 0 0)" 0 0 "albedo of nothing"
 refuses 2 "does not make the layer 'albedo'" render cam.gltf --size 8x8 -o x.exr --aov albedo --method single
 
+# ---- a camera that moves by 2 m in the first second: its place is in the file ----
+cat >moving.gltf <<'END'
+{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}], "nodes": [{"camera": 0, "translation": [0, 0, 3], "name": "eye"}, {"mesh": 0}, {"extensions": {"KHR_lights_punctual": {"light": 0}}}], "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1, "aspectRatio": 1}}], "extensionsUsed": ["KHR_lights_punctual"], "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": 3}]}}, "materials": [{"doubleSided": true, "pbrMetallicRoughness": {"metallicFactor": 0}}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}], "animations": [{"channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}], "samplers": [{"input": 1, "output": 2}]}], "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, 0], "max": [1, 1, 0]}, {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]}, {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}], "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8}, {"buffer": 0, "byteOffset": 44, "byteLength": 24}], "buffers": [{"byteLength": 68, "uri": "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAQEAAAABAAAAAAAAAQEA="}]}
+END
+place() {
+    numbers "$1" worldToCamera | cut -d' ' -f13
+}
+run render moving.gltf --size 8x8 -o still.exr
+grep -q "warning: 1 animation: " err || fail "that an animation is not shown is not said: $(cat err)"
+near "$(place still.exr)" 0 0 "the camera without a time"
+works render moving.gltf --size 8x8 --quiet -o at.exr --time 0.25
+near "$(place at.exr)" -0.5 1e-6 "the camera after a quarter of a second"
+works render moving.gltf --size 8x8 --quiet -o at#.exr --frames 6-7 --fps 12
+near "$(place at6.exr)" -1 1e-6 "the camera in picture 6 of 12 a second"
+near "$(place at7.exr)" -1.16666667 1e-6 "the camera in picture 7 of 12 a second"
+rm -f moving.gltf still.exr at.exr at6.exr at7.exr
+
 # ---- interrupted and taken up again: the same bytes ----
 lit="$scenes/cornell-smoke.gltf --size 16x16 --method path --aov error,single,depth --quiet"
 asked=600

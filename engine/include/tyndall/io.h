@@ -26,6 +26,17 @@ TYN_API tyn_result tyn_scene_load(tyn_scene *scene, const char *path, const char
 TYN_API tyn_result tyn_scene_load_frame(tyn_scene *scene, const char *path, const char *environment,
                                         uint32_t frame, const tyn_log *log);
 
+// Which picture of a sequence, and where animations of a glTF file put its nodes and cameras.
+typedef struct tyn_moment {
+    bool numbered, timed; // `frame` is given; `seconds` is
+    uint32_t frame;       // as of tyn_scene_load_frame
+    double seconds;       // finite
+} tyn_moment;
+// The same at a moment; NULL: none. Without a time nodes are where the file puts them, with a warning if it has animations.
+TYN_API tyn_result tyn_scene_load_moment(tyn_scene *scene, const char *path,
+                                         const char *environment, const tyn_moment *moment,
+                                         const tyn_log *log);
+
 // Loads one grid of a volume file (.nvdb, .vdb) by its extension; `grid` NULL = "density", else the
 // first float grid. Negative values are set to 0 and added to `clamped_negative` (may be NULL).
 TYN_API tyn_result tyn_volume_load(tyn_volume *volume, const char *path, const char *grid,
