@@ -35,7 +35,7 @@ const char *app_word(const app *a, const char *by_option, const char *by_key);
 // library has not said it.
 int app_exit_code(app *a, tyn_result result, bool input);
 
-// True from Ctrl-C on. A second Ctrl-C ends the process at once.
+// True from Ctrl-C or SIGTERM on. A second one ends the process at once.
 bool app_interrupted(void);
 
 double app_seconds(void); // monotonic clock
@@ -51,4 +51,4 @@ uint64_t text_hash(const void *data, size_t size, uint64_t seed); // FNV-1a
 
 // The subcommands.
 extern const command cmd_render, cmd_compare, cmd_probe, cmd_balance, cmd_fluxes, cmd_bench,
-    cmd_graph, cmd_info, cmd_selftest, cmd_view;
+    cmd_graph, cmd_info, cmd_merge, cmd_selftest, cmd_view;

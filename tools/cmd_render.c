@@ -5,6 +5,7 @@
 #include "method_setup.h"
 #include "output.h"
 #include "renderer.h"
+#include "resume.h"
 #include "scene_setup.h"
 #include "sequence.h"
 #include "stats.h"
@@ -23,8 +24,9 @@ typedef struct render_args {
     machine_options machine;
     opt_list outputs;
     const char *aov, *stats, *frames, *change;
-    bool no_background, full_float;
+    bool no_background, full_float, resume;
     float exposure;
+    uint32_t sample_offset;
 } render_args;
 
 // What a volume or a scene without a camera is given to be looked at, chosen for the first picture of
@@ -76,6 +78,15 @@ static int open_method(app *a, render_job *job)
     if (code == EXIT_DONE) {
         code = output_plan_make(a, &job->method.info, job->outputs, args->aov, args->full_float,
                                 &job->plan);
+    }
+    if (code == EXIT_DONE && args->resume && !(job->plan.outputs & OUTPUT_SUMS)) {
+        const bool can = job->method.info.outputs & TYN_OUTPUT_LOW;
+        app_error(a,
+                  can ? "--resume needs an .exr, in which samples are kept; give one with -o"
+                      : "--resume: method '%s' does not take samples that could be gone on with; "
+                        "'path' does",
+                  job->method.info.name);
+        code = EXIT_WRONG;
     }
     return code;
 }
@@ -159,13 +170,79 @@ static int time_frames(app *a, render_job *job, tyn_scene *scene, const tyn_view
     return timing_run(a, &job->renderer, scene, view, what, job->repeat, median);
 }
 
-static int write_outputs(app *a, const render_job *job, const tyn_view *view, const opt_list *files)
+// What is written of a picture.
+typedef struct picture_state {
+    app *a;
+    const render_job *job;
+    picture_tags tags;
+    const opt_list *files;
+    uint32_t before; // samples that it was taken up with
+    double kept;     // when it was last written meanwhile, s
+    double keeping;  // what that took, s
+} picture_state;
+
+// All files, or those from which the picture can be gone on with.
+static int write_outputs(const picture_state *p, bool sums, bool resumable)
 {
-    for (uint32_t i = 0; i < files->count; i++) {
-        int code = output_write(a, &job->plan, job->renderer.offline, view, files->items[i]);
+    for (uint32_t i = 0; i < p->files->count; i++) {
+        if (resumable && !text_ends_with(p->files->items[i], ".exr")) {
+            continue;
+        }
+        int code = output_write(p->a, &p->job->plan, p->job->renderer.offline, &p->tags, sums,
+                                p->files->items[i]);
         if (code != EXIT_DONE) {
             return code;
         }
+    }
+    return EXIT_DONE;
+}
+
+// With --resume the picture is written every few seconds, so that little is lost however the program ends.
+static void keep_picture(void *user, uint32_t samples)
+{
+    enum {
+        SECONDS = 4,
+        SHARE = 50
+    }; // at least so long apart; at most one part in so many of the time
+    picture_state *p = user;
+    const double now = app_seconds();
+    if (now - p->kept > SECONDS && now - p->kept > SHARE * p->keeping) {
+        p->tags.samples = p->before + samples;
+        write_outputs(p, true, true);
+        p->kept = app_seconds();
+        p->keeping = p->kept - now;
+    }
+}
+
+// After Ctrl-C or SIGTERM: what there is, to be gone on with.
+static void keep_interrupted(picture_state *p, uint32_t asked)
+{
+    const uint32_t done = p->job->renderer.samples;
+    p->tags.samples = p->before + done;
+    if (done == 0 || !p->job->method.info.progressive || write_outputs(p, true, false)) {
+        return;
+    }
+    app_note(p->a, "interrupted after %u of %u samples; %s", p->tags.samples, asked,
+             p->job->plan.outputs & OUTPUT_SUMS ? "the same command with --resume goes on"
+                                                : "what there is has been written");
+}
+
+// --resume: what the first .exr has of the picture. *whole: all of it.
+static int take_up(app *a, const render_job *job, const picture_state *p, uint32_t asked,
+                   resumed *r, bool *whole)
+{
+    *whole = false;
+    *r = (resumed){0};
+    for (uint32_t i = 0; job->args->resume && i < p->files->count; i++) {
+        if (!text_ends_with(p->files->items[i], ".exr")) {
+            continue;
+        }
+        int code = resumed_read(a, p->files->items[i], &p->tags, r);
+        *whole = code == EXIT_DONE && r->resume.num_samples >= asked;
+        if (*whole) {
+            app_note(a, "%s: has %u samples already", p->files->items[i], r->resume.num_samples);
+        }
+        return code;
     }
     return EXIT_DONE;
 }
@@ -208,6 +285,28 @@ static void keep_look(first_look *look, const char *path, tyn_scene *scene, tyn_
     }
 }
 
+// The picture's samples, or those that it lacks.
+static int render_samples(render_job *job, const tyn_scene *scene, const tyn_view *view,
+                          picture_state *picture, const tyn_resume *before)
+{
+    tyn_view rest = *view;
+    if (before->num_samples) {
+        rest.resume = before;
+        rest.first_sample = picture->before = before->num_samples;
+        rest.num_samples -= before->num_samples;
+    }
+    job->renderer.keep = job->args->resume ? keep_picture : NULL;
+    job->renderer.keep_user = picture;
+    int code =
+        renderer_frame(picture->a, &job->renderer, scene, &rest, false, job->method.info.name);
+    job->renderer.keep = NULL;
+    if (code == EXIT_INTERRUPTED) {
+        keep_interrupted(picture, view->num_samples);
+    }
+    picture->tags.samples = job->method.info.progressive ? view->num_samples : 0;
+    return code;
+}
+
 // Renders, writes and times one picture. `scene` has been loaded.
 static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t number,
                           const picture_paths *paths)
@@ -215,6 +314,7 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
     tyn_view view = {.outputs = job->plan.outputs,
                      .no_background = job->args->no_background,
                      .exposure_ev = job->args->exposure,
+                     .sample_offset = job->args->sample_offset,
                      .time_index = number};
     method_view(&job->how, &view);
     // Later pictures of a sequence recompute only what differs: they are not cold.
@@ -224,14 +324,22 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
         keep_look(&job->look, paths->scene, scene, &view.camera);
         code = open_renderer(a, job);
     }
+    picture_state picture = {
+        a, job, {&job->method, scene, &view, 0}, &paths->outputs, 0, app_seconds(), 0};
+    resumed before = {0};
+    bool whole = false;
     if (code == EXIT_DONE) {
-        code = renderer_frame(a, &job->renderer, scene, &view, false, job->method.info.name);
+        code = take_up(a, job, &picture, view.num_samples, &before, &whole);
     }
-    if (code != EXIT_DONE) {
+    if (code == EXIT_DONE && !whole) {
+        code = render_samples(job, scene, &view, &picture, &before.resume);
+    }
+    resumed_finish(&before);
+    if (code != EXIT_DONE || whole) {
         return code;
     }
     const double frame_ms = job->renderer.frame_ms;
-    code = write_outputs(a, job, &view, &paths->outputs);
+    code = app_interrupted() ? EXIT_INTERRUPTED : write_outputs(&picture, job->args->resume, false);
     stats s = {.device = tyn_device_name(job->machine.device),
                .method = &job->method,
                .scene = scene,
@@ -306,6 +414,11 @@ static int check_sequence(app *a, const render_args *args, const opt_list *outpu
         app_error(a, "--change needs --frames N, the number of frames to time");
         return EXIT_WRONG;
     }
+    if (args->resume && s->repeat) {
+        app_error(a, "--resume and --frames %s: what is timed is rendered from its first sample on",
+                  args->frames);
+        return EXIT_WRONG;
+    }
     for (uint32_t i = 0; s->numbered && i <= outputs->count; i++) {
         const char *path = i < outputs->count ? outputs->items[i] : args->stats;
         if (path && !sequence_has_number(path)) {
@@ -368,12 +481,19 @@ static const option output_table[] = {
     {'o', "output", OPT_LIST, AT(outputs), "FILE",
      ".exr or .png, repeatable; else the scene's name with .png"},
     {0, "aov", OPT_TEXT, AT(aov), "LIST",
-     "layers of the .exr: transmittance,depth,depth_t50,single,multiple,error; all but transmittance "
-     "and error have every pixel marched, none upsampled: the picture changes by up to 1 %"},
+     "layers of the .exr: transmittance,depth,depth_t50,single,multiple,error,albedo,normal; with "
+     "depth, depth_t50, single or multiple every pixel is marched, none upsampled: the picture "
+     "changes by up to 1 %"},
     {0, "no-background", OPT_FLAG, AT(no_background), NULL,
      "the medium alone, premultiplied; A = 1 - mean transmittance"},
     {0, "exposure", OPT_NUMBER, AT(exposure), "EV", "of the .png", 0, -64, 64},
     {0, "float", OPT_FLAG, AT(full_float), NULL, "32-bit .exr instead of 16-bit"},
+    {0, "resume", OPT_FLAG, AT(resume), NULL,
+     "of methods that sample: go on from the .exr of -o, if it is there, and keep in it what that "
+     "takes (32-bit colours and sums)"},
+    {0, "sample-offset", OPT_UINT, AT(sample_offset), "N",
+     "begin with this sample of the seed: parts that 'merge' adds up to one picture", 0, 0,
+     2147483647},
     {0, "stats", OPT_TEXT, AT(stats), "FILE.json", "times, memory and work of every node"},
     {0, "frames", OPT_TEXT, AT(frames), "N|A-B",
      "N: time N frames that recompute every node; A-B: a sequence, %04d or #### in names"},

@@ -5,7 +5,7 @@
 #include <string.h>
 
 static const command *const commands[] = {
-    &cmd_render, &cmd_compare, &cmd_probe, &cmd_balance,  &cmd_fluxes,
+    &cmd_render, &cmd_compare, &cmd_merge, &cmd_probe,    &cmd_balance, &cmd_fluxes,
     &cmd_bench,  &cmd_graph,   &cmd_info,  &cmd_selftest, &cmd_view,
 };
 
@@ -32,7 +32,9 @@ static void print_markdown(void)
         "JSON. Files are\nwritten under a temporary name and renamed. The same inputs, seed and "
         "device give the same bytes.\n\n"
         "Exit codes: 0 done; 2 the arguments or the input are wrong (one line: what, where, what "
-        "would be right);\n1 anything else; 130 interrupted, and then nothing is written.\n\n");
+        "would be right);\n1 anything else; 130 interrupted: what `render` has of a method that "
+        "samples is "
+        "written, of all else nothing.\n\n");
     for (size_t i = 0; i < ARRAY_SIZE(commands); i++) {
         options_markdown(commands[i]);
     }
@@ -58,7 +60,7 @@ static bool print_man(const char *name)
     }
     printf(
         ".SH EXIT STATUS\n0 done; 2 the arguments or the input are wrong (one line: what, where, "
-        "what would be right); 1 anything else; 130 interrupted, and then nothing is written.\n");
+        "what would be right); 1 anything else; 130 interrupted.\n");
     return true;
 }
 

@@ -259,6 +259,18 @@ opt_outcome options_parse(const command *cmd, int argc, char **argv, void *args,
         } else if (num_positionals < cmd->num_positionals) {
             const opt_positional *p = &cmd->positionals[num_positionals++];
             *(const char **)((char *)args + p->offset) = argv[i];
+            if (p->repeat) {
+                ((opt_list *)((char *)args + p->offset))->count = 1;
+            }
+        } else if (num_positionals > 0 && cmd->positionals[num_positionals - 1].repeat) {
+            const opt_positional *p = &cmd->positionals[num_positionals - 1];
+            opt_list *list = (opt_list *)((char *)args + p->offset);
+            if (list->count == OPT_MAX_LIST) {
+                tyn_log_print(log, TYN_LOG_ERROR, "%s: given more than %d times", p->name,
+                              OPT_MAX_LIST);
+                return OPT_WRONG;
+            }
+            list->items[list->count++] = argv[i];
         } else {
             tyn_log_print(log, TYN_LOG_ERROR, "'%s' is one argument too many; " SEE_HELP, argv[i],
                           cmd->name);

@@ -55,7 +55,8 @@ typedef struct opt_group {
 typedef struct opt_positional {
     const char *name, *doc;
     bool required;
-    size_t offset; // of a const char * in the argument struct
+    size_t offset; // of a const char * in the argument struct; `repeat`: of an opt_list
+    bool repeat;   // the last one only: may be given several times
 } opt_positional;
 
 typedef struct app app;

@@ -1,5 +1,6 @@
 // output.c -- the pictures a frame gives: EXR layers and display-ready PNG.
 #include "output.h"
+#include "resume.h"
 #include "sequence.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,21 +18,47 @@ typedef struct layer {
         const char *name;
         uint32_t component;
     } channels[4];
+    enum {
+        ROUNDED, // stored as halves, unless more is asked for
+        SUM,     // ... as a mean that is gone on with may not be
+        EXACT,   // 32-bit floats always
+        KEPT,    // 32-bit floats, of pictures that are gone on with; not for --aov
+    } precision;
 } layer;
 
 static const layer layers[] = {
-    {"color", TYN_OUTPUT_RADIANCE, 4, {{"R", 0}, {"G", 1}, {"B", 2}, {"A", 3}}},
+    {"color", TYN_OUTPUT_RADIANCE, 4, {{"R", 0}, {"G", 1}, {"B", 2}, {"A", 3}}, SUM},
     {"transmittance",
      TYN_OUTPUT_TRANSMITTANCE,
      3,
-     {{"transmittance.R", 0}, {"transmittance.G", 1}, {"transmittance.B", 2}}},
-    {"depth", TYN_OUTPUT_DEPTH, 1, {{"depth.Z", 0}}},
-    {"depth_t50", TYN_OUTPUT_DEPTH, 1, {{"depth_t50.Z", 1}}},
-    {"single", TYN_OUTPUT_SINGLE, 3, {{"single.R", 0}, {"single.G", 1}, {"single.B", 2}}},
-    {"multiple", TYN_OUTPUT_MULTIPLE, 3, {{"multiple.R", 0}, {"multiple.G", 1}, {"multiple.B", 2}}},
-    {"error", TYN_OUTPUT_ERROR, 3, {{"error.R", 0}, {"error.G", 1}, {"error.B", 2}}},
+     {{"transmittance.R", 0}, {"transmittance.G", 1}, {"transmittance.B", 2}},
+     SUM},
+    {"depth", TYN_OUTPUT_DEPTH, 1, {{"depth.Z", 0}}, EXACT},
+    {"depth_t50", TYN_OUTPUT_DEPTH, 1, {{"depth_t50.Z", 1}}, EXACT},
+    {"single", TYN_OUTPUT_SINGLE, 3, {{"single.R", 0}, {"single.G", 1}, {"single.B", 2}}, SUM},
+    {"multiple",
+     TYN_OUTPUT_MULTIPLE,
+     3,
+     {{"multiple.R", 0}, {"multiple.G", 1}, {"multiple.B", 2}},
+     SUM},
+    {"error", TYN_OUTPUT_ERROR, 3, {{"error.R", 0}, {"error.G", 1}, {"error.B", 2}}, ROUNDED},
+    {"albedo", TYN_OUTPUT_ALBEDO, 3, {{"albedo.R", 0}, {"albedo.G", 1}, {"albedo.B", 2}}, ROUNDED},
+    {"normal", TYN_OUTPUT_NORMAL, 3, {{"normal.X", 0}, {"normal.Y", 1}, {"normal.Z", 2}}, ROUNDED},
+    {"low",
+     TYN_OUTPUT_LOW,
+     4,
+     {{RESUME_LOW ".R", 0}, {RESUME_LOW ".G", 1}, {RESUME_LOW ".B", 2}, {RESUME_LOW ".A", 3}},
+     KEPT},
+    {"deviation",
+     TYN_OUTPUT_DEVIATION,
+     4,
+     {{RESUME_DEVIATION ".R", 0},
+      {RESUME_DEVIATION ".G", 1},
+      {RESUME_DEVIATION ".B", 2},
+      {RESUME_DEVIATION ".A", 3}},
+     KEPT},
 };
-enum { COLOR_LAYER = 0, MAX_CHANNELS = 20 };
+enum { COLOR_LAYER = 0, MAX_CHANNELS = 32 };
 
 // ---- planning ---------------------------------------------------------------------------------
 
@@ -40,25 +67,26 @@ static void list_layers(uint32_t outputs, char *text, size_t size)
     size_t used = 0;
     text[0] = '\0';
     for (uint32_t i = COLOR_LAYER + 1; i < ARRAY_SIZE(layers) && used < size; i++) {
-        if (layers[i].output & outputs) {
+        if (layers[i].output & outputs && layers[i].precision != KEPT) {
             used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "",
                                      layers[i].name);
         }
     }
 }
 
-static bool add_layer(app *a, const tyn_method_info *method, const char *name, size_t length,
+static bool add_layer(app *a, const tyn_method_info *info, const char *name, size_t length,
                       output_plan *plan)
 {
     char known[256];
     for (uint32_t i = COLOR_LAYER + 1; i < ARRAY_SIZE(layers); i++) {
-        if (strlen(layers[i].name) != length || strncmp(layers[i].name, name, length) != 0) {
+        if (layers[i].precision == KEPT || strlen(layers[i].name) != length ||
+            strncmp(layers[i].name, name, length) != 0) {
             continue;
         }
-        if (!(method->outputs & layers[i].output)) {
-            list_layers(method->outputs, known, sizeof known);
+        if (!(info->outputs & layers[i].output)) {
+            list_layers(info->outputs, known, sizeof known);
             app_error(a, "--aov: method '%s' does not make the layer '%s'; it makes: %s",
-                      method->name, layers[i].name, known[0] ? known : "none");
+                      info->name, layers[i].name, known[0] ? known : "none");
             return false;
         }
         plan->layers |= 1u << i;
@@ -90,7 +118,7 @@ bool output_folder_is_writable(app *a, const char *path)
     return writable;
 }
 
-int output_plan_make(app *a, const tyn_method_info *method, const opt_list *files, const char *aov,
+int output_plan_make(app *a, const tyn_method_info *info, const opt_list *files, const char *aov,
                      bool full_float, output_plan *plan)
 {
     *plan = (output_plan){.layers = 1u << COLOR_LAYER, .full_float = full_float};
@@ -100,7 +128,8 @@ int output_plan_make(app *a, const tyn_method_info *method, const opt_list *file
             app_error(a, "-o: '%s' is neither .exr nor .png", files->items[i]);
             return EXIT_WRONG;
         }
-        plan->outputs |= exr ? TYN_OUTPUT_RADIANCE : TYN_OUTPUT_DISPLAY;
+        plan->outputs |=
+            exr ? TYN_OUTPUT_RADIANCE | (info->outputs & OUTPUT_SUMS) : TYN_OUTPUT_DISPLAY;
     }
     if (aov && !(plan->outputs & TYN_OUTPUT_RADIANCE)) {
         app_error(a, "--aov: layers need an .exr file; give one with -o");
@@ -108,7 +137,7 @@ int output_plan_make(app *a, const tyn_method_info *method, const opt_list *file
     }
     while (aov && *aov) {
         size_t length = strcspn(aov, ",");
-        if (!add_layer(a, method, aov, length, plan)) {
+        if (!add_layer(a, info, aov, length, plan)) {
             return EXIT_WRONG;
         }
         aov += length + (aov[length] == ',');
@@ -123,12 +152,19 @@ int output_plan_make(app *a, const tyn_method_info *method, const opt_list *file
 
 // ---- writing ----------------------------------------------------------------------------------
 
-static int write_exr(app *a, const output_plan *plan, tyn_offline *offline, const tyn_view *view,
-                     const char *path)
+// Whether it was interrupted or not.
+static int written(app *a, tyn_result result)
 {
-    const size_t num = (size_t)view->width * view->height;
-    tyn_channel channels[MAX_CHANNELS];
-    tyn_image_file image = {.width = view->width, .height = view->height, .channels = channels};
+    return result == TYN_OK ? EXIT_DONE : app_exit_code(a, result, false);
+}
+
+static int write_exr(app *a, const output_plan *plan, tyn_offline *offline,
+                     const picture_tags *tags, bool sums, const char *path)
+{
+    const size_t num = (size_t)tags->view->width * tags->view->height;
+    tyn_channel channels[MAX_CHANNELS] = {0};
+    tyn_image_file image = {
+        .width = tags->view->width, .height = tags->view->height, .channels = channels};
     float *planes = malloc(num * MAX_CHANNELS * sizeof *planes);
     if (!planes) {
         app_error(a, "out of memory");
@@ -136,7 +172,8 @@ static int write_exr(app *a, const output_plan *plan, tyn_offline *offline, cons
     }
     for (uint32_t i = 0; i < ARRAY_SIZE(layers); i++) {
         const float *pixels = NULL;
-        if (plan->layers & 1u << i) {
+        const bool kept = layers[i].precision == KEPT && sums && plan->outputs & layers[i].output;
+        if (plan->layers & 1u << i || kept) {
             pixels = tyn_offline_output(offline, layers[i].output);
             if (!pixels) {
                 app_error(a, "the method gave no layer '%s'", layers[i].name);
@@ -148,14 +185,21 @@ static int write_exr(app *a, const output_plan *plan, tyn_offline *offline, cons
             tyn_channel *channel = &channels[image.num_channels];
             channel->data = planes + num * image.num_channels++;
             snprintf(channel->name, sizeof channel->name, "%s", layers[i].channels[c].name);
+            channel->exact = layers[i].precision >= EXACT || (sums && layers[i].precision == SUM);
             for (size_t k = 0; k < num; k++) {
                 channel->data[k] = pixels[4 * k + layers[i].channels[c].component];
             }
         }
     }
-    tyn_result result = tyn_exr_write(&image, path, plan->full_float, &a->log);
+    int code = tags_add(a, tags, &image);
+    if (code == EXIT_DONE) {
+        code = written(a, tyn_exr_write(&image, path, plan->full_float, &a->log));
+    }
+    image.channels = NULL; // are not its own
+    image.num_channels = 0;
+    tyn_image_file_finish(&image);
     free(planes);
-    return app_exit_code(a, result, false);
+    return code;
 }
 
 // Opaque, or with --no-background the medium alone with its alpha.
@@ -174,15 +218,12 @@ static int write_png(app *a, tyn_offline *offline, const tyn_view *view, const c
     }
     tyn_result result = tyn_png_write(path, view->width, view->height, channels, pixels, &a->log);
     free(pixels);
-    return app_exit_code(a, result, false);
+    return written(a, result);
 }
 
-int output_write(app *a, const output_plan *plan, tyn_offline *offline, const tyn_view *view,
-                 const char *path)
+int output_write(app *a, const output_plan *plan, tyn_offline *offline, const picture_tags *tags,
+                 bool sums, const char *path)
 {
-    if (app_interrupted()) {
-        return EXIT_INTERRUPTED;
-    }
-    return text_ends_with(path, ".png") ? write_png(a, offline, view, path)
-                                        : write_exr(a, plan, offline, view, path);
+    return text_ends_with(path, ".png") ? write_png(a, offline, tags->view, path)
+                                        : write_exr(a, plan, offline, tags, sums, path);
 }

@@ -53,18 +53,16 @@ static void warn_of_counts(app *a, renderer *r)
     }
 }
 
-// Between the records of a frame: Ctrl-C, and how far it is.
-static bool show_and_go_on(void *user, double fraction)
-{
-    app *a = user;
-    progress_update(&a->bar, fraction);
-    return !app_interrupted();
-}
-
+// Between the records of a frame: Ctrl-C, how far it is, what is kept of it.
 static bool go_on(void *user, double fraction)
 {
-    (void)user;
-    (void)fraction;
+    renderer *r = user;
+    if (r->labelled) {
+        progress_update(&r->a->bar, fraction);
+    }
+    if (r->keep && !app_interrupted()) {
+        r->keep(r->keep_user, tyn_offline_samples(r->offline));
+    }
     return !app_interrupted();
 }
 
@@ -76,13 +74,16 @@ int renderer_frame(app *a, renderer *r, const tyn_scene *scene, const tyn_view *
     }
     tyn_view asked = *view;
     asked.num_samples = r->progressive ? view->num_samples : 0;
-    tyn_offline_on_progress(r->offline, label ? show_and_go_on : go_on, a);
+    r->a = a;
+    r->labelled = label != NULL;
+    tyn_offline_on_progress(r->offline, go_on, r);
     tyn_result result = tyn_offline_frame(r->offline, scene, &asked, recompute);
     if (label) {
         progress_stop(&a->bar);
     }
     r->setup_ms = tyn_offline_setup_ms(r->offline);
     r->frame_ms = tyn_offline_frame_ms(r->offline);
+    r->samples = tyn_offline_samples(r->offline);
     int code = app_exit_code(a, result, true);
     if (code == EXIT_DONE) {
         warn_of_counts(a, r);

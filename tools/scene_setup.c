@@ -25,6 +25,11 @@ const option scene_table[SCENE_TABLE_SIZE] = {
      1e30},
     {0, "frame", OPT_NUMBER, SCENE_AT(frame), "N",
      "picture N of a sequence: the number for %04d or #### in names of files", NAN, 0, 100000},
+    {0, "time", OPT_NUMBER, SCENE_AT(time), "S",
+     "where a glTF file's animations put nodes and cameras after S seconds; else picture N of a "
+     "sequence is at N / fps",
+     NAN, -1e6, 1e6},
+    {0, "fps", OPT_NUMBER, SCENE_AT(fps), "F", "pictures a second of a sequence", 24, 1e-3, 1e6},
 };
 
 #define VIEW_AT(field) offsetof(view_options, field)
@@ -77,17 +82,23 @@ static const float *given(const opt_vector *v)
 static tyn_result load(app *a, const scene_options *options, const char *environment,
                        tyn_scene *scene)
 {
-    if (options->number) {
-        return tyn_scene_load_frame(scene, options->scene, environment, *options->number, &a->log);
+    tyn_moment moment = {.timed = !isnan(options->time), .seconds = (double)options->time};
+    if (options->number || !isnan(options->frame)) {
+        moment.numbered = true;
+        moment.frame = options->number ? *options->number : (uint32_t)options->frame;
     }
-    if (isnan(options->frame)) {
-        return tyn_scene_load(scene, options->scene, environment, &a->log);
+    if (moment.numbered && !moment.timed) {
+        moment.timed = true;
+        moment.seconds = moment.frame / (double)options->fps;
     }
-    const uint32_t number = (uint32_t)options->frame;
+    if (options->number || !moment.numbered) { // names have their numbers, or none
+        return tyn_scene_load_moment(scene, options->scene, environment, &moment, &a->log);
+    }
+    const uint32_t number = moment.frame;
     char *file = sequence_path(options->scene, number);
     char *map = environment ? sequence_path(environment, number) : NULL;
     tyn_result result = file && (map || !environment)
-                            ? tyn_scene_load_frame(scene, file, map, number, &a->log)
+                            ? tyn_scene_load_moment(scene, file, map, &moment, &a->log)
                             : TYN_ERR_MEMORY;
     free(file);
     free(map);

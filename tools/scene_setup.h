@@ -11,11 +11,13 @@ typedef struct scene_options {
     opt_vector sigma_s, sigma_a, g, albedo;
     float density_scale;
     float frame; // NAN: not given
+    float time;  // s; NAN: not given
+    float fps;   // of numbered pictures
     // Of a picture of a sequence, for the files that a scene names; NULL: none.
     const uint32_t *number;
 } scene_options;
 extern const option scene_table[];
-enum { SCENE_TABLE_SIZE = 9 };
+enum { SCENE_TABLE_SIZE = 11 };
 #define SCENE_POSITIONALS(args, member)                                                            \
     {"SCENE", "a .gltf or .glb scene, or a volume (.nvdb, .vdb)", true,                            \
      offsetof(args, member.scene)},                                                                \

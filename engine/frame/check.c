@@ -185,6 +185,30 @@ static tyn_result refuse_outputs(const tyn_context *ctx, uint32_t missing)
     return TYN_ERR_PARAMS;
 }
 
+static tyn_result check_resume(const tyn_context *ctx, const tyn_view *view, uint32_t outputs)
+{
+    const tyn_resume *r = view->resume;
+    const tyn_log *log = &ctx->dev->log;
+    if (!(ctx->method->info.outputs & TYN_OUTPUT_LOW)) {
+        FAULT("tyn_view.resume: method '%s' does not go on from what earlier samples left",
+              ctx->method->info.name);
+    }
+    if (!r->num_samples || !r->hash || !r->radiance || !r->low || !r->deviation) {
+        FAULT("tyn_resume: num_samples, hash, radiance, low and deviation are required");
+    }
+    if ((outputs & TYN_OUTPUT_SINGLE && !r->single) ||
+        (outputs & TYN_OUTPUT_MULTIPLE && !r->multiple) ||
+        (outputs & TYN_OUTPUT_TRANSMITTANCE && !r->transmittance)) {
+        FAULT("tyn_resume: of single, multiple and transmittance those are required that are "
+              "outputs of the frame");
+    }
+    if (view->first_sample < r->num_samples) {
+        FAULT("tyn_view.first_sample is %u: after %u samples in tyn_resume it must be that or more",
+              view->first_sample, r->num_samples);
+    }
+    return TYN_OK;
+}
+
 tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)
 {
     const tyn_log *log = &ctx->dev->log;
@@ -209,6 +233,9 @@ tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame)
     }
     tyn_frame_projection projection;
     tyn_result result = tyn_frame_projection_find(&projection, frame, log);
+    if (result == TYN_OK && view->resume) {
+        result = check_resume(ctx, view, outputs);
+    }
     if (result == TYN_OK && (outputs & TYN_OUTPUT_COMPOSITE)) {
         result = check_color(frame->color, view, log);
         if (result == TYN_OK && frame->depth) {

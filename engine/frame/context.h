@@ -8,6 +8,12 @@
 
 enum { MAX_WARNINGS = 32 };
 
+// Of an image that a picture is gone on from.
+typedef struct tyn_resumed_image {
+    const float *texels; // RGBA, the caller's; read while a frame is prepared or recorded
+    size_t size;         // bytes
+} tyn_resumed_image;
+
 struct tyn_context {
     tyn_device *dev;
     const tyn_method *method;
@@ -32,6 +38,7 @@ struct tyn_context {
     tyn_map_light map_light;
     void *env_cdf; // of a method that reads it
     tyn_surface_data surfaces;
+    tyn_resumed_image resumed[6]; // tyn_view.resume
     char *warnings[MAX_WARNINGS];
     uint32_t num_warnings;
     uint64_t logged[MAX_WARNINGS]; // hashes of those that went to the log: once each

@@ -11,6 +11,7 @@ struct tyn_offline {
     tyn_context *context;
     tyn_submission submission;
     double setup_ms, frame_ms;
+    uint32_t samples; // done in the last frame
     tyn_progress_fn progress;
     void *progress_user;
     // Sums over the records of the last frame; num_nodes 0: it was one record.
@@ -158,11 +159,13 @@ tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, const tyn
     off->setup_ms = now_ms() - start;
 
     off->num_nodes = 0;
+    off->samples = 0;
     start = now_ms();
     for (uint32_t done = 0; result == TYN_OK && done < samples; done += part.num_samples) {
         part.first_sample = view->first_sample + done;
         part.num_samples = samples - done < batch ? samples - done : batch;
         result = submit(off, &frame);
+        off->samples += result == TYN_OK ? part.num_samples : 0;
         if (result == TYN_OK && samples > batch) {
             const double fraction = (double)(done + part.num_samples) / samples;
             add_record(off);
@@ -191,6 +194,11 @@ void tyn_offline_report(tyn_offline *off, tyn_report *report)
 tyn_context *tyn_offline_context(tyn_offline *off)
 {
     return off ? off->context : NULL;
+}
+
+uint32_t tyn_offline_samples(const tyn_offline *off)
+{
+    return off ? off->samples : 0;
 }
 
 double tyn_offline_setup_ms(const tyn_offline *off)

@@ -20,6 +20,35 @@ static void fill_environment(void *user, void *texels)
     }
 }
 
+static void fill_resumed(void *user, void *texels)
+{
+    const tyn_resumed_image *image = user;
+    memcpy(texels, image->texels, image->size);
+}
+
+static void upload_resumed(tyn_context *ctx, const tyn_view *view, tyn_scene_refs *refs)
+{
+    static const char *const names[6] = {"resumed",           "resumed_low",
+                                         "resumed_deviation", "resumed_single",
+                                         "resumed_multiple",  "resumed_transmittance"};
+    const tyn_resume *r = view->resume;
+    if (!r) {
+        return;
+    }
+    const float *images[6] = {r->radiance, r->low,      r->deviation,
+                              r->single,   r->multiple, r->transmittance};
+    for (int i = 0; i < 6; i++) {
+        if (images[i]) {
+            ctx->resumed[i].texels = images[i];
+            ctx->resumed[i].size = (size_t)view->width * view->height * 4 * sizeof(float);
+            refs->resumed[i] = tyn_graph_upload_image(
+                ctx->graph, names[i], TYN_IMAGE_2D, VK_FORMAT_R32G32B32A32_SFLOAT,
+                (tyn_extent){view->width, view->height, 1}, fill_resumed, &ctx->resumed[i],
+                tyn_hash_u64(tyn_hash_string(TYN_HASH_SEED, names[i]), r->hash));
+        }
+    }
+}
+
 static void upload_surfaces(tyn_context *ctx, const tyn_surfaces *s, tyn_scene_refs *refs)
 {
     tyn_graph *g = ctx->graph;
@@ -93,6 +122,7 @@ void tyn_frame_upload(tyn_context *ctx, const tyn_frame *frame, tyn_scene_refs *
         }
     }
     upload_surfaces(ctx, &scene->surfaces, refs);
+    upload_resumed(ctx, frame->view, refs);
     if (frame->view->outputs & TYN_OUTPUT_PROBE) {
         refs->points = tyn_graph_upload_buffer(g, "points", ctx->points,
                                                ctx->num_points * sizeof *ctx->points, 0);

@@ -1,6 +1,7 @@
 // exr.c -- OpenEXR images through OpenEXRCore: named float channels in and out.
 #include "base/given.h"
 #include "io/exr.h"
+#include "io/exr_attributes.h"
 #include <math.h>
 #include <openexr.h>
 #include <stdio.h>
@@ -49,7 +50,10 @@ void tyn_image_file_finish(tyn_image_file *image)
         free(image->channels[i].data);
     }
     free(image->channels);
-    free(image->comments);
+    for (uint32_t i = 0; i < image->num_attributes; i++) {
+        free(image->attributes[i].text);
+    }
+    free(image->attributes);
     memset(image, 0, sizeof *image);
 }
 
@@ -196,21 +200,6 @@ static tyn_result add_channels(picture *p, const char *file, const tyn_log *log)
     return TYN_OK;
 }
 
-// A file without it has none, as has one where it is of another type.
-static void read_comments(picture *p, stream *s)
-{
-    const char *text = NULL;
-    int32_t length = 0;
-    if (exr_attr_get_string(p->context, 0, "comments", &length, &text) == EXR_ERR_SUCCESS &&
-        length > 0) {
-        p->image->comments = calloc((size_t)length + 1, 1);
-        if (p->image->comments) {
-            memcpy(p->image->comments, text, (size_t)length);
-        }
-    }
-    s->message[0] = '\0'; // that it is not there is no fault
-}
-
 static tyn_result read_picture(picture *p, stream *s, const char *file, const tyn_log *log)
 {
     exr_attr_box2i_t window;
@@ -245,8 +234,9 @@ static tyn_result read_picture(picture *p, stream *s, const char *file, const ty
     p->image->height = (uint32_t)height;
     p->x0 = window.min.x;
     p->y0 = window.min.y;
-    read_comments(p, s);
-    tyn_result r = add_channels(p, file, log);
+    tyn_result r = tyn_exr_read_attributes(p->context, p->image);
+    s->message[0] = '\0'; // attributes that are missing are no fault
+    r = r ? r : add_channels(p, file, log);
     if (r) {
         return r;
     }
@@ -352,8 +342,14 @@ static exr_result_t compress_smaller(exr_encode_pipeline_t *encode)
     return e;
 }
 
+// A channel is stored as halves, or as it is.
+static bool is_full(const tyn_channel *channel, bool full_float)
+{
+    return full_float || channel->exact;
+}
+
 static exr_result_t write_chunks(exr_context_t context, const tyn_image_file *image,
-                                 void *const *data, size_t element)
+                                 void *const *data, bool full_float)
 {
     compressor library = NULL;
     exr_encode_pipeline_t encode = EXR_ENCODE_PIPELINE_INITIALIZER;
@@ -374,6 +370,7 @@ static exr_result_t write_chunks(exr_context_t context, const tyn_image_file *im
             while (strcmp(image->channels[i].name, channel->channel_name) != 0) {
                 i++;
             }
+            const size_t element = is_full(&image->channels[i], full_float) ? 4 : 2;
             channel->encode_from_ptr =
                 (const uint8_t *)data[i] + (size_t)y * image->width * element;
             channel->user_pixel_stride = (int32_t)element;
@@ -412,14 +409,13 @@ static exr_result_t write_picture(exr_context_t *context, const tyn_image_file *
                                                 (int32_t)image->height, EXR_COMPRESSION_ZIP);
     for (uint32_t i = 0; !e && i < image->num_channels; i++) {
         e = exr_add_channel(*context, 0, image->channels[i].name,
-                            full_float ? EXR_PIXEL_FLOAT : EXR_PIXEL_HALF,
+                            is_full(&image->channels[i], full_float) ? EXR_PIXEL_FLOAT
+                                                                     : EXR_PIXEL_HALF,
                             EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     }
-    if (!e && image->comments) {
-        e = exr_attr_set_string(*context, 0, "comments", image->comments);
-    }
+    e = e ? e : tyn_exr_write_attributes(*context, image);
     e = e ? e : exr_write_header(*context);
-    return e ? e : write_chunks(*context, image, data, full_float ? 4 : 2);
+    return e ? e : write_chunks(*context, image, data, full_float);
 }
 
 tyn_result tyn_exr_write(const tyn_image_file *image, const char *path, bool full_float,
@@ -452,8 +448,9 @@ tyn_result tyn_exr_write(const tyn_image_file *image, const char *path, bool ful
     tyn_result r = TYN_OK;
     void **data = calloc(image->num_channels, sizeof *data);
     for (uint32_t i = 0; data && !r && i < image->num_channels; i++) {
-        data[i] = full_float ? (void *)image->channels[i].data
-                             : to_half(image->channels[i].data, pixels, &saturated);
+        data[i] = is_full(&image->channels[i], full_float)
+                      ? (void *)image->channels[i].data
+                      : to_half(image->channels[i].data, pixels, &saturated);
         r = data[i] ? TYN_OK : TYN_ERR_MEMORY;
     }
     if (!data || r) {
@@ -473,8 +470,10 @@ tyn_result tyn_exr_write(const tyn_image_file *image, const char *path, bool ful
         tyn_log_print(log, TYN_LOG_WARN, "%s: %llu values beyond 65504 were cut to fit half floats",
                       path, (unsigned long long)saturated);
     }
-    for (uint32_t i = 0; data && !full_float && i < image->num_channels; i++) {
-        free(data[i]);
+    for (uint32_t i = 0; data && i < image->num_channels; i++) {
+        if (data[i] != image->channels[i].data) {
+            free(data[i]);
+        }
     }
     free(data);
     free(s.bytes);

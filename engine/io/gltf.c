@@ -3,7 +3,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "io/gltf_animation.h"
 #include "io/gltf_check.h"
+#include "io/gltf_extensions.h"
+#include "io/gltf_instances.h"
 #include "io/gltf_light.h"
 #include "io/gltf_media.h"
 #include "io/gltf_mesh.h"
@@ -19,10 +22,37 @@ static uint32_t load_u32(const uint8_t *p)
     return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
+// What is often found in place of a file that was to be downloaded.
+static tyn_result check_kind(const uint8_t *bytes, size_t size, const char *file,
+                             const tyn_log *log)
+{
+    static const char lfs[] = "version https://git-lfs.github.com/";
+    size_t start = size >= 3 && memcmp(bytes, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+    while (start < size && start < 256 && strchr(" \t\r\n", bytes[start]) && bytes[start]) {
+        start++;
+    }
+    const char *is = NULL;
+    if (start < size && bytes[start] == '<') {
+        is = "a page of HTML or XML, not glTF: download the file itself (on GitHub: \"raw\")";
+    } else if (size >= sizeof lfs - 1 && memcmp(bytes, lfs, sizeof lfs - 1) == 0) {
+        is = "a pointer of Git LFS, not the file it stands for: 'git lfs pull' fetches it";
+    } else if (size >= 2 && memcmp(bytes, "PK", 2) == 0) {
+        is = "a zip archive, not glTF: unpack it";
+    }
+    if (is) {
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: is %s", file, is);
+    }
+    return is ? TYN_ERR_PARAMS : TYN_OK;
+}
+
 // Finds the JSON text of a .gltf or .glb.
 static tyn_result find_json(const uint8_t *bytes, size_t size, const char *file, const char **json,
                             size_t *json_size, bool *glb, const tyn_log *log)
 {
+    tyn_result other = check_kind(bytes, size, file, log);
+    if (other) {
+        return other;
+    }
     *glb = size >= 4 && memcmp(bytes, "glTF", 4) == 0;
     *json = (const char *)bytes;
     *json_size = size;
@@ -96,13 +126,9 @@ typedef struct walk {
     gltf_meshes meshes;
 } walk;
 
-static void local_matrix(double m[16], const gltf_node *node)
+void tyn_gltf_trs(double m[16], const double translation[3], const double q[4],
+                  const double scale[3])
 {
-    if (node->has_matrix) {
-        memcpy(m, node->matrix, 16 * sizeof *m);
-        return;
-    }
-    const double *q = node->rotation;
     double n = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
     double x = q[0], y = q[1], z = q[2], w = q[3], s = 2.0 / n;
     const double r[9] = {1 - s * (y * y + z * z), s * (x * y + w * z),     s * (x * z - w * y),
@@ -111,9 +137,18 @@ static void local_matrix(double m[16], const gltf_node *node)
     mat_identity(m);
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < 3; i++) {
-            m[c * 4 + i] = r[c * 3 + i] * node->scale[c];
+            m[c * 4 + i] = r[c * 3 + i] * scale[c];
         }
-        m[12 + c] = node->translation[c];
+        m[12 + c] = translation[c];
+    }
+}
+
+static void local_matrix(double m[16], const gltf_node *node)
+{
+    if (node->has_matrix) {
+        memcpy(m, node->matrix, 16 * sizeof *m);
+    } else {
+        tyn_gltf_trs(m, node->translation, node->rotation, node->scale);
     }
 }
 
@@ -190,6 +225,28 @@ static tyn_result add_light(walk *w, uint32_t n)
     return TYN_OK;
 }
 
+// The node's mesh, or as many of it as EXT_mesh_gpu_instancing says.
+static tyn_result add_meshes(walk *w, uint32_t n, const double m[16])
+{
+    const gltf_node *node = &w->model->nodes[n];
+    gltf_instances instances;
+    tyn_result r = tyn_gltf_instances_read(&instances, &w->meshes.data, w->nodes[n]);
+    if (!r && !instances.count) {
+        w->scene->num_meshes++;
+        r = tyn_gltf_mesh_add(&w->meshes, w->nodes[n], node->mesh, m);
+    }
+    for (uint32_t i = 0; !r && i < instances.count; i++) {
+        double local[16], at[16];
+        tyn_gltf_instance_matrix(&instances, i, local);
+        mat_mul(at, m, local);
+        w->scene->num_meshes++;
+        r = mat_invertible(at) ? tyn_gltf_mesh_add(&w->meshes, w->nodes[n], node->mesh, at)
+                               : TYN_OK;
+    }
+    tyn_gltf_instances_finish(&instances);
+    return r;
+}
+
 static tyn_result visit(walk *w, uint32_t n, const double parent[16])
 {
     const gltf_node *node = &w->model->nodes[n];
@@ -203,8 +260,7 @@ static tyn_result visit(walk *w, uint32_t n, const double parent[16])
     }
     tyn_result r = tyn_gltf_read_shape(w->scene, w->media, w->doc, w->nodes[n], m);
     if (!r && node->mesh >= 0) {
-        w->scene->num_meshes++;
-        r = tyn_gltf_mesh_add(&w->meshes, w->nodes[n], node->mesh, m);
+        r = add_meshes(w, n, m);
     }
     if (!r && node->camera >= 0) {
         r = add_camera(w, n);
@@ -267,13 +323,19 @@ static tyn_result check_scene(const tyn_scene *scene, const json_doc *doc)
 }
 
 static tyn_result build_scene(tyn_scene *scene, const gltf_model *model, const json_doc *doc,
-                              const char *environment)
+                              const char *environment, const tyn_moment *moment)
 {
     gltf_media media;
     tyn_result r = tyn_gltf_read_media(scene, &media, doc);
     if (!r) {
         walk w = {.scene = scene, .model = model, .doc = doc, .media = &media};
         r = tyn_gltf_meshes_open(&w.meshes, doc, model, scene);
+        if (!r && moment && moment->timed) {
+            r = tyn_gltf_animate(model->nodes, model->num_nodes, moment->seconds, &w.meshes.data,
+                                 scene);
+        } else if (!r) {
+            tyn_gltf_warn_of_animations(doc, scene);
+        }
         r = r ? r : walk_nodes(&w);
         tyn_gltf_meshes_close(&w.meshes);
         scene->surfaces.hash = tyn_surfaces_hash(&scene->surfaces);
@@ -286,13 +348,14 @@ static tyn_result build_scene(tyn_scene *scene, const gltf_model *model, const j
     }
     if (!r) {
         tyn_gltf_warn_unknown(scene, doc);
+        tyn_gltf_warn_extensions(scene, doc);
     }
     scene->name = name_or_null(model->scene_name);
     return r ? r : check_scene(scene, doc);
 }
 
 tyn_result tyn_gltf_parse(tyn_scene *scene, const void *bytes, size_t size, const char *file,
-                          const char *environment, const uint32_t *frame, const tyn_log *log)
+                          const char *environment, const tyn_moment *moment, const tyn_log *log)
 {
     const char *text;
     size_t text_size;
@@ -303,7 +366,7 @@ tyn_result tyn_gltf_parse(tyn_scene *scene, const void *bytes, size_t size, cons
     tyn_result r = find_json(bytes, size, file, &text, &text_size, &glb, log);
     if (!r) {
         r = tyn_json_parse(&doc, text, text_size, file, log);
-        doc.frame = frame;
+        doc.frame = moment && moment->numbered ? &moment->frame : NULL;
     }
     if (!r) {
         r = tyn_gltf_check(&doc, glb);
@@ -316,7 +379,7 @@ tyn_result tyn_gltf_parse(tyn_scene *scene, const void *bytes, size_t size, cons
         r = check_model(&model, &doc);
     }
     if (!r) {
-        r = build_scene(scene, &model, &doc, environment);
+        r = build_scene(scene, &model, &doc, environment, moment);
     }
     if (r) {
         tyn_scene_finish(scene);

@@ -193,6 +193,11 @@ tyn_result tyn_gltf_read_floats(const gltf_data *data, const cJSON *at, uint32_t
         return r;
     }
     if (a.components < least || a.components > most || a.type == UINT) {
+        if (most == 1) {
+            return tyn_json_fault(data->doc, at,
+                                  "its accessor must be of type SCALAR, of floats, "
+                                  "bytes or shorts");
+        }
         return tyn_json_fault(data->doc, at,
                               "its accessor must be of type VEC%u%s, of floats, bytes or shorts",
                               least, most > least ? " or VEC4" : "");

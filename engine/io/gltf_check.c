@@ -1,5 +1,6 @@
 // gltf_check.c -- checks a glTF document, field by field.
 #include "io/gltf_check.h"
+#include "io/gltf_extensions.h"
 #include "io/gltf_light.h"
 #include <math.h>
 #include <stdlib.h>
@@ -33,30 +34,6 @@ static tyn_result check_indices(const checker *c, const cJSON *parent, const cha
     cJSON_ArrayForEach(element, array)
     {
         TYN_TRY(tyn_json_index(c->doc, element, of->count, what, &unused));
-    }
-    return TYN_OK;
-}
-
-static tyn_result check_extensions(const checker *c)
-{
-    static const char *const known[] = {
-        "TYN_participating_media", "TYN_environment_map",   "KHR_lights_punctual",
-        "KHR_mesh_quantization",   "KHR_texture_transform", "KHR_materials_emissive_strength"};
-    cJSON *array;
-    const cJSON *element;
-    TYN_TRY(tyn_json_array(c->doc, c->doc->root, "extensionsUsed", &array));
-    TYN_TRY(tyn_json_array(c->doc, c->doc->root, "extensionsRequired", &array));
-    cJSON_ArrayForEach(element, array)
-    {
-        bool found = false;
-        for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-            found |= cJSON_IsString(element) && strcmp(element->valuestring, known[i]) == 0;
-        }
-        if (!found) {
-            return tyn_json_fault(c->doc, element,
-                                  "this extension is not known; known are %s, %s, %s, %s, %s, %s",
-                                  known[0], known[1], known[2], known[3], known[4], known[5]);
-        }
     }
     return TYN_OK;
 }
@@ -414,7 +391,7 @@ static tyn_result check_all(checker *c)
     const json_doc *doc = c->doc;
     cJSON *extensions, *lights;
     TYN_TRY(check_asset(c));
-    TYN_TRY(check_extensions(c));
+    TYN_TRY(tyn_gltf_check_required(doc));
     TYN_TRY(tyn_json_list(doc, doc->root, "buffers", &c->buffers));
     TYN_TRY(tyn_json_list(doc, doc->root, "bufferViews", &c->buffer_views));
     TYN_TRY(tyn_json_list(doc, doc->root, "accessors", &c->accessors));

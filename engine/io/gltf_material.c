@@ -15,7 +15,7 @@ tyn_result tyn_gltf_materials_open(gltf_materials *m, const gltf_data *data, tyn
     const json_doc *doc = data->doc;
     memset(m, 0, sizeof *m);
     m->scene = scene;
-    TYN_TRY(tyn_gltf_textures_open(&m->textures, data, &scene->surfaces));
+    TYN_TRY(tyn_gltf_textures_open(&m->textures, data, scene));
     TYN_TRY(tyn_json_list(doc, doc->root, "materials", &m->list));
     m->loaded = calloc((size_t)m->list.count + 1, sizeof *m->loaded);
     m->is_loaded = calloc((size_t)m->list.count + 1, sizeof *m->is_loaded);
@@ -35,7 +35,6 @@ void tyn_gltf_materials_close(gltf_materials *m)
         [LACK_EMISSIVE_TEXTURE] = "of emissiveTexture the mean counts",
         [LACK_NORMAL_TEXTURE] = "normalTexture is not read",
         [LACK_ALPHA] = "it is opaque: alphaMode is not read",
-        [LACK_EXTENSION] = "of its extensions only KHR_materials_emissive_strength is read",
     };
     for (int i = 0; i < NUM_LACKS; i++) {
         const uint32_t others = m->lacks[i].count - 1;
@@ -163,19 +162,12 @@ static tyn_result read_emission(gltf_materials *m, int64_t index, const cJSON *j
 
 static void look_at_rest(gltf_materials *m, int64_t index, const cJSON *json)
 {
-    const cJSON *mode = tyn_json_member(json, "alphaMode"), *extension;
+    const cJSON *mode = tyn_json_member(json, "alphaMode");
     if (cJSON_IsString(mode) && strcmp(mode->valuestring, "OPAQUE") != 0) {
         lack(m, index, LACK_ALPHA);
     }
     if (tyn_json_member(json, "normalTexture")) {
         lack(m, index, LACK_NORMAL_TEXTURE);
-    }
-    cJSON_ArrayForEach(extension, tyn_json_member(json, "extensions"))
-    {
-        if (strcmp(extension->string, "KHR_materials_emissive_strength") != 0) {
-            lack(m, index, LACK_EXTENSION);
-            break;
-        }
     }
 }
 

@@ -16,7 +16,6 @@ typedef enum gltf_material_lack {
     LACK_EMISSIVE_TEXTURE,
     LACK_NORMAL_TEXTURE,
     LACK_ALPHA,
-    LACK_EXTENSION,
     NUM_LACKS
 } gltf_material_lack;
 

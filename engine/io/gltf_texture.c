@@ -1,15 +1,16 @@
 // gltf_texture.c -- textures of a glTF file, read when a material wants them.
 #include "io/gltf_texture.h"
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "io/picture.h"
 #include "io/uri.h"
 
-tyn_result tyn_gltf_textures_open(gltf_textures *t, const gltf_data *data, tyn_surfaces *surfaces)
+tyn_result tyn_gltf_textures_open(gltf_textures *t, const gltf_data *data, tyn_scene *scene)
 {
     const json_doc *doc = data->doc;
-    *t = (gltf_textures){.data = data, .surfaces = surfaces};
+    *t = (gltf_textures){.data = data, .scene = scene, .surfaces = &scene->surfaces};
     tyn_result r = tyn_json_list(doc, doc->root, "textures", &t->textures);
     r = r ? r : tyn_json_list(doc, doc->root, "images", &t->images);
     r = r ? r : tyn_json_list(doc, doc->root, "samplers", &t->samplers);
@@ -17,7 +18,8 @@ tyn_result tyn_gltf_textures_open(gltf_textures *t, const gltf_data *data, tyn_s
         return r;
     }
     t->loaded = malloc(((size_t)t->textures.count + 1) * sizeof *t->loaded);
-    if (!t->loaded) {
+    t->missing = calloc((size_t)t->textures.count + 1, sizeof *t->missing);
+    if (!t->loaded || !t->missing) {
         tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its textures", doc->file);
         return TYN_ERR_MEMORY;
     }
@@ -27,12 +29,52 @@ tyn_result tyn_gltf_textures_open(gltf_textures *t, const gltf_data *data, tyn_s
     return TYN_OK;
 }
 
+static char *texture_name(const gltf_textures *t, const cJSON *texture)
+{
+    const cJSON *source = tyn_json_member(texture, "source");
+    const cJSON *at[2] = {texture, source ? t->images.items[(int64_t)source->valuedouble] : NULL};
+    for (int i = 0; i < 2; i++) {
+        const cJSON *name = tyn_json_member(at[i], "name");
+        if (cJSON_IsString(name) && name->valuestring[0]) {
+            return strdup(name->valuestring);
+        }
+    }
+    const cJSON *uri = tyn_json_member(at[1], "uri");
+    return cJSON_IsString(uri) && strncmp(uri->valuestring, "data:", 5) ? strdup(uri->valuestring)
+                                                                        : NULL;
+}
+
+static void warn_of_missing(const gltf_textures *t)
+{
+    uint32_t count = 0;
+    int64_t first = -1;
+    for (int64_t i = 0; t->missing && i < t->textures.count; i++) {
+        count += t->missing[i];
+        first = t->missing[i] && first < 0 ? i : first;
+    }
+    if (!count) {
+        return;
+    }
+    char *name = texture_name(t, t->textures.items[first]), more[32] = "";
+    if (count > 1) {
+        snprintf(more, sizeof more, " and %u more", count - 1);
+    }
+    tyn_scene_warn(t->scene,
+                   "texture %lld%s%s%s%s: there is no such picture; a mean grey stands for it",
+                   (long long)first, name ? " '" : "", name ? name : "", name ? "'" : "", more);
+    free(name);
+}
+
 void tyn_gltf_textures_close(gltf_textures *t)
 {
+    if (t->scene) {
+        warn_of_missing(t);
+    }
     free(t->textures.items);
     free(t->images.items);
     free(t->samplers.items);
     free(t->loaded);
+    free(t->missing);
 }
 
 // ---- images -----------------------------------------------------------------------------------
@@ -46,7 +88,20 @@ static tyn_result decode(const gltf_data *data, const cJSON *at, const uint8_t *
                        : tyn_json_fault(data->doc, at, "must be a PNG or JPEG picture: %s", reason);
 }
 
-static tyn_result read_file(const gltf_data *data, const cJSON *uri, tyn_texture *out)
+// Stands for what is not there: 0.5 in all channels, as light (0.5 is 188 in sRGB).
+static tyn_result grey(tyn_texture *out)
+{
+    out->size[0] = out->size[1] = 1;
+    out->texels = malloc(4);
+    if (out->texels) {
+        memcpy(out->texels, (uint8_t[4]){188, 188, 188, 255}, 4);
+    }
+    return out->texels ? TYN_OK : TYN_ERR_MEMORY;
+}
+
+// A file that is not there gives a grey one, and *missing.
+static tyn_result read_file(const gltf_data *data, const cJSON *uri, tyn_texture *out,
+                            bool *missing)
 {
     char *path = tyn_uri_path(data->doc, uri);
     if (!path) {
@@ -58,6 +113,10 @@ static tyn_result read_file(const gltf_data *data, const cJSON *uri, tyn_texture
     tyn_capture_init(&capture);
     tyn_result r = tyn_file_read(path, 1ull << 31, &bytes, &size, &capture.log);
     free(path);
+    if (r == TYN_ERR_IO) {
+        *missing = true;
+        return grey(out);
+    }
     if (r) {
         return tyn_capture_fault(&capture, data->doc, uri, r);
     }
@@ -66,7 +125,8 @@ static tyn_result read_file(const gltf_data *data, const cJSON *uri, tyn_texture
     return r;
 }
 
-static tyn_result read_image(const gltf_data *data, const cJSON *image, tyn_texture *out)
+static tyn_result read_image(const gltf_data *data, const cJSON *image, tyn_texture *out,
+                             bool *missing)
 {
     const cJSON *uri = tyn_json_member(image, "uri"), *view = tyn_json_member(image, "bufferView");
     if (view) {
@@ -77,7 +137,7 @@ static tyn_result read_image(const gltf_data *data, const cJSON *image, tyn_text
                      : tyn_json_fault(data->doc, view, "reaches beyond its buffer");
     }
     if (strncmp(uri->valuestring, "data:", 5) != 0) {
-        return read_file(data, uri, out);
+        return read_file(data, uri, out, missing);
     }
     gltf_bytes bytes;
     if (!gltf_data_uri(uri->valuestring, &bytes)) {
@@ -102,35 +162,25 @@ static tyn_result read_texture(const gltf_textures *t, int64_t index, tyn_textur
     const cJSON *texture = t->textures.items[index], *source = tyn_json_member(texture, "source");
     const cJSON *sampler = tyn_json_member(texture, "sampler");
     *out = (tyn_texture){0};
-    if (!source) {
+    if (!source && !tyn_json_member(texture, "extensions")) {
         return tyn_json_fault(t->data->doc, texture, "source is missing: an index of images");
+    }
+    if (!source) {
+        t->missing[index] = true; // it may be what an extension reads
+        return grey(out);
     }
     if (sampler) {
         const cJSON *modes = t->samplers.items[(int64_t)sampler->valuedouble];
         out->wrap[0] = wrap_mode(modes, "wrapS");
         out->wrap[1] = wrap_mode(modes, "wrapT");
     }
-    return read_image(t->data, t->images.items[(int64_t)source->valuedouble], out);
+    return read_image(t->data, t->images.items[(int64_t)source->valuedouble], out,
+                      &t->missing[index]);
 }
 
 static int64_t texture_index(const cJSON *info)
 {
     return (int64_t)tyn_json_member(info, "index")->valuedouble;
-}
-
-static char *texture_name(const gltf_textures *t, const cJSON *texture)
-{
-    const cJSON *source = tyn_json_member(texture, "source");
-    const cJSON *at[2] = {texture, t->images.items[(int64_t)source->valuedouble]};
-    for (int i = 0; i < 2; i++) {
-        const cJSON *name = tyn_json_member(at[i], "name");
-        if (cJSON_IsString(name) && name->valuestring[0]) {
-            return strdup(name->valuestring);
-        }
-    }
-    const cJSON *uri = tyn_json_member(at[1], "uri");
-    return cJSON_IsString(uri) && strncmp(uri->valuestring, "data:", 5) ? strdup(uri->valuestring)
-                                                                        : NULL;
 }
 
 tyn_result tyn_gltf_texture_get(gltf_textures *t, const cJSON *info, uint32_t *index)

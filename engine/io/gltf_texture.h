@@ -4,14 +4,17 @@
 
 typedef struct gltf_textures {
     const gltf_data *data;
-    tyn_surfaces *surfaces;
+    tyn_scene *scene;
+    tyn_surfaces *surfaces; // of the scene
     json_list textures, images, samplers;
+    bool *missing;    // for every texture: it is not there
     uint32_t *loaded; // for every texture its index in surfaces->textures, or TYN_NO_TEXTURE
 } gltf_textures;
-tyn_result tyn_gltf_textures_open(gltf_textures *t, const gltf_data *data, tyn_surfaces *surfaces);
-void tyn_gltf_textures_close(gltf_textures *t);
+tyn_result tyn_gltf_textures_open(gltf_textures *t, const gltf_data *data, tyn_scene *scene);
+void tyn_gltf_textures_close(gltf_textures *t); // the scene is warned of those that are not there
 
-// `info` is a checked textureInfo: the texture into the scene, once however often it is asked for.
+// A texture whose file is not there, or that has no source, is one texel of 0.5 in all channels. `info` is a checked
+// textureInfo: the texture into the scene, once however often it is asked for.
 tyn_result tyn_gltf_texture_get(gltf_textures *t, const cJSON *info, uint32_t *index);
 
 // Means of a texture's four channels, 0 to 1; colours are decoded from sRGB first if `srgb`.

@@ -1,5 +1,6 @@
 // load.c -- any scene by its file extension.
 #include <tyndall/io.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -19,13 +20,13 @@ static bool is_one_of(const char *path, const char *const *extensions)
 }
 
 static tyn_result load_gltf(tyn_scene *scene, const char *path, const char *environment,
-                            const uint32_t *frame, const tyn_log *log)
+                            const tyn_moment *moment, const tyn_log *log)
 {
     void *bytes;
     size_t size;
     tyn_result r = tyn_file_read(path, 0x7fffffff, &bytes, &size, log);
     if (!r) {
-        r = tyn_gltf_parse(scene, bytes, size, path, environment, frame, log);
+        r = tyn_gltf_parse(scene, bytes, size, path, environment, moment, log);
         free(bytes);
     }
     return r;
@@ -50,14 +51,19 @@ static tyn_result load_bare(tyn_scene *scene, const char *path, const char *envi
 }
 
 static tyn_result load(tyn_scene *scene, const char *path, const char *environment,
-                       const uint32_t *frame, const tyn_log *log)
+                       const tyn_moment *moment, const tyn_log *log)
 {
     tyn_scene_init(scene);
     if (!TYN_GIVEN(log, scene, path)) {
         return TYN_ERR_PARAMS;
     }
+    if (moment && moment->timed && !isfinite(moment->seconds)) {
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: a time of %g s: must be finite", path,
+                      moment->seconds);
+        return TYN_ERR_PARAMS;
+    }
     if (is_one_of(path, (const char *const[]){".gltf", ".glb", NULL})) {
-        return load_gltf(scene, path, environment, frame, log);
+        return load_gltf(scene, path, environment, moment, log);
     }
     if (is_one_of(path, (const char *const[]){".nvdb", ".vdb", NULL})) {
         return load_bare(scene, path, environment, log);
@@ -77,5 +83,12 @@ tyn_result tyn_scene_load(tyn_scene *scene, const char *path, const char *enviro
 tyn_result tyn_scene_load_frame(tyn_scene *scene, const char *path, const char *environment,
                                 uint32_t frame, const tyn_log *log)
 {
-    return load(scene, path, environment, &frame, log);
+    const tyn_moment moment = {.numbered = true, .frame = frame};
+    return load(scene, path, environment, &moment, log);
+}
+
+tyn_result tyn_scene_load_moment(tyn_scene *scene, const char *path, const char *environment,
+                                 const tyn_moment *moment, const tyn_log *log)
+{
+    return load(scene, path, environment, moment, log);
 }

@@ -1,6 +1,7 @@
 // picture.c -- 8-bit PNG and JPEG pictures through stb_image.
 #include "io/picture.h"
 #include <limits.h>
+#include <string.h>
 #include <tyndall/scene.h>
 
 #define STB_IMAGE_STATIC
@@ -26,6 +27,9 @@ uint8_t *tyn_picture_decode(const uint8_t *bytes, size_t size, uint32_t out_size
     if (size <= INT_MAX) {
         texels = stbi_load_from_memory(bytes, (int)size, &width, &height, &channels, 4);
         *reason = texels ? NULL : stbi_failure_reason();
+        if (!texels && size >= 12 && !memcmp(bytes, "RIFF", 4) && !memcmp(bytes + 8, "WEBP", 4)) {
+            *reason = "it is WebP; 'gltf-transform png IN.glb OUT.glb' unpacks it";
+        }
     }
     out_size[0] = (uint32_t)width;
     out_size[1] = (uint32_t)height;

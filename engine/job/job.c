@@ -10,7 +10,8 @@ const char *tyn_output_name(tyn_output which)
 {
     static const char *const names[] = {"radiance", "transmittance", "depth",   "single",
                                         "multiple", "error",         "display", "probe",
-                                        "balance",  "composite",     "fluxes",  "light"};
+                                        "balance",  "composite",     "fluxes",  "light",
+                                        "low",      "deviation",     "albedo",  "normal"};
     for (uint32_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         if (which == (tyn_output)(1u << i)) {
             return names[i];

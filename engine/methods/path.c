@@ -6,6 +6,8 @@
 #include "passes/path_balance/path_balance.h"
 #include "passes/path_fluxes/path_fluxes.h"
 #include "passes/path_distance/path_distance.h"
+#include "passes/gbuffer/gbuffer.h"
+#include "passes/guides/guides.h"
 #include "job/path_scene.h"
 #include "shaders/path/path_args.h"
 #include "view/view.h"
@@ -74,6 +76,7 @@ static void add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
 {
     tyn_path_params params;
     set_params(&params, job, &tyn_pass_path);
+    params.sample_offset = job->view->sample_offset;
     uint32_t w = job->view->width, h = job->view->height;
     uint32_t lw = params.layers ? w : 1, lh = params.layers ? h : 1;
     tyn_ref refs[PATH_NUM_PORTS] = {
@@ -85,10 +88,22 @@ static void add_image(tyn_graph *g, const tyn_job *job, tyn_ref bricks)
         [PATH_PORT_MEAN_MULTIPLE] = history(g, "path_multiple", lw, lh),
         [PATH_PORT_MEAN_TRANSMITTANCE] = history(g, "path_transmittance", lw, lh),
     };
+    const tyn_resume *resume = job->view->resume;
+    if (resume) {
+        params.resumed = job->view->first_sample == resume->num_samples;
+        memcpy(&refs[PATH_PORT_RESUMED], job->refs.resumed, sizeof job->refs.resumed);
+        for (int port = PATH_PORT_RESUMED_SINGLE; port <= PATH_PORT_RESUMED_TRANSMITTANCE; port++) {
+            if (params.layers && !refs[port].resource) { // nobody asks for this layer
+                refs[port] = refs[PATH_PORT_RESUMED];
+            }
+        }
+    }
     tyn_connect_path_scene(refs, job, bricks);
     tyn_graph_add(g, &tyn_pass_path, &params, refs);
     tyn_job_output(g, job, TYN_OUTPUT_RADIANCE, refs[PATH_PORT_RADIANCE]);
     tyn_job_output(g, job, TYN_OUTPUT_ERROR, refs[PATH_PORT_ERROR]);
+    tyn_job_output(g, job, TYN_OUTPUT_LOW, refs[PATH_PORT_LOW]);
+    tyn_job_output(g, job, TYN_OUTPUT_DEVIATION, refs[PATH_PORT_DEVIATION]);
     tyn_job_output(g, job, TYN_OUTPUT_SINGLE, refs[PATH_PORT_SINGLE]);
     tyn_job_output(g, job, TYN_OUTPUT_MULTIPLE, refs[PATH_PORT_MULTIPLE]);
     tyn_job_output(g, job, TYN_OUTPUT_TRANSMITTANCE, refs[PATH_PORT_TRANSMITTANCE]);
@@ -279,8 +294,8 @@ static void add_depth(tyn_graph *g, const tyn_job *job, const tyn_sources *s)
 
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
 {
-    const uint32_t not_images =
-        TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_FLUXES;
+    const uint32_t not_images = TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE | TYN_OUTPUT_DEPTH |
+                                TYN_OUTPUT_FLUXES | TYN_GUIDE_OUTPUTS;
     tyn_sources s = {0};
     tyn_result result = check_repeat(job);
     if (result != TYN_OK) {
@@ -296,6 +311,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (job->outputs & ~not_images) {
         add_image(g, job, s.bricks);
     }
+    tyn_add_guides(g, job);
     if (job->outputs & TYN_OUTPUT_PROBE) {
         add_probes(g, job, s.bricks);
     }
@@ -318,6 +334,8 @@ static const tyn_pass_desc *const passes[] = {
     &tyn_pass_path_balance,
     &tyn_pass_path_fluxes,
     &tyn_pass_path_distance,
+    &tyn_pass_gbuffer,
+    &tyn_pass_guides,
     &tyn_pass_raymarch,
     &tyn_pass_tonemap,
     &tyn_pass_export,
@@ -359,7 +377,8 @@ const tyn_method tyn_method_path = {
              .outputs = TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH |
                         TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_ERROR |
                         TYN_OUTPUT_DISPLAY | TYN_OUTPUT_PROBE | TYN_OUTPUT_BALANCE |
-                        TYN_OUTPUT_FLUXES,
+                        TYN_OUTPUT_FLUXES | TYN_OUTPUT_LOW | TYN_OUTPUT_DEVIATION |
+                        TYN_OUTPUT_ALBEDO | TYN_OUTPUT_NORMAL,
              .progressive = true,
              .traces_rays = true,
              .reference = true,

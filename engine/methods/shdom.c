@@ -163,8 +163,9 @@ const tyn_method tyn_method_shdom = {
     .info = {.name = "shdom",
              .summary = "spherical harmonics and discrete ordinates (1998), to be compared with",
              .passes = passes,
-             .outputs = TYN_OUTPUT_PROBE | (TYN_PICTURE_OUTPUTS &
-                                            ~(uint32_t)(TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE)),
+             .outputs = TYN_OUTPUT_PROBE |
+                        (TYN_PICTURE_OUTPUTS &
+                         ~(uint32_t)(TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_GUIDE_OUTPUTS)),
              .limits = limits},
     .declare = declare,
 };

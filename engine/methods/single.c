@@ -79,7 +79,7 @@ const tyn_method tyn_method_single = {
     .info = {.name = "single",
              .summary = "light that has scattered exactly once",
              .passes = passes,
-             .outputs = TYN_PICTURE_OUTPUTS,
+             .outputs = TYN_PICTURE_OUTPUTS & ~(uint32_t)TYN_GUIDE_OUTPUTS,
              .single_only = true,
              .limits = limits},
     .declare = declare,

@@ -5,6 +5,7 @@
 #include "passes/merge/merge.h"
 #include "passes/gbuffer/gbuffer.h"
 #include "passes/shade/shade.h"
+#include "passes/guides/guides.h"
 #include "passes/raymarch/raymarch.h"
 #include "passes/composite/composite.h"
 #include "passes/tonemap/tonemap.h"

@@ -134,6 +134,7 @@ void tyn_add_results(tyn_graph *g, const tyn_job *job, tyn_picture picture)
             job->hooks[i]->declare(g, job, &picture);
         }
     }
+    tyn_add_guides(g, job);
     tyn_job_output(g, job, TYN_OUTPUT_RADIANCE, picture.radiance);
     tyn_job_output(g, job, TYN_OUTPUT_TRANSMITTANCE, picture.transmittance);
     tyn_job_output(g, job, TYN_OUTPUT_DEPTH, picture.depth);

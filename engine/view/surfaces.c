@@ -19,7 +19,8 @@ static void fit_samples(tyn_gbuffer_params *params, uint32_t side, const tyn_job
     }
 }
 
-static void add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *gbuffer)
+// Gives the samples along each side of a pixel.
+static int32_t add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *gbuffer)
 {
     tyn_gbuffer_params params;
     tyn_settings_params(job->settings, &tyn_pass_gbuffer, &params);
@@ -35,6 +36,28 @@ static void add_gbuffer(tyn_graph *g, const tyn_job *job, tyn_gbuffer_refs *gbuf
     tyn_connect(refs, GBUFFER_PORT_MATERIALS, job->refs.materials);
     tyn_graph_add(g, &tyn_pass_gbuffer, &params, refs);
     tyn_take(refs, GBUFFER_PORT_DISTANCES, *gbuffer);
+    return params.samples;
+}
+
+void tyn_add_guides(tyn_graph *g, const tyn_job *job)
+{
+    if (!(job->outputs & TYN_GUIDE_OUTPUTS)) {
+        return;
+    }
+    tyn_guides_params params = {.size = {job->view->width, job->view->height},
+                                .samples = 1,
+                                .textured = job->frame->num_textures > 0};
+    tyn_ref refs[TYN_MAX_PORTS] = {[GUIDES_PORT_CAMERA] = job->refs.camera};
+    if (job->frame->num_triangles) {
+        tyn_gbuffer_refs seen;
+        params.samples = add_gbuffer(g, job, &seen);
+        tyn_connect(refs, GUIDES_PORT_SURFACES, job->refs.geometry);
+        tyn_connect(refs, GUIDES_PORT_MATERIALS, job->refs.materials);
+        tyn_connect(refs, GUIDES_PORT_DISTANCES, seen);
+    }
+    tyn_graph_add(g, &tyn_pass_guides, &params, refs);
+    tyn_job_output(g, job, TYN_OUTPUT_ALBEDO, refs[GUIDES_PORT_ALBEDO]);
+    tyn_job_output(g, job, TYN_OUTPUT_NORMAL, refs[GUIDES_PORT_NORMAL]);
 }
 
 // Do surfaces reach farther than the lattice, which has the sky's light with its shadows, by more than rounding?

@@ -55,6 +55,7 @@ static void record(tyn_recorder *r, const void *params)
             .samples_before = p->first_sample,
             .layers = p->layers,
             .opaque = p->opaque,
+            .resumed = p->resumed,
         };
         TYN_DISPATCH(r, .kernel = 1, .cells = {num, 1, 1}, .args = &resolve);
     }

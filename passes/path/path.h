@@ -14,13 +14,20 @@
     X(PATH, LOW, low, INOUT, IMAGE_2D, \
         "what single precision loses of the mean", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(PATH, DEVIATION, deviation, INOUT, IMAGE_2D, \
-        "running sum of squared deviations", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+        "running sum of squared deviations; A: running mean alpha", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(PATH, MEAN_SINGLE, mean_single, INOUT, IMAGE_2D, \
         "running mean of the first order", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(PATH, MEAN_MULTIPLE, mean_multiple, INOUT, IMAGE_2D, \
         "running mean of higher orders", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(PATH, MEAN_TRANSMITTANCE, mean_transmittance, INOUT, IMAGE_2D, \
         "running mean transmittance", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(PATH, RESUMED, resumed, OPTIONAL, IMAGE_2D, "radiance that is gone on from"), \
+    X(PATH, RESUMED_LOW, resumed_low, OPTIONAL, IMAGE_2D, "as low"), \
+    X(PATH, RESUMED_DEVIATION, resumed_deviation, OPTIONAL, IMAGE_2D, "as deviation"), \
+    X(PATH, RESUMED_SINGLE, resumed_single, OPTIONAL, IMAGE_2D, "as mean_single"), \
+    X(PATH, RESUMED_MULTIPLE, resumed_multiple, OPTIONAL, IMAGE_2D, "as mean_multiple"), \
+    X(PATH, RESUMED_TRANSMITTANCE, resumed_transmittance, OPTIONAL, IMAGE_2D, \
+        "as mean_transmittance"), \
     X(PATH, RADIANCE, radiance, OUT, IMAGE_2D, \
         "radiance W/(m^2 sr), alpha", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(PATH, ERROR, error, OUT, IMAGE_2D, \

@@ -21,6 +21,12 @@ layout(set = 0, binding = 10, rgba32f) uniform writeonly image2D single_image;
 layout(set = 0, binding = 11, rgba32f) uniform writeonly image2D multiple_image;
 layout(set = 0, binding = 12, rgba32f) uniform writeonly image2D transmittance_image;
 TYN_UPDATE(13, queue, uint taken);
+layout(binding = 14) uniform sampler2D resumed_tex;
+layout(binding = 15) uniform sampler2D resumed_low_tex;
+layout(binding = 16) uniform sampler2D resumed_deviation_tex;
+layout(binding = 17) uniform sampler2D resumed_single_tex;
+layout(binding = 18) uniform sampler2D resumed_multiple_tex;
+layout(binding = 19) uniform sampler2D resumed_transmittance_tex;
 TYN_ARGS(path_resolve_args args);
 
 // Means of one pixel's layers.
@@ -66,7 +72,12 @@ void main()
     vec4 mean = vec4(0.0), low = vec4(0.0);
     vec3 deviation = vec3(0.0);
     float before = float(args.samples_before);
-    if (args.samples_before > 0u) {
+    if (args.resumed != 0u) {
+        vec4 deviation_alpha = texelFetch(resumed_deviation_tex, pixel, 0);
+        mean = vec4(texelFetch(resumed_tex, pixel, 0).rgb, deviation_alpha.a);
+        low = texelFetch(resumed_low_tex, pixel, 0);
+        deviation = deviation_alpha.rgb;
+    } else if (args.samples_before > 0u) {
         mean = imageLoad(mean_image, pixel);
         low = imageLoad(low_image, pixel);
         deviation = imageLoad(deviation_image, pixel).rgb;
@@ -81,7 +92,7 @@ void main()
     mean = mean_next;
     imageStore(mean_image, pixel, mean_next);
     imageStore(low_image, pixel, low_next);
-    imageStore(deviation_image, pixel, vec4(deviation, 0.0));
+    imageStore(deviation_image, pixel, vec4(deviation, mean.a));
 
     float alpha = args.opaque != 0u ? 1.0 : clamp(mean.a, 0.0, 1.0);
     imageStore(radiance_image, pixel, vec4(mean.rgb, alpha));
@@ -91,7 +102,10 @@ void main()
 
     if (args.layers != 0u) {
         layer_means now = layer_means(vec3(0.0), vec3(0.0), vec3(0.0));
-        if (args.samples_before > 0u) {
+        if (args.resumed != 0u) {
+            now = layer_means(texelFetch(resumed_single_tex, pixel, 0).rgb, texelFetch(resumed_multiple_tex, pixel, 0).rgb,
+                              texelFetch(resumed_transmittance_tex, pixel, 0).rgb);
+        } else if (args.samples_before > 0u) {
             now = layer_means(imageLoad(mean_single_image, pixel).rgb, imageLoad(mean_multiple_image, pixel).rgb,
                               imageLoad(mean_transmittance_image, pixel).rgb);
         }

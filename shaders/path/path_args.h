@@ -73,9 +73,10 @@ struct path_resolve_args {
     tyn_uint samples_before; // in the running statistics; 0: start anew
     tyn_uint layers;         // 1: single, multiple, transmittance as well
     tyn_uint opaque;         // 1: a background is seen, alpha is 1
+    tyn_uint resumed;        // images: 1: they are those that are gone on from
     tyn_vec3 lamps;          // balance: power of the lamps inside, W
 };
-TYN_ASSERT_SIZE(path_resolve_args, 40);
+TYN_ASSERT_SIZE(path_resolve_args, 44);
 
 // A probe's values: fluence (3 channels), then net flux (3 axes of M x 3 channels).
 #define TYN_PATH_PROBE_VALUES 12

@@ -30,14 +30,16 @@ typedef struct tyn_path_params {
     uint32_t near_lamps;  // those in or near the media
     uint32_t environment; // TYN_PATH_ENV_*
     float sigma_guess;    // typical extinction, 1/m
-    float stretch;   // > 1: images and probes draw first flights for so many times the extinction
-    uint32_t layers; // images: single, multiple and transmittance as well
-    uint32_t opaque; // images: a background is seen, alpha is 1
-    uint32_t scattered;  // probes: without light that has not scattered
-    float world[3][3];   // probes: the world's axes in M
-    float lamp_power[3]; // balance: of the lamps inside, W
-    float box[2][3];     // balance of surfaces: corners of the box around everything, M
-    uint32_t chunks;     // balance: dispatches of num_samples paths each; fluxes: of each thread
+    float stretch; // > 1: images and probes draw first flights for so many times the extinction
+    uint32_t sample_offset; // images: of the random numbers
+    uint32_t resumed;       // images: the statistics before are those that are gone on from
+    uint32_t layers;        // images: single, multiple and transmittance as well
+    uint32_t opaque;        // images: a background is seen, alpha is 1
+    uint32_t scattered;     // probes: without light that has not scattered
+    float world[3][3];      // probes: the world's axes in M
+    float lamp_power[3];    // balance: of the lamps inside, W
+    float box[2][3];        // balance of surfaces: corners of the box around everything, M
+    uint32_t chunks;        // balance: dispatches of num_samples paths each; fluxes: of each thread
 } tyn_path_params;
 
 enum { PATH_NUM_PARAMS = 3 };
@@ -70,7 +72,7 @@ static inline path_split path_split_work(const tyn_path_params *p, uint32_t elem
 static inline struct path_args path_trace_args(const tyn_path_params *p)
 {
     return (struct path_args){
-        .first_sample = p->first_sample,
+        .first_sample = p->first_sample + p->sample_offset,
         .num_samples = p->num_samples,
         .seed = p->seed,
         .num_lights = p->num_lights,

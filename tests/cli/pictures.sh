@@ -108,7 +108,7 @@ refuses 2 "puff.0006.nvdb" render puffs.gltf --size 32x32 --quiet --frames 6-7 -
 refuses 2 "puff.####.nvdb" render puffs.gltf --size 32x32 --quiet -o n.exr
 refuses 2 "puff.0001.nvdb" render puff.####.nvdb --size 32x32 --quiet --frames 1-2 -o n_#.exr
 
-# ---- interruption: exit 130 and no file ----
+# ---- interruption: exit 130, and what there is (resume.sh has more) ----
 "$tool" render "$scenes/cube.gltf" --size 512x512 --quiet --method path --spp 100000 -o i.exr &
 pid=$!
 sleep 2
@@ -116,7 +116,8 @@ kill -INT $pid
 wait $pid
 code=$?
 [ "$code" = 130 ] || fail "interrupted: exit $code"
-[ -e i.exr ] && fail "interrupted: there is a file"
+[ -s i.exr ] || fail "interrupted: there is no file"
+rm -f i.exr
 
 # ---- probe, balance, graph ----
 printf 'x,y,z\n0.5,0.5,0.5\n0.25,0.5,0.5\n' >points.csv

@@ -61,6 +61,63 @@ static void round_trip(void **state)
     }
 }
 
+// What a file says beside its pixels comes back; channels that are to be exact are, whatever the others are.
+static void attributes(void **state)
+{
+    (void)state;
+    tyn_image_file image, read;
+    io_log log;
+    io_log_init(&log);
+    fill(&image);
+    image.channels[1].exact = true;
+    image.screen_width = 1.25f;
+    double matrix[16], primaries[8] = {0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329};
+    for (int i = 0; i < 16; i++) {
+        matrix[i] = 0.5 * i - 3;
+    }
+    const double samples = 16777217; // no float is
+    assert_true(tyn_image_file_set_text(&image, "comments", "first"));
+    assert_true(tyn_image_file_set_text(&image, "tyndall:settings", "{\"a\": \"\xc3\xa4\"}"));
+    assert_true(tyn_image_file_set_text(&image, "comments", "then this"));
+    assert_true(tyn_image_file_set_numbers(&image, "samples", TYN_ATTRIBUTE_INTEGER, &samples));
+    assert_true(tyn_image_file_set_numbers(&image, "gain", TYN_ATTRIBUTE_NUMBER, &matrix[1]));
+    assert_true(tyn_image_file_set_numbers(&image, "worldToCamera", TYN_ATTRIBUTE_MATRIX, matrix));
+    assert_true(tyn_image_file_set_numbers(&image, "chromaticities", TYN_ATTRIBUTE_CHROMATICITIES,
+                                           primaries));
+    char name[100] = "";
+    memset(name, 'n', sizeof name - 1);
+    assert_false(tyn_image_file_set_text(&image, name, "too long a name"));
+    assert_int_equal(image.num_attributes, 6);
+    const char *path = io_path("told.exr");
+    assert_int_equal(tyn_exr_write(&image, path, false, &log.log), TYN_OK);
+    assert_int_equal(tyn_exr_read(&read, path, &log.log), TYN_OK);
+    assert_int_equal(log.errors + log.warnings, 0);
+    assert_int_equal(read.num_attributes, 6);
+    assert_true(read.screen_width == 1.25f);
+    assert_string_equal(tyn_image_file_text(&read, "comments"), "then this");
+    assert_string_equal(tyn_image_file_text(&read, "tyndall:settings"), "{\"a\": \"\xc3\xa4\"}");
+    assert_true(tyn_image_file_attribute(&read, "samples")->values[0] == samples);
+    assert_true(tyn_image_file_attribute(&read, "gain")->values[0] == -2.5);
+    const tyn_attribute *m = tyn_image_file_attribute(&read, "worldToCamera");
+    const tyn_attribute *c = tyn_image_file_attribute(&read, "chromaticities");
+    assert_true(m && m->kind == TYN_ATTRIBUTE_MATRIX);
+    assert_true(c && c->kind == TYN_ATTRIBUTE_CHROMATICITIES);
+    for (int i = 0; i < 16; i++) {
+        assert_true(m->values[i] == matrix[i]);
+        assert_true(i >= 8 || fabs(c->values[i] - primaries[i]) < 1e-7);
+    }
+    assert_null(tyn_image_file_attribute(&read, "owner"));
+    assert_null(tyn_image_file_text(&read, "samples"));
+    uint32_t rounded = 0;
+    for (int i = 0; i < WIDTH * HEIGHT; i++) {
+        assert_true(tyn_image_file_channel(&read, "B")[i] == at(1, i));
+        rounded += tyn_image_file_channel(&read, "transmittance.R")[i] != at(0, i);
+    }
+    assert_true(rounded > 0);
+    tyn_image_file_finish(&read);
+    tyn_image_file_finish(&image);
+}
+
 // Noise with more and more zeros: among these are rows that compress to exactly their own size, which OpenEXR 3.1.5
 // takes for rows that are not compressed.
 static void incompressible(void **state)
@@ -371,10 +428,10 @@ static void real_file(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip), cmocka_unit_test(incompressible),
-        cmocka_unit_test(saturation), cmocka_unit_test(environments),
-        cmocka_unit_test(kinds),      cmocka_unit_test(broken),
-        cmocka_unit_test(png),        cmocka_unit_test(png_refusals),
-        cmocka_unit_test(real_file)};
+        cmocka_unit_test(round_trip),     cmocka_unit_test(attributes),
+        cmocka_unit_test(incompressible), cmocka_unit_test(saturation),
+        cmocka_unit_test(environments),   cmocka_unit_test(kinds),
+        cmocka_unit_test(broken),         cmocka_unit_test(png),
+        cmocka_unit_test(png_refusals),   cmocka_unit_test(real_file)};
     return run_cases(tests, NULL, io_test_clean);
 }

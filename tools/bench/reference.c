@@ -168,7 +168,7 @@ static found read_own(const char *path, const tyn_view *view, uint64_t scene, be
     if (!path || tyn_exr_read(&r->file, path, NULL) != TYN_OK) {
         return FOUND_NOT;
     }
-    cJSON *json = r->file.comments ? cJSON_Parse(r->file.comments) : NULL;
+    cJSON *json = cJSON_Parse(tyn_image_file_text(&r->file, "comments"));
     const double spp = json_figure(json, "spp"), seconds = json_figure(json, "seconds");
     const bool ours = take_channels(r, view) && r->known_noise && spp >= 2 && seconds >= 0 &&
                       strcmp(json_text(json, "scene"), hash) == 0;
@@ -193,10 +193,18 @@ typedef struct keeper {
 
 static int write_own(const keeper *k, const bench_reference *r, const char *path, bool whole)
 {
-    tyn_image_file file = r->file;
-    file.comments = comments_of(r, k->scene);
-    const tyn_result result = tyn_exr_write(&file, path, whole, whole ? NULL : &k->a->log);
-    free(file.comments);
+    tyn_image_file file = {.width = r->file.width,
+                           .height = r->file.height,
+                           .num_channels = r->file.num_channels,
+                           .channels = r->file.channels};
+    char *comments = comments_of(r, k->scene);
+    tyn_result result =
+        tyn_image_file_set_text(&file, "comments", comments) ? TYN_OK : TYN_ERR_MEMORY;
+    result = result ? result : tyn_exr_write(&file, path, whole, whole ? NULL : &k->a->log);
+    file.channels = NULL; // are the reference's
+    file.num_channels = 0;
+    tyn_image_file_finish(&file);
+    free(comments);
     return app_exit_code(k->a, result, false);
 }
 

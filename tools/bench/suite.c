@@ -55,8 +55,12 @@ static void read_scene(suite_reader *r, const cJSON *json, const scene_defaults 
                                        "lights",
                                        "reference",
                                        NULL};
-    *s = (bench_scene){
-        .json = json, .scene.env_strength = 1, .scene.frame = NAN, .view.size = defaults->size};
+    *s = (bench_scene){.json = json,
+                       .scene.env_strength = 1,
+                       .scene.frame = NAN,
+                       .scene.time = NAN,
+                       .scene.fps = 24,
+                       .view.size = defaults->size};
     suite_check_keys(r, json, keys);
     const char *file = suite_text(r, json, "scene", true);
     if (!file) {

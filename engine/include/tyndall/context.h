@@ -76,6 +76,14 @@ typedef enum tyn_output {
     TYN_OUTPUT_COMPOSITE = 1 << 9,     // into tyn_frame.color
     TYN_OUTPUT_FLUXES = 1 << 10,       // buffer: tyn_fluxes (path)
     TYN_OUTPUT_LIGHT = 1 << 11,        // into tyn_frame.light (pop, lpv, photon)
+    // RGBA32F: with RADIANCE all that the samples so far have left, for tyn_resume (path).
+    TYN_OUTPUT_LOW =
+        1 << 12, // what single precision has lost of the mean: radiance and alpha less this
+    TYN_OUTPUT_DEVIATION = 1 << 13, // RGB: sum of squared deviations of the radiance; A: mean alpha
+    // RGBA32F, of the first surfaces, means over the pixel, 0 where there is none (path, pop): what denoisers read.
+    TYN_OUTPUT_ALBEDO = 1 << 14, // RGB 0 to 1; A: share of the pixel that shows a surface
+    TYN_OUTPUT_NORMAL =
+        1 << 15, // XYZ for shading, world, towards the camera; shorter than 1 where they differ
 } tyn_output;
 // "radiance", ... in lower case; of what is none of them "unknown".
 TYN_API const char *tyn_output_name(tyn_output which);
@@ -113,6 +121,15 @@ typedef struct tyn_fluxes {
     tyn_flux_values mean, se; // and standard errors
 } tyn_fluxes;
 
+// Samples of the same picture that an earlier context has taken, by the same method, settings and seed. Its outputs, RGBA
+// each, as large as the view.
+typedef struct tyn_resume {
+    uint32_t num_samples;                           // of each pixel, > 0
+    const float *radiance, *low, *deviation;        // Required
+    const float *single, *multiple, *transmittance; // Required with the output of this name
+    uint64_t hash; // another number whenever something above changes; not 0
+} tyn_resume;
+
 // What to compute and from where.
 typedef struct tyn_view {
     tyn_camera camera;
@@ -124,6 +141,11 @@ typedef struct tyn_view {
     // Progressive methods (path): this record adds samples [first_sample, first_sample + num_samples)
     // of every pixel or point to what the context has accumulated; first_sample 0 starts anew.
     uint32_t first_sample, num_samples;
+    // Pictures (path): random numbers are those of samples from here on, so that parts of a picture may be taken apart.
+    uint32_t sample_offset;
+    // Pictures (path): the record whose first_sample is resume->num_samples goes on from there, to the bit. NULL: from what
+    // the context has accumulated.
+    const tyn_resume *resume;
     uint32_t max_depth;       // path: longest path in scatterings; 0 = no limit but the safety cap
     uint32_t rr_depth;        // path: Russian roulette from this depth on; 0 = default
     const float (*points)[3]; // PROBE: world positions

@@ -26,6 +26,17 @@ TYN_API tyn_result tyn_scene_load(tyn_scene *scene, const char *path, const char
 TYN_API tyn_result tyn_scene_load_frame(tyn_scene *scene, const char *path, const char *environment,
                                         uint32_t frame, const tyn_log *log);
 
+// Which picture of a sequence, and where animations of a glTF file put its nodes and cameras.
+typedef struct tyn_moment {
+    bool numbered, timed; // `frame` is given; `seconds` is
+    uint32_t frame;       // as of tyn_scene_load_frame
+    double seconds;       // finite
+} tyn_moment;
+// The same at a moment; NULL: none. Without a time nodes are where the file puts them, with a warning if it has animations.
+TYN_API tyn_result tyn_scene_load_moment(tyn_scene *scene, const char *path,
+                                         const char *environment, const tyn_moment *moment,
+                                         const tyn_log *log);
+
 // Loads one grid of a volume file (.nvdb, .vdb) by its extension; `grid` NULL = "density", else the
 // first float grid. Negative values are set to 0 and added to `clamped_negative` (may be NULL).
 TYN_API tyn_result tyn_volume_load(tyn_volume *volume, const char *path, const char *grid,
@@ -45,21 +56,48 @@ TYN_API tyn_result tyn_surfaces_build_nodes(tyn_surfaces *surfaces, const tyn_lo
 typedef struct tyn_channel {
     char name[48]; // "R", "transmittance.R", "depth.Z", ...
     float *data;   // width * height
+    bool exact;    // written as 32-bit float in any case: depths, sums
 } tyn_channel;
+
+// What a file says of its image beside the pixels, as OpenEXR names it.
+typedef enum tyn_attribute_kind {
+    TYN_ATTRIBUTE_TEXT = 0,       // string, UTF-8
+    TYN_ATTRIBUTE_INTEGER,        // int: values[0]
+    TYN_ATTRIBUTE_NUMBER,         // float: values[0]
+    TYN_ATTRIBUTE_MATRIX,         // m44f: 16, of row vectors (v M), row after row
+    TYN_ATTRIBUTE_CHROMATICITIES, // 8: x and y of red, green, blue, white
+} tyn_attribute_kind;
+typedef struct tyn_attribute {
+    char name[64];
+    tyn_attribute_kind kind;
+    char *text;        // TEXT, from malloc; else NULL
+    double values[16]; // of the others
+} tyn_attribute;
 typedef struct tyn_image_file {
     uint32_t width, height;
     uint32_t num_channels;
     tyn_channel *channels;
-    char *comments; // of an EXR file, UTF-8: its attribute "comments"; NULL: none
+    // Of an EXR file; those of other kinds are not read, those that every file has are not among them.
+    uint32_t num_attributes;
+    tyn_attribute *attributes;
+    // Width of the picture plane at distance 1 ("screenWindowWidth"); 0 when written: 1.
+    float screen_width;
 } tyn_image_file;
 // One part, scanlines or tiles, any compression; half and float channels of full resolution.
 TYN_API tyn_result tyn_exr_read(tyn_image_file *image, const char *path, const tyn_log *log);
-// `full_float` false: half (values beyond 65504 saturate and are counted in one warning).
+// `full_float` false: half but for exact channels (values beyond 65504 saturate and are counted in one warning).
 TYN_API tyn_result tyn_exr_write(const tyn_image_file *image, const char *path, bool full_float,
                                  const tyn_log *log);
 TYN_API void tyn_image_file_finish(tyn_image_file *image);
 // NULL: not there.
 TYN_API float *tyn_image_file_channel(const tyn_image_file *image, const char *name);
+TYN_API const tyn_attribute *tyn_image_file_attribute(const tyn_image_file *image,
+                                                      const char *name);
+TYN_API const char *tyn_image_file_text(const tyn_image_file *image, const char *name);
+// Adds an attribute, or gives one that is there another value. False: no memory. Numbers: as many as `kind` has.
+TYN_API bool tyn_image_file_set_text(tyn_image_file *image, const char *name, const char *text);
+TYN_API bool tyn_image_file_set_numbers(tyn_image_file *image, const char *name,
+                                        tyn_attribute_kind kind, const double *values);
 
 // 8-bit RGB(A), row 0 at the top.
 TYN_API tyn_result tyn_png_write(const char *path, uint32_t width, uint32_t height,

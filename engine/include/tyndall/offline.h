@@ -31,9 +31,13 @@ TYN_API tyn_result tyn_offline_frame(tyn_offline *off, const tyn_scene *scene, c
 // A foreign density image, depth or composite target cannot be given here.
 
 // Called between the records of such a frame with the share of its samples that is done. False stops
-// it: tyn_offline_frame returns TYN_ERR_STOPPED, and the outputs are not of all samples.
+// it: tyn_offline_frame returns TYN_ERR_STOPPED, and the outputs are of tyn_offline_samples. They may be read in the call.
 typedef bool (*tyn_progress_fn)(void *user, double fraction);
 TYN_API void tyn_offline_on_progress(tyn_offline *off, tyn_progress_fn fn, void *user);
+
+// Samples of each pixel or point that the last frame has done, during it and after it: after TYN_ERR_STOPPED fewer than were
+// asked for, and the outputs are of these.
+TYN_API uint32_t tyn_offline_samples(const tyn_offline *off);
 
 TYN_API const void *tyn_offline_output(tyn_offline *off, tyn_output output);
 // Of the last frame: times, dispatches and work of a node are sums over the frame's records.

@@ -31,8 +31,9 @@ typedef struct tyn_scene_refs {
     tyn_ref color;    // COMPOSITE: host colour, as large as the view or twice that
     tyn_ref
         full_depth; // COMPOSITE: host depth as large as a colour image of twice the view; else {0}
-    tyn_ref images[3]; // host images for RADIANCE, TRANSMITTANCE, DEPTH: tyn_job_output fills them
-    tyn_ref light[3];  // LIGHT: host images of red, green and blue
+    tyn_ref images[3];  // host images for RADIANCE, TRANSMITTANCE, DEPTH: tyn_job_output fills them
+    tyn_ref light[3];   // LIGHT: host images of red, green and blue
+    tyn_ref resumed[6]; // tyn_view.resume: its images, in their order; {0}: none
 } tyn_scene_refs;
 
 typedef struct tyn_picture_hook tyn_picture_hook;
@@ -86,10 +87,12 @@ TYN_API void tyn_job_output(tyn_graph *g, const tyn_job *job, tyn_output which, 
 TYN_API void tyn_job_counters(tyn_graph *g, const tyn_job *job, const tyn_pass_desc *pass,
                               tyn_ref ref);
 
+// What surfaces show whatever shines on them: tyn_add_results makes it.
+#define TYN_GUIDE_OUTPUTS (TYN_OUTPUT_ALBEDO | TYN_OUTPUT_NORMAL)
 // Outputs that are gathered along the rays of a camera.
 #define TYN_PICTURE_OUTPUTS                                                                        \
-    (TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH | TYN_OUTPUT_SINGLE |       \
-     TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_DISPLAY | TYN_OUTPUT_COMPOSITE)
+    (TYN_GUIDE_OUTPUTS | TYN_OUTPUT_RADIANCE | TYN_OUTPUT_TRANSMITTANCE | TYN_OUTPUT_DEPTH |       \
+     TYN_OUTPUT_SINGLE | TYN_OUTPUT_MULTIPLE | TYN_OUTPUT_DISPLAY | TYN_OUTPUT_COMPOSITE)
 
 // A line among the report's warnings.
 TYN_API void tyn_job_warn(const tyn_job *job, const char *format, ...) TYN_PRINTF(2, 3);

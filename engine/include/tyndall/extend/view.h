@@ -33,7 +33,7 @@ TYN_API void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs 
 // Marches: what the job and its hooks want of radiance, transmittance and depth; makes the outputs SINGLE and MULTIPLE.
 TYN_API tyn_picture tyn_add_march(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
 // Hands the picture through the job's hooks and makes what the job wants of it: radiance, transmittance, depth, the host's
-// picture, the display image.
+// picture, the display image; and beside it albedo and normal of the surfaces.
 TYN_API void tyn_add_results(tyn_graph *g, const tyn_job *job, tyn_picture picture);
 // Both: a method that changes the picture itself does so between the two.
 TYN_API void tyn_add_picture(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in);
@@ -50,7 +50,7 @@ TYN_API void tyn_add_views(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in
 
 // The passes of these calls, for a method's table (method.h).
 #define TYN_GATHER_PASSES(X) X(scatter_lut), X(env_glow), X(merge)
-#define TYN_SURFACE_PASSES(X) X(gbuffer), X(shade)
+#define TYN_SURFACE_PASSES(X) X(gbuffer), X(shade), X(guides)
 #define TYN_PICTURE_PASSES(X) X(halve_depth), X(raymarch), X(composite), X(tonemap), X(export)
 #define TYN_FIELD_PASSES(X) X(light_points), X(probe), X(light_field), X(balance)
 

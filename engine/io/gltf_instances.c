@@ -1,0 +1,74 @@
+// gltf_instances.c -- EXT_mesh_gpu_instancing: one mesh of a node in many places.
+#include "io/gltf_instances.h"
+#include <stdlib.h>
+#include <string.h>
+
+// One of the attributes; all must have as many elements.
+static tyn_result read_attribute(gltf_instances *instances, const gltf_data *data,
+                                 const cJSON *attributes, const char *name, uint32_t components,
+                                 gltf_floats *out)
+{
+    const cJSON *at = tyn_json_member(attributes, name);
+    int64_t unused;
+    if (!at) {
+        return TYN_OK;
+    }
+    TYN_TRY(tyn_json_index(data->doc, at, data->accessors.count, "accessors", &unused));
+    TYN_TRY(tyn_gltf_read_floats(data, at, components, components, out));
+    if (instances->count && instances->count != out->count) {
+        return tyn_json_fault(data->doc, at, "has %u elements, the one before has %u", out->count,
+                              instances->count);
+    }
+    instances->count = out->count;
+    return TYN_OK;
+}
+
+tyn_result tyn_gltf_instances_read(gltf_instances *instances, const gltf_data *data,
+                                   const cJSON *node)
+{
+    cJSON *extensions, *instancing, *attributes;
+    *instances = (gltf_instances){0};
+    TYN_TRY(tyn_json_object(data->doc, node, "extensions", &extensions));
+    TYN_TRY(tyn_json_object(data->doc, extensions, "EXT_mesh_gpu_instancing", &instancing));
+    TYN_TRY(tyn_json_object(data->doc, instancing, "attributes", &attributes));
+    tyn_result r =
+        read_attribute(instances, data, attributes, "TRANSLATION", 3, &instances->translations);
+    r = r ? r : read_attribute(instances, data, attributes, "ROTATION", 4, &instances->rotations);
+    r = r ? r : read_attribute(instances, data, attributes, "SCALE", 3, &instances->scales);
+    const float *q = instances->rotations.values;
+    for (uint32_t i = 0; !r && i < instances->rotations.count; i++, q += 4) {
+        if (!(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] > 1e-6f)) {
+            r = tyn_json_fault(data->doc, tyn_json_member(attributes, "ROTATION"),
+                               "element %u is no rotation: a quaternion of length 0", i);
+        }
+    }
+    if (r) {
+        tyn_gltf_instances_finish(instances);
+    }
+    return r;
+}
+
+void tyn_gltf_instances_finish(gltf_instances *instances)
+{
+    free(instances->translations.values);
+    free(instances->rotations.values);
+    free(instances->scales.values);
+    *instances = (gltf_instances){0};
+}
+
+void tyn_gltf_instance_matrix(const gltf_instances *instances, uint32_t i, double m[16])
+{
+    double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
+    const struct {
+        const gltf_floats *from;
+        double *to;
+    } parts[] = {
+        {&instances->translations, t}, {&instances->rotations, q}, {&instances->scales, s}};
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
+        const gltf_floats *f = parts[k].from;
+        for (uint32_t c = 0; f->count && c < f->components; c++) {
+            parts[k].to[c] = (double)f->values[(size_t)i * f->components + c];
+        }
+    }
+    tyn_gltf_trs(m, t, q, s);
+}

@@ -1,0 +1,18 @@
+// resume.h -- a picture that a method samples, taken up again from its .exr.
+#pragma once
+#include "tags.h"
+#include <tyndall/context.h>
+
+// Channels of sums, which a finished picture needs no more.
+#define RESUME_LOW "resume_low"             // .R .G .B .A: TYN_OUTPUT_LOW
+#define RESUME_DEVIATION "resume_deviation" // .R .G .B: TYN_OUTPUT_DEVIATION; .A: mean alpha
+
+typedef struct resumed {
+    tyn_resume resume; // num_samples 0: there is nothing to go on from
+    float *planes;     // what it points to
+} resumed;
+
+// Reads the .exr at `path`, which must be of the picture that `tags` tells of, with samples of view.seed from
+// view.sample_offset on. A file that is not there is no fault. Gives the exit code; resumed_finish is due in any case.
+int resumed_read(app *a, const char *path, const picture_tags *tags, resumed *r);
+void resumed_finish(resumed *r);
