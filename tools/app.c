@@ -48,10 +48,16 @@ void app_init(app *a)
     a->command = "";
     progress_init(&a->bar);
     a->log = (tyn_log){print_log, a, TYN_LOG_WARN};
+    static const int ends[] = {SIGINT, SIGTERM, SIGHUP};
     struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    for (size_t i = 0; i < ARRAY_SIZE(ends); i++) {
+        struct sigaction before; // a shell's nohup stays
+        if (sigaction(ends[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
+            sigaction(ends[i], &action, NULL);
+        }
+    }
+    signal(SIGXFSZ, SIG_IGN); // then writing says that the file would get too large
 }
 
 #define FORMAT_LINE(line, format)                                                                  \

@@ -5,9 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <tyndall/io.h>
-#include <unistd.h>
 
 // A layer is some components of an output image.
 typedef struct layer {
@@ -101,21 +99,10 @@ static bool add_layer(app *a, const tyn_method_info *info, const char *name, siz
 bool output_folder_is_writable(app *a, const char *path)
 {
     const char *slash = strrchr(path, '/');
-    char *folder = slash ? text_format("%.*s", slash == path ? 1 : (int)(slash - path), path)
-                         : text_format(".");
-    struct stat status;
-    bool known = !sequence_has_number(folder);
-    bool there = folder && stat(folder, &status) == 0 && S_ISDIR(status.st_mode);
-    bool writable = !known || (there && access(folder, W_OK) == 0);
-    if (writable && stat(path, &status) == 0 && S_ISDIR(status.st_mode)) {
-        app_error(a, "%s: cannot be written: it is a folder; give the name of a file", path);
-        writable = false;
-    } else if (!writable) {
-        app_error(a, "%s: cannot be written: the folder '%s' %s", path, folder ? folder : "",
-                  there ? "is not writable" : "is not there");
-    }
+    char *folder = text_format("%.*s", slash ? (int)(slash - path) : 0, path);
+    bool unknown = folder && sequence_has_number(folder);
     free(folder);
-    return writable;
+    return unknown || tyn_file_writable(path, &a->log) == TYN_OK;
 }
 
 int output_plan_make(app *a, const tyn_method_info *info, const opt_list *files, const char *aov,

@@ -32,11 +32,18 @@ static void keep_message(exr_const_context_t context, exr_result_t code, const c
     }
 }
 
-static tyn_result report(stream *s, exr_result_t code, const char *file, const tyn_log *log)
+static void say(const stream *s, exr_result_t code, const char *file, const tyn_log *log)
 {
     tyn_log_print(log, TYN_LOG_ERROR, "%s: %s", file,
                   s->message[0] ? s->message : exr_get_default_error_message(code));
-    return code == EXR_ERR_OUT_OF_MEMORY ? TYN_ERR_MEMORY : TYN_ERR_PARAMS;
+}
+
+// Of a file that is read. The library says EXR_ERR_OUT_OF_MEMORY also of damaged data (PIZ); its own memory is small
+// beside the channels, which are not its own.
+static tyn_result report(const stream *s, exr_result_t code, const char *file, const tyn_log *log)
+{
+    say(s, code, file, log);
+    return TYN_ERR_PARAMS;
 }
 
 // ---- images ---------------------------------------------------------------------------------
@@ -460,7 +467,9 @@ tyn_result tyn_exr_write(const tyn_image_file *image, const char *path, bool ful
         exr_result_t e = write_picture(&context, image, data, full_float, &s, path);
         exr_result_t f = context ? exr_finish(&context) : EXR_ERR_SUCCESS; // writes the offsets
         if (e || f) {
-            r = report(&s, e ? e : f, path, log);
+            e = e ? e : f;
+            say(&s, e, path, log);
+            r = e == EXR_ERR_OUT_OF_MEMORY ? TYN_ERR_MEMORY : TYN_ERR_PARAMS;
         }
     }
     if (!r) {

@@ -1,51 +1,94 @@
-// file.c -- whole files in and out; a written file appears under its name only when it is complete.
-#include <tyndall/io.h>
+// file.c -- whole files in. Only regular files are opened: others would be waited for, or never end.
+#include "io/file.h"
 #include "base/given.h"
 #include <errno.h>
-#include <stdio.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+static const char *kind_of(mode_t mode)
+{
+    return S_ISDIR(mode)    ? "a folder"
+           : S_ISFIFO(mode) ? "a FIFO"
+           : S_ISSOCK(mode) ? "a socket"
+                            : "a device";
+}
+
+// Gives a descriptor and the size in bytes, or -1 after a line.
+static int open_regular(const char *path, uint64_t limit, uint64_t *size, tyn_result *result,
+                        const tyn_log *log)
+{
+    struct stat info;
+    *result = TYN_ERR_IO;
+    // Looked at before it is opened, as opening alone waits for a FIFO and changes some devices; and after, as it may be
+    // another by then.
+    bool there = stat(path, &info) == 0;
+    int fd = there && S_ISREG(info.st_mode) ? open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC) : -1;
+    if (fd >= 0 ? fstat(fd, &info) != 0 : !there || S_ISREG(info.st_mode)) {
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: cannot be opened: %s", path, strerror(errno));
+        if (fd >= 0) {
+            close(fd);
+        }
+        return -1;
+    }
+    *size = (uint64_t)info.st_size;
+    if (!S_ISREG(info.st_mode)) {
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: is %s: must be a regular file", path,
+                      kind_of(info.st_mode));
+    } else if (*size > limit) {
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: has %llu bytes, at most %llu are read", path,
+                      (unsigned long long)*size, (unsigned long long)limit);
+        *result = TYN_ERR_PARAMS;
+    } else {
+        *result = TYN_OK;
+        return fd;
+    }
+    if (fd >= 0) {
+        close(fd);
+    }
+    return -1;
+}
+
+// Gives how many bytes there were.
+static size_t read_all(int fd, char *bytes, size_t size)
+{
+    size_t got = 0;
+    while (got < size) {
+        const ssize_t n = read(fd, bytes + got, size - got);
+        if (n == 0 || (n < 0 && errno != EINTR)) {
+            break;
+        }
+        got += n > 0 ? (size_t)n : 0;
+    }
+    return got;
+}
 
 tyn_result tyn_file_read(const char *path, uint64_t limit, void **data, size_t *size,
                          const tyn_log *log)
 {
-    struct stat info;
+    tyn_result r;
+    uint64_t length;
     if (!TYN_GIVEN(log, path, data, size)) {
         return TYN_ERR_PARAMS;
     }
     *data = NULL;
     *size = 0;
-    FILE *file = fopen(path, "rb");
-    if (!file || fstat(fileno(file), &info) != 0) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: cannot be opened: %s", path, strerror(errno));
-        if (file) {
-            fclose(file);
-        }
-        return TYN_ERR_IO;
-    }
-    if (!S_ISREG(info.st_mode)) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: is not a regular file", path);
-        fclose(file);
-        return TYN_ERR_IO;
-    }
-    uint64_t length = (uint64_t)info.st_size;
-    if (length > limit) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: has %llu bytes, at most %llu are read", path,
-                      (unsigned long long)length, (unsigned long long)limit);
-        fclose(file);
-        return TYN_ERR_PARAMS;
+    int fd = open_regular(path, limit, &length, &r, log);
+    if (fd < 0) {
+        return r;
     }
     char *bytes = malloc((size_t)length + 1);
     if (!bytes) {
         tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory for its %llu bytes", path,
                       (unsigned long long)length);
-        fclose(file);
+        close(fd);
         return TYN_ERR_MEMORY;
     }
-    size_t got = fread(bytes, 1, (size_t)length, file);
-    fclose(file);
+    size_t got = read_all(fd, bytes, (size_t)length);
+    close(fd);
     if (got != length) {
         tyn_log_print(log, TYN_LOG_ERROR, "%s: only %zu of %llu bytes could be read", path, got,
                       (unsigned long long)length);
@@ -58,44 +101,31 @@ tyn_result tyn_file_read(const char *path, uint64_t limit, void **data, size_t *
     return TYN_OK;
 }
 
-tyn_result tyn_file_write(const char *path, const void *data, size_t size, const tyn_log *log)
+tyn_result tyn_file_map(const char *path, uint64_t limit, const void **bytes, size_t *size,
+                        const tyn_log *log)
 {
-    if (!TYN_GIVEN(log, path) || (size && !TYN_GIVEN(log, data))) {
-        return TYN_ERR_PARAMS;
+    tyn_result r;
+    uint64_t length;
+    int fd = open_regular(path, limit, &length, &r, log);
+    if (fd < 0) {
+        return r;
     }
-    size_t length = strlen(path);
-    char *temporary = malloc(length + 8);
-    if (!temporary) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: no memory to write it", path);
-        return TYN_ERR_MEMORY;
-    }
-    memcpy(temporary, path, length);
-    memcpy(temporary + length, ".XXXXXX", 8);
-    int fd = mkstemp(temporary);
-    FILE *file = fd < 0 ? NULL : fdopen(fd, "wb");
-    bool ok = file && fwrite(data, 1, size, file) == size;
+    *size = (size_t)length;
+    *bytes = NULL; // of no bytes there is no mapping
+    void *mapping = length ? mmap(NULL, (size_t)length, PROT_READ, MAP_PRIVATE, fd, 0) : NULL;
     int error = errno;
-    if (file) {
-        mode_t mask = umask(0); // what open() would have given; mkstemp is private
-        umask(mask);
-        ok = fchmod(fd, 0666 & ~mask) == 0 && ok;
-        if (fclose(file) != 0) {
-            error = errno;
-            ok = false;
-        }
-    } else if (fd >= 0) {
-        close(fd);
+    close(fd);
+    if (mapping == MAP_FAILED) {
+        tyn_log_print(log, TYN_LOG_ERROR, "%s: cannot be read: %s", path, strerror(error));
+        return TYN_ERR_IO;
     }
-    if (ok && rename(temporary, path) != 0) {
-        error = errno;
-        ok = false;
+    *bytes = mapping;
+    return TYN_OK;
+}
+
+void tyn_file_unmap(const void *bytes, size_t size)
+{
+    if (size) {
+        munmap((void *)(uintptr_t)bytes, size);
     }
-    if (!ok) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: cannot be written: %s", path, strerror(error));
-        if (fd >= 0) {
-            unlink(temporary);
-        }
-    }
-    free(temporary);
-    return ok ? TYN_OK : TYN_ERR_IO;
 }

@@ -1,60 +1,20 @@
 // vdb.cpp -- OpenVDB files. The one place that knows OpenVDB; no exception leaves it.
 #include "io/vdb.h"
-#include <algorithm>
 #include <cstring>
 #include <exception>
-#include <fstream>
 #include <mutex>
 #include <new>
 #include <string>
 #include <vector>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Dense.h>
+#include "io/vdb_check.h"
 extern "C" {
+#include "io/file.h"
 #include "io/volume.h"
 }
 
 namespace {
-
-// The library takes the zeros that a short file gives it for values. So walk over the descriptors
-// of the grids first, and see that the last of them ends inside the file.
-class outline : public openvdb::io::Archive {
-  public:
-    explicit outline(const char *path)
-    {
-        std::ifstream in(path, std::ios::binary);
-        openvdb::io::StreamMetadata::Ptr tags(new openvdb::io::StreamMetadata);
-        readHeader(in);
-        openvdb::io::setStreamMetadataPtr(in, tags, false);
-        setFormatVersion(in);
-        setLibraryVersion(in);
-        setDataCompression(in);
-        openvdb::MetaMap().readMeta(in);
-        if (!inputHasGridOffsets()) {
-            return; // written to a stream: nothing says where it ends
-        }
-        for (int32_t i = 0, count = readGridCount(in); in && i < count; i++) {
-            openvdb::io::GridDescriptor grid;
-            grid.read(in);
-            grid.seekToEnd(in);
-            end_ = std::max(end_, grid.getEndPos());
-        }
-        in.seekg(0, std::ios::end);
-        whole_ = in.good() && end_ <= in.tellg();
-    }
-    bool whole() const
-    {
-        return whole_;
-    }
-
-  private:
-    Ptr copy() const override
-    {
-        return Ptr(new outline(*this));
-    }
-    int64_t end_ = 0;
-    bool whole_ = true;
-};
 
 struct entry {
     std::string name, type;
@@ -125,15 +85,25 @@ tyn_result copy_grid(tyn_volume *volume, const openvdb::FloatGrid &grid, const c
     return TYN_OK;
 }
 
+// The library believes what a file says of itself.
+tyn_result check(const char *path, const tyn_log *log)
+{
+    const void *bytes;
+    size_t size;
+    tyn_result r = tyn_file_map(path, TYN_MAX_FILE_BYTES, &bytes, &size, log);
+    if (r) {
+        return r;
+    }
+    bool whole = tyn_vdb_check(bytes, size, openvdb::OPENVDB_FILE_VERSION, path, log);
+    tyn_file_unmap(bytes, size);
+    return whole ? TYN_OK : TYN_ERR_PARAMS;
+}
+
 tyn_result load(tyn_volume *volume, const char *path, const char *grid, uint64_t *clamped,
                 const tyn_log *log)
 {
     static std::once_flag once; // registers the library's own types
     std::call_once(once, openvdb::initialize);
-    if (!outline(path).whole()) {
-        tyn_log_print(log, TYN_LOG_ERROR, "%s: is cut short: a grid ends beyond the file", path);
-        return TYN_ERR_PARAMS;
-    }
     openvdb::io::File file(path);
     file.open(false);
     std::vector<entry> entries = list_grids(file);
@@ -159,6 +129,10 @@ tyn_result tyn_vdb_load(tyn_volume *volume, const char *path, const char *grid,
 {
     tyn_result r = TYN_ERR_PARAMS;
     std::memset(volume, 0, sizeof *volume);
+    tyn_result checked = check(path, log);
+    if (checked) {
+        return checked;
+    }
     try {
         return load(volume, path, grid, clamped_negative, log);
     } catch (const std::bad_alloc &) {

@@ -249,6 +249,34 @@ static void refuse(const char *path, const char *says)
     assert_non_null(strstr(log.last, says));
 }
 
+// Damaged data of this compression, which the library calls a lack of memory: no bits are set in its bitmap, and its
+// code of so many bytes is none.
+static void damaged_piz(void **state)
+{
+    exr_context_t context;
+    uint8_t data[200] = {1, 0, 0, 0, 190};
+    uint32_t random = 1;
+    int part;
+    (void)state;
+    for (int i = 0; i < 64; i++) {
+        const char *path = io_path("piz.exr");
+        for (size_t k = 8; k < sizeof data; k++) {
+            random = random * 1664525u + 1013904223u;
+            data[k] = (uint8_t)(random >> 24);
+        }
+        memset(data + 8, 0, 8); // codes from 0 to 0
+        data[12] = (uint8_t)(i * 4);
+        assert_int_equal(exr_start_write(&context, path, EXR_WRITE_FILE_DIRECTLY, NULL), 0);
+        exr_add_part(context, "one", EXR_STORAGE_SCANLINE, &part);
+        exr_initialize_required_attr_simple(context, 0, 12, 12, EXR_COMPRESSION_PIZ);
+        exr_add_channel(context, 0, "Y", EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1);
+        assert_int_equal(exr_write_header(context), 0);
+        exr_write_scanline_chunk(context, 0, 0, data, sizeof data);
+        assert_int_equal(exr_finish(&context), 0);
+        refuse(path, "piz.exr");
+    }
+}
+
 static void kinds(void **state)
 {
     tyn_image_file image;
@@ -427,11 +455,16 @@ static void real_file(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip),     cmocka_unit_test(attributes),
-        cmocka_unit_test(incompressible), cmocka_unit_test(saturation),
-        cmocka_unit_test(environments),   cmocka_unit_test(kinds),
-        cmocka_unit_test(broken),         cmocka_unit_test(png),
-        cmocka_unit_test(png_refusals),   cmocka_unit_test(real_file)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(round_trip),
+                                       cmocka_unit_test(attributes),
+                                       cmocka_unit_test(incompressible),
+                                       cmocka_unit_test(saturation),
+                                       cmocka_unit_test(environments),
+                                       cmocka_unit_test(kinds),
+                                       cmocka_unit_test(broken),
+                                       cmocka_unit_test(damaged_piz),
+                                       cmocka_unit_test(png),
+                                       cmocka_unit_test(png_refusals),
+                                       cmocka_unit_test(real_file)};
     return run_cases(tests, NULL, io_test_clean);
 }

@@ -106,11 +106,15 @@ TYN_API tyn_result tyn_png_write(const char *path, uint32_t width, uint32_t heig
 TYN_API tyn_result tyn_png_read(const char *path, uint32_t *width, uint32_t *height, uint8_t **rgba,
                                 const tyn_log *log);
 
-// Whole files; `size` in bytes; freed with free(). Refuses files above `limit` bytes.
+// Whole files; `size` in bytes; freed with free(). Refuses files above `limit` bytes, and what is not a regular file.
 TYN_API tyn_result tyn_file_read(const char *path, uint64_t limit, void **data, size_t *size,
                                  const tyn_log *log);
+// A regular file, or a new one, is replaced when all is written, and nothing else is left of it if the process ends
+// before. A link is followed and stays; a device, a FIFO and a name of a descriptor (/dev/stdout) are written to.
 TYN_API tyn_result tyn_file_write(const char *path, const void *data, size_t size,
-                                  const tyn_log *log); // temporary name, then rename
+                                  const tyn_log *log);
+// Whether tyn_file_write could write there; nothing is touched. TYN_ERR_IO: a line says why not.
+TYN_API tyn_result tyn_file_writable(const char *path, const tyn_log *log);
 
 #ifdef __cplusplus
 }
