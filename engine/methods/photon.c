@@ -33,6 +33,21 @@ static bool has_light(const tyn_frame_scene *frame)
            tyn_is_lit(frame->environment.mean);
 }
 
+// Suns and lamps whose first scattering the march follows along the camera's rays; and what of all light only scatters forward.
+static void add_marched(tyn_graph *g, const tyn_job *job, tyn_sources *s, tyn_view_inputs *view)
+{
+    tyn_add_beams(g, job, s);
+    tyn_add_radials(g, job, s);
+    tyn_add_shadows(g, job, s);
+    view->sources = s;
+    view->num_marched_lamps = s->lamps.num_lamps;
+    if (job->outputs & TYN_PICTURE_OUTPUTS) {
+        view->mean_in_field = tyn_is_lit(job->frame->environment.sky);
+        tyn_add_forward_tables(g, job, view);
+        tyn_add_glow(g, job, view);
+    }
+}
+
 static tyn_result declare(tyn_graph *g, const tyn_job *job)
 {
     const tyn_frame_scene *frame = job->frame;
@@ -43,13 +58,20 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     if (!tyn_job_refuse_repeat(job)) {
         return TYN_ERR_PARAMS;
     }
-    if (job->outputs & TYN_OUTPUT_PROBE && job->view->scattered_only) {
+    tyn_photon_trace_params trace;
+    tyn_settings_params(job->settings, &tyn_pass_photon_trace, &trace);
+    // Of suns and lamps it is not in the cells, where they have beams.
+    const bool straight = trace.first == TYN_PHOTON_FIRST_CACHE ||
+                          tyn_is_lit(frame->environment.sky) ||
+                          frame->lights.num_suns > tyn_num_beams(&frame->lights);
+    if (job->outputs & TYN_OUTPUT_PROBE && job->view->scattered_only && straight) {
         tyn_log_print(job->log, TYN_LOG_ERROR,
-                      "'photon' keeps light that has not scattered with all other: probes cannot "
-                      "leave it out; 'pop' and 'path' can");
+                      "'photon' keeps the sky's light that has not scattered with all other (and "
+                      "that of suns and lamps with photon_trace.first=cache): probes cannot leave "
+                      "it out; 'pop' and 'path' can");
         return TYN_ERR_PARAMS;
     }
-    if (job->outputs & TYN_OUTPUT_LIGHT && !job->light->unscattered) {
+    if (job->outputs & TYN_OUTPUT_LIGHT && !job->light->unscattered && straight) {
         tyn_job_warn(job, "the light field holds light that has not scattered, too ('photon')");
     }
     warn_of_light(job);
@@ -58,17 +80,27 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
                       "the scene has no medium: 'photon' has nothing to probe; 'path' can");
         return TYN_ERR_PARAMS;
     }
+    tyn_sources marched = {0}; // with the light that is not in the cells
     if (!frame->empty || job->outputs & field_outputs) {
-        tyn_photon_trace_params trace;
-        tyn_settings_params(job->settings, &tyn_pass_photon_trace, &trace);
         tyn_add_medium(g, job, &s);
+        marched = s;
+        if (frame->environment
+                .has_map) { // its regions' directions, and what it is without its suns
+            tyn_add_sky(g, job, frame->lights.num_suns, true, &marched);
+        }
+        if (trace.first == TYN_PHOTON_FIRST_BEAMS) {
+            add_marched(g, job, &marched, &view);
+        }
         if (has_light(frame) || job->outputs & field_outputs) {
             tyn_add_cells(g, job, trace.shape.cells, "photon_trace.cells", &s);
             tyn_limits_warn(job, s.lattice.side);
-            tyn_solve_photon(g, job, &s, &field);
+            tyn_solve_photon(g, job, &s, &marched, &field);
+            marched.lattice = s.lattice;
         }
     }
-    memset(&s.walls, 0, sizeof s.walls); // photons know the surfaces themselves
+    // Photons know the surfaces themselves: there are no walls.
+    marched.sky.count = 0;
+    view.sources = &marched;
     if (job->outputs & TYN_OUTPUT_PROBE) {
         tyn_add_probe(g, job, &view);
     }
@@ -77,8 +109,10 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     }
     if (picture) {
         tyn_gather(g, job, &view);
-        tyn_add_shadows(g, job, &s);
-        tyn_add_surfaces_apart(g, job, s, &view);
+        if (!marched.shadows.shadow_atlas.resource) {
+            tyn_add_shadows(g, job, &marched);
+        }
+        tyn_add_surfaces_apart(g, job, marched, &view);
         tyn_add_picture(g, job, &view);
     }
     return tyn_graph_status(g);
@@ -88,8 +122,10 @@ static const tyn_pass_desc *const passes[] = {
     TYN_MEDIUM_PASSES(TYN_PASS_ADDRESS),
     TYN_SUN_PASSES(TYN_PASS_ADDRESS),
     TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
+    TYN_SKY_PASSES(TYN_PASS_ADDRESS),
     TYN_CELL_PASSES(TYN_PASS_ADDRESS),
     TYN_PHOTON_PASSES,
+    TYN_GATHER_PASSES(TYN_PASS_ADDRESS),
     TYN_SURFACE_PASSES(TYN_PASS_ADDRESS),
     TYN_PICTURE_PASSES(TYN_PASS_ADDRESS),
     &tyn_pass_light_points,

@@ -10,6 +10,7 @@
 #define TYN_PHOTON_PASSES                                                                          \
     &tyn_pass_photon_trace, &tyn_pass_photon_cache, &tyn_pass_photon_upsample, &tyn_pass_photon_view
 
-// All light of the scene in the cells of `s`, which hold the medium alone: as moments, and towards the eye if a picture is
-// wanted.
-void tyn_solve_photon(tyn_graph *g, const tyn_job *job, const tyn_sources *s, tyn_field *field);
+// Light in the cells of `s`, which hold the medium alone: as moments, and towards the eye if a picture is wanted. All light of
+// the scene, but what `marched` has of suns and lamps until it has scattered (photon_trace.first).
+void tyn_solve_photon(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
+                      const tyn_sources *marched, tyn_field *field);

@@ -165,8 +165,10 @@ void tyn_add_surfaces_apart(tyn_graph *g, const tyn_job *job, tyn_sources s, tyn
         tyn_job_warn(job, "the environment does not light the surfaces");
     }
     tyn_job_warn_suns(job, "surfaces");
-    if (media) {
+    if (media && !s.num_suns) {
         tyn_add_beams(g, job, &s);
+    }
+    if (media && !s.lamps.num_lamps) {
         tyn_add_radials(g, job, &s);
     }
     tyn_add_surfaces(g, job, &surfaces);

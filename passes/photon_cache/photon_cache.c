@@ -20,7 +20,7 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_photon_cache_params *p = params;
     const tyn_extent n = tyn_lattice_dims(p->shape.extent, p->shape.cells);
     tyn_build_buffer(b, PHOTON_CACHE_PORT_LIGHT,
-                     sizeof(struct photon_light) * (uint64_t)n.x * n.y * n.z);
+                     sizeof(struct photon_light) * p->lobes * (uint64_t)n.x * n.y * n.z);
     tyn_build_image(b, PHOTON_CACHE_PORT_MOMENTS, (tyn_extent){n.x, n.y, n.z * p->shape.channels},
                     1);
     tyn_build_buffer(b, PHOTON_CACHE_PORT_COUNTERS, sizeof(struct counters_block));
@@ -37,8 +37,11 @@ static void record(tyn_recorder *r, const void *params)
         .tint = {p->shape.tint[0], p->shape.tint[1], p->shape.tint[2]},
         .generations = p->generations,
         .slots = p->slots,
-        .sun = {p->sun[0], p->sun[1], p->sun[2]},
+        .lobes = p->lobes,
         .unit = p->unit,
+        .majorant = p->majorant,
+        .scaled = p->scaled,
+        .cell_channels = p->shape.channels,
     };
     tyn_rec_fill(r, PHOTON_CACHE_PORT_COUNTERS, 0);
     TYN_DISPATCH(r, .kernel = KERNEL_SUM, .cells = {n.x * n.y * n.z, 1, 1}, .args = &args);

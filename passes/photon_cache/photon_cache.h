@@ -6,16 +6,20 @@
 typedef struct tyn_photon_cache_params {
     tyn_lattice_shape shape;
     uint32_t generations, slots; // that count, and of the ring
-    float sun[3];                // reference direction (M)
+    uint32_t lobes;              // of a cell
     float unit;                  // W m of a unit
+    float majorant;  // > 0: light is weighted with the extinction over this, 1/m; 0: with volume
+    uint32_t scaled; // 1: forward scattering counts as none
 } tyn_photon_cache_params;
 
 // clang-format off
 #define PHOTON_CACHE_PORTS(X) \
     X(PHOTON_CACHE, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
+    X(PHOTON_CACHE, CELLS, cells, IN, IMAGE_3D, "of lattice_cells: the medium in the cells"), \
     X(PHOTON_CACHE, RING, ring, IN, BUFFER, "of photon_trace"), \
+    X(PHOTON_CACHE, FLUX, flux, IN, BUFFER, "of photon_trace"), \
     X(PHOTON_CACHE, SUM, sum, INOUT, BUFFER, "tyn_photon_sum_size bytes: a history"), \
-    X(PHOTON_CACHE, LIGHT, light, OUT, BUFFER, "struct photon_light[cell]"), \
+    X(PHOTON_CACHE, LIGHT, light, OUT, BUFFER, "struct photon_light[lobe][cell]"), \
     X(PHOTON_CACHE, MOMENTS, moments, OUT, IMAGE_3D, \
         "fluence and net flux, W/m^2, channels stacked along z", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(PHOTON_CACHE, COUNTERS, counters, OUT, BUFFER, "struct counters_block: cells that were bounded")

@@ -39,14 +39,27 @@ static uint32_t count_slots(const tyn_photon_trace_params *p)
     return (uint32_t)p->generations + renewed(p);
 }
 
+enum { QUAD = 16 }; // bytes
+
+uint64_t tyn_photon_flux_size(const tyn_photon_trace_params *p)
+{
+    return QUAD * (uint64_t)p->lobes * count_cells(p) * count_slots(p);
+}
+
 uint64_t tyn_photon_ring_size(const tyn_photon_trace_params *p)
 {
-    return sizeof(struct photon_ring) + 4 * PHOTON_WORDS * count_cells(p) * count_slots(p);
+    return sizeof(struct photon_ring) + tyn_photon_flux_size(p);
+}
+
+uint32_t tyn_photon_most_lobes(const tyn_photon_trace_params *p)
+{
+    return (uint32_t)((PHOTON_MOST_BYTES - sizeof(struct photon_ring)) /
+                      (QUAD * count_cells(p) * count_slots(p)));
 }
 
 uint64_t tyn_photon_sum_size(const tyn_photon_trace_params *p)
 {
-    return sizeof(struct photon_sum) + 4 * PHOTON_WORDS * count_cells(p);
+    return sizeof(struct photon_sum) + 2 * QUAD * (uint64_t)p->lobes * count_cells(p);
 }
 
 // A cell may get what all photons would leave that cross it a few times; in thick cells they stay for longer.
@@ -74,6 +87,13 @@ static tyn_result declare(tyn_builder *b, const void *params)
                       (int)p->generations, (int)p->photons, p->batch, TYN_PHOTON_DISPATCHES);
         return TYN_ERR_PARAMS;
     }
+    if (tyn_photon_most_lobes(p) < (uint32_t)p->lobes) {
+        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                      "pass 'photon_trace': %d generations of %u cells are more than %d MiB; fewer "
+                      "of \"photon_trace.cells\" or \"photon_trace.generations\" fit",
+                      (int)p->generations, (unsigned)count_cells(p), PHOTON_MOST_BYTES >> 20);
+        return TYN_ERR_PARAMS;
+    }
     tyn_build_buffer(b, PHOTON_TRACE_PORT_COUNTERS, sizeof(struct counters_block));
     tyn_build_buffer(b, PHOTON_TRACE_PORT_PLAN, sizeof(struct photon_trace_plan));
     tyn_build_buffer(b, PHOTON_TRACE_PORT_GROUPS, 12 * TYN_PHOTON_DISPATCHES);
@@ -92,15 +112,17 @@ static void record(tyn_recorder *r, const void *params)
         .photons = (uint32_t)p->photons,
         .dispatches = count_dispatches(p),
         .batch = p->batch,
-        .words = (uint32_t)(PHOTON_WORDS * count_cells(p)),
+        .quads = (uint32_t)((uint64_t)p->lobes * count_cells(p)),
         .slots = count_slots(p),
     };
-    const struct photon_trace_plan plan = {
+    struct photon_trace_plan plan = {
         .sun = {p->sun[0], p->sun[1], p->sun[2]},
         .sun_cosine = p->sun_cosine,
         .dims = {dims.x, dims.y, dims.z},
         .photons = turn.photons,
         .slots = turn.slots,
+        .lobes = (uint32_t)p->lobes,
+        .sky_first = p->sky_first,
         .per_unit = tyn_photon_units(p),
         .least = p->points / side,
         .stop = p->stop,
@@ -108,7 +130,13 @@ static void record(tyn_recorder *r, const void *params)
         .similarity = (uint32_t)p->similarity,
         .threshold = p->threshold,
         .reduced = p->reduced,
+        .per_extinction = p->mean == TYN_PHOTON_MEAN_MEDIUM ? 1 / p->majorant : 0,
+        .scaled = p->scaled,
+        .beams = p->first == TYN_PHOTON_FIRST_BEAMS,
+        .marched = {p->marched[0], p->marched[1], p->marched[2]},
+        .num_map_suns = p->num_map_suns,
     };
+    memcpy(plan.map_suns, p->map_suns, sizeof plan.map_suns);
     uint32_t spec[TYN_PATH_NUM_SPEC];
     path_specialise(spec, &p->path);
     spec[TYN_PATH_SPEC_HOMOGENEOUS] = 0; // light is left at points that tracking examines
@@ -117,7 +145,7 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_fill(r, PHOTON_TRACE_PORT_COUNTERS, 0);
     tyn_rec_update(r, PHOTON_TRACE_PORT_PLAN, 0, &plan, sizeof plan);
     TYN_DISPATCH(r, .kernel = KERNEL_TURN, .cells = {1, 1, 1}, .args = &turn);
-    TYN_DISPATCH(r, .kernel = KERNEL_CLEAR, .cells = {turn.words, 1, 1}, .args = &turn);
+    TYN_DISPATCH(r, .kernel = KERNEL_CLEAR, .cells = {turn.quads, 1, 1}, .args = &turn);
     for (uint32_t i = 0; i < turn.dispatches; i++) {
         struct path_args args = path_trace_args(&p->path);
         args.first = i * p->batch;
@@ -129,6 +157,8 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_work(r, "paths", (double)turn.photons * turn.each);
 }
 
+static const char *const means[] = {"volume", "medium"};
+static const char *const firsts[] = {"cache", "beams"};
 static const char *const similarities[] = {"off", "usual", "printed"};
 
 static const tyn_param param_table[] = {
@@ -153,6 +183,23 @@ static const tyn_param param_table[] = {
      "mean cosine to its first direction below which a photon has forgotten it", NULL},
     {"points", TYN_PARAM_FLOAT, offsetof(tyn_photon_trace_params, points), 1, 0.1, 16,
      "per cell's edge", "where light is left along a beam, at least", NULL},
+    {"lobes", TYN_PARAM_INT, offsetof(tyn_photon_trace_params, lobes), 2, 1, PHOTON_MOST_LOBES, "",
+     "of a cell, at most: the strongest suns, regions of the map by principal ordinates, all "
+     "other; "
+     "2 = the strongest sun and all other, as published",
+     NULL},
+    {"mean", TYN_PARAM_ENUM, offsetof(tyn_photon_trace_params, mean), TYN_PHOTON_MEAN_MEDIUM, 0, 1,
+     "",
+     "of light in a cell: volume = over all of it, as published; medium = over what is dense "
+     "there, "
+     "which is what is seen (probes: volume)",
+     means},
+    {"first", TYN_PARAM_ENUM, offsetof(tyn_photon_trace_params, first), TYN_PHOTON_FIRST_BEAMS, 0,
+     1, "",
+     "where suns' and lamps' light scatters first: cache = in the cells, as published; beams = "
+     "along "
+     "the camera's rays, exactly, with all that has only scattered forward",
+     firsts},
 };
 
 static const tyn_counter counters[] = {

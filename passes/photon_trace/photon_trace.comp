@@ -15,18 +15,18 @@
 const bool PROBE = false;
 #include "shaders/path/path_resources.glsl"
 #include "photon_trace_args.h"
+#include "shaders/light/ordinate_args.h"
 #include "shaders/photon/photon_args.h"
 #include "shaders/lattice/lattice.glsl"
 
 TYN_UPDATE(16, ring, photon_ring ring; int words[]);
 TYN_UPDATE(17, counters, counters_block counters);
 TYN_READ(18, plan, photon_trace_plan plan_in);
+TYN_UPDATE(19, flux, int flux_words[]);
+TYN_READ(20, ordinates, ordinates_block ordinates);
 
 #include "shaders/path/path.glsl"
-#include "photon_trace_start.glsl"
-
 photon_trace_plan plan;
-lattice_box photon_box;
 
 struct photon {
     path_state path;   // at the beginning of its flight
@@ -36,7 +36,8 @@ struct photon {
     vec3 at;
     float distance, tau; // from the vertex, m; to the next point
     brick_walk walk;
-    bool sun;          // it came from the reference direction
+    uint lobe;         // where it came from
+    vec3 direct;       // what cells get of it before it has scattered
     float cosine;      // product of the mean cosines of all its scatterings
     bool similar;      // it scatters alike in all directions now
     bool collided;     // the vertex after this flight is known:
@@ -44,6 +45,10 @@ struct photon {
     phase next[3];
     float g;
 };
+
+#include "photon_trace_start.glsl"
+
+lattice_box photon_box;
 
 float most_of(vec3 v)
 {
@@ -56,16 +61,28 @@ int whole(float value, uint bits)
     return int(floor(value + float(bits & 0xffffu) * (1.0 / 65536.0)));
 }
 
-void add_word(uint at, int value)
+void add_light(uint at, int value)
 {
     if (value != 0) {
         atomicAdd(words[at], value);
     }
 }
 
-void deposit(photon p, float bound, uint slot, uvec4 bits)
+void add_flux(uint at, int value)
 {
-    vec3 light = p.sent * p.passed * (plan.per_unit / bound);
+    if (value != 0) {
+        atomicAdd(flux_words[at], value);
+    }
+}
+
+// `weight`: of the place among those of its cell.
+void deposit(photon p, float weight, float bound, uint slot, uvec4 bits)
+{
+    vec3 light = p.sent * p.passed * (weight * plan.per_unit / bound);
+    light *= p.path.depth == 0u ? p.direct : vec3(1.0);
+    if (light == vec3(0.0)) {
+        return;
+    }
     if (any(isnan(light)) || any(isinf(light))) {
         path_count.non_finite++;
         return;
@@ -73,22 +90,17 @@ void deposit(photon p, float bound, uint slot, uvec4 bits)
     vec3 c = lattice_from_m(photon_box, wrap(p.at));
     ivec3 cell = clamp(ivec3(floor(c)), ivec3(0), photon_box.dims - 1);
     uint cells = plan.dims.x * plan.dims.y * plan.dims.z;
-    uint at = (slot * cells + lattice_index(photon_box, cell)) * PHOTON_WORDS;
+    uint at = ((slot * plan.lobes + p.lobe) * cells + lattice_index(photon_box, cell)) * 4u;
     float mean = channel_mean(light);
-    uint own = p.sun ? PHOTON_SUN : PHOTON_SKY;
-    add_word(at + own, whole(light.x, bits.x));
-    add_word(at + own + 1u, whole(light.y, bits.x >> 16));
-    add_word(at + own + 2u, whole(light.z, bits.y));
-    if (p.sun) {
-        add_word(at + PHOTON_COSINE, whole(mean * dot(p.path.way, plan.sun), bits.y >> 16));
-    } else {
-        vec3 flux = mean * p.path.way;
-        add_word(at + PHOTON_FLUX, whole(flux.x, bits.z));
-        add_word(at + PHOTON_FLUX + 1u, whole(flux.y, bits.z >> 16));
-        add_word(at + PHOTON_FLUX + 2u, whole(flux.z, bits.y >> 16));
-    }
-    add_word(at + PHOTON_ORDER, whole(mean * (float(p.path.depth) / PHOTON_ORDER_UNIT), bits.w));
-    add_word(at + PHOTON_COUNT, 1);
+    vec3 flux = mean * p.path.way;
+    add_light(at, whole(light.x, bits.x));
+    add_light(at + 1u, whole(light.y, bits.x >> 16));
+    add_light(at + 2u, whole(light.z, bits.y));
+    add_light(at + PHOTON_ORDER, whole(mean * (float(p.path.depth) / PHOTON_ORDER_UNIT), bits.w));
+    add_flux(at, whole(flux.x, bits.z));
+    add_flux(at + 1u, whole(flux.y, bits.z >> 16));
+    add_flux(at + 2u, whole(flux.z, bits.y >> 16));
+    add_flux(at + PHOTON_COUNT, 1);
 }
 
 // Leaves a vertex along path.way. False: it leaves the media for good.
@@ -109,7 +121,19 @@ bool take_off(inout photon p, inout rng_state rng)
 float bound_of(photon p)
 {
     float bound = media_bounds(p.walk.cell).y;
-    return max(p.similar ? plan.reduced * bound : bound, plan.least);
+    return max(bound * (p.similar ? plan.reduced : plan.scaled), plan.least);
+}
+
+// Of what scatters a part goes straight on: that of the medium drawn, so that it is right on average.
+void scale_forward(inout media_point m)
+{
+    vec3 absorbs = max(m.sigma_t - m.sigma_s, 0.0), left = vec3(1.0);
+    similarity_clamp(left, m.phase);
+    left *= 1.0 - delta_fraction(m.phase);
+    m.sigma_s *= left;
+    m.part_s *= left;
+    m.sigma_t = absorbs + m.sigma_s;
+    m.phase = phase_of_mean_cosine(delta_cosine(m.phase));
 }
 
 // What similarity leaves of scattering into all directions alike, of that with mean cosine g.
@@ -124,8 +148,12 @@ bool examine(inout photon p, float bound, uint slot, inout rng_state rng)
 {
     uvec4 bits = rng_next(rng), more = rng_next(rng);
     p.tau = rng_exponential(bits.x);
-    deposit(p, bound, slot, more);
     media_point m = media_at(p.at, rng_float(bits.z), p.path.hero);
+    if (plan.beams == 1u) {
+        scale_forward(m);
+    }
+    float weight = plan.per_extinction > 0.0 ? plan.per_extinction * channel_mean(m.sigma_t) : 1.0;
+    deposit(p, weight, bound, slot, more);
     if (p.similar) {
         vec3 g = phase_mean_cosine(m.phase);
         vec3 share = vec3(similar_share(g.x), similar_share(g.y), similar_share(g.z));
@@ -159,7 +187,8 @@ bool examine(inout photon p, float bound, uint slot, inout rng_state rng)
     }
     p.passed *= none / bound;
     float left = most_of(p.passed);
-    if (plan.stop >= 1.0) { // the beam ends where the photon collides
+    bool silent = p.path.depth == 0u && p.direct == vec3(0.0); // nothing of it is left in cells
+    if (plan.stop >= 1.0 || silent) { // the beam ends where the photon collides
         p.passed = vec3(p.collided ? 0.0 : 1.0);
     } else if (left < plan.stop) {
         bool stays = plan.roulette == 1u && rng_float(bits.w) * plan.stop < left;
@@ -247,11 +276,10 @@ void main()
             index += PHOTON_TRACE_GROUP;
             slot = generation % plan.slots;
             rng = rng_start(number, generation, args.seed);
-            p.path = start_path(total, generation * plan.photons + number, rng, p.power);
+            start_photon(total, generation * plan.photons + number, rng, p);
             p.power /= float(plan.photons);
             p.cosine = 1.0;
             p.similar = false;
-            p.sun = dot(p.path.way, plan.sun) >= plan.sun_cosine;
             ended = false;
             flies = false;
         }

@@ -6,15 +6,18 @@
 
 layout(local_size_x = PHOTON_TRACE_GROUP) in;
 TYN_ARGS(photon_turn_args args);
-TYN_UPDATE(0, ring, photon_ring ring; int words[]);
+TYN_UPDATE(0, ring, photon_ring ring; ivec4 words[]);
+TYN_WRITE(1, flux, ivec4 flux_words[]);
 
 void main()
 {
     // A ring that was just started is empty.
-    if (ring.first == 0u || gl_GlobalInvocationID.x >= args.words) {
+    if (ring.first == 0u || gl_GlobalInvocationID.x >= args.quads) {
         return;
     }
     for (uint i = 0u; i < args.each; i++) {
-        words[(ring.first + i) % args.slots * args.words + gl_GlobalInvocationID.x] = 0;
+        uint at = (ring.first + i) % args.slots * args.quads + gl_GlobalInvocationID.x;
+        words[at] = ivec4(0);
+        flux_words[at] = ivec4(0);
     }
 }

@@ -43,58 +43,90 @@ vec3 start_cone(light_block lamp, vec2 random)
     return z * axis + across * (cos(azimuth) * side + sin(azimuth) * cross(axis, side));
 }
 
-// The n-th photon, and its power over the probability of drawing it, W; `total` of start_total, > 0.
-path_state start_path(float total, uint n, inout rng_state rng, out vec3 power)
+// Of light of `radiance` that travels along `way` from the map, what no sun that the march follows has.
+vec3 start_beside_suns(vec3 way, vec3 radiance)
+{
+    vec3 left = vec3(1.0);
+    for (uint i = 0u; i < plan.num_map_suns; i++) {
+        if (dot(way, plan.map_suns[i].direction) >= plan.map_suns[i].cos_radius) {
+            left = min(left, plan.map_suns[i].around / max(radiance, vec3(1e-37)));
+        }
+    }
+    return left;
+}
+
+// Lobe of light that travels along `way` from the map: that of the region of the nearest principal ordinate. The regions' order
+// is that of a tree of cuts, so neighbours in it share a lobe.
+uint start_region(vec3 way)
+{
+    uint count = ordinates.count, nearest = 0u, regions = plan.lobes - plan.sky_first;
+    float most = -2.0;
+    for (uint i = 0u; regions > 1u && i < count; i++) {
+        float cosine = dot(way, ordinates.list[i].direction);
+        nearest = cosine > most ? i : nearest;
+        most = max(most, cosine);
+    }
+    return plan.sky_first + nearest * regions / max(count, 1u);
+}
+
+// Of the n-th photon where it begins, its lobe, what cells get of it before it has scattered, and its power over the probability
+// of drawing it, W; `total` of start_total, > 0.
+void start_photon(float total, uint n, inout rng_state rng, inout photon p)
 {
     uvec3 shift = rng_pcg4d(uvec4(args.seed, 1u, 2u, 3u)).xyz;
     vec3 even = vec3((n * uvec3(3518319155u, 2882110345u, 2360945575u) + shift) >> 8) * (1.0 / 16777216.0);
     uvec4 bits = rng_next(rng);
-    path_state path;
-    path.beta = vec3(1.0);
-    path.rho = vec3(1.0);
-    path.hero = vec3(1.0, 0.0, 0.0);
+    p.lobe = plan.lobes - 1u;
+    p.path.beta = vec3(1.0);
+    p.path.rho = vec3(1.0);
+    p.path.hero = vec3(1.0, 0.0, 0.0);
     if (!GREY) {
         float u = 3.0 * rng_float(bits.x);
-        path.hero = vec3(u < 1.0, u >= 1.0 && u < 2.0, u >= 2.0);
+        p.path.hero = vec3(u < 1.0, u >= 1.0 && u < 2.0, u >= 2.0);
     }
-    path.kept = 1.0;
-    path.depth = 0u;
-    path.steps = 0u;
-    path.end = PATH_FAR;
+    p.path.kept = 1.0;
+    p.path.depth = 0u;
+    p.path.steps = 0u;
+    p.path.end = PATH_FAR;
     float left = even.z * total;
     for (uint i = 0u; i < args.num_lights && LIGHTS > 0u; i++) {
         light_block light = light_get(i);
         float weight = start_weight(light);
         if (left < weight || (i + 1u == args.num_lights && ENVIRONMENT == TYN_PATH_ENV_NONE)) {
-            power = light.color * (total / max(max3(light.color), 1e-37));
+            p.power = light.color * (total / max(max3(light.color), 1e-37));
+            p.direct = vec3((plan.marched[i >> 5] >> (i & 31u) & 1u) == 0u);
             if (light.kind == TYN_LIGHT_KIND_DIRECTIONAL) {
-                path.way = light.direction;
-                path.vertex = draw_entry(path.way, vec3(even.xy, min(left / weight, 0.9999999)));
+                p.path.way = light.direction;
+                p.lobe = min(i, plan.lobes - 1u);
+                p.path.vertex = draw_entry(p.path.way, vec3(even.xy, min(left / weight, 0.9999999)));
             } else {
-                path.way = start_cone(light, even.xy);
-                path.vertex = light.position;
-                power *= light_lobe(light, dot(path.way, light.direction));
+                p.path.way = start_cone(light, even.xy);
+                p.path.vertex = light.position;
+                p.power *= light_lobe(light, dot(p.path.way, light.direction));
             }
-            return path;
+            return;
         }
         left -= weight;
     }
     float sky = start_sky();
-    path.way = vec3(0.0, 0.0, 1.0);
-    power = vec3(0.0);
+    p.path.way = vec3(0.0, 0.0, 1.0);
+    p.power = vec3(0.0);
+    p.direct = vec3(1.0);
     if (ENVIRONMENT == TYN_PATH_ENV_MAP) {
         float pdf;
-        path.way = -env_sample(env, rng_next(rng), pdf);
-        power = environment_radiance(env, env_map_wrapped, -path.way) / max(pdf, 1e-37);
+        p.path.way = -env_sample(env, rng_next(rng), pdf);
+        p.power = environment_radiance(env, env_map_wrapped, -p.path.way);
+        p.direct = start_beside_suns(p.path.way, p.power);
+        p.lobe = dot(p.path.way, plan.sun) >= plan.sun_cosine ? 0u : start_region(p.path.way);
+        p.power /= max(pdf, 1e-37);
     } else if (ENVIRONMENT == TYN_PATH_ENV_CONSTANT) {
         vec2 random = rng_vec2(bits.yz);
         float z = 1.0 - 2.0 * random.x, across = sqrt(max(1.0 - z * z, 0.0));
-        path.way = vec3(across * cos(2.0 * HG_PI * random.y), across * sin(2.0 * HG_PI * random.y), z);
-        power = 4.0 * HG_PI * env.radiance;
+        p.path.way = vec3(across * cos(2.0 * HG_PI * random.y), across * sin(2.0 * HG_PI * random.y), z);
+        p.power = 4.0 * HG_PI * env.radiance;
     }
-    path.vertex = draw_entry(path.way, vec3(even.xy, min(left / max(sky, 1e-37), 0.9999999)));
-    power *= sum3(faces_across(path.way)) * total / max(sky, 1e-37);
-    return path;
+    p.path.vertex = draw_entry(p.path.way, vec3(even.xy, min(left / max(sky, 1e-37), 0.9999999)));
+    p.power *= sum3(faces_across(p.path.way)) * total / max(sky, 1e-37);
 }
 
 #endif

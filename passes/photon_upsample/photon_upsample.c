@@ -11,9 +11,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_photon_upsample_params *p = params;
     const tyn_extent n = tyn_lattice_dims(p->shape.extent, p->cells);
-    tyn_build_image(b, PHOTON_UPSAMPLE_PORT_SUN_LIGHT, n, 1);
-    tyn_build_image(b, PHOTON_UPSAMPLE_PORT_SKY_LIGHT, n, 1);
-    tyn_build_image(b, PHOTON_UPSAMPLE_PORT_SKY_WAY, n, 1);
+    const tyn_extent all = {n.x, n.y, n.z * p->lobes};
+    tyn_build_image(b, PHOTON_UPSAMPLE_PORT_FLUENCE, all, 1);
+    tyn_build_image(b, PHOTON_UPSAMPLE_PORT_WAY, all, 1);
     return TYN_OK;
 }
 
@@ -25,13 +25,16 @@ static void record(tyn_recorder *r, const void *params)
     const struct photon_upsample_args args = {
         .dims = {n.x, n.y, n.z},
         .coarse = {coarse.x, coarse.y, coarse.z},
+        .lobes = p->lobes,
         .channels = p->shape.channels,
         .filter_is = (uint32_t)p->filter,
         .lobe = (uint32_t)p->lobe,
         .majorant = p->majorant,
+        .scaled = p->scaled,
+        .weighted = p->weighted,
     };
-    TYN_DISPATCH(r, .cells = n, .args = &args, .spec = &p->mode);
-    tyn_rec_work(r, "cells", (double)n.x * n.y * n.z);
+    TYN_DISPATCH(r, .cells = {n.x, n.y, n.z * p->lobes}, .args = &args, .spec = &p->mode);
+    tyn_rec_work(r, "cells", (double)n.x * n.y * n.z * p->lobes);
 }
 
 static const char *const filters[] = {"trilinear", "depth"};
@@ -59,6 +62,6 @@ const tyn_pass_desc tyn_pass_photon_upsample = {
     TYN_PASS_TABLES(tyn_photon_upsample_params),
     .params = param_table,
     .num_params = TYN_COUNT(param_table),
-    .debug_port = PHOTON_UPSAMPLE_PORT_SUN_LIGHT,
-    .debug_meaning = "fluence of the sun's light",
+    .debug_port = PHOTON_UPSAMPLE_PORT_FLUENCE,
+    .debug_meaning = "fluence of the first lobe",
 };

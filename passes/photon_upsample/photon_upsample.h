@@ -6,11 +6,14 @@
 
 typedef struct tyn_photon_upsample_params {
     tyn_lattice_shape shape; // of the cache
+    uint32_t lobes;          // of a cell
     int32_t cells;           // "photon_upsample.cells": of the result, along the longest side
     int32_t filter;          // "photon_upsample.filter"
     int32_t lobe;            // "photon_upsample.lobe"
     uint32_t mode;           // TYN_MEDIUM_*
     float majorant;          // of the medium, 1/m
+    uint32_t weighted;       // 1: the light of a cell is the mean over its medium
+    uint32_t scaled;         // 1: the light is that of a delta scaled medium
 } tyn_photon_upsample_params;
 
 // clang-format off
@@ -18,12 +21,10 @@ typedef struct tyn_photon_upsample_params {
     TYN_MEDIUM(X, PHOTON_UPSAMPLE), \
     X(PHOTON_UPSAMPLE, CELLS, cells, IN, IMAGE_3D, "of lattice_cells: the medium in the cache's cells"), \
     X(PHOTON_UPSAMPLE, LIGHT, light, IN, BUFFER, "of photon_cache"), \
-    X(PHOTON_UPSAMPLE, SUN_LIGHT, sun_light, OUT, IMAGE_3D, \
-        "fluence of the sun's light, W/m^2, and its mean cosine", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(PHOTON_UPSAMPLE, SKY_LIGHT, sky_light, OUT, IMAGE_3D, \
-        "fluence of all other, W/m^2, and the penetration depth, scatterings", \
+    X(PHOTON_UPSAMPLE, FLUENCE, fluence, OUT, IMAGE_3D, \
+        "of each lobe, stacked along z: fluence, W/m^2, and the penetration depth, scatterings", \
         .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
-    X(PHOTON_UPSAMPLE, SKY_WAY, sky_way, OUT, IMAGE_3D, \
+    X(PHOTON_UPSAMPLE, WAY, way, OUT, IMAGE_3D, \
         "its net flux over its fluence", .format = VK_FORMAT_R32G32B32A32_SFLOAT)
 // clang-format on
 enum { PHOTON_UPSAMPLE_PORTS(TYN_PORT_ENUM), PHOTON_UPSAMPLE_NUM_PORTS };

@@ -11,9 +11,10 @@ static const tyn_kernel kernels[] = {TYN_KERNEL(photon_view)};
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
-    (void)params;
-    const tyn_extent n = tyn_build_extent(b, PHOTON_VIEW_PORT_SUN_LIGHT);
-    tyn_build_image(b, PHOTON_VIEW_PORT_INSCATTER, (tyn_extent){n.x + 2, n.y + 2, n.z + 2}, 1);
+    const tyn_photon_view_params *p = params;
+    const tyn_extent n = tyn_build_extent(b, PHOTON_VIEW_PORT_FLUENCE);
+    tyn_build_image(b, PHOTON_VIEW_PORT_INSCATTER,
+                    (tyn_extent){n.x + 2, n.y + 2, n.z / p->lobes + 2}, 1);
     tyn_build_buffer(b, PHOTON_VIEW_PORT_COUNTERS, sizeof(struct counters_block));
     return TYN_OK;
 }
@@ -21,20 +22,31 @@ static tyn_result declare(tyn_builder *b, const void *params)
 static void record(tyn_recorder *r, const void *params)
 {
     const tyn_photon_view_params *p = params;
-    const tyn_extent n = tyn_rec_extent(r, PHOTON_VIEW_PORT_SUN_LIGHT);
+    const tyn_extent all = tyn_rec_extent(r, PHOTON_VIEW_PORT_FLUENCE);
+    const tyn_extent n = {all.x, all.y, all.z / p->lobes};
     const struct photon_view_args args = {
         .dims = {n.x, n.y, n.z},
-        .sun = {p->sun[0], p->sun[1], p->sun[2]},
-        .lobes = p->sky == 1,
+        .sun = {p->axis[0], p->axis[1], p->axis[2]},
+        .lobes = p->lobes,
+        .suns = p->has_sun,
+        .sun_is = p->sun ? PHOTON_LOBE_FLUX : PHOTON_LOBE_AXIS,
+        .sky_is = p->sky ? PHOTON_LOBE_FLUX : PHOTON_LOBE_EVEN,
+        .scaled = p->scaled,
     };
     tyn_rec_fill(r, PHOTON_VIEW_PORT_COUNTERS, 0);
     TYN_DISPATCH(r, .cells = {n.x + 2, n.y + 2, n.z + 2}, .args = &args, .spec = &p->mode);
     tyn_rec_work(r, "cells", (double)n.x * n.y * n.z);
 }
 
+static const char *const suns[] = {"axis", "lobe"};
 static const char *const skies[] = {"even", "lobe"};
 
 static const tyn_param param_table[] = {
+    {"sun", TYN_PARAM_ENUM, offsetof(tyn_photon_view_params, sun), 1, 0, 1, "",
+     "directions of the strongest sun's light: axis = about the sun, as published; lobe = about "
+     "its "
+     "net flux in each cell",
+     suns},
     {"sky", TYN_PARAM_ENUM, offsetof(tyn_photon_view_params, sky), 1, 0, 1, "",
      "directions of light that is not the strongest sun's: even = from all alike, as published; "
      "lobe = about its net flux in each cell",

@@ -14,11 +14,10 @@
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 TYN_ARGS(photon_view_args args);
 TYN_UNIFORM(5, camera, camera_block camera);
-layout(binding = 6) uniform sampler3D sun_light_tex;
-layout(binding = 7) uniform sampler3D sky_light_tex;
-layout(binding = 8) uniform sampler3D sky_way_tex;
-layout(binding = 9, rgba32f) uniform writeonly image3D inscatter_image;
-TYN_UPDATE(10, counters, counters_block counters);
+layout(binding = 6) uniform sampler3D fluence_tex;
+layout(binding = 7) uniform sampler3D way_tex;
+layout(binding = 8, rgba32f) uniform writeonly image3D inscatter_image;
+TYN_UPDATE(9, counters, counters_block counters);
 
 // Of a lobe of the mean cosine `cosine` about `axis`, 1/sr.
 vec3 scattered(vec3 g, float cosine, vec3 axis, vec3 v)
@@ -38,15 +37,20 @@ void main()
     vec3 p = clamp(lattice_to_m(lattice_box_of(medium.extent, dims), vec3(c) + 0.5), vec3(0.0), medium.extent);
     vec3 v = camera.origin - p;
     v = camera_select(camera, -camera.forward, v / max(length(v), 1e-20));
-    vec3 g = min(phase_mean_cosine(medium_sample(p).phase), vec3(HG_MAX));
-    vec4 sun = texelFetch(sun_light_tex, c, 0), sky = texelFetch(sky_light_tex, c, 0);
-    vec3 sum = sun.rgb * scattered(g, sun.a, args.sun, v);
-    vec3 way = texelFetch(sky_way_tex, c, 0).xyz;
-    float narrow = length(way);
-    if (args.lobes == 1u && narrow > 1e-6) {
-        sum += sky.rgb * scattered(g, narrow, way / narrow, v);
-    } else {
-        sum += sky.rgb * (0.25 / HG_PI);
+    phase kinds[3] = medium_sample(p).phase;
+    vec3 g = min(args.scaled == 1u ? delta_cosine(kinds) : phase_mean_cosine(kinds), vec3(HG_MAX));
+    vec3 sum = vec3(0.0);
+    for (uint lobe = 0u; lobe < args.lobes; lobe++) {
+        ivec3 at = c + ivec3(0, 0, int(lobe) * dims.z);
+        vec3 light = texelFetch(fluence_tex, at, 0).rgb, way = texelFetch(way_tex, at, 0).xyz;
+        bool sun = lobe < args.suns;
+        float narrow = sun && args.sun_is == PHOTON_LOBE_AXIS ? dot(way, args.sun) : length(way);
+        vec3 axis = sun && args.sun_is == PHOTON_LOBE_AXIS ? args.sun : way / max(narrow, 1e-20);
+        if (abs(narrow) > 1e-6 && (sun || args.sky_is == PHOTON_LOBE_FLUX)) {
+            sum += light * scattered(g, narrow, axis, v);
+        } else {
+            sum += light * (0.25 / HG_PI);
+        }
     }
     if (any(isnan(sum)) || any(isinf(sum))) {
         sum = vec3(0.0);

@@ -4,18 +4,22 @@
 #include "shaders/common/bundles.h"
 
 typedef struct tyn_photon_view_params {
-    int32_t sky;   // "photon_view.sky"
-    uint32_t mode; // TYN_MEDIUM_*
-    float sun[3];  // reference direction (M), of travel
+    int32_t sun;      // "photon_view.sun"
+    int32_t sky;      // "photon_view.sky"
+    uint32_t lobes;   // of a cell
+    uint32_t mode;    // TYN_MEDIUM_*
+    float axis[3];    // reference direction (M), of travel
+    uint32_t has_sun; // 1: it has the first lobe
+    uint32_t
+        scaled; // 1: the light is that of a delta scaled medium; so is the result, per sigma_s'
 } tyn_photon_view_params;
 
 // clang-format off
 #define PHOTON_VIEW_PORTS(X) \
     TYN_MEDIUM(X, PHOTON_VIEW), \
     X(PHOTON_VIEW, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
-    X(PHOTON_VIEW, SUN_LIGHT, sun_light, IN, IMAGE_3D, "of photon_upsample"), \
-    X(PHOTON_VIEW, SKY_LIGHT, sky_light, IN, IMAGE_3D, "of photon_upsample"), \
-    X(PHOTON_VIEW, SKY_WAY, sky_way, IN, IMAGE_3D, "of photon_upsample"), \
+    X(PHOTON_VIEW, FLUENCE, fluence, IN, IMAGE_3D, "of photon_upsample"), \
+    X(PHOTON_VIEW, WAY, way, IN, IMAGE_3D, "of photon_upsample"), \
     X(PHOTON_VIEW, INSCATTER, inscatter, OUT, IMAGE_3D, \
         "dims + 2: light that is scattered towards the eye, per sigma_s, W/(m^2 sr)", \
         .format = VK_FORMAT_R32G32B32A32_SFLOAT), \

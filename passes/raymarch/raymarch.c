@@ -8,6 +8,9 @@
 #include "raymarch_colour.comp.h"
 #include <math.h>
 
+// Less than a brick's voxels, so that what is moved into an empty brick comes from the next.
+#define RAYMARCH_NOISE_MOST 7
+
 // Steps among surfaces are up to this much longer than the medium alone asks for.
 #define STEPS_AMONG_SURFACES 2.0f
 #define DEPTH_AMONG_SURFACES 0.2f // ... where it is thin
@@ -19,7 +22,7 @@ enum {
         7, // mode, number of suns, features, numbers of lamps, number of shapes and their kind
 };
 
-// 30 powers of two with this sum are all different.
+// 31 powers of two with this sum are all different.
 _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNEL +
                        RAYMARCH_UNSCALED + RAYMARCH_SOURCE + RAYMARCH_EMISSION + RAYMARCH_MEAN +
                        RAYMARCH_HOST_DEPTH + RAYMARCH_BACKGROUND + RAYMARCH_BEHIND +
@@ -28,8 +31,9 @@ _Static_assert((uint64_t)RAYMARCH_KERNELS + RAYMARCH_FIELD + RAYMARCH_ONE_CHANNE
                        RAYMARCH_SOFT_SUNS + RAYMARCH_SURFACE + RAYMARCH_SURFACE_SEEN +
                        RAYMARCH_WALLS + RAYMARCH_SHADOWS + RAYMARCH_REPEAT + RAYMARCH_SPARSE_NODES +
                        RAYMARCH_SPARSE_FILL + RAYMARCH_SPARSE_REST + RAYMARCH_SPOTS +
-                       RAYMARCH_LIGHT_CELLS + RAYMARCH_ROOMS + RAYMARCH_SPARSE_COARSE ==
-                   (1u << 30) - 1,
+                       RAYMARCH_LIGHT_CELLS + RAYMARCH_ROOMS + RAYMARCH_SPARSE_COARSE +
+                       RAYMARCH_NOISE ==
+                   (1u << 31) - 1,
                "features have bits of their own");
 
 enum { KERNEL_GREY = 0, KERNEL_COLOUR, KERNEL_BACKGROUND, NUM_KERNELS };
@@ -49,6 +53,13 @@ static const tyn_param params_table[] = {
      "four rays a pixel where they disagree on which shapes they hit", NULL},
     {"sparse", TYN_PARAM_BOOL, offsetof(tyn_raymarch_params, sparse), 1, 0, 1, "",
      "one ray for 2x2 or 4x4 pixels where the light is smooth", NULL},
+    {"noise", TYN_PARAM_FLOAT, offsetof(tyn_raymarch_params, noise), 0, 0, RAYMARCH_NOISE_MOST,
+     "voxels",
+     "by which places are moved where medium and light are looked up: detail that is not "
+     "in the volume, nor in its shadows",
+     NULL},
+    {"noise_size", TYN_PARAM_FLOAT, offsetof(tyn_raymarch_params, noise_size), 8, 1, 128, "voxels",
+     "of the largest of that detail's three octaves", NULL},
 };
 
 // Layers by their bit in `layers`.
@@ -80,7 +91,8 @@ float tyn_raymarch_longest_step(float sigma_t, float dx, const struct medium_blo
 static bool is_sparse(const tyn_raymarch_params *p)
 {
     const uint32_t dense = RAYMARCH_LAYER_DEPTH | RAYMARCH_LAYER_SINGLE | RAYMARCH_LAYER_MULTIPLE;
-    return p->sparse && !(p->layers & dense) && (uint64_t)p->width * p->height <= RAYMARCH_REST_MAX;
+    return p->sparse && !(p->layers & dense) && !(p->noise > 0) &&
+           (uint64_t)p->width * p->height <= RAYMARCH_REST_MAX;
 }
 
 static tyn_extent window_of(const tyn_raymarch_params *p)
@@ -196,6 +208,7 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_raymarch_params *p)
     features |= p->closed ? RAYMARCH_CLOSED : 0;
     features |= p->repeat ? RAYMARCH_REPEAT : 0;
     features |= p->antialias ? RAYMARCH_SUPERSAMPLE : 0;
+    features |= p->noise > 0 ? RAYMARCH_NOISE : 0;
     features |= p->spots ? RAYMARCH_SPOTS : 0;
     features |= p->one_channel ? RAYMARCH_ONE_CHANNEL : 0;
     features |= tyn_rec_has(r, RAYMARCH_PORT_WALL_LINKS) ? RAYMARCH_WALLS : 0;
@@ -265,6 +278,8 @@ static void record(tyn_recorder *r, const void *params)
         .end = {p->end[0], p->end[1]},
         .tint = {p->tint[0], p->tint[1], p->tint[2]},
         .reach = p->reach,
+        .noise = p->noise * voxel,
+        .noise_size = p->noise_size * voxel,
     };
     if (p->end[0] == 0) {
         args.end[0] = p->width;

@@ -137,7 +137,7 @@ float march_skip(vec3 origin, vec3 direction, vec3 inverse, float s, float end)
             origin = first + (medium_wrap(p) - p);
         }
         ivec3 brick = clamp(ivec3((origin + s * direction) * per_brick), ivec3(0), last);
-        float away = texelFetch(distance_tex, brick, 0).r;
+        float away = texelFetch(distance_tex, brick, 0).r - (raymarch_has(RAYMARCH_NOISE) ? 1.0 : 0.0);
         if (away < 0.5) {
             return s;
         }
@@ -281,7 +281,14 @@ march_step march_through(march_medium m, float ds, bool is, march_line line, vec
     if (raymarch_has(RAYMARCH_FIELD)) {
         float there = min(step.at, line.inside);
         vec3 p = line.origin + there * line.direction;
-        vec3 J = march_tinted(march_field(p, line.field0 + there * line.field1));
+        vec3 uvw = line.field0 + there * line.field1;
+        if (raymarch_has(RAYMARCH_NOISE)) {
+            vec3 moved = march_noise(p);
+            p += moved;
+            uvw += moved / (lattice_box_of(medium.extent, textureSize(inscatter_tex, 0) - 2).dx *
+                            vec3(textureSize(inscatter_tex, 0)));
+        }
+        vec3 J = march_tinted(march_field(p, uvw));
         spectrum per_metre = m.scaled_scattering;
         if (raymarch_has(RAYMARCH_SOURCE)) {
             per_metre = spectrum(spectrum_max(m.extinction) > 0.0 ? 1.0 : 0.0);

@@ -11,6 +11,8 @@ typedef struct tyn_raymarch_params {
     float stop;         // "raymarch.stop": transmittance at which a ray ends
     uint32_t antialias; // "raymarch.antialias": four rays a pixel where they disagree
     uint32_t sparse;    // "raymarch.sparse": fewer rays than pixels where the light is smooth
+    float noise;        // "raymarch.noise", voxels
+    float noise_size;   // "raymarch.noise_size", voxels
     // Set by the method.
     uint32_t grey;      // 1: one medium (mode DENSITY), equal in all channels
     uint32_t mode;      // TYN_MEDIUM_*

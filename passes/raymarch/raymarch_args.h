@@ -34,6 +34,7 @@
 #define RAYMARCH_SPOTS (1u << 27)         // there are lamps that shine in a cone
 #define RAYMARCH_LIGHT_CELLS (1u << 28)   // it is known where lights see all, or nothing
 #define RAYMARCH_SPARSE_COARSE (1u << 29) // with SPARSE_FILL: nodes of the finer grid
+#define RAYMARCH_NOISE (1u << 30) // places at which medium and light are looked up are moved
 
 struct raymarch_args {
     float step;       // longest step, m
@@ -48,8 +49,10 @@ struct raymarch_args {
     tyn_uvec2 lists;  // where the lists in the buffer "rest" begin: of nodes, and of pixels
     tyn_uint spacing; // of the nodes of the first grid, pixels: 2 or 4
     tyn_uint listed;  // SPARSE_NODES: 1: only those that are listed
+    float noise;      // by how much along an axis at most, m
+    float noise_size; // of the largest features, m
 };
-TYN_ASSERT_SIZE(raymarch_args, 80);
+TYN_ASSERT_SIZE(raymarch_args, 88);
 
 // Start of the buffer "rest", twice: of nodes, and of pixels that need rays of their own. The lists follow: x | y << 16.
 struct raymarch_rest {

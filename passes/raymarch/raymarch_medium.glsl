@@ -109,9 +109,44 @@ march_medium march_scale(march_medium unit, float density)
                         unit.emission * density);
 }
 
+// A vector of three numbers in [-1, 1] for a place with whole coordinates (Jarzynski and Olano, "Hash functions for GPU
+// rendering", 2020: pcg3d).
+vec3 march_noise_at(ivec3 place)
+{
+    uvec3 v = uvec3(place) * 1664525u + 1013904223u;
+    v += v.yzx * v.zxy;
+    v ^= v >> 16u;
+    v += v.yzx * v.zxy;
+    return vec3(v >> 8u) * (2.0 / 16777216.0) - 1.0;
+}
+
+// By how much the place p is moved, m: three octaves of vector noise, each of half the size and half the strength of that
+// before (Elek et al. 2012, Sec 4.4), smooth between places with whole coordinates. No component is above args.noise.
+vec3 march_noise(vec3 p)
+{
+    vec3 sum = vec3(0.0), x = p / args.noise_size;
+    float strength = args.noise / 1.75;
+    for (int octave = 0; octave < 3; octave++) {
+        ivec3 lo = ivec3(floor(x));
+        vec3 t = x - floor(x);
+        t = t * t * (3.0 - 2.0 * t);
+        for (int i = 0; i < 8; i++) {
+            ivec3 corner = ivec3(i & 1, i >> 1 & 1, i >> 2);
+            vec3 w = mix(1.0 - t, t, vec3(corner));
+            sum += (strength * w.x * w.y * w.z) * march_noise_at(lo + corner);
+        }
+        x = 2.0 * x + 17.5;
+        strength *= 0.5;
+    }
+    return sum;
+}
+
 // At a texture coordinate; `unit` is the medium at texture value 1 (mode DENSITY).
 march_medium march_medium_at(march_medium unit, vec3 uvw)
 {
+    if (raymarch_has(RAYMARCH_NOISE)) {
+        uvw += march_noise(uvw * medium.extent) / medium.extent;
+    }
     if (raymarch_has(RAYMARCH_REPEAT)) {
         uvw -= vec3(medium.repeat) * floor(uvw);
     }

@@ -7,21 +7,19 @@
 #define TYN_PHOTON_ARGS_H
 #include "shaders/common/shared.h"
 
-// Words of a cell. "Sun": light that came from the reference direction; "sky": all other. "Mean": over the channels.
-#define PHOTON_SUN 0    // by channel
-#define PHOTON_COSINE 3 // mean times the cosine to the reference direction
-#define PHOTON_SKY 4    // by channel
-#define PHOTON_ORDER 7  // mean, of sun and sky, times scatterings / PHOTON_ORDER_UNIT
-#define PHOTON_FLUX 8   // mean of the sky's times direction of travel, along the axes of M
-#define PHOTON_COUNT 11 // deposits
-#define PHOTON_WORDS 12
+// Light is kept apart by where it came from, in `lobes` of a cell: the strongest suns, regions of the map, all other. A lobe has
+// two quads of words, which are in rings of their own, as a device need not bind more than 128 MiB. "Mean": over the channels.
+#define PHOTON_ORDER 3 // of the first quad, behind the channels: mean times scatterings / PHOTON_ORDER_UNIT
+#define PHOTON_COUNT 3 // of the second, behind the mean times direction of travel along the axes of M: deposits
+#define PHOTON_MOST_LOBES 16
+#define PHOTON_MOST_BYTES 134217728 // of a ring
 
 #define PHOTON_ORDER_UNIT 16.0
 // What a cell may sum up to, over all generations that count: sums of int, with room for their signs.
 #define PHOTON_WHOLE 2.0e9
 
-// Head of the history "ring": m + e slots follow, of a generation each, int[cell][PHOTON_WORDS]; m generations count, e are
-// renewed in a frame. Generation t is in slot t % (m + e).
+// Head of the history "ring": m + e slots follow, of a generation each, ivec4[lobe][cell]; m generations count, e are
+// renewed in a frame. Generation t is in slot t % (m + e). The ring "flux" has the same without a head.
 struct photon_ring {
     tyn_uint turns;        // generations that were traced since it was started
     tyn_uint first, count; // of the last frame
@@ -29,22 +27,20 @@ struct photon_ring {
 };
 TYN_ASSERT_SIZE(photon_ring, 16);
 
-// Head of the history "sum": int[cell][PHOTON_WORDS] follow, over the last m generations up to `turns`.
+// Head of the history "sum": ivec4[2][lobe][cell] follow, over the last m generations up to `turns`.
 struct photon_sum {
     tyn_uint turns;
     tyn_uint pad[3];
 };
 TYN_ASSERT_SIZE(photon_sum, 16);
 
-// Light of a cell: fluence, W/m^2, and how it is distributed.
+// Light of a lobe of a cell.
 struct photon_light {
-    tyn_vec3 sun;
-    float cosine; // mean, to the reference direction: g' of the lobe
-    tyn_vec3 sky;
-    float order;  // scatterings, mean weighted by fluence: the penetration depth
-    tyn_vec3 way; // of the sky's light: net flux over fluence
-    float count;  // deposits
+    tyn_vec3 fluence; // W/m^2
+    float order;      // scatterings, mean weighted by fluence: the penetration depth
+    tyn_vec3 way;     // net flux over fluence (M): direction of the lobe and, as its length, g'
+    float count;      // deposits
 };
-TYN_ASSERT_SIZE(photon_light, 48);
+TYN_ASSERT_SIZE(photon_light, 32);
 
 #endif

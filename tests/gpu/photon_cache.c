@@ -9,20 +9,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { X = 4, Y = 2, Z = 3, N = X * Y * Z, M = 5, EACH = 2, SLOTS = M + EACH };
+enum { X = 4, Y = 2, Z = 3, N = X * Y * Z, LOBES = 3, QUADS = LOBES * N, M = 5, EACH = 2 };
+enum { SLOTS = M + EACH };
 
 static struct {
     struct photon_ring head;
-    int32_t words[SLOTS][N][PHOTON_WORDS];
+    int32_t words[SLOTS][QUADS][4];
 } ring;
+static int32_t flux[SLOTS][QUADS][4];
 
-static int32_t history[64][N][PHOTON_WORDS]; // all generations ever
+static int32_t history[64][2][QUADS][4]; // all generations ever
+static float medium_cells[N][4];         // of three channels the same: lattice_cells
 
-static const tyn_photon_cache_params params = {
+static tyn_photon_cache_params params = {
     .shape = {.extent = {4, 2, 2.5f}, .cells = X, .channels = 3, .tint = {1, 1, 1}},
     .generations = M,
     .slots = SLOTS,
-    .sun = {0, 0.6f, 0.8f},
+    .lobes = LOBES,
     .unit = 0.25f,
 };
 
@@ -33,20 +36,20 @@ static void trace(uint32_t count)
     ring.head.count = count;
     for (uint32_t k = 0; k < count; k++, ring.head.turns++) {
         const uint32_t turn = ring.head.turns;
-        for (uint32_t i = 0; i < N * PHOTON_WORDS; i++) {
-            const uint32_t word = i % PHOTON_WORDS;
-            const bool is_signed =
-                word == PHOTON_COSINE || (word >= PHOTON_FLUX && word < PHOTON_COUNT);
-            history[turn][i / PHOTON_WORDS][word] =
-                is_signed ? rand() % 400 - 200 : 100 + rand() % 900;
+        for (uint32_t i = 0; i < 2 * QUADS * 4; i++) {
+            const uint32_t quad = i / (QUADS * 4), word = i % 4;
+            const bool is_signed = quad == 1 && word < PHOTON_COUNT;
+            history[turn][quad][i / 4 % QUADS][word] =
+                is_signed ? rand() % 200 - 100 : 100 + rand() % 900;
         }
-        memcpy(ring.words[turn % SLOTS], history[turn], sizeof history[turn]);
+        memcpy(ring.words[turn % SLOTS], history[turn][0], sizeof history[turn][0]);
+        memcpy(flux[turn % SLOTS], history[turn][1], sizeof history[turn][1]);
     }
 }
 
 typedef struct sums {
     struct photon_sum head;
-    int32_t words[N][PHOTON_WORDS];
+    int32_t words[2][QUADS][4];
 } sums;
 
 static const sums *run(gpu_test *t)
@@ -57,7 +60,14 @@ static const sums *run(gpu_test *t)
     };
     tyn_graph_begin(t->graph);
     refs[PHOTON_CACHE_PORT_MEDIUM] = gpu_buffer(t, "medium", &medium, sizeof medium);
+    static float cells[3][N][4];
+    for (int c = 0; c < 3; c++) {
+        memcpy(cells[c], medium_cells, sizeof medium_cells);
+    }
     refs[PHOTON_CACHE_PORT_RING] = gpu_buffer(t, "ring", &ring, sizeof ring);
+    refs[PHOTON_CACHE_PORT_FLUX] = gpu_buffer(t, "flux", flux, sizeof flux);
+    refs[PHOTON_CACHE_PORT_CELLS] =
+        gpu_image(t, "cells", TYN_IMAGE_3D, (tyn_extent){X, Y, 3 * Z}, 4, cells[0][0]);
     refs[PHOTON_CACHE_PORT_SUM] = tyn_graph_history_buffer(t->graph, "sum", sizeof(sums), 1);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_photon_cache, &params, refs), TYN_OK);
     tyn_graph_output(t->graph, "sum", refs[PHOTON_CACHE_PORT_SUM], true);
@@ -68,12 +78,12 @@ static const sums *run(gpu_test *t)
     return gpu_map(t, "sum");
 }
 
-static int64_t expected(uint32_t cell, uint32_t word)
+static int64_t expected(uint32_t k, uint32_t quad, uint32_t word)
 {
     int64_t sum = 0;
     const uint32_t turns = ring.head.turns;
     for (uint32_t turn = turns > M ? turns - M : 0; turn < turns; turn++) {
-        sum += history[turn][cell][word];
+        sum += history[turn][k][quad][word];
     }
     return sum;
 }
@@ -82,43 +92,48 @@ static void check_sums(gpu_test *t)
 {
     const sums *s = run(t);
     assert_int_equal(s->head.turns, ring.head.turns);
-    for (uint32_t i = 0; i < N; i++) {
-        for (uint32_t w = 0; w < PHOTON_WORDS; w++) {
-            assert_int_equal(s->words[i][w], expected(i, w));
-        }
+    for (uint32_t i = 0; i < 2 * QUADS * 4; i++) {
+        const uint32_t k = i / (QUADS * 4), quad = i / 4 % QUADS;
+        assert_int_equal(s->words[k][quad][i % 4], expected(k, quad, i % 4));
     }
 }
 
-// What the cells' words mean: fluence over the part of a cell in the box, cosines, depth, net flux.
+// What the cells' words mean: fluence over the part of a cell in the box, or over its medium; depth, net flux.
 static void check_light(gpu_test *t)
 {
     const struct photon_light *light = gpu_map(t, "light");
     const float(*moments)[4] = (const float(*)[4])gpu_map(t, "moments");
     double worst = 0;
     for (uint32_t i = 0; i < N; i++) {
-        double w[PHOTON_WORDS];
-        for (uint32_t k = 0; k < PHOTON_WORDS; k++) {
-            w[k] = (double)expected(i, k);
-        }
         // Three layers of 1 m hold 2.5 m: the outer two have 0.75 m in the box.
-        const double volume = i / (X * Y) == 1 ? 1 : 0.75, scale = 0.25 / M / volume;
-        const double sun = (w[0] + w[1] + w[2]) / 3, sky = (w[4] + w[5] + w[6]) / 3;
-        const double cosine = w[PHOTON_COSINE] / sun;
-        worst = maximum(worst, fabs((double)light[i].sun[1] / (scale * w[1]) - 1));
-        worst = maximum(worst, fabs((double)light[i].sky[2] / (scale * w[6]) - 1));
-        worst = maximum(worst, fabs((double)light[i].cosine - cosine));
-        worst = maximum(
-            worst,
-            fabs((double)light[i].order - PHOTON_ORDER_UNIT * w[PHOTON_ORDER] / (sun + sky)) / 16);
-        for (int a = 0; a < 3; a++) {
-            worst = maximum(worst, fabs((double)light[i].way[a] - w[PHOTON_FLUX + a] / sky));
-            const float *m = moments[N + i]; // green
-            const double flux =
-                scale * (w[1] * cosine * (double)params.sun[a] + w[5] * w[PHOTON_FLUX + a] / sky);
-            worst = maximum(worst, fabs((double)m[1 + a] - flux) / (scale * (w[1] + w[5])));
-            worst = maximum(worst, fabs((double)m[0] / (scale * (w[1] + w[5])) - 1));
+        double measure = i / (X * Y) == 1 ? 1 : 0.75, all = 0, net[3] = {0, 0, 0};
+        if (params.majorant > 0) {
+            measure =
+                ((double)medium_cells[i][0] + (double)medium_cells[i][1]) / (double)params.majorant;
         }
-        assert_near((double)light[i].count, w[PHOTON_COUNT], 0.5);
+        const double scale = 0.25 / M / measure;
+        for (uint32_t lobe = 0; lobe < LOBES; lobe++) {
+            const uint32_t quad = lobe * N + i;
+            double w[8];
+            for (uint32_t k = 0; k < 8; k++) {
+                w[k] = (double)expected(k / 4, quad, k % 4);
+            }
+            const struct photon_light *l = &light[quad];
+            const double mean = (w[0] + w[1] + w[2]) / 3;
+            worst = maximum(worst, fabs((double)l->fluence[1] / (scale * w[1]) - 1));
+            worst = maximum(worst, fabs((double)l->order - PHOTON_ORDER_UNIT * w[3] / mean) / 16);
+            all += scale * w[1];
+            for (int a = 0; a < 3; a++) {
+                worst = maximum(worst, fabs((double)l->way[a] - w[4 + a] / mean));
+                net[a] += scale * w[1] * w[4 + a] / mean;
+            }
+            assert_near((double)l->count, w[7], 0.5);
+        }
+        const float *m = moments[N + i]; // green
+        worst = maximum(worst, fabs((double)m[0] / all - 1));
+        for (int a = 0; a < 3; a++) {
+            worst = maximum(worst, fabs((double)m[1 + a] - net[a]) / all);
+        }
     }
     assert_true(worst < 1e-5);
 }
@@ -141,18 +156,29 @@ static void sums_of_generations(void **state)
     trace(EACH + 1); // some were missed
     check_sums(*state);
     check_light(*state);
+    for (int i = 0; i < N; i++) { // delta scaled
+        medium_cells[i][0] = 1 + (float)rand() / (float)RAND_MAX;
+        medium_cells[i][1] = (float)rand() / (float)RAND_MAX;
+        medium_cells[i][2] = 0.4f;
+    }
+    params.majorant = 4;
+    params.scaled = 1;
+    check_sums(*state);
+    check_light(*state);
+    params.majorant = 0;
 }
 
 // Where a generation brings more than a cell can sum up it is bounded, and counted.
 static void bounded(void **state)
 {
     memset(&ring, 0, sizeof ring);
+    memset(flux, 0, sizeof flux);
     ring.head.turns = 60;
     for (int g = 0; g < SLOTS; g++) {
         ring.words[g][3][0] = 2000000000;
     }
     const sums *s = run(*state);
-    assert_int_equal(s->words[3][0], M * (2000000000 / M));
+    assert_int_equal(s->words[0][3][0], M * (2000000000 / M));
     const struct counters_block *counters = gpu_map(*state, "counters");
     assert_int_equal(counters->clamped, 1);
 }

@@ -10,11 +10,12 @@
 #include <string.h>
 
 enum { COARSE = 4, FINE = 8, N = COARSE * COARSE * COARSE, M = FINE * FINE * FINE };
+enum { LOBES = 2 };
 
 #define SIGMA 6.0 // of a density of 1, 1/m
 #define ANISOTROPY 0.85
 
-static struct photon_light cells_light[N];
+static struct photon_light cells_light[LOBES][N];
 static float density[M], coarse[N][4];
 
 static void make(bool even)
@@ -28,14 +29,14 @@ static void make(bool even)
         const double mean = even ? 1 : 0.5 + 0.5 * rand() / RAND_MAX;
         coarse[i][0] = (float)(SIGMA * mean * (1 - ANISOTROPY * ANISOTROPY));
         coarse[i][2] = (float)(ANISOTROPY / (1 + ANISOTROPY));
-        struct photon_light *l = &cells_light[i];
-        for (int c = 0; c < 3; c++) {
-            l->sun[c] = 1 + (float)rand() / (float)RAND_MAX;
-            l->sky[c] = 1 + (float)rand() / (float)RAND_MAX;
-            l->way[c] = (float)rand() / (float)RAND_MAX - 0.5f;
+        for (int lobe = 0; lobe < LOBES; lobe++) {
+            struct photon_light *l = &cells_light[lobe][i];
+            for (int c = 0; c < 3; c++) {
+                l->fluence[c] = 1 + (float)rand() / (float)RAND_MAX;
+                l->way[c] = 0.3f * ((float)rand() / (float)RAND_MAX - 0.5f);
+            }
+            l->order = 4 * (float)rand() / (float)RAND_MAX;
         }
-        l->cosine = 0.3f * (float)rand() / (float)RAND_MAX;
-        l->order = 4 * (float)rand() / (float)RAND_MAX;
     }
 }
 
@@ -55,11 +56,10 @@ static const float (*run(gpu_test *t, const tyn_photon_upsample_params *params))
     refs[PHOTON_UPSAMPLE_PORT_CELLS] = gpu_image(t, "cells", TYN_IMAGE_3D, size, 4, coarse[0]);
     refs[PHOTON_UPSAMPLE_PORT_LIGHT] = gpu_buffer(t, "light", cells_light, sizeof cells_light);
     assert_int_equal(tyn_graph_add(t->graph, &tyn_pass_photon_upsample, params, refs), TYN_OK);
-    tyn_graph_output(t->graph, "sun", refs[PHOTON_UPSAMPLE_PORT_SUN_LIGHT], true);
-    tyn_graph_output(t->graph, "sky", refs[PHOTON_UPSAMPLE_PORT_SKY_LIGHT], true);
-    tyn_graph_output(t->graph, "way", refs[PHOTON_UPSAMPLE_PORT_SKY_WAY], true);
+    tyn_graph_output(t->graph, "fluence", refs[PHOTON_UPSAMPLE_PORT_FLUENCE], true);
+    tyn_graph_output(t->graph, "way", refs[PHOTON_UPSAMPLE_PORT_WAY], true);
     gpu_run(t);
-    return (const float(*)[4])gpu_map(t, "sun");
+    return (const float(*)[4])gpu_map(t, "fluence");
 }
 
 static tyn_photon_upsample_params defaults(void)
@@ -69,6 +69,7 @@ static tyn_photon_upsample_params defaults(void)
     p.shape =
         (tyn_lattice_shape){.extent = {1, 1, 1}, .cells = COARSE, .channels = 1, .tint = {1, 1, 1}};
     p.cells = FINE;
+    p.lobes = LOBES;
     p.mode = TYN_MEDIUM_DENSITY;
     p.majorant = (float)SIGMA;
     return p;
@@ -92,9 +93,15 @@ static double f_exp(double d, double lambda, double r)
     return value > 0 ? value : 0;
 }
 
-static double order_at(const double x[3])
+// Cells in which there is nothing of the medium have no light of their own.
+static double has_medium(const tyn_photon_upsample_params *p, int cell)
 {
-    double sum = 0;
+    return p->weighted && !(coarse[cell][0] > 0) ? 1e-6 : 1;
+}
+
+static double order_at(const tyn_photon_upsample_params *p, int lobe, const double x[3])
+{
+    double sum = 0, total = 0;
     for (int i = 0; i < 8; i++) {
         double w = 1;
         int q[3];
@@ -104,13 +111,17 @@ static double order_at(const double x[3])
             w *= up ? t : 1 - t;
             q[a] = cell < 0 ? 0 : cell >= COARSE ? COARSE - 1 : cell;
         }
-        sum += w * (double)cells_light[(q[2] * COARSE + q[1]) * COARSE + q[0]].order;
+        const int cell = (q[2] * COARSE + q[1]) * COARSE + q[0];
+        w *= has_medium(p, cell);
+        sum += w * (double)cells_light[lobe][cell].order;
+        total += w;
     }
-    return sum;
+    return sum / total;
 }
 
-// Light of the sun and its mean cosine in a fine cell.
-static void twin(const int at[3], int32_t lobe, double *light, double *cosine)
+// Light of a lobe and its direction in a fine cell.
+static void twin(const tyn_photon_upsample_params *p, int from, const int at[3], double *light,
+                 double way[3])
 {
     double x[3];
     int middle[3];
@@ -118,9 +129,11 @@ static void twin(const int at[3], int32_t lobe, double *light, double *cosine)
         x[a] = (at[a] + 0.5) * COARSE / FINE;
         middle[a] = (int)x[a];
     }
-    const double here = SIGMA * (double)density[(at[2] * FINE + at[1]) * FINE + at[0]];
-    const double order = order_at(x), r = 1.5 / COARSE;
-    double total = 0, sum = 0, lobes = 0, lobe_sum = 0;
+    const double g = p->scaled ? ANISOTROPY / (1 + ANISOTROPY) : ANISOTROPY;
+    const double left = 1 - ANISOTROPY * ANISOTROPY, sigma = SIGMA * (p->scaled ? left : 1);
+    const double here = sigma * (double)density[(at[2] * FINE + at[1]) * FINE + at[0]];
+    const double order = order_at(p, from, x), r = 1.5 / COARSE;
+    double total = 0, sum = 0, lobes = 0, lobe_sum[3] = {0, 0, 0};
     for (int i = 0; i < 27; i++) {
         const int q[3] = {middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1};
         double d2 = 0;
@@ -133,34 +146,49 @@ static void twin(const int at[3], int32_t lobe, double *light, double *cosine)
             continue;
         }
         const int cell = (q[2] * COARSE + q[1]) * COARSE + q[0];
-        const struct photon_light *l = &cells_light[cell];
-        const double there = (double)coarse[cell][0] / (1 - ANISOTROPY * ANISOTROPY);
-        const double w =
-            f_exp(sqrt(d2), 0.5 * (here + there), r) * (1 - fabs(here - there) / SIGMA);
-        const double moved = pow(ANISOTROPY, order - (double)l->order);
-        const double mean = mean3(l->sun), weight = lobe ? w * mean * moved : w * mean;
+        const struct photon_light *l = &cells_light[from][cell];
+        const double there = (double)coarse[cell][0] / (p->scaled ? 1 : left);
+        const double w = f_exp(sqrt(d2), 0.5 * (here + there), r) *
+                         (1 - fabs(here - there) / sigma) * has_medium(p, cell);
+        const double moved = fmin(fmax(pow(g, order - (double)l->order), 0.25), 4);
+        const double mean = mean3(l->fluence), weight = p->lobe ? w * mean * moved : w * mean;
         total += w;
-        sum += w * (double)l->sun[1];
+        sum += w * (double)l->fluence[1];
         lobes += weight;
-        lobe_sum += weight * (lobe ? 1 : moved) * (double)l->cosine;
+        for (int a = 0; a < 3; a++) {
+            lobe_sum[a] += weight * (p->lobe ? 1 : moved) * (double)l->way[a];
+        }
     }
     *light = sum / total;
-    *cosine = lobe_sum / lobes;
+    for (int a = 0; a < 3; a++) {
+        way[a] = lobe_sum[a] / lobes;
+    }
 }
 
+// As published, delta scaled, and where some cells are empty.
 static void as_published(void **state)
 {
-    for (int32_t lobe = 0; lobe < 2; lobe++) {
+    for (int32_t kind = 0; kind < 8; kind++) {
         tyn_photon_upsample_params p = defaults();
-        p.lobe = lobe;
+        p.lobe = kind & 1;
+        p.scaled = kind >> 1 & 1;
+        p.weighted = kind >> 2;
+        p.majorant = (float)(SIGMA * (p.scaled ? 1 - ANISOTROPY * ANISOTROPY : 1));
         make(false);
-        const float(*sun)[4] = run(*state, &p);
+        for (int i = 0; p.weighted && i < N; i += 3) {
+            coarse[i][0] = 0;
+        }
+        const float(*found)[4] = run(*state, &p);
+        const float(*ways)[4] = (const float(*)[4])gpu_map(*state, "way");
         double worst = 0;
-        for (int i = 0; i < M; i++) {
-            double light, cosine;
-            twin((int[]){i % FINE, i / FINE % FINE, i / FINE / FINE}, lobe, &light, &cosine);
-            worst = maximum(worst, fabs((double)sun[i][1] / light - 1));
-            worst = maximum(worst, fabs((double)sun[i][3] - cosine));
+        for (int i = 0; i < LOBES * M; i++) {
+            double light, way[3];
+            const int at[3] = {i % FINE, i / FINE % FINE, i / FINE / FINE % FINE};
+            twin(&p, i / M, at, &light, way);
+            worst = maximum(worst, fabs((double)found[i][1] / light - 1));
+            for (int a = 0; a < 3; a++) {
+                worst = maximum(worst, fabs((double)ways[i][a] - way[a]));
+            }
         }
         assert_true(worst < 5e-5);
     }
@@ -170,24 +198,19 @@ static void as_published(void **state)
 static void even(void **state)
 {
     make(true);
-    for (int i = 0; i < N; i++) {
-        cells_light[i] = (struct photon_light){.sun = {1, 2, 3},
-                                               .cosine = 0.4f,
-                                               .sky = {3, 2, 1},
-                                               .order = 5,
-                                               .way = {0.1f, 0.2f, -0.3f}};
+    for (int i = 0; i < LOBES * N; i++) {
+        cells_light[i / N][i % N] =
+            (struct photon_light){.fluence = {1, 2, 3}, .order = 5, .way = {0.1f, 0.2f, -0.3f}};
     }
     for (int32_t filter = 0; filter < 2; filter++) {
         tyn_photon_upsample_params p = defaults();
         p.filter = filter;
-        const float(*sun)[4] = run(*state, &p);
-        const float(*sky)[4] = (const float(*)[4])gpu_map(*state, "sky"),
-              (*way)[4] = (const float(*)[4])gpu_map(*state, "way");
-        for (int i = 0; i < M; i++) {
-            const double expected[] = {1, 2, 3, 0.4, 3, 2, 1, 5, 0.1, 0.2, -0.3};
-            for (int k = 0; k < 11; k++) {
-                const float v = k < 4 ? sun[i][k] : k < 8 ? sky[i][k - 4] : way[i][k - 8];
-                assert_near((double)v, expected[k], 1e-5);
+        const float(*found)[4] = run(*state, &p);
+        const float(*way)[4] = (const float(*)[4])gpu_map(*state, "way");
+        for (int i = 0; i < LOBES * M; i++) {
+            const double expected[] = {1, 2, 3, 5, 0.1, 0.2, -0.3};
+            for (int k = 0; k < 7; k++) {
+                assert_near((double)(k < 4 ? found[i][k] : way[i][k - 4]), expected[k], 1e-5);
             }
         }
     }

@@ -488,6 +488,58 @@ static void skipping(void **state)
     free(s);
 }
 
+static double apart(const float *a, const float *b)
+{
+    double sum = 0, off = 0;
+    for (int i = 0; i < 16 * 16 * 4; i++) {
+        sum += (double)fabsf(b[i]);
+        off += (double)fabsf(a[i] - b[i]);
+    }
+    return off / sum;
+}
+
+// Noise on the places of medium and light: the more the farther off, nothing where both are even, and what it moves into
+// an empty brick is not skipped.
+static void noise(void **state)
+{
+    gpu_test *t = *state;
+    march_scene *s = malloc(sizeof *s);
+    float still[16 * 16 * 4], moved[16 * 16 * 4];
+    make_lumps(s);
+    s->params.step = 0.25f;
+    run(t, s);
+    memcpy(still, gpu_map(t, "radiance"), sizeof still);
+    double before = 0;
+    for (int k = 0; k < 3; k++) {
+        s->params.noise = 0.05f * (float)(1 << 2 * k);
+        s->params.noise_size = 4;
+        run(t, s);
+        memcpy(moved, gpu_map(t, "radiance"), sizeof moved);
+        const double off = apart(moved, still);
+        print_message("noise of %.2f voxels: %.2f %%\n", (double)s->params.noise, 100 * off);
+        assert_true(off > 1.5 * before && off > 1e-4);
+        before = off;
+    }
+    s->params.noise = 7;
+    run(t, s);
+    memcpy(moved, gpu_map(t, "radiance"), sizeof moved);
+    s->distance.texels[3] = 0;
+    run(t, s);
+    assert_true(apart(gpu_map(t, "radiance"), moved) < 2e-3);
+    for (int i = 0; i < 12 * 8 * 16; i++) {
+        s->density.texels[i] = 1;
+    }
+    for (int i = 0; i < 5 * 4 * 6 * 4; i++) {
+        s->inscatter.texels[i] = 0.2f;
+    }
+    run(t, s);
+    memcpy(moved, gpu_map(t, "radiance"), sizeof moved);
+    s->params.noise = 0;
+    run(t, s);
+    assert_true(apart(gpu_map(t, "radiance"), moved) < 1e-6);
+    free(s);
+}
+
 // Uniform surroundings of radiance 1 and no absorption: every pixel is 1, at any depth and g.
 static void furnace(void **state)
 {
@@ -761,6 +813,7 @@ int main(void)
         cmocka_unit_test(lumps_grey),
         cmocka_unit_test(lumps_colour),
         cmocka_unit_test(skipping),
+        cmocka_unit_test(noise),
         cmocka_unit_test(furnace),
         cmocka_unit_test(opaque),
         cmocka_unit_test(surfaces),
