@@ -101,8 +101,8 @@ static struct gradient_args args_of(const tyn_gradient_params *p)
         .apart = p->voxel,
         .nearest = 0.5f * p->voxel,
         .epsilon = p->epsilon,
-        .limit = p->limit,
-        .fading = (uint32_t)p->weight,
+        .linear = (uint32_t)p->extrapolation,
+        .fading = p->weight == 0,
         .narrow = RBF_WIDTH,
         .x = n.x,
         .y = n.y,
@@ -178,7 +178,8 @@ static void record(tyn_recorder *r, const void *params)
 }
 
 static const char *const interpolations[] = {"gradient", "rbf", "voxel"};
-static const char *const weights[] = {"printed", "fading"};
+static const char *const extrapolations[] = {"exponential", "linear"};
+static const char *const weights[] = {"fading", "printed"};
 
 static const tyn_param param_table[] = {
     {"cells", TYN_PARAM_INT, offsetof(tyn_gradient_params, cells), 8, 2, 32, "cells",
@@ -197,9 +198,11 @@ static const tyn_param param_table[] = {
      "cell",
      interpolations},
     {"weight", TYN_PARAM_ENUM, offsetof(tyn_gradient_params, weight), 0, 0, 1, "",
-     "of a sample: printed = R / d, which ends in a step; fading = R / d - 1", weights},
-    {"limit", TYN_PARAM_BOOL, offsetof(tyn_gradient_params, limit), 1, 0, 1, "",
-     "gradients are no larger than radiance over valid radius", NULL},
+     "of a sample: fading = R / d - 1; printed = R / d, which ends in a step", weights},
+    {"extrapolation", TYN_PARAM_ENUM, offsetof(tyn_gradient_params, extrapolation), 0, 0, 1, "",
+     "from a sample: exponential = L e^((x - x_j) grad L / L); linear = L + (x - x_j) grad L, as "
+     "published",
+     extrapolations},
     {"step", TYN_PARAM_FLOAT, offsetof(tyn_gradient_params, step), 0.5, 0.1, 4, "voxels",
      "between densities along rays to lights", NULL},
 };
@@ -212,7 +215,7 @@ static const tyn_counter counters[] = {
     TYN_COUNTER_HIDDEN(
         "of the light",
         "accuracy: gradients lead below 0 between samples: %.1f %% of the light was set to 0 "
-        "(-D gradient.limit=1)"),
+        "(-D gradient.extrapolation=exponential)"),
     {NULL},
 };
 

@@ -29,9 +29,9 @@ struct gradient_args {
     float radius;   // of level 0's samples, m; half of it with each level
     float step;     // between densities along a ray, m
     float apart;    // of the two points of a central difference to the sample, m
-    float nearest;  // lamps nearer than this count as so far away, m
+    float nearest;  // lamps nearer to a cell than this count as so far away, m
     float epsilon;
-    tyn_uint limit;   // 1: gradients are bounded by radiance over radius
+    tyn_uint linear;  // 1: L + (x - x_j) grad L, else L e^((x - x_j) grad L / L)
     tyn_uint fading;  // 1: weights vanish at the valid radius
     float narrow;     // width of radial functions, of the valid radius
     tyn_uint x, y, z; // cells of the field

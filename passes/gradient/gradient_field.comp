@@ -43,7 +43,7 @@ void add(inout sums s, vec3 x, uint n, float radius)
     } else {
         const float d = max(sqrt(d2), 1e-4 * radius);
         float w = d < radius ? radius / d - (args.fading != 0u ? 1.0 : 0.0) : 0.0;
-        s.light += w * (light[n] + away.x * slope_x[n] + away.y * slope_y[n] + away.z * slope_z[n]);
+        s.light += w * gradient_extrapolated(light[n], away.x * slope_x[n] + away.y * slope_y[n] + away.z * slope_z[n]);
         s.weight += w;
     }
 }

@@ -53,4 +53,14 @@ vec3 gradient_place(gradient_grid grid, ivec3 at)
     return (vec3(at) + 0.5) * grid.spacing;
 }
 
+// What a sample's light is where it differs by `change`, to first order. Light falls off as exponentials do and is never
+// negative; a sample beside a lamp knows nothing of how bright it is there.
+const float GRADIENT_MOST = 1.0;
+
+vec3 gradient_extrapolated(vec3 light, vec3 change)
+{
+    const vec3 exponential = light * exp(min(change / max(light, 1e-30), GRADIENT_MOST));
+    return mix(exponential, light + change, bvec3(args.linear != 0u));
+}
+
 #endif

@@ -46,6 +46,12 @@ vec3 transmittance_along(vec3 p, vec3 way, float reach)
     return exp(-unit * sum);
 }
 
+// The place of the box nearest to p: beside it light has not gone through the medium.
+vec3 within_box(vec3 p)
+{
+    return clamp(p, 1e-6 * medium.extent, (1.0 - 1e-6) * medium.extent);
+}
+
 // From the eye towards p, unit.
 vec3 view_at(vec3 p)
 {
@@ -58,7 +64,8 @@ float distance_to_eye(vec3 p)
     return camera_select(camera, 3.4e38, length(p - camera.origin));
 }
 
-vec3 light_of(listed_light l, vec3 p, vec3 view, phase phases[3])
+// `nearest`: lamps count as at least so far away, m, as p stands for what is about it.
+vec3 light_of(listed_light l, vec3 p, vec3 view, phase phases[3], float nearest)
 {
     vec3 towards = -l.direction, color = l.color;
     float reach = 3.4e38;
@@ -67,7 +74,7 @@ vec3 light_of(listed_light l, vec3 p, vec3 view, phase phases[3])
         const float r2 = dot(way, way);
         reach = sqrt(r2);
         towards = way / max(reach, 1e-20);
-        color *= listed_light_lobe(l, -towards) / max(r2, args.nearest * args.nearest);
+        color *= listed_light_lobe(l, -towards) / max(r2, nearest * nearest);
     }
     if (gradient_has(GRADIENT_SHADOWS) && l.shadow != TYN_LIGHT_NO_SHADOW) {
         color *= shadow_visibility(l.shadow, p);
@@ -85,7 +92,8 @@ vec3 light_of(listed_light l, vec3 p, vec3 view, phase phases[3])
     return color * transmittance_along(p, towards, lit ? reach : 0.0);
 }
 
-vec3 light_at(vec3 p)
+// p within the box.
+vec3 light_at(vec3 p, float nearest)
 {
     const vec3 view = view_at(p);
     vec3 weight = vec3(1.0);
@@ -97,7 +105,7 @@ vec3 light_at(vec3 p)
     vec3 sum = vec3(0.0);
     const uint count = listed_lights();
     for (uint n = 0u; n < count; n++) {
-        sum += light_of(listed_light_of(n), p, view, phases);
+        sum += light_of(listed_light_of(n), p, view, phases, nearest);
     }
     return weight * sum;
 }

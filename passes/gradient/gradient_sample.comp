@@ -43,22 +43,15 @@ float mean3(vec3 v)
     return dot(v, vec3(1.0 / 3.0));
 }
 
-gradient_sample sample_of(uint from, gradient_grid grid)
+// `x`: where it is.
+gradient_sample sample_of(uint from, gradient_grid grid, vec3 x)
 {
     gradient_sample s;
     s.light = traced[from];
-    const float over = 0.5 / args.apart;
+    const vec3 over = 1.0 / (within_box(x + args.apart) - within_box(x - args.apart));
     vec3 slope[3];
     [[unroll]] for (uint a = 0u; a < 3u; a++) {
-        slope[a] = over * (traced[from + OF_DIFFERENCES + 2u * a] - traced[from + OF_DIFFERENCES + 2u * a + 1u]);
-    }
-    if (args.limit != 0u) { // in no direction more than the light itself within the valid radius
-        const vec3 most = s.light / grid.radius;
-        const vec3 steep = sqrt(slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2]);
-        const vec3 share = min(vec3(1.0), most / max(steep, vec3(1e-30)));
-        [[unroll]] for (uint a = 0u; a < 3u; a++) {
-            slope[a] *= share;
-        }
+        slope[a] = over[a] * (traced[from + OF_DIFFERENCES + 2u * a] - traced[from + OF_DIFFERENCES + 2u * a + 1u]);
     }
     s.error = s.seen = s.pad0 = s.pad1 = 0.0;
     if (gradient_threads > 8u) {
@@ -66,7 +59,7 @@ gradient_sample sample_of(uint from, gradient_grid grid)
         float error = 0.0, seen = mean3(scatters[from] * s.light);
         [[unroll]] for (uint i = 0u; i < 6u; i++) {
             const vec3 there = traced[from + OF_ERRORS + i];
-            const vec3 taken = s.light + ((i & 1u) == 0u ? grid.radius : -grid.radius) * slope[i / 2u];
+            const vec3 taken = gradient_extrapolated(s.light, ((i & 1u) == 0u ? grid.radius : -grid.radius) * slope[i / 2u]);
             error += mean3(scatters[from + OF_ERRORS + i] * abs(taken - there)) / 6.0;
             seen += mean3(scatters[from + OF_ERRORS + i] * there);
         }
@@ -96,7 +89,7 @@ void main()
     const vec3 p = x + offset_of(thread, grid.radius);
     vec3 found = vec3(0.0);
     if (is && thread < TO_EYE) {
-        found = finite_light(light_at(p));
+        found = finite_light(light_at(within_box(p), 0.5 * grid.radius));
     }
     if (gradient_threads > 8u) {
         scatters[gl_LocalInvocationIndex] = medium_sample(p).sigma_s;
@@ -107,7 +100,7 @@ void main()
     traced[gl_LocalInvocationIndex] = found;
     barrier();
     if (is && thread == 0u) {
-        samples[grid.first + point] = sample_of(gl_LocalInvocationIndex, grid);
+        samples[grid.first + point] = sample_of(gl_LocalInvocationIndex, grid, x);
         states[grid.first + point] = GRADIENT_IS_LISTED | GRADIENT_IS_SAMPLE;
         atomicAdd(counters.pixels, 1u);
         atomicAdd(counters.steps, 1u);

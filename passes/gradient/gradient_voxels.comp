@@ -13,7 +13,7 @@ void main()
     if (any(greaterThanEqual(texel, dims + 2))) {
         return;
     }
-    const vec3 x = lattice_to_m(lattice_box_of(medium.extent, dims), vec3(texel) - 0.5);
-    imageStore(inscatter_image, texel, vec4(finite_light(light_at(x)), 0.0));
+    const vec3 x = within_box(lattice_to_m(lattice_box_of(medium.extent, dims), vec3(texel) - 0.5));
+    imageStore(inscatter_image, texel, vec4(finite_light(light_at(x, args.nearest)), 0.0));
     atomicAdd(counters.steps, 1u);
 }
