@@ -188,7 +188,7 @@ static const tyn_param param_table[] = {
      "of the finest, at most: each grid is twice as fine as the one before", NULL},
     {"field", TYN_PARAM_INT, offsetof(tyn_gradient_params, field), 128, 16, 256, "cells",
      "of the field that is made of samples, at most as many as voxels (64 at least)", NULL},
-    {"epsilon", TYN_PARAM_FLOAT, offsetof(tyn_gradient_params, epsilon), 1e-5, 0, 1, "",
+    {"epsilon", TYN_PARAM_FLOAT, offsetof(tyn_gradient_params, epsilon), 1e-4, 0, 1, "",
      "samples are split whose error is a larger share of all light seen (Eq 6)", NULL},
     {"lights", TYN_PARAM_INT, offsetof(tyn_gradient_params, lights), 20, 1, 64, "",
      "distant lights that stand for the environment", NULL},
@@ -198,7 +198,7 @@ static const tyn_param param_table[] = {
      "cell",
      interpolations},
     {"weight", TYN_PARAM_ENUM, offsetof(tyn_gradient_params, weight), 0, 0, 1, "",
-     "of a sample: fading = R / d - 1; printed = R / d, which ends in a step", weights},
+     "of a sample: fading = (R / d - 1) / R^3; printed = R / d, which ends in a step", weights},
     {"extrapolation", TYN_PARAM_ENUM, offsetof(tyn_gradient_params, extrapolation), 0, 0, 1, "",
      "from a sample: exponential = L e^((x - x_j) grad L / L); linear = L + (x - x_j) grad L, as "
      "published",

@@ -17,7 +17,7 @@ typedef struct tyn_gradient_params {
     float epsilon;         // "gradient.epsilon"
     int32_t lights;        // "gradient.lights": distant lights that stand for the environment
     int32_t interpolation; // "gradient.interpolation": GRADIENT_*
-    int32_t weight;        // "gradient.weight": 0: W_j - 1; 1: W_j as printed
+    int32_t weight;        // "gradient.weight": 0: (W_j - 1) / R_j^3; 1: W_j as printed
     int32_t extrapolation; // "gradient.extrapolation": 0: exponential; 1: linear
     float step;            // "gradient.step": along rays, voxels
     // Set by the method.

@@ -42,7 +42,14 @@ void add(inout sums s, vec3 x, uint n, float radius)
         s.weight += w;
     } else {
         const float d = max(sqrt(d2), 1e-4 * radius);
-        float w = d < radius ? radius / d - (args.fading != 0u ? 1.0 : 0.0) : 0.0;
+        float w = radius / d;
+        if (args.fading != 0u) {
+            // It vanishes at R, and counts for the volume that the sample stands for: coarse ones do not outweigh the finer ones
+            // which they reach.
+            const float finer = args.radius / radius;
+            w = (w - 1.0) * finer * finer * finer;
+        }
+        w = d < radius ? w : 0.0;
         s.light += w * gradient_extrapolated(light[n], away.x * slope_x[n] + away.y * slope_y[n] + away.z * slope_z[n]);
         s.weight += w;
     }

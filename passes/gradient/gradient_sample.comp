@@ -59,7 +59,8 @@ gradient_sample sample_of(uint from, gradient_grid grid, vec3 x)
         float error = 0.0, seen = mean3(scatters[from] * s.light);
         [[unroll]] for (uint i = 0u; i < 6u; i++) {
             const vec3 there = traced[from + OF_ERRORS + i];
-            const vec3 taken = gradient_extrapolated(s.light, ((i & 1u) == 0u ? grid.radius : -grid.radius) * slope[i / 2u]);
+            const float away = dot(axis_of(i), within_box(x + grid.radius * axis_of(i)) - x);
+            const vec3 taken = gradient_extrapolated(s.light, ((i & 1u) == 0u ? away : -away) * slope[i / 2u]);
             error += mean3(scatters[from + OF_ERRORS + i] * abs(taken - there)) / 6.0;
             seen += mean3(scatters[from + OF_ERRORS + i] * there);
         }
@@ -86,10 +87,11 @@ void main()
         point = entries[grid.first + point];
     }
     const vec3 x = gradient_place(grid, gradient_at(grid, point));
-    const vec3 p = x + offset_of(thread, grid.radius);
+    // Beyond the box is nothing; its faces are where light enters.
+    const vec3 p = within_box(x + offset_of(thread, grid.radius));
     vec3 found = vec3(0.0);
     if (is && thread < TO_EYE) {
-        found = finite_light(light_at(within_box(p), 0.5 * grid.radius));
+        found = finite_light(light_at(p, 0.5 * grid.radius));
     }
     if (gradient_threads > 8u) {
         scatters[gl_LocalInvocationIndex] = medium_sample(p).sigma_s;
