@@ -3,11 +3,11 @@
 //
 // Navarro, Gutierrez and Seron, "Interactive HDR lighting of dynamic participating media" (The Visual Computer 24, 2008).
 // Light scatters once. docs/constellation.md says what is as published and what is beyond it.
+#include "light/list.h"
 #include "light/sources.h"
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>
 #include "passes/constellation/constellation.h"
-#include "passes/median_cut/median_cut.h"
 #include "passes/validity_mask/validity_mask.h"
 #include "passes/voxel_distance/voxel_distance.h"
 #include "view/view.h"
@@ -47,49 +47,6 @@ static tyn_ref add_mask(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
     };
     tyn_graph_add(g, &tyn_pass_validity_mask, &params, refs);
     return refs[VALIDITY_MASK_PORT_MASK];
-}
-
-// The constellation of the environment, its suns among its lights; {0} if nothing shines from there.
-static tyn_ref add_constellation(tyn_graph *g, const tyn_job *job, uint32_t lights)
-{
-    const struct env_block *env = &job->frame->environment;
-    if (env->mean[0] + env->mean[1] + env->mean[2] <= 0) {
-        return (tyn_ref){0};
-    }
-    const tyn_median_cut_params params = {.lights = lights, .map = env->has_map};
-    tyn_ref refs[TYN_MAX_PORTS] = {{0}};
-    if (env->has_map) {
-        refs[MEDIAN_CUT_PORT_SUMS] = tyn_add_map_sums(g, job);
-    }
-    tyn_graph_add(g, &tyn_pass_median_cut, &params, refs);
-    tyn_job_counters(g, job, &tyn_pass_median_cut, refs[MEDIAN_CUT_PORT_CONSTELLATION]);
-    return refs[MEDIAN_CUT_PORT_CONSTELLATION];
-}
-
-static bool is_same(const struct light_block *a, const struct light_block *b)
-{
-    return memcmp(a->direction, b->direction, sizeof a->direction) == 0 &&
-           memcmp(a->color, b->color, sizeof a->color) == 0;
-}
-
-// Suns and lamps of the scene; those of the map are in the constellation. The strongest suns of scene and map have
-// shadow maps, in their order.
-static struct constellation_lights_args lights_of(const tyn_job *job, const tyn_sources *s)
-{
-    const tyn_lights *lights = &job->frame->lights;
-    struct constellation_lights_args args = {
-        .num_suns = lights->num_directional,
-        .num_lamps = lights->num_lamps,
-        .shadows = s->shadows.shadows.resource != 0,
-    };
-    const uint32_t mapped = args.shadows ? tyn_num_beams(lights) : 0;
-    for (uint32_t i = 0, sun = 0; i < mapped; i++) {
-        if (sun < lights->num_directional && is_same(&lights->suns[i], &lights->scene[sun])) {
-            args.sun_shadow[sun++] = i;
-            args.suns_with_shadow = sun;
-        }
-    }
-    return args;
 }
 
 static void set_view(tyn_constellation_params *p, const tyn_job *job)
@@ -147,7 +104,6 @@ static void add_march(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
     set_medium(&params, job);
     tyn_ref refs[TYN_MAX_PORTS] = {
         [CONSTELLATION_PORT_VOXELS] = add_voxel_distance(g, job, s),
-        [CONSTELLATION_PORT_LIGHTS] = job->refs.lights,
         [CONSTELLATION_PORT_CAMERA] = job->refs.camera,
         [CONSTELLATION_PORT_ENVIRONMENT] = job->refs.environment,
         [CONSTELLATION_PORT_ENV_MAP] = job->refs.env_map,
@@ -159,9 +115,9 @@ static void add_march(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
         refs[CONSTELLATION_PORT_MASK] =
             add_mask(g, job, s, &params, refs[CONSTELLATION_PORT_VOXELS]);
     }
-    refs[CONSTELLATION_PORT_CONSTELLATION] = add_constellation(g, job, (uint32_t)params.lights);
-    params.listed = lights_of(job, s);
-    params.listed.constellation = refs[CONSTELLATION_PORT_CONSTELLATION].resource != 0;
+    refs[CONSTELLATION_PORT_LIGHT_LIST] =
+        tyn_add_light_list(g, job, s, (uint32_t)params.lights, &params.num_lights);
+    params.lamps = job->frame->lights.num_lamps > 0;
     tyn_connect(refs, CONSTELLATION_PORT_MEDIUM, s->medium);
     refs[CONSTELLATION_PORT_MEDIUM] = job->refs.medium;
     tyn_connect(refs, CONSTELLATION_PORT_SHADOW_ATLAS, s->shadows);
@@ -210,8 +166,7 @@ static const tyn_pass_desc *const passes[] = {
     TYN_VIRTUAL_LIGHT_PASSES(TYN_PASS_ADDRESS),
     TYN_LAMP_PASSES(TYN_PASS_ADDRESS),
     TYN_SURFACE_PASSES(TYN_PASS_ADDRESS),
-    &tyn_pass_env_importance,
-    &tyn_pass_median_cut,
+    TYN_LIST_PASSES,
     &tyn_pass_voxel_distance,
     &tyn_pass_validity_mask,
     &tyn_pass_constellation,

@@ -1,17 +1,16 @@
 // constellation.c -- the picture of the method constellation: slices back to front, with a shadow ray per light and slice.
 #include "constellation.h"
 #include "shaders/common/counters.h"
-#include "constellation_lights.comp.h"
+#include "shaders/light/constellation_args.h"
 #include "constellation_march_coefficients.comp.h"
 #include "constellation_march_density.comp.h"
 #include <math.h>
 
 static const tyn_port ports[] = {CONSTELLATION_PORTS(TYN_PORT_ROW)};
 
-enum { KERNEL_LIGHTS, KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
+enum { KERNEL_DENSITY, KERNEL_COEFFICIENTS, NUM_KERNELS };
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [KERNEL_LIGHTS] = TYN_KERNEL(constellation_lights),
     [KERNEL_DENSITY] = TYN_KERNEL(constellation_march_density),
     [KERNEL_COEFFICIENTS] = TYN_KERNEL(constellation_march_coefficients),
 };
@@ -67,12 +66,6 @@ struct slices_args tyn_constellation_slices(const struct medium_block *medium, f
     };
 }
 
-static uint32_t most_lights(const tyn_constellation_params *p)
-{
-    return (p->listed.constellation ? (uint32_t)p->lights : 0) + p->listed.num_suns +
-           p->listed.num_lamps;
-}
-
 // Slices of a ray, at most.
 static float most_slices(const tyn_constellation_params *p)
 {
@@ -89,7 +82,7 @@ typedef struct portion {
 static portion portion_of(const tyn_constellation_params *p)
 {
     const float slices = most_slices(p);
-    const float lights = p->lighting == CONSTELLATION_ALPHA ? 0 : (float)most_lights(p);
+    const float lights = p->lighting == CONSTELLATION_ALPHA ? 0 : (float)p->num_lights;
     const float of_light =
         1 + (p->lighting == CONSTELLATION_SHADOWED ? 2 + ceilf(slices / 2) : 0); // two steps a turn
     const float of_slice = 3 + of_light * lights;
@@ -127,7 +120,6 @@ static tyn_result declare(tyn_builder *b, const void *params)
     tyn_build_image(b, CONSTELLATION_PORT_STATE_LIGHT, kept, 1);
     tyn_build_image(b, CONSTELLATION_PORT_STATE_THROUGH, kept, 1);
     tyn_build_image(b, CONSTELLATION_PORT_STATE_UNCOVERED, kept, 1);
-    tyn_build_buffer(b, CONSTELLATION_PORT_LIGHT_LIST, sizeof(struct constellation_list));
     tyn_build_buffer(b, CONSTELLATION_PORT_COUNTERS, sizeof(struct counters_block));
     return TYN_OK;
 }
@@ -147,7 +139,7 @@ static uint32_t features_of(const tyn_recorder *r, const tyn_constellation_param
     features |= tyn_rec_has(r, CONSTELLATION_PORT_SHADOW_ATLAS) ? CONSTELLATION_SHADOWS : 0;
     features |= p->layers & CONSTELLATION_LAYER_TRANSMITTANCE ? CONSTELLATION_TRANSMITTANCE : 0;
     features |= p->layers & CONSTELLATION_LAYER_DEPTH ? CONSTELLATION_DEPTH : 0;
-    features |= p->listed.num_lamps ? CONSTELLATION_LAMPS : 0;
+    features |= p->lamps ? CONSTELLATION_LAMPS : 0;
     return features;
 }
 
@@ -163,7 +155,6 @@ static void record(tyn_recorder *r, const void *params)
         .rounds = of.slices,
     };
     tyn_rec_fill(r, CONSTELLATION_PORT_COUNTERS, 0);
-    TYN_DISPATCH(r, .kernel = KERNEL_LIGHTS, .cells = {64, 1, 1}, .args = &p->listed);
 
     // The binding of a layer that is not made is not written to, so any image will do.
     uint8_t absent[2][2], num_absent = 0, ports_of[TYN_MAX_BINDINGS];

@@ -32,9 +32,10 @@ typedef struct tyn_constellation_params {
     uint32_t layers;     // set of CONSTELLATION_LAYER_*
     uint32_t width, height;
     struct slices_args slices;
-    float extent[3];                         // medium_block.extent, m
-    struct constellation_lights_args listed; // the lights beside the constellation
-    float depth[4];                          // of the host's depth: tyn_job.host_depth
+    float extent[3];     // medium_block.extent, m
+    uint32_t num_lights; // in the list, at most
+    uint32_t lamps;      // 1: some of them are lamps
+    float depth[4];      // of the host's depth: tyn_job.host_depth
 } tyn_constellation_params;
 
 // How rays are cut: slices `slice` voxels apart. A medium counts as one of 64 voxels at least along its longest side, and of
@@ -47,8 +48,7 @@ struct slices_args tyn_constellation_slices(const struct medium_block *medium, f
     TYN_MEDIUM(X##_OPTIONAL, CONSTELLATION), \
     X(CONSTELLATION, VOXELS, voxels, OPTIONAL, IMAGE_3D, "of voxel_distance"), \
     X(CONSTELLATION, MASK, mask, OPTIONAL, IMAGE_2D, "of validity_mask; absent: rays begin where they leave the box"), \
-    X(CONSTELLATION, CONSTELLATION, constellation, OPTIONAL, BUFFER, "of median_cut"), \
-    X(CONSTELLATION, LIGHTS, lights, IN, BUFFER, "struct light_block[]: directional lights, then lamps"), \
+    X(CONSTELLATION, LIGHT_LIST, light_list, IN, BUFFER, "of light_list: all lights"), \
     TYN_SHADOWS(X##_OPTIONAL, CONSTELLATION), \
     X(CONSTELLATION, CAMERA, camera, IN, BUFFER, "struct camera_block"), \
     X(CONSTELLATION, ENVIRONMENT, environment, IN, BUFFER, "struct env_block"), \
@@ -68,7 +68,6 @@ struct slices_args tyn_constellation_slices(const struct medium_block *medium, f
         "distance to the first surface, and to where the mean transmittance is 1/2, m; infinity if there is " \
         "none", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(CONSTELLATION, COUNTERS, counters, OUT, BUFFER, "struct counters_block"), \
-    X(CONSTELLATION, LIGHT_LIST, light_list, SCRATCH, BUFFER, "struct constellation_list: all lights, as they shine on the medium"), \
     X(CONSTELLATION, STATE_LIGHT, state_light, SCRATCH, IMAGE_2D, \
         "between dispatches: radiance, next slice", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
     X(CONSTELLATION, STATE_THROUGH, state_through, SCRATCH, IMAGE_2D, \

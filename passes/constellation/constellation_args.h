@@ -1,9 +1,7 @@
 // constellation_args.h -- push constants, features and lists of the method constellation. Included by C and GLSL.
 #ifndef TYN_CONSTELLATION_PASS_ARGS_H
 #define TYN_CONSTELLATION_PASS_ARGS_H
-#include "shaders/light/constellation_args.h"
-#include "shaders/light/light_args.h"
-#include "shaders/light/shadow_args.h"
+#include "shaders/common/shared.h"
 #include "shaders/march/slices_args.h"
 
 // Bits of the specialisation constant "features".
@@ -37,25 +35,5 @@ struct constellation_args {
     tyn_uint light_begin, light_end;
 };
 TYN_ASSERT_SIZE(constellation_args, 48);
-
-struct constellation_lights_args {
-    tyn_uint constellation; // 1: there is one
-    tyn_uint num_suns;      // of the scene
-    tyn_uint num_lamps;     // that follow them
-    tyn_uint shadows;       // 1: suns and lamps have shadow maps
-    // Which of the suns that have a shadow map each of the first is, or TYN_LIGHT_NO_SHADOW.
-    tyn_uint sun_shadow[4];
-    tyn_uint suns_with_shadow; // so many of `sun_shadow` count
-};
-TYN_ASSERT_SIZE(constellation_lights_args, 36);
-
-#define CONSTELLATION_LIGHTS_MAX (TYN_CONSTELLATION_MAX + 68) // + TYN_LIGHTS_MAX
-
-struct constellation_list { // scratch buffer "light_list", read as words of four
-    tyn_uint count;         // of lights
-    tyn_vec3 mean; // of the light of all suns and the constellation: their sum / 4 pi, W/(m^2 sr)
-    TYN_STRUCT(light_block) lights[CONSTELLATION_LIGHTS_MAX]; // in M; no `pad`
-};
-TYN_ASSERT_SIZE(constellation_list, 16 + 64 * CONSTELLATION_LIGHTS_MAX);
 
 #endif

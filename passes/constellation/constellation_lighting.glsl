@@ -1,36 +1,12 @@
 // constellation_lighting.glsl -- the light that a sample scatters towards the eye: the sum over lights of Program 1.
 //
-// Include after constellation_medium.glsl, camera.glsl and shadow.glsl.
+// Include after constellation_medium.glsl, camera.glsl, shadow.glsl and light_list.glsl.
 #ifndef TYN_CONSTELLATION_LIGHTING_GLSL
 #define TYN_CONSTELLATION_LIGHTING_GLSL
 
 const float CONSTELLATION_DARK = 20.0; // optical depth behind which a light is not followed: e^-20 = 2e-9
 const int CONSTELLATION_AT_ONCE = 2;   // steps of a shadow ray in a turn of its loop
 const float CONSTELLATION_INV_4_PI = 0.0795774715;
-
-struct listed_light {
-    vec3 position, color, direction;
-    uint kind, shadow;
-    float cos_inner, cos_outer, mean_cosine;
-};
-
-// Light n of the list: rows of four words behind the head.
-listed_light listed_light_of(uint n)
-{
-    const int row = 1 + 4 * int(n);
-    const uvec4 a = texelFetch(light_list_texels, row), b = texelFetch(light_list_texels, row + 1);
-    const uvec4 c = texelFetch(light_list_texels, row + 2), d = texelFetch(light_list_texels, row + 3);
-    listed_light l;
-    l.position = uintBitsToFloat(a.xyz);
-    l.kind = a.w;
-    l.color = uintBitsToFloat(b.xyz);
-    l.cos_inner = uintBitsToFloat(b.w);
-    l.direction = uintBitsToFloat(c.xyz);
-    l.cos_outer = uintBitsToFloat(c.w);
-    l.shadow = d.y;
-    l.mean_cosine = uintBitsToFloat(d.z);
-    return l;
-}
 
 // Transmittance from p, at most `reach` metres towards a light: samples in the middle of steps as long as slices are
 // apart; empty steps are left out where the distance map says so, whole ones only, so that nothing changes.
@@ -68,11 +44,7 @@ vec3 scattered_of_light(listed_light l, vec3 p, vec3 view, sample_point s)
         const float r2 = dot(way, way), least = 0.5 * args.slices.distance;
         reach = sqrt(r2);
         towards = way / max(reach, 1e-20);
-        light_block lobe;
-        lobe.kind = l.kind;
-        lobe.cos_inner = l.cos_inner;
-        lobe.cos_outer = l.cos_outer;
-        color *= light_lobe(lobe, -dot(towards, l.direction)) / max(r2, least * least);
+        color *= listed_light_lobe(l, -towards) / max(r2, least * least);
     }
     if (constellation_has(CONSTELLATION_SHADOWS) && l.shadow != TYN_LIGHT_NO_SHADOW) {
         color *= shadow_visibility(l.shadow, p);

@@ -1,16 +1,16 @@
-// constellation_lights.comp -- all lights as they shine on the medium: the constellation turned with the environment, then
+// light_list.comp -- all lights as they shine on the medium: the constellation turned with the environment, then
 // suns and lamps of the scene.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "constellation_args.h"
+#include "light_list_args.h"
 #include "shaders/common/scene_args.h"
 
 layout(local_size_x = 64) in;
-TYN_ARGS(constellation_lights_args args);
+TYN_ARGS(light_list_args args);
 TYN_READ(0, constellation, constellation_block constellation);
 TYN_UNIFORM(1, lights, light_block lights[TYN_LIGHTS_MAX]);
 TYN_UNIFORM(2, environment, env_block environment);
-TYN_WRITE(3, light_list, constellation_list light_list);
+TYN_WRITE(3, light_list, light_list_block light_list);
 
 light_block light_of_constellation(uint i)
 {

@@ -1,0 +1,17 @@
+// gradient_bindings.glsl -- what kernels that follow light have bound in common, and how they do it.
+#ifndef TYN_GRADIENT_BINDINGS_GLSL
+#define TYN_GRADIENT_BINDINGS_GLSL
+#include "gradient_args.h"
+#include "shaders/common/counters.h"
+TYN_ARGS(gradient_args args);
+#define MEDIUM_AT 0
+#include "shaders/medium/medium.glsl"
+layout(binding = 5) uniform usamplerBuffer light_list_texels;
+#define SHADOWS_AT 6
+#include "shaders/light/shadow.glsl"
+TYN_UNIFORM(8, camera, camera_block camera);
+#include "shaders/common/camera.glsl"
+TYN_UPDATE(9, counters, counters_block counters);
+#include "shaders/light/light_list.glsl"
+#include "gradient_light.glsl"
+#endif

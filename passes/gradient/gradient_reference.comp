@@ -1,0 +1,36 @@
+// gradient_reference.comp -- what errors are shares of: light that all samples of level 0 see scattered towards the eye.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "gradient_args.h"
+TYN_ARGS(gradient_args args);
+#define MEDIUM_BLOCK 0
+#include "shaders/medium/medium.glsl"
+#include "gradient_grid.glsl"
+
+layout(local_size_x = 256) in;
+TYN_READ(1, samples, gradient_sample samples[]);
+TYN_UPDATE(2, heads, gradient_head heads);
+
+shared float sums[256];
+
+void main()
+{
+    const gradient_grid grid = gradient_grid_of(0u);
+    const uint i = gl_LocalInvocationIndex, count = gradient_points(grid);
+    // `seen` is of a volume of radius^3: of the cells' instead.
+    const vec3 of_radius = grid.spacing / grid.radius;
+    float sum = 0.0;
+    for (uint n = i; n < count; n += 256u) {
+        sum += samples[n].seen;
+    }
+    sums[i] = sum * of_radius.x * of_radius.y * of_radius.z;
+    for (uint half_of = 128u; half_of > 0u; half_of /= 2u) {
+        barrier();
+        if (i < half_of) {
+            sums[i] += sums[i + half_of];
+        }
+    }
+    if (i == 0u) {
+        heads.reference = sums[0];
+    }
+}

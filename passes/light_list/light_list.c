@@ -1,0 +1,28 @@
+// light_list.c -- tables of the list of lights.
+#include "light_list.h"
+#include "light_list.comp.h"
+
+static const tyn_port ports[] = {LIGHT_LIST_PORTS(TYN_PORT_ROW)};
+
+static const tyn_kernel kernels[] = {TYN_KERNEL(light_list)};
+
+static tyn_result declare(tyn_builder *b, const void *params)
+{
+    (void)params;
+    tyn_build_buffer(b, LIGHT_LIST_PORT_LIGHT_LIST, sizeof(struct light_list_block));
+    return TYN_OK;
+}
+
+static void record(tyn_recorder *r, const void *params)
+{
+    const tyn_light_list_params *p = params;
+    TYN_DISPATCH(r, .cells = {64, 1, 1}, .args = &p->listed);
+}
+
+const tyn_pass_desc tyn_pass_light_list = {
+    .name = "light_list",
+    .summary = "all lights as they shine on the medium, those in an environment's place among them",
+    TYN_PASS_TABLES(tyn_light_list_params),
+    .debug_port = LIGHT_LIST_PORT_LIGHT_LIST,
+    .debug_meaning = "number, mean and fields of the lights",
+};

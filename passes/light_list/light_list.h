@@ -1,0 +1,20 @@
+// light_list.h -- all lights as they shine on the medium: a constellation turned with the environment, suns, lamps.
+//
+// For methods that ask every light at every point: any number of suns, and distant lights in an environment's place.
+#pragma once
+#include <tyndall/pass.h>
+#include "light_list_args.h"
+
+typedef struct tyn_light_list_params {
+    struct light_list_args listed; // set by the method
+} tyn_light_list_params;
+
+// clang-format off
+#define LIGHT_LIST_PORTS(X) \
+    X(LIGHT_LIST, CONSTELLATION, constellation, OPTIONAL, BUFFER, "of median_cut"), \
+    X(LIGHT_LIST, LIGHTS, lights, IN, BUFFER, "struct light_block[]: directional lights, then lamps"), \
+    X(LIGHT_LIST, ENVIRONMENT, environment, IN, BUFFER, "struct env_block"), \
+    X(LIGHT_LIST, LIGHT_LIST, light_list, OUT, BUFFER, "struct light_list_block")
+// clang-format on
+enum { LIGHT_LIST_PORTS(TYN_PORT_ENUM), LIGHT_LIST_NUM_PORTS };
+extern const tyn_pass_desc tyn_pass_light_list;

@@ -1,0 +1,18 @@
+// light_list_args.h -- push constants of the list of lights. Included by C and GLSL.
+#ifndef TYN_LIGHT_LIST_PASS_ARGS_H
+#define TYN_LIGHT_LIST_PASS_ARGS_H
+#include "shaders/light/light_list_args.h"
+#include "shaders/light/shadow_args.h"
+
+struct light_list_args {
+    tyn_uint constellation; // 1: there is one
+    tyn_uint num_suns;      // of the scene
+    tyn_uint num_lamps;     // that follow them
+    tyn_uint shadows;       // 1: suns and lamps have shadow maps
+    // Which of the suns that have a shadow map each of the first is, or TYN_LIGHT_NO_SHADOW.
+    tyn_uint sun_shadow[4];
+    tyn_uint suns_with_shadow; // so many of `sun_shadow` count
+};
+TYN_ASSERT_SIZE(light_list_args, 36);
+
+#endif
