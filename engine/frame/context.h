@@ -53,6 +53,10 @@ struct tyn_context {
 uint64_t tyn_frame_sizes(const tyn_context *ctx, const tyn_frame *frame);
 // check.c: are the frame's numbers fit?
 tyn_result tyn_frame_check(const tyn_context *ctx, const tyn_frame *frame);
+// check_images.c: are the images fit that the host lends? Of a frame whose scene is.
+tyn_result tyn_frame_check_images(const tyn_context *ctx, const tyn_frame *frame, uint32_t outputs);
+// ... and have those a content that are read? Of a frame that has been declared and is to be recorded.
+tyn_result tyn_frame_check_content(const tyn_context *ctx, const tyn_frame *frame);
 // build.c: the frame's scene in M and tables of it, made anew where they have changed, and the job without its refs.
 tyn_result tyn_frame_build(tyn_context *ctx, const tyn_frame *frame, tyn_job *job);
 // upload.c: what shaders read of the scene, as resources of the graph.

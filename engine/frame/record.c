@@ -41,6 +41,9 @@ tyn_result tyn_context_record(tyn_context *ctx, const tyn_frame *frame)
         return TYN_ERR_PARAMS;
     }
     tyn_result result = tyn_frame_declare(ctx, frame);
+    if (result == TYN_OK) {
+        result = tyn_frame_check_content(ctx, frame);
+    }
     if (result == TYN_OK && ctx->sizes == tyn_frame_sizes(ctx, frame)) {
         tyn_graph_yield(ctx->graph);
     }

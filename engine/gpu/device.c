@@ -74,6 +74,15 @@ const char *tyn_missing_feature(const VkPhysicalDeviceFeatures2 *enabled)
     return NULL;
 }
 
+static bool separates_stencil(const VkPhysicalDeviceFeatures2 *enabled)
+{
+    const VkPhysicalDeviceVulkan12Features *v12 =
+        find_in_chain(enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
+    const VkPhysicalDeviceSeparateDepthStencilLayoutsFeatures *own = find_in_chain(
+        enabled, VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SEPARATE_DEPTH_STENCIL_LAYOUTS_FEATURES);
+    return (v12 && v12->separateDepthStencilLayouts) || (own && own->separateDepthStencilLayouts);
+}
+
 // ---- small helpers ----------------------------------------------------------------------------
 
 tyn_result tyn_vk_check(const tyn_device *dev, VkResult result, const char *what)
@@ -231,6 +240,15 @@ tyn_result tyn_device_init(tyn_device *dev, PFN_vkGetInstanceProcAddr gipa,
     snprintf(dev->driver, sizeof dev->driver, "%.127s %.126s", driver.driverName,
              driver.driverInfo);
     dev->vk.GetPhysicalDeviceMemoryProperties(dev->physical_device, &dev->memory);
+    VkImageFormatProperties image = {.maxResourceSize = 0};
+    const VkResult known = dev->vk.GetPhysicalDeviceImageFormatProperties(
+        dev->physical_device, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_TYPE_2D,
+        VK_IMAGE_TILING_OPTIMAL, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, 0,
+        &image);
+    if (known != VK_SUCCESS) {
+        return tyn_vk_check(dev, known, "vkGetPhysicalDeviceImageFormatProperties");
+    }
+    dev->image_bytes = image.maxResourceSize;
 
     uint32_t count = 0;
     dev->vk.GetPhysicalDeviceQueueFamilyProperties(dev->physical_device, &count, NULL);
@@ -323,6 +341,7 @@ tyn_result tyn_device_create(const tyn_device_params *params, tyn_device **out)
     dev->device = params->device;
     dev->queue_family = params->queue_family;
     dev->debug_names = params->debug_names;
+    dev->separate_stencil = separates_stencil(params->features);
     dev->allocator = params->allocator;
     tyn_result result =
         tyn_device_init(dev, params->get_instance_proc_addr,

@@ -11,6 +11,7 @@
     X(GetPhysicalDeviceMemoryProperties)                                                           \
     X(GetPhysicalDeviceQueueFamilyProperties)                                                      \
     X(GetPhysicalDeviceFormatProperties)                                                           \
+    X(GetPhysicalDeviceImageFormatProperties)                                                      \
     X(CreateDevice)                                                                                \
     X(GetDeviceProcAddr)
 

@@ -99,6 +99,8 @@ typedef struct tyn_node_stats {
     } work[TYN_MAX_WORK];
     uint32_t num_work;
 } tyn_node_stats;
+// All aspects of a format: colour, depth, stencil.
+VkImageAspectFlags graph_aspect(VkFormat format);
 // Collects the timestamps of the last finished record; call after its fence.
 uint32_t tyn_graph_stats(tyn_graph *g, const tyn_node_stats **stats);
 void tyn_graph_memory(const tyn_graph *g, uint64_t *persistent, uint64_t *transient);

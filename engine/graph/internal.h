@@ -316,7 +316,6 @@ void graph_free_staging(tyn_graph *g);
 bool graph_uploads_staged(const tyn_graph *g);
 uint32_t graph_texel_size(VkFormat format);
 uint64_t graph_resource_bytes(const resource *r); // of its texels, without padding
-VkImageAspectFlags graph_aspect(VkFormat format);
 extern const VkFormat graph_texel_formats[NUM_TEXEL_FORMATS];
 int graph_texel_index(tyn_use use); // into them; < 0: not a use as texels
 

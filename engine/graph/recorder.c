@@ -285,9 +285,7 @@ static VkImageView view_of(const tyn_recorder *r, uint8_t port, uint8_t mip, boo
 static VkSampler sampler_of(tyn_recorder *r, uint8_t port, const tyn_binding *binding)
 {
     const resource *res = resource_at(r, port);
-    bool depth = res && (graph_aspect(res->format) & VK_IMAGE_ASPECT_DEPTH_BIT ||
-                         res->image.aspect & VK_IMAGE_ASPECT_DEPTH_BIT);
-    if (depth) {
+    if (res && graph_aspect(res->format) & VK_IMAGE_ASPECT_DEPTH_BIT) {
         return r->g->dev->nearest;
     }
     return binding->repeat ? r->g->dev->repeat_x : r->g->dev->clamp;

@@ -93,6 +93,13 @@ static bool check_abi(const tyn_plugin *p, const char *who, const tyn_log *log)
                       TYN_EXTEND_ABI, tyn_version_string());
         return false;
     }
+    if (p->layout != TYN_EXTEND_LAYOUT) {
+        tyn_log_print(log, TYN_LOG_ERROR,
+                      "%s is built for ABI %u with structs of other sizes than here (%08x, %08x): "
+                      "build it against the headers of this library",
+                      who, p->abi, p->layout, TYN_EXTEND_LAYOUT);
+        return false;
+    }
     if (!p->name || !p->summary || !p->calls) {
         tyn_log_print(log, TYN_LOG_ERROR, "%s: it must have a name and a summary (TYN_PLUGIN)",
                       who);

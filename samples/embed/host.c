@@ -368,26 +368,35 @@ void host_image_free(host *h, host_image *image)
     *image = (host_image){0};
 }
 
+// Barriers are of all aspects of a format.
+static VkImageAspectFlags whole_aspect(const host_image *image)
+{
+    const bool stencil = image->format == VK_FORMAT_D32_SFLOAT_S8_UINT ||
+                         image->format == VK_FORMAT_D24_UNORM_S8_UINT;
+    return image->aspect | (stencil ? VK_IMAGE_ASPECT_STENCIL_BIT : 0);
+}
+
 void host_transition(host *h, VkCommandBuffer cmd, host_image *image, tyn_sync to)
 {
-    h->vk.CmdPipelineBarrier2(cmd, &(VkDependencyInfo){
-                                       .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                       .imageMemoryBarrierCount = 1,
-                                       .pImageMemoryBarriers =
-                                           &(VkImageMemoryBarrier2){
-                                               .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                               .srcStageMask = image->state.stages,
-                                               .srcAccessMask = image->state.access,
-                                               .dstStageMask = to.stages,
-                                               .dstAccessMask = to.access,
-                                               .oldLayout = image->state.layout,
-                                               .newLayout = to.layout,
-                                               .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                               .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                                               .image = image->image,
-                                               .subresourceRange = {image->aspect, 0, 1, 0, 1},
-                                           },
-                                   });
+    h->vk.CmdPipelineBarrier2(cmd,
+                              &(VkDependencyInfo){
+                                  .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                                  .imageMemoryBarrierCount = 1,
+                                  .pImageMemoryBarriers =
+                                      &(VkImageMemoryBarrier2){
+                                          .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                          .srcStageMask = image->state.stages,
+                                          .srcAccessMask = image->state.access,
+                                          .dstStageMask = to.stages,
+                                          .dstAccessMask = to.access,
+                                          .oldLayout = image->state.layout,
+                                          .newLayout = to.layout,
+                                          .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                          .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                          .image = image->image,
+                                          .subresourceRange = {whole_aspect(image), 0, 1, 0, 1},
+                                      },
+                              });
     image->state = to;
 }
 
@@ -399,7 +408,6 @@ tyn_image host_lend(host_image *image, tyn_sync after)
         .format = image->format,
         .extent = image->extent,
         .usage = image->usage,
-        .aspect = image->aspect,
         .before = image->state,
         .after = after,
     };

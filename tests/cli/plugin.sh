@@ -49,9 +49,12 @@ TYN_PLUGIN("empty", "nothing", NULL, NULL, NULL)
 C
 cp -r "$prefix/include" other
 sed -i 's/^#define TYN_EXTEND_ABI .*/#define TYN_EXTEND_ABI 4000u/' other/tyndall/extend/plugin.h
+cp -r "$prefix/include" longer
+sed -i 's/^typedef struct tyn_field {/& int more;/' longer/tyndall/extend/field.h
 # shellcheck disable=SC2086
 {
     cc -Iother $flags empty.c -o abi.so || fail "abi.so"
+    cc -Ilonger $flags empty.c -o layout.so || fail "layout.so"
     echo 'int nothing;' | cc -shared -fPIC -x c - -o symbol.so
     echo 'void nowhere(void); void f(void); void f(void) { nowhere(); }' | cc -shared -fPIC -x c - -o undefined.so
     cat >clash.c <<'C'
@@ -89,6 +92,7 @@ C
 fi
 cp diffusion.so copy.so
 echo text >text.so
+refuses 2 "with structs of other sizes than here" info --methods --plugin layout.so
 refuses 2 "is built for ABI 4000 (Tyndall 0.1.0); this is ABI" info --methods --plugin abi.so
 refuses 2 "has no symbol 'tyn_plugin_entry'" info --methods --plugin symbol.so
 refuses 2 "undefined symbol: nowhere" info --methods --plugin undefined.so

@@ -37,3 +37,4 @@ void bad_views(void **state);
 // laid_over.c
 void depth_under_matrices(void **state);
 void half_resolution(void **state);
+void depth_with_stencil(void **state);

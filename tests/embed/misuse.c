@@ -238,6 +238,22 @@ static bool spoil(whole_frame *w, int fault)
     case 42:
         w->scene.cameras = NULL, w->scene.num_cameras = 2;
         break;
+    case 43:
+        w->color.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
+        break;
+    case 44:
+        w->depth.format = VK_FORMAT_D32_SFLOAT_S8_UINT;
+        w->depth.aspect = VK_IMAGE_ASPECT_DEPTH_BIT; // without separateDepthStencilLayouts
+        break;
+    case 45:
+        w->density.format = VK_FORMAT_R32_UINT;
+        break;
+    case 46:
+        w->depth.image = w->color.image;
+        break;
+    case 47:
+        w->frame.light.red = &w->color;
+        break; // without its output
     default:
         return false;
     }
@@ -278,7 +294,17 @@ static void frames(void **state)
     make_frame(f, &w);
     assert_true(tyn_context_record(ctx, &w.frame) < 0); // no command buffer
     assert_int_equal(f->lines, 3);
-    print_message("%d faults\n", fault + 3);
+    // To be read, and without content.
+    tyn_image *const read[] = {&w.color, &w.depth, &w.density};
+    enum { READ = sizeof read / sizeof *read };
+    for (int i = 0; i < READ; i++) {
+        make_frame(f, &w);
+        w.frame.cmd = cmd;
+        read[i]->before = nothing_yet;
+        assert_true(tyn_context_record(ctx, &w.frame) < 0);
+        assert_int_equal(f->lines, 4 + i);
+    }
+    print_message("%d faults\n", fault + 3 + READ);
     // The context is as it was.
     f->lines = 0;
     make_frame(f, &w);

@@ -12,7 +12,8 @@
 //  (c) If record fails, nothing was appended and host images are in their `before` state.
 //  (d) Record i + frames_in_flight, and the prepare before it, are called after the GPU finished what record i appended.
 //      What it appended is executed, in the order of the calls; else tyn_context_forget.
-//  (e) record never submits, waits, or allocates memory; prepare does the last two.
+//  (e) record never submits, waits, or allocates device memory; prepare does the last two. After a prepare of the same frame
+//      it allocates no host memory either; of surfaces or maps that changed without one it makes their tables.
 //  (f) With `background`, a frame whose kernels are still being compiled gives TYN_PENDING: record then takes host
 //      images from `before` to `after` with their content as it was, and appends nothing else. To ask for kernels it
 //      allocates host memory.
@@ -175,12 +176,14 @@ typedef struct tyn_frame_lights {
 
 typedef struct tyn_frame {
     size_t struct_size TYN_PARAMS_SIZE(tyn_frame);
-    VkCommandBuffer cmd;        // Required: recording, outside a render pass
-    const tyn_scene *scene;     // Required: same counts and sizes as prepared; values may
-                                // differ, but some choose other kernels or grids: record gives
-                                // TYN_PENDING then, and prepare mends it (docs/events.md)
-    const tyn_view *view;       // Required: same size, outputs and point count as prepared
-    const tyn_image *densities; // one per volume whose data is NULL, in order
+    VkCommandBuffer cmd;    // Required: recording, outside a render pass
+    const tyn_scene *scene; // Required: same counts and sizes as prepared; values may
+                            // differ, but some choose other kernels or grids: record gives
+                            // TYN_PENDING then, and prepare mends it (docs/events.md)
+    const tyn_view *view;   // Required: same size, outputs and point count as prepared
+    // One per volume whose data is NULL, in order, each an image of its own: 3D, as large as the volume, SAMPLED; red, a number
+    // from 0 on, is the density: UNORM, SFLOAT or UFLOAT.
+    const tyn_image *densities;
     const uint64_t *density_versions; // NULL = they may have changed every frame
     // COMPOSITE: hardware depth of the host's surfaces, or NULL. D16, D24 or D32 with or without stencil, SAMPLED, one sample
     // a pixel (resolve before), as large as `color`.

@@ -142,8 +142,9 @@ typedef struct tyn_image {
     VkFormat format;
     VkExtent3D extent;
     VkImageUsageFlags usage;
-    VkImageAspectFlags aspect; // 0 = colour
-    tyn_sync before, after;    // state on entry, trusted; state left behind, guaranteed
+    // 0 = all that the format has. DEPTH alone of a format with stencil is for devices with separateDepthStencilLayouts.
+    VkImageAspectFlags aspect;
+    tyn_sync before, after; // state on entry, trusted; state left behind, guaranteed
 } tyn_image;
 
 #ifdef __cplusplus

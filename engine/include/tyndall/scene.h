@@ -18,7 +18,7 @@ typedef struct tyn_volume {
     uint32_t size[3];  // voxels, >= 1
     float *data;       // size[0]*size[1]*size[2]; owned by the scene. NULL: the host brings an
                        // image each frame (tyn_frame.densities), and max_density is Required
-    float max_density; // largest value
+    float max_density; // Required: largest value
     // Of the file: voxel index in data (centres at whole numbers) -> its own world, column-major;
     // used by shape "grid" at load.
     double index_to_world[16];
@@ -40,7 +40,7 @@ typedef struct tyn_medium {
     float emission[3];  // W/(m^3 sr), >= 0
     // Multiplies the density, > 0; 0 = 1. (A medium that is not to be there has coefficients 0, or no shape.)
     float density_scale;
-    int32_t volume; // index into scene.volumes; -1: homogeneous, density 1
+    int32_t volume; // Required: index into scene.volumes; -1: homogeneous, density 1
 } tyn_medium;
 static inline float tyn_medium_scale(const tyn_medium *medium)
 {
@@ -55,7 +55,7 @@ typedef enum tyn_shape_kind { TYN_SHAPE_BOX = 0, TYN_SHAPE_SPHERE = 1 } tyn_shap
 typedef struct tyn_shape {
     tyn_shape_kind kind;
     uint32_t medium;
-    float to_world[16]; // affine, invertible, column-major
+    float to_world[16]; // Required: affine, invertible, column-major
     bool repeat[3];     // periodic along local axes (box only)
 } tyn_shape;
 
@@ -69,8 +69,8 @@ typedef struct tyn_light {
     char *name;
     tyn_light_kind kind;
     float color[3]; // directional: irradiance on a perpendicular plane, W/m^2; point and spot: W/sr
-    float position[3];          // world, metres (point, spot)
-    float direction[3];         // unit, direction of travel (directional, spot axis)
+    float position[3];  // world, metres (point, spot)
+    float direction[3]; // Required of directional lights and spots: unit, direction of travel
     float cos_inner, cos_outer; // spot: cosines of the cone half angles, cos_inner >= cos_outer
 } tyn_light;
 
@@ -190,9 +190,9 @@ typedef struct tyn_camera {
     tyn_projection projection;
     float position[3];              // world, metres
     float right[3], up[3], back[3]; // orthonormal, right-handed; looks along -back
-    float yfov;                     // perspective: full vertical field of view, radians, (0, pi)
-    float ymag;                     // orthographic: half height, metres, > 0
-    float aspect;                   // width / height as stored in the file; 0 = not given
+    float yfov;   // Required: perspective: full vertical field of view, radians, (0, pi)
+    float ymag;   // orthographic: half height, metres, > 0
+    float aspect; // width / height as stored in the file; 0 = not given
 } tyn_camera;
 
 typedef struct tyn_scene {

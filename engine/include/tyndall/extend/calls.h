@@ -116,12 +116,14 @@
     V(tyn_add_picture, (tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in), (g, job, in)) \
     V(tyn_add_display, (tyn_graph *g, const tyn_job *job, tyn_ref radiance), (g, job, radiance)) \
     V(tyn_add_probe, (tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in), (g, job, in)) \
+    V(tyn_add_light_field, (tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in), (g, job, in)) \
     V(tyn_add_balance, (tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in), (g, job, in)) \
     V(tyn_add_views, (tyn_graph *g, const tyn_job *job, tyn_view_inputs *in), (g, job, in)) \
     /* limits.h */ \
     X(double, tyn_limit_along, (const tyn_limit_point *curve, size_t count, double x), (curve, count, x)) \
     X(double, tyn_limit_floats, (const tyn_regime *r), (r)) \
     X(double, tyn_limit_again, (const tyn_regime *r), (r)) \
+    X(float, tyn_limit_scatterings, (const tyn_job *job), (job)) \
     V(tyn_limits_warn, (const tyn_job *job, float cell), (job, cell))
 
 #define TYN_CALL_MEMBER(type, name, params, args) type (*name) params;

@@ -9,8 +9,26 @@
 #include <stdio.h>
 
 // Rises whenever anything in the headers of this folder, in a struct that they hold, or in what the GLSL under shaders/ reads
-// changes its layout or its meaning. A plugin of another number is refused when it is loaded.
-#define TYN_EXTEND_ABI 1u
+// changes its meaning, or a block of the GLSL its layout. A plugin of another number is refused when it is loaded.
+#define TYN_EXTEND_ABI 2u
+
+// clang-format off
+// The sizes of all structs that a plugin and the library both know, in one number: what differs in them is refused even if
+// the number above was forgotten.
+#define TYN_LAYOUT_STEP(before, type) ((before) * 16777619u ^ (uint32_t)sizeof(type))
+#define TYN_LAYOUT_PASS \
+    TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP( \
+        TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(2166136261u, tyn_port), tyn_binding), tyn_raster), tyn_kernel), tyn_param), \
+        tyn_counter), tyn_pass_desc), tyn_dispatch), tyn_draw)
+#define TYN_LAYOUT_JOB \
+    TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP( \
+        TYN_LAYOUT_STEP(TYN_LAYOUT_PASS, tyn_scene), tyn_view), tyn_frame_scene), tyn_lights), tyn_scene_refs), \
+        tyn_job), tyn_picture_hook), tyn_lattice_shape)
+#define TYN_EXTEND_LAYOUT \
+    TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP(TYN_LAYOUT_STEP( \
+        TYN_LAYOUT_STEP(TYN_LAYOUT_JOB, tyn_sources), tyn_rsm), tyn_field), tyn_view_inputs), tyn_limit), tyn_regime), \
+        tyn_method), tyn_calls)
+// clang-format on
 
 #ifdef __cplusplus
 extern "C" {
@@ -18,8 +36,9 @@ extern "C" {
 
 typedef struct tyn_plugin {
     uint32_t
-        abi; // TYN_EXTEND_ABI of the headers that it was built with; the first three members never move
+        abi; // TYN_EXTEND_ABI of the headers that it was built with; the first two members never move
     uint32_t version;        // TYN_VERSION of them
+    uint32_t layout;         // TYN_EXTEND_LAYOUT of them
     const char *name;        // "diffusion": for messages; letters, digits, '_' and '-'
     const char *summary;     // one line
     const tyn_calls **calls; // where the loader puts the table, before anything is called
@@ -68,6 +87,6 @@ extern __attribute__((visibility("default"))) const tyn_plugin tyn_plugin_entry;
             job->warn(job->warn_user, line); \
         } \
     } \
-    const tyn_plugin tyn_plugin_entry = {TYN_EXTEND_ABI, TYN_VERSION, its_name, its_summary, &tyn_plugin_calls, \
+    const tyn_plugin tyn_plugin_entry = {TYN_EXTEND_ABI, TYN_VERSION, TYN_EXTEND_LAYOUT, its_name, its_summary, &tyn_plugin_calls, \
                                          its_passes, its_methods, its_hooks};
 // clang-format on
