@@ -33,6 +33,9 @@ typedef struct tyn_scene_refs {
         full_depth; // COMPOSITE: host depth as large as a colour image of twice the view; else {0}
     tyn_ref images[3]; // host images for RADIANCE, TRANSMITTANCE, DEPTH: tyn_job_output fills them
     tyn_ref light[3];  // LIGHT: host images of red, green and blue
+    // Where the picture is an impostor: the camera that it is shown by; `camera` then sees all of the media, from where the
+    // march was made last. Else {0}.
+    tyn_ref shown_camera;
 } tyn_scene_refs;
 
 typedef struct tyn_picture_hook tyn_picture_hook;
