@@ -64,7 +64,8 @@ static cell_means of_photons(tyn_device *dev, const tyn_scene *scene, const char
     cell_means m = {{0}, {0}};
     char settings[128];
     snprintf(settings, sizeof settings,
-             "photon_trace.cells=8 photon_trace.first=cache photon_trace.similarity=%s", similarity);
+             "photon_trace.cells=8 photon_trace.first=cache photon_trace.similarity=%s",
+             similarity);
     tyn_offline *off = scene_open(dev, "photon", settings);
     const tyn_probe_result *p = scene_probes(dev, off, scene, (const float(*)[3])centres, COUNT);
     for (int i = 0; i < COUNT; i++) {
@@ -327,6 +328,31 @@ static void skips(void **state)
     assert_true(right);
 }
 
+// Pictures whose light may be half of the generations old: of the eight frames after a change the fourth and the last show it.
+static void old_light(void **state)
+{
+    gpu_test *t = *state;
+    tyn_scene scene;
+    tyn_view view = {.outputs = TYN_OUTPUT_RADIANCE};
+    make_cube(&scene);
+    view_perspective(&view, (float[]){2, 1.4f, 2.5f}, (float[]){0.5f, 0.5f, 0.5f}, 0.3f, 16);
+    tyn_offline *off = scene_open(t->dev, "photon",
+                                  "photon_trace.cells=4 photon_trace.generations=8 "
+                                  "photon_trace.photons=256 photon_upsample.old=0.5");
+    offline_frame(off, &scene, &view);
+    turn_sun(&scene, 1);
+    for (int k = 1; k <= 10; k++) {
+        char ran[1024];
+        offline_frame(off, &scene, &view);
+        nodes_that_ran(off, ran, sizeof ran);
+        assert_true((strstr(ran, "photon_trace") != NULL) == (k <= 8));
+        assert_true((strstr(ran, "photon_upsample") != NULL) == (k == 4 || k == 8));
+        assert_true((strstr(ran, "raymarch") != NULL) == (k == 1 || k == 4 || k == 8)); // 1: beams
+    }
+    tyn_offline_destroy(&off);
+    tyn_scene_finish(&scene);
+}
+
 // Two runs, pixel by pixel.
 static void same_bytes(void **state)
 {
@@ -355,7 +381,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fluence), cmocka_unit_test(noise),      cmocka_unit_test(obsolescence),
-        cmocka_unit_test(skips),   cmocka_unit_test(same_bytes),
+        cmocka_unit_test(skips),   cmocka_unit_test(same_bytes), cmocka_unit_test(old_light),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

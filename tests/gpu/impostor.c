@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SIZE = 48 };
+enum { SIZE = 64 };
 
 static void look(tyn_view *view, double degrees, double away)
 {
