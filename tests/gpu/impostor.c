@@ -113,7 +113,7 @@ static void criteria(void **state)
             marches[0]++;
             at = degrees;
         }
-        most[0] = fmax(most[0], degrees - at);
+        most[0] = maximum(most[0], degrees - at);
     }
     double away = 3, from = 3;
     for (; away < 6; away *= 1.04) {
@@ -123,7 +123,7 @@ static void criteria(void **state)
             marches[1]++;
             from = away;
         }
-        most[1] = fmax(most[1], away / from - 1);
+        most[1] = maximum(most[1], away / from - 1);
     }
     printf("marches: %d in 46 views around, %d in 18 away; largest angle %.1f, distance %.0f %%\n",
            marches[0], marches[1], most[0], 100 * most[1]);

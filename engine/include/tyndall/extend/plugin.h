@@ -10,7 +10,7 @@
 
 // Rises whenever anything in the headers of this folder, in a struct that they hold, or in what the GLSL under shaders/ reads
 // changes its layout or its meaning. A plugin of another number is refused when it is loaded.
-#define TYN_EXTEND_ABI 2u
+#define TYN_EXTEND_ABI 1u
 
 #ifdef __cplusplus
 extern "C" {
