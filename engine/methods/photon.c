@@ -1,7 +1,8 @@
 // photon.c -- method "photon": temporally coherent photon mapping (Elek, Ritschel, Wilkie and Seidel 2012).
 //
 // Photons of all lights are traced through the medium, a generation in each frame; a coarse cache holds the light of the last
-// ones, as a lobe about the sun and the rest. It is upsampled with the medium as guide, and marched (docs/photon.md).
+// ones, as lobes about its net flux. It is upsampled with the medium as guide, and marched, with what suns and lamps have
+// scattered forward alone along their beams (docs/photon.md).
 #include "light/sources.h"
 #include <tyndall/extend/limits.h>
 #include <tyndall/extend/method.h>

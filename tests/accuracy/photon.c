@@ -353,6 +353,39 @@ static void old_light(void **state)
     tyn_scene_finish(&scene);
 }
 
+// Light of a map by the regions of its principal ordinates is the same light: fluence and net flux with one lobe and with eight.
+static void lobes(void **state)
+{
+    gpu_test *t = *state;
+    tyn_scene scene;
+    sample_scene_load(&scene, "smoke-sky", t);
+    double most = 0;
+    static const float at[2][3] = {{0, 0.3f, 0}, {0.1f, 0.6f, 0.05f}};
+    tyn_probe_result found[2][2];
+    for (int k = 0; k < 2; k++) {
+        char settings[128];
+        snprintf(settings, sizeof settings,
+                 "photon_trace.cells=8 photon_trace.generations=2 photon_trace.lobes=%d",
+                 k ? 8 : 1);
+        tyn_offline *off = scene_open(t->dev, "photon", settings);
+        memcpy(found[k], scene_probes(t->dev, off, &scene, at, 2), sizeof found[k]);
+        tyn_offline_destroy(&off);
+    }
+    for (int i = 0; i < 2; i++) {
+        const double whole = (double)found[0][i].fluence[1];
+        assert_true(whole > 0);
+        most = maximum(most, fabs((double)found[1][i].fluence[1] / whole - 1));
+        for (int a = 0; a < 3; a++) {
+            most = maximum(most, fabs((double)found[1][i].flux[3 * a + 1] -
+                                      (double)found[0][i].flux[3 * a + 1]) /
+                                     whole);
+        }
+    }
+    printf("eight lobes against one: %.3f %%\n", 100 * most);
+    tyn_scene_finish(&scene);
+    assert_within(most, 0.001, "of whole numbers, whose rounding is a matter of chance");
+}
+
 // Two runs, pixel by pixel.
 static void same_bytes(void **state)
 {
@@ -382,6 +415,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fluence), cmocka_unit_test(noise),      cmocka_unit_test(obsolescence),
         cmocka_unit_test(skips),   cmocka_unit_test(same_bytes), cmocka_unit_test(old_light),
+        cmocka_unit_test(lobes),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
