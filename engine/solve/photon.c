@@ -212,8 +212,7 @@ static uint64_t key_of(const tyn_job *job, const tyn_photon_trace_params *p)
 }
 
 static void add_view(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
-                     const tyn_photon_trace_params *trace, uint64_t key, tyn_ref light,
-                     tyn_field *field)
+                     const tyn_photon_trace_params *trace, tyn_ref light, tyn_field *field)
 {
     const bool scaled = trace->first == TYN_PHOTON_FIRST_BEAMS;
     const struct medium_block *m = &job->frame->medium;
@@ -223,8 +222,6 @@ static void add_view(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
     up.mode = m->mode;
     up.majorant = trace->majorant;
     up.lobes = (uint32_t)trace->lobes;
-    up.hold.key = key ? key : 1;
-    up.hold.frames = (uint32_t)(up.old * (float)trace->generations / (float)trace->renewed);
     up.weighted = trace->mean == TYN_PHOTON_MEAN_MEDIUM;
     up.scaled = scaled;
     const uint32_t most = m->size[0] > m->size[1] ? m->size[0] : m->size[1];
@@ -300,6 +297,6 @@ void tyn_solve_photon(tyn_graph *g, const tyn_job *job, const tyn_sources *s,
     field->one_channel = false;
     field->tint[0] = field->tint[1] = field->tint[2] = 1;
     if (job->outputs & TYN_PICTURE_OUTPUTS) {
-        add_view(g, job, s, &trace, key, sums[PHOTON_CACHE_PORT_LIGHT], field);
+        add_view(g, job, s, &trace, sums[PHOTON_CACHE_PORT_LIGHT], field);
     }
 }

@@ -54,8 +54,6 @@ static const tyn_param param_table[] = {
      "mean cosine between cells: extrapolated = g' g^delta by the penetration depth; printed = "
      "g^delta is a weight",
      lobes},
-    {"old", TYN_PARAM_FLOAT, offsetof(tyn_photon_upsample_params, old), 0, 0, 1, "",
-     "part of all generations that may be renewed before pictures show it; published: 0.04", NULL},
 };
 
 const tyn_pass_desc tyn_pass_photon_upsample = {
@@ -66,5 +64,4 @@ const tyn_pass_desc tyn_pass_photon_upsample = {
     .num_params = TYN_COUNT(param_table),
     .debug_port = PHOTON_UPSAMPLE_PORT_FLUENCE,
     .debug_meaning = "fluence of the first lobe",
-    .holds = offsetof(tyn_photon_upsample_params, hold),
 };

@@ -14,8 +14,6 @@ typedef struct tyn_photon_upsample_params {
     float majorant;          // of the medium, 1/m
     uint32_t weighted;       // 1: the light of a cell is the mean over its medium
     uint32_t scaled;         // 1: the light is that of a delta scaled medium
-    float old;               // "photon_upsample.old"
-    tyn_hold hold;           // by that
 } tyn_photon_upsample_params;
 
 // clang-format off
