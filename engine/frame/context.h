@@ -23,6 +23,7 @@ struct tyn_context {
     tyn_graph *graph;
     // What the last declaration was made from; the graph reads it until it has recorded.
     tyn_frame_scene frame;
+    struct camera_block impostor; // a march made now sees the media by, where the picture is an impostor
     tyn_atlas atlas;
     const tyn_scene *scene;
     float (*points)[3]; // probe points in M

@@ -1,5 +1,6 @@
 // declare.c -- a frame as nodes of the graph.
 #include "frame/context.h"
+#include "frame/impostor.h"
 #include <tyndall/extend/limits.h>
 #include "passes/halve_depth/halve_depth.h"
 
@@ -42,6 +43,7 @@ tyn_result tyn_frame_declare(tyn_context *ctx, const tyn_frame *frame)
     if (job.refs.depth.resource && job.half_view) {
         halve_depth(ctx->graph, &job.refs);
     }
+    tyn_frame_impostor(ctx, &job);
     tyn_limits_warn(&job, 0);
     result = ctx->method->declare(ctx->graph, &job);
     return result == TYN_OK ? tyn_graph_status(ctx->graph) : result;

@@ -405,6 +405,23 @@ static void settle_node(const tyn_graph *g, node *n, uint32_t index)
     }
 }
 
+// A node whose results may be old has the hash of its last run.
+static void hold_node(const tyn_graph *g, node *n, uint32_t index)
+{
+    if (!n->pass->holds) {
+        return;
+    }
+    tyn_hold hold;
+    memcpy(&hold, (const uint8_t *)n->params + n->pass->holds, sizeof hold);
+    const node_run *last = index < g->num_runs ? &g->runs[index] : NULL;
+    n->hold = hold.key;
+    if (last && last->hash && last->hold == hold.key && last->hash != n->hash &&
+        last->held + 1 < hold.frames) {
+        n->held = last->held + 1;
+        n->hash = last->hash;
+    }
+}
+
 static void publish_outputs(tyn_graph *g, node *n, uint32_t index, tyn_ref *refs)
 {
     for (uint32_t p = 0; p < n->pass->num_ports; p++) {
@@ -478,6 +495,7 @@ tyn_result tyn_graph_add(tyn_graph *g, const tyn_pass_desc *pass, const void *pa
     if (g->status == TYN_OK) {
         hash_node(g, n);
         settle_node(g, n, index);
+        hold_node(g, n, index);
         publish_outputs(g, n, index, refs);
         inspect_node(g, pass, refs);
     }

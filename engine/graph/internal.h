@@ -50,6 +50,8 @@ typedef struct node {
     uint64_t hash;
     uint64_t asked;   // of pass, params and inputs; `hash` is the same but for passes that settle
     uint32_t settled; // of these: frames with nothing new, at most as many as it takes
+    uint64_t hold;    // key of a pass whose results may be old
+    uint32_t held;    // ... frames with something new, in which it was not run
     bool media_only, needed;
 } node;
 
@@ -107,6 +109,8 @@ typedef struct node_run { // of a node
     uint64_t hash;        // when it last ran; 0 = never
     uint64_t asked;       // likewise, of a pass that settles
     uint32_t settled;     // ... UINT32_MAX: it has settled
+    uint64_t hold;        // likewise, of a pass whose results may be old
+    uint32_t held;        // ... frames since in which it would have run
     tyn_node_stats stats;
 } node_run;
 

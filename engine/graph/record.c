@@ -411,6 +411,8 @@ static tyn_result run_one(tyn_graph *g, VkCommandBuffer cmd, uint32_t index)
     }
     run->hash = r.result == TYN_OK ? n->hash : 0;
     run->asked = n->asked;
+    run->hold = n->hold;
+    run->held = 0;
     run->settled = starts_history(g, n) ? UINT32_MAX : n->settled;
     run->stats.state = r.dispatches ? TYN_NODE_RAN : TYN_NODE_EMPTY;
     run->stats.cpu_ms = now_ms() - start;
@@ -540,6 +542,7 @@ tyn_result tyn_graph_record(tyn_graph *g, VkCommandBuffer cmd)
         } else {
             g->runs[i].stats.state = g->nodes[i].needed ? TYN_NODE_UNCHANGED : TYN_NODE_CULLED;
             g->runs[i].stats.cpu_ms = 0;
+            g->runs[i].held = g->nodes[i].held ? g->nodes[i].held : g->runs[i].held;
         }
     }
     if (!g->setup_only) {

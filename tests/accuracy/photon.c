@@ -64,7 +64,8 @@ static cell_means of_photons(tyn_device *dev, const tyn_scene *scene, const char
     cell_means m = {{0}, {0}};
     char settings[128];
     snprintf(settings, sizeof settings,
-             "photon_trace.cells=8 photon_trace.first=cache photon_trace.similarity=%s", similarity);
+             "photon_trace.cells=8 photon_trace.first=cache photon_trace.similarity=%s",
+             similarity);
     tyn_offline *off = scene_open(dev, "photon", settings);
     const tyn_probe_result *p = scene_probes(dev, off, scene, (const float(*)[3])centres, COUNT);
     for (int i = 0; i < COUNT; i++) {
@@ -327,6 +328,39 @@ static void skips(void **state)
     assert_true(right);
 }
 
+// Light of a map by the regions of its principal ordinates is the same light: fluence and net flux with one lobe and with eight.
+static void lobes(void **state)
+{
+    gpu_test *t = *state;
+    tyn_scene scene;
+    sample_scene_load(&scene, "smoke-sky", t);
+    double most = 0, flux = 0;
+    static const float at[2][3] = {{0, 0.3f, 0}, {0.1f, 0.6f, 0.05f}};
+    tyn_probe_result found[2][2];
+    for (int k = 0; k < 2; k++) {
+        char settings[128];
+        snprintf(settings, sizeof settings,
+                 "photon_trace.cells=8 photon_trace.generations=2 photon_trace.lobes=%d",
+                 k ? 8 : 1);
+        tyn_offline *off = scene_open(t->dev, "photon", settings);
+        memcpy(found[k], scene_probes(t->dev, off, &scene, at, 2), sizeof found[k]);
+        tyn_offline_destroy(&off);
+    }
+    for (int i = 0; i < 2; i++) {
+        const double whole = (double)found[0][i].fluence[1];
+        assert_true(whole > 0);
+        most = maximum(most, fabs((double)found[1][i].fluence[1] / whole - 1));
+        for (int a = 0; a < 3; a++) {
+            const double one = (double)found[0][i].flux[3 * a + 1];
+            flux = maximum(flux, fabs((double)found[1][i].flux[3 * a + 1] - one) / whole);
+        }
+    }
+    printf("eight lobes against one: fluence %.4f %%, flux %.3f %%\n", 100 * most, 100 * flux);
+    tyn_scene_finish(&scene);
+    assert_true(most < 1e-4);
+    assert_within(flux, 0.01, NULL); // of a channel: a lobe's is that of the mean of all
+}
+
 // Two runs, pixel by pixel.
 static void same_bytes(void **state)
 {
@@ -355,7 +389,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fluence), cmocka_unit_test(noise),      cmocka_unit_test(obsolescence),
-        cmocka_unit_test(skips),   cmocka_unit_test(same_bytes),
+        cmocka_unit_test(skips),   cmocka_unit_test(same_bytes), cmocka_unit_test(lobes),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }

@@ -200,6 +200,14 @@ typedef struct tyn_counter {
 typedef struct tyn_builder tyn_builder;   // answers and collects shapes while a node is declared
 typedef struct tyn_recorder tyn_recorder; // collects the dispatches of a node
 
+// Of a pass whose results may be old: the node keeps what it has made, whatever else changes, until `key` changes or its
+// inputs or params have changed in `frames` frames since.
+typedef struct tyn_hold {
+    uint64_t key;    // not 0
+    uint32_t frames; // 0 and 1: it is run whenever something has changed
+    uint32_t pad;
+} tyn_hold;
+
 typedef struct tyn_pass_desc {
     const char *name, *summary;
     const tyn_port *ports;
@@ -233,6 +241,7 @@ typedef struct tyn_pass_desc {
     // runs after the last change of its params or inputs. It does not where the history has just been started from zeros,
     // of which the pass makes all pieces at once. 0: it is not such a pass.
     size_t settles;
+    size_t holds; // offset into params of a tyn_hold; 0: its results are never old
 } tyn_pass_desc;
 
 // Of a pass whose tables and functions are called ports, kernels, declare and record.

@@ -31,8 +31,11 @@ typedef struct tyn_scene_refs {
     tyn_ref color;    // COMPOSITE: host colour, as large as the view or twice that
     tyn_ref
         full_depth; // COMPOSITE: host depth as large as a colour image of twice the view; else {0}
-    tyn_ref images[3];  // host images for RADIANCE, TRANSMITTANCE, DEPTH: tyn_job_output fills them
-    tyn_ref light[3];   // LIGHT: host images of red, green and blue
+    tyn_ref images[3]; // host images for RADIANCE, TRANSMITTANCE, DEPTH: tyn_job_output fills them
+    tyn_ref light[3];  // LIGHT: host images of red, green and blue
+    // Where the picture is an impostor: the camera that it is shown by; `camera` then sees all of the media, from where the
+    // march was made last. Else {0}.
+    tyn_ref shown_camera;
     tyn_ref resumed[6]; // tyn_view.resume: its images, in their order; {0}: none
 } tyn_scene_refs;
 

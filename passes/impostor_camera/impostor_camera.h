@@ -1,0 +1,17 @@
+// impostor_camera.h -- the camera by which the media were marched last: as given when that is done, then the same until it is
+// done again.
+#pragma once
+#include <tyndall/pass.h>
+
+typedef struct tyn_impostor_camera_params {
+    uint32_t size[2]; // of the view, pixels
+    tyn_hold hold;    // until the view has changed so much that the media are marched again
+} tyn_impostor_camera_params;
+
+// clang-format off
+#define IMPOSTOR_CAMERA_PORTS(X) \
+    X(IMPOSTOR_CAMERA, CAMERA, camera, IN, BUFFER, "struct camera_block: of a march made now"), \
+    X(IMPOSTOR_CAMERA, TAKEN, taken, INOUT, BUFFER, "struct camera_block: of the last one, a history")
+// clang-format on
+enum { IMPOSTOR_CAMERA_PORTS(TYN_PORT_ENUM), IMPOSTOR_CAMERA_NUM_PORTS };
+extern const tyn_pass_desc tyn_pass_impostor_camera;
