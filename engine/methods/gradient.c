@@ -97,7 +97,7 @@ static const tyn_pass_desc *const passes[] = {
 // Of cubes in the sun, whose light lies within less than a cell of the field.
 static double thick(const tyn_regime *r)
 {
-    static const tyn_limit_point curve[] = {{20, 0.02}, {100, 0.13}, {400, 0.5}, {1000, 1}};
+    static const tyn_limit_point curve[] = {{20, 0.02}, {100, 0.36}, {1000, 1}};
     return tyn_limit_along(curve, sizeof curve / sizeof *curve, r->depth);
 }
 
@@ -123,7 +123,7 @@ static const tyn_limit limits[] = {
      .source = "docs/gradient.md, \"Limits\"",
      .warned = {TYN_ABOVE(depth, 70)},
      .warning = {"accuracy: the medium is %.3g mean free paths deep; light that enters is lost "
-                 "within the cells of the field: 13 %% of it at 100 in a cube, all of it at 1000",
+                 "within the cells of the field: 36 %% of it at 100 in a cube, all of it at 1000",
                  {TYN_FIGURE(depth)}}},
     {.key = "flat media",
      .where = {TYN_BELOW(cells_through, 2), TYN_ABOVE(mean_depth, 0)},
