@@ -25,6 +25,7 @@ static const selftest_promise promises[] = {
     {.method = "shdom", .cube_isotropic = 0.04},
     {.method = "photon", .cube_as_recorded = 0.01, .cube_recorded = 0.06386},
     {.method = "constellation", .cube_once = 0.01},
+    {.method = "gradient", .cube_once = 0.02},
     {.method = "pop-paper", .cube_as_recorded = 0.01, .cube_recorded = 0.0576494},
 };
 

@@ -180,6 +180,11 @@ static double thick_slices(const tyn_regime *r)
     return tyn_limit_along(curve, sizeof curve / sizeof *curve, r->depth);
 }
 
+static double near_lamps(const tyn_regime *r)
+{
+    return 0.035 * r->lamps;
+}
+
 static const tyn_limit limits[] = {
     TYN_LIMIT_NOT_PERIODIC("docs/constellation.md"),
     TYN_LIMIT_ONE_SCATTERING("docs/constellation.md, \"Measured\""),
@@ -197,15 +202,10 @@ static const tyn_limit limits[] = {
                  {TYN_FIGURE(depth)}}},
     {.key = "lamps near the medium",
      .where = {TYN_ABOVE(lamps, 0.05), TYN_ABOVE(mean_depth, 0)},
-     .level = TYN_LIMIT_BREAKS,
-     .advice =
-         {"lamps: what is near one is summed at the slices alone (a lamp in a medium: 130 %% off)"},
-     .source = "docs/stress.md, \"What is found\"",
-     .warned = {TYN_ABOVE(lamps, 0.05)},
-     .warning =
-         {"accuracy: lamps give %.2g of the light; in a medium what is near them is summed at the "
-          "slices alone: 130 %% off with a lamp in the middle of a cube",
-          {TYN_FIGURE(lamps)}}},
+     .error = near_lamps,
+     .advice = {"lamps: what is near one is summed at the slices alone (a lamp in the middle of a "
+                "cube: 3 %% off)"},
+     .source = "docs/stress.md, \"What is found\""},
     {.key = "surfaces",
      .where = {TYN_ABOVE(surfaces, 0)},
      .level = TYN_LIMIT_BREAKS,

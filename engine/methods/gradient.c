@@ -73,7 +73,8 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     }
     tyn_add_shadows(g, job, &s);
     if (!frame->empty && has_light(frame)) {
-        tyn_limits_warn(job, 0);
+        const float *e = frame->medium.extent;
+        tyn_limits_warn(job, fmaxf(e[0], fmaxf(e[1], e[2])) / 32); // as the limits count cells
         add_field(g, job, &s, &field);
     }
     tyn_gather(g, job, &view);
@@ -93,9 +94,55 @@ static const tyn_pass_desc *const passes[] = {
     NULL,
 };
 
+// Of cubes in the sun, whose light lies within less than a cell of the field.
+static double thick(const tyn_regime *r)
+{
+    static const tyn_limit_point curve[] = {{20, 0.02}, {100, 0.36}, {1000, 1}};
+    return tyn_limit_along(curve, sizeof curve / sizeof *curve, r->depth);
+}
+
+static double flat(const tyn_regime *r)
+{
+    static const tyn_limit_point curve[] = {{0.5, 0.05}, {3, 0.3}, {100, 1}};
+    return tyn_limit_along(curve, sizeof curve / sizeof *curve, 1 / fmax(r->cells_through, 1e-3));
+}
+
+#define MEASURED "docs/gradient.md, \"Measured\""
+
 static const tyn_limit limits[] = {
-    TYN_LIMIT_NOT_PERIODIC("docs/gradient.md"),
-    TYN_LIMIT_ONE_SCATTERING("docs/gradient.md, \"Measured\""),
+    TYN_LIMIT_NOT_PERIODIC("docs/gradient.md, \"Limits\""),
+    TYN_LIMIT_ONE_SCATTERING(MEASURED),
+    {.key = "thick cells",
+     .where = {TYN_ABOVE(depth, 20)},
+     .error = thick,
+     .level = TYN_LIMIT_STRAINED,
+     .advice =
+         {"field: the medium is %.3g mean free paths deep, and light that enters is lost within "
+          "its cells (about %g %% of what has scattered once): -D gradient.field",
+          {TYN_FIGURE(depth), TYN_LIMIT_ERROR}},
+     .source = "docs/gradient.md, \"Limits\"",
+     .warned = {TYN_ABOVE(depth, 70)},
+     .warning = {"accuracy: the medium is %.3g mean free paths deep; light that enters is lost "
+                 "within the cells of the field: 36 %% of it at 100 in a cube, all of it at 1000",
+                 {TYN_FIGURE(depth)}}},
+    {.key = "flat media",
+     .where = {TYN_BELOW(cells_through, 2), TYN_ABOVE(mean_depth, 0)},
+     .error = flat,
+     .level = TYN_LIMIT_STRAINED,
+     .advice =
+         {"flat media: few cells of the field lie through the shortest side (about %g %% off)",
+          {TYN_LIMIT_ERROR}},
+     .source = "docs/gradient.md, \"Limits\"",
+     .warned = {TYN_ABOVE(cells_through, 0)},
+     .warning = {"accuracy: the medium's shortest side is %.2g of a cell of 32 along the longest; "
+                 "few cells of the field lie through it",
+                 {TYN_FIGURE(cells_through)}}},
+    {.key = "surfaces",
+     .where = {TYN_ABOVE(surfaces, 0)},
+     .level = TYN_LIMIT_BREAKS,
+     .advice = {"surfaces: they stop the light of suns and lamps, but not that of an environment, "
+                "send none into the medium, and are seen in direct light alone"},
+     .source = "docs/gradient.md, \"Limits\""},
     TYN_LIMIT_FLOATS,
     {NULL},
 };

@@ -41,7 +41,10 @@ static float longest_of(const float extent[3])
 
 float tyn_gradient_voxel(const float extent[3], const float voxel[3])
 {
-    return fminf(longest_of(extent) / 64, fminf(voxel[0], fminf(voxel[1], voxel[2])));
+    const float longest = longest_of(extent);
+    const float shortest = fminf(extent[0], fminf(extent[1], extent[2]));
+    const float wanted = fminf(longest / 64, shortest / 16);
+    return fminf(fmaxf(wanted, longest / 256), fminf(voxel[0], fminf(voxel[1], voxel[2])));
 }
 
 static uint32_t levels_of(const tyn_gradient_params *p)

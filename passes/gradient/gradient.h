@@ -29,7 +29,8 @@ typedef struct tyn_gradient_params {
     uint32_t lamps;      // 1: some of them are lamps
 } tyn_gradient_params;
 
-// Distance of the volume's points: of a medium of few voxels that of 64 along its longest side.
+// Distance of the volume's points: of a medium of few voxels that of 64 along its longest side, or of up to 256 where it is
+// flat.
 float tyn_gradient_voxel(const float extent[3], const float voxel[3]);
 // Points of all grids together, at most so many samples.
 uint32_t tyn_gradient_points(const tyn_gradient_params *params);

@@ -3,8 +3,8 @@
 #define TYN_GRADIENT_ARGS_H
 #include "shaders/common/shared.h"
 
-#define GRADIENT_MAX_CELLS 128 // of the finest grid, along the longest side
-#define GRADIENT_MAX_LEVELS 7  // 2 cells to 128
+#define GRADIENT_MAX_CELLS 64 // of the finest grid, along the longest side
+#define GRADIENT_MAX_LEVELS 6 // 2 cells to 64
 
 // Bits of the specialisation constant "features".
 #define GRADIENT_SHADOWS (1u << 0) // surfaces stand before suns and lamps
@@ -36,7 +36,7 @@ struct gradient_args {
     float narrow;     // width of radial functions, of the valid radius
     tyn_uint x, y, z; // cells of the field
 };
-TYN_ASSERT_SIZE(gradient_args, 84);
+TYN_ASSERT_SIZE(gradient_args, 80);
 
 // What is known of a level, for dispatches and the next one.
 struct gradient_level_head {

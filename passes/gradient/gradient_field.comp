@@ -60,7 +60,8 @@ void main()
     const ivec3 dims = ivec3(args.x, args.y, args.z);
     const lattice_box box = lattice_box_of(medium.extent, dims);
     const ivec3 texel = ivec3(gl_GlobalInvocationID);
-    const vec3 x = lattice_to_m(box, vec3(texel) - 0.5); // a cell more at each face
+    // A cell more at each face has what is there.
+    const vec3 x = clamp(lattice_to_m(box, vec3(texel) - 0.5), vec3(0.0), medium.extent);
     const vec3 low = lattice_to_m(box, vec3(4u * gl_WorkGroupID) - 0.5), high = low + 3.0 * box.dx;
     const uint own = gl_LocalInvocationIndex;
     sums s = sums(vec3(0.0), 0.0);

@@ -55,7 +55,7 @@ vec3 gradient_place(gradient_grid grid, ivec3 at)
 
 // What a sample's light is where it differs by `change`, to first order. Light falls off as exponentials do and is never
 // negative; a sample beside a lamp knows nothing of how bright it is there.
-const float GRADIENT_MOST = 1.0;
+const float GRADIENT_MOST = 2.0;
 
 vec3 gradient_extrapolated(vec3 light, vec3 change)
 {

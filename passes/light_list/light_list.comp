@@ -40,6 +40,7 @@ light_block light_of_scene(uint i)
         }
     } else {
         light.shadow = args.shadows != 0u ? TYN_SHADOW_LAMP(i - args.num_suns) : TYN_LIGHT_NO_SHADOW;
+        light.mean_cosine = 1.0; // a point
     }
     return light;
 }

@@ -178,7 +178,7 @@ static void samples(void **state)
                 for (int c = 0; c < 3; c++) {
                     const double change = (there[a] - x[a]) * slopes[a][c];
                     const double taken =
-                        linear ? right[c] + change : right[c] * exp(fmin(change / right[c], 1));
+                        linear ? right[c] + change : right[c] * exp(fmin(change / right[c], 2));
                     sum += fabs(taken - light_at(&s, there, c)) * s.sigma_s / 18;
                 }
             }
@@ -283,7 +283,7 @@ static void field(void **state)
             const int at[3] = {q % nx, q / nx % ny, q / nx / ny};
             double x[3], sum[3] = {0}, weights = 0;
             for (int a = 0; a < 3; a++) {
-                x[a] = origin[a] + (at[a] - 0.5) * side;
+                x[a] = fmin(fmax(origin[a] + (at[a] - 0.5) * side, 0), (double)s.extent[a]);
             }
             for (int l = 0; l < n; l++) {
                 for (size_t i = 0; i < levels[l].count; i++) {
@@ -311,7 +311,7 @@ static void field(void **state)
                                               away[2] * (double)found[p].dz[c];
                         sum[c] += w * (cases[k].interpolation == GRADIENT_RBF ? own
                                        : cases[k].extrapolation               ? own + change
-                                                                : own * exp(fmin(change / own, 1)));
+                                                                : own * exp(fmin(change / own, 2)));
                     }
                 }
             }
