@@ -2,6 +2,7 @@
 // lattice_args.h and radial.glsl.
 #ifndef TYN_LATTICE_LAMPS_GLSL
 #define TYN_LATTICE_LAMPS_GLSL
+#include "lattice_lamps_disc.glsl"
 
 // First and last light, less than which.
 uvec2 lattice_lamps_of(uint group)
@@ -11,13 +12,6 @@ uvec2 lattice_lamps_of(uint group)
     }
     bool vpls = group > args.num_fine || args.num_fine == args.num_lamps;
     return vpls ? uvec2(args.num_lamps, radial_count) : uvec2(args.num_fine, args.num_lamps);
-}
-
-// Of the directions from a light of this radius at the distance r.
-float lattice_lamps_cosine(float radius, float r)
-{
-    // Seen under an angle, a disc does not shine along one direction.
-    return 1.0 - 0.25 * radius * radius / max(r * r, radius * radius + 1e-36);
 }
 
 // Pieces along each side that a cell is cut into for a VPL so many cells away. VPLs are smooth: each stands for

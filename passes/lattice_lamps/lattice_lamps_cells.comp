@@ -46,21 +46,21 @@ uint pieces(uint n, float cells_away)
 void add_far_light(uint n, lattice_box box, vec3 p, vec3 extinction, inout vec4 sums[3], inout vec3 all)
 {
     vec3 away = p - radials[n].light.position;
-    float r = length(away), share = radial_share(n, away, r);
-    if (share <= 0.0) {
+    disc_light light = lattice_lamps_light(radials[n].light, away, box.dx);
+    if (light.fluence <= 0.0) {
         return;
     }
-    vec3 unit = away / max(r, 1e-20), a = abs(unit);
+    float r = length(away);
+    vec3 a = abs(away / max(r, 1e-20));
     beam_tau tau = radial_tau(radial_place_of(n, away, r));
     float half_way = 0.5 * box.dx / max(max(a.x, max(a.y, a.z)), 0.57);
-    float fluence = share * radial_mean_inverse_square(r * r, box.dx * box.dx);
     float visible = shadowed == 1 ? radial_visibility(n, p) : 1.0;
-    vec4 moments = visible * vec4(1.0, lattice_lamps_cosine(radials[n].light.radius, r) * unit);
+    vec4 moments = visible * vec4(1.0, light.mean);
     for (uint ch = 0u; ch < num_channels; ch++) {
         float t = mean_transmittance(tau.a[ch] + tau.p[ch], half_way * extinction[ch]);
         float e = lattice_channel(radials[n].light.color, num_channels, ch, args.tint);
-        sums[ch] += e * t * fluence * moments;
-        all[ch] += e * t * fluence;
+        sums[ch] += e * t * light.fluence * moments;
+        all[ch] += e * t * light.fluence;
     }
 }
 

@@ -31,21 +31,20 @@ void lattice_lamps_add_pieces(uint n, uint count, lattice_box box, ivec3 c, inou
             continue;
         }
         vec3 away = p - position;
-        float r = length(away), share = radial_share(n, away, r);
-        if (share <= 0.0) {
+        disc_light light = lattice_lamps_light(radials[n].light, away, d);
+        if (light.fluence <= 0.0) {
             continue;
         }
+        float r = length(away);
         beam_tau tau = radial_tau(radial_place_of(n, away, r));
-        vec3 unit = away / max(r, 1e-20), a = abs(unit);
+        vec3 a = abs(away / max(r, 1e-20));
         // Half the depth of a piece along the light.
         float half_way = 0.5 * d / max(max(a.x, max(a.y, a.z)), 0.57);
-        float fluence = share * radial_mean_inverse_square(r * r, d * d);
-        float cosine = lattice_lamps_cosine(radials[n].light.radius, r);
         float visible = shadowed == 1 ? LATTICE_LAMPS_VISIBILITY(n, p, away) : 1.0;
         for (uint ch = 0u; ch < num_channels; ch++) {
             float t = mean_transmittance(tau.a[ch] + tau.p[ch], half_way * (scaled[ch] + m.sigma_a[ch]));
-            open[ch] += w[ch] * t * fluence;
-            weighted[ch] += (visible * w[ch] * t * fluence) * vec4(1.0, cosine * unit);
+            open[ch] += w[ch] * t * light.fluence;
+            weighted[ch] += (visible * w[ch] * t * light.fluence) * vec4(1.0, light.mean);
         }
     }
     for (uint ch = 0u; ch < num_channels; ch++) {

@@ -97,17 +97,16 @@ void main()
             }
             [[unroll]] for (uint k = 0u; k < BLOCK; k++) {
                 vec3 away = from + (vec3(corner_of(k)) - 0.5) * dx;
-                float r2 = dot(away, away), r = sqrt(r2);
-                vec3 unit = away / max(r, 1e-20);
-                float share = lattice_lamps_vpl_pieces(r / dx) == 1u ? max(dot(unit, light.direction), 0.0) : 0.0;
-                float fluence = share * radial_mean_inverse_square(r2, dx * dx);
+                float r = length(away);
+                disc_light arriving = lattice_lamps_light(light, away, dx);
+                float fluence = lattice_lamps_vpl_pieces(r / dx) == 1u ? arriving.fluence : 0.0;
                 // Not walls_behind: it rounds otherwise, and VPLs lie in the planes of walls.
                 vec4 at = vec4(light.position, 1.0);
                 float least = min(dot(hiding[k].plane[0], at), dot(hiding[k].plane[1], at));
                 bool closed = walls == 1u && min(least, dot(hiding[k].plane[2], at)) < 0.0;
                 float visible = shadowed == 1 ? vpl_map_visibility(map, away, r, closed) : 1.0;
                 visible = rooms_joined(shines_in, room[k]) ? visible : 0.0;
-                vec4 moments = visible * vec4(1.0, lattice_lamps_cosine(light.radius, r) * unit);
+                vec4 moments = visible * vec4(1.0, arriving.mean);
                 [[unroll]] for (uint ch = 0u; ch < 3u; ch++) {
                     if (ch < num_channels) {
                         float t = mean_transmittance(r * per_way[ch], half_way * extinction[k][ch]);

@@ -1,5 +1,5 @@
-// vpl_disc.c -- light of virtual point lights (VPLs), which stand for discs, on planes: against Lambert's integral around
-// the disc's contour, cut off at the plane's horizon.
+// vpl_disc.c -- light of virtual point lights (VPLs), which stand for discs: on planes against Lambert's integral around
+// the disc's contour, cut off at the plane's horizon; in a medium against a sum over the disc.
 #include "bound.h"
 #include "gpu_test.h"
 #include "numbers.h"
@@ -19,11 +19,16 @@ typedef struct point { // as vpl_eval.comp has it
 } point;
 static point points[POINTS];
 
-static const float *run(gpu_test *t)
+typedef struct light { // as vpl_eval.comp has it
+    float irradiance, fluence;
+} light;
+
+static const light *run(gpu_test *t)
 {
     point_pass pass;
     point_pass_init(&pass, vpl_eval_spirv, sizeof vpl_eval_spirv, NULL, 0);
-    point_pass_params params = {.count = POINTS, .result_size = 4, .results = pass.results};
+    point_pass_params params = {
+        .count = POINTS, .result_size = sizeof(light), .results = pass.results};
     tyn_graph_begin(t->graph);
     tyn_ref refs[POINT_PASS_INPUTS + 2] = {gpu_buffer(t, "points", points, sizeof points)};
     assert_int_equal(tyn_graph_add(t->graph, &pass.desc, &params, refs), TYN_OK);
@@ -155,21 +160,21 @@ static void before_planes(void **state)
             }
         }
     }
-    const float *got = run(*state);
+    const light *got = run(*state);
     double worst = 0, most = 0;
     int whole = 0, dark = 0;
     for (int i = 0; i < POINTS; i++) {
         bool cut;
         const double expected = irradiance_of(&points[i], &cut);
         if (expected == 0) {
-            assert_true(got[i] == 0.0f);
+            assert_true(got[i].irradiance == 0.0f);
             dark++;
         } else if (!cut) {
-            worst = maximum(worst, fabs((double)got[i] / expected - 1));
+            worst = maximum(worst, fabs((double)got[i].irradiance / expected - 1));
             whole++;
         } else {
-            most =
-                maximum(most, (double)got[i] * (double)points[i].radius * (double)points[i].radius);
+            most = maximum(most, (double)got[i].irradiance * (double)points[i].radius *
+                                     (double)points[i].radius);
         }
     }
     print_message("%d discs before planes: off by %.1e at most; %d are behind\n", whole, worst,
@@ -201,12 +206,12 @@ static void cut_by_planes(void **state)
                 .radius = 1,
             };
         }
-        const float *got = run(*state);
+        const light *got = run(*state);
         for (int k = 0; k < 8; k++) {
             double sum = 0, expected = 0;
             for (int i = k * ACROSS * ALONG; i < (k + 1) * ACROSS * ALONG; i++) {
                 bool cut;
-                sum += (double)got[i];
+                sum += (double)got[i].irradiance;
                 expected += irradiance_of(&points[i], &cut);
             }
             const double off = sum / expected - 1;
@@ -219,11 +224,57 @@ static void cut_by_planes(void **state)
     }
 }
 
+// Mean of cos / r^2 over the disc.
+static double fluence_of(double h, double beside, double radius)
+{
+    enum { RINGS = 100, TURNS = 100 };
+    double sum = 0;
+    for (int i = 0; i < RINGS * TURNS; i++) {
+        const double ring = radius * sqrt((i / TURNS + 0.5) / RINGS);
+        const double turn = 2 * M_PI * (i % TURNS + 0.5) / TURNS;
+        const double x = beside - ring * cos(turn), y = ring * sin(turn);
+        sum += h * pow(h * h + x * x + y * y, -1.5);
+    }
+    return sum / (RINGS * TURNS);
+}
+
+// A point in a medium sees the disc under an angle, however near it is: exact on the axis.
+static void in_media(void **state)
+{
+    srand(6);
+    memset(points, 0, sizeof points);
+    enum { ON_AXIS = 200, ALL = 1000 };
+    for (int i = 0; i < ALL; i++) {
+        const double radius = exp(any(-2, 2)), h = radius * exp(any(log(0.1), log(20)));
+        const double beside = i < ON_AXIS ? 0 : radius * any(0, 5);
+        points[i] = (point){.p = {(float)beside, 0, (float)h},
+                            .n = {0, 0, -1},
+                            .axis = {0, 0, 1},
+                            .radius = (float)radius};
+    }
+    points[ALL] = (point){.p = {0.1f, 0, -0.1f}, .n = {0, 0, 1}, .axis = {0, 0, 1}, .radius = 1};
+    const light *got = run(*state);
+    double on_axis = 0, worst = 0, mean = 0;
+    for (int i = 0; i < ALL; i++) {
+        const point *q = &points[i];
+        const double right = fluence_of((double)q->p[2], (double)q->p[0], (double)q->radius);
+        const double off = fabs((double)got[i].fluence / right - 1);
+        on_axis = i < ON_AXIS ? maximum(on_axis, off) : on_axis;
+        worst = maximum(worst, off);
+        mean += off / ALL;
+    }
+    assert_true(within(on_axis, 1.5e-3, "of the sum over the disc", "fluence on the axis"));
+    assert_within(worst, 0.16, NULL);
+    assert_within(mean, 0.06, NULL);
+    assert_true(got[ALL].fluence == 0.0f); // behind it
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(before_planes),
         cmocka_unit_test(cut_by_planes),
+        cmocka_unit_test(in_media),
     };
     return cmocka_run_group_tests(tests, gpu_setup, gpu_teardown);
 }
