@@ -82,6 +82,14 @@ refuses 2 "holds no points" probe "$scenes/cube.gltf" --points empty.csv
 printf 'x,y,z\n0,0,0\n1,2\n' >short.csv
 refuses 2 "short.csv:3: '1,2' is not x,y,z" probe "$scenes/cube.gltf" --points short.csv
 
+# ---- a machine without a driver ----
+export VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent
+for command in "render $scenes/cube.gltf -o a.png" "info --devices" selftest; do
+    # shellcheck disable=SC2086
+    refuses 1 "no Vulkan driver: install that of the graphics card, or Mesa's software device" $command
+done
+unset VK_DRIVER_FILES VK_ICD_FILENAMES
+
 # ---- suites of the bench ----
 refuses 2 "nothere.json" bench --suite nothere.json
 printf '{\n"name": "x",\n"scenes" [] }\n' >broken.json
