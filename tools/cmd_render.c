@@ -366,15 +366,17 @@ static const opt_positional positionals[] = {SCENE_POSITIONALS(render_args, scen
 #define AT(field) offsetof(render_args, field)
 static const option output_table[] = {
     {'o', "output", OPT_LIST, AT(outputs), "FILE",
-     ".exr or .png, repeatable; else the scene's name with .png"},
+     ".exr or .png, repeatable; else the scene's name with .png", .file = OPT_WRITES},
     {0, "aov", OPT_TEXT, AT(aov), "LIST",
-     "layers of the .exr: transmittance,depth,depth_t50,single,multiple,error; all but transmittance "
+     "layers of the .exr: transmittance,depth,depth_t50,single,multiple,error; all but "
+     "transmittance "
      "and error have every pixel marched, none upsampled: the picture changes by up to 1 %"},
     {0, "no-background", OPT_FLAG, AT(no_background), NULL,
      "the medium alone, premultiplied; A = 1 - mean transmittance"},
     {0, "exposure", OPT_NUMBER, AT(exposure), "EV", "of the .png", 0, -64, 64},
     {0, "float", OPT_FLAG, AT(full_float), NULL, "32-bit .exr instead of 16-bit"},
-    {0, "stats", OPT_TEXT, AT(stats), "FILE.json", "times, memory and work of every node"},
+    {0, "stats", OPT_TEXT, AT(stats), "FILE.json", "times, memory and work of every node",
+     .file = OPT_WRITES},
     {0, "frames", OPT_TEXT, AT(frames), "N|A-B",
      "N: time N frames that recompute every node; A-B: a sequence, %04d or #### in names"},
     {0, "change", OPT_TEXT, AT(change), "none|camera|light",

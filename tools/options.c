@@ -271,5 +271,5 @@ opt_outcome options_parse(const command *cmd, int argc, char **argv, void *args,
                       cmd->name);
         return OPT_WRONG;
     }
-    return OPT_RUN;
+    return options_check_files(cmd, args, log) ? OPT_RUN : OPT_WRONG;
 }

@@ -10,7 +10,8 @@
 
 #define SCENE_AT(field) offsetof(scene_options, field)
 const option scene_table[SCENE_TABLE_SIZE] = {
-    {0, "env", OPT_TEXT, SCENE_AT(env), "FILE", "replace the scene's environment (.exr, .hdr)"},
+    {0, "env", OPT_TEXT, SCENE_AT(env), "FILE", "replace the scene's environment (.exr, .hdr)",
+     .file = OPT_READS},
     {0, "env-rotate", OPT_NUMBER, SCENE_AT(env_rotate), "DEG",
      "turn the environment about +Y, right-handed", 0},
     {0, "env-strength", OPT_NUMBER, SCENE_AT(env_strength), "S", "multiply the environment", 1, 0,
