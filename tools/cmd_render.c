@@ -1,6 +1,7 @@
 // cmd_render.c -- `tyndall render`: a scene to pictures and stats.
 #include "app.h"
 #include "choice_setup.h"
+#include "exposure.h"
 #include "machine.h"
 #include "method_setup.h"
 #include "output.h"
@@ -22,9 +23,8 @@ typedef struct render_args {
     choice_options choice;
     machine_options machine;
     opt_list outputs;
-    const char *aov, *stats, *frames, *change;
+    const char *aov, *stats, *frames, *change, *exposure, *tonemap;
     bool no_background, full_float;
-    float exposure;
 } render_args;
 
 // What a volume or a scene without a camera is given to be looked at, chosen for the first picture of
@@ -49,6 +49,8 @@ typedef struct render_job {
     machine machine; // opened for the first picture, when its scene has been read
     renderer renderer;
     first_look look;
+    float exposure_ev;
+    bool find_exposure; // --exposure auto, until the first picture has one
 } render_job;
 
 static int open_machine(app *a, render_job *job)
@@ -73,6 +75,11 @@ static int open_method(app *a, render_job *job)
     const render_args *args = job->args;
     job->how.sequence = job->numbered;
     int code = method_open(a, &job->how, &job->method);
+    if (code == EXIT_DONE && args->tonemap) {
+        code = app_exit_code(
+            a, tyn_settings_set(job->method.settings, "tonemap.curve", args->tonemap, &a->log),
+            true);
+    }
     if (code == EXIT_DONE) {
         code = output_plan_make(a, &job->method.info, job->outputs, args->aov, args->full_float,
                                 &job->plan);
@@ -208,13 +215,78 @@ static void keep_look(first_look *look, const char *path, tyn_scene *scene, tyn_
     }
 }
 
+// --exposure auto: from a small picture of few samples.
+static int find_exposure(app *a, render_job *job, const tyn_scene *scene, tyn_view *view)
+{
+    enum { SIDE = 128, SAMPLES = 16 };
+    tyn_view small = *view;
+    const float shrink =
+        fminf(1, (float)SIDE / (float)(view->width > view->height ? view->width : view->height));
+    small.width = (uint32_t)fmaxf(1, roundf((float)view->width * shrink));
+    small.height = (uint32_t)fmaxf(1, roundf((float)view->height * shrink));
+    small.num_samples = view->num_samples < SAMPLES ? view->num_samples : SAMPLES;
+    small.outputs = TYN_OUTPUT_RADIANCE;
+    int code = renderer_frame(a, &job->renderer, scene, &small, false, "exposure");
+    if (code == EXIT_DONE) {
+        const float *pixels = tyn_offline_output(job->renderer.offline, TYN_OUTPUT_RADIANCE);
+        job->exposure_ev = exposure_find(pixels, (size_t)small.width * small.height);
+        job->find_exposure = false;
+        view->exposure_ev = job->exposure_ev;
+        app_note(a, "--exposure %.1f", (double)job->exposure_ev);
+    }
+    return code;
+}
+
+static bool shines(const float color[3])
+{
+    return color[0] > 0 || color[1] > 0 || color[2] > 0;
+}
+
+// A black picture is rarely what was meant.
+static void note_darkness(app *a, const tyn_scene *scene)
+{
+    const tyn_environment *env = &scene->environment;
+    bool lit = env->present && shines(env->radiance);
+    for (uint32_t i = 0; i < scene->num_lights; i++) {
+        lit = lit || shines(scene->lights[i].color);
+    }
+    for (uint32_t i = 0; i < scene->num_media; i++) {
+        lit = lit || shines(scene->media[i].emission);
+    }
+    for (uint32_t i = 0; i < scene->surfaces.num_materials; i++) {
+        lit = lit || shines(scene->surfaces.materials[i].emission);
+    }
+    if (!lit) {
+        app_warn(a, "nothing in the scene shines, the picture is black: it has no lights, no "
+                    "environment (--env FILE) and nothing emits");
+    }
+}
+
+// What a .png does not show.
+static void note_clipping(app *a, const render_job *job, const tyn_view *view)
+{
+    static const double few = 0.05; // part of a picture: a sun, a lamp and what shines of it
+    const size_t pixels = (size_t)view->width * view->height;
+    if (!(job->plan.outputs & TYN_OUTPUT_DISPLAY)) {
+        return;
+    }
+    const double clipped =
+        exposure_clipped(tyn_offline_output(job->renderer.offline, TYN_OUTPUT_DISPLAY), pixels);
+    if (clipped > few) {
+        const float ev =
+            exposure_find(tyn_offline_output(job->renderer.offline, TYN_OUTPUT_RADIANCE), pixels);
+        app_warn(a, "%.0f %% of the picture is clipped, try --exposure %.0f", 100 * clipped,
+                 (double)floorf(ev));
+    }
+}
+
 // Renders, writes and times one picture. `scene` has been loaded.
 static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t number,
                           const picture_paths *paths)
 {
     tyn_view view = {.outputs = job->plan.outputs,
                      .no_background = job->args->no_background,
-                     .exposure_ev = job->args->exposure,
+                     .exposure_ev = job->exposure_ev,
                      .time_index = number};
     method_view(&job->how, &view);
     // Later pictures of a sequence recompute only what differs: they are not cold.
@@ -224,6 +296,10 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
         keep_look(&job->look, paths->scene, scene, &view.camera);
         code = open_renderer(a, job);
     }
+    if (code == EXIT_DONE && job->find_exposure) {
+        first = false; // what does not depend on the view is there by then
+        code = find_exposure(a, job, scene, &view);
+    }
     if (code == EXIT_DONE) {
         code = renderer_frame(a, &job->renderer, scene, &view, false, job->method.info.name);
     }
@@ -231,6 +307,7 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
         return code;
     }
     const double frame_ms = job->renderer.frame_ms;
+    note_clipping(a, job, &view);
     code = write_outputs(a, job, &view, &paths->outputs);
     stats s = {.device = tyn_device_name(job->machine.device),
                .method = &job->method,
@@ -281,6 +358,9 @@ static int load_and_render(app *a, render_job *job, const opt_list *outputs, boo
     options.number = numbered ? &number : NULL;
     tyn_scene scene;
     int code = scene_open(a, &options, &scene);
+    if (code == EXIT_DONE && !job->renderer.offline) { // the first picture
+        note_darkness(a, &scene);
+    }
     if (code == EXIT_DONE) {
         code = choose_method(a, job, &scene);
     }
@@ -322,6 +402,12 @@ static int render_all(app *a, const render_args *args, const opt_list *outputs)
     sequence s;
     int code = check_sequence(a, args, outputs, &s);
     render_job job = {.args = args, .outputs = outputs, .how = args->method};
+    if (code == EXIT_DONE &&
+        !exposure_parse(args->exposure, &job.exposure_ev, &job.find_exposure)) {
+        app_error(a, "--exposure: '%s' is neither a number from -64 to 64 nor 'auto'",
+                  args->exposure);
+        code = EXIT_WRONG;
+    }
     if (code == EXIT_DONE && !choice_check(a, &args->choice, &args->method)) {
         code = EXIT_WRONG;
     }
@@ -360,6 +446,7 @@ static int run_render(app *a, const void *arguments)
     return code;
 }
 
+static const char *const curves[] = {"filmic", "linear", NULL};
 static const char *const changes[] = {"none", "camera", "light", NULL};
 static const opt_positional positionals[] = {SCENE_POSITIONALS(render_args, scene)};
 
@@ -373,7 +460,12 @@ static const option output_table[] = {
      "and error have every pixel marched, none upsampled: the picture changes by up to 1 %"},
     {0, "no-background", OPT_FLAG, AT(no_background), NULL,
      "the medium alone, premultiplied; A = 1 - mean transmittance"},
-    {0, "exposure", OPT_NUMBER, AT(exposure), "EV", "of the .png", 0, -64, 64},
+    {0, "exposure", OPT_TEXT, AT(exposure), "EV|auto",
+     "of the .png, stops from -64 to 64, else 0; auto: the brightest hundredth of the first "
+     "picture "
+     "is beyond white"},
+    {0, "tonemap", OPT_TEXT, AT(tonemap), "filmic|linear",
+     "of the .png: a curve with shoulder and toe (default), or cut at 1", .names = curves},
     {0, "float", OPT_FLAG, AT(full_float), NULL, "32-bit .exr instead of 16-bit"},
     {0, "stats", OPT_TEXT, AT(stats), "FILE.json", "times, memory and work of every node",
      .file = OPT_WRITES},

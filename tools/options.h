@@ -87,6 +87,10 @@ opt_outcome options_parse(const command *cmd, int argc, char **argv, void *args,
 // "X,Y,Z", and with `spread` also one number for all three. False: not that.
 bool options_vector(const char *text, bool spread, float v[3]);
 
+// The name, or the start of one, that a mistyped one may mean; NULL: none. `name_at` gives NULL behind the last.
+const char *options_nearest(const char *typed, const char *(*name_at)(const void *user, uint32_t i),
+                            const void *user);
+
 // No file that is written is another that is written or read, by any path. False: said.
 bool options_check_files(const command *cmd, const void *args, const tyn_log *log);
 
