@@ -7,14 +7,25 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 // The only state a signal handler can reach.
 static volatile sig_atomic_t interrupted;
+
+enum { GRACE_SECONDS = 2 };
 
 static void on_interrupt(int number)
 {
     (void)number;
     interrupted = 1;
+    alarm(GRACE_SECONDS);
+}
+
+// What computes does not stop: a large frame in one submission, a driver that compiles. Files appear whole or not at all.
+static void on_alarm(int number)
+{
+    (void)number;
+    _exit(EXIT_INTERRUPTED);
 }
 
 bool app_interrupted(void)
@@ -48,14 +59,13 @@ void app_init(app *a)
     a->command = "";
     progress_init(&a->bar);
     a->log = (tyn_log){print_log, a, TYN_LOG_WARN};
-    static const int ends[] = {SIGINT, SIGTERM, SIGHUP};
-    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
+    signal(SIGALRM, on_alarm);
+    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND}, before;
     sigemptyset(&action.sa_mask);
-    for (size_t i = 0; i < ARRAY_SIZE(ends); i++) {
-        struct sigaction before; // a shell's nohup stays
-        if (sigaction(ends[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN) {
-            sigaction(ends[i], &action, NULL);
-        }
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) { // nohup
+        sigaction(SIGHUP, &action, NULL);
     }
     signal(SIGXFSZ, SIG_IGN); // then writing says that the file would get too large
 }
@@ -93,6 +103,7 @@ const char *app_word(const app *a, const char *by_option, const char *by_key)
 int app_exit_code(app *a, tyn_result result, bool input)
 {
     if (app_interrupted()) {
+        alarm(0); // it has stopped
         return EXIT_INTERRUPTED;
     }
     if (result == TYN_OK) {

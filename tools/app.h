@@ -35,7 +35,8 @@ const char *app_word(const app *a, const char *by_option, const char *by_key);
 // library has not said it.
 int app_exit_code(app *a, tyn_result result, bool input);
 
-// True from Ctrl-C, SIGTERM or SIGHUP on. A second one ends the process at once.
+// True from Ctrl-C, SIGTERM or SIGHUP on. A second one ends the process at once, and two seconds do unless app_exit_code
+// is called before.
 bool app_interrupted(void);
 
 double app_seconds(void); // monotonic clock

@@ -20,7 +20,7 @@ const option choice_table[CHOICE_TABLE_SIZE] = {
     {0, "error-block", OPT_TEXT, AT(blocks), "8|1",
      "what errors are of: blocks of 8x8 pixels (default), or single ones", .names = blocks},
     {0, "fronts", OPT_TEXT, AT(fronts), "FILE",
-     "measurements to choose from (bench --write-fronts), else those built in"},
+     "measurements to choose from (bench --write-fronts), else those built in", .file = OPT_READS},
 };
 
 bool choice_is_asked(const choice_options *options)

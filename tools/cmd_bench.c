@@ -299,16 +299,16 @@ static int run_bench(app *a, const void *arguments)
 
 #define AT(field) offsetof(bench_args, field)
 static const option bench_table[] = {
-    {0, "suite", OPT_TEXT, AT(suite), "FILE",
-     "what to measure (docs/bench.md); else a small suite"},
+    {0, "suite", OPT_TEXT, AT(suite), "FILE", "what to measure (docs/bench.md); else a small suite",
+     .file = OPT_READS},
     {0, "report", OPT_TEXT, AT(report), "DIR",
      "write report.json, report.html, records and pictures there; goes on with the records it "
      "finds"},
     {0, "fresh", OPT_FLAG, AT(fresh), NULL, "measure anew what --report has records of"},
     {0, "bands", OPT_TEXT, AT(bands), "FILE",
-     "figures and their bounds: exit 1 and a line for each that is outside"},
+     "figures and their bounds: exit 1 and a line for each that is outside", .file = OPT_READS},
     {0, "write-fronts", OPT_TEXT, AT(fronts), "FILE",
-     "what render --max-error and --budget-ms choose from (--fronts)"},
+     "what render --max-error and --budget-ms choose from (--fronts)", .file = OPT_WRITES},
     {0, "references", OPT_FLAG, AT(references), NULL,
      "make the references that are stored with the suite, or go on with them, and measure nothing"},
     {0, "scenes", OPT_TEXT, AT(scenes), "DIR",

@@ -383,9 +383,9 @@ static const opt_positional positionals[] = {
 static const option options[] = {
     {0, "block", OPT_UINT, AT(block), "N", "average NxN pixels first (noisy references)", 1, 1, 0},
     {0, "heat", OPT_TEXT, AT(heat), "FILE.png",
-     "picture of |x - r| / (|r| + 0.01 m), 0.1 % to 100 %"},
+     "picture of |x - r| / (|r| + 0.01 m), 0.1 % to 100 %", .file = OPT_WRITES},
     {0, "flip-map", OPT_TEXT, AT(flip_map), "FILE.png",
-     "picture of flip, 0 to 1; of hdr_flip with --hdr-flip"},
+     "picture of flip, 0 to 1; of hdr_flip with --hdr-flip", .file = OPT_WRITES},
     {0, "hdr-flip", OPT_FLAG, AT(hdr_flip), NULL, "hdr_flip as well"},
     {0, "exposures", OPT_VECTOR, AT(exposures), "START,STOP,COUNT",
      "of --hdr-flip, in stops; else from the reference"},

@@ -108,7 +108,7 @@ static const option graph_table[] = {
     {0, "dot", OPT_FLAG, AT(dot), NULL, "for Graphviz: tyndall graph SCENE --dot | dot -Tsvg"},
     {0, "view", OPT_TEXT, AT(node), "PASS",
      "draw the middle slice of what a pass made (its debug view in 'tyndall info --passes')"},
-    {'o', "output", OPT_TEXT, AT(output), "FILE.png", "where --view is drawn"},
+    {'o', "output", OPT_TEXT, AT(output), "FILE.png", "where --view is drawn", .file = OPT_WRITES},
 };
 static const opt_group groups[] = {
     {"graph", graph_table, ARRAY_SIZE(graph_table), 0},

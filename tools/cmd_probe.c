@@ -119,9 +119,9 @@ static const opt_positional positionals[] = {SCENE_POSITIONALS(probe_args, scene
 #define AT(field) offsetof(probe_args, field)
 static const option probe_table[] = {
     {0, "points", OPT_TEXT, AT(points), "FILE.csv",
-     "required: x,y,z a line in world metres, optional header"},
+     "required: x,y,z a line in world metres, optional header", .file = OPT_READS},
     {0, "scattered", OPT_FLAG, AT(scattered), NULL, "without the uncollided light"},
-    {'o', "output", OPT_TEXT, AT(output), "FILE.csv", "else to stdout"},
+    {'o', "output", OPT_TEXT, AT(output), "FILE.csv", "else to stdout", .file = OPT_WRITES},
 };
 static const opt_group groups[] = {
     {"probe", probe_table, ARRAY_SIZE(probe_table), 0},

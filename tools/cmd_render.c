@@ -1,6 +1,7 @@
 // cmd_render.c -- `tyndall render`: a scene to pictures and stats.
 #include "app.h"
 #include "choice_setup.h"
+#include "exposure.h"
 #include "machine.h"
 #include "method_setup.h"
 #include "output.h"
@@ -23,9 +24,8 @@ typedef struct render_args {
     choice_options choice;
     machine_options machine;
     opt_list outputs;
-    const char *aov, *stats, *frames, *change;
+    const char *aov, *stats, *frames, *change, *exposure, *tonemap;
     bool no_background, full_float, resume;
-    float exposure;
     uint32_t sample_offset;
 } render_args;
 
@@ -51,6 +51,8 @@ typedef struct render_job {
     machine machine; // opened for the first picture, when its scene has been read
     renderer renderer;
     first_look look;
+    float exposure_ev;
+    bool find_exposure; // --exposure auto, until the first picture has one
 } render_job;
 
 static int open_machine(app *a, render_job *job)
@@ -75,6 +77,11 @@ static int open_method(app *a, render_job *job)
     const render_args *args = job->args;
     job->how.sequence = job->numbered;
     int code = method_open(a, &job->how, &job->method);
+    if (code == EXIT_DONE && args->tonemap) {
+        code = app_exit_code(
+            a, tyn_settings_set(job->method.settings, "tonemap.curve", args->tonemap, &a->log),
+            true);
+    }
     if (code == EXIT_DONE) {
         code = output_plan_make(a, &job->method.info, job->outputs, args->aov, args->full_float,
                                 &job->plan);
@@ -307,13 +314,78 @@ static int render_samples(render_job *job, const tyn_scene *scene, const tyn_vie
     return code;
 }
 
+// --exposure auto: from a small picture of few samples.
+static int find_exposure(app *a, render_job *job, const tyn_scene *scene, tyn_view *view)
+{
+    enum { SIDE = 128, SAMPLES = 16 };
+    tyn_view small = *view;
+    const float shrink =
+        fminf(1, (float)SIDE / (float)(view->width > view->height ? view->width : view->height));
+    small.width = (uint32_t)fmaxf(1, roundf((float)view->width * shrink));
+    small.height = (uint32_t)fmaxf(1, roundf((float)view->height * shrink));
+    small.num_samples = view->num_samples < SAMPLES ? view->num_samples : SAMPLES;
+    small.outputs = TYN_OUTPUT_RADIANCE;
+    int code = renderer_frame(a, &job->renderer, scene, &small, false, "exposure");
+    if (code == EXIT_DONE) {
+        const float *pixels = tyn_offline_output(job->renderer.offline, TYN_OUTPUT_RADIANCE);
+        job->exposure_ev = exposure_find(pixels, (size_t)small.width * small.height);
+        job->find_exposure = false;
+        view->exposure_ev = job->exposure_ev;
+        app_note(a, "--exposure %.1f", (double)job->exposure_ev);
+    }
+    return code;
+}
+
+static bool shines(const float color[3])
+{
+    return color[0] > 0 || color[1] > 0 || color[2] > 0;
+}
+
+// A black picture is rarely what was meant.
+static void note_darkness(app *a, const tyn_scene *scene)
+{
+    const tyn_environment *env = &scene->environment;
+    bool lit = env->present && shines(env->radiance);
+    for (uint32_t i = 0; i < scene->num_lights; i++) {
+        lit = lit || shines(scene->lights[i].color);
+    }
+    for (uint32_t i = 0; i < scene->num_media; i++) {
+        lit = lit || shines(scene->media[i].emission);
+    }
+    for (uint32_t i = 0; i < scene->surfaces.num_materials; i++) {
+        lit = lit || shines(scene->surfaces.materials[i].emission);
+    }
+    if (!lit) {
+        app_warn(a, "nothing in the scene shines, the picture is black: it has no lights, no "
+                    "environment (--env FILE) and nothing emits");
+    }
+}
+
+// What a .png does not show.
+static void note_clipping(app *a, const render_job *job, const tyn_view *view)
+{
+    static const double few = 0.05; // part of a picture: a sun, a lamp and what shines of it
+    const size_t pixels = (size_t)view->width * view->height;
+    if (!(job->plan.outputs & TYN_OUTPUT_DISPLAY)) {
+        return;
+    }
+    const double clipped =
+        exposure_clipped(tyn_offline_output(job->renderer.offline, TYN_OUTPUT_DISPLAY), pixels);
+    if (clipped > few) {
+        const float ev =
+            exposure_find(tyn_offline_output(job->renderer.offline, TYN_OUTPUT_RADIANCE), pixels);
+        app_warn(a, "%.0f %% of the picture is clipped, try --exposure %.0f", 100 * clipped,
+                 (double)floorf(ev));
+    }
+}
+
 // Renders, writes and times one picture. `scene` has been loaded.
 static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t number,
                           const picture_paths *paths)
 {
     tyn_view view = {.outputs = job->plan.outputs,
                      .no_background = job->args->no_background,
-                     .exposure_ev = job->args->exposure,
+                     .exposure_ev = job->exposure_ev,
                      .sample_offset = job->args->sample_offset,
                      .time_index = number};
     method_view(&job->how, &view);
@@ -323,6 +395,10 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
     if (code == EXIT_DONE) {
         keep_look(&job->look, paths->scene, scene, &view.camera);
         code = open_renderer(a, job);
+    }
+    if (code == EXIT_DONE && job->find_exposure) {
+        first = false; // what does not depend on the view is there by then
+        code = find_exposure(a, job, scene, &view);
     }
     picture_state picture = {
         a, job, {&job->method, scene, &view, 0}, &paths->outputs, 0, app_seconds(), 0};
@@ -339,6 +415,7 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
         return code;
     }
     const double frame_ms = job->renderer.frame_ms;
+    note_clipping(a, job, &view);
     code = app_interrupted() ? EXIT_INTERRUPTED : write_outputs(&picture, job->args->resume, false);
     stats s = {.device = tyn_device_name(job->machine.device),
                .method = &job->method,
@@ -389,6 +466,9 @@ static int load_and_render(app *a, render_job *job, const opt_list *outputs, boo
     options.number = numbered ? &number : NULL;
     tyn_scene scene;
     int code = scene_open(a, &options, &scene);
+    if (code == EXIT_DONE && !job->renderer.offline) { // the first picture
+        note_darkness(a, &scene);
+    }
     if (code == EXIT_DONE) {
         code = choose_method(a, job, &scene);
     }
@@ -435,6 +515,12 @@ static int render_all(app *a, const render_args *args, const opt_list *outputs)
     sequence s;
     int code = check_sequence(a, args, outputs, &s);
     render_job job = {.args = args, .outputs = outputs, .how = args->method};
+    if (code == EXIT_DONE &&
+        !exposure_parse(args->exposure, &job.exposure_ev, &job.find_exposure)) {
+        app_error(a, "--exposure: '%s' is neither a number from -64 to 64 nor 'auto'",
+                  args->exposure);
+        code = EXIT_WRONG;
+    }
     if (code == EXIT_DONE && !choice_check(a, &args->choice, &args->method)) {
         code = EXIT_WRONG;
     }
@@ -473,20 +559,26 @@ static int run_render(app *a, const void *arguments)
     return code;
 }
 
+static const char *const curves[] = {"filmic", "linear", NULL};
 static const char *const changes[] = {"none", "camera", "light", NULL};
 static const opt_positional positionals[] = {SCENE_POSITIONALS(render_args, scene)};
 
 #define AT(field) offsetof(render_args, field)
 static const option output_table[] = {
     {'o', "output", OPT_LIST, AT(outputs), "FILE",
-     ".exr or .png, repeatable; else the scene's name with .png"},
+     ".exr or .png, repeatable; else the scene's name with .png", .file = OPT_WRITES},
     {0, "aov", OPT_TEXT, AT(aov), "LIST",
      "layers of the .exr: transmittance,depth,depth_t50,single,multiple,error,albedo,normal; with "
      "depth, depth_t50, single or multiple every pixel is marched, none upsampled: the picture "
      "changes by up to 1 %"},
     {0, "no-background", OPT_FLAG, AT(no_background), NULL,
      "the medium alone, premultiplied; A = 1 - mean transmittance"},
-    {0, "exposure", OPT_NUMBER, AT(exposure), "EV", "of the .png", 0, -64, 64},
+    {0, "exposure", OPT_TEXT, AT(exposure), "EV|auto",
+     "of the .png, stops from -64 to 64, else 0; auto: the brightest hundredth of the first "
+     "picture "
+     "is beyond white"},
+    {0, "tonemap", OPT_TEXT, AT(tonemap), "filmic|linear",
+     "of the .png: a curve with shoulder and toe (default), or cut at 1", .names = curves},
     {0, "float", OPT_FLAG, AT(full_float), NULL, "32-bit .exr instead of 16-bit"},
     {0, "resume", OPT_FLAG, AT(resume), NULL,
      "of methods that sample: go on from the .exr of -o, if it is there, and keep in it what that "
@@ -494,7 +586,8 @@ static const option output_table[] = {
     {0, "sample-offset", OPT_UINT, AT(sample_offset), "N",
      "begin with this sample of the seed: parts that 'merge' adds up to one picture", 0, 0,
      2147483647},
-    {0, "stats", OPT_TEXT, AT(stats), "FILE.json", "times, memory and work of every node"},
+    {0, "stats", OPT_TEXT, AT(stats), "FILE.json", "times, memory and work of every node",
+     .file = OPT_WRITES},
     {0, "frames", OPT_TEXT, AT(frames), "N|A-B",
      "N: time N frames that recompute every node; A-B: a sequence, %04d or #### in names"},
     {0, "change", OPT_TEXT, AT(change), "none|camera|light",

@@ -114,6 +114,13 @@ static void print_surfaces(const tyn_scene *scene)
 
 static void print_lights(const tyn_scene *scene)
 {
+    if (scene->num_lights) {
+        printf("lights: taken in %s%s%s%s\n",
+               scene->light_units == TYN_LIGHTS_PHOTOMETRIC ? "lux and candela, 683 lm to the watt"
+                                                            : "W/m^2 and W/sr",
+               scene->generator ? "; the file is from '" : "",
+               scene->generator ? scene->generator : "", scene->generator ? "'" : "");
+    }
     for (uint32_t i = 0; i < scene->num_lights; i++) {
         const tyn_light *l = &scene->lights[i];
         const tyn_light_traits *traits = tyn_light_traits_of(l->kind);

@@ -16,7 +16,7 @@ static void print_help(FILE *to)
     for (size_t i = 0; i < ARRAY_SIZE(commands); i++) {
         fprintf(to, "  %-10s %s\n", commands[i]->name, commands[i]->summary);
     }
-    fprintf(to, "\n'tyndall COMMAND --help' lists the arguments; 'tyndall --version' the version;\n"
+    fprintf(to, "\n'tyndall help COMMAND' lists the arguments; 'tyndall --version' the version;\n"
                 "'tyndall --completion SHELL' completes them in bash, zsh or fish; 'tyndall --man\n"
                 "[COMMAND]' is a manual page.\n"
                 "Exit codes: 0 done; 2 the arguments or the input are wrong; 1 anything else;\n"
@@ -79,6 +79,36 @@ static bool print_completion(const char *shell)
     return false;
 }
 
+static const char *command_at(const void *user, uint32_t i)
+{
+    (void)user;
+    return i < ARRAY_SIZE(commands) ? commands[i]->name : NULL;
+}
+
+static void unknown_command(app *a, const char *name)
+{
+    const char *near = options_nearest(name, command_at, NULL);
+    app_error(a, "unknown command '%s'; %s%s%s'tyndall --help' lists them", name,
+              near ? "did you mean '" : "", near ? near : "", near ? "'? " : "");
+}
+
+// 'help' alone or with the name of a command. Gives the exit code.
+static int print_help_of(app *a, const char *name)
+{
+    for (size_t i = 0; name && i < ARRAY_SIZE(commands); i++) {
+        if (strcmp(name, commands[i]->name) == 0) {
+            options_help(commands[i]);
+            return EXIT_DONE;
+        }
+    }
+    if (name) {
+        unknown_command(a, name);
+        return EXIT_WRONG;
+    }
+    print_help(stdout);
+    return EXIT_DONE;
+}
+
 static int run_command(app *a, const command *cmd, int argc, char **argv)
 {
     a->command = cmd->name;
@@ -119,8 +149,7 @@ int main(int argc, char **argv)
         }
     }
     if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0 || strcmp(name, "help") == 0) {
-        print_help(stdout);
-        return EXIT_DONE;
+        return print_help_of(&a, argc > 2 ? argv[2] : NULL);
     }
     if (strcmp(name, "--version") == 0) {
         printf("tyndall %s\n", tyn_version_string());
@@ -143,7 +172,7 @@ int main(int argc, char **argv)
     if (argc < 2) {
         print_help(stderr);
     } else {
-        app_error(&a, "unknown command '%s'; 'tyndall --help' lists them", name);
+        unknown_command(&a, name);
     }
     return EXIT_WRONG;
 }

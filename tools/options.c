@@ -193,6 +193,21 @@ static void printed_name(const option *o, char *text, size_t size)
     }
 }
 
+// The long names of all options, one after another.
+static const char *option_at(const void *user, uint32_t i)
+{
+    const command *cmd = user;
+    for (uint32_t g = 0; g < cmd->num_groups; g++) {
+        for (uint32_t k = 0; k < cmd->groups[g].num_options; k++) {
+            const char *name = cmd->groups[g].options[k].name;
+            if (name && i-- == 0) {
+                return name;
+            }
+        }
+    }
+    return NULL;
+}
+
 // Takes the option at argv[*i] and moves *i past its value. False: wrong.
 static opt_outcome take_option(const command *cmd, int argc, char **argv, int *i, void *args,
                                const tyn_log *log)
@@ -213,7 +228,11 @@ static opt_outcome take_option(const command *cmd, int argc, char **argv, int *i
         text = arg[2] ? arg + 2 : NULL; // -Dname=value
     }
     if (!o) {
-        tyn_log_print(log, TYN_LOG_ERROR, "unknown option '%s'; " SEE_HELP, arg, cmd->name);
+        char typed[64];
+        snprintf(typed, sizeof typed, "%.*s", (int)strcspn(arg, "="), arg);
+        const char *near = arg[1] == '-' ? options_nearest(typed + 2, option_at, cmd) : NULL;
+        tyn_log_print(log, TYN_LOG_ERROR, "unknown option '%s'; %s%s%s" SEE_HELP, typed,
+                      near ? "did you mean --" : "", near ? near : "", near ? "? " : "", cmd->name);
         return OPT_WRONG;
     }
     char name[64];
@@ -283,5 +302,5 @@ opt_outcome options_parse(const command *cmd, int argc, char **argv, void *args,
                       cmd->name);
         return OPT_WRONG;
     }
-    return OPT_RUN;
+    return options_check_files(cmd, args, log) ? OPT_RUN : OPT_WRONG;
 }

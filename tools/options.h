@@ -17,6 +17,12 @@ typedef enum opt_kind {
     OPT_SIZE,     // opt_size: "WxH"
 } opt_kind;
 
+typedef enum opt_file {
+    OPT_NO_FILE = 0,
+    OPT_READS, // the value names a file that is read
+    OPT_WRITES,
+} opt_file;
+
 enum { OPT_MAX_LIST = 64 };
 typedef struct opt_list {
     const char *items[OPT_MAX_LIST];
@@ -43,6 +49,7 @@ typedef struct option {
     const char *const *names; // TEXT: the words allowed, NULL-terminated; NULL = any
     // LIST: what is done with a value as soon as it is read, NULL = nothing. Not TYN_OK: wrong, and a line was logged.
     tyn_result (*given)(const char *value, const tyn_log *log);
+    opt_file file; // TEXT, LIST
 } option;
 
 typedef struct opt_group {
@@ -52,7 +59,7 @@ typedef struct opt_group {
     size_t offset; // of the group's struct in the argument struct
 } opt_group;
 
-typedef struct opt_positional {
+typedef struct opt_positional { // a file that is read
     const char *name, *doc;
     bool required;
     size_t offset; // of a const char * in the argument struct; `repeat`: of an opt_list
@@ -80,6 +87,13 @@ opt_outcome options_parse(const command *cmd, int argc, char **argv, void *args,
 
 // "X,Y,Z", and with `spread` also one number for all three. False: not that.
 bool options_vector(const char *text, bool spread, float v[3]);
+
+// The name, or the start of one, that a mistyped one may mean; NULL: none. `name_at` gives NULL behind the last.
+const char *options_nearest(const char *typed, const char *(*name_at)(const void *user, uint32_t i),
+                            const void *user);
+
+// No file that is written is another that is written or read, by any path. False: said.
+bool options_check_files(const command *cmd, const void *args, const tyn_log *log);
 
 void options_help(const command *cmd);     // to stdout
 void options_markdown(const command *cmd); // to stdout, one section of docs/cli.md

@@ -108,6 +108,7 @@ bool output_folder_is_writable(app *a, const char *path)
 int output_plan_make(app *a, const tyn_method_info *info, const opt_list *files, const char *aov,
                      bool full_float, output_plan *plan)
 {
+    bool layered = false;
     *plan = (output_plan){.layers = 1u << COLOR_LAYER, .full_float = full_float};
     for (uint32_t i = 0; i < files->count; i++) {
         bool exr = text_ends_with(files->items[i], ".exr");
@@ -115,10 +116,12 @@ int output_plan_make(app *a, const tyn_method_info *info, const opt_list *files,
             app_error(a, "-o: '%s' is neither .exr nor .png", files->items[i]);
             return EXIT_WRONG;
         }
+        layered = layered || exr;
+        // The exposure of a .png is judged by the radiance.
         plan->outputs |=
-            exr ? TYN_OUTPUT_RADIANCE | (info->outputs & OUTPUT_SUMS) : TYN_OUTPUT_DISPLAY;
+            TYN_OUTPUT_RADIANCE | (exr ? info->outputs & OUTPUT_SUMS : TYN_OUTPUT_DISPLAY);
     }
-    if (aov && !(plan->outputs & TYN_OUTPUT_RADIANCE)) {
+    if (aov && !layered) {
         app_error(a, "--aov: layers need an .exr file; give one with -o");
         return EXIT_WRONG;
     }

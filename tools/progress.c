@@ -4,7 +4,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { BAR_WIDTH = 32 };
+enum { BAR_WIDTH = 32, LINE_SECONDS = 10 };
 
 void progress_init(progress *p)
 {
@@ -13,10 +13,29 @@ void progress_init(progress *p)
     pthread_cond_init(&p->stopped, NULL);
 }
 
+// With the lock held: what a log keeps.
+static void print_line(progress *p, double elapsed)
+{
+    if (elapsed < p->next) {
+        return;
+    }
+    p->next += LINE_SECONDS;
+    fprintf(stderr, "%s: %.0f s", p->label, elapsed);
+    if (p->fraction > 0) {
+        fprintf(stderr, ", %.0f %%, %.0f s left", 100 * p->fraction,
+                elapsed * (1 - p->fraction) / p->fraction);
+    }
+    fprintf(stderr, "\n");
+}
+
 // With the lock held.
 static void draw(progress *p)
 {
     const double elapsed = app_seconds() - p->start;
+    if (p->lines) {
+        print_line(p, elapsed);
+        return;
+    }
     if (elapsed < 1.0) {
         return;
     }
@@ -66,9 +85,11 @@ static void *draw_until_stopped(void *argument)
 void progress_start(progress *p, const char *label, bool quiet)
 {
     progress_stop(p);
-    if (quiet || !isatty(STDERR_FILENO)) {
+    if (quiet) {
         return;
     }
+    p->lines = !isatty(STDERR_FILENO);
+    p->next = LINE_SECONDS;
     p->label = label;
     p->start = app_seconds();
     p->fraction = 0;

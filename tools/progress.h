@@ -1,7 +1,7 @@
 // progress.h -- a bar on stderr for what takes over a second.
 //
 // A thread of its own draws it, so that also a call that says nothing until it is done is seen to run.
-// Without a terminal, and with --quiet, there is neither bar nor thread.
+// Without a terminal it is a line every ten seconds; with --quiet there is nothing, and no thread.
 #pragma once
 #include <pthread.h>
 #include <stdbool.h>
@@ -13,7 +13,8 @@ typedef struct progress {
     const char *label;
     double start;    // seconds
     double fraction; // 0: not known
-    bool running, drawn;
+    double next;     // when the next line is due without a terminal, seconds after the start
+    bool running, drawn, lines;
 } progress;
 
 void progress_init(progress *p); // once, before all others

@@ -8,9 +8,12 @@
 #include <string.h>
 #include <tyndall/io.h>
 
+static const char *const light_units[] = {"radiometric", "photometric", NULL};
+
 #define SCENE_AT(field) offsetof(scene_options, field)
 const option scene_table[SCENE_TABLE_SIZE] = {
-    {0, "env", OPT_TEXT, SCENE_AT(env), "FILE", "replace the scene's environment (.exr, .hdr)"},
+    {0, "env", OPT_TEXT, SCENE_AT(env), "FILE", "replace the scene's environment (.exr, .hdr)",
+     .file = OPT_READS},
     {0, "env-rotate", OPT_NUMBER, SCENE_AT(env_rotate), "DEG",
      "turn the environment about +Y, right-handed", 0},
     {0, "env-strength", OPT_NUMBER, SCENE_AT(env_strength), "S", "multiply the environment", 1, 0,
@@ -30,6 +33,10 @@ const option scene_table[SCENE_TABLE_SIZE] = {
      "sequence is at N / fps",
      NAN, -1e6, 1e6},
     {0, "fps", OPT_NUMBER, SCENE_AT(fps), "F", "pictures a second of a sequence", 24, 1e-3, 1e6},
+    {0, "light-units", OPT_TEXT, SCENE_AT(light_units), "radiometric|photometric",
+     "what a glTF file's lights are given in: W/m^2 and W/sr, or lux and candela (683 lm/W); else "
+     "what it says of its generator: watts without one",
+     .names = light_units},
 };
 
 #define VIEW_AT(field) offsetof(view_options, field)
@@ -105,6 +112,22 @@ static tyn_result load(app *a, const scene_options *options, const char *environ
     return result;
 }
 
+// Which units were taken, where that is not what the library computes with.
+static void choose_light_units(app *a, const char *units, tyn_scene *scene)
+{
+    if (units) {
+        tyn_scene_take_lights_as(scene, strcmp(units, light_units[1]) == 0
+                                            ? TYN_LIGHTS_PHOTOMETRIC
+                                            : TYN_LIGHTS_RADIOMETRIC);
+    } else if (scene->num_lights && scene->light_units == TYN_LIGHTS_PHOTOMETRIC) {
+        app_note(
+            a,
+            "lights are taken in lux and candela, 683 lm to the watt, as '%.100s' writes them; "
+            "if they are in watts: --light-units radiometric",
+            scene->generator ? scene->generator : "");
+    }
+}
+
 int scene_open(app *a, const scene_options *options, tyn_scene *scene)
 {
     tyn_scene_init(scene);
@@ -123,6 +146,7 @@ int scene_open(app *a, const scene_options *options, tyn_scene *scene)
     for (uint32_t i = 0; i < scene->num_warnings; i++) {
         app_warn(a, "%s", scene->warnings[i]);
     }
+    choose_light_units(a, options->light_units, scene);
     change_environment(a, options, &scene->environment);
     const tyn_medium_override override = {
         .sigma_s = given(&options->sigma_s),

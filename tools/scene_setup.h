@@ -7,6 +7,7 @@
 typedef struct scene_options {
     const char *scene, *environment; // positional
     const char *env;
+    const char *light_units; // NULL: what the file says of its generator
     float env_rotate, env_strength;
     opt_vector sigma_s, sigma_a, g, albedo;
     float density_scale;
@@ -17,7 +18,7 @@ typedef struct scene_options {
     const uint32_t *number;
 } scene_options;
 extern const option scene_table[];
-enum { SCENE_TABLE_SIZE = 11 };
+enum { SCENE_TABLE_SIZE = 12 };
 #define SCENE_POSITIONALS(args, member)                                                            \
     {"SCENE", "a .gltf or .glb scene, or a volume (.nvdb, .vdb)", true,                            \
      offsetof(args, member.scene)},                                                                \

@@ -21,7 +21,8 @@ static tyn_result load_loader(void **loader, instance_procs *procs, const tyn_lo
     if (!procs->gipa) {
         *loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
         if (!*loader) {
-            tyn_log_print(log, TYN_LOG_ERROR, "no Vulkan loader: %s", dlerror());
+            tyn_log_print(log, TYN_LOG_ERROR,
+                          "no Vulkan loader: %s; install it (Debian: libvulkan1)", dlerror());
             return TYN_ERR_DEVICE;
         }
         *(void **)&procs->gipa = dlsym(*loader, "vkGetInstanceProcAddr");
@@ -71,6 +72,22 @@ static bool has_layer(const instance_procs *procs, const char *name)
     return found;
 }
 
+// The loader found none, or only where variables sent it.
+static void say_no_driver(const tyn_log *log)
+{
+    static const char *const variables[] = {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"};
+    const char *name = NULL, *value = NULL;
+    for (int i = 0; i < 2 && !value; i++) {
+        name = variables[i];
+        value = getenv(name);
+    }
+    tyn_log_print(log, TYN_LOG_ERROR,
+                  "no Vulkan driver: install that of the graphics card, or Mesa's software device "
+                  "(Debian: mesa-vulkan-drivers)%s%s%s%.200s%s",
+                  value ? "; " : "", value ? name : "", value ? " says to look at '" : "",
+                  value ? value : "", value ? "' alone" : "");
+}
+
 static tyn_result create_instance(const instance_procs *procs, bool validation, tyn_device *user,
                                   VkInstance *out, const tyn_log *log)
 {
@@ -114,6 +131,10 @@ static tyn_result create_instance(const instance_procs *procs, bool validation, 
                 .ppEnabledExtensionNames = (const char *const[]){VK_EXT_DEBUG_UTILS_EXTENSION_NAME},
             },
             NULL, out));
+    if (made == VK_ERROR_INCOMPATIBLE_DRIVER) {
+        say_no_driver(log);
+        return TYN_ERR_DEVICE;
+    }
     return tyn_vk_check(&(tyn_device){.log = log ? *log : (tyn_log){0}}, made, "vkCreateInstance");
 }
 

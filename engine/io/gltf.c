@@ -322,6 +322,20 @@ static tyn_result check_scene(const tyn_scene *scene, const json_doc *doc)
     return r ? tyn_capture_fault(&capture, doc, doc->root, r) : TYN_OK;
 }
 
+// KHR_lights_punctual has candela and lux, and exporters write them (Blender's: watts times 683 lm/W). This project's own
+// programs, and files that no program signed, have watts.
+static void read_generator(tyn_scene *scene, const json_doc *doc)
+{
+    static const char own[] = "tyndall";
+    const cJSON *text = tyn_json_member(tyn_json_member(doc->root, "asset"), "generator");
+    if (cJSON_IsString(text) && text->valuestring[0]) {
+        scene->generator = strdup(text->valuestring);
+        if (strncmp(text->valuestring, own, sizeof own - 1) != 0) {
+            tyn_scene_take_lights_as(scene, TYN_LIGHTS_PHOTOMETRIC);
+        }
+    }
+}
+
 static tyn_result build_scene(tyn_scene *scene, const gltf_model *model, const json_doc *doc,
                               const char *environment, const tyn_moment *moment)
 {
@@ -351,6 +365,7 @@ static tyn_result build_scene(tyn_scene *scene, const gltf_model *model, const j
         tyn_gltf_warn_extensions(scene, doc);
     }
     scene->name = name_or_null(model->scene_name);
+    read_generator(scene, doc);
     return r ? r : check_scene(scene, doc);
 }
 

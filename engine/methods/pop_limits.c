@@ -51,8 +51,8 @@ static double forward(const tyn_regime *r)
     .warned = {TYN_ABOVE(scatterings, 0.05), TYN_ABOVE(cell_depth, 1.8)},                          \
     .warning = {                                                                                   \
         "accuracy: where the medium is dense a lattice cell is %.3g mean free paths (delta "       \
-        "scaled) wide; what comes out of its faces is off by about 10 %% at 2, 20 %% at 7 and a "  \
-        "factor of 2 from 30 on (-D lattice.cells)",                                               \
+        "scaled) wide; lit faces are off by about 10 %% at 2, 20 %% at 7, a factor of 2 from 30 "  \
+        "on; dark ones are too bright, 4 times at 30, tens of times at 300 (-D lattice.cells)",    \
         {TYN_FIGURE(cell_depth)}}
 #define TRANSPORT                                                                                  \
     "lattice: %.2g transport mean free paths across its densest cell; what comes out of its "      \

@@ -46,12 +46,28 @@ void tyn_scene_finish(tyn_scene *scene)
         free(scene->warnings[i]);
     }
     free(scene->name);
+    free(scene->generator);
     free(scene->volumes);
     free(scene->cameras);
     free(scene->warnings);
     free(scene->environment.data);
     tyn_surfaces_free(&scene->surfaces);
     tyn_scene_init(scene);
+}
+
+void tyn_scene_take_lights_as(tyn_scene *scene, tyn_light_units units)
+{
+    static const float lumens = 683; // of a watt at 555 nm, as glTF's exporters take for any colour
+    if (!scene || scene->light_units == units) {
+        return;
+    }
+    const float factor = units == TYN_LIGHTS_PHOTOMETRIC ? 1 / lumens : lumens;
+    for (uint32_t i = 0; i < scene->num_lights; i++) {
+        for (int c = 0; c < 3; c++) {
+            scene->lights[i].color[c] *= factor;
+        }
+    }
+    scene->light_units = units;
 }
 
 void tyn_medium_clear(tyn_medium *medium)

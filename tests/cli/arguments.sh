@@ -5,7 +5,14 @@
 # ---- the command line ----
 run
 [ "$code" = 2 ] || fail "without a command: exit $code"
-refuses 2 "unknown command 'paint'" paint
+refuses 2 "unknown command 'paint'; 'tyndall --help'" paint
+refuses 2 "unknown command 'rendr'; did you mean 'render'?" rendr
+refuses 2 "unknown command 'comapre'; did you mean 'compare'?" comapre
+refuses 2 "unknown option '--exposrue'; did you mean --exposure?" render --exposrue=3
+refuses 2 "unknown command 'paint'" help paint
+works help
+works help render
+grep -q "usage: tyndall render" out || fail "help render: $(head -1 out)"
 works --help
 grep -q "selftest" out || fail "--help lists no selftest"
 works --version
@@ -38,6 +45,10 @@ refuses 2 "--spp needs a value" render a.gltf --spp
 refuses 2 "--quiet takes no value" render a.gltf --quiet=1
 refuses 2 "--quality: 'best' is not one of: draft, normal, high" render a.gltf --quality best
 refuses 2 "--change: 'all' is not one of: none, camera, light" render a.gltf --change all
+refuses 2 "--exposure: 'bright' is neither a number from -64 to 64 nor 'auto'" render a.gltf --exposure bright
+refuses 2 "--exposure: '65' is neither" render a.gltf --exposure 65
+refuses 2 "--tonemap: 'reinhard' is not one of: filmic, linear" render a.gltf --tonemap reinhard
+refuses 2 "--light-units: 'lumens' is not one of: radiometric, photometric" info a.gltf --light-units lumens
 refuses 2 "--change needs --frames" render a.gltf --change none
 refuses 2 "--frames: '5-1' is neither" render a.gltf --frames 5-1
 refuses 2 "--frames: '0' is neither" render a.gltf --frames 0
@@ -81,6 +92,14 @@ printf 'x,y,z\n' >empty.csv
 refuses 2 "holds no points" probe "$scenes/cube.gltf" --points empty.csv
 printf 'x,y,z\n0,0,0\n1,2\n' >short.csv
 refuses 2 "short.csv:3: '1,2' is not x,y,z" probe "$scenes/cube.gltf" --points short.csv
+
+# ---- a machine without a driver ----
+export VK_DRIVER_FILES=/nonexistent VK_ICD_FILENAMES=/nonexistent
+for command in "render $scenes/cube.gltf -o a.png" "info --devices" selftest; do
+    # shellcheck disable=SC2086
+    refuses 1 "no Vulkan driver: install that of the graphics card, or Mesa's software device" $command
+done
+unset VK_DRIVER_FILES VK_ICD_FILENAMES
 
 # ---- suites of the bench ----
 refuses 2 "nothere.json" bench --suite nothere.json
@@ -195,6 +214,26 @@ grep -q "96x160x96 voxels" out || fail "info smoke: $(cat out)"
 grep -q "camera 0 'view'" out || fail "info smoke: no camera"
 works info "$scenes/cube.gltf" --sigma-s 1,2,3 --albedo 0.5
 grep -q "absorption *0.5 1 1.5 1/m" out || fail "info with overrides: $(grep absorption out)"
+# units of lights: by the generator, or by the option
+light() { # WHAT ARGUMENTS: info shows this light
+    light=$1
+    shift
+    works info "$@"
+    grep -q "directional, $light W/m^2" out || fail "info $*: not '$light': $(grep light out)"
+}
+unsigned=$(sed 's/, "generator": "tyndall-scenes"//' "$scenes/cube.gltf")
+echo "$unsigned" >unsigned.gltf
+grep -q generator unsigned.gltf && fail "cube.gltf has its generator still"
+sed 's/"tyndall-scenes"/"Khronos glTF Blender I\/O v3.4.50"/' "$scenes/cube.gltf" >blender.gltf
+power=$("$tool" info "$scenes/cube.gltf" | sed -n 's/.*directional, \([0-9.]*\) .*/\1/p')
+less=$(awk -v p="$power" 'BEGIN { printf "%.6g", p / 683 }')
+light "$power $power $power" "$scenes/cube.gltf"
+light "$power $power $power" unsigned.gltf
+light "$less $less $less" blender.gltf
+grep -q "683 lm to the watt, as 'Khronos glTF Blender I/O v3.4.50' writes them" err || fail "no line of the units: $(cat err)"
+light "$power $power $power" blender.gltf --light-units radiometric
+light "$less $less $less" unsigned.gltf --light-units photometric
+[ "$power" ] || fail "no power in cube.gltf"
 works info --methods
 grep -q "^pop " out || fail "info --methods lists no pop: $(cat out)"
 for method in "pop light" "lpv light" "photon light" "path fluxes" "single composite" "pop-paper composite"; do

@@ -72,6 +72,22 @@ is_png piped.png "through a FIFO"
 ln -s loop.png loop.png
 refuses 1 "loop.png: cannot be written: Too many" compare a.exr b.exr --heat loop.png
 
+# ---- outputs that are each other, or an input ----
+cp a.exr c.exr
+ln -s c.exr c-link.exr
+refuses 2 "--heat 'h.png' and --flip-map './h.png' are the same file" compare a.exr b.exr --heat h.png --flip-map ./h.png
+refuses 2 "are the same file" compare a.exr b.exr --heat h.png --flip-map "$work/far/../h.png"
+refuses 2 "are the same file: the second" compare a.exr b.exr --heat far/old.png --flip-map link.png
+refuses 2 "-o 'a.png' and -o './a.png' are the same file" render cube.gltf -o a.png -o b.exr -o ./a.png
+refuses 2 "ENVIRONMENT 'c.exr' and -o 'c-link.exr' are the same file: the input would be lost" render cube.gltf c.exr -o c-link.exr
+refuses 2 "-o 'c.exr' and --env 'c.exr' are the same file" render cube.gltf --env c.exr -o c.exr
+refuses 2 "-o 's.exr' and --stats 's.exr' are the same file" render cube.gltf -o s.exr --stats s.exr
+cp "$scenes/cube.gltf" p.csv
+refuses 2 "--points 'p.csv' and -o './p.csv' are the same file" probe cube.gltf --points p.csv -o ./p.csv
+refuses 2 "SCENE 'cube.gltf' and --stats 'cube.gltf' are the same file" render cube.gltf -o a.png --stats cube.gltf
+cmp -s cube.gltf "$scenes/cube.gltf" || fail "an input was lost"
+works compare a.exr b.exr --heat null.png --flip-map null.png
+
 # ---- long names ----
 # a temporary file beside it must not be what is too long
 long=$(printf '%0251d' 7)

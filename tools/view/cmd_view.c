@@ -29,7 +29,7 @@ static const option window_table[] = {
     {0, "seconds", OPT_NUMBER, AT(seconds), "S", "close the window after that time; 0 = stay", 0, 0,
      1e6},
     {0, "stats", OPT_TEXT, AT(stats), "FILE.json",
-     "at the end: pictures a second while moving and at rest"},
+     "at the end: pictures a second while moving and at rest", .file = OPT_WRITES},
     {0, "validate", OPT_FLAG, AT(validate), NULL,
      "with Vulkan's validation and synchronization validation; exit 1 if a message came"},
 };

@@ -195,6 +195,12 @@ typedef struct tyn_camera {
     float aspect; // width / height as stored in the file; 0 = not given
 } tyn_camera;
 
+// What the lights of a file are given in. The library computes with the first.
+typedef enum tyn_light_units {
+    TYN_LIGHTS_RADIOMETRIC = 0, // W/m^2, W/sr
+    TYN_LIGHTS_PHOTOMETRIC,     // lux, candela: 683 lm to the watt
+} tyn_light_units;
+
 typedef struct tyn_scene {
     char *name;
     tyn_volume *volumes;
@@ -213,11 +219,17 @@ typedef struct tyn_scene {
     uint64_t clamped_negative; // negative densities that were set to 0 at load
     char **warnings;           // one line each, e.g. "mesh 'wall': its lines are left out"
     uint32_t num_warnings;
+    tyn_light_units
+        light_units; // that the lights were taken in, by what the file says of its generator
+    char *generator; // asset.generator of a glTF file; NULL: none
 } tyn_scene;
 
 TYN_API void tyn_scene_init(tyn_scene *scene);   // an empty scene; call before filling by hand
 TYN_API void tyn_scene_finish(tyn_scene *scene); // frees everything it owns, leaves an empty scene
 TYN_API void tyn_scene_warn(tyn_scene *scene, const char *format, ...) TYN_PRINTF(2, 3);
+
+// The lights as if their numbers had been in these units: divides by 683 lm/W, multiplies or does nothing.
+TYN_API void tyn_scene_take_lights_as(tyn_scene *scene, tyn_light_units units);
 
 TYN_API double tyn_phase_mean_cosine(tyn_phase phase);
 // f, the part of the scattering that delta scaling counts as going straight on.
