@@ -6,7 +6,7 @@
 // Differences that are let be, how often a triangle is halved at most, and parts of a texture's side that are not cut any
 // finer.
 static const double TINT_STEP = 1 / 16.0, GLOW_STEP = 1 / 16.0;
-enum { TINT_DEPTH = 5, GLOW_DEPTH = 6, MASK_DEPTH = 8 };
+enum { TINT_DEPTH = 5, GLOW_DEPTH = 6, MASK_DEPTH = 8, MASK_DEPTH_BEYOND = 3 };
 static const double GLOW_PART = 1 / 64.0, MASK_PART = 1 / 256.0;
 static const double STEPS =
     255; // of tint, and of the root of emission, so that facets share materials
@@ -96,7 +96,7 @@ static int sight_of(const gltf_painted *p, double corners[3][3], bool *coarse)
 static bool tint_varies(const gltf_painted *p, double corners[3][3])
 {
     bool varies = false;
-    for (int channel = 0; p->colors && channel < 3; channel++) {
+    for (int channel = 0; p->colors && p->reflects && channel < 3; channel++) {
         double lo = 1e300, hi = -1e300;
         for (int k = 0; k < 3; k++) {
             const double c = color_of(p, corners[k], channel);
@@ -147,7 +147,7 @@ static void shade(const gltf_painted *p, gltf_facet *f)
             weights[c] = mixed(places[k], f->corners[0][c], f->corners[1][c], f->corners[2][c]);
         }
         for (int c = 0; k == 0 && c < 3; c++) {
-            f->tint[c] = p->colors ? in_steps(color_of(p, weights, c)) : 1;
+            f->tint[c] = p->colors && p->reflects ? in_steps(color_of(p, weights, c)) : 1;
         }
         if (p->glow) {
             place_of(p->glow_uv, weights, uv);
@@ -213,9 +213,11 @@ static bool cut(cutter *c, double corners[3][3], int depth)
     if (sight < 0) {
         return true;
     }
-    const bool halve = *c->budget > 0 && ((sight == 0 && coarse && depth < MASK_DEPTH) ||
-                                          (depth < TINT_DEPTH && tint_varies(p, corners)) ||
-                                          (depth < GLOW_DEPTH && glow_varies(p, corners)));
+    // A mask is cut whatever it costs, but more coarsely: else all would be gone whose corners are.
+    const bool rich = *c->budget > 0;
+    const bool halve = (sight == 0 && coarse && depth < (rich ? MASK_DEPTH : MASK_DEPTH_BEYOND)) ||
+                       (rich && depth < TINT_DEPTH && tint_varies(p, corners)) ||
+                       (rich && depth < GLOW_DEPTH && glow_varies(p, corners));
     if (!halve) {
         return sight > 0 ? put_facet(c, corners, depth == 0) : put_clipped(c, corners);
     }

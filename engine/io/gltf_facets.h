@@ -9,6 +9,7 @@
 // What is painted on a triangle; corners in the order of the triangle.
 typedef struct gltf_painted {
     double (*colors)[4];              // of the corners; NULL: 1
+    bool reflects;                    // else their red, green and blue change nothing
     const gltf_picture *alpha, *glow; // NULL: 1
     double (*alpha_uv)[2], (*glow_uv)[2];
     double opacity; // factor of alpha
@@ -22,6 +23,6 @@ typedef struct gltf_facet {
 } gltf_facet;
 
 // Calls `put` for each facet, false ends it. `budget` is of facets and is lowered by what is put beyond one a triangle; with
-// none left triangles are not cut. False: `put` gave it.
+// none left triangles are not cut, those with a mask only coarsely. False: `put` gave it.
 typedef bool (*gltf_facet_fn)(void *user, const gltf_facet *facet);
 bool tyn_gltf_cut(const gltf_painted *painted, int64_t *budget, gltf_facet_fn put, void *user);

@@ -38,7 +38,7 @@ void tyn_gltf_meshes_close(gltf_meshes *m)
         [LACK_MORPH] = "morph targets are left out: its shape is that without them",
         [LACK_SKIN] = "skins are left out: its shape is that without one",
         [LACK_FACETS] =
-            "it has too many triangles to be cut where colours, emission or a mask vary: means "
+            "there are too many triangles to be cut where colours, emission or masks vary: means "
             "count",
         [LACK_AREA] = "a primitive whose triangles all have no area is left out",
     };
@@ -79,6 +79,7 @@ typedef struct primitive {
     uint32_t num_indices;
     int mode;
     const gltf_material *material;
+    bool reflects;           // its albedo is not 0
     bool painted;            // its triangles are cut where what is painted on them varies
     uint32_t material_index; // else: with its colour
 } primitive;
@@ -137,7 +138,9 @@ static tyn_result apply_colors(gltf_meshes *m, primitive *p)
         equal = equal && !memcmp(colors->values + (size_t)i * colors->components, colors->values,
                                  colors->components * sizeof(float));
     }
-    p->painted = !equal || p->material->cutoff > 0 || p->material->glow;
+    const float *albedo = p->material->surface.albedo;
+    p->reflects = albedo[0] > 0 || albedo[1] > 0 || albedo[2] > 0;
+    p->painted = (!equal && p->reflects) || p->material->cutoff > 0 || p->material->glow;
     return p->painted ? TYN_OK
                       : tyn_gltf_material_paint(&m->materials, p->material,
                                                 colors->count ? colors->values : one, one,
@@ -396,6 +399,7 @@ static void add_facets(arrival *a)
     }
     const gltf_painted painted = {
         .colors = p->colors.count ? colors : NULL,
+        .reflects = p->reflects,
         .alpha = material->alpha,
         .glow = material->glow,
         .alpha_uv = alpha_uv,

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "gltf_file.h"
+#include "io/gltf_facets.h"
 
 static const float square[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 static const float texcoords[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
@@ -282,6 +283,64 @@ static void mask_of_factors(void **state)
     assert_non_null(strstr(log.last, "must be OPAQUE, MASK or BLEND"));
 }
 
+// ---- without a budget -------------------------------------------------------------------------
+
+typedef struct total {
+    double area, glow; // of the facets, relative to the triangle's area
+    uint32_t count;
+} total;
+
+static bool add_up(void *user, const gltf_facet *f)
+{
+    total *t = user;
+    double w[2][2];
+    for (int k = 0; k < 2; k++) {
+        for (int a = 0; a < 2; a++) {
+            w[k][a] = f->corners[k + 1][a] - f->corners[0][a];
+        }
+    }
+    const double area = w[0][0] * w[1][1] - w[0][1] * w[1][0];
+    t->area += area;
+    t->glow += area * (double)f->glow[0];
+    t->count++;
+    return true;
+}
+
+// Triangles are left whole, with means; of a mask most of what is to be seen is still there.
+static void no_budget(void **state)
+{
+    (void)state;
+    double uv[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+    for (int masked = 0; masked < 2; masked++) {
+        put_picture(masked ? paint_leaf : paint_lamp);
+        tyn_texture texture = {.wrap = {TYN_WRAP_CLAMP, TYN_WRAP_CLAMP}};
+        gltf_picture picture;
+        assert_int_equal(tyn_png_read(io_path("painted.png"), &texture.size[0], &texture.size[1],
+                                      &texture.texels, NULL),
+                         TYN_OK);
+        assert_true(tyn_gltf_picture_make(&picture, &texture));
+        total rich = {0}, poor = {0};
+        int64_t much = 1 << 20, none = 0;
+        const gltf_painted painted = {.alpha = masked ? &picture : NULL,
+                                      .glow = masked ? NULL : &picture,
+                                      .alpha_uv = uv,
+                                      .glow_uv = uv,
+                                      .opacity = 1,
+                                      .cutoff = masked ? 0.5 : 0};
+        assert_true(tyn_gltf_cut(&painted, &much, add_up, &rich));
+        assert_true(tyn_gltf_cut(&painted, &none, add_up, &poor));
+        assert_int_equal(much, (1 << 20) - (int64_t)rich.count + 1);
+        if (masked) {
+            assert_true(poor.count > 1 && poor.count < 128);
+            assert_true(fabs(poor.area - rich.area) < 0.05 * rich.area);
+        } else {
+            assert_int_equal(poor.count, 1);
+            assert_true(poor.area == 1 && fabs(poor.glow - rich.glow) < 0.3 * rich.glow);
+        }
+        tyn_gltf_picture_finish(&picture);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -290,6 +349,7 @@ int main(void)
         cmocka_unit_test(emission_elsewhere),
         cmocka_unit_test(mask),
         cmocka_unit_test(mask_of_factors),
+        cmocka_unit_test(no_budget),
     };
     return cmocka_run_group_tests(tests, NULL, io_test_clean);
 }
