@@ -2,6 +2,7 @@
 #include "info_scene.h"
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 static const char *name_or(const char *name)
 {
@@ -52,25 +53,76 @@ static void print_media(const tyn_scene *scene)
     }
 }
 
-// Area of a material's triangles, m^2.
-static double material_area(const tyn_surfaces *s, uint32_t material)
+static double triangle_area(const tyn_surfaces *s, uint32_t triangle)
 {
-    double area = 0;
-    for (uint32_t i = 0; i < s->num_triangles; i++) {
-        const float *p[3];
-        double n2 = 0;
-        for (int k = 0; k < 3; k++) {
-            p[k] = s->vertices[s->triangles[i].vertices[k]].position;
-        }
-        for (int a = 0; a < 3; a++) {
-            const int b = (a + 1) % 3, c = (a + 2) % 3;
-            const double n = ((double)p[1][b] - p[0][b]) * ((double)p[2][c] - p[0][c]) -
-                             ((double)p[1][c] - p[0][c]) * ((double)p[2][b] - p[0][b]);
-            n2 += n * n;
-        }
-        area += s->triangles[i].material == material ? 0.5 * sqrt(n2) : 0;
+    const float *p[3];
+    double n2 = 0;
+    for (int k = 0; k < 3; k++) {
+        p[k] = s->vertices[s->triangles[triangle].vertices[k]].position;
     }
-    return area;
+    for (int a = 0; a < 3; a++) {
+        const int b = (a + 1) % 3, c = (a + 2) % 3;
+        const double n = ((double)p[1][b] - p[0][b]) * ((double)p[2][c] - p[0][c]) -
+                         ((double)p[1][c] - p[0][c]) * ((double)p[2][b] - p[0][b]);
+        n2 += n * n;
+    }
+    return 0.5 * sqrt(n2);
+}
+
+// Power over the emission of a Lambertian emitter.
+static double emitted_per_radiance(const tyn_surface_material *m, double area)
+{
+    return 3.14159265358979 * area * (m->flags & TYN_SURFACE_EMITS_BOTH_SIDES ? 2 : 1);
+}
+
+static void print_material(uint32_t index, const tyn_surface_material *m, double area)
+{
+    printf("material %u: %.4g m^2", index, area);
+    if (m->texture != TYN_NO_TEXTURE) {
+        printf(", texture %u", m->texture);
+    }
+    for (int k = 0; k < TYN_MATERIAL_NUM_FIELDS; k++) {
+        const tyn_material_field *f = &tyn_material_fields[k];
+        const float *v = (const float *)((const char *)m + f->offset);
+        for (uint32_t c = 0; c < f->count; c++) {
+            printf("%s%s %g", c ? "" : ", ", c ? "" : f->name, v[c]);
+        }
+        printf("%s%s", *f->unit ? " " : "", f->unit);
+    }
+    printf("\n");
+    if (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0) {
+        const double factor = emitted_per_radiance(m, area);
+        printf("  emits from %s, %.4g %.4g %.4g W\n",
+               m->flags & TYN_SURFACE_EMITS_BOTH_SIDES ? "both sides" : "the front",
+               factor * m->emission[0], factor * m->emission[1], factor * m->emission[2]);
+    }
+}
+
+// The first ones; facets of what is painted on triangles may have thousands.
+static void print_materials(const tyn_surfaces *s)
+{
+    enum { MOST = 24 };
+    double *areas = calloc(s->num_materials + 1, sizeof *areas), rest = 0, power[3] = {0};
+    for (uint32_t i = 0; areas && i < s->num_triangles; i++) {
+        areas[s->triangles[i].material] += triangle_area(s, i);
+    }
+    const uint32_t shown = s->num_materials <= MOST + 1 ? s->num_materials : MOST;
+    for (uint32_t i = 0; areas && i < s->num_materials; i++) {
+        const tyn_surface_material *m = &s->materials[i];
+        if (i < shown) {
+            print_material(i, m, areas[i]);
+            continue;
+        }
+        rest += areas[i];
+        for (int c = 0; c < 3; c++) {
+            power[c] += emitted_per_radiance(m, areas[i]) * m->emission[c];
+        }
+    }
+    if (shown < s->num_materials) {
+        printf("%u more materials: %.4g m^2, emit %.4g %.4g %.4g W\n", s->num_materials - shown,
+               rest, power[0], power[1], power[2]);
+    }
+    free(areas);
 }
 
 static void print_surfaces(const tyn_scene *scene)
@@ -82,29 +134,7 @@ static void print_surfaces(const tyn_scene *scene)
     }
     printf("surfaces: %u meshes, %u triangles, %u vertices\n", scene->num_meshes, s->num_triangles,
            s->num_vertices);
-    for (uint32_t i = 0; i < s->num_materials; i++) {
-        const tyn_surface_material *m = &s->materials[i];
-        const double area = material_area(s, i);
-        const int sides = m->flags & TYN_SURFACE_EMITS_BOTH_SIDES ? 2 : 1;
-        printf("material %u: %.4g m^2", i, area);
-        if (m->texture != TYN_NO_TEXTURE) {
-            printf(", texture %u", m->texture);
-        }
-        for (int k = 0; k < TYN_MATERIAL_NUM_FIELDS; k++) {
-            const tyn_material_field *f = &tyn_material_fields[k];
-            const float *v = (const float *)((const char *)m + f->offset);
-            for (uint32_t c = 0; c < f->count; c++) {
-                printf("%s%s %g", c ? "" : ", ", c ? "" : f->name, v[c]);
-            }
-            printf("%s%s", *f->unit ? " " : "", f->unit);
-        }
-        printf("\n");
-        if (m->emission[0] > 0 || m->emission[1] > 0 || m->emission[2] > 0) {
-            const double factor = 3.14159265358979 * area * sides; // of a Lambertian emitter
-            printf("  emits from %s, %.4g %.4g %.4g W\n", sides == 2 ? "both sides" : "the front",
-                   factor * m->emission[0], factor * m->emission[1], factor * m->emission[2]);
-        }
-    }
+    print_materials(s);
     for (uint32_t i = 0; i < s->num_textures; i++) {
         const tyn_texture *t = &s->textures[i];
         printf("texture %u '%s': %ux%u texels, %s along u, %s along v\n", i, name_or(t->name),

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/hash.h"
 
 // ---- open, close ------------------------------------------------------------------------------
 
@@ -26,15 +27,22 @@ tyn_result tyn_gltf_materials_open(gltf_materials *m, const gltf_data *data, tyn
     return TYN_OK;
 }
 
+static void close_picture(gltf_picture *picture)
+{
+    if (picture) {
+        tyn_gltf_picture_finish(picture);
+        free(picture);
+    }
+}
+
 void tyn_gltf_materials_close(gltf_materials *m)
 {
     static const char *const what[NUM_LACKS] = {
         [LACK_METAL] = "all metal (metallicFactor 1 is glTF's default): it reflects nothing, only "
                        "diffuse reflection is done",
         [LACK_METAL_TEXTURE] = "of metallicRoughnessTexture the mean metalness counts",
-        [LACK_EMISSIVE_TEXTURE] = "of emissiveTexture the mean counts",
         [LACK_NORMAL_TEXTURE] = "normalTexture is not read",
-        [LACK_ALPHA] = "it is opaque: alphaMode is not read",
+        [LACK_ALPHA] = "it is opaque: of alphaMode only MASK is read, not BLEND",
     };
     for (int i = 0; i < NUM_LACKS; i++) {
         const uint32_t others = m->lacks[i].count - 1;
@@ -46,8 +54,13 @@ void tyn_gltf_materials_close(gltf_materials *m)
         }
     }
     tyn_gltf_textures_close(&m->textures);
+    for (int64_t i = 0; m->loaded && i <= m->list.count; i++) {
+        close_picture(m->loaded[i].alpha);
+        close_picture(m->loaded[i].glow);
+    }
     free(m->list.items);
     free(m->loaded);
+    free(m->painted);
     free(m->is_loaded);
 }
 
@@ -69,10 +82,8 @@ static void lack(gltf_materials *m, int64_t index, gltf_material_lack which)
 
 // ---- reading ----------------------------------------------------------------------------------
 
-static tyn_result read_texture_info(gltf_materials *m, const cJSON *info, gltf_material *out,
-                                    uint32_t *texture)
+static tyn_result read_place(const json_doc *doc, const cJSON *info, gltf_texture_place *out)
 {
-    const json_doc *doc = m->textures.data->doc;
     int64_t texcoord = 0;
     double offset[2] = {0, 0}, scale[2] = {1, 1}, angle = 0;
     cJSON *extensions, *transform;
@@ -92,7 +103,21 @@ static tyn_result read_texture_info(gltf_materials *m, const cJSON *info, gltf_m
         out->uv[i / 3][i % 3] = (float)uv[i / 3][i % 3];
     }
     out->texcoord = (uint32_t)texcoord;
-    return tyn_gltf_texture_get(&m->textures, info, texture);
+    return TYN_OK;
+}
+
+static tyn_result read_picture(gltf_materials *m, const cJSON *info, gltf_picture **out)
+{
+    tyn_texture texture;
+    TYN_TRY(tyn_gltf_texture_read(&m->textures, info, &texture));
+    *out = calloc(1, sizeof **out);
+    if (!*out || !tyn_gltf_picture_make(*out, &texture)) {
+        if (!*out) {
+            free(texture.texels);
+        }
+        return tyn_json_fault(m->textures.data->doc, info, "no memory for its texture");
+    }
+    return TYN_OK;
 }
 
 // The factors of all fields, which are those but for textures and extensions.
@@ -114,7 +139,7 @@ static tyn_result read_factors(const json_doc *doc, const cJSON *json, double fa
 }
 
 static tyn_result read_albedo(gltf_materials *m, int64_t index, const cJSON *json,
-                              gltf_material *out, uint32_t *texture, double factor[4])
+                              gltf_material *out, double factor[4])
 {
     const json_doc *doc = m->textures.data->doc;
     double metallic = 1, mean[4];
@@ -129,7 +154,8 @@ static tyn_result read_albedo(gltf_materials *m, int64_t index, const cJSON *jso
         lack(m, index, LACK_METAL_TEXTURE);
     }
     if (info) {
-        TYN_TRY(read_texture_info(m, info, out, texture));
+        TYN_TRY(read_place(doc, info, &out->color));
+        TYN_TRY(tyn_gltf_texture_get(&m->textures, info, &out->surface.texture));
     }
     if (metallic == 1 && factor[0] + factor[1] + factor[2] > 0) {
         lack(m, index, LACK_METAL);
@@ -140,53 +166,59 @@ static tyn_result read_albedo(gltf_materials *m, int64_t index, const cJSON *jso
     return TYN_OK;
 }
 
-static tyn_result read_emission(gltf_materials *m, int64_t index, const cJSON *json,
+static tyn_result read_emission(gltf_materials *m, const cJSON *json, gltf_material *out,
                                 double factor[3])
 {
     const json_doc *doc = m->textures.data->doc;
-    double strength = 1, mean[4] = {1, 1, 1, 1};
+    double strength = 1;
     cJSON *extensions, *strong, *info;
     TYN_TRY(tyn_json_object(doc, json, "extensions", &extensions));
     TYN_TRY(tyn_json_object(doc, extensions, "KHR_materials_emissive_strength", &strong));
     TYN_TRY(tyn_json_number(doc, strong, "emissiveStrength", 0, 1e30, "a number >= 0", &strength));
     TYN_TRY(tyn_json_object(doc, json, "emissiveTexture", &info));
     if (info && factor[0] + factor[1] + factor[2] > 0) {
-        TYN_TRY(tyn_gltf_texture_mean(&m->textures, info, true, mean));
-        lack(m, index, LACK_EMISSIVE_TEXTURE);
+        TYN_TRY(read_place(doc, info, &out->glow_place));
+        TYN_TRY(read_picture(m, info, &out->glow));
     }
     for (int c = 0; c < 3; c++) {
-        factor[c] = factor[c] * strength * mean[c];
+        factor[c] *= strength;
+    }
+    return TYN_OK;
+}
+
+// alphaMode MASK; `factor` is that of the base colour.
+static tyn_result read_mask(gltf_materials *m, int64_t index, const cJSON *json, gltf_material *out,
+                            const double factor[4])
+{
+    const json_doc *doc = m->textures.data->doc;
+    const char *mode = "OPAQUE";
+    double cutoff = 0.5;
+    cJSON *pbr, *info;
+    TYN_TRY(tyn_json_string(doc, json, "alphaMode", &mode));
+    TYN_TRY(tyn_json_number(doc, json, "alphaCutoff", 0, 1e30, "a number >= 0", &cutoff));
+    if (strcmp(mode, "BLEND") == 0) {
+        lack(m, index, LACK_ALPHA);
+    } else if (strcmp(mode, "MASK") == 0 && cutoff > 0) {
+        out->cutoff = cutoff;
+        out->opacity = factor[3];
+        TYN_TRY(tyn_json_object(doc, json, "pbrMetallicRoughness", &pbr));
+        TYN_TRY(tyn_json_object(doc, pbr, "baseColorTexture", &info));
+        return info ? read_picture(m, info, &out->alpha) : TYN_OK;
+    } else if (strcmp(mode, "MASK") != 0 && strcmp(mode, "OPAQUE") != 0) {
+        return tyn_json_fault(doc, tyn_json_member(json, "alphaMode"),
+                              "must be OPAQUE, MASK or BLEND");
     }
     return TYN_OK;
 }
 
 static void look_at_rest(gltf_materials *m, int64_t index, const cJSON *json)
 {
-    const cJSON *mode = tyn_json_member(json, "alphaMode");
-    if (cJSON_IsString(mode) && strcmp(mode->valuestring, "OPAQUE") != 0) {
-        lack(m, index, LACK_ALPHA);
-    }
     if (tyn_json_member(json, "normalTexture")) {
         lack(m, index, LACK_NORMAL_TEXTURE);
     }
 }
 
 // ---- into the scene ---------------------------------------------------------------------------
-
-static tyn_result add(gltf_materials *m, const tyn_surface_material *material, uint32_t *index)
-{
-    tyn_surfaces *s = &m->scene->surfaces;
-    tyn_surface_material *grown = realloc(s->materials, (s->num_materials + 1) * sizeof *grown);
-    if (!grown) {
-        const json_doc *doc = m->textures.data->doc;
-        tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its materials", doc->file);
-        return TYN_ERR_MEMORY;
-    }
-    s->materials = grown;
-    *index = s->num_materials;
-    grown[s->num_materials++] = *material;
-    return TYN_OK;
-}
 
 tyn_result tyn_gltf_material_get(gltf_materials *m, int64_t index, const gltf_material **out)
 {
@@ -196,45 +228,118 @@ tyn_result tyn_gltf_material_get(gltf_materials *m, int64_t index, const gltf_ma
     if (m->is_loaded[at]) {
         return TYN_OK;
     }
-    tyn_surface_material material = {.texture = TYN_NO_TEXTURE};
-    *loaded = (gltf_material){.uv = {{1, 0, 0}, {0, 1, 0}}};
+    const gltf_texture_place plain = {0, {{1, 0, 0}, {0, 1, 0}}};
+    *loaded = (gltf_material){
+        .index = at, .surface.texture = TYN_NO_TEXTURE, .color = plain, .glow_place = plain};
+    m->is_loaded[at] = true;
     if (at == m->list.count) { // albedo = 1 (1 - 1)
         lack(m, at, LACK_METAL);
-    } else {
-        const cJSON *json = m->list.items[at];
-        double factors[TYN_MATERIAL_NUM_FIELDS][4];
-        TYN_TRY(read_factors(m->textures.data->doc, json, factors));
-        TYN_TRY(read_albedo(m, at, json, loaded, &material.texture, factors[TYN_MATERIAL_ALBEDO]));
-        TYN_TRY(read_emission(m, at, json, factors[TYN_MATERIAL_EMISSION]));
-        for (int k = 0; k < TYN_MATERIAL_NUM_FIELDS; k++) {
-            const tyn_material_field *f = &tyn_material_fields[k];
-            float *v = (float *)((char *)&material + f->offset);
-            for (uint32_t c = 0; c < f->count; c++) {
-                v[c] = (float)factors[k][c];
-            }
-        }
-        look_at_rest(m, at, json);
-        material.flags =
-            cJSON_IsTrue(tyn_json_member(json, "doubleSided")) ? TYN_SURFACE_EMITS_BOTH_SIDES : 0;
+        return TYN_OK;
     }
-    TYN_TRY(add(m, &material, &loaded->index));
-    m->is_loaded[at] = true;
+    const cJSON *json = m->list.items[at];
+    double factors[TYN_MATERIAL_NUM_FIELDS][4];
+    TYN_TRY(read_factors(m->textures.data->doc, json, factors));
+    TYN_TRY(read_mask(m, at, json, loaded, factors[TYN_MATERIAL_ALBEDO]));
+    TYN_TRY(read_albedo(m, at, json, loaded, factors[TYN_MATERIAL_ALBEDO]));
+    TYN_TRY(read_emission(m, json, loaded, factors[TYN_MATERIAL_EMISSION]));
+    for (int k = 0; k < TYN_MATERIAL_NUM_FIELDS; k++) {
+        const tyn_material_field *f = &tyn_material_fields[k];
+        float *v = (float *)((char *)&loaded->surface + f->offset);
+        for (uint32_t c = 0; c < f->count; c++) {
+            v[c] = (float)factors[k][c];
+        }
+    }
+    look_at_rest(m, at, json);
+    loaded->surface.flags =
+        cJSON_IsTrue(tyn_json_member(json, "doubleSided")) ? TYN_SURFACE_EMITS_BOTH_SIDES : 0;
     return TYN_OK;
 }
 
-tyn_result tyn_gltf_material_tinted(gltf_materials *m, uint32_t index, const float tint[3],
-                                    uint32_t *tinted)
+static tyn_result no_memory(const gltf_materials *m)
 {
-    const tyn_surfaces *s = &m->scene->surfaces;
-    tyn_surface_material material = s->materials[index];
-    for (int c = 0; c < 3; c++) {
-        material.albedo[c] = fminf(fmaxf(material.albedo[c] * tint[c], 0), 1);
+    const json_doc *doc = m->textures.data->doc;
+    tyn_log_print(doc->log, TYN_LOG_ERROR, "%s: no memory for its materials", doc->file);
+    return TYN_ERR_MEMORY;
+}
+
+static tyn_result add(gltf_materials *m, const tyn_surface_material *material, uint32_t *index)
+{
+    tyn_surfaces *s = &m->scene->surfaces;
+    const uint32_t n = s->num_materials;
+    // Room for twice as many whenever there are a power of two.
+    tyn_surface_material *grown =
+        n & (n - 1) ? s->materials : realloc(s->materials, (n ? 2 * n : 1) * sizeof *grown);
+    if (!grown) {
+        return no_memory(m);
     }
-    for (uint32_t i = 0; i < s->num_materials; i++) {
-        if (memcmp(&s->materials[i], &material, sizeof material) == 0) {
-            *tinted = i;
-            return TYN_OK;
+    s->materials = grown;
+    *index = s->num_materials;
+    grown[s->num_materials++] = *material;
+    return TYN_OK;
+}
+
+typedef struct gltf_painted_material {
+    struct {
+        int64_t index;
+        float tint[3], glow[3];
+    } key;
+    uint32_t material; // + 1; 0: the place is free
+} painted_material;
+
+// Where it is, or is to be.
+static painted_material *find(painted_material *table, uint32_t room, const painted_material *like)
+{
+    uint64_t h = tyn_hash_bytes(TYN_HASH_SEED, &like->key, sizeof like->key);
+    uint32_t i = (uint32_t)(h >> 32) & (room - 1);
+    while (table[i].material && memcmp(&table[i].key, &like->key, sizeof like->key) != 0) {
+        i = (i + 1) & (room - 1);
+    }
+    return &table[i];
+}
+
+static bool make_room(gltf_materials *m)
+{
+    if (2 * m->num_painted < m->painted_room) {
+        return true;
+    }
+    const uint32_t room = m->painted_room ? 2 * m->painted_room : 64;
+    painted_material *grown = calloc(room, sizeof *grown);
+    for (uint32_t i = 0; grown && i < m->painted_room; i++) {
+        if (m->painted[i].material) {
+            *find(grown, room, &m->painted[i]) = m->painted[i];
         }
     }
-    return add(m, &material, tinted);
+    if (grown) {
+        free(m->painted);
+        m->painted = grown;
+        m->painted_room = room;
+    }
+    return grown != NULL;
+}
+
+tyn_result tyn_gltf_material_paint(gltf_materials *m, const gltf_material *material,
+                                   const float tint[3], const float glow[3], uint32_t *index)
+{
+    painted_material wanted;
+    memset(&wanted, 0, sizeof wanted); // padding is compared
+    wanted.key.index = material->index;
+    tyn_surface_material surface = material->surface;
+    for (int c = 0; c < 3; c++) {
+        wanted.key.tint[c] = tint[c];
+        wanted.key.glow[c] = glow[c];
+        surface.albedo[c] = fminf(fmaxf(surface.albedo[c] * tint[c], 0), 1);
+        surface.emission[c] *= glow[c];
+    }
+    if (!make_room(m)) {
+        return no_memory(m);
+    }
+    painted_material *found = find(m->painted, m->painted_room, &wanted);
+    if (!found->material) {
+        TYN_TRY(add(m, &surface, index));
+        *found = wanted;
+        found->material = *index + 1;
+        m->num_painted++;
+    }
+    *index = found->material - 1;
+    return TYN_OK;
 }

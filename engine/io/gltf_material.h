@@ -1,19 +1,28 @@
 // gltf_material.h -- materials of a glTF file as diffuse surfaces.
 #pragma once
+#include "io/gltf_picture.h"
 #include "io/gltf_texture.h"
 
-// What the scene's material does not say.
-typedef struct gltf_material {
-    uint32_t index;    // in surfaces->materials
-    uint32_t texcoord; // which TEXCOORD_n its texture wants
+// Where a texture is on a surface.
+typedef struct gltf_texture_place {
+    uint32_t texcoord; // which TEXCOORD_n it wants
     float uv[2][3];    // texture coordinates = uv (TEXCOORD, 1): KHR_texture_transform
+} gltf_texture_place;
+
+typedef struct gltf_material {
+    int64_t index;                // in the file; behind the last: glTF's default
+    tyn_surface_material surface; // as it is without what varies over the surface
+    gltf_texture_place color;     // of its texture
+    // What varies over the surface, and is not in the scene's material; NULL: nothing.
+    gltf_picture *alpha, *glow;
+    gltf_texture_place glow_place;
+    double opacity, cutoff; // factor of alpha, and how much is needed: 0: none
 } gltf_material;
 
 // What is not done, told once each with the first material it is about.
 typedef enum gltf_material_lack {
     LACK_METAL,
     LACK_METAL_TEXTURE,
-    LACK_EMISSIVE_TEXTURE,
     LACK_NORMAL_TEXTURE,
     LACK_ALPHA,
     NUM_LACKS
@@ -25,6 +34,9 @@ typedef struct gltf_materials {
     json_list list;
     gltf_material *loaded; // list.count of them and, last, glTF's default
     bool *is_loaded;
+    struct gltf_painted_material
+        *painted; // open addressing: which of the scene's materials are what of these
+    uint32_t num_painted, painted_room;
     struct {
         char name[64];
         uint32_t count;
@@ -36,6 +48,7 @@ void tyn_gltf_materials_close(gltf_materials *m); // the scene is warned of what
 // -1: glTF's default. Valid until the next call.
 tyn_result tyn_gltf_material_get(gltf_materials *m, int64_t index, const gltf_material **out);
 
-// The same material with another albedo (a factor on it), which is added if it is not there yet.
-tyn_result tyn_gltf_material_tinted(gltf_materials *m, uint32_t index, const float tint[3],
-                                    uint32_t *tinted);
+// That material with factors on albedo (not above 1 together) and emission, as one of the scene's, which is added if it is
+// not there yet.
+tyn_result tyn_gltf_material_paint(gltf_materials *m, const gltf_material *material,
+                                   const float tint[3], const float glow[3], uint32_t *index);

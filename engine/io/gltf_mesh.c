@@ -5,15 +5,17 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "io/gltf_facets.h"
 #include "scene/matrix.h"
 
 #ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
-enum { MAX_VERTICES = 1 << 16 };
+enum { MAX_VERTICES = 1 << 16, MAX_FACETS = 1 << 12 };
 #else
 enum { MAX_VERTICES = 1 << 27 }; // and triangles: nodes may show one mesh any number of times
+enum { MAX_FACETS = 1 << 21 };   // beyond the file's triangles
 #endif
 
-enum { LACK_LINES, LACK_POSITION, LACK_MORPH, LACK_SKIN, LACK_COLOR, LACK_AREA };
+enum { LACK_LINES, LACK_POSITION, LACK_MORPH, LACK_SKIN, LACK_FACETS, LACK_AREA };
 enum { MODE_TRIANGLES = 4, MODE_STRIP, MODE_FAN };
 
 // ---- open, close ------------------------------------------------------------------------------
@@ -22,6 +24,7 @@ tyn_result tyn_gltf_meshes_open(gltf_meshes *m, const json_doc *doc, const gltf_
                                 tyn_scene *scene)
 {
     memset(m, 0, sizeof *m);
+    m->facets = MAX_FACETS;
     tyn_result r = tyn_gltf_data_open(&m->data, doc, model);
     r = r ? r : tyn_gltf_materials_open(&m->materials, &m->data, scene);
     return r ? r : tyn_json_list(doc, doc->root, "meshes", &m->list);
@@ -34,7 +37,9 @@ void tyn_gltf_meshes_close(gltf_meshes *m)
         [LACK_POSITION] = "a primitive without POSITION is left out",
         [LACK_MORPH] = "morph targets are left out: its shape is that without them",
         [LACK_SKIN] = "skins are left out: its shape is that without one",
-        [LACK_COLOR] = "of colours that vary from vertex to vertex the mean counts",
+        [LACK_FACETS] =
+            "there are too many triangles to be cut where colours, emission or masks vary: means "
+            "count",
         [LACK_AREA] = "a primitive whose triangles all have no area is left out",
     };
     tyn_scene *scene = m->materials.scene;
@@ -69,12 +74,14 @@ static void lack(gltf_meshes *m, int64_t mesh, int which)
 typedef struct primitive {
     const cJSON *json;
     int64_t mesh;
-    gltf_floats positions, normals, texcoords, colors; // count 0: none
-    uint32_t *indices;                                 // NULL: 0, 1, 2, ...
+    gltf_floats positions, normals, texcoords, colors, glow_texcoords; // count 0: none
+    uint32_t *indices;                                                 // NULL: 0, 1, 2, ...
     uint32_t num_indices;
     int mode;
     const gltf_material *material;
-    uint32_t material_index; // with its colour
+    bool reflects;           // its albedo is not 0
+    bool painted;            // its triangles are cut where what is painted on them varies
+    uint32_t material_index; // else: with its colour
 } primitive;
 
 static void primitive_finish(primitive *p)
@@ -83,6 +90,7 @@ static void primitive_finish(primitive *p)
     free(p->normals.values);
     free(p->texcoords.values);
     free(p->colors.values);
+    free(p->glow_texcoords.values);
     free(p->indices);
 }
 
@@ -120,38 +128,38 @@ static tyn_result read_indices(const gltf_meshes *m, primitive *p)
     return r;
 }
 
-// COLOR_0 multiplies the material's colour. The mean stands for all if they differ.
+// COLOR_0 multiplies the material's colour: here if it is the same everywhere.
 static tyn_result apply_colors(gltf_meshes *m, primitive *p)
 {
+    static const float one[3] = {1, 1, 1};
     const gltf_floats *colors = &p->colors;
-    double sum[3] = {0};
     bool equal = true;
-    for (uint32_t i = 0; i < colors->count; i++) {
-        for (uint32_t c = 0; c < 3; c++) {
-            const float v = colors->values[(size_t)i * colors->components + c];
-            sum[c] += v;
-            equal &= v == colors->values[c];
-        }
+    for (uint32_t i = 1; i < colors->count; i++) {
+        equal = equal && !memcmp(colors->values + (size_t)i * colors->components, colors->values,
+                                 colors->components * sizeof(float));
     }
-    p->material_index = p->material->index;
-    if (!colors->count) {
-        return TYN_OK;
-    }
-    if (!equal) {
-        lack(m, p->mesh, LACK_COLOR);
-    }
-    float tint[3];
-    for (int c = 0; c < 3; c++) {
-        tint[c] = equal ? colors->values[c] : (float)(sum[c] / colors->count);
-    }
-    return tyn_gltf_material_tinted(&m->materials, p->material->index, tint, &p->material_index);
+    const float *albedo = p->material->surface.albedo;
+    p->reflects = albedo[0] > 0 || albedo[1] > 0 || albedo[2] > 0;
+    p->painted = (!equal && p->reflects) || p->material->cutoff > 0 || p->material->glow;
+    return p->painted ? TYN_OK
+                      : tyn_gltf_material_paint(&m->materials, p->material,
+                                                colors->count ? colors->values : one, one,
+                                                &p->material_index);
+}
+
+// Texture coordinates that a texture wants.
+static tyn_result read_texcoords(const gltf_meshes *m, const primitive *p,
+                                 const gltf_texture_place *place, gltf_floats *out)
+{
+    char name[16];
+    snprintf(name, sizeof name, "TEXCOORD_%u", place->texcoord);
+    return read_attribute(m, p, name, 2, 2, out);
 }
 
 static tyn_result read_primitive(gltf_meshes *m, primitive *p)
 {
     const json_doc *doc = m->data.doc;
     int64_t mode = MODE_TRIANGLES, material = -1;
-    char texcoord[16];
     tyn_result r = tyn_json_integer(doc, p->json, "mode", 0, 6, "0 to 6", &mode);
     if (r) {
         return r;
@@ -175,12 +183,11 @@ static tyn_result read_primitive(gltf_meshes *m, primitive *p)
     r = r ? r : tyn_gltf_read_floats(&m->data, position, 3, 3, &p->positions);
     r = r ? r : read_attribute(m, p, "NORMAL", 3, 3, &p->normals);
     r = r ? r : read_attribute(m, p, "COLOR_0", 3, 4, &p->colors);
-    if (!r) {
-        const tyn_surface_material *s = &m->materials.scene->surfaces.materials[p->material->index];
-        snprintf(texcoord, sizeof texcoord, "TEXCOORD_%u", p->material->texcoord);
-        if (s->texture != TYN_NO_TEXTURE) {
-            r = read_attribute(m, p, texcoord, 2, 2, &p->texcoords);
-        }
+    if (!r && p->material->surface.texture != TYN_NO_TEXTURE) {
+        r = read_texcoords(m, p, &p->material->color, &p->texcoords);
+    }
+    if (!r && p->material->glow) {
+        r = read_texcoords(m, p, &p->material->glow_place, &p->glow_texcoords);
     }
     r = r ? r : apply_colors(m, p);
     return r ? r : read_indices(m, p);
@@ -257,6 +264,20 @@ static tyn_result make_room(gltf_meshes *m, const primitive *p)
     return TYN_OK;
 }
 
+// 0, 0 where there are none.
+static void place_texcoord(const gltf_floats *texcoords, const gltf_texture_place *place,
+                           uint32_t i, double out[2])
+{
+    out[0] = out[1] = 0;
+    if (texcoords->count) {
+        const float *t = texcoords->values + 2 * (size_t)i;
+        for (int a = 0; a < 2; a++) {
+            const float *row = place->uv[a];
+            out[a] = (double)(row[0] * t[0] + row[1] * t[1] + row[2]);
+        }
+    }
+}
+
 // `normal` is the triangle's, for vertices that have none.
 static void put_vertex(tyn_surface_vertex *v, const primitive *p, const placement *at, uint32_t i,
                        const double normal[3])
@@ -270,13 +291,10 @@ static void put_vertex(tyn_surface_vertex *v, const primitive *p, const placemen
         v->position[a] = (float)position[a];
         v->normal[a] = (float)n[a];
     }
-    v->u = v->v = 0;
-    if (p->texcoords.count) {
-        const float *t = p->texcoords.values + 2 * (size_t)i;
-        const float(*uv)[3] = p->material->uv;
-        v->u = uv[0][0] * t[0] + uv[0][1] * t[1] + uv[0][2];
-        v->v = uv[1][0] * t[0] + uv[1][1] * t[1] + uv[1][2];
-    }
+    double uv[2];
+    place_texcoord(&p->texcoords, &p->material->color, i, uv);
+    v->u = (float)uv[0];
+    v->v = (float)uv[1];
 }
 
 // Corners of triangle k as places in the list of indices (glTF 2.0, 3.7.2.1), then as indices.
@@ -290,54 +308,155 @@ static void corners(const primitive *p, uint32_t k, uint32_t out[3])
     }
 }
 
-// Triangles without area show nothing and are left out. With normals of their own vertices are shared
-// as in the file, those that no triangle uses stay behind; without, every triangle has three.
+// A triangle on its way into the scene.
+typedef struct arrival {
+    gltf_meshes *m;
+    const primitive *p;
+    const placement *at;
+    uint32_t *moved;     // where a vertex has gone
+    uint32_t corners[3]; // indices
+    double normal[3];
+    tyn_result result;
+} arrival;
+
+// With normals of their own vertices are shared as in the file, those that no triangle uses stay behind; without, every
+// triangle has three.
+static uint32_t share_vertex(arrival *a, uint32_t index)
+{
+    tyn_surfaces *s = &a->m->materials.scene->surfaces;
+    uint32_t *place = &a->moved[index];
+    if (*place == UINT32_MAX || !a->p->normals.count) {
+        *place = s->num_vertices++;
+        put_vertex(&s->vertices[*place], a->p, a->at, index, a->normal);
+    }
+    return *place;
+}
+
+// A vertex between the corners.
+static uint32_t mix_vertex(arrival *a, const double weights[3])
+{
+    tyn_surfaces *s = &a->m->materials.scene->surfaces;
+    tyn_surface_vertex corner, *to = &s->vertices[s->num_vertices];
+    double position[3] = {0}, normal[3] = {0}, uv[2] = {0};
+    for (int k = 0; k < 3; k++) {
+        put_vertex(&corner, a->p, a->at, a->corners[k], a->normal);
+        for (int c = 0; c < 3; c++) {
+            position[c] += weights[k] * (double)corner.position[c];
+            normal[c] += weights[k] * (double)corner.normal[c];
+        }
+        uv[0] += weights[k] * (double)corner.u;
+        uv[1] += weights[k] * (double)corner.v;
+    }
+    if (!vec_normalize(normal)) {
+        memcpy(normal, a->normal, sizeof normal);
+    }
+    for (int c = 0; c < 3; c++) {
+        to->position[c] = (float)position[c];
+        to->normal[c] = (float)normal[c];
+    }
+    to->u = (float)uv[0];
+    to->v = (float)uv[1];
+    return s->num_vertices++;
+}
+
+// NULL: a->result says why.
+static tyn_surface_triangle *next_triangle(arrival *a)
+{
+    tyn_surfaces *s = &a->m->materials.scene->surfaces;
+    a->result = make_room(a->m, a->p);
+    return a->result ? NULL : &s->triangles[s->num_triangles++];
+}
+
+static bool put_facet(void *user, const gltf_facet *facet)
+{
+    arrival *a = user;
+    uint32_t material;
+    a->result = tyn_gltf_material_paint(&a->m->materials, a->p->material, facet->tint, facet->glow,
+                                        &material);
+    tyn_surface_triangle *triangle = a->result ? NULL : next_triangle(a);
+    for (int k = 0; triangle && k < 3; k++) {
+        triangle->vertices[k] =
+            facet->whole ? share_vertex(a, a->corners[k]) : mix_vertex(a, facet->corners[k]);
+        triangle->material = material;
+    }
+    return triangle != NULL;
+}
+
+static void add_facets(arrival *a)
+{
+    const primitive *p = a->p;
+    const gltf_material *material = p->material;
+    double colors[3][4], alpha_uv[3][2], glow_uv[3][2];
+    for (int k = 0; k < 3; k++) {
+        const uint32_t i = a->corners[k];
+        for (uint32_t c = 0; p->colors.count && c < 4; c++) {
+            colors[k][c] = c < p->colors.components
+                               ? (double)p->colors.values[(size_t)i * p->colors.components + c]
+                               : 1;
+        }
+        place_texcoord(&p->texcoords, &material->color, i, alpha_uv[k]);
+        place_texcoord(&p->glow_texcoords, &material->glow_place, i, glow_uv[k]);
+    }
+    const gltf_painted painted = {
+        .colors = p->colors.count ? colors : NULL,
+        .reflects = p->reflects,
+        .alpha = material->alpha,
+        .glow = material->glow,
+        .alpha_uv = alpha_uv,
+        .glow_uv = glow_uv,
+        .opacity = material->opacity,
+        .cutoff = material->cutoff,
+    };
+    tyn_gltf_cut(&painted, &a->m->facets, put_facet, a);
+}
+
+static void add_triangle(arrival *a)
+{
+    tyn_surface_triangle *triangle = next_triangle(a);
+    for (int k = 0; triangle && k < 3; k++) {
+        triangle->vertices[k] = share_vertex(a, a->corners[k]);
+        triangle->material = a->p->material_index;
+    }
+}
+
+// Triangles without area show nothing and are left out.
 static tyn_result add_triangles(gltf_meshes *m, const primitive *p, const placement *at)
 {
-    tyn_surfaces *s = &m->materials.scene->surfaces;
-    uint32_t *moved = malloc(p->positions.count * sizeof *moved); // where a vertex has gone
+    arrival a = {.m = m, .p = p, .at = at, .moved = malloc(p->positions.count * sizeof *a.moved)};
     const uint32_t count = p->mode == MODE_TRIANGLES ? p->num_indices / 3 : p->num_indices - 2;
-    if (!moved) {
+    if (!a.moved) {
         return tyn_json_fault(m->data.doc, p->json, "no memory for its vertices");
     }
-    memset(moved, 0xff, p->positions.count * sizeof *moved);
-    tyn_result r = TYN_OK;
-    for (uint32_t k = 0; !r && k < count; k++) {
-        uint32_t i[3];
-        double v[3][3], normal[3];
-        corners(p, k, i);
+    memset(a.moved, 0xff, p->positions.count * sizeof *a.moved);
+    for (uint32_t k = 0; !a.result && k < count; k++) {
+        double v[3][3];
+        corners(p, k, a.corners);
         if (at->mirrored) {
-            const uint32_t second = i[1];
-            i[1] = i[2];
-            i[2] = second;
+            const uint32_t second = a.corners[1];
+            a.corners[1] = a.corners[2];
+            a.corners[2] = second;
         }
         for (int c = 0; c < 3; c++) {
-            place_position(at, p->positions.values + 3 * (size_t)i[c], v[c]);
+            place_position(at, p->positions.values + 3 * (size_t)a.corners[c], v[c]);
         }
-        for (int a = 0; a < 3; a++) {
-            v[1][a] -= v[0][a];
-            v[2][a] -= v[0][a];
+        for (int c = 0; c < 3; c++) {
+            v[1][c] -= v[0][c];
+            v[2][c] -= v[0][c];
         }
-        vec_cross(normal, v[1], v[2]);
-        if (!vec_normalize(normal)) {
-            continue;
-        }
-        r = make_room(m, p);
-        tyn_surface_triangle *triangle = r ? NULL : &s->triangles[s->num_triangles++];
-        for (int c = 0; !r && c < 3; c++) {
-            uint32_t *place = &moved[i[c]];
-            if (*place == UINT32_MAX || !p->normals.count) {
-                *place = s->num_vertices++;
-                put_vertex(&s->vertices[*place], p, at, i[c], normal);
+        vec_cross(a.normal, v[1], v[2]);
+        if (vec_normalize(a.normal)) {
+            if (p->painted) {
+                add_facets(&a);
+            } else {
+                add_triangle(&a);
             }
-            triangle->vertices[c] = *place;
-        }
-        if (!r) {
-            triangle->material = p->material_index;
         }
     }
-    free(moved);
-    return r;
+    if (p->painted && m->facets <= 0) {
+        lack(m, p->mesh, LACK_FACETS);
+    }
+    free(a.moved);
+    return a.result;
 }
 
 tyn_result tyn_gltf_mesh_add(gltf_meshes *m, const cJSON *node, int64_t mesh,
@@ -361,7 +480,8 @@ tyn_result tyn_gltf_mesh_add(gltf_meshes *m, const cJSON *node, int64_t mesh,
         const uint32_t before = m->materials.scene->surfaces.num_triangles;
         if (!r && p.positions.count) {
             r = add_triangles(m, &p, &at);
-            if (!r && m->materials.scene->surfaces.num_triangles == before) {
+            if (!r && m->materials.scene->surfaces.num_triangles == before &&
+                p.material->cutoff == 0) {
                 lack(m, mesh, LACK_AREA);
             }
         }

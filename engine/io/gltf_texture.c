@@ -207,6 +207,11 @@ tyn_result tyn_gltf_texture_get(gltf_textures *t, const cJSON *info, uint32_t *i
     return TYN_OK;
 }
 
+tyn_result tyn_gltf_texture_read(gltf_textures *t, const cJSON *info, tyn_texture *out)
+{
+    return read_texture(t, texture_index(info), out);
+}
+
 tyn_result tyn_gltf_texture_mean(gltf_textures *t, const cJSON *info, bool srgb, double mean[4])
 {
     tyn_texture texture;

@@ -17,5 +17,8 @@ void tyn_gltf_textures_close(gltf_textures *t); // the scene is warned of those 
 // textureInfo: the texture into the scene, once however often it is asked for.
 tyn_result tyn_gltf_texture_get(gltf_textures *t, const cJSON *info, uint32_t *index);
 
+// The texture itself, which the caller gives back.
+tyn_result tyn_gltf_texture_read(gltf_textures *t, const cJSON *info, tyn_texture *out);
+
 // Means of a texture's four channels, 0 to 1; colours are decoded from sRGB first if `srgb`.
 tyn_result tyn_gltf_texture_mean(gltf_textures *t, const cJSON *info, bool srgb, double mean[4]);

@@ -17,7 +17,7 @@ works --help
 grep -q "selftest" out || fail "--help lists no selftest"
 works --version
 grep -qE '^tyndall [0-9]+\.[0-9]+\.[0-9]+$' out || fail "--version: $(cat out)"
-for command in render compare probe balance fluxes bench graph info selftest; do
+for command in render compare probe balance fluxes bench graph info merge selftest; do
     works $command --help
     grep -q "usage: tyndall $command" out || fail "$command --help: $(head -1 out)"
     refuses 2 "unknown option '--paint'" $command --paint
@@ -54,7 +54,11 @@ refuses 2 "--frames: '5-1' is neither" render a.gltf --frames 5-1
 refuses 2 "--frames: '0' is neither" render a.gltf --frames 0
 refuses 2 "holds no %04d" render a.gltf --frames 1-5 -o a.png
 refuses 2 "neither .exr nor .png" render a.gltf -o a.tif
-refuses 2 "no layer 'albedo'" render a.gltf -o a.exr --aov depth,albedo
+refuses 2 "no layer 'paint'" render a.gltf -o a.exr --aov depth,paint
+refuses 2 "no layer 'low'" render a.gltf -o a.exr --aov low
+refuses 2 "method 'pop' does not take samples" render a.gltf -o a.exr --resume
+refuses 2 "--resume needs an .exr" render a.gltf -o a.png --resume --method path
+refuses 2 "--time: 'noon' is not a number" render a.gltf --time noon
 refuses 2 "need an .exr" render a.gltf -o a.png --aov depth
 refuses 1 "is not there" render a.gltf -o nowhere/a.png
 refuses 1 "is not there" render a.gltf -o a.png --stats nowhere/a.json

@@ -81,7 +81,8 @@ typedef enum tyn_output {
     TYN_OUTPUT_LOW =
         1 << 12, // what single precision has lost of the mean: radiance and alpha less this
     TYN_OUTPUT_DEVIATION = 1 << 13, // RGB: sum of squared deviations of the radiance; A: mean alpha
-    // RGBA32F, of the first surfaces, means over the pixel, 0 where there is none (path, pop): what denoisers read.
+    // RGBA32F, of the first surfaces, means over the pixel, 0 where there is none: what denoisers read (methods that draw
+    // surfaces).
     TYN_OUTPUT_ALBEDO = 1 << 14, // RGB 0 to 1; A: share of the pixel that shows a surface
     TYN_OUTPUT_NORMAL =
         1 << 15, // XYZ for shading, world, towards the camera; shorter than 1 where they differ
