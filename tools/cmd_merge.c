@@ -337,7 +337,8 @@ static const opt_positional positionals[] = {
 };
 
 static const option table[] = {
-    {'o', "output", OPT_TEXT, AT(output), "OUT.exr", "where the picture of all samples goes"},
+    {'o', "output", OPT_TEXT, AT(output), "OUT.exr", "where the picture of all samples goes",
+     .file = OPT_WRITES},
     {0, "float", OPT_FLAG, AT(full_float), NULL, "32-bit .exr instead of 16-bit"},
     {'q', "quiet", OPT_FLAG, AT(quiet), NULL, "errors only"},
 };

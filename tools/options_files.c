@@ -87,8 +87,12 @@ bool options_check_files(const command *cmd, const void *args, const tyn_log *lo
     named_files all = {.count = 0};
     for (uint32_t i = 0; i < cmd->num_positionals; i++) {
         const opt_positional *p = &cmd->positionals[i];
-        add(&all,
-            (named_file){*(const char *const *)((const char *)args + p->offset), p, NULL, false});
+        const void *at = (const char *)args + p->offset;
+        const opt_list *list = p->repeat ? at : NULL;
+        for (uint32_t k = 0; k < (list ? list->count : 1); k++) {
+            add(&all,
+                (named_file){list ? list->items[k] : *(const char *const *)at, p, NULL, false});
+        }
     }
     for (uint32_t i = 0; i < cmd->num_groups; i++) {
         add_options(&all, &cmd->groups[i], args);
