@@ -31,9 +31,9 @@ static void test_bounds(void **state)
         const uint32_t w = sizes[i][0], h = sizes[i][1];
         const uint32_t start = resolution_start(w, h), most = resolution_coarsest(w, h);
         assert_true(start >= 1 && start <= most);
-        assert_true((uint64_t)w * h <= 4096ull * start * start);
+        assert_true((uint64_t)w * h <= 2048ull * start * start);
         assert_true((uint64_t)w * h <= 1024ull * most * most);
-        assert_true(start == 1 || (uint64_t)w * h > 4096ull * (start - 1) * (start - 1));
+        assert_true(start == 1 || (uint64_t)w * h > 2048ull * (start - 1) * (start - 1));
     }
 }
 
@@ -60,12 +60,12 @@ static void test_sharpens_within_the_bound(void **state)
 {
     (void)state;
     double longest;
-    const model fast = {30, 2e-4, 0}, compiled = {30, 2e-4, 5000}, slow = {100, 0.25, 2000},
+    const model fast = {30, 2e-4, 0}, compiled = {30, 2e-4, 5000}, slow = {100, 0.7, 2000},
                 middle = {50, 0.01, 0};
     assert_int_equal(settle(&fast, 1000, &longest), 1);
     assert_int_equal(settle(&compiled, 1000, &longest), 1); // compiling tells nothing of its pixels
     assert_true(longest < 1000);
-    const uint32_t divisor = settle(&slow, 1000, &longest); // 77 s in the window's size
+    const uint32_t divisor = settle(&slow, 1000, &longest); // 215 s in the window's size
     assert_true(divisor >= 8); // one step beyond the first, which told too much
     assert_true(longest < 1.5 * draw(&slow, resolution_start(WIDTH, HEIGHT), true, false).ms);
     const uint32_t half = settle(&middle, 1000, &longest); // 3 s in the window's size

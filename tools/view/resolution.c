@@ -25,7 +25,7 @@ static uint32_t leaves(uint32_t width, uint32_t height, uint64_t count)
 
 uint32_t resolution_start(uint32_t width, uint32_t height)
 {
-    return leaves(width, height, 4096);
+    return leaves(width, height, 2048);
 }
 
 uint32_t resolution_coarsest(uint32_t width, uint32_t height)

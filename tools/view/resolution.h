@@ -14,7 +14,7 @@ typedef struct resolution_cost {
 
 double resolution_expected_ms(const resolution_cost *cost, uint32_t divisor);
 
-// For the first picture of a method, which may take anything: some 4096 pixels.
+// For the first picture of a method, which may take anything: some 2048 pixels.
 uint32_t resolution_start(uint32_t width, uint32_t height);
 // The largest: some 1024 pixels, 1 where the window has no more.
 uint32_t resolution_coarsest(uint32_t width, uint32_t height);
