@@ -458,6 +458,7 @@ def test_panel(screen, work):
     keep("sun", viewer.settled(*size), *size)
     slide(217, 118, 17)
     dark, none = right(lambda part: mean_of(part) < 0.5 * more)
+    keep("dark", viewer.settled(*size), *size)
     check(none < 0.5 * more, f"a sun of strength 0: mean {more:.1f}, then {none:.1f}")
     viewer.key("h")
     hidden = viewer.settled(*size)
