@@ -321,27 +321,35 @@ static void report_rows(const viewer *v)
     }
 }
 
-static void state_rows(const viewer *v)
+// One row whatever happens: the widgets below stay where they are.
+static void work_row(const viewer *v, const rendering *r)
 {
-    const rendering *r = shown_rendering(v);
     const uint32_t pending = pictures_pending(v);
+    const double whole = ceil(1e-3 * resolution_expected_ms(&v->rest_cost, 1));
     char text[64];
+    pictures_say(v, text, sizeof text);
     if (pending) {
         snprintf(text, sizeof text, "%u left", pending);
         panel_row("compiling kernels", text);
-    }
-    pictures_say(v, text, sizeof text);
-    if (text[0]) {
+    } else if (text[0]) {
         panel_row("now", text);
-    } else if (r->context && r->frames) {
+    } else if (!r->context || !r->frames) {
+        panel_row("now", "the first picture");
+    } else if (v->sharp && v->rest_shown > 1) {
+        snprintf(text, sizeof text, "%ux%u, %.0f ms; all: %.0f s (S)", r->width, r->height, r->ms,
+                 whole);
+        panel_row("at rest", text);
+    } else {
         snprintf(text, sizeof text, "%ux%u, %.1f ms", r->width, r->height, r->ms);
         panel_row(v->sharp ? "at rest" : "moving", text);
     }
-    if (v->sharp && v->rest_shown > 1) {
-        snprintf(text, sizeof text, "some %.0f s (key S)",
-                 ceil(1e-3 * resolution_expected_ms(&v->rest_cost, 1)));
-        panel_row("in the window's size", text);
-    }
+}
+
+static void state_rows(const viewer *v)
+{
+    const rendering *r = shown_rendering(v);
+    char text[64];
+    work_row(v, r);
     if (r->context && r->method.progressive) {
         snprintf(text, sizeof text, "%u", r->samples);
         panel_row("samples a pixel", text);
