@@ -368,6 +368,7 @@ static void leave(viewer *v, int code)
     glfwHideWindow(v->window);
     glfwPollEvents();
     if (!v->library.lost && !pictures_wait(v, 1)) {
+        pipeline_cache_write(&v->library.cache, v->library.tyn);
         fflush(NULL);
         _exit(code == EXIT_DONE && v->gpu.messages ? EXIT_FAILED : code);
     }
