@@ -322,7 +322,7 @@ static void sharpen(viewer *v)
     if (v->sharp && !v->outdated && v->rest_shown > 1 && v->rest_cost.divisor == v->rest_shown) {
         const uint32_t next = resolution_at_rest(&v->rest_cost, patience_ms(v), coarsest(v));
         v->sharp = next >= v->rest_shown;
-        v->rest_next = next;
+        v->rest_next = v->sharp ? 0 : next;
     }
 }
 
