@@ -26,7 +26,7 @@ failures = []
 
 def check(good, what):
     if not good:
-        print("FAILED:", what)
+        print("FAILED:", what, flush=True)
         failures.append(what)
 
 
@@ -256,7 +256,8 @@ def test_camera_and_methods(screen, work):
         keep(name.replace(" ", "-"), moved)
         check(difference(moved, first) > 1, f"{name}: the picture is {difference(moved, first):.2f} from the first")
         viewer.key("r")
-        back = viewer.settled(other_than=moved)
+        viewer.until(lambda: difference(screen.shot(), first) < 0.5)
+        back = screen.shot()
         check(difference(back, first) < 0.5, f"{name}, then r: {difference(back, first):.2f} from the first")
     viewer.screen.do("click", 4)
     closer = viewer.settled(other_than=first)
@@ -334,7 +335,8 @@ def test_window(screen, work):
     check(viewer.alive(), "the viewer ends when its window is hidden")
     screen.do("windowmap", window)
     time.sleep(0.3)
-    shown = viewer.settled()
+    viewer.until(lambda: difference(screen.shot(), first) < 0.5)
+    shown = screen.shot()
     check(difference(shown, first) < 0.5, f"after hiding: {difference(shown, first):.2f} from the first")
     stats = viewer.close()
     check(stats.get("swapchains", 0) > 3, f"swapchains: {stats.get('swapchains')}")
@@ -701,7 +703,8 @@ def test_rebuild(screen, work):
     while viewer.window() in (old, "0") and viewer.alive() and time.time() < end:
         time.sleep(0.2)
     check(os.path.exists(os.path.join(build, "made")), "a shader that was written is not built")
-    again = viewer.settled()
+    viewer.until(lambda: difference(screen.shot(), turned) < 0.5)
+    again = screen.shot()
     check(difference(again, turned) < 0.5, f"started again: {difference(again, turned):.2f} from before")
     with open(f"/proc/{viewer.process.pid}/cmdline") as file:
         check("--look-from=" in file.read(), "the viewer did not start again")
