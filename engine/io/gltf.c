@@ -1,5 +1,6 @@
 // gltf.c -- from a glTF file to a scene: checks, tinygltf, then a walk over the nodes.
 #include "io/gltf.h"
+#include "io/gltf_json.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,9 +46,8 @@ static tyn_result check_kind(const uint8_t *bytes, size_t size, const char *file
     return is ? TYN_ERR_PARAMS : TYN_OK;
 }
 
-// Finds the JSON text of a .gltf or .glb.
-static tyn_result find_json(const uint8_t *bytes, size_t size, const char *file, const char **json,
-                            size_t *json_size, bool *glb, const tyn_log *log)
+tyn_result tyn_gltf_find_json(const uint8_t *bytes, size_t size, const char *file,
+                              const char **json, size_t *json_size, bool *glb, const tyn_log *log)
 {
     tyn_result other = check_kind(bytes, size, file, log);
     if (other) {
@@ -378,7 +378,7 @@ tyn_result tyn_gltf_parse(tyn_scene *scene, const void *bytes, size_t size, cons
     json_doc doc = {0};
     gltf_model model = {0};
     char *directory = tyn_path_directory(file);
-    tyn_result r = find_json(bytes, size, file, &text, &text_size, &glb, log);
+    tyn_result r = tyn_gltf_find_json(bytes, size, file, &text, &text_size, &glb, log);
     if (!r) {
         r = tyn_json_parse(&doc, text, text_size, file, log);
         doc.frame = moment && moment->numbered ? &moment->frame : NULL;

@@ -1,6 +1,7 @@
 #!/bin/sh
-# installed.sh -- what `meson install` leaves works: the tool finds its scenes and suites, a host in C builds by pkg-config and
-# one in C++ by CMake, a kernel by the installed GLSL, manual pages and completions are well-formed.
+# installed.sh -- what `meson install` leaves works in a folder that the linker does not know: the tool finds its libraries,
+# scenes and suites, a host in C builds by pkg-config and one in C++ by CMake, a kernel by the installed GLSL, manual pages and
+# completions are well-formed.
 #
 # usage: installed.sh SOURCE BUILD
 set -eu
@@ -20,12 +21,16 @@ prefix=$folder$(meson introspect "$build" --buildoptions |
     python3 -c 'import json, sys; print(next(o["value"] for o in json.load(sys.stdin) if o["name"] == "prefix"))')
 pc=$(dirname "$(find "$folder" -name tyndall.pc)")
 lib=$(dirname "$pc")
-export LD_LIBRARY_PATH="$lib" PKG_CONFIG_PATH="$pc" PKG_CONFIG_SYSROOT_DIR="$folder"
+unset LD_LIBRARY_PATH
+export PKG_CONFIG_PATH="$pc" PKG_CONFIG_SYSROOT_DIR="$folder"
 tool=$prefix/bin/tyndall
 
 # The tool, from another folder, without the build tree.
 cd "$folder"
-"$tool" --version
+"$tool" --version || fail "the tool does not start"
+for name in libtyndall libtyndall-io; do
+    ldd "$tool" | grep -q "^[[:space:]]*$name\.so[.0-9]* => $folder/" || fail "the tool takes another $name: $(ldd "$tool")"
+done
 cat >suite.json <<'S'
 { "name": "installed", "size": [16, 16], "reference_spp": 16, "block": 8, "frames": 3, "max_seconds": 5,
   "scenes": [{ "name": "cube", "scene": "cube.gltf" }], "runs": [{ "name": "single", "method": "single" }],
@@ -40,7 +45,7 @@ grep -q single bench.txt || fail "tyndall bench did not measure"
 # Hosts.
 cc -std=c11 -Wall -Werror -o host "$source/samples/embed/main.c" "$source/samples/embed/host.c" -D_GNU_SOURCE \
     $(pkg-config --cflags --libs tyndall-io) -lm -ldl || fail "samples/embed does not build by pkg-config"
-./host "$prefix/share/tyndall/scenes/smoke.gltf" host.png >/dev/null || [ $? = 77 ] || fail "the host fails"
+LD_LIBRARY_PATH=$lib ./host "$prefix/share/tyndall/scenes/smoke.gltf" host.png >/dev/null || [ $? = 77 ] || fail "the host fails"
 if command -v cmake >/dev/null; then
     mkdir cpp
     cat >cpp/CMakeLists.txt <<C
@@ -80,7 +85,7 @@ for page in tyndall tyndall-render tyndall-bench; do
     fi
 done
 bash=$prefix/share/bash-completion/completions/tyndall
-bash -n "$bash" || fail "bash completion"
+said=$(bash --norc -euc ". '$bash'" 2>&1) && [ -z "$said" ] || fail "bash does not take its completion: $said"
 words=$(bash -c ". '$bash'; COMP_WORDS=(tyndall render --qual); COMP_CWORD=2; _tyndall; echo \"\${COMPREPLY[@]}\"")
 [ "$words" = --quality ] || fail "bash completes --qual to '$words'"
 words=$(bash -c ". '$bash'; COMP_WORDS=(tyndall render --quality d); COMP_CWORD=3; _tyndall; echo \"\${COMPREPLY[@]}\"")

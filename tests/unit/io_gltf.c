@@ -304,6 +304,56 @@ static void numbered_files(void **state)
     assert_non_null(strstr(log.last, "--frame"));
 }
 
+typedef struct found_files {
+    char text[1024];
+} found_files;
+
+static void add_file(void *user, const char *path)
+{
+    found_files *found = user;
+    const char *slash = strrchr(path, '/');
+    strncat(found->text, slash ? slash + 1 : path, sizeof found->text - strlen(found->text) - 2);
+    strcat(found->text, "|");
+}
+
+// What a scene is read from: names decoded, of a sequence numbered, data left out; of a binary one as well.
+static void files(void **state)
+{
+    io_log log;
+    (void)state;
+    io_log_init(&log);
+    const char *text = quoted(
+        ASSET
+        ", 'buffers': [{'byteLength': 12, 'uri': 'my%20data.bin'},"
+        "{'byteLength': 1, 'uri': 'data:application/octet-stream;base64,AAAA'}],"
+        "'images': [{'uri': 'none.png'}, {'uri': 'https://example.org/a.png'}], 'extensions':"
+        "{'TYN_participating_media': {'media': [{'density': {'uri': 'smoke-%23%23.nvdb'}}]}}}");
+    found_files found = {""};
+    const uint32_t frame = 7;
+    const char *path = io_put_text("files.gltf", text);
+    assert_int_equal(tyn_scene_files(path, &frame, add_file, &found, &log.log), TYN_OK);
+    assert_string_equal(found.text, "files.gltf|my data.bin|none.png|smoke-07.nvdb|");
+    uint8_t glb[1024] = "glTF";
+    const uint32_t json = (uint32_t)(strlen(text) + 3) & ~3u, total = 20 + json, version = 2;
+    memset(glb + 20, ' ', json);
+    memcpy(glb + 4, &version, 4);
+    memcpy(glb + 8, &total, 4);
+    memcpy(glb + 12, &json, 4);
+    memcpy(glb + 16, "JSON", 4);
+    memcpy(glb + 20, text, strlen(text));
+    found.text[0] = 0;
+    path = io_put("files.glb", glb, total);
+    assert_int_equal(tyn_scene_files(path, &frame, add_file, &found, &log.log), TYN_OK);
+    assert_string_equal(found.text, "files.glb|my data.bin|none.png|smoke-07.nvdb|");
+    found.text[0] = 0;
+    assert_int_equal(tyn_scene_files("a.nvdb", NULL, add_file, &found, &log.log), TYN_OK);
+    assert_string_equal(found.text, "a.nvdb|");
+    assert_int_equal(log.errors, 0);
+    path = io_put_text("broken.gltf", "{");
+    assert_int_equal(tyn_scene_files(path, NULL, add_file, &found, &log.log), TYN_ERR_PARAMS);
+    assert_int_equal(log.errors, 1);
+}
+
 static void containers(void **state)
 {
     tyn_scene s;
@@ -376,6 +426,7 @@ int main(void)
         cmocka_unit_test(nodes),        cmocka_unit_test(camera_order),
         cmocka_unit_test(volumes),      cmocka_unit_test(unknown_members),
         cmocka_unit_test(environments), cmocka_unit_test(numbered_files),
-        cmocka_unit_test(containers),   cmocka_unit_test(long_chain)};
+        cmocka_unit_test(containers),   cmocka_unit_test(files),
+        cmocka_unit_test(long_chain)};
     return cmocka_run_group_tests(tests, NULL, io_test_clean);
 }

@@ -8,7 +8,7 @@ static const double measure_every = 0.5; // seconds
 
 void comparison_close(viewer *v)
 {
-    rendering_close(&v->comparison.rendering);
+    pictures_retire(v, &v->comparison.rendering);
     method_finish(&v->comparison.method);
     v->comparison.started = v->comparison.measured = false;
 }
@@ -37,7 +37,7 @@ static bool open_reference(viewer *v)
     method_finish(&c->method);
     return method_open(v->app, &how, &c->method) == EXIT_DONE &&
            scene_prepare(v->app, &c->method.info, &v->scene) == EXIT_DONE &&
-           rendering_open(&c->rendering, &v->gpu, &c->method);
+           rendering_open(&c->rendering, &v->library, &c->method);
 }
 
 // Four floats a pixel into three planes of one channel each; `planes` is new memory, NULL if there is none.
@@ -86,7 +86,18 @@ bool comparison_working(const viewer *v)
     return c->on && (!c->started || c->rendering.samples < pictures_samples_wanted(v));
 }
 
-void comparison_step(viewer *v, const tyn_view *view, double budget_ms)
+bool comparison_tells(const comparison *c)
+{
+    return c->measured && c->error.n < 0.5 * c->error.rel_l1;
+}
+
+void comparison_fail(viewer *v)
+{
+    viewer_note(v, "%s", v->app->last_error);
+    comparison_toggle(v);
+}
+
+rendering_state comparison_begin(viewer *v, const tyn_view *view)
 {
     comparison *c = &v->comparison;
     tyn_view asked = *view;
@@ -94,22 +105,16 @@ void comparison_step(viewer *v, const tyn_view *view, double budget_ms)
     asked.num_points = 0;
     asked.points = NULL;
     if (!open_reference(v)) {
-        viewer_note(v, "%s", v->app->last_error);
-        comparison_toggle(v);
-        return;
+        return RENDERING_FAILED;
     }
     asked.outputs =
         (TYN_OUTPUT_RADIANCE | TYN_OUTPUT_ERROR | (uint32_t)layer) & c->rendering.method.outputs;
-    const rendering_state state =
-        rendering_frame(&c->rendering, &v->scene, &asked, budget_ms, c->started);
-    if (state == RENDERING_PENDING) {
-        return;
-    }
-    if (state == RENDERING_FAILED) {
-        viewer_note(v, "%s", v->app->last_error);
-        comparison_toggle(v);
-        return;
-    }
+    return rendering_begin(&c->rendering, &v->scene, &asked, c->started);
+}
+
+void comparison_take(viewer *v)
+{
+    comparison *c = &v->comparison;
     c->started = true;
     pictures_show(v, &c->rendering, PICTURE_REFERENCE);
     if (!c->measured || !comparison_working(v) ||

@@ -201,8 +201,12 @@ static void comparison_rows(const viewer *v)
     panel_row(left, right);
     if (c->measured) {
         snprintf(left, sizeof left, "off over %dx%d", COMPARISON_BLOCK, COMPARISON_BLOCK);
-        snprintf(right, sizeof right, "%.2f %% (noise %.2f %%)", 100 * c->error.rel_l1,
-                 100 * c->error.n);
+        if (comparison_tells(c)) {
+            snprintf(right, sizeof right, "%.2f %% (noise %.2f %%)", 100 * c->error.rel_l1,
+                     100 * c->error.n);
+        } else {
+            snprintf(right, sizeof right, "not known yet (noise %.2f %%)", 100 * c->error.n);
+        }
         panel_row(left, right);
     }
 }
@@ -252,13 +256,13 @@ static void sequence_controls(viewer *v)
 
 void controls_draw_marks(const viewer *v)
 {
-    const float width = (float)v->surface.extent.width, height = (float)v->surface.extent.height;
-    float x, y;
+    float width, height, x, y;
+    input_window_size(v, &width, &height);
     if (comparison_seen(v)) {
         char text[64] = "";
         x = v->comparison.split * width;
         panel_line(x, 0, x, height, 0xc0ffffff);
-        if (v->comparison.measured) {
+        if (comparison_tells(&v->comparison)) {
             snprintf(text, sizeof text, ", %.2f %% off", 100 * v->comparison.error.rel_l1);
         }
         char line[128];
@@ -279,7 +283,7 @@ void controls_draw_marks(const viewer *v)
 
 static const rendering *shown_rendering(const viewer *v)
 {
-    return v->sharp || v->divisor == 1 || !v->moving.context ? &v->rest : &v->moving;
+    return v->shown ? v->shown : &v->rest;
 }
 
 static void report_rows(const viewer *v)
@@ -317,19 +321,35 @@ static void report_rows(const viewer *v)
     }
 }
 
-static void state_rows(const viewer *v)
+// One row whatever happens: the widgets below stay where they are.
+static void work_row(const viewer *v, const rendering *r)
 {
-    const rendering *r = shown_rendering(v);
     const uint32_t pending = pictures_pending(v);
+    const double whole = ceil(1e-3 * resolution_expected_ms(&v->rest_cost, 1));
     char text[64];
+    pictures_say(v, text, sizeof text);
     if (pending) {
         snprintf(text, sizeof text, "%u left", pending);
         panel_row("compiling kernels", text);
-    }
-    if (r->context && r->width) {
+    } else if (text[0]) {
+        panel_row("now", text);
+    } else if (!r->context || !r->frames) {
+        panel_row("now", "the first picture");
+    } else if (v->sharp && v->rest_shown > 1) {
+        snprintf(text, sizeof text, "%ux%u, %.0f ms; all: %.0f s (S)", r->width, r->height, r->ms,
+                 whole);
+        panel_row("at rest", text);
+    } else {
         snprintf(text, sizeof text, "%ux%u, %.1f ms", r->width, r->height, r->ms);
         panel_row(v->sharp ? "at rest" : "moving", text);
     }
+}
+
+static void state_rows(const viewer *v)
+{
+    const rendering *r = shown_rendering(v);
+    char text[64];
+    work_row(v, r);
     if (r->context && r->method.progressive) {
         snprintf(text, sizeof text, "%u", r->samples);
         panel_row("samples a pixel", text);
@@ -338,7 +358,8 @@ static void state_rows(const viewer *v)
 
 void controls_draw(viewer *v)
 {
-    const float height = (float)v->surface.extent.height;
+    float width, height;
+    input_window_size(v, &width, &height);
     panel_window("tyndall view", 300, height > 40 ? height - 16 : height);
     method_controls(v);
     picture_controls(v);

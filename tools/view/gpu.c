@@ -1,7 +1,8 @@
-// gpu.c -- the viewer's own Vulkan device, on which the library is a guest.
+// gpu.c -- the viewer's own Vulkan devices: one draws the window, on the other the library is a guest.
 #include "view/gpu.h"
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -127,7 +128,7 @@ static bool find_queue(gpu *g)
             return true;
         }
     }
-    app_error(g->app, "device '%s' has no queue that draws, computes and presents", g->name);
+    app_error(g->app, "device '%s' has no queue that draws, computes and presents", g->info.name);
     return false;
 }
 
@@ -163,7 +164,7 @@ static bool make_device(gpu *g)
     return true;
 }
 
-static int open_device(gpu *g, int index, const tyn_device_info *info)
+static int open_device(gpu *g, int index)
 {
     VkPhysicalDevice devices[16];
     uint32_t count = ARRAY_SIZE(devices);
@@ -171,28 +172,13 @@ static int open_device(gpu *g, int index, const tyn_device_info *info)
                    "vkEnumeratePhysicalDevices")) {
         return EXIT_FAILED;
     }
-    snprintf(g->name, sizeof g->name, "%s", info->name);
-    if ((uint32_t)index >= count || info->missing[0]) {
-        app_error(g->app, "device '%s' cannot be used, it lacks %s", info->name,
-                  info->missing[0] ? info->missing : "a window system");
+    if ((uint32_t)index >= count || g->info.missing[0]) {
+        app_error(g->app, "device '%s' cannot be used, it lacks %s", g->info.name,
+                  g->info.missing[0] ? g->info.missing : "a window system");
         return EXIT_FAILED;
     }
     g->physical_device = devices[index];
-    if (!find_queue(g) || !make_device(g)) {
-        return EXIT_FAILED;
-    }
-    const tyn_requirements *needs = tyn_requirements_get();
-    pipeline_cache_read(&g->cache, info);
-    const tyn_result made = tyn_device_create(
-        tyn_device_params(.instance = g->instance, .physical_device = g->physical_device,
-                          .device = g->device, .get_instance_proc_addr = vkGetInstanceProcAddr,
-                          .api_version = needs->api_version, .features = needs->features,
-                          .queue_family = g->queue_family,
-                          .debug_names = g->messenger != VK_NULL_HANDLE,
-                          .pipeline_cache = g->cache.bytes, .pipeline_cache_size = g->cache.size,
-                          .log = g->app->log),
-        &g->tyn);
-    return app_exit_code(g->app, made, false);
+    return find_queue(g) && make_device(g) ? EXIT_DONE : EXIT_FAILED;
 }
 
 int gpu_open(gpu *g, app *a, const machine_options *options, bool validation)
@@ -200,12 +186,36 @@ int gpu_open(gpu *g, app *a, const machine_options *options, bool validation)
     const uint32_t messages = g->messages; // of a device that was lost
     *g = (gpu){.app = a, .messages = messages};
     int index;
-    tyn_device_info info;
-    int code = machine_choose(a, options, &index, &info);
+    int code = machine_choose(a, options, &index, &g->info);
     if (code == EXIT_DONE) {
         code = open_instance(g, validation);
     }
-    return code == EXIT_DONE ? open_device(g, index, &info) : code;
+    return code == EXIT_DONE ? open_device(g, index) : code;
+}
+
+int gpu_open_library(gpu *g, const gpu *window)
+{
+    *g = (gpu){.app = window->app,
+               .window = window,
+               .info = window->info,
+               .instance = window->instance,
+               .physical_device = window->physical_device,
+               .queue_family = window->queue_family};
+    if (!make_device(g)) {
+        return EXIT_FAILED;
+    }
+    const tyn_requirements *needs = tyn_requirements_get();
+    pipeline_cache_read(&g->cache, &g->info);
+    const tyn_result made = tyn_device_create(
+        tyn_device_params(.instance = g->instance, .physical_device = g->physical_device,
+                          .device = g->device, .get_instance_proc_addr = vkGetInstanceProcAddr,
+                          .api_version = needs->api_version, .features = needs->features,
+                          .queue_family = g->queue_family,
+                          .debug_names = window->messenger != VK_NULL_HANDLE,
+                          .pipeline_cache = g->cache.bytes, .pipeline_cache_size = g->cache.size,
+                          .log = g->app->log),
+        &g->tyn);
+    return app_exit_code(g->app, made, false);
 }
 
 void gpu_wait_idle(gpu *g)
@@ -232,7 +242,7 @@ void gpu_close(gpu *g)
                 g->instance, "vkDestroyDebugUtilsMessengerEXT");
         unlisten(g->instance, g->messenger, NULL);
     }
-    if (g->instance) {
+    if (g->instance && !g->window) {
         vkDestroyInstance(g->instance, NULL);
     }
     const uint32_t messages = g->messages;
@@ -273,15 +283,33 @@ void gpu_commands_free(gpu *g, gpu_commands *c)
     *c = (gpu_commands){0};
 }
 
-bool gpu_wait(gpu *g, gpu_commands *c)
+gpu_state gpu_wait_for(gpu *g, gpu_commands *c, double seconds)
 {
     if (!c->pending) {
-        return true;
+        return GPU_DONE;
+    }
+    const uint64_t timeout = seconds < 1e9 ? (uint64_t)(1e9 * seconds) : UINT64_MAX;
+    const VkResult result = vkWaitForFences(g->device, 1, &c->fence, VK_TRUE, timeout);
+    if (result == VK_TIMEOUT) {
+        return GPU_BUSY;
     }
     c->pending = false;
-    return gpu_check(g, vkWaitForFences(g->device, 1, &c->fence, VK_TRUE, UINT64_MAX),
-                     "vkWaitForFences") &&
-           gpu_check(g, vkResetFences(g->device, 1, &c->fence), "vkResetFences");
+    const bool done = gpu_check(g, result, "vkWaitForFences") &&
+                      gpu_check(g, vkResetFences(g->device, 1, &c->fence), "vkResetFences");
+    return done ? GPU_DONE : GPU_FAILED;
+}
+
+bool gpu_wait(gpu *g, gpu_commands *c)
+{
+    return gpu_wait_for(g, c, INFINITY) == GPU_DONE;
+}
+
+void gpu_finish(gpu *g, gpu_commands *c)
+{
+    if (c->pending) {
+        c->pending = false;
+        vkWaitForFences(g->device, 1, &c->fence, VK_TRUE, UINT64_MAX);
+    }
 }
 
 bool gpu_begin(gpu *g, gpu_commands *c)
@@ -341,7 +369,7 @@ static bool allocate(gpu *g, const VkMemoryRequirements *needs, VkMemoryProperty
                              "vkAllocateMemory");
         }
     }
-    app_error(g->app, "device '%s' has no memory of a kind that is needed", g->name);
+    app_error(g->app, "device '%s' has no memory of a kind that is needed", g->info.name);
     return false;
 }
 

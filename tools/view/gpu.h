@@ -1,4 +1,7 @@
-// gpu.h -- the viewer's own Vulkan device, on which the library is a guest: instance, device, queue, command buffers.
+// gpu.h -- the viewer's own Vulkan devices: instance, device, queue, command buffers.
+//
+// There are two of one instance: one draws the window, on the other the library is a guest. A queue does one thing after another,
+// and many devices have a single one: on it the window would wait for a picture that takes seconds.
 //
 // Vulkan is linked here, as Dear ImGui's backend needs it. What fails is one log line; a lost device sets `lost`, and then
 // everything made on it is to be closed and made anew.
@@ -10,7 +13,8 @@ typedef struct gpu {
     app *app;
     uint32_t messages; // of the validation layer
     bool lost;
-    char name[256];
+    const struct gpu *window; // the device that this one shares the instance with; NULL: its own
+    tyn_device_info info;
     VkInstance instance;
     VkDebugUtilsMessengerEXT messenger;
     VkPhysicalDevice physical_device;
@@ -19,12 +23,14 @@ typedef struct gpu {
     uint32_t queue_family;
     VkQueue queue;
     pipeline_cache cache;
-    tyn_device *tyn; // the library on this device
+    tyn_device *tyn; // the library on this device; NULL: the window's
 } gpu;
 
 // Opens the device that --device names, with what GLFW needs to present. Gives the exit code; gpu_close is due in any
 // case.
 int gpu_open(gpu *g, app *a, const machine_options *options, bool validation);
+// The same device once more, for the library. To be closed before `window`, which stays where it is.
+int gpu_open_library(gpu *g, const gpu *window);
 void gpu_close(gpu *g);
 void gpu_wait_idle(gpu *g);
 
@@ -46,6 +52,9 @@ bool gpu_begin(gpu *g, gpu_commands *c); // waits until its last work is done
 // Semaphores may be VK_NULL_HANDLE; `wait` is waited for where colour is drawn.
 bool gpu_submit(gpu *g, gpu_commands *c, VkSemaphore wait, VkSemaphore signal);
 bool gpu_wait(gpu *g, gpu_commands *c);
+typedef enum gpu_state { GPU_DONE = 0, GPU_BUSY, GPU_FAILED } gpu_state;
+gpu_state gpu_wait_for(gpu *g, gpu_commands *c, double seconds); // at most
+void gpu_finish(gpu *g, gpu_commands *c);                        // waits, on a lost device as well
 
 // ---- memory -----------------------------------------------------------------------------------
 

@@ -23,9 +23,34 @@ static bool key_held(GLFWwindow *window, int key)
     return glfwGetKey(window, key) == GLFW_PRESS;
 }
 
+void input_window_size(const viewer *v, float *width, float *height)
+{
+    int w, h;
+    glfwGetWindowSize(v->window, &w, &h);
+    *width = w > 0 ? (float)w : 1;
+    *height = h > 0 ? (float)h : 1;
+}
+
+// From the units of the pointer to pixels.
+static void to_pixels(const viewer *v, double *x, double *y)
+{
+    float width, height;
+    input_window_size(v, &width, &height);
+    *x *= v->view.width / width;
+    *y *= v->view.height / height;
+}
+
+static void find_pointer(viewer *v)
+{
+    glfwGetCursorPos(v->window, &v->mouse[0], &v->mouse[1]);
+    to_pixels(v, &v->mouse[0], &v->mouse[1]);
+}
+
 static void on_move(GLFWwindow *window, double x, double y)
 {
     viewer *v = viewer_of(window);
+    v->woken = true; // the panel
+    to_pixels(v, &x, &y);
     const float right = (float)(x - v->mouse[0]), down = (float)(y - v->mouse[1]);
     v->mouse[0] = x;
     v->mouse[1] = y;
@@ -39,7 +64,6 @@ static void on_move(GLFWwindow *window, double x, double y)
     }
     if (v->splitting) {
         v->comparison.split = fminf(fmaxf((float)x / (float)v->view.width, 0.02f), 0.98f);
-        v->woken = true;
         return;
     }
     const float height = (float)v->view.height;
@@ -63,7 +87,7 @@ static void on_button(GLFWwindow *window, int button, int action, int mods)
     (void)mods;
     viewer *v = viewer_of(window);
     if (action == GLFW_PRESS) {
-        glfwGetCursorPos(window, &v->mouse[0], &v->mouse[1]); // it may not have moved yet
+        find_pointer(v); // it may not have moved yet
         const double split = v->comparison.split * v->view.width;
         v->dragging = !panel_has_mouse();
         v->splitting = comparison_seen(v) && fabs(v->mouse[0] - split) < 6;
@@ -75,6 +99,7 @@ static void on_scroll(GLFWwindow *window, double x, double y)
 {
     (void)x;
     viewer *v = viewer_of(window);
+    v->woken = true;
     if (!panel_has_mouse()) {
         camera_control_dolly(&v->camera, expf(-0.12f * (float)y));
         viewer_touch(v);
@@ -128,7 +153,7 @@ static void on_key(GLFWwindow *window, int key, int scancode, int action, int mo
         comparison_toggle(v);
         break;
     case GLFW_KEY_P:
-        glfwGetCursorPos(window, &v->mouse[0], &v->mouse[1]);
+        find_pointer(v);
         probe_place(v);
         break;
     case GLFW_KEY_S:
@@ -180,6 +205,11 @@ void input_step(viewer *v, double seconds)
     }
 }
 
+static void on_refresh(GLFWwindow *window)
+{
+    viewer_of(window)->woken = true;
+}
+
 static void on_drop(GLFWwindow *window, int count, const char **paths)
 {
     for (int i = 0; i < count; i++) {
@@ -195,4 +225,5 @@ void input_open(viewer *v)
     glfwSetScrollCallback(v->window, on_scroll);
     glfwSetKeyCallback(v->window, on_key);
     glfwSetDropCallback(v->window, on_drop);
+    glfwSetWindowRefreshCallback(v->window, on_refresh);
 }

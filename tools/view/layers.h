@@ -4,7 +4,7 @@
 #include <tyndall/context.h>
 
 typedef struct view_layer {
-    const char *name;
+    const char *name, *aov; // the second as `tyndall render --aov` calls it
     tyn_output output;
     uint32_t shows;     // PICTURE_SHOWS_*
     uint32_t component; // of PICTURE_SHOWS_FIRST, in the output

@@ -32,11 +32,12 @@ void probe_remove(viewer *v)
     v->woken = true;
 }
 
+// The depth is asked for once: methods march every pixel for it, which changes the picture that is saved.
 void probe_ask(const viewer *v, tyn_view *view)
 {
     const uint32_t needed = TYN_OUTPUT_PROBE | TYN_OUTPUT_DEPTH;
     if (v->probe.state != PROBE_OFF && (v->method.info.outputs & needed) == needed) {
-        view->outputs |= needed;
+        view->outputs |= v->probe.state == PROBE_PLACED ? needed : TYN_OUTPUT_PROBE;
         view->points = &v->probe.position;
         view->num_points = 1;
     }
@@ -69,9 +70,11 @@ void probe_take(viewer *v, const rendering *r)
         return;
     }
     float depth;
-    if (v->probe.state == PROBE_PLACED && depth_at(v, r, &depth)) {
-        camera_control_point(&v->camera, v->probe.x, v->probe.y, viewer_aspect(v), depth,
-                             v->probe.position);
+    if (v->probe.state == PROBE_PLACED) {
+        if (depth_at(v, r, &depth)) {
+            camera_control_point(&v->camera, v->probe.x, v->probe.y, viewer_aspect(v), depth,
+                                 v->probe.position);
+        }
         v->probe.state = PROBE_ASKED;
         v->outdated = true;
         return;

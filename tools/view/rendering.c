@@ -1,4 +1,4 @@
-// rendering.c -- a context of the library, frame by frame, on the viewer's device.
+// rendering.c -- a context of the library, frame by frame, on the viewer's device for it.
 #include "view/rendering.h"
 #include <string.h>
 
@@ -16,7 +16,7 @@ bool rendering_open(rendering *r, gpu *g, const method *m)
 void rendering_close(rendering *r)
 {
     if (r->gpu) {
-        gpu_wait_idle(r->gpu);
+        gpu_finish(r->gpu, &r->commands);
         tyn_context_destroy(&r->context);
         gpu_commands_free(r->gpu, &r->commands);
     }
@@ -38,35 +38,46 @@ uint32_t rendering_pending(const rendering *r)
     return tyn_context_pending(r->context);
 }
 
-rendering_state rendering_frame(rendering *r, const tyn_scene *scene, const tyn_view *view,
-                                double budget_ms, bool more)
+rendering_state rendering_begin(rendering *r, const tyn_scene *scene, const tyn_view *view,
+                                bool more)
 {
     gpu *g = r->gpu;
     const double start = app_seconds();
     tyn_view asked = *view;
-    more = more && r->width == view->width && r->height == view->height;
+    const bool same = r->width == view->width && r->height == view->height;
+    more = more && same;
+    r->batch = same ? r->batch : 1;
     asked.first_sample = r->method.progressive && more ? r->samples : 0;
     asked.num_samples = r->method.progressive ? r->batch : 0;
     tyn_frame frame =
         *tyn_frame(.scene = scene, .view = &asked, .cmd = r->commands.cmd, .background = true);
-    if (!gpu_wait(g, &r->commands)) {
-        return RENDERING_FAILED;
-    }
     const tyn_result prepared = tyn_context_prepare(r->context, &frame);
     if (prepared != TYN_OK) {
         return prepared == TYN_PENDING ? RENDERING_PENDING : RENDERING_FAILED;
     }
-    const uint32_t most = tyn_context_batch(r->context, &frame);
+    r->most = tyn_context_batch(r->context, &frame);
     if (!gpu_begin(g, &r->commands) || tyn_context_record(r->context, &frame) != TYN_OK ||
-        !gpu_submit(g, &r->commands, VK_NULL_HANDLE, VK_NULL_HANDLE) ||
-        !gpu_wait(g, &r->commands)) {
+        !gpu_submit(g, &r->commands, VK_NULL_HANDLE, VK_NULL_HANDLE)) {
         return RENDERING_FAILED;
     }
-    r->ms = 1e3 * (app_seconds() - start);
+    r->started = start;
     r->width = view->width;
     r->height = view->height;
+    r->resized = !same;
+    r->added = asked.num_samples;
     r->samples = asked.first_sample + asked.num_samples;
-    adapt_batch(r, budget_ms, most);
+    return RENDERING_BUSY;
+}
+
+rendering_state rendering_poll(rendering *r, double seconds, double budget_ms)
+{
+    const gpu_state state = gpu_wait_for(r->gpu, &r->commands, seconds);
+    if (state != GPU_DONE) {
+        return state == GPU_BUSY ? RENDERING_BUSY : RENDERING_FAILED;
+    }
+    r->ms = 1e3 * (app_seconds() - r->started);
+    r->frames++;
+    adapt_batch(r, budget_ms, r->most);
     return RENDERING_DONE;
 }
 
@@ -87,5 +98,5 @@ double rendering_pixels_ms(const rendering *r)
             sum += counts ? n->gpu_ms : 0;
         }
     }
-    return sum;
+    return sum / (r->added > 1 ? r->added : 1);
 }

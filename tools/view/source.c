@@ -51,7 +51,9 @@ static void watch_source(viewer *v)
 {
     watch_finish(&v->watch);
     if (!v->sequence.numbered) {
-        watch_add_scene(&v->watch, v->source.scene);
+        const bool numbered = !isnan(v->source.frame);
+        const uint32_t frame = numbered ? (uint32_t)v->source.frame : 0;
+        watch_add_scene(&v->watch, v->source.scene, numbered ? &frame : NULL);
         watch_add(&v->watch, v->source.env ? v->source.env : v->source.environment);
     }
 }
@@ -93,6 +95,7 @@ static void take(viewer *v, tyn_scene *scene, bool another_picture)
     v->loaded = loaded;
     if (!another_picture) {
         controls_reset(v);
+        pictures_forget(v);
     }
     viewer_touch(v);
 }
@@ -125,6 +128,7 @@ void source_close(viewer *v)
 static bool replace(viewer *v, const scene_options *source, bool another_picture)
 {
     tyn_scene scene;
+    v->asked_at = app_seconds();
     if (load(v, source, &scene) != EXIT_DONE) {
         tyn_scene_finish(&scene);
         viewer_note(v, "%s", v->app->last_error);
@@ -138,19 +142,20 @@ void source_drop(viewer *v, const char *path)
 {
     scene_options source = v->source;
     char *copy = text_format("%s", path);
-    const bool map = is_map(path);
+    const bool map = is_map(path), played = v->sequence.numbered;
     if (!copy) {
         return;
     }
-    v->sequence.numbered = false;
     if (map) {
         source.env = NULL;
         source.environment = copy;
     } else {
         source.scene = copy;
         source.frame = NAN;
+        v->sequence.numbered = false; // and stays it if the scene can be read
     }
     if (!replace(v, &source, false)) {
+        v->sequence.numbered = played;
         free(copy);
         return;
     }

@@ -45,7 +45,7 @@ static bool make_surface(surface *s)
         return false;
     }
     if (!presents) {
-        app_error(g->app, "device '%s' cannot present to this window", g->name);
+        app_error(g->app, "device '%s' cannot present to this window", g->info.name);
     }
     return presents;
 }

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #include "stats.h"
 
 const char *const viewer_qualities[] = {"draft", "normal", "high", NULL};
@@ -24,7 +25,6 @@ void viewer_note(viewer *v, const char *format, ...)
 void viewer_touch(viewer *v)
 {
     v->outdated = true;
-    v->woken = true;
     v->last_change = app_seconds();
     v->comparison.started = v->comparison.measured = false;
     v->probe.state = v->probe.state == PROBE_KNOWN ? PROBE_ASKED : v->probe.state;
@@ -41,6 +41,7 @@ float viewer_aspect(const viewer *v)
 static bool use_method(viewer *v, const method_options *how)
 {
     method made;
+    v->asked_at = app_seconds();
     const uint32_t errors = v->app->num_errors;
     bool works = method_open(v->app, how, &made) == EXIT_DONE;
     if (works && scene_prepare(v->app, &made.info, &v->scene) != EXIT_DONE) {
@@ -170,7 +171,10 @@ static bool open_panel(viewer *v)
 
 static int open_device(viewer *v)
 {
-    const int code = gpu_open(&v->gpu, v->app, &v->args->machine, v->args->validate);
+    int code = gpu_open(&v->gpu, v->app, &v->args->machine, v->args->validate);
+    if (code == EXIT_DONE) {
+        code = gpu_open_library(&v->library, &v->gpu);
+    }
     if (code != EXIT_DONE) {
         return code;
     }
@@ -182,7 +186,9 @@ static int open_device(viewer *v)
 static void close_device(viewer *v)
 {
     gpu_wait_idle(&v->gpu);
+    gpu_wait_idle(&v->library);
     pictures_close(v);
+    rendering_close(&v->retired);
     panel_close_device();
     if (v->gpu.device) {
         vkDestroyDescriptorPool(v->gpu.device, v->panel_pool, NULL);
@@ -190,6 +196,7 @@ static void close_device(viewer *v)
     v->panel_pool = VK_NULL_HANDLE;
     picture_close(&v->picture);
     surface_close(&v->surface);
+    gpu_close(&v->library);
     gpu_close(&v->gpu);
     v->has_picture = false;
 }
@@ -253,7 +260,9 @@ static void follow_size(viewer *v)
         ((uint32_t)width != v->view.width || (uint32_t)height != v->view.height)) {
         v->view.width = (uint32_t)width;
         v->view.height = (uint32_t)height;
-        v->divisor = 0;
+        v->small = (resolution){0};
+        v->rest_divisor = 0;
+        v->woken = true;
         viewer_touch(v);
     }
 }
@@ -267,31 +276,71 @@ static bool hidden(const viewer *v)
 static void take_input(viewer *v)
 {
     const double now = app_seconds();
+    const bool woken = v->woken; // the panel answers an event in the second frame after it
+    v->woken = false;
     if (hidden(v)) {
         glfwWaitEventsTimeout(0.25);
     } else if (pictures_pending(v)) {
         glfwWaitEventsTimeout(0.02);
-    } else if (v->woken || v->args->busy || pictures_working(v)) {
+    } else if (pictures_computing(v)) {
+        glfwPollEvents();
+        if (!v->woken && !woken) {
+            pictures_wait(v, 0.01);
+        }
+    } else if (woken || v->args->busy || pictures_working(v)) {
         glfwPollEvents();
     } else {
         glfwWaitEventsTimeout(0.1);
     }
-    v->woken = false;
+    v->woken = v->woken || woken;
     input_step(v, fmin(now - v->last_frame, 0.25));
     v->last_frame = now;
     follow_size(v);
 }
 
-// The window's title says how many kernels are still to be compiled: the panel may be hidden.
-static void say_pending(viewer *v)
+// The window's title says how many kernels are still to be compiled, and which picture takes long: the panel may be hidden.
+static void say_work(viewer *v)
 {
     const uint32_t pending = pictures_pending(v);
-    if (pending != v->title_pending && v->title) {
-        char *title = text_format("compiling %u - %s", pending, v->title);
-        glfwSetWindowTitle(v->window, pending && title ? title : v->title);
-        free(title);
-        v->title_pending = pending;
+    char work[64] = "";
+    if (pending) {
+        snprintf(work, sizeof work, "compiling %u", pending);
+    } else {
+        pictures_say(v, work, sizeof work);
     }
+    char *title = work[0] && v->title ? text_format("%s - %s", work, v->title) : NULL;
+    const bool same = title && v->said ? strcmp(title, v->said) == 0 : title == v->said;
+    if (same || !v->title) {
+        free(title);
+        return;
+    }
+    glfwSetWindowTitle(v->window, title ? title : v->title);
+    free(v->said);
+    v->said = title;
+}
+
+// While a picture is computed the window is drawn for what comes in and ten times a second, not all the time: it
+// takes the processor from a device that is one.
+static bool to_be_drawn(const viewer *v)
+{
+    return v->woken || !pictures_computing(v) || app_seconds() - v->last_drawn > 0.1;
+}
+
+// False: the device is lost, or `*code` says what failed.
+static bool step(viewer *v, int *code)
+{
+    source_step(v);
+    rebuild_step(v);
+    pictures_step(v);
+    say_work(v);
+    if (v->gpu.lost || v->library.lost || !to_be_drawn(v)) {
+        return !v->gpu.lost && !v->library.lost;
+    }
+    v->woken = false;
+    v->last_drawn = app_seconds();
+    const bool failed = step_frame(v) == SURFACE_FAILED;
+    *code = failed && !v->gpu.lost ? EXIT_FAILED : EXIT_DONE;
+    return !failed;
 }
 
 static int loop(viewer *v)
@@ -305,18 +354,24 @@ static int loop(viewer *v)
         if (hidden(v)) {
             continue;
         }
-        source_step(v);
-        rebuild_step(v);
-        pictures_step(v);
-        say_pending(v);
-        const bool failed = v->gpu.lost || step_frame(v) == SURFACE_FAILED;
-        if (v->gpu.lost) {
+        if (!step(v, &code) && code == EXIT_DONE) {
             code = recover(v);
-        } else if (failed) {
-            code = EXIT_FAILED;
         }
+        v->stats.deaf_ms = fmax(v->stats.deaf_ms, 1e3 * (app_seconds() - v->last_frame));
     }
     return app_interrupted() ? EXIT_INTERRUPTED : code;
+}
+
+// Nothing is left to do but to wait for a picture that nobody will see: the system takes the device back.
+static void leave(viewer *v, int code)
+{
+    glfwHideWindow(v->window);
+    glfwPollEvents();
+    if (!v->library.lost && !pictures_wait(v, 1)) {
+        pipeline_cache_write(&v->library.cache, v->library.tyn);
+        fflush(NULL);
+        _exit(code == EXIT_DONE && v->gpu.messages ? EXIT_FAILED : code);
+    }
 }
 
 // ---- life -------------------------------------------------------------------------------------
@@ -360,7 +415,7 @@ static int write_stats(const viewer *v)
 {
     cJSON *root = cJSON_CreateObject();
     cJSON_AddStringToObject(root, "tyndall", tyn_version_string());
-    cJSON_AddStringToObject(root, "device", v->gpu.name);
+    cJSON_AddStringToObject(root, "device", v->gpu.info.name);
     cJSON_AddStringToObject(root, "method", v->method.info.name);
     const int size[2] = {(int)v->view.width, (int)v->view.height};
     cJSON_AddItemToObject(root, "size", cJSON_CreateIntArray(size, 2));
@@ -368,8 +423,11 @@ static int write_stats(const viewer *v)
     json_add_float(root, "rest_fps", per_second(v->stats.rest_frames, v->stats.rest_seconds));
     cJSON_AddNumberToObject(root, "moving_frames", v->stats.moving_frames);
     cJSON_AddNumberToObject(root, "rest_frames", v->stats.rest_frames);
-    cJSON_AddNumberToObject(root, "divisor", v->divisor);
+    cJSON_AddNumberToObject(root, "divisor", v->small.divisor);
+    cJSON_AddNumberToObject(root, "rest_divisor", v->rest_shown);
     json_add_float(root, "sharp_ms", v->stats.sharp_ms);
+    json_add_float(root, "first_ms", v->stats.first_ms);
+    json_add_float(root, "deaf_ms", v->stats.deaf_ms);
     cJSON_AddNumberToObject(root, "most_pending", v->stats.most_pending);
     cJSON_AddNumberToObject(root, "swapchains", v->surface.num_recreated);
     cJSON_AddNumberToObject(root, "devices_lost", v->stats.num_lost);
@@ -428,6 +486,9 @@ int viewer_run(app *a, const view_args *args)
             const int written = write_stats(v);
             code = code == EXIT_DONE ? written : code;
         }
+        if (!v->rebuild.restart) {
+            leave(v, code);
+        }
     }
     char **again = code == EXIT_DONE && v->rebuild.restart ? rebuild_arguments(v) : NULL;
     close_device(v);
@@ -449,6 +510,7 @@ int viewer_run(app *a, const view_args *args)
     source_close(v);
     free(v->pixels);
     free(v->title);
+    free(v->said);
     free(v);
     return code;
 }

@@ -9,17 +9,30 @@
 #include "view/probe_point.h"
 #include "view/rebuild.h"
 #include "view/rendering.h"
+#include "view/resolution.h"
 #include "view/run.h"
 #include "view/source.h"
 #include "view/surface.h"
 #include "view/view_args.h"
 #include "view/watch.h"
 
+// What the device computes. One frame is under way at a time.
+typedef enum viewer_task {
+    TASK_NONE = 0,
+    TASK_SMALL,     // a picture while something moves, or the first of a method
+    TASK_REST,      // a sharper one
+    TASK_SAMPLES,   // more of its samples
+    TASK_REFERENCE, // samples of the reference
+} viewer_task;
+
 typedef struct viewer_stats {
     double moving_seconds, rest_seconds; // between pictures shown
     uint32_t moving_frames, rest_frames; // pictures shown
     uint32_t most_pending;               // kernels
-    double sharp_ms;   // the last picture at rest: from the end of the movement until it was shown
+    double sharp_ms; // the last picture at rest: from the end of the movement until it was shown
+    double
+        first_ms; // the first picture after the last change of method: from the change until it was shown
+    double deaf_ms;    // the longest time in which the window did not look for events
     uint32_t num_lost; // devices
 } viewer_stats;
 
@@ -28,9 +41,8 @@ struct viewer {
     const view_args *args;
 
     GLFWwindow *window;
-    char *title;            // of the window
-    uint32_t title_pending; // kernels, as it says
-    gpu gpu;
+    char *title, *said; // of the window: the scene's; what it says now, NULL: the scene's
+    gpu gpu, library;   // for the window; for the library
     surface surface;
     picture picture;
     VkDescriptorPool panel_pool;
@@ -54,11 +66,24 @@ struct viewer {
     tyn_view view;                  // size of the window, seed, depths
     uint32_t layer;                 // in the table of layers
 
-    rendering rest, moving; // at the window's size; smaller, for while something moves
-    uint32_t divisor;       // of the window's size, for the smaller one
+    rendering rest, moving; // as sharp as may be; smaller, for while something moves
+    rendering retired;      // of an earlier method, its last frame under way; else closed
+    rendering *busy;        // whose frame is under way; NULL: none is
+    viewer_task task;       // what for
+    viewer_task last_task;  // what the last one begun was for
+    uint32_t task_divisor;
+    resolution small;          // the size while something moves
+    uint32_t rest_divisor;     // of the first picture at rest; 0: not known
+    uint32_t rest_next;        // of the one that sharpens it; 0: none does
+    uint32_t rest_shown;       // of the picture at rest that is shown
+    resolution_cost rest_cost; // of that
+    const rendering *shown;    // the one whose picture is shown; NULL: none
+    bool whole;                // the next one has the window's size, whatever it takes
+    bool fresh;                // nothing of the method, or the scene, is shown yet
+    double asked_at;           // the method, or the scene; seconds
     bool has_picture;
-    bool sharp;         // the picture is at the window's size and of what is asked for
-    bool outdated;      // something changed since the last picture
+    bool sharp;         // the picture is of what is asked for, as sharp as it gets at rest
+    bool outdated;      // something changed since the last picture was begun
     double last_change; // seconds
     comparison comparison;
     probe_point probe;
@@ -74,11 +99,13 @@ struct viewer {
     float density[TYN_MAX_MEDIA],
         albedo[TYN_MAX_MEDIA][3]; // times that of the file; of each medium
     bool show_panel, turntable;
-    double mouse[2];      // pixels
-    bool splitting;       // the line between method and reference is dragged
-    bool dragging, woken; // the buttons are for the picture, not the panel; something came in
-    double last_frame;    // seconds
-    double last_shown;    // a picture
+    double mouse[2]; // pixels of the picture
+    bool splitting;  // the line between method and reference is dragged
+    bool dragging,
+        woken;         // the buttons are for the picture, not the panel; the window is to be drawn
+    double last_frame; // seconds: looked for events
+    double last_drawn; // the window
+    double last_shown; // a picture
     bool last_was_moving;
     viewer_stats stats;
     char note[512]; // the newest of what happened, for the panel
@@ -99,7 +126,9 @@ float viewer_aspect(const viewer *v);
 void viewer_frame_scene(viewer *v); // the camera to the scene's own, or so that all is seen
 
 // input.c
-void input_open(viewer *v);                 // before the panel
+void input_open(viewer *v); // before the panel
+// The window in the units of the pointer and of the panel, which are not pixels on every screen.
+void input_window_size(const viewer *v, float *width, float *height);
 void input_step(viewer *v, double seconds); // keys that are held
 
 // controls.c: the widgets of the panel.
@@ -109,20 +138,32 @@ void controls_reset(viewer *v);            // the scene is another
 
 // pictures.c: what the method is asked for, and when.
 void pictures_step(viewer *v);
+// Waits for the frame under way, `seconds` at most. False: it still is.
+bool pictures_wait(viewer *v, double seconds);
+bool pictures_computing(const viewer *v); // a frame is under way
+// What it is, for the title and the panel: "drawing 640x480, 3 s"; empty within the first half second.
+void pictures_say(const viewer *v, char *text, size_t size);
 bool pictures_working(const viewer *v);     // something is to be computed now, or soon
 uint32_t pictures_pending(const viewer *v); // kernels that pictures wait for
 bool pictures_show(viewer *v, const rendering *r, picture_slot slot); // the layer of its last frame
 uint32_t pictures_samples_wanted(const viewer *v);
 void pictures_args(const viewer *v, struct picture_args *args);
-void pictures_close(viewer *v);
+// The method or the scene is another: what pictures take is not known any more.
+void pictures_forget(viewer *v);
+void pictures_close(viewer *v); // a frame under way goes on, and is closed when it is done
+// A rendering that is not needed any more; so for each.
+void pictures_retire(viewer *v, rendering *r);
 
 // comparison.c
 void comparison_toggle(viewer *v);
 void comparison_close(viewer *v);
 bool comparison_working(const viewer *v);
 bool comparison_seen(const viewer *v); // there is something of it to show
-void comparison_step(viewer *v, const tyn_view *view,
-                     double budget_ms); // more samples of the reference
+rendering_state comparison_begin(viewer *v, const tyn_view *view); // more samples of the reference
+void comparison_take(viewer *v);                                   // they are computed
+void comparison_fail(viewer *v);
+// The error says something about the method: it is clearly more than the noise of the reference explains.
+bool comparison_tells(const comparison *c);
 
 // probe_point.c
 void probe_place(viewer *v); // under the pointer

@@ -1,7 +1,6 @@
 // watch.c -- notices that one of a list of files was written.
 #include "view/watch.h"
 #include "app.h"
-#include <cjson/cJSON.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -39,38 +38,15 @@ void watch_add(watch *w, const char *path)
     }
 }
 
-static void add_uris(watch *w, const cJSON *json, const char *folder)
+static void add_found(void *user, const char *path)
 {
-    for (const cJSON *item = json ? json->child : NULL; item; item = item->next) {
-        const bool names_file = item->string && strcmp(item->string, "uri") == 0 &&
-                                cJSON_IsString(item) && strncmp(item->valuestring, "data:", 5) != 0;
-        if (names_file) {
-            char *path = text_format("%s%s", folder, item->valuestring);
-            watch_add(w, path);
-            free(path);
-        }
-        add_uris(w, item, folder);
-    }
+    watch_add(user, path);
 }
 
-void watch_add_scene(watch *w, const char *path)
+void watch_add_scene(watch *w, const char *path, const uint32_t *frame)
 {
-    watch_add(w, path);
-    void *text = NULL;
-    size_t size = 0;
-    if (!text_ends_with(path, ".gltf") ||
-        tyn_file_read(path, UINT64_C(64) << 20, &text, &size, NULL) != TYN_OK) {
-        return;
-    }
-    const char *slash = strrchr(path, '/');
-    char *folder = text_format("%.*s", slash ? (int)(slash + 1 - path) : 0, path);
-    cJSON *json = cJSON_ParseWithLength(text, size);
-    if (folder) {
-        add_uris(w, json, folder);
-    }
-    cJSON_Delete(json);
-    free(folder);
-    free(text);
+    const tyn_log nobody = {0}; // who reads the scene says what is wrong with it
+    tyn_scene_files(path, frame, add_found, w, &nobody);
 }
 
 bool watch_look(watch *w)

@@ -15,7 +15,7 @@ typedef struct watch {
 
 void watch_finish(watch *w);
 void watch_add(watch *w, const char *path); // NULL: nothing
-// A glTF scene and the files that its URIs name.
-void watch_add_scene(watch *w, const char *path);
+// A scene and the files that it names; `frame`: the picture of a sequence, NULL: none.
+void watch_add_scene(watch *w, const char *path, const uint32_t *frame);
 // True once after files have changed and are no longer being written.
 bool watch_look(watch *w);

@@ -37,6 +37,13 @@ TYN_API tyn_result tyn_scene_load_moment(tyn_scene *scene, const char *path,
                                          const char *environment, const tyn_moment *moment,
                                          const tyn_log *log);
 
+// The files that a scene is read from: `path` itself, then each that a .gltf or .glb names (buffers, pictures, volumes,
+// maps), as they are opened, whether they are there or not; one that is named twice is told twice. `frame`: the picture of
+// a sequence, NULL: none. TYN_ERR_IO and TYN_ERR_PARAMS, with a line, where a glTF file cannot be read.
+typedef void (*tyn_file_found)(void *user, const char *path);
+TYN_API tyn_result tyn_scene_files(const char *path, const uint32_t *frame, tyn_file_found found,
+                                   void *user, const tyn_log *log);
+
 // Loads one grid of a volume file (.nvdb, .vdb) by its extension; `grid` NULL = "density", else the
 // first float grid. Negative values are set to 0 and added to `clamped_negative` (may be NULL).
 TYN_API tyn_result tyn_volume_load(tyn_volume *volume, const char *path, const char *grid,
