@@ -2,7 +2,7 @@
 // light (VPL) from the disc that it stands for. Include after radial.glsl.
 #ifndef TYN_LATTICE_LAMPS_DISC_GLSL
 #define TYN_LATTICE_LAMPS_DISC_GLSL
-#include "shaders/light/disc.glsl"
+#include "disc.glsl"
 
 // Mean over a cube of edge d whose middle is at `away`.
 disc_light lattice_lamps_light(light_block light, vec3 away, float d)

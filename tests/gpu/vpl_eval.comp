@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "passes/shade/vpl.glsl"
-#include "shaders/light/disc.glsl"
+#include "passes/lattice_lamps/disc.glsl"
 
 layout(local_size_x = 64) in;
 struct point {
