@@ -115,6 +115,27 @@ static void add_columns(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     tyn_take(refs, COLUMNS_PORT_ORDINATES, s->sky.columns);
 }
 
+// What surfaces leave of the ordinates.
+static void add_seen(tyn_graph *g, const tyn_job *job, tyn_sources *s)
+{
+    const tyn_extent dims = tyn_lattice_dims(s->lattice.shape.extent, s->lattice.shape.cells);
+    tyn_sky_seen_params params;
+    tyn_settings_params(job->settings, &tyn_pass_sky_seen, &params);
+    memcpy(params.extent, s->lattice.shape.extent, sizeof params.extent);
+    params.dims[0] = dims.x;
+    params.dims[1] = dims.y;
+    params.dims[2] = dims.z;
+    params.count = s->sky.count;
+    params.fan = s->sky.fan;
+    tyn_ref refs[TYN_MAX_PORTS] = {[SKY_SEEN_PORT_ORDINATES] = s->sky.ordinates,
+                                   [SKY_SEEN_PORT_DIRECTIONS] = s->sky.directions};
+    tyn_connect(refs, SKY_SEEN_PORT_SKY_ATLAS, s->sky.maps);
+    tyn_connect(refs, SKY_SEEN_PORT_WALL_LINKS, s->walls.cut);
+    tyn_graph_add(g, &tyn_pass_sky_seen, &params, refs);
+    s->sky.seen.sky_seen = refs[SKY_SEEN_PORT_SKY_SEEN];
+    s->sky.seen.environment = job->refs.environment;
+}
+
 static void add_ordinates(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
     tyn_lattice_ordinates_params params;
@@ -129,8 +150,14 @@ static void add_ordinates(tyn_graph *g, const tyn_job *job, tyn_sources *s)
         [LATTICE_ORDINATES_PORT_SUNLIGHT] = s->lattice.source,
     };
     tyn_connect(refs, LATTICE_ORDINATES_PORT_ORDINATES, s->sky.columns);
+    tyn_connect(refs, LATTICE_ORDINATES_PORT_SKY_SEEN, s->sky.seen);
+    params.mean = s->sky.seen.sky_seen.resource && s->sky.split && !s->mean_from_all_sides;
     tyn_graph_add(g, &tyn_pass_lattice_ordinates, &params, refs);
     s->lattice.source = refs[LATTICE_ORDINATES_PORT_SOURCE];
+    if (params.mean) {
+        s->sky.even = refs[LATTICE_ORDINATES_PORT_EVEN];
+        s->sky.guess = refs[LATTICE_ORDINATES_PORT_GUESS];
+    }
 }
 
 static void add_lamps(tyn_graph *g, const tyn_job *job, tyn_sources *s)
@@ -186,6 +213,9 @@ void tyn_add_cells(tyn_graph *g, const tyn_job *job, int32_t cells, const char *
     tyn_add_walls(g, job, s);
     if (s->sky.ordinates.resource) {
         add_columns(g, job, s);
+    }
+    if (s->sky.maps.sky_maps.resource) {
+        add_seen(g, job, s);
     }
     if (s->num_suns) {
         add_source(g, job, s);

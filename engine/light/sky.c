@@ -59,8 +59,48 @@ static struct ordinate ordinate_of_sun(const struct light_block *sun)
     return o;
 }
 
-void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_split,
-                 tyn_sources *s)
+// What surfaces hide of `count` directions.
+static void add_maps(tyn_graph *g, const tyn_job *job, uint32_t count, tyn_sky *sky)
+{
+    tyn_sky_shadows_params params;
+    tyn_settings_params(job->settings, &tyn_pass_sky_shadows, &params);
+    params.count = count;
+    params.num_triangles = job->frame->num_triangles;
+    tyn_ref refs[TYN_MAX_PORTS] = {
+        [SKY_SHADOWS_PORT_MEDIUM] = job->refs.medium,
+        [SKY_SHADOWS_PORT_SURFACES] = job->refs.geometry.surfaces,
+        [SKY_SHADOWS_PORT_TRIANGLES] = job->refs.geometry.triangles,
+        [SKY_SHADOWS_PORT_VERTICES] = job->refs.geometry.vertices,
+        [SKY_SHADOWS_PORT_ORDINATES] = sky->directions,
+    };
+    tyn_graph_add(g, &tyn_pass_sky_shadows, &params, refs);
+    tyn_take(refs, SKY_SHADOWS_PORT_SKY_ATLAS, sky->maps);
+}
+
+// Parts of the ordinates of `params`, with all light of theirs, and what surfaces hide of it. `refs` are those of the
+// ordinates.
+static void add_directions(tyn_graph *g, const tyn_job *job, tyn_ordinates_params params,
+                           tyn_ref refs[TYN_MAX_PORTS], tyn_sky *sky)
+{
+    const uint32_t count = (uint32_t)params.count, fixed = params.num_fixed;
+    params.fan = TYN_SKY_FAN;
+    while (params.fan > 1 && fixed + count * params.fan > TYN_ORDINATES_MAX) {
+        params.fan /= 2;
+    }
+    // Regions are placed as those of the ordinates are.
+    params.spread *= params.split ? 1.0f / ORDINATES_SPREAD_OF_ALL : 1.0f;
+    params.split = 0;
+    refs[ORDINATES_PORT_ORDINATES] = (tyn_ref){0};
+    tyn_graph_add(g, &tyn_pass_ordinates, &params, refs);
+    sky->fan = params.fan;
+    sky->directions = refs[ORDINATES_PORT_ORDINATES];
+    const uint32_t all = fixed + count * params.fan;
+    add_maps(g, job, all < TYN_ORDINATES_MAX ? all : TYN_ORDINATES_MAX, sky);
+}
+
+// `hidden`: surfaces hide some of it.
+static void add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_split,
+                    bool hidden, tyn_sources *s)
 {
     const tyn_frame_scene *frame = job->frame;
     const struct env_block *env = &frame->environment;
@@ -85,30 +125,50 @@ void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_
         add_env_importance(g, job, &sky->map, &refs[ORDINATES_PORT_SUMS]);
         refs[ORDINATES_PORT_SKY] = sky->map;
     }
-    bool picture = job->outputs & TYN_PICTURE_OUTPUTS;
+    bool picture = job->outputs & TYN_PICTURE_OUTPUTS && !frame->empty;
     // Ordinates that follow the camera are solved for anew when it moves: not where the solve could stay.
     bool weighted = params.importance == ORDINATES_IMPORTANCE_ON ||
                     (params.importance == ORDINATES_IMPORTANCE_AUTO && !can_split);
     if (regions && picture && weighted) {
         add_importance(g, job, &s->medium, can_split, &refs[ORDINATES_PORT_IMPORTANCE]);
     }
+    if (hidden) {
+        params.fold = -1.0f; // so that directions are found in the order of the ordinates
+    }
     tyn_graph_add(g, &tyn_pass_ordinates, &params, refs);
     sky->ordinates = refs[ORDINATES_PORT_ORDINATES];
+    if (hidden) {
+        add_directions(g, job, params, refs, sky);
+    }
     tyn_job_counters(g, job, &tyn_pass_ordinates,
                      sky->ordinates); // how many, and how many were folded
+}
+
+void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_split,
+                 tyn_sources *s)
+{
+    add_sky(g, job, first_sun, can_split, false, s);
 }
 
 void tyn_add_surroundings(tyn_graph *g, const tyn_job *job, bool can_split, tyn_sources *s)
 {
     const tyn_frame_scene *frame = job->frame;
-    if (!tyn_has_walls(frame)) {
-        tyn_add_sky(g, job, s->num_suns, can_split, s);
+    const uint32_t first_sun = frame->empty ? tyn_num_beams(&frame->lights) : s->num_suns;
+    const bool maps = can_split && !tyn_is_periodic(frame);
+    if (maps || !tyn_has_walls(frame)) {
+        add_sky(g, job, first_sun, can_split, maps && frame->num_triangles, s);
     } else if (frame->environment.has_map) {
         // Ordinates know of no walls; the mean of the sky comes in along the lattice's lines, which do.
         tyn_job_warn(
             job,
             "among surfaces the medium is lit by the mean of the environment map and by its suns");
     }
-    s->mean_from_all_sides =
-        tyn_is_lit(frame->environment.sky) && (s->sky.split || !s->sky.ordinates.resource);
+    // Of a map that surfaces may hide the mean comes with the ordinates.
+    const bool hidden = s->sky.maps.sky_maps.resource && frame->environment.has_map;
+    s->mean_from_all_sides = tyn_is_lit(frame->environment.sky) && !hidden &&
+                             (s->sky.split || !s->sky.ordinates.resource);
+    if (s->mean_from_all_sides && maps && tyn_has_walls(frame)) {
+        tyn_job_warn(job, "accuracy: the environment's light comes between surfaces along the "
+                          "lattice's 14 directions: behind openings it falls in patches");
+    }
 }

@@ -53,9 +53,11 @@ void tyn_add_walls(tyn_graph *g, const tyn_job *job, tyn_sources *s)
     }
 }
 
-static void add_wall_light(tyn_graph *g, const tyn_job *job, uint32_t num_suns, tyn_sources *s)
+static void add_wall_light(tyn_graph *g, const tyn_job *job, uint32_t num_suns, bool vpls,
+                           tyn_sources *s)
 {
-    if (!s->walls.cut.wall_links.resource || (num_suns == 0 && !s->lamps.vpls)) {
+    const bool sky = s->sky.seen.sky_seen.resource != 0;
+    if (!s->walls.cut.wall_links.resource || (num_suns == 0 && !sky && !vpls)) {
         return;
     }
     tyn_wall_light_params params;
@@ -71,9 +73,12 @@ static void add_wall_light(tyn_graph *g, const tyn_job *job, uint32_t num_suns, 
         [WALL_LIGHT_PORT_VPL_DISTANCES] = s->surface_light.vpls.vpl_distances,
     };
     tyn_connect(refs, WALL_LIGHT_PORT_BEAMS, s->beams);
-    tyn_connect(refs, WALL_LIGHT_PORT_RADIALS, s->lamps.radials);
-    if (!s->lamps.vpls) { // lamps alone, whose light VPLs reflect
-        refs[WALL_LIGHT_PORT_RADIALS] = (tyn_ref){0};
+    if (vpls) { // not lamps alone, whose light VPLs reflect
+        tyn_connect(refs, WALL_LIGHT_PORT_RADIALS, s->lamps.radials);
+    }
+    if (sky) {
+        tyn_connect(refs, WALL_LIGHT_PORT_ORDINATES, s->sky.columns);
+        tyn_connect(refs, WALL_LIGHT_PORT_SKY_SEEN, s->sky.seen);
     }
     tyn_connect(refs, WALL_LIGHT_PORT_WALL_LINKS, s->walls.cut);
     tyn_connect(refs, WALL_LIGHT_PORT_SURFACES, job->refs.geometry);
@@ -84,11 +89,11 @@ static void add_wall_light(tyn_graph *g, const tyn_job *job, uint32_t num_suns, 
 }
 
 // Second reflections, of what the VPLs send. In a periodic medium also sunlight: light from single points on walls knows
-// no periods.
+// no periods. And light of the sky, of which there are no VPLs.
 void tyn_add_wall_light(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
-    if (s->surface_light.vpls.vpls.resource && tyn_vpls_bounce(job)) {
-        return; // VPLs carry what walls reflect of theirs
-    }
-    add_wall_light(g, job, tyn_is_periodic(job->frame) ? s->num_suns : 0, s);
+    // VPLs may carry what walls reflect of theirs.
+    const bool bounce = s->surface_light.vpls.vpls.resource && tyn_vpls_bounce(job);
+    add_wall_light(g, job, tyn_is_periodic(job->frame) ? s->num_suns : 0, s->lamps.vpls && !bounce,
+                   s);
 }

@@ -114,11 +114,9 @@ static tyn_result check_repeat(const tyn_job *job)
 static void add_surfaces_alone(tyn_graph *g, const tyn_job *job, tyn_sources *s,
                                tyn_view_inputs *view)
 {
-    if (job->frame->num_triangles) {
-        tyn_job_warn_suns(job, "surfaces");
-    }
     tyn_add_shadows(g, job, s);
     tyn_add_vpls(g, job, s);
+    tyn_add_surroundings(g, job, true, s);
     tyn_add_surfaces(g, job, view);
     tyn_add_picture(g, job, view);
 }
@@ -126,15 +124,15 @@ static void add_surfaces_alone(tyn_graph *g, const tyn_job *job, tyn_sources *s,
 static void add_lights(tyn_graph *g, const tyn_job *job, tyn_sources *s)
 {
     const tyn_frame_scene *frame = job->frame;
-    const bool walls = tyn_has_walls(frame);
     tyn_add_beams(g, job, s);
     if (!tyn_is_periodic(frame)) {
         tyn_add_vpls(g, job, s);
     }
     tyn_add_radials(g, job, s);
     tyn_add_shadows(g, job, s);
-    if (frame->num_triangles) {
-        tyn_job_warn_suns(job, walls ? "surfaces and the medium among them" : "surfaces");
+    if (frame->num_triangles && tyn_is_periodic(frame)) {
+        tyn_job_warn_suns(job,
+                          tyn_has_walls(frame) ? "surfaces and the medium among them" : "surfaces");
     }
     tyn_add_surroundings(g, job, true, s);
 }

@@ -57,6 +57,7 @@ void tyn_solve_lattice(tyn_graph *g, const tyn_job *job, const tyn_sources *s, t
         [LATTICE_PORT_SOURCE] = s->lattice.source,
         [LATTICE_PORT_ENVIRONMENT] = tyn_mean_environment(job, s),
         [LATTICE_PORT_WALL_LIGHT] = s->walls.light,
+        [LATTICE_PORT_GUESS] = s->sky.guess,
     };
     tyn_connect(refs, LATTICE_PORT_WALL_LINKS, s->walls.cut);
     memory last = {0};

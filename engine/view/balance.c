@@ -28,6 +28,10 @@ void tyn_add_balance(tyn_graph *g, const tyn_job *job, const tyn_view_inputs *in
         tyn_job_warn(job, "the balance is that of the box around the media: light that misses them "
                           "inside it counts as entering and as escaped");
     }
+    if (in->sources->sky.maps.sky_maps.resource) {
+        tyn_job_warn(job, "surfaces hide some of the environment's light: what of it enters the "
+                          "box is not told in the balance");
+    }
     tyn_balance_params params;
     tyn_settings_params(job->settings, &tyn_pass_balance, &params);
     params.channels = in->sources->lattice.shape.channels;

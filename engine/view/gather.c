@@ -77,6 +77,8 @@ void tyn_gather(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     };
     if (s->sky.ordinates.resource) {
         tyn_connect(refs, MERGE_PORT_ORDINATES, s->sky.columns);
+        tyn_connect(refs, MERGE_PORT_SKY_SEEN, s->sky.seen);
+        refs[MERGE_PORT_EVEN] = s->sky.even;
         refs[MERGE_PORT_TMS] = in->tms;
         refs[MERGE_PORT_LUT_BLOCK] = in->lut_block;
     }

@@ -113,7 +113,11 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     params.num_lamps = media ? in->sources->lamps.num_lamps : job->frame->lights.num_lamps;
     params.one_channel = in->field->one_channel;
     memcpy(params.tint, in->field->tint, sizeof params.tint);
-    params.sky = sky[0] + sky[1] + sky[2] > 0.0f && !in->no_sky_on_surfaces;
+    const tyn_sky *ordinates = &in->sources->sky;
+    const bool shadowed = ordinates->maps.sky_maps.resource && !in->no_sky_on_surfaces;
+    params.sky = sky[0] + sky[1] + sky[2] > 0.0f && !in->no_sky_on_surfaces &&
+                 !(shadowed && job->frame->environment.has_map);
+    params.sky_fan = ordinates->fan;
     const bool beyond = reach_beyond_media(job->frame);
     params.outside = beyond && !tyn_is_periodic(job->frame);
     params.hidden = params.outside && tyn_can_trace(job);
@@ -124,6 +128,10 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     if (params.sky && (in->sources->walls.cut.wall_links.resource == 0 || beyond)) {
         tyn_job_warn(job, "surfaces beyond the media's box are lit by the mean of the "
                           "environment as if nothing stood around them");
+    }
+    if (shadowed && !params.sky && (in->sources->walls.cut.wall_links.resource == 0 || beyond)) {
+        tyn_job_warn(job, "what surfaces beyond the media's box reflect of the environment's light "
+                          "lights no others");
     }
     tyn_ref refs[TYN_MAX_PORTS] = {
         [SHADE_PORT_MEDIUM] = job->refs.medium,
@@ -143,6 +151,11 @@ void tyn_add_surfaces(tyn_graph *g, const tyn_job *job, tyn_view_inputs *in)
     tyn_connect(refs, SHADE_PORT_SHADOW_ATLAS, in->sources->shadows);
     if (!media || in->sources->lamps.vpls) {
         tyn_connect(refs, SHADE_PORT_VPLS, in->sources->surface_light.vpls);
+    }
+    if (shadowed) {
+        tyn_connect(refs, SHADE_PORT_SKY_ATLAS, ordinates->maps);
+        tyn_connect(refs, SHADE_PORT_ORDINATES, ordinates->columns);
+        refs[SHADE_PORT_ORDINATES] = ordinates->directions;
     }
     tyn_connect(refs, SHADE_PORT_WALL_LINKS, in->sources->walls.cut);
     tyn_connect(refs, SHADE_PORT_SURFACES, job->refs.geometry);

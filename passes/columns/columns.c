@@ -110,7 +110,7 @@ static void record(tyn_recorder *r, const void *params)
 const tyn_pass_desc tyn_pass_columns = {
     .name = "columns",
     .summary = "optical depth along the principal ordinates to the cells of the lattice",
-    .serves = "principal ordinates: an environment map, and no walls in the medium",
+    .serves = "principal ordinates: an environment map",
     TYN_PASS_TABLES(tyn_columns_params),
     .debug_port = COLUMNS_PORT_COLUMNS,
     .debug_meaning = "medium integrated along each ordinate to each cell, roots as halves",

@@ -32,7 +32,7 @@ typedef struct tyn_lattice_params {
     X(LATTICE, SOURCE, source, OPTIONAL, IMAGE_3D, "of the last of lattice_source, _ordinates, _lamps"), \
     X(LATTICE, ENVIRONMENT, environment, OPTIONAL, BUFFER, \
         "struct env_block: its mean without suns enters at the box"), \
-    X(LATTICE, GUESS, guess, OPTIONAL, BUFFER, "of lattice_recall: where the solve starts"), \
+    X(LATTICE, GUESS, guess, OPTIONAL, BUFFER, "of lattice_recall or lattice_ordinates: where the solve starts"), \
     TYN_WALLS(X##_OPTIONAL, LATTICE), \
     X(LATTICE, WALL_LIGHT, wall_light, OPTIONAL, BUFFER, \
         "vec3[cell]: radiance that a cell's walls send out beside what they reflect of the lattice's light, " \

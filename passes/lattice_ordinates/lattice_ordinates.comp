@@ -23,8 +23,28 @@ TYN_ARGS(lattice_ordinates_args args);
 layout(binding = 3) uniform sampler3D cells;
 layout(binding = 4) uniform sampler3D sunlight;
 layout(binding = 5, rgba32f) uniform writeonly image3D source;
+#define SKY_SEEN_AT 6
+#include "shaders/light/sky_seen.glsl"
+layout(binding = 8, rgba32f) uniform writeonly image3D even;
+TYN_READ(9, mean_psi, float mean_psi[]); // lattice_ordinates_lines.comp
+TYN_WRITE(10, guess, vec4 guess[]);
 
 layout(constant_id = 1) const uint num_transmittances = 3; // 1: all channels have the same
+layout(constant_id = 2) const uint seen = 0;               // 1: surfaces hide some of the light
+layout(constant_id = 3) const uint mean = 0;               // 1: and the sky's mean is added here
+
+// Fluence and flux of the mean along the lattice's lines.
+vec4 mean_light(ivec3 cell, int ch)
+{
+    vec4 sum = vec4(0.0);
+    ivec3 dims = ivec3(args.dims);
+    for (uint d = 0u; d < LATTICE_DIRECTIONS; d++) {
+        int at = ((int(d * args.channels) + ch) * dims.z + cell.z) * dims.y + cell.y;
+        float psi = LATTICE_4PI * lattice_weight(d) * mean_psi[at * dims.x + cell.x];
+        sum += psi * vec4(1.0, vec3(lattice_step(d)) * (d < 6u ? 1.0 : inversesqrt(3.0)));
+    }
+    return sum;
+}
 
 // What of the columns makes up the depth tau_a + tau'_s of a channel, at the two cells of a word.
 vec2 depth_at(uint word, uint stride, uint ch)
@@ -85,6 +105,11 @@ void main()
     bool any_medium = most.x + most.y + most.z > 0.0; // where there is none light does nothing
     uint count = any_medium ? min(ordinates.count, args.count) : 0u;
     uint stride = columns_stride(args.dims);
+    vec2 open = seen == 1u ? sky_seen_pair(sky_seen_word(0u, cell, args.dims)) : vec2(1.0);
+    vec3 lbar = vec3(0.0); // the mean, where some of it may be hidden
+    if (seen == 1u && mean == 1u) {
+        lbar = args.channels == 1 ? vec3(dot(environment.sky, tint)) : environment.sky;
+    }
     vec4 sums[2][3];
     for (int i = 0; i < 6; i++) {
         sums[i / 3][i % 3] = vec4(0.0);
@@ -96,6 +121,8 @@ void main()
         uint word = columns_word(n, cell, args.dims);
         vec2 centre, change, t;
         vec3 direction = ordinates.list[n].direction;
+        vec2 share = seen == 1u ? sky_seen_pair(sky_seen_word(n + 1u, cell, args.dims)) : vec2(1.0);
+        vec4 rest = vec4(ordinates.list[n].even, ordinates.list[n].even_flux);
         bvec2 enters = bvec2(enters_here(cell, direction), enters_here(cell + uvec3(1, 0, 0), direction));
         depths_at(pair, word, aside, stride, 0u, centre, change);
         for (uint ch = 0; ch < 3; ch++) {
@@ -112,14 +139,28 @@ void main()
                     t[i] = mean_transmittance(tau, x);
                 }
             }
-            sums[0][ch] += e[ch] * t.x * moments;
-            sums[1][ch] += e[ch] * t.y * moments;
+            if (seen == 1u) {
+                sums[0][ch] += t.x * (e[ch] * share.x * moments + lbar[ch] * (share.x - open.x) * rest);
+                sums[1][ch] += t.y * (e[ch] * share.y * moments + lbar[ch] * (share.y - open.y) * rest);
+            } else {
+                sums[0][ch] += e[ch] * t.x * moments;
+                sums[1][ch] += e[ch] * t.y * moments;
+            }
         }
     }
     for (int i = 0; i < (pair ? 2 : 1); i++) {
         for (int ch = 0; ch < int(args.channels); ch++) {
             ivec3 texel = ivec3(cell) + ivec3(i, 0, ch * dims.z);
-            imageStore(source, texel, lattice_fetch_source(sunlight, cells, texel) + sums[i][ch]);
+            vec4 light = lattice_fetch_source(sunlight, cells, texel) + sums[i][ch];
+            if (mean == 1u) {
+                vec4 all_around = open[i] * mean_light(ivec3(cell) + ivec3(i, 0, 0), ch);
+                imageStore(even, texel, all_around);
+                // All of the mean that passes the surfaces, less what has not scattered; of a furnace that is the solution.
+                int at = (texel.z * dims.y + texel.y) * dims.x + texel.x;
+                guess[at] = vec4(open[i] * LATTICE_4PI * lbar[ch], vec3(0.0)) - all_around;
+                light += all_around;
+            }
+            imageStore(source, texel, light);
         }
     }
 }

@@ -10,17 +10,26 @@ typedef struct tyn_lattice_ordinates_params {
     uint32_t mode;  // TYN_MEDIUM_*
     uint32_t grey;  // 1: sigma_s, sigma_a and g are the same in all channels
     uint32_t count; // tyn_columns_params.count
+    // 1: the sky's mean is among the light of the cells, by `sky_seen`; else it is the lattice that has it.
+    uint32_t mean;
 } tyn_lattice_ordinates_params;
 
 // clang-format off
 #define LATTICE_ORDINATES_PORTS(X) \
     X(LATTICE_ORDINATES, MEDIUM, medium, IN, BUFFER, "struct medium_block"), \
     TYN_COLUMNS(X, LATTICE_ORDINATES), \
+    TYN_SKY_SEEN(X##_OPTIONAL, LATTICE_ORDINATES), \
     X(LATTICE_ORDINATES, CELLS, cells, IN, IMAGE_3D, "of lattice_cells"), \
     X(LATTICE_ORDINATES, SUNLIGHT, sunlight, OPTIONAL, IMAGE_3D, "`source` of lattice_source, which is added to"), \
     X(LATTICE_ORDINATES, SOURCE, source, OUT, IMAGE_3D, \
         "unscattered fluence and flux of suns and ordinates, W/m^2; channels stacked along z", \
-        .format = VK_FORMAT_R32G32B32A32_SFLOAT)
+        .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(LATTICE_ORDINATES, EVEN, even, OUT, IMAGE_3D, \
+        "what of `source` is the sky's mean; exists with `sky_seen`", .format = VK_FORMAT_R32G32B32A32_SFLOAT), \
+    X(LATTICE_ORDINATES, GUESS, guess, OUT, BUFFER, \
+        "vec4[channel][cell]: what of the mean would have scattered if nothing absorbed it: where the solve may start"), \
+    X(LATTICE_ORDINATES, MEAN_PSI, mean_psi, SCRATCH, BUFFER, \
+        "float[direction][channel][cell]: the sky's mean along the lattice's lines")
 // clang-format on
 enum { LATTICE_ORDINATES_PORTS(TYN_PORT_ENUM), LATTICE_ORDINATES_NUM_PORTS };
 extern const tyn_pass_desc tyn_pass_lattice_ordinates;

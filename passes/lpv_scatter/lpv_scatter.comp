@@ -50,7 +50,7 @@ float lit_until(uint light, vec3 o, vec3 d)
         return 1e30;
     }
     vec2 first;
-    vec4 around = shadow_gather(place, first);
+    vec4 around = shadow_gather(shadow_atlas, place, first);
     float stored = max(max(around.x, around.y), max(around.z, around.w));
     if (stored <= 0.0) {
         return 1e30;

@@ -23,7 +23,9 @@ static tyn_result declare(tyn_builder *b, const void *params)
     const tyn_merge_params *p = params;
     tyn_extent dims = tyn_build_extent(b, MERGE_PORT_MOMENTS);
     bool ordinates = tyn_build_has(b, MERGE_PORT_ORDINATES);
-    for (uint8_t port = MERGE_PORT_COLUMNS; port <= MERGE_PORT_TMS; port++) {
+    const uint8_t with[] = {MERGE_PORT_COLUMNS, MERGE_PORT_TMS};
+    for (size_t i = 0; i < sizeof with; i++) {
+        const uint8_t port = with[i];
         if (tyn_build_has(b, port) != ordinates) {
             tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
                           "merge: '%s' and '%s' must be connected both or neither",
@@ -61,7 +63,8 @@ static void record(tyn_recorder *r, const void *params)
     tyn_rec_fill(r, MERGE_PORT_COUNTERS, 0);
     TYN_DISPATCH(r, .kernel = KERNEL_CELLS, .cells = dims, .args = &args);
     if (tyn_rec_has(r, MERGE_PORT_ORDINATES)) {
-        const uint32_t spec[3] = {p->mode, p->grey, p->channels};
+        const uint32_t spec[4] = {p->mode, p->grey, p->channels,
+                                  tyn_rec_has(r, MERGE_PORT_SKY_SEEN)};
         TYN_DISPATCH(r, .kernel = KERNEL_ORDINATES, .cells = dims, .args = &args, .spec = spec);
     }
     if (tyn_rec_has(r, MERGE_PORT_RADIALS)) {

@@ -21,6 +21,8 @@ typedef struct tyn_merge_params {
     X(MERGE, CELLS, cells, IN, IMAGE_3D, "of lattice_cells"), \
     X(MERGE, MOMENTS, moments, IN, IMAGE_3D, "of lattice"), \
     TYN_COLUMNS(X##_OPTIONAL, MERGE), \
+    TYN_SKY_SEEN(X##_OPTIONAL, MERGE), \
+    X(MERGE, EVEN, even, OPTIONAL, IMAGE_3D, "the sky's mean in the cells, of lattice_ordinates"), \
     X(MERGE, TMS, tms, OPTIONAL, IMAGE_3D, "kernels, of scatter_lut"), \
     X(MERGE, LUT_BLOCK, lut_block, OPTIONAL, BUFFER, "struct lut_block; with ordinates or radials"), \
     TYN_RADIALS(X##_OPTIONAL, MERGE), \

@@ -1,5 +1,6 @@
 // merge_cells.comp -- what a cell scatters towards the eye of the light that has scattered before, and of that
-// of VPLs, which comes from all around as well.
+// of VPLs and of the sky's mean, which come
+// from all around as well.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/common/scene_args.h"
@@ -14,6 +15,7 @@ TYN_UNIFORM(1, camera, camera_block camera);
 layout(binding = 2) uniform sampler3D cells;
 layout(binding = 3) uniform sampler3D moments;
 layout(binding = 5) uniform sampler3D vpl_light; // of lattice_lamps; one texel if there is none
+layout(binding = 6) uniform sampler3D even; // of lattice_ordinates; one texel if there is none
 TYN_WRITE(4, field, float field[]);
 #include "merge.glsl"
 
@@ -29,7 +31,7 @@ void main()
     for (int ch = 0; ch < int(args.channels); ch++) {
         ivec3 texel = c + ivec3(0, 0, ch * dims.z);
         vec4 cell = texelFetch(cells, texel, 0), m = texelFetch(moments, texel, 0);
-        m += lattice_fetch_source(vpl_light, cells, texel);
+        m += lattice_fetch_source(vpl_light, cells, texel) + lattice_fetch_source(even, cells, texel);
         field[merge_index(c, uint(ch))] = (m.x + 3.0 * cell.z * dot(v, m.yzw)) / 12.56637061;
         most = max(most, cell.x);
     }

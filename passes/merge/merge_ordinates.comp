@@ -9,12 +9,15 @@
 #define SCATTER_LUT_BLOCK 7
 #include "tms.glsl"
 #include "merge_args.h"
+#define SKY_SEEN_AT 8
+#include "shaders/light/sky_seen.glsl"
 #include "shaders/light/ordinate_args.h"
 #include "shaders/lattice/lattice.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(constant_id = 1) const bool grey = false; // all channels of the medium are equal
 layout(constant_id = 2) const uint channels = 3;
+layout(constant_id = 3) const uint seen = 0; // 1: surfaces hide some of the light
 TYN_ARGS(merge_args args);
 TYN_UNIFORM(1, camera, camera_block camera);
 layout(binding = 2) uniform sampler3D cells;
@@ -71,6 +74,7 @@ void main()
     }
     vec3 sum = vec3(0.0);
     uint count = merge_is_read(c, dims, channels) ? min(ordinates.count, uint(TYN_ORDINATES_MAX)) : 0u;
+    float open = seen == 1u ? sky_seen_share(0u, uvec3(c), args.dims) : 1.0;
     for (uint n = 0u; n < count; n++) {
         ordinate o = ordinates.list[n];
         float mu = dot(o.direction, v), level = tms_level(1.0 - o.mean_cosine);
@@ -82,7 +86,11 @@ void main()
         } else {
             share = coloured_share(n, uvec3(c), unit, row, mu, level);
         }
-        sum += o.irradiance * share;
+        if (seen == 1u) {
+            sum += sky_seen_irradiance(o, sky_seen_share(n + 1u, uvec3(c), args.dims), open) * share;
+        } else {
+            sum += o.irradiance * share;
+        }
     }
     if (channels == 1u) {
         field[merge_index(c, 0u)] += dot(sum, args.tint) / dot(args.tint, args.tint);

@@ -38,10 +38,6 @@ static const tyn_param params_table[] = {
      (const char *const[]){"off", "on", "auto"}},
 };
 
-// Less the mean of the sky, ordinates carry its contrast, and of that dark regions have as much as
-// bright ones; all its light is worth to be followed closer.
-static const float all_light_spread = 0.25f;
-
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     (void)params;
@@ -59,13 +55,15 @@ static void record(tyn_recorder *r, const void *params)
 {
     const tyn_ordinates_params *p = params;
     const uint32_t room = TYN_ORDINATES_MAX - p->num_fixed;
+    const uint32_t fan = p->fan > 1 ? p->fan : 1, regions = (uint32_t)p->count * fan;
     const struct ordinates_args args = {
-        .regions = (uint32_t)p->count < room ? (uint32_t)p->count : room,
+        .regions = regions < room ? regions : room,
+        .fan = fan,
         .num_fixed = p->num_fixed,
         .split = p->split,
         .weighted = tyn_rec_has(r, ORDINATES_PORT_IMPORTANCE),
         .fold = p->fold,
-        .spread = p->split ? p->spread : all_light_spread * p->spread,
+        .spread = p->split ? p->spread : ORDINATES_SPREAD_OF_ALL * p->spread,
     };
     struct ordinates_block block = {.count = 0};
     memcpy(block.list, p->fixed, p->num_fixed * sizeof block.list[0]);
@@ -89,7 +87,7 @@ static const tyn_counter counters[] = {
 const tyn_pass_desc tyn_pass_ordinates = {
     .name = "ordinates",
     .summary = "directions from which the surroundings light the medium",
-    .serves = "principal ordinates: an environment map, and no walls in the medium",
+    .serves = "principal ordinates: an environment map",
     TYN_PASS_TABLES(tyn_ordinates_params),
     .params = params_table,
     .num_params = TYN_COUNT(params_table),

@@ -37,7 +37,7 @@ void sort_out_folded()
     for (uint n = 0u; n < args.regions; n++) {
         sum += sizes[n];
     }
-    least = args.fold * sum;
+    least = args.fold < 0.0 ? -1.0 : args.fold * sum;
     uint kept = 0u, gone = 0u;
     for (uint n = 0u; n < args.regions; n++) {
         bool keep = sizes[n] > least;

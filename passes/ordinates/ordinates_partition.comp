@@ -1,7 +1,8 @@
 // ordinates_partition.comp -- cuts the sphere into regions.
 //
 // One workgroup. A region for n ordinates is cut into two for n / 2 and n - n / 2 of them, in
-// proportion, until every region has one: all ordinates then have about the same light x importance.
+// proportion, until every region has one: all ordinates then have about the same light x importance. With a fan these are
+// regions of fan ordinates, each cut on until it has one.
 // The axes of the cuts come from a first tree that ignores importance, so that nothing but the map can
 // change them.
 #version 460
@@ -38,9 +39,15 @@ void plant_tree()
     barrier();
 }
 
+uint lower_leaves(uint n)
+{
+    uint fans = n / args.fan;
+    return fans > 1u ? fans / 2u * args.fan : n / 2u;
+}
+
 void divide_node(uint node, uint axis, float cut)
 {
-    const uint n = leaves[node], n_lower = n / 2u;
+    const uint n = leaves[node], n_lower = lower_leaves(n);
     ordinates_divide(regions[node], axis, cut, regions[2u * node], regions[2u * node + 1u]);
     leaves[2u * node] = n_lower;
     leaves[2u * node + 1u] = n - n_lower;
@@ -58,7 +65,7 @@ uint first_of_level(uint level)
 
 float part_below(uint node)
 {
-    return float(leaves[node] / 2u) / float(leaves[node]);
+    return float(lower_leaves(leaves[node])) / float(leaves[node]);
 }
 
 void grow_tree(ordinates_density density)

@@ -44,7 +44,7 @@ float reach(uint n, propagate_radial_grid grid, vec3 d)
     // Any place beyond `near` will do: what a map shows of a direction is the same along it.
     shadow_place place = shadow_place_lamp(l, face, q * (2.0 * l.near / max(q.z, 1e-6)));
     vec2 first;
-    vec4 stored = shadow_gather(place, first);
+    vec4 stored = shadow_gather(shadow_atlas, place, first);
     // As everywhere in the medium: lit is what all four texels around see (shadow.glsl).
     float nearest = max(max(stored.x, stored.y), max(stored.z, stored.w));
     bool met = place.inside && q.z > 1e-6 && nearest > 0.0;

@@ -39,7 +39,7 @@ float reach(uint n, propagate_grid grid, vec3 p)
     vec3 q = shadow_frame(l, p), along = shadow_frame_direction(l, grid.direction);
     shadow_place place = shadow_place_sun(l, q);
     vec2 first;
-    vec4 stored = shadow_gather(place, first);
+    vec4 stored = shadow_gather(shadow_atlas, place, first);
     // As everywhere in the medium: lit is what all four texels around see (shadow.glsl).
     float nearest = max(max(stored.x, stored.y), max(stored.z, stored.w));
     bool met = l.kind == TYN_SHADOW_SUN && place.inside && nearest > 0.0 && along.z < 0.0;

@@ -156,7 +156,7 @@ float march_shadow_piece()
 bool march_sees(bool sun, march_map m, float s, uint by)
 {
     vec3 q = m.from + s * m.along;
-    return ((sun ? shadow_lit_by(shadow_place_sun(m.map, q)) : shadow_lamp_lights_at(m.map, q)) & by) != 0u;
+    return ((sun ? shadow_lit_by(shadow_atlas, shadow_place_sun(m.map, q)) : shadow_lamp_lights_at(m.map, q)) & by) != 0u;
 }
 
 // What is known of lights for all of the step from s to s + ds.

@@ -74,7 +74,7 @@ static tyn_extent blocks_of(const tyn_shade_params *p, uint32_t step)
 static tyn_result declare(tyn_builder *b, const void *data)
 {
     const tyn_shade_params *p = data;
-    const bool vpls = tyn_build_has(b, PORT(VPLS));
+    const bool vpls = tyn_build_has(b, PORT(VPLS)) || tyn_build_has(b, PORT(SKY_MAPS));
     const uint32_t step = step_of(p, vpls || tyn_build_has(b, PORT(MOMENTS)));
     const tyn_extent blocks = vpls || step > 1 ? blocks_of(p, step) : (tyn_extent){1, 1, 1};
     const bool outside = p->outside && tyn_build_has(b, PORT(MOMENTS));
@@ -104,13 +104,15 @@ static tyn_result declare(tyn_builder *b, const void *data)
 static void record(tyn_recorder *r, const void *data)
 {
     const tyn_shade_params *p = data;
-    const bool vpls = tyn_rec_has(r, PORT(VPLS));
+    const bool sky_maps = tyn_rec_has(r, PORT(SKY_MAPS));
+    const bool vpls = tyn_rec_has(r, PORT(VPLS)), shared = vpls || sky_maps;
     const struct shade_args args = {
         .num_directional = p->num_directional,
         .num_lamps = p->num_lamps,
         .tint = {p->tint[0], p->tint[1], p->tint[2]},
         .sight_lo = {p->sight_lo[0], p->sight_lo[1], p->sight_lo[2]},
         .sight_edge = p->sight_edge,
+        .sky_fan = p->sky_fan,
     };
     uint32_t features = 0;
     features |= tyn_rec_has(r, PORT(BEAMS)) || tyn_rec_has(r, PORT(RADIALS)) ? SHADE_MEDIUM : 0;
@@ -122,12 +124,16 @@ static void record(tyn_recorder *r, const void *data)
     const tyn_extent forward = tyn_rec_extent(r, PORT(FORWARD));
     features |= forward.x > 1 ? SHADE_SPREAD : 0;
     features |= p->sky ? SHADE_SKY : 0;
+    features |= sky_maps ? SHADE_SKY_MAPS : 0;
+    features |= sky_maps && tyn_rec_has(r, PORT(COLUMNS)) && tyn_rec_has(r, PORT(MOMENTS))
+                    ? SHADE_COLUMNS
+                    : 0;
     features |= p->num_lamps ? SHADE_LAMPS : 0;
     features |= p->textured ? SHADE_TEXTURED : 0;
     const uint32_t rooms = tyn_rec_has(r, PORT(ROOMS));
     features |= vpls && rooms && tyn_rec_has(r, PORT(WALL_LINKS)) ? SHADE_ROOMS : 0;
     const uint32_t samples = tyn_rec_extent(r, PORT(DISTANCES)).x / p->size[0];
-    const uint32_t step = step_of(p, vpls || tyn_rec_has(r, PORT(MOMENTS)));
+    const uint32_t step = step_of(p, shared || tyn_rec_has(r, PORT(MOMENTS)));
     const tyn_extent blocks = blocks_of(p, step);
     const uint32_t shorter = blocks.x < blocks.y ? blocks.x : blocks.y;
     const uint32_t usual = shorter < SHADE_SMALL ? SHADE_SIDE_SMALL : SHADE_SIDE;
@@ -154,13 +160,14 @@ static void record(tyn_recorder *r, const void *data)
             d.spec = spec;
         }
     }
-    if (vpls) {
+    if (shared) {
         d.kernel = VPLS;
         d.cells =
             (tyn_extent){(blocks.x + side - 1) / side,
                          (blocks.y + side * SHADE_MANY - 1) / (side * SHADE_MANY), side * side};
         tyn_rec_dispatch(r, &d);
-        TYN_DISPATCH(r, .kernel = SUM_ROWS, .cells = blocks, .spec = spec + 4);
+        const uint32_t of_rows[3] = {side, step, sky_maps};
+        TYN_DISPATCH(r, .kernel = SUM_ROWS, .cells = blocks, .spec = of_rows);
         tyn_rec_fill(r, PORT(ALONE_COUNT), 0);
         d.kernel = GATHER;
         d.cells = blocks;
@@ -186,7 +193,7 @@ static void record(tyn_recorder *r, const void *data)
         d.ports = tyn_ports_exchanged(&kernels[EDGES], looked_up, 1, bound[1]);
         tyn_rec_dispatch_indirect(r, &d, PORT(EDGE_COUNT), 0);
     }
-    if (vpls || step > 1) {
+    if (shared || step > 1) {
         d.kernel = ALONE;
         d.ports = tyn_ports_exchanged(&kernels[ALONE], looked_up, 1, bound[2]);
         tyn_rec_dispatch_indirect(r, &d, PORT(ALONE_COUNT), 0);

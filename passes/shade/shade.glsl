@@ -37,8 +37,9 @@ TYN_UNIFORM(16, camera, camera_block camera);
 layout(binding = 17) uniform sampler3D moments_tex;
 #define WALLS_AT 18
 #define LATTICE_ROOMS 20
-#define SHADE_AT GBUFFER_END // the first binding of each kernel's own
+#define SHADE_AT (GBUFFER_END + 1) // the first binding of each kernel's own
 #include "shaders/lattice/lattice.glsl"
+TYN_UNIFORM(GBUFFER_END, environment, env_block environment);
 #include "shaders/walls/lattice_walls.glsl"
 #include "shaders/light/vpl_visibility.glsl"
 

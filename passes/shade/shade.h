@@ -28,7 +28,9 @@ typedef struct tyn_shade_params {
     uint32_t sight_places[3];
     uint32_t hidden;   // 1: surfaces may hide that light: can rays be traced?
     uint32_t textured; // 1: materials may have textures
-    uint32_t sky;      // 1: the mean of the environment lights what is outside the lattice
+    uint32_t sky_fan;  // directions of an ordinate
+    uint32_t
+        sky; // 1: without maps of ordinates the mean of the environment lights what is outside the lattice
 } tyn_shade_params;
 
 // clang-format off
@@ -48,6 +50,8 @@ typedef struct tyn_shade_params {
     X(SHADE, ROOMS, rooms, OPTIONAL, BUFFER, "rooms.h: with walls and VPLs"), \
     TYN_GEOMETRY(X, SHADE), \
     TYN_MATERIALS(X, SHADE), \
+    TYN_SKY_MAPS(X##_OPTIONAL, SHADE), \
+    TYN_COLUMNS(X##_OPTIONAL, SHADE), \
     X(SHADE, SURFACE_RADIANCE, surface_radiance, OUT, IMAGE_2D, \
         "RG32UI, packed_colour.glsl, as large as \"distances\": radiance to the camera, W/(m^2 sr)", \
         .format = VK_FORMAT_R32G32_UINT), \

@@ -4,6 +4,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shade_piece.glsl"
 #include "shade_several.glsl"
+#define SHADE_SKY_AT (MATERIALS_AT + 3)
+#include "shade_sky.glsl"
 #include "shade_whole.glsl"
 #define SHADE_ALONE_COUNT (SHADE_PIECE_AT + 1)
 #define SHADE_ALONE (SHADE_PIECE_AT + 2)
@@ -35,11 +37,15 @@ void main()
             p = piece_of(pixel, left, colours, members);
         }
         vec3 light = shade_step > 1 ? smooth_light_at(p) : vec3(0.0);
+        shade_point same[SHADE_MANY] = shade_point[](p, p, p, p); // the compiler sees that they are
         if (shade_has(SHADE_VPLS)) {
-            shade_point same[SHADE_MANY] = shade_point[](p, p, p, p); // the compiler sees that they are
             uint room = shade_has(SHADE_ROOMS) ? shade_room_of(p.position) : TYN_ROOMS_ANY;
             float nearest[SHADE_MANY];
             light += shade_vpls(same, uint[SHADE_MANY](room, room, room, room), 0u, 1u, nearest)[0];
+        }
+        if (shade_has(SHADE_SKY_MAPS)) {
+            vec4 part = vec4(pixel, pixel + 1);
+            light += shade_sky(same, vec4[](part, part, part, part), 0u, 1u)[0];
         }
         uvec2 others = imageLoad(surface_radiance_image, shade_texel(corner, findLSB(members))).xy;
         colours.emission = colour_unpack(others); // what it sends already

@@ -9,7 +9,8 @@
 #define SHADE_VPLS (1u << 2)
 #define SHADE_LATTICE (1u << 3)     // there is light in the lattice
 #define SHADE_ONE_CHANNEL (1u << 4) // ... of one channel, to be multiplied with `tint`
-#define SHADE_SKY (1u << 5)      // the mean of the environment lights what is outside the lattice
+#define SHADE_SKY                                                                                  \
+    (1u << 5) // the mean of the environment lights what is outside the lattice, without shadows
 #define SHADE_SPREAD (1u << 6)   // sunlight scattered forward comes from around its sun
 #define SHADE_OUTSIDE (1u << 7)  // surfaces outside the box get light that leaves it: shade_faces.h
 #define SHADE_TEXTURED (1u << 8) // materials may have textures
@@ -18,6 +19,13 @@
 #define SHADE_LAMPS (1u << 9)
 
 #define SHADE_ROOMS (1u << 10) // VPLs shine in rooms of the lattice
+
+#define SHADE_SKY_MAPS                                                                             \
+    (1u << 11)                   // the sky's light comes along ordinates, past what their maps show
+#define SHADE_COLUMNS (1u << 12) // ... and through the medium
+
+// Light of which the pixels of a pattern each take a part.
+#define SHADE_SHARED (SHADE_VPLS | SHADE_SKY_MAPS)
 
 #define SHADE_PLACES 64 // that light which was scattered forward may come from
 // Pixels of a pattern along each side; each takes a part of the VPLs. Of small pictures five pixels are much.
@@ -40,7 +48,8 @@ struct shade_args {
     tyn_vec3 tint;
     tyn_vec3 sight_lo; // corner of the places of shade_sight.comp, and their distance (M, m)
     float sight_edge;
+    tyn_uint sky_fan; // directions of an ordinate
 };
-TYN_ASSERT_SIZE(shade_args, 36);
+TYN_ASSERT_SIZE(shade_args, 40);
 
 #endif

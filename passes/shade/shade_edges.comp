@@ -40,7 +40,7 @@ void main()
         vec3 smoothed = vec3(0.0);
         if (shade_step > 1) {
             smoothed = smooth_light_around(p, middle, lone);
-        } else if (shade_has(SHADE_VPLS)) {
+        } else if (shade_has(SHADE_SHARED)) {
             smoothed = smooth_light_beside(p, middle, lone);
         }
         vec3 irradiance = shade_step > 1 ? sharp_light_at(p, part) : irradiance_at(p, part);

@@ -22,7 +22,7 @@ void main()
         return;
     }
     shade_part sum = shade_unpack(imageLoad(part_rows_image, block));
-    if (sum.along > 0.0 && vpl_count() > SHADE_MOST * shade_side) {
+    if (sum.along > 0.0 && (shade_has(SHADE_SKY_MAPS) || vpl_count() > SHADE_MOST * shade_side)) {
         sum = shade_tent(block, ivec2(0, 1), sum);
     }
     bool alone = !sum.whole || sum.near && sum.aside;

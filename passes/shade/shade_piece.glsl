@@ -12,12 +12,11 @@ layout(binding = SHADE_AT, rgba32ui) uniform readonly uimage2D part_image; // sh
 #define WALLS_OTHERS TYN_BEAM_MAX_SUNS
 #include "walls_irradiance.glsl"
 #include "shade_rooms.glsl"
-TYN_UNIFORM(SHADE_AT + 1, environment, env_block environment);
-layout(binding = SHADE_AT + 2) uniform sampler3D forward_tex; // shade_forward.comp
-layout(binding = SHADE_AT + 3) uniform sampler2D faces_tex; // shade_faces.h
-layout(binding = SHADE_AT + 4) uniform sampler3D sight_tex; // shade_sight.comp
-TYN_UPDATE(SHADE_AT + 5, counters, counters_block counters);
-#define SHADE_PIECE_AT (SHADE_AT + 6)
+layout(binding = SHADE_AT + 1) uniform sampler3D forward_tex; // shade_forward.comp
+layout(binding = SHADE_AT + 2) uniform sampler2D faces_tex; // shade_faces.h
+layout(binding = SHADE_AT + 3) uniform sampler3D sight_tex; // shade_sight.comp
+TYN_UPDATE(SHADE_AT + 4, counters, counters_block counters);
+#define SHADE_PIECE_AT (SHADE_AT + 5)
 
 const float PI = 3.14159265358979;
 

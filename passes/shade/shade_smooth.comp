@@ -17,7 +17,7 @@ void main()
     }
     shade_part part;
     shade_point p = shade_place(block, part);
-    if (shade_has(SHADE_VPLS)) {
+    if (shade_has(SHADE_SHARED)) {
         part.irradiance = shade_unpack(imageLoad(part_image, block)).irradiance;
     }
     if (part.along > 0.0) {

@@ -34,7 +34,7 @@ void main()
             irradiance = sharp_light_at(p, vec4(pixel, pixel + 1)) + (alone ? vec3(0.0) : smoothed);
         } else {
             irradiance = irradiance_at(p, vec4(pixel, pixel + 1));
-            irradiance += shade_has(SHADE_VPLS) ? shade_unpack(imageLoad(part_image, pixel)).irradiance : vec3(0.0);
+            irradiance += shade_has(SHADE_SHARED) ? shade_unpack(imageLoad(part_image, pixel)).irradiance : vec3(0.0);
         }
         uvec2 radiance = colour_pack(shade_radiance(gbuffer_unpack(shade_colours(pixel, 0)), irradiance));
         for (int k = 0; k < shade_samples * shade_samples; k++) {

@@ -1,4 +1,4 @@
-// shade_vpls.comp -- every block of pixels takes a part of the VPLs.
+// shade_vpls.comp -- every block of pixels takes a part of the VPLs and of the directions of the sky.
 //
 // Neighbours in a pattern of 5 x 5 blocks take different ones (Wald et al. 2002, interleaved sampling), and
 // shade_rows.comp and shade_gather.comp sum over the pattern.
@@ -7,6 +7,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shade_place.glsl"
 #include "shade_rooms.glsl"
+#define SHADE_SKY_AT (SHADE_AT + 1)
+#include "shade_sky.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
 
@@ -26,11 +28,25 @@ void main()
     }
     // Of many each place takes a 25th; of fewer a fifth, so that any row takes all; of few all. Else differences
     // between parts would be larger than what sums even out.
-    uint side = uint(shade_side), count = vpl_count();
-    uint parts = count <= SHADE_MOST ? 1u : count <= SHADE_MOST * side ? side : side * side;
+    uint side = uint(shade_side), count = shade_has(SHADE_VPLS) ? vpl_count() : 0u;
+    bool sky = shade_has(SHADE_SKY_MAPS);
+    uint parts = sky ? side * side : count <= SHADE_MOST ? 1u : count <= SHADE_MOST * side ? side : side * side;
     part_of = parts < side * side ? uint(cell.x + 2 * cell.y) % parts : part_of;
-    float nearest[SHADE_MANY];
-    vec3 light[SHADE_MANY] = shade_vpls(p, rooms, part_of, parts, nearest);
+    float nearest[SHADE_MANY] = float[](1e30, 1e30, 1e30, 1e30);
+    vec3 light[SHADE_MANY] = vec3[](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+    if (shade_has(SHADE_VPLS)) {
+        light = shade_vpls(p, rooms, part_of, parts, nearest);
+    }
+    if (sky) {
+        ivec2 block[SHADE_MANY];
+        [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
+            block[i] = first + ivec2(0, i * shade_side);
+        }
+        vec3 others[SHADE_MANY] = shade_sky(p, shade_parts(block), part_of, parts);
+        [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
+            light[i] += others[i];
+        }
+    }
     [[unroll]] for (int i = 0; i < SHADE_MANY; i++) {
         ivec2 block = first + ivec2(0, i * shade_side);
         if (all(lessThan(block, size))) {

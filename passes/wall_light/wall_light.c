@@ -7,27 +7,34 @@
 #include "wall_light_reflect.comp.h"
 #include "wall_light_scale.comp.h"
 #include "wall_light_sum.comp.h"
+#include "wall_light_sky.comp.h"
 #include "wall_light_suns.comp.h"
 #include "wall_light_vpls.comp.h"
 
 static const tyn_port ports[] = {WALL_LIGHT_PORTS(TYN_PORT_ROW)};
 
-enum { SUNS = 0, VPLS, WALL_CELLS, EXPECTED, SUM, SCALE, REFLECT, NUM_KERNELS };
+enum { SUNS = 0, SKY, VPLS, WALL_CELLS, EXPECTED, SUM, SCALE, REFLECT, NUM_KERNELS };
 _Static_assert(WALL_LIGHT_VPLS == TYN_RADIAL_VPLS_MAX, "of a workgroup each");
 
 static const tyn_kernel kernels[NUM_KERNELS] = {
-    [SUNS] = TYN_KERNEL(wall_light_suns),        [VPLS] = TYN_KERNEL(wall_light_vpls),
-    [WALL_CELLS] = TYN_KERNEL(wall_light_cells), [EXPECTED] = TYN_KERNEL(wall_light_expected),
-    [SUM] = TYN_KERNEL(wall_light_sum),          [SCALE] = TYN_KERNEL(wall_light_scale),
-    [REFLECT] = TYN_KERNEL(wall_light_reflect),
+    [SUNS] = TYN_KERNEL(wall_light_suns),         [SKY] = TYN_KERNEL(wall_light_sky),
+    [VPLS] = TYN_KERNEL(wall_light_vpls),         [WALL_CELLS] = TYN_KERNEL(wall_light_cells),
+    [EXPECTED] = TYN_KERNEL(wall_light_expected), [SUM] = TYN_KERNEL(wall_light_sum),
+    [SCALE] = TYN_KERNEL(wall_light_scale),       [REFLECT] = TYN_KERNEL(wall_light_reflect),
 };
 
 static tyn_result declare(tyn_builder *b, const void *params)
 {
     const tyn_wall_light_params *p = params;
-    if (p->num_suns == 0 && !tyn_build_has(b, WALL_LIGHT_PORT_RADIALS)) {
+    const bool sky = tyn_build_has(b, WALL_LIGHT_PORT_SKY_SEEN);
+    if (p->num_suns == 0 && !sky && !tyn_build_has(b, WALL_LIGHT_PORT_RADIALS)) {
         tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
-                      "pass 'wall_light': neither suns nor 'radials': nothing shines");
+                      "pass 'wall_light': no suns, no 'sky_seen', no 'radials': nothing shines");
+        return TYN_ERR_PARAMS;
+    }
+    if (p->num_suns > 0 && sky) {
+        tyn_log_print(tyn_build_log(b), TYN_LOG_ERROR,
+                      "pass 'wall_light': suns and 'sky_seen': it takes one of them");
         return TYN_ERR_PARAMS;
     }
     const uint64_t cells = (uint64_t)p->dims[0] * p->dims[1] * p->dims[2];
@@ -56,7 +63,8 @@ static void record_vpls(tyn_recorder *r, const tyn_wall_light_params *p,
 {
     // Without maps (vpl.visibility=0) nothing tells what should arrive.
     const uint32_t scaled = tyn_rec_extent(r, WALL_LIGHT_PORT_VPL_DISTANCES).x > 1;
-    const uint32_t added = p->num_suns > 0, rooms = tyn_rec_has(r, WALL_LIGHT_PORT_ROOMS);
+    const uint32_t added = p->num_suns > 0 || tyn_rec_has(r, WALL_LIGHT_PORT_SKY_SEEN);
+    const uint32_t rooms = tyn_rec_has(r, WALL_LIGHT_PORT_ROOMS);
     const uint32_t of_vpls[2] = {p->mode, rooms}, of_cells[3] = {added, scaled, rooms};
     const tyn_extent all = {p->dims[0] * p->dims[1] * p->dims[2], 1, 1};
     const tyn_extent vpls = {WALL_LIGHT_VPLS * WALL_LIGHT_GROUP, 1, 1};
@@ -91,6 +99,9 @@ static void record(tyn_recorder *r, const void *params)
     if (p->num_suns > 0) {
         TYN_DISPATCH(r, .kernel = SUNS, .cells = cells, .args = &args, .spec = &p->mode);
     }
+    if (tyn_rec_has(r, WALL_LIGHT_PORT_SKY_SEEN)) {
+        TYN_DISPATCH(r, .kernel = SKY, .cells = cells, .args = &args, .spec = &p->mode);
+    }
     if (tyn_rec_has(r, WALL_LIGHT_PORT_RADIALS)) {
         record_vpls(r, p, &args);
     } else {
@@ -116,9 +127,10 @@ static const tyn_counter counters[] = {
 
 const tyn_pass_desc tyn_pass_wall_light = {
     .name = "wall_light",
-    .summary = "light of suns and virtual point lights on the walls of the lattice's cells",
-    .serves = "walls in media that suns shine on periodically, or virtual point lights without "
-              "further reflections",
+    .summary =
+        "light of suns, the sky and virtual point lights on the walls of the lattice's cells",
+    .serves = "walls in media under an environment, that suns shine on periodically, or virtual "
+              "point lights without further reflections",
     TYN_PASS_TABLES(tyn_wall_light_params),
     .debug_port = WALL_LIGHT_PORT_WALL_LIGHT,
     .debug_meaning = "radiance of the walls per cell, W/(m^2 sr)",

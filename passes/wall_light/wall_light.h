@@ -1,9 +1,9 @@
-// wall_light.h -- light of suns and of virtual point lights (VPLs) on the walls of the cells.
+// wall_light.h -- light of suns or of the sky, and of virtual point lights (VPLs), on the walls of the cells.
 #pragma once
 #include <tyndall/pass.h>
 #include "shaders/common/bundles.h"
 
-// Light of suns and of virtual point lights (VPLs) on the walls of the cells, as radiance that they send out.
+// As radiance that they send out. Suns or the sky: not both.
 typedef struct tyn_wall_light_params {
     float extent[3];   // medium_block.extent, m
     uint32_t dims[3];  // cells of the lattice
@@ -17,6 +17,8 @@ typedef struct tyn_wall_light_params {
     X(WALL_LIGHT, LIGHTS, lights, IN, BUFFER, "struct light_block[]"), \
     TYN_BEAMS(X##_OPTIONAL, WALL_LIGHT), \
     TYN_RADIALS(X##_OPTIONAL, WALL_LIGHT), \
+    TYN_COLUMNS(X##_OPTIONAL, WALL_LIGHT), \
+    TYN_SKY_SEEN(X##_OPTIONAL, WALL_LIGHT), \
     TYN_GEOMETRY(X, WALL_LIGHT), \
     TYN_WALLS(X, WALL_LIGHT), \
     X(WALL_LIGHT, HITS, hits, IN, BUFFER, "of walls"), \

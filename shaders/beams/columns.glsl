@@ -1,7 +1,8 @@
 // columns.glsl -- optical depth along the principal ordinates, from where their light enters the
 // medium's box to the lattice's cells.
 //
-// Include after medium.glsl, and define COLUMNS_AT as the first binding of the bundle TYN_COLUMNS (bundles.h).
+// Include after medium.glsl, and define COLUMNS_AT as the first binding of the bundle TYN_COLUMNS (bundles.h), and
+// COLUMNS_STORAGE if the ordinates are to be a storage buffer: lavapipe has room for seven uniform ones.
 //
 // The buffer is [ordinate][component][z][y][x]; components: int density ds (mode DENSITY), or the rgb of
 // int sigma_s, int sigma_a and int (1 - f) sigma_s. A value is the square of a half: 3 digits from 1e-9 to
@@ -13,7 +14,11 @@
 #include "columns_args.h"
 #include "shaders/light/ordinate_args.h"
 
+#ifdef COLUMNS_STORAGE
+TYN_READ(COLUMNS_AT, ordinates, ordinates_block ordinates);
+#else
 TYN_UNIFORM(COLUMNS_AT, ordinates, ordinates_block ordinates);
+#endif
 TYN_READ(COLUMNS_AT + 1, columns, uint columns_words[]);
 
 // Of component 0 at a cell; the next component and the next ordinate are columns_stride words on.

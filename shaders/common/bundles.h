@@ -39,6 +39,16 @@
     X(P, SHADOW_ATLAS, shadow_atlas, IN, IMAGE_2D, "depth maps of the lights"), \
     X(P, SHADOWS, shadows, IN, BUFFER, "struct shadow_light[]")
 
+// Depth maps of the directions of the sky (sky_maps.glsl).
+#define TYN_SKY_MAPS(X, P) \
+    X(P, SKY_ATLAS, sky_atlas, IN, IMAGE_2D, "depth maps of the directions of the sky"), \
+    X(P, SKY_MAPS, sky_maps, IN, BUFFER, "struct shadow_light[]: of each direction")
+
+// What surfaces leave of the ordinates in the lattice's cells (sky_seen.glsl), and of the sky's mean.
+#define TYN_SKY_SEEN(X, P) \
+    X(P, SKY_SEEN, sky_seen, IN, BUFFER, "share of the ordinates' light that passes the surfaces"), \
+    X(P, ENVIRONMENT, environment, IN, BUFFER, "struct env_block")
+
 // Surfaces as the lattice sees them (lattice_walls.glsl).
 #define TYN_WALLS(X, P) \
     X(P, WALL_LINKS, wall_links, IN, BUFFER, "uint[cell]: which of its 26 links are cut"), \

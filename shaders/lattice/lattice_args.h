@@ -20,6 +20,14 @@ struct lattice_source_args {
     tyn_uint sun; // beam: the one
 };
 
+struct lattice_mean_args {
+    tyn_uvec3 dims; // cells
+    tyn_uint channels;
+    tyn_vec3 tint;
+    tyn_uint march; // axis along which the diagonals are marched
+    float dx;       // edge of a cell, m
+};
+
 struct lattice_ordinates_args {
     tyn_uvec3 dims;
     tyn_uint channels;

@@ -1,11 +1,12 @@
 // shadow_frame.glsl -- the maps' list, and places in the frames of their lights.
 //
-// Define SHADOW_LIGHTS as the binding of the list that pass shadow_map makes, and SHADOWS_STORAGE or SHADOWS_TEXELS if
+// Define SHADOW_LIGHTS as the binding of the list that pass shadow_map makes (without it there is none), and SHADOWS_STORAGE or SHADOWS_TEXELS if
 // that is a storage buffer or one of texels: a uniform one is faster on lavapipe, which has room for seven.
 #ifndef TYN_SHADOW_FRAME_GLSL
 #define TYN_SHADOW_FRAME_GLSL
 #include "shadow_args.h"
 
+#ifdef SHADOW_LIGHTS
 #ifdef SHADOWS_TEXELS
 layout(set = 0, binding = SHADOW_LIGHTS) uniform usamplerBuffer shadows_texels;
 
@@ -31,6 +32,7 @@ shadow_light shadow_light_of(uint n)
 {
     return shadows[n];
 }
+#endif
 #endif
 
 vec3 shadow_frame(shadow_light l, vec3 p)

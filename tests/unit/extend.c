@@ -48,7 +48,7 @@ static void layout(void **state)
         SIZE(tyn_job, 392),
         SIZE(tyn_picture, 24),
         SIZE(tyn_picture_hook, 24),
-        SIZE(tyn_sources, 364),
+        SIZE(tyn_sources, 424),
         SIZE(tyn_rsm, 6236),
         SIZE(tyn_field, 56),
         SIZE(tyn_view_inputs, 88),

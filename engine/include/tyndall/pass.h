@@ -20,7 +20,7 @@ extern "C" {
 
 enum {
     TYN_MAX_PORTS = 48,
-    TYN_MAX_BINDINGS = 44,
+    TYN_MAX_BINDINGS = 48,
     TYN_MAX_SPEC = 8,
     TYN_MAX_ARGS = 128,
     TYN_MAX_ATTACHMENTS = 5, // four colours and a depth: what every device can draw to at once

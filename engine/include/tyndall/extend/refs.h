@@ -38,6 +38,14 @@ typedef struct tyn_shadow_refs {
     tyn_ref TYN_SHADOWS(TYN_PORT_NAME, );
 } tyn_shadow_refs;
 
+// {0} without surfaces, or without ordinates.
+typedef struct tyn_sky_map_refs {
+    tyn_ref TYN_SKY_MAPS(TYN_PORT_NAME, );
+} tyn_sky_map_refs;
+typedef struct tyn_sky_seen_refs {
+    tyn_ref TYN_SKY_SEEN(TYN_PORT_NAME, );
+} tyn_sky_seen_refs;
+
 // {0} without surfaces near the media.
 typedef struct tyn_wall_refs {
     tyn_ref TYN_WALLS(TYN_PORT_NAME, );

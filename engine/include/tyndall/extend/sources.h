@@ -28,6 +28,13 @@ typedef struct tyn_sky {
     uint32_t count;    // ordinates at most
     bool split; // they carry the map less its mean, env_block.sky, which comes in from all sides
     tyn_column_refs columns; // optical depths along them
+    // Where surfaces stand: what they hide of the ordinates, and of the sky's mean, which then is among `source` of the lattice.
+    tyn_ref directions; // struct ordinates_block: parts of the ordinates, which have maps each
+    uint32_t fan;       // of an ordinate that is none of the fixed ones, which have one
+    tyn_sky_map_refs maps;
+    tyn_sky_seen_refs seen;
+    tyn_ref even;  // what of `source` is the mean
+    tyn_ref guess; // where the solve may start
 } tyn_sky;
 
 // What surfaces receive beyond direct light.
@@ -92,8 +99,8 @@ TYN_API void tyn_add_shadows(tyn_graph *g, const tyn_job *job, tyn_sources *s);
 // has a way for light that is equal from all sides.
 TYN_API void tyn_add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool can_split,
                          tyn_sources *s);
-// The environment where a lattice carries on what it scatters: ordinates for all but the suns that have beams; among surfaces
-// its mean alone, from all sides, with a warning. After suns, their beams and shadows.
+// The environment where a lattice carries on what it scatters: ordinates for all but the suns that have beams, and what surfaces
+// hide of them; of a constant one the mean, from all sides. After suns, their beams and shadows.
 TYN_API void tyn_add_surroundings(tyn_graph *g, const tyn_job *job, bool can_split, tyn_sources *s);
 static inline bool tyn_is_lit(const float radiance[3])
 {
@@ -131,10 +138,10 @@ TYN_API void tyn_add_rsm(tyn_graph *g, const tyn_job *job, tyn_rsm *rsm);
 #define TYN_SUN_PASSES(X) X(beam), X(shadow_map), X(light_cells)
 #define TYN_LAMP_PASSES(X) X(radial_beam), X(radial_lights)
 #define TYN_VIRTUAL_LIGHT_PASSES(X) X(rsm), X(vpl)
-#define TYN_SKY_PASSES(X) X(env_importance), X(importance), X(ordinates)
+#define TYN_SKY_PASSES(X) X(env_importance), X(importance), X(ordinates), X(sky_shadows)
 #define TYN_CELL_PASSES(X)                                                                         \
     X(lattice_cells), X(walls), X(wall_light), X(rooms), X(columns_average), X(columns),           \
-        X(lattice_source), X(lattice_ordinates), X(lattice_lamps)
+        X(sky_seen), X(lattice_source), X(lattice_ordinates), X(lattice_lamps)
 
 #ifdef __cplusplus
 }

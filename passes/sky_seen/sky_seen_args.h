@@ -1,0 +1,14 @@
+// sky_seen_args.h -- push constants of sky_seen. Included by C and GLSL.
+#ifndef TYN_SKY_SEEN_ARGS_H
+#define TYN_SKY_SEEN_ARGS_H
+#include "shaders/common/shared.h"
+
+struct sky_seen_args {
+    tyn_vec3 extent; // of the medium, m
+    tyn_uvec3 dims;  // cells
+    tyn_uint count;  // ordinates at most
+    tyn_uint fan;    // directions of each
+};
+TYN_ASSERT_SIZE(sky_seen_args, 32);
+
+#endif
