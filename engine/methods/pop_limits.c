@@ -58,7 +58,7 @@ static double sky(const tyn_regime *r)
     .warning = {                                                                                   \
         "accuracy: where the medium is dense a lattice cell is %.3g mean free paths (delta "       \
         "scaled) wide; lit faces are off by about 10 %% at 2, 20 %% at 7, a factor of 2 from 30 "  \
-        "on; dark ones are too bright, 4 times at 30, tens of times at 300 (-D lattice.cells)",    \
+        "on; dark ones are too bright, 4 times at 30, ever more beyond (-D lattice.cells)",        \
         {TYN_FIGURE(cell_depth)}}
 #define TRANSPORT                                                                                  \
     "lattice: %.2g transport mean free paths across its densest cell; what comes out of its "      \
