@@ -100,7 +100,10 @@ works render puffs.gltf --size 32x32 --quiet --frames 2-4 -o h_#.exr -D lattice.
 cmp -s h_4.exr g_0004.exr || fail "a sequence: the same bytes twice"
 cmp -s h_2.exr one_4.exr && fail "the puff does not move"
 works render puffs.gltf --size 32x32 --quiet --frames 3-4 -o k_#.exr -D lattice.cells=12 -D lattice.warm=0
-cmp -s k_4.exr one_4.exr || fail "lattice.warm=0: a picture of a sequence is not the picture alone"
+works render puffs.gltf --size 32x32 --quiet --frames 4-4 -o alone_#.exr -D lattice.cells=12 -D lattice.warm=0
+cmp -s k_4.exr alone_4.exr || fail "lattice.warm=0: a picture of a sequence is not the picture alone"
+works compare alone_4.exr one_4.exr
+[ "$(value rel_l1)" = 0 ] || fail "lattice.warm=0 changes a first picture"
 cmp -s k_4.exr g_0004.exr && fail "a sequence does not start from the last solution"
 [ "$(get g_0002.json frame_ms.cold)" != null ] && [ "$(get g_0003.json frame_ms.cold)" = null ] ||
     fail "only the first picture of a sequence is a cold one"

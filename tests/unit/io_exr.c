@@ -173,6 +173,19 @@ static void saturation(void **state)
     assert_int_equal(tyn_exr_write(&image, path, false, &log.log), TYN_ERR_PARAMS);
 }
 
+// What the library refuses to write is an error in one line; it holds a lock while it says so.
+static void refused_channels(void **state)
+{
+    (void)state;
+    float value = 1;
+    tyn_channel channels[2] = {{"R", &value}, {"R", &value}};
+    io_log log;
+    io_log_init(&log);
+    assert_true(tyn_exr_write(&(tyn_image_file){1, 1, 2, channels}, io_path("twice.exr"), true,
+                              &log.log) < 0);
+    assert_int_equal(log.errors, 1);
+}
+
 // A map with a luminance channel alone, and one that lacks blue.
 static void environments(void **state)
 {
@@ -455,16 +468,12 @@ static void real_file(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(round_trip),
-                                       cmocka_unit_test(attributes),
-                                       cmocka_unit_test(incompressible),
-                                       cmocka_unit_test(saturation),
-                                       cmocka_unit_test(environments),
-                                       cmocka_unit_test(kinds),
-                                       cmocka_unit_test(broken),
-                                       cmocka_unit_test(damaged_piz),
-                                       cmocka_unit_test(png),
-                                       cmocka_unit_test(png_refusals),
-                                       cmocka_unit_test(real_file)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(round_trip),     cmocka_unit_test(attributes),
+        cmocka_unit_test(incompressible), cmocka_unit_test(refused_channels),
+        cmocka_unit_test(saturation),     cmocka_unit_test(environments),
+        cmocka_unit_test(kinds),          cmocka_unit_test(broken),
+        cmocka_unit_test(damaged_piz),    cmocka_unit_test(png),
+        cmocka_unit_test(png_refusals),   cmocka_unit_test(real_file)};
     return run_cases(tests, NULL, io_test_clean);
 }

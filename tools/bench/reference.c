@@ -51,11 +51,10 @@ int bench_picture_write(app *a, const metrics_image *image, bool errors, const c
     tyn_image_file file = {.width = image->width, .height = image->height, .channels = channels};
     for (int i = 0; i < 6; i++) {
         const float *data = i < 3 ? image->rgb[i] : errors ? image->se[i - 3] : NULL;
-        tyn_channel *channel = &channels[file.num_channels];
         if (data) {
+            tyn_channel *channel = &channels[file.num_channels++];
+            *channel = (tyn_channel){.data = (float *)(uintptr_t)data}; // only read
             snprintf(channel->name, sizeof channel->name, "%s", bench_reference_channels[i]);
-            channel->data = (float *)(uintptr_t)data; // only read
-            file.num_channels++;
         }
     }
     return app_exit_code(a, tyn_exr_write(&file, path, errors, &a->log), false);
