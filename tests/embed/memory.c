@@ -107,7 +107,7 @@ static void memory_of_the_host(void **state)
     tyn_context_destroy(&ctx);
     tyn_device_destroy(&own);
 
-    pool p = {.r = &r, .size = 256u << 20};
+    pool p = {.r = &r, .size = 1024u << 20};
     const tyn_allocator allocator = {pool_allocate, pool_free, &p};
     assert_int_equal(rig_device(&r, false, &allocator, &lent), TYN_OK);
     assert_int_equal(rig_context(&r, lent, "pop", &ctx), TYN_OK);
