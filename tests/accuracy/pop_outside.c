@@ -56,7 +56,7 @@ static void floors(void **state)
         {"glow, floor through the box", GLOW, -0.13f, 3, 0.03, 0.1},
         {"glow, floor below the box", GLOW, -0.7f, 3, 0.03, 0.15},
         {"dense glow, floor through the box", GLOW, -0.13f, 15, 0.04, 0.08},
-        {"sun", SUN, -0.5f, 8, 0.018, 0},
+        {"sun", SUN, -0.5f, 8, 0.015, 0},
         {"sky", SKY, -0.5f, 3, 0.018, 0},
     };
     path_run runs;

@@ -58,11 +58,11 @@ static double under_sun(double x, double z)
     return 3 * 0.8;
 }
 
-static double under_four_suns(double x, double z)
+static double under_six_suns(double x, double z)
 {
     (void)x;
     (void)z;
-    return 3 + 6 + 5 + 4;
+    return 1 + 3 + 6 + 1 + 5 + 4;
 }
 
 static double under_lamp(double x, double z)
@@ -330,7 +330,7 @@ static void dark_lamps(void **state)
     picture_free(&p[1]);
 }
 
-// Six suns: the strongest four light the floor, and the share of the others is told.
+// Six suns: four with beams, two along ordinates of their own, which light the floor as well.
 static void many_suns(void **state)
 {
     static const float irradiance[6] = {1, 3, 6, 1, 5, 4};
@@ -352,17 +352,14 @@ static void many_suns(void **state)
         offline_frame(off, &scene, &view);
         tyn_report report;
         tyn_offline_report(off, &report);
-        assert_int_equal(report.num_warnings, 1);
-        assert_string_equal(report.warnings[0],
-                            medium ? "6 suns: the 4 strongest light surfaces and the medium among "
-                                     "them, 10 % of the suns' irradiance is left out"
-                                   : "6 suns: the 4 strongest light surfaces, 10 % of the suns' "
-                                     "irradiance is left out");
+        for (uint32_t i = 0; i < report.num_warnings; i++) {
+            assert_null(strstr(report.warnings[i], "left out"));
+        }
         tyn_offline_destroy(&off);
         if (medium) {
             tyn_scene_finish(&scene);
         } else {
-            check(state, &scene, &view, "six suns", under_four_suns);
+            check(state, &scene, &view, "six suns", under_six_suns);
         }
     }
 }
