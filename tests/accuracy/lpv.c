@@ -333,7 +333,7 @@ static void injections(void **state)
     printf("by shadow maps against by cells: %+.2f %% in all, %.2f %% by place\n",
            100 * (sums[1] / sums[0] - 1), 100 * off_by);
     assert_within(fabs(sums[1] / sums[0] - 1), 0.002, NULL);
-    assert_within(off_by, 0.004, NULL);
+    assert_within(off_by, 0.003, NULL);
     tyn_scene_finish(&scene);
 }
 
