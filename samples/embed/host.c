@@ -45,8 +45,20 @@ static VkDebugUtilsMessengerCreateInfoEXT messenger_info(host *h)
     };
 }
 
-static bool open_instance(host *h, bool validation)
+enum { MOST_EXTENSIONS = 16 };
+
+// Adds names to a list of at most MOST_EXTENSIONS.
+static uint32_t add_names(const char **list, uint32_t count, const char *const *names)
 {
+    for (; names && *names && count < MOST_EXTENSIONS; names++) {
+        list[count++] = *names;
+    }
+    return count;
+}
+
+static bool open_instance(host *h, const host_wants *wants)
+{
+    const bool validation = wants->validation;
     h->loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!h->loader) {
         fprintf(stderr, "host: no Vulkan loader: %s\n", dlerror());
@@ -76,7 +88,11 @@ static bool open_instance(host *h, bool validation)
         .apiVersion = tyn_requirements_get()->api_version,
     };
     const char *const layers[] = {"VK_LAYER_KHRONOS_validation"};
-    const char *const extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+    const char *const debug[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, NULL};
+    const char *extensions[MOST_EXTENSIONS];
+    const uint32_t num_extensions =
+        add_names(extensions, add_names(extensions, 0, wants->instance_extensions),
+                  validation ? debug : NULL);
     const VkResult made = create(
         &(VkInstanceCreateInfo){
             .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
@@ -84,7 +100,7 @@ static bool open_instance(host *h, bool validation)
             .pApplicationInfo = &app,
             .enabledLayerCount = validation ? 1 : 0,
             .ppEnabledLayerNames = layers,
-            .enabledExtensionCount = validation ? 1 : 0,
+            .enabledExtensionCount = num_extensions,
             .ppEnabledExtensionNames = extensions,
         },
         NULL, &h->instance);
@@ -122,7 +138,7 @@ static bool find_queue(host *h)
     return false;
 }
 
-static bool open_device(host *h)
+static bool open_device(host *h, const host_wants *wants)
 {
     const tyn_requirements *needs = tyn_requirements_get();
     VkPhysicalDevice devices[8];
@@ -137,10 +153,10 @@ static bool open_device(host *h)
         if (properties.apiVersion < needs->api_version || !find_queue(h)) {
             continue;
         }
-        uint32_t num_extensions = 0;
-        while (needs->extensions && needs->extensions[num_extensions]) {
-            num_extensions++;
-        }
+        const char *extensions[MOST_EXTENSIONS];
+        const uint32_t num_extensions =
+            add_names(extensions, add_names(extensions, 0, needs->extensions),
+                      wants->device_extensions);
         const float priority = 1.0f;
         const VkDeviceQueueCreateInfo queue = {
             .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
@@ -156,7 +172,7 @@ static bool open_device(host *h)
                                                      .queueCreateInfoCount = 1,
                                                      .pQueueCreateInfos = &queue,
                                                      .enabledExtensionCount = num_extensions,
-                                                     .ppEnabledExtensionNames = needs->extensions,
+                                                     .ppEnabledExtensionNames = extensions,
                                                  },
                                                  NULL, &h->device);
         if (made == VK_SUCCESS) {
@@ -177,8 +193,13 @@ static bool open_device(host *h)
 
 host_status host_open(host *h, bool validation)
 {
+    return host_open_with(h, &(host_wants){.validation = validation});
+}
+
+host_status host_open_with(host *h, const host_wants *wants)
+{
     *h = (host){0};
-    if (!open_instance(h, validation) || !open_device(h)) {
+    if (!open_instance(h, wants) || !open_device(h, wants)) {
         host_close(h);
         return HOST_NO_DEVICE;
     }
@@ -265,16 +286,31 @@ VkCommandBuffer host_begin(host *h, uint32_t slot)
 
 void host_submit(host *h, uint32_t slot)
 {
+    host_submit_between(h, slot, VK_NULL_HANDLE, VK_NULL_HANDLE);
+}
+
+void host_submit_between(host *h, uint32_t slot, VkSemaphore before, VkSemaphore after)
+{
+    const VkSemaphoreSubmitInfo wait = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                        .semaphore = before,
+                                        .stageMask = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT},
+                                signal = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                          .semaphore = after,
+                                          .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
     require(h->vk.EndCommandBuffer(h->commands[slot]), "vkEndCommandBuffer");
     require(h->vk.QueueSubmit2(h->queue, 1,
                                &(VkSubmitInfo2){
                                    .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+                                   .waitSemaphoreInfoCount = before ? 1 : 0,
+                                   .pWaitSemaphoreInfos = &wait,
                                    .commandBufferInfoCount = 1,
                                    .pCommandBufferInfos =
                                        &(VkCommandBufferSubmitInfo){
                                            .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                            .commandBuffer = h->commands[slot],
                                        },
+                                   .signalSemaphoreInfoCount = after ? 1 : 0,
+                                   .pSignalSemaphoreInfos = &signal,
                                },
                                h->fences[slot]),
             "vkQueueSubmit2");

@@ -79,8 +79,15 @@ typedef struct host {
 
 typedef enum host_status { HOST_OK = 0, HOST_NO_DEVICE, HOST_FAILED } host_status;
 
-// Opens the first device that can do what Tyndall asks for, with validation and synchronization
-// validation if asked (and installed). Says on stderr what went wrong.
+// What a host needs beside that, for a window say. Lists of names end with NULL; NULL: none.
+typedef struct host_wants {
+    bool validation; // and synchronization validation, where the layer is installed
+    const char *const *instance_extensions, *const *device_extensions;
+} host_wants;
+
+// Opens the first device that can do what Tyndall asks for and has what is wanted. Says on stderr
+// what went wrong.
+host_status host_open_with(host *h, const host_wants *wants);
 host_status host_open(host *h, bool validation);
 void host_close(host *h); // everything made on it must be gone
 
@@ -90,6 +97,8 @@ void host_describe(const host *h, tyn_device_params *params);
 // The command buffer of a frame slot, begun; waits until the slot's earlier work is done.
 VkCommandBuffer host_begin(host *h, uint32_t slot);
 void host_submit(host *h, uint32_t slot);
+// The same; `before` is waited for before images are copied into, `after` is signalled at the end.
+void host_submit_between(host *h, uint32_t slot, VkSemaphore before, VkSemaphore after);
 void host_wait(host *h, uint32_t slot);
 
 typedef struct host_image {
