@@ -18,7 +18,7 @@ cube="$scenes/cube.gltf --size 32x32 -o x.png"
     refuses 2 "--fronts needs --max-error or --budget-ms" render $cube --fronts f.json
     refuses 2 "--error-block needs --max-error or --budget-ms" render $cube --error-block 1
     refuses 2 "--spp 3: --max-error and --budget-ms choose the samples themselves" render $cube --max-error 5% --spp 3 --method path
-    works render $cube --size 16x16 -o x.png --max-error 50% # the first choice of a day measures the device, and says so
+    works render "$scenes/cube.gltf" --size 16x16 -o x.png --max-error 50% # the first choice of a day measures the device, and says so
     refuses 2 "say with --budget-ms how long it may take" render "$scenes/smoke.gltf" --size 512x512 -o x.png --max-error 0.01%
     refuses 2 "nothere.json" render $cube --max-error 5% --fronts nothere.json
     echo '{"schema": "tyndall-report"}' >report.json
