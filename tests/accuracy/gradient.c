@@ -129,11 +129,11 @@ static void lamps(void **state)
         double ratio;            // of radial functions to the defaults, at least
         double split;
     } cases[] = {
-        {"beside a cube", {0.5f, 1.1f, 0.5f}, false, 0.05, 0.12, 3, 0.015},
-        {"beside clumps", {0.5f, 1.1f, 0.5f}, true, 0.08, 0.12, 1.8, 0.02},
-        {"close to a cube", {0.4f, 1.03f, 0.45f}, false, 0.15, 0.25, 2, 0.05},
-        {"in a cube, between samples", {0.5f, 0.5f, 0.5f}, false, 0.3, 0.3, 1, 0.1},
-        {"in a cube, on a sample", {0.4375f, 0.4375f, 0.4375f}, false, 0.3, 0.3, 0.9, 0.1},
+        {"beside a cube", {0.5f, 1.1f, 0.5f}, false, 0.05, 0.12, 3, 0.01},
+        {"beside clumps", {0.5f, 1.1f, 0.5f}, true, 0.08, 0.12, 1.8, 0.015},
+        {"close to a cube", {0.4f, 1.03f, 0.45f}, false, 0.15, 0.25, 2, 0.015},
+        {"in a cube, between samples", {0.5f, 0.5f, 0.5f}, false, 0.3, 0.3, 1, 0.015},
+        {"in a cube, on a sample", {0.4375f, 0.4375f, 0.4375f}, false, 0.3, 0.3, 0.9, 0.015},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         tyn_scene *scene = cases[i].clumps ? clumps(6, 1, 0) : cube(2, 0.5f, 0);
