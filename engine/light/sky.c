@@ -126,9 +126,8 @@ static void add_sky(tyn_graph *g, const tyn_job *job, uint32_t first_sun, bool c
         refs[ORDINATES_PORT_SKY] = sky->map;
     }
     bool picture = job->outputs & TYN_PICTURE_OUTPUTS && !frame->empty;
-    // Ordinates that follow the camera are solved for anew when it moves: not where the solve could stay.
     bool weighted = params.importance == ORDINATES_IMPORTANCE_ON ||
-                    (params.importance == ORDINATES_IMPORTANCE_AUTO && !can_split);
+                    (params.importance == ORDINATES_IMPORTANCE_AUTO && sky->follows_camera);
     if (regions && picture && weighted) {
         add_importance(g, job, &s->medium, can_split, &refs[ORDINATES_PORT_IMPORTANCE]);
     }

@@ -30,6 +30,7 @@ static tyn_result declare(tyn_graph *g, const tyn_job *job)
     }
     tyn_job_warn_surfaces(job, "stop light that goes straight alone, not what the medium scatters");
     tyn_add_medium(g, job, &s);
+    s.sky.follows_camera = true; // its section 5.2
     tyn_add_sky(g, job, 0, false, &s);
     tyn_add_vpls(g, job, &s);
     tyn_sources shadowed = s;

@@ -122,6 +122,18 @@ static char state_of(tyn_context *ctx, const char *node)
     return '-';
 }
 
+static void draw(fake_vulkan *fake, tyn_context *ctx, const stage *s)
+{
+    fake_clear(fake);
+    assert_int_equal(tyn_context_prepare(ctx, tyn_frame(.scene = &s->scene, .view = &s->view)),
+                     TYN_OK);
+    fake->recording = true;
+    assert_int_equal(tyn_context_record(ctx, tyn_frame(.cmd = (VkCommandBuffer)(uintptr_t)1,
+                                                       .scene = &s->scene, .view = &s->view)),
+                     TYN_OK);
+    fake->recording = false;
+}
+
 bool what_runs(const char *method, const char *const *nodes, const what_runs_row *rows)
 {
     fake_vulkan *fake = fake_create();
@@ -138,14 +150,9 @@ bool what_runs(const char *method, const char *const *nodes, const what_runs_row
     print_message("\n");
     for (size_t i = 0; rows[i].what; i++) {
         rows[i].change(&s);
-        fake_clear(fake);
-        assert_int_equal(tyn_context_prepare(ctx, tyn_frame(.scene = &s.scene, .view = &s.view)),
-                         TYN_OK);
-        fake->recording = true;
-        assert_int_equal(tyn_context_record(ctx, tyn_frame(.cmd = (VkCommandBuffer)(uintptr_t)1,
-                                                           .scene = &s.scene, .view = &s.view)),
-                         TYN_OK);
-        fake->recording = false;
+        for (int frame = 0; frame <= rows[i].before; frame++) {
+            draw(fake, ctx, &s);
+        }
         char found[16] = {0};
         for (int n = 0; nodes[n] && n < 15; n++) {
             found[n] = state_of(ctx, nodes[n]);

@@ -26,6 +26,7 @@ typedef struct what_runs_row {
     const char *what; // NULL ends a table
     void (*change)(stage *s);
     const char *right; // r: ran, u: unchanged, -: not declared; in the order of the nodes
+    int before;        // so many frames go by between the change and the one that is looked at
 } what_runs_row;
 
 // One frame after each change, all of which stay. Prints the table; false: a row is not right. At most 15 nodes; NULL ends

@@ -27,6 +27,9 @@ typedef struct tyn_sky {
     tyn_ref ordinates; // struct ordinates_block; {0} if nothing shines from ordinates
     uint32_t count;    // ordinates at most
     bool split; // they carry the map less its mean, env_block.sky, which comes in from all sides
+    // Set before the ordinates are added: they are placed by what matters to the picture, unless the user says otherwise, and
+    // are solved for anew when the camera moves.
+    bool follows_camera;
     tyn_column_refs columns; // optical depths along them
     // Where surfaces stand: what they hide of the ordinates, and of the sky's mean, which then is among `source` of the lattice.
     tyn_ref directions; // struct ordinates_block: parts of the ordinates, which have maps each

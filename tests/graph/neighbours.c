@@ -1,0 +1,79 @@
+// neighbours.c -- which nodes of the neighbours' methods run when something changes (gradient.c and constellation.c have their own).
+#include "what_runs.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+// The first frame has photons of all generations. After a change some are traced in each frame, until none is of before it.
+static void photon(void **state)
+{
+    (void)state;
+    static const char *const nodes[] = {"medium",       "beam",         "lattice_cells",
+                                        "photon_trace", "photon_cache", "photon_upsample",
+                                        "photon_view",  "raymarch",     NULL};
+    static const what_runs_row rows[] = {
+        {"first frame", change_nothing, "rrrrrrrr"},  {"nothing", change_nothing, "uuuuuuuu"},
+        {"camera moved", move_camera, "uuuuuurr"},    {"sun moved", turn_sun, "ururrrrr"},
+        {"settled", change_nothing, "uuuuuuuu", 200}, {"sun dimmed", dim_sun, "uuurrrrr", 1},
+        {"settled", change_nothing, "uuuuuuuu", 200}, {"map turned", turn_map, "uuurrrrr", 1},
+        {"settled", change_nothing, "uuuuuuuu", 200}, {"coefficients", thin_medium, "rrrrrrrr"},
+        {"settled", change_nothing, "uuuuuuuu", 200}, {"grid", change_grid, "rrrrrrrr"},
+        {"settled", change_nothing, "uuuuuuuu", 200}, {"unlit", lights_out, "u------r"},
+        {"empty", take_medium, "-------r"},           {NULL},
+    };
+    assert_true(what_runs("photon", nodes, rows));
+}
+
+static void shdom(void **state)
+{
+    (void)state;
+    static const char *const nodes[] = {
+        "medium", "beam",       "lattice_cells", "lattice_ordinates",
+        "shdom",  "shdom_view", "raymarch",      NULL};
+    static const what_runs_row rows[] = {
+        {"first frame", change_nothing, "rrrrrrr"}, {"nothing", change_nothing, "uuuuuuu"},
+        {"camera moved", move_camera, "uuuuurr"},   {"sun moved", turn_sun, "ururrrr"},
+        {"sun dimmed", dim_sun, "uuurrrr"},         {"map turned", turn_map, "uuurrrr"},
+        {"another map", change_map, "uuurrrr"},     {"coefficients", thin_medium, "rrrrrrr"},
+        {"grid", change_grid, "rrrrrrr"},           {"unlit", lights_out, "u-----r"},
+        {"empty", take_medium, "------r"},          {NULL},
+    };
+    assert_true(what_runs("shdom", nodes, rows));
+}
+
+static void lpv(void **state)
+{
+    (void)state;
+    static const char *const nodes[] = {"medium",
+                                        "beam",
+                                        "env_glow",
+                                        "lattice_cells",
+                                        "lattice_source",
+                                        "lattice_ordinates",
+                                        "lpv",
+                                        "merge",
+                                        "raymarch",
+                                        NULL};
+    static const what_runs_row rows[] = {
+        {"first frame", change_nothing, "rrrrrrrrr"},
+        {"nothing", change_nothing, "uuuuuuuuu"},
+        {"camera moved", move_camera, "uuuuuuurr"},
+        {"sun moved", turn_sun, "uruurrrrr"},
+        {"sun dimmed", dim_sun, "uuuurrrrr"},
+        {"map turned", turn_map, "uuuuurrrr"},
+        {"coefficients", thin_medium, "rrurrrrrr"},
+        {"grid", change_grid, "rrurrrrrr"},
+        {"unlit", lights_out, "u-------r"},
+        {"empty", take_medium, "--------r"},
+        {NULL},
+    };
+    assert_true(what_runs("lpv", nodes, rows));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(photon), cmocka_unit_test(shdom),
+                                       cmocka_unit_test(lpv)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
