@@ -2,6 +2,7 @@
 #include "frame/frame_scene.h"
 #include "scene/phase.h"
 #include "shaders/light/shadow_args.h"
+#include "shaders/surfaces/surface_table_args.h"
 #include <math.h>
 #include <string.h>
 
@@ -447,6 +448,7 @@ static void build_surfaces(tyn_frame_scene *out, const tyn_surfaces *surfaces,
         return;
     }
     out->num_triangles = b->num_triangles = surfaces->num_triangles;
+    out->emitters = data->emitters ? ((const struct surface_table *)data->emitters)->weight : 0.0f;
     out->num_textures = surfaces->num_textures;
     if (surfaces->num_triangles <= TYN_SURFACE_FEW) {
         build_few(b->few, surfaces);

@@ -30,7 +30,7 @@ static float largest(const float v[3])
 static float power_of_lights(const tyn_frame_scene *frame, const tyn_path_params *p)
 {
     const float pi = 3.14159265f, all[3] = {1, 1, 1};
-    float power = pi * largest(frame->environment.mean) * area_across(p, all);
+    float power = pi * (largest(frame->environment.mean) * area_across(p, all) + frame->emitters);
     for (uint32_t i = 0; i < p->num_lights; i++) {
         const struct light_block *l = &frame->lights.scene[i];
         power += largest(l->color) * (l->kind == TYN_LIGHT_KIND_DIRECTIONAL
@@ -95,7 +95,8 @@ static uint32_t fit_lobes(const tyn_job *job, tyn_photon_trace_params *p)
     const bool map = sky && job->frame->environment.has_map;
     const uint32_t suns =
         lights->num_directional > 0 ? lights->num_directional : lights->num_suns > 0;
-    const uint32_t useful = map ? PHOTON_MOST_LOBES : suns + (lights->num_lamps || sky);
+    const uint32_t useful =
+        map ? PHOTON_MOST_LOBES : suns + (lights->num_lamps || sky || job->frame->emitters > 0);
     const uint32_t room = tyn_photon_most_lobes(p), asked = (uint32_t)p->lobes;
     uint32_t lobes = asked < useful ? asked : useful;
     if (lobes > room && room > 0) {

@@ -1,4 +1,4 @@
-// photon_trace_start.glsl -- photons of suns, lamps and the environment as they start. Included after path.glsl.
+// photon_trace_start.glsl -- photons of suns, lamps, surfaces that emit and the environment as they start. Included after path.glsl.
 //
 // Of all photons together places and lights lie evenly: they are terms of the Kronecker sequence of Roberts (2018), the
 // n-th photon's of all generations.
@@ -24,9 +24,14 @@ float start_sky()
     return ENVIRONMENT == TYN_PATH_ENV_NONE ? 0.0 : max3(env.mean) * HG_PI * sum3(faces_across(vec3(1.0)));
 }
 
+float start_emitters()
+{
+    return EMITTERS ? HG_PI * emitters.weight : 0.0;
+}
+
 float start_total()
 {
-    float total = start_sky();
+    float total = start_sky() + start_emitters();
     for (uint i = 0u; i < args.num_lights && LIGHTS > 0u; i++) {
         total += start_weight(light_get(i));
     }
@@ -69,6 +74,23 @@ uint start_region(vec3 way)
     return plan.sky_first + nearest * regions / max(count, 1u);
 }
 
+// From a point of a surface that emits, by the cosine; `even` in [0, 1)^3, `total` as below.
+void start_at_emitter(float total, vec3 even, inout rng_state rng, inout photon p)
+{
+    uvec4 bits = rng_next(rng);
+    uint cell = min(uint(even.z * float(emitters.count)), emitters.count - 1u);
+    uint index = surface_cell_pick(emitter_cells[cell], bits.x);
+    surface_point point = surface_point_at(index, triangle_sample(even.xy));
+    surface_material material = surface_material_at(surface_triangle_at(index).w);
+    vec3 front = surface_emitted(material, true);
+    bool two = max3(surface_emitted(material, false)) > 0.0, turned = two && (bits.y & 1u) != 0u;
+    vec3 normal = turned ? -point.normal : point.normal;
+    p.path.vertex = surface_offset(point, normal);
+    p.path.way = cosine_sample(normal, rng_vec2(bits.zw));
+    p.power = front * ((two ? 2.0 : 1.0) * total / max(max3(front), 1e-37));
+    p.direct = vec3(1.0);
+}
+
 // Of the n-th photon where it begins, its lobe, what cells get of it before it has scattered, and its power over the probability
 // of drawing it, W; `total` of start_total, > 0.
 void start_photon(float total, uint n, inout rng_state rng, inout photon p)
@@ -92,7 +114,7 @@ void start_photon(float total, uint n, inout rng_state rng, inout photon p)
     for (uint i = 0u; i < args.num_lights && LIGHTS > 0u; i++) {
         light_block light = light_get(i);
         float weight = start_weight(light);
-        if (left < weight || (i + 1u == args.num_lights && ENVIRONMENT == TYN_PATH_ENV_NONE)) {
+        if (left < weight || (i + 1u == args.num_lights && !EMITTERS && ENVIRONMENT == TYN_PATH_ENV_NONE)) {
             p.power = light.color * (total / max(max3(light.color), 1e-37));
             p.direct = vec3((plan.marched[i >> 5] >> (i & 31u) & 1u) == 0u);
             if (light.kind == TYN_LIGHT_KIND_DIRECTIONAL) {
@@ -104,6 +126,14 @@ void start_photon(float total, uint n, inout rng_state rng, inout photon p)
                 p.path.vertex = light.position;
                 p.power *= light_lobe(light, dot(p.path.way, light.direction));
             }
+            return;
+        }
+        left -= weight;
+    }
+    if (EMITTERS) {
+        float weight = start_emitters();
+        if (left < weight || ENVIRONMENT == TYN_PATH_ENV_NONE) {
+            start_at_emitter(total, vec3(even.xy, min(left / weight, 0.9999999)), rng, p);
             return;
         }
         left -= weight;

@@ -54,6 +54,8 @@ typedef struct tyn_frame_scene {
     bool empty;             // no medium at all, or no coefficient above 0
     uint32_t num_triangles; // of the surfaces; 0: there are none, nor their refs
     uint32_t num_textures;  // of their materials
+    // Area times the largest channel of the emission, of all that emit, W/sr; 0 if there are none, or no tyn_scene_refs.emitters.
+    float emitters;
     struct surface_block surfaces;
     // World space -> M: a turn and a move, column-major.
     float m_from_world[16];
