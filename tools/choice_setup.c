@@ -362,7 +362,8 @@ int choice_make(app *a, const choice_options *options, const method_options *how
     fronts f = {0};
     regime r;
     tyn_camera camera = view->camera;
-    camera.aspect = (float)view->width / (float)view->height;
+    camera.aspect = view->whole[0] ? (float)view->whole[0] / (float)view->whole[1]
+                                   : (float)view->width / (float)view->height;
     int code = fronts_open(a, options->fronts, &f);
     char *without = NULL;
     if (code == EXIT_DONE) {

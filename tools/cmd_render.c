@@ -1,6 +1,7 @@
 // cmd_render.c -- `tyndall render`: a scene to pictures and stats.
 #include "app.h"
 #include "choice_setup.h"
+#include "crop.h"
 #include "exposure.h"
 #include "machine.h"
 #include "method_setup.h"
@@ -24,7 +25,7 @@ typedef struct render_args {
     choice_options choice;
     machine_options machine;
     opt_list outputs;
-    const char *aov, *stats, *frames, *change, *exposure, *tonemap;
+    const char *aov, *stats, *frames, *change, *exposure, *tonemap, *crop;
     bool no_background, full_float, resume;
     uint32_t sample_offset;
 } render_args;
@@ -106,6 +107,9 @@ static int choose_method(app *a, render_job *job, const tyn_scene *scene)
     }
     tyn_view view = {.no_background = job->args->no_background};
     int code = view_setup(a, &job->args->view, scene, &view);
+    if (code == EXIT_DONE && !crop_take(a, job->args->crop, &view)) {
+        code = EXIT_WRONG;
+    }
     if (code == EXIT_DONE) {
         code = open_machine(a, job);
     }
@@ -321,8 +325,7 @@ static int find_exposure(app *a, render_job *job, const tyn_scene *scene, tyn_vi
     tyn_view small = *view;
     const float shrink =
         fminf(1, (float)SIDE / (float)(view->width > view->height ? view->width : view->height));
-    small.width = (uint32_t)fmaxf(1, roundf((float)view->width * shrink));
-    small.height = (uint32_t)fmaxf(1, roundf((float)view->height * shrink));
+    crop_shrink(&small, shrink);
     small.num_samples = view->num_samples < SAMPLES ? view->num_samples : SAMPLES;
     small.outputs = TYN_OUTPUT_RADIANCE;
     int code = renderer_frame(a, &job->renderer, scene, &small, false, "exposure");
@@ -392,6 +395,9 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
     // Later pictures of a sequence recompute only what differs: they are not cold.
     bool first = !job->renderer.offline;
     int code = view_setup(a, &job->args->view, scene, &view);
+    if (code == EXIT_DONE && !crop_take(a, job->args->crop, &view)) {
+        code = EXIT_WRONG;
+    }
     if (code == EXIT_DONE) {
         keep_look(&job->look, paths->scene, scene, &view.camera);
         code = open_renderer(a, job);
@@ -571,6 +577,9 @@ static const option output_table[] = {
      "layers of the .exr: transmittance,depth,depth_t50,single,multiple,error,albedo,normal; with "
      "depth, depth_t50, single or multiple every pixel is marched, none upsampled: the picture "
      "changes by up to 1 %"},
+    {0, "crop", OPT_TEXT, AT(crop), "X,Y,WxH",
+     "only these pixels of the picture, from column X and row Y on; of an .exr they are the data "
+     "window in the whole picture's display window"},
     {0, "no-background", OPT_FLAG, AT(no_background), NULL,
      "the medium alone, premultiplied; A = 1 - mean transmittance"},
     {0, "exposure", OPT_TEXT, AT(exposure), "EV|auto",

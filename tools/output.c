@@ -153,8 +153,13 @@ static int write_exr(app *a, const output_plan *plan, tyn_offline *offline,
 {
     const size_t num = (size_t)tags->view->width * tags->view->height;
     tyn_channel channels[MAX_CHANNELS] = {0};
-    tyn_image_file image = {
-        .width = tags->view->width, .height = tags->view->height, .channels = channels};
+    tyn_image_file image = {.width = tags->view->width,
+                            .height = tags->view->height,
+                            .x = (int32_t)tags->view->corner[0],
+                            .y = (int32_t)tags->view->corner[1],
+                            .whole_width = tags->view->whole[0],
+                            .whole_height = tags->view->whole[1],
+                            .channels = channels};
     float *planes = malloc(num * MAX_CHANNELS * sizeof *planes);
     if (!planes) {
         app_error(a, "out of memory");

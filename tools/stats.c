@@ -172,6 +172,11 @@ cJSON *stats_make(const stats *s)
     cJSON_AddStringToObject(root, "method", s->method->info.name);
     int size[2] = {(int)s->view->width, (int)s->view->height};
     cJSON_AddItemToObject(root, "size", cJSON_CreateIntArray(size, 2));
+    if (s->view->whole[0]) {
+        const int crop[4] = {(int)s->view->corner[0], (int)s->view->corner[1],
+                             (int)s->view->whole[0], (int)s->view->whole[1]};
+        cJSON_AddItemToObject(root, "part_of", cJSON_CreateIntArray(crop, 4));
+    }
     json_add_float(root, "setup_ms", s->setup_ms);
     cJSON *frame = cJSON_AddObjectToObject(root, "frame_ms");
     json_add_float(frame, "cold", s->cold_ms);

@@ -15,7 +15,8 @@ static void half_sides(const tyn_view *view, double *width, double *height)
 {
     const tyn_camera *c = &view->camera;
     *height = c->projection == TYN_PERSPECTIVE ? tan((double)c->yfov / 2) : (double)c->ymag;
-    *width = *height * view->width / view->height;
+    *width = view->whole[0] ? *height * view->whole[0] / view->whole[1]
+                            : *height * view->width / view->height;
 }
 
 // Row vectors times it are x to the right, y up, z along the view: left-handed, as OpenEXR and RenderMan have it.

@@ -200,8 +200,30 @@ static tyn_result from_camera(tyn_frame_projection *out, const tyn_frame *frame,
     out->orthographic = camera->projection == TYN_ORTHOGRAPHIC;
     const float half = out->orthographic ? camera->ymag : tanf(camera->yfov * 0.5f);
     out->half[1] = (double)half;
-    out->half[0] = (double)(half * (view->height ? (float)view->width / (float)view->height : 1));
+    const uint32_t *whole =
+        view->whole[0] ? view->whole : (const uint32_t[2]){view->width, view->height};
+    out->half[0] = (double)(half * (whole[1] ? (float)whole[0] / (float)whole[1] : 1));
     memcpy(out->depth, (const float[4]){m[10], m[14], m[11], m[15]}, sizeof out->depth);
+    return TYN_OK;
+}
+
+// Of the whole picture's the part's.
+static tyn_result take_part(tyn_frame_projection *out, const tyn_view *view, const tyn_log *log)
+{
+    const uint32_t size[2] = {view->width, view->height};
+    for (int a = 0; a < 2; a++) {
+        const uint32_t whole = view->whole[a], corner = view->corner[a];
+        if (whole > 65536 || size[a] > whole || corner > whole - size[a]) {
+            FAULT("view: %u x %u pixels from (%u, %u) on are no part of %u x %u (65536 at most)",
+                  size[0], size[1], view->corner[0], view->corner[1], view->whole[0],
+                  view->whole[1]);
+        }
+        const double part = (double)size[a] / whole;
+        double middle = (2.0 * corner + size[a]) / whole - 1; // in half sizes of the whole
+        middle = a == 1 ? -middle : middle;                   // row 0 is on top
+        out->half[a] *= part;
+        out->shift[a] = (out->shift[a] + middle) / part;
+    }
     return TYN_OK;
 }
 
@@ -215,6 +237,10 @@ tyn_result tyn_frame_projection_find(tyn_frame_projection *out, const tyn_frame 
                                   : from_matrices(out, frame, log);
     if (result != TYN_OK) {
         return result;
+    }
+    const bool part = frame->view->whole[0] || frame->view->whole[1];
+    if (part && take_part(out, frame->view, log) != TYN_OK) {
+        return TYN_ERR_PARAMS;
     }
     if (!finite_floats(frame->jitter, 2)) {
         FAULT("jitter is %g, %g; it must be finite, pixels", frame->jitter[0], frame->jitter[1]);

@@ -249,6 +249,14 @@ static tyn_result read_picture(picture *p, stream *s, const char *file, const ty
     p->image->height = (uint32_t)height;
     p->x0 = window.min.x;
     p->y0 = window.min.y;
+    exr_attr_box2i_t shown;
+    if (exr_get_display_window(p->context, 0, &shown) == EXR_ERR_SUCCESS &&
+        memcmp(&shown, &window, sizeof shown) != 0) {
+        p->image->x = (int32_t)((int64_t)window.min.x - shown.min.x);
+        p->image->y = (int32_t)((int64_t)window.min.y - shown.min.y);
+        p->image->whole_width = (uint32_t)((int64_t)shown.max.x - shown.min.x + 1);
+        p->image->whole_height = (uint32_t)((int64_t)shown.max.y - shown.min.y + 1);
+    }
     tyn_result r = tyn_exr_read_attributes(p->context, p->image);
     s->message[0] = '\0'; // attributes that are missing are no fault
     r = r ? r : add_channels(p, file, log);
@@ -373,7 +381,7 @@ static exr_result_t write_chunks(exr_context_t context, const tyn_image_file *im
     exr_result_t e = exr_get_scanlines_per_chunk(context, 0, &step);
     for (uint32_t y = 0; e == EXR_ERR_SUCCESS && y < image->height; y += (uint32_t)step) {
         exr_chunk_info_t chunk;
-        e = exr_write_scanline_chunk_info(context, 0, (int)y, &chunk);
+        e = exr_write_scanline_chunk_info(context, 0, image->y + (int)y, &chunk);
         if (e != EXR_ERR_SUCCESS) {
             break;
         }
@@ -408,6 +416,20 @@ static exr_result_t write_chunks(exr_context_t context, const tyn_image_file *im
     return e;
 }
 
+static exr_result_t set_windows(exr_context_t context, const tyn_image_file *image)
+{
+    exr_attr_box2i_t whole, part;
+    whole.min.x = whole.min.y = 0;
+    whole.max.x = (int32_t)image->whole_width - 1;
+    whole.max.y = (int32_t)image->whole_height - 1;
+    part.min.x = image->x;
+    part.min.y = image->y;
+    part.max.x = image->x + (int32_t)image->width - 1;
+    part.max.y = image->y + (int32_t)image->height - 1;
+    exr_result_t e = exr_set_display_window(context, 0, &whole);
+    return e ? e : exr_set_data_window(context, 0, &part);
+}
+
 static exr_result_t write_picture(exr_context_t *context, const tyn_image_file *image,
                                   void *const *data, bool full_float, stream *s, const char *path)
 {
@@ -422,6 +444,7 @@ static exr_result_t write_picture(exr_context_t *context, const tyn_image_file *
     e = e ? e
           : exr_initialize_required_attr_simple(*context, 0, (int32_t)image->width,
                                                 (int32_t)image->height, EXR_COMPRESSION_ZIP);
+    e = e || !image->whole_width ? e : set_windows(*context, image);
     for (uint32_t i = 0; !e && i < image->num_channels; i++) {
         e = exr_add_channel(*context, 0, image->channels[i].name,
                             is_full(&image->channels[i], full_float) ? EXR_PIXEL_FLOAT

@@ -254,6 +254,16 @@ static bool spoil(whole_frame *w, int fault)
     case 47:
         w->frame.light.red = &w->color;
         break; // without its output
+    case 48:
+        w->view.whole[0] = w->view.whole[1] = SIDE - 1;
+        break;
+    case 49:
+        w->view.whole[0] = 2 * SIDE; // by 0
+        break;
+    case 50:
+        w->view.whole[0] = w->view.whole[1] = 2 * SIDE;
+        w->view.corner[1] = UINT32_MAX;
+        break;
     default:
         return false;
     }

@@ -39,7 +39,7 @@ static void layout(void **state)
         SIZE(tyn_method_info, 48),
         SIZE(tyn_setting, 32),
         SIZE(tyn_scene, 9720),
-        SIZE(tyn_view, 176),
+        SIZE(tyn_view, 192),
         SIZE(tyn_ref, 8),
         SIZE(tyn_lattice_shape, 44),
         SIZE(tyn_lights, 8716),

@@ -61,6 +61,33 @@ static void round_trip(void **state)
     }
 }
 
+// A part of a picture: its place in the whole comes back, beside the pixels.
+static void windows(void **state)
+{
+    (void)state;
+    tyn_image_file image, read;
+    io_log log;
+    io_log_init(&log);
+    fill(&image);
+    image.x = 40;
+    image.y = 7;
+    image.whole_width = 40 + WIDTH;
+    image.whole_height = 1000;
+    assert_int_equal(tyn_exr_write(&image, io_path("part.exr"), true, &log.log), TYN_OK);
+    assert_int_equal(tyn_exr_read(&read, io_path("part.exr"), &log.log), TYN_OK);
+    assert_int_equal(log.errors + log.warnings, 0);
+    assert_int_equal(read.x, 40);
+    assert_int_equal(read.y, 7);
+    assert_int_equal(read.whole_width, 40 + WIDTH);
+    assert_int_equal(read.whole_height, 1000);
+    for (int c = 0; c < 3; c++) {
+        assert_memory_equal(tyn_image_file_channel(&read, image.channels[c].name),
+                            image.channels[c].data, WIDTH * HEIGHT * sizeof(float));
+    }
+    tyn_image_file_finish(&read);
+    tyn_image_file_finish(&image);
+}
+
 // What a file says beside its pixels comes back; channels that are to be exact are, whatever the others are.
 static void attributes(void **state)
 {
@@ -468,12 +495,18 @@ static void real_file(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(round_trip),     cmocka_unit_test(attributes),
-        cmocka_unit_test(incompressible), cmocka_unit_test(refused_channels),
-        cmocka_unit_test(saturation),     cmocka_unit_test(environments),
-        cmocka_unit_test(kinds),          cmocka_unit_test(broken),
-        cmocka_unit_test(damaged_piz),    cmocka_unit_test(png),
-        cmocka_unit_test(png_refusals),   cmocka_unit_test(real_file)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(round_trip),
+                                       cmocka_unit_test(windows),
+                                       cmocka_unit_test(attributes),
+                                       cmocka_unit_test(incompressible),
+                                       cmocka_unit_test(refused_channels),
+                                       cmocka_unit_test(saturation),
+                                       cmocka_unit_test(environments),
+                                       cmocka_unit_test(kinds),
+                                       cmocka_unit_test(broken),
+                                       cmocka_unit_test(damaged_piz),
+                                       cmocka_unit_test(png),
+                                       cmocka_unit_test(png_refusals),
+                                       cmocka_unit_test(real_file)};
     return run_cases(tests, NULL, io_test_clean);
 }

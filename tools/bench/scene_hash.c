@@ -60,5 +60,6 @@ uint64_t bench_scene_hash(const tyn_scene *scene, const tyn_view *view)
     const tyn_camera *c = &view->camera;
     key = HASH(c->projection, HASH(c->position, HASH(c->right, HASH(c->up, HASH(c->back, key)))));
     key = HASH(c->yfov, HASH(c->ymag, key));
+    key = view->whole[0] ? HASH(view->whole, HASH(view->corner, key)) : key;
     return HASH(view->width, HASH(view->height, HASH(view->no_background, key)));
 }

@@ -136,6 +136,9 @@ typedef struct tyn_resume {
 typedef struct tyn_view {
     tyn_camera camera;
     uint32_t width, height; // pixels, 1..16384
+    // Not {0}: the picture is a part of one of `whole` (width, height), which camera or matrices are of, from `corner` (column,
+    // row) on.
+    uint32_t whole[2], corner[2];
     uint32_t outputs;       // set of tyn_output; 0 = RADIANCE
     bool no_background;     // RGB is the medium alone, premultiplied
     float exposure_ev;      // for DISPLAY

@@ -89,6 +89,10 @@ typedef struct tyn_image_file {
     tyn_attribute *attributes;
     // Width of the picture plane at distance 1 ("screenWindowWidth"); 0 when written: 1.
     float screen_width;
+    // Of an EXR file: its data window begins at column x, row y of a display window of whole_width x whole_height; {0}: it is
+    // all there is.
+    int32_t x, y;
+    uint32_t whole_width, whole_height;
 } tyn_image_file;
 // One part, scanlines or tiles, any compression; half and float channels of full resolution.
 TYN_API tyn_result tyn_exr_read(tyn_image_file *image, const char *path, const tyn_log *log);
