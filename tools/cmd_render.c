@@ -261,10 +261,18 @@ static int take_up(app *a, const render_job *job, const picture_state *p, uint32
 // What the run gave, in a line for people.
 static void note_result(app *a, const stats *s, double frame_ms, const opt_list *files)
 {
-    bool cold = !isnan(s->cold_ms);
-    app_note(a, "%s: %ux%u, %s on %s, %.0f ms%s, %.0f ms set-up", files->items[0], s->view->width,
-             s->view->height, s->method->info.name, s->device, frame_ms,
-             cold ? " a cold frame" : "", s->setup_ms);
+    const bool cold = !isnan(s->cold_ms),
+               compiled = cold && s->pipelines.compiled > s->pipelines.from_cache;
+    char time[96];
+    if (compiled) { // a driver may compile when a kernel is first used, too
+        snprintf(time, sizeof time, "first frame, with compiling, %.1f s",
+                 1e-3 * (frame_ms + s->setup_ms));
+    } else {
+        snprintf(time, sizeof time, "%.0f ms%s, %.0f ms set-up", frame_ms,
+                 cold ? " a cold frame" : "", s->setup_ms);
+    }
+    app_note(a, "%s: %ux%u, %s on %s, %s", files->items[0], s->view->width, s->view->height,
+             s->method->info.name, s->device, time);
 }
 
 static bool is_volume(const char *path)
@@ -439,12 +447,12 @@ static int render_picture(app *a, render_job *job, tyn_scene *scene, uint64_t nu
     if (code != EXIT_DONE) {
         return code;
     }
+    tyn_device_pipelines(job->machine.device, &s.pipelines);
     note_result(a, &s, frame_ms, &paths->outputs);
     if (paths->stats) {
         tyn_report report = {0};
         tyn_offline_report(job->renderer.offline, &report);
         s.report = &report;
-        tyn_device_pipelines(job->machine.device, &s.pipelines);
         s.warnings[0] = job->renderer.warnings[0];
         s.warnings[1] = job->renderer.warnings[1];
         s.warnings[2] = job->chosen.warning;
