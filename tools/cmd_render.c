@@ -261,15 +261,19 @@ static int take_up(app *a, const render_job *job, const picture_state *p, uint32
 // What the run gave, in a line for people.
 static void note_result(app *a, const stats *s, double frame_ms, const opt_list *files)
 {
-    const bool cold = !isnan(s->cold_ms),
-               compiled = cold && s->pipelines.compiled > s->pipelines.from_cache;
-    char time[96];
-    if (compiled) { // a driver may compile when a kernel is first used, too
-        snprintf(time, sizeof time, "first frame, with compiling, %.1f s",
-                 1e-3 * (frame_ms + s->setup_ms));
+    const bool cold = !isnan(s->cold_ms), timed = cold && s->cold_ms != frame_ms;
+    const bool compiled = cold && s->pipelines.compiled > s->pipelines.from_cache;
+    char time[128] = "";
+    int used = 0;
+    if (timed || !compiled) { // the frames after the first
+        used = snprintf(time, sizeof time, "%.0f ms%s", cold ? s->cold_ms : frame_ms,
+                        cold ? " a cold frame" : "");
+    }
+    if (compiled) { // drivers compile when a kernel is made or when it is first used
+        snprintf(time + used, sizeof time - (size_t)used, "%sfirst frame, with compiling, %.1f s",
+                 used ? "; " : "", 1e-3 * (frame_ms + s->setup_ms));
     } else {
-        snprintf(time, sizeof time, "%.0f ms%s, %.0f ms set-up", frame_ms,
-                 cold ? " a cold frame" : "", s->setup_ms);
+        snprintf(time + used, sizeof time - (size_t)used, ", %.0f ms set-up", s->setup_ms);
     }
     app_note(a, "%s: %ux%u, %s on %s, %s", files->items[0], s->view->width, s->view->height,
              s->method->info.name, s->device, time);
