@@ -1,7 +1,8 @@
 // medium_shapes.glsl -- the exact media: shapes with grids in the atlas, averaged over a voxel or bounded
 // over a box.
 //
-// Define MEDIUM_BLOCK (uniform buffer), SHAPES (storage buffer) and ATLAS (sampler3D) before including.
+// Define MEDIUM_BLOCK (uniform buffer), SHAPES (storage buffer) and ATLAS (sampler3D) before including; in the builds
+// with TYN_COLORS, for media with grids of colours, also COLORS (sampler3D).
 #ifndef TYN_MEDIUM_SHAPES_GLSL
 #define TYN_MEDIUM_SHAPES_GLSL
 #include "shaders/common/scene_args.h"
@@ -103,6 +104,60 @@ float shape_mean(shape_block s, vec3 p, int samples)
     }
     return sum / float(n * n * n);
 }
+
+#ifdef TYN_COLORS
+layout(set = 0, binding = COLORS) uniform sampler3D colors_tex;
+
+bool shape_has_color(shape_block s, uint which)
+{
+    return s.colors[which].size.x > 0u;
+}
+
+// A grid of colours (TYN_COLORS_*) at a local position; outside the shape its edge value.
+vec3 shape_color(shape_block s, uint which, vec3 local)
+{
+    shape_colors c = s.colors[which];
+    vec3 size = vec3(c.size);
+    vec3 texel = clamp((local + 0.5) * size, vec3(0.5), size - 0.5) + vec3(0.0, 0.0, float(c.layer));
+    return c.scale * textureLod(colors_tex, texel / vec3(textureSize(colors_tex, 0)), 0.0).rgb;
+}
+
+// Means over the voxel around p, 0 outside the shape: sigma_s, sigma_a, emission.
+mat3 shape_means(shape_block s, vec3 p, int samples)
+{
+    vec3 centre = shape_local(s, p);
+    vec3 local_half = shape_local_half(s, 0.5 * medium.voxel);
+    mat3 sum = mat3(0.0);
+    if (shape_misses(s, centre, local_half)) {
+        return sum;
+    }
+    bool inside = shape_contains(s, centre, local_half);
+    vec3 half_box = 0.5 * medium.voxel / float(samples);
+    mat3 to_local = mat3(s.rows[0].xyz, s.rows[1].xyz, s.rows[2].xyz);
+    for (int i = 0; i < samples * samples * samples; i++) {
+        ivec3 at = ivec3(i % samples, i / samples % samples, i / (samples * samples));
+        vec3 local = centre + (vec3(2 * at - (samples - 1)) * half_box) * to_local;
+        float cover = inside ? 1.0 : shape_cover(s, local, local_half / float(samples), half_box);
+        if (!(cover > 0.0)) {
+            continue;
+        }
+        float density = shape_value(s, local);
+        vec3 t = density * (s.sigma_s + s.sigma_a), scattered = density * s.sigma_s;
+        if (shape_has_color(s, TYN_COLORS_ALBEDO)) {
+            scattered = t * shape_color(s, TYN_COLORS_ALBEDO, local);
+        }
+        vec3 emission = density * s.emission;
+        if (shape_has_color(s, TYN_COLORS_EMISSION)) {
+            emission = s.emission * shape_color(s, TYN_COLORS_EMISSION, local);
+        }
+        if (shape_has_color(s, TYN_COLORS_RADIANCE)) {
+            emission += (t - scattered) * shape_color(s, TYN_COLORS_RADIANCE, local);
+        }
+        sum += cover * mat3(scattered, t - scattered, emission);
+    }
+    return sum / float(samples * samples * samples);
+}
+#endif
 
 // Mode DENSITY: how many times the block's coefficients this shape's are at atlas value 1.
 float shape_scale(shape_block s)
