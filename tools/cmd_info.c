@@ -153,16 +153,18 @@ static int print_scene(app *a, const info_args *args)
     regime r = {0};
     const uint32_t frame = isnan(args->scene.frame) ? 0 : (uint32_t)args->scene.frame;
     info_grids *grids =
-        info_grids_read(a, args->scene.scene, isnan(args->scene.frame) ? NULL : &frame);
-    if (info_grids_failed(grids)) {
-        info_grids_free(grids);
-        return EXIT_WRONG;
-    }
+        info_grids_read(args->scene.scene, isnan(args->scene.frame) ? NULL : &frame);
     int code = scene_open(a, &args->scene, &scene);
     if (code != EXIT_DONE) {
-        print_grids(args, grids, a);
+        if (info_grids_of_file(args->scene.scene, grids)) {
+            print_grids(args, grids, a);
+        }
         info_grids_free(grids);
         return code;
+    }
+    if (grids && info_grids_failed(grids)) { // of the scene's own grids none is
+        app_warn(a,
+                 "a volume file has a damaged grid beside those that are read: it is not listed");
     }
     tyn_view view = {0};
     if (code == EXIT_DONE) {

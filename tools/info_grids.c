@@ -1,6 +1,7 @@
 // info_grids.c -- every grid of the volume files that a scene is read from, whether it is read or not.
 #include "info_scene.h"
 #include "stats.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +10,6 @@
 enum { MAX_FILES = 64 };
 
 struct info_grids {
-    app *a;
     uint32_t num_files;
     bool failed;
     struct {
@@ -39,8 +39,8 @@ static void found(void *user, const char *path)
     }
     tyn_volume_grid *grids;
     uint32_t count;
-    if (tyn_volume_list(path, &grids, &count, &all->a->log) != TYN_OK) {
-        all->failed = true; // a line has said why
+    if (tyn_volume_list(path, &grids, &count, NULL) != TYN_OK) {
+        all->failed = true;
         return;
     }
     all->files[all->num_files].path = strdup(path);
@@ -48,11 +48,10 @@ static void found(void *user, const char *path)
     all->files[all->num_files++].count = count;
 }
 
-info_grids *info_grids_read(app *a, const char *scene, const uint32_t *frame)
+info_grids *info_grids_read(const char *scene, const uint32_t *frame)
 {
     info_grids *all = calloc(1, sizeof *all);
     if (all) {
-        all->a = a;
         tyn_scene_files(scene, frame, found, all, NULL);
     }
     return all;
@@ -65,6 +64,11 @@ void info_grids_free(info_grids *all)
         free(all->files[i].grids);
     }
     free(all);
+}
+
+bool info_grids_of_file(const char *scene, const info_grids *all)
+{
+    return all && !all->failed && is_volume(scene);
 }
 
 bool info_grids_failed(const info_grids *all)
@@ -90,13 +94,18 @@ static void print_grid(const tyn_volume_grid *g)
         printf(", no affine transform\n");
         return;
     }
-    if (g->voxel[0] == g->voxel[1] && g->voxel[1] == g->voxel[2]) {
+    const double *edge = g->voxel, near = 1e-6 * edge[0];
+    if (fabs(edge[1] - edge[0]) <= near && fabs(edge[2] - edge[0]) <= near) {
         printf(", voxels of %.6g", g->voxel[0]);
     } else {
         printf(", voxels of %.6g x %.6g x %.6g", g->voxel[0], g->voxel[1], g->voxel[2]);
     }
-    printf("; in the world %.6g %.6g %.6g to %.6g %.6g %.6g\n", g->world_lo[0], g->world_lo[1],
-           g->world_lo[2], g->world_hi[0], g->world_hi[1], g->world_hi[2]);
+    printf("; in the world");
+    for (int i = 0; i < 6; i++) { // rounding of the transform is no place
+        const double v = i < 3 ? g->world_lo[i] : g->world_hi[i - 3];
+        printf("%s %.6g", i == 3 ? " to" : "", fabs(v) < 1e-9 * edge[i % 3] ? 0 : v);
+    }
+    printf("\n");
 }
 
 void info_grids_print(const info_grids *all)

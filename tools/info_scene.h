@@ -6,8 +6,9 @@
 
 // Every grid of the .vdb and .nvdb files of a scene, or of such a file itself; `frame` as of tyn_scene_files.
 typedef struct info_grids info_grids;
-info_grids *info_grids_read(app *a, const char *scene, const uint32_t *frame);
-bool info_grids_failed(const info_grids *grids); // a file is damaged, or not there: a line was logged
+info_grids *info_grids_read(const char *scene, const uint32_t *frame);
+bool info_grids_failed(const info_grids *grids); // a file is damaged, or not there
+bool info_grids_of_file(const char *scene, const info_grids *grids); // ... and the scene is one
 void info_grids_print(const info_grids *grids);
 void info_grids_json(const info_grids *grids, cJSON *root); // "files": [{"path", "grids": [...]}]
 void info_grids_free(info_grids *grids);
